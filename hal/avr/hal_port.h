@@ -1,0 +1,204 @@
+/*
+ * The ATmega328P's side of the contracts in hal: every verb is one or two register accesses, inlined at the call.
+ * Register names and bits: ATmega328P data sheet, chapter of each peripheral.
+ */
+#ifndef HAL_PORT_H
+#define HAL_PORT_H
+
+#include <avr/interrupt.h>
+#include <avr/io.h>
+#include <avr/pgmspace.h>
+#include <avr/sleep.h>
+#include <avr/wdt.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/* hal_irq.h */
+static inline uint8_t hal_irq_save(void)
+{
+    uint8_t state = SREG;
+    cli();
+    return state;
+}
+
+static inline void hal_irq_restore(uint8_t state)
+{
+    __asm__ volatile("" ::: "memory");
+    SREG = state;
+}
+
+static inline void hal_irq_enable(void)
+{
+    sei();
+}
+
+/* hal_i2c.h: TWBR 14 and 12 give 16 MHz / (16 + 2 TWBR) = 363.6 and 400 kHz. The internal pull-ups stay off (5 V). */
+#define HAL_I2C_ISR() ISR(TWI_vect)
+
+enum { HAL_I2C_GO = _BV(TWINT) | _BV(TWEN) | _BV(TWIE) };
+
+static inline void hal_i2c_enable(bool fast)
+{
+    TWSR = 0;
+    TWBR = fast ? 12 : 14;
+    TWCR = _BV(TWEN);
+}
+
+static inline void hal_i2c_disable(void)
+{
+    TWCR = 0;
+}
+
+static inline void hal_i2c_start(void)
+{
+    TWCR = HAL_I2C_GO | _BV(TWSTA);
+}
+
+static inline void hal_i2c_send(uint8_t byte)
+{
+    TWDR = byte;
+    TWCR = HAL_I2C_GO;
+}
+
+static inline void hal_i2c_receive(bool ack)
+{
+    TWCR = ack ? (HAL_I2C_GO | _BV(TWEA)) : HAL_I2C_GO;
+}
+
+static inline uint8_t hal_i2c_received(void)
+{
+    return TWDR;
+}
+
+static inline void hal_i2c_stop(void)
+{
+    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTO);
+}
+
+static inline void hal_i2c_release(void)
+{
+    TWCR = _BV(TWINT) | _BV(TWEN);
+}
+
+static inline uint8_t hal_i2c_status(void)
+{
+    return TWSR & 0xF8u;
+}
+
+static inline bool hal_i2c_stop_pending(void)
+{
+    return (TWCR & _BV(TWSTO)) != 0;
+}
+
+/* hal_time.h */
+void hal_time_init(void);
+uint32_t hal_time_us(void);
+uint32_t hal_time_us_isr(void);
+
+/* hal_drdy.h: INT0 is pin PD2 = D2 */
+#define HAL_DRDY_ISR() ISR(INT0_vect)
+
+static inline void hal_drdy_enable(void)
+{
+    EICRA = _BV(ISC01) | _BV(ISC00);
+    EIFR = _BV(INTF0);
+    EIMSK = _BV(INT0);
+}
+
+static inline bool hal_drdy_high(void)
+{
+    return (PIND & _BV(PD2)) != 0;
+}
+
+/* hal_sleep.h: GPIOR0 is one cycle to set and test, so it holds the wake flag */
+static inline void hal_wake(void)
+{
+    GPIOR0 = 1;
+}
+
+void hal_sleep_until_wake(void);
+
+/* hal_uart.h */
+void hal_uart_init(uint32_t baud);
+uint8_t hal_uart_tx_room(void);
+void hal_uart_tx_stage(uint8_t byte);
+void hal_uart_tx_commit(void);
+void hal_uart_tx_discard(void);
+bool hal_uart_tx_write(const char *line, uint8_t length);
+bool hal_uart_tx_idle(void);
+uint8_t hal_uart_tx_sent(void);
+bool hal_uart_rx(uint8_t *byte);
+uint8_t hal_uart_rx_lost(void);
+
+/* hal_watchdog.h */
+void hal_watchdog_start(void);
+void hal_watchdog_feed(void);
+void hal_watchdog_note(uint8_t note);
+uint8_t hal_watchdog_cause(void);
+uint8_t hal_reset_note(void);
+void hal_watchdog_tick_isr(void);
+#define hal_reset_cause() ((hal_reset_t)hal_watchdog_cause())
+
+/* hal_eeprom.h */
+static inline bool hal_eeprom_ready(void)
+{
+    return (EECR & _BV(EEPE)) == 0;
+}
+
+static inline uint8_t hal_eeprom_read(uint16_t address)
+{
+    EEAR = address;
+    EECR |= _BV(EERE);
+    return EEDR;
+}
+
+static inline void hal_eeprom_write_start(uint16_t address, uint8_t value)
+{
+    EEAR = address;
+    EEDR = value;
+    uint8_t state = hal_irq_save();
+    EECR |= _BV(EEMPE);
+    EECR |= _BV(EEPE);
+    hal_irq_restore(state);
+}
+
+/* hal_led.h: D13 is PB5 */
+static inline void hal_led_init(void)
+{
+    DDRB |= _BV(PB5);
+}
+
+static inline void hal_led_set(bool on)
+{
+    if (on) {
+        PORTB |= _BV(PB5);
+    } else {
+        PORTB &= (uint8_t)~_BV(PB5);
+    }
+}
+
+/* flash.h */
+#define FLASH PROGMEM
+#define FLASH_TEXT(words) PSTR(words)
+
+static inline uint8_t flash_u8(const uint8_t *p)
+{
+    return pgm_read_byte(p);
+}
+
+static inline uint16_t flash_u16(const uint16_t *p)
+{
+    return pgm_read_word(p);
+}
+
+static inline uint32_t flash_u32(const uint32_t *p)
+{
+    return pgm_read_dword(p);
+}
+
+static inline char flash_char(const char *p)
+{
+    return (char)pgm_read_byte(p);
+}
+
+#endif

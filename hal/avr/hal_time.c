@@ -1,0 +1,51 @@
+/*
+ * Time from Timer1 at 2 MHz. Compare A fires every 8192 us and moves on by itself; the 16-bit counter runs freely, so a time
+ * is (microseconds at the last tick) + (counter - counter at the last tick) / 2.
+ */
+#include "hal_time.h"
+
+#include "hal_irq.h"
+#include "hal_sleep.h"
+#include "hal_watchdog.h"
+
+enum { COUNTS_PER_TICK = HAL_TICK_US * 2u };
+
+#ifndef HAL_TIME_START_US
+#define HAL_TIME_START_US 0ul
+#endif
+
+static volatile uint32_t tick_us = HAL_TIME_START_US;
+static volatile uint16_t tick_count;
+
+ISR(TIMER1_COMPA_vect)
+{
+    tick_count = OCR1A;
+    OCR1A = (uint16_t)(tick_count + COUNTS_PER_TICK);
+    tick_us += HAL_TICK_US;
+    hal_watchdog_tick_isr();
+    hal_wake();
+}
+
+void hal_time_init(void)
+{
+    TCCR1A = 0;
+    TCNT1 = 0;
+    OCR1A = COUNTS_PER_TICK;
+    TIMSK1 = _BV(OCIE1A);
+    TCCR1B = _BV(CS11);
+}
+
+/* A late tick only makes the difference longer: it stays right for 32 ms without one. */
+uint32_t hal_time_us_isr(void)
+{
+    uint16_t since = (uint16_t)(TCNT1 - tick_count);
+    return tick_us + (since >> 1);
+}
+
+uint32_t hal_time_us(void)
+{
+    hal_irq_state_t state = hal_irq_save();
+    uint32_t now = hal_time_us_isr();
+    hal_irq_restore(state);
+    return now;
+}

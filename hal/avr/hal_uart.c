@@ -1,0 +1,155 @@
+/* UART rings and their interrupts. The interrupts move one byte each. */
+#include "hal_uart.h"
+
+#include "hal_irq.h"
+#include "hal_ring.h"
+#include "hal_sleep.h"
+
+enum { TX_SIZE = 256, RX_SIZE = 64, TX_MASK = TX_SIZE - 1, RX_MASK = RX_SIZE - 1 };
+
+static uint8_t tx_buffer[TX_SIZE];
+static uint8_t rx_buffer[RX_SIZE];
+static hal_ring_t tx;
+static hal_ring_t rx;
+static volatile uint8_t rx_lost;
+static bool line_used;
+
+/*
+ * UDR0 = tx_buffer[tx.tail++]; switch this interrupt off with the last byte. By hand, because it runs for every byte sent: the
+ * compiler's entry and exit would cost 12 of 53 cycles more, 0.3 % of the processor at 100 rows a second.
+ */
+ISR(USART_UDRE_vect, ISR_NAKED)
+{
+    __asm__ volatile(
+        "push r24\n\t"
+        "in r24, __SREG__\n\t"
+        "push r24\n\t"
+        "push r30\n\t"
+        "push r31\n\t"
+        "lds r30, %[tail]\n\t"
+        "ldi r31, 0\n\t"
+        "subi r30, lo8(-(%[buffer]))\n\t"
+        "sbci r31, hi8(-(%[buffer]))\n\t"
+        "ld r24, Z\n\t"
+        "sts %[udr], r24\n\t"
+        "lds r30, %[tail]\n\t"
+        "inc r30\n\t"
+        "sts %[tail], r30\n\t"
+        "lds r24, %[head]\n\t"
+        "cpse r24, r30\n\t"
+        "rjmp 1f\n\t"
+        "lds r24, %[ucsrb]\n\t"
+        "andi r24, %[off]\n\t"
+        "sts %[ucsrb], r24\n"
+        "1:\tpop r31\n\t"
+        "pop r30\n\t"
+        "pop r24\n\t"
+        "out __SREG__, r24\n\t"
+        "pop r24\n\t"
+        "reti"
+        :
+        : [tail] "i"(&tx.tail), [head] "i"(&tx.head), [buffer] "i"(tx_buffer), [udr] "i"(_SFR_MEM_ADDR(UDR0)),
+          [ucsrb] "i"(_SFR_MEM_ADDR(UCSR0B)), [off] "n"(0xFF & ~_BV(UDRIE0)));
+}
+
+static void count_lost(void)
+{
+    if (rx_lost != UINT8_MAX) {
+        rx_lost++;
+    }
+}
+
+ISR(USART_RX_vect)
+{
+    uint8_t errors = UCSR0A;
+    uint8_t byte = UDR0;
+    hal_wake();
+    if (errors & _BV(DOR0)) {
+        count_lost(); /* an earlier byte; this one is good */
+    }
+    if ((errors & _BV(FE0)) || hal_ring_room(&rx, RX_MASK) == 0) {
+        count_lost();
+        return;
+    }
+    hal_ring_stage(&rx, rx_buffer, RX_MASK, byte);
+    hal_ring_commit(&rx);
+}
+
+void hal_uart_init(uint32_t baud)
+{
+    UCSR0B = 0;
+    tx = (hal_ring_t){ 0, 0, 0 };
+    rx = (hal_ring_t){ 0, 0, 0 };
+    line_used = false;
+    /* simulators compute the byte time when UBRR0L is written, so it comes last */
+    UCSR0A = _BV(U2X0);
+    UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);
+    uint16_t divider = (uint16_t)((F_CPU / 8 + baud / 2) / baud - 1);
+    UBRR0H = (uint8_t)(divider >> 8);
+    UBRR0L = (uint8_t)divider;
+    UCSR0B = _BV(TXEN0) | _BV(RXEN0) | _BV(RXCIE0);
+}
+
+uint8_t hal_uart_tx_room(void)
+{
+    return hal_ring_room(&tx, TX_MASK);
+}
+
+void hal_uart_tx_stage(uint8_t byte)
+{
+    hal_ring_stage(&tx, tx_buffer, TX_MASK, byte);
+}
+
+void hal_uart_tx_commit(void)
+{
+    if (tx.staged == tx.head) {
+        return;
+    }
+    hal_ring_commit(&tx);
+    line_used = true;
+    hal_irq_state_t state = hal_irq_save();
+    UCSR0A = _BV(U2X0) | _BV(TXC0);
+    UCSR0B |= _BV(UDRIE0);
+    hal_irq_restore(state);
+}
+
+void hal_uart_tx_discard(void)
+{
+    hal_ring_discard(&tx);
+}
+
+bool hal_uart_tx_write(const char *line, uint8_t length)
+{
+    if (hal_uart_tx_room() < length) {
+        return false;
+    }
+    while (length-- != 0) {
+        hal_ring_stage(&tx, tx_buffer, TX_MASK, (uint8_t)*line++);
+    }
+    hal_uart_tx_commit();
+    return true;
+}
+
+bool hal_uart_tx_idle(void)
+{
+    return hal_ring_empty(&tx) && (!line_used || (UCSR0A & _BV(TXC0)));
+}
+
+uint8_t hal_uart_tx_sent(void)
+{
+    return tx.tail;
+}
+
+bool hal_uart_rx(uint8_t *byte)
+{
+    if (hal_ring_empty(&rx)) {
+        return false;
+    }
+    *byte = hal_ring_take(&rx, rx_buffer, RX_MASK);
+    return true;
+}
+
+uint8_t hal_uart_rx_lost(void)
+{
+    return rx_lost;
+}

@@ -1,0 +1,67 @@
+/*
+ * Watchdog in reset mode and the breadcrumb that outlives a reset. The start-up hook runs before .data and .bss are set up:
+ * after a watchdog reset the dog is still on with its shortest period and must be stopped first.
+ */
+#include "hal_watchdog.h"
+
+#include "hal_time.h"
+
+#define MARK 0x7117A117ul
+
+static struct {
+    uint32_t mark;
+    volatile uint8_t unfed_ticks;
+    uint8_t note;
+} breadcrumb __attribute__((section(".noinit")));
+
+static uint8_t mcusr_at_start __attribute__((section(".noinit")));
+static uint8_t cause;
+static uint8_t note_at_start;
+
+void hal_watchdog_early(void) __attribute__((naked, used, section(".init3")));
+void hal_watchdog_early(void)
+{
+    mcusr_at_start = MCUSR;
+    MCUSR = 0;
+    wdt_disable();
+}
+
+void hal_watchdog_start(void)
+{
+    bool intact = breadcrumb.mark == MARK;
+    cause = (uint8_t)hal_reset_classify(mcusr_at_start, intact, breadcrumb.unfed_ticks);
+    note_at_start = (intact && cause != HAL_RESET_POWER_ON) ? breadcrumb.note : 0;
+    breadcrumb.mark = MARK;
+    breadcrumb.unfed_ticks = 0;
+    breadcrumb.note = 0;
+    wdt_enable(WDTO_250MS);
+}
+
+void hal_watchdog_feed(void)
+{
+    wdt_reset();
+    breadcrumb.unfed_ticks = 0;
+}
+
+void hal_watchdog_note(uint8_t note)
+{
+    breadcrumb.note = note;
+}
+
+uint8_t hal_watchdog_cause(void)
+{
+    return cause;
+}
+
+uint8_t hal_reset_note(void)
+{
+    return note_at_start;
+}
+
+void hal_watchdog_tick_isr(void)
+{
+    uint8_t ticks = breadcrumb.unfed_ticks;
+    if (ticks != UINT8_MAX) {
+        breadcrumb.unfed_ticks = (uint8_t)(ticks + 1u);
+    }
+}

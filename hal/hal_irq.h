@@ -1,0 +1,19 @@
+/*
+ * Critical sections. Everything an interrupt shares with main is one byte, or is touched between save and restore.
+ *
+ *   hal_irq_state_t hal_irq_save(void)            switch interrupts off, return what they were (any context)
+ *   void hal_irq_restore(hal_irq_state_t state)   put them back
+ *   void hal_irq_enable(void)                     switch them on (main, once at start-up)
+ *
+ * Hold a section for less than 10 us: the worst interrupt latency is the longest section plus the longest handler.
+ */
+#ifndef HAL_IRQ_H
+#define HAL_IRQ_H
+
+#include <stdint.h>
+
+typedef uint8_t hal_irq_state_t;
+
+#include "hal_port.h"
+
+#endif

@@ -1,0 +1,26 @@
+/*
+ * Microseconds since start in 32 bits; wraps after 71.6 minutes, so compare with hal_time_reached only.
+ *
+ *   void hal_time_init(void)          start the timer (main, once)
+ *   uint32_t hal_time_us(void)        now (any context)
+ *   uint32_t hal_time_us_isr(void)    the same, cheaper, with interrupts already off
+ *
+ * The timer also wakes main every HAL_TICK_US, so a deadline is noticed even when no other interrupt comes.
+ */
+#ifndef HAL_TIME_H
+#define HAL_TIME_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define HAL_TICK_US 8192u
+
+/* now is at or after deadline, for moments less than 35 minutes apart (any context). */
+static inline bool hal_time_reached(uint32_t now_us, uint32_t deadline_us)
+{
+    return (int32_t)(now_us - deadline_us) >= 0;
+}
+
+#include "hal_port.h"
+
+#endif

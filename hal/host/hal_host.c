@@ -1,0 +1,243 @@
+/* The virtual clock, interrupts, sleep, watchdog, EEPROM and LED of the host. */
+#include "hal_host.h"
+
+#include <string.h>
+
+#include "hal_eeprom.h"
+#include "hal_host_private.h"
+#include "hal_irq.h"
+#include "hal_led.h"
+#include "hal_sleep.h"
+#include "hal_time.h"
+#include "hal_watchdog.h"
+
+/* A pass of main takes time too; without it a main loop that asks to be called again would stop the clock. */
+enum { CYCLES_PER_US = 16, EEPROM_WRITE_US = 3400, PASS_CYCLES = 320 };
+
+uint64_t host_now;
+hal_host_config_t host_config;
+hal_host_faults_t hal_host_faults;
+
+static bool wake_wanted;
+static bool drdy_enabled;
+static bool drdy_edge;
+static uint64_t tick_at;
+static uint64_t watchdog_at;
+static uint64_t bitten_at;
+static uint8_t reset_cause;
+static uint8_t note;
+static uint8_t note_before;
+static uint8_t eeprom[HAL_EEPROM_SIZE];
+static uint64_t eeprom_ready_at;
+static bool led;
+
+void hal_host_drdy_handler(void);
+
+void hal_host_begin(const hal_host_config_t *config, const stream_t *stream, bool loop)
+{
+    host_config = *config;
+    host_now = 0;
+    memset(&hal_host_faults, 0, sizeof hal_host_faults);
+    hal_host_faults.next_status = -1;
+    memset(eeprom, 0xFF, sizeof eeprom);
+    host_sensor_begin(stream, loop);
+    hal_host_reset_mcu(HAL_RESET_POWER_ON);
+}
+
+void hal_host_reset_mcu(uint8_t cause)
+{
+    wake_wanted = false;
+    drdy_enabled = false;
+    drdy_edge = false;
+    tick_at = HOST_NEVER;
+    watchdog_at = HOST_NEVER;
+    bitten_at = 0;
+    reset_cause = cause;
+    note_before = cause == HAL_RESET_POWER_ON ? 0 : note;
+    note = 0;
+    eeprom_ready_at = 0;
+    led = false;
+    host_i2c_begin();
+    host_uart_begin();
+}
+
+uint64_t hal_host_now(void)
+{
+    return host_now;
+}
+
+double hal_host_now_ms(void)
+{
+    return (double)host_now / 16000.0;
+}
+
+uint64_t hal_host_watchdog_bite(void)
+{
+    return bitten_at;
+}
+
+bool hal_host_led(void)
+{
+    return led;
+}
+
+uint8_t *hal_host_eeprom(void)
+{
+    return eeprom;
+}
+
+/* Main is never interrupted here, so there is nothing to hold off. */
+uint8_t hal_irq_save(void)
+{
+    return 0;
+}
+
+void hal_irq_restore(uint8_t state)
+{
+    (void)state;
+}
+
+void hal_irq_enable(void) {}
+
+void hal_time_init(void)
+{
+    tick_at = host_now + (uint64_t)HAL_TICK_US * CYCLES_PER_US;
+}
+
+uint32_t hal_time_us_isr(void)
+{
+    return (uint32_t)(host_config.time_start_us + host_now / CYCLES_PER_US);
+}
+
+uint32_t hal_time_us(void)
+{
+    return hal_time_us_isr();
+}
+
+void hal_drdy_enable(void)
+{
+    drdy_enabled = true;
+}
+
+bool hal_drdy_high(void)
+{
+    return hal_host_sensor.pin_high[1] && !hal_host_faults.int1_cut;
+}
+
+void host_drdy_changed(bool high)
+{
+    if (high && drdy_enabled && !hal_host_faults.int1_cut) {
+        drdy_edge = true;
+    }
+}
+
+void hal_wake(void)
+{
+    wake_wanted = true;
+}
+
+static uint64_t earliest(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+static void run_due_events(void)
+{
+    if (tick_at <= host_now) {
+        tick_at += (uint64_t)HAL_TICK_US * CYCLES_PER_US;
+        hal_wake();
+    }
+    if (watchdog_at <= host_now && bitten_at == 0) {
+        bitten_at = host_now;
+    }
+    if (host_sensor_next() <= host_now) {
+        host_sensor_step();
+    }
+    if (host_i2c_next() <= host_now) {
+        host_i2c_step();
+    }
+    if (host_uart_next() <= host_now) {
+        host_uart_step();
+    }
+    while (drdy_edge) {
+        drdy_edge = false;
+        hal_host_drdy_handler();
+    }
+}
+
+static uint64_t next_event(void)
+{
+    uint64_t at = earliest(tick_at, bitten_at == 0 ? watchdog_at : HOST_NEVER);
+    at = earliest(at, host_sensor_next());
+    return earliest(at, earliest(host_i2c_next(), host_uart_next()));
+}
+
+static void go_to(uint64_t at)
+{
+    host_now = at > host_now ? at : host_now;
+    run_due_events();
+}
+
+void hal_sleep_until_wake(void)
+{
+    uint64_t pass_end = host_now + PASS_CYCLES;
+    while (next_event() <= pass_end) {
+        go_to(next_event());
+    }
+    host_now = pass_end;
+    while (!wake_wanted) {
+        go_to(next_event());
+        if (bitten_at != 0) {
+            return;
+        }
+    }
+    wake_wanted = false;
+}
+
+void hal_watchdog_start(void)
+{
+    hal_watchdog_feed();
+}
+
+void hal_watchdog_feed(void)
+{
+    watchdog_at = host_now + (uint64_t)HAL_WATCHDOG_MS * 1000u * CYCLES_PER_US;
+}
+
+void hal_watchdog_note(uint8_t new_note)
+{
+    note = new_note;
+}
+
+uint8_t hal_watchdog_cause(void)
+{
+    return reset_cause;
+}
+
+uint8_t hal_reset_note(void)
+{
+    return note_before;
+}
+
+bool hal_eeprom_ready(void)
+{
+    return host_now >= eeprom_ready_at;
+}
+
+uint8_t hal_eeprom_read(uint16_t address)
+{
+    return eeprom[address % HAL_EEPROM_SIZE];
+}
+
+void hal_eeprom_write_start(uint16_t address, uint8_t value)
+{
+    eeprom[address % HAL_EEPROM_SIZE] = value;
+    eeprom_ready_at = host_now + (uint64_t)EEPROM_WRITE_US * CYCLES_PER_US;
+}
+
+void hal_led_init(void) {}
+
+void hal_led_set(bool on)
+{
+    led = on;
+}

@@ -1,0 +1,61 @@
+/*
+ * What stands behind the host's HAL: a virtual clock, an I2C master at bit-time accuracy on the virtual ADXL345, a UART line.
+ * The clock moves while main sleeps, from event to event, and by a fixed 20 us per pass of main, so a run is exactly repeatable
+ * and as fast as the PC. For tests and for the native replay.
+ */
+#ifndef HAL_HOST_H
+#define HAL_HOST_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "adxl345_model.h"
+#include "stream.h"
+
+#define HAL_HOST_HZ 16000000ull /* of the virtual clock: the UNO's cycles */
+
+typedef struct {
+    uint32_t time_start_us;      /* hal_time_us at start: set near 2^32 to cross the wrap */
+    double ppm;                  /* error of the sensor's clock */
+    void (*on_tx)(uint8_t byte); /* a byte left on the line; NULL: dropped */
+    void (*on_latched)(uint64_t t_us, size_t row, const int16_t lsb[3]); /* the sensor took a sample; may be NULL */
+} hal_host_config_t;
+
+/* The bus and wiring faults a test can set at any time. */
+typedef struct {
+    bool bus_stuck;           /* a line is held low: nothing ever completes */
+    bool int1_cut;            /* INT1 does not reach D2 */
+    bool id_wrong;            /* DEVID reads 0x00 */
+    uint8_t corrupt_rx_every; /* every Nth received UART byte has a framing error; 0 = none */
+    int next_status;          /* >= 0: a coming bus event reports this status instead, the sensor does not see it */
+    unsigned status_skip;     /* bus events to let pass before that one */
+    bool tx_stuck;            /* the UART sends no more */
+} hal_host_faults_t;
+
+extern adxl345_model_t hal_host_sensor;
+extern hal_host_faults_t hal_host_faults;
+
+/* Power-on of board and sensor. The stream may be NULL (no sample ever). */
+void hal_host_begin(const hal_host_config_t *config, const stream_t *stream, bool loop);
+
+/* A reset of the MCU alone (time goes on, the sensor does not notice); the next firmware start sees this cause and note. */
+void hal_host_reset_mcu(uint8_t cause);
+
+/* Types these bytes at the current baud rate, beginning now. */
+void hal_host_type(const char *text);
+
+/* Cycles since power-on; stream exhausted; watchdog ran out (cycle of the bite, 0 = never). */
+uint64_t hal_host_now(void);
+bool hal_host_stream_over(void);
+uint64_t hal_host_watchdog_bite(void);
+
+/* Milliseconds of virtual time. */
+double hal_host_now_ms(void);
+
+/* The state that a person could see. */
+uint32_t hal_host_baud(void);
+bool hal_host_led(void);
+uint8_t *hal_host_eeprom(void);
+
+#endif

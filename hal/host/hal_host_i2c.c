@@ -1,0 +1,167 @@
+/* I2C master over the virtual sensor: each command takes its bit times, then reports a status and calls the handler. */
+#include "hal_i2c.h"
+
+#include "hal_host_private.h"
+
+enum { BITS_START = 1, BITS_BYTE = 9, CYCLES_PER_BIT = 44, CYCLES_PER_BIT_FAST = 40 };
+
+typedef enum { COMMAND_NONE, COMMAND_START, COMMAND_SEND, COMMAND_RECEIVE_ACK, COMMAND_RECEIVE_NACK } command_t;
+
+static struct {
+    bool enabled, in_transfer, address_next, reading, stop_pending;
+    uint8_t data, status;
+    command_t command;
+    uint64_t done_at, stop_at;
+    unsigned bit_cycles;
+} i2c;
+
+void host_i2c_begin(void)
+{
+    if (i2c.in_transfer) {
+        adxl345_model_stop(&hal_host_sensor);
+    }
+    i2c.enabled = false;
+    i2c.in_transfer = false;
+    i2c.stop_pending = false;
+    i2c.command = COMMAND_NONE;
+    i2c.done_at = HOST_NEVER;
+    i2c.stop_at = HOST_NEVER;
+    i2c.status = HAL_I2C_NOTHING;
+    i2c.bit_cycles = CYCLES_PER_BIT;
+}
+
+uint64_t host_i2c_next(void)
+{
+    if (hal_host_faults.bus_stuck) {
+        return HOST_NEVER;
+    }
+    return i2c.done_at < i2c.stop_at ? i2c.done_at : i2c.stop_at;
+}
+
+static void give(command_t command, unsigned bits)
+{
+    i2c.command = command;
+    uint64_t from = i2c.stop_pending ? i2c.stop_at : host_now;
+    i2c.done_at = from + (uint64_t)bits * i2c.bit_cycles;
+}
+
+void hal_i2c_enable(bool fast)
+{
+    i2c.enabled = true;
+    i2c.bit_cycles = fast ? CYCLES_PER_BIT_FAST : CYCLES_PER_BIT;
+}
+
+/* The sensor sees the lines released: like a STOP for it. */
+void hal_i2c_disable(void)
+{
+    unsigned bit_cycles = i2c.bit_cycles;
+    host_i2c_begin();
+    i2c.bit_cycles = bit_cycles;
+}
+
+void hal_i2c_start(void)
+{
+    i2c.enabled = true;
+    give(COMMAND_START, BITS_START);
+}
+
+void hal_i2c_send(uint8_t byte)
+{
+    i2c.data = byte;
+    give(COMMAND_SEND, BITS_BYTE);
+}
+
+void hal_i2c_receive(bool ack)
+{
+    give(ack ? COMMAND_RECEIVE_ACK : COMMAND_RECEIVE_NACK, BITS_BYTE);
+}
+
+uint8_t hal_i2c_received(void)
+{
+    return i2c.data;
+}
+
+void hal_i2c_stop(void)
+{
+    i2c.command = COMMAND_NONE;
+    i2c.done_at = HOST_NEVER;
+    i2c.stop_pending = true;
+    i2c.stop_at = host_now + i2c.bit_cycles;
+}
+
+void hal_i2c_release(void)
+{
+    i2c.command = COMMAND_NONE;
+    i2c.done_at = HOST_NEVER;
+    i2c.in_transfer = false;
+}
+
+uint8_t hal_i2c_status(void)
+{
+    return i2c.status;
+}
+
+bool hal_i2c_stop_pending(void)
+{
+    return i2c.stop_pending;
+}
+
+static uint8_t send_step(void)
+{
+    if (!i2c.address_next) {
+        bool ack = adxl345_model_write(&hal_host_sensor, i2c.data);
+        host_sensor_check_rate();
+        return ack ? HAL_I2C_SENT_ACK : HAL_I2C_SENT_NACK;
+    }
+    i2c.address_next = false;
+    i2c.reading = (i2c.data & 1u) != 0;
+    bool ack = adxl345_model_start(&hal_host_sensor, i2c.data);
+    if (i2c.reading) {
+        return ack ? HAL_I2C_READ_ADDRESS_ACK : HAL_I2C_READ_ADDRESS_NACK;
+    }
+    return ack ? HAL_I2C_WRITE_ADDRESS_ACK : HAL_I2C_WRITE_ADDRESS_NACK;
+}
+
+static uint8_t command_step(command_t command)
+{
+    switch (command) {
+    case COMMAND_START: {
+        uint8_t status = i2c.in_transfer ? HAL_I2C_RESTARTED : HAL_I2C_STARTED;
+        i2c.in_transfer = true;
+        i2c.address_next = true;
+        return status;
+    }
+    case COMMAND_SEND:
+        return send_step();
+    default: {
+        bool identity = hal_host_faults.id_wrong && hal_host_sensor.pointer == 0;
+        uint8_t byte = adxl345_model_read(&hal_host_sensor);
+        i2c.data = identity ? 0x00 : byte;
+        return command == COMMAND_RECEIVE_ACK ? HAL_I2C_RECEIVED_ACK : HAL_I2C_RECEIVED_NACK;
+    }
+    }
+}
+
+void host_i2c_step(void)
+{
+    if (i2c.stop_at <= host_now) {
+        i2c.stop_at = HOST_NEVER;
+        i2c.stop_pending = false;
+        i2c.in_transfer = false;
+        adxl345_model_stop(&hal_host_sensor);
+    }
+    if (i2c.done_at > host_now) {
+        return;
+    }
+    command_t command = i2c.command;
+    i2c.command = COMMAND_NONE;
+    i2c.done_at = HOST_NEVER;
+    if (hal_host_faults.next_status >= 0 && hal_host_faults.status_skip-- == 0) {
+        hal_host_faults.status_skip = 0;
+        i2c.status = (uint8_t)hal_host_faults.next_status;
+        hal_host_faults.next_status = -1;
+    } else {
+        i2c.status = command_step(command);
+    }
+    hal_host_i2c_handler();
+}

@@ -1,0 +1,92 @@
+/* The virtual sensor's clock: one tick per output-data-rate period takes a row of the stream. */
+#include "hal_host_private.h"
+
+#define TURN_ON_US 1100.0 /* data sheet p. 5: first data one period and 1.1 ms after Measure */
+
+adxl345_model_t hal_host_sensor;
+
+static const stream_t *source;
+static feed_t feed;
+static double odr_hz;
+static double next_tick; /* cycles */
+static bool over;
+static size_t row_latched;
+
+static void pin_changed(void *owner, unsigned pin, bool high)
+{
+    (void)owner;
+    if (pin == 1) {
+        host_drdy_changed(high);
+    }
+}
+
+static void latched(void *owner, const int16_t lsb[3])
+{
+    (void)owner;
+    if (host_config.on_latched != NULL) {
+        host_config.on_latched(host_now / 16u, row_latched, lsb);
+    }
+}
+
+void host_sensor_begin(const stream_t *stream, bool loop)
+{
+    adxl345_model_init(&hal_host_sensor);
+    hal_host_sensor.pin_changed = pin_changed;
+    hal_host_sensor.latched = latched;
+    source = stream;
+    feed = (feed_t){ .stream = stream, .loop = loop };
+    odr_hz = 0.0;
+    over = false;
+}
+
+static double period_cycles(void)
+{
+    return (double)HAL_HOST_HZ / (odr_hz * (1.0 + host_config.ppm * 1e-6));
+}
+
+uint64_t host_sensor_next(void)
+{
+    return odr_hz > 0.0 ? (uint64_t)next_tick : HOST_NEVER;
+}
+
+void host_sensor_check_rate(void)
+{
+    double now_hz = adxl345_model_odr_hz(&hal_host_sensor);
+    bool unchanged = now_hz >= odr_hz && now_hz <= odr_hz;
+    if (unchanged) {
+        return;
+    }
+    odr_hz = now_hz;
+    if (odr_hz > 0.0) {
+        next_tick = (double)host_now + period_cycles() + TURN_ON_US * 16.0;
+        if (source != NULL) {
+            feed_set_rate(&feed, source, odr_hz, host_now / 16u);
+        }
+    }
+}
+
+void host_sensor_step(void)
+{
+    next_tick += period_cycles();
+    host_sensor_check_rate();
+    if (source == NULL || over) {
+        return;
+    }
+    size_t row = 0;
+    switch (feed_tick(&feed, host_now / 16u, &row)) {
+    case FEED_SAMPLE:
+        row_latched = row;
+        (void)adxl345_model_tick(&hal_host_sensor, source->rows[row].lsb);
+        break;
+    case FEED_NOTHING:
+        break;
+    default:
+        over = true;
+        break;
+    }
+}
+
+bool hal_host_stream_over(void)
+{
+    return over;
+}
