@@ -1,0 +1,61 @@
+/*
+ * Any filter of the list behind one type: for firmware that selects by name and for tests that run over all.
+ * The states share their memory (RAM of the largest); calls are a switch over direct calls, no function pointers.
+ */
+#ifndef FILTER_ANY_H
+#define FILTER_ANY_H
+
+#include "filter.h"
+#include "filter_list.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum {
+#define FILTER_ENUM(F) FILTER_KIND_##F,
+    FILTER_LIST(FILTER_ENUM)
+#undef FILTER_ENUM
+        FILTER_KIND_COUNT
+} filter_kind_t;
+
+typedef union {
+#define FILTER_MEMBER(F) F##_config_t F;
+    FILTER_LIST(FILTER_MEMBER)
+#undef FILTER_MEMBER
+} filter_any_config_t;
+
+typedef struct {
+    uint8_t kind; /* filter_kind_t */
+    union {
+#define FILTER_MEMBER(F) F##_t F;
+        FILTER_LIST(FILTER_MEMBER)
+#undef FILTER_MEMBER
+    } state;
+} filter_any_t;
+
+/* Descriptor of a kind, in program memory: read it with the FX_FLASH readers of fx.h. */
+const filter_descriptor_t *filter_any_descriptor(filter_kind_t kind);
+
+/* Name of a kind, in program memory, as typed in `filter NAME`; the same as in its descriptor. */
+const char *filter_any_name(filter_kind_t kind);
+
+/* Kind whose name equals the text (RAM, NUL-terminated); FILTER_KIND_COUNT when none does. */
+filter_kind_t filter_any_find(const char *name);
+
+/*
+ * As F_defaults and so on of filter.h, for the kind given or held. Unknown kinds: init is false, the others do nothing.
+ */
+void filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16_t rate_dhz);
+bool filter_any_init(filter_any_t *f, filter_kind_t kind, const filter_any_config_t *config);
+void filter_any_set_noise(filter_any_t *f, uint32_t r_lsb2_q8);
+void filter_any_reset(filter_any_t *f, int16_t z0_lsb);
+int32_t filter_any_update(filter_any_t *f, int16_t z_lsb);
+int32_t filter_any_coast(filter_any_t *f);
+uint8_t filter_any_flags(const filter_any_t *f);
+void filter_any_probe(const filter_any_t *f, filter_probe_t *out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,12 @@
+/* The one list of filters: X(name). Adding a filter adds a word here. */
+#ifndef FILTER_LIST_H
+#define FILTER_LIST_H
+
+#include "kf.h"
+#include "sprf.h"
+
+#define FILTER_LIST(X) \
+    X(kf)              \
+    X(sprf)
+
+#endif

@@ -1,0 +1,423 @@
+/*
+ * Fixed-point primitives: the only header of the library that knows the machine.
+ *
+ * Every primitive exists twice, in portable C and, where the compiler's code is slow, as inline assembler for AVR; both
+ * give the same bits for every argument (host_tests/avr/fx_twins.c compares them on the chip). No primitive divides,
+ * uses float or 64-bit arithmetic on AVR. All are pure and may be called from main or from an interrupt.
+ */
+#ifndef FX_H
+#define FX_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Inlined whatever the optimiser's opinion: for code with one hot caller. */
+#define FX_INLINE static inline __attribute__((always_inline))
+
+/* Never inlined: keeps the registers of a rare or heavy part out of its caller's prologue. */
+#define FX_NOINLINE static __attribute__((noinline))
+
+/* For public functions that run rarely: link-time optimisation shall not copy them to each caller either. */
+#define FX_ONCE __attribute__((noinline))
+
+/*
+ * Values do not stay in registers across it: spares the compiler of an 8-bit machine from spilling them to a stack
+ * frame.
+ */
+#define FX_FENCE() __asm__ volatile("" ::: "memory")
+
+/*
+ * Constants in program memory: `static const uint16_t table[] FX_FLASH = {...};`, read only through fx_flash_*.
+ * A plain const would be copied into the 2 KB of RAM on AVR.
+ */
+#ifdef __AVR__
+#include <avr/pgmspace.h>
+#define FX_FLASH PROGMEM
+static inline uint8_t fx_flash_u8(const uint8_t *p)
+{
+    return pgm_read_byte(p);
+}
+static inline uint16_t fx_flash_u16(const uint16_t *p)
+{
+    return pgm_read_word(p);
+}
+static inline uint32_t fx_flash_u32(const uint32_t *p)
+{
+    return pgm_read_dword(p);
+}
+static inline const void *fx_flash_pointer(const void *p)
+{
+    return pgm_read_ptr(p);
+}
+#else
+#define FX_FLASH
+static inline uint8_t fx_flash_u8(const uint8_t *p)
+{
+    return *p;
+}
+static inline uint16_t fx_flash_u16(const uint16_t *p)
+{
+    return *p;
+}
+static inline uint32_t fx_flash_u32(const uint32_t *p)
+{
+    return *p;
+}
+static inline const void *fx_flash_pointer(const void *p)
+{
+    return *(const void *const *)p;
+}
+#endif
+
+/* a x b, exact. */
+static inline uint32_t fx_mul_u16_c(uint16_t a, uint16_t b)
+{
+    return (uint32_t)a * b;
+}
+
+/*
+ * a x b_uq16 rounded half up, any a: the format of a is kept. Wide products by halves, so that no 64-bit helper is
+ * linked.
+ */
+static inline uint32_t fx_mul_uq16_c(uint32_t a, uint16_t b_uq16)
+{
+    uint32_t low = fx_mul_u16_c((uint16_t)a, b_uq16);
+    return fx_mul_u16_c((uint16_t)(a >> 16), b_uq16) + (low >> 16) + ((low >> 15) & 1U);
+}
+
+/* a x b_uq16 rounded half up, any a of 16 bits. */
+static inline uint16_t fx_mul16_uq16_c(uint16_t a, uint16_t b_uq16)
+{
+    uint32_t product = fx_mul_u16_c(a, b_uq16);
+    return (uint16_t)((product >> 16) + ((product >> 15) & 1U));
+}
+
+/* a x b_uq16 / 2^8 rounded half up, a < 2^24: a in Q8 gives the product in Q16. */
+static inline uint32_t fx_mul24_uq16_c(uint32_t a_q8, uint16_t b_uq16)
+{
+    uint32_t low = fx_mul_u16_c((uint16_t)a_q8, b_uq16);
+    uint32_t high = (uint32_t)(a_q8 >> 16) * b_uq16;
+    return (high << 8) + (low >> 8) + ((low >> 7) & 1U);
+}
+
+/* a x b_uq24 / 2^16 rounded half up, a and b_uq24 < 2^24: a in Q8 gives the product in Q16. */
+static inline uint32_t fx_mul24_uq24_c(uint32_t a_q8, uint32_t b_uq24)
+{
+    uint16_t a_low = (uint16_t)a_q8;
+    uint16_t b_low = (uint16_t)b_uq24;
+    uint16_t a_high = (uint16_t)(a_q8 >> 16);
+    uint16_t b_high = (uint16_t)(b_uq24 >> 16);
+    uint32_t low = fx_mul_u16_c(a_low, b_low);
+    return (fx_mul_u16_c(a_high, b_high) << 16) + fx_mul_u16_c(a_low, b_high) + fx_mul_u16_c(a_high, b_low) +
+           (low >> 16) + ((low >> 15) & 1U);
+}
+
+/* v x 2^12, exact. */
+static inline uint32_t fx_shift12_c(uint16_t v)
+{
+    return (uint32_t)v << 12;
+}
+
+/* v x 8, wrapping. */
+static inline uint32_t fx_eightfold_c(uint32_t v)
+{
+    return v << 3;
+}
+
+/* v / 16 rounded half up, any v. */
+static inline uint32_t fx_sixteenth_c(uint32_t v)
+{
+    return (v >> 4) + ((v >> 3) & 1U);
+}
+
+/* a x b_uq24 rounded half up, any a, b_uq24 < 2^24: the format of a is kept. */
+static inline uint32_t fx_mul_uq24_c(uint32_t a, uint32_t b_uq24)
+{
+    uint16_t b_high = (uint16_t)(b_uq24 >> 8);
+    uint16_t b_low = (uint16_t)(b_uq24 & 0xFFU);
+    uint16_t a_high = (uint16_t)(a >> 16);
+    uint16_t a_low = (uint16_t)a;
+    uint32_t cross = fx_mul_u16_c(a_low, b_high);
+    uint32_t rest = ((cross & 0xFFU) << 8) + fx_mul_u16_c(a_low, b_low);
+    /* a x b = a_high x b_high x 2^24 + middle x 2^16 + (rest mod 2^16) */
+    uint32_t middle = (cross >> 8) + fx_mul_u16_c(a_high, b_low) + (rest >> 16);
+    return fx_mul_u16_c(a_high, b_high) + (middle >> 8) + ((middle >> 7) & 1U);
+}
+
+#ifdef __AVR__
+
+FX_INLINE uint32_t fx_mul_u16(uint16_t a, uint16_t b)
+{
+    uint32_t product;
+    uint8_t zero;
+    __asm__("clr %[z]\n\t"
+            "mul %A[a],%A[b]\n\tmovw %A[p],r0\n\t"
+            "mul %B[a],%B[b]\n\tmovw %C[p],r0\n\t"
+            "mul %B[a],%A[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "clr r1"
+            : [p] "=&r"(product), [z] "=&r"(zero)
+            : [a] "r"(a), [b] "r"(b));
+    return product;
+}
+
+FX_INLINE uint32_t fx_mul_uq16(uint32_t a, uint16_t b_uq16)
+{
+    uint32_t product; /* bytes 2..5 of the 6-byte product; byte 1 is only needed for its top bit, byte 0 not at all */
+    uint8_t zero;
+    uint8_t byte1;
+    __asm__("clr %[z]\n\t"
+            "mul %B[a],%B[b]\n\tmovw %A[p],r0\n\t"
+            "mul %D[a],%B[b]\n\tmovw %C[p],r0\n\t"
+            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
+            "mul %C[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %D[a],%A[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "clr r1"
+            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1)
+            : [a] "r"(a), [b] "r"(b_uq16));
+    return product;
+}
+
+FX_INLINE uint16_t fx_mul16_uq16(uint16_t a, uint16_t b_uq16)
+{
+    uint16_t product; /* bytes 2 and 3 of the 4-byte product; of byte 1 only the carry and the top bit are needed */
+    uint8_t zero;
+    uint8_t byte1;
+    __asm__("clr %[z]\n\t"
+            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
+            "mul %B[a],%B[b]\n\tmovw %A[p],r0\n\t"
+            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\t"
+            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\t"
+            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\t"
+            "clr r1"
+            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1)
+            : [a] "r"(a), [b] "r"(b_uq16));
+    return product;
+}
+
+FX_INLINE uint32_t fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
+{
+    uint32_t product; /* bytes 1..4 of the 5-byte product; byte 0 only rounds */
+    uint8_t zero;
+    uint8_t byte0;
+    __asm__("clr %[z]\n\t"
+            "mul %A[a],%A[b]\n\tmov %[l],r0\n\tmov %A[p],r1\n\t"
+            "mul %B[a],%B[b]\n\tmov %B[p],r0\n\tmov %C[p],r1\n\tclr %D[p]\n\t"
+            "mul %B[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%B[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%A[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%B[b]\n\tadd %C[p],r0\n\tadc %D[p],r1\n\t"
+            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "clr r1"
+            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte0)
+            : [a] "r"(a_q8), [b] "r"(b_uq16));
+    return product;
+}
+
+FX_INLINE uint32_t fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
+{
+    uint32_t product; /* bytes 2..5 of the 6-byte product; of byte 1 only the carry and the top bit are needed */
+    uint8_t zero;
+    uint8_t byte1;
+    __asm__("clr %[z]\n\t"
+            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
+            "mul %B[a],%B[b]\n\tmovw %A[p],r0\n\t"
+            "mul %C[a],%C[b]\n\tmovw %C[p],r0\n\t"
+            "mul %C[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%C[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %B[a],%C[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "clr r1"
+            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1)
+            : [a] "r"(a_q8), [b] "r"(b_uq24));
+    return product;
+}
+
+FX_INLINE uint32_t fx_shift12(uint16_t v)
+{
+    uint32_t shifted;
+    uint8_t nibble;
+    __asm__("clr %A[s]\n\t"
+            "mov %B[s],%A[v]\n\tswap %B[s]\n\tmov %C[s],%B[s]\n\t"
+            "ldi %[n],0xF0\n\tand %B[s],%[n]\n\teor %C[s],%B[s]\n\t"
+            "mov %D[s],%B[v]\n\tswap %D[s]\n\tand %[n],%D[s]\n\tor %C[s],%[n]\n\teor %D[s],%[n]"
+            : [s] "=&r"(shifted), [n] "=&d"(nibble)
+            : [v] "r"(v));
+    return shifted;
+}
+
+FX_INLINE uint32_t fx_eightfold(uint32_t v)
+{
+    __asm__("lsl %A[v]\n\trol %B[v]\n\trol %C[v]\n\trol %D[v]\n\t"
+            "lsl %A[v]\n\trol %B[v]\n\trol %C[v]\n\trol %D[v]\n\t"
+            "lsl %A[v]\n\trol %B[v]\n\trol %C[v]\n\trol %D[v]"
+            : [v] "+r"(v));
+    return v;
+}
+
+FX_INLINE uint32_t fx_sixteenth(uint32_t v)
+{
+    __asm__("lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
+            "lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
+            "lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
+            "lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
+            "adc %A[v],__zero_reg__\n\tadc %B[v],__zero_reg__\n\tadc %C[v],__zero_reg__\n\tadc %D[v],__zero_reg__"
+            : [v] "+r"(v));
+    return v;
+}
+
+FX_INLINE uint32_t fx_mul_uq24(uint32_t a, uint32_t b_uq24)
+{
+    uint32_t product; /* bytes 3..6 of the 7-byte product; of bytes 1 and 2 only the carry and the top bit are needed */
+    uint8_t zero;
+    uint8_t byte1;
+    uint8_t byte2;
+    __asm__("clr %[z]\n\t"
+            "mul %B[a],%C[b]\n\tmovw %A[p],r0\n\t"
+            "mul %D[a],%C[b]\n\tmovw %C[p],r0\n\t"
+            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
+            "mul %B[a],%B[b]\n\tmov %[h],r0\n\t"
+            "add %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%B[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %D[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%C[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %D[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%A[b]\n\tadd %[h],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%C[b]\n\tadd %[h],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %[h],r1\n\t"
+            "adc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %[h],r1\n\t"
+            "adc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "lsl %[h]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "clr r1"
+            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1), [h] "=&r"(byte2)
+            : [a] "r"(a), [b] "r"(b_uq24));
+    return product;
+}
+
+#else
+
+static inline uint32_t fx_mul_u16(uint16_t a, uint16_t b)
+{
+    return fx_mul_u16_c(a, b);
+}
+static inline uint32_t fx_mul_uq16(uint32_t a, uint16_t b_uq16)
+{
+    return fx_mul_uq16_c(a, b_uq16);
+}
+static inline uint16_t fx_mul16_uq16(uint16_t a, uint16_t b_uq16)
+{
+    return fx_mul16_uq16_c(a, b_uq16);
+}
+static inline uint32_t fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
+{
+    return fx_mul24_uq16_c(a_q8, b_uq16);
+}
+static inline uint32_t fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
+{
+    return fx_mul24_uq24_c(a_q8, b_uq24);
+}
+static inline uint32_t fx_shift12(uint16_t v)
+{
+    return fx_shift12_c(v);
+}
+static inline uint32_t fx_eightfold(uint32_t v)
+{
+    return fx_eightfold_c(v);
+}
+static inline uint32_t fx_sixteenth(uint32_t v)
+{
+    return fx_sixteenth_c(v);
+}
+static inline uint32_t fx_mul_uq24(uint32_t a, uint32_t b_uq24)
+{
+    return fx_mul_uq24_c(a, b_uq24);
+}
+
+#endif
+
+/* |v|; INT32_MIN gives 2^31. */
+static inline uint32_t fx_abs32(int32_t v)
+{
+    return (v < 0) ? 0U - (uint32_t)v : (uint32_t)v;
+}
+
+/* a + b, at most UINT32_MAX. */
+static inline uint32_t fx_add_sat(uint32_t a, uint32_t b)
+{
+    uint32_t sum = a + b;
+    return (sum < a) ? UINT32_MAX : sum;
+}
+
+/* v limited to -limit..limit; limit >= 0. */
+static inline int32_t fx_clamp(int32_t v, int32_t limit)
+{
+    if (v > limit) {
+        return limit;
+    }
+    return (v < -limit) ? -limit : v;
+}
+
+/* Nodes of the reciprocal, see fx.c; in program memory. */
+extern const uint16_t fx_reciprocal_nodes_uq16[129];
+
+/*
+ * 1 / s for 1 <= s < 16 (UQ4.28) in UQ0.16, at most 65535. Table of 129 nodes in program memory, straight lines
+ * between. |result - 1/s| <= 1.5 x 2^-16 (chord 0.25, nodes 0.5, product 0.5, plus 0.5 for the last bit when s >= 2),
+ * tested.
+ */
+FX_INLINE uint16_t fx_reciprocal_uq16(uint32_t s_uq28)
+{
+    uint8_t halvings = 0;
+    while ((uint8_t)(s_uq28 >> 24) >= 0x20U) {
+        s_uq28 >>= 1;
+        halvings++;
+    }
+    /*
+     * s = m x 2^halvings, 1 <= m < 2; three doublings bring m's leading bit to the top, the next seven choose the node
+     */
+    s_uq28 = fx_eightfold(s_uq28);
+    const uint16_t *node = &fx_reciprocal_nodes_uq16[(uint8_t)(s_uq28 >> 24) & 0x7FU];
+    uint16_t left = fx_flash_u16(node);
+    uint16_t drop = (uint16_t)(left - fx_flash_u16(node + 1));
+    uint16_t inverse = (uint16_t)(left - fx_mul16_uq16(drop, (uint16_t)(s_uq28 >> 8)));
+    for (; halvings != 0U; halvings--) {
+        inverse = (uint16_t)((inverse >> 1) + (inverse & 1U));
+    }
+    return inverse;
+}
+
+/* floor(sqrt(v)), exact. About 700 cycles: configuration only. */
+FX_ONCE uint16_t fx_isqrt32(uint32_t v);
+
+/* mantissa x 2^exponent with 0x8000 <= mantissa: configuration values that span many decades. */
+typedef struct {
+    uint16_t mantissa;
+    int8_t exponent;
+} fx_scaled_t;
+
+/* v > 0 to 16 significant bits (error <= 2^-16 relative); 0 is taken as 1. */
+FX_ONCE fx_scaled_t fx_scaled(uint32_t v);
+
+/* a x b and a / b, each with a relative error <= 2^-14. Exponents must stay within -100..100. fx_scaled_div divides. */
+FX_ONCE fx_scaled_t fx_scaled_mul(fx_scaled_t a, fx_scaled_t b);
+FX_ONCE fx_scaled_t fx_scaled_div(fx_scaled_t a, fx_scaled_t b);
+
+/* a in fixed point with so many fraction bits, rounded half up, saturated to UINT32_MAX. */
+FX_ONCE uint32_t fx_scaled_fixed(fx_scaled_t a, uint8_t fraction_bits);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,155 @@
+/* Winsorised variance of the smaller of two second differences; see noise.h. */
+#include "noise.h"
+
+#include "filter.h"
+#include "fx.h"
+
+/*
+ * With a, b independent standard normal and m = min(a^2, b^2), the factor w solves w = E min(m, c w): a second
+ * difference has 6 times the variance of a sample, so m / 6w limited to c times the variance has the variance as its
+ * mean. E min(m, L) is the integral of erfc(sqrt(t / 2))^2 over 0..L (a test repeats it). c = 3: 1 / 6w = 0.62428.
+ * c = 4.5 for the first terms, when the estimate may have to climb from the floor: 1 / 6w = 0.51451.
+ */
+#define UNBIAS_UQ16 40913U
+#define UNBIAS_OPENING_UQ16 33719U
+#define OPENING_TERMS 64U
+
+/*
+ * From this output data rate on, every second sample is taken: at lower rates motion would bend too far in four
+ * samples.
+ */
+#define SPACED_MIN_DHZ 700U
+
+#define HISTORY 5U
+
+/* 1000 LSB^2 / 1.5 */
+#define MEAN_MAX_LSB2_Q16 43690667U
+
+/* 1.5 times a variance in Q16, as Q8. */
+static uint32_t r_of(uint32_t mean_lsb2_q16)
+{
+    return (mean_lsb2_q16 + (mean_lsb2_q16 >> 1) + 128U) >> 8;
+}
+
+void noise_init(noise_t *n, uint16_t rate_dhz, bool noisy_axis)
+{
+    /* 0.02 LSB^2 / Hz in Q16 per 0.1 Hz: 131.07; times 1.7 */
+    n->floor_lsb2_q16 = (uint32_t)rate_dhz * (noisy_axis ? 223U : 131U);
+    n->mean_lsb2_q16 = n->floor_lsb2_q16;
+    n->r_lsb2_q8 = r_of(n->floor_lsb2_q16);
+    for (uint8_t i = 0; i < HISTORY; i++) {
+        n->history_lsb[i] = 0;
+    }
+    n->spaced = rate_dhz >= SPACED_MIN_DHZ;
+    n->filled = 0;
+    n->terms = 0;
+}
+
+void noise_gap(noise_t *n)
+{
+    n->filled = 0;
+}
+
+/*
+ * |a - 2 b + c| of samples within the sensor's range, at most 255: the largest that counts is sqrt(667 x 4.5 x 6) =
+ * 134.
+ */
+FX_NOINLINE uint8_t bend_lsb(int16_t a, int16_t b, int16_t c)
+{
+    int16_t bend = (int16_t)(a - b - b + c); /* <= 4 x 4096 */
+    uint16_t size = (uint16_t)((bend < 0) ? -bend : bend);
+    return (size > 255U) ? 255U : (uint8_t)size;
+}
+
+/* The smaller of two second differences that share no sample. */
+static uint8_t smaller_bend_lsb(const noise_t *n, int16_t z_lsb)
+{
+    const int16_t *old = n->history_lsb;
+    uint8_t one;
+    uint8_t other;
+    if (n->spaced) {
+        one = bend_lsb(z_lsb, old[1], old[3]);
+        other = bend_lsb(old[0], old[2], old[4]);
+    } else {
+        one = bend_lsb(z_lsb, old[0], old[1]);
+        other = bend_lsb(old[2], old[3], old[4]);
+    }
+    return (one < other) ? one : other;
+}
+
+/* Variance that the difference stands for, limited; Q16. */
+static uint32_t term_lsb2_q16(const noise_t *n, uint8_t bend)
+{
+    bool opening = n->terms < OPENING_TERMS;
+    uint32_t term = fx_mul_u16((uint16_t)((uint16_t)bend * bend), opening ? UNBIAS_OPENING_UQ16 : UNBIAS_UQ16);
+    uint32_t limit = n->mean_lsb2_q16 + n->mean_lsb2_q16;
+    limit += opening ? limit + (limit >> 2) : n->mean_lsb2_q16;
+    return (term < limit) ? term : limit;
+}
+
+/* difference / window rounded: the window is about half of the terms seen, 256 when the count is full. */
+static int32_t share(int32_t difference, uint8_t terms)
+{
+    if (terms == UINT8_MAX) {
+        return (difference + 128) >> 8;
+    }
+    uint8_t shift = 1;
+    for (; terms > 3U; terms >>= 1) {
+        shift++;
+    }
+    int32_t half = (int32_t)((uint32_t)1U << (uint8_t)(shift - 1U));
+    return (difference + half) >> shift;
+}
+
+/* Mean one term on. Its floor keeps the limit of the next term open, its ceiling is the largest R. */
+static void average(noise_t *n, uint32_t term_q16)
+{
+    int32_t mean = (int32_t)n->mean_lsb2_q16;
+    mean += share((int32_t)term_q16 - mean, n->terms); /* all < 2^28 */
+    if (mean < (int32_t)n->floor_lsb2_q16) {
+        mean = (int32_t)n->floor_lsb2_q16;
+    }
+    n->mean_lsb2_q16 = ((uint32_t)mean > MEAN_MAX_LSB2_Q16) ? MEAN_MAX_LSB2_Q16 : (uint32_t)mean;
+    if (n->terms != UINT8_MAX) {
+        n->terms++;
+    }
+}
+
+static int16_t within_range(int16_t z_lsb)
+{
+    if (z_lsb > FILTER_Z_MAX_LSB) {
+        return FILTER_Z_MAX_LSB;
+    }
+    return (int16_t)((z_lsb < FILTER_Z_MIN_LSB) ? FILTER_Z_MIN_LSB : z_lsb);
+}
+
+static void remember(noise_t *n, int16_t z_lsb)
+{
+    for (uint8_t i = HISTORY - 1U; i > 0U; i--) {
+        n->history_lsb[i] = n->history_lsb[i - 1U];
+    }
+    n->history_lsb[0] = z_lsb;
+}
+
+bool noise_update(noise_t *n, int16_t z_lsb)
+{
+    int16_t z = within_range(z_lsb);
+    if (n->filled < HISTORY) {
+        remember(n, z);
+        n->filled++;
+        return false;
+    }
+    average(n, term_lsb2_q16(n, smaller_bend_lsb(n, z)));
+    remember(n, z);
+    uint32_t r_q8 = r_of(n->mean_lsb2_q16);
+    if (fx_abs32((int32_t)(r_q8 - n->r_lsb2_q8)) <= n->r_lsb2_q8 >> 3) {
+        return false;
+    }
+    n->r_lsb2_q8 = r_q8;
+    return true;
+}
+
+uint32_t noise_r_lsb2_q8(const noise_t *n)
+{
+    return n->r_lsb2_q8;
+}

@@ -1,0 +1,53 @@
+/*
+ * sprf: the two-state Kalman filter with a binary gate, made safe against lock-out.
+ *
+ * A sample further from the prediction than gate x sigma (of the innovation) is refused: predict only. Refused samples
+ * that agree among themselves on raw values re-acquire: position and rate restart from them. Paper 002, rule (34) with
+ * r^2 <= gate^2 S, plus the running-median start and consistency re-acquisition that its start and a step need.
+ * Functions: filter.h.
+ */
+#ifndef SPRF_H
+#define SPRF_H
+
+#include "two_state.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+    uint16_t rate_dhz;          /* output data rate, 0.1 Hz: 50..40000 */
+    uint32_t r_lsb2_q8;         /* measurement variance R, LSB^2: 0.01..1000 (3..256000); 0 is refused */
+    uint32_t q_lsb2_s3;         /* power density of the white acceleration, LSB^2/s^3: 1..1e9; 0 is refused */
+    uint16_t gate_sigma_q8;     /* gate in sigmas of the innovation: 1..16 (256..4096); 0: no gate */
+    uint16_t reacquire_samples; /* consistent refused samples that restart the filter: 3, 5 or 9; 0: never */
+    uint32_t rate_max_lsb_s;    /* limit of the estimated rate, LSB/s: 10..1000000; 0 is refused */
+} sprf_config_t;
+
+typedef struct {
+    two_state_t core;
+    uint16_t gate_sigma_q8;
+    uint16_t agree_lsb;   /* raw samples of one run differ by at most this */
+    int16_t first_lsb;    /* of the run of refused samples */
+    int16_t previous_lsb; /* last raw sample */
+    uint8_t run;          /* samples in the run */
+    uint8_t slope_shift;  /* log2(reacquire_samples - 1); 0: off */
+    bool broken;          /* a sample was missing within the run */
+} sprf_t;
+
+/* Descriptor in program memory. */
+extern const filter_descriptor_t sprf_descriptor;
+
+void sprf_defaults(sprf_config_t *config, uint16_t rate_dhz);
+bool sprf_init(sprf_t *f, const sprf_config_t *config);
+void sprf_set_noise(sprf_t *f, uint32_t r_lsb2_q8);
+void sprf_reset(sprf_t *f, int16_t z0_lsb);
+int32_t sprf_update(sprf_t *f, int16_t z_lsb);
+int32_t sprf_coast(sprf_t *f);
+uint8_t sprf_flags(const sprf_t *f);
+void sprf_probe(const sprf_t *f, filter_probe_t *out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,249 @@
+/* Two-state Kalman core: see two_state.h for the equations. */
+#include "two_state.h"
+
+/*
+ * Bounds of q22 and of the rate's start variance (UQ4.28, per R): below 6e-8 (gain 0.022) P22 would round to a
+ * standstill; at 1 (gain 0.77, P22 1.60 after the update) the filter nearly follows the raw samples, and P22 stays
+ * below 2.
+ */
+#define Q22_MIN_UQ28 16U
+#define Q22_MAX_UQ28 0x10000000U
+
+/* Spread of the rate of a sensor picked up at any moment: 200 LSB/s, 45 degree/s around level. */
+#define START_RATE_VARIANCE_LSB2_S2 40000U
+
+#define ONE_UQ28 0x10000000U
+#define X_MAX_LSB_Q16 ((int32_t)FILTER_X_MAX_LSB * 65536)
+
+bool two_state_legal(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3)
+{
+    return rate_dhz >= TWO_STATE_RATE_MIN_DHZ && rate_dhz <= TWO_STATE_RATE_MAX_DHZ &&
+           r_lsb2_q8 >= TWO_STATE_R_MIN_LSB2_Q8 && r_lsb2_q8 <= TWO_STATE_R_MAX_LSB2_Q8 &&
+           q_lsb2_s3 >= TWO_STATE_Q_MIN_LSB2_S3 && q_lsb2_s3 <= TWO_STATE_Q_MAX_LSB2_S3;
+}
+
+uint32_t two_state_default_r_lsb2_q8(uint16_t rate_dhz)
+{
+    uint32_t r = ((uint32_t)rate_dhz * 768U + 500U) / 1000U;            /* 0.003 per 0.1 Hz, Q8 */
+    return (r < TWO_STATE_R_MIN_LSB2_Q8) ? TWO_STATE_R_MIN_LSB2_Q8 : r; /* <= 30720 */
+}
+
+void two_state_init(two_state_t *s, uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3, uint32_t rate_max_lsb_s)
+{
+    uint8_t *bytes = (uint8_t *)s;
+    for (size_t i = 0; i < sizeof *s; i++) {
+        bytes[i] = 0;
+    }
+    s->flags = FILTER_WARMING_UP;
+    fx_scaled_t period_s = fx_scaled_div(fx_scaled(10), fx_scaled(rate_dhz));
+    fx_scaled_t period2 = fx_scaled_mul(period_s, period_s);
+    s->drive_lsb2 = fx_scaled_mul(fx_scaled(q_lsb2_s3), fx_scaled_mul(period2, period_s));
+    s->start_lsb2 = fx_scaled_mul(fx_scaled(START_RATE_VARIANCE_LSB2_S2), period2);
+    uint32_t limit = (uint32_t)X_MAX_LSB_Q16;
+    if (rate_max_lsb_s != 0U) {
+        limit = fx_scaled_fixed(fx_scaled_mul(fx_scaled(rate_max_lsb_s), period_s), 16);
+    }
+    s->rate_max_lsb_q16 = (limit < (uint32_t)X_MAX_LSB_Q16) ? limit : (uint32_t)X_MAX_LSB_Q16;
+    two_state_set_noise(s, r_lsb2_q8);
+}
+
+/* A variance divided by R, limited. */
+static uint32_t per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28)
+{
+    uint32_t quotient = fx_scaled_fixed(fx_scaled_div(lsb2, r_lsb2), 28);
+    if (quotient < min_uq28) {
+        return min_uq28;
+    }
+    return (quotient > Q22_MAX_UQ28) ? Q22_MAX_UQ28 : quotient;
+}
+
+void two_state_set_noise(two_state_t *s, uint32_t r_lsb2_q8)
+{
+    if (r_lsb2_q8 < TWO_STATE_R_MIN_LSB2_Q8) {
+        r_lsb2_q8 = TWO_STATE_R_MIN_LSB2_Q8;
+    } else if (r_lsb2_q8 > TWO_STATE_R_MAX_LSB2_Q8) {
+        r_lsb2_q8 = TWO_STATE_R_MAX_LSB2_Q8;
+    }
+    s->r_lsb2_q8 = r_lsb2_q8;
+    fx_scaled_t r_lsb2 = fx_scaled(r_lsb2_q8);
+    r_lsb2.exponent = (int8_t)(r_lsb2.exponent - 8);
+    s->q22_uq28 = per_r_uq28(s->drive_lsb2, r_lsb2, Q22_MIN_UQ28);
+    s->p22_start_uq28 = per_r_uq28(s->start_lsb2, r_lsb2, s->q22_uq28);
+}
+
+void two_state_set_gate(two_state_t *s, uint16_t gate_sigma_q8)
+{
+    s->gated = gate_sigma_q8 != 0U;
+    fx_scaled_t gate_sigma = fx_scaled(gate_sigma_q8);
+    fx_scaled_t gate = fx_scaled_mul(fx_scaled_mul(gate_sigma, gate_sigma), fx_scaled(s->r_lsb2_q8));
+    gate.exponent = (int8_t)(gate.exponent - 24); /* Q8 three times */
+    uint32_t gate_uq4 = fx_scaled_fixed(gate, 4);
+    s->coarse = gate_uq4 > 0xFFFFU;
+    if (s->coarse) {
+        gate_uq4 >>= 8;
+    }
+    s->gate_lsb2_uq4 = (gate_uq4 == 0U) ? 1U : (uint16_t)gate_uq4;
+}
+
+void two_state_start(two_state_t *s, int32_t x_lsb_q16)
+{
+    s->x_lsb_q16 = x_lsb_q16;
+    s->rate_lsb_q16 = 0;
+    s->u.p.p11_uq28 = ONE_UQ28;
+    s->u.p.p12_uq28 = 0;
+    s->u.p.p22_uq28 = s->p22_start_uq28;
+    s->size_lsb_uq8 = 0;
+    s->gain_uq16 = 0;
+    s->limit_lsb2 = 0;
+    s->collected = FILTER_WARM_UP_SAMPLES;
+}
+
+/* Median of `count` ascending samples, Q16: the mean of the middle two when even. */
+static int32_t median_q16(const int16_t *ascending, uint8_t count)
+{
+    int32_t high = ascending[count >> 1];
+    int32_t low = ((count & 1U) != 0U) ? high : ascending[(count >> 1) - 1];
+    return (low + high) * 32768;
+}
+
+void two_state_warm_up(two_state_t *s, int16_t z_lsb)
+{
+    uint8_t at = s->collected;
+    while (at > 0U && s->u.start_lsb[at - 1U] > z_lsb) {
+        s->u.start_lsb[at] = s->u.start_lsb[at - 1U];
+        at--;
+    }
+    s->u.start_lsb[at] = z_lsb;
+    s->collected++;
+    s->x_lsb_q16 = median_q16(s->u.start_lsb, s->collected);
+    s->flags = FILTER_WARMING_UP;
+    if (s->collected == FILTER_WARM_UP_SAMPLES) {
+        two_state_start(s, s->x_lsb_q16);
+    }
+}
+
+/* x limited to its bound; the flag tells. By the high word: 4608 LSB + 65535/65536 counts as 4608. */
+FX_INLINE int32_t clamp_x(two_state_t *s, int32_t x_lsb_q16)
+{
+    int16_t whole_lsb = (int16_t)(x_lsb_q16 >> 16);
+    if (whole_lsb >= FILTER_X_MAX_LSB) {
+        s->flags |= FILTER_SATURATED;
+        return X_MAX_LSB_Q16;
+    }
+    if (whole_lsb < -FILTER_X_MAX_LSB) {
+        s->flags |= FILTER_SATURATED;
+        return -X_MAX_LSB_Q16;
+    }
+    return x_lsb_q16;
+}
+
+/* P / R one sample on, while all its elements are below 2. */
+FX_INLINE void predict_covariance(two_state_t *s)
+{
+    uint8_t high = (uint8_t)((uint8_t)(s->u.p.p11_uq28 >> 24) | (uint8_t)(s->u.p.p12_uq28 >> 24) |
+                             (uint8_t)(s->u.p.p22_uq28 >> 24));
+    if ((high & 0xE0U) == 0U) {
+        FX_FENCE();
+        uint32_t p12 = s->u.p.p12_uq28;
+        uint32_t sum = p12 + s->u.p.p22_uq28;
+        s->u.p.p12_uq28 = sum;
+        FX_FENCE();
+        s->u.p.p11_uq28 += p12 + sum;
+        FX_FENCE();
+        s->u.p.p22_uq28 += s->q22_uq28;
+    }
+}
+
+/* r^2 <= gate^2 R (P11 + 1), all in LSB^2; |r| <= 8704 LSB. Innovations of more than 16 bits lie outside any limit. */
+FX_NOINLINE bool within_gate(two_state_t *s)
+{
+    uint32_t size_lsb_uq8 = s->size_lsb_uq8;
+    if (s->coarse) {
+        size_lsb_uq8 >>= 4;
+    }
+    /* UQ4.28 x UQ12.4 >> 16 = UQ16.16, < 9 x 4096; coarse: UQ24.8 */
+    s->limit_lsb2 = fx_mul_uq16(s->u.p.p11_uq28 + ONE_UQ28, s->gate_lsb2_uq4);
+    uint16_t size = (uint16_t)size_lsb_uq8;
+    return (uint8_t)(size_lsb_uq8 >> 16) == 0U && fx_mul_u16(size, size) <= s->limit_lsb2;
+}
+
+/*
+ * Gains, x, rate and P from the innovation's magnitude, so that rounding is the same for both signs. A step is at most
+ * |r|, < 2^30, and x stays between the prediction and the sample, hence within its bound.
+ */
+FX_INLINE void update(two_state_t *s)
+{
+    uint16_t g = fx_reciprocal_uq16(s->u.p.p11_uq28 + ONE_UQ28);
+    uint16_t w1_uq16 = (uint16_t)(0U - g);
+    s->gain_uq16 = w1_uq16;
+    s->u.p.p11_uq28 = fx_shift12(w1_uq16);
+    int32_t x_step = (int32_t)fx_mul24_uq16(s->size_lsb_uq8, w1_uq16);
+    s->x_lsb_q16 += s->negative ? -x_step : x_step;
+    FX_FENCE();
+    uint32_t p12 = s->u.p.p12_uq28;
+    uint32_t w2_uq28 = fx_mul_uq16(p12, g);
+    s->u.p.p12_uq28 = w2_uq28;
+    uint32_t w2_uq24 = fx_sixteenth(w2_uq28); /* < 1 because P12 <= P11 after a prediction */
+    uint32_t p22 = s->u.p.p22_uq28 - fx_mul_uq24(p12, w2_uq24);
+    s->u.p.p22_uq28 = ((p22 & 0x80000000U) != 0U) ? 0U : p22; /* < 3 before: the top bit is a borrow */
+    FX_FENCE();
+    int32_t rate_step = (int32_t)fx_mul24_uq24(s->size_lsb_uq8, w2_uq24);
+    int32_t rate = s->rate_lsb_q16 + (s->negative ? -rate_step : rate_step);
+    s->rate_lsb_q16 = rate;
+    if (fx_abs32(rate) > s->rate_max_lsb_q16) {
+        s->rate_lsb_q16 = (rate < 0) ? -(int32_t)s->rate_max_lsb_q16 : (int32_t)s->rate_max_lsb_q16;
+        s->flags |= FILTER_SATURATED;
+    }
+}
+
+bool two_state_step(two_state_t *s, int16_t z_lsb, bool present)
+{
+    s->flags = 0;
+    int32_t x = clamp_x(s, s->x_lsb_q16 + s->rate_lsb_q16); /* <= 2 x 4608 LSB: fits */
+    s->x_lsb_q16 = x;
+    int32_t innovation = (int32_t)z_lsb * 65536 - x;
+    s->negative = innovation < 0;
+    s->size_lsb_uq8 = fx_abs32(innovation) >> 8;
+    FX_FENCE();
+    predict_covariance(s);
+    if (!present) {
+        s->size_lsb_uq8 = 0;
+        s->gain_uq16 = 0;
+        return false;
+    }
+    if (s->gated && !within_gate(s)) {
+        s->flags |= FILTER_GATED;
+        s->gain_uq16 = 0;
+        return false;
+    }
+    update(s);
+    return true;
+}
+
+int32_t two_state_coast(two_state_t *s)
+{
+    if (two_state_warming_up(s)) {
+        s->flags = FILTER_WARMING_UP;
+    } else {
+        (void)two_state_step(s, 0, false);
+    }
+    s->flags |= FILTER_COASTED;
+    return s->x_lsb_q16;
+}
+
+void two_state_probe(const two_state_t *s, filter_probe_t *out)
+{
+    out->x_lsb_q16 = s->x_lsb_q16;
+    out->rate_lsb_q16 = s->rate_lsb_q16;
+    int32_t size_lsb_q16 = (int32_t)(s->size_lsb_uq8 << 8);
+    out->innovation_lsb_q16 = s->negative ? -size_lsb_q16 : size_lsb_q16;
+    /* while warming up P is not there yet: the variance of one sample */
+    uint32_t p11_uq28 = two_state_warming_up(s) ? ONE_UQ28 : s->u.p.p11_uq28;
+    out->p_lsb2_q8 = (fx_mul_uq24(p11_uq28, s->r_lsb2_q8) + 8U) >> 4;
+    out->gate_lsb2_q8 = UINT32_MAX;
+    if (s->gated && s->limit_lsb2 != 0U) {
+        out->gate_lsb2_q8 = s->coarse ? s->limit_lsb2 : s->limit_lsb2 >> 8;
+    }
+    out->gain_uq16 = s->gain_uq16;
+    out->flags = s->flags;
+}

@@ -1,0 +1,140 @@
+/*
+ * The core that all two-state filters share: position (LSB) and rate (LSB/sample), measured position only.
+ *
+ * White acceleration drives the rate. With P divided by R and the rate per sample the recursion is
+ *
+ *   predict  x += v; P11 += 2 P12 + P22; P12 += P22; P22 += q22            q22 = q T^3 / R
+ *   update   g = 1 / (P11 + 1); w1 = 1 - g; w2 = P12 g; x += w1 r; v += w2 r; P22 -= w2 P12; P12 = w2; P11 = w1
+ *
+ * which is Kalman's update for H = [1 0], R = 1 with the differences P - K H P replaced by what they equal: one
+ * reciprocal, no cancellation (notes: robust-filters, section 6). Internal to the library: filters wrap it.
+ */
+#ifndef TWO_STATE_H
+#define TWO_STATE_H
+
+#include "filter.h"
+#include "fx.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Legal ranges shared by the configurations of all two-state filters. */
+#define TWO_STATE_RATE_MIN_DHZ 50U
+#define TWO_STATE_RATE_MAX_DHZ 40000U
+#define TWO_STATE_R_MIN_LSB2_Q8 3U
+#define TWO_STATE_R_MAX_LSB2_Q8 256000U
+#define TWO_STATE_Q_MIN_LSB2_S3 1U
+#define TWO_STATE_Q_MAX_LSB2_S3 1000000000U
+
+/*
+ * Power density of the white acceleration that the filters ship with: the trade-off is tabled in the README of the
+ * library.
+ */
+#define TWO_STATE_Q_DEFAULT_LSB2_S3 10000U
+
+/*
+ * P / R (UQ4.28) is predicted only while all elements are below 2: then P11 < 8, P12 < 4, P22 < 3 afterwards, S = P11 +
+ * 1 fits UQ4.28, and P, kept as a whole when it may not grow, stays a covariance. Updates never raise an element.
+ */
+#define TWO_STATE_P11_END_UQ28 0x80000000U
+
+typedef struct {
+    int32_t x_lsb_q16;    /* estimate, |x| <= FILTER_X_MAX_LSB */
+    int32_t rate_lsb_q16; /* per sample, |rate| <= rate_max_lsb_q16 */
+    union {
+        struct {
+            uint32_t p11_uq28; /* P / R, see TWO_STATE_P11_END_UQ28 */
+            uint32_t p12_uq28;
+            uint32_t p22_uq28;
+        } p;
+        int16_t start_lsb[FILTER_WARM_UP_SAMPLES]; /* while warming up: the samples seen, ascending */
+    } u;
+    uint32_t q22_uq28;       /* process noise of the rate per sample / R */
+    uint32_t p22_start_uq28; /* variance of the rate at the start / R */
+    uint32_t rate_max_lsb_q16;
+    uint32_t size_lsb_uq8;  /* |innovation| of the last step, <= 8704 LSB */
+    uint16_t gate_lsb2_uq4; /* gate^2 R, UQ12.4; when coarse, in 16 LSB^2 */
+    uint32_t limit_lsb2;    /* of the squared innovation at the last step: UQ16.16, UQ24.8 when coarse; 0: none yet */
+    uint32_t r_lsb2_q8;     /* measurement variance in force */
+    fx_scaled_t drive_lsb2; /* q T^3 */
+    fx_scaled_t start_lsb2; /* variance of the rate per sample at the start */
+    uint16_t gain_uq16;     /* w1 of the last update */
+    uint8_t flags;
+    bool negative; /* sign of the innovation */
+    bool gated;    /* there is a gate */
+    bool coarse;
+    uint8_t collected; /* start samples seen, FILTER_WARM_UP_SAMPLES: running */
+} two_state_t;
+
+/* True when rate, R and q are legal. */
+bool two_state_legal(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3);
+
+/*
+ * R to start from at an output data rate: 1.5 x 0.02 x rate LSB^2 (0.14 LSB per root Hz, measured on real boards),
+ * limited.
+ */
+uint32_t two_state_default_r_lsb2_q8(uint16_t rate_dhz);
+
+/*
+ * Legal parameters to a filter that begins to warm up, no gate. rate_max in LSB/s, 0: the bound of the format. Divides.
+ */
+void two_state_init(two_state_t *s, uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3, uint32_t rate_max_lsb_s);
+
+/*
+ * R (limited to its legal range) for the samples to come. Divides: 1,500 cycles. The estimate stays, P / R is re-scaled
+ * by time.
+ */
+FX_ONCE void two_state_set_noise(two_state_t *s, uint32_t r_lsb2_q8);
+
+/* Running from z0 (clamped to the sensor's range): rate 0, P11 = R, rate as uncertain as after the warm-up. */
+FX_ONCE void two_state_start(two_state_t *s, int32_t x_lsb_q16);
+
+static inline bool two_state_warming_up(const two_state_t *s)
+{
+    return s->collected < FILTER_WARM_UP_SAMPLES;
+}
+
+/* One sample of the warm-up: running median of what was seen. */
+void two_state_warm_up(two_state_t *s, int16_t z_lsb);
+
+/* Sample missing, during the warm-up or not: prediction. Returns the estimate. */
+int32_t two_state_coast(two_state_t *s);
+
+/* Gate of so many sigmas of the innovation (Q8, <= 16), with the R in force; 0: none. Call after init and set_noise. */
+void two_state_set_gate(two_state_t *s, uint16_t gate_sigma_q8);
+
+/*
+ * One sample within FILTER_Z_MIN..MAX of a filter that runs: flags cleared, prediction, gate, update. False: refused by
+ * the gate (flag set) or not present, predicted only.
+ *
+ * Scaling:
+ *   input    Q0, clamped by the caller to -4096..4095 LSB
+ *   x, rate  Q15.16; |x| <= 4608 LSB by a clamp after the prediction (the update moves x towards a sample within 4096),
+ *            |rate| <= rate_max <= 4608 LSB per sample by a clamp after the update; so |r| <= 8704 LSB < 2^30 / 2^16
+ *            and no sum overflows
+ *   P / R    UQ4.28; P11 < 8, P12 < 4, P22 < 3 (see TWO_STATE_P11_END_UQ28); P12 <= P11 after a prediction, so w2 < 1
+ *   g, w1    UQ0.16 within 1.5 counts of 1/S; w2 UQ0.24; q22 and P22 rounded to 2^-28 per step
+ *   r        rounded down to 2^-8 LSB in magnitude; x and rate steps rounded half away from zero to 2^-16: an estimate
+ *            within 1/256 LSB of a constant input stays where it is
+ *   gate     limit of r^2: gate^2 R rounded to 1/16 LSB^2 (16 LSB^2 from 4096 on): 1 % at gate^2 R = 3
+ *   cost     on ATmega328P, avr-gcc 5.4 -Os: 690 cycles without gate, 850 with one; 1,354 B of flash and 258 B of table
+ */
+FX_ONCE bool two_state_step(two_state_t *s, int16_t z_lsb, bool present);
+
+/* Snapshot, see filter.h. */
+void two_state_probe(const two_state_t *s, filter_probe_t *out);
+
+/* A sample limited to the range that the bounds assume. */
+static inline int16_t two_state_clamp_z(int16_t z_lsb)
+{
+    if (z_lsb > FILTER_Z_MAX_LSB) {
+        return FILTER_Z_MAX_LSB;
+    }
+    return (int16_t)((z_lsb < FILTER_Z_MIN_LSB) ? FILTER_Z_MIN_LSB : z_lsb);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
