@@ -1,0 +1,93 @@
+/*
+ * ADXL345 driver: a state machine that never waits.
+ *
+ *   stopped -> probe (0x53, then 0x1D) -> configure in standby -> read back -> streaming
+ *                ^------------------- fault (named, retried with back-off) <-----'
+ *
+ * While streaming, the data-ready interrupt stamps the time and starts one burst; the I2C interrupt moves its bytes into a
+ * queue; main takes samples out. What a late read left in the sensor's FIFO (stream mode, 32 deep) is drained from main with
+ * interpolated stamps. One sensor, one instance: the interrupts share its state.
+ *
+ * Contexts: every function here is for main. The two handlers are in adxl345.c.
+ */
+#ifndef ADXL345_H
+#define ADXL345_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define ADXL345_QUEUE_LENGTH 8u /* power of two; one slot stays free */
+
+typedef struct {
+    uint32_t t_us;  /* of data-ready (hal_time_us); interpolated for samples drained from the FIFO */
+    int16_t lsb[3]; /* x, y, z; full resolution, 256 LSB/g nominal */
+} adxl345_sample_t;
+
+typedef struct {
+    uint16_t rate_dhz; /* output data rate in 0.1 Hz: 125, 250, 500, 1000, 2000, 4000, 8000 */
+    uint8_t range_g;   /* 2, 4, 8, 16; always full resolution */
+} adxl345_config_t;
+
+/* What is wrong, in the order in which the driver finds out. Numbers are part of the protocol (docs/protocol.md). */
+typedef enum {
+    ADXL345_FAULT_NONE = 0,
+    ADXL345_FAULT_NO_SENSOR = 1,   /* no ACK at 0x53 nor at 0x1D */
+    ADXL345_FAULT_WRONG_ID = 2,    /* somebody answers, but DEVID is not 0xE5 */
+    ADXL345_FAULT_BUS = 3,         /* a transfer did not end in time, or bus error, or arbitration lost */
+    ADXL345_FAULT_READ_BACK = 4,   /* a register does not hold what was written */
+    ADXL345_FAULT_INT1_SILENT = 5, /* data are ready inside the sensor, but INT1 does not rise */
+    ADXL345_FAULT_NO_DATA = 6      /* the sensor answers but measures no more: it has lost power or its registers */
+} adxl345_fault_t;
+
+typedef enum {
+    ADXL345_STOPPED,
+    ADXL345_STARTING, /* probe, configure, read back, first sample awaited */
+    ADXL345_STREAMING,
+    ADXL345_QUIESCING, /* new configuration asked for: standby, FIFO drained, then STARTING */
+    ADXL345_FAULTY     /* waiting for the next try */
+} adxl345_phase_t;
+
+/* True for the rates and ranges that the chip and the bus carry (data sheet p. 18: 800 Hz needs 400 kHz). */
+bool adxl345_config_valid(const adxl345_config_t *config);
+
+/* Once, before interrupts are on: everything stopped, nothing on the bus yet. */
+void adxl345_init(void);
+
+/* Start, or start again with another configuration: samples already latched by the sensor are delivered first. */
+void adxl345_start(const adxl345_config_t *config);
+
+/* Standby after the samples that are already latched have been delivered. */
+void adxl345_stop(void);
+
+/* Advances the state machine by at most one step. Call after every wake-up; never waits. */
+void adxl345_poll(uint32_t now_us);
+
+/* Oldest sample out of the queue; false when it is empty. Frees its slot, so a waiting FIFO entry can be read. */
+bool adxl345_take(adxl345_sample_t *out);
+
+/* Samples waiting in the queue. */
+uint8_t adxl345_queued(void);
+
+adxl345_phase_t adxl345_phase(void);
+adxl345_fault_t adxl345_fault(void);
+
+/* The moment by which adxl345_poll must have acted: a poll later than this means that main is stuck. */
+uint32_t adxl345_deadline_us(void);
+
+/* 7-bit address that answered last (0x53 before any did), and the DEVID read there. */
+uint8_t adxl345_address(void);
+uint8_t adxl345_device_id(void);
+
+/* Measured time between samples, us (nominal until measured). */
+uint32_t adxl345_period_us(void);
+
+/* Counters, saturating. */
+typedef struct {
+    uint16_t samples_drained; /* read late, with an interpolated stamp */
+    uint16_t bus_faults;      /* transfers that failed, any cause */
+    uint16_t timeouts;        /* of those: did not end in time */
+    uint16_t restarts;        /* sensor configured anew after a fault */
+} adxl345_counters_t;
+void adxl345_counters(adxl345_counters_t *out);
+
+#endif

@@ -1,0 +1,67 @@
+/*
+ * Inside the driver: the bus, the two interrupt handlers and the sample queue between them and main.
+ * Functions are for main unless they say otherwise.
+ */
+#ifndef ADXL345_BURST_H
+#define ADXL345_BURST_H
+
+#include "adxl345.h"
+#include "i2c_bus.h"
+
+/* What an edge of data-ready does. */
+typedef enum {
+    BURST_IGNORE, /* nothing: not streaming */
+    BURST_STAMP,  /* keep its time; main is using the bus */
+    BURST_READ    /* keep its time and read the sample at once */
+} burst_mode_t;
+
+typedef struct {
+    adxl345_sample_t sample;
+    bool exact; /* stamped by its own edge; false: interpolated */
+} burst_entry_t;
+
+/* Forget everything: queue, stamps, bus state. */
+void burst_init(void);
+
+void burst_set_mode(burst_mode_t mode);
+
+/* Take the pins (anew); a transfer that runs is abandoned. */
+void burst_take_bus(uint8_t address, bool fast);
+
+/*
+ * Register access outside streaming: false when the bus is not free yet. Poll burst_bus_state until it is not busy;
+ * the byte read is burst_register_value.
+ */
+bool burst_write_register(uint8_t reg, uint8_t value);
+bool burst_read_register(uint8_t reg);
+i2c_bus_state_t burst_bus_state(void);
+uint8_t burst_register_value(void);
+
+/* A sample waits (INT1 high), bus and queue are free: start reading it. True when a burst was started. */
+bool burst_drain(void);
+
+/* Time between samples: set to the nominal one, then measured from the stamps taken out. */
+void burst_set_period(uint32_t nominal_us);
+uint32_t burst_period_us(void);
+
+/* A burst is on the bus. */
+bool burst_running(void);
+
+/* When the newest burst was put on the bus. */
+uint32_t burst_begun_us(void);
+
+/* Bursts that failed one after another; 0 after a good one. Counts in the interrupt. */
+uint8_t burst_failures(void);
+
+/* Bursts that ended well, wraps: progress. */
+uint8_t burst_successes(void);
+
+uint8_t burst_queued(void);
+
+/* No slot is free: samples wait in the sensor until main takes one. */
+bool burst_queue_full(void);
+
+/* Oldest entry out; false when the queue is empty. */
+bool burst_take(burst_entry_t *out);
+
+#endif

@@ -1,0 +1,20 @@
+/*
+ * Inside the driver: the one constant table of registers that it writes, in standby, and reads back. Main only.
+ */
+#ifndef ADXL345_TABLE_H
+#define ADXL345_TABLE_H
+
+#include "adxl345.h"
+
+/* Rows of the table; from TABLE_READ_BACK on each register holds what its last row says. */
+#define TABLE_ROWS 11u
+#define TABLE_READ_BACK 3u
+
+/* Register and value of a row for this configuration. */
+uint8_t table_register(uint8_t row);
+uint8_t table_value(uint8_t row, const adxl345_config_t *config);
+
+/* Nominal time between samples at a legal rate. */
+uint32_t table_period_us(uint16_t rate_dhz);
+
+#endif
