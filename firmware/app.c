@@ -1,0 +1,262 @@
+/*
+ * Data walks one way: driver -> pipeline -> rows -> UART. Commands come back the other way through this file.
+ * Before the banner and the header are out, and while the baud rate changes, samples wait in the driver's queue and in the
+ * sensor's FIFO: 39 of them, 48 ms at 800 Hz.
+ */
+#include "app.h"
+
+#include "adxl345.h"
+#include "commands.h"
+#include "hal_drdy.h"
+#include "hal_irq.h"
+#include "hal_led.h"
+#include "hal_sleep.h"
+#include "hal_time.h"
+#include "hal_uart.h"
+#include "hang_test.h"
+#include "health.h"
+#include "pipeline.h"
+#include "replies.h"
+#include "rows.h"
+#include "sensor_watch.h"
+#include "settings.h"
+
+/* The banner at 9600 baud takes 0.4 s; the ring at 9600 baud drains in 0.27 s. */
+#define HOLD_LIMIT_US 1000000ul
+#define SERVICE_US 4000ul
+
+enum { WHOLE_LOOP = 0x80 };
+
+#if HANG_TEST
+volatile uint8_t hang_stages;
+#endif
+
+typedef enum {
+    STAGE_BANNER, /* banner and header are going out */
+    STAGE_RUNNING,
+    STAGE_BAUD /* the line drains before its rate changes */
+} stage_t;
+
+static uint8_t stage;
+static bool restart_cold;   /* the first sample begins the filters anew */
+static bool config_changed; /* the samples of the old configuration are still coming */
+static uint32_t uptime_s;
+static uint32_t next_second_us;
+static uint32_t next_service_us;
+
+static void start_sensor(void)
+{
+    adxl345_config_t config = { settings.rate_dhz, settings.range_g };
+    adxl345_start(&config);
+}
+
+void app_start(void)
+{
+    settings_defaults();
+    hal_led_init();
+    hal_uart_init(settings.baud);
+    hal_time_init();
+    hal_drdy_enable();
+    adxl345_init();
+    replies_start();
+    commands_start();
+    rows_start();
+    pipeline_reset();
+    health_start();
+    health_pause_filtering(hal_time_us() + HOLD_LIMIT_US);
+    hal_irq_enable();
+    uptime_s = 0;
+    next_service_us = hal_time_us();
+    next_second_us = next_service_us + 1000000ul;
+    stage = STAGE_BANNER;
+    restart_cold = false;
+    config_changed = false;
+    pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
+    (void)replies_add(REPLY_BANNER, 0);
+    start_sensor();
+}
+
+uint32_t app_uptime_s(void)
+{
+    return uptime_s;
+}
+
+void app_set_filter(uint8_t filter_kind)
+{
+    if (settings.filter == filter_kind) {
+        return;
+    }
+    settings.filter = filter_kind;
+    pipeline_change(settings.filter, settings.rate_dhz, settings.range_g);
+}
+
+/* The pipeline follows when the driver has delivered the last sample of the old configuration. */
+static void change_sensor(void)
+{
+    if (adxl345_phase() != ADXL345_STOPPED) {
+        config_changed = true;
+        start_sensor();
+    }
+}
+
+bool app_set_rate(uint16_t rate_dhz)
+{
+    adxl345_config_t config = { rate_dhz, settings.range_g };
+    if (!adxl345_config_valid(&config)) {
+        return false;
+    }
+    if (settings.rate_dhz != rate_dhz) {
+        settings.rate_dhz = rate_dhz;
+        change_sensor();
+    }
+    return true;
+}
+
+bool app_set_range(uint8_t range_g)
+{
+    adxl345_config_t config = { settings.rate_dhz, range_g };
+    if (!adxl345_config_valid(&config)) {
+        return false;
+    }
+    if (settings.range_g != range_g) {
+        settings.range_g = range_g;
+        change_sensor();
+    }
+    return true;
+}
+
+bool app_set_every(uint16_t every)
+{
+    if (every == 0 || every > SETTINGS_EVERY_MAX) {
+        return false;
+    }
+    settings.every = every;
+    return true;
+}
+
+bool app_set_baud(uint32_t baud)
+{
+    if (!settings_baud_valid(baud)) {
+        return false;
+    }
+    settings.baud = baud;
+    stage = STAGE_BAUD;
+    health_pause_filtering(hal_time_us() + HOLD_LIMIT_US);
+    return true;
+}
+
+void app_set_mode(uint8_t mode)
+{
+    settings.mode = mode;
+}
+
+void app_stop(void)
+{
+    adxl345_stop();
+}
+
+void app_go(void)
+{
+    restart_cold = true;
+    start_sensor();
+}
+
+bool app_takes_commands(void)
+{
+    return stage == STAGE_RUNNING;
+}
+
+static void count_seconds(uint32_t now_us)
+{
+    if (hal_time_reached(now_us, next_second_us)) {
+        next_second_us += 1000000ul;
+        uptime_s++;
+    }
+}
+
+/* Old samples are filtered as before; the first one after the driver's restart meets the new configuration. */
+static void follow_configuration(void)
+{
+    bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
+    if (old_samples) {
+        return;
+    }
+    if (restart_cold) {
+        pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
+    } else if (config_changed) {
+        pipeline_change(settings.filter, settings.rate_dhz, settings.range_g);
+    }
+    restart_cold = false;
+    config_changed = false;
+}
+
+static void filter_samples(void)
+{
+    adxl345_sample_t sample;
+    if (HANGS(HEALTH_FILTERING)) {
+        return;
+    }
+    if (adxl345_take(&sample)) {
+        pipeline_sample(&sample, adxl345_period_us());
+        rows_sample();
+        health_sample_filtered();
+        hal_wake();
+    } else if (restart_cold || config_changed) {
+        follow_configuration();
+    }
+}
+
+static void run_stage(uint32_t now_us)
+{
+    switch (stage) {
+    case STAGE_BANNER:
+        if (replies_empty()) {
+            rows_enable(true);
+            health_resume_filtering();
+            sensor_watch_start(now_us);
+            stage = STAGE_RUNNING;
+            hal_wake();
+        }
+        break;
+    case STAGE_BAUD:
+        if (replies_empty() && hal_uart_tx_idle()) {
+            hal_uart_init(settings.baud);
+            health_resume_filtering();
+            stage = STAGE_RUNNING;
+            hal_wake();
+        }
+        break;
+    default:
+        filter_samples();
+        break;
+    }
+}
+
+/* What a person or the watchdog waits for need not run for every sample. */
+static void service(uint32_t now_us)
+{
+    count_seconds(now_us);
+    if (stage == STAGE_RUNNING) {
+        sensor_watch_pass(now_us);
+    }
+    health_pass(now_us);
+}
+
+void app_pass(void)
+{
+    uint32_t now_us = hal_time_us();
+    if (!HANGS(HEALTH_SAMPLING)) {
+        adxl345_poll(now_us);
+        health_driver_polled();
+    }
+    while (HANGS(WHOLE_LOOP)) {
+    }
+    run_stage(now_us);
+    commands_pass();
+    replies_pass();
+    if (hal_time_reached(now_us, next_service_us)) {
+        next_service_us = now_us + SERVICE_US;
+        service(now_us);
+    }
+    hal_sleep_until_wake();
+}

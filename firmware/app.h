@@ -1,0 +1,33 @@
+/*
+ * The application: start-up, one pass of the main loop, and what the commands do. Main only.
+ * main.c calls app_start once and app_pass for ever; the host build and the tests do the same.
+ */
+#ifndef APP_H
+#define APP_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+void app_start(void);
+
+/* Does all the work there is, then sleeps until there is more. */
+void app_pass(void);
+
+uint32_t app_uptime_s(void);
+
+/* Settings; false: not a legal value, nothing changed. Rate, range and filter take effect without losing a sample. */
+void app_set_filter(uint8_t filter_kind);
+bool app_set_rate(uint16_t rate_dhz);
+bool app_set_range(uint8_t range_g);
+bool app_set_every(uint16_t every);
+bool app_set_baud(uint32_t baud);
+void app_set_mode(uint8_t mode);
+
+/* Sampling off (sensor in standby) and on. */
+void app_stop(void);
+void app_go(void);
+
+/* False while the banner goes out and while the line drains before its rate changes: bytes wait in the receive ring. */
+bool app_takes_commands(void);
+
+#endif

@@ -1,0 +1,20 @@
+/*
+ * Test images only (HANG_TEST=1): a byte whose bits stop single stages of the main loop, set by the test, to show that the
+ * watchdog notices each of them alone. In the shipped image the tests below are constant and vanish.
+ */
+#ifndef HANG_TEST_H
+#define HANG_TEST_H
+
+#ifndef HANG_TEST
+#define HANG_TEST 0
+#endif
+
+#if HANG_TEST
+#include <stdint.h>
+extern volatile uint8_t hang_stages; /* bits of health_stage; 0x80: the whole loop */
+#define HANGS(stage) ((hang_stages & (stage)) != 0)
+#else
+#define HANGS(stage) 0
+#endif
+
+#endif

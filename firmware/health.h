@@ -1,0 +1,28 @@
+/*
+ * The watchdog's one feeding place. Each stage checks in; the dog is fed only when all have since the last time:
+ *   sampling   the driver was polled, and is stopped or in a named state whose own deadline has not passed
+ *   filtering  the queue got shorter or is empty, or a named pause has not passed its deadline
+ *   output     the transmit ring moved on, or nothing is due
+ * What is still missing is noted, so that a watchdog reset can say which stage hung. Main only.
+ */
+#ifndef HEALTH_H
+#define HEALTH_H
+
+#include <stdint.h>
+
+enum health_stage { HEALTH_SAMPLING = 1, HEALTH_FILTERING = 2, HEALTH_OUTPUT = 4, HEALTH_ALL = 7 };
+
+void health_start(void);
+
+/* The stages report progress as it happens. */
+void health_driver_polled(void);
+void health_sample_filtered(void);
+
+/* Filtering pauses on purpose until this time at the latest (a change of the baud rate). */
+void health_pause_filtering(uint32_t until_us);
+void health_resume_filtering(void);
+
+/* Once per pass of the main loop. */
+void health_pass(uint32_t now_us);
+
+#endif

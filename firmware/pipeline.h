@@ -1,0 +1,73 @@
+/*
+ * From samples to filtered tilt: one filter and one noise estimate per axis, in LSB; angles from the filtered states with
+ * their fraction. Main only.
+ */
+#ifndef PIPELINE_H
+#define PIPELINE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "adxl345.h"
+
+/* Bits of the row's `flags` column (docs/protocol.md). */
+enum row_flag {
+    ROW_GATED = 1,
+    ROW_COASTED = 2,
+    ROW_REACQUIRED = 4,
+    ROW_CLIPPED = 8,
+    ROW_FAULT = 16,
+    ROW_STUCK = 32,
+    ROW_INTEGRITY = 64,
+    ROW_WARMING_UP = 128,
+    ROW_DROPPED = 256,
+    ROW_NOT_GRAVITY = 512,
+    ROW_ROLL_UNDEFINED = 1024
+};
+
+typedef struct {
+    uint32_t t_us;
+    int16_t lsb[3]; /* as read; in a coasted row the last sample */
+    int16_t mg[3];  /* filtered */
+    int16_t roll_cdeg;
+    int16_t pitch_cdeg;
+    uint16_t flags;
+} row_t;
+
+/* Once at start-up: counters to zero, angles level. */
+void pipeline_reset(void);
+
+/* Begin anew: filters collect a robust start, noise estimates start at their floor. */
+void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
+
+/* Change filter, rate or range while running: the new filters start from the old output; noise goes on unless the rate changed. */
+void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
+
+/* One sample through filters and noise estimates. Missing ones since the last (period_us apart) are coasted over, at most 100 ms. */
+void pipeline_sample(const adxl345_sample_t *sample, uint32_t period_us);
+
+/* Flags that hold until the next row. */
+void pipeline_flag(uint16_t flags);
+
+/* The row for the newest sample, with the flags of all samples since pipeline_row_done. */
+void pipeline_row(row_t *row);
+
+/* A row without a sample, at this time: the estimate held. */
+void pipeline_held_row(row_t *row, uint32_t now_us);
+
+/* The row went out: start collecting flags anew and count a warm-up row. */
+void pipeline_row_done(void);
+
+/* Roll and pitch of the newest raw sample, for the plotter. */
+void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg);
+
+/* Counts of samples: filtered, refused by the gate (any axis), re-acquired on, clipped. 32 bits last 62 days at 800 Hz. */
+typedef struct {
+    uint32_t samples;
+    uint32_t gated;
+    uint32_t reacquired;
+    uint32_t clipped;
+} pipeline_counters_t;
+void pipeline_counters(pipeline_counters_t *out);
+
+#endif

@@ -1,0 +1,63 @@
+/* The queue of replies and when a line may go out. The words are in reply_lines.c. */
+#include "replies.h"
+
+#include "reply_lines.h"
+#include "settings.h"
+#include "text.h"
+
+enum { QUEUE_LENGTH = 8 };
+
+typedef struct {
+    uint8_t kind;
+    uint8_t argument;
+} reply_t;
+
+static reply_t queue[QUEUE_LENGTH];
+static uint8_t count;
+static uint8_t line;
+
+void replies_start(void)
+{
+    count = 0;
+    line = 0;
+}
+
+bool replies_room(void)
+{
+    return count < QUEUE_LENGTH;
+}
+
+bool replies_empty(void)
+{
+    return count == 0;
+}
+
+bool replies_add(reply_kind_t kind, uint8_t argument)
+{
+    if (!replies_room()) {
+        return false;
+    }
+    queue[count].kind = (uint8_t)kind;
+    queue[count].argument = argument;
+    count++;
+    return true;
+}
+
+void replies_pass(void)
+{
+    if (count == 0 || !text_open((uint8_t)(TEXT_LINE_MAX + SETTINGS_ROW_MAX))) {
+        return;
+    }
+    reply_progress_t progress = reply_write_line((reply_kind_t)queue[0].kind, queue[0].argument, line);
+    if (progress == REPLY_WAITS) {
+        return;
+    }
+    line++;
+    if (progress == REPLY_ENDED) {
+        line = 0;
+        count--;
+        for (uint8_t i = 0; i < count; i++) {
+            queue[i] = queue[i + 1u];
+        }
+    }
+}

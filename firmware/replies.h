@@ -1,0 +1,48 @@
+/*
+ * Lines that begin with '#': the banner, answers to commands, faults. They wait in a short queue and go out one line at a time
+ * when the line has room beside a data row, so they never push a row out. Main only.
+ */
+#ifndef REPLIES_H
+#define REPLIES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef enum {
+    REPLY_BANNER, /* who we are, reset cause, how to get help; ends with the csv header */
+    REPLY_HEADER, /* the csv header alone */
+    REPLY_HELP,
+    REPLY_STATUS,
+    REPLY_FILTER, /* the setting in force, after it was set or asked for */
+    REPLY_RATE,
+    REPLY_RANGE,
+    REPLY_EVERY,
+    REPLY_BAUD,
+    REPLY_MODE,
+    REPLY_SETTINGS_END, /* no reply: the settings are the kinds from REPLY_FILTER up to here */
+    REPLY_STOPPED,
+    REPLY_GOING,
+    REPLY_UNKNOWN,     /* argument: reply_problem */
+    REPLY_REFUSED,     /* argument: reply_kind_t of the setting whose legal values to list */
+    REPLY_FAULT_BEGIN, /* argument: adxl345_fault_t */
+    REPLY_FAULT_END
+} reply_kind_t;
+
+enum reply_problem { PROBLEM_COMMAND, PROBLEM_TOO_LONG, PROBLEM_GARBAGE };
+
+/* Queue a reply; false when the queue is full (nothing queued). */
+bool replies_add(reply_kind_t kind, uint8_t argument);
+
+/* Room for one more reply. */
+bool replies_room(void);
+
+/* All replies are out. */
+bool replies_empty(void);
+
+/* Writes at most one line, if there is room for it and a data row. */
+void replies_pass(void);
+
+/* Forget everything queued. */
+void replies_start(void);
+
+#endif

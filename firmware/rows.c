@@ -1,0 +1,124 @@
+/* A row is composed on the stack and goes out whole or not at all. */
+#include "rows.h"
+
+#include "flash.h"
+#include "format.h"
+#include "hal_uart.h"
+#include "pipeline.h"
+#include "settings.h"
+
+/* The longest row is one of the plotter: four angles of FORMAT_HUNDREDTHS_MAX and the labels, 69 bytes. */
+enum { ROW_MAX = 72 };
+
+static const char header[] FLASH = "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags";
+
+static uint32_t written;
+static uint16_t dropped;
+static uint16_t since_row;
+static bool enabled;
+
+const char *rows_header(void)
+{
+    return header;
+}
+
+void rows_start(void)
+{
+    written = 0;
+    dropped = 0;
+    rows_enable(false);
+}
+
+void rows_enable(bool now_enabled)
+{
+    enabled = now_enabled;
+    since_row = 0;
+}
+
+static char *write_csv(char *at, const row_t *row)
+{
+    at = format_u32(at, row->t_us);
+    for (uint8_t axis = 0; axis < 3; axis++) {
+        *at++ = ',';
+        at = format_i16(at, row->lsb[axis]);
+    }
+    for (uint8_t axis = 0; axis < 3; axis++) {
+        *at++ = ',';
+        at = format_i16(at, row->mg[axis]);
+    }
+    *at++ = ',';
+    at = format_i16(at, row->roll_cdeg);
+    *at++ = ',';
+    at = format_i16(at, row->pitch_cdeg);
+    *at++ = ',';
+    return format_u16(at, row->flags);
+}
+
+static char *label(char *at, flash_text_t words)
+{
+    for (char c = flash_char(words); c != '\0'; c = flash_char(words)) {
+        *at++ = c;
+        words++;
+    }
+    return at;
+}
+
+static char *write_plot(char *at, const row_t *row)
+{
+    int16_t roll_raw_cdeg;
+    int16_t pitch_raw_cdeg;
+    pipeline_raw_angles(&roll_raw_cdeg, &pitch_raw_cdeg);
+    at = format_hundredths(label(at, FLASH_TEXT("roll_raw:")), roll_raw_cdeg);
+    at = format_hundredths(label(at, FLASH_TEXT(",roll:")), row->roll_cdeg);
+    at = format_hundredths(label(at, FLASH_TEXT(",pitch_raw:")), pitch_raw_cdeg);
+    at = format_hundredths(label(at, FLASH_TEXT(",pitch:")), row->pitch_cdeg);
+    at = label(at, FLASH_TEXT(",gated:"));
+    *at++ = (row->flags & ROW_GATED) ? '1' : '0';
+    return at;
+}
+
+static void write(const row_t *row)
+{
+    char line[ROW_MAX];
+    char *end = settings.mode == MODE_PLOT ? write_plot(line, row) : write_csv(line, row);
+    *end++ = '\n';
+    if (!hal_uart_tx_write(line, (uint8_t)(end - line))) {
+        dropped = (uint16_t)(dropped + (dropped != UINT16_MAX));
+        pipeline_flag(ROW_DROPPED);
+        return;
+    }
+    written += written != UINT32_MAX;
+    pipeline_row_done();
+}
+
+void rows_sample(void)
+{
+    since_row++;
+    if (!enabled || since_row < settings_every_in_force()) {
+        return;
+    }
+    since_row = 0;
+    row_t row;
+    pipeline_row(&row);
+    write(&row);
+}
+
+void rows_held(uint32_t now_us)
+{
+    if (!enabled) {
+        return;
+    }
+    row_t row;
+    pipeline_held_row(&row, now_us);
+    write(&row);
+}
+
+uint32_t rows_written(void)
+{
+    return written;
+}
+
+uint16_t rows_dropped(void)
+{
+    return dropped;
+}

@@ -1,0 +1,88 @@
+/* Faults of the sensor in words, with the likely wire. */
+#include "sensor_watch.h"
+
+#include <stdbool.h>
+
+#include "adxl345.h"
+#include "hal_led.h"
+#include "hal_time.h"
+#include "pipeline.h"
+#include "replies.h"
+#include "rows.h"
+#include "settings.h"
+#include "text.h"
+
+#define HELD_ROW_US 100000ul
+
+static uint8_t told;      /* fault code of the last line, NONE when all is well */
+static uint8_t told_mask; /* codes told since the fault began: each once */
+static uint32_t next_row_us;
+
+void sensor_watch_start(uint32_t now_us)
+{
+    told = (uint8_t)adxl345_fault();
+    told_mask = (uint8_t)(1u << told);
+    next_row_us = now_us + HELD_ROW_US;
+}
+
+void sensor_watch_describe(uint8_t fault)
+{
+    switch (fault) {
+    case ADXL345_FAULT_NO_SENSOR:
+        text_words(FLASH_TEXT("no sensor answers at 0x53 or 0x1D: check power, SDA to A4, SCL to A5, CS to 3.3 V"));
+        break;
+    case ADXL345_FAULT_WRONG_ID:
+        text_words(FLASH_TEXT("the device at 0x"));
+        text_hex8(adxl345_address());
+        text_words(FLASH_TEXT(" is no ADXL345: DEVID reads 0x"));
+        text_hex8(adxl345_device_id());
+        text_words(FLASH_TEXT(", not 0xE5"));
+        break;
+    case ADXL345_FAULT_BUS:
+        text_words(FLASH_TEXT("I2C bus stuck or disturbed: check SDA, SCL, pull-ups, ground"));
+        break;
+    case ADXL345_FAULT_READ_BACK:
+        text_words(FLASH_TEXT("a register does not keep what is written: check supply and bus"));
+        break;
+    case ADXL345_FAULT_INT1_SILENT:
+        text_words(FLASH_TEXT("the sensor has data, but INT1 does not rise: check INT1 to D2"));
+        break;
+    default:
+        text_words(FLASH_TEXT("the sensor stopped measuring: it may have lost power"));
+        break;
+    }
+}
+
+static void tell(uint8_t fault)
+{
+    uint8_t bit = (uint8_t)(1u << fault);
+    if (fault == ADXL345_FAULT_NONE) {
+        if (replies_add(REPLY_FAULT_END, told)) {
+            told = ADXL345_FAULT_NONE;
+            told_mask = 0;
+        }
+    } else if (told_mask & bit) {
+        told = fault;
+    } else if (replies_add(REPLY_FAULT_BEGIN, fault)) {
+        told = fault;
+        told_mask |= bit;
+    }
+}
+
+void sensor_watch_pass(uint32_t now_us)
+{
+    uint8_t fault = (uint8_t)adxl345_fault();
+    hal_led_set(fault != ADXL345_FAULT_NONE);
+    if (fault != told && settings.mode != MODE_PLOT) {
+        tell(fault);
+    }
+    if (fault == ADXL345_FAULT_NONE) {
+        next_row_us = now_us + HELD_ROW_US;
+        return;
+    }
+    pipeline_flag(ROW_FAULT);
+    if (hal_time_reached(now_us, next_row_us)) {
+        next_row_us += HELD_ROW_US;
+        rows_held(now_us);
+    }
+}

@@ -1,0 +1,29 @@
+/*
+ * Lines of text straight into the UART's transmit ring: text_open reserves, the others append, text_close ends the line and
+ * hands it over whole. Main only.
+ */
+#ifndef TEXT_H
+#define TEXT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "flash.h"
+
+/* Longest line that anything here writes, end of line included. */
+#define TEXT_LINE_MAX 120u
+
+/* True when a line of up to `length` bytes fits now; then append and close. Nothing is staged when false. */
+bool text_open(uint8_t length);
+void text_close(void);
+
+void text_char(char c);
+void text_words(flash_text_t words);
+void text_ram(const char *words);
+void text_u32(uint32_t value);
+void text_hex8(uint8_t value);
+
+/* value / 10, the decimal only when it is not 0: 125 gives 12.5, 1000 gives 100. */
+void text_tenths(uint16_t value);
+
+#endif

@@ -1,0 +1,8 @@
+/* The firmware's name and version as the banner shows them. */
+#ifndef VERSION_H
+#define VERSION_H
+
+#define FIRMWARE_NAME "tilt-uno"
+#define FIRMWARE_VERSION "0.1.0"
+
+#endif
