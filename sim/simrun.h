@@ -1,0 +1,189 @@
+/*
+ * simrun: the unmodified firmware of the UNO in libsimavr, with the virtual ADXL345 on its bus and a recorded stream in the
+ * sensor. Each part below is one simrun_<part>.c with its own state; simrun_main.c ties them together.
+ * Time is avr->cycle, 16 per microsecond, from the start of the MCU.
+ */
+#ifndef SIMRUN_H
+#define SIMRUN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "adxl345_model.h"
+#include "sim_avr.h"
+#include "stream.h"
+#include "twi_peripheral.h"
+
+#define CYCLES_PER_US 16u
+#define CYCLES_PER_MS 16000u
+#define NEVER UINT64_MAX
+
+/* --- exit statuses (docs: simrun --help) --- */
+typedef enum {
+    EXIT_OK = 0,
+    EXIT_INTERNAL = 1, /* simrun itself failed: memory, writing a file */
+    EXIT_INPUT = 2,    /* usage, or a file that cannot be read or is wrong */
+    EXIT_CRASH = 3,    /* jump out of the program, access beyond RAM */
+    EXIT_OPCODE = 4,   /* illegal opcode */
+    EXIT_STACK = 5,    /* stack pointer at or below _end */
+    EXIT_UART = 6,     /* a byte written to a UART that was not ready: lost on hardware */
+    EXIT_RESETS = 7,   /* number of resets is not --expect-resets */
+    EXIT_STOPPED = 8,  /* the firmware slept with interrupts off */
+    EXIT_STALLED = 9   /* no --max-ms, and the sensor was not used for 20 s: the stream would never end */
+} exit_status_t;
+
+/* --- options --- */
+enum { TYPED_MAX = 64, FAULTS_MAX = 32 };
+
+typedef struct {
+    double at_ms;     /* not before this simulated time */
+    const char *text; /* without the line end */
+} typed_line_t;
+
+typedef struct {
+    const char *fw, *in, *out, *served, *eeprom, *stats, *profile, *vcd, *bootloader, *filter;
+    bool loop, pty;
+    double ppm, max_ms; /* max_ms 0: none */
+    unsigned expect_resets, gdb_port;
+    uint32_t seed;
+    typed_line_t typed[TYPED_MAX];
+    size_t typed_count;
+    const char *faults[FAULTS_MAX];
+    size_t fault_count;
+} options_t;
+
+extern options_t options;
+
+/* Fills `options` from the command line; prints the reason and exits with EXIT_INPUT (or EXIT_OK after --help). */
+void options_parse(int argc, char **argv);
+
+/* --- the machine --- */
+typedef struct {
+    uint32_t end_of_ram;  /* _end: first free RAM address */
+    uint32_t code_bytes;  /* .text */
+    uint32_t flash_bytes; /* .text and .data */
+} program_size_t;
+
+extern avr_t *mcu;
+extern adxl345_model_t sensor;
+extern twi_peripheral_t twi;
+extern program_size_t machine_size;
+
+/* Loads the firmware (and boot loader), builds the MCU and attaches everything. Exits with EXIT_INPUT on a bad file. */
+void machine_start(void);
+/* Runs until the end; the status and, if it is not EXIT_OK, a reason (static text). */
+exit_status_t machine_run(const char **reason);
+/* Some part's next event has changed: wake up for the earliest. */
+void machine_reschedule(void);
+/* Asked for from anywhere, done between two instructions. */
+void machine_reset(bool power_cycle);
+/* First cause wins; ends the run. `reason` stays valid. */
+void machine_fail(exit_status_t status, const char *reason);
+uint32_t machine_resets(void);
+uint32_t machine_boot_resets(void); /* out of the boot loader; not counted above */
+double machine_ms(void);
+uint32_t machine_random(void); /* xorshift32 from --seed */
+
+/* --- stack --- */
+void stack_paint(void);                /* before the start */
+void stack_paint_is(void);             /* what the RAM holds now is the paint (junk after a power cycle) */
+bool stack_watch(uint32_t end_of_ram); /* true: SP is suspiciously low, look again after each instruction */
+uint16_t stack_high_water(void);       /* bytes used so far */
+
+/* --- ELF symbols --- */
+void symbols_load(const char *path, program_size_t *size);
+/* Byte address of a function; false when there is none of that name. */
+bool symbols_find(const char *name, uint32_t *pc);
+/* Address in data space of a variable of the firmware. */
+bool symbols_find_variable(const char *name, uint32_t *address);
+/* "name+0x12" of the function around pc; static text. */
+const char *symbols_nearest(uint32_t pc);
+
+/* --- sensor: clock of the virtual ADXL345 and the feed of rows --- */
+typedef struct {
+    uint64_t cycle;
+    int16_t lsb[3];
+} served_t;
+
+void sensor_start(void);
+void sensor_finish(void);
+uint64_t sensor_next(void);
+void sensor_step(void);
+void sensor_check_rate(void);
+void sensor_show_pin(void); /* drive D2 anew (after a reset, or when the wire changed) */
+void sensor_cut_int1(bool cut);
+uint64_t sensor_last_tick(void); /* cycle of the last output-data-rate tick, 0: none */
+uint64_t sensor_over_at(void);   /* cycle at which the stream ended, NEVER before */
+double sensor_period_us(void);   /* of the last rate in force, without ppm; 0: none yet */
+size_t sensor_served_count(void);
+const served_t *sensor_served(size_t index);
+void sensor_print_mode(FILE *to); /* which feed mode was used */
+const stream_t *sensor_stream(void);
+
+/* --- UART --- */
+typedef struct {
+    uint32_t t_us;
+    unsigned flags;
+    int16_t lsb[3];
+    uint64_t sent; /* cycle of its line end */
+} row_t;
+
+void uart_start(void);
+void uart_finish(void);
+void uart_reset(void); /* after a reset of the MCU */
+uint64_t uart_next(void);
+void uart_step(void);
+uint64_t uart_last_tx(void); /* cycle of the last byte sent, 0: none */
+size_t uart_row_count(void);
+const row_t *uart_row(size_t index);
+uint64_t uart_bytes(void);
+uint32_t uart_rx_overruns(void);
+
+/* --- pseudo terminal (--pty) --- */
+void pty_open(void);
+void pty_send(uint8_t byte);
+bool pty_receive(uint8_t *byte);
+void pty_pace(void); /* sleep until real time has caught up */
+
+/* --- EEPROM (--eeprom) --- */
+void eeprom_start(void);
+void eeprom_finish(void);
+void eeprom_reset(bool power_lost);
+uint64_t eeprom_next(void);
+void eeprom_step(void);
+
+/* --- faults --- */
+/* Parses options.faults; exits with EXIT_INPUT and the reason. Needs the symbols. */
+void faults_start(void);
+uint64_t faults_next(void);
+void faults_step(void);
+void faults_on_sample(void);
+void faults_on_byte(uint32_t transfer, uint32_t byte);
+void faults_on_eeprom_write(uint32_t count);
+extern bool faults_watch_pc;
+void faults_on_pc(uint32_t pc);
+void faults_on_row(const row_t *row);
+void faults_print(FILE *json);
+void faults_warn(void); /* stderr: faults that never came */
+
+/* --- statistics --- */
+extern uint64_t stats_slept; /* cycles asleep */
+void stats_start(void);
+void stats_reset(void);
+void stats_profile(uint32_t pc, uint64_t cycles);
+void stats_profile_write(void);
+void stats_write(exit_status_t status);
+void stats_summary(void);
+/* Streaming, for the load: first row, end of the stream. */
+void stats_streaming_begins(void);
+void stats_streaming_ends(void);
+
+/* --- VCD (--vcd) --- */
+enum { VCD_INT1, VCD_SDA_LOW, VCD_SCL_LOW, VCD_TX, VCD_RX, VCD_ISR };
+void vcd_start(void);
+void vcd_change(unsigned signal, uint32_t value);
+void vcd_finish(void);
+
+#endif

@@ -1,0 +1,107 @@
+/*
+ * EEPROM contents in a file, and the 3.4 ms of a write, which simavr 1.6 does in no time: EEPE stays set, and a power cycle
+ * in that time leaves junk in the cell.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "avr_eeprom.h"
+#include "simrun.h"
+
+enum {
+    REG_EECR = 0x3F,
+    REG_EEARL = 0x41,
+    REG_EEARH = 0x42,
+    BIT_EEPE = 0x02,
+    BIT_EEMPE = 0x04,
+    EEPROM_BYTES = 1024,
+    WRITE_US = 3400
+};
+
+static avr_eeprom_t *eeprom;
+static avr_io_write_t core_write;
+static void *core_param;
+static uint64_t busy_until = NEVER;
+static uint16_t busy_address;
+static uint32_t write_count;
+
+static void on_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    (void)param;
+    if (busy_until != NEVER) { /* no second write, and EEPE cannot be cleared */
+        core_write(avr, address, value & (uint8_t) ~(BIT_EEPE | BIT_EEMPE), core_param);
+        avr->data[REG_EECR] |= BIT_EEPE;
+        return;
+    }
+    bool writes = (value & BIT_EEPE) != 0 && (avr->data[REG_EECR] & BIT_EEMPE) != 0;
+    core_write(avr, address, value, core_param);
+    if (writes) {
+        busy_address = (uint16_t)((avr->data[REG_EEARL] | (unsigned)avr->data[REG_EEARH] << 8) % EEPROM_BYTES);
+        busy_until = avr->cycle + (uint64_t)WRITE_US * CYCLES_PER_US;
+        avr->data[REG_EECR] |= BIT_EEPE;
+        machine_reschedule();
+        faults_on_eeprom_write(++write_count);
+    }
+}
+
+uint64_t eeprom_next(void)
+{
+    return busy_until;
+}
+
+void eeprom_step(void)
+{
+    busy_until = NEVER;
+    mcu->data[REG_EECR] &= (uint8_t)~BIT_EEPE;
+}
+
+/* A reset lets a write finish (data sheet, "EEPROM Write"); without power the cell is left half written. */
+void eeprom_reset(bool power_lost)
+{
+    if (busy_until == NEVER) {
+        return;
+    }
+    if (power_lost) {
+        eeprom->eeprom[busy_address] = (uint8_t)machine_random();
+        busy_until = NEVER;
+    } else {
+        mcu->data[REG_EECR] |= BIT_EEPE;
+    }
+}
+
+void eeprom_start(void)
+{
+    for (avr_io_t *io = mcu->io_port; io != NULL; io = io->next) {
+        if (strcmp(io->kind, "eeprom") == 0) {
+            eeprom = (avr_eeprom_t *)io;
+        }
+    }
+    core_write = mcu->io[AVR_DATA_TO_IO(REG_EECR)].w.c;
+    core_param = mcu->io[AVR_DATA_TO_IO(REG_EECR)].w.param;
+    mcu->io[AVR_DATA_TO_IO(REG_EECR)].w.c = on_control;
+    FILE *file = options.eeprom == NULL ? NULL : fopen(options.eeprom, "rb");
+    if (file == NULL) {
+        return;
+    }
+    uint8_t contents[EEPROM_BYTES + 1];
+    size_t length = fread(contents, 1, sizeof contents, file);
+    if (ferror(file) || length > EEPROM_BYTES) {
+        fprintf(stderr, "simrun: %s: %s\n", options.eeprom, ferror(file) ? "cannot read" : "longer than 1024 bytes");
+        exit(EXIT_INPUT);
+    }
+    fclose(file);
+    memcpy(eeprom->eeprom, contents, length);
+}
+
+void eeprom_finish(void)
+{
+    if (options.eeprom == NULL) {
+        return;
+    }
+    FILE *file = fopen(options.eeprom, "wb");
+    bool written = file != NULL && fwrite(eeprom->eeprom, 1, EEPROM_BYTES, file) == EEPROM_BYTES;
+    if (file == NULL || fclose(file) != 0 || !written) {
+        perror(options.eeprom);
+        exit(EXIT_INTERNAL);
+    }
+}

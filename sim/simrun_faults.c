@@ -1,0 +1,250 @@
+/*
+ * Faults from the command line: WHEN they begin, WHAT they do, how long a state lasts, and how long the firmware needs until
+ * the first good row after it: a row without flag 2 or 16 that shows a sample latched after the fault had ended.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "simrun_faults.h"
+
+enum { FLAG_COASTED = 2, FLAG_FAULT = 16, LOOK_BACK = 64 };
+
+static fault_t faults[FAULTS_MAX];
+static size_t fault_count;
+bool faults_watch_pc;
+
+void faults_start(void)
+{
+    for (size_t i = 0; i < options.fault_count; i++) {
+        fault_parse(&faults[fault_count], options.faults[i]);
+        faults_watch_pc = faults_watch_pc || faults[fault_count].when == WHEN_PC;
+        fault_count++;
+    }
+}
+
+/* A state that several faults can hold is let go by the last of them. */
+static bool any_active(kind_t kind)
+{
+    for (size_t i = 0; i < fault_count; i++) {
+        if (faults[i].kind == kind && faults[i].active) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void follow_lines(void)
+{
+    bool sda = any_active(KIND_SDA);
+    bool scl = any_active(KIND_SCL);
+    twi_hold(&twi, sda, scl);
+    vcd_change(VCD_SDA_LOW, sda);
+    vcd_change(VCD_SCL_LOW, scl);
+}
+
+static void set_power(bool on)
+{
+    adxl345_model_power(&sensor, on);
+    sensor_check_rate();
+}
+
+/* The state's beginning, or the whole of a fault that does not last. */
+static void apply(const fault_t *fault)
+{
+    switch (fault->kind) {
+    case KIND_UNPLUG:
+    case KIND_POWER:
+        set_power(false);
+        break;
+    case KIND_PLUG:
+        set_power(true);
+        break;
+    case KIND_SDA:
+    case KIND_SCL:
+        follow_lines();
+        break;
+    case KIND_HANG:
+        twi_hang(&twi, fault->parameter);
+        break;
+    case KIND_ARB:
+        twi.lose_arbitration = true;
+        break;
+    case KIND_BUSERR:
+        twi.bus_error = true;
+        break;
+    case KIND_NACK:
+        twi.nack_address = true;
+        break;
+    case KIND_NACKDATA:
+        twi.nack_data = true;
+        break;
+    case KIND_DEVID:
+        sensor.device_id = sensor.reg[0] = (uint8_t)fault->parameter;
+        break;
+    case KIND_NOINT:
+        sensor_cut_int1(true);
+        break;
+    case KIND_POKE:
+        mcu->data[fault->address] = (uint8_t)fault->parameter;
+        break;
+    default:
+        machine_reset(fault->kind == KIND_MCUPOWER);
+        break;
+    }
+}
+
+static void release(fault_t *fault)
+{
+    fault->active = false;
+    fault->ends = NEVER;
+    fault->awaits_row = true;
+    fault->ended_at = mcu->cycle;
+    switch (fault->kind) {
+    case KIND_UNPLUG:
+    case KIND_POWER:
+        set_power(true);
+        break;
+    case KIND_DEVID:
+        sensor.device_id = sensor.reg[0] = 0xE5;
+        break;
+    case KIND_NOINT:
+        sensor_cut_int1(any_active(KIND_NOINT));
+        break;
+    default:
+        follow_lines();
+        break;
+    }
+}
+
+static void begin(fault_t *fault)
+{
+    fault->injected++;
+    if (fault->injected == 1) {
+        fault->first_ms = machine_ms();
+    }
+    fault->armed = fault->when == WHEN_SAMPLE;
+    if (fault_kinds[fault->kind].lasts) {
+        fault->active = true;
+        fault->awaits_row = false;
+        fault->ends = fault->lasts == NEVER ? NEVER : mcu->cycle + fault->lasts;
+        machine_reschedule();
+    } else {
+        fault->awaits_row = true;
+        fault->ended_at = mcu->cycle;
+    }
+    apply(fault);
+}
+
+uint64_t faults_next(void)
+{
+    uint64_t next = NEVER;
+    for (size_t i = 0; i < fault_count; i++) {
+        const fault_t *fault = &faults[i];
+        uint64_t at = fault->active ? fault->ends : NEVER;
+        if (fault->when == WHEN_MS && fault->armed) {
+            at = fault->at;
+        }
+        next = at < next ? at : next;
+    }
+    return next;
+}
+
+void faults_step(void)
+{
+    for (size_t i = 0; i < fault_count; i++) {
+        fault_t *fault = &faults[i];
+        if (fault->when == WHEN_MS && fault->armed && fault->at <= mcu->cycle) {
+            begin(fault);
+        } else if (fault->active && fault->ends <= mcu->cycle) {
+            release(fault);
+        }
+    }
+}
+
+void faults_on_sample(void)
+{
+    for (size_t i = 0; i < fault_count; i++) {
+        if (faults[i].when == WHEN_SAMPLE && machine_random() < faults[i].chance) {
+            begin(&faults[i]);
+        }
+    }
+}
+
+void faults_on_byte(uint32_t transfer, uint32_t byte)
+{
+    for (size_t i = 0; i < fault_count; i++) {
+        fault_t *fault = &faults[i];
+        if (fault->when == WHEN_BYTE && fault->armed && fault->transfer == transfer && fault->byte == byte) {
+            begin(fault);
+        }
+    }
+}
+
+void faults_on_eeprom_write(uint32_t count)
+{
+    for (size_t i = 0; i < fault_count; i++) {
+        if (faults[i].when == WHEN_EEPROM && faults[i].armed && faults[i].eeprom_write == count) {
+            begin(&faults[i]);
+        }
+    }
+}
+
+void faults_on_pc(uint32_t pc)
+{
+    for (size_t i = 0; i < fault_count; i++) {
+        fault_t *fault = &faults[i];
+        if (fault->when == WHEN_PC && fault->armed && fault->pc == pc && --fault->visits_left == 0) {
+            begin(fault);
+        }
+    }
+}
+
+static bool shows_sample_since(const row_t *row, uint64_t since)
+{
+    size_t count = sensor_served_count();
+    for (size_t i = count; i > 0 && i + LOOK_BACK > count; i--) {
+        const served_t *served = sensor_served(i - 1);
+        if (served->cycle < since) {
+            return false;
+        }
+        if (memcmp(served->lsb, row->lsb, sizeof row->lsb) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void faults_on_row(const row_t *row)
+{
+    bool good = (row->flags & (FLAG_COASTED | FLAG_FAULT)) == 0;
+    for (size_t i = 0; good && i < fault_count; i++) {
+        fault_t *fault = &faults[i];
+        if (fault->awaits_row && shows_sample_since(row, fault->ended_at)) {
+            double ms = (double)(row->sent - fault->ended_at) / CYCLES_PER_MS;
+            fault->awaits_row = false;
+            fault->recovered++;
+            fault->worst_ms = ms > fault->worst_ms ? ms : fault->worst_ms;
+        }
+    }
+}
+
+void faults_print(FILE *json)
+{
+    for (size_t i = 0; i < fault_count; i++) {
+        const fault_t *fault = &faults[i];
+        unsigned n = (unsigned)i + 1;
+        fprintf(json, "  \"fault_%u\": \"%s\",\n  \"fault_%u_injected\": %u,\n  \"fault_%u_recovered\": %u,\n", n,
+                fault->text, n, (unsigned)fault->injected, n, (unsigned)fault->recovered);
+        fprintf(json, "  \"fault_%u_first_ms\": %.3f,\n  \"fault_%u_worst_recovery_ms\": %.3f,\n", n, fault->first_ms,
+                n, fault->worst_ms);
+    }
+}
+
+void faults_warn(void)
+{
+    for (size_t i = 0; i < fault_count; i++) {
+        if (faults[i].injected == 0) {
+            fprintf(stderr, "simrun: --fault %s never came\n", faults[i].text);
+        }
+    }
+}

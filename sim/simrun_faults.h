@@ -1,0 +1,60 @@
+/* A fault of the command line, between its parser (simrun_faults_parse.c) and what it does (simrun_faults.c). */
+#ifndef SIMRUN_FAULTS_H
+#define SIMRUN_FAULTS_H
+
+#include "simrun.h"
+
+typedef enum { WHEN_MS, WHEN_BYTE, WHEN_PC, WHEN_EEPROM, WHEN_SAMPLE } when_t;
+
+typedef enum {
+    KIND_UNPLUG,
+    KIND_PLUG,
+    KIND_POWER,
+    KIND_SDA,
+    KIND_SCL,
+    KIND_HANG,
+    KIND_ARB,
+    KIND_BUSERR,
+    KIND_NACK,
+    KIND_NACKDATA,
+    KIND_DEVID,
+    KIND_NOINT,
+    KIND_RESET,
+    KIND_MCUPOWER,
+    KIND_POKE,
+    KIND_COUNT
+} kind_t;
+
+typedef struct {
+    const char *text;
+    when_t when;
+    kind_t kind;
+    uint64_t at; /* WHEN_MS: cycle */
+    uint32_t transfer, byte;
+    uint32_t pc, visits_left;
+    uint32_t eeprom_write;
+    uint32_t chance; /* WHEN_SAMPLE: of 2^32 */
+    uint32_t parameter;
+    uint32_t address; /* KIND_POKE: of the variable */
+    uint64_t lasts;   /* cycles, NEVER: to the end */
+    bool armed;       /* has still to come (WHEN_SAMPLE: always) */
+    bool active;
+    uint64_t ends; /* cycle, while active */
+    bool awaits_row;
+    uint64_t ended_at;
+    uint32_t injected, recovered;
+    double worst_ms, first_ms;
+} fault_t;
+
+/* Properties of the kinds: name as typed, takes PARAM, takes MS. */
+typedef struct {
+    const char *name;
+    bool has_parameter, lasts;
+} kind_properties_t;
+
+extern const kind_properties_t fault_kinds[KIND_COUNT];
+
+/* Fills *fault from WHEN:KIND[:PARAM][:MS]; exits with EXIT_INPUT and the reason. */
+void fault_parse(fault_t *fault, const char *text);
+
+#endif

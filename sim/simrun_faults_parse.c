@@ -1,0 +1,186 @@
+/* WHEN:KIND[:PARAM][:MS] of the command line into a fault. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "simrun_faults.h"
+
+enum { POWER_OFF_MS = 5, HANG_CLOCKS = 5 };
+
+const kind_properties_t fault_kinds[KIND_COUNT] = {
+    { "unplug", false, true }, { "plug", false, false },     { "power", false, true }, { "sda", false, true },
+    { "scl", false, true },    { "hang", true, false },      { "arb", false, false },  { "buserr", false, false },
+    { "nack", false, false },  { "nackdata", false, false }, { "devid", true, true },  { "noint", false, true },
+    { "reset", false, false }, { "mcupower", false, false }, { "poke", true, false },
+};
+
+static void refuse(const char *text, const char *reason) __attribute__((noreturn));
+static void refuse(const char *text, const char *reason)
+{
+    fprintf(stderr, "simrun: --fault %s: %s (simrun --help)\n", text, reason);
+    exit(EXIT_INPUT);
+}
+
+/* The text up to the next ':' or the end, cut off; NULL when there is none. */
+static char *next_part(char **rest)
+{
+    char *part = *rest;
+    if (part == NULL) {
+        return NULL;
+    }
+    char *colon = strchr(part, ':');
+    *rest = colon == NULL ? NULL : colon + 1;
+    if (colon != NULL) {
+        *colon = '\0';
+    }
+    return part;
+}
+
+static double number(const fault_t *fault, const char *text, char **end)
+{
+    double value = strtod(text, end);
+    if (*end == text || !(value >= 0.0 && value <= 4294967295.0)) {
+        refuse(fault->text, "a number is missing or out of range");
+    }
+    return value;
+}
+
+/* A whole number that begins at text and ends with the character `stop`; *rest is behind that. */
+static uint32_t whole(const fault_t *fault, const char *text, char stop, char **rest)
+{
+    unsigned long value = strtoul(text, rest, 0);
+    if (*rest == text || **rest != stop || value > UINT32_MAX) {
+        refuse(fault->text, "a whole number is missing or malformed");
+    }
+    *rest += stop != '\0';
+    return (uint32_t)value;
+}
+
+static void parse_symbol(fault_t *fault, char *text)
+{
+    char *hash = strchr(text, '#');
+    fault->visits_left = 1;
+    if (hash != NULL) {
+        *hash = '\0';
+        char *end;
+        fault->visits_left = whole(fault, hash + 1, '\0', &end);
+    }
+    if (!symbols_find(text, &fault->pc)) {
+        refuse(fault->text, "no such function in the firmware");
+    }
+}
+
+/* What follows xfer:, pc:, eeprom: or p: */
+static void parse_occasion(fault_t *fault, char *text)
+{
+    char *end = text;
+    switch (fault->when) {
+    case WHEN_BYTE:
+        fault->transfer = whole(fault, text, '.', &end);
+        fault->byte = whole(fault, end, '\0', &end);
+        break;
+    case WHEN_PC:
+        parse_symbol(fault, text);
+        break;
+    case WHEN_EEPROM:
+        fault->eeprom_write = whole(fault, text, '\0', &end);
+        break;
+    default: {
+        double chance = number(fault, text, &end);
+        if (chance > 1.0 || *end != '\0') {
+            refuse(fault->text, "p: wants a chance from 0 to 1");
+        }
+        fault->chance = (uint32_t)(chance * 4294967295.0);
+        break;
+    }
+    }
+}
+
+static void parse_when(fault_t *fault, char **rest)
+{
+    static const char *const names[] = {
+        [WHEN_BYTE] = "xfer", [WHEN_PC] = "pc", [WHEN_EEPROM] = "eeprom", [WHEN_SAMPLE] = "p"
+    };
+    char *part = next_part(rest);
+    fault->when = WHEN_MS;
+    for (when_t w = WHEN_BYTE; w <= WHEN_SAMPLE; w++) {
+        fault->when = strcmp(part, names[w]) == 0 ? w : fault->when;
+    }
+    if (fault->when != WHEN_MS) {
+        part = next_part(rest);
+        if (part == NULL) {
+            refuse(fault->text, "WHEN is not complete");
+        }
+        parse_occasion(fault, part);
+        return;
+    }
+    char *end = NULL;
+    fault->at = (uint64_t)(number(fault, part, &end) * CYCLES_PER_MS);
+    if (strcmp(end, "ms") != 0) {
+        refuse(fault->text, "WHEN is 12.3ms, xfer:N.K, pc:SYMBOL#N, eeprom:N or p:CHANCE");
+    }
+}
+
+static void parse_kind(fault_t *fault, const char *name)
+{
+    for (kind_t k = 0; name != NULL && k < KIND_COUNT; k++) {
+        if (strcmp(name, fault_kinds[k].name) == 0) {
+            fault->kind = k;
+            fault->parameter = k == KIND_HANG ? HANG_CLOCKS : 0;
+            fault->lasts = k == KIND_POWER ? (uint64_t)POWER_OFF_MS * CYCLES_PER_MS : NEVER;
+            return;
+        }
+    }
+    refuse(fault->text, "no such KIND");
+}
+
+/* SYMBOL=VALUE: a byte of the firmware's RAM. */
+static void parse_poke(fault_t *fault, char *text)
+{
+    char *equals = text == NULL ? NULL : strchr(text, '=');
+    if (equals == NULL) {
+        refuse(fault->text, "poke wants SYMBOL=VALUE");
+    }
+    *equals = '\0';
+    char *end;
+    fault->parameter = whole(fault, equals + 1, '\0', &end);
+    if (fault->parameter > UINT8_MAX || !symbols_find_variable(text, &fault->address)) {
+        refuse(fault->text, "no such variable in the firmware, or a value above 255");
+    }
+}
+
+static void parse_what(fault_t *fault, char **rest)
+{
+    parse_kind(fault, next_part(rest));
+    char *end = NULL;
+    char *part = next_part(rest);
+    if (fault->kind == KIND_POKE) {
+        parse_poke(fault, part);
+        part = next_part(rest);
+    } else if (part != NULL && fault_kinds[fault->kind].has_parameter) {
+        fault->parameter = whole(fault, part, '\0', &end);
+        part = next_part(rest);
+    }
+    if (part != NULL && fault_kinds[fault->kind].lasts) {
+        fault->lasts = (uint64_t)(number(fault, part, &end) * CYCLES_PER_MS);
+        if (*end != '\0') {
+            refuse(fault->text, "MS is not a number");
+        }
+        part = next_part(rest);
+    }
+    if (part != NULL) {
+        refuse(fault->text, "too many parts for this KIND");
+    }
+}
+
+void fault_parse(fault_t *fault, const char *text)
+{
+    *fault = (fault_t){ .text = text, .armed = true, .ends = NEVER };
+    char *copy = strdup(text);
+    if (copy == NULL) {
+        refuse(text, "out of memory");
+    }
+    char *rest = copy;
+    parse_when(fault, &rest);
+    parse_what(fault, &rest);
+    free(copy);
+}

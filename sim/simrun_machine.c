@@ -1,0 +1,420 @@
+/*
+ * The ATmega328P: what simavr 1.6 gets wrong is put right here (no-op sleep, interrupt entry time, level interrupts, frequency,
+ * resets that drop every timer), and every instruction is watched: program counter, stack pointer, illegal opcodes.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "avr_extint.h"
+#include "sim_core.h"
+#include "sim_elf.h"
+#include "sim_gdb.h"
+#include "sim_hex.h"
+#include "simrun.h"
+
+enum {
+    RAM_START = 0x100,
+    RAM_END = 0x8FF,
+    FLASH_BYTES = 0x8000,
+    BOOT_MIN = 0x7000, /* the largest boot section of this chip */
+    CHUNK_CYCLES = 24  /* instructions run in one go between two looks at PC and stack */
+};
+
+enum { END_MS = 20, SILENCE_MS = 30, SILENCE_MAX_MS = 2000, STALLED_MS = 20000 };
+
+avr_t *mcu;
+twi_peripheral_t twi;
+
+program_size_t machine_size;
+static uint32_t boot_start = FLASH_BYTES;
+static void (*core_reset)(avr_t *);
+static bool reset_happened, reset_wanted, power_wanted;
+static uint32_t resets, boot_resets;
+static uint32_t last_pc;
+static exit_status_t failure;
+static const char *failure_reason;
+static uint32_t failure_pc;
+static double failure_ms;
+static uint32_t random_state;
+static bool stopping;
+static avr_run_t plain_run; /* simavr puts another one in for gdb and for a watchdog reset */
+static uint64_t max_cycle = NEVER;
+static bool interactive;
+static uint32_t chunk_cycles = CHUNK_CYCLES;
+
+double machine_ms(void)
+{
+    return (double)mcu->cycle / CYCLES_PER_MS;
+}
+
+uint32_t machine_resets(void)
+{
+    return resets;
+}
+
+uint32_t machine_boot_resets(void)
+{
+    return boot_resets;
+}
+
+uint32_t machine_random(void)
+{
+    random_state ^= random_state << 13;
+    random_state ^= random_state >> 17;
+    random_state ^= random_state << 5;
+    return random_state;
+}
+
+void machine_fail(exit_status_t status, const char *reason)
+{
+    if (failure == EXIT_OK) {
+        failure = status;
+        failure_reason = reason;
+        bool plausible = mcu->pc != 0 && mcu->pc < machine_size.flash_bytes;
+        failure_pc = plausible ? mcu->pc : last_pc; /* a wild jump leaves nothing better than where it began */
+        failure_ms = machine_ms();
+    }
+}
+
+/* simavr only logs an illegal opcode and goes on; without this its reader of ELF files talks on stdout. */
+static void on_log(avr_t *avr, const int level, const char *format, va_list arguments)
+{
+    char text[256];
+    if (avr == NULL || stopping) {
+        return;
+    }
+    vsnprintf(text, sizeof text, format, arguments);
+    if (strstr(text, "nvalid Opcode") != NULL || strstr(text, "nvalid opcode") != NULL) {
+        machine_fail(EXIT_OPCODE, "illegal opcode");
+    } else if (level <= LOG_ERROR && failure == EXIT_OK) {
+        fprintf(stderr, "simavr: %s", text);
+    }
+}
+
+static void no_sleep(avr_t *avr, avr_cycle_count_t cycles)
+{
+    (void)avr;
+    stats_slept += cycles + 1; /* simavr adds them to avr->cycle itself */
+}
+
+/* Only notes it: after this simavr still resets its own parts and drops all timers. */
+static void on_reset(avr_t *avr)
+{
+    if (core_reset != NULL) {
+        core_reset(avr);
+    }
+    reset_happened = true;
+}
+
+static avr_cycle_count_t on_event(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    (void)when;
+    (void)param;
+    if (sensor_next() <= avr->cycle) {
+        sensor_step();
+    }
+    if (uart_next() <= avr->cycle) {
+        uart_step();
+    }
+    if (faults_next() <= avr->cycle) {
+        faults_step();
+    }
+    if (eeprom_next() <= avr->cycle) {
+        eeprom_step();
+    }
+    machine_reschedule();
+    return 0;
+}
+
+static uint64_t earliest(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+void machine_reschedule(void)
+{
+    uint64_t at = earliest(earliest(sensor_next(), uart_next()), earliest(faults_next(), eeprom_next()));
+    at = earliest(earliest(at, max_cycle), mcu->cycle + CYCLES_PER_MS); /* the end of the run is looked at every ms */
+    avr_cycle_timer_register(mcu, at > mcu->cycle ? at - mcu->cycle : 1, on_event, NULL);
+}
+
+static void on_bus_byte(void *owner, uint32_t transfer, uint32_t byte)
+{
+    (void)owner;
+    faults_on_byte(transfer, byte);
+}
+
+static void after_bus_byte(void *owner)
+{
+    (void)owner;
+    sensor_check_rate();
+}
+
+/* What a reset of the MCU leaves to us. */
+static void set_up_again(bool power_lost)
+{
+    avr_extint_set_strict_lvl_trig(mcu, 0, 0);
+    avr_extint_set_strict_lvl_trig(mcu, 1, 0);
+    twi_reset(&twi);
+    uart_reset();
+    stats_reset();
+    eeprom_reset(power_lost);
+    sensor_show_pin();
+    machine_reschedule();
+}
+
+static void power_cycle(void)
+{
+    (void)stack_high_water();
+    for (unsigned i = 0; i <= RAM_END; i++) {
+        if (i < 32 || i >= RAM_START) {
+            mcu->data[i] = (uint8_t)machine_random();
+        }
+    }
+    stack_paint_is();
+}
+
+static void do_wanted_reset(void)
+{
+    bool power = power_wanted;
+    reset_wanted = false;
+    power_wanted = false;
+    if (power) {
+        power_cycle();
+    }
+    avr_reset(mcu);
+    avr_regbit_set(mcu, power ? mcu->reset_flags.porf : mcu->reset_flags.extrf);
+    set_up_again(power);
+    resets++;
+    reset_happened = false;
+}
+
+void machine_reset(bool power)
+{
+    reset_wanted = true;
+    power_wanted = power_wanted || power;
+}
+
+static void refuse(const char *path, const char *reason) __attribute__((noreturn));
+static void refuse(const char *path, const char *reason)
+{
+    fprintf(stderr, "simrun: %s: %s\n", path, reason);
+    exit(EXIT_INPUT);
+}
+
+static void load_boot_loader(void)
+{
+    ihex_chunk_p chunks = NULL;
+    int count = read_ihex_chunks(options.bootloader, &chunks);
+    if (count <= 0) {
+        refuse(options.bootloader, "cannot read an Intel HEX image from it");
+    }
+    for (int i = 0; i < count; i++) {
+        if (chunks[i].baseaddr < BOOT_MIN || chunks[i].baseaddr + chunks[i].size > FLASH_BYTES) {
+            refuse(options.bootloader, "not within the boot section 0x7000..0x7FFF");
+        }
+        memcpy(mcu->flash + chunks[i].baseaddr, chunks[i].data, chunks[i].size);
+        boot_start = chunks[i].baseaddr < boot_start ? chunks[i].baseaddr : boot_start;
+    }
+    free_ihex_chunks(chunks);
+    mcu->codeend = FLASH_BYTES;
+    mcu->reset_pc = boot_start;
+    mcu->pc = boot_start;
+    avr_regbit_clear(mcu, mcu->reset_flags.porf);
+    avr_regbit_set(mcu, mcu->reset_flags.extrf);
+}
+
+static void load_program(void)
+{
+    elf_firmware_t program;
+    memset(&program, 0, sizeof program);
+    symbols_load(options.fw, &machine_size);
+    if (elf_read_firmware(options.fw, &program) != 0) {
+        refuse(options.fw, "not a firmware that simavr can load");
+    }
+    if (machine_size.flash_bytes > FLASH_BYTES) {
+        refuse(options.fw, "larger than the flash");
+    }
+    mcu = avr_make_mcu_by_name("atmega328p");
+    if (mcu == NULL || avr_init(mcu) != 0) {
+        refuse("libsimavr", "no ATmega328P in it");
+    }
+    snprintf(program.mmcu, sizeof program.mmcu, "atmega328p");
+    program.frequency = CYCLES_PER_MS * 1000u;
+    mcu->frequency = program.frequency;
+    avr_load_firmware(mcu, &program);
+    mcu->codeend = program.flashsize;
+    mcu->log = LOG_WARNING;
+    free(program.flash);
+}
+
+void machine_start(void)
+{
+    random_state = options.seed;
+    max_cycle = options.max_ms > 0.0 ? (uint64_t)(options.max_ms * CYCLES_PER_MS) : NEVER;
+    interactive = options.pty || options.gdb_port != 0;
+    avr_global_logger_set(on_log);
+    load_program();
+    stack_paint();
+    if (options.bootloader != NULL) {
+        load_boot_loader();
+    }
+    plain_run = mcu->run;
+    if (options.gdb_port != 0) {
+        mcu->gdb_port = (int)options.gdb_port;
+        mcu->state = cpu_Stopped;
+        avr_gdb_init(mcu);
+        fprintf(stderr, "simrun: waiting for avr-gdb: target remote :%u\n", options.gdb_port);
+    }
+    mcu->sleep = no_sleep;
+    core_reset = mcu->reset;
+    mcu->reset = on_reset;
+    twi.sensor = &sensor;
+    twi.before_byte = on_bus_byte;
+    twi.after_byte = after_bus_byte;
+    vcd_start();
+    sensor_start();
+    if (!twi_attach(&twi, mcu)) {
+        refuse("libsimavr", "no two-wire interface in it");
+    }
+    uart_start();
+    eeprom_start();
+    stats_start();
+    faults_start();
+    if (faults_watch_pc || options.profile != NULL) {
+        chunk_cycles = 0;
+    }
+    set_up_again(false);
+}
+
+static void watch_reset(void)
+{
+    reset_happened = false;
+    set_up_again(false);
+    if (last_pc >= boot_start) {
+        boot_resets++;
+    } else {
+        resets++;
+    }
+}
+
+static bool ended(void)
+{
+    uint64_t now = mcu->cycle;
+    if (failure != EXIT_OK || now >= max_cycle) {
+        return true;
+    }
+    uint64_t over = sensor_over_at();
+    if (over == NEVER) {
+        if (max_cycle == NEVER && !interactive && now >= sensor_last_tick() + (uint64_t)STALLED_MS * CYCLES_PER_MS) {
+            machine_fail(EXIT_STALLED, "the firmware has not used the sensor for 20 s (see --max-ms)");
+        }
+        return false;
+    }
+    if (now < over + (uint64_t)END_MS * CYCLES_PER_MS) {
+        return false;
+    }
+    return now >= uart_last_tx() + (uint64_t)SILENCE_MS * CYCLES_PER_MS ||
+           now >= over + (uint64_t)SILENCE_MAX_MS * CYCLES_PER_MS;
+}
+
+static void watch_state(int state)
+{
+    bool in_program = mcu->pc < machine_size.flash_bytes || (mcu->pc >= boot_start && mcu->pc < FLASH_BYTES);
+    if (state == cpu_Crashed) {
+        machine_fail(EXIT_CRASH, "crash: jump out of the flash or access beyond the RAM");
+    } else if (state == cpu_Done) {
+        machine_fail(EXIT_STOPPED, "the firmware sleeps with interrupts off");
+    } else if (!in_program) {
+        machine_fail(EXIT_CRASH, "crash: ran into erased flash");
+    }
+}
+
+static uint64_t next_timer(void)
+{
+    const avr_cycle_timer_slot_t *first = mcu->cycle_timers.timer;
+    return first == NULL ? NEVER : first->when;
+}
+
+/*
+ * A few instructions, as avr_run does them, but without asking every timer after each: four times as fast, same cycles (a
+ * timer set meanwhile makes simavr end the chunk in time). True when more than the program counter may have changed.
+ */
+static bool step(uint64_t chunk)
+{
+    bool plain = mcu->state == cpu_Running && mcu->run == plain_run;
+    if (!plain) {
+        avr_run(mcu);
+        return true;
+    }
+    uint64_t first = next_timer();
+    uint64_t left = first > mcu->cycle ? first - mcu->cycle : 0;
+    mcu->run_cycle_count = left < chunk ? left : chunk;
+    mcu->pc = avr_run_one(mcu);
+    if (next_timer() > mcu->cycle && mcu->interrupt_state == 0 && mcu->state == cpu_Running) {
+        return false;
+    }
+    if (mcu->state == cpu_Running) {
+        avr_cycle_timer_process(mcu);
+        if (mcu->interrupt_state != 0) {
+            avr_service_interrupts(mcu);
+        }
+        if (next_timer() <= mcu->cycle) {
+            avr_cycle_timer_process(
+                mcu); /* the entry took time: simavr's timer drops a compare it sees 9 cycles late */
+        }
+    }
+    return true;
+}
+
+static void watch_everything(int state)
+{
+    if (reset_happened) {
+        watch_reset();
+    }
+    if (reset_wanted) {
+        do_wanted_reset();
+    }
+    watch_state(state);
+}
+
+static void run(void)
+{
+    bool stack_low = false;
+    do {
+        bool running = mcu->state == cpu_Running;
+        uint64_t began = mcu->cycle;
+        last_pc = mcu->pc;
+        if (faults_watch_pc && running) {
+            faults_on_pc(last_pc);
+        }
+        bool eventful = step(stack_low ? 0 : chunk_cycles);
+        stack_low = stack_watch(machine_size.end_of_ram);
+        if (options.profile != NULL && running) {
+            stats_profile(last_pc, mcu->cycle - began);
+        }
+        if (eventful || mcu->pc >= machine_size.flash_bytes) {
+            watch_everything(mcu->state);
+        }
+        if (eventful && ended()) {
+            break;
+        }
+    } while (failure == EXIT_OK);
+}
+
+exit_status_t machine_run(const char **reason)
+{
+    static char text[256];
+    run();
+    stopping = true;
+    if (failure == EXIT_OK && resets != options.expect_resets) {
+        failure = EXIT_RESETS;
+        snprintf(text, sizeof text, "%u resets of the MCU, %u expected (--expect-resets)", (unsigned)resets,
+                 options.expect_resets);
+    } else if (failure != EXIT_OK) {
+        snprintf(text, sizeof text, "%s, at %.3f ms, PC 0x%04x (%s)", failure_reason, failure_ms, (unsigned)failure_pc,
+                 symbols_nearest(failure_pc));
+    }
+    *reason = text;
+    return failure;
+}

@@ -1,0 +1,260 @@
+/* The command line. */
+#include <getopt.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "simrun.h"
+
+options_t options = { .seed = 1 };
+
+enum option_code {
+    OPTION_FW = 256,
+    OPTION_IN,
+    OPTION_OUT,
+    OPTION_SERVED,
+    OPTION_EEPROM,
+    OPTION_STATS,
+    OPTION_PROFILE,
+    OPTION_VCD,
+    OPTION_BOOTLOADER,
+    OPTION_LOOP,
+    OPTION_PTY,
+    OPTION_PPM,
+    OPTION_MAX_MS,
+    OPTION_EXPECT_RESETS,
+    OPTION_GDB,
+    OPTION_SEED,
+    OPTION_CMD,
+    OPTION_FAULT,
+    OPTION_SETTING,
+    OPTION_FILTER,
+    OPTION_HELP
+};
+
+static const struct option known[] = { { "fw", required_argument, NULL, OPTION_FW },
+                                       { "in", required_argument, NULL, OPTION_IN },
+                                       { "out", required_argument, NULL, OPTION_OUT },
+                                       { "served", required_argument, NULL, OPTION_SERVED },
+                                       { "eeprom", required_argument, NULL, OPTION_EEPROM },
+                                       { "stats", required_argument, NULL, OPTION_STATS },
+                                       { "profile", required_argument, NULL, OPTION_PROFILE },
+                                       { "vcd", required_argument, NULL, OPTION_VCD },
+                                       { "bootloader", required_argument, NULL, OPTION_BOOTLOADER },
+                                       { "loop", no_argument, NULL, OPTION_LOOP },
+                                       { "pty", no_argument, NULL, OPTION_PTY },
+                                       { "ppm", required_argument, NULL, OPTION_PPM },
+                                       { "max-ms", required_argument, NULL, OPTION_MAX_MS },
+                                       { "expect-resets", required_argument, NULL, OPTION_EXPECT_RESETS },
+                                       { "gdb", required_argument, NULL, OPTION_GDB },
+                                       { "seed", required_argument, NULL, OPTION_SEED },
+                                       { "cmd", required_argument, NULL, OPTION_CMD },
+                                       { "fault", required_argument, NULL, OPTION_FAULT },
+                                       { "rate", required_argument, NULL, OPTION_SETTING },
+                                       { "baud", required_argument, NULL, OPTION_SETTING },
+                                       { "every", required_argument, NULL, OPTION_SETTING },
+                                       { "range", required_argument, NULL, OPTION_SETTING },
+                                       { "filter", required_argument, NULL, OPTION_FILTER },
+                                       { "help", no_argument, NULL, OPTION_HELP },
+                                       { NULL, 0, NULL, 0 } };
+
+static const char help_text[] =
+    "simrun --fw ELF --in CSV --out CSV [options]: runs the UNO's firmware on a recorded stream\n"
+    "\n"
+    "  --fw ELF           firmware for the ATmega328P, 16 MHz\n"
+    "  --in CSV           stream: t_us,x,y,z or t_us,x_lsb,y_lsb,z_lsb (256 LSB/g)\n"
+    "  --out CSV          every byte the firmware's UART sends\n"
+    "  --loop             begin the stream again at its end (needs --max-ms)\n"
+    "  --max-ms N         end after N ms of simulated time\n"
+    "  --filter NAME --rate HZ --range G --every N --baud N\n"
+    "                     typed as commands, in this order of options, when the banner has appeared\n"
+    "  --cmd MS:TEXT      types TEXT and a line end, not before MS\n"
+    "  --ppm N            error of the sensor's clock\n"
+    "  --served CSV       every sample the sensor latched: served,t_us,row,line,x_lsb,y_lsb,z_lsb[,truth]\n"
+    "  --stats JSON       statistics of the run\n"
+    "  --fault WHEN:KIND[:PARAM][:MS]\n"
+    "    WHEN   12.3ms | xfer:N.K (byte K of I2C transfer N, the address is byte 1) | pc:SYMBOL[#N] (Nth time it is "
+    "reached)\n"
+    "           | eeprom:N (Nth EEPROM write) | p:1e-3 (per sample, from --seed)\n"
+    "    KIND   unplug[:MS] plug power[:MS]  sensor off the bus and supply, back, off and on\n"
+    "           sda[:MS] scl[:MS]            line held low\n"
+    "           hang[:CLOCKS]                slave stays in a byte of zeros until so many clocks (5)\n"
+    "           arb buserr nack nackdata     once: arbitration lost, bus error, address or data refused\n"
+    "           devid[:VALUE][:MS]           DEVID reads VALUE (0)\n"
+    "           noint[:MS]                   INT1 does not reach D2\n"
+    "           reset mcupower               MCU: external reset; power cycle with junk in its RAM\n"
+    "           poke:SYMBOL=VALUE            a byte of the firmware's RAM\n"
+    "           without MS a state lasts to the end (power: 5 ms)\n"
+    "  --seed N           for p:, junk in RAM (1)\n"
+    "  --expect-resets N  MCU resets that are right, injected ones included (0)\n"
+    "  --bootloader HEX   load this image too and start in it by an external reset; resets out of it are not counted\n"
+    "  --eeprom FILE      1024 bytes, read if there, written at the end\n"
+    "  --profile FILE     CSV pc,count,cycles,symbol of every instruction executed\n"
+    "  --vcd FILE         D2, stuck lines, UART bytes and interrupt handlers, for GTKWave\n"
+    "  --gdb PORT         wait for avr-gdb before the first instruction\n"
+    "  --pty              connect the UART to a pseudo terminal, in real time\n"
+    "\n"
+    "The run ends 20 ms after the stream, when the UART has been silent for 30 ms (2 s at most).\n"
+    "Exit status: 0 ran to the end; 1 simrun failed; 2 usage or input; 3 crash; 4 illegal opcode; 5 stack overrun;\n"
+    "6 UART overrun; 7 unexpected number of resets; 8 firmware slept with interrupts off;\n"
+    "9 without --max-ms: the firmware did not use the sensor for 20 s.\n";
+
+static void refuse(const char *format, ...) __attribute__((format(printf, 1, 2), noreturn));
+static void refuse(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    fputs("simrun: ", stderr);
+    vfprintf(stderr, format, arguments);
+    fputs(" (simrun --help)\n", stderr);
+    va_end(arguments);
+    exit(EXIT_INPUT);
+}
+
+static double number(const char *name, const char *text, double low, double high)
+{
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end != '\0' || !(value >= low && value <= high)) {
+        refuse("--%s wants a number from %g to %g, not '%s'", name, low, high, text);
+    }
+    return value;
+}
+
+static void add_typed(double at_ms, const char *text)
+{
+    if (options.typed_count == TYPED_MAX) {
+        refuse("more than %d commands", TYPED_MAX);
+    }
+    options.typed[options.typed_count++] = (typed_line_t){ at_ms, text };
+}
+
+/* "--rate 400" is the command "rate 400". */
+static void add_setting(const char *name, const char *value)
+{
+    size_t length = strlen(name) + strlen(value) + 2;
+    char *line = malloc(length);
+    if (line == NULL) {
+        refuse("out of memory");
+    }
+    snprintf(line, length, "%s %s", name, value);
+    add_typed(0.0, line);
+}
+
+static void add_command(const char *argument)
+{
+    char *end;
+    double at_ms = strtod(argument, &end);
+    if (end == argument || *end != ':' || !(at_ms >= 0.0)) {
+        refuse("--cmd wants MS:TEXT, not '%s'", argument);
+    }
+    add_typed(at_ms, end + 1);
+}
+
+static void add_fault(const char *argument)
+{
+    if (options.fault_count == FAULTS_MAX) {
+        refuse("more than %d faults", FAULTS_MAX);
+    }
+    options.faults[options.fault_count++] = argument;
+}
+
+/* Options that only keep a name; false when it is none of them. */
+static bool take_file(int code, const char *argument)
+{
+    static const struct {
+        int code;
+        const char **target;
+    } files[] = {
+        { OPTION_FW, &options.fw },
+        { OPTION_IN, &options.in },
+        { OPTION_OUT, &options.out },
+        { OPTION_SERVED, &options.served },
+        { OPTION_EEPROM, &options.eeprom },
+        { OPTION_STATS, &options.stats },
+        { OPTION_VCD, &options.vcd },
+        { OPTION_PROFILE, &options.profile },
+        { OPTION_BOOTLOADER, &options.bootloader },
+    };
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        if (files[i].code == code) {
+            *files[i].target = argument;
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool take_number(int code, const char *name, const char *argument)
+{
+    switch (code) {
+    case OPTION_PPM:
+        options.ppm = number(name, argument, -200000.0, 200000.0);
+        return true;
+    case OPTION_MAX_MS:
+        options.max_ms = number(name, argument, 0.001, 1e9);
+        return true;
+    case OPTION_EXPECT_RESETS:
+        options.expect_resets = (unsigned)number(name, argument, 0.0, 1e6);
+        return true;
+    case OPTION_GDB:
+        options.gdb_port = (unsigned)number(name, argument, 1.0, 65535.0);
+        return true;
+    case OPTION_SEED:
+        options.seed = (uint32_t)number(name, argument, 1.0, 4294967295.0);
+        return true;
+    default:
+        return false;
+    }
+}
+
+static void take(int code, const char *name, const char *argument)
+{
+    switch (code) {
+    case OPTION_LOOP:
+        options.loop = true;
+        break;
+    case OPTION_PTY:
+        options.pty = true;
+        break;
+    case OPTION_CMD:
+        add_command(argument);
+        break;
+    case OPTION_FAULT:
+        add_fault(argument);
+        break;
+    case OPTION_FILTER:
+        options.filter = argument;
+        add_setting(name, argument);
+        break;
+    case OPTION_SETTING:
+        add_setting(name, argument);
+        break;
+    case OPTION_HELP:
+        fputs(help_text, stdout);
+        exit(EXIT_OK);
+    default:
+        if (!take_file(code, argument) && !take_number(code, name, argument)) {
+            exit(EXIT_INPUT); /* getopt has said why */
+        }
+        break;
+    }
+}
+
+void options_parse(int argc, char **argv)
+{
+    int index = 0;
+    int code;
+    while ((code = getopt_long(argc, argv, "", known, &index)) != -1) {
+        take(code, known[index].name, optarg);
+    }
+    if (optind < argc) {
+        refuse("'%s' is no option", argv[optind]);
+    }
+    if (options.fw == NULL || options.in == NULL || options.out == NULL) {
+        refuse("--fw, --in and --out are needed");
+    }
+    if (options.loop && options.max_ms <= 0.0 && options.gdb_port == 0 && !options.pty) {
+        refuse("--loop never ends: give --max-ms");
+    }
+}

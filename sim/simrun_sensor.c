@@ -1,0 +1,207 @@
+/* The clock of the virtual ADXL345: each output-data-rate period takes a row of the stream. And the file of what it served. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "avr_ioport.h"
+#include "sim_io.h"
+#include "simrun.h"
+
+#define TURN_ON_US 1100.0 /* first data one period and 1.1 ms after Measure (data sheet p. 5) */
+
+enum { REG_PIND = 0x29, PIN_D2 = 2 };
+
+adxl345_model_t sensor;
+
+static stream_t stream;
+static feed_t feed;
+static double odr_hz;
+static double last_odr_hz;
+static double next_tick; /* cycles */
+static uint64_t last_tick;
+static size_t row_now;
+static uint64_t over_at = NEVER;
+static bool int1_cut;
+static avr_irq_t *pin_d2;
+static FILE *served_file;
+static served_t *served;
+static size_t served_count, served_capacity;
+static bool mode_used[2];
+
+static void on_pin(void *owner, unsigned pin, bool high)
+{
+    (void)owner;
+    (void)high;
+    if (pin == 1) {
+        sensor_show_pin();
+    }
+}
+
+void sensor_show_pin(void)
+{
+    bool high = sensor.pin_high[1] && !int1_cut;
+    avr_raise_irq(pin_d2, high);
+    /* after a reset PIND is 0 and simavr's IRQ is silent, because the level is not new to it */
+    uint8_t mask = 1u << PIN_D2;
+    mcu->data[REG_PIND] = (uint8_t)(high ? mcu->data[REG_PIND] | mask : mcu->data[REG_PIND] & (uint8_t)~mask);
+    vcd_change(VCD_INT1, high);
+}
+
+void sensor_cut_int1(bool cut)
+{
+    int1_cut = cut;
+    sensor_show_pin();
+}
+
+static void write_served(const int16_t lsb[3])
+{
+    const stream_row_t *row = &stream.rows[row_now];
+    fprintf(served_file, "%zu,%llu,%zu,%u,%d,%d,%d", served_count, (unsigned long long)(mcu->cycle / CYCLES_PER_US),
+            row_now, (unsigned)row->line, lsb[0], lsb[1], lsb[2]);
+    if (stream.has_truth) {
+        fprintf(served_file, ",%d,%d", row->truth_cdeg[0], row->truth_cdeg[1]);
+    }
+    fputc('\n', served_file);
+}
+
+static void on_latched(void *owner, const int16_t lsb[3])
+{
+    (void)owner;
+    if (served_file != NULL) {
+        write_served(lsb);
+    }
+    if (served_count == served_capacity) {
+        served_capacity = served_capacity == 0 ? 4096 : 2 * served_capacity;
+        served = realloc(served, served_capacity * sizeof *served);
+        if (served == NULL) {
+            fputs("simrun: out of memory\n", stderr);
+            exit(EXIT_INTERNAL);
+        }
+    }
+    served[served_count] = (served_t){ .cycle = mcu->cycle };
+    memcpy(served[served_count].lsb, lsb, sizeof served[0].lsb);
+    served_count++;
+}
+
+void sensor_start(void)
+{
+    if (!stream_load(&stream, options.in)) {
+        fprintf(stderr, "simrun: %s\n", stream.error);
+        exit(EXIT_INPUT);
+    }
+    if (options.served != NULL) {
+        served_file = fopen(options.served, "w");
+        if (served_file == NULL) {
+            perror(options.served);
+            exit(EXIT_INPUT);
+        }
+        fprintf(served_file, "served,t_us,row,line,x_lsb,y_lsb,z_lsb%s\n",
+                stream.has_truth ? ",roll_true_cdeg,pitch_true_cdeg" : "");
+    }
+    pin_d2 = avr_io_getirq(mcu, AVR_IOCTL_IOPORT_GETIRQ('D'), PIN_D2);
+    adxl345_model_init(&sensor);
+    sensor.pin_changed = on_pin;
+    sensor.latched = on_latched;
+    feed = (feed_t){ .stream = &stream, .loop = options.loop };
+    sensor_show_pin();
+}
+
+void sensor_finish(void)
+{
+    if (served_file != NULL && fclose(served_file) != 0) {
+        perror(options.served);
+        exit(EXIT_INTERNAL);
+    }
+    stream_free(&stream);
+    free(served);
+}
+
+static double period_cycles(void)
+{
+    return (double)CYCLES_PER_MS * 1000.0 / (odr_hz * (1.0 + options.ppm * 1e-6));
+}
+
+uint64_t sensor_next(void)
+{
+    return odr_hz > 0.0 ? (uint64_t)next_tick : NEVER;
+}
+
+void sensor_check_rate(void)
+{
+    double now_hz = adxl345_model_odr_hz(&sensor);
+    bool unchanged = now_hz >= odr_hz && now_hz <= odr_hz;
+    if (unchanged) {
+        return;
+    }
+    odr_hz = now_hz;
+    if (odr_hz > 0.0) {
+        last_odr_hz = odr_hz;
+        next_tick = (double)mcu->cycle + period_cycles() + TURN_ON_US * CYCLES_PER_US;
+        feed_set_rate(&feed, &stream, odr_hz, mcu->cycle / CYCLES_PER_US);
+        mode_used[feed.mode] = true;
+    }
+    machine_reschedule();
+}
+
+void sensor_step(void)
+{
+    next_tick += period_cycles();
+    last_tick = mcu->cycle;
+    if (over_at != NEVER) {
+        return;
+    }
+    size_t row = 0;
+    switch (feed_tick(&feed, mcu->cycle / CYCLES_PER_US, &row)) {
+    case FEED_SAMPLE:
+        row_now = row;
+        (void)adxl345_model_tick(&sensor, stream.rows[row].lsb);
+        faults_on_sample();
+        break;
+    case FEED_NOTHING:
+        break;
+    default:
+        over_at = mcu->cycle;
+        stats_streaming_ends();
+        break;
+    }
+}
+
+uint64_t sensor_last_tick(void)
+{
+    return last_tick;
+}
+
+uint64_t sensor_over_at(void)
+{
+    return over_at;
+}
+
+double sensor_period_us(void)
+{
+    return last_odr_hz > 0.0 ? 1e6 / last_odr_hz : 0.0;
+}
+
+size_t sensor_served_count(void)
+{
+    return served_count;
+}
+
+const served_t *sensor_served(size_t index)
+{
+    return &served[index];
+}
+
+const stream_t *sensor_stream(void)
+{
+    return &stream;
+}
+
+void sensor_print_mode(FILE *to)
+{
+    if (mode_used[FEED_ROW_PER_TICK]) {
+        fprintf(to, "simrun: feed: one row per sample (stream %.4g Hz)\n", stream.rate_hz);
+    }
+    if (mode_used[FEED_IN_FORCE]) {
+        fprintf(to, "simrun: feed: the row in force at each sample's time (stream %.4g Hz, sensor %.4g Hz)\n",
+                stream.rate_hz, last_odr_hz);
+    }
+}

@@ -1,0 +1,160 @@
+/* Function names, sizes and _end out of the firmware's ELF file. */
+#include <fcntl.h>
+#include <gelf.h>
+#include <libelf.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "simrun.h"
+
+enum { RAM_OFFSET = 0x800000, EEPROM_OFFSET = 0x810000, EM_AVR_MACHINE = 83 };
+
+typedef struct {
+    uint32_t pc;
+    char *name;
+} symbol_t;
+
+typedef struct {
+    symbol_t *list;
+    size_t count;
+} symbols_t;
+
+static symbols_t functions; /* pc: byte address in flash */
+static symbols_t variables; /* pc: address in data space */
+
+static void refuse(const char *path, const char *reason) __attribute__((noreturn));
+static void refuse(const char *path, const char *reason)
+{
+    fprintf(stderr, "simrun: %s: %s\n", path, reason);
+    exit(EXIT_INPUT);
+}
+
+static void add_symbol(symbols_t *symbols, uint32_t pc, const char *name)
+{
+    symbol_t *grown = realloc(symbols->list, (symbols->count + 1) * sizeof *grown);
+    char *copy = strdup(name);
+    if (grown == NULL || copy == NULL) {
+        refuse(name, "out of memory");
+    }
+    symbols->list = grown;
+    symbols->list[symbols->count++] = (symbol_t){ pc, copy };
+}
+
+static void take_symbols(Elf *elf, Elf_Scn *section, const GElf_Shdr *header, program_size_t *size)
+{
+    Elf_Data *data = elf_getdata(section, NULL);
+    size_t count = header->sh_entsize == 0 ? 0 : header->sh_size / header->sh_entsize;
+    for (size_t i = 0; data != NULL && i < count; i++) {
+        GElf_Sym symbol;
+        if (gelf_getsym(data, (int)i, &symbol) == NULL) {
+            continue;
+        }
+        const char *name = elf_strptr(elf, header->sh_link, symbol.st_name);
+        if (name == NULL || *name == '\0') {
+            continue;
+        }
+        unsigned type = GELF_ST_TYPE(symbol.st_info);
+        bool in_flash = symbol.st_value < RAM_OFFSET && symbol.st_shndx != SHN_ABS && symbol.st_shndx != SHN_UNDEF;
+        if (strcmp(name, "_end") == 0) {
+            size->end_of_ram = (uint32_t)symbol.st_value & 0xFFFFu;
+        } else if (in_flash && (type == STT_FUNC || type == STT_NOTYPE)) {
+            add_symbol(&functions, (uint32_t)symbol.st_value, name);
+        } else if (type == STT_OBJECT && symbol.st_value >= RAM_OFFSET && symbol.st_value < EEPROM_OFFSET) {
+            add_symbol(&variables, (uint32_t)symbol.st_value & 0xFFFFu, name);
+        }
+    }
+}
+
+static void take_sizes(const GElf_Shdr *header, program_size_t *size)
+{
+    if (header->sh_type != SHT_PROGBITS || !(header->sh_flags & SHF_ALLOC) || header->sh_addr >= EEPROM_OFFSET) {
+        return;
+    }
+    size->flash_bytes += (uint32_t)header->sh_size;
+    if (header->sh_addr < RAM_OFFSET) {
+        size->code_bytes += (uint32_t)header->sh_size;
+    }
+}
+
+static int compare(const void *a, const void *b)
+{
+    const symbol_t *x = a;
+    const symbol_t *y = b;
+    if (x->pc != y->pc) {
+        return x->pc < y->pc ? -1 : 1;
+    }
+    return strcmp(x->name, y->name);
+}
+
+void symbols_load(const char *path, program_size_t *size)
+{
+    *size = (program_size_t){ 0 };
+    int file = open(path, O_RDONLY);
+    if (file < 0) {
+        refuse(path, "cannot open");
+    }
+    elf_version(EV_CURRENT);
+    Elf *elf = elf_begin(file, ELF_C_READ, NULL);
+    GElf_Ehdr file_header;
+    if (elf == NULL || elf_kind(elf) != ELF_K_ELF || gelf_getehdr(elf, &file_header) == NULL) {
+        refuse(path, "not an ELF file");
+    }
+    if (file_header.e_machine != EM_AVR_MACHINE) {
+        refuse(path, "an ELF file, but not for an AVR");
+    }
+    Elf_Scn *section = NULL;
+    while ((section = elf_nextscn(elf, section)) != NULL) {
+        GElf_Shdr header;
+        if (gelf_getshdr(section, &header) == NULL) {
+            continue;
+        }
+        take_sizes(&header, size);
+        if (header.sh_type == SHT_SYMTAB) {
+            take_symbols(elf, section, &header, size);
+        }
+    }
+    elf_end(elf);
+    close(file);
+    if (size->code_bytes == 0) {
+        refuse(path, "no program in it");
+    }
+    if (functions.count != 0) {
+        qsort(functions.list, functions.count, sizeof *functions.list, compare);
+    }
+}
+
+static bool find(const symbols_t *symbols, const char *name, uint32_t *value)
+{
+    for (size_t i = 0; i < symbols->count; i++) {
+        if (strcmp(symbols->list[i].name, name) == 0) {
+            *value = symbols->list[i].pc;
+            return true;
+        }
+    }
+    return false;
+}
+
+bool symbols_find(const char *name, uint32_t *pc)
+{
+    return find(&functions, name, pc);
+}
+
+bool symbols_find_variable(const char *name, uint32_t *address)
+{
+    return find(&variables, name, address);
+}
+
+const char *symbols_nearest(uint32_t pc)
+{
+    static char text[128];
+    const symbol_t *best = NULL;
+    for (size_t i = 0; i < functions.count && functions.list[i].pc <= pc; i++) {
+        best = &functions.list[i];
+    }
+    if (best == NULL) {
+        return "?";
+    }
+    snprintf(text, sizeof text, "%.100s+0x%x", best->name, (unsigned)(pc - best->pc));
+    return text;
+}

@@ -1,0 +1,300 @@
+/*
+ * The line to the PC: what the firmware sends goes to --out and is cut into lines; the commands of --rate and the like and of
+ * --cmd are typed, one byte per byte time. Bytes, not bits: the PC always follows the MCU's baud rate.
+ */
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "avr_uart.h"
+#include "sim_io.h"
+#include "simrun.h"
+
+enum {
+    REG_UCSR0A = 0xC0,
+    REG_UBRR0L = 0xC4,
+    REG_UBRR0H = 0xC5,
+    BIT_U2X = 0x02,
+    BITS_PER_BYTE = 10, /* 8N1; simavr counts eleven */
+    LINE_MAX_LENGTH = 255,
+    ROW_FIELDS = 10,
+    UNANSWERED_MAX = 60, /* bytes typed without a reply: the firmware's ring holds 63 */
+    REPLY_TIMEOUT_MS = 500,
+    AFTER_REPLY_MS = 8,
+    RX_HOLDS = 3 /* two bytes and the one on the line; simavr's FIFO has 64 */
+};
+
+static avr_uart_t *uart;
+static avr_irq_t *uart_input;
+static FILE *out_file;
+static uint64_t last_tx;
+static uint64_t byte_count;
+static char line[LINE_MAX_LENGTH + 1];
+static size_t line_length;
+static bool banner_seen, header_seen;
+static row_t *rows;
+static size_t row_count, row_capacity;
+
+static size_t next_typed; /* line of options.typed */
+static size_t next_character;
+static size_t unanswered; /* bytes typed since the last reply */
+static bool waits_for_reply, waits_for_baud;
+static uint64_t reply_deadline;
+static uint64_t next_byte_at = NEVER;
+static uint32_t rx_overruns;
+
+static void keep_row(const row_t *row)
+{
+    if (row_count == row_capacity) {
+        row_capacity = row_capacity == 0 ? 4096 : 2 * row_capacity;
+        rows = realloc(rows, row_capacity * sizeof *rows);
+        if (rows == NULL) {
+            fputs("simrun: out of memory\n", stderr);
+            exit(EXIT_INTERNAL);
+        }
+    }
+    rows[row_count++] = *row;
+    if (row_count == 1) {
+        stats_streaming_begins();
+    }
+    faults_on_row(row);
+}
+
+/* A row of csv mode: ten whole numbers; t_us, x_lsb, y_lsb, z_lsb first and flags last. */
+static bool parse_row(row_t *row)
+{
+    long value[ROW_FIELDS];
+    char *at = line;
+    for (size_t i = 0; i < ROW_FIELDS; i++) {
+        char *end;
+        value[i] = strtol(at, &end, 10);
+        bool last = i == ROW_FIELDS - 1;
+        if (end == at || *end != (last ? '\0' : ',')) {
+            return false;
+        }
+        at = end + 1;
+    }
+    *row = (row_t){ .t_us = (uint32_t)value[0], .flags = (unsigned)value[ROW_FIELDS - 1], .sent = mcu->cycle };
+    for (size_t axis = 0; axis < 3; axis++) {
+        row->lsb[axis] = (int16_t)value[1 + axis];
+    }
+    return true;
+}
+
+/* Typing goes on a little later; another reply puts it off again. */
+static void on_reply(void)
+{
+    if (waits_for_reply) {
+        reply_deadline = mcu->cycle + (uint64_t)AFTER_REPLY_MS * CYCLES_PER_MS;
+        next_byte_at = reply_deadline;
+        machine_reschedule();
+    }
+}
+
+static void begin_typing(void)
+{
+    banner_seen = true;
+    next_byte_at = mcu->cycle;
+    machine_reschedule();
+}
+
+static void on_line(void)
+{
+    while (line_length != 0 && isspace((unsigned char)line[line_length - 1])) {
+        line_length--;
+    }
+    line[line_length] = '\0';
+    row_t row;
+    if (line[0] == '#') {
+        if (!banner_seen) {
+            begin_typing();
+        } else if (header_seen && !waits_for_baud) {
+            on_reply();
+        }
+    } else if (strncmp(line, "t_us,", 5) == 0) {
+        header_seen = true;
+    } else if (isdigit((unsigned char)line[0]) && parse_row(&row)) {
+        keep_row(&row);
+    }
+    line_length = 0;
+}
+
+static void on_output(avr_irq_t *irq, uint32_t value, void *param)
+{
+    (void)irq;
+    (void)param;
+    uint8_t byte = (uint8_t)value;
+    if (uart->tx_cnt >= 2) {
+        machine_fail(EXIT_UART, "a byte was written to the UART before it was ready");
+    }
+    fputc(byte, out_file);
+    byte_count++;
+    last_tx = mcu->cycle;
+    vcd_change(VCD_TX, byte);
+    if (options.pty) {
+        pty_send(byte);
+    }
+    if (byte == '\n') {
+        on_line();
+    } else if (line_length < LINE_MAX_LENGTH) {
+        line[line_length++] = (char)byte;
+    }
+}
+
+static uint64_t byte_cycles(void)
+{
+    unsigned divider = (mcu->data[REG_UBRR0L] | (unsigned)mcu->data[REG_UBRR0H] << 8) + 1u;
+    unsigned oversampling = (mcu->data[REG_UCSR0A] & BIT_U2X) ? 8 : 16;
+    return (uint64_t)divider * oversampling * BITS_PER_BYTE;
+}
+
+static void on_baud(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    (void)avr;
+    (void)address;
+    (void)value;
+    (void)param;
+    uart->cycles_per_byte = byte_cycles();
+    if (waits_for_baud) {
+        waits_for_baud = false;
+        on_reply();
+    }
+}
+
+void uart_start(void)
+{
+    out_file = fopen(options.out, "wb");
+    if (out_file == NULL) {
+        perror(options.out);
+        exit(EXIT_INPUT);
+    }
+    uint32_t no_console = 0;
+    avr_ioctl(mcu, AVR_IOCTL_UART_SET_FLAGS('0'), &no_console);
+    for (avr_io_t *io = mcu->io_port; io != NULL; io = io->next) {
+        if (strcmp(io->kind, "uart") == 0) {
+            uart = (avr_uart_t *)io;
+        }
+    }
+    uart_input = avr_io_getirq(mcu, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT);
+    avr_irq_register_notify(avr_io_getirq(mcu, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_output, NULL);
+    avr_register_io_write(mcu, REG_UBRR0L, on_baud, NULL);
+    if (options.pty) {
+        pty_open();
+        next_byte_at = 0;
+    }
+}
+
+void uart_finish(void)
+{
+    if (fclose(out_file) != 0) {
+        perror(options.out);
+        exit(EXIT_INTERNAL);
+    }
+    free(rows);
+}
+
+void uart_reset(void)
+{
+    line_length = 0;
+}
+
+static void receive(uint8_t byte)
+{
+    unsigned waiting = (unsigned)(uart->input.write - uart->input.read) &
+                       (sizeof uart->input.buffer / sizeof uart->input.buffer[0] - 1u);
+    if (waiting >= RX_HOLDS) {
+        avr_regbit_set(mcu, uart->dor);
+        rx_overruns++;
+        return;
+    }
+    vcd_change(VCD_RX, byte);
+    avr_raise_irq(uart_input, byte);
+}
+
+static void end_typed_line(void)
+{
+    const char *text = options.typed[next_typed].text;
+    next_typed++;
+    next_character = 0;
+    waits_for_baud = strncmp(text, "baud ", 5) == 0; /* until the MCU has set its divider */
+    if (waits_for_baud || unanswered > UNANSWERED_MAX) {
+        waits_for_reply = true;
+        reply_deadline = mcu->cycle + (uint64_t)REPLY_TIMEOUT_MS * CYCLES_PER_MS;
+    }
+}
+
+/* False when nothing is to be typed now; then next_byte_at says when to look again. */
+static bool next_typed_byte(uint8_t *byte)
+{
+    next_byte_at = NEVER;
+    if (next_typed == options.typed_count) {
+        return false;
+    }
+    const typed_line_t *typed = &options.typed[next_typed];
+    uint64_t due = (uint64_t)(typed->at_ms * CYCLES_PER_MS);
+    if (waits_for_reply && mcu->cycle < reply_deadline) {
+        next_byte_at = reply_deadline;
+        return false;
+    }
+    if (waits_for_reply) {
+        waits_for_reply = false;
+        waits_for_baud = false;
+        unanswered = 0;
+    }
+    if (mcu->cycle < due) {
+        next_byte_at = due;
+        return false;
+    }
+    next_byte_at = mcu->cycle + byte_cycles();
+    char character = typed->text[next_character++];
+    *byte = character == '\0' ? '\n' : (uint8_t)character;
+    unanswered++;
+    if (character == '\0') {
+        end_typed_line();
+    }
+    return true;
+}
+
+uint64_t uart_next(void)
+{
+    return next_byte_at;
+}
+
+void uart_step(void)
+{
+    uint8_t byte;
+    bool any = banner_seen && next_typed_byte(&byte);
+    if (!any && options.pty) {
+        next_byte_at = mcu->cycle + byte_cycles();
+        any = pty_receive(&byte);
+        pty_pace();
+    }
+    if (any) {
+        receive(byte);
+    }
+}
+
+uint64_t uart_last_tx(void)
+{
+    return last_tx;
+}
+
+size_t uart_row_count(void)
+{
+    return row_count;
+}
+
+const row_t *uart_row(size_t index)
+{
+    return &rows[index];
+}
+
+uint64_t uart_bytes(void)
+{
+    return byte_count;
+}
+
+uint32_t uart_rx_overruns(void)
+{
+    return rx_overruns;
+}
