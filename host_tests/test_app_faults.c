@@ -1,0 +1,158 @@
+/* The whole firmware on the host's HAL when things fail: sensor faults told once, long waits without a reset, hung stages. */
+#include "app.h"
+#include "hal_watchdog.h"
+#include "hang_test.h"
+#include "health.h"
+#include "pipeline.h"
+#include "support_board.h"
+#include "unity.h"
+
+void setUp(void)
+{
+    hang_stages = 0;
+}
+
+void tearDown(void)
+{
+    TEST_ASSERT_EQUAL_MESSAGE(0, hal_host_faults.tx_stuck, "a test left a fault behind");
+}
+
+static void assert_fault_is_told(const char *words)
+{
+    board_run_ms(700);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with(words, 0));
+    TEST_ASSERT_TRUE(board.row_count >= 4);
+    TEST_ASSERT_EQUAL_UINT(ROW_FAULT | ROW_COASTED, board.rows[board.row_count - 1].flags & (ROW_FAULT | ROW_COASTED));
+    TEST_ASSERT_TRUE(hal_host_led());
+}
+
+static void test_no_sensor_is_told_once(void)
+{
+    board_start_resting();
+    adxl345_model_power(&hal_host_sensor, false);
+    assert_fault_is_told("fault 1: no sensor answers at 0x53 or 0x1D");
+}
+
+static void test_wrong_identity_is_told_once(void)
+{
+    board_start_resting();
+    hal_host_faults.id_wrong = true;
+    assert_fault_is_told("is no ADXL345: DEVID reads 0x00, not 0xE5");
+}
+
+static void test_silent_int1_is_told_once(void)
+{
+    board_start_resting();
+    hal_host_faults.int1_cut = true;
+    assert_fault_is_told("INT1 does not rise: check INT1 to D2");
+}
+
+static void test_fault_begins_and_ends_with_one_line_each(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    size_t before = board.note_count;
+    adxl345_model_power(&hal_host_sensor, false);
+    board_run_ms(2000);
+    adxl345_model_power(&hal_host_sensor, true);
+    board_run_ms(500);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("over: samples again", before));
+    TEST_ASSERT_EQUAL_STRING("# fault 1 over: samples again", board_last_note());
+    TEST_ASSERT_TRUE(board.note_count - before <= 3);
+    TEST_ASSERT_FALSE(hal_host_led());
+    TEST_ASSERT_EQUAL_UINT(0, board.rows[board.row_count - 1].flags & ROW_FAULT);
+}
+
+static void test_ten_minutes_without_a_sensor(void)
+{
+    board_start_resting();
+    adxl345_model_power(&hal_host_sensor, false);
+    board_run_ms(600e3);
+    TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("fault", 0));
+}
+
+static void test_ten_minutes_stopped(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    board_type("stop");
+    board_run_ms(600e3);
+    TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
+    size_t rows = board.row_count;
+    board_type("go");
+    board_run_ms(1000);
+    TEST_ASSERT_INT_WITHIN(6, 97, (int)(board.row_count - rows));
+}
+
+static void test_slowest_rate_and_largest_every(void)
+{
+    board_start_resting();
+    board_run_ms(300);
+    board_type("rate 12.5");
+    board_type("every 10000");
+    board_run_ms(900e3);
+    TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
+    board_type("every 1");
+    size_t rows = board.row_count;
+    board_run_ms(1000);
+    TEST_ASSERT_INT_WITHIN(2, 12, (int)(board.row_count - rows));
+}
+
+/* Each stage hung alone: the dog bites within 300 ms and the note names the stage. */
+static void assert_bite(uint8_t stage)
+{
+    double begun_ms = hal_host_now_ms();
+    board_run_ms(400);
+    double bitten_ms = (double)hal_host_watchdog_bite() / 16000.0;
+    TEST_ASSERT_TRUE(hal_host_watchdog_bite() != 0);
+    TEST_ASSERT_TRUE(bitten_ms - begun_ms <= 300.0);
+    hang_stages = 0;
+    hal_host_faults.tx_stuck = false;
+    hal_host_reset_mcu(HAL_RESET_WATCHDOG);
+    app_start();
+    board_run_ms(100);
+    TEST_ASSERT_EQUAL_HEX8(stage, hal_reset_note() & stage);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# reset: watchdog, waiting for stage mask", 0));
+}
+
+static void test_hung_sampling_is_bitten(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    hal_host_faults.int1_cut = true;
+    hang_stages = HEALTH_SAMPLING;
+    assert_bite(HEALTH_SAMPLING);
+}
+
+static void test_hung_filtering_is_bitten(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    hang_stages = HEALTH_FILTERING;
+    assert_bite(HEALTH_FILTERING);
+}
+
+static void test_hung_output_is_bitten(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    hal_host_faults.tx_stuck = true;
+    assert_bite(HEALTH_OUTPUT);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_no_sensor_is_told_once);
+    RUN_TEST(test_wrong_identity_is_told_once);
+    RUN_TEST(test_silent_int1_is_told_once);
+    RUN_TEST(test_fault_begins_and_ends_with_one_line_each);
+    RUN_TEST(test_ten_minutes_without_a_sensor);
+    RUN_TEST(test_ten_minutes_stopped);
+    RUN_TEST(test_slowest_rate_and_largest_every);
+    RUN_TEST(test_hung_sampling_is_bitten);
+    RUN_TEST(test_hung_filtering_is_bitten);
+    RUN_TEST(test_hung_output_is_bitten);
+    return UNITY_END();
+}

@@ -1,0 +1,121 @@
+/* The parts of the HAL contracts that are logic: time over the wrap, reset cause, sleep, EEPROM timing, receive ring. */
+#include "hal_eeprom.h"
+#include "hal_host.h"
+#include "hal_sleep.h"
+#include "hal_time.h"
+#include "hal_uart.h"
+#include "hal_watchdog.h"
+#include "unity.h"
+
+void setUp(void)
+{
+    hal_host_config_t config = { .time_start_us = 0xFFFFF000u };
+    hal_host_begin(&config, NULL, false);
+    hal_time_init();
+    hal_uart_init(115200);
+}
+
+void tearDown(void) {}
+
+static void test_time_comparison_over_the_wrap(void)
+{
+    TEST_ASSERT_TRUE(hal_time_reached(5, 5));
+    TEST_ASSERT_TRUE(hal_time_reached(6, 5));
+    TEST_ASSERT_FALSE(hal_time_reached(4, 5));
+    TEST_ASSERT_TRUE(hal_time_reached(3, 0xFFFFFFF0u));
+    TEST_ASSERT_FALSE(hal_time_reached(0xFFFFFFF0u, 3));
+    TEST_ASSERT_TRUE(hal_time_reached(0x7FFFFFFFu, 0));
+    TEST_ASSERT_FALSE(hal_time_reached(0x80000000u, 0));
+}
+
+static void test_clock_crosses_the_wrap(void)
+{
+    uint32_t before = hal_time_us();
+    for (int i = 0; i < 4; i++) {
+        hal_sleep_until_wake();
+    }
+    uint32_t after = hal_time_us();
+    TEST_ASSERT_TRUE(after < before);
+    TEST_ASSERT_UINT32_WITHIN(40, 4u * HAL_TICK_US, after - before);
+}
+
+static void test_wake_before_sleep_is_not_lost(void)
+{
+    uint64_t before = hal_host_now();
+    hal_wake();
+    hal_sleep_until_wake();
+    TEST_ASSERT_TRUE(hal_host_now() - before < HAL_TICK_US * 4u);
+    before = hal_host_now();
+    hal_sleep_until_wake();
+    TEST_ASSERT_TRUE(hal_host_now() - before > HAL_TICK_US * 4u);
+}
+
+static void test_reset_cause_from_mcusr(void)
+{
+    TEST_ASSERT_EQUAL(HAL_RESET_POWER_ON, hal_reset_classify(0x01, true, 120));
+    TEST_ASSERT_EQUAL(HAL_RESET_POWER_ON, hal_reset_classify(0x05, false, 0));
+    TEST_ASSERT_EQUAL(HAL_RESET_BROWN_OUT, hal_reset_classify(0x04, true, 0));
+    TEST_ASSERT_EQUAL(HAL_RESET_WATCHDOG, hal_reset_classify(0x08, true, 0));
+    TEST_ASSERT_EQUAL(HAL_RESET_EXTERNAL, hal_reset_classify(0x02, true, 0));
+}
+
+/* The UNO's bootloader leaves MCUSR at 0. 250 ms are 30 ticks; a healthy loop feeds within a few. */
+static void test_reset_cause_from_the_breadcrumb(void)
+{
+    TEST_ASSERT_EQUAL(HAL_RESET_POWER_ON, hal_reset_classify(0, false, 30));
+    TEST_ASSERT_EQUAL(HAL_RESET_WATCHDOG, hal_reset_classify(0, true, 30));
+    TEST_ASSERT_EQUAL(HAL_RESET_WATCHDOG, hal_reset_classify(0, true, 255));
+    TEST_ASSERT_EQUAL(HAL_RESET_EXTERNAL, hal_reset_classify(0, true, 3));
+}
+
+static void test_watchdog_bites_after_250_ms(void)
+{
+    hal_watchdog_start();
+    while (hal_host_watchdog_bite() == 0) {
+        hal_sleep_until_wake();
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 250.0, (double)hal_host_watchdog_bite() / 16000.0);
+}
+
+static void test_eeprom_is_busy_for_a_write(void)
+{
+    TEST_ASSERT_TRUE(hal_eeprom_ready());
+    TEST_ASSERT_EQUAL_UINT8(0xFF, hal_eeprom_read(1023));
+    hal_eeprom_write_start(1023, 0x5A);
+    TEST_ASSERT_FALSE(hal_eeprom_ready());
+    hal_sleep_until_wake();
+    TEST_ASSERT_TRUE(hal_eeprom_ready());
+    TEST_ASSERT_EQUAL_UINT8(0x5A, hal_eeprom_read(1023));
+}
+
+static void test_receive_ring_counts_what_it_loses(void)
+{
+    uint8_t byte;
+    for (int i = 0; i < 10; i++) {
+        hal_host_type("0123456789");
+    }
+    for (int i = 0; i < 200; i++) {
+        hal_sleep_until_wake();
+    }
+    int received = 0;
+    while (hal_uart_rx(&byte)) {
+        TEST_ASSERT_EQUAL_CHAR('0' + received % 10, byte);
+        received++;
+    }
+    TEST_ASSERT_EQUAL(63, received);
+    TEST_ASSERT_EQUAL_UINT8(37, hal_uart_rx_lost());
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_time_comparison_over_the_wrap);
+    RUN_TEST(test_clock_crosses_the_wrap);
+    RUN_TEST(test_wake_before_sleep_is_not_lost);
+    RUN_TEST(test_reset_cause_from_mcusr);
+    RUN_TEST(test_reset_cause_from_the_breadcrumb);
+    RUN_TEST(test_watchdog_bites_after_250_ms);
+    RUN_TEST(test_eeprom_is_busy_for_a_write);
+    RUN_TEST(test_receive_ring_counts_what_it_loses);
+    return UNITY_END();
+}

@@ -1,0 +1,371 @@
+/* The reader of recorded streams and the feed to the virtual sensor. Formats and errors as in design.md, "Streams". */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "stream.h"
+#include "unity.h"
+
+static char path[] = "/tmp/test_stream_XXXXXX";
+static stream_t stream;
+static bool loaded;
+
+void setUp(void)
+{
+    loaded = false;
+}
+
+void tearDown(void)
+{
+    if (loaded) {
+        stream_free(&stream);
+    }
+}
+
+static bool load_bytes(const char *text, size_t length)
+{
+    FILE *file = fopen(path, "wb");
+    TEST_ASSERT_NOT_NULL(file);
+    TEST_ASSERT_EQUAL_size_t(length, fwrite(text, 1, length, file));
+    fclose(file);
+    loaded = stream_load(&stream, path);
+    return loaded;
+}
+
+static void load(const char *text)
+{
+    bool good = load_bytes(text, strlen(text));
+    TEST_ASSERT_TRUE_MESSAGE(good, stream.error);
+}
+
+/* Refused with exactly FILE:LINE: reason, and nothing kept. */
+static void refused(const char *text, unsigned line, const char *reason)
+{
+    char expected[256];
+    snprintf(expected, sizeof expected, "%s:%u: %s", path, line, reason);
+    TEST_ASSERT_FALSE(load_bytes(text, strlen(text)));
+    TEST_ASSERT_EQUAL_STRING(expected, stream.error);
+    TEST_ASSERT_NULL(stream.rows);
+    TEST_ASSERT_EQUAL_size_t(0, stream.count);
+}
+
+static void assert_row(size_t i, uint64_t t_us, int x, int y, int z)
+{
+    TEST_ASSERT_EQUAL_UINT64(t_us, stream.rows[i].t_us);
+    TEST_ASSERT_EQUAL_INT16(x, stream.rows[i].lsb[0]);
+    TEST_ASSERT_EQUAL_INT16(y, stream.rows[i].lsb[1]);
+    TEST_ASSERT_EQUAL_INT16(z, stream.rows[i].lsb[2]);
+}
+
+static void test_plain_rows_and_rate(void)
+{
+    load("t_us,x,y,z\n5000,1,-2,256\n15000,-4096,4095,0\n25000,3,4,5\n");
+    TEST_ASSERT_EQUAL_size_t(3, stream.count);
+    assert_row(0, 0, 1, -2, 256);
+    assert_row(1, 10000, -4096, 4095, 0);
+    assert_row(2, 20000, 3, 4, 5);
+    TEST_ASSERT_EQUAL_UINT32(2, stream.rows[0].line);
+    TEST_ASSERT_EQUAL_DOUBLE(100.0, stream.rate_hz);
+    TEST_ASSERT_FALSE(stream.has_truth);
+}
+
+static void test_rate_is_the_median_step(void)
+{
+    /* steps 2500, 2500, 40000, 2400, 2500: median 2500 us = 400 Hz, whatever the gap */
+    load("t_us,x,y,z\n0,0,0,0\n2500,0,0,0\n5000,0,0,0\n45000,0,0,0\n47400,0,0,0\n49900,0,0,0\n");
+    TEST_ASSERT_EQUAL_DOUBLE(400.0, stream.rate_hz);
+}
+
+static void test_one_row_has_no_rate(void)
+{
+    load("t_us,x,y,z\n77,1,2,3\n");
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, stream.rate_hz);
+    assert_row(0, 0, 1, 2, 3);
+}
+
+static void test_columns_by_name_others_ignored(void)
+{
+    load("note,z_lsb,y_lsb,x_lsb,t_us,temperature\nhello,3,2,1,100,2.5\n,6,5,4,300,\n");
+    assert_row(0, 0, 1, 2, 3);
+    assert_row(1, 200, 4, 5, 6);
+}
+
+static void test_truth_columns(void)
+{
+    load("t_us,x,y,z,roll_true_cdeg,pitch_true_cdeg\n0,0,0,256,-18000,9000\n1,0,0,256,18000,-9000\n");
+    TEST_ASSERT_TRUE(stream.has_truth);
+    TEST_ASSERT_EQUAL_INT16(-18000, stream.rows[0].truth_cdeg[0]);
+    TEST_ASSERT_EQUAL_INT16(-9000, stream.rows[1].truth_cdeg[1]);
+}
+
+static void test_bom_crlf_comments_blank_lines_and_padding(void)
+{
+    load("\xEF\xBB\xBF# a comment\r\n\r\n t_us , x,y,z\r\n# another, with, commas\r\n 0, 1,\t2 , 3\r\n\r\n10,4,5,6");
+    TEST_ASSERT_EQUAL_size_t(2, stream.count);
+    assert_row(1, 10, 4, 5, 6);
+    TEST_ASSERT_EQUAL_UINT32(7, stream.rows[1].line);
+}
+
+static void test_wrap_of_the_32_bit_clock(void)
+{
+    /* 4294960000 -> 2704: 2^32 - 4294960000 + 2704 = 10000 us on; and once more 2^32 later */
+    load("t_us,x,y,z\n4294960000,1,0,0\n2704,2,0,0\n4294960000,3,0,0\n2704,4,0,0\n");
+    assert_row(1, 10000, 2, 0, 0);
+    assert_row(2, 4294967296ull, 3, 0, 0);
+    assert_row(3, 4294977296ull, 4, 0, 0);
+}
+
+static void test_step_back_of_exactly_2_31_is_an_error_one_more_is_a_wrap(void)
+{
+    refused("t_us,x,y,z\n2147483648,0,0,0\n0,0,0,0\n", 3, "time goes backwards: 0 after 2147483648");
+    load("t_us,x,y,z\n2147483649,0,0,0\n0,0,0,0\n");
+    assert_row(1, 2147483647ull, 0, 0, 0);
+}
+
+static void test_repeated_header_begins_a_segment_one_period_later(void)
+{
+    load("t_us,x,y,z\n100,1,0,0\n10100,2,0,0\n20100,3,0,0\nt_us,x,y,z\n7,4,0,0\n10007,5,0,0\n");
+    TEST_ASSERT_EQUAL_size_t(5, stream.count);
+    assert_row(3, 30000, 4, 0, 0);
+    assert_row(4, 40000, 5, 0, 0);
+}
+
+static void test_a_second_segment_may_have_other_columns(void)
+{
+    load("t_us,x,y,z\n0,1,2,3\n10000,1,2,3\nx_lsb,y_lsb,z_lsb,t_us,flags\n4,5,6,500,0\n");
+    assert_row(2, 20000, 4, 5, 6);
+}
+
+/* The firmware's own output: banner, header, rows, a restart, a reply, coasted and faulty rows. */
+static void test_output_of_the_firmware_is_a_stream(void)
+{
+    load("# tilt-uno 0.1.0: roll and pitch from an ADXL345\n"
+         "# reset: power on\n"
+         "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags\n"
+         "17657,46,14,-242,180,55,-945,17669,-1074,128\n"
+         "27657,44,12,-244,176,51,-949,17694,-1047,0\n"
+         "37657,44,12,-244,176,51,-949,17694,-1047,2\n"
+         "# fault 1: no sensor answers\n"
+         "47657,44,12,-244,176,51,-949,17694,-1047,18\n"
+         "57657,43,12,-243,176,51,-949,17694,-1047,1541\n"
+         "# tilt-uno 0.1.0\n"
+         "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags\n"
+         "17657,46,14,-242,180,55,-945,17669,-1074,128\n");
+    TEST_ASSERT_EQUAL_size_t(6, stream.count);
+    TEST_ASSERT_FALSE(stream.rows[1].missing);
+    TEST_ASSERT_TRUE(stream.rows[2].missing);
+    TEST_ASSERT_TRUE(stream.rows[3].missing);
+    TEST_ASSERT_FALSE(stream.rows[4].missing);
+    assert_row(5, 50000, 46, 14, -242);
+    TEST_ASSERT_EQUAL_DOUBLE(100.0, stream.rate_hz);
+}
+
+static void test_refuses_a_file_that_is_not_there(void)
+{
+    TEST_ASSERT_FALSE(stream_load(&stream, "/nowhere/stream.csv"));
+    TEST_ASSERT_EQUAL_STRING("/nowhere/stream.csv:0: cannot open: No such file or directory", stream.error);
+}
+
+static void test_refuses_empty_files(void)
+{
+    refused("", 1, "the file is empty");
+    refused("# only a comment\n\n", 2, "no header");
+    refused("t_us,x,y,z\n# nothing\n", 2, "no rows after the header");
+}
+
+static void test_refuses_a_missing_column(void)
+{
+    refused("t_us,x,z\n0,1,2\n", 1, "missing column y (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first)");
+    refused("0,1,2,3\n", 1, "missing column t_us (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first)");
+    refused("t_us,x,y,z\n0,1,2,3\nt_us,x,y\n", 3, "missing column z");
+}
+
+static void test_refuses_a_wrong_field_count(void)
+{
+    refused("t_us,x,y,z\n0,1,2,3\n10,1,2\n", 3, "3 fields where the header has 4");
+    refused("t_us,x,y,z\n0,1,2,3,\n", 2, "5 fields where the header has 4");
+}
+
+static void test_refuses_what_is_no_whole_number(void)
+{
+    refused("t_us,x,y,z\n0,1,abc,3\n", 2, "y is not a whole number: 'abc'");
+    refused("t_us,x,y,z\n0,1,,3\n", 2, "y is not a whole number: ''");
+    refused("t_us,x,y,z\n0,1,2,3.5\n", 2, "z is not a whole number: '3.5'");
+    refused("t_us,x,y,z\n1e3,1,2,3\n", 2, "t_us is not a whole number: '1e3'");
+    refused("t_us,x,y,z\n0,nan,2,3\n", 2, "x is not a whole number: 'nan'");
+    refused("t_us,x,y,z\n0,1 2,2,3\n", 2, "x is not a whole number: '1 2'");
+    refused("t_us,x,y,z,flags\n0,1,2,3,?\n", 2, "flags is not a whole number: '?'");
+    refused("t_us,x,y,z\n0,99999999999999999999,2,3\n", 2, "x is not a whole number: '99999999999999999999'");
+}
+
+static void test_refuses_values_outside_the_sensor(void)
+{
+    refused("t_us,x,y,z\n0,4096,2,3\n", 2, "x is outside -4096..4095: 4096");
+    refused("t_us,x,y,z\n0,1,2,-4097\n", 2, "z is outside -4096..4095: -4097");
+    refused("t_us,x,y,z\n-1,1,2,3\n", 2, "t_us is outside 0..1000000000000000: -1");
+    refused("t_us,x,y,z,roll_true_cdeg,pitch_true_cdeg\n0,1,2,3,18001,0\n", 2,
+            "roll_true_cdeg is outside -18000..18000: 18001");
+}
+
+static void test_refuses_time_going_backwards(void)
+{
+    refused("t_us,x,y,z\n0,1,2,3\n20,1,2,3\n19,1,2,3\n", 4, "time goes backwards: 19 after 20");
+    /* beyond 32 bits there is no counter that could have wrapped */
+    refused("t_us,x,y,z\n9000000000,1,2,3\n0,1,2,3\n", 3, "time goes backwards: 0 after 9000000000");
+}
+
+static void test_refuses_binary(void)
+{
+    static const char bytes[] = "t_us,x,y,z\n0,1,2,3\n10,\0,2,3\n";
+    TEST_ASSERT_FALSE(load_bytes(bytes, sizeof bytes - 1));
+    TEST_ASSERT_NOT_NULL(strstr(stream.error, ":3: a NUL byte"));
+}
+
+/* --- feed --- */
+
+static feed_t feed_of(double odr_hz, bool loop)
+{
+    feed_t feed = { .stream = &stream, .loop = loop };
+    feed_set_rate(&feed, &stream, odr_hz, 0);
+    return feed;
+}
+
+static void assert_tick(feed_t *feed, uint64_t now_us, feed_result_t result, size_t row)
+{
+    size_t index = 999;
+    TEST_ASSERT_EQUAL_INT(result, feed_tick(feed, now_us, &index));
+    if (result == FEED_SAMPLE) {
+        TEST_ASSERT_EQUAL_size_t(row, index);
+    }
+}
+
+static void test_feed_mode_at_the_5_percent_border(void)
+{
+    load("t_us,x,y,z\n0,1,0,0\n10000,2,0,0\n20000,3,0,0\n"); /* 100 Hz; 5 % of the sensor's rate */
+    TEST_ASSERT_EQUAL_INT(FEED_ROW_PER_TICK, feed_of(100.0, false).mode);
+    TEST_ASSERT_EQUAL_INT(FEED_ROW_PER_TICK, feed_of(105.2, false).mode);
+    TEST_ASSERT_EQUAL_INT(FEED_IN_FORCE, feed_of(105.3, false).mode);
+    TEST_ASSERT_EQUAL_INT(FEED_ROW_PER_TICK, feed_of(95.3, false).mode);
+    TEST_ASSERT_EQUAL_INT(FEED_IN_FORCE, feed_of(95.2, false).mode);
+}
+
+static void test_feed_gaps_and_missing_rows_are_silent_ticks(void)
+{
+    /* 10 ms steps; rows 2 and 3 are 35 ms apart: 35/10 rounds to 4, so three ticks stay silent; row 4 is marked missing */
+    load("t_us,x,y,z,flags\n0,1,0,0,0\n10000,2,0,0,0\n20000,3,0,0,0\n55000,4,0,0,0\n65000,5,0,0,2\n75000,6,0,0,1\n");
+    feed_t feed = feed_of(100.0, false);
+    assert_tick(&feed, 0, FEED_SAMPLE, 0);
+    assert_tick(&feed, 0, FEED_SAMPLE, 1);
+    assert_tick(&feed, 0, FEED_SAMPLE, 2);
+    for (int i = 0; i < 3; i++) {
+        assert_tick(&feed, 0, FEED_NOTHING, 0);
+    }
+    assert_tick(&feed, 0, FEED_SAMPLE, 3);
+    assert_tick(&feed, 0, FEED_NOTHING, 0);
+    assert_tick(&feed, 0, FEED_SAMPLE, 5);
+    assert_tick(&feed, 0, FEED_END, 0);
+    assert_tick(&feed, 0, FEED_END, 0);
+}
+
+static void test_feed_jitter_below_half_a_step_is_no_gap(void)
+{
+    load("t_us,x,y,z\n0,1,0,0\n14900,2,0,0\n20000,3,0,0\n30000,4,0,0\n40000,5,0,0\n");
+    feed_t feed = feed_of(100.0, false);
+    for (size_t row = 0; row < 5; row++) {
+        assert_tick(&feed, 0, FEED_SAMPLE, row);
+    }
+}
+
+static void test_feed_loops(void)
+{
+    load("t_us,x,y,z\n0,1,0,0\n10000,2,0,0\n20000,3,0,0\n");
+    feed_t feed = feed_of(100.0, true);
+    for (size_t i = 0; i < 10; i++) {
+        assert_tick(&feed, 0, FEED_SAMPLE, i % 3);
+    }
+    feed = feed_of(50.0, true);
+    TEST_ASSERT_EQUAL_INT(FEED_IN_FORCE, feed.mode);
+    /* 30 ms long, ticks 20 ms apart: at 0, 20, 40 = 10, 60 = 0 ms of the stream */
+    assert_tick(&feed, 500000, FEED_SAMPLE, 0);
+    assert_tick(&feed, 520000, FEED_SAMPLE, 2);
+    assert_tick(&feed, 540000, FEED_SAMPLE, 1);
+    assert_tick(&feed, 560000, FEED_SAMPLE, 0);
+}
+
+static void test_feed_in_force_takes_the_newest_row_not_later(void)
+{
+    load("t_us,x,y,z\n0,1,0,0\n10000,2,0,0\n20000,3,0,0\n30000,4,0,0\n");
+    feed_t feed = feed_of(400.0, false);
+    static const size_t rows[] = { 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 };
+    for (size_t i = 0; i < 16; i++) { /* the first tick is at the first row's time */
+        assert_tick(&feed, 77000 + 2500 * i, FEED_SAMPLE, rows[i]);
+    }
+    assert_tick(&feed, 77000 + 2500 * 16, FEED_END, 0);
+}
+
+static void test_feed_keeps_its_place_when_the_rate_changes(void)
+{
+    load("t_us,x,y,z\n0,1,0,0\n10000,2,0,0\n20000,3,0,0\n30000,4,0,0\n40000,5,0,0\n50000,6,0,0\n");
+    feed_t feed = feed_of(100.0, false);
+    assert_tick(&feed, 0, FEED_SAMPLE, 0);
+    assert_tick(&feed, 10000, FEED_SAMPLE, 1);
+    feed_set_rate(&feed, &stream, 50.0, 10000);
+    assert_tick(&feed, 90000, FEED_SAMPLE, 2);
+    assert_tick(&feed, 110000, FEED_SAMPLE, 4);
+    feed_set_rate(&feed, &stream, 100.0, 110000);
+    assert_tick(&feed, 400000, FEED_SAMPLE, 5);
+    assert_tick(&feed, 410000, FEED_END, 0);
+}
+
+static void test_recordings(void)
+{
+    /* rows and duration as in the recordings' index.csv */
+    static const char *const name = "../shared/streams/open/gest-100-2g-a.csv";
+    if (access(name, R_OK) != 0) {
+        TEST_IGNORE_MESSAGE("no ../shared/streams");
+    }
+    loaded = stream_load(&stream, name);
+    TEST_ASSERT_TRUE_MESSAGE(loaded, stream.error);
+    TEST_ASSERT_EQUAL_size_t(8848, stream.count);
+    TEST_ASSERT_EQUAL_DOUBLE(100.0, stream.rate_hz);
+}
+
+int main(void)
+{
+    int file = mkstemp(path);
+    if (file < 0) {
+        perror(path);
+        return 1;
+    }
+    close(file);
+    UNITY_BEGIN();
+    RUN_TEST(test_plain_rows_and_rate);
+    RUN_TEST(test_rate_is_the_median_step);
+    RUN_TEST(test_one_row_has_no_rate);
+    RUN_TEST(test_columns_by_name_others_ignored);
+    RUN_TEST(test_truth_columns);
+    RUN_TEST(test_bom_crlf_comments_blank_lines_and_padding);
+    RUN_TEST(test_wrap_of_the_32_bit_clock);
+    RUN_TEST(test_step_back_of_exactly_2_31_is_an_error_one_more_is_a_wrap);
+    RUN_TEST(test_repeated_header_begins_a_segment_one_period_later);
+    RUN_TEST(test_a_second_segment_may_have_other_columns);
+    RUN_TEST(test_output_of_the_firmware_is_a_stream);
+    RUN_TEST(test_refuses_a_file_that_is_not_there);
+    RUN_TEST(test_refuses_empty_files);
+    RUN_TEST(test_refuses_a_missing_column);
+    RUN_TEST(test_refuses_a_wrong_field_count);
+    RUN_TEST(test_refuses_what_is_no_whole_number);
+    RUN_TEST(test_refuses_values_outside_the_sensor);
+    RUN_TEST(test_refuses_time_going_backwards);
+    RUN_TEST(test_refuses_binary);
+    RUN_TEST(test_feed_mode_at_the_5_percent_border);
+    RUN_TEST(test_feed_gaps_and_missing_rows_are_silent_ticks);
+    RUN_TEST(test_feed_jitter_below_half_a_step_is_no_gap);
+    RUN_TEST(test_feed_loops);
+    RUN_TEST(test_feed_in_force_takes_the_newest_row_not_later);
+    RUN_TEST(test_feed_keeps_its_place_when_the_rate_changes);
+    RUN_TEST(test_recordings);
+    unlink(path);
+    return UNITY_END();
+}
