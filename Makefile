@@ -1,0 +1,184 @@
+# tilt-uno: `make` alone prints what there is. Everything is built under build/.
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+MAKEFLAGS += --no-builtin-rules --no-print-directory
+SHELL := /bin/sh
+
+B := build
+PY := $(B)/venv/bin/python
+UNITY_DIR ?= $(B)/unity
+PORT ?= /dev/ttyACM0
+BAUD ?= 115200
+
+WARNINGS := -Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Wundef -Wdouble-promotion -Wstrict-prototypes \
+            -Wmissing-prototypes -Wcast-qual -Werror
+LIB_DIRS := lib/filters/src lib/tilt/src lib/adxl345/src
+LIB_SRC  := $(wildcard lib/filters/src/*.c lib/tilt/src/*.c lib/adxl345/src/*.c)
+APP_SRC  := $(wildcard firmware/*.c)
+INCLUDES := -Ihal -Ifirmware $(addprefix -I,$(LIB_DIRS))
+
+## help: this list
+help:
+	@echo "tilt-uno: tilt from an Arduino UNO and an ADXL345 that outliers cannot fool"
+	@sed -n 's/^## \([a-z]*\): /  make \1|/p' Makefile | awk -F'|' '{printf "%-16s %s\n", $$1, $$2}'
+
+## deps: install what any target needs (says what, before it does)
+deps:
+	@sh tools/deps.sh sim test check flash
+
+.PHONY: help deps
+
+# --- the UNO ---------------------------------------------------------------------------------------------------------
+U := $(B)/uno
+AVR_CC      := avr-gcc
+# what makes the smallest image with avr-gcc 5.4.0; the filters keep their speed
+AVR_SMALL   := -Os -flto -mrelax -mcall-prologues -fshort-enums -fno-inline-small-functions -fno-tree-dominator-opts -fno-tree-fre
+AVR_FLAGS   := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -gdwarf-2 -ffunction-sections -fdata-sections $(WARNINGS) \
+               $(INCLUDES) -Ihal/avr
+AVR_LINK    := -mmcu=atmega328p $(AVR_SMALL) -Wl,--gc-sections
+AVR_SRC     := $(APP_SRC) $(LIB_SRC) $(wildcard hal/avr/*.c)
+AVR_OBJ     := $(AVR_SRC:%.c=$(U)/%.o)
+HANG_OBJ    := $(AVR_SRC:%.c=$(U)/hang/%.o)
+
+$(U)/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
+
+$(U)/firmware.elf: $(AVR_OBJ)
+	@$(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $^ -o $@
+	@echo "built $@"
+
+# the image whose stages a test can stop one by one
+$(U)/hang/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(AVR_FLAGS) -DHANG_TEST=1 -MMD -MP -c $< -o $@
+
+$(U)/hang/firmware.elf: $(HANG_OBJ)
+	@$(AVR_CC) $(AVR_LINK) $^ -o $@
+
+# images whose clock starts shortly before its wrap, and at ten digits
+WRAP_OBJ := $(AVR_SRC:%.c=$(U)/wrap/%.o)
+LATE_OBJ := $(AVR_SRC:%.c=$(U)/late/%.o)
+$(U)/wrap/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(AVR_FLAGS) -DHAL_TIME_START_US=4289967296ul -MMD -MP -c $< -o $@
+
+$(U)/wrap/firmware.elf: $(WRAP_OBJ)
+	@$(AVR_CC) $(AVR_LINK) $^ -o $@
+
+$(U)/late/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(AVR_FLAGS) -DHAL_TIME_START_US=4200000000ul -MMD -MP -c $< -o $@
+
+$(U)/late/firmware.elf: $(LATE_OBJ)
+	@$(AVR_CC) $(AVR_LINK) $^ -o $@
+
+TEST_IMAGES := $(U)/hang/firmware.elf $(U)/wrap/firmware.elf $(U)/late/firmware.elf
+
+$(U)/firmware.hex: $(U)/firmware.elf
+	@avr-objcopy -O ihex -R .eeprom $< $@
+
+## firmware: build build/uno/firmware.elf and .hex
+firmware:
+	@sh tools/deps.sh firmware
+	@$(MAKE) $(U)/firmware.hex size
+
+## size: flash and RAM of the firmware
+size: $(U)/firmware.elf
+	@sh tools/size.sh $<
+
+## flash: write the firmware to an UNO (PORT=/dev/ttyACM0)
+flash: $(U)/firmware.hex
+	@sh tools/deps.sh flash
+	avrdude -p atmega328p -c arduino -P $(PORT) -b 115200 -D -U flash:w:$<:i
+
+## monitor: show what the board sends (PORT=, BAUD=); Ctrl-C ends
+monitor:
+	@sh tools/monitor.sh $(PORT) $(BAUD)
+
+.PHONY: firmware size flash monitor
+
+# --- the PC ----------------------------------------------------------------------------------------------------------
+H := $(B)/host
+HOST_CC    := gcc
+HOST_CXX   := g++
+SANITIZE   := -fsanitize=address,undefined -fno-sanitize-recover=all
+HOST_INC   := $(INCLUDES) -Ihal/host -Isim -Ihost_tests -isystem $(UNITY_DIR)
+HOST_FLAGS := -std=c11 -O1 -g -D_POSIX_C_SOURCE=200809L -DHANG_TEST=1 -DUNITY_INCLUDE_DOUBLE $(HOST_INC)
+HOST_SRC   := $(filter-out firmware/main.c,$(APP_SRC)) $(LIB_SRC) $(wildcard hal/host/*.c) sim/adxl345_model.c sim/stream.c
+HOST_OBJ   := $(patsubst %.c,$(H)/%.o,$(HOST_SRC) $(wildcard host_tests/support_*.c))
+REF_OBJ    := $(patsubst %.cpp,$(H)/%.o,$(wildcard host_tests/reference_*.cpp))
+TESTS      := $(patsubst host_tests/%.c,$(H)/%,$(wildcard host_tests/test_*.c))
+
+$(H)/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(HOST_FLAGS) $(WARNINGS) $(SANITIZE) -MMD -MP -c $< -o $@
+
+$(H)/%.o: %.cpp Makefile
+	@mkdir -p $(@D)
+	@$(HOST_CXX) -std=c++17 -O1 -g -Wall -Wextra -Werror -Ihost_tests $(HOST_INC) -isystem /usr/include/eigen3 $(SANITIZE) -MMD -MP -c $< -o $@
+
+$(H)/unity.o: $(UNITY_DIR)/unity.c
+	@mkdir -p $(@D)
+	@$(HOST_CC) -std=c11 -O1 -g -DUNITY_INCLUDE_DOUBLE $(SANITIZE) -c $< -o $@
+
+$(H)/test_%: $(H)/host_tests/test_%.o $(HOST_OBJ) $(REF_OBJ) $(H)/unity.o
+	@$(HOST_CXX) $(SANITIZE) $^ -lm -o $@
+
+# the replay is optimised and without sanitizers: it is a tool as well
+$(H)/native_replay: host_tests/native_replay.c $(HOST_SRC) $(wildcard */*.h lib/*/src/*.h hal/*/*.h)
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) host_tests/native_replay.c $(HOST_SRC) -lm -o $@
+
+$(H)/pipeline_replay: host_tests/pipeline_replay.c $(HOST_SRC) $(wildcard */*.h lib/*/src/*.h hal/*/*.h)
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) host_tests/pipeline_replay.c $(HOST_SRC) -lm -o $@
+
+# --- the simulator ---------------------------------------------------------------------------------------------------
+S := $(B)/sim
+SIMRUN_SRC := $(wildcard sim/simrun*.c) sim/twi_peripheral.c sim/adxl345_model.c sim/stream.c
+$(S)/simrun: $(SIMRUN_SRC) $(wildcard sim/*.h)
+	@mkdir -p $(@D)
+	@$(HOST_CC) -std=gnu11 -O2 -g $(WARNINGS) -Isim -Ilib/adxl345/src $$(pkg-config --cflags simavr | sed 's/-I/-isystem /g') \
+	    -isystem /usr/include/simavr $(SIMRUN_SRC) $$(pkg-config --libs simavr) -lsimavrparts -lelf -lm -lpthread -lutil -o $@
+	@echo "built $@"
+
+STREAM ?= sim/streams/outliers-15pct.csv
+FILTER ?= sprf
+RATE   ?= 100
+OUT    ?= $(S)/$(basename $(notdir $(STREAM))).out.csv
+
+## sim: run the firmware on a recorded stream in the simulator and draw it (STREAM= FILTER= RATE= OUT=)
+sim:
+	@sh tools/deps.sh sim
+	@$(MAKE) $(U)/firmware.elf $(S)/simrun
+	@sh tools/sim.sh "$(STREAM)" "$(FILTER)" "$(RATE)" "$(OUT)"
+
+## test: unit tests on the PC, then the firmware in the simulator against the PC
+test:
+	@sh tools/deps.sh test
+	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/native_replay $(H)/pipeline_replay $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun
+	@sh tools/run_tests.sh $(TESTS)
+
+## check: include table, forbidden symbols, HAL seam, lengths, format, budgets
+check:
+	@sh tools/deps.sh check
+	@$(MAKE) $(U)/firmware.elf
+	@python3 tools/check_includes.py
+	@sh tools/check_symbols.sh $(U)/firmware.elf
+	@sh tools/check_seam.sh
+	@python3 tools/check_lengths.py
+	@sh tools/check_cpp_headers.sh
+	@sh tools/check_format.sh
+	@sh tools/size.sh $(U)/firmware.elf
+
+## clean: remove what was built (the downloads in build/unity and build/venv stay)
+clean:
+	@rm -rf $(U) $(H) $(S) $(B)/*.json
+
+# keep the test objects
+.SECONDARY:
+
+.PHONY: sim test check clean
+
+-include $(shell find $(U) $(H) -name '*.d' 2>/dev/null)

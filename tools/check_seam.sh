@@ -1,0 +1,17 @@
+#!/bin/sh
+# check_seam.sh: the HAL costs nothing. The same I2C handler through the HAL's verbs and with the registers written out must
+# give the same machine code at -Os.
+set -eu
+dir=build/check
+mkdir -p "$dir"
+for name in hal direct; do
+    avr-gcc -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os -Ihal -Ihal/avr -Ihost_tests/avr -c "host_tests/avr/seam_$name.c" -o "$dir/seam_$name.o"
+    avr-objdump -d "$dir/seam_$name.o" | sed 1,3d > "$dir/seam_$name.txt"
+done
+if cmp -s "$dir/seam_hal.txt" "$dir/seam_direct.txt"; then
+    echo "HAL seam: same machine code ($(grep -c '^ ' "$dir/seam_hal.txt") instructions)"
+else
+    echo "HAL seam: the machine code differs:" >&2
+    diff "$dir/seam_direct.txt" "$dir/seam_hal.txt" >&2 || true
+    exit 1
+fi

@@ -1,0 +1,187 @@
+#!/bin/sh
+# deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
+# Groups: firmware sim test check flash. Packages come by apt-get, numpy and matplotlib by pip into build/venv, Unity
+# by tools/get_unity.sh into build/unity (UNITY_DIR=folder: use that one). Uses sudo only when not root.
+set -eu
+
+cd "$(dirname "$0")/.."
+venv=build/venv
+log=build/deps.log
+missing=''
+want_venv=no
+want_unity=no
+
+fail() {
+    echo "deps: $1" >&2
+    exit 1
+}
+
+has() {
+    command -v "$1" > /dev/null 2>&1
+}
+
+# has_header FILE PKG_CONFIG_NAME
+has_header() {
+    [ -f "/usr/include/$1" ] || pkg-config --exists "$2" 2> /dev/null
+}
+
+has_avr_libc() {
+    [ -f /usr/lib/avr/include/avr/io.h ] ||
+        echo '#include <avr/io.h>' | avr-gcc -mmcu=atmega328p -E -x c - > /dev/null 2>&1
+}
+
+has_venv_module() {
+    python3 -c 'import ensurepip, venv' > /dev/null 2>&1
+}
+
+has_certificates() {
+    [ -e /etc/ssl/certs/ca-certificates.crt ] || [ -e /etc/pki/tls/certs/ca-bundle.crt ] || [ -e /etc/ssl/cert.pem ]
+}
+
+# Packages are complete when the stamp written after pip equals the requirements.
+has_plot_packages() {
+    [ -x "$venv/bin/python" ] && cmp -s tools/requirements.txt "$venv/requirements.installed"
+}
+
+# need PACKAGE TEST...: note the package as missing unless the test holds
+need() {
+    package=$1
+    shift
+    case " $missing " in
+        *" $package "*) return ;;
+    esac
+    "$@" || missing="$missing $package"
+}
+
+need_avr() {
+    need gcc-avr has avr-gcc
+    need binutils-avr has avr-objcopy
+    need avr-libc has_avr_libc
+}
+
+need_host_compiler() {
+    need gcc has gcc
+    need libc6-dev test -f /usr/include/stdio.h
+}
+
+need_simulator() {
+    need_avr
+    need_host_compiler
+    need pkg-config has pkg-config
+    need simavr has simavr
+    need libsimavr-dev has_header simavr/sim_avr.h simavr
+    need libelf-dev has_header libelf.h libelf
+}
+
+need_plots() {
+    want_venv=yes
+    has_plot_packages && return
+    need python3-venv has_venv_module
+    need ca-certificates has_certificates
+}
+
+need_unity() {
+    want_unity=yes
+    need g++ has g++
+    need libeigen3-dev has_header eigen3/Eigen/Core eigen3
+}
+
+collect() {
+    missing=''
+    for group in "$@"; do
+        case $group in
+            firmware) need_avr ;;
+            sim) need_simulator; need_plots ;;
+            test) need_simulator; need_plots; need_unity ;;
+            check) need_simulator; need_unity
+                need clang-tidy has clang-tidy
+                need clang-format has clang-format
+                need cppcheck has cppcheck ;;
+            flash) need_avr; need avrdude has avrdude ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check or flash" ;;
+        esac
+    done
+    missing=${missing# }
+}
+
+# how_to_supply PACKAGE...: what to install by hand
+how_to_supply() {
+    hints=''
+    for package in "$@"; do
+        case $package in
+            gcc-avr | binutils-avr | avr-libc) hint='an AVR GCC toolchain with avr-libc and put avr-gcc on PATH' ;;
+            simavr | libsimavr-dev) hint='simavr 1.6 or later with headers and pkg-config file' ;;
+            gcc | g++ | libc6-dev) hint='GCC for C and C++ with the C library headers' ;;
+            libelf-dev) hint='the libelf headers' ;;
+            libeigen3-dev) hint='Eigen 3 in /usr/include/eigen3' ;;
+            python3-venv) hint='Python 3 with its venv module' ;;
+            *) hint=$package ;;
+        esac
+        case $hints in
+            *"$hint"*) ;;
+            *) hints="$hints${hints:+; }$hint" ;;
+        esac
+    done
+    echo "install $hints"
+}
+
+# first_error: why the last command failed, in one line
+first_error() {
+    grep -E '^(E:|ERROR:|sudo:)' "$log" | head -n 1 | sed 's/^E: //; s/^ERROR: //'
+}
+
+install_packages() {
+    has apt-get || fail "cannot install $missing (no apt-get here): $(how_to_supply $missing)"
+    as_root=''
+    if [ "$(id -u)" != 0 ]; then
+        has sudo || fail "cannot install $missing (not root and no sudo): run as root: apt-get install $missing"
+        as_root=sudo
+    fi
+    echo "deps: installing with ${as_root:+sudo }apt-get: $missing"
+    # an index that cannot be refreshed is no reason to stop: the one at hand may do, and the installation tells
+    $as_root apt-get -qq update > "$log" 2>&1 || true
+    set -- -qq -y --no-install-recommends install $missing
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get "$@" >> "$log" 2>&1 ||
+        fail "cannot install $missing ($(first_error)): check the network and apt's sources, or\
+ $(how_to_supply $missing); log in $log"
+}
+
+install_plot_packages() {
+    if [ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import numpy, matplotlib' > /dev/null 2>&1; then
+        cp tools/requirements.txt "$venv/requirements.installed"
+        return
+    fi
+    echo "deps: installing with pip into $venv: numpy matplotlib"
+    python3 -m venv "$venv" > "$log" 2>&1 ||
+        fail "cannot make $venv ($(tail -n 1 "$log")): $(how_to_supply python3-venv)"
+    "$venv/bin/python" -m pip install --disable-pip-version-check --no-input --retries 2 --timeout 20 \
+        -r tools/requirements.txt > "$log" 2>&1 ||
+        fail "cannot install numpy matplotlib ($(first_error)): check the network and pip's index, or install both\
+ for the system's Python and run python3 -m venv --system-site-packages $venv; log in $log"
+    cp tools/requirements.txt "$venv/requirements.installed"
+}
+
+install_unity() {
+    if [ -n "${UNITY_DIR:-}" ]; then
+        [ -f "$UNITY_DIR/unity.c" ] && [ -f "$UNITY_DIR/unity.h" ] && [ -f "$UNITY_DIR/unity_internals.h" ] ||
+            fail "UNITY_DIR=$UNITY_DIR lacks unity.c, unity.h or unity_internals.h"
+        return
+    fi
+    [ -f build/unity/unity.c ] || echo "deps: fetching Unity from the distribution's archive into build/unity"
+    tools/get_unity.sh build/unity
+}
+
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash)"
+collect "$@"
+mkdir -p build
+if [ -n "$missing" ]; then
+    install_packages
+    collect "$@"
+    [ -z "$missing" ] || fail "installed, but still not found: $missing; $(how_to_supply $missing)"
+fi
+if [ $want_venv = yes ] && ! has_plot_packages; then
+    install_plot_packages
+fi
+if [ $want_unity = yes ]; then
+    install_unity
+fi

@@ -1,0 +1,360 @@
+#!/usr/bin/env python3
+"""Draws a run of the firmware, raw against filtered tilt, and prints what it was worth.
+
+    plot_run.py --run OUT.csv --png OUT.png [--stream IN.csv] [--served SERVED.csv] [--stats STATS.json] [--title TEXT]
+
+--run is what the firmware sent (docs/protocol.md). Raw roll and pitch are computed here from its *_lsb columns. Truth
+comes from --served (what the sensor latched) or else from --stream, where they have roll_true_cdeg and pitch_true_cdeg;
+rows find theirs by reading and time. Errors are wrapped; rows warming up or without a sample are not scored.
+"""
+import argparse
+import json
+import sys
+from collections import Counter
+from types import SimpleNamespace
+
+try:
+    import numpy as np
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+except ImportError as missing:
+    sys.exit(f"plot_run: {missing.name} is missing: run `make deps`, or use a Python that has tools/requirements.txt")
+
+RUN_COLUMNS = ["t_us", "x_lsb", "y_lsb", "z_lsb", "x_mg", "y_mg", "z_mg", "roll_cdeg", "pitch_cdeg", "flags"]
+READING = ["x_lsb", "y_lsb", "z_lsb"]
+TRUTH = ["roll_true_cdeg", "pitch_true_cdeg"]
+FLAG_GATED, FLAG_COASTED, FLAG_FAULT, FLAG_WARMING_UP = 1, 2, 16, 128
+WRAP_US = 1 << 32
+OFFSET_BIN_US = 100       # clocks are aligned by the most frequent difference, to this resolution
+VOTING_ROWS = 400         # rows that vote on it
+MATCH_WINDOW_STEPS = 1.5  # a row's truth is at most this many rows away in time
+LIMIT_PERCENTILES = (0.5, 99.5)
+PICTURE_INCHES, PICTURE_DPI = (12.0, 7.0), 100
+RAW_COLOUR, FILTERED_COLOUR, GATED_COLOUR, TRUTH_COLOUR = "#9aa3ad", "#1f5fbf", "#d1495b", "#111111"
+
+
+class InputError(Exception):
+    """A file that cannot be used; the text says which, where and why."""
+
+
+# --- reading ----------------------------------------------------------------------------------------------------------
+
+
+def read_lines(path):
+    try:
+        with open(path, encoding="utf-8-sig", errors="replace") as file:
+            return file.read().splitlines()
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from error
+
+
+def read_numbers(path, wanted, optional=()):
+    """({column: int64 array}, readings cut short) of the CSV file; every wanted column must be there.
+
+    A repeated header is skipped. A row that a reset of the board cut short carries the '#' of the next banner, and a
+    capture may end within a row: these two are counted, any other bad row is an error with file, line and reason.
+    """
+    lines = read_lines(path)
+    header, names, places, rows, cut = None, [], [], [], 0
+    for number, line in enumerate(lines, 1):
+        fields = line.split(",")
+        if line.lstrip().startswith("#") or not line.strip():
+            continue
+        if header is None:
+            header, (names, places) = fields, find_columns(path, number, fields, wanted, optional)
+        elif fields != header:
+            try:
+                rows.append(numbers_of(fields, len(header), places))
+            except ValueError as error:
+                if "#" not in line and number != len(lines):
+                    raise InputError(f"{path}:{number}: {error}") from error
+                cut += 1
+    if not rows:
+        raise InputError(f"{path}: no rows" if header else f"{path}: empty, no header with {','.join(wanted)}")
+    table = np.array(rows, dtype=np.int64)
+    return {name: table[:, i] for i, name in enumerate(names)}, cut
+
+
+def find_columns(path, number, fields, wanted, optional):
+    """(names, positions) of the wanted columns and of the optional ones that are there; x means x_lsb."""
+    present = [field.strip() + "_lsb" if field.strip() in ("x", "y", "z") else field.strip() for field in fields]
+    missing = [name for name in wanted if name not in present]
+    if missing:
+        raise InputError(f"{path}:{number}: column {missing[0]} is missing (the csv header was expected here)")
+    names = [name for name in (*wanted, *optional) if name in present]
+    return names, [present.index(name) for name in names]
+
+
+def numbers_of(fields, count, places):
+    """Whole numbers at these places of a row; ValueError says what is wrong with the row."""
+    if len(fields) != count:
+        raise ValueError(f"{len(fields)} fields, the header has {count}")
+    for place in places:
+        if not fields[place].strip().lstrip("+-").isdecimal():
+            raise ValueError(f"'{fields[place]}' is not a whole number")
+    return [int(fields[place]) for place in places]
+
+
+def read_stats(path):
+    """The flat JSON object of simrun --stats; {} without a file."""
+    if path is None:
+        return {}
+    try:
+        stats = json.loads("\n".join(read_lines(path)))
+    except json.JSONDecodeError as error:
+        raise InputError(f"{path}:{error.lineno}: {error.msg}") from error
+    if not isinstance(stats, dict):
+        raise InputError(f"{path}: not a JSON object")
+    return stats
+
+
+# --- angles and truth -------------------------------------------------------------------------------------------------
+
+
+def unwrap_us(t_us):
+    """uint32 times as one growing line; a small step back (the board was reset) starts a new segment right behind."""
+    steps = np.diff(t_us)
+    steps = np.where(steps < -WRAP_US // 2, steps + WRAP_US, steps)
+    usual = int(np.median(steps[steps > 0])) if np.any(steps > 0) else 1
+    return t_us[0] + np.concatenate(([0], np.cumsum(np.where(steps < 0, usual, steps))))
+
+
+def segments(t_us):
+    """Slices of rows between resets of the board's clock."""
+    steps = np.diff(t_us)
+    cuts = np.flatnonzero((steps < 0) & (steps >= -WRAP_US // 2)) + 1
+    return [slice(a, b) for a, b in zip([0, *cuts], [*cuts, len(t_us)])]
+
+
+def raw_angles_deg(table):
+    x, y, z = (table[name].astype(float) for name in READING)
+    return {"roll": np.degrees(np.arctan2(y, z)), "pitch": np.degrees(np.arctan2(-x, np.hypot(y, z)))}
+
+
+def wrapped_deg(difference):
+    return (difference + 180.0) % 360.0 - 180.0
+
+
+def reading_keys(table):
+    x, y, z = (table[name] + 32768 for name in READING)
+    return (x << 32) | (y << 16) | z
+
+
+def clock_offset_us(t_us, keys, source_t_us, source_keys):
+    """Row time minus source time on which most of the first rows agree; None when no reading is common."""
+    votes = Counter()
+    for t, key in zip(t_us[:VOTING_ROWS], keys[:VOTING_ROWS]):
+        differences = t - source_t_us[source_keys == key]
+        votes.update(np.unique(np.floor_divide(differences + OFFSET_BIN_US // 2, OFFSET_BIN_US)).tolist())
+    if not votes:
+        return None
+    best = max(votes, key=lambda bin_: (votes[bin_] + votes[bin_ - 1] + votes[bin_ + 1], -abs(bin_)))
+    return best * OFFSET_BIN_US
+
+
+def nearest_same_reading(t_us, keys, source_t_us, source_keys):
+    """Per row the index of the source row with the same reading closest in time, -1 where none is close enough."""
+    step = float(np.median(np.diff(source_t_us))) if len(source_t_us) > 1 else 1.0
+    found = np.full(len(t_us), -1)
+    distance = np.full(len(t_us), MATCH_WINDOW_STEPS * step)
+    centre = np.searchsorted(source_t_us, t_us)
+    for shift in (-2, -1, 0, 1):
+        index = np.clip(centre + shift, 0, len(source_t_us) - 1)
+        away = np.abs(source_t_us[index] - t_us)
+        better = (source_keys[index] == keys) & (away < distance)
+        found[better], distance[better] = index[better], away[better]
+    return found
+
+
+def match_rows(run, source):
+    """Per row of the run the source row it shows, -1 for rows without a sample and rows that match nothing."""
+    matched = np.full(len(run["t_us"]), -1)
+    source_t, source_keys, keys = unwrap_us(source["t_us"]), reading_keys(source), reading_keys(run)
+    for part in segments(run["t_us"]):
+        t_us = unwrap_us(run["t_us"][part])
+        offset = clock_offset_us(t_us, keys[part], source_t, source_keys)
+        if offset is not None:
+            matched[part] = nearest_same_reading(t_us - offset, keys[part], source_t, source_keys)
+    matched[(run["flags"] & (FLAG_COASTED | FLAG_FAULT)) != 0] = -1
+    return matched
+
+
+def take_truth(source, matched):
+    if source is None or any(name not in source for name in TRUTH):
+        return None
+    return {angle: np.where(matched >= 0, source[name][matched] / 100.0, np.nan)
+            for angle, name in zip(("roll", "pitch"), TRUTH)}
+
+
+# --- summary ----------------------------------------------------------------------------------------------------------
+
+
+def analyse(run, source):
+    """Everything that is drawn or printed, from the run and the table that has the truth (or None)."""
+    flags = run["flags"]
+    result = SimpleNamespace(rows=len(flags), flags=flags)
+    result.t_s = (unwrap_us(run["t_us"]) - run["t_us"][0]) * 1e-6
+    result.raw = raw_angles_deg(run)
+    result.filtered = {angle: run[angle + "_cdeg"] / 100.0 for angle in ("roll", "pitch")}
+    result.no_sample = (flags & (FLAG_COASTED | FLAG_FAULT)) != 0
+    result.warming = (flags & FLAG_WARMING_UP) != 0
+    result.gated = (flags & FLAG_GATED) != 0
+    matched = match_rows(run, source) if source is not None else None
+    result.unmatched = None if matched is None else int(np.sum((matched < 0) & ~result.no_sample))
+    result.truth = None if matched is None else take_truth(source, matched)
+    result.rmse = {} if result.truth is None else {angle: rmse_pair(result, angle) for angle in ("roll", "pitch")}
+    return result
+
+
+def rmse_pair(result, angle):
+    """(raw, filtered) root mean square error in degrees over the same rows; NaN when no row can be scored."""
+    scored = ~result.warming & ~result.no_sample & ~np.isnan(result.truth[angle])
+    if not np.any(scored):
+        return float("nan"), float("nan")
+    errors = (wrapped_deg(series[scored] - result.truth[angle][scored])
+              for series in (result.raw[angle], result.filtered[angle]))
+    return tuple(float(np.sqrt(np.mean(error ** 2))) for error in errors)
+
+
+def percent(part, whole):
+    return f"{100.0 * part / whole:.1f} %" if whole else "-"
+
+
+def summary_lines(result, stats, cut):
+    unscored = int(np.sum(result.warming | result.no_sample))
+    known = [("samples served", "samples_served"), ("lost", "lost"), ("resets", "resets")]
+    head = [f"rows {result.rows}"] + [f"{label} {stats[key]}" for label, key in known if key in stats]
+    head.append(f"gated {percent(np.sum(result.gated), result.rows)}")
+    if isinstance(stats.get("cpu_load"), (int, float)):
+        head.append(f"CPU load {100.0 * stats['cpu_load']:.1f} %")
+    lines = [", ".join(head)]
+    for angle, (raw, filtered) in result.rmse.items():
+        lines.append(f"{angle:5s} error, rms: raw {raw:.2f} degrees, filtered {filtered:.2f} degrees"
+                     + (f" ({filtered / raw:.2f} of raw)" if raw > 0.0 else ""))
+    if not result.rmse:
+        lines.append("no truth columns: errors not computed")
+    lines.append(f"not scored: {unscored} rows warming up or without a sample")
+    if result.unmatched:
+        lines.append(f"{result.unmatched} rows show a reading that was not served at that time")
+    if cut:
+        lines.append(f"{cut} rows cut short by a reset or by the end of the capture")
+    return lines
+
+
+# --- picture ----------------------------------------------------------------------------------------------------------
+
+
+def without_wraps(series):
+    """The series with NaN where it jumps over the +-180 seam, so that no line is drawn across the picture."""
+    broken = series.astype(float).copy()
+    with np.errstate(invalid="ignore"):
+        broken[1:][np.abs(np.diff(series)) > 180.0] = np.nan
+    return broken
+
+
+def axis_limits(result, angle):
+    """Limits that show all of the filtered line and the truth, and the raw points but the wildest percent."""
+    low, high = np.percentile(result.raw[angle], LIMIT_PERCENTILES)
+    shown = [low, high, *result.filtered[angle]]
+    if result.truth is not None:
+        shown += [value for value in result.truth[angle] if not np.isnan(value)]
+    margin = max(0.06 * (max(shown) - min(shown)), 0.5)
+    return min(shown) - margin, max(shown) + margin
+
+
+def shade(axes, result, mask, colour, label):
+    """Vertical bands over the stretches of rows in the mask."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(int), [0]))))
+    half_step = 0.5 * float(np.median(np.diff(result.t_s))) if result.rows > 1 else 0.005
+    for begin, end in zip(edges[::2], edges[1::2]):
+        axes.axvspan(result.t_s[begin] - half_step, result.t_s[end - 1] + half_step, color=colour, alpha=0.55, lw=0,
+                     label=label, zorder=0)
+        label = None
+
+
+def draw_panel(axes, result, angle):
+    raw, gated, accepted = result.raw[angle], result.gated & ~result.no_sample, ~result.gated & ~result.no_sample
+    shade(axes, result, result.no_sample, "#cfd8e3", "no sample: predicted")
+    shade(axes, result, result.warming, "#fde9b8", "warming up")
+    axes.plot(result.t_s[accepted], raw[accepted], ".", ms=2.4, color=RAW_COLOUR, label="raw", zorder=1)
+    axes.plot(result.t_s[gated], raw[gated], "x", ms=3.2, mew=0.7, color=GATED_COLOUR, alpha=0.75,
+              label="raw of gated rows", zorder=2)
+    axes.plot(result.t_s, without_wraps(result.filtered[angle]), "-", lw=1.5, color=FILTERED_COLOUR, label="filtered",
+              zorder=4)
+    if result.truth is not None:
+        axes.plot(result.t_s, without_wraps(result.truth[angle]), "--", lw=1.0, color=TRUTH_COLOUR, label="truth",
+                  zorder=5)
+    axes.set_ylim(*axis_limits(result, angle))
+    axes.set_ylabel(f"{angle} in degrees")
+    axes.grid(True, color="#e3e6ea", lw=0.6)
+    axes.set_title(panel_note(axes, result, angle), loc="right", fontsize=9, color="#444444", pad=3)
+
+
+def panel_note(axes, result, angle):
+    raw = result.raw[angle][~result.no_sample] if not np.all(result.no_sample) else np.zeros(1)
+    low, high = axes.get_ylim()
+    outside = int(np.sum((raw < low) | (raw > high)))
+    notes = []
+    if angle in result.rmse:
+        notes.append("rms error: raw {:.2f}, filtered {:.2f} degrees".format(*result.rmse[angle]))
+    if outside:
+        notes.append(f"{outside} raw points outside ({raw.min():.1f} to {raw.max():.1f})")
+    return "   ".join(notes)
+
+
+def draw(result, title, png):
+    figure, panels = plt.subplots(2, 1, sharex=True, figsize=PICTURE_INCHES, dpi=PICTURE_DPI)
+    for axes, angle in zip(panels, ("roll", "pitch")):
+        draw_panel(axes, result, angle)
+    panels[1].set_xlabel("seconds")
+    panels[1].set_xlim(result.t_s[0], max(result.t_s[-1], result.t_s[0] + 0.01))
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.suptitle(title, x=0.01, ha="left", fontsize=13, fontweight="bold")
+    figure.legend(handles, labels, loc="upper right", ncol=len(labels), fontsize=9, frameon=False, markerscale=2.0)
+    figure.tight_layout(rect=(0.0, 0.0, 1.0, 0.985))
+    try:
+        figure.savefig(png)
+    except OSError as error:
+        raise InputError(f"{png}: {error.strerror}") from error
+    plt.close(figure)
+
+
+# --- command ----------------------------------------------------------------------------------------------------------
+
+
+def parse_arguments(arguments):
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--run", required=True, help="CSV that the firmware sent")
+    parser.add_argument("--png", required=True, help="picture to write")
+    parser.add_argument("--stream", help="CSV that the sensor played (truth, when --served has none)")
+    parser.add_argument("--served", help="CSV of what the sensor latched (simrun --served)")
+    parser.add_argument("--stats", help="JSON of simrun --stats")
+    parser.add_argument("--title", default="", help="headline of the picture")
+    return parser.parse_args(arguments)
+
+
+def truth_source(options):
+    """The table that rows are matched with: the served one, or the stream when only that has truth."""
+    tables = [read_numbers(path, ["t_us", *READING], TRUTH)[0] for path in (options.served, options.stream) if path]
+    with_truth = [table for table in tables if all(name in table for name in TRUTH)]
+    return next(iter(with_truth or tables), None)
+
+
+def main(arguments=None):
+    options = parse_arguments(arguments)
+    try:
+        run, cut = read_numbers(options.run, RUN_COLUMNS)
+        result = analyse(run, truth_source(options))
+        stats = read_stats(options.stats)
+        draw(result, options.title or options.run, options.png)
+    except InputError as error:
+        print(f"plot_run: {error}", file=sys.stderr)
+        return 2
+    print("\n".join(summary_lines(result, stats, cut)))
+    print(f"picture: {options.png}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,22 @@
+#!/bin/sh
+# sim.sh STREAM FILTER RATE OUT: one run of the firmware in the simulator, its summary and its picture.
+set -eu
+stream=$1 filter=$2 rate=$3 out=$4
+base=${out%.csv}
+base=${base%.out}
+if [ ! -r "$stream" ]; then
+    echo "sim: cannot read the stream $stream (STREAM=file.csv; shipped ones are in sim/streams)" >&2
+    exit 2
+fi
+mkdir -p "$(dirname "$out")" build/sim
+# 100 Hz rows fit 115200 baud; above that the line is the limit
+baud_option=
+case $rate in
+    200 | 400) baud_option='--baud 500000' ;;
+    800) baud_option='--baud 500000 --every 4' ;;
+esac
+# shellcheck disable=SC2086
+build/sim/simrun --fw build/uno/firmware.elf --in "$stream" --out "$out" --filter "$filter" --rate "$rate" $baud_option \
+    --served "$base.served.csv" --stats build/sim/stats.json
+build/venv/bin/python tools/plot_run.py --run "$out" --stream "$stream" --stats build/sim/stats.json --served "$base.served.csv" \
+    --png "$base.png" --title "$(basename "$stream" .csv), filter $filter, $rate Hz"
