@@ -347,6 +347,23 @@ def external_reset_with_the_sensor_running():
 
 
 @test
+def reset_at_any_phase_of_a_read_recovers():
+    """A sensor that was driving SDA low goes on doing so until somebody clocks it through its byte."""
+    for step in range(40):
+        at_ms = 502 + step * 0.0317
+        rows, notes, _, _ = simrun("reset-phase", STREAMS / "tilt-400hz.csv", "--baud", "500000", "--rate", "800", "--fault",
+                                   f"{at_ms:.4f}ms:reset", "--expect-resets", "1", "--max-ms", "1000", "--loop")
+        assert sum(n.startswith("t_us,") for n in notes) == 2, f"reset at {at_ms:.4f} ms: {notes[-3:]}"
+        assert not rows[-1][9] & 16 and 200000 < rows[-1][0] < 500000, f"reset at {at_ms:.4f} ms: {rows[-1]}"
+
+
+@test
+def slave_hung_in_a_byte_is_clocked_free():
+    rows, notes, _, _ = fault_run("fault-hang", "1000ms:hang:5")
+    assert not rows[-1][9] & 16 and rows[-1][0] > 2900000, notes
+
+
+@test
 def hung_loop_is_reset_and_told():
     rows, notes, _, stats = simrun("hang", STREAMS / "rest-2lsb.csv", "--max-ms", "3000", "--fault", "1000ms:poke:hang_stages=0x80",
                                    "--expect-resets", "1", fw="build/uno/hang/firmware.elf")

@@ -193,6 +193,19 @@ static void test_stuck_bus_is_named_and_survived(void)
     TEST_ASSERT_GREATER_THAN(0, counters.timeouts);
 }
 
+/* A reset in the middle of a read leaves the sensor holding SDA until it has been clocked through its byte. */
+static void test_slave_hung_in_a_byte_is_clocked_free(void)
+{
+    hal_host_faults.hang_clocks = 9;
+    adxl345_start(&at_100_hz);
+    run_ms(50);
+    TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+    hal_host_faults.hang_clocks = 9;
+    run_ms(100);
+    TEST_ASSERT_EQUAL_UINT8(0, hal_host_faults.hang_clocks);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+}
+
 static void test_sensor_power_cycle_is_noticed(void)
 {
     adxl345_start(&at_100_hz);
@@ -345,6 +358,7 @@ int main(void)
     RUN_TEST(test_wrong_identity_is_named);
     RUN_TEST(test_silent_int1_is_named);
     RUN_TEST(test_stuck_bus_is_named_and_survived);
+    RUN_TEST(test_slave_hung_in_a_byte_is_clocked_free);
     RUN_TEST(test_sensor_power_cycle_is_noticed);
     RUN_TEST(test_latched_int1_after_an_mcu_reset);
     RUN_TEST(test_late_reads_are_drained_with_interpolated_stamps);

@@ -49,6 +49,9 @@ static inline void hal_i2c_disable(void)
     TWCR = 0;
 }
 
+/* SDA is PC4, SCL PC5. Open drain by the direction register, the port bits stay 0: never drives high. */
+void hal_i2c_clear(void);
+
 static inline void hal_i2c_start(void)
 {
     TWCR = HAL_I2C_GO | _BV(TWSTA);

@@ -25,6 +25,7 @@ typedef struct {
 /* The bus and wiring faults a test can set at any time. */
 typedef struct {
     bool bus_stuck;           /* a line is held low: nothing ever completes */
+    uint8_t hang_clocks;      /* a slave holds SDA low until it has seen so many clocks */
     bool int1_cut;            /* INT1 does not reach D2 */
     bool id_wrong;            /* DEVID reads 0x00 */
     uint8_t corrupt_rx_every; /* every Nth received UART byte has a framing error; 0 = none */

@@ -3,7 +3,7 @@
 
 #include "hal_host_private.h"
 
-enum { BITS_START = 1, BITS_BYTE = 9, CYCLES_PER_BIT = 44, CYCLES_PER_BIT_FAST = 40 };
+enum { BITS_START = 1, BITS_BYTE = 9, CYCLES_PER_BIT = 44, CYCLES_PER_BIT_FAST = 40, CLEAR_CLOCKS_MAX = 16 };
 
 typedef enum { COMMAND_NONE, COMMAND_START, COMMAND_SEND, COMMAND_RECEIVE_ACK, COMMAND_RECEIVE_NACK } command_t;
 
@@ -32,7 +32,7 @@ void host_i2c_begin(void)
 
 uint64_t host_i2c_next(void)
 {
-    if (hal_host_faults.bus_stuck) {
+    if (hal_host_faults.bus_stuck || hal_host_faults.hang_clocks != 0) {
         return HOST_NEVER;
     }
     return i2c.done_at < i2c.stop_at ? i2c.done_at : i2c.stop_at;
@@ -57,6 +57,13 @@ void hal_i2c_disable(void)
     unsigned bit_cycles = i2c.bit_cycles;
     host_i2c_begin();
     i2c.bit_cycles = bit_cycles;
+}
+
+void hal_i2c_clear(void)
+{
+    for (uint8_t clocks = CLEAR_CLOCKS_MAX; clocks != 0 && hal_host_faults.hang_clocks != 0; clocks--) {
+        hal_host_faults.hang_clocks--;
+    }
 }
 
 void hal_i2c_start(void)

@@ -134,7 +134,14 @@ void burst_set_mode(burst_mode_t new_mode)
 void burst_take_bus(uint8_t address, bool fast)
 {
     hal_irq_state_t state = hal_irq_save();
-    i2c_bus_abort(&bus, fast);
+    hal_i2c_disable();
+    bool was_busy = bus.state == I2C_BUS_BUSY;
+    bus.state = I2C_BUS_BUSY; /* so that no edge starts a burst while the bus is being cleared, with interrupts on */
+    hal_irq_restore(state);
+    hal_i2c_clear();
+    state = hal_irq_save();
+    hal_i2c_enable(fast);
+    bus.state = was_busy ? I2C_BUS_TIMEOUT : I2C_BUS_IDLE;
     bus.address = (uint8_t)(address << 1);
     if (on_bus) {
         end_burst();

@@ -1,7 +1,7 @@
 /*
  * One I2C transfer at a time: write `tx`, then (if rx_length) a repeated START and a read into `rx`.
  * The steps run in the I2C interrupt; everything is inline so that the handler that includes this saves few registers.
- * A transfer that hangs produces no interrupt: whoever started it watches the time and calls i2c_bus_abort.
+ * A transfer that hangs produces no interrupt: whoever started it watches the time and takes the bus anew.
  */
 #ifndef I2C_BUS_H
 #define I2C_BUS_H
@@ -14,18 +14,18 @@
 #define I2C_BUS_TX_MAX 2
 
 typedef enum {
-    I2C_BUS_IDLE, /* nothing since the last abort */
+    I2C_BUS_IDLE, /* nothing since the bus was taken */
     I2C_BUS_BUSY,
     I2C_BUS_OK,
     I2C_BUS_NACK_ADDRESS, /* nobody at that address */
     I2C_BUS_NACK_DATA,
     I2C_BUS_LOST,   /* arbitration lost: noise, or a second master */
     I2C_BUS_ERROR,  /* illegal START or STOP on the bus, or a status that cannot be */
-    I2C_BUS_TIMEOUT /* set by the owner's deadline through i2c_bus_abort */
+    I2C_BUS_TIMEOUT /* the owner took the bus anew while the transfer ran */
 } i2c_bus_state_t;
 
 typedef struct {
-    volatile uint8_t state; /* i2c_bus_state_t; leaves BUSY only in the interrupt or in an abort */
+    volatile uint8_t state; /* i2c_bus_state_t; leaves BUSY only in the interrupt or when the bus is taken anew */
     uint8_t address;        /* 7 bit, shifted left by one */
     uint8_t tx_length;
     uint8_t rx_length;
@@ -65,7 +65,7 @@ static inline void i2c_bus_step_write(i2c_bus_t *bus)
     }
 }
 
-/* One bus event (interrupt). After an abort a stale event may still come: it is ignored. */
+/* One bus event (interrupt). A stale event of an abandoned transfer is ignored. */
 static inline void i2c_bus_step(i2c_bus_t *bus)
 {
     uint8_t status = hal_i2c_status();
@@ -111,16 +111,6 @@ static inline void i2c_bus_step(i2c_bus_t *bus)
         i2c_bus_finish(bus, I2C_BUS_ERROR);
         break;
     }
-}
-
-/* Abandons whatever runs and takes the pins anew (main, interrupts off). */
-static inline void i2c_bus_abort(i2c_bus_t *bus, bool fast)
-{
-    hal_i2c_disable();
-    if (bus->state == I2C_BUS_BUSY) {
-        bus->state = I2C_BUS_TIMEOUT;
-    }
-    hal_i2c_enable(fast);
 }
 
 #endif
