@@ -73,7 +73,12 @@ $(U)/late/%.o: %.c Makefile
 $(U)/late/firmware.elf: $(LATE_OBJ)
 	@$(AVR_CC) $(AVR_LINK) $^ -o $@
 
-TEST_IMAGES := $(U)/hang/firmware.elf $(U)/wrap/firmware.elf $(U)/late/firmware.elf
+# assembler primitives against their C twins, on the chip
+$(U)/fx_twins.elf: host_tests/avr/fx_twins.c lib/filters/src/fx.c lib/filters/src/fx.h Makefile
+	@mkdir -p $(@D)
+	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ilib/filters/src $(filter %.c,$^) -o $@
+
+TEST_IMAGES := $(U)/fx_twins.elf $(U)/hang/firmware.elf $(U)/wrap/firmware.elf $(U)/late/firmware.elf
 
 $(U)/firmware.hex: $(U)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $< $@

@@ -4,10 +4,13 @@ set -u
 log=build/host/tests.log
 : > "$log"
 broken=0
-for test in "$@"; do
-    name=$(basename "$test")
+
+# run_one NAME COMMAND...: adds the program's last line to the sum
+run_one() {
+    name=$1
+    shift
     printf '%-28s' "$name"
-    "$test" > "build/host/$name.log" 2>&1
+    "$@" > "build/host/$name.log" 2>&1
     status=$?
     cat "build/host/$name.log" >> "$log"
     line=$(grep -E '^[0-9]+ Tests [0-9]+ Failures [0-9]+ Ignored' "build/host/$name.log" | tail -n 1)
@@ -17,16 +20,12 @@ for test in "$@"; do
         broken=$((broken + 1))
         tail -n 12 "build/host/$name.log" | sed 's/^/    /'
     fi
+}
+
+for test in "$@"; do
+    run_one "$(basename "$test")" "$test"
 done
-printf '%-28s' "system tests (simulator)"
-python3 host_tests/system_tests.py > build/host/system.log 2>&1 || true
-cat build/host/system.log >> "$log"
-line=$(grep -E '^[0-9]+ Tests [0-9]+ Failures [0-9]+ Ignored' build/host/system.log | tail -n 1)
-echo "${line:-crashed}"
-grep -E ':(FAIL|IGNORE)' build/host/system.log | sed 's/^/    /'
-if [ -z "$line" ]; then
-    broken=$((broken + 1))
-    tail -n 12 build/host/system.log | sed 's/^/    /'
-fi
+run_one test_plot_run build/venv/bin/python host_tests/test_plot_run.py
+run_one system_tests python3 host_tests/system_tests.py
 awk -v broken="$broken" '/^[0-9]+ Tests [0-9]+ Failures [0-9]+ Ignored/ { t += $1; f += $3; s += $5 }
     END { f += broken; printf "skipped: %d (each with its reason above)\n%d passed, %d failed\n", s, t - (f - broken) - s, f; exit f != 0 }' "$log"
