@@ -78,6 +78,11 @@ $(U)/fx_twins.elf: host_tests/avr/fx_twins.c lib/filters/src/fx.c lib/filters/sr
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ilib/filters/src $(filter %.c,$^) -o $@
 
+$(U)/cycles.elf: host_tests/avr/cycles.c $(wildcard lib/filters/src/*.c lib/tilt/src/*.c lib/filters/src/*.h) Makefile
+	@mkdir -p $(@D)
+	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os -ffunction-sections -Wl,--gc-sections $(WARNINGS) -Ilib/filters/src \
+	    -Ilib/tilt/src $(filter %.c,$^) -o $@
+
 TEST_IMAGES := $(U)/fx_twins.elf $(U)/hang/firmware.elf $(U)/wrap/firmware.elf $(U)/late/firmware.elf
 
 $(U)/firmware.hex: $(U)/firmware.elf
@@ -165,6 +170,12 @@ test:
 	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/native_replay $(H)/pipeline_replay $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun
 	@sh tools/run_tests.sh $(TESTS)
 
+## cycles: cycles of the filters and angles on the simulated chip
+cycles:
+	@sh tools/deps.sh sim
+	@$(MAKE) $(U)/cycles.elf $(S)/simrun
+	@sh tools/cycles.sh
+
 ## check: include table, forbidden symbols, HAL seam, lengths, format, budgets
 check:
 	@sh tools/deps.sh check
@@ -184,6 +195,6 @@ clean:
 # keep the test objects
 .SECONDARY:
 
-.PHONY: sim test check clean
+.PHONY: sim test cycles check clean
 
 -include $(shell find $(U) $(H) -name '*.d' 2>/dev/null)
