@@ -35,8 +35,8 @@ verified() {
 # configured KEY SED: first value in the distribution's apt sources, deb822 format (KEY) or one-line format (SED)
 configured() {
     {
-        sed -n "s/^$1: *\([^ ]*\).*/\1/p" /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list.d/ubuntu.sources
-        sed -n "$2" /etc/apt/sources.list
+        sed -n "s/^$1: *\([^ ]*\).*/\1/p" /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list.d/ubuntu.sources || true
+        sed -n "$2" /etc/apt/sources.list || true
     } 2>/dev/null | head -n 1
 }
 
