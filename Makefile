@@ -83,7 +83,11 @@ $(U)/cycles.elf: host_tests/avr/cycles.c $(wildcard lib/filters/src/*.c lib/tilt
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os -ffunction-sections -Wl,--gc-sections $(WARNINGS) -Ilib/filters/src \
 	    -Ilib/tilt/src $(filter %.c,$^) -o $@
 
-TEST_IMAGES := $(U)/fx_twins.elf $(U)/hang/firmware.elf $(U)/wrap/firmware.elf $(U)/late/firmware.elf
+$(U)/hal_probe.elf: host_tests/avr/hal_probe.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) Makefile
+	@mkdir -p $(@D)
+	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr $(filter %.c,$^) -o $@
+
+TEST_IMAGES := $(U)/hal_probe.elf $(U)/fx_twins.elf $(U)/hang/firmware.elf $(U)/wrap/firmware.elf $(U)/late/firmware.elf
 
 $(U)/firmware.hex: $(U)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $< $@

@@ -157,6 +157,19 @@ def assembler_primitives_equal_their_c_twins():
     assert sum("PASS" in line for line in lines) >= 9 and not any("FAIL" in line for line in lines), lines
 
 
+@test
+def eeprom_is_written_on_the_chip_and_kept_in_the_file():
+    image = OUT / "eeprom.bin"
+    image.write_bytes(bytes([0xFF] * 1023 + [0x5A]))
+    done = run(SIMRUN, "--fw", "build/uno/hal_probe.elf", "--in", STREAMS / "tilt-fast.csv", "--out", OUT / "eeprom.txt", "--eeprom", image,
+               "--max-ms", "1000", expect=None)
+    assert done.returncode == 8, done.stderr
+    said = dict(line.split() for line in (OUT / "eeprom.txt").read_text().splitlines())
+    assert said["before"] == "01011010" and said["after"] == "10100101" and said["ready"] == "00000000", said
+    assert said["ticks"] == "00000001", "3.4 ms are less than one tick of 8 ms"
+    assert image.read_bytes() == bytes([0xFF] * 1023 + [0xA5])
+
+
 # --- nothing is lost --------------------------------------------------------------------------------------------------
 
 def worst_width_stream():
@@ -231,8 +244,8 @@ def clock_wrap_is_crossed():
 
 def make_change_test(command):
     def check():
-        for step in range(24):
-            at_ms = 500 + step * 0.97
+        for step in range(80):
+            at_ms = 500 + step * 0.137
             rows, _, served, _ = simrun("change", STREAMS / "rest-2lsb.csv", "--cmd", f"{at_ms:.2f}:{command}", "--max-ms", "1200")
             wanted = triplets(served)
             got = [r[1:4] for r in rows]

@@ -99,6 +99,24 @@ static void test_slowest_rate_and_largest_every(void)
     TEST_ASSERT_INT_WITHIN(2, 12, (int)(board.row_count - rows));
 }
 
+/* Replies keep the transmit ring full for a minute at the slowest line: rows come late or are dropped whole, nothing hangs. */
+static void test_a_minute_with_the_ring_full(void)
+{
+    board_start_resting();
+    board_run_ms(300);
+    board_type("baud 9600");
+    board_run_ms(500);
+    for (int i = 0; i < 60; i++) {
+        board_type("help");
+        board_type("status");
+        board_run_ms(1000);
+    }
+    TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
+    size_t rows = board.row_count;
+    board_run_ms(5000);
+    TEST_ASSERT_TRUE(board.row_count > rows + 60);
+}
+
 /* Each stage hung alone: the dog bites within 300 ms and the note names the stage. */
 static void assert_bite(uint8_t stage)
 {
@@ -151,6 +169,7 @@ int main(void)
     RUN_TEST(test_ten_minutes_without_a_sensor);
     RUN_TEST(test_ten_minutes_stopped);
     RUN_TEST(test_slowest_rate_and_largest_every);
+    RUN_TEST(test_a_minute_with_the_ring_full);
     RUN_TEST(test_hung_sampling_is_bitten);
     RUN_TEST(test_hung_filtering_is_bitten);
     RUN_TEST(test_hung_output_is_bitten);

@@ -1,0 +1,55 @@
+/*
+ * Runs on the ATmega328P (simavr): the parts of the HAL that the firmware does not use yet, each answered with a line on the
+ * UART. Reads EEPROM byte 1023, writes its complement, waits for the write by sleeping, reads it back; then sleeps with
+ * interrupts off.
+ */
+#include <avr/interrupt.h>
+#include <avr/sleep.h>
+
+#include "flash.h"
+#include "hal_eeprom.h"
+#include "hal_irq.h"
+#include "hal_sleep.h"
+#include "hal_time.h"
+#include "hal_uart.h"
+#include "hal_watchdog.h"
+
+enum { LAST_BYTE = 1023 };
+
+static void say(flash_text_t words, uint8_t value)
+{
+    for (char c = flash_char(words); c != '\0'; c = flash_char(++words)) {
+        hal_uart_tx_stage((uint8_t)c);
+    }
+    hal_uart_tx_stage((uint8_t)(' '));
+    for (uint8_t bit = 0x80; bit != 0; bit = (uint8_t)(bit >> 1)) {
+        hal_uart_tx_stage((value & bit) ? '1' : '0');
+    }
+    hal_uart_tx_stage('\n');
+    hal_uart_tx_commit();
+}
+
+int main(void)
+{
+    hal_uart_init(115200);
+    hal_time_init();
+    hal_irq_enable();
+    uint8_t before = hal_eeprom_read(LAST_BYTE);
+    say(FLASH_TEXT("before"), before);
+    hal_eeprom_write_start(LAST_BYTE, (uint8_t)~before);
+    say(FLASH_TEXT("ready"), hal_eeprom_ready());
+    uint32_t begun_us = hal_time_us();
+    while (!hal_eeprom_ready()) {
+        hal_sleep_until_wake();
+    }
+    say(FLASH_TEXT("ticks"), (uint8_t)((hal_time_us() - begun_us + HAL_TICK_US - 1u) / HAL_TICK_US));
+    say(FLASH_TEXT("after"), hal_eeprom_read(LAST_BYTE));
+    while (!hal_uart_tx_idle()) {
+        hal_sleep_until_wake();
+    }
+    cli();
+    sleep_enable();
+    sleep_cpu();
+    for (;;) {
+    }
+}
