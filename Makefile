@@ -102,9 +102,10 @@ size: $(U)/firmware.elf
 	@sh tools/size.sh $<
 
 ## flash: write the firmware to an UNO (PORT=/dev/ttyACM0)
-flash: $(U)/firmware.hex
+flash:
 	@sh tools/deps.sh flash
-	avrdude -p atmega328p -c arduino -P $(PORT) -b 115200 -D -U flash:w:$<:i
+	@$(MAKE) $(U)/firmware.hex
+	avrdude -p atmega328p -c arduino -P $(PORT) -b 115200 -D -U flash:w:$(U)/firmware.hex:i
 
 ## monitor: show what the board sends (PORT=, BAUD=); Ctrl-C ends
 monitor:
@@ -160,7 +161,7 @@ $(S)/simrun: $(SIMRUN_SRC) $(wildcard sim/*.h)
 STREAM ?= sim/streams/outliers-15pct.csv
 FILTER ?= sprf
 RATE   ?= 100
-OUT    ?= $(S)/$(basename $(notdir $(STREAM))).out.csv
+OUT    ?= $(S)/$(basename $(notdir $(STREAM))).$(FILTER).out.csv
 
 ## sim: run the firmware on a recorded stream in the simulator and draw it (STREAM= FILTER= RATE= OUT=)
 sim:
@@ -179,6 +180,11 @@ cycles:
 	@sh tools/deps.sh sim
 	@$(MAKE) $(U)/cycles.elf $(S)/simrun
 	@sh tools/cycles.sh
+
+## mutants: break the code in named places and see that the tests notice (4 minutes)
+mutants:
+	@sh tools/deps.sh test
+	@python3 tools/mutants.py
 
 ## check: include table, forbidden symbols, HAL seam, lengths, format, budgets
 check:
@@ -199,6 +205,6 @@ clean:
 # keep the test objects
 .SECONDARY:
 
-.PHONY: sim test cycles check clean
+.PHONY: sim test cycles mutants check clean
 
 -include $(shell find $(U) $(H) -name '*.d' 2>/dev/null)

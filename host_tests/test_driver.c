@@ -167,6 +167,30 @@ static void test_wrong_identity_is_named(void)
     TEST_ASSERT_EQUAL_HEX8(0x00, adxl345_device_id());
 }
 
+static void test_register_that_does_not_keep_its_value_is_named(void)
+{
+    hal_host_faults.write_lost_register = ADXL345_BW_RATE;
+    static const adxl345_config_t at_400_hz = { 4000, 16 };
+    adxl345_start(&at_400_hz);
+    run_ms(100);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_READ_BACK, adxl345_fault());
+    hal_host_faults.write_lost_register = 0;
+    run_ms(200);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+}
+
+/* The bus is stuck from the start: no START ever completes, so only the deadline can tell. */
+static void test_bus_stuck_from_the_start_is_named(void)
+{
+    hal_host_faults.bus_stuck = true;
+    adxl345_start(&at_100_hz);
+    run_ms(100);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_BUS, adxl345_fault());
+    hal_host_faults.bus_stuck = false;
+    run_ms(200);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+}
+
 static void test_silent_int1_is_named(void)
 {
     hal_host_faults.int1_cut = true;
@@ -356,6 +380,8 @@ int main(void)
     RUN_TEST(test_finds_the_alternate_address);
     RUN_TEST(test_no_sensor_is_named_and_comes_back);
     RUN_TEST(test_wrong_identity_is_named);
+    RUN_TEST(test_register_that_does_not_keep_its_value_is_named);
+    RUN_TEST(test_bus_stuck_from_the_start_is_named);
     RUN_TEST(test_silent_int1_is_named);
     RUN_TEST(test_stuck_bus_is_named_and_survived);
     RUN_TEST(test_slave_hung_in_a_byte_is_clocked_free);

@@ -24,14 +24,15 @@ typedef struct {
 
 /* The bus and wiring faults a test can set at any time. */
 typedef struct {
-    bool bus_stuck;           /* a line is held low: nothing ever completes */
-    uint8_t hang_clocks;      /* a slave holds SDA low until it has seen so many clocks */
-    bool int1_cut;            /* INT1 does not reach D2 */
-    bool id_wrong;            /* DEVID reads 0x00 */
-    uint8_t corrupt_rx_every; /* every Nth received UART byte has a framing error; 0 = none */
-    int next_status;          /* >= 0: a coming bus event reports this status instead, the sensor does not see it */
-    unsigned status_skip;     /* bus events to let pass before that one */
-    bool tx_stuck;            /* the UART sends no more */
+    bool bus_stuck;              /* a line is held low: nothing ever completes */
+    uint8_t hang_clocks;         /* a slave holds SDA low until it has seen so many clocks */
+    bool int1_cut;               /* INT1 does not reach D2 */
+    uint8_t write_lost_register; /* writes to this register do not reach the sensor; 0: all do */
+    bool id_wrong;               /* DEVID reads 0x00 */
+    uint8_t corrupt_rx_every;    /* every Nth received UART byte has a framing error; 0 = none */
+    int next_status;             /* >= 0: a coming bus event reports this status instead, the sensor does not see it */
+    unsigned status_skip;        /* bus events to let pass before that one */
+    bool tx_stuck;               /* the UART sends no more */
 } hal_host_faults_t;
 
 extern adxl345_model_t hal_host_sensor;

@@ -116,7 +116,13 @@ bool hal_i2c_stop_pending(void)
 static uint8_t send_step(void)
 {
     if (!i2c.address_next) {
+        uint8_t reg = hal_host_sensor.pointer;
+        uint8_t before = hal_host_sensor.reg[reg];
+        bool is_value = hal_host_sensor.pointer_written;
         bool ack = adxl345_model_write(&hal_host_sensor, i2c.data);
+        if (is_value && reg != 0 && reg == hal_host_faults.write_lost_register) {
+            hal_host_sensor.reg[reg] = before;
+        }
         host_sensor_check_rate();
         return ack ? HAL_I2C_SENT_ACK : HAL_I2C_SENT_NACK;
     }

@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""Named breakages, each of which the tests must catch: a copy of the tree is broken in one place, one test is built and run.
+
+    mutants.py [NAME...]      all, or those whose name contains a word; a survivor makes the exit status 1
+"""
+import pathlib
+import shutil
+import subprocess
+import sys
+
+TREE = pathlib.Path("build/mutants")
+
+def load():
+    """The list lives in host_tests/mutants.txt: blocks of name, file, judge, then the old and the new text."""
+    mutants = []
+    for block in pathlib.Path("host_tests/mutants.txt").read_text(encoding="utf-8").split("\n=== ")[1:]:
+        head, old, new = block.rstrip("\n").split("\n---\n")
+        name, file, judge = head.split("\n")
+        mutants.append((name, file, judge, old, new))
+    return mutants
+
+
+def prepare():
+    """A copy of what git knows, with the downloads shared and everything built once."""
+    TREE.mkdir(parents=True, exist_ok=True)
+    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True, check=True)
+    for name in listed.stdout.splitlines():
+        source, target = pathlib.Path(name), TREE / name
+        if not source.is_file():
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if not target.exists() or target.read_bytes() != source.read_bytes():
+            shutil.copy2(source, target)
+    for shared in ("unity", "venv"):
+        link = TREE / "build" / shared
+        link.parent.mkdir(exist_ok=True)
+        if not link.exists():
+            link.symlink_to(pathlib.Path("build", shared).resolve())
+
+
+def make(*targets):
+    return subprocess.run(["make", "-j2", *targets], cwd=TREE, capture_output=True, text=True, timeout=600)
+
+
+def judged(judge):
+    """Builds and runs the judge; None when it passes, else the first line that says what failed."""
+    if judge.startswith("system "):
+        built = make("build/uno/firmware.elf", "build/uno/wrap/firmware.elf", "build/sim/simrun", "build/host/native_replay")
+        command = ["python3", "host_tests/system_tests.py", *judge.split()[1:]]
+    else:
+        built = make(f"build/host/{judge}")
+        command = [f"build/host/{judge}"]
+    if built.returncode != 0:
+        return f"does not build: {built.stderr.strip().splitlines()[0] if built.stderr.strip() else '?'}"
+    try:
+        done = subprocess.run(command, cwd=TREE, capture_output=True, text=True, timeout=200, errors="replace")
+    except subprocess.TimeoutExpired:
+        return "hangs"
+    if done.returncode == 0:
+        return None
+    lines = [line for line in done.stdout.splitlines() if "FAIL" in line]
+    return lines[0][:110] if lines else f"status {done.returncode}"
+
+
+def try_one(mutant):
+    name, file, judge, old, new = mutant
+    path = TREE / file
+    whole = path.read_text(encoding="utf-8")
+    if whole.count(old) != 1:
+        return f"{name}: the text to break stands {whole.count(old)} times in {file}", False
+    path.write_text(whole.replace(old, new), encoding="utf-8")
+    try:
+        verdict = judged(judge)
+    finally:
+        path.write_text(whole, encoding="utf-8")
+    if verdict is None:
+        return f"{name}: SURVIVED {judge}", False
+    if verdict.startswith("does not build"):
+        return f"{name}: {verdict}", False
+    return f"{name}: caught by {judge}: {verdict}", True
+
+
+def main():
+    words = sys.argv[1:]
+    mutants = [m for m in load() if not words or any(w in m[0] for w in words)]
+    prepare()
+    for judge in sorted({m[2] for m in mutants}):
+        verdict = judged(judge)
+        if verdict is not None:
+            print(f"mutants: {judge} fails without a mutant: {verdict}")
+            return 1
+    caught = 0
+    for number, mutant in enumerate(mutants, 1):
+        text, good = try_one(mutant)
+        caught += good
+        print(f"[{number}/{len(mutants)}] {text}", flush=True)
+    print(f"{caught} passed, {len(mutants) - caught} failed")
+    return 0 if caught == len(mutants) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
