@@ -2,6 +2,7 @@
 """The unmodified firmware in the simulator, judged by what the virtual sensor served and by the native build."""
 import csv
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -14,6 +15,15 @@ FW = "build/uno/firmware.elf"
 STREAMS = pathlib.Path("sim/streams")
 SHARED = pathlib.Path("../shared/streams")
 TESTS = []
+
+
+# cycle and size bounds are for this compiler; elsewhere they are reported
+BOUNDS = subprocess.run(["avr-gcc", "-dumpversion"], capture_output=True, text=True).stdout.strip() == "5.4.0"
+
+
+def within(what, value, limit):
+    print(f"    {what}: {value} (limit {limit})")
+    assert value <= limit or not BOUNDS, f"{what}: {value} above {limit}"
 
 
 class Skip(Exception):
@@ -198,7 +208,13 @@ def lose_nothing(name, stream, ppm, rate, baud, every, load_limit, fw=FW, shift_
     late = [r for r in rows if r[0] >= 1000000]
     assert not any(r[9] & 256 for r in rows), "a row was dropped"
     assert 60000000 / 1e6 * rate / every * 0.995 < len(late), f"{len(late)} rows in 60 s"
-    assert stats["cpu_load"] <= load_limit, f"CPU load {stats['cpu_load']:.3f} above {load_limit}"
+    within(f"CPU load at {rate} Hz", stats["cpu_load"], load_limit)
+    # 84 bit times a sample: START, address, register, repeated START, address, six bytes, STOP
+    bit_hz = 400e3 if rate == 800 else 16e6 / 44
+    assert abs(stats["i2c_load"] - rate * 84 / bit_hz) < 0.02 * stats["i2c_load"] + 0.0005, stats["i2c_load"]
+    mean_us = (int(served[-1]["t_us"]) - int(served[200]["t_us"])) / (len(served) - 201)
+    true_us = 1e6 / rate / (1 + ppm * 1e-6)
+    assert abs(mean_us / true_us - 1) < 2e-5, f"the sensor's clock: {mean_us} us, {true_us} us asked for"
     return rows
 
 
@@ -265,10 +281,9 @@ for typed in ("filter kf", "rate 50", "range 8"):
 def memory_budgets():
     _, _, _, stats = simrun("memory", STREAMS / "outliers-15pct.csv", "--cmd", "1000:help", "--cmd", "2000:status", "--cmd",
                             "3000:mode plot", "--cmd", "5000:mode csv", "--max-ms", "9000")
-    assert stats["ram_static_bytes"] <= 1200, stats["ram_static_bytes"]
-    assert stats["ram_used_bytes"] <= 1700, stats["ram_used_bytes"]
-    if run("avr-gcc", "-dumpversion").stdout.strip() == "5.4.0":
-        assert stats["flash_bytes"] <= 20480, stats["flash_bytes"]
+    within("static RAM", stats["ram_static_bytes"], 1200)
+    within("static RAM and stack", stats["ram_used_bytes"], 1700)
+    within("flash", stats["flash_bytes"], 20480)
 
 
 def speed_of(name, stream, *options):
@@ -294,8 +309,8 @@ def simulator_is_fast_at_400_hz():
 
 
 def machine_factor():
-    """A busy or slower machine must not fail the suite: the goal is for the reference machine, here a quarter is asked for."""
-    return 0.25
+    """The numbers are for two cores of today; SPEED_FACTOR=0.5 in the environment halves them for a slow machine."""
+    return float(os.environ.get("SPEED_FACTOR", "1"))
 
 
 @test
@@ -441,6 +456,26 @@ for bad_name, (bad_text, bad_where) in BAD.items():
 
 
 @test
+def refused_settings_end_the_run():
+    for option, value in (("--filter", "kalman"), ("--rate", "123"), ("--range", "5"), ("--every", "0"), ("--baud", "1234")):
+        done = run(SIMRUN, "--fw", FW, "--in", STREAMS / "tilt-fast.csv", "--out", OUT / "x.csv", option, value, expect=2)
+        assert f"{option} {value}: the firmware refused it" in done.stderr, done.stderr
+
+
+MISBEHAVIOURS = {1: (3, "jump out of the program"), 2: (3, "access beyond RAM"), 3: (4, "illegal opcode"), 4: (5, "stack overrun"),
+                 5: (6, "UART overrun"), 6: (7, "watchdog reset nobody expects"), 7: (8, "sleep with interrupts off")}
+
+
+@test
+def each_misbehaviour_has_its_exit_status():
+    for case, (status, what) in MISBEHAVIOURS.items():
+        elf = OUT / f"misbehave{case}.elf"
+        run("avr-gcc", "-mmcu=atmega328p", "-Os", f"-DCASE={case}", "host_tests/avr/misbehave.c", "-o", elf)
+        done = run(SIMRUN, "--fw", elf, "--in", STREAMS / "tilt-fast.csv", "--out", OUT / "x.csv", "--max-ms", "200", expect=None)
+        assert done.returncode == status, f"{what}: status {done.returncode}, {done.stderr}"
+
+
+@test
 def missing_files_are_named():
     for option, path in (("--in", "build/no-such.csv"), ("--fw", "build/no-such.elf")):
         arguments = {"--fw": FW, "--in": STREAMS / "tilt-fast.csv", "--out": OUT / "x.csv", option: path}
@@ -487,7 +522,7 @@ def main():
             print(f"system_tests.py:{name}:FAIL: {str(problem)[:300]}", flush=True)
             traceback.print_exc()
     print(f"\n{count} Tests {failed} Failures {skipped} Ignored")
-    return 1 if failed else 0
+    return 1 if failed or count == 0 else 0
 
 
 if __name__ == "__main__":

@@ -200,6 +200,30 @@ static void coast_goes_on_at_the_rate(void)
     TEST_ASSERT_EQUAL_UINT8(FILTER_COASTED, kf_flags(&f));
 }
 
+/* After a reset the gain is that of a filter which has read the same value for long. */
+static void reset_is_as_if_read_for_ever(void)
+{
+    kf_config_t config;
+    kf_t read;
+    kf_t reset;
+    filter_probe_t of_read;
+    filter_probe_t of_reset;
+    kf_defaults(&config, 1000);
+    config.r_lsb2_q8 = 16U * 256U;
+    TEST_ASSERT_TRUE(kf_init(&read, &config));
+    TEST_ASSERT_TRUE(kf_init(&reset, &config));
+    for (int i = 0; i < 5000; i++) {
+        (void)kf_update(&read, 100);
+    }
+    kf_reset(&reset, 100);
+    (void)kf_update(&read, 140);
+    (void)kf_update(&reset, 140);
+    kf_probe(&read, &of_read);
+    kf_probe(&reset, &of_reset);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02 * of_read.gain_uq16, of_read.gain_uq16, of_reset.gain_uq16);
+    TEST_ASSERT_INT_WITHIN(65536 / 4, read.core.x_lsb_q16, reset.core.x_lsb_q16);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -210,5 +234,6 @@ int main(void)
     RUN_TEST(noise_scales_the_drive);
     RUN_TEST(probe_tells_the_variance);
     RUN_TEST(coast_goes_on_at_the_rate);
+    RUN_TEST(reset_is_as_if_read_for_ever);
     return UNITY_END();
 }

@@ -40,6 +40,7 @@ enum { TYPED_MAX = 64, FAULTS_MAX = 32 };
 typedef struct {
     double at_ms;     /* not before this simulated time */
     const char *text; /* without the line end */
+    bool setting;     /* of --rate and the like: it must not be refused */
 } typed_line_t;
 
 typedef struct {

@@ -121,12 +121,12 @@ static double number(const char *name, const char *text, double low, double high
     return value;
 }
 
-static void add_typed(double at_ms, const char *text)
+static void add_typed(double at_ms, const char *text, bool setting)
 {
     if (options.typed_count == TYPED_MAX) {
         refuse("more than %d commands", TYPED_MAX);
     }
-    options.typed[options.typed_count++] = (typed_line_t){ at_ms, text };
+    options.typed[options.typed_count++] = (typed_line_t){ at_ms, text, setting };
 }
 
 /* "--rate 400" is the command "rate 400". */
@@ -138,7 +138,7 @@ static void add_setting(const char *name, const char *value)
         refuse("out of memory");
     }
     snprintf(line, length, "%s %s", name, value);
-    add_typed(0.0, line);
+    add_typed(0.0, line, true);
 }
 
 static void add_command(const char *argument)
@@ -148,7 +148,7 @@ static void add_command(const char *argument)
     if (end == argument || *end != ':' || !(at_ms >= 0.0)) {
         refuse("--cmd wants MS:TEXT, not '%s'", argument);
     }
-    add_typed(at_ms, end + 1);
+    add_typed(at_ms, end + 1, false);
 }
 
 static void add_fault(const char *argument)

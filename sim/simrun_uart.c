@@ -98,6 +98,20 @@ static void begin_typing(void)
     machine_reschedule();
 }
 
+/* The firmware says which setting it refuses; one that was asked for by an option ends the run. */
+static void on_refusal(const char *setting)
+{
+    for (size_t i = 0; i < options.typed_count; i++) {
+        const char *text = options.typed[i].text;
+        size_t length = strcspn(text, " ");
+        if (options.typed[i].setting && strncmp(setting, text, length) == 0 && setting[length] == ' ') {
+            static char reason[LINE_MAX_LENGTH + 64];
+            snprintf(reason, sizeof reason, "--%s: the firmware refused it: %s", text, setting);
+            machine_fail(EXIT_INPUT, reason);
+        }
+    }
+}
+
 static void on_line(void)
 {
     while (line_length != 0 && isspace((unsigned char)line[line_length - 1])) {
@@ -106,6 +120,9 @@ static void on_line(void)
     line[line_length] = '\0';
     row_t row;
     if (line[0] == '#') {
+        if (strncmp(line, "# refused: ", 11) == 0) {
+            on_refusal(line + 11);
+        }
         if (!banner_seen) {
             begin_typing();
         } else if (header_seen && !waits_for_baud) {

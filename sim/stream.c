@@ -141,7 +141,11 @@ static bool read_header(reader_t *r, char *line)
         }
     }
     r->has_header = true;
-    r->stream->has_truth = r->index[COLUMN_ROLL] >= 0 && r->index[COLUMN_PITCH] >= 0;
+    bool truth = r->index[COLUMN_ROLL] >= 0 && r->index[COLUMN_PITCH] >= 0;
+    if (r->stream->count != 0 && truth != r->stream->has_truth) {
+        return fail(r, "the truth columns come or go in the middle of the file");
+    }
+    r->stream->has_truth = truth;
     r->segment_begins = true;
     r->wrap_us = 0;
     return true;
@@ -330,7 +334,7 @@ static char *read_whole(reader_t *r, FILE *file, size_t *length)
     char *text = malloc((size_t)end + 1);
     *length = text == NULL ? 0 : fread(text, 1, (size_t)end, file);
     if (text == NULL || *length != (size_t)end) {
-        (void)fail(r, text == NULL ? "out of memory" : "cannot read to its end");
+        (void)fail(r, ferror(file) ? "cannot be read: is it a file?" : "out of memory");
         free(text);
         return NULL;
     }

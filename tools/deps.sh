@@ -93,7 +93,7 @@ collect() {
             firmware) need_avr ;;
             sim) need_simulator; need_plots ;;
             test) need_simulator; need_plots; need_unity ;;
-            check) need_simulator; need_unity
+            check) need_simulator; need_unity; need python3 has python3
                 need clang-tidy has clang-tidy
                 need clang-format has clang-format
                 need cppcheck has cppcheck ;;

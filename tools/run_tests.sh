@@ -16,7 +16,11 @@ run_one() {
     line=$(grep -E '^[0-9]+ Tests [0-9]+ Failures [0-9]+ Ignored' "build/host/$name.log" | tail -n 1)
     echo "${line:-crashed (status $status)}"
     grep -E ':(FAIL|IGNORE)' "build/host/$name.log" | sed 's/^/    /'
+    case $line in
+        *" 0 Failures "*) [ "$status" -eq 0 ] || line= ;;
+    esac
     if [ -z "$line" ]; then
+        echo "    ended with status $status"
         broken=$((broken + 1))
         tail -n 12 "build/host/$name.log" | sed 's/^/    /'
     fi

@@ -33,6 +33,7 @@ void kf_reset(kf_t *f, int16_t z0_lsb)
 {
     f->core.flags = 0;
     two_state_start(&f->core, (int32_t)two_state_clamp_z(z0_lsb) * 65536);
+    two_state_settle(&f->core);
 }
 
 /*

@@ -77,6 +77,7 @@ void sprf_reset(sprf_t *f, int16_t z0_lsb)
     int16_t z0 = two_state_clamp_z(z0_lsb);
     f->core.flags = 0;
     two_state_start(&f->core, (int32_t)z0 * 65536);
+    two_state_settle(&f->core);
     f->previous_lsb = z0;
     f->run = 0;
     f->broken = false;

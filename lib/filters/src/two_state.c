@@ -13,6 +13,9 @@
 #define START_RATE_VARIANCE_LSB2_S2 40000U
 
 #define ONE_UQ28 0x10000000U
+/* After so many equal samples P is within a few per cent of where it settles, for gains above 0.05. */
+#define SETTLE_STEPS 64U
+
 #define X_MAX_LSB_Q16 ((int32_t)FILTER_X_MAX_LSB * 65536)
 
 bool two_state_legal(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3)
@@ -96,6 +99,14 @@ void two_state_start(two_state_t *s, int32_t x_lsb_q16)
     s->gain_uq16 = 0;
     s->limit_lsb2 = 0;
     s->collected = FILTER_WARM_UP_SAMPLES;
+}
+
+void two_state_settle(two_state_t *s)
+{
+    int16_t z_lsb = (int16_t)(s->x_lsb_q16 >> 16);
+    for (uint8_t step = 0; step < SETTLE_STEPS; step++) {
+        (void)two_state_step(s, z_lsb, true);
+    }
 }
 
 /* Median of `count` ascending samples, Q16: the mean of the middle two when even. */

@@ -87,13 +87,16 @@ void two_state_init(two_state_t *s, uint16_t rate_dhz, uint32_t r_lsb2_q8, uint3
  */
 FX_ONCE void two_state_set_noise(two_state_t *s, uint32_t r_lsb2_q8);
 
-/* Running from z0 (clamped to the sensor's range): rate 0, P11 = R, rate as uncertain as after the warm-up. */
+/* Running from x: rate 0, P11 = R, rate as uncertain as after the warm-up. */
 FX_ONCE void two_state_start(two_state_t *s, int32_t x_lsb_q16);
 
 static inline bool two_state_warming_up(const two_state_t *s)
 {
     return s->collected < FILTER_WARM_UP_SAMPLES;
 }
+
+/* P as if the whole-numbered estimate had been read for long: SETTLE_STEPS updates without innovation, 45,000 cycles. */
+void two_state_settle(two_state_t *s);
 
 /* One sample of the warm-up: running median of what was seen. */
 void two_state_warm_up(two_state_t *s, int16_t z_lsb);
