@@ -149,6 +149,10 @@ $(H)/pipeline_replay: host_tests/pipeline_replay.c $(HOST_SRC) $(wildcard */*.h 
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) host_tests/pipeline_replay.c $(HOST_SRC) -lm -o $@
 
+$(H)/exhaustive_isqrt: host_tests/exhaustive_isqrt.c lib/tilt/src/tilt.c lib/filters/src/fx.c $(wildcard lib/*/src/*.h)
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(HOST_FLAGS) -O3 -flto $(WARNINGS) $(filter %.c,$^) -o $@
+
 # --- the simulator ---------------------------------------------------------------------------------------------------
 S := $(B)/sim
 SIMRUN_SRC := $(wildcard sim/simrun*.c) sim/twi_peripheral.c sim/adxl345_model.c sim/stream.c
@@ -172,7 +176,7 @@ sim:
 ## test: unit tests on the PC, then the firmware in the simulator against the PC
 test:
 	@sh tools/deps.sh test
-	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/native_replay $(H)/pipeline_replay $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun
+	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt $(H)/native_replay $(H)/pipeline_replay $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun
 	@sh tools/run_tests.sh $(TESTS)
 
 ## cycles: cycles of the filters and angles on the simulated chip

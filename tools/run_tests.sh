@@ -29,6 +29,7 @@ run_one() {
 for test in "$@"; do
     run_one "$(basename "$test")" "$test"
 done
+run_one exhaustive_isqrt build/host/exhaustive_isqrt
 run_one test_plot_run build/venv/bin/python host_tests/test_plot_run.py
 run_one system_tests python3 host_tests/system_tests.py
 awk -v broken="$broken" '/^[0-9]+ Tests [0-9]+ Failures [0-9]+ Ignored/ { t += $1; f += $3; s += $5 }

@@ -178,63 +178,9 @@ void tilt_angles(tilt_t *out, int32_t x_q8, int32_t y_q8, int32_t z_q8)
     out->pitch_cdeg = signed_cdeg(slope_cdeg(&slope), x_q8 > 0, false);
 }
 
-/* floor(sqrt(v)) of 16 bits, digit by digit; *rest = v - root^2. */
-static uint16_t root_of_16_bits(uint16_t v, uint16_t *rest)
-{
-    uint16_t root = 0;
-    for (uint16_t bit = 0x4000U; bit != 0U; bit >>= 2) {
-        uint16_t trial = (uint16_t)(root + bit);
-        root >>= 1;
-        if (v >= trial) {
-            v = (uint16_t)(v - trial);
-            root = (uint16_t)(root + bit);
-        }
-    }
-    *rest = v;
-    return root;
-}
-
-/* Root of 2^30 <= v < 2^32: the upper 8 bits by digits, the lower 8 by dividing the rest by twice the upper. */
-static uint16_t root_of_32_bits(uint32_t v)
-{
-    uint16_t rest;
-    uint16_t upper = root_of_16_bits((uint16_t)(v >> 16), &rest);
-    uint16_t divisor = (uint16_t)(upper << 1);
-    uint8_t digits = (uint8_t)(v >> 8);
-    uint16_t lower = 0;
-    if (rest >= divisor) {
-        rest = (uint16_t)(rest - divisor);
-        lower = 1;
-    }
-    for (uint8_t bits = 8; bits != 0U; bits--) {
-        rest = (uint16_t)((rest << 1) | (digits >> 7));
-        digits = (uint8_t)(digits << 1);
-        lower = (uint16_t)(lower << 1);
-        if (rest >= divisor) {
-            rest = (uint16_t)(rest - divisor);
-            lower |= 1U;
-        }
-    }
-    uint16_t root = (uint16_t)((upper << 8) + lower);
-    bool too_large = (((uint32_t)rest << 8) | (uint8_t)v) < (uint32_t)lower * lower;
-    return too_large ? (uint16_t)(root - 1U) : root;
-}
-
 uint16_t tilt_isqrt32(uint32_t v)
 {
-    uint8_t shift = 0;
-    if (v == 0U) {
-        return 0;
-    }
-    while ((v & 0xFF000000UL) == 0U) {
-        v <<= 8;
-        shift = (uint8_t)(shift + 4U);
-    }
-    while ((v & 0xC0000000UL) == 0U) {
-        v <<= 2;
-        shift++;
-    }
-    return (uint16_t)(root_of_32_bits(v) >> shift);
+    return fx_isqrt32(v);
 }
 
 /* An acceleration in 1/64 LSB, rounded down; 2^15 for all that is larger, beyond any plausible one. */
