@@ -190,7 +190,7 @@ mutants:
 	@sh tools/deps.sh test
 	@python3 tools/mutants.py
 
-## check: include table, forbidden symbols, HAL seam, lengths, format, budgets
+## check: include table, forbidden symbols, HAL seam, lengths, clang-tidy, cppcheck, format, budgets
 check:
 	@sh tools/deps.sh check
 	@$(MAKE) $(U)/firmware.elf
@@ -199,6 +199,7 @@ check:
 	@sh tools/check_seam.sh
 	@python3 tools/check_lengths.py
 	@sh tools/check_cpp_headers.sh
+	@sh tools/check_static.sh
 	@sh tools/check_format.sh
 	@sh tools/size.sh $(U)/firmware.elf
 

@@ -308,7 +308,7 @@ static void sample_arrived(void)
 static void stream_step(void)
 {
     (void)burst_drain();
-    if (burst_running() && hal_time_reached(driver.now_us, burst_begun_us() + TRANSFER_LIMIT_MS * 1000u)) {
+    if (burst_running() && hal_time_reached(driver.now_us, burst_begun_us() + TRANSFER_LIMIT_MS * 1000ul)) {
         burst_take_bus(driver.address, driver.config.rate_dhz == 8000);
         saturating_add(&driver.counters.timeouts);
         saturating_add(&driver.counters.bus_faults);
