@@ -1,0 +1,112 @@
+"""What the whole-firmware tests share: runs of simrun, readers of what came out, the list of tests and their runner."""
+import csv
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import traceback
+
+OUT = pathlib.Path("build/system")
+SIMRUN = "build/sim/simrun"
+FW = "build/uno/firmware.elf"
+STREAMS = pathlib.Path("sim/streams")
+TESTS = []
+
+
+# cycle and size bounds are for this compiler; elsewhere they are reported
+BOUNDS = subprocess.run(["avr-gcc", "-dumpversion"], capture_output=True, text=True).stdout.strip() == "5.4.0"
+
+
+def within(what, value, limit):
+    print(f"    {what}: {value} (limit {limit})")
+    assert value <= limit or not BOUNDS, f"{what}: {value} above {limit}"
+
+
+class Skip(Exception):
+    """A test that cannot run here, with the reason."""
+
+
+def test(function):
+    TESTS.append(function)
+    return function
+
+
+def run(*command, expect=0):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=600)
+    if expect is not None:
+        assert done.returncode == expect, f"{command[0]} gave status {done.returncode}: {done.stderr.strip()}"
+    return done
+
+
+def simrun(name, stream, *options, fw=FW, expect=0):
+    """A run; returns (rows, notes, served, stats)."""
+    base = OUT / name
+    done = run(SIMRUN, "--fw", fw, "--in", stream, "--out", f"{base}.csv", "--served", f"{base}.served.csv", "--stats", f"{base}.json",
+               *options, expect=expect)
+    rows, notes = read_output(f"{base}.csv")
+    served = list(csv.DictReader(open(f"{base}.served.csv")))
+    stats = json.load(open(f"{base}.json"))
+    stats["stderr"] = done.stderr
+    return rows, notes, served, stats
+
+
+def read_output(path):
+    rows, notes = [], []
+    for line in open(path, encoding="ascii"):
+        line = line.rstrip("\n")
+        if re.fullmatch(r"\d+(,-?\d+){8},\d+", line):
+            rows.append([int(f) for f in line.split(",")])
+        else:
+            notes.append(line)
+    return rows, notes
+
+
+def triplets(served):
+    return [[int(s["x_lsb"]), int(s["y_lsb"]), int(s["z_lsb"])] for s in served]
+
+
+def start_offset_us(served, rows):
+    """How much later than the MCU the firmware's clock started: from the sample served nearest to the first row's stamp."""
+    offset = min((int(s["t_us"]) - rows[0][0] for s in served), key=lambda d: abs(d - 300))
+    assert 0 <= offset <= 2000, f"clock starts {offset} us after the MCU"
+    return offset
+
+
+def assert_nothing_lost(rows, served, every=1, from_us=0, end_us=None):
+    """Every served sample in the period (or one in `every`) has its row, with its readings, in order, stamped within 50 us."""
+    rows = [r for r in rows if r[0] >= from_us]
+    # the firmware's clock starts some hundred microseconds after the MCU
+    late_us = start_offset_us(served, rows)
+    samples = [(int(s["t_us"]) - late_us, t) for s, t in zip(served, triplets(served))]
+    first = next(i for i, (t, _) in enumerate(samples) if abs(t - rows[0][0]) <= 50)
+    expected = samples[first::every]
+    if end_us is not None:
+        expected = [e for e in expected if e[0] <= end_us]
+    assert len(rows) >= len(expected) - 1, f"{len(expected)} samples, {len(rows)} rows"
+    for row, (t_us, lsb) in zip(rows, expected):
+        assert abs(row[0] - t_us) <= 50, f"row at {row[0]} us, sample at {t_us} us"
+        assert row[1:4] == lsb, f"row {row} shows {row[1:4]}, the sensor latched {lsb}"
+
+
+def run_all():
+    OUT.mkdir(parents=True, exist_ok=True)
+    only = sys.argv[1:]
+    failed = skipped = count = 0
+    for function in TESTS:
+        name = function.__name__
+        if only and not any(word in name for word in only):
+            continue
+        count += 1
+        try:
+            function()
+            print(f"system_tests.py:{name}:PASS", flush=True)
+        except Skip as reason:
+            skipped += 1
+            print(f"system_tests.py:{name}:IGNORE: {reason}", flush=True)
+        except Exception as problem:  # every failure is one line here and a trace in the log
+            failed += 1
+            print(f"system_tests.py:{name}:FAIL: {str(problem)[:300]}", flush=True)
+            traceback.print_exc()
+    print(f"\n{count} Tests {failed} Failures {skipped} Ignored")
+    return 1 if failed or count == 0 else 0
