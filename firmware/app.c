@@ -38,6 +38,7 @@ typedef enum {
 } stage_t;
 
 static uint8_t stage;
+static bool sampling;       /* wanted: go or start-up, not stop */
 static bool restart_cold;   /* the first sample begins the filters anew */
 static bool config_changed; /* the samples of the old configuration are still coming */
 static uint32_t uptime_s;
@@ -69,6 +70,7 @@ void app_start(void)
     next_service_us = hal_time_us();
     next_second_us = next_service_us + 1000000ul;
     stage = STAGE_BANNER;
+    sampling = true;
     restart_cold = false;
     config_changed = false;
     pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
@@ -93,7 +95,7 @@ void app_set_filter(uint8_t filter_kind)
 /* The pipeline follows when the driver has delivered the last sample of the old configuration. */
 static void change_sensor(void)
 {
-    if (adxl345_phase() != ADXL345_STOPPED) {
+    if (sampling) {
         config_changed = true;
         start_sensor();
     }
@@ -152,11 +154,13 @@ void app_set_mode(uint8_t mode)
 
 void app_stop(void)
 {
+    sampling = false;
     adxl345_stop();
 }
 
 void app_go(void)
 {
+    sampling = true;
     restart_cold = true;
     start_sensor();
 }

@@ -26,11 +26,6 @@ void commands_start(void)
     line[0] = '\0';
 }
 
-const char *commands_last_line(void)
-{
-    return line;
-}
-
 uint16_t commands_refused(void)
 {
     return refused;
@@ -206,10 +201,7 @@ static void run_line(void)
         refuse(REPLY_REFUSED, setting);
         return;
     }
-    (void)replies_add((reply_kind_t)setting, 0);
-    if (setting == REPLY_MODE && value != 0 && settings.mode == MODE_CSV) {
-        (void)replies_add(REPLY_HEADER, 0);
-    }
+    (void)replies_add((reply_kind_t)setting, value != 0);
 }
 
 static void end_line(void)

@@ -11,9 +11,6 @@ void commands_start(void);
 /* Takes received bytes; runs at most one complete line, and only while there is room for its replies. */
 void commands_pass(void);
 
-/* The last complete line, NUL-terminated, printable characters only. */
-const char *commands_last_line(void);
-
 /* Lines refused: too long, garbage, unknown, illegal value; saturating. */
 uint16_t commands_refused(void);
 

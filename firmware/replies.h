@@ -10,10 +10,9 @@
 
 typedef enum {
     REPLY_BANNER, /* who we are, reset cause, how to get help; ends with the csv header */
-    REPLY_HEADER, /* the csv header alone */
     REPLY_HELP,
     REPLY_STATUS,
-    REPLY_FILTER, /* the setting in force, after it was set or asked for */
+    REPLY_FILTER, /* the setting in force; argument: 1 after it was set, 0 after it was asked for */
     REPLY_RATE,
     REPLY_RANGE,
     REPLY_EVERY,

@@ -2,7 +2,6 @@
 #include "reply_lines.h"
 
 #include "adxl345.h"
-#include "commands.h"
 #include "filter_any.h"
 #include "flash.h"
 #include "hal_watchdog.h"
@@ -42,7 +41,7 @@ static void write_reset_cause(void)
         text_words(FLASH_TEXT("reset button or serial port opened"));
         break;
     case HAL_RESET_BROWN_OUT:
-        text_words(FLASH_TEXT("supply voltage dropped"));
+        text_words(FLASH_TEXT("supply dropped"));
         break;
     default:
         text_words(FLASH_TEXT("watchdog, waiting for stage mask "));
@@ -110,7 +109,7 @@ static reply_progress_t banner_line(uint8_t line)
         write_settings();
         return end(false);
     case 3:
-        begin(FLASH_TEXT("type help for the commands, mode plot for the Arduino plotter"));
+        begin(FLASH_TEXT("type help, or mode plot for the Arduino plotter"));
         return end(false);
     case 4:
         return write_diagnosis() ? end(false) : REPLY_WAITS;
@@ -175,11 +174,16 @@ static reply_progress_t filter_line(void)
     return end(true);
 }
 
-static reply_progress_t mode_line(void)
+/* After a change to csv the header follows: `set` is the reply's argument. */
+static reply_progress_t mode_line(uint8_t line, uint8_t set)
 {
+    if (line != 0) {
+        text_words(rows_header());
+        return end(true);
+    }
     begin(FLASH_TEXT("mode "));
     text_words(settings.mode == MODE_PLOT ? FLASH_TEXT("plot") : FLASH_TEXT("csv"));
-    return end(true);
+    return end(set == 0 || settings.mode == MODE_PLOT);
 }
 
 static reply_progress_t fault_begin_line(uint8_t fault)
@@ -209,9 +213,7 @@ static reply_progress_t unknown_line(uint8_t problem)
         begin(FLASH_TEXT("refused: characters that no command has"));
         break;
     default:
-        begin(FLASH_TEXT("unknown command: "));
-        text_ram(commands_last_line());
-        text_words(FLASH_TEXT(" (type help)"));
+        begin(FLASH_TEXT("unknown command (type help)"));
         break;
     }
     return end(true);
@@ -228,9 +230,6 @@ reply_progress_t reply_write_line(reply_kind_t kind, uint8_t argument, uint8_t l
     switch (kind) {
     case REPLY_BANNER:
         return banner_line(line);
-    case REPLY_HEADER:
-        text_words(rows_header());
-        return end(true);
     case REPLY_HELP:
         return reply_help_line(line);
     case REPLY_STATUS:
@@ -246,7 +245,7 @@ reply_progress_t reply_write_line(reply_kind_t kind, uint8_t argument, uint8_t l
     case REPLY_BAUD:
         return baud_line(line);
     case REPLY_MODE:
-        return mode_line();
+        return mode_line(line, argument);
     case REPLY_STOPPED:
         return word_line(FLASH_TEXT("stopped"));
     case REPLY_GOING:

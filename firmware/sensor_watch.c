@@ -39,16 +39,16 @@ void sensor_watch_describe(uint8_t fault)
         text_words(FLASH_TEXT(", not 0xE5"));
         break;
     case ADXL345_FAULT_BUS:
-        text_words(FLASH_TEXT("I2C bus stuck or disturbed: check SDA, SCL, pull-ups, ground"));
+        text_words(FLASH_TEXT("I2C bus stuck or disturbed: check SDA, SCL, pull-ups, GND"));
         break;
     case ADXL345_FAULT_READ_BACK:
-        text_words(FLASH_TEXT("a register does not keep what is written: check supply and bus"));
+        text_words(FLASH_TEXT("a register does not keep its value: check supply, bus"));
         break;
     case ADXL345_FAULT_INT1_SILENT:
         text_words(FLASH_TEXT("the sensor has data, but INT1 does not rise: check INT1 to D2"));
         break;
     default:
-        text_words(FLASH_TEXT("the sensor stopped measuring: it may have lost power"));
+        text_words(FLASH_TEXT("the sensor stopped measuring: power lost?"));
         break;
     }
 }
@@ -73,6 +73,10 @@ void sensor_watch_pass(uint32_t now_us)
 {
     uint8_t fault = (uint8_t)adxl345_fault();
     hal_led_set(fault != ADXL345_FAULT_NONE);
+    if (adxl345_phase() == ADXL345_STOPPED) {
+        told = ADXL345_FAULT_NONE; /* not mended, only not asked any more */
+        told_mask = 0;
+    }
     if (fault != told && settings.mode != MODE_PLOT) {
         tell(fault);
     }

@@ -19,8 +19,8 @@ typedef struct {
 #define SETTINGS_BAUD_DEFAULT 115200ul
 #define SETTINGS_EVERY_MAX 10000u
 
-/* Longest data row, end of line included (docs/protocol.md). */
-#define SETTINGS_ROW_MAX 67u
+/* What the line must carry for a row: at most 67 bytes (csv) or 69 (plot), and some for replies. */
+#define SETTINGS_ROW_MAX 72u
 
 extern settings_t settings;
 

@@ -10,7 +10,7 @@
  *   bool hal_uart_tx_write(const char *line, uint8_t length)   stage and commit a line; false when it does not fit (main)
  *   bool hal_uart_tx_idle(void)                  ring empty and the last stop bit sent (main)
  *   uint8_t hal_uart_tx_sent(void)               counts bytes handed to the line, wraps: progress (main)
- *   bool hal_uart_rx(uint8_t *byte)              take one received byte, false when there is none (main)
+ *   bool hal_uart_rx(uint8_t *byte)              take one received byte, false when there is none; 0 stands where some were lost (main)
  *   uint8_t hal_uart_rx_lost(void)               bytes lost to a full ring, framing or overrun, saturating (main)
  */
 #ifndef HAL_UART_H

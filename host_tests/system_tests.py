@@ -399,12 +399,12 @@ def over_long_and_garbage_serial_input_costs_no_row():
     long_line = "rate " + "4" * 60
     rows, notes, served, _ = simrun("garbage", STREAMS / "rest-2lsb.csv", "--cmd", f"500:{long_line}", "--cmd", "700:\x01\x02garbage",
                                     "--cmd", "900:nonsense", "--cmd", "1200:status", "--max-ms", "3000")
-    assert "# refused: line too long" in notes and "# unknown command: nonsense (type help)" in notes, notes
+    assert "# refused: line too long" in notes and "# unknown command (type help)" in notes, notes
     assert any("lines refused 3" in n for n in notes), notes
     assert [r[1:4] for r in rows] == triplets(served)[:len(rows)] and len(rows) >= len(served) - 2
 
 
-# --- the bootloader, the EEPROM, the trace ----------------------------------------------------------------------------
+# --- the trace ----------------------------------------------------------------------------
 
 @test
 def vcd_and_profile_are_written():

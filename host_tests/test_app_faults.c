@@ -63,6 +63,18 @@ static void test_fault_begins_and_ends_with_one_line_each(void)
     TEST_ASSERT_EQUAL_UINT(0, board.rows[board.row_count - 1].flags & ROW_FAULT);
 }
 
+static void test_stop_during_a_fault_does_not_call_it_over(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    adxl345_model_power(&hal_host_sensor, false);
+    board_run_ms(300);
+    size_t before = board.note_count;
+    board_type("stop");
+    board_run_ms(300);
+    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
+}
+
 static void test_ten_minutes_without_a_sensor(void)
 {
     board_start_resting();
@@ -166,6 +178,7 @@ int main(void)
     RUN_TEST(test_wrong_identity_is_told_once);
     RUN_TEST(test_silent_int1_is_told_once);
     RUN_TEST(test_fault_begins_and_ends_with_one_line_each);
+    RUN_TEST(test_stop_during_a_fault_does_not_call_it_over);
     RUN_TEST(test_ten_minutes_without_a_sensor);
     RUN_TEST(test_ten_minutes_stopped);
     RUN_TEST(test_slowest_rate_and_largest_every);

@@ -12,6 +12,7 @@ static uint8_t rx_buffer[RX_SIZE];
 static hal_ring_t tx;
 static hal_ring_t rx;
 static volatile uint8_t rx_lost;
+static bool rx_gap;
 static bool line_used;
 
 /*
@@ -59,20 +60,23 @@ static void count_lost(void)
     }
 }
 
+/* A byte that was lost or damaged leaves a 0 in its place, so that the line it belonged to can be refused. */
 ISR(USART_RX_vect)
 {
-    uint8_t errors = UCSR0A;
+    uint8_t errors = UCSR0A & (_BV(FE0) | _BV(DOR0));
     uint8_t byte = UDR0;
     hal_wake();
-    if (errors & _BV(DOR0)) {
-        count_lost(); /* an earlier byte; this one is good */
-    }
-    if ((errors & _BV(FE0)) || hal_ring_room(&rx, RX_MASK) == 0) {
+    if (hal_ring_room(&rx, RX_MASK) == 0) {
         count_lost();
+        rx_gap = true;
         return;
     }
-    hal_ring_stage(&rx, rx_buffer, RX_MASK, byte);
+    if (errors) {
+        count_lost();
+    }
+    hal_ring_stage(&rx, rx_buffer, RX_MASK, (errors || rx_gap) ? 0 : byte);
     hal_ring_commit(&rx);
+    rx_gap = false;
 }
 
 void hal_uart_init(uint32_t baud)

@@ -15,6 +15,7 @@ static uint8_t rx_buffer[RX_SIZE];
 static hal_ring_t tx;
 static hal_ring_t rx;
 static uint8_t rx_lost;
+static bool rx_gap;
 static uint32_t baud_rate;
 static uint64_t byte_cycles;
 static uint64_t tx_at;
@@ -29,6 +30,7 @@ void host_uart_begin(void)
     tx = (hal_ring_t){ 0, 0, 0 };
     rx = (hal_ring_t){ 0, 0, 0 };
     rx_lost = 0;
+    rx_gap = false;
     tx_at = HOST_NEVER;
     tx_shifting = false;
     rx_at = HOST_NEVER;
@@ -76,12 +78,17 @@ static void receive(uint8_t byte)
     rx_count++;
     unsigned every = hal_host_faults.corrupt_rx_every;
     bool framing_error = every != 0 && rx_count % every == 0;
-    if (framing_error || hal_ring_room(&rx, RX_MASK) == 0) {
+    if (hal_ring_room(&rx, RX_MASK) == 0) {
         count_lost();
+        rx_gap = true;
         return;
     }
-    hal_ring_stage(&rx, rx_buffer, RX_MASK, byte);
+    if (framing_error) {
+        count_lost();
+    }
+    hal_ring_stage(&rx, rx_buffer, RX_MASK, (framing_error || rx_gap) ? 0 : byte);
     hal_ring_commit(&rx);
+    rx_gap = false;
 }
 
 void host_uart_step(void)

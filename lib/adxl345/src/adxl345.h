@@ -8,7 +8,7 @@
  * queue; main takes samples out. What a late read left in the sensor's FIFO (stream mode, 32 deep) is drained from main with
  * interpolated stamps. One sensor, one instance: the interrupts share its state.
  *
- * Contexts: every function here is for main. The two handlers are in adxl345.c.
+ * Contexts: every function here is for main. The two handlers are in adxl345_burst.c.
  */
 #ifndef ADXL345_H
 #define ADXL345_H
@@ -84,9 +84,10 @@ uint32_t adxl345_period_us(void);
 /* Counters, saturating. */
 typedef struct {
     uint16_t samples_drained; /* read late, with an interpolated stamp */
-    uint16_t bus_faults;      /* transfers that failed, any cause */
-    uint16_t timeouts;        /* of those: did not end in time */
-    uint16_t restarts;        /* sensor configured anew after a fault */
+    uint16_t
+        bus_faults; /* register accesses that failed, hung bursts, three failed bursts in a row; not one read again */
+    uint16_t timeouts; /* of those: did not end in time */
+    uint16_t restarts; /* sensor configured anew after a fault */
 } adxl345_counters_t;
 void adxl345_counters(adxl345_counters_t *out);
 

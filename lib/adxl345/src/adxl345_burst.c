@@ -50,8 +50,6 @@ static inline void begin_burst(uint32_t now_us, uint32_t t_us, uint8_t exact)
     slot->t_us = t_us;
     slot->exact = exact;
     begun_us = now_us;
-    last_us = t_us;
-    last_known = 1;
     edge_waiting = 0;
     on_bus = 1;
     bus.tx[0] = ADXL345_DATAX0;
@@ -80,6 +78,8 @@ static inline void end_burst(void)
 {
     on_bus = 0;
     if (bus.state == I2C_BUS_OK) {
+        last_us = queue[head].t_us;
+        last_known = 1;
         head = (uint8_t)((uint8_t)(head + 1u) & QUEUE_MASK);
         failures = 0;
         return;
