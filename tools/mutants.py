@@ -53,7 +53,8 @@ def judged(judge):
     if built.returncode != 0:
         return f"does not build: {built.stderr.strip().splitlines()[0] if built.stderr.strip() else '?'}"
     try:
-        done = subprocess.run(command, cwd=TREE, capture_output=True, text=True, timeout=200, errors="replace")
+        limit_s = 200 if judge.startswith("system ") else 30
+        done = subprocess.run(command, cwd=TREE, capture_output=True, text=True, timeout=limit_s, errors="replace")
     except subprocess.TimeoutExpired:
         return "hangs"
     if done.returncode == 0:

@@ -1,0 +1,86 @@
+/* Each flag of a row: a stream that must raise it and one beside it that must not. */
+#include <stdio.h>
+
+#include "pipeline.h"
+#include "support_board.h"
+#include "unity.h"
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+/* Flags of the last of 60 rows of a board that reads (x, y, z), after the command if there is one. */
+static unsigned flags_of(const char *command, int16_t x, int16_t y, int16_t z)
+{
+    stream_t stream = board_constant_stream(400, 100.0, x, y, z);
+    board_start(&stream, 0.0, 0);
+    board_run_ms(300);
+    if (command != NULL) {
+        board_type(command);
+    }
+    board_run_ms(600);
+    stream_free(&stream);
+    return board.rows[board.row_count - 1].flags;
+}
+
+/* 0.85 g are 217.6 LSB, 1.15 g are 294.4. */
+static void test_not_gravity(void)
+{
+    TEST_ASSERT_EQUAL_UINT(ROW_NOT_GRAVITY, flags_of(NULL, 0, 0, 217));
+    TEST_ASSERT_EQUAL_UINT(0, flags_of(NULL, 0, 0, 219));
+    TEST_ASSERT_EQUAL_UINT(0, flags_of(NULL, 0, 0, 294));
+    TEST_ASSERT_EQUAL_UINT(ROW_NOT_GRAVITY, flags_of(NULL, 0, 0, 296));
+}
+
+static void test_roll_undefined_is_flagged_and_held(void)
+{
+    TEST_ASSERT_EQUAL_UINT(ROW_ROLL_UNDEFINED, flags_of(NULL, 256, 2, 2));
+    TEST_ASSERT_EQUAL_INT(0, board.rows[board.row_count - 1].roll_cdeg);
+    TEST_ASSERT_INT_WITHIN(6, -8937, board.rows[board.row_count - 1].pitch_cdeg); /* atan2(-256, sqrt(8)) */
+    TEST_ASSERT_EQUAL_UINT(0, flags_of(NULL, 256, 6, 0));
+}
+
+/* Both rails of each range, and one LSB inside them. */
+static void test_clipped_at_the_rails_of_the_range_in_force(void)
+{
+    for (int range_g = 2; range_g <= 16; range_g *= 2) {
+        char command[16];
+        int16_t high = (int16_t)(256 * range_g - 1);
+        snprintf(command, sizeof command, "range %d", range_g);
+        TEST_ASSERT_EQUAL_UINT(ROW_CLIPPED, flags_of(command, high, 0, 256) & ROW_CLIPPED);
+        TEST_ASSERT_EQUAL_UINT(ROW_CLIPPED, flags_of(command, (int16_t)(-high - 1), 0, 256) & ROW_CLIPPED);
+        TEST_ASSERT_EQUAL_UINT(0, flags_of(command, (int16_t)(high - 1), 0, 256) & ROW_CLIPPED);
+        TEST_ASSERT_EQUAL_UINT(0, flags_of(command, (int16_t)-high, 0, 256) & ROW_CLIPPED);
+    }
+}
+
+/* y climbs by 1 LSB a sample; two samples are missing at 3 s: coasted over, the estimate follows as if they had come. */
+static void test_missing_samples_are_coasted_over(void)
+{
+    stream_t ramp = board_constant_stream(600, 100.0, 0, 0, 256);
+    for (size_t i = 0; i < ramp.count; i++) {
+        size_t sample = i < 300 ? i : i + 2;
+        ramp.rows[i].t_us = (uint64_t)sample * 10000u;
+        ramp.rows[i].lsb[1] = (int16_t)((int)sample - 300);
+    }
+    board_start(&ramp, 0.0, 0);
+    board_run_ms(3500);
+    size_t compared = 0;
+    for (size_t i = 200; i < board.row_count; i++) {
+        TEST_ASSERT_INT_WITHIN(8, board.rows[i].lsb[1] * 1000 / 256, board.rows[i].mg[1]);
+        TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & (ROW_GATED | ROW_REACQUIRED));
+        compared++;
+    }
+    TEST_ASSERT_TRUE(compared > 120);
+    stream_free(&ramp);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_not_gravity);
+    RUN_TEST(test_roll_undefined_is_flagged_and_held);
+    RUN_TEST(test_clipped_at_the_rails_of_the_range_in_force);
+    RUN_TEST(test_missing_samples_are_coasted_over);
+    return UNITY_END();
+}
