@@ -44,7 +44,7 @@ static void test_roll_undefined_is_flagged_and_held(void)
 static void test_clipped_at_the_rails_of_the_range_in_force(void)
 {
     for (int range_g = 2; range_g <= 16; range_g *= 2) {
-        char command[16];
+        char command[24];
         int16_t high = (int16_t)(256 * range_g - 1);
         snprintf(command, sizeof command, "range %d", range_g);
         TEST_ASSERT_EQUAL_UINT(ROW_CLIPPED, flags_of(command, high, 0, 256) & ROW_CLIPPED);

@@ -30,7 +30,7 @@ def prepare():
             continue
         target.parent.mkdir(parents=True, exist_ok=True)
         if not target.exists() or target.read_bytes() != source.read_bytes():
-            shutil.copy2(source, target)
+            shutil.copy(source, target)  # with a new time, so that make builds it anew
     for shared in ("unity", "venv"):
         link = TREE / "build" / shared
         link.parent.mkdir(exist_ok=True)
