@@ -20,7 +20,7 @@ INCLUDES := -Ihal -Ifirmware $(addprefix -I,$(LIB_DIRS))
 ## help: this list
 help:
 	@echo "tilt-uno: tilt from an Arduino UNO and an ADXL345 that outliers cannot fool"
-	@sed -n 's/^## \([a-z]*\): /  make \1|/p' Makefile | awk -F'|' '{printf "%-16s %s\n", $$1, $$2}'
+	@sed -n 's/^## \([a-z]*\): /  make \1|/p' Makefile mk/*.mk | awk -F'|' '{printf "%-16s %s\n", $$1, $$2}'
 
 ## deps: install what any target needs (says what, before it does)
 deps:
@@ -185,11 +185,6 @@ cycles:
 	@$(MAKE) $(U)/cycles.elf $(S)/simrun
 	@sh tools/cycles.sh
 
-## mutants: break the code in named places and see that the tests notice (4 minutes)
-mutants:
-	@sh tools/deps.sh test
-	@python3 tools/mutants.py
-
 ## check: include table, forbidden symbols, HAL seam, lengths, clang-tidy, cppcheck, format, budgets
 check:
 	@sh tools/deps.sh check
@@ -207,9 +202,12 @@ check:
 clean:
 	@rm -rf $(U) $(H) $(S) $(B)/*.json
 
+# one file per further target
+include $(sort $(wildcard mk/*.mk))
+
 # keep the test objects
 .SECONDARY:
 
-.PHONY: sim test cycles mutants check clean
+.PHONY: sim test cycles check clean
 
 -include $(shell find $(U) $(H) -name '*.d' 2>/dev/null)
