@@ -176,8 +176,9 @@ sim:
 ## test: unit tests on the PC, then the firmware in the simulator against the PC
 test:
 	@sh tools/deps.sh test
-	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt $(H)/native_replay $(H)/pipeline_replay $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun
-	@sh tools/run_tests.sh $(TESTS)
+	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt $(H)/native_replay $(H)/pipeline_replay $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun \
+	    $(H)/filter_sequence $(CHIP_TESTS)
+	@CHIP_TESTS="$(CHIP_TESTS)" sh tools/run_tests.sh $(TESTS)
 
 ## cycles: cycles of the filters and angles on the simulated chip
 cycles:

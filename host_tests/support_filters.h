@@ -1,33 +1,71 @@
 /*
- * What the tests of lib/filters share: random numbers with a fixed seed, streams through filters, text of a golden row.
+ * What the generic tests of lib/filters share, on the PC and on the chip (no double, no 64-bit numbers): random numbers,
+ * configurations from the descriptors, and the facts about single filters that no descriptor tells.
  */
 #ifndef SUPPORT_FILTERS_H
 #define SUPPORT_FILTERS_H
 
 #include "filter_any.h"
+#include "fx.h"
+#include "support_random.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-/* xorshift64*: same sequence everywhere. */
-typedef struct {
-    uint64_t state;
-} test_random_t;
+/* Rates that every configuration's first field may take. */
+#define CONFIG_RATE_MIN_DHZ 50U
+#define CONFIG_RATE_MAX_DHZ 40000U
 
-void random_seed(test_random_t *r, uint64_t seed);
-uint32_t random_u32(test_random_t *r);
-uint32_t random_below(test_random_t *r, uint32_t end);
-double random_uniform(test_random_t *r);
-double random_normal(test_random_t *r);
+/* How often a test repeats something: fully on the PC, less on the chip, where a second of the simulator is 2 s. */
+#ifdef __AVR__
+#define ON_PC_OR_CHIP(pc, chip) (chip)
+#else
+#define ON_PC_OR_CHIP(pc, chip) (pc)
+#endif
 
-/* Any legal configuration of a filter. */
-void random_config(test_random_t *r, filter_kind_t kind, filter_any_config_t *config);
+/* xorshift32 (Marsaglia); the state must not be 0. */
+uint32_t random32(uint32_t *state);
 
-/* Rounded to int16 as a sensor would, saturated to 13 bit. */
-int16_t as_sample(double lsb);
+/* 0 <= result < end. */
+uint32_t random32_below(uint32_t *state, uint32_t end);
 
-/* Fails the running test when a state of the filter is outside the bounds that filter.h and two_state.h promise. */
-void assert_bounds(const filter_any_t *f, int32_t x_lsb_q16);
+/* Parameters of a filter, copied out of program memory. */
+uint8_t parameter_count(filter_kind_t kind);
+filter_parameter_t parameter_at(filter_kind_t kind, uint8_t index);
+
+/* The low bytes of a value into the parameter's field, and back with the sign that its range tells. */
+void parameter_set(filter_any_config_t *config, const filter_parameter_t *parameter, uint32_t value);
+uint32_t parameter_get(const filter_any_config_t *config, const filter_parameter_t *parameter);
+
+/* Within the range of the descriptor. */
+bool parameter_legal(const filter_parameter_t *parameter, uint32_t value);
+
+/* First field of every configuration. */
+void config_set_rate(filter_any_config_t *config, uint16_t rate_dhz);
+
+/* Every parameter anywhere in its range, the ends and the neighbourhood of the lower end preferred. */
+void random_config(uint32_t *random, filter_kind_t kind, filter_any_config_t *config);
+
+/*
+ * A filter begun with a random legal configuration. Draws again when init refuses and the filter may do so with every
+ * parameter in range; *refused counts these. False: refused although no such condition exists, or always.
+ */
+bool init_random(filter_any_t *f, filter_kind_t kind, uint32_t *random, uint32_t *refused);
+
+/* True when F_init may refuse a configuration whose parameters are each in range. */
+bool has_joint_condition(filter_kind_t kind);
+
+/* NULL, or the name of what is outside the bounds that filter.h and the filter's own header promise. */
+const char *broken_bound(const filter_any_t *f, int32_t x_lsb_q16);
+
+/* Largest difference between the answers to a sequence and to its mirror image, Q16. */
+int32_t mirror_tolerance_lsb_q16(filter_kind_t kind);
+
+/*
+ * Samples after which a filter that coasted is back, with default parameters at 100 Hz: see the derivation at its
+ * definition.
+ */
+uint8_t recovery_samples(filter_kind_t kind);
 
 #endif

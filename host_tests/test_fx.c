@@ -1,71 +1,74 @@
-/* Fixed-point primitives: C twins against exact integer arithmetic, the reciprocal against 1/s. */
+/* Fixed-point primitives against exact integer arithmetic; on the chip these are the ones in assembler. */
 #include "fx.h"
 #include "support_filters.h"
 #include "unity.h"
 
-#include <math.h>
+#define SEED 2718UL
 
-#define SEED 2718
+static uint32_t random_state;
 
-void setUp(void) {}
+void setUp(void)
+{
+    random_state = SEED;
+}
 
 void tearDown(void) {}
 
-/* Values where carries and roundings change, and random ones between. */
-static uint32_t operand(test_random_t *random, int i)
+/* Values where carries and roundings change, and random ones of all magnitudes between. */
+static uint32_t operand(uint16_t i)
 {
     static const uint32_t edges[] = { 0,        1,        2,         0x7F,       0x80,        0xFF,
                                       0x100,    0x7FFF,   0x8000,    0xFFFF,     0x10000,     0x7FFFFF,
                                       0x800000, 0xFFFFFF, 0x1000000, 0x7FFFFFFF, 0x80000000U, 0xFFFFFFFFU };
-    return i < 18 ? edges[i] : random_u32(random) >> (i % 25);
+    return (i < 18U) ? edges[i] : random32(&random_state) >> (i % 25U);
 }
 
-static uint64_t half_up(uint64_t v, int shift)
+/* The product / 2^shift rounded half up; all results fit 32 bits. */
+static uint32_t half_up(uint64_t v, uint8_t shift)
 {
-    return (v >> shift) + ((v >> (shift - 1)) & 1U);
+    return (uint32_t)((v + ((uint64_t)1 << (shift - 1))) >> shift);
 }
 
 static void products_equal_exact_arithmetic(void)
 {
-    test_random_t random;
-    random_seed(&random, SEED);
-    for (int i = 0; i < 600; i++) {
-        for (int j = 0; j < 600; j++) {
-            uint32_t a = operand(&random, i);
-            uint32_t b = operand(&random, j);
+    for (uint16_t i = 0; i < ON_PC_OR_CHIP(600, 60); i++) {
+        for (uint16_t j = 0; j < ON_PC_OR_CHIP(600, 60); j++) {
+            uint32_t a = operand(i);
+            uint32_t b = operand(j);
             uint32_t b24 = b & 0xFFFFFFU;
             uint32_t a24 = a & 0xFFFFFFU;
+            uint16_t a16 = (uint16_t)a;
             uint16_t b16 = (uint16_t)b;
-            TEST_ASSERT_EQUAL_UINT64((uint64_t)(uint16_t)a * b16, fx_mul_u16((uint16_t)a, b16));
-            TEST_ASSERT_EQUAL_UINT64(half_up((uint64_t)(uint16_t)a * b16, 16), fx_mul16_uq16((uint16_t)a, b16));
-            TEST_ASSERT_EQUAL_UINT64(half_up((uint64_t)a * b16, 16), fx_mul_uq16(a, b16));
-            TEST_ASSERT_EQUAL_UINT64(half_up((uint64_t)a * b24, 24), fx_mul_uq24(a, b24));
-            TEST_ASSERT_EQUAL_UINT64(half_up((uint64_t)a24 * b16, 8), fx_mul24_uq16(a24, b16));
-            TEST_ASSERT_EQUAL_UINT64(half_up((uint64_t)a24 * b24, 16), fx_mul24_uq24(a24, b24));
+            TEST_ASSERT_EQUAL_HEX32((uint32_t)((uint64_t)a16 * b16), fx_mul_u16(a16, b16));
+            TEST_ASSERT_EQUAL_HEX32(half_up((uint64_t)a16 * b16, 16), fx_mul16_uq16(a16, b16));
+            TEST_ASSERT_EQUAL_HEX32(half_up((uint64_t)a * b16, 16), fx_mul_uq16(a, b16));
+            TEST_ASSERT_EQUAL_HEX32(half_up((uint64_t)a * b24, 24), fx_mul_uq24(a, b24));
+            TEST_ASSERT_EQUAL_HEX32(half_up((uint64_t)a24 * b16, 8), fx_mul24_uq16(a24, b16));
+            TEST_ASSERT_EQUAL_HEX32(half_up((uint64_t)a24 * b24, 16), fx_mul24_uq24(a24, b24));
         }
     }
 }
 
 static void shifts_equal_exact_arithmetic(void)
 {
-    test_random_t random;
-    random_seed(&random, SEED + 1);
-    for (int i = 0; i < 20000; i++) {
-        uint32_t v = operand(&random, i);
-        TEST_ASSERT_EQUAL_UINT64(half_up(v, 4), fx_sixteenth(v));
-        TEST_ASSERT_EQUAL_UINT32((uint16_t)v * 4096U, fx_shift12((uint16_t)v));
-        TEST_ASSERT_EQUAL_UINT32(v * 8U, fx_eightfold(v));
+    for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
+        uint32_t v = operand(i);
+        TEST_ASSERT_EQUAL_HEX32(half_up(v, 4), fx_sixteenth(v));
+        TEST_ASSERT_EQUAL_HEX32((v & 0xFFFFU) * 4096U, fx_shift12((uint16_t)v));
+        TEST_ASSERT_EQUAL_HEX32(v * 8U, fx_eightfold(v));
     }
 }
 
 /*
- * Every node and every 2^-16 step of 1 <= s < 16: chord 0.25 + nodes 0.5 + product 0.5 (+ 0.25 of the first node's
- * limit); each halving halves the error and adds at most 0.5 by rounding. */
+ * Steps through all of 1 <= s < 16: chord 0.25 + nodes 0.5 + product 0.5 (+ 0.25 of the first node's limit); each
+ * halving halves the error and adds at most 0.5 by rounding. |r - 2^44 / s| <= 1.5 multiplied by 2 s: exact.
+ */
 static void reciprocal_is_within_its_bound(void)
 {
-    for (uint32_t s = 0x10000000U; s >= 0x10000000U; s += 0x1001U) {
-        double exact = 65536.0 * 268435456.0 / (double)s;
-        TEST_ASSERT_DOUBLE_WITHIN(1.5, fmin(exact, 65535.0), (double)fx_reciprocal_uq16(s));
+    const uint32_t step = ON_PC_OR_CHIP(0x1001U, 0x100000U + 0x1001U);
+    for (uint32_t s = 0x10000000U; s >= 0x10000000U; s += step) {
+        int64_t twice_error = (int64_t)((uint64_t)fx_reciprocal_uq16(s) * s * 2U) - ((int64_t)1 << 45);
+        TEST_ASSERT_TRUE((twice_error < 0 ? -twice_error : twice_error) <= (int64_t)3 * s);
     }
     TEST_ASSERT_EQUAL_UINT16(65535, fx_reciprocal_uq16(0x10000000U));
     TEST_ASSERT_EQUAL_UINT16(32768, fx_reciprocal_uq16(0x20000000U));
@@ -74,44 +77,51 @@ static void reciprocal_is_within_its_bound(void)
 
 static void saturating_and_clamping(void)
 {
-    TEST_ASSERT_EQUAL_UINT32(0x80000000U, fx_abs32(INT32_MIN));
+    TEST_ASSERT_EQUAL_HEX32(0x80000000U, fx_abs32(INT32_MIN));
     TEST_ASSERT_EQUAL_UINT32(7, fx_abs32(-7));
     TEST_ASSERT_EQUAL_INT32(-5, fx_clamp(-9, 5));
     TEST_ASSERT_EQUAL_INT32(5, fx_clamp(9, 5));
     TEST_ASSERT_EQUAL_INT32(-4, fx_clamp(-4, 5));
+    TEST_ASSERT_EQUAL_HEX32(UINT32_MAX, fx_add_sat(UINT32_MAX - 2U, 3U));
+    TEST_ASSERT_EQUAL_HEX32(UINT32_MAX - 1U, fx_add_sat(UINT32_MAX - 2U, 1U));
 }
 
 static void square_root_is_the_floor(void)
 {
-    for (uint32_t root = 0; root < 65536U; root++) {
+    for (uint32_t root = 0; root < 65536U; root += ON_PC_OR_CHIP(1U, 17U)) {
         uint32_t square = root * root;
         TEST_ASSERT_EQUAL_UINT16(root, fx_isqrt32(square));
-        if (root > 0U) {
-            TEST_ASSERT_EQUAL_UINT16(root - 1U, fx_isqrt32(square - 1U));
-        }
+        TEST_ASSERT_EQUAL_UINT16(root, fx_isqrt32(square + 2U * root)); /* the last before the next square */
     }
     TEST_ASSERT_EQUAL_UINT16(65535, fx_isqrt32(UINT32_MAX));
 }
 
-static double scaled_value(fx_scaled_t v)
+/* |a x 2^shift - b| 2^bits <= b: equal within 2^-bits; both below 2^48. */
+static void assert_equal_to_bits(uint64_t a, int8_t shift, uint64_t b, uint8_t bits)
 {
-    return ldexp(v.mantissa, v.exponent);
+    if (shift >= 0) {
+        a <<= (uint8_t)shift;
+    } else {
+        b <<= (uint8_t)-shift;
+    }
+    uint64_t difference = (a > b) ? a - b : b - a;
+    TEST_ASSERT_TRUE(difference << bits <= b);
 }
 
 static void scaled_numbers_keep_fourteen_bits(void)
 {
-    test_random_t random;
-    random_seed(&random, SEED + 2);
-    for (int i = 0; i < 50000; i++) {
-        uint32_t a = (random_u32(&random) >> random_below(&random, 31)) + 1U;
-        uint32_t b = (random_u32(&random) >> random_below(&random, 31)) + 1U;
-        fx_scaled_t fa = fx_scaled(a == 0U ? 1U : a);
-        fx_scaled_t fb = fx_scaled(b == 0U ? 1U : b);
-        double da = scaled_value(fa);
-        double db = scaled_value(fb);
-        TEST_ASSERT_TRUE(fabs(da / (a == 0U ? 1.0 : a) - 1.0) <= ldexp(1.0, -16));
-        TEST_ASSERT_TRUE(fabs(scaled_value(fx_scaled_mul(fa, fb)) / (da * db) - 1.0) <= ldexp(1.0, -14));
-        TEST_ASSERT_TRUE(fabs(scaled_value(fx_scaled_div(fa, fb)) / (da / db) - 1.0) <= ldexp(1.0, -14));
+    for (uint16_t i = 0; i < ON_PC_OR_CHIP(50000, 500); i++) {
+        uint32_t a = (random32(&random_state) >> random32_below(&random_state, 31)) + 1U;
+        uint32_t b = (random32(&random_state) >> random32_below(&random_state, 31)) + 1U;
+        fx_scaled_t fa = fx_scaled(a);
+        fx_scaled_t fb = fx_scaled(b);
+        assert_equal_to_bits(fa.mantissa, fa.exponent, (a == 0U) ? 1U : a, 16);
+        fx_scaled_t product = fx_scaled_mul(fa, fb);
+        assert_equal_to_bits(product.mantissa, (int8_t)(product.exponent - fa.exponent - fb.exponent),
+                             (uint64_t)fa.mantissa * fb.mantissa, 14);
+        fx_scaled_t ratio = fx_scaled_div(fa, fb);
+        assert_equal_to_bits((uint64_t)ratio.mantissa * fb.mantissa,
+                             (int8_t)(ratio.exponent - fa.exponent + fb.exponent), fa.mantissa, 14);
     }
 }
 
@@ -122,7 +132,7 @@ static void scaled_to_fixed_rounds_and_saturates(void)
     TEST_ASSERT_EQUAL_UINT32(40, fx_scaled_fixed(two_and_a_half, 4));
     TEST_ASSERT_EQUAL_UINT32(3, fx_scaled_fixed(two_and_a_half, 0));
     fx_scaled_t huge = { 0x8000U, 20 };
-    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, fx_scaled_fixed(huge, 0));
+    TEST_ASSERT_EQUAL_HEX32(UINT32_MAX, fx_scaled_fixed(huge, 0));
     fx_scaled_t tiny = { 0xFFFFU, -60 };
     TEST_ASSERT_EQUAL_UINT32(0, fx_scaled_fixed(tiny, 28));
 }

@@ -1,5 +1,6 @@
 #!/bin/sh
-# run_tests.sh TEST...: runs each Unity program and the system tests, shows what failed or was skipped, ends with the sum.
+# run_tests.sh TEST...: runs each Unity program, the images of $CHIP_TESTS in the simulator and the system tests, shows what
+# failed or was skipped, ends with the sum.
 set -u
 log=build/host/tests.log
 : > "$log"
@@ -28,6 +29,10 @@ run_one() {
 
 for test in "$@"; do
     run_one "$(basename "$test")" "$test"
+done
+run_one filter_sequence build/host/filter_sequence
+for image in $CHIP_TESTS; do
+    run_one "chip_$(basename "$image" .elf)" python3 host_tests/chip_test.py "$image"
 done
 run_one exhaustive_isqrt build/host/exhaustive_isqrt
 run_one test_plot_run build/venv/bin/python host_tests/test_plot_run.py
