@@ -178,7 +178,7 @@ test:
 	@sh tools/deps.sh test
 	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt $(H)/native_replay $(H)/pipeline_replay $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun \
 	    $(H)/filter_sequence $(CHIP_TESTS)
-	@CHIP_TESTS="$(CHIP_TESTS)" sh tools/run_tests.sh $(TESTS)
+	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" sh tools/run_tests.sh $(TESTS)
 
 ## cycles: cycles of the filters and angles on the simulated chip
 cycles:

@@ -142,27 +142,13 @@ static void parameters_are_taken_within_their_range_only(void)
             filter_parameter_t p = parameter_at((filter_kind_t)kind, i);
             uint32_t min = (uint32_t)p.min;
             uint32_t max = (uint32_t)p.max;
+            TEST_ASSERT_FALSE_MESSAGE(parameter_legal(&p, max + 1U), p.name);
             const uint32_t values[] = { min,      max,     min - 1U, max + 1U,    min - 2U,
                                         max + 2U, min / 2, max * 2,  0x80000000U, 0x7FFFFFFFU,
                                         0x8000U,  0x7FFFU, 0U,       1U,          UINT32_MAX };
             for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) {
                 try_value(kind, &p, values[v]);
             }
-        }
-    }
-}
-
-static void every_parameter_has_refused_values(void)
-{
-    FOR_EACH_KIND(kind)
-    {
-        for (uint8_t i = 0; i < parameter_count((filter_kind_t)kind); i++) {
-            filter_parameter_t p = parameter_at((filter_kind_t)kind, i);
-            filter_any_config_t config;
-            filter_any_defaults((filter_kind_t)kind, &config, 1000);
-            parameter_set(&config, &p, (uint32_t)p.max + 1U);
-            TEST_ASSERT_FALSE_MESSAGE(parameter_legal(&p, parameter_get(&config, &p)), p.name);
-            assert_refused(kind, &config);
         }
     }
 }
@@ -286,20 +272,28 @@ static int32_t random_call(filter_any_t *f)
     return probe.x_lsb_q16;
 }
 
-/* The same calls for the original and its copy. */
+/* The same calls for the original and its copy, by turns, so that nothing outside the state could tell them apart. */
 static void copy_goes_on_like_the_original(void)
 {
     FOR_EACH_KIND(kind)
     {
-        filter_any_t f;
-        make_random(&f, kind);
-        for (uint16_t k = 0; k < ON_PC_OR_CHIP(3000, 150); k++) {
-            filter_any_t copy = f;
-            uint32_t before = random_state;
-            int32_t x = random_call(&f);
-            random_state = before;
-            TEST_ASSERT_EQUAL_INT32(x, random_call(&copy));
-            assert_same_probe(&f, &copy);
+        for (uint16_t run = 0; run < ON_PC_OR_CHIP(100, 4); run++) {
+            filter_any_t f;
+            filter_any_t copy;
+            make_random(&f, kind);
+            for (uint8_t k = 0; k < 100; k++) {
+                if (k == 10U) {
+                    memcpy(&copy, &f, sizeof f);
+                }
+                uint32_t before = random_state;
+                int32_t x = random_call(&f);
+                if (k >= 10U) {
+                    random_state = before;
+                    TEST_ASSERT_EQUAL_INT32(x, random_call(&copy));
+                    assert_same_probe(&f, &copy);
+                    TEST_ASSERT_EQUAL_MEMORY(&f, &copy, sizeof f);
+                }
+            }
         }
     }
 }
@@ -431,7 +425,6 @@ int main(void)
     RUN_TEST(defaults_are_legal_at_every_rate);
     RUN_TEST(unknown_kind_is_refused_and_harmless);
     RUN_TEST(parameters_are_taken_within_their_range_only);
-    RUN_TEST(every_parameter_has_refused_values);
     RUN_TEST(rates_outside_5_to_4000_hz_are_refused);
     RUN_TEST(constant_in_constant_out_after_reset);
     RUN_TEST(warm_up_puts_out_the_running_median);

@@ -34,6 +34,7 @@ run_one filter_sequence build/host/filter_sequence
 for image in $CHIP_TESTS; do
     run_one "chip_$(basename "$image" .elf)" python3 host_tests/chip_test.py "$image"
 done
+run_one bitexact python3 tools/bitexact.py
 run_one exhaustive_isqrt build/host/exhaustive_isqrt
 run_one test_plot_run build/venv/bin/python host_tests/test_plot_run.py
 run_one system_tests python3 host_tests/system_tests.py

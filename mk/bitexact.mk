@@ -1,0 +1,9 @@
+# The same bits from every compiler and on the chip.
+
+## bitexact: every filter, angle and number on PC and chip, all optimisations, bit for bit (30 s)
+bitexact:
+	@sh tools/deps.sh test
+	@$(MAKE) $(S)/simrun
+	@WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" python3 tools/bitexact.py
+
+.PHONY: bitexact
