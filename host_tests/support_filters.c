@@ -129,6 +129,8 @@ bool has_joint_condition(filter_kind_t kind)
         return false;
     case FILTER_KIND_sprf:
         return true; /* reacquire: of 3..9 only 3, 5 and 9, whose slope is a shift */
+    case FILTER_KIND_synth:
+        return true; /* the stability region of a1 and b0 */
     case FILTER_KIND_COUNT:
         break;
     }
@@ -150,7 +152,7 @@ static const char *broken_two_state(const two_state_t *s, int32_t x_lsb_q16)
     if (s->q22_uq28 < 16U || s->q22_uq28 > 0x10000000U || s->p22_start_uq28 > 0x10000000U) {
         return "q22";
     }
-    if (s->r_lsb2_q8 < TWO_STATE_R_MIN_LSB2_Q8 || s->r_lsb2_q8 > TWO_STATE_R_MAX_LSB2_Q8) {
+    if (s->r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 || s->r_lsb2_q8 > FILTER_R_MAX_LSB2_Q8) {
         return "r";
     }
     if (s->collected > FILTER_WARM_UP_SAMPLES) {
@@ -178,6 +180,33 @@ static const char *broken_sprf(const sprf_t *f, int32_t x_lsb_q16)
     return broken_two_state(&f->core, x_lsb_q16);
 }
 
+/* synth.h, synth.c: estimates within the bound of the format, gains as configured, the start's line within its spread. */
+static const char *broken_synth(const synth_t *f, int32_t x_lsb_q16)
+{
+    if (fx_abs32(f->innovation_lsb_q16) > (uint32_t)8704 << 16) {
+        return "innovation";
+    }
+    if (f->spread_lsb <= 0 || f->spread_lsb > 365) {
+        return "spread";
+    }
+    if (f->r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 || f->r_lsb2_q8 > FILTER_R_MAX_LSB2_Q8 || f->b0_uq16 < 656U) {
+        return "configuration";
+    }
+    if (f->collected >= 64U && f->collected != 255U) {
+        return "collected";
+    }
+    if (f->collected < FILTER_WARM_UP_SAMPLES) {
+        return NULL;
+    }
+    for (uint8_t i = 0; i < 3U; i++) {
+        if (fx_abs32(f->u.run.x_lsb_q16[i]) > (uint32_t)FILTER_X_MAX_LSB << 16) {
+            return "older x";
+        }
+    }
+    int32_t output = ((f->flags & FILTER_WARMING_UP) != 0U) ? f->u.run.median_lsb_q16 : f->u.run.x_lsb_q16[0];
+    return (x_lsb_q16 == output) ? NULL : "x returned";
+}
+
 static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)
 {
     switch ((filter_kind_t)f->kind) {
@@ -185,6 +214,8 @@ static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)
         return broken_two_state(&f->state.kf.core, x_lsb_q16);
     case FILTER_KIND_sprf:
         return broken_sprf(&f->state.sprf, x_lsb_q16);
+    case FILTER_KIND_synth:
+        return broken_synth(&f->state.synth, x_lsb_q16);
     case FILTER_KIND_COUNT:
         break;
     }
@@ -207,12 +238,13 @@ const char *broken_bound(const filter_any_t *f, int32_t x_lsb_q16)
     return broken_state(f, x_lsb_q16);
 }
 
-/* The two-state core computes magnitudes and rounds them alike for both signs: exact. */
+/* The two-state core and synth compute magnitudes and round them alike for both signs: exact. */
 int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
 {
     switch (kind) {
     case FILTER_KIND_kf:
     case FILTER_KIND_sprf:
+    case FILTER_KIND_synth:
         return 0;
     case FILTER_KIND_COUNT:
         break;
@@ -226,7 +258,8 @@ int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
  * eigenvalue of P'^-1 (I - K H) A P A^T (I - K H)^T at each update, because P' exceeds that product by the noise terms;
  * so |e_x| <= sqrt(P11 V). With q T^3 / R = 1/300 (defaults at 100 Hz) and P grown over the gap up to the core's limit
  * of 2, this is below 1/4 LSB after 43 samples for the worst n. sprf takes that path when the first innovation is within
- * its gate, else its five agreeing samples restart it without error.
+ * its gate, else its five agreeing samples restart it without error. synth at (0, 0.3) obeys e = 0.7 (2 e1 - e2): from 400
+ * and 398 LSB |e| <= 400.1 x 0.83666^n, below 1/4 LSB after 42.
  */
 uint8_t recovery_samples(filter_kind_t kind)
 {
@@ -234,6 +267,8 @@ uint8_t recovery_samples(filter_kind_t kind)
     case FILTER_KIND_kf:
     case FILTER_KIND_sprf:
         return 43;
+    case FILTER_KIND_synth:
+        return 42;
     case FILTER_KIND_COUNT:
         break;
     }

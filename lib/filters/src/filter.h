@@ -33,6 +33,12 @@ extern "C" {
 /* Bound of the estimate, inductive over any sequence of calls: |x| <= FILTER_X_MAX_LSB. */
 #define FILTER_X_MAX_LSB 4608
 
+/* Legal ranges shared by the configurations of all filters: output data rate (0.1 Hz), measurement variance R. */
+#define FILTER_RATE_MIN_DHZ 50U
+#define FILTER_RATE_MAX_DHZ 40000U
+#define FILTER_R_MIN_LSB2_Q8 3U
+#define FILTER_R_MAX_LSB2_Q8 256000U
+
 /* Samples that a filter collects after init before it runs; until then it puts out the running median. */
 #define FILTER_WARM_UP_SAMPLES 5
 
@@ -43,6 +49,15 @@ enum filter_flag {
     FILTER_SATURATED = 0x08,  /* a state was clamped to its bound */
     FILTER_WARMING_UP = 0x10  /* fewer than FILTER_WARM_UP_SAMPLES since init */
 };
+
+/* A sample limited to the range that the bounds of all filters assume. */
+static inline int16_t filter_clamp_z(int16_t z_lsb)
+{
+    if (z_lsb > FILTER_Z_MAX_LSB) {
+        return FILTER_Z_MAX_LSB;
+    }
+    return (int16_t)((z_lsb < FILTER_Z_MIN_LSB) ? FILTER_Z_MIN_LSB : z_lsb);
+}
 
 /* Snapshot for telemetry and tests. */
 typedef struct {
@@ -60,10 +75,11 @@ typedef struct {
     char name[10];          /* as typed in a command, e.g. "gate" */
     char unit[8];           /* e.g. "sigma", "LSB2", "LSB2/s3" */
     uint8_t offset;         /* of the field in F_config_t */
-    uint8_t size;           /* of the field: 2 or 4 bytes, unsigned */
+    uint8_t size;           /* of the field: 2 or 4 bytes */
     uint8_t fraction_bits;  /* binary point of the stored value */
     uint8_t zero_means_off; /* 1: 0 is legal and switches the feature off although below min */
-    uint32_t min, max;      /* legal range of the stored value */
+    uint8_t is_signed;      /* 1: the field is in two's complement */
+    int32_t min, max;       /* legal range of the stored value; a filter may refuse combinations within it */
 } filter_parameter_t;
 
 /* What F is; lives in program memory. Default values come from F_defaults, which knows the rate. */

@@ -4,9 +4,11 @@
 
 #include "kf.h"
 #include "sprf.h"
+#include "synth.h"
 
 #define FILTER_LIST(X) \
     X(kf)              \
-    X(sprf)
+    X(sprf)            \
+    X(synth)
 
 #endif

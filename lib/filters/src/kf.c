@@ -2,8 +2,8 @@
 #include "kf.h"
 
 static const filter_parameter_t parameters[] FX_FLASH = {
-    { "r", "LSB2", offsetof(kf_config_t, r_lsb2_q8), 4, 8, 0, TWO_STATE_R_MIN_LSB2_Q8, TWO_STATE_R_MAX_LSB2_Q8 },
-    { "q", "LSB2/s3", offsetof(kf_config_t, q_lsb2_s3), 4, 0, 0, TWO_STATE_Q_MIN_LSB2_S3, TWO_STATE_Q_MAX_LSB2_S3 },
+    { "r", "LSB2", offsetof(kf_config_t, r_lsb2_q8), 4, 8, 0, 0, FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8 },
+    { "q", "LSB2/s3", offsetof(kf_config_t, q_lsb2_s3), 4, 0, 0, 0, TWO_STATE_Q_MIN_LSB2_S3, TWO_STATE_Q_MAX_LSB2_S3 },
 };
 
 const filter_descriptor_t kf_descriptor FX_FLASH = { "kf", sizeof parameters / sizeof parameters[0], parameters };
@@ -11,7 +11,7 @@ const filter_descriptor_t kf_descriptor FX_FLASH = { "kf", sizeof parameters / s
 void kf_defaults(kf_config_t *config, uint16_t rate_dhz)
 {
     config->rate_dhz = rate_dhz;
-    config->r_lsb2_q8 = two_state_default_r_lsb2_q8(rate_dhz);
+    config->r_lsb2_q8 = filter_default_r_lsb2_q8(rate_dhz);
     config->q_lsb2_s3 = TWO_STATE_Q_DEFAULT_LSB2_S3;
 }
 
@@ -32,7 +32,7 @@ void kf_set_noise(kf_t *f, uint32_t r_lsb2_q8)
 void kf_reset(kf_t *f, int16_t z0_lsb)
 {
     f->core.flags = 0;
-    two_state_start(&f->core, (int32_t)two_state_clamp_z(z0_lsb) * 65536);
+    two_state_start(&f->core, (int32_t)filter_clamp_z(z0_lsb) * 65536);
     two_state_settle(&f->core);
 }
 
@@ -43,7 +43,7 @@ void kf_reset(kf_t *f, int16_t z0_lsb)
  */
 int32_t kf_update(kf_t *f, int16_t z_lsb)
 {
-    int16_t z = two_state_clamp_z(z_lsb);
+    int16_t z = filter_clamp_z(z_lsb);
     if (two_state_warming_up(&f->core)) {
         two_state_warm_up(&f->core, z);
     } else {

@@ -115,14 +115,6 @@ static void average(noise_t *n, uint32_t term_q16)
     }
 }
 
-static int16_t within_range(int16_t z_lsb)
-{
-    if (z_lsb > FILTER_Z_MAX_LSB) {
-        return FILTER_Z_MAX_LSB;
-    }
-    return (int16_t)((z_lsb < FILTER_Z_MIN_LSB) ? FILTER_Z_MIN_LSB : z_lsb);
-}
-
 static void remember(noise_t *n, int16_t z_lsb)
 {
     for (uint8_t i = HISTORY - 1U; i > 0U; i--) {
@@ -133,7 +125,7 @@ static void remember(noise_t *n, int16_t z_lsb)
 
 bool noise_update(noise_t *n, int16_t z_lsb)
 {
-    int16_t z = within_range(z_lsb);
+    int16_t z = filter_clamp_z(z_lsb);
     if (n->filled < HISTORY) {
         remember(n, z);
         n->filled++;

@@ -14,11 +14,12 @@
 #define RATE_MAX_DEFAULT_LSB_S 800U
 
 static const filter_parameter_t parameters[] FX_FLASH = {
-    { "r", "LSB2", offsetof(sprf_config_t, r_lsb2_q8), 4, 8, 0, TWO_STATE_R_MIN_LSB2_Q8, TWO_STATE_R_MAX_LSB2_Q8 },
-    { "q", "LSB2/s3", offsetof(sprf_config_t, q_lsb2_s3), 4, 0, 0, TWO_STATE_Q_MIN_LSB2_S3, TWO_STATE_Q_MAX_LSB2_S3 },
-    { "gate", "sigma", offsetof(sprf_config_t, gate_sigma_q8), 2, 8, 1, GATE_MIN_SIGMA_Q8, GATE_MAX_SIGMA_Q8 },
-    { "reacquire", "samples", offsetof(sprf_config_t, reacquire_samples), 2, 0, 1, REACQUIRE_MIN, REACQUIRE_MAX },
-    { "ratemax", "LSB/s", offsetof(sprf_config_t, rate_max_lsb_s), 4, 0, 0, RATE_MAX_MIN_LSB_S, RATE_MAX_MAX_LSB_S },
+    { "r", "LSB2", offsetof(sprf_config_t, r_lsb2_q8), 4, 8, 0, 0, FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8 },
+    { "q", "LSB2/s3", offsetof(sprf_config_t, q_lsb2_s3), 4, 0, 0, 0, TWO_STATE_Q_MIN_LSB2_S3,
+      TWO_STATE_Q_MAX_LSB2_S3 },
+    { "gate", "sigma", offsetof(sprf_config_t, gate_sigma_q8), 2, 8, 1, 0, GATE_MIN_SIGMA_Q8, GATE_MAX_SIGMA_Q8 },
+    { "reacquire", "samples", offsetof(sprf_config_t, reacquire_samples), 2, 0, 1, 0, REACQUIRE_MIN, REACQUIRE_MAX },
+    { "ratemax", "LSB/s", offsetof(sprf_config_t, rate_max_lsb_s), 4, 0, 0, 0, RATE_MAX_MIN_LSB_S, RATE_MAX_MAX_LSB_S },
 };
 
 const filter_descriptor_t sprf_descriptor FX_FLASH = { "sprf", sizeof parameters / sizeof parameters[0], parameters };
@@ -26,7 +27,7 @@ const filter_descriptor_t sprf_descriptor FX_FLASH = { "sprf", sizeof parameters
 void sprf_defaults(sprf_config_t *config, uint16_t rate_dhz)
 {
     config->rate_dhz = rate_dhz;
-    config->r_lsb2_q8 = two_state_default_r_lsb2_q8(rate_dhz);
+    config->r_lsb2_q8 = filter_default_r_lsb2_q8(rate_dhz);
     config->q_lsb2_s3 = TWO_STATE_Q_DEFAULT_LSB2_S3;
     config->gate_sigma_q8 = GATE_DEFAULT_SIGMA_Q8;
     config->reacquire_samples = REACQUIRE_DEFAULT;
@@ -74,7 +75,7 @@ void sprf_set_noise(sprf_t *f, uint32_t r_lsb2_q8)
 
 void sprf_reset(sprf_t *f, int16_t z0_lsb)
 {
-    int16_t z0 = two_state_clamp_z(z0_lsb);
+    int16_t z0 = filter_clamp_z(z0_lsb);
     f->core.flags = 0;
     two_state_start(&f->core, (int32_t)z0 * 65536);
     two_state_settle(&f->core);
@@ -132,7 +133,7 @@ FX_NOINLINE void refuse(sprf_t *f, int16_t z_lsb)
  */
 int32_t sprf_update(sprf_t *f, int16_t z_lsb)
 {
-    int16_t z = two_state_clamp_z(z_lsb);
+    int16_t z = filter_clamp_z(z_lsb);
     if (two_state_warming_up(&f->core)) {
         two_state_warm_up(&f->core, z);
     } else if (two_state_step(&f->core, z, true)) {

@@ -20,15 +20,8 @@
 
 bool two_state_legal(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3)
 {
-    return rate_dhz >= TWO_STATE_RATE_MIN_DHZ && rate_dhz <= TWO_STATE_RATE_MAX_DHZ &&
-           r_lsb2_q8 >= TWO_STATE_R_MIN_LSB2_Q8 && r_lsb2_q8 <= TWO_STATE_R_MAX_LSB2_Q8 &&
-           q_lsb2_s3 >= TWO_STATE_Q_MIN_LSB2_S3 && q_lsb2_s3 <= TWO_STATE_Q_MAX_LSB2_S3;
-}
-
-uint32_t two_state_default_r_lsb2_q8(uint16_t rate_dhz)
-{
-    uint32_t r = ((uint32_t)rate_dhz * 768U + 500U) / 1000U;            /* 0.003 per 0.1 Hz, Q8 */
-    return (r < TWO_STATE_R_MIN_LSB2_Q8) ? TWO_STATE_R_MIN_LSB2_Q8 : r; /* <= 30720 */
+    return filter_common_legal(rate_dhz, r_lsb2_q8) && q_lsb2_s3 >= TWO_STATE_Q_MIN_LSB2_S3 &&
+           q_lsb2_s3 <= TWO_STATE_Q_MAX_LSB2_S3;
 }
 
 void two_state_init(two_state_t *s, uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3, uint32_t rate_max_lsb_s)
@@ -62,11 +55,7 @@ static uint32_t per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq
 
 void two_state_set_noise(two_state_t *s, uint32_t r_lsb2_q8)
 {
-    if (r_lsb2_q8 < TWO_STATE_R_MIN_LSB2_Q8) {
-        r_lsb2_q8 = TWO_STATE_R_MIN_LSB2_Q8;
-    } else if (r_lsb2_q8 > TWO_STATE_R_MAX_LSB2_Q8) {
-        r_lsb2_q8 = TWO_STATE_R_MAX_LSB2_Q8;
-    }
+    r_lsb2_q8 = filter_limited_r_lsb2_q8(r_lsb2_q8);
     s->r_lsb2_q8 = r_lsb2_q8;
     fx_scaled_t r_lsb2 = fx_scaled(r_lsb2_q8);
     r_lsb2.exponent = (int8_t)(r_lsb2.exponent - 8);
@@ -109,24 +98,11 @@ void two_state_settle(two_state_t *s)
     }
 }
 
-/* Median of `count` ascending samples, Q16: the mean of the middle two when even. */
-static int32_t median_q16(const int16_t *ascending, uint8_t count)
-{
-    int32_t high = ascending[count >> 1];
-    int32_t low = ((count & 1U) != 0U) ? high : ascending[(count >> 1) - 1];
-    return (low + high) * 32768;
-}
-
 void two_state_warm_up(two_state_t *s, int16_t z_lsb)
 {
-    uint8_t at = s->collected;
-    while (at > 0U && s->u.start_lsb[at - 1U] > z_lsb) {
-        s->u.start_lsb[at] = s->u.start_lsb[at - 1U];
-        at--;
-    }
-    s->u.start_lsb[at] = z_lsb;
+    filter_warm_up_insert(s->u.start_lsb, s->collected, z_lsb);
     s->collected++;
-    s->x_lsb_q16 = median_q16(s->u.start_lsb, s->collected);
+    s->x_lsb_q16 = filter_warm_up_median_q16(s->u.start_lsb, s->collected);
     s->flags = FILTER_WARMING_UP;
     if (s->collected == FILTER_WARM_UP_SAMPLES) {
         two_state_start(s, s->x_lsb_q16);

@@ -12,18 +12,14 @@
 #ifndef TWO_STATE_H
 #define TWO_STATE_H
 
-#include "filter.h"
+#include "filter_common.h"
 #include "fx.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* Legal ranges shared by the configurations of all two-state filters. */
-#define TWO_STATE_RATE_MIN_DHZ 50U
-#define TWO_STATE_RATE_MAX_DHZ 40000U
-#define TWO_STATE_R_MIN_LSB2_Q8 3U
-#define TWO_STATE_R_MAX_LSB2_Q8 256000U
+/* Legal range of the drive, shared by the configurations of all two-state filters. */
 #define TWO_STATE_Q_MIN_LSB2_S3 1U
 #define TWO_STATE_Q_MAX_LSB2_S3 1000000000U
 
@@ -69,12 +65,6 @@ typedef struct {
 
 /* True when rate, R and q are legal. */
 bool two_state_legal(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3);
-
-/*
- * R to start from at an output data rate: 1.5 x 0.02 x rate LSB^2 (0.14 LSB per root Hz, measured on real boards),
- * limited.
- */
-uint32_t two_state_default_r_lsb2_q8(uint16_t rate_dhz);
 
 /*
  * Legal parameters to a filter that begins to warm up, no gate. rate_max in LSB/s, 0: the bound of the format. Divides.
@@ -127,15 +117,6 @@ FX_ONCE bool two_state_step(two_state_t *s, int16_t z_lsb, bool present);
 
 /* Snapshot, see filter.h. */
 void two_state_probe(const two_state_t *s, filter_probe_t *out);
-
-/* A sample limited to the range that the bounds assume. */
-static inline int16_t two_state_clamp_z(int16_t z_lsb)
-{
-    if (z_lsb > FILTER_Z_MAX_LSB) {
-        return FILTER_Z_MAX_LSB;
-    }
-    return (int16_t)((z_lsb < FILTER_Z_MIN_LSB) ? FILTER_Z_MIN_LSB : z_lsb);
-}
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,231 @@
+/* synth: its start, its two-product form and its presets on integers; runs on the PC and on the chip. */
+#include "synth.h"
+#include "unity.h"
+
+#include <string.h>
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+static void make(synth_t *f, int32_t a1_q16, uint16_t b0_uq16)
+{
+    synth_config_t config;
+    synth_defaults(&config, 1000);
+    config.a1_q16 = a1_q16;
+    config.b0_uq16 = b0_uq16;
+    TEST_ASSERT_TRUE(synth_init(f, &config));
+}
+
+/* -0.3 and 0.1, 0 and 0.3 in units of 2^-16, rounded. */
+static void presets_are_those_of_the_papers(void)
+{
+    synth_config_t config;
+    synth_defaults(&config, 1000);
+    TEST_ASSERT_EQUAL_INT32(0, config.a1_q16);
+    TEST_ASSERT_EQUAL_UINT16(19661, config.b0_uq16);
+    synth_paper(&config, 1000);
+    TEST_ASSERT_EQUAL_INT32(-19661, config.a1_q16);
+    TEST_ASSERT_EQUAL_UINT16(6554, config.b0_uq16);
+}
+
+/* 1 + 2 a1 (1 - b0) = 0 lies at a1 = -2/3 = -43690.7 / 65536 for b0 = 1/4, and at a1 = -1 for b0 = 1/2. */
+static void border_of_the_region_is_outside(void)
+{
+    static const struct {
+        int32_t a1_q16;
+        uint16_t b0_uq16;
+        bool stable;
+    } cases[] = {
+        { -43690, 16384, true },  { -43691, 16384, false }, { -65535, 32768, true },
+        { -65536, 32768, false }, { 65535, 656, true },     { 65536, 656, false },
+    };
+    for (uint8_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        synth_config_t config;
+        synth_t f;
+        synth_defaults(&config, 1000);
+        config.b0_uq16 = cases[i].b0_uq16;
+        config.a1_q16 = cases[i].a1_q16;
+        TEST_ASSERT_EQUAL_INT(cases[i].stable, synth_init(&f, &config));
+    }
+}
+
+/* Samples on a line of 3 LSB a sample: the fitted start continues it, whatever the later gain. */
+static void start_on_a_ramp_has_its_slope(void)
+{
+    synth_t f;
+    make(&f, 0, 19661);
+    for (int16_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
+        (void)synth_update(&f, (int16_t)(3 * k));
+    }
+    for (int16_t k = FILTER_WARM_UP_SAMPLES; k < 40; k++) {
+        TEST_ASSERT_INT32_WITHIN(66, (int32_t)(3 * k) * 65536, synth_update(&f, (int16_t)(3 * k)));
+    }
+}
+
+/*
+ * (4 n - 2) / (n (n + 1)) in 2^-16, rounded: n = 6: 22/42, 7: 26/56, 8: 30/72, 9: 34/90, 10: 38/110, 11: 42/132, 12: 46/156 =
+ * 0.2949 is no longer above 0.3.
+ */
+static void start_gains_are_those_of_a_line(void)
+{
+    static const uint16_t gains[] = { 34328, 30427, 27307, 24758, 22640, 20852, 19661, 19661 };
+    synth_t f;
+    make(&f, 0, 19661);
+    for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
+        (void)synth_update(&f, 7);
+    }
+    for (uint8_t k = 0; k < sizeof gains / sizeof gains[0]; k++) {
+        filter_probe_t probe;
+        (void)synth_update(&f, 7);
+        synth_probe(&f, &probe);
+        TEST_ASSERT_EQUAL_UINT16(gains[k], probe.gain_uq16);
+    }
+}
+
+/* With b0 = 0.01 the line's gains end with the table, at n = 63: 250/4032. */
+static void start_gains_end_at_63_samples(void)
+{
+    synth_t f;
+    filter_probe_t probe;
+    make(&f, 0, 656);
+    for (uint8_t k = 1; k <= 63; k++) {
+        (void)synth_update(&f, 7);
+    }
+    synth_probe(&f, &probe);
+    TEST_ASSERT_EQUAL_UINT16(4063, probe.gain_uq16);
+    (void)synth_update(&f, 7);
+    synth_probe(&f, &probe);
+    TEST_ASSERT_EQUAL_UINT16(656, probe.gain_uq16);
+}
+
+/*
+ * R = 3 LSB^2 at 100 Hz: 6 sigma = 10.39, 11 with rounding up, and 2 samples of 8 LSB: an outlier counts at most 27 LSB: 0.6 x
+ * 27 at the end point and 0.2 x 27 of slope when it comes last; the next sample's gain of 22/42 halves their sum.
+ */
+static void outlier_in_the_start_is_limited(void)
+{
+    static const int16_t places[] = { 0, 1, 2, 3, 4 };
+    for (uint8_t p = 0; p < 5; p++) {
+        synth_t f;
+        make(&f, 0, 19661);
+        for (int16_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
+            int32_t median = synth_update(&f, (k == places[p]) ? 4000 : 0);
+            TEST_ASSERT_TRUE(k < 2 || median == 0);
+        }
+        TEST_ASSERT_INT32_WITHIN((int32_t)(0.8 * 27 * 20 / 42 * 65536) + 66, 0, synth_update(&f, 0));
+    }
+}
+
+/* Impulse response by hand from equation (7), a1 = -0.3, b0 = 0.1: 0.1, 0.207, 0.28449, 0.317814 (x 4000 LSB). */
+static void impulse_response_is_that_of_equation_7(void)
+{
+    static const int32_t expected_milli_lsb[] = { 400000, 828000, 1137960, 1271256 };
+    synth_t f;
+    make(&f, -19661, 6554);
+    synth_reset(&f, 0);
+    for (uint8_t k = 0; k < 4; k++) {
+        int32_t x = synth_update(&f, (k == 0) ? 4000 : 0);
+        /* a1 and b0 are off by 2^-18: b0 by 6e-5 of itself, up to four times over */
+        int32_t milli = (int32_t)(((int64_t)x * 1000) / 65536);
+        TEST_ASSERT_INT32_WITHIN(expected_milli_lsb[k] / 4000, expected_milli_lsb[k], milli);
+    }
+}
+
+/* Coasting is the extrapolation: after a settled ramp of 2 LSB a sample it goes on by 2. */
+static void coast_goes_on_along_the_line(void)
+{
+    synth_t f;
+    make(&f, 0, 32768);
+    for (int16_t k = 0; k < 200; k++) {
+        (void)synth_update(&f, (int16_t)(2 * k));
+    }
+    (void)synth_coast(&f);
+    (void)synth_coast(&f);
+    TEST_ASSERT_INT32_WITHIN(655, 2L * 202 * 65536, synth_coast(&f));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_COASTED, synth_flags(&f));
+    filter_probe_t probe;
+    synth_probe(&f, &probe);
+    TEST_ASSERT_EQUAL_INT32(0, probe.innovation_lsb_q16);
+    TEST_ASSERT_EQUAL_UINT16(0, probe.gain_uq16);
+    TEST_ASSERT_INT32_WITHIN(655, 2L * 65536, probe.rate_lsb_q16);
+}
+
+/* A sample that comes after a gap is not counted twice by the start: its gains go by samples seen. */
+static void coast_in_the_start_does_not_count(void)
+{
+    synth_t f;
+    make(&f, 0, 19661);
+    for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
+        (void)synth_update(&f, 7);
+    }
+    (void)synth_coast(&f);
+    (void)synth_update(&f, 7);
+    filter_probe_t probe;
+    synth_probe(&f, &probe);
+    TEST_ASSERT_EQUAL_UINT16(34328, probe.gain_uq16);
+}
+
+static void coast_before_any_sample_is_zero(void)
+{
+    synth_t f;
+    make(&f, -19661, 6554);
+    TEST_ASSERT_EQUAL_INT32(0, synth_coast(&f));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_WARMING_UP | FILTER_COASTED, synth_flags(&f));
+}
+
+/* R = 3 LSB^2: one sample's variance in the start, then 0.548387 x 3 = 1.645 (421 / 256) at (0, 0.3), 0.822358 x 3 at the paper's. */
+static void probe_tells_the_variance(void)
+{
+    filter_probe_t probe;
+    synth_t f;
+    make(&f, 0, 19661);
+    (void)synth_update(&f, 5);
+    synth_probe(&f, &probe);
+    TEST_ASSERT_EQUAL_UINT32(768, probe.p_lsb2_q8);
+    TEST_ASSERT_EQUAL_INT32(5L * 65536, probe.x_lsb_q16);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, probe.gate_lsb2_q8);
+    synth_reset(&f, 5);
+    synth_probe(&f, &probe);
+    TEST_ASSERT_UINT32_WITHIN(1, 421, probe.p_lsb2_q8);
+    make(&f, -19661, 6554);
+    synth_reset(&f, 5);
+    synth_probe(&f, &probe);
+    TEST_ASSERT_UINT32_WITHIN(1, 632, probe.p_lsb2_q8);
+    synth_set_noise(&f, 4 * 768);
+    synth_probe(&f, &probe);
+    TEST_ASSERT_UINT32_WITHIN(1, 2526, probe.p_lsb2_q8);
+}
+
+/* The paper's preset overshoots a full-range step by 69 %: the bound of the format cuts that off and the flag tells. */
+static void overshoot_beyond_the_format_is_flagged(void)
+{
+    synth_t f;
+    uint8_t flags = 0;
+    make(&f, -19661, 6554);
+    synth_reset(&f, -4096);
+    for (uint8_t k = 0; k < 20; k++) {
+        int32_t x = synth_update(&f, 4095);
+        TEST_ASSERT_TRUE(x <= (int32_t)FILTER_X_MAX_LSB * 65536);
+        flags |= synth_flags(&f);
+    }
+    TEST_ASSERT_EQUAL_UINT8(FILTER_SATURATED, flags);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(presets_are_those_of_the_papers);
+    RUN_TEST(border_of_the_region_is_outside);
+    RUN_TEST(start_on_a_ramp_has_its_slope);
+    RUN_TEST(start_gains_are_those_of_a_line);
+    RUN_TEST(start_gains_end_at_63_samples);
+    RUN_TEST(outlier_in_the_start_is_limited);
+    RUN_TEST(impulse_response_is_that_of_equation_7);
+    RUN_TEST(coast_goes_on_along_the_line);
+    RUN_TEST(coast_in_the_start_does_not_count);
+    RUN_TEST(coast_before_any_sample_is_zero);
+    RUN_TEST(probe_tells_the_variance);
+    RUN_TEST(overshoot_beyond_the_format_is_flagged);
+    return UNITY_END();
+}
