@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
 """Named breakages, each of which the tests must catch: a copy of the tree is broken in one place, one test is built and run.
 
-    mutants.py [NAME...]      all, or those whose name contains a word; a survivor makes the exit status 1
+    mutants.py [--sample N] [NAME...]      all, N of them, or those whose name contains a word; a survivor makes the exit
+                                           status 1. Which N goes by the commit, so that in time all have their turn.
 """
+import argparse
 import pathlib
+import random
 import shutil
 import subprocess
 import sys
@@ -81,9 +84,23 @@ def try_one(mutant):
     return f"{name}: caught by {judge}: {verdict}", True
 
 
-def main():
-    words = sys.argv[1:]
+def chosen(sample, words):
     mutants = [m for m in load() if not words or any(w in m[0] for w in words)]
+    if sample and sample < len(mutants):
+        head = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True).stdout.strip()
+        print(f"mutants: {sample} of {len(mutants)}, chosen by commit {head[:8]}")
+        mutants = random.Random(head).sample(mutants, sample)
+    if not mutants:
+        sys.exit(f"mutants: no name contains any of: {' '.join(words)}")
+    return mutants
+
+
+def main():
+    parser = argparse.ArgumentParser(usage="mutants.py [--sample N] [NAME...]")
+    parser.add_argument("--sample", type=int, default=0)
+    parser.add_argument("words", nargs="*")
+    options = parser.parse_args()
+    mutants = chosen(options.sample, options.words)
     prepare()
     for judge in sorted({m[2] for m in mutants}):
         verdict = judged(judge)
