@@ -56,8 +56,8 @@ bool init_random(filter_any_t *f, filter_kind_t kind, uint32_t *random, uint32_t
 /* True when F_init may refuse a configuration whose parameters are each in range. */
 bool has_joint_condition(filter_kind_t kind);
 
-/* NULL, or the name of what is outside the bounds that filter.h and the filter's own header promise. */
-const char *broken_bound(const filter_any_t *f, int32_t x_lsb_q16);
+/* NULL, or the name of what is outside the bounds that filter.h and the filter's own header promise after a call. */
+const char *broken_bound(const filter_any_t *f, const filter_probe_t *probe, int32_t x_lsb_q16);
 
 /* Largest difference between the answers to a sequence and to its mirror image, Q16. */
 int32_t mirror_tolerance_lsb_q16(filter_kind_t kind);

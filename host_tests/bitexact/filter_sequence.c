@@ -176,16 +176,14 @@ static int32_t make_call(filter_sequence_t *s)
     return estimate_of(&s->filter);
 }
 
-static void add_to_crc(filter_sequence_t *s, int32_t x_lsb_q16)
+static void add_to_crc(filter_sequence_t *s, const filter_probe_t *probe, int32_t x_lsb_q16)
 {
-    filter_probe_t probe;
-    filter_any_probe(&s->filter, &probe);
     uint32_t crc = crc32_u32(s->crc, (uint32_t)x_lsb_q16);
-    crc = crc32_u32(crc, (uint32_t)probe.rate_lsb_q16);
-    crc = crc32_u32(crc, (uint32_t)probe.innovation_lsb_q16);
-    crc = crc32_u32(crc, probe.p_lsb2_q8);
-    crc = crc32_u32(crc, probe.gate_lsb2_q8);
-    crc = crc32_u16(crc, probe.gain_uq16);
+    crc = crc32_u32(crc, (uint32_t)probe->rate_lsb_q16);
+    crc = crc32_u32(crc, (uint32_t)probe->innovation_lsb_q16);
+    crc = crc32_u32(crc, probe->p_lsb2_q8);
+    crc = crc32_u32(crc, probe->gate_lsb2_q8);
+    crc = crc32_u16(crc, probe->gain_uq16);
     s->crc = crc32_u8(crc, filter_any_flags(&s->filter));
 }
 
@@ -202,8 +200,10 @@ const char *sequence_run(filter_sequence_t *s, uint32_t updates)
         }
         int32_t x_lsb_q16 = make_call(s);
         s->calls++;
-        add_to_crc(s, x_lsb_q16);
-        const char *broken = broken_bound(&s->filter, x_lsb_q16);
+        filter_probe_t probe;
+        filter_any_probe(&s->filter, &probe);
+        add_to_crc(s, &probe, x_lsb_q16);
+        const char *broken = broken_bound(&s->filter, &probe, x_lsb_q16);
         if (broken != NULL) {
             return broken;
         }
