@@ -18,6 +18,9 @@ LIMIT_MS = 200000  # of simulated time
 def report_of(image):
     OUT.mkdir(parents=True, exist_ok=True)
     out = OUT / f"chip-{image.stem}.txt"
+    out.unlink(missing_ok=True)
+    if not pathlib.Path(SIMRUN).is_file():
+        return "", f"{SIMRUN} is not there (make test builds it)"
     done = subprocess.run([SIMRUN, "--fw", image, "--in", STREAMS / "tilt-fast.csv", "--out", out, "--max-ms", str(LIMIT_MS)],
                           capture_output=True, text=True, timeout=600)
     report = out.read_text(encoding="ascii", errors="replace") if out.exists() else ""

@@ -24,6 +24,9 @@
 #define ON_PC_OR_CHIP(pc, chip) (pc)
 #endif
 
+/* The kinds of the list. */
+#define FOR_EACH_KIND(kind) for (uint8_t kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++)
+
 /* xorshift32 (Marsaglia); the state must not be 0. */
 uint32_t random32(uint32_t *state);
 

@@ -41,6 +41,20 @@ class Failure(Exception):
     """Something that stops the comparison, in one sentence."""
 
 
+def call(command):
+    """Runs a command; what cannot be run is a Failure as well."""
+    try:
+        return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300)
+    except FileNotFoundError:
+        raise Failure(f"{command[0]} is not there (make bitexact builds or installs what is needed)") from None
+    except subprocess.TimeoutExpired:
+        raise Failure(f"{command[0]} was stopped after 300 s: {shlex.join(str(word) for word in command[:4])} ...") from None
+
+
+def last_words(text):
+    return (text.strip().splitlines() or ["no message"])[-1]
+
+
 class Build:
     """A way to compile the vector program, and what it answered."""
 
@@ -53,10 +67,10 @@ class Build:
             command = self.command + sources(self.chip, self.lib) + ["-o", str(exe)]
             if packed and not self.chip:
                 command += ["-include", f"{HERE}/packed_states.h", "-Wno-address-of-packed-member", "-fno-sanitize=alignment"]
-            done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+            done = call(command)
             if done.returncode != 0:
-                lines = [line for line in done.stderr.splitlines() if "error" in line] or done.stderr.splitlines() or ["no message"]
-                raise Failure(f"{self.name} does not compile: {lines[0]}")
+                errors = [line for line in done.stderr.splitlines() if "error" in line]
+                raise Failure(f"{self.name} does not compile: {errors[0] if errors else last_words(done.stderr)}")
         return exe
 
     def run(self, exe, path=None, block=None):
@@ -65,9 +79,9 @@ class Build:
             lines = run_chip(exe, path, block)
         else:
             detail = [] if path is None else [str(path), str(block)]
-            done = subprocess.run([exe, *detail], capture_output=True, text=True, timeout=300)
+            done = call([exe, *detail])
             if done.returncode != 0:
-                raise Failure(f"{self.name} ends with status {done.returncode}: {(done.stderr.strip().splitlines() or ['?'])[0]}")
+                raise Failure(f"{self.name} ends with status {done.returncode}: {last_words(done.stderr)}")
             lines = done.stdout.splitlines()
         if not lines or lines[-1] != "end":
             raise Failure(f"{self.name} printed no complete list")
@@ -77,10 +91,9 @@ class Build:
 def run_chip(exe, path, block):
     out = exe.with_suffix(".txt")
     detail = [] if path is None else ["--fault", f"1ms:poke:detail_path={path}", "--fault", f"1ms:poke:detail_block={block}"]
-    done = subprocess.run([SIMRUN, "--fw", exe, "--in", STREAM, "--out", out, "--max-ms", "100000", *detail],
-                          capture_output=True, text=True, timeout=300)
+    done = call([SIMRUN, "--fw", exe, "--in", STREAM, "--out", out, "--max-ms", "100000", *detail])
     if done.returncode != STOPPED:
-        raise Failure(f"{exe.name} did not run to its end: {(done.stderr.strip().splitlines() or ['?'])[-1]}")
+        raise Failure(f"{exe.name} did not run to its end: {last_words(done.stderr)}")
     return out.read_text(encoding="ascii", errors="replace").splitlines()
 
 
@@ -247,6 +260,9 @@ def prepare(build):
 
 
 def main():
+    if "WARNINGS" not in os.environ or "AVR_SMALL" not in os.environ:
+        print("bitexact.py: the compiler flags are missing from the environment (WARNINGS, AVR_SMALL): run it by make bitexact", file=sys.stderr)
+        return 2
     OUT.mkdir(parents=True, exist_ok=True)
     report = Report()
     all_builds = builds()
