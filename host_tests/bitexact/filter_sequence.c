@@ -145,10 +145,10 @@ static enum call next_call(filter_sequence_t *s)
         return (s->calls >= 28U && s->calls < 32U) ? COAST : UPDATE;
     }
     uint8_t what = (uint8_t)(random32(&s->random) >> 16);
-    if (what < 10U) {
-        return (what < 5U) ? RESET : SET_NOISE;
+    if (what < 6U) {
+        return (what < 1U) ? RESET : SET_NOISE; /* a reset settles for 64 steps */
     }
-    return (what < 10U + s->coasts) ? COAST : UPDATE;
+    return (what < 6U + s->coasts) ? COAST : UPDATE;
 }
 
 static int32_t estimate_of(const filter_any_t *f)
