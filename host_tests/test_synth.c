@@ -1,4 +1,5 @@
 /* synth: its start, its two-product form and its presets on integers; runs on the PC and on the chip. */
+#include "fx.h"
 #include "synth.h"
 #include "unity.h"
 
@@ -24,9 +25,13 @@ static void presets_are_those_of_the_papers(void)
     synth_defaults(&config, 1000);
     TEST_ASSERT_EQUAL_INT32(0, config.a1_q16);
     TEST_ASSERT_EQUAL_UINT16(19661, config.b0_uq16);
+    uint32_t r_lsb2_q8 = config.r_lsb2_q8;
+    memset(&config, 0, sizeof config);
     synth_paper(&config, 1000);
     TEST_ASSERT_EQUAL_INT32(-19661, config.a1_q16);
     TEST_ASSERT_EQUAL_UINT16(6554, config.b0_uq16);
+    TEST_ASSERT_EQUAL_UINT16(1000, config.rate_dhz);
+    TEST_ASSERT_EQUAL_UINT32(r_lsb2_q8, config.r_lsb2_q8);
 }
 
 /* 1 + 2 a1 (1 - b0) = 0 lies at a1 = -2/3 = -43690.7 / 65536 for b0 = 1/4, and at a1 = -1 for b0 = 1/2. */
@@ -63,40 +68,64 @@ static void start_on_a_ramp_has_its_slope(void)
     }
 }
 
-/*
- * (4 n - 2) / (n (n + 1)) in 2^-16, rounded: n = 6: 22/42, 7: 26/56, 8: 30/72, 9: 34/90, 10: 38/110, 11: 42/132, 12: 46/156 =
- * 0.2949 is no longer above 0.3.
- */
-static void start_gains_are_those_of_a_line(void)
+static uint16_t gain_of_next_sample(synth_t *f)
 {
-    static const uint16_t gains[] = { 34328, 30427, 27307, 24758, 22640, 20852, 19661, 19661 };
-    synth_t f;
-    make(&f, 0, 19661);
-    for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)synth_update(&f, 7);
-    }
-    for (uint8_t k = 0; k < sizeof gains / sizeof gains[0]; k++) {
-        filter_probe_t probe;
-        (void)synth_update(&f, 7);
-        synth_probe(&f, &probe);
-        TEST_ASSERT_EQUAL_UINT16(gains[k], probe.gain_uq16);
-    }
+    filter_probe_t probe;
+    (void)synth_update(f, 7);
+    synth_probe(f, &probe);
+    return probe.gain_uq16;
 }
 
-/* With b0 = 0.01 the line's gains end with the table, at n = 63: 250/4032. */
-static void start_gains_end_at_63_samples(void)
+/* (4 n - 2) / (n (n + 1)) in 2^-16, rounded, for n = 6..63; b0 = 0.01 stays below all of them, then it is the gain. */
+static void start_gains_are_those_of_a_line(void)
 {
     synth_t f;
-    filter_probe_t probe;
     make(&f, 0, 656);
-    for (uint8_t k = 1; k <= 63; k++) {
+    for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
+        TEST_ASSERT_EQUAL_UINT16(0, gain_of_next_sample(&f));
+    }
+    for (uint32_t n = 6; n <= 63; n++) {
+        uint32_t below = n * (n + 1U);
+        TEST_ASSERT_EQUAL_UINT16((65536U * (4U * n - 2U) + below / 2U) / below, gain_of_next_sample(&f));
+    }
+    TEST_ASSERT_EQUAL_UINT16(656, gain_of_next_sample(&f));
+}
+
+/* n = 11: 42/132 = 0.318; n = 12: 46/156 = 0.295 is no longer above 0.3. */
+static void start_ends_at_the_first_gain_that_is_not_above(void)
+{
+    synth_t f;
+    make(&f, 0, 19661);
+    for (uint8_t n = 1; n <= 10; n++) {
         (void)synth_update(&f, 7);
     }
-    synth_probe(&f, &probe);
-    TEST_ASSERT_EQUAL_UINT16(4063, probe.gain_uq16);
-    (void)synth_update(&f, 7);
-    synth_probe(&f, &probe);
-    TEST_ASSERT_EQUAL_UINT16(656, probe.gain_uq16);
+    TEST_ASSERT_EQUAL_UINT16(20852, gain_of_next_sample(&f));
+    TEST_ASSERT_EQUAL_UINT16(19661, gain_of_next_sample(&f));
+}
+
+/* What a person reads: value / 2^fraction bits is 0.3, -0.3, 3 LSB^2 (to the last bit of the format). */
+static void descriptor_tells_the_binary_points(void)
+{
+    synth_config_t config;
+    filter_parameter_t parameter[3];
+    filter_descriptor_t descriptor;
+    synth_paper(&config, 1000);
+    uint8_t *to = (uint8_t *)&descriptor;
+    for (uint8_t i = 0; i < sizeof descriptor; i++) {
+        to[i] = fx_flash_u8((const uint8_t *)&synth_descriptor + i);
+    }
+    TEST_ASSERT_EQUAL_UINT8(3, descriptor.parameter_count);
+    to = (uint8_t *)parameter;
+    for (uint8_t i = 0; i < sizeof parameter; i++) {
+        to[i] = fx_flash_u8((const uint8_t *)descriptor.parameters + i);
+    }
+    TEST_ASSERT_EQUAL_STRING("a1", parameter[0].name);
+    TEST_ASSERT_INT32_WITHIN(5, -3 * (int32_t)(1UL << parameter[0].fraction_bits), 10 * config.a1_q16);
+    TEST_ASSERT_EQUAL_STRING("b0", parameter[1].name);
+    TEST_ASSERT_EQUAL_STRING("r", parameter[2].name);
+    TEST_ASSERT_TRUE(parameter[0].is_signed == 1U && parameter[1].is_signed == 0U && parameter[2].is_signed == 0U);
+    TEST_ASSERT_INT32_WITHIN(5, (int32_t)(1UL << parameter[1].fraction_bits), 10 * (int32_t)config.b0_uq16);
+    TEST_ASSERT_EQUAL_UINT32(3UL << parameter[2].fraction_bits, config.r_lsb2_q8);
 }
 
 /*
@@ -219,7 +248,8 @@ int main(void)
     RUN_TEST(border_of_the_region_is_outside);
     RUN_TEST(start_on_a_ramp_has_its_slope);
     RUN_TEST(start_gains_are_those_of_a_line);
-    RUN_TEST(start_gains_end_at_63_samples);
+    RUN_TEST(start_ends_at_the_first_gain_that_is_not_above);
+    RUN_TEST(descriptor_tells_the_binary_points);
     RUN_TEST(outlier_in_the_start_is_limited);
     RUN_TEST(impulse_response_is_that_of_equation_7);
     RUN_TEST(coast_goes_on_along_the_line);
