@@ -176,8 +176,9 @@ sim:
 ## test: unit tests on the PC, then the firmware in the simulator against the PC
 test:
 	@sh tools/deps.sh test
+	@sh tools/deps.sh flashtest || echo "test: test_flash will be skipped"
 	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt $(H)/native_replay $(H)/pipeline_replay $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun \
-	    $(H)/filter_sequence $(CHIP_TESTS)
+	    $(H)/filter_sequence $(CHIP_TESTS) $(FLASHTEST_IMAGES)
 	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" sh tools/run_tests.sh $(TESTS)
 
 ## cycles: cycles of the filters and angles on the simulated chip

@@ -92,6 +92,7 @@ def assert_nothing_lost(rows, served, every=1, from_us=0, end_us=None):
 def run_all():
     OUT.mkdir(parents=True, exist_ok=True)
     only = sys.argv[1:]
+    file = pathlib.Path(sys.argv[0]).name
     failed = skipped = count = 0
     for function in TESTS:
         name = function.__name__
@@ -100,13 +101,13 @@ def run_all():
         count += 1
         try:
             function()
-            print(f"system_tests.py:{name}:PASS", flush=True)
+            print(f"{file}:{name}:PASS", flush=True)
         except Skip as reason:
             skipped += 1
-            print(f"system_tests.py:{name}:IGNORE: {reason}", flush=True)
+            print(f"{file}:{name}:IGNORE: {reason}", flush=True)
         except Exception as problem:  # every failure is one line here and a trace in the log
             failed += 1
-            print(f"system_tests.py:{name}:FAIL: {str(problem)[:300]}", flush=True)
+            print(f"{file}:{name}:FAIL: {str(problem)[:300]}", flush=True)
             traceback.print_exc()
     print(f"\n{count} Tests {failed} Failures {skipped} Ignored")
     return 1 if failed or count == 0 else 0

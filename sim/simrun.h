@@ -45,7 +45,7 @@ typedef struct {
 
 typedef struct {
     const char *fw, *in, *out, *served, *eeprom, *stats, *profile, *vcd, *bootloader, *filter;
-    bool loop, pty;
+    bool loop, pty, blank;
     double ppm, max_ms; /* max_ms 0: none */
     unsigned expect_resets, gdb_port;
     uint32_t seed;
@@ -80,6 +80,8 @@ exit_status_t machine_run(const char **reason);
 void machine_reschedule(void);
 /* Asked for from anywhere, done between two instructions. */
 void machine_reset(bool power_cycle);
+/* Somebody opened the pseudo terminal: with a boot loader an external reset, as DTR gives an UNO; not counted. */
+void machine_port_opened(void);
 /* First cause wins; ends the run. `reason` stays valid. */
 void machine_fail(exit_status_t status, const char *reason);
 uint32_t machine_resets(void);
@@ -101,6 +103,10 @@ bool symbols_find(const char *name, uint32_t *pc);
 bool symbols_find_variable(const char *name, uint32_t *address);
 /* "name+0x12" of the function around pc; static text. */
 const char *symbols_nearest(uint32_t pc);
+
+/* --- boot loader (--bootloader) --- */
+/* Puts the image into the flash; its lowest address. Exits with EXIT_INPUT on a bad file. */
+uint32_t bootloader_load(void);
 
 /* --- sensor: clock of the virtual ADXL345 and the feed of rows --- */
 typedef struct {

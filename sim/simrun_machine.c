@@ -2,6 +2,7 @@
  * The ATmega328P: what simavr 1.6 gets wrong is put right here (no-op sleep, interrupt entry time, level interrupts, frequency,
  * resets that drop every timer), and every instruction is watched: program counter, stack pointer, illegal opcodes.
  */
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,15 +10,13 @@
 #include "sim_core.h"
 #include "sim_elf.h"
 #include "sim_gdb.h"
-#include "sim_hex.h"
 #include "simrun.h"
 
 enum {
     RAM_START = 0x100,
     RAM_END = 0x8FF,
     FLASH_BYTES = 0x8000,
-    BOOT_MIN = 0x7000, /* the largest boot section of this chip */
-    CHUNK_CYCLES = 24  /* instructions run in one go between two looks at PC and stack */
+    CHUNK_CYCLES = 24 /* instructions run in one go between two looks at PC and stack */
 };
 
 enum { END_MS = 20, SILENCE_MS = 30, SILENCE_MAX_MS = 2000, STALLED_MS = 20000 };
@@ -28,7 +27,7 @@ twi_peripheral_t twi;
 program_size_t machine_size;
 static uint32_t boot_start = FLASH_BYTES;
 static void (*core_reset)(avr_t *);
-static bool reset_happened, reset_wanted, power_wanted;
+static bool reset_happened, reset_wanted, power_wanted, port_opened;
 static uint32_t resets, boot_resets;
 static uint32_t last_pc;
 static exit_status_t failure;
@@ -39,6 +38,7 @@ static uint32_t random_state;
 static bool stopping;
 static avr_run_t plain_run; /* simavr puts another one in for gdb and for a watchdog reset */
 static uint64_t max_cycle = NEVER;
+static volatile sig_atomic_t asked_to_end;
 static bool interactive;
 static uint32_t chunk_cycles = CHUNK_CYCLES;
 
@@ -177,15 +177,17 @@ static void power_cycle(void)
 static void do_wanted_reset(void)
 {
     bool power = power_wanted;
+    bool counted = !port_opened;
     reset_wanted = false;
     power_wanted = false;
+    port_opened = false;
     if (power) {
         power_cycle();
     }
     avr_reset(mcu);
     avr_regbit_set(mcu, power ? mcu->reset_flags.porf : mcu->reset_flags.extrf);
     set_up_again(power);
-    resets++;
+    resets += counted ? 1u : 0u;
     reset_happened = false;
 }
 
@@ -195,6 +197,14 @@ void machine_reset(bool power)
     power_wanted = power_wanted || power;
 }
 
+void machine_port_opened(void)
+{
+    if (boot_start != FLASH_BYTES) {
+        port_opened = !reset_wanted;
+        reset_wanted = true;
+    }
+}
+
 static void refuse(const char *path, const char *reason) __attribute__((noreturn));
 static void refuse(const char *path, const char *reason)
 {
@@ -202,26 +212,25 @@ static void refuse(const char *path, const char *reason)
     exit(EXIT_INPUT);
 }
 
+/* Starts in the boot loader as after the reset that an UNO gets when its port is opened. */
 static void load_boot_loader(void)
 {
-    ihex_chunk_p chunks = NULL;
-    int count = read_ihex_chunks(options.bootloader, &chunks);
-    if (count <= 0) {
-        refuse(options.bootloader, "cannot read an Intel HEX image from it");
+    if (options.blank) {
+        memset(mcu->flash, 0xFF, FLASH_BYTES);
     }
-    for (int i = 0; i < count; i++) {
-        if (chunks[i].baseaddr < BOOT_MIN || chunks[i].baseaddr + chunks[i].size > FLASH_BYTES) {
-            refuse(options.bootloader, "not within the boot section 0x7000..0x7FFF");
-        }
-        memcpy(mcu->flash + chunks[i].baseaddr, chunks[i].data, chunks[i].size);
-        boot_start = chunks[i].baseaddr < boot_start ? chunks[i].baseaddr : boot_start;
-    }
-    free_ihex_chunks(chunks);
+    boot_start = bootloader_load();
     mcu->codeend = FLASH_BYTES;
     mcu->reset_pc = boot_start;
     mcu->pc = boot_start;
     avr_regbit_clear(mcu, mcu->reset_flags.porf);
     avr_regbit_set(mcu, mcu->reset_flags.extrf);
+}
+
+/* A run that a person ends keeps its files. */
+static void on_signal(int number)
+{
+    (void)number;
+    asked_to_end = 1;
 }
 
 static void load_program(void)
@@ -253,6 +262,10 @@ void machine_start(void)
     random_state = options.seed;
     max_cycle = options.max_ms > 0.0 ? (uint64_t)(options.max_ms * CYCLES_PER_MS) : NEVER;
     interactive = options.pty || options.gdb_port != 0;
+    if (interactive) {
+        (void)signal(SIGINT, on_signal);
+        (void)signal(SIGTERM, on_signal);
+    }
     avr_global_logger_set(on_log);
     load_program();
     stack_paint();
@@ -301,7 +314,7 @@ static void watch_reset(void)
 static bool ended(void)
 {
     uint64_t now = mcu->cycle;
-    if (failure != EXIT_OK || now >= max_cycle) {
+    if (failure != EXIT_OK || now >= max_cycle || asked_to_end) {
         return true;
     }
     uint64_t over = sensor_over_at();

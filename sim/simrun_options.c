@@ -18,6 +18,7 @@ enum option_code {
     OPTION_PROFILE,
     OPTION_VCD,
     OPTION_BOOTLOADER,
+    OPTION_BLANK,
     OPTION_LOOP,
     OPTION_PTY,
     OPTION_PPM,
@@ -41,6 +42,7 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "profile", required_argument, NULL, OPTION_PROFILE },
                                        { "vcd", required_argument, NULL, OPTION_VCD },
                                        { "bootloader", required_argument, NULL, OPTION_BOOTLOADER },
+                                       { "blank", no_argument, NULL, OPTION_BLANK },
                                        { "loop", no_argument, NULL, OPTION_LOOP },
                                        { "pty", no_argument, NULL, OPTION_PTY },
                                        { "ppm", required_argument, NULL, OPTION_PPM },
@@ -88,13 +90,19 @@ static const char help_text[] =
     "  --seed N           for p:, junk in RAM (1)\n"
     "  --expect-resets N  MCU resets that are right, injected ones included (0)\n"
     "  --bootloader HEX   load this image too and start in it by an external reset; resets out of it are not counted\n"
+    "  --blank            with --bootloader: the flash holds nothing else; --fw only names what will be written into "
+    "it\n"
     "  --eeprom FILE      1024 bytes, read if there, written at the end\n"
     "  --profile FILE     CSV pc,count,cycles,symbol of every instruction executed\n"
     "  --vcd FILE         D2, stuck lines, UART bytes and interrupt handlers, for GTKWave\n"
     "  --gdb PORT         wait for avr-gdb before the first instruction\n"
-    "  --pty              connect the UART to a pseudo terminal, in real time\n"
+    "  --pty              connect the UART to a pseudo terminal, in real time; with --bootloader opening it resets the "
+    "MCU,\n"
+    "                     as DTR resets an UNO (not counted)\n"
     "\n"
-    "The run ends 20 ms after the stream, when the UART has been silent for 30 ms (2 s at most).\n"
+    "The run ends 20 ms after the stream, when the UART has been silent for 30 ms (2 s at most); with --pty or --gdb "
+    "Ctrl-C\n"
+    "ends it too.\n"
     "Exit status: 0 ran to the end; 1 simrun failed; 2 usage or input; 3 crash; 4 illegal opcode; 5 stack overrun;\n"
     "6 UART overrun; 7 unexpected number of resets; 8 firmware slept with interrupts off;\n"
     "9 without --max-ms: the firmware did not use the sensor for 20 s.\n";
@@ -217,6 +225,9 @@ static void take(int code, const char *name, const char *argument)
     case OPTION_PTY:
         options.pty = true;
         break;
+    case OPTION_BLANK:
+        options.blank = true;
+        break;
     case OPTION_CMD:
         add_command(argument);
         break;
@@ -253,6 +264,9 @@ void options_parse(int argc, char **argv)
     }
     if (options.fw == NULL || options.in == NULL || options.out == NULL) {
         refuse("--fw, --in and --out are needed");
+    }
+    if (options.blank && options.bootloader == NULL) {
+        refuse("--blank leaves nothing to run: give --bootloader");
     }
     if (options.loop && options.max_ms <= 0.0 && options.gdb_port == 0 && !options.pty) {
         refuse("--loop never ends: give --max-ms");

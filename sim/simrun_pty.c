@@ -1,8 +1,9 @@
 /* A pseudo terminal in place of the USB serial port, in real time: for a terminal program, a plotter or avrdude. */
-#define _GNU_SOURCE /* posix_openpt, cfmakeraw */
+#define _GNU_SOURCE /* posix_openpt */
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <termios.h>
 #include <time.h>
@@ -11,37 +12,62 @@
 #include "simrun.h"
 
 static int master = -1;
-static int slave = -1; /* kept open, or the master reads errors until somebody opens it */
+static bool opened; /* somebody holds the other end */
 static struct timespec began;
+
+/* Bytes as they are, no echo; what else the one at the other end has set stays. */
+static bool make_raw(int terminal)
+{
+    struct termios settings;
+    if (tcgetattr(terminal, &settings) != 0) {
+        return false;
+    }
+    settings.c_iflag &= ~(tcflag_t)(IGNBRK | BRKINT | PARMRK | ISTRIP | INLCR | IGNCR | ICRNL | IXON);
+    settings.c_oflag &= ~(tcflag_t)OPOST;
+    settings.c_lflag &= ~(tcflag_t)(ECHO | ECHONL | ICANON | ISIG | IEXTEN);
+    return tcsetattr(terminal, TCSANOW, &settings) == 0;
+}
 
 void pty_open(void)
 {
     master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
     const char *name = master < 0 || grantpt(master) != 0 || unlockpt(master) != 0 ? NULL : ptsname(master);
-    slave = name == NULL ? -1 : open(name, O_RDWR | O_NOCTTY);
-    struct termios settings;
-    if (slave < 0 || tcgetattr(slave, &settings) != 0) {
+    int slave = name == NULL ? -1 : open(name, O_RDWR | O_NOCTTY);
+    if (slave < 0 || close(slave) != 0) { /* closed once, the master tells when it is opened */
         perror("simrun: pseudo terminal");
         exit(EXIT_INTERNAL);
     }
-    cfmakeraw(&settings);
-    tcsetattr(slave, TCSANOW, &settings);
     fprintf(stderr, "simrun: UART on %s\n", name);
     clock_gettime(CLOCK_MONOTONIC, &began);
+}
+
+/* The settings of a terminal go with its last user, so each new one gets it raw. */
+static void look_for_user(void)
+{
+    struct pollfd end = { .fd = master, .events = POLLIN };
+    bool now = poll(&end, 1, 0) >= 0 && (end.revents & POLLHUP) == 0;
+    if (now && !opened) {
+        if (!make_raw(master)) {
+            perror("simrun: pseudo terminal");
+        }
+        machine_port_opened();
+    }
+    opened = now;
 }
 
 /* What nobody reads is lost, as on a board without a PC. */
 void pty_send(uint8_t byte)
 {
-    ssize_t sent = write(master, &byte, 1);
-    if (sent < 0 && errno != EAGAIN) {
+    ssize_t sent = opened ? write(master, &byte, 1) : 1;
+    if (sent < 0 && errno != EAGAIN && errno != EIO) {
         perror("simrun: pseudo terminal");
     }
 }
 
 bool pty_receive(uint8_t *byte)
 {
-    return read(master, byte, 1) == 1;
+    look_for_user();
+    return opened && read(master, byte, 1) == 1;
 }
 
 void pty_pace(void)

@@ -1,6 +1,6 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
-# Groups: firmware sim test check flash. Packages come by apt-get, numpy and matplotlib by pip into build/venv, Unity
+# Groups: firmware sim test check flash flashtest. Packages come by apt-get, numpy and matplotlib by pip into build/venv, Unity
 # by tools/get_unity.sh into build/unity (UNITY_DIR=folder: use that one). Uses sudo only when not root.
 set -eu
 
@@ -59,6 +59,10 @@ need_avr() {
     need avr-libc has_avr_libc
 }
 
+has_optiboot() {
+    [ -f "${OPTIBOOT_DIR:-/usr/share/arduino/hardware/arduino/avr/bootloaders/optiboot}/optiboot.c" ]
+}
+
 need_host_compiler() {
     need gcc has gcc
     need libc6-dev test -f /usr/include/stdio.h
@@ -98,7 +102,8 @@ collect() {
                 need clang-format has clang-format
                 need cppcheck has cppcheck ;;
             flash) need_avr; need avrdude has avrdude ;;
-            *) fail "unknown group '$group': use firmware, sim, test, check or flash" ;;
+            flashtest) need_simulator; need avrdude has avrdude; need arduino-core-avr has_optiboot ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check, flash or flashtest" ;;
         esac
     done
     missing=${missing# }
@@ -171,7 +176,7 @@ install_unity() {
     tools/get_unity.sh build/unity
 }
 
-[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash)"
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest)"
 collect "$@"
 mkdir -p build
 if [ -n "$missing" ]; then

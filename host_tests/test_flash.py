@@ -1,0 +1,169 @@
+"""make flash against the UNO's boot loader in the simulator: avrdude writes and verifies through it, then the firmware streams."""
+import contextlib
+import csv
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import time
+
+from system_support import FW, OUT, SIMRUN, STREAMS, Skip, read_output, run, run_all, test, triplets
+
+BOOT = pathlib.Path("build/uno/optiboot.hex")
+HEX = pathlib.Path("build/uno/firmware.hex")
+STREAM = STREAMS / "rest-2lsb.csv"
+BOOT_START, FLASH_END = 0x7E00, 0x8000
+
+
+def need_tools():
+    if not BOOT.exists():
+        raise Skip(f"no {BOOT}: Debian's arduino-core-avr has its source (make flashtest)")
+    if shutil.which("avrdude") is None:
+        raise Skip("no avrdude on PATH (tools/deps.sh flashtest)")
+
+
+@contextlib.contextmanager
+def board(name, *options):
+    """A simulated UNO with the boot loader and an empty flash, in real time; gives its serial port and the files of the run."""
+    base = OUT / name
+    command = [SIMRUN, "--fw", FW, "--blank", "--bootloader", BOOT, "--in", STREAM, "--loop", "--out", f"{base}.csv", "--served",
+               f"{base}.served.csv", "--pty", *options]
+    with open(f"{base}.log", "w", encoding="utf-8") as log:
+        process = subprocess.Popen([str(c) for c in command], stderr=log)
+    try:
+        yield wait_for_port(f"{base}.log", process), base, process
+    finally:
+        if process.poll() is None:
+            process.send_signal(signal.SIGTERM)
+        process.wait(timeout=10)
+
+
+def wait_for_port(log, process):
+    deadline = time.monotonic() + 10
+    while time.monotonic() < deadline:
+        found = re.search(r"UART on (\S+)", pathlib.Path(log).read_text(encoding="utf-8"))
+        if found:
+            return found[1]
+        assert process.poll() is None, pathlib.Path(log).read_text(encoding="utf-8")
+        time.sleep(0.02)
+    raise AssertionError("simrun names no port")
+
+
+def avrdude(port, operation, image):
+    return run("avrdude", "-p", "atmega328p", "-c", "arduino", "-P", port, "-b", "115200", "-D", "-U", f"flash:{operation}:{image}:i", expect=None)
+
+
+def records(path):
+    """(address, type, bytes) of each record."""
+    for line in path.read_text(encoding="ascii").split():
+        data = bytes.fromhex(line[1:])
+        yield int.from_bytes(data[1:3], "big"), data[3], data[4:-1]
+
+
+def record(address, kind, data):
+    body = bytes([len(data)]) + address.to_bytes(2, "big") + bytes([kind]) + data
+    return ":" + (body + bytes([-sum(body) & 0xFF])).hex().upper()
+
+
+def with_a_bit_turned(image, to):
+    """A copy whose byte at 0x1234 differs in one bit."""
+    lines = []
+    for address, kind, data in records(image):
+        if kind == 0 and address <= 0x1234 < address + len(data):
+            at = 0x1234 - address
+            data = data[:at] + bytes([data[at] ^ 1]) + data[at + 1:]
+        lines.append(record(address, kind, data))
+    to.write_text("\n".join(lines) + "\n", encoding="ascii")
+    assert lines != image.read_text(encoding="ascii").split()
+    return to
+
+
+def streamed(base):
+    """Rows of the run's output behind its last banner, and the notes there."""
+    raw = pathlib.Path(f"{base}.csv").read_bytes()
+    starts = [found.start() for found in re.finditer(rb"# tilt-uno", raw)]
+    assert starts, "no banner"
+    after = OUT / "flash-after.csv"
+    after.write_bytes(raw[starts[-1]:raw.rindex(b"\n") + 1])
+    return read_output(after)
+
+
+def assert_rows_follow_the_sensor(rows, base):
+    """The readings of the rows are samples of the sensor, each once and in its order."""
+    with open(f"{base}.served.csv", encoding="ascii") as file:
+        served = triplets(csv.DictReader(file))
+    readings = [row[1:4] for row in rows]
+    first = next((i for i in range(len(served)) if served[i:i + len(readings)] == readings), None)
+    assert first is not None, f"{len(readings)} rows that are not {len(readings)} samples on end"
+
+
+@test
+def boot_loader_fits_its_section():
+    need_tools()
+    data = [(address, address + len(bytes_)) for address, kind, bytes_ in records(BOOT) if kind == 0]
+    assert min(a for a, _ in data) == BOOT_START and max(e for _, e in data) == FLASH_END, data
+    ordered = sorted(data)
+    assert all(end <= start for (_, end), (start, _) in zip(ordered, ordered[1:])), "the records overlap"
+
+
+@test
+def make_flash_writes_verifies_and_the_firmware_streams():
+    need_tools()
+    with board("flash", "--max-ms", "25000") as (port, base, process):
+        done = run("make", "flash", f"PORT={port}", expect=None)
+        told = done.stdout + done.stderr
+        size = sum(len(data) for _, kind, data in records(HEX) if kind == 0)
+        assert done.returncode == 0 and f"{size} bytes of flash verified" in told, told
+        time.sleep(1.0)  # the firmware runs, so that the next opening of the port has something to interrupt
+        wrong = avrdude(port, "v", with_a_bit_turned(HEX, OUT / "turned.hex"))
+        assert wrong.returncode != 0 and "0x1234" in wrong.stderr, wrong.stderr
+        right = avrdude(port, "v", HEX)
+        assert right.returncode == 0, right.stderr
+        time.sleep(2.0)
+        process.send_signal(signal.SIGINT)
+        status = process.wait(timeout=10)
+    assert status == 0, pathlib.Path(f"{base}.log").read_text(encoding="utf-8")
+    rows, notes = streamed(base)
+    assert len(rows) > 100, f"{len(rows)} rows"
+    assert not any(row[9] & 16 for row in rows), "a fault in the rows"
+    assert any("serial port opened" in note for note in notes), notes
+    assert_rows_follow_the_sensor(rows, base)
+
+
+@test
+def an_empty_flash_does_not_stream():
+    need_tools()
+    done = run(SIMRUN, "--fw", FW, "--blank", "--bootloader", BOOT, "--in", STREAM, "--out", OUT / "blank.csv", "--max-ms", "3000", expect=3)
+    assert "erased flash" in done.stderr, done.stderr
+    assert (OUT / "blank.csv").read_bytes() == b""
+
+
+BAD_IMAGES = {
+    "checksum": (":107E0000112484B714BE81FFFDD085E080938100EB", ":1: ", "checksum"),
+    "cut-short": (":107E0000112484B7", ":1: ", "cut short"),
+    "no-record": ("ELF", ":1: ", "not a record"),
+    "behind-the-flash": (record(0x7FF8, 0, bytes(16)), ":1: ", "not within the boot section"),
+    "in-the-application": (record(0x100, 0, bytes(16)), ":1: ", "not within the boot section"),
+    "unknown-type": (record(0, 9, bytes(2)), ":1: ", "record type 09"),
+    "no-end": (record(0x7E00, 0, bytes(16)), "", "without an end record"),
+    "no-data": (record(0, 1, b""), "", "without data"),
+}
+
+
+def make_bad_image_test(name, text, where, what):
+    def check():
+        path = OUT / f"boot-{name}.hex"
+        path.write_text(text + "\n", encoding="ascii")
+        done = run(SIMRUN, "--fw", FW, "--in", STREAM, "--out", OUT / "x.csv", "--bootloader", path, expect=2)
+        assert f"{path.name}{where}" in done.stderr and what in done.stderr, done.stderr
+        assert len(done.stderr.strip().splitlines()) == 1, done.stderr
+    check.__name__ = "bad_boot_image_" + name.replace("-", "_")
+    return test(check)
+
+
+for bad_name, bad in BAD_IMAGES.items():
+    make_bad_image_test(bad_name, *bad)
+
+if __name__ == "__main__":
+    raise SystemExit(run_all())
