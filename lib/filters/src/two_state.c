@@ -146,7 +146,7 @@ FX_NOINLINE bool within_gate(two_state_t *s)
 {
     uint32_t size_lsb_uq8 = s->size_lsb_uq8;
     if (s->coarse) {
-        size_lsb_uq8 >>= 4;
+        size_lsb_uq8 = fx_sixteenth(size_lsb_uq8 & ~(uint32_t)15U); /* >> 4, which would be a loop on AVR */
     }
     /* UQ4.28 x UQ12.4 >> 16 = UQ16.16, < 9 x 4096; coarse: UQ24.8 */
     s->limit_lsb2 = fx_mul_uq16(s->u.p.p11_uq28 + ONE_UQ28, s->gate_lsb2_uq4);
