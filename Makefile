@@ -78,11 +78,6 @@ $(U)/fx_twins.elf: host_tests/avr/fx_twins.c lib/filters/src/fx.c lib/filters/sr
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ilib/filters/src $(filter %.c,$^) -o $@
 
-$(U)/cycles.elf: host_tests/avr/cycles.c $(wildcard lib/filters/src/*.c lib/tilt/src/*.c lib/filters/src/*.h) Makefile
-	@mkdir -p $(@D)
-	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os -ffunction-sections -Wl,--gc-sections $(WARNINGS) -Ilib/filters/src \
-	    -Ilib/tilt/src $(filter %.c,$^) -o $@
-
 $(U)/hal_probe.elf: host_tests/avr/hal_probe.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr $(filter %.c,$^) -o $@
@@ -181,12 +176,6 @@ test:
 	    $(H)/filter_sequence $(CHIP_TESTS) $(FLASHTEST_IMAGES)
 	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" sh tools/run_tests.sh $(TESTS)
 
-## cycles: cycles of the filters and angles on the simulated chip
-cycles:
-	@sh tools/deps.sh sim
-	@$(MAKE) $(U)/cycles.elf $(S)/simrun
-	@sh tools/cycles.sh
-
 ## check: include table, forbidden symbols, HAL seam, lengths, clang-tidy, cppcheck, format, budgets
 check:
 	@sh tools/deps.sh check
@@ -210,6 +199,6 @@ include $(sort $(wildcard mk/*.mk))
 # keep the test objects
 .SECONDARY:
 
-.PHONY: sim test cycles check clean
+.PHONY: sim test check clean
 
 -include $(shell find $(U) $(H) -name '*.d' 2>/dev/null)

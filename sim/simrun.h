@@ -44,7 +44,7 @@ typedef struct {
 } typed_line_t;
 
 typedef struct {
-    const char *fw, *in, *out, *served, *eeprom, *stats, *profile, *vcd, *bootloader, *filter;
+    const char *fw, *in, *out, *served, *eeprom, *stats, *profile, *vcd, *bootloader, *filter, *span;
     bool loop, pty, blank;
     double ppm, max_ms; /* max_ms 0: none */
     unsigned expect_resets, gdb_port;
@@ -176,7 +176,9 @@ void faults_print(FILE *json);
 void faults_warn(void); /* stderr: faults that never came */
 
 /* --- statistics --- */
-extern uint64_t stats_slept; /* cycles asleep */
+extern uint64_t stats_slept;       /* cycles asleep */
+extern uint64_t stats_interrupted; /* cycles in interrupt handlers, entry and return included */
+bool stats_in_interrupt(void);
 void stats_start(void);
 void stats_reset(void);
 void stats_profile(uint32_t pc, uint64_t cycles);
@@ -186,6 +188,14 @@ void stats_summary(void);
 /* Streaming, for the load: first row, end of the stream. */
 void stats_streaming_begins(void);
 void stats_streaming_ends(void);
+
+/* --- cycles from function to function (--span) --- */
+extern bool span_wanted;
+/* Needs the symbols; exits with EXIT_INPUT when a name is unknown. */
+void span_start(void);
+void span_on_pc(uint32_t pc);
+void span_reset(void);
+void span_finish(void);
 
 /* --- VCD (--vcd) --- */
 enum { VCD_INT1, VCD_SDA_LOW, VCD_SCL_LOW, VCD_TX, VCD_RX, VCD_ISR };

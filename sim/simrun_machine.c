@@ -158,6 +158,7 @@ static void set_up_again(bool power_lost)
     twi_reset(&twi);
     uart_reset();
     stats_reset();
+    span_reset();
     eeprom_reset(power_lost);
     sensor_show_pin();
     machine_reschedule();
@@ -294,7 +295,8 @@ void machine_start(void)
     eeprom_start();
     stats_start();
     faults_start();
-    if (faults_watch_pc || options.profile != NULL) {
+    span_start();
+    if (faults_watch_pc || span_wanted || options.profile != NULL) {
         chunk_cycles = 0;
     }
     set_up_again(false);
@@ -400,6 +402,9 @@ static void run(void)
         last_pc = mcu->pc;
         if (faults_watch_pc && running) {
             faults_on_pc(last_pc);
+        }
+        if (span_wanted && running) {
+            span_on_pc(last_pc);
         }
         bool eventful = step(stack_low ? 0 : chunk_cycles);
         stack_low = stack_watch(machine_size.end_of_ram);

@@ -29,6 +29,7 @@ int main(int argc, char **argv)
     uart_finish();
     eeprom_finish();
     vcd_finish();
+    span_finish();
     sensor_finish();
     if (status != EXIT_OK) {
         fprintf(stderr, "simrun: status %d: %s\n", (int)status, reason);

@@ -16,6 +16,7 @@ enum option_code {
     OPTION_EEPROM,
     OPTION_STATS,
     OPTION_PROFILE,
+    OPTION_SPAN,
     OPTION_VCD,
     OPTION_BOOTLOADER,
     OPTION_BLANK,
@@ -40,6 +41,7 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "eeprom", required_argument, NULL, OPTION_EEPROM },
                                        { "stats", required_argument, NULL, OPTION_STATS },
                                        { "profile", required_argument, NULL, OPTION_PROFILE },
+                                       { "span", required_argument, NULL, OPTION_SPAN },
                                        { "vcd", required_argument, NULL, OPTION_VCD },
                                        { "bootloader", required_argument, NULL, OPTION_BOOTLOADER },
                                        { "blank", no_argument, NULL, OPTION_BLANK },
@@ -94,6 +96,8 @@ static const char help_text[] =
     "it\n"
     "  --eeprom FILE      1024 bytes, read if there, written at the end\n"
     "  --profile FILE     CSV pc,count,cycles,symbol of every instruction executed\n"
+    "  --span FROM:TO:CSV at_us,cycles,stack_bytes from the entry of function FROM to that of TO, interrupts taken "
+    "out\n"
     "  --vcd FILE         D2, stuck lines, UART bytes and interrupt handlers, for GTKWave\n"
     "  --gdb PORT         wait for avr-gdb before the first instruction\n"
     "  --pty              connect the UART to a pseudo terminal, in real time; with --bootloader opening it resets the "
@@ -174,15 +178,11 @@ static bool take_file(int code, const char *argument)
         int code;
         const char **target;
     } files[] = {
-        { OPTION_FW, &options.fw },
-        { OPTION_IN, &options.in },
-        { OPTION_OUT, &options.out },
-        { OPTION_SERVED, &options.served },
-        { OPTION_EEPROM, &options.eeprom },
-        { OPTION_STATS, &options.stats },
-        { OPTION_VCD, &options.vcd },
-        { OPTION_PROFILE, &options.profile },
-        { OPTION_BOOTLOADER, &options.bootloader },
+        { OPTION_FW, &options.fw },         { OPTION_IN, &options.in },
+        { OPTION_OUT, &options.out },       { OPTION_SERVED, &options.served },
+        { OPTION_EEPROM, &options.eeprom }, { OPTION_STATS, &options.stats },
+        { OPTION_VCD, &options.vcd },       { OPTION_PROFILE, &options.profile },
+        { OPTION_SPAN, &options.span },     { OPTION_BOOTLOADER, &options.bootloader },
     };
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         if (files[i].code == code) {

@@ -30,6 +30,8 @@ static const char *const vector_name[VECTORS] = {
 };
 
 uint64_t stats_slept;
+uint64_t stats_interrupted;
+static unsigned nested;
 static interrupt_t interrupts[VECTORS];
 static uint64_t streaming_from = NEVER, slept_from, streaming_to = NEVER, slept_to;
 static struct {
@@ -45,6 +47,7 @@ static void enter(interrupt_t *interrupt)
     }
     interrupt->entered = mcu->cycle;
     interrupt->running = true;
+    nested++;
     mcu->cycle += ENTRY_CYCLES;
 }
 
@@ -53,6 +56,8 @@ static void leave(interrupt_t *interrupt)
     enum { RETI_CYCLES = 4 }; /* simavr tells before it counts them */
     uint64_t cycles = mcu->cycle + RETI_CYCLES - interrupt->entered;
     interrupt->running = false;
+    nested--;
+    stats_interrupted += cycles;
     interrupt->count++;
     interrupt->sum += cycles;
     interrupt->max = cycles > interrupt->max ? cycles : interrupt->max;
@@ -104,8 +109,14 @@ void stats_start(void)
     }
 }
 
+bool stats_in_interrupt(void)
+{
+    return nested != 0;
+}
+
 void stats_reset(void)
 {
+    nested = 0;
     for (unsigned v = 0; v < VECTORS; v++) {
         interrupts[v].running = false;
         interrupts[v].pending = false;

@@ -1,6 +1,6 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
-# Groups: firmware sim test check flash flashtest. Packages come by apt-get, numpy and matplotlib by pip into build/venv, Unity
+# Groups: firmware sim test check flash flashtest bench. Packages come by apt-get, numpy and matplotlib by pip into build/venv, Unity
 # by tools/get_unity.sh into build/unity (UNITY_DIR=folder: use that one). Uses sudo only when not root.
 set -eu
 
@@ -96,6 +96,7 @@ collect() {
         case $group in
             firmware) need_avr ;;
             sim) need_simulator; need_plots ;;
+            bench) need_simulator; need python3 has python3 ;;
             test) need_simulator; need_plots; need_unity ;;
             check) need_simulator; need_unity; need python3 has python3
                 need clang-tidy has clang-tidy
@@ -103,7 +104,7 @@ collect() {
                 need cppcheck has cppcheck ;;
             flash) need_avr; need avrdude has avrdude ;;
             flashtest) need_simulator; need avrdude has avrdude; need arduino-core-avr has_optiboot ;;
-            *) fail "unknown group '$group': use firmware, sim, test, check, flash or flashtest" ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest or bench" ;;
         esac
     done
     missing=${missing# }
@@ -176,7 +177,7 @@ install_unity() {
     tools/get_unity.sh build/unity
 }
 
-[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest)"
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench)"
 collect "$@"
 mkdir -p build
 if [ -n "$missing" ]; then

@@ -1,0 +1,109 @@
+/*
+ * What an image grows by when a part is linked: each part is used as the firmware uses it if its WITH_ is 1. tools/bench.py builds
+ * this with nothing, with each part alone, with all filters, and with all filters but one.
+ */
+#include <math.h>
+#include <stdint.h>
+
+#include "filter_list.h"
+#include "float_filters.h"
+#include "noise.h"
+#include "tilt.h"
+
+#include "../../firmware/rows.c"
+
+static volatile int16_t in;
+static volatile int32_t out;
+static volatile float float_out;
+
+#define USE(F)                                         \
+    static void use_##F(void)                          \
+    {                                                  \
+        static F##_t state;                            \
+        F##_config_t config;                           \
+        F##_defaults(&config, (uint16_t)in);           \
+        (void)F##_init(&state, &config);               \
+        F##_set_noise(&state, (uint32_t)out);          \
+        F##_reset(&state, in);                         \
+        out = F##_update(&state, in);                  \
+        out = F##_coast(&state);                       \
+        out = F##_flags(&state);                       \
+    }                                                  \
+    static void use_float_##F(void)                    \
+    {                                                  \
+        static float_##F##_t state;                    \
+        F##_config_t config = { 0 };                   \
+        config.rate_dhz = (uint16_t)in;                \
+        float_##F##_start(&state, &config, float_out); \
+        float_##F##_set_noise(&state, float_out);      \
+        float_out = float_##F##_update(&state, in);    \
+        float_out = float_##F##_coast(&state);         \
+    }
+FILTER_LIST(USE)
+
+static void use_noise(void)
+{
+    static noise_t state;
+    noise_init(&state, (uint16_t)in, in > 0);
+    out = noise_update(&state, in);
+    noise_gap(&state);
+    out = (int32_t)noise_r_lsb2_q8(&state);
+}
+
+static void use_angles(void)
+{
+    static tilt_t state;
+    tilt_angles(&state, out, out, out);
+    out = state.roll_cdeg + state.pitch_cdeg;
+}
+
+static void use_float_angles(void)
+{
+    float roll;
+    float pitch;
+    float_angles(&roll, &pitch, float_out, float_out, float_out);
+    float_out = roll + pitch;
+}
+
+static void use_format_row(void)
+{
+    char line[ROW_MAX];
+    row_t row;
+    row.t_us = (uint32_t)out;
+    row.flags = (uint16_t)in;
+    for (uint8_t axis = 0; axis < 3; axis++) {
+        row.lsb[axis] = in;
+        row.mg[axis] = in;
+    }
+    row.roll_cdeg = in;
+    row.pitch_cdeg = in;
+    out = *write_csv(line, &row);
+}
+
+int main(void)
+{
+#define CALL(F)           \
+    if (WITH_##F) {       \
+        use_##F();        \
+    }                     \
+    if (WITH_float_##F) { \
+        use_float_##F();  \
+    }
+    FILTER_LIST(CALL)
+    if (WITH_noise) {
+        use_noise();
+    }
+    if (WITH_angles) {
+        use_angles();
+    }
+    if (WITH_float_angles) {
+        use_float_angles();
+    }
+    if (WITH_format_row) {
+        use_format_row();
+    }
+    for (;;) {
+        out = in;
+        float_out = *(volatile float *)&float_out;
+    }
+}

@@ -1,0 +1,46 @@
+/* The synthesised filter as equation 7 of paper 000 prints it: four products, in float. */
+#include "float_filters.h"
+
+#ifdef SYNTH_H
+
+void float_synth_start(float_synth_t *f, const synth_config_t *config, float x0_lsb)
+{
+    f->a1 = (float)config->a1_q16 / 65536.0f;
+    f->b0 = (float)config->b0_uq16 / 65536.0f;
+    f->x1 = x0_lsb;
+    f->x2 = x0_lsb;
+    f->x3 = x0_lsb;
+}
+
+/* Its gains do not depend on R. */
+void float_synth_set_noise(float_synth_t *f, float r_lsb2)
+{
+    (void)f;
+    (void)r_lsb2;
+}
+
+static float extrapolate(const float_synth_t *f)
+{
+    return (2.0f - f->a1) * f->x1 - (1.0f - 2.0f * f->a1) * f->x2 - f->a1 * f->x3;
+}
+
+static float shift(float_synth_t *f, float x)
+{
+    f->x3 = f->x2;
+    f->x2 = f->x1;
+    f->x1 = x;
+    return x;
+}
+
+float float_synth_coast(float_synth_t *f)
+{
+    return shift(f, extrapolate(f));
+}
+
+float float_synth_update(float_synth_t *f, int16_t z_lsb)
+{
+    float x_e = extrapolate(f);
+    return shift(f, x_e + f->b0 * ((float)z_lsb - x_e));
+}
+
+#endif

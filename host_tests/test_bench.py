@@ -1,0 +1,163 @@
+"""The judgement of make bench: each limit is broken once and must be named; the rest of the page is left alone."""
+import copy
+import importlib.util
+import pathlib
+
+from system_support import FW, OUT, SIMRUN, STREAMS, run, run_all, test
+
+spec = importlib.util.spec_from_file_location("bench", pathlib.Path("tools/bench.py"))
+bench = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(bench)
+
+PRINTED = """
+=kf typical 1000
+02bc0000
+02c0128e02c81290
++stack kf 16
++stack float_kf 68
++rms kf 12
+=kf provoked 125
+03181300
++stack kf 20
+=end
+"""
+
+
+def rows():
+    """Numbers that keep every limit."""
+    row = {"min": 200, "median": 700, "worst": 790, "where": "provoked 12.5 Hz", "samples": 6000, "worst_small": 800, "flash": 1000, "shared": 500,
+           "ram": 60, "stack": 16}
+    return {"kf": row, "angles": dict(row, worst=1400), "float_kf": dict(row, median=4000, worst=5000),
+            "float_angles": dict(row, median=6000, worst=7000)}
+
+
+RMS = [("kf", "typical", 250, 0.01), ("kf", "provoked", 250, 99.0), ("kf", "typical", 125, 9.0), ("angles", "typical", 0, 0.004)]
+
+
+def one_finding(changed, *words, rms=None, filters=("kf",)):
+    assert bench.limit_faults(["kf"], rows(), RMS) == []
+    found = bench.limit_faults(list(filters), changed, RMS if rms is None else rms)
+    assert len(found) == 1 and all(word in found[0] for word in words), found
+
+
+def changed(name, **values):
+    result = rows()
+    result[name].update(values)
+    return result
+
+
+@test
+def printed_calls_are_read_and_summed_up():
+    sections, stack, rms = bench.parse(PRINTED, "printed")
+    assert stack == {"kf": 20, "float_kf": 68} and rms == [("kf", "typical", 1000, 0.012)]
+    summary = bench.summarise(sections)
+    # 0x2bc 0x2c0 0x2c8, then 0x318 in the stream that is not typical
+    assert summary["kf"] == {"min": 700, "median": 704, "worst": 792, "where": "provoked 12.5 Hz", "samples": 4}, summary
+    assert summary["float_kf"]["samples"] == 3 and summary["float_kf"]["worst"] == 0x1300, summary
+
+
+@test
+def a_run_cut_short_is_noticed():
+    try:
+        bench.parse(PRINTED.replace("=end", ""), "printed")
+    except bench.Fault as fault:
+        assert "did not run to its end" in str(fault)
+    else:
+        raise AssertionError("taken for complete")
+
+
+@test
+def a_worst_case_over_its_limit_is_named():
+    one_finding(changed("kf", worst=801), "kf", "801", "800", "provoked 12.5 Hz")
+    one_finding(changed("angles", worst=1501), "angles", "1501")
+
+
+@test
+def a_filter_without_a_limit_is_named():
+    new = rows()
+    new["later"], new["float_later"] = copy.deepcopy(new["kf"]), copy.deepcopy(new["float_kf"])
+    one_finding(new, "later", "WORST_LIMIT", filters=("kf", "later"), rms=RMS + [("later", "typical", 250, 0.0)])
+
+
+@test
+def too_little_gain_over_float_is_named():
+    one_finding(changed("float_kf", worst=3159), "worst 790", "3159")
+    one_finding(changed("float_kf", median=2799), "median 700", "2799")
+
+
+@test
+def a_missing_yardstick_is_named():
+    new = rows()
+    del new["float_kf"]
+    one_finding(new, "kf", "no float version")
+
+
+@test
+def too_few_samples_are_named():
+    one_finding(changed("kf", samples=4999), "4999")
+
+
+@test
+def a_yardstick_that_does_another_job_is_named():
+    one_finding(rows(), "0.26", "25 Hz", rms=[("kf", "typical", 250, 0.26), RMS[3]])
+    one_finding(rows(), "angles", "0.03", rms=[RMS[0], ("angles", "anything", 0, 0.03)])
+    one_finding(rows(), "not compared", rms=[RMS[1], RMS[2], RMS[3]])
+
+
+@test
+def a_number_two_per_cent_up_is_named_with_old_and_new():
+    page = "\n".join([bench.BEGIN, *bench.table(rows()), bench.END])
+    old = bench.read_table(page)
+    assert old["kf"] == {"median": 700, "worst": 790, "worst, firmware's flags": 800, "flash": 1000, "RAM": 60, "stack": 16}, old["kf"]
+    for column, value, found in (("worst", 805, 0), ("worst", 806, 1), ("flash", 1020, 0), ("flash", 1021, 1), ("stack", 17, 1), ("median", 1, 0)):
+        new = copy.deepcopy(old)
+        new["kf"][column] = value
+        faults = bench.regressions(old, new)
+        assert len(faults) == found, (column, value, faults)
+        assert not faults or str(old["kf"][column]) in faults[0] and str(value) in faults[0] and "kf" in faults[0], faults
+    del new["kf"]
+    assert len(bench.regressions(old, new)) == 1
+    assert bench.regressions(old, {**old, "float_kf": {}}) == []
+
+
+@test
+def only_the_table_of_the_page_is_written():
+    page = f"head\n{bench.BEGIN}\nold\n{bench.END}\ntail\n"
+    assert bench.with_table(page, ["| new |"]) == f"head\n{bench.BEGIN}\n| new |\n{bench.END}\ntail\n"
+    for broken in (page.replace(bench.END, ""), page + bench.BEGIN):
+        try:
+            bench.with_table(broken, [])
+        except bench.Fault as fault:
+            assert "markers" in str(fault)
+        else:
+            raise AssertionError("taken for a page")
+
+
+@test
+def the_committed_page_has_every_filter():
+    table = bench.read_table(bench.DOCUMENT.read_text(encoding="utf-8"))
+    for name in [*bench.filters_of(["-mmcu=atmega328p", "-Ilib/filters/src"]), "angles", "format_row", "sample_total"]:
+        assert table.get(name, {}).get("worst"), f"{name} has no row in {bench.DOCUMENT}: run make bench"
+
+
+@test
+def spans_leave_the_interrupts_out():
+    """From a step's entry to its gate: a clamp, a sign and the growth of P make less than 40 cycles of difference, an interrupt more."""
+    spans = OUT / "spans.csv"
+    command = (SIMRUN, "--fw", FW, "--in", STREAMS / "rest-2lsb.csv", "--out", OUT / "x.csv", "--max-ms", "3000", "--span")
+    run(*command, f"two_state_step:within_gate:{spans}")
+    lines = spans.read_text(encoding="ascii").splitlines()
+    cycles = [int(line.split(",")[1]) for line in lines[1:]]
+    assert lines[0] == "at_us,cycles,stack_bytes" and len(cycles) > 500, len(cycles)
+    assert min(cycles) > 80 and max(cycles) - min(cycles) < 40, (min(cycles), max(cycles))
+
+
+@test
+def a_span_of_an_unknown_function_is_refused():
+    for names, what in (("nowhere:main:x.csv", "no function nowhere"), ("main:nowhere:x.csv", "no function nowhere"), ("main", "FROM:TO:CSV")):
+        done = run(SIMRUN, "--fw", FW, "--in", STREAMS / "rest-2lsb.csv", "--out", OUT / "x.csv", "--span", names, expect=2)
+        assert what in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_all())

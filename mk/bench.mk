@@ -1,0 +1,33 @@
+# The benchmark: cycles, flash, RAM and stack on the simulated chip, beside float.
+
+# WITH_DEFAULTS and the rest of the images are made by tools/bench.py, which knows the filters from the list
+BENCH_INC    := $(INCLUDES) -Ihal/avr -Ihost_tests/avr
+BENCH_COMMON := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -ffunction-sections -fdata-sections
+BENCH_SRC    := $(wildcard host_tests/avr/float_*.c lib/filters/src/*.c lib/tilt/src/*.c) firmware/format.c
+BENCH_DEPS   := $(BENCH_SRC) host_tests/avr/bench.c firmware/rows.c Makefile mk/bench.mk $(wildcard host_tests/avr/*.h lib/*/src/*.h firmware/*.h hal/*.h hal/avr/*.h)
+
+$(U)/bench.elf: $(BENCH_DEPS)
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(BENCH_COMMON) -Os $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
+
+$(U)/bench_small.elf: $(BENCH_DEPS)
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(BENCH_COMMON) $(AVR_SMALL) $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
+
+# the firmware with two places around a sample's way that the simulator can time
+$(U)/bench_sample/firmware/app.o: AVR_FLAGS += -Dpipeline_sample=bench_sample_begins -Dhealth_sample_filtered=bench_sample_ends
+BENCH_SAMPLE_OBJ := $(AVR_SRC:%.c=$(U)/bench_sample/%.o) $(U)/bench_sample/host_tests/avr/bench_sample.o
+$(U)/bench_sample/%.o: %.c Makefile mk/bench.mk
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
+
+$(U)/bench_sample.elf: $(BENCH_SAMPLE_OBJ)
+	@$(AVR_CC) $(AVR_LINK) $^ -o $@
+
+## bench: cycles, flash, RAM and stack of each filter, beside float, into docs/benchmarks.md (1 minute)
+bench:
+	@sh tools/deps.sh bench
+	@$(MAKE) -j2 $(U)/bench.elf $(U)/bench_small.elf $(U)/bench_sample.elf $(U)/firmware.elf $(S)/simrun
+	@python3 tools/bench.py --flags '$(BENCH_COMMON) -Wl,--gc-sections $(BENCH_INC)' --small '$(AVR_SMALL)' --sources '$(BENCH_SRC)'
+
+.PHONY: bench

@@ -1,0 +1,321 @@
+"""make bench: runs the images of the benchmark in the simulator, judges the numbers, writes build/bench.json and the table of
+docs/benchmarks.md."""
+import argparse
+import csv
+import json
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+
+SIMRUN = "build/sim/simrun"
+OUT = pathlib.Path("build/uno")
+JSON = pathlib.Path("build/bench.json")
+DOCUMENT = pathlib.Path("docs/benchmarks.md")
+BEGIN, END = "<!-- written by make bench: begin -->", "<!-- written by make bench: end -->"
+COMPILER = "5.4.0"  # the limits are for Debian's avr-gcc; elsewhere the numbers are only reported
+
+WORST_LIMIT = {"kf": 800, "sprf": 1000, "synth": 500, "angles": 1500}
+RATIO_LIMIT = 4.0
+SAMPLES_MIN = 5000
+REGRESSION = 0.02
+# The yardstick must do the same job. LSB: a twentieth of the stream's noise of 4.6 LSB. Degrees: the bound that lib/tilt derives.
+RMS_LIMIT = {"angles": 0.029}
+RMS_LIMIT_FILTER = 0.25
+# At 12.5 Hz P grows so fast that single decisions at the gate's threshold fall differently, and each shows for some samples.
+RMS_FROM_DHZ = 250
+
+# The firmware's own way of a sample: stream, options of simrun
+SAMPLE_RUNS = (("outliers-15pct", ()), ("gaps-jitter", ()), ("clipping", ()), ("bad-reads", ()), ("vibration", ()),
+               ("tilt-400hz", ("--rate", "400", "--baud", "500000")), ("through-roll-180", ()))
+COLUMNS = ("median", "worst", "worst, firmware's flags", "flash", "RAM", "stack")
+
+
+class Fault(Exception):
+    """One sentence about what is wrong."""
+
+
+def run(command, statuses=(0,)):
+    command = [str(c) for c in command]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    if done.returncode not in statuses:
+        raise Fault(f"{command[0]} gave status {done.returncode}: {(done.stderr or done.stdout).strip()}")
+    return done.stdout
+
+
+# --- what the image prints ---
+
+def parse(text, source):
+    """Sections [(name, regime, rate_dhz, [(ours, float)...])], stack {name: bytes}, rms [(name, regime, rate_dhz, value)]."""
+    sections, stack, rms = [], {}, []
+    for line in text.splitlines():
+        word = line.split()
+        if line == "=end":
+            return sections, stack, rms
+        if line.startswith("="):
+            sections.append((word[0][1:], word[1], int(word[2]), []))
+        elif line.startswith("+stack"):
+            stack[word[1]] = max(stack.get(word[1], 0), int(word[2]))
+        elif line.startswith("+rms"):
+            rms.append((word[1], *sections[-1][1:3], int(word[2]) / 1000.0))
+        elif line:
+            cells = [int(line[i:i + 4], 16) for i in range(0, len(line), 4)]
+            sections[-1][3].extend(zip(cells[::2], cells[1::2]))
+    raise Fault(f"{source}: the benchmark did not run to its end")
+
+
+def summarise(sections):
+    """{name: {min, median, worst, where, samples}}; the median is that of the typical streams, the rest of all."""
+    calls = {}
+    for name, regime, rate_dhz, pairs in sections:
+        where = regime + (f" {rate_dhz / 10:g} Hz" if rate_dhz else "")
+        for key, values in ((name, [p[0] for p in pairs]), (f"float_{name}", [p[1] for p in pairs if p[1]])):
+            if values:
+                calls.setdefault(key, []).append((where, regime == "typical", values))
+    result = {}
+    for name, parts in calls.items():
+        values = [v for _, _, part in parts for v in part]
+        typical = [v for _, is_typical, part in parts if is_typical for v in part] or values
+        worst, where = max((max(part), where) for where, _, part in parts)
+        result[name] = {"min": min(values), "median": round(statistics.median(typical)), "worst": worst, "where": where, "samples": len(values)}
+    return result
+
+
+def measure(images):
+    """Each image in the simulator, side by side; status 8 is how its program ends."""
+    running = []
+    for image in images:
+        text = image.with_suffix(".txt")
+        command = [SIMRUN, "--fw", image, "--in", "sim/streams/tilt-fast.csv", "--out", text, "--max-ms", "300000"]
+        running.append((subprocess.Popen([str(c) for c in command], stderr=subprocess.PIPE, text=True), text))
+    results = []
+    for process, text in running:
+        _, told = process.communicate(timeout=300)
+        if process.returncode != 8:
+            raise Fault(f"{text.stem}: simrun gave status {process.returncode}: {told.strip().splitlines()[-1]}")
+        results.append(parse(text.read_text(encoding="ascii"), text.stem))
+    return results
+
+
+def measure_sample():
+    """The sample's way in the firmware: cycles and stack of every sample of some streams."""
+    cycles, stack, worst = [], 0, (0, "")
+    for stream, options in SAMPLE_RUNS:
+        spans = OUT / "bench_sample.csv"
+        run([SIMRUN, "--fw", OUT / "bench_sample.elf", "--in", f"sim/streams/{stream}.csv", "--out", OUT / "bench_sample.txt", "--span",
+             f"bench_sample_begins:bench_sample_ends:{spans}", *options])
+        with open(spans, encoding="ascii") as file:
+            rows = list(csv.DictReader(file))
+        if not rows:
+            raise Fault(f"sample_total: no sample of {stream} was timed")
+        part = [int(row["cycles"]) for row in rows]
+        stack = max(stack, *(int(row["stack_bytes"]) for row in rows))
+        worst = max(worst, (max(part), stream))
+        cycles.append((stream, part))
+    values = [v for _, part in cycles for v in part]
+    typical = [v for stream, part in cycles if stream == "outliers-15pct" for v in part]
+    return {"min": min(values), "median": round(statistics.median(typical)), "worst": worst[0], "where": worst[1], "samples": len(values)}, stack
+
+
+# --- sizes ---
+
+def filters_of(flags):
+    source = '#include "filter_list.h"\n#define NAME(F) @F@\nFILTER_LIST(NAME)\n'
+    done = subprocess.run(["avr-gcc", *flags, "-E", "-P", "-x", "c", "-"], input=source, capture_output=True, text=True, timeout=60)
+    names = re.findall(r"@ *(\w+) *@", done.stdout)
+    if done.returncode != 0 or not names:
+        raise Fault(f"cannot read the list of filters: {done.stderr.strip()}")
+    return names
+
+
+def image_size(elf):
+    """Flash and RAM bytes."""
+    sizes = {w[0]: int(w[1]) for w in (line.split() for line in run(["avr-size", "-A", elf]).splitlines()) if len(w) == 3 and w[1].isdigit()}
+    data = sizes.get(".data", 0)
+    return sizes.get(".text", 0) + data, data + sizes.get(".bss", 0) + sizes.get(".noinit", 0)
+
+
+class Sizes:
+    """Images of bench_size.c with a choice of parts."""
+
+    def __init__(self, flags, sources, filters):
+        self.flags, self.folder = flags, OUT / "bench_size"
+        self.parts = filters + [f"float_{f}" for f in filters] + ["noise", "angles", "float_angles", "format_row"]
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.objects = []
+        for source in sources:
+            self.objects.append(self.folder / (pathlib.Path(source).stem + ".o"))
+            run(["avr-gcc", *flags, "-Os", "-c", source, "-o", self.objects[-1]])
+        self.empty = self.of([])
+
+    def of(self, chosen):
+        elf = self.folder / "bench_size.elf"
+        choice = [f"-DWITH_{part}={int(part in chosen)}" for part in self.parts]
+        run(["avr-gcc", *self.flags, "-Os", *choice, "host_tests/avr/bench_size.c", *self.objects, "-lm", "-o", elf])
+        return image_size(elf)
+
+    def above_empty(self, chosen):
+        return tuple(a - b for a, b in zip(self.of(chosen), self.empty))
+
+
+def measure_sizes(flags, sources, filters):
+    """{part: (flash, RAM)} alone, and {filter: flash bytes of it that the other filters link too}."""
+    sizes = Sizes(flags, sources, filters)
+    alone = {part: sizes.above_empty([part]) for part in sizes.parts}
+    everything = sizes.above_empty(filters)[0]
+    shared = {f: alone[f][0] - (everything - sizes.above_empty([g for g in filters if g != f])[0]) for f in filters}
+    return alone, shared
+
+
+# --- table and judgement ---
+
+def limit_faults(filters, rows, rms):
+    """What is over a limit, one sentence each."""
+    faults = []
+    for name in [*filters, "angles"]:
+        row, yardstick = rows[name], rows.get(f"float_{name}")
+        if name not in WORST_LIMIT:
+            faults.append(f"{name}: no limit of its cycles in tools/bench.py (WORST_LIMIT)")
+        elif row["worst"] > WORST_LIMIT[name]:
+            faults.append(f"{name}: worst case {row['worst']} cycles ({row['where']}), limit {WORST_LIMIT[name]}")
+        if row["samples"] < SAMPLES_MIN:
+            faults.append(f"{name}: {row['samples']} samples, at least {SAMPLES_MIN} are wanted")
+        if yardstick is None:
+            faults.append(f"{name}: no float version was measured")
+            continue
+        for kind in ("median", "worst"):
+            if yardstick[kind] < RATIO_LIMIT * row[kind]:
+                faults.append(f"{name}: {kind} {row[kind]} cycles, float {yardstick[kind]}: {yardstick[kind] / row[kind]:.2f} times fewer, wanted {RATIO_LIMIT:g}")
+    return faults + agreement_faults(filters, rms)
+
+
+def agreement_faults(filters, rms):
+    faults = []
+    for name in [*filters, "angles"]:
+        limit = RMS_LIMIT.get(name, RMS_LIMIT_FILTER)
+        compared = [(value, regime, rate) for n, regime, rate, value in rms
+                    if n == name and (name == "angles" or (regime == "typical" and rate >= RMS_FROM_DHZ))]
+        if not compared:
+            faults.append(f"{name}: not compared with its float version")
+        for value, regime, rate in compared:
+            if value > limit:
+                faults.append(f"{name}: differs from its float version by {value:g} rms ({regime} {rate / 10:g} Hz), limit {limit:g}")
+    return faults
+
+
+def table(rows):
+    """Markdown lines."""
+    head = ["name", "min", *COLUMNS[:2], "worst seen in", *COLUMNS[2:4], "of it shared", *COLUMNS[4:], "float / ours, median", "worst"]
+    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    for name, row in rows.items():
+        yardstick = rows.get(f"float_{name}")
+        ratios = [f"{yardstick[k] / row[k]:.1f}" if yardstick else "" for k in ("median", "worst")]
+        cells = [f"`{name}`", row["min"], row["median"], row["worst"], row["where"], row.get("worst_small", ""), row.get("flash", ""),
+                 row.get("shared", ""), row.get("ram", ""), row.get("stack", ""), *ratios]
+        lines.append("| " + " | ".join(f"{c:,}" if isinstance(c, int) else c for c in cells) + " |")
+    return lines
+
+
+def read_table(text):
+    """{name: {column: number}} of a page's table; empty if it has none."""
+    if BEGIN not in text or END not in text:
+        return {}
+    lines = [line for line in text[text.index(BEGIN):text.index(END)].splitlines() if line.startswith("|")]
+    if not lines:
+        return {}
+    head = [cell.strip() for cell in lines[0].strip("|").split("|")]
+    result = {}
+    for line in lines[2:]:
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        numbers = {}
+        for column in COLUMNS:
+            digits = cells[head.index(column)].replace(",", "")
+            if digits.isdigit():
+                numbers[column] = int(digits)
+        result[cells[0].strip("`")] = numbers
+    return result
+
+
+def regressions(old, new):
+    """Rows that need more than 2 % more than before, or are gone; the yardsticks do not count."""
+    faults = []
+    for name, columns in old.items():
+        if name.startswith("float_"):
+            continue
+        if name not in new:
+            faults.append(f"{name}: was in docs/benchmarks.md and is gone")
+            continue
+        for column, before in columns.items():
+            now = new[name].get(column)
+            if now is None or now > before * (1.0 + REGRESSION):
+                faults.append(f"{name}: {column} {before} before, {now} now")
+    return faults
+
+
+def with_table(page, lines):
+    if page.count(BEGIN) != 1 or page.count(END) != 1:
+        raise Fault(f"{DOCUMENT}: its markers are missing or doubled: '{BEGIN}' and '{END}'")
+    head, rest = page.split(BEGIN)
+    return head + BEGIN + "\n" + "\n".join(lines) + "\n" + END + rest.split(END)[1]
+
+
+def committed_page():
+    done = subprocess.run(["git", "show", f"HEAD:{DOCUMENT}"], capture_output=True, text=True, timeout=60)
+    return done.stdout if done.returncode == 0 else ""
+
+
+def bench_json(rows):
+    keys = {"cycles_min": "min", "cycles_median": "median", "cycles_max": "worst", "flash_bytes": "flash", "ram_bytes": "ram", "stack_bytes": "stack"}
+    return [{"name": name, **{key: row.get(source) for key, source in keys.items()}} for name, row in rows.items()]
+
+
+def collect(flags, sources):
+    filters = filters_of(flags)
+    (sections, stack, rms), (small, _, _) = measure([OUT / "bench.elf", OUT / "bench_small.elf"])
+    rows, rows_small = summarise(sections), summarise(small)
+    alone, shared = measure_sizes(flags, sources, filters)
+    rows["sample_total"], stack["sample_total"] = measure_sample()
+    rows_small["sample_total"] = rows["sample_total"]
+    alone["sample_total"] = image_size(OUT / "firmware.elf")
+    for name, row in rows.items():
+        row["worst_small"] = rows_small[name]["worst"]
+        row["stack"] = stack[name]
+        if name in alone:
+            row["flash"], row["ram"] = alone[name]
+        if name in shared:
+            row["shared"] = shared[name]
+    wanted = [*filters, "angles", "format_row", "sample_total", "noise", *(f"{f}_set_noise" for f in filters), *(f"float_{f}" for f in filters),
+              "float_angles"]
+    return filters, {name: rows[name] for name in wanted}, rms
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--flags", required=True, help="compiler flags but -Os")
+    options.add_argument("--small", default="", help="the firmware's flags, for the page")
+    options.add_argument("--sources", required=True)
+    arguments = options.parse_args()
+    filters, rows, rms = collect(arguments.flags.split(), arguments.sources.split())
+    lines = table(rows)
+    print("\n".join(lines))
+    JSON.write_text(json.dumps(bench_json(rows), indent=1) + "\n", encoding="ascii")
+    new = read_table("\n".join([BEGIN, *lines, END]))
+    faults = limit_faults(filters, rows, rms) + regressions(read_table(committed_page()), new)
+    version = run(["avr-gcc", "-dumpversion"]).strip()
+    if version != COMPILER:
+        print(f"bench: avr-gcc {version}: reported only, the limits and docs/benchmarks.md are for {COMPILER}")
+        return 0
+    DOCUMENT.write_text(with_table(DOCUMENT.read_text(encoding="utf-8"), lines), encoding="utf-8")
+    for fault in faults:
+        print(f"bench: {fault}", file=sys.stderr)
+    print(f"bench: {len(rows)} rows, {len(faults)} findings; docs/benchmarks.md and {JSON} written")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except (Fault, OSError, subprocess.TimeoutExpired) as problem:
+        print(f"bench: {problem}", file=sys.stderr)
+        sys.exit(2)
