@@ -1,6 +1,6 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
-# Groups: firmware sim test check flash flashtest bench. Packages come by apt-get, numpy and matplotlib by pip into build/venv, Unity
+# Groups: firmware sim test check flash flashtest bench piocheck. Packages come by apt-get, numpy and matplotlib by pip into build/venv, Unity
 # by tools/get_unity.sh into build/unity (UNITY_DIR=folder: use that one). Uses sudo only when not root.
 set -eu
 
@@ -10,6 +10,9 @@ log=build/deps.log
 missing=''
 want_venv=no
 want_unity=no
+want_pio=no
+pio_requirements='platformio==6.2.0 scons==4.11.1' # the versions that tools/pio_standins.py stands in for
+pio_venv=build/venv-pio
 
 fail() {
     echo "deps: $1" >&2
@@ -103,8 +106,9 @@ collect() {
                 need clang-format has clang-format
                 need cppcheck has cppcheck ;;
             flash) need_avr; need avrdude has avrdude ;;
+            piocheck) need_avr; need_host_compiler; want_pio=yes; need python3-venv has_venv_module; need ca-certificates has_certificates ;;
             flashtest) need_simulator; need avrdude has avrdude; need arduino-core-avr has_optiboot ;;
-            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest or bench" ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench or piocheck" ;;
         esac
     done
     missing=${missing# }
@@ -167,6 +171,20 @@ install_plot_packages() {
     cp tools/requirements.txt "$venv/requirements.installed"
 }
 
+has_pio() {
+    [ -x "$pio_venv/bin/pio" ] && [ "$(cat "$pio_venv/requirements.installed" 2> /dev/null)" = "$pio_requirements" ]
+}
+
+install_pio() {
+    echo "deps: installing with pip into $pio_venv: $pio_requirements"
+    python3 -m venv "$pio_venv" > "$log" 2>&1 ||
+        fail "cannot make $pio_venv ($(tail -n 1 "$log")): $(how_to_supply python3-venv)"
+    # shellcheck disable=SC2086
+    "$pio_venv/bin/python" -m pip install --disable-pip-version-check --no-input --retries 2 --timeout 20 $pio_requirements > "$log" 2>&1 ||
+        fail "cannot install $pio_requirements ($(first_error)): check the network and pip's index; log in $log"
+    echo "$pio_requirements" > "$pio_venv/requirements.installed"
+}
+
 install_unity() {
     if [ -n "${UNITY_DIR:-}" ]; then
         [ -f "$UNITY_DIR/unity.c" ] && [ -f "$UNITY_DIR/unity.h" ] && [ -f "$UNITY_DIR/unity_internals.h" ] ||
@@ -177,7 +195,7 @@ install_unity() {
     tools/get_unity.sh build/unity
 }
 
-[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench)"
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck)"
 collect "$@"
 mkdir -p build
 if [ -n "$missing" ]; then
@@ -187,6 +205,9 @@ if [ -n "$missing" ]; then
 fi
 if [ $want_venv = yes ] && ! has_plot_packages; then
     install_plot_packages
+fi
+if [ $want_pio = yes ] && ! has_pio; then
+    install_pio
 fi
 if [ $want_unity = yes ]; then
     install_unity

@@ -1,0 +1,10 @@
+# PlatformIO: its Core comes from PyPI, its packages cannot be had from every network; others stand in for them.
+
+## piocheck: platformio.ini with PlatformIO Core and stand-in packages (1 minute)
+piocheck:
+	@sh tools/deps.sh test piocheck
+	@python3 tools/pio_standins.py build/pio/core build/venv-pio
+	@$(MAKE) $(U)/firmware.elf $(S)/simrun $(H)/native_replay
+	@python3 host_tests/test_platformio.py
+
+.PHONY: piocheck
