@@ -66,9 +66,11 @@ def parse(text, source):
 
 
 def summarise(sections):
-    """{name: {min, median, worst, where, samples}}; the median is that of the typical streams, the rest of all."""
-    calls = {}
+    """{name: {min, median, worst, where, samples, worst_both}}; the median is that of the typical streams, the rest of all. worst_both is
+    over the samples that the float version saw too: it has no warm-up."""
+    calls, both = {}, {}
     for name, regime, rate_dhz, pairs in sections:
+        both[name] = max([both.get(name, 0)] + [p[0] for p in pairs if p[1]])
         where = regime + (f" {rate_dhz / 10:g} Hz" if rate_dhz else "")
         for key, values in ((name, [p[0] for p in pairs]), (f"float_{name}", [p[1] for p in pairs if p[1]])):
             if values:
@@ -78,7 +80,8 @@ def summarise(sections):
         values = [v for _, _, part in parts for v in part]
         typical = [v for _, is_typical, part in parts if is_typical for v in part] or values
         worst, where = max((max(part), where) for where, _, part in parts)
-        result[name] = {"min": min(values), "median": round(statistics.median(typical)), "worst": worst, "where": where, "samples": len(values)}
+        result[name] = {"min": min(values), "median": round(statistics.median(typical)), "worst": worst, "where": where, "samples": len(values),
+                        "worst_both": both.get(name, 0) or max(values)}
     return result
 
 
@@ -184,9 +187,9 @@ def limit_faults(filters, rows, rms):
         if yardstick is None:
             faults.append(f"{name}: no float version was measured")
             continue
-        for kind in ("median", "worst"):
+        for kind in ("median", "worst_both"):
             if yardstick[kind] < RATIO_LIMIT * row[kind]:
-                faults.append(f"{name}: {kind} {row[kind]} cycles, float {yardstick[kind]}: {yardstick[kind] / row[kind]:.2f} times fewer, wanted {RATIO_LIMIT:g}")
+                faults.append(f"{name}: {kind.split('_')[0]} {row[kind]} cycles, float {yardstick[kind]}: {yardstick[kind] / row[kind]:.2f} times fewer, wanted {RATIO_LIMIT:g}")
     return faults + agreement_faults(filters, rms)
 
 
@@ -210,7 +213,7 @@ def table(rows):
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
     for name, row in rows.items():
         yardstick = rows.get(f"float_{name}")
-        ratios = [f"{yardstick[k] / row[k]:.1f}" if yardstick else "" for k in ("median", "worst")]
+        ratios = [f"{yardstick[k] / row[k]:.1f}" if yardstick else "" for k in ("median", "worst_both")]
         cells = [f"`{name}`", row["min"], row["median"], row["worst"], row["where"], row.get("worst_small", ""), row.get("flash", ""),
                  row.get("shared", ""), row.get("ram", ""), row.get("stack", ""), *ratios]
         lines.append("| " + " | ".join(f"{c:,}" if isinstance(c, int) else c for c in cells) + " |")

@@ -203,6 +203,8 @@ static void put_section(const char *name, const char *regime, uint16_t rate_dhz)
     deepest = 0;
     float_deepest = 0;
     stack_calls = STACK_CALLS;
+    random_state = 2463534242ul +
+                   rate_dhz; /* of the section alone: another filter in the list changes no other number */
 }
 
 static void put_result(const char *kind, const char *prefix, const char *name, uint16_t value)
