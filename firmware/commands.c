@@ -65,7 +65,7 @@ static bool parse(const char *text, bool in_tenths, uint32_t *value)
         if (*text < '0' || *text > '9' || decimals > 1 || ++digits > 7) {
             return false;
         }
-        decimals = (uint8_t)(decimals << 1);
+        decimals = (uint8_t)(decimals * 2U);
         number = (number << 3) + (number << 1) + (uint8_t)(*text - '0');
     }
     if (in_tenths && decimals == 0) {

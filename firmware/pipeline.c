@@ -53,7 +53,7 @@ static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool 
     pipe.rate_dhz = rate_dhz;
     pipe.has_sample = keep;
     pipe.warm_rows = WARM_ROWS;
-    pipe.rail_high_lsb = (int16_t)((int16_t)range_g * 256 - 1);
+    pipe.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
     for (uint8_t axis = 0; axis < AXES; axis++) {
         if (new_noise) {
             noise_init(&pipe.noise[axis], rate_dhz, axis == 2);

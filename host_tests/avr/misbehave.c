@@ -10,6 +10,10 @@
 
 volatile uint8_t bytes[16];
 
+#ifndef CASE
+#define CASE 1
+#endif
+
 #if CASE == 4
 static uint8_t __attribute__((noinline)) deeper(uint8_t n)
 {

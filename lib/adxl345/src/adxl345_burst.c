@@ -142,7 +142,7 @@ void burst_take_bus(uint8_t address, bool fast)
     state = hal_irq_save();
     hal_i2c_enable(fast);
     bus.state = was_busy ? I2C_BUS_TIMEOUT : I2C_BUS_IDLE;
-    bus.address = (uint8_t)(address << 1);
+    bus.address = (uint8_t)(address * 2U);
     if (on_bus) {
         end_burst();
     }
