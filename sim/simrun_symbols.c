@@ -38,7 +38,33 @@ static void add_symbol(symbols_t *symbols, uint32_t pc, const char *name)
         refuse(name, "out of memory");
     }
     symbols->list = grown;
-    symbols->list[symbols->count++] = (symbol_t){ pc, copy };
+    symbols->list[symbols->count].pc = pc;
+    symbols->list[symbols->count].name = copy;
+    symbols->count++;
+}
+
+static bool is_function(const GElf_Sym *symbol)
+{
+    unsigned type = GELF_ST_TYPE(symbol->st_info);
+    bool in_flash = symbol->st_value < RAM_OFFSET && symbol->st_shndx != SHN_ABS && symbol->st_shndx != SHN_UNDEF;
+    return in_flash && (type == STT_FUNC || type == STT_NOTYPE);
+}
+
+static bool is_variable(const GElf_Sym *symbol)
+{
+    return GELF_ST_TYPE(symbol->st_info) == STT_OBJECT && symbol->st_value >= RAM_OFFSET &&
+           symbol->st_value < EEPROM_OFFSET;
+}
+
+static void take_symbol(const GElf_Sym *symbol, const char *name, program_size_t *size)
+{
+    if (strcmp(name, "_end") == 0) {
+        size->end_of_ram = (uint32_t)symbol->st_value & 0xFFFFu;
+    } else if (is_function(symbol)) {
+        add_symbol(&functions, (uint32_t)symbol->st_value, name);
+    } else if (is_variable(symbol)) {
+        add_symbol(&variables, (uint32_t)symbol->st_value & 0xFFFFu, name);
+    }
 }
 
 static void take_symbols(Elf *elf, Elf_Scn *section, const GElf_Shdr *header, program_size_t *size)
@@ -51,17 +77,8 @@ static void take_symbols(Elf *elf, Elf_Scn *section, const GElf_Shdr *header, pr
             continue;
         }
         const char *name = elf_strptr(elf, header->sh_link, symbol.st_name);
-        if (name == NULL || *name == '\0') {
-            continue;
-        }
-        unsigned type = GELF_ST_TYPE(symbol.st_info);
-        bool in_flash = symbol.st_value < RAM_OFFSET && symbol.st_shndx != SHN_ABS && symbol.st_shndx != SHN_UNDEF;
-        if (strcmp(name, "_end") == 0) {
-            size->end_of_ram = (uint32_t)symbol.st_value & 0xFFFFu;
-        } else if (in_flash && (type == STT_FUNC || type == STT_NOTYPE)) {
-            add_symbol(&functions, (uint32_t)symbol.st_value, name);
-        } else if (type == STT_OBJECT && symbol.st_value >= RAM_OFFSET && symbol.st_value < EEPROM_OFFSET) {
-            add_symbol(&variables, (uint32_t)symbol.st_value & 0xFFFFu, name);
+        if (name != NULL && *name != '\0') {
+            take_symbol(&symbol, name, size);
         }
     }
 }
@@ -87,6 +104,20 @@ static int compare(const void *a, const void *b)
     return strcmp(x->name, y->name);
 }
 
+static Elf *open_elf(const char *path, int file)
+{
+    elf_version(EV_CURRENT);
+    Elf *elf = elf_begin(file, ELF_C_READ, NULL);
+    GElf_Ehdr header;
+    if (elf == NULL || elf_kind(elf) != ELF_K_ELF || gelf_getehdr(elf, &header) == NULL) {
+        refuse(path, "not an ELF file");
+    }
+    if (header.e_machine != EM_AVR_MACHINE) {
+        refuse(path, "an ELF file, but not for an AVR");
+    }
+    return elf;
+}
+
 void symbols_load(const char *path, program_size_t *size)
 {
     *size = (program_size_t){ 0 };
@@ -94,15 +125,7 @@ void symbols_load(const char *path, program_size_t *size)
     if (file < 0) {
         refuse(path, "cannot open");
     }
-    elf_version(EV_CURRENT);
-    Elf *elf = elf_begin(file, ELF_C_READ, NULL);
-    GElf_Ehdr file_header;
-    if (elf == NULL || elf_kind(elf) != ELF_K_ELF || gelf_getehdr(elf, &file_header) == NULL) {
-        refuse(path, "not an ELF file");
-    }
-    if (file_header.e_machine != EM_AVR_MACHINE) {
-        refuse(path, "an ELF file, but not for an AVR");
-    }
+    Elf *elf = open_elf(path, file);
     Elf_Scn *section = NULL;
     while ((section = elf_nextscn(elf, section)) != NULL) {
         GElf_Shdr header;

@@ -112,6 +112,18 @@ static void on_refusal(const char *setting)
     }
 }
 
+static void on_comment(void)
+{
+    if (strncmp(line, "# refused: ", 11) == 0) {
+        on_refusal(line + 11);
+    }
+    if (!banner_seen) {
+        begin_typing();
+    } else if (header_seen && !waits_for_baud) {
+        on_reply();
+    }
+}
+
 static void on_line(void)
 {
     while (line_length != 0 && isspace((unsigned char)line[line_length - 1])) {
@@ -120,14 +132,7 @@ static void on_line(void)
     line[line_length] = '\0';
     row_t row;
     if (line[0] == '#') {
-        if (strncmp(line, "# refused: ", 11) == 0) {
-            on_refusal(line + 11);
-        }
-        if (!banner_seen) {
-            begin_typing();
-        } else if (header_seen && !waits_for_baud) {
-            on_reply();
-        }
+        on_comment();
     } else if (strncmp(line, "t_us,", 5) == 0) {
         header_seen = true;
     } else if (isdigit((unsigned char)line[0]) && parse_row(&row)) {

@@ -191,28 +191,35 @@ static void clock_slave(twi_peripheral_t *twi, unsigned clocks)
     }
 }
 
+/* What the slave answers to an address or data byte; a refusal that was asked for happens once. */
+static bool slave_acknowledges(twi_peripheral_t *twi, bool is_address, uint8_t byte)
+{
+    bool *nack = is_address ? &twi->nack_address : &twi->nack_data;
+    bool refused = *nack;
+    *nack = false;
+    if (refused) {
+        return false;
+    }
+    return is_address ? adxl345_model_start(twi->sensor, byte) : adxl345_model_write(twi->sensor, byte);
+}
+
 /* Address or data to the slave. */
 static void send_byte(twi_peripheral_t *twi)
 {
     uint8_t byte = twi->avr->data[REG_TWDR];
     bool is_address = twi->mode == TWI_STARTED;
-    bool is_read = is_address && (byte & 1u) != 0;
     bool sda_was_low = twi_sda_low(twi);
     clock_slave(twi, BITS_BYTE);
     if (sda_was_low && byte != 0) {
         lose(twi, 2); /* a one that reads as zero */
         return;
     }
-    bool *nack = is_address ? &twi->nack_address : &twi->nack_data;
-    bool refused = *nack;
-    *nack = false;
-    bool ack = !refused &&
-               (is_address ? adxl345_model_start(twi->sensor, byte) : adxl345_model_write(twi->sensor, byte));
+    bool ack = slave_acknowledges(twi, is_address, byte);
     twi->acknowledged = ack;
     twi->byte_bits = ack ? 0xFF7F : 0xFFFF; /* the master drives eight bits, the slave pulls the acknowledge */
     if (!is_address) {
         finish_in(twi, BITS_BYTE, ack ? STATUS_SENT_ACK : STATUS_SENT_NACK);
-    } else if (is_read) {
+    } else if ((byte & 1u) != 0) {
         twi->mode = TWI_RECEIVING;
         finish_in(twi, BITS_BYTE, ack ? STATUS_SLA_R_ACK : STATUS_SLA_R_NACK);
     } else {
