@@ -31,8 +31,9 @@ deps:
 # --- the UNO ---------------------------------------------------------------------------------------------------------
 U := $(B)/uno
 AVR_CC      := avr-gcc
-# what makes the smallest image with avr-gcc 5.4.0; the filters keep their speed
-AVR_SMALL   := -Os -flto -mrelax -mcall-prologues -fshort-enums -fno-inline-small-functions -fno-tree-dominator-opts -fno-tree-fre
+# what makes the smallest image with avr-gcc 5.4.0 (and no table of a switch in RAM); the filters keep their speed
+AVR_SMALL   := -Os -flto -mrelax -mcall-prologues -fshort-enums -fno-inline-small-functions -fno-tree-dominator-opts -fno-tree-fre \
+               -fno-tree-switch-conversion
 AVR_FLAGS   := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -gdwarf-2 -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr
 AVR_LINK    := -mmcu=atmega328p $(AVR_SMALL) -Wl,--gc-sections
