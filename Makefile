@@ -177,22 +177,10 @@ test:
 	    $(H)/filter_sequence $(CHIP_TESTS) $(FLASHTEST_IMAGES)
 	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" sh tools/run_tests.sh $(TESTS)
 
-## check: include table, forbidden symbols, HAL seam, lengths, clang-tidy, cppcheck, format, budgets
-check:
-	@sh tools/deps.sh check
-	@$(MAKE) $(U)/firmware.elf
-	@python3 tools/check_includes.py
-	@sh tools/check_symbols.sh $(U)/firmware.elf
-	@sh tools/check_seam.sh
-	@python3 tools/check_lengths.py
-	@sh tools/check_cpp_headers.sh
-	@sh tools/check_static.sh
-	@sh tools/check_format.sh
-	@sh tools/size.sh $(U)/firmware.elf
 
 ## clean: remove what was built (the downloads in build/unity and build/venv stay)
 clean:
-	@rm -rf $(U) $(H) $(S) $(B)/*.json
+	@rm -rf $(U) $(H) $(S) $(C) $(B)/planted $(B)/*.json
 
 # one file per further target
 include $(sort $(wildcard mk/*.mk))
@@ -200,6 +188,6 @@ include $(sort $(wildcard mk/*.mk))
 # keep the test objects
 .SECONDARY:
 
-.PHONY: sim test check clean
+.PHONY: sim test clean
 
 -include $(shell find $(U) $(H) -name '*.d' 2>/dev/null)

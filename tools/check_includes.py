@@ -2,77 +2,125 @@
 """Who may include whom: the table of the design, enforced. Prints every breach as file:line and exits 1 on any."""
 import pathlib
 import re
-import sys
+
+from check_support import FOLDERS, Stop, deviations, files, main, report
 
 STANDARD = {"stdint.h", "stdbool.h", "stddef.h"}
-LIBC = STANDARD | {"stdio.h", "stdlib.h", "string.h", "math.h", "errno.h", "limits.h", "inttypes.h", "stdarg.h", "ctype.h", "float.h"}
-HAL = {p.name for p in pathlib.Path("hal").glob("*.h")} | {"hal_port.h"}
+LIBC = STANDARD | {"assert.h", "ctype.h", "errno.h", "float.h", "inttypes.h", "limits.h", "math.h", "setjmp.h", "stdarg.h", "stdio.h",
+                   "stdlib.h", "string.h", "time.h"}
+AVR_LIBC = re.compile(r"^(avr|util|compat)/|^setbaud\.h$")
+SIMAVR = re.compile(r"^(sim_\w+\.h|avr_\w+\.h|uart_pty\.h|libelf\.h|gelf\.h|getopt\.h|unistd\.h|sys/\w+\.h|fcntl\.h|pthread\.h|signal\.h|"
+                    r"poll\.h|termios\.h|pty\.h)$")
+INCLUDE = re.compile(r"^\s*#\s*(?:include|include_next|import)\b\s*(.*?)\s*$")
+NAMED = re.compile(r'^([<"])([^>"]+)[>"]')
 
 
 def headers(*folders):
     return {p.name for folder in folders for p in pathlib.Path(folder).glob("*.h")}
 
 
+HAL = headers("hal") | {"hal_port.h"}
 FILTERS, TILT, ADXL = headers("lib/filters/src"), headers("lib/tilt/src"), headers("lib/adxl345/src")
 FIRMWARE, SIM = headers("firmware"), headers("sim")
 MODEL = {"adxl345_model.h", "stream.h"}
-SIMAVR = re.compile(r"^(sim_|avr_|uart_pty|libelf|gelf|getopt|unistd|time|sys/|fcntl|pthread|signal|poll|termios|math)")
 
-# folder -> (plain names allowed, pattern of further names allowed)
+# folder -> (names allowed, pattern of further names allowed); a folder below goes with the longest name
 RULES = {
     "lib/filters/src": (STANDARD | FILTERS, None),
+    "lib/filters/examples": (STANDARD | FILTERS | {"Arduino.h", "Wire.h", "SPI.h"}, None),
     "lib/tilt/src": (STANDARD | TILT | {"fx.h"}, None),
     "lib/adxl345/src": (STANDARD | ADXL | HAL, None),
     "hal": (STANDARD | {"hal_port.h"}, None),
-    "hal/avr": (STANDARD | HAL, re.compile(r"^(avr|util)/")),
+    "hal/avr": (STANDARD | HAL | headers("hal/avr"), AVR_LIBC),
     "hal/host": (LIBC | HAL | MODEL | headers("hal/host"), None),
     "firmware": (STANDARD | FIRMWARE | FILTERS | TILT | ADXL | HAL, None),
     "sim": (LIBC | SIM | {"adxl345_registers.h"}, SIMAVR),
 }
-# the one file that may know the machine inside a pure library, and only under a guard
-AVR_ALLOWED = {pathlib.Path("lib/filters/src/fx.h")}
-PORT_LAST = [p for p in pathlib.Path("hal").glob("*.h") if p.name != "hal_ring.h"]
+# everything but hal/avr: here what must not be included
+TESTS, TESTS_NEVER = "host_tests", re.compile(r"hal/avr/|^(avr|util)/")
+# programs for the chip: they may know it, but stand on the contracts as the firmware does
+CHIP_TESTS, CHIP_TESTS_NEVER = "host_tests/avr", re.compile(r"hal/(avr|host)/")
+# the one file that may know the machine inside the pure libraries, and only under a guard
+PRIMITIVES = pathlib.Path("lib/filters/src/fx.h")
+PURE = ("lib", "firmware")
 
 
-def breaches(folder, names, pattern):
-    for path in sorted(pathlib.Path(folder).glob("*.[ch]")):
-        for number, line in enumerate(path.read_text().splitlines(), 1):
-            found = re.match(r'\s*#\s*include\s+[<"]([^>"]+)[>"]', line)
-            if not found:
-                continue
-            name = found.group(1)
-            if name in names or (pattern and pattern.match(name)):
-                continue
-            if name.startswith("avr/") and path in AVR_ALLOWED:
-                continue
-            yield f"{path}:{number}: {folder} may not include {name}"
+def home(path, folders):
+    """The longest of the folders that holds the file."""
+    return max((f for f in folders if f in map(str, path.parents)), key=len, default=None)
+
+
+def includes(path):
+    """(line number, what stands behind #include) of a file, comments taken out."""
+    text = path.read_text(encoding="utf-8")
+    text = re.sub(r"/\*.*?\*/", lambda m: "\n" * m.group().count("\n"), text, flags=re.S)
+    for number, line in enumerate(text.replace("\\\n", " \n").splitlines(), 1):
+        found = INCLUDE.match(re.sub(r"//.*", "", line))
+        if found:
+            yield number, found.group(1)
+
+
+def refused(path, name):
+    """Why this file may not include that name; None when it may."""
+    folder = home(path, [*RULES, TESTS, CHIP_TESTS])
+    if folder is None:
+        raise Stop(f"{path}: the table has no row for its folder (RULES in tools/check_includes.py)")
+    if folder in RULES:
+        names, pattern = RULES[folder]
+        allowed = name in names or (pattern and pattern.match(name)) or (path == PRIMITIVES and name == "avr/pgmspace.h")
+        return None if allowed else f"{folder} may not include {name}"
+    never = TESTS_NEVER if folder == TESTS else CHIP_TESTS_NEVER
+    return f"{folder} may not include {name}" if never.search(name) else None
+
+
+def breaches():
+    for path in files(".c", ".h", ".cpp", ".ino", folders=FOLDERS):
+        for number, text in includes(path):
+            found = NAMED.match(text)
+            reason = refused(path, found.group(2)) if found else f"cannot see what is included by {text}"
+            if reason:
+                yield f"{path}:{number}: {reason}"
 
 
 def contracts_end_with_port():
-    for path in PORT_LAST:
-        includes = re.findall(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]', path.read_text(), re.M)
-        if not includes or includes[-1] != "hal_port.h":
+    granted = deviations()
+    for path in sorted(pathlib.Path("hal").glob("*.h")):
+        names = [NAMED.match(text).group(2) for _, text in includes(path) if NAMED.match(text)]
+        if names[-1:] != ["hal_port.h"] and ("contract without a port", str(path)) not in granted:
             yield f"{path}:1: the last include of a contract is hal_port.h"
 
 
+def contracts_without_port():
+    """For the table of deviations."""
+    return {("contract without a port", str(p)) for p in pathlib.Path("hal").glob("*.h")
+            if not any('"hal_port.h"' in text for _, text in includes(p))}
+
+
 def machine_guards():
-    for folder in ("lib/filters/src", "lib/tilt/src", "lib/adxl345/src", "firmware"):
-        for path in sorted(pathlib.Path(folder).glob("*.[ch]")):
-            if path in AVR_ALLOWED:
-                continue
-            for number, line in enumerate(path.read_text().splitlines(), 1):
-                if "__AVR" in line:
-                    yield f"{path}:{number}: only {next(iter(AVR_ALLOWED))} may ask for __AVR__"
+    """Only the primitives' header asks for the machine, and what it includes of it stands inside the guard."""
+    for path in files(".c", ".h", folders=PURE):
+        if path != PRIMITIVES:
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+                if re.search(r"__AVR|ARDUINO_ARCH|__GNUC_AVR", line):
+                    yield f"{path}:{number}: only {PRIMITIVES} may ask for the machine"
+    depth, guards = 0, []
+    for number, line in enumerate(PRIMITIVES.read_text(encoding="utf-8").splitlines(), 1):
+        if re.match(r"\s*#\s*if", line):
+            depth += 1
+            guards += [depth] if "__AVR__" in line else []
+        elif re.match(r"\s*#\s*(else|elif)", line) and guards[-1:] == [depth]:
+            guards.pop()
+        elif re.match(r"\s*#\s*endif", line):
+            guards = [g for g in guards if g != depth]
+            depth -= 1
+        elif re.match(r"\s*#\s*include\s+<avr/", line) and not guards:
+            yield f"{PRIMITIVES}:{number}: an AVR header outside #ifdef __AVR__"
 
 
-def main():
-    found = [b for folder, (names, pattern) in RULES.items() for b in breaches(folder, names, pattern)]
-    found += list(contracts_end_with_port()) + list(machine_guards())
-    for line in found:
-        print(line)
-    print(f"include table: {len(found)} breaches")
-    return 1 if found else 0
+def check():
+    found = list(breaches()) + list(contracts_end_with_port()) + list(machine_guards())
+    return report("include table", found, f"{len(files('.c', '.h', '.cpp', '.ino'))} files, no breach")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main(check)

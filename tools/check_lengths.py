@@ -1,41 +1,65 @@
 #!/usr/bin/env python3
-"""Files of at most about 400 lines, functions of at most 60: prints what is longer and exits 1 on any."""
+"""Files of at most 400 lines; C functions of at most 60 lines and a cyclomatic complexity of at most 10, where a switch counts once
+(15 with every case counted). What is granted more stands in docs/deviations.md. Needs lizard (build/venv).
+
+    check_lengths.py [FILE...]     only these files
+"""
 import pathlib
-import re
 import sys
 
-FILE_MAX, FUNCTION_MAX = 450, 60
-FOLDERS = ["firmware", "lib", "hal", "sim", "host_tests"]
+from check_support import Stop, chosen, deviations, files, limit_for, main, report
+
+try:
+    import lizard
+except ImportError:
+    sys.exit(f"check_lengths.py: lizard is not installed for {sys.executable}: sh tools/deps.sh check, then `make check-lengths`")
+
+FILE_MAX, FUNCTION_MAX, COMPLEXITY_MAX, COMPLEXITY_CASES_MAX = 400, 60, 10, 15
 
 
-def functions(lines):
-    """(first line, length) of each top-level brace block that follows a line ending with ')'."""
-    start = None
-    for number, line in enumerate(lines, 1):
-        if line == "{" and number > 1 and re.search(r"\)\s*$", lines[number - 2]):
-            start = number
-        elif line == "}" and start is not None:
-            yield start, number - start - 1
-            start = None
+def of_c():
+    return files(".c", ".h", ".cpp")
 
 
-def main():
-    found = 0
-    for folder in FOLDERS:
-        for path in sorted(pathlib.Path(folder).rglob("*.[ch]*")):
-            if path.suffix not in {".c", ".h", ".cpp"}:
-                continue
-            lines = path.read_text().splitlines()
-            if len(lines) > FILE_MAX:
-                print(f"{path}:1: {len(lines)} lines (limit {FILE_MAX})")
-                found += 1
-            for start, length in functions(lines):
-                if length > FUNCTION_MAX:
-                    print(f"{path}:{start}: function of {length} lines (limit {FUNCTION_MAX})")
-                    found += 1
-    print(f"lengths: {found} too long")
-    return 1 if found else 0
+def all_files():
+    return of_c() + sorted(pathlib.Path("tools").glob("*.py")) + files(".py", folders=["host_tests"])
+
+
+def measured(path):
+    """(rule, where, line, value, usual limit) of everything measured in a file."""
+    lines = path.read_text(encoding="utf-8").count("\n")
+    yield "file length", str(path), 1, lines, FILE_MAX
+    if path.suffix == ".py":
+        return
+    cases_once = lizard.analyze_files([str(path)], exts=lizard.get_extensions(["modified"]))
+    every_case = lizard.analyze_files([str(path)], exts=lizard.get_extensions([]))
+    for once, each in zip(next(iter(cases_once)).function_list, next(iter(every_case)).function_list):
+        where, line = f"{path}: {once.name}", once.start_line
+        yield "function length", where, line, once.length, FUNCTION_MAX
+        yield "complexity", where, line, once.cyclomatic_complexity, COMPLEXITY_MAX
+        yield "complexity of cases", where, line, each.cyclomatic_complexity, COMPLEXITY_CASES_MAX
+
+
+def over_limits():
+    """{(rule, where)} of what is above the usual limits, for the table of deviations."""
+    return {(rule, where) for path in all_files() for rule, where, _, value, limit in measured(path) if value > limit}
+
+
+def check():
+    findings, functions = [], 0
+    paths = chosen(all_files())
+    for path in paths:
+        for rule, where, line, value, usual in measured(path):
+            functions += rule == "complexity"
+            limit = limit_for(rule, where, usual)
+            if value > limit:
+                place = f"{path}:{line}:" + (where.partition(":")[2] or "")
+                findings.append(f"{place} {rule} {value} (limit {limit})")
+    granted = sum(1 for rule, _ in deviations() if rule.split()[0] in {"file", "function", "complexity"})
+    if not functions and len(paths) > 1:
+        raise Stop("lizard found no function in any file")
+    return report("lengths and complexity", findings, f"{functions} functions in {len(paths)} files within the limits, {granted} granted more")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main(check)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
-# Groups: firmware sim test check flash flashtest bench piocheck. Packages come by apt-get, numpy and matplotlib by pip into build/venv, Unity
-# by tools/get_unity.sh into build/unity (UNITY_DIR=folder: use that one). Uses sudo only when not root.
+# Groups: firmware sim test check flash flashtest bench piocheck. Packages come by apt-get, numpy and matplotlib (check: lizard) by
+# pip into build/venv, Unity by tools/get_unity.sh into build/unity (UNITY_DIR=folder: use that one). Uses sudo only when not root.
 set -eu
 
 cd "$(dirname "$0")/.."
@@ -9,6 +9,7 @@ venv=build/venv
 log=build/deps.log
 missing=''
 want_venv=no
+want_lizard=no
 want_unity=no
 want_pio=no
 pio_requirements='platformio==6.2.0 scons==4.11.1' # the versions that tools/pio_standins.py stands in for
@@ -44,6 +45,15 @@ has_certificates() {
 # Packages are complete when the stamp written after pip equals the requirements.
 has_plot_packages() {
     [ -x "$venv/bin/python" ] && cmp -s tools/requirements.txt "$venv/requirements.installed"
+}
+
+has_lizard() {
+    [ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import lizard' > /dev/null 2>&1
+}
+
+# clang-query comes with the version of clang-tidy that is installed
+has_clang_query() {
+    has clang-tidy && { [ -x "$(dirname "$(readlink -f "$(command -v clang-tidy)")")/clang-query" ] || has clang-query; }
 }
 
 # need PACKAGE TEST...: note the package as missing unless the test holds
@@ -87,6 +97,13 @@ need_plots() {
     need ca-certificates has_certificates
 }
 
+need_lizard() {
+    want_lizard=yes
+    has_lizard && return
+    need python3-venv has_venv_module
+    need ca-certificates has_certificates
+}
+
 need_unity() {
     want_unity=yes
     need g++ has g++
@@ -101,8 +118,9 @@ collect() {
             sim) need_simulator; need_plots ;;
             bench) need_simulator; need python3 has python3 ;;
             test) need_simulator; need_plots; need_unity ;;
-            check) need_simulator; need_unity; need python3 has python3
+            check) need_simulator; need_unity; need_lizard; need python3 has python3
                 need clang-tidy has clang-tidy
+                need clang-tools has_clang_query
                 need clang-format has clang-format
                 need cppcheck has cppcheck ;;
             flash) need_avr; need avrdude has avrdude ;;
@@ -154,6 +172,17 @@ install_packages() {
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get "$@" >> "$log" 2>&1 ||
         fail "cannot install $missing ($(first_error)): check the network and apt's sources, or\
  $(how_to_supply $missing); log in $log"
+}
+
+install_lizard() {
+    echo "deps: installing with pip into $venv: lizard"
+    if [ ! -x "$venv/bin/python" ]; then
+        python3 -m venv "$venv" > "$log" 2>&1 ||
+            fail "cannot make $venv ($(tail -n 1 "$log")): $(how_to_supply python3-venv)"
+    fi
+    "$venv/bin/python" -m pip install --disable-pip-version-check --no-input --retries 2 --timeout 20 \
+        -r tools/requirements-check.txt > "$log" 2>&1 ||
+        fail "cannot install lizard ($(first_error)): check the network and pip's index, or install it into $venv; log in $log"
 }
 
 install_plot_packages() {
@@ -208,6 +237,9 @@ if [ $want_venv = yes ] && ! has_plot_packages; then
 fi
 if [ $want_pio = yes ] && ! has_pio; then
     install_pio
+fi
+if [ $want_lizard = yes ] && ! has_lizard; then
+    install_lizard
 fi
 if [ $want_unity = yes ]; then
     install_unity

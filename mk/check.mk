@@ -1,0 +1,77 @@
+# The rules of the tree, enforced. Each check is a target of its own (make check-tidy ONLY=firmware/app.c looks at one file); limits
+# are in tools/budgets.txt, what departs from a rule in docs/deviations.md, and host_tests/planted.txt holds faults that each check
+# must find.
+C := $(B)/check
+ONLY ?=
+
+# objects before link-time optimisation: only they tell which file holds what. Warnings are not errors here, because avr-gcc says
+# that naked functions have no stack usage; check-compile looks for them.
+CHECK_OBJ := $(AVR_SRC:%.c=$(C)/avr/%.o)
+$(C)/avr/%.o: %.c Makefile mk/check.mk
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(filter-out -flto -Werror,$(AVR_FLAGS)) -fstack-usage -MMD -MP -c $< -o $@ 2> $@.log || { cat $@.log >&2; exit 1; }
+
+CHECKS := compile tidy int16 cppcheck includes format lengths symbols memory frames painted size seam deviations
+
+## check: every rule of the tree, and a planted fault for each that must be found (1 minute)
+check:
+	@sh tools/deps.sh check
+	@$(MAKE) -j2 check-built
+	@$(MAKE) $(CHECKS:%=check-%)
+	@$(MAKE) check-planted
+
+check-built: check-objects $(U)/firmware.elf $(S)/simrun
+	@:
+
+# objects of files that are gone would be judged still
+check-objects: $(CHECK_OBJ)
+	@find $(C)/avr -name '*.o' 2>/dev/null | while read -r o; do s=$${o#$(C)/avr/}; [ -f "$${s%.o}.c" ] || rm -f "$$o" "$${o%.o}.su"; done
+
+check-compile:
+	@WARNINGS="$(WARNINGS)" UNITY_DIR="$(UNITY_DIR)" python3 tools/check_compile.py $(ONLY)
+
+check-tidy:
+	@python3 tools/check_tidy.py $(ONLY)
+
+check-int16:
+	@python3 tools/check_int16.py $(ONLY)
+
+check-cppcheck:
+	@sh tools/check_cppcheck.sh $(ONLY)
+
+check-includes:
+	@python3 tools/check_includes.py
+
+check-format:
+	@sh tools/check_format.sh $(ONLY)
+
+check-lengths:
+	@$(PY) tools/check_lengths.py $(ONLY)
+
+check-symbols: check-objects $(U)/firmware.elf
+	@python3 tools/check_symbols.py $(U)/firmware.elf
+
+check-memory: check-objects $(U)/firmware.elf
+	@python3 tools/check_memory.py $(U)/firmware.elf
+
+check-frames: check-objects
+	@python3 tools/check_stack.py frames
+
+check-painted: check-objects $(U)/firmware.elf $(S)/simrun
+	@python3 tools/check_stack.py painted $(U)/firmware.elf
+
+check-size: $(U)/firmware.elf
+	@sh tools/size.sh $(U)/firmware.elf
+
+check-seam:
+	@sh tools/check_seam.sh
+
+check-deviations: check-objects
+	@$(PY) tools/check_deviations.py
+
+check-planted:
+	@python3 tools/planted.py $(ONLY)
+
+.PHONY: check check-built check-objects check-planted $(CHECKS:%=check-%)
+
+-include $(shell find $(C) -name '*.d' 2>/dev/null)

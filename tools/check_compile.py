@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Both compilers over every C file that each can compile, and every header alone, with the warnings of the Makefile as errors.
+
+    check_compile.py [FILE...]     only these files; WARNINGS and UNITY_DIR come from the Makefile by the environment
+"""
+import os
+import pathlib
+import shlex
+
+from check_support import Stop, chosen, files, main, parallel, report, run
+
+LIBRARIES = ["lib/filters/src", "lib/tilt/src", "lib/adxl345/src"]
+PORTABLE = ["hal", "firmware", *LIBRARIES]
+# which compiler takes what; a folder below one of these goes with it, the longest name decides
+FOLDERS_OF = {
+    "firmware": ("host", "avr"),
+    "lib": ("host", "avr"),
+    "hal": ("host", "avr"),
+    "hal/host": ("host",),
+    "hal/avr": ("avr",),
+    "sim": ("host",),
+    "host_tests": ("host",),
+    "host_tests/avr": ("avr",),
+    "host_tests/proof": (),  # speaks to the prover in its own built-in functions; make proof parses it
+}
+C_ONLY = {"-Wstrict-prototypes", "-Wmissing-prototypes"}
+# pieces of a program that mean nothing alone
+NOT_ALONE = {"host_tests/avr/seam_body.h"}
+
+
+def compilers(path):
+    homes = [folder for folder in FOLDERS_OF if folder in map(str, path.parents)]
+    if not homes:
+        raise Stop(f"{path}: no compiler is named for its folder (FOLDERS_OF in tools/check_compile.py)")
+    return FOLDERS_OF[max(homes, key=len)]
+
+
+def warnings():
+    if not os.environ.get("WARNINGS"):
+        raise Stop("WARNINGS is not set: run it by `make check-compile`")
+    return os.environ["WARNINGS"].split()
+
+
+def host_flags(path):
+    # what the library needs of the system: strict C11 there; simrun uses more of it
+    standard = "gnu11" if path.parts[0] == "sim" else "c11"
+    own = ["hal/host", "sim", "host_tests", str(path.parent)]
+    simavr = shlex.split(run("pkg-config", "--cflags", "simavr").replace("-I", "-isystem "))
+    return [f"-std={standard}", "-D_POSIX_C_SOURCE=200809L", "-DHANG_TEST=1", "-DUNITY_INCLUDE_DOUBLE", *(f"-I{d}" for d in PORTABLE + own),
+            "-isystem", os.environ.get("UNITY_DIR") or "build/unity", *simavr, "-isystem", "/usr/include/simavr"]
+
+
+def avr_flags(path):
+    own = ["hal/avr", "host_tests/avr", str(path.parent)]
+    return ["-std=gnu11", "-mmcu=atmega328p", "-DF_CPU=16000000UL", "-fshort-enums", *(f"-I{d}" for d in PORTABLE + own)]
+
+
+def jobs():
+    """(file, command) of everything there is to compile."""
+    to_object = ["-c", "-o", "/dev/null"]
+    for path in files(".c"):
+        if "host" in compilers(path):
+            yield path, ["gcc", "-O2", *host_flags(path), *warnings(), *to_object, path]
+        if "avr" in compilers(path):
+            yield path, ["avr-gcc", "-Os", *avr_flags(path), *warnings(), *to_object, path]
+    for path in files(".cpp"):
+        flags = [*host_flags(path)[1:], "-isystem", "/usr/include/eigen3", "-std=c++17"]
+        yield path, ["g++", "-O1", *flags, *(w for w in warnings() if w not in C_ONLY), *to_object, path]
+    for path in files(".h"):
+        if str(path) not in NOT_ALONE:
+            yield from header_jobs(path)
+
+
+def header_jobs(path):
+    alone = ["-fsyntax-only", "-include", path, "/dev/null"]
+    for name in compilers(path):
+        prefix, flags = ("", host_flags(path)) if name == "host" else ("avr-", avr_flags(path))
+        yield path, [f"{prefix}gcc", *flags, "-std=c11" if path.parts[0] == "lib" else flags[0], *warnings(), "-x", "c", *alone]
+        if path.parts[0] == "lib":  # a sketch includes it
+            yield path, [f"{prefix}g++", *flags[1:], "-std=gnu++11", *(w for w in warnings() if w not in C_ONLY), "-x", "c++", *alone]
+
+
+def compiled(job):
+    path, command = job
+    done = run(*command, expect=None)
+    return None if done.returncode == 0 else f"{command[0]} {path}:\n{done.stdout.rstrip()}"
+
+
+def check():
+    everything = list(jobs())
+    wanted = set(chosen({path for path, _ in everything}))
+    todo = [job for job in everything if job[0] in wanted]
+    findings = [f for f in parallel(compiled, todo) if f]
+    count = {name: sum(1 for _, c in todo if c[0] == name) for name in ("gcc", "g++", "avr-gcc", "avr-g++")}
+    return report("compile", findings, ", ".join(f"{name} {n} files" for name, n in count.items() if n) + ": no warning")
+
+
+if __name__ == "__main__":
+    main(check)
