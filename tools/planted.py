@@ -45,6 +45,12 @@ def grown(text):
     return "\n".join(lines)
 
 
+def unplanted(faults):
+    """Checks of mk/check.mk for which no fault is planted."""
+    line = re.search(r"^CHECKS := (.*)$", pathlib.Path("mk/check.mk").read_text(encoding="utf-8"), re.M)
+    return [c for c in line.group(1).split() if not any(c in f["checks"] for f in faults)]
+
+
 def newer(source, target):
     return not target.exists() or target.stat().st_mtime_ns != source.stat().st_mtime_ns or target.stat().st_size != source.stat().st_size
 
@@ -142,6 +148,9 @@ def main():
     for number in range(WORKERS):
         copies.put(prepare(number))
     good = bad = 0
+    for check in unplanted(faults) if not words else []:
+        print(f"check-{check}: no fault is planted for it in {LIST}")
+        bad += 1
     with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
         for fault, results in zip(faults, pool.map(lambda f: try_one(copies, f), faults)):
             for text, found in results:
