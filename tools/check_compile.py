@@ -21,9 +21,12 @@ FOLDERS_OF = {
     "sim": ("host",),
     "host_tests": ("host",),
     "host_tests/avr": ("avr",),
+    "host_tests/bitexact": ("host", "avr"),
     "host_tests/proof": (),  # speaks to the prover in its own built-in functions; make proof parses it
 }
 C_ONLY = {"-Wstrict-prototypes", "-Wmissing-prototypes"}
+# what is put before a file when it is built
+BEFORE = {"host_tests/avr/unity_chip.c": ["-include", "host_tests/avr/unity_chip.h"]}
 # pieces of a program that mean nothing alone
 NOT_ALONE = {"host_tests/avr/seam_body.h"}
 
@@ -32,7 +35,10 @@ def compilers(path):
     homes = [folder for folder in FOLDERS_OF if folder in map(str, path.parents)]
     if not homes:
         raise Stop(f"{path}: no compiler is named for its folder (FOLDERS_OF in tools/check_compile.py)")
-    return FOLDERS_OF[max(homes, key=len)]
+    # files of one side only say so in their name
+    wanted = {"_pc": ("host",), "_chip": ("avr",)}
+    side = next((names for end, names in wanted.items() if path.stem.endswith(end)), ("host", "avr"))
+    return [name for name in FOLDERS_OF[max(homes, key=len)] if name in side]
 
 
 def warnings():
@@ -41,18 +47,23 @@ def warnings():
     return os.environ["WARNINGS"].split()
 
 
+def unity():
+    return os.environ.get("UNITY_DIR") or "build/unity"
+
+
 def host_flags(path):
     # what the library needs of the system: strict C11 there; simrun uses more of it
     standard = "gnu11" if path.parts[0] == "sim" else "c11"
-    own = ["hal/host", "sim", "host_tests", str(path.parent)]
+    own = ["hal/host", "sim", "host_tests", "host_tests/bitexact", str(path.parent)]
     simavr = shlex.split(run("pkg-config", "--cflags", "simavr").replace("-I", "-isystem "))
     return [f"-std={standard}", "-D_POSIX_C_SOURCE=200809L", "-DHANG_TEST=1", "-DUNITY_INCLUDE_DOUBLE", *(f"-I{d}" for d in PORTABLE + own),
-            "-isystem", os.environ.get("UNITY_DIR") or "build/unity", *simavr, "-isystem", "/usr/include/simavr"]
+            "-isystem", unity(), *simavr, "-isystem", "/usr/include/simavr"]
 
 
 def avr_flags(path):
-    own = ["hal/avr", "host_tests/avr", str(path.parent)]
-    return ["-std=gnu11", "-mmcu=atmega328p", "-DF_CPU=16000000UL", "-fshort-enums", *(f"-I{d}" for d in PORTABLE + own)]
+    own = ["hal/avr", "host_tests", "host_tests/avr", "host_tests/bitexact", str(path.parent)]
+    return ["-std=gnu11", "-mmcu=atmega328p", "-DF_CPU=16000000UL", "-fshort-enums", *(f"-I{d}" for d in PORTABLE + own), "-isystem",
+            unity()]
 
 
 def jobs():
@@ -62,7 +73,7 @@ def jobs():
         if "host" in compilers(path):
             yield path, ["gcc", "-O2", *host_flags(path), *warnings(), *to_object, path]
         if "avr" in compilers(path):
-            yield path, ["avr-gcc", "-Os", *avr_flags(path), *warnings(), *to_object, path]
+            yield path, ["avr-gcc", "-Os", *avr_flags(path), *BEFORE.get(str(path), []), *warnings(), *to_object, path]
     for path in files(".cpp"):
         flags = [*host_flags(path)[1:], "-isystem", "/usr/include/eigen3", "-std=c++17"]
         yield path, ["g++", "-O1", *flags, *(w for w in warnings() if w not in C_ONLY), *to_object, path]

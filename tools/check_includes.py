@@ -36,8 +36,8 @@ RULES = {
     "firmware": (STANDARD | FIRMWARE | FILTERS | TILT | ADXL | HAL, None),
     "sim": (LIBC | SIM | {"adxl345_registers.h"}, SIMAVR),
 }
-# everything but hal/avr: here what must not be included
-TESTS, TESTS_NEVER = "host_tests", re.compile(r"hal/avr/|^(avr|util)/")
+# everything but hal/avr: here what must not be included; AVR headers where the code is for the chip
+TESTS, TESTS_NEVER = "host_tests", re.compile(r"hal/avr/")
 # programs for the chip: they may know it, but stand on the contracts as the firmware does
 CHIP_TESTS, CHIP_TESTS_NEVER = "host_tests/avr", re.compile(r"hal/(avr|host)/")
 # the one file that may know the machine inside the pure libraries, and only under a guard
@@ -60,16 +60,39 @@ def includes(path):
             yield number, found.group(1)
 
 
-def refused(path, name):
-    """Why this file may not include that name; None when it may."""
+def guarded(path):
+    """Numbers of the lines that only a compiler for AVR sees."""
+    inside, stack = set(), []
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        if re.match(r"\s*#\s*if", line):
+            stack.append(bool(re.match(r"\s*#\s*if(def)?\s+(defined\s*\(?\s*)?(__AVR__|AVR)\b", line)))
+        elif re.match(r"\s*#\s*(else|elif)", line) and stack:
+            stack[-1] = False
+        elif re.match(r"\s*#\s*endif", line) and stack:
+            stack.pop()
+        elif any(stack):
+            inside.add(number)
+    return inside
+
+
+def for_the_chip(path, number):
+    return path.stem.endswith("_chip") or number in guarded(path)
+
+
+def refused(path, number, name):
+    """Why this file may not include that name there; None when it may."""
     folder = home(path, [*RULES, TESTS, CHIP_TESTS])
     if folder is None:
         raise Stop(f"{path}: the table has no row for its folder (RULES in tools/check_includes.py)")
     if folder in RULES:
         names, pattern = RULES[folder]
-        allowed = name in names or (pattern and pattern.match(name)) or (path == PRIMITIVES and name == "avr/pgmspace.h")
+        allowed = name in names or (pattern and pattern.match(name))
+        if path == PRIMITIVES and name == "avr/pgmspace.h":
+            return None if number in guarded(path) else f"{name} outside #ifdef __AVR__"
         return None if allowed else f"{folder} may not include {name}"
     never = TESTS_NEVER if folder == TESTS else CHIP_TESTS_NEVER
+    if folder == TESTS and AVR_LIBC.match(name) and not for_the_chip(path, number):
+        return f"{folder} may include {name} only in code for the chip"
     return f"{folder} may not include {name}" if never.search(name) else None
 
 
@@ -77,7 +100,7 @@ def breaches():
     for path in files(".c", ".h", ".cpp", ".ino", folders=FOLDERS):
         for number, text in includes(path):
             found = NAMED.match(text)
-            reason = refused(path, found.group(2)) if found else f"cannot see what is included by {text}"
+            reason = refused(path, number, found.group(2)) if found else f"cannot see what is included by {text}"
             if reason:
                 yield f"{path}:{number}: {reason}"
 
@@ -97,24 +120,12 @@ def contracts_without_port():
 
 
 def machine_guards():
-    """Only the primitives' header asks for the machine, and what it includes of it stands inside the guard."""
+    """Only the primitives' header asks for the machine."""
     for path in files(".c", ".h", folders=PURE):
         if path != PRIMITIVES:
             for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
                 if re.search(r"__AVR|ARDUINO_ARCH|__GNUC_AVR", line):
                     yield f"{path}:{number}: only {PRIMITIVES} may ask for the machine"
-    depth, guards = 0, []
-    for number, line in enumerate(PRIMITIVES.read_text(encoding="utf-8").splitlines(), 1):
-        if re.match(r"\s*#\s*if", line):
-            depth += 1
-            guards += [depth] if "__AVR__" in line else []
-        elif re.match(r"\s*#\s*(else|elif)", line) and guards[-1:] == [depth]:
-            guards.pop()
-        elif re.match(r"\s*#\s*endif", line):
-            guards = [g for g in guards if g != depth]
-            depth -= 1
-        elif re.match(r"\s*#\s*include\s+<avr/", line) and not guards:
-            yield f"{PRIMITIVES}:{number}: an AVR header outside #ifdef __AVR__"
 
 
 def check():

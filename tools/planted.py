@@ -20,7 +20,9 @@ LIMIT_S = 120
 # these look at one file when it is named; the others look at the whole
 TAKES_FILE = {"compile", "tidy", "int16", "cppcheck", "format", "lengths"}
 FOLDERS = ["firmware", "lib", "hal", "sim", "host_tests", "mk", "tools", "docs"]
-FILES = ["Makefile", ".clang-tidy", ".clang-format", "platformio.ini"]
+FILES = ["Makefile", ".clang-tidy", ".clang-format", "platformio.ini", "sim/streams/outliers-15pct.csv", "build/uno/firmware.elf",
+         "build/sim/simrun"]
+BUILT = ["build/check/avr", "build/uno/firmware", "build/uno/hal", "build/uno/lib"]
 
 
 def load():
@@ -60,11 +62,8 @@ def prepare(number):
     copy = COPIES / str(number)
     copy.mkdir(parents=True, exist_ok=True)
     wanted = [p for p in map(pathlib.Path, FILES) if p.exists()]
-    built = ["build/uno", "build/check/avr", "build/sim"]
-    for folder in FOLDERS + built:
+    for folder in FOLDERS + BUILT:
         wanted += [p for p in pathlib.Path(folder).rglob("*") if p.is_file() and "__pycache__" not in p.parts and p.suffix != ".csv"]
-    streams = pathlib.Path("sim/streams/outliers-15pct.csv")
-    wanted.append(streams)
     keep = {str(p) for p in wanted}
     for path in [p for p in copy.rglob("*") if p.is_file() and not p.is_symlink()]:
         if str(path.relative_to(copy)) not in keep:
