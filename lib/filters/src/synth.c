@@ -221,7 +221,7 @@ static int32_t estimate(const synth_t *f)
 }
 
 /* A call of its own: the product needs all the registers that a call leaves free, and no more. */
-FX_NOINLINE uint32_t product(uint32_t v, uint16_t factor_uq16)
+FX_NOINLINE uint32_t product_uq16(uint32_t v, uint16_t factor_uq16)
 {
     return fx_mul_uq16(v, factor_uq16);
 }
@@ -230,9 +230,9 @@ FX_NOINLINE uint32_t product(uint32_t v, uint16_t factor_uq16)
 FX_NOINLINE int32_t scaled(int32_t v, uint16_t factor_uq16)
 {
     if (v < 0) {
-        return -(int32_t)product(0U - (uint32_t)v, factor_uq16);
+        return -(int32_t)product_uq16(0U - (uint32_t)v, factor_uq16);
     }
-    return (int32_t)product((uint32_t)v, factor_uq16);
+    return (int32_t)product_uq16((uint32_t)v, factor_uq16);
 }
 
 /* - a1 (x1 - 2 x2 + x3); 0 while the start's gains are in force: the straight line alone. */
