@@ -74,9 +74,6 @@ def jobs():
             yield path, ["gcc", "-O2", *host_flags(path), *warnings(), *to_object, path]
         if "avr" in compilers(path):
             yield path, ["avr-gcc", "-Os", *avr_flags(path), *BEFORE.get(str(path), []), *warnings(), *to_object, path]
-    for path in files(".cpp"):
-        flags = [*host_flags(path)[1:], "-isystem", "/usr/include/eigen3", "-std=c++17"]
-        yield path, ["g++", "-O1", *flags, *(w for w in warnings() if w not in C_ONLY), *to_object, path]
     for path in files(".h"):
         if str(path) not in NOT_ALONE:
             yield from header_jobs(path)
