@@ -177,7 +177,6 @@ test:
 	    $(H)/filter_sequence $(CHIP_TESTS) $(FLASHTEST_IMAGES)
 	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" sh tools/run_tests.sh $(TESTS)
 
-
 ## clean: remove what was built (the downloads in build/unity and build/venv stay)
 clean:
 	@rm -rf $(U) $(H) $(S) $(C) $(B)/planted $(B)/*.json

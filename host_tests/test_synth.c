@@ -1,5 +1,5 @@
 /* synth: its start, its two-product form and its presets on integers; runs on the PC and on the chip. */
-#include "fx.h"
+#include "support_filters.h"
 #include "synth.h"
 #include "unity.h"
 
@@ -107,18 +107,10 @@ static void start_ends_at_the_first_gain_that_is_not_above(void)
 static void descriptor_tells_the_binary_points(void)
 {
     synth_config_t config;
-    filter_parameter_t parameter[3];
-    filter_descriptor_t descriptor;
     synth_paper(&config, 1000);
-    uint8_t *to = (uint8_t *)&descriptor;
-    for (uint8_t i = 0; i < sizeof descriptor; i++) {
-        to[i] = fx_flash_u8((const uint8_t *)&synth_descriptor + i);
-    }
-    TEST_ASSERT_EQUAL_UINT8(3, descriptor.parameter_count);
-    to = (uint8_t *)parameter;
-    for (uint8_t i = 0; i < sizeof parameter; i++) {
-        to[i] = fx_flash_u8((const uint8_t *)descriptor.parameters + i);
-    }
+    TEST_ASSERT_EQUAL_UINT8(3, parameter_count(FILTER_KIND_synth));
+    const filter_parameter_t parameter[3] = { parameter_at(FILTER_KIND_synth, 0), parameter_at(FILTER_KIND_synth, 1),
+                                              parameter_at(FILTER_KIND_synth, 2) };
     TEST_ASSERT_EQUAL_STRING("a1", parameter[0].name);
     TEST_ASSERT_INT32_WITHIN(5, -3 * (int32_t)(1UL << parameter[0].fraction_bits), 10 * config.a1_q16);
     TEST_ASSERT_EQUAL_STRING("b0", parameter[1].name);

@@ -105,9 +105,10 @@ uint32_t bootloader_load(void)
     reader_t reader = { .start = FLASH_BYTES };
     char text[2 * RECORD_MAX + 8];
     while (!reader.ended && fgets(text, sizeof text, file) != NULL) {
-        uint8_t record[RECORD_MAX];
+        uint8_t record[RECORD_MAX] = { 0 };
         reader.line++;
-        take_record(&reader, record, decode(text, reader.line, record));
+        unsigned count = decode(text, reader.line, record);
+        take_record(&reader, record, count);
     }
     fclose(file);
     if (!reader.ended || reader.start == FLASH_BYTES) {

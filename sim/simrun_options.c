@@ -252,6 +252,20 @@ static void take(int code, const char *name, const char *argument)
     }
 }
 
+/* What is wrong only in combination. */
+static void check_together(void)
+{
+    if (options.fw == NULL || options.in == NULL || options.out == NULL) {
+        refuse("--fw, --in and --out are needed");
+    }
+    if (options.blank && options.bootloader == NULL) {
+        refuse("--blank leaves nothing to run: give --bootloader");
+    }
+    if (options.loop && options.max_ms <= 0.0 && options.gdb_port == 0 && !options.pty) {
+        refuse("--loop never ends: give --max-ms");
+    }
+}
+
 void options_parse(int argc, char **argv)
 {
     int index = 0;
@@ -262,13 +276,5 @@ void options_parse(int argc, char **argv)
     if (optind < argc) {
         refuse("'%s' is no option", argv[optind]);
     }
-    if (options.fw == NULL || options.in == NULL || options.out == NULL) {
-        refuse("--fw, --in and --out are needed");
-    }
-    if (options.blank && options.bootloader == NULL) {
-        refuse("--blank leaves nothing to run: give --bootloader");
-    }
-    if (options.loop && options.max_ms <= 0.0 && options.gdb_port == 0 && !options.pty) {
-        refuse("--loop never ends: give --max-ms");
-    }
+    check_together();
 }

@@ -154,7 +154,7 @@ class Sizes:
 
     def of(self, chosen):
         elf = self.folder / "bench_size.elf"
-        choice = [f"-DWITH_{part}={int(part in chosen)}" for part in self.parts]
+        choice = ["-DPARTS=(" + "|".join(["0UL", *(f"PART({part})" for part in self.parts if part in chosen)]) + ")"]
         run(["avr-gcc", *self.flags, "-Os", *choice, "host_tests/avr/bench_size.c", *self.objects, "-lm", "-o", elf])
         return image_size(elf)
 

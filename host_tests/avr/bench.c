@@ -26,15 +26,14 @@
 #include "../../firmware/rows.c"
 
 #include "bench_out.h"
+#include "bench_streams.h"
 
 #define NOINLINE __attribute__((noinline, noclone))
 
 enum { PAINT = 0xA5, PAINTED = 160, STACK_CALLS = 100, SETTLED = 50 };
 
-/* --- what is called: an argument in a global, so that every call looks the same --- */
+/* --- what is called: argument and answer are globals (bench_streams.h), so that every call looks the same --- */
 
-static int16_t z_lsb;
-static volatile int32_t sink;
 static volatile float float_sink;
 static volatile float float_source;
 static uint32_t r_lsb2_q8;
@@ -222,8 +221,6 @@ static void end_section(const char *name, bool has_float)
         put_result(PSTR("\n+stack "), PSTR("float_"), name, float_deepest);
     }
 }
-
-#include "bench_streams.h"
 
 /* An R anywhere in its legal range, as likely small as large, often one of the ends. */
 static void another_noise(void)

@@ -1,5 +1,5 @@
 /*
- * What an image grows by when a part is linked: each part is used as the firmware uses it if its WITH_ is 1. tools/bench.py builds
+ * What an image grows by when a part is linked: each part is used as the firmware uses it if PARTS holds it. tools/bench.py builds
  * this with nothing, with each part alone, with all filters, and with all filters but one.
  */
 #include <math.h>
@@ -11,6 +11,22 @@
 #include "tilt.h"
 
 #include "../../firmware/rows.c"
+
+/* -D'PARTS=(PART(kf) | PART(noise))' */
+enum {
+#define PART_OF(F) PART_##F, PART_float_##F,
+    FILTER_LIST(PART_OF)
+#undef PART_OF
+        PART_noise,
+    PART_angles,
+    PART_float_angles,
+    PART_format_row
+};
+#define PART(name) (1UL << (uint8_t)PART_##name)
+#ifndef PARTS
+#define PARTS 0UL
+#endif
+#define HAS(name) (((PARTS)&PART(name)) != 0UL)
 
 static volatile int16_t in;
 static volatile int32_t out;
@@ -83,23 +99,23 @@ static void use_format_row(void)
 int main(void)
 {
 #define CALL(F)           \
-    if (WITH_##F) {       \
+    if (HAS(F)) {         \
         use_##F();        \
     }                     \
-    if (WITH_float_##F) { \
+    if (HAS(float_##F)) { \
         use_float_##F();  \
     }
     FILTER_LIST(CALL)
-    if (WITH_noise) {
+    if (HAS(noise)) {
         use_noise();
     }
-    if (WITH_angles) {
+    if (HAS(angles)) {
         use_angles();
     }
-    if (WITH_float_angles) {
+    if (HAS(float_angles)) {
         use_float_angles();
     }
-    if (WITH_format_row) {
+    if (HAS(format_row)) {
         use_format_row();
     }
     for (;;) {

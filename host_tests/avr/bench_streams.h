@@ -1,6 +1,14 @@
-/* Where the samples of bench.c come from; included there once, behind z_lsb and sink. */
+/* Where the samples of bench.c come from; included there once. */
 #ifndef BENCH_STREAMS_H
 #define BENCH_STREAMS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "bench_out.h"
+
+static int16_t z_lsb;         /* the sample */
+static volatile int32_t sink; /* the estimate after the last one */
 
 static uint16_t sample_number;
 static int16_t level_lsb;
