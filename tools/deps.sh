@@ -1,6 +1,6 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
-# Groups: firmware sim test check flash flashtest bench piocheck. Packages come by apt-get, numpy and matplotlib (check: lizard) by
+# Groups: firmware sim test check flash flashtest bench piocheck fuzz coverage. Packages come by apt-get, numpy and matplotlib (check: lizard) by
 # pip into build/venv, Unity by tools/get_unity.sh into build/unity (UNITY_DIR=folder: use that one). Uses sudo only when not root.
 set -eu
 
@@ -126,7 +126,9 @@ collect() {
             flash) need_avr; need avrdude has avrdude ;;
             piocheck) need_avr; need_host_compiler; want_pio=yes; need python3-venv has_venv_module; need ca-certificates has_certificates ;;
             flashtest) need_simulator; need avrdude has avrdude; need arduino-core-avr has_optiboot ;;
-            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench or piocheck" ;;
+            fuzz) need_host_compiler; need python3 has python3; need binutils has objcopy ;;
+            coverage) need_simulator; need_plots; need_unity; need gcovr has gcovr ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench, piocheck, fuzz or coverage" ;;
         esac
     done
     missing=${missing# }
@@ -224,7 +226,7 @@ install_unity() {
     tools/get_unity.sh build/unity
 }
 
-[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck)"
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck, fuzz, coverage)"
 collect "$@"
 mkdir -p build
 if [ -n "$missing" ]; then

@@ -47,6 +47,9 @@ uint32_t hal_host_baud(void)
 void hal_host_type(const char *text)
 {
     size_t length = strlen(text);
+    if (length == 0) {
+        return;
+    }
     if (typed_next == typed_length) {
         typed_next = 0;
         typed_length = 0;
@@ -117,7 +120,6 @@ void hal_uart_init(uint32_t baud)
     baud_rate = baud;
     byte_cycles = (uint64_t)divider * 80u;
     tx = (hal_ring_t){ 0, 0, 0 };
-    rx = (hal_ring_t){ 0, 0, 0 };
     tx_at = HOST_NEVER;
     tx_shifting = false;
 }
