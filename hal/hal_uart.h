@@ -2,7 +2,7 @@
  * UART 8N1 with a transmit and a receive ring. Nothing waits. A line is staged byte by byte and becomes visible to the
  * interrupt only with the commit, so it goes out whole or not at all.
  *
- *   void hal_uart_init(uint32_t baud)            set the rate, empty the transmit ring; received bytes stay (main)
+ *   void hal_uart_init(uint32_t baud)            set the rate; only while nothing is being sent; received bytes stay (main)
  *   uint8_t hal_uart_tx_room(void)               bytes that can be staged (main)
  *   void hal_uart_tx_stage(uint8_t byte)         append behind the staged ones; the caller has checked the room (main)
  *   void hal_uart_tx_commit(void)                hand the staged bytes to the interrupt (main)

@@ -1,6 +1,8 @@
 """What the whole-firmware tests share: runs of simrun, readers of what came out, the list of tests and their runner."""
 import csv
+import itertools
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -12,6 +14,9 @@ SIMRUN = "build/sim/simrun"
 FW = "build/uno/firmware.elf"
 STREAMS = pathlib.Path("sim/streams")
 TESTS = []
+# a folder for the profile of each run of the firmware as shipped (make coverage)
+PROFILES = os.environ.get("PROFILES")
+RUN_NUMBERS = itertools.count()
 
 
 # cycle and size bounds are for this compiler; elsewhere they are reported
@@ -42,6 +47,8 @@ def run(*command, expect=0):
 def simrun(name, stream, *options, fw=FW, expect=0):
     """A run; returns (rows, notes, served, stats)."""
     base = OUT / name
+    if PROFILES and fw == FW and "--profile" not in options:
+        options += ("--profile", pathlib.Path(PROFILES) / f"{next(RUN_NUMBERS):04}.csv")
     done = run(SIMRUN, "--fw", fw, "--in", stream, "--out", f"{base}.csv", "--served", f"{base}.served.csv", "--stats", f"{base}.json",
                *options, expect=expect)
     rows, notes = read_output(f"{base}.csv")

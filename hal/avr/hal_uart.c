@@ -82,7 +82,6 @@ ISR(USART_RX_vect)
 void hal_uart_init(uint32_t baud)
 {
     UCSR0B = 0;
-    tx = (hal_ring_t){ 0, 0, 0 };
     line_used = false;
     /* simulators compute the byte time when UBRR0L is written, so it comes last */
     UCSR0A = _BV(U2X0);

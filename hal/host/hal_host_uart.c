@@ -119,7 +119,6 @@ void hal_uart_init(uint32_t baud)
     uint32_t divider = ((uint32_t)(HAL_HOST_HZ / 8) + baud / 2) / baud;
     baud_rate = baud;
     byte_cycles = (uint64_t)divider * 80u;
-    tx = (hal_ring_t){ 0, 0, 0 };
     tx_at = HOST_NEVER;
     tx_shifting = false;
 }

@@ -99,10 +99,15 @@ static void fail(adxl345_fault_t fault)
     }
 }
 
+static void take_bus(void)
+{
+    burst_take_bus(driver.address, driver.config.rate_dhz == 8000);
+}
+
 static void probe(void)
 {
     burst_set_mode(BURST_IGNORE);
-    burst_take_bus(driver.address, driver.config.rate_dhz == 8000);
+    take_bus();
     enter(STEP_PROBE, TRANSFER_LIMIT_MS);
 }
 
@@ -164,10 +169,8 @@ static bool issue(void)
         return burst_write_register(ADXL345_POWER_CTL, ADXL345_POWER_MEASURE);
     case STEP_ASK_SOURCE:
         return burst_read_register(ADXL345_INT_SOURCE);
-    case STEP_QUIET_STANDBY:
+    default: /* STEP_QUIET_STANDBY */
         return burst_write_register(ADXL345_POWER_CTL, 0);
-    default:
-        return false;
     }
 }
 
@@ -257,11 +260,9 @@ static void advance(void)
     case STEP_ASK_SOURCE:
         source_asked();
         break;
-    case STEP_QUIET_STANDBY:
+    default: /* STEP_QUIET_STANDBY */
         burst_set_mode(BURST_READ);
         enter(STEP_QUIET_DRAIN, DRAIN_LIMIT_MS);
-        break;
-    default:
         break;
     }
 }
@@ -272,7 +273,7 @@ static void access_step(void)
     if (!driver.issued) {
         driver.issued = issue();
         if (!driver.issued && deadline_passed()) {
-            burst_take_bus(driver.address, driver.config.rate_dhz == 8000);
+            take_bus();
             bus_failed(I2C_BUS_TIMEOUT);
         }
         return;
@@ -282,7 +283,7 @@ static void access_step(void)
         if (!deadline_passed()) {
             return;
         }
-        burst_take_bus(driver.address, driver.config.rate_dhz == 8000);
+        take_bus();
         state = I2C_BUS_TIMEOUT;
     }
     if (state == I2C_BUS_OK) {
@@ -309,7 +310,7 @@ static void stream_step(void)
 {
     (void)burst_drain();
     if (burst_running() && hal_time_reached(driver.now_us, burst_begun_us() + TRANSFER_LIMIT_MS * 1000ul)) {
-        burst_take_bus(driver.address, driver.config.rate_dhz == 8000);
+        take_bus();
         saturating_add(&driver.counters.timeouts);
         saturating_add(&driver.counters.bus_faults);
     }

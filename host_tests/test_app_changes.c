@@ -1,0 +1,129 @@
+/* The whole firmware where one state gives way to another: faults that alternate, go after stop, range, the seconds counted. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app.h"
+#include "pipeline.h"
+#include "settings.h"
+#include "support_board.h"
+#include "unity.h"
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+/* No sensor and wrong identity by turns, ten times: each is told once until samples come again, then anew. */
+static void test_alternating_faults_are_told_once_each(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    size_t before = board.note_count;
+    for (int turn = 0; turn < 10; turn++) {
+        adxl345_model_power(&hal_host_sensor, false);
+        board_run_ms(150);
+        adxl345_model_power(&hal_host_sensor, true);
+        hal_host_faults.id_wrong = true;
+        board_run_ms(150);
+    }
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1: ", before));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 2: ", before));
+    hal_host_faults.id_wrong = false;
+    board_run_ms(300);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("over: samples again", before));
+    TEST_ASSERT_EQUAL_size_t(before + 3, board.note_count);
+    adxl345_model_power(&hal_host_sensor, false);
+    board_run_ms(300);
+    TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# fault 1: ", before));
+}
+
+/* Whole seconds since the start, over a stop and over the wrap of the microseconds. */
+static void test_uptime_counts_seconds(void)
+{
+    stream_t still = board_constant_stream(1000, 100.0, 31, -53, 248);
+    board_start(&still, 0.0, 0xFFFFFFFFu - 2500000u);
+    board_run_ms(990);
+    TEST_ASSERT_EQUAL_UINT32(0, app_uptime_s());
+    board_run_ms(30);
+    TEST_ASSERT_EQUAL_UINT32(1, app_uptime_s());
+    board_type("stop");
+    board_run_ms(6000);
+    TEST_ASSERT_EQUAL_UINT32(7, app_uptime_s());
+    size_t before = board.note_count;
+    board_type("status");
+    board_run_ms(300);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", uptime s 7", before));
+    stream_free(&still);
+}
+
+/*
+ * z alternates between 242 and 254. A filter that goes on would put out about 248 (969 mg); a cold one puts out the running
+ * median: the first sample itself, then the mean of two, and five rows are marked.
+ */
+static void test_go_begins_cold(void)
+{
+    stream_t alternating = board_constant_stream(1000, 100.0, 0, 0, 248);
+    for (size_t i = 0; i < alternating.count; i++) {
+        alternating.rows[i].lsb[2] = (int16_t)((i & 1u) ? 254 : 242);
+    }
+    board_start(&alternating, 0.0, 0);
+    board_run_ms(2000);
+    board_type("stop");
+    board_run_ms(200);
+    size_t first = board.row_count;
+    board_type("go");
+    board_run_ms(400);
+    const board_row_t *row = &board.rows[first];
+    TEST_ASSERT_TRUE(board.row_count >= first + 10);
+    /* 242 and 254 LSB are 945.3 and 992.2 mg */
+    TEST_ASSERT_EQUAL_INT(row[0].lsb[2] == 242 ? 945 : 992, row[0].mg[2]);
+    TEST_ASSERT_EQUAL_INT(969, row[1].mg[2]);
+    TEST_ASSERT_EQUAL_INT(row[0].mg[2], row[2].mg[2]);
+    for (size_t i = 0; i < 10; i++) {
+        TEST_ASSERT_EQUAL_UINT(i < 5 ? ROW_WARMING_UP : 0, row[i].flags & ROW_WARMING_UP);
+    }
+    stream_free(&alternating);
+}
+
+/*
+ * x is 600 LSB: no rail at 16 g (4095), beyond the one at 2 g (511). Samples latched before the change took effect are those
+ * of the old range and must not be called clipped, whatever the phase at which the command comes.
+ */
+static void test_old_samples_are_filtered_as_before_a_change_of_range(void)
+{
+    size_t old_on_the_way = 0;
+    for (unsigned phase = 0; phase < 116; phase++) {
+        stream_t steady = board_constant_stream(1000, 100.0, 600, 0, 248);
+        board_start(&steady, 0.0, 0);
+        board_run_ms(300.0);
+        char typed[160];
+        snprintf(typed, sizeof typed, "%*s", (int)phase + 8, "range 2"); /* a leading blank takes 87 us */
+        board_type(typed);
+        double changed_ms = 0.0;
+        while (settings.range_g != 2 && hal_host_now_ms() < 400.0) {
+            changed_ms = hal_host_now_ms(); /* before the pass that obeys */
+            app_pass();
+        }
+        board_run_ms(200);
+        for (size_t i = 0; i < board.row_count; i++) {
+            const board_row_t *row = &board.rows[i];
+            TEST_ASSERT_TRUE(row->lsb[0] == 600 || row->lsb[0] == 511);
+            TEST_ASSERT_EQUAL_UINT(row->lsb[0] == 511 ? ROW_CLIPPED : 0, row->flags & ROW_CLIPPED);
+            /* a burst takes 0.3 ms: this sample was under way, or not even latched */
+            old_on_the_way += row->lsb[0] == 600 && row->t_us > changed_ms * 1000.0 - 200.0;
+        }
+        TEST_ASSERT_EQUAL_INT(511, board.rows[board.row_count - 1].lsb[0]);
+        stream_free(&steady);
+    }
+    TEST_ASSERT_TRUE_MESSAGE(old_on_the_way > 0, "no phase met a sample of the old range");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_alternating_faults_are_told_once_each);
+    RUN_TEST(test_uptime_counts_seconds);
+    RUN_TEST(test_go_begins_cold);
+    RUN_TEST(test_old_samples_are_filtered_as_before_a_change_of_range);
+    return UNITY_END();
+}

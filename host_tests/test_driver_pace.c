@@ -1,0 +1,340 @@
+/* The driver's time: how often it tries again, how long a burst may hang, stops and starts while it waits for the bus. */
+#include <string.h>
+
+#include "adxl345.h"
+#include "adxl345_burst.h"
+#include "adxl345_registers.h"
+#include "hal_drdy.h"
+#include "hal_host.h"
+#include "hal_i2c.h"
+#include "hal_sleep.h"
+#include "hal_time.h"
+#include "hal_uart.h"
+#include "support_board.h"
+#include "unity.h"
+
+enum { PROBES_MAX = 64 };
+
+static const adxl345_config_t at_100_hz = { 1000, 16 };
+static stream_t stream;
+static size_t taken_count;
+static size_t latched_count;
+static int16_t last_x;
+static double probed_ms[PROBES_MAX];
+static size_t probes;
+
+void hal_host_i2c_handler(void);
+
+static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
+{
+    (void)t_us;
+    (void)row;
+    (void)lsb;
+    latched_count++;
+}
+
+/* x counts. */
+void setUp(void)
+{
+    stream = board_constant_stream(4000, 100.0, 0, -100, 250);
+    for (size_t i = 0; i < stream.count; i++) {
+        stream.rows[i].lsb[0] = (int16_t)i;
+    }
+    taken_count = 0;
+    latched_count = 0;
+    probes = 0;
+    hal_host_config_t config = { .on_latched = on_latched };
+    hal_host_begin(&config, &stream, false);
+    hal_uart_init(115200);
+    hal_time_init();
+    hal_drdy_enable();
+    adxl345_init();
+}
+
+void tearDown(void)
+{
+    stream_free(&stream);
+}
+
+static void take_all(void)
+{
+    adxl345_sample_t sample;
+    while (adxl345_take(&sample)) {
+        TEST_ASSERT_TRUE(taken_count == 0 || sample.lsb[0] >= last_x);
+        last_x = sample.lsb[0];
+        taken_count++;
+        hal_wake();
+    }
+}
+
+/* One poll and sleep; notes when the driver leaves its back-off for another try. */
+static void pass(void)
+{
+    adxl345_phase_t before = adxl345_phase();
+    adxl345_poll(hal_time_us());
+    if (before == ADXL345_FAULTY && adxl345_phase() == ADXL345_STARTING && probes < PROBES_MAX) {
+        probed_ms[probes++] = hal_host_now_ms();
+    }
+    take_all();
+    hal_sleep_until_wake();
+}
+
+static void run_ms(double ms)
+{
+    for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
+        pass();
+    }
+}
+
+/* Runs until the condition holds; fails after so many virtual milliseconds. */
+#define RUN_UNTIL(condition, limit_ms)                                                       \
+    do {                                                                                     \
+        double end_ms = hal_host_now_ms() + (limit_ms);                                      \
+        while (!(condition)) {                                                               \
+            TEST_ASSERT_TRUE_MESSAGE(hal_host_now_ms() < end_ms, "never came: " #condition); \
+            pass();                                                                          \
+        }                                                                                    \
+    } while (0)
+
+/*
+ * Back-off 5, 10, 20, then 25 ms for ever. Main looks at the deadline at its tick of 8.192 ms, so a pause is that of the
+ * driver, rounded up to the next tick; a probe at both addresses takes 0.2 ms.
+ */
+static void test_tries_again_at_a_pause_that_doubles_to_25_ms(void)
+{
+    static const double back_off_ms[] = { 5, 10, 20, 25, 25, 25, 25 };
+    hal_host_sensor.powered = false;
+    adxl345_start(&at_100_hz);
+    double failed_ms = 0.0;
+    for (size_t i = 0; i < 7; i++) {
+        RUN_UNTIL(adxl345_phase() == ADXL345_FAULTY, 50);
+        failed_ms = hal_host_now_ms();
+        RUN_UNTIL(probes == i + 1, 50);
+        double pause_ms = probed_ms[i] - failed_ms;
+        TEST_ASSERT_TRUE(pause_ms >= back_off_ms[i] - 0.3);
+        TEST_ASSERT_TRUE(pause_ms <= back_off_ms[i] + 8.3);
+    }
+}
+
+/* A good sample brings the pace back to 5 ms. */
+static void test_a_good_sample_resets_the_pace(void)
+{
+    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    adxl345_model_power(&hal_host_sensor, true);
+    RUN_UNTIL(adxl345_phase() == ADXL345_STREAMING, 200);
+    run_ms(100);
+    adxl345_model_power(&hal_host_sensor, false);
+    RUN_UNTIL(adxl345_phase() == ADXL345_FAULTY, 100);
+    double failed_ms = hal_host_now_ms();
+    probes = 0;
+    RUN_UNTIL(probes == 1, 50);
+    TEST_ASSERT_TRUE(probed_ms[0] - failed_ms <= 5.0 + 8.3);
+}
+
+/* A burst that hangs is given up after 3 ms, which main sees at its next tick, long before the silence of 33 ms is up. */
+static void test_a_hung_burst_is_given_up(void)
+{
+    adxl345_counters_t before;
+    adxl345_counters_t after;
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    adxl345_counters(&before);
+    RUN_UNTIL(!hal_drdy_high() && !burst_running(), 50);
+    run_ms(2); /* the last STOP is out */
+    hal_host_faults.bus_stuck = true;
+    RUN_UNTIL(burst_running(), 12);
+    double begun_ms = hal_host_now_ms();
+    RUN_UNTIL(!burst_running(), 12);
+    TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms <= 3.0 + 8.3);
+    adxl345_counters(&after);
+    TEST_ASSERT_EQUAL_UINT16(before.timeouts + 1, after.timeouts);
+    TEST_ASSERT_EQUAL_UINT16(before.bus_faults + 1, after.bus_faults);
+    hal_host_faults.bus_stuck = false;
+    run_ms(100);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+    adxl345_stop();
+    run_ms(50);
+    TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+}
+
+/* Three failed bursts in a row are a fault of the bus; the first two are read again without a word. */
+static void test_three_failed_bursts_are_a_fault(void)
+{
+    adxl345_counters_t counters;
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    RUN_UNTIL(!hal_drdy_high() && !burst_running(), 20);
+    adxl345_counters(&counters);
+    uint16_t faults_before = counters.bus_faults;
+    for (unsigned failed = 1; failed <= 3; failed++) {
+        hal_host_faults.next_status = HAL_I2C_BUS_ERROR;
+        hal_host_faults.status_skip = 0;
+        double end_ms = hal_host_now_ms() + 20;
+        while (hal_host_faults.next_status >= 0 && hal_host_now_ms() < end_ms) {
+            pass();
+        }
+        TEST_ASSERT_EQUAL_UINT8(failed, burst_failures());
+    }
+    run_ms(0.1);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_BUS, adxl345_fault());
+    adxl345_counters(&counters);
+    TEST_ASSERT_EQUAL_UINT16(faults_before + 1, counters.bus_faults);
+    run_ms(200);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+}
+
+/* INT1 comes back while the sensor is being asked why it is silent: no fault, and what its FIFO holds is delivered. */
+static void test_int1_that_rises_while_the_sensor_is_asked_is_no_fault(void)
+{
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    hal_host_faults.int1_cut = true;
+    double end_ms = hal_host_now_ms() + 60;
+    while (burst_running() || burst_bus_state() != I2C_BUS_BUSY) {
+        TEST_ASSERT_TRUE(hal_host_now_ms() < end_ms);
+        adxl345_poll(hal_time_us());
+        take_all();
+        if (!burst_running() && burst_bus_state() == I2C_BUS_BUSY) {
+            break;
+        }
+        hal_sleep_until_wake();
+    }
+    hal_host_faults.int1_cut = false;
+    TEST_ASSERT_TRUE(hal_drdy_high());
+    for (int i = 0; i < 500; i++) {
+        pass();
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+    }
+    adxl345_stop();
+    run_ms(50);
+    TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+}
+
+static void test_stop_with_a_stuck_bus_stops(void)
+{
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    hal_host_faults.bus_stuck = true;
+    adxl345_stop();
+    TEST_ASSERT_EQUAL(ADXL345_QUIESCING, adxl345_phase());
+    RUN_UNTIL(adxl345_phase() == ADXL345_STOPPED, 20);
+    run_ms(100);
+    TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
+    hal_host_faults.bus_stuck = false;
+    adxl345_start(&at_100_hz);
+    run_ms(100);
+    TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+}
+
+/* The last word counts, whatever comes while the sensor is being put to rest. */
+static void test_start_and_stop_while_quiescing(void)
+{
+    static const adxl345_config_t at_400_hz = { 4000, 16 };
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    adxl345_stop();
+    adxl345_start(&at_400_hz);
+    TEST_ASSERT_EQUAL(ADXL345_QUIESCING, adxl345_phase());
+    run_ms(100);
+    TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+    TEST_ASSERT_EQUAL_HEX8(0x0C, hal_host_sensor.reg[ADXL345_BW_RATE]);
+    adxl345_start(&at_100_hz);
+    adxl345_stop();
+    adxl345_stop();
+    run_ms(50);
+    TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
+    TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor.reg[ADXL345_POWER_CTL]);
+    TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+}
+
+/* Main takes nothing while the driver drains: it gives up after 100 ms instead of waiting for ever. */
+static void test_drain_that_nobody_empties_ends(void)
+{
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    adxl345_stop();
+    double begun_ms = hal_host_now_ms();
+    double end_ms = begun_ms + 150;
+    adxl345_poll(hal_time_us());
+    hal_host_faults.int1_cut = false;
+    adxl345_model_tick(&hal_host_sensor, stream.rows[0].lsb);
+    while (adxl345_phase() != ADXL345_STOPPED && hal_host_now_ms() < end_ms) {
+        adxl345_poll(hal_time_us());
+        hal_sleep_until_wake();
+    }
+    TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
+    double took_ms = hal_host_now_ms() - begun_ms; /* the limit, and up to a tick until main looks */
+    TEST_ASSERT_TRUE(took_ms >= 100.0 && took_ms <= 108.5);
+}
+
+/* The interrupt of a transfer that was given up: it must neither deliver nor disturb what follows. */
+static void test_a_stale_bus_event_is_ignored(void)
+{
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    RUN_UNTIL(!burst_running() && !hal_drdy_high(), 20);
+    burst_take_bus(0x53, false);
+    TEST_ASSERT_EQUAL(I2C_BUS_IDLE, burst_bus_state());
+    hal_host_i2c_handler();
+    TEST_ASSERT_EQUAL(I2C_BUS_IDLE, burst_bus_state());
+    TEST_ASSERT_EQUAL_UINT8(0, adxl345_queued());
+    run_ms(300);
+    adxl345_stop();
+    run_ms(50);
+    TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+}
+
+/* A sensor that still runs from before gives edges while it is being configured: they are not for this driver. */
+static void test_edges_before_streaming_are_ignored(void)
+{
+    adxl345_model_start(&hal_host_sensor, 0x53 << 1);
+    adxl345_model_write(&hal_host_sensor, ADXL345_BW_RATE);
+    adxl345_model_write(&hal_host_sensor, 0x0D);
+    adxl345_model_write(&hal_host_sensor, ADXL345_POWER_MEASURE);
+    adxl345_model_write(&hal_host_sensor, ADXL345_INT_DATA_READY);
+    adxl345_model_stop(&hal_host_sensor);
+    TEST_ASSERT_TRUE(adxl345_model_tick(&hal_host_sensor, stream.rows[7].lsb));
+    TEST_ASSERT_TRUE(hal_drdy_high());
+    run_ms(5);
+    TEST_ASSERT_EQUAL_UINT8(0, adxl345_queued());
+    TEST_ASSERT_FALSE(burst_running());
+    latched_count = 0;
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    adxl345_stop();
+    run_ms(50);
+    TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+}
+
+/* 25 ms a try and two addresses: 65,535 failed accesses in a quarter of an hour. Counters stop there. */
+static void test_counters_saturate(void)
+{
+    adxl345_counters_t counters;
+    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_start(&at_100_hz);
+    run_ms(1200e3);
+    adxl345_counters(&counters);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, counters.bus_faults);
+    run_ms(100);
+    adxl345_counters(&counters);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, counters.bus_faults);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_tries_again_at_a_pause_that_doubles_to_25_ms);
+    RUN_TEST(test_a_good_sample_resets_the_pace);
+    RUN_TEST(test_a_hung_burst_is_given_up);
+    RUN_TEST(test_three_failed_bursts_are_a_fault);
+    RUN_TEST(test_int1_that_rises_while_the_sensor_is_asked_is_no_fault);
+    RUN_TEST(test_stop_with_a_stuck_bus_stops);
+    RUN_TEST(test_start_and_stop_while_quiescing);
+    RUN_TEST(test_drain_that_nobody_empties_ends);
+    RUN_TEST(test_a_stale_bus_event_is_ignored);
+    RUN_TEST(test_edges_before_streaming_are_ignored);
+    RUN_TEST(test_counters_saturate);
+    return UNITY_END();
+}

@@ -1,0 +1,92 @@
+/* Guards inside the filters that ordinary samples hardly reach: the borrow of P22, the hysteresis of the estimate of R. */
+#include <stdlib.h>
+
+#include "noise.h"
+#include "two_state.h"
+#include "unity.h"
+
+#define ONE_UQ28 0x10000000u
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+static void start(two_state_t *s, uint32_t p11, uint32_t p12, uint32_t p22)
+{
+    two_state_init(s, 1000, 768, 10000, 0);
+    two_state_start(s, 0);
+    s->u.p.p11_uq28 = p11;
+    s->u.p.p12_uq28 = p12;
+    s->u.p.p22_uq28 = p22;
+}
+
+/*
+ * P / R = (0, 1; 1, 1/2) is no covariance. Predicted: P12 = 1.5, P11 = 2.5, P22 = 0.5 + q; update: P22 - P12^2 / (P11 + 1) =
+ * 0.5 - 0.643 + q < 0: rounded to 0, not wrapped to 15.9.
+ */
+static void test_p22_does_not_wrap_below_zero(void)
+{
+    two_state_t s;
+    start(&s, 0, ONE_UQ28, ONE_UQ28 / 2);
+    TEST_ASSERT_TRUE(s.q22_uq28 < ONE_UQ28 / 10);
+    TEST_ASSERT_TRUE(two_state_step(&s, 10, true));
+    TEST_ASSERT_EQUAL_HEX32(0, s.u.p.p22_uq28);
+}
+
+/* The twin: with P22 = 1 the update leaves 1 - 0.643 + q, exact to the gain's 1.5 counts of 2^-16 (0.643 x 3.5 x 2.3e-5). */
+static void test_p22_that_stays_positive_is_kept(void)
+{
+    two_state_t s;
+    start(&s, 0, ONE_UQ28, ONE_UQ28);
+    /* predicted: P12 = 2, P11 = 3, P22 = 1 + q; P12^2 / (P11 + 1) = 1: with q left over, in UQ4.28 */
+    double expected = (double)s.q22_uq28 / ONE_UQ28;
+    TEST_ASSERT_TRUE(two_state_step(&s, 10, true));
+    TEST_ASSERT_DOUBLE_WITHIN(4.0 * 1.5 / 65536.0, expected, (double)s.u.p.p22_uq28 / ONE_UQ28);
+}
+
+/* R = 1.5 times the mean, Q16 to Q8. */
+static double wanted_r(const noise_t *n)
+{
+    return 1.5 * (double)n->mean_lsb2_q16 / 256.0;
+}
+
+/*
+ * R is passed on when it has left the one in force by more than an eighth, and only then: the amplitude of the readings
+ * rises and falls, so that both happen often.
+ */
+static void test_r_follows_with_a_hysteresis_of_an_eighth(void)
+{
+    noise_t n;
+    noise_init(&n, 1000, false);
+    unsigned passed_on = 0;
+    unsigned kept_though_different = 0;
+    uint32_t random = 1;
+    for (int i = 0; i < 20000; i++) {
+        random = random * 1664525u + 1013904223u;
+        int amplitude = 2 + (i / 1000) % 7 * 6;
+        double before = noise_r_lsb2_q8(&n);
+        bool changed = noise_update(&n, (int16_t)((int)(random >> 16) % (2 * amplitude + 1) - amplitude));
+        double after = noise_r_lsb2_q8(&n);
+        double distance = wanted_r(&n) > before ? wanted_r(&n) - before : before - wanted_r(&n);
+        if (changed) {
+            TEST_ASSERT_TRUE(distance > before / 8.0 - 1.5); /* R and its eighth are whole numbers */
+            TEST_ASSERT_DOUBLE_WITHIN(0.6, wanted_r(&n), after);
+            passed_on++;
+        } else {
+            TEST_ASSERT_TRUE(distance <= before / 8.0 + 1.5 || n.filled < 5);
+            TEST_ASSERT_TRUE(after >= before && after <= before);
+            kept_though_different += distance > before / 16.0;
+        }
+    }
+    TEST_ASSERT_TRUE(passed_on > 20);
+    TEST_ASSERT_TRUE(kept_though_different > 100);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_p22_does_not_wrap_below_zero);
+    RUN_TEST(test_p22_that_stays_positive_is_kept);
+    RUN_TEST(test_r_follows_with_a_hysteresis_of_an_eighth);
+    return UNITY_END();
+}

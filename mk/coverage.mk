@@ -1,0 +1,55 @@
+# Coverage of lib by the unit tests (gcov; built apart, without sanitizers) and of the AVR binary by the system tests.
+C := $(B)/coverage
+COVERAGE_LIB  := $(LIB_SRC:%.c=$(C)/%.o)
+COVERAGE_REST := $(patsubst %.c,$(C)/%.o,$(filter-out $(LIB_SRC),$(HOST_SRC)) $(wildcard host_tests/support_*.c)) \
+                 $(patsubst %.cpp,$(C)/%.o,$(wildcard host_tests/reference_*.cpp)) $(C)/unity.o
+COVERAGE_TESTS := $(patsubst host_tests/%.c,$(C)/%,$(wildcard host_tests/test_*.c))
+
+# the tests too, for what they call inline from the headers of lib; gcovr keeps lib only
+$(C)/lib/%.o $(C)/host_tests/test_%.o: COVERAGE_FLAGS := --coverage -fprofile-update=atomic
+
+$(C)/%.o: %.c Makefile mk/coverage.mk
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(filter-out -O1,$(HOST_FLAGS)) -O0 $(COVERAGE_FLAGS) -MMD -MP -c $< -o $@
+
+$(C)/%.o: %.cpp Makefile mk/coverage.mk
+	@mkdir -p $(@D)
+	@$(HOST_CXX) -std=c++17 -O1 $(HOST_INC) -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
+
+$(C)/unity.o: $(UNITY_DIR)/unity.c
+	@mkdir -p $(@D)
+	@$(HOST_CC) -std=c11 -O1 -DUNITY_INCLUDE_DOUBLE -c $< -o $@
+
+$(C)/test_%: $(C)/host_tests/test_%.o $(COVERAGE_LIB) $(COVERAGE_REST)
+	@$(HOST_CXX) --coverage $^ -lm -o $@
+
+$(C)/host.json: $(COVERAGE_TESTS)
+	@find $(C) -name '*.gcda' -delete
+	@for t in $(COVERAGE_TESTS); do \
+	    timeout 300 $$t > $$t.log 2>&1 || { echo "coverage: $$t failed:"; grep ':FAIL' $$t.log; exit 1; }; done
+	@mkdir -p $(C)/html
+	@gcovr --root . --object-directory $(C) --filter '$(CURDIR)/lib/' --exclude-unreachable-branches --json $@ \
+	    --html-details $(C)/html/index.html $(C) > $(C)/gcovr.log 2>&1 || { cat $(C)/gcovr.log; exit 1; }
+
+$(C)/probe.elf: host_tests/avr/coverage_probe.c Makefile
+	@mkdir -p $(@D)
+	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -Os -flto -gdwarf-2 $(WARNINGS) $< -o $@
+
+# status 8: the program ends asleep with interrupts off
+$(C)/probe.prof: $(C)/probe.elf $(S)/simrun
+	@$(S)/simrun --fw $< --in sim/streams/tilt-fast.csv --out $(C)/probe.txt --profile $@ --max-ms 100 2> $(C)/probe.log; \
+	    test $$? -eq 8 || { cat $(C)/probe.log; exit 1; }
+
+# a profile slows the simulator down, hence the factor for the tests of its speed
+## coverage: lines and branches of lib by the unit tests, lines of the AVR binary by the system tests (3 minutes)
+coverage:
+	@sh tools/deps.sh coverage
+	@$(MAKE) -j2 $(C)/host.json $(C)/probe.prof $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay
+	@python3 tools/coverage.py check $(C)/probe.elf $(C)/probe.prof host_tests/avr/coverage_probe.c
+	@rm -rf $(C)/runs && mkdir -p $(C)/runs
+	@PROFILES=$(C)/runs SPEED_FACTOR=0.05 python3 host_tests/system_tests.py > $(C)/system.log 2>&1 || { grep ':FAIL' $(C)/system.log; exit 1; }
+	@python3 tools/coverage.py judge $(C)/host.json $(U)/firmware.elf $(C)/runs
+
+.PHONY: coverage
+
+-include $(shell find $(C) -name '*.d' 2>/dev/null)
