@@ -36,7 +36,7 @@ AVR_SMALL   := -Os -flto -mrelax -mcall-prologues -fshort-enums -fno-inline-smal
                -fno-tree-switch-conversion
 AVR_FLAGS   := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -gdwarf-2 -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr
-AVR_LINK    := -mmcu=atmega328p $(AVR_SMALL) -Wl,--gc-sections
+AVR_LINK    := -mmcu=atmega328p -gdwarf-2 $(AVR_SMALL) -Wl,--gc-sections
 AVR_SRC     := $(APP_SRC) $(LIB_SRC) $(wildcard hal/avr/*.c)
 AVR_OBJ     := $(AVR_SRC:%.c=$(U)/%.o)
 HANG_OBJ    := $(AVR_SRC:%.c=$(U)/hang/%.o)

@@ -48,8 +48,13 @@ coverage:
 	@python3 tools/coverage.py check $(C)/probe.elf $(C)/probe.prof host_tests/avr/coverage_probe.c
 	@rm -rf $(C)/runs && mkdir -p $(C)/runs
 	@PROFILES=$(C)/runs SPEED_FACTOR=0.05 python3 host_tests/system_tests.py > $(C)/system.log 2>&1 || { grep ':FAIL' $(C)/system.log; exit 1; }
+	@python3 tools/coverage.py twins $(C)/host.json $(U)/firmware.elf $(C)/runs
 	@python3 tools/coverage.py judge $(C)/host.json $(U)/firmware.elf $(C)/runs
 
-.PHONY: coverage
+clean: clean_coverage
+clean_coverage:
+	@rm -rf $(C)
+
+.PHONY: coverage clean_coverage
 
 -include $(shell find $(C) -name '*.d' 2>/dev/null)

@@ -73,6 +73,11 @@ fuzz:
 	    python3 tools/fuzz.py run $(SECONDS) $(SEED); \
 	fi
 
-.PHONY: fuzz
+# inputs found and kept stay
+clean: clean_fuzz
+clean_fuzz:
+	@rm -rf $(FZ)/app $(FZ)/clang $(FZ)/planted $(FZ)/*.o $(FZ)/*.d $(FUZZ_BIN) $(FUZZ_LIBFUZZER)
+
+.PHONY: fuzz clean_fuzz
 
 -include $(shell find $(FZ) -name '*.d' 2>/dev/null)

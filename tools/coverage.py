@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 """Coverage: of lib on the PC (gcov, from the Unity tests) and of the unmodified AVR binary (simrun's profiles, system tests).
 
-    coverage.py host GCOVR.json                 reads gcovr's report of lib
-    coverage.py avr ELF PROFILE...              lines of the binary, executed in any of these runs
-    coverage.py judge GCOVR.json ELF FOLDER     both; writes build/coverage.json, judges against the targets (make coverage)
+    coverage.py judge GCOVR.json ELF FOLDER     tables, uncovered lines, build/coverage.json; 1 when below a target
+    coverage.py twins GCOVR.json ELF FOLDER     one line of lib not executed, one run of the chip alone: must be below
     coverage.py check ELF PROFILE SOURCE        the tool itself: lines marked `ran` and `not reached` in a small program
 
 A line of the binary is executable when at least one instruction is attributed to it (.debug_line: with inlining and
@@ -214,6 +213,27 @@ def judge(report, elf, folder):
     return 0 if all(results) else 1
 
 
+def twins(report, elf, folder):
+    """The judge must see what is missing: the same data with a line of lib not executed, and with a single run."""
+    nothing = Excluder([])
+    host = host_lines(report)
+    file = max(host, key=lambda name: len(host[name]))
+    spoilt = json.loads(pathlib.Path(report).read_text(encoding="utf-8"))
+    lines = next(f for f in spoilt["files"] if f["file"] == file)["lines"]
+    row = next(r for r in lines if r["count"] > 0 and not r.get("gcovr/noncode"))
+    for same in (r for r in lines if r["line_number"] == row["line_number"]):
+        same["count"] = 0
+    path = pathlib.Path("build/coverage/spoilt.json")
+    path.write_text(json.dumps(spoilt), encoding="utf-8")
+    rows, missed, _ = host_rows(path, nothing)
+    lib_seen = f"{file}:{row['line_number']}: not executed by the unit tests" in missed and total(rows, "lines_executed") < total(rows, "lines")
+    one = sorted(pathlib.Path(folder).glob("*.csv"))[:1]
+    ours = [r for r in avr_rows(elf, one, nothing)[0] if not r["file"].startswith("lib/")]
+    share = percent(total(ours, "lines_executed"), total(ours, "lines"))
+    print(f"twins: a line of {file} not executed: {'seen' if lib_seen else 'NOT SEEN'}; one run alone: {share:.1f} % of the AVR lines")
+    return 0 if lib_seen and share < AVR_LINES else 1
+
+
 def check(elf, profile, source):
     """Every executable line of the program says in a comment whether it must have run."""
     lines, _ = avr_lines(elf, [profile])
@@ -231,9 +251,11 @@ def main():
     arguments = sys.argv[1:]
     if len(arguments) == 4 and arguments[0] == "judge":
         return judge(*arguments[1:])
+    if len(arguments) == 4 and arguments[0] == "twins":
+        return twins(*arguments[1:])
     if len(arguments) == 4 and arguments[0] == "check":
         return check(*arguments[1:])
-    fail("usage: coverage.py judge GCOVR.json ELF FOLDER | check ELF PROFILE SOURCE")
+    fail("usage: coverage.py judge|twins GCOVR.json ELF FOLDER, or check ELF PROFILE SOURCE")
     return 2
 
 
