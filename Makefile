@@ -75,7 +75,7 @@ $(U)/late/firmware.elf: $(LATE_OBJ)
 	@$(AVR_CC) $(AVR_LINK) $^ -o $@
 
 # assembler primitives against their C twins, on the chip
-$(U)/fx_twins.elf: host_tests/avr/fx_twins.c lib/filters/src/fx.c lib/filters/src/fx.h Makefile
+$(U)/fx_twins.elf: host_tests/avr/fx_twins.c lib/filters/src/fx.c lib/filters/src/fx.h lib/filters/src/fx_avr.h Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ilib/filters/src $(filter %.c,$^) -o $@
 

@@ -75,7 +75,7 @@ def assembler_primitives_equal_their_c_twins():
                expect=None)
     lines = (OUT / "twins.txt").read_text().splitlines()
     assert done.returncode == 8, done.stderr
-    assert sum("PASS" in line for line in lines) >= 9 and not any("FAIL" in line for line in lines), lines
+    assert sum("PASS" in line for line in lines) == 12 and not any("FAIL" in line for line in lines), lines
 
 
 @test

@@ -49,6 +49,38 @@ static void products_equal_exact_arithmetic(void)
     }
 }
 
+/* Half away from zero is the same for v and -v. */
+static void signed_product_equals_exact_arithmetic(void)
+{
+    for (uint16_t i = 0; i < ON_PC_OR_CHIP(600, 60); i++) {
+        for (uint16_t j = 0; j < ON_PC_OR_CHIP(600, 60); j++) {
+            uint32_t magnitude = operand(i);
+            uint16_t b = (uint16_t)operand(j);
+            if (magnitude <= 0x80000000U) {
+                int32_t negative = (int32_t) - (int64_t)magnitude;
+                int32_t product = (int32_t) - (int64_t)half_up((uint64_t)magnitude * b, 16);
+                TEST_ASSERT_EQUAL_INT32(product, fx_scale_uq16(negative, b));
+            }
+            if (magnitude < 0x80000000U) {
+                int32_t product = (int32_t)half_up((uint64_t)magnitude * b, 16);
+                TEST_ASSERT_EQUAL_INT32(product, fx_scale_uq16((int32_t)magnitude, b));
+            }
+        }
+    }
+}
+
+static void sums_with_an_element_equal_exact_arithmetic(void)
+{
+    for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
+        int64_t v = (int32_t)operand(i) / 2;
+        int32_t array[3] = { (int32_t)operand((uint16_t)(i + 1U)) / 2, (int32_t)~operand((uint16_t)(i + 2U)) / 2, 77 };
+        TEST_ASSERT_EQUAL_INT32((int32_t)(v + array[0]), fx_plus((int32_t)v, array, 0));
+        TEST_ASSERT_EQUAL_INT32((int32_t)(v + array[1]), fx_plus((int32_t)v, array, 1));
+        TEST_ASSERT_EQUAL_INT32((int32_t)(v - array[0]), fx_minus((int32_t)v, array, 0));
+        TEST_ASSERT_EQUAL_INT32((int32_t)(v - array[1]), fx_minus((int32_t)v, array, 1));
+    }
+}
+
 static void shifts_equal_exact_arithmetic(void)
 {
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
@@ -141,6 +173,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(products_equal_exact_arithmetic);
+    RUN_TEST(signed_product_equals_exact_arithmetic);
+    RUN_TEST(sums_with_an_element_equal_exact_arithmetic);
     RUN_TEST(shifts_equal_exact_arithmetic);
     RUN_TEST(reciprocal_is_within_its_bound);
     RUN_TEST(saturating_and_clamping);

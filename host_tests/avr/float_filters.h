@@ -51,12 +51,10 @@ void float_sprf_set_noise(float_sprf_t *f, float r_lsb2);
 float float_sprf_update(float_sprf_t *f, int16_t z_lsb);
 float float_sprf_coast(float_sprf_t *f);
 
-#ifdef SYNTH_H
 void float_synth_start(float_synth_t *f, const synth_config_t *config, float x0_lsb);
 void float_synth_set_noise(float_synth_t *f, float r_lsb2);
 float float_synth_update(float_synth_t *f, int16_t z_lsb);
 float float_synth_coast(float_synth_t *f);
-#endif
 
 /* Degrees. */
 void float_angles(float *roll, float *pitch, float x, float y, float z);

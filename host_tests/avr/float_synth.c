@@ -1,8 +1,6 @@
 /* The synthesised filter as equation 7 of paper 000 prints it: four products, in float. */
 #include "float_filters.h"
 
-#ifdef SYNTH_H
-
 void float_synth_start(float_synth_t *f, const synth_config_t *config, float x0_lsb)
 {
     f->a1 = (float)config->a1_q16 / 65536.0f;
@@ -42,5 +40,3 @@ float float_synth_update(float_synth_t *f, int16_t z_lsb)
     float x_e = extrapolate(f);
     return shift(f, x_e + f->b0 * ((float)z_lsb - x_e));
 }
-
-#endif

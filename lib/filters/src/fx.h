@@ -1,7 +1,7 @@
 /*
- * Fixed-point primitives: the only header of the library that knows the machine.
+ * Fixed-point primitives: this header and fx_avr.h are all of the library that knows the machine.
  *
- * Every primitive exists twice, in portable C and, where the compiler's code is slow, as inline assembler for AVR; both
+ * Every primitive exists twice, in portable C and, where the compiler's code is slow, as inline assembler (fx_avr.h); both
  * give the same bits for every argument (host_tests/avr/fx_twins.c compares them on the chip). No primitive divides,
  * uses float or 64-bit arithmetic on AVR. All are pure and may be called from main or from an interrupt.
  */
@@ -116,6 +116,24 @@ static inline uint32_t fx_mul24_uq24_c(uint32_t a_q8, uint32_t b_uq24)
            (low >> 16) + ((low >> 15) & 1U);
 }
 
+/* v x b_uq16 rounded half away from zero, any v: the format of v is kept. */
+static inline int32_t fx_scale_uq16_c(int32_t v, uint16_t b_uq16)
+{
+    return (v < 0) ? -(int32_t)fx_mul_uq16_c(0U - (uint32_t)v, b_uq16) : (int32_t)fx_mul_uq16_c((uint32_t)v, b_uq16);
+}
+
+/* v + array[index], which must fit 32 bits; the index a constant 0..15. */
+static inline int32_t fx_plus_c(int32_t v, const int32_t *array, uint8_t index)
+{
+    return v + array[index];
+}
+
+/* v - array[index], which must fit 32 bits; the index a constant 0..15. */
+static inline int32_t fx_minus_c(int32_t v, const int32_t *array, uint8_t index)
+{
+    return v - array[index];
+}
+
 /* v x 2^12, exact. */
 static inline uint32_t fx_shift12_c(uint16_t v)
 {
@@ -149,163 +167,7 @@ static inline uint32_t fx_mul_uq24_c(uint32_t a, uint32_t b_uq24)
 }
 
 #ifdef __AVR__
-
-FX_INLINE uint32_t fx_mul_u16(uint16_t a, uint16_t b)
-{
-    uint32_t product;
-    uint8_t zero;
-    __asm__("clr %[z]\n\t"
-            "mul %A[a],%A[b]\n\tmovw %A[p],r0\n\t"
-            "mul %B[a],%B[b]\n\tmovw %C[p],r0\n\t"
-            "mul %B[a],%A[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "clr r1"
-            : [p] "=&r"(product), [z] "=&r"(zero)
-            : [a] "r"(a), [b] "r"(b));
-    return product;
-}
-
-FX_INLINE uint32_t fx_mul_uq16(uint32_t a, uint16_t b_uq16)
-{
-    uint32_t product; /* bytes 2..5 of the 6-byte product; byte 1 is only needed for its top bit, byte 0 not at all */
-    uint8_t zero;
-    uint8_t byte1;
-    __asm__("clr %[z]\n\t"
-            "mul %B[a],%B[b]\n\tmovw %A[p],r0\n\t"
-            "mul %D[a],%B[b]\n\tmovw %C[p],r0\n\t"
-            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
-            "mul %C[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %D[a],%A[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "clr r1"
-            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1)
-            : [a] "r"(a), [b] "r"(b_uq16));
-    return product;
-}
-
-FX_INLINE uint16_t fx_mul16_uq16(uint16_t a, uint16_t b_uq16)
-{
-    uint16_t product; /* bytes 2 and 3 of the 4-byte product; of byte 1 only the carry and the top bit are needed */
-    uint8_t zero;
-    uint8_t byte1;
-    __asm__("clr %[z]\n\t"
-            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
-            "mul %B[a],%B[b]\n\tmovw %A[p],r0\n\t"
-            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\t"
-            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\t"
-            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\t"
-            "clr r1"
-            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1)
-            : [a] "r"(a), [b] "r"(b_uq16));
-    return product;
-}
-
-FX_INLINE uint32_t fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
-{
-    uint32_t product; /* bytes 1..4 of the 5-byte product; byte 0 only rounds */
-    uint8_t zero;
-    uint8_t byte0;
-    __asm__("clr %[z]\n\t"
-            "mul %A[a],%A[b]\n\tmov %[l],r0\n\tmov %A[p],r1\n\t"
-            "mul %B[a],%B[b]\n\tmov %B[p],r0\n\tmov %C[p],r1\n\tclr %D[p]\n\t"
-            "mul %B[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%B[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%A[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%B[b]\n\tadd %C[p],r0\n\tadc %D[p],r1\n\t"
-            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "clr r1"
-            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte0)
-            : [a] "r"(a_q8), [b] "r"(b_uq16));
-    return product;
-}
-
-FX_INLINE uint32_t fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
-{
-    uint32_t product; /* bytes 2..5 of the 6-byte product; of byte 1 only the carry and the top bit are needed */
-    uint8_t zero;
-    uint8_t byte1;
-    __asm__("clr %[z]\n\t"
-            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
-            "mul %B[a],%B[b]\n\tmovw %A[p],r0\n\t"
-            "mul %C[a],%C[b]\n\tmovw %C[p],r0\n\t"
-            "mul %C[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%C[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %B[a],%C[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "clr r1"
-            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1)
-            : [a] "r"(a_q8), [b] "r"(b_uq24));
-    return product;
-}
-
-FX_INLINE uint32_t fx_shift12(uint16_t v)
-{
-    uint32_t shifted;
-    uint8_t nibble;
-    __asm__("clr %A[s]\n\t"
-            "mov %B[s],%A[v]\n\tswap %B[s]\n\tmov %C[s],%B[s]\n\t"
-            "ldi %[n],0xF0\n\tand %B[s],%[n]\n\teor %C[s],%B[s]\n\t"
-            "mov %D[s],%B[v]\n\tswap %D[s]\n\tand %[n],%D[s]\n\tor %C[s],%[n]\n\teor %D[s],%[n]"
-            : [s] "=&r"(shifted), [n] "=&d"(nibble)
-            : [v] "r"(v));
-    return shifted;
-}
-
-FX_INLINE uint32_t fx_eightfold(uint32_t v)
-{
-    __asm__("lsl %A[v]\n\trol %B[v]\n\trol %C[v]\n\trol %D[v]\n\t"
-            "lsl %A[v]\n\trol %B[v]\n\trol %C[v]\n\trol %D[v]\n\t"
-            "lsl %A[v]\n\trol %B[v]\n\trol %C[v]\n\trol %D[v]"
-            : [v] "+r"(v));
-    return v;
-}
-
-FX_INLINE uint32_t fx_sixteenth(uint32_t v)
-{
-    __asm__("lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
-            "lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
-            "lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
-            "lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
-            "adc %A[v],__zero_reg__\n\tadc %B[v],__zero_reg__\n\tadc %C[v],__zero_reg__\n\tadc %D[v],__zero_reg__"
-            : [v] "+r"(v));
-    return v;
-}
-
-FX_INLINE uint32_t fx_mul_uq24(uint32_t a, uint32_t b_uq24)
-{
-    uint32_t product; /* bytes 3..6 of the 7-byte product; of bytes 1 and 2 only the carry and the top bit are needed */
-    uint8_t zero;
-    uint8_t byte1;
-    uint8_t byte2;
-    __asm__("clr %[z]\n\t"
-            "mul %B[a],%C[b]\n\tmovw %A[p],r0\n\t"
-            "mul %D[a],%C[b]\n\tmovw %C[p],r0\n\t"
-            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
-            "mul %B[a],%B[b]\n\tmov %[h],r0\n\t"
-            "add %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%B[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %D[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%C[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %D[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%A[b]\n\tadd %[h],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%C[b]\n\tadd %[h],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %[h],r1\n\t"
-            "adc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %[h],r1\n\t"
-            "adc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "lsl %[h]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "clr r1"
-            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1), [h] "=&r"(byte2)
-            : [a] "r"(a), [b] "r"(b_uq24));
-    return product;
-}
-
+#include "fx_avr.h"
 #else
 
 static inline uint32_t fx_mul_u16(uint16_t a, uint16_t b)
@@ -327,6 +189,18 @@ static inline uint32_t fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
 static inline uint32_t fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
 {
     return fx_mul24_uq24_c(a_q8, b_uq24);
+}
+static inline int32_t fx_scale_uq16(int32_t v, uint16_t b_uq16)
+{
+    return fx_scale_uq16_c(v, b_uq16);
+}
+static inline int32_t fx_plus(int32_t v, const int32_t *array, uint8_t index)
+{
+    return fx_plus_c(v, array, index);
+}
+static inline int32_t fx_minus(int32_t v, const int32_t *array, uint8_t index)
+{
+    return fx_minus_c(v, array, index);
 }
 static inline uint32_t fx_shift12(uint16_t v)
 {

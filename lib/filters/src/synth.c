@@ -134,9 +134,9 @@ void synth_set_noise(synth_t *f, uint32_t r_lsb2_q8)
  */
 FX_INLINE bool limit_x(int32_t *x_lsb_q16)
 {
-    int16_t whole_lsb = (int16_t)(*x_lsb_q16 >> 16);
-    if (whole_lsb >= FILTER_X_MAX_LSB || whole_lsb < -FILTER_X_MAX_LSB) {
-        *x_lsb_q16 = (whole_lsb < 0) ? -X_MAX_LSB_Q16 : X_MAX_LSB_Q16;
+    uint16_t whole_lsb = (uint16_t)((uint32_t)*x_lsb_q16 >> 16);
+    if ((uint16_t)(whole_lsb + FILTER_X_MAX_LSB) >= 2U * FILTER_X_MAX_LSB) {
+        *x_lsb_q16 = (*x_lsb_q16 < 0) ? -X_MAX_LSB_Q16 : X_MAX_LSB_Q16;
         return true;
     }
     return false;
@@ -220,19 +220,10 @@ static int32_t estimate(const synth_t *f)
     return (f->collected == 0U) ? 0 : filter_warm_up_median_q16(f->u.start.ascending_lsb, f->collected);
 }
 
-/* A call of its own: the product needs all the registers that a call leaves free, and no more. */
-FX_NOINLINE uint32_t product_uq16(uint32_t v, uint16_t factor_uq16)
-{
-    return fx_mul_uq16(v, factor_uq16);
-}
-
-/* v x factor rounded half away from zero. */
+/* A call of its own for the two products. */
 FX_NOINLINE int32_t scaled(int32_t v, uint16_t factor_uq16)
 {
-    if (v < 0) {
-        return -(int32_t)product_uq16(0U - (uint32_t)v, factor_uq16);
-    }
-    return (int32_t)product_uq16((uint32_t)v, factor_uq16);
+    return fx_scale_uq16(v, factor_uq16);
 }
 
 /* - a1 (x1 - 2 x2 + x3); 0 while the start's gains are in force: the straight line alone. */
@@ -241,11 +232,18 @@ FX_NOINLINE int32_t curvature(const synth_t *f)
     if (f->collected != STEADY || f->a1_uq16 == 0U) {
         return 0;
     }
-    int32_t bend = f->u.run.x_lsb_q16[1];
-    bend += bend;
-    bend -= f->u.run.x_lsb_q16[0];
-    bend -= f->u.run.x_lsb_q16[2];
-    return scaled(f->a1_negative ? -bend : bend, f->a1_uq16);
+    int32_t bend;
+    if (f->a1_negative) {
+        bend = fx_plus(f->u.run.x_lsb_q16[0], f->u.run.x_lsb_q16, 2);
+        bend = fx_minus(bend, f->u.run.x_lsb_q16, 1);
+        bend = fx_minus(bend, f->u.run.x_lsb_q16, 1);
+    } else {
+        bend = f->u.run.x_lsb_q16[1];
+        bend += bend;
+        bend = fx_minus(bend, f->u.run.x_lsb_q16, 0);
+        bend = fx_minus(bend, f->u.run.x_lsb_q16, 2);
+    }
+    return scaled(bend, f->a1_uq16);
 }
 
 /*
@@ -293,11 +291,11 @@ FX_NOINLINE int32_t step(synth_t *f, int16_t z_lsb)
     FX_FENCE();
     extrapolate(f, curvature(f));
     int32_t innovation = (int32_t)z_lsb * 65536;
-    innovation -= f->u.run.x_lsb_q16[0];
+    innovation = fx_minus(innovation, f->u.run.x_lsb_q16, 0);
     f->innovation_lsb_q16 = innovation;
     int32_t x = scaled(innovation, f->gain_uq16);
     FX_FENCE();
-    x += f->u.run.x_lsb_q16[0];
+    x = fx_plus(x, f->u.run.x_lsb_q16, 0);
     f->u.run.x_lsb_q16[0] = x;
     return x;
 }

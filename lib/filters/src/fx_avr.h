@@ -1,0 +1,214 @@
+/*
+ * The primitives of fx.h in assembler for the ATmega328P; included by fx.h alone, where each one's contract stands with its C
+ * twin (fx_..._c). __zero_reg__ (r1) holds half a product meanwhile: an interrupt saves and clears it, and so does each end.
+ */
+#ifndef FX_AVR_H
+#define FX_AVR_H
+
+FX_INLINE uint32_t fx_mul_u16(uint16_t a, uint16_t b)
+{
+    uint32_t product;
+    uint8_t zero;
+    __asm__("clr %[z]\n\t"
+            "mul %A[a],%A[b]\n\tmovw %A[p],r0\n\t"
+            "mul %B[a],%B[b]\n\tmovw %C[p],r0\n\t"
+            "mul %B[a],%A[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "clr r1"
+            : [p] "=&r"(product), [z] "=&r"(zero)
+            : [a] "r"(a), [b] "r"(b));
+    return product;
+}
+
+FX_INLINE uint32_t fx_mul_uq16(uint32_t a, uint16_t b_uq16)
+{
+    uint32_t product; /* bytes 2..5 of the 6-byte product; byte 1 is only needed for its top bit, byte 0 not at all */
+    uint8_t zero;
+    uint8_t byte1;
+    __asm__("clr %[z]\n\t"
+            "mul %B[a],%B[b]\n\tmovw %A[p],r0\n\t"
+            "mul %D[a],%B[b]\n\tmovw %C[p],r0\n\t"
+            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
+            "mul %C[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %D[a],%A[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "clr r1"
+            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1)
+            : [a] "r"(a), [b] "r"(b_uq16));
+    return product;
+}
+
+FX_INLINE uint16_t fx_mul16_uq16(uint16_t a, uint16_t b_uq16)
+{
+    uint16_t product; /* bytes 2 and 3 of the 4-byte product; of byte 1 only the carry and the top bit are needed */
+    uint8_t zero;
+    uint8_t byte1;
+    __asm__("clr %[z]\n\t"
+            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
+            "mul %B[a],%B[b]\n\tmovw %A[p],r0\n\t"
+            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\t"
+            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\t"
+            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\t"
+            "clr r1"
+            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1)
+            : [a] "r"(a), [b] "r"(b_uq16));
+    return product;
+}
+
+FX_INLINE uint32_t fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
+{
+    uint32_t product; /* bytes 1..4 of the 5-byte product; byte 0 only rounds */
+    uint8_t zero;
+    uint8_t byte0;
+    __asm__("clr %[z]\n\t"
+            "mul %A[a],%A[b]\n\tmov %[l],r0\n\tmov %A[p],r1\n\t"
+            "mul %B[a],%B[b]\n\tmov %B[p],r0\n\tmov %C[p],r1\n\tclr %D[p]\n\t"
+            "mul %B[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%B[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%A[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%B[b]\n\tadd %C[p],r0\n\tadc %D[p],r1\n\t"
+            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "clr r1"
+            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte0)
+            : [a] "r"(a_q8), [b] "r"(b_uq16));
+    return product;
+}
+
+FX_INLINE uint32_t fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
+{
+    uint32_t product; /* bytes 2..5 of the 6-byte product; of byte 1 only the carry and the top bit are needed */
+    uint8_t zero;
+    uint8_t byte1;
+    __asm__("clr %[z]\n\t"
+            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
+            "mul %B[a],%B[b]\n\tmovw %A[p],r0\n\t"
+            "mul %C[a],%C[b]\n\tmovw %C[p],r0\n\t"
+            "mul %C[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%C[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %B[a],%C[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "clr r1"
+            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1)
+            : [a] "r"(a_q8), [b] "r"(b_uq24));
+    return product;
+}
+
+/* Works on the magnitude, the sign waits in T; named registers, so that a function around it has nothing to save. */
+FX_INLINE int32_t fx_scale_uq16(int32_t v, uint16_t b_uq16)
+{
+    __asm__("bst %D[v],7\n\tbrtc 1f\n\t"
+            "com %D[v]\n\tcom %C[v]\n\tcom %B[v]\n\tneg %A[v]\n\t"
+            "sbci %B[v],0xFF\n\tsbci %C[v],0xFF\n\tsbci %D[v],0xFF\n"
+            "1:\tclr r30\n\t"
+            "mul %B[v],%B[b]\n\tmovw r18,r0\n\t"
+            "mul %D[v],%B[b]\n\tmovw r26,r0\n\t"
+            "mul %A[v],%A[b]\n\tmov r31,r1\n\t"
+            "mul %C[v],%A[b]\n\tadd r18,r0\n\tadc r19,r1\n\tadc r26,r30\n\tadc r27,r30\n\t"
+            "mul %D[v],%A[b]\n\tadd r19,r0\n\tadc r26,r1\n\tadc r27,r30\n\t"
+            "mul %C[v],%B[b]\n\tadd r19,r0\n\tadc r26,r1\n\tadc r27,r30\n\t"
+            "mul %B[v],%A[b]\n\tadd r31,r0\n\tadc r18,r1\n\tadc r19,r30\n\tadc r26,r30\n\tadc r27,r30\n\t"
+            "mul %A[v],%B[b]\n\tadd r31,r0\n\tadc r18,r1\n\tadc r19,r30\n\tadc r26,r30\n\tadc r27,r30\n\t"
+            "lsl r31\n\tadc r18,r30\n\tadc r19,r30\n\tadc r26,r30\n\tadc r27,r30\n\t"
+            "movw %A[v],r18\n\tmovw %C[v],r26\n\t"
+            "brtc 2f\n\t"
+            "com %D[v]\n\tcom %C[v]\n\tcom %B[v]\n\tneg %A[v]\n\t"
+            "sbci %B[v],0xFF\n\tsbci %C[v],0xFF\n\tsbci %D[v],0xFF\n"
+            "2:\tclr r1"
+            : [v] "+&d"(v)
+            : [b] "r"(b_uq16)
+            : "r18", "r19", "r26", "r27", "r30", "r31");
+    return v;
+}
+
+/* Byte by byte from memory through one register: no registers to save. */
+FX_INLINE int32_t fx_plus(int32_t v, const int32_t *array, uint8_t index)
+{
+    __asm__("ldd __tmp_reg__,%a[p]+%[o]\n\tadd %A[v],__tmp_reg__\n\t"
+            "ldd __tmp_reg__,%a[p]+%[o]+1\n\tadc %B[v],__tmp_reg__\n\t"
+            "ldd __tmp_reg__,%a[p]+%[o]+2\n\tadc %C[v],__tmp_reg__\n\t"
+            "ldd __tmp_reg__,%a[p]+%[o]+3\n\tadc %D[v],__tmp_reg__"
+            : [v] "+&r"(v)
+            : [p] "b"(array), [o] "i"(4U * index), "m"(array[index]));
+    return v;
+}
+
+FX_INLINE int32_t fx_minus(int32_t v, const int32_t *array, uint8_t index)
+{
+    __asm__("ldd __tmp_reg__,%a[p]+%[o]\n\tsub %A[v],__tmp_reg__\n\t"
+            "ldd __tmp_reg__,%a[p]+%[o]+1\n\tsbc %B[v],__tmp_reg__\n\t"
+            "ldd __tmp_reg__,%a[p]+%[o]+2\n\tsbc %C[v],__tmp_reg__\n\t"
+            "ldd __tmp_reg__,%a[p]+%[o]+3\n\tsbc %D[v],__tmp_reg__"
+            : [v] "+&r"(v)
+            : [p] "b"(array), [o] "i"(4U * index), "m"(array[index]));
+    return v;
+}
+
+FX_INLINE uint32_t fx_shift12(uint16_t v)
+{
+    uint32_t shifted;
+    uint8_t nibble;
+    __asm__("clr %A[s]\n\t"
+            "mov %B[s],%A[v]\n\tswap %B[s]\n\tmov %C[s],%B[s]\n\t"
+            "ldi %[n],0xF0\n\tand %B[s],%[n]\n\teor %C[s],%B[s]\n\t"
+            "mov %D[s],%B[v]\n\tswap %D[s]\n\tand %[n],%D[s]\n\tor %C[s],%[n]\n\teor %D[s],%[n]"
+            : [s] "=&r"(shifted), [n] "=&d"(nibble)
+            : [v] "r"(v));
+    return shifted;
+}
+
+FX_INLINE uint32_t fx_eightfold(uint32_t v)
+{
+    __asm__("lsl %A[v]\n\trol %B[v]\n\trol %C[v]\n\trol %D[v]\n\t"
+            "lsl %A[v]\n\trol %B[v]\n\trol %C[v]\n\trol %D[v]\n\t"
+            "lsl %A[v]\n\trol %B[v]\n\trol %C[v]\n\trol %D[v]"
+            : [v] "+r"(v));
+    return v;
+}
+
+FX_INLINE uint32_t fx_sixteenth(uint32_t v)
+{
+    __asm__("lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
+            "lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
+            "lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
+            "lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
+            "adc %A[v],__zero_reg__\n\tadc %B[v],__zero_reg__\n\tadc %C[v],__zero_reg__\n\tadc %D[v],__zero_reg__"
+            : [v] "+r"(v));
+    return v;
+}
+
+FX_INLINE uint32_t fx_mul_uq24(uint32_t a, uint32_t b_uq24)
+{
+    uint32_t product; /* bytes 3..6 of the 7-byte product; of bytes 1 and 2 only the carry and the top bit are needed */
+    uint8_t zero;
+    uint8_t byte1;
+    uint8_t byte2;
+    __asm__("clr %[z]\n\t"
+            "mul %B[a],%C[b]\n\tmovw %A[p],r0\n\t"
+            "mul %D[a],%C[b]\n\tmovw %C[p],r0\n\t"
+            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
+            "mul %B[a],%B[b]\n\tmov %[h],r0\n\t"
+            "add %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%B[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %D[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%C[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %D[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
+            "mul %C[a],%A[b]\n\tadd %[h],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%C[b]\n\tadd %[h],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %[h],r1\n\t"
+            "adc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %[h],r1\n\t"
+            "adc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "lsl %[h]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
+            "clr r1"
+            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1), [h] "=&r"(byte2)
+            : [a] "r"(a), [b] "r"(b_uq24));
+    return product;
+}
+
+#endif
