@@ -2,6 +2,7 @@
 """The unmodified firmware in the simulator, judged by what the virtual sensor served and by the native build."""
 import os
 import re
+import resource
 import sys
 
 from system_support import (FW, OUT, SIMRUN, STREAMS, TESTS, assert_nothing_lost, read_output, run, run_all, simrun, test, triplets,
@@ -199,24 +200,28 @@ def memory_budgets():
     within("flash", stats["flash_bytes"], budget["flash_bytes"])
 
 
-def speed_of(name, stream, *options):
-    _, _, _, stats = simrun(name, stream, *options)
-    found = re.search(r"([\d.]+) times real time", stats["stderr"])
-    assert found, stats["stderr"]
-    return float(found.group(1))
+def speed_of(name, stream, milliseconds, *options):
+    """Simulated time over the processor time it took: what else the machine does at that moment does not count. The best of three."""
+    best = 0
+    for _ in range(3):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        _, _, _, stats = simrun(name, stream, *options, "--max-ms", str(milliseconds))
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        assert re.search(r"([\d.]+) times real time", stats["stderr"]), stats["stderr"]
+        best = max(best, milliseconds / 1000 / (after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime))
+    return best
 
 
 @test
 def simulator_is_fast_at_100_hz():
-    best = max(speed_of("speed-100", STREAMS / "tilt-slow.csv", "--max-ms", "20000") for _ in range(2))
+    best = speed_of("speed-100", STREAMS / "tilt-slow.csv", 20000)
     print(f"    100 Hz: {best:.0f} times real time")
     assert best >= 40 * machine_factor(), best
 
 
 @test
 def simulator_is_fast_at_400_hz():
-    best = max(speed_of("speed-400", STREAMS / "tilt-400hz.csv", "--baud", "500000", "--rate", "400", "--loop", "--max-ms", "10000")
-               for _ in range(2))
+    best = speed_of("speed-400", STREAMS / "tilt-400hz.csv", 10000, "--baud", "500000", "--rate", "400", "--loop")
     print(f"    400 Hz: {best:.0f} times real time")
     assert best >= 15 * machine_factor(), best
 
