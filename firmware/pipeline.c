@@ -1,4 +1,4 @@
-/* The sample path of main: about 3,500 cycles a sample with three robust filters. */
+/* The sample path of main. Its cycles: sample_total in docs/benchmarks.md. */
 #include "pipeline.h"
 
 #include "filter_any.h"

@@ -154,6 +154,29 @@ def spans_leave_the_interrupts_out():
     assert min(cycles) > 80 and max(cycles) - min(cycles) < 40, (min(cycles), max(cycles))
 
 
+def page_row(name):
+    """The cells of a row of docs/benchmarks.md."""
+    text = pathlib.Path("docs/benchmarks.md").read_text(encoding="utf-8")
+    row = next(line for line in text.splitlines() if line.startswith(f"| `{name}` |"))
+    return [cell.strip() for cell in row.split("|")[2:-1]]
+
+
+@test
+def the_readmes_tell_the_numbers_of_the_page():
+    readme = pathlib.Path("README.md").read_text(encoding="utf-8")
+    library = pathlib.Path("lib/filters/README.md").read_text(encoding="utf-8")
+    for name in ("kf", "sprf", "synth", "angles"):
+        _, median, worst = page_row(name)[:3]
+        assert f"{median} ({worst})" in readme, f"README.md does not say {median} ({worst}) for {name}"
+    for name in ("kf", "sprf", "synth", "noise"):
+        row = page_row(name)
+        wanted = f"| {row[1]}, {row[2]} | {row[7]} B | {row[8]} B |"
+        line = next(line for line in library.splitlines() if line.startswith(f"| `{name}` |"))
+        assert line.endswith(wanted), f"lib/filters/README.md: {line}, the page says {wanted}"
+    for name in ("kf", "sprf", "synth"):
+        assert page_row(f"{name}_set_noise")[2] in library, f"lib/filters/README.md: set_noise of {name}"
+
+
 @test
 def a_span_of_an_unknown_function_is_refused():
     for names, what in (("nowhere:main:x.csv", "no function nowhere"), ("main:nowhere:x.csv", "no function nowhere"), ("main", "FROM:TO:CSV")):

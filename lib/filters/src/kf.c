@@ -38,8 +38,7 @@ void kf_reset(kf_t *f, int16_t z0_lsb)
 
 /*
  * Scaling: input any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB; formats, bounds and rounding
- * errors as two_state_step. Cycles (ATmega328P, avr-gcc 5.4 -Os, call included): 741 mean, 776 at most
- * (make cycles); 795 at most in 2,400 samples at 12.5 to 800 Hz, 825 by count (S above 8). Flash 390 B beside the core. RAM 59 B. Stack 14 B.
+ * errors as two_state_step. Cost: docs/benchmarks.md.
  */
 int32_t kf_update(kf_t *f, int16_t z_lsb)
 {

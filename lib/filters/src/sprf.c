@@ -127,9 +127,7 @@ FX_NOINLINE void refuse(sprf_t *f, int16_t z_lsb)
 
 /*
  * Scaling: input any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB; formats, bounds and rounding
- * errors as two_state_step; the restart's slope is exact (power-of-two steps). Cycles (ATmega328P, avr-gcc 5.4 -Os,
- * call included): 861 mean, 947 at most (make cycles); 966 at most in 2,400 samples at 12.5 to 800 Hz, fewer when
- * refused, 1,000 by count (S above 8). Flash 1,290 B beside the core. RAM 70 B. Stack 24 B.
+ * errors as two_state_step; the restart's slope is exact (power-of-two steps). Cost: docs/benchmarks.md.
  */
 int32_t sprf_update(sprf_t *f, int16_t z_lsb)
 {

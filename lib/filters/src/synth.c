@@ -309,7 +309,7 @@ FX_NOINLINE int32_t step(synth_t *f, int16_t z_lsb)
  *   rounding each product half away from zero to 2^-16 LSB; both together reach the output with the noise gain over b0^2 of
  *            the filter: 0.0002 LSB rms at (-0.3, 0.1). The bound that the tests hold against the double reference is
  *            (1 + |1 - b0|) 2^-17 times the sum of the error's impulse response
- *   cost     cycles and stack: make bench; RAM 44 B
+ *   cost     docs/benchmarks.md
  */
 int32_t synth_update(synth_t *f, int16_t z_lsb)
 {
