@@ -216,11 +216,20 @@ static const char *broken_synth(const synth_t *f, int32_t x_lsb_q16)
     return (x_lsb_q16 == output) ? NULL : "x returned";
 }
 
+/* kf.h: no gate, so nothing is refused and nothing re-acquired. */
+static const char *broken_kf(const kf_t *f, int32_t x_lsb_q16)
+{
+    if ((f->core.flags & (FILTER_GATED | FILTER_REACQUIRED)) != 0U) {
+        return "flags of a gate";
+    }
+    return broken_two_state(&f->core, x_lsb_q16);
+}
+
 static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)
 {
     switch ((filter_kind_t)f->kind) {
     case FILTER_KIND_kf:
-        return broken_two_state(&f->state.kf.core, x_lsb_q16);
+        return broken_kf(&f->state.kf, x_lsb_q16);
     case FILTER_KIND_sprf:
         return broken_sprf(&f->state.sprf, x_lsb_q16);
     case FILTER_KIND_synth:

@@ -3,7 +3,8 @@
 FZ           := $(B)/fuzz
 FUZZ_TARGETS := commands stream driver filters
 FUZZ_APP_OBJ := $(HOST_SRC:%.c=$(FZ)/app/%.o)
-FUZZ_COMMON  := $(FZ)/fuzz_support.o $(FZ)/fuzz_protocol.o
+FUZZ_COMMON  := fuzz_support fuzz_protocol support_filters
+FUZZ_LINKED  := $(FUZZ_COMMON:%=$(FZ)/%.o) $(FZ)/fuzz_drive.o $(FZ)/fuzz_mutate.o $(FZ)/fuzz_dictionary.o
 FUZZ_BIN     := $(FUZZ_TARGETS:%=$(FZ)/fuzz_%)
 FUZZ_LIBFUZZER := $(FUZZ_TARGETS:%=$(FZ)/libfuzzer_%)
 FUZZ_GCC     := $(HOST_CC) $(HOST_FLAGS) -Ihost_tests/fuzz $(WARNINGS) $(SANITIZE)
@@ -27,7 +28,11 @@ $(FZ)/fuzz_%.o: host_tests/fuzz/fuzz_%.c Makefile mk/fuzz.mk
 	@mkdir -p $(@D)
 	@$(FUZZ_GCC) -MMD -MP -c $< -o $@
 
-$(FUZZ_BIN): $(FZ)/fuzz_%: $(FZ)/fuzz_%.o $(FUZZ_COMMON) $(FZ)/fuzz_drive.o $(FZ)/app.o
+$(FZ)/support_filters.o: host_tests/support_filters.c Makefile mk/fuzz.mk
+	@mkdir -p $(@D)
+	@$(FUZZ_GCC) -MMD -MP -c $< -o $@
+
+$(FUZZ_BIN): $(FZ)/fuzz_%: $(FZ)/fuzz_%.o $(FUZZ_LINKED) $(FZ)/app.o
 	@$(HOST_CC) $(SANITIZE) $^ -lm -o $@
 
 # the same with one source broken, for each bug of planted.txt: NAME:TARGET:SOURCE
@@ -45,7 +50,7 @@ $(FZ)/planted/$(1).o: $(FZ)/planted/$(1).c $(FZ)/app/$(3:.c=.o)
 $(FZ)/planted/$(1).app.o: $(FZ)/planted/$(1).o $(filter-out $(FZ)/app/$(3:.c=.o),$(FUZZ_APP_OBJ))
 	@$$(FUZZ_GROUP)
 
-$(FZ)/planted/$(1): $(FZ)/fuzz_$(2).o $(FUZZ_COMMON) $(FZ)/fuzz_drive.o $(FZ)/planted/$(1).app.o
+$(FZ)/planted/$(1): $(FZ)/fuzz_$(2).o $(FUZZ_LINKED) $(FZ)/planted/$(1).app.o
 	@$$(HOST_CC) $$(SANITIZE) $$^ -lm -o $$@
 endef
 $(foreach p,$(FUZZ_PLANTS),$(eval $(call FUZZ_PLANT,$(word 1,$(subst :, ,$(p))),$(word 2,$(subst :, ,$(p))),$(word 3,$(subst :, ,$(p))))))
@@ -58,8 +63,9 @@ $(FZ)/clang/%.o: %.c Makefile mk/fuzz.mk
 $(FZ)/clang/app.o: $(HOST_SRC:%.c=$(FZ)/clang/%.o)
 	@$(FUZZ_GROUP)
 
-$(FUZZ_LIBFUZZER): $(FZ)/libfuzzer_%: $(FZ)/clang/host_tests/fuzz/fuzz_%.o $(FZ)/clang/host_tests/fuzz/fuzz_support.o \
-        $(FZ)/clang/host_tests/fuzz/fuzz_protocol.o $(FZ)/clang/app.o
+$(FUZZ_LIBFUZZER): $(FZ)/libfuzzer_%: $(FZ)/clang/host_tests/fuzz/fuzz_%.o \
+        $(FZ)/clang/host_tests/fuzz/fuzz_support.o $(FZ)/clang/host_tests/fuzz/fuzz_protocol.o $(FZ)/clang/host_tests/support_filters.o \
+        $(FZ)/clang/app.o
 	@$(CLANG) $(SANITIZE) -fsanitize=fuzzer $^ -lm -o $@
 
 ## fuzz: random inputs to commands, stream reader, driver and filters (SECONDS=20 in all, SEED=1)

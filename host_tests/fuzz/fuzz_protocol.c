@@ -56,9 +56,44 @@ static bool number(const char *text, bool tenths, double *value)
     return digits != 0 && digits <= 7 && *rest == '\0';
 }
 
+static bool set_rate(settings_t *s, double v)
+{
+    bool legal = one_of(v, rates_hz, 7);
+    s->rate_dhz = legal ? (uint16_t)(v * 10.0) : 0;
+    return legal;
+}
+
+static bool set_range(settings_t *s, double v)
+{
+    bool legal = one_of(v, ranges_g, 4);
+    s->range_g = legal ? (uint8_t)v : 0;
+    return legal;
+}
+
+static bool set_every(settings_t *s, double v)
+{
+    bool legal = v >= 1.0 && v <= 10000.0;
+    s->every = legal ? (uint16_t)v : 0;
+    return legal;
+}
+
+static bool set_baud(settings_t *s, double v)
+{
+    s->baud = (uint32_t)v;
+    return one_of(v, bauds, 8);
+}
+
 /* What `NAME VALUE` makes of the settings; false: not legal. */
 static bool set(settings_t *s, const char *name, const char *value)
 {
+    static const struct {
+        const char *name;
+        bool tenths;
+        bool (*set)(settings_t *s, double v);
+    } numbers[] = { { "rate", true, set_rate },
+                    { "range", false, set_range },
+                    { "every", false, set_every },
+                    { "baud", false, set_baud } };
     double v = 0.0;
     if (strcmp(name, "filter") == 0) {
         s->filter = (uint8_t)filter_any_find(value);
@@ -68,26 +103,12 @@ static bool set(settings_t *s, const char *name, const char *value)
         s->mode = strcmp(value, "plot") == 0 ? MODE_PLOT : MODE_CSV;
         return s->mode == MODE_PLOT || strcmp(value, "csv") == 0;
     }
-    if (!number(value, strcmp(name, "rate") == 0, &v)) {
-        return false;
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        if (strcmp(name, numbers[i].name) == 0) {
+            return number(value, numbers[i].tenths, &v) && numbers[i].set(s, v);
+        }
     }
-    if (strcmp(name, "rate") == 0) {
-        bool legal = one_of(v, rates_hz, 7);
-        s->rate_dhz = legal ? (uint16_t)(v * 10.0) : 0;
-        return legal;
-    }
-    if (strcmp(name, "range") == 0) {
-        bool legal = one_of(v, ranges_g, 4);
-        s->range_g = legal ? (uint8_t)v : 0;
-        return legal;
-    }
-    if (strcmp(name, "every") == 0) {
-        bool legal = v >= 1.0 && v <= 10000.0;
-        s->every = legal ? (uint16_t)v : 0;
-        return legal;
-    }
-    s->baud = (uint32_t)v;
-    return one_of(v, bauds, 8);
+    fuzz_fail(__FILE__, __LINE__, "no setting %s", name);
 }
 
 static void expect_setting(expected_t *e, const char *name, const char *value)
@@ -258,6 +279,12 @@ static unsigned lines_after(const char *first, const char **optional)
     return begins(first, "# filter: ") ? 6 : (begins(first, "# state ") ? 3 : 0);
 }
 
+/* Whether reply line i, if there is one, begins so. */
+static bool reply_begins(const said_t *s, unsigned i, const char *words)
+{
+    return i < s->count && begins(s->reply[i], words);
+}
+
 /*
  * From reply line i and expectation j on. A second line of `rate` and `baud` comes only where the line forces another
  * decimation, and looks like the reply to `every`: both readings are tried, the longer first.
@@ -266,20 +293,18 @@ static bool matches(const said_t *s, unsigned i, const expected_t *e, unsigned j
 {
     for (; j < e->count; j++) {
         const char *optional;
-        if (i >= s->count || !begins(s->reply[i], e->reply[j])) {
+        if (!reply_begins(s, i, e->reply[j])) {
             return false;
         }
         i += 1 + lines_after(s->reply[i], &optional);
-        if (i > s->count) {
-            return false;
+        if (optional == NULL || !reply_begins(s, i, optional)) {
+            continue;
         }
-        if (optional != NULL && i < s->count && begins(s->reply[i], optional)) {
-            bool as_own_reply = j + 1 < e->count && begins(s->reply[i], e->reply[j + 1]);
-            if (!as_own_reply) {
-                i++;
-            } else if (matches(s, i + 1, e, j + 1)) {
-                return true;
-            }
+        bool as_own_reply = j + 1 < e->count && begins(s->reply[i], e->reply[j + 1]);
+        if (!as_own_reply) {
+            i++;
+        } else if (matches(s, i + 1, e, j + 1)) {
+            return true;
         }
     }
     return i == s->count;
