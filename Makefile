@@ -131,7 +131,7 @@ $(H)/%.o: %.cpp Makefile
 
 $(H)/unity.o: $(UNITY_DIR)/unity.c
 	@mkdir -p $(@D)
-	@$(HOST_CC) -std=c11 -O1 -g -DUNITY_INCLUDE_DOUBLE $(SANITIZE) -c $< -o $@
+	@$(HOST_CC) -std=c11 -O1 -g -DUNITY_INCLUDE_DOUBLE -DUNITY_USE_FLUSH_STDOUT $(SANITIZE) -c $< -o $@
 
 $(H)/test_%: $(H)/host_tests/test_%.o $(HOST_OBJ) $(REF_OBJ) $(H)/unity.o
 	@$(HOST_CXX) $(SANITIZE) $^ -lm -o $@
