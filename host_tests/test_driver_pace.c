@@ -23,6 +23,9 @@ static int16_t last_x;
 static double probed_ms[PROBES_MAX];
 static size_t probes;
 
+static uint32_t edge_us;
+static bool sample_comes_while_clearing;
+
 void hal_host_i2c_handler(void);
 
 static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
@@ -31,6 +34,17 @@ static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
     (void)row;
     (void)lsb;
     latched_count++;
+}
+
+/* Interrupts are on while the bus is being cleared: a sample is latched, INT1 rises and its interrupt is served. */
+static void on_bus_clear(void)
+{
+    static const int16_t lsb[3] = { 3999, 0, 0 };
+    if (sample_comes_while_clearing) {
+        sample_comes_while_clearing = false;
+        edge_us = hal_time_us();
+        (void)adxl345_model_tick(&hal_host_sensor, lsb);
+    }
 }
 
 /* x counts. */
@@ -43,7 +57,8 @@ void setUp(void)
     taken_count = 0;
     latched_count = 0;
     probes = 0;
-    hal_host_config_t config = { .on_latched = on_latched };
+    hal_host_config_t config = { .on_latched = on_latched, .on_bus_clear = on_bus_clear };
+    sample_comes_while_clearing = false;
     hal_host_begin(&config, &stream, false);
     hal_uart_init(115200);
     hal_time_init();
@@ -286,6 +301,34 @@ static void test_a_stale_bus_event_is_ignored(void)
     TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
 }
 
+/*
+ * An edge that comes while the pins are toggled by hand must not put a START on them; its sample is read afterwards, with
+ * the time of the edge.
+ */
+static void test_an_edge_while_the_bus_is_cleared_starts_no_transfer(void)
+{
+    adxl345_sample_t sample = { 0 };
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    RUN_UNTIL(!burst_running() && !hal_drdy_high(), 20);
+    run_ms(2); /* the last STOP is out */
+    sample_comes_while_clearing = true;
+    burst_take_bus(0x53, false);
+    TEST_ASSERT_TRUE(hal_drdy_high());
+    TEST_ASSERT_FALSE(burst_running());
+    TEST_ASSERT_EQUAL(I2C_BUS_IDLE, burst_bus_state());
+    TEST_ASSERT_EQUAL_UINT8(0, burst_failures());
+    hal_sleep_until_wake();
+    TEST_ASSERT_TRUE(hal_time_us() > edge_us);
+    double end_ms = hal_host_now_ms() + 1.0;
+    while (!adxl345_take(&sample) && hal_host_now_ms() < end_ms) {
+        adxl345_poll(hal_time_us());
+        hal_sleep_until_wake();
+    }
+    TEST_ASSERT_EQUAL_INT16(3999, sample.lsb[0]);
+    TEST_ASSERT_EQUAL_UINT32(edge_us, sample.t_us);
+}
+
 /* A sensor that still runs from before gives edges while it is being configured: they are not for this driver. */
 static void test_edges_before_streaming_are_ignored(void)
 {
@@ -334,6 +377,7 @@ int main(void)
     RUN_TEST(test_start_and_stop_while_quiescing);
     RUN_TEST(test_drain_that_nobody_empties_ends);
     RUN_TEST(test_a_stale_bus_event_is_ignored);
+    RUN_TEST(test_an_edge_while_the_bus_is_cleared_starts_no_transfer);
     RUN_TEST(test_edges_before_streaming_are_ignored);
     RUN_TEST(test_counters_saturate);
     return UNITY_END();

@@ -131,6 +131,14 @@ void host_drdy_changed(bool high)
     }
 }
 
+void host_drdy_serve(void)
+{
+    while (drdy_edge) {
+        drdy_edge = false;
+        hal_host_drdy_handler();
+    }
+}
+
 void hal_wake(void)
 {
     wake_wanted = true;
@@ -159,10 +167,7 @@ static void run_due_events(void)
     if (host_uart_next() <= host_now) {
         host_uart_step();
     }
-    while (drdy_edge) {
-        drdy_edge = false;
-        hal_host_drdy_handler();
-    }
+    host_drdy_serve();
 }
 
 static uint64_t next_event(void)

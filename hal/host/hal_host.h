@@ -20,6 +20,7 @@ typedef struct {
     double ppm;                  /* error of the sensor's clock */
     void (*on_tx)(uint8_t byte); /* a byte left on the line; NULL: dropped */
     void (*on_latched)(uint64_t t_us, size_t row, const int16_t lsb[3]); /* the sensor took a sample; may be NULL */
+    void (*on_bus_clear)(void); /* the bus is being cleared, interrupts on: what comes meanwhile; may be NULL */
 } hal_host_config_t;
 
 /* The bus and wiring faults a test can set at any time. */

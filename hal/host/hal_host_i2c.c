@@ -64,6 +64,10 @@ void hal_i2c_clear(void)
     for (uint8_t clocks = CLEAR_CLOCKS_MAX; clocks != 0 && hal_host_faults.hang_clocks != 0; clocks--) {
         hal_host_faults.hang_clocks--;
     }
+    if (host_config.on_bus_clear != NULL) {
+        host_config.on_bus_clear();
+        host_drdy_serve();
+    }
 }
 
 void hal_i2c_start(void)

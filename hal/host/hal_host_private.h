@@ -10,6 +10,7 @@
 extern uint64_t host_now;
 extern hal_host_config_t host_config;
 void host_drdy_changed(bool high);
+void host_drdy_serve(void);
 
 /* hal_host_i2c.c */
 void hal_host_i2c_handler(void);
