@@ -411,6 +411,13 @@ def over_long_and_garbage_serial_input_costs_no_row():
     assert [r[1:4] for r in rows] == triplets(served)[:len(rows)] and len(rows) >= len(served) - 2
 
 
+@test
+def lines_typed_behind_a_change_of_baud_are_obeyed():
+    """One text, so that simrun goes on typing while the line still drains at the old speed."""
+    _, notes, _, _ = simrun("typed-ahead", STREAMS / "rest-2lsb.csv", "--cmd", "500:baud 500000\nevery 3\nrange 4", "--max-ms", "1500")
+    assert notes[-3:] == ["# baud 500000", "# every 3", "# range 4 g, 256 LSB per g"], notes
+
+
 # --- the trace ----------------------------------------------------------------------------
 
 @test

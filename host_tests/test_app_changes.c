@@ -9,9 +9,15 @@
 #include "support_board.h"
 #include "unity.h"
 
+static stream_t stream;
+
 void setUp(void) {}
 
-void tearDown(void) {}
+/* Here, because a test that fails does not reach its end. */
+void tearDown(void)
+{
+    stream_free(&stream);
+}
 
 /* No sensor and wrong identity by turns, ten times: each is told once until samples come again, then anew. */
 static void test_alternating_faults_are_told_once_each(void)
@@ -40,8 +46,8 @@ static void test_alternating_faults_are_told_once_each(void)
 /* Whole seconds since the start, over a stop and over the wrap of the microseconds. */
 static void test_uptime_counts_seconds(void)
 {
-    stream_t still = board_constant_stream(1000, 100.0, 31, -53, 248);
-    board_start(&still, 0.0, 0xFFFFFFFFu - 2500000u);
+    stream = board_constant_stream(1000, 100.0, 31, -53, 248);
+    board_start(&stream, 0.0, 0xFFFFFFFFu - 2500000u);
     board_run_ms(990);
     TEST_ASSERT_EQUAL_UINT32(0, app_uptime_s());
     board_run_ms(30);
@@ -53,7 +59,6 @@ static void test_uptime_counts_seconds(void)
     board_type("status");
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", uptime s 7", before));
-    stream_free(&still);
 }
 
 /*
@@ -62,11 +67,11 @@ static void test_uptime_counts_seconds(void)
  */
 static void test_go_begins_cold(void)
 {
-    stream_t alternating = board_constant_stream(1000, 100.0, 0, 0, 248);
-    for (size_t i = 0; i < alternating.count; i++) {
-        alternating.rows[i].lsb[2] = (int16_t)((i & 1u) ? 254 : 242);
+    stream = board_constant_stream(1000, 100.0, 0, 0, 248);
+    for (size_t i = 0; i < stream.count; i++) {
+        stream.rows[i].lsb[2] = (int16_t)((i & 1u) ? 254 : 242);
     }
-    board_start(&alternating, 0.0, 0);
+    board_start(&stream, 0.0, 0);
     board_run_ms(2000);
     board_type("stop");
     board_run_ms(200);
@@ -82,7 +87,6 @@ static void test_go_begins_cold(void)
     for (size_t i = 0; i < 10; i++) {
         TEST_ASSERT_EQUAL_UINT(i < 5 ? ROW_WARMING_UP : 0, row[i].flags & ROW_WARMING_UP);
     }
-    stream_free(&alternating);
 }
 
 /*
@@ -92,9 +96,9 @@ static void test_go_begins_cold(void)
 static void test_old_samples_are_filtered_as_before_a_change_of_range(void)
 {
     size_t old_on_the_way = 0;
+    stream = board_constant_stream(1000, 100.0, 600, 0, 248);
     for (unsigned phase = 0; phase < 116; phase++) {
-        stream_t steady = board_constant_stream(1000, 100.0, 600, 0, 248);
-        board_start(&steady, 0.0, 0);
+        board_start(&stream, 0.0, 0);
         board_run_ms(300.0);
         char typed[160];
         snprintf(typed, sizeof typed, "%*s", (int)phase + 8, "range 2"); /* a leading blank takes 87 us */
@@ -113,7 +117,6 @@ static void test_old_samples_are_filtered_as_before_a_change_of_range(void)
             old_on_the_way += row->lsb[0] == 600 && row->t_us > changed_ms * 1000.0 - 200.0;
         }
         TEST_ASSERT_EQUAL_INT(511, board.rows[board.row_count - 1].lsb[0]);
-        stream_free(&steady);
     }
     TEST_ASSERT_TRUE_MESSAGE(old_on_the_way > 0, "no phase met a sample of the old range");
 }
