@@ -1,6 +1,6 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
-# Groups: firmware sim test check flash flashtest bench piocheck fuzz coverage. Packages come by apt-get, numpy and matplotlib (check: lizard) by
+# Groups: firmware sim test check flash flashtest bench piocheck fuzz coverage proof. Packages come by apt-get, numpy and matplotlib (check: lizard) by
 # pip into build/venv, Unity by tools/get_unity.sh into build/unity (UNITY_DIR=folder: use that one). Uses sudo only when not root.
 set -eu
 
@@ -128,7 +128,8 @@ collect() {
             flashtest) need_simulator; need avrdude has avrdude; need arduino-core-avr has_optiboot ;;
             fuzz) need_host_compiler; need python3 has python3; need binutils has objcopy ;;
             coverage) need_simulator; need_plots; need_unity; need gcovr has gcovr ;;
-            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench, piocheck, fuzz or coverage" ;;
+            proof) need python3 has python3; need frama-c-base has frama-c ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench, piocheck, fuzz, coverage or proof" ;;
         esac
     done
     missing=${missing# }
@@ -226,7 +227,7 @@ install_unity() {
     tools/get_unity.sh build/unity
 }
 
-[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck, fuzz, coverage)"
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck, fuzz, coverage, proof)"
 collect "$@"
 mkdir -p build
 if [ -n "$missing" ]; then

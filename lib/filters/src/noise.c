@@ -134,7 +134,7 @@ bool noise_update(noise_t *n, int16_t z_lsb)
     average(n, term_lsb2_q16(n, smaller_bend_lsb(n, z)));
     remember(n, z);
     uint32_t r_q8 = r_of(n->mean_lsb2_q16);
-    if (fx_abs32((int32_t)(r_q8 - n->r_lsb2_q8)) <= n->r_lsb2_q8 >> 3) {
+    if (fx_abs32((int32_t)r_q8 - (int32_t)n->r_lsb2_q8) <= n->r_lsb2_q8 >> 3) {
         return false;
     }
     n->r_lsb2_q8 = r_q8;

@@ -171,11 +171,13 @@ FX_INLINE void update(two_state_t *s)
     uint32_t w2_uq28 = fx_mul_uq16(p12, g);
     s->u.p.p12_uq28 = w2_uq28;
     uint32_t w2_uq24 = fx_sixteenth(w2_uq28); /* < 1 because P12 <= P11 after a prediction */
-    uint32_t p22 = s->u.p.p22_uq28 - fx_mul_uq24(p12, w2_uq24);
-    s->u.p.p22_uq28 = ((p22 & 0x80000000U) != 0U) ? 0U : p22; /* < 3 before: the top bit is a borrow */
+    int32_t p22_q28 = (int32_t)s->u.p.p22_uq28 - (int32_t)fx_mul_uq24(p12, w2_uq24); /* < 3 less < 4: fits */
+    s->u.p.p22_uq28 = (p22_q28 < 0) ? 0U : (uint32_t)p22_q28;
     FX_FENCE();
     int32_t rate_step = (int32_t)fx_mul24_uq24(s->size_lsb_uq8, w2_uq24);
     int32_t rate = s->rate_lsb_q16 + (s->negative ? -rate_step : rate_step);
+    /* for make proof, which takes the cases one by one */
+    /*@ assert -301989888 <= rate <= 301989888 || rate < -301989888 || 301989888 < rate; */
     s->rate_lsb_q16 = rate;
     if (fx_abs32(rate) > s->rate_max_lsb_q16) {
         s->rate_lsb_q16 = (rate < 0) ? -(int32_t)s->rate_max_lsb_q16 : (int32_t)s->rate_max_lsb_q16;

@@ -32,6 +32,10 @@ extern "C" {
 /*
  * P / R (UQ4.28) is predicted only while all elements are below 2: then P11 < 8, P12 < 4, P22 < 3 afterwards, S = P11 +
  * 1 fits UQ4.28, and P, kept as a whole when it may not grow, stays a covariance. Updates never raise an element.
+ *
+ * The bound that holds before and after every call (make proof): all elements below 2, or P11 < 8, P12 < 4, P22 < 3 and
+ * P12 < max(1, P11 + 3/4). The last is needed: with P12 = 3.9, P11 = 0 nothing is predicted, w2 is 3.9, and the step of
+ * the rate overflows. P12 <= P11, true after each prediction, implies it.
  */
 #define TWO_STATE_P11_END_UQ28 0x80000000U
 

@@ -1,0 +1,105 @@
+/* The primitives, in their C twins: any argument. */
+#include "eva.h"
+#include "fx_contracts.h"
+
+#include "fx.c"
+
+static void reciprocal_in(uint32_t from, uint32_t to)
+{
+    (void)fx_reciprocal_uq16(ANY_U32(from, to));
+}
+
+/* One call for each interval of the table and each number of halvings: together all of 1 <= s < 16. */
+void proof_fx_reciprocal_uq16(void)
+{
+    uint32_t from = 0x10000000U;
+    for (uint8_t halvings = 0; halvings < 4; halvings++) {
+        uint32_t width = (uint32_t)0x200000U << halvings;
+        for (uint8_t node = 0; node < 128; node++) {
+            uint32_t to = from + (width - 1U);
+            reciprocal_in(from, to);
+            if (to != UINT32_MAX) {
+                from = to + 1U;
+            } else {
+                //@ check whole_range: halvings == 3 && node == 127;
+            }
+        }
+    }
+}
+
+static void normalised_in(uint32_t from, uint32_t to)
+{
+    for (int8_t exponent = -75; exponent <= 32; exponent++) {
+        (void)normalised(ANY_U32(from, to), exponent);
+    }
+}
+
+/* One call for each exponent and each position of the leading bit; a mantissa of ones, which rounding up carries, apart. */
+void proof_normalised(void)
+{
+    for (uint8_t bit = 0; bit < 32; bit++) {
+        uint32_t from = (uint32_t)1U << bit;
+        uint32_t last = from + (from - 1U);
+        if (bit < 16) {
+            normalised_in(from, last);
+        } else {
+            uint32_t ones = last - ((from >> 15) - 1U);
+            normalised_in(from, ones - 1U);
+            normalised_in(ones, last);
+        }
+    }
+}
+
+/* Options: -eva-slevel 40 */
+void proof_fx_isqrt32(void)
+{
+    (void)fx_isqrt32(ANY_U32(0, UINT32_MAX));
+}
+
+static fx_scaled_t any_scaled(void)
+{
+    fx_scaled_t v = { ANY_U16(0x8000, UINT16_MAX), ANY_S8(-28, 14) };
+    return v;
+}
+
+/* Uses: normalised */
+void proof_fx_scaled(void)
+{
+    (void)fx_scaled(ANY_U32(0, UINT32_MAX));
+    (void)fx_scaled_mul(any_scaled(), any_scaled());
+    (void)fx_scaled_div(any_scaled(), any_scaled());
+    fx_scaled_t v = { ANY_U16(0, UINT16_MAX), ANY_S8(-128, 127) };
+    (void)fx_scaled_fixed(v, ANY_U8(0, 28));
+}
+
+/* The results at the largest arguments: a product that lost bits is no longer the largest. */
+void proof_fx_products(void)
+{
+    uint32_t any = ANY_U32(0, UINT32_MAX);
+    uint16_t half = ANY_U16(0, UINT16_MAX);
+    uint32_t low24 = ANY_U32(0, 0xFFFFFF);
+    uint32_t exact = fx_mul_u16(half, ANY_U16(0, UINT16_MAX));
+    //@ check exact <= 65535 * 65535;
+    (void)fx_mul_uq16(any, half);
+    (void)fx_mul16_uq16(half, ANY_U16(0, UINT16_MAX));
+    (void)fx_mul24_uq16(low24, half);
+    (void)fx_mul24_uq24(low24, ANY_U32(0, 0xFFFFFF));
+    (void)fx_mul_uq24(any, low24);
+    (void)fx_shift12(half);
+    (void)fx_eightfold(any);
+    (void)fx_sixteenth(any);
+}
+
+void proof_fx_rest(void)
+{
+    uint32_t size = fx_abs32(ANY_S32(S32_MIN, INT32_MAX));
+    //@ check size <= 0x80000000;
+    uint32_t sum = fx_add_sat(ANY_U32(0, UINT32_MAX), ANY_U32(0, UINT32_MAX));
+    int32_t limited = fx_clamp(ANY_S32(S32_MIN, INT32_MAX), ANY_S32(0, 1000));
+    //@ check -1000 <= limited <= 1000;
+    static const uint32_t word FX_FLASH = 7;
+    static const void *const pointer FX_FLASH = &word;
+    (void)fx_flash_u8((const uint8_t *)&word);
+    (void)fx_flash_u32(&word);
+    (void)fx_flash_pointer(&pointer);
+}

@@ -1,0 +1,125 @@
+/*
+ * The documented bounds of two_state.h in ACSL, assumed before a call and proved after it, and the contracts of the
+ * core's parts; each contract that an entry uses is itself proved on the body by an entry of proof_two_state.c.
+ */
+#ifndef TWO_STATE_BOUNDS_H
+#define TWO_STATE_BOUNDS_H
+
+#include "eva.h"
+#include "fx_contracts.h"
+#include "two_state.h"
+
+#define ONE 0x10000000
+#define X_MAX_Q16 301989888
+
+/*
+ * P / R: every element below 2, then it will be predicted; or P12 < max(1, P11 + 3/4), written by halves of P12 because
+ * Eva's domains are intervals. P12 <= P11, which holds after each prediction, implies it.
+ */
+#define SMALL(p) ((p).p11_uq28 < 2 * ONE && (p).p12_uq28 < 2 * ONE && (p).p22_uq28 < 2 * ONE)
+#define ROOM(p) ((p).p11_uq28 < 8 * ONE && (p).p22_uq28 < 3 * ONE)
+#define HALF(p, h) \
+    (ROOM(p) && ONE / 2 * (h) <= (p).p12_uq28 < ONE / 2 * ((h) + 1) && (p).p11_uq28 >= ONE / 4 * (2 * (h)-1))
+#define HELD(p)                                                                                               \
+    ((ROOM(p) && (p).p12_uq28 < ONE) || HALF(p, 2) || HALF(p, 3) || HALF(p, 4) || HALF(p, 5) || HALF(p, 6) || \
+     HALF(p, 7))
+#define COVARIANCE(s) (SMALL((s)->u.p) || HELD((s)->u.p))
+
+#define SCALED(v) ((v).mantissa >= 0x8000 && -60 <= (v).exponent <= 24)
+#define PARAMETERS(s)                                                                                        \
+    (16 <= (s)->q22_uq28 <= ONE && 16 <= (s)->p22_start_uq28 <= ONE && (s)->rate_max_lsb_q16 <= X_MAX_Q16 && \
+     3 <= (s)->r_lsb2_q8 <= 256000 && SCALED((s)->drive_lsb2) && SCALED((s)->start_lsb2))
+#define ESTIMATE(s)                                                                               \
+    (-X_MAX_Q16 <= (s)->x_lsb_q16 <= X_MAX_Q16 && -X_MAX_Q16 <= (s)->rate_lsb_q16 <= X_MAX_Q16 && \
+     (s)->size_lsb_uq8 <= 8704 * 256)
+#define SAMPLE(z) (-4096 <= (z) <= 4095)
+#define SAMPLES(s)                                                                                \
+    (SAMPLE((s)->u.start_lsb[0]) && SAMPLE((s)->u.start_lsb[1]) && SAMPLE((s)->u.start_lsb[2]) && \
+     SAMPLE((s)->u.start_lsb[3]) && SAMPLE((s)->u.start_lsb[4]))
+#define MODE(s) (((s)->collected == 5 && COVARIANCE(s)) || ((s)->collected < 5 && SAMPLES(s)))
+
+#define CELL(k) (33554432 * (k) <= \result < 33554432 * ((k) + 1))
+/*@ requires -2 * X_MAX_Q16 <= x_lsb_q16 <= 2 * X_MAX_Q16;
+    assigns s->flags, \result \from s->flags, x_lsb_q16;
+    ensures CELL(-9) || CELL(-8) || CELL(-7) || CELL(-6) || CELL(-5) || CELL(-4) || CELL(-3) || CELL(-2) || CELL(-1) ||
+            CELL(0) || CELL(1) || CELL(2) || CELL(3) || CELL(4) || CELL(5) || CELL(6) || CELL(7) || CELL(8) ||
+            \result == X_MAX_Q16;
+*/
+static inline int32_t clamp_x(two_state_t *s, int32_t x_lsb_q16);
+
+/*@ requires COVARIANCE(s);
+    requires 16 <= s->q22_uq28 <= ONE;
+    assigns s->u.p.p11_uq28, s->u.p.p12_uq28, s->u.p.p22_uq28 \from s->u.p, s->q22_uq28;
+    ensures HELD(s->u.p);
+*/
+static inline void predict_covariance(two_state_t *s);
+
+/*@ requires SAMPLE(z_lsb);
+    requires PARAMETERS(s) && ESTIMATE(s) && COVARIANCE(s) && s->collected == 5;
+    assigns s->x_lsb_q16, s->rate_lsb_q16, s->u.p.p11_uq28, s->u.p.p12_uq28, s->u.p.p22_uq28, s->size_lsb_uq8,
+            s->limit_lsb2, s->gain_uq16, s->flags, s->negative, \result \from *s, z_lsb, present;
+    ensures PARAMETERS(s) && s->collected == 5;
+    ensures ESTIMATE(s);
+    ensures HELD(s->u.p);
+    ensures \result == 0 || \result == 1;
+*/
+bool two_state_step(two_state_t *s, int16_t z_lsb, bool present);
+
+/*@ requires SCALED(s->drive_lsb2) && SCALED(s->start_lsb2) && s->rate_max_lsb_q16 <= X_MAX_Q16;
+    assigns s->r_lsb2_q8, s->q22_uq28, s->p22_start_uq28 \from *s, r_lsb2_q8;
+    ensures PARAMETERS(s);
+*/
+void two_state_set_noise(two_state_t *s, uint32_t r_lsb2_q8);
+
+/*@ requires gate_sigma_q8 <= 4096 && 3 <= s->r_lsb2_q8 <= 256000;
+    assigns s->gated, s->coarse, s->gate_lsb2_uq4 \from gate_sigma_q8, s->r_lsb2_q8;
+*/
+void two_state_set_gate(two_state_t *s, uint16_t gate_sigma_q8);
+
+#define X_START 268435456 /* 4096 LSB */
+/*@ requires PARAMETERS(s) && COVARIANCE(s) && ESTIMATE(s) && s->collected == 5;
+    requires -X_START <= s->x_lsb_q16 < X_START;
+    assigns *s \from *s;
+    ensures PARAMETERS(s) && ESTIMATE(s);
+    ensures s->collected == 5;
+    ensures HELD(s->u.p);
+*/
+void two_state_settle(two_state_t *s);
+
+/* Every field at every value of its bound; what the bounds say of P or of the samples is left to an admit. */
+static void any_state(two_state_t *s)
+{
+    s->x_lsb_q16 = ANY_S32(-X_MAX_Q16, X_MAX_Q16);
+    s->rate_lsb_q16 = ANY_S32(-X_MAX_Q16, X_MAX_Q16);
+    s->u.p.p11_uq28 = ANY_U32(0, UINT32_MAX);
+    s->u.p.p12_uq28 = ANY_U32(0, UINT32_MAX);
+    s->u.p.p22_uq28 = ANY_U32(0, UINT32_MAX);
+    s->q22_uq28 = ANY_U32(16, ONE);
+    s->p22_start_uq28 = ANY_U32(16, ONE);
+    s->rate_max_lsb_q16 = ANY_U32(0, X_MAX_Q16);
+    s->size_lsb_uq8 = ANY_U32(0, 8704UL * 256U);
+    s->gate_lsb2_uq4 = ANY_U16(0, UINT16_MAX);
+    s->limit_lsb2 = ANY_U32(0, UINT32_MAX);
+    s->r_lsb2_q8 = ANY_U32(3, 256000);
+    s->drive_lsb2.mantissa = ANY_U16(0x8000, UINT16_MAX);
+    s->drive_lsb2.exponent = ANY_S8(-60, 24);
+    s->start_lsb2.mantissa = ANY_U16(0x8000, UINT16_MAX);
+    s->start_lsb2.exponent = ANY_S8(-60, 24);
+    s->gain_uq16 = ANY_U16(0, UINT16_MAX);
+    s->flags = ANY_U8(0, UINT8_MAX);
+    s->negative = ANY_BOOL();
+    s->gated = ANY_BOOL();
+    s->coarse = ANY_BOOL();
+    s->collected = FILTER_WARM_UP_SAMPLES;
+}
+
+static void any_start(two_state_t *s)
+{
+    any_state(s);
+    for (uint8_t i = 0; i < FILTER_WARM_UP_SAMPLES; i++) {
+        s->u.start_lsb[i] = ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB);
+    }
+    s->collected = ANY_U8(0, FILTER_WARM_UP_SAMPLES - 1);
+}
+
+#endif

@@ -1,0 +1,230 @@
+#!/usr/bin/env python3
+"""Proof with Frama-C's Eva (16-bit int): entries proof_NAME of host_tests/proof, then breakages that must be found.
+
+    proof.py [WORD...]     all, or the entries and breakages whose name contains a word
+
+An entry calls NAME with any argument and any state within its bounds. It passes with no alarm and every contract, check
+and assertion proved. `Uses: a, b` in its comment: a and b are taken by their contract, which entries of their own prove.
+Unsigned wraps are looked for as well (Rte's assertions as checks, which do not narrow what follows); those that are
+meant stand in deliberate.txt. What is compiled are the C twins of the primitives (no __AVR__); host_tests/avr/fx_twins.c ties the assembler twins to
+them on the chip. Not covered: truncating unsigned casts, which the code means; right shifts of negative values, which
+both compilers do arithmetically; |rate| <= rate_max, proved as |rate| <= 4608 LSB, because intervals keep no relation;
+the angles of lib/tilt; the assigns clauses of the contracts, which Eva takes as read.
+"""
+import concurrent.futures
+import csv
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+HERE = pathlib.Path("host_tests/proof")
+OUT = pathlib.Path("build/proof")
+SOURCES = ["lib/filters/src", "lib/tilt/src", "host_tests/proof"]
+FUNCTIONS = ["init", "set_noise", "reset", "update", "coast"]
+COMMON = ["-machdep", "gcc_x86_16", "-c11", "-no-unicode", "-kernel-warn-key", "asm:clobber=inactive"]
+WRAPS = ["-rte", "-rte-no-mem", "-rte-no-div", "-rte-no-shift", "-rte-no-pointer-call", "-no-warn-signed-overflow",
+         "-no-warn-invalid-bool", "-no-warn-left-shift-negative", "-warn-unsigned-overflow"]
+LIMIT_S = 600
+PROVED = {"Valid", "Considered valid"}
+ENTRY = re.compile(r"(?:/\*((?:(?!\*/).)*)\*/\s*)?^void proof_(\w+)\(void\)", re.S | re.M)
+
+
+def fail(text):
+    print(f"proof: {text}", file=sys.stderr)
+    sys.exit(1)
+
+
+def frama_c(arguments, what):
+    done = subprocess.run(["nice", "frama-c", *arguments], capture_output=True, text=True, timeout=LIMIT_S)
+    if done.returncode != 0:
+        lines = [line for line in done.stdout.splitlines() if "rror" in line] or ["?"]
+        raise RuntimeError(f"Frama-C refuses {what}: {' '.join(lines[:2])}")
+    return done.stdout
+
+
+def load_entries():
+    """name -> (file, functions taken by contract, options)"""
+    entries = {}
+    for path in sorted(HERE.glob("proof_*.c")):
+        for comment, name in ENTRY.findall(path.read_text(encoding="utf-8")):
+            comment = " ".join((comment or "").replace("*", " ").split())
+            uses = re.search(r"Uses: ([\w, ]+)", comment)
+            options = re.search(r"Options: (.*)", comment)
+            entries[name] = (path.name, re.findall(r"\w+", uses[1]) if uses else [],
+                             options[1].split() if options else [])
+    return entries
+
+
+def annotate(file, out, overlay=None):
+    """Preprocess, annotate every unsigned operation, and make the assertions checks."""
+    roots = ([str(overlay / s) for s in SOURCES] if overlay else []) + SOURCES
+    source = (overlay or pathlib.Path(".")) / HERE / file
+    target = out / file
+    frama_c([*COMMON, "-cpp-extra-args=" + " ".join("-I" + root for root in roots), str(source), *WRAPS, "-then", "-print",
+             "-ocode", str(target)], file)
+    text = target.read_text(encoding="utf-8")
+    target.write_text(re.sub(r"assert(\s+)rte:", r"check\1rte:", text), encoding="utf-8")
+
+
+def deliberate():
+    lines = (HERE / "deliberate.txt").read_text(encoding="utf-8").splitlines()[1:]
+    return {tuple(part.strip() for part in line.split("|")[:2]) for line in lines}
+
+
+def judge(name, entry, out):
+    """(findings, proved, total, deliberate wraps met, functions analysed, seconds)"""
+    file, uses, options = entry
+    table = out / f"{name}.csv"
+    start = time.monotonic()
+    by_contract = ["-eva-use-spec", ",".join(uses)] if uses else []
+    try:
+        log = frama_c([*COMMON, str(out / file), "-eva", "-main", f"proof_{name}", *by_contract, "-eva-slevel", "50000",
+                       "-warn-signed-downcast", *options, "-report-csv", str(table)], name)
+    except subprocess.TimeoutExpired:
+        return [f"not done after {LIMIT_S} s"], 0, 1, set(), set(), LIMIT_S
+    (out / f"{name}.log").write_text(log, encoding="utf-8")
+    reached = set(re.findall(r"Values at end of function (\w+):", log))
+    findings, met, proved, total = [], set(), 0, 0
+    if f"proof_{name}" not in reached:
+        findings.append("the end of the entry is not reached")
+    alarms = re.search(r"(\d+) alarms? generated", log)
+    if alarms and int(alarms[1]):
+        findings.append(f"{alarms[1]} alarms")
+    allowed = deliberate()
+    with table.open(encoding="utf-8", newline="") as rows:
+        for row in csv.DictReader(rows, delimiter="\t"):
+            kind, status, text = row["property kind"], row["status"], " ".join(row["property"].split())
+            where = row["function"]
+            ours = row["directory"] != "FRAMAC_SHARE/libc" and not where.startswith(("Frama_C", "__builtin"))
+            if not ours or kind == "user hypothesis" or "assigns" in kind or "from" in kind:
+                continue
+            if kind == "postcondition" and where in uses or where not in reached | set(uses):
+                continue
+            wrap = next((w for w in allowed if w[0] == where and w[1] in text), None)
+            if wrap and status not in PROVED:
+                met.add(wrap)
+                continue
+            total += 1
+            if status in PROVED or (status in ("Dead", "Unreachable") and kind != "postcondition"):
+                proved += 1
+            else:
+                findings.append(f"{where}: {kind} {status}: {text[:90]}")
+    return findings, proved, total, met, reached, time.monotonic() - start
+
+
+def missing_filters(entries):
+    """Functions of FILTER_LIST without a proof."""
+    names = subprocess.run(["gcc", "-E", "-P", "-x", "c", "-", "-Ilib/filters/src"], text=True, capture_output=True,
+                           input='#include "filter_list.h"\n#define X(f) in_list:f;\nFILTER_LIST(X)\n', check=True).stdout
+    filters = re.findall(r"in_list:(\w+);", names.replace(" ", ""))
+    if not filters:
+        fail("no filter found in lib/filters/src/filter_list.h")
+    return [f"{f}_{function}" for f in filters for function in FUNCTIONS if f"{f}_{function}" not in entries]
+
+
+def sourced_functions():
+    """Functions with a body in the sources that are proved, without the assembler twins."""
+    found = set()
+    for path in sorted(pathlib.Path("lib/filters/src").glob("*.[ch]")):
+        if path.name == "filter_any.c":  # switches over the functions proved, no arithmetic
+            continue
+        text = path.read_text(encoding="utf-8")
+        text = re.sub(r"^#ifdef __AVR__\n.*?^#else", "", text, flags=re.S | re.M)
+        found |= set(re.findall(r"^(?!.*;$)[A-Za-z_][\w *]*?\b(\w+)\([^;{}]*\)\n\{", text, flags=re.M))
+    return found
+
+
+def load_plants():
+    plants = []
+    for block in (HERE / "plants.txt").read_text(encoding="utf-8").split("\n=== ")[1:]:
+        head, old, new = block.rstrip("\n").split("\n---\n")
+        name, file, judges = head.split("\n")
+        plants.append((name, file, judges.split(), old, new))
+    return plants
+
+
+def try_plant(number, plant, entries):
+    """What finds the breakage, or None."""
+    name, file, judges, old, new = plant
+    whole = pathlib.Path(file).read_text(encoding="utf-8")
+    if whole.count(old) < 1:
+        return None, f"the text to break does not stand in {file}"
+    overlay = OUT / f"plant{number}"
+    shutil.rmtree(overlay, ignore_errors=True)
+    for source in SOURCES:
+        shutil.copytree(source, overlay / source)
+    (overlay / file).write_text(whole.replace(old, new, 1), encoding="utf-8")
+    for entry in judges:
+        annotate(entries[entry][0], overlay, overlay)
+        findings = judge(entry, entries[entry], overlay)[0]
+        if findings:
+            return findings[0][:100], ""
+    return None, "SURVIVED " + " ".join(judges)
+
+
+def run_entries(pool, entries, wanted):
+    for file in sorted({entries[name][0] for name in wanted}):
+        annotate(file, OUT)
+    print(f"{'function':<32} {'alarms and unproved':>20} {'proved':>10} {'s':>6}")
+    jobs = {name: pool.submit(judge, name, entries[name], OUT) for name in wanted}
+    failed, met, reached = set(), set(), set()
+    for name, job in jobs.items():
+        findings, proved, total, wraps, seen, seconds = job.result()
+        met, reached = met | wraps, reached | seen
+        if total == 0:
+            findings.append("nothing to prove")
+        print(f"{name:<32} {len(findings):>20} {f'{proved}/{total}':>10} {seconds:>6.1f}", flush=True)
+        for finding in findings[:6]:
+            print(f"    {finding}")
+        if findings:
+            failed.add(name)
+    return failed, met, reached
+
+
+def gaps(entries, met, reached):
+    """What a whole run must cover besides the entries themselves."""
+    found = [f"{name}: in FILTER_LIST, but no entry proof_{name} in {HERE}" for name in missing_filters(entries)]
+    used = {use for _, uses, _ in entries.values() for use in uses}
+    found += [f"{use}: taken by contract, but no entry proves it" for use in sorted(used - set(entries))]
+    found += [f"{name}: no entry reaches it" for name in sorted(sourced_functions() - reached)]
+    found += [f"{wrap[0]}: `{wrap[1]}` of deliberate.txt is proved or gone: strike it" for wrap in sorted(deliberate() - met)]
+    return found
+
+
+def main():
+    words = sys.argv[1:]
+    shutil.rmtree(OUT, ignore_errors=True)
+    OUT.mkdir(parents=True)
+    entries = load_entries()
+    plants = [p for p in load_plants() if not words or any(word in p[0] for word in words)]
+    judges = {name for plant in plants for name in plant[2]}
+    if not judges <= set(entries):
+        fail(f"plants.txt names entries that do not exist: {' '.join(sorted(judges - set(entries)))}")
+    wanted = [name for name in entries if not words or name in judges or any(word in name for word in words)]
+    wanted.sort(key=lambda name: name not in ("two_state_step", "normalised"))  # the longest first
+    with concurrent.futures.ThreadPoolExecutor(max_workers=2) as pool:
+        broken, met, reached = run_entries(pool, entries, wanted)
+        failed, passed = len(broken), len(wanted) - len(broken)
+        jobs = [(p, pool.submit(try_plant, i, p, entries)) for i, p in enumerate(plants)]
+        for (name, _, judged_by, _, _), job in jobs:
+            finding, reason = job.result()
+            if broken & set(judged_by):
+                finding, reason = None, "its judge fails on the unbroken code"
+            print(f"breakage {'found' if finding else 'MISSED'}: {name}: {finding or reason}")
+            passed, failed = passed + bool(finding), failed + (not finding)
+    for gap in [] if words else gaps(entries, met, reached):
+        print(gap)
+        failed += 1
+    print("skipped: 0")
+    print(f"{passed} passed, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except RuntimeError as error:
+        fail(str(error))
