@@ -17,6 +17,7 @@ int32_t kf_update(kf_t *f, int16_t z_lsb);
 int32_t kf_coast(kf_t *f);
 
 #include "fx.c"
+#include "filter_common.c"
 #include "two_state.c"
 
 #include "kf.c"

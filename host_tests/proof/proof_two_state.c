@@ -2,6 +2,7 @@
 #include "two_state_bounds.h"
 
 #include "fx.c"
+#include "filter_common.c"
 #include "two_state.c"
 
 void proof_clamp_x(void)
@@ -100,10 +101,4 @@ void proof_two_state_probe(void)
     two_state_probe(&s, &probe);
     any_start(&s);
     two_state_probe(&s, &probe);
-}
-
-void proof_two_state_default_r_lsb2_q8(void)
-{
-    uint32_t r_lsb2_q8 = two_state_default_r_lsb2_q8(ANY_U16(0, 40000));
-    //@ check 3 <= r_lsb2_q8 <= 30720;
 }
