@@ -9,7 +9,7 @@ Unsigned wraps are looked for as well (Rte's assertions as checks, which do not 
 meant stand in deliberate.txt. What is compiled are the C twins of the primitives (no __AVR__); host_tests/avr/fx_twins.c ties the assembler twins to
 them on the chip. Not covered: truncating unsigned casts, which the code means; right shifts of negative values, which
 both compilers do arithmetically; |rate| <= rate_max, proved as |rate| <= 4608 LSB, because intervals keep no relation;
-the angles of lib/tilt; the assigns clauses of the contracts, which Eva takes as read.
+the assigns clauses of the contracts, which Eva takes as read.
 """
 import concurrent.futures
 import csv
@@ -128,7 +128,7 @@ def missing_filters(entries):
 def sourced_functions():
     """Functions with a body in the sources that are proved, without the assembler twins."""
     found = set()
-    for path in sorted(pathlib.Path("lib/filters/src").glob("*.[ch]")):
+    for path in sorted(p for source in SOURCES[:2] for p in pathlib.Path(source).glob("*.[ch]")):
         if path.name == "filter_any.c":  # switches over the functions proved, no arithmetic
             continue
         text = path.read_text(encoding="utf-8")

@@ -17,7 +17,7 @@ static inline uint16_t fx_reciprocal_uq16(uint32_t s_uq28);
 #define AT_LEAST(k, power) (v < (power) || \result.exponent >= exponent + (k)-15)
 #define AT_MOST(k, power) (v >= 2 * (power) || \result.exponent <= exponent + (k)-14)
 /*@ requires v > 0;
-    requires -75 <= exponent <= 32;
+    requires -75 <= exponent <= 60;
     assigns \result \from v, exponent;
     ensures \result.mantissa >= 0x8000;
     ensures exponent - 15 <= \result.exponent <= exponent + 17;

@@ -29,7 +29,7 @@ void proof_fx_reciprocal_uq16(void)
 
 static void normalised_in(uint32_t from, uint32_t to)
 {
-    for (int8_t exponent = -75; exponent <= 32; exponent++) {
+    for (int8_t exponent = -75; exponent <= 60; exponent++) {
         (void)normalised(ANY_U32(from, to), exponent);
     }
 }

@@ -16,8 +16,8 @@ int32_t kf_update(kf_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t kf_coast(kf_t *f);
 
-#include "fx.c"
 #include "filter_common.c"
+#include "fx.c"
 #include "two_state.c"
 
 #include "kf.c"

@@ -28,8 +28,8 @@ int32_t sprf_coast(sprf_t *f);
 */
 static void refuse(sprf_t *f, int16_t z_lsb);
 
-#include "fx.c"
 #include "filter_common.c"
+#include "fx.c"
 #include "two_state.c"
 
 #include "sprf.c"

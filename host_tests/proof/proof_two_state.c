@@ -1,8 +1,8 @@
 /* The core of the two-state filters: any state within its bounds, any sample. */
 #include "two_state_bounds.h"
 
-#include "fx.c"
 #include "filter_common.c"
+#include "fx.c"
 #include "two_state.c"
 
 void proof_clamp_x(void)
