@@ -179,7 +179,7 @@ test:
 
 ## clean: remove what was built (the downloads in build/unity and build/venv stay)
 clean:
-	@rm -rf $(U) $(H) $(S) $(C) $(B)/planted $(B)/*.json
+	@rm -rf $(U) $(H) $(S) $(CHK) $(B)/planted $(B)/*.json
 
 # one file per further target
 include $(sort $(wildcard mk/*.mk))

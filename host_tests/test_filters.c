@@ -266,6 +266,29 @@ static int32_t random_call(filter_any_t *f)
     return probe.x_lsb_q16;
 }
 
+/* Whatever came before, a start half collected included: nothing is left but the level. */
+static void reset_forgets_all_but_the_level(void)
+{
+    FOR_EACH_KIND(kind)
+    {
+        for (uint16_t run = 0; run < ON_PC_OR_CHIP(300, 10); run++) {
+            filter_any_t f;
+            make_random(&f, kind);
+            for (uint16_t k = run % 12U; k != 0U; k--) {
+                (void)filter_any_update(&f, any_sample());
+            }
+            int16_t level = (int16_t)(any_sample() / 8);
+            filter_any_reset(&f, level);
+            filter_probe_t probe;
+            filter_any_probe(&f, &probe);
+            TEST_ASSERT_EQUAL_INT32((int32_t)level * 65536, probe.x_lsb_q16);
+            TEST_ASSERT_EQUAL_INT32(0, probe.rate_lsb_q16);
+            TEST_ASSERT_EQUAL_INT32(0, probe.innovation_lsb_q16);
+            TEST_ASSERT_EQUAL_UINT8(0, probe.flags);
+        }
+    }
+}
+
 /* The same calls for the original and its copy, by turns, so that nothing outside the state could tell them apart. */
 static void copy_goes_on_like_the_original(void)
 {
@@ -364,6 +387,7 @@ int main(void)
     RUN_TEST(warm_up_puts_out_the_running_median);
     RUN_TEST(coast_in_warm_up_keeps_the_median);
     RUN_TEST(mirrored_input_gives_mirrored_output);
+    RUN_TEST(reset_forgets_all_but_the_level);
     RUN_TEST(copy_goes_on_like_the_original);
     RUN_TEST(two_halves_are_the_whole);
     RUN_TEST(any_calls_stay_within_bounds);

@@ -172,6 +172,25 @@ static void coast_goes_on_along_the_line(void)
     TEST_ASSERT_INT32_WITHIN(655, 2L * 65536, probe.rate_lsb_q16);
 }
 
+/*
+ * a1 = -1/2, b0 = 1/2, exact in Q16: 1000 after rest at 0 gives 500, 0, 0; then 2 x1 - x2 + (x1 - 2 x2 + x3) / 2 again and
+ * again: 1250, 2125, 3062.5, 4031.25, and 5015.625 is beyond the format.
+ */
+static void coast_bends_with_a1_up_to_the_bound(void)
+{
+    static const int32_t expected_quarter_lsb[] = { 5000, 8500, 12250, 16125 };
+    synth_t f;
+    make(&f, -32768, 32768);
+    synth_reset(&f, 0);
+    TEST_ASSERT_EQUAL_INT32(500L * 65536, synth_update(&f, 1000));
+    for (uint8_t k = 0; k < 4; k++) {
+        TEST_ASSERT_EQUAL_INT32(expected_quarter_lsb[k] * 16384, synth_coast(&f));
+        TEST_ASSERT_EQUAL_UINT8(FILTER_COASTED, synth_flags(&f));
+    }
+    TEST_ASSERT_EQUAL_INT32((int32_t)FILTER_X_MAX_LSB * 65536, synth_coast(&f));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_COASTED | FILTER_SATURATED, synth_flags(&f));
+}
+
 /* A sample that comes after a gap is not counted twice by the start: its gains go by samples seen. */
 static void coast_in_the_start_does_not_count(void)
 {
@@ -245,6 +264,7 @@ int main(void)
     RUN_TEST(outlier_in_the_start_is_limited);
     RUN_TEST(impulse_response_is_that_of_equation_7);
     RUN_TEST(coast_goes_on_along_the_line);
+    RUN_TEST(coast_bends_with_a1_up_to_the_bound);
     RUN_TEST(coast_in_the_start_does_not_count);
     RUN_TEST(coast_before_any_sample_is_zero);
     RUN_TEST(probe_tells_the_variance);

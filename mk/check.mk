@@ -1,13 +1,13 @@
 # The rules of the tree, enforced. Each check is a target of its own (make check-tidy ONLY=firmware/app.c looks at one file); limits
 # are in tools/budgets.txt, what departs from a rule in docs/deviations.md, and host_tests/planted.txt holds faults that each check
 # must find.
-C := $(B)/check
+CHK := $(B)/check
 ONLY ?=
 
 # objects before link-time optimisation: only they tell which file holds what. Warnings are not errors here, because avr-gcc says
 # that naked functions have no stack usage; check-compile looks for them.
-CHECK_OBJ := $(AVR_SRC:%.c=$(C)/avr/%.o)
-$(C)/avr/%.o: %.c Makefile mk/check.mk
+CHECK_OBJ := $(AVR_SRC:%.c=$(CHK)/avr/%.o)
+$(CHK)/avr/%.o: %.c Makefile mk/check.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(filter-out -flto -Werror,$(AVR_FLAGS)) -fstack-usage -MMD -MP -c $< -o $@ 2> $@.log || { cat $@.log >&2; exit 1; }
 
@@ -25,7 +25,7 @@ check-built: check-objects $(U)/firmware.elf $(S)/simrun
 
 # objects of files that are gone would be judged still
 check-objects: $(CHECK_OBJ)
-	@find $(C)/avr -name '*.o' 2>/dev/null | while read -r o; do s=$${o#$(C)/avr/}; [ -f "$${s%.o}.c" ] || rm -f "$$o" "$${o%.o}.su"; done
+	@find $(CHK)/avr -name '*.o' 2>/dev/null | while read -r o; do s=$${o#$(CHK)/avr/}; [ -f "$${s%.o}.c" ] || rm -f "$$o" "$${o%.o}.su"; done
 
 check-compile:
 	@WARNINGS="$(WARNINGS)" UNITY_DIR="$(UNITY_DIR)" python3 tools/check_compile.py $(ONLY)
@@ -74,4 +74,4 @@ check-planted:
 
 .PHONY: check check-built check-objects check-planted $(CHECKS:%=check-%)
 
--include $(shell find $(C) -name '*.d' 2>/dev/null)
+-include $(shell find $(CHK) -name '*.d' 2>/dev/null)
