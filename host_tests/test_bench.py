@@ -72,6 +72,7 @@ def a_run_cut_short_is_noticed():
 def a_worst_case_over_its_limit_is_named():
     one_finding(changed("kf", worst=801), "kf", "801", "800", "provoked 12.5 Hz")
     one_finding(changed("angles", worst=1501), "angles", "1501")
+    one_finding(changed("kf", worst_small=801), "kf", "801", "800", "the firmware's flags")
 
 
 @test

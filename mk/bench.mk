@@ -14,6 +14,11 @@ $(U)/bench_small.elf: $(BENCH_DEPS)
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(BENCH_COMMON) $(AVR_SMALL) $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
 
+# another yardstick for synth, in the same program
+$(U)/bench_kept.elf: $(BENCH_DEPS)
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(BENCH_COMMON) -DFLOAT_SYNTH_KEPT -Os $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
+
 # the firmware with two places around a sample's way that the simulator can time
 $(U)/bench_sample/firmware/app.o: AVR_FLAGS += -Dpipeline_sample=bench_sample_begins -Dhealth_sample_filtered=bench_sample_ends
 BENCH_SAMPLE_OBJ := $(AVR_SRC:%.c=$(U)/bench_sample/%.o) $(U)/bench_sample/host_tests/avr/bench_sample.o
@@ -27,7 +32,7 @@ $(U)/bench_sample.elf: $(BENCH_SAMPLE_OBJ)
 ## bench: cycles, flash, RAM and stack of each filter, beside float, into docs/benchmarks.md (1 minute)
 bench:
 	@sh tools/deps.sh bench
-	@$(MAKE) -j2 $(U)/bench.elf $(U)/bench_small.elf $(U)/bench_sample.elf $(U)/firmware.elf $(S)/simrun
+	@$(MAKE) -j2 $(U)/bench.elf $(U)/bench_small.elf $(U)/bench_kept.elf $(U)/bench_sample.elf $(U)/firmware.elf $(S)/simrun
 	@python3 tools/bench.py --flags '$(BENCH_COMMON) -Wl,--gc-sections $(BENCH_INC)' --small '$(AVR_SMALL)' --sources '$(BENCH_SRC)'
 
 .PHONY: bench

@@ -39,6 +39,10 @@ typedef struct {
 typedef struct {
     float x1, x2, x3;
     float a1, b0;
+#ifdef FLOAT_SYNTH_KEPT
+    float c1; /* 2 - a1 */
+    float c2; /* 1 - 2 a1 */
+#endif
 } float_synth_t;
 
 void float_kf_start(float_kf_t *f, const kf_config_t *config, float x0_lsb);

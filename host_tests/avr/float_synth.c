@@ -1,10 +1,17 @@
-/* The synthesised filter as equation 7 of paper 000 prints it: four products, in float. */
+/*
+ * The synthesised filter as equation 7 of paper 000 prints it: four products, in float. With FLOAT_SYNTH_KEPT the two
+ * coefficients made from a1 are computed once, at the start.
+ */
 #include "float_filters.h"
 
 void float_synth_start(float_synth_t *f, const synth_config_t *config, float x0_lsb)
 {
     f->a1 = (float)config->a1_q16 / 65536.0f;
     f->b0 = (float)config->b0_uq16 / 65536.0f;
+#ifdef FLOAT_SYNTH_KEPT
+    f->c1 = 2.0f - f->a1;
+    f->c2 = 1.0f - 2.0f * f->a1;
+#endif
     f->x1 = x0_lsb;
     f->x2 = x0_lsb;
     f->x3 = x0_lsb;
@@ -19,7 +26,11 @@ void float_synth_set_noise(float_synth_t *f, float r_lsb2)
 
 static float extrapolate(const float_synth_t *f)
 {
+#ifdef FLOAT_SYNTH_KEPT
+    return f->c1 * f->x1 - f->c2 * f->x2 - f->a1 * f->x3;
+#else
     return (2.0f - f->a1) * f->x1 - (1.0f - 2.0f * f->a1) * f->x2 - f->a1 * f->x3;
+#endif
 }
 
 static float shift(float_synth_t *f, float x)

@@ -166,7 +166,7 @@ static inline uint32_t fx_mul_uq24_c(uint32_t a, uint32_t b_uq24)
     return fx_mul_u16_c(a_high, b_high) + (middle >> 8) + ((middle >> 7) & 1U);
 }
 
-#ifdef __AVR__
+#if defined(__AVR__) && defined(__OPTIMIZE__)
 #include "fx_avr.h"
 #else
 

@@ -109,17 +109,13 @@ void two_state_warm_up(two_state_t *s, int16_t z_lsb)
     }
 }
 
-/* x limited to its bound; the flag tells. By the high word: 4608 LSB + 65535/65536 counts as 4608. */
+/* x limited to its bound; the flag, the first of the step, tells. By the high word: 4608 LSB + 65535/65536 counts as 4608. */
 FX_INLINE int32_t clamp_x(two_state_t *s, int32_t x_lsb_q16)
 {
-    int16_t whole_lsb = (int16_t)(x_lsb_q16 >> 16);
-    if (whole_lsb >= FILTER_X_MAX_LSB) {
-        s->flags |= FILTER_SATURATED;
-        return X_MAX_LSB_Q16;
-    }
-    if (whole_lsb < -FILTER_X_MAX_LSB) {
-        s->flags |= FILTER_SATURATED;
-        return -X_MAX_LSB_Q16;
+    uint16_t whole_lsb = (uint16_t)((uint32_t)x_lsb_q16 >> 16);
+    if ((uint16_t)(whole_lsb + FILTER_X_MAX_LSB) >= 2U * FILTER_X_MAX_LSB) {
+        s->flags = FILTER_SATURATED;
+        return (x_lsb_q16 < 0) ? -X_MAX_LSB_Q16 : X_MAX_LSB_Q16;
     }
     return x_lsb_q16;
 }
@@ -165,7 +161,11 @@ FX_INLINE void update(two_state_t *s)
     s->gain_uq16 = w1_uq16;
     s->u.p.p11_uq28 = fx_shift12(w1_uq16);
     int32_t x_step = (int32_t)fx_mul24_uq16(s->size_lsb_uq8, w1_uq16);
-    s->x_lsb_q16 += s->negative ? -x_step : x_step;
+    if (s->negative) {
+        s->x_lsb_q16 -= x_step;
+    } else {
+        s->x_lsb_q16 += x_step;
+    }
     FX_FENCE();
     uint32_t p12 = s->u.p.p12_uq28;
     uint32_t w2_uq28 = fx_mul_uq16(p12, g);
@@ -175,13 +175,18 @@ FX_INLINE void update(two_state_t *s)
     s->u.p.p22_uq28 = (p22_q28 < 0) ? 0U : (uint32_t)p22_q28;
     FX_FENCE();
     int32_t rate_step = (int32_t)fx_mul24_uq24(s->size_lsb_uq8, w2_uq24);
-    int32_t rate = s->rate_lsb_q16 + (s->negative ? -rate_step : rate_step);
+    int32_t rate = s->rate_lsb_q16;
+    if (s->negative) {
+        rate -= rate_step;
+    } else {
+        rate += rate_step;
+    }
     /* for make proof, which takes the cases one by one */
     /*@ assert -301989888 <= rate <= 301989888 || rate < -301989888 || 301989888 < rate; */
     s->rate_lsb_q16 = rate;
     if (fx_abs32(rate) > s->rate_max_lsb_q16) {
         s->rate_lsb_q16 = (rate < 0) ? -(int32_t)s->rate_max_lsb_q16 : (int32_t)s->rate_max_lsb_q16;
-        s->flags |= FILTER_SATURATED;
+        s->flags = FILTER_SATURATED;
     }
 }
 
@@ -191,8 +196,13 @@ bool two_state_step(two_state_t *s, int16_t z_lsb, bool present)
     int32_t x = clamp_x(s, s->x_lsb_q16 + s->rate_lsb_q16); /* <= 2 x 4608 LSB: fits */
     s->x_lsb_q16 = x;
     int32_t innovation = (int32_t)z_lsb * 65536 - x;
-    s->negative = innovation < 0;
-    s->size_lsb_uq8 = fx_abs32(innovation) >> 8;
+    bool negative = false;
+    if (innovation < 0) {
+        innovation = -innovation;
+        negative = true;
+    }
+    s->negative = negative;
+    s->size_lsb_uq8 = (uint32_t)innovation >> 8;
     FX_FENCE();
     predict_covariance(s);
     if (!present) {
