@@ -34,7 +34,10 @@ static void presets_are_those_of_the_papers(void)
     TEST_ASSERT_EQUAL_UINT32(r_lsb2_q8, config.r_lsb2_q8);
 }
 
-/* 1 + 2 a1 (1 - b0) = 0 lies at a1 = -2/3 = -43690.7 / 65536 for b0 = 1/4, and at a1 = -1 for b0 = 1/2. */
+/*
+ * 1 + 2 a1 (1 - b0) = 0 lies at a1 = -2/3 = -43690.7 / 65536 for b0 = 1/4, and for a1 = -65535 / 65536 at b0 = 32767.5 / 65536.
+ * With a1 >= 0 any gain is stable, at the corners of the range too.
+ */
 static void border_of_the_region_is_outside(void)
 {
     static const struct {
@@ -42,8 +45,9 @@ static void border_of_the_region_is_outside(void)
         uint16_t b0_uq16;
         bool stable;
     } cases[] = {
-        { -43690, 16384, true },  { -43691, 16384, false }, { -65535, 32768, true },
-        { -65536, 32768, false }, { 65535, 656, true },     { 65536, 656, false },
+        { -43690, 16384, true }, { -43691, 16384, false }, { -65535, 32768, true }, { -65535, 32767, false },
+        { -65535, 65535, true }, { -65535, 656, false },   { 65535, 656, true },    { 65535, 65535, true },
+        { 0, 656, true },        { 0, 65535, true },
     };
     for (uint8_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         synth_config_t config;

@@ -69,11 +69,13 @@ static uint16_t magnitude(int32_t a1_q16)
     return (uint16_t)fx_abs32(a1_q16);
 }
 
-/* Both conditions of synth.h in exact integers; the one not tested holds by itself for that sign of a1. */
+/*
+ * 1 + 2 a1 (1 - b0) > 0 in exact integers. The region's other border lies outside the ranges of the parameters: with a1 < 1
+ * and 0 < b0 < 1, 4 - 3 b0 - 4 a1 (1 - b0) > 4 - 3 b0 - 4 (1 - b0) = b0 > 0.
+ */
 static bool stable(uint16_t b0_uq16, int32_t a1_q16)
 {
-    uint32_t memory = memory_uq32(b0_uq16, magnitude(a1_q16));
-    return (a1_q16 < 0) ? memory < 0x80000000U : memory < margin_uq32(b0_uq16);
+    return a1_q16 >= 0 || memory_uq32(b0_uq16, magnitude(a1_q16)) < 0x80000000U;
 }
 
 /*
