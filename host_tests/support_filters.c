@@ -250,6 +250,9 @@ const char *broken_bound(const filter_any_t *f, const filter_probe_t *probe, int
     if ((!warming_up && probe->x_lsb_q16 != x_lsb_q16) || probe->flags != filter_any_flags(f)) {
         return "probe";
     }
+    if (warming_up && probe->rate_lsb_q16 != 0) {
+        return "rate while warming up";
+    }
     if ((probe->flags & (FILTER_GATED | FILTER_COASTED)) != 0U && probe->gain_uq16 != 0U) {
         return "gain";
     }

@@ -201,6 +201,7 @@ static void warm_up_puts_out_the_running_median(void)
         for (uint8_t k = 0; k < 5; k++) {
             TEST_ASSERT_EQUAL_INT32((int32_t)twice_median[k] * 32768, filter_any_update(&f, in[k]));
             TEST_ASSERT_EQUAL_UINT8(FILTER_WARMING_UP, filter_any_flags(&f));
+            assert_bounds(&f, (int32_t)twice_median[k] * 32768); /* among them: no rate yet */
         }
         (void)filter_any_update(&f, 8);
         TEST_ASSERT_EQUAL_UINT8(0, filter_any_flags(&f) & FILTER_WARMING_UP);

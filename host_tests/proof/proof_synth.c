@@ -10,7 +10,10 @@
 #define SAMPLE_Q16(x) (-4096 * 65536 <= (x) <= 4095 * 65536)
 #define FIVE(lsb) (SAMPLE((lsb)[0]) && SAMPLE((lsb)[1]) && SAMPLE((lsb)[2]) && SAMPLE((lsb)[3]) && SAMPLE((lsb)[4]))
 #define NOISE(f) (3 <= (f)->r_lsb2_q8 <= 256000 && 1 <= (f)->spread_lsb <= 365)
-#define STARTING(f) ((f)->collected < 5 && FIVE((f)->u.start.seen_lsb) && FIVE((f)->u.start.ascending_lsb))
+/* The flags say so until there are estimates. */
+#define STARTING(f)                                                                                \
+    ((f)->collected < 5 && ((f)->flags & FILTER_WARMING_UP) != 0 && FIVE((f)->u.start.seen_lsb) && \
+     FIVE((f)->u.start.ascending_lsb))
 #define ESTIMATES(f) \
     (WITHIN_X((f)->u.run.x_lsb_q16[0]) && WITHIN_X((f)->u.run.x_lsb_q16[1]) && WITHIN_X((f)->u.run.x_lsb_q16[2]))
 /* The median of the start is there as long as the flags say so. */
@@ -82,6 +85,7 @@ static void any_start(synth_t *f, uint8_t from_collected, uint8_t to_collected)
         f->u.start.seen_lsb[i] = ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB);
         f->u.start.ascending_lsb[i] = ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB);
     }
+    f->flags = ANY_U8(FILTER_WARMING_UP, 31);
     f->collected = ANY_U8(from_collected, to_collected);
 }
 

@@ -62,7 +62,7 @@ static inline int16_t filter_clamp_z(int16_t z_lsb)
 /* Snapshot for telemetry and tests. */
 typedef struct {
     int32_t x_lsb_q16;          /* estimate */
-    int32_t rate_lsb_q16;       /* estimated change per sample; 0 for filters without a rate */
+    int32_t rate_lsb_q16;       /* estimated change per sample; 0 while warming up and for filters without a rate */
     int32_t innovation_lsb_q16; /* measurement minus prediction of the last update; 0 after a coast */
     uint32_t p_lsb2_q8;         /* variance of the estimate after the last update */
     uint32_t gate_lsb2_q8;      /* limit of the squared innovation, saturated; UINT32_MAX: no gate */

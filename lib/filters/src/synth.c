@@ -347,7 +347,7 @@ uint8_t synth_flags(const synth_t *f)
 /* The variance is that of one sample until the gain is steady, then R times the noise gain, limited to 32 bits. */
 void synth_probe(const synth_t *f, filter_probe_t *out)
 {
-    bool running = f->collected >= FILTER_WARM_UP_SAMPLES;
+    bool running = (f->flags & FILTER_WARMING_UP) == 0U;
     out->x_lsb_q16 = estimate(f);
     out->rate_lsb_q16 = running ? f->u.run.x_lsb_q16[0] - f->u.run.x_lsb_q16[1] : 0;
     out->innovation_lsb_q16 = f->innovation_lsb_q16;
