@@ -18,6 +18,15 @@ static void make(synth_t *f, int32_t a1_q16, uint16_t b0_uq16)
     TEST_ASSERT_TRUE(synth_init(f, &config));
 }
 
+/* The default a1 and b0 with a rate and R of one's own. */
+static void make_with_noise(synth_t *f, uint16_t rate_dhz, uint32_t r_lsb2_q8)
+{
+    synth_config_t config;
+    synth_defaults(&config, rate_dhz);
+    config.r_lsb2_q8 = r_lsb2_q8;
+    TEST_ASSERT_TRUE(synth_init(f, &config));
+}
+
 /* -0.3 and 0.1, 0 and 0.3 in units of 2^-16, rounded. */
 static void presets_are_those_of_the_papers(void)
 {
@@ -35,8 +44,8 @@ static void presets_are_those_of_the_papers(void)
 }
 
 /*
- * 1 + 2 a1 (1 - b0) = 0 lies at a1 = -2/3 = -43690.7 / 65536 for b0 = 1/4, and for a1 = -65535 / 65536 at b0 = 32767.5 / 65536.
- * With a1 >= 0 any gain is stable, at the corners of the range too.
+ * 1 + 2 a1 (1 - b0) = 0 lies at a1 = -2/3 = -43690.7 / 65536 for b0 = 1/4, and for a1 = -65535 / 65536 at
+ * b0 = 32767.5 / 65536. With a1 >= 0 any gain is stable, at the corners of the range too.
  */
 static void border_of_the_region_is_outside(void)
 {
@@ -59,16 +68,28 @@ static void border_of_the_region_is_outside(void)
     }
 }
 
-/* Samples on a line of 3 LSB a sample: the fitted start continues it, whatever the later gain. */
+/*
+ * Samples on a line: the fitted start continues it, whatever the later gain. Its slope is wrong by 4 counts for each
+ * LSB a sample (6554 for 65536 / 10), 12 after the three steps to the sixth sample, whose gain of 22/42 halves it for
+ * good. The steepest line is that of 800 LSB/s at 100 Hz; with the least noise the allowance for motion is all there is.
+ */
 static void start_on_a_ramp_has_its_slope(void)
 {
-    synth_t f;
-    make(&f, 0, 19661);
-    for (int16_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)synth_update(&f, (int16_t)(3 * k));
-    }
-    for (int16_t k = FILTER_WARM_UP_SAMPLES; k < 40; k++) {
-        TEST_ASSERT_INT32_WITHIN(66, (int32_t)(3 * k) * 65536, synth_update(&f, (int16_t)(3 * k)));
+    static const struct {
+        int16_t slope_lsb;
+        uint32_t r_lsb2_q8;
+    } cases[] = { { 3, 768 }, { 8, FILTER_R_MIN_LSB2_Q8 }, { -8, FILTER_R_MIN_LSB2_Q8 } };
+    for (uint8_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        int16_t slope = cases[i].slope_lsb;
+        synth_t f;
+        make_with_noise(&f, 1000, cases[i].r_lsb2_q8);
+        for (int16_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
+            (void)synth_update(&f, (int16_t)(slope * k));
+        }
+        for (int16_t k = FILTER_WARM_UP_SAMPLES; k < 40; k++) {
+            int32_t x = synth_update(&f, (int16_t)(slope * k));
+            TEST_ASSERT_INT32_WITHIN(12 * (slope < 0 ? -slope : slope), (int32_t)slope * k * 65536, x);
+        }
     }
 }
 
@@ -125,21 +146,59 @@ static void descriptor_tells_the_binary_points(void)
 }
 
 /*
- * R = 3 LSB^2 at 100 Hz: 6 sigma = 10.39, 11 with rounding up, and 2 samples of 8 LSB: an outlier counts at most 27 LSB: 0.6 x
- * 27 at the end point and 0.2 x 27 of slope when it comes last; the next sample's gain of 22/42 halves their sum.
+ * A start of zeros with an outlier in place p = 0..4 that counts as s LSB: the line has s / 5 in its middle and the
+ * slope (p - 2) s / 10, so it goes on with s / 5 + 3 (p - 2) s / 10 = (3 p - 4) s / 10; the next sample, 0, leaves
+ * 1 - 22/42 of that: (3 p - 4) s / 21. In counts of 2^-16 the rounded 65536 / 5, 65536 / 10 and gain are off by
+ * (0.2 + 3 x 0.8) s x 20/42 + 0.3 s < 1.6 s; rounding the product and this quotient adds less than 2.
+ */
+static void assert_outlier_counts_as(const synth_t *begun, uint8_t seen, int32_t s_lsb)
+{
+    for (uint8_t place = seen; place < FILTER_WARM_UP_SAMPLES; place++) {
+        for (int16_t sign = -1; sign <= 1; sign = (int16_t)(sign + 2)) {
+            synth_t f = *begun;
+            for (uint8_t k = seen; k < FILTER_WARM_UP_SAMPLES; k++) {
+                int32_t median = synth_update(&f, (k == place) ? (int16_t)(sign * 4000) : 0);
+                TEST_ASSERT_TRUE(k < 2 || median == 0);
+            }
+            TEST_ASSERT_INT32_WITHIN(8 * s_lsb / 5 + 2, sign * (3 * place - 4) * s_lsb * 65536 / 21,
+                                     synth_update(&f, 0));
+        }
+    }
+}
+
+/*
+ * s is 6 sigma, rounded up, and the motion of two samples at 800 LSB/s, at most 365 LSB: 7/5 of it, the furthest end of
+ * a line, is then below the 512 LSB between sensor and format. 6 sigma: 10.39 at R = 3 LSB^2, 0.65 at 3/256, 189.74 at
+ * 1000; motion: 16 LSB at 100 Hz, 320 at 5 Hz, 0.4 at 4 kHz.
  */
 static void outlier_in_the_start_is_limited(void)
 {
-    static const int16_t places[] = { 0, 1, 2, 3, 4 };
-    for (uint8_t p = 0; p < 5; p++) {
+    static const struct {
+        uint16_t rate_dhz;
+        uint32_t r_lsb2_q8;
+        int32_t s_lsb;
+    } cases[] = {
+        { 1000, 768, 11 + 16 }, { 1000, 3, 1 + 16 }, { 50, 3, 1 + 320 },
+        { 50, 256000, 365 },    { 40000, 3, 1 },     { 40000, 256000, 190 },
+    };
+    for (uint8_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         synth_t f;
-        make(&f, 0, 19661);
-        for (int16_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-            int32_t median = synth_update(&f, (k == places[p]) ? 4000 : 0);
-            TEST_ASSERT_TRUE(k < 2 || median == 0);
-        }
-        TEST_ASSERT_INT32_WITHIN((int32_t)(0.8 * 27 * 20 / 42 * 65536) + 66, 0, synth_update(&f, 0));
+        make_with_noise(&f, cases[i].rate_dhz, cases[i].r_lsb2_q8);
+        assert_outlier_counts_as(&f, 0, cases[i].s_lsb);
     }
+}
+
+/* The noise known at the fifth sample counts: R goes from 3 to 1000 LSB^2 after two samples, then back. */
+static void start_goes_by_the_last_noise_told(void)
+{
+    synth_t f;
+    make_with_noise(&f, 1000, 768);
+    (void)synth_update(&f, 0);
+    (void)synth_update(&f, 0);
+    synth_set_noise(&f, 256000);
+    assert_outlier_counts_as(&f, 2, 190 + 16);
+    synth_set_noise(&f, 768);
+    assert_outlier_counts_as(&f, 2, 11 + 16);
 }
 
 /* Impulse response by hand from equation (7), a1 = -0.3, b0 = 0.1: 0.1, 0.207, 0.28449, 0.317814 (x 4000 LSB). */
@@ -266,6 +325,7 @@ int main(void)
     RUN_TEST(start_ends_at_the_first_gain_that_is_not_above);
     RUN_TEST(descriptor_tells_the_binary_points);
     RUN_TEST(outlier_in_the_start_is_limited);
+    RUN_TEST(start_goes_by_the_last_noise_told);
     RUN_TEST(impulse_response_is_that_of_equation_7);
     RUN_TEST(coast_goes_on_along_the_line);
     RUN_TEST(coast_bends_with_a1_up_to_the_bound);
