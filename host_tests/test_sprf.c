@@ -111,6 +111,58 @@ static void disagreeing_run_never_restarts(void)
     }
 }
 
+/* Samples d LSB apart, far from the level that the filter has settled at: what becomes of 20 of them. */
+static uint8_t flags_of_20_samples_apart(const sprf_config_t *config, int16_t d_lsb)
+{
+    sprf_t f = settled(config, 0);
+    uint8_t flags = 0;
+    for (int k = 0; k < 20; k++) {
+        (void)sprf_update(&f, (int16_t)((k & 1) != 0 ? 2000 + d_lsb : 2000));
+        flags |= sprf_flags(&f);
+    }
+    return flags;
+}
+
+/*
+ * Consecutive samples of a run differ by at most 3 sqrt(2 R) and the motion of one sample, rounded down: 16.97 + 8,
+ * 0.46 + 8, 134.16 + 8 and, at 12.5 Hz, 16.97 + 64 LSB. At that distance they agree, one LSB further they do not.
+ */
+static void agreement_ends_at_three_sigma_of_a_difference(void)
+{
+    static const struct {
+        uint16_t rate_dhz;
+        uint32_t r_lsb2_q8;
+        int16_t agree_lsb;
+    } cases[] = { { 1000, R_LSB2 * 256U, 24 }, { 1000, 3, 8 }, { 1000, 256000, 142 }, { 125, R_LSB2 * 256U, 80 } };
+    for (uint8_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        sprf_config_t config;
+        sprf_defaults(&config, cases[i].rate_dhz);
+        config.r_lsb2_q8 = cases[i].r_lsb2_q8;
+        TEST_ASSERT_TRUE((flags_of_20_samples_apart(&config, cases[i].agree_lsb) & FILTER_REACQUIRED) != 0U);
+        TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, flags_of_20_samples_apart(&config, (int16_t)(cases[i].agree_lsb + 1)));
+    }
+}
+
+/*
+ * Four of the five samples that restart, then a reset: a sample 20 LSB from the new level would agree with it (24), but
+ * it begins a run, which takes five. It is refused: 3 sigma of the innovation, 12 sqrt(1 + P11 / R) LSB, stay below 20.
+ */
+static void reset_forgets_the_run(void)
+{
+    sprf_config_t config = config_100hz();
+    sprf_t f = settled(&config, 0);
+    for (int k = 0; k < 4; k++) {
+        (void)sprf_update(&f, 1000);
+    }
+    sprf_reset(&f, 300);
+    for (int k = 0; k < 4; k++) {
+        TEST_ASSERT_EQUAL_INT32((int32_t)300 * 65536, sprf_update(&f, 320));
+        TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, sprf_flags(&f));
+    }
+    (void)sprf_update(&f, 320);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, sprf_flags(&f));
+}
+
 static void run_ends_at_an_accepted_sample(void)
 {
     sprf_config_t config = config_100hz();
@@ -154,6 +206,8 @@ int main(void)
     RUN_TEST(consistent_run_restarts_on_its_slope);
     RUN_TEST(restart_limits_the_rate);
     RUN_TEST(disagreeing_run_never_restarts);
+    RUN_TEST(agreement_ends_at_three_sigma_of_a_difference);
+    RUN_TEST(reset_forgets_the_run);
     RUN_TEST(run_ends_at_an_accepted_sample);
     RUN_TEST(reacquisition_off_never_restarts);
     RUN_TEST(run_with_a_gap_restarts_at_rest);
