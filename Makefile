@@ -74,16 +74,21 @@ $(U)/late/%.o: %.c Makefile
 $(U)/late/firmware.elf: $(LATE_OBJ)
 	@$(AVR_CC) $(AVR_LINK) $^ -o $@
 
-# assembler primitives against their C twins, on the chip
-$(U)/fx_twins.elf: host_tests/avr/fx_twins.c lib/filters/src/fx.c lib/filters/src/fx.h lib/filters/src/fx_avr.h Makefile
+# assembler primitives against their C twins, on the chip: with plain -Os, and as the firmware is built
+TWINS_SRC := host_tests/avr/fx_twins.c lib/filters/src/fx.c
+$(U)/fx_twins.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx_avr.h Makefile
 	@mkdir -p $(@D)
-	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ilib/filters/src $(filter %.c,$^) -o $@
+	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ilib/filters/src $(TWINS_SRC) -o $@
+
+$(U)/fx_twins_firmware.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx_avr.h Makefile
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(AVR_FLAGS) -Wl,--gc-sections $(TWINS_SRC) -o $@
 
 $(U)/hal_probe.elf: host_tests/avr/hal_probe.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr $(filter %.c,$^) -o $@
 
-TEST_IMAGES := $(U)/hal_probe.elf $(U)/fx_twins.elf $(U)/hang/firmware.elf $(U)/wrap/firmware.elf $(U)/late/firmware.elf
+TEST_IMAGES := $(U)/hal_probe.elf $(U)/fx_twins.elf $(U)/fx_twins_firmware.elf $(U)/hang/firmware.elf $(U)/wrap/firmware.elf $(U)/late/firmware.elf
 
 $(U)/firmware.hex: $(U)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $< $@

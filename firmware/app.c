@@ -1,7 +1,7 @@
 /*
  * Data walks one way: driver -> pipeline -> rows -> UART. Commands come back the other way through this file.
- * Before the banner and the header are out, and while the baud rate changes, samples wait in the driver's queue and in the
- * sensor's FIFO: 39 of them, 48 ms at 800 Hz.
+ * Before the banner and the header are out, and while the baud rate changes, samples wait in the driver's queue and in
+ * the sensor's FIFO: 39 of them, 48 ms at 800 Hz.
  */
 #include "app.h"
 

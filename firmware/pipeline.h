@@ -1,6 +1,6 @@
 /*
- * From samples to filtered tilt: one filter and one noise estimate per axis, in LSB; angles from the filtered states with
- * their fraction. Main only.
+ * From samples to filtered tilt: one filter and one noise estimate per axis, in LSB; angles from the filtered states
+ * with their fraction. Main only.
  */
 #ifndef PIPELINE_H
 #define PIPELINE_H
@@ -40,10 +40,16 @@ void pipeline_reset(void);
 /* Begin anew: filters collect a robust start, noise estimates start at their floor. */
 void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 
-/* Change filter, rate or range while running: the new filters start from the old output; noise goes on unless the rate changed. */
+/*
+ * Change filter, rate or range while running: the new filters start from the old output; noise goes on unless the rate
+ * changed.
+ */
 void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 
-/* One sample through filters and noise estimates. Missing ones since the last (period_us apart) are coasted over, at most 100 ms. */
+/*
+ * One sample through filters and noise estimates. Missing ones since the last (period_us apart) are coasted over, at
+ * most 100 ms.
+ */
 void pipeline_sample(const adxl345_sample_t *sample, uint32_t period_us);
 
 /* Flags that hold until the next row. */
@@ -61,7 +67,7 @@ void pipeline_row_done(void);
 /* Roll and pitch of the newest raw sample, for the plotter. */
 void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg);
 
-/* Counts of samples: filtered, refused by the gate (any axis), re-acquired on, clipped. 32 bits last 62 days at 800 Hz. */
+/* Counts of samples: filtered, refused by a gate (any axis), re-acquired on, clipped. 32 bits last 62 days at 800 Hz */
 typedef struct {
     uint32_t samples;
     uint32_t gated;

@@ -1,6 +1,6 @@
 /*
- * Lines that begin with '#': the banner, answers to commands, faults. They wait in a short queue and go out one line at a time
- * when the line has room beside a data row, so they never push a row out. Main only.
+ * Lines that begin with '#': the banner, answers to commands, faults. They wait in a short queue and go out one line at
+ * a time when the line has room beside a data row, so they never push a row out. Main only.
  */
 #ifndef REPLIES_H
 #define REPLIES_H

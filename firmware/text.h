@@ -1,6 +1,6 @@
 /*
- * Lines of text straight into the UART's transmit ring: text_open reserves, the others append, text_close ends the line and
- * hands it over whole. Main only.
+ * Lines of text straight into the UART's transmit ring: text_open reserves, the others append, text_close ends the line
+ * and hands it over whole. Main only.
  */
 #ifndef TEXT_H
 #define TEXT_H

@@ -1,12 +1,14 @@
 /*
- * I2C master at command level: each call is one bus event, so the transfer state machine above (lib/adxl345/src/i2c_bus.h)
- * is portable and can be given any status byte in a test. Nothing here waits. The names of the states are those of the
- * ATmega328P's two-wire interface (data sheet tables 26-3, 26-4).
+ * I2C master at command level: each call is one bus event, so the transfer state machine above
+ * (lib/adxl345/src/i2c_bus.h) is portable and can be given any status byte in a test. Nothing here waits. The names of
+ * the states are those of the ATmega328P's two-wire interface (data sheet tables 26-3, 26-4).
  *
- *   void hal_i2c_enable(bool fast)          take the pins; SCL 363.6 kHz (tLOW 1.375 us, in the ADXL345's spec), or 400 kHz if fast
+ *   void hal_i2c_enable(bool fast)          take the pins; SCL 363.6 kHz (tLOW 1.375 us, in the ADXL345's spec), or
+ *                                           400 kHz if fast
  *   void hal_i2c_disable(void)              release the pins at once; whatever ran is abandoned
- *   void hal_i2c_clear(void)                while disabled: clock a slave that holds SDA out of its byte, at most 16 clocks of
- *                                           10 us (UM10204 3.1.16); a reset of the MCU in the middle of a read leaves it so
+ *   void hal_i2c_clear(void)                while disabled: clock a slave that holds SDA out of its byte, at most 16
+ *                                           clocks of 10 us (UM10204 3.1.16); a reset of the MCU in the middle of a
+ *                                           read leaves it so
  *   void hal_i2c_start(void)                ask for a START or repeated START
  *   void hal_i2c_send(uint8_t byte)         send an address or data byte
  *   void hal_i2c_receive(bool ack)          clock one byte in and answer it with ACK or NACK

@@ -1,7 +1,7 @@
 /*
- * Byte ring for one producer and one consumer, one of them an interrupt: each index has one owner and is one byte, so no
- * critical section is needed. SIZE is a power of two up to 256; one slot stays free to tell full from empty.
- * The producer works on `staged` and publishes it with hal_ring_commit.
+ * Byte ring for one producer and one consumer, one of them an interrupt: each index has one owner and is one byte, so
+ * no critical section is needed. SIZE is a power of two up to 256; one slot stays free to tell full from empty. The
+ * producer works on `staged` and publishes it with hal_ring_commit.
  */
 #ifndef HAL_RING_H
 #define HAL_RING_H

@@ -1,8 +1,8 @@
 /*
  * Watchdog (250 ms, reset only) and the cause of the last reset.
  *
- * The UNO's bootloader clears MCUSR before the application runs, so the cause is told by a breadcrumb in RAM that no start-up
- * code clears: a mark, the time since the last feed, and a note of the application.
+ * The UNO's bootloader clears MCUSR before the application runs, so the cause is told by a breadcrumb in RAM that no
+ * start-up code clears: a mark, the time since the last feed, and a note of the application.
  *
  *   void hal_watchdog_start(void)             main, once
  *   void hal_watchdog_feed(void)              main, in one place only
@@ -24,8 +24,9 @@ typedef enum { HAL_RESET_POWER_ON, HAL_RESET_EXTERNAL, HAL_RESET_BROWN_OUT, HAL_
 enum { HAL_MCUSR_POWER_ON = 0x01, HAL_MCUSR_EXTERNAL = 0x02, HAL_MCUSR_BROWN_OUT = 0x04, HAL_MCUSR_WATCHDOG = 0x08 };
 
 /*
- * The cause from what is left: MCUSR (0 when a bootloader cleared it), whether the breadcrumb's mark is intact (RAM kept its
- * content: no power loss) and the ticks of HAL_TICK_US since the last feed. Near 250 ms without a feed it was the watchdog.
+ * The cause from what is left: MCUSR (0 when a bootloader cleared it), whether the breadcrumb's mark is intact (RAM
+ * kept its content: no power loss) and the ticks of HAL_TICK_US since the last feed. Near 250 ms without a feed it was
+ * the watchdog.
  */
 static inline hal_reset_t hal_reset_classify(uint8_t mcusr, bool mark_intact, uint8_t unfed_ticks)
 {

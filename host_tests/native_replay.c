@@ -1,6 +1,6 @@
 /*
- * The whole firmware as a native program: a stream in, the UART's bytes out. Same options and meanings as simrun's, so that
- * a test can run both and compare them row by row; thousands of times faster than real time.
+ * The whole firmware as a native program: a stream in, the UART's bytes out. Same options and meanings as simrun's, so
+ * that a test can run both and compare them row by row; thousands of times faster than real time.
  */
 #include <stdio.h>
 #include <stdlib.h>

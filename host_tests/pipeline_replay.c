@@ -1,6 +1,7 @@
 /*
- * The sample path alone on the PC: takes the samples (time and readings) out of a run of the firmware, filters them with the
- * same code, and prints the rows anew. On a run without faults, from a cold start on, the two must agree to the last digit.
+ * The sample path alone on the PC: takes the samples (time and readings) out of a run of the firmware, filters them
+ * with the same code, and prints the rows anew. On a run without faults, from a cold start on, the two must agree to
+ * the last digit.
  *
  *   pipeline_replay RUN.csv FILTER RATE_DHZ RANGE_G SKIP > ROWS.csv      SKIP: data rows before the cold start
  */

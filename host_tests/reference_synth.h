@@ -1,6 +1,6 @@
 /*
- * Double reference of the synthesised filter, written from paper 000 equation (7) as printed with its errata (estimates fed
- * back), in companion-matrix form (Eigen), not from the scalar code; plain C interface.
+ * Double reference of the synthesised filter, written from paper 000 equation (7) as printed with its errata (estimates
+ * fed back), in companion-matrix form (Eigen), not from the scalar code; plain C interface.
  */
 #ifndef REFERENCE_SYNTH_H
 #define REFERENCE_SYNTH_H
@@ -22,7 +22,7 @@ typedef struct {
 /* Constant gains from now on, all estimates equal. */
 void reference_synth_at(reference_synth_t *f, double a1, double b0, double x0);
 
-/* Starts with nothing: x(1) = z(1), x(2) = z(2), then a1 = 0 and b0(n) = max(b0, (4 n - 2) / (n (n + 1))) (notes 2.2). */
+/* Starts empty: x(1) = z(1), x(2) = z(2), then a1 = 0 and b0(n) = max(b0, (4 n - 2) / (n (n + 1))) (notes 2.2). */
 void reference_synth_least_squares(reference_synth_t *f, double a1, double b0);
 
 /* One sample. */

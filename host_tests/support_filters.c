@@ -189,7 +189,7 @@ static const char *broken_sprf(const sprf_t *f, int32_t x_lsb_q16)
     return broken_two_state(&f->core, x_lsb_q16);
 }
 
-/* synth.h, synth.c: estimates within the bound of the format, gains as configured, the start's line within its spread. */
+/* synth.h, synth.c: estimates within the format's bound, gains as configured, the start's line within its spread. */
 static const char *broken_synth(const synth_t *f, int32_t x_lsb_q16)
 {
     if (fx_abs32(f->innovation_lsb_q16) > (uint32_t)8704 << 16) {
@@ -278,9 +278,9 @@ int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
  * and 2 LSB per sample wrong. From there the error e obeys e' = (I - K H) A e and V = e^T P^-1 e falls by the largest
  * eigenvalue of P'^-1 (I - K H) A P A^T (I - K H)^T at each update, because P' exceeds that product by the noise terms;
  * so |e_x| <= sqrt(P11 V). With q T^3 / R = 1/300 (defaults at 100 Hz) and P grown over the gap up to the core's limit
- * of 2, this is below 1/4 LSB after 43 samples for the worst n. sprf takes that path when the first innovation is within
- * its gate, else its five agreeing samples restart it without error. synth at (0, 0.3) obeys e = 0.7 (2 e1 - e2) from 2 n and
- * 2 n - 2 LSB: |e| <= 400.1 x 0.83666^k, and below 1/4 LSB from k = 40 on for every n <= 200.
+ * of 2, this is below 1/4 LSB after 43 samples for the worst n. sprf takes that path when the first innovation is
+ * within its gate, else its five agreeing samples restart it without error. synth at (0, 0.3) obeys e = 0.7 (2 e1 - e2)
+ * from 2 n and 2 n - 2 LSB: |e| <= 400.1 x 0.83666^k, and below 1/4 LSB from k = 40 on for every n <= 200.
  */
 uint8_t recovery_samples(filter_kind_t kind)
 {

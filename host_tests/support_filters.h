@@ -1,6 +1,6 @@
 /*
- * What the generic tests of lib/filters share, on the PC and on the chip (no double, no 64-bit numbers): random numbers,
- * configurations from the descriptors, and the facts about single filters that no descriptor tells.
+ * What the generic tests of lib/filters share, on the PC and on the chip (no double, no 64-bit numbers): random
+ * numbers, configurations from the descriptors, and the facts about single filters that no descriptor tells.
  */
 #ifndef SUPPORT_FILTERS_H
 #define SUPPORT_FILTERS_H

@@ -31,7 +31,7 @@ enum {
 
 extern adxl345_model_t sensor_model;
 
-/* What its callbacks have told: edges of pin 1 and 2, triplets latched and the last of them; what went wrong, to be 0. */
+/* What its callbacks told: edges of pin 1 and 2, triplets latched and the last of them; what went wrong, to be 0. */
 typedef struct {
     unsigned rises[3], falls[3], latched, wrong;
     int16_t last[3];

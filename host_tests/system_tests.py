@@ -69,14 +69,23 @@ def pipeline_of_chip_equals_pc_at_12_5_hz():
     compare_pipeline("pipeline-12", 12.5, 115200, lambda notes: "# rate 12.5 Hz, I2C at 363.6 kHz" in notes)
 
 
-@test
-def assembler_primitives_equal_their_c_twins():
+def compare_twins(name):
     """Status 8: the program ends by sleeping with interrupts off."""
-    done = run(SIMRUN, "--fw", "build/uno/fx_twins.elf", "--in", STREAMS / "tilt-fast.csv", "--out", OUT / "twins.txt", "--max-ms", "60000",
-               expect=None)
-    lines = (OUT / "twins.txt").read_text().splitlines()
+    out = OUT / f"{name}.txt"
+    done = run(SIMRUN, "--fw", f"build/uno/{name}.elf", "--in", STREAMS / "tilt-fast.csv", "--out", out, "--max-ms", "60000", expect=None)
+    lines = out.read_text().splitlines()
     assert done.returncode == 8, done.stderr
     assert sum("PASS" in line for line in lines) == 12 and not any("FAIL" in line for line in lines), lines
+
+
+@test
+def assembler_primitives_equal_their_c_twins():
+    compare_twins("fx_twins")
+
+
+@test
+def assembler_primitives_equal_their_c_twins_as_the_firmware_is_built():
+    compare_twins("fx_twins_firmware")
 
 
 @test

@@ -106,7 +106,10 @@ static void test_p27_short_read_loses_the_rest(void)
     TEST_ASSERT_EQUAL_INT16(8, sensor_read_x());
 }
 
-/* A sample that arrives while the only entry is being read: nothing is torn or lost, and INT1 stays high without an edge. */
+/*
+ * A sample that arrives while the only entry is being read: nothing is torn or lost, and INT1 stays high without an
+ * edge.
+ */
 static void test_stream_fifo_sample_inside_a_burst(void)
 {
     sensor_measure(FULL_RES_16G, 0x8A);

@@ -95,7 +95,7 @@ static void test_p14_output_data_rate(void)
     TEST_ASSERT_EQUAL_UINT(0, sensor_seen.latched);
 }
 
-/* p. 26: DATA_READY is a latched level that reading the data clears; the pin follows INT_ENABLE, the bit does not (p. 26) */
+/* p. 26: DATA_READY is a latched level that reading the data clears; the pin follows INT_ENABLE, the bit does not */
 static void test_p26_data_ready(void)
 {
     sensor_write(POWER_CTL, MEASURE);
@@ -180,7 +180,7 @@ static void test_without_shadowing_a_burst_is_torn(void)
     TEST_ASSERT_EQUAL_UINT32(1, sensor_model.torn);
 }
 
-/* p. 4, 27: full resolution is 256 LSB/g with rails at the range; 10-bit mode divides by 2, 4, 8 and has rails at 511 */
+/* p. 4, 27: full resolution is 256 LSB/g with rails at the range; 10-bit mode divides by 2, 4, 8, has rails at 511 */
 static void test_p4_range_and_resolution(void)
 {
     static const struct {
@@ -261,7 +261,10 @@ static void test_p31_self_test_shift_is_within_the_limits(void)
     TEST_ASSERT_INT_WITHIN(400, 475, sensor_seen.last[2] - 256); /* 75..875 */
 }
 
-/* Power off: no acknowledge, pins low even when inverted. Power on: registers at reset, FIFO empty (p. 13, p. 30 for offsets). */
+/*
+ * Power off: no acknowledge, pins low even when inverted. Power on: registers at reset, FIFO empty (p. 13, p. 30 for
+ * offsets).
+ */
 static void test_power_cycle(void)
 {
     sensor_write(OFSX, 9);

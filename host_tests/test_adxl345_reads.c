@@ -55,7 +55,7 @@ static void test_p26_reading_int_source_clears_events(void)
     TEST_ASSERT_EQUAL_HEX8(DATA_READY, sensor_read(INT_SOURCE) & (0x7C | DATA_READY));
 }
 
-/* p. 21: the read of an entry ends with the transfer; a repeated START ends one too. Two bytes read: the entry is gone. */
+/* p. 21: the read of an entry ends with the transfer or a repeated START. Two bytes read: the entry is gone. */
 static void test_p21_a_repeated_start_ends_a_data_read(void)
 {
     sensor_measure(FULL_RES_16G, STREAM_MODE);

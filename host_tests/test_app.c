@@ -261,7 +261,7 @@ static void test_every_thins_rows_and_keeps_flags(void)
     stream_free(&still);
 }
 
-/* 9600 baud carries a short row in 40 ms; with `every` forced it fits, so fill the ring by hand: the line stands still. */
+/* 9600 baud carries a short row in 40 ms; `every` forced, it fits, so fill the ring by hand: the line stands still. */
 static void test_rows_without_room_are_dropped_whole_and_told(void)
 {
     board_start_resting();
@@ -312,7 +312,10 @@ static void test_plot_mode_is_labels_only(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("t_us,x_lsb", before));
 }
 
-/* A change of filter or rate: no latched sample without its row, five rows marked, the estimate goes on from where it was. */
+/*
+ * A change of filter or rate: no latched sample without its row, five rows marked, the estimate goes on from where it
+ * was.
+ */
 static void change_and_check(const char *command)
 {
     size_t rows_before = board.row_count;

@@ -1,4 +1,7 @@
-/* The whole firmware where one state gives way to another: faults that alternate, go after stop, range, the seconds counted. */
+/*
+ * The whole firmware where one state gives way to another: faults that alternate, go after stop, range, the seconds
+ * counted.
+ */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,8 +65,8 @@ static void test_uptime_counts_seconds(void)
 }
 
 /*
- * z alternates between 242 and 254. A filter that goes on would put out about 248 (969 mg); a cold one puts out the running
- * median: the first sample itself, then the mean of two, and five rows are marked.
+ * z alternates between 242 and 254. A filter that goes on would put out about 248 (969 mg); a cold one puts out the
+ * running median: the first sample itself, then the mean of two, and five rows are marked.
  */
 static void test_go_begins_cold(void)
 {
@@ -90,8 +93,8 @@ static void test_go_begins_cold(void)
 }
 
 /*
- * x is 600 LSB: no rail at 16 g (4095), beyond the one at 2 g (511). Samples latched before the change took effect are those
- * of the old range and must not be called clipped, whatever the phase at which the command comes.
+ * x is 600 LSB: no rail at 16 g (4095), beyond the one at 2 g (511). Samples latched before the change took effect are
+ * those of the old range and must not be called clipped, whatever the phase at which the command comes.
  */
 static void test_old_samples_are_filtered_as_before_a_change_of_range(void)
 {

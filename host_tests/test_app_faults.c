@@ -1,4 +1,7 @@
-/* The whole firmware on the host's HAL when things fail: sensor faults told once, long waits without a reset, hung stages. */
+/*
+ * The whole firmware on the host's HAL when things fail: sensor faults told once, long waits without a reset, hung
+ * stages.
+ */
 #include "app.h"
 #include "hal_watchdog.h"
 #include "hang_test.h"
@@ -111,7 +114,10 @@ static void test_slowest_rate_and_largest_every(void)
     TEST_ASSERT_INT_WITHIN(2, 12, (int)(board.row_count - rows));
 }
 
-/* Replies keep the transmit ring full for a minute at the slowest line: rows come late or are dropped whole, nothing hangs. */
+/*
+ * Replies keep the transmit ring full for a minute at the slowest line: rows come late or are dropped whole, nothing
+ * hangs.
+ */
 static void test_a_minute_with_the_ring_full(void)
 {
     board_start_resting();

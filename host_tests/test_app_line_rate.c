@@ -26,7 +26,10 @@ static void run_until_notes(size_t count)
     TEST_ASSERT_EQUAL_size_t(count, board.note_count);
 }
 
-/* Typed ahead, before the line has drained and changed: they wait in the receive ring, are obeyed and answered afterwards. */
+/*
+ * Typed ahead, before the line has drained and changed: they wait in the receive ring, are obeyed and answered
+ * afterwards.
+ */
 static void test_lines_behind_a_change_of_baud_are_obeyed(void)
 {
     board_start_resting();
@@ -62,8 +65,8 @@ static void ask_all_the_time(size_t times)
 }
 
 /*
- * The widest rows, as many as the line carries: 900 of 960 bytes a second, 3,600 of 3,840, 7,200 of 11,520. Replies take
- * what is left, and not a row is missing or late to the ring.
+ * The widest rows, as many as the line carries: 900 of 960 bytes a second, 3,600 of 3,840, 7,200 of 11,520. Replies
+ * take what is left, and not a row is missing or late to the ring.
  */
 static void test_replies_never_push_a_row_out(void)
 {

@@ -265,7 +265,7 @@ static void test_latched_int1_after_an_mcu_reset(void)
     TEST_ASSERT_TRUE(taken[0].lsb[0] >= latched_x[latched_before]);
 }
 
-/* Main stalls for 300 ms: 30 samples wait, 7 in the queue and the rest in the FIFO; none is lost, stamps are within 1 %. */
+/* Main stalls for 300 ms: 30 samples wait, 7 in the queue, the rest in the FIFO; none is lost, stamps within 1 %. */
 static void test_late_reads_are_drained_with_interpolated_stamps(void)
 {
     adxl345_start(&at_100_hz);
@@ -324,7 +324,7 @@ static void test_disturbed_before_the_data_nothing_is_lost(void)
     }
 }
 
-/* A burst cut inside its data takes the entry out of the FIFO (p. 21): that sample is lost, no other, and none is wrong. */
+/* A burst cut inside its data takes the entry out of the FIFO (p. 21): that sample is lost, no other; none is wrong. */
 static void test_disturbed_inside_the_data_loses_that_sample_only(void)
 {
     disturb_bursts(FIRST_DATA_EVENT, EVENTS_PER_BURST);

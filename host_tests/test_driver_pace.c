@@ -1,4 +1,4 @@
-/* The driver's time: how often it tries again, how long a burst may hang, stops and starts while it waits for the bus. */
+/* The driver's time: how often it tries again, how long a burst may hang, stops and starts while it awaits the bus. */
 #include <string.h>
 
 #include "adxl345.h"
@@ -112,8 +112,8 @@ static void run_ms(double ms)
     } while (0)
 
 /*
- * Back-off 5, 10, 20, then 25 ms for ever. Main looks at the deadline at its tick of 8.192 ms, so a pause is that of the
- * driver, rounded up to the next tick; a probe at both addresses takes 0.2 ms.
+ * Back-off 5, 10, 20, then 25 ms for ever. Main looks at the deadline at its tick of 8.192 ms, so a pause is that of
+ * the driver, rounded up to the next tick; a probe at both addresses takes 0.2 ms.
  */
 static void test_tries_again_at_a_pause_that_doubles_to_25_ms(void)
 {
@@ -148,7 +148,7 @@ static void test_a_good_sample_resets_the_pace(void)
     TEST_ASSERT_TRUE(probed_ms[0] - failed_ms <= 5.0 + 8.3);
 }
 
-/* A burst that hangs is given up after 3 ms, which main sees at its next tick, long before the silence of 33 ms is up. */
+/* A burst that hangs is given up after 3 ms, which main sees at its next tick, long before 33 ms of silence are up. */
 static void test_a_hung_burst_is_given_up(void)
 {
     adxl345_counters_t before;
@@ -302,8 +302,8 @@ static void test_a_stale_bus_event_is_ignored(void)
 }
 
 /*
- * An edge that comes while the pins are toggled by hand must not put a START on them; its sample is read afterwards, with
- * the time of the edge.
+ * An edge that comes while the pins are toggled by hand must not put a START on them; its sample is read afterwards,
+ * with the time of the edge.
  */
 static void test_an_edge_while_the_bus_is_cleared_starts_no_transfer(void)
 {

@@ -1,4 +1,7 @@
-/* The dispatch over the list of filters: each call reaches the filter of its kind, and none for a kind that there is not. */
+/*
+ * The dispatch over the list of filters: each call reaches the filter of its kind, and none for a kind that there is
+ * not.
+ */
 #include <string.h>
 
 #include "filter_any.h"

@@ -9,8 +9,8 @@
 #define RECOVERED_LSB_Q16 (2 * (65536 / 4 + 65536 / 32))
 
 /*
- * Drift per coasted sample on a ramp: a settled filter's rate is wrong by at most 2/256 LSB per sample, because more would
- * carry the innovation from one end of the +-1/256 LSB that are rounded to 0 past the other within a sample.
+ * Drift per coasted sample on a ramp: a settled filter's rate is wrong by at most 2/256 LSB per sample, because more
+ * would carry the innovation from one end of the +-1/256 LSB that are rounded to 0 past the other within a sample.
  */
 #define DRIFT_LSB_Q16 (65536 / 128)
 
@@ -29,8 +29,8 @@ static void make(filter_any_t *f, uint8_t kind, uint16_t rate_dhz)
 
 /*
  * After a gap the filter is back, recovery_samples later and for good, where one without a gap is. slope: of the motion
- * before the gap, LSB per sample; goes_on: during and after it too, and the prediction follows; else all is at rest from
- * the gap's start.
+ * before the gap, LSB per sample; goes_on: during and after it too, and the prediction follows; else all is at rest
+ * from the gap's start.
  */
 static void assert_recovery(const filter_any_t *settled, int16_t slope, bool goes_on, uint8_t gap)
 {

@@ -1,4 +1,4 @@
-/* Guards inside the filters that ordinary samples hardly reach: the borrow of P22, the hysteresis of the estimate of R. */
+/* Guards inside the filters that ordinary samples hardly reach: the borrow of P22, the hysteresis of R's estimate. */
 #include <stdlib.h>
 
 #include "noise.h"
@@ -21,8 +21,8 @@ static void start(two_state_t *s, uint32_t p11, uint32_t p12, uint32_t p22)
 }
 
 /*
- * P / R = (0, 1; 1, 1/2) is no covariance. Predicted: P12 = 1.5, P11 = 2.5, P22 = 0.5 + q; update: P22 - P12^2 / (P11 + 1) =
- * 0.5 - 0.643 + q < 0: rounded to 0, not wrapped to 15.9.
+ * P / R = (0, 1; 1, 1/2) is no covariance. Predicted: P12 = 1.5, P11 = 2.5, P22 = 0.5 + q; update:
+ * P22 - P12^2 / (P11 + 1) = 0.5 - 0.643 + q < 0: rounded to 0, not wrapped to 15.9.
  */
 static void test_p22_does_not_wrap_below_zero(void)
 {
@@ -33,7 +33,10 @@ static void test_p22_does_not_wrap_below_zero(void)
     TEST_ASSERT_EQUAL_HEX32(0, s.u.p.p22_uq28);
 }
 
-/* The twin: with P22 = 1 the update leaves 1 - 0.643 + q, exact to the gain's 1.5 counts of 2^-16 (0.643 x 3.5 x 2.3e-5). */
+/*
+ * The twin: with P22 = 1 the update leaves 1 - 0.643 + q, exact to the gain's 1.5 counts of 2^-16 (0.643 x 3.5 x
+ * 2.3e-5).
+ */
 static void test_p22_that_stays_positive_is_kept(void)
 {
     two_state_t s;

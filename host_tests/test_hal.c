@@ -1,4 +1,4 @@
-/* The parts of the HAL contracts that are logic: time over the wrap, reset cause, sleep, EEPROM timing, receive ring. */
+/* The parts of the HAL contracts that are logic: time over its wrap, reset cause, sleep, EEPROM timing, receive ring */
 #include "hal_eeprom.h"
 #include "hal_host.h"
 #include "hal_sleep.h"

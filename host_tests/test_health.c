@@ -120,7 +120,7 @@ static void test_a_driver_that_nobody_polls_is_not_healthy(void)
     TEST_ASSERT_DOUBLE_WITHIN(PASS_MS, begun_ms + 250.0, bitten_ms());
 }
 
-/* Samples that nobody takes wait in the queue: a pause of filtering excuses that until its own deadline, and no longer. */
+/* Samples that nobody takes wait in the queue: a pause of filtering excuses that up to its own deadline, no longer. */
 static void test_a_pause_of_filtering_ends_at_its_deadline(void)
 {
     stream = board_constant_stream(1000, 100.0, 1, 2, 250);

@@ -54,7 +54,7 @@ static void test_clipped_at_the_rails_of_the_range_in_force(void)
     }
 }
 
-/* y climbs by 1 LSB a sample; two samples are missing at 3 s: coasted over, the estimate follows as if they had come. */
+/* y climbs by 1 LSB a sample; two samples are missing at 3 s: coasted over, the estimate follows as if they came. */
 static void test_missing_samples_are_coasted_over(void)
 {
     stream_t ramp = board_constant_stream(600, 100.0, 0, 0, 256);

@@ -252,7 +252,7 @@ static void test_feed_mode_at_the_5_percent_border(void)
 
 static void test_feed_gaps_and_missing_rows_are_silent_ticks(void)
 {
-    /* 10 ms steps; rows 2 and 3 are 35 ms apart: 35/10 rounds to 4, so three ticks stay silent; row 4 is marked missing */
+    /* 10 ms steps; rows 2 and 3 are 35 ms apart: 35/10 rounds to 4, so three ticks are silent; row 4 marked missing */
     load("t_us,x,y,z,flags\n0,1,0,0,0\n10000,2,0,0,0\n20000,3,0,0,0\n55000,4,0,0,0\n65000,5,0,0,2\n75000,6,0,0,1\n");
     feed_t feed = feed_of(100.0, false);
     assert_tick(&feed, 0, FEED_SAMPLE, 0);

@@ -236,8 +236,8 @@ static void coast_goes_on_along_the_line(void)
 }
 
 /*
- * a1 = -1/2, b0 = 1/2, exact in Q16: 1000 after rest at 0 gives 500, 0, 0; then 2 x1 - x2 + (x1 - 2 x2 + x3) / 2 again and
- * again: 1250, 2125, 3062.5, 4031.25, and 5015.625 is beyond the format.
+ * a1 = -1/2, b0 = 1/2, exact in Q16: 1000 after rest at 0 gives 500, 0, 0; then 2 x1 - x2 + (x1 - 2 x2 + x3) / 2 again
+ * and again: 1250, 2125, 3062.5, 4031.25, and 5015.625 is beyond the format.
  */
 static void coast_bends_with_a1_up_to_the_bound(void)
 {
@@ -277,7 +277,10 @@ static void coast_before_any_sample_is_zero(void)
     TEST_ASSERT_EQUAL_UINT8(FILTER_WARMING_UP | FILTER_COASTED, synth_flags(&f));
 }
 
-/* R = 3 LSB^2: one sample's variance in the start, then 0.548387 x 3 = 1.645 (421 / 256) at (0, 0.3), 0.822358 x 3 at the paper's. */
+/*
+ * R = 3 LSB^2: one sample's variance in the start, then 0.548387 x 3 = 1.645 (421 / 256) at (0, 0.3), 0.822358 x 3 at
+ * the paper's.
+ */
 static void probe_tells_the_variance(void)
 {
     filter_probe_t probe;

@@ -86,7 +86,7 @@ static void step_peaks_where_the_notes_say(void)
     }
 }
 
-/* Grid over the whole format: taken exactly when all poles lie inside the unit circle (1e-7 aside, the eigenvalues' error). */
+/* Grid over the whole format: taken exactly when all poles lie inside the unit circle, to the eigenvalues' 1e-7. */
 static void region_is_exactly_the_stable_one(void)
 {
     int taken = 0;
@@ -144,9 +144,9 @@ static void variance_has_a_floor_of_half_r(void)
 }
 
 /*
- * Each product is rounded by at most 2^-17 LSB; that of a1 passes the update with 1 - b0. An error of the estimate returns with
- * the impulse response g of the loop, so |x - reference| <= (1 + (1 - b0)) 2^-17 sum |g|. The start's line adds its rounding
- * once: 6e-5 of 7 x 27 LSB, times the largest |g| <= 3 of these filters.
+ * Each product is rounded by at most 2^-17 LSB; that of a1 passes the update with 1 - b0. An error of the estimate
+ * returns with the impulse response g of the loop, so |x - reference| <= (1 + (1 - b0)) 2^-17 sum |g|. The start's line
+ * adds its rounding once: 6e-5 of 7 x 27 LSB, times the largest |g| <= 3 of these filters.
  */
 static void estimate_equals_the_reference(void)
 {
@@ -218,14 +218,14 @@ static int interval_of(int k)
 
 enum { RUNS = 4000, PER_DEGREE = 100 };
 
-/* One sample in LSB: 100 per degree, level in the middle of the travel; R = 6000 LSB^2, so quantisation is 1e-5 of it. */
+/* One sample in LSB: 100 per degree, level in mid-travel; R = 6000 LSB^2, so quantisation is 1e-5 of it. */
 static int16_t noisy(int which, int k, test_random_t *random)
 {
     double degrees = profile(which, 0.1 * k) - 30.0 + sqrt(0.6) * random_normal(random);
     return as_sample(PER_DEGREE * degrees);
 }
 
-/* Mean squared errors over RUNS runs by the fixed-point filter from a reset (fixed) or by the reference with its start. */
+/* Mean squared errors over RUNS runs by the fixed-point filter from a reset (fixed) or by the reference's start. */
 static void measure(const experiment_t *e, int which, bool fixed, double *mse)
 {
     static const int counts[3] = { 51, 41, 41 };
@@ -280,8 +280,9 @@ static void reference_start_has_the_errors_of_the_notes(void)
 }
 
 /*
- * The library's own start, a fitted line through five samples and then the same gains: least squares has the variance 0.6 R at
- * its fifth sample, and in the mean over 6..20 it must not be worse than the start of notes 2.2 (0.7237 R at n = 5).
+ * The library's own start, a fitted line through five samples and then the same gains: least squares has the variance
+ * 0.6 R at its fifth sample, and in the mean over 6..20 it must not be worse than the start of notes 2.2 (0.7237 R
+ * at n = 5).
  */
 static void fitted_start_is_no_worse_than_the_notes_start(void)
 {
@@ -310,8 +311,8 @@ static void fitted_start_is_no_worse_than_the_notes_start(void)
 }
 
 /*
- * Steady error under a constant second difference d: (1 - b0) (1 + a1) / b0 x d, 6.3 d at the paper's point. Triangular numbers
- * have d = 1; from sample 220 on the poles (0.958) have forgotten the start to 1e-4 of its 128 LSB a sample.
+ * Steady error under a constant second difference d: (1 - b0) (1 + a1) / b0 x d, 6.3 d at the paper's point. Triangular
+ * numbers have d = 1; from sample 220 on the poles (0.958) have forgotten the start to 1e-4 of its 128 LSB a sample.
  */
 static void lag_under_acceleration_is_the_closed_form(void)
 {
@@ -327,7 +328,7 @@ static void lag_under_acceleration_is_the_closed_form(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.01 * 6.3, 6.3, mean);
 }
 
-/* Altitude of paper 001: v0 10 m/s, a 5 m/s^2 from 20 to 35 s, -5 to 50 s, T 0.1 s; doubled: x = a t^2, as a reading of it. */
+/* Altitude of paper 001: v0 10 m/s, a 5 m/s^2 from 20 to 35 s, -5 to 50 s, T 0.1 s; doubled: x = a t^2, one reading. */
 static double altitude(double t, double doubled)
 {
     double up = fmin(fmax(t - 20.0, 0.0), 15.0);
@@ -366,7 +367,7 @@ static altitude_result_t altitude_experiment(double a1, double b0, double double
     return result;
 }
 
-/* Paper 001's 0.37 m and 0.9 m are not those of its own parameters: exact are sqrt(0.822358 / 4) = 0.4534 m and 0.315 m. */
+/* Paper 001's 0.37 m and 0.9 m are not its own parameters': exact are sqrt(0.822358 / 4) = 0.4534 m and 0.315 m. */
 static void altitude_of_paper_001_comes_out_otherwise(void)
 {
     altitude_result_t printed = altitude_experiment(-0.3, 0.1, 1.0);

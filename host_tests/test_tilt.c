@@ -1,6 +1,6 @@
 /*
- * lib/tilt in integers, on the PC and on the chip: exact cases, symmetries, the ends of the ranges. Errors against double:
- * test_tilt_reference.c.
+ * lib/tilt in integers, on the PC and on the chip: exact cases, symmetries, the ends of the ranges. Errors against
+ * double: test_tilt_reference.c.
  */
 #include "support_filters.h"
 #include "tilt.h"

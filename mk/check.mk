@@ -70,6 +70,7 @@ check-deviations: check-objects
 	@$(PY) tools/check_deviations.py
 
 check-planted:
+	@python3 host_tests/test_planted.py
 	@python3 tools/planted.py $(ONLY)
 
 .PHONY: check check-built check-objects check-planted $(CHECKS:%=check-%)

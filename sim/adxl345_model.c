@@ -1,6 +1,6 @@
 /*
- * Page numbers are those of the ADXL345 data sheet, Rev. E. Tap, activity and free-fall detection are not computed: their
- * INT_SOURCE bits rise only through adxl345_model_event.
+ * Page numbers are those of the ADXL345 data sheet, Rev. E. Tap, activity and free-fall detection are not computed:
+ * their INT_SOURCE bits rise only through adxl345_model_event.
  */
 #include "adxl345_model.h"
 
@@ -29,7 +29,7 @@ enum {
 
 enum fifo_mode { MODE_BYPASS = 0, MODE_FIFO = 1, MODE_STREAM = 2, MODE_TRIGGER = 3 };
 
-/* Middle of the self-test limits at 2.5 V, full resolution: 50..540, -540..-50, 75..875 LSB (p. 5 and Table 15, p. 31). */
+/* Middle of the self-test limits at 2.5 V, full resolution: 50..540, -540..-50, 75..875 LSB (p. 5; Table 15, p. 31) */
 static const int16_t self_test_lsb[3] = { 295, -295, 475 };
 
 static unsigned fifo_mode(const adxl345_model_t *m)

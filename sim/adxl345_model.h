@@ -1,8 +1,8 @@
 /*
  * A virtual ADXL345 at register level, in pure C: no simulator types, no clock of its own. Whoever owns time calls
- * adxl345_model_tick once per output-data-rate period and passes the bus events in; the model answers with ACKs, bytes and the
- * levels of INT1 and INT2. Used under simavr (sim/simrun.c) and natively (hal/host).
- * Source: ADXL345 data sheet Rev. E; facts with pages in docs/wiring.md.
+ * adxl345_model_tick once per output-data-rate period and passes the bus events in; the model answers with ACKs, bytes
+ * and the levels of INT1 and INT2. Used under simavr (sim/simrun.c) and natively (hal/host). Source: ADXL345 data sheet
+ * Rev. E; facts with pages in docs/wiring.md.
  */
 #ifndef ADXL345_MODEL_H
 #define ADXL345_MODEL_H
@@ -43,12 +43,15 @@ typedef struct adxl345_model {
 /* Powered, registers at their reset values, address 0x53, shadowing on, no callbacks. */
 void adxl345_model_init(adxl345_model_t *m);
 
-/* Power off (no ACK, pins low) and on (registers at reset, FIFO empty, pointer 0). An MCU reset does nothing to the sensor. */
+/*
+ * Power off (no ACK, pins low) and on (registers at reset, FIFO empty, pointer 0). An MCU reset does nothing to the
+ * sensor.
+ */
 void adxl345_model_power(adxl345_model_t *m, bool on);
 
 /*
- * Something outside made the sensor see a tap, activity, inactivity or free fall: these INT_SOURCE bits (6..2, others are
- * ignored) are latched until INT_SOURCE is read. The model does not compute them from the acceleration.
+ * Something outside made the sensor see a tap, activity, inactivity or free fall: these INT_SOURCE bits (6..2, others
+ * are ignored) are latched until INT_SOURCE is read. The model does not compute them from the acceleration.
  */
 void adxl345_model_event(adxl345_model_t *m, uint8_t source_bits);
 
@@ -68,7 +71,8 @@ double adxl345_model_odr_hz(const adxl345_model_t *m);
  * One output-data-rate period has passed and the acceleration is `full` (full-resolution LSB at +-16 g, 256 LSB/g).
  * Applies self-test shift, offset registers, range, resolution, justification and rails, then stores into the data
  * registers or the FIFO according to its mode. Returns false when not measuring (nothing stored).
- * Turn-on: the owner makes the first tick one period and 1.1 ms after Measure was set (p. 5), the others one period apart.
+ * Turn-on: the owner makes the first tick one period and 1.1 ms after Measure was set (p. 5), the others one period
+ * apart.
  */
 bool adxl345_model_tick(adxl345_model_t *m, const int16_t full[3]);
 

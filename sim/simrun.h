@@ -1,7 +1,7 @@
 /*
- * simrun: the unmodified firmware of the UNO in libsimavr, with the virtual ADXL345 on its bus and a recorded stream in the
- * sensor. Each part below is one simrun_<part>.c with its own state; simrun_main.c ties them together.
- * Time is avr->cycle, 16 per microsecond, from the start of the MCU.
+ * simrun: the unmodified firmware of the UNO in libsimavr, with the virtual ADXL345 on its bus and a recorded stream in
+ * the sensor. Each part below is one simrun_<part>.c with its own state; simrun_main.c ties them together. Time is
+ * avr->cycle, 16 per microsecond, from the start of the MCU.
  */
 #ifndef SIMRUN_H
 #define SIMRUN_H

@@ -1,6 +1,6 @@
 /*
- * The boot loader's image, Intel HEX, beside the firmware. simavr 1.6 has a reader of its own, which takes the start address
- * record of Arduino's images for data.
+ * The boot loader's image, Intel HEX, beside the firmware. simavr 1.6 has a reader of its own, which takes the start
+ * address record of Arduino's images for data.
  */
 #include <ctype.h>
 #include <stdarg.h>
@@ -41,7 +41,10 @@ static void refuse(unsigned line, const char *format, ...)
     exit(EXIT_INPUT);
 }
 
-/* The bytes of a line, ":" and hexadecimal digits, checked as a record; returns how many data bytes are behind the header. */
+/*
+ * The bytes of a line, ":" and hexadecimal digits, checked as a record; returns how many data bytes are behind the
+ * header.
+ */
 static unsigned decode(const char *text, unsigned line, uint8_t record[RECORD_MAX])
 {
     size_t count = 0;

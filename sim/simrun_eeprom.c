@@ -1,6 +1,6 @@
 /*
- * EEPROM contents in a file, and the 3.4 ms of a write, which simavr 1.6 does in no time: EEPE stays set, and a power cycle
- * in that time leaves junk in the cell.
+ * EEPROM contents in a file, and the 3.4 ms of a write, which simavr 1.6 does in no time: EEPE stays set, and a power
+ * cycle in that time leaves junk in the cell.
  */
 #include <stdlib.h>
 #include <string.h>

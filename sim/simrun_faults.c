@@ -1,6 +1,6 @@
 /*
- * Faults from the command line: WHEN they begin, WHAT they do, how long a state lasts, and how long the firmware needs until
- * the first good row after it: a row without flag 2 or 16 that shows a sample latched after the fault had ended.
+ * Faults from the command line: WHEN they begin, WHAT they do, how long a state lasts, and how long the firmware needs
+ * until the first good row after it: a row without flag 2 or 16 that shows a sample latched after the fault had ended.
  */
 #include <stdlib.h>
 #include <string.h>

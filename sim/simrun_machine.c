@@ -1,6 +1,7 @@
 /*
- * The ATmega328P: what simavr 1.6 gets wrong is put right here (no-op sleep, interrupt entry time, level interrupts, frequency,
- * resets that drop every timer), and every instruction is watched: program counter, stack pointer, illegal opcodes.
+ * The ATmega328P: what simavr 1.6 gets wrong is put right here (no-op sleep, interrupt entry time, level interrupts,
+ * frequency, resets that drop every timer), and every instruction is watched: program counter, stack pointer, illegal
+ * opcodes.
  */
 #include <signal.h>
 #include <stdlib.h>
@@ -352,8 +353,8 @@ static uint64_t next_timer(void)
 }
 
 /*
- * A few instructions, as avr_run does them, but without asking every timer after each: four times as fast, same cycles (a
- * timer set meanwhile makes simavr end the chunk in time). True when more than the program counter may have changed.
+ * A few instructions, as avr_run does them, but without asking every timer after each: four times as fast, same cycles
+ * (a timer set meanwhile makes simavr end the chunk in time). True when more than the program counter may have changed.
  */
 static bool step(uint64_t chunk)
 {

@@ -1,4 +1,7 @@
-/* The clock of the virtual ADXL345: each output-data-rate period takes a row of the stream. And the file of what it served. */
+/*
+ * The clock of the virtual ADXL345: each output-data-rate period takes a row of the stream. And the file of what it
+ * served.
+ */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /*
- * Cycles from one function's entry to another's (--span): what main spends in between, interrupts taken out, and how deep its
- * stack goes, one line per passage.
+ * Cycles from one function's entry to another's (--span): what main spends in between, interrupts taken out, and how
+ * deep its stack goes, one line per passage.
  */
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /*
- * How deep the stack goes. All RAM above _end is painted before the start; what no longer shows the paint was used. The stack
- * has run into the variables when the byte that a push with SP = _end + 1 writes has changed, or SP stays at or below _end.
+ * How deep the stack goes. All RAM above _end is painted before the start; what no longer shows the paint was used. The
+ * stack has run into the variables when the byte that a push with SP = _end + 1 writes has changed, or SP stays at or
+ * below _end.
  */
 #include <string.h>
 
@@ -34,7 +35,10 @@ void stack_paint_is(void)
     last_sp = RAM_END;
 }
 
-/* The first byte above the variables has changed. Far from the stack that is no push: then the firmware paints for itself. */
+/*
+ * The first byte above the variables has changed. Far from the stack that is no push: then the firmware paints for
+ * itself.
+ */
 static void guard_changed(uint16_t sp, uint32_t end_of_ram)
 {
     if (sp > end_of_ram + NEAR) {

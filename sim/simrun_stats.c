@@ -229,9 +229,9 @@ static size_t served_of(const row_t *row)
 }
 
 /*
- * Samples served from that of the first row to that of the last one that is no prediction, less those the rows stand for.
- * The rows' own time stamps measure the distance; a lost remainder shorter than one row is not seen. Only for a run at one
- * rate without resets or faults: the file of --served is the judge.
+ * Samples served from that of the first row to that of the last one that is no prediction, less those the rows stand
+ * for. The rows' own time stamps measure the distance; a lost remainder shorter than one row is not seen. Only for a
+ * run at one rate without resets or faults: the file of --served is the judge.
  */
 static unsigned lost(unsigned every)
 {

@@ -1,6 +1,6 @@
 /*
- * The line to the PC: what the firmware sends goes to --out and is cut into lines; the commands of --rate and the like and of
- * --cmd are typed, one byte per byte time. Bytes, not bits: the PC always follows the MCU's baud rate.
+ * The line to the PC: what the firmware sends goes to --out and is cut into lines; the commands of --rate and the like
+ * and of --cmd are typed, one byte per byte time. Bytes, not bits: the PC always follows the MCU's baud rate.
  */
 #include <ctype.h>
 #include <stdlib.h>

@@ -27,11 +27,11 @@ typedef struct {
 } stream_t;
 
 /*
- * Reads a whole CSV stream as in docs/protocol.md: header with t_us and x,y,z or x_lsb,y_lsb,z_lsb, other columns ignored,
- * optional roll_true_cdeg,pitch_true_cdeg and flags; lines beginning with '#' and blank lines skipped; BOM and CRLF accepted.
- * A step back of t_us of more than 2^31 is a wrap; a repeated header starts a new segment (time goes on one period later).
- * Errors (false, stream->error set, nothing leaked): cannot open, empty, missing column, wrong field count, text in a number,
- * time going backwards, value outside -4096..4095.
+ * Reads a whole CSV stream as in docs/protocol.md: header with t_us and x,y,z or x_lsb,y_lsb,z_lsb, other columns
+ * ignored, optional roll_true_cdeg,pitch_true_cdeg and flags; lines beginning with '#' and blank lines skipped; BOM and
+ * CRLF accepted. A step back of t_us of more than 2^31 is a wrap; a repeated header starts a new segment (time goes on
+ * one period later). Errors (false, stream->error set, nothing leaked): cannot open, empty, missing column, wrong field
+ * count, text in a number, time going backwards, value outside -4096..4095.
  */
 bool stream_load(stream_t *stream, const char *path);
 void stream_free(stream_t *stream);
@@ -57,7 +57,7 @@ void feed_set_rate(feed_t *feed, const stream_t *stream, double odr_hz, uint64_t
 
 typedef enum { FEED_SAMPLE, FEED_NOTHING, FEED_END } feed_result_t;
 
-/* One output-data-rate tick at sensor time now_us. FEED_SAMPLE: *row_index is the row. FEED_NOTHING: a gap. FEED_END: over. */
+/* One output-data-rate tick at time now_us. FEED_SAMPLE: *row_index is the row. FEED_NOTHING: a gap. FEED_END: over. */
 feed_result_t feed_tick(feed_t *feed, uint64_t now_us, size_t *row_index);
 
 #endif

@@ -1,11 +1,11 @@
 /*
- * The ATmega328P's two-wire interface as a bus master, in place of simavr 1.6's (which reports wrong status codes, ignores
- * TWBR and cannot be polled). Source: ATmega328P data sheet, chapter "2-wire Serial Interface", status codes in Tables 22-2
- * and 22-3. Slave mode and other masters are not modelled, except as faults.
+ * The ATmega328P's two-wire interface as a bus master, in place of simavr 1.6's (which reports wrong status codes,
+ * ignores TWBR and cannot be polled). Source: ATmega328P data sheet, chapter "2-wire Serial Interface", status codes in
+ * Tables 22-2 and 22-3. Slave mode and other masters are not modelled, except as faults.
  *
  * Times: START and STOP one bit, a byte with its acknowledge nine; a bit is 16 + 2 TWBR 4^TWPS cycles.
- * Levels of PC4 (SDA) and PC5 (SCL) as read by the firmware follow a line held low from outside and its own DDRC; the TWI's
- * own traffic is not shown on them.
+ * Levels of PC4 (SDA) and PC5 (SCL) as read by the firmware follow a line held low from outside and its own DDRC; the
+ * TWI's own traffic is not shown on them.
  */
 #ifndef TWI_PERIPHERAL_H
 #define TWI_PERIPHERAL_H
@@ -58,7 +58,10 @@ typedef struct {
 /* Takes over TWCR, TWDR and TWSR of this MCU. False when it has no TWI vector. */
 bool twi_attach(twi_peripheral_t *twi, avr_t *avr);
 
-/* After every reset of the MCU (simavr has dropped all timers): registers at reset; a slave in the middle of a byte stays so. */
+/*
+ * After every reset of the MCU (simavr has dropped all timers): registers at reset; a slave in the middle of a byte
+ * stays so.
+ */
 void twi_reset(twi_peripheral_t *twi);
 
 /* Hold lines low from outside, or let go of them: what was waiting for a free line goes on. */

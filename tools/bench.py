@@ -191,7 +191,8 @@ def limit_faults(filters, rows, rms):
             continue
         for kind in ("median", "worst_both"):
             if yardstick[kind] < RATIO_LIMIT * row[kind]:
-                faults.append(f"{name}: {kind.split('_')[0]} {row[kind]} cycles, float {yardstick[kind]}: {yardstick[kind] / row[kind]:.2f} times fewer, wanted {RATIO_LIMIT:g}")
+                faults.append(f"{name}: {kind.split('_')[0]} {row[kind]} cycles, float {yardstick[kind]}: "
+                              f"{yardstick[kind] / row[kind]:.2f} times fewer, wanted {RATIO_LIMIT:g}")
     return faults + agreement_faults(filters, rms)
 
 

@@ -43,6 +43,8 @@ CHIP_TESTS, CHIP_TESTS_NEVER = "host_tests/avr", re.compile(r"hal/(avr|host)/")
 # the one file that may know the machine inside the pure libraries, and only under a guard
 PRIMITIVES = pathlib.Path("lib/filters/src/fx.h")
 PURE = ("lib", "firmware")
+# names that tell one machine from another, wherever they stand in the code
+MACHINE = re.compile(r"\b(__AVR\w*|AVR|ARDUINO\w*|__GNUC_AVR\w*|__INT_MAX__|__INT_WIDTH__|__SIZEOF_\w+|__WORDSIZE)\b")
 
 
 def home(path, folders):
@@ -50,12 +52,18 @@ def home(path, folders):
     return max((f for f in folders if f in map(str, path.parents)), key=len, default=None)
 
 
-def includes(path):
-    """(line number, what stands behind #include) of a file, comments taken out."""
+def code(path):
+    """(line number, line) of a file, comments taken out."""
     text = path.read_text(encoding="utf-8")
     text = re.sub(r"/\*.*?\*/", lambda m: "\n" * m.group().count("\n"), text, flags=re.S)
     for number, line in enumerate(text.replace("\\\n", " \n").splitlines(), 1):
-        found = INCLUDE.match(re.sub(r"//.*", "", line))
+        yield number, re.sub(r"//.*", "", line)
+
+
+def includes(path):
+    """(line number, what stands behind #include) of a file."""
+    for number, line in code(path):
+        found = INCLUDE.match(line)
         if found:
             yield number, found.group(1)
 
@@ -123,9 +131,10 @@ def machine_guards():
     """Only the primitives' header asks for the machine."""
     for path in files(".c", ".h", folders=PURE):
         if path != PRIMITIVES:
-            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-                if re.search(r"__AVR|ARDUINO_ARCH|__GNUC_AVR", line):
-                    yield f"{path}:{number}: only {PRIMITIVES} may ask for the machine"
+            for number, line in code(path):
+                asked = MACHINE.search(re.sub(r'"[^"]*"', "", line))
+                if asked:
+                    yield f"{path}:{number}: only {PRIMITIVES} may ask for the machine, by {asked.group()}"
 
 
 def check():

@@ -24,7 +24,8 @@ NATIVE_BUILDER = """
 AVR_BUILDER = """
     from SCons.Script import Default, DefaultEnvironment
     env = DefaultEnvironment()
-    env.Replace(AR="avr-gcc-ar", AS="avr-as", CC="avr-gcc", CXX="avr-g++", OBJCOPY="avr-objcopy", RANLIB="avr-gcc-ranlib", PROGNAME="firmware", PROGSUFFIX=".elf")
+    env.Replace(AR="avr-gcc-ar", AS="avr-as", CC="avr-gcc", CXX="avr-g++", OBJCOPY="avr-objcopy", RANLIB="avr-gcc-ranlib",
+                PROGNAME="firmware", PROGSUFFIX=".elf")
     cpu = ["-mmcu=$BOARD_MCU"]
     env.Append(
         CFLAGS=["-std=gnu11"],

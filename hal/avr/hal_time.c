@@ -1,6 +1,6 @@
 /*
- * Time from Timer1 at 2 MHz. Compare A fires every 8192 us and moves on by itself; the 16-bit counter runs freely, so a time
- * is (microseconds at the last tick) + (counter - counter at the last tick) / 2.
+ * Time from Timer1 at 2 MHz. Compare A fires every 8192 us and moves on by itself; the 16-bit counter runs freely, so a
+ * time is (microseconds at the last tick) + (counter - counter at the last tick) / 2.
  */
 #include "hal_time.h"
 

@@ -16,8 +16,8 @@ static bool rx_gap;
 static bool line_used;
 
 /*
- * UDR0 = tx_buffer[tx.tail++]; switch this interrupt off with the last byte. By hand, because it runs for every byte sent: the
- * compiler's entry and exit would cost 12 of 53 cycles more, 0.3 % of the processor at 100 rows a second.
+ * UDR0 = tx_buffer[tx.tail++]; switch this interrupt off with the last byte. By hand, because it runs for every byte
+ * sent: the compiler's entry and exit would cost 12 of 53 cycles more, 0.3 % of the processor at 100 rows a second.
  */
 ISR(USART_UDRE_vect, ISR_NAKED)
 {

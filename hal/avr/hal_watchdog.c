@@ -1,6 +1,6 @@
 /*
- * Watchdog in reset mode and the breadcrumb that outlives a reset. The start-up hook runs before .data and .bss are set up:
- * after a watchdog reset the dog is still on with its shortest period and must be stopped first.
+ * Watchdog in reset mode and the breadcrumb that outlives a reset. The start-up hook runs before .data and .bss are set
+ * up: after a watchdog reset the dog is still on with its shortest period and must be stopped first.
  */
 #include "hal_watchdog.h"
 

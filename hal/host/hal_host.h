@@ -1,7 +1,7 @@
 /*
- * What stands behind the host's HAL: a virtual clock, an I2C master at bit-time accuracy on the virtual ADXL345, a UART line.
- * The clock moves while main sleeps, from event to event, and by a fixed 20 us per pass of main, so a run is exactly repeatable
- * and as fast as the PC. For tests and for the native replay.
+ * What stands behind the host's HAL: a virtual clock, an I2C master at bit-time accuracy on the virtual ADXL345, a UART
+ * line. The clock moves while main sleeps, from event to event, and by a fixed 20 us per pass of main, so a run is
+ * exactly repeatable and as fast as the PC. For tests and for the native replay.
  */
 #ifndef HAL_HOST_H
 #define HAL_HOST_H
@@ -42,7 +42,10 @@ extern hal_host_faults_t hal_host_faults;
 /* Power-on of board and sensor. The stream may be NULL (no sample ever). */
 void hal_host_begin(const hal_host_config_t *config, const stream_t *stream, bool loop);
 
-/* A reset of the MCU alone (time goes on, the sensor does not notice); the next firmware start sees this cause and note. */
+/*
+ * A reset of the MCU alone (time goes on, the sensor does not notice); the next firmware start sees this cause and
+ * note.
+ */
 void hal_host_reset_mcu(uint8_t cause);
 
 /* Types these bytes at the current baud rate, beginning now. */

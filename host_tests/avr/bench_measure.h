@@ -28,7 +28,7 @@ static uint16_t NOINLINE timed(void (*call)(void))
     return TCNT1;
 }
 
-/* Bytes of stack that a call takes: what no longer shows the paint below SP. The two bytes of the caller's return address included. */
+/* Bytes of stack that a call takes, the return address included: what no longer shows the paint below SP. */
 static uint16_t NOINLINE stack_of(void (*call)(void))
 {
     uint8_t *top = (uint8_t *)SP;

@@ -1,8 +1,8 @@
 /*
- * The yardstick of the benchmark: each filter of the list as one writes it with float from the textbook, and the angles. Test
- * only; never linked into the firmware. For a filter F of the list there are float_F_t and
+ * The yardstick of the benchmark: each filter of the list as one writes it with float from the textbook, and the
+ * angles. Test only; never linked into the firmware. For a filter F of the list there are float_F_t and
  *
- *   void  float_F_start(float_F_t *f, const F_config_t *config, float x0_lsb);   running from x0, as F after its warm-up
+ *   void  float_F_start(float_F_t *f, const F_config_t *config, float x0_lsb);   runs from x0, as F after its warm-up
  *   void  float_F_set_noise(float_F_t *f, float r_lsb2);
  *   float float_F_update(float_F_t *f, int16_t z_lsb);
  *   float float_F_coast(float_F_t *f);

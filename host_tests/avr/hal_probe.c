@@ -1,7 +1,7 @@
 /*
- * Runs on the ATmega328P (simavr): the parts of the HAL that the firmware does not use yet, each answered with a line on the
- * UART. Reads EEPROM byte 1023, writes its complement, waits for the write by sleeping, reads it back; then sleeps with
- * interrupts off.
+ * Runs on the ATmega328P (simavr): the parts of the HAL that the firmware does not use yet, each answered with a line
+ * on the UART. Reads EEPROM byte 1023, writes its complement, waits for the write by sleeping, reads it back; then
+ * sleeps with interrupts off.
  */
 #include <avr/interrupt.h>
 #include <avr/sleep.h>

@@ -1,6 +1,6 @@
 /*
- * Programs that do what a firmware must not, one per CASE, to see that simrun notices each and tells them apart. Warnings
- * are not for these.
+ * Programs that do what a firmware must not, one per CASE, to see that simrun notices each and tells them apart.
+ * Warnings are not for these.
  */
 #include <avr/interrupt.h>
 #include <avr/io.h>

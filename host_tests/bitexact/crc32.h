@@ -1,4 +1,4 @@
-/* CRC-32 (IEEE 802.3) over values as little-endian bytes, the same on every machine; a table of 16 in program memory. */
+/* CRC-32 (IEEE 802.3) over values as little-endian bytes, the same on any machine; a table of 16 in program memory. */
 #ifndef CRC32_H
 #define CRC32_H
 

@@ -1,7 +1,7 @@
 /*
- * filter_sequence [UPDATES STEP]: the sequence of filter_sequence.h, on the PC 10^7 updates in steps of 10^6 unless told
- * otherwise, on the chip 10^5 in steps of 10^4; a line per step: updates, CRC-32, configurations begun, drawn in vain.
- * The last line is in Unity's form.
+ * filter_sequence [UPDATES STEP]: the sequence of filter_sequence.h, on the PC 10^7 updates in steps of 10^6 unless
+ * told otherwise, on the chip 10^5 in steps of 10^4; a line per step: updates, CRC-32, configurations begun, drawn in
+ * vain. The last line is in Unity's form.
  */
 #include "crc32.h"
 #include "filter_sequence.h"

@@ -1,6 +1,6 @@
 /*
- * Paths of the formatting: numbers, and whole rows of the real pipeline in both output modes. The UART of this program is
- * the output that is compared.
+ * Paths of the formatting: numbers, and whole rows of the real pipeline in both output modes. The UART of this program
+ * is the output that is compared.
  */
 #include "format.h"
 #include "fx.h"

@@ -1,7 +1,7 @@
 /*
- * Any bytes typed to the whole firmware on virtual time. Each line gets the replies that docs/protocol.md gives it, in order
- * (exact while the receive ring lost nothing); settings are legal at any time and at the end those that were asked for;
- * every line sent keeps the protocol's grammar.
+ * Any bytes typed to the whole firmware on virtual time. Each line gets the replies that docs/protocol.md gives it, in
+ * order (exact while the receive ring lost nothing); settings are legal at any time and at the end those that were
+ * asked for; every line sent keeps the protocol's grammar.
  *
  * Input: an options byte, then bytes as typed; 0 is a pause of 40 ms.
  */
@@ -87,7 +87,7 @@ static bool quiet(void)
     return replies_empty() && app_takes_commands();
 }
 
-/* Until nothing is under way any more: bytes, replies, a change of the line rate; and what the ring held has gone out. */
+/* Until nothing is under way: bytes, replies, a change of the line rate; and what the ring held has gone out. */
 static void settle(void)
 {
     double quiet_ms = 30.0 + 257e4 / (double)settings.baud;

@@ -1,4 +1,7 @@
-/* The protocol as its document has it, apart from the firmware: what a typed line must be answered with, what may be sent. */
+/*
+ * The protocol as its document has it, apart from the firmware: what a typed line must be answered with, what may be
+ * sent.
+ */
 #ifndef FUZZ_COMMANDS_H
 #define FUZZ_COMMANDS_H
 

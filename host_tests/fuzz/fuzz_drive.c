@@ -1,9 +1,10 @@
 /*
- * Drives a fuzz target where there is no libFuzzer: mutates inputs (fuzz_mutate.c) and keeps those that reach new code, as
- * told by gcc's -fsanitize-coverage=trace-pc.
+ * Drives a fuzz target where there is no libFuzzer: mutates inputs (fuzz_mutate.c) and keeps those that reach new code,
+ * as told by gcc's -fsanitize-coverage=trace-pc.
  *
- *   fuzz_TARGET --seconds N --seed N --work DIR [--dict FILE] CORPUS...    DIR/corpus gets what is new, DIR/current holds
- *                                                                          the input that runs: whatever ends this process
+ *   fuzz_TARGET --seconds N --seed N --work DIR [--dict FILE] CORPUS...    DIR/corpus gets what is new, DIR/current
+ *                                                                          holds the input that runs: whatever ends
+ *                                                                          this process
  *   fuzz_TARGET FILE...                                                    runs these inputs once
  */
 #define _GNU_SOURCE

@@ -1,4 +1,7 @@
-/* What the pieces of the driver for gcc share (fuzz_drive.c, fuzz_mutate.c, fuzz_dictionary.c); libFuzzer uses none of them. */
+/*
+ * What the pieces of the driver for gcc share (fuzz_drive.c, fuzz_mutate.c, fuzz_dictionary.c); libFuzzer uses none of
+ * them.
+ */
 #ifndef FUZZ_DRIVE_H
 #define FUZZ_DRIVE_H
 

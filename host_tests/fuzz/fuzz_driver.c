@@ -1,8 +1,8 @@
 /*
- * The driver on the virtual sensor and bus: arbitrary register contents at the start, then any sequence of starts, stops,
- * stalls of main, broken wires, foreign bus states, lost writes, power cycles and changed registers. The queue keeps its
- * bounds, the deadline that the watchdog looks at never passes unnoticed, no sample comes out that the sensor did not hold,
- * and once the faults end, samples come, complete and in order, within RECOVERY_MS and RECOVERY_PERIODS.
+ * The driver on the virtual sensor and bus: arbitrary register contents at the start, then any sequence of starts,
+ * stops, stalls of main, broken wires, foreign bus states, lost writes, power cycles and changed registers. The queue
+ * keeps its bounds, the deadline that the watchdog looks at never passes unnoticed, no sample comes out that the sensor
+ * did not hold, and once the faults end, samples come, complete and in order, within RECOVERY_MS and RECOVERY_PERIODS.
  *
  * Input: a byte of options, registers (number, then address and value each), then operations of two bytes.
  */
@@ -22,9 +22,9 @@
 enum { LATCHED_MAX = 60000, STREAM_ROWS = 4000, REGISTERS_MAX = 8, OPERATIONS_MAX = 120 };
 
 /*
- * The longest way back, from the limits in lib/adxl345/src/adxl345.c. Drain that lasts 100 ms; probe and configuration, 21
- * accesses, 6 ms; first sample awaited 20 ms and 3 periods; the sensor asked, 3 ms; back-off 25 ms; probe at the other
- * address and configuration again, 7 ms; first sample after 1.1 ms and 2 periods.
+ * The longest way back, from the limits in lib/adxl345/src/adxl345.c. Drain that lasts 100 ms; probe and configuration,
+ * 21 accesses, 6 ms; first sample awaited 20 ms and 3 periods; the sensor asked, 3 ms; back-off 25 ms; probe at the
+ * other address and configuration again, 7 ms; first sample after 1.1 ms and 2 periods.
  */
 #define RECOVERY_MS 165.0
 #define RECOVERY_PERIODS 5.0
@@ -115,7 +115,10 @@ static void run_ms(double ms, bool take)
     }
 }
 
-/* Main does something else: interrupts run, nobody polls. Its own first poll after that is late through no fault of the driver. */
+/*
+ * Main does something else: interrupts run, nobody polls. Its own first poll after that is late through no fault of the
+ * driver.
+ */
 static void stall_ms(double ms)
 {
     for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
@@ -145,7 +148,10 @@ static void start(uint8_t choice)
     running = true;
 }
 
-/* States that no transfer of ours can mean; the others would say that a byte was acknowledged which the sensor never saw. */
+/*
+ * States that no transfer of ours can mean; the others would say that a byte was acknowledged which the sensor never
+ * saw.
+ */
 static int foreign_status(uint8_t choice)
 {
     static const uint8_t status[] = { 0x00, 0x20, 0x30, 0x38, 0x48, 0x60, 0x68, 0x70, 0x78, 0x80, 0x88,

@@ -1,7 +1,7 @@
 /*
- * Any legal configuration of any filter, any sequence of calls. Holds what filter.h promises of every filter, and of each
- * filter the bounds that its own header states: broken_bound of support_filters.c, where a filter of the list that has no
- * bounds does not compile.
+ * Any legal configuration of any filter, any sequence of calls. Holds what filter.h promises of every filter, and of
+ * each filter the bounds that its own header states: broken_bound of support_filters.c, where a filter of the list that
+ * has no bounds does not compile.
  *
  * Input: kind, rate, a byte per parameter (its place in the legal range) and then calls, an operation byte each.
  */
@@ -38,7 +38,7 @@ static uint32_t within(uint32_t min, uint32_t max, uint8_t place)
     return place == 0 || above > max - min ? min : min + above;
 }
 
-/* A configuration that the filter takes; parameters that do not go together leave the defaults, which every rate has. */
+/* A configuration that the filter takes; parameters that do not go together leave the defaults that every rate has. */
 static void init(filter_any_t *f, fuzz_input_t *in)
 {
     filter_kind_t kind = (filter_kind_t)(fuzz_u8(in) % FILTER_KIND_COUNT);

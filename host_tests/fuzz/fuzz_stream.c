@@ -1,6 +1,6 @@
 /*
- * Any bytes as a recording (sim/stream.c). A refusal names file and line; what is accepted is within the documented ranges
- * and says the same when it is written as a stream again and read back; and the feed gives the rows it should.
+ * Any bytes as a recording (sim/stream.c). A refusal names file and line; what is accepted is within the documented
+ * ranges and says the same when it is written as a stream again and read back; and the feed gives the rows it should.
  */
 #define _GNU_SOURCE
 #include <stdio.h>
@@ -100,7 +100,10 @@ static void check_same(const stream_t *a, const stream_t *b)
     }
 }
 
-/* Row per tick or the row in force: an index of the stream, in order until it begins again, and an end when it does not. */
+/*
+ * Row per tick or the row in force: an index of the stream, in order until it begins again, and an end when it does
+ * not.
+ */
 static void check_feed(const stream_t *stream, double odr_hz, bool loop)
 {
     feed_t feed = { .stream = stream, .loop = loop };

@@ -34,7 +34,10 @@ static void normalised_in(uint32_t from, uint32_t to)
     }
 }
 
-/* One call for each exponent and each position of the leading bit; a mantissa of ones, which rounding up carries, apart. */
+/*
+ * One call for each exponent and each position of the leading bit; a mantissa of ones, which rounding up carries,
+ * apart.
+ */
 void proof_normalised(void)
 {
     for (uint8_t bit = 0; bit < 32; bit++) {

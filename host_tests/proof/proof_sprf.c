@@ -74,8 +74,8 @@ static void init_core(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3)
 }
 
 /*
- * Uses: normalised, two_state_set_noise, two_state_set_gate, fx_isqrt32. A box that holds all legal configurations, then all with
- * one parameter below or above it.
+ * Uses: normalised, two_state_set_noise, two_state_set_gate, fx_isqrt32. A box that holds all legal configurations,
+ * then all with one parameter below or above it.
  */
 void proof_sprf_init(void)
 {

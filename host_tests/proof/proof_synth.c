@@ -37,8 +37,8 @@ int32_t synth_update(synth_t *f, int16_t z_lsb);
 int32_t synth_coast(synth_t *f);
 
 /*
- * 256 LSB each. x_e + b0 (z - x_e) lies between x_e and z, which intervals do not know: they add a cell's width, so that
- * with z within 4096 LSB any width below 512 is enough.
+ * 256 LSB each. x_e + b0 (z - x_e) lies between x_e and z, which intervals do not know: they add a cell's width, so
+ * that with z within 4096 LSB any width below 512 is enough.
  */
 #define CELL_Q16 16777216
 #define CELL(k) (CELL_Q16 * (k) <= *x_lsb_q16 < CELL_Q16 * ((k) + 1))
@@ -46,9 +46,9 @@ int32_t synth_coast(synth_t *f);
     assigns *x_lsb_q16, \result \from *x_lsb_q16;
     ensures CELL(-18) || CELL(-17) || CELL(-16) || CELL(-15) || CELL(-14) || CELL(-13) || CELL(-12) || CELL(-11) ||
             CELL(-10) || CELL(-9) || CELL(-8) || CELL(-7) || CELL(-6) || CELL(-5) || CELL(-4) || CELL(-3) || CELL(-2) ||
-            CELL(-1) || CELL(0) || CELL(1) || CELL(2) || CELL(3) || CELL(4) || CELL(5) || CELL(6) || CELL(7) || CELL(8) ||
-            CELL(9) || CELL(10) || CELL(11) || CELL(12) || CELL(13) || CELL(14) || CELL(15) || CELL(16) || CELL(17) ||
-            *x_lsb_q16 == X_MAX_Q16;
+            CELL(-1) || CELL(0) || CELL(1) || CELL(2) || CELL(3) || CELL(4) || CELL(5) || CELL(6) || CELL(7) ||
+            CELL(8) || CELL(9) || CELL(10) || CELL(11) || CELL(12) || CELL(13) || CELL(14) || CELL(15) || CELL(16) ||
+            CELL(17) || *x_lsb_q16 == X_MAX_Q16;
     ensures \result == 0 || \result == 1;
 */
 static inline bool limit_x(int32_t *x_lsb_q16);
@@ -117,8 +117,8 @@ void proof_limit_x(void)
 }
 
 /*
- * By intervals of the median: near an end of the range the other samples can be far from it to one side only, which keeps
- * the line within the bound even though intervals take mean and slope for independent.
+ * By intervals of the median: near an end of the range the other samples can be far from it to one side only, which
+ * keeps the line within the bound even though intervals take mean and slope for independent.
  */
 void proof_fit_start(void)
 {

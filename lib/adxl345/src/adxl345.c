@@ -1,6 +1,6 @@
 /*
- * The driver's state machine. Each step issues at most one register access, and has a deadline; adxl345_poll looks at the
- * result and goes on. All in main; the interrupts are in adxl345_burst.c.
+ * The driver's state machine. Each step issues at most one register access, and has a deadline; adxl345_poll looks at
+ * the result and goes on. All in main; the interrupts are in adxl345_burst.c.
  */
 #include "adxl345.h"
 

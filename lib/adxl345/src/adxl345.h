@@ -4,9 +4,9 @@
  *   stopped -> probe (0x53, then 0x1D) -> configure in standby -> read back -> streaming
  *                ^------------------- fault (named, retried with back-off) <-----'
  *
- * While streaming, the data-ready interrupt stamps the time and starts one burst; the I2C interrupt moves its bytes into a
- * queue; main takes samples out. What a late read left in the sensor's FIFO (stream mode, 32 deep) is drained from main with
- * interpolated stamps. One sensor, one instance: the interrupts share its state.
+ * While streaming, the data-ready interrupt stamps the time and starts one burst; the I2C interrupt moves its bytes
+ * into a queue; main takes samples out. What a late read left in the sensor's FIFO (stream mode, 32 deep) is drained
+ * from main with interpolated stamps. One sensor, one instance: the interrupts share its state.
  *
  * Contexts: every function here is for main. The two handlers are in adxl345_burst.c.
  */

@@ -1,7 +1,7 @@
 /*
- * One burst of six bytes per sample, straight into a slot of the queue. The data-ready handler starts it, the I2C handler
- * moves its bytes; when it fails, the sample is still in the sensor and INT1 still high, so main reads it again with the
- * stamp of its edge.
+ * One burst of six bytes per sample, straight into a slot of the queue. The data-ready handler starts it, the I2C
+ * handler moves its bytes; when it fails, the sample is still in the sensor and INT1 still high, so main reads it again
+ * with the stamp of its edge.
  */
 #include "adxl345_burst.h"
 

@@ -10,9 +10,9 @@ typedef struct {
 } setting_t;
 
 /*
- * Standby first, interrupt off before it is reconfigured (p. 20), bypass to clear the FIFO (p. 21); Measure is set after the
- * read-back. Offsets are cleared because the sensor may have kept another program's. FIFO_CTL carries a Samples field of 10,
- * which no reset leaves behind.
+ * Standby first, interrupt off before it is reconfigured (p. 20), bypass to clear the FIFO (p. 21); Measure is set
+ * after the read-back. Offsets are cleared because the sensor may have kept another program's. FIFO_CTL carries a
+ * Samples field of 10, which no reset leaves behind.
  */
 enum { FIFO_CONFIGURED = ADXL345_FIFO_STREAM | 0x0A };
 

@@ -1,9 +1,9 @@
 /*
  * Fixed-point primitives: this header and fx_avr.h are all of the library that knows the machine.
  *
- * Every primitive exists twice, in portable C and, where the compiler's code is slow, as inline assembler (fx_avr.h); both
- * give the same bits for every argument (host_tests/avr/fx_twins.c compares them on the chip). No primitive divides,
- * uses float or 64-bit arithmetic on AVR. All are pure and may be called from main or from an interrupt.
+ * Every primitive exists twice, in portable C and, where the compiler's code is slow, as inline assembler (fx_avr.h);
+ * both give the same bits for every argument (host_tests/avr/fx_twins.c compares them on the chip). No primitive
+ * divides, uses float or 64-bit arithmetic on AVR. All are pure and may be called from main or from an interrupt.
  */
 #ifndef FX_H
 #define FX_H

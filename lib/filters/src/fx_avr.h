@@ -1,6 +1,7 @@
 /*
- * The primitives of fx.h in assembler for the ATmega328P; included by fx.h alone, where each one's contract stands with its C
- * twin (fx_..._c). __zero_reg__ (r1) holds half a product meanwhile: an interrupt saves and clears it, and so does each end.
+ * The primitives of fx.h in assembler for the ATmega328P; included by fx.h alone, where each one's contract stands with
+ * its C twin (fx_..._c). __zero_reg__ (r1) holds half a product meanwhile: an interrupt saves and clears it, and so
+ * does each end.
  */
 #ifndef FX_AVR_H
 #define FX_AVR_H

@@ -1,13 +1,14 @@
 /*
- * synth: the synthesised polynomial filter with constant parameters (Zimchuk and Shapar; paper 000 equation 7, paper 001).
+ * synth: the synthesised polynomial filter with constant parameters (Zimchuk and Shapar; paper 000
+ * equation 7, paper 001).
  *
  *   x_e = (2 - a1) x1 - (1 - 2 a1) x2 - a1 x3        extrapolation from the last three estimates
  *   x   = x_e + b0 (z - x_e)
  *
- * computed in the incremental form x_e = x1 + d - a1 (d - d'), d = x1 - x2, d' = x2 - x3: two products instead of four, the
- * same by algebra. The papers feed back the estimates, not x_e (as one example prints): with x_e fed back no measurement
- * would reach the prediction. Not robust: every outlier passes with the gain b0. With a1 <= 0 the variance of the estimate
- * cannot fall below R / 2, whatever b0 (notes of the papers: synthesised-filter). Functions: filter.h.
+ * computed in the incremental form x_e = x1 + d - a1 (d - d'), d = x1 - x2, d' = x2 - x3: two products instead of four,
+ * the same by algebra. The papers feed back the estimates, not x_e (as one example prints): with x_e fed back no
+ * measurement would reach the prediction. Not robust: every outlier passes with the gain b0. With a1 <= 0 the variance
+ * of the estimate cannot fall below R / 2, whatever b0 (notes of the papers: synthesised-filter). Functions: filter.h.
  */
 #ifndef SYNTH_H
 #define SYNTH_H
@@ -63,7 +64,8 @@ void synth_paper(synth_config_t *config, uint16_t rate_dhz);
 
 /*
  * Variance of the estimate's error per R in the steady state, white noise, UQ16.16, saturated; 1 (65536) and more: the
- * filter amplifies noise. Relative error below 2^-11 for a1 <= 0.95, 4e-3 at the upper corner of the region. Meaningful for legal configurations; divides, 6,000 cycles.
+ * filter amplifies noise. Relative error below 2^-11 for a1 <= 0.95, 4e-3 at the upper corner of the region. Meaningful
+ * for legal configurations; divides, 6,000 cycles.
  */
 uint32_t synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16);
 
