@@ -71,7 +71,8 @@ static void border_of_the_region_is_outside(void)
 /*
  * Samples on a line: the fitted start continues it, whatever the later gain. Its slope is wrong by 4 counts for each
  * LSB a sample (6554 for 65536 / 10), 12 after the three steps to the sixth sample, whose gain of 22/42 halves it for
- * good. The steepest line is that of 800 LSB/s at 100 Hz; with the least noise the allowance for motion is all there is.
+ * good. The steepest line is that of 800 LSB/s at 100 Hz; with the least noise the allowance for motion is all there
+ * is.
  */
 static void start_on_a_ramp_has_its_slope(void)
 {

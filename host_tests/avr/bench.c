@@ -1,7 +1,7 @@
 /*
- * Runs on the ATmega328P (simavr): cycles of each filter of the list beside its float yardstick, of the noise estimate, the
- * angles and the formatting of a row, call included, over streams that look for the longest path. On the UART (1 Mbaud), for
- * tools/bench.py:
+ * Runs on the ATmega328P (simavr): cycles of each filter of the list beside its float yardstick, of the noise estimate,
+ * the angles and the formatting of a row, call included, over streams that look for the longest path. On the UART (1
+ * Mbaud), for tools/bench.py:
  *
  *   =NAME REGIME RATE    a section: then 8 hexadecimal digits per call, cycles of ours and of the float one (0: none)
  *   +stack NAME BYTES    deepest stack of a call seen in the section, return address included; another for float_NAME
@@ -52,7 +52,7 @@ static void NOINLINE run_empty(void)
     __asm__ volatile("");
 }
 
-/* Parameters on a longer path than the defaults, in force in the provoked regime. A filter without an entry does not build. */
+/* Parameters on a longer path than the defaults, in force in the provoked regime; each filter needs its entry. */
 static bool provoked;
 
 static void lengthen_kf(kf_config_t *config)

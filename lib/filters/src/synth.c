@@ -26,8 +26,8 @@ static const filter_parameter_t parameters[] FX_FLASH = {
 const filter_descriptor_t synth_descriptor FX_FLASH = { "synth", sizeof parameters / sizeof parameters[0], parameters };
 
 /*
- * Gains of a least-squares line through n samples, (4 n - 2) / (n (n + 1)), n = 6..63, UQ0.16: what the constant gain is
- * raised to after the start. Behind the last one the estimate's variance is within a few per cent of the steady one.
+ * Gains of a least-squares line through n samples, (4 n - 2) / (n (n + 1)), n = 6..63, UQ0.16: what the constant gain
+ * is raised to after the start. Behind the last one the estimate's variance is within a few per cent of the steady one.
  */
 enum { FIRST_GAIN = FILTER_WARM_UP_SAMPLES, END_GAIN = 63 };
 static const uint16_t start_gains_uq16[END_GAIN - FIRST_GAIN] FX_FLASH = {
@@ -70,8 +70,8 @@ static uint16_t magnitude(int32_t a1_q16)
 }
 
 /*
- * 1 + 2 a1 (1 - b0) > 0 in exact integers. The region's other border lies outside the ranges of the parameters: with a1 < 1
- * and 0 < b0 < 1, 4 - 3 b0 - 4 a1 (1 - b0) > 4 - 3 b0 - 4 (1 - b0) = b0 > 0.
+ * 1 + 2 a1 (1 - b0) > 0 in exact integers. The region's other border lies outside the ranges of the parameters: with a1
+ * < 1 and 0 < b0 < 1, 4 - 3 b0 - 4 a1 (1 - b0) > 4 - 3 b0 - 4 (1 - b0) = b0 > 0.
  */
 static bool stable(uint16_t b0_uq16, int32_t a1_q16)
 {
@@ -131,8 +131,8 @@ void synth_set_noise(synth_t *f, uint32_t r_lsb2_q8)
 }
 
 /*
- * Within the bound of the format; looked for in the high word, so that 4608 LSB and a fraction count as 4608. True when it
- * was outside.
+ * Within the bound of the format; looked for in the high word, so that 4608 LSB and a fraction count as 4608. True when
+ * it was outside.
  */
 FX_INLINE bool limit_x(int32_t *x_lsb_q16)
 {
@@ -168,9 +168,9 @@ FX_INLINE int16_t deviation_lsb(const synth_t *f, uint8_t i, int16_t median_lsb)
 
 /*
  * The line of least squares through the start samples, each limited to the median -+ spread, so that an outlier among
- * them costs no more than a large error of measurement. With d the deviations from the median: mean in the middle of the
- * line, slope (-2, -1, 0, 1, 2) d / 10. The line ends within 7/5 x 365 < 512 LSB of the median, hence within the bound.
- * 65536 / 5 is rounded: 2 in 10^5 of the deviation. Returns the median.
+ * them costs no more than a large error of measurement. With d the deviations from the median: mean in the middle of
+ * the line, slope (-2, -1, 0, 1, 2) d / 10. The line ends within 7/5 x 365 < 512 LSB of the median, hence within the
+ * bound. 65536 / 5 is rounded: 2 in 10^5 of the deviation. Returns the median.
  */
 FX_NOINLINE int32_t fit_start(synth_t *f)
 {
@@ -249,8 +249,8 @@ FX_NOINLINE int32_t curvature(const synth_t *f)
 }
 
 /*
- * The estimates moved on and x_e, limited, in the place of the newest. With every |x| <= 4608 LSB: |2 x1 - x2| <= 13824 and
- * |a1 (x1 - 2 x2 + x3)| < 18432, together below 2^31 in Q16.
+ * The estimates moved on and x_e, limited, in the place of the newest. With every |x| <= 4608 LSB: |2 x1 - x2| <= 13824
+ * and |a1 (x1 - 2 x2 + x3)| < 18432, together below 2^31 in Q16.
  */
 FX_NOINLINE void extrapolate(synth_t *f, int32_t curvature_q16)
 {
@@ -305,11 +305,11 @@ FX_NOINLINE int32_t step(synth_t *f, int16_t z_lsb)
 /*
  * Scaling:
  *   input    Q0, any int16, clamped to -4096..4095 LSB
- *   x        Q15.16; |x_e| <= 4608 LSB by a clamp; the update moves x_e towards a sample within 4096, so |x| <= 4608 and the
- *            bound is inductive; |z - x_e| <= 8704 LSB < 2^30 / 2^16
+ *   x        Q15.16; |x_e| <= 4608 LSB by a clamp; the update moves x_e towards a sample within 4096, so |x| <= 4608
+ *            and the bound is inductive; |z - x_e| <= 8704 LSB < 2^30 / 2^16
  *   a1, b0   UQ0.16 magnitudes, within 2^-17 of the wanted ones
- *   rounding each product half away from zero to 2^-16 LSB; both together reach the output with the noise gain over b0^2 of
- *            the filter: 0.0002 LSB rms at (-0.3, 0.1). The bound that the tests hold against the double reference is
+ *   rounding each product half away from zero to 2^-16 LSB; both together reach the output with the noise gain over
+ *            b0^2 of the filter: 0.0002 LSB rms at (-0.3, 0.1). The bound that the tests hold against the double reference is
  *            (1 + |1 - b0|) 2^-17 times the sum of the error's impulse response
  *   cost     docs/benchmarks.md
  */

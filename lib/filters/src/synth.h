@@ -20,8 +20,9 @@ extern "C" {
 #endif
 
 /*
- * Together a1 and b0 must lie inside the stability region: 1 + 2 a1 (1 - b0) > 0, which is exact within their ranges (where
- * the region's other condition, 4 - 3 b0 - 4 a1 (1 - b0) > 0, always holds). The papers' b0 > -a1 - 0.3 is sufficient only.
+ * Together a1 and b0 must lie inside the stability region: 1 + 2 a1 (1 - b0) > 0, which is exact within their ranges
+ * (where the region's other condition, 4 - 3 b0 - 4 a1 (1 - b0) > 0, always holds). The papers' b0 > -a1 - 0.3 is
+ * sufficient only.
  */
 typedef struct {
     uint16_t rate_dhz;  /* output data rate, 0.1 Hz: 50..40000 */

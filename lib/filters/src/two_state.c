@@ -109,7 +109,10 @@ void two_state_warm_up(two_state_t *s, int16_t z_lsb)
     }
 }
 
-/* x limited to its bound; the flag, the first of the step, tells. By the high word: 4608 LSB + 65535/65536 counts as 4608. */
+/*
+ * x limited to its bound; the flag, the first of the step, tells. By the high word: 4608 LSB + 65535/65536 counts as
+ * 4608.
+ */
 FX_INLINE int32_t clamp_x(two_state_t *s, int32_t x_lsb_q16)
 {
     uint16_t whole_lsb = (uint16_t)((uint32_t)x_lsb_q16 >> 16);

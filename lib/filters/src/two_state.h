@@ -89,7 +89,9 @@ static inline bool two_state_warming_up(const two_state_t *s)
     return s->collected < FILTER_WARM_UP_SAMPLES;
 }
 
-/* P as if the whole-numbered estimate had been read for long: SETTLE_STEPS updates without innovation, 45,000 cycles. */
+/*
+ * P as if the whole-numbered estimate had been read for long: SETTLE_STEPS updates without innovation, 45,000 cycles.
+ */
 void two_state_settle(two_state_t *s);
 
 /* One sample of the warm-up: running median of what was seen. */
