@@ -309,8 +309,8 @@ FX_NOINLINE int32_t step(synth_t *f, int16_t z_lsb)
  *            and the bound is inductive; |z - x_e| <= 8704 LSB < 2^30 / 2^16
  *   a1, b0   UQ0.16 magnitudes, within 2^-17 of the wanted ones
  *   rounding each product half away from zero to 2^-16 LSB; both together reach the output with the noise gain over
- *            b0^2 of the filter: 0.0002 LSB rms at (-0.3, 0.1). The bound that the tests hold against the double reference is
- *            (1 + |1 - b0|) 2^-17 times the sum of the error's impulse response
+ *            b0^2 of the filter: 0.0002 LSB rms at (-0.3, 0.1). The bound that the tests hold against the double
+ *            reference is (1 + |1 - b0|) 2^-17 times the sum of the error's impulse response
  *   cost     docs/benchmarks.md
  */
 int32_t synth_update(synth_t *f, int16_t z_lsb)
