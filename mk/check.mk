@@ -11,9 +11,9 @@ $(CHK)/avr/%.o: %.c Makefile mk/check.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(filter-out -flto -Werror,$(AVR_FLAGS)) -fstack-usage -MMD -MP -c $< -o $@ 2> $@.log || { cat $@.log >&2; exit 1; }
 
-CHECKS := compile tidy int16 cppcheck includes format lengths symbols memory frames painted size seam deviations
+CHECKS := compile tidy int16 cppcheck includes format lengths symbols memory frames painted size seam deviations breakages
 
-## check: every rule of the tree, and a planted fault for each that must be found (1 minute)
+## check: every rule of the tree, and a planted fault for each that must be found (2 minutes)
 check:
 	@sh tools/deps.sh check
 	@$(MAKE) -j2 check-built
@@ -68,6 +68,9 @@ check-seam:
 
 check-deviations: check-objects
 	@$(PY) tools/check_deviations.py
+
+check-breakages:
+	@python3 tools/check_breakages.py
 
 check-planted:
 	@python3 host_tests/test_planted.py
