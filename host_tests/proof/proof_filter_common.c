@@ -54,11 +54,12 @@ void proof_filter_default_r_lsb2_q8(void)
     //@ check 3 <= r_lsb2_q8 <= 30720;
 }
 
-/* False for every rate and every R outside the legal range. */
+/* True at the ends of the legal ranges, false for every rate and every R outside them. */
 void proof_filter_common_legal(void)
 {
-    bool legal = filter_common_legal(ANY_U16(50, 40000), ANY_U32(3, 256000));
-    //@ check either: legal == 0 || legal == 1;
+    bool least = filter_common_legal(50, 3);
+    bool most = filter_common_legal(40000, 256000);
+    //@ check ends: least == 1 && most == 1;
     uint16_t rate_dhz = ANY_U16(0, UINT16_MAX);
     uint32_t r_lsb2_q8 = ANY_U32(0, UINT32_MAX);
     bool slow = filter_common_legal(ANY_U16(0, 49), r_lsb2_q8);

@@ -13,6 +13,7 @@ static void reciprocal_in(uint32_t from, uint32_t to)
 void proof_fx_reciprocal_uq16(void)
 {
     uint32_t from = 0x10000000U;
+    bool whole = false;
     for (uint8_t halvings = 0; halvings < 4; halvings++) {
         uint32_t width = (uint32_t)0x200000U << halvings;
         for (uint8_t node = 0; node < 128; node++) {
@@ -21,10 +22,11 @@ void proof_fx_reciprocal_uq16(void)
             if (to != UINT32_MAX) {
                 from = to + 1U;
             } else {
-                //@ check whole_range: halvings == 3 && node == 127;
+                whole = halvings == 3 && node == 127;
             }
         }
     }
+    //@ check whole_range: whole == 1;
 }
 
 static void normalised_in(uint32_t from, uint32_t to)

@@ -18,7 +18,10 @@
     (WITHIN_X((f)->u.run.x_lsb_q16[0]) && WITHIN_X((f)->u.run.x_lsb_q16[1]) && WITHIN_X((f)->u.run.x_lsb_q16[2]))
 /* The median of the start is there as long as the flags say so. */
 #define MEDIAN(f) (((f)->flags & FILTER_WARMING_UP) == 0 || SAMPLE_Q16((f)->u.run.median_lsb_q16))
-#define RUNNING(f) ((5 <= (f)->collected <= 63 || (f)->collected == 255) && ESTIMATES(f) && MEDIAN(f))
+/* Behind the start, and after a reset, the flags never say that it is under way. */
+#define RUNNING(f)   \
+    (ESTIMATES(f) && \
+     ((5 <= (f)->collected <= 63 && MEDIAN(f)) || ((f)->collected == 255 && (f)->flags < FILTER_WARMING_UP)))
 /* All but what synth_set_noise sets, because synth_init calls it. */
 #define BUT_NOISE(f)                                                                                    \
     (656 <= (f)->b0_uq16 && (f)->motion_lsb <= 320 && (f)->flags < 32 && (STARTING(f) || RUNNING(f)) && \

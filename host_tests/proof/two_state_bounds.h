@@ -1,5 +1,5 @@
 /*
- * The documented bounds of two_state.h in ACSL, assumed before a call and proved after it, and the contracts of the
+ * The bounds of two_state.h in ACSL, assumed before a call and proved after it, and the contracts of the
  * core's parts; each contract that an entry uses is itself proved on the body by an entry of proof_two_state.c.
  */
 #ifndef TWO_STATE_BOUNDS_H
@@ -14,7 +14,8 @@
 
 /*
  * P / R: every element below 2, then it will be predicted; or P12 < max(1, P11 + 3/4), written by halves of P12 because
- * Eva's domains are intervals. P12 <= P11, which holds after each prediction, implies it.
+ * Eva's domains are intervals: P12 stays below P11 + 1/4 to P11 + 3/4, which is a little less than two_state.h allows.
+ * What is assumed before a call is what is proved after it. P12 <= P11, which holds after each prediction, implies it.
  */
 #define SMALL(p) ((p).p11_uq28 < 2 * ONE && (p).p12_uq28 < 2 * ONE && (p).p22_uq28 < 2 * ONE)
 #define ROOM(p) ((p).p11_uq28 < 8 * ONE && (p).p22_uq28 < 3 * ONE)
