@@ -10,10 +10,12 @@ LISTS = ("host_tests/mutants.txt", "host_tests/planted.txt", "host_tests/proof/p
 def homeless(path):
     """(breakages, one sentence each for those without a place)"""
     blocks = pathlib.Path(path).read_text(encoding="utf-8").split("\n=== ")[1:]
-    faults = []
+    faults = [] if blocks else [f"{path}: no breakage stands in it"]
     for block in blocks:
-        head, old, _ = block.rstrip("\n").split("\n---\n")
+        head, old, new = block.rstrip("\n").split("\n---\n")
         name, file, *_ = head.split("\n")
+        if old == new:
+            faults.append(f"{path}: '{name}': it changes nothing")
         if not old.strip():
             continue  # a new file
         source = pathlib.Path(file)
