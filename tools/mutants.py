@@ -10,8 +10,13 @@ import random
 import shutil
 import subprocess
 import sys
+import time
 
 TREE = pathlib.Path("build/mutants")
+UNBROKEN_LIMIT_S = 300
+# a judge hangs when it takes so many times as long as on the unbroken code: a loaded machine shall not pass for a catch
+HANG_TIMES, HANG_MIN_S = 10, 30
+
 
 def load():
     """The list lives in host_tests/mutants.txt: blocks of name, file, judge, then the old and the new text."""
@@ -45,8 +50,8 @@ def make(*targets):
     return subprocess.run(["make", "-j2", *targets], cwd=TREE, capture_output=True, text=True, timeout=600)
 
 
-def judged(judge):
-    """Builds and runs the judge; None when it passes, else the first line that says what failed."""
+def judged(judge, limit_s):
+    """Builds and runs the judge: (None when it passes, else the first line that says what failed; seconds of the run)."""
     if judge.startswith("system "):
         built = make("build/uno/firmware.elf", "build/uno/wrap/firmware.elf", "build/sim/simrun", "build/host/native_replay")
         command = ["python3", "host_tests/system_tests.py", *judge.split()[1:]]
@@ -54,19 +59,20 @@ def judged(judge):
         built = make(f"build/host/{judge}")
         command = [f"build/host/{judge}"]
     if built.returncode != 0:
-        return f"does not build: {built.stderr.strip().splitlines()[0] if built.stderr.strip() else '?'}"
+        return f"does not build: {built.stderr.strip().splitlines()[0] if built.stderr.strip() else '?'}", 0
+    began = time.monotonic()
     try:
-        limit_s = 200 if judge.startswith("system ") else 30
         done = subprocess.run(command, cwd=TREE, capture_output=True, text=True, timeout=limit_s, errors="replace")
     except subprocess.TimeoutExpired:
-        return "hangs"
+        return f"hangs: no end within {limit_s:.0f} s", limit_s
+    took_s = time.monotonic() - began
     if done.returncode == 0:
-        return None
+        return None, took_s
     lines = [line for line in done.stdout.splitlines() if "FAIL" in line]
-    return lines[0][:110] if lines else f"status {done.returncode}"
+    return lines[0][:110] if lines else f"status {done.returncode}", took_s
 
 
-def try_one(mutant):
+def try_one(mutant, limit_s):
     name, file, judge, old, new = mutant
     path = TREE / file
     whole = path.read_text(encoding="utf-8")
@@ -74,7 +80,7 @@ def try_one(mutant):
         return f"{name}: the text to break stands {whole.count(old)} times in {file}", False
     path.write_text(whole.replace(old, new), encoding="utf-8")
     try:
-        verdict = judged(judge)
+        verdict, _ = judged(judge, limit_s)
     finally:
         path.write_text(whole, encoding="utf-8")
     if verdict is None:
@@ -102,14 +108,16 @@ def main():
     options = parser.parse_args()
     mutants = chosen(options.sample, options.words)
     prepare()
+    limits_s = {}
     for judge in sorted({m[2] for m in mutants}):
-        verdict = judged(judge)
+        verdict, took_s = judged(judge, UNBROKEN_LIMIT_S)
+        limits_s[judge] = max(HANG_MIN_S, HANG_TIMES * took_s)
         if verdict is not None:
             print(f"mutants: {judge} fails without a mutant: {verdict}")
             return 1
     caught = 0
     for number, mutant in enumerate(mutants, 1):
-        text, good = try_one(mutant)
+        text, good = try_one(mutant, limits_s[mutant[2]])
         caught += good
         print(f"[{number}/{len(mutants)}] {text}", flush=True)
     print(f"{caught} passed, {len(mutants) - caught} failed")
