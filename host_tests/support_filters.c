@@ -174,19 +174,25 @@ static const char *broken_two_state(const two_state_t *s, int32_t x_lsb_q16)
     return NULL;
 }
 
-/* sprf.h, sprf.c: a run ends when it has 2^slope_shift + 1 samples; agreement 3 sqrt(2 R) + rate_max < 135 + 4609. */
-static const char *broken_sprf(const sprf_t *f, int32_t x_lsb_q16)
+/* reacquire.h: a run ends with sample number steps + 1; agreement 3 sqrt(2 R) + rate_max < 135 + 4609. */
+static const char *broken_reacquire(const reacquire_t *a)
 {
-    if (f->slope_shift > 3U || f->run > (uint8_t)(1U << f->slope_shift) || f->agree_lsb >= 135U + 4609U) {
+    if (a->steps > 8U || a->run > ((a->steps == 0U) ? 1U : a->steps) || a->agree_lsb >= 135U + 4609U) {
         return "run";
     }
-    if (f->previous_lsb < FILTER_Z_MIN_LSB || f->previous_lsb > FILTER_Z_MAX_LSB) {
+    if (a->previous_lsb < FILTER_Z_MIN_LSB || a->previous_lsb > FILTER_Z_MAX_LSB) {
         return "previous";
     }
-    if (f->first_lsb < FILTER_Z_MIN_LSB || f->first_lsb > FILTER_Z_MAX_LSB) {
+    if (a->first_lsb < FILTER_Z_MIN_LSB || a->first_lsb > FILTER_Z_MAX_LSB) {
         return "first";
     }
-    return broken_two_state(&f->core, x_lsb_q16);
+    return NULL;
+}
+
+static const char *broken_sprf(const sprf_t *f, int32_t x_lsb_q16)
+{
+    const char *broken = broken_reacquire(&f->again);
+    return (broken != NULL) ? broken : broken_two_state(&f->core, x_lsb_q16);
 }
 
 /* synth.h, synth.c: estimates within the format's bound, gains as configured, the start's line within its spread. */

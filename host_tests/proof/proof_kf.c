@@ -57,7 +57,7 @@ void proof_kf_set_noise(void)
     kf_set_noise(&f, ANY_U32(0, UINT32_MAX));
 }
 
-/* Uses: two_state_settle */
+/* Uses: two_state_reset */
 void proof_kf_reset(void)
 {
     kf_t f;

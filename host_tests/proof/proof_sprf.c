@@ -3,10 +3,9 @@
 
 #include "sprf.h"
 
-/* run never passes 8: the ninth refused sample of a run restarts, whatever slope_shift is. */
-#define GATE(f)                                                                                            \
-    ((f)->gate_sigma_q8 <= 4096 && SAMPLE((f)->first_lsb) && SAMPLE((f)->previous_lsb) && (f)->run <= 8 && \
-     (f)->slope_shift <= 3)
+/* run never passes 8: a run of `steps` samples restarts with the next, or with steps 0 stays at 1. */
+#define RUN(a) (SAMPLE((a)->first_lsb) && SAMPLE((a)->previous_lsb) && (a)->run <= 8 && (a)->steps <= 8)
+#define GATE(f) ((f)->gate_sigma_q8 <= 4096 && RUN(&(f)->again))
 #define BOUND(f) (PARAMETERS(&(f)->core) && ESTIMATE(&(f)->core) && MODE(&(f)->core) && GATE(f))
 
 /*@ ensures \result ==> BOUND(f); */
@@ -20,29 +19,32 @@ int32_t sprf_update(sprf_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t sprf_coast(sprf_t *f);
 
-/*@ requires PARAMETERS(&f->core) && ESTIMATE(&f->core) && f->core.collected == 5 && GATE(f) && SAMPLE(z_lsb);
-    requires HELD(f->core.u.p);
-    assigns *f \from *f, z_lsb;
-    ensures PARAMETERS(&f->core) && ESTIMATE(&f->core) && f->core.collected == 5 && GATE(f);
-    ensures COVARIANCE(&f->core);
+/*@ requires PARAMETERS(s) && ESTIMATE(s) && s->collected == 5 && RUN(a) && SAMPLE(z_lsb);
+    requires HELD(s->u.p);
+    assigns *a, *s, \result \from *a, *s, z_lsb;
+    ensures PARAMETERS(s) && ESTIMATE(s) && s->collected == 5 && RUN(a);
+    ensures COVARIANCE(s);
+    ensures \result == 0 || \result == 1;
 */
-static void refuse(sprf_t *f, int16_t z_lsb);
+bool reacquire_refused(reacquire_t *a, two_state_t *s, int16_t z_lsb);
 
 #include "filter_common.c"
 #include "fx.c"
 #include "two_state.c"
+
+#include "reacquire.c"
 
 #include "sprf.c"
 
 static void any_gate(sprf_t *f)
 {
     f->gate_sigma_q8 = ANY_U16(0, 4096);
-    f->agree_lsb = ANY_U16(0, UINT16_MAX);
-    f->first_lsb = ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB);
-    f->previous_lsb = ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB);
-    f->run = ANY_U8(0, 8);
-    f->slope_shift = ANY_U8(0, 3);
-    f->broken = ANY_BOOL();
+    f->again.agree_lsb = ANY_U16(0, UINT16_MAX);
+    f->again.first_lsb = ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB);
+    f->again.previous_lsb = ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB);
+    f->again.run = ANY_U8(0, 8);
+    f->again.steps = ANY_U8(0, 8);
+    f->again.broken = ANY_BOOL();
 }
 
 static void init_with(const sprf_config_t *core, uint16_t gate_sigma_q8, uint16_t reacquire_samples, uint32_t rate_max)
@@ -105,7 +107,7 @@ void proof_sprf_set_noise(void)
     sprf_set_noise(&f, ANY_U32(0, UINT32_MAX));
 }
 
-/* Uses: two_state_settle */
+/* Uses: two_state_reset */
 void proof_sprf_reset(void)
 {
     sprf_t f;
@@ -117,16 +119,16 @@ void proof_sprf_reset(void)
     sprf_reset(&f, ANY_Z());
 }
 
-void proof_refuse(void)
+void proof_reacquire_refused(void)
 {
     sprf_t f;
     any_gate(&f);
     any_state(&f.core);
     //@ admit HELD(f.core.u.p);
-    refuse(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
+    (void)reacquire_refused(&f.again, &f.core, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
 }
 
-/* Uses: two_state_step, refuse */
+/* Uses: two_state_step, reacquire_refused */
 void proof_sprf_update(void)
 {
     sprf_t f;

@@ -71,6 +71,14 @@ void proof_two_state_settle(void)
     two_state_settle(&s);
 }
 
+/* Uses: two_state_settle */
+void proof_two_state_reset(void)
+{
+    two_state_t s;
+    any_state(&s);
+    (void)two_state_reset(&s, ANY_Z());
+}
+
 /* Uses: normalised */
 void proof_two_state_set_noise(void)
 {

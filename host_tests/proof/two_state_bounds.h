@@ -87,6 +87,15 @@ void two_state_set_gate(two_state_t *s, uint16_t gate_sigma_q8);
 */
 void two_state_settle(two_state_t *s);
 
+/*@ requires PARAMETERS(s);
+    assigns *s, \result \from *s, z0_lsb;
+    ensures PARAMETERS(s) && ESTIMATE(s);
+    ensures s->collected == 5;
+    ensures HELD(s->u.p);
+    ensures SAMPLE(\result);
+*/
+int16_t two_state_reset(two_state_t *s, int16_t z0_lsb);
+
 /* Every field at every value of its bound; what the bounds say of P or of the samples is left to an admit. */
 static void any_state(two_state_t *s)
 {

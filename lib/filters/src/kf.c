@@ -31,9 +31,7 @@ void kf_set_noise(kf_t *f, uint32_t r_lsb2_q8)
 
 void kf_reset(kf_t *f, int16_t z0_lsb)
 {
-    f->core.flags = 0;
-    two_state_start(&f->core, (int32_t)filter_clamp_z(z0_lsb) * 65536);
-    two_state_settle(&f->core);
+    (void)two_state_reset(&f->core, z0_lsb);
 }
 
 /*

@@ -9,7 +9,7 @@
 #ifndef SPRF_H
 #define SPRF_H
 
-#include "two_state.h"
+#include "reacquire.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -25,14 +25,8 @@ typedef struct {
 } sprf_config_t;
 
 typedef struct {
-    /* what every sample needs comes first: an AVR reaches 63 bytes without arithmetic */
     two_state_t core;
-    int16_t previous_lsb; /* last raw sample */
-    uint8_t run;          /* samples in the run */
-    bool broken;          /* a sample was missing within the run */
-    uint8_t slope_shift;  /* log2(reacquire_samples - 1); 0: off */
-    int16_t first_lsb;    /* of the run of refused samples */
-    uint16_t agree_lsb;   /* raw samples of one run differ by at most this */
+    reacquire_t again;
     uint16_t gate_sigma_q8;
 } sprf_t;
 

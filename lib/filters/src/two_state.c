@@ -24,6 +24,12 @@ bool two_state_legal(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3)
            q_lsb2_s3 <= TWO_STATE_Q_MAX_LSB2_S3;
 }
 
+bool two_state_gate_legal(uint16_t gate_sigma_q8)
+{
+    return gate_sigma_q8 == 0U ||
+           (gate_sigma_q8 >= TWO_STATE_GATE_MIN_SIGMA_Q8 && gate_sigma_q8 <= TWO_STATE_GATE_MAX_SIGMA_Q8);
+}
+
 void two_state_init(two_state_t *s, uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3, uint32_t rate_max_lsb_s)
 {
     uint8_t *bytes = (uint8_t *)s;
@@ -55,7 +61,11 @@ static uint32_t per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq
 
 void two_state_set_noise(two_state_t *s, uint32_t r_lsb2_q8)
 {
-    r_lsb2_q8 = filter_limited_r_lsb2_q8(r_lsb2_q8);
+    two_state_set_variance(s, filter_limited_r_lsb2_q8(r_lsb2_q8));
+}
+
+void two_state_set_variance(two_state_t *s, uint32_t r_lsb2_q8)
+{
     s->r_lsb2_q8 = r_lsb2_q8;
     fx_scaled_t r_lsb2 = fx_scaled(r_lsb2_q8);
     r_lsb2.exponent = (int8_t)(r_lsb2.exponent - 8);
@@ -96,6 +106,15 @@ void two_state_settle(two_state_t *s)
     for (uint8_t step = 0; step < SETTLE_STEPS; step++) {
         (void)two_state_step(s, z_lsb, true);
     }
+}
+
+int16_t two_state_reset(two_state_t *s, int16_t z0_lsb)
+{
+    int16_t z0 = filter_clamp_z(z0_lsb);
+    s->flags = 0;
+    two_state_start(s, (int32_t)z0 * 65536);
+    two_state_settle(s);
+    return z0;
 }
 
 void two_state_warm_up(two_state_t *s, int16_t z_lsb)

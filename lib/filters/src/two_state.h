@@ -29,6 +29,11 @@ extern "C" {
  */
 #define TWO_STATE_Q_DEFAULT_LSB2_S3 10000U
 
+/* Legal range of a gate in sigmas of the innovation, Q8: 1..16; 0: none. */
+#define TWO_STATE_GATE_MIN_SIGMA_Q8 256U
+#define TWO_STATE_GATE_MAX_SIGMA_Q8 4096U
+#define TWO_STATE_GATE_DEFAULT_SIGMA_Q8 768U
+
 /*
  * P / R (UQ4.28) is predicted only while all elements are below 2: then P11 < 8, P12 < 4, P22 < 3 afterwards, S = P11 +
  * 1 fits UQ4.28, and P, kept as a whole when it may not grow, stays a covariance. Updates never raise an element.
@@ -70,6 +75,9 @@ typedef struct {
 /* True when rate, R and q are legal. */
 bool two_state_legal(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3);
 
+/* True when the gate is in its range or off. */
+FX_ONCE bool two_state_gate_legal(uint16_t gate_sigma_q8);
+
 /*
  * Legal parameters to a filter that begins to warm up, no gate. rate_max in LSB/s, 0: the bound of the format. Divides.
  */
@@ -81,6 +89,9 @@ void two_state_init(two_state_t *s, uint16_t rate_dhz, uint32_t r_lsb2_q8, uint3
  */
 FX_ONCE void two_state_set_noise(two_state_t *s, uint32_t r_lsb2_q8);
 
+/* As two_state_set_noise for a filter whose R is not that of a sample: 3..2^24 - 1, no limit is laid on it here. */
+FX_ONCE void two_state_set_variance(two_state_t *s, uint32_t r_lsb2_q8);
+
 /* Running from x: rate 0, P11 = R, rate as uncertain as after the warm-up. */
 FX_ONCE void two_state_start(two_state_t *s, int32_t x_lsb_q16);
 
@@ -88,6 +99,9 @@ static inline bool two_state_warming_up(const two_state_t *s)
 {
     return s->collected < FILTER_WARM_UP_SAMPLES;
 }
+
+/* Running as if z0, limited to its range, had been read for ever. Returns z0 limited. */
+FX_ONCE int16_t two_state_reset(two_state_t *s, int16_t z0_lsb);
 
 /*
  * P as if the whole-numbered estimate had been read for long: SETTLE_STEPS updates without innovation, 45,000 cycles.
