@@ -26,6 +26,19 @@ void limit_rate(reference_filter_t &f)
     }
 }
 
+// Kalman's update with the given variance of the innovation.
+void update(reference_filter_t &f, double s)
+{
+    Eigen::Map<Vector> x(f.x);
+    Eigen::Map<Matrix> p(f.p);
+    const Vector k = p * H.transpose() / s;
+    x += k * f.innovation;
+    p = ((Matrix::Identity() - k * H) * p).eval();
+    f.gain[0] = k(0);
+    f.gain[1] = k(1);
+    limit_rate(f);
+}
+
 // Rule CR: L refused raw samples in a row, each within `agree` of the one before, restart the filter on their slope.
 void refuse(reference_filter_t &f, double z)
 {
@@ -69,18 +82,17 @@ void reference_step(reference_filter_t *f, double z)
     Eigen::Map<Matrix> p(f->p);
     f->gated = f->reacquired = false;
     f->innovation = z - H * x;
+    const double r2 = f->innovation * f->innovation;
     const double s = H * p * H.transpose() + f->r;
-    if (f->gate2 > 0.0 && f->innovation * f->innovation > f->gate2 * s) {
+    const bool outlying = f->gate2 > 0.0 && r2 > f->gate2 * s && r2 > f->soft2 * s;
+    if (outlying) {
         refuse(*f, z);
     } else {
-        const double s_gain = H * p * H.transpose() + f->r_gain;
-        const Vector k = p * H.transpose() / s_gain;
-        x += k * f->innovation;
-        p = ((Matrix::Identity() - k * H) * p).eval();
-        f->gain[0] = k(0);
-        f->gain[1] = k(1);
         f->run = 0;
-        limit_rate(*f);
+    }
+    if (!f->reacquired && (!outlying || f->soft2 > 0.0)) {
+        const double s_gain = H * p * H.transpose() + f->r_gain;
+        update(*f, f->soft2 > 0.0 ? std::max(s_gain, r2 / f->soft2) : s_gain);
     }
     f->previous = z;
 }

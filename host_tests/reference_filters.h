@@ -19,6 +19,7 @@ typedef struct {
     double r_gain;   /* of the update: r, or the linear robust filter's R_L */
     double q[4];     /* process noise per sample, row-major */
     double gate2;    /* squared gate in units of S; 0: none */
+    double soft2;    /* squared soft gate in units of S; 0: none; beyond it S is raised to r^2 / soft2 */
     int reacquire;   /* consistent refused samples L; 0: never */
     double agree;    /* D of the consistency rule */
     double rate_max; /* 0: no limit */

@@ -140,14 +140,23 @@ bool has_joint_condition(filter_kind_t kind)
         return true; /* reacquire: of 3..9 only 3, 5 and 9, whose slope is a shift */
     case FILTER_KIND_synth:
         return true; /* the stability region of a1 and b0 */
+    case FILTER_KIND_lrf:
+        return false;
+    case FILTER_KIND_soft:
+        return true; /* reacquire, as sprf */
     case FILTER_KIND_COUNT:
         break;
     }
     return false;
 }
 
-/* two_state.h, "Scaling". */
-static const char *broken_two_state(const two_state_t *s, int32_t x_lsb_q16)
+bool gated_means_unused(filter_kind_t kind)
+{
+    return kind != FILTER_KIND_soft;
+}
+
+/* two_state.h, "Scaling"; the largest R is a filter's own. */
+static const char *broken_core(const two_state_t *s, int32_t x_lsb_q16, uint32_t r_max_lsb2_q8)
 {
     if (x_lsb_q16 != s->x_lsb_q16) {
         return "x returned";
@@ -161,7 +170,7 @@ static const char *broken_two_state(const two_state_t *s, int32_t x_lsb_q16)
     if (s->q22_uq28 < 16U || s->q22_uq28 > 0x10000000U || s->p22_start_uq28 > 0x10000000U) {
         return "q22";
     }
-    if (s->r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 || s->r_lsb2_q8 > FILTER_R_MAX_LSB2_Q8) {
+    if (s->r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 || s->r_lsb2_q8 > r_max_lsb2_q8) {
         return "r";
     }
     if (s->collected > FILTER_WARM_UP_SAMPLES) {
@@ -172,6 +181,11 @@ static const char *broken_two_state(const two_state_t *s, int32_t x_lsb_q16)
         return "P";
     }
     return NULL;
+}
+
+static const char *broken_two_state(const two_state_t *s, int32_t x_lsb_q16)
+{
+    return broken_core(s, x_lsb_q16, FILTER_R_MAX_LSB2_Q8);
 }
 
 /* reacquire.h: a run ends with sample number steps + 1; agreement 3 sqrt(2 R) + rate_max < 135 + 4609. */
@@ -231,6 +245,26 @@ static const char *broken_kf(const kf_t *f, int32_t x_lsb_q16)
     return broken_two_state(&f->core, x_lsb_q16);
 }
 
+/* lrf.h: R_L / R = N^2 - q1 (N^2 - 1) of 1..1024. */
+static const char *broken_lrf(const lrf_t *f, int32_t x_lsb_q16)
+{
+    if (f->factor_uq16 < 0x10000U || f->factor_uq16 > 1024UL << 16) {
+        return "factor";
+    }
+    return broken_core(&f->core, x_lsb_q16, LRF_R_MAX_LSB2_Q8);
+}
+
+/* soft.h: nothing is refused, only a missing sample leaves no gain; re-acquisition as sprf. */
+static const char *broken_soft(const soft_t *f, int32_t x_lsb_q16)
+{
+    const char *broken = broken_reacquire(&f->again);
+    bool gated = (f->core.flags & FILTER_GATED) != 0U;
+    if (gated && (f->share_uq16 == 0U || f->again.run == 0U)) {
+        return "gated";
+    }
+    return (broken != NULL) ? broken : broken_two_state(&f->core, x_lsb_q16);
+}
+
 static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)
 {
     switch ((filter_kind_t)f->kind) {
@@ -240,6 +274,10 @@ static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)
         return broken_sprf(&f->state.sprf, x_lsb_q16);
     case FILTER_KIND_synth:
         return broken_synth(&f->state.synth, x_lsb_q16);
+    case FILTER_KIND_lrf:
+        return broken_lrf(&f->state.lrf, x_lsb_q16);
+    case FILTER_KIND_soft:
+        return broken_soft(&f->state.soft, x_lsb_q16);
     case FILTER_KIND_COUNT:
         break;
     }
@@ -259,7 +297,8 @@ const char *broken_bound(const filter_any_t *f, const filter_probe_t *probe, int
     if (warming_up && probe->rate_lsb_q16 != 0) {
         return "rate while warming up";
     }
-    if ((probe->flags & (FILTER_GATED | FILTER_COASTED)) != 0U && probe->gain_uq16 != 0U) {
+    uint8_t unused = gated_means_unused((filter_kind_t)f->kind) ? FILTER_GATED | FILTER_COASTED : FILTER_COASTED;
+    if ((probe->flags & unused) != 0U && probe->gain_uq16 != 0U) {
         return "gain";
     }
     return broken_state(f, x_lsb_q16);
@@ -272,6 +311,8 @@ int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
     case FILTER_KIND_kf:
     case FILTER_KIND_sprf:
     case FILTER_KIND_synth:
+    case FILTER_KIND_lrf:
+    case FILTER_KIND_soft:
         return 0;
     case FILTER_KIND_COUNT:
         break;
@@ -286,14 +327,20 @@ int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
  * so |e_x| <= sqrt(P11 V). With q T^3 / R = 1/300 (defaults at 100 Hz) and P grown over the gap up to the core's limit
  * of 2, this is below 1/4 LSB after 43 samples for the worst n. sprf takes that path when the first innovation is
  * within its gate, else its five agreeing samples restart it without error. synth at (0, 0.3) obeys e = 0.7 (2 e1 - e2)
- * from 2 n and 2 n - 2 LSB: |e| <= 400.1 x 0.83666^k, and below 1/4 LSB from k = 40 on for every n <= 200.
+ * from 2 n and 2 n - 2 LSB: |e| <= 400.1 x 0.83666^k, and below 1/4 LSB from k = 40 on for every n <= 200. lrf is kf
+ * with q T^3 / R_L = 1/300/60.85 and R_L = 182.6 LSB^2: 114 by the same bound. soft takes kf's path within its soft
+ * gate and is restarted beyond its gate, as sprf; in between it updates with a larger R, by which V falls as well (the
+ * recursion in double is back after 16).
  */
-uint8_t recovery_samples(filter_kind_t kind)
+uint16_t recovery_samples(filter_kind_t kind)
 {
     switch (kind) {
     case FILTER_KIND_kf:
     case FILTER_KIND_sprf:
+    case FILTER_KIND_soft:
         return 43;
+    case FILTER_KIND_lrf:
+        return 114;
     case FILTER_KIND_synth:
         return 40;
     case FILTER_KIND_COUNT:

@@ -65,10 +65,13 @@ const char *broken_bound(const filter_any_t *f, const filter_probe_t *probe, int
 /* Largest difference between the answers to a sequence and to its mirror image, Q16. */
 int32_t mirror_tolerance_lsb_q16(filter_kind_t kind);
 
+/* True when a sample flagged FILTER_GATED is not used at all; else it may count with a small gain. */
+bool gated_means_unused(filter_kind_t kind);
+
 /*
  * Samples after which a filter that coasted is back, with default parameters at 100 Hz: see the derivation at its
  * definition.
  */
-uint8_t recovery_samples(filter_kind_t kind);
+uint16_t recovery_samples(filter_kind_t kind);
 
 #endif

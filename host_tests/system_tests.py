@@ -37,7 +37,7 @@ def make_equality_test(stream, filter_name):
 
 for path in sorted(STREAMS.glob("*.csv")):
     if "400hz" not in path.stem:
-        for filter_kind in ("kf", "sprf", "synth"):
+        for filter_kind in ("kf", "sprf", "synth", "lrf", "soft"):
             TESTS.append(make_equality_test(path, filter_kind))
 
 

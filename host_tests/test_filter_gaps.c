@@ -36,7 +36,7 @@ static void assert_recovery(const filter_any_t *settled, int16_t slope, bool goe
 {
     filter_any_t without = *settled;
     filter_any_t coasted = *settled;
-    uint8_t recovery = recovery_samples((filter_kind_t)settled->kind);
+    uint16_t recovery = recovery_samples((filter_kind_t)settled->kind);
     TEST_ASSERT_TRUE(recovery > 0U);
     int16_t z = 0;
     for (uint16_t k = 0; k < (uint16_t)gap + recovery + 30U; k++) {

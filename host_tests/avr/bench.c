@@ -55,15 +55,15 @@ static void NOINLINE run_empty(void)
 /* Parameters on a longer path than the defaults, in force in the provoked regime; each filter needs its entry. */
 static bool provoked;
 
-static void lengthen_kf(kf_config_t *config)
-{
-    (void)config;
-}
-
-static void lengthen_sprf(sprf_config_t *config)
-{
-    (void)config;
-}
+#define AS_THE_DEFAULTS(F)                         \
+    static void lengthen_##F(F##_config_t *config) \
+    {                                              \
+        (void)config;                              \
+    }
+AS_THE_DEFAULTS(kf)
+AS_THE_DEFAULTS(lrf)
+AS_THE_DEFAULTS(soft)
+AS_THE_DEFAULTS(sprf)
 
 /* With a1 = 0 there is no second product. */
 static void lengthen_synth(synth_config_t *config)

@@ -37,6 +37,22 @@ typedef struct {
 } float_sprf_t;
 
 typedef struct {
+    float x, v;
+    float p00, p01, p10, p11;
+    float dt, q, r, factor; /* r: R_L, factor times that of a normal sample */
+} float_lrf_t;
+
+typedef struct {
+    float x, v;
+    float p00, p01, p10, p11;
+    float dt, q, r;
+    float soft, gate, rate_max, agree; /* sigmas (0: none) twice, LSB/s, LSB */
+    float previous, first;
+    uint8_t run, reacquire;
+    bool broken;
+} float_soft_t;
+
+typedef struct {
     float x1, x2, x3;
     float a1, b0;
 #ifdef FLOAT_SYNTH_KEPT
@@ -49,6 +65,16 @@ void float_kf_start(float_kf_t *f, const kf_config_t *config, float x0_lsb);
 void float_kf_set_noise(float_kf_t *f, float r_lsb2);
 float float_kf_update(float_kf_t *f, int16_t z_lsb);
 float float_kf_coast(float_kf_t *f);
+
+void float_lrf_start(float_lrf_t *f, const lrf_config_t *config, float x0_lsb);
+void float_lrf_set_noise(float_lrf_t *f, float r_lsb2);
+float float_lrf_update(float_lrf_t *f, int16_t z_lsb);
+float float_lrf_coast(float_lrf_t *f);
+
+void float_soft_start(float_soft_t *f, const soft_config_t *config, float x0_lsb);
+void float_soft_set_noise(float_soft_t *f, float r_lsb2);
+float float_soft_update(float_soft_t *f, int16_t z_lsb);
+float float_soft_coast(float_soft_t *f);
 
 void float_sprf_start(float_sprf_t *f, const sprf_config_t *config, float x0_lsb);
 void float_sprf_set_noise(float_sprf_t *f, float r_lsb2);

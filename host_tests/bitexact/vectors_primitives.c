@@ -69,6 +69,7 @@ static const int32_t *two(uint32_t v)
     X(fx_abs32, fx_abs32((int32_t)a))                                                  \
     X(fx_add_sat, fx_add_sat(a, b))                                                    \
     X(fx_clamp, (uint32_t)fx_clamp((int32_t)a, POSITIVE(b)))                           \
+    X(fx_inverse_m_uq16, fx_inverse_m_uq16((uint8_t)(a & 0x7FU), B16))                 \
     X(fx_reciprocal_uq16, fx_reciprocal_uq16(a < 0x10000000UL ? a | 0x10000000UL : a)) \
     X(fx_isqrt32, fx_isqrt32(a))                                                       \
     X(fx_scaled, pack(fx_scaled(a)))                                                   \

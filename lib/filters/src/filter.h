@@ -43,7 +43,7 @@ extern "C" {
 #define FILTER_WARM_UP_SAMPLES 5
 
 enum filter_flag {
-    FILTER_GATED = 0x01,      /* the sample was refused by the gate */
+    FILTER_GATED = 0x01,      /* beyond the gate: refused, or by `soft` taken in part */
     FILTER_COASTED = 0x02,    /* no sample: the output is a prediction */
     FILTER_REACQUIRED = 0x04, /* the filter restarted on consistent refused samples */
     FILTER_SATURATED = 0x08,  /* a state was clamped to its bound */

@@ -3,12 +3,16 @@
 #define FILTER_LIST_H
 
 #include "kf.h"
+#include "lrf.h"
+#include "soft.h"
 #include "sprf.h"
 #include "synth.h"
 
 #define FILTER_LIST(X) \
     X(kf)              \
     X(sprf)            \
-    X(synth)
+    X(synth)           \
+    X(lrf)             \
+    X(soft)
 
 #endif

@@ -247,10 +247,19 @@ static inline int32_t fx_clamp(int32_t v, int32_t limit)
 extern const uint16_t fx_reciprocal_nodes_uq16[129];
 
 /*
- * 1 / s for 1 <= s < 16 (UQ4.28) in UQ0.16, at most 65535. Table of 129 nodes in program memory, straight lines
- * between. |result - 1/s| <= 1.5 x 2^-16 (chord 0.25, nodes 0.5, product 0.5, plus 0.5 for the last bit when s >= 2),
- * tested.
+ * 1 / m in UQ0.16, at most 65535, for m = 1 + (interval + fraction / 2^16) / 128, interval < 128. Table of 129 nodes in
+ * program memory, straight lines between. |result - 1/m| <= 1.5 x 2^-16 (chord 0.25, nodes 0.5, product 0.5, the first
+ * node's limit 0.25), tested.
  */
+FX_INLINE uint16_t fx_inverse_m_uq16(uint8_t interval, uint16_t fraction)
+{
+    const uint16_t *node = &fx_reciprocal_nodes_uq16[interval];
+    uint16_t left = fx_flash_u16(node);
+    uint16_t drop = (uint16_t)(left - fx_flash_u16(node + 1));
+    return (uint16_t)(left - fx_mul16_uq16(drop, fraction));
+}
+
+/* 1 / s for 1 <= s < 16 (UQ4.28) in UQ0.16, at most 65535. |result - 1/s| <= 1.5 x 2^-16, tested. */
 FX_INLINE uint16_t fx_reciprocal_uq16(uint32_t s_uq28)
 {
     uint8_t halvings = 0;
@@ -262,10 +271,7 @@ FX_INLINE uint16_t fx_reciprocal_uq16(uint32_t s_uq28)
      * s = m x 2^halvings, 1 <= m < 2; three doublings bring m's leading bit to the top, the next seven choose the node
      */
     s_uq28 = fx_eightfold(s_uq28);
-    const uint16_t *node = &fx_reciprocal_nodes_uq16[(uint8_t)(s_uq28 >> 24) & 0x7FU];
-    uint16_t left = fx_flash_u16(node);
-    uint16_t drop = (uint16_t)(left - fx_flash_u16(node + 1));
-    uint16_t inverse = (uint16_t)(left - fx_mul16_uq16(drop, (uint16_t)(s_uq28 >> 8)));
+    uint16_t inverse = fx_inverse_m_uq16((uint8_t)(s_uq28 >> 24) & 0x7FU, (uint16_t)(s_uq28 >> 8));
     for (; halvings != 0U; halvings--) {
         inverse = (uint16_t)((inverse >> 1) + (inverse & 1U));
     }

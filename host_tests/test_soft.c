@@ -1,0 +1,250 @@
+/*
+ * soft in integers, on the PC and on the chip: within the soft gate, beyond it, beyond the gate. Against the double
+ * reference: test_soft_reference.c.
+ */
+#include "kf.h"
+#include "soft.h"
+#include "sprf.h"
+#include "support_filters.h"
+#include "unity.h"
+
+#define SEED 4712UL
+#define R_LSB2 16U
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+/* 100 Hz, R 16 LSB^2: sigma 4, agreement within floor(3 sqrt(32) + 8) = 24 LSB, rate at most 8 LSB per sample. */
+static soft_config_t config_100hz(void)
+{
+    soft_config_t config;
+    soft_defaults(&config, 1000);
+    config.r_lsb2_q8 = R_LSB2 * 256U;
+    return config;
+}
+
+static soft_t settled(const soft_config_t *config, int16_t level)
+{
+    soft_t f;
+    TEST_ASSERT_TRUE(soft_init(&f, config));
+    soft_reset(&f, level);
+    return f;
+}
+
+/* x after one sample at z for a filter at rest at 0. */
+static int32_t step_to(const soft_t *at_zero, int16_t z)
+{
+    soft_t f = *at_zero;
+    return soft_update(&f, z);
+}
+
+static void assert_same_as_kf(const soft_config_t *config, int16_t mask)
+{
+    kf_config_t kf_config = { config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3 };
+    soft_t f;
+    kf_t k;
+    TEST_ASSERT_TRUE(soft_init(&f, config));
+    TEST_ASSERT_TRUE(kf_init(&k, &kf_config));
+    uint32_t random = SEED;
+    for (uint16_t i = 0; i < ON_PC_OR_CHIP(5000, 1000); i++) {
+        int16_t z = (int16_t)((int16_t)(random32(&random) >> 16) & mask);
+        TEST_ASSERT_EQUAL_INT32(kf_update(&k, z), soft_update(&f, z));
+        TEST_ASSERT_EQUAL_UINT16(k.core.gain_uq16, f.core.gain_uq16);
+    }
+}
+
+/* Off: any samples. On: samples of 0 to 7 LSB, which a soft gate of 2 sigma or more, 8 LSB, leaves alone. */
+static void without_or_within_the_soft_gate_it_is_the_kalman_filter(void)
+{
+    soft_config_t config = config_100hz();
+    config.rate_max_lsb_s = 1000000;
+    assert_same_as_kf(&config, 7);
+    config.soft_sigma_q8 = 4096;
+    assert_same_as_kf(&config, 31);
+    config.soft_sigma_q8 = 0;
+    assert_same_as_kf(&config, -1);
+}
+
+/* Any sample moves the estimate towards it, whatever R, gate and gain: the defect of a weight that rounds to zero. */
+static void no_sample_is_without_effect(void)
+{
+    static const uint32_t r_lsb2_q8[] = { 3, 20, 768, 20000, 256000 };
+    static const uint16_t softs_q8[] = { 256, 512, 4096 };
+    static const uint16_t rates_dhz[] = { 125, 1000, 8000 };
+    for (uint8_t i = 0; i < 45; i++) {
+        soft_config_t config;
+        soft_defaults(&config, rates_dhz[i % 3U]);
+        config.r_lsb2_q8 = r_lsb2_q8[i / 9U];
+        config.soft_sigma_q8 = softs_q8[i / 3U % 3U];
+        soft_t f = settled(&config, 0);
+        for (int16_t z = 1; z <= 4095; z = (int16_t)(z + ON_PC_OR_CHIP(1, 300))) {
+            TEST_ASSERT_TRUE(step_to(&f, z) > 0);
+            TEST_ASSERT_TRUE(step_to(&f, (int16_t)-z) < 0);
+        }
+        soft_t high = settled(&config, 4095); /* the largest innovation that rest allows */
+        TEST_ASSERT_TRUE(step_to(&high, -4096) < (int32_t)4095 * 65536);
+        filter_probe_t probe;
+        (void)soft_update(&high, -4096);
+        soft_probe(&high, &probe);
+        TEST_ASSERT_TRUE(probe.gain_uq16 > 0);
+    }
+}
+
+/*
+ * Beyond the soft gate the step is P11 softgate^2 R / |r| and falls as |r| grows: by more than the 2^-18 of the weight
+ * and a count of rounding, |r| 2^-18 P11 <= |r| / 2^18 here, it can rise nowhere.
+ */
+static void the_step_falls_as_the_sample_gets_further(void)
+{
+    soft_config_t config = config_100hz();
+    soft_t f = settled(&config, 0);
+    int32_t before = step_to(&f, 10);
+    for (int16_t z = 11; z < 4095; z = (int16_t)(z + ON_PC_OR_CHIP(1, 50))) {
+        int32_t step = step_to(&f, z);
+        TEST_ASSERT_TRUE(step <= before + z / 4 + 2);
+        before = step;
+    }
+    TEST_ASSERT_TRUE(before < step_to(&f, 10) / 50);
+}
+
+/* As sprf refuses it, so soft flags it: the two agree on every sample but those within 1/256 of the gate in r^2. */
+static void flag_is_at_the_gate_of_sprf(void)
+{
+    static const uint16_t gates_q8[] = { 512, 768, 1536 };
+    for (uint8_t i = 0; i < 3; i++) {
+        soft_config_t config = config_100hz();
+        config.r_lsb2_q8 = 400U * 256U;
+        config.gate_sigma_q8 = gates_q8[i];
+        sprf_config_t sprf_config;
+        sprf_defaults(&sprf_config, 1000);
+        sprf_config.r_lsb2_q8 = config.r_lsb2_q8;
+        sprf_config.gate_sigma_q8 = config.gate_sigma_q8;
+        soft_t f = settled(&config, 0);
+        sprf_t g;
+        TEST_ASSERT_TRUE(sprf_init(&g, &sprf_config));
+        sprf_reset(&g, 0);
+        for (int16_t z = 1; z < 200; z++) {
+            soft_t soft = f;
+            sprf_t sprf = g;
+            (void)soft_update(&soft, z);
+            (void)sprf_update(&sprf, z);
+            uint32_t limit = sprf.core.coarse ? sprf.core.limit_lsb2 / 256U : sprf.core.limit_lsb2 / 65536U;
+            uint32_t r2 = (uint32_t)((int32_t)z * z);
+            if (r2 + limit / 256U < limit || r2 > limit + limit / 256U + 1U) {
+                TEST_ASSERT_EQUAL_UINT8(sprf_flags(&sprf), soft_flags(&soft));
+            }
+        }
+    }
+}
+
+/* Between 2 and 3 sigma part of the sample is taken, no flag; beyond 3 the flag; without a gate never a flag. */
+static void taken_in_part_is_flagged_beyond_the_gate_only(void)
+{
+    soft_config_t config = config_100hz();
+    soft_t f = settled(&config, 0);
+    soft_t g = f;
+    (void)soft_update(&f, 10); /* S is 1.1 to 1.4 R: 2 sigma within 8.4..9.5, 3 sigma within 12.5..14.3 */
+    TEST_ASSERT_EQUAL_UINT8(0, soft_flags(&f));
+    (void)soft_update(&g, 15);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, soft_flags(&g));
+    config.gate_sigma_q8 = 0;
+    soft_t h = settled(&config, 0);
+    for (int k = 0; k < 20; k++) {
+        (void)soft_update(&h, (int16_t)(1000 + k));
+        TEST_ASSERT_EQUAL_UINT8(0, soft_flags(&h) & (FILTER_GATED | FILTER_REACQUIRED));
+    }
+}
+
+/* A gate inside the soft gate flags what lies beyond the latter. */
+static void gate_inside_the_soft_gate_counts_from_the_latter(void)
+{
+    soft_config_t config = config_100hz();
+    config.soft_sigma_q8 = 1024;
+    config.gate_sigma_q8 = 256;
+    soft_t f = settled(&config, 0);
+    soft_t g = f;
+    (void)soft_update(&f, 12);
+    TEST_ASSERT_EQUAL_UINT8(0, soft_flags(&f));
+    (void)soft_update(&g, 25);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, soft_flags(&g));
+}
+
+/* Rule CR by hand, as sprf: five flagged samples on 4 LSB per sample restart at the last with that rate. */
+static void consistent_run_restarts_on_its_slope(void)
+{
+    soft_config_t config = config_100hz();
+    soft_t f = settled(&config, 0);
+    int16_t z = 500;
+    for (uint8_t k = 1; k < 5; k++, z = (int16_t)(z + 4)) {
+        (void)soft_update(&f, z);
+        TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, soft_flags(&f));
+    }
+    TEST_ASSERT_EQUAL_INT32((int32_t)z * 65536, soft_update(&f, z));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, soft_flags(&f));
+    TEST_ASSERT_EQUAL_INT32((int32_t)4 * 65536, f.core.rate_lsb_q16);
+    TEST_ASSERT_EQUAL_UINT32(268435456U, f.core.u.p.p11_uq28);
+    TEST_ASSERT_EQUAL_UINT32(268435456U / 4U, f.core.u.p.p12_uq28);
+    TEST_ASSERT_EQUAL_UINT32(268435456U / 8U + f.core.q22_uq28, f.core.u.p.p22_uq28);
+}
+
+/* 80 and 4 LSB agree (8000 LSB/s: within 17 + 80), so that only its being taken whole lets 4 end the run. */
+static void run_ends_at_a_sample_within_the_gate(void)
+{
+    static const int16_t samples[] = { 80, 80, 80, 4, 80, 80, 80, 80 };
+    soft_config_t config = config_100hz();
+    config.rate_max_lsb_s = 8000;
+    soft_t f = settled(&config, 0);
+    for (uint8_t k = 0; k < 8; k++) {
+        (void)soft_update(&f, samples[k]);
+        TEST_ASSERT_EQUAL_UINT8((samples[k] == 80) ? FILTER_GATED : 0, soft_flags(&f));
+    }
+    (void)soft_update(&f, 80);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, soft_flags(&f));
+}
+
+/* The same with a sample between the gates, which is taken in part and not flagged: 13 LSB. */
+static void run_ends_at_a_sample_between_the_gates(void)
+{
+    soft_config_t config = config_100hz();
+    config.rate_max_lsb_s = 8000;
+    soft_t f = settled(&config, 0);
+    for (uint8_t k = 0; k < 9; k++) {
+        (void)soft_update(&f, (k == 3U) ? 13 : 80);
+        TEST_ASSERT_EQUAL_UINT8((k == 3U) ? 0 : (k == 8U) ? FILTER_REACQUIRED : FILTER_GATED, soft_flags(&f));
+    }
+}
+
+/*
+ * Without re-acquisition, from one end of the range to the other: it comes back, if slowly. P stops at its limit: P12
+ * is then above 0.12 here, so the rate gains P12 softgate^2 R / |r| > 0.12 x 64 / 8191 less 2^-16 LSB in each sample,
+ * and 8191 LSB are passed in sqrt(2 x 8191 / 0.00092) = 4220 samples.
+ */
+static void it_is_never_locked_out(void)
+{
+    soft_config_t config = config_100hz();
+    config.reacquire_samples = 0;
+    soft_t f = settled(&config, -4096);
+    uint16_t samples = 0;
+    while (f.core.x_lsb_q16 < (int32_t)4090 * 65536 && samples < 4220U) {
+        (void)soft_update(&f, 4095);
+        samples++;
+    }
+    TEST_ASSERT_TRUE(samples < 4220U);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(without_or_within_the_soft_gate_it_is_the_kalman_filter);
+    RUN_TEST(no_sample_is_without_effect);
+    RUN_TEST(the_step_falls_as_the_sample_gets_further);
+    RUN_TEST(flag_is_at_the_gate_of_sprf);
+    RUN_TEST(taken_in_part_is_flagged_beyond_the_gate_only);
+    RUN_TEST(gate_inside_the_soft_gate_counts_from_the_latter);
+    RUN_TEST(consistent_run_restarts_on_its_slope);
+    RUN_TEST(run_ends_at_a_sample_within_the_gate);
+    RUN_TEST(run_ends_at_a_sample_between_the_gates);
+    RUN_TEST(it_is_never_locked_out);
+    return UNITY_END();
+}
