@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "filter_any.h"
+#include "support_filters.h"
 #include "unity.h"
 
 void setUp(void) {}
@@ -47,10 +48,76 @@ static void test_name_and_descriptor_agree(void)
     }
 }
 
+/* Configurations that init refuses, and the parameter that is told. */
+static void assert_refused_for(filter_kind_t kind, const char *name, uint32_t value)
+{
+    filter_any_t f;
+    filter_any_config_t config;
+    filter_any_defaults(kind, &config, 1000);
+    for (uint8_t i = 0; i < parameter_count(kind); i++) {
+        filter_parameter_t parameter = parameter_at(kind, i);
+        if (strcmp(parameter.name, name) == 0) {
+            parameter_set(&config, &parameter, value);
+            TEST_ASSERT_FALSE_MESSAGE(filter_any_init(&f, kind, &config), name);
+            TEST_ASSERT_EQUAL_UINT8_MESSAGE(i, filter_any_refused(kind, &config), name);
+            return;
+        }
+    }
+    TEST_FAIL_MESSAGE(name);
+}
+
+static void test_a_refusal_names_the_parameter(void)
+{
+    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        assert_refused_for((filter_kind_t)kind, "r", 0);
+        assert_refused_for((filter_kind_t)kind, "r", FILTER_R_MAX_LSB2_Q8 + 1);
+    }
+    static const filter_kind_t two_state[] = { FILTER_KIND_kf, FILTER_KIND_lrf, FILTER_KIND_soft, FILTER_KIND_sprf };
+    for (int i = 0; i < 4; i++) {
+        assert_refused_for(two_state[i], "q", 0);
+        assert_refused_for(two_state[i], "q", 1000000001);
+    }
+    assert_refused_for(FILTER_KIND_sprf, "gate", 255); /* below 1 sigma */
+    assert_refused_for(FILTER_KIND_soft, "gate", 255);
+    assert_refused_for(FILTER_KIND_soft, "softgate", 255);
+    assert_refused_for(FILTER_KIND_soft, "softgate", 4097);
+    assert_refused_for(FILTER_KIND_soft, "reacquire", 10);
+    assert_refused_for(FILTER_KIND_soft, "ratemax", 0);
+    assert_refused_for(FILTER_KIND_lrf, "clean", 0); /* a probability of 0; 1 is not among 16 bits */
+    assert_refused_for(FILTER_KIND_lrf, "ratio", 255);
+    assert_refused_for(FILTER_KIND_synth, "a1", (uint32_t)-65536);
+    assert_refused_for(FILTER_KIND_synth, "a1", 65536);
+}
+
+/* The first of several, the rate before all; off is no reason; an even run of samples lies within 3..9. */
+static void test_a_refusal_tells_rate_and_combinations_apart(void)
+{
+    filter_any_config_t config;
+    filter_any_defaults(FILTER_KIND_soft, &config, 1000);
+    config.soft.gate_sigma_q8 = 0;
+    config.soft.reacquire_samples = 4;
+    filter_any_t f;
+    TEST_ASSERT_FALSE(filter_any_init(&f, FILTER_KIND_soft, &config));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_any_refused(FILTER_KIND_soft, &config));
+    config.soft.soft_sigma_q8 = 1;
+    config.soft.q_lsb2_s3 = 0;
+    TEST_ASSERT_EQUAL_UINT8(1, filter_any_refused(FILTER_KIND_soft, &config));
+    config.soft.rate_dhz = FILTER_RATE_MIN_DHZ - 1U;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_RATE, filter_any_refused(FILTER_KIND_soft, &config));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_KIND, filter_any_refused(FILTER_KIND_COUNT, &config));
+    filter_any_defaults(FILTER_KIND_synth, &config, 1000);
+    config.synth.b0_uq16 = 6554;
+    config.synth.a1_q16 = -65000; /* outside the stability region */
+    TEST_ASSERT_FALSE(filter_any_init(&f, FILTER_KIND_synth, &config));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_any_refused(FILTER_KIND_synth, &config));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_an_unknown_kind_changes_nothing);
     RUN_TEST(test_name_and_descriptor_agree);
+    RUN_TEST(test_a_refusal_names_the_parameter);
+    RUN_TEST(test_a_refusal_tells_rate_and_combinations_apart);
     return UNITY_END();
 }

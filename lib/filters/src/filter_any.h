@@ -55,6 +55,18 @@ int32_t filter_any_coast(filter_any_t *f);
 uint8_t filter_any_flags(const filter_any_t *f);
 void filter_any_probe(const filter_any_t *f, filter_probe_t *out);
 
+/*
+ * Why filter_any_init refuses a configuration, to be asked after it did: the index of the descriptor's first parameter
+ * that is outside its range, or one of filter_refusal.
+ */
+enum filter_refusal {
+    FILTER_REFUSED_KIND = 253, /* there is no such filter */
+    FILTER_REFUSED_RATE = 254, /* rate_dhz, which no descriptor lists */
+    FILTER_REFUSED_TOGETHER =
+        255 /* each is in its range: a gap in it (reacquire: 3, 5, 9) or a condition over several */
+};
+uint8_t filter_any_refused(filter_kind_t kind, const filter_any_config_t *config);
+
 #ifdef __cplusplus
 }
 #endif
