@@ -16,6 +16,11 @@
 /* After so many equal samples P is within a few per cent of where it settles, for gains above 0.05. */
 #define SETTLE_STEPS 64U
 
+/* Ends of P after a prediction, see TWO_STATE_P11_END_UQ28. */
+#define P11_MAX_UQ28 0x7FFFFFFFU
+#define P12_MAX_UQ28 0x3FFFFFFFU
+#define P22_MAX_UQ28 0x2FFFFFFFU
+
 #define X_MAX_LSB_Q16 ((int32_t)FILTER_X_MAX_LSB * 65536)
 
 bool two_state_legal(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3)
@@ -98,6 +103,22 @@ void two_state_start(two_state_t *s, int32_t x_lsb_q16)
     s->gain_uq16 = 0;
     s->limit_lsb2 = 0;
     s->collected = FILTER_WARM_UP_SAMPLES;
+}
+
+static uint32_t at_most(uint32_t v, uint32_t limit)
+{
+    return (v < limit) ? v : limit;
+}
+
+void two_state_begin(two_state_t *s, int32_t x_lsb_q16, int32_t rate_lsb_q16, uint32_t p11_uq28, uint32_t p12_uq28,
+                     uint32_t p22_uq28)
+{
+    two_state_start(s, fx_clamp(x_lsb_q16, X_MAX_LSB_Q16));
+    s->rate_lsb_q16 = fx_clamp(rate_lsb_q16, (int32_t)s->rate_max_lsb_q16);
+    s->flags = 0;
+    s->u.p.p11_uq28 = at_most(p11_uq28, P11_MAX_UQ28);
+    s->u.p.p12_uq28 = at_most(p12_uq28, at_most(s->u.p.p11_uq28, P12_MAX_UQ28));
+    s->u.p.p22_uq28 = at_most(p22_uq28, P22_MAX_UQ28);
 }
 
 void two_state_settle(two_state_t *s)

@@ -1,0 +1,255 @@
+// K_ef: mean square error of the Kalman filter over that of the filter, on the same realisations.
+#include "experiments.h"
+#include "model.h"
+
+#include <array>
+#include <cmath>
+
+namespace papers
+{
+namespace
+{
+constexpr int samples = 400;
+constexpr int warm_up_rows = 5;
+constexpr int group = 50; // the paper's N_p
+
+enum Window { steady, transient, transient_late, window_count };
+const std::array<const char *, window_count> metric = { "k_ef_steady", "k_ef_transient", "k_ef_transient_6_60" };
+
+struct Scores {
+    std::array<std::vector<double>, window_count> square; // per run, summed over the window
+    double locked = 0.0;
+};
+
+// One filter over one realisation.
+void score(const Contestant &c, Realisation &realisation, double back_deg, Scores &scores)
+{
+    std::array<double, window_count> sum{};
+    bool locked = true; // outside for all of the last hundred samples
+    c.filter->restart();
+    for (int k = 0; k < samples; k++) {
+        const Sample &s = realisation.at(k);
+        c.filter->tell(s.outlier);
+        const double error = c.filter->step(s.y) - s.truth;
+        // a filter that has left the world of numbers is as wrong as can be
+        const double square = std::isfinite(error) ? std::fmin(error * error, 1e12) : 1e12;
+        sum[steady] += (k >= 200) ? square : 0.0;
+        sum[transient] += (k < 60) ? square : 0.0;
+        sum[transient_late] += (k >= warm_up_rows && k < 60) ? square : 0.0;
+        locked = locked && (k < samples - 100 || square >= back_deg * back_deg);
+    }
+    for (std::size_t w = 0; w < window_count; w++) {
+        scores.square[w].push_back(sum[w]);
+    }
+    scores.locked += locked;
+}
+
+std::vector<Scores> scored(const std::vector<Contestant> &all, const Scenario &scenario, const Options &options,
+                           Progress &progress)
+{
+    std::vector<Scores> scores(all.size());
+    std::vector<double> back_deg;
+    for (const Contestant &c : all) {
+        back_deg.push_back(4.0 * steady_sigma_deg(c.name));
+    }
+    for (int run = 0; run < options.runs; run++) {
+        Realisation realisation(scenario, run_seed(options.seed, static_cast<std::uint64_t>(run)));
+        for (std::size_t i = 0; i < all.size(); i++) {
+            score(all[i], realisation, back_deg[i], scores[i]);
+        }
+        progress.advance();
+    }
+    return scores;
+}
+
+std::size_t find(const std::vector<Contestant> &all, const std::string &name, Arithmetic arithmetic)
+{
+    std::size_t i = 0;
+    while (i < all.size() && !(all[i].name == name && all[i].arithmetic == arithmetic)) {
+        i++;
+    }
+    return i;
+}
+
+// Index of the filter that each is compared with: the Kalman filter in the same arithmetic.
+std::vector<std::size_t> standards(const std::vector<Contestant> &all)
+{
+    std::vector<std::size_t> result;
+    for (const Contestant &c : all) {
+        result.push_back(find(all, "kf", c.arithmetic));
+    }
+    return result;
+}
+
+void ratio_rows(const std::string &experiment, const std::vector<Contestant> &all, const std::vector<Scores> &scores,
+                Window window, const std::string &name, const Options &options)
+{
+    const std::vector<std::size_t> standard = standards(all);
+    std::vector<const std::vector<double> *> above;
+    std::vector<const std::vector<double> *> below;
+    for (std::size_t i = 0; i < all.size(); i++) {
+        above.push_back(&scores[standard[i]].square[window]);
+        below.push_back(&scores[i].square[window]);
+    }
+    const std::vector<Interval> ratios = bootstrap_ratios(above, below, options.seed);
+    for (std::size_t i = 0; i < all.size(); i++) {
+        if (i != standard[i]) {
+            row(experiment, all[i], name, ratios[i], options.runs);
+        }
+    }
+}
+
+// Median over experiments of the paper's size; the interval holds nine in ten of them.
+void group_rows(const std::string &experiment, const std::vector<Contestant> &all, const std::vector<Scores> &scores,
+                const Options &options)
+{
+    const std::vector<std::size_t> standard = standards(all);
+    for (std::size_t i = 0; i < all.size(); i++) {
+        std::vector<double> ratios;
+        for (int first = 0; first + group <= options.runs; first += group) {
+            double above = 0.0;
+            double below = 0.0;
+            for (std::size_t run = static_cast<std::size_t>(first); run < static_cast<std::size_t>(first + group);
+                 run++) {
+                above += scores[standard[i]].square[steady][run];
+                below += scores[i].square[steady][run];
+            }
+            ratios.push_back(above / below);
+        }
+        if (i != standard[i] && !ratios.empty()) {
+            row(experiment, all[i], "k_ef_steady_median_of_50",
+                Interval{ quantile(ratios, 0.5), quantile(ratios, 0.05), quantile(ratios, 0.95) }, options.runs);
+        }
+    }
+}
+
+void lockout_rows(const std::string &experiment, const std::vector<Contestant> &all, const std::vector<Scores> &scores,
+                  const Options &options)
+{
+    for (std::size_t i = 0; i < all.size(); i++) {
+        row(experiment, all[i], "lockout_rate", share(scores[i].locked, options.runs), options.runs);
+    }
+}
+
+// How far the fixed-point code's K_ef is from the reference's on the same runs.
+void agreement_rows(const std::string &experiment, const std::vector<Contestant> &all,
+                    const std::vector<Scores> &scores, const Options &options)
+{
+    for (std::size_t i = 0; i < all.size(); i++) {
+        const std::size_t twin = find(all, all[i].name, Arithmetic::in_double);
+        if (all[i].arithmetic == Arithmetic::fixed && twin < all.size() && all[i].name != "kf") {
+            const std::vector<std::size_t> s = standards(all);
+            const double ours = total(scores[s[i]].square[steady]) / total(scores[i].square[steady]);
+            const double theirs = total(scores[s[twin]].square[steady]) / total(scores[twin].square[steady]);
+            row(experiment, all[i], "k_ef_steady_by_double", ours / theirs, options.runs);
+        }
+    }
+}
+
+// Everything that is told of a start.
+void start_rows(const std::string &experiment, const std::vector<Contestant> &all, const Scenario &scenario,
+                const Options &options)
+{
+    Progress progress(options.runs * 1.15);
+    const std::vector<Scores> scores = scored(all, scenario, options, progress);
+    for (std::size_t w = 0; w < window_count; w++) {
+        ratio_rows(experiment, all, scores, static_cast<Window>(w), metric[w], options);
+        progress.advance(options.runs * 0.05);
+    }
+    group_rows(experiment, all, scores, options);
+    lockout_rows(experiment, all, scores, options);
+    agreement_rows(experiment, all, scores, options);
+}
+
+std::string fraction(double factor)
+{
+    char buffer[16];
+    std::snprintf(buffer, sizeof buffer, factor < 1.0 ? "1/%g" : "%g", factor < 1.0 ? 1.0 / factor : factor);
+    return buffer;
+}
+} // namespace
+
+void table1_start(const Options &options)
+{
+    start_rows("table1_start", contestants(reference_names(), { Start::table1 }), Scenario{}, options);
+}
+
+void first_sample_clean(const Options &options)
+{
+    Scenario scenario;
+    scenario.first_clean = true;
+    start_rows("first_sample_clean", contestants(reference_names(), { Start::table1 }), scenario, options);
+}
+
+static void after_warm_up(const std::string &experiment, Start start, const Options &options)
+{
+    const std::vector<Contestant> all = contestants(reference_names(), { start });
+    for (const Contestant &c : all) {
+        row(experiment, c, "warm_up_rows", c.name.compare(0, 10, "sprf_paper") == 0 ? 0 : warm_up_rows, 1);
+    }
+    start_rows(experiment, all, Scenario{}, options);
+}
+
+void median_start(const Options &options)
+{
+    after_warm_up("median_start", Start::median, options);
+}
+
+void shipped_start(const Options &options)
+{
+    after_warm_up("shipped_start", Start::shipped, options);
+}
+
+void clean_data(const Options &options)
+{
+    Scenario scenario;
+    scenario.outliers = 0.0;
+    const std::vector<Contestant> all = contestants(reference_names(), { Start::median });
+    Progress progress(options.runs * 1.1);
+    const std::vector<Scores> scores = scored(all, scenario, options, progress);
+    ratio_rows("clean", all, scores, steady, "clean_efficiency", options);
+    progress.advance(options.runs * 0.1);
+}
+
+void printed_readings(const Options &options)
+{
+    std::vector<std::string> names = printed_names();
+    names.insert(names.begin(), "kf");
+    std::vector<Contestant> all;
+    for (const std::string &name : names) {
+        all.push_back(contestant(name, Arithmetic::in_double, { Start::table1 }));
+    }
+    Scenario clean_start;
+    clean_start.first_clean = true;
+    Progress progress(options.runs * 2.2);
+    for (const bool first_clean : { false, true }) {
+        const std::string experiment = first_clean ? "printed_first_sample_clean" : "printed";
+        const std::vector<Scores> scores = scored(all, first_clean ? clean_start : Scenario{}, options, progress);
+        ratio_rows(experiment, all, scores, steady, metric[steady], options);
+        ratio_rows(experiment, all, scores, transient, metric[transient], options);
+        progress.advance(options.runs * 0.1);
+    }
+}
+
+void wrong_r(const Options &options)
+{
+    const std::array<double, 7> factors = { 1.0 / 16, 0.25, 0.5, 1.0, 2.0, 4.0, 16.0 };
+    const std::vector<std::string> names = { "kf",   "lrf", "sprf_paper", "sprf_paper_3sigma", "sprf", "soft",
+                                             "shrf", "pbf", "af" };
+    Scenario scenario;
+    scenario.first_clean = true;
+    Progress progress(options.runs * 1.05 * factors.size());
+    for (const double factor : factors) {
+        std::vector<Contestant> all = contestants(names, { Start::table1, factor });
+        // the standard is the Kalman filter that knows R
+        for (Contestant &c : all) {
+            if (c.name == "kf") {
+                c = contestant("kf", c.arithmetic, { Start::table1 });
+            }
+        }
+        const std::vector<Scores> scores = scored(all, scenario, options, progress);
+        ratio_rows("wrong_r_" + fraction(factor), all, scores, steady, metric[steady], options);
+        progress.advance(options.runs * 0.05);
+    }
+}
+} // namespace papers

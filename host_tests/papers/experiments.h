@@ -1,0 +1,59 @@
+// The experiments of paper 002. Each prints rows and its progress on standard output: see report.cpp.
+#ifndef PAPERS_EXPERIMENTS_H
+#define PAPERS_EXPERIMENTS_H
+
+#include "filters.h"
+#include "statistics.h"
+
+#include <cstdint>
+#include <string>
+
+namespace papers
+{
+struct Options {
+    int runs = 10000;
+    std::uint64_t seed = 2024;
+};
+
+// `row`, experiment, filter, arithmetic, metric, value, low, high, runs, between tabs; low and high are empty without interval.
+void row(const std::string &experiment, const Contestant &c, const std::string &metric, double value, int runs);
+void row(const std::string &experiment, const Contestant &c, const std::string &metric, const Interval &value,
+         int runs);
+
+// `progress` and the part done.
+class Progress
+{
+  public:
+    explicit Progress(double work) : work_(work) {}
+    void advance(double by = 1.0);
+
+  private:
+    double work_;
+    double done_ = 0.0;
+    int told_ = -1;
+};
+
+// K_ef from a start: of all references, of the printed readings, of the shipped code.
+void table1_start(const Options &options);
+void first_sample_clean(const Options &options);
+void median_start(const Options &options);
+void shipped_start(const Options &options);
+void clean_data(const Options &options);
+void printed_readings(const Options &options);
+void wrong_r(const Options &options);
+
+// Gate width.
+void gate_width(const Options &options);
+
+// Steps, bursts, lock-out.
+void steps_clean(const Options &options);
+void steps_with_outliers(const Options &options);
+void bursts(const Options &options);
+void lockout(const Options &options);
+
+// No chance in them.
+void covariance(const Options &options);
+void steady_gain(const Options &options);
+} // namespace papers
+
+#endif

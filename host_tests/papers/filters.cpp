@@ -1,0 +1,174 @@
+#include "filters.h"
+#include "model.h"
+#include "reference_robust.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace papers
+{
+namespace
+{
+struct Entry {
+    const char *name;
+    robust_kind_t kind;
+    robust_reading_t reading;
+    double gate_sigma;
+    int reacquire;
+};
+
+const Entry entries[] = {
+    { "kf", ROBUST_KF, ROBUST_CORRECTED, 3.0, 0 },
+    { "lrf", ROBUST_LRF, ROBUST_CORRECTED, 3.0, 0 },
+    { "sprf_paper", ROBUST_SPRF, ROBUST_CORRECTED, 2.0, 0 },
+    { "sprf_paper_3sigma", ROBUST_SPRF, ROBUST_CORRECTED, 3.0, 0 },
+    { "sprf", ROBUST_SPRF, ROBUST_CORRECTED, 3.0, 5 },
+    { "soft", ROBUST_SOFT, ROBUST_CORRECTED, 3.0, 5 },
+    { "shrf", ROBUST_SHRF, ROBUST_CORRECTED, 3.0, 0 },
+    { "pbf", ROBUST_PBF, ROBUST_CORRECTED, 3.0, 0 },
+    { "af", ROBUST_AF, ROBUST_CORRECTED, 3.0, 0 },
+    { "af_grid", ROBUST_AF_GRID, ROBUST_CORRECTED, 3.0, 0 },
+    { "clairvoyant", ROBUST_CLAIRVOYANT, ROBUST_CORRECTED, 3.0, 0 },
+    { "af_grid_eq15", ROBUST_AF_GRID, ROBUST_PRINTED_15, 3.0, 0 },
+    { "af_grid_i_by_50", ROBUST_AF_GRID, ROBUST_PRINTED_GRID, 3.0, 0 },
+    { "pbf_eq21", ROBUST_PBF, ROBUST_PRINTED_21, 3.0, 0 },
+    { "shrf_eq24", ROBUST_SHRF, ROBUST_PRINTED_24, 3.0, 0 },
+    { "shrf_eq25", ROBUST_SHRF, ROBUST_PRINTED_25, 3.0, 0 },
+    { "pbf_eq26", ROBUST_PBF, ROBUST_PRINTED_26, 3.0, 0 },
+    { "shrf_eq29_cut", ROBUST_SHRF, ROBUST_PRINTED_27, 3.0, 0 },
+    { "shrf_eq30", ROBUST_SHRF, ROBUST_PRINTED_30, 3.0, 0 },
+    { "sprf_eq33", ROBUST_SPRF, ROBUST_PRINTED_33, 2.0, 0 },
+    { "sprf_eq34", ROBUST_SPRF, ROBUST_PRINTED_34, 2.0, 0 },
+    { "lrf_eq39", ROBUST_LRF, ROBUST_PRINTED_39, 3.0, 0 },
+};
+
+// The library's rules, in degrees: rate at most 3 degree/s, runs agree within 3 sqrt(2 R) + what that rate moves
+constexpr double rate_max_deg_s = 3.0;
+constexpr double shipped_rate_variance = 4.0 * 4.0;
+
+class DoubleFilter final : public Filter
+{
+  public:
+    DoubleFilter(const Entry &entry, const Settings &settings)
+    {
+        robust_reference_table1(&initial_, entry.kind);
+        initial_.reading = entry.reading;
+        initial_.r *= settings.r_factor;
+        initial_.gate_sigma = (settings.gate_sigma > 0.0) ? settings.gate_sigma : entry.gate_sigma;
+        initial_.reacquire = entry.reacquire;
+        if (entry.reacquire != 0) {
+            initial_.rate_max = rate_max_deg_s;
+            initial_.agree = 3.0 * std::sqrt(2.0 * initial_.r) + rate_max_deg_s * period_s;
+        }
+        const bool as_published = entry.kind == ROBUST_SPRF && entry.reacquire == 0;
+        initial_.median_window = (settings.start != Start::table1 && !as_published) ? 5 : 0;
+        if (settings.start == Start::shipped) { // the library limits it to R per sample
+            initial_.p22_start = std::min(shipped_rate_variance, initial_.r / (period_s * period_s));
+        }
+        const char *refused = robust_reference_refused(&initial_);
+        if (refused != nullptr) {
+            throw std::runtime_error(std::string(entry.name) + ": " + refused + " is outside its legal range");
+        }
+        f_ = initial_;
+    }
+    void restart() override
+    {
+        f_ = initial_;
+    }
+    double step(double y_deg) override
+    {
+        return robust_reference_step(&f_, y_deg);
+    }
+    bool refused() const override
+    {
+        return f_.gated;
+    }
+    double gain() const override
+    {
+        return f_.gain[0];
+    }
+    void tell(bool outlier) override
+    {
+        f_.outlier = outlier;
+    }
+
+  private:
+    robust_reference_t initial_{};
+    robust_reference_t f_{};
+};
+
+std::vector<std::string> names(bool printed)
+{
+    std::vector<std::string> result;
+    for (const Entry &entry : entries) {
+        if ((entry.reading != ROBUST_CORRECTED) == printed) {
+            result.emplace_back(entry.name);
+        }
+    }
+    return result;
+}
+
+double steady_sigma_of(robust_kind_t kind)
+{
+    robust_reference_t f;
+    robust_reference_table1(&f, kind);
+    double p[4];
+    double gain[2];
+    robust_reference_steady(&f, p, gain);
+    return std::sqrt(p[0]);
+}
+} // namespace
+
+std::unique_ptr<Filter> detail::make_double(const std::string &name, const Settings &settings)
+{
+    for (const Entry &entry : entries) {
+        if (name == entry.name) {
+            return std::make_unique<DoubleFilter>(entry, settings);
+        }
+    }
+    throw std::runtime_error(name + ": no such reference in host_tests/papers/filters.cpp");
+}
+
+const char *text(Arithmetic arithmetic)
+{
+    return arithmetic == Arithmetic::in_double ? "double" : "fixed";
+}
+
+Contestant contestant(const std::string &name, Arithmetic arithmetic, const Settings &settings)
+{
+    return { name, arithmetic,
+             arithmetic == Arithmetic::fixed ? detail::make_fixed(name, settings)
+                                             : detail::make_double(name, settings) };
+}
+
+std::vector<std::string> reference_names()
+{
+    return names(false);
+}
+
+std::vector<std::string> printed_names()
+{
+    return names(true);
+}
+
+std::vector<Contestant> contestants(const std::vector<std::string> &chosen, const Settings &settings)
+{
+    std::vector<Contestant> result;
+    const std::vector<std::string> fixed = fixed_names();
+    for (const std::string &name : chosen) {
+        result.push_back(contestant(name, Arithmetic::in_double, settings));
+        if (std::find(fixed.begin(), fixed.end(), name) != fixed.end()) {
+            result.push_back(contestant(name, Arithmetic::fixed, settings));
+        }
+    }
+    return result;
+}
+
+double steady_sigma_deg(const std::string &name)
+{
+    static const double of_kf = steady_sigma_of(ROBUST_KF);
+    static const double of_lrf = steady_sigma_of(ROBUST_LRF);
+    return (name.compare(0, 3, "lrf") == 0) ? of_lrf : of_kf;
+}
+} // namespace papers

@@ -1,0 +1,70 @@
+#include "statistics.h"
+#include "model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace papers
+{
+namespace
+{
+constexpr int resamplings = 1000;
+}
+
+double quantile(std::vector<double> values, double q)
+{
+    std::sort(values.begin(), values.end());
+    const double at = q * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(at);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    const double part = at - static_cast<double>(below);
+    if (part == 0.0 || values[below] == values[above]) {
+        return values[below]; // infinities do not mix
+    }
+    return values[below] + part * (values[above] - values[below]);
+}
+
+double total(const std::vector<double> &values)
+{
+    return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+std::vector<Interval> bootstrap_ratios(const std::vector<const std::vector<double> *> &numerators,
+                                       const std::vector<const std::vector<double> *> &denominators, std::uint64_t seed)
+{
+    const std::size_t n = numerators.front()->size();
+    std::vector<std::vector<double>> ratios(numerators.size());
+    std::vector<std::uint32_t> drawn(n);
+    test_random_t random;
+    random_seed(&random, run_seed(seed, 0));
+    for (int b = 0; b < resamplings; b++) {
+        std::generate(drawn.begin(), drawn.end(), [&] { return random_below(&random, static_cast<std::uint32_t>(n)); });
+        for (std::size_t i = 0; i < numerators.size(); i++) {
+            double a = 0.0;
+            double d = 0.0;
+            for (const std::uint32_t run : drawn) {
+                a += (*numerators[i])[run];
+                d += (*denominators[i])[run];
+            }
+            ratios[i].push_back(a / d);
+        }
+    }
+    std::vector<Interval> result;
+    for (std::size_t i = 0; i < numerators.size(); i++) {
+        result.push_back({ total(*numerators[i]) / total(*denominators[i]), quantile(ratios[i], 0.025),
+                           quantile(ratios[i], 0.975) });
+    }
+    return result;
+}
+
+Interval share(double count, double n)
+{
+    constexpr double z = 1.959964;
+    const double p = count / n;
+    const double middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
+    const double half = z / (1.0 + z * z / n) * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
+    return { p, std::min(p, std::max(0.0, middle - half)), std::max(p, middle + half) };
+}
+} // namespace papers

@@ -1,0 +1,21 @@
+# The experiments of the papers: double references and the shipped fixed-point code over the same realisations.
+P := $(B)/papers
+PAPERS_CPP := $(wildcard host_tests/papers/*.cpp) host_tests/reference_robust.cpp
+PAPERS_C   := $(wildcard lib/filters/src/*.c) host_tests/support_filters.c host_tests/support_random.c
+PAPERS_OBJ := $(PAPERS_CPP:%.cpp=$(P)/%.o) $(PAPERS_C:%.c=$(P)/%.o)
+RUNS ?= 10000
+
+$(P)/%.o: %.cpp Makefile mk/papers.mk
+	@mkdir -p $(@D)
+	@$(HOST_CXX) -std=c++17 -O2 -g -Wall -Wextra -Wconversion -Wshadow -Werror -Ihost_tests -Ilib/filters/src -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
+
+$(P)/%.o: %.c Makefile mk/papers.mk
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) -MMD -MP -c $< -o $@
+
+$(P)/paper002: $(PAPERS_OBJ)
+	@$(HOST_CXX) $^ -lm -o $@
+
+.PHONY: papers
+
+-include $(shell find $(P) -name '*.d' 2>/dev/null)
