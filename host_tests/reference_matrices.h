@@ -1,11 +1,17 @@
 /*
- * Matrices of a two-state filter (Eigen, double; C++ only). Each kind of expression stands here once, not inlined, so
- * that the references compile in seconds: instantiating Eigen's templates is what takes the time.
+ * Matrices of a two-state filter (Eigen, double; C++ only). Each kind of expression stands here once, and under the
+ * sanitizers not inlined, so that the references compile in seconds: instantiating Eigen's templates takes the time.
  */
 #ifndef REFERENCE_MATRICES_H
 #define REFERENCE_MATRICES_H
 
 #include <Eigen/Core>
+
+#ifdef __SANITIZE_ADDRESS__
+#define REFERENCE_KIND __attribute__((noinline)) inline
+#else
+#define REFERENCE_KIND inline
+#endif
 
 namespace reference
 {
@@ -16,32 +22,32 @@ using Row = Eigen::RowVector2d;
 const Row H(1.0, 0.0);
 
 // Each kind of expression once, so that the file compiles in seconds: Eigen's templates are what takes the time.
-__attribute__((noinline)) inline Matrix product(const Matrix &a, const Matrix &b)
+REFERENCE_KIND Matrix product(const Matrix &a, const Matrix &b)
 {
     return a.lazyProduct(b);
 }
 
-__attribute__((noinline)) inline Vector product(const Matrix &a, const Vector &v)
+REFERENCE_KIND Vector product(const Matrix &a, const Vector &v)
 {
     return a.lazyProduct(v);
 }
 
-__attribute__((noinline)) inline Matrix outer(const Vector &a, const Vector &b)
+REFERENCE_KIND Matrix outer(const Vector &a, const Vector &b)
 {
     return a.lazyProduct(b.transpose());
 }
 
-__attribute__((noinline)) inline Matrix sum(double a, const Matrix &m, double b, const Matrix &n)
+REFERENCE_KIND Matrix sum(double a, const Matrix &m, double b, const Matrix &n)
 {
     return a * m + b * n;
 }
 
-__attribute__((noinline)) inline Vector sum(double a, const Vector &u, double b, const Vector &v)
+REFERENCE_KIND Vector sum(double a, const Vector &u, double b, const Vector &v)
 {
     return a * u + b * v;
 }
 
-__attribute__((noinline)) inline Matrix transposed(const Matrix &m)
+REFERENCE_KIND Matrix transposed(const Matrix &m)
 {
     return m.transpose();
 }

@@ -16,6 +16,16 @@ $(P)/%.o: %.c Makefile mk/papers.mk
 $(P)/paper002: $(PAPERS_OBJ)
 	@$(HOST_CXX) $^ -lm -o $@
 
-.PHONY: papers
+## papers: the experiments of the papers, double and fixed point, beside the printed numbers, into docs/papers.md (2 minutes; RUNS=)
+papers:
+	@sh tools/deps.sh papers
+	@$(MAKE) -j2 $(P)/paper002
+	@python3 tools/papers.py --runs $(RUNS)
+
+clean: clean_papers
+clean_papers:
+	@rm -rf $(P)
+
+.PHONY: papers clean_papers
 
 -include $(shell find $(P) -name '*.d' 2>/dev/null)

@@ -1,6 +1,6 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
-# Groups: firmware sim test check flash flashtest bench piocheck fuzz coverage proof. Packages come by apt-get, numpy and matplotlib (check: lizard) by
+# Groups: firmware sim test check flash flashtest bench piocheck papers fuzz coverage proof. Packages come by apt-get, numpy and matplotlib (check: lizard) by
 # pip into build/venv, Unity by tools/get_unity.sh into build/unity (UNITY_DIR=folder: use that one). Uses sudo only when not root.
 set -eu
 
@@ -118,6 +118,7 @@ collect() {
             sim) need_simulator; need_plots ;;
             bench) need_simulator; need python3 has python3 ;;
             test) need_simulator; need_plots; need_unity ;;
+            papers) need_host_compiler; need g++ has g++; need python3 has python3; need libeigen3-dev has_header eigen3/Eigen/Core eigen3 ;;
             check) need_simulator; need_unity; need_lizard; need python3 has python3
                 need clang-tidy has clang-tidy
                 need clang-tools has_clang_query
@@ -129,7 +130,7 @@ collect() {
             fuzz) need_host_compiler; need python3 has python3; need binutils has objcopy ;;
             coverage) need_simulator; need_plots; need_unity; need gcovr has gcovr ;;
             proof) need python3 has python3; need frama-c-base has frama-c ;;
-            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench, piocheck, fuzz, coverage or proof" ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, fuzz, coverage or proof" ;;
         esac
     done
     missing=${missing# }
@@ -227,7 +228,7 @@ install_unity() {
     tools/get_unity.sh build/unity
 }
 
-[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck, fuzz, coverage, proof)"
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, fuzz, coverage, proof)"
 collect "$@"
 mkdir -p build
 if [ -n "$missing" ]; then

@@ -33,7 +33,7 @@ double samples_to_return(const Contestant &c, Realisation &realisation, int from
         const Sample &s = realisation.at(k);
         good = (std::abs(c.filter->step(s.y) - s.truth) < back_deg) ? good + 1 : 0;
         if (good == in_a_row) {
-            return k - from - in_a_row + 2; // 1: at once
+            return k - from - in_a_row + 1; // 0: at once
         }
     }
     return never;
@@ -109,7 +109,7 @@ Burst through_burst(const Contestant &c, Realisation &realisation, int from, int
         result.peak = std::max(result.peak, error);
         good = (k >= from + length && error < 4.0) ? good + 1 : 0;
         if (good == in_a_row) {
-            result.back = k - from - length - in_a_row + 2;
+            result.back = k - from - length - in_a_row + 1;
             break;
         }
     }
@@ -187,7 +187,7 @@ void lockout(const Options &options)
 {
     const int trials = 10 * options.runs;
     const std::vector<Contestant> all = contestants({ "lrf", "sprf_paper", "sprf", "soft", "shrf", "pbf", "af" },
-                                                    { Start::median });
+                                                    { Start::shipped });
     std::vector<double> lost(all.size());
     std::vector<std::vector<double>> found(all.size());
     Progress progress(trials);

@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+"""make papers: runs the experiments of the papers side by side, judges each number against its accepted band and the paper's, writes
+build/papers.json and the tables of docs/papers.md.
+
+    papers.py [--runs N] [--seed N] [--only WORD...]     with --only the page and the JSON are left alone
+"""
+import argparse
+import concurrent.futures
+import json
+import pathlib
+import subprocess
+import sys
+import time
+
+from papers_judge import Fault, judge, read_expected
+from papers_page import write_page
+
+PAPERS = {"002": (pathlib.Path("build/papers/paper002"), pathlib.Path("host_tests/papers/expected_002.csv"))}
+JSON = pathlib.Path("build/papers.json")
+WORKERS = 2
+LIMIT_S = 900
+
+
+class Bar:
+    """Progress over all experiments, on a terminal only."""
+
+    def __init__(self, works, stream=sys.stderr):
+        self.works, self.done = works, {name: 0.0 for name in works}
+        self.stream, self.began, self.last = stream, time.monotonic(), 0.0
+
+    def text(self, now):
+        part = sum(self.works[n] * self.done[n] for n in self.works) / sum(self.works.values())
+        spent = now - self.began
+        left = f"{spent * (1 - part) / part:.0f} s left" if part > 0.01 else "..."
+        filled = int(30 * part)
+        return f"papers [{'#' * filled}{'.' * (30 - filled)}] {100 * part:3.0f} %  {left}"
+
+    def at(self, name, part):
+        self.done[name] = min(1.0, part)
+        now = time.monotonic()
+        if self.stream.isatty() and now - self.last > 0.1:
+            self.last = now
+            self.stream.write(f"\r{self.text(now)}   ")
+            self.stream.flush()
+
+    def end(self):
+        if self.stream.isatty():
+            self.stream.write("\r" + " " * 70 + "\r")
+            self.stream.flush()
+
+
+def number(text):
+    return float(text) if text else None
+
+
+def run_one(program, experiment, options, bar):
+    """Rows (dictionaries) that an experiment prints."""
+    command = [str(program), experiment, "--runs", str(options.runs), "--seed", str(options.seed)]
+    rows, started = [], time.monotonic()
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        for line in process.stdout:
+            cells = line.rstrip("\n").split("\t")
+            if cells[0] == "progress":
+                bar.at(experiment, float(cells[1]))
+            elif cells[0] == "row" and len(cells) == 9:
+                rows.append(dict(zip(("experiment", "filter", "arithmetic", "metric"), cells[1:5]),
+                                 value=float(cells[5]), ci_lo=number(cells[6]), ci_hi=number(cells[7]), runs=int(cells[8])))
+            else:
+                process.kill()
+                raise Fault(f"{experiment}: cannot read its line '{line.strip()}'")
+            if time.monotonic() - started > LIMIT_S:
+                process.kill()
+                raise Fault(f"{experiment}: not at its end after {LIMIT_S} s")
+        told = process.stderr.read().strip()
+        if process.wait() != 0:
+            raise Fault(f"{experiment}: {told or f'status {process.returncode}'}")
+    if not rows:
+        raise Fault(f"{experiment}: printed no row")
+    bar.at(experiment, 1.0)
+    return rows
+
+
+def experiments_of(program, words):
+    done = subprocess.run([str(program), "--list"], capture_output=True, text=True, timeout=60, check=False)
+    if done.returncode != 0:
+        raise Fault(f"{program} --list gave status {done.returncode}: {done.stderr.strip()}")
+    works = {name: float(work) for name, work in (line.split("\t") for line in done.stdout.splitlines())}
+    chosen = {name: work for name, work in works.items() if not words or any(w in name for w in words)}
+    if not chosen:
+        raise Fault(f"no experiment's name contains {' or '.join(words)}; there are {', '.join(works)}")
+    return chosen
+
+
+def run_all(program, works, options):
+    """Rows of all experiments, in the order of the list; two at a time, the longest first."""
+    bar = Bar(works)
+    with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
+        try:
+            parts = list(pool.map(lambda name: run_one(program, name, options, bar), works))
+        finally:
+            bar.end()
+    return [row for part in parts for row in part]
+
+
+def as_json(paper, rows):
+    """A value that is not finite (never back) is null."""
+    fields = ("experiment", "filter", "arithmetic", "metric", "value", "ci_lo", "ci_hi", "runs", "published", "verdict", "reason")
+    finite = lambda v: None if isinstance(v, float) and abs(v) == float("inf") else v
+    return [{"paper": paper, **{f: finite(row.get(f)) for f in fields}} for row in rows]
+
+
+def main():
+    parser = argparse.ArgumentParser(usage="papers.py [--runs N] [--seed N] [--only WORD...]")
+    parser.add_argument("--runs", type=int, default=10000)
+    parser.add_argument("--seed", type=int, default=2024)
+    parser.add_argument("--only", nargs="+", default=[])
+    options = parser.parse_args()
+    began, failures, collected = time.monotonic(), [], []
+    try:
+        for paper, (program, expected_path) in PAPERS.items():
+            expected = read_expected(expected_path)
+            rows = run_all(program, experiments_of(program, options.only), options)
+            found, waiting = judge(rows, expected, partial=bool(options.only))
+            failures += [f"paper {paper}: {text}" for text in found]
+            collected += as_json(paper, rows)
+            for text in waiting:
+                print(f"papers: {text}")
+            if not options.only:
+                write_page(rows, options)
+        if not options.only:
+            JSON.write_text(json.dumps(collected, indent=0) + "\n", encoding="utf-8")
+    except (Fault, OSError, subprocess.TimeoutExpired) as error:
+        print(f"papers: {error}", file=sys.stderr)
+        return 2
+    for text in failures:
+        print(text)
+    judged = sum(1 for row in collected if row["verdict"])
+    where = "" if options.only else f", in {JSON} and docs/papers.md"
+    print(f"papers: {len(collected)} numbers ({judged} beside the paper's){where}; {options.runs} runs, seed {options.seed}, "
+          f"{time.monotonic() - began:.0f} s; {len(failures)} outside their band")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
