@@ -15,7 +15,9 @@ import time
 from papers_judge import Fault, judge, read_expected
 from papers_page import write_page
 
-PAPERS = {"002": (pathlib.Path("build/papers/paper002"), pathlib.Path("host_tests/papers/expected_002.csv"))}
+# programs and accepted bands of each paper
+PAPERS = {"002": ((pathlib.Path("build/papers/paper002"), pathlib.Path("build/papers/operations002")),
+                  pathlib.Path("host_tests/papers/expected_002.csv"))}
 JSON = pathlib.Path("build/papers.json")
 WORKERS = 2
 LIMIT_S = 900
@@ -80,23 +82,27 @@ def run_one(program, experiment, options, bar):
     return rows
 
 
-def experiments_of(program, words):
-    done = subprocess.run([str(program), "--list"], capture_output=True, text=True, timeout=60, check=False)
-    if done.returncode != 0:
-        raise Fault(f"{program} --list gave status {done.returncode}: {done.stderr.strip()}")
-    works = {name: float(work) for name, work in (line.split("\t") for line in done.stdout.splitlines())}
-    chosen = {name: work for name, work in works.items() if not words or any(w in name for w in words)}
+def experiments_of(programs, words):
+    """{experiment: (program, relative work)}."""
+    found = {}
+    for program in programs:
+        done = subprocess.run([str(program), "--list"], capture_output=True, text=True, timeout=60, check=False)
+        if done.returncode != 0:
+            raise Fault(f"{program} --list gave status {done.returncode}: {done.stderr.strip()}")
+        for name, work in (line.split("\t") for line in done.stdout.splitlines()):
+            found[name] = (program, float(work))
+    chosen = {name: entry for name, entry in found.items() if not words or any(w in name for w in words)}
     if not chosen:
-        raise Fault(f"no experiment's name contains {' or '.join(words)}; there are {', '.join(works)}")
+        raise Fault(f"no experiment's name contains {' or '.join(words)}; there are {', '.join(found)}")
     return chosen
 
 
-def run_all(program, works, options):
+def run_all(experiments, options):
     """Rows of all experiments, in the order of the list; two at a time, the longest first."""
-    bar = Bar(works)
+    bar = Bar({name: work for name, (_, work) in experiments.items()})
     with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
         try:
-            parts = list(pool.map(lambda name: run_one(program, name, options, bar), works))
+            parts = list(pool.map(lambda entry: run_one(entry[1][0], entry[0], options, bar), experiments.items()))
         finally:
             bar.end()
     return [row for part in parts for row in part]
@@ -117,9 +123,9 @@ def main():
     options = parser.parse_args()
     began, failures, collected = time.monotonic(), [], []
     try:
-        for paper, (program, expected_path) in PAPERS.items():
+        for paper, (programs, expected_path) in PAPERS.items():
             expected = read_expected(expected_path)
-            rows = run_all(program, experiments_of(program, options.only), options)
+            rows = run_all(experiments_of(programs, options.only), options)
             found, waiting = judge(rows, expected, partial=bool(options.only))
             failures += [f"paper {paper}: {text}" for text in found]
             collected += as_json(paper, rows)

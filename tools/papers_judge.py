@@ -37,7 +37,7 @@ def read_expected(path):
 
 
 def published_range(text):
-    """(low, high) of "30-40", of "~30" (10 % to either side) and of a number with its tolerance "0.0867 +-5 %"; None for words."""
+    """(low, high) of "30-40", of "~30" (10 % to either side) of a number with its tolerance "0.0867 +-5 %" and of a whole number; None for words."""
     found = re.match(r"(\d+(?:\.\d+)?)-(\d+(?:\.\d+)?)$", text)
     if found:
         return float(found.group(1)), float(found.group(2))
@@ -48,7 +48,8 @@ def published_range(text):
     if found:
         middle, part = float(found.group(1)), float(found.group(2)) / 100
         return middle * (1 - part), middle * (1 + part)
-    return None
+    found = re.match(r"(\d+)$", text)
+    return (float(found.group(1)),) * 2 if found else None
 
 
 def name_of(row):

@@ -80,6 +80,9 @@ def tables(rows):
     yield "Lock-out: steps of 1 to 100 sigma in a random phase, 0 to 30 % outliers", grid(rows, [
         (title, "lockout", [metric]) for title, metric in (("limit, samples", "limit_samples"), ("trials not back", "not_back"), ("99.9 %", "samples_p999"),
                                                            ("worst", "samples_worst"))])
+    yield "Operations per sample of the shipped code, counted: median / most", grid(rows, [
+        (title, "operations", [metric, f"{metric}_most"]) for title, metric in (("multiplications", "multiplications"), ("additions", "additions"),
+                                                                              ("reciprocals", "divisions"), ("cells of 32 bits", "memory_cells"))])
     yield "Gain at rest; fixed point by double", grid(rows, [("gain", "steady_gain", ["gain"]), ("by double", "steady_gain", ["gain_by_double"])])
 
 

@@ -40,5 +40,6 @@ run_one test_plot_run build/venv/bin/python host_tests/test_plot_run.py
 run_one system_tests python3 host_tests/system_tests.py
 run_one test_flash python3 host_tests/test_flash.py
 run_one test_bench python3 host_tests/test_bench.py
+run_one test_papers python3 host_tests/test_papers.py
 awk -v broken="$broken" '/^[0-9]+ Tests [0-9]+ Failures [0-9]+ Ignored/ { t += $1; f += $3; s += $5 }
     END { f += broken; printf "skipped: %d (each with its reason above)\n%d passed, %d failed\n", s, t - (f - broken) - s, f; exit f != 0 }' "$log"

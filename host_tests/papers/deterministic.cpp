@@ -35,6 +35,27 @@ void covariance(const Options & /*options*/)
     }
 }
 
+// The columns of Table 2 that are quotients of its others.
+void table2(const Options & /*options*/)
+{
+    constexpr double kf_products = 47.0;
+    constexpr double kf_sums = 32.0;
+    const struct {
+        const char *name;
+        double products;
+        double sums;
+    } printed[] = { { "pbf", 84.0, 41.0 },
+                    { "af_grid", 584.0, 292.0 },
+                    { "shrf", 49.0, 37.0 },
+                    { "sprf_paper", 53.0, 36.0 },
+                    { "lrf", 47.0, 38.0 } };
+    for (const auto &line : printed) {
+        const Contestant c = contestant(line.name, Arithmetic::in_double, {});
+        row("table2", c, "multiplications_by_kf", line.products / kf_products, 1);
+        row("table2", c, "additions_by_kf", line.sums / kf_sums, 1);
+    }
+}
+
 // Both arithmetics read 3.2 degrees for ever: 160 counts, no innovation.
 void steady_gain(const Options & /*options*/)
 {

@@ -53,6 +53,7 @@ void lockout(const Options &options);
 
 // No chance in them.
 void covariance(const Options &options);
+void table2(const Options &options);
 void steady_gain(const Options &options);
 } // namespace papers
 

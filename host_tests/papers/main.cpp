@@ -23,6 +23,7 @@ const Entry entries[] = {
     { "gate_width", 6, papers::gate_width },     { "printed_readings", 6, papers::printed_readings },
     { "clean_data", 4, papers::clean_data },     { "bursts", 4, papers::bursts },
     { "covariance", 0.1, papers::covariance },   { "steady_gain", 0.1, papers::steady_gain },
+    { "table2", 0.1, papers::table2 },
 };
 
 long whole_number(const char *option, const char *word)
