@@ -77,6 +77,37 @@ static void coasting_ends_at_the_bound(void)
     }
 }
 
+/* Any 32-bit words: the state stands within the bounds of two_state.h, and stays there. */
+static void begins_within_its_bounds(void)
+{
+    kf_config_t config;
+    kf_defaults(&config, 1000);
+    kf_t f;
+    TEST_ASSERT_TRUE(kf_init(&f, &config));
+    two_state_begin(&f.core, 65536, -32768, 0x20000000UL, 0x08000000UL, 0x04000000UL);
+    TEST_ASSERT_EQUAL_INT32(65536, f.core.x_lsb_q16);
+    TEST_ASSERT_EQUAL_INT32(-32768, f.core.rate_lsb_q16);
+    TEST_ASSERT_EQUAL_UINT32(0x20000000UL, f.core.u.p.p11_uq28);
+    TEST_ASSERT_EQUAL_UINT32(0x08000000UL, f.core.u.p.p12_uq28);
+    TEST_ASSERT_EQUAL_UINT32(0x04000000UL, f.core.u.p.p22_uq28);
+    /* P11 = 2 + 2 x 0.5 + 0.25 or, as 2 is the end of what is predicted, still 2: S = 3, w1 = 2/3 */
+    (void)kf_update(&f, 1);
+    TEST_ASSERT_UINT32_WITHIN(2, 43691UL, f.core.gain_uq16);
+    uint32_t random = 99;
+    for (uint16_t k = 0; k < 300; k++) {
+        two_state_begin(&f.core, (int32_t)random32(&random), (int32_t)random32(&random), random32(&random),
+                        random32(&random), random32(&random));
+        for (uint8_t step = 0; step < 4U; step++) {
+            int32_t x = (step == 0U) ? f.core.x_lsb_q16 : kf_update(&f, (int16_t)random32(&random));
+            filter_any_t any = { .kind = FILTER_KIND_kf, .state.kf = f };
+            filter_probe_t probe;
+            kf_probe(&f, &probe);
+            TEST_ASSERT_NULL(broken_bound(&any, &probe, x));
+            TEST_ASSERT_LESS_OR_EQUAL_UINT32(f.core.u.p.p11_uq28, f.core.u.p.p12_uq28);
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -84,5 +115,6 @@ int main(void)
     RUN_TEST(coast_goes_on_at_the_rate);
     RUN_TEST(reset_is_as_if_read_for_ever);
     RUN_TEST(coasting_ends_at_the_bound);
+    RUN_TEST(begins_within_its_bounds);
     return UNITY_END();
 }

@@ -19,12 +19,12 @@ $(P)/paper002: $(PAPERS_OBJ)
 # the shipped filters once more, as C++ with integers that count: what does not compile with them is named by the compiler
 OPERATIONS := host_tests/papers/operations
 COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(wildcard lib/filters/src/*.c))
-COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/filters/src -I$(OPERATIONS)
+COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers
 $(P)/operations/fx.o: COUNT_CXX += -DCOUNTING_PRIMITIVES
 
 $(P)/operations/%.o: lib/filters/src/%.c $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.h Makefile mk/papers.mk
 	@mkdir -p $(@D)
-	@sed -E 's/\[([^][]+)\]/[counting::index(\1)]/g; 1s|^|#line 1 "$<"\n|' $< | $(COUNT_CXX) -w -include $(OPERATIONS)/counting.h -x c++ -c - -o $@
+	@sed -E 's/\[([^][]+)\]/[counting::index(\1)]/g; 1s|^|#line 1 "$<"\n|' $< | $(COUNT_CXX) -include $(OPERATIONS)/counting.h -x c++ -c - -o $@
 
 $(P)/operations/main.o: $(OPERATIONS)/main.cpp $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.h Makefile mk/papers.mk
 	@mkdir -p $(@D)

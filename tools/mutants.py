@@ -55,6 +55,9 @@ def judged(judge, limit_s):
     if judge.startswith("system "):
         built = make("build/uno/firmware.elf", "build/uno/wrap/firmware.elf", "build/sim/simrun", "build/host/native_replay")
         command = ["python3", "host_tests/system_tests.py", *judge.split()[1:]]
+    elif judge.startswith("papers "):
+        built = make("build/papers/paper002", "build/papers/operations002")
+        command = ["python3", "host_tests/test_papers.py", *judge.split()[1:]]
     else:
         built = make(f"build/host/{judge}")
         command = [f"build/host/{judge}"]

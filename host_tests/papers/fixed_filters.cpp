@@ -6,6 +6,7 @@
 // Start::shipped tells it in seconds, 40.5 Hz and q = 91, as a user would.
 #include "filters.h"
 #include "model.h"
+#include "scope.h"
 
 extern "C" {
 #include "filter_any.h"
@@ -24,12 +25,6 @@ namespace
 {
 constexpr double hurry = 20.0;
 constexpr double rate_max_deg_s = 3.0;
-
-// Filters of the list that are other papers'.
-bool of_paper_002(const std::string &name)
-{
-    return name != "synth";
-}
 
 double table1_value(const std::string &filter, const std::string &parameter, double t_s, const Settings &settings)
 {

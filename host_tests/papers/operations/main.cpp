@@ -8,6 +8,7 @@
 
 #include "counting.h"
 #include "filter_any.h"
+#include "scope.h"
 
 counting::Tally counting::tally{};
 
@@ -77,6 +78,9 @@ int all()
 {
     for (std::uint8_t kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         const std::string name = filter_any_name(static_cast<filter_kind_t>(kind));
+        if (!papers::of_paper_002(name)) {
+            continue;
+        }
         const Cost c = cost(static_cast<filter_kind_t>(kind));
         if (c.products.empty()) {
             std::fprintf(stderr, "operations002: %s refuses its defaults\n", name.c_str());
