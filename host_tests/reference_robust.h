@@ -44,7 +44,7 @@ typedef enum {
 #define ROBUST_GRID 50
 #define ROBUST_MEDIAN_MAX 9
 
-/* x = (position, rate per second), z = position + phi v, v of variance r, phi = 1 with probability clean, else ratio. */
+/* x = (position, rate per second), z = position + phi v, v of variance r, phi = 1 with probability clean or ratio. */
 typedef struct {
     robust_kind_t kind;
     robust_reading_t reading;
@@ -82,7 +82,8 @@ typedef struct {
     double second_p[4];
 } robust_reference_t;
 
-/* Table 1, Q on the rate, gate 3 sigma (sprf as published: 2), soft gate 2 sigma, no re-acquisition, no median start. */
+/* Table 1, Q on the rate, gate 3 sigma (sprf as published: 2), soft gate 2 sigma, no re-acquisition, no median start.
+ */
 void robust_reference_table1(robust_reference_t *f, robust_kind_t kind);
 
 /* NULL, or the name of the first parameter outside its legal range: r, q, clean, ratio, gate, softgate, median. */

@@ -97,12 +97,13 @@ def a_seed_gives_the_same_numbers_again():
 
 
 def made(**changes):
-    return {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "value": 35.0, "ci_lo": 34.0, "ci_hi": 36.0, "runs": 1, **changes}
+    return {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "value": 35.0,
+            "ci_lo": 34.0, "ci_hi": 36.0, "runs": 1, **changes}
 
 
 def rule(**changes):
-    return {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "low": None, "high": None, "published": "", "verdict": "", "reason": "",
-            "line": "expected:1", **changes}
+    return {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "low": None, "high": None,
+            "published": "", "verdict": "", "reason": "", "line": "expected:1", **changes}
 
 
 @test
@@ -162,8 +163,9 @@ def a_bad_list_of_bands_is_named_by_line():
 
 @test
 def the_page_holds_what_was_measured():
-    rows = [made(experiment="clean", filter="sprf", metric="clean_efficiency", value=0.9765, ci_lo=0.97, ci_hi=0.98), made(value=float("inf"), experiment="step_clean_5_sigma",
-            metric="reacq_p95"), made(published="30-40", verdict="refuted", reason="why")]
+    rows = [made(experiment="clean", filter="sprf", metric="clean_efficiency", value=0.9765, ci_lo=0.97, ci_hi=0.98),
+            made(value=float("inf"), experiment="step_clean_5_sigma",
+                 metric="reacq_p95"), made(published="30-40", verdict="refuted", reason="why")]
     text = papers_page.page_text(copy.deepcopy(rows), Options())
     for words in ("| `sprf` | double | 0.977", "never", "| 30-40 | **refuted** | why |", "300 runs per experiment"):
         assert words in text, f"{words} is not in:\n{text}"

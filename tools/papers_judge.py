@@ -87,7 +87,8 @@ def judge_row(row, rule):
         limits = published_range(rule["published"])
         if limits and agrees(row, limits) != (rule["verdict"] == "reproduced"):
             seen = "meets" if agrees(row, limits) else "does not meet"
-            faults.append(f"{name_of(row)} = {value:.6g} {seen} the published {rule['published']}, so it cannot be '{rule['verdict']}' ({rule['line']})")
+            faults.append(f"{name_of(row)} = {value:.6g} {seen} the published {rule['published']}, "
+                          f"so it cannot be '{rule['verdict']}' ({rule['line']})")
     return faults
 
 

@@ -57,7 +57,8 @@ def efficiency(rows):
     part = []
     for title, experiment in (("Start of Table 1", "table1_start"), ("Start of Table 1, first sample no outlier", "first_sample_clean"),
                               ("Median of five, the rate as in Table 1", "median_start"), ("As shipped at 40.5 Hz", "shipped_start")):
-        part += [f"**{title}**", "", *grid(rows, [("steady", experiment, ["k_ef_steady"]), ("median of groups of 50 [5 %, 95 %]", experiment, ["k_ef_steady_median_of_50"]),
+        part += [f"**{title}**", "", *grid(rows, [
+            ("steady", experiment, ["k_ef_steady"]), ("median of groups of 50 [5 %, 95 %]", experiment, ["k_ef_steady_median_of_50"]),
                                                   ("k = 6..60", experiment, ["k_ef_transient_6_60"]), ("k = 1..60", experiment, ["k_ef_transient"]),
                                                   ("locked out", experiment, ["lockout_rate"])], intervals=True)]
     return part
@@ -68,18 +69,22 @@ def tables(rows):
     back = ["reacq_median", "reacq_p95"]
     yield "Beside the paper", verdicts(rows)
     yield "K_ef: mean square error of the Kalman filter over that of the filter", efficiency(rows)
-    yield "Without outliers: the Kalman filter's mean square error over the filter's", grid(rows, [("efficiency", "clean", ["clean_efficiency"])], intervals=True)
+    yield "Without outliers: the Kalman filter's mean square error over the filter's", grid(
+        rows, [("efficiency", "clean", ["clean_efficiency"])], intervals=True)
     yield "Width of the gate in sigma: false alarms / misses (first sample no outlier)", grid(
         [r for r in rows if r["filter"] == "sprf"], [(g, f"gate_{g}_sigma", ["false_alarm", "miss"]) for g in GATES])
     yield "Width of the gate in sigma: K_ef", grid(rows, [(g, f"gate_{g}_sigma", ["k_ef_steady"]) for g in GATES])
-    yield "Samples until back after a step of so many sigma, no outliers: median / 95 %", grid(rows, [(s, f"step_clean_{s}_sigma", back) for s in STEPS])
+    yield "Samples until back after a step of so many sigma, no outliers: median / 95 %", grid(
+        rows, [(s, f"step_clean_{s}_sigma", back) for s in STEPS])
     yield "The same with 15 % outliers", grid(rows, [(s, f"step_15_percent_{s}_sigma", back) for s in STEPS])
     yield "Bursts of outliers on clean data", grid(rows, [(f"{n}: {title}", f"burst_{n}", metrics) for n in (10, 30) for title, metrics in (
-        ("peak error in steady sigmas, median / 95 %", ["peak_error_sigma_median", "peak_error_sigma_p95"]), ("samples until back, 95 %", ["recovery_p95"]))])
+        ("peak error in steady sigmas, median / 95 %", ["peak_error_sigma_median", "peak_error_sigma_p95"]),
+        ("samples until back, 95 %", ["recovery_p95"]))])
     yield "Steady K_ef with R wrong by a factor (first sample no outlier)", grid(rows, [(f, f"wrong_r_{f}", ["k_ef_steady"]) for f in FACTORS])
     yield "Lock-out: steps of 1 to 100 sigma in a random phase, 0 to 30 % outliers", grid(rows, [
-        (title, "lockout", [metric]) for title, metric in (("limit, samples", "limit_samples"), ("trials not back", "not_back"), ("99.9 %", "samples_p999"),
-                                                           ("worst", "samples_worst"))])
+        (title, "lockout", [metric]) for title, metric in (
+            ("limit, samples", "limit_samples"), ("trials not back", "not_back"), ("99.9 %", "samples_p999"),
+            ("worst", "samples_worst"))])
     yield "Operations per sample of the shipped code, counted: median / most", grid(rows, [
         (title, "operations", [metric, f"{metric}_most"]) for title, metric in (("multiplications", "multiplications"), ("additions", "additions"),
                                                                               ("reciprocals", "divisions"), ("cells of 32 bits", "memory_cells"))])

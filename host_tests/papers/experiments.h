@@ -15,7 +15,8 @@ struct Options {
     std::uint64_t seed = 2024;
 };
 
-// `row`, experiment, filter, arithmetic, metric, value, low, high, runs, between tabs; low and high are empty without interval.
+// `row`, experiment, filter, arithmetic, metric, value, low, high, runs, between tabs; low and high are empty without
+// interval.
 void row(const std::string &experiment, const Contestant &c, const std::string &metric, double value, int runs);
 void row(const std::string &experiment, const Contestant &c, const std::string &metric, const Interval &value,
          int runs);

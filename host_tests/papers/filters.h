@@ -1,4 +1,5 @@
-// Every filter of paper 002 behind one interface: the double references and the shipped fixed-point code. Angles in degrees.
+// Every filter of paper 002 behind one interface: the double references and the shipped fixed-point code. Angles in
+// degrees.
 #ifndef PAPERS_FILTERS_H
 #define PAPERS_FILTERS_H
 

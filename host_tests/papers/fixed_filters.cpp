@@ -1,9 +1,9 @@
 // The shipped fixed-point filters: whatever FILTER_LIST holds, with parameters set by their names in the descriptors.
 //
-// A filter knows time as samples only: q22 = q T^3 / R and P22(0) = (200 LSB/s)^2 T^2 / R. In counts of 0.02 degree Table 1
-// has R = 16 LSB^2, q22 = 0.0009 T^2 / 0.0064 = 8.579e-5 and a rate known to 0.2 degree/s = 10 LSB/s: a twentieth of the
-// library's 200 LSB/s. So time is told in units of a twentieth of a second: T = 1 / 809.7 s, q = 20^3 x 91.09 LSB^2/s^3. Only
-// Start::shipped tells it in seconds, 40.5 Hz and q = 91, as a user would.
+// A filter knows time as samples only: q22 = q T^3 / R and P22(0) = (200 LSB/s)^2 T^2 / R. In counts of 0.02 degree
+// Table 1 has R = 16 LSB^2, q22 = 0.0009 T^2 / 0.0064 = 8.579e-5 and a rate known to 0.2 degree/s = 10 LSB/s: a
+// twentieth of the library's 200 LSB/s. So time is told in units of a twentieth of a second: T = 1 / 809.7 s, q = 20^3
+// x 91.09 LSB^2/s^3. Only Start::shipped tells it in seconds, 40.5 Hz and q = 91, as a user would.
 #include "filters.h"
 #include "model.h"
 #include "scope.h"

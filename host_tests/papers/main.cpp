@@ -1,4 +1,5 @@
-// paper002 --list | EXPERIMENT [--runs N] [--seed N]: one experiment; tools/papers.py runs them side by side and judges.
+// paper002 --list | EXPERIMENT [--runs N] [--seed N]: one experiment; tools/papers.py runs them side by side and
+// judges.
 #include "experiments.h"
 
 #include <cstdio>

@@ -1,11 +1,11 @@
 /*
- * Put before every file of lib/filters (-include, compiled as C++): its 16- and 32-bit integers become numbers that count
- * what is done with them, so the shipped code itself tells how many multiplications and additions a sample takes.
+ * Put before every file of lib/filters (-include, compiled as C++): its 16- and 32-bit integers become numbers that
+ * count what is done with them, so the shipped code itself tells how many multiplications and additions a sample takes.
  *
  * One call of a product primitive of fx.h is one multiplication, however many bytes it takes, and one reciprocal is one
  * division; what they do inside does not count, nor does a multiplication by a constant power of two, which is a shift.
- * Additions are sums, differences and increments of two numbers. Comparisons, shifts, masks, signs, conversions and 8-bit
- * counters do not count.
+ * Additions are sums, differences and increments of two numbers. Comparisons, shifts, masks, signs, conversions and
+ * 8-bit counters do not count.
  */
 #ifndef COUNTING_H
 #define COUNTING_H

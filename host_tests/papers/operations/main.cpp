@@ -1,4 +1,5 @@
-// operations002 --list | operations [--runs N] [--seed N]: what a sample costs each filter of paper 002, counted on the shipped code.
+// operations002 --list | operations [--runs N] [--seed N]: what a sample costs each filter of paper 002, counted on the
+// shipped code.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,7 +15,8 @@ counting::Tally counting::tally{};
 
 namespace
 {
-// Noise of about 1 LSB, as the default R at 40 Hz has it, every seventh sample 20 LSB off: accepted ones and refused ones.
+// Noise of about 1 LSB, as the default R at 40 Hz has it, every seventh sample 20 LSB off: accepted ones and refused
+// ones.
 int sample(int k)
 {
     const double angle = 160.0 + 40.0 * std::sin(0.01 * k);

@@ -96,8 +96,8 @@ FX_ONCE void two_state_set_variance(two_state_t *s, uint32_t r_lsb2_q8);
 FX_ONCE void two_state_start(two_state_t *s, int32_t x_lsb_q16);
 
 /*
- * Running from a state and a covariance per R (UQ4.28), each limited to its range: P11 below 8, P12 below 4 and P11, P22
- * below 3. For tests that start where a paper starts.
+ * Running from a state and a covariance per R (UQ4.28), each limited to its range: P11 below 8, P12 below 4 and P11,
+ * P22 below 3. For tests that start where a paper starts.
  */
 FX_ONCE void two_state_begin(two_state_t *s, int32_t x_lsb_q16, int32_t rate_lsb_q16, uint32_t p11_uq28,
                              uint32_t p12_uq28, uint32_t p22_uq28);
