@@ -1,6 +1,6 @@
 // Paper 002 in matrices, in double. Where an equation is not taken as printed, docs/papers.md says why.
 #include "reference_robust.h"
-#include "reference_matrices.h"
+#include "reference_matrices.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -22,11 +22,11 @@ COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(wildcard lib/
 COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers
 $(P)/operations/fx.o: COUNT_CXX += -DCOUNTING_PRIMITIVES
 
-$(P)/operations/%.o: lib/filters/src/%.c $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.h Makefile mk/papers.mk
+$(P)/operations/%.o: lib/filters/src/%.c $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
 	@mkdir -p $(@D)
-	@sed -E 's/\[([^][]+)\]/[counting::index(\1)]/g; 1s|^|#line 1 "$<"\n|' $< | $(COUNT_CXX) -include $(OPERATIONS)/counting.h -x c++ -c - -o $@
+	@sed -E 's/\[([^][]+)\]/[counting::index(\1)]/g; 1s|^|#line 1 "$<"\n|' $< | $(COUNT_CXX) -include $(OPERATIONS)/counting.hpp -x c++ -c - -o $@
 
-$(P)/operations/main.o: $(OPERATIONS)/main.cpp $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.h Makefile mk/papers.mk
+$(P)/operations/main.o: $(OPERATIONS)/main.cpp $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
 	@mkdir -p $(@D)
 	@$(COUNT_CXX) -Wall -Wextra -Werror -c $< -o $@
 

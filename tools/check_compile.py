@@ -28,7 +28,7 @@ C_ONLY = {"-Wstrict-prototypes", "-Wmissing-prototypes"}
 # what is put before a file when it is built
 BEFORE = {"host_tests/avr/unity_chip.c": ["-include", "host_tests/avr/unity_chip.h"]}
 # pieces of a program that mean nothing alone
-NOT_ALONE = {"host_tests/avr/seam_body.h", "lib/filters/src/fx_avr.h"}
+NOT_ALONE = {"host_tests/avr/seam_body.h", "lib/filters/src/fx_avr.h", "host_tests/papers/operations/counting.hpp"}
 
 
 def compilers(path):
@@ -77,6 +77,10 @@ def jobs():
     for path in files(".h"):
         if str(path) not in NOT_ALONE:
             yield from header_jobs(path)
+    for path in files(".hpp"):  # of the references and experiments, which are C++ on the PC only
+        if str(path) not in NOT_ALONE:
+            yield path, ["g++", "-std=gnu++20", "-Ihost_tests", f"-I{path.parent}", "-Ilib/filters/src", "-isystem", "/usr/include/eigen3",
+                         *(w for w in warnings() if w not in C_ONLY), "-fsyntax-only", "-include", path, "-x", "c++", "/dev/null"]
 
 
 def header_jobs(path):

@@ -105,7 +105,7 @@ def refused(path, number, name):
 
 
 def breaches():
-    for path in files(".c", ".h", ".cpp", ".ino", folders=FOLDERS):
+    for path in files(".c", ".h", ".cpp", ".hpp", ".ino", folders=FOLDERS):
         for number, text in includes(path):
             found = NAMED.match(text)
             reason = refused(path, number, found.group(2)) if found else f"cannot see what is included by {text}"
@@ -139,7 +139,7 @@ def machine_guards():
 
 def check():
     found = list(breaches()) + list(contracts_end_with_port()) + list(machine_guards())
-    return report("include table", found, f"{len(files('.c', '.h', '.cpp', '.ino'))} files, no breach")
+    return report("include table", found, f"{len(files('.c', '.h', '.cpp', '.hpp', '.ino'))} files, no breach")
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ COLUMNS_MAX, COLUMNS_MAX_PYTHON = 120, 150
 
 
 def of_c():
-    return files(".c", ".h", ".cpp", ".ino")
+    return files(".c", ".h", ".cpp", ".hpp", ".ino")
 
 
 def all_files():

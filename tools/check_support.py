@@ -25,7 +25,7 @@ def files(*suffixes, folders=FOLDERS):
 def chosen(paths):
     """Those of the files named on the command line (a header: all files), all when none is named."""
     named = [pathlib.Path(a) for a in sys.argv[1:]]
-    if not named or any(p.suffix == ".h" for p in named):
+    if not named or any(p.suffix in (".h", ".hpp") for p in named):
         return list(paths)
     strangers = [str(p) for p in named if p not in paths]
     if strangers:

@@ -120,6 +120,7 @@ collect() {
             test) need_simulator; need_plots; need_unity ;;
             papers) need_host_compiler; need g++ has g++; need python3 has python3; need libeigen3-dev has_header eigen3/Eigen/Core eigen3 ;;
             check) need_simulator; need_unity; need_lizard; need python3 has python3
+                need g++ has g++; need libeigen3-dev has_header eigen3/Eigen/Core eigen3
                 need clang-tidy has clang-tidy
                 need clang-tools has_clang_query
                 need clang-format has clang-format

@@ -1,6 +1,6 @@
 // Numbers without chance: covariances of the linear filters, gains at rest.
-#include "experiments.h"
-#include "model.h"
+#include "experiments.hpp"
+#include "model.hpp"
 #include "reference_robust.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // K_ef: mean square error of the Kalman filter over that of the filter, on the same realisations.
-#include "experiments.h"
-#include "model.h"
+#include "experiments.hpp"
+#include "model.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include "filters.h"
-#include "model.h"
+#include "filters.hpp"
+#include "model.hpp"
 #include "reference_robust.h"
 
 #include <algorithm>

@@ -4,9 +4,9 @@
 // Table 1 has R = 16 LSB^2, q22 = 0.0009 T^2 / 0.0064 = 8.579e-5 and a rate known to 0.2 degree/s = 10 LSB/s: a
 // twentieth of the library's 200 LSB/s. So time is told in units of a twentieth of a second: T = 1 / 809.7 s, q = 20^3
 // x 91.09 LSB^2/s^3. Only Start::shipped tells it in seconds, 40.5 Hz and q = 91, as a user would.
-#include "filters.h"
-#include "model.h"
-#include "scope.h"
+#include "filters.hpp"
+#include "model.hpp"
+#include "scope.hpp"
 
 extern "C" {
 #include "filter_any.h"

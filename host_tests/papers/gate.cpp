@@ -1,6 +1,6 @@
 // The width of the gate: false alarms, misses, and what it is good for.
-#include "experiments.h"
-#include "model.h"
+#include "experiments.hpp"
+#include "model.hpp"
 
 #include <array>
 #include <cmath>

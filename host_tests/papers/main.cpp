@@ -1,6 +1,6 @@
 // paper002 --list | EXPERIMENT [--runs N] [--seed N]: one experiment; tools/papers.py runs them side by side and
 // judges.
-#include "experiments.h"
+#include "experiments.hpp"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "experiments.h"
+#include "experiments.hpp"
 
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
-#include "statistics.h"
-#include "model.h"
+#include "statistics.hpp"
+#include "model.hpp"
 
 #include <algorithm>
 #include <cmath>

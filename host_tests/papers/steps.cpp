@@ -1,6 +1,6 @@
 // How filters come back: after steps, after bursts, and whether they ever do not.
-#include "experiments.h"
-#include "model.h"
+#include "experiments.hpp"
+#include "model.hpp"
 
 #include <array>
 #include <cmath>

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "counting.h"
+#include "counting.hpp"
 #include "filter_any.h"
-#include "scope.h"
+#include "scope.hpp"
 
 counting::Tally counting::tally{};
 

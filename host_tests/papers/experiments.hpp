@@ -2,8 +2,8 @@
 #ifndef PAPERS_EXPERIMENTS_H
 #define PAPERS_EXPERIMENTS_H
 
-#include "filters.h"
-#include "statistics.h"
+#include "filters.hpp"
+#include "statistics.hpp"
 
 #include <cstdint>
 #include <string>
