@@ -91,6 +91,45 @@ static void shifts_equal_exact_arithmetic(void)
     }
 }
 
+/* The leading bit at the top, the places it moved by, and what is left of the number: all of it above the low byte. */
+static void leading_bits_by_definition(void)
+{
+    for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
+        uint32_t v = operand(i) | 1U;
+        fx_leading_t leading = fx_leading(v);
+        uint8_t places = fx_places(leading);
+        TEST_ASSERT_TRUE(places < 32U && (leading & 0x80000000U) != 0U);
+        TEST_ASSERT_EQUAL_HEX32((v << places) & 0xFFFFFF00U, leading & 0xFFFFFF00U);
+        TEST_ASSERT_EQUAL_HEX32(v, (v << places) >> places);
+        TEST_ASSERT_EQUAL_HEX16((uint16_t)((v << places) >> 16), fx_mantissa(leading));
+        TEST_ASSERT_EQUAL_HEX32(v >> places, fx_shifted_right(v, places));
+    }
+    TEST_ASSERT_EQUAL_HEX32(fx_leading(1), fx_leading(0));
+}
+
+/* The functions are the primitives; the upper half of a product is rounded down. */
+static void functions_equal_their_primitives(void)
+{
+    for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
+        uint32_t a = operand(i);
+        uint32_t b = operand((uint16_t)(i + 7U));
+        TEST_ASSERT_EQUAL_HEX32(half_up((uint64_t)a * (uint16_t)b, 16), fx_times_uq16(a, (uint16_t)b));
+        TEST_ASSERT_EQUAL_HEX16((uint16_t)((uint64_t)(uint16_t)a * (uint16_t)b >> 16),
+                                fx_high_u16((uint16_t)a, (uint16_t)b));
+        TEST_ASSERT_EQUAL_HEX16(fx_reciprocal_leading_uq16(a | 0x80000000U), fx_inverse_uq16(a | 0x80000000U));
+    }
+}
+
+/* 1 <= m < 2: chord 0.25 + nodes 0.5 + product 0.5 + 0.25 of the first node limited. |r - 2^47 / m| <= 1.5: exact. */
+static void reciprocal_of_leading_bits_is_within_its_bound(void)
+{
+    const uint32_t step = ON_PC_OR_CHIP(0x1001U, 0x200000U + 0x1001U);
+    for (uint32_t m = 0x80000000U; m >= 0x80000000U; m += step) {
+        int64_t twice_error = ((int64_t)((uint64_t)fx_reciprocal_leading_uq16(m) * m) - ((int64_t)1 << 47)) * 2;
+        TEST_ASSERT_TRUE((twice_error < 0 ? -twice_error : twice_error) <= (int64_t)3 * m);
+    }
+}
+
 /*
  * Steps through all of 1 <= s < 16: chord 0.25 + nodes 0.5 + product 0.5 (+ 0.25 of the first node's limit); each
  * halving halves the error and adds at most 0.5 by rounding. |r - 2^44 / s| <= 1.5 multiplied by 2 s: exact.
@@ -176,6 +215,9 @@ int main(void)
     RUN_TEST(signed_product_equals_exact_arithmetic);
     RUN_TEST(sums_with_an_element_equal_exact_arithmetic);
     RUN_TEST(shifts_equal_exact_arithmetic);
+    RUN_TEST(leading_bits_by_definition);
+    RUN_TEST(functions_equal_their_primitives);
+    RUN_TEST(reciprocal_of_leading_bits_is_within_its_bound);
     RUN_TEST(reciprocal_is_within_its_bound);
     RUN_TEST(saturating_and_clamping);
     RUN_TEST(square_root_is_the_floor);

@@ -85,6 +85,14 @@ TWIN(minus, fx_minus((int32_t)a / 2, addends((int32_t)b / 2), 2),
 TWIN(sixteenth, fx_sixteenth(a), fx_sixteenth_c(a))
 TWIN(shift12, fx_shift12((uint16_t)a), fx_shift12_c((uint16_t)a))
 TWIN(eightfold, fx_eightfold(a), fx_eightfold_c(a))
+TWIN(shift_right, fx_shift_right(a, (uint8_t)b & 31U), fx_shift_right_c(a, (uint8_t)b & 31U))
+
+static bool twin_normalise(uint32_t a, uint32_t b)
+{
+    uint32_t by_assembler = (a >> ((uint8_t)b & 31U)) | 1U; /* not 0: it has no leading bit */
+    uint32_t by_c = by_assembler;
+    return fx_normalise(&by_assembler) == fx_normalise_c(&by_c) && by_assembler == by_c;
+}
 
 static bool run(bool (*twin)(uint32_t, uint32_t), const char *flash_name)
 {
@@ -130,6 +138,8 @@ int main(void)
     RUN(sixteenth);
     RUN(shift12);
     RUN(eightfold);
+    RUN(shift_right);
+    RUN(normalise);
     while ((UCSR0A & _BV(UDRE0)) == 0) {
     }
     cli();

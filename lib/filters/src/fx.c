@@ -32,6 +32,35 @@ uint16_t fx_isqrt32(uint32_t v)
     return (uint16_t)root;
 }
 
+uint16_t fx_high_u16(uint16_t a, uint16_t b)
+{
+    return (uint16_t)(fx_mul_u16(a, b) >> 16);
+}
+
+uint32_t fx_times_uq16(uint32_t a, uint16_t b_uq16)
+{
+    return fx_mul_uq16(a, b_uq16);
+}
+
+uint32_t fx_shifted_right(uint32_t v, uint8_t places)
+{
+    return fx_shift_right(v, places);
+}
+
+uint16_t fx_inverse_uq16(uint32_t m_uq31)
+{
+    return fx_reciprocal_leading_uq16(m_uq31);
+}
+
+fx_leading_t fx_leading(uint32_t v)
+{
+    if (v == 0U) {
+        v = 1;
+    }
+    uint8_t places = fx_normalise(&v);
+    return (v & 0xFFFFFF00U) | places;
+}
+
 /* A 32-bit value with its top bit set, times 2^exponent of the lowest bit, rounded to a 16-bit mantissa. */
 static fx_scaled_t rounded(uint32_t v, int8_t exponent)
 {
@@ -49,11 +78,8 @@ static fx_scaled_t rounded(uint32_t v, int8_t exponent)
 /* Any v > 0 times 2^exponent. */
 static fx_scaled_t normalised(uint32_t v, int8_t exponent)
 {
-    while ((v & 0x80000000U) == 0U) {
-        v <<= 1;
-        exponent--;
-    }
-    return rounded(v, exponent);
+    uint8_t places = fx_normalise(&v);
+    return rounded(v, (int8_t)(exponent - (int8_t)places));
 }
 
 fx_scaled_t fx_scaled(uint32_t v)

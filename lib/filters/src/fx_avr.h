@@ -183,6 +183,30 @@ FX_INLINE uint32_t fx_sixteenth(uint32_t v)
     return v;
 }
 
+FX_INLINE uint8_t fx_normalise(uint32_t *v)
+{
+    uint32_t bits = *v;
+    uint8_t places;
+    __asm__("clr %[n]\n"
+            "1:\ttst %D[v]\n\tbrmi 4f\n\tbrne 3f\n\t"
+            "mov %D[v],%C[v]\n\tmov %C[v],%B[v]\n\tmov %B[v],%A[v]\n\tclr %A[v]\n\tsubi %[n],0xF8\n\trjmp 1b\n"
+            "3:\tinc %[n]\n\tlsl %A[v]\n\trol %B[v]\n\trol %C[v]\n\trol %D[v]\n\tbrpl 3b\n"
+            "4:"
+            : [v] "+r"(bits), [n] "=&d"(places));
+    *v = bits;
+    return places;
+}
+
+FX_INLINE uint32_t fx_shift_right(uint32_t v, uint8_t places)
+{
+    __asm__("1:\tcpi %[n],8\n\tbrlo 2f\n\t"
+            "mov %A[v],%B[v]\n\tmov %B[v],%C[v]\n\tmov %C[v],%D[v]\n\tclr %D[v]\n\tsubi %[n],8\n\trjmp 1b\n"
+            "2:\tsubi %[n],1\n\tbrcs 3f\n\tlsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\trjmp 2b\n"
+            "3:"
+            : [v] "+r"(v), [n] "+&d"(places));
+    return v;
+}
+
 FX_INLINE uint32_t fx_mul_uq24(uint32_t a, uint32_t b_uq24)
 {
     uint32_t product; /* bytes 3..6 of the 7-byte product; of bytes 1 and 2 only the carry and the top bit are needed */
