@@ -144,6 +144,11 @@ bool has_joint_condition(filter_kind_t kind)
         return false;
     case FILTER_KIND_soft:
         return true; /* reacquire, as sprf */
+    case FILTER_KIND_sprf_paper:
+    case FILTER_KIND_shrf:
+    case FILTER_KIND_pbf:
+    case FILTER_KIND_af:
+        return false;
     case FILTER_KIND_COUNT:
         break;
     }
@@ -152,7 +157,12 @@ bool has_joint_condition(filter_kind_t kind)
 
 bool gated_means_unused(filter_kind_t kind)
 {
-    return kind != FILTER_KIND_soft;
+    return kind != FILTER_KIND_soft && kind != FILTER_KIND_shrf && kind != FILTER_KIND_pbf && kind != FILTER_KIND_af;
+}
+
+bool starts_with_median(filter_kind_t kind)
+{
+    return kind != FILTER_KIND_sprf_paper;
 }
 
 /* two_state.h, "Scaling"; the largest R is a filter's own. */
@@ -265,6 +275,69 @@ static const char *broken_soft(const soft_t *f, int32_t x_lsb_q16)
     return (broken != NULL) ? broken : broken_two_state(&f->core, x_lsb_q16);
 }
 
+/*
+ * two_state_wide.h, "Scaling": after an update no element of P exceeds P_END; a prediction adds to P11 less than 2 x
+ * 128 + 9 (UQ16.16), to P12 less than 9 (UQ8.24), to P22 at most 1 (UQ4.28).
+ */
+static bool wide_covariance_broken(const two_state_wide_t *s)
+{
+    return s->u.p.p11_uq16 > TWO_STATE_WIDE_P_END + 0x1090000U || s->u.p.p12_uq24 > TWO_STATE_WIDE_P_END + 0x9000000U ||
+           s->u.p.p22_uq28 > TWO_STATE_WIDE_P_END + 0x10000000U;
+}
+
+static const char *broken_wide(const two_state_wide_t *s, int32_t x_lsb_q16)
+{
+    if (x_lsb_q16 != s->x_lsb_q16) {
+        return "x returned";
+    }
+    if (fx_abs32(s->rate_lsb_q16) > (uint32_t)FILTER_X_MAX_LSB << 16) {
+        return "rate";
+    }
+    if (s->size_lsb_uq8 > (uint32_t)8704 << 8) {
+        return "innovation";
+    }
+    if (s->q22_uq28 < TWO_STATE_Q22_MIN_UQ28 || s->q22_uq28 > TWO_STATE_Q22_MAX_UQ28 ||
+        s->p22_start_uq28 > TWO_STATE_Q22_MAX_UQ28) {
+        return "q22";
+    }
+    if (s->r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 || s->r_lsb2_q8 > FILTER_R_MAX_LSB2_Q8) {
+        return "r";
+    }
+    if (s->collected > FILTER_WARM_UP_SAMPLES) {
+        return "collected";
+    }
+    if (s->variance != 0U && (fx_places(s->variance) > 15U || s->inverse_uq16 < 0x8000U)) {
+        return "S";
+    }
+    return (!two_state_wide_warming_up(s) && wide_covariance_broken(s)) ? "P" : NULL;
+}
+
+/* sprf_paper.h: gate of 1..16 sigma. */
+static const char *broken_sprf_paper(const sprf_paper_t *f, int32_t x_lsb_q16)
+{
+    if (f->gate2_uq8 < 256U || f->gate2_uq8 == UINT16_MAX) {
+        return "gate";
+    }
+    return broken_wide(&f->core, x_lsb_q16);
+}
+
+/* mixture.h: N^2 - 1 of 3..9999; q in 0.5..0.999, or learnt within its margin. */
+static const char *broken_mixture(const mixture_t *f, bool learning, int32_t x_lsb_q16)
+{
+    if (f->span_uq16 < (3UL << 16) || f->span_uq16 > (9999UL << 16)) {
+        return "span";
+    }
+    if ((f->learnt_from != 0U) != learning || f->learnt_from > 1024U) {
+        return "learnt_from";
+    }
+    uint32_t margin = learning ? MIXTURE_LEARNT_MARGIN_UQ24 : (uint32_t)(65536UL - MIXTURE_CLEAN_MAX_UQ16) << 8;
+    if (f->learnt_uq24 < margin || f->learnt_uq24 > 0x1000000U - margin ||
+        fx_abs32(f->log_odds_q9) > (uint32_t)7 * 512U) {
+        return "q";
+    }
+    return broken_wide(&f->core, x_lsb_q16);
+}
+
 static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)
 {
     switch ((filter_kind_t)f->kind) {
@@ -278,6 +351,14 @@ static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)
         return broken_lrf(&f->state.lrf, x_lsb_q16);
     case FILTER_KIND_soft:
         return broken_soft(&f->state.soft, x_lsb_q16);
+    case FILTER_KIND_sprf_paper:
+        return broken_sprf_paper(&f->state.sprf_paper, x_lsb_q16);
+    case FILTER_KIND_shrf:
+        return broken_mixture(&f->state.shrf, false, x_lsb_q16);
+    case FILTER_KIND_pbf:
+        return broken_mixture(&f->state.pbf, false, x_lsb_q16);
+    case FILTER_KIND_af:
+        return broken_mixture(&f->state.af, true, x_lsb_q16);
     case FILTER_KIND_COUNT:
         break;
     }
@@ -304,7 +385,7 @@ const char *broken_bound(const filter_any_t *f, const filter_probe_t *probe, int
     return broken_state(f, x_lsb_q16);
 }
 
-/* The two-state core and synth compute magnitudes and round them alike for both signs: exact. */
+/* The two-state cores and synth compute magnitudes and round them alike for both signs: exact. */
 int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
 {
     switch (kind) {
@@ -313,6 +394,10 @@ int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
     case FILTER_KIND_synth:
     case FILTER_KIND_lrf:
     case FILTER_KIND_soft:
+    case FILTER_KIND_sprf_paper:
+    case FILTER_KIND_shrf:
+    case FILTER_KIND_pbf:
+    case FILTER_KIND_af:
         return 0;
     case FILTER_KIND_COUNT:
         break;
@@ -331,6 +416,12 @@ int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
  * with q T^3 / R_L = 1/300/60.85 and R_L = 182.6 LSB^2: 114 by the same bound. soft takes kf's path within its soft
  * gate and is restarted beyond its gate, as sprf; in between it updates with a larger R, by which V falls as well (the
  * recursion in double is back after 16).
+ *
+ * Where samples are refused V falls too, because P grows meanwhile: n samples after the motion's end, refused or
+ * coasted, it is at most 16 / (q T^3 n) LSB^-2 (4 LSB^2 e and P of n steps of the model), 1600 / n here. sprf_paper
+ * takes all from V = 4 on, n = 400, and 43 more. shrf takes a sample surely when b t / 2 <= ln(0.85 / 0.15) +
+ * ln(S_N / S) / 2: with t <= V and b = 399 / (P11 + 400), P11 = n^3 / 900, from n = 100 on; pbf and af use every sample
+ * and are faster: 100 + 43, rounded up.
  */
 uint16_t recovery_samples(filter_kind_t kind)
 {
@@ -343,6 +434,12 @@ uint16_t recovery_samples(filter_kind_t kind)
         return 114;
     case FILTER_KIND_synth:
         return 40;
+    case FILTER_KIND_sprf_paper:
+        return 443;
+    case FILTER_KIND_shrf:
+    case FILTER_KIND_pbf:
+    case FILTER_KIND_af:
+        return 150;
     case FILTER_KIND_COUNT:
         break;
     }

@@ -65,6 +65,10 @@ const char *broken_bound(const filter_any_t *f, const filter_probe_t *probe, int
 /* Largest difference between the answers to a sequence and to its mirror image, Q16. */
 int32_t mirror_tolerance_lsb_q16(filter_kind_t kind);
 
+/* True when the filter starts with the running median of filter.h; else with the first sample ("as published"). */
+bool starts_with_median(filter_kind_t kind);
+#define FOR_EACH_KIND_WITH_MEDIAN(kind) FOR_EACH_KIND(kind) if (starts_with_median((filter_kind_t)(kind)))
+
 /* True when a sample flagged FILTER_GATED is not used at all; else it may count with a small gain. */
 bool gated_means_unused(filter_kind_t kind);
 

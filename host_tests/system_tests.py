@@ -39,6 +39,9 @@ for path in sorted(STREAMS.glob("*.csv")):
     if "400hz" not in path.stem:
         for filter_kind in ("kf", "sprf", "synth", "lrf", "soft"):
             TESTS.append(make_equality_test(path, filter_kind))
+for filter_kind in ("sprf_paper", "shrf", "pbf", "af"):
+    for stream in ("outliers-15pct", "gaps-jitter"):
+        TESTS.append(make_equality_test(STREAMS / f"{stream}.csv", filter_kind))
 
 
 def compare_pipeline(name, rate, baud, every_ok):

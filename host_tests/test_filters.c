@@ -194,7 +194,7 @@ static void warm_up_puts_out_the_running_median(void)
 {
     static const int16_t in[] = { 9, -3, 500, 8, 7 };
     static const int16_t twice_median[] = { 18, 6, 18, 17, 16 };
-    FOR_EACH_KIND(kind)
+    FOR_EACH_KIND_WITH_MEDIAN(kind)
     {
         filter_any_t f;
         make(&f, kind, 1000);
@@ -210,7 +210,7 @@ static void warm_up_puts_out_the_running_median(void)
 
 static void coast_in_warm_up_keeps_the_median(void)
 {
-    FOR_EACH_KIND(kind)
+    FOR_EACH_KIND_WITH_MEDIAN(kind)
     {
         filter_any_t f;
         make(&f, kind, 1000);

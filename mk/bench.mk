@@ -6,18 +6,21 @@ BENCH_COMMON := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -ffunction-sectio
 BENCH_SRC    := $(wildcard host_tests/avr/float_*.c lib/filters/src/*.c lib/tilt/src/*.c) firmware/format.c
 BENCH_DEPS   := $(BENCH_SRC) host_tests/avr/bench.c firmware/rows.c Makefile mk/bench.mk $(wildcard host_tests/avr/*.h lib/*/src/*.h firmware/*.h hal/*.h hal/avr/*.h)
 
-$(U)/bench.elf: $(BENCH_DEPS)
-	@mkdir -p $(@D)
-	@$(AVR_CC) $(BENCH_COMMON) -Os $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
+BENCH_PARTS  := 1 2
+BENCH_IMAGES := $(BENCH_PARTS:%=$(U)/bench_%.elf) $(BENCH_PARTS:%=$(U)/bench_small_%.elf) $(U)/bench_kept.elf
 
-$(U)/bench_small.elf: $(BENCH_DEPS)
+$(U)/bench_small_%.elf: $(BENCH_DEPS)
 	@mkdir -p $(@D)
-	@$(AVR_CC) $(BENCH_COMMON) $(AVR_SMALL) $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
+	@$(AVR_CC) $(BENCH_COMMON) -DBENCH_PART=$* $(AVR_SMALL) $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
+
+$(BENCH_PARTS:%=$(U)/bench_%.elf): $(U)/bench_%.elf: $(BENCH_DEPS)
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(BENCH_COMMON) -DBENCH_PART=$* -Os $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
 
 # another yardstick for synth, in the same program
 $(U)/bench_kept.elf: $(BENCH_DEPS)
 	@mkdir -p $(@D)
-	@$(AVR_CC) $(BENCH_COMMON) -DFLOAT_SYNTH_KEPT -Os $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
+	@$(AVR_CC) $(BENCH_COMMON) -DBENCH_PART=1 -DFLOAT_SYNTH_KEPT -Os $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
 
 # the firmware with two places around a sample's way that the simulator can time
 $(U)/bench_sample/firmware/app.o: AVR_FLAGS += -Dpipeline_sample=bench_sample_begins -Dhealth_sample_filtered=bench_sample_ends
@@ -32,7 +35,7 @@ $(U)/bench_sample.elf: $(BENCH_SAMPLE_OBJ)
 ## bench: cycles, flash, RAM and stack of each filter, beside float, into docs/benchmarks.md (1 minute)
 bench:
 	@sh tools/deps.sh bench
-	@$(MAKE) -j2 $(U)/bench.elf $(U)/bench_small.elf $(U)/bench_kept.elf $(U)/bench_sample.elf $(U)/firmware.elf $(S)/simrun
-	@python3 tools/bench.py --flags '$(BENCH_COMMON) -Wl,--gc-sections $(BENCH_INC)' --small '$(AVR_SMALL)' --sources '$(BENCH_SRC)'
+	@$(MAKE) -j2 $(BENCH_IMAGES) $(U)/bench_sample.elf $(U)/firmware.elf $(S)/simrun
+	@python3 tools/bench.py --flags '$(BENCH_COMMON) -Wl,--gc-sections $(BENCH_INC)' --small '$(AVR_SMALL)' --sources '$(BENCH_SRC)' --parts '$(BENCH_PARTS)'
 
 .PHONY: bench

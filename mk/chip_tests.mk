@@ -1,6 +1,7 @@
 # The portable part of the unit tests, and the long sequence of filter calls, as images for the ATmega328P.
 
-CHIP_UNITY  := test_filters test_filter_gaps test_fx test_kf test_lrf test_soft test_sprf test_synth test_noise test_tilt
+CHIP_UNITY  := test_filters test_filter_gaps test_fx test_kf test_lrf test_soft test_sprf test_synth test_two_state_wide test_sprf_paper \
+               test_shrf test_pbf test_af test_noise test_tilt
 CHIP_TESTS  := $(CHIP_UNITY:%=$(U)/tests/%.elf) $(U)/tests/filter_sequence.elf
 BITEXACT    := host_tests/bitexact
 SEQUENCE    := $(addprefix $(BITEXACT)/,sequence_main.c filter_sequence.c crc32.c output.c) host_tests/support_filters.c

@@ -16,9 +16,12 @@ DOCUMENT = pathlib.Path("docs/benchmarks.md")
 BEGIN, END = "<!-- written by make bench: begin -->", "<!-- written by make bench: end -->"
 COMPILER = "5.4.0"  # the limits are for Debian's avr-gcc; elsewhere the numbers are only reported
 
-WORST_LIMIT = {"kf": 800, "sprf": 1000, "synth": 500, "lrf": 800, "soft": 1300, "angles": 1500}
+WORST_LIMIT = {"kf": 800, "sprf": 1000, "synth": 500, "lrf": 800, "soft": 1300, "sprf_paper": 2100, "shrf": 3500, "pbf": 5000,
+               "af": 5000, "angles": 1500}
 RATIO_LIMIT = 4.0
 KEPT = "float_synth_kept"  # a row of its own: what the float version takes when it keeps the coefficients made from a1
+# The filters with the wide covariance keep to their cycles and save flash before more: their products are calls.
+RATIO_LIMITS = {"sprf_paper": 2.5, "shrf": 3.5, "pbf": 3.5, "af": 3.0}
 SAMPLES_MIN = 5000
 REGRESSION = 0.02
 # The yardstick must do the same job. LSB: a twentieth of the stream's noise of 4.6 LSB. Degrees: the bound that lib/tilt derives.
@@ -39,7 +42,7 @@ class Fault(Exception):
 
 def run(command, statuses=(0,)):
     command = [str(c) for c in command]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
     if done.returncode not in statuses:
         raise Fault(f"{command[0]} gave status {done.returncode}: {(done.stderr or done.stdout).strip()}")
     return done.stdout
@@ -95,7 +98,7 @@ def measure(images):
         running.append((subprocess.Popen([str(c) for c in command], stderr=subprocess.PIPE, text=True), text))
     results = []
     for process, text in running:
-        _, told = process.communicate(timeout=300)
+        _, told = process.communicate(timeout=1200)
         if process.returncode != 8:
             raise Fault(f"{text.stem}: simrun gave status {process.returncode}: {told.strip().splitlines()[-1]}")
         results.append(parse(text.read_text(encoding="ascii"), text.stem))
@@ -190,9 +193,10 @@ def limit_faults(filters, rows, rms):
             faults.append(f"{name}: no float version was measured")
             continue
         for kind in ("median", "worst_both"):
-            if yardstick[kind] < RATIO_LIMIT * row[kind]:
+            wanted = RATIO_LIMITS.get(name, RATIO_LIMIT)
+            if yardstick[kind] < wanted * row[kind]:
                 faults.append(f"{name}: {kind.split('_')[0]} {row[kind]} cycles, float {yardstick[kind]}: "
-                              f"{yardstick[kind] / row[kind]:.2f} times fewer, wanted {RATIO_LIMIT:g}")
+                              f"{yardstick[kind] / row[kind]:.2f} times fewer, wanted {wanted:g}")
     return faults + agreement_faults(filters, rms)
 
 
@@ -276,11 +280,24 @@ def bench_json(rows):
     return [{"name": name, **{key: row.get(source) for key, source in keys.items()}} for name, row in rows.items()]
 
 
-def collect(flags, sources):
+def together(results):
+    """The results of the images that time a part each, as of one."""
+    sections = [s for part, _, _ in results for s in part]
+    stack = {name: size for _, part, _ in results for name, size in part.items()}
+    return sections, stack, [r for _, _, part in results for r in part]
+
+
+def collect(flags, sources, parts):
     filters = filters_of(flags)
-    (sections, stack, rms), (small, _, _), (kept, kept_stack, _) = measure([OUT / f"{name}.elf" for name in ("bench", "bench_small", "bench_kept")])
+    *results, kept = measure([OUT / f"bench{name}.elf" for name in (*(f"_{p}" for p in parts), *(f"_small_{p}" for p in parts), "_kept")])
+    sections, stack, rms = together(results[:len(parts)])
+    small, _, _ = together(results[len(parts):])
+    kept, kept_stack, _ = kept
     rows, rows_small = summarise(sections), summarise(small)
     rows[KEPT], stack[KEPT] = summarise(kept)["float_synth"], kept_stack["float_synth"]
+    missed = [f for f in filters if f not in rows or f not in rows_small]
+    if missed:
+        raise Fault(f"{missed[0]}: in no image of the benchmark (BENCH_LIST in host_tests/avr/bench_part.h)")
     alone, shared = measure_sizes(flags, sources, filters)
     rows["sample_total"], stack["sample_total"] = measure_sample()
     rows_small["sample_total"] = rows["sample_total"]
@@ -302,8 +319,9 @@ def main():
     options.add_argument("--flags", required=True, help="compiler flags but -Os")
     options.add_argument("--small", default="", help="the firmware's flags, for the page")
     options.add_argument("--sources", required=True)
+    options.add_argument("--parts", required=True, help="the images' numbers")
     arguments = options.parse_args()
-    filters, rows, rms = collect(arguments.flags.split(), arguments.sources.split())
+    filters, rows, rms = collect(arguments.flags.split(), arguments.sources.split(), arguments.parts.split())
     lines = table(rows)
     print("\n".join(lines))
     JSON.write_text(json.dumps(bench_json(rows), indent=1) + "\n", encoding="ascii")

@@ -1,7 +1,7 @@
 /*
- * Runs on the ATmega328P (simavr): cycles of each filter of the list beside its float yardstick, of the noise estimate,
- * the angles and the formatting of a row, call included, over streams that look for the longest path. On the UART (1
- * Mbaud), for tools/bench.py:
+ * Runs on the ATmega328P (simavr): cycles of each filter of its part of the list (bench_part.h) beside its float
+ * yardstick, and in part 1 of the noise estimate, the angles and the formatting of a row, call included, over streams
+ * that look for the longest path. On the UART (1 Mbaud), for tools/bench.py:
  *
  *   =NAME REGIME RATE    a section: then 8 hexadecimal digits per call, cycles of ours and of the float one (0: none)
  *   +stack NAME BYTES    deepest stack of a call seen in the section, return address included; another for float_NAME
@@ -25,8 +25,10 @@
 /* The row as the firmware composes it; what of it is not used the linker drops. */
 #include "../../firmware/rows.c"
 
+#include "bench_longer.h"
 #include "bench_measure.h"
 #include "bench_out.h"
+#include "bench_part.h"
 #include "bench_streams.h"
 
 enum { SETTLED = 50 };
@@ -52,24 +54,8 @@ static void NOINLINE run_empty(void)
     __asm__ volatile("");
 }
 
-/* Parameters on a longer path than the defaults, in force in the provoked regime; each filter needs its entry. */
+/* The provoked regime is running. */
 static bool provoked;
-
-#define AS_THE_DEFAULTS(F)                         \
-    static void lengthen_##F(F##_config_t *config) \
-    {                                              \
-        (void)config;                              \
-    }
-AS_THE_DEFAULTS(kf)
-AS_THE_DEFAULTS(lrf)
-AS_THE_DEFAULTS(soft)
-AS_THE_DEFAULTS(sprf)
-
-/* With a1 = 0 there is no second product. */
-static void lengthen_synth(synth_config_t *config)
-{
-    synth_paper(config, config->rate_dhz);
-}
 
 typedef struct {
     const char *name; /* in program memory */
@@ -130,7 +116,7 @@ typedef struct {
         float_sink = float_##F##_update(&float_##F, z_lsb);                 \
     }                                                                       \
     static const char name_##F[] PROGMEM = #F;
-FILTER_LIST(SUBJECT)
+BENCH_LIST(SUBJECT)
 
 #define SUBJECT_ROW(F)      \
     { name_##F,             \
@@ -143,8 +129,9 @@ FILTER_LIST(SUBJECT)
       float_set_noise_##F,  \
       float_coast_step_##F, \
       float_update_step_##F },
-static const subject_t subjects[] = { FILTER_LIST(SUBJECT_ROW) };
+static const subject_t subjects[] = { BENCH_LIST(SUBJECT_ROW) };
 
+#if BENCH_PART == 1
 static noise_t noise;
 static void NOINLINE update_noise(void)
 {
@@ -173,6 +160,7 @@ static void NOINLINE update_format_row(void)
     char *end = write_csv(line, &row);
     sink = *end;
 }
+#endif
 
 /* --- the measurement --- */
 
@@ -275,6 +263,7 @@ static void run_filter(const subject_t *s)
     run_set_noise(s);
 }
 
+#if BENCH_PART == 1
 static void run_noise(void)
 {
     static const char name[] PROGMEM = "noise";
@@ -370,6 +359,18 @@ static void run_format_row(const char *regime, bool widest, uint16_t count)
     end_section(name, false);
 }
 
+static void run_the_rest(void)
+{
+    run_noise();
+    run_angles(PSTR("typical"), true, 1000);
+    run_angles(PSTR("anything"), false, 4500);
+    run_format_row(PSTR("typical"), false, 1000);
+    run_format_row(PSTR("widest"), true, 4500);
+}
+#else
+static void run_the_rest(void) {}
+#endif
+
 int main(void)
 {
     UCSR0A = _BV(U2X0);
@@ -383,11 +384,7 @@ int main(void)
     for (uint8_t i = 0; i < sizeof subjects / sizeof subjects[0]; i++) {
         run_filter(&subjects[i]);
     }
-    run_noise();
-    run_angles(PSTR("typical"), true, 1000);
-    run_angles(PSTR("anything"), false, 4500);
-    run_format_row(PSTR("typical"), false, 1000);
-    run_format_row(PSTR("widest"), true, 4500);
+    run_the_rest();
     put_text(PSTR("\n=end\n"));
     while ((UCSR0A & _BV(UDRE0)) == 0) {
     }

@@ -61,6 +61,25 @@ typedef struct {
 #endif
 } float_synth_t;
 
+typedef struct {
+    float x, v;
+    float p00, p01, p10, p11;
+    float dt, q, r;
+    float gate; /* sigmas */
+} float_sprf_paper_t;
+
+typedef struct {
+    float x, v;
+    float p00, p01, p10, p11;
+    float dt, q, r;
+    float ratio2; /* N^2 */
+    float clean;  /* probability of a normal sample */
+    float count;  /* samples that it is learnt from; 0: given */
+} float_mixture_t;
+typedef float_mixture_t float_shrf_t;
+typedef float_mixture_t float_pbf_t;
+typedef float_mixture_t float_af_t;
+
 void float_kf_start(float_kf_t *f, const kf_config_t *config, float x0_lsb);
 void float_kf_set_noise(float_kf_t *f, float r_lsb2);
 float float_kf_update(float_kf_t *f, int16_t z_lsb);
@@ -85,6 +104,36 @@ void float_synth_start(float_synth_t *f, const synth_config_t *config, float x0_
 void float_synth_set_noise(float_synth_t *f, float r_lsb2);
 float float_synth_update(float_synth_t *f, int16_t z_lsb);
 float float_synth_coast(float_synth_t *f);
+
+void float_sprf_paper_start(float_sprf_paper_t *f, const sprf_paper_config_t *config, float x0_lsb);
+void float_sprf_paper_set_noise(float_sprf_paper_t *f, float r_lsb2);
+float float_sprf_paper_update(float_sprf_paper_t *f, int16_t z_lsb);
+float float_sprf_paper_coast(float_sprf_paper_t *f);
+
+void float_shrf_start(float_shrf_t *f, const shrf_config_t *config, float x0_lsb);
+void float_shrf_set_noise(float_shrf_t *f, float r_lsb2);
+float float_shrf_update(float_shrf_t *f, int16_t z_lsb);
+float float_shrf_coast(float_shrf_t *f);
+
+void float_pbf_start(float_pbf_t *f, const pbf_config_t *config, float x0_lsb);
+void float_pbf_set_noise(float_pbf_t *f, float r_lsb2);
+float float_pbf_update(float_pbf_t *f, int16_t z_lsb);
+float float_pbf_coast(float_pbf_t *f);
+
+void float_af_start(float_af_t *f, const af_config_t *config, float x0_lsb);
+void float_af_set_noise(float_af_t *f, float r_lsb2);
+float float_af_update(float_af_t *f, int16_t z_lsb);
+float float_af_coast(float_af_t *f);
+
+/* What the three with two states of the channel share. */
+void float_mixture_start(float_mixture_t *f, const mixture_config_t *config, float x0_lsb);
+float float_mixture_coast(float_mixture_t *f);
+
+/* Prediction; the probability that the sample is normal, and the gains of the two cases. */
+float float_mixture_weigh(float_mixture_t *f, int16_t z_lsb, float *innovation, float *normal, float *outlier);
+
+/* x by m, P by m2, both per LSB^2. */
+void float_mixture_apply(float_mixture_t *f, float innovation, float m, float m2);
 
 /* Degrees. */
 void float_angles(float *roll, float *pitch, float x, float y, float z);

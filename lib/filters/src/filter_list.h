@@ -2,10 +2,14 @@
 #ifndef FILTER_LIST_H
 #define FILTER_LIST_H
 
+#include "af.h"
 #include "kf.h"
 #include "lrf.h"
+#include "pbf.h"
+#include "shrf.h"
 #include "soft.h"
 #include "sprf.h"
+#include "sprf_paper.h"
 #include "synth.h"
 
 #define FILTER_LIST(X) \
@@ -13,6 +17,10 @@
     X(sprf)            \
     X(synth)           \
     X(lrf)             \
-    X(soft)
+    X(soft)            \
+    X(sprf_paper)      \
+    X(shrf)            \
+    X(pbf)             \
+    X(af)
 
 #endif

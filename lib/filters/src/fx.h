@@ -314,8 +314,8 @@ FX_INLINE uint16_t fx_reciprocal_uq16(uint32_t s_uq28)
 FX_ONCE uint16_t fx_isqrt32(uint32_t v);
 
 /*
- * The products as functions, for code with many of them: a call costs 10 to 30 cycles, the code in line up to 150 bytes. In
- * their order: the upper half of fx_mul_u16, rounded down; fx_mul_uq16.
+ * The products as functions, for code with many of them: a call costs 10 to 30 cycles, the code in line up to 150
+ * bytes. In their order: the upper half of fx_mul_u16, rounded down; fx_mul_uq16.
  */
 FX_ONCE uint16_t fx_high_u16(uint16_t a, uint16_t b);
 FX_ONCE uint32_t fx_times_uq16(uint32_t a, uint16_t b_uq16);
@@ -327,8 +327,8 @@ FX_ONCE uint32_t fx_shifted_right(uint32_t v, uint8_t places);
 FX_ONCE uint16_t fx_inverse_uq16(uint32_t m_uq31);
 
 /*
- * A number's 24 leading bits, shifted left until the top bit of 32 is set, and in the low byte the places they were shifted
- * by: one word, because a structure would go through memory. 0 is taken as 1.
+ * A number's 24 leading bits, shifted left until the top bit of 32 is set, and in the low byte the places they were
+ * shifted by: one word, because a structure would go through memory. 0 is taken as 1.
  */
 typedef uint32_t fx_leading_t;
 FX_ONCE fx_leading_t fx_leading(uint32_t v);

@@ -1,14 +1,6 @@
 /* Two-state Kalman core: see two_state.h for the equations. */
 #include "two_state.h"
 
-/*
- * Bounds of q22 and of the rate's start variance (UQ4.28, per R): below 6e-8 (gain 0.022) P22 would round to a
- * standstill; at 1 (gain 0.77, P22 1.60 after the update) the filter nearly follows the raw samples, and P22 stays
- * below 2.
- */
-#define Q22_MIN_UQ28 16U
-#define Q22_MAX_UQ28 0x10000000U
-
 /* Spread of the rate of a sensor picked up at any moment: 200 LSB/s, 45 degree/s around level. */
 #define START_RATE_VARIANCE_LSB2_S2 40000U
 
@@ -35,6 +27,15 @@ bool two_state_gate_legal(uint16_t gate_sigma_q8)
            (gate_sigma_q8 >= TWO_STATE_GATE_MIN_SIGMA_Q8 && gate_sigma_q8 <= TWO_STATE_GATE_MAX_SIGMA_Q8);
 }
 
+fx_scaled_t two_state_scales(uint16_t rate_dhz, uint32_t q_lsb2_s3, fx_scaled_t *drive_lsb2, fx_scaled_t *start_lsb2)
+{
+    fx_scaled_t period_s = fx_scaled_div(fx_scaled(10), fx_scaled(rate_dhz));
+    fx_scaled_t period2 = fx_scaled_mul(period_s, period_s);
+    *drive_lsb2 = fx_scaled_mul(fx_scaled(q_lsb2_s3), fx_scaled_mul(period2, period_s));
+    *start_lsb2 = fx_scaled_mul(fx_scaled(START_RATE_VARIANCE_LSB2_S2), period2);
+    return period_s;
+}
+
 void two_state_init(two_state_t *s, uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3, uint32_t rate_max_lsb_s)
 {
     uint8_t *bytes = (uint8_t *)s;
@@ -42,10 +43,7 @@ void two_state_init(two_state_t *s, uint16_t rate_dhz, uint32_t r_lsb2_q8, uint3
         bytes[i] = 0;
     }
     s->flags = FILTER_WARMING_UP;
-    fx_scaled_t period_s = fx_scaled_div(fx_scaled(10), fx_scaled(rate_dhz));
-    fx_scaled_t period2 = fx_scaled_mul(period_s, period_s);
-    s->drive_lsb2 = fx_scaled_mul(fx_scaled(q_lsb2_s3), fx_scaled_mul(period2, period_s));
-    s->start_lsb2 = fx_scaled_mul(fx_scaled(START_RATE_VARIANCE_LSB2_S2), period2);
+    fx_scaled_t period_s = two_state_scales(rate_dhz, q_lsb2_s3, &s->drive_lsb2, &s->start_lsb2);
     uint32_t limit = (uint32_t)X_MAX_LSB_Q16;
     if (rate_max_lsb_s != 0U) {
         limit = fx_scaled_fixed(fx_scaled_mul(fx_scaled(rate_max_lsb_s), period_s), 16);
@@ -54,14 +52,13 @@ void two_state_init(two_state_t *s, uint16_t rate_dhz, uint32_t r_lsb2_q8, uint3
     two_state_set_noise(s, r_lsb2_q8);
 }
 
-/* A variance divided by R, limited. */
-static uint32_t per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28)
+uint32_t two_state_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28)
 {
     uint32_t quotient = fx_scaled_fixed(fx_scaled_div(lsb2, r_lsb2), 28);
     if (quotient < min_uq28) {
         return min_uq28;
     }
-    return (quotient > Q22_MAX_UQ28) ? Q22_MAX_UQ28 : quotient;
+    return (quotient > TWO_STATE_Q22_MAX_UQ28) ? TWO_STATE_Q22_MAX_UQ28 : quotient;
 }
 
 void two_state_set_noise(two_state_t *s, uint32_t r_lsb2_q8)
@@ -74,8 +71,8 @@ void two_state_set_variance(two_state_t *s, uint32_t r_lsb2_q8)
     s->r_lsb2_q8 = r_lsb2_q8;
     fx_scaled_t r_lsb2 = fx_scaled(r_lsb2_q8);
     r_lsb2.exponent = (int8_t)(r_lsb2.exponent - 8);
-    s->q22_uq28 = per_r_uq28(s->drive_lsb2, r_lsb2, Q22_MIN_UQ28);
-    s->p22_start_uq28 = per_r_uq28(s->start_lsb2, r_lsb2, s->q22_uq28);
+    s->q22_uq28 = two_state_per_r_uq28(s->drive_lsb2, r_lsb2, TWO_STATE_Q22_MIN_UQ28);
+    s->p22_start_uq28 = two_state_per_r_uq28(s->start_lsb2, r_lsb2, s->q22_uq28);
 }
 
 void two_state_set_gate(two_state_t *s, uint16_t gate_sigma_q8)

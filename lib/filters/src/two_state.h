@@ -35,6 +35,14 @@ extern "C" {
 #define TWO_STATE_GATE_DEFAULT_SIGMA_Q8 768U
 
 /*
+ * Bounds of q22 and of the rate's start variance (UQ4.28, per R): below 6e-8 (gain 0.022) P22 would round to a
+ * standstill; at 1 (gain 0.77, P22 1.60 after the update) the filter nearly follows the raw samples, and P22 stays
+ * below 2.
+ */
+#define TWO_STATE_Q22_MIN_UQ28 16U
+#define TWO_STATE_Q22_MAX_UQ28 0x10000000U
+
+/*
  * P / R (UQ4.28) is predicted only while all elements are below 2: then P11 < 8, P12 < 4, P22 < 3 afterwards, S = P11 +
  * 1 fits UQ4.28, and P, kept as a whole when it may not grow, stays a covariance. Updates never raise an element.
  *
@@ -77,6 +85,16 @@ bool two_state_legal(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3);
 
 /* True when the gate is in its range or off. */
 FX_ONCE bool two_state_gate_legal(uint16_t gate_sigma_q8);
+
+/*
+ * What R is to be divided into: q T^3, which drives the rate per sample, and the variance of that rate at the start.
+ * Returns the period T in seconds. Divides.
+ */
+FX_ONCE fx_scaled_t two_state_scales(uint16_t rate_dhz, uint32_t q_lsb2_s3, fx_scaled_t *drive_lsb2,
+                                     fx_scaled_t *start_lsb2);
+
+/* A variance divided by R, limited to min_uq28..TWO_STATE_Q22_MAX_UQ28. Divides. */
+FX_ONCE uint32_t two_state_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28);
 
 /*
  * Legal parameters to a filter that begins to warm up, no gate. rate_max in LSB/s, 0: the bound of the format. Divides.

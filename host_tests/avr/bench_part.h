@@ -1,0 +1,16 @@
+/*
+ * The filters and their yardsticks together do not fit the flash: an image times one part of them. A filter in no part is
+ * missed by tools/bench.py.
+ */
+#ifndef BENCH_PART_H
+#define BENCH_PART_H
+
+#if BENCH_PART == 1
+#define BENCH_LIST(X) X(kf) X(sprf) X(synth) X(lrf) X(soft)
+#elif BENCH_PART == 2
+#define BENCH_LIST(X) X(sprf_paper) X(shrf) X(pbf) X(af)
+#else
+#error "BENCH_PART is 1 or 2"
+#endif
+
+#endif

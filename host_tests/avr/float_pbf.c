@@ -1,0 +1,29 @@
+/* The pseudo-Bayesian filter of paper 002, in float. */
+#include "float_filters.h"
+
+void float_pbf_start(float_pbf_t *f, const pbf_config_t *config, float x0_lsb)
+{
+    float_mixture_start(f, config, x0_lsb);
+}
+
+void float_pbf_set_noise(float_pbf_t *f, float r_lsb2)
+{
+    f->r = r_lsb2;
+}
+
+float float_pbf_coast(float_pbf_t *f)
+{
+    return float_mixture_coast(f);
+}
+
+float float_pbf_update(float_pbf_t *f, int16_t z_lsb)
+{
+    float innovation;
+    float normal;
+    float outlier;
+    float p = float_mixture_weigh(f, z_lsb, &innovation, &normal, &outlier);
+    float m = outlier + p * (normal - outlier);
+    float spread = innovation * (normal - outlier);
+    float_mixture_apply(f, innovation, m, m - p * (1.0f - p) * spread * spread);
+    return f->x;
+}

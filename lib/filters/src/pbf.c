@@ -1,0 +1,45 @@
+/* Pseudo-Bayesian filter: the rule MIXTURE_BAYES of mixture.h with a given share of outliers. */
+#include "pbf.h"
+
+const filter_descriptor_t pbf_descriptor FX_FLASH = { "pbf", MIXTURE_PARAMETERS, mixture_parameters };
+
+void pbf_defaults(pbf_config_t *config, uint16_t rate_dhz)
+{
+    mixture_defaults(config, rate_dhz);
+}
+
+bool pbf_init(pbf_t *f, const pbf_config_t *config)
+{
+    return mixture_init(f, config, false);
+}
+
+void pbf_set_noise(pbf_t *f, uint32_t r_lsb2_q8)
+{
+    two_state_wide_set_noise(&f->core, r_lsb2_q8);
+}
+
+void pbf_reset(pbf_t *f, int16_t z0_lsb)
+{
+    mixture_reset(f, z0_lsb);
+}
+
+/* Scaling: input any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB; the rest as in mixture.h. */
+int32_t pbf_update(pbf_t *f, int16_t z_lsb)
+{
+    return mixture_update(f, z_lsb, MIXTURE_BAYES);
+}
+
+int32_t pbf_coast(pbf_t *f)
+{
+    return two_state_wide_coast(&f->core);
+}
+
+uint8_t pbf_flags(const pbf_t *f)
+{
+    return f->core.flags;
+}
+
+void pbf_probe(const pbf_t *f, filter_probe_t *out)
+{
+    two_state_wide_probe(&f->core, 0, out);
+}
