@@ -78,7 +78,7 @@ def compare_twins(name):
     done = run(SIMRUN, "--fw", f"build/uno/{name}.elf", "--in", STREAMS / "tilt-fast.csv", "--out", out, "--max-ms", "60000", expect=None)
     lines = out.read_text().splitlines()
     assert done.returncode == 8, done.stderr
-    assert sum("PASS" in line for line in lines) == 12 and not any("FAIL" in line for line in lines), lines
+    assert sum("PASS" in line for line in lines) == 14 and not any("FAIL" in line for line in lines), lines
 
 
 @test

@@ -62,9 +62,15 @@ class Build:
         self.name, self.command, self.chip, self.lib = name, command, chip, lib
 
     def compile(self, packed=False):
-        exe = OUT / (re.sub(r"\W+", "_", self.name) + ("-packed" if packed else "") + (".elf" if self.chip else ""))
+        """The programs that together answer for all paths: on the chip one for the filters and one for the rest, as its flash wants."""
+        parts = {"filters": "-DVECTORS_FILTERS=1", "rest": "-DVECTORS_FILTERS=0"} if self.chip else {"": ""}
+        return [self.compile_part(part, flag, packed) for part, flag in parts.items()]
+
+    def compile_part(self, part, flag, packed):
+        ends = ("-packed" if packed else "") + (f"-{part}.elf" if self.chip else "")
+        exe = OUT / (re.sub(r"\W+", "_", self.name) + ends)
         if not fresh(exe, self.lib):
-            command = self.command + sources(self.chip, self.lib) + ["-o", str(exe)]
+            command = self.command + [flag] * bool(flag) + sources(self.chip, self.lib) + ["-o", str(exe)]
             if packed and not self.chip:
                 command += ["-include", f"{HERE}/packed_states.h", "-Wno-address-of-packed-member", "-fno-sanitize=alignment"]
             done = call(command)
@@ -73,8 +79,11 @@ class Build:
                 raise Failure(f"{self.name} does not compile: {errors[0] if errors else last_words(done.stderr)}")
         return exe
 
-    def run(self, exe, path=None, block=None):
-        """Lines that the program prints, without its last one."""
+    def run(self, exes, path=None, block=None):
+        """Lines that the programs print, without the last one of each."""
+        return [line for exe in exes for line in self.run_part(exe, path, block)]
+
+    def run_part(self, exe, path, block):
         if self.chip:
             lines = run_chip(exe, path, block)
         else:
@@ -153,8 +162,8 @@ def parse_item(line):
     return int(index), [w for w in words if w[0] not in "=>"], [w[1:] for w in words if w[0] == ">"], bytes.fromhex("".join(state))
 
 
-def items(build, exe, path, block):
-    return [parse_item(line) for line in build.run(exe, path, block) if re.match(r"\d", line)]
+def items(build, exes, path, block):
+    return [parse_item(line) for line in build.run(exes, path, block) if re.match(r"\d", line)]
 
 
 def compare_states(a, b):

@@ -5,6 +5,10 @@
 #ifndef BENCH_PART_H
 #define BENCH_PART_H
 
+#ifndef BENCH_PART
+#define BENCH_PART 1
+#endif
+
 #if BENCH_PART == 1
 #define BENCH_LIST(X) X(kf) X(sprf) X(synth) X(lrf) X(soft)
 #elif BENCH_PART == 2

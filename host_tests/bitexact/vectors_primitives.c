@@ -34,10 +34,25 @@ static const int32_t *two(uint32_t v)
     return array;
 }
 
+/* The number shifted, with the places in its low bits: both are the same in every build or the result is another. */
+static uint32_t normalised(uint32_t v)
+{
+    uint8_t places = fx_normalise(&v);
+    return v ^ places;
+}
+
+static uint32_t normalised_c(uint32_t v)
+{
+    uint8_t places = fx_normalise_c(&v);
+    return v ^ places;
+}
+
 #define A16 ((uint16_t)a)
 #define B16 ((uint16_t)b)
 #define A24 (a & 0xFFFFFFUL)
 #define B24 (b & 0xFFFFFFUL)
+#define NOT_0(v) ((v) == 0U ? 1U : (v))
+#define LED(v) ((v) | 0x80000000UL)
 #define POSITIVE(v) ((int32_t)((v)&0x7FFFFFFFUL))
 
 /* X(name, what it gives for the operands a and b) */
@@ -66,6 +81,18 @@ static const int32_t *two(uint32_t v)
     X(fx_shift12_c, fx_shift12_c(A16))                                                 \
     X(fx_eightfold_c, fx_eightfold_c(a))                                               \
     X(fx_sixteenth_c, fx_sixteenth_c(a))                                               \
+    X(fx_normalise_c, normalised_c(NOT_0(a)))                                          \
+    X(fx_normalise, normalised(NOT_0(a)))                                              \
+    X(fx_shift_right_c, fx_shift_right_c(a, (uint8_t)(b & 31U)))                       \
+    X(fx_shift_right, fx_shift_right(a, (uint8_t)(b & 31U)))                           \
+    X(fx_shifted_right, fx_shifted_right(a, (uint8_t)(b & 31U)))                       \
+    X(fx_high_u16, fx_high_u16(A16, B16))                                              \
+    X(fx_times_uq16, fx_times_uq16(a, B16))                                            \
+    X(fx_leading, fx_leading(a))                                                       \
+    X(fx_places, fx_places(a))                                                         \
+    X(fx_mantissa, fx_mantissa(a))                                                     \
+    X(fx_inverse_uq16, fx_inverse_uq16(LED(a)))                                        \
+    X(fx_reciprocal_leading_uq16, fx_reciprocal_leading_uq16(LED(a)))                  \
     X(fx_abs32, fx_abs32((int32_t)a))                                                  \
     X(fx_add_sat, fx_add_sat(a, b))                                                    \
     X(fx_clamp, (uint32_t)fx_clamp((int32_t)a, POSITIVE(b)))                           \
@@ -84,7 +111,7 @@ enum {
         PRIMITIVE_COUNT
 };
 
-static const char names[PRIMITIVE_COUNT][20] FX_FLASH = {
+static const char names[PRIMITIVE_COUNT][27] FX_FLASH = {
 #define NAME(name, result) #name,
     PRIMITIVES(NAME)
 #undef NAME
