@@ -4,11 +4,11 @@ CHIP_UNITY  := test_filters test_filter_gaps test_fx test_kf test_lrf test_soft 
                test_shrf test_pbf test_af test_noise test_tilt
 CHIP_TESTS  := $(CHIP_UNITY:%=$(U)/tests/%.elf) $(U)/tests/filter_sequence.elf
 BITEXACT    := host_tests/bitexact
-SEQUENCE    := $(addprefix $(BITEXACT)/,sequence_main.c filter_sequence.c crc32.c output.c) host_tests/support_filters.c
+SEQUENCE    := $(addprefix $(BITEXACT)/,sequence_main.c filter_sequence.c crc32.c output.c) host_tests/support_filters.c host_tests/support_filter_bounds.c
 FILTER_SRC  := $(wildcard lib/filters/src/*.c lib/tilt/src/*.c)
 CHIP_FLAGS  := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihost_tests -I$(BITEXACT) -isystem $(UNITY_DIR)
-CHIP_COMMON := $(FILTER_SRC) host_tests/support_filters.c $(BITEXACT)/output.c $(BITEXACT)/output_chip.c
+CHIP_COMMON := $(FILTER_SRC) host_tests/support_filters.c host_tests/support_filter_bounds.c $(BITEXACT)/output.c $(BITEXACT)/output_chip.c
 CHIP_OBJ    := $(CHIP_COMMON:%.c=$(U)/tests/%.o) $(U)/tests/host_tests/avr/unity_chip.o $(U)/tests/unity.o
 UNITY_CHIP  := -include host_tests/avr/unity_chip.h
 

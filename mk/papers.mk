@@ -1,7 +1,7 @@
 # The experiments of the papers: double references and the shipped fixed-point code over the same realisations.
 P := $(B)/papers
 PAPERS_CPP := $(wildcard host_tests/papers/*.cpp) host_tests/reference_robust.cpp
-PAPERS_C   := $(wildcard lib/filters/src/*.c) host_tests/support_filters.c host_tests/support_random.c
+PAPERS_C   := $(wildcard lib/filters/src/*.c) host_tests/support_filters.c host_tests/support_filter_bounds.c host_tests/support_random.c
 PAPERS_OBJ := $(PAPERS_CPP:%.cpp=$(P)/%.o) $(PAPERS_C:%.c=$(P)/%.o)
 RUNS ?= 10000
 

@@ -1,6 +1,6 @@
 /*
- * The filters and their yardsticks together do not fit the flash: an image times one part of them. A filter in no part is
- * missed by tools/bench.py.
+ * The filters and their yardsticks together do not fit the flash: an image times one part of them. A filter in no part
+ * is missed by tools/bench.py.
  */
 #ifndef BENCH_PART_H
 #define BENCH_PART_H

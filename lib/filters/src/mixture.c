@@ -120,9 +120,9 @@ static void learn(mixture_t *f, mixture_posterior_t posterior)
     uint32_t p = posterior.outlier ? posterior.rest_uq24 : ONE_UQ24 - posterior.rest_uq24;
     uint32_t q = f->learnt_uq24;
     bool rises = p >= q;
-    uint32_t step = fx_shifted_right(fx_times_uq16(rises ? p - q : q - p, fx_inverse_uq16(n)),
+    uint32_t part = fx_shifted_right(fx_times_uq16(rises ? p - q : q - p, fx_inverse_uq16(n)),
                                      (uint8_t)(31U - fx_places(n)));
-    q = rises ? q + step : q - step; /* a mean of p and q: within 0..1 */
+    q = rises ? q + part : q - part; /* a mean of p and q: within 0..1 */
     if (q < MIXTURE_LEARNT_MARGIN_UQ24) {
         q = MIXTURE_LEARNT_MARGIN_UQ24;
     } else if (q > ONE_UQ24 - MIXTURE_LEARNT_MARGIN_UQ24) {

@@ -41,7 +41,7 @@ typedef struct {
     uint16_t rate_dhz;   /* output data rate, 0.1 Hz: 50..40000 */
     uint32_t r_lsb2_q8;  /* measurement variance R of normal samples, LSB^2: 0.01..1000 (3..256000); 0 is refused */
     uint32_t q_lsb2_s3;  /* power density of the white acceleration, LSB^2/s^3: 1..1e9; 0 is refused */
-    uint16_t ratio_uq8;   /* N: sigma of outliers over that of normal samples: 2..100 (512..25600) */
+    uint16_t ratio_uq8;  /* N: sigma of outliers over that of normal samples: 2..100 (512..25600) */
     uint16_t clean_uq16; /* q: probability of a normal sample: 0.5..0.999 (32768..65470); what learning begins with */
 } mixture_config_t;
 

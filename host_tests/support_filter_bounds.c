@@ -1,0 +1,283 @@
+/* What each filter of the list promises: bounds of its state, symmetry, recovery. */
+#include "support_filters.h"
+
+/* two_state.h, "Scaling"; the largest R is a filter's own. */
+static const char *broken_core(const two_state_t *s, int32_t x_lsb_q16, uint32_t r_max_lsb2_q8)
+{
+    if (x_lsb_q16 != s->x_lsb_q16) {
+        return "x returned";
+    }
+    if (s->rate_max_lsb_q16 > (uint32_t)FILTER_X_MAX_LSB << 16 || fx_abs32(s->rate_lsb_q16) > s->rate_max_lsb_q16) {
+        return "rate";
+    }
+    if (s->size_lsb_uq8 > (uint32_t)8704 << 8) {
+        return "innovation";
+    }
+    if (s->q22_uq28 < 16U || s->q22_uq28 > 0x10000000U || s->p22_start_uq28 > 0x10000000U) {
+        return "q22";
+    }
+    if (s->r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 || s->r_lsb2_q8 > r_max_lsb2_q8) {
+        return "r";
+    }
+    if (s->collected > FILTER_WARM_UP_SAMPLES) {
+        return "collected";
+    }
+    if (!two_state_warming_up(s) && (s->u.p.p11_uq28 >= TWO_STATE_P11_END_UQ28 || s->u.p.p12_uq28 >= 0x40000000U ||
+                                     s->u.p.p22_uq28 >= 0x30000000U)) {
+        return "P";
+    }
+    return NULL;
+}
+
+static const char *broken_two_state(const two_state_t *s, int32_t x_lsb_q16)
+{
+    return broken_core(s, x_lsb_q16, FILTER_R_MAX_LSB2_Q8);
+}
+
+/* reacquire.h: a run ends with sample number steps + 1; agreement 3 sqrt(2 R) + rate_max < 135 + 4609. */
+static const char *broken_reacquire(const reacquire_t *a)
+{
+    if (a->steps > 8U || a->run > ((a->steps == 0U) ? 1U : a->steps) || a->agree_lsb >= 135U + 4609U) {
+        return "run";
+    }
+    if (a->previous_lsb < FILTER_Z_MIN_LSB || a->previous_lsb > FILTER_Z_MAX_LSB) {
+        return "previous";
+    }
+    if (a->first_lsb < FILTER_Z_MIN_LSB || a->first_lsb > FILTER_Z_MAX_LSB) {
+        return "first";
+    }
+    return NULL;
+}
+
+static const char *broken_sprf(const sprf_t *f, int32_t x_lsb_q16)
+{
+    const char *broken = broken_reacquire(&f->again);
+    return (broken != NULL) ? broken : broken_two_state(&f->core, x_lsb_q16);
+}
+
+/* synth.h, synth.c: estimates within the format's bound, gains as configured, the start's line within its spread. */
+static const char *broken_synth(const synth_t *f, int32_t x_lsb_q16)
+{
+    if (fx_abs32(f->innovation_lsb_q16) > (uint32_t)8704 << 16) {
+        return "innovation";
+    }
+    if (f->spread_lsb <= 0 || f->spread_lsb > 365) {
+        return "spread";
+    }
+    if (f->r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 || f->r_lsb2_q8 > FILTER_R_MAX_LSB2_Q8 || f->b0_uq16 < 656U) {
+        return "configuration";
+    }
+    if (f->collected >= 64U && f->collected != 255U) {
+        return "collected";
+    }
+    if (f->collected < FILTER_WARM_UP_SAMPLES) {
+        return NULL;
+    }
+    for (uint8_t i = 0; i < 3U; i++) {
+        if (fx_abs32(f->u.run.x_lsb_q16[i]) > (uint32_t)FILTER_X_MAX_LSB << 16) {
+            return "older x";
+        }
+    }
+    int32_t output = ((f->flags & FILTER_WARMING_UP) != 0U) ? f->u.run.median_lsb_q16 : f->u.run.x_lsb_q16[0];
+    return (x_lsb_q16 == output) ? NULL : "x returned";
+}
+
+/* kf.h: no gate, so nothing is refused and nothing re-acquired. */
+static const char *broken_kf(const kf_t *f, int32_t x_lsb_q16)
+{
+    if ((f->core.flags & (FILTER_GATED | FILTER_REACQUIRED)) != 0U) {
+        return "flags of a gate";
+    }
+    return broken_two_state(&f->core, x_lsb_q16);
+}
+
+/* lrf.h: R_L / R = N^2 - q1 (N^2 - 1) of 1..1024. */
+static const char *broken_lrf(const lrf_t *f, int32_t x_lsb_q16)
+{
+    if (f->factor_uq16 < 0x10000U || f->factor_uq16 > 1024UL << 16) {
+        return "factor";
+    }
+    return broken_core(&f->core, x_lsb_q16, LRF_R_MAX_LSB2_Q8);
+}
+
+/* soft.h: nothing is refused, only a missing sample leaves no gain; re-acquisition as sprf. */
+static const char *broken_soft(const soft_t *f, int32_t x_lsb_q16)
+{
+    const char *broken = broken_reacquire(&f->again);
+    bool gated = (f->core.flags & FILTER_GATED) != 0U;
+    if (gated && (f->share_uq16 == 0U || f->again.run == 0U)) {
+        return "gated";
+    }
+    return (broken != NULL) ? broken : broken_two_state(&f->core, x_lsb_q16);
+}
+
+/*
+ * two_state_wide.h, "Scaling": after an update no element of P exceeds P_END; a prediction adds to P11 less than 2 x
+ * 128 + 9 (UQ16.16), to P12 less than 9 (UQ8.24), to P22 at most 1 (UQ4.28).
+ */
+static bool wide_covariance_broken(const two_state_wide_t *s)
+{
+    return s->u.p.p11_uq16 > TWO_STATE_WIDE_P_END + 0x1090000U || s->u.p.p12_uq24 > TWO_STATE_WIDE_P_END + 0x9000000U ||
+           s->u.p.p22_uq28 > TWO_STATE_WIDE_P_END + 0x10000000U;
+}
+
+static const char *broken_wide(const two_state_wide_t *s, int32_t x_lsb_q16)
+{
+    if (x_lsb_q16 != s->x_lsb_q16) {
+        return "x returned";
+    }
+    if (fx_abs32(s->rate_lsb_q16) > (uint32_t)FILTER_X_MAX_LSB << 16) {
+        return "rate";
+    }
+    if (s->size_lsb_uq8 > (uint32_t)8704 << 8) {
+        return "innovation";
+    }
+    if (s->q22_uq28 < TWO_STATE_Q22_MIN_UQ28 || s->q22_uq28 > TWO_STATE_Q22_MAX_UQ28 ||
+        s->p22_start_uq28 > TWO_STATE_Q22_MAX_UQ28) {
+        return "q22";
+    }
+    if (s->r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 || s->r_lsb2_q8 > FILTER_R_MAX_LSB2_Q8) {
+        return "r";
+    }
+    if (s->collected > FILTER_WARM_UP_SAMPLES) {
+        return "collected";
+    }
+    if (s->variance != 0U && (fx_places(s->variance) > 15U || s->inverse_uq16 < 0x8000U)) {
+        return "S";
+    }
+    return (!two_state_wide_warming_up(s) && wide_covariance_broken(s)) ? "P" : NULL;
+}
+
+/* sprf_paper.h: gate of 1..16 sigma. */
+static const char *broken_sprf_paper(const sprf_paper_t *f, int32_t x_lsb_q16)
+{
+    if (f->gate2_uq8 < 256U || f->gate2_uq8 == UINT16_MAX) {
+        return "gate";
+    }
+    return broken_wide(&f->core, x_lsb_q16);
+}
+
+/* mixture.h: N^2 - 1 of 3..9999; q in 0.5..0.999, or learnt within its margin. */
+static const char *broken_mixture(const mixture_t *f, bool learning, int32_t x_lsb_q16)
+{
+    if (f->span_uq16 < (3UL << 16) || f->span_uq16 > (9999UL << 16)) {
+        return "span";
+    }
+    if ((f->learnt_from != 0U) != learning || f->learnt_from > 1024U) {
+        return "learnt_from";
+    }
+    uint32_t margin = learning ? MIXTURE_LEARNT_MARGIN_UQ24 : (uint32_t)(65536UL - MIXTURE_CLEAN_MAX_UQ16) << 8;
+    if (f->learnt_uq24 < margin || f->learnt_uq24 > 0x1000000U - margin ||
+        fx_abs32(f->log_odds_q9) > (uint32_t)7 * 512U) {
+        return "q";
+    }
+    return broken_wide(&f->core, x_lsb_q16);
+}
+
+static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)
+{
+    switch ((filter_kind_t)f->kind) {
+    case FILTER_KIND_kf:
+        return broken_kf(&f->state.kf, x_lsb_q16);
+    case FILTER_KIND_sprf:
+        return broken_sprf(&f->state.sprf, x_lsb_q16);
+    case FILTER_KIND_synth:
+        return broken_synth(&f->state.synth, x_lsb_q16);
+    case FILTER_KIND_lrf:
+        return broken_lrf(&f->state.lrf, x_lsb_q16);
+    case FILTER_KIND_soft:
+        return broken_soft(&f->state.soft, x_lsb_q16);
+    case FILTER_KIND_sprf_paper:
+        return broken_sprf_paper(&f->state.sprf_paper, x_lsb_q16);
+    case FILTER_KIND_shrf:
+        return broken_mixture(&f->state.shrf, false, x_lsb_q16);
+    case FILTER_KIND_pbf:
+        return broken_mixture(&f->state.pbf, false, x_lsb_q16);
+    case FILTER_KIND_af:
+        return broken_mixture(&f->state.af, true, x_lsb_q16);
+    case FILTER_KIND_COUNT:
+        break;
+    }
+    return "kind";
+}
+
+const char *broken_bound(const filter_any_t *f, const filter_probe_t *probe, int32_t x_lsb_q16)
+{
+    if (fx_abs32(x_lsb_q16) > (uint32_t)FILTER_X_MAX_LSB << 16) {
+        return "x";
+    }
+    /* after the last sample of the warm-up the state may be ahead of the median put out */
+    bool warming_up = (probe->flags & FILTER_WARMING_UP) != 0U;
+    if ((!warming_up && probe->x_lsb_q16 != x_lsb_q16) || probe->flags != filter_any_flags(f)) {
+        return "probe";
+    }
+    if (warming_up && probe->rate_lsb_q16 != 0) {
+        return "rate while warming up";
+    }
+    uint8_t unused = gated_means_unused((filter_kind_t)f->kind) ? FILTER_GATED | FILTER_COASTED : FILTER_COASTED;
+    if ((probe->flags & unused) != 0U && probe->gain_uq16 != 0U) {
+        return "gain";
+    }
+    return broken_state(f, x_lsb_q16);
+}
+
+/* The two-state cores and synth compute magnitudes and round them alike for both signs: exact. */
+int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
+{
+    switch (kind) {
+    case FILTER_KIND_kf:
+    case FILTER_KIND_sprf:
+    case FILTER_KIND_synth:
+    case FILTER_KIND_lrf:
+    case FILTER_KIND_soft:
+    case FILTER_KIND_sprf_paper:
+    case FILTER_KIND_shrf:
+    case FILTER_KIND_pbf:
+    case FILTER_KIND_af:
+        return 0;
+    case FILTER_KIND_COUNT:
+        break;
+    }
+    return -1;
+}
+
+/*
+ * Motion that stops at the start of a gap of n <= 200 samples at 2 LSB per sample: the filter comes back E = 2 n LSB
+ * and 2 LSB per sample wrong. From there the error e obeys e' = (I - K H) A e and V = e^T P^-1 e falls by the largest
+ * eigenvalue of P'^-1 (I - K H) A P A^T (I - K H)^T at each update, because P' exceeds that product by the noise terms;
+ * so |e_x| <= sqrt(P11 V). With q T^3 / R = 1/300 (defaults at 100 Hz) and P grown over the gap up to the core's limit
+ * of 2, this is below 1/4 LSB after 43 samples for the worst n. sprf takes that path when the first innovation is
+ * within its gate, else its five agreeing samples restart it without error. synth at (0, 0.3) obeys e = 0.7 (2 e1 - e2)
+ * from 2 n and 2 n - 2 LSB: |e| <= 400.1 x 0.83666^k, and below 1/4 LSB from k = 40 on for every n <= 200. lrf is kf
+ * with q T^3 / R_L = 1/300/60.85 and R_L = 182.6 LSB^2: 114 by the same bound. soft takes kf's path within its soft
+ * gate and is restarted beyond its gate, as sprf; in between it updates with a larger R, by which V falls as well (the
+ * recursion in double is back after 16).
+ *
+ * Where samples are refused V falls too, because P grows meanwhile: n samples after the motion's end, refused or
+ * coasted, it is at most 16 / (q T^3 n) LSB^-2 (4 LSB^2 e and P of n steps of the model), 1600 / n here. sprf_paper
+ * takes all from V = 4 on, n = 400, and 43 more. shrf takes a sample surely when b t / 2 <= ln(0.85 / 0.15) +
+ * ln(S_N / S) / 2: with t <= V and b = 399 / (P11 + 400), P11 = n^3 / 900, from n = 100 on; pbf and af use every sample
+ * and are faster: 100 + 43, rounded up.
+ */
+uint16_t recovery_samples(filter_kind_t kind)
+{
+    switch (kind) {
+    case FILTER_KIND_kf:
+    case FILTER_KIND_sprf:
+    case FILTER_KIND_soft:
+        return 43;
+    case FILTER_KIND_lrf:
+        return 114;
+    case FILTER_KIND_synth:
+        return 40;
+    case FILTER_KIND_sprf_paper:
+        return 443;
+    case FILTER_KIND_shrf:
+    case FILTER_KIND_pbf:
+    case FILTER_KIND_af:
+        return 150;
+    case FILTER_KIND_COUNT:
+        break;
+    }
+    return 0;
+}
