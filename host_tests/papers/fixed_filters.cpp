@@ -92,25 +92,24 @@ void begin(two_state_wide_t &core, double p11, double p22)
 }
 #endif
 
-// A state with a core can be begun; one without is another paper's.
-template <class State> auto begin_state(State &state, double p11, double p22, int) -> decltype((void)state.core)
+// A state with a core can be begun; one without is another paper's. A core holds P in units of its R, which is R_L in lrf.
+template <class State> auto begin_state(State &state, int) -> decltype((void)state.core)
 {
-    begin(state.core, p11, p22);
+    const double r_core_deg2 = state.core.r_lsb2_q8 / 256.0 * lsb_deg * lsb_deg;
+    begin(state.core, 0.7 / r_core_deg2, 0.04 * period_s * period_s / r_core_deg2);
 }
 
-template <class State> void begin_state(State &, double, double, long)
+template <class State> void begin_state(State &, long)
 {
     throw std::runtime_error("a filter without a core cannot start from Table 1");
 }
 
-void begin_table1(filter_any_t &f, double r_factor)
+void begin_table1(filter_any_t &f)
 {
-    const double p11 = 0.7 / (r_deg2 * r_factor);
-    const double p22 = 0.04 * period_s * period_s / (r_deg2 * r_factor);
     switch (f.kind) {
-#define BEGIN(F)                             \
-    case FILTER_KIND_##F:                    \
-        begin_state(f.state.F, p11, p22, 0); \
+#define BEGIN(F)                   \
+    case FILTER_KIND_##F:          \
+        begin_state(f.state.F, 0); \
         break;
         FILTER_LIST(BEGIN)
 #undef BEGIN
@@ -126,7 +125,7 @@ class FixedFilter final : public Filter
         : initial_(initialised(kind, name, settings))
     {
         if (settings.start == Start::table1) {
-            begin_table1(initial_, settings.r_factor);
+            begin_table1(initial_);
         }
         f_ = initial_;
     }
