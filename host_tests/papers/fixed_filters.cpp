@@ -92,7 +92,7 @@ void begin(two_state_wide_t &core, double p11, double p22)
 }
 #endif
 
-// A state with a core can be begun; one without is another paper's. A core holds P in units of its R, which is R_L in lrf.
+// A state with a core can be begun; one without is another paper's. A core holds P in units of its R: of R_L in lrf.
 template <class State> auto begin_state(State &state, int) -> decltype((void)state.core)
 {
     const double r_core_deg2 = state.core.r_lsb2_q8 / 256.0 * lsb_deg * lsb_deg;
