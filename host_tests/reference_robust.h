@@ -82,8 +82,7 @@ typedef struct {
     double second_p[4];
 } robust_reference_t;
 
-/* Table 1, Q on the rate, gate 3 sigma (sprf as published: 2), soft gate 2 sigma, no re-acquisition, no median start.
- */
+/* Table 1, Q on the rate, gate 3 sigma (as published: 2), soft gate 2 sigma, no re-acquisition, no median start. */
 void robust_reference_table1(robust_reference_t *f, robust_kind_t kind);
 
 /* NULL, or the name of the first parameter outside its legal range: r, q, clean, ratio, gate, softgate, median. */

@@ -39,8 +39,7 @@ static void first_step_is_that_of_pbf(void)
     TEST_ASSERT_EQUAL_UINT32(p.core.u.p.p11_uq16, f.core.u.p.p11_uq16);
 }
 
-/* An outlier beyond doubt has p = 0: q = 1/2 - 1/2 / 3 after the first, 1/3 - 1/3 / 4 after the second; then 1/4 (1 -
- * 1/5). */
+/* An outlier beyond doubt has p = 0: q = 1/2 (1 - 1/3) after the first, 1/3 (1 - 1/4) after the second, then 1/5. */
 static void outliers_are_learnt_by_hand(void)
 {
     static const uint32_t expected_uq24[] = { ONE_UQ24 / 3, ONE_UQ24 / 4, ONE_UQ24 / 5, ONE_UQ24 / 6 };

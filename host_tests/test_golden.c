@@ -1,7 +1,7 @@
 /*
  * The filters give what they gave when their vectors were committed: a change of a bit is meant or a fault. Whether the
- * numbers are right is judged against the double references elsewhere (test_*_reference); that the chip gives the same is
- * make bitexact's.
+ * numbers are right is judged against the double references elsewhere (test_*_reference); that the chip gives the same
+ * is make bitexact's.
  */
 #include "support_filters.h"
 #include "unity.h"

@@ -103,8 +103,7 @@ static void begins_within_its_bounds(void)
             filter_probe_t probe;
             kf_probe(&f, &probe);
             TEST_ASSERT_NULL(broken_bound(&any, &probe, x));
-            /* P12 <= P11, but g is wrong by up to 1.5 x 2^-16, w1 = 1 - g by as much, w2 = P12 g by less than 4 times
-             * it */
+            /* P12 <= P11, but g and w1 = 1 - g are wrong by up to 1.5 x 2^-16, w2 = P12 g by less than 4 times it */
             uint32_t rounding = (step == 0U) ? 0U : 0x8000UL;
             TEST_ASSERT_LESS_OR_EQUAL_UINT32(f.core.u.p.p11_uq28 + rounding, f.core.u.p.p12_uq28);
         }

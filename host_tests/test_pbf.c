@@ -1,5 +1,4 @@
-/* pbf in integers, on the PC and on the chip: what an outlier moves, recovery. Against double: test_wide_reference.c.
- */
+/* pbf in integers, on PC and chip: what an outlier moves, recovery. Against double: test_wide_reference.c. */
 #include "pbf.h"
 #include "support_filters.h"
 #include "unity.h"
@@ -48,8 +47,7 @@ static void outlier_moves_the_estimate_by_its_small_gain(void)
     TEST_ASSERT_TRUE(f.core.gain_uq16 != 0U);
 }
 
-/* The posterior decides: at 1 sigma p = 0.98, at 10 p = 0; in between where b t / 2 = ln(0.85 / 0.15) + ln(S_N / S)
- * / 2. */
+/* The posterior decides: at 1 sigma p = 0.98, at 10 p = 0; 1/2 where b t / 2 = ln(0.85 / 0.15) + ln(S_N / S) / 2. */
 static void flag_tells_more_likely_an_outlier_than_not(void)
 {
     pbf_t f = settled(0);

@@ -80,8 +80,7 @@ static void loss_and_back_by_hand(void)
     assert_covariance(15 * ONE_UQ16 / 8, 5 * ONE_UQ16 / 8, 7 * ONE_UQ16 / 8);
 }
 
-/* back 1: P stays; 3: twice as much more as Kalman's update would take away, from P22 = 3/4 and so in its growing
- * range. */
+/* back 1: P stays; 3: twice as much more as Kalman's update would take, from P22 = 3/4 and so in its growing range. */
 static void covariance_grows_by_hand(void)
 {
     begin_by_hand();
@@ -129,8 +128,7 @@ static void range_is_at_least_1100(void)
     }
 }
 
-/* A refused sample leaves prediction and P; where P cannot grow it is taken: S = 32769, x within 1/32769 of the sample.
- */
+/* A refused sample leaves prediction and P; where P cannot grow it is taken: S = 32769, x is 1/32769 from it. */
 static void refused_sample_is_taken_at_the_end_of_the_range(void)
 {
     two_state_wide_begin(&core, 0, 0, 1000 * ONE_UQ16, 0, 0);
@@ -146,8 +144,7 @@ static void refused_sample_is_taken_at_the_end_of_the_range(void)
     TEST_ASSERT_INT32_WITHIN(16000, 4000 * 65536L, core.x_lsb_q16);
 }
 
-/* r^2 / R from the smallest innovation to the largest, R from end to end: never beyond the format, never 0 for a large
- * one. */
+/* r^2 / R from the smallest innovation to the largest, any R: never beyond the format, never 0 for a large one. */
 static void distance_saturates(void)
 {
     two_state_wide_init(&core, 1000, FILTER_R_MIN_LSB2_Q8, 10000);

@@ -62,8 +62,7 @@ static void make(const pair_t *pair, filter_any_t *f, robust_reference_t *r)
     r->p[3] = R_LSB2 / 256.0;
 }
 
-/* At rest, over rates and R: 0.5 %, where the gain is 0.027 and more; 0.7 % at the end of the range of q22, gain 0.022.
- */
+/* At rest, over rates and R: 0.5 % where the gain is 0.027 and more; 0.7 % at the end of q22's range, gain 0.022. */
 static void steady_gains_are_kalmans(void)
 {
     static const uint16_t rates[] = { 125, 250, 500, 1000, 2000, 4000, 8000, 16000, 40000 };
@@ -160,8 +159,7 @@ static void runs_agree_with_double(void)
     }
 }
 
-/* After a step of n sigma, without outliers: p, the gain and P11 follow the double filter through the whole recovery.
- */
+/* After a step of n sigma, without outliers: p, gain and P11 follow the double filter through the whole recovery. */
 static void recovery_agrees_with_double(void)
 {
     static const int16_t steps_lsb[] = { 12, 20, 40, 80, 400 };

@@ -17,8 +17,7 @@ const filter_parameter_t mixture_parameters[MIXTURE_PARAMETERS] FX_FLASH = {
       MIXTURE_CLEAN_MAX_UQ16 },
 };
 
-/* Node i: 1 / (1 + e^(i/2)) less h^2/16 x second derivative, h = 1/2: half of how far the chord lies above the curve.
- */
+/* Node i: 1 / (1 + e^(i/2)) less h^2/16 x second derivative, h = 1/2: half of how far the chord is above the curve. */
 static const uint32_t rest_nodes_uq24[25] FX_FLASH = {
     8388608, 6318993, 4488271, 3035759, 1978931, 1257100, 784955, 484756, 297295, 181544, 110568, 67232, 40840,
     24794,   15047,   9129,    5538,    3360,    2038,    1236,   750,    455,    276,    167,    101,

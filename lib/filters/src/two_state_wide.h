@@ -73,8 +73,7 @@ FX_ONCE void two_state_wide_set_noise(two_state_wide_t *s, uint32_t r_lsb2_q8);
 /* Running from x: rate 0, P11 = R, rate as uncertain as after the warm-up. */
 FX_ONCE void two_state_wide_start(two_state_wide_t *s, int32_t x_lsb_q16);
 
-/* Running from a state and a covariance per R; each element is limited to TWO_STATE_WIDE_P_END. For the tests of the
- * papers. */
+/* Running from a state and a covariance per R; each element is limited to TWO_STATE_WIDE_P_END. For tests. */
 void two_state_wide_begin(two_state_wide_t *s, int32_t x_lsb_q16, int32_t rate_lsb_q16, uint32_t p11_uq16,
                           uint32_t p12_uq24, uint32_t p22_uq28);
 
@@ -97,13 +96,13 @@ FX_ONCE void two_state_wide_warm_up(two_state_wide_t *s, int16_t z_lsb);
  *   input    Q0, clamped by the caller to -4096..4095 LSB
  *   x, rate  Q15.16; |x| <= 4608 LSB by a clamp after the prediction (the update moves x towards a sample within 4096),
  *            |rate| <= 4608 LSB per sample by a clamp after the update; so |r| <= 8704 LSB < 2^30 / 2^16 and no sum
- * overflows P / R    after a prediction P11 < 32768 + 2 x 128 + 8, P12 < 128 + 8, P22 < 8 + 1; P12 <= P11, so w2 < 1 g
- * 16 bits, relative error <= 4e-5, of S >= 1 taken to 32 bits
+ *            overflows
+ *   P / R    after a prediction P11 < 32768 + 2 x 128 + 8, P12 < 128 + 8, P22 < 8 + 1; P12 <= P11, so w2 < 1
+ *   g        16 bits, relative error <= 4e-5, of S >= 1 taken to 32 bits
  */
 FX_ONCE bool two_state_wide_predict(two_state_wide_t *s, int16_t z_lsb);
 
-/* r^2 / (R S) of the step begun: the squared innovation in variances, UQ8.8, saturated; relative error <= 3e-4 and
- * 1/256. */
+/* r^2 / (R S) of the step begun: the squared innovation in variances, UQ8.8, saturated; error <= 3e-4 of it + 1/256. */
 FX_ONCE uint16_t two_state_wide_distance_uq8(const two_state_wide_t *s);
 
 /*
