@@ -2,11 +2,13 @@
 import copy
 import importlib.util
 import pathlib
+import sys
 
 from system_support import FW, OUT, SIMRUN, STREAMS, run, run_all, test
 
 spec = importlib.util.spec_from_file_location("bench", pathlib.Path("tools/bench.py"))
 bench = importlib.util.module_from_spec(spec)
+sys.path.insert(0, "tools")
 spec.loader.exec_module(bench)
 
 PRINTED = """
@@ -121,6 +123,22 @@ def a_number_two_per_cent_up_is_named_with_old_and_new():
     del new["kf"]
     assert len(bench.regressions(old, new)) == 1
     assert bench.regressions(old, {**old, "float_kf": {}}) == []
+
+
+@test
+def cycles_go_to_the_function_that_the_profile_names():
+    profile = OUT / "where.csv"
+    profile.write_text("pc,count,cycles,symbol\n0x10,5,50,mixture_update+0x0\n0x12,5,25,mixture_update+0x2\n0x20,9,90,fx_high_u16+0x0\n"
+                       "0x30,5,20,bend_lsb.lto_priv.69+0x0\n0x40,1,999,main+0x0\n", encoding="ascii")
+    found = dict(bench.bench_where.parts(*bench.bench_where.read_profile(profile)))
+    assert sum(found.values()) == (50 + 25 + 90 + 20) / 5 and found["products"] == 90 / 5 and found["gains, x and P"] == 20 / 5, found
+    profile.write_text("pc,count,cycles,symbol\n0x40,1,999,main+0x0\n", encoding="ascii")
+    try:
+        bench.bench_where.parts(*bench.bench_where.read_profile(profile))
+    except LookupError as problem:
+        assert "mixture_update" in str(problem)
+    else:
+        raise AssertionError("a profile without the filter was taken")
 
 
 @test

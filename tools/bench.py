@@ -9,6 +9,8 @@ import statistics
 import subprocess
 import sys
 
+import bench_where
+
 SIMRUN = "build/sim/simrun"
 OUT = pathlib.Path("build/uno")
 JSON = pathlib.Path("build/bench.json")
@@ -123,6 +125,17 @@ def measure_sample():
     values = [v for _, part in cycles for v in part]
     typical = [v for stream, part in cycles if stream == "outliers-15pct" for v in part]
     return {"min": min(values), "median": round(statistics.median(typical)), "worst": worst[0], "where": worst[1], "samples": len(values)}, stack
+
+
+def measure_where():
+    """The table of where the dearest filter's cycles go."""
+    profile = OUT / "bench_where.csv"
+    run([SIMRUN, "--fw", OUT / "firmware.elf", "--in", f"sim/streams/{bench_where.STREAM}.csv", "--out", OUT / "bench_where.txt", "--filter",
+         bench_where.FILTER, "--profile", profile])
+    try:
+        return bench_where.page_lines(bench_where.parts(*bench_where.read_profile(profile)))
+    except LookupError as problem:
+        raise Fault(str(problem)) from None
 
 
 # --- sizes ---
@@ -263,11 +276,11 @@ def regressions(old, new):
     return faults
 
 
-def with_table(page, lines):
-    if page.count(BEGIN) != 1 or page.count(END) != 1:
-        raise Fault(f"{DOCUMENT}: its markers are missing or doubled: '{BEGIN}' and '{END}'")
-    head, rest = page.split(BEGIN)
-    return head + BEGIN + "\n" + "\n".join(lines) + "\n" + END + rest.split(END)[1]
+def with_table(page, lines, begin=BEGIN, end=END):
+    if page.count(begin) != 1 or page.count(end) != 1:
+        raise Fault(f"{DOCUMENT}: its markers are missing or doubled: '{begin}' and '{end}'")
+    head, rest = page.split(begin)
+    return head + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1]
 
 
 def committed_page():
@@ -331,7 +344,8 @@ def main():
     if version != COMPILER:
         print(f"bench: avr-gcc {version}: reported only, the limits and docs/benchmarks.md are for {COMPILER}")
         return 0
-    DOCUMENT.write_text(with_table(DOCUMENT.read_text(encoding="utf-8"), lines), encoding="utf-8")
+    page = with_table(DOCUMENT.read_text(encoding="utf-8"), lines)
+    DOCUMENT.write_text(with_table(page, measure_where(), *bench_where.MARKERS), encoding="utf-8")
     for fault in faults:
         print(f"bench: {fault}", file=sys.stderr)
     print(f"bench: {len(rows)} rows, {len(faults)} findings; docs/benchmarks.md and {JSON} written")

@@ -1,0 +1,62 @@
+"""Where the cycles of the dearest filter go: the firmware on the outlier stream, by the function that the simulator's profile names."""
+import collections
+import csv
+
+MARKERS = ("<!-- where, written by make bench: begin -->", "<!-- where, written by make bench: end -->")
+FILTER = "af"
+STREAM = "outliers-15pct"
+ENTRY = "mixture_update"  # called once per axis and sample
+# what of the profile is the filter's, and what the page says of it
+FUNCTIONS = {
+    "mixture_update": "evidence, probability and learning (what is in line of it)",
+    "log2_uq9": "logarithms, by a table",
+    "mixture_log_odds_q9": "",
+    "two_state_wide_predict": "prediction of x and P, S",
+    "two_state_wide_distance_uq8": "r^2 / (R S)",
+    "two_state_wide_update": "gains, x and P",
+    "give_back": "",
+    "step_by": "",
+    "bend_lsb.lto_priv": "",
+    "fx_times_uq16": "products",
+    "fx_high_u16": "",
+    "__umulhisi3": "",
+    "fx_inverse_uq16": "reciprocals, by a table",
+    "fx_leading": "leading bits and shifts",
+    "fx_shifted_right": "",
+    "__prologue_saves__": "calls: registers saved and restored",
+    "__epilogue_restores__": "",
+}
+
+
+def read_profile(path):
+    """{function: cycles} and {function: calls}; a clone's number at the end of its name is left out."""
+    cycles, calls = collections.Counter(), {}
+    with open(path, encoding="ascii") as file:
+        for row in csv.DictReader(file):
+            name, _, offset = row["symbol"].partition("+")
+            name = name.rstrip("0123456789").rstrip(".") if ".lto_priv" in name else name
+            cycles[name] += int(row["cycles"])
+            if offset == "0x0":
+                calls[name] = calls.get(name, 0) + int(row["count"])
+    return cycles, calls
+
+
+def parts(cycles, calls):
+    """[(what, cycles per call of the filter)]: a function without words of its own counts to the one before it."""
+    updates = calls.get(ENTRY, 0)
+    if updates == 0:
+        raise LookupError(f"{ENTRY} is not in the profile of {STREAM}")
+    result = []
+    for function, words in FUNCTIONS.items():
+        share = cycles.get(function, 0) / updates
+        if words:
+            result.append([words, share])
+        else:
+            result[-1][1] += share
+    return result
+
+
+def page_lines(found):
+    lines = [f"| `{FILTER}`, {STREAM}, cycles per sample and axis, mean | |", "|---|---|"]
+    lines += [f"| {words} | {share:,.0f} |" for words, share in sorted(found, key=lambda part: -part[1])]
+    return lines + [f"| together | {sum(share for _, share in found):,.0f} |"]
