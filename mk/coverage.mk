@@ -40,14 +40,16 @@ $(C)/probe.prof: $(C)/probe.elf $(S)/simrun
 	@$(S)/simrun --fw $< --in sim/streams/tilt-fast.csv --out $(C)/probe.txt --profile $@ --max-ms 100 2> $(C)/probe.log; \
 	    test $$? -eq 8 || { cat $(C)/probe.log; exit 1; }
 
-# a profile slows the simulator down, hence the factor for the tests of its speed
+# a profile slows the simulator down, hence the factor for the tests of its speed; always anew
+$(C)/runs: $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay
+	@rm -rf $@ && mkdir -p $@
+	@PROFILES=$@ SPEED_FACTOR=0.05 python3 host_tests/system_tests.py > $(C)/system.log 2>&1 || { grep ':FAIL' $(C)/system.log; exit 1; }
+
 ## coverage: lines and branches of lib by the unit tests, lines of the AVR binary by the system tests (3 minutes)
 coverage:
 	@sh tools/deps.sh coverage
-	@$(MAKE) -j2 $(C)/host.json $(C)/probe.prof $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay
+	@$(MAKE) -j2 $(C)/runs $(C)/host.json $(C)/probe.prof
 	@python3 tools/coverage.py check $(C)/probe.elf $(C)/probe.prof host_tests/avr/coverage_probe.c
-	@rm -rf $(C)/runs && mkdir -p $(C)/runs
-	@PROFILES=$(C)/runs SPEED_FACTOR=0.05 python3 host_tests/system_tests.py > $(C)/system.log 2>&1 || { grep ':FAIL' $(C)/system.log; exit 1; }
 	@python3 tools/coverage.py twins $(C)/host.json $(U)/firmware.elf $(C)/runs
 	@python3 tools/coverage.py judge $(C)/host.json $(U)/firmware.elf $(C)/runs
 
@@ -55,6 +57,6 @@ clean: clean_coverage
 clean_coverage:
 	@rm -rf $(C)
 
-.PHONY: coverage clean_coverage
+.PHONY: coverage clean_coverage $(C)/runs
 
 -include $(shell find $(C) -name '*.d' 2>/dev/null)
