@@ -40,7 +40,7 @@ for path in sorted(STREAMS.glob("*.csv")):
         for filter_kind in ("kf", "sprf", "synth", "lrf", "soft"):
             TESTS.append(make_equality_test(path, filter_kind))
 for filter_kind in ("sprf_paper", "shrf", "pbf", "af"):
-    for stream in ("outliers-15pct", "gaps-jitter"):
+    for stream in ("outliers-15pct", "gaps-jitter", "steps-outliers"):
         TESTS.append(make_equality_test(STREAMS / f"{stream}.csv", filter_kind))
 
 

@@ -113,6 +113,7 @@ static void test_every_stream_is_there_with_its_length_rate_and_size(void)
         { "tilt-400hz", 4000, 400.0 },     { "through-pitch-90", 3200, 100.0 }, { "through-roll-180", 3000, 100.0 },
         { "outliers-15pct", 6000, 100.0 }, { "vibration", 6000, 100.0 },        { "bad-reads", 6000, 100.0 },
         { "clipping", 6000, 100.0 },       { "free-fall", 2600, 100.0 },        { "sideways-0.5g", 2000, 100.0 },
+        { "steps", 5100, 100.0 },          { "steps-outliers", 5100, 100.0 },
     };
     for (size_t i = 0; i < sizeof list / sizeof list[0]; i++) {
         load(list[i].name);
@@ -153,8 +154,10 @@ static void test_clean_streams_agree_with_their_truth(void)
     static const struct {
         const char *name;
         double sigma_lsb;
-    } list[] = { { "tilt-slow", 2.0 },        { "tilt-fast", 2.0 },        { "tilt-400hz", 4.0 },
-                 { "through-pitch-90", 2.0 }, { "through-roll-180", 2.0 }, { "gaps-jitter", 2.0 } };
+    } list[] = {
+        { "tilt-slow", 2.0 },        { "tilt-fast", 2.0 },   { "tilt-400hz", 4.0 }, { "through-pitch-90", 2.0 },
+        { "through-roll-180", 2.0 }, { "gaps-jitter", 2.0 }, { "steps", 2.0 }
+    };
     for (size_t i = 0; i < sizeof list / sizeof list[0]; i++) {
         load(list[i].name);
         for (size_t row = 0; row < stream.count; row++) {
@@ -237,6 +240,37 @@ static void test_outliers_are_15_percent_of_20_times(void)
     /* variance 0.85 * 4^2 + 0.15 * 80^2 = 973.6; kurtosis makes the standard deviation of its estimate 2.6 % */
     double fourth = 3.0 * (0.85 * 256.0 + 0.15 * 80.0 * 80.0 * 80.0 * 80.0);
     TEST_ASSERT_DOUBLE_WITHIN(4.0 * sqrt((fourth - 973.6 * 973.6) / n), 973.6, square / n);
+}
+
+/* P(|n| > 4 sigma), sigma that of the axis; rounding changes p by less than 0.003, the slope at 0.2 of 20 sigma. */
+static void test_steps_with_outliers_have_15_percent_of_20_times(void)
+{
+    load("steps-outliers");
+    unsigned large = 0;
+    for (size_t i = 0; i < stream.count; i++) {
+        for (int axis = 0; axis < 3; axis++) {
+            large += fabs(deviation_lsb(&stream.rows[i], axis)) > 8.0 * (axis == 2 ? Z_NOISE_RATIO : 1.0);
+        }
+    }
+    double n = 3.0 * (double)stream.count;
+    double p = 0.15 * 0.84148 + 0.85 * 6.33e-5;
+    TEST_ASSERT_DOUBLE_WITHIN(4.0 * sqrt(p * (1.0 - p) / n) + 0.003, p, large / n);
+}
+
+/* The truth of both step streams: 3 s pieces, every second one off by its size, roll first; nothing in between. */
+static void test_steps_are_of_the_named_sizes_at_the_named_times(void)
+{
+    static const char *const names[] = { "steps", "steps-outliers" };
+    static const int16_t sizes_cdeg[] = { 50, 200, 1000, 4500 };
+    for (size_t k = 0; k < 2; k++) {
+        load(names[k]);
+        for (size_t i = 0; i < stream.count; i++) {
+            size_t piece = (size_t)(stream.rows[i].t_us / 3000000U);
+            int16_t size = piece % 2 == 1 ? sizes_cdeg[piece / 2 % 4] : 0;
+            TEST_ASSERT_EQUAL_INT16(1200 + (piece < 8 ? size : 0), stream.rows[i].truth_cdeg[0]);
+            TEST_ASSERT_EQUAL_INT16(-700 + (piece < 8 ? 0 : size), stream.rows[i].truth_cdeg[1]);
+        }
+    }
 }
 
 static bool all_equal(const stream_row_t *row, int16_t value)
@@ -394,6 +428,8 @@ int main(void)
     RUN_TEST(test_pitch_passes_90_and_roll_flips_only_there);
     RUN_TEST(test_roll_crosses_the_seam_and_rests_on_it);
     RUN_TEST(test_outliers_are_15_percent_of_20_times);
+    RUN_TEST(test_steps_with_outliers_have_15_percent_of_20_times);
+    RUN_TEST(test_steps_are_of_the_named_sizes_at_the_named_times);
     RUN_TEST(test_bad_reads_are_single_and_of_the_three_kinds);
     RUN_TEST(test_vibration_comes_in_bursts);
     RUN_TEST(test_clipping_meets_both_rails);

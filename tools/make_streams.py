@@ -27,6 +27,7 @@ Z_NOISE_RATIO = 1.3  # z is the noisier axis (data sheet Rev. E, p. 4: 1.1 to 0.
 MAX_FILE_BYTES = 300_000
 COMMAND = "python3 tools/make_streams.py"
 HEADER = "t_us,x_lsb,y_lsb,z_lsb,roll_true_cdeg,pitch_true_cdeg"
+STEPS_DEG, STEP_HOLD_S = (0.5, 2.0, 10.0, 45.0), 3.0
 DEFAULT_FOLDER = pathlib.Path(__file__).resolve().parent.parent / "sim" / "streams"
 
 
@@ -131,6 +132,14 @@ def around_the_back(t):
     """Rolled from 0 to 180, held on the seam for 4 s, on to 360, then back in one move: 85 degrees/s at most."""
     return through([(0.0, 0.0), (2.0, 0.0), (8.0, 180.0), (12.0, 180.0), (18.0, 360.0), (20.0, 360.0), (28.0, 0.0),
                     (30.0, 0.0)], t), 5.0
+
+
+def stepping(t):
+    """From rest to 0.5, 2, 10 and 45 degrees of roll and back, then of pitch; every step from one sample to the next."""
+    piece = int(t / STEP_HOLD_S + 1e-6)
+    step = STEPS_DEG[piece // 2 % len(STEPS_DEG)] if piece % 2 else 0.0
+    roll, pitch = lying(t)
+    return (roll + step, pitch) if piece < 2 * len(STEPS_DEG) else (roll, pitch + step)
 
 
 # --- what shakes the sensor (before rounding) -------------------------------------------------------------------------
@@ -246,6 +255,7 @@ ATTITUDE = "the attitude"
 LYING = "lying at roll 12, pitch -7 degrees"
 SLOW = "roll +-30 degrees at 0.05 Hz, pitch +-20 degrees at 0.03 Hz"
 UAV = "still, 5 s rolling to +-45 degrees (77 degrees/s, 142 degrees/s^2 at most) with 8 degrees of pitch, still"
+STEPS = "at roll 12, pitch -7 degrees; steps of 0.5, 2, 10, 45 degrees in roll, then in pitch, 3 s there, 3 s back"
 SCENARIOS = (
     rest(0.7, 1), rest(2, 2), rest(4, 3), rest(8, 4),
     Scenario("tilt-slow", SLOW, ATTITUDE, 5, 60.0, noise(2.0), slow_tilt),
@@ -264,19 +274,19 @@ SCENARIOS = (
              ATTITUDE, 10, 60.0, (4.0,) * 3, slow_tilt, disturb=outliers),
     Scenario("vibration", f"{SLOW}; bursts of 20..150 ms, 30..500 LSB, 20..45 Hz every 0.3..1.5 s",
              "the attitude, not the shaking", 11, 60.0, noise(2.0), slow_tilt, disturb=vibration_bursts),
-    Scenario("bad-reads", f"{SLOW}; about 1 % single bad reads: 0,0,0 or one axis doubled or -1,-1,-1",
-             ATTITUDE, 12, 60.0, noise(2.0), slow_tilt, misread=bad_reads),
+    Scenario("bad-reads", f"{SLOW}; about 1 % single bad reads: 0,0,0 or one axis doubled or -1,-1,-1", ATTITUDE, 12,
+             60.0, noise(2.0), slow_tilt, misread=bad_reads),
     Scenario("clipping", f"{SLOW}; shocks of 20..50 ms and 20..30 g every 1..3 s, clipped at the 16 g rails",
              "the attitude, not the shocks", 13, 60.0, noise(2.0), slow_tilt, disturb=shocks),
     Scenario("free-fall", f"{LYING}; drops of 1 s (no force at all) at 6 s and 16 s, each ended by 60 ms of 6 g",
-             "the attitude, held through the drop (the sensor cannot know it)",
-             14, 26.0, noise(2.0), lying, disturb=drops),
+             "the attitude, held through the drop (the sensor cannot know it)", 14, 26.0, noise(2.0), lying, disturb=drops),
     Scenario("sideways-0.5g", f"{LYING}; 0.5 g along y for 3 s from 8 s (0.2 s to rise and to fall)",
-             "the real tilt: no accelerometer can tell it from the acceleration",
-             15, 20.0, noise(2.0), lying, disturb=sideways),
+             "the real tilt: no accelerometer can tell it from the acceleration", 15, 20.0, noise(2.0), lying, disturb=sideways),
     Scenario("gaps-jitter", f"{SLOW}; t_us off the grid by up to +-1 ms, stretches of 30 ms..1 s missing every 1..4 s",
-             "the attitude at the row's t_us", 16, 60.0, noise(2.0), slow_tilt, jitter_us=1000,
-             misread=missing_stretches),
+             "the attitude at the row's t_us", 16, 60.0, noise(2.0), slow_tilt, jitter_us=1000, misread=missing_stretches),
+    Scenario("steps", STEPS, ATTITUDE, 17, 51.0, noise(2.0), stepping),
+    Scenario("steps-outliers", f"{STEPS}; each axis of each sample 20 times the noise with probability 0.15",
+             ATTITUDE, 18, 51.0, noise(2.0), stepping, disturb=outliers),
 )
 
 
