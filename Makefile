@@ -148,7 +148,8 @@ $(H)/native_replay: host_tests/native_replay.c $(HOST_SRC) $(wildcard */*.h lib/
 
 $(H)/pipeline_replay: host_tests/pipeline_replay.c $(HOST_SRC) $(wildcard */*.h lib/*/src/*.h hal/*/*.h)
 	@mkdir -p $(@D)
-	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) host_tests/pipeline_replay.c $(HOST_SRC) -lm -o $@
+	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) -Wl,--wrap=filter_any_defaults,--wrap=noise_r_lsb2_q8 \
+	    host_tests/pipeline_replay.c $(HOST_SRC) -lm -o $@
 
 $(H)/exhaustive_isqrt: host_tests/exhaustive_isqrt.c lib/tilt/src/tilt.c lib/filters/src/fx.c $(wildcard lib/*/src/*.h)
 	@mkdir -p $(@D)

@@ -1,48 +1,217 @@
 /*
- * The sample path alone on the PC: takes the samples (time and readings) out of a run of the firmware, filters them
- * with the same code, and prints the rows anew. On a run without faults, from a cold start on, the two must agree to
- * the last digit.
+ * The sample path alone on the PC: takes the samples (time and readings) out of a run of the firmware or out of a
+ * stream, filters them with the same code, and prints the rows anew. On a run without faults, from a cold start on, the
+ * two must agree to the last digit.
  *
- *   pipeline_replay RUN.csv FILTER RATE_DHZ RANGE_G SKIP > ROWS.csv      SKIP: data rows before the cold start
+ *   pipeline_replay CSV FILTER RATE_DHZ RANGE_G SKIP [NAME=VALUE]... > ROWS.csv
+ *   pipeline_replay --filters
+ *
+ * SKIP: data rows before the cold start. NAME is a parameter of the filter as its descriptor names it, VALUE in its
+ * unit; R=VALUE multiplies what the noise estimate says. The program is linked with --wrap for filter_any_defaults and
+ * noise_r_lsb2_q8, so that the sample path meets these in place of the shipped values and is itself unchanged.
  */
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "filter_any.h"
+#include "noise.h"
 #include "pipeline.h"
+
+enum { CHANGES_MAX = 16 };
+
+typedef struct {
+    char name[16];
+    double value;
+} change_t;
+
+static change_t changes[CHANGES_MAX];
+static size_t change_count;
+static double r_factor = 1.0;
+
+void __real_filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16_t rate_dhz);
+void __wrap_filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16_t rate_dhz);
+uint32_t __real_noise_r_lsb2_q8(const noise_t *n);
+uint32_t __wrap_noise_r_lsb2_q8(const noise_t *n);
+
+static void fail(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    fputs("pipeline_replay: ", stderr);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+    va_end(arguments);
+    exit(2);
+}
+
+/* The value in the parameter's own format, into its field. */
+static void change_field(const filter_parameter_t *parameter, filter_any_config_t *config, double value)
+{
+    double scaled = round(ldexp(value, parameter->fraction_bits));
+    double most = parameter->size == 2 ? UINT16_MAX : UINT32_MAX;
+    if (!(scaled >= 0.0 && scaled <= most)) {
+        fail("%s=%g does not fit into its field", parameter->name, value);
+    }
+    uint32_t wide = (uint32_t)scaled;
+    uint16_t narrow = (uint16_t)wide;
+    memcpy((char *)config + parameter->offset, parameter->size == 2 ? (void *)&narrow : (void *)&wide, parameter->size);
+}
+
+static void apply(const change_t *change, filter_kind_t kind, filter_any_config_t *config)
+{
+    const filter_descriptor_t *descriptor = filter_any_descriptor(kind);
+    for (uint8_t i = 0; i < descriptor->parameter_count; i++) {
+        if (strcmp(descriptor->parameters[i].name, change->name) == 0) {
+            change_field(&descriptor->parameters[i], config, change->value);
+            return;
+        }
+    }
+    fail("%s has no parameter %s", descriptor->name, change->name);
+}
+
+void __wrap_filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16_t rate_dhz)
+{
+    __real_filter_any_defaults(kind, config, rate_dhz);
+    for (size_t i = 0; i < change_count; i++) {
+        apply(&changes[i], kind, config);
+    }
+}
+
+uint32_t __wrap_noise_r_lsb2_q8(const noise_t *n)
+{
+    double r_lsb2_q8 = round(r_factor * __real_noise_r_lsb2_q8(n));
+    return (uint32_t)fmin(fmax(r_lsb2_q8, FILTER_R_MIN_LSB2_Q8), FILTER_R_MAX_LSB2_Q8);
+}
+
+static void note_change(const char *text)
+{
+    change_t change;
+    int used = 0;
+    if (sscanf(text, "%15[A-Za-z]=%lf%n", change.name, &change.value, &used) != 2 || text[used] != '\0') {
+        fail("%s: NAME=VALUE was expected", text);
+    }
+    if (strcmp(change.name, "R") == 0) {
+        r_factor = change.value;
+        return;
+    }
+    if (change_count == CHANGES_MAX) {
+        fail("more than %d parameters", CHANGES_MAX);
+    }
+    changes[change_count++] = change;
+}
+
+static long number(const char *what, const char *text, long low, long high)
+{
+    char *end;
+    long value = strtol(text, &end, 10);
+    if (end == text || *end != '\0' || value < low || value > high) {
+        fail("%s %s: a number from %ld to %ld was expected", what, text, low, high);
+    }
+    return value;
+}
+
+/* The sample path takes what its filter's init says for granted, so it is asked here. */
+static void check_configuration(filter_kind_t kind, uint16_t rate_dhz)
+{
+    filter_any_config_t config;
+    filter_any_t filter;
+    filter_any_defaults(kind, &config, rate_dhz);
+    if (!filter_any_init(&filter, kind, &config)) {
+        const filter_descriptor_t *descriptor = filter_any_descriptor(kind);
+        uint8_t which = filter_any_refused(kind, &config);
+        bool one = which < descriptor->parameter_count;
+        fail("%s refuses its configuration: %s", descriptor->name,
+             one ? descriptor->parameters[which].name : "values that do not go together");
+    }
+}
+
+/* A data row begins with a digit; a header, notes and blank lines do not. A row cut off by the end is none. */
+static bool take_row(const char *path, unsigned line_number, const char *line, adxl345_sample_t *sample)
+{
+    if (!isdigit((unsigned char)line[0])) {
+        return false;
+    }
+    unsigned t_us;
+    int lsb[3];
+    if (sscanf(line, "%u,%d,%d,%d", &t_us, &lsb[0], &lsb[1], &lsb[2]) != 4) {
+        if (strchr(line, '\n') == NULL) {
+            return false;
+        }
+        fail("%s:%u: not a row that begins with t_us,x,y,z", path, line_number);
+    }
+    sample->t_us = t_us;
+    for (int axis = 0; axis < 3; axis++) {
+        if (lsb[axis] < FILTER_Z_MIN_LSB || lsb[axis] > FILTER_Z_MAX_LSB) {
+            fail("%s:%u: reading %d is outside %d..%d", path, line_number, lsb[axis], FILTER_Z_MIN_LSB,
+                 FILTER_Z_MAX_LSB);
+        }
+        sample->lsb[axis] = (int16_t)lsb[axis];
+    }
+    return true;
+}
+
+static void filter_and_print(const adxl345_sample_t *sample, uint32_t period_us)
+{
+    row_t row;
+    pipeline_sample(sample, period_us);
+    pipeline_row(&row);
+    pipeline_row_done();
+    printf("%u,%d,%d,%d,%d,%d,%d,%d,%d,%u\n", (unsigned)row.t_us, row.lsb[0], row.lsb[1], row.lsb[2], row.mg[0],
+           row.mg[1], row.mg[2], row.roll_cdeg, row.pitch_cdeg, row.flags);
+}
+
+static void replay(const char *path, uint32_t period_us, long skip)
+{
+    FILE *file = fopen(path, "r");
+    if (file == NULL) {
+        fail("%s: cannot be opened", path);
+    }
+    char line[512];
+    unsigned line_number = 0;
+    unsigned rows = 0;
+    while (fgets(line, sizeof line, file) != NULL) {
+        adxl345_sample_t sample = { 0 };
+        line_number++;
+        if (!take_row(path, line_number, line, &sample) || skip-- > 0) {
+            continue;
+        }
+        filter_and_print(&sample, period_us);
+        rows++;
+    }
+    fclose(file);
+    if (rows == 0) {
+        fail("%s: no row to filter", path);
+    }
+}
 
 int main(int argc, char **argv)
 {
-    if (argc != 6) {
-        fprintf(stderr, "usage: pipeline_replay RUN.csv FILTER RATE_DHZ RANGE_G SKIP\n");
-        return 2;
-    }
-    FILE *run = fopen(argv[1], "r");
-    filter_kind_t kind = filter_any_find(argv[2]);
-    if (run == NULL || kind == FILTER_KIND_COUNT) {
-        fprintf(stderr, "pipeline_replay: cannot open %s, or no filter %s\n", argv[1], argv[2]);
-        return 2;
-    }
-    uint16_t rate_dhz = (uint16_t)atoi(argv[3]);
-    long skip = atol(argv[5]);
-    pipeline_reset();
-    pipeline_start((uint8_t)kind, rate_dhz, (uint8_t)atoi(argv[4]));
-    char line[512];
-    while (fgets(line, sizeof line, run) != NULL) {
-        unsigned t_us;
-        int x, y, z;
-        if (sscanf(line, "%u,%d,%d,%d", &t_us, &x, &y, &z) != 4 || skip-- > 0) {
-            continue;
+    if (argc == 2 && strcmp(argv[1], "--filters") == 0) {
+        for (unsigned kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+            puts(filter_any_name((filter_kind_t)kind));
         }
-        adxl345_sample_t sample = { .t_us = t_us, .lsb = { (int16_t)x, (int16_t)y, (int16_t)z } };
-        row_t row;
-        pipeline_sample(&sample, 10000000ul / rate_dhz);
-        pipeline_row(&row);
-        pipeline_row_done();
-        printf("%u,%d,%d,%d,%d,%d,%d,%d,%d,%u\n", (unsigned)row.t_us, row.lsb[0], row.lsb[1], row.lsb[2], row.mg[0],
-               row.mg[1], row.mg[2], row.roll_cdeg, row.pitch_cdeg, row.flags);
+        return 0;
     }
-    fclose(run);
+    if (argc < 6) {
+        fprintf(stderr, "usage: pipeline_replay CSV FILTER RATE_DHZ RANGE_G SKIP [NAME=VALUE]... | --filters\n");
+        return 2;
+    }
+    filter_kind_t kind = filter_any_find(argv[2]);
+    if (kind == FILTER_KIND_COUNT) {
+        fail("no filter %s", argv[2]);
+    }
+    uint16_t rate_dhz = (uint16_t)number("rate in 0.1 Hz", argv[3], FILTER_RATE_MIN_DHZ, FILTER_RATE_MAX_DHZ);
+    uint8_t range_g = (uint8_t)number("range in g", argv[4], 2, 16);
+    for (int i = 6; i < argc; i++) {
+        note_change(argv[i]);
+    }
+    check_configuration(kind, rate_dhz);
+    pipeline_reset();
+    pipeline_start((uint8_t)kind, rate_dhz, range_g);
+    replay(argv[1], 10000000ul / rate_dhz, number("rows to skip", argv[5], 0, 1000000000));
     return 0;
 }
