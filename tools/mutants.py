@@ -58,6 +58,9 @@ def judged(judge, limit_s):
     elif judge.startswith("papers "):
         built = make("build/papers/paper002", "build/papers/operations002")
         command = ["python3", "host_tests/test_papers.py", *judge.split()[1:]]
+    elif judge.startswith("robust "):
+        built = make("build/host/pipeline_replay")
+        command = ["build/venv/bin/python", "host_tests/test_robust.py", *judge.split()[1:]]
     else:
         built = make(f"build/host/{judge}")
         command = [f"build/host/{judge}"]

@@ -1,0 +1,204 @@
+"""docs/robust-filters.md is what a new run gives; a number, a row or a picture that is not is found; scores and experiment are as described."""
+import copy
+import pathlib
+import random
+import re
+import sys
+
+sys.path.insert(0, "tools")
+try:
+    import numpy as np
+    import make_streams
+    import robust
+    import robust_pictures
+    import robust_runs
+except ImportError as missing:
+    sys.exit(f"test_robust: {missing.name} is missing: run it by `make test`")
+
+from system_support import run, run_all, test
+
+OUT = pathlib.Path("build/robust")
+REPLAY, STREAM = robust_runs.REPLAY, "sim/streams/steps.csv"
+FRESH = {}
+
+
+def fresh():
+    """One run for all tests: (numbers, pictures, the committed page)."""
+    if not FRESH:
+        page, streams, runs = robust.measure()
+        FRESH["all"] = page, robust_pictures.contents(streams, runs), robust.DOCUMENT.read_text(encoding="utf-8")
+    return FRESH["all"]
+
+
+def refused(function, *words):
+    try:
+        function()
+    except robust.Fault as fault:
+        assert all(word in str(fault) for word in words), fault
+    else:
+        raise AssertionError("not refused")
+
+
+# --- page and pictures ------------------------------------------------------------------------------------------------
+
+
+@test
+def the_page_is_what_a_new_run_gives():
+    page, _, text = fresh()
+    assert robust.check(text, page) == [], robust.check(text, page)
+    assert len(robust.INLINE.findall(text)) >= 20, "the guide tells hardly a number"
+
+
+@test
+def the_page_has_every_filter_and_every_stream():
+    names = re.findall(r"X\((\w+)\)", pathlib.Path("lib/filters/src/filter_list.h").read_text(encoding="ascii").split("#define", 2)[-1])
+    numbers = robust.numbers_of(fresh()[2])
+    streams = [path.stem for path in pathlib.Path("sim/streams").glob("*.csv")]
+    assert len(names) >= 5 and len(streams) >= 18 and names == robust_runs.filters(), names
+    for stream in streams:
+        for name in names:
+            for title in ("Roll", "Pitch", "Acceleration x / y / z", "Gated", "Re-acquired"):
+                assert f"{title}, {stream}, `{name}`" in numbers, (title, stream, name)
+
+
+@test
+def a_changed_number_is_found_wherever_it_stands():
+    page, _, text = fresh()
+    right = f"| outliers-15pct | {page.values['roll outliers-15pct raw']} |"
+    assert text.count(right) == 1
+    found = robust.check(text.replace(right, "| outliers-15pct | 7.530 |"), page)
+    assert len(found) == 1 and "Roll, outliers-15pct, raw: 7.530 on the page" in found[0], found
+    key, number = robust.INLINE.findall(text)[0]
+    found = robust.check(text.replace(f"<!--={key}-->{number}<!--.-->", f"<!--={key}-->9{number}<!--.-->", 1), page)
+    assert len(found) == 1 and key.strip() in found[0] and f"9{number}" in found[0], found
+
+
+@test
+def a_row_too_many_and_one_too_few_are_found():
+    page, _, text = fresh()
+    row = next(line for line in text.splitlines() if line.startswith("| vibration | "))
+    found = robust.check(text.replace(row, row + "\n" + row.replace("vibration", "vibrations"), 1), page)
+    assert found and all("vibrations" in fault and "not there" in fault for fault in found), found
+    found = robust.check(text.replace(row + "\n", "", 1), page)
+    assert len(found) == 1 and "its tables differ" in found[0], found
+
+
+@test
+def a_page_without_its_markers_and_an_unknown_number_are_refused():
+    page, _, text = fresh()
+    refused(lambda: robust.filled(text.replace(robust.END, ""), page), "markers")
+    refused(lambda: robust.filled("<!--=roll nowhere kf-->1<!--.-->" + text, page), "'roll nowhere kf'")
+
+
+@test
+def the_pictures_show_this_run():
+    pictures = fresh()[1]
+    assert len(pictures) == 6 and robust_pictures.stale(pictures) == [], robust_pictures.stale(pictures)
+    text = fresh()[2]
+    for picture in pictures:
+        assert f"](pictures/{picture.path.name})" in text, f"{picture.path} is not shown on the page"
+
+
+@test
+def a_picture_of_other_numbers_is_found():
+    pictures = fresh()[1]
+    other = copy.deepcopy(pictures[0])
+    other.runs["sprf"].angles_cdeg[2100, 0] += 1
+    other.digest = robust_pictures.digest_of(other)
+    found = robust_pictures.stale([other, *pictures[1:]])
+    assert len(found) == 1 and str(other.path) in found[0], found
+    missing = copy.copy(pictures[0])
+    missing.path = OUT / "robust-missing.png"
+    assert str(missing.path) in robust_pictures.stale([missing, *pictures[1:]])[0]
+    found = robust_pictures.stale(pictures[1:])
+    assert len(found) == 1 and "not drawn by make robust" in found[0], found
+
+
+# --- scores -----------------------------------------------------------------------------------------------------------
+
+
+def made_up(truth_cdeg, angles_cdeg, flags):
+    """A stream and a run of it; the readings do not matter."""
+    truth, rows = np.array(truth_cdeg), len(truth_cdeg)
+    stream = robust_runs.Stream("made-up", None, 1000, np.arange(rows) / 100.0, np.zeros((rows, 3), int), truth)
+    return stream, robust_runs.Run(np.array(angles_cdeg), np.round(robust_runs.true_mg(stream)) + [3, 0, -4], np.array(flags))
+
+
+@test
+def scores_are_those_of_a_run_counted_by_hand():
+    # warm-up (not scored), then roll off by 3 and 4 degrees across the seam, gated once, re-acquired once
+    score = robust_runs.scores(*made_up([(0, 0), (17900, 0), (-17900, 0)], [(9000, 0), (-17800, 100), (17700, -100)], [128 + 1, 1, 4]))
+    assert abs(score["roll"] - 12.5 ** 0.5) < 1e-9 and abs(score["pitch"] - 1.0) < 1e-9, score
+    assert score["gated"] == 50.0 and score["reacquired"] == 1, score
+    assert abs(score["x"] - 3.0) < 0.6 and abs(score["z"] - 4.0) < 0.6, score  # mg rounded to whole ones
+    # roll is not scored beyond 80 degrees of pitch, pitch is
+    score = robust_runs.scores(*made_up([(0, 0), (0, 8001)], [(200, 0), (9000, 8001)], [0, 0]))
+    assert score["roll"] == 2.0 and score["pitch"] == 0.0, score
+
+
+@test
+def the_raw_readings_keep_the_noise_of_their_stream():
+    """4 LSB on each axis at 1 g: one axis moves pitch by 4 / 256 radians, rounding to whole LSB adds 1/12; 4 sigma of 5995 rows are 3.7 %."""
+    expected = np.degrees(np.sqrt(16.0 + 1.0 / 12.0) / 256.0)
+    measured = float(fresh()[0].values["pitch rest-4lsb raw"])
+    assert abs(measured / expected - 1.0) < 0.037, (measured, expected)
+
+
+# --- the same vibration at two rates ----------------------------------------------------------------------------------
+
+
+def force_of_shaking(frequency_hz, rate_hz):
+    scenario = make_streams.Scenario("x", "x", "x", 1, 3.0, (0.0,) * 3, lambda t: (0.0, 0.0), rate_hz=rate_hz)
+    samples = make_streams.make_samples(scenario, random.Random(1))
+    robust_runs.shake(samples, frequency_hz)
+    return np.array([sample.force_lsb for sample in samples])
+
+
+@test
+def both_rates_feel_the_same_vibration():
+    for frequency_hz in robust_runs.SHAKE_HZ:
+        slow, fast = force_of_shaking(frequency_hz, 100), force_of_shaking(frequency_hz, 400)
+        assert np.allclose(slow, fast[::4], atol=1e-9)
+        felt = fast[400:800] - fast[0]
+        size_lsb = np.linalg.norm(felt, axis=1)
+        assert np.all(fast[:400] == fast[0]) and 1.0 < size_lsb.max() < 100.001, (frequency_hz, size_lsb.max())
+        # 100 Hz taken every 10 ms is a constant; at 400 Hz it is none, and its mean is 0
+        if frequency_hz == 100:
+            assert np.ptp(slow[100:200], axis=0).max() < 1e-6 and np.ptp(felt, axis=0).max() > 80.0
+            assert np.abs(np.mean(felt, axis=0)).max() < 1e-6
+
+
+# --- the replay -------------------------------------------------------------------------------------------------------
+
+
+def replayed(*arguments, expect=0):
+    return run(REPLAY, *arguments, expect=expect)
+
+
+@test
+def a_parameter_changes_what_it_names_and_the_shipped_value_nothing():
+    shipped = replayed(STREAM, "sprf", 1000, 16, 0).stdout
+    assert replayed(STREAM, "sprf", 1000, 16, 0, "gate=3", "reacquire=5", "q=10000", "R=1").stdout == shipped
+    for change in ("gate=2", "reacquire=9", "q=1000", "R=4"):
+        assert replayed(STREAM, "sprf", 1000, 16, 0, change).stdout != shipped, change
+
+
+@test
+def a_bad_stream_or_argument_is_named():
+    bad = OUT / "bad.csv"
+    OUT.mkdir(parents=True, exist_ok=True)
+    good = "t_us,x_lsb,y_lsb,z_lsb\n0,1,2,3\n"
+    for text, word in ((good + "10000,1,two,3\n", "bad.csv:3"), (good + "10000,1,2,5000\n", "bad.csv:3: reading 5000"), ("t_us\n", "no row")):
+        bad.write_text(text, encoding="ascii")
+        told = replayed(bad, "sprf", 1000, 16, 0, expect=2).stderr
+        assert word in told and len(told.splitlines()) == 1, told
+    for arguments, word in (((STREAM, "nothing", 1000, 16, 0), "no filter nothing"), (("nowhere.csv", "kf", 1000, 16, 0), "nowhere.csv"),
+                            ((STREAM, "kf", "1e3", 16, 0), "1e3"), ((STREAM, "kf", 1000, 16, 0, "gate=3"), "kf has no parameter gate"),
+                            ((STREAM, "sprf", 1000, 16, 0, "gate=0.5"), "refuses its configuration: gate"),
+                            ((STREAM, "sprf", 1000, 16, 0, "gate=1x"), "NAME=VALUE")):
+        told = replayed(*arguments, expect=2).stderr
+        assert word in told and len(told.splitlines()) == 1, told
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_all())

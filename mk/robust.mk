@@ -1,0 +1,9 @@
+# The robust filters compared: tables and pictures of docs/robust-filters.md.
+
+## robust: every filter over the shipped streams, into docs/robust-filters.md (10 seconds)
+robust:
+	@sh tools/deps.sh sim
+	@$(MAKE) -s $(H)/pipeline_replay
+	@$(PY) tools/robust.py
+
+.PHONY: robust
