@@ -1,0 +1,83 @@
+#include "support_chain.h"
+
+#include <string.h>
+
+#define COAST_LIMIT_US 100000U
+
+const char *median_init(median_t *m, unsigned window)
+{
+    if (window % 2U == 0U) {
+        return "median: an even window has no middle sample, take 3, 5, 7 or 9";
+    }
+    if (window < 3U || window > MEDIAN_WINDOW_MAX) {
+        return "median: the window is outside 3..9";
+    }
+    memset(m, 0, sizeof *m);
+    m->window = (uint8_t)window;
+    return NULL;
+}
+
+int16_t median_update(median_t *m, int16_t z_lsb)
+{
+    memmove(m->seen_lsb + 1, m->seen_lsb, sizeof m->seen_lsb - sizeof m->seen_lsb[0]);
+    m->seen_lsb[0] = z_lsb;
+    m->filled = m->filled < m->window ? (uint8_t)(m->filled + 1U) : m->window;
+    int16_t ascending[MEDIAN_WINDOW_MAX] = { 0 };
+    for (uint8_t i = 0; i < m->filled; i++) {
+        uint8_t at = i;
+        for (; at > 0 && ascending[at - 1] > m->seen_lsb[i]; at--) {
+            ascending[at] = ascending[at - 1];
+        }
+        ascending[at] = m->seen_lsb[i];
+    }
+    return ascending[m->filled / 2];
+}
+
+bool chain_begin(chain_t *chain, filter_kind_t kind, uint16_t rate_dhz, uint8_t range_g, int axis)
+{
+    memset(chain, 0, sizeof *chain);
+    filter_any_config_t config;
+    filter_any_defaults(kind, &config, rate_dhz);
+    noise_init(&chain->noise, rate_dhz, axis == 2);
+    if (!filter_any_init(&chain->filter, kind, &config)) {
+        return false;
+    }
+    filter_any_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
+    chain->period_us = 10000000U / rate_dhz;
+    chain->rail_high_lsb = (int16_t)(range_g * 256 - 1);
+    return true;
+}
+
+static void coast_over_gap(chain_t *chain, uint64_t t_us)
+{
+    chain->coasts = 0;
+    uint64_t gap_us = t_us - chain->last_us;
+    uint64_t at_us = chain->period_us + (chain->period_us >> 1);
+    if (!chain->has_sample || gap_us <= at_us) {
+        return;
+    }
+    for (; at_us < gap_us && at_us < COAST_LIMIT_US; at_us += chain->period_us) {
+        chain->x_lsb_q16 = filter_any_coast(&chain->filter);
+        chain->coasts++;
+    }
+    noise_gap(&chain->noise);
+}
+
+int32_t chain_sample(chain_t *chain, uint64_t t_us, int16_t lsb)
+{
+    coast_over_gap(chain, t_us);
+    chain->last_us = t_us;
+    chain->has_sample = true;
+    chain->clipped = lsb >= chain->rail_high_lsb || lsb <= -chain->rail_high_lsb - 1;
+    if (!chain->clipped && noise_update(&chain->noise, lsb)) {
+        filter_any_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
+    }
+    int16_t z_lsb = chain->median.window == 0U ? lsb : median_update(&chain->median, lsb);
+    chain->x_lsb_q16 = filter_any_update(&chain->filter, z_lsb);
+    return chain->x_lsb_q16;
+}
+
+double chain_r_lsb2(const chain_t *chain)
+{
+    return noise_r_lsb2_q8(&chain->noise) / 256.0;
+}

@@ -1,0 +1,127 @@
+/* What the faults of support_faults.h do to the filters. */
+#include "support_envelope.h"
+#include "support_faults.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MEDIAN_WINDOW 5U
+
+const char *contender_name(size_t contender)
+{
+    return contender == MEDIAN_KF ? "median5_kf" : filter_any_name((filter_kind_t)contender);
+}
+
+static filter_kind_t kind_of(size_t contender)
+{
+    return contender == MEDIAN_KF ? FILTER_KIND_kf : (filter_kind_t)contender;
+}
+
+static bool begin_contender(chain_t *chain, size_t contender, uint16_t rate_dhz, uint8_t range_g, int axis)
+{
+    bool good = chain_begin(chain, kind_of(contender), rate_dhz, range_g, axis);
+    return good && (contender != MEDIAN_KF || median_init(&chain->median, MEDIAN_WINDOW) == NULL);
+}
+
+static bool run_clean(study_t *study, size_t contender, int axis)
+{
+    chain_t chain;
+    int32_t *x_lsb_q16 = malloc(study->clean->count * sizeof *x_lsb_q16);
+    study->x_lsb_q16[contender][axis] = x_lsb_q16;
+    if (x_lsb_q16 == NULL || !begin_contender(&chain, contender, study->rate_dhz, study->range_g, axis)) {
+        return false;
+    }
+    for (size_t i = 0; i < study->clean->count; i++) {
+        x_lsb_q16[i] = chain_sample(&chain, study->clean->rows[i].t_us, study->clean->rows[i].lsb[axis]);
+        if (contender == FILTER_KIND_sprf) {
+            study->reacquired += (filter_any_flags(&chain.filter) & FILTER_REACQUIRED) != 0U;
+        }
+    }
+    return true;
+}
+
+bool study_begin(study_t *study, const stream_t *clean, uint16_t rate_dhz, uint8_t range_g)
+{
+    memset(study, 0, sizeof *study);
+    study->clean = clean;
+    study->rate_dhz = rate_dhz;
+    study->range_g = range_g;
+    for (size_t contender = 0; contender < CONTENDERS; contender++) {
+        for (int axis = 0; axis < 3; axis++) {
+            if (!run_clean(study, contender, axis)) {
+                study_end(study);
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+void study_end(study_t *study)
+{
+    for (size_t contender = 0; contender < CONTENDERS; contender++) {
+        for (int axis = 0; axis < 3; axis++) {
+            free(study->x_lsb_q16[contender][axis]);
+            study->x_lsb_q16[contender][axis] = NULL;
+        }
+    }
+}
+
+/*
+ * A read that is wrong by a. Linear filters follow it by A^2 sum h^2. A filter that does not may follow a read that is
+ * within its gate of three sigma, where the good one was too: |A| <= 6 sqrt(S). Else it loses at most the good read,
+ * 3 sqrt(S) off, and takes no more than a soft gate of two sigma of the bad one: 2 sqrt(S) off, the good one in part
+ * likewise: 16 S covers both. S from kf's gain, w1 = 1 - R / S, which all two-state filters have in the steady state.
+ */
+static void predict(const chain_t *chain, double a, score_t *score)
+{
+    filter_probe_t probe;
+    filter_any_probe(&chain->filter, &probe);
+    double w1 = probe.gain_uq16 / 65536.0;
+    double gain = noise_gain_of(w1);
+    if (chain->filter.kind == FILTER_KIND_synth) {
+        const synth_t *synth = &chain->filter.state.synth;
+        gain = synth_noise_gain_uq16(synth->b0_uq16, synth->a1_negative ? -synth->a1_uq16 : synth->a1_uq16) / 65536.0;
+    }
+    double s_lsb2 = chain_r_lsb2(chain) / (1.0 - w1);
+    score->predicted += gain * a * a;
+    score->allowed += gain * (a * a <= 36.0 * s_lsb2 ? a * a : 16.0 * s_lsb2);
+}
+
+static void score_axis(const study_t *study, const faulty_t *faulty, size_t contender, int axis, score_t *score)
+{
+    chain_t chain;
+    (void)begin_contender(&chain, contender, study->rate_dhz, faulty->range_g, axis); /* study_begin did it before */
+    const int32_t *own = study->x_lsb_q16[contender][axis];
+    const int32_t *kf = study->x_lsb_q16[FILTER_KIND_kf][axis];
+    for (size_t i = 0; i < faulty->stream.count; i++) {
+        const stream_row_t *row = &faulty->stream.rows[i];
+        size_t source = faulty->source[i];
+        int32_t x = chain_sample(&chain, row->t_us, row->lsb[axis]);
+        double a = row->lsb[axis] - study->clean->rows[source].lsb[axis];
+        if (source < FILTER_WARM_UP_SAMPLES) {
+            continue;
+        }
+        double own_lsb = ((double)x - own[source]) / 65536.0;
+        double kf_lsb = ((double)x - kf[source]) / 65536.0;
+        score->own += own_lsb * own_lsb;
+        score->kf += kf_lsb * kf_lsb;
+        score->count++;
+        if (a < 0.0 || a > 0.0) {
+            predict(&chain, a, score);
+        }
+    }
+}
+
+void study_score(const study_t *study, const faulty_t *faulty, size_t contender, score_t *score)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        score_axis(study, faulty, contender, axis, score);
+    }
+}
+
+double rms(double sum, size_t count)
+{
+    return count == 0 ? 0.0 : sqrt(sum / (double)count);
+}
