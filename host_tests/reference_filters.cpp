@@ -39,11 +39,21 @@ void update(reference_filter_t &f, double s)
     limit_rate(f);
 }
 
+// From the sixth sample refused in a row on the rate is not believed; a soft gate makes a new one of each.
+void forget_rate(reference_filter_t &f)
+{
+    f.refused = (f.run == 0) ? 1 : f.refused + 1;
+    if (f.reacquire != 0 && f.soft2 == 0.0 && f.refused > 5) {
+        f.x[1] = 0.0;
+    }
+}
+
 // Rule CR: L refused raw samples in a row, each within `agree` of the one before, restart the filter on their slope.
 void refuse(reference_filter_t &f, double z)
 {
     f.gated = true;
     f.gain[0] = f.gain[1] = 0.0;
+    forget_rate(f);
     if (f.run > 0 && std::abs(z - f.previous) <= f.agree) {
         f.run++;
     } else {

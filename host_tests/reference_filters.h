@@ -30,6 +30,7 @@ typedef struct {
     bool gated;
     bool reacquired;
     int run;
+    int refused;
     double first;
     double previous;
 } reference_filter_t;

@@ -197,7 +197,11 @@ void limit_rate(robust_reference_t &f)
 bool reacquired(robust_reference_t &f, double z)
 {
     const bool agrees = f.run > 0 && std::abs(z - f.previous) <= f.agree;
+    f.refused = (f.run == 0) ? 1 : f.refused + 1;
     f.run = agrees ? f.run + 1 : 1;
+    if (f.kind == ROBUST_SPRF && f.reacquire != 0 && f.refused > 5) {
+        f.x[1] = 0.0; // of the motion that it stands for nothing was seen since
+    }
     if (!agrees) {
         f.first = z;
     }

@@ -73,6 +73,7 @@ typedef struct {
     bool reacquired;
     bool outlier; /* clairvoyant: set before the step */
     int run;
+    int refused; /* in a row */
     double first;
     double previous;
     int collected;

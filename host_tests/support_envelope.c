@@ -23,6 +23,7 @@ filter_facts_t filter_facts(filter_kind_t kind)
     case FILTER_KIND_synth: /* poles at 0.83666: e^-10 after 56 samples */
         return (filter_facts_t){ SYNTH_SUM, 1.0, 0.0, 56, ENVELOPE_FIXED_GAIN };
     case FILTER_KIND_sprf:
+        return (filter_facts_t){ 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_STANDS };
     case FILTER_KIND_soft:
         return (filter_facts_t){ 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_REACQUIRES };
     case FILTER_KIND_pbf:

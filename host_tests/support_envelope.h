@@ -21,7 +21,9 @@
  *
  * Run, sprf and soft: where the samples do not agree it may go on by its rate, and no faster: with n samples refused or
  * missing since the last that was within the gate or restarted it, and that one among the last W, |x - m| <= D +
- * 9 sqrt(R) + n ratemax, R the largest so far. W is 200 samples in the system of paper 002.
+ * 9 sqrt(R) + n ratemax, R the largest so far. W is 200 samples in the system of paper 002. Of the refused ones sprf
+ * counts 6 at most, however many there were, because the sixth stops its rate (sprf.h); soft takes a part of each,
+ * which makes a new rate.
  *
  * Wait, shrf: it does not use what it takes for an outlier and has no limit of its rate, so it may go anywhere within
  * its range; but P / R grows as q22 n^3 / 3 meanwhile and ends at 32,768, where the next sample is taken. So no more
@@ -36,12 +38,14 @@
 
 #define BAND_MARGIN_LSB 1.0
 #define BAND_GAIN_ALLOWANCE 1.1
+#define RATE_HELD_SAMPLES 6U
 
 typedef enum {
     ENVELOPE_LINEAR,     /* band */
     ENVELOPE_FIXED_GAIN, /* band, where no sample is missing */
     ENVELOPE_MIXTURE,    /* band, which holds its rate from one gain to the other */
     ENVELOPE_REACQUIRES, /* hull and run */
+    ENVELOPE_STANDS,     /* hull and run, of few samples */
     ENVELOPE_WAITS,      /* wait */
     ENVELOPE_NONE
 } envelope_rule_t;

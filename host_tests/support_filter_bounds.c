@@ -52,6 +52,9 @@ static const char *broken_reacquire(const reacquire_t *a)
 static const char *broken_sprf(const sprf_t *f, int32_t x_lsb_q16)
 {
     const char *broken = broken_reacquire(&f->again);
+    if (f->refused > SPRF_RATE_HELD_SAMPLES) {
+        return "refused";
+    }
     return (broken != NULL) ? broken : broken_two_state(&f->core, x_lsb_q16);
 }
 

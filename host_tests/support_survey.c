@@ -41,10 +41,18 @@ typedef struct {
     size_t count;
     double r_max_lsb2;
     size_t gated_run;
-    size_t unused;   /* samples refused or missing since the last that the filter followed */
+    size_t refused;  /* samples refused since the last that the filter followed */
+    size_t missing;  /* and missing meanwhile */
     size_t unbroken; /* samples since the last missing one */
     axis_counts_t *counts;
 } run_t;
+
+/* For so many samples the filter may have gone on by the limit of its rate. */
+static size_t samples_by_rate(const run_t *run)
+{
+    bool ends = run->facts.rule == ENVELOPE_STANDS && run->refused > RATE_HELD_SAMPLES;
+    return run->missing + (ends ? RATE_HELD_SAMPLES : run->refused);
+}
 
 /* How much of what its rule allows the filter used; negative: the rule does not apply here. */
 static double share_used(run_t *run, double x_lsb)
@@ -59,8 +67,9 @@ static double share_used(run_t *run, double x_lsb)
     case ENVELOPE_WAITS:
         return (double)run->gated_run / longest_wait_samples(rate_dhz, run->r_max_lsb2);
     case ENVELOPE_REACQUIRES:
-        spread_lsb += gate_reach_lsb(run->r_max_lsb2) + (double)run->unused * rate_max_lsb(rate_dhz);
-        return full && run->unused < window ? distance_lsb / spread_lsb : -1.0;
+    case ENVELOPE_STANDS:
+        spread_lsb += gate_reach_lsb(run->r_max_lsb2) + (double)samples_by_rate(run) * rate_max_lsb(rate_dhz);
+        return full && run->refused + run->missing < window ? distance_lsb / spread_lsb : -1.0;
     case ENVELOPE_FIXED_GAIN:
         full = full && run->unbroken >= window;
         break;
@@ -93,7 +102,8 @@ static void judge_hull(run_t *run, int16_t lsb, double x_lsb)
 {
     hull_add(&run->hull, lsb, chain_r_lsb2(&run->chain), run->chain.coasts);
     double left_lsb;
-    if (run->facts.rule != ENVELOPE_REACQUIRES || !hull_judge(&run->hull, run->survey->rate_dhz, x_lsb, &left_lsb)) {
+    bool has_hull = run->facts.rule == ENVELOPE_REACQUIRES || run->facts.rule == ENVELOPE_STANDS;
+    if (!has_hull || !hull_judge(&run->hull, run->survey->rate_dhz, x_lsb, &left_lsb)) {
         return;
     }
     run->counts->hull_left_lsb = run->counts->hull_judged == 0 ? left_lsb : fmin(run->counts->hull_left_lsb, left_lsb);
@@ -114,7 +124,8 @@ static void count_flags(run_t *run, uint8_t flags)
     bool gated = (flags & FILTER_GATED) != 0U;
     run->gated_run = gated ? run->gated_run + 1 : 0;
     counts->longest_gated = run->gated_run > counts->longest_gated ? run->gated_run : counts->longest_gated;
-    run->unused = gated ? run->unused + 1 + run->chain.coasts : 0;
+    run->refused = gated ? run->refused + 1 : 0;
+    run->missing = gated ? run->missing + run->chain.coasts : 0;
     run->unbroken = run->chain.coasts == 0 ? run->unbroken + 1 : 0;
 }
 

@@ -42,7 +42,7 @@ static bool is_robust(size_t contender)
         return true;
     }
     envelope_rule_t rule = filter_facts((filter_kind_t)contender).rule;
-    return rule == ENVELOPE_REACQUIRES || rule == ENVELOPE_MIXTURE || rule == ENVELOPE_WAITS;
+    return rule == ENVELOPE_REACQUIRES || rule == ENVELOPE_STANDS || rule == ENVELOPE_MIXTURE || rule == ENVELOPE_WAITS;
 }
 
 static bool is_linear(size_t contender)

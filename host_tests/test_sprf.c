@@ -198,6 +198,57 @@ static void run_with_a_gap_restarts_at_rest(void)
     TEST_ASSERT_EQUAL_INT32(0, f.core.rate_lsb_q16);
 }
 
+/* On 4 LSB per sample, then samples that nothing agrees with: 6 predictions at that rate, then it stands. */
+static void expect_a_stand(int16_t direction)
+{
+    sprf_config_t config = config_100hz();
+    sprf_t f = settled(&config, 0);
+    for (int16_t k = 1; k <= 400; k++) {
+        (void)sprf_update(&f, (int16_t)(k * 4 * direction));
+    }
+    filter_probe_t probe;
+    sprf_probe(&f, &probe);
+    int32_t x = probe.x_lsb_q16;
+    int32_t rate = probe.rate_lsb_q16;
+    TEST_ASSERT_INT32_WITHIN(1024, (int32_t)4 * direction * 65536, rate);
+    for (uint8_t k = 1; k <= 40; k++) {
+        x += rate;
+        TEST_ASSERT_EQUAL_INT32(x, sprf_update(&f, (k & 1U) != 0U ? 4000 : -4000));
+        TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, sprf_flags(&f));
+        if (k > SPRF_RATE_HELD_SAMPLES) {
+            rate = 0;
+        }
+    }
+    TEST_ASSERT_EQUAL_INT32(0, rate);
+    (void)sprf_update(&f, (int16_t)(x / 65536));
+    TEST_ASSERT_EQUAL_UINT8(0, sprf_flags(&f));
+}
+
+static void where_nothing_agrees_it_comes_to_stand(void)
+{
+    expect_a_stand(1);
+    expect_a_stand(-1);
+}
+
+/* An accepted sample begins the count anew: the rate is held over 5 refused ones, however often they come. */
+static void rate_is_held_over_short_runs(void)
+{
+    sprf_config_t config = config_100hz();
+    sprf_t f = settled(&config, 0);
+    for (int16_t k = 1; k <= 400; k++) {
+        (void)sprf_update(&f, (int16_t)(k * 4));
+    }
+    filter_probe_t probe;
+    for (int16_t k = 401; k <= 700; k++) {
+        bool refused = k % 6 != 0;
+        int16_t away = ((k & 1) != 0) ? 4000 : -4000;
+        (void)sprf_update(&f, refused ? away : (int16_t)(k * 4));
+        TEST_ASSERT_EQUAL_UINT8(refused ? FILTER_GATED : 0, sprf_flags(&f));
+        sprf_probe(&f, &probe);
+        TEST_ASSERT_INT32_WITHIN(1024, (int32_t)4 * 65536, probe.rate_lsb_q16);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -211,5 +262,7 @@ int main(void)
     RUN_TEST(run_ends_at_an_accepted_sample);
     RUN_TEST(reacquisition_off_never_restarts);
     RUN_TEST(run_with_a_gap_restarts_at_rest);
+    RUN_TEST(where_nothing_agrees_it_comes_to_stand);
+    RUN_TEST(rate_is_held_over_short_runs);
     return UNITY_END();
 }

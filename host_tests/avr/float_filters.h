@@ -32,7 +32,7 @@ typedef struct {
     float dt, q, r;
     float gate, rate_max, agree; /* sigmas (0: none), LSB/s, LSB */
     float previous, first;
-    uint8_t run, reacquire;
+    uint8_t run, refused, reacquire;
     bool broken;
 } float_sprf_t;
 

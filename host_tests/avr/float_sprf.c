@@ -72,8 +72,21 @@ static void restart(float_sprf_t *f, float z)
     f->run = 0;
 }
 
+static void forget_rate(float_sprf_t *f)
+{
+    if (f->run == 0) {
+        f->refused = 0;
+    }
+    if (f->refused < 5u) {
+        f->refused++;
+    } else if (f->reacquire != 0) {
+        f->v = 0.0f;
+    }
+}
+
 static void refuse(float_sprf_t *f, float z)
 {
+    forget_rate(f);
     if (f->run != 0 && (float)fabsf(z - f->previous) <= f->agree) {
         f->run++;
     } else {

@@ -37,6 +37,7 @@ bool sprf_init(sprf_t *f, const sprf_config_t *config)
     two_state_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3, config->rate_max_lsb_s);
     reacquire_init(&f->again, config->reacquire_samples);
     f->gate_sigma_q8 = config->gate_sigma_q8;
+    f->refused = 0;
     sprf_set_noise(f, config->r_lsb2_q8);
     return true;
 }
@@ -54,6 +55,22 @@ void sprf_reset(sprf_t *f, int16_t z0_lsb)
 }
 
 /*
+ * The rate stands for a motion of which nothing was seen since the last accepted sample. Where nothing agrees for long,
+ * as on a frame that shakes, the filter would run on by it. Without re-acquisition it does, as published.
+ */
+FX_INLINE void forget_rate(sprf_t *f)
+{
+    if (f->again.run == 0U) { /* the first since one was accepted */
+        f->refused = 0;
+    }
+    if (f->refused < SPRF_RATE_HELD_SAMPLES) {
+        f->refused++;
+    } else if (f->again.steps != 0U) {
+        f->core.rate_lsb_q16 = 0;
+    }
+}
+
+/*
  * Scaling: input any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB; formats, bounds and rounding
  * errors as two_state_step; the restart's slope is exact (power-of-two steps). Cost: docs/benchmarks.md.
  */
@@ -65,6 +82,7 @@ int32_t sprf_update(sprf_t *f, int16_t z_lsb)
     } else if (two_state_step(&f->core, z, true)) {
         f->again.run = 0;
     } else {
+        forget_rate(f);
         (void)reacquire_refused(&f->again, &f->core, z);
     }
     f->again.previous_lsb = z;

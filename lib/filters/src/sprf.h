@@ -2,7 +2,8 @@
  * sprf: the two-state Kalman filter with a binary gate, made safe against lock-out.
  *
  * A sample further from the prediction than gate x sigma (of the innovation) is refused: predict only. Refused samples
- * that agree among themselves on raw values re-acquire: position and rate restart from them. Paper 002, rule (34) with
+ * that agree among themselves on raw values re-acquire: position and rate restart from them. Where nothing agrees for
+ * long it stands still. Paper 002, rule (34) with
  * r^2 <= gate^2 S, plus the running-median start and consistency re-acquisition that its start and a step need.
  * Functions: filter.h.
  */
@@ -24,10 +25,14 @@ typedef struct {
     uint32_t rate_max_lsb_s;    /* limit of the estimated rate, LSB/s: 10..1000000; 0 is refused */
 } sprf_config_t;
 
+/* Samples refused in a row until the rate is no longer believed: the next one stops it. */
+#define SPRF_RATE_HELD_SAMPLES 5U
+
 typedef struct {
     two_state_t core;
     reacquire_t again;
     uint16_t gate_sigma_q8;
+    uint8_t refused; /* samples refused since the last accepted one, up to SPRF_RATE_HELD_SAMPLES */
 } sprf_t;
 
 /* Descriptor in program memory. */
