@@ -84,11 +84,21 @@ $(U)/fx_twins_firmware.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -Wl,--gc-sections $(TWINS_SRC) -o $@
 
+# an image that is told of a slower processor: its sample period is short for a filter
+TIGHT_OBJ := $(AVR_SRC:%.c=$(U)/tight/%.o)
+$(U)/tight/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(AVR_FLAGS) -DHAL_CPU_HZ=14000000ul -MMD -MP -c $< -o $@
+
+$(U)/tight/firmware.elf: $(TIGHT_OBJ)
+	@$(AVR_CC) $(AVR_LINK) $^ -o $@
+
 $(U)/hal_probe.elf: host_tests/avr/hal_probe.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr $(filter %.c,$^) -o $@
 
-TEST_IMAGES := $(U)/hal_probe.elf $(U)/fx_twins.elf $(U)/fx_twins_firmware.elf $(U)/hang/firmware.elf $(U)/wrap/firmware.elf $(U)/late/firmware.elf
+TEST_IMAGES := $(U)/hal_probe.elf $(U)/fx_twins.elf $(U)/fx_twins_firmware.elf $(U)/hang/firmware.elf $(U)/wrap/firmware.elf $(U)/late/firmware.elf \
+               $(U)/tight/firmware.elf
 
 $(U)/firmware.hex: $(U)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $< $@

@@ -7,6 +7,7 @@
 
 #include "adxl345.h"
 #include "commands.h"
+#include "fx.h"
 #include "hal_drdy.h"
 #include "hal_irq.h"
 #include "hal_led.h"
@@ -83,13 +84,17 @@ uint32_t app_uptime_s(void)
     return uptime_s;
 }
 
-void app_set_filter(uint8_t filter_kind)
+app_answer_t app_set_filter(uint8_t filter_kind)
 {
-    if (settings.filter == filter_kind) {
-        return;
+    if (!settings_fit(filter_kind, settings.rate_dhz)) {
+        return APP_TOO_SLOW;
     }
-    settings.filter = filter_kind;
-    pipeline_change(settings.filter, settings.rate_dhz, settings.range_g);
+    if (settings.filter != filter_kind) {
+        settings.filter = filter_kind;
+        settings_follow();
+        pipeline_change(settings.filter, settings.rate_dhz, settings.range_g);
+    }
+    return APP_DONE;
 }
 
 /* The pipeline follows when the driver has delivered the last sample of the old configuration. */
@@ -101,17 +106,21 @@ static void change_sensor(void)
     }
 }
 
-bool app_set_rate(uint16_t rate_dhz)
+app_answer_t app_set_rate(uint16_t rate_dhz)
 {
     adxl345_config_t config = { rate_dhz, settings.range_g };
     if (!adxl345_config_valid(&config)) {
-        return false;
+        return APP_ILLEGAL;
+    }
+    if (!settings_fit(settings.filter, rate_dhz)) {
+        return APP_TOO_SLOW;
     }
     if (settings.rate_dhz != rate_dhz) {
         settings.rate_dhz = rate_dhz;
+        settings_follow();
         change_sensor();
     }
-    return true;
+    return APP_DONE;
 }
 
 bool app_set_range(uint8_t range_g)
@@ -142,6 +151,7 @@ bool app_set_baud(uint32_t baud)
         return false;
     }
     settings.baud = baud;
+    settings_follow();
     stage = STAGE_BAUD;
     health_pause_filtering(hal_time_us() + HOLD_LIMIT_US);
     return true;
@@ -194,7 +204,7 @@ static void follow_configuration(void)
     config_changed = false;
 }
 
-static void filter_samples(void)
+FX_NOINLINE void filter_samples(void)
 {
     adxl345_sample_t sample;
     if (HANGS(HEALTH_FILTERING)) {

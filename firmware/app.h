@@ -15,9 +15,13 @@ void app_pass(void);
 
 uint32_t app_uptime_s(void);
 
-/* Settings; false: not a legal value, nothing changed. Rate, range and filter take effect without losing a sample. */
-void app_set_filter(uint8_t filter_kind);
-bool app_set_rate(uint16_t rate_dhz);
+/*
+ * Settings; false: nothing changed, not a legal value. Rate, range and filter take effect without losing a sample. A
+ * filter that does not fit the sample period (settings_fit) is refused as is a rate that is too fast for the filter.
+ */
+typedef enum { APP_ILLEGAL, APP_DONE, APP_TOO_SLOW } app_answer_t;
+app_answer_t app_set_filter(uint8_t filter_kind);
+app_answer_t app_set_rate(uint16_t rate_dhz);
 bool app_set_range(uint8_t range_g);
 bool app_set_every(uint16_t every);
 bool app_set_baud(uint32_t baud);

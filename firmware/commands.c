@@ -6,6 +6,7 @@
 #include "app.h"
 #include "filter_any.h"
 #include "flash.h"
+#include "fx.h"
 #include "hal_uart.h"
 #include "replies.h"
 #include "reply_lists.h"
@@ -16,6 +17,7 @@ static uint8_t length;
 static uint16_t refused;
 static bool too_long;
 static bool garbage;
+static bool answered; /* a legal value was refused, with a reply of its own */
 
 void commands_start(void)
 {
@@ -75,20 +77,35 @@ static bool parse(const char *text, bool in_tenths, uint32_t *value)
     return digits != 0 && decimals != 1;
 }
 
+FX_NOINLINE void refuse_combination(uint8_t filter, uint16_t rate_dhz)
+{
+    refuse(REPLY_TOO_SLOW, reply_combination(filter, rate_dhz));
+    answered = true;
+}
+
 static bool set_filter(const char *value)
 {
     filter_kind_t kind = filter_any_find(value);
     if (kind == FILTER_KIND_COUNT) {
         return false;
     }
-    app_set_filter((uint8_t)kind);
+    if (app_set_filter((uint8_t)kind) == APP_TOO_SLOW) {
+        refuse_combination((uint8_t)kind, settings.rate_dhz);
+    }
     return true;
 }
 
 static bool set_rate(const char *value)
 {
     uint32_t tenths;
-    return parse(value, true, &tenths) && tenths <= UINT16_MAX && app_set_rate((uint16_t)tenths);
+    if (!parse(value, true, &tenths) || tenths > UINT16_MAX) {
+        return false;
+    }
+    app_answer_t answer = app_set_rate((uint16_t)tenths);
+    if (answer == APP_TOO_SLOW) {
+        refuse_combination(settings.filter, (uint16_t)tenths);
+    }
+    return answer != APP_ILLEGAL;
 }
 
 static bool set_range(const char *value)
@@ -187,7 +204,7 @@ static char *split_value(void)
     return at;
 }
 
-static void run_line(void)
+FX_NOINLINE void run_line(void)
 {
     const char *value = split_value();
     uint8_t setting = setting_named(line);
@@ -197,11 +214,12 @@ static void run_line(void)
         }
         return;
     }
+    answered = false;
     if (value != 0 && !set(setting, value)) {
         refuse(REPLY_REFUSED, setting);
-        return;
+    } else if (!answered) {
+        (void)replies_add((reply_kind_t)setting, value != 0);
     }
-    (void)replies_add((reply_kind_t)setting, value != 0);
 }
 
 static void end_line(void)

@@ -2,6 +2,7 @@
 #include "pipeline.h"
 
 #include "filter_any.h"
+#include "fx.h"
 #include "noise.h"
 #include "tilt.h"
 
@@ -25,7 +26,7 @@ static struct {
     bool has_sample;
 } pipe;
 
-static void keep_estimate(uint8_t axis, int32_t x_lsb_q16)
+FX_NOINLINE void keep_estimate(uint8_t axis, int32_t x_lsb_q16)
 {
     pipe.estimate_q8[axis] = (x_lsb_q16 + 128) >> 8;
 }
@@ -198,7 +199,7 @@ void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg)
     *pitch_cdeg = pipe.raw_tilt.pitch_cdeg;
 }
 
-void pipeline_counters(pipeline_counters_t *out)
+FX_ONCE void pipeline_counters(pipeline_counters_t *out)
 {
     *out = pipe.counters;
 }

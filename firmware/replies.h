@@ -23,6 +23,7 @@ typedef enum {
     REPLY_GOING,
     REPLY_UNKNOWN,     /* argument: reply_problem */
     REPLY_REFUSED,     /* argument: reply_kind_t of the setting whose legal values to list */
+    REPLY_TOO_SLOW,    /* argument: reply_combination of the filter and rate that do not go together */
     REPLY_FAULT_BEGIN, /* argument: adxl345_fault_t */
     REPLY_FAULT_END
 } reply_kind_t;

@@ -4,6 +4,7 @@
 #include "adxl345.h"
 #include "filter_any.h"
 #include "flash.h"
+#include "fx.h"
 #include "hal_watchdog.h"
 #include "health.h"
 #include "reply_lists.h"
@@ -25,7 +26,7 @@ static reply_progress_t end(bool last)
     return last ? REPLY_ENDED : REPLY_GOES_ON;
 }
 
-static void write_filter_name(void)
+FX_NOINLINE void write_filter_name(void)
 {
     text_words(filter_any_name((filter_kind_t)settings.filter));
 }
@@ -61,14 +62,19 @@ static void write_bus_speed(void)
     }
 }
 
+static void write_fault(uint8_t fault)
+{
+    begin(FLASH_TEXT("fault "));
+    text_u32(fault);
+    text_words(FLASH_TEXT(": "));
+    sensor_watch_describe(fault);
+}
+
 static bool write_diagnosis(void)
 {
     adxl345_fault_t fault = adxl345_fault();
     if (fault != ADXL345_FAULT_NONE) {
-        begin(FLASH_TEXT("fault "));
-        text_u32((uint32_t)fault);
-        text_words(FLASH_TEXT(": "));
-        sensor_watch_describe((uint8_t)fault);
+        write_fault((uint8_t)fault);
         return true;
     }
     if (adxl345_phase() != ADXL345_STREAMING) {
@@ -119,44 +125,29 @@ static reply_progress_t banner_line(uint8_t line)
     }
 }
 
-/* A second line only where the line rate forces another decimation than was asked for. */
+/* A second line only where the line's rate or the filter forces another decimation than was asked for. */
 static reply_progress_t every_line(bool first)
 {
-    if (!first && settings_every_in_force() == settings.every) {
+    uint16_t every = settings_every_in_force();
+    bool forced = every != settings.every;
+    if (!first && !forced) {
         return REPLY_ENDED;
     }
     begin(FLASH_TEXT("every "));
-    text_u32(settings_every_in_force());
-    if (settings_every_in_force() != settings.every) {
+    text_u32(every);
+    if (forced) {
         text_words(FLASH_TEXT(": the smallest that "));
-        text_u32(settings.baud);
-        text_words(FLASH_TEXT(" baud carries at "));
+        if (every == settings_smallest_every(settings.baud, settings.rate_dhz)) {
+            text_u32(settings.baud);
+            text_words(FLASH_TEXT(" baud carries at "));
+        } else {
+            write_filter_name();
+            text_words(FLASH_TEXT(" leaves time for at "));
+        }
         text_tenths(settings.rate_dhz);
         text_words(FLASH_TEXT(" Hz"));
     }
     return end(true);
-}
-
-static reply_progress_t rate_line(uint8_t line)
-{
-    if (line != 0) {
-        return every_line(false);
-    }
-    begin(FLASH_TEXT("rate "));
-    text_tenths(settings.rate_dhz);
-    text_words(FLASH_TEXT(" Hz, "));
-    write_bus_speed();
-    return end(false);
-}
-
-static reply_progress_t baud_line(uint8_t line)
-{
-    if (line != 0) {
-        return every_line(false);
-    }
-    begin(FLASH_TEXT("baud "));
-    text_u32(settings.baud);
-    return end(false);
 }
 
 static reply_progress_t range_line(void)
@@ -167,11 +158,29 @@ static reply_progress_t range_line(void)
     return end(true);
 }
 
-static reply_progress_t filter_line(void)
+/* A setting that rows depend on, and then what it makes of `every`. */
+static reply_progress_t setting_line(reply_kind_t kind, uint8_t line)
 {
-    begin(FLASH_TEXT("filter "));
-    write_filter_name();
-    return end(true);
+    if (line != 0) {
+        return every_line(false);
+    }
+    switch (kind) {
+    case REPLY_FILTER:
+        begin(FLASH_TEXT("filter "));
+        write_filter_name();
+        break;
+    case REPLY_RATE:
+        begin(FLASH_TEXT("rate "));
+        text_tenths(settings.rate_dhz);
+        text_words(FLASH_TEXT(" Hz, "));
+        write_bus_speed();
+        break;
+    default:
+        begin(FLASH_TEXT("baud "));
+        text_u32(settings.baud);
+        break;
+    }
+    return end(false);
 }
 
 /* After a change to csv the header follows: `set` is the reply's argument. */
@@ -186,20 +195,15 @@ static reply_progress_t mode_line(uint8_t line, uint8_t set)
     return end(set == 0 || settings.mode == MODE_PLOT);
 }
 
-static reply_progress_t fault_begin_line(uint8_t fault)
+static reply_progress_t fault_line(bool begins, uint8_t fault)
 {
-    begin(FLASH_TEXT("fault "));
-    text_u32(fault);
-    text_words(FLASH_TEXT(": "));
-    sensor_watch_describe(fault);
-    return end(true);
-}
-
-static reply_progress_t fault_end_line(uint8_t fault)
-{
-    begin(FLASH_TEXT("fault "));
-    text_u32(fault);
-    text_words(FLASH_TEXT(" over: samples again"));
+    if (begins) {
+        write_fault(fault);
+    } else {
+        begin(FLASH_TEXT("fault "));
+        text_u32(fault);
+        text_words(FLASH_TEXT(" over: samples again"));
+    }
     return end(true);
 }
 
@@ -235,15 +239,13 @@ reply_progress_t reply_write_line(reply_kind_t kind, uint8_t argument, uint8_t l
     case REPLY_STATUS:
         return reply_status_line(line);
     case REPLY_FILTER:
-        return filter_line();
     case REPLY_RATE:
-        return rate_line(line);
+    case REPLY_BAUD:
+        return setting_line(kind, line);
     case REPLY_RANGE:
         return range_line();
     case REPLY_EVERY:
         return every_line(true);
-    case REPLY_BAUD:
-        return baud_line(line);
     case REPLY_MODE:
         return mode_line(line, argument);
     case REPLY_STOPPED:
@@ -254,9 +256,9 @@ reply_progress_t reply_write_line(reply_kind_t kind, uint8_t argument, uint8_t l
         return unknown_line(argument);
     case REPLY_REFUSED:
         return reply_refused_line(argument);
-    case REPLY_FAULT_BEGIN:
-        return fault_begin_line(argument);
+    case REPLY_TOO_SLOW:
+        return reply_too_slow_line(argument);
     default:
-        return fault_end_line(argument);
+        return fault_line(kind == REPLY_FAULT_BEGIN, argument);
     }
 }

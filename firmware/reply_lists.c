@@ -6,11 +6,16 @@
 #include "commands.h"
 #include "filter_any.h"
 #include "flash.h"
+#include "fx.h"
 #include "hal_uart.h"
 #include "pipeline.h"
 #include "rows.h"
 #include "settings.h"
 #include "text.h"
+
+enum { RATE_LOWEST_DHZ = 125, COMBINATION_RATE = 16 };
+
+_Static_assert((int)FILTER_KIND_COUNT <= (int)COMBINATION_RATE, "a filter's kind has four bits in reply_combination");
 
 static void number(flash_text_t name, uint32_t value)
 {
@@ -71,12 +76,41 @@ flash_text_t reply_setting_name(uint8_t setting)
     }
 }
 
-reply_progress_t reply_refused_line(uint8_t setting)
+static void begin_refusal(void)
 {
     text_words(FLASH_TEXT("# refused: "));
+}
+
+reply_progress_t reply_refused_line(uint8_t setting)
+{
+    begin_refusal();
     text_words(reply_setting_name(setting));
     text_words(FLASH_TEXT(" is one of "));
     write_legal_values(setting);
+    text_close();
+    return REPLY_ENDED;
+}
+
+/* The rates are 12.5 Hz times a power of two: its exponent above four bits of the filter's kind. */
+uint8_t reply_combination(uint8_t filter, uint16_t rate_dhz)
+{
+    for (; rate_dhz > RATE_LOWEST_DHZ; rate_dhz >>= 1) {
+        filter = (uint8_t)(filter + COMBINATION_RATE);
+    }
+    return filter;
+}
+
+FX_ONCE reply_progress_t reply_too_slow_line(uint8_t combination)
+{
+    uint8_t filter = combination % COMBINATION_RATE;
+    uint16_t rate_dhz = (uint16_t)(RATE_LOWEST_DHZ << (combination / COMBINATION_RATE));
+    begin_refusal();
+    text_words(filter_any_name((filter_kind_t)filter));
+    number(FLASH_TEXT(" takes"), settings_filter_cycles(filter));
+    number(FLASH_TEXT(" of the"), settings_left_cycles(rate_dhz));
+    text_words(FLASH_TEXT(" cycles that a sample at "));
+    text_tenths(rate_dhz);
+    text_words(FLASH_TEXT(" Hz leaves"));
     text_close();
     return REPLY_ENDED;
 }

@@ -10,6 +10,10 @@
 /* Name of a setting (REPLY_FILTER to before REPLY_SETTINGS_END) as it is typed. */
 flash_text_t reply_setting_name(uint8_t setting);
 
+/* A filter and a legal rate in a reply's argument. */
+uint8_t reply_combination(uint8_t filter, uint16_t rate_dhz);
+
+reply_progress_t reply_too_slow_line(uint8_t combination);
 reply_progress_t reply_help_line(uint8_t line);
 reply_progress_t reply_status_line(uint8_t line);
 

@@ -1,10 +1,14 @@
-/* Defaults and the arithmetic of what the line carries. */
+/* Defaults and the arithmetic of what the line carries and the processor has time for. */
 #include "settings.h"
 
 #include "filter_any.h"
 #include "flash.h"
+#include "fx.h"
+#include "hal_time.h"
 
 settings_t settings;
+
+enum { AXES = 3 };
 
 static const uint32_t bauds[] FLASH = { 9600, 19200, 38400, 57600, 115200, 250000, 500000, 1000000 };
 
@@ -16,6 +20,7 @@ void settings_defaults(void)
     settings.range_g = 16;
     settings.filter = FILTER_KIND_sprf;
     settings.mode = MODE_CSV;
+    settings_follow();
 }
 
 bool settings_baud_valid(uint32_t baud)
@@ -28,21 +33,43 @@ bool settings_baud_valid(uint32_t baud)
     return false;
 }
 
-/* Ten bits a byte: baud bytes in ten seconds; rate_dhz samples in ten seconds. */
-uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
+FX_ONCE uint16_t settings_filter_cycles(uint8_t filter)
 {
-    uint32_t bytes_per_sample_each = (uint32_t)rate_dhz * SETTINGS_ROW_MAX;
-    uint32_t carried = 0;
-    uint16_t every = 0;
-    while (carried < bytes_per_sample_each) {
-        carried += baud;
-        every++;
-    }
-    return every == 0 ? 1 : every;
+    return (uint16_t)(AXES * filter_any_worst_cycles((filter_kind_t)filter));
 }
 
-uint16_t settings_every_in_force(void)
+FX_ONCE uint32_t settings_left_cycles(uint16_t rate_dhz)
 {
-    uint16_t smallest = settings_smallest_every(settings.baud, settings.rate_dhz);
-    return settings.every > smallest ? settings.every : smallest;
+    uint32_t period = HAL_CPU_HZ * 10u / rate_dhz;
+    return period > SETTINGS_REST_CYCLES ? period - SETTINGS_REST_CYCLES : 0;
+}
+
+FX_ONCE bool settings_fit(uint8_t filter, uint16_t rate_dhz)
+{
+    return settings_filter_cycles(filter) < settings_left_cycles(rate_dhz);
+}
+
+/* Rounded up. */
+FX_NOINLINE uint16_t quotient(uint32_t wanted, uint32_t each)
+{
+    return (uint16_t)((wanted + each - 1u) / each);
+}
+
+/* Ten bits a byte: baud bytes in ten seconds; rate_dhz samples in ten seconds. */
+FX_ONCE uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
+{
+    return quotient((uint32_t)rate_dhz * SETTINGS_ROW_MAX, baud);
+}
+
+FX_ONCE void settings_follow(void)
+{
+    uint32_t over = settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter);
+    uint16_t carried = settings_smallest_every(settings.baud, settings.rate_dhz);
+    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, over);
+    settings.every_smallest = carried > computed ? carried : computed;
+}
+
+FX_ONCE uint16_t settings_every_in_force(void)
+{
+    return settings.every > settings.every_smallest ? settings.every : settings.every_smallest;
 }

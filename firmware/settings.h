@@ -8,12 +8,13 @@
 typedef enum { MODE_CSV, MODE_PLOT } output_mode_t;
 
 typedef struct {
-    uint32_t baud;     /* SETTINGS_BAUD_DEFAULT, see settings_baud_valid */
-    uint16_t rate_dhz; /* output data rate in 0.1 Hz */
-    uint16_t every;    /* a row for every Nth sample, as asked for: 1..SETTINGS_EVERY_MAX */
-    uint8_t range_g;   /* 2, 4, 8, 16 */
-    uint8_t filter;    /* filter_kind_t */
-    uint8_t mode;      /* output_mode_t */
+    uint32_t baud;           /* SETTINGS_BAUD_DEFAULT, see settings_baud_valid */
+    uint16_t rate_dhz;       /* output data rate in 0.1 Hz */
+    uint16_t every;          /* a row for every Nth sample, as asked for: 1..SETTINGS_EVERY_MAX */
+    uint8_t range_g;         /* 2, 4, 8, 16 */
+    uint8_t filter;          /* filter_kind_t */
+    uint8_t mode;            /* output_mode_t */
+    uint16_t every_smallest; /* follows from baud, rate and filter: settings_follow */
 } settings_t;
 
 #define SETTINGS_BAUD_DEFAULT 115200ul
@@ -22,15 +23,35 @@ typedef struct {
 /* What the line must carry for a row: at most 67 bytes (csv) or 69 (plot), and some for replies. */
 #define SETTINGS_ROW_MAX 72u
 
+/*
+ * What a sample takes of the processor beside its three filters, and a row, in cycles: worst cases for any length of
+ * time, as `make bench` measures and judges them (sample_rest, row). The rest: the interrupts of bus and clock, passes
+ * of the main loop, three noise estimates, and new variances as often as an estimate can leave the last by an eighth.
+ * What is longer but rare (five warm-up samples, variances on all axes at once, replies, a change of settings) waits
+ * in the sensor's FIFO and the driver's queue, 39 samples together, and is caught up with what a sample leaves over.
+ */
+#define SETTINGS_REST_CYCLES 6500u
+#define SETTINGS_ROW_CYCLES 9500u
+
 extern settings_t settings;
 
 void settings_defaults(void);
 bool settings_baud_valid(uint32_t baud);
 
+/* Cycles that three axes of a filter take at most, and those that this output data rate leaves for them. */
+uint16_t settings_filter_cycles(uint8_t filter);
+uint32_t settings_left_cycles(uint16_t rate_dhz);
+
+/* The rule: the first is less than the second. What it leaves over is for rows. */
+bool settings_fit(uint8_t filter, uint16_t rate_dhz);
+
+/* To be called when baud, rate or filter has changed. */
+void settings_follow(void);
+
 /* The smallest `every` with which this baud rate carries rows of SETTINGS_ROW_MAX bytes at this output data rate. */
 uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz);
 
-/* What is in force: the greater of what was asked for and the smallest that fits. */
+/* What is in force: the greatest of what was asked for, what the line carries and what the processor has time for. */
 uint16_t settings_every_in_force(void);
 
 #endif

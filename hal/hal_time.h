@@ -5,6 +5,8 @@
  *   uint32_t hal_time_us(void)        now (any context)
  *   uint32_t hal_time_us_isr(void)    the same, cheaper, with interrupts already off
  *
+ *   uint32_t HAL_CPU_HZ               cycles of the processor in a second
+ *
  * The timer also wakes main every HAL_TICK_US, so a deadline is noticed even when no other interrupt comes.
  */
 #ifndef HAL_TIME_H

@@ -6,10 +6,11 @@ import sys
 
 from system_support import FW, OUT, SIMRUN, STREAMS, run, run_all, test
 
+sys.path.insert(0, "tools")
 spec = importlib.util.spec_from_file_location("bench", pathlib.Path("tools/bench.py"))
 bench = importlib.util.module_from_spec(spec)
-sys.path.insert(0, "tools")
 spec.loader.exec_module(bench)
+bench_firmware = sys.modules["bench_firmware"]
 
 PRINTED = """
 =kf typical 1000
@@ -75,6 +76,40 @@ def a_worst_case_over_its_limit_is_named():
     one_finding(changed("kf", worst=801), "kf", "801", "800", "provoked 12.5 Hz")
     one_finding(changed("angles", worst=1501), "angles", "1501")
     one_finding(changed("kf", worst_small=801), "kf", "801", "800", "the firmware's flags")
+
+
+@test
+def a_declared_worst_case_is_held_from_both_sides():
+    declared = {"kf": 800, "angles": 1480}
+    assert bench.declared_faults(declared, rows()) == []
+    for changes, words in (({"worst": 801}, ("kf", "801", "800", "more than declared")), ({"worst_small": 801}, ("kf", "801", "more than declared")),
+                           ({"worst": 720, "worst_small": 727}, ("kf", "727", "800", "10% too much"))):
+        found = bench.declared_faults(declared, changed("kf", **changes))
+        assert len(found) == 1 and all(word in found[0] for word in words), found
+    assert bench.declared_faults(declared, changed("kf", worst=700, worst_small=728)) == []
+    assert len(bench.declared_faults({"angles": 1399}, rows())) == 1
+
+
+@test
+def what_the_code_declares_is_read():
+    flags = ["-mmcu=atmega328p", "-Ilib/filters/src", "-Ifirmware"]
+    filters = bench.filters_of(flags)
+    declared = bench.declared_of(flags, filters)
+    assert set(declared) == {*filters, "sample_rest", "row"} and all(300 < cycles < 10000 for cycles in declared.values()), declared
+    try:
+        bench.declared_of(flags, [*filters, "later"])
+    except bench.Fault as fault:
+        assert "later: declares no worst case" in str(fault)
+    else:
+        raise AssertionError("a filter that declares nothing was not named")
+
+
+@test
+def the_rest_of_a_sample_s_way_is_its_mean_and_what_may_come_on_top():
+    parts = {"noise": {"worst": 535, "worst_small": 550, "median": 504}, "kf_set_noise": {"worst": 2011}, "sprf_set_noise": {"worst": 3520}}
+    rest = bench_firmware.rest_row({"one": 5300.4, "other": 5000.0}, parts)
+    # 5300.4 + 3 (550 - 504) + 3 x 3520 / 16
+    assert rest["worst"] == 6098 and rest["where"] == "one" and rest["min"] == 5000, rest
 
 
 @test

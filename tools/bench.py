@@ -1,7 +1,6 @@
 """make bench: runs the images of the benchmark in the simulator, judges the numbers, writes build/bench.json and the table of
 docs/benchmarks.md."""
 import argparse
-import csv
 import json
 import pathlib
 import re
@@ -10,9 +9,8 @@ import subprocess
 import sys
 
 import bench_where
+from bench_firmware import OUT, SIMRUN, Fault, measure_rest, measure_sample, run
 
-SIMRUN = "build/sim/simrun"
-OUT = pathlib.Path("build/uno")
 JSON = pathlib.Path("build/bench.json")
 DOCUMENT = pathlib.Path("docs/benchmarks.md")
 BEGIN, END = "<!-- written by make bench: begin -->", "<!-- written by make bench: end -->"
@@ -32,22 +30,9 @@ RMS_LIMIT_FILTER = 0.25
 # At 12.5 Hz P grows so fast that single decisions at the gate's threshold fall differently, and each shows for some samples.
 RMS_FROM_DHZ = 250
 
-# The firmware's own way of a sample: stream, options of simrun
-SAMPLE_RUNS = (("outliers-15pct", ()), ("gaps-jitter", ()), ("clipping", ()), ("bad-reads", ()), ("vibration", ()),
-               ("tilt-400hz", ("--rate", "400", "--baud", "500000")), ("through-roll-180", ()))
+# How much more than the measured worst case may be declared
+DECLARED_OVER = 1.10
 COLUMNS = ("median", "worst", "worst, firmware's flags", "flash", "RAM", "stack")
-
-
-class Fault(Exception):
-    """One sentence about what is wrong."""
-
-
-def run(command, statuses=(0,)):
-    command = [str(c) for c in command]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
-    if done.returncode not in statuses:
-        raise Fault(f"{command[0]} gave status {done.returncode}: {(done.stderr or done.stdout).strip()}")
-    return done.stdout
 
 
 # --- what the image prints ---
@@ -107,26 +92,6 @@ def measure(images):
     return results
 
 
-def measure_sample():
-    """The sample's way in the firmware: cycles and stack of every sample of some streams."""
-    cycles, stack, worst = [], 0, (0, "")
-    for stream, options in SAMPLE_RUNS:
-        spans = OUT / "bench_sample.csv"
-        run([SIMRUN, "--fw", OUT / "bench_sample.elf", "--in", f"sim/streams/{stream}.csv", "--out", OUT / "bench_sample.txt", "--span",
-             f"bench_sample_begins:bench_sample_ends:{spans}", *options])
-        with open(spans, encoding="ascii") as file:
-            rows = list(csv.DictReader(file))
-        if not rows:
-            raise Fault(f"sample_total: no sample of {stream} was timed")
-        part = [int(row["cycles"]) for row in rows]
-        stack = max(stack, *(int(row["stack_bytes"]) for row in rows))
-        worst = max(worst, (max(part), stream))
-        cycles.append((stream, part))
-    values = [v for _, part in cycles for v in part]
-    typical = [v for stream, part in cycles if stream == "outliers-15pct" for v in part]
-    return {"min": min(values), "median": round(statistics.median(typical)), "worst": worst[0], "where": worst[1], "samples": len(values)}, stack
-
-
 def measure_where():
     """The table of where the dearest filter's cycles go."""
     profile = OUT / "bench_where.csv"
@@ -147,6 +112,18 @@ def filters_of(flags):
     if done.returncode != 0 or not names:
         raise Fault(f"cannot read the list of filters: {done.stderr.strip()}")
     return names
+
+
+def declared_of(flags, filters):
+    """{name: worst case in cycles that the code declares}: the filters, sample_rest and row."""
+    source = '#include "filter_list.h"\n#include "settings.h"\n'
+    source += "sample_rest_worst_cycles = SETTINGS_REST_CYCLES\nrow_worst_cycles = SETTINGS_ROW_CYCLES\n"
+    done = subprocess.run(["avr-gcc", *flags, "-E", "-P", "-x", "c", "-"], input=source, capture_output=True, text=True, timeout=60)
+    found = {name: int(value) for name, value in re.findall(r"\b(\w+)_worst_cycles = (\d+)u?\b", done.stdout)}
+    missed = [name for name in [*filters, "sample_rest", "row"] if name not in found]
+    if done.returncode != 0 or missed:
+        raise Fault(f"{missed[0] if missed else 'filter_list.h'}: declares no worst case ({missed[0] if missed else ''}_worst_cycles)")
+    return found
 
 
 def image_size(elf):
@@ -211,6 +188,18 @@ def limit_faults(filters, rows, rms):
                 faults.append(f"{name}: {kind.split('_')[0]} {row[kind]} cycles, float {yardstick[kind]}: "
                               f"{yardstick[kind] / row[kind]:.2f} times fewer, wanted {wanted:g}")
     return faults + agreement_faults(filters, rms)
+
+
+def declared_faults(declared, rows):
+    """A declared worst case must be at least what was measured in any build, and not much more."""
+    faults = []
+    for name, cycles in declared.items():
+        measured = max(rows[name]["worst"], rows[name].get("worst_small") or 0)
+        if measured > cycles:
+            faults.append(f"{name}: worst case {measured} cycles, declared {cycles}: more than declared")
+        elif cycles > measured * DECLARED_OVER:
+            faults.append(f"{name}: worst case {measured} cycles, declared {cycles}: more than {DECLARED_OVER - 1:.0%} too much")
+    return faults
 
 
 def agreement_faults(filters, rms):
@@ -314,16 +303,20 @@ def collect(flags, sources, parts):
     alone, shared = measure_sizes(flags, sources, filters)
     rows["sample_total"], stack["sample_total"] = measure_sample()
     rows_small["sample_total"] = rows["sample_total"]
+    rows["noise"]["worst_small"] = rows_small["noise"]["worst"]
+    for name, row in zip(("sample_rest", "row"), measure_rest(rows)):
+        rows[name] = rows_small[name] = row
     alone["sample_total"] = image_size(OUT / "firmware.elf")
     for name, row in rows.items():
         row["worst_small"] = rows_small[name]["worst"] if name in rows_small else ""
-        row["stack"] = stack[name]
+        if name in stack:
+            row["stack"] = stack[name]
         if name in alone:
             row["flash"], row["ram"] = alone[name]
         if name in shared:
             row["shared"] = shared[name]
-    wanted = [*filters, "angles", "format_row", "sample_total", "noise", *(f"{f}_set_noise" for f in filters), *(f"float_{f}" for f in filters),
-              KEPT, "float_angles"]
+    wanted = [*filters, "angles", "format_row", "sample_total", "sample_rest", "row", "noise", *(f"{f}_set_noise" for f in filters),
+              *(f"float_{f}" for f in filters), KEPT, "float_angles"]
     return filters, {name: rows[name] for name in wanted}, rms
 
 
@@ -339,7 +332,8 @@ def main():
     print("\n".join(lines))
     JSON.write_text(json.dumps(bench_json(rows), indent=1) + "\n", encoding="ascii")
     new = read_table("\n".join([BEGIN, *lines, END]))
-    faults = limit_faults(filters, rows, rms) + regressions(read_table(committed_page()), new)
+    faults = limit_faults(filters, rows, rms) + declared_faults(declared_of(arguments.flags.split(), filters), rows)
+    faults += regressions(read_table(committed_page()), new)
     version = run(["avr-gcc", "-dumpversion"]).strip()
     if version != COMPILER:
         print(f"bench: avr-gcc {version}: reported only, the limits and docs/benchmarks.md are for {COMPILER}")

@@ -94,6 +94,9 @@ static inline bool hal_i2c_stop_pending(void)
 }
 
 /* hal_time.h */
+#ifndef HAL_CPU_HZ /* a test image tells a slower one */
+#define HAL_CPU_HZ F_CPU
+#endif
 void hal_time_init(void);
 uint32_t hal_time_us(void);
 uint32_t hal_time_us_isr(void);

@@ -17,6 +17,7 @@ enum { CYCLES_PER_US = 16, EEPROM_WRITE_US = 3400, PASS_CYCLES = 320 };
 uint64_t host_now;
 hal_host_config_t host_config;
 hal_host_faults_t hal_host_faults;
+uint32_t hal_host_cpu_hz = (uint32_t)HAL_HOST_HZ;
 
 static bool wake_wanted;
 static bool drdy_enabled;
@@ -37,6 +38,7 @@ void hal_host_begin(const hal_host_config_t *config, const stream_t *stream, boo
 {
     host_config = *config;
     host_now = 0;
+    hal_host_cpu_hz = (uint32_t)HAL_HOST_HZ;
     memset(&hal_host_faults, 0, sizeof hal_host_faults);
     hal_host_faults.next_status = -1;
     memset(eeprom, 0xFF, sizeof eeprom);

@@ -36,6 +36,9 @@ typedef struct {
     bool tx_stuck;               /* the UART sends no more */
 } hal_host_faults_t;
 
+/* What the firmware is told of its processor (HAL_CPU_HZ); power-on makes it HAL_HOST_HZ. */
+extern uint32_t hal_host_cpu_hz;
+
 extern adxl345_model_t hal_host_sensor;
 extern hal_host_faults_t hal_host_faults;
 

@@ -27,6 +27,8 @@ uint8_t hal_i2c_status(void);
 bool hal_i2c_stop_pending(void);
 
 /* hal_time.h */
+#define HAL_CPU_HZ hal_host_cpu_hz
+extern uint32_t hal_host_cpu_hz;
 void hal_time_init(void);
 uint32_t hal_time_us(void);
 uint32_t hal_time_us_isr(void);

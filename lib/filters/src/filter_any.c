@@ -24,9 +24,20 @@ static const char names[FILTER_KIND_COUNT][12] FX_FLASH = {
 #undef NAME
 };
 
-const char *filter_any_name(filter_kind_t kind)
+FX_ONCE const char *filter_any_name(filter_kind_t kind)
 {
     return names[kind];
+}
+
+static const uint16_t worst_cycles[FILTER_KIND_COUNT] FX_FLASH = {
+#define WORST_CYCLES(F) F##_worst_cycles,
+    FILTER_LIST(WORST_CYCLES)
+#undef WORST_CYCLES
+};
+
+uint16_t filter_any_worst_cycles(filter_kind_t kind)
+{
+    return fx_flash_u16(&worst_cycles[kind]);
 }
 
 /* Text in RAM equal to text in program memory. */
@@ -139,7 +150,7 @@ int32_t filter_any_coast(filter_any_t *f)
     }
 }
 
-uint8_t filter_any_flags(const filter_any_t *f)
+FX_ONCE uint8_t filter_any_flags(const filter_any_t *f)
 {
     switch (f->kind) {
 #define FLAGS(F)          \

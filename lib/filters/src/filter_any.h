@@ -40,6 +40,9 @@ const filter_descriptor_t *filter_any_descriptor(filter_kind_t kind);
 /* Name of a kind, in program memory, as typed in `filter NAME`; the same as in its descriptor. */
 const char *filter_any_name(filter_kind_t kind);
 
+/* F_worst_cycles of a kind (filter.h). */
+uint16_t filter_any_worst_cycles(filter_kind_t kind);
+
 /* Kind whose name equals the text (RAM, NUL-terminated); FILTER_KIND_COUNT when none does. */
 filter_kind_t filter_any_find(const char *name);
 

@@ -21,7 +21,10 @@ extern "C" {
 /* Never inlined: keeps the registers of a rare or heavy part out of its caller's prologue. */
 #define FX_NOINLINE static __attribute__((noinline))
 
-/* For public functions that run rarely: link-time optimisation shall not copy them to each caller either. */
+/*
+ * For public functions that run rarely or only dispatch: link-time optimisation shall not copy them to each caller
+ * either.
+ */
 #define FX_ONCE __attribute__((noinline))
 
 /*

@@ -144,7 +144,7 @@ FX_INLINE bool limit_x(int32_t *x_lsb_q16)
     return false;
 }
 
-void synth_reset(synth_t *f, int16_t z0_lsb)
+FX_ONCE void synth_reset(synth_t *f, int16_t z0_lsb)
 {
     int32_t x = (int32_t)filter_clamp_z(z0_lsb) * 65536;
     f->u.run.x_lsb_q16[0] = x;

@@ -57,6 +57,8 @@ typedef struct {
 /* Descriptor in program memory. */
 extern const filter_descriptor_t synth_descriptor;
 
+enum { synth_worst_cycles = 500 }; /* of synth_update, as in filter.h */
+
 /* The preset to use: a1 = 0, b0 = 0.3. */
 void synth_defaults(synth_config_t *config, uint16_t rate_dhz);
 

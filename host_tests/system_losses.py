@@ -1,0 +1,115 @@
+"""No sample and no row is lost: rates, baud rates, filters and their time; part of system_tests.py."""
+import re
+
+from system_support import FW, OUT, STREAMS, TESTS, assert_nothing_lost, simrun, test, within
+
+
+def worst_width_stream():
+    """Readings whose columns are as wide as they get: -4096 and -4095 by turns."""
+    path = OUT / "worst-width.csv"
+    with open(path, "w", encoding="ascii") as file:
+        file.write("t_us,x_lsb,y_lsb,z_lsb\n")
+        for i in range(2000):
+            v = -4096 + i % 2
+            file.write(f"{i * 10000},{v},{v},{v}\n")
+    return path
+
+
+def lose_nothing(name, stream, ppm, rate, baud, every, load_limit, fw=FW, shift_us=0, filter_name=None):
+    options = ["--ppm", ppm, "--loop", "--max-ms", "61500"]
+    if filter_name is not None:
+        options += ["--filter", filter_name]
+    if baud != 115200:
+        options += ["--baud", baud]
+    if rate != 100:
+        options += ["--rate", rate]
+    if every != 1:
+        options += ["--every", every]
+    rows, notes, served, stats = simrun(name, stream, *options, fw=fw)
+    for row in rows:
+        row[0] -= shift_us
+    assert_nothing_lost(rows, served, every, from_us=1000000, end_us=61000000)
+    late = [r for r in rows if r[0] >= 1000000]
+    assert not any(r[9] & 256 for r in rows), "a row was dropped"
+    assert 60000000 / 1e6 * rate / every * 0.995 < len(late), f"{len(late)} rows in 60 s"
+    within(f"CPU load at {rate} Hz", stats["cpu_load"], load_limit)
+    # 84 bit times a sample: START, address, register, repeated START, address, six bytes, STOP
+    bit_hz = 400e3 if rate == 800 else 16e6 / 44
+    assert abs(stats["i2c_load"] - rate * 84 / bit_hz) < 0.02 * stats["i2c_load"] + 0.0005, stats["i2c_load"]
+    mean_us = (int(served[-1]["t_us"]) - int(served[200]["t_us"])) / (len(served) - 201)
+    true_us = 1e6 / rate / (1 + ppm * 1e-6)
+    assert abs(mean_us / true_us - 1) < 2e-5, f"the sensor's clock: {mean_us} us, {true_us} us asked for"
+    return rows
+
+
+def make_loss_test(rate, baud, every, load_limit, ppm):
+    def check():
+        lose_nothing(f"loss-{rate}-{ppm}", STREAMS / "tilt-slow.csv", ppm, rate, baud, every, load_limit)
+    check.__name__ = f"nothing_lost_{rate}_hz_{'plus' if ppm > 0 else 'minus'}_777_ppm"
+    return check
+
+
+for ppm_error in (777, -777):
+    TESTS.append(make_loss_test(100, 115200, 1, 0.10, ppm_error))
+    TESTS.append(make_loss_test(400, 500000, 1, 0.40, ppm_error))
+    TESTS.append(make_loss_test(800, 500000, 4, 0.50, ppm_error))
+
+
+def make_width_test(rate, baud, every):
+    def check():
+        # this image's clock starts at 4.2e9 us: ten digits in every stamp
+        rows = lose_nothing(f"wide-{rate}", worst_width_stream(), 777, rate, baud, every, 1.0, fw="build/uno/late/firmware.elf",
+                            shift_us=4200000000)
+        assert min(r[0] for r in rows) + 4200000000 > 1000000000
+        text = (OUT / f"wide-{rate}.csv").read_text().splitlines()
+        assert max(len(line) for line in text) >= 62
+    check.__name__ = f"nothing_lost_{rate}_hz_with_the_widest_rows"
+    return check
+
+
+TESTS.append(make_width_test(100, 115200, 1))
+TESTS.append(make_width_test(400, 500000, 1))
+TESTS.append(make_width_test(800, 500000, 4))
+
+
+def forced_every(filter_name, rate):
+    """The `every` that the firmware sets when it is asked for every row at 1,000,000 baud."""
+    _, notes, _, stats = simrun("forced", STREAMS / "rest-2lsb.csv", "--filter", filter_name, "--rate", rate, "--baud", 1000000, "--every", 1,
+                                "--max-ms", 1500)
+    forced = [re.fullmatch(rf"# every (\d+)(: the smallest that {filter_name} leaves time for at {rate} Hz)?", note) for note in notes]
+    every = int([f for f in forced if f][-1].group(1))
+    assert f"# filter {filter_name}" in notes and f"# rate {rate} Hz, I2C at {400 if rate == 800 else 363.6} kHz" in notes, notes
+    return every
+
+
+def make_time_test(filter_name, rate):
+    def check():
+        # rows are as many and as wide as they get: all that the firmware allows must go out
+        every = forced_every(filter_name, rate)
+        for stream, shift_us, fw in ((worst_width_stream(), 4200000000, "build/uno/late/firmware.elf"), (STREAMS / "outliers-15pct.csv", 0, FW)):
+            lose_nothing(f"time-{filter_name}-{rate}", stream, 777, rate, 1000000, every, 1.0, fw=fw, shift_us=shift_us, filter_name=filter_name)
+    check.__name__ = f"nothing_lost_{rate}_hz_1000000_baud_{filter_name}"
+    return check
+
+
+for slow_filter in ("pbf", "af"):
+    TESTS.append(make_time_test(slow_filter, 800))
+
+
+@test
+def a_filter_too_slow_for_the_rate_is_refused_and_samples_go_on():
+    # this image is told of 14 MHz: af takes more than a sample at 800 Hz leaves, pbf does not
+    tight = "build/uno/tight/firmware.elf"
+    reply = "# refused: af takes 12450 of the 11000 cycles that a sample at 800 Hz leaves"
+    rows, notes, served, _ = simrun("tight-filter", STREAMS / "rest-2lsb.csv", "--filter", "pbf", "--rate", 800, "--baud", 1000000, "--cmd",
+                                    "1500:filter af", "--cmd", "1600:filter", "--loop", "--max-ms", 3000, fw=tight)
+    assert notes.count(reply) == 1 and notes[notes.index(reply) + 1] == "# filter pbf", notes
+    # 17,500 - 6,500 - 10,350 cycles a sample are left for rows of 9,500
+    assert "# every 15: the smallest that pbf leaves time for at 800 Hz" in notes, notes
+    assert_nothing_lost(rows, served, 15, from_us=1000000, end_us=2900000)
+    assert not any(r[9] & (128 | 256) for r in rows if r[0] > 1400000)
+    rows, notes, served, _ = simrun("tight-rate", STREAMS / "rest-2lsb.csv", "--filter", "af", "--cmd", "1500:rate 800", "--cmd", "1600:rate",
+                                    "--loop", "--max-ms", 3000, fw=tight)
+    assert notes.count(reply) == 1 and notes[notes.index(reply) + 1] == "# rate 100 Hz, I2C at 363.6 kHz", notes
+    assert_nothing_lost(rows, served, from_us=1000000, end_us=2900000)
+    assert not any(r[9] & (128 | 256) for r in rows if r[0] > 1400000)

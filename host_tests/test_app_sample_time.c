@@ -1,0 +1,142 @@
+/* What a sample's period leaves: filters and rates that do not go together are refused, rows are thinned. */
+#include <stdio.h>
+#include <string.h>
+
+#include "filter_any.h"
+#include "hang_test.h"
+#include "pipeline.h"
+#include "settings.h"
+#include "support_board.h"
+#include "unity.h"
+
+void setUp(void)
+{
+    hang_stages = 0;
+}
+
+void tearDown(void) {}
+
+/*
+ * A processor of 14 MHz: 17,500 cycles a sample at 800 Hz, 11,000 without the rest of its way. 3 x 4,150 of af are too
+ * many, 3 x 3,450 of pbf are not.
+ */
+static void board_start_with_a_slow_processor(void)
+{
+    board_start_resting();
+    hal_host_cpu_hz = 14000000;
+    board_run_ms(200);
+}
+
+static void type_and_read(const char *typed, const char *answer)
+{
+    size_t before = board.note_count;
+    board_type(typed);
+    board_run_ms(150);
+    TEST_ASSERT_TRUE_MESSAGE(board.note_count > before, typed);
+    TEST_ASSERT_EQUAL_STRING(answer, board.notes[before]);
+}
+
+static void test_a_filter_too_slow_for_the_rate_is_refused(void)
+{
+    board_start_with_a_slow_processor();
+    type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
+    settings_t kept = settings;
+    size_t rows = board.row_count;
+    type_and_read("filter af", "# refused: af takes 12450 of the 11000 cycles that a sample at 800 Hz leaves");
+    TEST_ASSERT_EQUAL_MEMORY(&kept, &settings, sizeof kept);
+    for (size_t i = rows + 1; i < board.row_count; i++) {
+        TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & ROW_WARMING_UP);
+        TEST_ASSERT_UINT32_WITHIN(2, 1250u * settings_every_in_force(), board.rows[i].t_us - board.rows[i - 1].t_us);
+    }
+    TEST_ASSERT_TRUE(board.row_count > rows + 10);
+    type_and_read("filter pbf", "# filter pbf");
+    type_and_read("rate 400", "# rate 400 Hz, I2C at 363.6 kHz");
+    type_and_read("filter af", "# filter af");
+}
+
+static void test_a_rate_too_fast_for_the_filter_is_refused(void)
+{
+    board_start_with_a_slow_processor();
+    type_and_read("filter af", "# filter af");
+    settings_t kept = settings;
+    size_t before = board.note_count;
+    type_and_read("rate 800", "# refused: af takes 12450 of the 11000 cycles that a sample at 800 Hz leaves");
+    TEST_ASSERT_EQUAL_size_t(before + 1, board.note_count);
+    TEST_ASSERT_EQUAL_MEMORY(&kept, &settings, sizeof kept);
+    type_and_read("rate 1600", "# refused: rate is one of 12.5 25 50 100 200 400 800");
+    type_and_read("rate 400", "# rate 400 Hz, I2C at 363.6 kHz");
+    type_and_read("rate 12.5", "# rate 12.5 Hz, I2C at 363.6 kHz");
+    type_and_read("filter kf", "# filter kf");
+    type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
+    hal_host_cpu_hz = 5000000; /* not even the rest of a sample's way */
+    type_and_read("filter synth", "# refused: synth takes 1500 of the 0 cycles that a sample at 800 Hz leaves");
+    board_type("status");
+    board_run_ms(300);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("lines refused 3", before));
+}
+
+/* On this board: what starts is allowed, what is refused. */
+static void test_every_filter_fits_every_rate_of_this_board(void)
+{
+    board_start_resting();
+    TEST_ASSERT_TRUE(settings_fit(settings.filter, settings.rate_dhz));
+    for (uint8_t filter = 0; filter < FILTER_KIND_COUNT; filter++) {
+        for (uint16_t rate_dhz = 125; rate_dhz <= 8000; rate_dhz = (uint16_t)(rate_dhz * 2u)) {
+            TEST_ASSERT_TRUE_MESSAGE(settings_fit(filter, rate_dhz), filter_any_name((filter_kind_t)filter));
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT16(3u * filter_any_worst_cycles(FILTER_KIND_af), settings_filter_cycles(FILTER_KIND_af));
+    TEST_ASSERT_EQUAL_UINT32(20000u - SETTINGS_REST_CYCLES, settings_left_cycles(8000));
+    TEST_ASSERT_EQUAL_UINT32(1280000u - SETTINGS_REST_CYCLES, settings_left_cycles(125));
+    hal_host_cpu_hz = (SETTINGS_REST_CYCLES + 3u * af_worst_cycles) * 800u;
+    TEST_ASSERT_FALSE(settings_fit(FILTER_KIND_af, 8000)); /* nothing would be left for a row */
+    hal_host_cpu_hz += 800u;
+    TEST_ASSERT_TRUE(settings_fit(FILTER_KIND_af, 8000));
+}
+
+/* At 1,000,000 baud the line carries every row at 800 Hz; the filter leaves time for one in several. */
+static void test_every_follows_what_the_filter_leaves_time_for(void)
+{
+    static const struct {
+        const char *name;
+        uint16_t cycles;
+    } filters[] = { { "sprf", sprf_worst_cycles },
+                    { "soft", soft_worst_cycles },
+                    { "sprf_paper", sprf_paper_worst_cycles },
+                    { "pbf", pbf_worst_cycles },
+                    { "af", af_worst_cycles } };
+    board_start_resting();
+    board_run_ms(200);
+    board_type("baud 1000000");
+    board_run_ms(100);
+    type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
+    for (size_t i = 0; i < sizeof filters / sizeof filters[0]; i++) {
+        char typed[32], answer[96];
+        unsigned over = 20000u - SETTINGS_REST_CYCLES - 3u * filters[i].cycles;
+        unsigned every = 1;
+        while (every * over < SETTINGS_ROW_CYCLES) {
+            every++;
+        }
+        size_t before = board.note_count;
+        snprintf(typed, sizeof typed, "filter %s", filters[i].name);
+        snprintf(answer, sizeof answer, "# every %u: the smallest that %s leaves time for at 800 Hz", every,
+                 filters[i].name);
+        board_type(typed);
+        board_run_ms(150);
+        TEST_ASSERT_EQUAL_UINT16(every, settings_every_in_force());
+        TEST_ASSERT_EQUAL_size_t(every == 1 ? 0 : 1, board_notes_with(answer, before));
+        TEST_ASSERT_EQUAL_size_t(before + (every == 1 ? 1 : 2), board.note_count);
+    }
+    type_and_read("rate 100", "# rate 100 Hz, I2C at 363.6 kHz");
+    TEST_ASSERT_EQUAL_UINT16(1, settings_every_in_force());
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_filter_too_slow_for_the_rate_is_refused);
+    RUN_TEST(test_a_rate_too_fast_for_the_filter_is_refused);
+    RUN_TEST(test_every_filter_fits_every_rate_of_this_board);
+    RUN_TEST(test_every_follows_what_the_filter_leaves_time_for);
+    return UNITY_END();
+}
