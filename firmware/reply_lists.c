@@ -13,9 +13,10 @@
 #include "settings.h"
 #include "text.h"
 
-enum { RATE_LOWEST_DHZ = 125, COMBINATION_RATE = 16 };
+#define RATE_LOWEST_DHZ 125u
+#define COMBINATION_RATE 16u
 
-_Static_assert((int)FILTER_KIND_COUNT <= (int)COMBINATION_RATE, "a filter's kind has four bits in reply_combination");
+_Static_assert(FILTER_KIND_COUNT <= COMBINATION_RATE, "a filter's kind has four bits in reply_combination");
 
 static void number(flash_text_t name, uint32_t value)
 {
