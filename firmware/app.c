@@ -7,7 +7,6 @@
 
 #include "adxl345.h"
 #include "commands.h"
-#include "fx.h"
 #include "hal_drdy.h"
 #include "hal_irq.h"
 #include "hal_led.h"
@@ -204,7 +203,7 @@ static void follow_configuration(void)
     config_changed = false;
 }
 
-FX_NOINLINE void filter_samples(void)
+static void filter_samples(void)
 {
     adxl345_sample_t sample;
     if (HANGS(HEALTH_FILTERING)) {

@@ -186,7 +186,7 @@ static bool run_verb(void)
 }
 
 /* The text after the first blanks, NULL when there is none; the name before it is cut off (a blank becomes the end). */
-static char *split_value(void)
+FX_NOINLINE char *split_value(void)
 {
     char *at = line;
     while (*at != '\0' && *at != ' ') {

@@ -55,11 +55,9 @@ static void write_reset_cause(void)
 /* 800 Hz needs 400 kHz, where tLOW is 1.25 us instead of the 1.3 us that both data sheets ask for. */
 static void write_bus_speed(void)
 {
-    if (settings.rate_dhz == 8000) {
-        text_words(FLASH_TEXT("I2C at 400 kHz"));
-    } else {
-        text_words(FLASH_TEXT("I2C at 363.6 kHz"));
-    }
+    text_words(FLASH_TEXT("I2C at "));
+    text_tenths(settings.rate_dhz == 8000 ? 4000 : 3636);
+    text_words(FLASH_TEXT(" kHz"));
 }
 
 static void write_fault(uint8_t fault)

@@ -49,10 +49,10 @@ FX_ONCE bool settings_fit(uint8_t filter, uint16_t rate_dhz)
     return settings_filter_cycles(filter) < settings_left_cycles(rate_dhz);
 }
 
-/* Rounded up. */
+/* Rounded up; wanted is at least 1. */
 FX_NOINLINE uint16_t quotient(uint32_t wanted, uint32_t each)
 {
-    return (uint16_t)((wanted + each - 1u) / each);
+    return (uint16_t)((wanted - 1u) / each + 1u);
 }
 
 /* Ten bits a byte: baud bytes in ten seconds; rate_dhz samples in ten seconds. */

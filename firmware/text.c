@@ -54,14 +54,10 @@ void text_hex8(uint8_t value)
 
 void text_tenths(uint16_t value)
 {
-    uint16_t whole = 0;
-    while (value >= 10u) {
-        value = (uint16_t)(value - 10u);
-        whole++;
-    }
-    text_u32(whole);
-    if (value != 0) {
+    uint16_t tenths = value % 10u;
+    text_u32(value / 10u);
+    if (tenths != 0) {
         text_char('.');
-        text_u32(value);
+        text_u32(tenths);
     }
 }
