@@ -54,9 +54,13 @@ int16_t mixture_log_odds_q9(uint32_t q_uq24)
     uint16_t normal = log2_uq9(fx_leading(q_uq24));
     uint16_t outlier = log2_uq9(fx_leading(ONE_UQ24 - q_uq24));
     if (normal >= outlier) {
-        return (int16_t)fx_high_u16((uint16_t)(normal - outlier), LN2_UQ16);
+        uint16_t above_uq9 = (uint16_t)(normal - outlier);
+        /*@ assert above_uq9 <= 16480; */ /* for make proof: the larger less the smaller, in the bound of both */
+        return (int16_t)fx_high_u16(above_uq9, LN2_UQ16);
     }
-    return (int16_t)(0 - (int16_t)fx_high_u16((uint16_t)(outlier - normal), LN2_UQ16));
+    uint16_t below_uq9 = (uint16_t)(outlier - normal);
+    /*@ assert below_uq9 <= 16480; */
+    return (int16_t)(0 - (int16_t)fx_high_u16(below_uq9, LN2_UQ16));
 }
 
 mixture_posterior_t mixture_posterior(int16_t log_odds_q9)
@@ -153,6 +157,7 @@ static evidence_t weigh(const mixture_t *f)
     /* half of tb in Q9 has the number of tb in Q8 */
     uint16_t half_uq9 = (e.tb_uq8 > 0x4000U) ? 0x4000U : e.tb_uq8;
     uint16_t spread_uq9 = fx_high_u16((uint16_t)(log2_uq9(outlier) - log2_uq9(f->core.variance)), HALF_LN2_UQ16);
+    /*@ assert spread_uq9 <= 5712; */ /* for make proof: S <= S_N, log2 in UQ.9 < 16480 */
     e.p = mixture_posterior((int16_t)(f->log_odds_q9 + (int16_t)spread_uq9 - (int16_t)half_uq9));
     return e;
 }

@@ -152,9 +152,11 @@ FX_INLINE void move_rate(two_state_t *s, int32_t step_lsb_q16)
     if (s->negative) {
         rate -= step_lsb_q16;
         limit = -limit;
+        /*@ assert rate < -301989888 || -301989888 <= rate; */ /* for make proof, as in two_state.c */
         beyond = rate < limit;
     } else {
         rate += step_lsb_q16;
+        /*@ assert rate <= 301989888 || 301989888 < rate; */
         beyond = rate > limit;
     }
     s->rate_lsb_q16 = rate;

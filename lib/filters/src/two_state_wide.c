@@ -118,6 +118,7 @@ bool two_state_wide_predict(two_state_wide_t *s, int16_t z_lsb)
     int32_t x = limited_state(s, s->x_lsb_q16 + s->rate_lsb_q16); /* <= 2 x 4608 LSB: fits */
     s->x_lsb_q16 = x;
     int32_t innovation = (int32_t)z_lsb * 65536 - x;
+    /*@ assert innovation < 0 || 0 <= innovation; */ /* for make proof, which takes the cases one by one */
     s->negative = innovation < 0;
     s->size_lsb_uq8 = fx_abs32(innovation) >> 8;
     FX_FENCE();
@@ -206,6 +207,7 @@ void two_state_wide_update(two_state_wide_t *s, uint16_t loss_uq16, uint32_t bac
     uint32_t w2_uq24 = fx_shifted_right(fx_times_uq16(s->u.p.p12_uq24, s->inverse_uq16), halvings);
     w2_uq24 = (w2_uq24 > 0xFFFFFFU) ? 0xFFFFFFU : w2_uq24;
     uint32_t gain2_uq24 = (loss_uq16 == 0U) ? w2_uq24 : w2_uq24 - fx_times_uq16(w2_uq24, loss_uq16);
+    /*@ assert below_one: gain2_uq24 <= 0xFFFFFF; */
     s->rate_lsb_q16 = limited_state(s, s->rate_lsb_q16 + step_by(s, gain2_uq24));
     update_covariance(s, w1_uq16, w2_uq24, back_uq16);
 }

@@ -26,8 +26,10 @@ extern "C" {
 #endif
 
 /*
- * P11, P12, P22 per R in UQ16.16, UQ8.24, UQ4.28. None exceeds this number after an update. P is predicted while P11
- * and P12 are below it (32,768 and 128), process noise is added while P22 is (8): what is left out leaves a covariance.
+ * P11, P12, P22 per R in UQ16.16, UQ8.24, UQ4.28. P is predicted while P11 and P12 are below this number (32,768 and
+ * 128), process noise is added while P22 is (8): what is left out leaves a covariance. Before and after every call
+ * P11 < 33,033, P12 < 137, P22 < 9 (make proof): refused samples leave P as predicted, updates limit each element they
+ * write to this number, and one that may not make P grow leaves it as predicted too.
  * So P11 reaches at least 1,300 for every legal q22: at q22 = 1 P12 comes to 128 first.
  */
 #define TWO_STATE_WIDE_P_END 0x80000000U
@@ -97,7 +99,8 @@ FX_ONCE void two_state_wide_warm_up(two_state_wide_t *s, int16_t z_lsb);
  *   x, rate  Q15.16; |x| <= 4608 LSB by a clamp after the prediction (the update moves x towards a sample within 4096),
  *            |rate| <= 4608 LSB per sample by a clamp after the update; so |r| <= 8704 LSB < 2^30 / 2^16 and no sum
  *            overflows
- *   P / R    after a prediction P11 < 32768 + 2 x 128 + 8, P12 < 128 + 8, P22 < 8 + 1; P12 <= P11, so w2 < 1
+ *   P / R    P11 < 32768 + 128 + 137, P12 < 128 + 9, P22 < 8 + 1 (see TWO_STATE_WIDE_P_END); w2 is limited to
+ *            below 1
  *   g        16 bits, relative error <= 4e-5, of S >= 1 taken to 32 bits
  */
 FX_ONCE bool two_state_wide_predict(two_state_wide_t *s, int16_t z_lsb);
