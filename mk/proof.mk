@@ -1,7 +1,7 @@
 # Proof with Frama-C's Eva, 16-bit int, that the filters cannot overflow and stay within their bounds (host_tests/proof).
 
-## proof: prove the filters free of overflow and within their bounds (Frama-C, installed when missing)
+## proof: prove the filters free of overflow and within their bounds (Frama-C; ONLY='^soft_|gate': what a regular expression finds)
 proof:
-	@sh tools/proof.sh
+	@sh tools/proof.sh $(if $(ONLY),'$(value ONLY)')
 
 .PHONY: proof

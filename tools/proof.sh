@@ -1,5 +1,5 @@
 #!/bin/sh
-# proof.sh [WORD...]: Frama-C if it can be had, then tools/proof.py. Without it a line that says so, counted, status 0.
+# proof.sh [PATTERN...]: Frama-C if it can be had, then tools/proof.py. Without it a line that says so, counted, status 0.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 mkdir -p build

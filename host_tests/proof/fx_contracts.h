@@ -13,19 +13,38 @@
 */
 static inline uint16_t fx_reciprocal_uq16(uint32_t s_uq28);
 
-/* A leading bit k brings the exponent to k - 15, one more when the mantissa is rounded up. */
-#define AT_LEAST(k, power) (v < (power) || \result.exponent >= exponent + (k)-15)
-#define AT_MOST(k, power) (v >= 2 * (power) || \result.exponent <= exponent + (k)-14)
-/*@ requires v > 0;
-    requires -75 <= exponent <= 60;
+/*@ requires interval < 128;
+    assigns \result \from interval, fraction;
+    ensures 0x8000 <= \result;
+*/
+static inline uint16_t fx_inverse_m_uq16(uint8_t interval, uint16_t fraction);
+
+/* A number with the leading bit of `power` is shifted by so many places. */
+#define PLACES(k, power) (\result == (k) && (power) <= \old(*v) <= (power)-1 + (power))
+/*@ requires \valid(v) && *v > 0;
+    assigns *v, \result \from *v;
+    ensures *v >= 0x80000000;
+    ensures PLACES(0, 0x80000000) || PLACES(1, 0x40000000) || PLACES(2, 0x20000000) ||
+            PLACES(3, 0x10000000) || PLACES(4, 0x8000000) || PLACES(5, 0x4000000) ||
+            PLACES(6, 0x2000000) || PLACES(7, 0x1000000) || PLACES(8, 0x800000) ||
+            PLACES(9, 0x400000) || PLACES(10, 0x200000) || PLACES(11, 0x100000) ||
+            PLACES(12, 0x80000) || PLACES(13, 0x40000) || PLACES(14, 0x20000) ||
+            PLACES(15, 0x10000) || PLACES(16, 0x8000) || PLACES(17, 0x4000) ||
+            PLACES(18, 0x2000) || PLACES(19, 0x1000) || PLACES(20, 0x800) ||
+            PLACES(21, 0x400) || PLACES(22, 0x200) || PLACES(23, 0x100) ||
+            PLACES(24, 0x80) || PLACES(25, 0x40) || PLACES(26, 0x20) ||
+            PLACES(27, 0x10) || PLACES(28, 0x8) || PLACES(29, 0x4) ||
+            PLACES(30, 0x2) || PLACES(31, 0x1);
+*/
+static inline uint8_t fx_normalise(uint32_t *v);
+
+/*@ requires v >= 0x80000000;
+    requires -106 <= exponent <= 60;
     assigns \result \from v, exponent;
     ensures \result.mantissa >= 0x8000;
-    ensures exponent - 15 <= \result.exponent <= exponent + 17;
-    ensures AT_LEAST(3, 8) && AT_LEAST(5, 32) && AT_LEAST(15, 32768) && AT_LEAST(30, 0x40000000);
-    ensures AT_MOST(3, 8) && AT_MOST(12, 4096) && AT_MOST(15, 32768) && AT_MOST(16, 65536) && AT_MOST(17, 131072) &&
-            AT_MOST(19, 524288) && AT_MOST(29, 0x20000000);
+    ensures exponent + 16 <= \result.exponent <= exponent + 17;
 */
-static fx_scaled_t normalised(uint32_t v, int8_t exponent);
+static fx_scaled_t rounded(uint32_t v, int8_t exponent);
 
 /*@ assigns \result \from v; */
 uint16_t fx_isqrt32(uint32_t v);

@@ -29,29 +29,29 @@ void proof_fx_reciprocal_uq16(void)
     //@ check whole_range: whole == 1;
 }
 
-static void normalised_in(uint32_t from, uint32_t to)
+void proof_fx_inverse_m_uq16(void)
 {
-    for (int8_t exponent = -75; exponent <= 60; exponent++) {
-        (void)normalised(ANY_U32(from, to), exponent);
+    for (uint8_t interval = 0; interval < 128; interval++) {
+        (void)fx_inverse_m_uq16(interval, ANY_U16(0, UINT16_MAX));
     }
 }
 
-/*
- * One call for each exponent and each position of the leading bit; a mantissa of ones, which rounding up carries,
- * apart.
- */
-void proof_normalised(void)
+/* One call for each position of the leading bit. */
+void proof_fx_normalise(void)
 {
     for (uint8_t bit = 0; bit < 32; bit++) {
         uint32_t from = (uint32_t)1U << bit;
-        uint32_t last = from + (from - 1U);
-        if (bit < 16) {
-            normalised_in(from, last);
-        } else {
-            uint32_t ones = last - ((from >> 15) - 1U);
-            normalised_in(from, ones - 1U);
-            normalised_in(ones, last);
-        }
+        uint32_t v = ANY_U32(from, from + (from - 1U));
+        (void)fx_normalise(&v);
+    }
+}
+
+/* One call for each exponent; a mantissa of ones, which rounding up carries, apart. */
+void proof_rounded(void)
+{
+    for (int8_t exponent = -106; exponent <= 60; exponent++) {
+        (void)rounded(ANY_U32(0x80000000U, 0xFFFEFFFFU), exponent);
+        (void)rounded(ANY_U32(0xFFFF0000U, UINT32_MAX), exponent);
     }
 }
 
@@ -67,7 +67,7 @@ static fx_scaled_t any_scaled(void)
     return v;
 }
 
-/* Uses: normalised */
+/* Uses: fx_normalise, rounded */
 void proof_fx_scaled(void)
 {
     (void)fx_scaled(ANY_U32(0, UINT32_MAX));

@@ -3,7 +3,7 @@
 
 #include "kf.h"
 
-#define BOUND(f) (PARAMETERS(&(f)->core) && ESTIMATE(&(f)->core) && MODE(&(f)->core))
+#define BOUND(f) (PARAMETERS(&(f)->core) && (f)->core.r_lsb2_q8 <= R_END && ESTIMATE(&(f)->core) && MODE(&(f)->core))
 
 /*@ ensures \result ==> BOUND(f); */
 bool kf_init(kf_t *f, const kf_config_t *config);
@@ -29,7 +29,10 @@ static void init_with(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3)
     (void)kf_init(&f, &config);
 }
 
-/* Uses: normalised, two_state_set_noise. All legal configurations, then all with one parameter below or above. */
+/*
+ * Uses: fx_normalise, rounded, two_state_set_noise.
+ * All legal configurations, then all with one parameter below or above.
+ */
 void proof_kf_init(void)
 {
     uint16_t rate_dhz = ANY_U16(0, UINT16_MAX);

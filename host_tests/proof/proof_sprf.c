@@ -1,12 +1,11 @@
 /* sprf: any int16, any state within its bounds; the same bounds afterwards. */
-#include "two_state_bounds.h"
+#include "reacquire_bounds.h"
 
 #include "sprf.h"
 
-/* run never passes 8: a run of `steps` samples restarts with the next, or with steps 0 stays at 1. */
-#define RUN(a) (SAMPLE((a)->first_lsb) && SAMPLE((a)->previous_lsb) && (a)->run <= 8 && (a)->steps <= 8)
 #define GATE(f) ((f)->gate_sigma_q8 <= 4096 && RUN(&(f)->again))
-#define BOUND(f) (PARAMETERS(&(f)->core) && ESTIMATE(&(f)->core) && MODE(&(f)->core) && GATE(f))
+#define BOUND(f) \
+    (PARAMETERS(&(f)->core) && (f)->core.r_lsb2_q8 <= R_END && ESTIMATE(&(f)->core) && MODE(&(f)->core) && GATE(f))
 
 /*@ ensures \result ==> BOUND(f); */
 bool sprf_init(sprf_t *f, const sprf_config_t *config);
@@ -19,15 +18,6 @@ int32_t sprf_update(sprf_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t sprf_coast(sprf_t *f);
 
-/*@ requires PARAMETERS(s) && ESTIMATE(s) && s->collected == 5 && RUN(a) && SAMPLE(z_lsb);
-    requires HELD(s->u.p);
-    assigns *a, *s, \result \from *a, *s, z_lsb;
-    ensures PARAMETERS(s) && ESTIMATE(s) && s->collected == 5 && RUN(a);
-    ensures COVARIANCE(s);
-    ensures \result == 0 || \result == 1;
-*/
-bool reacquire_refused(reacquire_t *a, two_state_t *s, int16_t z_lsb);
-
 #include "filter_common.c"
 #include "fx.c"
 #include "two_state.c"
@@ -39,12 +29,7 @@ bool reacquire_refused(reacquire_t *a, two_state_t *s, int16_t z_lsb);
 static void any_gate(sprf_t *f)
 {
     f->gate_sigma_q8 = ANY_U16(0, 4096);
-    f->again.agree_lsb = ANY_U16(0, UINT16_MAX);
-    f->again.first_lsb = ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB);
-    f->again.previous_lsb = ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB);
-    f->again.run = ANY_U8(0, 8);
-    f->again.steps = ANY_U8(0, 8);
-    f->again.broken = ANY_BOOL();
+    any_run(&f->again);
 }
 
 static void init_with(const sprf_config_t *core, uint16_t gate_sigma_q8, uint16_t reacquire_samples, uint32_t rate_max)
@@ -76,7 +61,8 @@ static void init_core(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3)
 }
 
 /*
- * Uses: normalised, two_state_set_noise, two_state_set_gate, fx_isqrt32. A box that holds all legal configurations,
+ * Uses: fx_normalise, rounded, two_state_set_noise, two_state_set_gate, fx_isqrt32. A box that holds all legal
+ * configurations,
  * then all with one parameter below or above it.
  */
 void proof_sprf_init(void)
@@ -117,15 +103,6 @@ void proof_sprf_reset(void)
     sprf_reset(&f, ANY_Z());
     any_start(&f.core);
     sprf_reset(&f, ANY_Z());
-}
-
-void proof_reacquire_refused(void)
-{
-    sprf_t f;
-    any_gate(&f);
-    any_state(&f.core);
-    //@ admit HELD(f.core.u.p);
-    (void)reacquire_refused(&f.again, &f.core, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
 }
 
 /* Uses: two_state_step, reacquire_refused */

@@ -217,13 +217,13 @@ void proof_synth_coast(void)
     (void)synth_coast(&f);
 }
 
-/* Uses: normalised. Any gain and extrapolation within its range, stable or not. */
+/* Uses: fx_normalise, rounded. Any gain and extrapolation within its range, stable or not. */
 void proof_synth_noise_gain_uq16(void)
 {
     (void)synth_noise_gain_uq16(ANY_U16(656, UINT16_MAX), ANY_S32(-65535, 65535));
 }
 
-/* Uses: normalised */
+/* Uses: fx_normalise, rounded */
 void proof_synth_probe(void)
 {
     synth_t f;

@@ -41,31 +41,20 @@ void proof_predict_covariance(void)
     predict_covariance(&s);
 }
 
-static void step_on_sample(int16_t z_from_lsb, int16_t z_to_lsb)
-{
-    two_state_t s;
-    any_state(&s);
-    //@ admit COVARIANCE(&s);
-    (void)two_state_step(&s, ANY_S16(z_from_lsb, z_to_lsb), ANY_BOOL());
-}
-
-/*
- * Uses: fx_reciprocal_uq16, clamp_x, predict_covariance. Intervals of z so short that a wrong sign of the innovation,
- * which intervals cannot tie to its size, stays within the bound of x.
- */
+/* Uses: fx_reciprocal_uq16, clamp_x, predict_covariance */
 void proof_two_state_step(void)
 {
-    static const int16_t from_lsb[] = { -4096, -3584, -2560, -512, 512, 2560, 3584, 4096 };
-    for (uint8_t i = 0; i < 7; i++) {
-        step_on_sample(from_lsb[i], from_lsb[i + 1] - 1);
-    }
+    two_state_t s;
+    any_state_of(&s, R_ANY);
+    //@ admit COVARIANCE(&s);
+    (void)two_state_step(&s, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB), ANY_BOOL());
 }
 
 /* Uses: two_state_step */
 void proof_two_state_settle(void)
 {
     two_state_t s;
-    any_state(&s);
+    any_state_of(&s, R_ANY);
     s.x_lsb_q16 = ANY_S32(-X_START, X_START - 1);
     //@ admit COVARIANCE(&s);
     two_state_settle(&s);
@@ -75,11 +64,20 @@ void proof_two_state_settle(void)
 void proof_two_state_reset(void)
 {
     two_state_t s;
-    any_state(&s);
+    any_state_of(&s, R_ANY);
     (void)two_state_reset(&s, ANY_Z());
 }
 
-/* Uses: normalised */
+/* Any state and covariance, limited. */
+void proof_two_state_begin(void)
+{
+    two_state_t s;
+    any_start_of(&s, R_ANY);
+    two_state_begin(&s, ANY_S32(S32_MIN, INT32_MAX), ANY_S32(S32_MIN, INT32_MAX), ANY_U32(0, UINT32_MAX),
+                    ANY_U32(0, UINT32_MAX), ANY_U32(0, UINT32_MAX));
+}
+
+/* Uses: fx_normalise, rounded */
 void proof_two_state_set_noise(void)
 {
     two_state_t s;
@@ -87,7 +85,15 @@ void proof_two_state_set_noise(void)
     two_state_set_noise(&s, ANY_U32(0, UINT32_MAX));
 }
 
-/* Uses: normalised */
+/* Uses: fx_normalise, rounded */
+void proof_two_state_set_variance(void)
+{
+    two_state_t s;
+    any_state(&s);
+    two_state_set_variance(&s, ANY_U32(R_LEAST, R_ANY));
+}
+
+/* Uses: fx_normalise, rounded */
 void proof_two_state_set_gate(void)
 {
     two_state_t s;
@@ -95,20 +101,20 @@ void proof_two_state_set_gate(void)
     two_state_set_gate(&s, ANY_U16(0, 4096));
 }
 
-/* Uses: normalised */
+/* Uses: fx_normalise, rounded */
 void proof_two_state_init(void)
 {
     two_state_t s;
     two_state_init(&s, ANY_U16(50, 40000), ANY_U32(3, 256000), ANY_U32(1, 1000000000), ANY_U32(0, 1000000));
-    //@ check PARAMETERS(&s) && ESTIMATE(&s) && MODE(&s);
+    //@ check PARAMETERS(&s) && ESTIMATE(&s) && MODE(&s) && s.r_lsb2_q8 <= R_END;
 }
 
 void proof_two_state_probe(void)
 {
     two_state_t s;
     filter_probe_t probe;
-    any_state(&s);
+    any_state_of(&s, R_ANY);
     two_state_probe(&s, &probe);
-    any_start(&s);
+    any_start_of(&s, R_ANY);
     two_state_probe(&s, &probe);
 }

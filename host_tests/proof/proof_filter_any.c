@@ -1,0 +1,64 @@
+/* The list's common interface: why a configuration is refused, of any bytes of it. */
+#include "eva.h"
+
+#include "filter_any.h"
+
+/* One translation unit, so that the descriptors are there: names that each file has for itself get the filter's. */
+#include "filter_common.c"
+#include "fx.c"
+#include "two_state.c"
+
+#include "reacquire.c"
+
+#define parameters parameters_kf
+#include "kf.c"
+#undef parameters
+#define parameters parameters_sprf
+#include "sprf.c"
+#undef parameters
+#define parameters parameters_lrf
+#include "lrf.c"
+#undef parameters
+#define parameters parameters_soft
+#include "soft.c"
+#undef parameters
+#define predict_covariance predict_wide_covariance
+#include "two_state_wide.c"
+#undef predict_covariance
+#define parameters parameters_sprf_paper
+#include "sprf_paper.c"
+#undef parameters
+#include "af.c"
+#include "mixture.c"
+#include "pbf.c"
+#include "shrf.c"
+#undef limited
+#define parameters parameters_synth
+#define step step_synth
+#define update update_synth
+#include "synth.c"
+#undef parameters
+#undef step
+#undef update
+
+#include "filter_any.c"
+
+/*
+ * Any bytes of a configuration of any filter, and an unknown one. What is told is a parameter of the descriptor, or one
+ * of filter_refusal.
+ */
+void proof_filter_any_refused(void)
+{
+    for (uint8_t kind = 0; kind <= (uint8_t)FILTER_KIND_COUNT; kind++) {
+        filter_any_config_t config;
+        for (uint8_t i = 0; i < sizeof config; i++) {
+            ((uint8_t *)&config)[i] = ANY_U8(0, UINT8_MAX);
+        }
+        uint8_t why = filter_any_refused((filter_kind_t)kind, &config);
+        //@ check told: why < 8 || why >= 253;
+        //@ check unknown: kind < FILTER_KIND_COUNT || why == FILTER_REFUSED_KIND;
+        if (kind < (uint8_t)FILTER_KIND_COUNT) {
+            filter_any_defaults((filter_kind_t)kind, &config, ANY_U16(50, 40000));
+        }
+    }
+}
