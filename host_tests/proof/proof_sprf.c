@@ -3,7 +3,7 @@
 
 #include "sprf.h"
 
-#define GATE(f) ((f)->gate_sigma_q8 <= 4096 && RUN(&(f)->again))
+#define GATE(f) ((f)->gate_sigma_q8 <= 4096 && (f)->refused <= SPRF_RATE_HELD_SAMPLES && RUN(&(f)->again))
 #define BOUND(f) \
     (PARAMETERS(&(f)->core) && (f)->core.r_lsb2_q8 <= R_END && ESTIMATE(&(f)->core) && MODE(&(f)->core) && GATE(f))
 
@@ -29,6 +29,7 @@ int32_t sprf_coast(sprf_t *f);
 static void any_gate(sprf_t *f)
 {
     f->gate_sigma_q8 = ANY_U16(0, 4096);
+    f->refused = ANY_U8(0, SPRF_RATE_HELD_SAMPLES);
     any_run(&f->again);
 }
 
