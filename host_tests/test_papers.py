@@ -125,6 +125,10 @@ def a_verdict_must_fit_its_number():
     assert "cannot be 'refuted'" in papers_judge.judge_row(made(), refuted)[0]
     far = made(value=50.0, ci_lo=41.0, ci_hi=60.0)
     assert "cannot be 'reproduced'" in papers_judge.judge_row(far, reproduced)[0] and papers_judge.judge_row(far, refuted) == []
+    # of few runs the interval decides only against the paper
+    assert papers_judge.judge_row(made(runs=2000), refuted) == []
+    assert "cannot be 'reproduced'" in papers_judge.judge_row(made(value=50.0, ci_lo=41.0, ci_hi=60.0, runs=2000), reproduced)[0]
+    assert "cannot be 'refuted'" in papers_judge.judge_row(made(runs=10000), refuted)[0]
     # an interval that touches; the spread of groups does not count as one
     assert papers_judge.judge_row(made(value=41.0, ci_lo=39.0, ci_hi=43.0), reproduced) == []
     assert papers_judge.agrees(made(metric="m_of_50", value=41.0, ci_lo=20.0, ci_hi=60.0), (30, 40)) is False
