@@ -271,7 +271,7 @@ static bool begins(const char *line, const char *words)
 static unsigned lines_after(const char *first, const char **optional)
 {
     *optional = NULL;
-    if (begins(first, "# rate ") || begins(first, "# baud ")) {
+    if (begins(first, "# rate ") || begins(first, "# baud ") || begins(first, "# filter ")) {
         *optional = "# every ";
     } else if (begins(first, "# mode csv")) {
         *optional = header;
@@ -286,8 +286,8 @@ static bool reply_begins(const said_t *s, unsigned i, const char *words)
 }
 
 /*
- * From reply line i and expectation j on. A second line of `rate` and `baud` comes only where the line forces another
- * decimation, and looks like the reply to `every`: both readings are tried, the longer first.
+ * From reply line i and expectation j on. A second line of `rate`, `baud` and `filter` comes only where line or time
+ * force another decimation, and looks like the reply to `every`: both readings are tried, the longer first.
  */
 static bool matches(const said_t *s, unsigned i, const expected_t *e, unsigned j)
 {
