@@ -87,6 +87,16 @@ static void test_a_refusal_names_the_parameter(void)
     assert_refused_for(FILTER_KIND_lrf, "ratio", 255);
     assert_refused_for(FILTER_KIND_synth, "a1", (uint32_t)-65536);
     assert_refused_for(FILTER_KIND_synth, "a1", 65536);
+    static const filter_kind_t mixtures[] = { FILTER_KIND_shrf, FILTER_KIND_pbf, FILTER_KIND_af };
+    for (int i = 0; i < 3; i++) {
+        assert_refused_for(mixtures[i], "q", 0);
+        assert_refused_for(mixtures[i], "clean", 0);
+        assert_refused_for(mixtures[i], "clean", 32767);
+        assert_refused_for(mixtures[i], "clean", 65535);
+        assert_refused_for(mixtures[i], "ratio", 511);
+    }
+    assert_refused_for(FILTER_KIND_sprf_paper, "gate", 255);
+    assert_refused_for(FILTER_KIND_sprf_paper, "gate", 0); /* a gate that cannot be switched off */
 }
 
 /* The first of several, the rate before all; off is no reason; an even run of samples lies within 3..9. */

@@ -218,19 +218,41 @@ static void run_ends_at_a_sample_between_the_gates(void)
 /*
  * Without re-acquisition, from one end of the range to the other: it comes back, if slowly. P stops at its limit: P12
  * is then above 0.12 here, so the rate gains P12 softgate^2 R / |r| > 0.12 x 64 / 8191 less 2^-16 LSB in each sample,
- * and 8191 LSB are passed in sqrt(2 x 8191 / 0.00092) = 4220 samples.
+ * and 8191 LSB are passed in sqrt(2 x 8191 / 0.00092) = 4220 samples. So it is for R = 16; a smaller R has the least m,
+ * 2^-20, and P12 2^-20 8191 is as much, a larger one has more.
  */
 static void it_is_never_locked_out(void)
 {
-    soft_config_t config = config_100hz();
-    config.reacquire_samples = 0;
-    soft_t f = settled(&config, -4096);
-    uint16_t samples = 0;
-    while (f.core.x_lsb_q16 < (int32_t)4090 * 65536 && samples < 4220U) {
-        (void)soft_update(&f, 4095);
-        samples++;
+    static const uint32_t r_lsb2_q8[] = { 3, 256, 768, 4096, 256000 };
+    for (uint8_t i = ON_PC_OR_CHIP(0, 3); i < 5U; i++) {
+        soft_config_t config = config_100hz();
+        config.reacquire_samples = 0;
+        config.r_lsb2_q8 = r_lsb2_q8[i];
+        soft_t f = settled(&config, -4096);
+        uint16_t samples = 0;
+        while (f.core.x_lsb_q16 < (int32_t)4090 * 65536 && samples < 4220U) {
+            (void)soft_update(&f, 4095);
+            samples++;
+        }
+        TEST_ASSERT_TRUE(samples < 4220U);
     }
-    TEST_ASSERT_TRUE(samples < 4220U);
+}
+
+/* The way of a run over a missing sample is unknown: it restarts without its slope. */
+static void run_with_a_gap_restarts_at_rest(void)
+{
+    soft_config_t config = config_100hz();
+    soft_t f = settled(&config, 0);
+    for (int16_t k = 0; k < 5; k++) {
+        if (k == 2) {
+            (void)soft_coast(&f);
+        }
+        (void)soft_update(&f, (int16_t)(1000 + 4 * k));
+    }
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, soft_flags(&f));
+    filter_probe_t probe;
+    soft_probe(&f, &probe);
+    TEST_ASSERT_EQUAL_INT32(0, probe.rate_lsb_q16);
 }
 
 int main(void)
@@ -246,5 +268,6 @@ int main(void)
     RUN_TEST(run_ends_at_a_sample_within_the_gate);
     RUN_TEST(run_ends_at_a_sample_between_the_gates);
     RUN_TEST(it_is_never_locked_out);
+    RUN_TEST(run_with_a_gap_restarts_at_rest);
     return UNITY_END();
 }

@@ -224,6 +224,25 @@ static void expect_a_stand(int16_t direction)
     TEST_ASSERT_EQUAL_UINT8(0, sprf_flags(&f));
 }
 
+/* As published it has no other way back than P, and runs on by its rate. */
+static void without_reacquisition_it_runs_on(void)
+{
+    sprf_config_t config = config_100hz();
+    config.reacquire_samples = 0;
+    sprf_t f = settled(&config, 0);
+    for (int16_t k = 1; k <= 400; k++) {
+        (void)sprf_update(&f, (int16_t)(k * 4));
+    }
+    filter_probe_t probe;
+    sprf_probe(&f, &probe);
+    for (uint8_t k = 0; k < 20U; k++) {
+        (void)sprf_update(&f, (k & 1U) != 0U ? 4000 : -4000);
+    }
+    int32_t rate = probe.rate_lsb_q16;
+    sprf_probe(&f, &probe);
+    TEST_ASSERT_EQUAL_INT32(rate, probe.rate_lsb_q16);
+}
+
 static void where_nothing_agrees_it_comes_to_stand(void)
 {
     expect_a_stand(1);
@@ -264,5 +283,6 @@ int main(void)
     RUN_TEST(run_with_a_gap_restarts_at_rest);
     RUN_TEST(where_nothing_agrees_it_comes_to_stand);
     RUN_TEST(rate_is_held_over_short_runs);
+    RUN_TEST(without_reacquisition_it_runs_on);
     return UNITY_END();
 }

@@ -54,8 +54,8 @@ static void NOINLINE run_empty(void)
     __asm__ volatile("");
 }
 
-/* The provoked regime is running. */
-static bool provoked;
+/* The regime of the longer paths is running. */
+static bool longer;
 
 typedef struct {
     const char *name; /* in program memory */
@@ -77,7 +77,7 @@ typedef struct {
     static void begin_##F(uint16_t rate_dhz)                                \
     {                                                                       \
         F##_defaults(&config_##F, rate_dhz);                                \
-        if (provoked) {                                                     \
+        if (longer) {                                                       \
             lengthen_##F(&config_##F);                                      \
         }                                                                   \
         config_##F.r_lsb2_q8 = r_lsb2_q8;                                   \
@@ -196,7 +196,7 @@ static void run_regime(const subject_t *s, const regime_t *regime, uint16_t rate
     uint16_t compared = 0;
     put_section(s->name, regime->name, rate_dhz);
     r_lsb2_q8 = 20ul * 256u;
-    provoked = regime->provoke;
+    longer = regime->longer;
     s->begin(rate_dhz);
     level_lsb = 0;
     for (sample_number = 0; sample_number < regime->count; sample_number++) {
@@ -238,7 +238,7 @@ static void run_set_noise(const subject_t *s)
     put_text(s->name);
     put_text(PSTR("_set_noise anything 1000\n"));
     deepest = 0;
-    provoked = false;
+    longer = false;
     s->begin(1000);
     for (uint16_t n = 0; n < 500u; n++) {
         another_noise();

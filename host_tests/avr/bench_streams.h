@@ -58,6 +58,7 @@ typedef struct {
     void (*sample)(void);
     uint16_t count;
     bool provoke; /* now and then runs of missing samples, and another R */
+    bool longer;  /* with the parameters of bench_longer.h */
 } regime_t;
 
 static const char typical_name[] PROGMEM = "typical";
@@ -65,10 +66,11 @@ static const char steps_name[] PROGMEM = "steps";
 static const char anything_name[] PROGMEM = "anything";
 static const char rails_name[] PROGMEM = "rails";
 static const char provoked_name[] PROGMEM = "provoked";
+static const char longer_name[] PROGMEM = "longer";
 static const regime_t regimes[] = {
-    { typical_name, typical, 300, false },           { steps_name, steps, 150, false },
-    { anything_name, anything, 100, false },         { rails_name, rails, 100, false },
-    { provoked_name, near_the_estimate, 600, true },
+    { typical_name, typical, 300, false, false },           { steps_name, steps, 150, false, false },
+    { anything_name, anything, 100, false, false },         { rails_name, rails, 100, false, false },
+    { provoked_name, near_the_estimate, 600, true, false }, { longer_name, near_the_estimate, 600, true, true },
 };
 static const uint16_t rates_dhz[] PROGMEM = { 125, 250, 500, 1000, 2000, 4000, 8000 };
 

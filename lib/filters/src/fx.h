@@ -33,6 +33,13 @@ extern "C" {
  */
 #define FX_FENCE() __asm__ volatile("" ::: "memory")
 
+/* The compiler of the 8-bit machine forgets what it knows of v, an integer in a register. */
+#ifdef __AVR__
+#define FX_FENCE_OF(v) __asm__("" : "+r"(v))
+#else
+#define FX_FENCE_OF(v) ((void)0)
+#endif
+
 /*
  * Constants in program memory: `static const uint16_t table[] FX_FLASH = {...};`, read only through fx_flash_*.
  * A plain const would be copied into the 2 KB of RAM on AVR.

@@ -20,7 +20,7 @@ typedef mixture_t shrf_t;
 /* Descriptor in program memory. */
 extern const filter_descriptor_t shrf_descriptor;
 
-enum { shrf_worst_cycles = 3400 }; /* of shrf_update, as in filter.h */
+enum { shrf_worst_cycles = 3450 }; /* of shrf_update, as in filter.h */
 
 void shrf_defaults(shrf_config_t *config, uint16_t rate_dhz);
 bool shrf_init(shrf_t *f, const shrf_config_t *config);

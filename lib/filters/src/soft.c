@@ -71,10 +71,25 @@ void soft_reset(soft_t *f, int16_t z0_lsb)
     reacquire_reset(&f->again, two_state_reset(&f->core, z0_lsb));
 }
 
+/* One place in line each: told two the compiler makes a loop of them on AVR. */
+FX_INLINE uint32_t quarter(uint32_t v)
+{
+    v >>= 1;
+    FX_FENCE_OF(v);
+    return v >> 1;
+}
+
+FX_INLINE uint32_t fourfold(uint32_t v)
+{
+    v <<= 1;
+    FX_FENCE_OF(v);
+    return v << 1;
+}
+
 /*
- * m = softgate^2 R / r^2, so below 1 / S: UQ0.20, rounded down by at most 2^-18. With |r| = m' 2^b LSB/256, 1 <= m' <
- * 2, and K = 16 softgate^2 R it is K / m'^2 x 2^(16 - 2 b) counts. r^2 > K / 16 >= 1/16 LSB^2 makes b >= 6; the coarse
- * K is 256 times as large, and r^2 >= 4096 LSB^2 makes b >= 14.
+ * m = softgate^2 R / r^2, so below 1 / S: UQ0.20, within 2^-18, and never 0, so the furthest sample counts too. With |r| =
+ * m' 2^b LSB/256, 1 <= m' < 2, and K = 16 softgate^2 R it is K / m'^2 x 2^(16 - 2 b) counts. r^2 > K / 16 >= 1/16 LSB^2
+ * makes b >= 6; the coarse K is 256 times as large, and r^2 >= 4096 LSB^2 makes b >= 14.
  */
 FX_INLINE uint32_t weight_uq20(const two_state_t *s)
 {
@@ -87,6 +102,10 @@ FX_INLINE uint32_t weight_uq20(const two_state_t *s)
             size <<= 8;
             b = 7;
         }
+    }
+    while ((uint8_t)(size >> 16) < 0x20U) { /* three places in line cost as much as two in the loop below */
+        size = fx_eightfold(size);
+        b = (uint8_t)(b - 3U);
     }
     if ((size & 0x800000U) == 0U) {
         do {
@@ -103,18 +122,16 @@ FX_INLINE uint32_t weight_uq20(const two_state_t *s)
     for (; b >= 11U; b = (uint8_t)(b - 4U)) {
         weight >>= 8;
     }
-    if (b > 8U) {
-        b = (uint8_t)(2U * (b - 8U));
-        do { /* one place at a time: two would be a loop in the loop on AVR */
-            weight >>= 1;
-            b--;
-        } while (b != 0U);
-    } else {
-        for (; b < 8U; b++) {
-            weight <<= 2;
+    if (b > 8U) { /* 9 or 10 */
+        weight = quarter(weight);
+        if (b > 9U) {
+            weight = quarter(weight);
         }
     }
-    return weight;
+    for (; b < 8U; b++) {
+        weight = fourfold(weight);
+    }
+    return weight | 1U; /* never 0: the furthest sample counts too */
 }
 
 /* |r| w in LSB, Q16, rounded down; |r| to whole LSB from 256 LSB on. */
@@ -132,14 +149,12 @@ FX_INLINE uint32_t limited_uq24(uint32_t w_uq24)
     return ((uint8_t)(w_uq24 >> 24) != 0U) ? 0xFFFFFFU : w_uq24;
 }
 
-/* m, which is below 1, from UQ0.20 to UQ0.16, rounded down; nibble by nibble, because shifts are loops on AVR. */
+/* m, which is below 1, from UQ0.20 to UQ0.16, rounded down; byte by byte, because a shift is a loop on AVR. */
 FX_INLINE uint16_t weight_uq16(uint32_t m_uq20)
 {
-    uint8_t low = (uint8_t)m_uq20;
-    uint8_t middle = (uint8_t)(m_uq20 >> 8);
-    uint8_t high = (uint8_t)(m_uq20 >> 16);
-    high = (uint8_t)((uint8_t)(high * 16U) | (uint8_t)(middle >> 4));
-    low = (uint8_t)((uint8_t)(middle * 16U) | (uint8_t)(low >> 4));
+    uint16_t middle = (uint16_t)((uint8_t)(m_uq20 >> 8) * 16U);
+    uint8_t low = (uint8_t)((uint8_t)middle | (uint8_t)((uint8_t)m_uq20 >> 4));
+    uint8_t high = (uint8_t)((uint8_t)(middle >> 8) | (uint8_t)((uint8_t)(m_uq20 >> 16) << 4));
     return (uint16_t)(((uint16_t)high << 8) | low);
 }
 
@@ -159,11 +174,11 @@ FX_INLINE void move_rate(two_state_t *s, int32_t step_lsb_q16)
         /*@ assert rate <= 301989888 || 301989888 < rate; */
         beyond = rate > limit;
     }
-    s->rate_lsb_q16 = rate;
     if (beyond) {
-        s->rate_lsb_q16 = limit;
+        rate = limit;
         s->flags |= FILTER_SATURATED;
     }
+    s->rate_lsb_q16 = rate;
 }
 
 /* x and P11 with the gain w1 = P11 m. x moves by a count more than w1 r, so that no sample is without effect. */
@@ -224,7 +239,7 @@ FX_NOINLINE void take_part(soft_t *f, int16_t z_lsb)
 /*
  * Scaling: input any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB; within the soft gate formats,
  * bounds and rounding errors as two_state_step. Beyond it
- *   m        UQ0.20, of r rounded down to 2^-8 LSB and gate_lsb2_uq4 (softgate^2 R, 1/16 LSB^2), low by 2^-18 at most
+ *   m        UQ0.20, of r rounded down to 2^-8 LSB and gate_lsb2_uq4 (softgate^2 R, 1/16 LSB^2), within 2^-18
  *   w1, w2   UQ0.24, <= 1, from P11 and P12 in UQ4.20; P11 and P12 times 1 - w1 - 2^-16 rounded to 2^-28, so they fall;
  *            P22 less P12 w2 (w2 rounded down to 2^-16), not below 0
  *   steps    of x rounded up, of the rate down to 2^-16; both below |r| + 2^-16 LSB (x: w1 < 8/9), so x stays between
