@@ -238,6 +238,22 @@ static void it_is_never_locked_out(void)
     }
 }
 
+/* With the least m, 2^-20, and P11 = 0.03 the gain is below its last place: x moves by a count all the same. */
+static void least_gain_moves_by_a_count(void)
+{
+    soft_config_t config;
+    soft_defaults(&config, 8000);
+    config.r_lsb2_q8 = FILTER_R_MIN_LSB2_Q8;
+    config.q_lsb2_s3 = 1;
+    config.soft_sigma_q8 = 256;
+    soft_t f = settled(&config, 0);
+    for (uint16_t k = 0; k < 3000U; k++) {
+        (void)soft_update(&f, 0);
+    }
+    TEST_ASSERT_EQUAL_INT32(1, soft_update(&f, 4095));
+    TEST_ASSERT_EQUAL_INT32(0, soft_update(&f, -4095));
+}
+
 /* The way of a run over a missing sample is unknown: it restarts without its slope. */
 static void run_with_a_gap_restarts_at_rest(void)
 {
@@ -268,6 +284,7 @@ int main(void)
     RUN_TEST(run_ends_at_a_sample_within_the_gate);
     RUN_TEST(run_ends_at_a_sample_between_the_gates);
     RUN_TEST(it_is_never_locked_out);
+    RUN_TEST(least_gain_moves_by_a_count);
     RUN_TEST(run_with_a_gap_restarts_at_rest);
     return UNITY_END();
 }

@@ -86,10 +86,28 @@ FX_INLINE uint32_t fourfold(uint32_t v)
     return v << 1;
 }
 
+/* K / m'^2 to m, see below: shifted by 16 - 2 b places, b = 6..22. */
+FX_INLINE uint32_t placed(uint32_t weight, uint8_t b)
+{
+    for (; b >= 11U; b = (uint8_t)(b - 4U)) {
+        weight >>= 8;
+    }
+    if (b > 8U) { /* 9 or 10 */
+        weight = quarter(weight);
+        if (b > 9U) {
+            weight = quarter(weight);
+        }
+    }
+    for (; b < 8U; b++) {
+        weight = fourfold(weight);
+    }
+    return weight;
+}
+
 /*
- * m = softgate^2 R / r^2, so below 1 / S: UQ0.20, within 2^-18, and never 0, so the furthest sample counts too. With |r| =
- * m' 2^b LSB/256, 1 <= m' < 2, and K = 16 softgate^2 R it is K / m'^2 x 2^(16 - 2 b) counts. r^2 > K / 16 >= 1/16 LSB^2
- * makes b >= 6; the coarse K is 256 times as large, and r^2 >= 4096 LSB^2 makes b >= 14.
+ * m = softgate^2 R / r^2, so below 1 / S: UQ0.20, within 2^-18, and never 0, so the furthest sample counts too. With
+ * |r| = m' 2^b LSB/256, 1 <= m' < 2, and K = 16 softgate^2 R it is K / m'^2 x 2^(16 - 2 b) counts. r^2 > K / 16 >= 1/16
+ * LSB^2 makes b >= 6; the coarse K is 256 times as large, and r^2 >= 4096 LSB^2 makes b >= 14.
  */
 FX_INLINE uint32_t weight_uq20(const two_state_t *s)
 {
@@ -119,19 +137,7 @@ FX_INLINE uint32_t weight_uq20(const two_state_t *s)
     if (s->coarse) {
         b = (uint8_t)(b - 4U);
     }
-    for (; b >= 11U; b = (uint8_t)(b - 4U)) {
-        weight >>= 8;
-    }
-    if (b > 8U) { /* 9 or 10 */
-        weight = quarter(weight);
-        if (b > 9U) {
-            weight = quarter(weight);
-        }
-    }
-    for (; b < 8U; b++) {
-        weight = fourfold(weight);
-    }
-    return weight | 1U; /* never 0: the furthest sample counts too */
+    return placed(weight, b) | 1U;
 }
 
 /* |r| w in LSB, Q16, rounded down; |r| to whole LSB from 256 LSB on. */
