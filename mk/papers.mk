@@ -30,7 +30,11 @@ $(P)/operations/main.o: $(OPERATIONS)/main.cpp $(wildcard lib/filters/src/*.h) $
 	@mkdir -p $(@D)
 	@$(COUNT_CXX) -Wall -Wextra -Werror -c $< -o $@
 
-$(P)/operations002: $(COUNTED) $(P)/operations/main.o
+$(P)/operations/state_bytes.o: $(OPERATIONS)/state_bytes.c $(OPERATIONS)/state_bytes.h host_tests/bitexact/packed_states.h $(wildcard lib/*/src/*.h) Makefile mk/papers.mk
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(HOST_FLAGS) -Ihost_tests -I$(OPERATIONS) $(WARNINGS) -c $< -o $@
+
+$(P)/operations002: $(COUNTED) $(P)/operations/main.o $(P)/operations/state_bytes.o
 	@$(HOST_CXX) $^ -lm -o $@
 
 PAPERS := $(P)/paper002 $(P)/operations002

@@ -11,7 +11,7 @@ namespace
 {
 constexpr int samples = 400;
 constexpr int warm_up_rows = 5;
-constexpr int group = 50; // the paper's N_p
+constexpr std::size_t group = 50; // the paper's N_p
 
 enum Window { steady, transient, transient_late, window_count };
 const std::array<const char *, window_count> metric = { "k_ef_steady", "k_ef_transient", "k_ef_transient_6_60" };
@@ -71,12 +71,12 @@ std::size_t find(const std::vector<Contestant> &all, const std::string &name, Ar
     return i;
 }
 
-// Index of the filter that each is compared with: the Kalman filter in the same arithmetic.
-std::vector<std::size_t> standards(const std::vector<Contestant> &all)
+// Index of the filter that each is compared with, in the same arithmetic.
+std::vector<std::size_t> standards(const std::vector<Contestant> &all, const std::string &name = "kf")
 {
     std::vector<std::size_t> result;
     for (const Contestant &c : all) {
-        result.push_back(find(all, "kf", c.arithmetic));
+        result.push_back(find(all, name, c.arithmetic));
     }
     return result;
 }
@@ -100,25 +100,52 @@ void ratio_rows(const std::string &experiment, const std::vector<Contestant> &al
 }
 
 // Median over experiments of the paper's size; the interval holds nine in ten of them.
+Interval group_ratio(const std::vector<double> &above, const std::vector<double> &below)
+{
+    std::vector<double> ratios;
+    for (std::size_t first = 0; first + group <= above.size(); first += group) {
+        double over = 0.0;
+        double under = 0.0;
+        for (std::size_t run = first; run < first + group; run++) {
+            over += above[run];
+            under += below[run];
+        }
+        ratios.push_back(over / under);
+    }
+    return Interval{ quantile(ratios, 0.5), quantile(ratios, 0.05), quantile(ratios, 0.95) };
+}
+
 void group_rows(const std::string &experiment, const std::vector<Contestant> &all, const std::vector<Scores> &scores,
-                const Options &options)
+                Window window, const Options &options)
 {
     const std::vector<std::size_t> standard = standards(all);
     for (std::size_t i = 0; i < all.size(); i++) {
-        std::vector<double> ratios;
-        for (int first = 0; first + group <= options.runs; first += group) {
-            double above = 0.0;
-            double below = 0.0;
-            for (std::size_t run = static_cast<std::size_t>(first); run < static_cast<std::size_t>(first + group);
-                 run++) {
-                above += scores[standard[i]].square[steady][run];
-                below += scores[i].square[steady][run];
-            }
-            ratios.push_back(above / below);
+        if (i != standard[i] && options.runs >= static_cast<int>(group)) {
+            row(experiment, all[i], std::string(metric[window]) + "_median_of_50",
+                group_ratio(scores[standard[i]].square[window], scores[i].square[window]), options.runs);
         }
-        if (i != standard[i] && !ratios.empty()) {
-            row(experiment, all[i], "k_ef_steady_median_of_50",
-                Interval{ quantile(ratios, 0.5), quantile(ratios, 0.05), quantile(ratios, 0.95) }, options.runs);
+    }
+}
+
+// Mean square error of the filters over that of the PBF.
+void loss_rows(const std::string &experiment, const std::vector<Contestant> &all, const std::vector<Scores> &scores,
+               const Options &options)
+{
+    const std::vector<std::size_t> standard = standards(all, "pbf");
+    std::vector<const std::vector<double> *> above;
+    std::vector<const std::vector<double> *> below;
+    for (std::size_t i = 0; i < all.size(); i++) {
+        above.push_back(&scores[i].square[steady]);
+        below.push_back(&scores[standard[i]].square[steady]);
+    }
+    const std::vector<Interval> ratios = bootstrap_ratios(above, below, options.seed);
+    for (std::size_t i = 0; i < all.size(); i++) {
+        const std::string &name = all[i].name;
+        if (name == "shrf" || name == "sprf_paper" || name == "lrf") {
+            row(experiment, all[i], "loss_to_pbf", ratios[i], options.runs);
+            if (options.runs >= static_cast<int>(group)) {
+                row(experiment, all[i], "loss_to_pbf_median_of_50", group_ratio(*above[i], *below[i]), options.runs);
+            }
         }
     }
 }
@@ -156,7 +183,9 @@ void start_rows(const std::string &experiment, const std::vector<Contestant> &al
         ratio_rows(experiment, all, scores, static_cast<Window>(w), metric[w], options);
         progress.advance(options.runs * 0.05);
     }
-    group_rows(experiment, all, scores, options);
+    group_rows(experiment, all, scores, steady, options);
+    group_rows(experiment, all, scores, transient, options);
+    loss_rows(experiment, all, scores, options);
     lockout_rows(experiment, all, scores, options);
     agreement_rows(experiment, all, scores, options);
 }

@@ -10,6 +10,7 @@
 #include "counting.hpp"
 #include "filter_any.h"
 #include "scope.hpp"
+#include "state_bytes.h"
 
 counting::Tally counting::tally{};
 
@@ -51,29 +52,16 @@ Cost cost(filter_kind_t kind)
     return result;
 }
 
-void row(const std::string &name, const char *metric, long value)
+void row(const std::string &name, const char *metric, double value)
 {
-    std::printf("row\toperations\t%s\tfixed\t%s\t%ld\t\t\t1\n", name.c_str(), metric, value);
+    std::printf("row\toperations\t%s\tfixed\t%s\t%g\t\t\t1\n", name.c_str(), metric, value);
 }
 
 void rows(const std::string &name, const char *metric, std::vector<long> values)
 {
     std::sort(values.begin(), values.end());
-    row(name, metric, values[values.size() / 2]);
-    row(name, (std::string(metric) + "_most").c_str(), values.back());
-}
-
-std::size_t state_bytes(filter_kind_t kind)
-{
-    switch (kind) {
-#define SIZE(F)           \
-    case FILTER_KIND_##F: \
-        return sizeof(F##_t);
-        FILTER_LIST(SIZE)
-#undef SIZE
-    default:
-        return 0;
-    }
+    row(name, metric, static_cast<double>(values[values.size() / 2]));
+    row(name, (std::string(metric) + "_most").c_str(), static_cast<double>(values.back()));
 }
 
 int all()
@@ -91,7 +79,7 @@ int all()
         rows(name, "multiplications", c.products);
         rows(name, "additions", c.sums);
         rows(name, "divisions", c.divisions);
-        row(name, "memory_cells", static_cast<long>((state_bytes(static_cast<filter_kind_t>(kind)) + 3) / 4));
+        row(name, "memory_cells", static_cast<double>(state_bytes(kind)) / 4.0);
     }
     return 0;
 }
