@@ -105,9 +105,8 @@ def judge_row(row, rule):
 
 
 def judge(rows, expected, partial=False):
-    """(what is wrong, what waits for a filter that is not in FILTER_LIST yet). Each number against every rule that fits it; a rule that
-    fits none is wrong unless only a part was run, or it speaks of the fixed-point code of a filter that is not there."""
-    faults, waiting, claims = [], [], {}
+    """What is wrong. Each number against every rule that fits it; a rule that fits none is wrong unless only a part was run."""
+    faults, claims = [], {}
     fixed = {row["filter"] for row in rows if row["arithmetic"] == "fixed"}
     for rule in expected:
         matched = {"double": set(), "fixed": set()}
@@ -124,16 +123,12 @@ def judge(rows, expected, partial=False):
             continue
         for name in rule["filter"].split():
             for arithmetic in ("double", "fixed") if rule["arithmetic"] == "both" else (rule["arithmetic"],):
-                if any(fnmatch.fnmatchcase(f, name) for f in matched[arithmetic]):
-                    continue
-                if arithmetic == "fixed" and "*" not in name and name not in fixed:
-                    waiting.append(name)
-                else:
+                if not any(fnmatch.fnmatchcase(f, name) for f in matched[arithmetic]):
                     faults.append(f"{rule['line']}: no number for {rule['experiment']}, {name} ({arithmetic}), {rule['metric']}")
     if not partial:
         faults += unjudged(rows, fixed)
     rows[:] = [entry for row in rows for entry in (row, *claims.get(id(row), []))]
-    return faults, [f"{name} is not in FILTER_LIST: its {waiting.count(name)} limits on fixed point wait for it" for name in sorted(set(waiting))]
+    return faults
 
 
 def unjudged(rows, fixed):
