@@ -14,16 +14,34 @@
 #include <stdio.h>
 #include <string.h>
 
+static const char axis_name[] = "xyz";
 static const double forever_s = 1e9;
 static size_t broken;
+static size_t judged;
 
 static void print_counts(const char *what, const char *name, filter_kind_t kind, int axis, const axis_counts_t *c)
 {
     printf("%s,%s,%s,%c,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%.3f,%zu,%zu,%.1f,%zu,%.1f\n", what, name,
-           filter_any_name(kind), "xyz"[axis], c -> samples, c -> gated, c -> reacquired, c -> saturated,
-           c -> longest_gated, c -> bounds_broken, c -> envelope_judged, c -> envelope_broken, c -> envelope_worst,
-           c -> hull_judged, c -> hull_broken, c -> hull_left_lsb, c -> outside, c -> outside_worst_lsb);
+           filter_any_name(kind), axis_name[axis], c->samples, c->gated, c->reacquired, c->saturated, c->longest_gated,
+           c->bounds_broken, c->envelope_judged, c->envelope_broken, c->envelope_worst, c->hull_judged, c->hull_broken,
+           c->hull_left_lsb, c->outside, c->outside_worst_lsb);
     broken += c->bounds_broken + c->hull_broken + c->envelope_broken;
+    judged += c->envelope_judged;
+}
+
+/* Every filter on one axis; false: one refuses the rate. */
+static bool every_filter(const char *what, const char *name, const stream_t *stream, const survey_t *survey, int axis)
+{
+    for (filter_kind_t kind = (filter_kind_t)0; kind < FILTER_KIND_COUNT; kind++) {
+        axis_counts_t counts;
+        if (!survey_axis(stream, survey, kind, axis, &counts)) {
+            fprintf(stderr, "recordings: %s: %s refuses %.1f Hz\n", name, filter_any_name(kind),
+                    survey->rate_dhz / 10.0);
+            return false;
+        }
+        print_counts(what, name, kind, axis, &counts);
+    }
+    return true;
 }
 
 static bool one_recording(const recording_t *r)
@@ -37,16 +55,12 @@ static bool one_recording(const recording_t *r)
     printf("stream,%s,%.1f,%u,%.1f,%zu,%zu,%zu,%zu,%zu\n", r->name, r->rate_dhz / 10.0, r->range_g, stream.rate_hz,
            rows.rows, rows.clipped, rows.duplicates, rows.zeros, rows.ones);
     survey_t survey = { r->rate_dhz, r->range_g, 0.0, forever_s };
-    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-        for (int axis = 0; axis < 3; axis++) {
-            axis_counts_t counts;
-            if (survey_axis(&stream, &survey, (filter_kind_t)kind, axis, &counts)) {
-                print_counts("filter", r->name, (filter_kind_t)kind, axis, &counts);
-            }
-        }
+    bool good = true;
+    for (int axis = 0; good && axis < 3; axis++) {
+        good = every_filter("filter", r->name, &stream, &survey, axis);
     }
     stream_free(&stream);
-    return true;
+    return good;
 }
 
 static bool one_rest(const recordings_t *recordings, const rest_t *rest)
@@ -58,21 +72,17 @@ static bool one_rest(const recordings_t *recordings, const rest_t *rest)
         return false;
     }
     survey_t survey = { r->rate_dhz, r->range_g, rest->from_s, rest->to_s };
-    for (int axis = 0; axis < 3; axis++) {
+    char key[64];
+    snprintf(key, sizeof key, "%s,%g", rest->name, rest->from_s);
+    bool good = true;
+    for (int axis = 0; good && axis < 3; axis++) {
         tails_t tails = survey_tails(&stream, rest->from_s, rest->to_s, axis);
-        printf("tails,%s,%g,%c,%zu,%.2f,%.5f,%.5f\n", rest->name, rest->from_s, "xyz"[axis], tails.samples,
+        printf("tails,%s,%g,%c,%zu,%.2f,%.5f,%.5f\n", rest->name, rest->from_s, axis_name[axis], tails.samples,
                tails.sd_lsb, tails.beyond3, tails.beyond5);
-        for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-            axis_counts_t counts;
-            if (survey_axis(&stream, &survey, (filter_kind_t)kind, axis, &counts)) {
-                char key[64];
-                snprintf(key, sizeof key, "%s,%g", rest->name, rest->from_s);
-                print_counts("rest", key, (filter_kind_t)kind, axis, &counts);
-            }
-        }
+        good = every_filter("rest", key, &stream, &survey, axis);
     }
     stream_free(&stream);
-    return true;
+    return good;
 }
 
 /* --- faults put into clean recordings --- */
@@ -196,6 +206,10 @@ int main(void)
     bool good = survey_all(&recordings) && faults_in(&recordings, "at rest", recording_rests, RESTS) &&
                 faults_in(&recordings, "moving", moving, MOVING);
     fprintf(stderr, "\n");
+    if (good && judged == 0) {
+        fprintf(stderr, "recordings: no estimate was judged\n");
+        good = false;
+    }
     if (!good) {
         return 2;
     }
