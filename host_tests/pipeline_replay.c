@@ -6,11 +6,11 @@
  *   pipeline_replay CSV FILTER RATE_DHZ RANGE_G SKIP [NAME=VALUE]... > ROWS.csv
  *   pipeline_replay --filters
  *
+ * CSV: a stream as in docs/protocol.md, whose rows come at the rate given; its times are counted from its first row.
  * SKIP: data rows before the cold start. NAME is a parameter of the filter as its descriptor names it, VALUE in its
  * unit; R=VALUE multiplies what the noise estimate says. The program is linked with --wrap for filter_any_defaults and
  * noise_r_lsb2_q8, so that the sample path meets these in place of the shipped values and is itself unchanged.
  */
-#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -20,8 +20,11 @@
 #include "filter_any.h"
 #include "noise.h"
 #include "pipeline.h"
+#include "stream.h"
 
-enum { CHANGES_MAX = 16 };
+enum { CHANGES_MAX = 16, RATE_TOLERANCE_PERCENT = 5 };
+
+#define R_FACTOR "R"
 
 typedef struct {
     char name[16];
@@ -51,6 +54,9 @@ static void fail(const char *format, ...)
 /* The value in the parameter's own format, into its field. */
 static void change_field(const filter_parameter_t *parameter, filter_any_config_t *config, double value)
 {
+    if (parameter->fraction_bits == 0 && value != floor(value)) {
+        fail("%s=%g: a whole number was expected", parameter->name, value);
+    }
     double scaled = round(ldexp(value, parameter->fraction_bits));
     double most = parameter->size == 2 ? UINT16_MAX : UINT32_MAX;
     if (!(scaled >= 0.0 && scaled <= most)) {
@@ -64,6 +70,9 @@ static void change_field(const filter_parameter_t *parameter, filter_any_config_
 static void apply(const change_t *change, filter_kind_t kind, filter_any_config_t *config)
 {
     const filter_descriptor_t *descriptor = filter_any_descriptor(kind);
+    if (strcmp(change->name, R_FACTOR) == 0) {
+        return; /* not of the configuration */
+    }
     for (uint8_t i = 0; i < descriptor->parameter_count; i++) {
         if (strcmp(descriptor->parameters[i].name, change->name) == 0) {
             change_field(&descriptor->parameters[i], config, change->value);
@@ -87,6 +96,15 @@ uint32_t __wrap_noise_r_lsb2_q8(const noise_t *n)
     return (uint32_t)fmin(fmax(r_lsb2_q8, FILTER_R_MIN_LSB2_Q8), FILTER_R_MAX_LSB2_Q8);
 }
 
+static void note_r_factor(double factor)
+{
+    const double most = (double)FILTER_R_MAX_LSB2_Q8 / FILTER_R_MIN_LSB2_Q8;
+    if (!(factor >= 1.0 / most && factor <= most)) {
+        fail("R=%g: a factor from %g to %g was expected", factor, 1.0 / most, most);
+    }
+    r_factor = factor;
+}
+
 static void note_change(const char *text)
 {
     change_t change;
@@ -94,12 +112,19 @@ static void note_change(const char *text)
     if (sscanf(text, "%15[A-Za-z]=%lf%n", change.name, &change.value, &used) != 2 || text[used] != '\0') {
         fail("%s: NAME=VALUE was expected", text);
     }
-    if (strcmp(change.name, "R") == 0) {
-        r_factor = change.value;
-        return;
+    for (size_t i = 0; i < change_count; i++) {
+        if (strcmp(change.name, changes[i].name) == 0) {
+            fail("%s: %s stands twice", text, change.name);
+        }
+    }
+    if (strcmp(change.name, "r") == 0) {
+        fail("%s: the noise estimate sets r: R=FACTOR", text);
     }
     if (change_count == CHANGES_MAX) {
         fail("more than %d parameters", CHANGES_MAX);
+    }
+    if (strcmp(change.name, R_FACTOR) == 0) {
+        note_r_factor(change.value);
     }
     changes[change_count++] = change;
 }
@@ -114,6 +139,19 @@ static long number(const char *what, const char *text, long low, long high)
     return value;
 }
 
+/* Why values that are in their ranges are refused. */
+static const char *refused_together(void)
+{
+    for (size_t i = 0; i < change_count; i++) {
+        double samples = changes[i].value;
+        bool legal = samples == 0.0 || samples == 3.0 || samples == 5.0 || samples == 9.0;
+        if (strcmp(changes[i].name, "reacquire") == 0 && !legal) {
+            return "reacquire: 3, 5, 9 or 0";
+        }
+    }
+    return "values that do not go together";
+}
+
 /* The sample path takes what its filter's init says for granted, so it is asked here. */
 static void check_configuration(filter_kind_t kind, uint16_t rate_dhz)
 {
@@ -125,33 +163,8 @@ static void check_configuration(filter_kind_t kind, uint16_t rate_dhz)
         uint8_t which = filter_any_refused(kind, &config);
         bool one = which < descriptor->parameter_count;
         fail("%s refuses its configuration: %s", descriptor->name,
-             one ? descriptor->parameters[which].name : "values that do not go together");
+             one ? descriptor->parameters[which].name : refused_together());
     }
-}
-
-/* A data row begins with a digit; a header, notes and blank lines do not. A row cut off by the end is none. */
-static bool take_row(const char *path, unsigned line_number, const char *line, adxl345_sample_t *sample)
-{
-    if (!isdigit((unsigned char)line[0])) {
-        return false;
-    }
-    unsigned t_us;
-    int lsb[3];
-    if (sscanf(line, "%u,%d,%d,%d", &t_us, &lsb[0], &lsb[1], &lsb[2]) != 4) {
-        if (strchr(line, '\n') == NULL) {
-            return false;
-        }
-        fail("%s:%u: not a row that begins with t_us,x,y,z", path, line_number);
-    }
-    sample->t_us = t_us;
-    for (int axis = 0; axis < 3; axis++) {
-        if (lsb[axis] < FILTER_Z_MIN_LSB || lsb[axis] > FILTER_Z_MAX_LSB) {
-            fail("%s:%u: reading %d is outside %d..%d", path, line_number, lsb[axis], FILTER_Z_MIN_LSB,
-                 FILTER_Z_MAX_LSB);
-        }
-        sample->lsb[axis] = (int16_t)lsb[axis];
-    }
-    return true;
 }
 
 static void filter_and_print(const adxl345_sample_t *sample, uint32_t period_us)
@@ -164,28 +177,41 @@ static void filter_and_print(const adxl345_sample_t *sample, uint32_t period_us)
            row.mg[1], row.mg[2], row.roll_cdeg, row.pitch_cdeg, row.flags);
 }
 
-static void replay(const char *path, uint32_t period_us, long skip)
+/* Missing rows are no samples: the sample path finds the gap by the next one's time. */
+static void replay(const char *path, uint16_t rate_dhz, size_t skip)
 {
-    FILE *file = fopen(path, "r");
-    if (file == NULL) {
-        fail("%s: cannot be opened", path);
+    stream_t stream;
+    if (!stream_load(&stream, path)) {
+        fail("%s", stream.error);
     }
-    char line[512];
-    unsigned line_number = 0;
-    unsigned rows = 0;
-    while (fgets(line, sizeof line, file) != NULL) {
-        adxl345_sample_t sample = { 0 };
-        line_number++;
-        if (!take_row(path, line_number, line, &sample) || skip-- > 0) {
-            continue;
+    if (skip >= stream.count) {
+        fail("%s: no row to filter: %zu rows, %zu to skip", path, stream.count, skip);
+    }
+    double rate_hz = rate_dhz / 10.0;
+    if (stream.rate_hz > 0.0 && fabs(stream.rate_hz - rate_hz) > rate_hz * RATE_TOLERANCE_PERCENT / 100.0) {
+        fail("%s: its rows come at %.1f Hz, which is not within %d %% of %.1f Hz", path, stream.rate_hz,
+             RATE_TOLERANCE_PERCENT, rate_hz);
+    }
+    for (size_t i = skip; i < stream.count; i++) {
+        const stream_row_t *row = &stream.rows[i];
+        if (!row->missing) {
+            adxl345_sample_t sample = { .t_us = (uint32_t)row->t_us, .lsb = { row->lsb[0], row->lsb[1], row->lsb[2] } };
+            filter_and_print(&sample, 10000000ul / rate_dhz);
         }
-        filter_and_print(&sample, period_us);
-        rows++;
     }
-    fclose(file);
-    if (rows == 0) {
-        fail("%s: no row to filter", path);
-    }
+    stream_free(&stream);
+}
+
+static bool is_range(long range_g)
+{
+    return range_g == 2 || range_g == 4 || range_g == 8 || range_g == 16;
+}
+
+/* Of the firmware: 12.5 Hz times a power of two, to 800 Hz. */
+static bool is_rate(long rate_dhz)
+{
+    long power = rate_dhz / 125;
+    return rate_dhz % 125 == 0 && power >= 1 && power <= 64 && (power & (power - 1)) == 0;
 }
 
 int main(int argc, char **argv)
@@ -205,13 +231,19 @@ int main(int argc, char **argv)
         fail("no filter %s", argv[2]);
     }
     uint16_t rate_dhz = (uint16_t)number("rate in 0.1 Hz", argv[3], FILTER_RATE_MIN_DHZ, FILTER_RATE_MAX_DHZ);
+    if (!is_rate(rate_dhz)) {
+        fail("rate in 0.1 Hz %s: 125, 250, 500, 1000, 2000, 4000 or 8000 was expected", argv[3]);
+    }
     uint8_t range_g = (uint8_t)number("range in g", argv[4], 2, 16);
+    if (!is_range(range_g)) {
+        fail("range in g %s: 2, 4, 8 or 16 was expected", argv[4]);
+    }
     for (int i = 6; i < argc; i++) {
         note_change(argv[i]);
     }
     check_configuration(kind, rate_dhz);
     pipeline_reset();
     pipeline_start((uint8_t)kind, rate_dhz, range_g);
-    replay(argv[1], 10000000ul / rate_dhz, number("rows to skip", argv[5], 0, 1000000000));
+    replay(argv[1], rate_dhz, (size_t)number("rows to skip", argv[5], 0, 1000000000));
     return 0;
 }

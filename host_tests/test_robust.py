@@ -12,6 +12,7 @@ try:
     import robust
     import robust_pictures
     import robust_runs
+    from page import INLINE
 except ImportError as missing:
     sys.exit(f"test_robust: {missing.name} is missing: run it by `make test`")
 
@@ -46,13 +47,13 @@ def refused(function, *words):
 def the_page_is_what_a_new_run_gives():
     page, _, text = fresh()
     assert robust.check(text, page) == [], robust.check(text, page)
-    assert len(robust.INLINE.findall(text)) >= 20, "the guide tells hardly a number"
+    assert len(INLINE.findall(text)) >= 20, "the guide tells hardly a number"
 
 
 @test
 def the_page_has_every_filter_and_every_stream():
     names = re.findall(r"X\((\w+)\)", pathlib.Path("lib/filters/src/filter_list.h").read_text(encoding="ascii").split("#define", 2)[-1])
-    numbers = robust.numbers_of(fresh()[2])
+    numbers = robust.TEXT.numbers_of(fresh()[2])
     streams = [path.stem for path in pathlib.Path("sim/streams").glob("*.csv")]
     assert len(names) >= 5 and len(streams) >= 18 and names == robust_runs.filters(), names
     for stream in streams:
@@ -68,7 +69,7 @@ def a_changed_number_is_found_wherever_it_stands():
     assert text.count(right) == 1
     found = robust.check(text.replace(right, "| outliers-15pct | 7.530 |"), page)
     assert len(found) == 1 and "Roll, outliers-15pct, raw: 7.530 on the page" in found[0], found
-    key, number = robust.INLINE.findall(text)[0]
+    key, number = INLINE.findall(text)[0]
     found = robust.check(text.replace(f"<!--={key}-->{number}<!--.-->", f"<!--={key}-->9{number}<!--.-->", 1), page)
     assert len(found) == 1 and key.strip() in found[0] and f"9{number}" in found[0], found
 
@@ -183,21 +184,62 @@ def a_parameter_changes_what_it_names_and_the_shipped_value_nothing():
         assert replayed(STREAM, "sprf", 1000, 16, 0, change).stdout != shipped, change
 
 
+def is_named(words, *arguments):
+    """One sentence with these words, and no row before it."""
+    done = replayed(*arguments, expect=2)
+    assert words in done.stderr and len(done.stderr.splitlines()) == 1 and done.stdout == "", (arguments, done.stderr)
+
+
 @test
 def a_bad_stream_or_argument_is_named():
     bad = OUT / "bad.csv"
     OUT.mkdir(parents=True, exist_ok=True)
     good = "t_us,x_lsb,y_lsb,z_lsb\n0,1,2,3\n"
-    for text, word in ((good + "10000,1,two,3\n", "bad.csv:3"), (good + "10000,1,2,5000\n", "bad.csv:3: reading 5000"), ("t_us\n", "no row")):
-        bad.write_text(text, encoding="ascii")
-        told = replayed(bad, "sprf", 1000, 16, 0, expect=2).stderr
-        assert word in told and len(told.splitlines()) == 1, told
-    for arguments, word in (((STREAM, "nothing", 1000, 16, 0), "no filter nothing"), (("nowhere.csv", "kf", 1000, 16, 0), "nowhere.csv"),
-                            ((STREAM, "kf", "1e3", 16, 0), "1e3"), ((STREAM, "kf", 1000, 16, 0, "gate=3"), "kf has no parameter gate"),
-                            ((STREAM, "sprf", 1000, 16, 0, "gate=0.5"), "refuses its configuration: gate"),
-                            ((STREAM, "sprf", 1000, 16, 0, "gate=1x"), "NAME=VALUE")):
-        told = replayed(*arguments, expect=2).stderr
-        assert word in told and len(told.splitlines()) == 1, told
+    for text, words in ((good + "10000,1,two,3\n", "bad.csv:3: y is not a whole number: 'two'"), (good + "10000,1,2,5000\n", "bad.csv:3: z is outside"),
+                        (good + "10000,1,2\n", "bad.csv:3: 3 fields"), ("t_us\n", "missing column x"), ("0,1,2,3\n", "header"),
+                        (good + "20000,1,2,3\n", "its rows come at 50.0 Hz, which is not within 5 % of 100.0 Hz"), ("", "empty"), (None, "cannot open")):
+        bad.unlink(missing_ok=True)
+        if text is not None:
+            bad.write_text(text, encoding="ascii")
+        is_named(words, bad, "sprf", 1000, 16, 0)
+    for arguments, words in (((STREAM, "nothing", 1000, 16, 0), "no filter nothing"), ((STREAM, "kf", "1e3", 16, 0), "1e3"),
+                             ((STREAM, "kf", 1001, 16, 0), "1001: 125, 250"), ((STREAM, "kf", 375, 16, 0), "375: 125, 250"),
+                             ((STREAM, "kf", 1000, 3, 0), "3: 2, 4, 8 or 16"), ((STREAM, "kf", 1000, 16, 5100), "no row to filter"),
+                             ((STREAM, "kf", 1000, 16, 0, "gate=3"), "kf has no parameter gate")):
+        is_named(words, *arguments)
+    for change, words in (("gate=0.5", "refuses its configuration: gate"), ("gate=1x", "NAME=VALUE"), ("R=nan", "R=nan: a factor"),
+                          ("R=-1", "R=-1: a factor"), ("R=0", "R=0: a factor"), ("R=inf", "R=inf: a factor"), ("R=1e30", "R=1e+30: a factor"),
+                          ("r=4", "the noise estimate sets r: R=FACTOR"), ("reacquire=5.4", "reacquire=5.4: a whole number"),
+                          ("reacquire=4", "reacquire: 3, 5, 9 or 0"), ("gate=nan", "gate=nan does not fit")):
+        is_named(words, STREAM, "sprf", 1000, 16, 0, change)
+    for name in ("gate", "R"):
+        is_named(f"{name} stands twice", STREAM, "sprf", 1000, 16, 0, f"{name}=3", "q=1000", f"{name}=4")
+
+
+@test
+def columns_are_found_by_name_and_missing_rows_are_gaps():
+    rows = [(k * 10000, 10 + k % 3, -5 + k % 2, 250 + k % 5) for k in range(300)]
+    plain, named = OUT / "plain.csv", OUT / "named.csv"
+    gone = set(range(150, 155)) | {200}
+    plain.write_text("t_us,x,y,z\n" + "".join(f"{t},{x},{y},{z}\n" for k, (t, x, y, z) in enumerate(rows) if k not in gone), encoding="ascii")
+    # the row of a fault holds what the sensor never said
+    named.write_text("flags,z,t_us,note,y,x\n" + "".join(
+        f"{2 + 16 * (k % 2)},4000,{t},?,4000,4000\n" if k in gone else f"0,{z},{t},?,{y},{x}\n" for k, (t, x, y, z) in enumerate(rows)), encoding="ascii")
+    output = replayed(plain, "sprf", 1000, 16, 0).stdout
+    assert replayed(named, "sprf", 1000, 16, 0).stdout == output and len(output.splitlines()) == 294
+
+
+@test
+def a_cut_stream_is_named_by_its_path():
+    short = OUT / "short.csv"
+    OUT.mkdir(parents=True, exist_ok=True)
+    head = make_streams.HEADER + "\n"
+    row = "0,1,2,256,0,0\n"
+    for text in ("", head, head + row, head + row + "10000,1,2", head + row + "10000,1,two,256,0,0\n", head + row + row, None):
+        short.unlink(missing_ok=True)
+        if text is not None:
+            short.write_text(text, encoding="ascii")
+        refused(lambda: robust_runs.load_stream(short), "short.csv")
 
 
 if __name__ == "__main__":

@@ -9,9 +9,10 @@ Nothing in a run is left to chance, so the page must equal it to the last digit.
 """
 import argparse
 import pathlib
-import re
 import subprocess
 import sys
+
+from page import Page as Text
 
 try:
     import robust_pictures
@@ -22,7 +23,7 @@ except ImportError as missing:
 
 DOCUMENT = pathlib.Path("docs/robust-filters.md")
 BEGIN, END = "<!-- written by make robust: begin -->", "<!-- written by make robust: end -->"
-INLINE = re.compile(r"<!--=([^>]*?)-->([^<]*)<!--\.-->")
+TEXT = Text(DOCUMENT, BEGIN, END)
 RAW = "raw"
 # what is changed from the shipped values, one at a time; a filter or parameter that is not there is an error, not a gap in the table
 CHANGES = (("kf", ""), ("kf", "q=1000"), ("kf", "q=100000"),
@@ -127,57 +128,13 @@ def measure():
 
 def filled(text, page):
     """The page's text with its tables and numbers put in."""
-    if text.count(BEGIN) != 1 or text.count(END) != 1:
-        raise Fault(f"{DOCUMENT}: its markers are missing or doubled: '{BEGIN}' and '{END}'")
-    head, rest = text.split(BEGIN)
-    tail = rest.split(END)[1]
-
-    def number(match):
-        key = match[1].strip()
-        if key not in page.values:
-            raise Fault(f"{DOCUMENT}: no number is called '{key}'")
-        return f"<!--={match[1]}-->{page.values[key]}<!--.-->"
-
-    return INLINE.sub(number, head) + "\n".join([BEGIN, *page.lines, "", END]) + INLINE.sub(number, tail)
-
-
-def numbers_of(text):
-    """{what: number} of a page: the cells of its tables by title, row and column, and the numbers in its text by line."""
-    found, title, head = {}, "", None
-    inside = text[text.index(BEGIN):text.index(END)] if BEGIN in text and END in text else ""
-    for line in inside.splitlines():
-        cells = [cell.strip() for cell in line.strip("|").split("|")]
-        if line.startswith("### "):
-            title, head = line[4:], None
-        elif line.startswith("|---") or not line.startswith("|"):
-            continue
-        elif head is None:
-            head = cells
-        else:
-            found.update({f"{title}, {cells[0]}, {column}": cell for column, cell in zip(head[1:], cells[1:])})
-    found.update({f"the text's '{match[1].strip()}'": match[2] for match in INLINE.finditer(text)})
-    return found
-
-
-def differences(old, new):
-    """Numbers of an old page that a new one does not have or has otherwise, one sentence each."""
-    before, now = numbers_of(old), numbers_of(new)
-    return [f"{what}: {number} on the page, {now.get(what, 'not there')} in this run" for what, number in before.items() if now.get(what) != number]
-
-
-def page_before(text):
-    """The committed page; where there is none (no git, a new page) the one that lies there."""
-    try:
-        done = subprocess.run(["git", "show", f"HEAD:{DOCUMENT}"], capture_output=True, text=True, timeout=60)
-    except FileNotFoundError:
-        return text
-    return done.stdout if done.returncode == 0 else text
+    return TEXT.filled(text, [*page.lines, ""], page.values)
 
 
 def check(text, page):
     """What is not as a new run has it."""
     new = filled(text, page)
-    faults = differences(text, new)
+    faults = TEXT.differences(text, new)
     if not faults and new != text:
         faults = ["its tables differ from those of this run: make robust writes them"]
     return [f"{DOCUMENT}: {fault}" for fault in faults]
@@ -193,9 +150,7 @@ def main(arguments=None):
     if options.check:
         faults = check(text, page) + robust_pictures.stale(pictures)
     else:
-        new = filled(text, page)
-        faults = differences(page_before(text), new)
-        DOCUMENT.write_text(new, encoding="utf-8")
+        faults = TEXT.write(text, [*page.lines, ""], page.values)
         drawn = robust_pictures.draw_stale(pictures)
         print(f"robust: {DOCUMENT} written, {drawn} of {len(pictures)} pictures drawn anew")
     for fault in faults:

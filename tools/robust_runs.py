@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import make_streams
+from page import Fault
 
 REPLAY = "build/host/pipeline_replay"
 STREAMS = pathlib.Path("sim/streams")
@@ -24,10 +25,6 @@ AXES = "xyz"
 SHAKE_HZ = (30, 70, 100, 130, 200, 400)
 SHAKE_RATES_HZ = (100, 400)
 SHAKE_LSB, SHAKE_SECONDS, SHAKE_SEED = 100.0, 21.0, 400
-
-
-class Fault(Exception):
-    """One sentence about what is wrong."""
 
 
 @dataclass
@@ -65,14 +62,24 @@ def filters():
     return output_of([REPLAY, "--filters"]).split()
 
 
+def table_of(lines):
+    """Rows of whole numbers; ValueError where one is cut or holds anything else."""
+    lines = list(lines)
+    return np.loadtxt(lines, delimiter=",", dtype=np.int64, ndmin=2) if lines else np.empty((0, ROW_COLUMNS), np.int64)
+
+
 def load_stream(path):
-    lines = [line for line in path.read_text(encoding="ascii").splitlines() if line[:1].isdigit()]
-    if not lines:
-        raise Fault(f"{path}: no rows")
-    table = np.loadtxt(lines, delimiter=",", dtype=np.int64, ndmin=2)
+    try:
+        table = table_of(line for line in path.read_text(encoding="ascii").splitlines() if line[:1].isdigit())
+    except (OSError, ValueError) as problem:
+        raise Fault(f"{path}: cannot be read: {str(problem).splitlines()[0]}") from problem
+    if len(table) < 2:
+        raise Fault(f"{path}: {len(table)} rows, two at least are needed for the rate")
     if table.shape[1] < 6:
         raise Fault(f"{path}: {table.shape[1]} columns, {make_streams.HEADER} was expected")
     period_us = float(np.median(np.diff(table[:, 0])))
+    if period_us <= 0.0:
+        raise Fault(f"{path}: the time stands still")
     return Stream(path.stem, path, round(1e7 / period_us), table[:, 0] * 1e-6, table[:, 1:4], table[:, 4:6])
 
 
@@ -84,7 +91,10 @@ def shipped():
 def replay(stream, name, changes=()):
     """The stream through the filter of this name; changes: NAME=VALUE, see host_tests/pipeline_replay.c."""
     text = output_of([REPLAY, stream.path, name, stream.rate_dhz, RANGE_G, 0, *changes])
-    rows = np.loadtxt(text.splitlines(), delimiter=",", dtype=np.int64, ndmin=2)
+    try:
+        rows = table_of(text.splitlines())
+    except ValueError as problem:
+        raise Fault(f"{stream.path}: {REPLAY} prints a row that cannot be read: {str(problem).splitlines()[0]}") from problem
     if rows.shape != (len(stream.lsb), ROW_COLUMNS):
         raise Fault(f"{stream.path}: {len(stream.lsb)} rows in, {rows.shape[0]} out")
     return Run(rows[:, 7:9], rows[:, 4:7], rows[:, 9])

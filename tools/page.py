@@ -1,0 +1,86 @@
+"""Pages whose tables, and numbers in the text between <!--=KEY--> and <!--.-->, a command writes: filling them, and what no longer is so."""
+import hashlib
+import pathlib
+import re
+import subprocess
+
+INLINE = re.compile(r"<!--=([^>]*?)-->([^<]*)<!--\.-->")
+KEPT = pathlib.Path("build/pages")  # where there is no git: pages as they were before a command wrote them
+
+
+class Fault(Exception):
+    """One sentence about what is wrong."""
+
+
+class Page:
+    """A document with a begin and an end marker around its tables."""
+
+    def __init__(self, document, begin, end):
+        self.document, self.begin, self.end = document, begin, end
+
+    def filled(self, text, lines, values):
+        """The page's text with its tables and numbers put in."""
+        if text.count(self.begin) != 1 or text.count(self.end) != 1:
+            raise Fault(f"{self.document}: its markers are missing or doubled: '{self.begin}' and '{self.end}'")
+        head, rest = text.split(self.begin)
+        tail = rest.split(self.end)[1]
+
+        def number(match):
+            key = match[1].strip()
+            if key not in values:
+                raise Fault(f"{self.document}: no number is called '{key}'")
+            return f"<!--={match[1]}-->{values[key]}<!--.-->"
+
+        return INLINE.sub(number, head) + "\n".join([self.begin, *lines, self.end]) + INLINE.sub(number, tail)
+
+    def numbers_of(self, text):
+        """{what: number} of a page: the cells of its tables by title, row and column, and the numbers in its text by line."""
+        found, title, head = {}, "", None
+        inside = text[text.index(self.begin):text.index(self.end)] if self.begin in text and self.end in text else ""
+        for line in inside.splitlines():
+            cells = [cell.strip() for cell in line.strip("|").split("|")]
+            if line.startswith("#"):
+                title, head = line.lstrip("# "), None
+            elif line.startswith("|---") or not line.startswith("|"):
+                continue
+            elif head is None:
+                head = cells
+            else:
+                found.update({f"{title}, {cells[0]}, {column}": cell for column, cell in zip(head[1:], cells[1:])})
+        found.update({f"the text's '{match[1].strip()}'": match[2] for match in INLINE.finditer(text)})
+        return found
+
+    def differences(self, old, new):
+        """Numbers of an old page that a new one does not have or has otherwise, one sentence each."""
+        before, now = self.numbers_of(old), self.numbers_of(new)
+        return [f"{what}: {number} on the page, {now.get(what, 'not there')} in this run" for what, number in before.items() if now.get(what) != number]
+
+    def before(self, text):
+        """The committed page; without git, or where it is not committed, the one that lay there before this command wrote it."""
+        try:
+            done = subprocess.run(["git", "show", f"HEAD:./{self.document}"], capture_output=True, text=True, timeout=60)
+            if done.returncode == 0:
+                return done.stdout
+        except FileNotFoundError:
+            pass
+        kept, written = self.kept()
+        if kept.is_file() and written.is_file() and written.read_text(encoding="ascii") == digest(text):
+            return kept.read_text(encoding="utf-8")
+        return text
+
+    def kept(self):
+        return KEPT / self.document.name, KEPT / f"{self.document.name}.written"
+
+    def write(self, text, lines, values):
+        """Fills and writes the page whose text this is; what the page before had otherwise."""
+        new, before = self.filled(text, lines, values), self.before(text)
+        KEPT.mkdir(parents=True, exist_ok=True)
+        kept, written = self.kept()
+        kept.write_text(before, encoding="utf-8")
+        written.write_text(digest(new), encoding="ascii")
+        self.document.write_text(new, encoding="utf-8")
+        return self.differences(before, new)
+
+
+def digest(text):
+    return hashlib.sha256(text.encode("utf-8")).hexdigest()
