@@ -195,9 +195,11 @@ def a_bad_stream_or_argument_is_named():
     bad = OUT / "bad.csv"
     OUT.mkdir(parents=True, exist_ok=True)
     good = "t_us,x_lsb,y_lsb,z_lsb\n0,1,2,3\n"
-    for text, words in ((good + "10000,1,two,3\n", "bad.csv:3: y is not a whole number: 'two'"), (good + "10000,1,2,5000\n", "bad.csv:3: z is outside"),
+    for text, words in ((good + "10000,1,two,3\n", "bad.csv:3: y is not a whole number: 'two'"),
+                        (good + "10000,1,2,5000\n", "bad.csv:3: z is outside"),
                         (good + "10000,1,2\n", "bad.csv:3: 3 fields"), ("t_us\n", "missing column x"), ("0,1,2,3\n", "header"),
-                        (good + "20000,1,2,3\n", "its rows come at 50.0 Hz, which is not within 5 % of 100.0 Hz"), ("", "empty"), (None, "cannot open")):
+                        (good + "20000,1,2,3\n", "its rows come at 50.0 Hz, which is not within 5 % of 100.0 Hz"), ("", "empty"),
+                        (None, "cannot open")):
         bad.unlink(missing_ok=True)
         if text is not None:
             bad.write_text(text, encoding="ascii")
@@ -223,8 +225,8 @@ def columns_are_found_by_name_and_missing_rows_are_gaps():
     gone = set(range(150, 155)) | {200}
     plain.write_text("t_us,x,y,z\n" + "".join(f"{t},{x},{y},{z}\n" for k, (t, x, y, z) in enumerate(rows) if k not in gone), encoding="ascii")
     # the row of a fault holds what the sensor never said
-    named.write_text("flags,z,t_us,note,y,x\n" + "".join(
-        f"{2 + 16 * (k % 2)},4000,{t},?,4000,4000\n" if k in gone else f"0,{z},{t},?,{y},{x}\n" for k, (t, x, y, z) in enumerate(rows)), encoding="ascii")
+    there = [f"{2 + 14 * (k % 2)},4000,{t},?,4000,4000\n" if k in gone else f"0,{z},{t},?,{y},{x}\n" for k, (t, x, y, z) in enumerate(rows)]
+    named.write_text("flags,z,t_us,note,y,x\n" + "".join(there), encoding="ascii")
     output = replayed(plain, "sprf", 1000, 16, 0).stdout
     assert replayed(named, "sprf", 1000, 16, 0).stdout == output and len(output.splitlines()) == 294
 

@@ -33,12 +33,12 @@ class Page:
 
         return INLINE.sub(number, head) + "\n".join([self.begin, *lines, self.end]) + INLINE.sub(number, tail)
 
-    def numbers_of(self, text):
-        """{what: number} of a page: the cells of its tables by title, row and column, and the numbers in its text by line."""
-        found, title, head = {}, "", None
+    def cells(self, text):
+        """(title, row, column, cell) of the tables between the markers."""
+        title, head = "", None
         inside = text[text.index(self.begin):text.index(self.end)] if self.begin in text and self.end in text else ""
         for line in inside.splitlines():
-            cells = [cell.strip() for cell in line.strip("|").split("|")]
+            cells = [cell.strip() for cell in line.strip().removeprefix("|").removesuffix("|").split("|")]
             if line.startswith("#"):
                 title, head = line.lstrip("# "), None
             elif line.startswith("|---") or not line.startswith("|"):
@@ -46,14 +46,19 @@ class Page:
             elif head is None:
                 head = cells
             else:
-                found.update({f"{title}, {cells[0]}, {column}": cell for column, cell in zip(head[1:], cells[1:])})
+                yield from ((title, cells[0], column, cell) for column, cell in zip(head[1:], cells[1:]))
+
+    def numbers_of(self, text):
+        """{what: number} of a page: the cells of its tables by title, row and column, and the numbers in its text by line."""
+        found = {f"{title}, {row}, {column}": cell for title, row, column, cell in self.cells(text)}
         found.update({f"the text's '{match[1].strip()}'": match[2] for match in INLINE.finditer(text)})
         return found
 
     def differences(self, old, new):
         """Numbers of an old page that a new one does not have or has otherwise, one sentence each."""
         before, now = self.numbers_of(old), self.numbers_of(new)
-        return [f"{what}: {number} on the page, {now.get(what, 'not there')} in this run" for what, number in before.items() if now.get(what) != number]
+        return [f"{what}: {number} on the page, {now.get(what, 'not there')} in this run"
+                for what, number in before.items() if now.get(what) != number]
 
     def before(self, text):
         """The committed page; without git, or where it is not committed, the one that lay there before this command wrote it."""

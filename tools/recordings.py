@@ -1,18 +1,23 @@
 """make recordings: the filters on real recordings, which are not part of this repository; writes build/recordings.csv (every number) and
-the tables of docs/recordings.md. Status 0 with `skipped: 1` when the recordings are not there."""
+the tables of docs/recordings.md, and the numbers in its text, which are taken from them. Status 1: a number of the committed page does not come
+out again, each is named, or an estimate left its bounds. Status 0 with `skipped: 1` when the recordings are not there."""
 import csv
 import pathlib
 import subprocess
 import sys
 
+from page import Fault, Page
+
 PROGRAM = "build/host/recordings"
 CSV = pathlib.Path("build/recordings.csv")
 DOCUMENT = pathlib.Path("docs/recordings.md")
 BEGIN, END = "<!-- written by make recordings: begin -->", "<!-- written by make recordings: end -->"
-ABSENT = 3
+PAGE = Page(DOCUMENT, BEGIN, END)
+ABSENT, SAID = 3, 2  # status of the program; SAID: it has told why
 
 COUNTS = ("samples", "gated", "reacquired", "saturated", "longest_gated", "bounds_broken", "judged", "broken", "worst_share", "hull_judged",
           "hull_broken", "hull_left_lsb", "outside", "outside_worst_lsb")
+OWN, OF_KF = "the filter's own run without faults", "the run of `kf` without faults"
 FIELDS = {
     "stream": ("name", "rate_hz", "range_g", "rows_hz", "rows", "clipped", "duplicates", "zeros", "ones"),
     "filter": ("name", "filter", "axis", *COUNTS),
@@ -22,15 +27,13 @@ FIELDS = {
 }
 
 
-class Fault(Exception):
-    """One sentence about what is wrong."""
-
-
 def measure():
     """The program's rows {kind: [dict]}; None when there are no recordings."""
     done = subprocess.run([PROGRAM], stdout=subprocess.PIPE, text=True, timeout=600)
     if done.returncode == ABSENT:
         return None, True
+    if done.returncode == SAID:
+        sys.exit(SAID)
     if done.returncode not in (0, 1):
         raise Fault(f"{PROGRAM} gave status {done.returncode}")
     CSV.write_text(done.stdout, encoding="ascii")
@@ -151,19 +154,43 @@ def tables(rows):
     lines = ["## The recordings", "", *streams_table(rows), "## Diverged?", "", *rules_table(rows), "## Gated", "", *gated_table(rows),
              "## Re-acquisitions, longest run of gated samples", "", *again_table(rows),
              "## Outside the range of the last second's samples", "", *outside_table(rows), "## At rest: false gates", "", *rest_table(rows)]
-    for mean, worst, title in (("own_mean", "own_worst", "the filter's own run without faults"),
-                               ("kf_mean", "kf_worst", "the run of `kf` without faults")):
-        lines += [f"## Faults put in: RMSE in LSB from {title}, mean of 20 seeds (worst)", ""]
+    for mean, worst, title in (("own_mean", "own_worst", OWN), ("kf_mean", "kf_worst", OF_KF)):
         for pool in unique(rows["fault"], "pool"):
+            lines += [f"## Faults put in {pool}: RMSE in LSB from {title}, mean of 20 seeds (worst)", ""]
             lines += faults_table(rows, pool, mean, worst)
     return lines[:-1]
 
 
-def with_tables(page, lines):
-    if page.count(BEGIN) != 1 or page.count(END) != 1:
-        raise Fault(f"{DOCUMENT}: its markers are missing or doubled: '{BEGIN}' and '{END}'")
-    head, rest = page.split(BEGIN)
-    return head + BEGIN + "\n" + "\n".join(lines) + "\n" + END + rest.split(END)[1]
+def largest(found, key, value):
+    found[key] = max(value, found.get(key, value))
+
+
+def facts(text):
+    """{key: number} for the text of a page, from its tables alone: whoever has the page can hold the one against the other."""
+    found = {}
+    for title, row, column, cell in PAGE.cells(text):
+        column = column.replace("`", "").removesuffix(", %")
+        if title.startswith("Outside") and cell:
+            largest(found, f"farthest {column}", float(cell.split("; ")[1]))
+        elif title.startswith("Re-acquisitions"):
+            largest(found, f"longest gated {column}", float(cell.split("; ")[1].removesuffix(" s")))
+        elif title.startswith("At rest") and "/" in cell:
+            gates = not column.startswith(("sd ", "beyond "))
+            kind = "gated" if gates and column != "sprf_paper" else column
+            largest(found, f"at rest {kind}", max(float(axis) for axis in cell.split("/")))
+        elif title == "Gated":
+            found[f"gated {row} {column}"] = cell
+        elif title.startswith("Faults put in"):
+            pool = title.split(":")[0].removeprefix("Faults put in ") + (" from kf" if OF_KF in title else "")
+            mean, worst = cell.split(" ")
+            found.update({f"{pool} {row} {column}": mean, f"{pool} {row} {column} worst": worst.strip("()")})
+    return {key: f"{value:g}" if isinstance(value, float) else value for key, value in found.items()}
+
+
+def check(text):
+    """Numbers of the text that the tables below it do not hold."""
+    lines = text[text.index(BEGIN) + len(BEGIN):text.index(END)].strip("\n").split("\n")
+    return PAGE.differences(text, PAGE.filled(text, lines, facts(text)))
 
 
 def main():
@@ -171,10 +198,18 @@ def main():
     if rows is None:
         print(f"skipped: 1 (no recordings, {DOCUMENT} left as it is)")
         return 0
-    DOCUMENT.write_text(with_tables(DOCUMENT.read_text(encoding="utf-8"), tables(rows)), encoding="utf-8")
+    lines = tables(rows)
+    faults = PAGE.write(DOCUMENT.read_text(encoding="utf-8"), lines, facts("\n".join([BEGIN, *lines, END])))
+    for fault in faults:
+        print(f"recordings: {fault}", file=sys.stderr)
     print(f"recordings: {len(rows['stream'])} streams, {len(rows['fault'])} rows of faults; {DOCUMENT} and {CSV} written")
-    print("1 passed, 0 failed" if good else "recordings: an estimate left its bounds, see 'Diverged?'\n0 passed, 1 failed")
-    return 0 if good else 1
+    if faults:
+        print(f"recordings: {len(faults)} numbers of the page before did not come out again")
+    if not good:
+        print("recordings: an estimate left its bounds, see 'Diverged?'")
+    passed = good and not faults
+    print("1 passed, 0 failed" if passed else "0 passed, 1 failed")
+    return 0 if passed else 1
 
 
 if __name__ == "__main__":

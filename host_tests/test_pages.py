@@ -1,0 +1,107 @@
+"""Pages that commands write: docs/recordings.md's text holds what its tables hold; what does not come out again is named, every time."""
+import contextlib
+import io
+import pathlib
+import sys
+
+sys.path.insert(0, "tools")
+import page
+import recordings
+
+from system_support import run_all, test
+
+OUT = pathlib.Path("build/pages-test")
+COUNTS = "1000,20,1,0,30,0,900,0,0.5,0,0,0.0"
+
+
+def told(status=0, sprf_farthest="12.0"):
+    """The rows of host_tests/recordings.c for one recording and two filters."""
+    lines = ["stream,walk,100.0,16,100.0,1000,0,0,0,0"]
+    for kind, farthest in (("kf", "3.0"), ("sprf", sprf_farthest)):
+        for axis in "xyz":
+            lines.append(f"filter,walk,{kind},{axis},{COUNTS},10,{farthest}")
+            lines.append(f"rest,walk,0,{kind},{axis},{COUNTS},0,0.0")
+        for pool in ("at rest", "moving"):
+            lines.append(f"fault,{pool},bad reads 1e-3,{kind},0.001,1.500,2.500,1.500,2.500,1.500")
+    lines += [f"tails,walk,0,{axis},1000,2.00,0.01,0.001" for axis in "xyz"]
+    program = OUT / "program.sh"
+    said = "echo 'recordings: walk: cannot open' >&2\n" if status == recordings.SAID else ""
+    program.write_text(f"#!/bin/sh\n{said}cat <<'END'\n" + "\n".join(lines) + f"\nEND\nexit {status}\n", encoding="ascii")
+    program.chmod(0o755)
+    return str(program.resolve())
+
+
+def run_of(**arguments):
+    """(status, what it prints) of make recordings' command with that program and a page of its own."""
+    recordings.PROGRAM = told(**arguments)
+    text = io.StringIO()
+    with contextlib.redirect_stderr(text), contextlib.redirect_stdout(text):
+        try:
+            status = recordings.main()
+        except SystemExit as end:
+            status = end.code
+    return status, text.getvalue()
+
+
+@contextlib.contextmanager
+def own_page():
+    OUT.mkdir(parents=True, exist_ok=True)
+    kept = recordings.DOCUMENT, recordings.PAGE, recordings.CSV, recordings.PROGRAM, page.KEPT
+    recordings.DOCUMENT, recordings.CSV, page.KEPT = OUT.resolve() / "page.md", OUT / "rows.csv", OUT / "kept"
+    recordings.PAGE = page.Page(recordings.DOCUMENT, recordings.BEGIN, recordings.END)
+    text = f"At most <!--=farthest sprf-->0<!--.--> LSB.\n{recordings.BEGIN}\n{recordings.END}\n"
+    recordings.DOCUMENT.write_text(text, encoding="utf-8")
+    for path in page.KEPT.glob("*"):
+        path.unlink()
+    try:
+        yield recordings.DOCUMENT
+    finally:
+        recordings.DOCUMENT, recordings.PAGE, recordings.CSV, recordings.PROGRAM, page.KEPT = kept
+
+
+@test
+def the_text_on_recordings_holds_what_its_tables_hold():
+    text = recordings.DOCUMENT.read_text(encoding="utf-8")
+    assert recordings.check(text) == [], recordings.check(text)
+    assert len(page.INLINE.findall(text)) >= 25, "the guide tells hardly a number"
+
+
+@test
+def a_changed_number_of_the_text_or_of_a_table_is_found():
+    text = recordings.DOCUMENT.read_text(encoding="utf-8")
+    key, number = page.INLINE.findall(text)[0]
+    found = recordings.check(text.replace(f"<!--={key}-->{number}<!--.-->", f"<!--={key}-->9{number}<!--.-->", 1))
+    assert len(found) == 1 and key in found[0] and f"9{number} on the page" in found[0], found
+    farthest = recordings.facts(text)["farthest sprf"]
+    found = recordings.check(text.replace(f"; {farthest} |", "; 99999 |"))
+    assert any("farthest sprf" in fault and "99999 in this run" in fault for fault in found), found
+
+
+@test
+def what_does_not_come_out_again_is_named_by_every_run():
+    with own_page() as document:
+        status, text = run_of()
+        assert status == 1 and "the text's 'farthest sprf': 0 on the page, 12 in this run" in text, text
+        written = document.read_text(encoding="utf-8")
+        document.write_text(written + "\n", encoding="utf-8")  # a page of its own, as if it had been shipped
+        assert run_of()[0] == 0
+        for _ in range(2):
+            status, text = run_of(sprf_farthest="34.0")
+            assert status == 1 and "0 passed, 1 failed" in text, text
+            for words in ("walk, `sprf`: 1; 12 on the page, 1; 34 in this run", "'farthest sprf': 12 on the page, 34 in this run"):
+                assert words in text, text
+        assert "At most <!--=farthest sprf-->34<!--.--> LSB" in document.read_text(encoding="utf-8")
+
+
+@test
+def a_failure_is_told_once():
+    with own_page() as document:
+        before = document.read_text(encoding="utf-8")
+        status, text = run_of(status=recordings.SAID)
+        assert status == recordings.SAID and text == "" and document.read_text(encoding="utf-8") == before, text
+        status, text = run_of(status=1)
+        assert status == 1 and "an estimate left its bounds" in text, text
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_all())
