@@ -163,17 +163,21 @@ def a_number_two_per_cent_up_is_named_with_old_and_new():
 @test
 def cycles_go_to_the_function_that_the_profile_names():
     profile = OUT / "where.csv"
-    profile.write_text("pc,count,cycles,symbol\n0x10,5,50,mixture_update+0x0\n0x12,5,25,mixture_update+0x2\n0x20,9,90,fx_high_u16+0x0\n"
-                       "0x30,5,20,bend_lsb.lto_priv.69+0x0\n0x40,1,999,main+0x0\n", encoding="ascii")
+    others = [name for name in bench.bench_where.FUNCTIONS if name not in ("mixture_update", "fx_high_u16", "bend_lsb", "give_back")]
+    lines = ["pc,count,cycles,symbol", "0x10,5,50,mixture_update+0x0", "0x12,5,25,mixture_update+0x2", "0x20,9,90,fx_high_u16+0x0",
+             "0x30,5,20,bend_lsb.lto_priv.69+0x0", "0x32,5,30,give_back.lto_priv.7+0x0", "0x40,1,999,main+0x0",
+             *(f"0x50,0,0,{name}+0x0" for name in others)]
+    profile.write_text("\n".join(lines) + "\n", encoding="ascii")
     found = dict(bench.bench_where.parts(*bench.bench_where.read_profile(profile)))
-    assert sum(found.values()) == (50 + 25 + 90 + 20) / 5 and found["products"] == 90 / 5 and found["gains, x and P"] == 20 / 5, found
-    profile.write_text("pc,count,cycles,symbol\n0x40,1,999,main+0x0\n", encoding="ascii")
-    try:
-        bench.bench_where.parts(*bench.bench_where.read_profile(profile))
-    except LookupError as problem:
-        assert "mixture_update" in str(problem)
-    else:
-        raise AssertionError("a profile without the filter was taken")
+    assert sum(found.values()) == (50 + 25 + 90 + 20 + 30) / 5 and found["products"] == 90 / 5 and found["gains, x and P"] == 50 / 5, found
+    for gone in ("mixture_update", "bend_lsb", "fx_leading"):
+        profile.write_text("\n".join(line for line in lines if f",{gone}" not in line) + "\n", encoding="ascii")
+        try:
+            bench.bench_where.parts(*bench.bench_where.read_profile(profile))
+        except LookupError as problem:
+            assert str(problem).startswith(f"{gone} is not in the profile"), problem
+        else:
+            raise AssertionError(f"a profile without {gone} was taken")
 
 
 @test

@@ -16,7 +16,7 @@ FUNCTIONS = {
     "two_state_wide_update": "gains, x and P",
     "give_back": "",
     "step_by": "",
-    "bend_lsb.lto_priv": "",
+    "bend_lsb": "",
     "fx_times_uq16": "products",
     "fx_high_u16": "",
     "__umulhisi3": "",
@@ -29,12 +29,12 @@ FUNCTIONS = {
 
 
 def read_profile(path):
-    """{function: cycles} and {function: calls}; a clone's number at the end of its name is left out."""
+    """{function: cycles} and {function: calls}; what the linker's optimiser puts behind a name is left out."""
     cycles, calls = collections.Counter(), {}
     with open(path, encoding="ascii") as file:
         for row in csv.DictReader(file):
             name, _, offset = row["symbol"].partition("+")
-            name = name.rstrip("0123456789").rstrip(".") if ".lto_priv" in name else name
+            name = name.partition(".lto_priv")[0]
             cycles[name] += int(row["cycles"])
             if offset == "0x0":
                 calls[name] = calls.get(name, 0) + int(row["count"])
@@ -44,11 +44,12 @@ def read_profile(path):
 def parts(cycles, calls):
     """[(what, cycles per call of the filter)]: a function without words of its own counts to the one before it."""
     updates = calls.get(ENTRY, 0)
-    if updates == 0:
-        raise LookupError(f"{ENTRY} is not in the profile of {STREAM}")
+    missing = [function for function in FUNCTIONS if function not in cycles]
+    if updates == 0 or missing:
+        raise LookupError(f"{', '.join(missing) or ENTRY} is not in the profile of {STREAM}: renamed, or now in line of its caller")
     result = []
     for function, words in FUNCTIONS.items():
-        share = cycles.get(function, 0) / updates
+        share = cycles[function] / updates
         if words:
             result.append([words, share])
         else:
