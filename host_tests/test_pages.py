@@ -1,4 +1,5 @@
-"""Pages that commands write: docs/recordings.md's text holds what its tables hold; what does not come out again is named, every time."""
+"""Pages that commands write: docs/recordings.md's text holds what its tables hold; what does not come out again is named, every time. And the
+list of what make proof does not prove."""
 import contextlib
 import io
 import pathlib
@@ -6,6 +7,7 @@ import sys
 
 sys.path.insert(0, "tools")
 import page
+import proof
 import recordings
 
 from system_support import run_all, test
@@ -101,6 +103,26 @@ def a_failure_is_told_once():
         assert status == recordings.SAID and text == "" and document.read_text(encoding="utf-8") == before, text
         status, text = run_of(status=1)
         assert status == 1 and "an estimate left its bounds" in text, text
+
+
+@test
+def a_line_of_deliberate_that_stands_twice_is_refused():
+    lines = (proof.HERE / "deliberate.txt").read_text(encoding="utf-8").splitlines()
+    assert len(proof.deliberate()) == len(lines) - 1 >= 50
+    OUT.mkdir(parents=True, exist_ok=True)
+    kept, text = proof.HERE, io.StringIO()
+    proof.HERE = OUT
+    (OUT / "deliberate.txt").write_text("\n".join([*lines, lines[1].split("|")[0] + "|" + lines[1].split("|")[1] + "| otherwise"]) + "\n")
+    try:
+        with contextlib.redirect_stderr(text):
+            proof.deliberate()
+    except SystemExit:
+        first = " | ".join(part.strip() for part in lines[1].split("|")[:2])
+        assert f"deliberate.txt: {first} stands twice: strike one" in text.getvalue(), text.getvalue()
+    else:
+        raise AssertionError("a line twice was taken")
+    finally:
+        proof.HERE = kept
 
 
 if __name__ == "__main__":

@@ -75,7 +75,11 @@ def annotate(file, out, overlay=None):
 
 def deliberate():
     lines = (HERE / "deliberate.txt").read_text(encoding="utf-8").splitlines()[1:]
-    return {tuple(part.strip() for part in line.split("|")[:2]) for line in lines}
+    wraps = [tuple(part.strip() for part in line.split("|")[:2]) for line in lines]
+    for wrap in wraps:
+        if wraps.count(wrap) > 1:
+            fail(f"{HERE / 'deliberate.txt'}: {' | '.join(wrap)} stands twice: strike one")
+    return set(wraps)
 
 
 def judge(name, entry, out):
