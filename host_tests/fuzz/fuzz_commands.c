@@ -87,16 +87,19 @@ static bool quiet(void)
     return replies_empty() && app_takes_commands();
 }
 
+/* A pass takes one line at most and may sleep before; the ring holds 64 blank ones. */
+#define READ_LIMIT_MS 300.0
+
 /* Until nothing is under way: bytes, replies, a change of the line rate; and what the ring held has gone out. */
 static void settle(void)
 {
-    double quiet_ms = 30.0 + 257e4 / (double)settings.baud;
+    double quiet_ms = READ_LIMIT_MS + 257e4 / (double)settings.baud;
     double limit_ms = hal_host_now_ms() + SETTLE_LIMIT_MS;
     for (double quiet_since_ms = hal_host_now_ms(); hal_host_now_ms() < quiet_since_ms + quiet_ms;) {
         pass();
         if (!quiet()) {
             quiet_since_ms = hal_host_now_ms();
-            quiet_ms = 30.0 + 257e4 / (double)settings.baud;
+            quiet_ms = READ_LIMIT_MS + 257e4 / (double)settings.baud;
         }
         FUZZ_CHECK(hal_host_now_ms() < limit_ms, "the replies do not end");
     }

@@ -160,7 +160,7 @@ FX_INLINE uint16_t weight_uq16(uint32_t m_uq20)
 {
     uint16_t middle = (uint16_t)((uint8_t)(m_uq20 >> 8) * 16U);
     uint8_t low = (uint8_t)((uint8_t)middle | (uint8_t)((uint8_t)m_uq20 >> 4));
-    uint8_t high = (uint8_t)((uint8_t)(middle >> 8) | (uint8_t)((uint8_t)(m_uq20 >> 16) << 4));
+    uint8_t high = (uint8_t)((uint8_t)(middle >> 8) | (uint8_t)((uint8_t)(m_uq20 >> 16) * 16U));
     return (uint16_t)(((uint16_t)high << 8) | low);
 }
 
