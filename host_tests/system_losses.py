@@ -92,7 +92,7 @@ def make_time_test(filter_name, rate):
     return check
 
 
-for slow_filter in ("soft", "shrf", "pbf", "af"):
+for slow_filter in ("pbf", "af"):
     TESTS.append(make_time_test(slow_filter, 800))
 
 
