@@ -42,7 +42,7 @@ $(U)/bench_rest/%.o: %.c Makefile mk/bench.mk
 $(U)/bench_rest.elf: $(BENCH_REST_OBJ)
 	@$(AVR_CC) $(AVR_LINK) $^ -o $@
 
-## bench: cycles, flash, RAM and stack of each filter, beside float, into docs/benchmarks.md (1 minute)
+## bench: cycles, flash, RAM and stack of each filter, beside float, into docs/benchmarks.md (2 minutes)
 bench:
 	@sh tools/deps.sh bench
 	@$(MAKE) -j2 $(BENCH_IMAGES) $(U)/bench_sample.elf $(U)/bench_rest.elf $(U)/firmware.elf $(S)/simrun

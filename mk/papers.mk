@@ -39,7 +39,7 @@ $(P)/operations002: $(COUNTED) $(P)/operations/main.o $(P)/operations/state_byte
 
 PAPERS := $(P)/paper002 $(P)/operations002
 
-## papers: the experiments of the papers, double and fixed point, beside the printed numbers, into docs/papers.md (2 minutes; RUNS=)
+## papers: the experiments of the papers, double and fixed point, beside the printed numbers, into docs/papers.md (2 minutes; RUNS=2000: judged, but page and JSON are left alone)
 papers:
 	@sh tools/deps.sh papers
 	@$(MAKE) -j2 $(PAPERS)

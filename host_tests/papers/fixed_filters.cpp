@@ -11,9 +11,7 @@
 extern "C" {
 #include "filter_any.h"
 #include "support_filters.h"
-#if __has_include("two_state_wide.h")
 #include "two_state_wide.h"
-#endif
 }
 
 #include <cmath>
@@ -84,13 +82,11 @@ void begin(two_state_t &core, double p11, double p22)
                     static_cast<std::int32_t>(fixed(rate0_lsb, 16)), fixed(p11, 28), 0, fixed(p22, 28));
 }
 
-#if __has_include("two_state_wide.h")
 void begin(two_state_wide_t &core, double p11, double p22)
 {
     two_state_wide_begin(&core, static_cast<std::int32_t>(fixed(x0_lsb, 16)),
                          static_cast<std::int32_t>(fixed(rate0_lsb, 16)), fixed(p11, 16), 0, fixed(p22, 28));
 }
-#endif
 
 // A state with a core can be begun; one without is another paper's. A core holds P in units of its R: of R_L in lrf.
 template <class State> auto begin_state(State &state, int) -> decltype((void)state.core)

@@ -3,9 +3,8 @@
  *
  * A sample further from the prediction than gate x sigma (of the innovation) is refused: predict only. Refused samples
  * that agree among themselves on raw values re-acquire: position and rate restart from them. Where nothing agrees for
- * long it stands still. Paper 002, rule (34) with
- * r^2 <= gate^2 S, plus the running-median start and consistency re-acquisition that its start and a step need.
- * Functions: filter.h.
+ * long it stands still. Paper 002, rule (34) with r^2 <= gate^2 S, plus the running-median start and consistency
+ * re-acquisition that its start and a step need. Functions: filter.h.
  */
 #ifndef SPRF_H
 #define SPRF_H

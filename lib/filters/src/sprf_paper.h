@@ -6,8 +6,8 @@
  * refused: predict only. Nothing else: no re-acquisition, no robust start. The first sample is taken whatever it is (x
  * = z, P11 = R: what an update from P(0) without bound leaves), so an outlier there makes every good sample after it an
  * outlier, and so does a step, until P has grown to it: a step of n sigma waits for P11 = n^2 / 4 R. Only at the end of
- * P's range (32,768 R, 362 sigma; after 300 samples at 100 Hz with the defaults, 900 with the paper's q) the next
- * sample is taken (FILTER_REACQUIRED), because P can grow no further. Functions: filter.h.
+ * P's range (32,768 R, 362 sigma; from rest after 273 samples at 100 Hz with the defaults, 1,034 with the paper's R and
+ * q) the next sample is taken (FILTER_REACQUIRED), because P can grow no further. Functions: filter.h.
  */
 #ifndef SPRF_PAPER_H
 #define SPRF_PAPER_H

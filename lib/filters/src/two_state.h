@@ -102,12 +102,12 @@ FX_ONCE uint32_t two_state_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint
 void two_state_init(two_state_t *s, uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3, uint32_t rate_max_lsb_s);
 
 /*
- * R (limited to its legal range) for the samples to come. Divides: 1,500 cycles. The estimate stays, P / R is re-scaled
+ * R (limited to its legal range) for the samples to come. Divides: 2,000 cycles. The estimate stays, P / R is re-scaled
  * by time.
  */
 FX_ONCE void two_state_set_noise(two_state_t *s, uint32_t r_lsb2_q8);
 
-/* As two_state_set_noise for a filter whose R is not that of a sample: 3..2^24 - 1, no limit is laid on it here. */
+/* As two_state_set_noise for a filter whose R is not that of a sample: 2..2^24 - 1, no limit is laid on it here. */
 FX_ONCE void two_state_set_variance(two_state_t *s, uint32_t r_lsb2_q8);
 
 /* Running from x: rate 0, P11 = R, rate as uncertain as after the warm-up. */
