@@ -34,45 +34,12 @@ AVR_CC      := avr-gcc
 # what makes the smallest image with avr-gcc 5.4.0 (and no table of a switch in RAM); the filters keep their speed
 AVR_SMALL   := -Os -flto -mrelax -mcall-prologues -fshort-enums -fno-inline-small-functions -fno-tree-dominator-opts -fno-tree-fre \
                -fno-tree-switch-conversion
-AVR_FLAGS   := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -gdwarf-2 -ffunction-sections -fdata-sections $(WARNINGS) \
-               $(INCLUDES) -Ihal/avr
+AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -gdwarf-2 -ffunction-sections -fdata-sections $(WARNINGS) \
+               $(INCLUDES) -Ihal/avr $(FILTER_FLAG)
 AVR_LINK    := -mmcu=atmega328p -gdwarf-2 $(AVR_SMALL) -Wl,--gc-sections
 AVR_SRC     := $(APP_SRC) $(LIB_SRC) $(wildcard hal/avr/*.c)
 AVR_OBJ     := $(AVR_SRC:%.c=$(U)/%.o)
-HANG_OBJ    := $(AVR_SRC:%.c=$(U)/hang/%.o)
-
-$(U)/%.o: %.c Makefile
-	@mkdir -p $(@D)
-	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
-
-$(U)/firmware.elf: $(AVR_OBJ)
-	@$(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $^ -o $@
-	@echo "built $@"
-
-# the image whose stages a test can stop one by one
-$(U)/hang/%.o: %.c Makefile
-	@mkdir -p $(@D)
-	@$(AVR_CC) $(AVR_FLAGS) -DHANG_TEST=1 -MMD -MP -c $< -o $@
-
-$(U)/hang/firmware.elf: $(HANG_OBJ)
-	@$(AVR_CC) $(AVR_LINK) $^ -o $@
-
-# images whose clock starts shortly before its wrap, and at ten digits
-WRAP_OBJ := $(AVR_SRC:%.c=$(U)/wrap/%.o)
-LATE_OBJ := $(AVR_SRC:%.c=$(U)/late/%.o)
-$(U)/wrap/%.o: %.c Makefile
-	@mkdir -p $(@D)
-	@$(AVR_CC) $(AVR_FLAGS) -DHAL_TIME_START_US=4289967296ul -MMD -MP -c $< -o $@
-
-$(U)/wrap/firmware.elf: $(WRAP_OBJ)
-	@$(AVR_CC) $(AVR_LINK) $^ -o $@
-
-$(U)/late/%.o: %.c Makefile
-	@mkdir -p $(@D)
-	@$(AVR_CC) $(AVR_FLAGS) -DHAL_TIME_START_US=4200000000ul -MMD -MP -c $< -o $@
-
-$(U)/late/firmware.elf: $(LATE_OBJ)
-	@$(AVR_CC) $(AVR_LINK) $^ -o $@
+include mk/images.mk
 
 # assembler primitives against their C twins, on the chip: with plain -Os, and as the firmware is built
 TWINS_SRC := host_tests/avr/fx_twins.c lib/filters/src/fx.c
@@ -84,26 +51,16 @@ $(U)/fx_twins_firmware.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -Wl,--gc-sections $(TWINS_SRC) -o $@
 
-# an image that is told of a slower processor: its sample period is short for a filter
-TIGHT_OBJ := $(AVR_SRC:%.c=$(U)/tight/%.o)
-$(U)/tight/%.o: %.c Makefile
-	@mkdir -p $(@D)
-	@$(AVR_CC) $(AVR_FLAGS) -DHAL_CPU_HZ=14000000ul -MMD -MP -c $< -o $@
-
-$(U)/tight/firmware.elf: $(TIGHT_OBJ)
-	@$(AVR_CC) $(AVR_LINK) $^ -o $@
-
 $(U)/hal_probe.elf: host_tests/avr/hal_probe.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr $(filter %.c,$^) -o $@
 
-TEST_IMAGES := $(U)/hal_probe.elf $(U)/fx_twins.elf $(U)/fx_twins_firmware.elf $(U)/hang/firmware.elf $(U)/wrap/firmware.elf $(U)/late/firmware.elf \
-               $(U)/tight/firmware.elf
+TEST_IMAGES := $(U)/hal_probe.elf $(U)/fx_twins.elf $(U)/fx_twins_firmware.elf $(FIRMWARE_IMAGES)
 
 $(U)/firmware.hex: $(U)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $< $@
 
-## firmware: build build/uno/firmware.elf and .hex
+## firmware: build build/uno/firmware.elf and .hex (FILTERS=: a set of mk/images.mk, or names of filters)
 firmware:
 	@sh tools/deps.sh firmware
 	@$(MAKE) $(U)/firmware.hex size
@@ -112,7 +69,7 @@ firmware:
 size: $(U)/firmware.elf
 	@sh tools/size.sh $<
 
-## flash: write the firmware to an UNO (PORT=/dev/ttyACM0)
+## flash: write the firmware to an UNO (PORT=/dev/ttyACM0 FILTERS=)
 flash:
 	@sh tools/deps.sh flash
 	@$(MAKE) $(U)/firmware.hex
@@ -182,8 +139,8 @@ OUT    ?= $(S)/$(basename $(notdir $(STREAM))).$(FILTER).out.csv
 ## sim: run the firmware on a recorded stream in the simulator and draw it (STREAM= FILTER= RATE= OUT=)
 sim:
 	@sh tools/deps.sh sim
-	@$(MAKE) $(U)/firmware.elf $(S)/simrun
-	@sh tools/sim.sh "$(STREAM)" "$(FILTER)" "$(RATE)" "$(OUT)"
+	@$(MAKE) $(call image_with,$(FILTER)) $(S)/simrun
+	@sh tools/sim.sh "$(call image_with,$(FILTER))" "$(STREAM)" "$(FILTER)" "$(RATE)" "$(OUT)"
 
 ## test: unit tests on the PC, then the firmware in the simulator against the PC
 test:
@@ -198,7 +155,7 @@ clean:
 	@rm -rf $(U) $(H) $(S) $(CHK) $(B)/planted $(B)/*.json
 
 # one file per further target
-include $(sort $(wildcard mk/*.mk))
+include $(sort $(filter-out mk/images.mk,$(wildcard mk/*.mk)))
 
 # keep the test objects
 .SECONDARY:

@@ -1,7 +1,7 @@
 """No sample and no row is lost: rates, baud rates, filters and their time; part of system_tests.py."""
 import re
 
-from system_support import FW, OUT, STREAMS, TESTS, assert_nothing_lost, simrun, test, within
+from system_support import FW, OUT, STREAMS, TESTS, assert_nothing_lost, image_with, simrun, test, within
 
 
 def worst_width_stream():
@@ -75,7 +75,7 @@ TESTS.append(make_width_test(800, 500000, 4))
 def forced_every(filter_name, rate):
     """The `every` that the firmware sets when it is asked for every row at 1,000,000 baud."""
     _, notes, _, stats = simrun("forced", STREAMS / "rest-2lsb.csv", "--filter", filter_name, "--rate", rate, "--baud", 1000000, "--every", 1,
-                                "--max-ms", 1500)
+                                "--max-ms", 1500, fw=image_with(filter_name))
     forced = [re.fullmatch(rf"# every (\d+)(: the smallest that {filter_name} leaves time for at {rate} Hz)?", note) for note in notes]
     every = int([f for f in forced if f][-1].group(1))
     assert f"# filter {filter_name}" in notes and f"# rate {rate} Hz, I2C at {400 if rate == 800 else 363.6} kHz" in notes, notes
@@ -86,7 +86,8 @@ def make_time_test(filter_name, rate):
     def check():
         # rows are as many and as wide as they get: all that the firmware allows must go out
         every = forced_every(filter_name, rate)
-        for stream, shift_us, fw in ((worst_width_stream(), 4200000000, "build/uno/late/firmware.elf"), (STREAMS / "outliers-15pct.csv", 0, FW)):
+        for stream, shift_us, fw in ((worst_width_stream(), 4200000000, "build/uno/late/firmware.elf"),
+                                     (STREAMS / "outliers-15pct.csv", 0, image_with(filter_name))):
             lose_nothing(f"time-{filter_name}-{rate}", stream, 777, rate, 1000000, every, 1.0, fw=fw, shift_us=shift_us, filter_name=filter_name)
     check.__name__ = f"nothing_lost_{rate}_hz_1000000_baud_{filter_name}"
     return check

@@ -13,6 +13,9 @@ OUT = pathlib.Path("build/system")
 SIMRUN = "build/sim/simrun"
 FW = "build/uno/firmware.elf"
 STREAMS = pathlib.Path("sim/streams")
+# that one, and those with the filters for which it has no room
+SETS = re.search(r"^FILTER_SETS *:= *(.*)$", pathlib.Path("mk/images.mk").read_text(encoding="utf-8"), re.M).group(1).split()
+SET_IMAGES = [FW] + [f"build/uno/{name}/firmware.elf" for name in SETS[1:]]
 TESTS = []
 # a folder for the profile of each run of the firmware as shipped (make coverage)
 PROFILES = os.environ.get("PROFILES")
@@ -26,6 +29,14 @@ BOUNDS = subprocess.run(["avr-gcc", "-dumpversion"], capture_output=True, text=T
 def within(what, value, limit):
     print(f"    {what}: {value} (limit {limit})")
     assert value <= limit or not BOUNDS, f"{what}: {value} above {limit}"
+
+
+def image_with(filter_name):
+    """The image of the firmware that holds a filter: the one flashed unless asked for another, if it does."""
+    for image in SET_IMAGES:
+        if filter_name in pathlib.Path(image).with_name("filters.txt").read_text(encoding="ascii").split():
+            return image
+    raise AssertionError(f"no image holds the filter {filter_name} (sets of filters: mk/images.mk)")
 
 
 class Skip(Exception):

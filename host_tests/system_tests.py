@@ -6,14 +6,14 @@ import resource
 import sys
 
 import system_losses  # noqa: F401  (its tests join the list)
-from system_support import FW, OUT, SIMRUN, STREAMS, TESTS, read_output, run, run_all, simrun, test, triplets, within
+from system_support import FW, OUT, SET_IMAGES, SIMRUN, STREAMS, TESTS, image_with, read_output, run, run_all, simrun, test, triplets, within
 
 
 # --- chip equals PC ---------------------------------------------------------------------------------------------------
 
 def compare_with_native(stream, filter_name):
     name = f"equal-{stream.stem}-{filter_name}"
-    rows, _, served, _ = simrun(name, stream, "--filter", filter_name)
+    rows, _, served, _ = simrun(name, stream, "--filter", filter_name, fw=image_with(filter_name))
     run("build/host/native_replay", "--in", stream, "--out", OUT / f"{name}.native.csv", "--filter", filter_name)
     native, _ = read_output(OUT / f"{name}.native.csv")
     # the end of a run differs: the simulator stops some ms after the stream, the native build 300 ms
@@ -141,13 +141,14 @@ for typed in ("filter kf", "rate 50", "range 8"):
 
 @test
 def memory_budgets():
-    _, _, _, stats = simrun("memory", STREAMS / "outliers-15pct.csv", "--cmd", "1000:help", "--cmd", "2000:status", "--cmd",
-                            "3000:mode plot", "--cmd", "5000:mode csv", "--max-ms", "9000")
     lines = [line.split() for line in open("tools/budgets.txt", encoding="utf-8") if line[0] not in "#\n"]
     budget = {words[0]: int(words[1]) for words in lines}
-    within("static RAM", stats["ram_static_bytes"], budget["ram_static_bytes"])
-    within("static RAM and stack", stats["ram_used_bytes"], budget["ram_and_stack_bytes"])
-    within("flash", stats["flash_bytes"], budget["flash_bytes"])
+    for image in SET_IMAGES:
+        _, _, _, stats = simrun("memory", STREAMS / "outliers-15pct.csv", "--cmd", "1000:help", "--cmd", "2000:status", "--cmd",
+                                "3000:mode plot", "--cmd", "5000:mode csv", "--max-ms", "9000", fw=image)
+        within(f"{image}: static RAM", stats["ram_static_bytes"], budget["ram_static_bytes"])
+        within(f"{image}: static RAM and stack", stats["ram_used_bytes"], budget["ram_and_stack_bytes"])
+        within(f"{image}: flash", stats["flash_bytes"], budget["flash_bytes"])
 
 
 def speed_of(name, stream, milliseconds, *options):

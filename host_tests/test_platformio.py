@@ -4,6 +4,7 @@ import ast
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 
@@ -84,6 +85,12 @@ def lint_notices_an_unknown_option_and_a_broken_file():
         assert "ini-broken" in str(problem), problem
     else:
         assert found["errors"], found
+
+
+@test
+def uno_holds_the_filters_of_the_firmware_of_make():
+    flag = re.search(r"'-DFILTER_LIST\(X\)=(.*)'", pathlib.Path("platformio.ini").read_text(encoding="utf-8")).group(1)
+    assert re.findall(r"X\((\w+)\)", flag) == pathlib.Path(FW).with_name("filters.txt").read_text(encoding="ascii").split(), flag
 
 
 @test

@@ -57,11 +57,11 @@ check-memory: check-objects $(U)/firmware.elf
 check-frames: check-objects
 	@python3 tools/check_stack.py frames
 
-check-painted: check-objects $(U)/firmware.elf $(S)/simrun
-	@python3 tools/check_stack.py painted $(U)/firmware.elf
+check-painted: check-objects $(SET_IMAGES) $(S)/simrun
+	@python3 tools/check_stack.py painted $(SET_IMAGES)
 
-check-size: $(U)/firmware.elf
-	@sh tools/size.sh $(U)/firmware.elf
+check-size: $(SET_IMAGES)
+	@for image in $^; do sh tools/size.sh $$image || exit 1; done
 
 check-seam:
 	@sh tools/check_seam.sh

@@ -2,7 +2,7 @@
 """The stack: the frame of each function from the compiler, the deepest use of all from the painted RAM of the simulated chip.
 
     check_stack.py frames          stack of each function (build/check/avr/*.su), the five largest
-    check_stack.py painted ELF     static RAM and the deepest stack while every command is used and the sensor comes and goes
+    check_stack.py painted ELF...  static RAM and the deepest stack while every command is used and the sensor comes and goes
 """
 import json
 import pathlib
@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 from avr_objects import FOLDER
-from check_support import Stop, binding, budget, deviations, filter_names, limit_for, main, report
+from check_support import Stop, binding, budget, deviations, limit_for, main, report
 
 SIMRUN = "build/sim/simrun"
 STREAM = "sim/streams/outliers-15pct.csv"
@@ -52,16 +52,16 @@ def check_frames():
     return report("stack frames", found if found and binding() else [], summary)
 
 
-def commands():
-    """Everything one can type, the longest replies, and each filter at work on outliers."""
+def commands(filters):
+    """Everything one can type, the longest replies, and each filter of the image at work on outliers."""
     typed = ["help", "status", *SETTINGS, *(f"{name} nonsense" for name in SETTINGS), "rate 123", "nonsense", "x" * 40, "mode plot", "help",
              "status", "mode csv", "rate 400", "rate 12.5", "rate 100", "range 2", "range 16", "every 3", "every 1", "stop", "status", "go"]
-    typed += [f"filter {name}" for name in filter_names()] + ["status"]
+    typed += [f"filter {name}" for name in filters] + ["status"]
     return [word for at, text in enumerate(typed) for word in ("--cmd", f"{1000 + 400 * at}:{text}")], 1000 + 400 * len(typed)
 
 
 def check_painted(elf):
-    typed, end_ms = commands()
+    typed, end_ms = commands(pathlib.Path(elf).with_name("filters.txt").read_text(encoding="ascii").split())
     faults = [f"{end_ms}ms:unplug", f"{end_ms + 1500}ms:plug", f"{end_ms + 3000}ms:noint:500"]
     stats = RUN.with_suffix(".json")
     done = subprocess.run([SIMRUN, "--fw", elf, "--in", STREAM, "--out", str(RUN.with_suffix(".csv")), "--stats", str(stats), "--loop",
@@ -79,17 +79,17 @@ def check_painted(elf):
     found = []
     if used > limit and binding():
         found.append(f"{elf}: static RAM and stack take {used} bytes (budget {limit}); largest frames: {suspects}")
-    return report("stack, painted", found, f"static RAM {measured['ram_static_bytes']} and deepest stack {measured['stack_high_water_bytes']} "
-                  f"bytes, together {used} (budget {limit})")
+    return report(f"stack of {elf}, painted", found, f"static RAM {measured['ram_static_bytes']} and deepest stack "
+                  f"{measured['stack_high_water_bytes']} bytes, together {used} (budget {limit})")
 
 
 def check():
     arguments = sys.argv[1:]
     if arguments == ["frames"]:
         return check_frames()
-    if len(arguments) == 2 and arguments[0] == "painted":
-        return check_painted(arguments[1])
-    raise Stop("usage: check_stack.py frames | painted ELF")
+    if len(arguments) >= 2 and arguments[0] == "painted":
+        return max(check_painted(elf) for elf in arguments[1:])
+    raise Stop("usage: check_stack.py frames | painted ELF...")
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ LIMIT_S = 600  # by the wall, on a machine that others may load: only a check th
 TAKES_FILE = {"compile", "tidy", "int16", "cppcheck", "format", "lengths"}
 FOLDERS = ["firmware", "lib", "hal", "sim", "host_tests", "mk", "tools", "docs"]
 FILES = ["Makefile", ".clang-tidy", ".clang-format", "platformio.ini", "sim/streams/outliers-15pct.csv", "build/uno/firmware.elf",
-         "build/sim/simrun"]
+         "build/uno/filters.txt", "build/sim/simrun"]
 BUILT = ["build/check/avr", "build/uno/firmware", "build/uno/hal", "build/uno/lib"]
 
 
@@ -152,7 +152,7 @@ def restore(copy, fault, whole):
         path.unlink(missing_ok=True)
     else:
         path.write_bytes(whole)
-    for built in (copy / "build").glob("*/firmware.elf"):
+    for built in (copy / "build").rglob("firmware.elf"):
         built.unlink()
 
 

@@ -1,7 +1,7 @@
 #!/bin/sh
-# sim.sh STREAM FILTER RATE OUT: one run of the firmware in the simulator, its summary and its picture.
+# sim.sh IMAGE STREAM FILTER RATE OUT: one run of the firmware in the simulator, its summary and its picture.
 set -eu
-stream=$1 filter=$2 rate=$3 out=$4
+image=$1 stream=$2 filter=$3 rate=$4 out=$5
 base=${out%.csv}
 base=${base%.out}
 if [ ! -r "$stream" ]; then
@@ -16,7 +16,7 @@ case $rate in
     800) baud_option='--baud 500000 --every 4' ;;
 esac
 # shellcheck disable=SC2086
-build/sim/simrun --fw build/uno/firmware.elf --in "$stream" --out "$out" --filter "$filter" --rate "$rate" $baud_option \
+build/sim/simrun --fw "$image" --in "$stream" --out "$out" --filter "$filter" --rate "$rate" $baud_option \
     --served "$base.served.csv" --stats build/sim/stats.json
 build/venv/bin/python tools/plot_run.py --run "$out" --stream "$stream" --stats build/sim/stats.json --served "$base.served.csv" \
     --png "$base.png" --title "$(basename "$stream" .csv), filter $filter, $rate Hz"

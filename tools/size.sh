@@ -22,8 +22,8 @@ largest() {
 # shellcheck disable=SC2046
 set -- $(avr-size -A "$elf" | awk '$1==".text"{t=$2} $1==".data"{d=$2} $1==".bss"{b=$2} $1==".noinit"{n=$2} END{print t+d, d+b+n, d+0}')
 version=$(avr-gcc -dumpversion)
-printf 'flash %d bytes (budget %d of 32256), static RAM %d bytes (budget %d of 2048), .data %d bytes (budget %d), avr-gcc %s\n' \
-    "$1" "$flash_budget" "$2" "$ram_budget" "$3" "$data_budget" "$version"
+printf '%s: flash %d bytes (budget %d of 32256), static RAM %d bytes (budget %d of 2048), .data %d bytes (budget %d), avr-gcc %s\n' \
+    "$elf" "$1" "$flash_budget" "$2" "$ram_budget" "$3" "$data_budget" "$version"
 if [ "$1" -gt "$flash_budget" ] || [ "$2" -gt "$ram_budget" ] || [ "$3" -gt "$data_budget" ]; then
     if [ "$version" = 5.4.0 ]; then
         echo "size: over budget; the largest:" >&2

@@ -208,7 +208,7 @@ uint8_t filter_any_refused(filter_kind_t kind, const filter_any_config_t *config
     if (descriptor == NULL) {
         return FILTER_REFUSED_KIND;
     }
-    uint16_t rate_dhz = config->kf.rate_dhz; /* every configuration begins with it */
+    uint16_t rate_dhz = config->rate_dhz;
     if (rate_dhz < FILTER_RATE_MIN_DHZ || rate_dhz > FILTER_RATE_MAX_DHZ) {
         return FILTER_REFUSED_RATE;
     }

@@ -20,6 +20,7 @@ typedef enum {
 } filter_kind_t;
 
 typedef union {
+    uint16_t rate_dhz; /* every configuration begins with it */
 #define FILTER_MEMBER(F) F##_config_t F;
     FILTER_LIST(FILTER_MEMBER)
 #undef FILTER_MEMBER

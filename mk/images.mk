@@ -1,0 +1,61 @@
+# The images of the firmware: which filters are in them, and those that tests need besides.
+
+# Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter_list.h; sprf, which the firmware
+# starts with, must be among them. The first set is what is built and flashed when nothing is said; together they hold every filter.
+FILTER_SETS      := everyday robust
+FILTERS_everyday := kf sprf synth lrf soft
+FILTERS_robust   := kf sprf lrf soft sprf_paper shrf pbf af
+FILTERS          := $(firstword $(FILTER_SETS))
+
+CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))
+IMAGE_FILTERS   = $(FILTERS_everyday)
+FILTER_FLAG     = '-DFILTER_LIST(X)=$(foreach f,$(IMAGE_FILTERS),X($(f)))'
+
+# the image that holds a filter: the chosen one if it does, else the first set's that does
+image_with = $(or $(firstword $(if $(filter $(1),$(CHOSEN_FILTERS)),$(U)/firmware.elf) \
+             $(foreach s,$(FILTER_SETS),$(if $(filter $(1),$(FILTERS_$(s))),$(U)/$(s)/firmware.elf))), \
+             $(error FILTER: no image holds a filter $(1); filters: $(sort $(foreach s,$(FILTER_SETS),$(FILTERS_$(s))))))
+
+# the chosen one is built anew when the choice changes
+$(AVR_OBJ) $(U)/filters.txt: IMAGE_FILTERS = $(CHOSEN_FILTERS)
+$(AVR_OBJ): $(U)/filters.txt
+$(U)/filters.txt: FORCE
+	@sh tools/filters_txt.sh $@ $(IMAGE_FILTERS)
+
+$(U)/%.o: %.c Makefile mk/images.mk
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
+
+$(U)/firmware.elf: $(AVR_OBJ)
+	@$(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $^ -o $@
+	@echo "built $@"
+
+# IMAGE(name, filters, further flags): build/uno/NAME/firmware.elf, and filters.txt, which says what it holds
+define IMAGE
+$(U)/$(1)/%: IMAGE_FILTERS = $(2)
+$(U)/$(1)/%.o: %.c Makefile mk/images.mk
+	@mkdir -p $$(@D)
+	@$$(AVR_CC) $$(AVR_FLAGS) $(3) -MMD -MP -c $$< -o $$@
+
+$(U)/$(1)/filters.txt: Makefile mk/images.mk
+	@sh tools/filters_txt.sh $$@ $$(IMAGE_FILTERS)
+
+$(U)/$(1)/firmware.elf: $(AVR_SRC:%.c=$(U)/$(1)/%.o) | $(U)/$(1)/filters.txt
+	@$$(AVR_CC) $$(AVR_LINK) $$(filter %.o,$$^) -o $$@
+endef
+
+# the sets that are not flashed unless asked for
+$(foreach s,$(filter-out everyday,$(FILTER_SETS)),$(eval $(call IMAGE,$(s),$(FILTERS_$(s)))))
+# its stages can be stopped one by one
+$(eval $(call IMAGE,hang,$(FILTERS_everyday),-DHANG_TEST=1))
+# the clock starts shortly before its wrap; at ten digits
+$(eval $(call IMAGE,wrap,$(FILTERS_everyday),-DHAL_TIME_START_US=4289967296ul))
+$(eval $(call IMAGE,late,$(FILTERS_robust),-DHAL_TIME_START_US=4200000000ul))
+# told of a slower processor: its sample period is short for a filter
+$(eval $(call IMAGE,tight,$(FILTERS_robust),-DHAL_CPU_HZ=14000000ul))
+
+SET_IMAGES      := $(U)/firmware.elf $(patsubst %,$(U)/%/firmware.elf,$(filter-out everyday,$(FILTER_SETS)))
+FIRMWARE_IMAGES := $(SET_IMAGES) $(patsubst %,$(U)/%/firmware.elf,hang wrap late tight)
+
+FORCE:
+.PHONY: FORCE

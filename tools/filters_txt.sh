@@ -1,0 +1,19 @@
+#!/bin/sh
+# filters_txt.sh FILE FILTER...: the filters of an image into its filters.txt, which is left alone when it says so already.
+set -eu
+file=$1
+shift
+known=$(sed -n 's/^    X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter_list.h | tr '\n' ' ')
+sets=$(sed -n 's/^FILTER_SETS *:= *//p' mk/images.mk)
+for filter in "$@"; do
+    case " $known" in
+        *" $filter "*) ;;
+        *) echo "FILTERS: there is no filter $filter; filters: ${known}; sets of filters: $sets" >&2; exit 2 ;;
+    esac
+done
+case " $* " in
+    *" sprf "*) ;;
+    *) echo "FILTERS: the firmware starts with sprf, which is not among: $*" >&2; exit 2 ;;
+esac
+mkdir -p "$(dirname "$file")"
+[ "$(cat "$file" 2> /dev/null)" = "$*" ] || echo "$*" > "$file"
