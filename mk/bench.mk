@@ -45,7 +45,7 @@ $(U)/bench_rest.elf: $(BENCH_REST_OBJ)
 ## bench: cycles, flash, RAM and stack of each filter, beside float, into docs/benchmarks.md (2 minutes)
 bench:
 	@sh tools/deps.sh bench
-	@$(MAKE) -j2 $(BENCH_IMAGES) $(U)/bench_sample.elf $(U)/bench_rest.elf $(U)/firmware.elf $(S)/simrun
+	@$(MAKE) -j2 $(BENCH_IMAGES) $(U)/bench_sample.elf $(U)/bench_rest.elf $(SET_IMAGES) $(S)/simrun
 	@python3 tools/bench.py --flags '$(BENCH_COMMON) -Wl,--gc-sections $(BENCH_INC)' --small '$(AVR_SMALL)' --sources '$(BENCH_SRC)' --parts '$(BENCH_PARTS)'
 
 .PHONY: bench

@@ -95,7 +95,7 @@ def measure(images):
 def measure_where():
     """The table of where the dearest filter's cycles go."""
     profile = OUT / "bench_where.csv"
-    run([SIMRUN, "--fw", OUT / "firmware.elf", "--in", f"sim/streams/{bench_where.STREAM}.csv", "--out", OUT / "bench_where.txt", "--filter",
+    run([SIMRUN, "--fw", OUT / "robust/firmware.elf", "--in", f"sim/streams/{bench_where.STREAM}.csv", "--out", OUT / "bench_where.txt", "--filter",
          bench_where.FILTER, "--profile", profile])
     try:
         return bench_where.page_lines(bench_where.parts(*bench_where.read_profile(profile)))
