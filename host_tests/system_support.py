@@ -108,13 +108,15 @@ def assert_nothing_lost(rows, served, every=1, from_us=0, end_us=None):
 
 
 def run_all():
+    """All tests, or those whose name contains one of the words of the command line, without those that contain a word after a minus."""
     OUT.mkdir(parents=True, exist_ok=True)
-    only = sys.argv[1:]
+    only = [word for word in sys.argv[1:] if not word.startswith("-")]
+    without = [word[1:] for word in sys.argv[1:] if word.startswith("-")]
     file = pathlib.Path(sys.argv[0]).name
     failed = skipped = count = 0
     for function in TESTS:
         name = function.__name__
-        if only and not any(word in name for word in only):
+        if only and not any(word in name for word in only) or any(word in name for word in without):
             continue
         count += 1
         try:
