@@ -1,38 +1,18 @@
-// The experiments of paper 002. Each prints rows and its progress on standard output: see report.cpp.
+// The experiments of paper 002. Each prints rows and its progress on standard output: see report.hpp.
 #ifndef PAPERS_EXPERIMENTS_H
 #define PAPERS_EXPERIMENTS_H
 
 #include "filters.hpp"
-#include "statistics.hpp"
+#include "report.hpp"
 
-#include <cstdint>
 #include <string>
 
 namespace papers
 {
-struct Options {
-    int runs = 10000;
-    std::uint64_t seed = 2024;
-};
-
-// `row`, experiment, filter, arithmetic, metric, value, low, high, runs, between tabs; low and high are empty without
-// interval.
+// As of report.hpp, for a filter with its arithmetic.
 void row(const std::string &experiment, const Contestant &c, const std::string &metric, double value, int runs);
 void row(const std::string &experiment, const Contestant &c, const std::string &metric, const Interval &value,
          int runs);
-
-// `progress` and the part done.
-class Progress
-{
-  public:
-    explicit Progress(double work) : work_(work) {}
-    void advance(double by = 1.0);
-
-  private:
-    double work_;
-    double done_ = 0.0;
-    int told_ = -1;
-};
 
 // K_ef from a start: of all references, of the printed readings, of the shipped code.
 void table1_start(const Options &options);

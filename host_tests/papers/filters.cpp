@@ -1,4 +1,5 @@
 #include "filters.hpp"
+#include "experiments.hpp"
 #include "model.hpp"
 #include "reference_robust.h"
 
@@ -130,9 +131,14 @@ std::unique_ptr<Filter> detail::make_double(const std::string &name, const Setti
     throw std::runtime_error(name + ": no such reference in host_tests/papers/filters.cpp");
 }
 
-const char *text(Arithmetic arithmetic)
+void row(const std::string &experiment, const Contestant &c, const std::string &metric, double value, int runs)
 {
-    return arithmetic == Arithmetic::in_double ? "double" : "fixed";
+    row(experiment, c.name, c.arithmetic, metric, value, runs);
+}
+
+void row(const std::string &experiment, const Contestant &c, const std::string &metric, const Interval &value, int runs)
+{
+    row(experiment, c.name, c.arithmetic, metric, value, runs);
 }
 
 Contestant contestant(const std::string &name, Arithmetic arithmetic, const Settings &settings)

@@ -3,13 +3,14 @@
 #ifndef PAPERS_FILTERS_H
 #define PAPERS_FILTERS_H
 
+#include "report.hpp"
+
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace papers
 {
-enum class Arithmetic { in_double, fixed };
 enum class Start {
     table1, // estimate and P of Table 1 (the narrow fixed-point format: P11 limited to 8 R)
     median, // running median of five samples, the rate as uncertain as in Table 1; as published: Table 1
@@ -43,8 +44,6 @@ struct Contestant {
     Arithmetic arithmetic;
     std::unique_ptr<Filter> filter;
 };
-
-const char *text(Arithmetic arithmetic);
 
 // Throws std::runtime_error with one sentence when the name is unknown or the settings are refused.
 Contestant contestant(const std::string &name, Arithmetic arithmetic, const Settings &settings);

@@ -1,4 +1,4 @@
-#include "experiments.hpp"
+#include "report.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -14,22 +14,30 @@ std::string number(double value)
     return buffer;
 }
 
-void print(const std::string &experiment, const Contestant &c, const std::string &metric, const std::string &value,
-           const std::string &interval, int runs)
+void print(const std::string &experiment, const std::string &filter, Arithmetic arithmetic, const std::string &metric,
+           const std::string &values, int runs)
 {
-    std::printf("row\t%s\t%s\t%s\t%s\t%s\t%s\t%d\n", experiment.c_str(), c.name.c_str(), text(c.arithmetic),
-                metric.c_str(), value.c_str(), interval.c_str(), runs);
+    std::printf("row\t%s\t%s\t%s\t%s\t%s\t%d\n", experiment.c_str(), filter.c_str(), text(arithmetic), metric.c_str(),
+                values.c_str(), runs);
 }
 } // namespace
 
-void row(const std::string &experiment, const Contestant &c, const std::string &metric, double value, int runs)
+const char *text(Arithmetic arithmetic)
 {
-    print(experiment, c, metric, number(value), "\t", runs);
+    return arithmetic == Arithmetic::in_double ? "double" : "fixed";
 }
 
-void row(const std::string &experiment, const Contestant &c, const std::string &metric, const Interval &value, int runs)
+void row(const std::string &experiment, const std::string &filter, Arithmetic arithmetic, const std::string &metric,
+         double value, int runs)
 {
-    print(experiment, c, metric, number(value.value), number(value.low) + "\t" + number(value.high), runs);
+    print(experiment, filter, arithmetic, metric, number(value) + "\t\t", runs);
+}
+
+void row(const std::string &experiment, const std::string &filter, Arithmetic arithmetic, const std::string &metric,
+         const Interval &value, int runs)
+{
+    print(experiment, filter, arithmetic, metric,
+          number(value.value) + "\t" + number(value.low) + "\t" + number(value.high), runs);
 }
 
 void Progress::advance(double by)

@@ -1,6 +1,5 @@
-// paper002 --list | EXPERIMENT [--runs N] [--seed N]: one experiment; tools/papers.py runs them side by side and
-// judges.
-#include "experiments.hpp"
+// The command line of the papers' programs.
+#include "report.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -8,25 +7,10 @@
 #include <exception>
 #include <stdexcept>
 
+namespace papers
+{
 namespace
 {
-struct Entry {
-    const char *name;
-    double work; // relative time, for the progress of all
-    void (*run)(const papers::Options &options);
-};
-
-const Entry entries[] = {
-    { "lockout", 30, papers::lockout },          { "steps_with_outliers", 20, papers::steps_with_outliers },
-    { "wrong_r", 15, papers::wrong_r },          { "steps_clean", 10, papers::steps_clean },
-    { "table1_start", 6, papers::table1_start }, { "first_sample_clean", 6, papers::first_sample_clean },
-    { "median_start", 6, papers::median_start }, { "shipped_start", 6, papers::shipped_start },
-    { "gate_width", 6, papers::gate_width },     { "printed_readings", 6, papers::printed_readings },
-    { "clean_data", 4, papers::clean_data },     { "bursts", 4, papers::bursts },
-    { "covariance", 0.1, papers::covariance },   { "steady_gain", 0.1, papers::steady_gain },
-    { "table2", 0.1, papers::table2 },
-};
-
 long whole_number(const char *option, const char *word)
 {
     char *end = nullptr;
@@ -37,9 +21,9 @@ long whole_number(const char *option, const char *word)
     return value;
 }
 
-papers::Options options_of(int argc, char **argv)
+Options options_of(int argc, char **argv)
 {
-    papers::Options options;
+    Options options;
     for (int i = 2; i < argc; i += 2) {
         if (std::strcmp(argv[i], "--runs") == 0) {
             options.runs = static_cast<int>(whole_number("--runs", argv[i + 1]));
@@ -52,16 +36,16 @@ papers::Options options_of(int argc, char **argv)
     return options;
 }
 
-int run(int argc, char **argv)
+int run(const std::vector<Experiment> &experiments, int argc, char **argv)
 {
     const std::string word = (argc > 1) ? argv[1] : "";
     if (word == "--list") {
-        for (const Entry &entry : entries) {
+        for (const Experiment &entry : experiments) {
             std::printf("%s\t%g\n", entry.name, entry.work);
         }
         return 0;
     }
-    for (const Entry &entry : entries) {
+    for (const Experiment &entry : experiments) {
         if (word == entry.name) {
             entry.run(options_of(argc, argv));
             return 0;
@@ -71,12 +55,13 @@ int run(int argc, char **argv)
 }
 } // namespace
 
-int main(int argc, char **argv)
+int program(const char *name, const std::vector<Experiment> &experiments, int argc, char **argv)
 {
     try {
-        return run(argc, argv);
+        return run(experiments, argc, argv);
     } catch (const std::exception &error) {
-        std::fprintf(stderr, "paper002: %s\n", error.what());
+        std::fprintf(stderr, "%s: %s\n", name, error.what());
         return 2;
     }
 }
+} // namespace papers

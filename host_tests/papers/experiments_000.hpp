@@ -1,0 +1,15 @@
+// The experiments of paper 000. 10,000 runs of paper 002 count as 4,000 here.
+#ifndef PAPERS_EXPERIMENTS_000_H
+#define PAPERS_EXPERIMENTS_000_H
+
+#include "report.hpp"
+
+namespace papers::roll
+{
+int runs_of(const Options &options);
+
+// The notes' table: constant gains from x^ = g(0), in double exactly and by Monte Carlo, and the shipped `synth`.
+void reference_table(const Options &options);
+} // namespace papers::roll
+
+#endif
