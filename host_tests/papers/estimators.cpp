@@ -72,11 +72,12 @@ class Shipped
 };
 } // namespace
 
-Maker synthesised(double a1, double b0)
+Maker synthesised(double a1, double b0, std::optional<double> x0)
 {
-    return [a1, b0] {
+    return [a1, b0, x0] {
         std::array<double, 3> x{}; // newest first
-        return [a1, b0, x, begun = false](double z) mutable {
+        x.fill(x0.value_or(0.0));
+        return [a1, b0, x, begun = x0.has_value()](double z) mutable {
             if (!begun) {
                 x.fill(z);
                 begun = true;

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,8 @@ using Estimator = std::function<double(double z)>;
 // Gives an estimator as it is before its first sample.
 using Maker = std::function<Estimator()>;
 
-// The synthesised filter (7) with constant gains, its past estimates equal to the first sample.
-Maker synthesised(double a1, double b0);
+// The synthesised filter (7) with constant gains, its past estimates equal to x0, or to the first sample.
+Maker synthesised(double a1, double b0, std::optional<double> x0 = {});
 
 // How a shipped filter is fed and set.
 struct Shipping {

@@ -10,6 +10,15 @@ int runs_of(const Options &options);
 
 // The notes' table: constant gains from x^ = g(0), in double exactly and by Monte Carlo, and the shipped `synth`.
 void reference_table(const Options &options);
+
+// The synthesised filter and others of the same noise gain, without noise, over all profiles.
+void equal_noise(const Options &options);
+
+// The gains of (22), as printed and mended: shares, cycles, true variance; and the roll filtered with them.
+void schedules(const Options &options);
+
+// How near any reading comes to the paper's Table 1.
+void table1_search(const Options &options);
 } // namespace papers::roll
 
 #endif

@@ -3,5 +3,11 @@
 
 int main(int argc, char **argv)
 {
-    return papers::program("paper000", { { "roll_reference", 1, papers::roll::reference_table } }, argc, argv);
+    using namespace papers::roll;
+    return papers::program("paper000",
+                           { { "roll_reference", 1, reference_table },
+                             { "table1_search", 3, table1_search },
+                             { "schedules", 2, schedules },
+                             { "equal_noise", 1, equal_noise } },
+                           argc, argv);
 }
