@@ -40,7 +40,7 @@ $(P)/operations/state_bytes.o: $(OPERATIONS)/state_bytes.c $(OPERATIONS)/state_b
 $(P)/operations002: $(COUNTED) $(P)/operations/main.o $(P)/operations/state_bytes.o
 	@$(HOST_CXX) $^ -lm -o $@
 
-PAPERS := $(P)/paper000 $(P)/paper002 $(P)/operations002
+PAPERS := $(P)/paper000 $(P)/paper001 $(P)/paper002 $(P)/operations002
 
 ## papers: the experiments of the papers, double and fixed point, beside the printed numbers, into docs/papers.md (2 minutes; RUNS=2000: judged, but page and JSON are left alone)
 papers:

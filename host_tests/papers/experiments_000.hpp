@@ -19,6 +19,12 @@ void schedules(const Options &options);
 
 // How near any reading comes to the paper's Table 1.
 void table1_search(const Options &options);
+
+// Every filter of FILTER_LIST as shipped over all profiles.
+void all_filters(const Options &options);
+
+// Roll filtered as an angle against filtered axes, on the shipped tilt streams.
+void roll_as_angle(const Options &options);
 } // namespace papers::roll
 
 #endif

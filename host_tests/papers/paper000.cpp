@@ -5,9 +5,11 @@ int main(int argc, char **argv)
 {
     using namespace papers::roll;
     return papers::program("paper000",
-                           { { "roll_reference", 1, reference_table },
+                           { { "all_filters", 10, all_filters },
+                             { "roll_reference", 1, reference_table },
                              { "table1_search", 3, table1_search },
                              { "schedules", 2, schedules },
-                             { "equal_noise", 1, equal_noise } },
+                             { "equal_noise", 1, equal_noise },
+                             { "roll_as_angle", 1, roll_as_angle } },
                            argc, argv);
 }

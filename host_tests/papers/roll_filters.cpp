@@ -1,0 +1,72 @@
+// Every filter of FILTER_LIST as shipped, and some of stated tuning, on all seven rolls.
+#include "experiments_000.hpp"
+#include "linear.hpp"
+#include "roll.hpp"
+
+#include <cmath>
+
+namespace papers::roll
+{
+namespace
+{
+// 256 LSB/g near level: a degree is 256 pi / 180 LSB, and R = 0.6 degree^2 is 12 LSB^2.
+const double lsb_per_degree = 256.0 * std::acos(-1.0) / 180.0;
+
+struct Entry {
+    std::string title;
+    Arithmetic arithmetic;
+    Maker maker;
+};
+
+Maker as_shipped(const std::string &name, const std::map<std::string, double> &parameters = {})
+{
+    Shipping shipping;
+    shipping.lsb_per_unit = lsb_per_degree;
+    shipping.parameters = parameters;
+    return shipped(name, shipping);
+}
+
+// kf with process noise lambda R on the rate per sample: q T^3 = lambda R, in LSB
+Maker tuned_kf(double lambda)
+{
+    const double q = lambda * r_deg2 * lsb_per_degree * lsb_per_degree / (period_s * period_s * period_s);
+    return as_shipped("kf", { { "q", q } });
+}
+
+std::vector<Entry> entries()
+{
+    std::vector<Entry> result = { { "kf2_rate(0.01)", Arithmetic::in_double, steady_kalman(white_rate(0.01)) },
+                                  { "kf2_rate(0.1)", Arithmetic::in_double, steady_kalman(white_rate(0.1)) },
+                                  { "synth(-0.3:0.1)", Arithmetic::in_double, synthesised(-0.3, 0.1) },
+                                  { "synth(0:0.3)", Arithmetic::in_double, synthesised(0.0, 0.3) },
+                                  { "synth(-0.3:0.1)", Arithmetic::fixed,
+                                    as_shipped("synth", { { "a1", -0.3 }, { "b0", 0.1 } }) },
+                                  { "kf(0.01)", Arithmetic::fixed, tuned_kf(0.01) },
+                                  { "kf(0.1)", Arithmetic::fixed, tuned_kf(0.1) } };
+    for (const std::string &name : shipped_names()) {
+        result.push_back({ name, Arithmetic::fixed, as_shipped(name) });
+    }
+    return result;
+}
+} // namespace
+
+void all_filters(const Options &options)
+{
+    const std::vector<Entry> all = entries();
+    std::vector<Maker> makers;
+    for (const Entry &entry : all) {
+        makers.push_back(entry.maker);
+    }
+    Progress progress(static_cast<double>(profiles().size()));
+    for (const Profile &turn : profiles()) {
+        const std::vector<Score> scores = monte_carlo(makers, turn, Noise{}, runs_of(options), options.seed);
+        for (std::size_t i = 0; i < all.size(); i++) {
+            for (std::size_t w = 0; w < window_count; w++) {
+                row(std::string("filters_") + turn.name, all[i].title, all[i].arithmetic,
+                    std::string("mse_") + windows[w].name, scores[i].mse_deg2[w], runs_of(options));
+            }
+        }
+        progress.advance();
+    }
+}
+} // namespace papers::roll
