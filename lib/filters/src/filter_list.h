@@ -7,6 +7,7 @@
 
 #include "af.h"
 #include "kf.h"
+#include "kf3.h"
 #include "lrf.h"
 #include "pbf.h"
 #include "shrf.h"
@@ -25,7 +26,8 @@
     X(sprf_paper)      \
     X(shrf)            \
     X(pbf)             \
-    X(af)
+    X(af)              \
+    X(kf3)
 #endif
 
 #endif
