@@ -5,6 +5,7 @@
 
 #define TWO_STATE_SUM 1.434
 #define SYNTH_SUM 2.277
+#define THREE_STATE_SUM 1.828
 #define MIXTURE_SUM (1.434 + 1.945)
 #define P11_END 32768.0
 #define LINEAR_FORGETS 10.0
@@ -22,6 +23,8 @@ filter_facts_t filter_facts(filter_kind_t kind)
         return (filter_facts_t){ TWO_STATE_SUM, 60.85, LINEAR_FORGETS, 0, ENVELOPE_LINEAR };
     case FILTER_KIND_synth: /* poles at 0.83666: e^-10 after 56 samples */
         return (filter_facts_t){ SYNTH_SUM, 1.0, 0.0, 56, ENVELOPE_FIXED_GAIN };
+    case FILTER_KIND_kf3:
+        return (filter_facts_t){ THREE_STATE_SUM, 1.0, LINEAR_FORGETS, 0, ENVELOPE_FIXED_GAIN };
     case FILTER_KIND_sprf:
         return (filter_facts_t){ 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_STANDS };
     case FILTER_KIND_soft:
@@ -48,6 +51,13 @@ double noise_gain_of(double w1)
     return (2.0 * w1 * w1 + 2.0 * w2 - 3.0 * w1 * w2) / (w1 * (4.0 - 2.0 * w1 - w2));
 }
 
+double kf3_noise_gain_of(double w1, double w2, double w3)
+{
+    double beta = w2 + w3 / 2.0;
+    double above = 2.0 * beta * (2.0 * w1 * w1 + 2.0 * beta - 3.0 * w1 * beta) - w1 * w3 * (4.0 - 2.0 * w1 - beta);
+    return above / ((4.0 - 2.0 * w1 - beta) * (2.0 * w1 * beta + w1 * w3 - 2.0 * w3));
+}
+
 double process_noise_per_r(uint16_t rate_dhz, double r_lsb2)
 {
     double period_s = 10.0 / rate_dhz;
@@ -57,6 +67,15 @@ double process_noise_per_r(uint16_t rate_dhz, double r_lsb2)
 double time_constant_samples(uint16_t rate_dhz, double r_lsb2)
 {
     return sqrt(2.0) / pow(process_noise_per_r(rate_dhz, r_lsb2), 0.25);
+}
+
+double kf3_time_constant_samples(uint16_t rate_dhz, double r_lsb2)
+{
+    kf3_config_t config;
+    kf3_defaults(&config, rate_dhz);
+    bool fine = rate_dhz >= KF3_FINE_FROM_DHZ;
+    double q33 = config.q_lsb2_s5 * pow(10.0 / rate_dhz, 5.0) / r_lsb2;
+    return 2.0 / pow(fmin(fine ? 0x1p-11 : 1.0, fmax(fine ? 0x1p-32 : 0x1p-24, q33)), 1.0 / 6.0);
 }
 
 double longest_wait_samples(uint16_t rate_dhz, double r_lsb2)
@@ -69,6 +88,9 @@ size_t band_window(filter_kind_t kind, uint16_t rate_dhz, double r_lsb2)
     filter_facts_t facts = filter_facts(kind);
     if (facts.forgets == 0.0) {
         return facts.forgets_samples;
+    }
+    if (kind == FILTER_KIND_kf3) {
+        return (size_t)ceil(facts.forgets * kf3_time_constant_samples(rate_dhz, r_lsb2));
     }
     return (size_t)ceil(facts.forgets * time_constant_samples(rate_dhz, r_lsb2 * facts.variance_ratio));
 }

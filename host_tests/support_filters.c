@@ -149,6 +149,7 @@ bool has_joint_condition(filter_kind_t kind)
     case FILTER_KIND_shrf:
     case FILTER_KIND_pbf:
     case FILTER_KIND_af:
+    case FILTER_KIND_kf3:
         return false;
     case FILTER_KIND_COUNT:
         break;

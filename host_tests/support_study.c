@@ -84,6 +84,11 @@ static void predict(const chain_t *chain, double a, score_t *score)
         const synth_t *synth = &chain->filter.state.synth;
         gain = synth_noise_gain_uq16(synth->b0_uq16, synth->a1_negative ? -synth->a1_uq16 : synth->a1_uq16) / 65536.0;
     }
+    if (chain->filter.kind == FILTER_KIND_kf3) {
+        const kf3_t *f = &chain->filter.state.kf3;
+        gain = kf3_noise_gain_of(w1, f->core.u.p.p12_uq28 / 268435456.0,
+                                 f->p13_uq28 / 268435456.0 / (f->fine ? 16.0 : 1.0));
+    }
     double s_lsb2 = chain_r_lsb2(chain) / (1.0 - w1);
     score->predicted += gain * a * a;
     score->allowed += gain * (a * a <= 36.0 * s_lsb2 ? a * a : 16.0 * s_lsb2);

@@ -72,8 +72,9 @@ static void test_a_refusal_names_the_parameter(void)
         assert_refused_for((filter_kind_t)kind, "r", 0);
         assert_refused_for((filter_kind_t)kind, "r", FILTER_R_MAX_LSB2_Q8 + 1);
     }
-    static const filter_kind_t two_state[] = { FILTER_KIND_kf, FILTER_KIND_lrf, FILTER_KIND_soft, FILTER_KIND_sprf };
-    for (int i = 0; i < 4; i++) {
+    static const filter_kind_t two_state[] = { FILTER_KIND_kf, FILTER_KIND_lrf, FILTER_KIND_soft, FILTER_KIND_sprf,
+                                               FILTER_KIND_kf3 };
+    for (int i = 0; i < 5; i++) {
         assert_refused_for(two_state[i], "q", 0);
         assert_refused_for(two_state[i], "q", 1000000001);
     }

@@ -1,4 +1,5 @@
 /* The instruments of the tests on recordings: the sums that the rules stand on, medians, distances, counts. */
+#include "reference_kf3.h"
 #include "support_random.h"
 #include "support_survey.h"
 #include "unity.h"
@@ -54,6 +55,36 @@ static void gain_sums_are_as_stated(void)
         x1 = x;
     }
     TEST_ASSERT_DOUBLE_WITHIN(5e-4, filter_facts(FILTER_KIND_synth).gain_sum, sum);
+}
+
+/* kf3's sums, from the gains that its recursion settles at; per doubling of q33, and its time constant. */
+static void kf3_sums_are_as_stated(void)
+{
+    double worst = 0.0;
+    for (int exponent = -32; exponent <= 0; exponent++) {
+        reference_kf3_t f;
+        reference_kf3_settled(&f, ldexp(1.0, exponent));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, reference_kf3_noise_gain(&f),
+                                  kf3_noise_gain_of(f.gain[0], f.gain[1], f.gain[2]));
+        double sum = 0.0;
+        f.q = 0.0;
+        for (int k = 0; k < 3000; k++) {
+            double x_before = f.x[0] + f.x[1] + f.x[2];
+            double r = (k == 0 ? 1.0 : 0.0) - x_before;
+            double v_before = f.x[1] + f.x[2];
+            f.x[0] = x_before + f.gain[0] * r;
+            f.x[1] = v_before + f.gain[1] * r;
+            f.x[2] += f.gain[2] * r;
+            sum += fabs(f.x[0]);
+        }
+        worst = fmax(worst, sum);
+        double samples = -1.0 / log(reference_kf3_radius(&f));
+        TEST_ASSERT_TRUE(samples <= 2.0 / pow(2.0, exponent / 6.0));
+    }
+    double stated = filter_facts(FILTER_KIND_kf3).gain_sum;
+    TEST_ASSERT_TRUE(worst <= stated && worst > stated - 0.002);
+    /* 100 Hz, R = 3: q33 = 3e5 x 1e-10 / 3 = 1e-5 */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2.0 / pow(1e-5, 1.0 / 6.0), kf3_time_constant_samples(1000, 3.0));
 }
 
 /* Steady gain for a drive q22 = w1^4 / ((2 - w1)^2 (1 - w1)), by bisection. */
@@ -207,6 +238,7 @@ int main(void)
     UNITY_BEGIN();
     printf("seed %d\n", SEED);
     RUN_TEST(gain_sums_are_as_stated);
+    RUN_TEST(kf3_sums_are_as_stated);
     RUN_TEST(the_rate_of_a_mixture_carries_it_as_far_as_stated);
     RUN_TEST(a_time_constant_of_the_paper_has_14_7_samples);
     RUN_TEST(even_medians_are_refused);

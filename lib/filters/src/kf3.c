@@ -9,6 +9,7 @@
 #define SETTLE_STEPS 64U
 
 #define ONE_UQ28 0x10000000U
+#define P22_START_MAX_UQ28 0x8000000U
 #define X_MAX_LSB_Q16 ((int32_t)FILTER_X_MAX_LSB * 65536)
 
 static const filter_parameter_t parameters[] FX_FLASH = {
@@ -25,16 +26,16 @@ void kf3_defaults(kf3_config_t *config, uint16_t rate_dhz)
     config->q_lsb2_s5 = Q_DEFAULT_LSB2_S5;
 }
 
-/* Acceleration unknown, as uncertain as the rate; P22 below 1, so that P is predicted. */
+/* Acceleration unknown; rate and acceleration no more uncertain than that P stays below 1 from the first update on. */
 static void start_acceleration(kf3_t *f)
 {
     uint32_t p22 = f->core.p22_start_uq28;
-    p22 = (p22 < ONE_UQ28) ? p22 : ONE_UQ28 - 1U;
+    p22 = (p22 < P22_START_MAX_UQ28) ? p22 : P22_START_MAX_UQ28;
     f->core.u.p.p22_uq28 = p22;
     f->acceleration_q16 = 0;
     f->p13_uq28 = 0;
     f->p23_uq28 = 0;
-    f->p33_uq28 = p22;
+    f->p33_uq28 = fx_sixteenth(p22);
 }
 
 bool kf3_init(kf3_t *f, const kf3_config_t *config)
@@ -225,7 +226,7 @@ void kf3_reset(kf3_t *f, int16_t z0_lsb)
  *                after the update (v, a); the update moves x towards a sample within 4096, so |r| <= 8704 LSB < 2^30 /
  *                2^16 and no sum overflows
  *   P / R        UQ4.28, see predict_covariance; below 1 after each update, so that the next step predicts it
- *   g, w1        UQ0.16 within 2.5 counts of 1 / S; w2, w3 UQ0.24; P rounded to half a count of 2^-28 per product
+ *   g, w1        UQ0.16 within 1.75 counts of 1 / S; w2, w3 UQ0.24; P rounded to half a count of 2^-28 per product
  *   r            rounded down to 2^-8 LSB in magnitude; the steps of x, v and a rounded half away from zero to 2^-16
  *   cost         docs/benchmarks.md
  */
