@@ -6,7 +6,7 @@ BENCH_COMMON := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -ffunction-sectio
 BENCH_SRC    := $(wildcard host_tests/avr/float_*.c lib/filters/src/*.c lib/tilt/src/*.c) firmware/format.c
 BENCH_DEPS   := $(BENCH_SRC) host_tests/avr/bench.c firmware/rows.c Makefile mk/bench.mk $(wildcard host_tests/avr/*.h lib/*/src/*.h firmware/*.h hal/*.h hal/avr/*.h)
 
-BENCH_PARTS  := 1 2
+BENCH_PARTS  := 1 2 3
 BENCH_IMAGES := $(BENCH_PARTS:%=$(U)/bench_%.elf) $(BENCH_PARTS:%=$(U)/bench_small_%.elf) $(U)/bench_kept.elf
 
 $(U)/bench_small_%.elf: $(BENCH_DEPS)

@@ -1,6 +1,6 @@
 # The portable part of the unit tests, and the long sequence of filter calls, as images for the ATmega328P.
 
-CHIP_UNITY  := test_filters test_filter_gaps test_fx test_kf test_lrf test_soft test_sprf test_synth test_two_state_wide test_sprf_paper \
+CHIP_UNITY  := test_filters test_filter_gaps test_fx test_kf test_kf3 test_lrf test_soft test_sprf test_synth test_two_state_wide test_sprf_paper \
                test_shrf test_pbf test_af test_noise test_tilt
 CHIP_TESTS  := $(CHIP_UNITY:%=$(U)/tests/%.elf) $(U)/tests/filter_sequence.elf
 BITEXACT    := host_tests/bitexact

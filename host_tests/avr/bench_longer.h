@@ -13,6 +13,7 @@
         (void)config;                                     \
     }
 NO_LONGER(kf)
+NO_LONGER(kf3)
 NO_LONGER(lrf)
 NO_LONGER(sprf)
 NO_LONGER(sprf_paper)

@@ -13,8 +13,10 @@
 #define BENCH_LIST(X) X(kf) X(sprf) X(synth) X(lrf) X(soft)
 #elif BENCH_PART == 2
 #define BENCH_LIST(X) X(sprf_paper) X(shrf) X(pbf) X(af)
+#elif BENCH_PART == 3
+#define BENCH_LIST(X) X(kf3)
 #else
-#error "BENCH_PART is 1 or 2"
+#error "BENCH_PART is 1, 2 or 3"
 #endif
 
 #endif

@@ -27,6 +27,13 @@ typedef struct {
 } float_kf_t;
 
 typedef struct {
+    float x, v, a; /* LSB, LSB/s, LSB/s^2 */
+    float p[3][3];
+    float dt, q, r;
+    float q_given, per_q, least, most; /* as configured; T^5; the range of q T^5 / R */
+} float_kf3_t;
+
+typedef struct {
     float x, v;
     float p00, p01, p10, p11;
     float dt, q, r;
@@ -84,6 +91,11 @@ void float_kf_start(float_kf_t *f, const kf_config_t *config, float x0_lsb);
 void float_kf_set_noise(float_kf_t *f, float r_lsb2);
 float float_kf_update(float_kf_t *f, int16_t z_lsb);
 float float_kf_coast(float_kf_t *f);
+
+void float_kf3_start(float_kf3_t *f, const kf3_config_t *config, float x0_lsb);
+void float_kf3_set_noise(float_kf3_t *f, float r_lsb2);
+float float_kf3_update(float_kf3_t *f, int16_t z_lsb);
+float float_kf3_coast(float_kf3_t *f);
 
 void float_lrf_start(float_lrf_t *f, const lrf_config_t *config, float x0_lsb);
 void float_lrf_set_noise(float_lrf_t *f, float r_lsb2);

@@ -39,7 +39,7 @@ static inline uint16_t fx_inverse_m_uq16(uint8_t interval, uint16_t fraction);
 static inline uint8_t fx_normalise(uint32_t *v);
 
 /*@ requires v >= 0x80000000;
-    requires -106 <= exponent <= 60;
+    requires -110 <= exponent <= 60;
     assigns \result \from v, exponent;
     ensures \result.mantissa >= 0x8000;
     ensures exponent + 16 <= \result.exponent <= exponent + 17;

@@ -49,7 +49,7 @@ void proof_fx_normalise(void)
 /* One call for each exponent; a mantissa of ones, which rounding up carries, apart. */
 void proof_rounded(void)
 {
-    for (int8_t exponent = -106; exponent <= 60; exponent++) {
+    for (int8_t exponent = -110; exponent <= 60; exponent++) {
         (void)rounded(ANY_U32(0x80000000U, 0xFFFEFFFFU), exponent);
         (void)rounded(ANY_U32(0xFFFF0000U, UINT32_MAX), exponent);
     }

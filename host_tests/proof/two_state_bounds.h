@@ -26,7 +26,9 @@
      HALF(p, 7))
 #define COVARIANCE(s) (SMALL((s)->u.p) || HELD((s)->u.p))
 
-#define SCALED(v) ((v).mantissa >= 0x8000 && -58 <= (v).exponent <= 24)
+/* -58..24 for q T^3 and the variance of the rate; the q T^5 of kf3 needs the rest. */
+#define SCALED_LEAST (-77)
+#define SCALED(v) ((v).mantissa >= 0x8000 && SCALED_LEAST <= (v).exponent <= 25)
 /* R of a sample ends at R_END, the R_L of lrf at R_ANY; from 3 on, of which intervals prove 2 for R_L. */
 #define R_LEAST 2
 #define R_END 256000
@@ -154,9 +156,9 @@ static void any_state_of(two_state_t *s, uint32_t r_end_lsb2_q8)
     s->limit_lsb2 = ANY_U32(0, UINT32_MAX);
     s->r_lsb2_q8 = ANY_U32(R_LEAST, r_end_lsb2_q8);
     s->drive_lsb2.mantissa = ANY_U16(0x8000, UINT16_MAX);
-    s->drive_lsb2.exponent = ANY_S8(-58, 24);
+    s->drive_lsb2.exponent = ANY_S8(SCALED_LEAST, 25);
     s->start_lsb2.mantissa = ANY_U16(0x8000, UINT16_MAX);
-    s->start_lsb2.exponent = ANY_S8(-58, 24);
+    s->start_lsb2.exponent = ANY_S8(SCALED_LEAST, 25);
     s->gain_uq16 = ANY_U16(0, UINT16_MAX);
     s->flags = ANY_U8(0, UINT8_MAX);
     s->negative = ANY_BOOL();

@@ -83,20 +83,23 @@ FX_NOINLINE uint32_t to_rate(const kf3_t *f, uint32_t v)
     return f->fine ? fx_sixteenth(v) : v;
 }
 
+FX_INLINE bool one_or_more(uint32_t p_uq28)
+{
+    return (uint8_t)(p_uq28 >> 24) >= 0x10U;
+}
+
 /* True when an element of P other than P11 is 1 or more. */
 static bool reaches_one(const kf3_t *f)
 {
-    uint8_t high = (uint8_t)((uint8_t)(f->core.u.p.p12_uq28 >> 24) | (uint8_t)(f->core.u.p.p22_uq28 >> 24) |
-                             (uint8_t)(f->p13_uq28 >> 24) | (uint8_t)(f->p23_uq28 >> 24) |
-                             (uint8_t)(f->p33_uq28 >> 24));
-    return (high & 0xF0U) != 0U;
+    return one_or_more(f->core.u.p.p12_uq28) || one_or_more(f->core.u.p.p22_uq28) || one_or_more(f->p13_uq28) ||
+           one_or_more(f->p23_uq28) || one_or_more(f->p33_uq28);
 }
 
 /*
  * P / R one sample on: P33 < 2, P23 < 3, P22 < 5, P12 < 2 + 5, P13 < 4, P11 < 4 + 2 + 7 afterwards. False when P11 or
  * another element is at the end of its range: P stays.
  */
-static bool predict_covariance(kf3_t *f)
+static bool grow_covariance(kf3_t *f)
 {
     two_state_t *s = &f->core;
     if ((uint8_t)(s->u.p.p11_uq28 >> 24) >= 0x40U || reaches_one(f)) {
@@ -121,7 +124,7 @@ static bool predict_covariance(kf3_t *f)
 /* State and P one sample on. What has run to the bound of the format stands still there. */
 FX_NOINLINE void predict(kf3_t *f)
 {
-    if (!predict_covariance(f)) {
+    if (!grow_covariance(f)) {
         f->acceleration_q16 = 0;
     }
     int32_t acceleration = (int32_t)to_rate(f, fx_abs32(f->acceleration_q16));
@@ -138,8 +141,8 @@ FX_NOINLINE void predict(kf3_t *f)
 /* An element of P less a gain times the column's element, at least 0. */
 FX_NOINLINE uint32_t less(uint32_t p_uq28, uint32_t column_uq28, uint32_t gain_uq24)
 {
-    uint32_t taken = fx_mul_uq24(column_uq28, gain_uq24);
-    return (p_uq28 > taken) ? p_uq28 - taken : 0U;
+    int32_t left_q28 = (int32_t)p_uq28 - (int32_t)fx_mul_uq24(column_uq28, gain_uq24); /* < 5 less < 7: fits */
+    return (left_q28 < 0) ? 0U : (uint32_t)left_q28;
 }
 
 /* A state and its gain times the innovation: by the magnitude, so that rounding is the same for both signs. */
@@ -174,7 +177,7 @@ static void keep_predictable(kf3_t *f)
     }
 }
 
-static void update(kf3_t *f)
+static void correct(kf3_t *f)
 {
     two_state_t *s = &f->core;
     fx_leading_t variance = fx_leading(s->u.p.p11_uq28 + ONE_UQ28); /* 1 <= S < 14: places 3..0 */
@@ -199,14 +202,14 @@ static void update(kf3_t *f)
     keep_predictable(f);
 }
 
-static void step(kf3_t *f, int16_t z_lsb)
+static void take(kf3_t *f, int16_t z_lsb)
 {
     f->core.flags = 0;
     predict(f);
     int32_t innovation = (int32_t)z_lsb * 65536 - f->core.x_lsb_q16;
     f->core.negative = innovation < 0;
     f->core.size_lsb_uq8 = fx_abs32(innovation) >> 8;
-    update(f);
+    correct(f);
 }
 
 void kf3_reset(kf3_t *f, int16_t z0_lsb)
@@ -215,7 +218,7 @@ void kf3_reset(kf3_t *f, int16_t z0_lsb)
     two_state_start(&f->core, (int32_t)z0 * 65536);
     start_acceleration(f);
     for (uint8_t i = 0; i < SETTLE_STEPS; i++) {
-        step(f, z0);
+        take(f, z0);
     }
 }
 
@@ -225,7 +228,7 @@ void kf3_reset(kf3_t *f, int16_t z0_lsb)
  *   x, v, a      Q15.16, a in sixteenths when fine (Q11.20); each within 4608 by a clamp after the prediction (x, v) and
  *                after the update (v, a); the update moves x towards a sample within 4096, so |r| <= 8704 LSB < 2^30 /
  *                2^16 and no sum overflows
- *   P / R        UQ4.28, see predict_covariance; below 1 after each update, so that the next step predicts it
+ *   P / R        UQ4.28, see grow_covariance; below 1 after each update, so that the next step predicts it
  *   g, w1        UQ0.16 within 1.75 counts of 1 / S; w2, w3 UQ0.24; P rounded to half a count of 2^-28 per product
  *   r            rounded down to 2^-8 LSB in magnitude; the steps of x, v and a rounded half away from zero to 2^-16
  *   cost         docs/benchmarks.md
@@ -239,7 +242,7 @@ int32_t kf3_update(kf3_t *f, int16_t z_lsb)
             start_acceleration(f);
         }
     } else {
-        step(f, z);
+        take(f, z);
     }
     return f->core.x_lsb_q16;
 }
