@@ -45,6 +45,9 @@ void faulty_free(faulty_t *faulty);
 #define MEDIAN_KF ((size_t)FILTER_KIND_COUNT)
 const char *contender_name(size_t contender);
 
+/* A cold start, as chain_begin. */
+bool contender_begin(chain_t *chain, size_t contender, uint16_t rate_dhz, uint8_t range_g, int axis);
+
 /* A clean stream and what each contender makes of it. */
 typedef struct {
     const stream_t *clean;

@@ -20,6 +20,7 @@ bool stream_cut(stream_t *part, const stream_t *whole, double from_s, double to_
 {
     memset(part, 0, sizeof *part);
     part->rate_hz = whole->rate_hz;
+    part->has_truth = whole->has_truth;
     part->rows = calloc(whole->count + 1, sizeof *part->rows);
     for (size_t i = 0; part->rows != NULL && i < whole->count; i++) {
         double t_s = 1e-6 * (double)whole->rows[i].t_us;

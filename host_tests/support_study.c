@@ -18,7 +18,7 @@ static filter_kind_t kind_of(size_t contender)
     return contender == MEDIAN_KF ? FILTER_KIND_kf : (filter_kind_t)contender;
 }
 
-static bool begin_contender(chain_t *chain, size_t contender, uint16_t rate_dhz, uint8_t range_g, int axis)
+bool contender_begin(chain_t *chain, size_t contender, uint16_t rate_dhz, uint8_t range_g, int axis)
 {
     bool good = chain_begin(chain, kind_of(contender), rate_dhz, range_g, axis);
     return good && (contender != MEDIAN_KF || median_init(&chain->median, MEDIAN_WINDOW) == NULL);
@@ -29,7 +29,7 @@ static bool run_clean(study_t *study, size_t contender, int axis)
     chain_t chain;
     int32_t *x_lsb_q16 = malloc(study->clean->count * sizeof *x_lsb_q16);
     study->x_lsb_q16[contender][axis] = x_lsb_q16;
-    if (x_lsb_q16 == NULL || !begin_contender(&chain, contender, study->rate_dhz, study->range_g, axis)) {
+    if (x_lsb_q16 == NULL || !contender_begin(&chain, contender, study->rate_dhz, study->range_g, axis)) {
         return false;
     }
     for (size_t i = 0; i < study->clean->count; i++) {
@@ -97,7 +97,7 @@ static void predict(const chain_t *chain, double a, score_t *score)
 static void score_axis(const study_t *study, const faulty_t *faulty, size_t contender, int axis, score_t *score)
 {
     chain_t chain;
-    (void)begin_contender(&chain, contender, study->rate_dhz, faulty->range_g, axis); /* study_begin did it before */
+    (void)contender_begin(&chain, contender, study->rate_dhz, faulty->range_g, axis); /* study_begin did it before */
     const int32_t *own = study->x_lsb_q16[contender][axis];
     const int32_t *kf = study->x_lsb_q16[FILTER_KIND_kf][axis];
     for (size_t i = 0; i < faulty->stream.count; i++) {

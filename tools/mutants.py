@@ -62,6 +62,9 @@ def judged(judge, limit_s):
     elif judge.startswith("robust "):
         built = make("build/host/pipeline_replay")
         command = ["build/venv/bin/python", "host_tests/test_robust.py", *judge.split()[1:]]
+    elif judge.startswith("default "):
+        built = make("build/host/default_filter")
+        command = ["python3", "host_tests/test_default.py", *judge.split()[1:]]
     else:
         built = make(f"build/host/{judge}")
         command = [f"build/host/{judge}"]

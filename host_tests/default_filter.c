@@ -1,0 +1,268 @@
+/*
+ * Runs every filter over the streams that make default asks for (tools/default_filter.py makes the table).
+ *
+ *   default_filter < JOBS > ROWS.csv
+ *
+ * A job is a line: KEY PATH RATE_DHZ RANGE_G DIVIDE FROM_S TO_S truth|smooth SEEDS. The part FROM_S..TO_S of a stream,
+ * DIVIDE rows averaged to one (support_smooth.h), goes through every filter at RATE_DHZ with its defaults: once as it
+ * is and SEEDS times with each kind of fault. `truth`: the reference is gravity at the attitude of the truth columns,
+ * else the clean stream smoothed both ways.
+ *
+ * A row: KEY,RATE_DHZ,FAULT,SEED,CONTENDER, then number of values and sums of squared differences from each reference,
+ * over all samples, then over those within half a second after a bad read. The first second is never counted.
+ * Status 2: a job cannot be read, one sentence says which.
+ */
+#include "support_faults.h"
+#include "support_shipped.h"
+#include "support_smooth.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* References: truth, or smoothed at these cuts, the first of which decides; behind them the own run without faults. */
+static const double cut_hz[] = { 5.0, 2.5, 10.0 };
+enum { SMOOTHED = sizeof cut_hz / sizeof cut_hz[0], OWN = SMOOTHED, REFERENCES };
+
+#define RAW CONTENDERS /* a contender that does nothing */
+static const double lsb_per_g = 256.0;
+static const double bad_for_s = 0.5;
+
+typedef struct {
+    char key[64], path[512], reference[8];
+    unsigned rate_dhz, range_g, divide, seeds;
+    double from_s, to_s;
+} job_t;
+
+typedef struct {
+    job_t job;
+    divided_t divided;
+    study_t study;
+    double *reference[SMOOTHED][3]; /* by row of the divided stream */
+} bench_t;
+
+typedef struct {
+    size_t count;
+    double square[REFERENCES];
+} sums_t;
+
+/* --- references --- */
+
+static double true_lsb(const stream_row_t *row, int axis)
+{
+    double roll = row->truth_cdeg[0] * 1.74532925199432958e-4;
+    double pitch = row->truth_cdeg[1] * 1.74532925199432958e-4;
+    if (axis == 0) {
+        return -lsb_per_g * sin(pitch);
+    }
+    return lsb_per_g * cos(pitch) * (axis == 1 ? sin(roll) : cos(roll));
+}
+
+/* Every row's reference, then that of the groups. */
+static bool one_reference(bench_t *bench, const stream_t *whole, size_t which, int axis)
+{
+    double *every = malloc(whole->count * sizeof *every);
+    double *mean = malloc(bench->divided.stream.count * sizeof *mean);
+    bench->reference[which][axis] = mean;
+    if (every == NULL || mean == NULL) {
+        free(every);
+        return false;
+    }
+    bool truth = strcmp(bench->job.reference, "truth") == 0;
+    for (size_t i = 0; i < whole->count; i++) {
+        every[i] = truth ? true_lsb(&whole->rows[i], axis) : whole->rows[i].lsb[axis];
+    }
+    bool good = truth || smooth_both_ways(every, whole->count, whole->rate_hz, cut_hz[which]);
+    for (size_t i = 0; good && i < bench->divided.stream.count; i++) {
+        mean[i] = divided_mean(&bench->divided, i, every);
+    }
+    free(every);
+    return good;
+}
+
+static bool references(bench_t *bench, const stream_t *whole)
+{
+    bool good = true;
+    for (size_t which = 0; which < SMOOTHED; which++) {
+        for (int axis = 0; axis < 3; axis++) {
+            good = good && one_reference(bench, whole, which, axis);
+        }
+    }
+    return good;
+}
+
+/* --- runs --- */
+
+static void add(sums_t *sums, const bench_t *bench, size_t source, int axis, double x_lsb, double own_lsb)
+{
+    sums->count++;
+    for (size_t which = 0; which < SMOOTHED; which++) {
+        double e = x_lsb - bench->reference[which][axis][source];
+        sums->square[which] += e * e;
+    }
+    sums->square[OWN] += (x_lsb - own_lsb) * (x_lsb - own_lsb);
+}
+
+static double output_lsb(chain_t *chain, size_t contender, const stream_row_t *row, int axis)
+{
+    return contender == RAW ? row->lsb[axis] : chain_sample(chain, row->t_us, row->lsb[axis]) / 65536.0;
+}
+
+static void one_axis(const bench_t *bench, const faulty_t *faulty, size_t contender, int axis, sums_t sums[2])
+{
+    const stream_t *clean = &bench->divided.stream;
+    chain_t chain;
+    if (contender != RAW) { /* study_begin began it before, so it cannot be refused here */
+        (void)contender_begin(&chain, contender, (uint16_t)bench->job.rate_dhz, (uint8_t)bench->job.range_g, axis);
+    }
+    double bad_until_s = -1.0;
+    for (size_t i = 0; i < faulty->stream.count; i++) {
+        const stream_row_t *row = &faulty->stream.rows[i];
+        const stream_row_t *good = &clean->rows[faulty->source[i]];
+        double t_s = 1e-6 * (double)row->t_us;
+        double x_lsb = output_lsb(&chain, contender, row, axis);
+        double own_lsb = contender == RAW ? good->lsb[axis]
+                                          : bench->study.x_lsb_q16[contender][axis][faulty->source[i]] / 65536.0;
+        if (memcmp(row->lsb, good->lsb, sizeof row->lsb) != 0) {
+            bad_until_s = t_s + bad_for_s;
+        }
+        if (t_s < 1.0) {
+            continue;
+        }
+        add(&sums[0], bench, faulty->source[i], axis, x_lsb, own_lsb);
+        if (t_s < bad_until_s) {
+            add(&sums[1], bench, faulty->source[i], axis, x_lsb, own_lsb);
+        }
+    }
+}
+
+static void print_row(const bench_t *bench, const char *fault, unsigned seed, size_t contender, const sums_t sums[2])
+{
+    printf("%s,%u,%s,%u,%s", bench->job.key, bench->job.rate_dhz, fault, seed,
+           contender == RAW ? "raw" : contender_name(contender));
+    for (int part = 0; part < 2; part++) {
+        printf(",%zu", sums[part].count);
+        for (size_t which = 0; which < REFERENCES; which++) {
+            printf(",%.6g", sums[part].square[which]);
+        }
+    }
+    printf("\n");
+}
+
+static void one_run(const bench_t *bench, const faulty_t *faulty, const char *fault, unsigned seed)
+{
+    for (size_t contender = 0; contender <= RAW; contender++) {
+        sums_t sums[2] = { { 0 }, { 0 } };
+        for (int axis = 0; axis < 3; axis++) {
+            one_axis(bench, faulty, contender, axis, sums);
+        }
+        print_row(bench, fault, seed, contender, sums);
+    }
+}
+
+/* A run without faults: each row its own source. */
+static bool clean_run(const bench_t *bench)
+{
+    const stream_t *clean = &bench->divided.stream;
+    faulty_t same = { .stream = *clean, .source = malloc(clean->count * sizeof *same.source) };
+    for (size_t i = 0; same.source != NULL && i < clean->count; i++) {
+        same.source[i] = i;
+    }
+    if (same.source != NULL) {
+        one_run(bench, &same, "none", 0);
+    }
+    free(same.source);
+    return same.source != NULL;
+}
+
+/* A seed that puts no fault in is told with no rows: it is the run without faults. */
+static bool faulty_runs(const bench_t *bench)
+{
+    static const fault_t kinds[] = { FAULT_BAD_1E5, FAULT_BAD_1E3, FAULT_CONTENTION };
+    for (size_t kind = 0; kind < sizeof kinds / sizeof kinds[0]; kind++) {
+        for (unsigned seed = 1; seed <= bench->job.seeds; seed++) {
+            faulty_t faulty;
+            if (!faulty_make(&faulty, &bench->divided.stream, kinds[kind], (uint16_t)bench->job.rate_dhz,
+                             (uint8_t)bench->job.range_g, seed)) {
+                return false;
+            }
+            if (faulty.faulty > 0) {
+                one_run(bench, &faulty, fault_name(kinds[kind]), seed);
+            }
+            faulty_free(&faulty);
+        }
+    }
+    return true;
+}
+
+/* --- jobs --- */
+
+static const char *run_job(bench_t *bench, const stream_t *whole)
+{
+    const job_t *job = &bench->job;
+    if (strcmp(job->reference, "truth") == 0 && !whole->has_truth) {
+        return "it has no truth columns";
+    }
+    if (!stream_divide(&bench->divided, whole, job->divide)) {
+        return "fewer than two rows at this rate";
+    }
+    if (!references(bench, whole)) {
+        return "too short to be smoothed";
+    }
+    if (!study_begin(&bench->study, &bench->divided.stream, (uint16_t)job->rate_dhz, (uint8_t)job->range_g)) {
+        return "a filter refuses this rate";
+    }
+    bool good = clean_run(bench) && faulty_runs(bench);
+    study_end(&bench->study);
+    return good ? NULL : "out of memory";
+}
+
+static bool one_job(const job_t *job)
+{
+    bench_t bench = { .job = *job };
+    stream_t file;
+    if (!stream_load(&file, job->path)) {
+        fprintf(stderr, "default_filter: %s\n", file.error);
+        return false;
+    }
+    stream_t whole;
+    const char *reason = "fewer than two rows in this part";
+    if (stream_cut(&whole, &file, job->from_s, job->to_s)) {
+        reason = run_job(&bench, &whole);
+        stream_free(&whole);
+    }
+    for (size_t i = 0; i < SMOOTHED * 3U; i++) {
+        free(bench.reference[i / 3U][i % 3U]);
+    }
+    divided_free(&bench.divided);
+    stream_free(&file);
+    if (reason != NULL) {
+        fprintf(stderr, "default_filter: %s at %g Hz: %s\n", job->key, job->rate_dhz / 10.0, reason);
+    }
+    return reason == NULL;
+}
+
+static bool read_job(job_t *job, const char *line)
+{
+    int fields = sscanf(line, "%63s %511s %u %u %u %lf %lf %7s %u", job->key, job->path, &job->rate_dhz, &job->range_g,
+                        &job->divide, &job->from_s, &job->to_s, job->reference, &job->seeds);
+    bool range = job->range_g == 2 || job->range_g == 4 || job->range_g == 8 || job->range_g == 16;
+    return fields == 9 && range && job->divide >= 1 && job->rate_dhz >= 50 && job->rate_dhz <= 40000;
+}
+
+int main(void)
+{
+    char line[1024];
+    while (fgets(line, sizeof line, stdin) != NULL) {
+        job_t job = { .range_g = 0 };
+        if (!read_job(&job, line)) {
+            fprintf(stderr, "default_filter: not a job: %s", line);
+            return 2;
+        }
+        if (!one_job(&job)) {
+            return 2;
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,306 @@
+"""make default: the rule of the default filter, its scores, its classes, and that docs/default-filter.md is what the rule and the rows say."""
+import json
+import math
+import pathlib
+import subprocess
+import sys
+
+sys.path.insert(0, "tools")
+import default_filter
+import default_score as score
+import default_streams as streams
+import make_streams
+import recordings
+from page import INLINE
+
+from system_support import Skip, run_all, test
+
+OUT = pathlib.Path("build/default-test")
+PROGRAM = default_filter.PROGRAM
+
+
+# --- the rule ---------------------------------------------------------------------------------------------------------
+
+
+def planted(ratio, **more):
+    """Scores in which the candidate is ratio[i] times the best other in class i."""
+    return {group: {"kf": 3.0, "sprf": 2.0, "soft": 2.0, "pbf": 5.0, "adaptive": 2.0 * r, **more} for group, r in zip(score.CLASSES, ratio)}
+
+
+def decided(*ratio, **more):
+    return score.verdict(planted(ratio, **more))
+
+
+@test
+def the_rule_takes_the_candidate_when_it_may():
+    for ratio in ((0.5,) * 6, (1.0,) * 6, (0.9, 0.9, 0.9, 1.05, 1.05, 1.05)):
+        found = decided(*ratio)
+        assert found.default == "adaptive" and found.beyond == [], (ratio, found)
+    assert decided(0.9, 0.9, 0.9, 1.05, 1.05, 1.05).best_in == ["rest", "slow tilt", "handling"]
+
+
+@test
+def one_class_beyond_5_per_cent_keeps_the_default_and_is_named():
+    found = decided(0.1, 0.1, 0.1, 0.1, 1.051, 0.1)
+    assert found.default == "sprf" and found.beyond == ["vibration"] and "vibration (1.05 times)" in found.why, found
+    assert decided(1.051, 0.1, 0.1, 0.1, 0.1, 0.1).beyond == ["rest"]
+
+
+@test
+def best_in_fewer_than_half_keeps_the_default():
+    found = decided(0.9, 0.9, 1.01, 1.01, 1.01, 1.01)
+    assert found.default == "sprf" and found.beyond == [] and "best in 2 of 6" in found.why, found
+
+
+@test
+def filters_that_the_rule_does_not_name_do_not_count():
+    assert decided(*(1.0,) * 6, lrf=0.1, raw=0.01).default == "adaptive"
+    found = score.verdict(planted((1.0,) * 6, lrf=0.1), named=("adaptive", "lrf"))
+    assert found.default == "sprf" and abs(found.ratio["rest"] - 20.0) < 1e-9, found
+
+
+@test
+def a_missing_class_or_candidate_keeps_the_default():
+    scores = planted((0.5,) * 6)
+    del scores["walking"]
+    assert score.verdict(scores).default == "sprf" and "walking" in score.verdict(scores).why
+    scores = planted((0.5,) * 6)
+    del scores["bad reads"]["adaptive"]
+    found = score.verdict(scores)
+    assert found.default == "sprf" and "adaptive is not in the filter list" in found.why, found
+
+
+# --- scores -----------------------------------------------------------------------------------------------------------
+
+
+def cell(group, name, rate_hz, rmse, made=False):
+    """Of 100 values each; the filters by name."""
+    return score.Cell(group, name, rate_hz, made, group, {f: score.Sums(100, (100.0 * v * v,) * 4) for f, v in rmse.items()})
+
+
+@test
+def no_rate_and_no_stream_outweighs_the_others():
+    cells = [cell("rest", "a", 25, {"kf": 1.0}), cell("rest", "b", 25, {"kf": 100.0}), cell("rest", "a", 50, {"kf": 1000.0})]
+    assert abs(score.geometric(cells, "kf") - 100.0) < 1e-9  # of 10 at 25 Hz and 1000 at 50 Hz
+    assert abs(score.pooled_rms(cells, "kf") - math.sqrt((1.0 + 1e4 + 1e6) / 3.0)) < 1e-9
+
+
+@test
+def the_interval_covers_the_ratio_and_is_none_where_all_agree():
+    same = [cell("rest", str(i), 25, {"kf": 2.0 + i, "soft": 1.0 + i / 2}) for i in range(9)]
+    low, high = score.ratio_interval(same, "kf", "soft")
+    assert abs(low - 2.0) < 1e-9 and abs(high - 2.0) < 1e-9
+    low, high = score.ratio_interval([cell("rest", str(i), 25, {"kf": 1.0 + i % 3, "soft": 1.0}) for i in range(9)], "kf", "soft")
+    assert 1.0 < low < 6.0 ** (1 / 3) < high < 3.0, (low, high)
+
+
+def row(fault, seed, name, whole, after_bad):
+    numbers = [f"{count},{square},{square},{square},{own}" for count, square, own in (whole, after_bad)]
+    return ",".join(["rest:x:0", "1000", fault, str(seed), name, *numbers])
+
+
+@test
+def a_seed_without_a_fault_is_the_run_without_faults():
+    source = streams.Source("x", "rest", "")
+    job = streams.Job(source, 100, pathlib.Path("x"), 16, 1, True, 60_000, True)  # 4 seeds
+    text = "\n".join([row("none", 0, "kf", (300, 300.0, 0.0), (0, 0.0, 0.0)),
+                      row(score.HEALTHY, 3, "kf", (300, 1500.0, 1200.0), (150, 1350.0, 1200.0)),
+                      row(score.WIRING, 1, "kf", (300, 2700.0, 9.0), (150, 2400.0, 9.0))])
+    assert job.seeds() == 4
+    healthy, wiring, contention = score.cells_of([job], score.read_rows(text))
+    assert healthy.group == "rest" and abs(healthy.rmse("kf") - math.sqrt((3 * 300 + 1500) / 1200)) < 1e-9
+    assert abs(healthy.rmse("kf", score.OWN) - 1.0) < 1e-9
+    assert wiring.group == "bad reads" and abs(wiring.rmse("kf") - 4.0) < 1e-9  # half a second after each bad read alone
+    assert contention.group == score.CONTENTION and abs(contention.rmse("kf") - 1.0) < 1e-9
+    whole = score.cells_of([job], score.read_rows(text), whole_bad_reads=True)[1]
+    assert abs(whole.rmse("kf") - math.sqrt((3 * 300 + 2700) / 1200)) < 1e-9
+
+
+@test
+def fixed_wins_are_found():
+    cells = [cell("rest", "a", 25, {"kf": 1.0, "soft": 2.0, "adaptive": 1.5}), cell("rest", "a", 50, {"kf": 1.0, "soft": 2.0, "adaptive": 0.5})]
+    assert score.fixed_wins(cells) == [("rest", 25, "kf", 1.5)]
+
+
+# --- classes ----------------------------------------------------------------------------------------------------------
+
+
+@test
+def every_class_has_a_stream_at_every_rate_without_the_recordings():
+    found = {(job.source.motion, job.rate_hz) for job in streams.scenario_jobs()}
+    missing = [(group, rate_hz) for group in streams.CLASSES for rate_hz in streams.RATES_HZ if (group, rate_hz) not in found]
+    assert missing == [] and streams.RATES_HZ == (25, 50, 100, 200, 400, 800), missing
+
+
+@test
+def every_stream_is_in_a_class_or_left_out_with_a_reason():
+    shipped = {scenario.name for scenario in make_streams.SCENARIOS}
+    assert shipped == ({s.name for s in streams.SCENARIOS} - {"walk-model"}) | (set(streams.LEFT_OUT) & shipped)
+    text = recordings.DOCUMENT.read_text(encoding="utf-8")
+    recorded = {name for title, name, _, _ in recordings.PAGE.cells(text) if title == "The recordings"}
+    assert len(recorded) >= 33 and recorded == {s.name for s in streams.RECORDINGS} | (set(streams.LEFT_OUT) - shipped)
+    sources = (*streams.SCENARIOS, *streams.RECORDINGS)
+    assert all(s.motion in streams.CLASSES and s.why for s in sources) and all(streams.LEFT_OUT.values())
+
+
+@test
+def a_stream_at_another_rate_has_the_same_noise_density():
+    scenario = streams.MADE_SCENARIOS["gaps-jitter"]
+    assert streams.at_rate(scenario, 100) == scenario
+    fast = streams.at_rate(scenario, 400)
+    assert fast.rate_hz == 400 and fast.noise_lsb == tuple(2.0 * lsb for lsb in scenario.noise_lsb)
+    assert 1e6 / fast.rate_hz / fast.jitter_us == 1e6 / scenario.rate_hz / scenario.jitter_us
+
+
+@test
+def a_recording_is_slowed_down_only_where_that_is_honest():
+    index = {s.name: {"name": s.name, "path": pathlib.Path("x"), "range": "2g", "rate_hz_nominal": "400", "dt_med_us": "2500", "dur_s": "30"}
+             for s in streams.RECORDINGS}
+    rates = {}
+    for job in streams.recording_jobs(index):
+        rates.setdefault(job.key(), []).append((job.rate_hz, job.divide))
+    assert rates["handling:ax3-400-csv:0"] == [(25, 16), (50, 8), (100, 4), (200, 2), (400, 1)]
+    assert rates["vibration:uav-agg-poll166:0"] == [(400, 1)]
+    assert rates["vibration:car-brake:0"] == [(25, 1)]
+    assert "rest:freeimu-orient-a:54.9" not in rates  # it ends before
+
+
+# --- the program ------------------------------------------------------------------------------------------------------
+
+
+def built():
+    OUT.mkdir(parents=True, exist_ok=True)
+    done = subprocess.run(["make", "-s", PROGRAM], capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr
+
+
+def program(*jobs, expect=0):
+    built()
+    done = subprocess.run([PROGRAM], input="".join(job + "\n" for job in jobs), capture_output=True, text=True, timeout=600)
+    assert done.returncode == expect, (done.returncode, done.stderr)
+    return done
+
+
+def still_stream(rows=600):
+    path = OUT / "still.csv"
+    OUT.mkdir(parents=True, exist_ok=True)
+    lines = [f"{10000 * i},4,0,259,0,0" for i in range(rows)]
+    path.write_text("\n".join([make_streams.HEADER, *lines]) + "\n", encoding="ascii")
+    return path
+
+
+@test
+def a_constant_stream_is_off_by_what_it_is_off():
+    """4 LSB on x, 3 on z; 500 of 600 rows count on three axes; smoothed it is its own reference."""
+    path = still_stream()
+    text = program(f"rest:x:0 {path} 1000 16 1 0 60 truth 0", f"rest:y:0 {path} 500 16 2 0 60 smooth 0").stdout
+    rows = score.read_rows(text)
+    names = list(rows["rest:x:0", 100]["none"][0])
+    assert names[-2:] == ["median5_kf", "raw"] and "sprf" in names and len(names) >= 9
+    for name in names:
+        whole, after_bad = rows["rest:x:0", 100]["none"][0][name]
+        assert whole.count == 1500 and after_bad.count == 0
+        assert all(abs(whole.square[i] - 500 * 25.0) < 0.5 for i in range(3)) and whole.square[score.OWN] == 0.0, (name, whole)
+        whole = rows["rest:y:0", 50]["none"][0][name][0]
+        assert whole.count == 3 * 250 and whole.square[0] < 1e-3, (name, whole)  # the first group ends at 10 ms
+
+
+@test
+def what_a_bad_read_does_to_the_raw_samples_lies_behind_it():
+    rows = score.read_rows(program(f"rest:x:0 {still_stream()} 1000 16 1 0 60 truth 40").stdout)["rest:x:0", 100]
+    bad = [runs["raw"] for fault in (score.WIRING, score.HEALTHY) for runs in rows[fault].values()]
+    assert len(bad) >= 8 and len(rows[score.WIRING]) < 40, "seeds without a fault were told"
+    for whole, after_bad in bad:
+        assert whole.square[score.OWN] == after_bad.square[score.OWN] and after_bad.count <= 150 * 6
+    assert any(0 < after_bad.count <= 150 for _, after_bad in bad), "no window of half a second"
+    share = [runs["raw"][0].square[score.OWN] / (259.0 ** 2 * 500) for runs in rows[score.CONTENTION].values()]
+    assert len(share) == 40 and abs(sum(share) / 40 - 0.2) < 0.02, sum(share) / 40
+
+
+@test
+def a_job_that_cannot_be_done_is_named():
+    path, plain, short = still_stream(), OUT / "plain.csv", OUT / "short.csv"
+    plain.write_text("t_us,x,y,z\n0,1,2,3\n10000,1,2,3\n20000,1,2,3\n", encoding="ascii")
+    short.unlink(missing_ok=True)
+    for job, words in ((f"k {path} 1000 16 1 0 60 truth", "not a job: k"), (f"k {path} 1000 3 1 0 60 truth 0", "not a job"),
+                       (f"k {path} 1000 16 0 0 60 truth 0", "not a job"), (f"k {short} 1000 16 1 0 60 truth 0", "cannot open"),
+                       (f"k {plain} 1000 16 1 0 60 truth 0", "k at 100 Hz: it has no truth columns"),
+                       (f"k {plain} 500 16 2 0 60 smooth 0", "k at 50 Hz: fewer than two rows at this rate"),
+                       (f"k {path} 1000 16 1 50 60 truth 0", "fewer than two rows in this part")):
+        done = program(job, expect=2)
+        assert words in done.stderr and len(done.stderr.splitlines()) == 1 and done.stdout == "", (job, done.stderr)
+
+
+# --- the page ---------------------------------------------------------------------------------------------------------
+
+
+def page_text():
+    return default_filter.DOCUMENT.read_text(encoding="utf-8")
+
+
+@test
+def the_text_holds_what_the_tables_hold():
+    text = page_text()
+    assert default_filter.check(text) == [], default_filter.check(text)
+    key, number = INLINE.findall(text)[0]
+    found = default_filter.check(text.replace(f"<!--={key}-->{number}<!--.-->", f"<!--={key}-->9{number}<!--.-->", 1))
+    assert len(found) == 1 and f"9{number} on the page" in found[0], found
+
+
+@test
+def the_page_has_every_filter_in_every_class():
+    numbers = default_filter.PAGE.numbers_of(page_text())
+    names = {line.split(",")[4] for line in program(f"k {still_stream(10)} 1000 16 1 0 60 truth 0").stdout.splitlines()}
+    missing = [(group, name) for group in score.CLASSES for name in names if f"RMSE by class, {group}, `{name}`" not in numbers]
+    assert missing == [], f"{missing}: make default writes the page"
+
+
+def kept_rows():
+    """The rows of the last make default with recordings."""
+    rows = json.loads(default_filter.JSON.read_text(encoding="ascii")) if default_filter.JSON.is_file() else []
+    if not rows or not rows[0]["recordings"]:
+        raise Skip(f"{default_filter.JSON} is not there, or of a run without the recordings: make default")
+    return rows
+
+
+@test
+def the_page_is_that_of_the_rows():
+    numbers = default_filter.PAGE.numbers_of(page_text())
+    for kept in kept_rows():
+        if kept["level"] == "class":
+            key = f"RMSE by class, {kept['class']}, `{kept['filter']}`"
+            assert numbers.get(key) == default_filter.lsb(kept["rmse_lsb"]), f"{key}: {numbers.get(key)} on the page, {kept['rmse_lsb']} in the rows"
+
+
+@test
+def the_verdict_follows_from_the_streams():
+    rows = kept_rows()
+    scores = {}
+    for group in score.CLASSES:
+        for name in {r["filter"] for r in rows if r["level"] == "stream"}:
+            rates = {}
+            for r in rows:
+                if r["level"] == "stream" and r["class"] == group and r["filter"] == name:
+                    rates.setdefault(r["rate_hz"], []).append(math.log(r["rmse_lsb_5Hz"]))
+            scores.setdefault(group, {})[name] = math.exp(sum(sum(v) / len(v) for v in rates.values()) / len(rates))
+    assert score.verdict(scores).default == rows[0]["default"]
+    assert f"The default is **`{rows[0]['default']}`**" in page_text()
+
+
+@test
+def without_recordings_the_page_is_left_alone():
+    kept = default_filter.measure, default_filter.JSON, default_filter.DOCUMENT
+    jobs = [job for job in streams.scenario_jobs() if job.path in (streams.SHIPPED / "bad-reads.csv", streams.SHIPPED / "tilt-fast.csv")]
+    default_filter.JSON, default_filter.DOCUMENT = OUT / "rows.json", OUT / "no-such-page.md"
+    default_filter.measure = lambda: (jobs, default_filter.run_all(jobs), False)
+    built()
+    try:
+        assert default_filter.main() == 0 and not default_filter.DOCUMENT.exists()
+        rows = json.loads(default_filter.JSON.read_text(encoding="ascii"))
+        assert rows[0]["default"] == "sprf" and rows[0]["recordings"] is False and "no stream of class rest" in rows[0]["why"], rows[0]
+    finally:
+        default_filter.measure, default_filter.JSON, default_filter.DOCUMENT = kept
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_all())

@@ -1,0 +1,308 @@
+"""make default: which filter should be the default, decided by a table; writes build/default.json (every number) and the tables of
+docs/default-filter.md, and the numbers in its text, which are taken from them. Status 1: a number of the committed page does not come out
+again, each is named. Without the recordings it judges the shipped streams alone, says so, and leaves the page as it is."""
+import json
+import pathlib
+import subprocess
+import sys
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+
+import default_score as score
+import default_streams as streams
+from default_score import CANDIDATE, CONTENTION, KEPT, NAMED, OWN
+from default_streams import BAD_READS, CLASSES, MOTIONS, RATES_HZ
+from page import Fault, Page
+
+PROGRAM = "build/host/default_filter"
+JSON = pathlib.Path("build/default.json")
+DOCUMENT = pathlib.Path("docs/default-filter.md")
+BEGIN, END = "<!-- written by make default: begin -->", "<!-- written by make default: end -->"
+PAGE = Page(DOCUMENT, BEGIN, END)
+WORST_LISTED = 15
+
+
+# --- the run ----------------------------------------------------------------------------------------------------------
+
+
+def told(message):
+    print(f"\rdefault: {message:<50}", end="", file=sys.stderr, flush=True)
+
+
+def run_jobs(jobs):
+    """What the program prints for some jobs."""
+    try:
+        done = subprocess.run([PROGRAM], input="".join(job.line() + "\n" for job in jobs), capture_output=True, text=True, timeout=600)
+    except FileNotFoundError as missing:
+        raise Fault(f"{PROGRAM} is not built: make default builds it") from missing
+    if done.returncode != 0:
+        raise Fault(done.stderr.strip() or f"{PROGRAM} gave status {done.returncode}")
+    return done.stdout
+
+
+def run_all(jobs):
+    """Longest first, a few at a time, so that both processors end together."""
+    jobs = sorted(jobs, key=lambda job: -job.rows * (1 + job.seeds()))
+    parts = [jobs[i:i + 4] for i in range(0, len(jobs), 4)]
+    texts = []
+    with ThreadPoolExecutor(2) as pool:
+        for text in pool.map(run_jobs, parts):
+            texts.append(text)
+            told(f"{sum(len(part) for part in parts[:len(texts)])} of {len(jobs)} runs")
+    return score.read_rows("".join(texts))
+
+
+def make_streams():
+    wanted = sorted(streams.to_make(), key=lambda item: -item[1])
+    with ProcessPoolExecutor(2) as pool:
+        for number, _ in enumerate(pool.map(streams.make, *zip(*wanted)), 1):
+            told(f"{number} of {len(wanted)} streams made")
+
+
+def measure():
+    """(jobs, rows, True when the recordings are among them)"""
+    index = streams.recordings_index()
+    make_streams()
+    jobs = streams.scenario_jobs() + (streams.recording_jobs(index) if index is not None else [])
+    rows = run_all(jobs)
+    print(file=sys.stderr)
+    return jobs, rows, index is not None
+
+
+# --- tables -----------------------------------------------------------------------------------------------------------
+
+
+class Tables:
+    """Everything that is made of one run."""
+
+    def __init__(self, jobs, rows):
+        self.jobs = jobs
+        self.cells = score.cells_of(jobs, rows)
+        self.whole = score.cells_of(jobs, rows, whole_bad_reads=True)
+        self.names = list(self.cells[0].sums)
+        self.named = [name for name in NAMED if name in self.names]
+        self.classes = score.by_class(self.cells, self.names)
+        self.verdict = score.verdict(self.classes)
+
+    def group(self, group, rate_hz=None):
+        return [cell for cell in self.cells if cell.group == group and rate_hz in (None, cell.rate_hz)]
+
+    def best(self, group):
+        return min(self.named, key=lambda name: self.classes[group][name])
+
+    def others(self):
+        return [name for name in self.names if name not in NAMED]
+
+
+def lsb(value):
+    return f"{value:.3g}"
+
+
+def ratio_text(value):
+    return f"{value:.3f}"
+
+
+def markdown(title, text, head, lines):
+    made = ["", f"### {title}", text, "", "| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    return made + ["| " + " | ".join(line) + " |" for line in lines]
+
+
+def ticks(names):
+    return [f"`{name}`" for name in names]
+
+
+def class_table(t):
+    order = t.named + t.others()
+    lines = [[group, *(lsb(t.classes[group][name]) for name in order)] for group in CLASSES if group in t.classes]
+    return markdown("RMSE by class", "LSB (256 per g), geometric mean over the rates of the geometric mean over their streams; behind the first "
+                    f"{len(t.named)} filters, which the rule compares, the others of the list, a median of five before `kf`, and the raw samples.",
+                    ["class", *ticks(order)], lines)
+
+
+def ratio_table(t):
+    lines = []
+    for group in t.classes:
+        best, part, cells = t.best(group), [], t.group(group)
+        for name in t.named:
+            if name == best:
+                part.append("**1**")
+            else:
+                low, high = score.ratio_interval(cells, name, best)
+                part.append(f"{ratio_text(t.classes[group][name] / t.classes[group][best])} ({low:.2f}..{high:.2f})")
+        lines.append([group, *part, str(len({cell.name for cell in cells})), str(len(cells))])
+    return markdown("Times the best", "RMSE over that of the best in the class; in brackets the 95 % interval when the streams of the class are drawn "
+                    f"anew {score.RESAMPLES} times. A cell is a stream at a rate.", ["class", *ticks(t.named), "streams", "cells"], lines)
+
+
+def rate_table(t):
+    order = t.named + t.others()
+    lines = []
+    for group in t.classes:
+        for rate_hz in RATES_HZ:
+            cells = t.group(group, rate_hz)
+            if cells:
+                lines.append([f"{group}, {rate_hz} Hz", *(lsb(score.geometric(cells, name)) for name in order), str(len(cells))])
+    return markdown("RMSE by class and rate", "LSB, geometric mean over the streams.", ["class, rate", *ticks(order), "streams"], lines)
+
+
+def fixed_table(t):
+    wins = score.fixed_wins(t.cells)
+    cells = sum(1 for group in t.classes for rate_hz in RATES_HZ if t.group(group, rate_hz))
+    lines = [[f"{group}, {rate_hz} Hz", f"`{winner}`", ratio_text(value)] for group, rate_hz, winner, value in wins]
+    return markdown("Where a fixed filter wins", f"{len(wins)} of {cells} classes at a rate, and how far `{CANDIDATE}` is behind there.",
+                    ["class, rate", "best", f"`{CANDIDATE}` / best"], lines)
+
+
+def losses_table(t):
+    lost = []
+    for cell in t.cells:
+        if cell.group in CLASSES and CANDIDATE in cell.sums:
+            best = min(t.named, key=cell.rmse)
+            lost.append((cell.rmse(CANDIDATE) / cell.rmse(best), cell, best))
+    lost.sort(key=lambda item: -item[0])
+    lines = [[f"{cell.name}, {cell.rate_hz} Hz", cell.group, f"`{best}`", lsb(cell.rmse(best)), lsb(cell.rmse(CANDIDATE)), f"{value:.2f}"]
+             for value, cell, best in lost[:WORST_LISTED]]
+    return markdown(f"Where `{CANDIDATE}` loses most", f"The {WORST_LISTED} of {len(lost)} streams and rates.",
+                    ["stream, rate", "class", "best", "its RMSE", f"`{CANDIDATE}`", "ratio"], lines)
+
+
+def readings(t):
+    """(what, {class: {filter: score}}, filters among which is the best) of every reading of the rule, the deciding one first."""
+    with_contention = {**t.classes}
+    cells = [cell for cell in t.cells if cell.group in (BAD_READS, CONTENTION)]
+    with_contention[BAD_READS] = {name: score.geometric(cells, name) for name in t.names}
+    filters = [name for name in t.names if name not in ("raw", "median5_kf")]
+    made = [cell for cell in t.cells if cell.made]
+    real = [cell for cell in t.cells if not cell.made]
+    return [("as decided", t.classes, NAMED),
+            ("recordings smoothed at 2.5 Hz", score.by_class(t.cells, t.names, reference=1), NAMED),
+            ("recordings smoothed at 10 Hz", score.by_class(t.cells, t.names, reference=2), NAMED),
+            ("against the filter's own run without faults", score.by_class(t.cells, t.names, score.pooled_rms, OWN), NAMED),
+            ("mean squares pooled: the worst streams count", score.by_class(t.cells, t.names, score.pooled_rms), NAMED),
+            ("bad reads judged over the whole stream", score.by_class(t.whole, t.names), NAMED),
+            ("contention among the bad reads", with_contention, NAMED),
+            ("best of all filters of the list", t.classes, filters),
+            ("recordings alone", score.by_class(real, t.names), NAMED),
+            ("shipped and made streams alone", score.by_class(made, t.names), NAMED)]
+
+
+def readings_table(t):
+    lines = []
+    for what, scores, named in readings(t):
+        found = score.verdict(scores, named=named)
+        lines.append([what, *(f"{found.ratio[group]:.2f}" if group in found.ratio else "" for group in CLASSES), str(len(found.best_in)),
+                      f"`{found.default}`"])
+    return markdown("The same rule, read otherwise", f"`{CANDIDATE}` over the best, class by class; only the first line decides.",
+                    ["reading", *CLASSES, "best in", "default"], lines)
+
+
+def candidates_table(t):
+    lines = []
+    for name in t.named:
+        found = score.verdict(t.classes, candidate=name)
+        lines.append([f"`{name}`", *(f"{found.ratio[group]:.2f}" if group in found.ratio else "" for group in CLASSES), str(len(found.best_in)),
+                      "no" if found.beyond or len(found.best_in) < score.HALF else "yes"])
+    return markdown("Would another pass?", "The rule put to each of the filters that it compares.", ["filter", *CLASSES, "best in", "passes"], lines)
+
+
+def contention_table(t):
+    order = t.named + t.others()
+    lines = []
+    for motion in MOTIONS:
+        cells = [cell for cell in t.group(CONTENTION) if cell.motion == motion]
+        if cells:
+            lines.append([motion, *(lsb(score.geometric(cells, name)) for name in order)])
+    return markdown("Contention", "Two sensors at one address: 20 % of the reads doubled in runs of up to nine. LSB, does not decide.",
+                    ["class", *ticks(order)], lines)
+
+
+def streams_table(t):
+    found = {}
+    for job in t.jobs:
+        found.setdefault((job.source.motion, job.key()), []).append(job)
+    lines = []
+    for group in CLASSES:
+        for (motion, _), jobs in found.items():
+            if motion == group:
+                source, rates = jobs[0].source, sorted(job.rate_hz for job in jobs)
+                part = f", {source.from_s:g}..{source.to_s:g} s" if source.from_s or source.to_s < streams.LONGEST_S else ""
+                lines.append([source.name + part, group, source.why, " ".join(map(str, rates)), "recorded" if jobs[0].recorded else "made",
+                              f"{max(job.rows for job in jobs):,}", f"{min(job.seeds() for job in jobs)}..{max(job.seeds() for job in jobs)}"])
+    left = "; ".join(f"{name} ({why})" for name, why in streams.LEFT_OUT.items())
+    return markdown("Which stream is in which class", f"Rates in Hz; rows at the highest of them; seeds of the faults put in. Left out: {left}.",
+                    ["stream", "class", "why", "rates", "from", "rows", "seeds"], lines)
+
+
+def verdict_table(t):
+    v = t.verdict
+    lines = [[group, f"`{t.best(group)}`", ratio_text(v.ratio[group]) if group in v.ratio else "",
+              "" if group not in v.ratio else "no" if group in v.beyond else "yes", "yes" if group in v.best_in else "no"] for group in t.classes]
+    return markdown("Verdict", f"The default is **`{v.default}`**: `{CANDIDATE}` is {v.why}." if v.ratio else
+                    f"The default is **`{v.default}`**: {v.why}.", ["class", "best", f"`{CANDIDATE}` / best", "within 5 %", "best there"], lines)
+
+
+def tables(t):
+    lines = []
+    for table in (verdict_table, ratio_table, class_table, rate_table, fixed_table, losses_table, readings_table, candidates_table,
+                  contention_table, streams_table):
+        lines += table(t)
+    return [*lines, ""]
+
+
+# --- page and rows ----------------------------------------------------------------------------------------------------
+
+
+def facts(text):
+    """{key: number} for the text of a page, from its tables alone: `class ROW COLUMN` and so on, without ticks and intervals."""
+    keys = {"RMSE by class": "class", "RMSE by class and rate": "rate", "Times the best": "ratio", "Contention": "contention", "Verdict": "verdict"}
+    found = {}
+    for title, row, column, cell in PAGE.cells(text):
+        if title in keys:
+            found[f"{keys[title]} {row} {column}".replace("`", "")] = cell.split(" (")[0].replace("*", "").replace("`", "")
+    return found
+
+
+def check(text):
+    """Numbers of the text that the tables below it do not hold."""
+    lines = text[text.index(BEGIN) + len(BEGIN):text.index(END)].strip("\n").split("\n")
+    return PAGE.differences(text, PAGE.filled(text, [*lines, ""], facts(text)))
+
+
+def json_rows(t, real):
+    """Flat: the verdict, the classes, and every stream at every rate."""
+    v = t.verdict
+    rows = [{"level": "verdict", "default": v.default, "candidate": CANDIDATE, "why": v.why, "recordings": real, "beyond": v.beyond,
+             "best_in": v.best_in}]
+    for group, filters in t.classes.items():
+        best = t.classes[group][t.best(group)]
+        rows += [{"level": "class", "class": group, "filter": name, "rmse_lsb": value, "times_best": value / best} for name, value in filters.items()]
+    for cell in t.cells:
+        rows += [{"level": "stream", "class": cell.group, "stream": cell.name, "rate_hz": cell.rate_hz, "filter": name, "values": sums.count,
+                  **{f"rmse_lsb_{reference}".replace(" ", ""): sums.rmse(i) for i, reference in enumerate(score.REFERENCES)}}
+                 for name, sums in cell.sums.items()]
+    return rows
+
+
+def main():
+    jobs, rows, real = measure()
+    t = Tables(jobs, rows)
+    JSON.write_text(json.dumps(json_rows(t, real), indent=0) + "\n", encoding="ascii")
+    print(f"default: {len(jobs)} streams at a rate, {len(t.names)} filters; {JSON} written")
+    print(f"default: the rule says {t.verdict.default}: {t.verdict.why}")
+    if not real:
+        print(f"skipped: 1 (no recordings in {streams.recordings_folder()}: shipped streams only, {DOCUMENT} left as it is)")
+        return 0
+    lines = tables(t)
+    faults = PAGE.write(DOCUMENT.read_text(encoding="utf-8"), lines, facts("\n".join([BEGIN, *lines, END])))
+    for fault in faults:
+        print(f"default: {fault}", file=sys.stderr)
+    print(f"default: {DOCUMENT} written" + (f"; {len(faults)} numbers of the page before did not come out again" if faults else ""))
+    print("0 passed, 1 failed" if faults else "1 passed, 0 failed")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except (Fault, OSError, subprocess.TimeoutExpired) as problem:
+        print(f"default: {problem}", file=sys.stderr)
+        sys.exit(2)

@@ -1,0 +1,180 @@
+"""From sums of squares to scores per class, and the rule by which a filter becomes the default."""
+import math
+import random
+from collections import defaultdict
+from dataclasses import dataclass
+
+from default_streams import BAD_READS, CLASSES
+from page import Fault
+
+NAMED = ("kf", "sprf", "soft", "pbf", "adaptive")  # among these is the best
+CANDIDATE, KEPT = "adaptive", "sprf"
+WITHIN, HALF = 1.05, len(CLASSES) / 2
+NONE, HEALTHY, WIRING, CONTENTION = "none", "bad reads 1e-5", "bad reads 1e-3", "contention 20 %"
+REFERENCES = ("5 Hz", "2.5 Hz", "10 Hz", "own")    # as host_tests/default_filter.c: truth or smoothed, then the own run
+DECIDES, OWN = 0, 3
+VALUES_MIN = 100    # a cell with fewer values says nothing
+LEAST_LSB = 1e-6    # for logarithms
+RESAMPLES, RESAMPLE_SEED = 1000, 5
+
+
+@dataclass
+class Sums:
+    count: int
+    square: tuple
+
+    def __add__(self, other):
+        return Sums(self.count + other.count, tuple(a + b for a, b in zip(self.square, other.square)))
+
+    def rmse(self, reference):
+        return math.sqrt(self.square[reference] / self.count)
+
+
+NOTHING = Sums(0, (0.0,) * len(REFERENCES))
+
+
+@dataclass
+class Cell:
+    """What the filters made of one stream at one rate with one kind of fault."""
+
+    group: str      # the class
+    name: str       # of the stream
+    rate_hz: int
+    made: bool      # shipped or made, not recorded
+    motion: str     # class of the motion
+    sums: dict      # {filter: Sums}
+
+    def rmse(self, name, reference=DECIDES):
+        return self.sums[name].rmse(reference)
+
+
+def read_rows(text):
+    """{(key, rate): {fault: {seed: {filter: (whole, after a bad read)}}}} of what host_tests/default_filter.c prints."""
+    found = defaultdict(lambda: defaultdict(lambda: defaultdict(dict)))
+    width = 1 + len(REFERENCES)
+    for line in text.splitlines():
+        field = line.split(",")
+        if len(field) != 5 + 2 * width:
+            raise Fault(f"default_filter: a row with {len(field)} fields: {line}")
+        key, rate_dhz, fault, seed, name = field[:5]
+        parts = [field[5 + i * width:5 + (i + 1) * width] for i in range(2)]
+        found[key, int(rate_dhz) // 10][fault][int(seed)][name] = tuple(Sums(int(p[0]), tuple(map(float, p[1:]))) for p in parts)
+    return found
+
+
+def pooled(runs, fault, seeds, part):
+    """{filter: Sums} over the seeds; a seed that put no fault in is the run without faults."""
+    total = defaultdict(lambda: NOTHING)
+    for seed in range(1, seeds + 1):
+        for name, sums in (runs[fault].get(seed) or runs[NONE][0]).items():
+            total[name] = total[name] + sums[part]
+    return dict(total)
+
+
+def cells_of(jobs, rows, whole_bad_reads=False):
+    """A cell per stream and rate in the class of its motion, one more among the bad reads and one with contention."""
+    cells = []
+    for job in jobs:
+        runs = rows[job.key(), job.rate_hz]
+        if job.source.motion == BAD_READS:
+            made = [(BAD_READS, {name: sums[0] for name, sums in runs[NONE][0].items()})]
+        else:
+            made = [(job.source.motion, pooled(runs, HEALTHY, job.seeds(), 0)),
+                    (BAD_READS, pooled(runs, WIRING, job.seeds(), 0 if whole_bad_reads else 1)),
+                    (CONTENTION, pooled(runs, CONTENTION, job.seeds(), 0))]
+        label = f"{job.source.name} from {job.source.from_s:g} s" if job.source.from_s else job.source.name
+        cells += [Cell(group, label, job.rate_hz, not job.recorded, job.source.motion, sums) for group, sums in made
+                  if min(s.count for s in sums.values()) >= VALUES_MIN]
+    return cells
+
+
+# --- scores -----------------------------------------------------------------------------------------------------------
+
+
+def mean(values):
+    values = list(values)
+    return sum(values) / len(values)
+
+
+def log_score(cells, name, reference=DECIDES):
+    """Mean over the rates of the mean over their streams of ln(RMSE): no stream and no rate outweighs the others."""
+    rates = defaultdict(list)
+    for cell in cells:
+        rates[cell.rate_hz].append(math.log(max(cell.rmse(name, reference), LEAST_LSB)))
+    return mean(mean(values) for values in rates.values())
+
+
+def geometric(cells, name, reference=DECIDES):
+    return math.exp(log_score(cells, name, reference))
+
+
+def pooled_rms(cells, name, reference=DECIDES):
+    """Root of the mean square over all values: the worst streams alone count."""
+    return math.sqrt(sum(cell.sums[name].square[reference] for cell in cells) / sum(cell.sums[name].count for cell in cells))
+
+
+def by_class(cells, names, score=geometric, reference=DECIDES):
+    """{class: {filter: score in LSB}} of the classes that have a cell."""
+    groups = {group: [cell for cell in cells if cell.group == group] for group in CLASSES}
+    return {group: {name: score(part, name, reference) for name in names} for group, part in groups.items() if part}
+
+
+def ratio_interval(cells, name, rival):
+    """95 % interval of score(name) / score(rival) when the streams of the class are drawn anew."""
+    streams = defaultdict(list)
+    for cell in cells:
+        streams[cell.name].append((cell.rate_hz, math.log(cell.rmse(name) / cell.rmse(rival))))
+    drawn, rng = [], random.Random(RESAMPLE_SEED)
+    for _ in range(RESAMPLES):
+        rates = defaultdict(list)
+        for chosen in rng.choices(list(streams.values()), k=len(streams)):
+            for rate_hz, value in chosen:
+                rates[rate_hz].append(value)
+        drawn.append(math.exp(mean(mean(values) for values in rates.values())))
+    drawn.sort()
+    return drawn[round(0.025 * RESAMPLES)], drawn[round(0.975 * RESAMPLES) - 1]
+
+
+# --- the rule ---------------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Verdict:
+    default: str
+    ratio: dict     # {class: candidate / best of the named}
+    beyond: list    # classes in which the candidate is not within 5 %
+    best_in: list   # classes in which it is best
+    why: str
+
+
+def verdict(scores, candidate=CANDIDATE, named=NAMED):
+    """The issue's rule. scores: {class: {filter: LSB}}; a class or the candidate missing keeps the default."""
+    missing = [group for group in CLASSES if group not in scores]
+    if missing:
+        return Verdict(KEPT, {}, missing, [], f"no stream of class {', '.join(missing)}")
+    if any(candidate not in scores[group] for group in CLASSES):
+        return Verdict(KEPT, {}, list(CLASSES), [], f"{candidate} is not in the filter list")
+    best = {group: min(scores[group][name] for name in named if name in scores[group]) for group in CLASSES}
+    ratio = {group: scores[group][candidate] / best[group] for group in CLASSES}
+    beyond = [group for group in CLASSES if ratio[group] > WITHIN]
+    best_in = [group for group in CLASSES if ratio[group] <= 1.0]
+    if beyond:
+        why = "more than 5 % behind the best in " + ", ".join(f"{group} ({ratio[group]:.2f} times)" for group in beyond)
+    elif len(best_in) < HALF:
+        why = f"best in {len(best_in)} of {len(CLASSES)} classes only"
+    else:
+        why = f"within 5 % of the best in every class and best in {len(best_in)} of {len(CLASSES)}"
+    return Verdict(KEPT if beyond or len(best_in) < HALF else candidate, ratio, beyond, best_in, why)
+
+
+def fixed_wins(cells):
+    """[(class, rate, best other filter, candidate / best)] where a named filter other than the candidate is best."""
+    found = []
+    for group in CLASSES:
+        for rate_hz in sorted({cell.rate_hz for cell in cells if cell.group == group}):
+            part = [cell for cell in cells if cell.group == group and cell.rate_hz == rate_hz]
+            scores = {name: geometric(part, name) for name in NAMED if name in part[0].sums}
+            winner = min(scores, key=scores.get)
+            if CANDIDATE in scores and winner != CANDIDATE:
+                found.append((group, rate_hz, winner, scores[CANDIDATE] / scores[winner]))
+    return found
