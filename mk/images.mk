@@ -2,10 +2,11 @@
 
 # Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter_list.h; sprf, which the firmware
 # starts with, must be among them. The first set is what is built and flashed when nothing is said; together they hold every filter.
-FILTER_SETS      := everyday robust
-FILTERS_everyday := kf sprf synth lrf soft kf3
-FILTERS_robust   := kf sprf lrf soft sprf_paper shrf pbf af
-FILTERS          := $(firstword $(FILTER_SETS))
+FILTER_SETS          := everyday robust synthesised
+FILTERS_everyday     := kf sprf synth lrf soft
+FILTERS_robust       := kf sprf lrf soft sprf_paper shrf pbf af
+FILTERS_synthesised  := kf sprf synth kf3
+FILTERS              := $(firstword $(FILTER_SETS))
 
 CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))
 IMAGE_FILTERS   = $(FILTERS_everyday)
