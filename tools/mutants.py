@@ -53,7 +53,7 @@ def make(*targets):
 def judged(judge, limit_s):
     """Builds and runs the judge: (None when it passes, else the first line that says what failed; seconds of the run)."""
     if judge.startswith("system "):
-        images = [f"build/uno/{image}firmware.elf" for image in ("", "robust/", "wrap/", "late/", "tight/")]
+        images = [f"build/uno/{image}firmware.elf" for image in ("", "robust/", "synthesised/", "wrap/", "late/", "tight/")]
         built = make(*images, "build/sim/simrun", "build/host/native_replay")
         command = ["python3", "host_tests/system_tests.py", *judge.split()[1:]]
     elif judge.startswith("papers "):
