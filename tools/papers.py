@@ -2,9 +2,10 @@
 """make papers: runs the experiments of the papers side by side, judges each number against its accepted band and the paper's, writes
 build/papers.json and the tables of docs/papers.md.
 
-    papers.py [--runs N] [--seed N] [--only WORD...]
+    papers.py [--paper NNN...] [--runs N] [--seed N] [--only WORD...]
 
-With --only, with fewer runs or with another seed the page and the JSON are left alone.
+--paper: only these papers, the others' part of the page and of the JSON stay. With --only, with fewer runs or with another seed page and JSON
+are left alone.
 """
 import argparse
 import concurrent.futures
@@ -14,12 +15,15 @@ import subprocess
 import sys
 import time
 
-from papers_judge import Fault, judge, read_expected
+from papers_judge import BANDED, VERDICT_RUNS, Fault, judge, read_expected
 from papers_page import write_page
 
 # programs and accepted bands of each paper
-PAPERS = {"002": ((pathlib.Path("build/papers/paper002"), pathlib.Path("build/papers/operations002")),
-                  pathlib.Path("host_tests/papers/expected_002.csv"))}
+PAPERS = {paper: (tuple(pathlib.Path("build/papers", program) for program in programs), pathlib.Path(f"host_tests/papers/expected_{paper}.csv"))
+          for paper, programs in (("000", ("paper000",)), ("001", ("paper001",)), ("002", ("paper002", "operations002")))}
+# runs that the programs make of --runs 10000, and what each shipped filter must have a band for
+FULL_RUNS = {"000": 4000, "001": 2000, "002": VERDICT_RUNS}
+WANTED = {"000": ("mse_2_5",), "001": ("sigma_stationary",), "002": BANDED}
 JSON = pathlib.Path("build/papers.json")
 PAGE_RUNS, PAGE_SEED = 10000, 2024
 WORKERS = 2
@@ -85,7 +89,7 @@ def run_one(program, experiment, options, bar):
     return rows
 
 
-def experiments_of(programs, words):
+def experiments_of(programs):
     """{experiment: (program, relative work)}."""
     found = {}
     for program in programs:
@@ -94,10 +98,16 @@ def experiments_of(programs, words):
             raise Fault(f"{program} --list gave status {done.returncode}: {done.stderr.strip()}")
         for name, work in (line.split("\t") for line in done.stdout.splitlines()):
             found[name] = (program, float(work))
-    chosen = {name: entry for name, entry in found.items() if not words or any(w in name for w in words)}
-    if not chosen:
-        raise Fault(f"no experiment's name contains {' or '.join(words)}; there are {', '.join(found)}")
-    return chosen
+    return found
+
+
+def chosen_of(words, only=()):
+    """{paper: {experiment: (program, relative work)}} of the experiments whose name contains a word, or of all; of all papers or only some."""
+    found = {paper: experiments_of(programs) for paper, (programs, _) in PAPERS.items() if not only or paper in only}
+    chosen = {paper: {name: entry for name, entry in all_.items() if not words or any(w in name for w in words)} for paper, all_ in found.items()}
+    if not any(chosen.values()):
+        raise Fault(f"no experiment's name contains {' or '.join(words)}; there are {', '.join(name for all_ in found.values() for name in all_)}")
+    return {paper: experiments for paper, experiments in chosen.items() if experiments}
 
 
 def run_all(experiments, options):
@@ -119,7 +129,8 @@ def as_json(paper, rows):
 
 
 def main():
-    parser = argparse.ArgumentParser(usage="papers.py [--runs N] [--seed N] [--only WORD...]")
+    parser = argparse.ArgumentParser(usage="papers.py [--paper NNN...] [--runs N] [--seed N] [--only WORD...]")
+    parser.add_argument("--paper", nargs="+", default=[], choices=list(PAPERS))
     parser.add_argument("--runs", type=int, default=PAGE_RUNS)
     parser.add_argument("--seed", type=int, default=PAGE_SEED)
     parser.add_argument("--only", nargs="+", default=[])
@@ -127,16 +138,18 @@ def main():
     whole = not options.only and options.runs >= PAGE_RUNS and options.seed == PAGE_SEED
     began, failures, collected = time.monotonic(), [], []
     try:
-        for paper, (programs, expected_path) in PAPERS.items():
-            expected = read_expected(expected_path)
-            rows = run_all(experiments_of(programs, options.only), options)
-            found = judge(rows, expected, partial=bool(options.only))
+        for paper, experiments in chosen_of(options.only, options.paper).items():
+            expected = read_expected(PAPERS[paper][1])
+            rows = run_all(experiments, options)
+            found = judge(rows, expected, bool(options.only), FULL_RUNS[paper], WANTED[paper])
             failures += [f"paper {paper}: {text}" for text in found]
             collected += as_json(paper, rows)
             if whole:
-                write_page(rows, options)
+                write_page(paper, rows, options)
         if whole:
-            JSON.write_text(json.dumps(collected, indent=0) + "\n", encoding="utf-8")
+            held = json.loads(JSON.read_text(encoding="utf-8")) if options.paper and JSON.exists() else []
+            kept = [row for row in held if row["paper"] not in options.paper]
+            JSON.write_text(json.dumps(sorted(kept + collected, key=lambda row: row["paper"]), indent=0) + "\n", encoding="utf-8")
     except (Fault, OSError, subprocess.TimeoutExpired) as error:
         print(f"papers: {error}", file=sys.stderr)
         return 2

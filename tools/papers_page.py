@@ -135,12 +135,28 @@ def page_text(rows, options):
     return "\n".join(lines)
 
 
-def write_page(rows, options):
-    text = DOCUMENT.read_text(encoding="utf-8")
-    if BEGIN not in text or END not in text:
-        raise OSError(f"{DOCUMENT}: has no line '{BEGIN}' or '{END}'")
-    before, after = text.split(BEGIN)[0], text.split(END)[1]
-    DOCUMENT.write_text(f"{before}{BEGIN}\n{page_text(rows, options)}\n{END}{after}", encoding="utf-8")
+def markers(paper):
+    """Of the part of the page that make papers writes for a paper."""
+    return (BEGIN, END) if paper == "002" else tuple(m.replace("papers:", f"papers, {paper}:") for m in (BEGIN, END))
+
+
+def between(text, paper):
+    """(before, the part, after)."""
+    begin, end = markers(paper)
+    if text.count(begin) != 1 or text.count(end) != 1:
+        raise OSError(f"{DOCUMENT}: has no line '{begin}' or '{end}', or two")
+    before, rest = text.split(begin)
+    part, after = rest.split(end)
+    return before, part, after
+
+
+def write_page(paper, rows, options):
+    """The part of a paper, by the function that makes its text (papers_page_synthesis.py has those of 000 and 001)."""
+    import papers_page_synthesis  # noqa: E402, which imports this module
+    make = {"000": papers_page_synthesis.page_text_000, "001": papers_page_synthesis.page_text_001, "002": page_text}[paper]
+    begin, end = markers(paper)
+    before, _, after = between(DOCUMENT.read_text(encoding="utf-8"), paper)
+    DOCUMENT.write_text(f"{before}{begin}\n{make(rows, options)}\n{end}{after}", encoding="utf-8")
 
 
 CHANCE_FREE = ("covariance", "steady_gain", "table2", "operations")

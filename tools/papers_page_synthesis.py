@@ -1,0 +1,124 @@
+"""The tables of docs/papers.md for papers 000 and 001, written by make papers between their markers."""
+import fnmatch
+
+from papers_page import grid, pick, shown, table, verdicts
+
+TURNS = ("ramp30", "cos60", "minjerk60", "bump30", "sine30", "triangle30", "steps30")
+LEVELS = ("-0.3:0.1", "0:0.1", "0:0.3", "-0.1:0.3", "0.9:0.3")
+STREAMS = ("tilt-slow", "tilt-fast", "tilt-400hz", "through-pitch-90", "through-roll-180")
+WAYS = ("angle", "angle_unwrapped", "axes")
+SEARCHES = (("table1_smooth", "true error, smooth roll to 90 degrees"), ("table1_steps", "true error, abrupt steps to 90 degrees"),
+            ("table1_walk", "true error, Kalman filter without a rate allowed"), ("table1_residual", "residual g - x^ for the error"),
+            ("table1_any_start", "true error, any error of the start"), ("table1_any_roll", "true error, any roll and start"),
+            ("table1_residual_any_roll", "residual, any roll and start"))
+# experiments without chance: their tables are the same for every seed and number of runs
+CHANCE_FREE = {"000": ("schedule_*", "algorithm_22_*", "table1_*", "equal_noise*", "roll_tilt-*", "roll_through-*"), "001": ("altitude_kalman",)}
+
+
+def windows(prefix="mse", names=("0_5", "6_10", "11_15")):
+    return [f"{prefix}_{name}" for name in names]
+
+
+def of(rows, *patterns):
+    return [row for row in rows if any(fnmatch.fnmatchcase(row["experiment"], p) for p in patterns)]
+
+
+def schedule_table(rows):
+    return grid(rows, [("in the region", "schedule_15_s", ["in_region"]), ("Pe < 0", "schedule_15_s", ["pe_negative"]),
+                       ("P < 0", "schedule_15_s", ["p_negative"]), ("parting, ln per step", "schedule_15_s", ["growth"]),
+                       ("true variance by R, median", "schedule_15_s", ["true_variance_median"]),
+                       ("later: in the region", "schedule_later", ["in_region"]), ("period", "schedule_later", ["period"]),
+                       ("true variance by R", "schedule_later", ["true_variance_median"])])
+
+
+def search_table(rows):
+    lines = []
+    for experiment, title in SEARCHES:
+        found = {row["metric"]: row["value"] for row in of(rows, experiment)}
+        name = next((row["filter"] for row in of(rows, experiment)), None)
+        if name:
+            lines.append([f"`{name}`", title, " / ".join(shown(found[m]) for m in windows()), f"{100 * found['largest_difference']:.1f} %",
+                          *(shown(found[m]) for m in ("amplitude", "r", "start_error")), f"({found['a1']:g}, {found['b0']:g})",
+                          shown(found["kalman_alpha"])])
+    return table(["Kalman filter / roll", "reading", "its row (paper: 0.489 / 1.419 / 0.359)", "largest difference", "degrees", "R", "start's error",
+                  "(a1, b0)", "alpha"], lines)
+
+
+def equal_noise_tables(rows):
+    for level in LEVELS:
+        name = f"equal_noise({level})"
+        yield f"Equal noise gain, a1:b0 = {level}: bias^2 in 6-10 s / largest error, degrees", grid(rows, [("noise gain", name, ["noise_gain"]), *(
+            (turn, name, [f"bias2_{turn}", f"peak_{turn}"]) for turn in TURNS)])
+    yield "Equal noise gain, all cells: the synthesised filter against each", grid(rows, [
+        ("cells", "equal_noise_all", ["cells"]), ("it loses in bias^2", "equal_noise_all", ["synth_loses"]),
+        ("in largest error", "equal_noise_all", ["synth_loses_peak"]), ("its bias^2 by theirs, least", "equal_noise_all", ["bias2_ratio_least"]),
+        ("most", "equal_noise_all", ["bias2_ratio_most"])])
+
+
+def tables_000(rows):
+    """(heading, lines)."""
+    yield "Beside the paper", verdicts(rows)
+    yield "Gains of (22) without data: the paper's 15 s, and after 8,000 steps", schedule_table(rows)
+    yield "(22) on the roll, P(0) = 5, R = 0.6: exact mean square error in 0-5 / 6-10 / 11-15 s, degree^2", [
+        line.replace("never / never / never", "0 / 0 at once") for line in grid(rows, [
+            (turn, f"algorithm_22_{turn}", windows()) for turn in ("ramp30", "cos60", "bump30")])]
+    yield "(22) as printed on cos60 with any R from 0.2 to 1: least / median", grid(rows, [
+        (title, "algorithm_22_any_r", [f"mse_{w}_least", f"mse_{w}_median"]) for title, w in (("0-5 s", "0_5"), ("6-10 s", "6_10"), ("11-15 s", "11_15"))])
+    yield "The nearest to Table 1: the synthesised row is met exactly, 0.516 / 0.875 / 0.348", search_table(rows)
+    yield "Constant gains from x^ = g(0), R = 0.6: exact / measured in 0-5, 6-10, 11-15 s, and the largest bias", grid(
+        of(rows, "roll_ramp30", "roll_cos60", "roll_bump30"), [(f"{turn} {title}", f"roll_{turn}", [f"exact_mse_{w}", f"mse_{w}"]) for turn in (
+            "ramp30", "cos60", "bump30") for title, w in (("0-5", "0_5"), ("6-10", "6_10"), ("11-15", "11_15"))])
+    yield "Every shipped filter (R told, other parameters as shipped): mean square error in 2-5 / 6-10 / 11-15 s, degree^2", grid(
+        rows, [(turn, f"filters_{turn}", windows(names=("2_5", "6_10", "11_15"))) for turn in TURNS])
+    yield from equal_noise_tables(rows)
+    for stream in STREAMS:
+        yield f"Roll on {stream}: rms error in degrees, filtered as an angle / unwrapped first / axes first", grid(rows, [
+            (region.replace("_", " "), f"roll_{stream}", [f"rmse_{region}_{way}" for way in WAYS]) for region in ("open", "near_90", "near_180", "all")
+            if pick(rows, f"roll_{stream}", "unfiltered", "double", f"rmse_{region}_axes")])
+
+
+def tables_001(rows):
+    yield "Beside the paper", verdicts(rows)
+    for name, title in (("altitude_half_a_t2", "x = a t^2 / 2"), ("altitude_a_t2", "x = a t^2")):
+        yield f"{title}: metres", grid(rows, [
+            ("sigma, straight legs", name, ["sigma"]), ("of one run +-", name, ["sigma_one_run_sd"]), ("sigma, 10-20 s", name, ["sigma_stationary"]),
+            ("mean error 20-35 s", name, ["lag_20_35"]), ("35-50 s", name, ["lag_35_50"]), ("settled, 30-35 s", name, ["lag_settled"]),
+            ("largest without noise", name, ["peak_bias"])])
+    yield "Kalman filters, solved for the published lag or sigma", grid(rows, [
+        (metric, "altitude_kalman", [metric]) for metric in ("alpha", "beta", "gamma", "q")])
+
+
+def text_of(head, parts):
+    lines = [head, ""]
+    for heading, part in parts:
+        if any(line.startswith("| `") for line in part):
+            lines += [f"### {heading}", "", *part]
+    return "\n".join(lines)
+
+
+def page_text_000(rows, options):
+    return text_of(f"{options.runs * 2 // 5:,} runs of each experiment with chance, seed {options.seed}.", tables_000(rows))
+
+
+def page_text_001(rows, options):
+    return text_of(f"{options.runs // 5:,} runs, seed {options.seed}.", tables_001(rows))
+
+
+def chance_free(paper, line):
+    """Of a line under "Beside the paper"."""
+    cells = line.split(" | ")
+    return len(cells) > 2 and any(fnmatch.fnmatchcase(cells[2].replace(" ", "_"), p) for p in CHANCE_FREE[paper])
+
+
+def stale(paper, rows, part):
+    """Lines that the rows without chance, judged, give and the page's part lacks, and such that it has beyond them. In double: a filter
+    that is added to FILTER_LIST adds lines of fixed point, which make papers then writes."""
+    tables = list({"000": tables_000, "001": tables_001}[paper](rows))
+    made = [line for heading, lines in tables for line in lines if line.startswith("| `") and "| fixed |" not in line]
+    titles = [heading for heading, lines in tables if any(line.startswith("| `") for line in lines) and heading != "Beside the paper"]
+    held, heading = [], ""
+    for line in part.splitlines():
+        heading = line[4:] if line.startswith("### ") else heading
+        if line.startswith("| `") and "| fixed |" not in line and (heading in titles or (heading == "Beside the paper" and chance_free(paper, line))):
+            held.append(line)
+    return [f"the page lacks: {line}" for line in made if line not in held] + [f"the page has: {line}" for line in held if line not in made]
