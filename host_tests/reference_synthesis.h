@@ -36,13 +36,13 @@ typedef struct {
 /* Before the first step. p: P(-1) .. P(-5). */
 void reference_schedule_begin(reference_schedule_t *f, reference_schedule_kind_t kind, double r, const double p[5]);
 
-/* One step; false when (21) divides by zero, which leaves everything as it was (the two uncorrelated ones take a1 = 0). */
+/* One step; false when (21) divides by zero, which leaves everything as it was (the uncorrelated ones take a1 = 0). */
 bool reference_schedule_step(reference_schedule_t *f);
 
 /* True inside the region that paper 000 prints: 0 < b0 <= 1, -1 < a1 < 0, b0 > -a1 - 0.3. */
 bool reference_printed_region(double a1, double b0);
 
-/* What the errors' covariance really becomes: s = cov of the errors n-1, n-2, n-3 (row-major) to that of n, n-1, n-2. */
+/* What the errors' covariance really becomes: s = cov of errors n-1, n-2, n-3 (row-major) to that of n, n-1, n-2. */
 void reference_covariance_step(double s[9], double a1, double b0, double r);
 
 /* Variance of the extrapolation's error, h s h' with h of (7). */
@@ -62,7 +62,7 @@ typedef struct {
 void reference_exact_begin(reference_exact_t *f, double r, double a1_min, double a1_max, const double s[9]);
 void reference_exact_step(reference_exact_t *f);
 
-/* Constant gains, steady state: variance of the estimate by R, of the extrapolation by R, error by second difference. */
+/* Constant gains, steady state: variance of estimate and of extrapolation by R, error by second difference. */
 double reference_closed_noise_gain(double a1, double b0);
 double reference_closed_pe(double a1, double b0);
 double reference_closed_lag(double a1, double b0);

@@ -15,7 +15,7 @@ static const double table[][2] = { { -0.3, 0.1 },           { 0, 0.1 },  { 0, 0.
                                    { -1.0 / 6, 11.0 / 13 }, { 0.5, 0.5 } };
 enum { ROWS = sizeof table / sizeof table[0] };
 
-/* Sums over the impulse response of the recursion (7); the extrapolation's error is what the estimate's was, less h0. */
+/* Sums over the impulse response of the recursion (7); the extrapolation's is the sum over x_e, in which h0 is not. */
 static void closed_forms_are_sums_of_the_impulse_response(void)
 {
     for (int i = 0; i < ROWS; i++) {

@@ -40,7 +40,7 @@ static void assert_steps(reference_schedule_kind_t kind, double r, const double 
     }
 }
 
-/* P(0) = 5 as in the paper and all P before it; (21) at flat P: a1 = -1/6, and (20) is then -13/12 P: negative at once. */
+/* P(0) = 5 as in the paper and all P before it; (21) at flat P: a1 = -1/6, and (20) is then -13/12 P: negative. */
 static void printed_schedule_begins_outside_its_region(void)
 {
     static const gains_t r1[] = {
@@ -155,7 +155,7 @@ static bool repeats(const double *b0, int steps, int period)
     return true;
 }
 
-/* 400 starts, each P anywhere from 0.05 R to 50 R on a logarithmic scale; the 150 steps of the paper's 15 s after some. */
+/* 400 starts, each P anywhere from 0.05 R to 50 R on a logarithmic scale; 150 steps, the paper's 15 s, after some. */
 static failure_t failure(reference_schedule_kind_t kind, int before)
 {
     enum { STARTS = 400, STEPS = 150 };
@@ -191,8 +191,8 @@ static failure_t failure(reference_schedule_kind_t kind, int before)
 
 /*
  * Over the 15 s of the paper's experiment one sample in forty lies in the region, two in three variances Pe are below
- * zero, and neighbouring starts part by e^0.17 a step. That is a transient: in the end every start falls into a cycle of
- * 16 (corrected expansion: of 4, a quarter of whose variances P are negative) with not one sample in the region.
+ * zero, and neighbouring starts part by e^0.17 a step. That is a transient: in the end every start falls into a cycle
+ * of 16 (corrected expansion: of 4, a quarter of whose variances P are negative) with not one sample in the region.
  */
 static void printed_schedule_is_no_schedule(void)
 {

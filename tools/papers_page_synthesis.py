@@ -63,7 +63,8 @@ def tables_000(rows):
         line.replace("never / never / never", "0 / 0 at once") for line in grid(rows, [
             (turn, f"algorithm_22_{turn}", windows()) for turn in ("ramp30", "cos60", "bump30")])]
     yield "(22) as printed on cos60 with any R from 0.2 to 1: least / median", grid(rows, [
-        (title, "algorithm_22_any_r", [f"mse_{w}_least", f"mse_{w}_median"]) for title, w in (("0-5 s", "0_5"), ("6-10 s", "6_10"), ("11-15 s", "11_15"))])
+        (title, "algorithm_22_any_r", [f"mse_{w}_least", f"mse_{w}_median"]) for title, w in (
+            ("0-5 s", "0_5"), ("6-10 s", "6_10"), ("11-15 s", "11_15"))])
     yield "The nearest to Table 1: the synthesised row is met exactly, 0.516 / 0.875 / 0.348", search_table(rows)
     yield "Constant gains from x^ = g(0), R = 0.6: exact / measured in 0-5, 6-10, 11-15 s, and the largest bias", grid(
         of(rows, "roll_ramp30", "roll_cos60", "roll_bump30"), [(f"{turn} {title}", f"roll_{turn}", [f"exact_mse_{w}", f"mse_{w}"]) for turn in (
@@ -73,7 +74,8 @@ def tables_000(rows):
     yield from equal_noise_tables(rows)
     for stream in STREAMS:
         yield f"Roll on {stream}: rms error in degrees, filtered as an angle / unwrapped first / axes first", grid(rows, [
-            (region.replace("_", " "), f"roll_{stream}", [f"rmse_{region}_{way}" for way in WAYS]) for region in ("open", "near_90", "near_180", "all")
+            (region.replace("_", " "), f"roll_{stream}", [f"rmse_{region}_{way}" for way in WAYS])
+            for region in ("open", "near_90", "near_180", "all")
             if pick(rows, f"roll_{stream}", "unfiltered", "double", f"rmse_{region}_axes")])
 
 

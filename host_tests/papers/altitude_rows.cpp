@@ -1,4 +1,4 @@
-// Paper 001: sigma on the straight legs and the lag under acceleration, beside 0.37 m / 0.9 m of the synthesised filter,
+// Paper 001: sigma on straight legs and the lag under acceleration, beside 0.37 m / 0.9 m of the synthesised filter,
 // 0.3 m / 1.4 m and 0.45 m / 0 of the Kalman filters of first and second order.
 #include "altitude.hpp"
 #include "experiments_001.hpp"

@@ -1,4 +1,4 @@
-// Filters of one measured number as plain callables: what papers 000 and 001 compare. Each experiment takes any of them.
+// Filters of one measured number as plain callables: what papers 000 and 001 compare. Each experiment takes any.
 #ifndef PAPERS_ESTIMATORS_H
 #define PAPERS_ESTIMATORS_H
 

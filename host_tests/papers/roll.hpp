@@ -39,7 +39,7 @@ struct Profile {
     double truth_deg(int k) const;
 };
 
-// ramp30, cos60, minjerk60, bump30, sine30, triangle30, steps30: all seven of the notes. bump, sine and triangle return.
+// ramp30, cos60, minjerk60, bump30, sine30, triangle30, steps30: all seven. bump, sine and triangle return.
 const std::array<Profile, 7> &profiles();
 const Profile &profile(const std::string &name);
 
