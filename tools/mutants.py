@@ -39,6 +39,11 @@ def prepare():
         target.parent.mkdir(parents=True, exist_ok=True)
         if not target.exists() or target.read_bytes() != source.read_bytes():
             shutil.copy(source, target)  # with a new time, so that make builds it anew
+    known = set(listed.stdout.splitlines())
+    for path in list(TREE.rglob("*")):
+        inside = path.relative_to(TREE)
+        if inside.parts[0] != "build" and path.is_file() and str(inside) not in known:
+            path.unlink()  # moved or deleted since: a makefile's wildcard would find it
     for shared in ("unity", "venv"):
         link = TREE / "build" / shared
         link.parent.mkdir(exist_ok=True)
