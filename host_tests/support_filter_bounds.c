@@ -177,13 +177,34 @@ static const char *broken_mixture(const mixture_t *f, bool learning, int32_t x_l
     return broken_wide(&f->core, x_lsb_q16);
 }
 
-/*
- * kf3.h: no gate; below 1 after an update; a prediction from P11 < 4 and the rest < 1 ends below 13, 7, 4, 5, 3 and 2.
- * Rate and acceleration within the bound of the format.
- */
+#define KF3_ONE_UQ28 0x10000000U
+
+/* kf3.h: P11 below 1 after an update; a prediction from P11 < 4 and the rest < 1 ends below 13, 7, 5, 4, 3 and 2. */
+static bool kf3_covariance_broken(const kf3_t *f)
+{
+    uint32_t p11_end = (f->core.gain_uq16 != 0U) ? 1U : 13U;
+    const uint32_t elements[] = { f->core.u.p.p11_uq28, f->core.u.p.p12_uq28, f->core.u.p.p22_uq28,
+                                  f->p13_uq28,          f->p23_uq28,          f->p33_uq28 };
+    const uint32_t ends[] = { p11_end, 7U, 5U, 4U, 3U, 2U };
+    for (uint8_t i = 0; i < 6U; i++) {
+        if (elements[i] >= ends[i] * KF3_ONE_UQ28) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Drive and R within their ranges. */
+static bool kf3_parameters_broken(const kf3_t *f)
+{
+    uint32_t drive_end = f->fine ? KF3_ONE_UQ28 / 8U : KF3_ONE_UQ28;
+    return f->core.q22_uq28 < 16U || f->core.q22_uq28 > drive_end || f->core.r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 ||
+           f->core.r_lsb2_q8 > FILTER_R_MAX_LSB2_Q8;
+}
+
+/* kf3.h: no gate; rate and acceleration within the bound of the format. */
 static const char *broken_kf3(const kf3_t *f, int32_t x_lsb_q16)
 {
-    const uint32_t one_uq28 = 0x10000000U;
     if ((f->core.flags & (FILTER_GATED | FILTER_REACQUIRED)) != 0U) {
         return "flags of a gate";
     }
@@ -197,21 +218,10 @@ static const char *broken_kf3(const kf3_t *f, int32_t x_lsb_q16)
     if (f->core.size_lsb_uq8 > (uint32_t)8704 << 8) {
         return "innovation";
     }
-    if (f->core.q22_uq28 < 16U || f->core.q22_uq28 > (f->fine ? one_uq28 / 8U : one_uq28)) {
-        return "q33";
+    if (kf3_parameters_broken(f)) {
+        return "q33 or r";
     }
-    if (f->core.r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 || f->core.r_lsb2_q8 > FILTER_R_MAX_LSB2_Q8) {
-        return "r";
-    }
-    if (two_state_warming_up(&f->core)) {
-        return NULL;
-    }
-    uint32_t p11_end = (f->core.gain_uq16 != 0U) ? one_uq28 : 13U * one_uq28;
-    if (f->core.u.p.p11_uq28 >= p11_end || f->core.u.p.p12_uq28 >= 7U * one_uq28 || f->p13_uq28 >= 4U * one_uq28) {
-        return "P of x";
-    }
-    bool small = f->core.u.p.p22_uq28 < 5U * one_uq28 && f->p23_uq28 < 3U * one_uq28 && f->p33_uq28 < 2U * one_uq28;
-    return small ? NULL : "P";
+    return (!two_state_warming_up(&f->core) && kf3_covariance_broken(f)) ? "P" : NULL;
 }
 
 static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)

@@ -14,7 +14,7 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-/* scipy.linalg.solve_discrete_are for A = [1 1 1; 0 1 1; 0 0 1], Q = lambda (1, 1, 1)' (1, 1, 1), H = [1 0 0], R = 1. */
+/* scipy's solve_discrete_are for A = [1 1 1; 0 1 1; 0 0 1], Q = lambda (1, 1, 1)' (1, 1, 1), H = [1 0 0], R = 1. */
 static const struct {
     double lambda, gain[3], noise_gain;
 } dare[] = {

@@ -225,9 +225,9 @@ void kf3_reset(kf3_t *f, int16_t z0_lsb)
 /*
  * Scaling:
  *   input        Q0, any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB
- *   x, v, a      Q15.16, a in sixteenths when fine (Q11.20); each within 4608 by a clamp after the prediction (x, v) and
- *                after the update (v, a); the update moves x towards a sample within 4096, so |r| <= 8704 LSB < 2^30 /
- *                2^16 and no sum overflows
+ *   x, v, a      Q15.16, a in sixteenths when fine (Q11.20); each within 4608 by a clamp after the prediction (x, v)
+ *                and after the update (v, a); the update moves x towards a sample within 4096, so |r| <= 8704 LSB <
+ *                2^30 / 2^16 and no sum overflows
  *   P / R        UQ4.28, see grow_covariance; below 1 after each update, so that the next step predicts it
  *   g, w1        UQ0.16 within 1.75 counts of 1 / S; w2, w3 UQ0.24; P rounded to half a count of 2^-28 per product
  *   r            rounded down to 2^-8 LSB in magnitude; the steps of x, v and a rounded half away from zero to 2^-16

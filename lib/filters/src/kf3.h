@@ -1,7 +1,8 @@
 /*
- * kf3: three-state Kalman filter (position, rate, acceleration), driven by white jerk: the model of order m = 2 of paper
- * 001, equation 1, whose "second-order Kalman filter" it is. No lag under constant acceleration, paid for with noise;
- * every outlier passes with the full gain: a yardstick. With P divided by R and everything per sample the recursion is
+ * kf3: three-state Kalman filter (position, rate, acceleration), driven by white jerk: the model of order m = 2 of
+ * paper 001, equation 1, whose "second-order Kalman filter" it is. No lag under constant acceleration, paid for with
+ * noise; every outlier passes with the full gain: a yardstick. With P divided by R and everything per sample the
+ * recursion is
  *
  *   predict  P33 += q33; a stays; v += a; x += v                                         q33 = q T^5 / R
  *   update   g = 1 / (P11 + 1); w1 = 1 - g; w2 = P12 g; w3 = P13 g; (x, v, a) += (w1, w2, w3) r
@@ -25,8 +26,8 @@ extern "C" {
 
 /*
  * From this rate on the acceleration is counted in sixteenths of an LSB per sample^2, because the drive falls with the
- * fifth power of the rate. q33 is limited to 2^-24..1 below this rate (gain 0.118..0.871) and to 2^-32..2^-11 from it on
- * (gain 0.048..0.434).
+ * fifth power of the rate. q33 is limited to 2^-24..1 below this rate (gain 0.118..0.871) and to 2^-32..2^-11 from it
+ * on (gain 0.048..0.430).
  */
 #define KF3_FINE_FROM_DHZ 1000U
 
