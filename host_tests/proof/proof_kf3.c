@@ -21,6 +21,11 @@
 */
 static int32_t limited(kf3_t *f, int32_t v_q16);
 
+/*@ requires gain_uq24 <= 0xFFFFFF; */
+static uint32_t less(uint32_t p_uq28, uint32_t column_uq28, uint32_t gain_uq24);
+/*@ requires gain_uq24 <= 0xFFFFFF; */
+static int32_t moved(const kf3_t *f, int32_t v_q16, uint32_t gain_uq24);
+
 /*@ requires TOLD(f) && f->core.collected == 5;
     requires P_BOUND(f);
     assigns f->core.u, f->p13_uq28, f->p23_uq28, f->p33_uq28, \result \from *f;

@@ -107,16 +107,21 @@ static bool grow_covariance(kf3_t *f)
     }
     uint32_t p33 = f->p33_uq28 + s->q22_uq28;
     f->p33_uq28 = p33;
-    uint32_t p23 = f->p23_uq28;
-    uint32_t sum = p23 + to_rate(f, p33);
-    f->p23_uq28 = sum;
-    uint32_t p22 = s->u.p.p22_uq28 + to_rate(f, p23 + sum);
-    s->u.p.p22_uq28 = p22;
-    uint32_t p13 = f->p13_uq28;
-    f->p13_uq28 = p13 + sum;
-    uint32_t p12 = s->u.p.p12_uq28 + to_rate(f, p13);
-    sum = p12 + p22;
+    FX_FENCE();
+    uint32_t twice_p23 = f->p23_uq28;
+    uint32_t p23 = twice_p23 + to_rate(f, p33);
+    f->p23_uq28 = p23;
+    twice_p23 += p23;
+    FX_FENCE();
+    s->u.p.p22_uq28 += to_rate(f, twice_p23);
+    FX_FENCE();
+    uint32_t p12 = s->u.p.p12_uq28 + to_rate(f, f->p13_uq28);
+    FX_FENCE();
+    f->p13_uq28 += f->p23_uq28;
+    FX_FENCE();
+    uint32_t sum = p12 + s->u.p.p22_uq28;
     s->u.p.p12_uq28 = sum;
+    FX_FENCE();
     s->u.p.p11_uq28 += p12 + sum;
     return true;
 }

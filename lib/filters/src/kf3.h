@@ -37,13 +37,14 @@ typedef struct {
     uint32_t q_lsb2_s5; /* power density of the white jerk, LSB^2/s^5: 1..1e9; 0 is refused */
 } kf3_config_t;
 
+/* In this order the elements of P are within the reach of an 8-bit machine's addressing. */
 typedef struct {
-    two_state_t core;         /* x, rate, P11, P12, P22; its drive q22 is here q33, 256 times as much when fine */
+    bool fine;                /* the acceleration is counted in sixteenths */
     int32_t acceleration_q16; /* LSB per sample^2, in sixteenths when fine; |.| <= 4608 */
     uint32_t p13_uq28;        /* P / R of the acceleration in its unit */
     uint32_t p23_uq28;
     uint32_t p33_uq28;
-    bool fine; /* the acceleration is counted in sixteenths */
+    two_state_t core; /* x, rate, P11, P12, P22; its drive q22 is here q33, 256 times as much when fine */
 } kf3_t;
 
 /* Descriptor in program memory. */
