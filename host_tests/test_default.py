@@ -86,12 +86,14 @@ def no_rate_and_no_stream_outweighs_the_others():
 
 
 @test
-def the_interval_covers_the_ratio_and_is_none_where_all_agree():
-    same = [cell("rest", str(i), 25, {"kf": 2.0 + i, "soft": 1.0 + i / 2}) for i in range(9)]
-    low, high = score.ratio_interval(same, "kf", "soft")
+def streams_are_drawn_anew_with_all_their_rates():
+    same = [cell("rest", str(i), hz, {"kf": 2.0 + i, "soft": 1.0 + i / 2}) for i in range(9) for hz in (25, 50)]
+    low, high = score.ratio_interval(score.redrawn(same, ["kf", "soft"]), "rest", "kf", "soft")
     assert abs(low - 2.0) < 1e-9 and abs(high - 2.0) < 1e-9
-    low, high = score.ratio_interval([cell("rest", str(i), 25, {"kf": 1.0 + i % 3, "soft": 1.0}) for i in range(9)], "kf", "soft")
-    assert 1.0 < low < 6.0 ** (1 / 3) < high < 3.0, (low, high)
+    # 1, 2, 3 times, three streams each: ln has a mean of 0.597 and a standard deviation of 0.452, 0.151 for nine; rates go together
+    draws = score.redrawn([cell("rest", str(i), hz, {"kf": 1.0 + i % 3, "soft": 1.0}) for i in range(9) for hz in (25, 50)], ["kf", "soft"])
+    low, high = score.ratio_interval(draws, "rest", "kf", "soft")
+    assert abs(math.log(low) - (0.597 - 1.96 * 0.151)) < 0.06 and abs(math.log(high) - (0.597 + 1.96 * 0.151)) < 0.06, (low, high)
 
 
 def row(fault, seed, name, whole, after_bad):
@@ -181,28 +183,34 @@ def program(*jobs, expect=0):
     return done
 
 
-def still_stream(rows=600):
-    path = OUT / "still.csv"
+def still_stream(rows=600, roll=0.0, pitch=0.0):
+    """Reads 4 LSB too much on x and 3 on z, to the nearest whole ones."""
+    path = OUT / f"still-{rows}-{roll:g}.csv"
     OUT.mkdir(parents=True, exist_ok=True)
-    lines = [f"{10000 * i},4,0,259,0,0" for i in range(rows)]
+    x, y, z = (make_streams.round_half_up(lsb) for lsb in make_streams.gravity_lsb(roll, pitch))
+    lines = [f"{10000 * i},{x + 4},{y},{z + 3},{100 * roll:.0f},{100 * pitch:.0f}" for i in range(rows)]
     path.write_text("\n".join([make_streams.HEADER, *lines]) + "\n", encoding="ascii")
     return path
 
 
 @test
 def a_constant_stream_is_off_by_what_it_is_off():
-    """4 LSB on x, 3 on z; 500 of 600 rows count on three axes; smoothed it is its own reference."""
-    path = still_stream()
-    text = program(f"rest:x:0 {path} 1000 16 1 0 60 truth 0", f"rest:y:0 {path} 500 16 2 0 60 smooth 0").stdout
-    rows = score.read_rows(text)
-    names = list(rows["rest:x:0", 100]["none"][0])
-    assert names[-2:] == ["median5_kf", "raw"] and "sprf" in names and len(names) >= 9
-    for name in names:
-        whole, after_bad = rows["rest:x:0", 100]["none"][0][name]
-        assert whole.count == 1500 and after_bad.count == 0
-        assert all(abs(whole.square[i] - 500 * 25.0) < 0.5 for i in range(3)) and whole.square[score.OWN] == 0.0, (name, whole)
-        whole = rows["rest:y:0", 50]["none"][0][name][0]
-        assert whole.count == 3 * 250 and whole.square[0] < 1e-3, (name, whole)  # the first group ends at 10 ms
+    """500 of 600 rows count on three axes; smoothed a stream is its own reference."""
+    for roll, pitch in ((0.0, 0.0), (30.0, -20.0)):
+        path = still_stream(600, roll, pitch)
+        text = program(f"rest:x:0 {path} 1000 16 1 0 60 truth 0", f"rest:y:0 {path} 500 16 2 0 60 smooth 0").stdout
+        rows = score.read_rows(text)
+        names = list(rows["rest:x:0", 100]["none"][0])
+        assert names[-2:] == ["median5_kf", "raw"] and "sprf" in names and len(names) >= 9
+        gravity = make_streams.gravity_lsb(roll, pitch)
+        off = [make_streams.round_half_up(lsb) + more - lsb for lsb, more in zip(gravity, (4, 0, 3))]
+        expected = 500 * sum(lsb * lsb for lsb in off)
+        for name in names:
+            whole, after_bad = rows["rest:x:0", 100]["none"][0][name]
+            assert whole.count == 1500 and after_bad.count == 0
+            assert all(abs(whole.square[i] - expected) < 0.5 for i in range(3)) and whole.square[score.OWN] == 0.0, (name, whole, expected)
+            whole = rows["rest:y:0", 50]["none"][0][name][0]
+            assert whole.count == 3 * 250 and whole.square[0] < 1e-3, (name, whole)  # the first group ends at 10 ms
 
 
 @test

@@ -119,20 +119,30 @@ def by_class(cells, names, score=geometric, reference=DECIDES):
     return {group: {name: score(part, name, reference) for name in names} for group, part in groups.items() if part}
 
 
-def ratio_interval(cells, name, rival):
-    """95 % interval of score(name) / score(rival) when the streams of the class are drawn anew."""
-    streams = defaultdict(list)
+def redrawn(cells, names):
+    """RESAMPLES times the scores by class, each with as many streams as there are, drawn anew with all their rates."""
+    groups = {group: defaultdict(list) for group in CLASSES}
     for cell in cells:
-        streams[cell.name].append((cell.rate_hz, math.log(cell.rmse(name) / cell.rmse(rival))))
-    drawn, rng = [], random.Random(RESAMPLE_SEED)
-    for _ in range(RESAMPLES):
-        rates = defaultdict(list)
-        for chosen in rng.choices(list(streams.values()), k=len(streams)):
-            for rate_hz, value in chosen:
-                rates[rate_hz].append(value)
-        drawn.append(math.exp(mean(mean(values) for values in rates.values())))
-    drawn.sort()
-    return drawn[round(0.025 * RESAMPLES)], drawn[round(0.975 * RESAMPLES) - 1]
+        if cell.group in groups:
+            groups[cell.group][cell.name].append((cell.rate_hz, [math.log(max(cell.rmse(name), LEAST_LSB)) for name in names]))
+    streams = {group: list(found.values()) for group, found in groups.items() if found}
+    rng = random.Random(RESAMPLE_SEED)
+    return [{group: one_draw(rng.choices(found, k=len(found)), names) for group, found in streams.items()} for _ in range(RESAMPLES)]
+
+
+def one_draw(chosen, names):
+    rates = defaultdict(list)
+    for stream in chosen:
+        for rate_hz, logs in stream:
+            rates[rate_hz].append(logs)
+    means = [[mean(column) for column in zip(*values)] for values in rates.values()]
+    return {name: math.exp(mean(column)) for name, column in zip(names, zip(*means))}
+
+
+def ratio_interval(draws, group, name, rival):
+    """95 % interval of score(name) / score(rival) of a class over the draws."""
+    ratios = sorted(draw[group][name] / draw[group][rival] for draw in draws)
+    return ratios[round(0.025 * len(ratios))], ratios[round(0.975 * len(ratios)) - 1]
 
 
 # --- the rule ---------------------------------------------------------------------------------------------------------
