@@ -1,6 +1,7 @@
 """make default: the rule of the default filter, its scores, its classes, and that docs/default-filter.md is what the rule and the rows say."""
 import json
 import math
+import os
 import pathlib
 import subprocess
 import sys
@@ -165,6 +166,33 @@ def a_recording_is_slowed_down_only_where_that_is_honest():
     assert rates["vibration:uav-agg-poll166:0"] == [(400, 1)]
     assert rates["vibration:car-brake:0"] == [(25, 1)]
     assert "rest:freeimu-orient-a:54.9" not in rates  # it ends before
+
+
+@test
+def a_folder_of_recordings_that_cannot_be_read_is_named():
+    folder, kept = OUT / "recordings", os.environ.get("RECORDINGS")
+    for part in ("open", "test-only"):
+        (folder / part).mkdir(parents=True, exist_ok=True)
+    os.environ["RECORDINGS"] = str(folder)
+    head = ",".join(streams.COLUMNS)
+    try:
+        for text, words in ((None, "open/index.csv: cannot be read"), (head + "\n", "open/index.csv: no rows"),
+                            (head.replace("range", "ring") + "\nx,9,100,10000,2g\n", "open/index.csv: no column range"),
+                            (head + "\nx,9,100,10000,2g\n", "no recording 'gy85-tilt-92hz' in its index")):
+            for part in ("open", "test-only"):
+                (folder / part / "index.csv").unlink(missing_ok=True)
+                if text is not None:
+                    (folder / part / "index.csv").write_text(text, encoding="utf-8")
+            try:
+                streams.recording_jobs(streams.recordings_index())
+            except default_filter.Fault as fault:
+                assert words in str(fault) and "\n" not in str(fault), fault
+            else:
+                raise AssertionError(f"taken: {text}")
+    finally:
+        os.environ.pop("RECORDINGS")
+        if kept is not None:
+            os.environ["RECORDINGS"] = kept
 
 
 # --- the program ------------------------------------------------------------------------------------------------------

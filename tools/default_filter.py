@@ -216,17 +216,31 @@ def contention_table(t):
                     ["class", *ticks(order)], lines)
 
 
+def held_table(t):
+    order = t.named + t.others()
+    lines = []
+    for group in CLASSES:
+        cells = t.group(score.HELD + group)
+        if cells:
+            found = {name: score.geometric(cells, name) for name in order}
+            best = min(t.named, key=found.get)
+            lines.append([group, f"`{best}`", *(lsb(found[name]) for name in order), str(len({cell.name for cell in cells})), str(len(cells))])
+    return markdown("Parts held back", "Later parts of the long recordings, with which no default was chosen. LSB; they do not decide.",
+                    ["class", "best", *ticks(order), "parts", "cells"], lines)
+
+
 def streams_table(t):
     found = {}
     for job in t.jobs:
         found.setdefault((job.source.motion, job.key()), []).append(job)
     lines = []
     for group in CLASSES:
-        for (motion, _), jobs in found.items():
+        for (motion, _), jobs in sorted(found.items(), key=lambda item: item[1][0].source.held):
             if motion == group:
                 source, rates = jobs[0].source, sorted(job.rate_hz for job in jobs)
                 part = f", {source.from_s:g}..{source.to_s:g} s" if source.from_s or source.to_s < streams.LONGEST_S else ""
-                lines.append([source.name + part, group, source.why, " ".join(map(str, rates)), "recorded" if jobs[0].recorded else "made",
+                held = score.HELD if source.held else ""
+                lines.append([source.name + part, held + group, source.why, " ".join(map(str, rates)), "recorded" if jobs[0].recorded else "made",
                               f"{max(job.rows for job in jobs):,}", f"{min(job.seeds() for job in jobs)}..{max(job.seeds() for job in jobs)}"])
     left = "; ".join(f"{name} ({why})" for name, why in streams.LEFT_OUT.items())
     return markdown("Which stream is in which class", f"Rates in Hz; rows at the highest of them; seeds of the faults put in. Left out: {left}.",
@@ -246,7 +260,7 @@ def verdict_table(t):
 def tables(t):
     lines = []
     for table in (verdict_table, ratio_table, class_table, rate_table, fixed_table, losses_table, readings_table, candidates_table,
-                  contention_table, streams_table):
+                  held_table, contention_table, streams_table):
         lines += table(t)
     return [*lines, ""]
 

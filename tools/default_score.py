@@ -10,6 +10,7 @@ from page import Fault
 NAMED = ("kf", "sprf", "soft", "pbf", "adaptive")  # among these is the best
 CANDIDATE, KEPT = "adaptive", "sprf"
 WITHIN, HALF = 1.05, len(CLASSES) / 2
+HELD = "held back, "  # before the class of what does not decide
 NONE, HEALTHY, WIRING, CONTENTION = "none", "bad reads 1e-5", "bad reads 1e-3", "contention 20 %"
 REFERENCES = ("5 Hz", "2.5 Hz", "10 Hz", "own")    # as host_tests/default_filter.c: truth or smoothed, then the own run
 DECIDES, OWN = 0, 3
@@ -83,7 +84,8 @@ def cells_of(jobs, rows, whole_bad_reads=False):
                     (BAD_READS, pooled(runs, WIRING, job.seeds(), 0 if whole_bad_reads else 1)),
                     (CONTENTION, pooled(runs, CONTENTION, job.seeds(), 0))]
         label = f"{job.source.name} from {job.source.from_s:g} s" if job.source.from_s else job.source.name
-        cells += [Cell(group, label, job.rate_hz, not job.recorded, job.source.motion, sums) for group, sums in made
+        mark = HELD if job.source.held else ""
+        cells += [Cell(mark + group, label, job.rate_hz, not job.recorded, job.source.motion, sums) for group, sums in made
                   if min(s.count for s in sums.values()) >= VALUES_MIN]
     return cells
 

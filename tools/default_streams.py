@@ -32,6 +32,7 @@ class Source:
     to_s: float = LONGEST_S
     rate_hz: int = 0       # recordings: of the sensor, 0: as the index says
     divide: bool = True    # False: polled, printed or clipped, so that a mean of rows is not what a slower sensor gives
+    held: bool = False     # does not decide: shows whether what was decided holds for parts that nobody looked at
     per_reading: bool = False  # scenarios: noise, faults or times belong to the readings, so each rate is made by itself
 
 
@@ -89,6 +90,24 @@ RECORDINGS = (
     Source("car-brake", "vibration", "a car brakes, printed at 28 Hz", rate_hz=25, divide=False),
     Source("quake-offset-a", "vibration", "earthquake simulator; 38 % of the rows repeat", divide=False),
     Source("quake-offset-b", "vibration", "earthquake simulator; 33 % of the rows repeat", divide=False))
+
+# Later parts of the long ones: no default of a filter was chosen with them in view.
+HELD_BACK = tuple(Source(name, motion, why, from_s, from_s + LONGEST_S, rate_hz, divide, held=True)
+                  for name, motion, why, from_s, rate_hz, divide in (
+    ("ax3-200-handle", "handling", "turned and put down by hand", 60, 0, True),
+    ("ax3-200-handle", "handling", "turned and put down by hand", 120, 0, True),
+    ("ax3-200-handle-b", "handling", "turned and put down by hand", 60, 0, True),
+    ("gest-100-2g-a", "handling", "digits drawn into the air, clipped at 2 g", 60, 0, False),
+    ("gest-100-2g-a", "handling", "digits drawn into the air, clipped at 2 g", 120, 0, False),
+    ("ax3-100-walk-a", "walking", "walking and what lies between walks", 120, 0, True),
+    ("ax3-100-walk-a", "walking", "walking and what lies between walks", 240, 0, True),
+    ("sis-walk", "walking", "slow walk, sensor at the waist", 60, 0, True),
+    ("sis-jog", "walking", "jogging, sensor at the waist", 60, 0, True),
+    ("uav-hover-poll166", "vibration", "a drone hovers, lands", 70, 0, False),
+    ("uav-agg-poll166", "vibration", "a drone flown roughly", 60, 0, False),
+    ("car-drive-28hz", "vibration", "a car in the city, printed at 28 Hz", 60, 25, False),
+    ("quake-offset-a", "vibration", "earthquake simulator", 120, 0, False),
+    ("quake-offset-b", "vibration", "earthquake simulator", 120, 0, False)))
 
 # Streams that no class can have, and why.
 LEFT_OUT = {"free-fall": "no accelerometer knows the tilt in a fall", "sideways-0.5g": "no accelerometer tells it from tilt",
@@ -194,6 +213,9 @@ def scenario_jobs():
 # --- recordings -------------------------------------------------------------------------------------------------------
 
 
+COLUMNS = ("name", "dur_s", "rate_hz_nominal", "dt_med_us", "range")  # of the index
+
+
 def recordings_folder():
     return pathlib.Path(os.environ.get("RECORDINGS") or "../shared/streams")
 
@@ -204,8 +226,15 @@ def recordings_index():
     if not os.environ.get("RECORDINGS") and not (folder / "open" / "index.csv").is_file():
         return None
     for part in ("open", "test-only"):
-        with open(folder / part / "index.csv", encoding="utf-8", newline="") as file:
-            found.update({row["name"]: {**row, "path": folder / part / f"{row['name']}.csv"} for row in csv.DictReader(file)})
+        path = folder / part / "index.csv"
+        try:
+            rows = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+        except (OSError, ValueError) as problem:
+            raise Fault(f"{path}: cannot be read: {problem}") from problem
+        missing = [column for column in COLUMNS if rows and column not in rows[0]]
+        if not rows or missing:
+            raise Fault(f"{path}: {'no rows' if not rows else 'no column ' + missing[0]}")
+        found.update({row["name"]: {**row, "path": folder / part / f"{row['name']}.csv"} for row in rows})
     return found
 
 
@@ -216,7 +245,7 @@ def range_of(row):
 
 def recording_jobs(index):
     jobs = []
-    for source in RECORDINGS:
+    for source in (*RECORDINGS, *HELD_BACK):
         if source.name not in index:
             raise Fault(f"{recordings_folder()}: no recording '{source.name}' in its index")
         row = index[source.name]
