@@ -1,7 +1,8 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
-# Groups: firmware sim test check flash flashtest bench piocheck papers fuzz coverage proof. Packages come by apt-get, numpy and matplotlib (check: lizard) by
-# pip into build/venv, Unity by tools/get_unity.sh into build/unity (UNITY_DIR=folder: use that one). Uses sudo only when not root.
+# Groups: firmware sim test check flash flashtest bench piocheck papers design fuzz coverage proof. Packages come by apt-get,
+# numpy and matplotlib (check: lizard, design: scipy) by pip into build/venv, Unity by tools/get_unity.sh into build/unity
+# (UNITY_DIR=folder: use that one). Uses sudo only when not root.
 set -eu
 
 cd "$(dirname "$0")/.."
@@ -10,6 +11,7 @@ log=build/deps.log
 missing=''
 want_venv=no
 want_lizard=no
+want_scipy=no
 want_unity=no
 want_pio=no
 pio_requirements='platformio==6.2.0 scons==4.11.1' # the versions that tools/pio_standins.py stands in for
@@ -49,6 +51,10 @@ has_plot_packages() {
 
 has_lizard() {
     [ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import lizard' > /dev/null 2>&1
+}
+
+has_scipy() {
+    [ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import scipy' > /dev/null 2>&1
 }
 
 # clang-query comes with the version of clang-tidy that is installed
@@ -104,6 +110,11 @@ need_lizard() {
     need ca-certificates has_certificates
 }
 
+need_scipy() {
+    need_plots
+    want_scipy=yes
+}
+
 need_unity() {
     want_unity=yes
     need g++ has g++
@@ -125,13 +136,14 @@ collect() {
                 need clang-tools has_clang_query
                 need clang-format has clang-format
                 need cppcheck has cppcheck ;;
+            design) need_scipy ;;
             flash) need_avr; need avrdude has avrdude ;;
             piocheck) need_avr; need_host_compiler; want_pio=yes; need python3-venv has_venv_module; need ca-certificates has_certificates ;;
             flashtest) need_simulator; need avrdude has avrdude; need arduino-core-avr has_optiboot ;;
             fuzz) need_host_compiler; need python3 has python3; need binutils has objcopy ;;
             coverage) need_simulator; need_plots; need_unity; need gcovr has gcovr ;;
             proof) need python3 has python3; need frama-c-base has frama-c ;;
-            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, fuzz, coverage or proof" ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, design, fuzz, coverage or proof" ;;
         esac
     done
     missing=${missing# }
@@ -190,6 +202,13 @@ install_lizard() {
         fail "cannot install lizard ($(first_error)): check the network and pip's index, or install it into $venv; log in $log"
 }
 
+install_scipy() {
+    echo "deps: installing with pip into $venv: scipy"
+    "$venv/bin/python" -m pip install --disable-pip-version-check --no-input --retries 2 --timeout 20 \
+        -r tools/requirements-design.txt > "$log" 2>&1 ||
+        fail "cannot install scipy ($(first_error)): check the network and pip's index, or install it into $venv; log in $log"
+}
+
 install_plot_packages() {
     if [ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import numpy, matplotlib' > /dev/null 2>&1; then
         cp tools/requirements.txt "$venv/requirements.installed"
@@ -229,7 +248,7 @@ install_unity() {
     tools/get_unity.sh build/unity
 }
 
-[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, fuzz, coverage, proof)"
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, design, fuzz, coverage, proof)"
 collect "$@"
 mkdir -p build
 if [ -n "$missing" ]; then
@@ -239,6 +258,9 @@ if [ -n "$missing" ]; then
 fi
 if [ $want_venv = yes ] && ! has_plot_packages; then
     install_plot_packages
+fi
+if [ $want_scipy = yes ] && ! has_scipy; then
+    install_scipy
 fi
 if [ $want_pio = yes ] && ! has_pio; then
     install_pio

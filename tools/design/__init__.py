@@ -1,0 +1,1 @@
+"""Structural and parametric synthesis of the polynomial filters of papers 000 and 001: `python tools/design --help`."""

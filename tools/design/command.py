@@ -1,0 +1,327 @@
+"""The command line of the synthesiser."""
+import argparse
+import dataclasses
+import importlib
+import json
+import math
+import pathlib
+import sys
+from fractions import Fraction
+
+from . import configuration, pictures, report, switching
+from .measure import sigma_of_stream
+from .response import Endless, pole_radius
+from .structure import Filter, as_printed
+from .synthesis import REGIONS, Infeasible, Request, least_error, least_noise, ordinal
+
+EPILOG = """
+the structure, in the papers' letters
+  A(z) = (1 - z^-1)^v (1 + a1 z^-1 + ... + ak z^-k)    v: order of astatism, the order of the polynomial in time that is followed without
+                                                       error, plus one (v = 2: straight lines); k: order of what raises it towards v + 1
+  B(z) = b0 + b1 z^-1 + ... + bl z^-l                  l: order of B, the smoothing coefficients
+  x_e = [1 - A] x^ + b1 u(n-1) + ... + bl u(n-l);  u = g - x_e;  x^ = x_e + b0 u;  x^ / g = B / C,  C = B + (1 - b0) A
+  (2, 1, 0) is the papers' filter and `synth`; (2, 0, 1) alpha-beta; (3, 0, 2) alpha-beta-gamma; (2, 1, 2) with --a=-rho Singer's steady filter
+
+the dynamic error is what remains under a constant derivative of order v: rate (v = 1), acceleration (2), jerk (3); in samples it is
+  D = (1 - b0) (1 + sum a) / sum b  per v-th difference, and error = D x derivative x period^v
+
+examples
+  python tools/design --rate 10 --sigma 3.4 --error 3 --at 100                  least noise for 3 LSB of error at 100 LSB/s2
+  python tools/design --rate 100 --sigma 2 --noise-gain 0.3 -k 0 -l 1           least error for a noise gain of 0.3, alpha-beta
+  python tools/design --rate 10 --sigma 0.5 --unit m -k 1 -l 0 --a=-0.3 --b 0.1   what paper 001's filter does
+  python tools/design --rate 100 --sigma-of sim/streams/rest-2lsb.csv --error 2 --at 500 --json build/design/design.json
+  python tools/design schedule --p0-over-r 8.33                                 off-line gain schedule of synth_opt (--help)
+"""
+
+
+class Wrong(Exception):
+    """One sentence: what of the request cannot be."""
+
+
+def numbers_list(text):
+    try:
+        return tuple(float(x) for x in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is not numbers with commas between them") from None
+
+
+def band_range(text):
+    name, _, limits = text.partition("=")
+    low, _, high = limits.partition("..")
+    try:
+        return name, (float(Fraction(low)), float(Fraction(high)))
+    except (ValueError, ZeroDivisionError):
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=LOW..HIGH, as b0=0.5..1") from None
+
+
+def parser():
+    words = argparse.ArgumentParser(prog="design", epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter,
+                                    description="Structural and parametric synthesis of a polynomial smoothing filter (papers 000 and 001).")
+    words.add_argument("-v", "--astatism", type=int, default=2, metavar="V", help="order of astatism (2)")
+    words.add_argument("-k", type=int, default=None, help="order of A's factor (1; with --a: as many as given)")
+    words.add_argument("-l", type=int, default=None, help="order of B (0; with --b: one less than given)")
+    words.add_argument("--rate", type=float, metavar="HZ", help="samples per second")
+    words.add_argument("--period", type=float, metavar="S", help="or seconds per sample")
+    words.add_argument("--sigma", type=float, help="standard deviation of the measurement noise, in --unit")
+    words.add_argument("--sigma-of", metavar="FILE", help="or a recorded stream to measure it on (LSB; the largest of x, y, z)")
+    words.add_argument("--error", type=float, help="bound: dynamic error, in --unit")
+    words.add_argument("--at", type=float, help="... at this rate (v = 1), acceleration (2), jerk (3), in unit / s^v")
+    words.add_argument("--noise-gain", type=float, help="bound: variance of the estimate's error per variance of the noise")
+    words.add_argument("--a", type=numbers_list, help="fix a1,a2,... (--a=-0.3)")
+    words.add_argument("--b", type=numbers_list, help="with --a: no synthesis, the properties of this filter")
+    words.add_argument("--as-printed", action="store_true", help="with --b b0,b1,..: past innovations as paper 001 (17) has them, not in x_e")
+    words.add_argument("--region", choices=sorted(REGIONS), default="paper",
+                       help="paper: -1 <= sum a <= 0 (default); exact: whatever is stable; safe: a1 in [-1/3, 0], b0 >= 1/2")
+    words.add_argument("--settle", type=float, metavar="S", help="bound: the slowest pole decays to 2 %% within S seconds")
+    words.add_argument("--band", type=band_range, action="append", default=[], metavar="NAME=LOW..HIGH",
+                       help="range over which a parameter is switched, for the verdict (b0 from its value to 1, a between its value and 0)")
+    words.add_argument("--unit", default="LSB", help="name of the unit (LSB)")
+    words.add_argument("--lsb-per-unit", type=float, help="for the configuration: LSB (256 per g) in a unit; 1 for LSB")
+    words.add_argument("--out", default="build/design", metavar="FOLDER", help="for design.png and design.svg (build/design)")
+    words.add_argument("--no-pictures", action="store_true")
+    words.add_argument("--json", metavar="FILE", help="the same facts for a program")
+    return words
+
+
+def finite_positive(value, name):
+    if not math.isfinite(value) or value <= 0:
+        raise Wrong(f"{name} is {value:g}, but must be finite and above 0; nearest: 0.001")
+    return value
+
+
+@dataclasses.dataclass
+class Task:
+    """A request, checked: the structure, the sampling, the bounds in samples."""
+
+    request: Request
+    period_s: float
+    sigma: float
+    error_max: float  # D, None: no bound
+    noise_max: float
+    scale: float  # error in units for D = 1, None where no derivative is given
+    at_text: str
+
+
+def checked(options):
+    if (options.rate is None) == (options.period is None):
+        raise Wrong("give the sampling by one of --rate HZ and --period S; nearest: --rate 100")
+    period_s = finite_positive(options.period, "--period") if options.rate is None else 1 / finite_positive(options.rate, "--rate")
+    if (options.sigma is None) == (options.sigma_of is None):
+        raise Wrong("give the noise by one of --sigma and --sigma-of FILE; nearest: --sigma 2")
+    sigma = options.sigma if options.sigma is not None else sigma_of_stream(options.sigma_of)
+    finite_positive(sigma, "--sigma")
+    v = options.astatism
+    scale, at_text = None, ""
+    if (options.error is None) != (options.at is None) and options.at is None:
+        raise Wrong(f"--error needs --at, the {order_word(v)} at which it holds; nearest: --at 100")
+    if options.at is not None:
+        scale = finite_positive(options.at, "--at") * period_s ** v
+        at_text = f"under {article(v)} {order_word(v)} of {options.at:g} {options.unit}/s{v if v > 1 else ''}"
+    error_max = finite_positive(options.error, "--error") / scale if options.error is not None else None
+    k = options.k if options.k is not None else (len(options.a) if options.a is not None else (1 if v == 2 and not options.l else 0))
+    l = options.l if options.l is not None else (len(options.b) - 1 if options.b is not None else 0)  # noqa: E741
+    slowest = None
+    if options.settle is not None:
+        slowest = 0.02 ** (period_s / finite_positive(options.settle, "--settle"))
+    request = Request(v, k, l, REGIONS[options.region], options.a, slowest)
+    return Task(request, period_s, sigma, error_max, options.noise_gain, scale, at_text)
+
+
+def order_word(v):
+    return {1: "rate", 2: "acceleration", 3: "jerk"}.get(v, f"{ordinal(v)} derivative")
+
+
+def article(v):
+    return "an" if v == 2 else "a"
+
+
+def given_filter(options, task):
+    """The filter of --a and --b; Wrong when it is unstable, with the nearest stable one."""
+    request = task.request
+    if len(options.b) != request.l + 1:
+        raise Wrong(f"--b has {len(options.b)} numbers, but l = {request.l} asks for {request.l + 1}; nearest: -l {len(options.b) - 1}")
+    values = (*(options.a or ()), *options.b)
+    if not all(math.isfinite(x) for x in values):
+        raise Wrong("--a and --b must be finite numbers; nearest: --a=0 --b 0.3")
+    if sum(options.b) == 0 or (len(options.b) > 1 and options.as_printed and options.b[0] == 1):
+        raise Wrong("b0 + ... + bl must not be 0, nor b0 be 1 in the printed form with l > 0; nearest: --b 0.3")
+    a = options.a if options.a is not None else (0.0,) * request.k
+    if len(a) != request.k:
+        raise Wrong(f"--a has {len(a)} numbers, but k = {request.k}; nearest: -k {len(a)}")
+    f = as_printed(request.v, a, options.b) if options.as_printed else Filter(request.v, tuple(a), tuple(options.b))
+    if not f.exact().stable():
+        raise Wrong(f"{parameters(f)} is unstable: {why_unstable(f)}; nearest: {nearest_stable(f)}")
+    return f
+
+
+def parameters(f):
+    return ", ".join([f"a{i + 1} = {x:g}" for i, x in enumerate(f.a)] + [f"b{j} = {x:g}" for j, x in enumerate(f.b)])
+
+
+def why_unstable(f):
+    if f.order == (2, 1, 0) and 1 + 2 * f.a[0] * (1 - f.b[0]) <= 0:
+        return f"1 + 2 a1 (1 - b0) = {1 + 2 * f.a[0] * (1 - f.b[0]):.4g} is not above 0"
+    return f"its slowest pole has radius {pole_radius(f):.6g}"
+
+
+def nearest_stable(f):
+    """On the way from B to the certainly stable B = 1: the first that is stable, rounded to the inside."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        b = [(1 - middle) * x + (middle if j == 0 else 0.0) for j, x in enumerate(f.b)]
+        if Filter(f.v, f.a, tuple(b)).stable():
+            high = middle
+        else:
+            low = middle
+    share = math.ceil(high * 1e4 + 1e-9) / 1e4
+    b = [(1 - share) * x + (share if j == 0 else 0.0) for j, x in enumerate(f.b)]
+    if not Filter(f.v, f.a, tuple(b)).exact().stable():
+        return "--b 1 (no filter)"
+    return f"--a={','.join(f'{x:g}' for x in f.a)} --b {','.join(f'{x:.6g}' for x in b)}" if f.a else f"--b {','.join(f'{x:.6g}' for x in b)}"
+
+
+def synthesised(task):
+    """The filter that meets the bounds."""
+    if task.error_max is None and task.noise_max is None:
+        raise Wrong("give a bound: --error E --at A, or --noise-gain N (or --a and --b to see what a filter does); nearest: --noise-gain 0.6")
+    if task.error_max is None:
+        return least_error(task.request, task.noise_max)
+    f = least_noise(task.request, task.error_max)
+    if task.noise_max is not None and f.noise_gain() > task.noise_max:
+        finite_positive(task.noise_max, "--noise-gain")
+        other = least_error(task.request, task.noise_max)  # says itself when no error will do
+        raise Wrong(f"{task.request.name} cannot keep both bounds: with that error the least noise gain is {f.noise_gain():.4f}, not {task.noise_max:g}, and "
+                    f"with that noise gain the least error is {other.dynamic_error() * task.scale:.4g}, not {task.error_max * task.scale:.4g}; "
+                    f"nearest: --noise-gain {math.ceil(f.noise_gain() * 1e4) / 1e4:.4f}")
+    return f
+
+
+def alternatives(task, f):
+    """Other structures under the same bound: (name, filter or sentence)."""
+    v = task.request.v
+    error = task.error_max if task.error_max is not None or task.noise_max is not None else f.dynamic_error()
+    wanted = [(f"(v, k, l) = ({v}, 0, 0)", (v, 0, 0)), (f"(v, k, l) = ({v}, 0, {v - 1})", (v, 0, v - 1))]
+    if v == 2:
+        wanted = [("(2, 1, 0), a1 <= 0 (synth)", (2, 1, 0)), ("(2, 0, 1) alpha-beta", (2, 0, 1))]
+    found = []
+    for name, order in wanted:
+        if order == f.order and task.request.region.name == "paper":
+            continue
+        try:
+            plain = Request(*order)
+            found.append((name, least_noise(plain, error) if error is not None else least_error(plain, task.noise_max)))
+        except Infeasible as problem:
+            found.append((name, f"none: {problem}"))
+    if v == 2:
+        noise = None if error is not None else task.noise_max
+        found.append(("(2, 0, 1) steady Kalman (kf)", configuration.kalman_for(error, noise)))
+    return found
+
+
+def default_band(f, ranges):
+    known = dict(ranges)
+    names = [f"a{i + 1}" for i in range(f.k)] + [f"b{j}" for j in range(f.l + 1)]
+    strange = sorted(set(known) - set(names))
+    if strange:
+        raise Wrong(f"--band {strange[0]}: this filter has {', '.join(names)}; nearest: --band b0=0.5..1")
+    for name, (low, high) in known.items():
+        if not low <= high:
+            raise Wrong(f"--band {name}={low:g}..{high:g} ends before it begins; nearest: {name}={high:g}..{low:g}")
+    a = tuple(known.get(f"a{i + 1}", (min(float(x), 0.0), max(float(x), 0.0))) for i, x in enumerate(f.a))
+    b = tuple(known.get(f"b{j}", (float(x), max(float(x), 1.0)) if j == 0 else (float(x), float(x))) for j, x in enumerate(f.b))
+    return switching.Band(f.v, a, b)
+
+
+def configured(name, f, task, lsb_per_unit, fixed_a):
+    """(lines, JSON) of the library's configuration."""
+    rate_hz = round(1 / task.period_s, 9)
+    try:
+        made = configuration.configure(f, rate_hz, task.sigma * lsb_per_unit, task.error_max, task.noise_max if task.error_max is None else None, fixed_a)
+    except configuration.Unfit as problem:
+        return [f"{name}: none: {problem}"], {"structure": name, "none": str(problem)}, None
+    noise, error = float(made.filter.noise_gain()), float(made.filter.dynamic_error())
+    lines, told = configuration.commands(made, rate_hz)
+    text = [f"{name}:", f"    {made.initialiser()}", f"    as stored: {report_parameters(made)}; noise gain {noise:.7f}, dynamic error {error:.7g} per "
+            f"{ordinal(made.filter.v)} difference" + (f" = {error * task.scale:.5g}" if task.scale else "")]
+    text += [f"    type: {line}" for line in lines] + [f"    note: {line}" for line in told + made.notes]
+    return text, {"structure": name, "filter": made.name, "fields": made.fields, "initialiser": made.initialiser(), "noise_gain": noise, "dynamic_error": error,
+                  "commands": lines, "notes": told + made.notes}, made
+
+
+def report_parameters(made):
+    f = made.filter
+    return ", ".join([f"a{i + 1} = {float(x):.7f}" for i, x in enumerate(f.a)] + [f"b{j} = {float(x):.7f}" for j, x in enumerate(f.b)])
+
+
+def design(options):
+    task = checked(options)
+    analysed = options.b is not None
+    f = given_filter(options, task) if analysed else synthesised(task)
+    f = Filter(f.v, tuple(float(x) + 0.0 for x in f.a), tuple(float(x) + 0.0 for x in f.b))
+    one = report.facts(f)
+    rows = alternatives(task, f)
+    compared = [("this", one)] + [(name, g if isinstance(g, str) else report.facts(g)) for name, g in rows]
+    band = default_band(f, options.band)
+    verdict = switching.bounds(band)
+    lsb_per_unit = options.lsb_per_unit if options.lsb_per_unit is not None else 1.0
+    finite_positive(lsb_per_unit, "--lsb-per-unit")
+    unitless = options.unit != "LSB" and options.lsb_per_unit is None
+    text = [f"(v, k, l) = ({f.v}, {f.k}, {f.l}), {1 / task.period_s:g} Hz, sigma {task.sigma:.4g} {options.unit}; {what_was_asked(task, options, analysed)}", "",
+            f"A(z)            {report.factored_text(f)}", f"B(z)            {report.polynomial_text(f.b)}",
+            f"closed loop     B / C, C(z) = {report.polynomial_text(f.characteristic)}", f"algorithm       {report.algorithm_text(f)}"]
+    text += report.facts_text(one, task.period_s, task.sigma, options.unit, task.scale, task.at_text) + report.switching_text(band, verdict)
+    text += ["", "side by side" + ("" if not analysed else ", each with the same dynamic error")] + report.comparison_text(compared, task.period_s, task.scale, options.unit)
+    text += ["", "configuration" + (f" (taking 1 {options.unit} for 1 LSB: give --lsb-per-unit)" if unitless else "")]
+    entries = []
+    for name, g in [("this", f)] + [(name, g) for name, g in rows if not isinstance(g, str)]:
+        lines, entry, _ = configured(name, g, task, lsb_per_unit, options.a is not None and g is f)
+        text += lines
+        entries.append(entry)
+    drawn = []
+    if not options.no_pictures:
+        shown = [(f"this ({f.v}, {f.k}, {f.l})", f)] + [(name, g) for name, g in rows if not isinstance(g, str)]
+        limit = options.error if options.error is not None else None
+        title = f"(v, k, l) = ({f.v}, {f.k}, {f.l}) at {1 / task.period_s:g} Hz: {parameters_short(f)}, noise gain {one.noise_gain:.4f}"
+        drawn = pictures.draw(options.out, title, shown, task.period_s, task.scale or 1.0, limit, options.unit if task.scale else "per difference")
+        text += ["", "pictures        " + " ".join(str(path) for path in drawn)]
+    result = {"order": f.order, "period_s": task.period_s, "sigma": task.sigma, "unit": options.unit, "design": dataclasses.asdict(one),
+              "alternatives": [{"name": name, "none": x} if isinstance(x, str) else {"name": name, **dataclasses.asdict(x)} for name, x in compared[1:]],
+              "switching": {"band": band.text(), "low": verdict.low, "high": verdict.high, "verdict": verdict.verdict, "depth": verdict.depth},
+              "configurations": entries, "pictures": [str(path) for path in drawn]}
+    return text, result
+
+
+def parameters_short(f):
+    return ", ".join([f"a{i + 1} = {x:.4g}" for i, x in enumerate(f.a)] + [f"b{j} = {x:.4g}" for j, x in enumerate(f.b)])
+
+
+def what_was_asked(task, options, analysed):
+    if analysed:
+        return "as given"
+    bounds = []
+    if task.error_max is not None:
+        bounds.append(f"dynamic error <= {options.error:g} {options.unit} {task.at_text}, D <= {task.error_max:.6g}: least noise")
+    if task.noise_max is not None:
+        bounds.append(f"noise gain <= {task.noise_max:g}" + (": least dynamic error" if task.error_max is None else ""))
+    return "; ".join(bounds) + (f"; {task.request.region.text()}" if task.request.k and task.request.fixed_a is None else "")
+
+
+def main(arguments):
+    if arguments[:1] == ["schedule"]:
+        return importlib.import_module(".schedule", __package__).main(arguments[1:])
+    options = parser().parse_args(arguments)
+    try:
+        text, result = design(options)
+        if options.json:
+            path = pathlib.Path(options.json)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    except (Wrong, Infeasible, Endless) as problem:
+        print(f"design: {problem}", file=sys.stderr)
+        return 1
+    except OSError as problem:
+        print(f"design: {problem.filename or ''}: {problem.strerror}", file=sys.stderr)
+        return 1
+    print("\n".join(text))
+    return 0

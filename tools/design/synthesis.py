@@ -1,0 +1,277 @@
+"""Parametric synthesis: the parameters that make one of noise gain and dynamic error least while the other keeps its bound.
+
+In powers of s = 1 - z^-1 the loop is B / (1 - b0) = e0 + e1 s + ... + el s^l against A = s^v (1 + a1 z^-1 + ...), and what the parameters mean
+separates: the dynamic error is D = (1 + sum a) / e0, and 0 < b0 < 1 is e0 + ... + el > 0. With w^v = e0 the numbers ej / w^(v-j) stay about 1
+however slow the filter is, so the search runs over them and over D, which is where a search over b0..bl would find a thin sliver.
+"""
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize
+
+from .structure import Filter, alpha_beta, difference, power, reflections, schur_cohn, total
+
+ORDER_MAX = 10  # v + k + l: beyond, double precision no longer holds the coefficients of a slow filter
+B0_MAX = 1 - 1e-9
+SOUND = 1e-8  # the product of 1 - reflection^2 below which rounding spoils the noise gain
+HALVINGS = 40
+NOTHING = 1e-7  # a sum of a below this, far under 1/65536, is 0
+WALL = 1e5  # what a place outside the region or the circle costs
+BUTTERWORTH = {1: (1.0,), 2: (1.0, math.sqrt(2.0)), 3: (1.0, 2.0, 2.0), 4: (1.0, 2.613, 3.414, 2.613)}
+
+
+class Infeasible(Exception):
+    """One sentence: why there is no such filter, and the nearest that there is."""
+
+
+@dataclass(frozen=True)
+class Region:
+    """What the parameters may be; the papers' unless said otherwise."""
+
+    name: str
+    a_sum: tuple  # of a1 + ... + ak
+    b0: tuple = (1e-9, B0_MAX)
+
+    def text(self):
+        return f"{self.a_sum[0]:.4g} <= sum a <= {self.a_sum[1]:.4g}" + (f", b0 >= {self.b0[0]:g}" if self.b0[0] > 1e-6 else "")
+
+
+REGIONS = {
+    "paper": Region("paper", (-1.0, 0.0)),
+    "exact": Region("exact", (-65535 / 65536, 65535 / 65536)),
+    "safe": Region("safe", (-1 / 3, 0.0), (0.5, B0_MAX)),
+}
+
+
+def check_order(v, k, l):  # noqa: E741
+    if v < 1 or k < 0 or l < 0 or v + k + l > ORDER_MAX:
+        raise Infeasible(f"(v, k, l) = ({v}, {k}, {l}): v must be 1 or more, k and l 0 or more, and v + k + l at most {ORDER_MAX}")
+
+
+def from_memory(v, a, e):
+    """The filter with B / (1 - b0) = sum e_j (1 - z^-1)^j."""
+    b = [0.0]
+    for j, factor in enumerate(e):
+        b = total(b, difference(j), factor)
+    b0 = b[0] / (1 + b[0])
+    return Filter(v, tuple(a), (b0, *(x * (1 - b0) for x in b[1:])))
+
+
+def shape_from(units, region):
+    """a1..ak from k numbers: the first is their sum, clipped to the region, the others are what sets the zeros of 1 + a1 z^-1 + ... apart."""
+    k = len(units)
+    if k == 0:
+        return []
+    whole = min(max(units[0], region.a_sum[0]), region.a_sum[1])
+    whole = 0.0 if abs(whole) < NOTHING else whole
+    return [whole - sum(units[1:]), *units[1:]]
+
+
+class Search:
+    """The least noise gain of one structure for a dynamic error of at most some D."""
+
+    def __init__(self, v, k, l, region, fixed_a=None, slowest=None):  # noqa: E741
+        check_order(v, k, l)
+        self.v, self.k, self.l = v, k, l
+        self.region, self.fixed_a = region, fixed_a
+        self.slowest = slowest  # the largest pole radius allowed, None: any
+        self.free_a = 0 if fixed_a is not None else k
+        self.known = []  # where earlier searches ended: starts for the next
+
+    def filter_at(self, place, error_max):
+        """The filter at a place of the search: log of D / error_max (at most 0), sum and others of a, scaled e1..el."""
+        a = list(self.fixed_a) if self.fixed_a is not None else shape_from(place[1:1 + self.free_a], self.region)
+        shape = max(1 + sum(a), 1e-12)
+        e0 = shape / (error_max * math.exp(min(place[0], 0.0)))
+        if self.l == 0:
+            e0 = max(e0, self.region.b0[0] / (1 - self.region.b0[0]))
+        speed = e0 ** (1 / self.v)
+        scaled = place[1 + self.free_a:]
+        e = [e0] + [scaled[j - 1] * (speed ** (self.v - j) if j < self.v else 1.0) for j in range(1, self.l + 1)]
+        return from_memory(self.v, a, e)
+
+    def cost(self, place, error_max):
+        place = [float(x) for x in place]
+        try:
+            f = self.filter_at(place, error_max)
+        except (OverflowError, ZeroDivisionError):
+            return 10 * WALL
+        low, high = self.region.b0
+        if not low <= f.b[0] <= high:
+            return 2 * WALL
+        c = f.characteristic
+        sound = math.prod(1 - ratio * ratio for ratio in reflections(c))
+        if not sound > SOUND or (self.free_a > 1 and self.outside(f)):
+            return 2 * WALL
+        if self.slowest is not None and not schur_cohn([x / self.slowest ** i for i, x in enumerate(c)]):
+            return WALL
+        beyond = max(0.0, place[0]) + (abs(place[1] - sum(f.a)) if self.free_a else 0.0)
+        return power(f.b, c) * (1 + beyond)
+
+    @staticmethod
+    def outside(f):
+        return max(abs(np.roots(f.shape))) > 1 + 1e-9
+
+    def starts(self):
+        low, high = self.region.a_sum
+        sums = sorted({min(high, 0.0), 0.4 * low, 0.8 * low, 0.8 * high}) if self.free_a else [None]
+        wave = BUTTERWORTH[min(self.v, 4)]
+        for shrink, whole, stiff in itertools.product((0.0, -3.0, -8.0), sums, (1.0, 1.8) if self.l else (1.0,)):
+            memory = [stiff * wave[j] if j < len(wave) else 0.1 * stiff for j in range(1, self.l + 1)]
+            yield [shrink] + ([whole] + [0.0] * (self.free_a - 1) if self.free_a else []) + memory
+
+    def least(self, error_max, quick=False):
+        """(noise gain, filter): the best that the searches from several starts find; None when none finds a stable filter."""
+        starts = self.known[-3:] if quick and self.known else self.known[-2:] + list(self.starts())
+        ranked = sorted(starts, key=lambda place: self.cost(place, error_max))
+        found = min((self.polished(place, error_max) for place in ranked[:6]), key=lambda one: one.fun)
+        if found.fun >= WALL:
+            return None
+        place = [float(x) for x in found.x]
+        self.known.append(place)
+        f = self.filter_at(place, error_max)
+        return power(f.b, f.characteristic), f
+
+    def polished(self, place, error_max):
+        found = None
+        for spread in (0.3, 0.02):
+            at = np.asarray(place if found is None else found.x, float)
+            simplex = np.vstack([at, at + np.diag([-spread if i == 0 else spread for i in range(at.size)])])
+            options = {"initial_simplex": simplex, "xatol": 1e-10, "fatol": 1e-15, "maxfev": 250 * at.size}
+            new = minimize(self.cost, at, args=(error_max,), method="Nelder-Mead", options=options)
+            found = new if found is None or new.fun < found.fun else found
+        return found
+
+
+def by_formula(v, l, error):  # noqa: E741
+    """The least noise gain for a dynamic error where it has a formula: k = 0 and (v, l) = (1, 0), (2, 0), (2, 1); else None. For alpha-beta
+    the stationary point of its noise gain along alpha = 1 - beta D; with t = sqrt D the noise gain there is (1 + 4 t) / (1 + 2 t)^2."""
+    if (v, l) == (1, 0) or (v, l) == (2, 0):
+        return Filter(v, (), (1 / (1 + error),))
+    if (v, l) == (2, 1):
+        beta = 2 / (1 + 2 * math.sqrt(error) + 2 * error)
+        return alpha_beta(1 - beta * error, beta)
+    return None
+
+
+def error_by_formula(v, l, noise):  # noqa: E741
+    """The dynamic error at which `by_formula` has this noise gain; None when there is none."""
+    if (v, l) == (1, 0):
+        return (1 - noise) / (2 * noise)
+    if (v, l) == (2, 0):
+        b0 = (4 * noise - 2) / (3 * noise - 1) if noise > 0.5 else 0.0
+        return (1 - b0) / b0 if b0 > 0 else None
+    if (v, l) == (2, 1):
+        root = ((1 + math.sqrt(1 - noise)) / noise - 1) / 2
+        return root * root
+    return None
+
+
+@dataclass(frozen=True)
+class Request:
+    """A structure and what it must keep to."""
+
+    v: int
+    k: int
+    l: int  # noqa: E741
+    region: Region = REGIONS["paper"]
+    fixed_a: tuple = None
+    slowest: float = None  # largest pole radius
+
+    @property
+    def name(self):
+        return f"(v, k, l) = ({self.v}, {self.k}, {self.l})"
+
+    @property
+    def plain(self):
+        """True where the formulas for k = 0 hold."""
+        return (self.k == 0 or not any(self.fixed_a or (1,))) and self.slowest is None and self.region.b0[0] < 1e-6
+
+    def search(self):
+        return Search(self.v, self.k, self.l, self.region, self.fixed_a, self.slowest)
+
+    def check(self):
+        check_order(self.v, self.k, self.l)
+        if self.fixed_a is not None and len(self.fixed_a) != self.k:
+            raise Infeasible(f"{self.name}: --a has {len(self.fixed_a)} numbers; nearest: k = {len(self.fixed_a)}")
+        if self.fixed_a is not None and 1 + sum(self.fixed_a) < 1e-6:
+            raise Infeasible(f"{self.name}: with a1 + ... + ak = {sum(self.fixed_a):g} the astatism is not {self.v}; "
+                             f"nearest: v = {self.v + 1} with one a fewer")
+        if self.fixed_a is None and self.slowest is None and self.k >= 1 and self.l >= self.v - 1:
+            raise Infeasible(f"{self.name}: the free a goes to sum a = -1, astatism {self.v + 1}, where the filter may be as slow as it likes and "
+                             f"this dynamic error is 0 all the same; nearest: k = 0, or give --a (a1 = minus the correlation of the signal's "
+                             f"{ordinal(self.v)} difference) or --settle")
+
+
+def least_noise(request, error_max):
+    """The filter of least noise gain with a dynamic error of at most error_max (per v-th difference of the signal)."""
+    request.check()
+    if not (math.isfinite(error_max) and error_max > 0):
+        raise Infeasible(f"a dynamic error of {error_max:g} is not to be had: it must be finite and above 0; nearest: 0.001")
+    known = by_formula(request.v, request.l, error_max) if request.plain else None
+    if known is not None:
+        return Filter(request.v, (0.0,) * request.k, known.b)
+    search = request.search()
+    found = search.least(error_max)
+    if found is None:
+        raise Infeasible(f"{request.name} has no stable filter with {request.region.text()}{'' if request.slowest is None else ' that settles in time'}"
+                         f" and a dynamic error of at most {error_max:g} per {ordinal(request.v)} difference; nearest: {nearest_error(search)}")
+    return found[1]
+
+
+def ordinal(v):
+    return {1: "first", 2: "second", 3: "third"}.get(v, f"{v}th")
+
+
+def nearest_error(search):
+    for error in np.logspace(-3, 6, 19):
+        if search.least(float(error)) is not None:
+            return f"{error:.3g}"
+    return "none; take another structure"
+
+
+def floor(request):
+    """The noise gain below which the structure does not go, whatever the dynamic error: an infimum, found by the search but for l >= v - 1
+    and free poles, where it is 0."""
+    if request.plain and request.l >= request.v - 1:
+        return 0.0
+    search = request.search()
+    found = [search.least(error) for error in (1.0, 100.0, 1e4)]
+    return min((one[0] for one in found if one is not None), default=math.inf)
+
+
+def least_error(request, noise_max):
+    """The filter of least dynamic error with a noise gain of at most noise_max."""
+    request.check()
+    if not (math.isfinite(noise_max) and noise_max > 0):
+        raise Infeasible(f"a noise gain of {noise_max:g} is not to be had: it must be finite and above 0; nearest: 0.01")
+    if noise_max >= 1:
+        raise Infeasible(f"a noise gain of {noise_max:g} needs no filter: the raw measurement has 1; nearest: 0.999")
+    error = error_by_formula(request.v, request.l, noise_max) if request.plain else None
+    if error is not None:
+        return least_noise(request, error)
+    search = request.search()
+    edges = [math.log(x) for x in (1e-4, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4)]
+    for low, high in zip(edges, edges[1:]):
+        kept = search.least(math.exp(high))
+        if kept is not None and kept[0] <= noise_max:
+            break
+    else:
+        raise Infeasible(below_floor(request, noise_max))
+    for _ in range(HALVINGS):  # the least noise gain falls with the error allowed
+        middle = 0.5 * (low + high)
+        found = search.least(math.exp(middle), quick=True)
+        if found is not None and found[0] <= noise_max:
+            high, kept = middle, found
+        else:
+            low = middle
+    return kept[1]
+
+
+def below_floor(request, noise_max):
+    least = floor(request)
+    richer = "" if request.l >= request.v - 1 or request.slowest is not None else f", or l = {request.v - 1}, which has no floor"
+    return (f"a noise gain of {noise_max:g} is below what {request.name} with {request.region.text()} can reach, {least:.4f}; "
+            f"nearest: --noise-gain {math.ceil(least * 1.003 * 1e4) / 1e4:.4f}{richer}")
