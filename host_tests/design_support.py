@@ -42,7 +42,7 @@ class Probe(ctypes.Structure):
 
 
 # field of NAME_config_t for each parameter's name as typed
-FIELDS = {"a1": "a1_q16", "b0": "b0_uq16", "b1": "b1_q16", "b2": "b2_q16", "r": "r_lsb2_q8", "q": "q_lsb2_s3"}
+FIELDS = {"a1": "a1_q16", "b0": "b0_uq16", "b1": "b1_q16", "b2": "b2_q16", "r": "r_lsb2_q8", "q": "q_lsb2_s3", "k": "k"}
 
 
 class Library:
@@ -51,6 +51,7 @@ class Library:
     def __init__(self):
         OUT.mkdir(parents=True, exist_ok=True)
         sources = sorted(str(p) for p in pathlib.Path("lib/filters/src").glob("*.c"))
+        self.names = {path.stem for path in pathlib.Path("lib/filters/src").glob("*.c")}
         built = OUT / "libfilters.so"
         subprocess.run(["gcc", "-std=c11", "-O1", "-shared", "-fPIC", "-Ilib/filters/src", *sources, "-o", str(built)], check=True)
         self.c = ctypes.CDLL(str(built.resolve()))

@@ -52,6 +52,8 @@ run_one test_bench python3 host_tests/test_bench.py
 run_one test_papers python3 host_tests/test_papers.py
 run_one test_papers_synthesis python3 host_tests/test_papers_synthesis.py
 run_one test_robust build/venv/bin/python host_tests/test_robust.py
+run_one test_design build/venv/bin/python host_tests/test_design.py
+run_one test_design_command build/venv/bin/python host_tests/test_design_command.py
 run_one test_pages python3 host_tests/test_pages.py
 run_one test_default python3 host_tests/test_default.py
 printf '%-28s' system_tests

@@ -304,7 +304,7 @@ def what_was_asked(task, options, analysed):
         bounds.append(f"dynamic error <= {options.error:g} {options.unit} {task.at_text}, D <= {task.error_max:.6g}: least noise")
     if task.noise_max is not None:
         bounds.append(f"noise gain <= {task.noise_max:g}" + (": least dynamic error" if task.error_max is None else ""))
-    return "; ".join(bounds) + (f"; {task.request.region.text()}" if task.request.k and task.request.fixed_a is None else "")
+    return "; ".join(bounds) + task.request.limits
 
 
 def main(arguments):

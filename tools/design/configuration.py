@@ -7,13 +7,14 @@ from fractions import Fraction
 
 from scipy.optimize import brentq
 
-from .structure import Filter, alpha_beta
+from .structure import Filter, alpha_beta, closed_noise_gain
 
 ONE = 65536
 RATE_DHZ = (50, 40000)
 R_Q8 = (3, 256000)
 B0 = (656, 65535)
 A1 = (-65535, 65535)
+PLUS_K_MAX = 16
 Q = (1, 1_000_000_000)
 KF_DRIVE = (16 / 2 ** 28, 1.0)  # q T^3 / R that kf can tell apart
 ROUNDING = 1e-12  # of a bound that floating point has computed
@@ -94,6 +95,48 @@ def stored_synth(f, common, error_max, noise_max, fixed_a=False):
     return Configuration("synth", fields, synth_filter(*chosen))
 
 
+def plus_rho(k):
+    """-a1 of synth_plus: 1 - 2^-k, 16 standing for 1."""
+    return Fraction(1) if k == PLUS_K_MAX else 1 - Fraction(1, 2 ** k)
+
+
+def plus_filter(k, b, v=2):
+    """v = 3 is the same filter told as of astatism 3: k = 16."""
+    b = tuple(Fraction(x, ONE) for x in b)
+    return Filter(3, (), b) if v == 3 else Filter(2, (-plus_rho(k),) if k else (), b)
+
+
+def plus_legal(k, b0_uq16, b1_q16, b2_q16):
+    """What synth_plus_init asks of its coefficients."""
+    if not (0 <= k <= PLUS_K_MAX and B0[0] <= b0_uq16 <= B0[1] and all(A1[0] <= b <= A1[1] for b in (b1_q16, b2_q16))):
+        return False
+    return plus_filter(k, (b0_uq16, b1_q16, b2_q16)).stable()
+
+
+def stored_plus(f, common, error_max, noise_max):
+    rho = 1.0 if f.v == 3 else -float(f.a[0]) if f.a else 0.0
+    k = min(range(PLUS_K_MAX + 1), key=lambda i: abs(float(plus_rho(i)) - rho))
+    if abs(float(plus_rho(k)) - rho) > 1e-6:
+        raise Unfit(f"synth_plus has a1 = -(1 - 2^-k), not {-rho:.6g}; nearest: --a={-float(plus_rho(k)):.6g}")
+    wanted = [float(x) * ONE for x in f.b] + [0.0] * (2 - f.l)
+    ends = (B0, A1, A1)
+    if not all(low - 0.5 <= x <= high + 0.5 for x, (low, high) in zip(wanted, ends)):
+        raise Unfit(f"synth_plus takes b0 from {B0[0] / ONE:.5f} to {B0[1] / ONE:.5f}, b1 and b2 within {A1[1] / ONE:.5f}; nearest: a bound a little wider")
+    if error_max is None and noise_max is None:
+        choices = [tuple(min(max(round(x), low), high) for x, (low, high) in zip(wanted, ends))]
+    else:
+        choices = itertools.product(*([0] if x == 0 else neighbours(x, *end) for x, end in zip(wanted, ends)))
+    stored = [b for b in choices if plus_legal(k, *b)]
+    if not stored:
+        raise Unfit("stored in 1/65536 it is unstable; nearest: a larger b0")
+    chosen = min(stored, key=lambda b: worth(plus_filter(k, b, f.v), error_max, noise_max))
+    made = plus_filter(k, chosen, f.v)
+    if worth(made, error_max, noise_max)[0]:
+        raise Unfit("no values in 1/65536 near the design keep the bound; nearest: a bound 0.1 % wider")
+    fields = {"rate_dhz": common["rate_dhz"], "b0_uq16": chosen[0], "k": k, "b1_q16": chosen[1], "b2_q16": chosen[2], "r_lsb2_q8": common["r_lsb2_q8"]}
+    return Configuration("synth_plus", fields, made)
+
+
 def kalman_alpha_beta(alpha):
     """The steady Kalman filter of a white second difference with this gain: beta = alpha^2 / (2 - alpha)."""
     return alpha_beta(alpha, alpha * alpha / (2 - alpha))
@@ -113,7 +156,7 @@ def kalman_for(error_max, noise_max):
     """The steady two-state Kalman filter that just meets a bound."""
     if error_max is not None:
         return kalman_alpha_beta(4 / (3 + math.sqrt(1 + 8 * error_max)))  # (1 - alpha) (2 - alpha) = D alpha^2
-    return kalman_alpha_beta(brentq(lambda alpha: float(kalman_alpha_beta(alpha).noise_gain()) - noise_max, 1e-9, 1 - 1e-12, xtol=1e-15))
+    return kalman_alpha_beta(brentq(lambda alpha: closed_noise_gain(kalman_alpha_beta(alpha)) - noise_max, 1e-15, 1 - 1e-12, xtol=1e-15))
 
 
 def stored_kf(f, common, error_max, noise_max):
@@ -150,8 +193,9 @@ def configure(f, rate_hz, sigma_lsb, error_max=None, noise_max=None, fixed_a=Fal
         return stored_synth(f, common, error_max, noise_max, fixed_a)
     if f.order == (2, 0, 1) and is_kalman(f):
         return stored_kf(f, common, error_max, noise_max)
-    raise Unfit(f"the library has no filter with (v, k, l) = ({f.v}, {f.k}, {f.l}): synth is (2, 1, 0), kf is (2, 0, 1) with "
-                f"beta = alpha^2 / (2 - alpha)")
+    if f.v == 2 and f.k <= 1 and f.l in (1, 2) or f.order == (3, 0, 2):
+        return stored_plus(f, common, error_max, noise_max)
+    raise Unfit(f"the library has no filter with (v, k, l) = ({f.v}, {f.k}, {f.l}): synth is (2, 1, 0), synth_plus (2, 1, 2) and (3, 0, 2)")
 
 
 def commands(configuration, rate_hz):

@@ -16,7 +16,7 @@ from .structure import Filter, alpha_beta, difference, power, reflections, schur
 ORDER_MAX = 10  # v + k + l: beyond, double precision no longer holds the coefficients of a slow filter
 B0_MAX = 1 - 1e-9
 SOUND = 1e-8  # the product of 1 - reflection^2 below which rounding spoils the noise gain
-HALVINGS = 40
+HALVINGS = 36
 NOTHING = 1e-7  # a sum of a below this, far under 1/65536, is 0
 WALL = 1e5  # what a place outside the region or the circle costs
 BUTTERWORTH = {1: (1.0,), 2: (1.0, math.sqrt(2.0)), 3: (1.0, 2.0, 2.0), 4: (1.0, 2.613, 3.414, 2.613)}
@@ -124,9 +124,9 @@ class Search:
 
     def least(self, error_max, quick=False):
         """(noise gain, filter): the best that the searches from several starts find; None when none finds a stable filter."""
-        starts = self.known[-3:] if quick and self.known else self.known[-2:] + list(self.starts())
+        starts = self.known[-2:] if quick and self.known else self.known[-2:] + list(self.starts())
         ranked = sorted(starts, key=lambda place: self.cost(place, error_max))
-        found = min((self.polished(place, error_max) for place in ranked[:6]), key=lambda one: one.fun)
+        found = min((self.polished(place, error_max, (0.05,) if quick else (0.3, 0.02)) for place in ranked[:6]), key=lambda one: one.fun)
         if found.fun >= WALL:
             return None
         place = [float(x) for x in found.x]
@@ -134,9 +134,9 @@ class Search:
         f = self.filter_at(place, error_max)
         return power(f.b, f.characteristic), f
 
-    def polished(self, place, error_max):
+    def polished(self, place, error_max, spreads):
         found = None
-        for spread in (0.3, 0.02):
+        for spread in spreads:
             at = np.asarray(place if found is None else found.x, float)
             simplex = np.vstack([at, at + np.diag([-spread if i == 0 else spread for i in range(at.size)])])
             options = {"initial_simplex": simplex, "xatol": 1e-10, "fatol": 1e-15, "maxfev": 250 * at.size}
@@ -185,6 +185,11 @@ class Request:
         return f"(v, k, l) = ({self.v}, {self.k}, {self.l})"
 
     @property
+    def limits(self):
+        words = [self.region.text()] if self.k and self.fixed_a is None else []
+        return " with " + words[0] if words else ""
+
+    @property
     def plain(self):
         """True where the formulas for k = 0 hold."""
         return (self.k == 0 or not any(self.fixed_a or (1,))) and self.slowest is None and self.region.b0[0] < 1e-6
@@ -216,8 +221,8 @@ def least_noise(request, error_max):
     search = request.search()
     found = search.least(error_max)
     if found is None:
-        raise Infeasible(f"{request.name} has no stable filter with {request.region.text()}{'' if request.slowest is None else ' that settles in time'}"
-                         f" and a dynamic error of at most {error_max:g} per {ordinal(request.v)} difference; nearest: {nearest_error(search)}")
+        raise Infeasible(f"{request.name}{request.limits} has no stable filter{'' if request.slowest is None else ' that settles in time'}"
+                         f" with a dynamic error of at most {error_max:g} per {ordinal(request.v)} difference; nearest: {nearest_error(search)}")
     return found[1]
 
 
@@ -226,8 +231,8 @@ def ordinal(v):
 
 
 def nearest_error(search):
-    for error in np.logspace(-3, 6, 19):
-        if search.least(float(error)) is not None:
+    for error in (0.001, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e4):
+        if search.least(error) is not None:
             return f"{error:.3g}"
     return "none; take another structure"
 
@@ -273,5 +278,5 @@ def least_error(request, noise_max):
 def below_floor(request, noise_max):
     least = floor(request)
     richer = "" if request.l >= request.v - 1 or request.slowest is not None else f", or l = {request.v - 1}, which has no floor"
-    return (f"a noise gain of {noise_max:g} is below what {request.name} with {request.region.text()} can reach, {least:.4f}; "
+    return (f"a noise gain of {noise_max:g} is below what {request.name}{request.limits} can reach, {least:.4f}; "
             f"nearest: --noise-gain {math.ceil(least * 1.003 * 1e4) / 1e4:.4f}{richer}")

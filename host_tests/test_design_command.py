@@ -1,0 +1,348 @@
+"""The command of tools/design: what it refuses, in which words; that the compiled library accepts every configuration it prints and runs as the
+tool says; its pictures and JSON."""
+import contextlib
+import io
+import json
+import math
+import pathlib
+import random
+import re
+import sys
+from fractions import Fraction
+
+import design_support
+from design_support import OUT, Library, compiles_and_runs, simulated
+from system_support import Skip, run, run_all, test
+
+try:
+    import matplotlib.image
+    import scipy  # noqa: F401
+except ImportError:
+    @test
+    def everything():
+        raise Skip(f"scipy or matplotlib is not installed for {sys.executable}: sh tools/deps.sh design")
+
+    sys.exit(run_all())
+
+from design import command, configuration, measure, response, switching, synthesis  # noqa: E402
+from design.structure import Filter  # noqa: E402
+
+BASE = ["--rate", "100", "--sigma", "2", "--no-pictures"]
+LIBRARY = Library()
+
+
+def said(*arguments):
+    """(status, standard output, standard error) of the command, in this process."""
+    out, error = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
+        try:
+            status = command.main([str(a) for a in arguments])
+        except SystemExit as stopped:
+            status = stopped.code
+    return status, out.getvalue(), error.getvalue()
+
+
+def answer(*arguments):
+    path = OUT / "design.json"
+    status, out, error = said(*arguments, "--json", path)
+    assert status == 0, error
+    return json.loads(path.read_text(encoding="utf-8")), out
+
+
+# arguments, what the sentence names
+REFUSED = (
+    (["--sigma", "2", "--noise-gain", "0.6"], ("--rate", "--period")),
+    (["--rate", "0", "--sigma", "2", "--noise-gain", "0.6"], ("--rate is 0", "above 0")),
+    (["--rate", "100", "--sigma", "-1", "--noise-gain", "0.6"], ("--sigma is -1", "above 0", "nearest")),
+    (["--rate", "100", "--sigma", "nan", "--noise-gain", "0.6"], ("--sigma is nan", "finite")),
+    (["--rate", "100", "--sigma", "inf", "--noise-gain", "0.6"], ("--sigma is inf", "finite")),
+    (["--rate", "100", "--noise-gain", "0.6"], ("--sigma", "--sigma-of")),
+    (["--rate", "100", "--sigma-of", "no/such.csv", "--noise-gain", "0.3"], ("no/such.csv", "No such file")),
+    (["--rate", "100", "--sigma-of", "README.md", "--noise-gain", "0.3"], ("README.md", "no columns x, y, z")),
+    (BASE, ("give a bound", "--error")),
+    ([*BASE, "--noise-gain", "0.4"], ("0.4", "(2, 1, 0)", "0.5000", "nearest: --noise-gain 0.50", "l = 1")),
+    ([*BASE, "--noise-gain", "1.5"], ("needs no filter", "nearest: 0.999")),
+    ([*BASE, "--noise-gain", "-1"], ("-1", "above 0", "nearest")),
+    ([*BASE, "--noise-gain", "nan"], ("nan", "finite")),
+    ([*BASE, "--error", "2"], ("--at", "acceleration")),
+    ([*BASE, "--error", "inf", "--at", "100"], ("--error is inf", "finite")),
+    ([*BASE, "--error", "0.01", "--at", "1000", "--noise-gain", "0.6"], ("both bounds", "least noise gain is", "least error is", "nearest: --noise-gain")),
+    ([*BASE, "--a=-0.9", "--b", "0.1"], ("unstable", "1 + 2 a1 (1 - b0) = -0.62", "nearest: --a=-0.9 --b 0.44")),
+    ([*BASE, "-k", "0", "--b", "0.1,-0.5"], ("unstable", "pole", "nearest: --b")),
+    ([*BASE, "--a=-0.3,0.1", "-k", "1", "--b", "0.1"], ("--a has 2", "k = 1", "-k 2")),
+    ([*BASE, "--a=nan", "--b", "0.1"], ("finite",)),
+    ([*BASE, "-k", "1", "-l", "2", "--noise-gain", "0.3"], ("(2, 1, 2)", "sum a = -1", "astatism 3", "nearest")),
+    ([*BASE, "-v", "0", "--noise-gain", "0.3"], ("(0, 0, 0)", "v must be 1 or more")),
+    ([*BASE, "-v", "2", "-k", "0", "-l", "30", "--noise-gain", "0.3"], ("(2, 0, 30)", "at most 10")),
+    ([*BASE, "--noise-gain", "0.6", "--band", "b7=0..1"], ("--band b7", "a1, b0")),
+    ([*BASE, "--noise-gain", "0.6", "--band", "b0=1..0.5"], ("ends before it begins",)),
+    ([*BASE, "--noise-gain", "0.6", "--band", "b0"], ("NAME=LOW..HIGH",)),
+    ([*BASE, "--noise-gain", "0.6", "--a=x"], ("'x' is not numbers",)),
+    ([*BASE, "--noise-gain", "0.6", "--lsb-per-unit", "0"], ("--lsb-per-unit is 0",)),
+    ([*BASE, "--error", "0.001", "--at", "1", "-k", "0", "--settle", "0.001", "-l", "1", "-v", "3"], ("no stable filter", "settles in time", "nearest")),
+)
+
+
+@test
+def what_cannot_be_is_refused_in_one_sentence():
+    for arguments, words in REFUSED:
+        status, out, error = said(*arguments)
+        last = error.strip().splitlines()[-1] if error.strip() else ""
+        assert status in (1, 2) and not out, (arguments, status, out[:100])
+        assert last.startswith("design: "), (arguments, error)
+        assert status == 2 or error.count("\n") == 1, (arguments, error)
+        for word in words:
+            assert word in last, f"{arguments}: '{word}' is not in: {last}"
+
+
+@test
+def the_nearest_is_feasible():
+    told = []
+    for arguments, _ in REFUSED:
+        _, _, error = said(*arguments)
+        found = re.search(r"nearest: ((?:--?[a-z-]+[= ]\S+ ?)+)", error.replace(",", ", ").replace(", ", ",") if "--b " in error else error)
+        if not found or "--band" in arguments:
+            continue
+        fixed = [word.rstrip(",") for word in found[1].split()]
+        names = {word.split("=")[0] for word in fixed if word.startswith("-")}
+        kept, skip = [], False
+        for i, word in enumerate(arguments):
+            if skip:
+                skip = False
+            elif word.split("=")[0] in names:
+                skip = "=" not in word
+            else:
+                kept.append(word)
+        status, _, error = said(*kept, *fixed)
+        told.append((arguments, fixed))
+        assert status == 0 or ("give" in error and "noise" in error), (kept, fixed, error)
+    assert len(told) >= 6, told
+
+
+@test
+def a_design_keeps_its_bound_as_stored():
+    chance = random.Random(6)
+    for _ in range(12):
+        rate, sigma = chance.choice((12.5, 25, 50, 100, 200, 400, 800)), round(10 ** chance.uniform(-0.5, 1.2), 2)
+        error = 10 ** chance.uniform(-1, 1.6)
+        at = round(10 ** chance.uniform(0, 4), 1)
+        result, _ = answer("--rate", rate, "--sigma", sigma, "--error", repr(error * at / rate ** 2), "--at", at, "--no-pictures")
+        assert result["design"]["dynamic_error"] <= error * (1 + 1e-9)
+        for made in result["configurations"]:
+            if "none" in made:
+                continue
+            assert made["dynamic_error"] <= error * (1 + 1e-9), made
+            accepted(made)
+    result, _ = answer(*BASE, "--noise-gain", "0.61")
+    for made in result["configurations"]:
+        assert "none" in made or made["noise_gain"] <= 0.61, made
+
+
+def accepted(made):
+    if made["filter"] not in LIBRARY.names:
+        return
+    ok, _ = LIBRARY.make(made["filter"], made["fields"])
+    assert ok, f"the library refuses {made['initialiser']}"
+
+
+@test
+def the_library_and_the_tool_refuse_the_same():
+    chance, seen = random.Random(7), [0, 0]
+    common = {"rate_dhz": 1000, "r_lsb2_q8": 768}
+    cases = [(chance.randint(0, 65535), chance.randint(-65600, 65600)) for _ in range(4000)]
+    cases += [(b0, a1 + step) for b0 in range(656, 32700, 97) for a1 in [-(2 ** 31 // (65536 - b0))] for step in (-1, 0, 1)]
+    cases += [(655, 0), (656, 0), (65535, 0), (656, 65535), (656, 65536), (656, -65536), (65535, -65535)]
+    for b0, a1 in cases:
+        wanted = configuration.synth_legal(b0, a1)
+        ok, _ = LIBRARY.make("synth", {**common, "b0_uq16": b0, "a1_q16": a1})
+        assert ok == wanted, (b0, a1, ok)
+        if abs(a1) < 65536 and 656 <= b0:
+            assert configuration.synth_filter(b0, a1).stable() == wanted, (b0, a1)
+        seen[ok] += 1
+    assert min(seen) > 500, seen
+    ranges = {"b0_uq16": configuration.B0, "a1_q16": configuration.A1, "r_lsb2_q8": configuration.R_Q8}
+    assert LIBRARY.ranges("synth") == ranges, LIBRARY.ranges("synth")
+    assert LIBRARY.ranges("kf") == {"r_lsb2_q8": configuration.R_Q8, "q_lsb2_s3": configuration.Q}
+    for field, (low, high) in ranges.items():
+        for value, wanted in ((low - 1, False), (low, True), (high, True), (high + 1, False)):
+            if field != "b0_uq16" or value < 65536:
+                ok, _ = LIBRARY.make("synth", {**common, "b0_uq16": 60000, "a1_q16": 0, field: value})
+                assert ok == wanted, (field, value)
+    for rate in (49, 50, 40000, 40001):
+        ok, _ = LIBRARY.make("synth", {"rate_dhz": rate, "b0_uq16": 20000, "a1_q16": 0, "r_lsb2_q8": 768})
+        assert ok == (configuration.RATE_DHZ[0] <= rate <= configuration.RATE_DHZ[1]), rate
+
+
+@test
+def synth_plus_and_the_tool_refuse_the_same():
+    if "synth_plus" not in LIBRARY.names:
+        raise Skip("synth_plus is not in the library")
+    chance, seen = random.Random(8), [0, 0]
+    for _ in range(6000):
+        fields = {"rate_dhz": 1000, "r_lsb2_q8": 768, "k": chance.choice((0, 0, 1, 2, 5, 15, 16, 17)), "b0_uq16": chance.randint(600, 65535),
+                  "b1_q16": chance.randint(-65600, 65600), "b2_q16": chance.choice((0, chance.randint(-65600, 65600)))}
+        wanted = configuration.plus_legal(*(fields[name] for name in ("k", "b0_uq16", "b1_q16", "b2_q16")))
+        ok, _ = LIBRARY.make("synth_plus", fields)
+        assert ok == wanted, (fields, ok)
+        seen[ok] += 1
+    assert min(seen) > 500, seen
+    for arguments in (["-k", "0", "-l", "1"], ["-l", "2", "--a=-0.75"], ["-v", "3", "-k", "0", "-l", "2"]):
+        result, _ = answer(*BASE, *arguments, "--noise-gain", "0.4")
+        made = result["configurations"][0]
+        assert made["filter"] == "synth_plus" and made["noise_gain"] <= 0.4, made
+        accepted(made)
+        assert compiles_and_runs(made["initialiser"], "synth_plus")
+        runs_as_told("synth_plus", made["fields"], configuration.plus_filter(made["fields"]["k"], [made["fields"][b] for b in ("b0_uq16", "b1_q16", "b2_q16")]))
+
+
+def runs_as_told(name, fields, f):
+    """The compiled filter's answer to a step, after its start has died out, is the tool's filter's."""
+    ok, state = LIBRARY.make(name, fields)
+    assert ok
+    for _ in range(3000):
+        LIBRARY.update(state, 0)
+    size = 1500
+    wanted = simulated(Filter(f.v, tuple(map(float, f.a)), tuple(map(float, f.b))), 60, lambda n: float(size))
+    for n, x in enumerate(wanted):
+        found = LIBRARY.update(state, size) / 65536
+        if abs(x) >= 4600:
+            return n
+        assert abs(found - x) < 0.05, (name, fields, n, found, x)
+    return 60
+
+
+@test
+def the_emitted_configuration_runs_as_told():
+    for arguments in (["--noise-gain", "0.6"], ["--a=-0.3", "--b", "0.5"], ["--error", "2", "--at", "30000"]):
+        result, _ = answer(*BASE, *arguments)
+        made = result["configurations"][0]
+        assert made["filter"] == "synth" and compiles_and_runs(made["initialiser"], "synth"), made
+        stored = configuration.synth_filter(made["fields"]["b0_uq16"], made["fields"]["a1_q16"])
+        assert runs_as_told("synth", made["fields"], stored) >= 1
+        told = LIBRARY.c.synth_noise_gain_uq16(made["fields"]["b0_uq16"], made["fields"]["a1_q16"]) / 65536
+        assert abs(told / made["noise_gain"] - 1) < 2 ** -11, (told, made)
+        assert made["noise_gain"] == float(stored.noise_gain())
+
+
+@test
+def kf_has_the_gain_told():
+    for error in (0.8, 3.0, 20.0, 150.0):
+        result, _ = answer(*BASE, "--error", error * 0.01, "--at", "100")
+        made = [one for one in result["configurations"] if one.get("filter") == "kf"][0]
+        assert compiles_and_runs(made["initialiser"], "kf")
+        ok, state = LIBRARY.make("kf", made["fields"])
+        assert ok
+        for n in range(2000):
+            LIBRARY.update(state, 0)
+        drive = made["fields"]["q_lsb2_s3"] * 1e-6 / (made["fields"]["r_lsb2_q8"] / 256)
+        assert abs(LIBRARY.gain(state) / configuration.alpha_of(drive) - 1) < 4e-3, (error, LIBRARY.gain(state), configuration.alpha_of(drive))
+    result, _ = answer(*BASE, "--error", "0.0005", "--at", "100")
+    assert "none" in result["configurations"][-1], "kf's gain ends at 0.77"
+
+
+@test
+def the_default_filter_is_recognised():
+    result, out = answer(*BASE, "--a=0", "--b", "0.3")
+    ok, state = LIBRARY.make("synth", result["configurations"][0]["fields"])
+    assert ok and result["configurations"][0]["fields"]["b0_uq16"] == 19661
+    assert result["switching"]["verdict"] == "safe" and "safe: stable" in out
+    result, out = answer(*BASE, "--a=0", "--b", "0.29")
+    assert result["switching"]["verdict"] == "unsafe" and "NOT safe" in out and "b0 0.29" in out
+    result, _ = answer(*BASE, "--a=0", "--b", "0.29", "--band", "b0=0.29..0.6")
+    assert result["switching"]["verdict"] == "safe" and "[0.29, 0.6]" in result["switching"]["band"]
+
+
+@test
+def the_report_tells_what_was_computed():
+    result, out = answer("--rate", "10", "--sigma", "0.5", "--unit", "m", "--a=-0.3", "--b", "0.1", "--at", "5", "--no-pictures")
+    f = Filter(2, (-0.3,), (0.1,))
+    assert "0.4534 m" in out and "0.315 m" in out and "0.822357" in out, out
+    assert result["design"]["settled_at_sample"] == response.step(f).settled_at == 90
+    assert abs(result["design"]["noise_gain_lyapunov"] - result["design"]["noise_gain"]) < 1e-9
+    assert result["order"] == [2, 1, 0] and result["design"]["characteristic"] == [float(x) for x in f.characteristic]
+    assert "(1 - z^-1)^2 (1 - 0.3 z^-1) = 1 - 2.3 z^-1 + 1.6 z^-2 - 0.3 z^-3" in out
+    assert "1 - 2.07 z^-1 + 1.44 z^-2 - 0.27 z^-3" in out
+    band = switching.Band(2, ((-0.3, 0.0),), ((0.1, 1.0),))
+    assert abs(result["switching"]["low"] - switching.bounds(band).low) < 1e-12
+
+
+@test
+def both_structures_stand_side_by_side():
+    result, out = answer(*BASE, "--error", "0.09", "--at", "100")
+    rows = {row["name"]: row for row in result["alternatives"]}
+    alpha_beta, kalman = rows["(2, 0, 1) alpha-beta"], rows["(2, 0, 1) steady Kalman (kf)"]
+    assert abs(result["design"]["noise_gain"] - 0.513514) < 1e-5 and abs(alpha_beta["noise_gain"] - 13 / 49) < 1e-9
+    assert alpha_beta["noise_gain"] <= kalman["noise_gain"] and abs(kalman["dynamic_error"] - 9) < 1e-9
+    assert all(name in out for name in rows)
+
+
+@test
+def pictures_are_drawn():
+    folder = OUT / "pictures"
+    for path in folder.glob("*"):
+        path.unlink()
+    result, out = answer("--rate", "10", "--sigma", "3", "--error", "3", "--at", "100", "--out", folder)
+    assert result["pictures"] == [str(folder / "design.png"), str(folder / "design.svg")] and str(folder / "design.png") in out
+    picture = matplotlib.image.imread(folder / "design.png")
+    assert picture.shape[0] > 500 and picture.shape[1] > 800
+    used = (picture[:, :, :3].max(axis=2) - picture[:, :, :3].min(axis=2)) > 0.3  # what is coloured: curves
+    height, width = used.shape
+    for rows, columns in ((slice(0, height // 2), slice(0, width // 2)), (slice(0, height // 2), slice(width // 2, width)),
+                          (slice(height // 2, height), slice(0, width // 2)), (slice(height // 2, height), slice(width // 2, width))):
+        assert used[rows, columns].sum() > 150, "a panel without a curve"
+    assert "<svg" in (folder / "design.svg").read_text(encoding="utf-8")
+
+
+@test
+def the_noise_of_a_recording_is_measured():
+    for name, sigma in (("rest-0.7lsb", 0.7), ("rest-2lsb", 2.0), ("rest-4lsb", 4.0), ("rest-8lsb", 8.0)):
+        found = measure.sigma_of_stream(f"sim/streams/{name}.csv")
+        true = math.sqrt(sigma * sigma + 1 / 12)  # rounding to whole LSB adds its own
+        assert abs(found / true - 1) < 0.08, (name, found, true)
+    chance = random.Random(9)
+    samples = [round(chance.gauss(0, 3) + 50 * math.sin(n / 20) + (400 if n % 50 == 0 else 0)) for n in range(5000)]
+    assert abs(measure.sigma_of(samples) / 3 - 1) < 0.12, measure.sigma_of(samples)
+
+
+@test
+def no_parameter_command_is_known_to_the_protocol():
+    text = pathlib.Path("docs/protocol.md").read_text(encoding="utf-8")
+    assert re.search(r"^\| `rate HZ` \| 12\.5 25 50 100 200 400 800 ", text, re.M), "the rates that the tool knows are those of the firmware"
+    commands = set(re.findall(r"^\| `([a-z]+)[ `]", text, re.M))
+    assert {"filter", "rate", "range", "every"} <= commands
+    assert not commands & {"set", "param", "a1", "b0", "q", "gain"}, "there is a command for parameters: tools/design/configuration.py must print it"
+
+
+@test
+def it_runs_as_a_program():
+    python = sys.executable
+    done = run(python, "tools/design", "--help")
+    assert "order of astatism" in done.stdout and "examples" in done.stdout and max(map(len, done.stdout.splitlines())) <= 150
+    done = run(python, "tools/design", "--rate", "100", "--sigma", "-1", "--noise-gain", "0.6", expect=1)
+    assert done.stderr.startswith("design: --sigma is -1") and done.stderr.count("\n") == 1, done.stderr
+    examples = re.findall(r"^  python tools/design (.*?)(?:   .*)?$", command.EPILOG, re.M)
+    assert len(examples) == 5
+    for example in examples:
+        words = example.split()
+        if words[0] == "schedule":
+            if not pathlib.Path("tools/design/schedule.py").exists():
+                continue
+            assert "a1" in run(python, "tools/design", *words).stdout
+            continue
+        run(python, "tools/design", *words, "--out", OUT / "examples", *(["--json", OUT / "example.json"] if "--json" in words else []))
+
+
+@test
+def infeasible_pairs_name_values_that_hold():
+    request = synthesis.Request(2, 1, 0)
+    least = float(synthesis.least_noise(request, 1.0).noise_gain())
+    status, _, error = said(*BASE, "--error", "0.01", "--at", "100", "--noise-gain", "0.55")
+    assert status == 1 and f"{least:.4f}" in error, error
+    told = float(re.search(r"least error is ([0-9.]+)", error)[1])
+    f = synthesis.least_error(request, 0.55)
+    assert abs(told - f.dynamic_error() * 0.01) < 1e-4 * told
+    assert Fraction(f.b[0]) > 0 and design_support.impulse_sum(f, 3000) <= 0.55 + 1e-9
+
+
+if __name__ == "__main__":
+    sys.exit(run_all())
