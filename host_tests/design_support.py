@@ -42,7 +42,12 @@ class Probe(ctypes.Structure):
 
 
 # field of NAME_config_t for each parameter's name as typed
-FIELDS = {"a1": "a1_q16", "b0": "b0_uq16", "b1": "b1_q16", "b2": "b2_q16", "r": "r_lsb2_q8", "q": "q_lsb2_s3", "k": "k"}
+FIELDS = {"a1": "a1_q16", "b0": "b0_uq16", "b1": "b1_q16", "b2": "b2_q16", "r": "r_lsb2_q8", "q": "q_lsb2_s3", "k": "k", "u": "variant_u", "p0": "p0_lsb2_q8"}
+
+
+def field_of(p):
+    """The field of NAME_config_t that a parameter stands for, None when it is none of these."""
+    return "q_lsb2_s5" if p.name == b"q" and p.unit == b"LSB2/s5" else FIELDS.get(p.name.decode())
 
 
 class Library:
@@ -64,7 +69,7 @@ class Library:
         """{field: (min, max)} of the descriptor."""
         found = self.c.filter_any_descriptor(self.c.filter_any_find(name.encode())).contents
         assert found.name.decode() == name, found.name
-        return {FIELDS[p.name.decode()]: (p.min, p.max) for p in found.parameters[:found.parameter_count] if p.name.decode() in FIELDS}
+        return {field_of(p): (p.min, p.max) for p in found.parameters[:found.parameter_count]}
 
     def make(self, name, fields):
         """(accepted, state) of NAME_init with these stored values on top of the defaults."""
@@ -74,7 +79,7 @@ class Library:
         found = self.c.filter_any_descriptor(kind).contents
         told = set(fields) - {"rate_dhz"}
         for p in found.parameters[:found.parameter_count]:
-            field = FIELDS.get(p.name.decode())
+            field = field_of(p)
             if field in fields:
                 config[p.offset:p.offset + p.size] = (fields[field] & (256 ** p.size - 1)).to_bytes(p.size, "little")
                 told.discard(field)

@@ -212,7 +212,13 @@ def alpha_beta_and_alpha_beta_gamma_are_of_the_structure():
     for drive in (1e-4, 1e-2, 0.5):
         moves = np.array([[1, 1], [0, 1]], float)
         gain = steady_kalman(moves, np.diag([0, drive]), 1.0)
-        f = configuration.kalman_alpha_beta(configuration.alpha_of(drive))
+        f = configuration.steady_kalman(2, drive)
+        near(float(sum(f.b)), float(f.b[0]) ** 2 / (2 - float(f.b[0])), 1e-12, "beta = alpha^2 / (2 - alpha)")
+        near(configuration.drive_of(f), drive, 1e-12 + 1e-10 * drive, "drive")
+        cube = np.array([[1, 1, 0], [0, 1, 1], [0, 0, 1]], float)
+        third = configuration.steady_kalman(3, drive)
+        wave = kalman_impulse(cube, steady_kalman(cube, np.diag([0, 0, drive]), 1.0), 300)
+        near(float(np.abs(response.impulse(third, 300) - wave).max()), 0.0, 1e-10, "three states")
         near(float(f.b[0]), gain[0], 1e-9, "alpha")
         near(float(sum(f.b)), gain[1], 1e-9, "beta")
         near(float(np.abs(response.impulse(f, 300) - kalman_impulse(moves, gain, 300)).max()), 0.0, 1e-12, "alpha-beta")
@@ -299,6 +305,17 @@ def nothing_on_a_grid_or_nearby_is_better():
             g = Filter(f.v, f.a, tuple(x + size * chance.uniform(-1, 1) for x in f.b))
             better += g.stable() and 0 < g.b[0] < 1 and 0 <= g.dynamic_error() <= 5.0 and g.noise_gain() < f.noise_gain() * (1 - 1e-6)
         assert better == 0, f"{f}: {better} better nearby"
+
+
+@test
+def never_worse_than_the_steady_kalman_filter():
+    for v in (1, 2, 3, 4):
+        for error in (0.3, 10.0, 1e3, 3e4 if v > 1 else 3e3):
+            kalman = configuration.kalman_for(v, error, None)
+            near(float(kalman.exact().dynamic_error()), error, 1e-6 * error, f"D of {kalman}")
+            least = synthesis.least_noise(Request(v, 0, v - 1), error)
+            ratio = float(least.exact().noise_gain() / kalman.exact().noise_gain())
+            assert 0.8 < ratio <= 1 + 1e-6, (v, error, ratio)
 
 
 @test

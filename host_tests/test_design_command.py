@@ -234,10 +234,37 @@ def kf_has_the_gain_told():
         assert ok
         for n in range(2000):
             LIBRARY.update(state, 0)
-        drive = made["fields"]["q_lsb2_s3"] * 1e-6 / (made["fields"]["r_lsb2_q8"] / 256)
-        assert abs(LIBRARY.gain(state) / configuration.alpha_of(drive) - 1) < 4e-3, (error, LIBRARY.gain(state), configuration.alpha_of(drive))
+        wanted = float(configuration.steady_kalman(2, made["fields"]["q_lsb2_s3"] * 1e-6 / (made["fields"]["r_lsb2_q8"] / 256)).b[0])
+        assert abs(LIBRARY.gain(state) / wanted - 1) < 4e-3, (error, LIBRARY.gain(state), wanted)
     result, _ = answer(*BASE, "--error", "0.0005", "--at", "100")
     assert "none" in result["configurations"][-1], "kf's gain ends at 0.77"
+
+
+@test
+def kf3_and_synth_opt_take_what_is_made_for_them():
+    if not {"kf3", "synth_opt"} <= LIBRARY.names:
+        raise Skip("kf3 or synth_opt is not in the library")
+    for rate, error, jerk in (("50", "3", "4000"), ("25", "0.5", "400"), ("200", "0.6", "1000")):
+        result, _ = answer("--rate", rate, "--sigma", "2", "--no-pictures", "-v", "3", "-k", "0", "-l", "2", "--error", error, "--at", jerk)
+        made = [one for one in result["configurations"] if one.get("filter") == "kf3"][0]
+        assert made["dynamic_error"] <= float(error) / float(jerk) * float(rate) ** 3 * (1 + 1e-9), made
+        assert compiles_and_runs(made["initialiser"], "kf3")
+        ok, state = LIBRARY.make("kf3", made["fields"])
+        assert ok
+        for n in range(4000):
+            LIBRARY.update(state, 0)
+        drive = made["fields"]["q_lsb2_s5"] / float(rate) ** 5 / (made["fields"]["r_lsb2_q8"] / 256)
+        wanted = float(configuration.steady_kalman(3, drive).b[0])
+        assert abs(LIBRARY.gain(state) / wanted - 1) < 2e-2, (rate, LIBRARY.gain(state), wanted)
+    for a, b in (("0", str(2 / 3)), (str(-1 / 6), str(11 / 13))):
+        result, _ = answer(*BASE, f"--a={a}", "--b", b)
+        made = [one for one in result["configurations"] if one.get("filter") == "synth_opt"]
+        assert len(made) == 1 and compiles_and_runs(made[0]["initialiser"], "synth_opt"), result["configurations"]
+        ok, state = LIBRARY.make("synth_opt", made[0]["fields"])
+        assert ok
+        for n in range(200):
+            LIBRARY.update(state, 0)
+        assert abs(LIBRARY.gain(state) - float(b)) < 1 / 65536, LIBRARY.gain(state)
 
 
 @test

@@ -213,9 +213,12 @@ def alternatives(task, f):
             found.append((name, least_noise(plain, error) if error is not None else least_error(plain, task.noise_max)))
         except Infeasible as problem:
             found.append((name, f"none: {problem}"))
-    if v == 2:
-        noise = None if error is not None else task.noise_max
-        found.append(("(2, 0, 1) steady Kalman (kf)", configuration.kalman_for(error, noise)))
+    if v in (2, 3):
+        name = f"({v}, 0, {v - 1}) steady Kalman ({'kf' if v == 2 else 'kf3'})"
+        try:
+            found.append((name, configuration.kalman_for(v, error, None if error is not None else task.noise_max)))
+        except configuration.Unfit as problem:
+            found.append((name, f"none: {problem}"))
     return found
 
 
@@ -249,6 +252,17 @@ def configured(name, f, task, lsb_per_unit, fixed_a):
                   "commands": lines, "notes": told + made.notes}, made
 
 
+def limit_of_synth_opt(f, task, lsb_per_unit):
+    """Lines for synth_opt where a schedule of its ends at this filter."""
+    try:
+        made = configuration.stored_opt(f, configuration.common_fields(round(1 / task.period_s, 9), task.sigma * lsb_per_unit))
+    except configuration.Unfit:
+        return [], []
+    return [f"the same as the limit of a schedule, with its quick start: {made.name}:", f"    {made.initialiser()}"] + [f"    note: {x}" for x in made.notes], [
+        {"structure": "limit of a schedule", "filter": made.name, "fields": made.fields, "initialiser": made.initialiser(),
+         "noise_gain": float(made.filter.noise_gain()), "dynamic_error": float(made.filter.dynamic_error()), "commands": [], "notes": made.notes}]
+
+
 def report_parameters(made):
     f = made.filter
     return ", ".join([f"a{i + 1} = {float(x):.7f}" for i, x in enumerate(f.a)] + [f"b{j} = {float(x):.7f}" for j, x in enumerate(f.b)])
@@ -278,6 +292,10 @@ def design(options):
         lines, entry, _ = configured(name, g, task, lsb_per_unit, options.a is not None and g is f)
         text += lines
         entries.append(entry)
+        if g is f and f.v == 2 and f.k <= 1 and f.l == 0:
+            lines, more = limit_of_synth_opt(f, task, lsb_per_unit)
+            text += lines
+            entries += more
     drawn = []
     if not options.no_pictures:
         shown = [(f"this ({f.v}, {f.k}, {f.l})", f)] + [(name, g) for name, g in rows if not isinstance(g, str)]

@@ -1,13 +1,16 @@
 """A filter as the fixed-point library takes it: stored values, the same legal ranges and the same stability test as the C, and what the stored
 values really give. host_tests/test_design.py holds every number here to the compiled library."""
+import cmath
 import itertools
 import math
+import pathlib
+import re
 from dataclasses import dataclass, field
 from fractions import Fraction
 
 from scipy.optimize import brentq
 
-from .structure import Filter, alpha_beta, closed_noise_gain
+from .structure import Filter, difference, product
 
 ONE = 65536
 RATE_DHZ = (50, 40000)
@@ -16,7 +19,10 @@ B0 = (656, 65535)
 A1 = (-65535, 65535)
 PLUS_K_MAX = 16
 Q = (1, 1_000_000_000)
-KF_DRIVE = (16 / 2 ** 28, 1.0)  # q T^3 / R that kf can tell apart
+KF3_FINE_FROM_DHZ = 1000  # kf3's unit of the acceleration changes here
+OPT_LIMITS = ((0.0, 2 / 3), (-1 / 6, 11 / 13))  # of synth_opt: exact, variant U
+START_RATE_LSB_S, P0_Q8_MAX = 200, 25_600_000
+IMAGES = pathlib.Path(__file__).resolve().parents[2] / "mk" / "images.mk"
 ROUNDING = 1e-12  # of a bound that floating point has computed
 FIRMWARE_RATES_HZ = (12.5, 25, 50, 100, 200, 400, 800)
 
@@ -137,53 +143,83 @@ def stored_plus(f, common, error_max, noise_max):
     return Configuration("synth_plus", fields, made)
 
 
-def kalman_alpha_beta(alpha):
-    """The steady Kalman filter of a white second difference with this gain: beta = alpha^2 / (2 - alpha)."""
-    return alpha_beta(alpha, alpha * alpha / (2 - alpha))
+def stored_opt(f, common):
+    """synth_opt, where the filter is the limit of one of its schedules."""
+    a1, b0 = (float(f.a[0]) if f.a else 0.0), float(f.b[0])
+    variant = next((u for u, limit in enumerate(OPT_LIMITS) if abs(a1 - limit[0]) < 1e-3 and abs(b0 - limit[1]) < 1e-3), None)
+    if variant is None:
+        raise Unfit("synth_opt ends at (a1, b0) = (0, 2/3) or (-1/6, 11/13), whatever R")
+    period_s, r = 10 / common["rate_dhz"], common["r_lsb2_q8"]
+    start = min(max(round(256 * (2 * START_RATE_LSB_S * period_s) ** 2 + 0.29 * r), 3), P0_Q8_MAX)
+    stored = synth_filter(*((43691, 0), (55454, -10923))[variant])
+    notes = [f"P0 for an axis that starts at {START_RATE_LSB_S} LSB/s, as synth_opt_defaults; `schedule` shows the gains of the start"]
+    return Configuration("synth_opt", {"rate_dhz": common["rate_dhz"], "variant_u": variant, "p0_lsb2_q8": start, "r_lsb2_q8": r}, stored, notes)
 
 
-def drive_of(alpha):
-    """lambda = variance of the second difference per R for which the steady gain is alpha: beta^2 / (1 - alpha)."""
-    beta = alpha * alpha / (2 - alpha)
-    return beta * beta / (1 - alpha)
+def steady_kalman(v, drive):
+    """The steady Kalman filter of a white v-th difference with variance drive R. Its poles are those zeros of A(z) A(1/z) + drive inside the
+    circle: with y = (1 - z) (1 - 1/z), y^v = -drive, z + 1/z = 2 - y. The last coefficient of C is that of A times 1 - b0."""
+    c = [1.0]
+    for m in range(v):
+        half = 1 - drive ** (1 / v) * cmath.exp(1j * math.pi * (2 * m + 1) / v) / 2
+        pole = half - cmath.sqrt(half * half - 1)
+        pole = pole if abs(pole) < 1 else 1 / pole
+        c = product(c, [1.0, -pole])
+    c = [x.real for x in map(complex, c)]
+    kept = abs(c[-1])  # 1 - b0
+    return Filter(v, (), tuple(x - kept * y for x, y in zip(c, difference(v)))[:v])
 
 
-def alpha_of(drive):
-    return brentq(lambda alpha: math.log(drive_of(alpha)) - math.log(drive), 1e-9, 1 - 1e-12, xtol=1e-15)
+def kalman_for(v, error_max, noise_max):
+    """The steady Kalman filter of a white v-th difference that just meets a bound."""
+
+    def excess(log_drive):
+        f = steady_kalman(v, math.exp(log_drive))
+        return math.log(f.dynamic_error() / error_max) if error_max is not None else math.log(noise_max / f.noise_gain())
+
+    ends = (math.log(1e-14), math.log(1e6))
+    if excess(ends[0]) < 0 or excess(ends[1]) > 0:
+        raise Unfit("no steady Kalman filter between drives of 1e-14 and 1e6 R meets the bound")
+    return steady_kalman(v, math.exp(brentq(excess, *ends, xtol=1e-13)))
 
 
-def kalman_for(error_max, noise_max):
-    """The steady two-state Kalman filter that just meets a bound."""
-    if error_max is not None:
-        return kalman_alpha_beta(4 / (3 + math.sqrt(1 + 8 * error_max)))  # (1 - alpha) (2 - alpha) = D alpha^2
-    return kalman_alpha_beta(brentq(lambda alpha: closed_noise_gain(kalman_alpha_beta(alpha)) - noise_max, 1e-15, 1 - 1e-12, xtol=1e-15))
+def drive_of(f):
+    """Variance of the white v-th difference per R: C(1)^2 = B(1)^2 in units of 1 / (1 - b0)."""
+    return float(sum(f.b)) ** 2 / (1 - float(f.b[0]))
+
+
+def is_kalman(f, tolerance=1e-7):
+    if f.k or f.l != f.v - 1:
+        return False
+    return max(abs(float(x) - y) for x, y in zip(f.b, steady_kalman(f.v, drive_of(f)).b)) <= tolerance
 
 
 def stored_kf(f, common, error_max, noise_max):
-    """q of kf for a filter that is a steady Kalman filter, on the side that keeps the bound."""
-    alpha = float(f.b[0])
-    wanted = drive_of(alpha)
-    if not KF_DRIVE[0] <= wanted <= KF_DRIVE[1]:
-        raise Unfit(f"kf has steady gains from {alpha_of(KF_DRIVE[0]):.3f} to {alpha_of(KF_DRIVE[1]):.3f}, not {alpha:.4f}")
-    per_q = (10 / common["rate_dhz"]) ** 3 / (common["r_lsb2_q8"] / 256)
+    """q of kf or kf3 for a filter that is a steady Kalman filter, on the side that keeps the bound."""
+    name, field_name, power_of_period = {2: ("kf", "q_lsb2_s3", 3), 3: ("kf3", "q_lsb2_s5", 5)}[f.v]
+    low, high = drive_range(name, common["rate_dhz"])
+    wanted = drive_of(f)
+    per_q = (10 / common["rate_dhz"]) ** power_of_period / (common["r_lsb2_q8"] / 256)
     q = wanted / per_q
     if error_max is not None:
-        q = math.ceil(q * (1 - ROUNDING))
+        q = math.ceil(q * (1 - 1e-9))
     else:
-        q = math.floor(q * (1 + ROUNDING)) if noise_max is not None else round(q)
+        q = math.floor(q * (1 + 1e-9)) if noise_max is not None else round(q)
+    if not (low <= wanted <= high and low <= q * per_q <= high):
+        raise Unfit(f"{name} at {common['rate_dhz'] / 10:g} Hz has steady gains from {float(steady_kalman(f.v, low).b[0]):.3f} to "
+                    f"{float(steady_kalman(f.v, high).b[0]):.3f}, not {float(f.b[0]):.4f}")
     if not Q[0] <= q <= Q[1]:
-        raise Unfit(f"kf takes q from {Q[0]} to {Q[1]} LSB2/s3, not {wanted / per_q:.4g}")
-    if q * per_q > KF_DRIVE[1]:
-        raise Unfit(f"kf has steady gains up to {alpha_of(KF_DRIVE[1]):.3f}")
-    stored = kalman_alpha_beta(alpha_of(q * per_q))
-    fields = {"rate_dhz": common["rate_dhz"], "r_lsb2_q8": common["r_lsb2_q8"], "q_lsb2_s3": q}
+        raise Unfit(f"{name} takes q from {Q[0]} to {Q[1]}, not {wanted / per_q:.4g}")
+    fields = {"rate_dhz": common["rate_dhz"], "r_lsb2_q8": common["r_lsb2_q8"], field_name: q}
     notes = ["the gain follows R, which the firmware estimates: it is this one where the noise is the sigma given"]
-    return Configuration("kf", fields, stored, notes)
+    return Configuration(name, fields, steady_kalman(f.v, q * per_q), notes)
 
 
-def is_kalman(f, tolerance=1e-9):
-    alpha, beta = float(f.b[0]), float(sum(f.b))
-    return abs(beta - alpha * alpha / (2 - alpha)) <= tolerance
+def drive_range(name, rate_dhz):
+    """Drives (q T^3 / R, kf3: q T^5 / R) that the filter does not limit."""
+    if name == "kf":
+        return 16 / 2 ** 28, 1.0
+    return (2.0 ** -24, 1.0) if rate_dhz < KF3_FINE_FROM_DHZ else (2.0 ** -32, 2.0 ** -11)
 
 
 def configure(f, rate_hz, sigma_lsb, error_max=None, noise_max=None, fixed_a=False):
@@ -191,11 +227,20 @@ def configure(f, rate_hz, sigma_lsb, error_max=None, noise_max=None, fixed_a=Fal
     common = common_fields(rate_hz, sigma_lsb)
     if f.v == 2 and f.k <= 1 and f.l == 0:
         return stored_synth(f, common, error_max, noise_max, fixed_a)
-    if f.order == (2, 0, 1) and is_kalman(f):
+    if f.v in (2, 3) and is_kalman(f):
         return stored_kf(f, common, error_max, noise_max)
     if f.v == 2 and f.k <= 1 and f.l in (1, 2) or f.order == (3, 0, 2):
         return stored_plus(f, common, error_max, noise_max)
     raise Unfit(f"the library has no filter with (v, k, l) = ({f.v}, {f.k}, {f.l}): synth is (2, 1, 0), synth_plus (2, 1, 2) and (3, 0, 2)")
+
+
+def image_with(name):
+    """How to get an image of the firmware with this filter in it."""
+    sets = re.findall(r"^FILTERS_([a-z]+) *:= *(.*)$", IMAGES.read_text(encoding="utf-8") if IMAGES.is_file() else "", re.M)
+    holding = [word for word, names in sets if name in names.split()]
+    if holding:
+        return f"in the image that `make flash FILTERS={holding[0]}` builds and writes"
+    return f"in no image as shipped: `make flash FILTERS='sprf {name}'` builds one and writes it"
 
 
 def commands(configuration, rate_hz):
@@ -203,7 +248,7 @@ def commands(configuration, rate_hz):
     lines = [f"filter {configuration.name}"]
     told = [f"the firmware has no command that sets {' or '.join(n for n in configuration.fields if n != 'rate_dhz')}: `filter "
             f"{configuration.name}` runs it with the values of {configuration.name}_defaults; put the initialiser where your program calls "
-            f"{configuration.name}_init"]
+            f"{configuration.name}_init", f"{configuration.name} is {image_with(configuration.name)}"]
     if rate_hz in FIRMWARE_RATES_HZ:
         lines.insert(0, f"rate {rate_hz:g}")
     else:

@@ -74,12 +74,13 @@ def facts(f):
 
 def facts_text(one, period_s, sigma, unit, scale, at_text):
     closed = "no closed form for this order" if one.noise_gain_closed_form is None else f"closed form {one.noise_gain_closed_form:.9g}"
+    peak = f"overshoot {100 * one.overshoot:.1f} % at sample {one.peak_at_sample}" if one.overshoot > 5e-4 else "no overshoot"
     lines = [
         f"stable          yes: Schur-Cohn in exact rational numbers; slowest pole {one.pole_radius:.6f}",
         f"noise gain      {one.noise_gain:.9g} ({closed}, Lyapunov {one.noise_gain_lyapunov:.9g}): sigma {sigma:.4g} -> {sigma * one.noise_gain ** 0.5:.4g} {unit}",
         f"dynamic error   {one.dynamic_error:.6g} per {ordinal(one.v)} difference" + (f" = {one.dynamic_error * scale:.4g} {unit} {at_text}" if at_text else "") +
         f"; on the way there at most {one.dynamic_error_on_the_way / one.dynamic_error:.3f} times that" if one.dynamic_error else "dynamic error   0",
-        f"step            overshoot {100 * one.overshoot:.1f} % at sample {one.peak_at_sample}; within 2 % from sample {one.settled_at_sample} on "
+        f"step            {peak}; within 2 % from sample {one.settled_at_sample} on "
         f"({one.settled_at_sample * period_s:.4g} s); slowest pole alone: {one.settling_by_slowest_pole}",
         f"frequency       -3 dB at {one.bandwidth_per_sample / period_s:.4g} Hz; largest gain {one.largest_gain:.3f}",
     ]
@@ -93,8 +94,8 @@ def switching_text(band, found):
     each = [", ".join(f"{name} {(*filters[c].a, *filters[c].b)[place]:.4g}" for name, place in moving) for c in found.word]
     order = "; ".join(each) if len(set(each)) > 1 else each[0]
     words = {
-        "safe": f"safe: stable for any sequence of parameters within the band (every product of up to {found.depth} corner matrices proved)",
-        "unsafe": f"NOT safe: a disturbance does not decay when these follow one another for ever: {order}",
+        "safe": f"safe: stable for any sequence of parameters within the band (proved by products of up to {found.depth} corner matrices)",
+        "unsafe": f"NOT safe: a disturbance does not decay when these follow one another for ever: {order} (a start-up that lowers a gain once is no switching)",
         "undecided": "undecided: the bounds lie on both sides of 1; take a narrower band",
     }
     return [f"switching       {words[found.verdict]}", f"                joint spectral radius {found.low:.5f} .. {found.high:.5f}; band {band.text()}"]

@@ -15,7 +15,8 @@ from .structure import Filter, alpha_beta, difference, power, reflections, schur
 
 ORDER_MAX = 10  # v + k + l: beyond, double precision no longer holds the coefficients of a slow filter
 B0_MAX = 1 - 1e-9
-SOUND = 1e-8  # the product of 1 - reflection^2 below which rounding spoils the noise gain
+SOUND = 1e-12  # the product of 1 - reflection^2 below which rounding spoils the noise gain
+TRUE = 1e-3  # share by which a noise gain in floating point may differ from the rational one
 HALVINGS = 36
 NOTHING = 1e-7  # a sum of a below this, far under 1/65536, is 0
 WALL = 1e5  # what a place outside the region or the circle costs
@@ -120,19 +121,25 @@ class Search:
         wave = BUTTERWORTH[min(self.v, 4)]
         for shrink, whole, stiff in itertools.product((0.0, -3.0, -8.0), sums, (1.0, 1.8) if self.l else (1.0,)):
             memory = [stiff * wave[j] if j < len(wave) else 0.1 * stiff for j in range(1, self.l + 1)]
+            if shrink == 0.0 and self.v == 3 and self.l >= 2:  # the ratios of the slow steady Kalman filter
+                yield [0.0] + ([whole] + [0.0] * (self.free_a - 1) if self.free_a else []) + [2.0, 2.0] + [0.0] * (self.l - 2)
             yield [shrink] + ([whole] + [0.0] * (self.free_a - 1) if self.free_a else []) + memory
 
     def least(self, error_max, quick=False):
         """(noise gain, filter): the best that the searches from several starts find; None when none finds a stable filter."""
         starts = self.known[-2:] if quick and self.known else self.known[-2:] + list(self.starts())
         ranked = sorted(starts, key=lambda place: self.cost(place, error_max))
-        found = min((self.polished(place, error_max, (0.05,) if quick else (0.3, 0.02)) for place in ranked[:6]), key=lambda one: one.fun)
-        if found.fun >= WALL:
-            return None
-        place = [float(x) for x in found.x]
-        self.known.append(place)
-        f = self.filter_at(place, error_max)
-        return power(f.b, f.characteristic), f
+        spreads = (0.05,) if quick else (0.3, 0.02)
+        for found in sorted((self.polished(place, error_max, spreads) for place in ranked[:6]), key=lambda one: one.fun):
+            if found.fun >= WALL:
+                break
+            place = [float(x) for x in found.x]
+            f = self.filter_at(place, error_max)
+            gain = float(f.exact().noise_gain())
+            if abs(gain / power(f.b, f.characteristic) - 1) < TRUE:
+                self.known.append(place)
+                return gain, f
+        return None
 
     def polished(self, place, error_max, spreads):
         found = None
