@@ -274,6 +274,8 @@ def least_noise_of_the_notes():
             near(f.b[0], 1 / (1 + error), 1e-6, "b0")
         root = math.sqrt(error)
         near(g.noise_gain(), (1 + 4 * root) / (1 + 2 * root) ** 2, 1e-12, "alpha-beta's formula")
+        near(synthesis.by_formula(2, 0, error).noise_gain(), (1 + 2 * error) / (1 + 4 * error), 1e-12, "synth's formula")
+        near(configuration.kalman_for(2, error, None).b[0], 4 / (3 + math.sqrt(1 + 8 * error)), 1e-9, "the Kalman filter's formula")
     near(f.a[0], -0.379, 6e-4, "a1 at D = 0.1")
     near(f.b[0], 0.861, 6e-4, "b0 at D = 0.1")
 

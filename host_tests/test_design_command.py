@@ -288,6 +288,7 @@ def the_report_tells_what_was_computed():
     assert abs(result["design"]["noise_gain_lyapunov"] - result["design"]["noise_gain"]) < 1e-9
     assert result["order"] == [2, 1, 0] and result["design"]["characteristic"] == [float(x) for x in f.characteristic]
     assert "(1 - z^-1)^2 (1 - 0.3 z^-1) = 1 - 2.3 z^-1 + 1.6 z^-2 - 0.3 z^-3" in out
+    assert "x_e = 2.3 x1 - 1.6 x2 + 0.3 x3;  u = g - x_e;  x = x_e + 0.1 u" in out
     assert "1 - 2.07 z^-1 + 1.44 z^-2 - 0.27 z^-3" in out
     band = switching.Band(2, ((-0.3, 0.0),), ((0.1, 1.0),))
     assert abs(result["switching"]["low"] - switching.bounds(band).low) < 1e-12

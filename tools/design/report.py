@@ -33,7 +33,8 @@ def algorithm_text(f):
         if abs(weight) < 5e-8:
             continue
         sign = "-" if weight < 0 else "+"
-        text += f" {sign} {abs(weight):.7g} {name}" if text else f"{'-' if weight < 0 else ''}{abs(weight):.7g} {name}"
+        term = name if abs(abs(weight) - 1) < 5e-8 else f"{abs(weight):.7g} {name}"
+        text += f" {sign} {term}" if text else f"{'-' if weight < 0 else ''}{term}"
     return f"x_e = {text};  u = g - x_e;  x = x_e + {float(f.b[0]):.7g} u"
 
 
