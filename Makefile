@@ -146,6 +146,7 @@ sim:
 test:
 	@sh tools/deps.sh test
 	@sh tools/deps.sh flashtest || echo "test: test_flash will be skipped"
+	@sh tools/deps.sh design || echo "test: test_design will be skipped"
 	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt $(H)/native_replay $(H)/pipeline_replay $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun \
 	    $(H)/filter_sequence $(CHIP_TESTS) $(FLASHTEST_IMAGES) $(PAPERS)
 	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" sh tools/run_tests.sh $(TESTS)
