@@ -50,7 +50,7 @@ typedef struct {
 /* Descriptor in program memory. */
 extern const filter_descriptor_t kf3_descriptor;
 
-enum { kf3_worst_cycles = 2450 }; /* of kf3_update, as in filter.h */
+enum { kf3_worst_cycles = 2350 }; /* of kf3_update, as in filter.h */
 
 void kf3_defaults(kf3_config_t *config, uint16_t rate_dhz);
 bool kf3_init(kf3_t *f, const kf3_config_t *config);
