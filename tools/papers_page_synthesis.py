@@ -69,6 +69,8 @@ def tables_000(rows):
     yield "Constant gains from x^ = g(0), R = 0.6: exact / measured in 0-5, 6-10, 11-15 s, and the largest bias", grid(
         of(rows, "roll_ramp30", "roll_cos60", "roll_bump30"), [(f"{turn} {title}", f"roll_{turn}", [f"exact_mse_{w}", f"mse_{w}"]) for turn in (
             "ramp30", "cos60", "bump30") for title, w in (("0-5", "0_5"), ("6-10", "6_10"), ("11-15", "11_15"))])
+    yield "Constant gains on the other rolls: exact in 0-5 / 6-10 / 11-15 s", grid(of(rows, "roll_*30", "roll_*60"), [
+        (turn, f"roll_{turn}", windows("exact_mse")) for turn in TURNS if turn not in ("ramp30", "cos60", "bump30")])
     yield "Every shipped filter (R told, other parameters as shipped): mean square error in 2-5 / 6-10 / 11-15 s, degree^2", grid(
         rows, [(turn, f"filters_{turn}", windows(names=("2_5", "6_10", "11_15"))) for turn in TURNS])
     yield from equal_noise_tables(rows)

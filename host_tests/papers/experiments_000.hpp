@@ -8,7 +8,7 @@ namespace papers::roll
 {
 int runs_of(const Options &options);
 
-// The notes' table: constant gains from x^ = g(0), in double exactly and by Monte Carlo, and the shipped `synth`.
+// The reference table: constant gains from x^ = g(0), in double exactly and by Monte Carlo, and the shipped `synth`.
 void reference_table(const Options &options);
 
 // The synthesised filter and others of the same noise gain, without noise, over all profiles.

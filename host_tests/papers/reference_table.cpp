@@ -1,4 +1,4 @@
-// The reference table of paper 000's experiment: three profiles, six pairs of gains, exactly, in double and on the
+// The reference table of paper 000's experiment: seven profiles, six pairs of gains, exactly, in double and on the
 // chip's integers.
 #include "experiments_000.hpp"
 #include "roll.hpp"
@@ -17,7 +17,6 @@ struct Gains {
 constexpr std::array<Gains, 6> gains{
     { { -0.3, 0.1 }, { 0.0, 0.1 }, { 0.0, 0.3 }, { -0.1, 0.3 }, { -0.3, 0.5 }, { 0.0, 2.0 / 3.0 } }
 };
-constexpr std::array<const char *, 3> turns{ "ramp30", "cos60", "bump30" };
 
 std::string name_of(const Gains &g)
 {
@@ -55,12 +54,12 @@ void reference_table(const Options &options)
         makers.push_back(synthesised(g.a1, g.b0));
         makers.push_back(fixed(g));
     }
-    Progress progress(turns.size());
-    for (const char *turn : turns) {
-        const std::string experiment = std::string("roll_") + turn;
-        const std::vector<Score> scores = monte_carlo(makers, profile(turn), Noise{}, runs, options.seed);
+    Progress progress(static_cast<double>(profiles().size()));
+    for (const Profile &turn : profiles()) {
+        const std::string experiment = std::string("roll_") + turn.name;
+        const std::vector<Score> scores = monte_carlo(makers, turn, Noise{}, runs, options.seed);
         for (std::size_t i = 0; i < gains.size(); i++) {
-            const Exact value = exact(makers[2 * i], profile(turn));
+            const Exact value = exact(makers[2 * i], turn);
             for (std::size_t w = 0; w < window_count; w++) {
                 row(experiment, name_of(gains[i]), Arithmetic::in_double, std::string("exact_mse_") + windows[w].name,
                     value.mse_deg2[w], 1);
