@@ -145,6 +145,19 @@ def rate_table(t):
     return markdown("RMSE by class and rate", "LSB, geometric mean over the streams.", ["class, rate", *ticks(order), "streams"], lines)
 
 
+def best_table(t):
+    lines = []
+    for group in t.classes:
+        cells = []
+        for rate_hz in RATES_HZ:
+            found = {name: score.geometric(t.group(group, rate_hz), name) for name in t.named} if t.group(group, rate_hz) else {}
+            least = min(found.values(), default=0.0)
+            cells.append(" ".join(f"`{name}`" for name in sorted(found, key=found.get) if found[name] <= score.WITHIN * least))
+        lines.append([group, *cells])
+    return markdown("Which filter when", f"Of the {len(t.named)} that the rule compares: the best, then those within 5 % of it.",
+                    ["class", *(f"{rate_hz} Hz" for rate_hz in RATES_HZ)], lines)
+
+
 def fixed_table(t):
     wins = score.fixed_wins(t.cells)
     cells = sum(1 for group in t.classes for rate_hz in RATES_HZ if t.group(group, rate_hz))
@@ -259,7 +272,7 @@ def verdict_table(t):
 
 def tables(t):
     lines = []
-    for table in (verdict_table, ratio_table, class_table, rate_table, fixed_table, losses_table, readings_table, candidates_table,
+    for table in (verdict_table, ratio_table, class_table, best_table, rate_table, fixed_table, losses_table, readings_table, candidates_table,
                   held_table, contention_table, streams_table):
         lines += table(t)
     return [*lines, ""]
@@ -270,7 +283,8 @@ def tables(t):
 
 def facts(text):
     """{key: number} for the text of a page, from its tables alone: `class ROW COLUMN` and so on, without ticks and intervals."""
-    keys = {"RMSE by class": "class", "RMSE by class and rate": "rate", "Times the best": "ratio", "Contention": "contention", "Verdict": "verdict"}
+    keys = {"RMSE by class": "class", "RMSE by class and rate": "rate", "Times the best": "ratio", "Contention": "contention", "Verdict": "verdict",
+            "Parts held back": "held"}
     found = {}
     for title, row, column, cell in PAGE.cells(text):
         if title in keys:
