@@ -1,6 +1,7 @@
 """The command of tools/design: what it refuses, in which words; that the compiled library accepts every configuration it prints and runs as the
 tool says; its pictures and JSON."""
 import contextlib
+import functools
 import io
 import json
 import math
@@ -42,6 +43,9 @@ def said(*arguments):
     return status, out.getvalue(), error.getvalue()
 
 
+refusal = functools.lru_cache(said)
+
+
 def answer(*arguments):
     path = OUT / "design.json"
     status, out, error = said(*arguments, "--json", path)
@@ -74,11 +78,11 @@ REFUSED = (
     ([*BASE, "-k", "1", "-l", "2", "--noise-gain", "0.3"], ("(2, 1, 2)", "sum a = -1", "astatism 3", "nearest")),
     ([*BASE, "-v", "0", "--noise-gain", "0.3"], ("(0, 0, 0)", "v must be 1 or more")),
     ([*BASE, "-v", "2", "-k", "0", "-l", "30", "--noise-gain", "0.3"], ("(2, 0, 30)", "at most 10")),
-    ([*BASE, "--noise-gain", "0.6", "--band", "b7=0..1"], ("--band b7", "a1, b0")),
-    ([*BASE, "--noise-gain", "0.6", "--band", "b0=1..0.5"], ("ends before it begins",)),
+    ([*BASE, "-k", "0", "--noise-gain", "0.6", "--band", "b7=0..1"], ("--band b7", "has b0;")),
+    ([*BASE, "-k", "0", "--noise-gain", "0.6", "--band", "b0=1..0.5"], ("ends before it begins",)),
     ([*BASE, "--noise-gain", "0.6", "--band", "b0"], ("NAME=LOW..HIGH",)),
     ([*BASE, "--noise-gain", "0.6", "--a=x"], ("'x' is not numbers",)),
-    ([*BASE, "--noise-gain", "0.6", "--lsb-per-unit", "0"], ("--lsb-per-unit is 0",)),
+    ([*BASE, "-k", "0", "--noise-gain", "0.6", "--lsb-per-unit", "0"], ("--lsb-per-unit is 0",)),
     ([*BASE, "--error", "0.001", "--at", "1", "-k", "0", "--settle", "0.001", "-l", "1", "-v", "3"], ("no stable filter", "settles in time", "nearest")),
 )
 
@@ -86,7 +90,7 @@ REFUSED = (
 @test
 def what_cannot_be_is_refused_in_one_sentence():
     for arguments, words in REFUSED:
-        status, out, error = said(*arguments)
+        status, out, error = refusal(*arguments)
         last = error.strip().splitlines()[-1] if error.strip() else ""
         assert status in (1, 2) and not out, (arguments, status, out[:100])
         assert last.startswith("design: "), (arguments, error)
@@ -99,7 +103,7 @@ def what_cannot_be_is_refused_in_one_sentence():
 def the_nearest_is_feasible():
     told = []
     for arguments, _ in REFUSED:
-        _, _, error = said(*arguments)
+        _, _, error = refusal(*arguments)
         found = re.search(r"nearest: ((?:--?[a-z-]+[= ]\S+ ?)+)", error.replace(",", ", ").replace(", ", ",") if "--b " in error else error)
         if not found or "--band" in arguments:
             continue
@@ -149,8 +153,8 @@ def accepted(made):
 def the_library_and_the_tool_refuse_the_same():
     chance, seen = random.Random(7), [0, 0]
     common = {"rate_dhz": 1000, "r_lsb2_q8": 768}
-    cases = [(chance.randint(0, 65535), chance.randint(-65600, 65600)) for _ in range(4000)]
-    cases += [(b0, a1 + step) for b0 in range(656, 32700, 97) for a1 in [-(2 ** 31 // (65536 - b0))] for step in (-1, 0, 1)]
+    cases = [(chance.randint(0, 65535), chance.randint(-65600, 65600)) for _ in range(2000)]
+    cases += [(b0, a1 + step) for b0 in range(656, 32700, 197) for a1 in [-(2 ** 31 // (65536 - b0))] for step in (-1, 0, 1)]
     cases += [(655, 0), (656, 0), (65535, 0), (656, 65535), (656, 65536), (656, -65536), (65535, -65535)]
     for b0, a1 in cases:
         wanted = configuration.synth_legal(b0, a1)
@@ -159,7 +163,7 @@ def the_library_and_the_tool_refuse_the_same():
         if abs(a1) < 65536 and 656 <= b0:
             assert configuration.synth_filter(b0, a1).stable() == wanted, (b0, a1)
         seen[ok] += 1
-    assert min(seen) > 500, seen
+    assert min(seen) > 200, seen
     ranges = {"b0_uq16": configuration.B0, "a1_q16": configuration.A1, "r_lsb2_q8": configuration.R_Q8}
     assert LIBRARY.ranges("synth") == ranges, LIBRARY.ranges("synth")
     assert LIBRARY.ranges("kf") == {"r_lsb2_q8": configuration.R_Q8, "q_lsb2_s3": configuration.Q}
@@ -178,14 +182,14 @@ def synth_plus_and_the_tool_refuse_the_same():
     if "synth_plus" not in LIBRARY.names:
         raise Skip("synth_plus is not in the library")
     chance, seen = random.Random(8), [0, 0]
-    for _ in range(6000):
+    for _ in range(3000):
         fields = {"rate_dhz": 1000, "r_lsb2_q8": 768, "k": chance.choice((0, 0, 1, 2, 5, 15, 16, 17)), "b0_uq16": chance.randint(600, 65535),
                   "b1_q16": chance.randint(-65600, 65600), "b2_q16": chance.choice((0, chance.randint(-65600, 65600)))}
         wanted = configuration.plus_legal(*(fields[name] for name in ("k", "b0_uq16", "b1_q16", "b2_q16")))
         ok, _ = LIBRARY.make("synth_plus", fields)
         assert ok == wanted, (fields, ok)
         seen[ok] += 1
-    assert min(seen) > 500, seen
+    assert min(seen) > 200, seen
     for arguments in (["-k", "0", "-l", "1"], ["-l", "2", "--a=-0.75"], ["-v", "3", "-k", "0", "-l", "2"]):
         result, _ = answer(*BASE, *arguments, "--noise-gain", "0.4")
         made = result["configurations"][0]
@@ -241,9 +245,9 @@ def kf_has_the_gain_told():
 
 
 @test
-def kf3_and_synth_opt_take_what_is_made_for_them():
-    if not {"kf3", "synth_opt"} <= LIBRARY.names:
-        raise Skip("kf3 or synth_opt is not in the library")
+def kf3_has_the_gain_told():
+    if "kf3" not in LIBRARY.names:
+        raise Skip("kf3 is not in the library")
     for rate, error, jerk in (("50", "3", "4000"), ("25", "0.5", "400"), ("200", "0.6", "1000")):
         result, _ = answer("--rate", rate, "--sigma", "2", "--no-pictures", "-v", "3", "-k", "0", "-l", "2", "--error", error, "--at", jerk)
         made = [one for one in result["configurations"] if one.get("filter") == "kf3"][0]
@@ -256,6 +260,12 @@ def kf3_and_synth_opt_take_what_is_made_for_them():
         drive = made["fields"]["q_lsb2_s5"] / float(rate) ** 5 / (made["fields"]["r_lsb2_q8"] / 256)
         wanted = float(configuration.steady_kalman(3, drive).b[0])
         assert abs(LIBRARY.gain(state) / wanted - 1) < 2e-2, (rate, LIBRARY.gain(state), wanted)
+
+
+@test
+def synth_opt_ends_at_the_filter_told():
+    if "synth_opt" not in LIBRARY.names:
+        raise Skip("synth_opt is not in the library")
     for a, b in (("0", str(2 / 3)), (str(-1 / 6), str(11 / 13))):
         result, _ = answer(*BASE, f"--a={a}", "--b", b)
         made = [one for one in result["configurations"] if one.get("filter") == "synth_opt"]
