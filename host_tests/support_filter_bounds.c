@@ -224,6 +224,35 @@ static const char *broken_kf3(const kf3_t *f, int32_t x_lsb_q16)
     return (!two_state_warming_up(&f->core) && kf3_covariance_broken(f)) ? "P" : NULL;
 }
 
+/* adaptive.h, adaptive.c: state within its formats, noise within the legal R, memory between 3.3 and 4096 samples. */
+static const char *broken_adaptive(const adaptive_t *f, int32_t x_lsb_q16)
+{
+    if (x_lsb_q16 != f->x_lsb_q16) {
+        return "x returned";
+    }
+    if (f->rate_max_lsb_q24 > (int32_t)127 << 24 || fx_abs32(f->rate_lsb_q24) > (uint32_t)f->rate_max_lsb_q24) {
+        return "rate";
+    }
+    if (f->size_lsb_uq16 > (uint32_t)8704 << 16) {
+        return "innovation";
+    }
+    if (f->third_lsb_uq24 < 2990500U || f->scatter_lsb_uq24 > 1509949440U) {
+        return "noise";
+    }
+    /* a gate of 16 sigma of 90 LSB times 1.6 */
+    if (f->gate_lsb_uq16 > (uint32_t)2305 << 16 || fx_abs32(f->mean_lsb_q24) > (uint32_t)128 << 24) {
+        return "gate";
+    }
+    if (f->slow_uq16 < 32U || f->fast_uq16 < f->slow_uq16 || f->fast_uq16 > 39322U ||
+        (f->k_uq32 != 0U && f->k_uq32 >> 16 < 32U) || f->k_uq32 >> 16 > 39322U) {
+        return "memory";
+    }
+    if (f->collected > FILTER_WARM_UP_SAMPLES || f->filled > 3U || f->weight_uq16 < f->last_uq16 || f->confirm < 4U) {
+        return "counts";
+    }
+    return NULL;
+}
+
 static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)
 {
     switch ((filter_kind_t)f->kind) {
@@ -247,6 +276,8 @@ static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)
         return broken_mixture(&f->state.af, true, x_lsb_q16);
     case FILTER_KIND_kf3:
         return broken_kf3(&f->state.kf3, x_lsb_q16);
+    case FILTER_KIND_adaptive:
+        return broken_adaptive(&f->state.adaptive, x_lsb_q16);
     case FILTER_KIND_COUNT:
         break;
     }
@@ -287,6 +318,7 @@ int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
     case FILTER_KIND_pbf:
     case FILTER_KIND_af:
     case FILTER_KIND_kf3:
+    case FILTER_KIND_adaptive:
         return 0;
     case FILTER_KIND_COUNT:
         break;
@@ -333,6 +365,7 @@ uint16_t recovery_samples(filter_kind_t kind)
     case FILTER_KIND_af:
         return 150;
     case FILTER_KIND_kf3:
+    case FILTER_KIND_adaptive:
         return 90;
     case FILTER_KIND_COUNT:
         break;

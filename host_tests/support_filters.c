@@ -150,6 +150,7 @@ bool has_joint_condition(filter_kind_t kind)
     case FILTER_KIND_pbf:
     case FILTER_KIND_af:
     case FILTER_KIND_kf3:
+    case FILTER_KIND_adaptive:
         return false;
     case FILTER_KIND_COUNT:
         break;
@@ -159,7 +160,8 @@ bool has_joint_condition(filter_kind_t kind)
 
 bool gated_means_unused(filter_kind_t kind)
 {
-    return kind != FILTER_KIND_soft && kind != FILTER_KIND_shrf && kind != FILTER_KIND_pbf && kind != FILTER_KIND_af;
+    return kind != FILTER_KIND_soft && kind != FILTER_KIND_shrf && kind != FILTER_KIND_pbf && kind != FILTER_KIND_af &&
+           kind != FILTER_KIND_adaptive;
 }
 
 bool starts_with_median(filter_kind_t kind)

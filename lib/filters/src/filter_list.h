@@ -5,6 +5,7 @@
 #ifndef FILTER_LIST_H
 #define FILTER_LIST_H
 
+#include "adaptive.h"
 #include "af.h"
 #include "kf.h"
 #include "kf3.h"
@@ -27,7 +28,8 @@
     X(shrf)            \
     X(pbf)             \
     X(af)              \
-    X(kf3)
+    X(kf3)             \
+    X(adaptive)
 #endif
 
 #endif
