@@ -87,6 +87,19 @@ typedef float_mixture_t float_shrf_t;
 typedef float_mixture_t float_pbf_t;
 typedef float_mixture_t float_af_t;
 
+typedef struct {
+    float x, v; /* LSB, LSB per sample */
+    float mean; /* of the innovations */
+    float k;
+    float sigma, scatter; /* LSB */
+    float guard, slow, fast, share, manoeuvre, rate_max, confirm;
+    float run;
+    float z[3];
+    uint16_t terms, window;
+    uint8_t filled;
+    bool identify, below, third;
+} float_adaptive_t;
+
 void float_kf_start(float_kf_t *f, const kf_config_t *config, float x0_lsb);
 void float_kf_set_noise(float_kf_t *f, float r_lsb2);
 float float_kf_update(float_kf_t *f, int16_t z_lsb);
@@ -136,6 +149,11 @@ void float_af_start(float_af_t *f, const af_config_t *config, float x0_lsb);
 void float_af_set_noise(float_af_t *f, float r_lsb2);
 float float_af_update(float_af_t *f, int16_t z_lsb);
 float float_af_coast(float_af_t *f);
+
+void float_adaptive_start(float_adaptive_t *f, const adaptive_config_t *config, float x0_lsb);
+void float_adaptive_set_noise(float_adaptive_t *f, float r_lsb2);
+float float_adaptive_update(float_adaptive_t *f, int16_t z_lsb);
+float float_adaptive_coast(float_adaptive_t *f);
 
 /* What the three with two states of the channel share. */
 void float_mixture_start(float_mixture_t *f, const mixture_config_t *config, float x0_lsb);

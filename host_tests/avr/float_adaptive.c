@@ -1,0 +1,147 @@
+/* The guarded adaptive filter as adaptive.h describes it, in float. */
+#include "float_filters.h"
+
+#include <math.h>
+
+static float limited(float v, float min, float max)
+{
+    return (v < min) ? min : (v > max) ? max : v;
+}
+
+void float_adaptive_start(float_adaptive_t *f, const adaptive_config_t *config, float x0_lsb)
+{
+    float rate_hz = (float)config->rate_dhz / 10.0f;
+    f->guard = (float)config->guard_sigma_q8 / 256.0f;
+    f->identify = config->identify != 0u;
+    f->slow = limited(2000.0f / ((float)config->slow_ms * rate_hz), 0.0005f, 0.6f);
+    f->fast = limited(2000.0f / ((float)config->fast_ms * rate_hz), f->slow, 0.6f);
+    f->share = 0.4f * f->fast;
+    f->manoeuvre = 2.15f * (float)sqrtf(f->share / (2.0f - f->share));
+    f->rate_max = limited((float)config->rate_max_lsb_s / rate_hz, 0.0f, 127.0f);
+    f->confirm = limited((float)config->confirm_ms * rate_hz / 1000.0f, 4.0f, 65535.0f);
+    f->window = 64;
+    for (float samples = rate_hz * 10.0f; samples >= 2560.0f && f->window < 1024u; samples /= 2.0f) {
+        f->window *= 2u;
+    }
+    f->terms = 2;
+    float_adaptive_set_noise(f, (float)config->r_lsb2_q8 / 256.0f);
+    f->terms = 3; /* one in the start */
+    f->x = x0_lsb;
+    f->v = 0.0f;
+    f->mean = 0.0f;
+    f->k = 0.5f;
+    f->z[0] = f->z[1] = f->z[2] = x0_lsb;
+    f->filled = 3;
+    f->run = 0;
+    f->third = f->identify; /* one step after the start */
+    f->below = false;
+}
+
+void float_adaptive_set_noise(float_adaptive_t *f, float r_lsb2)
+{
+    if (!f->identify || f->terms == 2u) {
+        f->sigma = (float)sqrtf(r_lsb2);
+        f->scatter = f->sigma;
+    }
+}
+
+static void identify(float_adaptive_t *f, float z)
+{
+    float term = (float)fabsf(z - 3.0f * f->z[0] + 3.0f * f->z[1] - f->z[2]) / (0.7972f * 4.472136f);
+    float limit = 3.75f * f->sigma;
+    uint16_t window = 2;
+    while (window * 2u <= f->terms && window < f->window) {
+        window *= 2u;
+    }
+    f->sigma += ((term < limit ? term : limit) - f->sigma) / (float)window;
+    f->sigma = limited(f->sigma, 0.1f, 143.0f);
+    f->terms = (f->terms == 65535u) ? 65535u : (uint16_t)(f->terms + 1u);
+}
+
+static void disperse(float_adaptive_t *f, float innovation, float spread)
+{
+    float window = (f->terms < 16u) ? 8.0f : (f->terms < 32u) ? 16.0f : 32.0f;
+    float term = 1.375f * (float)fabsf(innovation - f->mean);
+    float limit = 2.5f * spread;
+    f->scatter += ((term < limit ? term : limit) - spread) / window;
+    f->scatter = limited(f->scatter, 0.1f, 90.0f);
+}
+
+/* What is taken of an innovation beyond the gate; sets motion and jump. */
+static float judge(float_adaptive_t *f, float size, float gate, float before, bool below, bool *motion, bool *jump)
+{
+    f->run = (below != f->below) ? 1.0f : f->run + 1.0f;
+    f->below = below;
+    float agreed = limited(before, 0.0f, size);
+    if (agreed > gate) {
+        bool large = size > gate + f->rate_max / 8.0f;
+        if (!large || f->run >= f->confirm) {
+            *motion = true;
+            *jump = large;
+            return agreed;
+        }
+        agreed = gate;
+    }
+    float left = 2.0f * gate - size;
+    return (agreed > left) ? agreed : left;
+}
+
+static void step(float_adaptive_t *f, float z)
+{
+    float before = (f->filled == 0u) ? 0.0f : f->z[0] - f->x;
+    float spread = (f->guard > 0.0f ? f->scatter : f->sigma) * (1.0f + f->k);
+    float gate = (f->guard > 0.0f ? f->guard : 4.0f) * spread;
+    f->x += f->v;
+    float innovation = z - f->x;
+    float sign = (innovation < 0.0f) ? -1.0f : 1.0f;
+    float taken = sign * innovation;
+    bool motion = false;
+    bool jump = false;
+    if (f->guard > 0.0f && taken > gate) {
+        taken = judge(f, taken, gate, sign * before, innovation < 0.0f, &motion, &jump);
+    } else {
+        f->run = 0;
+    }
+    float most = (gate > 128.0f) ? 128.0f : gate;
+    f->mean += f->share * (sign * (taken > most ? most : taken) - f->mean);
+    float drift = (float)fabsf(f->mean);
+    if (motion || drift > f->manoeuvre * spread) {
+        f->k = (f->k < f->fast) ? f->fast : f->k;
+    } else if (drift <= 0.75f * f->manoeuvre * spread) {
+        f->k -= f->k * f->k / 4.0f;
+        f->k = (f->k < f->slow) ? f->slow : f->k;
+    }
+    if (jump) {
+        f->x += sign * taken;
+        f->v = 0.0f;
+    } else {
+        float w = f->k * sign * taken;
+        f->x += 2.0f * w - f->k * w;
+        f->v = limited(f->v + f->k * w, -f->rate_max, f->rate_max);
+    }
+    if (f->identify && !f->third) {
+        disperse(f, innovation, spread);
+    }
+}
+
+float float_adaptive_coast(float_adaptive_t *f)
+{
+    f->filled = 0;
+    f->x += f->v;
+    return f->x;
+}
+
+float float_adaptive_update(float_adaptive_t *f, int16_t z_lsb)
+{
+    float z = (float)z_lsb;
+    step(f, z);
+    if (f->third && f->filled == 3u) {
+        identify(f, z);
+    }
+    f->third = f->identify && (f->guard <= 0.0f || !f->third);
+    f->z[2] = f->z[1];
+    f->z[1] = f->z[0];
+    f->z[0] = z;
+    f->filled = (f->filled < 3u) ? (uint8_t)(f->filled + 1u) : 3u;
+    return f->x;
+}
