@@ -199,18 +199,18 @@ double reference_kf3_noise_gain(const reference_kf3_t *f)
     return squares;
 }
 
-// The n-th root of the norm of M^n, n = 2^20, by squaring.
+// The n-th root of the norm of M^n, n = 2^30, by squaring.
 double reference_kf3_radius(const reference_kf3_t *f)
 {
     Matrix m = closed_loop(*f);
     double logarithm = 0.0;
-    for (int n = 0; n < 20; n++) {
+    for (int n = 0; n < 30; n++) {
         const double size = m.norm();
         logarithm = 2.0 * (logarithm + std::log(size));
         m /= size;
         m = product(m, m);
     }
-    return std::exp((logarithm + std::log(m.norm())) / 1048576.0);
+    return std::exp((logarithm + std::log(m.norm())) / 1073741824.0);
 }
 
 // The roots of the characteristic polynomial by the cosine of a third of an angle.
