@@ -49,6 +49,8 @@ def equal_noise_tables(rows):
         name = f"equal_noise({level})"
         yield f"Equal noise gain, a1:b0 = {level}: bias^2 in 6-10 s / largest error, degrees", grid(rows, [("noise gain", name, ["noise_gain"]), *(
             (turn, name, [f"bias2_{turn}", f"peak_{turn}"]) for turn in TURNS)])
+    yield "Equal noise gain: lag of a Kalman filter of two states by that of the synthesised one (Table 1 takes 1.418)", grid(rows, [
+        (title, "equal_noise_lag", [name]) for title, name in (("white rate", "kf2_rate"), ("white acceleration", "kf2_acceleration"))])
     yield "Equal noise gain, all cells: the synthesised filter against each", grid(rows, [
         ("cells", "equal_noise_all", ["cells"]), ("it loses in bias^2", "equal_noise_all", ["synth_loses"]),
         ("in largest error", "equal_noise_all", ["synth_loses_peak"]), ("its bias^2 by theirs, least", "equal_noise_all", ["bias2_ratio_least"]),

@@ -115,11 +115,28 @@ void rows(const std::string &experiment, const std::string &name, const Profile 
     row(experiment, name, Arithmetic::in_double, std::string("peak_") + turn.name, value.peak_deg, 1);
 }
 
-std::string experiment_of(const Pair &level)
+std::string named(const char *what, const Pair &level)
 {
     char text[60];
-    std::snprintf(text, sizeof text, "equal_noise(%g:%g)", level.a1, level.b0);
+    std::snprintf(text, sizeof text, "%s(%g:%.3g)", what, level.a1, level.b0);
     return text;
+}
+
+// Lag under a constant acceleration of the two Kalman filters of two states by that of the synthesised one, at equal
+// noise gain. Table 1 takes sqrt((1.419 - 0.359) / (0.875 - 0.348)) = 1.418 of it.
+void lag_rows()
+{
+    constexpr std::array<Pair, 6> pairs{
+        { { -0.3, 0.1 }, { -0.1, 0.3 }, { 0.0, 0.3 }, { -0.3, 0.5 }, { 0.0, 2.0 / 3.0 }, { -1.0 / 6.0, 11.0 / 13.0 } }
+    };
+    for (const Pair &pair : pairs) {
+        const double noise = reference_closed_noise_gain(pair.a1, pair.b0);
+        for (std::size_t i = 0; i < 2; i++) {
+            const double lag = stationary_lag(with_noise_gain(families()[i], noise));
+            row("equal_noise_lag", named("synth", pair), Arithmetic::in_double, families()[i].name,
+                lag / reference_closed_lag(pair.a1, pair.b0), 1);
+        }
+    }
 }
 } // namespace
 
@@ -128,7 +145,7 @@ void equal_noise(const Options &)
     std::map<std::string, Tally> tallies;
     Progress progress(levels.size());
     for (const Pair &level : levels) {
-        const std::string experiment = experiment_of(level);
+        const std::string experiment = named("equal_noise", level);
         const double noise = reference_closed_noise_gain(level.a1, level.b0);
         const Maker synth = synthesised(level.a1, level.b0);
         row(experiment, "synth", Arithmetic::in_double, "noise_gain", stationary_noise_gain(synth), 1);
@@ -147,6 +164,7 @@ void equal_noise(const Options &)
         }
         progress.advance();
     }
+    lag_rows();
     for (const auto &[name, tally] : tallies) {
         row("equal_noise_all", name, Arithmetic::in_double, "cells", tally.cells, 1);
         row("equal_noise_all", name, Arithmetic::in_double, "synth_loses", tally.lost, 1);
