@@ -88,7 +88,7 @@ void begin(two_state_wide_t &core, double p11, double p22)
                          static_cast<std::int32_t>(fixed(rate0_lsb, 16)), fixed(p11, 16), 0, fixed(p22, 28));
 }
 
-// A state with a core that can be begun; one without is another paper's. A core holds P in units of its R: of R_L in lrf.
+// A state with a core that can be begun; one without is another paper's. A core holds P in units of its R (lrf: R_L).
 template <class State> auto begin_state(State &state, int) -> decltype(begin(state.core, 0.0, 0.0))
 {
     const double r_core_deg2 = state.core.r_lsb2_q8 / 256.0 * lsb_deg * lsb_deg;
