@@ -28,7 +28,8 @@ def impulse_sum(f, samples=200_000):
 
 
 class Parameter(ctypes.Structure):
-    _fields_ = [("name", ctypes.c_char * 10), ("unit", ctypes.c_char * 8), ("offset", ctypes.c_uint8), ("size", ctypes.c_uint8), ("fraction_bits", ctypes.c_uint8),
+    _fields_ = [("name", ctypes.c_char * 10), ("unit", ctypes.c_char * 8), ("offset", ctypes.c_uint8),
+                ("size", ctypes.c_uint8), ("fraction_bits", ctypes.c_uint8),
                 ("zero_means_off", ctypes.c_uint8), ("is_signed", ctypes.c_uint8), ("min", ctypes.c_int32), ("max", ctypes.c_int32)]
 
 
@@ -37,12 +38,14 @@ class Descriptor(ctypes.Structure):
 
 
 class Probe(ctypes.Structure):
-    _fields_ = [("x_lsb_q16", ctypes.c_int32), ("rate_lsb_q16", ctypes.c_int32), ("innovation_lsb_q16", ctypes.c_int32), ("p_lsb2_q8", ctypes.c_uint32),
+    _fields_ = [("x_lsb_q16", ctypes.c_int32), ("rate_lsb_q16", ctypes.c_int32), ("innovation_lsb_q16", ctypes.c_int32),
+                ("p_lsb2_q8", ctypes.c_uint32),
                 ("gate_lsb2_q8", ctypes.c_uint32), ("gain_uq16", ctypes.c_uint16), ("flags", ctypes.c_uint8)]
 
 
 # field of NAME_config_t for each parameter's name as typed
-FIELDS = {"a1": "a1_q16", "b0": "b0_uq16", "b1": "b1_q16", "b2": "b2_q16", "r": "r_lsb2_q8", "q": "q_lsb2_s3", "k": "k", "u": "variant_u", "p0": "p0_lsb2_q8"}
+FIELDS = {"a1": "a1_q16", "b0": "b0_uq16", "b1": "b1_q16", "b2": "b2_q16", "r": "r_lsb2_q8", "q": "q_lsb2_s3", "k": "k", "u": "variant_u",
+          "p0": "p0_lsb2_q8"}
 
 
 def field_of(p):
@@ -98,7 +101,8 @@ class Library:
 def compiles_and_runs(initialiser, name):
     """True when a program with the emitted line in it compiles without a warning and NAME_init accepts it."""
     source, program = OUT / f"emitted_{name}.c", OUT / f"emitted_{name}"
-    source.write_text(f'#include "{name}.h"\n{initialiser}\nint main(void) {{ {name}_t f; return {name}_init(&f, &config) ? 0 : 1; }}\n', encoding="utf-8")
+    source.write_text(f'#include "{name}.h"\n{initialiser}\n'
+                      f'int main(void) {{ {name}_t f; return {name}_init(&f, &config) ? 0 : 1; }}\n', encoding="utf-8")
     sources = sorted(str(p) for p in pathlib.Path("lib/filters/src").glob("*.c"))
     command = ["gcc", "-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-Ilib/filters/src", str(source), *sources, "-o", str(program)]
     subprocess.run(command, check=True, capture_output=True)

@@ -183,7 +183,8 @@ def kalman_impulse(moves, gain, samples):
 
 @test
 def singer_filters_are_of_the_structure():
-    cases = ((0.7, 0.01, (0.509563, -0.678818, 0.239285)), (0.9, 0.001, (0.423581, -0.682675, 0.283102)), (1.0, 0.0005, (0.431300, -0.733268, 0.318831)))
+    cases = ((0.7, 0.01, (0.509563, -0.678818, 0.239285)), (0.9, 0.001, (0.423581, -0.682675, 0.283102)),
+             (1.0, 0.0005, (0.431300, -0.733268, 0.318831)))
     for rho, drive, b in cases:
         moves = np.array([[1, 1, 0], [0, 1, 1], [0, 0, rho]], float)
         gain = steady_kalman(moves, np.diag([0, 0, drive]), 1.0)
@@ -338,7 +339,8 @@ def floors_and_regions():
     assert f.b[0] >= 0.5 and -1 / 3 <= f.a[0] <= 0
     slow = 0.02 ** (1 / 12)
     assert response.pole_radius(synthesis.least_noise(Request(2, 1, 0, slowest=slow), 9.0)) <= slow + 1e-9
-    for bad in (Request(2, 1, 2), Request(1, 1, 0), Request(0, 0, 0), Request(2, 0, 9), Request(2, 1, 0, fixed_a=(-1.0,)), Request(2, 2, 0, fixed_a=(0.1,))):
+    for bad in (Request(2, 1, 2), Request(1, 1, 0), Request(0, 0, 0), Request(2, 0, 9), Request(2, 1, 0, fixed_a=(-1.0,)),
+                Request(2, 2, 0, fixed_a=(0.1,))):
         try:
             synthesis.least_noise(bad, 1.0)
         except Infeasible as problem:

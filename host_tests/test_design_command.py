@@ -70,7 +70,8 @@ REFUSED = (
     ([*BASE, "--noise-gain", "nan"], ("nan", "finite")),
     ([*BASE, "--error", "2"], ("--at", "acceleration")),
     ([*BASE, "--error", "inf", "--at", "100"], ("--error is inf", "finite")),
-    ([*BASE, "--error", "0.01", "--at", "1000", "--noise-gain", "0.6"], ("both bounds", "least noise gain is", "least error is", "nearest: --noise-gain")),
+    ([*BASE, "--error", "0.01", "--at", "1000", "--noise-gain", "0.6"],
+     ("both bounds", "least noise gain is", "least error is", "nearest: --noise-gain")),
     ([*BASE, "--a=-0.9", "--b", "0.1"], ("unstable", "1 + 2 a1 (1 - b0) = -0.62", "nearest: --a=-0.9 --b 0.44")),
     ([*BASE, "-k", "0", "--b", "0.1,-0.5"], ("unstable", "pole", "nearest: --b")),
     ([*BASE, "--a=-0.3,0.1", "-k", "1", "--b", "0.1"], ("--a has 2", "k = 1", "-k 2")),
@@ -83,7 +84,8 @@ REFUSED = (
     ([*BASE, "--noise-gain", "0.6", "--band", "b0"], ("NAME=LOW..HIGH",)),
     ([*BASE, "--noise-gain", "0.6", "--a=x"], ("'x' is not numbers",)),
     ([*BASE, "-k", "0", "--noise-gain", "0.6", "--lsb-per-unit", "0"], ("--lsb-per-unit is 0",)),
-    ([*BASE, "--error", "0.001", "--at", "1", "-k", "0", "--settle", "0.001", "-l", "1", "-v", "3"], ("no stable filter", "settles in time", "nearest")),
+    ([*BASE, "--error", "0.001", "--at", "1", "-k", "0", "--settle", "0.001", "-l", "1", "-v", "3"],
+     ("no stable filter", "settles in time", "nearest")),
 )
 
 
@@ -196,7 +198,8 @@ def synth_plus_and_the_tool_refuse_the_same():
         assert made["filter"] == "synth_plus" and made["noise_gain"] <= 0.4, made
         accepted(made)
         assert compiles_and_runs(made["initialiser"], "synth_plus")
-        runs_as_told("synth_plus", made["fields"], configuration.plus_filter(made["fields"]["k"], [made["fields"][b] for b in ("b0_uq16", "b1_q16", "b2_q16")]))
+        stored = [made["fields"][b] for b in ("b0_uq16", "b1_q16", "b2_q16")]
+        runs_as_told("synth_plus", made["fields"], configuration.plus_filter(made["fields"]["k"], stored))
 
 
 def runs_as_told(name, fields, f):

@@ -191,7 +191,8 @@ def synthesised(task):
     if task.noise_max is not None and f.noise_gain() > task.noise_max:
         finite_positive(task.noise_max, "--noise-gain")
         other = least_error(task.request, task.noise_max)  # says itself when no error will do
-        raise Wrong(f"{task.request.name} cannot keep both bounds: with that error the least noise gain is {f.noise_gain():.4f}, not {task.noise_max:g}, and "
+        raise Wrong(f"{task.request.name} cannot keep both bounds: with that error the least noise gain is {f.noise_gain():.4f}, "
+                    f"not {task.noise_max:g}, and "
                     f"with that noise gain the least error is {other.dynamic_error() * task.scale:.4g}, not {task.error_max * task.scale:.4g}; "
                     f"nearest: --noise-gain {math.ceil(f.noise_gain() * 1e4) / 1e4:.4f}")
     return f
@@ -240,16 +241,18 @@ def configured(name, f, task, lsb_per_unit, fixed_a):
     """(lines, JSON) of the library's configuration."""
     rate_hz = round(1 / task.period_s, 9)
     try:
-        made = configuration.configure(f, rate_hz, task.sigma * lsb_per_unit, task.error_max, task.noise_max if task.error_max is None else None, fixed_a)
+        noise_max = task.noise_max if task.error_max is None else None
+        made = configuration.configure(f, rate_hz, task.sigma * lsb_per_unit, task.error_max, noise_max, fixed_a)
     except configuration.Unfit as problem:
         return [f"{name}: none: {problem}"], {"structure": name, "none": str(problem)}, None
     noise, error = float(made.filter.noise_gain()), float(made.filter.dynamic_error())
     lines, told = configuration.commands(made, rate_hz)
-    text = [f"{name}:", f"    {made.initialiser()}", f"    as stored: {report_parameters(made)}; noise gain {noise:.7f}, dynamic error {error:.7g} per "
+    text = [f"{name}:", f"    {made.initialiser()}",
+            f"    as stored: {report_parameters(made)}; noise gain {noise:.7f}, dynamic error {error:.7g} per "
             f"{ordinal(made.filter.v)} difference" + (f" = {error * task.scale:.5g}" if task.scale else "")]
     text += [f"    type: {line}" for line in lines] + [f"    note: {line}" for line in told + made.notes]
-    return text, {"structure": name, "filter": made.name, "fields": made.fields, "initialiser": made.initialiser(), "noise_gain": noise, "dynamic_error": error,
-                  "commands": lines, "notes": told + made.notes}, made
+    return text, {"structure": name, "filter": made.name, "fields": made.fields, "initialiser": made.initialiser(), "noise_gain": noise,
+                  "dynamic_error": error, "commands": lines, "notes": told + made.notes}, made
 
 
 def limit_of_synth_opt(f, task, lsb_per_unit):
@@ -258,7 +261,8 @@ def limit_of_synth_opt(f, task, lsb_per_unit):
         made = configuration.stored_opt(f, configuration.common_fields(round(1 / task.period_s, 9), task.sigma * lsb_per_unit))
     except configuration.Unfit:
         return [], []
-    return [f"the same as the limit of a schedule, with its quick start: {made.name}:", f"    {made.initialiser()}"] + [f"    note: {x}" for x in made.notes], [
+    text = [f"the same as the limit of a schedule, with its quick start: {made.name}:", f"    {made.initialiser()}"]
+    return text + [f"    note: {x}" for x in made.notes], [
         {"structure": "limit of a schedule", "filter": made.name, "fields": made.fields, "initialiser": made.initialiser(),
          "noise_gain": float(made.filter.noise_gain()), "dynamic_error": float(made.filter.dynamic_error()), "commands": [], "notes": made.notes}]
 
@@ -281,11 +285,13 @@ def design(options):
     lsb_per_unit = options.lsb_per_unit if options.lsb_per_unit is not None else 1.0
     finite_positive(lsb_per_unit, "--lsb-per-unit")
     unitless = options.unit != "LSB" and options.lsb_per_unit is None
-    text = [f"(v, k, l) = ({f.v}, {f.k}, {f.l}), {1 / task.period_s:g} Hz, sigma {task.sigma:.4g} {options.unit}; {what_was_asked(task, options, analysed)}", "",
+    text = [f"(v, k, l) = ({f.v}, {f.k}, {f.l}), {1 / task.period_s:g} Hz, sigma {task.sigma:.4g} {options.unit}; "
+            f"{what_was_asked(task, options, analysed)}", "",
             f"A(z)            {report.factored_text(f)}", f"B(z)            {report.polynomial_text(f.b)}",
             f"closed loop     B / C, C(z) = {report.polynomial_text(f.characteristic)}", f"algorithm       {report.algorithm_text(f)}"]
     text += report.facts_text(one, task.period_s, task.sigma, options.unit, task.scale, task.at_text) + report.switching_text(band, verdict)
-    text += ["", "side by side" + ("" if not analysed else ", each with the same dynamic error")] + report.comparison_text(compared, task.period_s, task.scale, options.unit)
+    text += ["", "side by side" + ("" if not analysed else ", each with the same dynamic error")]
+    text += report.comparison_text(compared, task.period_s, task.scale, options.unit)
     text += ["", "configuration" + (f" (taking 1 {options.unit} for 1 LSB: give --lsb-per-unit)" if unitless else "")]
     entries = []
     for name, g in [("this", f)] + [(name, g) for name, g in rows if not isinstance(g, str)]:
@@ -304,7 +310,7 @@ def design(options):
         drawn = pictures.draw(options.out, title, shown, task.period_s, task.scale or 1.0, limit, options.unit if task.scale else "per difference")
         text += ["", "pictures        " + " ".join(str(path) for path in drawn)]
     result = {"order": f.order, "period_s": task.period_s, "sigma": task.sigma, "unit": options.unit, "design": dataclasses.asdict(one),
-              "alternatives": [{"name": name, "none": x} if isinstance(x, str) else {"name": name, **dataclasses.asdict(x)} for name, x in compared[1:]],
+              "alternatives": [{"name": name, **({"none": x} if isinstance(x, str) else dataclasses.asdict(x))} for name, x in compared[1:]],
               "switching": {"band": band.text(), "low": verdict.low, "high": verdict.high, "verdict": verdict.verdict, "depth": verdict.depth},
               "configurations": entries, "pictures": [str(path) for path in drawn]}
     return text, result

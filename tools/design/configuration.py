@@ -84,9 +84,11 @@ def stored_synth(f, common, error_max, noise_max, fixed_a=False):
     a1 = (float(f.a[0]) if f.a else 0.0) * ONE
     b0 = float(f.b[0]) * ONE
     if not B0[0] - 0.5 <= b0 <= B0[1] + 0.5:
-        raise Unfit(f"synth takes b0 from {B0[0] / ONE:.5f} to {B0[1] / ONE:.5f}, not {b0 / ONE:.6g}; nearest: --b {min(max(b0, B0[0]), B0[1]) / ONE:.5f}")
+        raise Unfit(f"synth takes b0 from {B0[0] / ONE:.5f} to {B0[1] / ONE:.5f}, not {b0 / ONE:.6g}; "
+                    f"nearest: --b {min(max(b0, B0[0]), B0[1]) / ONE:.5f}")
     if not A1[0] - 0.5 <= a1 <= A1[1] + 0.5:
-        raise Unfit(f"synth takes a1 from {A1[0] / ONE:.5f} to {A1[1] / ONE:.5f}, not {a1 / ONE:.6g}; nearest: --a {min(max(a1, A1[0]), A1[1]) / ONE:.5f}")
+        raise Unfit(f"synth takes a1 from {A1[0] / ONE:.5f} to {A1[1] / ONE:.5f}, not {a1 / ONE:.6g}; "
+                    f"nearest: --a {min(max(a1, A1[0]), A1[1]) / ONE:.5f}")
     if error_max is None and noise_max is None:
         chosen = (min(max(round(b0), B0[0]), B0[1]), min(max(round(a1), A1[0]), A1[1]))
         if not synth_legal(*chosen):
@@ -127,7 +129,8 @@ def stored_plus(f, common, error_max, noise_max):
     wanted = [float(x) * ONE for x in f.b] + [0.0] * (2 - f.l)
     ends = (B0, A1, A1)
     if not all(low - 0.5 <= x <= high + 0.5 for x, (low, high) in zip(wanted, ends)):
-        raise Unfit(f"synth_plus takes b0 from {B0[0] / ONE:.5f} to {B0[1] / ONE:.5f}, b1 and b2 within {A1[1] / ONE:.5f}; nearest: a bound a little wider")
+        raise Unfit(f"synth_plus takes b0 from {B0[0] / ONE:.5f} to {B0[1] / ONE:.5f}, b1 and b2 within {A1[1] / ONE:.5f}; "
+                    f"nearest: a bound a little wider")
     if error_max is None and noise_max is None:
         choices = [tuple(min(max(round(x), low), high) for x, (low, high) in zip(wanted, ends))]
     else:
@@ -139,7 +142,8 @@ def stored_plus(f, common, error_max, noise_max):
     made = plus_filter(k, chosen, f.v)
     if worth(made, error_max, noise_max)[0]:
         raise Unfit("no values in 1/65536 near the design keep the bound; nearest: a bound 0.1 % wider")
-    fields = {"rate_dhz": common["rate_dhz"], "b0_uq16": chosen[0], "k": k, "b1_q16": chosen[1], "b2_q16": chosen[2], "r_lsb2_q8": common["r_lsb2_q8"]}
+    fields = {"rate_dhz": common["rate_dhz"], "b0_uq16": chosen[0], "k": k, "b1_q16": chosen[1], "b2_q16": chosen[2],
+              "r_lsb2_q8": common["r_lsb2_q8"]}
     return Configuration("synth_plus", fields, made)
 
 

@@ -23,7 +23,8 @@ def columns(path):
             try:
                 values = [float(row[place]) for place in places]
             except (ValueError, IndexError):
-                raise Infeasible(f"{path}: row {number} has no three numbers in {', '.join(names)}; nearest: a stream as docs/protocol.md has it") from None
+                raise Infeasible(f"{path}: row {number} has no three numbers in {', '.join(names)}; "
+                                 "nearest: a stream as docs/protocol.md has it") from None
             for column, value in zip(found, values):
                 column.append(value)
     return found

@@ -67,7 +67,8 @@ def facts(f):
     closed = closed_noise_gain(plain)
     wave = step(plain)
     width, largest, _ = bandwidth(plain)
-    return Facts(f.v, f.k, f.l, list(plain.a), list(plain.b), [float(x) for x in plain.characteristic], pole_radius(plain), float(f.exact().noise_gain()),
+    return Facts(f.v, f.k, f.l, list(plain.a), list(plain.b), [float(x) for x in plain.characteristic], pole_radius(plain),
+                 float(f.exact().noise_gain()),
                  lyapunov_noise_gain(plain), closed, float(f.dynamic_error()),
                  float(abs(moving_error(plain, horizon(plain))).max()), wave.overshoot, wave.peak_at, wave.settled_at, settling_by_radius(plain),
                  width, largest)
@@ -78,8 +79,10 @@ def facts_text(one, period_s, sigma, unit, scale, at_text):
     peak = f"overshoot {100 * one.overshoot:.1f} % at sample {one.peak_at_sample}" if one.overshoot > 5e-4 else "no overshoot"
     lines = [
         f"stable          yes: Schur-Cohn in exact rational numbers; slowest pole {one.pole_radius:.6f}",
-        f"noise gain      {one.noise_gain:.9g} ({closed}, Lyapunov {one.noise_gain_lyapunov:.9g}): sigma {sigma:.4g} -> {sigma * one.noise_gain ** 0.5:.4g} {unit}",
-        f"dynamic error   {one.dynamic_error:.6g} per {ordinal(one.v)} difference" + (f" = {one.dynamic_error * scale:.4g} {unit} {at_text}" if at_text else "") +
+        f"noise gain      {one.noise_gain:.9g} ({closed}, Lyapunov {one.noise_gain_lyapunov:.9g}): sigma {sigma:.4g} -> "
+        f"{sigma * one.noise_gain ** 0.5:.4g} {unit}",
+        f"dynamic error   {one.dynamic_error:.6g} per {ordinal(one.v)} difference" +
+        (f" = {one.dynamic_error * scale:.4g} {unit} {at_text}" if at_text else "") +
         f"; on the way there at most {one.dynamic_error_on_the_way / one.dynamic_error:.3f} times that" if one.dynamic_error else "dynamic error   0",
         f"step            {peak}; within 2 % from sample {one.settled_at_sample} on "
         f"({one.settled_at_sample * period_s:.4g} s); slowest pole alone: {one.settling_by_slowest_pole}",
@@ -96,10 +99,12 @@ def switching_text(band, found):
     order = "; ".join(each) if len(set(each)) > 1 else each[0]
     words = {
         "safe": f"safe: stable for any sequence of parameters within the band (proved by products of up to {found.depth} corner matrices)",
-        "unsafe": f"NOT safe: a disturbance does not decay when these follow one another for ever: {order} (a start-up that lowers a gain once is no switching)",
+        "unsafe": f"NOT safe: a disturbance does not decay when these follow one another for ever: {order} "
+                  "(a start-up that lowers a gain once is no switching)",
         "undecided": "undecided: the bounds lie on both sides of 1; take a narrower band",
     }
-    return [f"switching       {words[found.verdict]}", f"                joint spectral radius {found.low:.5f} .. {found.high:.5f}; band {band.text()}"]
+    return [f"switching       {words[found.verdict]}",
+            f"                joint spectral radius {found.low:.5f} .. {found.high:.5f}; band {band.text()}"]
 
 
 def comparison_text(rows, period_s, scale, unit):
@@ -112,6 +117,7 @@ def comparison_text(rows, period_s, scale, unit):
             continue
         values = " ".join([f"a{i + 1} = {x:.5g}" for i, x in enumerate(one.a)] + [f"b{j} = {x:.5g}" for j, x in enumerate(one.b)])
         absolute = f"{one.dynamic_error * scale:>11.4g}" if scale else f"{'-':>11}"
-        lines.append(f"{name:34}{one.noise_gain:>11.5f}{one.dynamic_error:>12.5g}{absolute}{100 * one.overshoot:>10.1f}%{one.settled_at_sample * period_s:>10.4g} s"
+        lines.append(f"{name:34}{one.noise_gain:>11.5f}{one.dynamic_error:>12.5g}{absolute}{100 * one.overshoot:>10.1f}%"
+                     f"{one.settled_at_sample * period_s:>10.4g} s"
                      f"{one.pole_radius:>9.4f}  {values}")
     return lines
