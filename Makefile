@@ -148,8 +148,8 @@ test:
 	@sh tools/deps.sh flashtest || echo "test: test_flash will be skipped"
 	@sh tools/deps.sh design || echo "test: test_design will be skipped"
 	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt $(H)/native_replay $(H)/pipeline_replay $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun \
-	    $(H)/filter_sequence $(CHIP_TESTS) $(FLASHTEST_IMAGES) $(PAPERS)
-	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" sh tools/run_tests.sh $(TESTS)
+	    $(SEQUENCES) $(CHIP_TESTS) $(FLASHTEST_IMAGES) $(PAPERS)
+	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" CHIP_SECOND="$(CHIP_SECOND)" sh tools/run_tests.sh $(TESTS)
 
 ## clean: remove what was built (the downloads in build/unity and build/venv stay)
 clean:

@@ -19,6 +19,25 @@ uint32_t random32_below(uint32_t *state, uint32_t end)
     return random32(state) % end;
 }
 
+uint8_t linked_kind(uint8_t kind)
+{
+    while (kind < (uint8_t)FILTER_KIND_COUNT && filter_any_descriptor((filter_kind_t)kind) == NULL) {
+        kind++;
+    }
+    return kind;
+}
+
+uint8_t any_kind(uint32_t number)
+{
+    uint8_t linked[FILTER_KIND_COUNT];
+    uint8_t count = 0;
+    FOR_EACH_KIND (kind) {
+        linked[count] = kind;
+        count++;
+    }
+    return linked[number % count];
+}
+
 static void copy_from_flash(void *to, const void *from, uint8_t size)
 {
     uint8_t *target = (uint8_t *)to;

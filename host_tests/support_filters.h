@@ -24,8 +24,15 @@
 #define ON_PC_OR_CHIP(pc, chip) (pc)
 #endif
 
-/* The kinds of the list. */
-#define FOR_EACH_KIND(kind) for (uint8_t kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++)
+/* From this kind on the first that the program links: on the chip not all are (mk/chip_tests.mk). */
+uint8_t linked_kind(uint8_t kind);
+
+/* One of the linked kinds for any number, all of them by turns. */
+uint8_t any_kind(uint32_t number);
+
+/* The kinds of the list that are linked. */
+#define FOR_EACH_KIND(kind) \
+    for (uint8_t kind = linked_kind(0); kind < (uint8_t)FILTER_KIND_COUNT; kind = linked_kind((uint8_t)(kind + 1U)))
 
 /* xorshift32 (Marsaglia); the state must not be 0. */
 uint32_t random32(uint32_t *state);

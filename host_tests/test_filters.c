@@ -352,7 +352,7 @@ static void any_calls_stay_within_bounds(void)
 {
     for (uint16_t run = 0; run < ON_PC_OR_CHIP(2000, 20); run++) {
         filter_any_t f;
-        make_random(&f, (uint8_t)(run % (uint16_t)FILTER_KIND_COUNT));
+        make_random(&f, any_kind(run));
         for (uint16_t k = 0; k < ON_PC_OR_CHIP(500, 100); k++) {
             assert_bounds(&f, random_call(&f));
         }

@@ -1,15 +1,22 @@
 # The portable part of the unit tests, and the long sequence of filter calls, as images for the ATmega328P.
 
-CHIP_UNITY  := test_filters test_filter_gaps test_fx test_kf test_kf3 test_lrf test_soft test_sprf test_synth test_two_state_wide test_sprf_paper \
+# the chip's flash holds about nine filters: the tests that go over the list run in two images, which link these
+CHIP_ALL    := $(shell sed -n 's/^    X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter_list.h)
+CHIP_SECOND := $(filter adaptive synth_opt synth_plus kf3,$(CHIP_ALL))
+CHIP_FIRST  := $(filter-out $(CHIP_SECOND),$(CHIP_ALL))
+linked_flag  = '-DFILTER_LINKED(X)=$(foreach f,$(1),X($(f)))'
+UNITY_1     := test_filters test_filter_gaps test_fx test_kf test_lrf test_soft test_sprf test_synth test_two_state_wide test_sprf_paper \
                test_shrf test_pbf test_af test_noise test_tilt
-CHIP_TESTS  := $(CHIP_UNITY:%=$(U)/tests/%.elf) $(U)/tests/filter_sequence.elf
+UNITY_2     := test_filters_2 test_filter_gaps_2 $(filter $(patsubst host_tests/%.c,%,$(wildcard host_tests/test_*.c)),$(CHIP_SECOND:%=test_%))
+CHIP_TESTS  := $(patsubst %,$(U)/tests/%.elf,$(UNITY_1) $(UNITY_2) filter_sequence_1 filter_sequence_2)
 BITEXACT    := host_tests/bitexact
 SEQUENCE    := $(addprefix $(BITEXACT)/,sequence_main.c filter_sequence.c crc32.c output.c) host_tests/support_filters.c host_tests/support_filter_bounds.c
 FILTER_SRC  := $(wildcard lib/filters/src/*.c lib/tilt/src/*.c)
 CHIP_FLAGS  := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihost_tests -I$(BITEXACT) -isystem $(UNITY_DIR)
 CHIP_COMMON := $(FILTER_SRC) host_tests/support_filters.c host_tests/support_filter_bounds.c $(BITEXACT)/output.c $(BITEXACT)/output_chip.c
-CHIP_OBJ    := $(CHIP_COMMON:%.c=$(U)/tests/%.o) $(U)/tests/host_tests/avr/unity_chip.o $(U)/tests/unity.o
+ANY_FILTER  := lib/filters/src/filter_any
+CHIP_OBJ    := $(patsubst %.c,$(U)/tests/%.o,$(filter-out $(ANY_FILTER).c,$(CHIP_COMMON))) $(U)/tests/host_tests/avr/unity_chip.o $(U)/tests/unity.o
 UNITY_CHIP  := -include host_tests/avr/unity_chip.h
 
 $(U)/tests/%.o: %.c Makefile mk/chip_tests.mk
@@ -23,13 +30,28 @@ $(U)/tests/unity.o: $(UNITY_DIR)/unity.c host_tests/avr/unity_chip.h Makefile mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=c11 -mmcu=atmega328p $(AVR_SMALL) -ffunction-sections -I$(BITEXACT) $(UNITY_CHIP) -c $< -o $@
 
-$(U)/tests/test_%.elf: $(U)/tests/host_tests/test_%.o $(CHIP_OBJ)
-	@$(AVR_CC) $(AVR_LINK) $^ -o $@
-
-$(U)/tests/filter_sequence.elf: $(patsubst %.c,$(U)/tests/%.o,$(SEQUENCE) $(BITEXACT)/output_chip.c $(FILTER_SRC))
-	@$(AVR_CC) $(AVR_LINK) $^ -o $@
-
-$(H)/filter_sequence: $(SEQUENCE) $(BITEXACT)/output_pc.c $(FILTER_SRC) $(wildcard lib/*/src/*.h host_tests/*.h $(BITEXACT)/*.h) \
-                      Makefile mk/chip_tests.mk
+$(U)/tests/$(ANY_FILTER)_1.o $(U)/tests/$(ANY_FILTER)_2.o: $(ANY_FILTER).c Makefile mk/chip_tests.mk
 	@mkdir -p $(@D)
-	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) $(SANITIZE) -I$(BITEXACT) $(filter %.c,$^) -o $@
+	@$(AVR_CC) $(CHIP_FLAGS) $(call linked_flag,$(if $(findstring _1.o,$@),$(CHIP_FIRST),$(CHIP_SECOND))) -MMD -MP -c $< -o $@
+
+$(UNITY_1:%=$(U)/tests/%.elf): $(U)/tests/%.elf: $(U)/tests/host_tests/%.o $(CHIP_OBJ) $(U)/tests/$(ANY_FILTER)_1.o
+	@$(AVR_CC) $(AVR_LINK) $^ -o $@
+
+$(filter-out %_2.elf,$(UNITY_2:%=$(U)/tests/%.elf)): $(U)/tests/%.elf: $(U)/tests/host_tests/%.o $(CHIP_OBJ) $(U)/tests/$(ANY_FILTER)_2.o
+	@$(AVR_CC) $(AVR_LINK) $^ -o $@
+
+$(filter %_2.elf,$(UNITY_2:%=$(U)/tests/%.elf)): $(U)/tests/%_2.elf: $(U)/tests/host_tests/%.o $(CHIP_OBJ) $(U)/tests/$(ANY_FILTER)_2.o
+	@$(AVR_CC) $(AVR_LINK) $^ -o $@
+
+SEQUENCE_OBJ := $(patsubst %.c,$(U)/tests/%.o,$(SEQUENCE) $(BITEXACT)/output_chip.c $(filter-out $(ANY_FILTER).c,$(FILTER_SRC)))
+$(U)/tests/filter_sequence_%.elf: $(SEQUENCE_OBJ) $(U)/tests/$(ANY_FILTER)_%.o
+	@$(AVR_CC) $(AVR_LINK) $^ -o $@
+
+# the whole list, and what the chip's two programs are compared with
+SEQUENCES := $(H)/filter_sequence $(H)/filter_sequence_1 $(H)/filter_sequence_2
+$(H)/filter_sequence_1: SEQUENCE_OF = $(call linked_flag,$(CHIP_FIRST))
+$(H)/filter_sequence_2: SEQUENCE_OF = $(call linked_flag,$(CHIP_SECOND))
+$(SEQUENCES): $(SEQUENCE) $(BITEXACT)/output_pc.c $(FILTER_SRC) $(wildcard lib/*/src/*.h host_tests/*.h $(BITEXACT)/*.h) \
+              Makefile mk/chip_tests.mk
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) $(SANITIZE) $(SEQUENCE_OF) -I$(BITEXACT) $(filter %.c,$^) -o $@

@@ -37,8 +37,20 @@ TWINS = [
 ]
 
 
+ROWS = ["kf", "sprf", "synth", "adaptive"]  # whose rows vectors_text.c compares
+
+
 class Failure(Exception):
     """Something that stops the comparison, in one sentence."""
+
+
+def filter_names():
+    text = pathlib.Path("lib/filters/src/filter_list.h").read_text(encoding="utf-8")
+    return re.findall(r"^    X\((\w+)\)", text, re.M)
+
+
+def linked(names):
+    return "-DFILTER_LINKED(X)=" + " ".join(f"X({name})" for name in names)
 
 
 def call(command):
@@ -62,15 +74,20 @@ class Build:
         self.name, self.command, self.chip, self.lib = name, command, chip, lib
 
     def compile(self, packed=False):
-        """The programs that together answer for all paths: on the chip one for the filters and one for the rest, as its flash wants."""
-        parts = {"filters": "-DVECTORS_FILTERS=1", "rest": "-DVECTORS_FILTERS=0"} if self.chip else {"": ""}
-        return [self.compile_part(part, flag, packed) for part, flag in parts.items()]
+        """The programs that together answer for all paths: on the chip two for the filters and one for the rest, as its flash wants."""
+        parts = {"": []}
+        if self.chip:
+            second = os.environ["CHIP_SECOND"].split()
+            first = [name for name in filter_names() if name not in second]
+            parts = {"first": ["-DVECTORS_FILTERS=1", linked(first)], "second": ["-DVECTORS_FILTERS=1", linked(second)],
+                     "rest": ["-DVECTORS_FILTERS=0", linked(ROWS)]}
+        return [self.compile_part(part, flags, packed) for part, flags in parts.items()]
 
-    def compile_part(self, part, flag, packed):
+    def compile_part(self, part, flags, packed):
         ends = ("-packed" if packed else "") + (f"-{part}.elf" if self.chip else "")
         exe = OUT / (re.sub(r"\W+", "_", self.name) + ends)
         if not fresh(exe, self.lib):
-            command = self.command + [flag] * bool(flag) + sources(self.chip, self.lib) + ["-o", str(exe)]
+            command = self.command + flags + sources(self.chip, self.lib) + ["-o", str(exe)]
             if packed and not self.chip:
                 command += ["-include", f"{HERE}/packed_states.h", "-Wno-address-of-packed-member", "-fno-sanitize=alignment"]
             done = call(command)
@@ -207,8 +224,7 @@ def differences(pair, tables):
 def missing_paths(answers):
     """Filters of the list and public functions of fx.h without a path."""
     have = {path for path, _ in answers}
-    text = pathlib.Path("lib/filters/src/filter_list.h").read_text(encoding="utf-8")
-    wanted = set(re.findall(r"X\((\w+)\)", text.split("FILTER_LIST(X)")[1]))
+    wanted = set(filter_names())
     text = pathlib.Path("lib/filters/src/fx.h").read_text(encoding="utf-8")
     wanted |= set(re.findall(r"^(?:static inline|FX_INLINE|FX_ONCE) [\w *]*?(fx_(?!flash_)\w+)\(", text, re.M))
     assert len(wanted) > 20, "the list of functions in fx.h was not found"
@@ -269,8 +285,8 @@ def prepare(build):
 
 
 def main():
-    if "WARNINGS" not in os.environ or "AVR_SMALL" not in os.environ:
-        print("bitexact.py: the compiler flags are missing from the environment (WARNINGS, AVR_SMALL): run it by make bitexact", file=sys.stderr)
+    if not {"WARNINGS", "AVR_SMALL", "CHIP_SECOND"} <= set(os.environ):
+        print("bitexact.py: WARNINGS, AVR_SMALL, CHIP_SECOND are missing from the environment: run it by make bitexact", file=sys.stderr)
         return 2
     OUT.mkdir(parents=True, exist_ok=True)
     report = Report()

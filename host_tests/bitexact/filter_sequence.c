@@ -28,6 +28,7 @@ void sequence_start(filter_sequence_t *s)
     s->random = SEED;
     s->crc = CRC32_START;
     s->extremes = true;
+    s->kind = linked_kind(0);
 }
 
 /* The lowest digit of a number of mixed base. */
@@ -69,7 +70,7 @@ static bool begin_extreme(filter_sequence_t *s)
         s->refused++;
     }
     s->corner = 0;
-    s->kind++;
+    s->kind = linked_kind((uint8_t)(s->kind + 1U));
     s->extremes = s->kind != (uint8_t)FILTER_KIND_COUNT;
     s->calls_end = 0;
     return true;
@@ -77,7 +78,7 @@ static bool begin_extreme(filter_sequence_t *s)
 
 static bool begin_random(filter_sequence_t *s)
 {
-    s->kind = (uint8_t)(s->episode % (uint32_t)FILTER_KIND_COUNT);
+    s->kind = any_kind(s->episode);
     uint32_t how = random32(&s->random);
     s->signal = (uint8_t)(ANYTHING + how % (SIGNALS - ANYTHING));
     s->noise_bits = (uint8_t)(how >> 24) & 15U;

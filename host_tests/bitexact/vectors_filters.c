@@ -20,7 +20,7 @@ uint8_t filter_paths(void)
 
 vectors_path_t filter_path(uint8_t which)
 {
-    return (vectors_path_t){ filter_any_name((filter_kind_t)which), ITEMS };
+    return (vectors_path_t){ filter_any_name((filter_kind_t)which), linked_kind(which) == which ? ITEMS : 0 };
 }
 
 /* Every second configuration that of a board at 100 Hz, so that gates open and close as they do in use. */

@@ -2,7 +2,7 @@
  * vectors [PATH BLOCK]: a line per block of each path (name, first index, CRC-32 of its answers), or in detail the
  * items of one block: index, inputs, output and state as bytes in hex. On the chip a simulator that wants the detail
  * writes the numbers of path and block into detail_path and detail_block during the first milliseconds. With
- * VECTORS_FILTERS 1 or 0 the program has the filters alone or all but them: a chip's flash cannot hold both.
+ * VECTORS_FILTERS 1 or 0 the program has the linked filters alone or all but filters: a chip's flash cannot hold all.
  */
 #include "crc32.h"
 #include "fx.h"

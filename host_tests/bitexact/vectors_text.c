@@ -86,15 +86,17 @@ static void number_item(uint8_t which)
 
 static uint32_t now_us;
 
-/* Every filter and rate in turn; slow motion on each axis. */
+/* Some filters and rates in turn, for there is no room for all; slow motion on each axis. */
 static void begin_rows(uint8_t mode, uint16_t index)
 {
+    static const uint8_t filters[] FX_FLASH = { FILTER_KIND_kf, FILTER_KIND_sprf, FILTER_KIND_synth,
+                                                FILTER_KIND_adaptive };
     static const uint16_t rates_dhz[] FX_FLASH = { 1000, 125, 8000 };
     uint8_t turn = (uint8_t)(index / ROWS_PER_START);
     settings_defaults();
     settings.mode = mode;
     settings.baud = 1000000;
-    settings.filter = turn % (uint8_t)FILTER_KIND_COUNT;
+    settings.filter = fx_flash_u8(&filters[turn % sizeof filters]);
     settings.rate_dhz = fx_flash_u16(&rates_dhz[turn % 3U]);
     now_us = vectors_random();
     pipeline_reset();

@@ -10,7 +10,7 @@ const filter_descriptor_t *filter_any_descriptor(filter_kind_t kind)
 #define DESCRIPTOR(F)     \
     case FILTER_KIND_##F: \
         return &F##_descriptor;
-        FILTER_LIST(DESCRIPTOR)
+        FILTER_LINKED(DESCRIPTOR)
 #undef DESCRIPTOR
     default:
         return NULL;
@@ -71,7 +71,7 @@ void filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16
     case FILTER_KIND_##F:                   \
         F##_defaults(&config->F, rate_dhz); \
         break;
-        FILTER_LIST(DEFAULTS)
+        FILTER_LINKED(DEFAULTS)
 #undef DEFAULTS
     default:
         break;
@@ -87,7 +87,7 @@ bool filter_any_init(filter_any_t *f, filter_kind_t kind, const filter_any_confi
             return false;                         \
         }                                         \
         break;
-        FILTER_LIST(INIT)
+        FILTER_LINKED(INIT)
 #undef INIT
     default:
         return false;
@@ -103,7 +103,7 @@ void filter_any_set_noise(filter_any_t *f, uint32_t r_lsb2_q8)
     case FILTER_KIND_##F:                      \
         F##_set_noise(&f->state.F, r_lsb2_q8); \
         break;
-        FILTER_LIST(SET_NOISE)
+        FILTER_LINKED(SET_NOISE)
 #undef SET_NOISE
     default:
         break;
@@ -117,7 +117,7 @@ void filter_any_reset(filter_any_t *f, int16_t z0_lsb)
     case FILTER_KIND_##F:               \
         F##_reset(&f->state.F, z0_lsb); \
         break;
-        FILTER_LIST(RESET)
+        FILTER_LINKED(RESET)
 #undef RESET
     default:
         break;
@@ -130,7 +130,7 @@ int32_t filter_any_update(filter_any_t *f, int16_t z_lsb)
 #define UPDATE(F)         \
     case FILTER_KIND_##F: \
         return F##_update(&f->state.F, z_lsb);
-        FILTER_LIST(UPDATE)
+        FILTER_LINKED(UPDATE)
 #undef UPDATE
     default:
         return 0;
@@ -143,7 +143,7 @@ int32_t filter_any_coast(filter_any_t *f)
 #define COAST(F)          \
     case FILTER_KIND_##F: \
         return F##_coast(&f->state.F);
-        FILTER_LIST(COAST)
+        FILTER_LINKED(COAST)
 #undef COAST
     default:
         return 0;
@@ -156,7 +156,7 @@ FX_ONCE uint8_t filter_any_flags(const filter_any_t *f)
 #define FLAGS(F)          \
     case FILTER_KIND_##F: \
         return F##_flags(&f->state.F);
-        FILTER_LIST(FLAGS)
+        FILTER_LINKED(FLAGS)
 #undef FLAGS
     default:
         return 0;
@@ -170,7 +170,7 @@ void filter_any_probe(const filter_any_t *f, filter_probe_t *out)
     case FILTER_KIND_##F:            \
         F##_probe(&f->state.F, out); \
         break;
-        FILTER_LIST(PROBE)
+        FILTER_LINKED(PROBE)
 #undef PROBE
     default:
         break;
