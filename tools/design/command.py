@@ -252,7 +252,8 @@ def configured(name, f, task, lsb_per_unit, fixed_a):
             f"{ordinal(made.filter.v)} difference" + (f" = {error * task.scale:.5g}" if task.scale else "")]
     text += [f"    type: {line}" for line in lines] + [f"    note: {line}" for line in told + made.notes]
     return text, {"structure": name, "filter": made.name, "fields": made.fields, "initialiser": made.initialiser(), "noise_gain": noise,
-                  "dynamic_error": error, "commands": lines, "notes": told + made.notes}, made
+                  "dynamic_error": error, "a": [float(x) for x in made.filter.a], "b": [float(x) for x in made.filter.b],
+                  "commands": lines, "notes": told + made.notes}, made
 
 
 def limit_of_synth_opt(f, task, lsb_per_unit):
