@@ -23,9 +23,9 @@ void float_adaptive_start(float_adaptive_t *f, const adaptive_config_t *config, 
     for (float samples = rate_hz * 10.0f; samples >= 2560.0f && f->window < 1024u; samples /= 2.0f) {
         f->window *= 2u;
     }
-    f->terms = 2;
+    f->terms = 0;
     float_adaptive_set_noise(f, (float)config->r_lsb2_q8 / 256.0f);
-    f->terms = 3; /* one in the start */
+    f->terms = 1; /* one in the start */
     f->x = x0_lsb;
     f->v = 0.0f;
     f->mean = 0.0f;
@@ -39,28 +39,35 @@ void float_adaptive_start(float_adaptive_t *f, const adaptive_config_t *config, 
 
 void float_adaptive_set_noise(float_adaptive_t *f, float r_lsb2)
 {
-    if (!f->identify || f->terms == 2u) {
+    if (!f->identify || f->terms == 0u) {
         f->sigma = (float)sqrtf(r_lsb2);
         f->scatter = f->sigma;
     }
 }
 
-static void identify(float_adaptive_t *f, float z)
+/* Terms that the next one is averaged with: the power of two that is not below its number. */
+static float next_window(const float_adaptive_t *f)
 {
-    float term = (float)fabsf(z - 3.0f * f->z[0] + 3.0f * f->z[1] - f->z[2]) / (0.7972f * 4.472136f);
-    float limit = 3.75f * f->sigma;
-    uint16_t window = 2;
-    while (window * 2u <= f->terms && window < f->window) {
+    uint16_t window = 1;
+    while (window <= f->terms && window < f->window) {
         window *= 2u;
     }
-    f->sigma += ((term < limit ? term : limit) - f->sigma) / (float)window;
-    f->sigma = limited(f->sigma, 0.1f, 143.0f);
+    return (float)window;
+}
+
+static void identify(float_adaptive_t *f, float z)
+{
+    float term = (float)fabsf(z - 3.0f * f->z[0] + 3.0f * f->z[1] - f->z[2]) / (0.7936f * 4.472136f);
+    float limit = 3.125f * f->sigma;
+    float window = next_window(f);
+    f->sigma += ((term < limit || window <= 4.0f ? term : limit) - f->sigma) / window;
+    f->sigma = limited(f->sigma, 0.1f, 90.0f);
     f->terms = (f->terms == 65535u) ? 65535u : (uint16_t)(f->terms + 1u);
 }
 
 static void disperse(float_adaptive_t *f, float innovation, float spread)
 {
-    float window = (f->terms < 16u) ? 8.0f : (f->terms < 32u) ? 16.0f : 32.0f;
+    float window = limited(next_window(f), 8.0f, 32.0f);
     float term = 1.375f * (float)fabsf(innovation - f->mean);
     float limit = 2.5f * spread;
     f->scatter += ((term < limit ? term : limit) - spread) / window;

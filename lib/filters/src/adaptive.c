@@ -27,18 +27,22 @@
 #define SCATTER_MAX_LSB_UQ24 0x5A000000U /* 90 LSB: its threshold lies below 128 LSB */
 
 /*
- * E|d| of a third difference limited to three sigma is 0.7972 sqrt(20) = 3.565 sigma of a sample; the half of it is
+ * E|d| of a third difference limited to 2.48 sigma is 0.7936 sqrt(20) = 3.549 sigma of a sample; the half of it is
  * kept. Its floor is that of a sigma of 0.1 LSB.
  */
-#define SIGMA_OF_THIRD_UQ16 36765U /* 2 / 3.565 */
-#define THIRD_OF_SIGMA_Q8 456U
+#define SIGMA_OF_THIRD_UQ16 36932U /* 2 / 3.549 */
+#define THIRD_OF_SIGMA_Q8 454U
 #define THIRD_MIN_LSB_UQ24 0x2E0000U
 
 /* The unguarded filter limits the innovations in their mean to four sigmas, as the guarded one to its gate. */
 #define UNGUARDED_SIGMA_Q8 1024U
 
-/* Weights of a term: in the start an average over 2, 4, 8... terms. The scatter's stays within 1/8..1/32. */
+/*
+ * Weights of a term: 1, 1/2, 1/4 twice, 1/8 four times..., the first four without a limit, because the R to start from may
+ * be far off. The scatter's stays within 1/8..1/32.
+ */
 #define WEIGHT_START_UQ16 32768U
+#define WEIGHT_LIMITED_UQ16 16384U
 #define WEIGHT_SCATTER_START_UQ16 8192U
 #define WEIGHT_SCATTER_UQ16 2048U
 #define WEIGHT_LAST_MAX_UQ16 1024U
@@ -175,7 +179,7 @@ FX_ONCE bool adaptive_init(adaptive_t *f, const adaptive_config_t *config)
 
 void adaptive_set_noise(adaptive_t *f, uint32_t r_lsb2_q8)
 {
-    if (f->identify && f->weight_uq16 != WEIGHT_START_UQ16) {
+    if (f->identify && (f->terms != 2U || f->weight_uq16 != WEIGHT_START_UQ16)) {
         return;
     }
     uint16_t sigma_q10 = fx_isqrt32(filter_limited_r_lsb2_q8(r_lsb2_q8) << 12); /* 110..32381 */
@@ -256,12 +260,12 @@ FX_INLINE void count_term(adaptive_t *f)
         f->terms--;
         if (f->terms == 0U) {
             f->weight_uq16 >>= 1;
-            f->terms = 0x8000U / (f->weight_uq16 >> 1);
+            f->terms = (uint16_t)(0x8000U / f->weight_uq16);
         }
     }
 }
 
-/* Noise of a sample from |z - 3 z1 + 3 z2 - z3|, limited to three times the sigma that is expected of it. */
+/* Noise of a sample from |z - 3 z1 + 3 z2 - z3|, limited to 2.48 times the sigma that is expected of it. */
 FX_NOINLINE void identify(adaptive_t *f, int16_t z_lsb)
 {
     int16_t third = (int16_t)(f->history_lsb[1] - f->history_lsb[0]);
@@ -270,13 +274,16 @@ FX_NOINLINE void identify(adaptive_t *f, int16_t z_lsb)
     uint16_t term_uq8 = (uint16_t)(((size > 320U) ? 320U : size) << 7); /* sigma below 90 LSB */
     uint16_t mean_uq8 = (uint16_t)(f->third_lsb_uq24 >> 16);
     uint16_t limit_uq8 = UINT16_MAX;
-    if (mean_uq8 < 17476U) { /* 3.75 times as large it fits */
-        limit_uq8 = (uint16_t)(4U * mean_uq8 - (mean_uq8 >> 2));
+    if (mean_uq8 < 20971U) { /* 3.125 times as large it fits: 2.48 sigma */
+        limit_uq8 = (uint16_t)(3U * mean_uq8 + (mean_uq8 >> 3));
     }
-    if (term_uq8 > limit_uq8) {
+    if (term_uq8 > limit_uq8 && f->weight_uq16 < WEIGHT_LIMITED_UQ16) {
         term_uq8 = limit_uq8;
     }
     uint32_t mean = averaged(f->third_lsb_uq24, term_uq8, mean_uq8, f->weight_uq16);
+    if (f->terms == 2U && f->weight_uq16 == WEIGHT_START_UQ16) {
+        mean = (uint32_t)term_uq8 << 16; /* nothing is left of the R to start from */
+    }
     if ((uint16_t)(mean >> 16) < (uint16_t)(THIRD_MIN_LSB_UQ24 >> 16)) {
         mean = THIRD_MIN_LSB_UQ24;
     }

@@ -16,7 +16,7 @@
  * gate that is larger than motion can explain (`ratemax`) is believed after `confirm` of samples on the same side.
  *
  * Noise, with `identify` on (1): sigma of a sample from third differences, which see neither position, rate nor
- * acceleration, each limited to three times the estimate (it feeds the unguarded filter and the probe); and the scatter
+ * acceleration, each limited to 2.5 times what it is expected to be (it feeds the unguarded filter and the probe); and the scatter
  * of the innovations about their mean, limited likewise (it feeds the guard, because motion that the line does not follow
  * widens it). R as configured or told by set_noise is what both start from, no more: a pipeline that estimates R of its
  * own need not call set_noise. Off (0): both are the square root of that R, always.
@@ -53,7 +53,7 @@ typedef struct {
     int32_t before_lsb_q16;    /* what the sample before is off, carried on with the rate; 0: there is none */
     uint32_t k_uq32;           /* 1 - fading factor, of the last update */
     uint32_t scatter_lsb_uq24; /* sigma of the innovations for k = 0: 0.1..90 */
-    uint32_t third_lsb_uq24;   /* half of the mean |third difference|: 1.783 sigma of a sample */
+    uint32_t third_lsb_uq24;   /* half of the mean |third difference|: 1.774 sigma of a sample */
     uint32_t gate_lsb_uq16;    /* of the last step */
     int32_t rate_max_lsb_q24;
     int16_t history_lsb[3];  /* samples, newest first */
