@@ -154,7 +154,7 @@ static enum call next_call(filter_sequence_t *s)
 
 static int32_t estimate_of(const filter_any_t *f)
 {
-    filter_probe_t probe;
+    filter_probe_t probe = { 0 };
     filter_any_probe(f, &probe);
     return probe.x_lsb_q16;
 }

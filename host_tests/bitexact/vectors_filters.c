@@ -74,7 +74,7 @@ void filter_path_item(uint8_t which, uint16_t index)
         begin((filter_kind_t)which, index);
     }
     call(index);
-    filter_probe_t probe;
+    filter_probe_t probe = { 0 };
     filter_any_probe(&filter, &probe);
     vectors_output((uint32_t)probe.x_lsb_q16, 4);
     vectors_output((uint32_t)probe.rate_lsb_q16, 4);

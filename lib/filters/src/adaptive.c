@@ -271,7 +271,7 @@ FX_NOINLINE void identify(adaptive_t *f, int16_t z_lsb)
     int16_t third = (int16_t)(f->history_lsb[1] - f->history_lsb[0]);
     third = (int16_t)(third + third + third + z_lsb - f->history_lsb[2]); /* <= 4 x 8191 */
     uint16_t size = (uint16_t)((third < 0) ? -third : third);
-    uint16_t term_uq8 = (uint16_t)(((size > 320U) ? 320U : size) << 7); /* sigma below 90 LSB */
+    uint16_t term_uq8 = (uint16_t)(((size > 318U) ? 318U : size) << 7); /* sigma below 90 LSB */
     uint16_t mean_uq8 = (uint16_t)(f->third_lsb_uq24 >> 16);
     uint16_t limit_uq8 = UINT16_MAX;
     if (mean_uq8 < 20971U) { /* 3.125 times as large it fits: 2.48 sigma */
@@ -590,7 +590,7 @@ uint32_t adaptive_r_lsb2_q8(const adaptive_t *f)
 static uint32_t variance_lsb2_q8(const adaptive_t *f)
 {
     uint16_t k = (uint16_t)(f->k_uq32 >> 16);
-    uint32_t numerator = 655360U - 14U * (uint32_t)k + 5U * fx_high_u16(k, k);
+    uint32_t numerator = 655360U - 14U * (uint32_t)k + 5U * (uint32_t)fx_high_u16(k, k);
     fx_scaled_t inverse = fx_scaled_div(fx_scaled(k), fx_scaled(0x20000U - k));
     fx_scaled_t square = fx_scaled_div(fx_scaled_div(fx_scaled(numerator), fx_scaled(0x20000U - k)),
                                        fx_scaled(0x20000U - k));
