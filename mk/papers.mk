@@ -19,23 +19,26 @@ $(P)/paper%: $(P)/host_tests/papers/paper%.o $(PAPERS_OBJ)
 	@$(HOST_CXX) $^ -lm -o $@
 .SECONDARY: $(PAPERS_MAIN:%.cpp=$(P)/%.o)
 
-# the shipped filters once more, as C++ with integers that count: what does not compile with them is named by the compiler
+# paper 002's filters once more, as C++ with integers that count: what does not compile with them is named by the compiler
 OPERATIONS := host_tests/papers/operations
-COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(wildcard lib/filters/src/*.c))
-COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers
+LISTED     := $(shell sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter_list.h)
+NOT_002    := $(shell sed -n 's/.*others{ \(.*\) };/\1/p' host_tests/papers/scope.hpp | tr -d '",')
+ONLY_002   := -D'FILTER_LIST(X)=$(foreach f,$(filter-out $(NOT_002),$(LISTED)),X($f))'
+COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(filter-out $(NOT_002:%=lib/filters/src/%.c) %/synth_common.c,$(wildcard lib/filters/src/*.c)))
+COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers $(ONLY_002)
 $(P)/operations/fx.o: COUNT_CXX += -DCOUNTING_PRIMITIVES
 
 $(P)/operations/%.o: lib/filters/src/%.c $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
 	@mkdir -p $(@D)
 	@sed -E 's/\[([^][]+)\]/[counting::index(\1)]/g; 1s|^|#line 1 "$<"\n|' $< | $(COUNT_CXX) -include $(OPERATIONS)/counting.hpp -x c++ -c - -o $@
 
-$(P)/operations/main.o: $(OPERATIONS)/main.cpp $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
+$(P)/operations/main.o: $(OPERATIONS)/main.cpp host_tests/papers/scope.hpp $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
 	@mkdir -p $(@D)
 	@$(COUNT_CXX) -Wall -Wextra -Werror -c $< -o $@
 
 $(P)/operations/state_bytes.o: $(OPERATIONS)/state_bytes.c $(OPERATIONS)/state_bytes.h host_tests/bitexact/packed_states.h $(wildcard lib/*/src/*.h) Makefile mk/papers.mk
 	@mkdir -p $(@D)
-	@$(HOST_CC) $(HOST_FLAGS) -Ihost_tests -I$(OPERATIONS) $(WARNINGS) -c $< -o $@
+	@$(HOST_CC) $(HOST_FLAGS) $(ONLY_002) -Ihost_tests -I$(OPERATIONS) $(WARNINGS) -c $< -o $@
 
 $(P)/operations002: $(COUNTED) $(P)/operations/main.o $(P)/operations/state_bytes.o
 	@$(HOST_CXX) $^ -lm -o $@
