@@ -132,7 +132,7 @@ $(S)/simrun: $(SIMRUN_SRC) $(wildcard sim/*.h)
 	@echo "built $@"
 
 STREAM ?= sim/streams/outliers-15pct.csv
-FILTER ?= sprf
+FILTER ?= adaptive
 RATE   ?= 100
 OUT    ?= $(S)/$(basename $(notdir $(STREAM))).$(FILTER).out.csv
 

@@ -18,7 +18,7 @@ void settings_defaults(void)
     settings.rate_dhz = 1000;
     settings.every = 1;
     settings.range_g = 16;
-    settings.filter = FILTER_KIND_sprf;
+    settings.filter = 0; /* the first of the image's filters */
     settings.mode = MODE_CSV;
     settings_follow();
 }

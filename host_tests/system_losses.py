@@ -42,17 +42,19 @@ def lose_nothing(name, stream, ppm, rate, baud, every, load_limit, fw=FW, shift_
     return rows
 
 
-def make_loss_test(rate, baud, every, load_limit, ppm):
+def make_loss_test(filter_name, rate, baud, every, load_limit, ppm):
     def check():
-        lose_nothing(f"loss-{rate}-{ppm}", STREAMS / "tilt-slow.csv", ppm, rate, baud, every, load_limit)
-    check.__name__ = f"nothing_lost_{rate}_hz_{'plus' if ppm > 0 else 'minus'}_777_ppm"
+        lose_nothing(f"loss-{filter_name}-{rate}-{ppm}", STREAMS / "tilt-slow.csv", ppm, rate, baud, every, load_limit, filter_name=filter_name)
+    check.__name__ = f"nothing_lost_{rate}_hz_{'plus' if ppm > 0 else 'minus'}_777_ppm_{filter_name}"
     return check
 
 
-for ppm_error in (777, -777):
-    TESTS.append(make_loss_test(100, 115200, 1, 0.10, ppm_error))
-    TESTS.append(make_loss_test(400, 500000, 1, 0.40, ppm_error))
-    TESTS.append(make_loss_test(800, 500000, 4, 0.50, ppm_error))
+TESTS.append(make_loss_test("adaptive", 100, 115200, 1, 0.11, 777))
+TESTS.append(make_loss_test("adaptive", 400, 500000, 1, 0.42, -777))
+TESTS.append(make_loss_test("adaptive", 800, 500000, 4, 0.56, 777))
+TESTS.append(make_loss_test("sprf", 100, 115200, 1, 0.10, -777))
+TESTS.append(make_loss_test("sprf", 400, 500000, 1, 0.40, 777))
+TESTS.append(make_loss_test("sprf", 800, 500000, 4, 0.50, -777))
 
 
 def make_width_test(rate, baud, every):

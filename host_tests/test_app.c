@@ -36,7 +36,7 @@ static void test_banner_then_header_then_rows(void)
     board_run_ms(1000);
     TEST_ASSERT_EQUAL_STRING_LEN("# tilt-uno ", board.notes[0], 11);
     TEST_ASSERT_EQUAL_STRING("# reset: power on", board.notes[1]);
-    TEST_ASSERT_EQUAL_STRING("# filter sprf, rate 100 Hz, range 16 g, every 1, baud 115200", board.notes[2]);
+    TEST_ASSERT_EQUAL_STRING("# filter adaptive, rate 100 Hz, range 16 g, every 1, baud 115200", board.notes[2]);
     TEST_ASSERT_EQUAL_STRING("# sensor: ADXL345 at 0x53, I2C at 363.6 kHz", board.notes[4]);
     TEST_ASSERT_EQUAL_STRING("t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags", board.notes[5]);
     TEST_ASSERT_EQUAL_size_t(6, board.note_count);
@@ -87,7 +87,7 @@ static void test_settings_show_and_set(void)
 {
     static const struct {
         const char *typed, *answer;
-    } talk[] = { { "filter", "# filter sprf" },
+    } talk[] = { { "filter", "# filter adaptive" },
                  { "filter kf", "# filter kf" },
                  { "FILTER  SPRF ", "# filter sprf" },
                  { "rate", "# rate 100 Hz, I2C at 363.6 kHz" },
@@ -128,7 +128,7 @@ static void test_refusals_name_the_legal_values(void)
                  { "every 65537", "# refused: every is one of 1 to 10000" },
                  { "every 1.5", "# refused: every is one of 1 to 10000" },
                  { "baud 12345", "# refused: baud is one of 9600 19200 38400 57600 115200 250000 500000 1000000" },
-                 { "filter median", "# refused: filter is one of kf sprf synth lrf soft sprf_paper shrf pbf af kf3" },
+                 { "filter median", "# refused: filter is one of adaptive kf sprf synth lrf soft sprf_paper shrf pbf af kf3" },
                  { "mode xml", "# refused: mode is one of csv plot" },
                  { "hello", "# unknown command (type help)" },
                  { "stop now", "# unknown command (type help)" } };

@@ -1,11 +1,11 @@
 # The images of the firmware: which filters are in them, and those that tests need besides.
 
-# Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter_list.h; sprf, which the firmware
-# starts with, must be among them. The first set is what is built and flashed when nothing is said; together they hold every filter.
+# Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter_list.h; the firmware starts with
+# the first. The first set is what is built and flashed when nothing is said; together they hold every filter.
 FILTER_SETS          := everyday robust synthesised
-FILTERS_everyday     := kf sprf synth lrf soft
-FILTERS_robust       := kf sprf lrf soft sprf_paper shrf pbf af
-FILTERS_synthesised  := kf sprf synth kf3
+FILTERS_everyday     := adaptive kf sprf synth soft
+FILTERS_robust       := sprf kf lrf soft sprf_paper shrf pbf af
+FILTERS_synthesised  := adaptive kf synth kf3
 FILTERS              := $(firstword $(FILTER_SETS))
 
 CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))

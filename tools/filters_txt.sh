@@ -11,9 +11,6 @@ for filter in "$@"; do
         *) echo "FILTERS: there is no filter $filter; filters: ${known}; sets of filters: $sets" >&2; exit 2 ;;
     esac
 done
-case " $* " in
-    *" sprf "*) ;;
-    *) echo "FILTERS: the firmware starts with sprf, which is not among: $*" >&2; exit 2 ;;
-esac
+[ $# -gt 0 ] || { echo "FILTERS is empty; filters: ${known}; sets of filters: $sets" >&2; exit 2; }
 mkdir -p "$(dirname "$file")"
 [ "$(cat "$file" 2> /dev/null)" = "$*" ] || echo "$*" > "$file"

@@ -34,7 +34,7 @@ void expected_begin(expected_t *e)
 {
     memset(e, 0, sizeof *e);
     e->settings = (settings_t){ .baud = 115200, .rate_dhz = 1000, .every = 1, .range_g = 16, .mode = MODE_CSV };
-    e->settings.filter = (uint8_t)filter_any_find("sprf");
+    e->settings.filter = (uint8_t)filter_any_find("adaptive");
 }
 
 static void expect(expected_t *e, const char *reply)

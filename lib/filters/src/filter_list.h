@@ -1,6 +1,6 @@
 /*
- * The one list of filters: X(name). Adding a filter adds a word here. A build that has no room for all says which it
- * wants: -D'FILTER_LIST(X)=X(kf) X(sprf)'.
+ * The one list of filters: X(name). Adding a filter adds a word here; the firmware starts with the first. A build that
+ * has no room for all says which it wants: -D'FILTER_LIST(X)=X(kf) X(sprf)'.
  */
 #ifndef FILTER_LIST_H
 #define FILTER_LIST_H
@@ -19,6 +19,7 @@
 
 #ifndef FILTER_LIST
 #define FILTER_LIST(X) \
+    X(adaptive)        \
     X(kf)              \
     X(sprf)            \
     X(synth)           \
@@ -28,8 +29,7 @@
     X(shrf)            \
     X(pbf)             \
     X(af)              \
-    X(kf3)             \
-    X(adaptive)
+    X(kf3)
 #endif
 
 /* Those that filter_any.c links: fewer where a program over the whole list has no room for all (tests on the chip). */
