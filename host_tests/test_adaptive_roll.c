@@ -196,6 +196,7 @@ static void print_curve(void)
             for (unsigned i = 0; i < 3; i++) {
                 adaptive_config_t config = configured(true, true);
                 config.guard_sigma_q8 = (uint16_t)sigma_q8;
+                setUp();
                 windows_t mse = mean_square(&config, (profile_t)profile, shares[i]);
                 printf("%.1f,%s,%.2f,%.3f,%.3f,%.3f\n", sigma_q8 / 256.0, profile_names[profile], shares[i], mse.rest,
                        mse.turn, mse.after);

@@ -1,0 +1,221 @@
+/* The guarded adaptive filter: what it does with a step, a ramp, outliers, a burst, a jump; limits of its parameters. */
+#include "adaptive.h"
+#include "fx.h"
+#include "support_filters.h"
+#include "unity.h"
+
+enum { NOISE_LSB = 8 }; /* uniform, +-8 LSB: sigma 4.9 */
+
+static uint32_t random_state;
+
+void setUp(void)
+{
+    random_state = 77u;
+}
+
+void tearDown(void) {}
+
+static int16_t noisy(int16_t level_lsb)
+{
+    return (int16_t)(level_lsb + (int16_t)random32_below(&random_state, 2u * NOISE_LSB + 1u) - NOISE_LSB);
+}
+
+/* Settled at a level, 100 Hz. */
+static adaptive_t settled(int16_t level_lsb, bool guarded)
+{
+    adaptive_config_t config;
+    adaptive_t f;
+    adaptive_defaults(&config, 1000);
+    if (!guarded) {
+        config.guard_sigma_q8 = 0;
+    }
+    TEST_ASSERT_TRUE(adaptive_init(&f, &config));
+    for (uint16_t k = 0; k < 600u; k++) {
+        (void)adaptive_update(&f, noisy(level_lsb));
+    }
+    return f;
+}
+
+static int16_t whole(int32_t x_lsb_q16)
+{
+    return (int16_t)((x_lsb_q16 + 32768) >> 16);
+}
+
+/* Far beyond twice the gate nothing is taken: the estimate goes on as if the sample were missing. */
+static void an_isolated_outlier_moves_nothing(void)
+{
+    adaptive_t f = settled(100, true);
+    (void)adaptive_update(&f, 92); /* the one before lies on the other side */
+    adaptive_t without = f;
+    int32_t expected = adaptive_coast(&without);
+    TEST_ASSERT_EQUAL_INT32(expected, adaptive_update(&f, 2000));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, adaptive_flags(&f));
+    filter_probe_t probe;
+    adaptive_probe(&f, &probe);
+    TEST_ASSERT_EQUAL_UINT16(0, probe.gain_uq16);
+    TEST_ASSERT_TRUE(probe.innovation_lsb_q16 > 1800L * 65536);
+    TEST_ASSERT_TRUE(probe.gate_lsb2_q8 < 100UL * 100UL * 256UL);
+}
+
+/* The twin: without the guard it passes with its gain. */
+static void without_the_guard_an_outlier_passes(void)
+{
+    adaptive_t f = settled(100, false);
+    TEST_ASSERT_TRUE(whole(adaptive_update(&f, 2000)) > 150);
+    TEST_ASSERT_EQUAL_UINT8(0, adaptive_flags(&f) & FILTER_GATED);
+}
+
+/* Nine doubled readings, the longest burst that was measured on a shared bus, do not reach `confirm` (15 samples). */
+static void a_burst_of_nine_is_not_believed(void)
+{
+    adaptive_t f = settled(250, true);
+    for (uint8_t k = 0; k < 9u; k++) {
+        int16_t x = whole(adaptive_update(&f, noisy(500)));
+        TEST_ASSERT_INT16_WITHIN(120, 250, x);
+        TEST_ASSERT_EQUAL_UINT8(0, adaptive_flags(&f) & FILTER_REACQUIRED);
+    }
+    for (uint8_t k = 0; k < 60u; k++) {
+        (void)adaptive_update(&f, noisy(250));
+    }
+    TEST_ASSERT_INT16_WITHIN(NOISE_LSB, 250, whole(f.x_lsb_q16));
+}
+
+/* A jump that stays is believed with the fifteenth sample at the latest, and from then on the estimate is there. */
+static void a_jump_that_stays_is_believed(void)
+{
+    adaptive_t f = settled(0, true);
+    bool again = false;
+    for (uint8_t k = 0; k < 15u; k++) {
+        (void)adaptive_update(&f, noisy(900));
+        again = again || (adaptive_flags(&f) & FILTER_REACQUIRED) != 0U;
+    }
+    TEST_ASSERT_TRUE(again);
+    TEST_ASSERT_INT16_WITHIN(3 * NOISE_LSB, 900, whole(f.x_lsb_q16));
+}
+
+/* A manoeuvre within what motion can do is followed without waiting: 300 LSB/s from rest at 100 Hz, 10 samples late. */
+static void motion_is_followed_and_shortens_the_memory(void)
+{
+    adaptive_t f = settled(0, true);
+    uint32_t slow = f.k_uq32;
+    uint32_t shortest = 0;
+    int16_t level = 0;
+    for (uint8_t k = 0; k < 100u; k++) {
+        level = (int16_t)(level + 3);
+        (void)adaptive_update(&f, noisy(level));
+        shortest = (f.k_uq32 > shortest) ? f.k_uq32 : shortest;
+    }
+    TEST_ASSERT_INT16_WITHIN(2 * NOISE_LSB, level, whole(f.x_lsb_q16));
+    filter_probe_t probe;
+    adaptive_probe(&f, &probe);
+    TEST_ASSERT_INT32_WITHIN(65536, 3L * 65536, probe.rate_lsb_q16);
+    TEST_ASSERT_EQUAL_UINT16(f.fast_uq16, (uint16_t)(shortest >> 16));
+    TEST_ASSERT_TRUE(slow < shortest / 2U);
+}
+
+/* At rest the memory grows by half a sample per sample, to the slowest: k = 2/N falls from 1/2 as 2 / (4 + n/2). */
+static void memory_grows_by_half_a_sample(void)
+{
+    adaptive_config_t config;
+    adaptive_t f;
+    adaptive_defaults(&config, 1000);
+    config.slow_ms = 60000;
+    TEST_ASSERT_TRUE(adaptive_init(&f, &config));
+    for (uint16_t k = 0; k < 405u; k++) {
+        (void)adaptive_update(&f, 0);
+    }
+    double memory = 2.0 * 4294967296.0 / (double)f.k_uq32; /* 4 + 200, and 1/k grows a little faster at first */
+    TEST_ASSERT_TRUE(memory > 200.0 && memory < 212.0);
+}
+
+static void what_identification_off_means(void)
+{
+    adaptive_config_t config;
+    adaptive_t f;
+    adaptive_defaults(&config, 1000);
+    config.identify = 0;
+    TEST_ASSERT_TRUE(adaptive_init(&f, &config));
+    adaptive_set_noise(&f, 100u * 256u);
+    for (uint16_t k = 0; k < 300u; k++) {
+        (void)adaptive_update(&f, noisy(0));
+    }
+    TEST_ASSERT_UINT32_WITHIN(256u, 100u * 256u, adaptive_r_lsb2_q8(&f));
+    config.identify = 1;
+    TEST_ASSERT_TRUE(adaptive_init(&f, &config));
+    for (uint16_t k = 0; k < 2000u; k++) {
+        (void)adaptive_update(&f, noisy(0));
+        adaptive_set_noise(&f, 100u * 256u); /* comes too late to count */
+    }
+    TEST_ASSERT_UINT32_WITHIN(5u * 256u, 24u * 256u, adaptive_r_lsb2_q8(&f)); /* (17^2 - 1) / 12 */
+}
+
+/* Across a gap no sample agrees with the one before it, and no difference is taken. */
+static void a_gap_breaks_agreement(void)
+{
+    adaptive_t f = settled(0, true);
+    uint32_t third = f.third_lsb_uq24;
+    (void)adaptive_update(&f, 700);
+    (void)adaptive_coast(&f);
+    int32_t before = f.x_lsb_q16;
+    (void)adaptive_update(&f, 700);
+    TEST_ASSERT_INT32_WITHIN(65536, before, f.x_lsb_q16);
+    TEST_ASSERT_TRUE(f.third_lsb_uq24 < third + third / 8U);
+}
+
+static bool taken(uint16_t guard_q8, uint16_t slow_ms, uint16_t fast_ms, uint16_t confirm_ms, uint32_t rate_max)
+{
+    adaptive_config_t config;
+    adaptive_t f;
+    adaptive_defaults(&config, 1000);
+    config.guard_sigma_q8 = guard_q8;
+    config.slow_ms = slow_ms;
+    config.fast_ms = fast_ms;
+    config.confirm_ms = confirm_ms;
+    config.rate_max_lsb_s = rate_max;
+    return adaptive_init(&f, &config);
+}
+
+static void limits_of_the_parameters(void)
+{
+    TEST_ASSERT_TRUE(taken(0, 500, 140, 150, 800));
+    TEST_ASSERT_FALSE(taken(255, 500, 140, 150, 800));
+    TEST_ASSERT_TRUE(taken(256, 10, 1, 0, 10));
+    TEST_ASSERT_TRUE(taken(4096, 60000, 60000, 10000, 1000000));
+    TEST_ASSERT_FALSE(taken(4097, 500, 140, 150, 800));
+    TEST_ASSERT_FALSE(taken(768, 9, 140, 150, 800));
+    TEST_ASSERT_FALSE(taken(768, 60001u, 140, 150, 800));
+    TEST_ASSERT_FALSE(taken(768, 500, 0, 150, 800));
+    TEST_ASSERT_FALSE(taken(768, 500, 60001u, 150, 800));
+    TEST_ASSERT_FALSE(taken(768, 500, 140, 10001, 800));
+    TEST_ASSERT_FALSE(taken(768, 500, 140, 150, 9));
+    TEST_ASSERT_FALSE(taken(768, 500, 140, 150, 1000001));
+}
+
+/* The one rule for all rates: 333 ms at 10 Hz, times (10 Hz / rate)^(3/8); 2 / 0.6 samples and more; 20 samples slow. */
+static void defaults_follow_one_rule(void)
+{
+    static const uint16_t rates_dhz[] = { 100, 250, 500, 1000, 2000, 4000, 8000, 40000 };
+    static const uint16_t fast_ms[] = { 333, 236, 182, 141, 108, 84, 64, 35 };
+    for (uint8_t i = 0; i < 8u; i++) {
+        adaptive_config_t config;
+        adaptive_defaults(&config, rates_dhz[i]);
+        TEST_ASSERT_UINT16_WITHIN(1u + fast_ms[i] / 100u, fast_ms[i], config.fast_ms);
+        TEST_ASSERT_EQUAL_UINT16(rates_dhz[i] < 400u ? 200000UL / rates_dhz[i] : 500u, config.slow_ms);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(an_isolated_outlier_moves_nothing);
+    RUN_TEST(without_the_guard_an_outlier_passes);
+    RUN_TEST(a_burst_of_nine_is_not_believed);
+    RUN_TEST(a_jump_that_stays_is_believed);
+    RUN_TEST(motion_is_followed_and_shortens_the_memory);
+    RUN_TEST(memory_grows_by_half_a_sample);
+    RUN_TEST(what_identification_off_means);
+    RUN_TEST(a_gap_breaks_agreement);
+    RUN_TEST(limits_of_the_parameters);
+    RUN_TEST(defaults_follow_one_rule);
+    return UNITY_END();
+}
