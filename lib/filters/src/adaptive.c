@@ -1,208 +1,6 @@
-/* The guarded adaptive filter: see adaptive.h for the equations. */
-#include "adaptive.h"
-
+/* One sample of the guarded adaptive filter: see adaptive.h for the equations. */
+#include "adaptive_scale.h"
 #include "filter_common.h"
-#include "fx.h"
-
-#define GUARD_MIN_SIGMA_Q8 256
-#define GUARD_MAX_SIGMA_Q8 4096
-#define MEMORY_MAX_MS 60000U
-#define SLOW_MIN_MS 10U
-#define CONFIRM_MAX_MS 10000U
-#define RATE_MAX_MIN_LSB_S 10
-#define RATE_MAX_MAX_LSB_S 1000000
-
-#define X_MAX_LSB_Q16 ((int32_t)FILTER_X_MAX_LSB * 65536)
-
-/* 127 LSB per sample: with the bound of x, all that 32 bits hold. */
-#define RATE_LIMIT_LSB_Q24 ((int32_t)127 << 24)
-
-/* k = 0.6, a memory of 3.3 samples: beyond it the filter nearly follows the raw samples. k = 2 / 4096. */
-#define K_MAX_UQ16 39322U
-#define K_MIN_UQ16 32U
-/* The median of five samples is worth a memory of about four. */
-#define K_START_UQ32 0x80000000U
-
-#define SCATTER_MIN_LSB_UQ24 0x1A0000U   /* 0.1 LSB */
-#define SCATTER_MAX_LSB_UQ24 0x5A000000U /* 90 LSB: its threshold lies below 128 LSB */
-
-/*
- * E|d| of a third difference limited to 2.48 sigma is 0.7936 sqrt(20) = 3.549 sigma of a sample; the half of it is
- * kept. Its floor is that of a sigma of 0.1 LSB.
- */
-#define SIGMA_OF_THIRD_UQ16 36932U /* 2 / 3.549 */
-#define THIRD_OF_SIGMA_Q8 454U
-#define THIRD_MIN_LSB_UQ24 0x2E0000U
-
-/* The unguarded filter limits the innovations in their mean to four sigmas, as the guarded one to its gate. */
-#define UNGUARDED_SIGMA_Q8 1024U
-
-/*
- * Weights of a term: 1, 1/2, 1/4 twice, 1/8 four times..., the first four without a limit, because the R to start from may
- * be far off. The scatter's stays within 1/8..1/32.
- */
-#define WEIGHT_START_UQ16 32768U
-#define WEIGHT_LIMITED_UQ16 16384U
-#define WEIGHT_SCATTER_START_UQ16 8192U
-#define WEIGHT_SCATTER_UQ16 2048U
-#define WEIGHT_LAST_MAX_UQ16 1024U
-#define WEIGHT_LAST_MIN_UQ16 64U
-
-enum verdict { UNUSED, WITHIN_GATE, OUTLIER, MOTION, JUMP };
-
-static const filter_parameter_t parameters[] FX_FLASH = {
-    { "guard", "sigma", offsetof(adaptive_config_t, guard_sigma_q8), 2, 8, 1, 0, GUARD_MIN_SIGMA_Q8,
-      GUARD_MAX_SIGMA_Q8 },
-    { "r", "LSB2", offsetof(adaptive_config_t, r_lsb2_q8), 4, 8, 0, 0, FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8 },
-    { "identify", "", offsetof(adaptive_config_t, identify), 2, 0, 0, 0, 0, 1 },
-    { "slow", "ms", offsetof(adaptive_config_t, slow_ms), 2, 0, 0, 0, SLOW_MIN_MS, MEMORY_MAX_MS },
-    { "fast", "ms", offsetof(adaptive_config_t, fast_ms), 2, 0, 0, 0, 1, MEMORY_MAX_MS },
-    { "confirm", "ms", offsetof(adaptive_config_t, confirm_ms), 2, 0, 0, 0, 0, CONFIRM_MAX_MS },
-    { "ratemax", "LSB/s", offsetof(adaptive_config_t, rate_max_lsb_s), 4, 0, 0, 0, RATE_MAX_MIN_LSB_S,
-      RATE_MAX_MAX_LSB_S },
-};
-
-const filter_descriptor_t adaptive_descriptor FX_FLASH = { "adaptive", sizeof parameters / sizeof parameters[0],
-                                                           parameters };
-
-/*
- * Shortest memory: 333 ms at 10 Hz, falling with rate^(3/8), by three square roots. Between a constant time (which noise
- * that grows with the rate asks for) and a constant number of samples (which the guard asks for, whose decisions take
- * samples).
- */
-static uint16_t default_fast_ms(uint16_t rate_dhz)
-{
-    uint32_t root = fx_isqrt32((uint32_t)rate_dhz << 16);      /* rate^(1/2), Q8 */
-    root = fx_isqrt32(root << 16);                             /* rate^(1/4), Q12 */
-    uint16_t eighth = (uint16_t)(fx_isqrt32(root << 16) >> 4); /* rate^(1/8), Q10: 1.6..3.8 */
-    uint32_t cube = fx_mul_u16(eighth, eighth) >> 10;          /* rate^(1/4), Q10 */
-    cube = fx_mul_u16((uint16_t)cube, eighth) >> 10;           /* rate^(3/8), Q10: 4.3..53 */
-    return (uint16_t)(1919000U / cube);                        /* 333.3 ms x 100^(3/8) */
-}
-
-void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz)
-{
-    config->rate_dhz = rate_dhz;
-    config->guard_sigma_q8 = 768;
-    config->r_lsb2_q8 = filter_default_r_lsb2_q8(rate_dhz);
-    config->identify = 1;
-    config->slow_ms = 500;
-    if (rate_dhz < 400U) { /* 20 samples */
-        config->slow_ms = (uint16_t)(200000U / ((rate_dhz == 0U) ? 1U : rate_dhz));
-    }
-    config->fast_ms = default_fast_ms((rate_dhz == 0U) ? 1U : rate_dhz);
-    config->confirm_ms = 150;
-    config->rate_max_lsb_s = 800;
-}
-
-/* k = 2 / memory, UQ0.16, limited. */
-static uint16_t k_of(uint16_t memory_ms, uint16_t rate_dhz)
-{
-    uint32_t k = 1310720000U / ((uint32_t)memory_ms * rate_dhz); /* >= 50 */
-    if (k > K_MAX_UQ16) {
-        return K_MAX_UQ16;
-    }
-    return (k < K_MIN_UQ16) ? K_MIN_UQ16 : (uint16_t)k;
-}
-
-static bool legal(const adaptive_config_t *config)
-{
-    bool guard = config->guard_sigma_q8 == 0U ||
-                 (config->guard_sigma_q8 >= GUARD_MIN_SIGMA_Q8 && config->guard_sigma_q8 <= GUARD_MAX_SIGMA_Q8);
-    bool memory = config->slow_ms >= SLOW_MIN_MS && config->slow_ms <= MEMORY_MAX_MS && config->fast_ms != 0U &&
-                  config->fast_ms <= MEMORY_MAX_MS && config->confirm_ms <= CONFIRM_MAX_MS;
-    return filter_common_legal(config->rate_dhz, config->r_lsb2_q8) && guard && memory && config->identify <= 1U &&
-           config->rate_max_lsb_s >= RATE_MAX_MIN_LSB_S && config->rate_max_lsb_s <= RATE_MAX_MAX_LSB_S;
-}
-
-/* Shares and thresholds that follow from the shortest memory. */
-static void set_memory(adaptive_t *f, const adaptive_config_t *config)
-{
-    f->slow_uq16 = k_of(config->slow_ms, config->rate_dhz);
-    f->fast_uq16 = k_of(config->fast_ms, config->rate_dhz);
-    if (f->fast_uq16 < f->slow_uq16) {
-        f->fast_uq16 = f->slow_uq16;
-    }
-    f->share_uq16 = fx_high_u16(f->fast_uq16, 26214); /* 0.4 */
-    /* sigma of the mean, sqrt(share / (2 - share)), times 2.15 */
-    uint32_t ratio_uq32 = ((uint32_t)f->share_uq16 << 15) / (0x20000U - f->share_uq16) << 17;
-    f->manoeuvre_uq16 = (uint16_t)((275U * (uint32_t)fx_isqrt32(ratio_uq32)) >> 7); /* <= 0.8 */
-}
-
-/* Limits that are times and rates. */
-static void set_limits(adaptive_t *f, const adaptive_config_t *config)
-{
-    uint32_t confirm = (uint32_t)config->confirm_ms * config->rate_dhz / 10000U; /* <= 40000 */
-    f->confirm = (confirm < 4U) ? 4U : (uint16_t)confirm;
-    f->rate_max_lsb_q24 = RATE_LIMIT_LSB_Q24;
-    if (config->rate_max_lsb_s * 10U / config->rate_dhz < 127U) {
-        fx_scaled_t rate = fx_scaled_div(fx_scaled(config->rate_max_lsb_s * 10U), fx_scaled(config->rate_dhz));
-        f->rate_max_lsb_q24 = (int32_t)fx_scaled_fixed(rate, 24);
-    }
-    f->jump_lsb_uq8 = (uint16_t)(f->rate_max_lsb_q24 >> 19); /* an eighth */
-    f->weight_uq16 = WEIGHT_START_UQ16;
-    f->terms = 2;
-    f->last_uq16 = WEIGHT_LAST_MAX_UQ16; /* 64 terms, from 256 Hz on 5 s and at most 1024 terms */
-    for (uint16_t rate = config->rate_dhz; rate >= 256U && f->last_uq16 > WEIGHT_LAST_MIN_UQ16; rate >>= 1) {
-        f->last_uq16 >>= 1;
-    }
-}
-
-static uint32_t within(uint32_t v, uint32_t min, uint32_t max)
-{
-    if (v < min) {
-        return min;
-    }
-    return (v > max) ? max : v;
-}
-
-FX_ONCE bool adaptive_init(adaptive_t *f, const adaptive_config_t *config)
-{
-    if (!legal(config)) {
-        return false;
-    }
-    uint8_t *bytes = (uint8_t *)f;
-    for (size_t i = 0; i < sizeof *f; i++) {
-        bytes[i] = 0;
-    }
-    f->flags = FILTER_WARMING_UP;
-    f->guarded = config->guard_sigma_q8 != 0U;
-    f->gate_sigma_q8 = f->guarded ? config->guard_sigma_q8 : UNGUARDED_SIGMA_Q8;
-    f->identify = config->identify != 0U;
-    f->third = f->identify ? 1U : 0U;
-    f->by_turns = (f->identify && f->guarded) ? 1U : 0U;
-    set_memory(f, config);
-    set_limits(f, config);
-    adaptive_set_noise(f, config->r_lsb2_q8);
-    return true;
-}
-
-void adaptive_set_noise(adaptive_t *f, uint32_t r_lsb2_q8)
-{
-    if (f->identify && (f->terms != 2U || f->weight_uq16 != WEIGHT_START_UQ16)) {
-        return;
-    }
-    uint16_t sigma_q10 = fx_isqrt32(filter_limited_r_lsb2_q8(r_lsb2_q8) << 12); /* 110..32381 */
-    f->third_lsb_uq24 = within(fx_mul_u16(sigma_q10, THIRD_OF_SIGMA_Q8) << 6, THIRD_MIN_LSB_UQ24, UINT32_MAX);
-    f->scatter_lsb_uq24 = within((uint32_t)sigma_q10 << 14, SCATTER_MIN_LSB_UQ24, SCATTER_MAX_LSB_UQ24);
-}
-
-FX_ONCE void adaptive_reset(adaptive_t *f, int16_t z0_lsb)
-{
-    int16_t z0 = filter_clamp_z(z0_lsb);
-    f->x_lsb_q16 = (int32_t)z0 * 65536;
-    f->rate_lsb_q24 = 0;
-    f->mean_lsb_q24 = 0;
-    f->size_lsb_uq16 = 0;
-    f->k_uq32 = (uint32_t)f->slow_uq16 << 16;
-    f->filled = 0;
-    f->run = 0;
-    f->below = false;
-    f->verdict = UNUSED;
-    f->gate_lsb_uq16 = 0;
-    f->collected = FILTER_WARM_UP_SAMPLES;
-    f->flags = 0;
-}
 
 /* Estimate within its bound, looked for in the high word: 4608 LSB and a fraction count as 4608. */
 FX_INLINE void limit_x(adaptive_t *f, int32_t x_lsb_q16)
@@ -213,13 +11,6 @@ FX_INLINE void limit_x(adaptive_t *f, int32_t x_lsb_q16)
         x_lsb_q16 = (x_lsb_q16 < 0) ? -X_MAX_LSB_Q16 : X_MAX_LSB_Q16;
     }
     f->x_lsb_q16 = x_lsb_q16;
-}
-
-/* Rate of one sample in the format of x, rounded down towards `below`. */
-FX_INLINE int32_t rate_lsb_q16(const adaptive_t *f)
-{
-    int32_t rate = f->rate_lsb_q24 >> 8;
-    return f->below ? -rate : rate;
 }
 
 /* The mean innovation towards `below`, rounded down. */
@@ -295,8 +86,8 @@ FX_NOINLINE void identify(adaptive_t *f, int16_t z_lsb)
 }
 
 /*
- * Scatter of the innovations from 1.375 |u - mean|, limited to 2.5 times what is expected of it: sqrt(pi / 2) = 1.253 makes a
- * mean size a sigma, and a tenth more is for the mean, which moves with the innovation.
+ * Scatter of the innovations from 1.375 |u - mean|, limited to 2.5 times what is expected of it: sqrt(pi / 2) = 1.253
+ * makes a mean size a sigma, and a tenth more keeps false alarms rarer than known noise would.
  */
 FX_NOINLINE void disperse(adaptive_t *f, uint16_t spread_uq8)
 {
@@ -494,7 +285,7 @@ FX_NOINLINE uint16_t meet(adaptive_t *f, int16_t z_lsb)
         f->before_lsb_q16 = (int32_t)f->history_lsb[0] * 65536 - f->x_lsb_q16;
     }
     FX_FENCE();
-    limit_x(f, f->x_lsb_q16 + rate_lsb_q16(f));
+    limit_x(f, f->x_lsb_q16 + adaptive_rate_lsb_q16(f));
     FX_FENCE();
     face(f, z_lsb);
     FX_FENCE();
@@ -571,47 +362,11 @@ int32_t adaptive_coast(adaptive_t *f)
         return f->x_lsb_q16;
     }
     f->flags = FILTER_COASTED;
-    limit_x(f, f->x_lsb_q16 + rate_lsb_q16(f));
+    limit_x(f, f->x_lsb_q16 + adaptive_rate_lsb_q16(f));
     return f->x_lsb_q16;
 }
 
 uint8_t adaptive_flags(const adaptive_t *f)
 {
     return f->flags;
-}
-
-uint32_t adaptive_r_lsb2_q8(const adaptive_t *f)
-{
-    uint16_t sigma_uq8 = fx_high_u16((uint16_t)(f->third_lsb_uq24 >> 16), SIGMA_OF_THIRD_UQ16);
-    return filter_limited_r_lsb2_q8(fx_mul_u16(sigma_uq8, sigma_uq8) >> 8);
-}
-
-/* R times the noise gain of the fading memory with this k, k (10 - 14 k + 5 k^2) / (2 - k)^3. */
-static uint32_t variance_lsb2_q8(const adaptive_t *f)
-{
-    uint16_t k = (uint16_t)(f->k_uq32 >> 16);
-    uint32_t numerator = 655360U - 14U * (uint32_t)k + 5U * (uint32_t)fx_high_u16(k, k);
-    fx_scaled_t inverse = fx_scaled_div(fx_scaled(k), fx_scaled(0x20000U - k));
-    fx_scaled_t square = fx_scaled_div(fx_scaled_div(fx_scaled(numerator), fx_scaled(0x20000U - k)),
-                                       fx_scaled(0x20000U - k));
-    fx_scaled_t p = fx_scaled_mul(fx_scaled_mul(inverse, square), fx_scaled(adaptive_r_lsb2_q8(f)));
-    return fx_scaled_fixed(p, 16);
-}
-
-void adaptive_probe(const adaptive_t *f, filter_probe_t *out)
-{
-    bool running = (f->flags & FILTER_WARMING_UP) == 0U;
-    out->x_lsb_q16 = f->x_lsb_q16;
-    out->rate_lsb_q16 = running ? rate_lsb_q16(f) : 0;
-    out->innovation_lsb_q16 = f->below ? -(int32_t)f->size_lsb_uq16 : (int32_t)f->size_lsb_uq16;
-    out->p_lsb2_q8 = running ? variance_lsb2_q8(f) : adaptive_r_lsb2_q8(f);
-    out->gate_lsb2_q8 = UINT32_MAX;
-    if (f->guarded && f->gate_lsb_uq16 != 0U) {
-        uint16_t gate_uq4 = (uint16_t)(f->gate_lsb_uq16 >> 12); /* <= 4000 LSB */
-        out->gate_lsb2_q8 = fx_mul_u16(gate_uq4, gate_uq4);
-    }
-    uint16_t k = (uint16_t)(f->k_uq32 >> 16);
-    bool moved = running && (f->flags & FILTER_COASTED) == 0U && f->verdict != UNUSED;
-    out->gain_uq16 = moved ? (uint16_t)(2U * k - fx_high_u16(k, k)) : 0U;
-    out->flags = f->flags;
 }

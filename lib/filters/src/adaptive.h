@@ -1,28 +1,30 @@
 /*
  * adaptive: a fading-memory filter whose memory the innovations drive, guarded against outliers. The future work that
- * paper 000 names: noise identified on line, parameters of the filter driven by it.
+ * paper 000 names: noise identified on line, the filter's parameters driven by it.
  *
  *   x_e = x + v                              straight line through the past, u = z - x_e
  *   x = x_e + (2 k - k^2) t, v = v + k^2 t   t: the part of u that is taken
  *
- * weights a sample n steps old by (1 - k)^(2 n) (fading memory of the first order, Morrison): its memory is about 2 / k
- * samples and the innovation's sigma, within 6 % up to k = 0.6, (1 + k) sigma for noise of that sigma. k grows at once
- * to that of the shortest memory when the mean innovation is not explained by noise, and falls by k^2 / 4 a sample, which
+ * weights a sample n steps old by (1 - k)^(2 n) (fading memory of the first order): its memory is about 2 / k samples
+ * and the innovation's sigma, within 6 % up to k = 0.6, (1 + k) sigma for noise of that sigma. k grows at once to that
+ * of the shortest memory when the mean innovation is not explained by noise, and falls by k^2 / 4 a sample, which
  * lengthens the memory by half a sample, to that of the slowest.
  *
  * Guard: a sample further off than `guard` sigmas counts as motion only when the one before it, carried on with the
- * estimated rate, lies off to the same side too; what both agree on is taken and the memory is shortened. An isolated one
- * is taken up to the gate, and the less the further off it is, not at all from twice the gate on. An innovation beyond the
- * gate that is larger than motion can explain (`ratemax`) is believed after `confirm` of samples on the same side.
+ * estimated rate, lies off to the same side too; what both agree on is taken and the memory is shortened. An isolated
+ * one is taken up to the gate, and the less the further off it is, not at all from twice the gate on. An innovation
+ * further beyond the gate than motion explains (an eighth of `ratemax`) is believed after `confirm` of samples on the
+ * same side.
  *
  * Noise, with `identify` on (1): sigma of a sample from third differences, which see neither position, rate nor
- * acceleration, each limited to 2.5 times what it is expected to be (it feeds the unguarded filter and the probe); and the scatter
- * of the innovations about their mean, limited likewise (it feeds the guard, because motion that the line does not follow
- * widens it). R as configured or told by set_noise is what both start from, no more: a pipeline that estimates R of its
- * own need not call set_noise. Off (0): both are the square root of that R, always.
+ * acceleration (it feeds the unguarded filter and the probe), and the scatter of the innovations about their mean (it
+ * feeds the guard, because motion that the line does not follow widens it); by turns, a sample each, and each limited
+ * to 2.5 times what it is expected to be (3.1 for the differences' mean). R as configured or told by set_noise before
+ * the first difference is what both start from, later calls change nothing: a pipeline that estimates an R of its own
+ * may go on telling it, and need not. Off (0): both are the square root of that R, always.
  *
- * FILTER_GATED tells that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be 0.
- * Functions: filter.h.
+ * FILTER_GATED tells that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be
+ * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Functions: filter.h.
  */
 #ifndef ADAPTIVE_H
 #define ADAPTIVE_H
