@@ -6,6 +6,7 @@
 #define TWO_STATE_SUM 1.434
 #define SYNTH_SUM 2.277
 #define THREE_STATE_SUM 1.828
+#define SYNTH_OPT_SUM 1.446
 #define MIXTURE_SUM (1.434 + 1.945)
 #define P11_END 32768.0
 #define LINEAR_FORGETS 10.0
@@ -25,6 +26,10 @@ filter_facts_t filter_facts(filter_kind_t kind)
         return (filter_facts_t){ SYNTH_SUM, 1.0, 0.0, 56, ENVELOPE_FIXED_GAIN };
     case FILTER_KIND_kf3:
         return (filter_facts_t){ THREE_STATE_SUM, 1.0, LINEAR_FORGETS, 0, ENVELOPE_FIXED_GAIN };
+    case FILTER_KIND_synth_opt: /* 0.57735 */
+        return (filter_facts_t){ SYNTH_OPT_SUM, 1.0, 0.0, 19, ENVELOPE_FIXED_GAIN };
+    case FILTER_KIND_synth_plus: /* kf's gains at the least R, fixed */
+        return (filter_facts_t){ TWO_STATE_SUM, 1.0, LINEAR_FORGETS, 0, ENVELOPE_FIXED_GAIN };
     case FILTER_KIND_sprf:
         return (filter_facts_t){ 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_STANDS };
     case FILTER_KIND_soft:

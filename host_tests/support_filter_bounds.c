@@ -58,31 +58,67 @@ static const char *broken_sprf(const sprf_t *f, int32_t x_lsb_q16)
     return (broken != NULL) ? broken : broken_two_state(&f->core, x_lsb_q16);
 }
 
-/* synth.h, synth.c: estimates within the format's bound, gains as configured, the start's line within its spread. */
-static const char *broken_synth(const synth_t *f, int32_t x_lsb_q16)
+/* synth_common.h: estimates within the format's bound; the output is the newest, or the start's median. */
+static const char *broken_synth_estimates(const synth_core_t *c, int32_t x_lsb_q16)
 {
-    if (fx_abs32(f->innovation_lsb_q16) > (uint32_t)8704 << 16) {
-        return "innovation";
-    }
-    if (f->spread_lsb <= 0 || f->spread_lsb > 365) {
-        return "spread";
-    }
-    if (f->r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 || f->r_lsb2_q8 > FILTER_R_MAX_LSB2_Q8 || f->b0_uq16 < 656U) {
-        return "configuration";
-    }
-    if (f->collected >= 64U && f->collected != 255U) {
-        return "collected";
-    }
-    if (f->collected < FILTER_WARM_UP_SAMPLES) {
-        return NULL;
-    }
     for (uint8_t i = 0; i < 3U; i++) {
-        if (fx_abs32(f->u.run.x_lsb_q16[i]) > (uint32_t)FILTER_X_MAX_LSB << 16) {
+        if (fx_abs32(c->u.run.x_lsb_q16[i]) > (uint32_t)FILTER_X_MAX_LSB << 16) {
             return "older x";
         }
     }
-    int32_t output = ((f->flags & FILTER_WARMING_UP) != 0U) ? f->u.run.median_lsb_q16 : f->u.run.x_lsb_q16[0];
+    int32_t output = ((c->flags & FILTER_WARMING_UP) != 0U) ? c->u.run.median_lsb_q16 : c->u.run.x_lsb_q16[0];
     return (x_lsb_q16 == output) ? NULL : "x returned";
+}
+
+static const char *broken_synth_core(const synth_core_t *c, int32_t x_lsb_q16)
+{
+    if (fx_abs32(c->innovation_lsb_q16) > (uint32_t)8704 << 16) {
+        return "innovation";
+    }
+    if (c->r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 || c->r_lsb2_q8 > FILTER_R_MAX_LSB2_Q8) {
+        return "r";
+    }
+    if (c->collected >= 64U && c->collected != 255U) {
+        return "collected";
+    }
+    return (c->collected < FILTER_WARM_UP_SAMPLES) ? NULL : broken_synth_estimates(c, x_lsb_q16);
+}
+
+/* synth.h: gains as configured, the start's line within its spread. */
+static const char *broken_synth(const synth_t *f, int32_t x_lsb_q16)
+{
+    if (f->spread.spread_lsb <= 0 || f->spread.spread_lsb > 365) {
+        return "spread";
+    }
+    return (f->b0_uq16 < 656U) ? "configuration" : broken_synth_core(&f->core, x_lsb_q16);
+}
+
+/* synth_opt.h: the schedule ends with its 12th step; a class of P0 / R; no gain below 1/2 but for a coast. */
+static const char *broken_synth_opt(const synth_opt_t *f, int32_t x_lsb_q16)
+{
+    if (f->ratio_class > 5U || (f->core.collected > 16U && f->core.collected != 255U)) {
+        return "schedule";
+    }
+    bool updated = f->core.collected > FILTER_WARM_UP_SAMPLES && (f->core.flags & FILTER_COASTED) == 0U;
+    if (updated && f->core.collected != 255U && f->core.gain_uq16 < 0x8000U) {
+        return "gain";
+    }
+    return broken_synth_core(&f->core, x_lsb_q16);
+}
+
+/* synth_plus.h: gains as configured, the memory as limited. */
+static const char *broken_synth_plus(const synth_plus_t *f, int32_t x_lsb_q16)
+{
+    if (f->spread.spread_lsb <= 0 || f->spread.spread_lsb > 365) {
+        return "spread";
+    }
+    if (f->b0_uq16 < 656U || f->k > 8U) {
+        return "configuration";
+    }
+    if (fx_abs32(f->memory_lsb_q16) > (uint32_t)18432 << 16) {
+        return "memory";
+    }
+    return broken_synth_core(&f->core, x_lsb_q16);
 }
 
 /* kf.h: no gate, so nothing is refused and nothing re-acquired. */
@@ -262,6 +298,10 @@ static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)
         return broken_sprf(&f->state.sprf, x_lsb_q16);
     case FILTER_KIND_synth:
         return broken_synth(&f->state.synth, x_lsb_q16);
+    case FILTER_KIND_synth_opt:
+        return broken_synth_opt(&f->state.synth_opt, x_lsb_q16);
+    case FILTER_KIND_synth_plus:
+        return broken_synth_plus(&f->state.synth_plus, x_lsb_q16);
     case FILTER_KIND_lrf:
         return broken_lrf(&f->state.lrf, x_lsb_q16);
     case FILTER_KIND_soft:
@@ -311,6 +351,8 @@ int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
     case FILTER_KIND_kf:
     case FILTER_KIND_sprf:
     case FILTER_KIND_synth:
+    case FILTER_KIND_synth_opt:
+    case FILTER_KIND_synth_plus:
     case FILTER_KIND_lrf:
     case FILTER_KIND_soft:
     case FILTER_KIND_sprf_paper:
@@ -329,14 +371,16 @@ int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
 /*
  * Motion that stops at the start of a gap of n <= 200 samples at 2 LSB per sample: the filter comes back E = 2 n LSB
  * and 2 LSB per sample wrong. From there the error e obeys e' = (I - K H) A e and V = e^T P^-1 e falls by the largest
- * eigenvalue of P'^-1 (I - K H) A P A^T (I - K H)^T at each update, because P' exceeds that product by the noise terms;
- * so |e_x| <= sqrt(P11 V). With q T^3 / R = 1/300 (defaults at 100 Hz) and P grown over the gap up to the core's limit
- * of 2, this is below 1/4 LSB after 43 samples for the worst n. sprf takes that path when the first innovation is
- * within its gate, else its five agreeing samples restart it without error. synth at (0, 0.3) obeys e = 0.7 (2 e1 - e2)
- * from 2 n and 2 n - 2 LSB: |e| <= 400.1 x 0.83666^k, and below 1/4 LSB from k = 40 on for every n <= 200. lrf is kf
- * with q T^3 / R_L = 1/300/60.85 and R_L = 182.6 LSB^2: 114 by the same bound. soft takes kf's path within its soft
- * gate and is restarted beyond its gate, as sprf; in between it updates with a larger R, by which V falls as well (the
- * recursion in double is back after 16).
+ * eigenvalue of P'^-1 (I - K H) A P A^T (I - K H)^T at each update, because P' exceeds that product by the noise
+ * terms; so |e_x| <= sqrt(P11 V). With q T^3 / R = 1/300 (defaults at 100 Hz) and P grown over the gap up to the
+ * core's limit of 2, this is below 1/4 LSB after 43 samples for the worst n. sprf takes that path when the first
+ * innovation is within its gate, else its five agreeing samples restart it without error. synth at (0, 0.3) obeys e =
+ * 0.7 (2 e1 - e2) from 2 n and 2 n - 2 LSB: |e| <= 400.1 x 0.83666^k, and below 1/4 LSB from k = 40 on for every n <=
+ * 200. synth_opt in the limit, e = (2 e1 - e2) / 3, likewise after 14 (poles at 0.57735), and synth_plus with its
+ * alpha-beta of 0.289 and 0.0487 after 40 (0.843), both recursions run in double over every n. lrf is kf with q T^3 /
+ * R_L = 1/300/60.85 and R_L = 182.6 LSB^2: 114 by the same bound. soft takes kf's path within its soft gate and is
+ * restarted beyond its gate, as sprf; in between it updates with a larger R, by which V falls as well (the recursion
+ * in double is back after 16).
  *
  * Where samples are refused V falls too, because P grows meanwhile: n samples after the motion's end, refused or
  * coasted, it is at most 16 / (q T^3 n) LSB^-2 (4 LSB^2 e and P of n steps of the model), 1600 / n here. sprf_paper
@@ -357,7 +401,10 @@ uint16_t recovery_samples(filter_kind_t kind)
     case FILTER_KIND_lrf:
         return 114;
     case FILTER_KIND_synth:
+    case FILTER_KIND_synth_plus:
         return 40;
+    case FILTER_KIND_synth_opt:
+        return 14;
     case FILTER_KIND_sprf_paper:
         return 443;
     case FILTER_KIND_shrf:

@@ -160,6 +160,9 @@ bool has_joint_condition(filter_kind_t kind)
         return true; /* reacquire: of 3..9 only 3, 5 and 9, whose slope is a shift */
     case FILTER_KIND_synth:
         return true; /* the stability region of a1 and b0 */
+    case FILTER_KIND_synth_plus:
+        return true; /* that of its four coefficients */
+    case FILTER_KIND_synth_opt:
     case FILTER_KIND_lrf:
         return false;
     case FILTER_KIND_soft:

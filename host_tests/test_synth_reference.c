@@ -162,7 +162,7 @@ static void estimate_equals_the_reference(void)
             five[k] = z;
             (void)synth_update(&f, z);
         }
-        reference_synth_line(&r, a1_of(&f), f.b0_uq16 / 65536.0, five, f.spread_lsb);
+        reference_synth_line(&r, a1_of(&f), f.b0_uq16 / 65536.0, five, f.spread.spread_lsb);
         double bound = (2.0 - r.b0) / 131072.0 * reference_synth_error_sum(r.a1, r.b0);
         for (int k = 0; k < 20000; k++) {
             int16_t z = as_sample(800.0 * sin(0.003 * k) + 2.0 * random_normal(&random));
@@ -299,7 +299,7 @@ static void fitted_start_is_no_worse_than_the_notes_start(void)
         for (int k = 1; k <= 20; k++) {
             int16_t z = as_sample(5.0 * k + 10.0 * random_normal(&random));
             (void)synth_update(&f, z);
-            double x = f.collected < FILTER_WARM_UP_SAMPLES ? 0.0 : f.u.run.x_lsb_q16[0] / 65536.0;
+            double x = f.core.collected < FILTER_WARM_UP_SAMPLES ? 0.0 : f.core.u.run.x_lsb_q16[0] / 65536.0;
             double y = reference_synth_step(&r, z);
             fifth += k == 5 ? (x - 25.0) * (x - 25.0) : 0.0;
             fitted += k > 5 ? (x - 5.0 * k) * (x - 5.0 * k) : 0.0;

@@ -74,6 +74,9 @@ def judged(judge, limit_s):
     elif judge.startswith("design"):  # design or design_command, which compiles what it needs itself
         built = make("help")
         command = ["build/venv/bin/python", f"host_tests/test_{judge.split()[0]}.py", *judge.split()[1:]]
+    elif judge == "schedule":
+        built = make("help")
+        command = ["python3", "host_tests/test_schedule.py"]
     else:
         built = make(f"build/host/{judge}")
         command = [f"build/host/{judge}"]

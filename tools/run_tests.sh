@@ -51,6 +51,7 @@ run_one test_flash python3 host_tests/test_flash.py
 run_one test_bench python3 host_tests/test_bench.py
 run_one test_papers python3 host_tests/test_papers.py
 run_one test_papers_synthesis python3 host_tests/test_papers_synthesis.py
+run_one test_schedule python3 host_tests/test_schedule.py
 run_one test_robust build/venv/bin/python host_tests/test_robust.py
 run_one test_design build/venv/bin/python host_tests/test_design.py
 run_one test_design_command build/venv/bin/python host_tests/test_design_command.py

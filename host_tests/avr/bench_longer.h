@@ -58,4 +58,19 @@ static inline void lengthen_synth(synth_config_t *config)
     synth_paper(config, config->rate_dhz);
 }
 
+/* Variant U has a second product. */
+static inline void lengthen_synth_opt(synth_opt_config_t *config)
+{
+    config->variant_u = 1;
+}
+
+/* Three taps and the longest shift: near alpha-beta-gamma with 0.431, 0.129 and 0.0169 (lambda = 0.0005). */
+static inline void lengthen_synth_plus(synth_plus_config_t *config)
+{
+    config->k = 7;
+    config->b0_uq16 = 28266;
+    config->b1_q16 = -48056;
+    config->b2_q16 = 20895;
+}
+
 #endif

@@ -14,7 +14,7 @@
 #elif BENCH_PART == 2
 #define BENCH_LIST(X) X(sprf_paper) X(shrf) X(pbf) X(af)
 #elif BENCH_PART == 3
-#define BENCH_LIST(X) X(kf3) X(adaptive)
+#define BENCH_LIST(X) X(synth_opt) X(synth_plus) X(kf3) X(adaptive)
 #else
 #error "BENCH_PART is 1, 2 or 3"
 #endif

@@ -69,6 +69,20 @@ typedef struct {
 } float_synth_t;
 
 typedef struct {
+    float x1, x2, x3;
+    float s11, s12, s13, s22, s23, s33; /* covariance of the last three errors */
+    float r;
+    float p1, p2, p3, p4, p5; /* of variant U: past variances */
+    bool u;
+} float_synth_opt_t;
+
+typedef struct {
+    float x1, x2, x3, u1, memory;
+    float a1, b0, b1, b2;
+    float samples; /* of the start; 0: steady */
+} float_synth_plus_t;
+
+typedef struct {
     float x, v;
     float p00, p01, p10, p11;
     float dt, q, r;
@@ -129,6 +143,16 @@ void float_synth_start(float_synth_t *f, const synth_config_t *config, float x0_
 void float_synth_set_noise(float_synth_t *f, float r_lsb2);
 float float_synth_update(float_synth_t *f, int16_t z_lsb);
 float float_synth_coast(float_synth_t *f);
+
+void float_synth_opt_start(float_synth_opt_t *f, const synth_opt_config_t *config, float x0_lsb);
+void float_synth_opt_set_noise(float_synth_opt_t *f, float r_lsb2);
+float float_synth_opt_update(float_synth_opt_t *f, int16_t z_lsb);
+float float_synth_opt_coast(float_synth_opt_t *f);
+
+void float_synth_plus_start(float_synth_plus_t *f, const synth_plus_config_t *config, float x0_lsb);
+void float_synth_plus_set_noise(float_synth_plus_t *f, float r_lsb2);
+float float_synth_plus_update(float_synth_plus_t *f, int16_t z_lsb);
+float float_synth_plus_coast(float_synth_plus_t *f);
 
 void float_sprf_paper_start(float_sprf_paper_t *f, const sprf_paper_config_t *config, float x0_lsb);
 void float_sprf_paper_set_noise(float_sprf_paper_t *f, float r_lsb2);

@@ -33,6 +33,9 @@
 #include "pbf.c"
 #include "shrf.c"
 #undef limited
+#include "synth_common.c"
+#include "synth_opt.c"
+#include "synth_plus.c"
 #define parameters parameters_synth
 #define step step_synth
 #define update update_synth

@@ -16,6 +16,8 @@
 #include "sprf.h"
 #include "sprf_paper.h"
 #include "synth.h"
+#include "synth_opt.h"
+#include "synth_plus.h"
 
 #ifndef FILTER_LIST
 #define FILTER_LIST(X) \
@@ -29,6 +31,8 @@
     X(shrf)            \
     X(pbf)             \
     X(af)              \
+    X(synth_opt)       \
+    X(synth_plus)      \
     X(kf3)
 #endif
 

@@ -13,7 +13,7 @@
 #ifndef SYNTH_H
 #define SYNTH_H
 
-#include "filter.h"
+#include "synth_common.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -32,26 +32,11 @@ typedef struct {
 } synth_config_t;
 
 typedef struct {
-    union {
-        struct {
-            int32_t x_lsb_q16[3];   /* estimates, newest first; each |x| <= FILTER_X_MAX_LSB */
-            int32_t median_lsb_q16; /* of the start: the output until the next step */
-        } run;
-        struct {
-            int16_t seen_lsb[FILTER_WARM_UP_SAMPLES];      /* in the order of time */
-            int16_t ascending_lsb[FILTER_WARM_UP_SAMPLES]; /* and of size */
-        } start;
-    } u;
-    int32_t innovation_lsb_q16; /* of the last step, |innovation| <= 8704 LSB; 0 after a coast */
-    uint32_t r_lsb2_q8;
-    uint16_t a1_uq16;    /* magnitude */
-    uint16_t b0_uq16;    /* steady gain */
-    uint16_t gain_uq16;  /* of the last step */
-    uint16_t motion_lsb; /* part of spread_lsb that motion may cause */
-    int16_t spread_lsb;  /* a start sample further from the median than this counts as lying this far from it */
+    synth_core_t core;
+    synth_spread_t spread;
+    uint16_t a1_uq16; /* magnitude */
+    uint16_t b0_uq16; /* steady gain */
     bool a1_negative;
-    uint8_t flags;
-    uint8_t collected; /* samples since init: 0..4 warming up, 5..63 gains of the least-squares start, 255 steady */
 } synth_t;
 
 /* Descriptor in program memory. */
