@@ -2,8 +2,8 @@
  * Where an estimate may be, given the raw samples: what shows that a filter did not diverge. Four rules.
  *
  * Band, kf, kf3, lrf, synth, synth_opt, synth_plus, pbf, af: |x - m| <= 1.1 gain_sum D + 1 LSB, m the median and D the
- * largest distance from it of the last W raw samples. A linear estimate is sum h_k z with sum h_k = 1, hence no further from any m than D
- * sum |h_k|, plus what the samples before W leave. For the two-state filters sum |h| is 1.434 at most (limit of small
+ * largest distance from it of the last W raw samples. A linear estimate is sum h_k z with sum h_k = 1, hence no further
+ * from any m than D sum |h_k|, plus what the samples before W leave. For the two-state filters sum |h| is 1.434 at most (limit of small
  * gains, 1 for a gain of 1; steady gains of this model have w2 = w1^2 / (2 - w1)), for synth at (0, 0.3) 2.277, for
  * kf3 1.828 at its smallest gain. pbf and af go between kf and a kf made for the R of outliers, 400 R: in the one
  * samples within D drive the rate to at most D sum |h_rate|, in the other that rate carries x off before it is

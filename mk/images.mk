@@ -5,7 +5,7 @@
 FILTER_SETS          := everyday robust synthesised
 FILTERS_everyday     := adaptive kf sprf synth soft
 FILTERS_robust       := sprf kf lrf soft sprf_paper shrf pbf af
-FILTERS_synthesised  := adaptive kf synth synth_opt synth_plus kf3
+FILTERS_synthesised  := kf synth synth_opt synth_plus kf3
 FILTERS              := $(firstword $(FILTER_SETS))
 
 CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))
