@@ -269,15 +269,19 @@ static const char *broken_adaptive(const adaptive_t *f, int32_t x_lsb_q16)
     if (f->rate_max_lsb_q24 > (int32_t)127 << 24 || fx_abs32(f->rate_lsb_q24) > (uint32_t)f->rate_max_lsb_q24) {
         return "rate";
     }
-    if (f->size_lsb_uq16 > (uint32_t)8704 << 16) {
-        return "innovation";
-    }
     if (f->third_lsb_uq24 < 2990500U || f->scatter_lsb_uq24 > 1509949440U) {
         return "noise";
     }
+    bool running = f->collected == FILTER_WARM_UP_SAMPLES;
+    if (running && f->u.run.size_lsb_uq16 > (uint32_t)8704 << 16) {
+        return "innovation";
+    }
     /* a gate of 16 sigma of 90 LSB times 1.6 */
-    if (f->gate_lsb_uq16 > (uint32_t)2305 << 16 || fx_abs32(f->mean_lsb_q24) > (uint32_t)128 << 24) {
+    if (running && f->u.run.gate_lsb_uq16 > (uint32_t)2305 << 16) {
         return "gate";
+    }
+    if (fx_abs32(f->mean_lsb_q24) > (uint32_t)128 << 24) {
+        return "mean";
     }
     if (f->slow_uq16 < 32U || f->fast_uq16 < f->slow_uq16 || f->fast_uq16 > 39322U ||
         (f->k_uq32 != 0U && f->k_uq32 >> 16 < 32U) || f->k_uq32 >> 16 > 39322U) {

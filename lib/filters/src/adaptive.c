@@ -51,7 +51,8 @@ FX_INLINE void count_term(adaptive_t *f)
         f->terms--;
         if (f->terms == 0U) {
             f->weight_uq16 >>= 1;
-            f->terms = (uint16_t)(0x8000U / f->weight_uq16);
+            f->stage = (uint16_t)(f->stage + f->stage);
+            f->terms = f->stage;
         }
     }
 }
@@ -92,7 +93,7 @@ FX_NOINLINE void identify(adaptive_t *f, int16_t z_lsb)
 FX_NOINLINE void disperse(adaptive_t *f, uint16_t spread_uq8)
 {
     int16_t mean = mean_lsb_q8(f);
-    int16_t size = (int16_t)size_lsb_uq8(f->size_lsb_uq16);
+    int16_t size = (int16_t)size_lsb_uq8(f->u.run.size_lsb_uq16);
     uint16_t term_uq8 = (mean > size) ? (uint16_t)(mean - size) : (uint16_t)((uint16_t)size - (uint16_t)mean);
     if (term_uq8 > 47662U) {
         term_uq8 = 47662U; /* 1.375 times this fits */
@@ -124,11 +125,15 @@ FX_NOINLINE void disperse(adaptive_t *f, uint16_t spread_uq8)
 /* One sample of the start. */
 FX_NOINLINE void collect(adaptive_t *f, int16_t z_lsb)
 {
-    filter_warm_up_insert(f->start_lsb, f->collected, z_lsb);
+    filter_warm_up_insert(f->u.start_lsb, f->collected, z_lsb);
     f->collected++;
-    f->x_lsb_q16 = filter_warm_up_median_q16(f->start_lsb, f->collected);
-    f->k_uq32 = K_START_UQ32;
+    f->x_lsb_q16 = filter_warm_up_median_q16(f->u.start_lsb, f->collected);
     f->flags = FILTER_WARMING_UP;
+    if (f->collected == FILTER_WARM_UP_SAMPLES) {
+        f->k_uq32 = K_START_UQ32;
+        f->u.run.size_lsb_uq16 = 0;
+        f->u.run.gate_lsb_uq16 = 0;
+    }
 }
 
 /* Counts a sample beyond the gate. What the sample before was off in the same direction, carried on with the rate. */
@@ -143,7 +148,7 @@ FX_NOINLINE uint32_t agreed_lsb_uq16(adaptive_t *f)
         f->run = run;
     }
     FX_FENCE();
-    int32_t before = f->before_lsb_q16;
+    int32_t before = f->u.run.before_lsb_q16;
     if (f->below) {
         before = -before;
     }
@@ -161,7 +166,7 @@ FX_NOINLINE uint32_t judge(adaptive_t *f, uint32_t size)
     if (agreed > size) {
         agreed = size;
     }
-    uint32_t gate = f->gate_lsb_uq16;
+    uint32_t gate = f->u.run.gate_lsb_uq16;
     if (agreed > gate) {
         bool large = size - gate > (uint32_t)f->jump_lsb_uq8 << 8;
         if (!large || f->run >= f->confirm) {
@@ -188,7 +193,7 @@ FX_NOINLINE uint32_t judge(adaptive_t *f, uint32_t size)
 /* Innovations in their mean, each limited to the gate. */
 FX_INLINE void average_innovation(adaptive_t *f, uint32_t taken)
 {
-    uint32_t gate = f->gate_lsb_uq16;
+    uint32_t gate = f->u.run.gate_lsb_uq16;
     int16_t limited = (int16_t)size_lsb_uq8((taken > gate) ? gate : taken);
     int16_t mean = mean_lsb_q8(f);
     if (limited < mean) {
@@ -266,7 +271,7 @@ FX_INLINE void face(adaptive_t *f, int16_t z_lsb)
     } else if (innovation != 0) {
         below = false;
     }
-    f->size_lsb_uq16 = (uint32_t)innovation;
+    f->u.run.size_lsb_uq16 = (uint32_t)innovation;
     if (below != f->below) {
         f->below = below;
         f->run = 0;
@@ -280,9 +285,9 @@ FX_INLINE void face(adaptive_t *f, int16_t z_lsb)
 FX_NOINLINE uint16_t meet(adaptive_t *f, int16_t z_lsb)
 {
     f->flags = 0;
-    f->before_lsb_q16 = 0;
+    f->u.run.before_lsb_q16 = 0;
     if (f->filled != 0U) {
-        f->before_lsb_q16 = (int32_t)f->history_lsb[0] * 65536 - f->x_lsb_q16;
+        f->u.run.before_lsb_q16 = (int32_t)f->history_lsb[0] * 65536 - f->x_lsb_q16;
     }
     FX_FENCE();
     limit_x(f, f->x_lsb_q16 + adaptive_rate_lsb_q16(f));
@@ -292,7 +297,7 @@ FX_NOINLINE uint16_t meet(adaptive_t *f, int16_t z_lsb)
     uint16_t spread_uq8 = (uint16_t)(f->scatter_lsb_uq24 >> 16);
     uint16_t k = (uint16_t)(f->k_uq32 >> 16);
     spread_uq8 = (uint16_t)(spread_uq8 + (uint16_t)(fx_mul_u16(spread_uq8, k) >> 16));
-    f->gate_lsb_uq16 = fx_mul_u16(spread_uq8, f->gate_sigma_q8);
+    f->u.run.gate_lsb_uq16 = fx_mul_u16(spread_uq8, f->gate_sigma_q8);
     return spread_uq8;
 }
 
@@ -316,8 +321,8 @@ FX_NOINLINE void follow(adaptive_t *f, uint32_t taken, uint16_t spread_uq8)
 FX_INLINE void step(adaptive_t *f, int16_t z_lsb)
 {
     uint16_t spread_uq8 = meet(f, z_lsb);
-    uint32_t taken = f->size_lsb_uq16;
-    if (f->guarded && taken > f->gate_lsb_uq16) {
+    uint32_t taken = f->u.run.size_lsb_uq16;
+    if (f->guarded && taken > f->u.run.gate_lsb_uq16) {
         taken = judge(f, taken);
     } else {
         f->verdict = WITHIN_GATE;
@@ -356,11 +361,11 @@ int32_t adaptive_update(adaptive_t *f, int16_t z_lsb)
 int32_t adaptive_coast(adaptive_t *f)
 {
     f->filled = 0;
-    f->size_lsb_uq16 = 0;
     if (f->collected < FILTER_WARM_UP_SAMPLES) {
         f->flags = FILTER_WARMING_UP | FILTER_COASTED;
         return f->x_lsb_q16;
     }
+    f->u.run.size_lsb_uq16 = 0;
     f->flags = FILTER_COASTED;
     limit_x(f, f->x_lsb_q16 + adaptive_rate_lsb_q16(f));
     return f->x_lsb_q16;

@@ -58,6 +58,14 @@ typedef struct {
     uint32_t third_lsb_uq24;   /* half of the mean |third difference|: 1.774 sigma of a sample */
     uint32_t gate_lsb_uq16;    /* of the last step */
     int32_t rate_max_lsb_q24;
+    union {
+        struct {
+            uint32_t size_lsb_uq16; /* of the last innovation, <= 8704 LSB; 0 after a coast */
+            uint32_t gate_lsb_uq16; /* of the last step */
+            int32_t before_lsb_q16; /* what the sample before is off, carried on with the rate; 0: there is none */
+        } run;
+        int16_t start_lsb[FILTER_WARM_UP_SAMPLES]; /* ascending */
+    } u;
     int16_t history_lsb[3];  /* samples, newest first */
     uint16_t gate_sigma_q8;  /* in sigmas of the innovation */
     uint16_t manoeuvre_uq16; /* mean innovation, in sigmas of one, that shortens the memory */
@@ -78,14 +86,14 @@ typedef struct {
     uint16_t confirm; /* samples until a jump is believed */
     uint16_t jump_lsb_uq8;
     uint16_t terms;     /* until the weight is halved */
+    uint16_t stage;     /* terms that a weight is for, half of the next */
     uint16_t last_uq16; /* the weight at last */
-    int16_t start_lsb[FILTER_WARM_UP_SAMPLES];
 } adaptive_t;
 
 /* Descriptor in program memory. */
 extern const filter_descriptor_t adaptive_descriptor;
 
-enum { adaptive_worst_cycles = 1480 }; /* of adaptive_update, as in filter.h */
+enum { adaptive_worst_cycles = 1340 }; /* of adaptive_update, as in filter.h */
 
 void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz);
 bool adaptive_init(adaptive_t *f, const adaptive_config_t *config);

@@ -108,6 +108,7 @@ static void set_limits(adaptive_t *f, const adaptive_config_t *config)
     f->jump_lsb_uq8 = (uint16_t)(f->rate_max_lsb_q24 >> 19); /* an eighth */
     f->weight_uq16 = WEIGHT_START_UQ16;
     f->terms = 2;
+    f->stage = 1;
     f->last_uq16 = WEIGHT_LAST_MAX_UQ16; /* 64 terms, from 256 Hz on 5 s and at most 1024 terms */
     for (uint16_t rate = config->rate_dhz; rate >= 256U && f->last_uq16 > WEIGHT_LAST_MIN_UQ16; rate >>= 1) {
         f->last_uq16 >>= 1;
@@ -159,13 +160,13 @@ FX_ONCE void adaptive_reset(adaptive_t *f, int16_t z0_lsb)
     f->x_lsb_q16 = (int32_t)z0 * 65536;
     f->rate_lsb_q24 = 0;
     f->mean_lsb_q24 = 0;
-    f->size_lsb_uq16 = 0;
+    f->u.run.size_lsb_uq16 = 0;
     f->k_uq32 = (uint32_t)f->slow_uq16 << 16;
     f->filled = 0;
     f->run = 0;
     f->below = false;
     f->verdict = UNUSED;
-    f->gate_lsb_uq16 = 0;
+    f->u.run.gate_lsb_uq16 = 0;
     f->collected = FILTER_WARM_UP_SAMPLES;
     f->flags = 0;
 }
@@ -193,11 +194,12 @@ void adaptive_probe(const adaptive_t *f, filter_probe_t *out)
     bool running = (f->flags & FILTER_WARMING_UP) == 0U;
     out->x_lsb_q16 = f->x_lsb_q16;
     out->rate_lsb_q16 = running ? adaptive_rate_lsb_q16(f) : 0;
-    out->innovation_lsb_q16 = f->below ? -(int32_t)f->size_lsb_uq16 : (int32_t)f->size_lsb_uq16;
+    int32_t size = running ? (int32_t)f->u.run.size_lsb_uq16 : 0;
+    out->innovation_lsb_q16 = f->below ? -size : size;
     out->p_lsb2_q8 = running ? variance_lsb2_q8(f) : adaptive_r_lsb2_q8(f);
     out->gate_lsb2_q8 = UINT32_MAX;
-    if (f->guarded && f->gate_lsb_uq16 != 0U) {
-        uint16_t gate_uq4 = (uint16_t)(f->gate_lsb_uq16 >> 12); /* <= 4000 LSB */
+    if (f->guarded && running && f->u.run.gate_lsb_uq16 != 0U) {
+        uint16_t gate_uq4 = (uint16_t)(f->u.run.gate_lsb_uq16 >> 12); /* <= 4000 LSB */
         out->gate_lsb2_q8 = fx_mul_u16(gate_uq4, gate_uq4);
     }
     uint16_t k = (uint16_t)(f->k_uq32 >> 16);
