@@ -287,7 +287,7 @@ static const char *broken_adaptive(const adaptive_t *f, int32_t x_lsb_q16)
         (f->k_uq32 != 0U && f->k_uq32 >> 16 < 32U) || f->k_uq32 >> 16 > 39322U) {
         return "memory";
     }
-    if (f->collected > FILTER_WARM_UP_SAMPLES || f->filled > 3U || f->weight_uq16 < f->last_uq16 || f->confirm < 4U) {
+    if (f->collected > FILTER_WARM_UP_SAMPLES || f->filled > 3U || f->weight_uq16 < f->last_uq16 || f->confirm < 3U) {
         return "counts";
     }
     return NULL;

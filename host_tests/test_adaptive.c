@@ -65,7 +65,7 @@ static void without_the_guard_an_outlier_passes(void)
     TEST_ASSERT_EQUAL_UINT8(0, adaptive_flags(&f) & FILTER_GATED);
 }
 
-/* Nine doubled readings, the longest burst that was measured on a shared bus, do not reach `confirm` (15 samples). */
+/* Nine doubled readings, the longest burst that was measured on a shared bus, do not reach `confirm` (12 samples). */
 static void a_burst_of_nine_is_not_believed(void)
 {
     adaptive_t f = settled(250, true);
@@ -80,12 +80,12 @@ static void a_burst_of_nine_is_not_believed(void)
     TEST_ASSERT_INT16_WITHIN(NOISE_LSB, 250, whole(f.x_lsb_q16));
 }
 
-/* A jump that stays is believed with the fifteenth sample at the latest, and from then on the estimate is there. */
+/* A jump that stays is believed with the twelfth sample at the latest, and from then on the estimate is there. */
 static void a_jump_that_stays_is_believed(void)
 {
     adaptive_t f = settled(0, true);
     bool again = false;
-    for (uint8_t k = 0; k < 15u; k++) {
+    for (uint8_t k = 0; k < 12u; k++) {
         (void)adaptive_update(&f, noisy(900));
         again = again || (adaptive_flags(&f) & FILTER_REACQUIRED) != 0U;
     }
@@ -191,16 +191,17 @@ static void limits_of_the_parameters(void)
     TEST_ASSERT_FALSE(taken(768, 500, 140, 150, 1000001));
 }
 
-/* The one rule for all rates: 333 ms at 10 Hz, times (10 Hz / rate)^(3/8); 2 / 0.6 samples and more; 20 samples slow. */
+/* The one rule for all rates: fast 80 ms and two samples, slow 20 samples and half a second, 3 sigma below 20 Hz. */
 static void defaults_follow_one_rule(void)
 {
-    static const uint16_t rates_dhz[] = { 100, 250, 500, 1000, 2000, 4000, 8000, 40000 };
-    static const uint16_t fast_ms[] = { 333, 236, 182, 141, 108, 84, 64, 35 };
-    for (uint8_t i = 0; i < 8u; i++) {
+    static const uint16_t rates_dhz[] = { 100, 199, 200, 250, 500, 1000, 2000, 4000, 8000, 40000 };
+    for (uint8_t i = 0; i < 10u; i++) {
         adaptive_config_t config;
         adaptive_defaults(&config, rates_dhz[i]);
-        TEST_ASSERT_UINT16_WITHIN(1u + fast_ms[i] / 100u, fast_ms[i], config.fast_ms);
+        TEST_ASSERT_EQUAL_UINT16(80u + 20000u / rates_dhz[i], config.fast_ms);
         TEST_ASSERT_EQUAL_UINT16(rates_dhz[i] < 400u ? 200000UL / rates_dhz[i] : 500u, config.slow_ms);
+        TEST_ASSERT_EQUAL_UINT16(rates_dhz[i] < 200u ? 768u : 1152u, config.guard_sigma_q8);
+        TEST_ASSERT_EQUAL_UINT16(1, config.identify);
     }
 }
 

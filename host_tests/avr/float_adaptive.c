@@ -18,7 +18,7 @@ void float_adaptive_start(float_adaptive_t *f, const adaptive_config_t *config, 
     f->share = 0.4f * f->fast;
     f->manoeuvre = 2.15f * (float)sqrtf(f->share / (2.0f - f->share));
     f->rate_max = limited((float)config->rate_max_lsb_s / rate_hz, 0.0f, 127.0f);
-    f->confirm = limited((float)config->confirm_ms * rate_hz / 1000.0f, 4.0f, 65535.0f);
+    f->confirm = limited((float)config->confirm_ms * rate_hz / 1000.0f, 3.0f, 65535.0f);
     f->window = 64;
     for (float samples = rate_hz * 10.0f; samples >= 2560.0f && f->window < 1024u; samples /= 2.0f) {
         f->window *= 2u;
@@ -67,7 +67,7 @@ static void identify(float_adaptive_t *f, float z)
 
 static void disperse(float_adaptive_t *f, float innovation, float spread)
 {
-    float window = limited(next_window(f), 8.0f, 32.0f);
+    float window = limited(next_window(f), 8.0f, 16.0f);
     float term = 1.375f * (float)fabsf(innovation - f->mean);
     float limit = 2.5f * spread;
     f->scatter += ((term < limit ? term : limit) - spread) / window;

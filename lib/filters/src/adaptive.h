@@ -42,7 +42,7 @@ typedef struct {
     uint16_t identify;       /* 1: noise identified on line, 0: R as given */
     uint16_t slow_ms;        /* slowest memory: 10..60000, at least 4 and at most 4096 samples of it */
     uint16_t fast_ms;        /* shortest memory: 1..60000, at least 3.3 samples and at most the slowest */
-    uint16_t confirm_ms;     /* time until a jump is believed: 0..10000, at least 4 samples */
+    uint16_t confirm_ms;     /* time until a jump is believed: 0..10000, at least 3 samples */
     uint32_t rate_max_lsb_s; /* limit of the estimated rate, LSB/s: 10..1000000, at most 127 LSB per sample of it */
 } adaptive_config_t;
 

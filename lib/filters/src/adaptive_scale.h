@@ -35,12 +35,12 @@
 
 /*
  * Weights of a term: 1, 1/2, 1/4 twice, 1/8 four times..., the first four without a limit, because the R to start
- * from may be far off. The scatter's stays within 1/8..1/32.
+ * from may be far off. The scatter's stays within 1/8..1/16.
  */
 #define WEIGHT_START_UQ16 32768U
 #define WEIGHT_LIMITED_UQ16 16384U
 #define WEIGHT_SCATTER_START_UQ16 8192U
-#define WEIGHT_SCATTER_UQ16 2048U
+#define WEIGHT_SCATTER_UQ16 4096U
 #define WEIGHT_LAST_MAX_UQ16 1024U
 #define WEIGHT_LAST_MIN_UQ16 64U
 

@@ -7,6 +7,7 @@
 #define MEMORY_MAX_MS 60000U
 #define SLOW_MIN_MS 10U
 #define CONFIRM_MAX_MS 10000U
+#define CONFIRM_LEAST 3U
 #define RATE_MAX_MIN_LSB_S 10
 #define RATE_MAX_MAX_LSB_S 1000000
 
@@ -26,32 +27,20 @@ const filter_descriptor_t adaptive_descriptor FX_FLASH = { "adaptive", sizeof pa
                                                            parameters };
 
 /*
- * Shortest memory: 333 ms at 10 Hz, falling with rate^(3/8), by three square roots. Between a constant time (which
- * noise whose variance grows with the rate asks for) and a constant number of samples (which the guard asks for, whose
- * decisions take samples).
+ * One rule for all rates. Shortest memory: 80 ms, what a quick turn of the hand takes, and two samples, without which no
+ * line is known. Slowest: half a second and at least 20 samples. The gate is 3 sigma below 20 Hz, where a motion is a
+ * few samples long and outliers among them cost most, and 4.5 from there on: more than what hands do between samples.
  */
-static uint16_t default_fast_ms(uint16_t rate_dhz)
-{
-    uint32_t root = fx_isqrt32((uint32_t)rate_dhz << 16);      /* rate^(1/2), Q8 */
-    root = fx_isqrt32(root << 16);                             /* rate^(1/4), Q12 */
-    uint16_t eighth = (uint16_t)(fx_isqrt32(root << 16) >> 4); /* rate^(1/8), Q10: 1.6..3.8 */
-    uint32_t cube = fx_mul_u16(eighth, eighth) >> 10;          /* rate^(1/4), Q10 */
-    cube = fx_mul_u16((uint16_t)cube, eighth) >> 10;           /* rate^(3/8), Q10: 4.3..53 */
-    return (uint16_t)(1919000U / cube);                        /* 333.3 ms x 100^(3/8) */
-}
-
 void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz)
 {
+    uint16_t divisor = (rate_dhz == 0U) ? 1U : rate_dhz;
     config->rate_dhz = rate_dhz;
-    config->guard_sigma_q8 = 768;
+    config->guard_sigma_q8 = (rate_dhz < 200U) ? 768U : 1152U;
     config->r_lsb2_q8 = filter_default_r_lsb2_q8(rate_dhz);
     config->identify = 1;
-    config->slow_ms = 500;
-    if (rate_dhz < 400U) { /* 20 samples */
-        config->slow_ms = (uint16_t)(200000U / ((rate_dhz == 0U) ? 1U : rate_dhz));
-    }
-    config->fast_ms = default_fast_ms((rate_dhz == 0U) ? 1U : rate_dhz);
-    config->confirm_ms = 150;
+    config->slow_ms = (divisor < 400U) ? (uint16_t)(200000U / divisor) : 500U;
+    config->fast_ms = (uint16_t)(80U + 20000U / divisor);
+    config->confirm_ms = 120;
     config->rate_max_lsb_s = 800;
 }
 
@@ -99,7 +88,7 @@ static void set_memory(adaptive_t *f, const adaptive_config_t *config)
 static void set_limits(adaptive_t *f, const adaptive_config_t *config)
 {
     uint32_t confirm = (uint32_t)config->confirm_ms * config->rate_dhz / 10000U; /* <= 40000 */
-    f->confirm = (confirm < 4U) ? 4U : (uint16_t)confirm;
+    f->confirm = (confirm < CONFIRM_LEAST) ? CONFIRM_LEAST : (uint16_t)confirm;
     f->rate_max_lsb_q24 = RATE_LIMIT_LSB_Q24;
     if (config->rate_max_lsb_s * 10U / config->rate_dhz < 127U) {
         fx_scaled_t rate = fx_scaled_div(fx_scaled(config->rate_max_lsb_s * 10U), fx_scaled(config->rate_dhz));
