@@ -38,7 +38,7 @@ void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz)
     config->guard_sigma_q8 = (rate_dhz < 200U) ? 768U : 1152U;
     config->r_lsb2_q8 = filter_default_r_lsb2_q8(rate_dhz);
     config->identify = 1;
-    config->slow_ms = (divisor < 400U) ? (uint16_t)(200000U / divisor) : 500U;
+    config->slow_ms = (uint16_t)((divisor < 400U) ? 200000U / divisor : 500U);
     config->fast_ms = (uint16_t)(80U + 20000U / divisor);
     config->confirm_ms = 120;
     config->rate_max_lsb_s = 800;
