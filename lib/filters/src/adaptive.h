@@ -51,12 +51,9 @@ typedef struct {
     int32_t x_lsb_q16;         /* estimate, |x| <= FILTER_X_MAX_LSB */
     int32_t rate_lsb_q24;      /* per sample, |rate| <= rate_max_lsb_q24; towards `below` */
     int32_t mean_lsb_q24;      /* of the innovations, each limited to the gate and 128 LSB; towards `below` */
-    uint32_t size_lsb_uq16;    /* of the last innovation, <= 8704 LSB; 0 after a coast */
-    int32_t before_lsb_q16;    /* what the sample before is off, carried on with the rate; 0: there is none */
     uint32_t k_uq32;           /* 1 - fading factor, of the last update */
     uint32_t scatter_lsb_uq24; /* sigma of the innovations for k = 0: 0.1..90 */
     uint32_t third_lsb_uq24;   /* half of the mean |third difference|: 1.774 sigma of a sample */
-    uint32_t gate_lsb_uq16;    /* of the last step */
     int32_t rate_max_lsb_q24;
     union {
         struct {
@@ -93,7 +90,7 @@ typedef struct {
 /* Descriptor in program memory. */
 extern const filter_descriptor_t adaptive_descriptor;
 
-enum { adaptive_worst_cycles = 1440 }; /* of adaptive_update, as in filter.h */
+enum { adaptive_worst_cycles = 1340 }; /* of adaptive_update, as in filter.h */
 
 void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz);
 bool adaptive_init(adaptive_t *f, const adaptive_config_t *config);
