@@ -260,6 +260,24 @@ static const char *broken_kf3(const kf3_t *f, int32_t x_lsb_q16)
     return (!two_state_warming_up(&f->core) && kf3_covariance_broken(f)) ? "P" : NULL;
 }
 
+/* A gate of 16 sigma of 90 LSB times 1.6; before the first step these hold the start. */
+static bool broken_adaptive_step(const adaptive_t *f)
+{
+    return f->collected == FILTER_WARM_UP_SAMPLES &&
+           (f->u.run.size_lsb_uq16 > (uint32_t)8704 << 16 || f->u.run.gate_lsb_uq16 > (uint32_t)2305 << 16);
+}
+
+static const char *broken_adaptive_memory(const adaptive_t *f)
+{
+    if (f->slow_uq16 < 32U || f->fast_uq16 < f->slow_uq16 || f->fast_uq16 > 39322U || f->k_uq32 >> 16 > 39322U) {
+        return "memory";
+    }
+    if (f->collected > FILTER_WARM_UP_SAMPLES || f->filled > 3U || f->weight_uq16 < f->last_uq16 || f->confirm < 3U) {
+        return "counts";
+    }
+    return NULL;
+}
+
 /* adaptive.h, adaptive.c: state within its formats, noise within the legal R, memory between 3.3 and 4096 samples. */
 static const char *broken_adaptive(const adaptive_t *f, int32_t x_lsb_q16)
 {
@@ -272,25 +290,13 @@ static const char *broken_adaptive(const adaptive_t *f, int32_t x_lsb_q16)
     if (f->third_lsb_uq24 < 2990500U || f->scatter_lsb_uq24 > 1509949440U) {
         return "noise";
     }
-    bool running = f->collected == FILTER_WARM_UP_SAMPLES;
-    if (running && f->u.run.size_lsb_uq16 > (uint32_t)8704 << 16) {
-        return "innovation";
-    }
-    /* a gate of 16 sigma of 90 LSB times 1.6 */
-    if (running && f->u.run.gate_lsb_uq16 > (uint32_t)2305 << 16) {
-        return "gate";
+    if (broken_adaptive_step(f)) {
+        return "innovation or gate";
     }
     if (fx_abs32(f->mean_lsb_q24) > (uint32_t)128 << 24) {
         return "mean";
     }
-    if (f->slow_uq16 < 32U || f->fast_uq16 < f->slow_uq16 || f->fast_uq16 > 39322U ||
-        (f->k_uq32 != 0U && f->k_uq32 >> 16 < 32U) || f->k_uq32 >> 16 > 39322U) {
-        return "memory";
-    }
-    if (f->collected > FILTER_WARM_UP_SAMPLES || f->filled > 3U || f->weight_uq16 < f->last_uq16 || f->confirm < 3U) {
-        return "counts";
-    }
-    return NULL;
+    return broken_adaptive_memory(f);
 }
 
 static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)

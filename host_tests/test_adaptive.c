@@ -1,4 +1,4 @@
-/* The guarded adaptive filter: what it does with a step, a ramp, outliers, a burst, a jump; limits of its parameters. */
+/* The guarded adaptive filter: what it does with a ramp, outliers, a burst, a jump; limits of its parameters. */
 #include "adaptive.h"
 #include "fx.h"
 #include "support_filters.h"

@@ -93,6 +93,29 @@ static float judge(float_adaptive_t *f, float size, float gate, float before, bo
     return (agreed > left) ? agreed : left;
 }
 
+static void adapt(float_adaptive_t *f, float spread, bool motion)
+{
+    float drift = (float)fabsf(f->mean);
+    if (motion || drift > f->manoeuvre * spread) {
+        f->k = (f->k < f->fast) ? f->fast : f->k;
+    } else if (drift <= 0.75f * f->manoeuvre * spread) {
+        f->k -= f->k * f->k / 4.0f;
+        f->k = (f->k < f->slow) ? f->slow : f->k;
+    }
+}
+
+static void follow(float_adaptive_t *f, float taken, bool jump)
+{
+    if (jump) {
+        f->x += taken;
+        f->v = 0.0f;
+    } else {
+        float w = f->k * taken;
+        f->x += 2.0f * w - f->k * w;
+        f->v = limited(f->v + f->k * w, -f->rate_max, f->rate_max);
+    }
+}
+
 static void step(float_adaptive_t *f, float z)
 {
     float before = (f->filled == 0u) ? 0.0f : f->z[0] - f->x;
@@ -111,21 +134,8 @@ static void step(float_adaptive_t *f, float z)
     }
     float most = (gate > 128.0f) ? 128.0f : gate;
     f->mean += f->share * (sign * (taken > most ? most : taken) - f->mean);
-    float drift = (float)fabsf(f->mean);
-    if (motion || drift > f->manoeuvre * spread) {
-        f->k = (f->k < f->fast) ? f->fast : f->k;
-    } else if (drift <= 0.75f * f->manoeuvre * spread) {
-        f->k -= f->k * f->k / 4.0f;
-        f->k = (f->k < f->slow) ? f->slow : f->k;
-    }
-    if (jump) {
-        f->x += sign * taken;
-        f->v = 0.0f;
-    } else {
-        float w = f->k * sign * taken;
-        f->x += 2.0f * w - f->k * w;
-        f->v = limited(f->v + f->k * w, -f->rate_max, f->rate_max);
-    }
+    adapt(f, spread, motion);
+    follow(f, sign * taken, jump);
     if (f->identify && !f->third) {
         disperse(f, innovation, spread);
     }

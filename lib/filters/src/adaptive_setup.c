@@ -27,15 +27,15 @@ const filter_descriptor_t adaptive_descriptor FX_FLASH = { "adaptive", sizeof pa
                                                            parameters };
 
 /*
- * One rule for all rates. Shortest memory: 80 ms, what a quick turn of the hand takes, and two samples, without which no
- * line is known. Slowest: half a second and at least 20 samples. The gate is 3 sigma below 20 Hz, where a motion is a
+ * One rule for all rates. Shortest memory: 80 ms, a quick turn of the hand, and two samples, without which no line
+ * is known. Slowest: half a second and at least 20 samples. The gate is 3 sigma below 20 Hz, where a motion is a
  * few samples long and outliers among them cost most, and 4.5 from there on: more than what hands do between samples.
  */
 void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz)
 {
     uint16_t divisor = (rate_dhz == 0U) ? 1U : rate_dhz;
     config->rate_dhz = rate_dhz;
-    config->guard_sigma_q8 = (rate_dhz < 200U) ? 768U : 1152U;
+    config->guard_sigma_q8 = (uint16_t)((rate_dhz < 200U) ? 768U : 1152U);
     config->r_lsb2_q8 = filter_default_r_lsb2_q8(rate_dhz);
     config->identify = 1;
     config->slow_ms = (uint16_t)((divisor < 400U) ? 200000U / divisor : 500U);
@@ -178,6 +178,16 @@ static uint32_t variance_lsb2_q8(const adaptive_t *f)
     return fx_scaled_fixed(p, 16);
 }
 
+/* Of the last update; 0 when nothing was taken. */
+static uint16_t gain_uq16(const adaptive_t *f)
+{
+    if ((f->flags & FILTER_COASTED) != 0U || f->verdict == (uint8_t)UNUSED) {
+        return 0;
+    }
+    uint16_t k = (uint16_t)(f->k_uq32 >> 16);
+    return (uint16_t)(2U * k - fx_high_u16(k, k));
+}
+
 void adaptive_probe(const adaptive_t *f, filter_probe_t *out)
 {
     bool running = (f->flags & FILTER_WARMING_UP) == 0U;
@@ -191,8 +201,6 @@ void adaptive_probe(const adaptive_t *f, filter_probe_t *out)
         uint16_t gate_uq4 = (uint16_t)(f->u.run.gate_lsb_uq16 >> 12); /* <= 4000 LSB */
         out->gate_lsb2_q8 = fx_mul_u16(gate_uq4, gate_uq4);
     }
-    uint16_t k = (uint16_t)(f->k_uq32 >> 16);
-    bool moved = running && (f->flags & FILTER_COASTED) == 0U && f->verdict != UNUSED;
-    out->gain_uq16 = moved ? (uint16_t)(2U * k - fx_high_u16(k, k)) : 0U;
+    out->gain_uq16 = running ? gain_uq16(f) : 0U;
     out->flags = f->flags;
 }
