@@ -3,17 +3,17 @@
  *
  * Band, kf, kf3, lrf, synth, synth_opt, synth_plus, pbf, af: |x - m| <= 1.1 gain_sum D + 1 LSB, m the median and D the
  * largest distance from it of the last W raw samples. A linear estimate is sum h_k z with sum h_k = 1, hence no further
- * from any m than D sum |h_k|, plus what the samples before W leave. For the two-state filters sum |h| is 1.434 at most (limit of small
- * gains, 1 for a gain of 1; steady gains of this model have w2 = w1^2 / (2 - w1)), for synth at (0, 0.3) 2.277, for
- * kf3 1.828 at its smallest gain. pbf and af go between kf and a kf made for the R of outliers, 400 R: in the one
- * samples within D drive the rate to at most D sum |h_rate|, in the other that rate carries x off before it is
- * corrected; together 1.434 + 1.945. A test repeats these sums. The tenth is for R, and with it the gain, changing.
+ * from any m than D sum |h_k|, plus what the samples before W leave. For the two-state filters sum |h| is 1.434 at most
+ * (limit of small gains, 1 for a gain of 1; steady gains of this model have w2 = w1^2 / (2 - w1)), for synth at (0,
+ * 0.3) 2.277, for kf3 1.828 at its smallest gain. pbf and af go between kf and a kf made for the R of outliers, 400 R:
+ * in the one samples within D drive the rate to at most D sum |h_rate|, in the other that rate carries x off before it
+ * is corrected; together 1.434 + 1.945. A test repeats these sums. The tenth is for R, and with it the gain, changing.
  * Missing samples make the gain of a two-state filter larger and the sum smaller; that of synth stays and kf3 goes on
  * along a parabola, so they are judged where none of the W is missing. W is the time to forget: 10 time constants for
  * the linear ones (e^-10 of 8,704 LSB is 0.4 LSB), and for pbf and af the time in which they are to be back after any
  * step, 800 samples in the system of paper 002, where a time constant is 14.7 samples. It is sqrt(2) / q22^(1/4)
- * samples, q22 = q T^3 / R limited as in two_state.c, R the largest so far; of kf3 2 / q33^(1/6) samples, q33 = q T^5
- * / R limited as in kf3.c: small gains make a Butterworth filter of third order.
+ * samples, q22 = q T^3 / R limited as in two_state.c, R the largest so far; of kf3 2 / q33^(1/6) samples, q33 = q T^5 /
+ * R limited as in kf3.c: small gains make a Butterworth filter of third order.
  *
  * Hull, sprf and soft: whenever the last five raw samples agree (steps of at most 3 sqrt(2 R) + ratemax, as reacquire.h
  * counts), one of them was within the gate or all five were refused and the filter restarted on one of them. Within the

@@ -31,7 +31,8 @@ uint8_t any_kind(uint32_t number)
 {
     uint8_t linked[FILTER_KIND_COUNT];
     uint8_t count = 0;
-    FOR_EACH_KIND (kind) {
+    FOR_EACH_KIND(kind)
+    {
         linked[count] = kind;
         count++;
     }

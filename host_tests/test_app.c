@@ -128,8 +128,8 @@ static void test_refusals_name_the_legal_values(void)
                  { "every 65537", "# refused: every is one of 1 to 10000" },
                  { "every 1.5", "# refused: every is one of 1 to 10000" },
                  { "baud 12345", "# refused: baud is one of 9600 19200 38400 57600 115200 250000 500000 1000000" },
-                 { "filter median",
-                   "# refused: filter is one of adaptive kf sprf synth lrf soft sprf_paper shrf pbf af synth_opt synth_plus kf3" },
+                 { "filter median", "# refused: filter is one of adaptive kf sprf synth lrf soft sprf_paper shrf pbf "
+                                    "af synth_opt synth_plus kf3" },
                  { "mode xml", "# refused: mode is one of csv plot" },
                  { "hello", "# unknown command (type help)" },
                  { "stop now", "# unknown command (type help)" } };

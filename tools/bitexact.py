@@ -207,7 +207,7 @@ def explain(pair, exes, path, number, first):
 def differences(pair, tables):
     """(paths that differ, lines about the first of them)."""
     paths = list(dict.fromkeys(path for path, _ in tables[0]))
-    if list(tables[0]) != list(tables[1]):
+    if set(tables[0]) != set(tables[1]):
         raise Failure(f"{pair[0].name} and {pair[1].name} do not have the same blocks")
     first = {}
     for (path, index), crc in tables[0].items():

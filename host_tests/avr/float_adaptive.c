@@ -116,10 +116,15 @@ static void follow(float_adaptive_t *f, float taken, bool jump)
     }
 }
 
+static float spread_of(const float_adaptive_t *f)
+{
+    return (f->guard > 0.0f ? f->scatter : f->sigma) * (1.0f + f->k);
+}
+
 static void step(float_adaptive_t *f, float z)
 {
     float before = (f->filled == 0u) ? 0.0f : f->z[0] - f->x;
-    float spread = (f->guard > 0.0f ? f->scatter : f->sigma) * (1.0f + f->k);
+    float spread = spread_of(f);
     float gate = (f->guard > 0.0f ? f->guard : 4.0f) * spread;
     f->x += f->v;
     float innovation = z - f->x;

@@ -122,11 +122,23 @@ def c_rows(name, values):
 
 def library_table():
     """Text of lib/filters/src/synth_opt_table.h."""
-    text = ["/*\n * Gains of synth_opt, UQ0.16, made by tools/design/schedule.py --emit library; do not edit. For each class of P0/R\n * (" +
-            ", ".join(map(str, RATIOS)) + f") its first {OWN_STEPS} steps; then the {COMMON_STEPS} further ones of all classes (those of "
-            f"{COMMON}), and the limit.\n * a1 of variant U; exact has 0.\n */\n#ifndef SYNTH_OPT_TABLE_H\n#define SYNTH_OPT_TABLE_H\n\n#include \"fx.h\"\n\n"
-            f"enum {{ SYNTH_OPT_CLASSES = {len(RATIOS)}, SYNTH_OPT_OWN_STEPS = {OWN_STEPS}, SYNTH_OPT_STEPS = {OWN_STEPS + COMMON_STEPS} }};\n\n/* Place of step n >= SYNTH_OPT_OWN_STEPS: n + SYNTH_OPT_COMMON. */\n"
-            f"enum {{ SYNTH_OPT_COMMON = {(len(RATIOS) - 1) * OWN_STEPS} }};\n\n/* clang-format off */"]
+    ratios = ", ".join(map(str, RATIOS))
+    text = [f"""/*
+ * Gains of synth_opt, UQ0.16, made by tools/design/schedule.py --emit library; do not edit. For each class of P0/R
+ * ({ratios}) its first {OWN_STEPS} steps; then the {COMMON_STEPS} further ones of all classes (those of {COMMON}), and the limit.
+ * a1 of variant U; exact has 0.
+ */
+#ifndef SYNTH_OPT_TABLE_H
+#define SYNTH_OPT_TABLE_H
+
+#include "fx.h"
+
+enum {{ SYNTH_OPT_CLASSES = {len(RATIOS)}, SYNTH_OPT_OWN_STEPS = {OWN_STEPS}, SYNTH_OPT_STEPS = {OWN_STEPS + COMMON_STEPS} }};
+
+/* Place of step n >= SYNTH_OPT_OWN_STEPS: n + SYNTH_OPT_COMMON. */
+enum {{ SYNTH_OPT_COMMON = {(len(RATIOS) - 1) * OWN_STEPS} }};
+
+/* clang-format off */"""]
     for variant in ("exact", "u"):
         gains = [library_gains(variant, i) for i in range(len(RATIOS))]
         listed = [g for of_class in gains for g in of_class[:OWN_STEPS]] + gains[0][OWN_STEPS:]
@@ -169,7 +181,8 @@ def count(text):
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="schedule", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--p0-over-r", type=positive, help="variance of the start's error over that of the measurement, e.g. 8.33 (paper 000: 5 over 0.6)")
+    parser.add_argument("--p0-over-r", type=positive,
+                        help="variance of the start's error over that of the measurement, e.g. 8.33 (paper 000: 5 over 0.6)")
     parser.add_argument("--variant", choices=sorted(SCHEDULES), default="exact")
     parser.add_argument("--steps", type=count, default=OWN_STEPS + COMMON_STEPS, help="default %(default)s")
     parser.add_argument("--emit", choices=("text", "c", "library"), default="text",

@@ -35,7 +35,7 @@ typedef struct {
     } state;
 } filter_any_t;
 
-/* Descriptor of a kind, in program memory: read it with the FX_FLASH readers of fx.h. NULL: the kind is not linked. */
+/* Descriptor of a kind, in program memory: read it with the FX_FLASH readers of fx.h. NULL: kind not linked. */
 const filter_descriptor_t *filter_any_descriptor(filter_kind_t kind);
 
 /* Name of a kind, in program memory, as typed in `filter NAME`; the same as in its descriptor. */
@@ -48,8 +48,8 @@ uint16_t filter_any_worst_cycles(filter_kind_t kind);
 filter_kind_t filter_any_find(const char *name);
 
 /*
- * As F_defaults and so on of filter.h, for the kind given or held. Unknown kinds, and kinds that are not linked: init is
- * false, the others do nothing.
+ * As F_defaults and so on of filter.h, for the kind given or held. Unknown kinds, and kinds that are not linked: init
+ * is false, the others do nothing.
  */
 void filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16_t rate_dhz);
 bool filter_any_init(filter_any_t *f, filter_kind_t kind, const filter_any_config_t *config);
