@@ -29,7 +29,7 @@ uint8_t linked_kind(uint8_t kind)
 
 uint8_t any_kind(uint32_t number)
 {
-    uint8_t linked[FILTER_KIND_COUNT];
+    uint8_t linked[FILTER_KIND_COUNT] = { 0 };
     uint8_t count = 0;
     FOR_EACH_KIND(kind)
     {

@@ -11,7 +11,7 @@
 #define X_MAX_LSB_Q16 ((int32_t)FILTER_X_MAX_LSB * 65536)
 
 /* 127 LSB per sample: with the bound of x, all that 32 bits hold. */
-#define RATE_LIMIT_LSB_Q24 ((int32_t)127 << 24)
+#define RATE_LIMIT_LSB_Q24 ((int32_t)127 * 16777216)
 
 /* k = 0.6, a memory of 3.3 samples: beyond it the filter nearly follows the raw samples. k = 2 / 4096. */
 #define K_MAX_UQ16 39322U
