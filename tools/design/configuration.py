@@ -17,7 +17,7 @@ RATE_DHZ = (50, 40000)
 R_Q8 = (3, 256000)
 B0 = (656, 65535)
 A1 = (-65535, 65535)
-PLUS_K_MAX = 16
+PLUS_K_MAX = 8
 Q = (1, 1_000_000_000)
 KF3_FINE_FROM_DHZ = 1000  # kf3's unit of the acceleration changes here
 OPT_LIMITS = ((0.0, 2 / 3), (-1 / 6, 11 / 13))  # of synth_opt: exact, variant U
@@ -104,12 +104,12 @@ def stored_synth(f, common, error_max, noise_max, fixed_a=False):
 
 
 def plus_rho(k):
-    """-a1 of synth_plus: 1 - 2^-k, 16 standing for 1."""
+    """-a1 of synth_plus: 1 - 2^-k, 8 standing for 1."""
     return Fraction(1) if k == PLUS_K_MAX else 1 - Fraction(1, 2 ** k)
 
 
 def plus_filter(k, b, v=2):
-    """v = 3 is the same filter told as of astatism 3: k = 16."""
+    """v = 3 is the same filter told as of astatism 3: k = 8."""
     b = tuple(Fraction(x, ONE) for x in b)
     return Filter(3, (), b) if v == 3 else Filter(2, (-plus_rho(k),) if k else (), b)
 
