@@ -91,6 +91,24 @@ static void shifts_equal_exact_arithmetic(void)
     }
 }
 
+/* v - v / 2^k with what is taken rounded half up, and v with nothing taken. */
+static void without_a_part_equals_exact_arithmetic(void)
+{
+    for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
+        int64_t v = (int32_t)operand(i);
+        TEST_ASSERT_EQUAL_INT32((int32_t)v, fx_without_part((int32_t)v, 0));
+        for (uint8_t k = 1; k < 8; k++) {
+            int64_t above = v + ((int64_t)1 << (k - 1)) + ((int64_t)1 << 40); /* not negative: rounded down */
+            int64_t part = (above >> k) - ((int64_t)1 << (40 - k));
+            TEST_ASSERT_EQUAL_INT32((int32_t)(v - part), fx_without_part((int32_t)v, (uint8_t)(256U >> k)));
+        }
+        int64_t limit = (int64_t)72 << 24;
+        int64_t limited = (v > limit) ? limit : v;
+        limited = (limited < -limit) ? -limit : limited;
+        TEST_ASSERT_EQUAL_INT32((int32_t)limited, fx_clamp_high((int32_t)v, 72));
+    }
+}
+
 /* The leading bit at the top, the places it moved by, and what is left of the number: all of it above the low byte. */
 static void leading_bits_by_definition(void)
 {
@@ -215,6 +233,7 @@ int main(void)
     RUN_TEST(signed_product_equals_exact_arithmetic);
     RUN_TEST(sums_with_an_element_equal_exact_arithmetic);
     RUN_TEST(shifts_equal_exact_arithmetic);
+    RUN_TEST(without_a_part_equals_exact_arithmetic);
     RUN_TEST(leading_bits_by_definition);
     RUN_TEST(functions_equal_their_primitives);
     RUN_TEST(reciprocal_of_leading_bits_is_within_its_bound);

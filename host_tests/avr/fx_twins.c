@@ -72,6 +72,9 @@ static const int32_t *addends(int32_t b)
         return (assembler) == (c_twin);             \
     }
 
+/* 0, 2, 4 .. 128 */
+#define PART(b) ((uint8_t)((1U << ((b)&7U)) & 0xFEU))
+
 TWIN(mul_u16, fx_mul_u16((uint16_t)a, (uint16_t)b), fx_mul_u16_c((uint16_t)a, (uint16_t)b))
 TWIN(mul16_uq16, fx_mul16_uq16((uint16_t)a, (uint16_t)b), fx_mul16_uq16_c((uint16_t)a, (uint16_t)b))
 TWIN(mul_uq16, fx_mul_uq16(a, (uint16_t)b), fx_mul_uq16_c(a, (uint16_t)b))
@@ -85,6 +88,8 @@ TWIN(minus, fx_minus((int32_t)a / 2, addends((int32_t)b / 2), 2),
 TWIN(sixteenth, fx_sixteenth(a), fx_sixteenth_c(a))
 TWIN(shift12, fx_shift12((uint16_t)a), fx_shift12_c((uint16_t)a))
 TWIN(eightfold, fx_eightfold(a), fx_eightfold_c(a))
+TWIN(without_part, fx_without_part((int32_t)a, PART(b)), fx_without_part_c((int32_t)a, PART(b)))
+TWIN(clamp_high, fx_clamp_high((int32_t)a, 54), fx_clamp_high_c((int32_t)a, 54))
 TWIN(shift_right, fx_shift_right(a, (uint8_t)b & 31U), fx_shift_right_c(a, (uint8_t)b & 31U))
 
 static bool twin_normalise(uint32_t a, uint32_t b)
@@ -138,6 +143,8 @@ int main(void)
     RUN(sixteenth);
     RUN(shift12);
     RUN(eightfold);
+    RUN(without_part);
+    RUN(clamp_high);
     RUN(shift_right);
     RUN(normalise);
     while ((UCSR0A & _BV(UDRE0)) == 0) {

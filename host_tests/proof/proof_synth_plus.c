@@ -39,6 +39,7 @@ static void any_common(synth_plus_t *f)
     f->b1_negative = ANY_BOOL();
     f->b2_negative = ANY_BOOL();
     f->k = ANY_U8(0, 8);
+    f->rest_uq8 = ANY_U8(0, 128);
 }
 
 static void any_start(synth_plus_t *f, uint8_t from_collected, uint8_t to_collected)
@@ -146,7 +147,7 @@ void proof_synth_plus_reset(void)
 
 /*
  * Uses: limit_x, fit_line.
- * Options: -eva-split-return-function synth_extrapolate:full,set_start_gain:full,plus_step:full
+ * Options: -eva-split-return-function synth_extrapolate:full,start_step:full,plus_step:full
  */
 void proof_synth_plus_update(void)
 {

@@ -83,6 +83,21 @@ static inline const void *fx_flash_pointer(const void *p)
 }
 #endif
 
+/* |v|; INT32_MIN gives 2^31. */
+static inline uint32_t fx_abs32(int32_t v)
+{
+    return (v < 0) ? 0U - (uint32_t)v : (uint32_t)v;
+}
+
+/* v limited to -limit..limit; limit >= 0. */
+static inline int32_t fx_clamp(int32_t v, int32_t limit)
+{
+    if (v > limit) {
+        return limit;
+    }
+    return (v < -limit) ? -limit : v;
+}
+
 /* a x b, exact. */
 static inline uint32_t fx_mul_u16_c(uint16_t a, uint16_t b)
 {
@@ -197,6 +212,24 @@ static inline uint32_t fx_mul_uq24_c(uint32_t a, uint32_t b_uq24)
     return fx_mul_u16_c(a_high, b_high) + (middle >> 8) + ((middle >> 7) & 1U);
 }
 
+/*
+ * v - v x part_uq8 / 2^8, what is taken rounded half up; part_uq8 0 or one of 2, 4 .. 128, so v without its part of
+ * 2^-7 .. 2^-1: shifted, which the 8-bit machine does by its multiplier.
+ */
+static inline int32_t fx_without_part_c(int32_t v, uint8_t part_uq8)
+{
+    uint32_t size = fx_abs32(v);
+    uint32_t half = (v < 0) ? 127U : 128U;
+    int32_t part = (int32_t)((size >> 8) * part_uq8 + (((size & 0xFFU) * part_uq8 + half) >> 8));
+    return (v < 0) ? v + part : v - part;
+}
+
+/* v limited to -limit..limit x 2^24; limit a constant 1..127. */
+static inline int32_t fx_clamp_high_c(int32_t v, uint8_t limit)
+{
+    return fx_clamp(v, (int32_t)limit * 16777216);
+}
+
 #if defined(__AVR__) && defined(__OPTIMIZE__)
 #include "fx_avr.h"
 #else
@@ -257,29 +290,22 @@ static inline uint32_t fx_shift_right(uint32_t v, uint8_t places)
 {
     return fx_shift_right_c(v, places);
 }
+static inline int32_t fx_without_part(int32_t v, uint8_t part_uq8)
+{
+    return fx_without_part_c(v, part_uq8);
+}
+static inline int32_t fx_clamp_high(int32_t v, uint8_t limit)
+{
+    return fx_clamp_high_c(v, limit);
+}
 
 #endif
-
-/* |v|; INT32_MIN gives 2^31. */
-static inline uint32_t fx_abs32(int32_t v)
-{
-    return (v < 0) ? 0U - (uint32_t)v : (uint32_t)v;
-}
 
 /* a + b, at most UINT32_MAX. */
 static inline uint32_t fx_add_sat(uint32_t a, uint32_t b)
 {
     uint32_t sum = a + b;
     return (sum < a) ? UINT32_MAX : sum;
-}
-
-/* v limited to -limit..limit; limit >= 0. */
-static inline int32_t fx_clamp(int32_t v, int32_t limit)
-{
-    if (v > limit) {
-        return limit;
-    }
-    return (v < -limit) ? -limit : v;
 }
 
 /* Nodes of the reciprocal, see fx.c; in program memory. */

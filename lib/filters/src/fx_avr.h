@@ -207,6 +207,36 @@ FX_INLINE uint32_t fx_shift_right(uint32_t v, uint8_t places)
     return v;
 }
 
+/* With one bit set in part_uq8 the halves of neighbouring products have no bits in common; the half is the borrow. */
+FX_INLINE int32_t fx_without_part(int32_t v, uint8_t part_uq8)
+{
+    uint8_t byte0;
+    uint8_t byte1;
+    uint8_t byte2;
+    uint8_t lost;
+    __asm__("mul %A[v],%[n]\n\tmov %[l],r0\n\tmov %[p],r1\n\t"
+            "mul %B[v],%[n]\n\tor %[p],r0\n\tmov %[q],r1\n\t"
+            "mul %C[v],%[n]\n\tor %[q],r0\n\tmov %[r],r1\n\t"
+            "mulsu %D[v],%[n]\n\tor %[r],r0\n\t"
+            "lsl %[l]\n\tsbc %A[v],%[p]\n\tsbc %B[v],%[q]\n\tsbc %C[v],%[r]\n\tsbc %D[v],r1\n\t"
+            "clr r1"
+            : [v] "+&a"(v), [p] "=&r"(byte0), [q] "=&r"(byte1), [r] "=&r"(byte2), [l] "=&r"(lost)
+            : [n] "a"(part_uq8));
+    return v;
+}
+
+/* Looked for in the highest byte: what has the limit's counts as beyond, to the same effect. */
+FX_INLINE int32_t fx_clamp_high(int32_t v, uint8_t limit)
+{
+    uint8_t top;
+    __asm__("mov %[t],%D[v]\n\tsubi %[t],-%[l]\n\tcpi %[t],2*%[l]\n\tbrlo 1f\n\t"
+            "clr %A[v]\n\tclr %B[v]\n\tclr %C[v]\n\tlsl %D[v]\n\tldi %D[v],%[l]\n\tbrcc 1f\n\tneg %D[v]\n"
+            "1:"
+            : [v] "+&d"(v), [t] "=&d"(top)
+            : [l] "M"(limit));
+    return v;
+}
+
 FX_INLINE uint32_t fx_mul_uq24(uint32_t a, uint32_t b_uq24)
 {
     uint32_t product; /* bytes 3..6 of the 7-byte product; of bytes 1 and 2 only the carry and the top bit are needed */

@@ -105,6 +105,7 @@ FX_ONCE bool synth_plus_init(synth_plus_t *f, const synth_plus_config_t *config)
     synth_begin(&f->core, sizeof *f);
     f->b0_uq16 = config->b0_uq16;
     f->k = (uint8_t)config->k;
+    f->rest_uq8 = (uint8_t)((0x100U >> f->k) & 0xFEU); /* of k = 0 and 8 nothing */
     f->b1_uq16 = (uint16_t)fx_abs32(config->b1_q16);
     f->b1_negative = config->b1_q16 < 0;
     f->b2_uq16 = (uint16_t)fx_abs32(config->b2_q16);
@@ -126,87 +127,75 @@ FX_ONCE void synth_plus_reset(synth_plus_t *f, int16_t z0_lsb)
     f->memory_lsb_q16 = 0;
 }
 
-/*
- * Adds rho (x1 - 2 x2 + x3), what is taken from the bend rounded towards 0, to the memory. Both limited on the way so
- * that |memory| <= 18432 LSB, which the extrapolation takes: only steps over most of the range come there.
- */
-FX_NOINLINE void add_curvature(synth_plus_t *f)
-{
-    int32_t curvature_q16 = synth_bend(&f->core, false);
-    if (f->k != (uint8_t)K_MAX) {
-        int32_t part_q16 = (int32_t)fx_shift_right(fx_abs32(curvature_q16), f->k);
-        if (curvature_q16 < 0) {
-            curvature_q16 += part_q16;
-        } else {
-            curvature_q16 -= part_q16;
-        }
-    }
-    curvature_q16 += fx_clamp(f->memory_lsb_q16, 13824L * 65536);
-    f->memory_lsb_q16 = fx_clamp(curvature_q16, 18432L * 65536);
-}
-
 /* The last innovation x a tap. */
-FX_NOINLINE int32_t tapped(const synth_core_t *c, uint16_t tap_uq16, bool negative)
+FX_NOINLINE int32_t tapped(const int32_t *innovation, bool negative, uint16_t tap_uq16)
 {
     if (negative) {
-        return synth_scaled(fx_minus(0, &c->innovation_lsb_q16, 0), tap_uq16);
+        return synth_scaled(fx_minus(0, innovation, 0), tap_uq16);
     }
-    return synth_scaled(c->innovation_lsb_q16, tap_uq16);
+    return synth_scaled(*innovation, tap_uq16);
 }
 
-/* b2 u of the last sample, for the x_e after the next; 0 in the start. */
-FX_NOINLINE int32_t older_q16(const synth_plus_t *f)
+/* b2 u of the last sample, for the x_e after the next. */
+FX_INLINE int32_t older_q16(const synth_plus_t *f)
 {
-    if (f->core.collected != SYNTH_STEADY || f->b2_uq16 == 0U) {
-        return 0;
-    }
-    return tapped(&f->core, f->b2_uq16, f->b2_negative);
+    return (f->b2_uq16 == 0U) ? 0 : tapped(&f->core.innovation_lsb_q16, f->b2_negative, f->b2_uq16);
 }
 
 /*
- * What the next x_e adds to the straight line, made by the gains of this sample: b1 u, besides the b2 u1 that is there,
- * and the curvature; in the start the b1 of the line alone.
+ * What the next x_e adds to the straight line: b1 u, besides the b2 u1 that is there, and rho (x1 - 2 x2 + x3). Both
+ * limited on the way so that |memory| <= 18432 LSB, which the extrapolation takes: only steps over most of the range
+ * come there. Returns the estimate.
  */
-FX_NOINLINE void remember(synth_plus_t *f)
+FX_NOINLINE int32_t remember(synth_plus_t *f)
 {
-    uint16_t b1_uq16 = f->b1_uq16;
-    bool negative = f->b1_negative;
-    if (f->core.collected <= (uint8_t)LINE_END) {
-        uint8_t place = (uint8_t)(f->core.collected - (uint8_t)(SYNTH_FIRST_GAIN + 1));
-        b1_uq16 = fx_flash_u16(&line_memory_uq16[place]);
-        negative = true;
+    int32_t memory_q16 = fx_plus(tapped(&f->core.innovation_lsb_q16, f->b1_negative, f->b1_uq16), &f->memory_lsb_q16,
+                                 0);
+    if (f->k != 0U) {
+        f->memory_lsb_q16 = fx_clamp_high(memory_q16, 54);
+        memory_q16 = synth_bend(&f->core, false);
+        FX_FENCE();
+        memory_q16 = fx_without_part(memory_q16, f->rest_uq8);
+        memory_q16 = fx_clamp_high(fx_plus(memory_q16, &f->memory_lsb_q16, 0), 72);
     }
-    if (b1_uq16 != 0U) {
-        f->memory_lsb_q16 += tapped(&f->core, b1_uq16, negative);
-    }
-    if (f->k != 0U && f->core.collected == SYNTH_STEADY) {
-        add_curvature(f);
-    }
+    f->memory_lsb_q16 = memory_q16;
+    return f->core.u.run.x_lsb_q16[0];
 }
 
-/* The gain of a sample in the start, and the start's end. */
-FX_NOINLINE void set_start_gain(synth_plus_t *f)
+/*
+ * A sample of the start, with the gain and the b1 of the line and no other memory. The one that ends it has the own
+ * gain and b1.
+ */
+FX_NOINLINE int32_t start_step(synth_plus_t *f, int16_t z_lsb)
 {
+    uint8_t place = (uint8_t)(f->core.collected - (uint8_t)SYNTH_FIRST_GAIN);
+    uint16_t b1_uq16 = fx_flash_u16(&line_memory_uq16[place]);
+    bool negative = true;
     f->core.gain_uq16 = synth_next_gain_uq16(&f->core, f->b0_uq16);
-    if (f->core.collected > (uint8_t)LINE_END && f->core.collected != SYNTH_STEADY) {
+    if (f->core.collected > (uint8_t)LINE_END) {
         f->core.collected = SYNTH_STEADY;
         f->core.gain_uq16 = f->b0_uq16;
+        b1_uq16 = f->b1_uq16;
+        negative = f->b1_negative;
     }
+    synth_extrapolate(&f->core, f->memory_lsb_q16);
+    (void)synth_correct(&f->core, z_lsb);
+    f->memory_lsb_q16 = tapped(&f->core.innovation_lsb_q16, negative, b1_uq16);
+    return f->core.u.run.x_lsb_q16[0];
 }
 
 /* One sample on. */
 FX_NOINLINE int32_t plus_step(synth_plus_t *f, int16_t z_lsb)
 {
     f->core.flags = 0;
-    f->core.gain_uq16 = f->b0_uq16;
     if (f->core.collected != SYNTH_STEADY) {
-        set_start_gain(f);
+        return start_step(f, z_lsb);
     }
+    f->core.gain_uq16 = f->b0_uq16;
     synth_extrapolate(&f->core, f->memory_lsb_q16);
     f->memory_lsb_q16 = older_q16(f);
     (void)synth_correct(&f->core, z_lsb);
-    remember(f);
-    return f->core.u.run.x_lsb_q16[0];
+    return remember(f);
 }
 
 /*
@@ -217,9 +206,9 @@ FX_NOINLINE int32_t plus_step(synth_plus_t *f, int16_t z_lsb)
  *   memory   Q15.16, b1 u1 + b2 u2 - a1 (x1 - 2 x2 + x3): |b1 u1 + b2 u2| <= 17410 LSB; with a curvature, below 18432
  *            LSB, the two are limited to 13824 and the sum to 18432: with 2 x1 - x2 each sum is below 2^31 in Q16
  *   b0..b2   UQ0.16 magnitudes, within 2^-17 of the wanted ones; rho exact
- *   products b0, b1, b2: three, and of b1 and b2 that are 0 none; rho is a shift
- *   rounding products half away from zero to 2^-16 LSB, the shift by less than that; with n half counts in x_e (1 for
- *            each of b1 and b2, 2 for the shift) and the one of b0 the error is below
+ *   products b0, b1, b2: three, and of b2 that is 0 none; rho is a shift
+ *   rounding products half away from zero to 2^-16 LSB, the shift half up; with n half counts in x_e (one for each of
+ *            b1, b2 and the shift) and the one of b0 the error is below
  *            2^-17 (sum |g0| + n sum |g1|), g0, g1 the impulse responses of (B + (1 - b0)) / D and (1 - b0) / D
  *   cost     docs/benchmarks.md
  */
@@ -235,16 +224,14 @@ int32_t synth_plus_update(synth_plus_t *f, int16_t z_lsb)
 /* A missing sample is one with the innovation 0. */
 int32_t synth_plus_coast(synth_plus_t *f)
 {
+    bool steady = f->core.collected == SYNTH_STEADY;
     int32_t memory_q16 = f->memory_lsb_q16;
-    f->memory_lsb_q16 = older_q16(f);
+    f->memory_lsb_q16 = steady ? older_q16(f) : 0;
     if (!synth_coasts(&f->core)) {
         return synth_estimate(&f->core);
     }
     synth_extrapolate(&f->core, memory_q16);
-    if (f->core.collected == SYNTH_STEADY) {
-        remember(f);
-    }
-    return f->core.u.run.x_lsb_q16[0];
+    return steady ? remember(f) : f->core.u.run.x_lsb_q16[0];
 }
 
 uint8_t synth_plus_flags(const synth_plus_t *f)

@@ -49,14 +49,15 @@ typedef struct {
     uint16_t b1_uq16; /* magnitudes */
     uint16_t b2_uq16;
     uint8_t k;
-    bool b1_negative;
-    bool b2_negative;
+    uint8_t rest_uq8; /* 2^-k, 0 with rho = 1 */
+    bool b1_negative : 1;
+    bool b2_negative : 1;
 } synth_plus_t;
 
 /* Descriptor in program memory. */
 extern const filter_descriptor_t synth_plus_descriptor;
 
-enum { synth_plus_worst_cycles = 930 }; /* of synth_plus_update, as in filter.h */
+enum { synth_plus_worst_cycles = 700 }; /* of synth_plus_update, as in filter.h */
 
 /*
  * Alpha-beta with the steady gains of `kf` at its defaults (q = 10,000 LSB^2/s^3, R by rate): alpha by a rational
