@@ -55,6 +55,7 @@ run_one test_schedule python3 host_tests/test_schedule.py
 run_one test_robust build/venv/bin/python host_tests/test_robust.py
 run_one test_design build/venv/bin/python host_tests/test_design.py
 run_one test_design_command build/venv/bin/python host_tests/test_design_command.py
+run_one test_synthesised build/venv/bin/python host_tests/test_synthesised.py
 run_one test_pages python3 host_tests/test_pages.py
 run_one test_default python3 host_tests/test_default.py
 printf '%-28s' system_tests
