@@ -45,8 +45,8 @@ $(U)/$(1)/firmware.elf: $(AVR_SRC:%.c=$(U)/$(1)/%.o) | $(U)/$(1)/filters.txt
 	@$$(AVR_CC) $$(AVR_LINK) $$(filter %.o,$$^) -o $$@
 endef
 
-# the sets that are not flashed unless asked for
-$(foreach s,$(filter-out everyday,$(FILTER_SETS)),$(eval $(call IMAGE,$(s),$(FILTERS_$(s)))))
+# the sets; that of everyday is wanted only beside another choice
+$(foreach s,$(FILTER_SETS),$(eval $(call IMAGE,$(s),$(FILTERS_$(s)))))
 # its stages can be stopped one by one
 $(eval $(call IMAGE,hang,$(FILTERS_everyday),-DHANG_TEST=1))
 # the clock starts shortly before its wrap; at ten digits

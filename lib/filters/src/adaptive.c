@@ -175,7 +175,7 @@ FX_NOINLINE uint32_t judge(adaptive_t *f, uint32_t size)
         }
         agreed = gate;
     }
-    f->flags = FILTER_GATED;
+    f->flags |= FILTER_GATED;
     f->verdict = OUTLIER;
     uint32_t twice = gate + gate;
     if (size < twice) {

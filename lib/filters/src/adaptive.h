@@ -90,7 +90,7 @@ typedef struct {
 /* Descriptor in program memory. */
 extern const filter_descriptor_t adaptive_descriptor;
 
-enum { adaptive_worst_cycles = 1340 }; /* of adaptive_update, as in filter.h */
+enum { adaptive_worst_cycles = 1330 }; /* of adaptive_update, as in filter.h */
 
 void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz);
 bool adaptive_init(adaptive_t *f, const adaptive_config_t *config);

@@ -169,14 +169,17 @@ FX_NOINLINE int32_t remember(synth_plus_t *f)
 FX_NOINLINE int32_t start_step(synth_plus_t *f, int16_t z_lsb)
 {
     uint8_t place = (uint8_t)(f->core.collected - (uint8_t)SYNTH_FIRST_GAIN);
-    uint16_t b1_uq16 = fx_flash_u16(&line_memory_uq16[place]);
-    bool negative = true;
+    uint16_t b1_uq16;
+    bool negative;
     f->core.gain_uq16 = synth_next_gain_uq16(&f->core, f->b0_uq16);
     if (f->core.collected > (uint8_t)LINE_END) {
         f->core.collected = SYNTH_STEADY;
         f->core.gain_uq16 = f->b0_uq16;
         b1_uq16 = f->b1_uq16;
         negative = f->b1_negative;
+    } else {
+        b1_uq16 = fx_flash_u16(&line_memory_uq16[place]);
+        negative = true;
     }
     synth_extrapolate(&f->core, f->memory_lsb_q16);
     (void)synth_correct(&f->core, z_lsb);
