@@ -89,11 +89,9 @@ static void set_limits(adaptive_t *f, const adaptive_config_t *config)
 {
     uint32_t confirm = (uint32_t)config->confirm_ms * config->rate_dhz / 10000U; /* <= 40000 */
     f->confirm = (confirm < CONFIRM_LEAST) ? CONFIRM_LEAST : (uint16_t)confirm;
-    f->rate_max_lsb_q24 = RATE_LIMIT_LSB_Q24;
-    if (config->rate_max_lsb_s * 10U / config->rate_dhz < 127U) {
-        fx_scaled_t rate = fx_scaled_div(fx_scaled(config->rate_max_lsb_s * 10U), fx_scaled(config->rate_dhz));
-        f->rate_max_lsb_q24 = (int32_t)fx_scaled_fixed(rate, 24);
-    }
+    fx_scaled_t per_sample = fx_scaled_div(fx_scaled(config->rate_max_lsb_s * 10U), fx_scaled(config->rate_dhz));
+    uint32_t limit = fx_scaled_fixed(per_sample, 24);
+    f->rate_max_lsb_q24 = (limit < (uint32_t)RATE_LIMIT_LSB_Q24) ? (int32_t)limit : RATE_LIMIT_LSB_Q24;
     f->jump_lsb_uq8 = (uint16_t)(f->rate_max_lsb_q24 >> 19); /* an eighth */
     f->weight_uq16 = WEIGHT_START_UQ16;
     f->terms = 2;
