@@ -4,23 +4,14 @@
  */
 #include "adaptive.h"
 #include "support_filters.h"
+#include "support_roll.h"
 #include "unity.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { SAMPLES = 151, RUNS = 2000, GRID_RUNS = 400, LSB_PER_DEGREE = 16 };
-#define R_DEG2 0.6
-#define OUTLIER_RATIO 20.0
-#define PI 3.14159265358979323846
-
-typedef enum { RAMP30, COS60, BUMP30, SINE30, STILL, PROFILES } profile_t;
-typedef struct {
-    double rest, turn, after; /* 2-5, 6-10, 11-15 s, deg^2 */
-} windows_t;
-
-static const char *const profile_names[PROFILES] = { "ramp30", "cos60", "bump30", "sine30", "still" };
+enum { RUNS = 2000, GRID_RUNS = 400 };
 
 static uint32_t random_state;
 static bool quiet;
@@ -32,49 +23,11 @@ void setUp(void)
 
 void tearDown(void) {}
 
-static double uniform(void)
-{
-    return ((double)random32(&random_state) + 0.5) / 4294967296.0;
-}
-
-static double normal(void)
-{
-    double radius = sqrt(-2.0 * log(uniform()));
-    return radius * cos(2.0 * PI * uniform());
-}
-
-static double truth_deg(profile_t profile, double t_s)
-{
-    double s = fmin(1.0, fmax(0.0, (t_s - 6.0) / 4.0));
-    switch (profile) {
-    case RAMP30:
-        return 30.0 * s;
-    case COS60:
-        return 30.0 - 30.0 * cos(PI * s);
-    case BUMP30:
-        return 15.0 - 15.0 * cos(2.0 * PI * s);
-    case SINE30:
-        return 30.0 * sin(2.0 * PI * s);
-    case STILL:
-    case PROFILES:
-        break;
-    }
-    return 0.0;
-}
-
-/* share: of samples whose noise is 20 times the usual. */
-static int16_t measured_lsb(double degrees, double share)
-{
-    double sigma = sqrt(R_DEG2) * (uniform() < share ? OUTLIER_RATIO : 1.0);
-    double lsb = (degrees + sigma * normal()) * LSB_PER_DEGREE;
-    return (int16_t)lrint(fmin(4095.0, fmax(-4096.0, lsb)));
-}
-
 static adaptive_config_t configured(bool guarded, bool identify)
 {
     adaptive_config_t config;
     adaptive_defaults(&config, 100);
-    config.r_lsb2_q8 = (uint32_t)lrint(R_DEG2 * LSB_PER_DEGREE * LSB_PER_DEGREE * 256.0);
+    config.r_lsb2_q8 = (uint32_t)lrint(ROLL_R_DEG2 * ROLL_LSB_PER_DEGREE * ROLL_LSB_PER_DEGREE * 256.0);
     config.identify = identify ? 1u : 0u;
     if (!guarded) {
         config.guard_sigma_q8 = 0;
@@ -82,38 +35,36 @@ static adaptive_config_t configured(bool guarded, bool identify)
     return config;
 }
 
-static windows_t mean_square(const adaptive_config_t *config, profile_t profile, double share)
+static roll_windows_t mean_square(const adaptive_config_t *config, roll_profile_t profile, double share)
 {
-    windows_t sum = { 0.0, 0.0, 0.0 };
+    roll_windows_t sum = { 0.0, 0.0, 0.0 };
     for (int run = 0; run < RUNS; run++) {
         adaptive_t f;
         TEST_ASSERT_TRUE(adaptive_init(&f, config));
-        for (int k = 0; k < SAMPLES; k++) {
-            double truth = truth_deg(profile, 0.1 * k);
-            double x = adaptive_update(&f, measured_lsb(truth, share)) / 65536.0 / LSB_PER_DEGREE;
-            double square = (x - truth) * (x - truth);
-            sum.rest += (k >= 20 && k <= 50) ? square / 31.0 : 0.0;
-            sum.turn += (k >= 60 && k <= 100) ? square / 41.0 : 0.0;
-            sum.after += (k >= 110) ? square / 41.0 : 0.0;
+        for (int k = 0; k < ROLL_SAMPLES; k++) {
+            double truth = roll_truth_deg(profile, 0.1 * k);
+            double x = adaptive_update(&f, roll_measured_lsb(&random_state, truth, share)) / 65536.0 /
+                       ROLL_LSB_PER_DEGREE;
+            roll_count(&sum, k, x - truth);
         }
     }
-    windows_t mean = { sum.rest / RUNS, sum.turn / RUNS, sum.after / RUNS };
+    roll_windows_t mean = roll_mean(&sum, RUNS);
     if (!quiet) {
         printf("%s %-6s %2.0f %%: %.3f %.3f %.3f deg^2\n", config->guard_sigma_q8 != 0u ? "guarded  " : "unguarded",
-               profile_names[profile], 100.0 * share, mean.rest, mean.turn, mean.after);
+               roll_profile_names[profile], 100.0 * share, mean.rest, mean.turn, mean.after);
     }
     return mean;
 }
 
 static void unguarded_is_within_the_issues_table(void)
 {
-    static const windows_t limits[STILL] = {
+    static const roll_windows_t limits[STILL] = {
         { 0.16, 0.28, 0.18 }, { 0.16, 0.44, 0.17 }, { 0.16, 0.50, 0.17 }, { 0.16, 0.64, 0.19 }
     };
     for (int identify = 0; identify < 2; identify++) {
         adaptive_config_t config = configured(false, identify != 0);
         for (int profile = RAMP30; profile < STILL; profile++) {
-            windows_t mse = mean_square(&config, (profile_t)profile, 0.0);
+            roll_windows_t mse = mean_square(&config, (roll_profile_t)profile, 0.0);
             TEST_ASSERT_TRUE(mse.rest <= limits[profile].rest);
             TEST_ASSERT_TRUE(mse.turn <= limits[profile].turn);
             TEST_ASSERT_TRUE(mse.after <= limits[profile].after);
@@ -127,9 +78,9 @@ static void the_guard_costs_a_quarter_at_most_on_clean_samples(void)
     adaptive_config_t unguarded = configured(false, true);
     for (int profile = RAMP30; profile < SINE30; profile++) {
         uint32_t seed = random_state;
-        double with_guard = mean_square(&guarded, (profile_t)profile, 0.0).turn;
+        double with_guard = mean_square(&guarded, (roll_profile_t)profile, 0.0).turn;
         random_state = seed;
-        TEST_ASSERT_TRUE(with_guard <= 1.25 * mean_square(&unguarded, (profile_t)profile, 0.0).turn);
+        TEST_ASSERT_TRUE(with_guard <= 1.25 * mean_square(&unguarded, (roll_profile_t)profile, 0.0).turn);
     }
 }
 
@@ -138,14 +89,15 @@ static void one_outlier_in_twenty_is_borne(void)
     static const double limits[SINE30] = { 0.40, 0.70, 1.0 };
     adaptive_config_t config = configured(true, true);
     for (int profile = RAMP30; profile < SINE30; profile++) {
-        windows_t mse = mean_square(&config, (profile_t)profile, 0.05);
+        roll_windows_t mse = mean_square(&config, (roll_profile_t)profile, 0.05);
         TEST_ASSERT_TRUE(mse.turn <= limits[profile]);
         TEST_ASSERT_TRUE(mse.after <= 0.20);
     }
 }
 
 /* Identified R over the configured one after so many samples: mean and standard deviation over the runs. */
-static void identified(profile_t profile, uint16_t rate_dhz, int samples, double outliers_deg, double *mean, double *sd)
+static void identified(roll_profile_t profile, uint16_t rate_dhz, int samples, double outliers_deg, double *mean,
+                       double *sd)
 {
     adaptive_config_t config;
     adaptive_defaults(&config, rate_dhz); /* starts from the default R, 500 times too small */
@@ -155,10 +107,11 @@ static void identified(profile_t profile, uint16_t rate_dhz, int samples, double
         adaptive_t f;
         TEST_ASSERT_TRUE(adaptive_init(&f, &config));
         for (int k = 0; k < samples; k++) {
-            double degrees = truth_deg(profile, 10.0 * k / rate_dhz) + (uniform() < 0.01 ? outliers_deg : 0.0);
-            (void)adaptive_update(&f, measured_lsb(degrees, 0.0));
+            double degrees = roll_truth_deg(profile, 10.0 * k / rate_dhz) +
+                             (roll_uniform(&random_state) < 0.01 ? outliers_deg : 0.0);
+            (void)adaptive_update(&f, roll_measured_lsb(&random_state, degrees, 0.0));
         }
-        double ratio = adaptive_r_lsb2_q8(&f) / (R_DEG2 * LSB_PER_DEGREE * LSB_PER_DEGREE * 256.0);
+        double ratio = adaptive_r_lsb2_q8(&f) / (ROLL_R_DEG2 * ROLL_LSB_PER_DEGREE * ROLL_LSB_PER_DEGREE * 256.0);
         sum += ratio;
         squares += ratio * ratio;
     }
@@ -194,16 +147,16 @@ typedef struct {
     double a1, b0, lambda;
 } fixed_t;
 
-static windows_t mean_square_of(const fixed_t *fixed, profile_t profile)
+static roll_windows_t mean_square_of(const fixed_t *fixed, roll_profile_t profile)
 {
-    windows_t sum = { 0.0, 0.0, 0.0 };
+    roll_windows_t sum = { 0.0, 0.0, 0.0 };
     for (int run = 0; run < GRID_RUNS; run++) {
         double x[3] = { 0.0, 0.0, 0.0 };
         double rate = 0.0;
         double p[3] = { 1.0, 0.0, 1.0 }; /* P11, P12, P22 per R */
-        for (int k = 0; k < SAMPLES; k++) {
-            double truth = truth_deg(profile, 0.1 * k);
-            double z = (double)measured_lsb(truth, 0.0) / LSB_PER_DEGREE;
+        for (int k = 0; k < ROLL_SAMPLES; k++) {
+            double truth = roll_truth_deg(profile, 0.1 * k);
+            double z = (double)roll_measured_lsb(&random_state, truth, 0.0) / ROLL_LSB_PER_DEGREE;
             double predicted = 2.0 * x[0] - x[1] - fixed->a1 * (x[0] - 2.0 * x[1] + x[2]);
             double gain = fixed->b0;
             if (fixed->lambda > 0.0) {
@@ -225,22 +178,19 @@ static windows_t mean_square_of(const fixed_t *fixed, profile_t profile)
                 x[0] = x[1] = x[2] = z;
                 rate = 0.0;
             }
-            double square = (x[0] - truth) * (x[0] - truth);
-            sum.rest += (k >= 20 && k <= 50) ? square / 31.0 : 0.0;
-            sum.turn += (k >= 60 && k <= 100) ? square / 41.0 : 0.0;
-            sum.after += (k >= 110) ? square / 41.0 : 0.0;
+            roll_count(&sum, k, x[0] - truth);
         }
     }
-    return (windows_t){ sum.rest / GRID_RUNS, sum.turn / GRID_RUNS, sum.after / GRID_RUNS };
+    return roll_mean(&sum, GRID_RUNS);
 }
 
 /* Mean over the 12 cells; lists the cells in which the fixed one has the smaller error. */
-static double mean_of_cells(const fixed_t *fixed, const windows_t *adaptive)
+static double mean_of_cells(const fixed_t *fixed, const roll_windows_t *adaptive)
 {
     double sum = 0.0;
     for (int profile = RAMP30; profile < STILL; profile++) {
         setUp();
-        windows_t mse = mean_square_of(fixed, (profile_t)profile);
+        roll_windows_t mse = mean_square_of(fixed, (roll_profile_t)profile);
         const double cells[3] = { mse.rest, mse.turn, mse.after };
         const double ours[3] = { adaptive[profile].rest, adaptive[profile].turn, adaptive[profile].after };
         static const char *const windows[3] = { "2-5 s", "6-10 s", "11-15 s" };
@@ -248,7 +198,7 @@ static double mean_of_cells(const fixed_t *fixed, const windows_t *adaptive)
             sum += cells[i];
             if (cells[i] < ours[i]) {
                 printf("a1 %.1f b0 %.2f lambda %g wins %s %s: %.3f, adaptive %.3f\n", fixed->a1, fixed->b0,
-                       fixed->lambda, profile_names[profile], windows[i], cells[i], ours[i]);
+                       fixed->lambda, roll_profile_names[profile], windows[i], cells[i], ours[i]);
             }
         }
     }
@@ -259,11 +209,11 @@ static double mean_of_cells(const fixed_t *fixed, const windows_t *adaptive)
 static void no_fixed_tuning_has_a_smaller_mean(void)
 {
     adaptive_config_t config = configured(false, true);
-    windows_t adaptive[STILL];
+    roll_windows_t adaptive[STILL];
     double ours = 0.0;
     for (int profile = RAMP30; profile < STILL; profile++) {
         setUp();
-        adaptive[profile] = mean_square(&config, (profile_t)profile, 0.0);
+        adaptive[profile] = mean_square(&config, (roll_profile_t)profile, 0.0);
         ours += (adaptive[profile].rest + adaptive[profile].turn + adaptive[profile].after) / 12.0;
     }
     double best = 1e9;
@@ -292,9 +242,9 @@ static void print_curve(void)
                 adaptive_config_t config = configured(true, true);
                 config.guard_sigma_q8 = (uint16_t)sigma_q8;
                 setUp();
-                windows_t mse = mean_square(&config, (profile_t)profile, shares[i]);
-                printf("%.1f,%s,%.2f,%.3f,%.3f,%.3f\n", sigma_q8 / 256.0, profile_names[profile], shares[i], mse.rest,
-                       mse.turn, mse.after);
+                roll_windows_t mse = mean_square(&config, (roll_profile_t)profile, shares[i]);
+                printf("%.1f,%s,%.2f,%.3f,%.3f,%.3f\n", sigma_q8 / 256.0, roll_profile_names[profile], shares[i],
+                       mse.rest, mse.turn, mse.after);
             }
         }
     }

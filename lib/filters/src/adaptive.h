@@ -5,7 +5,7 @@
  *   x_e = x + v                              straight line through the past, u = z - x_e
  *   x = x_e + (2 k - k^2) t, v = v + k^2 t   t: the part of u that is taken
  *
- * weights a sample n steps old by (1 - k)^(2 n) (fading memory of the first order): its memory is about 2 / k samples
+ * weights a sample n steps old by (1 - k)^n (fading memory of the first order): its memory is about 2 / k samples
  * and the innovation's sigma, within 6 % up to k = 0.6, (1 + k) sigma for noise of that sigma. k grows at once to that
  * of the shortest memory when the mean innovation is not explained by noise, and falls by k^2 / 4 a sample, which
  * lengthens the memory by half a sample, to that of the slowest.

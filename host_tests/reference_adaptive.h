@@ -1,0 +1,61 @@
+/*
+ * adaptive in double: one step of the same structure with the bound of what fixed point may differ by, the float filter
+ * that it grew from, and the fading memory's theory.
+ */
+#ifndef REFERENCE_ADAPTIVE_H
+#define REFERENCE_ADAPTIVE_H
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What has a continuous value, LSB and per sample, signed; or its largest difference. */
+typedef struct {
+    double x, rate, mean, k, scatter, third;
+} reference_adaptive_value_t;
+
+typedef enum { VERDICT_UNUSED, VERDICT_WITHIN, VERDICT_OUTLIER, VERDICT_MOTION, VERDICT_JUMP } reference_verdict_t;
+
+typedef struct {
+    double sigmas, manoeuvre, slow, fast, share, rate_max, last_weight;
+    int confirm;
+    bool guarded, identify;
+    reference_adaptive_value_t now;
+    double z[3]; /* newest first */
+    int filled, side, run, terms, warming;
+    bool third_next;
+    reference_verdict_t verdict;
+} reference_adaptive_t;
+
+/* Parameters are set by the caller; the rest as before the first sample. */
+void reference_adaptive_begin(reference_adaptive_t *f);
+
+/*
+ * One sample. bound: how far a fixed-point step from the same state may end from this one. False when a decision hangs
+ * on less than what fixed point rounds: then nothing can be compared.
+ */
+bool reference_adaptive_step(reference_adaptive_t *f, double z, reference_adaptive_value_t *bound);
+void reference_adaptive_coast(reference_adaptive_t *f);
+
+/* AdaptiveFading of the notes (5.3): theta between 0.4 and 0.9, driven by a mean of the normalised innovations. */
+typedef struct {
+    double x, v, theta, mean;
+    int samples;
+} reference_fading_t;
+double reference_fading_step(reference_fading_t *f, double r, double z);
+
+/* Fading memory with k: noise gain of the estimate and of the prediction, by the Lyapunov equation. */
+double reference_fading_noise_gain(double k);
+double reference_fading_prediction_gain(double k);
+
+/* Weight of the sample n steps old in the end point of the line of least squares whose errors' squares weigh by theta^n. */
+double reference_fading_line_weight(double theta, int n);
+/* The same weight in the recursive filter with alpha = 2 k - k^2, beta = k^2. */
+double reference_fading_impulse(double k, int n);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
