@@ -50,7 +50,7 @@ double reference_fading_step(reference_fading_t *f, double r, double z);
 double reference_fading_noise_gain(double k);
 double reference_fading_prediction_gain(double k);
 
-/* Weight of the sample n steps old in the end point of the line of least squares whose errors' squares weigh by theta^n. */
+/* Weight of the sample n steps old in the end of the least squares line whose errors' squares weigh by theta^n. */
 double reference_fading_line_weight(double theta, int n);
 /* The same weight in the recursive filter with alpha = 2 k - k^2, beta = k^2. */
 double reference_fading_impulse(double k, int n);

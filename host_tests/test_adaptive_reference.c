@@ -1,4 +1,4 @@
-/* adaptive against its double twin step by step, against the float filter it grew from, and the fading memory's theory. */
+/* adaptive against its double twin step by step, against the float filter it grew from, and in theory. */
 #include "adaptive.h"
 #include "reference_adaptive.h"
 #include "support_filters.h"
@@ -66,7 +66,7 @@ static void assert_step(const adaptive_t *f, const reference_adaptive_t *r, cons
     }
 }
 
-/* At rest, and every 80 samples 20 of a turn there or back; bad reads, bursts of up to 20, jumps that stay; or anything at all. */
+/* At rest, and every 80 samples 20 of a turn there or back; bad reads, bursts to 20, jumps that stay; or anything. */
 typedef struct {
     double sigma, level, outliers;
     int burst;
