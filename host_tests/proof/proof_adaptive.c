@@ -243,11 +243,6 @@ void proof_step(void)
     adaptive_t f;
     any_run(&f);
     f.weight_uq16 = ANY_U16(64, 32768);
-    f.below = false;
-    step(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
-    any_run(&f);
-    f.weight_uq16 = ANY_U16(64, 32768);
-    f.below = true;
     step(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
 }
 
