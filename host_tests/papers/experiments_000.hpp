@@ -23,6 +23,9 @@ void table1_search(const Options &options);
 // Every filter of FILTER_LIST as shipped over all profiles.
 void all_filters(const Options &options);
 
+// adaptive without its guard and with several, on clean samples and with outliers.
+void adaptive(const Options &options);
+
 // Roll filtered as an angle against filtered axes, on the shipped tilt streams.
 void roll_as_angle(const Options &options);
 } // namespace papers::roll

@@ -6,6 +6,7 @@ int main(int argc, char **argv)
     using namespace papers::roll;
     return papers::program("paper000",
                            { { "all_filters", 10, all_filters },
+                             { "adaptive", 6, adaptive },
                              { "roll_reference", 1, reference_table },
                              { "table1_search", 3, table1_search },
                              { "schedules", 2, schedules },
