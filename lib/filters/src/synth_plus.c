@@ -168,7 +168,6 @@ FX_NOINLINE int32_t remember(synth_plus_t *f)
  */
 FX_NOINLINE int32_t start_step(synth_plus_t *f, int16_t z_lsb)
 {
-    uint8_t place = (uint8_t)(f->core.collected - (uint8_t)SYNTH_FIRST_GAIN);
     uint16_t b1_uq16;
     bool negative;
     f->core.gain_uq16 = synth_next_gain_uq16(&f->core, f->b0_uq16);
@@ -178,6 +177,7 @@ FX_NOINLINE int32_t start_step(synth_plus_t *f, int16_t z_lsb)
         b1_uq16 = f->b1_uq16;
         negative = f->b1_negative;
     } else {
+        uint8_t place = (uint8_t)(f->core.collected - ((uint8_t)SYNTH_FIRST_GAIN + 1U)); /* counted already */
         b1_uq16 = fx_flash_u16(&line_memory_uq16[place]);
         negative = true;
     }
