@@ -21,7 +21,7 @@ WORST_LIMIT = {"kf": 800, "kf3": 2500, "sprf": 1000, "synth": 500, "synth_opt": 
 RATIO_LIMIT = 4.0
 KEPT = "float_synth_kept"  # a row of its own: what the float version takes when it keeps the coefficients made from a1
 # The filters with the wide covariance keep to their cycles and save flash before more: their products are calls.
-RATIO_LIMITS = {"sprf_paper": 2.5, "shrf": 3.5, "pbf": 3.5, "af": 3.0}
+RATIO_LIMITS = {"synth": 3.5, "sprf_paper": 2.5, "shrf": 3.5, "pbf": 3.5, "af": 3.0}
 SAMPLES_MIN = 5000
 REGRESSION = 0.02
 # The yardstick must do the same job. LSB: a twentieth of the stream's noise of 4.6 LSB. Degrees: the bound that lib/tilt derives.

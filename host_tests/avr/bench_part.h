@@ -10,9 +10,9 @@
 #endif
 
 #if BENCH_PART == 1
-#define BENCH_LIST(X) X(kf) X(sprf) X(synth) X(lrf) X(soft)
+#define BENCH_LIST(X) X(kf) X(sprf) X(synth) X(lrf)
 #elif BENCH_PART == 2
-#define BENCH_LIST(X) X(sprf_paper) X(shrf) X(pbf) X(af)
+#define BENCH_LIST(X) X(soft) X(sprf_paper) X(shrf) X(pbf) X(af)
 #elif BENCH_PART == 3
 #define BENCH_LIST(X) X(synth_opt) X(synth_plus) X(kf3) X(adaptive)
 #else
