@@ -73,6 +73,16 @@ typedef struct {
     bool wild;
 } signal_t;
 
+/* Of twelve uniform ones: normal enough. */
+static double noise_of_one(void)
+{
+    double sum = -6.0;
+    for (int i = 0; i < 12; i++) {
+        sum += roll_uniform(&random_state);
+    }
+    return sum;
+}
+
 static int16_t next_sample(signal_t *s, int k, double rate_lsb)
 {
     if (s->wild) {
@@ -89,10 +99,7 @@ static int16_t next_sample(signal_t *s, int k, double rate_lsb)
     } else if (roll_uniform(&random_state) < 0.003) {
         s->burst = (int)random32_below(&random_state, 20);
     }
-    double sum = -6.0; /* of twelve uniform ones: normal enough */
-    for (int i = 0; i < 12; i++) {
-        sum += roll_uniform(&random_state);
-    }
+    double sum = noise_of_one();
     bool outlier = roll_uniform(&random_state) < s->outliers;
     double lsb = s->level + (outlier ? 20.0 : 1.0) * s->sigma * sum + (s->burst > 0 ? 700.0 : 0.0);
     return (int16_t)lrint(fmin(32767.0, fmax(-32768.0, lsb)));

@@ -212,10 +212,7 @@ static inline uint32_t fx_mul_uq24_c(uint32_t a, uint32_t b_uq24)
     return fx_mul_u16_c(a_high, b_high) + (middle >> 8) + ((middle >> 7) & 1U);
 }
 
-/*
- * v - v x part_uq8 / 2^8, what is taken rounded half up; part_uq8 0 or one of 2, 4 .. 128, so v without its part of
- * 2^-7 .. 2^-1: shifted, which the 8-bit machine does by its multiplier.
- */
+/* v - v x part_uq8 / 2^8, what is taken rounded half up; part_uq8 0 or a power of 2: the 8-bit machine multiplies. */
 static inline int32_t fx_without_part_c(int32_t v, uint8_t part_uq8)
 {
     uint32_t size = fx_abs32(v);
