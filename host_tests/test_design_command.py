@@ -84,7 +84,11 @@ REFUSED = (
     ([*BASE, "--noise-gain", "0.6", "--band", "b0"], ("NAME=LOW..HIGH",)),
     ([*BASE, "--noise-gain", "0.6", "--a=x"], ("'x' is not numbers",)),
     ([*BASE, "-k", "0", "--noise-gain", "0.6", "--lsb-per-unit", "0"], ("--lsb-per-unit is 0",)),
-    ([*BASE, "--error", "0.001", "--at", "1", "-k", "0", "--settle", "0.001", "-l", "1", "-v", "3"],
+    ([*BASE, "--error", "1", "--at", "1", "--settle", "0.001"], ("nothing settles within less than a sample", "nearest: 0.01")),
+    (["--rate", "1e300", "--sigma", "1", "--error", "1", "--at", "1"], ("--rate is 1e+300", "within 1e-09..1e+09")),
+    (["--rate", "10", "--sigma-of", "/bin/ls", "--b", "0.5"], ("/bin/ls: not text",)),
+    (["--rate", "10", "--sigma", "1", "--b", "1e300"], ("beyond what can be computed", "nearest")),
+    ([*BASE, "--error", "0.001", "--at", "1", "-k", "0", "--settle", "0.01", "-l", "1", "-v", "3"],
      ("no stable filter", "settles in time", "nearest")),
 )
 

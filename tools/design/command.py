@@ -83,9 +83,14 @@ def parser():
     return words
 
 
+SMALLEST, LARGEST = 1e-9, 1e9  # of what a person can mean; within them nothing overflows
+
+
 def finite_positive(value, name):
     if not math.isfinite(value) or value <= 0:
         raise Wrong(f"{name} is {value:g}, but must be finite and above 0; nearest: 0.001")
+    if not SMALLEST <= value <= LARGEST:
+        raise Wrong(f"{name} is {value:g}, but must be within {SMALLEST:g}..{LARGEST:g}; nearest: {SMALLEST if value < 1 else LARGEST:g}")
     return value
 
 
@@ -122,7 +127,9 @@ def checked(options):
     l = options.l if options.l is not None else (len(options.b) - 1 if options.b is not None else 0)  # noqa: E741
     slowest = None
     if options.settle is not None:
-        slowest = 0.02 ** (period_s / finite_positive(options.settle, "--settle"))
+        if finite_positive(options.settle, "--settle") < period_s:
+            raise Wrong(f"--settle is {options.settle:g} s, but nothing settles within less than a sample; nearest: {period_s:g}")
+        slowest = 0.02 ** (period_s / options.settle)
     request = Request(v, k, l, REGIONS[options.region], options.a, slowest)
     return Task(request, period_s, sigma, error_max, options.noise_gain, scale, at_text)
 
@@ -202,6 +209,8 @@ def alternatives(task, f):
     """Other structures under the same bound: (name, filter or sentence)."""
     v = task.request.v
     error = task.error_max if task.error_max is not None or task.noise_max is not None else f.dynamic_error()
+    if error is not None and not error > 0:
+        return [("others", "none: a filter without dynamic error has nothing that can be compared at the same error")]
     wanted = [(f"(v, k, l) = ({v}, 0, 0)", (v, 0, 0)), (f"(v, k, l) = ({v}, 0, {v - 1})", (v, 0, v - 1))]
     if v == 2:
         wanted = [("(2, 1, 0), a1 <= 0 (synth)", (2, 1, 0)), ("(2, 0, 1) alpha-beta", (2, 0, 1))]
@@ -348,5 +357,14 @@ def main(arguments):
     except OSError as problem:
         print(f"design: {problem.filename or ''}: {problem.strerror}", file=sys.stderr)
         return 1
-    print("\n".join(text))
+    except UnicodeDecodeError:
+        print(f"design: {options.sigma_of}: not text, so no stream of samples", file=sys.stderr)
+        return 1
+    except ArithmeticError as problem:
+        print(f"design: the numbers lead beyond what can be computed ({problem}); nearest: values between 0.001 and 1000", file=sys.stderr)
+        return 1
+    try:
+        print("\n".join(text), flush=True)
+    except BrokenPipeError:  # the reader has seen enough
+        sys.stdout = None
     return 0
