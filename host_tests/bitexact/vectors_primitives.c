@@ -53,6 +53,8 @@ static uint32_t normalised_c(uint32_t v)
 #define B24 (b & 0xFFFFFFUL)
 #define NOT_0(v) ((v) == 0U ? 1U : (v))
 #define LED(v) ((v) | 0x80000000UL)
+/* 0 or one of 2, 4 .. 128 */
+#define PART(v) ((uint8_t)(2U << ((v)&7U)))
 #define POSITIVE(v) ((int32_t)((v)&0x7FFFFFFFUL))
 
 /* X(name, what it gives for the operands a and b) */
@@ -86,6 +88,10 @@ static uint32_t normalised_c(uint32_t v)
     X(fx_shift_right_c, fx_shift_right_c(a, (uint8_t)(b & 31U)))                       \
     X(fx_shift_right, fx_shift_right(a, (uint8_t)(b & 31U)))                           \
     X(fx_shifted_right, fx_shifted_right(a, (uint8_t)(b & 31U)))                       \
+    X(fx_without_part_c, (uint32_t)fx_without_part_c(HALF(a), PART(b)))                \
+    X(fx_without_part, (uint32_t)fx_without_part(HALF(a), PART(b)))                    \
+    X(fx_clamp_high_c, (uint32_t)fx_clamp_high_c((int32_t)a, 54))                      \
+    X(fx_clamp_high, (uint32_t)fx_clamp_high((int32_t)a, 54))                          \
     X(fx_high_u16, fx_high_u16(A16, B16))                                              \
     X(fx_times_uq16, fx_times_uq16(a, B16))                                            \
     X(fx_leading, fx_leading(a))                                                       \
