@@ -44,6 +44,29 @@
 #undef step
 #undef update
 
+#define parameters parameters_adaptive
+#define legal legal_adaptive
+#define within within_adaptive
+#include "adaptive_setup.c"
+#undef parameters
+#undef legal
+#undef within
+#define parameters parameters_kf3
+#define limited limited_kf3
+#define correct correct_kf3
+#define take take_kf3
+#define predict predict_kf3
+#define moved moved_kf3
+#define less less_kf3
+#include "kf3.c"
+#undef parameters
+#undef limited
+#undef predict
+#undef take
+#undef correct
+#undef moved
+#undef less
+
 #include "filter_any.c"
 
 /*
@@ -52,8 +75,10 @@
  */
 void proof_filter_any_refused(void)
 {
+    //@ loop unroll 16;
     for (uint8_t kind = 0; kind <= (uint8_t)FILTER_KIND_COUNT; kind++) {
         filter_any_config_t config;
+        //@ loop unroll 64;
         for (uint8_t i = 0; i < sizeof config; i++) {
             ((uint8_t *)&config)[i] = ANY_U8(0, UINT8_MAX);
         }
