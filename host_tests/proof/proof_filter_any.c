@@ -71,7 +71,7 @@
 
 /*
  * Any bytes of a configuration of any filter, and an unknown one. What is told is a parameter of the descriptor, or one
- * of filter_refusal.
+ * of filter_refusal. Options: -eva-split-return-function in_range:full,filter_any_refused:full
  */
 void proof_filter_any_refused(void)
 {
