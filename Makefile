@@ -105,7 +105,12 @@ $(H)/unity.o: $(UNITY_DIR)/unity.c
 	@mkdir -p $(@D)
 	@$(HOST_CC) -std=c11 -O1 -g -DUNITY_INCLUDE_DOUBLE -DUNITY_USE_FLUSH_STDOUT $(SANITIZE) -c $< -o $@
 
-$(H)/test_%: $(H)/host_tests/test_%.o $(HOST_OBJ) $(REF_OBJ) $(H)/unity.o
+# an archive, so that a test holds only the references it asks: with them all it takes 55 MB
+$(H)/libreference.a: $(REF_OBJ)
+	@rm -f $@
+	@ar rcs $@ $^
+
+$(H)/test_%: $(H)/host_tests/test_%.o $(HOST_OBJ) $(H)/unity.o $(H)/libreference.a
 	@$(HOST_CXX) $(SANITIZE) $^ -lm -o $@
 
 # the replay is optimised and without sanitizers: it is a tool as well
@@ -149,7 +154,7 @@ test:
 	@sh tools/deps.sh design || echo "test: test_design will be skipped"
 	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt $(H)/native_replay $(H)/pipeline_replay $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun \
 	    $(SEQUENCES) $(CHIP_TESTS) $(FLASHTEST_IMAGES) $(PAPERS)
-	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" CHIP_SECOND="$(CHIP_SECOND)" sh tools/run_tests.sh $(TESTS)
+	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" CHIP_SECOND="$(CHIP_SECOND)" python3 tools/run_tests.py $(TESTS)
 
 ## clean: remove what was built (the downloads in build/unity and build/venv stay)
 clean:
@@ -158,7 +163,7 @@ clean:
 # one file per further target
 include $(sort $(filter-out mk/images.mk,$(wildcard mk/*.mk)))
 
-# keep the test objects
+# keep the test objects: no other .SECONDARY may name targets, or only those would be kept
 .SECONDARY:
 
 .PHONY: sim test clean

@@ -1,6 +1,6 @@
 /*
  * The integer square root over all 2^32 arguments: floor(sqrt(v)) is the r with r^2 <= v < (r + 1)^2. Two processes,
- * each one half; built without sanitizers, about half a minute. Prints a line in Unity's form for run_tests.sh.
+ * each one half; built without sanitizers, about half a minute. Prints a line in Unity's form for run_tests.py.
  */
 #include <stdio.h>
 #include <sys/types.h>

@@ -1,8 +1,8 @@
 // The synthesised filter as a linear system: x(n) = F x(n-1) + b0 e1 z(n), F the companion matrix of equation (7).
 #include "reference_synth.h"
+#include "reference_linear.hpp"
 
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -68,13 +68,11 @@ void reference_synth_line(reference_synth_t *f, double a1, double b0, const doub
     double sorted[5];
     std::copy(five, five + 5, sorted);
     std::sort(sorted, sorted + 5);
-    Eigen::Matrix<double, 5, 2> times;
-    Eigen::Matrix<double, 5, 1> values;
+    Eigen::VectorXd values(5);
     for (int i = 0; i < 5; i++) {
-        times.row(i) << 1.0, i - 4.0;
         values(i) = std::clamp(five[i], sorted[2] - spread, sorted[2] + spread);
     }
-    const Eigen::Vector2d line = times.householderQr().solve(values);
+    const Eigen::Vector2d line = linear::line_end(values);
     for (int i = 0; i < 3; i++) {
         f->x[i] = line(0) - i * line(1);
     }
@@ -83,21 +81,14 @@ void reference_synth_line(reference_synth_t *f, double a1, double b0, const doub
 
 double reference_synth_radius(double a1, double b0)
 {
-    return closed_loop(a1, b0).eigenvalues().cwiseAbs().maxCoeff();
+    return linear::spectral_radius(closed_loop(a1, b0));
 }
 
 double reference_synth_noise_gain(double a1, double b0)
 {
     const Eigen::Matrix3d f = closed_loop(a1, b0);
-    Eigen::Matrix<double, 9, 9> system = Eigen::Matrix<double, 9, 9>::Identity();
-    Eigen::Matrix<double, 9, 1> right = Eigen::Matrix<double, 9, 1>::Zero();
-    for (int i = 0; i < 9; i++) {
-        for (int j = 0; j < 9; j++) {
-            system(i, j) -= f(i / 3, j / 3) * f(i % 3, j % 3);
-        }
-    }
-    right(0) = b0 * b0;
-    return system.fullPivLu().solve(right)(0);
+    const Eigen::Matrix3d noise = Eigen::Vector3d::Unit(0) * Eigen::RowVector3d::Unit(0) * (b0 * b0);
+    return linear::lyapunov(f, noise)(0, 0);
 }
 
 double reference_synth_error_sum(double a1, double b0)

@@ -1,8 +1,8 @@
 // Parametric synthesis in matrices: e(n) = F(a1, b0) e(n-1) + b0 v(n) for the last three errors.
 #include "reference_synth_opt.h"
+#include "reference_linear.hpp"
 
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -105,5 +105,5 @@ double reference_product_radius(const double *a1, const double *b0, int n)
     for (int i = 0; i < n; i++) {
         product = (closed_loop(a1[i], b0[i]) * product).eval();
     }
-    return product.eigenvalues().cwiseAbs().maxCoeff();
+    return linear::spectral_radius(product);
 }

@@ -1,8 +1,8 @@
 // synth_plus and what it contains, as linear systems (Eigen).
 #include "reference_synth_plus.h"
+#include "reference_linear.hpp"
 
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -29,16 +29,6 @@ System closed_loop(const reference_taps_t &t)
     s.g(0) = t.b0;
     s.g(3) = 1.0;
     return s;
-}
-
-// X = F X F' + Q by doubling.
-template <int n> Eigen::Matrix<double, n, n> lyapunov(Eigen::Matrix<double, n, n> f, Eigen::Matrix<double, n, n> q)
-{
-    for (int i = 0; i < 60 && f.norm() > 1e-300; i++) {
-        q = (q + f * q * f.transpose()).eval();
-        f = (f * f).eval();
-    }
-    return q;
 }
 
 template <int n> Eigen::Matrix<double, n, 1> steady_gains(const Eigen::Matrix<double, n, n> &f, double noise)
@@ -76,13 +66,13 @@ double reference_plus_step(reference_plus_t *f, const reference_taps_t *taps, do
 
 double reference_plus_radius(const reference_taps_t *taps)
 {
-    return closed_loop(*taps).f.eigenvalues().cwiseAbs().maxCoeff();
+    return linear::spectral_radius(closed_loop(*taps).f);
 }
 
 double reference_plus_noise_gain(const reference_taps_t *taps)
 {
     const System s = closed_loop(*taps);
-    return lyapunov<5>(s.f, s.g * s.g.transpose())(0, 0);
+    return linear::lyapunov(s.f, s.g * s.g.transpose())(0, 0);
 }
 
 double reference_plus_rounding_lsb(const reference_taps_t *taps, int n)
@@ -146,7 +136,7 @@ double reference_singer_error(double rho, const double k[3], double true_rho, do
     q.block<3, 1>(0, 5) = noise * true_lambda;
     q.block<1, 3>(5, 0) = noise.transpose() * true_lambda;
     q(5, 5) = true_lambda;
-    return lyapunov<6>(f, q)(0, 0);
+    return linear::lyapunov(f, q)(0, 0);
 }
 
 void reference_white_gains(double drive, double k[2])
@@ -157,10 +147,5 @@ void reference_white_gains(double drive, double k[2])
 
 double reference_line_end(const double *z, int n)
 {
-    Eigen::MatrixXd times(n, 2);
-    for (int i = 0; i < n; i++) {
-        times.row(i) << 1.0, i - (n - 1.0);
-    }
-    const Eigen::Vector2d line = times.householderQr().solve(Eigen::Map<const Eigen::VectorXd>(z, n));
-    return line(0);
+    return linear::line_end(Eigen::Map<const Eigen::VectorXd>(z, n))(0);
 }

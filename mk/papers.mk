@@ -17,7 +17,6 @@ $(P)/%.o: %.c Makefile mk/papers.mk
 
 $(P)/paper%: $(P)/host_tests/papers/paper%.o $(PAPERS_OBJ)
 	@$(HOST_CXX) $^ -lm -o $@
-.SECONDARY: $(PAPERS_MAIN:%.cpp=$(P)/%.o)
 
 # paper 002's filters once more, as C++ with integers that count: what does not compile with them is named by the compiler
 OPERATIONS := host_tests/papers/operations

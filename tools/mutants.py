@@ -28,8 +28,12 @@ def load():
     return mutants
 
 
+BUILT = ("host", "papers", "sim", "uno")  # folders of build that the first copy begins with
+
+
 def prepare():
-    """A copy of what git knows, with the downloads shared and everything built once."""
+    """A copy of what git knows, with the downloads shared. A new copy keeps the times of the files and takes what is built along."""
+    new = not TREE.exists()
     TREE.mkdir(parents=True, exist_ok=True)
     listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True, check=True)
     for name in listed.stdout.splitlines():
@@ -38,12 +42,16 @@ def prepare():
             continue
         target.parent.mkdir(parents=True, exist_ok=True)
         if not target.exists() or target.read_bytes() != source.read_bytes():
-            shutil.copy(source, target)  # with a new time, so that make builds it anew
+            # later ones with a new time, so that make builds them anew
+            (shutil.copy2 if new else shutil.copy)(source, target)
     known = set(listed.stdout.splitlines())
     for path in list(TREE.rglob("*")):
         inside = path.relative_to(TREE)
         if inside.parts[0] != "build" and path.is_file() and str(inside) not in known:
             path.unlink()  # moved or deleted since: a makefile's wildcard would find it
+    for folder in BUILT if new else ():
+        if pathlib.Path("build", folder).is_dir():
+            shutil.copytree(pathlib.Path("build", folder), TREE / "build" / folder, symlinks=True)
     for shared in ("unity", "venv"):
         link = TREE / "build" / shared
         link.parent.mkdir(exist_ok=True)
