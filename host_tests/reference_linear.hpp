@@ -1,4 +1,4 @@
-// What the references need of linear algebra, compiled once: Eigen's solvers for fixed sizes take minutes with sanitizers.
+// What the references need of linear algebra, in one file: Eigen's solvers for fixed sizes take minutes to compile.
 #ifndef REFERENCE_LINEAR_HPP
 #define REFERENCE_LINEAR_HPP
 
