@@ -134,8 +134,23 @@ double disperse(reference_adaptive_t &f, const Step &s)
     return weight * (error + s.spread.e) + q24;
 }
 
+// Six terms on end below half of the mean, among the first sixteen: the largest of them is the mean. Terms are exact but
+// for a limit that is none of these; of the mean half is known to 9 bits.
+double doubt(reference_adaptive_t &f, double term, double before, double error, Step &s)
+{
+    f.small = s.above(0.5 * before, term, q8) ? f.small + 1 : 0;
+    f.largest = (f.small <= 1) ? term : std::max(f.largest, term);
+    if (f.small < 6) {
+        return error;
+    }
+    f.small = 0;
+    f.restarts++;
+    f.now.third = std::max(46.0 * q8, f.largest);
+    return q8;
+}
+
 // Noise of a sample: half of the mean |third difference|.
-double identify(reference_adaptive_t &f, double z, reference_adaptive_value_t &bound)
+double identify(reference_adaptive_t &f, double z, reference_adaptive_value_t &bound, Step &s)
 {
     const double difference = z - 3.0 * f.z[0] + 3.0 * f.z[1] - f.z[2];
     const double weight = weight_of(f);
@@ -143,9 +158,13 @@ double identify(reference_adaptive_t &f, double z, reference_adaptive_value_t &b
     if (weight < 0.25) {
         term = std::min(term, 3.125 * f.now.third);
     }
-    f.now.third = std::max(46.0 * q8, f.now.third + weight * (term - f.now.third));
+    const double before = f.now.third;
+    f.now.third = std::max(46.0 * q8, before + weight * (term - before));
+    double error = (weight == 1.0) ? 0.0 : weight * 5.2 * q8;
+    if (f.terms > 0 && f.terms < 16) {
+        error = doubt(f, term, before, error, s);
+    }
     f.terms++;
-    const double error = (weight == 1.0) ? 0.0 : weight * 5.2 * q8;
     if (!f.guarded) {
         f.now.scatter = f.now.third * 2.0 / 3.549;
         bound.scatter = 0.5636 * (error + q8) + 90.0 * q16;
@@ -175,7 +194,8 @@ Eigen::Matrix2d covariance(double k)
 void reference_adaptive_begin(reference_adaptive_t *f)
 {
     f->now = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-    f->filled = f->run = f->terms = 0;
+    f->filled = f->run = f->terms = f->small = f->restarts = 0;
+    f->largest = 0.0;
     f->side = 1;
     f->warming = 5;
     f->third_next = f->identify;
@@ -205,7 +225,7 @@ bool reference_adaptive_step(reference_adaptive_t *f, double z, reference_adapti
         }
     }
     if (f->third_next && f->filled == 3) {
-        bound->third = identify(*f, z, *bound);
+        bound->third = identify(*f, z, *bound, s);
     }
     f->third_next = f->identify && (!f->guarded || !f->third_next);
     std::rotate(f->z, f->z + 2, f->z + 3);

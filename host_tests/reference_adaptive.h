@@ -25,6 +25,8 @@ typedef struct {
     reference_adaptive_value_t now;
     double z[3]; /* newest first */
     int filled, side, run, terms, warming;
+    int small, restarts; /* terms on end below half of the mean; how often they took its place */
+    double largest;      /* of them */
     bool third_next;
     reference_verdict_t verdict;
 } reference_adaptive_t;

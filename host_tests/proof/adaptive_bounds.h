@@ -30,6 +30,7 @@
 #define SCATTER(f) (SCATTER_LEAST <= (f)->scatter_lsb_uq24 <= SCATTER_END)
 #define THIRD(f) (THIRD_LEAST <= (f)->third_lsb_uq24 <= THIRD_END)
 #define NOISE(f) (SCATTER(f) && THIRD(f))
+#define SMALL(f) ((f)->small < 6 && (f)->largest_lsb_uq8 <= 40704)
 #define HISTORY(f) \
     ((f)->filled <= 3 && SAMPLE((f)->history_lsb[0]) && SAMPLE((f)->history_lsb[1]) && SAMPLE((f)->history_lsb[2]))
 /* A weight is for so many terms, of which some are left. */
@@ -38,8 +39,8 @@
 #define RUNNING(f) ((f)->collected == 5 && (f)->u.run.size_lsb_uq16 <= SIZE_END && (f)->u.run.gate_lsb_uq16 <= GATE_END)
 #define START(lsb) (SAMPLE((lsb)[0]) && SAMPLE((lsb)[1]) && SAMPLE((lsb)[2]) && SAMPLE((lsb)[3]) && SAMPLE((lsb)[4]))
 #define STARTING(f) ((f)->collected < 5 && ((f)->flags & FILTER_WARMING_UP) != 0 && START((f)->u.start_lsb))
-#define BOUND_BUT_NOISE(f)                                                                              \
-    (TOLD(f) && MOTION_OF(f) && MEMORY(f) && HISTORY(f) && WEIGHTS(f) && LAST(f) && FLAG((f)->third) && \
+#define BOUND_BUT_NOISE(f)                                                                                          \
+    (TOLD(f) && MOTION_OF(f) && MEMORY(f) && HISTORY(f) && WEIGHTS(f) && LAST(f) && FLAG((f)->third) && SMALL(f) && \
      (f)->flags < 32 && (STARTING(f) || RUNNING(f)))
 #define BOUND(f) (BOUND_BUT_NOISE(f) && NOISE(f))
 
@@ -68,8 +69,10 @@ static inline uint32_t averaged(uint32_t mean_uq24, uint16_t term_uq8, uint16_t 
 
 #define STAGE(f, n) ((f)->stage == (n) && (f)->weight_uq16 == 32768 / (n) && 1 <= (f)->terms <= 2 * (n))
 /*@ requires NOISE(f) && HISTORY(f) && SAMPLE(z_lsb);
-    requires WEIGHTS(f) && LAST(f);
-    assigns f->third_lsb_uq24, f->scatter_lsb_uq24, f->weight_uq16, f->terms, f->stage \from *f, z_lsb;
+    requires WEIGHTS(f) && LAST(f) && SMALL(f);
+    assigns f->third_lsb_uq24, f->scatter_lsb_uq24, f->weight_uq16, f->terms, f->stage, f->small,
+            f->largest_lsb_uq8 \from *f, z_lsb;
+    ensures SMALL(f);
     ensures NOISE(f);
     ensures STAGE(f, 1) || STAGE(f, 2) || STAGE(f, 4) || STAGE(f, 8) || STAGE(f, 16) || STAGE(f, 32) ||
             STAGE(f, 64) || STAGE(f, 128) || STAGE(f, 256) || STAGE(f, 512);

@@ -53,6 +53,8 @@ static void any_state(adaptive_t *f)
     f->below = ANY_BOOL();
     f->run = ANY_U16(0, UINT16_MAX);
     f->flags = ANY_U8(0, 31);
+    f->small = ANY_U8(0, 5);
+    f->largest_lsb_uq8 = ANY_U16(0, 40704);
 }
 
 /* A weight, a power of 2, with the number of terms that it is for. */

@@ -57,6 +57,28 @@ FX_INLINE void count_term(adaptive_t *f)
     }
 }
 
+/*
+ * What the mean of the start becomes with a term. A bad read among the first terms makes it many times too large; the
+ * terms after it tell: when so many on end lie below its half, which clean ones do in 1 start of 100, the largest of
+ * them takes its place.
+ */
+FX_INLINE uint32_t doubted(adaptive_t *f, uint32_t mean_uq24, uint16_t term_uq8, uint16_t before_uq8)
+{
+    if (term_uq8 >= before_uq8 >> 1) {
+        f->small = 0;
+        return mean_uq24;
+    }
+    if (f->small == 0U || term_uq8 > f->largest_lsb_uq8) {
+        f->largest_lsb_uq8 = term_uq8;
+    }
+    f->small++;
+    if (f->small < SMALL_TERMS) {
+        return mean_uq24;
+    }
+    f->small = 0;
+    return (uint32_t)f->largest_lsb_uq8 << 16;
+}
+
 /* Noise of a sample from |z - 3 z1 + 3 z2 - z3|, limited to 2.48 times the sigma that is expected of it. */
 FX_NOINLINE void identify(adaptive_t *f, int16_t z_lsb)
 {
@@ -75,6 +97,8 @@ FX_NOINLINE void identify(adaptive_t *f, int16_t z_lsb)
     uint32_t mean = averaged(f->third_lsb_uq24, term_uq8, mean_uq8, f->weight_uq16);
     if (f->terms == 2U && f->weight_uq16 == WEIGHT_START_UQ16) {
         mean = (uint32_t)term_uq8 << 16; /* nothing is left of the R to start from */
+    } else if (f->weight_uq16 >= WEIGHT_DOUBTED_UQ16) {
+        mean = doubted(f, mean, term_uq8, mean_uq8);
     }
     if ((uint16_t)(mean >> 16) < (uint16_t)(THIRD_MIN_LSB_UQ24 >> 16)) {
         mean = THIRD_MIN_LSB_UQ24;
@@ -155,10 +179,7 @@ FX_NOINLINE uint32_t agreed_lsb_uq16(adaptive_t *f)
     return (before < 0) ? 0U : (uint32_t)before;
 }
 
-/*
- * What is taken of the size of an innovation beyond the gate. What the sample before was off on the same side, carried
- * on with the rate, is what both agree on.
- */
+/* What is taken of the size of an innovation beyond the gate. */
 FX_NOINLINE uint32_t judge(adaptive_t *f, uint32_t size)
 {
     uint32_t agreed = agreed_lsb_uq16(f);

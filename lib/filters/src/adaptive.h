@@ -82,15 +82,17 @@ typedef struct {
     uint16_t run;     /* samples beyond the gate on one side, up to the last */
     uint16_t confirm; /* samples until a jump is believed */
     uint16_t jump_lsb_uq8;
-    uint16_t terms;     /* until the weight is halved */
-    uint16_t stage;     /* terms that a weight is for, half of the next */
-    uint16_t last_uq16; /* the weight at last */
+    uint16_t terms;           /* until the weight is halved */
+    uint16_t stage;           /* terms that a weight is for, half of the next */
+    uint16_t last_uq16;       /* the weight at last */
+    uint16_t largest_lsb_uq8; /* of the terms on end that lie below half of the mean */
+    uint8_t small;            /* their number, while the start is doubted */
 } adaptive_t;
 
 /* Descriptor in program memory. */
 extern const filter_descriptor_t adaptive_descriptor;
 
-enum { adaptive_worst_cycles = 1330 }; /* of adaptive_update, as in filter.h */
+enum { adaptive_worst_cycles = 1370 }; /* of adaptive_update, as in filter.h */
 
 void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz);
 bool adaptive_init(adaptive_t *f, const adaptive_config_t *config);

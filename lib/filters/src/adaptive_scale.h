@@ -39,6 +39,9 @@
  */
 #define WEIGHT_START_UQ16 32768U
 #define WEIGHT_LIMITED_UQ16 16384U
+/* The first sixteen terms are doubted: the mean is too large when six on end lie below its half. */
+#define WEIGHT_DOUBTED_UQ16 4096U
+#define SMALL_TERMS 6U
 #define WEIGHT_SCATTER_START_UQ16 8192U
 #define WEIGHT_SCATTER_UQ16 4096U
 #define WEIGHT_LAST_MAX_UQ16 1024U
