@@ -1,5 +1,6 @@
 #include "altitude.hpp"
 #include "model.hpp"
+#include "roll.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,20 +12,6 @@ namespace
 constexpr int up = 200; // samples at which the legs begin
 constexpr int down = 350;
 constexpr int straight = 500;
-
-// Mean over runs with its 95 % interval, normal.
-Interval mean_of(const std::vector<double> &values, double &sd)
-{
-    const auto n = static_cast<double>(values.size());
-    const double mean = total(values) / n;
-    double square = 0.0;
-    for (const double value : values) {
-        square += (value - mean) * (value - mean);
-    }
-    sd = std::sqrt(square / std::max(1.0, n - 1.0));
-    const double half = 1.959964 * sd / std::sqrt(n);
-    return { mean, mean - half, mean + half };
-}
 
 Interval root(const Interval &square)
 {
@@ -38,6 +25,16 @@ double mean(const std::vector<double> &errors, int first, int end)
         sum += errors[static_cast<std::size_t>(k)];
     }
     return sum / (end - first);
+}
+
+// Over both straight legs.
+double straight_sum(const std::vector<double> &values)
+{
+    double sum = 0.0;
+    for (int k = 0; k < samples; k++) {
+        sum += (k < up || k >= straight) ? values[static_cast<std::size_t>(k)] : 0.0;
+    }
+    return sum;
 }
 
 double square_sum(const std::vector<double> &errors, int first, int end)
@@ -65,6 +62,23 @@ double truth_m(Reading reading, int k)
 double second_difference_m(Reading reading)
 {
     return (reading == Reading::a_t2 ? 2.0 : 1.0) * acceleration_m_s2 * period_s * period_s;
+}
+
+Exact exact(const Maker &maker, Reading reading, int run_in, double r)
+{
+    const std::vector<double> gain = roll::noise_gain(maker, run_in + samples).estimate;
+    const Estimator estimator = maker();
+    std::vector<double> bias;
+    std::vector<double> square;
+    for (int k = -run_in; k < samples; k++) {
+        const double error = truth_m(reading, k) - estimator(truth_m(reading, k));
+        if (k >= 0) {
+            bias.push_back(error);
+            square.push_back(error * error + r * gain[static_cast<std::size_t>(k + run_in)]);
+        }
+    }
+    return { std::sqrt(straight_sum(square) / (up + samples - straight)), std::sqrt(mean(square, 100, up)),
+             mean(bias, up, down), mean(bias, down, straight), mean(bias, 300, down) };
 }
 
 Result monte_carlo(const Maker &maker, Reading reading, int run_in, int runs, std::uint64_t seed)

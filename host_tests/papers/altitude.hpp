@@ -35,6 +35,16 @@ struct Result {
     Interval lag_settled;      // over 30-35 s
 };
 
+// The same without chance, for a filter that is linear in its samples: r is the variance of their noise.
+struct Exact {
+    double sigma;
+    double sigma_stationary;
+    double lag_up;
+    double lag_down;
+    double lag_settled;
+};
+Exact exact(const Maker &maker, Reading reading, int run_in, double r);
+
 // run_in: so many samples of the first leg before 0 s, for filters that cannot begin exactly.
 Result monte_carlo(const Maker &maker, Reading reading, int run_in, int runs, std::uint64_t seed);
 } // namespace papers::altitude

@@ -3,6 +3,7 @@
 #include "altitude.hpp"
 #include "experiments_001.hpp"
 #include "linear.hpp"
+#include "twins.hpp"
 
 #include <array>
 #include <cmath>
@@ -37,6 +38,16 @@ void rows(Reading reading, const std::string &name, Arithmetic arithmetic, const
     row(experiment, name, arithmetic, "lag_20_35", r.lag_up, runs);
     row(experiment, name, arithmetic, "lag_35_50", r.lag_down, runs);
     row(experiment, name, arithmetic, "lag_settled", r.lag_settled, runs);
+}
+
+void exact_rows(Reading reading, const std::string &name, Arithmetic arithmetic, const Exact &e)
+{
+    const std::string experiment = name_of(reading);
+    row(experiment, name, arithmetic, "exact_sigma", e.sigma, 1);
+    row(experiment, name, arithmetic, "exact_sigma_stationary", e.sigma_stationary, 1);
+    row(experiment, name, arithmetic, "exact_lag_20_35", e.lag_up, 1);
+    row(experiment, name, arithmetic, "exact_lag_35_50", e.lag_down, 1);
+    row(experiment, name, arithmetic, "exact_lag_settled", e.lag_settled, 1);
 }
 
 // The example of paper 001 to the letter: x_e(n) of x_e(n - 1) .. (n - 3). The measurement never enters x_e.
@@ -142,6 +153,7 @@ void readings(const Options &options)
         for (const Entry &entry : entries_of(reading)) {
             rows(reading, entry.name, Arithmetic::in_double,
                  monte_carlo(entry.maker, reading, 0, runs_of(options), options.seed), runs_of(options));
+            exact_rows(reading, entry.name, Arithmetic::in_double, exact(entry.maker, reading, 0, sigma_m * sigma_m));
             const std::vector<double> errors = noise_free_m(entry.maker, reading);
             row(name_of(reading), entry.name, Arithmetic::in_double, "peak_bias", peak_of(errors), 1);
             row(name_of(reading), entry.name, Arithmetic::in_double, "lag_noise_free", errors[349], 1);
@@ -162,6 +174,11 @@ void shipped_filters(const Options &options)
             rows(reading, title, Arithmetic::fixed,
                  monte_carlo(shipped(name, shipping), reading, settle, runs_of(options), options.seed),
                  runs_of(options));
+            const std::optional<Maker> twin = linear_twin(name, shipping);
+            if (twin) {
+                exact_rows(reading, title, Arithmetic::fixed,
+                           exact(*twin, reading, settle, rounded_variance(sigma_m * sigma_m, shipping)));
+            }
             progress.advance();
         };
         one("synth(-0.3:0.1)", "synth", { { "a1", -0.3 }, { "b0", 0.1 } });

@@ -46,20 +46,6 @@ double steps(double s)
 {
     return (s >= 0.25 ? 0.5 : 0.0) + (s >= 0.75 ? 0.5 : 0.0);
 }
-
-// Mean and 95 % interval of the mean, normal: thousands of runs
-Interval interval_of(const std::vector<double> &values, double &sd)
-{
-    const auto n = static_cast<double>(values.size());
-    const double mean = total(values) / n;
-    double square = 0.0;
-    for (const double value : values) {
-        square += (value - mean) * (value - mean);
-    }
-    sd = std::sqrt(square / std::max(1.0, n - 1.0));
-    const double half = 1.959964 * sd / std::sqrt(n);
-    return { mean, mean - half, mean + half };
-}
 } // namespace
 
 // k is counted from the turn's beginning as a whole number, so that no rounding moves a step
@@ -193,7 +179,7 @@ std::vector<Score> monte_carlo(const std::vector<Maker> &makers, const Profile &
     std::vector<Score> result(makers.size());
     for (std::size_t i = 0; i < makers.size(); i++) {
         for (std::size_t w = 0; w < window_count; w++) {
-            result[i].mse_deg2[w] = interval_of(squares[i][w], result[i].one_run_sd_deg2[w]);
+            result[i].mse_deg2[w] = mean_of(squares[i][w], result[i].one_run_sd_deg2[w]);
         }
     }
     return result;
