@@ -1,15 +1,18 @@
-"""Judging of make papers: accepted bands and verdicts, read from host_tests/papers/expected_*.csv."""
+"""Judging of make papers: accepted bands and verdicts, read from host_tests/papers/expected_*.csv.
+
+A bound is a number, or `F x REF`: F times another number of the same run (papers_bands.py). A `high` of `+-4 se` or `+-0.1 %` (or a sum of
+such) is a width about `low`. A claim in words has in place of its verdict the limits that make it one:
+`reproduced <= BOUND; refuted >= BOUND`; between them it is not reproduced.
+"""
 import csv
 import fnmatch
 import math
 import re
 
+from papers_bands import BOUND_RULES, Fault, Rows, band_of, faulty_cells, too_wide, verdict_by
+
 FIELDS = ["experiment", "filter", "arithmetic", "metric", "low", "high", "published", "verdict", "reason"]
 VERDICTS = ("", "reproduced", "not reproduced", "refuted", "not comparable")
-
-
-class Fault(Exception):
-    """One sentence about what is wrong."""
 
 
 def read_expected(path):
@@ -24,12 +27,15 @@ def read_expected(path):
         if len(cells) != len(FIELDS):
             raise Fault(f"{path}:{number}: {len(cells)} fields, wanted {','.join(FIELDS)}")
         row = dict(zip(FIELDS, cells), line=f"{path}:{number}", matched=0)
-        if row["verdict"] not in VERDICTS or row["arithmetic"] not in ("double", "fixed", "both"):
+        if (row["verdict"] not in VERDICTS and not BOUND_RULES.match(row["verdict"])) or row["arithmetic"] not in ("double", "fixed", "both"):
             raise Fault(f"{path}:{number}: verdict '{row['verdict']}' or arithmetic '{row['arithmetic']}' is unknown")
         if bool(row["published"]) != bool(row["verdict"]) or (row["verdict"] and not row["reason"]):
             raise Fault(f"{path}:{number}: what is published has a verdict and a reason, and nothing else has a verdict")
-        for bound in ("low", "high"):
-            row[bound] = float(row[bound]) if row[bound] else None
+        for text in faulty_cells(row):
+            raise Fault(f"{path}:{number}: {text}")
+        words = row["published"] and published_range(row["published"]) is None
+        if words and row["verdict"] != "not comparable" and not BOUND_RULES.match(row["verdict"]):
+            raise Fault(f"{path}:{number}: a claim in words needs limits for its verdict, 'reproduced <= BOUND; refuted >= BOUND'")
         rows.append(row)
     if not rows:
         raise Fault(f"{path}: expects nothing")
@@ -76,38 +82,49 @@ def agrees(row, limits):
     return low <= limits[1] and high >= limits[0]
 
 
-def judge_row(row, rule, full_runs=VERDICT_RUNS):
-    """Sentences about what is wrong; the row gets its band and its verdict. full_runs: of the page, of which a verdict may hang."""
-    value, faults = row["value"], []
-    row["band"] = (rule["low"], rule["high"]) if (rule["low"], rule["high"]) != (None, None) else row.get("band")
+def judge_row(row, rule, full_runs=VERDICT_RUNS, rows=None):
+    """Sentences about what is wrong; the row gets its band and its verdict. full_runs: of the page, of which a verdict may hang; rows: of
+    the same run, which bounds may name."""
+    value, faults, rows = row["value"], [], rows or Rows([row])
+    low, high = band_of(rule, row, rows)
+    row["band"] = (low, high) if (low, high) != (None, None) else row.get("band")
     if math.isnan(value):
         faults.append(f"{name_of(row)} is not a number")
-    if rule["low"] is not None and value < rule["low"]:
-        faults.append(f"{name_of(row)} = {value:.6g}, below its band from {rule['low']:g} ({rule['line']})")
-    if rule["high"] is not None and value > rule["high"]:
-        faults.append(f"{name_of(row)} = {value:.6g}, above its band to {rule['high']:g} ({rule['line']})")
-    if rule["published"]:
-        row.update(published=rule["published"], verdict=rule["verdict"], reason=rule["reason"])
-        limits = published_range(rule["published"])
-        if rule["verdict"] == "not comparable":
-            return faults
-        # of fewer runs the interval is so wide that it may meet what the number does not
-        undecided = 1 < row["runs"] < full_runs and limits and agrees(row, limits)
-        if limits and not undecided and agrees(row, limits) != (rule["verdict"] == "reproduced"):
-            seen = "meets" if agrees(row, limits) else "does not meet"
-            faults.append(f"{name_of(row)} = {value:.6g} {seen} the published {rule['published']}, "
-                          f"so it cannot be '{rule['verdict']}' ({rule['line']})")
-        # the page's word for K_ef: refuted is ten times off and more
-        far = limits and row["metric"].startswith("k_ef") and 10 * value < limits[0]
-        if limits and row["metric"].startswith("k_ef") and rule["verdict"] != "reproduced" and bool(far) != (rule["verdict"] == "refuted"):
-            faults.append(f"{name_of(row)} = {value:.6g} is {'' if far else 'not '}ten times below the published {rule['published']}, "
-                          f"so it cannot be '{rule['verdict']}' ({rule['line']})")
+    if low is not None and value < low:
+        faults.append(f"{name_of(row)} = {value:.6g}, below its band from {low:g} ({rule['line']})")
+    if high is not None and value > high:
+        faults.append(f"{name_of(row)} = {value:.6g}, above its band to {high:g} ({rule['line']})")
+    if not rule["published"]:
+        return faults
+    if BOUND_RULES.match(rule["verdict"]):
+        row.update(published=rule["published"], verdict=verdict_by(rule, row, rows), reason=rule["reason"])
+        return faults
+    row.update(published=rule["published"], verdict=rule["verdict"], reason=rule["reason"])
+    return faults + ([] if rule["verdict"] == "not comparable" else wrong_verdict(row, rule, full_runs))
+
+
+def wrong_verdict(row, rule, full_runs):
+    """A verdict beside a published number that the measured one gainsays."""
+    value, faults, limits = row["value"], [], published_range(rule["published"])
+    # of fewer runs the interval is so wide that it may meet what the number does not
+    undecided = 1 < row["runs"] < full_runs and limits and agrees(row, limits)
+    if limits and not undecided and agrees(row, limits) != (rule["verdict"] == "reproduced"):
+        seen = "meets" if agrees(row, limits) else "does not meet"
+        faults.append(f"{name_of(row)} = {value:.6g} {seen} the published {rule['published']}, "
+                      f"so it cannot be '{rule['verdict']}' ({rule['line']})")
+    # the page's word for K_ef: refuted is ten times off and more
+    far = limits and row["metric"].startswith("k_ef") and 10 * value < limits[0]
+    if limits and row["metric"].startswith("k_ef") and rule["verdict"] != "reproduced" and bool(far) != (rule["verdict"] == "refuted"):
+        faults.append(f"{name_of(row)} = {value:.6g} is {'' if far else 'not '}ten times below the published {rule['published']}, "
+                      f"so it cannot be '{rule['verdict']}' ({rule['line']})")
     return faults
 
 
 def judge(rows, expected, partial=False, full_runs=VERDICT_RUNS, wanted=BANDED):
-    """What is wrong. Each number against every rule that fits it; a rule that fits none is wrong unless only a part was run."""
-    faults, claims = [], {}
+    """What is wrong. Each number against every rule that fits it; a rule that fits none is wrong unless only a part was run. The bands of papers
+    000 and 001 are not wider than four standard errors (those of 002 are of issue 4, by groups of runs)."""
+    strict = wanted is not BANDED
+    faults, claims, of_run = [], {}, Rows(rows)
     fixed = {row["filter"] for row in rows if row["arithmetic"] == "fixed" and "(" not in row["filter"]}  # with brackets: of one tuning
     for rule in expected:
         matched = {"double": set(), "fixed": set()}
@@ -118,7 +135,13 @@ def judge(rows, expected, partial=False, full_runs=VERDICT_RUNS, wanted=BANDED):
                 if rule["published"] and row.get("verdict"):
                     target = dict(row)
                     claims.setdefault(id(row), []).append(target)
-                faults += judge_row(target, rule, full_runs)
+                try:
+                    faults += judge_row(target, rule, full_runs, of_run)
+                    wide = too_wide(rule, target, of_run) if strict else None
+                except Fault as fault:  # a bound of another experiment, which a part may lack
+                    faults += [] if partial else [str(fault)]
+                    continue
+                faults += [f"{name_of(row)}: its band is {wide} wide ({rule['line']})"] if wide else []
                 matched[row["arithmetic"]].add(row["filter"])
         if partial:
             continue

@@ -29,12 +29,13 @@ const char *name_of(int kind)
     return names[kind];
 }
 
+// Of each start, over its steps.
 struct Facts {
-    double inside = 0.0; // shares of the samples
-    double pe_negative = 0.0;
-    double p_negative = 0.0;
-    double growth = 0.0;          // mean logarithm per step by which neighbours part
-    std::vector<double> variance; // per start, mean over the steps of the true one by R
+    std::vector<double> inside; // shares of the samples
+    std::vector<double> pe_negative;
+    std::vector<double> p_negative;
+    std::vector<double> growth;   // mean logarithm per step by which neighbours part
+    std::vector<double> variance; // mean of the true one by R
     int period = 0;               // of all starts; 0: not the same for all, or none to 64
 };
 
@@ -55,19 +56,27 @@ void follow(reference_schedule_t &f, int before, Facts &facts, bool first)
     for (int n = 0; n < before; n++) {
         reference_schedule_step(&f);
     }
-    constexpr double each = 1.0 / (static_cast<double>(starts) * paper_steps);
+    constexpr double each = 1.0 / paper_steps;
     std::vector<double> gains;
+    double inside = 0.0;
+    double pe_negative = 0.0;
+    double p_negative = 0.0;
+    double growth = 0.0;
     double variance = 0.0;
     for (int n = 0; n < paper_steps; n++) {
         reference_schedule_step(&f);
         reference_covariance_step(s, f.a1, f.b0, f.r);
         gains.push_back(f.b0);
-        variance += s[0] / paper_steps;
-        facts.inside += reference_printed_region(f.a1, f.b0) ? each : 0.0;
-        facts.pe_negative += f.pe < 0.0 ? each : 0.0;
-        facts.p_negative += f.p[0] < 0.0 ? each : 0.0;
-        facts.growth += f.stretch * each;
+        variance += s[0] * each;
+        inside += reference_printed_region(f.a1, f.b0) ? each : 0.0;
+        pe_negative += f.pe < 0.0 ? each : 0.0;
+        p_negative += f.p[0] < 0.0 ? each : 0.0;
+        growth += f.stretch * each;
     }
+    facts.inside.push_back(inside);
+    facts.pe_negative.push_back(pe_negative);
+    facts.p_negative.push_back(p_negative);
+    facts.growth.push_back(growth);
     facts.variance.push_back(variance);
     const int period = period_of(gains);
     facts.period = (first || facts.period == period) ? period : 0;
@@ -95,10 +104,14 @@ void fact_rows(const std::string &experiment, const std::string &name, const Fac
     const auto one = [&](const char *metric, double value) {
         row(experiment, name, Arithmetic::in_double, metric, value, 1);
     };
-    one("in_region", facts.inside);
-    one("pe_negative", facts.pe_negative);
-    one("p_negative", facts.p_negative);
-    one("growth", facts.growth);
+    const auto mean = [&](const char *metric, const std::vector<double> &of_starts) {
+        double sd = 0.0;
+        row(experiment, name, Arithmetic::in_double, metric, mean_of(of_starts, sd), 1);
+    };
+    mean("in_region", facts.inside);
+    mean("pe_negative", facts.pe_negative);
+    mean("p_negative", facts.p_negative);
+    mean("growth", facts.growth);
     one("true_variance_median", quantile(facts.variance, 0.5));
     one("true_variance_mean", total(facts.variance) / static_cast<double>(facts.variance.size()));
     one("period", facts.period);

@@ -13,12 +13,15 @@ namespace papers
 {
 namespace
 {
-// Drive of a model whose process noise has the power density q, by R and per sample: q T^n / R.
-double drive(const std::string &name, const Shipping &shipping, int power)
+// Drive of a model whose process noise has the power density q, by R and per sample: q T^n / R, with `factor` times the
+// R told; limited as two_state.h and kf3.h limit it.
+double drive(const std::string &name, const Shipping &shipping, int power, double factor, double limit)
 {
-    const double r_lsb2 = parameter_of(name, "r", shipping);
-    return parameter_of(name, "q", shipping) / (std::pow(shipping.rate_hz, power) * r_lsb2);
+    const double r_lsb2 = factor * parameter_of(name, "r", shipping);
+    return std::fmin(limit, parameter_of(name, "q", shipping) / (std::pow(shipping.rate_hz, power) * r_lsb2));
 }
+const double rate_drive_max = std::ldexp(static_cast<double>(TWO_STATE_Q22_MAX_UQ28), -28);
+constexpr double acceleration_drive_max = 1.0;
 
 // (8) of lrf: one R for both kinds of samples.
 double pooled(const Shipping &shipping)
@@ -75,13 +78,13 @@ double parameter_of(const std::string &name, const std::string &parameter, const
 std::optional<Maker> linear_twin(const std::string &name, const Shipping &shipping)
 {
     if (name == "kf") {
-        return steady_kalman(white_rate(drive(name, shipping, 3)));
+        return steady_kalman(white_rate(drive(name, shipping, 3, 1.0, rate_drive_max)));
     }
     if (name == "lrf") {
-        return steady_kalman(white_rate(drive(name, shipping, 3) / pooled(shipping)));
+        return steady_kalman(white_rate(drive(name, shipping, 3, pooled(shipping), rate_drive_max)));
     }
     if (name == "kf3") {
-        return steady_kalman(white_jerk_as_shipped(drive(name, shipping, 5)));
+        return steady_kalman(white_jerk_as_shipped(drive(name, shipping, 5, 1.0, acceleration_drive_max)));
     }
     if (name == "synth") {
         return synthesised(parameter_of(name, "a1", shipping), parameter_of(name, "b0", shipping));
