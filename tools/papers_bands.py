@@ -2,7 +2,7 @@
 import re
 
 REF = r"(?:@\w+|#\S+|[\w(][\w().:=-]*)"
-BOUND = re.compile(rf"(?:(-?\d+(?:\.\d+)?(?:e-?\d+)?)|(?:(\d+(?:\.\d+)?) x )?({REF}))$")
+BOUND = re.compile(rf"(?:(-?\d+(?:\.\d+)?(?:e-?\d+)?)|(?:(\d+(?:\.\d+)?) x )?({REF}))(?: \+ (\d) se)?$")
 PART = re.compile(r"(\d+(?:\.\d+)?(?:e-?\d+)?)( se| %)?$")
 BOUND_RULES = re.compile(r"reproduced (<=|>=) (.+); refuted (<=|>=) (.+)$")
 SE_MOST = 4  # of a thousand numbers one leaves four standard errors once in sixteen seeds
@@ -38,8 +38,14 @@ class Rows:
 
 
 def bound_value(text, row, rows, line):
-    number, factor, ref = BOUND.match(text).groups()
+    number, factor, ref, _ = BOUND.match(text).groups()
     return float(number) if number else float(factor or 1) * rows.find(row, ref, line)
+
+
+def allowance(text, row, few):
+    """What chance may put beyond a limit: `0.64 + 3 se` says it; of fewer runs than the page's it is four standard errors."""
+    errors = SE_MOST if few else int(BOUND.match(text)[4] or 0)
+    return errors * (standard_error(row) or 0)
 
 
 def standard_error(row):
@@ -62,13 +68,22 @@ def width_of(text, centre, row, line):
     return total
 
 
-def band_of(rule, row, rows):
-    """(low, high) of a rule for a row; None for what does not bind."""
+def limit_of(rule, row, rows):
+    """What a one-sided rule says, without what chance may put beyond it."""
+    return bound_value(rule["high"], row, rows, rule["line"]) if rule["high"] and not rule["high"].startswith("+-") else None
+
+
+def band_of(rule, row, rows, few=False):
+    """(low, high) of a rule for a row; None for what does not bind. few: fewer runs than the page's."""
     low = bound_value(rule["low"], row, rows, rule["line"]) if rule["low"] else None
     if rule["high"].startswith("+-"):
         width = width_of(rule["high"], low, row, rule["line"])
         return low - width, low + width
-    return low, bound_value(rule["high"], row, rows, rule["line"]) if rule["high"] else None
+    high = limit_of(rule, row, rows)
+    if None in (low, high):  # one limit
+        low = None if low is None else low - allowance(rule["low"], row, few)
+        high = None if high is None else high + allowance(rule["high"], row, few)
+    return low, high
 
 
 def verdict_by(rule, row, rows):

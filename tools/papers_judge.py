@@ -1,6 +1,6 @@
 """Judging of make papers: accepted bands and verdicts, read from host_tests/papers/expected_*.csv.
 
-A bound is a number, or `F x REF`: F times another number of the same run (papers_bands.py). A `high` of `+-4 se` or `+-0.1 %` (or a sum of
+A bound is a number, or `F x REF`: F times another number of the same run (papers_bands.py); `+ 3 se` after a limit allows for chance. A `high` of `+-4 se` or `+-0.1 %` (or a sum of
 such) is a width about `low`. A claim in words has in place of its verdict the limits that make it one:
 `reproduced <= BOUND; refuted >= BOUND`; between them it is not reproduced.
 """
@@ -9,7 +9,7 @@ import fnmatch
 import math
 import re
 
-from papers_bands import BOUND_RULES, Fault, Rows, band_of, faulty_cells, too_wide, verdict_by
+from papers_bands import BOUND_RULES, Fault, Rows, band_of, faulty_cells, limit_of, too_wide, verdict_by
 
 FIELDS = ["experiment", "filter", "arithmetic", "metric", "low", "high", "published", "verdict", "reason"]
 VERDICTS = ("", "reproduced", "not reproduced", "refuted", "not comparable")
@@ -86,8 +86,9 @@ def judge_row(row, rule, full_runs=VERDICT_RUNS, rows=None):
     """Sentences about what is wrong; the row gets its band and its verdict. full_runs: of the page, of which a verdict may hang; rows: of
     the same run, which bounds may name."""
     value, faults, rows = row["value"], [], rows or Rows([row])
-    low, high = band_of(rule, row, rows)
-    row["band"] = (low, high) if (low, high) != (None, None) else row.get("band")
+    low, high = band_of(rule, row, rows, 1 < row["runs"] < full_runs)
+    if (low, high) != (None, None):
+        row.update(band=(low, high), limit=limit_of(rule, row, rows))
     if math.isnan(value):
         faults.append(f"{name_of(row)} is not a number")
     if low is not None and value < low:

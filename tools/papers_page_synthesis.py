@@ -1,7 +1,7 @@
 """The tables of docs/papers.md for papers 000 and 001, written by make papers between their markers."""
 import fnmatch
 
-from papers_page import grid, pick, shown, table, verdicts
+from papers_page import grid, pick, shown, table, verdicts, with_interval
 
 TURNS = ("ramp30", "cos60", "minjerk60", "bump30", "sine30", "triangle30", "steps30")
 LEVELS = ("-0.3:0.1", "0:0.1", "0:0.3", "-0.1:0.3", "0.9:0.3")
@@ -11,6 +11,8 @@ SEARCHES = (("table1_smooth", "true error, smooth roll to 90 degrees"), ("table1
             ("table1_walk", "true error, Kalman filter without a rate allowed"), ("table1_residual", "residual g - x^ for the error"),
             ("table1_any_start", "true error, any error of the start"), ("table1_any_roll", "true error, any roll and start"),
             ("table1_residual_any_roll", "residual, any roll and start"))
+ADAPTIVE_TURNS = ("ramp30", "cos60", "bump30", "sine30")
+ADAPTIVE_KINDS = (("clean", "clean"), ("5_percent", "5 % with 20 times the noise"), ("15_percent", "15 %"), ("shift_20_sigma", "5 % shifted by 20 sigma to either side"))
 # experiments without chance: their tables are the same for every seed and number of runs
 CHANCE_FREE = {"000": ("schedule_*", "algorithm_22_*", "table1_*", "equal_noise*", "roll_tilt-*", "roll_through-*"), "001": ("altitude_kalman",)}
 
@@ -21,6 +23,54 @@ def windows(prefix="mse", names=("0_5", "6_10", "11_15")):
 
 def of(rows, *patterns):
     return [row for row in rows if any(fnmatch.fnmatchcase(row["experiment"], p) for p in patterns)]
+
+
+def limited(row):
+    """A number with the limit that it is held to beside it."""
+    bound = row.get("limit")
+    return shown(row["value"]) + (f" (<= {shown(bound)})" if bound is not None else "")
+
+
+def chosen_guard(rows):
+    """Its gate in sigmas as shipped."""
+    row = pick(rows, "adaptive_defaults", "adaptive", "fixed", "guard_sigma")
+    return row["value"] if row else None
+
+
+def adaptive_table(rows):
+    """A line for each kind of samples, without the guard and with the shipped one; a column for each roll."""
+    lines = []
+    for name, words, kinds in (("adaptive(guard=0)", "no guard", ADAPTIVE_KINDS[:1]),
+                               (f"adaptive(guard={chosen_guard(rows) or 0:g})", "guard as shipped", ADAPTIVE_KINDS)):
+        for kind, title in kinds:
+            cells = [[pick(rows, f"adaptive_{kind}_{turn}", name, "fixed", metric) for metric in windows(names=("2_5", "6_10", "11_15"))]
+                     for turn in ADAPTIVE_TURNS]
+            if all(row for found in cells for row in found):
+                lines.append([f"`{name}`", f"{words}, {title}", *(" / ".join(limited(row) for row in found) for found in cells)])
+    return table(["filter", "samples", *ADAPTIVE_TURNS], lines)
+
+
+def guard_table(rows):
+    """What the width of the gate trades: a line for each."""
+    chosen, lines = chosen_guard(rows), []
+    for name in dict.fromkeys(row["filter"] for row in of(rows, "adaptive_clean_sine30")):
+        at = lambda kind, turn, window: pick(rows, f"adaptive_{kind}_{turn}", name, "fixed", f"mse_{window}")["value"]
+        guard = float(name[len("adaptive(guard="):-1])
+        words = "none" if guard == 0 else f"{guard:g} sigma" + (", as shipped" if guard == chosen else "")
+        lines.append([f"`{name}`", words, *(shown(at(kind, "sine30", "6_10")) for kind, _ in ADAPTIVE_KINDS[:3]), shown(at("5_percent", "bump30", "6_10")),
+                      shown(max(at("5_percent", turn, "11_15") for turn in ADAPTIVE_TURNS[:3]))])
+    return table(["filter", "gate", "sine30, clean", "5 %", "15 %", "bump30, 5 %", "11-15 s, 5 %: worst of the other three"], lines)
+
+
+def identified_table(rows):
+    """R as adaptive has it after 10 s by the true one: mean and deviation of a run, each with its limits."""
+    lines = []
+    for experiment in dict.fromkeys(row["experiment"] for row in of(rows, "adaptive_r_*")):
+        mean, deviation = (pick(rows, experiment, "adaptive", "fixed", metric) for metric in ("r_by_true", "r_one_run_sd"))
+        low, high = mean.get("band") or (None, None)
+        lines.append(["`adaptive`", experiment[len("adaptive_r_"):].replace("_", " "), with_interval(mean),
+                      f"{shown(low)} to {shown(high)}" if low is not None else "", limited(deviation)])
+    return table(["filter", "case", "mean by the true one [95 %]", "issue", "deviation of one run, relative"], lines)
 
 
 def schedule_table(rows):
@@ -75,6 +125,9 @@ def tables_000(rows):
         (turn, f"roll_{turn}", windows("exact_mse")) for turn in TURNS if turn not in ("ramp30", "cos60", "bump30")])
     yield "Every shipped filter (R told, other parameters as shipped): mean square error in 2-5 / 6-10 / 11-15 s, degree^2", grid(
         rows, [(turn, f"filters_{turn}", windows(names=("2_5", "6_10", "11_15"))) for turn in TURNS])
+    yield "adaptive: mean square error in 2-5 / 6-10 / 11-15 s, degree^2, the limit beside", adaptive_table(rows)
+    yield "adaptive: what the width of its gate trades, mean square error in 6-10 s, degree^2", guard_table(rows)
+    yield "adaptive: R identified in 10 s from a start hundreds of times too small", identified_table(rows)
     yield from equal_noise_tables(rows)
     for stream in STREAMS:
         yield f"Roll on {stream}: rms error in degrees, filtered as an angle / unwrapped first / axes first", grid(rows, [

@@ -85,6 +85,18 @@ double identified_ratio(const Identified &what, const adaptive_config_t &config,
     return adaptive_r_lsb2_q8(&f) / (256.0 * r_deg2 * lsb_per_degree * lsb_per_degree);
 }
 
+// Standard deviation by the mean, with the 95 % interval that the fourth moment gives it.
+Interval relative_deviation(const std::vector<double> &values, const Interval &mean, double sd)
+{
+    double fourth = 0.0;
+    for (const double value : values) {
+        fourth += std::pow(value - mean.value, 4.0) / static_cast<double>(values.size());
+    }
+    const double spread = fourth - std::pow(sd, 4.0); // of a squared deviation
+    const double error = std::sqrt(std::fmax(0.0, spread) / static_cast<double>(values.size())) / (2.0 * sd);
+    return { sd / mean.value, (sd - 1.959964 * error) / mean.value, (sd + 1.959964 * error) / mean.value };
+}
+
 void identified_rows(const Identified &what, const Options &options)
 {
     adaptive_config_t config;
@@ -97,7 +109,8 @@ void identified_rows(const Identified &what, const Options &options)
     const Interval mean = mean_of(ratios, sd);
     const std::string experiment = std::string("adaptive_r_") + what.name;
     row(experiment, "adaptive", Arithmetic::fixed, "r_by_true", mean, runs_of(options));
-    row(experiment, "adaptive", Arithmetic::fixed, "r_one_run_sd", sd / mean.value, runs_of(options));
+    row(experiment, "adaptive", Arithmetic::fixed, "r_one_run_sd",
+        relative_deviation(ratios, mean, sd), runs_of(options));
 }
 } // namespace
 
