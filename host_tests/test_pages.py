@@ -3,6 +3,7 @@ list of what make proof does not prove."""
 import contextlib
 import io
 import pathlib
+import re
 import sys
 
 sys.path.insert(0, "tools")
@@ -13,6 +14,7 @@ import recordings
 from system_support import run_all, test
 
 OUT = pathlib.Path("build/pages-test")
+WRITTEN = [path for path in sorted(pathlib.Path("docs").glob("*.md")) if "<!-- written by " in path.read_text(encoding="utf-8")]
 COUNTS = "1000,20,1,0,30,0,900,0,0.5,0,0,0.0"
 
 
@@ -77,6 +79,22 @@ def a_changed_number_of_the_text_or_of_a_table_is_found():
     farthest = recordings.facts(text)["farthest sprf"]
     found = recordings.check(text.replace(f"; {farthest} |", "; 99999 |"))
     assert any("farthest sprf" in fault and "99999 in this run" in fault for fault in found), found
+
+
+@test
+def no_page_has_a_title_twice():
+    assert len(WRITTEN) >= 6, WRITTEN
+    for path in WRITTEN:
+        for part in re.findall(r"<!-- written by [^>]*begin -->\n(.*?)<!-- written by [^>]*end -->", path.read_text(encoding="utf-8"), re.S):
+            page.no_title_twice(path, part.splitlines())
+    # the twin: a doubled table is named and nothing is written
+    lines = ["### Roll", "", "| a | b |", "|---|---|", "| x | 1 |", "", "### Roll", "", "| a | b |", "|---|---|", "| x | 2 |"]
+    try:
+        page.Page(pathlib.Path("docs/any.md"), "<!--b-->", "<!--e-->").filled("<!--b--><!--e-->", lines, {})
+    except page.Fault as fault:
+        assert str(fault) == "docs/any.md: the title 'Roll' stands 2 times between the markers", fault
+    else:
+        raise AssertionError("a title twice was taken")
 
 
 @test

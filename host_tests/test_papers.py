@@ -129,8 +129,9 @@ def made(**changes):
 
 
 def rule(**changes):
-    return {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "low": None, "high": None,
-            "published": "", "verdict": "", "reason": "", "line": "expected:1", **changes}
+    made_so = {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "low": "", "high": "",
+               "published": "", "verdict": "", "reason": "", "line": "expected:1", **changes}
+    return {**made_so, "low": str(made_so["low"]), "high": str(made_so["high"])}
 
 
 @test

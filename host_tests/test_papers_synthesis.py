@@ -8,6 +8,7 @@ import sys
 
 sys.path.insert(0, "tools")
 import papers  # noqa: E402
+import papers_bands  # noqa: E402
 import papers_judge  # noqa: E402
 import papers_page  # noqa: E402
 import papers_page_synthesis as synthesis  # noqa: E402
@@ -128,7 +129,7 @@ def what_has_no_chance_in_it_is_as_on_the_page():
 @test
 def verdicts_hang_on_the_runs_of_the_page():
     made = {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "value": 35.0, "ci_lo": 34.0, "ci_hi": 36.0}
-    rule = {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "low": None, "high": None, "published": "30-40",
+    rule = {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "low": "", "high": "", "published": "30-40",
             "verdict": "refuted", "reason": "why", "line": "expected:1"}
     assert papers_judge.judge_row({**made, "runs": 4000}, rule, 4000) and not papers_judge.judge_row({**made, "runs": 4000}, rule, 10000)
     # a filter that ships and has no band is named; one of a stated tuning is not asked for
@@ -137,6 +138,122 @@ def verdicts_hang_on_the_runs_of_the_page():
     assert any("has no band" in fault for fault in faults), faults
     faults = papers_judge.judge([dict(row, filter="f(1)")], [dict(rule, arithmetic="fixed", filter="f*")], False, 4000, ("m",))
     assert not any("has no band" in fault for fault in faults), faults
+
+
+def ruled(**changes):
+    return {"experiment": "e", "filter": "f", "arithmetic": "fixed", "metric": "m", "low": "", "high": "", "published": "", "verdict": "",
+            "reason": "", "line": "expected:1", **changes}
+
+
+def measured(**changes):
+    return {"experiment": "e", "filter": "f", "arithmetic": "fixed", "metric": "m", "value": 1.0, "ci_lo": 0.99, "ci_hi": 1.01, "runs": 4000, **changes}
+
+
+@test
+def numbers_with_chance_keep_to_exact_values_and_standard_errors():
+    for paper, experiments in (("000", ("all_filters", "adaptive")), ("001", ("altitude", "altitude_shipped"))):
+        rows = [row for experiment in experiments for row in rows_of(paper, experiment)]
+        expected = papers_judge.read_expected(papers.PAPERS[paper][1])
+        faults = papers_judge.judge(rows, expected, True, papers.FULL_RUNS[paper])
+        assert faults == [], faults
+        # the twin: a number moved by nine standard errors leaves its band
+        held = [row for row in rows if row.get("ci_lo") is not None and None not in row.get("band", (None,))
+                and not row["experiment"].startswith("adaptive")]
+        assert len(held) > 50, len(held)
+        tight = [row for row in held if row["band"][1] - row["band"][0] < 9 * papers_bands.standard_error(row)]
+        assert len(tight) > 0.8 * len(held), (len(tight), len(held))
+        of_run = papers_bands.Rows(rows)
+        for row in tight[::7]:
+            off = dict(row, value=row["value"] + 9 * papers_bands.standard_error(row))
+            rules = [r for r in expected if papers_judge.fits(row, r)]
+            assert any(papers_judge.judge_row(dict(off), r, papers.FULL_RUNS[paper], of_run) for r in rules), papers_judge.name_of(row)
+
+
+@test
+def no_band_is_wider_than_its_reason_allows():
+    for paper in ("000", "001"):
+        expected = papers_judge.read_expected(papers.PAPERS[paper][1])
+        found = [f"{rule['line']}: {papers_bands.unreasoned(rule)}" for rule in expected if papers_bands.unreasoned(rule)]
+        assert found == [] and len(expected) > 40, found
+    # twins: each band says less than it takes
+    for rule, words in ((ruled(low="0.02", high="1.25"), "0.02 and 1.25"), (ruled(low="1", high="+-5 se"), "5 standard errors"),
+                        (ruled(low="1", high="+-2 %", reason="issue: 3 %"), "2 %"), (ruled(high="0.6", reason="issue: 0.64"), "0.6"),
+                        (ruled(high="1.5 x g", reason="issue: 1.25 times"), "1.5"), (ruled(low="1", high="+-0.006", reason="0.0006"), "0.006")):
+        assert words in (papers_bands.unreasoned(rule) or ""), (rule, papers_bands.unreasoned(rule))
+    # and of a number with chance more than four standard errors, here 0.0051
+    rows = papers_bands.Rows([measured()])
+    for rule, wide in ((ruled(low="0.97", high="1.03", reason="0.97 1.03"), True), (ruled(low="1", high="+-4 se"), False),
+                       (ruled(low="1", high="+-3 %", reason="3 %"), True), (ruled(low="1", high="+-3 %", reason="issue: 3 %"), False)):
+        assert bool(papers_bands.too_wide(rule, measured(), rows)) == wide, rule
+        faults = papers_judge.judge([measured()], [rule], True, 4000, ("m",))
+        assert any("standard errors wide" in fault for fault in faults) == wide, faults
+
+
+@test
+def bounds_may_be_other_numbers_of_the_run():
+    rows = [measured(value=1.2), measured(filter="g", value=1.0), measured(metric="exact_m", value=1.19, ci_lo=None, ci_hi=None, runs=1)]
+    for high, sound in (("1.25 x g", True), ("1.15 x g", False), ("1.1 x exact", True), ("1 x exact", False), ("1.1 x @exact_m", True)):
+        faults = papers_judge.judge(copy.deepcopy(rows), [ruled(high=high)], True, 4000)
+        assert (faults == []) == sound, (high, faults)
+    faults = papers_judge.judge(copy.deepcopy(rows), [ruled(high="1.25 x h")], False, 4000, ())
+    assert any("this run has no number for e, h (fixed), m" in fault for fault in faults), faults
+    # a limit that allows for chance, and one of fewer runs than the page's
+    near = measured(value=1.01)
+    for high, runs, sound in (("1", 4000, False), ("1 + 3 se", 4000, True), ("1", 400, True)):
+        assert (papers_judge.judge_row(dict(near, runs=runs), ruled(high=high), 4000) == []) == sound, (high, runs)
+    # guarded adaptive is held to what it has unguarded in the same run, whatever that is
+    rows = rows_of("000", "adaptive")
+    expected = papers_judge.read_expected(papers.PAPERS["000"][1])
+    for turn in ("ramp30", "cos60", "bump30"):
+        plain = value(rows, f"adaptive_clean_{turn}", "adaptive(guard=0)", "fixed", "mse_6_10")
+        for factor, sound in ((1.24, True), (1.40, False)):
+            changed = copy.deepcopy(rows)
+            row = next(r for r in changed if (r["experiment"], r["filter"], r["metric"]) == (f"adaptive_clean_{turn}", "adaptive(guard=3)", "mse_6_10"))
+            row["value"] = factor * plain
+            faults = [f for f in papers_judge.judge(changed, expected, True, 4000) if f.startswith(papers_judge.name_of(row))]
+            assert (faults == []) == sound, (turn, factor, faults)
+
+
+@test
+def claims_in_words_are_judged_by_the_number():
+    claim = ruled(published="half as good", verdict="reproduced <= 0.625; refuted >= 1", reason="why")
+    for number, verdict in ((0.5, "reproduced"), (0.8, "not reproduced"), (2.4, "refuted")):
+        rows = [measured(value=number)]
+        assert papers_judge.judge(rows, [claim], True) == [] and rows[0]["verdict"] == verdict, (number, rows)
+    # a word alone stays whatever is measured: refused
+    path = pathlib.Path("build/papers/claim.csv")
+    for verdict, words in (("refuted", "needs limits for its verdict"), ("reproduced <= soon enough; refuted >= 1", "is no bound")):
+        path.write_text(f"e,f,fixed,m,,,half as good,{verdict},why\n", encoding="utf-8")
+        try:
+            papers_judge.read_expected(path)
+        except papers_judge.Fault as fault:
+            assert words in str(fault) and ":1:" in str(fault), fault
+        else:
+            raise AssertionError(f"{verdict} was taken")
+    for paper in papers.PAPERS:
+        papers_judge.read_expected(papers.PAPERS[paper][1])
+
+
+@test
+def the_page_tells_of_adaptive_as_measured():
+    rows = rows_of("000", "adaptive")
+    papers_judge.judge(rows, papers_judge.read_expected(papers.PAPERS["000"][1]), True, 4000)
+    table, curve, noise = (make(rows) for make in (synthesis.adaptive_table, synthesis.guard_table, synthesis.identified_table))
+    assert sum(line.startswith("| `adaptive(guard=") for line in table) == 5, table
+    for turn, limit in (("ramp30", "0.280"), ("cos60", "0.440"), ("bump30", "0.500"), ("sine30", "0.640")):
+        plain = value(rows, f"adaptive_clean_{turn}", "adaptive(guard=0)", "fixed", "mse_6_10")
+        assert f" / {synthesis.shown(plain)} (<= {limit}) / " in table[2], (turn, table[2])
+    plain = value(rows, "adaptive_clean_ramp30", "adaptive(guard=0)", "fixed", "mse_6_10")
+    assert f"(<= {synthesis.shown(1.25 * plain)})" in table[3], table[3]
+    assert [line for line in curve if "as shipped" in line][0].startswith("| `adaptive(guard=3)` | 3 sigma, as shipped | "), curve
+    assert len(curve) == 8 + 3 and len(noise) == 5 + 3 and "0.970 to 1.03" in noise[2] and "(<= 0.270)" in noise[2], noise
+    # the twin: another gate as shipped is the one that is marked
+    next(r for r in rows if r["metric"] == "guard_sigma")["value"] = 4.0
+    assert [line for line in synthesis.guard_table(rows) if "as shipped" in line][0].startswith("| `adaptive(guard=4)` |")
+    # and the page has all three, under their titles
+    part = papers_page.between(papers_page.DOCUMENT.read_text(encoding="utf-8"), "000")[1]
+    headings = [heading for heading, _ in synthesis.tables_000(rows) if heading.startswith("adaptive: ")]
+    assert len(headings) == 3 and all(part.count(f"### {heading}\n") == 1 for heading in headings), headings
 
 
 @test

@@ -22,6 +22,7 @@ class Page:
         """The page's text with its tables and numbers put in."""
         if text.count(self.begin) != 1 or text.count(self.end) != 1:
             raise Fault(f"{self.document}: its markers are missing or doubled: '{self.begin}' and '{self.end}'")
+        no_title_twice(self.document, lines)
         head, rest = text.split(self.begin)
         tail = rest.split(self.end)[1]
 
@@ -85,6 +86,14 @@ class Page:
         written.write_text(digest(new), encoding="ascii")
         self.document.write_text(new, encoding="utf-8")
         return self.differences(before, new)
+
+
+def no_title_twice(document, lines):
+    """Refuses tables of one title: a number is known by the title that it stands under, so one of them would be lost."""
+    titles = [line.lstrip("# ") for line in "\n".join(lines).splitlines() if line.startswith("#")]
+    for title in titles:
+        if titles.count(title) > 1:
+            raise Fault(f"{document}: the title '{title}' stands {titles.count(title)} times between the markers")
 
 
 def digest(text):

@@ -15,6 +15,7 @@ import subprocess
 import sys
 import time
 
+import page
 from papers_judge import BANDED, VERDICT_RUNS, Fault, judge, read_expected
 from papers_page import write_page
 
@@ -150,7 +151,7 @@ def main():
             held = json.loads(JSON.read_text(encoding="utf-8")) if options.paper and JSON.exists() else []
             kept = [row for row in held if row["paper"] not in options.paper]
             JSON.write_text(json.dumps(sorted(kept + collected, key=lambda row: row["paper"]), indent=0) + "\n", encoding="utf-8")
-    except (Fault, OSError, subprocess.TimeoutExpired) as error:
+    except (Fault, page.Fault, OSError, subprocess.TimeoutExpired) as error:
         print(f"papers: {error}", file=sys.stderr)
         return 2
     for text in failures:

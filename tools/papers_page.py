@@ -2,6 +2,8 @@
 import math
 import pathlib
 
+from page import no_title_twice
+
 DOCUMENT = pathlib.Path("docs/papers.md")
 BEGIN, END = "<!-- written by make papers: begin -->", "<!-- written by make papers: end -->"
 STEPS = ("1..5", "5", "10", "20", "50", "100", "5..100")
@@ -156,7 +158,9 @@ def write_page(paper, rows, options):
     make = {"000": papers_page_synthesis.page_text_000, "001": papers_page_synthesis.page_text_001, "002": page_text}[paper]
     begin, end = markers(paper)
     before, _, after = between(DOCUMENT.read_text(encoding="utf-8"), paper)
-    DOCUMENT.write_text(f"{before}{begin}\n{make(rows, options)}\n{end}{after}", encoding="utf-8")
+    part = make(rows, options)
+    no_title_twice(DOCUMENT, part.splitlines())
+    DOCUMENT.write_text(f"{before}{begin}\n{part}\n{end}{after}", encoding="utf-8")
 
 
 CHANCE_FREE = ("covariance", "steady_gain", "table2", "operations")
