@@ -146,7 +146,8 @@ def ruled(**changes):
 
 
 def measured(**changes):
-    return {"experiment": "e", "filter": "f", "arithmetic": "fixed", "metric": "m", "value": 1.0, "ci_lo": 0.99, "ci_hi": 1.01, "runs": 4000, **changes}
+    return {"experiment": "e", "filter": "f", "arithmetic": "fixed", "metric": "m", "value": 1.0, "ci_lo": 0.99, "ci_hi": 1.01, "runs": 4000,
+            **changes}
 
 
 @test
@@ -208,7 +209,8 @@ def bounds_may_be_other_numbers_of_the_run():
         plain = value(rows, f"adaptive_clean_{turn}", "adaptive(guard=0)", "fixed", "mse_6_10")
         for factor, sound in ((1.24, True), (1.40, False)):
             changed = copy.deepcopy(rows)
-            row = next(r for r in changed if (r["experiment"], r["filter"], r["metric"]) == (f"adaptive_clean_{turn}", "adaptive(guard=3)", "mse_6_10"))
+            wanted = (f"adaptive_clean_{turn}", "adaptive(guard=3)", "mse_6_10")
+            row = next(r for r in changed if (r["experiment"], r["filter"], r["metric"]) == wanted)
             row["value"] = factor * plain
             faults = [f for f in papers_judge.judge(changed, expected, True, 4000) if f.startswith(papers_judge.name_of(row))]
             assert (faults == []) == sound, (turn, factor, faults)
@@ -268,6 +270,12 @@ def parts_of_the_page_are_found_by_their_markers():
                 assert begin in str(error)
             else:
                 raise AssertionError(f"{broken} was taken")
+    try:
+        papers_page.no_title_twice("a page", ["### Roll", "| 1 |", "### Roll", "| 2 |"])
+    except papers.page.Fault as fault:
+        assert "a page: the title 'Roll' stands 2 times" in str(fault)
+    else:
+        raise AssertionError("a title twice was taken")
     assert len({marker for paper in papers.PAPERS for marker in papers_page.markers(paper)}) == 6
 
 

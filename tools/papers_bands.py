@@ -80,7 +80,7 @@ def band_of(rule, row, rows, few=False):
         width = width_of(rule["high"], low, row, rule["line"])
         return low - width, low + width
     high = limit_of(rule, row, rows)
-    if None in (low, high):  # one limit
+    if None in (low, high) or few:  # one limit, or limits met by what is known less well
         low = None if low is None else low - allowance(rule["low"], row, few)
         high = None if high is None else high + allowance(rule["high"], row, few)
     return low, high

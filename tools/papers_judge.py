@@ -1,7 +1,8 @@
 """Judging of make papers: accepted bands and verdicts, read from host_tests/papers/expected_*.csv.
 
-A bound is a number, or `F x REF`: F times another number of the same run (papers_bands.py); `+ 3 se` after a limit allows for chance. A `high` of `+-4 se` or `+-0.1 %` (or a sum of
-such) is a width about `low`. A claim in words has in place of its verdict the limits that make it one:
+A bound is a number, or `F x REF`: F times another number of the same run (papers_bands.py); `+ 3 se` after a limit allows for chance. A
+`high` of `+-4 se` or `+-0.1 %` (or a sum of such) is a width about `low`. A claim in words has in place of its verdict the limits that make
+it one:
 `reproduced <= BOUND; refuted >= BOUND`; between them it is not reproduced.
 """
 import csv

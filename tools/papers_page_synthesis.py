@@ -12,7 +12,8 @@ SEARCHES = (("table1_smooth", "true error, smooth roll to 90 degrees"), ("table1
             ("table1_any_start", "true error, any error of the start"), ("table1_any_roll", "true error, any roll and start"),
             ("table1_residual_any_roll", "residual, any roll and start"))
 ADAPTIVE_TURNS = ("ramp30", "cos60", "bump30", "sine30")
-ADAPTIVE_KINDS = (("clean", "clean"), ("5_percent", "5 % with 20 times the noise"), ("15_percent", "15 %"), ("shift_20_sigma", "5 % shifted by 20 sigma to either side"))
+ADAPTIVE_KINDS = (("clean", "clean"), ("5_percent", "5 % with 20 times the noise"), ("15_percent", "15 %"),
+                  ("shift_20_sigma", "5 % shifted by 20 sigma to either side"))
 # experiments without chance: their tables are the same for every seed and number of runs
 CHANCE_FREE = {"000": ("schedule_*", "algorithm_22_*", "table1_*", "equal_noise*", "roll_tilt-*", "roll_through-*"), "001": ("altitude_kalman",)}
 
@@ -57,7 +58,8 @@ def guard_table(rows):
         at = lambda kind, turn, window: pick(rows, f"adaptive_{kind}_{turn}", name, "fixed", f"mse_{window}")["value"]
         guard = float(name[len("adaptive(guard="):-1])
         words = "none" if guard == 0 else f"{guard:g} sigma" + (", as shipped" if guard == chosen else "")
-        lines.append([f"`{name}`", words, *(shown(at(kind, "sine30", "6_10")) for kind, _ in ADAPTIVE_KINDS[:3]), shown(at("5_percent", "bump30", "6_10")),
+        lines.append([f"`{name}`", words, *(shown(at(kind, "sine30", "6_10")) for kind, _ in ADAPTIVE_KINDS[:3]),
+                      shown(at("5_percent", "bump30", "6_10")),
                       shown(max(at("5_percent", turn, "11_15") for turn in ADAPTIVE_TURNS[:3]))])
     return table(["filter", "gate", "sine30, clean", "5 %", "15 %", "bump30, 5 %", "11-15 s, 5 %: worst of the other three"], lines)
 

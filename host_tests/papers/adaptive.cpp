@@ -109,8 +109,8 @@ void identified_rows(const Identified &what, const Options &options)
     const Interval mean = mean_of(ratios, sd);
     const std::string experiment = std::string("adaptive_r_") + what.name;
     row(experiment, "adaptive", Arithmetic::fixed, "r_by_true", mean, runs_of(options));
-    row(experiment, "adaptive", Arithmetic::fixed, "r_one_run_sd",
-        relative_deviation(ratios, mean, sd), runs_of(options));
+    row(experiment, "adaptive", Arithmetic::fixed, "r_one_run_sd", relative_deviation(ratios, mean, sd),
+        runs_of(options));
 }
 } // namespace
 
