@@ -78,6 +78,7 @@ def band_of(rule, row, rows, few=False):
     low = bound_value(rule["low"], row, rows, rule["line"]) if rule["low"] else None
     if rule["high"].startswith("+-"):
         width = width_of(rule["high"], low, row, rule["line"])
+        width += allowance("0", row, few) if " se" not in rule["high"] else 0
         return low - width, low + width
     high = limit_of(rule, row, rows)
     if None in (low, high) or few:  # one limit, or limits met by what is known less well
