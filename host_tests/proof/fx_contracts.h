@@ -49,4 +49,29 @@ static fx_scaled_t rounded(uint32_t v, int8_t exponent);
 /*@ assigns \result \from v; */
 uint16_t fx_isqrt32(uint32_t v);
 
+/*
+ * What is left lies between 0 and v: told by powers of 2, because intervals keep no relation to v, and by 18432 LSB, the
+ * bound of what synth_plus brings.
+ */
+#define BELOW(power) (-(power) < v < (power) ==> -(power) < \result < (power))
+/*@ requires part_uq8 <= 128;
+    assigns \result \from v, part_uq8;
+    ensures v >= 0 ==> \result >= 0;
+    ensures v <= 0 ==> \result <= 0;
+    ensures BELOW(0x10) && BELOW(0x100) && BELOW(0x1000) && BELOW(0x10000) && BELOW(0x100000) && BELOW(0x1000000) &&
+            BELOW(0x10000000);
+    ensures -18432 * 65536 <= v <= 18432 * 65536 ==> -18432 * 65536 <= \result <= 18432 * 65536;
+*/
+static inline int32_t fx_without_part(int32_t v, uint8_t part_uq8);
+
+/*@ requires 1 <= limit <= 127;
+    assigns \result \from v, limit;
+    ensures -16777216 * limit <= \result <= 16777216 * limit;
+    ensures v >= 0 ==> \result >= 0;
+    ensures v <= 0 ==> \result <= 0;
+    ensures v > 16777216 * limit ==> \result == 16777216 * limit;
+    ensures v < -16777216 * limit ==> \result == -16777216 * limit;
+*/
+static inline int32_t fx_clamp_high(int32_t v, uint8_t limit);
+
 #endif

@@ -95,6 +95,47 @@ void proof_fx_products(void)
     (void)fx_sixteenth(any);
 }
 
+static void without_part_between(int32_t from, int32_t to, uint8_t part_uq8)
+{
+    (void)fx_without_part(ANY_S32(from, to), part_uq8);
+    (void)fx_without_part(ANY_S32(-to, -from), part_uq8);
+}
+
+/* One call for each part that is taken, each sign and each position of the leading bit, 18432 LSB apart. */
+void proof_fx_without_part(void)
+{
+    for (uint8_t k = 0; k < 8; k++) {
+        uint8_t part_uq8 = (uint8_t)(0x80U >> k);
+        for (uint8_t bit = 0; bit < 30; bit++) {
+            int32_t from = (int32_t)((uint32_t)1U << bit);
+            without_part_between(from, from + (from - 1), part_uq8);
+        }
+        without_part_between(0x40000000, 18432L * 65536, part_uq8);
+        without_part_between(18432L * 65536 + 1, INT32_MAX, part_uq8);
+        without_part_between(0, 0, part_uq8);
+        (void)fx_without_part(S32_MIN, part_uq8);
+    }
+    int32_t whole = fx_without_part(INT32_MAX, 0);
+    int32_t least = fx_without_part(S32_MIN, 0);
+    //@ check nothing_taken: whole == 2147483647 && least == -2147483648;
+}
+
+/* Below, within and above each limit. */
+void proof_fx_clamp_high(void)
+{
+    for (uint8_t limit = 1; limit < 128; limit++) {
+        int32_t end = (int32_t)limit * 16777216;
+        (void)fx_clamp_high(ANY_S32(S32_MIN, -end - 1), limit);
+        (void)fx_clamp_high(ANY_S32(-end, -1), limit);
+        (void)fx_clamp_high(0, limit);
+        (void)fx_clamp_high(ANY_S32(1, end), limit);
+        (void)fx_clamp_high(ANY_S32(end + 1, INT32_MAX), limit);
+        int32_t least = fx_clamp_high(-end, limit);
+        int32_t most = fx_clamp_high(end - 1, limit);
+        //@ check kept: least == -end && most == end - 1;
+    }
+}
+
 void proof_fx_rest(void)
 {
     uint32_t size = fx_abs32(ANY_S32(S32_MIN, INT32_MAX));

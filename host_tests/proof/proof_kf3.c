@@ -178,31 +178,26 @@ void proof_take(void)
     take(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
 }
 
-static void init_with(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s5)
-{
-    kf3_t f;
-    kf3_config_t config = { rate_dhz, r_lsb2_q8, q_lsb2_s5 };
-    (void)kf3_init(&f, &config);
-}
-
 /*
- * Uses: fx_normalise, rounded.
- * All legal configurations, then all with one parameter below or above.
+ * Uses: fx_normalise, rounded. All legal configurations, coarse and fine, then all with one parameter below or above.
  */
 void proof_kf3_init(void)
 {
-    uint16_t rate_dhz = ANY_U16(0, UINT16_MAX);
-    uint32_t r_lsb2_q8 = ANY_U32(0, UINT32_MAX);
-    uint32_t q_lsb2_s5 = ANY_U32(0, UINT32_MAX);
-    init_with(ANY_U16(50, 999), ANY_U32(3, 256000), ANY_U32(1, 1000000000));
-    init_with(ANY_U16(1000, 40000), ANY_U32(3, 256000), ANY_U32(1, 1000000000));
-    init_with(ANY_U16(0, 49), r_lsb2_q8, q_lsb2_s5);
-    init_with(ANY_U16(40001, UINT16_MAX), r_lsb2_q8, q_lsb2_s5);
-    init_with(rate_dhz, ANY_U32(0, 2), q_lsb2_s5);
-    init_with(rate_dhz, ANY_U32(256001, UINT32_MAX), q_lsb2_s5);
-    init_with(rate_dhz, r_lsb2_q8, 0);
-    init_with(rate_dhz, r_lsb2_q8, ANY_U32(1000000001, UINT32_MAX));
+    kf3_t f;
     kf3_config_t config;
+    for (uint8_t number = 0; number < CASES(3); number++) {
+        config.rate_dhz = any_u16(part_of(number, 0), 50, KF3_FINE_FROM_DHZ - 1U);
+        config.r_lsb2_q8 = any_u32(part_of(number, 1), 3, 256000, UINT32_MAX);
+        config.q_lsb2_s5 = any_u32(part_of(number, 2), 1, 1000000000, UINT32_MAX);
+        if (number == 2U) {
+            config.rate_dhz = ANY_U16(40001, UINT16_MAX);
+        }
+        (void)kf3_init(&f, &config);
+        if (number == 0U) {
+            config.rate_dhz = ANY_U16(KF3_FINE_FROM_DHZ, 40000);
+            (void)kf3_init(&f, &config);
+        }
+    }
     kf3_defaults(&config, ANY_U16(50, 40000));
 }
 

@@ -33,52 +33,23 @@ static void any_gate(sprf_t *f)
     any_run(&f->again);
 }
 
-static void init_with(const sprf_config_t *core, uint16_t gate_sigma_q8, uint16_t reacquire_samples, uint32_t rate_max)
-{
-    sprf_t f;
-    sprf_config_t config = *core;
-    config.gate_sigma_q8 = gate_sigma_q8;
-    config.reacquire_samples = reacquire_samples;
-    config.rate_max_lsb_s = rate_max;
-    (void)sprf_init(&f, &config);
-}
-
-static void init_gates(const sprf_config_t *core)
-{
-    uint16_t gate = ANY_U16(0, UINT16_MAX);
-    uint16_t reacquire = ANY_U16(0, UINT16_MAX);
-    uint32_t rate_max = ANY_U32(0, UINT32_MAX);
-    init_with(core, ANY_U16(0, 4096), ANY_U16(0, 9), ANY_U32(10, 1000000));
-    init_with(core, ANY_U16(4097, UINT16_MAX), reacquire, rate_max);
-    init_with(core, gate, ANY_U16(10, UINT16_MAX), rate_max);
-    init_with(core, gate, reacquire, ANY_U32(0, 9));
-    init_with(core, gate, reacquire, ANY_U32(1000001, UINT32_MAX));
-}
-
-static void init_core(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3)
-{
-    sprf_config_t core = { rate_dhz, r_lsb2_q8, q_lsb2_s3, 0, 0, 0 };
-    init_gates(&core);
-}
-
 /*
  * Uses: fx_normalise, rounded, two_state_set_noise, two_state_set_gate, fx_isqrt32. A box that holds all legal
- * configurations,
- * then all with one parameter below or above it.
+ * configurations, then all with one parameter below or above it.
  */
 void proof_sprf_init(void)
 {
-    uint16_t rate_dhz = ANY_U16(0, UINT16_MAX);
-    uint32_t r_lsb2_q8 = ANY_U32(0, UINT32_MAX);
-    uint32_t q_lsb2_s3 = ANY_U32(0, UINT32_MAX);
-    init_core(ANY_U16(50, 40000), ANY_U32(3, 256000), ANY_U32(1, 1000000000));
-    init_core(ANY_U16(0, 49), r_lsb2_q8, q_lsb2_s3);
-    init_core(ANY_U16(40001, UINT16_MAX), r_lsb2_q8, q_lsb2_s3);
-    init_core(rate_dhz, ANY_U32(0, 2), q_lsb2_s3);
-    init_core(rate_dhz, ANY_U32(256001, UINT32_MAX), q_lsb2_s3);
-    init_core(rate_dhz, r_lsb2_q8, 0);
-    init_core(rate_dhz, r_lsb2_q8, ANY_U32(1000000001, UINT32_MAX));
+    sprf_t f;
     sprf_config_t config;
+    for (uint8_t number = 0; number < CASES(6); number++) {
+        config.rate_dhz = any_u16(part_of(number, 0), 50, 40000);
+        config.r_lsb2_q8 = any_u32(part_of(number, 1), 3, 256000, UINT32_MAX);
+        config.q_lsb2_s3 = any_u32(part_of(number, 2), 1, 1000000000, UINT32_MAX);
+        config.gate_sigma_q8 = any_u16(part_of(number, 3), 0, 4096);
+        config.reacquire_samples = any_u16(part_of(number, 4), 0, 9);
+        config.rate_max_lsb_s = any_u32(part_of(number, 5), 10, 1000000, UINT32_MAX);
+        (void)sprf_init(&f, &config);
+    }
     sprf_defaults(&config, ANY_U16(50, 40000));
 }
 

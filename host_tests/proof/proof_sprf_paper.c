@@ -18,30 +18,18 @@ int32_t sprf_paper_coast(sprf_paper_t *f);
 
 #include "sprf_paper.c"
 
-static void init_with(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3, uint16_t gate_sigma_q8)
-{
-    sprf_paper_t f;
-    sprf_paper_config_t config = { rate_dhz, r_lsb2_q8, q_lsb2_s3, gate_sigma_q8 };
-    (void)sprf_paper_init(&f, &config);
-}
-
 /* Uses: fx_normalise, rounded, two_state_wide_set_noise. All legal configurations, then all with one outside. */
 void proof_sprf_paper_init(void)
 {
-    uint16_t rate_dhz = ANY_U16(0, UINT16_MAX);
-    uint32_t r_lsb2_q8 = ANY_U32(0, UINT32_MAX);
-    uint32_t q_lsb2_s3 = ANY_U32(0, UINT32_MAX);
-    uint16_t gate = ANY_U16(0, UINT16_MAX);
-    init_with(ANY_U16(50, 40000), ANY_U32(3, 256000), ANY_U32(1, 1000000000), ANY_U16(256, 4096));
-    init_with(ANY_U16(0, 49), r_lsb2_q8, q_lsb2_s3, gate);
-    init_with(ANY_U16(40001, UINT16_MAX), r_lsb2_q8, q_lsb2_s3, gate);
-    init_with(rate_dhz, ANY_U32(0, 2), q_lsb2_s3, gate);
-    init_with(rate_dhz, ANY_U32(256001, UINT32_MAX), q_lsb2_s3, gate);
-    init_with(rate_dhz, r_lsb2_q8, 0, gate);
-    init_with(rate_dhz, r_lsb2_q8, ANY_U32(1000000001, UINT32_MAX), gate);
-    init_with(rate_dhz, r_lsb2_q8, q_lsb2_s3, ANY_U16(0, 255));
-    init_with(rate_dhz, r_lsb2_q8, q_lsb2_s3, ANY_U16(4097, UINT16_MAX));
+    sprf_paper_t f;
     sprf_paper_config_t config;
+    for (uint8_t number = 0; number < CASES(4); number++) {
+        config.rate_dhz = any_u16(part_of(number, 0), 50, 40000);
+        config.r_lsb2_q8 = any_u32(part_of(number, 1), 3, 256000, UINT32_MAX);
+        config.q_lsb2_s3 = any_u32(part_of(number, 2), 1, 1000000000, UINT32_MAX);
+        config.gate_sigma_q8 = any_u16(part_of(number, 3), 256, 4096);
+        (void)sprf_paper_init(&f, &config);
+    }
     sprf_paper_defaults(&config, ANY_U16(50, 40000));
 }
 

@@ -33,22 +33,10 @@ static void any_common(synth_t *f)
     f->a1_negative = ANY_BOOL();
 }
 
-static void any_start(synth_t *f, uint8_t from_collected, uint8_t to_collected)
+static void any_state(synth_t *f, uint8_t kind)
 {
     any_common(f);
-    any_core_start(&f->core, from_collected, to_collected);
-}
-
-static void any_run(synth_t *f, uint8_t from_collected, uint8_t to_collected)
-{
-    any_common(f);
-    any_core_run(&f->core, from_collected, to_collected);
-}
-
-static void any_later_run(synth_t *f, uint8_t from_collected, uint8_t to_collected)
-{
-    any_common(f);
-    any_core_later(&f->core, from_collected, to_collected);
+    any_core_of_kind(&f->core, kind, 63);
 }
 
 void proof_limit_x(void)
@@ -74,29 +62,18 @@ void proof_fit_line(void)
     }
 }
 
-static void init_with(uint16_t rate_dhz, uint16_t b0_uq16, int32_t a1_q16, uint32_t r_lsb2_q8)
-{
-    synth_t f;
-    synth_config_t config = { rate_dhz, b0_uq16, a1_q16, r_lsb2_q8 };
-    (void)synth_init(&f, &config);
-}
-
 /* Uses: fx_isqrt32. A box that holds all legal configurations, then all with one parameter below or above it. */
 void proof_synth_init(void)
 {
-    uint16_t rate_dhz = ANY_U16(0, UINT16_MAX);
-    uint16_t b0_uq16 = ANY_U16(0, UINT16_MAX);
-    int32_t a1_q16 = ANY_S32(S32_MIN, INT32_MAX);
-    uint32_t r_lsb2_q8 = ANY_U32(0, UINT32_MAX);
-    init_with(ANY_U16(50, 40000), ANY_U16(656, UINT16_MAX), ANY_S32(-65535, 65535), ANY_U32(3, 256000));
-    init_with(ANY_U16(0, 49), b0_uq16, a1_q16, r_lsb2_q8);
-    init_with(ANY_U16(40001, UINT16_MAX), b0_uq16, a1_q16, r_lsb2_q8);
-    init_with(rate_dhz, ANY_U16(0, 655), a1_q16, r_lsb2_q8);
-    init_with(rate_dhz, b0_uq16, ANY_S32(S32_MIN, -65536), r_lsb2_q8);
-    init_with(rate_dhz, b0_uq16, ANY_S32(65536, INT32_MAX), r_lsb2_q8);
-    init_with(rate_dhz, b0_uq16, a1_q16, ANY_U32(0, 2));
-    init_with(rate_dhz, b0_uq16, a1_q16, ANY_U32(256001, UINT32_MAX));
+    synth_t f;
     synth_config_t config;
+    for (uint8_t number = 0; number < CASES(4); number++) {
+        config.rate_dhz = any_u16(part_of(number, 0), 50, 40000);
+        config.b0_uq16 = any_u16(part_of(number, 1), 656, UINT16_MAX);
+        config.a1_q16 = any_s32(part_of(number, 2), -65535, 65535);
+        config.r_lsb2_q8 = any_u32(part_of(number, 3), 3, 256000, UINT32_MAX);
+        (void)synth_init(&f, &config);
+    }
     synth_defaults(&config, ANY_U16(50, 40000));
     synth_paper(&config, ANY_U16(50, 40000));
 }
@@ -104,28 +81,20 @@ void proof_synth_init(void)
 /* Uses: fx_isqrt32 */
 void proof_synth_set_noise(void)
 {
-    synth_t f;
-    any_start(&f, 0, 4);
-    synth_set_noise(&f, ANY_U32(0, UINT32_MAX));
-    any_run(&f, 5, 63);
-    synth_set_noise(&f, ANY_U32(0, UINT32_MAX));
-    any_later_run(&f, 5, 63);
-    synth_set_noise(&f, ANY_U32(0, UINT32_MAX));
-    any_later_run(&f, 255, 255);
-    synth_set_noise(&f, ANY_U32(0, UINT32_MAX));
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_t f;
+        any_state(&f, kind);
+        synth_set_noise(&f, ANY_U32(0, UINT32_MAX));
+    }
 }
 
 void proof_synth_reset(void)
 {
-    synth_t f;
-    any_start(&f, 0, 4);
-    synth_reset(&f, ANY_Z());
-    any_run(&f, 5, 63);
-    synth_reset(&f, ANY_Z());
-    any_later_run(&f, 5, 63);
-    synth_reset(&f, ANY_Z());
-    any_later_run(&f, 255, 255);
-    synth_reset(&f, ANY_Z());
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_t f;
+        any_state(&f, kind);
+        synth_reset(&f, ANY_Z());
+    }
 }
 
 /*
@@ -134,31 +103,21 @@ void proof_synth_reset(void)
  */
 void proof_synth_update(void)
 {
-    synth_t f;
-    any_start(&f, 0, 3);
-    (void)synth_update(&f, ANY_Z());
-    any_start(&f, 4, 4);
-    (void)synth_update(&f, ANY_Z());
-    any_run(&f, 5, 63);
-    (void)synth_update(&f, ANY_Z());
-    any_later_run(&f, 5, 63);
-    (void)synth_update(&f, ANY_Z());
-    any_later_run(&f, 255, 255);
-    (void)synth_update(&f, ANY_Z());
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_t f;
+        any_state(&f, kind);
+        (void)synth_update(&f, ANY_Z());
+    }
 }
 
 /* Uses: limit_x */
 void proof_synth_coast(void)
 {
-    synth_t f;
-    any_start(&f, 0, 4);
-    (void)synth_coast(&f);
-    any_run(&f, 5, 63);
-    (void)synth_coast(&f);
-    any_later_run(&f, 5, 63);
-    (void)synth_coast(&f);
-    any_later_run(&f, 255, 255);
-    (void)synth_coast(&f);
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_t f;
+        any_state(&f, kind);
+        (void)synth_coast(&f);
+    }
 }
 
 /* Uses: fx_normalise, rounded. Any gain and extrapolation within its range, stable or not. */
@@ -170,15 +129,11 @@ void proof_synth_noise_gain_uq16(void)
 /* Uses: fx_normalise, rounded */
 void proof_synth_probe(void)
 {
-    synth_t f;
     filter_probe_t probe;
-    any_start(&f, 0, 4);
-    synth_probe(&f, &probe);
-    any_run(&f, 5, 63);
-    synth_probe(&f, &probe);
-    any_later_run(&f, 5, 63);
-    synth_probe(&f, &probe);
-    any_later_run(&f, 255, 255);
-    synth_probe(&f, &probe);
-    (void)synth_flags(&f);
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_t f;
+        any_state(&f, kind);
+        synth_probe(&f, &probe);
+        (void)synth_flags(&f);
+    }
 }

@@ -32,118 +32,73 @@ static void any_common(synth_opt_t *f)
     f->variant_u = ANY_BOOL();
 }
 
-static void any_start(synth_opt_t *f, uint8_t from_collected, uint8_t to_collected)
+static void any_state(synth_opt_t *f, uint8_t kind)
 {
     any_common(f);
-    any_core_start(&f->core, from_collected, to_collected);
-}
-
-static void any_run(synth_opt_t *f, uint8_t from_collected, uint8_t to_collected)
-{
-    any_common(f);
-    any_core_run(&f->core, from_collected, to_collected);
-}
-
-static void any_later_run(synth_opt_t *f, uint8_t from_collected, uint8_t to_collected)
-{
-    any_common(f);
-    any_core_later(&f->core, from_collected, to_collected);
-}
-
-static void init_with(uint16_t rate_dhz, uint16_t variant_u, uint32_t p0_lsb2_q8, uint32_t r_lsb2_q8)
-{
-    synth_opt_t f;
-    synth_opt_config_t config = { rate_dhz, variant_u, p0_lsb2_q8, r_lsb2_q8 };
-    (void)synth_opt_init(&f, &config);
+    any_core_of_kind(&f->core, kind, 16);
 }
 
 /* A box that holds all legal configurations, then all with one parameter below or above it. */
 void proof_synth_opt_init(void)
 {
-    uint16_t rate_dhz = ANY_U16(0, UINT16_MAX);
-    uint16_t variant_u = ANY_U16(0, UINT16_MAX);
-    uint32_t p0_lsb2_q8 = ANY_U32(0, UINT32_MAX);
-    uint32_t r_lsb2_q8 = ANY_U32(0, UINT32_MAX);
-    init_with(ANY_U16(50, 40000), ANY_U16(0, 1), ANY_U32(3, 25600000), ANY_U32(3, 256000));
-    init_with(ANY_U16(0, 49), variant_u, p0_lsb2_q8, r_lsb2_q8);
-    init_with(ANY_U16(40001, UINT16_MAX), variant_u, p0_lsb2_q8, r_lsb2_q8);
-    init_with(rate_dhz, ANY_U16(2, UINT16_MAX), p0_lsb2_q8, r_lsb2_q8);
-    init_with(rate_dhz, variant_u, ANY_U32(0, 2), r_lsb2_q8);
-    init_with(rate_dhz, variant_u, ANY_U32(25600001, UINT32_MAX), r_lsb2_q8);
-    init_with(rate_dhz, variant_u, p0_lsb2_q8, ANY_U32(0, 2));
-    init_with(rate_dhz, variant_u, p0_lsb2_q8, ANY_U32(256001, UINT32_MAX));
+    synth_opt_t f;
     synth_opt_config_t config;
+    for (uint8_t number = 0; number < CASES(4); number++) {
+        config.rate_dhz = any_u16(part_of(number, 0), 50, 40000);
+        config.variant_u = any_u16(part_of(number, 1), 0, 1);
+        config.p0_lsb2_q8 = any_u32(part_of(number, 2), 3, 25600000, UINT32_MAX);
+        config.r_lsb2_q8 = any_u32(part_of(number, 3), 3, 256000, UINT32_MAX);
+        (void)synth_opt_init(&f, &config);
+    }
     synth_opt_defaults(&config, ANY_U16(50, 40000));
 }
 
 void proof_synth_opt_set_noise(void)
 {
-    synth_opt_t f;
-    any_start(&f, 0, 4);
-    synth_opt_set_noise(&f, ANY_U32(0, UINT32_MAX));
-    any_run(&f, 5, 16);
-    synth_opt_set_noise(&f, ANY_U32(0, UINT32_MAX));
-    any_later_run(&f, 5, 16);
-    synth_opt_set_noise(&f, ANY_U32(0, UINT32_MAX));
-    any_later_run(&f, 255, 255);
-    synth_opt_set_noise(&f, ANY_U32(0, UINT32_MAX));
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_opt_t f;
+        any_state(&f, kind);
+        synth_opt_set_noise(&f, ANY_U32(0, UINT32_MAX));
+    }
 }
 
 void proof_synth_opt_reset(void)
 {
-    synth_opt_t f;
-    any_start(&f, 0, 4);
-    synth_opt_reset(&f, ANY_Z());
-    any_run(&f, 5, 16);
-    synth_opt_reset(&f, ANY_Z());
-    any_later_run(&f, 5, 16);
-    synth_opt_reset(&f, ANY_Z());
-    any_later_run(&f, 255, 255);
-    synth_opt_reset(&f, ANY_Z());
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_opt_t f;
+        any_state(&f, kind);
+        synth_opt_reset(&f, ANY_Z());
+    }
 }
 
 /* Uses: limit_x. Options: -eva-split-return-function synth_extrapolate:full,move_on:full,synth_opt_step:full */
 void proof_synth_opt_update(void)
 {
-    synth_opt_t f;
-    any_start(&f, 0, 3);
-    (void)synth_opt_update(&f, ANY_Z());
-    any_start(&f, 4, 4);
-    (void)synth_opt_update(&f, ANY_Z());
-    any_run(&f, 5, 16);
-    (void)synth_opt_update(&f, ANY_Z());
-    any_later_run(&f, 5, 16);
-    (void)synth_opt_update(&f, ANY_Z());
-    any_later_run(&f, 255, 255);
-    (void)synth_opt_update(&f, ANY_Z());
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_opt_t f;
+        any_state(&f, kind);
+        (void)synth_opt_update(&f, ANY_Z());
+    }
 }
 
 /* Uses: limit_x */
 void proof_synth_opt_coast(void)
 {
-    synth_opt_t f;
-    any_start(&f, 0, 4);
-    (void)synth_opt_coast(&f);
-    any_run(&f, 5, 16);
-    (void)synth_opt_coast(&f);
-    any_later_run(&f, 5, 16);
-    (void)synth_opt_coast(&f);
-    any_later_run(&f, 255, 255);
-    (void)synth_opt_coast(&f);
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_opt_t f;
+        any_state(&f, kind);
+        (void)synth_opt_coast(&f);
+    }
 }
 
 /* Uses: fx_normalise, rounded */
 void proof_synth_opt_probe(void)
 {
-    synth_opt_t f;
     filter_probe_t probe;
-    any_start(&f, 0, 4);
-    synth_opt_probe(&f, &probe);
-    any_run(&f, 5, 16);
-    synth_opt_probe(&f, &probe);
-    any_later_run(&f, 5, 16);
-    synth_opt_probe(&f, &probe);
-    any_later_run(&f, 255, 255);
-    synth_opt_probe(&f, &probe);
-    (void)synth_opt_flags(&f);
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_opt_t f;
+        any_state(&f, kind);
+        synth_opt_probe(&f, &probe);
+        (void)synth_opt_flags(&f);
+    }
 }

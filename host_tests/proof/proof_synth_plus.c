@@ -7,7 +7,7 @@
 
 /* All but what synth_plus_set_noise sets, because synth_plus_init calls it. */
 #define BUT_NOISE(f)                                                                           \
-    (656 <= (f)->b0_uq16 && (f)->k <= 8 && -MEMORY_Q16 <= (f)->memory_lsb_q16 <= MEMORY_Q16 && \
+    (656 <= (f)->b0_uq16 && (f)->k <= 8 && (f)->rest_uq8 <= 128 && -MEMORY_Q16 <= (f)->memory_lsb_q16 <= MEMORY_Q16 && \
      (f)->spread.motion_lsb <= 320 && CORE_BUT_NOISE(&(f)->core, 31))
 #define BOUND(f) (BUT_NOISE(f) && SPREAD(&(f)->spread) && CORE(&(f)->core, 31))
 
@@ -42,140 +42,78 @@ static void any_common(synth_plus_t *f)
     f->rest_uq8 = ANY_U8(0, 128);
 }
 
-static void any_start(synth_plus_t *f, uint8_t from_collected, uint8_t to_collected)
+static void any_state(synth_plus_t *f, uint8_t kind)
 {
     any_common(f);
-    any_core_start(&f->core, from_collected, to_collected);
+    any_core_of_kind(&f->core, kind, 31);
 }
 
-static void any_run(synth_plus_t *f, uint8_t from_collected, uint8_t to_collected)
-{
-    any_common(f);
-    any_core_run(&f->core, from_collected, to_collected);
-}
-
-static void any_later_run(synth_plus_t *f, uint8_t from_collected, uint8_t to_collected)
-{
-    any_common(f);
-    any_core_later(&f->core, from_collected, to_collected);
-}
-
-static void init_with(synth_plus_config_t config)
-{
-    synth_plus_t f;
-    (void)synth_plus_init(&f, &config);
-}
-
-static synth_plus_config_t any_config(void)
-{
-    synth_plus_config_t config;
-    config.rate_dhz = ANY_U16(0, UINT16_MAX);
-    config.b0_uq16 = ANY_U16(0, UINT16_MAX);
-    config.k = ANY_U16(0, UINT16_MAX);
-    config.b1_q16 = ANY_S32(S32_MIN, INT32_MAX);
-    config.b2_q16 = ANY_S32(S32_MIN, INT32_MAX);
-    config.r_lsb2_q8 = ANY_U32(0, UINT32_MAX);
-    return config;
-}
-
-/* Uses: fx_isqrt32. A box that holds all legal configurations, then all with one parameter below or above it. */
+/*
+ * Uses: fx_isqrt32. A box that holds all legal configurations, by the part of k that is kept for a sample, then all with
+ * one parameter below or above it.
+ */
 void proof_synth_plus_init(void)
 {
-    synth_plus_config_t legal;
-    legal.rate_dhz = ANY_U16(50, 40000);
-    legal.b0_uq16 = ANY_U16(656, UINT16_MAX);
-    legal.k = ANY_U16(0, 8);
-    legal.b1_q16 = ANY_S32(-65535, 65535);
-    legal.b2_q16 = ANY_S32(-65535, 65535);
-    legal.r_lsb2_q8 = ANY_U32(3, 256000);
-    init_with(legal);
-    synth_plus_config_t config = any_config();
-    config.rate_dhz = ANY_U16(0, 49);
-    init_with(config);
-    config.rate_dhz = ANY_U16(40001, UINT16_MAX);
-    init_with(config);
-    config = any_config();
-    config.b0_uq16 = ANY_U16(0, 655);
-    init_with(config);
-    config = any_config();
-    config.k = ANY_U16(9, UINT16_MAX);
-    init_with(config);
-    config = any_config();
-    config.b1_q16 = ANY_S32(S32_MIN, -65536);
-    init_with(config);
-    config.b1_q16 = ANY_S32(65536, INT32_MAX);
-    init_with(config);
-    config = any_config();
-    config.b2_q16 = ANY_S32(S32_MIN, -65536);
-    init_with(config);
-    config.b2_q16 = ANY_S32(65536, INT32_MAX);
-    init_with(config);
-    config = any_config();
-    config.r_lsb2_q8 = ANY_U32(0, 2);
-    init_with(config);
-    config.r_lsb2_q8 = ANY_U32(256001, UINT32_MAX);
-    init_with(config);
+    synth_plus_t f;
+    synth_plus_config_t config;
+    for (uint8_t number = 0; number < CASES(6); number++) {
+        config.rate_dhz = any_u16(part_of(number, 0), 50, 40000);
+        config.b0_uq16 = any_u16(part_of(number, 1), 656, UINT16_MAX);
+        config.k = any_u16(part_of(number, 2), 0, 8);
+        config.b1_q16 = any_s32(part_of(number, 3), -65535, 65535);
+        config.b2_q16 = any_s32(part_of(number, 4), -65535, 65535);
+        config.r_lsb2_q8 = any_u32(part_of(number, 5), 3, 256000, UINT32_MAX);
+        for (uint16_t k = 0; k < 9 && number == 0U; k++) {
+            config.k = k;
+            (void)synth_plus_init(&f, &config);
+        }
+        if (number != 0U) {
+            (void)synth_plus_init(&f, &config);
+        }
+    }
     synth_plus_defaults(&config, ANY_U16(50, 40000));
 }
 
 /* Uses: fx_isqrt32 */
 void proof_synth_plus_set_noise(void)
 {
-    synth_plus_t f;
-    any_start(&f, 0, 4);
-    synth_plus_set_noise(&f, ANY_U32(0, UINT32_MAX));
-    any_run(&f, 5, 31);
-    synth_plus_set_noise(&f, ANY_U32(0, UINT32_MAX));
-    any_later_run(&f, 5, 31);
-    synth_plus_set_noise(&f, ANY_U32(0, UINT32_MAX));
-    any_later_run(&f, 255, 255);
-    synth_plus_set_noise(&f, ANY_U32(0, UINT32_MAX));
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_plus_t f;
+        any_state(&f, kind);
+        synth_plus_set_noise(&f, ANY_U32(0, UINT32_MAX));
+    }
 }
 
 void proof_synth_plus_reset(void)
 {
-    synth_plus_t f;
-    any_start(&f, 0, 4);
-    synth_plus_reset(&f, ANY_Z());
-    any_run(&f, 5, 31);
-    synth_plus_reset(&f, ANY_Z());
-    any_later_run(&f, 5, 31);
-    synth_plus_reset(&f, ANY_Z());
-    any_later_run(&f, 255, 255);
-    synth_plus_reset(&f, ANY_Z());
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_plus_t f;
+        any_state(&f, kind);
+        synth_plus_reset(&f, ANY_Z());
+    }
 }
 
 /*
- * Uses: limit_x, fit_line.
+ * Uses: limit_x, fit_line, fx_without_part, fx_clamp_high.
  * Options: -eva-split-return-function synth_extrapolate:full,start_step:full,plus_step:full
  */
 void proof_synth_plus_update(void)
 {
-    synth_plus_t f;
-    any_start(&f, 0, 3);
-    (void)synth_plus_update(&f, ANY_Z());
-    any_start(&f, 4, 4);
-    (void)synth_plus_update(&f, ANY_Z());
-    any_run(&f, 5, 31);
-    (void)synth_plus_update(&f, ANY_Z());
-    any_later_run(&f, 5, 31);
-    (void)synth_plus_update(&f, ANY_Z());
-    any_later_run(&f, 255, 255);
-    (void)synth_plus_update(&f, ANY_Z());
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_plus_t f;
+        any_state(&f, kind);
+        (void)synth_plus_update(&f, ANY_Z());
+    }
 }
 
-/* Uses: limit_x */
+/* Uses: limit_x, fx_without_part, fx_clamp_high */
 void proof_synth_plus_coast(void)
 {
-    synth_plus_t f;
-    any_start(&f, 0, 4);
-    (void)synth_plus_coast(&f);
-    any_run(&f, 5, 31);
-    (void)synth_plus_coast(&f);
-    any_later_run(&f, 5, 31);
-    (void)synth_plus_coast(&f);
-    any_later_run(&f, 255, 255);
-    (void)synth_plus_coast(&f);
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_plus_t f;
+        any_state(&f, kind);
+        (void)synth_plus_coast(&f);
+    }
 }
 
 /* Uses: fx_normalise, rounded. Any coefficients within their ranges, stable or not. */
@@ -192,15 +130,11 @@ void proof_synth_plus_noise_gain_uq16(void)
 /* Uses: fx_normalise, rounded */
 void proof_synth_plus_probe(void)
 {
-    synth_plus_t f;
     filter_probe_t probe;
-    any_start(&f, 0, 4);
-    synth_plus_probe(&f, &probe);
-    any_run(&f, 5, 31);
-    synth_plus_probe(&f, &probe);
-    any_later_run(&f, 5, 31);
-    synth_plus_probe(&f, &probe);
-    any_later_run(&f, 255, 255);
-    synth_plus_probe(&f, &probe);
-    (void)synth_plus_flags(&f);
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_plus_t f;
+        any_state(&f, kind);
+        synth_plus_probe(&f, &probe);
+        (void)synth_plus_flags(&f);
+    }
 }

@@ -95,4 +95,22 @@ static void any_core_later(synth_core_t *c, uint8_t from_collected, uint8_t to_c
     c->flags = ANY_U8(0, FILTER_WARMING_UP - 1);
 }
 
+/* The kinds of state that are tried apart: together all that CORE(c, last) admits. */
+enum { CORE_KINDS = 5 };
+
+static void any_core_of_kind(synth_core_t *c, uint8_t kind, uint8_t last)
+{
+    if (kind == 0U) {
+        any_core_start(c, 0, FILTER_WARM_UP_SAMPLES - 2);
+    } else if (kind == 1U) {
+        any_core_start(c, FILTER_WARM_UP_SAMPLES - 1, FILTER_WARM_UP_SAMPLES - 1);
+    } else if (kind == 2U) {
+        any_core_run(c, FILTER_WARM_UP_SAMPLES, last);
+    } else if (kind == 3U) {
+        any_core_later(c, FILTER_WARM_UP_SAMPLES, last);
+    } else {
+        any_core_later(c, SYNTH_STEADY, SYNTH_STEADY);
+    }
+}
+
 #endif
