@@ -70,7 +70,8 @@ def judged(judge, limit_s):
         built = make(*images, "build/sim/simrun", "build/host/native_replay")
         command = ["python3", "host_tests/system_tests.py", *judge.split()[1:]]
     elif judge.startswith("papers "):
-        built = make("build/papers/paper000", "build/papers/paper001", "build/papers/paper002", "build/papers/operations002")
+        built = make("build/papers/paper000", "build/papers/paper001", "build/papers/paper002", "build/papers/operations002",
+                     "build/papers/products000")
         test = "test_papers_synthesis" if judge.startswith("papers synthesis ") else "test_papers"
         command = ["python3", f"host_tests/{test}.py", *judge.split()[1 + (test != "test_papers"):]]
     elif judge.startswith("robust "):

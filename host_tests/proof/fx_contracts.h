@@ -50,10 +50,10 @@ static fx_scaled_t rounded(uint32_t v, int8_t exponent);
 uint16_t fx_isqrt32(uint32_t v);
 
 /*
- * What is left lies between 0 and v: told by powers of 2, because intervals keep no relation to v, and by 18432 LSB, the
- * bound of what synth_plus brings.
+ * What is left lies between 0 and v: told by powers of 2, because intervals keep no relation to v, and by 18432 LSB,
+ * the bound of what synth_plus brings.
  */
-#define BELOW(power) (-(power) < v < (power) ==> -(power) < \result < (power))
+#define BELOW(power) (v > -(power) && v < (power) ==> \result > -(power) && \result < (power))
 /*@ requires part_uq8 <= 128;
     assigns \result \from v, part_uq8;
     ensures v >= 0 ==> \result >= 0;

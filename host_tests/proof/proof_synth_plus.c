@@ -6,7 +6,7 @@
 #define MEMORY_Q16 1207959552 /* 18432 LSB */
 
 /* All but what synth_plus_set_noise sets, because synth_plus_init calls it. */
-#define BUT_NOISE(f)                                                                           \
+#define BUT_NOISE(f)                                                                                                   \
     (656 <= (f)->b0_uq16 && (f)->k <= 8 && (f)->rest_uq8 <= 128 && -MEMORY_Q16 <= (f)->memory_lsb_q16 <= MEMORY_Q16 && \
      (f)->spread.motion_lsb <= 320 && CORE_BUT_NOISE(&(f)->core, 31))
 #define BOUND(f) (BUT_NOISE(f) && SPREAD(&(f)->spread) && CORE(&(f)->core, 31))
@@ -49,8 +49,8 @@ static void any_state(synth_plus_t *f, uint8_t kind)
 }
 
 /*
- * Uses: fx_isqrt32. A box that holds all legal configurations, by the part of k that is kept for a sample, then all with
- * one parameter below or above it.
+ * Uses: fx_isqrt32. A box that holds all legal configurations, k by k because the shift comes of it, then all with one
+ * parameter below or above it.
  */
 void proof_synth_plus_init(void)
 {

@@ -202,6 +202,7 @@ template <class F, class... A> auto one(long Tally::*kind, F f, A... a)
 #define fx_inverse_uq16(...) COUNTING_ONE(divisions, fx_inverse_uq16, __VA_ARGS__)
 #define fx_inverse_m_uq16(...) COUNTING_ONE(divisions, fx_inverse_m_uq16, __VA_ARGS__)
 #define fx_sixteenth(...) COUNTING_ONE(shifts, fx_sixteenth, __VA_ARGS__)
+#define fx_without_part(...) COUNTING_ONE(shifts, fx_without_part, __VA_ARGS__)
 #define fx_scaled_div(...) COUNTING_ONE(divisions, fx_scaled_div, __VA_ARGS__)
 #endif
 

@@ -94,8 +94,7 @@ FX_ONCE bool synth_init(synth_t *f, const synth_config_t *config)
 
 void synth_set_noise(synth_t *f, uint32_t r_lsb2_q8)
 {
-    synth_take_noise(&f->core, r_lsb2_q8);
-    synth_spread_of_noise(&f->spread, f->core.r_lsb2_q8);
+    synth_take_noise_and_spread(&f->core, &f->spread, r_lsb2_q8);
 }
 
 FX_ONCE void synth_reset(synth_t *f, int16_t z0_lsb)

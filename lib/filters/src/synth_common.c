@@ -41,9 +41,10 @@ void synth_spread_of_rate(synth_spread_t *spread, uint16_t rate_dhz)
     spread->motion_lsb = (uint16_t)(20U * MOTION_LSB_S / rate_dhz); /* two samples; <= 320 */
 }
 
-void synth_spread_of_noise(synth_spread_t *spread, uint32_t r_lsb2_q8)
+void synth_take_noise_and_spread(synth_core_t *c, synth_spread_t *spread, uint32_t r_lsb2_q8)
 {
-    uint16_t noise_lsb = (uint16_t)((fx_isqrt32(36U * r_lsb2_q8) >> 4) + 1U); /* 6 sigma, rounded up: <= 190 */
+    synth_take_noise(c, r_lsb2_q8);
+    uint16_t noise_lsb = (uint16_t)((fx_isqrt32(36U * c->r_lsb2_q8) >> 4) + 1U); /* 6 sigma, rounded up: <= 190 */
     uint16_t spread_lsb = (uint16_t)(noise_lsb + spread->motion_lsb);
     spread->spread_lsb = (spread_lsb > SPREAD_MAX_LSB) ? SPREAD_MAX_LSB : (int16_t)spread_lsb;
 }

@@ -52,9 +52,11 @@ void synth_begin(synth_core_t *c, size_t size);
 /* The measurement variance, limited to its legal range. */
 void synth_take_noise(synth_core_t *c, uint32_t r_lsb2_q8);
 
-/* Motion of two samples at that rate; then 6 sigma of the noise and that motion, limited. */
+/* Motion of two samples at that rate. */
 void synth_spread_of_rate(synth_spread_t *spread, uint16_t rate_dhz);
-void synth_spread_of_noise(synth_spread_t *spread, uint32_t r_lsb2_q8);
+
+/* synth_take_noise, and for the line of the start 6 sigma of it and the motion, limited. */
+void synth_take_noise_and_spread(synth_core_t *c, synth_spread_t *spread, uint32_t r_lsb2_q8);
 
 /* As if z0 had been read for ever. */
 void synth_at_rest(synth_core_t *c, int16_t z0_lsb);

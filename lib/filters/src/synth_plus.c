@@ -117,8 +117,7 @@ FX_ONCE bool synth_plus_init(synth_plus_t *f, const synth_plus_config_t *config)
 
 void synth_plus_set_noise(synth_plus_t *f, uint32_t r_lsb2_q8)
 {
-    synth_take_noise(&f->core, r_lsb2_q8);
-    synth_spread_of_noise(&f->spread, f->core.r_lsb2_q8);
+    synth_take_noise_and_spread(&f->core, &f->spread, r_lsb2_q8);
 }
 
 FX_ONCE void synth_plus_reset(synth_plus_t *f, int16_t z0_lsb)
@@ -209,7 +208,7 @@ FX_NOINLINE int32_t plus_step(synth_plus_t *f, int16_t z_lsb)
  *   memory   Q15.16, b1 u1 + b2 u2 - a1 (x1 - 2 x2 + x3): |b1 u1 + b2 u2| <= 17410 LSB; with a curvature, below 18432
  *            LSB, the two are limited to 13824 and the sum to 18432: with 2 x1 - x2 each sum is below 2^31 in Q16
  *   b0..b2   UQ0.16 magnitudes, within 2^-17 of the wanted ones; rho exact
- *   products b0, b1, b2: three, and of b2 that is 0 none; rho is a shift
+ *   products b0, b1, b2: three of 32 x 16 bits, and of b2 that is 0 none; rho is a shift that rounds (fx_without_part)
  *   rounding products half away from zero to 2^-16 LSB, the shift half up; with n half counts in x_e (one for each of
  *            b1, b2 and the shift) and the one of b0 the error is below
  *            2^-17 (sum |g0| + n sum |g1|), g0, g1 the impulse responses of (B + (1 - b0)) / D and (1 - b0) / D

@@ -12,9 +12,12 @@
  *   filter            b2 = rho (1 - b0) (b1 + (2 + rho) b0)
  *   alpha-beta-gamma  the same with rho = 1
  *
- * Three products a sample: a filter with four free coefficients needs four, so rho = 1 - 2^-k is a shift. A process
- * whose rho lies between two of these is followed with the taps made for the nearer one (test_synth_plus_reference.c
- * tells what that costs). Not robust: every outlier passes with the gain b0. Functions: filter.h.
+ * At most three products a sample: b0 u, b1 u and, unless b2 is 0, b2 u, each of a state of 32 bits and a tap of 16,
+ * that is two multiplications of 16 x 16 bits or eight of the chip's. Four free coefficients would need a fourth, so
+ * rho = 1 - 2^-k: what is taken from the curvature is a shift. The chip, which shifts one place at a time, makes that
+ * shift with four multiplications of its bytes by 2^(8-k), half of what a product takes. A process whose rho lies
+ * between two of these is followed with the taps made for the nearer one (test_synth_plus_reference.c tells what that
+ * costs). Not robust: every outlier passes with the gain b0. Functions: filter.h.
  */
 #ifndef SYNTH_PLUS_H
 #define SYNTH_PLUS_H
