@@ -284,6 +284,21 @@ def the_text_holds_what_the_tables_hold():
 
 
 @test
+def the_text_tells_how_narrow_the_verdict_is():
+    text = page_text()
+    numbers = default_filter.facts(text)
+    readings = [line for line in text.splitlines() if line.startswith("| as decided") or line.startswith("| recordings smoothed at 10 Hz")]
+    assert len(readings) == 2 and all(line.endswith("| `adaptive` |") for line in readings), readings
+    for key, old, new in (("draws that agree", f"the same in {numbers['draws that agree']} of", "the same in 999 of"),
+                          ("draws", f"of {numbers['draws']} draws", "of 12 draws"),
+                          ("other readings that differ", readings[1], readings[1].replace("adaptive", "sprf")),
+                          ("other readings", readings[1] + "\n", "")):
+        assert f"<!--={key}-->{numbers[key]}<!--.-->" in text, key
+        found = default_filter.check(text.replace(old, new))
+        assert any(f"'{key}': {numbers[key]} on the page" in line for line in found), (key, found)
+
+
+@test
 def the_page_has_every_filter_in_every_class():
     numbers = default_filter.PAGE.numbers_of(page_text())
     names = {line.split(",")[4] for line in program(f"k {still_stream(10)} 1000 16 1 0 60 truth 0").stdout.splitlines()}

@@ -3,6 +3,7 @@ docs/default-filter.md, and the numbers in its text, which are taken from them. 
 again, each is named. Without the recordings it judges the shipped streams alone, says so, and leaves the page as it is."""
 import json
 import pathlib
+import re
 import subprocess
 import sys
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -19,6 +20,7 @@ DOCUMENT = pathlib.Path("docs/default-filter.md")
 BEGIN, END = "<!-- written by make default: begin -->", "<!-- written by make default: end -->"
 PAGE = Page(DOCUMENT, BEGIN, END)
 WORST_LISTED = 15
+READINGS = "The same rule, read otherwise"
 
 
 # --- the run ----------------------------------------------------------------------------------------------------------
@@ -205,7 +207,7 @@ def readings_table(t):
         found = score.verdict(scores, named=named)
         lines.append([what, *(f"{found.ratio[group]:.2f}" if group in found.ratio else "" for group in CLASSES), str(len(found.best_in)),
                       f"`{found.default}`"])
-    return markdown("The same rule, read otherwise", f"`{CANDIDATE}` over the best, class by class; only the first line decides.",
+    return markdown(READINGS, f"`{CANDIDATE}` over the best, class by class; only the first line decides.",
                     ["reading", *CLASSES, "best in", "default"], lines)
 
 
@@ -282,13 +284,19 @@ def tables(t):
 
 
 def facts(text):
-    """{key: number} for the text of a page, from its tables alone: `class ROW COLUMN` and so on, without ticks and intervals."""
+    """{key: number} for the text of a page, from its tables (`class ROW COLUMN` and so on, without ticks and intervals) and the verdict's draws."""
     keys = {"RMSE by class": "class", "RMSE by class and rate": "rate", "Times the best": "ratio", "Contention": "contention", "Verdict": "verdict",
             "Parts held back": "held"}
     found = {}
     for title, row, column, cell in PAGE.cells(text):
         if title in keys:
             found[f"{keys[title]} {row} {column}".replace("`", "")] = cell.split(" (")[0].replace("*", "").replace("`", "")
+    agree = re.search(r"the same in (\d+) of (\d+) draws", text[text.index(BEGIN):])
+    if agree:
+        found["draws that agree"], found["draws"] = agree.groups()
+    read = [cell for title, _, column, cell in PAGE.cells(text) if (title, column) == (READINGS, "default")]
+    found["other readings"] = str(max(len(read) - 1, 0))
+    found["other readings that differ"] = str(sum(cell != read[0] for cell in read))
     return found
 
 
