@@ -296,6 +296,8 @@ def the_text_tells_how_narrow_the_verdict_is():
         assert f"<!--={key}-->{numbers[key]}<!--.-->" in text, key
         found = default_filter.check(text.replace(old, new))
         assert any(f"'{key}': {numbers[key]} on the page" in line for line in found), (key, found)
+    library = pathlib.Path("lib/filters/README.md").read_text(encoding="utf-8")
+    assert f"in {numbers['draws that agree']} of {int(numbers['draws']):,} draws" in library, "lib/filters/README.md tells another number of draws"
 
 
 @test

@@ -53,7 +53,7 @@ uint16_t fx_isqrt32(uint32_t v);
  * What is left lies between 0 and v: told by powers of 2, because intervals keep no relation to v, and by 18432 LSB,
  * the bound of what synth_plus brings.
  */
-#define BELOW(power) (v > -(power) && v < (power) ==> \result > -(power) && \result < (power))
+#define BELOW(power) ((power) <= v || v <= -(power) || ((power) > \result && \result > -(power)))
 /*@ requires part_uq8 <= 128;
     assigns \result \from v, part_uq8;
     ensures v >= 0 ==> \result >= 0;
