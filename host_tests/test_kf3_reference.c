@@ -174,6 +174,15 @@ static reference_kf3_t settled_like(const reference_kf3_t *start)
     return f;
 }
 
+/* start_both, with where the reference settles and the bound of the error there. */
+static void start_settled(kf3_t *f, reference_kf3_t *r, const kf3_config_t *config, reference_kf3_t *settled,
+                          double *bound)
+{
+    start_both(f, r, config);
+    *settled = settled_like(r);
+    covariance_bound(settled, bound);
+}
+
 static const uint16_t rates[] = { 50, 125, 250, 500, 999, 1000, 2000, 4000, 8000, 16000, 40000 };
 enum { RATES = sizeof rates / sizeof rates[0] };
 
@@ -188,10 +197,9 @@ static void gains_equal_the_reference(void)
             config.q_lsb2_s5 = q;
             kf3_t f;
             reference_kf3_t r;
-            start_both(&f, &r, &config);
-            reference_kf3_t settled = settled_like(&r);
+            reference_kf3_t settled;
             double bound[9];
-            covariance_bound(&settled, bound);
+            start_settled(&f, &r, &config, &settled, bound);
             for (int k = 0; k < 1000; k++) {
                 (void)kf3_update(&f, 0);
                 reference_kf3_step(&r, 0.0);
@@ -222,10 +230,9 @@ static void estimate_equals_the_reference(void)
         kf3_defaults(&config, rates[i]);
         kf3_t f;
         reference_kf3_t r;
-        start_both(&f, &r, &config);
-        reference_kf3_t settled = settled_like(&r);
+        reference_kf3_t settled;
         double bound[9];
-        covariance_bound(&settled, bound);
+        start_settled(&f, &r, &config, &settled, bound);
         double sigma = sqrt(config.r_lsb2_q8 / 256.0);
         double reach = 0.0;
         for (int k = 0; k < 4000; k++) {
@@ -259,10 +266,9 @@ static void gaps_equal_the_reference(void)
             kf3_defaults(&config, rates[i]);
             kf3_t f;
             reference_kf3_t r;
-            start_both(&f, &r, &config);
-            reference_kf3_t settled = settled_like(&r);
+            reference_kf3_t settled;
             double bound[9];
-            covariance_bound(&settled, bound);
+            start_settled(&f, &r, &config, &settled, bound);
             for (int k = 0; k < 200 + 2 * gap + 103; k++) {
                 bool missing = (k >= 200 && k < 200 + gap) || (k >= 203 + gap && k < 203 + 2 * gap);
                 if (missing) {
