@@ -11,8 +11,8 @@ for filter in "$@"; do
         *) echo "FILTERS: there is no filter $filter; filters: ${known% }; sets of filters, each to stand alone: $sets" >&2; exit 2 ;;
     esac
 done
-[ $# -gt 0 ] || { echo "FILTERS is empty; filters: ${known}; sets of filters: $sets" >&2; exit 2; }
+[ $# -gt 0 ] || { echo "FILTERS is empty; filters: ${known% }; sets of filters: $sets" >&2; exit 2; }
 twice=$(printf '%s\n' "$@" | sort | uniq -d | tr '\n' ' ')
-[ -z "$twice" ] || { echo "FILTERS: named twice: $twice" >&2; exit 2; }
+[ -z "$twice" ] || { echo "FILTERS: named twice: ${twice% }" >&2; exit 2; }
 mkdir -p "$(dirname "$file")"
 [ "$(cat "$file" 2> /dev/null)" = "$*" ] || echo "$*" > "$file"

@@ -80,7 +80,10 @@ def judged(judge, limit_s):
     elif judge.startswith("default "):
         built = make("build/host/default_filter")
         command = ["python3", "host_tests/test_default.py", *judge.split()[1:]]
-    elif judge.startswith(("design", "synthesised ")):  # design or design_command, which compiles what it needs itself
+    elif judge.startswith("images "):
+        built = make("help")
+        command = ["python3", "host_tests/test_images.py", *judge.split()[1:]]
+    elif judge.startswith(("design", "synthesised ")):  # design, design_command, design_refusals: what they need they compile themselves
         built = make("help")
         command = ["build/venv/bin/python", f"host_tests/test_{judge.split()[0]}.py", *judge.split()[1:]]
     elif judge == "schedule":

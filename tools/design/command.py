@@ -8,11 +8,13 @@ import pathlib
 import sys
 from fractions import Fraction
 
-from . import configuration, pictures, report, switching
+from . import configuration, nearest, pictures, report, switching
+from .given import Wrong, given_filter
 from .measure import sigma_of_stream
-from .response import Endless, pole_radius
-from .structure import Filter, as_printed
-from .synthesis import REGIONS, Infeasible, Request, least_error, least_noise, ordinal
+from .response import Endless
+from .structure import Filter
+from .synthesis import (ERROR_MAX, ERROR_MIN, LEAST_SHAPE, REGIONS, Infeasible, NoneFound, Request, check_order, least_error, least_noise, nearest_noise, ordinal,
+                        rounded)
 
 EPILOG = """
 the structure, in the papers' letters
@@ -30,12 +32,8 @@ examples
   python tools/design --rate 100 --sigma 2 --noise-gain 0.3 -k 0 -l 1           least error for a noise gain of 0.3, alpha-beta
   python tools/design --rate 10 --sigma 0.5 --unit m -k 1 -l 0 --a=-0.3 --b 0.1   what paper 001's filter does
   python tools/design --rate 100 --sigma-of sim/streams/rest-2lsb.csv --error 2 --at 500 --json build/design/design.json
-  python tools/design schedule --p0-over-r 8.33                                 off-line gain schedule of synth_opt (--help)
+  python tools/design schedule --p0-over-r 8.33                                 off-line gain schedule of synth_opt; `schedule` stands first
 """
-
-
-class Wrong(Exception):
-    """One sentence: what of the request cannot be."""
 
 
 def numbers_list(text):
@@ -70,7 +68,7 @@ def parser():
     words.add_argument("--a", type=numbers_list, help="fix a1,a2,... (--a=-0.3)")
     words.add_argument("--b", type=numbers_list, help="with --a: no synthesis, the properties of this filter")
     words.add_argument("--as-printed", action="store_true", help="with --b b0,b1,..: past innovations as paper 001 (17) has them, not in x_e")
-    words.add_argument("--region", choices=sorted(REGIONS), default="paper",
+    words.add_argument("--region", choices=sorted(REGIONS), default=None,
                        help="paper: -1 <= sum a <= 0 (default); exact: whatever is stable; safe: a1 in [-1/3, 0], b0 >= 1/2")
     words.add_argument("--settle", type=float, metavar="S", help="bound: the slowest pole decays to 2 %% within S seconds")
     words.add_argument("--band", type=band_range, action="append", default=[], metavar="NAME=LOW..HIGH",
@@ -84,6 +82,7 @@ def parser():
 
 
 SMALLEST, LARGEST = 1e-9, 1e9  # of what a person can mean; within them nothing overflows
+AT_THE_END = 1e-9  # share by which rounding may move a bound that is one of the ends
 
 
 def finite_positive(value, name):
@@ -116,22 +115,44 @@ def checked(options):
     sigma = options.sigma if options.sigma is not None else sigma_of_stream(options.sigma_of)
     finite_positive(sigma, "--sigma")
     v = options.astatism
+    k = options.k if options.k is not None else (len(options.a) if options.a is not None else (1 if v == 2 and not options.l else 0))
+    l = options.l if options.l is not None else (len(options.b) - 1 if options.b is not None else 0)  # noqa: E741
+    check_order(v, k, l)
+    if options.b is not None:
+        beside = [f"--{name.replace('_', '-')}" for name in ("error", "noise_gain", "settle", "region") if getattr(options, name) is not None]
+        if beside:
+            raise Wrong(f"{' and '.join(beside)} beside --b: bounds are for a filter to be found, one that is given is only looked at; "
+                        f"nearest: leave out {' and '.join(beside)}, or --b")
+    elif options.as_printed:
+        raise Wrong("--as-printed says how --b is meant, and there is no --b; nearest: leave it out")
     scale, at_text = None, ""
-    if (options.error is None) != (options.at is None) and options.at is None:
+    if options.error is not None and options.at is None:
         raise Wrong(f"--error needs --at, the {order_word(v)} at which it holds; nearest: --at 100")
     if options.at is not None:
         scale = finite_positive(options.at, "--at") * period_s ** v
         at_text = f"under {article(v)} {order_word(v)} of {options.at:g} {options.unit}/s{v if v > 1 else ''}"
-    error_max = finite_positive(options.error, "--error") / scale if options.error is not None else None
-    k = options.k if options.k is not None else (len(options.a) if options.a is not None else (1 if v == 2 and not options.l else 0))
-    l = options.l if options.l is not None else (len(options.b) - 1 if options.b is not None else 0)  # noqa: E741
+    error_max = error_bound(options.error, scale, v) if options.error is not None else None
     slowest = None
     if options.settle is not None:
         if finite_positive(options.settle, "--settle") < period_s:
             raise Wrong(f"--settle is {options.settle:g} s, but nothing settles within less than a sample; nearest: {period_s:g}")
         slowest = 0.02 ** (period_s / options.settle)
-    request = Request(v, k, l, REGIONS[options.region], options.a, slowest)
+    request = Request(v, k, l, REGIONS[options.region or "paper"], options.a, slowest)
     return Task(request, period_s, sigma, error_max, options.noise_gain, scale, at_text)
+
+
+def error_bound(error, scale, v):
+    """The bound per v-th difference; Wrong when it is beyond what can be computed, with the nearest that is not."""
+    low, high = max(ERROR_MIN * scale, SMALLEST), min(ERROR_MAX * scale, LARGEST)
+    low, high = low * (1 - AT_THE_END), high * (1 + AT_THE_END)
+    if math.isfinite(error) and low <= error <= high:
+        return error / scale
+    if low > high:
+        raise Wrong(f"--error is {error:g}, but at this rate and --at no error is {ERROR_MIN:g} to {ERROR_MAX:g} per {ordinal(v)} difference; "
+                    f"nearest: {'--period 1' if high < SMALLEST else '--period 0.001'}")
+    why = "must be finite and above 0" if not (math.isfinite(error) and error > 0) else \
+        f"must be {ERROR_MIN:g} to {ERROR_MAX:g} per {ordinal(v)} difference and not {error / scale:.4g}"
+    raise Wrong(f"--error is {error:g}, but {why}; nearest: --error {rounded(low) if not error > low else rounded(high, up=False):.12g}")
 
 
 def order_word(v):
@@ -142,67 +163,38 @@ def article(v):
     return "an" if v == 2 else "a"
 
 
-def given_filter(options, task):
-    """The filter of --a and --b; Wrong when it is unstable, with the nearest stable one."""
-    request = task.request
-    if len(options.b) != request.l + 1:
-        raise Wrong(f"--b has {len(options.b)} numbers, but l = {request.l} asks for {request.l + 1}; nearest: -l {len(options.b) - 1}")
-    values = (*(options.a or ()), *options.b)
-    if not all(math.isfinite(x) for x in values):
-        raise Wrong("--a and --b must be finite numbers; nearest: --a=0 --b 0.3")
-    if sum(options.b) == 0 or (len(options.b) > 1 and options.as_printed and options.b[0] == 1):
-        raise Wrong("b0 + ... + bl must not be 0, nor b0 be 1 in the printed form with l > 0; nearest: --b 0.3")
-    a = options.a if options.a is not None else (0.0,) * request.k
-    if len(a) != request.k:
-        raise Wrong(f"--a has {len(a)} numbers, but k = {request.k}; nearest: -k {len(a)}")
-    f = as_printed(request.v, a, options.b) if options.as_printed else Filter(request.v, tuple(a), tuple(options.b))
-    if not f.exact().stable():
-        raise Wrong(f"{parameters(f)} is unstable: {why_unstable(f)}; nearest: {nearest_stable(f)}")
-    return f
-
-
-def parameters(f):
-    return ", ".join([f"a{i + 1} = {x:g}" for i, x in enumerate(f.a)] + [f"b{j} = {x:g}" for j, x in enumerate(f.b)])
-
-
-def why_unstable(f):
-    if f.order == (2, 1, 0) and 1 + 2 * f.a[0] * (1 - f.b[0]) <= 0:
-        return f"1 + 2 a1 (1 - b0) = {1 + 2 * f.a[0] * (1 - f.b[0]):.4g} is not above 0"
-    return f"its slowest pole has radius {pole_radius(f):.6g}"
-
-
-def nearest_stable(f):
-    """On the way from B to the certainly stable B = 1: the first that is stable, rounded to the inside."""
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        b = [(1 - middle) * x + (middle if j == 0 else 0.0) for j, x in enumerate(f.b)]
-        if Filter(f.v, f.a, tuple(b)).stable():
-            high = middle
-        else:
-            low = middle
-    share = math.ceil(high * 1e4 + 1e-9) / 1e4
-    b = [(1 - share) * x + (share if j == 0 else 0.0) for j, x in enumerate(f.b)]
-    if not Filter(f.v, f.a, tuple(b)).exact().stable():
-        return "--b 1 (no filter)"
-    return f"--a={','.join(f'{x:g}' for x in f.a)} --b {','.join(f'{x:.6g}' for x in b)}" if f.a else f"--b {','.join(f'{x:.6g}' for x in b)}"
-
-
 def synthesised(task):
     """The filter that meets the bounds."""
-    if task.error_max is None and task.noise_max is None:
-        raise Wrong("give a bound: --error E --at A, or --noise-gain N (or --a and --b to see what a filter does); nearest: --noise-gain 0.6")
+    request, noise_max = task.request, task.noise_max
+    if task.error_max is None and noise_max is None:
+        raise Wrong("give a bound: --error E --at A, or --noise-gain N (or --a and --b to see what a filter does); "
+                    f"nearest: {nearest_noise(request, 0.6)}")
+    if request.fixed_a is not None and len(request.fixed_a) == request.k and 1 + sum(request.fixed_a) < LEAST_SHAPE:
+        raise Wrong(f"with a1 + ... + ak = {sum(request.fixed_a):g} the dynamic error is not above 0 (-1: the astatism is not {request.v} but more); "
+                    f"nearest: {nearest.with_error(request, noise_max)}")
     if task.error_max is None:
-        return least_error(task.request, task.noise_max)
-    f = least_noise(task.request, task.error_max)
-    if task.noise_max is not None and f.noise_gain() > task.noise_max:
-        finite_positive(task.noise_max, "--noise-gain")
-        other = least_error(task.request, task.noise_max)  # says itself when no error will do
-        raise Wrong(f"{task.request.name} cannot keep both bounds: with that error the least noise gain is {f.noise_gain():.4f}, "
-                    f"not {task.noise_max:g}, and "
-                    f"with that noise gain the least error is {other.dynamic_error() * task.scale:.4g}, not {task.error_max * task.scale:.4g}; "
-                    f"nearest: --noise-gain {math.ceil(f.noise_gain() * 1e4) / 1e4:.4f}")
-    return f
+        return least_error(request, noise_max)
+    try:
+        f = least_noise(request, task.error_max)
+    except NoneFound as problem:
+        raise Wrong(f"{problem}; nearest: {nearest.settle(request, task.error_max, task.period_s)}") from None
+    if noise_max is None or (math.isfinite(noise_max) and f.noise_gain() <= noise_max):
+        return f
+    raise Wrong(both_bounds(task, f))
+
+
+def both_bounds(task, f):
+    """What is wrong with a noise gain beside an error that it does not go with."""
+    asked, least = task.noise_max, f.noise_gain()
+    near = f"nearest: --noise-gain {rounded(least):.12g}"
+    if not (math.isfinite(asked) and asked > 0):
+        return f"a noise gain of {asked:g} is not to be had: it must be finite and above 0; {near}"
+    try:
+        error = f"the least error is {least_error(task.request, asked).dynamic_error() * task.scale:.4g}, not {task.error_max * task.scale:.4g}"
+    except Infeasible:
+        error = "there is no filter, whatever its error"
+    return (f"{task.request.name} cannot keep both bounds: with that error the least noise gain is {least:.6g}, not {asked:g}, and "
+            f"with that noise gain {error}; {near}")
 
 
 def alternatives(task, f):
@@ -210,7 +202,8 @@ def alternatives(task, f):
     v = task.request.v
     error = task.error_max if task.error_max is not None or task.noise_max is not None else f.dynamic_error()
     if error is not None and not error > 0:
-        return [("others", "none: a filter without dynamic error has nothing that can be compared at the same error")]
+        kind = "negative" if error < 0 else "no"
+        return [("others", f"none: this filter has {kind} dynamic error, so there is nothing that can be compared at the same error")]
     wanted = [(f"(v, k, l) = ({v}, 0, 0)", (v, 0, 0)), (f"(v, k, l) = ({v}, 0, {v - 1})", (v, 0, v - 1))]
     if v == 2:
         wanted = [("(2, 1, 0), a1 <= 0 (synth)", (2, 1, 0)), ("(2, 0, 1) alpha-beta", (2, 0, 1))]
@@ -285,7 +278,7 @@ def report_parameters(made):
 def design(options):
     task = checked(options)
     analysed = options.b is not None
-    f = given_filter(options, task) if analysed else synthesised(task)
+    f = given_filter(options, task.request) if analysed else synthesised(task)
     f = Filter(f.v, tuple(float(x) + 0.0 for x in f.a), tuple(float(x) + 0.0 for x in f.b))
     one = report.facts(f)
     rows = alternatives(task, f)
@@ -344,7 +337,11 @@ def what_was_asked(task, options, analysed):
 def main(arguments):
     if arguments[:1] == ["schedule"]:
         return importlib.import_module(".schedule", __package__).main(arguments[1:])
-    options = parser().parse_args(arguments)
+    reader = parser()
+    options, strange = reader.parse_known_args(arguments)
+    if strange:
+        reader.error(f"schedule stands first and takes no option of the synthesis: python tools/design schedule {' '.join(strange[1:])}".strip()
+                     if strange[0] == "schedule" else f"unrecognized arguments: {' '.join(strange)}")
     try:
         text, result = design(options)
         if options.json:

@@ -88,7 +88,7 @@ def stored_synth(f, common, error_max, noise_max, fixed_a=False):
                     f"nearest: --b {min(max(b0, B0[0]), B0[1]) / ONE:.5f}")
     if not A1[0] - 0.5 <= a1 <= A1[1] + 0.5:
         raise Unfit(f"synth takes a1 from {A1[0] / ONE:.5f} to {A1[1] / ONE:.5f}, not {a1 / ONE:.6g}; "
-                    f"nearest: --a {min(max(a1, A1[0]), A1[1]) / ONE:.5f}")
+                    f"nearest: --a={min(max(a1, A1[0]), A1[1]) / ONE:.5f}")
     if error_max is None and noise_max is None:
         chosen = (min(max(round(b0), B0[0]), B0[1]), min(max(round(a1), A1[0]), A1[1]))
         if not synth_legal(*chosen):

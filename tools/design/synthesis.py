@@ -4,6 +4,7 @@ In powers of s = 1 - z^-1 the loop is B / (1 - b0) = e0 + e1 s + ... + el s^l ag
 separates: the dynamic error is D = (1 + sum a) / e0, and 0 < b0 < 1 is e0 + ... + el > 0. With w^v = e0 the numbers ej / w^(v-j) stay about 1
 however slow the filter is, so the search runs over them and over D, which is where a search over b0..bl would find a thin sliver.
 """
+import dataclasses
 import itertools
 import math
 from dataclasses import dataclass
@@ -14,6 +15,11 @@ from scipy.optimize import minimize
 from .structure import Filter, alpha_beta, difference, power, reflections, schur_cohn, total
 
 ORDER_MAX = 10  # v + k + l: beyond, double precision no longer holds the coefficients of a slow filter
+ERROR_MIN, ERROR_MAX = 1e-6, 1e4  # dynamic error per difference of what is asked for: within them every search holds and every response ends
+ERROR_STEP = 30.0  # where no filter is found, one with a smaller error is looked for, so many times smaller
+LEAST_SHAPE = 1e-6  # of 1 + sum a, to which the dynamic error is proportional
+NOISE_MIN = 1e-4  # of a noise gain asked for
+ABOVE_FLOOR = 0.003  # the nearest noise gain lies so much above the least, which is a limit and not reached
 B0_MAX = 1 - 1e-9
 SOUND = 1e-12  # the product of 1 - reflection^2 below which rounding spoils the noise gain
 TRUE = 1e-3  # share by which a noise gain in floating point may differ from the rational one
@@ -25,6 +31,10 @@ BUTTERWORTH = {1: (1.0,), 2: (1.0, math.sqrt(2.0)), 3: (1.0, 2.0, 2.0), 4: (1.0,
 
 class Infeasible(Exception):
     """One sentence: why there is no such filter, and the nearest that there is."""
+
+
+class NoneFound(Infeasible):
+    """The sentence without the nearest: that depends on what was asked beside it."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +58,17 @@ REGIONS = {
 
 def check_order(v, k, l):  # noqa: E741
     if v < 1 or k < 0 or l < 0 or v + k + l > ORDER_MAX:
-        raise Infeasible(f"(v, k, l) = ({v}, {k}, {l}): v must be 1 or more, k and l 0 or more, and v + k + l at most {ORDER_MAX}")
+        near_v, near_k = min(max(v, 1), ORDER_MAX), max(k, 0)
+        near_k = min(near_k, ORDER_MAX - near_v)
+        raise Infeasible(f"(v, k, l) = ({v}, {k}, {l}): v must be 1 or more, k and l 0 or more, and v + k + l at most {ORDER_MAX}; "
+                         f"nearest: -v {near_v} -k {near_k} -l {min(max(l, 0), ORDER_MAX - near_v - near_k)}")
+
+
+def rounded(value, up=True, digits=4):
+    """The number of so many digits next above (or below) a positive one. Next to 1 the digits are those of 1 - value, so that it stays below."""
+    fine = min(value, 1 - value) if 0 < value < 1 else value
+    unit = 10.0 ** (math.floor(math.log10(fine)) + 1 - digits)
+    return float(f"{(math.ceil if up else math.floor)(value / unit) * unit:.12g}")
 
 
 def from_memory(v, a, e):
@@ -126,7 +146,15 @@ class Search:
             yield [shrink] + ([whole] + [0.0] * (self.free_a - 1) if self.free_a else []) + memory
 
     def least(self, error_max, quick=False):
-        """(noise gain, filter): the best that the searches from several starts find; None when none finds a stable filter."""
+        """(noise gain, filter): the best that is found; None when there is none. What has a smaller error keeps the bound too."""
+        found = self.at_most(error_max, quick)
+        while found is None and not quick and error_max > ERROR_MIN:
+            error_max = max(error_max / ERROR_STEP, ERROR_MIN)
+            found = self.at_most(error_max)
+        return found
+
+    def at_most(self, error_max, quick=False):
+        """The same from starts near that error alone."""
         starts = self.known[-2:] if quick and self.known else self.known[-2:] + list(self.starts())
         ranked = sorted(starts, key=lambda place: self.cost(place, error_max))
         spreads = (0.05,) if quick else (0.3, 0.02)
@@ -207,13 +235,13 @@ class Request:
     def check(self):
         check_order(self.v, self.k, self.l)
         if self.fixed_a is not None and len(self.fixed_a) != self.k:
-            raise Infeasible(f"{self.name}: --a has {len(self.fixed_a)} numbers; nearest: k = {len(self.fixed_a)}")
-        if self.fixed_a is not None and 1 + sum(self.fixed_a) < 1e-6:
+            raise Infeasible(f"{self.name}: --a has {len(self.fixed_a)} numbers; nearest: -k {len(self.fixed_a)}")
+        if self.fixed_a is not None and 1 + sum(self.fixed_a) < LEAST_SHAPE:
             raise Infeasible(f"{self.name}: with a1 + ... + ak = {sum(self.fixed_a):g} the astatism is not {self.v}; "
                              f"nearest: v = {self.v + 1} with one a fewer")
         if self.fixed_a is None and self.slowest is None and self.k >= 1 and self.l >= self.v - 1:
             raise Infeasible(f"{self.name}: the free a goes to sum a = -1, astatism {self.v + 1}, where the filter may be as slow as it likes and "
-                             f"this dynamic error is 0 all the same; nearest: k = 0, or give --a (a1 = minus the correlation of the signal's "
+                             f"this dynamic error is 0 all the same; nearest: -k 0, or give --a (a1 = minus the correlation of the signal's "
                              f"{ordinal(self.v)} difference) or --settle")
 
 
@@ -228,8 +256,8 @@ def least_noise(request, error_max):
     search = request.search()
     found = search.least(error_max)
     if found is None:
-        raise Infeasible(f"{request.name}{request.limits} has no stable filter{'' if request.slowest is None else ' that settles in time'}"
-                         f" with a dynamic error of at most {error_max:g} per {ordinal(request.v)} difference; nearest: {nearest_error(search)}")
+        raise NoneFound(f"{request.name}{request.limits} has no stable filter{'' if request.slowest is None else ' that settles in time'}"
+                        f" with a dynamic error of at most {error_max:g} per {ordinal(request.v)} difference")
     return found[1]
 
 
@@ -237,41 +265,73 @@ def ordinal(v):
     return {1: "first", 2: "second", 3: "third"}.get(v, f"{v}th")
 
 
-def nearest_error(search):
-    for error in (0.001, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e4):
-        if search.least(error) is not None:
-            return f"{error:.3g}"
-    return "none; take another structure"
-
-
 def floor(request):
-    """The noise gain below which the structure does not go, whatever the dynamic error: an infimum, found by the search but for l >= v - 1
-    and free poles, where it is 0."""
-    if request.plain and request.l >= request.v - 1:
+    """The noise gain below which the structure does not go, whatever the dynamic error: an infimum, found by the search but for alpha-beta and the
+    average, where it is 0."""
+    if request.plain and error_by_formula(request.v, request.l, NOISE_MIN) is not None:
         return 0.0
     search = request.search()
-    found = [search.least(error) for error in (1.0, 100.0, 1e4)]
+    found = [search.least(error) for error in (1.0, 100.0, ERROR_MAX)]
     return min((one[0] for one in found if one is not None), default=math.inf)
+
+
+def formula_error(request, noise_max):
+    """The dynamic error for a noise gain where a formula has it, and within what can be computed."""
+    error = error_by_formula(request.v, request.l, noise_max) if request.plain else None
+    return error if error is not None and (request.l > 0 or error <= ERROR_MAX) else None
+
+
+def bracket(search, noise_max):
+    """(logs of two dynamic errors, the noise gain and filter at the larger, which has the noise gain asked for); None when there is none."""
+    edges = [math.log(x) for x in (ERROR_MIN, 1e-4, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, ERROR_MAX)]
+    for low, high in zip(edges, edges[1:]):
+        kept = search.least(math.exp(high))
+        if kept is not None and kept[0] <= noise_max:
+            return low, high, kept
+    return None
+
+
+def reachable(request, noise_max):
+    """True when the structure has a filter with a noise gain of at most this, below 1."""
+    try:
+        request.check()
+    except Infeasible:
+        return False
+    return formula_error(request, noise_max) is not None or bracket(request.search(), noise_max) is not None
+
+
+def nearest_noise(request, wanted):
+    """The noise gain wanted if the structure has it, else one just above its floor, as words of the command."""
+    return f"--noise-gain {wanted:.12g}" if reachable(request, wanted) else above(request, floor(request))
+
+
+def above(request, least):
+    """The nearest noise gain above a floor."""
+    if least < 1:
+        near = rounded(least + min(ABOVE_FLOOR * least, 0.3 * (1 - least)))
+        if reachable(request, near):
+            return f"--noise-gain {near:.12g}"
+    return "none; take another structure"
 
 
 def least_error(request, noise_max):
     """The filter of least dynamic error with a noise gain of at most noise_max."""
     request.check()
     if not (math.isfinite(noise_max) and noise_max > 0):
-        raise Infeasible(f"a noise gain of {noise_max:g} is not to be had: it must be finite and above 0; nearest: 0.01")
+        raise Infeasible(f"a noise gain of {noise_max:g} is not to be had: it must be finite and above 0; "
+                         f"nearest: {nearest_noise(request, NOISE_MIN if noise_max <= 0 else 0.999)}")
     if noise_max >= 1:
-        raise Infeasible(f"a noise gain of {noise_max:g} needs no filter: the raw measurement has 1; nearest: 0.999")
-    error = error_by_formula(request.v, request.l, noise_max) if request.plain else None
+        raise Infeasible(f"a noise gain of {noise_max:g} needs no filter: the raw measurement has 1; nearest: {nearest_noise(request, 0.999)}")
+    if noise_max < NOISE_MIN:
+        raise Infeasible(f"a noise gain of {noise_max:g} is below the {NOISE_MIN:g} that can be computed; nearest: {nearest_noise(request, NOISE_MIN)}")
+    error = formula_error(request, noise_max)
     if error is not None:
         return least_noise(request, error)
     search = request.search()
-    edges = [math.log(x) for x in (1e-4, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4)]
-    for low, high in zip(edges, edges[1:]):
-        kept = search.least(math.exp(high))
-        if kept is not None and kept[0] <= noise_max:
-            break
-    else:
+    found = bracket(search, noise_max)
+    if found is None:
         raise Infeasible(below_floor(request, noise_max))
+    low, high, kept = found
     for _ in range(HALVINGS):  # the least noise gain falls with the error allowed
         middle = 0.5 * (low + high)
         found = search.least(math.exp(middle), quick=True)
@@ -284,6 +344,15 @@ def least_error(request, noise_max):
 
 def below_floor(request, noise_max):
     least = floor(request)
-    richer = "" if request.l >= request.v - 1 or request.slowest is not None else f", or l = {request.v - 1}, which has no floor"
-    return (f"a noise gain of {noise_max:g} is below what {request.name}{request.limits} can reach, {least:.4f}; "
-            f"nearest: --noise-gain {math.ceil(least * 1.003 * 1e4) / 1e4:.4f}{richer}")
+    return (f"a noise gain of {noise_max:g} is below what {request.name}{request.limits} can reach, {least:.6g}; "
+            f"nearest: {above(request, least)}{richer(request, noise_max)}")
+
+
+def richer(request, noise_max):
+    """With B of order v - 1 the noise gain has no floor: that, where it helps."""
+    if request.l >= request.v - 1:
+        return ""
+    other = dataclasses.replace(request, l=request.v - 1, k=request.k if request.fixed_a is not None else 0)
+    if not reachable(other, noise_max):
+        return ""
+    return f", or -l {other.l}" if request.fixed_a is not None else f", or -k 0 -l {other.l}"

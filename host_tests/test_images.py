@@ -1,0 +1,174 @@
+"""Which filters are in which image: FILTERS= of make, tools/filters_txt.sh, the image that holds a filter; and that the filter with which the
+firmware starts is the one that docs/default-filter.md decides for, wherever it is named."""
+import pathlib
+import re
+import subprocess
+import sys
+
+sys.path.insert(0, "tools")
+import default_filter
+import default_score as score
+import system_support
+from system_support import run_all, test
+
+OUT = pathlib.Path("build/images-test")
+IMAGES = pathlib.Path("mk/images.mk").read_text(encoding="utf-8")
+SETS = {name: names.split() for name, names in re.findall(r"^FILTERS_([a-z]+) *:= *(.*)$", IMAGES, re.M)}
+FLAG = re.compile(r"-DFILTER_LIST\(X\)=((?:X\(\w+\) ?)+)")
+# FILTERS, what the sentence names
+BAD = (("kff", "there is no filter kff;"), ("kf kff", "there is no filter kff;"), ("KF", "there is no filter KF;"),
+       ("kf,sprf", "there is no filter kf,sprf;"), ("kf sprf kf", "named twice: kf"), ("sprf kf kf sprf", "named twice: kf sprf"),
+       ("", "FILTERS is empty;"), ("  ", "FILTERS is empty;"), ("everyday kf", "there is no filter everyday;"),
+       ("kf robust", "there is no filter robust;"), ("everyday robust", "there is no filter everyday;"))
+
+
+def listed(*flags):
+    """FILTER_LIST as the preprocessor has it."""
+    source = '#include "filter_list.h"\n#define NAME(name) name\nlist: FILTER_LIST(NAME)\n'
+    done = subprocess.run(["gcc", "-E", "-P", "-Ilib/filters/src", *flags, "-xc", "-"], input=source, capture_output=True, text=True, timeout=60, check=True)
+    return done.stdout.split("list:")[1].split()
+
+
+EVERY = listed()
+
+
+def make(*words, dry=False):
+    command = ["make", "--no-print-directory", f"U={OUT}", *(["-n", "-B"] if dry else []), *words]
+    return subprocess.run(command, capture_output=True, text=True, timeout=300)
+
+
+def chosen_by_make(filters):
+    """What make writes into filters.txt for FILTERS, and the list in its compiler's flag."""
+    target = OUT / "filters.txt"
+    target.unlink(missing_ok=True)
+    done = make(str(target), *filters)
+    assert done.returncode == 0, (filters, done.stderr)
+    dry = make(str(OUT / "firmware.elf"), *filters, dry=True)
+    flags = {found for line in dry.stdout.splitlines() if " -c firmware/" in line for found in FLAG.findall(line)}
+    assert dry.returncode == 0 and len(flags) == 1, (filters, dry.stderr, flags)
+    return target.read_text(encoding="ascii").split(), re.findall(r"X\((\w+)\)", flags.pop())
+
+
+@test
+def every_filter_is_in_a_set_and_no_set_has_strange_ones():
+    order = re.search(r"^FILTER_SETS *:= *(.*)$", IMAGES, re.M).group(1).split()
+    assert order == list(SETS) and len(order) >= 3, order
+    assert {name for names in SETS.values() for name in names} == set(EVERY), SETS
+    assert all(len(names) == len(set(names)) for names in SETS.values()), SETS
+
+
+@test
+def filters_are_taken_in_the_order_given():
+    for words, wanted in (([], SETS[next(iter(SETS))]), *((["FILTERS=" + name], names) for name, names in SETS.items()),
+                          (["FILTERS=lrf"], ["lrf"]), (["FILTERS=sprf kf"], ["sprf", "kf"]), (["FILTERS=kf  sprf "], ["kf", "sprf"]),
+                          (["FILTERS=soft adaptive kf"], ["soft", "adaptive", "kf"])):
+        text, flag = chosen_by_make(words)
+        assert text == wanted and flag == wanted, (words, text, flag)
+
+
+@test
+def each_filter_can_be_chosen_alone():
+    target = OUT / "alone" / "filters.txt"
+    for name in EVERY:
+        target.unlink(missing_ok=True)
+        done = subprocess.run(["sh", "tools/filters_txt.sh", str(target), name], capture_output=True, text=True, timeout=60)
+        assert done.returncode == 0 and not done.stdout + done.stderr and target.read_text(encoding="ascii") == name + "\n", (name, done)
+
+
+@test
+def what_is_chosen_already_is_left_alone():
+    target = OUT / "kept" / "filters.txt"
+    for words, anew in ((["kf", "sprf"], True), (["kf", "sprf"], False), (["sprf", "kf"], True), (["sprf"], True)):
+        before = target.stat().st_mtime_ns if target.exists() else None
+        if before is not None:
+            subprocess.run(["touch", "-d", "2001-01-01", str(target)], check=True)
+            before = target.stat().st_mtime_ns
+        subprocess.run(["sh", "tools/filters_txt.sh", str(target), *words], check=True, timeout=60)
+        assert (target.stat().st_mtime_ns != before) == anew and target.read_text(encoding="ascii").split() == words, words
+
+
+@test
+def what_cannot_be_chosen_is_refused_in_one_sentence():
+    target = OUT / "bad" / "filters.txt"
+    for filters, sentence in BAD:
+        target.unlink(missing_ok=True)
+        done = subprocess.run(["sh", "tools/filters_txt.sh", str(target), *filters.split()], capture_output=True, text=True, timeout=60)
+        assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1, (filters, done)
+        assert done.stderr.startswith("FILTERS") and sentence in done.stderr.strip() + ";" and not target.exists(), (filters, done.stderr)
+        if "twice" not in sentence:
+            assert all(f" {name}" in done.stderr for name in (*EVERY, *SETS)), done.stderr
+    for filters, sentence in BAD[:1] + BAD[4:5] + BAD[6:7] + BAD[8:9]:
+        (OUT / "filters.txt").unlink(missing_ok=True)
+        done = make(str(OUT / "firmware.elf"), f"FILTERS={filters}")
+        said = [line for line in done.stderr.splitlines() if line.startswith("FILTERS")]
+        assert done.returncode != 0 and len(said) == 1 and sentence in said[0] + ";", (filters, done.stderr)
+        assert not (OUT / "filters.txt").exists() and not (OUT / "firmware.elf").exists(), filters
+
+
+@test
+def the_image_with_a_filter_holds_it():
+    """make's and the tests' own: the chosen image where it does, else the first set's that does."""
+    show = f"show: ; @$(foreach f,{' '.join(EVERY)},echo '$(f) $(call image_with,$(f))';)"
+    kept = system_support.SET_IMAGES
+    for choice in (*SETS, "sprf kf", "kf3"):
+        holds = {f"{OUT}/firmware.elf": SETS.get(choice, choice.split()), **{f"{OUT}/{name}/firmware.elf": names for name, names in SETS.items()}}
+        wanted = {name: next(image for image, names in holds.items() if name in names) for name in EVERY}
+        done = make("--eval", show, "show", f"FILTERS={choice}")
+        assert done.returncode == 0 and dict(line.split() for line in done.stdout.splitlines()) == wanted, (choice, done.stdout, done.stderr)
+        for image, names in holds.items():
+            subprocess.run(["sh", "tools/filters_txt.sh", str(pathlib.Path(image).with_name("filters.txt")), *names], check=True, timeout=60)
+        system_support.SET_IMAGES = list(holds)
+        try:
+            assert {name: system_support.image_with(name) for name in EVERY} == wanted, choice
+            try:
+                system_support.image_with("kff")
+            except AssertionError as problem:
+                assert "no image holds the filter kff" in str(problem)
+            else:
+                raise AssertionError("an image for kff")
+        finally:
+            system_support.SET_IMAGES = kept
+    done = make("--eval", "show: ; @echo $(call image_with,kff)", "show")
+    assert done.returncode != 0 and "no image holds a filter kff; filters: adaptive" in done.stderr, done.stderr
+
+
+# --- the default ------------------------------------------------------------------------------------------------------
+
+
+def decided():
+    """The issue's rule put to the table of the page."""
+    scores = {}
+    for title, group, name, cell in default_filter.PAGE.cells(default_filter.DOCUMENT.read_text(encoding="utf-8")):
+        if title == "RMSE by class":
+            scores.setdefault(group, {})[name.strip("`")] = float(cell)
+    assert set(scores) == set(score.CLASSES) and all(set(score.NAMED) <= set(found) for found in scores.values()), scores
+    return score.verdict(scores)
+
+
+@test
+def the_page_says_what_its_table_decides():
+    found = decided()
+    text = default_filter.DOCUMENT.read_text(encoding="utf-8")
+    assert f"The default is **`{found.default}`**" in text and found.why in text, found
+
+
+@test
+def every_build_starts_with_what_the_page_decides():
+    default = decided().default
+    ini = FLAG.findall(pathlib.Path("platformio.ini").read_text(encoding="utf-8"))
+    assert len(ini) == 1, ini
+    first = {"lib/filters/src/filter_list.h": EVERY[0], "FILTERS_everyday of mk/images.mk": SETS["everyday"][0],
+             "make without FILTERS": chosen_by_make([])[1][0], "platformio.ini": listed(f"-DFILTER_LIST(X)={ini[0]}")[0]}
+    assert all(name == default for name in first.values()), f"the page decides for {default}, but: {first}"
+
+
+@test
+def the_readme_names_the_default_that_the_page_decides():
+    default = decided().default
+    text = pathlib.Path("README.md").read_text(encoding="utf-8")
+    named = re.findall(r"`(\w+)` \(default\)", text) + re.findall(r"why `(\w+)` is the default", text)
+    assert len(named) >= 2 and set(named) == {default}, (default, named)
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_all())
