@@ -12,7 +12,7 @@ import default_score as score
 import default_streams as streams
 from default_score import CANDIDATE, CONTENTION, KEPT, NAMED, OWN
 from default_streams import BAD_READS, CLASSES, MOTIONS, RATES_HZ
-from page import Fault, Page
+from page import Fault, Page, run_as_program
 
 PROGRAM = "build/host/default_filter"
 JSON = pathlib.Path("build/default.json")
@@ -302,8 +302,7 @@ def facts(text):
 
 def check(text):
     """Numbers of the text that the tables below it do not hold."""
-    lines = text[text.index(BEGIN) + len(BEGIN):text.index(END)].strip("\n").split("\n")
-    return PAGE.differences(text, PAGE.filled(text, [*lines, ""], facts(text)))
+    return PAGE.differences(text, PAGE.filled(text, [*PAGE.inside(text), ""], facts(text)))
 
 
 def json_rows(t, real):
@@ -340,8 +339,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except (Fault, OSError, subprocess.TimeoutExpired) as problem:
-        print(f"default: {problem}", file=sys.stderr)
-        sys.exit(2)
+    run_as_program("default", main)

@@ -202,11 +202,14 @@ def scenario_jobs():
         for rate_hz in RATES_HZ:
             rows = round(scenario.seconds * rate_hz)
             if rate_hz == scenario.rate_hz and not model:
-                jobs.append(Job(source, rate_hz, SHIPPED / f"{source.name}.csv", 16, 1, True, rows, False))
+                path, divide = SHIPPED / f"{source.name}.csv", 1
             elif source.per_reading:
-                jobs.append(Job(source, rate_hz, made_path(source.name, rate_hz), 16, 1, True, rows, False))
+                path, divide = made_path(source.name, rate_hz), 1
             elif source.divide:
-                jobs.append(Job(source, rate_hz, made_path(source.name, FINE_HZ), 16, FINE_HZ // rate_hz, not model, rows, False))
+                path, divide = made_path(source.name, FINE_HZ), FINE_HZ // rate_hz
+            else:
+                continue
+            jobs.append(Job(source, rate_hz, path, 16, divide, not model, rows, False))
     return jobs
 
 

@@ -3,6 +3,7 @@ import hashlib
 import pathlib
 import re
 import subprocess
+import sys
 
 INLINE = re.compile(r"<!--=([^>]*?)-->([^<]*)<!--\.-->")
 KEPT = pathlib.Path("build/pages")  # where there is no git: pages as they were before a command wrote them
@@ -10,6 +11,15 @@ KEPT = pathlib.Path("build/pages")  # where there is no git: pages as they were 
 
 class Fault(Exception):
     """One sentence about what is wrong."""
+
+
+def run_as_program(name, main):
+    """Ends the program with main's status; 2 and one sentence where it cannot do its work."""
+    try:
+        sys.exit(main())
+    except (Fault, OSError, subprocess.TimeoutExpired) as problem:
+        print(f"{name}: {problem}", file=sys.stderr)
+        sys.exit(2)
 
 
 class Page:
@@ -33,6 +43,10 @@ class Page:
             return f"<!--={match[1]}-->{values[key]}<!--.-->"
 
         return INLINE.sub(number, head) + "\n".join([self.begin, *lines, self.end]) + INLINE.sub(number, tail)
+
+    def inside(self, text):
+        """The lines between the markers."""
+        return text[text.index(self.begin) + len(self.begin):text.index(self.end)].strip("\n").split("\n")
 
     def cells(self, text):
         """(title, row, column, cell) of the tables between the markers."""

@@ -6,7 +6,7 @@ import pathlib
 import subprocess
 import sys
 
-from page import Fault, Page
+from page import Fault, Page, run_as_program
 
 PROGRAM = "build/host/recordings"
 CSV = pathlib.Path("build/recordings.csv")
@@ -189,8 +189,7 @@ def facts(text):
 
 def check(text):
     """Numbers of the text that the tables below it do not hold."""
-    lines = text[text.index(BEGIN) + len(BEGIN):text.index(END)].strip("\n").split("\n")
-    return PAGE.differences(text, PAGE.filled(text, lines, facts(text)))
+    return PAGE.differences(text, PAGE.filled(text, PAGE.inside(text), facts(text)))
 
 
 def main():
@@ -213,8 +212,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except (Fault, OSError, subprocess.TimeoutExpired) as problem:
-        print(f"recordings: {problem}", file=sys.stderr)
-        sys.exit(2)
+    run_as_program("recordings", main)

@@ -17,7 +17,7 @@ try:
     from design.synthesis import by_formula, error_by_formula
 except ImportError as missing:
     sys.exit(f"synthesised: {missing.name} is missing: run make synthesised, which installs it")
-from page import Fault, Page
+from page import Fault, Page, run_as_program
 
 DOCUMENT = pathlib.Path("docs/synthesised-filters.md")
 PAGE = Page(DOCUMENT, "<!-- written by make synthesised: begin -->", "<!-- written by make synthesised: end -->")
@@ -233,8 +233,4 @@ def main(arguments=None):
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except (Fault, OSError, subprocess.TimeoutExpired) as problem:
-        print(f"synthesised: {problem}", file=sys.stderr)
-        sys.exit(2)
+    run_as_program("synthesised", main)

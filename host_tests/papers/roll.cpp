@@ -1,5 +1,6 @@
 #include "roll.hpp"
 #include "model.hpp"
+#include "support_roll_shapes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,31 +10,9 @@ namespace papers::roll
 {
 namespace
 {
-const double pi = std::acos(-1.0);
-
-double ramp(double s)
-{
-    return s;
-}
-
-double cosine(double s)
-{
-    return 0.5 - 0.5 * std::cos(pi * s);
-}
-
 double minimum_jerk(double s)
 {
     return s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
-}
-
-double bump(double s)
-{
-    return 0.5 - 0.5 * std::cos(2.0 * pi * s);
-}
-
-double sine(double s)
-{
-    return std::sin(2.0 * pi * s);
 }
 
 double triangle(double s)
@@ -59,11 +38,11 @@ double Profile::truth_deg(int k) const
 
 const std::array<Profile, 7> &profiles()
 {
-    static const std::array<Profile, 7> all{ { { "ramp30", 30.0, ramp },
-                                               { "cos60", 60.0, cosine },
+    static const std::array<Profile, 7> all{ { { "ramp30", 30.0, roll_ramp },
+                                               { "cos60", 60.0, roll_cosine },
                                                { "minjerk60", 60.0, minimum_jerk },
-                                               { "bump30", 30.0, bump },
-                                               { "sine30", 30.0, sine },
+                                               { "bump30", 30.0, roll_bump },
+                                               { "sine30", 30.0, roll_sine },
                                                { "triangle30", 30.0, triangle },
                                                { "steps30", 30.0, steps } } };
     return all;
