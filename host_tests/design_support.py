@@ -1,11 +1,36 @@
-"""What the tests of tools/design share: brute force, and the compiled library."""
+"""What the tests of tools/design share: the command, brute force, and the compiled library."""
+import contextlib
 import ctypes
+import importlib
+import io
+import json
 import pathlib
 import subprocess
 import sys
 
 sys.path.insert(0, "tools")
 OUT = pathlib.Path("build/design_tests")
+BASE = ["--rate", "100", "--sigma", "2", "--no-pictures"]
+
+
+def said(*arguments):
+    """(status, standard output, standard error) of the command, in this process."""
+    command = importlib.import_module("design.command")  # needs scipy, whose absence the tests tell themselves
+    out, error = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
+        try:
+            status = command.main([str(a) for a in arguments])
+        except SystemExit as stopped:
+            status = stopped.code
+    return status, out.getvalue(), error.getvalue()
+
+
+def answer(*arguments):
+    """(JSON, text) of a design that the command makes."""
+    path = OUT / "design.json"
+    status, out, error = said(*arguments, "--json", path)
+    assert status == 0, error
+    return json.loads(path.read_text(encoding="utf-8")), out
 
 
 def simulated(f, samples, wanted, v=None):

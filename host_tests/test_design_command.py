@@ -1,18 +1,12 @@
-"""The command of tools/design: what it refuses, in which words; that the compiled library accepts every configuration it prints and runs as the
-tool says; its pictures and JSON."""
-import contextlib
-import functools
-import io
-import json
+"""The command of tools/design: that the compiled library accepts every configuration it prints and runs as the tool says; its pictures and JSON.
+What it refuses: test_design_refusals.py."""
 import math
 import pathlib
 import random
 import re
 import sys
-from fractions import Fraction
 
-import design_support
-from design_support import OUT, Library, compiles_and_runs, simulated
+from design_support import BASE, OUT, Library, answer, compiles_and_runs, simulated
 from system_support import Skip, run, run_all, test
 
 try:
@@ -25,108 +19,10 @@ except ImportError:
 
     sys.exit(run_all())
 
-from design import command, configuration, measure, response, switching, synthesis  # noqa: E402
+from design import command, configuration, measure, response, switching  # noqa: E402
 from design.structure import Filter  # noqa: E402
 
-BASE = ["--rate", "100", "--sigma", "2", "--no-pictures"]
 LIBRARY = Library()
-
-
-def said(*arguments):
-    """(status, standard output, standard error) of the command, in this process."""
-    out, error = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
-        try:
-            status = command.main([str(a) for a in arguments])
-        except SystemExit as stopped:
-            status = stopped.code
-    return status, out.getvalue(), error.getvalue()
-
-
-refusal = functools.lru_cache(said)
-
-
-def answer(*arguments):
-    path = OUT / "design.json"
-    status, out, error = said(*arguments, "--json", path)
-    assert status == 0, error
-    return json.loads(path.read_text(encoding="utf-8")), out
-
-
-# arguments, what the sentence names
-REFUSED = (
-    (["--sigma", "2", "--noise-gain", "0.6"], ("--rate", "--period")),
-    (["--rate", "0", "--sigma", "2", "--noise-gain", "0.6"], ("--rate is 0", "above 0")),
-    (["--rate", "100", "--sigma", "-1", "--noise-gain", "0.6"], ("--sigma is -1", "above 0", "nearest")),
-    (["--rate", "100", "--sigma", "nan", "--noise-gain", "0.6"], ("--sigma is nan", "finite")),
-    (["--rate", "100", "--sigma", "inf", "--noise-gain", "0.6"], ("--sigma is inf", "finite")),
-    (["--rate", "100", "--noise-gain", "0.6"], ("--sigma", "--sigma-of")),
-    (["--rate", "100", "--sigma-of", "no/such.csv", "--noise-gain", "0.3"], ("no/such.csv", "No such file")),
-    (["--rate", "100", "--sigma-of", "README.md", "--noise-gain", "0.3"], ("README.md", "no columns x, y, z")),
-    (BASE, ("give a bound", "--error")),
-    ([*BASE, "--noise-gain", "0.4"], ("0.4", "(2, 1, 0)", "0.5000", "nearest: --noise-gain 0.50", "l = 1")),
-    ([*BASE, "--noise-gain", "1.5"], ("needs no filter", "nearest: 0.999")),
-    ([*BASE, "--noise-gain", "-1"], ("-1", "above 0", "nearest")),
-    ([*BASE, "--noise-gain", "nan"], ("nan", "finite")),
-    ([*BASE, "--error", "2"], ("--at", "acceleration")),
-    ([*BASE, "--error", "inf", "--at", "100"], ("--error is inf", "finite")),
-    ([*BASE, "--error", "0.01", "--at", "1000", "--noise-gain", "0.6"],
-     ("both bounds", "least noise gain is", "least error is", "nearest: --noise-gain")),
-    ([*BASE, "--a=-0.9", "--b", "0.1"], ("unstable", "1 + 2 a1 (1 - b0) = -0.62", "nearest: --a=-0.9 --b 0.44")),
-    ([*BASE, "-k", "0", "--b", "0.1,-0.5"], ("unstable", "pole", "nearest: --b")),
-    ([*BASE, "--a=-0.3,0.1", "-k", "1", "--b", "0.1"], ("--a has 2", "k = 1", "-k 2")),
-    ([*BASE, "--a=nan", "--b", "0.1"], ("finite",)),
-    ([*BASE, "-k", "1", "-l", "2", "--noise-gain", "0.3"], ("(2, 1, 2)", "sum a = -1", "astatism 3", "nearest")),
-    ([*BASE, "-v", "0", "--noise-gain", "0.3"], ("(0, 0, 0)", "v must be 1 or more")),
-    ([*BASE, "-v", "2", "-k", "0", "-l", "30", "--noise-gain", "0.3"], ("(2, 0, 30)", "at most 10")),
-    ([*BASE, "-k", "0", "--noise-gain", "0.6", "--band", "b7=0..1"], ("--band b7", "has b0;")),
-    ([*BASE, "-k", "0", "--noise-gain", "0.6", "--band", "b0=1..0.5"], ("ends before it begins",)),
-    ([*BASE, "--noise-gain", "0.6", "--band", "b0"], ("NAME=LOW..HIGH",)),
-    ([*BASE, "--noise-gain", "0.6", "--a=x"], ("'x' is not numbers",)),
-    ([*BASE, "-k", "0", "--noise-gain", "0.6", "--lsb-per-unit", "0"], ("--lsb-per-unit is 0",)),
-    ([*BASE, "--error", "1", "--at", "1", "--settle", "0.001"], ("nothing settles within less than a sample", "nearest: 0.01")),
-    (["--rate", "1e300", "--sigma", "1", "--error", "1", "--at", "1"], ("--rate is 1e+300", "within 1e-09..1e+09")),
-    (["--rate", "10", "--sigma-of", "/bin/ls", "--b", "0.5"], ("/bin/ls: not text",)),
-    (["--rate", "10", "--sigma", "1", "--b", "1e300"], ("beyond what can be computed", "nearest")),
-    ([*BASE, "--error", "0.001", "--at", "1", "-k", "0", "--settle", "0.01", "-l", "1", "-v", "3"],
-     ("no stable filter", "settles in time", "nearest")),
-)
-
-
-@test
-def what_cannot_be_is_refused_in_one_sentence():
-    for arguments, words in REFUSED:
-        status, out, error = refusal(*arguments)
-        last = error.strip().splitlines()[-1] if error.strip() else ""
-        assert status in (1, 2) and not out, (arguments, status, out[:100])
-        assert last.startswith("design: "), (arguments, error)
-        assert status == 2 or error.count("\n") == 1, (arguments, error)
-        for word in words:
-            assert word in last, f"{arguments}: '{word}' is not in: {last}"
-
-
-@test
-def the_nearest_is_feasible():
-    told = []
-    for arguments, _ in REFUSED:
-        _, _, error = refusal(*arguments)
-        found = re.search(r"nearest: ((?:--?[a-z-]+[= ]\S+ ?)+)", error.replace(",", ", ").replace(", ", ",") if "--b " in error else error)
-        if not found or "--band" in arguments:
-            continue
-        fixed = [word.rstrip(",") for word in found[1].split()]
-        names = {word.split("=")[0] for word in fixed if word.startswith("-")}
-        kept, skip = [], False
-        for i, word in enumerate(arguments):
-            if skip:
-                skip = False
-            elif word.split("=")[0] in names:
-                skip = "=" not in word
-            else:
-                kept.append(word)
-        status, _, error = said(*kept, *fixed)
-        told.append((arguments, fixed))
-        assert status == 0 or ("give" in error and "noise" in error), (kept, fixed, error)
-    assert len(told) >= 6, told
 
 
 @test
@@ -374,18 +270,6 @@ def it_runs_as_a_program():
             assert "a1" in run(python, "tools/design", *words).stdout
             continue
         run(python, "tools/design", *words, "--out", OUT / "examples", *(["--json", OUT / "example.json"] if "--json" in words else []))
-
-
-@test
-def infeasible_pairs_name_values_that_hold():
-    request = synthesis.Request(2, 1, 0)
-    least = float(synthesis.least_noise(request, 1.0).noise_gain())
-    status, _, error = said(*BASE, "--error", "0.01", "--at", "100", "--noise-gain", "0.55")
-    assert status == 1 and f"{least:.4f}" in error, error
-    told = float(re.search(r"least error is ([0-9.]+)", error)[1])
-    f = synthesis.least_error(request, 0.55)
-    assert abs(told - f.dynamic_error() * 0.01) < 1e-4 * told
-    assert Fraction(f.b[0]) > 0 and design_support.impulse_sum(f, 3000) <= 0.55 + 1e-9
 
 
 if __name__ == "__main__":

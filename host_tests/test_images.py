@@ -25,7 +25,8 @@ BAD = (("kff", "there is no filter kff;"), ("kf kff", "there is no filter kff;")
 def listed(*flags):
     """FILTER_LIST as the preprocessor has it."""
     source = '#include "filter_list.h"\n#define NAME(name) name\nlist: FILTER_LIST(NAME)\n'
-    done = subprocess.run(["gcc", "-E", "-P", "-Ilib/filters/src", *flags, "-xc", "-"], input=source, capture_output=True, text=True, timeout=60, check=True)
+    command = ["gcc", "-E", "-P", "-Ilib/filters/src", *flags, "-xc", "-"]
+    done = subprocess.run(command, input=source, capture_output=True, text=True, timeout=60, check=True)
     return done.stdout.split("list:")[1].split()
 
 

@@ -13,8 +13,8 @@ from .given import Wrong, given_filter
 from .measure import sigma_of_stream
 from .response import Endless
 from .structure import Filter
-from .synthesis import (ERROR_MAX, ERROR_MIN, LEAST_SHAPE, REGIONS, Infeasible, NoneFound, Request, check_order, least_error, least_noise, nearest_noise, ordinal,
-                        rounded)
+from .synthesis import (ERROR_MAX, ERROR_MIN, LEAST_SHAPE, REGIONS, Infeasible, NoneFound, Request, check_order, least_error, least_noise,
+                        nearest_noise, ordinal, rounded)
 
 EPILOG = """
 the structure, in the papers' letters

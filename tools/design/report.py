@@ -83,7 +83,8 @@ def facts_text(one, period_s, sigma, unit, scale, at_text):
         f"{sigma * one.noise_gain ** 0.5:.4g} {unit}",
         f"dynamic error   {one.dynamic_error:.6g} per {ordinal(one.v)} difference" +
         (f" = {one.dynamic_error * scale:.4g} {unit} {at_text}" if at_text else "") +
-        f"; on the way there at most {one.dynamic_error_on_the_way / abs(one.dynamic_error):.3f} times its size" if one.dynamic_error else "dynamic error   0",
+        f"; on the way there at most {one.dynamic_error_on_the_way / abs(one.dynamic_error):.3f} times its size"
+        if one.dynamic_error else "dynamic error   0",
         f"step            {peak}; within 2 % from sample {one.settled_at_sample} on "
         f"({one.settled_at_sample * period_s:.4g} s); slowest pole alone: {one.settling_by_slowest_pole}",
         f"frequency       -3 dB at {one.bandwidth_per_sample / period_s:.4g} Hz; largest gain {one.largest_gain:.3f}",

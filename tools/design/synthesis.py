@@ -323,7 +323,8 @@ def least_error(request, noise_max):
     if noise_max >= 1:
         raise Infeasible(f"a noise gain of {noise_max:g} needs no filter: the raw measurement has 1; nearest: {nearest_noise(request, 0.999)}")
     if noise_max < NOISE_MIN:
-        raise Infeasible(f"a noise gain of {noise_max:g} is below the {NOISE_MIN:g} that can be computed; nearest: {nearest_noise(request, NOISE_MIN)}")
+        raise Infeasible(f"a noise gain of {noise_max:g} is below the {NOISE_MIN:g} that can be computed; "
+                         f"nearest: {nearest_noise(request, NOISE_MIN)}")
     error = formula_error(request, noise_max)
     if error is not None:
         return least_noise(request, error)
