@@ -63,7 +63,7 @@ REFUSED = (
     ([*BASE, "--error", "1", "--at", "1", "--settle", "0.001"], ("nothing settles within less than a sample", "nearest: 0.01")),
     (["--rate", "1e300", "--sigma", "1", "--error", "1", "--at", "1"], ("--rate is 1e+300", "within 1e-09..1e+09")),
     (["--rate", "10", "--sigma-of", "/bin/ls", "--b", "0.5"], ("/bin/ls: not text",)),
-    (["--rate", "10", "--sigma", "1", "--b", "1e300"], ("beyond what can be computed", "nearest")),
+    (["--rate", "10", "--sigma", "1", "--b", "1e300"], ("unstable", "nearest: --a=0 --b 1")),
     (["--rate", "10", "--sigma", "1", "-v", "9", "--settle", "0.1", "--error", "1e-5", "--at", "1"],
      ("no stable filter", "settles in time", "nearest: --settle 0.")),
     ([*BASE, "--noise-gain", "inf"], ("inf", "finite", "nearest: --noise-gain 0.999")),

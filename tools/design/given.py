@@ -28,10 +28,10 @@ def given_filter(options, request):
 
     f = made(options.b)
     if not f.exact().stable():
-        raise Wrong(f"{parameters(f)} is unstable: {why_unstable(f)}; nearest: {nearest.on_the_way(made, a, options.b, nearest.is_stable)}")
+        raise Wrong(f"{parameters(f)} is unstable: {why_unstable(f)}; nearest: {nearest.on_the_way(made, a, options.b)}")
     if not nearest.ends(f):
         raise Wrong(f"the response of {parameters(f)} does not die out within {HORIZON_MAX:,} samples (pole radius {pole_radius(f):.9g}); "
-                    f"nearest: {nearest.on_the_way(made, a, options.b, nearest.ends)}")
+                    f"nearest: {nearest.on_the_way(made, a, options.b)}")
     return f
 
 

@@ -23,8 +23,9 @@ def raw(l):  # noqa: E741
     return (0.99999, *(0.0,) * l)
 
 
-def is_stable(f):
-    return f.exact().stable()
+def told_of(f):
+    """True when the filter is stable and its response ends."""
+    return f.exact().stable() and ends(f)
 
 
 def ends(f):
@@ -36,8 +37,8 @@ def ends(f):
     return True
 
 
-def on_the_way(made, a, b, good):
-    """On the way from B to the certainly good B = 1: the first that is good, rounded to the inside. `made` makes the filter of b0..bl."""
+def on_the_way(made, a, b):
+    """On the way from B to the certainly good B = 1: the first that can be told of, rounded to the inside. `made` makes the filter of b0..bl."""
 
     def at(share):
         return [(1 - share) * x + (share if j == 0 else 0.0) for j, x in enumerate(b)]
@@ -45,14 +46,14 @@ def on_the_way(made, a, b, good):
     low, high = 0.0, 1.0 if len(b) == 1 else 1 - 1e-9
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if good(made(at(middle))):
+        if told_of(made(at(middle))):
             high = middle
         else:
             low = middle
     for digits in range(4, 10):
         share = math.ceil(high * 10 ** digits + 1e-9) / 10 ** digits
         as_told = [float(x) for x in numbers(at(share)).split(",")]
-        if good(made(as_told)) and (digits == 9 or share <= 1.01 * high):
+        if told_of(made(as_told)) and abs(as_told[0] - at(high)[0]) <= 0.01 * abs(as_told[0]):
             return words(a, as_told)
     return words(a, raw(len(b) - 1))
 
