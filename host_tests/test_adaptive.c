@@ -162,6 +162,55 @@ static void a_gap_breaks_agreement(void)
     TEST_ASSERT_TRUE(f.third_lsb_uq24 < third + third / 8U);
 }
 
+/* A prediction at the end of the range and a sample beyond the gate: both are told. */
+static void a_gated_sample_keeps_the_saturation(void)
+{
+    adaptive_t f = settled(100, true);
+    f.gate_sigma_q8 = 8u * 256u;
+    f.x_lsb_q16 = 4600L * 65536;
+    f.rate_lsb_q24 = 20L * 16777216;
+    f.below = false;
+    (void)adaptive_update(&f, 4095);
+    TEST_ASSERT_TRUE(f.x_lsb_q16 < 4608L * 65536);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_GATED | FILTER_SATURATED, adaptive_flags(&f));
+}
+
+/* Memories out of reach are limited, not refused: to 3.3 (k = 0.6) and 4096 samples, the shortest to the slowest. */
+static void memories_are_limited(void)
+{
+    adaptive_config_t config;
+    adaptive_t f;
+    adaptive_defaults(&config, 1000);
+    config.slow_ms = 10; /* one sample */
+    config.fast_ms = 1;
+    TEST_ASSERT_TRUE(adaptive_init(&f, &config));
+    TEST_ASSERT_EQUAL_UINT16(39322, f.slow_uq16);
+    TEST_ASSERT_EQUAL_UINT16(39322, f.fast_uq16);
+    config.slow_ms = 60000; /* 6000 samples */
+    TEST_ASSERT_TRUE(adaptive_init(&f, &config));
+    TEST_ASSERT_EQUAL_UINT16(32, f.slow_uq16);
+    config.slow_ms = 200;
+    config.fast_ms = 500;
+    TEST_ASSERT_TRUE(adaptive_init(&f, &config));
+    TEST_ASSERT_EQUAL_UINT16(6553, f.slow_uq16);
+    TEST_ASSERT_EQUAL_UINT16(6553, f.fast_uq16);
+}
+
+static void reset_keeps_the_noise(void)
+{
+    adaptive_t f = settled(100, true);
+    adaptive_t before = f;
+    adaptive_reset(&f, -50);
+    TEST_ASSERT_EQUAL_UINT32(before.third_lsb_uq24, f.third_lsb_uq24);
+    TEST_ASSERT_EQUAL_UINT32(before.scatter_lsb_uq24, f.scatter_lsb_uq24);
+    TEST_ASSERT_EQUAL_UINT16(before.weight_uq16, f.weight_uq16);
+    TEST_ASSERT_EQUAL_INT32(-50L * 65536, f.x_lsb_q16);
+    TEST_ASSERT_EQUAL_INT32(0, f.rate_lsb_q24);
+    TEST_ASSERT_EQUAL_INT32(0, f.mean_lsb_q24);
+    TEST_ASSERT_EQUAL_UINT8(0, f.filled);
+    TEST_ASSERT_EQUAL_UINT32((uint32_t)f.slow_uq16 << 16, f.k_uq32);
+}
+
 static bool taken(uint16_t guard_q8, uint16_t slow_ms, uint16_t fast_ms, uint16_t confirm_ms, uint32_t rate_max)
 {
     adaptive_config_t config;
@@ -216,6 +265,9 @@ int main(void)
     RUN_TEST(memory_grows_by_half_a_sample);
     RUN_TEST(what_identification_off_means);
     RUN_TEST(a_gap_breaks_agreement);
+    RUN_TEST(a_gated_sample_keeps_the_saturation);
+    RUN_TEST(memories_are_limited);
+    RUN_TEST(reset_keeps_the_noise);
     RUN_TEST(limits_of_the_parameters);
     RUN_TEST(defaults_follow_one_rule);
     return UNITY_END();

@@ -24,7 +24,8 @@
  * may go on telling it, and need not. Off (0): both are the square root of that R, always.
  *
  * FILTER_GATED tells that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be
- * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Functions: filter.h.
+ * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the
+ * identified noise and forgets rate, mean innovation and history; the memory is the slowest. Functions: filter.h.
  */
 #ifndef ADAPTIVE_H
 #define ADAPTIVE_H
@@ -40,8 +41,8 @@ typedef struct {
     uint16_t guard_sigma_q8; /* gate in sigmas of the innovation: 1..16 (256..4096); 0: unguarded */
     uint32_t r_lsb2_q8;      /* measurement variance R, LSB^2: 0.01..1000 (3..256000); 0 is refused */
     uint16_t identify;       /* 1: noise identified on line, 0: R as given */
-    uint16_t slow_ms;        /* slowest memory: 10..60000, at least 4 and at most 4096 samples of it */
-    uint16_t fast_ms;        /* shortest memory: 1..60000, at least 3.3 samples and at most the slowest */
+    uint16_t slow_ms;        /* slowest memory: 10..60000; limited to 3.3..4096 samples, not refused */
+    uint16_t fast_ms;        /* shortest memory: 1..60000; limited to 3.3 samples..the slowest, not refused */
     uint16_t confirm_ms;     /* time until a jump is believed: 0..10000, at least 3 samples */
     uint32_t rate_max_lsb_s; /* limit of the estimated rate, LSB/s: 10..1000000, at most 127 LSB per sample of it */
 } adaptive_config_t;
