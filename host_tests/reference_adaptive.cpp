@@ -134,8 +134,8 @@ double disperse(reference_adaptive_t &f, const Step &s)
     return weight * (error + s.spread.e) + q24;
 }
 
-// Six terms on end below half of the mean, among the first sixteen: the largest of them is the mean. Terms are exact but
-// for a limit that is none of these; of the mean half is known to 9 bits.
+// Six terms on end below half of the mean, among the first sixteen: the largest of them is the mean. Terms are exact
+// but for a limit that is none of these; of the mean half is known to 9 bits.
 double doubt(reference_adaptive_t &f, double term, double before, double error, Step &s)
 {
     f.small = s.above(0.5 * before, term, q8) ? f.small + 1 : 0;

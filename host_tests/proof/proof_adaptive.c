@@ -1,6 +1,5 @@
 /* adaptive: any int16, any state within its bounds; the same bounds afterwards. */
 #include "adaptive_bounds.h"
-
 /*@ requires BOUND_BUT_NOISE(f); ensures NOISE(f); ensures BOUND_BUT_NOISE(f); */
 void adaptive_set_noise(adaptive_t *f, uint32_t r_lsb2_q8);
 /*@ ensures \result ==> BOUND(f); */
@@ -14,7 +13,6 @@ int32_t adaptive_coast(adaptive_t *f);
 
 #include "filter_common.c"
 #include "fx.c"
-
 /* Other entries prove a limit_x of their own. */
 #define limit_x limit_estimate
 #include "adaptive.c"

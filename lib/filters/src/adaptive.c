@@ -57,11 +57,7 @@ FX_INLINE void count_term(adaptive_t *f)
     }
 }
 
-/*
- * What the mean of the start becomes with a term. A bad read among the first terms makes it many times too large; the
- * terms after it tell: when so many on end lie below its half, which clean ones do in 1 start of 100, the largest of
- * them takes its place.
- */
+/* The mean of the start. A bad read makes it far too large: of so many terms on end below its half the largest is it. */
 FX_INLINE uint32_t doubted(adaptive_t *f, uint32_t mean_uq24, uint16_t term_uq8, uint16_t before_uq8)
 {
     if (term_uq8 >= before_uq8 >> 1) {
@@ -77,6 +73,11 @@ FX_INLINE uint32_t doubted(adaptive_t *f, uint32_t mean_uq24, uint16_t term_uq8,
     }
     f->small = 0;
     return (uint32_t)f->largest_lsb_uq8 << 16;
+}
+
+FX_INLINE bool is_first_term(const adaptive_t *f)
+{
+    return f->terms == 2U && f->weight_uq16 == WEIGHT_START_UQ16;
 }
 
 /* Noise of a sample from |z - 3 z1 + 3 z2 - z3|, limited to 2.48 times the sigma that is expected of it. */
@@ -95,7 +96,7 @@ FX_NOINLINE void identify(adaptive_t *f, int16_t z_lsb)
         term_uq8 = limit_uq8;
     }
     uint32_t mean = averaged(f->third_lsb_uq24, term_uq8, mean_uq8, f->weight_uq16);
-    if (f->terms == 2U && f->weight_uq16 == WEIGHT_START_UQ16) {
+    if (is_first_term(f)) {
         mean = (uint32_t)term_uq8 << 16; /* nothing is left of the R to start from */
     } else if (f->weight_uq16 >= WEIGHT_DOUBTED_UQ16) {
         mean = doubted(f, mean, term_uq8, mean_uq8);
