@@ -57,7 +57,7 @@ FX_INLINE void count_term(adaptive_t *f)
     }
 }
 
-/* The mean of the start. A bad read makes it far too large: of so many terms on end below its half the largest is it. */
+/* The mean of the start. A bad read makes it large: then the largest of so many terms below its half replaces it. */
 FX_INLINE uint32_t doubted(adaptive_t *f, uint32_t mean_uq24, uint16_t term_uq8, uint16_t before_uq8)
 {
     if (term_uq8 >= before_uq8 >> 1) {
