@@ -30,7 +30,7 @@ typedef struct {
  * What is longer but rare (five warm-up samples, variances on all axes at once, replies, a change of settings) waits
  * in the sensor's FIFO and the driver's queue, 39 samples together, and is caught up with what a sample leaves over.
  */
-#define SETTINGS_REST_CYCLES 6500u
+#define SETTINGS_REST_CYCLES 6350u
 #define SETTINGS_ROW_CYCLES 9500u
 
 extern settings_t settings;
