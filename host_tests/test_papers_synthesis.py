@@ -3,6 +3,7 @@ the judge of fewer runs, the markers of the page, and the messages, each with a 
 import copy
 import math
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -264,7 +265,7 @@ def the_page_tells_of_adaptive_as_measured():
     plain = value(rows, "adaptive_clean_ramp30", "adaptive(guard=0)", "fixed", "mse_6_10")
     assert f"(<= {synthesis.shown(1.25 * plain)})" in table[3], table[3]
     assert [line for line in curve if "as shipped" in line][0].startswith("| `adaptive(guard=3)` | 3 sigma, as shipped | "), curve
-    assert len(curve) == 8 + 3 and len(noise) == 5 + 3 and "0.970 to 1.03" in noise[2] and "(<= 0.270)" in noise[2], noise
+    assert len(curve) == 8 + 3 and len(noise) == 5 + 3 and "(<= 0.270)" in noise[2], noise
     # the twin: another gate as shipped is the one that is marked
     next(r for r in rows if r["metric"] == "guard_sigma")["value"] = 4.0
     assert [line for line in synthesis.guard_table(rows) if "as shipped" in line][0].startswith("| `adaptive(guard=4)` |")
@@ -272,6 +273,8 @@ def the_page_tells_of_adaptive_as_measured():
     part = papers_page.between(papers_page.DOCUMENT.read_text(encoding="utf-8"), "000")[1]
     headings = [heading for heading, _ in synthesis.tables_000(rows) if heading.startswith("adaptive: ")]
     assert len(headings) == 3 and all(part.count(f"### {heading}\n") == 1 for heading in headings), headings
+    # 3 % at the page's number of runs; fewer are allowed more for chance
+    assert re.search(r"^\| `adaptive` \| rest 10 hz \| .* \| 0.970 to 1.03 \| .* \(<= 0.270\) \|$", part, re.M), headings
 
 
 @test

@@ -24,7 +24,7 @@ LISTED     := $(shell sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/fil
 NOT_002    := $(shell sed -n 's/.*others{ \(.*\) };/\1/p' host_tests/papers/scope.hpp | tr -d '",')
 ONLY_002   := -D'FILTER_LIST(X)=$(foreach f,$(filter-out $(NOT_002),$(LISTED)),X($f))'
 COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(filter-out $(NOT_002:%=lib/filters/src/%.c) %/synth_common.c,$(wildcard lib/filters/src/*.c)))
-COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -Wno-deprecated-enum-enum-conversion -O0 -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers $(ONLY_002)
+COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers $(ONLY_002)
 $(P)/operations/fx.o: COUNT_CXX += -DCOUNTING_PRIMITIVES
 
 $(P)/operations/%.o: lib/filters/src/%.c $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk

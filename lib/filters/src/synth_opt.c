@@ -148,7 +148,7 @@ void synth_opt_probe(const synth_opt_t *f, filter_probe_t *out)
 {
     synth_probe_core(&f->core, out);
     if (f->core.collected > FILTER_WARM_UP_SAMPLES) {
-        uint8_t at = (uint8_t)(SYNTH_OPT_COMMON + SYNTH_OPT_STEPS);
+        uint8_t at = (uint8_t)((uint8_t)SYNTH_OPT_COMMON + (uint8_t)SYNTH_OPT_STEPS);
         uint16_t noise_gain_uq16 = f->variant_u ? (uint16_t)U_NOISE_GAIN_UQ16 : fx_flash_u16(&exact_b0_uq16[at]);
         if (f->core.collected != SYNTH_STEADY && f->core.gain_uq16 != 0U) {
             noise_gain_uq16 = f->core.gain_uq16;

@@ -29,7 +29,7 @@ const filter_descriptor_t synth_plus_descriptor FX_FLASH = {
  * are at most 0.13 apart.
  */
 enum { LINE_END = 31 };
-static const uint16_t line_memory_uq16[LINE_END - SYNTH_FIRST_GAIN] FX_FLASH = {
+static const uint16_t line_memory_uq16[(uint8_t)LINE_END - (uint8_t)SYNTH_FIRST_GAIN] FX_FLASH = {
     24966, 23406, 21845, 20389, 19065, 17873, 16804, 15844, 14980, 14199, 13493, 12850, 12264,
     11727, 11235, 10781, 10361, 9973,  9612,  9276,  8962,  8669,  8394,  8136,  7893,  7663,
 };
