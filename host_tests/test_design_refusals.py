@@ -60,6 +60,8 @@ REFUSED = (
     ([*BASE, "--noise-gain", "0.6", "--band", "b0"], ("NAME=LOW..HIGH",)),
     ([*BASE, "--noise-gain", "0.6", "--a=x"], ("'x' is not numbers",)),
     ([*BASE, "-k", "0", "--noise-gain", "0.6", "--lsb-per-unit", "0"], ("--lsb-per-unit is 0",)),
+    ([*BASE, "-k", "0", "--noise-gain", "0.6", "--band", "b0=0..1e400"], ("NAME=LOW..HIGH",)),
+    ([*BASE, "--error", "1", "--at", "1", "--settle", "0"], ("--settle is 0", "above 0", "nearest: 0.01")),
     ([*BASE, "--error", "1", "--at", "1", "--settle", "0.001"], ("nothing settles within less than a sample", "nearest: 0.01")),
     (["--rate", "1e300", "--sigma", "1", "--error", "1", "--at", "1"], ("--rate is 1e+300", "within 1e-09..1e+09")),
     (["--rate", "10", "--sigma-of", "/bin/ls", "--b", "0.5"], ("/bin/ls: not text",)),

@@ -67,6 +67,14 @@ static inline void limit_estimate(adaptive_t *f, int32_t x_lsb_q16);
 */
 static inline uint32_t averaged(uint32_t mean_uq24, uint16_t term_uq8, uint16_t from_uq8, uint16_t weight_uq16);
 
+/* The mean of before, or a term: both are told apart at the least that is kept, as those of averaged. */
+/*@ requires SMALL(f) && term_uq8 <= 40704 && mean_uq24 <= THIRD_END;
+    assigns f->small, f->largest_lsb_uq8, \result \from f->small, f->largest_lsb_uq8, mean_uq24, term_uq8, before_uq8;
+    ensures SMALL(f);
+    ensures \result < THIRD_LEAST || THIRD_LEAST <= \result <= THIRD_END;
+*/
+static inline uint32_t doubted(adaptive_t *f, uint32_t mean_uq24, uint16_t term_uq8, uint16_t before_uq8);
+
 #define STAGE(f, n) ((f)->stage == (n) && (f)->weight_uq16 == 32768 / (n) && 1 <= (f)->terms <= 2 * (n))
 /*@ requires NOISE(f) && HISTORY(f) && SAMPLE(z_lsb);
     requires WEIGHTS(f) && LAST(f) && SMALL(f);

@@ -117,7 +117,22 @@ void proof_averaged(void)
     }
 }
 
-/* Uses: averaged */
+/* Each of mean, term and largest term below the least mean that is kept, and from it on. */
+void proof_doubted(void)
+{
+    adaptive_t f;
+    any_state(&f);
+    //@ loop unroll 8;
+    for (uint8_t i = 0; i < 8U; i++) {
+        uint32_t mean = (i & 1U) ? ANY_U32(THIRD_LEAST, THIRD_END) : ANY_U32(0, THIRD_LEAST - 1);
+        uint16_t term = (i & 2U) ? ANY_U16(46, 40704) : ANY_U16(0, 45);
+        f.largest_lsb_uq8 = (i & 4U) ? ANY_U16(46, 40704) : ANY_U16(0, 45);
+        f.small = ANY_U8(0, 5);
+        (void)doubted(&f, mean, term, ANY_U16(0, UINT16_MAX));
+    }
+}
+
+/* Uses: averaged, doubted */
 void proof_identify(void)
 {
     adaptive_t f;

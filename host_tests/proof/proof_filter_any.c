@@ -46,11 +46,9 @@
 
 #define parameters parameters_adaptive
 #define legal legal_adaptive
-#define within within_adaptive
 #include "adaptive_setup.c"
 #undef parameters
 #undef legal
-#undef within
 #define parameters parameters_kf3
 #define limited limited_kf3
 #define correct correct_kf3

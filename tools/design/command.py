@@ -48,7 +48,7 @@ def band_range(text):
     low, _, high = limits.partition("..")
     try:
         return name, (float(Fraction(low)), float(Fraction(high)))
-    except (ValueError, ZeroDivisionError):
+    except (ValueError, ZeroDivisionError, OverflowError):
         raise argparse.ArgumentTypeError(f"'{text}' is not NAME=LOW..HIGH, as b0=0.5..1") from None
 
 
@@ -85,9 +85,9 @@ SMALLEST, LARGEST = 1e-9, 1e9  # of what a person can mean; within them nothing 
 AT_THE_END = 1e-9  # share by which rounding may move a bound that is one of the ends
 
 
-def finite_positive(value, name):
+def finite_positive(value, name, least=0.001):
     if not math.isfinite(value) or value <= 0:
-        raise Wrong(f"{name} is {value:g}, but must be finite and above 0; nearest: 0.001")
+        raise Wrong(f"{name} is {value:g}, but must be finite and above 0; nearest: {least:g}")
     if not SMALLEST <= value <= LARGEST:
         raise Wrong(f"{name} is {value:g}, but must be within {SMALLEST:g}..{LARGEST:g}; nearest: {SMALLEST if value < 1 else LARGEST:g}")
     return value
@@ -134,7 +134,7 @@ def checked(options):
     error_max = error_bound(options.error, scale, v) if options.error is not None else None
     slowest = None
     if options.settle is not None:
-        if finite_positive(options.settle, "--settle") < period_s:
+        if finite_positive(options.settle, "--settle", period_s) < period_s:
             raise Wrong(f"--settle is {options.settle:g} s, but nothing settles within less than a sample; nearest: {period_s:g}")
         slowest = 0.02 ** (period_s / options.settle)
     request = Request(v, k, l, REGIONS[options.region or "paper"], options.a, slowest)

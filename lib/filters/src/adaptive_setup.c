@@ -102,14 +102,6 @@ static void set_limits(adaptive_t *f, const adaptive_config_t *config)
     }
 }
 
-static uint32_t within(uint32_t v, uint32_t min, uint32_t max)
-{
-    if (v < min) {
-        return min;
-    }
-    return (v > max) ? max : v;
-}
-
 FX_ONCE bool adaptive_init(adaptive_t *f, const adaptive_config_t *config)
 {
     if (!legal(config)) {
@@ -136,9 +128,10 @@ void adaptive_set_noise(adaptive_t *f, uint32_t r_lsb2_q8)
     if (f->identify && (f->terms != 2U || f->weight_uq16 != WEIGHT_START_UQ16)) {
         return;
     }
-    uint16_t sigma_q10 = fx_isqrt32(filter_limited_r_lsb2_q8(r_lsb2_q8) << 12); /* 110..32381 */
-    f->third_lsb_uq24 = within(fx_mul_u16(sigma_q10, THIRD_OF_SIGMA_Q8) << 6, THIRD_MIN_LSB_UQ24, UINT32_MAX);
-    f->scatter_lsb_uq24 = within((uint32_t)sigma_q10 << 14, SCATTER_MIN_LSB_UQ24, SCATTER_MAX_LSB_UQ24);
+    uint16_t sigma_q10 = fx_isqrt32(filter_limited_r_lsb2_q8(r_lsb2_q8) << 12);
+    sigma_q10 = (sigma_q10 < 110U) ? 110U : sigma_q10; /* the root of the least R is: for the proof, which knows no roots */
+    f->third_lsb_uq24 = fx_mul_u16(sigma_q10, THIRD_OF_SIGMA_Q8) << 6; /* within what identify keeps */
+    f->scatter_lsb_uq24 = (uint32_t)sigma_q10 << 14;
 }
 
 FX_ONCE void adaptive_reset(adaptive_t *f, int16_t z0_lsb)
