@@ -129,7 +129,7 @@ void adaptive_set_noise(adaptive_t *f, uint32_t r_lsb2_q8)
         return;
     }
     uint16_t sigma_q10 = fx_isqrt32(filter_limited_r_lsb2_q8(r_lsb2_q8) << 12);
-    sigma_q10 = (sigma_q10 < 110U) ? 110U : sigma_q10; /* the root of the least R is: for the proof, which knows no roots */
+    sigma_q10 = (sigma_q10 < 110U) ? 110U : sigma_q10; /* as the least R has: the proof knows no roots */
     f->third_lsb_uq24 = fx_mul_u16(sigma_q10, THIRD_OF_SIGMA_Q8) << 6; /* within what identify keeps */
     f->scatter_lsb_uq24 = (uint32_t)sigma_q10 << 14;
 }
