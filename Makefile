@@ -97,7 +97,7 @@ $(H)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(WARNINGS) $(SANITIZE) -MMD -MP -c $< -o $@
 
-# the references: Eigen asserts its own bounds, and the address sanitizer would make them ten times as long
+# the references: Eigen asserts its own bounds, and test_adaptive_reference would take a minute more with the address sanitizer
 $(H)/%.o: %.cpp Makefile
 	@mkdir -p $(@D)
 	@$(HOST_CXX) -std=c++17 -O2 -g -Wall -Wextra -Werror -Ihost_tests $(HOST_INC) -isystem /usr/include/eigen3 -fsanitize=undefined -fno-sanitize-recover=all -MMD -MP -c $< -o $@

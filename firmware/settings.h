@@ -29,6 +29,7 @@ typedef struct {
  * of the main loop, three noise estimates, and new variances as often as an estimate can leave the last by an eighth.
  * What is longer but rare (five warm-up samples, variances on all axes at once, replies, a change of settings) waits
  * in the sensor's FIFO and the driver's queue, 39 samples together, and is caught up with what a sample leaves over.
+ * At 800 Hz the two leave 4,150 cycles, 1,383 for each axis, to a filter of which every row goes out: adaptive's 1,370.
  */
 #define SETTINGS_REST_CYCLES 6350u
 #define SETTINGS_ROW_CYCLES 9500u

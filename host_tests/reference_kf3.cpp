@@ -1,5 +1,6 @@
 // A Kalman filter of three states in matrix form, in double; the update in Joseph's form, symmetric by construction.
 #include "reference_kf3.h"
+#include "reference_linear.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -199,18 +200,9 @@ double reference_kf3_noise_gain(const reference_kf3_t *f)
     return squares;
 }
 
-// The n-th root of the norm of M^n, n = 2^30, by squaring.
 double reference_kf3_radius(const reference_kf3_t *f)
 {
-    Matrix m = closed_loop(*f);
-    double logarithm = 0.0;
-    for (int n = 0; n < 30; n++) {
-        const double size = m.norm();
-        logarithm = 2.0 * (logarithm + std::log(size));
-        m /= size;
-        m = product(m, m);
-    }
-    return std::exp((logarithm + std::log(m.norm())) / 1073741824.0);
+    return linear::spectral_radius(closed_loop(*f));
 }
 
 // The roots of the characteristic polynomial by the cosine of a third of an angle.

@@ -1,22 +1,11 @@
 #include "reference_linear.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <cmath>
 
 double linear::spectral_radius(const Eigen::MatrixXd &f)
 {
-    Eigen::MatrixXd power = f; // F^(2^i) e^(-logarithm 2^i)
-    double logarithm = 0.0;
-    for (int i = 0; i < 60; i++) {
-        const double norm = power.norm();
-        if (norm == 0.0) {
-            return 0.0;
-        }
-        logarithm += std::log(norm) / std::exp2(i);
-        power /= norm;
-        power = (power * power).eval();
-    }
-    return std::exp(logarithm);
+    return f.eigenvalues().cwiseAbs().maxCoeff();
 }
 
 Eigen::MatrixXd linear::lyapunov(Eigen::MatrixXd f, Eigen::MatrixXd q)

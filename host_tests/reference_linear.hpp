@@ -6,7 +6,7 @@
 
 namespace linear
 {
-// Largest |eigenvalue| of a square matrix, by Gelfand: the limit of ||F^n||^(1/n), n doubled 60 times.
+// Largest |eigenvalue| of a square matrix.
 double spectral_radius(const Eigen::MatrixXd &f);
 
 // X = F X F' + Q of a stable F, by doubling.

@@ -55,5 +55,14 @@ def program_that_is_not_there_is_a_failure_that_names_it():
     assert told(status, said)[0] == (1, 1, 0) and "nothing: No such file" in said
 
 
+@test
+def every_test_of_the_tools_is_in_the_list():
+    """But those of make check and make piocheck."""
+    here = {path.stem for path in pathlib.Path("host_tests").glob("test_*.py")}
+    assert here - {"test_planted", "test_platformio"} == {*run_tests.PLAIN, *run_tests.WITH_NUMPY}
+    assert set(run_tests.FIRST) <= {"system_tests", "bitexact"} | here | {name for name in run_tests.FIRST if name.startswith("chip_")} | {
+        path.stem for path in pathlib.Path("host_tests").glob("test_*.c")}
+
+
 if __name__ == "__main__":
     sys.exit(run_all())

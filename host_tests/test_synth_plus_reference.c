@@ -105,6 +105,25 @@ static void region_is_exactly_the_stable_one(void)
     TEST_ASSERT_TRUE(taken > 5000 && refused > 5000);
 }
 
+/*
+ * The reference's own radius where poles lie on each other: critically damped alpha-beta (two at theta) and the steady
+ * Singer filter with rho = 1 (three: trace 3 - k0 - k1 = 3 theta, minors 3 - 2 k0 - k1 + k2 = 3 theta^2, 1 - k0 =
+ * theta^3). Rounding moves such poles by the root of its size.
+ */
+static void poles_on_each_other_have_their_radius(void)
+{
+    for (double theta = 0.3; theta < 0.9995; theta += 0.0333) {
+        reference_taps_t two = { 0.0, 1.0 - theta * theta, 0.0, 0.0 };
+        two.b1 = (1.0 - theta) * (1.0 - theta) - two.b0;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-7, theta, reference_plus_radius(&two));
+        double k[3] = { 1.0 - theta * theta * theta, 0.0, 0.0 };
+        k[1] = 3.0 - 3.0 * theta - k[0];
+        k[2] = 3.0 * theta * theta - 3.0 + 2.0 * k[0] + k[1];
+        reference_taps_t three = reference_singer_taps(1.0, k);
+        TEST_ASSERT_DOUBLE_WITHIN(5e-5, theta, reference_plus_radius(&three));
+    }
+}
+
 /* Closed form against the Lyapunov equation, relative error as synth_plus.h says. */
 static void noise_gain_is_that_of_the_reference(void)
 {
@@ -267,6 +286,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(contains_alpha_beta);
     RUN_TEST(contains_the_steady_singer_filter);
+    RUN_TEST(poles_on_each_other_have_their_radius);
     RUN_TEST(region_is_exactly_the_stable_one);
     RUN_TEST(noise_gain_is_that_of_the_reference);
     RUN_TEST(defaults_are_the_gains_of_kf);

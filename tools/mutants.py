@@ -28,12 +28,15 @@ def load():
     return mutants
 
 
+COMPLETE = ".complete"  # a copy that was not cut short
 BUILT = ("host", "papers", "sim", "uno")  # folders of build that the first copy begins with
 
 
 def prepare():
     """A copy of what git knows, with the downloads shared. A new copy keeps the times of the files and takes what is built along."""
-    new = not TREE.exists()
+    new = not (TREE / COMPLETE).exists()
+    if new:
+        shutil.rmtree(TREE, ignore_errors=True)
     TREE.mkdir(parents=True, exist_ok=True)
     listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True, check=True)
     for name in listed.stdout.splitlines():
@@ -44,7 +47,7 @@ def prepare():
         if not target.exists() or target.read_bytes() != source.read_bytes():
             # later ones with a new time, so that make builds them anew
             (shutil.copy2 if new else shutil.copy)(source, target)
-    known = set(listed.stdout.splitlines())
+    known = {COMPLETE, *listed.stdout.splitlines()}
     for path in list(TREE.rglob("*")):
         inside = path.relative_to(TREE)
         if inside.parts[0] != "build" and path.is_file() and str(inside) not in known:
@@ -57,6 +60,7 @@ def prepare():
         link.parent.mkdir(exist_ok=True)
         if not link.exists():
             link.symlink_to(pathlib.Path("build", shared).resolve())
+    (TREE / COMPLETE).touch()
 
 
 def make(*targets):

@@ -44,7 +44,7 @@ def adaptive_table(rows):
     for name, words, kinds in (("adaptive(guard=0)", "no guard", ADAPTIVE_KINDS[:1]),
                                (f"adaptive(guard={chosen_guard(rows) or 0:g})", "guard as shipped", ADAPTIVE_KINDS)):
         for kind, title in kinds:
-            cells = [[pick(rows, f"adaptive_{kind}_{turn}", name, "fixed", metric) for metric in windows(names=("2_5", "6_10", "11_15"))]
+            cells = [[pick(rows, f"adaptive_{kind}_{turn}", name, "fixed", metric) for metric in windows(names=("0_5", "2_5", "6_10", "11_15"))]
                      for turn in ADAPTIVE_TURNS]
             if all(row for found in cells for row in found):
                 lines.append([f"`{name}`", f"{words}, {title}", *(" / ".join(limited(row) for row in found) for found in cells)])

@@ -19,6 +19,7 @@ PLAIN = ["test_flash", "test_bench", "test_papers", "test_papers_synthesis", "te
 WITH_NUMPY = ["test_plot_run", "test_robust", "test_design", "test_design_command", "test_design_refusals", "test_synthesised"]
 FIRST = ["system_tests", "bitexact", "test_design_command", "test_design", "test_design_refusals", "chip_filter_sequence_2", "chip_filter_sequence_1",
          "test_synth_opt_reference", "test_flash"]  # begun before the others: what takes long begins early
+running = set()  # programs, to be ended with this one
 
 
 def commands(tests):
@@ -39,8 +40,11 @@ def run(name, command):
     """(status, what it said, seconds)"""
     began = time.monotonic()
     try:
-        done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
-        status, said = done.returncode, done.stdout.decode("utf-8", "replace")
+        with subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as program:
+            running.add(program)
+            said = program.communicate()[0].decode("utf-8", "replace")
+            status = program.returncode
+        running.discard(program)
     except OSError as why:
         status, said = 127, f"{command[0]}: {why.strerror}\n"
     (OUT / f"{name}.log").write_text(said, encoding="utf-8")
@@ -77,6 +81,8 @@ def main():
                 total = [a + b for a, b in zip(total, tell(jobs[job], *job.result()))]
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
+            for program in set(running):
+                program.terminate()
             raise
     tests, failures, ignored = total
     print(f"skipped: {ignored} (each with its reason above)")

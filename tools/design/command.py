@@ -227,6 +227,9 @@ def alternatives(task, f):
 
 def default_band(f, ranges):
     known = dict(ranges)
+    if len(known) < len(ranges):
+        twice = next(name for i, (name, _) in enumerate(ranges) if name in dict(ranges[:i]))
+        raise Wrong(f"--band {twice} is given twice; nearest: one of the two")
     names = [f"a{i + 1}" for i in range(f.k)] + [f"b{j}" for j in range(f.l + 1)]
     strange = sorted(set(known) - set(names))
     if strange:

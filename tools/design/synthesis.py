@@ -45,8 +45,10 @@ class Region:
     a_sum: tuple  # of a1 + ... + ak
     b0: tuple = (1e-9, B0_MAX)
 
-    def text(self):
-        return f"{self.a_sum[0]:.4g} <= sum a <= {self.a_sum[1]:.4g}" + (f", b0 >= {self.b0[0]:g}" if self.b0[0] > 1e-6 else "")
+    def text(self, of_a=True):
+        """What is asked of a (where there is one to choose) and b0; "" for nothing."""
+        words = [f"{self.a_sum[0]:.4g} <= sum a <= {self.a_sum[1]:.4g}"] if of_a else []
+        return ", ".join(words + ([f"b0 >= {self.b0[0]:g}"] if self.b0[0] > 1e-6 else []))
 
 
 REGIONS = {
@@ -221,8 +223,8 @@ class Request:
 
     @property
     def limits(self):
-        words = [self.region.text()] if self.k and self.fixed_a is None else []
-        return " with " + words[0] if words else ""
+        words = self.region.text(bool(self.k) and self.fixed_a is None)
+        return f" with {words}" if words else ""
 
     @property
     def plain(self):

@@ -21,7 +21,10 @@
  * feeds the guard, because motion that the line does not follow widens it); by turns, a sample each, and each limited
  * to 2.5 times what it is expected to be (3.1 for the differences' mean). R as configured or told by set_noise before
  * the first difference is what both start from, later calls change nothing: a pipeline that estimates an R of its own
- * may go on telling it, and need not. Off (0): both are the square root of that R, always.
+ * may go on telling it, and need not. The differences' mean is their first one, unlimited for four; until the
+ * sixteenth, six on end below its half put the largest of them in its place: what one bad read at the start leaves.
+ * Below a sigma of 0.5 LSB most differences are 0 and R comes out too small. Off (0): both are the square root of that
+ * R, always.
  *
  * FILTER_GATED tells that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be
  * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the
