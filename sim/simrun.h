@@ -13,6 +13,7 @@
 
 #include "adxl345_model.h"
 #include "sim_avr.h"
+#include "simrun_judge.h"
 #include "stream.h"
 #include "twi_peripheral.h"
 
@@ -31,7 +32,8 @@ typedef enum {
     EXIT_UART = 6,     /* a byte written to a UART that was not ready: lost on hardware */
     EXIT_RESETS = 7,   /* number of resets is not --expect-resets */
     EXIT_STOPPED = 8,  /* the firmware slept with interrupts off */
-    EXIT_STALLED = 9   /* no --max-ms, and the sensor was not used for 20 s: the stream would never end */
+    EXIT_STALLED = 9,  /* no --max-ms, and the sensor was not used for 20 s: the stream would never end */
+    EXIT_WRONG = 10    /* --judge, and a row is wrong, stale or stamped before the one ahead of it */
 } exit_status_t;
 
 /* --- options --- */
@@ -45,10 +47,10 @@ typedef struct {
 
 typedef struct {
     const char *fw, *in, *out, *served, *eeprom, *stats, *profile, *vcd, *bootloader, *filter, *span;
-    bool loop, pty, blank;
+    bool loop, pty, blank, judge;
     double ppm, max_ms; /* max_ms 0: none */
     unsigned expect_resets, gdb_port;
-    uint32_t seed;
+    uint32_t seed, clock_start_us;
     typed_line_t typed[TYPED_MAX];
     size_t typed_count;
     const char *faults[FAULTS_MAX];
@@ -109,11 +111,6 @@ const char *symbols_nearest(uint32_t pc);
 uint32_t bootloader_load(void);
 
 /* --- sensor: clock of the virtual ADXL345 and the feed of rows --- */
-typedef struct {
-    uint64_t cycle;
-    int16_t lsb[3];
-} served_t;
-
 void sensor_start(void);
 void sensor_finish(void);
 uint64_t sensor_next(void);
@@ -121,22 +118,16 @@ void sensor_step(void);
 void sensor_check_rate(void);
 void sensor_show_pin(void); /* drive D2 anew (after a reset, or when the wire changed) */
 void sensor_cut_int1(bool cut);
-uint64_t sensor_last_tick(void); /* cycle of the last output-data-rate tick, 0: none */
-uint64_t sensor_over_at(void);   /* cycle at which the stream ended, NEVER before */
-double sensor_period_us(void);   /* of the last rate in force, without ppm; 0: none yet */
+uint64_t sensor_last_tick(void);    /* cycle of the last output-data-rate tick, 0: none */
+uint64_t sensor_over_at(void);      /* cycle at which the stream ended, NEVER before */
+double sensor_period_us(void);      /* of the last rate in force, without ppm; 0: none yet */
+double sensor_true_period_us(void); /* the same with the error of the sensor's clock */
 size_t sensor_served_count(void);
 const served_t *sensor_served(size_t index);
 void sensor_print_mode(FILE *to); /* which feed mode was used */
 const stream_t *sensor_stream(void);
 
 /* --- UART --- */
-typedef struct {
-    uint32_t t_us;
-    unsigned flags;
-    int16_t lsb[3];
-    uint64_t sent; /* cycle of its line end */
-} row_t;
-
 void uart_start(void);
 void uart_finish(void);
 void uart_reset(void); /* after a reset of the MCU */
@@ -174,6 +165,14 @@ void faults_on_pc(uint32_t pc);
 void faults_on_row(const row_t *row);
 void faults_print(FILE *json);
 void faults_warn(void); /* stderr: faults that never came */
+
+/* --- rows against what the sensor latched (simrun_judge.h) --- */
+void verdict_start(void);
+void verdict_on_row(const row_t *row);
+void verdict_print(FILE *json);
+void verdict_tell(void); /* stderr */
+/* The first row at fault with --judge; NULL when there is none. */
+const char *verdict_reason(void);
 
 /* --- statistics --- */
 extern uint64_t stats_slept;       /* cycles asleep */

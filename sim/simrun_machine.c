@@ -294,6 +294,7 @@ void machine_start(void)
     }
     uart_start();
     eeprom_start();
+    verdict_start();
     stats_start();
     faults_start();
     span_start();
@@ -423,13 +424,16 @@ static void run(void)
 
 exit_status_t machine_run(const char **reason)
 {
-    static char text[256];
+    static char text[512];
     run();
     stopping = true;
     if (failure == EXIT_OK && resets != options.expect_resets) {
         failure = EXIT_RESETS;
         snprintf(text, sizeof text, "%u resets of the MCU, %u expected (--expect-resets)", (unsigned)resets,
                  options.expect_resets);
+    } else if (failure == EXIT_OK && verdict_reason() != NULL) {
+        failure = EXIT_WRONG;
+        snprintf(text, sizeof text, "%s", verdict_reason());
     } else if (failure != EXIT_OK) {
         snprintf(text, sizeof text, "%s, at %.3f ms, PC 0x%04x (%s)", failure_reason, failure_ms, (unsigned)failure_pc,
                  symbols_nearest(failure_pc));

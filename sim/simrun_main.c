@@ -23,6 +23,7 @@ int main(int argc, char **argv)
     stats_profile_write();
     stats_summary();
     sensor_print_mode(stderr);
+    verdict_tell();
     faults_warn();
     double seconds = seconds_between(&began, &ended);
     fprintf(stderr, "simrun: %.2f s of computing, %.0f times real time\n", seconds, machine_ms() / 1e3 / seconds);

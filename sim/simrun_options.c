@@ -27,6 +27,8 @@ enum option_code {
     OPTION_EXPECT_RESETS,
     OPTION_GDB,
     OPTION_SEED,
+    OPTION_JUDGE,
+    OPTION_CLOCK_START,
     OPTION_CMD,
     OPTION_FAULT,
     OPTION_SETTING,
@@ -52,6 +54,8 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "expect-resets", required_argument, NULL, OPTION_EXPECT_RESETS },
                                        { "gdb", required_argument, NULL, OPTION_GDB },
                                        { "seed", required_argument, NULL, OPTION_SEED },
+                                       { "judge", no_argument, NULL, OPTION_JUDGE },
+                                       { "clock-start", required_argument, NULL, OPTION_CLOCK_START },
                                        { "cmd", required_argument, NULL, OPTION_CMD },
                                        { "fault", required_argument, NULL, OPTION_FAULT },
                                        { "rate", required_argument, NULL, OPTION_SETTING },
@@ -76,6 +80,14 @@ static const char help_text[] =
     "  --ppm N            error of the sensor's clock\n"
     "  --served CSV       every sample the sensor latched: served,t_us,row,line,x_lsb,y_lsb,z_lsb[,truth]\n"
     "  --stats JSON       statistics of the run\n"
+    "  --judge            exit status 10 unless every row is right: its readings are what the sensor latched within "
+    "two "
+    "sample\n"
+    "                     periods of its t_us, or a flag 1, 2, 16, 32 or 64 disowns them; and no t_us steps back. "
+    "Counted\n"
+    "                     without it too: rows_judged, rows_wrong, rows_stale, t_us_steps_back in --stats, and on "
+    "stderr\n"
+    "  --clock-start US   what the firmware's clock reads when Timer1 begins to count (0)\n"
     "  --fault WHEN:KIND[:PARAM][:MS]\n"
     "    WHEN   12.3ms | xfer:N.K (byte K of I2C transfer N, the address is byte 1) | pc:SYMBOL[#N] (Nth time it is "
     "reached)\n"
@@ -109,7 +121,7 @@ static const char help_text[] =
     "ends it too.\n"
     "Exit status: 0 ran to the end; 1 simrun failed; 2 usage or input; 3 crash; 4 illegal opcode; 5 stack overrun;\n"
     "6 UART overrun; 7 unexpected number of resets; 8 firmware slept with interrupts off;\n"
-    "9 without --max-ms: the firmware did not use the sensor for 20 s.\n";
+    "9 without --max-ms: the firmware did not use the sensor for 20 s; 10 --judge: a row is not right.\n";
 
 static void refuse(const char *format, ...) __attribute__((format(printf, 1, 2), noreturn));
 static void refuse(const char *format, ...)
@@ -211,6 +223,9 @@ static bool take_number(int code, const char *name, const char *argument)
     case OPTION_SEED:
         options.seed = (uint32_t)number(name, argument, 1.0, 4294967295.0);
         return true;
+    case OPTION_CLOCK_START:
+        options.clock_start_us = (uint32_t)number(name, argument, 0.0, 4294967295.0);
+        return true;
     default:
         return false;
     }
@@ -227,6 +242,9 @@ static void take(int code, const char *name, const char *argument)
         break;
     case OPTION_BLANK:
         options.blank = true;
+        break;
+    case OPTION_JUDGE:
+        options.judge = true;
         break;
     case OPTION_CMD:
         add_command(argument);

@@ -183,6 +183,11 @@ double sensor_period_us(void)
     return last_odr_hz > 0.0 ? 1e6 / last_odr_hz : 0.0;
 }
 
+double sensor_true_period_us(void)
+{
+    return sensor_period_us() / (1.0 + options.ppm * 1e-6);
+}
+
 size_t sensor_served_count(void)
 {
     return served_count;

@@ -321,6 +321,7 @@ void stats_write(exit_status_t status)
     fprintf(file, "  \"stack_high_water_bytes\": %u,\n  \"ram_used_bytes\": %u,\n", (unsigned)stack_high_water(),
             ram + (unsigned)stack_high_water());
     faults_print(file);
+    verdict_print(file);
     fprintf(file, "  \"boot_resets\": %u,\n  \"resets\": %u\n}\n", (unsigned)machine_boot_resets(),
             (unsigned)machine_resets());
     close_output(file, options.stats);

@@ -58,6 +58,7 @@ static void keep_row(const row_t *row)
         stats_streaming_begins();
     }
     faults_on_row(row);
+    verdict_on_row(row);
 }
 
 /* A row of csv mode: ten whole numbers; t_us, x_lsb, y_lsb, z_lsb first and flags last. */

@@ -1,0 +1,187 @@
+/*
+ * The judge of the rows, given rows and samples made by hand. The rule (issue 6): a row without flag 1, 2, 16, 32 or 64
+ * equals a triplet that the model latched, no older than two sample periods; and time stamps do not step back.
+ */
+#include <string.h>
+
+#include "simrun_judge.h"
+#include "unity.h"
+
+enum { US = 16, PERIOD_US = 10000, SAMPLES = 10 };
+
+static judge_t judge;
+static served_t served[SAMPLES];
+
+/* Ten samples, 10 ms apart, the first latched 10 ms after the clock began at cycle 5000: sample i is i, -i, 256 + i. */
+void setUp(void)
+{
+    judge = (judge_t){ 0 };
+    judge_clock_begins(&judge, 5000);
+    for (int i = 0; i < SAMPLES; i++) {
+        served[i] = (served_t){ .cycle = 5000u + (uint64_t)(i + 1) * PERIOD_US * US,
+                                .lsb = { (int16_t)i, (int16_t)-i, (int16_t)(256 + i) } };
+    }
+}
+
+void tearDown(void) {}
+
+/* The readings of sample i in a row stamped t_us by a clock that begins at 0, sent `late_us` after that. */
+static row_t row_of(int i, uint32_t t_us, unsigned flags, uint32_t late_us)
+{
+    row_t row = { .t_us = t_us, .flags = flags, .sent = 5000u + (uint64_t)(t_us + late_us) * US };
+    memcpy(row.lsb, served[i].lsb, sizeof row.lsb);
+    return row;
+}
+
+static judge_verdict_t verdict_of(row_t row)
+{
+    return judge_row(&judge, &row, served, SAMPLES, PERIOD_US);
+}
+
+static void a_row_of_its_sample_is_right(void)
+{
+    for (int i = 0; i < SAMPLES; i++) {
+        TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(i, (uint32_t)(i + 1) * PERIOD_US + 6u, 0, 5000)));
+    }
+    TEST_ASSERT_EQUAL_UINT32(SAMPLES, judge_judged(&judge));
+    TEST_ASSERT_FALSE(judge.any_fault);
+}
+
+static void one_reading_that_was_never_latched_is_wrong(void)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        row_t row = row_of(4, 50000, 0, 5000);
+        row.lsb[axis]++;
+        TEST_ASSERT_EQUAL(JUDGE_WRONG, verdict_of(row));
+    }
+    TEST_ASSERT_EQUAL_UINT32(3, judge.count[JUDGE_WRONG]);
+    TEST_ASSERT_EQUAL_UINT32(3, judge_judged(&judge));
+}
+
+static void readings_of_different_samples_are_wrong(void)
+{
+    row_t row = row_of(4, 50000, 0, 5000);
+    row.lsb[2] = served[3].lsb[2];
+    TEST_ASSERT_EQUAL(JUDGE_WRONG, verdict_of(row));
+}
+
+static void a_sample_is_stale_after_two_periods(void)
+{
+    /* sample 2 was latched at 30 ms */
+    TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(2, 50000, 0, 5000)));
+    TEST_ASSERT_EQUAL(JUDGE_STALE, verdict_of(row_of(2, 50001, 0, 5000)));
+    TEST_ASSERT_EQUAL_UINT32(1, judge.count[JUDGE_STALE]);
+    row_t row = row_of(2, 32501, 0, 0);
+    TEST_ASSERT_EQUAL(JUDGE_STALE, judge_row(&judge, &row, served, SAMPLES, 1250));
+    row = row_of(2, 32500, 0, 0);
+    TEST_ASSERT_EQUAL(JUDGE_RIGHT, judge_row(&judge, &row, served, SAMPLES, 1250));
+}
+
+static void an_equal_sample_within_time_is_enough_and_an_older_one_is_not(void)
+{
+    memcpy(served[5].lsb, served[1].lsb, sizeof served[5].lsb);
+    TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(1, 60000, 0, 2000)));
+    TEST_ASSERT_EQUAL(JUDGE_STALE, verdict_of(row_of(1, 50000, 0, 2000)));
+    /* sample 5, too new for this stamp, does not hide that sample 1 was in time */
+    TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(1, 20000, 0, 60000)));
+}
+
+static void a_sample_of_the_future_is_wrong(void)
+{
+    /* sample 6 comes at 70 ms: this row is sent before; the next is sent after, with a stamp that lies */
+    TEST_ASSERT_EQUAL(JUDGE_WRONG, verdict_of(row_of(6, 69000, 0, 999)));
+    TEST_ASSERT_EQUAL(JUDGE_WRONG, verdict_of(row_of(6, 49999, 0, 30000)));
+    TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(6, 50000, 0, 30000)));
+}
+
+static void only_five_flags_disown_a_row(void)
+{
+    for (unsigned bit = 0; bit < 11; bit++) {
+        unsigned flag = 1u << bit;
+        bool disowns = flag == 1 || flag == 2 || flag == 16 || flag == 32 || flag == 64;
+        row_t row = row_of(4, 50000, flag, 5000);
+        row.lsb[0] = 1234;
+        TEST_ASSERT_EQUAL_MESSAGE(disowns ? JUDGE_DISOWNED_ROW : JUDGE_WRONG, verdict_of(row), "flag");
+    }
+    TEST_ASSERT_EQUAL_UINT32(6, judge_judged(&judge));
+}
+
+static void steps_back_are_counted_in_every_row(void)
+{
+    (void)verdict_of(row_of(4, 50000, 0, 5000));
+    (void)verdict_of(row_of(4, 50000, 0, 5000));
+    TEST_ASSERT_EQUAL_UINT32(0, judge.steps_back);
+    (void)verdict_of(row_of(4, 49999, 2, 5000));
+    TEST_ASSERT_EQUAL_UINT32(1, judge.steps_back);
+    (void)verdict_of(row_of(5, 60000, 0, 5000));
+    TEST_ASSERT_EQUAL_UINT32(1, judge.steps_back);
+    TEST_ASSERT_NOT_NULL(strstr(judge_summary(&judge), "first row 3: t_us 49999, "));
+    TEST_ASSERT_NOT_NULL(strstr(judge_summary(&judge), "stamped before the row ahead of it"));
+}
+
+static void a_clock_that_begins_elsewhere_may_wrap(void)
+{
+    judge = (judge_t){ .start_us = UINT32_MAX - 24999u };
+    judge_clock_begins(&judge, 5000);
+    for (int i = 0; i < SAMPLES; i++) {
+        row_t row = row_of(i, (uint32_t)(i + 1) * PERIOD_US, 0, 5000);
+        row.t_us += judge.start_us;
+        TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row));
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, judge.steps_back);
+    TEST_ASSERT_EQUAL_UINT32(75000, judge.last_us);
+}
+
+static void a_reset_begins_the_clock_anew(void)
+{
+    (void)verdict_of(row_of(3, 40000, 0, 5000));
+    judge_clock_begins(&judge, 5000 + 45000 * US);
+    row_t row = row_of(5, 15000, 0, 0);
+    row.sent = 5000 + 62000 * US;
+    TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row));
+    TEST_ASSERT_EQUAL_UINT32(0, judge.steps_back);
+    row.t_us = 60000; /* what a clock that had gone on would say: 45 ms after the sample */
+    TEST_ASSERT_EQUAL(JUDGE_STALE, verdict_of(row));
+}
+
+static void without_a_clock_nothing_is_judged(void)
+{
+    judge = (judge_t){ 0 };
+    TEST_ASSERT_EQUAL(JUDGE_UNTIMED, verdict_of(row_of(3, 40000, 0, 5000)));
+    TEST_ASSERT_EQUAL_UINT32(0, judge_judged(&judge));
+    judge_clock_begins(&judge, 5000);
+    row_t row = row_of(3, 40000, 0, 5000);
+    TEST_ASSERT_EQUAL(JUDGE_WRONG, judge_row(&judge, &row, NULL, 0, PERIOD_US));
+}
+
+static void the_first_row_at_fault_is_named(void)
+{
+    (void)verdict_of(row_of(0, 10000, 0, 5000));
+    TEST_ASSERT_EQUAL_STRING("1 rows judged: 0 wrong, 0 stale; 0 steps back in time", judge_summary(&judge));
+    (void)verdict_of(row_of(0, 40000, 8, 5000));
+    row_t row = row_of(4, 50000, 0, 5000);
+    row.lsb[1] = -1;
+    (void)verdict_of(row);
+    TEST_ASSERT_EQUAL_STRING("3 rows judged: 1 wrong, 1 stale; 0 steps back in time; first row 2: t_us 40000, readings "
+                             "0,0,256, flags 8, stale: the sensor latched these readings, but more than two sample "
+                             "periods before the stamp",
+                             judge_summary(&judge));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(a_row_of_its_sample_is_right);
+    RUN_TEST(one_reading_that_was_never_latched_is_wrong);
+    RUN_TEST(readings_of_different_samples_are_wrong);
+    RUN_TEST(a_sample_is_stale_after_two_periods);
+    RUN_TEST(an_equal_sample_within_time_is_enough_and_an_older_one_is_not);
+    RUN_TEST(a_sample_of_the_future_is_wrong);
+    RUN_TEST(only_five_flags_disown_a_row);
+    RUN_TEST(steps_back_are_counted_in_every_row);
+    RUN_TEST(a_clock_that_begins_elsewhere_may_wrap);
+    RUN_TEST(a_reset_begins_the_clock_anew);
+    RUN_TEST(without_a_clock_nothing_is_judged);
+    RUN_TEST(the_first_row_at_fault_is_named);
+    return UNITY_END();
+}

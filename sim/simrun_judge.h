@@ -1,0 +1,70 @@
+/*
+ * The judge of the rows: what the firmware said against what the virtual sensor latched. It knows neither variables nor
+ * counters of the firmware, only the model's record, the rows as they were sent and the moment at which Timer1 began to
+ * count. Plain C without simavr, so that a test can give it rows made by hand.
+ *
+ * A row whose flags say nothing against it (none of JUDGE_DISOWNED) is right when its readings are a triplet that the
+ * model latched within two sample periods of the row's time stamp, and before the row was sent. It is stale when the
+ * model latched that triplet, but longer before; else it is wrong.
+ */
+#ifndef SIMRUN_JUDGE_H
+#define SIMRUN_JUDGE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* gated 1, coasted 2, fault 16, stuck 32, integrity 64: the row itself says not to take its readings for a sample */
+#define JUDGE_DISOWNED 0x73u
+
+typedef struct {
+    uint64_t cycle; /* at which the sensor latched it */
+    int16_t lsb[3];
+} served_t;
+
+typedef struct {
+    uint32_t t_us;
+    unsigned flags;
+    int16_t lsb[3];
+    uint64_t sent; /* cycle of its line end */
+} row_t;
+
+typedef enum {
+    JUDGE_RIGHT,
+    JUDGE_DISOWNED_ROW,
+    JUDGE_UNTIMED,
+    JUDGE_STALE,
+    JUDGE_WRONG,
+    JUDGE_VERDICTS
+} judge_verdict_t;
+
+typedef struct {
+    uint32_t start_us; /* what the firmware's clock reads when Timer1 begins to count */
+    bool has_clock;
+    uint64_t clock_cycle;
+    uint32_t rows; /* since the clock began */
+    uint32_t last_us;
+    uint32_t rows_seen; /* of the whole run */
+    uint32_t count[JUDGE_VERDICTS];
+    uint32_t steps_back; /* rows stamped before the row ahead of them */
+    bool any_fault;      /* what follows is filled in */
+    bool first_steps_back;
+    judge_verdict_t first_verdict;
+    uint32_t first_number; /* of the row, from 1 */
+    row_t first;
+} judge_t;
+
+/* The firmware's clock begins anew, at this cycle. A row before the first of them is untimed, and not judged. */
+void judge_clock_begins(judge_t *judge, uint64_t cycle);
+
+/* Judges the next row. `served`: all the model has latched so far, oldest first; period_us: of the rate in force. */
+judge_verdict_t judge_row(judge_t *judge, const row_t *row, const served_t *served, size_t served_count,
+                          double period_us);
+
+/* Rows that were judged, right ones included. */
+uint32_t judge_judged(const judge_t *judge);
+
+/* One sentence of the verdicts, with the first row at fault; the text stays valid until the next call. */
+const char *judge_summary(const judge_t *judge);
+
+#endif

@@ -1,0 +1,47 @@
+/* The judge in the machine: Timer1's start is the start of the firmware's clock, rows come from the UART. */
+#include "sim_io.h"
+#include "simrun.h"
+
+enum { REG_TCCR1B = 0x81, CLOCK_SELECT = 0x07 };
+
+static judge_t judge;
+
+static void on_timer(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    (void)address;
+    (void)param;
+    if ((value & CLOCK_SELECT) != 0) {
+        judge_clock_begins(&judge, avr->cycle);
+    }
+}
+
+void verdict_start(void)
+{
+    judge = (judge_t){ .start_us = options.clock_start_us };
+    avr_register_io_write(mcu, REG_TCCR1B, on_timer, NULL);
+}
+
+void verdict_on_row(const row_t *row)
+{
+    size_t count = sensor_served_count();
+    (void)judge_row(&judge, row, count == 0 ? NULL : sensor_served(0), count, sensor_true_period_us());
+}
+
+void verdict_print(FILE *json)
+{
+    fprintf(json, "  \"rows_judged\": %u,\n  \"rows_wrong\": %u,\n  \"rows_stale\": %u,\n  \"t_us_steps_back\": %u,\n",
+            (unsigned)judge_judged(&judge), (unsigned)judge.count[JUDGE_WRONG], (unsigned)judge.count[JUDGE_STALE],
+            (unsigned)judge.steps_back);
+}
+
+void verdict_tell(void)
+{
+    if (judge.rows_seen != 0) {
+        fprintf(stderr, "simrun: %s\n", judge_summary(&judge));
+    }
+}
+
+const char *verdict_reason(void)
+{
+    return options.judge && judge.any_fault ? judge_summary(&judge) : NULL;
+}
