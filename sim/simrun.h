@@ -118,6 +118,8 @@ void sensor_step(void);
 void sensor_check_rate(void);
 void sensor_show_pin(void); /* drive D2 anew (after a reset, or when the wire changed) */
 void sensor_cut_int1(bool cut);
+void sensor_disturb_int1(bool disturbed); /* the wire has the level against the sensor's */
+void sensor_set_clock_error(double ppm);
 uint64_t sensor_last_tick(void);    /* cycle of the last output-data-rate tick, 0: none */
 uint64_t sensor_over_at(void);      /* cycle at which the stream ended, NEVER before */
 double sensor_period_us(void);      /* of the last rate in force, without ppm; 0: none yet */
@@ -133,6 +135,7 @@ void uart_finish(void);
 void uart_reset(void); /* after a reset of the MCU */
 uint64_t uart_next(void);
 void uart_step(void);
+void uart_flood(bool on);    /* random bytes without a pause, instead of what is to be typed */
 uint64_t uart_last_tx(void); /* cycle of the last byte sent, 0: none */
 size_t uart_row_count(void);
 const row_t *uart_row(size_t index);
@@ -165,6 +168,12 @@ void faults_on_pc(uint32_t pc);
 void faults_on_row(const row_t *row);
 void faults_print(FILE *json);
 void faults_warn(void); /* stderr: faults that never came */
+
+/* --- faults that alter values (simrun_alter.c) --- */
+void alter_start(void);
+const int16_t *alter_sample(const int16_t lsb[3]); /* what the sensor measures instead */
+uint64_t alter_next(void);
+void alter_step(void);
 
 /* --- rows against what the sensor latched (simrun_judge.h) --- */
 void verdict_start(void);

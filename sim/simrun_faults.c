@@ -1,13 +1,14 @@
 /*
  * Faults from the command line: WHEN they begin, WHAT they do, how long a state lasts, and how long the firmware needs
- * until the first good row after it: a row without flag 2 or 16 that shows a sample latched after the fault had ended.
+ * until the first good row after it: a row that its flags do not disown (simrun_judge.h) and that shows a sample
+ * latched after the fault had ended.
  */
 #include <stdlib.h>
 #include <string.h>
 
 #include "simrun_faults.h"
 
-enum { FLAG_COASTED = 2, FLAG_FAULT = 16, LOOK_BACK = 64 };
+enum { LOOK_BACK = 64 };
 
 static fault_t faults[FAULTS_MAX];
 static size_t fault_count;
@@ -15,6 +16,7 @@ bool faults_watch_pc;
 
 void faults_start(void)
 {
+    alter_start();
     for (size_t i = 0; i < options.fault_count; i++) {
         fault_parse(&faults[fault_count], options.faults[i]);
         faults_watch_pc = faults_watch_pc || faults[fault_count].when == WHEN_PC;
@@ -64,7 +66,7 @@ static void apply(const fault_t *fault)
         follow_lines();
         break;
     case KIND_HANG:
-        twi_hang(&twi, fault->parameter);
+        twi_hang(&twi, (unsigned)fault->parameter);
         break;
     case KIND_ARB:
         twi.lose_arbitration = true;
@@ -99,6 +101,12 @@ static void release(fault_t *fault)
     fault->ends = NEVER;
     fault->awaits_row = true;
     fault->ended_at = mcu->cycle;
+    if (fault->kind >= KIND_FLIP) {
+        if (!any_active(fault->kind)) {
+            alter_end(fault);
+        }
+        return;
+    }
     switch (fault->kind) {
     case KIND_UNPLUG:
     case KIND_POWER:
@@ -132,12 +140,16 @@ static void begin(fault_t *fault)
         fault->awaits_row = true;
         fault->ended_at = mcu->cycle;
     }
-    apply(fault);
+    if (fault->kind >= KIND_FLIP) {
+        alter_begin(fault);
+    } else {
+        apply(fault);
+    }
 }
 
 uint64_t faults_next(void)
 {
-    uint64_t next = NEVER;
+    uint64_t next = alter_next();
     for (size_t i = 0; i < fault_count; i++) {
         const fault_t *fault = &faults[i];
         uint64_t at = fault->active ? fault->ends : NEVER;
@@ -151,6 +163,7 @@ uint64_t faults_next(void)
 
 void faults_step(void)
 {
+    alter_step();
     for (size_t i = 0; i < fault_count; i++) {
         fault_t *fault = &faults[i];
         if (fault->when == WHEN_MS && fault->armed && fault->at <= mcu->cycle) {
@@ -161,11 +174,21 @@ void faults_step(void)
     }
 }
 
+/* What the bus suffers comes at any byte of the read that follows, which is as long as the transfer before it. */
+static void on_chance(fault_t *fault)
+{
+    if (fault_kinds[fault->kind].on_bus) {
+        fault->bytes_left = 1u + machine_random() % (twi.byte == 0 ? 1u : twi.byte);
+    } else if (!fault->active) {
+        begin(fault);
+    }
+}
+
 void faults_on_sample(void)
 {
     for (size_t i = 0; i < fault_count; i++) {
         if (faults[i].when == WHEN_SAMPLE && machine_random() < faults[i].chance) {
-            begin(&faults[i]);
+            on_chance(&faults[i]);
         }
     }
 }
@@ -174,7 +197,8 @@ void faults_on_byte(uint32_t transfer, uint32_t byte)
 {
     for (size_t i = 0; i < fault_count; i++) {
         fault_t *fault = &faults[i];
-        if (fault->when == WHEN_BYTE && fault->armed && fault->transfer == transfer && fault->byte == byte) {
+        bool named = fault->when == WHEN_BYTE && fault->armed && fault->transfer == transfer && fault->byte == byte;
+        if (named || (fault->bytes_left != 0 && --fault->bytes_left == 0)) {
             begin(fault);
         }
     }
@@ -216,7 +240,7 @@ static bool shows_sample_since(const row_t *row, uint64_t since)
 
 void faults_on_row(const row_t *row)
 {
-    bool good = (row->flags & (FLAG_COASTED | FLAG_FAULT)) == 0;
+    bool good = (row->flags & JUDGE_DISOWNED) == 0;
     for (size_t i = 0; good && i < fault_count; i++) {
         fault_t *fault = &faults[i];
         if (fault->awaits_row && shows_sample_since(row, fault->ended_at)) {
@@ -235,6 +259,7 @@ void faults_print(FILE *json)
         unsigned n = (unsigned)i + 1;
         fprintf(json, "  \"fault_%u\": \"%s\",\n  \"fault_%u_injected\": %u,\n  \"fault_%u_recovered\": %u,\n", n,
                 fault->text, n, (unsigned)fault->injected, n, (unsigned)fault->recovered);
+        fprintf(json, "  \"fault_%u_detectable\": %s,\n", n, fault_kinds[fault->kind].detectable ? "true" : "false");
         fprintf(json, "  \"fault_%u_first_ms\": %.3f,\n  \"fault_%u_worst_recovery_ms\": %.3f,\n", n, fault->first_ms,
                 n, fault->worst_ms);
     }

@@ -22,6 +22,13 @@ typedef enum {
     KIND_RESET,
     KIND_MCUPOWER,
     KIND_POKE,
+    KIND_FLIP, /* from here on: simrun_alter.c */
+    KIND_NOISE,
+    KIND_DOUBLE,
+    KIND_FROZEN,
+    KIND_STORM,
+    KIND_ODR,
+    KIND_RXFLOOD,
     KIND_COUNT
 } kind_t;
 
@@ -31,10 +38,11 @@ typedef struct {
     kind_t kind;
     uint64_t at; /* WHEN_MS: cycle */
     uint32_t transfer, byte;
+    uint32_t bytes_left; /* WHEN_SAMPLE on the bus: until it begins, 0: not under way */
     uint32_t pc, visits_left;
     uint32_t eeprom_write;
     uint32_t chance; /* WHEN_SAMPLE: of 2^32 */
-    uint32_t parameter;
+    int32_t parameter;
     uint32_t address; /* KIND_POKE: of the variable */
     uint64_t lasts;   /* cycles, NEVER: to the end */
     bool armed;       /* has still to come (WHEN_SAMPLE: always) */
@@ -46,15 +54,21 @@ typedef struct {
     double worst_ms, first_ms;
 } fault_t;
 
-/* Properties of the kinds: name as typed, takes PARAM, takes MS. */
 typedef struct {
     const char *name;
-    bool has_parameter, lasts;
+    bool lasts;                     /* a state, takes MS; the others happen once */
+    bool on_bus;                    /* with p: it begins at a random byte of the transfer that follows the sample */
+    bool detectable;                /* false: alters the value inside a transfer that is well formed */
+    int32_t lowest, usual, highest; /* PARAM; all 0: takes none */
 } kind_properties_t;
 
 extern const kind_properties_t fault_kinds[KIND_COUNT];
 
 /* Fills *fault from WHEN:KIND[:PARAM][:MS]; exits with EXIT_INPUT and the reason. */
 void fault_parse(fault_t *fault, const char *text);
+
+/* The kinds from KIND_FLIP on: begins; the last of its kind ends. */
+void alter_begin(const fault_t *fault);
+void alter_end(const fault_t *fault);
 
 #endif

@@ -4,13 +4,31 @@
 
 #include "simrun_faults.h"
 
-enum { POWER_OFF_MS = 5, HANG_CLOCKS = 5 };
+enum { POWER_OFF_MS = 5 };
 
 const kind_properties_t fault_kinds[KIND_COUNT] = {
-    { "unplug", false, true }, { "plug", false, false },     { "power", false, true }, { "sda", false, true },
-    { "scl", false, true },    { "hang", true, false },      { "arb", false, false },  { "buserr", false, false },
-    { "nack", false, false },  { "nackdata", false, false }, { "devid", true, true },  { "noint", false, true },
-    { "reset", false, false }, { "mcupower", false, false }, { "poke", true, false },
+    [KIND_UNPLUG] = { .name = "unplug", .lasts = true, .detectable = true },
+    [KIND_PLUG] = { .name = "plug", .detectable = true },
+    [KIND_POWER] = { .name = "power", .lasts = true, .detectable = true },
+    [KIND_SDA] = { .name = "sda", .lasts = true, .detectable = true },
+    [KIND_SCL] = { .name = "scl", .lasts = true, .detectable = true },
+    [KIND_HANG] = { "hang", false, true, true, 1, 5, 16 },
+    [KIND_ARB] = { .name = "arb", .on_bus = true, .detectable = true },
+    [KIND_BUSERR] = { .name = "buserr", .on_bus = true, .detectable = true },
+    [KIND_NACK] = { .name = "nack", .on_bus = true, .detectable = true },
+    [KIND_NACKDATA] = { .name = "nackdata", .on_bus = true, .detectable = true },
+    [KIND_DEVID] = { "devid", true, false, true, 0, 0, 255 },
+    [KIND_NOINT] = { .name = "noint", .lasts = true, .detectable = true },
+    [KIND_RESET] = { .name = "reset", .on_bus = true, .detectable = true },
+    [KIND_MCUPOWER] = { .name = "mcupower", .on_bus = true, .detectable = true },
+    [KIND_POKE] = { .name = "poke", .detectable = true },
+    [KIND_FLIP] = { "flip", false, true, false, 1, 1, 8 },
+    [KIND_NOISE] = { "noise", false, false, false, 1, 20, 4096 },
+    [KIND_DOUBLE] = { "double", false, false, false, 0, 2, 2 },
+    [KIND_FROZEN] = { .name = "frozen", .lasts = true, .detectable = true },
+    [KIND_STORM] = { "storm", true, false, true, 1, 1000, 20000 },
+    [KIND_ODR] = { "odr", true, false, true, -200000, 50000, 200000 },
+    [KIND_RXFLOOD] = { .name = "rxflood", .lasts = true, .detectable = true },
 };
 
 static void refuse(const char *text, const char *reason) __attribute__((noreturn));
@@ -125,7 +143,7 @@ static void parse_kind(fault_t *fault, const char *name)
     for (kind_t k = 0; name != NULL && k < KIND_COUNT; k++) {
         if (strcmp(name, fault_kinds[k].name) == 0) {
             fault->kind = k;
-            fault->parameter = k == KIND_HANG ? HANG_CLOCKS : 0;
+            fault->parameter = fault_kinds[k].usual;
             fault->lasts = k == KIND_POWER ? (uint64_t)POWER_OFF_MS * CYCLES_PER_MS : NEVER;
             return;
         }
@@ -142,10 +160,34 @@ static void parse_poke(fault_t *fault, char *text)
     }
     *equals = '\0';
     char *end;
-    fault->parameter = whole(fault, equals + 1, '\0', &end);
-    if (fault->parameter > UINT8_MAX || !symbols_find_variable(text, &fault->address)) {
+    uint32_t value = whole(fault, equals + 1, '\0', &end);
+    fault->parameter = (int32_t)(uint8_t)value;
+    if (value > UINT8_MAX || !symbols_find_variable(text, &fault->address)) {
         refuse(fault->text, "no such variable in the firmware, or a value above 255");
     }
+}
+
+static int32_t parse_axis(const fault_t *fault, const char *text)
+{
+    if (strlen(text) != 1 || *text < 'x' || *text > 'z') {
+        refuse(fault->text, "double wants an axis: x, y or z");
+    }
+    return *text - 'x';
+}
+
+/* A whole number that may be negative. */
+static int32_t parse_number(const fault_t *fault, const char *text)
+{
+    const kind_properties_t *kind = &fault_kinds[fault->kind];
+    char *end = NULL;
+    long value = strtol(text, &end, 0);
+    if (end == text || *end != '\0' || value < kind->lowest || value > kind->highest) {
+        char reason[80];
+        snprintf(reason, sizeof reason, "%s wants a whole number from %ld to %ld", kind->name, (long)kind->lowest,
+                 (long)kind->highest);
+        refuse(fault->text, reason);
+    }
+    return (int32_t)value;
 }
 
 static void parse_what(fault_t *fault, char **rest)
@@ -156,8 +198,8 @@ static void parse_what(fault_t *fault, char **rest)
     if (fault->kind == KIND_POKE) {
         parse_poke(fault, part);
         part = next_part(rest);
-    } else if (part != NULL && fault_kinds[fault->kind].has_parameter) {
-        fault->parameter = whole(fault, part, '\0', &end);
+    } else if (part != NULL && fault_kinds[fault->kind].highest != 0) {
+        fault->parameter = fault->kind == KIND_DOUBLE ? parse_axis(fault, part) : parse_number(fault, part);
         part = next_part(rest);
     }
     if (part != NULL && fault_kinds[fault->kind].lasts) {

@@ -23,7 +23,8 @@ static double next_tick; /* cycles */
 static uint64_t last_tick;
 static size_t row_now;
 static uint64_t over_at = NEVER;
-static bool int1_cut;
+static bool int1_cut, int1_disturbed;
+static double clock_error_ppm;
 static avr_irq_t *pin_d2;
 static FILE *served_file;
 static served_t *served;
@@ -41,7 +42,7 @@ static void on_pin(void *owner, unsigned pin, bool high)
 
 void sensor_show_pin(void)
 {
-    bool high = sensor.pin_high[1] && !int1_cut;
+    bool high = (sensor.pin_high[1] && !int1_cut) != int1_disturbed;
     avr_raise_irq(pin_d2, high);
     /* after a reset PIND is 0 and simavr's IRQ is silent, because the level is not new to it */
     uint8_t mask = 1u << PIN_D2;
@@ -52,6 +53,12 @@ void sensor_show_pin(void)
 void sensor_cut_int1(bool cut)
 {
     int1_cut = cut;
+    sensor_show_pin();
+}
+
+void sensor_disturb_int1(bool disturbed)
+{
+    int1_disturbed = disturbed;
     sensor_show_pin();
 }
 
@@ -102,6 +109,7 @@ void sensor_start(void)
     }
     pin_d2 = avr_io_getirq(mcu, AVR_IOCTL_IOPORT_GETIRQ('D'), PIN_D2);
     adxl345_model_init(&sensor);
+    clock_error_ppm = options.ppm;
     sensor.pin_changed = on_pin;
     sensor.latched = on_latched;
     feed = (feed_t){ .stream = &stream, .loop = options.loop };
@@ -120,7 +128,12 @@ void sensor_finish(void)
 
 static double period_cycles(void)
 {
-    return (double)CYCLES_PER_MS * 1000.0 / (odr_hz * (1.0 + options.ppm * 1e-6));
+    return (double)CYCLES_PER_MS * 1000.0 / (odr_hz * (1.0 + clock_error_ppm * 1e-6));
+}
+
+void sensor_set_clock_error(double ppm)
+{
+    clock_error_ppm = ppm;
 }
 
 uint64_t sensor_next(void)
@@ -156,7 +169,7 @@ void sensor_step(void)
     switch (feed_tick(&feed, mcu->cycle / CYCLES_PER_US, &row)) {
     case FEED_SAMPLE:
         row_now = row;
-        (void)adxl345_model_tick(&sensor, stream.rows[row].lsb);
+        (void)adxl345_model_tick(&sensor, alter_sample(stream.rows[row].lsb));
         faults_on_sample();
         break;
     case FEED_NOTHING:
@@ -185,7 +198,7 @@ double sensor_period_us(void)
 
 double sensor_true_period_us(void)
 {
-    return sensor_period_us() / (1.0 + options.ppm * 1e-6);
+    return sensor_period_us() / (1.0 + clock_error_ppm * 1e-6);
 }
 
 size_t sensor_served_count(void)

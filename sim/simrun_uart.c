@@ -42,6 +42,7 @@ static bool waits_for_reply, waits_for_baud;
 static uint64_t reply_deadline;
 static uint64_t next_byte_at = NEVER;
 static uint32_t rx_overruns;
+static bool flooded;
 
 static void keep_row(const row_t *row)
 {
@@ -283,9 +284,21 @@ uint64_t uart_next(void)
     return next_byte_at;
 }
 
+void uart_flood(bool on)
+{
+    flooded = on;
+    next_byte_at = mcu->cycle;
+    machine_reschedule();
+}
+
 void uart_step(void)
 {
     uint8_t byte;
+    if (flooded) {
+        next_byte_at = mcu->cycle + byte_cycles();
+        receive((uint8_t)machine_random());
+        return;
+    }
     bool any = banner_seen && next_typed_byte(&byte);
     if (!any && options.pty) {
         next_byte_at = mcu->cycle + byte_cycles();

@@ -230,7 +230,11 @@ static void send_byte(twi_peripheral_t *twi)
 
 static void receive_byte(twi_peripheral_t *twi, bool give_ack)
 {
+    uint8_t address = twi->sensor->pointer;
     uint8_t byte = twi->acknowledged ? adxl345_model_read(twi->sensor) : 0xFF;
+    if (twi->acknowledged && twi->sent != NULL) {
+        byte = twi->sent(twi->owner, address, byte);
+    }
     bool sda_was_low = twi_sda_low(twi);
     clock_slave(twi, BITS_BYTE);
     if (sda_was_low && !give_ack) {

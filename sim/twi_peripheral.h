@@ -31,6 +31,8 @@ typedef struct {
     void (*before_byte)(void *owner, uint32_t transfer,
                         uint32_t byte); /* transfer from 1; byte 1 is the address; may be NULL */
     void (*after_byte)(void *owner); /* the sensor has seen a byte: it may measure at another rate now; may be NULL */
+    uint8_t (*sent)(void *owner, uint8_t address, uint8_t byte); /* register and byte that the sensor puts on the
+                                                                    wire; returns what arrives; may be NULL */
     void *owner;
 
     /* faults that happen once, in the next byte that can show them */

@@ -1,0 +1,178 @@
+"""The simulator's own faults and its judge, seen at the bus and in the firmware's rows; part of system_tests.py."""
+import statistics
+
+from system_support import FW, OUT, SIMRUN, STREAMS, run, simrun, test, triplets
+
+REST = STREAMS / "rest-2lsb.csv"
+LENGTH_MS = 12000
+
+
+def injected(name, *faults, judge=False, max_ms=LENGTH_MS):
+    """A run with faults and the filter that gates nothing, so that no flag 1 hides a row from the judge."""
+    arguments = [word for fault in faults for word in ("--fault", fault)]
+    return simrun(f"inject-{name}", REST, "--filter", "kf", "--max-ms", max_ms, *arguments, judge=judge)
+
+
+def changes(rows, served):
+    """Of each row, what it shows less what the sensor latched for it: no sample is lost here."""
+    wanted = triplets(served)
+    assert len(wanted) - 2 <= len(rows) <= len(wanted), f"{len(rows)} rows, {len(wanted)} samples"
+    return [[shown - true for shown, true in zip(row[1:4], lsb)] for row, lsb in zip(rows, wanted)]
+
+
+def bits_flipped(row, lsb):
+    return sum(bin((shown ^ true) & 0xFFFF).count("1") for shown, true in zip(row[1:4], lsb))
+
+
+def served_without_faults():
+    return triplets(injected("nothing", judge=True)[2])
+
+
+def check_flips(bits):
+    rows, _, served, stats = injected(f"flip-{bits}", f"p:0.1:flip:{bits}")
+    assert triplets(served) == served_without_faults(), "--served does not stay what the sensor latched"
+    changed = [(row, lsb) for row, lsb in zip(rows, triplets(served)) if row[1:4] != lsb]
+    assert all(bits_flipped(row, lsb) == bits for row, lsb in changed), changed
+    assert 80 <= len(changed) and stats["fault_1_injected"] - 1 <= len(changed) <= stats["fault_1_injected"], stats
+    assert len({axis for row, lsb in changed for axis in range(3) if row[1 + axis] != lsb[axis]}) == 3
+    # each is found by the judge: here no flipped reading happens to be that of the sample before or after, or it is stale
+    assert len(changed) - 3 <= stats["rows_wrong"] + stats["rows_stale"] <= len(changed), stats
+    assert stats["fault_1_detectable"] is False
+
+
+@test
+def one_flipped_bit_is_seen_in_its_row_and_by_the_judge():
+    check_flips(1)
+
+
+@test
+def two_flipped_bits_are_seen_in_their_row_and_by_the_judge():
+    check_flips(2)
+
+
+@test
+def doubled_axis_reads_twice_its_value():
+    for axis, letter in ((0, "x"), (2, "z")):
+        rows, _, served, stats = injected("double", f"p:0.1:double:{letter}")
+        found = 0
+        for row, lsb, change in zip(rows, triplets(served), changes(rows, served)):
+            assert change in ([0, 0, 0], [lsb[i] if i == axis else 0 for i in range(3)]), (row, lsb)
+            found += change[axis] != 0
+        # noise of 2 LSB about 36 or 248: no reading is zero
+        assert found >= 80 and stats["fault_1_injected"] - 1 <= found <= stats["fault_1_injected"], (found, stats)
+        assert stats["rows_wrong"] == found and triplets(served) == served_without_faults(), stats
+
+
+@test
+def doubled_axis_stops_at_the_rails():
+    path = OUT / "rails.csv"
+    lines = [f"{i * 10000},{-240 - i % 60},0,{240 + i % 60}\n" for i in range(200)]
+    path.write_text("t_us,x,y,z\n" + "".join(lines), encoding="ascii")
+    rows, _, served, _ = simrun("inject-rails", path, "--filter", "kf", "--range", "2", "--fault", "p:1:double:x", "--fault", "p:1:double:z",
+                                judge=False)
+    late = [(row, lsb) for row, lsb in zip(rows, triplets(served)) if row[0] > 200000]
+    assert len(late) > 100 and all(row[1:4:2] == [max(2 * x, -512), min(2 * z, 511)] for row, (x, _, z) in late), late[:5]
+    assert {row[3] for row, _ in late} > {484, 510, 511} and {row[1] for row, _ in late} > {-484, -510, -512}
+
+
+@test
+def noise_has_the_sigma_that_was_asked_for():
+    rows, _, served, stats = injected("noise", "p:1:noise:20")
+    per_axis = list(zip(*changes(rows, served)))
+    for values in per_axis:
+        # 1190 samples: the mean is known to 0.6, the rms to 0.41; five times that
+        assert abs(statistics.fmean(values)) < 3 and abs(statistics.pstdev(values) - 20) < 2.1, statistics.pstdev(values)
+        assert max(map(abs, values)) <= 121
+    assert abs(statistics.fmean(a * b for a, b in zip(per_axis[0], per_axis[1]))) < 5 * 400 / len(rows) ** 0.5
+    assert stats["rows_wrong"] > 0.99 * len(rows) - 10 and triplets(served) == served_without_faults(), stats
+
+
+@test
+def frozen_sensor_latches_one_reading_again_and_again():
+    rows, _, served, stats = injected("frozen", "2000ms:frozen:1000", judge=True, max_ms=5000)
+    inside = [lsb for s, lsb in zip(served, triplets(served)) if 2000000 < int(s["t_us"]) <= 3000000]
+    after = [lsb for s, lsb in zip(served, triplets(served)) if int(s["t_us"]) > 3000000]
+    assert len(inside) == 100 and all(lsb == inside[0] for lsb in inside) and len(set(map(tuple, after))) > 50
+    assert inside[0] in triplets(served)[195:202] and sum(row[1:4] == inside[0] for row in rows) >= 100
+    assert stats["rows_wrong"] == 0 and stats["rows"] >= len(served) - 2
+
+
+@test
+def storm_on_int1_comes_at_its_rate():
+    edges = injected("calm", judge=True, max_ms=3000)[3]["isr_int0_n"]
+    rows, _, served, stats = injected("storm", "1000ms:storm:1000:500", max_ms=3000)
+    # a pulse against a high level gives its edge when the level comes back
+    assert 480 <= stats["isr_int0_n"] - edges <= 520, (edges, stats["isr_int0_n"])
+    assert stats["rows_wrong"] == 0 and len(rows) >= len(served) - 2, stats
+
+
+@test
+def output_data_rate_changes_for_as_long_as_asked():
+    for ppm in (50000, -50000):
+        _, _, served, stats = injected("odr", f"2000ms:odr:{ppm}:4000", judge=True, max_ms=9000)
+        at = [int(s["t_us"]) for s in served]
+        steps = [b - a for a, b in zip(at, at[1:])]
+        inside = [step for t, step in zip(at, steps) if 2010000 < t < 5980000]
+        outside = [step for t, step in zip(at, steps) if t < 1980000 or t > 6020000]
+        assert all(abs(step - 1e4 / (1 + ppm * 1e-6)) <= 1.5 for step in inside) and len(inside) > 350, inside[:5]
+        assert all(abs(step - 10000) <= 1.5 for step in outside) and len(outside) > 400
+        assert stats["rows"] >= len(served) - 2
+
+
+@test
+def flood_of_received_bytes_fills_the_line_and_costs_no_row():
+    calm = injected("calm", judge=True, max_ms=3000)[3]
+    rows, _, served, stats = injected("rxflood", "1000ms:rxflood:1000", judge=True, max_ms=3000)
+    # 115200 baud is 117647 on this chip, ten bits a byte
+    assert 11500 <= stats["isr_usart_rx_n"] - calm["isr_usart_rx_n"] <= 11800, stats["isr_usart_rx_n"]
+    assert [row[1:4] for row in rows] == triplets(served)[:len(rows)] and len(rows) >= len(served) - 2
+
+
+@test
+def bus_fault_per_sample_comes_at_any_byte():
+    """Lost in the middle of its data a sample is gone; before it, it is read again. Five of the nine bytes are the former."""
+    for kind in ("arb", "buserr"):
+        rows, _, served, stats = injected(f"byte-{kind}", f"p:0.1:{kind}", judge=True)
+        gone = len(served) - 1 - len(rows)
+        assert 80 <= stats["fault_1_injected"] <= 160 and stats["fault_1_detectable"] is True, stats
+        assert 0.3 <= gone / stats["fault_1_injected"] <= 0.8, f"{gone} of {stats['fault_1_injected']} lost"
+
+
+@test
+def state_per_sample_begins_anew_only_when_it_is_over():
+    _, _, _, stats = injected("again", "p:1:odr:1000:500", judge=True, max_ms=5100)
+    assert stats["fault_1_injected"] == 10, stats["fault_1_injected"]
+
+
+@test
+def judge_ends_the_run_with_its_status_and_names_the_first_row():
+    rows, _, served, stats = injected("judged", "1000ms:flip:2", max_ms=1500)
+    wrong = [(i, row) for i, (row, lsb) in enumerate(zip(rows, triplets(served)), 1) if row[1:4] != lsb]
+    assert len(wrong) == 1 and stats["rows_wrong"] == 1 and stats["rows_judged"] == len(rows), (wrong, stats)
+    number, row = wrong[0]
+    words = f"1 wrong, 0 stale; 0 steps back in time; first row {number}: t_us {row[0]}, readings {row[1]},{row[2]},{row[3]}, "
+    assert words in stats["stderr"]
+    command = [SIMRUN, "--fw", FW, "--in", REST, "--out", OUT / "judged.csv", "--filter", "kf", "--max-ms", "1500", "--judge"]
+    assert f"status 10: {len(rows)} rows judged: {words}" in run(*command, "--fault", "1000ms:flip:2", expect=10).stderr
+    run(*command)
+    # a clock that is said to begin elsewhere makes every stamp one second early
+    run(*command, "--clock-start", "1000000", expect=10)
+
+
+@test
+def faults_that_no_firmware_can_see_are_marked():
+    kinds = ("unplug plug power sda scl hang arb buserr nack nackdata devid noint reset mcupower flip noise double frozen storm odr "
+             "rxflood").split()
+    stats = injected("marks", *[f"5000ms:{kind}" for kind in kinds], judge=True, max_ms=100)[3]
+    assert [kind for i, kind in enumerate(kinds, 1) if not stats[f"fault_{i}_detectable"]] == ["flip", "noise", "double"], stats
+
+
+@test
+def wrong_parameters_of_a_fault_are_refused():
+    for what, words in (("flip:9", "flip wants a whole number from 1 to 8"), ("flip:x", "flip wants a whole number"),
+                        ("double:w", "double wants an axis: x, y or z"), ("noise:0", "noise wants a whole number from 1 to 4096"),
+                        ("storm:0", "storm wants a whole number from 1 to 20000"), ("frozen:1:2", "too many parts"),
+                        ("odr:-200001", "odr wants a whole number from -200000 to 200000"), ("flip:1:5", "too many parts"),
+                        ("devid:256", "devid wants a whole number from 0 to 255"), ("hang:17", "hang wants a whole number from 1 to 16")):
+        done = run(SIMRUN, "--fw", FW, "--in", REST, "--out", OUT / "x.csv", "--fault", f"1ms:{what}", expect=2)
+        assert words in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr

@@ -1,0 +1,178 @@
+/*
+ * Faults that change values or clocks instead of breaking a transfer. Flips, noise and doubled readings come into the
+ * bytes on their way to the master, behind the sensor, so that --served stays what the sensor latched; a frozen sensor
+ * latches the frozen readings, and --served says so.
+ */
+#include <string.h>
+
+#include "adxl345_registers.h"
+#include "simrun_faults.h"
+
+enum { AXES = 3, DATA_BYTES = 2 * AXES, PULSE_CYCLES = 64, NO_AXIS = AXES };
+
+typedef struct {
+    uint32_t sigma_lsb;
+    bool doubled[AXES];
+} change_t;
+
+static uint32_t flip_bits;
+static change_t wanted;  /* of the next sample that is read */
+static change_t present; /* of the sample under way */
+static size_t changed_axis = NO_AXIS;
+static int16_t changed_lsb;
+static bool frozen;
+static bool has_kept;
+static int16_t kept[AXES];
+static uint64_t pulse_at = NEVER; /* the next pulse on INT1, or its end */
+static uint64_t pulse_period;
+static bool in_pulse;
+
+static uint8_t random_mask(uint32_t bits)
+{
+    unsigned mask = 0;
+    while (bits != 0) {
+        unsigned bit = 1u << (machine_random() % 8u);
+        bits -= (mask & bit) == 0;
+        mask |= bit;
+    }
+    return (uint8_t)mask;
+}
+
+/* Twelve uniform numbers less their mean: variance 1, at most 6. */
+static double random_normal(void)
+{
+    double sum = -6.0;
+    for (int i = 0; i < 12; i++) {
+        sum += machine_random() / 4294967296.0;
+    }
+    return sum;
+}
+
+static int16_t within_range(double lsb)
+{
+    uint8_t format = sensor.reg[ADXL345_DATA_FORMAT];
+    bool full = (format & ADXL345_FORMAT_FULL_RES) != 0;
+    double rail = 512u << (full ? format & ADXL345_FORMAT_RANGE_MASK : 0u);
+    double whole = lsb < 0.0 ? -(double)(long)(0.5 - lsb) : (double)(long)(lsb + 0.5);
+    whole = whole < -rail ? -rail : whole;
+    return (int16_t)(whole > rail - 1.0 ? rail - 1.0 : whole);
+}
+
+static int16_t changed(size_t axis, int16_t lsb)
+{
+    double value = present.doubled[axis] ? 2.0 * lsb : lsb;
+    if (present.sigma_lsb != 0) {
+        value += present.sigma_lsb * random_normal();
+    }
+    return within_range(value);
+}
+
+/* The low byte comes first and decides; the high byte of the same reading follows it. */
+static uint8_t data_byte(uint8_t offset, uint8_t byte)
+{
+    size_t axis = offset / 2u;
+    if (offset == 0) {
+        present = wanted;
+        wanted = (change_t){ 0 };
+    }
+    if (offset % 2u != 0) {
+        return axis == changed_axis ? (uint8_t)((uint16_t)changed_lsb >> 8) : byte;
+    }
+    changed_axis = NO_AXIS;
+    if (present.doubled[axis] || present.sigma_lsb != 0) {
+        changed_axis = axis;
+        changed_lsb = changed(axis, (int16_t)(byte | sensor.reg[ADXL345_DATAX0 + offset + 1u] << 8));
+        return (uint8_t)changed_lsb;
+    }
+    return byte;
+}
+
+static uint8_t on_sent(void *owner, uint8_t address, uint8_t byte)
+{
+    (void)owner;
+    if (address >= ADXL345_DATAX0 && address < ADXL345_DATAX0 + DATA_BYTES) {
+        byte = data_byte((uint8_t)(address - ADXL345_DATAX0), byte);
+    }
+    byte ^= random_mask(flip_bits);
+    flip_bits = 0;
+    return byte;
+}
+
+void alter_start(void)
+{
+    twi.sent = on_sent;
+}
+
+const int16_t *alter_sample(const int16_t lsb[3])
+{
+    if (!frozen || !has_kept) {
+        memcpy(kept, lsb, sizeof kept);
+        has_kept = true;
+    }
+    return kept;
+}
+
+uint64_t alter_next(void)
+{
+    return pulse_at;
+}
+
+/* A short pulse against the level that INT1 has. */
+void alter_step(void)
+{
+    if (pulse_at > mcu->cycle) {
+        return;
+    }
+    in_pulse = !in_pulse;
+    pulse_at = mcu->cycle + (in_pulse ? PULSE_CYCLES : pulse_period - PULSE_CYCLES);
+    sensor_disturb_int1(in_pulse);
+}
+
+void alter_begin(const fault_t *fault)
+{
+    uint32_t parameter = (uint32_t)fault->parameter;
+    switch (fault->kind) {
+    case KIND_FLIP:
+        flip_bits = parameter;
+        break;
+    case KIND_NOISE:
+        wanted.sigma_lsb = parameter;
+        break;
+    case KIND_DOUBLE:
+        wanted.doubled[parameter] = true;
+        break;
+    case KIND_FROZEN:
+        frozen = true;
+        break;
+    case KIND_STORM:
+        pulse_period = (uint64_t)CYCLES_PER_MS * 1000u / parameter;
+        pulse_at = in_pulse ? pulse_at : mcu->cycle;
+        break;
+    case KIND_ODR:
+        sensor_set_clock_error(fault->parameter);
+        break;
+    default:
+        uart_flood(true);
+        break;
+    }
+}
+
+void alter_end(const fault_t *fault)
+{
+    switch (fault->kind) {
+    case KIND_FROZEN:
+        frozen = false;
+        break;
+    case KIND_STORM:
+        pulse_at = NEVER;
+        in_pulse = false;
+        sensor_disturb_int1(false);
+        break;
+    case KIND_ODR:
+        sensor_set_clock_error(options.ppm);
+        break;
+    default:
+        uart_flood(false);
+        break;
+    }
+}
