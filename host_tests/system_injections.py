@@ -1,4 +1,5 @@
 """The simulator's own faults and its judge, seen at the bus and in the firmware's rows; part of system_tests.py."""
+import csv
 import statistics
 
 from system_support import FW, OUT, SIMRUN, STREAMS, run, simrun, test, triplets
@@ -10,7 +11,14 @@ LENGTH_MS = 12000
 def injected(name, *faults, judge=False, max_ms=LENGTH_MS):
     """A run with faults and the filter that gates nothing, so that no flag 1 hides a row from the judge."""
     arguments = [word for fault in faults for word in ("--fault", fault)]
+    arguments += ["--altered", OUT / f"inject-{name}.altered.csv"]
     return simrun(f"inject-{name}", REST, "--filter", "kf", "--max-ms", max_ms, *arguments, judge=judge)
+
+
+def altered(name):
+    """Of each sample that --altered tells of: as it arrived, as the sensor sent it."""
+    lines = [[int(v) for v in line.values()] for line in csv.DictReader(open(OUT / f"inject-{name}.altered.csv", encoding="ascii"))]
+    return [(line[2:5], line[5:8]) for line in lines]
 
 
 def changes(rows, served):
@@ -34,6 +42,10 @@ def check_flips(bits):
     changed = [(row, lsb) for row, lsb in zip(rows, triplets(served)) if row[1:4] != lsb]
     assert all(bits_flipped(row, lsb) == bits for row, lsb in changed), changed
     assert 80 <= len(changed) and stats["fault_1_injected"] - 1 <= len(changed) <= stats["fault_1_injected"], stats
+    # the last may have arrived without its row
+    told = altered(f"flip-{bits}")
+    assert told[:len(changed)] == [(row[1:4], lsb) for row, lsb in changed], told
+    assert len(changed) <= len(told) == stats["samples_altered"] <= len(changed) + 1, stats
     assert len({axis for row, lsb in changed for axis in range(3) if row[1 + axis] != lsb[axis]}) == 3
     # each is found by the judge: here no flipped reading happens to be that of the sample before or after, or it is stale
     assert len(changed) - 3 <= stats["rows_wrong"] + stats["rows_stale"] <= len(changed), stats
@@ -60,6 +72,7 @@ def doubled_axis_reads_twice_its_value():
             found += change[axis] != 0
         # noise of 2 LSB about 36 or 248: no reading is zero
         assert found >= 80 and stats["fault_1_injected"] - 1 <= found <= stats["fault_1_injected"], (found, stats)
+        assert len(altered("double")) - found in (0, 1) and stats["samples_altered"] == len(altered("double"))
         assert stats["rows_wrong"] == found and triplets(served) == served_without_faults(), stats
 
 
@@ -95,6 +108,7 @@ def frozen_sensor_latches_one_reading_again_and_again():
     assert len(inside) == 100 and all(lsb == inside[0] for lsb in inside) and len(set(map(tuple, after))) > 50
     assert inside[0] in triplets(served)[195:202] and sum(row[1:4] == inside[0] for row in rows) >= 100
     assert stats["rows_wrong"] == 0 and stats["rows"] >= len(served) - 2
+    assert stats["samples_altered"] == 0 and not altered("frozen"), "the sensor sends what it latched"
 
 
 @test

@@ -46,7 +46,7 @@ typedef struct {
 } typed_line_t;
 
 typedef struct {
-    const char *fw, *in, *out, *served, *eeprom, *stats, *profile, *vcd, *bootloader, *filter, *span;
+    const char *fw, *in, *out, *served, *altered, *eeprom, *stats, *profile, *vcd, *bootloader, *filter, *span;
     bool loop, pty, blank, judge;
     double ppm, max_ms; /* max_ms 0: none */
     unsigned expect_resets, gdb_port;
@@ -171,6 +171,8 @@ void faults_warn(void); /* stderr: faults that never came */
 
 /* --- faults that alter values (simrun_alter.c) --- */
 void alter_start(void);
+void alter_finish(void);
+uint32_t alter_count(void);                        /* samples that arrived otherwise than they were sent */
 const int16_t *alter_sample(const int16_t lsb[3]); /* what the sensor measures instead */
 uint64_t alter_next(void);
 void alter_step(void);

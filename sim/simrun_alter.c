@@ -1,8 +1,9 @@
 /*
  * Faults that change values or clocks instead of breaking a transfer. Flips, noise and doubled readings come into the
  * bytes on their way to the master, behind the sensor, so that --served stays what the sensor latched; a frozen sensor
- * latches the frozen readings, and --served says so.
+ * latches the frozen readings, and --served says so. What arrived at the master otherwise than it was sent: --altered.
  */
+#include <stdlib.h>
 #include <string.h>
 
 #include "adxl345_registers.h"
@@ -15,6 +16,10 @@ typedef struct {
     bool doubled[AXES];
 } change_t;
 
+static uint8_t data_sent[DATA_BYTES];
+static uint8_t data_arrived[DATA_BYTES];
+static FILE *altered_file;
+static uint32_t altered_count;
 static uint32_t flip_bits;
 static change_t wanted;  /* of the next sample that is read */
 static change_t present; /* of the sample under way */
@@ -87,20 +92,70 @@ static uint8_t data_byte(uint8_t offset, uint8_t byte)
     return byte;
 }
 
+static int reading(const uint8_t data[DATA_BYTES], size_t axis)
+{
+    return (int16_t)(data[2 * axis] | data[2 * axis + 1] << 8);
+}
+
+/* A burst of the data that came to its end and is not what the sensor sent. */
+static void record_altered(void)
+{
+    if (memcmp(data_sent, data_arrived, DATA_BYTES) == 0) {
+        return;
+    }
+    altered_count++;
+    if (altered_file != NULL) {
+        fprintf(altered_file, "%u,%llu", (unsigned)altered_count, (unsigned long long)(mcu->cycle / CYCLES_PER_US));
+        for (size_t i = 0; i < 2 * (size_t)AXES; i++) {
+            fprintf(altered_file, ",%d", reading(i < AXES ? data_arrived : data_sent, i % AXES));
+        }
+        fputc('\n', altered_file);
+    }
+}
+
 static uint8_t on_sent(void *owner, uint8_t address, uint8_t byte)
 {
     (void)owner;
-    if (address >= ADXL345_DATAX0 && address < ADXL345_DATAX0 + DATA_BYTES) {
-        byte = data_byte((uint8_t)(address - ADXL345_DATAX0), byte);
-    }
-    byte ^= random_mask(flip_bits);
+    bool is_data = address >= ADXL345_DATAX0 && address < ADXL345_DATAX0 + DATA_BYTES;
+    uint8_t offset = (uint8_t)(address - ADXL345_DATAX0);
+    uint8_t arrived = is_data ? data_byte(offset, byte) : byte;
+    arrived ^= random_mask(flip_bits);
     flip_bits = 0;
-    return byte;
+    if (is_data) {
+        data_sent[offset] = byte;
+        data_arrived[offset] = arrived;
+    }
+    if (is_data && offset == DATA_BYTES - 1) {
+        record_altered();
+    }
+    return arrived;
 }
 
 void alter_start(void)
 {
     twi.sent = on_sent;
+    if (options.altered == NULL) {
+        return;
+    }
+    altered_file = fopen(options.altered, "w");
+    if (altered_file == NULL) {
+        perror(options.altered);
+        exit(EXIT_INPUT);
+    }
+    fputs("altered,t_us,x_lsb,y_lsb,z_lsb,x_sent_lsb,y_sent_lsb,z_sent_lsb\n", altered_file);
+}
+
+void alter_finish(void)
+{
+    if (altered_file != NULL && fclose(altered_file) != 0) {
+        perror(options.altered);
+        exit(EXIT_INTERNAL);
+    }
+}
+
+uint32_t alter_count(void)
+{
+    return altered_count;
 }
 
 const int16_t *alter_sample(const int16_t lsb[3])

@@ -31,6 +31,7 @@ int main(int argc, char **argv)
     eeprom_finish();
     vcd_finish();
     span_finish();
+    alter_finish();
     sensor_finish();
     if (status != EXIT_OK) {
         fprintf(stderr, "simrun: status %d: %s\n", (int)status, reason);

@@ -13,6 +13,7 @@ enum option_code {
     OPTION_IN,
     OPTION_OUT,
     OPTION_SERVED,
+    OPTION_ALTERED,
     OPTION_EEPROM,
     OPTION_STATS,
     OPTION_PROFILE,
@@ -40,6 +41,7 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "in", required_argument, NULL, OPTION_IN },
                                        { "out", required_argument, NULL, OPTION_OUT },
                                        { "served", required_argument, NULL, OPTION_SERVED },
+                                       { "altered", required_argument, NULL, OPTION_ALTERED },
                                        { "eeprom", required_argument, NULL, OPTION_EEPROM },
                                        { "stats", required_argument, NULL, OPTION_STATS },
                                        { "profile", required_argument, NULL, OPTION_PROFILE },
@@ -79,6 +81,10 @@ static const char help_text[] =
     "  --cmd MS:TEXT      types TEXT and a line end, not before MS\n"
     "  --ppm N            error of the sensor's clock\n"
     "  --served CSV       every sample the sensor latched: served,t_us,row,line,x_lsb,y_lsb,z_lsb[,truth]\n"
+    "  --altered CSV      every sample that a fault altered on its way to the MCU: altered,t_us,x_lsb,y_lsb,z_lsb as "
+    "it "
+    "arrived,\n"
+    "                     x_sent_lsb,y_sent_lsb,z_sent_lsb as the sensor sent it\n"
     "  --stats JSON       statistics of the run\n"
     "  --judge            exit status 10 unless every row is right: its readings are what the sensor latched within "
     "two "
@@ -206,11 +212,12 @@ static bool take_file(int code, const char *argument)
         int code;
         const char **target;
     } files[] = {
-        { OPTION_FW, &options.fw },         { OPTION_IN, &options.in },
-        { OPTION_OUT, &options.out },       { OPTION_SERVED, &options.served },
-        { OPTION_EEPROM, &options.eeprom }, { OPTION_STATS, &options.stats },
-        { OPTION_VCD, &options.vcd },       { OPTION_PROFILE, &options.profile },
-        { OPTION_SPAN, &options.span },     { OPTION_BOOTLOADER, &options.bootloader },
+        { OPTION_FW, &options.fw },           { OPTION_IN, &options.in },
+        { OPTION_OUT, &options.out },         { OPTION_SERVED, &options.served },
+        { OPTION_EEPROM, &options.eeprom },   { OPTION_STATS, &options.stats },
+        { OPTION_VCD, &options.vcd },         { OPTION_PROFILE, &options.profile },
+        { OPTION_SPAN, &options.span },       { OPTION_BOOTLOADER, &options.bootloader },
+        { OPTION_ALTERED, &options.altered },
     };
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         if (files[i].code == code) {

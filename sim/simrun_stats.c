@@ -293,6 +293,7 @@ static void write_samples(FILE *file)
     unsigned every = every_seen();
     fprintf(file, "  \"samples_served\": %zu,\n  \"sensor_overruns\": %u,\n", sensor_served_count(),
             (unsigned)sensor.overruns);
+    fprintf(file, "  \"samples_altered\": %u,\n", (unsigned)alter_count());
     fprintf(file, "  \"rows\": %zu,\n  \"every\": %u,\n  \"lost\": %u,\n", uart_row_count(), every, lost(every));
     fprintf(file, "  \"gated\": %u,\n  \"coasted\": %u,\n  \"fault_rows\": %u,\n", rows_with(FLAG_GATED),
             rows_with(FLAG_COASTED), rows_with(FLAG_FAULT));
