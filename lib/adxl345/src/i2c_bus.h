@@ -1,5 +1,7 @@
 /*
  * One I2C transfer at a time: write `tx`, then (if rx_length) a repeated START and a read into `rx`.
+ * Each command has one status that says it went well; any other ends the transfer, however good it would be at another
+ * moment: so no byte is stored that was not asked for, and no transfer ends well that did not do all of its steps.
  * The steps run in the I2C interrupt; everything is inline so that the handler that includes this saves few registers.
  * A transfer that hangs produces no interrupt: whoever started it watches the time and takes the bus anew.
  */
@@ -20,7 +22,7 @@ typedef enum {
     I2C_BUS_NACK_ADDRESS, /* nobody at that address */
     I2C_BUS_NACK_DATA,
     I2C_BUS_LOST,   /* arbitration lost: noise, or a second master */
-    I2C_BUS_ERROR,  /* illegal START or STOP on the bus, or a status that cannot be */
+    I2C_BUS_ERROR,  /* illegal START or STOP on the bus, or a status that cannot be at this step */
     I2C_BUS_TIMEOUT /* the owner took the bus anew while the transfer ran */
 } i2c_bus_state_t;
 
@@ -29,8 +31,9 @@ typedef struct {
     uint8_t address;        /* 7 bit, shifted left by one */
     uint8_t tx_length;
     uint8_t rx_length;
-    uint8_t index;
-    uint8_t *rx; /* stays with the caller until the state leaves BUSY */
+    uint8_t index;    /* of the byte to send, or to receive, next */
+    uint8_t expected; /* HAL_I2C_*: the command given last went well; kept when the transfer ends */
+    uint8_t *rx;      /* stays with the caller until the state leaves BUSY */
     uint8_t tx[I2C_BUS_TX_MAX];
 } i2c_bus_t;
 
@@ -44,8 +47,21 @@ static inline bool i2c_bus_free(const i2c_bus_t *bus)
 static inline void i2c_bus_begin(i2c_bus_t *bus)
 {
     bus->index = 0;
+    bus->expected = HAL_I2C_STARTED;
     bus->state = I2C_BUS_BUSY;
     hal_i2c_start();
+}
+
+/* The transfer that runs or ended last came so far that a byte was asked of the device. */
+static inline bool i2c_bus_asked(const i2c_bus_t *bus)
+{
+    return bus->expected >= HAL_I2C_RECEIVED_ACK;
+}
+
+/* The same, and a byte that was not the last one came in; of a transfer that ended well with two bytes or more: true. */
+static inline bool i2c_bus_received(const i2c_bus_t *bus)
+{
+    return i2c_bus_asked(bus) && bus->index != 0;
 }
 
 static inline void i2c_bus_finish(i2c_bus_t *bus, i2c_bus_state_t state)
@@ -58,11 +74,41 @@ static inline void i2c_bus_step_write(i2c_bus_t *bus)
 {
     if (bus->index < bus->tx_length) {
         hal_i2c_send(bus->tx[bus->index++]);
+        bus->expected = HAL_I2C_SENT_ACK;
     } else if (bus->rx_length != 0) {
         hal_i2c_start();
+        bus->expected = HAL_I2C_RESTARTED;
     } else {
         i2c_bus_finish(bus, I2C_BUS_OK);
     }
+}
+
+/* The last byte is refused, so that the device lets go of SDA. */
+static inline void i2c_bus_step_read(i2c_bus_t *bus)
+{
+    bool more = (uint8_t)(bus->index + 1u) < bus->rx_length;
+    hal_i2c_receive(more);
+    bus->expected = more ? HAL_I2C_RECEIVED_ACK : HAL_I2C_RECEIVED_NACK;
+}
+
+/* Any status but the expected one. A refusal counts as one only where an answer was awaited. */
+static inline void i2c_bus_unexpected(i2c_bus_t *bus, uint8_t status)
+{
+    enum { REFUSED = HAL_I2C_SENT_NACK - HAL_I2C_SENT_ACK };
+    i2c_bus_state_t state = I2C_BUS_ERROR;
+    if (status == HAL_I2C_ARBITRATION_LOST) {
+        hal_i2c_release();
+        bus->state = I2C_BUS_LOST;
+        return;
+    }
+    if (status == bus->expected + REFUSED) {
+        if (status == HAL_I2C_SENT_NACK) {
+            state = I2C_BUS_NACK_DATA;
+        } else if (status == HAL_I2C_WRITE_ADDRESS_NACK || status == HAL_I2C_READ_ADDRESS_NACK) {
+            state = I2C_BUS_NACK_ADDRESS;
+        }
+    }
+    i2c_bus_finish(bus, state);
 }
 
 /* One bus event (interrupt). A stale event of an abandoned transfer is ignored. */
@@ -73,42 +119,34 @@ static inline void i2c_bus_step(i2c_bus_t *bus)
         hal_i2c_disable();
         return;
     }
+    if (status != bus->expected) {
+        i2c_bus_unexpected(bus, status);
+        return;
+    }
     switch (status) {
     case HAL_I2C_STARTED:
         hal_i2c_send(bus->address);
-        break;
-    case HAL_I2C_RESTARTED:
-        bus->index = 0;
-        hal_i2c_send((uint8_t)(bus->address | 1u));
+        bus->expected = HAL_I2C_WRITE_ADDRESS_ACK;
         break;
     case HAL_I2C_WRITE_ADDRESS_ACK:
     case HAL_I2C_SENT_ACK:
         i2c_bus_step_write(bus);
         break;
+    case HAL_I2C_RESTARTED:
+        bus->index = 0;
+        hal_i2c_send((uint8_t)(bus->address | 1u));
+        bus->expected = HAL_I2C_READ_ADDRESS_ACK;
+        break;
     case HAL_I2C_RECEIVED_ACK:
         bus->rx[bus->index++] = hal_i2c_received();
-        hal_i2c_receive((uint8_t)(bus->index + 1u) < bus->rx_length);
+        i2c_bus_step_read(bus);
         break;
     case HAL_I2C_READ_ADDRESS_ACK:
-        hal_i2c_receive(bus->rx_length > 1u);
+        i2c_bus_step_read(bus);
         break;
-    case HAL_I2C_RECEIVED_NACK:
+    default: /* HAL_I2C_RECEIVED_NACK */
         bus->rx[bus->index] = hal_i2c_received();
         i2c_bus_finish(bus, I2C_BUS_OK);
-        break;
-    case HAL_I2C_WRITE_ADDRESS_NACK:
-    case HAL_I2C_READ_ADDRESS_NACK:
-        i2c_bus_finish(bus, I2C_BUS_NACK_ADDRESS);
-        break;
-    case HAL_I2C_SENT_NACK:
-        i2c_bus_finish(bus, I2C_BUS_NACK_DATA);
-        break;
-    case HAL_I2C_ARBITRATION_LOST:
-        hal_i2c_release();
-        bus->state = I2C_BUS_LOST;
-        break;
-    default:
-        i2c_bus_finish(bus, I2C_BUS_ERROR);
         break;
     }
 }
