@@ -84,11 +84,18 @@ static bool deadline_passed(void)
     return hal_time_reached(driver.now_us, driver.deadline_us);
 }
 
+/* A fault that was there is not mended, but it is not asked for any more. */
+static void stopped(void)
+{
+    driver.fault = ADXL345_FAULT_NONE;
+    driver.step = STEP_OFF;
+}
+
 static void fail(adxl345_fault_t fault)
 {
     burst_set_mode(BURST_IGNORE);
     if (driver.stop_wanted) {
-        driver.step = STEP_OFF;
+        stopped();
         return;
     }
     driver.fault = (uint8_t)fault;
@@ -114,26 +121,30 @@ static void probe(void)
 void adxl345_init(void)
 {
     burst_init();
-    driver.step = STEP_OFF;
+    stopped();
     driver.address = ADXL345_ADDRESS_LOW;
-    driver.fault = ADXL345_FAULT_NONE;
     driver.issued = false;
+}
+
+/* Where samples may be waiting, begins to put the sensor to rest; true when that is under way. */
+static bool quiesce(void)
+{
+    driver.now_us = hal_time_us();
+    if (driver.step == STEP_STREAM || driver.step == STEP_ASK_SOURCE) {
+        burst_set_mode(BURST_STAMP);
+        enter(STEP_QUIET_STANDBY, TRANSFER_LIMIT_MS);
+    }
+    return driver.step == STEP_QUIET_STANDBY || driver.step == STEP_QUIET_DRAIN;
 }
 
 void adxl345_start(const adxl345_config_t *config)
 {
-    bool streaming = driver.step == STEP_STREAM;
-    driver.now_us = hal_time_us();
-    if (streaming) {
-        burst_set_mode(BURST_STAMP);
-        enter(STEP_QUIET_STANDBY, TRANSFER_LIMIT_MS);
-    }
+    bool quiescing = quiesce();
     driver.config = *config;
     driver.nominal_us = table_period_us(config->rate_dhz);
     driver.silence_ms = silence_limit_ms(config->rate_dhz);
     driver.stop_wanted = false;
     driver.back_off_ms = BACK_OFF_MIN_MS;
-    bool quiescing = driver.step == STEP_QUIET_STANDBY || driver.step == STEP_QUIET_DRAIN;
     if (!quiescing) {
         driver.alternate_tried = false;
         probe();
@@ -142,15 +153,10 @@ void adxl345_start(const adxl345_config_t *config)
 
 void adxl345_stop(void)
 {
-    driver.now_us = hal_time_us();
-    if (driver.step == STEP_STREAM) {
-        burst_set_mode(BURST_STAMP);
-        enter(STEP_QUIET_STANDBY, TRANSFER_LIMIT_MS);
-    } else if (driver.step != STEP_QUIET_STANDBY && driver.step != STEP_QUIET_DRAIN) {
+    if (!quiesce()) {
         burst_set_mode(BURST_IGNORE);
         burst_take_bus(driver.address, false);
-        driver.fault = ADXL345_FAULT_NONE;
-        driver.step = STEP_OFF;
+        stopped();
     }
     driver.stop_wanted = true;
 }
@@ -174,12 +180,10 @@ static bool issue(void)
     }
 }
 
-static void bus_failed(i2c_bus_state_t state)
+/* A transfer failed, or three bursts did: names the fault, or tries the other address. */
+static void give_up(i2c_bus_state_t state)
 {
     saturating_add(&driver.counters.bus_faults);
-    if (state == I2C_BUS_TIMEOUT) {
-        saturating_add(&driver.counters.timeouts);
-    }
     if (state != I2C_BUS_NACK_ADDRESS) {
         fail(ADXL345_FAULT_BUS);
         return;
@@ -191,6 +195,14 @@ static void bus_failed(i2c_bus_state_t state)
     } else {
         fail(ADXL345_FAULT_NO_SENSOR);
     }
+}
+
+static void access_failed(i2c_bus_state_t state)
+{
+    if (state == I2C_BUS_TIMEOUT) {
+        saturating_add(&driver.counters.timeouts);
+    }
+    give_up(state);
 }
 
 static void start_measuring(void)
@@ -223,7 +235,10 @@ static void probed(void)
     enter(STEP_CONFIGURE, TRANSFER_LIMIT_MS);
 }
 
-/* No data came in time. INT1 may have risen just now; else the sensor says whether it has any. */
+/*
+ * No data came in time. INT1 may have risen just now; else the sensor says whether it has any. A sensor that is lost
+ * while it answers leaves ones: they show in the bits of functions that are off.
+ */
 static void source_asked(void)
 {
     if (hal_drdy_high()) {
@@ -231,7 +246,8 @@ static void source_asked(void)
         enter(STEP_STREAM, driver.silence_ms);
         return;
     }
-    bool ready = (burst_register_value() & ADXL345_INT_DATA_READY) != 0;
+    uint8_t source = burst_register_value() & (uint8_t)(ADXL345_INT_DATA_READY | ADXL345_INT_EVENTS);
+    bool ready = source == ADXL345_INT_DATA_READY;
     fail(ready ? ADXL345_FAULT_INT1_SILENT : ADXL345_FAULT_NO_DATA);
 }
 
@@ -274,7 +290,7 @@ static void access_step(void)
         driver.issued = issue();
         if (!driver.issued && deadline_passed()) {
             take_bus();
-            bus_failed(I2C_BUS_TIMEOUT);
+            access_failed(I2C_BUS_TIMEOUT);
         }
         return;
     }
@@ -289,7 +305,7 @@ static void access_step(void)
     if (state == I2C_BUS_OK) {
         advance();
     } else {
-        bus_failed(state);
+        access_failed(state);
     }
 }
 
@@ -308,7 +324,10 @@ static void sample_arrived(void)
 
 static void stream_step(void)
 {
-    (void)burst_drain();
+    bool tries_left = burst_failures() < BURST_TRIES; /* else the state of the last one is still wanted */
+    if (tries_left) {
+        (void)burst_drain();
+    }
     if (burst_running() && hal_time_reached(driver.now_us, burst_begun_us() + TRANSFER_LIMIT_MS * 1000ul)) {
         take_bus();
         saturating_add(&driver.counters.timeouts);
@@ -318,8 +337,7 @@ static void stream_step(void)
         expect_sample();
     }
     if (burst_failures() >= BURST_TRIES) {
-        saturating_add(&driver.counters.bus_faults);
-        fail(ADXL345_FAULT_BUS);
+        give_up(burst_bus_state());
     } else if (burst_successes() != driver.seen_successes) {
         sample_arrived();
     } else if (deadline_passed()) {
@@ -338,7 +356,7 @@ static void drain_step(void)
     }
     burst_set_mode(BURST_IGNORE);
     if (driver.stop_wanted) {
-        driver.step = STEP_OFF;
+        stopped();
         return;
     }
     driver.alternate_tried = false;

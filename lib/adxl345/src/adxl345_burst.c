@@ -1,7 +1,8 @@
 /*
  * One burst of six bytes per sample, straight into a slot of the queue. The data-ready handler starts it, the I2C
- * handler moves its bytes; when it fails, the sample is still in the sensor and INT1 still high, so main reads it again
- * with the stamp of its edge.
+ * handler moves its bytes. When it fails before a data byte was asked for, the sample is still in the sensor and INT1
+ * still high, so main reads it again with the stamp of its edge. When it fails inside the data, that sample has left the
+ * FIFO (p. 21) and its stamp goes with it: what main reads next is a later one.
  */
 #include "adxl345_burst.h"
 
@@ -31,7 +32,7 @@ static volatile uint8_t failures;
 static volatile uint8_t edge_waiting;
 static volatile uint32_t edge_us;
 static volatile uint32_t begun_us;  /* when the newest burst was put on the bus */
-static volatile uint32_t last_us;   /* its stamp */
+static volatile uint32_t last_us;   /* stamp of the newest sample that left the sensor, delivered or cut */
 static volatile uint8_t last_known; /* last_us belongs to this run of the sensor */
 static uint8_t register_value;
 static uint32_t period_us_q4;
@@ -74,12 +75,15 @@ HAL_DRDY_ISR()
     hal_wake();
 }
 
+/* A burst cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */
 static inline void end_burst(void)
 {
     on_bus = 0;
-    if (bus.state == I2C_BUS_OK) {
+    if (i2c_bus_received(&bus)) {
         last_us = queue[head].t_us;
         last_known = 1;
+    }
+    if (bus.state == I2C_BUS_OK) {
         head = (uint8_t)((uint8_t)(head + 1u) & QUEUE_MASK);
         failures = 0;
         return;
@@ -87,7 +91,7 @@ static inline void end_burst(void)
     if (failures != UINT8_MAX) {
         failures++;
     }
-    if (queue[head].exact) {
+    if (queue[head].exact && !i2c_bus_asked(&bus)) {
         edge_us = queue[head].t_us;
         edge_waiting = 1;
     }

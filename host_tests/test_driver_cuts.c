@@ -1,0 +1,361 @@
+/*
+ * The driver where something is cut in its middle: a burst inside its data, the wires, the answer of a sensor that loses
+ * its supply, a recovery by a stop. No sample comes out wrong or with the time of another, no fault by a wrong name.
+ */
+#include "adxl345.h"
+#include "adxl345_burst.h"
+#include "adxl345_registers.h"
+#include "hal_drdy.h"
+#include "hal_host.h"
+#include "hal_i2c.h"
+#include "hal_sleep.h"
+#include "hal_time.h"
+#include "hal_uart.h"
+#include "support_board.h"
+#include "unity.h"
+
+enum { ROWS = 4000, FIRST_DATA_EVENT = 5, EVENTS_PER_BURST = 11 };
+
+static const uint32_t start_us = 0xFFFFFFFFu - 300000u;
+static const adxl345_config_t at_100_hz = { 1000, 16 };
+static const adxl345_config_t at_800_hz = { 8000, 16 };
+static stream_t stream;
+static size_t taken_count;
+static size_t latched_count;
+static uint32_t latched_us[ROWS]; /* of the sample whose x is the index */
+static int last_x;
+static uint32_t stamp_limit_us;
+static bool leave_in_queue;
+
+static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
+{
+    (void)row;
+    latched_us[lsb[0]] = start_us + (uint32_t)t_us;
+    latched_count++;
+}
+
+/* x counts, so that every sample tells which one it is. */
+static void begin(double rate_hz)
+{
+    stream_free(&stream);
+    stream = board_constant_stream(ROWS, rate_hz, 0, -100, 250);
+    for (size_t i = 0; i < stream.count; i++) {
+        stream.rows[i].lsb[0] = (int16_t)i;
+    }
+    taken_count = 0;
+    latched_count = 0;
+    last_x = -1;
+    stamp_limit_us = 100;
+    leave_in_queue = false;
+    hal_host_config_t config = { .time_start_us = start_us, .on_latched = on_latched };
+    hal_host_begin(&config, &stream, false);
+    hal_uart_init(115200);
+    hal_time_init();
+    hal_drdy_enable();
+    adxl345_init();
+}
+
+void setUp(void)
+{
+    begin(100.0);
+}
+
+void tearDown(void)
+{
+    stream_free(&stream);
+}
+
+/* Each sample is one that the sensor held, later than the one before it, with its own time. */
+static void take_all(void)
+{
+    adxl345_sample_t sample;
+    while (!leave_in_queue && adxl345_take(&sample)) {
+        TEST_ASSERT_TRUE(sample.lsb[0] > last_x && sample.lsb[0] < ROWS);
+        TEST_ASSERT_EQUAL_INT16(-100, sample.lsb[1]);
+        TEST_ASSERT_EQUAL_INT16(250, sample.lsb[2]);
+        last_x = sample.lsb[0];
+        int32_t late_us = (int32_t)(sample.t_us - latched_us[last_x]);
+        TEST_ASSERT_INT32_WITHIN_MESSAGE((int32_t)stamp_limit_us, 0, late_us, "the time of another sample");
+        taken_count++;
+        hal_wake();
+    }
+}
+
+static void pass(void)
+{
+    adxl345_poll(hal_time_us());
+    take_all();
+    hal_sleep_until_wake();
+}
+
+static void run_ms(double ms)
+{
+    for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
+        pass();
+    }
+}
+
+/* Stops, and says how many samples did not come out. */
+static size_t lost(void)
+{
+    adxl345_stop();
+    run_ms(60);
+    TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
+    return latched_count - taken_count;
+}
+
+/* No burst runs and none is due for a while: the next event is the START of the next sample. */
+static void wait_for_a_pause(void)
+{
+    while (hal_drdy_high() || burst_running()) {
+        run_ms(0.1);
+    }
+}
+
+static void disturb(unsigned event, uint8_t status)
+{
+    hal_host_faults.status_skip = event;
+    hal_host_faults.next_status = status;
+}
+
+/*
+ * Every status that the bus can give, at every event of a burst where it is not the right one: a transfer that took it
+ * would read another register, or more bytes than there is room for. Before the data nothing is lost, inside one sample.
+ */
+static void test_no_status_at_any_event_makes_a_wrong_sample(void)
+{
+    static const uint8_t right[EVENTS_PER_BURST] = { 0x08, 0x18, 0x28, 0x10, 0x40, 0x50, 0x50, 0x50, 0x50, 0x50, 0x58 };
+    static const uint8_t statuses[] = { 0x00, 0x08, 0x10, 0x18, 0x20, 0x28, 0x30, 0x38, 0x40, 0x48, 0x50, 0x58, 0xF8 };
+    for (unsigned s = 0; s < sizeof statuses; s++) {
+        for (unsigned event = 0; event < EVENTS_PER_BURST; event++) {
+            if (statuses[s] == right[event]) {
+                continue;
+            }
+            begin(100.0);
+            adxl345_start(&at_100_hz);
+            run_ms(100);
+            wait_for_a_pause();
+            disturb(event, statuses[s]);
+            /* without a STOP the sensor shows the cut sample again: it has the time of that burst then */
+            bool no_stop = statuses[s] == HAL_I2C_ARBITRATION_LOST;
+            stamp_limit_us = no_stop ? 400 : 100;
+            run_ms(25);
+            TEST_ASSERT_EQUAL(-1, hal_host_faults.next_status);
+            TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+            /* in its first data byte the sensor has not been read yet, here; a real one may have been */
+            TEST_ASSERT_EQUAL_size_t(event > FIRST_DATA_EVENT && !no_stop ? 1 : 0, lost());
+        }
+    }
+}
+
+/*
+ * Main was late and the FIFO holds several samples when a burst is cut: inside its data the oldest is gone, and the
+ * others keep their own times.
+ */
+static void cut_with_more_in_the_fifo(const adxl345_config_t *config, unsigned waiting, unsigned event)
+{
+    double period_ms = 10000.0 / config->rate_dhz;
+    begin(config->rate_dhz / 10.0);
+    adxl345_start(config);
+    run_ms(100);
+    wait_for_a_pause();
+    /* the edge's burst is refused at its address, which leaves the stamp; main does not look until `waiting` wait */
+    disturb(1, HAL_I2C_WRITE_ADDRESS_NACK);
+    for (size_t end = latched_count + waiting; latched_count < end;) {
+        hal_sleep_until_wake();
+    }
+    double end_ms = hal_host_now_ms() + period_ms / 4.0;
+    disturb(event, HAL_I2C_BUS_ERROR);
+    while (hal_host_now_ms() < end_ms) {
+        pass();
+    }
+    TEST_ASSERT_EQUAL(-1, hal_host_faults.next_status);
+    run_ms(10.0 * period_ms);
+    TEST_ASSERT_EQUAL_size_t(event > FIRST_DATA_EVENT ? 1 : 0, lost());
+}
+
+static void test_what_follows_a_sample_that_was_cut_has_its_own_time(void)
+{
+    for (unsigned waiting = 1; waiting < 6; waiting++) {
+        for (unsigned event = 0; event < EVENTS_PER_BURST; event++) {
+            cut_with_more_in_the_fifo(&at_100_hz, waiting, event);
+        }
+    }
+}
+
+/* A burst that hangs is given up at the next tick, 3 to 11 ms later: at 800 Hz other samples wait by then. */
+static void test_what_follows_a_burst_that_hung_has_its_own_time(void)
+{
+    unsigned inside = 0;
+    for (unsigned phase = 0; phase < 16; phase++) {
+        begin(800.0);
+        adxl345_start(&at_800_hz);
+        run_ms(100.0 + phase * 0.5);
+        wait_for_a_pause();
+        while (!burst_running()) {
+            adxl345_poll(hal_time_us());
+            hal_wake();
+            hal_sleep_until_wake();
+        }
+        for (unsigned i = 0; i < phase; i++) { /* 20 us each; a burst takes 208 us */
+            hal_wake();
+            hal_sleep_until_wake();
+        }
+        bool cut = burst_running();
+        inside += cut;
+        hal_host_faults.bus_stuck = true;
+        while (burst_running()) {
+            pass();
+        }
+        hal_host_faults.bus_stuck = false;
+        run_ms(30);
+        TEST_ASSERT_TRUE(lost() <= (cut ? 1u : 0u));
+    }
+    TEST_ASSERT_TRUE(inside > 8 && inside < 16);
+}
+
+/* Stops at every 0.2 ms of the way back from a fault: what is stopped has no fault. */
+static void test_stop_at_any_moment_of_a_recovery_leaves_no_fault(void)
+{
+    unsigned quiesced = 0;
+    for (unsigned phase = 0; phase < 400; phase++) {
+        begin(100.0);
+        adxl345_start(&at_100_hz);
+        run_ms(100);
+        adxl345_model_power(&hal_host_sensor, false);
+        run_ms(100);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
+        adxl345_model_power(&hal_host_sensor, true);
+        run_ms(phase * 0.2);
+        bool recovering = adxl345_fault() != ADXL345_FAULT_NONE;
+        adxl345_stop();
+        quiesced += recovering && adxl345_phase() == ADXL345_QUIESCING;
+        hal_host_faults.bus_stuck = (phase & 1u) != 0; /* ends by the deadline of a transfer, else by the drain */
+        run_ms(60);
+        TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+    }
+    TEST_ASSERT_TRUE_MESSAGE(quiesced > 20, "no stop came while the first sample was awaited");
+}
+
+/* SDA or SCL comes off while the supply stays and INT1 is high: nobody answers, which is not a disturbed bus. */
+static void test_wires_off_with_int1_high_are_a_missing_sensor(void)
+{
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    wait_for_a_pause();
+    hal_host_sensor.address = 0x2A;
+    for (double end_ms = hal_host_now_ms() + 100.0; hal_host_now_ms() < end_ms;) {
+        pass();
+        adxl345_fault_t fault = adxl345_fault();
+        TEST_ASSERT_TRUE(fault == ADXL345_FAULT_NONE || fault == ADXL345_FAULT_NO_SENSOR);
+    }
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
+    hal_host_sensor.address = 0x53;
+    run_ms(100);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+}
+
+/* INT1 is cut and the sensor is being asked why: the read of INT_SOURCE has just been put on the bus. */
+static void until_the_source_is_asked(void)
+{
+    begin(100.0);
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    wait_for_a_pause();
+    hal_host_faults.int1_cut = true;
+    for (double end_ms = hal_host_now_ms() + 60.0; burst_running() || burst_bus_state() != I2C_BUS_BUSY;) {
+        TEST_ASSERT_TRUE(hal_host_now_ms() < end_ms);
+        adxl345_poll(hal_time_us());
+        take_all();
+        if (burst_bus_state() != I2C_BUS_BUSY) {
+            hal_sleep_until_wake();
+        }
+    }
+}
+
+/* 20 us of the bus, without a poll. */
+static void go_on_20_us(void)
+{
+    hal_wake();
+    hal_sleep_until_wake();
+}
+
+/* The supply fails before or inside the answer: what is read are ones, and no sign that data are ready. */
+static void test_a_sensor_lost_while_it_is_asked_has_no_data(void)
+{
+    unsigned cut = 0;
+    for (unsigned phase = 0; phase < 20; phase++) {
+        until_the_source_is_asked();
+        for (unsigned i = 0; i < phase; i++) {
+            go_on_20_us();
+        }
+        bool inside = burst_bus_state() == I2C_BUS_BUSY;
+        cut += inside;
+        adxl345_model_power(&hal_host_sensor, false);
+        while (adxl345_fault() == ADXL345_FAULT_NONE) {
+            pass();
+        }
+        TEST_ASSERT_EQUAL(!inside, adxl345_fault() == ADXL345_FAULT_INT1_SILENT);
+    }
+    TEST_ASSERT_TRUE(cut >= 4 && cut < 20);
+}
+
+/* So many bits of INT_SOURCE = 0x83 (data ready, watermark, overrun) came, the others read as ones. */
+static void test_ones_in_the_source_are_no_data(void)
+{
+    for (unsigned bits = 0; bits <= 8; bits++) {
+        uint8_t value = (uint8_t)(0x83u | (0xFFu >> bits));
+        until_the_source_is_asked();
+        while (burst_bus_state() == I2C_BUS_BUSY) {
+            hal_host_sensor.reg[ADXL345_INT_SOURCE] = value;
+            go_on_20_us();
+        }
+        TEST_ASSERT_EQUAL_HEX8(value, burst_register_value());
+        pass();
+        /* bits 6 to 2 belong to functions that are off (p. 26): with all of them read, the answer is the sensor's own */
+        TEST_ASSERT_EQUAL(bits >= 6 ? ADXL345_FAULT_INT1_SILENT : ADXL345_FAULT_NO_DATA, adxl345_fault());
+    }
+}
+
+/* INT1 comes back while the sensor is asked, and a stop or another rate with it: what the FIFO holds comes out first. */
+static void test_stop_and_start_while_the_sensor_is_asked_deliver_first(void)
+{
+    for (unsigned phase = 0; phase < 8; phase++) {
+        until_the_source_is_asked();
+        for (unsigned i = 0; i < phase; i++) {
+            go_on_20_us();
+        }
+        hal_host_faults.int1_cut = false;
+        TEST_ASSERT_TRUE(hal_drdy_high());
+        TEST_ASSERT_EQUAL_size_t(0, lost());
+        TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor.reg[ADXL345_POWER_CTL]);
+
+        static const adxl345_config_t at_50_hz = { 500, 16 };
+        until_the_source_is_asked();
+        for (unsigned i = 0; i < phase; i++) {
+            go_on_20_us();
+        }
+        hal_host_faults.int1_cut = false;
+        adxl345_start(&at_50_hz);
+        TEST_ASSERT_EQUAL(ADXL345_QUIESCING, adxl345_phase());
+        run_ms(200);
+        TEST_ASSERT_EQUAL_HEX8(0x09, hal_host_sensor.reg[ADXL345_BW_RATE]);
+        TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+        TEST_ASSERT_EQUAL_size_t(0, lost());
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_no_status_at_any_event_makes_a_wrong_sample);
+    RUN_TEST(test_what_follows_a_sample_that_was_cut_has_its_own_time);
+    RUN_TEST(test_what_follows_a_burst_that_hung_has_its_own_time);
+    RUN_TEST(test_stop_at_any_moment_of_a_recovery_leaves_no_fault);
+    RUN_TEST(test_wires_off_with_int1_high_are_a_missing_sensor);
+    RUN_TEST(test_a_sensor_lost_while_it_is_asked_has_no_data);
+    RUN_TEST(test_ones_in_the_source_are_no_data);
+    RUN_TEST(test_stop_and_start_while_the_sensor_is_asked_deliver_first);
+    return UNITY_END();
+}
