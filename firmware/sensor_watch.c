@@ -72,12 +72,15 @@ static void tell(uint8_t fault)
 void sensor_watch_pass(uint32_t now_us)
 {
     uint8_t fault = (uint8_t)adxl345_fault();
+    adxl345_phase_t phase = adxl345_phase();
     hal_led_set(fault != ADXL345_FAULT_NONE);
-    if (adxl345_phase() == ADXL345_STOPPED) {
+    if (phase == ADXL345_STOPPED) {
         told = ADXL345_FAULT_NONE; /* not mended, only not asked any more */
         told_mask = 0;
     }
-    if (fault != told && settings.mode != MODE_PLOT) {
+    /* a stop and a go between two looks leave no fault either, but no sample yet */
+    bool known = fault != ADXL345_FAULT_NONE || phase == ADXL345_STREAMING;
+    if (known && fault != told && settings.mode != MODE_PLOT) {
         tell(fault);
     }
     if (fault == ADXL345_FAULT_NONE) {

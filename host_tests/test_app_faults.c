@@ -2,6 +2,8 @@
  * The whole firmware on the host's HAL when things fail: sensor faults told once, long waits without a reset, hung
  * stages.
  */
+#include <stdio.h>
+
 #include "app.h"
 #include "hal_watchdog.h"
 #include "hang_test.h"
@@ -76,6 +78,72 @@ static void test_stop_during_a_fault_does_not_call_it_over(void)
     board_type("stop");
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
+}
+
+/* The line that says so is out; from then on nothing is told and no row comes, whatever the sensor was doing. */
+static void assert_silent_after_stop(size_t from)
+{
+    board_run_ms(60);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# stopped", from));
+    size_t notes = board.note_count;
+    size_t rows = board.row_count;
+    board_run_ms(350);
+    TEST_ASSERT_EQUAL_size_t(notes, board.note_count);
+    TEST_ASSERT_EQUAL_size_t(rows, board.row_count);
+    TEST_ASSERT_FALSE(hal_host_led());
+}
+
+/* Stop at every 0.5 ms of the way back from an unplugged sensor; the fault was told once, and not again by the stop. */
+static void test_stop_at_any_moment_of_a_recovery_is_silent(void)
+{
+    for (unsigned phase = 0; phase < 140; phase++) {
+        board_start_resting();
+        board_run_ms(500);
+        size_t before = board.note_count;
+        adxl345_model_power(&hal_host_sensor, false);
+        board_run_ms(200);
+        adxl345_model_power(&hal_host_sensor, true);
+        board_run_ms(phase * 0.5);
+        board_type("stop");
+        assert_silent_after_stop(before);
+        TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1: ", before));
+    }
+}
+
+/* Both at once, as a script sends them: the sensor is still away, so nothing is over, wherever main is meanwhile. */
+static void test_stop_and_go_at_once_during_a_fault_do_not_call_it_over(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    size_t before = board.note_count;
+    adxl345_model_power(&hal_host_sensor, false);
+    board_run_ms(300);
+    for (int blanks = 0; blanks < 120; blanks++) { /* 87 us each before the commands: 10 ms of phases */
+        char typed[160];
+        snprintf(typed, sizeof typed, "%*s", blanks + 7, "stop\ngo");
+        board_type(typed);
+        board_run_ms(60);
+    }
+    TEST_ASSERT_EQUAL_size_t(120, board_notes_with("# going", before));
+    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
+    adxl345_model_power(&hal_host_sensor, true);
+    board_run_ms(300);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("over: samples again", before));
+    TEST_ASSERT_EQUAL_UINT(0, board.rows[board.row_count - 1].flags & ROW_FAULT);
+}
+
+/* SDA or SCL comes off, supply and INT1 stay: the first line names the sensor, and no line the bus. */
+static void test_wires_off_are_told_as_a_missing_sensor(void)
+{
+    for (unsigned phase = 0; phase < 20; phase++) {
+        board_start_resting();
+        board_run_ms(500.0 + phase * 0.5);
+        size_t before = board.note_count;
+        hal_host_sensor.address = 0x2A;
+        board_run_ms(300);
+        TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1: no sensor", before));
+        TEST_ASSERT_EQUAL_size_t(1, board_notes_with("fault", before));
+    }
 }
 
 static void test_ten_minutes_without_a_sensor(void)
@@ -185,6 +253,9 @@ int main(void)
     RUN_TEST(test_silent_int1_is_told_once);
     RUN_TEST(test_fault_begins_and_ends_with_one_line_each);
     RUN_TEST(test_stop_during_a_fault_does_not_call_it_over);
+    RUN_TEST(test_stop_at_any_moment_of_a_recovery_is_silent);
+    RUN_TEST(test_stop_and_go_at_once_during_a_fault_do_not_call_it_over);
+    RUN_TEST(test_wires_off_are_told_as_a_missing_sensor);
     RUN_TEST(test_ten_minutes_without_a_sensor);
     RUN_TEST(test_ten_minutes_stopped);
     RUN_TEST(test_slowest_rate_and_largest_every);
