@@ -1,6 +1,7 @@
 /*
- * The driver where something is cut in its middle: a burst inside its data, the wires, the answer of a sensor that loses
- * its supply, a recovery by a stop. No sample comes out wrong or with the time of another, no fault by a wrong name.
+ * The driver where something is cut in its middle: a burst inside its data, the wires, the answer of a sensor that
+ * loses its supply, a recovery by a stop. No sample comes out wrong or with the time of another, no fault by a wrong
+ * name.
  */
 #include "adxl345.h"
 #include "adxl345_burst.h"
@@ -104,6 +105,13 @@ static size_t lost(void)
     return latched_count - taken_count;
 }
 
+/* 20 us of the bus, without a poll. */
+static void go_on_20_us(void)
+{
+    hal_wake();
+    hal_sleep_until_wake();
+}
+
 /* No burst runs and none is due for a while: the next event is the START of the next sample. */
 static void wait_for_a_pause(void)
 {
@@ -120,7 +128,8 @@ static void disturb(unsigned event, uint8_t status)
 
 /*
  * Every status that the bus can give, at every event of a burst where it is not the right one: a transfer that took it
- * would read another register, or more bytes than there is room for. Before the data nothing is lost, inside one sample.
+ * would read another register, or more bytes than there is room for. Before the data nothing is lost, inside one
+ * sample.
  */
 static void test_no_status_at_any_event_makes_a_wrong_sample(void)
 {
@@ -241,19 +250,25 @@ static void test_stop_at_any_moment_of_a_recovery_leaves_no_fault(void)
 /* SDA or SCL comes off while the supply stays and INT1 is high: nobody answers, which is not a disturbed bus. */
 static void test_wires_off_with_int1_high_are_a_missing_sensor(void)
 {
-    adxl345_start(&at_100_hz);
-    run_ms(300);
-    wait_for_a_pause();
-    hal_host_sensor.address = 0x2A;
-    for (double end_ms = hal_host_now_ms() + 100.0; hal_host_now_ms() < end_ms;) {
-        pass();
-        adxl345_fault_t fault = adxl345_fault();
-        TEST_ASSERT_TRUE(fault == ADXL345_FAULT_NONE || fault == ADXL345_FAULT_NO_SENSOR);
+    for (unsigned phase = 0; phase < 4; phase++) {
+        begin(100.0);
+        adxl345_start(&at_100_hz);
+        run_ms(300);
+        wait_for_a_pause();
+        hal_host_sensor.address = 0x2A;
+        for (double end_ms = hal_host_now_ms() + 100.0; hal_host_now_ms() < end_ms;) {
+            pass();
+            adxl345_fault_t fault = adxl345_fault();
+            TEST_ASSERT_TRUE(fault == ADXL345_FAULT_NONE || fault == ADXL345_FAULT_NO_SENSOR);
+            for (unsigned i = 0; burst_failures() == 3 && i < phase; i++) {
+                go_on_20_us(); /* main is late at the third: the bus is free again */
+            }
+        }
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
+        hal_host_sensor.address = 0x53;
+        run_ms(100);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
     }
-    TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
-    hal_host_sensor.address = 0x53;
-    run_ms(100);
-    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
 
 /* INT1 is cut and the sensor is being asked why: the read of INT_SOURCE has just been put on the bus. */
@@ -272,13 +287,6 @@ static void until_the_source_is_asked(void)
             hal_sleep_until_wake();
         }
     }
-}
-
-/* 20 us of the bus, without a poll. */
-static void go_on_20_us(void)
-{
-    hal_wake();
-    hal_sleep_until_wake();
 }
 
 /* The supply fails before or inside the answer: what is read are ones, and no sign that data are ready. */
@@ -313,12 +321,12 @@ static void test_ones_in_the_source_are_no_data(void)
         }
         TEST_ASSERT_EQUAL_HEX8(value, burst_register_value());
         pass();
-        /* bits 6 to 2 belong to functions that are off (p. 26): with all of them read, the answer is the sensor's own */
+        /* bits 6 to 2 belong to functions that are off (p. 26): with all of them read, it is the sensor's own answer */
         TEST_ASSERT_EQUAL(bits >= 6 ? ADXL345_FAULT_INT1_SILENT : ADXL345_FAULT_NO_DATA, adxl345_fault());
     }
 }
 
-/* INT1 comes back while the sensor is asked, and a stop or another rate with it: what the FIFO holds comes out first. */
+/* INT1 comes back while the sensor is asked, and a stop or another rate with it: first what the FIFO holds. */
 static void test_stop_and_start_while_the_sensor_is_asked_deliver_first(void)
 {
     for (unsigned phase = 0; phase < 8; phase++) {

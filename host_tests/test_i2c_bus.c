@@ -1,6 +1,6 @@
 /*
- * The transfer state machine alone, on a bus that answers what the test wants: every one of the 256 statuses in place of
- * the right one, at every step of the transfers that the driver makes (and of longer ones).
+ * The transfer state machine alone, on a bus that answers what the test wants: every one of the 256 statuses in place
+ * of the right one, at every step of the transfers that the driver makes (and of longer ones).
  */
 #include <string.h>
 

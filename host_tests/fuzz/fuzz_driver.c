@@ -1,8 +1,9 @@
 /*
  * The driver on the virtual sensor and bus: arbitrary register contents at the start, then any sequence of starts,
  * stops, stalls of main, broken wires, foreign bus states, lost writes, power cycles and changed registers. The queue
- * keeps its bounds, the deadline that the watchdog looks at never passes unnoticed, no sample comes out that the sensor
- * did not hold, and once the faults end, samples come, complete and in order, within RECOVERY_MS and RECOVERY_PERIODS.
+ * keeps its bounds, the deadline that the watchdog looks at never passes unnoticed, what is stopped has no fault, no
+ * sample comes out that the sensor did not hold, and once the faults end, samples come, complete and in order, within
+ * RECOVERY_MS and RECOVERY_PERIODS.
  *
  * Input: a byte of options, registers (number, then address and value each), then operations of two bytes.
  */
@@ -96,6 +97,8 @@ static void poll(void)
 {
     uint32_t now_us = hal_time_us();
     adxl345_poll(now_us);
+    FUZZ_CHECK(adxl345_phase() != ADXL345_STOPPED || adxl345_fault() == ADXL345_FAULT_NONE, "stopped with fault %d",
+               (int)adxl345_fault());
     FUZZ_CHECK(adxl345_queued() < ADXL345_QUEUE_LENGTH, "%u samples queued", adxl345_queued());
     FUZZ_CHECK(adxl345_phase() == ADXL345_STOPPED || !hal_time_reached(now_us, adxl345_deadline_us() + POLL_GRACE_US),
                "stuck: phase %d, the deadline passed %lu us ago", (int)adxl345_phase(),

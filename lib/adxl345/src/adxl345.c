@@ -235,10 +235,7 @@ static void probed(void)
     enter(STEP_CONFIGURE, TRANSFER_LIMIT_MS);
 }
 
-/*
- * No data came in time. INT1 may have risen just now; else the sensor says whether it has any. A sensor that is lost
- * while it answers leaves ones: they show in the bits of functions that are off.
- */
+/* INT1 may have risen just now. Ones of a sensor that is gone show in the bits of functions that are off. */
 static void source_asked(void)
 {
     if (hal_drdy_high()) {
@@ -247,8 +244,7 @@ static void source_asked(void)
         return;
     }
     uint8_t source = burst_register_value() & (uint8_t)(ADXL345_INT_DATA_READY | ADXL345_INT_EVENTS);
-    bool ready = source == ADXL345_INT_DATA_READY;
-    fail(ready ? ADXL345_FAULT_INT1_SILENT : ADXL345_FAULT_NO_DATA);
+    fail(source == ADXL345_INT_DATA_READY ? ADXL345_FAULT_INT1_SILENT : ADXL345_FAULT_NO_DATA);
 }
 
 /* The step's register access ended well. */
@@ -324,8 +320,7 @@ static void sample_arrived(void)
 
 static void stream_step(void)
 {
-    bool tries_left = burst_failures() < BURST_TRIES; /* else the state of the last one is still wanted */
-    if (tries_left) {
+    if (burst_failures() < BURST_TRIES) { /* else the state of the last one is still wanted */
         (void)burst_drain();
     }
     if (burst_running() && hal_time_reached(driver.now_us, burst_begun_us() + TRANSFER_LIMIT_MS * 1000ul)) {

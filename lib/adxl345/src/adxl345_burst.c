@@ -1,8 +1,8 @@
 /*
  * One burst of six bytes per sample, straight into a slot of the queue. The data-ready handler starts it, the I2C
  * handler moves its bytes. When it fails before a data byte was asked for, the sample is still in the sensor and INT1
- * still high, so main reads it again with the stamp of its edge. When it fails inside the data, that sample has left the
- * FIFO (p. 21) and its stamp goes with it: what main reads next is a later one.
+ * still high, so main reads it again with the stamp of its edge. When it fails inside the data, that sample has left
+ * the FIFO (p. 21) and its stamp goes with it: what main reads next is a later one.
  */
 #include "adxl345_burst.h"
 

@@ -58,7 +58,7 @@ static inline bool i2c_bus_asked(const i2c_bus_t *bus)
     return bus->expected >= HAL_I2C_RECEIVED_ACK;
 }
 
-/* The same, and a byte that was not the last one came in; of a transfer that ended well with two bytes or more: true. */
+/* The same, and a byte that was not the last one came in (so a good transfer of two bytes or more: true). */
 static inline bool i2c_bus_received(const i2c_bus_t *bus)
 {
     return i2c_bus_asked(bus) && bus->index != 0;
