@@ -97,6 +97,11 @@ void stack_paint_is(void);             /* what the RAM holds now is the paint (j
 bool stack_watch(uint32_t end_of_ram); /* true: SP is suspiciously low, look again after each instruction */
 uint16_t stack_high_water(void);       /* bytes used so far */
 
+/* --- files written --- */
+FILE *output_open(const char *path); /* exits with EXIT_INPUT and the reason */
+/* Exits with EXIT_INTERNAL when anything written to it did not arrive; nothing to do for NULL. */
+void output_close(FILE *file, const char *path);
+
 /* --- ELF symbols --- */
 void symbols_load(const char *path, program_size_t *size);
 /* Byte address of a function; false when there is none of that name. */

@@ -137,20 +137,13 @@ void alter_start(void)
     if (options.altered == NULL) {
         return;
     }
-    altered_file = fopen(options.altered, "w");
-    if (altered_file == NULL) {
-        perror(options.altered);
-        exit(EXIT_INPUT);
-    }
+    altered_file = output_open(options.altered);
     fputs("altered,t_us,x_lsb,y_lsb,z_lsb,x_sent_lsb,y_sent_lsb,z_sent_lsb\n", altered_file);
 }
 
 void alter_finish(void)
 {
-    if (altered_file != NULL && fclose(altered_file) != 0) {
-        perror(options.altered);
-        exit(EXIT_INTERNAL);
-    }
+    output_close(altered_file, options.altered);
 }
 
 uint32_t alter_count(void)

@@ -98,10 +98,7 @@ void eeprom_finish(void)
     if (options.eeprom == NULL) {
         return;
     }
-    FILE *file = fopen(options.eeprom, "wb");
-    bool written = file != NULL && fwrite(eeprom->eeprom, 1, EEPROM_BYTES, file) == EEPROM_BYTES;
-    if (file == NULL || fclose(file) != 0 || !written) {
-        perror(options.eeprom);
-        exit(EXIT_INTERNAL);
-    }
+    FILE *file = output_open(options.eeprom);
+    fwrite(eeprom->eeprom, 1, EEPROM_BYTES, file);
+    output_close(file, options.eeprom);
 }

@@ -99,11 +99,7 @@ void sensor_start(void)
         exit(EXIT_INPUT);
     }
     if (options.served != NULL) {
-        served_file = fopen(options.served, "w");
-        if (served_file == NULL) {
-            perror(options.served);
-            exit(EXIT_INPUT);
-        }
+        served_file = output_open(options.served);
         fprintf(served_file, "served,t_us,row,line,x_lsb,y_lsb,z_lsb%s\n",
                 stream.has_truth ? ",roll_true_cdeg,pitch_true_cdeg" : "");
     }
@@ -118,10 +114,7 @@ void sensor_start(void)
 
 void sensor_finish(void)
 {
-    if (served_file != NULL && fclose(served_file) != 0) {
-        perror(options.served);
-        exit(EXIT_INTERNAL);
-    }
+    output_close(served_file, options.served);
     stream_free(&stream);
     free(served);
 }

@@ -55,11 +55,7 @@ void span_start(void)
     from_pc = find(names);
     to_pc = find(to);
     path = file_name;
-    file = fopen(path, "w");
-    if (file == NULL) {
-        perror(path);
-        exit(EXIT_INPUT);
-    }
+    file = output_open(path);
     fputs("at_us,cycles,stack_bytes\n", file);
     span_wanted = true;
 }
@@ -94,8 +90,5 @@ void span_reset(void)
 
 void span_finish(void)
 {
-    if (file != NULL && fclose(file) != 0) {
-        perror(path);
-        exit(EXIT_INTERNAL);
-    }
+    output_close(file, path);
 }

@@ -142,30 +142,12 @@ void stats_profile(uint32_t pc, uint64_t cycles)
     profile[word].cycles += cycles;
 }
 
-static FILE *open_output(const char *path)
-{
-    FILE *file = fopen(path, "w");
-    if (file == NULL) {
-        perror(path);
-        exit(EXIT_INTERNAL);
-    }
-    return file;
-}
-
-static void close_output(FILE *file, const char *path)
-{
-    if (fclose(file) != 0) {
-        perror(path);
-        exit(EXIT_INTERNAL);
-    }
-}
-
 void stats_profile_write(void)
 {
     if (profile == NULL) {
         return;
     }
-    FILE *file = open_output(options.profile);
+    FILE *file = output_open(options.profile);
     fputs("pc,count,cycles,symbol\n", file);
     for (uint32_t word = 0; word < FLASH_WORDS; word++) {
         if (profile[word].count != 0) {
@@ -173,7 +155,7 @@ void stats_profile_write(void)
                     (unsigned long long)profile[word].cycles, symbols_nearest(word * 2));
         }
     }
-    close_output(file, options.profile);
+    output_close(file, options.profile);
     free(profile);
 }
 
@@ -309,7 +291,7 @@ void stats_write(exit_status_t status)
     if (options.stats == NULL) {
         return;
     }
-    FILE *file = open_output(options.stats);
+    FILE *file = output_open(options.stats);
     fprintf(file, "{\n  \"exit_status\": %d,\n  \"sim_ms\": %.3f,\n", (int)status, machine_ms());
     if (options.filter != NULL) {
         fprintf(file, "  \"filter\": \"%s\",\n", options.filter);
@@ -325,7 +307,7 @@ void stats_write(exit_status_t status)
     verdict_print(file);
     fprintf(file, "  \"boot_resets\": %u,\n  \"resets\": %u\n}\n", (unsigned)machine_boot_resets(),
             (unsigned)machine_resets());
-    close_output(file, options.stats);
+    output_close(file, options.stats);
 }
 
 void stats_summary(void)

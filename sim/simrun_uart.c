@@ -187,11 +187,7 @@ static void on_baud(avr_t *avr, avr_io_addr_t address, uint8_t value, void *para
 
 void uart_start(void)
 {
-    out_file = fopen(options.out, "wb");
-    if (out_file == NULL) {
-        perror(options.out);
-        exit(EXIT_INPUT);
-    }
+    out_file = output_open(options.out);
     uint32_t no_console = 0;
     avr_ioctl(mcu, AVR_IOCTL_UART_SET_FLAGS('0'), &no_console);
     for (avr_io_t *io = mcu->io_port; io != NULL; io = io->next) {
@@ -210,10 +206,7 @@ void uart_start(void)
 
 void uart_finish(void)
 {
-    if (fclose(out_file) != 0) {
-        perror(options.out);
-        exit(EXIT_INTERNAL);
-    }
+    output_close(out_file, options.out);
     free(rows);
 }
 

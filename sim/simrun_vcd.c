@@ -58,11 +58,7 @@ void vcd_start(void)
     if (options.vcd == NULL) {
         return;
     }
-    file = fopen(options.vcd, "w");
-    if (file == NULL) {
-        perror(options.vcd);
-        exit(EXIT_INPUT);
-    }
+    file = output_open(options.vcd);
     fputs("$timescale 100ps $end\n$scope module uno $end\n", file);
     for (unsigned i = 0; i < SIGNAL_MAX; i++) {
         if (i < VCD_ISR) {
@@ -81,8 +77,5 @@ void vcd_start(void)
 
 void vcd_finish(void)
 {
-    if (file != NULL && fclose(file) != 0) {
-        perror(options.vcd);
-        exit(EXIT_INTERNAL);
-    }
+    output_close(file, options.vcd);
 }
