@@ -1,5 +1,6 @@
 """What the whole-firmware tests share: runs of simrun, readers of what came out, the list of tests and their runner."""
 import csv
+import importlib.util
 import itertools
 import json
 import os
@@ -43,6 +44,17 @@ def image_with(filter_name):
 
 class Skip(Exception):
     """A test that cannot run here, with the reason."""
+
+
+def needs(group, *packages):
+    """Where a package is not installed, all tests of the program are one that says so; tools/deps.sh has them by group."""
+    missing = [package for package in packages if importlib.util.find_spec(package) is None]
+    if missing:
+        @test
+        def everything():
+            raise Skip(f"{' and '.join(missing)}: not installed for {sys.executable}: sh tools/deps.sh {group}")
+
+        sys.exit(run_all())
 
 
 def test(function):

@@ -7,19 +7,13 @@ import sys
 from fractions import Fraction
 
 from design_support import impulse_sum, simulated
-from system_support import Skip, run_all, test
+from system_support import needs, run_all, test
 
 sys.path.insert(0, "tools")
-try:
-    import numpy as np
-    import scipy.linalg
-except ImportError:
-    @test
-    def everything():
-        raise Skip(f"numpy or scipy is not installed for {sys.executable}: sh tools/deps.sh design")
+needs("design", "numpy", "scipy")
 
-    sys.exit(run_all())
-
+import numpy as np  # noqa: E402
+import scipy.linalg  # noqa: E402
 from design import configuration, response, structure, switching, synthesis  # noqa: E402
 from design.structure import Filter, alpha_beta, from_alpha_beta_gamma  # noqa: E402
 from design.synthesis import REGIONS, Infeasible, Request  # noqa: E402

@@ -7,18 +7,11 @@ import re
 import sys
 
 from design_support import BASE, OUT, Library, answer, compiles_and_runs, simulated
-from system_support import Skip, run, run_all, test
+from system_support import needs, run, run_all, test
 
-try:
-    import matplotlib.image
-    import scipy  # noqa: F401
-except ImportError:
-    @test
-    def everything():
-        raise Skip(f"scipy or matplotlib is not installed for {sys.executable}: sh tools/deps.sh design")
+needs("design", "matplotlib", "scipy")
 
-    sys.exit(run_all())
-
+import matplotlib.image  # noqa: E402
 from design import command, configuration, measure, response, switching  # noqa: E402
 from design.structure import Filter  # noqa: E402
 

@@ -9,17 +9,9 @@ from fractions import Fraction
 
 import design_support
 from design_support import BASE, said
-from system_support import Skip, run_all, test
+from system_support import needs, run_all, test
 
-try:
-    import matplotlib.image  # noqa: F401
-    import scipy  # noqa: F401
-except ImportError:
-    @test
-    def everything():
-        raise Skip(f"scipy or matplotlib is not installed for {sys.executable}: sh tools/deps.sh design")
-
-    sys.exit(run_all())
+needs("design", "matplotlib", "scipy")
 
 from design import command, synthesis  # noqa: E402
 from design.given import Wrong  # noqa: E402
