@@ -23,6 +23,8 @@ $(C)/unity.o: $(UNITY_DIR)/unity.c
 $(C)/test_%: $(C)/host_tests/test_%.o $(COVERAGE_LIB) $(COVERAGE_REST)
 	@$(HOST_CXX) --coverage $^ -lm -o $@
 
+$(C)/test_simrun_judge: $(C)/sim/simrun_judge.o
+
 $(C)/host.json: $(COVERAGE_TESTS)
 	@find $(C) -name '*.gcda' -delete
 	@for t in $(COVERAGE_TESTS); do \
