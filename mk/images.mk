@@ -3,7 +3,7 @@
 # Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter_list.h; the firmware starts with
 # the first. The first set is what is built and flashed when nothing is said; together they hold every filter.
 FILTER_SETS          := everyday robust synthesised
-FILTERS_everyday     := adaptive kf sprf synth soft
+FILTERS_everyday     := adaptive kf sprf synth
 FILTERS_robust       := sprf kf lrf soft sprf_paper shrf pbf af
 FILTERS_synthesised  := kf synth synth_opt synth_plus kf3
 FILTERS              := $(firstword $(FILTER_SETS))
