@@ -153,9 +153,11 @@ test:
 	@sh tools/deps.sh test
 	@sh tools/deps.sh flashtest || echo "test: test_flash will be skipped"
 	@sh tools/deps.sh design || echo "test: test_design will be skipped"
-	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt $(H)/native_replay $(H)/pipeline_replay $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun \
-	    $(SEQUENCES) $(CHIP_TESTS) $(FLASHTEST_IMAGES) $(PAPERS)
+	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt system_images paper_programs $(SEQUENCES) $(CHIP_TESTS) $(FLASHTEST_IMAGES)
 	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" CHIP_SECOND="$(CHIP_SECOND)" python3 tools/run_tests.py $(TESTS)
+
+# what the tests of the whole firmware run
+system_images: $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay
 
 ## clean: remove what was built (the downloads in build/unity and build/venv stay)
 clean:
@@ -167,6 +169,6 @@ include $(sort $(filter-out mk/images.mk,$(wildcard mk/*.mk)))
 # keep the test objects: no other .SECONDARY may name targets, or only those would be kept
 .SECONDARY:
 
-.PHONY: sim test clean
+.PHONY: sim test system_images clean
 
 -include $(shell find $(U) $(H) -name '*.d' 2>/dev/null)

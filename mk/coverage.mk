@@ -44,7 +44,7 @@ $(C)/probe.prof: $(C)/probe.elf $(S)/simrun
 
 # A profile slows the simulator down, hence the factor for the tests of its speed, and the minutes in which nothing is lost are left
 # out: they run next to no line that the others do not. Always anew.
-$(C)/runs: $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay
+$(C)/runs: system_images
 	@rm -rf $@ && mkdir -p $@
 	@PROFILES=$@ SPEED_FACTOR=0.05 python3 host_tests/system_tests.py -nothing_lost > $(C)/system.log 2>&1 || { grep ':FAIL' $(C)/system.log; exit 1; }
 

@@ -51,17 +51,18 @@ $(P)/products000: $(addprefix $(P)/operations/,family.o synth.o synth_opt.o synt
 	@$(HOST_CXX) $^ -lm -o $@
 
 PAPERS := $(P)/paper000 $(P)/paper001 $(P)/paper002 $(P)/operations002 $(P)/products000
+paper_programs: $(PAPERS)
 
 ## papers: the experiments of the papers, double and fixed point, beside the printed numbers, into docs/papers.md (2 minutes; RUNS=2000: judged, but page and JSON are left alone)
 papers:
 	@sh tools/deps.sh papers
-	@$(MAKE) -j2 $(PAPERS)
+	@$(MAKE) -j2 paper_programs
 	@python3 tools/papers.py --runs $(RUNS)
 
 clean: clean_papers
 clean_papers:
 	@rm -rf $(P)
 
-.PHONY: papers clean_papers
+.PHONY: papers paper_programs clean_papers
 
 -include $(shell find $(P) -name '*.d' 2>/dev/null)

@@ -67,35 +67,36 @@ def make(*targets):
     return subprocess.run(["make", "-j2", *targets], cwd=TREE, capture_output=True, text=True, timeout=600)
 
 
+# kind of judge (a host test is named by itself): what make builds for it, its program; the words after the kind choose among its tests
+PYTHON, WITH_PACKAGES = "python3", "build/venv/bin/python"
+JUDGES = {
+    "system": (["system_images"], PYTHON, "host_tests/system_tests.py"),
+    "papers": (["paper_programs"], PYTHON, "host_tests/test_papers.py"),
+    "papers synthesis": (["paper_programs"], PYTHON, "host_tests/test_papers_synthesis.py"),
+    "robust": (["build/host/pipeline_replay"], WITH_PACKAGES, "host_tests/test_robust.py"),
+    "default": (["build/host/default_filter"], PYTHON, "host_tests/test_default.py"),
+    "images": (["help"], PYTHON, "host_tests/test_images.py"),
+    "design": (["help"], WITH_PACKAGES, "host_tests/test_design.py"),  # the three compile themselves what they need
+    "design_command": (["help"], WITH_PACKAGES, "host_tests/test_design_command.py"),
+    "design_refusals": (["help"], WITH_PACKAGES, "host_tests/test_design_refusals.py"),
+    "synthesised": (["build/host/roll_replay"], WITH_PACKAGES, "host_tests/test_synthesised.py"),
+    "schedule": (["help"], PYTHON, "host_tests/test_schedule.py"),
+}
+
+
+def program_of(judge):
+    """(targets of make, command) of a judge as host_tests/mutants.txt names it."""
+    for kind in sorted(JUDGES, key=len, reverse=True):
+        if judge == kind or judge.startswith(kind + " "):
+            targets, *command = JUDGES[kind]
+            return targets, command + judge[len(kind):].split()
+    return [f"build/host/{judge}"], [f"build/host/{judge}"]
+
+
 def judged(judge, limit_s):
     """Builds and runs the judge: (None when it passes, else the first line that says what failed; seconds of the run)."""
-    if judge.startswith("system "):
-        images = [f"build/uno/{image}firmware.elf" for image in ("", "robust/", "synthesised/", "wrap/", "late/", "tight/")]
-        built = make(*images, "build/sim/simrun", "build/host/native_replay")
-        command = ["python3", "host_tests/system_tests.py", *judge.split()[1:]]
-    elif judge.startswith("papers "):
-        built = make("build/papers/paper000", "build/papers/paper001", "build/papers/paper002", "build/papers/operations002",
-                     "build/papers/products000")
-        test = "test_papers_synthesis" if judge.startswith("papers synthesis ") else "test_papers"
-        command = ["python3", f"host_tests/{test}.py", *judge.split()[1 + (test != "test_papers"):]]
-    elif judge.startswith("robust "):
-        built = make("build/host/pipeline_replay")
-        command = ["build/venv/bin/python", "host_tests/test_robust.py", *judge.split()[1:]]
-    elif judge.startswith("default "):
-        built = make("build/host/default_filter")
-        command = ["python3", "host_tests/test_default.py", *judge.split()[1:]]
-    elif judge.startswith("images "):
-        built = make("help")
-        command = ["python3", "host_tests/test_images.py", *judge.split()[1:]]
-    elif judge.startswith(("design", "synthesised ")):  # design, design_command, design_refusals: what they need they compile themselves
-        built = make("help")
-        command = ["build/venv/bin/python", f"host_tests/test_{judge.split()[0]}.py", *judge.split()[1:]]
-    elif judge == "schedule":
-        built = make("help")
-        command = ["python3", "host_tests/test_schedule.py"]
-    else:
-        built = make(f"build/host/{judge}")
-        command = [f"build/host/{judge}"]
+    targets, command = program_of(judge)
+    built = make(*targets)
     if built.returncode != 0:
         return f"does not build: {built.stderr.strip().splitlines()[0] if built.stderr.strip() else '?'}", 0
     began = time.monotonic()
