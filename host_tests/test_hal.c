@@ -39,6 +39,43 @@ static void test_clock_crosses_the_wrap(void)
     TEST_ASSERT_UINT32_WITHIN(40, 4u * HAL_TICK_US, after - before);
 }
 
+/* Sleeps until main is woken; says for how long, or how often first, when one wake-up is not what was waited for. */
+static double slept_until_us(uint32_t t_us, unsigned *wakes)
+{
+    uint64_t before = hal_host_now();
+    for (*wakes = 0; !hal_time_reached(hal_time_us(), t_us); (*wakes)++) {
+        hal_sleep_until_wake();
+    }
+    return (double)(hal_host_now() - before) / 16.0;
+}
+
+/* Ticks come every 8.2 ms; only the alarm wakes main in between. */
+static void test_alarm_wakes_at_its_moment(void)
+{
+    static const uint32_t ahead_us[] = { 100, 5000, 8000, 12345, 32767, 32768, 70000, 163000 };
+    unsigned wakes;
+    for (size_t i = 0; i < sizeof ahead_us / sizeof ahead_us[0]; i++) {
+        uint32_t t_us = hal_time_us() + ahead_us[i];
+        hal_wake_at(t_us);
+        double slept_us = slept_until_us(t_us, &wakes);
+        TEST_ASSERT_TRUE(slept_us >= ahead_us[i] - 1.0 && slept_us <= ahead_us[i] + 25.0);
+        TEST_ASSERT_TRUE(wakes <= ahead_us[i] / HAL_TICK_US + ahead_us[i] / 32768u + 2u);
+    }
+}
+
+/* A moved alarm does not come at its old moment. */
+static void test_alarm_that_is_moved(void)
+{
+    unsigned wakes;
+    hal_sleep_until_wake();
+    uint32_t now_us = hal_time_us();
+    hal_wake_at(now_us + 1000u);
+    hal_wake_at(now_us + 3000u);
+    double slept_us = slept_until_us(now_us + 1u, &wakes);
+    TEST_ASSERT_TRUE(slept_us >= 2999.0 && slept_us <= 3025.0);
+    TEST_ASSERT_EQUAL_UINT(1, wakes);
+}
+
 static void test_wake_before_sleep_is_not_lost(void)
 {
     uint64_t before = hal_host_now();
@@ -111,6 +148,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_time_comparison_over_the_wrap);
     RUN_TEST(test_clock_crosses_the_wrap);
+    RUN_TEST(test_alarm_wakes_at_its_moment);
+    RUN_TEST(test_alarm_that_is_moved);
     RUN_TEST(test_wake_before_sleep_is_not_lost);
     RUN_TEST(test_reset_cause_from_mcusr);
     RUN_TEST(test_reset_cause_from_the_breadcrumb);

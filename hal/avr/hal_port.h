@@ -100,6 +100,7 @@ static inline bool hal_i2c_stop_pending(void)
 void hal_time_init(void);
 uint32_t hal_time_us(void);
 uint32_t hal_time_us_isr(void);
+void hal_wake_at(uint32_t t_us);
 
 /* hal_drdy.h: INT0 is pin PD2 = D2 */
 #define HAL_DRDY_ISR() ISR(INT0_vect)
@@ -116,10 +117,10 @@ static inline bool hal_drdy_high(void)
     return (PIND & _BV(PD2)) != 0;
 }
 
-/* hal_sleep.h: GPIOR0 is one cycle to set and test, so it holds the wake flag */
-static inline void hal_wake(void)
+/* hal_sleep.h: GPIOR0 is one instruction to set and one cycle to test, so it holds the wake flag */
+static inline __attribute__((always_inline)) void hal_wake(void)
 {
-    GPIOR0 = 1;
+    GPIOR0 |= 1;
 }
 
 void hal_sleep_until_wake(void);

@@ -1,6 +1,6 @@
 /*
- * Time from Timer1 at 2 MHz. Compare A fires every 8192 us and moves on by itself; the 16-bit counter runs freely, so a
- * time is (microseconds at the last tick) + (counter - counter at the last tick) / 2.
+ * Time from Timer1 at 2 MHz. Compare A fires every 8192 us and moves on by itself, compare B is main's alarm; the
+ * 16-bit counter runs freely, so a time is (microseconds at the last tick) + (counter - counter at the last tick) / 2.
  */
 #include "hal_time.h"
 
@@ -8,7 +8,7 @@
 #include "hal_sleep.h"
 #include "hal_watchdog.h"
 
-enum { COUNTS_PER_TICK = HAL_TICK_US * 2u };
+enum { COUNTS_PER_US = 2, COUNTS_PER_TICK = HAL_TICK_US * COUNTS_PER_US };
 
 #ifndef HAL_TIME_START_US
 #define HAL_TIME_START_US 0ul
@@ -26,12 +26,18 @@ ISR(TIMER1_COMPA_vect)
     hal_wake();
 }
 
+/* Compare B only wakes main: one instruction that changes no flag, so nothing is saved. */
+ISR(TIMER1_COMPB_vect, ISR_NAKED)
+{
+    __asm__ volatile("sbi %[wake], 0\n\treti" : : [wake] "I"(_SFR_IO_ADDR(GPIOR0)));
+}
+
 void hal_time_init(void)
 {
     TCCR1A = 0;
     TCNT1 = 0;
     OCR1A = COUNTS_PER_TICK;
-    TIMSK1 = _BV(OCIE1A);
+    TIMSK1 = _BV(OCIE1A) | _BV(OCIE1B);
     TCCR1B = _BV(CS11);
 }
 
@@ -40,6 +46,15 @@ uint32_t hal_time_us_isr(void)
 {
     uint16_t since = (uint16_t)(TCNT1 - tick_count);
     return tick_us + (since >> 1);
+}
+
+/* The counter begins at 0 at the start of time and is never written, so a moment has one count. */
+void hal_wake_at(uint32_t t_us)
+{
+    uint16_t count = (uint16_t)((t_us - HAL_TIME_START_US) * COUNTS_PER_US);
+    hal_irq_state_t state = hal_irq_save(); /* the timer's 16-bit registers share a byte with the handlers' reads */
+    OCR1B = count;
+    hal_irq_restore(state);
 }
 
 uint32_t hal_time_us(void)

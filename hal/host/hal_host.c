@@ -14,6 +14,8 @@
 /* A pass of main takes time too; without it a main loop that asks to be called again would stop the clock. */
 enum { CYCLES_PER_US = 16, EEPROM_WRITE_US = 3400, PASS_CYCLES = 320 };
 
+#define ALARM_RANGE_US 32768u /* of the UNO's 16-bit counter: the alarm comes again after it */
+
 uint64_t host_now;
 hal_host_config_t host_config;
 hal_host_faults_t hal_host_faults;
@@ -23,6 +25,7 @@ static bool wake_wanted;
 static bool drdy_enabled;
 static bool drdy_edge;
 static uint64_t tick_at;
+static uint64_t alarm_at;
 static uint64_t watchdog_at;
 static uint64_t bitten_at;
 static uint8_t reset_cause;
@@ -52,6 +55,7 @@ void hal_host_reset_mcu(uint8_t cause)
     drdy_enabled = false;
     drdy_edge = false;
     tick_at = HOST_NEVER;
+    alarm_at = HOST_NEVER;
     watchdog_at = HOST_NEVER;
     bitten_at = 0;
     reset_cause = cause;
@@ -116,6 +120,13 @@ uint32_t hal_time_us(void)
     return hal_time_us_isr();
 }
 
+void hal_wake_at(uint32_t t_us)
+{
+    uint32_t ahead_us = (t_us - hal_time_us_isr()) % ALARM_RANGE_US;
+    uint64_t begun_at = host_now - host_now % CYCLES_PER_US; /* the microsecond that runs */
+    alarm_at = begun_at + (uint64_t)(ahead_us == 0 ? ALARM_RANGE_US : ahead_us) * CYCLES_PER_US;
+}
+
 void hal_drdy_enable(void)
 {
     drdy_enabled = true;
@@ -157,6 +168,10 @@ static void run_due_events(void)
         tick_at += (uint64_t)HAL_TICK_US * CYCLES_PER_US;
         hal_wake();
     }
+    if (alarm_at <= host_now) {
+        alarm_at += (uint64_t)ALARM_RANGE_US * CYCLES_PER_US;
+        hal_wake();
+    }
     if (watchdog_at <= host_now && bitten_at == 0) {
         bitten_at = host_now;
     }
@@ -175,7 +190,7 @@ static void run_due_events(void)
 static uint64_t next_event(void)
 {
     uint64_t at = earliest(tick_at, bitten_at == 0 ? watchdog_at : HOST_NEVER);
-    at = earliest(at, host_sensor_next());
+    at = earliest(earliest(at, alarm_at), host_sensor_next());
     return earliest(at, earliest(host_i2c_next(), host_uart_next()));
 }
 

@@ -32,6 +32,7 @@ extern uint32_t hal_host_cpu_hz;
 void hal_time_init(void);
 uint32_t hal_time_us(void);
 uint32_t hal_time_us_isr(void);
+void hal_wake_at(uint32_t t_us);
 
 /* hal_drdy.h */
 #define HAL_DRDY_ISR()                \

@@ -1,7 +1,7 @@
 /*
  * Runs on the ATmega328P (simavr): the parts of the HAL that the firmware does not use yet, each answered with a line
- * on the UART. Reads EEPROM byte 1023, writes its complement, waits for the write by sleeping, reads it back; then
- * sleeps with interrupts off.
+ * on the UART. Reads EEPROM byte 1023, writes its complement, waits for the write by sleeping, reads it back; sets the
+ * alarm and says how late main woke; then sleeps with interrupts off.
  */
 #include <avr/interrupt.h>
 #include <avr/sleep.h>
@@ -29,6 +29,22 @@ static void say(flash_text_t words, uint8_t value)
     hal_uart_tx_commit();
 }
 
+/* How late main wakes at an alarm so far ahead, in us, saturating: from a quiet line, so that nothing else wakes it. */
+static void say_alarm(uint16_t ahead_us)
+{
+    while (!hal_uart_tx_idle()) {
+    }
+    uint32_t t_us = hal_time_us() + ahead_us;
+    hal_wake_at(t_us);
+    while (!hal_time_reached(hal_time_us(), t_us)) {
+        hal_sleep_until_wake();
+    }
+    uint32_t late_us = hal_time_us() - t_us;
+    say(FLASH_TEXT("late"), late_us > UINT8_MAX ? UINT8_MAX : (uint8_t)late_us);
+}
+
+static const uint16_t alarms_us[] FLASH = { 300, 3000, 5000, 10000, 25000, 32766, 40000 };
+
 int main(void)
 {
     hal_uart_init(115200);
@@ -44,6 +60,9 @@ int main(void)
     }
     say(FLASH_TEXT("ticks"), (uint8_t)((hal_time_us() - begun_us + HAL_TICK_US - 1u) / HAL_TICK_US));
     say(FLASH_TEXT("after"), hal_eeprom_read(LAST_BYTE));
+    for (uint8_t i = 0; i < sizeof alarms_us / sizeof alarms_us[0]; i++) {
+        say_alarm(flash_u16(&alarms_us[i]));
+    }
     while (!hal_uart_tx_idle()) {
         hal_sleep_until_wake();
     }
