@@ -130,7 +130,7 @@ $(H)/exhaustive_isqrt: host_tests/exhaustive_isqrt.c lib/tilt/src/tilt.c lib/fil
 
 # --- the simulator ---------------------------------------------------------------------------------------------------
 S := $(B)/sim
-SIMRUN_SRC := $(wildcard sim/simrun*.c) sim/twi_peripheral.c sim/adxl345_model.c sim/stream.c
+SIMRUN_SRC := $(wildcard sim/simrun*.c) $(wildcard sim/twi_*.c) sim/adxl345_model.c sim/stream.c
 $(S)/simrun: $(SIMRUN_SRC) $(wildcard sim/*.h)
 	@mkdir -p $(@D)
 	@$(HOST_CC) -std=gnu11 -O2 -g $(WARNINGS) -Isim -Ilib/adxl345/src $$(pkg-config --cflags simavr | sed 's/-I/-isystem /g') \

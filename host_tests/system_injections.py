@@ -1,5 +1,6 @@
 """The simulator's own faults and its judge, seen at the bus and in the firmware's rows; part of system_tests.py."""
 import csv
+import json
 import statistics
 
 from system_support import FW, OUT, SIMRUN, STREAMS, run, simrun, test, triplets
@@ -190,3 +191,27 @@ def wrong_parameters_of_a_fault_are_refused():
                         ("devid:256", "devid wants a whole number from 0 to 255"), ("hang:17", "hang wants a whole number from 1 to 16")):
         done = run(SIMRUN, "--fw", FW, "--in", REST, "--out", OUT / "x.csv", "--fault", f"1ms:{what}", expect=2)
         assert words in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
+
+
+def bus_probe(*options):
+    """The words that a program without driver says, which moves the lines by hand, and the statistics of its run."""
+    elf, stats = OUT / "lines_by_hand.elf", OUT / "lines_by_hand.json"
+    run("avr-gcc", "-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Os", "host_tests/avr/lines_by_hand.c", "-o", elf)
+    run(SIMRUN, "--fw", elf, "--in", REST, "--out", OUT / "lines.txt", "--stats", stats, "--max-ms", "200", *options, expect=8)
+    return (OUT / "lines.txt").read_text(encoding="ascii").split(), json.loads(stats.read_text(encoding="ascii"))
+
+
+@test
+def lines_moved_by_hand_are_clocks_starts_and_stops():
+    """DEVID is 11100101: left after two bits, the slave goes on with 100101 and the 1 of its acknowledge slot, until START or STOP."""
+    said, told = bus_probe()
+    assert said[:4] == ["1001011111", "1111111111", "1111111111", "1001011111"], said
+    assert told["i2c_hand_clocks_max"] == 11 and told["i2c_hand_stops"] == 1 and told["i2c_driven_high"] is True, told
+
+
+@test
+def slave_hung_in_a_byte_goes_on_where_it_stopped():
+    """Eight bits and the acknowledge, then the same byte later: what is left of 11100101, a one not pulled, which ends the read."""
+    for clocks, bytes_read in ((None, "E50000"), (1, "72FFFF"), (3, "1C7FFF"), (8, "00CBFF"), (9, "00E500"), (12, "001C7F")):
+        said, _ = bus_probe(*([] if clocks is None else ["--fault", f"xfer:5.4:hang:{clocks}"]))
+        assert said[4] == bytes_read, f"{clocks} clocks: {said[4]}, not {bytes_read}"

@@ -283,6 +283,8 @@ static void write_samples(FILE *file)
             (unsigned)uart_rx_overruns());
     fprintf(file, "  \"i2c_transfers\": %u,\n  \"i2c_bytes\": %llu,\n", (unsigned)twi.transfer,
             (unsigned long long)twi.bytes);
+    fprintf(file, "  \"i2c_hand_clocks_max\": %u,\n  \"i2c_hand_stops\": %u,\n  \"i2c_driven_high\": %s,\n",
+            (unsigned)twi.hand_clocks_max, (unsigned)twi.hand_stops, twi.driven_high ? "true" : "false");
     fprintf(file, "  \"i2c_load\": %.5f,\n", mcu->cycle == 0 ? 0.0 : (double)twi.busy_cycles / (double)mcu->cycle);
 }
 

@@ -7,9 +7,11 @@
 #include "sim_cycle_timers.h"
 #include "sim_interrupts.h"
 #include "sim_io.h"
+#include "twi_slave.h"
 
 enum {
     REG_PINC = 0x26,
+    REG_PORTC = 0x28,
     REG_TWBR = 0xB8,
     REG_TWSR = 0xB9,
     REG_TWDR = 0xBB,
@@ -22,9 +24,7 @@ enum {
     BIT_TWSTA = 0x20,
     BIT_TWEA = 0x40,
     BIT_TWINT = 0x80,
-    PRESCALER_MASK = 0x03,
-    PIN_SDA = 4,
-    PIN_SCL = 5
+    PRESCALER_MASK = 0x03
 };
 
 enum {
@@ -43,17 +43,7 @@ enum {
     STATUS_NOTHING = 0xF8
 };
 
-enum { BITS_START = 1, BITS_STOP = 1, BITS_BYTE = 9, BITS_UNTIL_LOST = 4, BITS_UNTIL_ERROR = 3 };
-
-bool twi_sda_low(const twi_peripheral_t *twi)
-{
-    return twi->sda_held || (twi->slave_bit_count != 0 && (twi->slave_bits & 0x8000u) == 0);
-}
-
-bool twi_scl_low(const twi_peripheral_t *twi)
-{
-    return twi->scl_held;
-}
+enum { BITS_START = 1, BITS_STOP = 1, BITS_BYTE = 9, BITS_UNTIL_LOST = 4, BITS_UNTIL_ERROR = 3, BITS_UNTIL_ZERO = 2 };
 
 static bool lines_free(const twi_peripheral_t *twi)
 {
@@ -126,6 +116,7 @@ static void send_start(twi_peripheral_t *twi)
 {
     bool repeated = twi->mode == TWI_STARTED || twi->mode == TWI_TRANSMITTING || twi->mode == TWI_RECEIVING;
     twi->start_waits = false;
+    twi_slave_released(twi);
     twi->mode = TWI_STARTED;
     twi->byte_bits = 0xFFFF;
     if (!repeated) {
@@ -154,6 +145,7 @@ static avr_cycle_count_t on_stopped(avr_t *avr, avr_cycle_count_t when, void *pa
     }
     avr->data[REG_TWCR] &= (uint8_t)~BIT_TWSTO;
     twi->mode = TWI_IDLE;
+    twi_slave_released(twi);
     adxl345_model_stop(twi->sensor);
     if (twi->start_waits) {
         send_start(twi);
@@ -176,19 +168,10 @@ static void want_stop(twi_peripheral_t *twi)
 
 static void lose(twi_peripheral_t *twi, unsigned bits)
 {
+    twi_slave_left(twi);
     twi->mode = TWI_IDLE;
     adxl345_model_stop(twi->sensor);
     finish_in(twi, bits, STATUS_ARBITRATION_LOST);
-}
-
-/* A slave left in a byte moves on with every clock. */
-static void clock_slave(twi_peripheral_t *twi, unsigned clocks)
-{
-    while (clocks != 0 && twi->slave_bit_count != 0) {
-        twi->slave_bits = (uint16_t)(twi->slave_bits << 1);
-        twi->slave_bit_count--;
-        clocks--;
-    }
 }
 
 /* What the slave answers to an address or data byte; a refusal that was asked for happens once. */
@@ -209,9 +192,10 @@ static void send_byte(twi_peripheral_t *twi)
     uint8_t byte = twi->avr->data[REG_TWDR];
     bool is_address = twi->mode == TWI_STARTED;
     bool sda_was_low = twi_sda_low(twi);
-    clock_slave(twi, BITS_BYTE);
-    if (sda_was_low && byte != 0) {
-        lose(twi, 2); /* a one that reads as zero */
+    bool lost = sda_was_low && byte != 0; /* a one that reads as zero; the master gives no further clock */
+    twi_slave_move(twi, lost ? BITS_UNTIL_ZERO : BITS_BYTE);
+    if (lost) {
+        lose(twi, BITS_UNTIL_ZERO);
         return;
     }
     bool ack = slave_acknowledges(twi, is_address, byte);
@@ -228,22 +212,23 @@ static void send_byte(twi_peripheral_t *twi)
     }
 }
 
+/* What the slave puts on the line in nine clocks; the master pulls in the last of them if it acknowledges. */
 static void receive_byte(twi_peripheral_t *twi, bool give_ack)
 {
-    uint8_t address = twi->sensor->pointer;
-    uint8_t byte = twi->acknowledged ? adxl345_model_read(twi->sensor) : 0xFF;
-    if (twi->acknowledged && twi->sent != NULL) {
-        byte = twi->sent(twi->owner, address, byte);
+    unsigned bits = 0;
+    unsigned wire = 0;
+    for (unsigned clock = 1; clock <= BITS_BYTE; clock++) {
+        bool pulled = twi->sda_held || (clock == BITS_BYTE && give_ack);
+        bool one = twi_slave_bit(twi, pulled);
+        bits = bits << 1 | one;
+        wire = wire << 1 | (one && !pulled);
     }
-    bool sda_was_low = twi_sda_low(twi);
-    clock_slave(twi, BITS_BYTE);
-    if (sda_was_low && !give_ack) {
+    twi->byte_bits = (uint16_t)(bits << (16 - BITS_BYTE));
+    if (!give_ack && (wire & 1u) == 0) {
         lose(twi, BITS_BYTE); /* the NACK reads as ACK */
         return;
     }
-    twi->avr->data[REG_TWDR] = sda_was_low ? 0 : byte;
-    twi->byte_bits = (uint16_t)((unsigned)byte << 8 | 0x80u);
-    twi->acknowledged = twi->acknowledged && give_ack;
+    twi->avr->data[REG_TWDR] = (uint8_t)(wire >> 1);
     finish_in(twi, BITS_BYTE, give_ack ? STATUS_RECEIVED_ACK : STATUS_RECEIVED_NACK);
 }
 
@@ -277,6 +262,7 @@ static void leave_slave_in_byte(twi_peripheral_t *twi)
 {
     bool addressed = twi->mode == TWI_RECEIVING || twi->mode == TWI_TRANSMITTING;
     if (!under_way(twi) || !addressed) {
+        twi_slave_left(twi);
         return;
     }
     uint64_t left = twi->stalled_cycles;
@@ -298,6 +284,7 @@ static void turn_off(twi_peripheral_t *twi)
     leave_slave_in_byte(twi);
     twi->vector->pending = 0;
     twi->mode = TWI_OFF;
+    twi->hand_clocks = 0;
     twi->start_waits = false;
     twi->done_at = 0;
     twi->stalled_cycles = 0;
@@ -368,16 +355,18 @@ static void write_twsr(avr_t *avr, avr_io_addr_t address, uint8_t value, void *p
     avr_core_watch_write(avr, address, (uint8_t)(status | (value & PRESCALER_MASK)));
 }
 
-/* The firmware clocks SCL by hand: DDRC bit 5 back to input is a rising edge. */
+/* While the TWI is off the lines follow DDRC: outputs that are low pull, inputs let go. */
 static void on_direction(avr_irq_t *irq, uint32_t value, void *param)
 {
     (void)irq;
     twi_peripheral_t *twi = param;
-    uint8_t mask = 1u << PIN_SCL;
-    bool rises = (twi->ddr_c & mask) != 0 && (value & mask) == 0;
-    twi->ddr_c = (uint8_t)value;
-    if (rises && !twi->scl_held && twi->slave_bit_count != 0) {
-        clock_slave(twi, 1);
+    unsigned lines = (1u << PIN_SDA) | (1u << PIN_SCL);
+    uint8_t high = twi->avr->data[REG_PORTC];
+    uint8_t before = twi->pulled;
+    twi->pulled = (uint8_t)(value & lines & ~(unsigned)high);
+    twi->driven_high = twi->driven_high || (value & high & lines) != 0;
+    if (twi->mode == TWI_OFF && before != twi->pulled) {
+        twi_slave_by_hand(twi, before, twi->pulled);
         show_levels(twi);
     }
 }
@@ -418,15 +407,14 @@ void twi_hold(twi_peripheral_t *twi, bool sda, bool scl)
 
 void twi_hang(twi_peripheral_t *twi, unsigned clocks)
 {
-    twi->slave_bits = 0;
-    twi->slave_bit_count = (uint8_t)(clocks > 16 ? 16 : clocks);
+    twi_slave_hang(twi, clocks);
     lines_changed(twi);
 }
 
 void twi_reset(twi_peripheral_t *twi)
 {
     turn_off(twi);
-    twi->ddr_c = 0;
+    twi->pulled = 0;
     twi->avr->data[REG_TWCR] = 0;
     twi->avr->data[REG_TWSR] = STATUS_NOTHING;
     twi->avr->data[REG_TWDR] = 0xFF;

@@ -4,8 +4,8 @@
  * Tables 22-2 and 22-3. Slave mode and other masters are not modelled, except as faults.
  *
  * Times: START and STOP one bit, a byte with its acknowledge nine; a bit is 16 + 2 TWBR 4^TWPS cycles.
- * Levels of PC4 (SDA) and PC5 (SCL) as read by the firmware follow a line held low from outside and its own DDRC; the
- * TWI's own traffic is not shown on them.
+ * Levels of PC4 (SDA) and PC5 (SCL) as read by the firmware follow a line held low from outside, by the slave or by its
+ * own DDRC; the TWI's own traffic is not shown on them.
  */
 #ifndef TWI_PERIPHERAL_H
 #define TWI_PERIPHERAL_H
@@ -46,13 +46,18 @@ typedef struct {
     bool start_waits;        /* TWSTA set while the bus was not free */
     bool acknowledged;       /* the slave still listens or sends */
     bool sda_held, scl_held; /* from outside, twi_hold */
-    uint16_t slave_bits;     /* what a slave that was left in the middle of a byte still puts out, next bit at bit 15 */
-    uint8_t slave_bit_count;
+    uint16_t slave_bits;     /* what a slave that lags behind puts out before all else, next bit at bit 15 */
+    uint8_t slave_bit_count; /* of them */
+    uint8_t slave_byte;      /* that it is sending */
+    uint8_t slave_place;     /* bits of it that are out, 8: the acknowledge comes */
     uint64_t done_at;        /* cycle at which the bit or byte under way ends, 0: none */
     unsigned bit_cycles;     /* of that bit or byte */
     uint16_t byte_bits;      /* that byte as the slave drives it: eight bits and the acknowledge, from bit 15 */
     uint64_t stalled_cycles; /* left of the bit or byte that SCL held low has stopped; 0: none */
-    uint8_t ddr_c;
+    uint8_t pulled;          /* by the firmware's own pins, bits of port C */
+    uint32_t hand_clocks;    /* given by hand since the TWI was turned off */
+    uint32_t hand_clocks_max, hand_stops;
+    bool driven_high;        /* SDA or SCL was made an output that is high */
     uint32_t transfer, byte; /* transfers begun; bytes in this one */
     uint64_t bytes, busy_cycles;
 } twi_peripheral_t;
@@ -69,7 +74,10 @@ void twi_reset(twi_peripheral_t *twi);
 /* Hold lines low from outside, or let go of them: what was waiting for a free line goes on. */
 void twi_hold(twi_peripheral_t *twi, bool sda, bool scl);
 
-/* A slave hangs in a byte of zeros: SDA is low until so many more clocks have come, 1..16. */
+/*
+ * A slave hangs in a byte: SDA is low until so many more clocks have come, 1..16; then it goes on with the bit at which it
+ * stopped, so that what the master reads from there on is shifted. START and STOP, from the TWI or made by hand, end that.
+ */
 void twi_hang(twi_peripheral_t *twi, unsigned clocks);
 
 /* Levels on the wires when no master pulls. */
