@@ -75,8 +75,8 @@ void twi_reset(twi_peripheral_t *twi);
 void twi_hold(twi_peripheral_t *twi, bool sda, bool scl);
 
 /*
- * A slave hangs in a byte: SDA is low until so many more clocks have come, 1..16; then it goes on with the bit at which it
- * stopped, so that what the master reads from there on is shifted. START and STOP, from the TWI or made by hand, end that.
+ * A slave hangs in a byte: SDA is low until so many more clocks have come, 1..16; then it goes on with the bit at which
+ * it stopped, so that what the master reads from there on is shifted. START and STOP end that, made by hand too.
  */
 void twi_hang(twi_peripheral_t *twi, unsigned clocks);
 

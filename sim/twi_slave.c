@@ -1,4 +1,4 @@
-/* A slave changes SDA after SCL has fallen; SDA that changes while SCL is high is a START or a STOP (UM10204, 3.1.4). */
+/* A slave changes SDA after SCL has fallen; SDA that changes while SCL is high is START or STOP (UM10204, 3.1.4). */
 #include "twi_slave.h"
 
 #include <stddef.h>
@@ -98,10 +98,11 @@ void twi_slave_released(twi_peripheral_t *twi)
 
 void twi_slave_by_hand(twi_peripheral_t *twi, uint8_t pulled_before, uint8_t pulled_now)
 {
-    bool scl_was_high = !twi->scl_held && (pulled_before & (1u << PIN_SCL)) == 0;
-    bool scl_is_high = !twi->scl_held && (pulled_now & (1u << PIN_SCL)) == 0;
-    bool sda_was_high = !twi_sda_low(twi) && (pulled_before & (1u << PIN_SDA)) == 0;
-    bool sda_is_high = !twi_sda_low(twi) && (pulled_now & (1u << PIN_SDA)) == 0;
+    unsigned low = (unsigned)twi->scl_held << PIN_SCL | (unsigned)twi_sda_low(twi) << PIN_SDA;
+    bool scl_was_high = ((low | pulled_before) & (1u << PIN_SCL)) == 0;
+    bool scl_is_high = ((low | pulled_now) & (1u << PIN_SCL)) == 0;
+    bool sda_was_high = ((low | pulled_before) & (1u << PIN_SDA)) == 0;
+    bool sda_is_high = ((low | pulled_now) & (1u << PIN_SDA)) == 0;
     if (scl_was_high && !scl_is_high) {
         twi_slave_move(twi, 1);
         twi->hand_clocks++;
