@@ -204,6 +204,12 @@ void stats_summary(void);
 void stats_streaming_begins(void);
 void stats_streaming_ends(void);
 
+/* --- passes of the main loop --- */
+void pass_start(void);
+void pass_reset(void);
+void pass_ends(void); /* main sleeps, or the next pass begins */
+void pass_print(FILE *json);
+
 /* --- cycles from function to function (--span) --- */
 extern bool span_wanted;
 /* Needs the symbols; exits with EXIT_INPUT when a name is unknown. */

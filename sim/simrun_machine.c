@@ -95,6 +95,7 @@ static void on_log(avr_t *avr, const int level, const char *format, va_list argu
 static void no_sleep(avr_t *avr, avr_cycle_count_t cycles)
 {
     (void)avr;
+    pass_ends();
     stats_slept += cycles + 1; /* simavr adds them to avr->cycle itself */
 }
 
@@ -160,6 +161,7 @@ static void set_up_again(bool power_lost)
     uart_reset();
     stats_reset();
     span_reset();
+    pass_reset();
     eeprom_reset(power_lost);
     sensor_show_pin();
     machine_reschedule();
@@ -298,6 +300,7 @@ void machine_start(void)
     stats_start();
     faults_start();
     span_start();
+    pass_start();
     if (faults_watch_pc || span_wanted || options.profile != NULL) {
         chunk_cycles = 0;
     }
