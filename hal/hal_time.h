@@ -4,9 +4,9 @@
  *   void hal_time_init(void)          start the timer (main, once)
  *   uint32_t hal_time_us(void)        now (any context)
  *   uint32_t hal_time_us_isr(void)    the same, cheaper, with interrupts already off
- *   void hal_wake_at(uint32_t t_us)   wake main at this moment (main); one alarm, a later call moves it. For moments more
- *                                     than 32.7 ms ahead main is also woken each 32.768 ms before, and the same after
- *                                     a moment that is past: so look at the clock, not at having been woken
+ *   void hal_wake_at(uint32_t t_us)   wake main at this moment (main); one alarm, a later call moves it. For moments
+ *                                     more than 32.7 ms ahead main is also woken each 32.768 ms before, and the same
+ *                                     after a moment that is past: so look at the clock, not at having been woken
  *
  *   uint32_t HAL_CPU_HZ               cycles of the processor in a second
  *
