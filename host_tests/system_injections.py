@@ -177,14 +177,14 @@ def judge_ends_the_run_with_its_status_and_names_the_first_row():
 @test
 def faults_that_no_firmware_can_see_are_marked():
     kinds = ("unplug plug power sda scl hang arb buserr nack nackdata devid noint reset mcupower flip noise double frozen storm odr "
-             "rxflood").split()
+             "rxflood torn starve overrun brownout mixed glitch clip txstall").split()
     stats = injected("marks", *[f"5000ms:{kind}" for kind in kinds], judge=True, max_ms=100)[3]
-    assert [kind for i, kind in enumerate(kinds, 1) if not stats[f"fault_{i}_detectable"]] == ["flip", "noise", "double"], stats
+    assert [kind for i, kind in enumerate(kinds, 1) if not stats[f"fault_{i}_detectable"]] == ["flip", "noise", "double", "mixed"], stats
 
 
 @test
 def wrong_parameters_of_a_fault_are_refused():
-    for what, words in (("flip:9", "flip wants a whole number from 1 to 8"), ("flip:x", "flip wants a whole number"),
+    for what, words in (("flip:9", "flip wants a whole number from 1 to 8"), ("clip:4", "clip wants an axis: x, y or z"), ("flip:x", "flip wants a whole number"),
                         ("double:w", "double wants an axis: x, y or z"), ("noise:0", "noise wants a whole number from 1 to 4096"),
                         ("storm:0", "storm wants a whole number from 1 to 20000"), ("frozen:1:2", "too many parts"),
                         ("odr:-200001", "odr wants a whole number from -200000 to 200000"), ("flip:1:5", "too many parts"),

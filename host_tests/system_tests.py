@@ -7,6 +7,7 @@ import resource
 import sys
 
 import system_injections  # noqa: F401  (its tests join the list)
+import system_injections_more  # noqa: F401
 import system_losses  # noqa: F401
 from system_support import FW, OUT, SET_IMAGES, SIMRUN, STREAMS, TESTS, image_with, read_output, run, run_all, simrun, test, triplets, within
 

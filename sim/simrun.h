@@ -80,8 +80,9 @@ void machine_start(void);
 exit_status_t machine_run(const char **reason);
 /* Some part's next event has changed: wake up for the earliest. */
 void machine_reschedule(void);
-/* Asked for from anywhere, done between two instructions. */
-void machine_reset(bool power_cycle);
+typedef enum { RESET_EXTERNAL, RESET_POWER_ON, RESET_BROWN_OUT } reset_t;
+/* Asked for from anywhere, done between two instructions; the last one asked for counts. */
+void machine_reset(reset_t kind);
 /* Somebody opened the pseudo terminal: with a boot loader an external reset, as DTR gives an UNO; not counted. */
 void machine_port_opened(void);
 /* First cause wins; ends the run. `reason` stays valid. */
@@ -102,9 +103,13 @@ FILE *output_open(const char *path); /* exits with EXIT_INPUT and the reason */
 /* Exits with EXIT_INTERNAL when anything written to it did not arrive; nothing to do for NULL. */
 void output_close(FILE *file, const char *path);
 
+/* --- the main loop without time (simrun_starve.c) --- */
+/* Outside of interrupt handlers and of sections with interrupts off no instruction is executed; a reset ends that. */
+void starve(bool on);
+
 /* --- ELF symbols --- */
 void symbols_load(const char *path, program_size_t *size);
-/* Byte address of a function; false when there is none of that name. */
+/* Byte address of a function, with or without the compiler's suffix (.lto_priv.0); false when there is none. */
 bool symbols_find(const char *name, uint32_t *pc);
 /* Address in data space of a variable of the firmware. */
 bool symbols_find_variable(const char *name, uint32_t *address);
@@ -140,8 +145,9 @@ void uart_finish(void);
 void uart_reset(void); /* after a reset of the MCU */
 uint64_t uart_next(void);
 void uart_step(void);
-void uart_flood(bool on);    /* random bytes without a pause, instead of what is to be typed */
-uint64_t uart_last_tx(void); /* cycle of the last byte sent, 0: none */
+void uart_flood(bool on);        /* random bytes without a pause, instead of what is to be typed */
+void uart_stall(uint64_t until); /* the transmitter holds each byte until this cycle; 0: no more */
+uint64_t uart_last_tx(void);     /* cycle of the last byte sent, 0: none */
 size_t uart_row_count(void);
 const row_t *uart_row(size_t index);
 uint64_t uart_bytes(void);
@@ -171,6 +177,7 @@ void faults_on_eeprom_write(uint32_t count);
 extern bool faults_watch_pc;
 void faults_on_pc(uint32_t pc);
 void faults_on_row(const row_t *row);
+void faults_on_reset(void); /* of the MCU: it has its time again */
 void faults_print(FILE *json);
 void faults_warn(void); /* stderr: faults that never came */
 

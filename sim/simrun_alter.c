@@ -10,6 +10,7 @@
 #include "simrun_faults.h"
 
 enum { AXES = 3, DATA_BYTES = 2 * AXES, PULSE_CYCLES = 64, NO_AXIS = AXES };
+enum { BEYOND_RAIL = 8191, BEYOND_RAIL_NEGATIVE = -8192 }; /* of every range */
 
 typedef struct {
     uint32_t sigma_lsb;
@@ -29,7 +30,10 @@ static bool frozen;
 static bool has_kept;
 static int16_t kept[AXES];
 static uint64_t pulse_at = NEVER; /* the next pulse on INT1, or its end */
-static uint64_t pulse_period;
+static uint64_t pulse_period;     /* 0: one pulse */
+static bool mixing;               /* what the master reads is of the burst before, to the end of this one */
+static uint8_t data_before[DATA_BYTES];
+static size_t clipped_axis = NO_AXIS;
 static bool in_pulse;
 
 static uint8_t random_mask(uint32_t bits)
@@ -119,6 +123,9 @@ static uint8_t on_sent(void *owner, uint8_t address, uint8_t byte)
     bool is_data = address >= ADXL345_DATAX0 && address < ADXL345_DATAX0 + DATA_BYTES;
     uint8_t offset = (uint8_t)(address - ADXL345_DATAX0);
     uint8_t arrived = is_data ? data_byte(offset, byte) : byte;
+    if (is_data && mixing) {
+        arrived = data_before[offset];
+    }
     arrived ^= random_mask(flip_bits);
     flip_bits = 0;
     if (is_data) {
@@ -127,6 +134,8 @@ static uint8_t on_sent(void *owner, uint8_t address, uint8_t byte)
     }
     if (is_data && offset == DATA_BYTES - 1) {
         record_altered();
+        memcpy(data_before, data_sent, sizeof data_before);
+        mixing = false;
     }
     return arrived;
 }
@@ -157,7 +166,12 @@ const int16_t *alter_sample(const int16_t lsb[3])
         memcpy(kept, lsb, sizeof kept);
         has_kept = true;
     }
-    return kept;
+    static int16_t measured[AXES];
+    memcpy(measured, kept, sizeof measured);
+    if (clipped_axis != NO_AXIS) {
+        measured[clipped_axis] = kept[clipped_axis] < 0 ? BEYOND_RAIL_NEGATIVE : BEYOND_RAIL;
+    }
+    return measured;
 }
 
 uint64_t alter_next(void)
@@ -173,6 +187,9 @@ void alter_step(void)
     }
     in_pulse = !in_pulse;
     pulse_at = mcu->cycle + (in_pulse ? PULSE_CYCLES : pulse_period - PULSE_CYCLES);
+    if (!in_pulse && pulse_period == 0) {
+        pulse_at = NEVER;
+    }
     sensor_disturb_int1(in_pulse);
 }
 
@@ -196,8 +213,20 @@ void alter_begin(const fault_t *fault)
         pulse_period = (uint64_t)CYCLES_PER_MS * 1000u / parameter;
         pulse_at = in_pulse ? pulse_at : mcu->cycle;
         break;
+    case KIND_GLITCH:
+        pulse_at = pulse_at == NEVER ? mcu->cycle : pulse_at;
+        break;
+    case KIND_MIXED:
+        mixing = true;
+        break;
+    case KIND_CLIP:
+        clipped_axis = parameter;
+        break;
     case KIND_ODR:
         sensor_set_clock_error(fault->parameter);
+        break;
+    case KIND_TXSTALL:
+        uart_stall(fault->ends);
         break;
     default:
         uart_flood(true);
@@ -213,11 +242,18 @@ void alter_end(const fault_t *fault)
         break;
     case KIND_STORM:
         pulse_at = NEVER;
+        pulse_period = 0;
         in_pulse = false;
         sensor_disturb_int1(false);
         break;
     case KIND_ODR:
         sensor_set_clock_error(options.ppm);
+        break;
+    case KIND_CLIP:
+        clipped_axis = NO_AXIS;
+        break;
+    case KIND_TXSTALL:
+        uart_stall(0);
         break;
     default:
         uart_flood(false);

@@ -86,11 +86,20 @@ static void apply(const fault_t *fault)
     case KIND_NOINT:
         sensor_cut_int1(true);
         break;
+    case KIND_TORN:
+        twi.let_go = true;
+        break;
+    case KIND_STARVE:
+    case KIND_OVERRUN:
+        starve(true);
+        break;
     case KIND_POKE:
         mcu->data[fault->address] = (uint8_t)fault->parameter;
         break;
     default:
-        machine_reset(fault->kind == KIND_MCUPOWER);
+        machine_reset(fault->kind == KIND_MCUPOWER   ? RESET_POWER_ON
+                      : fault->kind == KIND_BROWNOUT ? RESET_BROWN_OUT
+                                                     : RESET_EXTERNAL);
         break;
     }
 }
@@ -118,6 +127,10 @@ static void release(fault_t *fault)
     case KIND_NOINT:
         sensor_cut_int1(any_active(KIND_NOINT));
         break;
+    case KIND_STARVE:
+    case KIND_OVERRUN:
+        starve(any_active(KIND_STARVE) || any_active(KIND_OVERRUN));
+        break;
     default:
         follow_lines();
         break;
@@ -131,11 +144,11 @@ static void begin(fault_t *fault)
         fault->first_ms = machine_ms();
     }
     fault->armed = fault->when == WHEN_SAMPLE;
+    fault->overruns_before = sensor.overruns;
     if (fault_kinds[fault->kind].lasts) {
         fault->active = true;
         fault->awaits_row = false;
         fault->ends = fault->lasts == NEVER ? NEVER : mcu->cycle + fault->lasts;
-        machine_reschedule();
     } else {
         fault->awaits_row = true;
         fault->ended_at = mcu->cycle;
@@ -145,6 +158,7 @@ static void begin(fault_t *fault)
     } else {
         apply(fault);
     }
+    machine_reschedule();
 }
 
 uint64_t faults_next(void)
@@ -187,8 +201,13 @@ static void on_chance(fault_t *fault)
 void faults_on_sample(void)
 {
     for (size_t i = 0; i < fault_count; i++) {
-        if (faults[i].when == WHEN_SAMPLE && machine_random() < faults[i].chance) {
-            on_chance(&faults[i]);
+        fault_t *fault = &faults[i];
+        uint32_t overruns = sensor.overruns - fault->overruns_before;
+        if (fault->kind == KIND_OVERRUN && fault->active && overruns >= (uint32_t)fault->parameter) {
+            release(fault);
+        }
+        if (fault->when == WHEN_SAMPLE && machine_random() < fault->chance) {
+            on_chance(fault);
         }
     }
 }
@@ -219,6 +238,16 @@ void faults_on_pc(uint32_t pc)
         fault_t *fault = &faults[i];
         if (fault->when == WHEN_PC && fault->armed && fault->pc == pc && --fault->visits_left == 0) {
             begin(fault);
+        }
+    }
+}
+
+void faults_on_reset(void)
+{
+    for (size_t i = 0; i < fault_count; i++) {
+        bool starves = faults[i].kind == KIND_STARVE || faults[i].kind == KIND_OVERRUN;
+        if (starves && faults[i].active) {
+            release(&faults[i]);
         }
     }
 }

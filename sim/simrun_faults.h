@@ -21,7 +21,11 @@ typedef enum {
     KIND_NOINT,
     KIND_RESET,
     KIND_MCUPOWER,
+    KIND_BROWNOUT,
     KIND_POKE,
+    KIND_TORN,
+    KIND_STARVE,
+    KIND_OVERRUN,
     KIND_FLIP, /* from here on: simrun_alter.c */
     KIND_NOISE,
     KIND_DOUBLE,
@@ -29,6 +33,10 @@ typedef enum {
     KIND_STORM,
     KIND_ODR,
     KIND_RXFLOOD,
+    KIND_MIXED,
+    KIND_GLITCH,
+    KIND_CLIP,
+    KIND_TXSTALL,
     KIND_COUNT
 } kind_t;
 
@@ -44,8 +52,9 @@ typedef struct {
     uint32_t chance; /* WHEN_SAMPLE: of 2^32 */
     int32_t parameter;
     uint32_t address; /* KIND_POKE: of the variable */
-    uint64_t lasts;   /* cycles, NEVER: to the end */
-    bool armed;       /* has still to come (WHEN_SAMPLE: always) */
+    uint32_t overruns_before;
+    uint64_t lasts; /* cycles, NEVER: to the end */
+    bool armed;     /* has still to come (WHEN_SAMPLE: always) */
     bool active;
     uint64_t ends; /* cycle, while active */
     bool awaits_row;
@@ -59,6 +68,7 @@ typedef struct {
     bool lasts;                     /* a state, takes MS; the others happen once */
     bool on_bus;                    /* with p: it begins at a random byte of the transfer that follows the sample */
     bool detectable;                /* false: alters the value inside a transfer that is well formed */
+    bool axis;                      /* PARAM is x, y or z */
     int32_t lowest, usual, highest; /* PARAM; all 0: takes none */
 } kind_properties_t;
 

@@ -12,23 +12,31 @@ const kind_properties_t fault_kinds[KIND_COUNT] = {
     [KIND_POWER] = { .name = "power", .lasts = true, .detectable = true },
     [KIND_SDA] = { .name = "sda", .lasts = true, .detectable = true },
     [KIND_SCL] = { .name = "scl", .lasts = true, .detectable = true },
-    [KIND_HANG] = { "hang", false, true, true, 1, 5, 16 },
+    [KIND_HANG] = { "hang", false, true, true, false, 1, 5, 16 },
     [KIND_ARB] = { .name = "arb", .on_bus = true, .detectable = true },
     [KIND_BUSERR] = { .name = "buserr", .on_bus = true, .detectable = true },
     [KIND_NACK] = { .name = "nack", .on_bus = true, .detectable = true },
     [KIND_NACKDATA] = { .name = "nackdata", .on_bus = true, .detectable = true },
-    [KIND_DEVID] = { "devid", true, false, true, 0, 0, 255 },
+    [KIND_DEVID] = { "devid", true, false, true, false, 0, 0, 255 },
     [KIND_NOINT] = { .name = "noint", .lasts = true, .detectable = true },
     [KIND_RESET] = { .name = "reset", .on_bus = true, .detectable = true },
     [KIND_MCUPOWER] = { .name = "mcupower", .on_bus = true, .detectable = true },
+    [KIND_BROWNOUT] = { .name = "brownout", .on_bus = true, .detectable = true },
+    [KIND_TORN] = { .name = "torn", .on_bus = true, .detectable = true },
+    [KIND_STARVE] = { .name = "starve", .lasts = true, .detectable = true },
+    [KIND_OVERRUN] = { "overrun", true, false, true, false, 1, 1, 1000 },
     [KIND_POKE] = { .name = "poke", .detectable = true },
-    [KIND_FLIP] = { "flip", false, true, false, 1, 1, 8 },
-    [KIND_NOISE] = { "noise", false, false, false, 1, 20, 4096 },
-    [KIND_DOUBLE] = { "double", false, false, false, 0, 2, 2 },
+    [KIND_FLIP] = { "flip", false, true, false, false, 1, 1, 8 },
+    [KIND_NOISE] = { "noise", false, false, false, false, 1, 20, 4096 },
+    [KIND_DOUBLE] = { "double", false, false, false, true, 0, 2, 2 },
     [KIND_FROZEN] = { .name = "frozen", .lasts = true, .detectable = true },
-    [KIND_STORM] = { "storm", true, false, true, 1, 1000, 20000 },
-    [KIND_ODR] = { "odr", true, false, true, -200000, 50000, 200000 },
+    [KIND_STORM] = { "storm", true, false, true, false, 1, 1000, 20000 },
+    [KIND_ODR] = { "odr", true, false, true, false, -200000, 50000, 200000 },
     [KIND_RXFLOOD] = { .name = "rxflood", .lasts = true, .detectable = true },
+    [KIND_MIXED] = { .name = "mixed", .on_bus = true },
+    [KIND_GLITCH] = { .name = "glitch", .detectable = true },
+    [KIND_CLIP] = { "clip", true, false, true, true, 0, 2, 2 },
+    [KIND_TXSTALL] = { .name = "txstall", .lasts = true, .detectable = true },
 };
 
 static void refuse(const char *text, const char *reason) __attribute__((noreturn));
@@ -170,7 +178,9 @@ static void parse_poke(fault_t *fault, char *text)
 static int32_t parse_axis(const fault_t *fault, const char *text)
 {
     if (strlen(text) != 1 || *text < 'x' || *text > 'z') {
-        refuse(fault->text, "double wants an axis: x, y or z");
+        static char reason[40];
+        snprintf(reason, sizeof reason, "%s wants an axis: x, y or z", fault_kinds[fault->kind].name);
+        refuse(fault->text, reason);
     }
     return *text - 'x';
 }
@@ -199,7 +209,7 @@ static void parse_what(fault_t *fault, char **rest)
         parse_poke(fault, part);
         part = next_part(rest);
     } else if (part != NULL && fault_kinds[fault->kind].highest != 0) {
-        fault->parameter = fault->kind == KIND_DOUBLE ? parse_axis(fault, part) : parse_number(fault, part);
+        fault->parameter = fault_kinds[fault->kind].axis ? parse_axis(fault, part) : parse_number(fault, part);
         part = next_part(rest);
     }
     if (part != NULL && fault_kinds[fault->kind].lasts) {

@@ -28,7 +28,8 @@ twi_peripheral_t twi;
 program_size_t machine_size;
 static uint32_t boot_start = FLASH_BYTES;
 static void (*core_reset)(avr_t *);
-static bool reset_happened, reset_wanted, power_wanted, port_opened;
+static bool reset_happened, reset_wanted, port_opened;
+static reset_t wanted_kind;
 static uint32_t resets, boot_resets;
 static uint32_t last_pc;
 static exit_status_t failure;
@@ -162,6 +163,7 @@ static void set_up_again(bool power_lost)
     stats_reset();
     span_reset();
     pass_reset();
+    faults_on_reset();
     eeprom_reset(power_lost);
     sensor_show_pin();
     machine_reschedule();
@@ -180,32 +182,34 @@ static void power_cycle(void)
 
 static void do_wanted_reset(void)
 {
-    bool power = power_wanted;
+    bool power = wanted_kind == RESET_POWER_ON;
     bool counted = !port_opened;
     reset_wanted = false;
-    power_wanted = false;
     port_opened = false;
     if (power) {
         power_cycle();
     }
     avr_reset(mcu);
-    avr_regbit_set(mcu, power ? mcu->reset_flags.porf : mcu->reset_flags.extrf);
+    const avr_regbit_t cause[] = { [RESET_EXTERNAL] = mcu->reset_flags.extrf,
+                                   [RESET_POWER_ON] = mcu->reset_flags.porf,
+                                   [RESET_BROWN_OUT] = mcu->reset_flags.borf };
+    avr_regbit_set(mcu, cause[wanted_kind]);
     set_up_again(power);
     resets += counted ? 1u : 0u;
     reset_happened = false;
 }
 
-void machine_reset(bool power)
+void machine_reset(reset_t kind)
 {
     reset_wanted = true;
-    power_wanted = power_wanted || power;
+    wanted_kind = kind;
 }
 
 void machine_port_opened(void)
 {
     if (boot_start != FLASH_BYTES) {
         port_opened = !reset_wanted;
-        reset_wanted = true;
+        machine_reset(RESET_EXTERNAL);
     }
 }
 

@@ -147,15 +147,23 @@ void symbols_load(const char *path, program_size_t *size)
     }
 }
 
+/* The whole name decides; without such a one the first that has a suffix of the compiler's behind it. */
 static bool find(const symbols_t *symbols, const char *name, uint32_t *value)
 {
+    size_t length = strlen(name);
+    bool found = false;
     for (size_t i = 0; i < symbols->count; i++) {
-        if (strcmp(symbols->list[i].name, name) == 0) {
+        const char *other = symbols->list[i].name;
+        if (strcmp(other, name) == 0) {
             *value = symbols->list[i].pc;
             return true;
         }
+        if (!found && strncmp(other, name, length) == 0 && other[length] == '.') {
+            *value = symbols->list[i].pc;
+            found = true;
+        }
     }
-    return false;
+    return found;
 }
 
 bool symbols_find(const char *name, uint32_t *pc)

@@ -24,6 +24,8 @@ enum {
     RX_HOLDS = 3 /* two bytes and the one on the line; simavr's FIFO has 64 */
 };
 
+#define STALL_MAX_CYCLES (1000000ull * CYCLES_PER_MS)
+
 static avr_uart_t *uart;
 static avr_irq_t *uart_input;
 static FILE *out_file;
@@ -43,6 +45,7 @@ static uint64_t reply_deadline;
 static uint64_t next_byte_at = NEVER;
 static uint32_t rx_overruns;
 static bool flooded;
+static uint64_t stalled_until;
 
 static void keep_row(const row_t *row)
 {
@@ -172,13 +175,20 @@ static uint64_t byte_cycles(void)
     return (uint64_t)divider * oversampling * BITS_PER_BYTE;
 }
 
+/* For the bytes that the transmitter takes from now on. */
+static void set_byte_time(void)
+{
+    uint64_t held = stalled_until > mcu->cycle ? stalled_until - mcu->cycle : 0;
+    uart->cycles_per_byte = byte_cycles() + (held < STALL_MAX_CYCLES ? held : STALL_MAX_CYCLES);
+}
+
 static void on_baud(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
     (void)avr;
     (void)address;
     (void)value;
     (void)param;
-    uart->cycles_per_byte = byte_cycles();
+    set_byte_time();
     if (waits_for_baud) {
         waits_for_baud = false;
         on_reply();
@@ -282,6 +292,12 @@ void uart_flood(bool on)
     flooded = on;
     next_byte_at = mcu->cycle;
     machine_reschedule();
+}
+
+void uart_stall(uint64_t until)
+{
+    stalled_until = until;
+    set_byte_time();
 }
 
 void uart_step(void)

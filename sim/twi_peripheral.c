@@ -217,6 +217,8 @@ static void receive_byte(twi_peripheral_t *twi, bool give_ack)
 {
     unsigned bits = 0;
     unsigned wire = 0;
+    twi->acknowledged = twi->acknowledged && !twi->let_go;
+    twi->let_go = false;
     for (unsigned clock = 1; clock <= BITS_BYTE; clock++) {
         bool pulled = twi->sda_held || (clock == BITS_BYTE && give_ack);
         bool one = twi_slave_bit(twi, pulled);

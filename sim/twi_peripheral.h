@@ -37,6 +37,7 @@ typedef struct {
 
     /* faults that happen once, in the next byte that can show them */
     bool lose_arbitration, bus_error, nack_address, nack_data;
+    bool let_go; /* the slave sends no more in this read: ones */
 
     avr_t *avr;
     avr_int_vector_t *vector;

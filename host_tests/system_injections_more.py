@@ -1,0 +1,106 @@
+"""More faults of the simulator: what the bus, the MCU and the UART suffer; part of system_tests.py."""
+from system_injections import REST, altered, bus_probe, injected
+from system_support import SIMRUN, FW, OUT, run, simrun, test, triplets
+
+
+@test
+def slave_that_lets_go_reads_as_ones_to_the_end_of_the_read():
+    assert bus_probe("--fault", "xfer:5.4:torn")[0][4] == "FFFFFF"
+    assert bus_probe("--fault", "xfer:5.5:torn")[0][4] == "E5FFFF"
+    # in a write it waits for the next byte that the slave sends
+    assert bus_probe("--fault", "xfer:5.2:torn")[0][4] == "FFFFFF"
+
+
+def begins_mixed(arrived, true, before):
+    """The byte from which on a burst has those of the sample before; None when it has not."""
+    arrived, true, before = [b"".join(v.to_bytes(2, "little", signed=True) for v in lsb) for lsb in (arrived, true, before)]
+    return next((i for i in range(6) if arrived == true[:i] + before[i:]), None)
+
+
+@test
+def mixed_burst_has_the_sample_before_from_some_byte_on():
+    _, _, served, stats = injected("mixed", "p:0.1:mixed")
+    sent = triplets(served)
+    found = set()
+    for arrived, true in altered("mixed"):
+        places = {begins_mixed(arrived, true, before) for before, same in zip(sent, sent[1:]) if same == true} - {None}
+        assert places, f"{arrived} for {true}"
+        found.add(min(places))
+    # at rest the high bytes do not change: from 1 and from 2 on is the same, and from 5 on is no change
+    assert stats["fault_1_injected"] >= 80 and found == {0, 1, 3}, found
+    assert stats["fault_1_detectable"] is False and 40 < stats["samples_altered"] == len(altered("mixed")) <= stats["fault_1_injected"]
+
+
+@test
+def glitch_on_int1_is_one_edge_more():
+    edges = injected("calm", judge=True, max_ms=3000)[3]["isr_int0_n"]
+    # INT1 is low then: a sample comes every 10 ms and is read within 1 ms
+    _, _, served, stats = injected("glitch", *[f"{1000 + 37 * i}.3ms:glitch" for i in range(20)], max_ms=3000)
+    near = sum(min(abs(1000300 + 37000 * i - int(s["t_us"])) for s in served) < 1000 for i in range(20))
+    assert 20 - near <= stats["isr_int0_n"] - edges <= 20, (edges, near, stats["isr_int0_n"])
+
+
+@test
+def clipped_axis_is_at_its_rail_in_what_the_sensor_latched():
+    for axis, letter in enumerate("xyz"):
+        rows, _, served, _ = injected("clip", f"2000ms:clip:{letter}:500", judge=True, max_ms=4000)
+        inside = [lsb for s, lsb in zip(served, triplets(served)) if 2000000 < int(s["t_us"]) <= 2500000]
+        outside = [lsb for s, lsb in zip(served, triplets(served)) if not 2000000 < int(s["t_us"]) <= 2500000]
+        assert len(inside) == 50 and all(lsb[axis] in (-4096, 4095) for lsb in inside), inside[:3]
+        assert all(abs(v) < 300 for lsb in outside for v in lsb) and all(abs(v) < 300 for lsb in inside for v in lsb[:axis] + lsb[axis + 1:])
+        assert sum((row[9] & 8) != 0 for row in rows) >= 49, "no flag 8"
+
+
+@test
+def stalled_transmitter_sends_nothing_and_rows_are_dropped_and_told():
+    _, _, _, calm = injected("calm", judge=True, max_ms=3000)
+    rows, _, served, stats = injected("txstall", "1000ms:txstall:200", judge=True, max_ms=3000)
+    step_us = max(b[0] - a[0] for a, b in zip(rows, rows[1:]))
+    assert 150000 <= step_us <= 220000, step_us
+    assert any(row[9] & 256 for row in rows) and 15 <= calm["rows"] - stats["rows"] <= 22, (calm["rows"], stats["rows"])
+    assert stats["fault_1_recovered"] == 1 and stats["fault_1_worst_recovery_ms"] < 50
+
+
+@test
+def starved_main_loop_stands_still_while_interrupts_go_on():
+    rows, notes, _, stats = injected("starve", "1000ms:starve:200", max_ms=3000)
+    assert stats["resets"] == 0 and stats["fault_1_recovered"] == 1, stats
+    # the rows on their way are sent, no other until the main loop goes on
+    times = [row[0] / 1000 for row in rows]
+    assert any(1150 < t for t in times) and len(rows) > 250
+    edges = injected("calm", judge=True, max_ms=3000)[3]["isr_int0_n"]
+    assert edges - 21 < stats["isr_int0_n"] < edges, "interrupts do not go on"
+
+
+@test
+def main_loop_starved_for_longer_than_the_watchdog_is_reset_once():
+    rows, notes, _, stats = simrun("inject-starved", REST, "--fault", "1000ms:starve:2000", "--expect-resets", "1", "--max-ms", "3000")
+    assert stats["resets"] == 1 and sum(n.startswith("# reset: watchdog") for n in notes) == 1, notes
+    assert stats["fault_1_recovered"] == 1 and 1200 < 3000 - rows[-1][0] / 1000 <= 1300, rows[-1]
+
+
+@test
+def starved_until_the_fifo_has_run_over():
+    for lost in (1, 20):
+        _, _, _, stats = simrun("inject-overrun", REST, "--baud", 500000, "--rate", 400, "--loop", "--fault", f"1000ms:overrun:{lost}",
+                                "--max-ms", "2000", judge=False)
+        assert stats["sensor_overruns"] == lost and stats["resets"] == 0 and stats["fault_1_recovered"] == 1, stats
+
+
+@test
+def brown_out_keeps_the_ram_and_says_so():
+    rows, notes, _, stats = simrun("inject-brownout", REST, "--fault", "1000ms:brownout", "--expect-resets", "1", "--max-ms", "3000")
+    assert "# reset: supply dropped" in notes and stats["fault_1_recovered"] == 1 and len(rows) > 280, notes
+
+
+@test
+def function_is_found_without_the_suffix_of_the_compiler():
+    names = run("avr-nm", FW).stdout
+    assert " burst_drain\n" in names and " tilt_angles\n" in names and ".lto_priv." in names
+    name = next(word.partition(".lto_priv.")[0] for word in names.split() if word.startswith("fill_row.lto_priv."))
+    for function in (name, "burst_drain"):
+        stats = injected("suffix", f"pc:{function}#3:odr:1", judge=True, max_ms=400)[3]
+        assert stats["fault_1_injected"] == 1, stats
+    for wrong in ("fill_ro", "fill_row.lto", "urst_drain"):
+        done = run(SIMRUN, "--fw", FW, "--in", REST, "--out", OUT / "x.csv", "--fault", f"pc:{wrong}:glitch", expect=2)
+        assert "no such function in the firmware" in done.stderr, done.stderr
