@@ -184,7 +184,8 @@ def faults_that_no_firmware_can_see_are_marked():
 
 @test
 def wrong_parameters_of_a_fault_are_refused():
-    for what, words in (("flip:9", "flip wants a whole number from 1 to 8"), ("clip:4", "clip wants an axis: x, y or z"), ("flip:x", "flip wants a whole number"),
+    for what, words in (("flip:9", "flip wants a whole number from 1 to 8"), ("clip:4", "clip wants an axis: x, y or z"),
+                        ("flip:x", "flip wants a whole number"),
                         ("double:w", "double wants an axis: x, y or z"), ("noise:0", "noise wants a whole number from 1 to 4096"),
                         ("storm:0", "storm wants a whole number from 1 to 20000"), ("frozen:1:2", "too many parts"),
                         ("odr:-200001", "odr wants a whole number from -200000 to 200000"), ("flip:1:5", "too many parts"),

@@ -50,9 +50,39 @@ static void set_power(bool on)
     sensor_check_rate();
 }
 
+/* Of the bytes under way; false when it is no such kind. */
+static bool apply_to_transfer(const fault_t *fault)
+{
+    switch (fault->kind) {
+    case KIND_HANG:
+        twi_hang(&twi, (unsigned)fault->parameter);
+        return true;
+    case KIND_ARB:
+        twi.lose_arbitration = true;
+        return true;
+    case KIND_BUSERR:
+        twi.bus_error = true;
+        return true;
+    case KIND_NACK:
+        twi.nack_address = true;
+        return true;
+    case KIND_NACKDATA:
+        twi.nack_data = true;
+        return true;
+    case KIND_TORN:
+        twi.let_go = true;
+        return true;
+    default:
+        return false;
+    }
+}
+
 /* The state's beginning, or the whole of a fault that does not last. */
 static void apply(const fault_t *fault)
 {
+    if (apply_to_transfer(fault)) {
+        return;
+    }
     switch (fault->kind) {
     case KIND_UNPLUG:
     case KIND_POWER:
@@ -65,29 +95,11 @@ static void apply(const fault_t *fault)
     case KIND_SCL:
         follow_lines();
         break;
-    case KIND_HANG:
-        twi_hang(&twi, (unsigned)fault->parameter);
-        break;
-    case KIND_ARB:
-        twi.lose_arbitration = true;
-        break;
-    case KIND_BUSERR:
-        twi.bus_error = true;
-        break;
-    case KIND_NACK:
-        twi.nack_address = true;
-        break;
-    case KIND_NACKDATA:
-        twi.nack_data = true;
-        break;
     case KIND_DEVID:
         sensor.device_id = sensor.reg[0] = (uint8_t)fault->parameter;
         break;
     case KIND_NOINT:
         sensor_cut_int1(true);
-        break;
-    case KIND_TORN:
-        twi.let_go = true;
         break;
     case KIND_STARVE:
     case KIND_OVERRUN:
