@@ -254,10 +254,12 @@ static int32_t random_call(filter_any_t *f)
     if (what < 200U) {
         return filter_any_update(f, any_sample());
     }
-    if (what < 240U) {
+    if (what < 234U) {
         return filter_any_coast(f);
     }
-    if (what < 250U) {
+    if (what < 240U) {
+        (what < 237U ? filter_any_damp : what < 239U ? filter_any_hold : filter_any_restart)(f);
+    } else if (what < 250U) {
         filter_any_set_noise(f, random32(&random_state) >> (what & 31U));
     } else {
         filter_any_reset(f, any_sample());

@@ -36,7 +36,7 @@ def forbidden(elf):
 
 
 def steady_roots():
-    return [f"{name}_{verb}" for name in filter_names() for verb in ("update", "coast")] + STEADY_MORE
+    return [f"{name}_{verb}" for name in filter_names() for verb in ("update", "coast", "damp", "hold", "restart")] + STEADY_MORE
 
 
 def divisions(every, edges, outside):

@@ -25,7 +25,7 @@ import time
 HERE = pathlib.Path("host_tests/proof")
 OUT = pathlib.Path("build/proof")
 SOURCES = ["lib/filters/src", "lib/tilt/src", "host_tests/proof"]
-FUNCTIONS = ["init", "set_noise", "reset", "update", "coast"]
+FUNCTIONS = ["init", "set_noise", "reset", "update", "coast", "gap"]
 COMMON = ["-machdep", "gcc_x86_16", "-c11", "-no-unicode", "-kernel-warn-key", "asm:clobber=inactive"]
 WRAPS = ["-rte", "-rte-no-mem", "-rte-no-div", "-rte-no-shift", "-rte-no-pointer-call", "-no-warn-signed-overflow",
          "-no-warn-invalid-bool", "-no-warn-left-shift-negative", "-warn-unsigned-overflow"]
@@ -35,7 +35,7 @@ PROVED = {"Valid", "Considered valid"}
 ENTRY = re.compile(r"(?:/\*((?:(?!\*/).)*)\*/\s*)?^void proof_(\w+)\(void\)", re.S | re.M)
 
 # of filter_any.c: switches over the functions proved, and the look for a name, no arithmetic
-SWITCH = re.compile(r"filter_any_(init|set_noise|reset|update|coast|flags|probe|name|find|worst_cycles)|same_text")
+SWITCH = re.compile(r"filter_any_(init|set_noise|reset|update|coast|damp|hold|restart|flags|probe|name|find|worst_cycles)|same_text")
 
 
 def fail(text):

@@ -134,22 +134,35 @@ static int16_t next_input(filter_sequence_t *s)
     }
 }
 
-enum call { UPDATE, COAST, RESET, SET_NOISE };
+enum call { UPDATE, COAST, RESET, SET_NOISE, DAMP, HOLD, RESTART };
 
-/* Extremes: 28 updates, 4 coasts, 4 updates, a reset to a rail, updates. */
+/* Extremes: 28 updates, 4 coasts damped in their middle, a held update and 3 more, a reset to a rail, updates. */
 static enum call next_call(filter_sequence_t *s)
 {
     if (s->extremes) {
-        if (s->calls == 36U) {
+        switch (s->calls) {
+        case 28:
+        case 29:
+        case 31:
+            return COAST;
+        case 30:
+            return DAMP;
+        case 32:
+            return HOLD;
+        case 36:
             return RESET;
+        default:
+            return UPDATE;
         }
-        return (s->calls >= 28U && s->calls < 32U) ? COAST : UPDATE;
     }
     uint8_t what = (uint8_t)(random32(&s->random) >> 16);
     if (what < 6U) {
         return (what < 1U) ? RESET : SET_NOISE; /* a reset settles for 64 steps */
     }
-    return (what < 6U + s->coasts) ? COAST : UPDATE;
+    if (what < 12U) {
+        return (what < 9U) ? DAMP : (what < 11U) ? HOLD : RESTART;
+    }
+    return (what < 12U + s->coasts) ? COAST : UPDATE;
 }
 
 static int32_t estimate_of(const filter_any_t *f)
@@ -169,6 +182,15 @@ static int32_t make_call(filter_sequence_t *s)
         break;
     case SET_NOISE:
         filter_any_set_noise(&s->filter, random32(&s->random) >> s->noise_bits);
+        break;
+    case DAMP:
+        filter_any_damp(&s->filter);
+        break;
+    case HOLD:
+        filter_any_hold(&s->filter);
+        break;
+    case RESTART:
+        filter_any_restart(&s->filter);
         break;
     case UPDATE:
         s->updates++;

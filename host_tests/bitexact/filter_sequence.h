@@ -1,5 +1,5 @@
 /*
- * One endless sequence of calls (update, coast, reset, set_noise) over all filters, the same on the PC and on the chip:
+ * One endless sequence of calls (all that change a state) over all filters, the same on the PC and on the chip:
  * first every corner of every configuration with the extreme inputs, then random configurations with random ones. Each
  * call's answer, flags and probe go into a running CRC-32 and the bounds of the state are looked at.
  */

@@ -48,8 +48,14 @@ static void call(uint16_t index)
 {
     uint8_t what = (uint8_t)(vectors_random() >> 24);
     vectors_input(what);
-    if (what < 20U) {
+    if (what < 17U) {
         vectors_output((uint32_t)filter_any_coast(&filter), 4);
+    } else if (what == 17U) {
+        filter_any_damp(&filter);
+    } else if (what == 18U) {
+        filter_any_hold(&filter);
+    } else if (what == 19U) {
+        filter_any_restart(&filter);
     } else if (what < 22U) {
         int16_t z = sample(index);
         vectors_input((uint16_t)z);

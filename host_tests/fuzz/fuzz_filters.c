@@ -67,12 +67,39 @@ static int16_t sample(fuzz_input_t *in, uint8_t operation)
     return operation & 0x08 ? edge[operation >> 4 & 7] : (int16_t)fuzz_u16(in);
 }
 
+static int32_t estimate_of(const filter_any_t *f)
+{
+    filter_probe_t probe;
+    memset(&probe, 0, sizeof probe);
+    filter_any_probe(f, &probe);
+    return probe.x_lsb_q16;
+}
+
+/* A sample missing, or what filter.h says of missing and clipped ones; returns the estimate. */
+static int32_t miss(filter_any_t *f, uint8_t operation)
+{
+    switch (operation >> 5) {
+    case 1:
+        filter_any_damp(f);
+        break;
+    case 2:
+        filter_any_hold(f);
+        break;
+    case 3:
+        filter_any_restart(f);
+        break;
+    default:
+        return filter_any_coast(f);
+    }
+    return estimate_of(f);
+}
+
 /* One call; returns the estimate after it. */
 static int32_t call(filter_any_t *f, uint8_t operation, int16_t z, uint32_t r, int32_t x)
 {
     switch (operation & 7) {
     case 5:
-        return filter_any_coast(f);
+        return miss(f, operation);
     case 6:
         filter_any_set_noise(f, r);
         return x;

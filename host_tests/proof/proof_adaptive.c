@@ -11,6 +11,12 @@ void adaptive_reset(adaptive_t *f, int16_t z0_lsb);
 int32_t adaptive_update(adaptive_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN_X(\result); */
 int32_t adaptive_coast(adaptive_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void adaptive_damp(adaptive_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void adaptive_hold(adaptive_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void adaptive_restart(adaptive_t *f);
 
 #include "filter_common.c"
 #include "fx.c"
@@ -331,6 +337,36 @@ void proof_adaptive_coast(void)
             any_start(&f, 0, 4);
             any_weight(&f, weight, last);
             (void)adaptive_coast(&f);
+        }
+    }
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_adaptive_gap(void)
+{
+    adaptive_t f;
+    EACH_LAST(last)
+    {
+        EACH_WEIGHT(weight, last)
+        {
+            any_run(&f);
+            any_weight(&f, weight, last);
+            adaptive_damp(&f);
+            any_start(&f, 0, 4);
+            any_weight(&f, weight, last);
+            adaptive_damp(&f);
+            any_run(&f);
+            any_weight(&f, weight, last);
+            adaptive_hold(&f);
+            any_start(&f, 0, 4);
+            any_weight(&f, weight, last);
+            adaptive_hold(&f);
+            any_run(&f);
+            any_weight(&f, weight, last);
+            adaptive_restart(&f);
+            any_start(&f, 0, 4);
+            any_weight(&f, weight, last);
+            adaptive_restart(&f);
         }
     }
 }

@@ -13,6 +13,12 @@ void af_reset(af_t *f, int16_t z0_lsb);
 int32_t af_update(af_t *f, int16_t z_lsb);
 /*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t af_coast(af_t *f);
+/*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); */
+void af_damp(af_t *f);
+/*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); */
+void af_hold(af_t *f);
+/*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); */
+void af_restart(af_t *f);
 
 #include "af.c"
 
@@ -78,5 +84,25 @@ void proof_af_coast(void)
         filter_probe_t probe;
         af_probe(&f, &probe);
         (void)af_flags(&f);
+    }
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_af_gap(void)
+{
+    for (uint8_t range = 0; range < RATIO_RANGES; range++) {
+        af_t f;
+        any_mixture(&f, range, false);
+        af_damp(&f);
+        any_mixture(&f, range, true);
+        af_damp(&f);
+        any_mixture(&f, range, false);
+        af_hold(&f);
+        any_mixture(&f, range, true);
+        af_hold(&f);
+        any_mixture(&f, range, false);
+        af_restart(&f);
+        any_mixture(&f, range, true);
+        af_restart(&f);
     }
 }

@@ -15,6 +15,12 @@ void kf_reset(kf_t *f, int16_t z0_lsb);
 int32_t kf_update(kf_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t kf_coast(kf_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void kf_damp(kf_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void kf_hold(kf_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void kf_restart(kf_t *f);
 
 #include "filter_common.c"
 #include "fx.c"
@@ -98,4 +104,25 @@ void proof_kf_coast(void)
     filter_probe_t probe;
     kf_probe(&f, &probe);
     (void)kf_flags(&f);
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_kf_gap(void)
+{
+    kf_t f;
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
+    kf_damp(&f);
+    any_start(&f.core);
+    kf_damp(&f);
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
+    kf_hold(&f);
+    any_start(&f.core);
+    kf_hold(&f);
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
+    kf_restart(&f);
+    any_start(&f.core);
+    kf_restart(&f);
 }

@@ -74,6 +74,12 @@ void kf3_reset(kf3_t *f, int16_t z0_lsb);
 int32_t kf3_update(kf3_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t kf3_coast(kf3_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void kf3_damp(kf3_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void kf3_hold(kf3_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void kf3_restart(kf3_t *f);
 
 #include "filter_common.c"
 #include "fx.c"
@@ -245,4 +251,22 @@ void proof_kf3_coast(void)
     any_run(&f);
     kf3_probe(&f, &probe);
     (void)kf3_flags(&f);
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_kf3_gap(void)
+{
+    kf3_t f;
+    any_run(&f);
+    kf3_damp(&f);
+    any_warm_up(&f, 0, 4);
+    kf3_damp(&f);
+    any_run(&f);
+    kf3_hold(&f);
+    any_warm_up(&f, 0, 4);
+    kf3_hold(&f);
+    any_run(&f);
+    kf3_restart(&f);
+    any_warm_up(&f, 0, 4);
+    kf3_restart(&f);
 }

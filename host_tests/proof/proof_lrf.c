@@ -27,6 +27,12 @@ void lrf_reset(lrf_t *f, int16_t z0_lsb);
 int32_t lrf_update(lrf_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t lrf_coast(lrf_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void lrf_damp(lrf_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void lrf_hold(lrf_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void lrf_restart(lrf_t *f);
 
 #include "filter_common.c"
 #include "fx.c"
@@ -148,4 +154,25 @@ void proof_lrf_coast(void)
     filter_probe_t probe;
     lrf_probe(&f, &probe);
     (void)lrf_flags(&f);
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_lrf_gap(void)
+{
+    lrf_t f;
+    any_run(&f);
+    //@ admit COVARIANCE(&f.core);
+    lrf_damp(&f);
+    any_warm_up(&f, 0, 4);
+    lrf_damp(&f);
+    any_run(&f);
+    //@ admit COVARIANCE(&f.core);
+    lrf_hold(&f);
+    any_warm_up(&f, 0, 4);
+    lrf_hold(&f);
+    any_run(&f);
+    //@ admit COVARIANCE(&f.core);
+    lrf_restart(&f);
+    any_warm_up(&f, 0, 4);
+    lrf_restart(&f);
 }

@@ -13,6 +13,12 @@ void pbf_reset(pbf_t *f, int16_t z0_lsb);
 int32_t pbf_update(pbf_t *f, int16_t z_lsb);
 /*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t pbf_coast(pbf_t *f);
+/*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); */
+void pbf_damp(pbf_t *f);
+/*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); */
+void pbf_hold(pbf_t *f);
+/*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); */
+void pbf_restart(pbf_t *f);
 
 #include "pbf.c"
 
@@ -78,5 +84,25 @@ void proof_pbf_coast(void)
         filter_probe_t probe;
         pbf_probe(&f, &probe);
         (void)pbf_flags(&f);
+    }
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_pbf_gap(void)
+{
+    for (uint8_t range = 0; range < RATIO_RANGES; range++) {
+        pbf_t f;
+        any_mixture(&f, range, false);
+        pbf_damp(&f);
+        any_mixture(&f, range, true);
+        pbf_damp(&f);
+        any_mixture(&f, range, false);
+        pbf_hold(&f);
+        any_mixture(&f, range, true);
+        pbf_hold(&f);
+        any_mixture(&f, range, false);
+        pbf_restart(&f);
+        any_mixture(&f, range, true);
+        pbf_restart(&f);
     }
 }

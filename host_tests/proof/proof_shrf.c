@@ -13,6 +13,12 @@ void shrf_reset(shrf_t *f, int16_t z0_lsb);
 int32_t shrf_update(shrf_t *f, int16_t z_lsb);
 /*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t shrf_coast(shrf_t *f);
+/*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); */
+void shrf_damp(shrf_t *f);
+/*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); */
+void shrf_hold(shrf_t *f);
+/*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); */
+void shrf_restart(shrf_t *f);
 
 #include "shrf.c"
 
@@ -78,5 +84,25 @@ void proof_shrf_coast(void)
         filter_probe_t probe;
         shrf_probe(&f, &probe);
         (void)shrf_flags(&f);
+    }
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_shrf_gap(void)
+{
+    for (uint8_t range = 0; range < RATIO_RANGES; range++) {
+        shrf_t f;
+        any_mixture(&f, range, false);
+        shrf_damp(&f);
+        any_mixture(&f, range, true);
+        shrf_damp(&f);
+        any_mixture(&f, range, false);
+        shrf_hold(&f);
+        any_mixture(&f, range, true);
+        shrf_hold(&f);
+        any_mixture(&f, range, false);
+        shrf_restart(&f);
+        any_mixture(&f, range, true);
+        shrf_restart(&f);
     }
 }

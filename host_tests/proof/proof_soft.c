@@ -19,6 +19,12 @@ void soft_reset(soft_t *f, int16_t z0_lsb);
 int32_t soft_update(soft_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t soft_coast(soft_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void soft_damp(soft_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void soft_hold(soft_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void soft_restart(soft_t *f);
 
 /*@ requires s->size_lsb_uq8 <= 8704 * 256 && s->u.p.p11_uq28 < 8 * ONE && ((s)->coarse == 0 || (s)->coarse == 1);
     assigns s->limit_lsb2, \result \from *s;
@@ -254,4 +260,28 @@ void proof_soft_coast(void)
     filter_probe_t probe;
     soft_probe(&f, &probe);
     (void)soft_flags(&f);
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_soft_gap(void)
+{
+    soft_t f;
+    any_gate(&f);
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
+    soft_damp(&f);
+    any_start(&f.core);
+    soft_damp(&f);
+    any_gate(&f);
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
+    soft_hold(&f);
+    any_start(&f.core);
+    soft_hold(&f);
+    any_gate(&f);
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
+    soft_restart(&f);
+    any_start(&f.core);
+    soft_restart(&f);
 }

@@ -17,6 +17,12 @@ void sprf_reset(sprf_t *f, int16_t z0_lsb);
 int32_t sprf_update(sprf_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t sprf_coast(sprf_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void sprf_damp(sprf_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void sprf_hold(sprf_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void sprf_restart(sprf_t *f);
 
 #include "filter_common.c"
 #include "fx.c"
@@ -107,4 +113,28 @@ void proof_sprf_coast(void)
     filter_probe_t probe;
     sprf_probe(&f, &probe);
     (void)sprf_flags(&f);
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_sprf_gap(void)
+{
+    sprf_t f;
+    any_gate(&f);
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
+    sprf_damp(&f);
+    any_start(&f.core);
+    sprf_damp(&f);
+    any_gate(&f);
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
+    sprf_hold(&f);
+    any_start(&f.core);
+    sprf_hold(&f);
+    any_gate(&f);
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
+    sprf_restart(&f);
+    any_start(&f.core);
+    sprf_restart(&f);
 }

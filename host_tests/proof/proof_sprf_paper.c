@@ -15,6 +15,12 @@ void sprf_paper_reset(sprf_paper_t *f, int16_t z0_lsb);
 int32_t sprf_paper_update(sprf_paper_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t sprf_paper_coast(sprf_paper_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void sprf_paper_damp(sprf_paper_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void sprf_paper_hold(sprf_paper_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void sprf_paper_restart(sprf_paper_t *f);
 
 #include "sprf_paper.c"
 
@@ -84,4 +90,22 @@ void proof_sprf_paper_coast(void)
     filter_probe_t probe;
     sprf_paper_probe(&f, &probe);
     (void)sprf_paper_flags(&f);
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_sprf_paper_gap(void)
+{
+    sprf_paper_t f;
+    any_sprf_paper(&f, false);
+    sprf_paper_damp(&f);
+    any_sprf_paper(&f, true);
+    sprf_paper_damp(&f);
+    any_sprf_paper(&f, false);
+    sprf_paper_hold(&f);
+    any_sprf_paper(&f, true);
+    sprf_paper_hold(&f);
+    any_sprf_paper(&f, false);
+    sprf_paper_restart(&f);
+    any_sprf_paper(&f, true);
+    sprf_paper_restart(&f);
 }

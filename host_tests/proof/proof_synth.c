@@ -17,6 +17,12 @@ void synth_reset(synth_t *f, int16_t z0_lsb);
 int32_t synth_update(synth_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN_X(\result); */
 int32_t synth_coast(synth_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void synth_damp(synth_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void synth_hold(synth_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void synth_restart(synth_t *f);
 
 #include "filter_common.c"
 #include "fx.c"
@@ -117,6 +123,20 @@ void proof_synth_coast(void)
         synth_t f;
         any_state(&f, kind);
         (void)synth_coast(&f);
+    }
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_synth_gap(void)
+{
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_t f;
+        any_state(&f, kind);
+        synth_damp(&f);
+        any_state(&f, kind);
+        synth_hold(&f);
+        any_state(&f, kind);
+        synth_restart(&f);
     }
 }
 

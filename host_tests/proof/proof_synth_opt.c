@@ -17,6 +17,12 @@ void synth_opt_reset(synth_opt_t *f, int16_t z0_lsb);
 int32_t synth_opt_update(synth_opt_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN_X(\result); */
 int32_t synth_opt_coast(synth_opt_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void synth_opt_damp(synth_opt_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void synth_opt_hold(synth_opt_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void synth_opt_restart(synth_opt_t *f);
 
 #include "filter_common.c"
 #include "fx.c"
@@ -88,6 +94,20 @@ void proof_synth_opt_coast(void)
         synth_opt_t f;
         any_state(&f, kind);
         (void)synth_opt_coast(&f);
+    }
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_synth_opt_gap(void)
+{
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_opt_t f;
+        any_state(&f, kind);
+        synth_opt_damp(&f);
+        any_state(&f, kind);
+        synth_opt_hold(&f);
+        any_state(&f, kind);
+        synth_opt_restart(&f);
     }
 }
 

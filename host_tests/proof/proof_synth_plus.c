@@ -21,6 +21,12 @@ void synth_plus_reset(synth_plus_t *f, int16_t z0_lsb);
 int32_t synth_plus_update(synth_plus_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN_X(\result); */
 int32_t synth_plus_coast(synth_plus_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void synth_plus_damp(synth_plus_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void synth_plus_hold(synth_plus_t *f);
+/*@ requires BOUND(f); ensures BOUND(f); */
+void synth_plus_restart(synth_plus_t *f);
 
 #include "filter_common.c"
 #include "fx.c"
@@ -113,6 +119,20 @@ void proof_synth_plus_coast(void)
         synth_plus_t f;
         any_state(&f, kind);
         (void)synth_plus_coast(&f);
+    }
+}
+
+/* What is told of missing samples, of states as those of a coast. */
+void proof_synth_plus_gap(void)
+{
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_plus_t f;
+        any_state(&f, kind);
+        synth_plus_damp(&f);
+        any_state(&f, kind);
+        synth_plus_hold(&f);
+        any_state(&f, kind);
+        synth_plus_restart(&f);
     }
 }
 

@@ -104,6 +104,9 @@ void adaptive_set_noise(adaptive_t *f, uint32_t r_lsb2_q8);
 void adaptive_reset(adaptive_t *f, int16_t z0_lsb);
 int32_t adaptive_update(adaptive_t *f, int16_t z_lsb);
 int32_t adaptive_coast(adaptive_t *f);
+void adaptive_damp(adaptive_t *f);
+void adaptive_hold(adaptive_t *f);
+void adaptive_restart(adaptive_t *f);
 uint8_t adaptive_flags(const adaptive_t *f);
 void adaptive_probe(const adaptive_t *f, filter_probe_t *out);
 

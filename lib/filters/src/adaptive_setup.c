@@ -134,21 +134,49 @@ void adaptive_set_noise(adaptive_t *f, uint32_t r_lsb2_q8)
     f->scatter_lsb_uq24 = (uint32_t)sigma_q10 << 14;
 }
 
-FX_ONCE void adaptive_reset(adaptive_t *f, int16_t z0_lsb)
+/* What the samples so far told, but for the noise. */
+FX_NOINLINE void forget(adaptive_t *f)
 {
-    int16_t z0 = filter_clamp_z(z0_lsb);
-    f->x_lsb_q16 = (int32_t)z0 * 65536;
     f->rate_lsb_q24 = 0;
     f->mean_lsb_q24 = 0;
     f->u.run.size_lsb_uq16 = 0;
-    f->k_uq32 = (uint32_t)f->slow_uq16 << 16;
     f->filled = 0;
     f->run = 0;
     f->below = false;
     f->verdict = UNUSED;
     f->u.run.gate_lsb_uq16 = 0;
+    f->u.run.before_lsb_q16 = 0;
+}
+
+FX_ONCE void adaptive_reset(adaptive_t *f, int16_t z0_lsb)
+{
+    int16_t z0 = filter_clamp_z(z0_lsb);
+    f->x_lsb_q16 = (int32_t)z0 * 65536;
+    f->k_uq32 = (uint32_t)f->slow_uq16 << 16;
+    forget(f);
     f->collected = FILTER_WARM_UP_SAMPLES;
     f->flags = 0;
+}
+
+/* Towards `below` or away from it: rounded down, within its bound. */
+void adaptive_damp(adaptive_t *f)
+{
+    f->rate_lsb_q24 >>= 1;
+}
+
+/* As after a gap: with no sample before it nothing agrees with the next one, and no difference is taken over it. */
+void adaptive_hold(adaptive_t *f)
+{
+    f->run = 0;
+    f->filled = 0;
+}
+
+/* The innovation, its gate and the sample before lie where those of the start will be: 0 each. */
+void adaptive_restart(adaptive_t *f)
+{
+    forget(f);
+    f->collected = 0;
+    f->flags = FILTER_WARMING_UP;
 }
 
 uint32_t adaptive_r_lsb2_q8(const adaptive_t *f)

@@ -35,6 +35,21 @@ int32_t af_coast(af_t *f)
     return two_state_wide_coast(&f->core);
 }
 
+void af_damp(af_t *f)
+{
+    two_state_wide_damp(&f->core);
+}
+
+void af_hold(af_t *f)
+{
+    two_state_wide_hold(&f->core);
+}
+
+void af_restart(af_t *f)
+{
+    two_state_wide_restart(&f->core);
+}
+
 uint8_t af_flags(const af_t *f)
 {
     return f->core.flags;

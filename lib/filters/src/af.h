@@ -27,6 +27,9 @@ void af_set_noise(af_t *f, uint32_t r_lsb2_q8);
 void af_reset(af_t *f, int16_t z0_lsb);
 int32_t af_update(af_t *f, int16_t z_lsb);
 int32_t af_coast(af_t *f);
+void af_damp(af_t *f);
+void af_hold(af_t *f);
+void af_restart(af_t *f);
 uint8_t af_flags(const af_t *f);
 void af_probe(const af_t *f, filter_probe_t *out);
 

@@ -9,6 +9,12 @@
  *   int32_t  F_update(F_t *f, int16_t z_lsb);                     one sample in, estimate (LSB, Q16) out; total, cannot
  *            fail
  *   int32_t  F_coast(F_t *f);                                     sample missing: prediction only
+ *   void     F_damp(F_t *f);                                      the estimated rate of change halved: samples have
+ *            been missing for a while
+ *   void     F_hold(F_t *f);                                      before and after an update with a sample that tells
+ *            no position, as one at the sensor's rail: it is used, but the filter does not restart on it
+ *   void     F_restart(F_t *f);                                   warming up anew, parameters and what was learnt of
+ *            the noise stay; the next call is F_update, until then the estimate means nothing
  *   uint8_t  F_flags(const F_t *f);                               FILTER_* of the last update or coast
  *   void     F_probe(const F_t *f, filter_probe_t *out);          gain, variance, innovation, gate of the last update
  *

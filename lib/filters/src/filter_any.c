@@ -150,6 +150,48 @@ int32_t filter_any_coast(filter_any_t *f)
     }
 }
 
+void filter_any_damp(filter_any_t *f)
+{
+    switch (f->kind) {
+#define DAMP(F)                \
+    case FILTER_KIND_##F:      \
+        F##_damp(&f->state.F); \
+        break;
+        FILTER_LINKED(DAMP)
+#undef DAMP
+    default:
+        break;
+    }
+}
+
+void filter_any_hold(filter_any_t *f)
+{
+    switch (f->kind) {
+#define HOLD(F)                \
+    case FILTER_KIND_##F:      \
+        F##_hold(&f->state.F); \
+        break;
+        FILTER_LINKED(HOLD)
+#undef HOLD
+    default:
+        break;
+    }
+}
+
+void filter_any_restart(filter_any_t *f)
+{
+    switch (f->kind) {
+#define RESTART(F)                \
+    case FILTER_KIND_##F:         \
+        F##_restart(&f->state.F); \
+        break;
+        FILTER_LINKED(RESTART)
+#undef RESTART
+    default:
+        break;
+    }
+}
+
 FX_ONCE uint8_t filter_any_flags(const filter_any_t *f)
 {
     switch (f->kind) {

@@ -57,6 +57,9 @@ void filter_any_set_noise(filter_any_t *f, uint32_t r_lsb2_q8);
 void filter_any_reset(filter_any_t *f, int16_t z0_lsb);
 int32_t filter_any_update(filter_any_t *f, int16_t z_lsb);
 int32_t filter_any_coast(filter_any_t *f);
+void filter_any_damp(filter_any_t *f);
+void filter_any_hold(filter_any_t *f);
+void filter_any_restart(filter_any_t *f);
 uint8_t filter_any_flags(const filter_any_t *f);
 void filter_any_probe(const filter_any_t *f, filter_probe_t *out);
 

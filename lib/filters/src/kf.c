@@ -54,6 +54,22 @@ int32_t kf_coast(kf_t *f)
     return two_state_coast(&f->core);
 }
 
+void kf_damp(kf_t *f)
+{
+    two_state_damp(&f->core);
+}
+
+/* Takes every sample as it is: nothing to be held back. */
+void kf_hold(kf_t *f)
+{
+    (void)f;
+}
+
+void kf_restart(kf_t *f)
+{
+    two_state_restart(&f->core);
+}
+
 uint8_t kf_flags(const kf_t *f)
 {
     return f->core.flags;

@@ -32,6 +32,9 @@ void kf_set_noise(kf_t *f, uint32_t r_lsb2_q8);
 void kf_reset(kf_t *f, int16_t z0_lsb);
 int32_t kf_update(kf_t *f, int16_t z_lsb);
 int32_t kf_coast(kf_t *f);
+void kf_damp(kf_t *f);
+void kf_hold(kf_t *f);
+void kf_restart(kf_t *f);
 uint8_t kf_flags(const kf_t *f);
 void kf_probe(const kf_t *f, filter_probe_t *out);
 

@@ -266,6 +266,23 @@ int32_t kf3_coast(kf3_t *f)
     return f->core.x_lsb_q16;
 }
 
+void kf3_damp(kf3_t *f)
+{
+    two_state_damp(&f->core);
+    f->acceleration_q16 >>= 1;
+}
+
+/* Takes every sample as it is: nothing to be held back. */
+void kf3_hold(kf3_t *f)
+{
+    (void)f;
+}
+
+void kf3_restart(kf3_t *f)
+{
+    two_state_restart(&f->core);
+}
+
 uint8_t kf3_flags(const kf3_t *f)
 {
     return f->core.flags;

@@ -58,6 +58,9 @@ void kf3_set_noise(kf3_t *f, uint32_t r_lsb2_q8);
 void kf3_reset(kf3_t *f, int16_t z0_lsb);
 int32_t kf3_update(kf3_t *f, int16_t z_lsb);
 int32_t kf3_coast(kf3_t *f);
+void kf3_damp(kf3_t *f);
+void kf3_hold(kf3_t *f);
+void kf3_restart(kf3_t *f);
 uint8_t kf3_flags(const kf3_t *f);
 void kf3_probe(const kf3_t *f, filter_probe_t *out);
 

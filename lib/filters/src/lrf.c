@@ -78,6 +78,22 @@ int32_t lrf_coast(lrf_t *f)
     return two_state_coast(&f->core);
 }
 
+void lrf_damp(lrf_t *f)
+{
+    two_state_damp(&f->core);
+}
+
+/* Takes every sample as it is: nothing to be held back. */
+void lrf_hold(lrf_t *f)
+{
+    (void)f;
+}
+
+void lrf_restart(lrf_t *f)
+{
+    two_state_restart(&f->core);
+}
+
 uint8_t lrf_flags(const lrf_t *f)
 {
     return f->core.flags;

@@ -46,6 +46,9 @@ void lrf_set_noise(lrf_t *f, uint32_t r_lsb2_q8);
 void lrf_reset(lrf_t *f, int16_t z0_lsb);
 int32_t lrf_update(lrf_t *f, int16_t z_lsb);
 int32_t lrf_coast(lrf_t *f);
+void lrf_damp(lrf_t *f);
+void lrf_hold(lrf_t *f);
+void lrf_restart(lrf_t *f);
 uint8_t lrf_flags(const lrf_t *f);
 void lrf_probe(const lrf_t *f, filter_probe_t *out);
 

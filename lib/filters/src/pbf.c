@@ -34,6 +34,21 @@ int32_t pbf_coast(pbf_t *f)
     return two_state_wide_coast(&f->core);
 }
 
+void pbf_damp(pbf_t *f)
+{
+    two_state_wide_damp(&f->core);
+}
+
+void pbf_hold(pbf_t *f)
+{
+    two_state_wide_hold(&f->core);
+}
+
+void pbf_restart(pbf_t *f)
+{
+    two_state_wide_restart(&f->core);
+}
+
 uint8_t pbf_flags(const pbf_t *f)
 {
     return f->core.flags;

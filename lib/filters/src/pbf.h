@@ -28,6 +28,9 @@ void pbf_set_noise(pbf_t *f, uint32_t r_lsb2_q8);
 void pbf_reset(pbf_t *f, int16_t z0_lsb);
 int32_t pbf_update(pbf_t *f, int16_t z_lsb);
 int32_t pbf_coast(pbf_t *f);
+void pbf_damp(pbf_t *f);
+void pbf_hold(pbf_t *f);
+void pbf_restart(pbf_t *f);
 uint8_t pbf_flags(const pbf_t *f);
 void pbf_probe(const pbf_t *f, filter_probe_t *out);
 

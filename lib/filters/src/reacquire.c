@@ -29,6 +29,13 @@ void reacquire_reset(reacquire_t *a, int16_t z0_lsb)
     a->broken = false;
 }
 
+void reacquire_hold(reacquire_t *a)
+{
+    if (a->run > 1U) {
+        a->run = 1;
+    }
+}
+
 /* Position and rate from the ends of a run of L samples: variances R, R / (L-1), 2 R / (L-1)^2. */
 FX_NOINLINE void restart(reacquire_t *a, two_state_t *s, int16_t z_lsb)
 {

@@ -46,6 +46,12 @@ FX_ONCE void reacquire_set_noise(reacquire_t *a, const two_state_t *s);
 void reacquire_reset(reacquire_t *a, int16_t z0_lsb);
 
 /*
+ * Before a sample that tells no position: what was refused so far does not help it to restart the filter. A run goes on
+ * as one of a single sample, so that the time since the last accepted one is not forgotten.
+ */
+FX_ONCE void reacquire_hold(reacquire_t *a);
+
+/*
  * A refused sample, predicted over by the core: counted when it agrees with the one before, else the first of a new
  * run. The last of a run restarts the core (flags: FILTER_REACQUIRED alone): true. The caller notes every raw sample in
  * previous_lsb afterwards, sets run to 0 on accepted ones and broken on missing ones.

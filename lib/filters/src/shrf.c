@@ -34,6 +34,21 @@ int32_t shrf_coast(shrf_t *f)
     return two_state_wide_coast(&f->core);
 }
 
+void shrf_damp(shrf_t *f)
+{
+    two_state_wide_damp(&f->core);
+}
+
+void shrf_hold(shrf_t *f)
+{
+    two_state_wide_hold(&f->core);
+}
+
+void shrf_restart(shrf_t *f)
+{
+    two_state_wide_restart(&f->core);
+}
+
 uint8_t shrf_flags(const shrf_t *f)
 {
     return f->core.flags;

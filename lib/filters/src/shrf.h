@@ -28,6 +28,9 @@ void shrf_set_noise(shrf_t *f, uint32_t r_lsb2_q8);
 void shrf_reset(shrf_t *f, int16_t z0_lsb);
 int32_t shrf_update(shrf_t *f, int16_t z_lsb);
 int32_t shrf_coast(shrf_t *f);
+void shrf_damp(shrf_t *f);
+void shrf_hold(shrf_t *f);
+void shrf_restart(shrf_t *f);
 uint8_t shrf_flags(const shrf_t *f);
 void shrf_probe(const shrf_t *f, filter_probe_t *out);
 

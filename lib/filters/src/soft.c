@@ -273,6 +273,22 @@ int32_t soft_coast(soft_t *f)
     return two_state_coast(&f->core);
 }
 
+void soft_damp(soft_t *f)
+{
+    two_state_damp(&f->core);
+}
+
+void soft_hold(soft_t *f)
+{
+    reacquire_hold(&f->again);
+}
+
+void soft_restart(soft_t *f)
+{
+    two_state_restart(&f->core);
+    f->again.run = 0;
+}
+
 uint8_t soft_flags(const soft_t *f)
 {
     return f->core.flags;

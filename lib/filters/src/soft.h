@@ -47,6 +47,9 @@ void soft_set_noise(soft_t *f, uint32_t r_lsb2_q8);
 void soft_reset(soft_t *f, int16_t z0_lsb);
 int32_t soft_update(soft_t *f, int16_t z_lsb);
 int32_t soft_coast(soft_t *f);
+void soft_damp(soft_t *f);
+void soft_hold(soft_t *f);
+void soft_restart(soft_t *f);
 uint8_t soft_flags(const soft_t *f);
 void soft_probe(const soft_t *f, filter_probe_t *out);
 

@@ -95,6 +95,22 @@ int32_t sprf_coast(sprf_t *f)
     return two_state_coast(&f->core);
 }
 
+void sprf_damp(sprf_t *f)
+{
+    two_state_damp(&f->core);
+}
+
+void sprf_hold(sprf_t *f)
+{
+    reacquire_hold(&f->again);
+}
+
+void sprf_restart(sprf_t *f)
+{
+    two_state_restart(&f->core);
+    f->again.run = 0;
+}
+
 uint8_t sprf_flags(const sprf_t *f)
 {
     return f->core.flags;

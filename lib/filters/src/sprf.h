@@ -45,6 +45,9 @@ void sprf_set_noise(sprf_t *f, uint32_t r_lsb2_q8);
 void sprf_reset(sprf_t *f, int16_t z0_lsb);
 int32_t sprf_update(sprf_t *f, int16_t z_lsb);
 int32_t sprf_coast(sprf_t *f);
+void sprf_damp(sprf_t *f);
+void sprf_hold(sprf_t *f);
+void sprf_restart(sprf_t *f);
 uint8_t sprf_flags(const sprf_t *f);
 void sprf_probe(const sprf_t *f, filter_probe_t *out);
 

@@ -73,6 +73,21 @@ int32_t sprf_paper_coast(sprf_paper_t *f)
     return two_state_wide_coast(&f->core);
 }
 
+void sprf_paper_damp(sprf_paper_t *f)
+{
+    two_state_wide_damp(&f->core);
+}
+
+void sprf_paper_hold(sprf_paper_t *f)
+{
+    two_state_wide_hold(&f->core);
+}
+
+void sprf_paper_restart(sprf_paper_t *f)
+{
+    two_state_wide_restart(&f->core);
+}
+
 uint8_t sprf_paper_flags(const sprf_paper_t *f)
 {
     return f->core.flags;

@@ -41,6 +41,9 @@ void sprf_paper_set_noise(sprf_paper_t *f, uint32_t r_lsb2_q8);
 void sprf_paper_reset(sprf_paper_t *f, int16_t z0_lsb);
 int32_t sprf_paper_update(sprf_paper_t *f, int16_t z_lsb);
 int32_t sprf_paper_coast(sprf_paper_t *f);
+void sprf_paper_damp(sprf_paper_t *f);
+void sprf_paper_hold(sprf_paper_t *f);
+void sprf_paper_restart(sprf_paper_t *f);
 uint8_t sprf_paper_flags(const sprf_paper_t *f);
 void sprf_paper_probe(const sprf_paper_t *f, filter_probe_t *out);
 

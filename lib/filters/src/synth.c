@@ -152,6 +152,22 @@ int32_t synth_coast(synth_t *f)
     return synth_estimate(&f->core);
 }
 
+void synth_damp(synth_t *f)
+{
+    synth_core_damp(&f->core);
+}
+
+/* Takes every sample as it is: nothing to be held back. */
+void synth_hold(synth_t *f)
+{
+    (void)f;
+}
+
+void synth_restart(synth_t *f)
+{
+    synth_core_restart(&f->core);
+}
+
 uint8_t synth_flags(const synth_t *f)
 {
     return f->core.flags;

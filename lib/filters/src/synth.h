@@ -62,6 +62,9 @@ void synth_set_noise(synth_t *f, uint32_t r_lsb2_q8);
 void synth_reset(synth_t *f, int16_t z0_lsb);
 int32_t synth_update(synth_t *f, int16_t z_lsb);
 int32_t synth_coast(synth_t *f);
+void synth_damp(synth_t *f);
+void synth_hold(synth_t *f);
+void synth_restart(synth_t *f);
 uint8_t synth_flags(const synth_t *f);
 void synth_probe(const synth_t *f, filter_probe_t *out);
 

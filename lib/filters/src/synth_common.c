@@ -230,6 +230,28 @@ FX_ONCE bool synth_coasts(synth_core_t *c)
     return true;
 }
 
+/* The older ones half way to the newest, rounded down: within the bound that all have. */
+FX_ONCE void synth_core_damp(synth_core_t *c)
+{
+    if (c->collected >= FILTER_WARM_UP_SAMPLES) {
+        int32_t x1 = c->u.run.x_lsb_q16[0];
+        c->u.run.x_lsb_q16[1] = (x1 + c->u.run.x_lsb_q16[1]) >> 1;
+        c->u.run.x_lsb_q16[2] = (x1 + c->u.run.x_lsb_q16[2]) >> 1;
+    }
+}
+
+FX_ONCE void synth_core_restart(synth_core_t *c)
+{
+    for (uint8_t i = 0; i < FILTER_WARM_UP_SAMPLES; i++) {
+        c->u.start.seen_lsb[i] = 0;
+        c->u.start.ascending_lsb[i] = 0;
+    }
+    c->innovation_lsb_q16 = 0;
+    c->gain_uq16 = 0;
+    c->collected = 0;
+    c->flags = FILTER_WARMING_UP;
+}
+
 FX_ONCE void synth_probe_core(const synth_core_t *c, filter_probe_t *out)
 {
     bool running = (c->flags & FILTER_WARMING_UP) == 0U;

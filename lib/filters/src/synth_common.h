@@ -95,6 +95,12 @@ int32_t synth_correct(synth_core_t *c, int16_t z_lsb);
 /* Flags, innovation and gain of a missing sample; true when there are estimates to be extrapolated. */
 bool synth_coasts(synth_core_t *c);
 
+/* The last steps of the estimate halved, and with them its rate and its curvature; nothing in the start. */
+void synth_core_damp(synth_core_t *c);
+
+/* Nothing collected any more; the estimate is unknown until the next sample. */
+void synth_core_restart(synth_core_t *c);
+
 /* All of the probe; the variance is R, and the gate none. */
 void synth_probe_core(const synth_core_t *c, filter_probe_t *out);
 

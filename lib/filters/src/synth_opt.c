@@ -135,6 +135,22 @@ int32_t synth_opt_coast(synth_opt_t *f)
     return synth_estimate(&f->core);
 }
 
+void synth_opt_damp(synth_opt_t *f)
+{
+    synth_core_damp(&f->core);
+}
+
+/* Takes every sample as it is: nothing to be held back. */
+void synth_opt_hold(synth_opt_t *f)
+{
+    (void)f;
+}
+
+void synth_opt_restart(synth_opt_t *f)
+{
+    synth_core_restart(&f->core);
+}
+
 uint8_t synth_opt_flags(const synth_opt_t *f)
 {
     return f->core.flags;

@@ -53,6 +53,9 @@ void synth_opt_set_noise(synth_opt_t *f, uint32_t r_lsb2_q8);
 void synth_opt_reset(synth_opt_t *f, int16_t z0_lsb);
 int32_t synth_opt_update(synth_opt_t *f, int16_t z_lsb);
 int32_t synth_opt_coast(synth_opt_t *f);
+void synth_opt_damp(synth_opt_t *f);
+void synth_opt_hold(synth_opt_t *f);
+void synth_opt_restart(synth_opt_t *f);
 uint8_t synth_opt_flags(const synth_opt_t *f);
 void synth_opt_probe(const synth_opt_t *f, filter_probe_t *out);
 

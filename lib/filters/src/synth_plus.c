@@ -236,6 +236,24 @@ int32_t synth_plus_coast(synth_plus_t *f)
     return steady ? remember(f) : f->core.u.run.x_lsb_q16[0];
 }
 
+void synth_plus_damp(synth_plus_t *f)
+{
+    synth_core_damp(&f->core);
+    f->memory_lsb_q16 >>= 1;
+}
+
+/* Takes every sample as it is: nothing to be held back. */
+void synth_plus_hold(synth_plus_t *f)
+{
+    (void)f;
+}
+
+void synth_plus_restart(synth_plus_t *f)
+{
+    synth_core_restart(&f->core);
+    f->memory_lsb_q16 = 0;
+}
+
 uint8_t synth_plus_flags(const synth_plus_t *f)
 {
     return f->core.flags;

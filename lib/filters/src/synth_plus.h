@@ -80,6 +80,9 @@ void synth_plus_set_noise(synth_plus_t *f, uint32_t r_lsb2_q8);
 void synth_plus_reset(synth_plus_t *f, int16_t z0_lsb);
 int32_t synth_plus_update(synth_plus_t *f, int16_t z_lsb);
 int32_t synth_plus_coast(synth_plus_t *f);
+void synth_plus_damp(synth_plus_t *f);
+void synth_plus_hold(synth_plus_t *f);
+void synth_plus_restart(synth_plus_t *f);
 uint8_t synth_plus_flags(const synth_plus_t *f);
 void synth_plus_probe(const synth_plus_t *f, filter_probe_t *out);
 

@@ -270,6 +270,25 @@ int32_t two_state_coast(two_state_t *s)
     return s->x_lsb_q16;
 }
 
+/* Rounded down to 2^-16 LSB per sample, so within the bound of the rate. */
+void two_state_damp(two_state_t *s)
+{
+    s->rate_lsb_q16 >>= 1;
+}
+
+void two_state_restart(two_state_t *s)
+{
+    s->rate_lsb_q16 = 0;
+    s->u.p.p11_uq28 = 0; /* where the samples of the start will be */
+    s->u.p.p12_uq28 = 0;
+    s->u.p.p22_uq28 = 0;
+    s->size_lsb_uq8 = 0;
+    s->limit_lsb2 = 0;
+    s->gain_uq16 = 0;
+    s->flags = FILTER_WARMING_UP;
+    s->collected = 0;
+}
+
 void two_state_probe(const two_state_t *s, filter_probe_t *out)
 {
     out->x_lsb_q16 = s->x_lsb_q16;

@@ -139,6 +139,12 @@ void two_state_warm_up(two_state_t *s, int16_t z_lsb);
 /* Sample missing, during the warm-up or not: prediction. Returns the estimate. */
 int32_t two_state_coast(two_state_t *s);
 
+/* The rate halved: of a motion that was not seen for a while only a part is likely to go on. */
+FX_ONCE void two_state_damp(two_state_t *s);
+
+/* Warming up anew, with the same parameters and R; the estimate is the old one until the next sample. */
+FX_ONCE void two_state_restart(two_state_t *s);
+
 /* Gate of so many sigmas of the innovation (Q8, <= 16), with the R in force; 0: none. Call after init and set_noise. */
 void two_state_set_gate(two_state_t *s, uint16_t gate_sigma_q8);
 

@@ -236,6 +236,35 @@ int32_t two_state_wide_coast(two_state_wide_t *s)
     return s->x_lsb_q16;
 }
 
+void two_state_wide_damp(two_state_wide_t *s)
+{
+    s->rate_lsb_q16 >>= 1;
+}
+
+/* The elements that predict_covariance looks at; while warming up there is no P yet. */
+void two_state_wide_hold(two_state_wide_t *s)
+{
+    uint32_t either = s->u.p.p11_uq16 | s->u.p.p12_uq24;
+    if (!two_state_wide_warming_up(s) && (either & TWO_STATE_WIDE_P_END) != 0U) {
+        s->u.p.p11_uq16 >>= 1;
+        s->u.p.p12_uq24 >>= 1;
+        s->u.p.p22_uq28 >>= 1;
+    }
+}
+
+void two_state_wide_restart(two_state_wide_t *s)
+{
+    s->rate_lsb_q16 = 0;
+    s->u.p.p11_uq16 = 0; /* where the samples of the start will be */
+    s->u.p.p12_uq24 = 0;
+    s->u.p.p22_uq28 = 0;
+    s->size_lsb_uq8 = 0;
+    s->variance = 0;
+    s->gain_uq16 = 0;
+    s->flags = FILTER_WARMING_UP;
+    s->collected = 0;
+}
+
 void two_state_wide_probe(const two_state_wide_t *s, uint16_t gate2_uq8, filter_probe_t *out)
 {
     out->x_lsb_q16 = s->x_lsb_q16;

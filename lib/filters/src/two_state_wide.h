@@ -127,6 +127,18 @@ FX_ONCE void two_state_wide_refuse(two_state_wide_t *s, bool grows);
 /* Sample missing, during the warm-up or not: prediction. Returns the estimate. */
 FX_ONCE int32_t two_state_wide_coast(two_state_wide_t *s);
 
+/* The rate halved. */
+FX_ONCE void two_state_wide_damp(two_state_wide_t *s);
+
+/*
+ * Before a sample that tells no position, so that it is not taken only because P is at the end of its range: P is
+ * halved there, which leaves a covariance.
+ */
+FX_ONCE void two_state_wide_hold(two_state_wide_t *s);
+
+/* Warming up anew, with the same parameters and R; the estimate is the old one until the next sample. */
+FX_ONCE void two_state_wide_restart(two_state_wide_t *s);
+
 /* Snapshot, see filter.h; gate2_uq8: limit of two_state_wide_distance_uq8, 0: no gate. */
 FX_ONCE void two_state_wide_probe(const two_state_wide_t *s, uint16_t gate2_uq8, filter_probe_t *out);
 

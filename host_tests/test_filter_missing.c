@@ -1,0 +1,229 @@
+/*
+ * Generic properties, over the list of filters, of what a caller tells a filter when samples are missing or tell no
+ * position: damp, hold, restart (filter.h).
+ */
+#include "support_filters.h"
+#include "unity.h"
+
+#include <string.h>
+
+#define SEED 60006UL
+
+enum { RAMP_LSB = 3, SETTLING = 400, RAIL_LSB = 4095, CLIPPED = 1500 };
+
+static uint32_t random_state;
+
+void setUp(void)
+{
+    random_state = SEED;
+}
+
+void tearDown(void) {}
+
+static void make(filter_any_t *f, uint8_t kind)
+{
+    filter_any_config_t config;
+    filter_any_defaults((filter_kind_t)kind, &config, 1000);
+    TEST_ASSERT_TRUE(filter_any_init(f, (filter_kind_t)kind, &config));
+}
+
+static filter_probe_t probed(const filter_any_t *f)
+{
+    filter_probe_t probe;
+    memset(&probe, 0, sizeof probe);
+    filter_any_probe(f, &probe);
+    return probe;
+}
+
+static int16_t any_sample(void)
+{
+    return (int16_t)((int32_t)(random32(&random_state) >> 16) - 32768);
+}
+
+/* On a ramp that ends at 0, long enough for every filter's rate to be right. */
+static void settle_on_ramp(filter_any_t *f, uint8_t kind, int16_t slope_lsb)
+{
+    make(f, kind);
+    filter_any_reset(f, (int16_t)(-slope_lsb * SETTLING));
+    for (int16_t k = 1; k <= SETTLING; k++) {
+        (void)filter_any_update(f, (int16_t)(-slope_lsb * (SETTLING - k)));
+    }
+}
+
+/* Half of 3 LSB per sample, then a quarter: each missing sample moves the estimate by what is left. */
+static void assert_damped(uint8_t kind, int16_t slope_lsb)
+{
+    filter_any_t f;
+    settle_on_ramp(&f, kind, slope_lsb);
+    for (int32_t part = 2; part <= 16; part *= 2) {
+        int32_t x = probed(&f).x_lsb_q16;
+        uint8_t flags = filter_any_flags(&f);
+        filter_any_damp(&f);
+        TEST_ASSERT_EQUAL_INT32(x, probed(&f).x_lsb_q16);
+        TEST_ASSERT_EQUAL_UINT8(flags, filter_any_flags(&f));
+        for (uint8_t k = 0; k < 3; k++) {
+            int32_t before = x;
+            x = filter_any_coast(&f);
+            TEST_ASSERT_INT32_WITHIN(65536 / 64, slope_lsb * 65536L / part, x - before);
+        }
+    }
+}
+
+static void test_damp_halves_the_rate_and_moves_nothing(void)
+{
+    FOR_EACH_KIND(kind)
+    {
+        assert_damped(kind, RAMP_LSB);
+        assert_damped(kind, -RAMP_LSB);
+    }
+}
+
+/* With an extrapolation that sees the curvature, which a damp must not make. */
+static void test_damp_of_synth_bends_nothing(void)
+{
+    synth_t f;
+    synth_config_t config;
+    synth_defaults(&config, 1000);
+    config.a1_q16 = -19661; /* -0.3 */
+    TEST_ASSERT_TRUE(synth_init(&f, &config));
+    synth_reset(&f, 0);
+    for (int16_t k = 1; k <= SETTLING; k++) {
+        (void)synth_update(&f, (int16_t)(k * RAMP_LSB));
+    }
+    int32_t x = synth_coast(&f);
+    synth_damp(&f);
+    TEST_ASSERT_INT32_WITHIN(65536 / 64, RAMP_LSB * 65536L / 2, synth_coast(&f) - x);
+}
+
+/* The start of some filters lies where their estimates will be. */
+static void test_damp_and_hold_leave_a_start_alone(void)
+{
+    FOR_EACH_KIND_WITH_MEDIAN(kind)
+    {
+        filter_any_t plain;
+        filter_any_t told;
+        make(&plain, kind);
+        make(&told, kind);
+        for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
+            filter_any_damp(&told);
+            filter_any_hold(&told);
+            int16_t z = any_sample();
+            TEST_ASSERT_EQUAL_INT32(filter_any_update(&plain, z), filter_any_update(&told, z));
+        }
+    }
+}
+
+static bool learns_noise_or_share(uint8_t kind)
+{
+    return kind == (uint8_t)FILTER_KIND_adaptive || kind == (uint8_t)FILTER_KIND_af;
+}
+
+/* Whatever it went through: from the next sample on it is a filter that was begun just now. */
+static void test_restart_is_as_begun_just_now(void)
+{
+    FOR_EACH_KIND(kind)
+    {
+        for (uint8_t run = 0; run < 100U; run++) {
+            filter_any_t fresh;
+            uint32_t refused = 0;
+            TEST_ASSERT_TRUE(init_random(&fresh, (filter_kind_t)kind, &random_state, &refused));
+            filter_any_t used = fresh;
+            for (uint8_t k = 0; k < run; k++) {
+                (void)((k % 9U == 8U) ? filter_any_coast(&used) : filter_any_update(&used, any_sample()));
+            }
+            filter_any_restart(&used);
+            uint8_t same = learns_noise_or_share(kind) ? FILTER_WARM_UP_SAMPLES : 80U;
+            for (uint8_t k = 0; k < same; k++) {
+                int16_t z = any_sample();
+                TEST_ASSERT_EQUAL_INT32(filter_any_update(&fresh, z), filter_any_update(&used, z));
+                TEST_ASSERT_EQUAL_UINT8(filter_any_flags(&fresh), filter_any_flags(&used));
+                TEST_ASSERT_EQUAL_INT32(probed(&fresh).rate_lsb_q16, probed(&used).rate_lsb_q16);
+            }
+        }
+    }
+}
+
+/* R of 9 LSB^2 learnt from noise of 3 LSB; a restart that lost it would tell the configured 3. */
+static void test_restart_keeps_what_was_learnt_of_the_noise(void)
+{
+    filter_any_t f;
+    make(&f, (uint8_t)FILTER_KIND_adaptive);
+    for (uint16_t k = 0; k < 2000U; k++) {
+        uint32_t v = random32(&random_state);
+        int16_t sum = (int16_t)((v & 15U) + ((v >> 8) & 15U) + ((v >> 16) & 15U) + ((v >> 24) & 15U));
+        (void)filter_any_update(&f, (int16_t)(sum / 3)); /* sigma 4.6 x 2 / 3 */
+    }
+    uint32_t r_lsb2_q8 = adaptive_r_lsb2_q8(&f.state.adaptive);
+    TEST_ASSERT_TRUE(r_lsb2_q8 > 5U * 256U);
+    filter_any_restart(&f);
+    TEST_ASSERT_EQUAL_UINT32(r_lsb2_q8, adaptive_r_lsb2_q8(&f.state.adaptive));
+}
+
+/* How often a filter at rest restarted while the sensor stood at its rail. */
+static uint16_t restarts_at_the_rail(filter_any_t *f, uint8_t kind, bool held)
+{
+    uint16_t restarts = 0;
+    make(f, kind);
+    filter_any_reset(f, 0);
+    for (uint16_t k = 0; k < CLIPPED; k++) {
+        if (held) {
+            filter_any_hold(f);
+        }
+        (void)filter_any_update(f, RAIL_LSB);
+        restarts = (uint16_t)(restarts + ((filter_any_flags(f) & FILTER_REACQUIRED) != 0U));
+        filter_probe_t probe = probed(f);
+        TEST_ASSERT_NULL(broken_bound(f, &probe, probe.x_lsb_q16));
+        if (held) {
+            filter_any_hold(f);
+        }
+    }
+    return restarts;
+}
+
+/* Those that gate; the others take a sample at the rail as any other. */
+static bool restarts(uint8_t kind)
+{
+    return kind == (uint8_t)FILTER_KIND_adaptive || kind == (uint8_t)FILTER_KIND_sprf ||
+           kind == (uint8_t)FILTER_KIND_soft || kind == (uint8_t)FILTER_KIND_sprf_paper;
+}
+
+static void test_held_samples_restart_no_filter(void)
+{
+    FOR_EACH_KIND(kind)
+    {
+        filter_any_t f;
+        TEST_ASSERT_EQUAL_UINT16(0, restarts_at_the_rail(&f, kind, true));
+        TEST_ASSERT_EQUAL_INT(restarts(kind), restarts_at_the_rail(&f, kind, false) != 0U);
+    }
+}
+
+/* The samples at the rail do not count: it takes those of a run, of which they are one at most, to restart. */
+static void test_a_filter_restarts_behind_the_rail(void)
+{
+    FOR_EACH_KIND(kind)
+    {
+        filter_any_t f;
+        (void)restarts_at_the_rail(&f, kind, true);
+        int32_t x = 0;
+        for (uint8_t k = 0; k < 60U; k++) {
+            x = filter_any_update(&f, RAIL_LSB - 111);
+            TEST_ASSERT_TRUE(k >= 2U || (filter_any_flags(&f) & FILTER_REACQUIRED) == 0U);
+        }
+        if (kind != (uint8_t)FILTER_KIND_sprf_paper && kind != (uint8_t)FILTER_KIND_lrf) {
+            TEST_ASSERT_INT32_WITHIN(20L * 65536, (RAIL_LSB - 111) * 65536L, x);
+        }
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_damp_halves_the_rate_and_moves_nothing);
+    RUN_TEST(test_damp_of_synth_bends_nothing);
+    RUN_TEST(test_damp_and_hold_leave_a_start_alone);
+    RUN_TEST(test_restart_is_as_begun_just_now);
+    RUN_TEST(test_restart_keeps_what_was_learnt_of_the_noise);
+    RUN_TEST(test_held_samples_restart_no_filter);
+    RUN_TEST(test_a_filter_restarts_behind_the_rail);
+    return UNITY_END();
+}
