@@ -7,6 +7,7 @@
 
 #include "adxl345.h"
 #include "commands.h"
+#include "counters.h"
 #include "hal_drdy.h"
 #include "hal_irq.h"
 #include "hal_led.h"
@@ -41,7 +42,6 @@ static uint8_t stage;
 static bool sampling;       /* wanted: go or start-up, not stop */
 static bool restart_cold;   /* the first sample begins the filters anew */
 static bool config_changed; /* the samples of the old configuration are still coming */
-static uint32_t uptime_s;
 static uint32_t next_second_us;
 static uint32_t next_service_us;
 
@@ -59,6 +59,7 @@ void app_start(void)
     hal_time_init();
     hal_drdy_enable();
     adxl345_init();
+    counters_start();
     replies_start();
     commands_start();
     rows_start();
@@ -66,7 +67,6 @@ void app_start(void)
     health_start();
     health_pause_filtering(hal_time_us() + HOLD_LIMIT_US);
     hal_irq_enable();
-    uptime_s = 0;
     next_service_us = hal_time_us();
     next_second_us = next_service_us + 1000000ul;
     stage = STAGE_BANNER;
@@ -76,11 +76,6 @@ void app_start(void)
     pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
     (void)replies_add(REPLY_BANNER, 0);
     start_sensor();
-}
-
-uint32_t app_uptime_s(void)
-{
-    return uptime_s;
 }
 
 app_answer_t app_set_filter(uint8_t filter_kind)
@@ -107,8 +102,7 @@ static void change_sensor(void)
 
 app_answer_t app_set_rate(uint16_t rate_dhz)
 {
-    adxl345_config_t config = { rate_dhz, settings.range_g };
-    if (!adxl345_config_valid(&config)) {
+    if (!settings_doubled(SETTINGS_RATE_MIN_DHZ, SETTINGS_RATE_MAX_DHZ, rate_dhz)) {
         return APP_ILLEGAL;
     }
     if (!settings_fit(settings.filter, rate_dhz)) {
@@ -122,38 +116,37 @@ app_answer_t app_set_rate(uint16_t rate_dhz)
     return APP_DONE;
 }
 
-bool app_set_range(uint8_t range_g)
+app_answer_t app_set_range(uint16_t range_g)
 {
-    adxl345_config_t config = { settings.rate_dhz, range_g };
-    if (!adxl345_config_valid(&config)) {
-        return false;
+    if (!settings_doubled(SETTINGS_RANGE_MIN_G, SETTINGS_RANGE_MAX_G, range_g)) {
+        return APP_ILLEGAL;
     }
     if (settings.range_g != range_g) {
-        settings.range_g = range_g;
+        settings.range_g = (uint8_t)range_g;
         change_sensor();
     }
-    return true;
+    return APP_DONE;
 }
 
-bool app_set_every(uint16_t every)
+app_answer_t app_set_every(uint16_t every)
 {
     if (every == 0 || every > SETTINGS_EVERY_MAX) {
-        return false;
+        return APP_ILLEGAL;
     }
     settings.every = every;
-    return true;
+    return APP_DONE;
 }
 
-bool app_set_baud(uint32_t baud)
+app_answer_t app_set_baud(uint32_t baud)
 {
     if (!settings_baud_valid(baud)) {
-        return false;
+        return APP_ILLEGAL;
     }
     settings.baud = baud;
     settings_follow();
     stage = STAGE_BAUD;
     health_pause_filtering(hal_time_us() + HOLD_LIMIT_US);
-    return true;
+    return APP_DONE;
 }
 
 void app_set_mode(uint8_t mode)
@@ -183,7 +176,7 @@ static void count_seconds(uint32_t now_us)
 {
     if (hal_time_reached(now_us, next_second_us)) {
         next_second_us += 1000000ul;
-        uptime_s++;
+        count(COUNT_SECONDS);
     }
 }
 

@@ -13,18 +13,17 @@ void app_start(void);
 /* Does all the work there is, then sleeps until there is more. */
 void app_pass(void);
 
-uint32_t app_uptime_s(void);
-
 /*
- * Settings; false: nothing changed, not a legal value. Rate, range and filter take effect without losing a sample. A
- * filter that does not fit the sample period (settings_fit) is refused as is a rate that is too fast for the filter.
+ * Settings. APP_ILLEGAL: nothing changed, not a legal value. Rate, range and filter take effect without losing a
+ * sample. A filter that does not fit the sample period (settings_fit) is refused as is a rate that is too fast for the
+ * filter.
  */
 typedef enum { APP_ILLEGAL, APP_DONE, APP_TOO_SLOW } app_answer_t;
 app_answer_t app_set_filter(uint8_t filter_kind);
 app_answer_t app_set_rate(uint16_t rate_dhz);
-bool app_set_range(uint8_t range_g);
-bool app_set_every(uint16_t every);
-bool app_set_baud(uint32_t baud);
+app_answer_t app_set_range(uint16_t range_g);
+app_answer_t app_set_every(uint16_t every);
+app_answer_t app_set_baud(uint32_t baud);
 void app_set_mode(uint8_t mode);
 
 /* Sampling off (sensor in standby) and on. */

@@ -4,17 +4,17 @@
 #include <stdbool.h>
 
 #include "app.h"
+#include "counters.h"
 #include "filter_any.h"
 #include "flash.h"
 #include "fx.h"
 #include "hal_uart.h"
 #include "replies.h"
-#include "reply_lists.h"
+#include "reply_lines.h"
 #include "settings.h"
 
 static char line[COMMANDS_LINE_MAX + 1u];
 static uint8_t length;
-static uint16_t refused;
 static bool too_long;
 static bool garbage;
 static bool answered; /* a legal value was refused, with a reply of its own */
@@ -24,18 +24,12 @@ void commands_start(void)
     length = 0;
     too_long = false;
     garbage = false;
-    refused = 0;
     line[0] = '\0';
-}
-
-uint16_t commands_refused(void)
-{
-    return refused;
 }
 
 static void refuse(reply_kind_t kind, uint8_t argument)
 {
-    refused = (uint16_t)(refused + (refused != UINT16_MAX));
+    count(COUNT_REFUSED);
     (void)replies_add(kind, argument);
 }
 
@@ -50,10 +44,14 @@ static bool equal(const char *ram, flash_text_t words)
     return c == '\0' && *ram == '\0';
 }
 
-/*
- * A decimal number of up to seven digits, in units, or in tenths with at most one decimal; false for anything else.
- * Times ten is written out: the product would be a call of 32 by 32 bits.
- */
+/* Written out: the product would be a call of 32 by 32 bits. */
+FX_NOINLINE uint32_t times_ten(uint32_t number)
+{
+    number += number << 2;
+    return number << 1;
+}
+
+/* A decimal number of up to seven digits, in units, or in tenths with at most one decimal; false for anything else. */
 static bool parse(const char *text, bool in_tenths, uint32_t *value)
 {
     uint32_t number = 0;
@@ -68,10 +66,10 @@ static bool parse(const char *text, bool in_tenths, uint32_t *value)
             return false;
         }
         decimals = (uint8_t)(decimals * 2U);
-        number = (number << 3) + (number << 1) + (uint8_t)(*text - '0');
+        number = times_ten(number) + (uint8_t)(*text - '0');
     }
     if (in_tenths && decimals == 0) {
-        number = (number << 3) + (number << 1);
+        number = times_ten(number);
     }
     *value = number;
     return digits != 0 && decimals != 1;
@@ -95,37 +93,6 @@ static bool set_filter(const char *value)
     return true;
 }
 
-static bool set_rate(const char *value)
-{
-    uint32_t tenths;
-    if (!parse(value, true, &tenths) || tenths > UINT16_MAX) {
-        return false;
-    }
-    app_answer_t answer = app_set_rate((uint16_t)tenths);
-    if (answer == APP_TOO_SLOW) {
-        refuse_combination(settings.filter, (uint16_t)tenths);
-    }
-    return answer != APP_ILLEGAL;
-}
-
-static bool set_range(const char *value)
-{
-    uint32_t range;
-    return parse(value, false, &range) && range <= UINT8_MAX && app_set_range((uint8_t)range);
-}
-
-static bool set_every(const char *value)
-{
-    uint32_t every;
-    return parse(value, false, &every) && every <= SETTINGS_EVERY_MAX && app_set_every((uint16_t)every);
-}
-
-static bool set_baud(const char *value)
-{
-    uint32_t baud;
-    return parse(value, false, &baud) && app_set_baud(baud);
-}
-
 static bool set_mode(const char *value)
 {
     if (equal(value, FLASH_TEXT("csv"))) {
@@ -139,50 +106,56 @@ static bool set_mode(const char *value)
     return false;
 }
 
+static app_answer_t set_number(uint8_t setting, uint32_t number)
+{
+    if (setting == REPLY_BAUD) {
+        return app_set_baud(number);
+    }
+    if (number > UINT16_MAX) {
+        return APP_ILLEGAL;
+    }
+    switch (setting) {
+    case REPLY_RATE:
+        return app_set_rate((uint16_t)number);
+    case REPLY_RANGE:
+        return app_set_range((uint16_t)number);
+    default:
+        return app_set_every((uint16_t)number);
+    }
+}
+
 static bool set(uint8_t setting, const char *value)
 {
-    switch (setting) {
-    case REPLY_FILTER:
+    if (setting == REPLY_FILTER) {
         return set_filter(value);
-    case REPLY_RATE:
-        return set_rate(value);
-    case REPLY_RANGE:
-        return set_range(value);
-    case REPLY_EVERY:
-        return set_every(value);
-    case REPLY_BAUD:
-        return set_baud(value);
-    default:
+    }
+    if (setting == REPLY_MODE) {
         return set_mode(value);
     }
-}
-
-/* The reply kind of a setting's name; REPLY_SETTINGS_END when it is none. */
-static uint8_t setting_named(const char *name)
-{
-    uint8_t setting = REPLY_FILTER;
-    while (setting != REPLY_SETTINGS_END && !equal(name, reply_setting_name(setting))) {
-        setting++;
-    }
-    return setting;
-}
-
-static bool run_verb(void)
-{
-    if (equal(line, FLASH_TEXT("help"))) {
-        (void)replies_add(REPLY_HELP, 0);
-    } else if (equal(line, FLASH_TEXT("status"))) {
-        (void)replies_add(REPLY_STATUS, 0);
-    } else if (equal(line, FLASH_TEXT("stop"))) {
-        app_stop();
-        (void)replies_add(REPLY_STOPPED, 0);
-    } else if (equal(line, FLASH_TEXT("go"))) {
-        app_go();
-        (void)replies_add(REPLY_GOING, 0);
-    } else {
+    uint32_t number;
+    if (!parse(value, setting == REPLY_RATE, &number)) {
         return false;
     }
-    return true;
+    app_answer_t answer = set_number(setting, number);
+    if (answer == APP_TOO_SLOW) {
+        refuse_combination(settings.filter, (uint16_t)number);
+    }
+    return answer != APP_ILLEGAL;
+}
+
+/* The reply kind of a command's first word; REPLY_BANNER when it is none. */
+static uint8_t command_named(const char *name)
+{
+    uint8_t kind = REPLY_GOING;
+    while (kind != REPLY_BANNER && !equal(name, reply_command_name(kind))) {
+        kind--;
+    }
+    return kind;
+}
+
+static bool is_setting(uint8_t kind)
+{
+    return kind >= REPLY_FILTER && kind < REPLY_SETTINGS_END;
 }
 
 /* The text after the first blanks, NULL when there is none; the name before it is cut off (a blank becomes the end). */
@@ -207,18 +180,23 @@ FX_NOINLINE char *split_value(void)
 FX_NOINLINE void run_line(void)
 {
     const char *value = split_value();
-    uint8_t setting = setting_named(line);
-    if (setting == REPLY_SETTINGS_END) {
-        if (value != 0 || !run_verb()) {
-            refuse(REPLY_UNKNOWN, PROBLEM_COMMAND);
-        }
+    uint8_t kind = command_named(line);
+    answered = false;
+    if (kind == REPLY_BANNER || (value != 0 && !is_setting(kind))) {
+        refuse(REPLY_UNKNOWN, PROBLEM_COMMAND);
         return;
     }
-    answered = false;
-    if (value != 0 && !set(setting, value)) {
-        refuse(REPLY_REFUSED, setting);
-    } else if (!answered) {
-        (void)replies_add((reply_kind_t)setting, value != 0);
+    if (value != 0 && !set(kind, value)) {
+        refuse(REPLY_REFUSED, kind);
+        return;
+    }
+    if (kind == REPLY_STOPPED) {
+        app_stop();
+    } else if (kind == REPLY_GOING) {
+        app_go();
+    }
+    if (!answered) {
+        (void)replies_add((reply_kind_t)kind, value != 0);
     }
 }
 

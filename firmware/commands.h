@@ -11,7 +11,4 @@ void commands_start(void);
 /* Takes received bytes; runs at most one complete line, and only while there is room for its replies. */
 void commands_pass(void);
 
-/* Lines refused: too long, garbage, unknown, illegal value; saturating. */
-uint16_t commands_refused(void);
-
 #endif

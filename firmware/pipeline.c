@@ -1,6 +1,7 @@
 /* The sample path of main. Its cycles: sample_total in docs/benchmarks.md. */
 #include "pipeline.h"
 
+#include "counters.h"
 #include "filter_any.h"
 #include "fx.h"
 #include "noise.h"
@@ -15,7 +16,6 @@ static struct {
     noise_t noise[AXES];
     tilt_t tilt;
     tilt_t raw_tilt;
-    pipeline_counters_t counters;
     uint32_t last_us;
     int32_t estimate_q8[AXES];
     int16_t lsb[AXES];
@@ -41,7 +41,6 @@ static void init_filter(uint8_t axis, uint8_t filter_kind)
 
 void pipeline_reset(void)
 {
-    pipe.counters = (pipeline_counters_t){ 0, 0, 0, 0 };
     pipe.tilt = (tilt_t){ 0, 0, false };
     pipe.raw_tilt = pipe.tilt;
     pipe.flags = 0;
@@ -117,15 +116,15 @@ static void filter_axis(uint8_t axis, int16_t lsb)
 
 static void count_sample(void)
 {
-    pipe.counters.samples++;
+    count(COUNT_SAMPLES);
     if (pipe.flags & ROW_GATED) {
-        pipe.counters.gated++;
+        count(COUNT_GATED);
     }
     if (pipe.flags & ROW_REACQUIRED) {
-        pipe.counters.reacquired++;
+        count(COUNT_REACQUIRED);
     }
     if (pipe.flags & ROW_CLIPPED) {
-        pipe.counters.clipped++;
+        count(COUNT_CLIPPED);
     }
 }
 
@@ -197,9 +196,4 @@ void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg)
     tilt_angles(&pipe.raw_tilt, (int32_t)pipe.lsb[0] * 256, (int32_t)pipe.lsb[1] * 256, (int32_t)pipe.lsb[2] * 256);
     *roll_cdeg = pipe.raw_tilt.roll_cdeg;
     *pitch_cdeg = pipe.raw_tilt.pitch_cdeg;
-}
-
-FX_ONCE void pipeline_counters(pipeline_counters_t *out)
-{
-    *out = pipe.counters;
 }

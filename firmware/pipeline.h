@@ -34,7 +34,7 @@ typedef struct {
     uint16_t flags;
 } row_t;
 
-/* Once at start-up: counters to zero, angles level. */
+/* Once at start-up: angles level. */
 void pipeline_reset(void);
 
 /* Begin anew: filters collect a robust start, noise estimates start at their floor. */
@@ -66,14 +66,5 @@ void pipeline_row_done(void);
 
 /* Roll and pitch of the newest raw sample, for the plotter. */
 void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg);
-
-/* Counts of samples: filtered, refused by a gate (any axis), re-acquired on, clipped. 32 bits last 62 days at 800 Hz */
-typedef struct {
-    uint32_t samples;
-    uint32_t gated;
-    uint32_t reacquired;
-    uint32_t clipped;
-} pipeline_counters_t;
-void pipeline_counters(pipeline_counters_t *out);
 
 #endif

@@ -18,8 +18,8 @@ typedef enum {
     REPLY_EVERY,
     REPLY_BAUD,
     REPLY_MODE,
-    REPLY_SETTINGS_END, /* no reply: the settings are the kinds from REPLY_FILTER up to here */
-    REPLY_STOPPED,
+    REPLY_SETTINGS_END, /* the settings are the kinds from REPLY_FILTER to before here */
+    REPLY_STOPPED = REPLY_SETTINGS_END,
     REPLY_GOING,
     REPLY_UNKNOWN,     /* argument: reply_problem */
     REPLY_REFUSED,     /* argument: reply_kind_t of the setting whose legal values to list */

@@ -1,262 +1,311 @@
-/* All the words that the firmware says in answer to something; the long lists are in reply_lists.c. */
+/* Speaks the texts of reply_texts.h: which ones make a reply's lines, and the values in them. */
 #include "reply_lines.h"
 
+#include <stdbool.h>
+
 #include "adxl345.h"
+#include "counters.h"
 #include "filter_any.h"
 #include "flash.h"
 #include "fx.h"
+#include "hal_uart.h"
 #include "hal_watchdog.h"
-#include "health.h"
-#include "reply_lists.h"
-#include "rows.h"
-#include "sensor_watch.h"
+#include "reply_texts.h"
 #include "settings.h"
 #include "text.h"
-#include "version.h"
 
-static void begin(flash_text_t words)
+#define RATE_LOWEST_DHZ 125u
+#define COMBINATION_RATE 16u
+
+enum { BANNER_DIAGNOSIS = 4, HELP_VERBS = REPLY_SETTINGS_END - REPLY_FILTER };
+
+_Static_assert(FILTER_KIND_COUNT <= COMBINATION_RATE, "a filter's kind has four bits in reply_combination");
+_Static_assert(TEXT_FAULT_END - TEXT_WHO == (int)REPLY_FAULT_END, "a text for each reply");
+_Static_assert(TEXT_NAME_GO - TEXT_NAME_HELP == REPLY_GOING - REPLY_HELP, "a name for each command");
+_Static_assert(TEXT_LEGAL_MODE - TEXT_LEGAL_FILTER == REPLY_MODE - REPLY_FILTER, "legal values for each setting");
+_Static_assert(TEXT_WATCHDOG - TEXT_POWER_ON == HAL_RESET_WATCHDOG, "words for each cause");
+_Static_assert(TEXT_STATE_FAULTY - TEXT_STATE_STOPPED == ADXL345_FAULTY, "words for each phase");
+
+/* What the line that is being spoken is about. */
+static struct {
+    uint16_t rate_dhz;
+    uint8_t filter;
+    uint8_t subject;      /* the reply's argument; the setting in a list of settings */
+    uint8_t counters_out; /* how many `status` has told */
+    uint8_t next;         /* enum reply_text: where it goes on */
+    uint8_t progress;
+} said;
+
+flash_text_t reply_command_name(uint8_t kind)
 {
-    text_words(FLASH_TEXT("# "));
-    text_words(words);
+    return reply_text((uint8_t)(TEXT_NAME_HELP - REPLY_HELP + kind));
 }
 
-static reply_progress_t end(bool last)
+/* The rates are 12.5 Hz times a power of two: its exponent above four bits of the filter's kind. */
+uint8_t reply_combination(uint8_t filter, uint16_t rate_dhz)
 {
-    text_close();
-    return last ? REPLY_ENDED : REPLY_GOES_ON;
+    for (; rate_dhz > RATE_LOWEST_DHZ; rate_dhz >>= 1) {
+        filter = (uint8_t)(filter + COMBINATION_RATE);
+    }
+    return filter;
 }
 
-FX_NOINLINE void write_filter_name(void)
+static void say_filters(void)
 {
-    text_words(filter_any_name((filter_kind_t)settings.filter));
+    for (uint8_t kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        if (kind != 0) {
+            text_char(' ');
+        }
+        text_words(filter_any_name((filter_kind_t)kind));
+    }
 }
 
-static void write_reset_cause(void)
+/* The counters of the firmware, then those of the driver. */
+static uint32_t next_count(void)
 {
-    begin(FLASH_TEXT("reset: "));
-    switch (hal_reset_cause()) {
-    case HAL_RESET_POWER_ON:
-        text_words(FLASH_TEXT("power on"));
+    uint8_t at = said.counters_out++;
+    if (at < COUNTERS) {
+        return counters[at];
+    }
+    union {
+        adxl345_counters_t named;
+        uint16_t in_order[sizeof(adxl345_counters_t) / sizeof(uint16_t)];
+    } driver;
+    adxl345_counters(&driver.named);
+    return driver.in_order[at - COUNTERS];
+}
+
+static bool every_is_forced(void)
+{
+    return settings_every_in_force() != settings.every;
+}
+
+static void say_why(void)
+{
+    if (every_is_forced()) {
+        bool carried = settings_every_in_force() == settings_smallest_every(settings.baud, settings.rate_dhz);
+        said.next = carried ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES;
+    }
+}
+
+static uint32_t number(uint8_t what)
+{
+    switch (what) {
+    case SAY_COUNT:
+        return next_count();
+    case SAY_FAULT:
+        return (uint32_t)adxl345_fault();
+    case SAY_PERIOD:
+        return adxl345_period_us();
+    case SAY_SERIAL_LOST:
+        return hal_uart_rx_lost();
+    case SAY_CYCLES:
+        return settings_filter_cycles(said.filter);
+    case SAY_LEFT:
+        return settings_left_cycles(said.rate_dhz);
+    case SAY_RANGE:
+        return settings.range_g;
+    case SAY_EVERY:
+        return settings_every_in_force();
+    case SAY_BAUD:
+        return settings.baud;
+    case SAY_NOTE:
+        return hal_reset_note();
+    default:
+        return said.subject;
+    }
+}
+
+/* What stands for a value. */
+static void say_value(uint8_t what)
+{
+    switch (what) {
+    case SAY_NAME:
+        text_words(reply_command_name(said.subject));
         break;
-    case HAL_RESET_EXTERNAL:
-        text_words(FLASH_TEXT("reset button or serial port opened"));
+    case SAY_FILTER:
+        text_words(filter_any_name((filter_kind_t)said.filter));
         break;
-    case HAL_RESET_BROWN_OUT:
-        text_words(FLASH_TEXT("supply dropped"));
+    case SAY_RATE:
+        text_tenths(said.rate_dhz);
+        break;
+    case SAY_BUS_KHZ: /* 800 Hz needs 400, where tLOW is 1.25 us instead of the 1.3 us of both data sheets */
+        text_tenths(settings.rate_dhz == 8000 ? 4000 : 3636);
+        break;
+    case SAY_FILTERS:
+        say_filters();
+        break;
+    case SAY_ADDRESS:
+        text_hex8(adxl345_address());
+        break;
+    case SAY_DEVICE_ID:
+        text_hex8(adxl345_device_id());
         break;
     default:
-        text_words(FLASH_TEXT("watchdog, waiting for stage mask "));
-        text_u32(hal_reset_note());
-        text_words(FLASH_TEXT(" (1 sampling, 2 filtering, 4 output)"));
+        text_u32(number(what));
         break;
     }
 }
 
-/* 800 Hz needs 400 kHz, where tLOW is 1.25 us instead of the 1.3 us that both data sheets ask for. */
-static void write_bus_speed(void)
+/* What decides how the line or the reply goes on. */
+static void say_on(uint8_t what)
 {
-    text_words(FLASH_TEXT("I2C at "));
-    text_tenths(settings.rate_dhz == 8000 ? 4000 : 3636);
-    text_words(FLASH_TEXT(" kHz"));
+    switch (what) {
+    case SAY_MORE:
+        said.progress = REPLY_GOES_ON;
+        break;
+    case SAY_MORE_IF_FORCED:
+        said.progress = every_is_forced() ? REPLY_GOES_ON : REPLY_ENDED;
+        break;
+    case SAY_THEN_CAUSE:
+        said.next = (uint8_t)(TEXT_POWER_ON + hal_reset_cause());
+        break;
+    case SAY_THEN_LEGAL:
+        said.next = (uint8_t)(TEXT_LEGAL_FILTER - REPLY_FILTER + said.subject);
+        break;
+    case SAY_THEN_FAULT:
+        said.next = (uint8_t)(TEXT_NO_SENSOR - ADXL345_FAULT_NO_SENSOR + said.subject);
+        break;
+    case SAY_THEN_STATE:
+        said.next = (uint8_t)(TEXT_STATE_STOPPED + adxl345_phase());
+        break;
+    case SAY_THEN_WHY:
+        say_why();
+        break;
+    case SAY_THEN_MODE:
+        said.next = (uint8_t)(TEXT_CSV + settings.mode);
+        break;
+    default:
+        said.next = TEXT_STATE_REST;
+        break;
+    }
 }
 
-static void write_fault(uint8_t fault)
+static void say_byte(uint8_t c)
 {
-    begin(FLASH_TEXT("fault "));
-    text_u32(fault);
-    text_words(FLASH_TEXT(": "));
-    sensor_watch_describe(fault);
+    if (c >= ' ') {
+        text_char((char)c);
+    } else if (c < SAY_MORE) {
+        say_value(c);
+    } else {
+        say_on(c);
+    }
 }
 
-static bool write_diagnosis(void)
+/* A shared word holds no other, so one place to come back to is enough. */
+static void say(uint8_t id)
+{
+    if (id != TEXT_HEADER) {
+        text_words(FLASH_TEXT("\n# ") + (id != TEXT_WHO)); /* the first ends a line that a reset has cut */
+    }
+    flash_text_t back = 0;
+    said.next = id;
+    while (said.next != TEXT_NONE) {
+        flash_text_t words = reply_text(said.next);
+        said.next = TEXT_NONE;
+        for (;;) {
+            uint8_t c = (uint8_t)flash_char(words++);
+            if (c >= SHARED_WORD) {
+                back = words;
+                words = reply_text((uint8_t)(c - SHARED_WORD));
+            } else if (c != '\0') {
+                say_byte(c);
+            } else if (back != 0) {
+                words = back;
+                back = 0;
+            } else {
+                break;
+            }
+        }
+    }
+    text_close();
+}
+
+/* The texts of a banner follow each other; one waits for the sensor, and says instead what is wrong with it. */
+static uint8_t banner_text(uint8_t line)
 {
     adxl345_fault_t fault = adxl345_fault();
-    if (fault != ADXL345_FAULT_NONE) {
-        write_fault((uint8_t)fault);
-        return true;
+    if (line == 0) {
+        return TEXT_WHO;
     }
-    if (adxl345_phase() != ADXL345_STREAMING) {
-        return false;
-    }
-    begin(FLASH_TEXT("sensor: ADXL345 at 0x"));
-    text_hex8(adxl345_address());
-    text_words(FLASH_TEXT(", "));
-    write_bus_speed();
-    return true;
-}
-
-static void write_settings(void)
-{
-    begin(FLASH_TEXT("filter "));
-    write_filter_name();
-    text_words(FLASH_TEXT(", rate "));
-    text_tenths(settings.rate_dhz);
-    text_words(FLASH_TEXT(" Hz, range "));
-    text_u32(settings.range_g);
-    text_words(FLASH_TEXT(" g, every "));
-    text_u32(settings_every_in_force());
-    text_words(FLASH_TEXT(", baud "));
-    text_u32(settings.baud);
-}
-
-static reply_progress_t banner_line(uint8_t line)
-{
-    switch (line) {
-    case 0:
-        text_char('\n'); /* ends a line that a reset has cut */
-        begin(FLASH_TEXT(FIRMWARE_NAME " " FIRMWARE_VERSION ": roll and pitch from an ADXL345"));
-        return end(false);
-    case 1:
-        write_reset_cause();
-        return end(false);
-    case 2:
-        write_settings();
-        return end(false);
-    case 3:
-        begin(FLASH_TEXT("type help, or mode plot for the Arduino plotter"));
-        return end(false);
-    case 4:
-        return write_diagnosis() ? end(false) : REPLY_WAITS;
-    default:
-        text_words(rows_header());
-        return end(true);
-    }
-}
-
-/* A second line only where the line's rate or the filter forces another decimation than was asked for. */
-static reply_progress_t every_line(bool first)
-{
-    uint16_t every = settings_every_in_force();
-    bool forced = every != settings.every;
-    if (!first && !forced) {
-        return REPLY_ENDED;
-    }
-    begin(FLASH_TEXT("every "));
-    text_u32(every);
-    if (forced) {
-        text_words(FLASH_TEXT(": the smallest that "));
-        if (every == settings_smallest_every(settings.baud, settings.rate_dhz)) {
-            text_u32(settings.baud);
-            text_words(FLASH_TEXT(" baud carries at "));
-        } else {
-            write_filter_name();
-            text_words(FLASH_TEXT(" leaves time for at "));
+    if (line == BANNER_DIAGNOSIS) {
+        if (fault != ADXL345_FAULT_NONE) {
+            said.subject = (uint8_t)fault;
+            said.progress = REPLY_GOES_ON;
+            return TEXT_FAULT_BEGIN;
         }
-        text_tenths(settings.rate_dhz);
-        text_words(FLASH_TEXT(" Hz"));
+        if (adxl345_phase() != ADXL345_STREAMING) {
+            return TEXT_NONE;
+        }
     }
-    return end(true);
+    return (uint8_t)(TEXT_RESET - 1 + line);
 }
 
-static reply_progress_t range_line(void)
+static uint8_t help_text(uint8_t line)
 {
-    begin(FLASH_TEXT("range "));
-    text_u32(settings.range_g);
-    text_words(FLASH_TEXT(" g, 256 LSB per g"));
-    return end(true);
+    said.subject = (uint8_t)(REPLY_FILTER + line);
+    return line < HELP_VERBS ? TEXT_HELP : TEXT_VERBS;
 }
 
-/* A setting that rows depend on, and then what it makes of `every`. */
-static reply_progress_t setting_line(reply_kind_t kind, uint8_t line)
+/* A setting that rows depend on, and then what it makes of `every`; after a change to csv the header. */
+static uint8_t setting_text(uint8_t kind, uint8_t line)
 {
+    if (kind != REPLY_MODE) {
+        return (uint8_t)(TEXT_WHO + (line == 0 ? kind : (uint8_t)REPLY_EVERY));
+    }
     if (line != 0) {
-        return every_line(false);
+        return TEXT_HEADER;
     }
+    if (said.subject != 0 && settings.mode == MODE_CSV) {
+        said.progress = REPLY_GOES_ON;
+    }
+    return TEXT_MODE_NOW;
+}
+
+static uint8_t too_slow_text(void)
+{
+    said.filter = said.subject % COMBINATION_RATE;
+    said.rate_dhz = (uint16_t)(RATE_LOWEST_DHZ << (said.subject / COMBINATION_RATE));
+    return TEXT_TOO_SLOW;
+}
+
+static uint8_t status_text(uint8_t line)
+{
+    if (line == 0) {
+        said.counters_out = 0;
+        return TEXT_STATUS;
+    }
+    return (uint8_t)(TEXT_SAMPLES - 1 + line);
+}
+
+static uint8_t text_of(uint8_t kind, uint8_t line)
+{
     switch (kind) {
-    case REPLY_FILTER:
-        begin(FLASH_TEXT("filter "));
-        write_filter_name();
-        break;
-    case REPLY_RATE:
-        begin(FLASH_TEXT("rate "));
-        text_tenths(settings.rate_dhz);
-        text_words(FLASH_TEXT(" Hz, "));
-        write_bus_speed();
-        break;
+    case REPLY_BANNER:
+        return banner_text(line);
+    case REPLY_HELP:
+        return help_text(line);
+    case REPLY_STATUS:
+        return status_text(line);
+    case REPLY_UNKNOWN:
+        return said.subject == PROBLEM_COMMAND ? (uint8_t)TEXT_UNKNOWN : (uint8_t)(TEXT_TOO_LONG - 1 + said.subject);
+    case REPLY_TOO_SLOW:
+        return too_slow_text();
     default:
-        begin(FLASH_TEXT("baud "));
-        text_u32(settings.baud);
-        break;
+        return kind < REPLY_SETTINGS_END ? setting_text(kind, line) : (uint8_t)(TEXT_WHO + kind);
     }
-    return end(false);
-}
-
-/* After a change to csv the header follows: `set` is the reply's argument. */
-static reply_progress_t mode_line(uint8_t line, uint8_t set)
-{
-    if (line != 0) {
-        text_words(rows_header());
-        return end(true);
-    }
-    begin(FLASH_TEXT("mode "));
-    text_words(settings.mode == MODE_PLOT ? FLASH_TEXT("plot") : FLASH_TEXT("csv"));
-    return end(set == 0 || settings.mode == MODE_PLOT);
-}
-
-static reply_progress_t fault_line(bool begins, uint8_t fault)
-{
-    if (begins) {
-        write_fault(fault);
-    } else {
-        begin(FLASH_TEXT("fault "));
-        text_u32(fault);
-        text_words(FLASH_TEXT(" over: samples again"));
-    }
-    return end(true);
-}
-
-static reply_progress_t unknown_line(uint8_t problem)
-{
-    switch (problem) {
-    case PROBLEM_TOO_LONG:
-        begin(FLASH_TEXT("refused: line too long"));
-        break;
-    case PROBLEM_GARBAGE:
-        begin(FLASH_TEXT("refused: characters that no command has"));
-        break;
-    default:
-        begin(FLASH_TEXT("unknown command (type help)"));
-        break;
-    }
-    return end(true);
-}
-
-static reply_progress_t word_line(flash_text_t words)
-{
-    begin(words);
-    return end(true);
 }
 
 reply_progress_t reply_write_line(reply_kind_t kind, uint8_t argument, uint8_t line)
 {
-    switch (kind) {
-    case REPLY_BANNER:
-        return banner_line(line);
-    case REPLY_HELP:
-        return reply_help_line(line);
-    case REPLY_STATUS:
-        return reply_status_line(line);
-    case REPLY_FILTER:
-    case REPLY_RATE:
-    case REPLY_BAUD:
-        return setting_line(kind, line);
-    case REPLY_RANGE:
-        return range_line();
-    case REPLY_EVERY:
-        return every_line(true);
-    case REPLY_MODE:
-        return mode_line(line, argument);
-    case REPLY_STOPPED:
-        return word_line(FLASH_TEXT("stopped"));
-    case REPLY_GOING:
-        return word_line(FLASH_TEXT("going"));
-    case REPLY_UNKNOWN:
-        return unknown_line(argument);
-    case REPLY_REFUSED:
-        return reply_refused_line(argument);
-    case REPLY_TOO_SLOW:
-        return reply_too_slow_line(argument);
-    default:
-        return fault_line(kind == REPLY_FAULT_BEGIN, argument);
+    said.rate_dhz = settings.rate_dhz;
+    said.filter = settings.filter;
+    said.subject = argument;
+    said.progress = REPLY_ENDED;
+    uint8_t id = text_of((uint8_t)kind, line);
+    if (id == TEXT_NONE) {
+        return REPLY_WAITS;
     }
+    say(id);
+    return (reply_progress_t)said.progress;
 }

@@ -1,6 +1,7 @@
 /* A row is composed on the stack and goes out whole or not at all. */
 #include "rows.h"
 
+#include "counters.h"
 #include "flash.h"
 #include "format.h"
 #include "hal_uart.h"
@@ -10,22 +11,11 @@
 /* The longest row is one of the plotter: four angles of FORMAT_HUNDREDTHS_MAX and the labels, 69 bytes. */
 enum { ROW_MAX = 72 };
 
-static const char header[] FLASH = "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags";
-
-static uint32_t written;
-static uint16_t dropped;
 static uint16_t since_row;
 static bool enabled;
 
-const char *rows_header(void)
-{
-    return header;
-}
-
 void rows_start(void)
 {
-    written = 0;
-    dropped = 0;
     rows_enable(false);
 }
 
@@ -83,11 +73,11 @@ static void write(const row_t *row)
     char *end = settings.mode == MODE_PLOT ? write_plot(line, row) : write_csv(line, row);
     *end++ = '\n';
     if (!hal_uart_tx_write(line, (uint8_t)(end - line))) {
-        dropped = (uint16_t)(dropped + (dropped != UINT16_MAX));
+        count(COUNT_DROPPED);
         pipeline_flag(ROW_DROPPED);
         return;
     }
-    written += written != UINT32_MAX;
+    count(COUNT_ROWS);
     pipeline_row_done();
 }
 
@@ -111,14 +101,4 @@ void rows_held(uint32_t now_us)
     row_t row;
     pipeline_held_row(&row, now_us);
     write(&row);
-}
-
-uint32_t rows_written(void)
-{
-    return written;
-}
-
-uint16_t rows_dropped(void)
-{
-    return dropped;
 }

@@ -1,4 +1,4 @@
-/* Faults of the sensor in words, with the likely wire. */
+/* When a fault is told, and the rows without samples. The words are in reply_texts.h. */
 #include "sensor_watch.h"
 
 #include <stdbool.h>
@@ -10,7 +10,6 @@
 #include "replies.h"
 #include "rows.h"
 #include "settings.h"
-#include "text.h"
 
 #define HELD_ROW_US 100000ul
 
@@ -23,34 +22,6 @@ void sensor_watch_start(uint32_t now_us)
     told = (uint8_t)adxl345_fault();
     told_mask = (uint8_t)(1u << told);
     next_row_us = now_us + HELD_ROW_US;
-}
-
-void sensor_watch_describe(uint8_t fault)
-{
-    switch (fault) {
-    case ADXL345_FAULT_NO_SENSOR:
-        text_words(FLASH_TEXT("no sensor answers at 0x53 or 0x1D: check power, SDA to A4, SCL to A5, CS to 3.3 V"));
-        break;
-    case ADXL345_FAULT_WRONG_ID:
-        text_words(FLASH_TEXT("the device at 0x"));
-        text_hex8(adxl345_address());
-        text_words(FLASH_TEXT(" is no ADXL345: DEVID reads 0x"));
-        text_hex8(adxl345_device_id());
-        text_words(FLASH_TEXT(", not 0xE5"));
-        break;
-    case ADXL345_FAULT_BUS:
-        text_words(FLASH_TEXT("I2C bus stuck or disturbed: check SDA, SCL, pull-ups, GND"));
-        break;
-    case ADXL345_FAULT_READ_BACK:
-        text_words(FLASH_TEXT("a register does not keep its value: check supply, bus"));
-        break;
-    case ADXL345_FAULT_INT1_SILENT:
-        text_words(FLASH_TEXT("the sensor has data, but INT1 does not rise: check INT1 to D2"));
-        break;
-    default:
-        text_words(FLASH_TEXT("the sensor stopped measuring: power lost?"));
-        break;
-    }
 }
 
 static void tell(uint8_t fault)

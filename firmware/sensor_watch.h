@@ -10,7 +10,4 @@ void sensor_watch_start(uint32_t now_us);
 /* Once per pass of the main loop, after adxl345_poll. */
 void sensor_watch_pass(uint32_t now_us);
 
-/* Writes the line for a fault code (reply of the kind REPLY_FAULT_BEGIN), which the caller has opened and closes. */
-void sensor_watch_describe(uint8_t fault);
-
 #endif

@@ -33,6 +33,14 @@ bool settings_baud_valid(uint32_t baud)
     return false;
 }
 
+FX_ONCE bool settings_doubled(uint16_t lowest, uint16_t highest, uint16_t value)
+{
+    while (lowest < value && lowest < highest) {
+        lowest = (uint16_t)(lowest << 1);
+    }
+    return lowest == value;
+}
+
 FX_ONCE uint16_t settings_filter_cycles(uint8_t filter)
 {
     return (uint16_t)(AXES * filter_any_worst_cycles((filter_kind_t)filter));

@@ -19,6 +19,10 @@ typedef struct {
 
 #define SETTINGS_BAUD_DEFAULT 115200ul
 #define SETTINGS_EVERY_MAX 10000u
+#define SETTINGS_RATE_MIN_DHZ 125u
+#define SETTINGS_RATE_MAX_DHZ 8000u
+#define SETTINGS_RANGE_MIN_G 2u
+#define SETTINGS_RANGE_MAX_G 16u
 
 /* What the line must carry for a row: at most 67 bytes (csv) or 69 (plot), and some for replies. */
 #define SETTINGS_ROW_MAX 72u
@@ -38,6 +42,9 @@ extern settings_t settings;
 
 void settings_defaults(void);
 bool settings_baud_valid(uint32_t baud);
+
+/* The value is the lowest, or that times two, four, ..., up to the highest. */
+bool settings_doubled(uint16_t lowest, uint16_t highest, uint16_t value);
 
 /* Cycles that three axes of a filter take at most, and those that this output data rate leaves for them. */
 uint16_t settings_filter_cycles(uint8_t filter);

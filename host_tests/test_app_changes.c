@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "app.h"
+#include "counters.h"
 #include "pipeline.h"
 #include "settings.h"
 #include "support_board.h"
@@ -46,18 +47,29 @@ static void test_alternating_faults_are_told_once_each(void)
     TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# fault 1: ", before));
 }
 
+static void test_counters_stay_at_their_greatest_value(void)
+{
+    counters_start();
+    counters[COUNT_GATED] = UINT32_MAX - 1u;
+    count(COUNT_GATED);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, counters[COUNT_GATED]);
+    count(COUNT_GATED);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, counters[COUNT_GATED]);
+    TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_SAMPLES]);
+}
+
 /* Whole seconds since the start, over a stop and over the wrap of the microseconds. */
 static void test_uptime_counts_seconds(void)
 {
     stream = board_constant_stream(1000, 100.0, 31, -53, 248);
     board_start(&stream, 0.0, 0xFFFFFFFFu - 2500000u);
     board_run_ms(990);
-    TEST_ASSERT_EQUAL_UINT32(0, app_uptime_s());
+    TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_SECONDS]);
     board_run_ms(30);
-    TEST_ASSERT_EQUAL_UINT32(1, app_uptime_s());
+    TEST_ASSERT_EQUAL_UINT32(1, counters[COUNT_SECONDS]);
     board_type("stop");
     board_run_ms(6000);
-    TEST_ASSERT_EQUAL_UINT32(7, app_uptime_s());
+    TEST_ASSERT_EQUAL_UINT32(7, counters[COUNT_SECONDS]);
     size_t before = board.note_count;
     board_type("status");
     board_run_ms(300);
@@ -128,6 +140,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_alternating_faults_are_told_once_each);
+    RUN_TEST(test_counters_stay_at_their_greatest_value);
     RUN_TEST(test_uptime_counts_seconds);
     RUN_TEST(test_go_begins_cold);
     RUN_TEST(test_old_samples_are_filtered_as_before_a_change_of_range);

@@ -1,0 +1,21 @@
+/* Counters that never wrap. */
+#include "counters.h"
+
+#include "fx.h"
+
+uint32_t counters[COUNTERS];
+
+void counters_start(void)
+{
+    for (uint8_t i = 0; i < COUNTERS; i++) {
+        counters[i] = 0;
+    }
+}
+
+FX_ONCE void count(uint8_t what)
+{
+    uint32_t more = counters[what] + 1u;
+    if (more != 0) {
+        counters[what] = more;
+    }
+}

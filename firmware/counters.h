@@ -1,0 +1,27 @@
+/* What happened how often since the start, for `status`; each stays at its greatest value. Main only. */
+#ifndef COUNTERS_H
+#define COUNTERS_H
+
+#include <stdint.h>
+
+/* In the order in which `status` tells them. */
+enum counter {
+    COUNT_SECONDS, /* since the start */
+    COUNT_SAMPLES,
+    COUNT_GATED,      /* samples that a filter refused, on any axis */
+    COUNT_REACQUIRED, /* samples on which a filter began anew */
+    COUNT_CLIPPED,
+    COUNT_ROWS,
+    COUNT_DROPPED, /* rows for which the line had no room */
+    COUNT_REFUSED, /* lines: too long, garbage, unknown, illegal value */
+    COUNTERS
+};
+
+extern uint32_t counters[COUNTERS];
+
+void counters_start(void);
+
+/* One more of a kind (enum counter). */
+void count(uint8_t what);
+
+#endif
