@@ -117,6 +117,9 @@ static void filter_axis(uint8_t axis, int16_t lsb)
 static void count_sample(void)
 {
     count(COUNT_SAMPLES);
+    if ((pipe.flags & (ROW_GATED | ROW_REACQUIRED | ROW_CLIPPED)) == 0) {
+        return;
+    }
     if (pipe.flags & ROW_GATED) {
         count(COUNT_GATED);
     }

@@ -84,7 +84,7 @@ static void write(const row_t *row)
 void rows_sample(void)
 {
     since_row++;
-    if (!enabled || since_row < settings_every_in_force()) {
+    if (!enabled || since_row < settings.every_smallest || since_row < settings.every) {
         return;
     }
     since_row = 0;
