@@ -9,11 +9,11 @@ REST = STREAMS / "rest-2lsb.csv"
 LENGTH_MS = 12000
 
 
-def injected(name, *faults, judge=False, max_ms=LENGTH_MS):
+def injected(name, *faults, judge=False, max_ms=LENGTH_MS, options=()):
     """A run with faults and the filter that gates nothing, so that no flag 1 hides a row from the judge."""
     arguments = [word for fault in faults for word in ("--fault", fault)]
     arguments += ["--altered", OUT / f"inject-{name}.altered.csv"]
-    return simrun(f"inject-{name}", REST, "--filter", "kf", "--max-ms", max_ms, *arguments, judge=judge)
+    return simrun(f"inject-{name}", REST, "--filter", "kf", "--max-ms", max_ms, *arguments, *options, judge=judge)
 
 
 def altered(name):
@@ -165,7 +165,7 @@ def judge_ends_the_run_with_its_status_and_names_the_first_row():
     wrong = [(i, row) for i, (row, lsb) in enumerate(zip(rows, triplets(served)), 1) if row[1:4] != lsb]
     assert len(wrong) == 1 and stats["rows_wrong"] == 1 and stats["rows_judged"] == len(rows), (wrong, stats)
     number, row = wrong[0]
-    words = f"1 wrong, 0 stale; 0 steps back in time; first row {number}: t_us {row[0]}, readings {row[1]},{row[2]},{row[3]}, "
+    words = f"1 wrong, 0 stale, 0 twice; 0 steps back in time; first row {number}: t_us {row[0]}, readings {row[1]},{row[2]},{row[3]}, "
     assert words in stats["stderr"]
     command = [SIMRUN, "--fw", FW, "--in", REST, "--out", OUT / "judged.csv", "--filter", "kf", "--max-ms", "1500", "--judge"]
     assert f"status 10: {len(rows)} rows judged: {words}" in run(*command, "--fault", "1000ms:flip:2", expect=10).stderr

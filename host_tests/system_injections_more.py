@@ -104,3 +104,11 @@ def function_is_found_without_the_suffix_of_the_compiler():
     for wrong in ("fill_ro", "fill_row.lto", "urst_drain"):
         done = run(SIMRUN, "--fw", FW, "--in", REST, "--out", OUT / "x.csv", "--fault", f"pc:{wrong}:glitch", expect=2)
         assert "no such function in the firmware" in done.stderr, done.stderr
+
+
+@test
+def judge_looks_back_over_what_is_kept_of_a_long_run():
+    """40,000 samples: what simrun keeps of them is thrown away several times; no row is judged otherwise, none counted as lost."""
+    stats = injected("long", "395000ms:flip:2", max_ms=400000, options=("--loop",))[3]
+    assert stats["samples_served"] > 39900 and stats["lost"] == 0, stats
+    assert stats["rows"] - 2 <= stats["rows_judged"] <= stats["rows"] and stats["rows_wrong"] == 1 and stats["rows_stale"] == 0, stats

@@ -33,9 +33,24 @@ static row_t row_of(int i, uint32_t t_us, unsigned flags, uint32_t late_us)
     return row;
 }
 
-static judge_verdict_t verdict_of(row_t row)
+/* As the row ahead of it left the samples. */
+static judge_verdict_t next_verdict_of(row_t row)
 {
     return judge_row(&judge, &row, served, SAMPLES, PERIOD_US);
+}
+
+static void forget_what_was_shown(void)
+{
+    for (int i = 0; i < SAMPLES; i++) {
+        served[i].shown = false;
+    }
+}
+
+/* As if no row had shown anything. */
+static judge_verdict_t verdict_of(row_t row)
+{
+    forget_what_was_shown();
+    return next_verdict_of(row);
 }
 
 static void a_row_of_its_sample_is_right(void)
@@ -71,6 +86,7 @@ static void a_sample_is_stale_after_two_periods(void)
     TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(2, 50000, 0, 5000)));
     TEST_ASSERT_EQUAL(JUDGE_STALE, verdict_of(row_of(2, 50001, 0, 5000)));
     TEST_ASSERT_EQUAL_UINT32(1, judge.count[JUDGE_STALE]);
+    forget_what_was_shown();
     row_t row = row_of(2, 32501, 0, 0);
     TEST_ASSERT_EQUAL(JUDGE_STALE, judge_row(&judge, &row, served, SAMPLES, 1250));
     row = row_of(2, 32500, 0, 0);
@@ -104,6 +120,46 @@ static void only_five_flags_disown_a_row(void)
         TEST_ASSERT_EQUAL_MESSAGE(disowns ? JUDGE_DISOWNED_ROW : JUDGE_WRONG, verdict_of(row), "flag");
     }
     TEST_ASSERT_EQUAL_UINT32(6, judge_judged(&judge));
+}
+
+static void a_sample_delivered_twice_is_at_fault(void)
+{
+    TEST_ASSERT_EQUAL(JUDGE_RIGHT, next_verdict_of(row_of(4, 50000, 0, 5000)));
+    TEST_ASSERT_EQUAL(JUDGE_TWICE, next_verdict_of(row_of(4, 50000, 0, 5000)));
+    TEST_ASSERT_EQUAL(JUDGE_TWICE, next_verdict_of(row_of(4, 60000, 0, 5000)));
+    TEST_ASSERT_EQUAL(JUDGE_DISOWNED_ROW, next_verdict_of(row_of(4, 60000, 2, 5000)));
+    TEST_ASSERT_EQUAL(JUDGE_STALE, next_verdict_of(row_of(4, 70001, 0, 5000)));
+    TEST_ASSERT_EQUAL_UINT32(2, judge.count[JUDGE_TWICE]);
+    TEST_ASSERT_EQUAL_UINT32(4, judge_judged(&judge));
+    TEST_ASSERT_NOT_NULL(strstr(judge_summary(&judge), "1 stale, 2 twice; "));
+    TEST_ASSERT_NOT_NULL(strstr(judge_summary(&judge), "another row has shown this sample already"));
+}
+
+static void a_row_that_disowns_its_readings_shows_no_sample(void)
+{
+    TEST_ASSERT_EQUAL(JUDGE_DISOWNED_ROW, next_verdict_of(row_of(4, 50000, 1, 5000)));
+    TEST_ASSERT_EQUAL(JUDGE_RIGHT, next_verdict_of(row_of(4, 50000, 0, 5000)));
+}
+
+static void as_many_rows_as_equal_samples_are_right(void)
+{
+    for (int i = 3; i < 7; i++) {
+        memcpy(served[i].lsb, served[3].lsb, sizeof served[i].lsb);
+    }
+    for (int i = 3; i < 7; i++) {
+        TEST_ASSERT_EQUAL(JUDGE_RIGHT, next_verdict_of(row_of(3, (uint32_t)(i + 1) * PERIOD_US, 0, 5000)));
+    }
+    TEST_ASSERT_EQUAL(JUDGE_TWICE, next_verdict_of(row_of(3, 75000, 0, 5000)));
+}
+
+static void of_equal_samples_a_row_takes_the_oldest_in_time(void)
+{
+    memcpy(served[5].lsb, served[3].lsb, sizeof served[5].lsb);
+    /* 55 ms is within two periods of both 40 and 60 ms, 65 ms of the second alone */
+    TEST_ASSERT_EQUAL(JUDGE_RIGHT, next_verdict_of(row_of(3, 55000, 0, 9000)));
+    TEST_ASSERT_TRUE(served[3].shown);
+    TEST_ASSERT_FALSE(served[5].shown);
+    TEST_ASSERT_EQUAL(JUDGE_RIGHT, next_verdict_of(row_of(3, 65000, 0, 9000)));
 }
 
 static void steps_back_are_counted_in_every_row(void)
@@ -157,15 +213,16 @@ static void without_a_clock_nothing_is_judged(void)
 static void the_first_row_at_fault_is_named(void)
 {
     (void)verdict_of(row_of(0, 10000, 0, 5000));
-    TEST_ASSERT_EQUAL_STRING("1 rows judged: 0 wrong, 0 stale; 0 steps back in time", judge_summary(&judge));
+    TEST_ASSERT_EQUAL_STRING("1 rows judged: 0 wrong, 0 stale, 0 twice; 0 steps back in time", judge_summary(&judge));
     (void)verdict_of(row_of(0, 40000, 8, 5000));
     row_t row = row_of(4, 50000, 0, 5000);
     row.lsb[1] = -1;
     (void)verdict_of(row);
-    TEST_ASSERT_EQUAL_STRING("3 rows judged: 1 wrong, 1 stale; 0 steps back in time; first row 2: t_us 40000, readings "
-                             "0,0,256, flags 8, stale: the sensor latched these readings, but more than two sample "
-                             "periods before the stamp",
-                             judge_summary(&judge));
+    TEST_ASSERT_EQUAL_STRING(
+        "3 rows judged: 1 wrong, 1 stale, 0 twice; 0 steps back in time; first row 2: t_us 40000, readings "
+        "0,0,256, flags 8, stale: the sensor latched these readings, but more than two sample "
+        "periods before the stamp",
+        judge_summary(&judge));
 }
 
 int main(void)
@@ -178,6 +235,10 @@ int main(void)
     RUN_TEST(an_equal_sample_within_time_is_enough_and_an_older_one_is_not);
     RUN_TEST(a_sample_of_the_future_is_wrong);
     RUN_TEST(only_five_flags_disown_a_row);
+    RUN_TEST(a_sample_delivered_twice_is_at_fault);
+    RUN_TEST(a_row_that_disowns_its_readings_shows_no_sample);
+    RUN_TEST(as_many_rows_as_equal_samples_are_right);
+    RUN_TEST(of_equal_samples_a_row_takes_the_oldest_in_time);
     RUN_TEST(steps_back_are_counted_in_every_row);
     RUN_TEST(a_clock_that_begins_elsewhere_may_wrap);
     RUN_TEST(a_reset_begins_the_clock_anew);

@@ -21,6 +21,9 @@
 #define CYCLES_PER_MS 16000u
 #define NEVER UINT64_MAX
 
+/* samples that the judge can look back at: what is older decides nothing, and a day has 8.6 million at 100 Hz */
+enum { SERVED_KEPT = 8192 };
+
 /* --- exit statuses (docs: simrun --help) --- */
 typedef enum {
     EXIT_OK = 0,
@@ -130,13 +133,13 @@ void sensor_show_pin(void); /* drive D2 anew (after a reset, or when the wire ch
 void sensor_cut_int1(bool cut);
 void sensor_disturb_int1(bool disturbed); /* the wire has the level against the sensor's */
 void sensor_set_clock_error(double ppm);
-uint64_t sensor_last_tick(void);    /* cycle of the last output-data-rate tick, 0: none */
-uint64_t sensor_over_at(void);      /* cycle at which the stream ended, NEVER before */
-double sensor_period_us(void);      /* of the last rate in force, without ppm; 0: none yet */
-double sensor_true_period_us(void); /* the same with the error of the sensor's clock */
-size_t sensor_served_count(void);
-const served_t *sensor_served(size_t index);
-void sensor_print_mode(FILE *to); /* which feed mode was used */
+uint64_t sensor_last_tick(void);               /* cycle of the last output-data-rate tick, 0: none */
+uint64_t sensor_over_at(void);                 /* cycle at which the stream ended, NEVER before */
+double sensor_period_us(void);                 /* of the last rate in force, without ppm; 0: none yet */
+double sensor_true_period_us(void);            /* the same with the error of the sensor's clock */
+size_t sensor_served_count(void);              /* of the whole run */
+served_t *sensor_served_lately(size_t *count); /* the newest of them, at least SERVED_KEPT if there were as many */
+void sensor_print_mode(FILE *to);              /* which feed mode was used */
 const stream_t *sensor_stream(void);
 
 /* --- UART --- */
@@ -148,8 +151,6 @@ void uart_step(void);
 void uart_flood(bool on);        /* random bytes without a pause, instead of what is to be typed */
 void uart_stall(uint64_t until); /* the transmitter holds each byte until this cycle; 0: no more */
 uint64_t uart_last_tx(void);     /* cycle of the last byte sent, 0: none */
-size_t uart_row_count(void);
-const row_t *uart_row(size_t index);
 uint64_t uart_bytes(void);
 uint32_t uart_rx_overruns(void);
 
@@ -196,6 +197,11 @@ void verdict_print(FILE *json);
 void verdict_tell(void); /* stderr */
 /* The first row at fault with --judge; NULL when there is none. */
 const char *verdict_reason(void);
+
+/* --- the rows, counted as they come (simrun_rows.c) --- */
+void rows_take(const row_t *row);
+size_t rows_count(void);
+void rows_print(FILE *json);
 
 /* --- statistics --- */
 extern uint64_t stats_slept;       /* cycles asleep */

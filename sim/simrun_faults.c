@@ -266,9 +266,10 @@ void faults_on_reset(void)
 
 static bool shows_sample_since(const row_t *row, uint64_t since)
 {
-    size_t count = sensor_served_count();
+    size_t count;
+    const served_t *lately = sensor_served_lately(&count);
     for (size_t i = count; i > 0 && i + LOOK_BACK > count; i--) {
-        const served_t *served = sensor_served(i - 1);
+        const served_t *served = &lately[i - 1];
         if (served->cycle < since) {
             return false;
         }

@@ -11,6 +11,7 @@ enum {
 
 static const char *const verdict_words[JUDGE_VERDICTS] = {
     [JUDGE_STALE] = "stale: the sensor latched these readings, but more than two sample periods before the stamp",
+    [JUDGE_TWICE] = "twice: another row has shown this sample already",
     [JUDGE_WRONG] = "wrong: the sensor latched no such readings by that time",
 };
 
@@ -29,19 +30,33 @@ static int64_t stamped_at(const judge_t *judge, const row_t *row)
     return (int64_t)row->sent - (int64_t)age_us * CYCLES_PER_US;
 }
 
-/* Newest sample first: the first equal one that is not too new decides. */
-static judge_verdict_t compare(const row_t *row, int64_t at, int64_t near, const served_t *served, size_t count)
+/*
+ * Equal samples near the stamp: the oldest that no row has shown becomes this row's own. Without any the newest equal
+ * sample decides that is not too new.
+ */
+static judge_verdict_t compare(const row_t *row, int64_t at, int64_t near, served_t *served, size_t count)
 {
     size_t oldest = count > LOOK_BACK ? count - LOOK_BACK : 0;
+    served_t *own = NULL;
+    judge_verdict_t verdict = JUDGE_WRONG;
     for (size_t i = count; i > oldest; i--) {
-        const served_t *sample = &served[i - 1];
+        served_t *sample = &served[i - 1];
         int64_t age = at - (int64_t)sample->cycle;
         if (sample->cycle > row->sent || age < -near || memcmp(sample->lsb, row->lsb, sizeof row->lsb) != 0) {
             continue;
         }
-        return age <= near ? JUDGE_RIGHT : JUDGE_STALE;
+        if (age > near) {
+            verdict = verdict == JUDGE_WRONG ? JUDGE_STALE : verdict;
+            break;
+        }
+        own = sample->shown ? own : sample;
+        verdict = JUDGE_TWICE;
     }
-    return JUDGE_WRONG;
+    if (own == NULL) {
+        return verdict;
+    }
+    own->shown = true;
+    return JUDGE_RIGHT;
 }
 
 static bool steps_back(judge_t *judge, const row_t *row)
@@ -53,8 +68,7 @@ static bool steps_back(judge_t *judge, const row_t *row)
     return back;
 }
 
-judge_verdict_t judge_row(judge_t *judge, const row_t *row, const served_t *served, size_t served_count,
-                          double period_us)
+judge_verdict_t judge_row(judge_t *judge, const row_t *row, served_t *served, size_t served_count, double period_us)
 {
     judge_verdict_t verdict = JUDGE_DISOWNED_ROW;
     if ((row->flags & JUDGE_DISOWNED) == 0) {
@@ -64,7 +78,7 @@ judge_verdict_t judge_row(judge_t *judge, const row_t *row, const served_t *serv
     bool back = steps_back(judge, row);
     judge->count[verdict]++;
     judge->rows_seen++;
-    bool at_fault = back || verdict == JUDGE_STALE || verdict == JUDGE_WRONG;
+    bool at_fault = back || verdict >= JUDGE_STALE;
     if (at_fault && !judge->any_fault) {
         judge->any_fault = true;
         judge->first = *row;
@@ -77,18 +91,20 @@ judge_verdict_t judge_row(judge_t *judge, const row_t *row, const served_t *serv
 
 uint32_t judge_judged(const judge_t *judge)
 {
-    return judge->count[JUDGE_RIGHT] + judge->count[JUDGE_STALE] + judge->count[JUDGE_WRONG];
+    return judge->count[JUDGE_RIGHT] + judge->count[JUDGE_STALE] + judge->count[JUDGE_TWICE] +
+           judge->count[JUDGE_WRONG];
 }
 
 const char *judge_summary(const judge_t *judge)
 {
     static char text[384];
-    int length = snprintf(text, sizeof text, "%u rows judged: %u wrong, %u stale; %u steps back in time",
+    int length = snprintf(text, sizeof text, "%u rows judged: %u wrong, %u stale, %u twice; %u steps back in time",
                           (unsigned)judge_judged(judge), (unsigned)judge->count[JUDGE_WRONG],
-                          (unsigned)judge->count[JUDGE_STALE], (unsigned)judge->steps_back);
+                          (unsigned)judge->count[JUDGE_STALE], (unsigned)judge->count[JUDGE_TWICE],
+                          (unsigned)judge->steps_back);
     if (judge->any_fault && length > 0) {
         const row_t *row = &judge->first;
-        bool bad = judge->first_verdict == JUDGE_STALE || judge->first_verdict == JUDGE_WRONG;
+        bool bad = judge->first_verdict >= JUDGE_STALE;
         snprintf(text + length, sizeof text - (size_t)length,
                  "; first row %u: t_us %u, readings %d,%d,%d, flags %u, %s", (unsigned)judge->first_number,
                  (unsigned)row->t_us, row->lsb[0], row->lsb[1], row->lsb[2], row->flags,

@@ -4,8 +4,9 @@
  * count. Plain C without simavr, so that a test can give it rows made by hand.
  *
  * A row whose flags say nothing against it (none of JUDGE_DISOWNED) is right when its readings are a triplet that the
- * model latched within two sample periods of the row's time stamp, and before the row was sent. It is stale when the
- * model latched that triplet, but longer before; else it is wrong.
+ * model latched within two sample periods of the row's time stamp, and before the row was sent, and that no right row
+ * has shown yet: a row of a sample that was delivered twice is told as such. It is stale when the model latched that
+ * triplet, but longer before; else it is wrong.
  */
 #ifndef SIMRUN_JUDGE_H
 #define SIMRUN_JUDGE_H
@@ -20,6 +21,7 @@
 typedef struct {
     uint64_t cycle; /* at which the sensor latched it */
     int16_t lsb[3];
+    bool shown; /* by a row that is right */
 } served_t;
 
 typedef struct {
@@ -34,6 +36,7 @@ typedef enum {
     JUDGE_DISOWNED_ROW,
     JUDGE_UNTIMED,
     JUDGE_STALE,
+    JUDGE_TWICE,
     JUDGE_WRONG,
     JUDGE_VERDICTS
 } judge_verdict_t;
@@ -57,9 +60,8 @@ typedef struct {
 /* The firmware's clock begins anew, at this cycle. A row before the first of them is untimed, and not judged. */
 void judge_clock_begins(judge_t *judge, uint64_t cycle);
 
-/* Judges the next row. `served`: all the model has latched so far, oldest first; period_us: of the rate in force. */
-judge_verdict_t judge_row(judge_t *judge, const row_t *row, const served_t *served, size_t served_count,
-                          double period_us);
+/* Judges the next row. `served`: what the model has latched lately, oldest first; period_us: of the rate in force. */
+judge_verdict_t judge_row(judge_t *judge, const row_t *row, served_t *served, size_t served_count, double period_us);
 
 /* Rows that were judged, right ones included. */
 uint32_t judge_judged(const judge_t *judge);

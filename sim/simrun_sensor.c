@@ -27,8 +27,8 @@ static bool int1_cut, int1_disturbed;
 static double clock_error_ppm;
 static avr_irq_t *pin_d2;
 static FILE *served_file;
-static served_t *served;
-static size_t served_count, served_capacity;
+static served_t served[2 * SERVED_KEPT]; /* the newest; when it is full the older half goes */
+static size_t kept_count, served_count;
 static bool mode_used[2];
 
 static void on_pin(void *owner, unsigned pin, bool high)
@@ -79,16 +79,12 @@ static void on_latched(void *owner, const int16_t lsb[3])
     if (served_file != NULL) {
         write_served(lsb);
     }
-    if (served_count == served_capacity) {
-        served_capacity = served_capacity == 0 ? 4096 : 2 * served_capacity;
-        served = realloc(served, served_capacity * sizeof *served);
-        if (served == NULL) {
-            fputs("simrun: out of memory\n", stderr);
-            exit(EXIT_INTERNAL);
-        }
+    if (kept_count == 2 * (size_t)SERVED_KEPT) {
+        memcpy(served, served + SERVED_KEPT, SERVED_KEPT * sizeof *served);
+        kept_count = SERVED_KEPT;
     }
-    served[served_count] = (served_t){ .cycle = mcu->cycle };
-    memcpy(served[served_count].lsb, lsb, sizeof served[0].lsb);
+    served[kept_count] = (served_t){ .cycle = mcu->cycle, .lsb = { lsb[0], lsb[1], lsb[2] } };
+    kept_count++;
     served_count++;
 }
 
@@ -116,7 +112,6 @@ void sensor_finish(void)
 {
     output_close(served_file, options.served);
     stream_free(&stream);
-    free(served);
 }
 
 static double period_cycles(void)
@@ -199,9 +194,10 @@ size_t sensor_served_count(void)
     return served_count;
 }
 
-const served_t *sensor_served(size_t index)
+served_t *sensor_served_lately(size_t *count)
 {
-    return &served[index];
+    *count = kept_count;
+    return served;
 }
 
 const stream_t *sensor_stream(void)

@@ -10,11 +10,7 @@ enum {
     ENTRY_CYCLES = 4, /* interrupt response (data sheet "Interrupt Response Time"), which simavr leaves out */
     RAM_START = 0x100,
     RAM_END = 0x8FF,
-    FLASH_WORDS = 0x4000,
-    LOOK_BACK = 64,
-    FLAG_GATED = 1,
-    FLAG_COASTED = 2,
-    FLAG_FAULT = 16
+    FLASH_WORDS = 0x4000
 };
 
 typedef struct {
@@ -169,86 +165,6 @@ static double load(void)
     return to == streaming_from ? 0.0 : 1.0 - (double)(slept - slept_from) / (double)(to - streaming_from);
 }
 
-static int compare_steps(const void *a, const void *b)
-{
-    uint32_t x = *(const uint32_t *)a;
-    uint32_t y = *(const uint32_t *)b;
-    return (x > y) - (x < y);
-}
-
-/* Median time from row to row in samples of the last rate in force: the `every` that was in force. */
-static unsigned every_seen(void)
-{
-    size_t count = uart_row_count();
-    double period_us = sensor_period_us();
-    uint32_t *steps = count < 2 || period_us <= 0.0 ? NULL : malloc((count - 1) * sizeof *steps);
-    if (steps == NULL) {
-        return 1;
-    }
-    for (size_t i = 1; i < count; i++) {
-        steps[i - 1] = uart_row(i)->t_us - uart_row(i - 1)->t_us;
-    }
-    qsort(steps, count - 1, sizeof *steps, compare_steps);
-    double median_us = steps[(count - 1) / 2];
-    free(steps);
-    double every = median_us / period_us + 0.5;
-    return every < 1.0 ? 1 : (unsigned)every;
-}
-
-/* Index of the newest sample that the row can show, at the time it was sent. */
-static size_t served_of(const row_t *row)
-{
-    size_t count = sensor_served_count();
-    while (count > 0 && sensor_served(count - 1)->cycle > row->sent) {
-        count--;
-    }
-    for (size_t i = count; i > 0 && i + LOOK_BACK > count; i--) {
-        if (memcmp(sensor_served(i - 1)->lsb, row->lsb, sizeof row->lsb) == 0) {
-            return i - 1;
-        }
-    }
-    return count == 0 ? 0 : count - 1;
-}
-
-/*
- * Samples served from that of the first row to that of the last one that is no prediction, less those the rows stand
- * for. The rows' own time stamps measure the distance; a lost remainder shorter than one row is not seen. Only for a
- * run at one rate without resets or faults: the file of --served is the judge.
- */
-static unsigned lost(unsigned every)
-{
-    size_t rows = 0;
-    size_t last = 0;
-    for (size_t i = 0; i < uart_row_count(); i++) {
-        if (every > 1 || (uart_row(i)->flags & (FLAG_COASTED | FLAG_FAULT)) == 0) {
-            rows++;
-            last = i;
-        }
-    }
-    if (rows < 2) {
-        return 0;
-    }
-    size_t first_served = served_of(uart_row(0));
-    uint64_t span_us = uart_row(last)->t_us - uart_row(0)->t_us;
-    uint64_t until = sensor_served(first_served)->cycle +
-                     (uint64_t)(((double)span_us + sensor_period_us() / 2.0) * CYCLES_PER_US);
-    size_t served = 0;
-    for (size_t i = first_served + 1; i < sensor_served_count() && sensor_served(i)->cycle <= until; i++) {
-        served++;
-    }
-    size_t shown = (rows - 1) * every;
-    return served > shown ? (unsigned)(served - shown) : 0;
-}
-
-static unsigned rows_with(unsigned flags)
-{
-    unsigned count = 0;
-    for (size_t i = 0; i < uart_row_count(); i++) {
-        count += (uart_row(i)->flags & flags) != 0;
-    }
-    return count;
-}
-
 static void write_interrupts(FILE *file)
 {
     uint64_t worst = 0;
@@ -272,13 +188,10 @@ static void write_interrupts(FILE *file)
 
 static void write_samples(FILE *file)
 {
-    unsigned every = every_seen();
     fprintf(file, "  \"samples_served\": %zu,\n  \"sensor_overruns\": %u,\n", sensor_served_count(),
             (unsigned)sensor.overruns);
     fprintf(file, "  \"samples_altered\": %u,\n", (unsigned)alter_count());
-    fprintf(file, "  \"rows\": %zu,\n  \"every\": %u,\n  \"lost\": %u,\n", uart_row_count(), every, lost(every));
-    fprintf(file, "  \"gated\": %u,\n  \"coasted\": %u,\n  \"fault_rows\": %u,\n", rows_with(FLAG_GATED),
-            rows_with(FLAG_COASTED), rows_with(FLAG_FAULT));
+    rows_print(file);
     fprintf(file, "  \"uart_bytes\": %llu,\n  \"uart_rx_overruns\": %u,\n", (unsigned long long)uart_bytes(),
             (unsigned)uart_rx_overruns());
     fprintf(file, "  \"i2c_transfers\": %u,\n  \"i2c_bytes\": %llu,\n", (unsigned)twi.transfer,
@@ -316,6 +229,6 @@ void stats_write(exit_status_t status)
 void stats_summary(void)
 {
     fprintf(stderr, "simrun: %.1f ms, %zu samples served, %zu rows, load %.2f %%, stack %u of %u bytes, %u resets\n",
-            machine_ms(), sensor_served_count(), uart_row_count(), 100.0 * load(), (unsigned)stack_high_water(),
+            machine_ms(), sensor_served_count(), rows_count(), 100.0 * load(), (unsigned)stack_high_water(),
             (unsigned)(RAM_END + 1 - machine_size.end_of_ram), (unsigned)machine_resets());
 }

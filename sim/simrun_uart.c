@@ -34,8 +34,6 @@ static uint64_t byte_count;
 static char line[LINE_MAX_LENGTH + 1];
 static size_t line_length;
 static bool banner_seen, header_seen;
-static row_t *rows;
-static size_t row_count, row_capacity;
 
 static size_t next_typed; /* line of options.typed */
 static size_t next_character;
@@ -46,24 +44,6 @@ static uint64_t next_byte_at = NEVER;
 static uint32_t rx_overruns;
 static bool flooded;
 static uint64_t stalled_until;
-
-static void keep_row(const row_t *row)
-{
-    if (row_count == row_capacity) {
-        row_capacity = row_capacity == 0 ? 4096 : 2 * row_capacity;
-        rows = realloc(rows, row_capacity * sizeof *rows);
-        if (rows == NULL) {
-            fputs("simrun: out of memory\n", stderr);
-            exit(EXIT_INTERNAL);
-        }
-    }
-    rows[row_count++] = *row;
-    if (row_count == 1) {
-        stats_streaming_begins();
-    }
-    faults_on_row(row);
-    verdict_on_row(row);
-}
 
 /* A row of csv mode: ten whole numbers; t_us, x_lsb, y_lsb, z_lsb first and flags last. */
 static bool parse_row(row_t *row)
@@ -141,7 +121,9 @@ static void on_line(void)
     } else if (strncmp(line, "t_us,", 5) == 0) {
         header_seen = true;
     } else if (isdigit((unsigned char)line[0]) && parse_row(&row)) {
-        keep_row(&row);
+        rows_take(&row);
+        faults_on_row(&row);
+        verdict_on_row(&row);
     }
     line_length = 0;
 }
@@ -217,7 +199,6 @@ void uart_start(void)
 void uart_finish(void)
 {
     output_close(out_file, options.out);
-    free(rows);
 }
 
 void uart_reset(void)
@@ -322,16 +303,6 @@ void uart_step(void)
 uint64_t uart_last_tx(void)
 {
     return last_tx;
-}
-
-size_t uart_row_count(void)
-{
-    return row_count;
-}
-
-const row_t *uart_row(size_t index)
-{
-    return &rows[index];
 }
 
 uint64_t uart_bytes(void)

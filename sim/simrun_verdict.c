@@ -23,14 +23,16 @@ void verdict_start(void)
 
 void verdict_on_row(const row_t *row)
 {
-    size_t count = sensor_served_count();
-    (void)judge_row(&judge, row, count == 0 ? NULL : sensor_served(0), count, sensor_true_period_us());
+    size_t count;
+    served_t *served = sensor_served_lately(&count);
+    (void)judge_row(&judge, row, served, count, sensor_true_period_us());
 }
 
 void verdict_print(FILE *json)
 {
-    fprintf(json, "  \"rows_judged\": %u,\n  \"rows_wrong\": %u,\n  \"rows_stale\": %u,\n  \"t_us_steps_back\": %u,\n",
-            (unsigned)judge_judged(&judge), (unsigned)judge.count[JUDGE_WRONG], (unsigned)judge.count[JUDGE_STALE],
+    fprintf(json, "  \"rows_judged\": %u,\n  \"rows_wrong\": %u,\n  \"rows_stale\": %u,\n",
+            (unsigned)judge_judged(&judge), (unsigned)judge.count[JUDGE_WRONG], (unsigned)judge.count[JUDGE_STALE]);
+    fprintf(json, "  \"rows_twice\": %u,\n  \"t_us_steps_back\": %u,\n", (unsigned)judge.count[JUDGE_TWICE],
             (unsigned)judge.steps_back);
 }
 

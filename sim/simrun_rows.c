@@ -1,0 +1,123 @@
+/*
+ * Rows counted as they come, and what got lost between the sensor and them. The sensor's samples are kept for a while
+ * only (SERVED_KEPT), so that a day has room in memory: each row is looked up when it arrives.
+ */
+#include <string.h>
+
+#include "simrun.h"
+
+enum { LOOK_BACK = 64, FLAG_GATED = 1, FLAG_COASTED = 2, FLAG_FAULT = 16 };
+enum { STEP_UNIT_US = 64, STEPS = 1 << 19 }; /* up to 33.5 s from row to row */
+
+/* Samples from that of the first row to that of the last row of one class, and rows of that class. */
+typedef struct {
+    size_t rows, samples;
+} class_t;
+
+static size_t row_count, gated, coasted, faulty;
+static row_t first, last;
+static size_t first_number; /* of the sample of the first row, in the whole run */
+static uint64_t first_cycle;
+static class_t all, measured; /* measured: rows that are no prediction */
+static uint32_t steps[STEPS];
+
+/* How many samples were latched until then. */
+static size_t served_until(uint64_t cycle)
+{
+    size_t count;
+    const served_t *served = sensor_served_lately(&count);
+    size_t newer = 0;
+    while (newer < count && served[count - 1 - newer].cycle > cycle) {
+        newer++;
+    }
+    return sensor_served_count() - newer;
+}
+
+/* The newest sample that the first row can show, at the time it was sent. */
+static void find_first(const row_t *row)
+{
+    size_t count;
+    const served_t *served = sensor_served_lately(&count);
+    size_t older = sensor_served_count() - count;
+    first = *row;
+    if (count == 0) {
+        return;
+    }
+    size_t i = count;
+    while (i > 1 && i + LOOK_BACK > count && memcmp(served[i - 1].lsb, row->lsb, sizeof row->lsb) != 0) {
+        i--;
+    }
+    bool found = memcmp(served[i - 1].lsb, row->lsb, sizeof row->lsb) == 0;
+    i = found ? i : count;
+    first_number = older + i;
+    first_cycle = served[i - 1].cycle;
+}
+
+/* The rows' own time stamps measure the distance; a lost remainder shorter than one row is not seen. */
+static void extend(class_t *rows, const row_t *row)
+{
+    uint64_t span_us = row->t_us - first.t_us;
+    uint64_t until = first_cycle + (uint64_t)(((double)span_us + sensor_period_us() / 2.0) * CYCLES_PER_US);
+    size_t number = served_until(until);
+    rows->rows++;
+    rows->samples = number > first_number ? number - first_number : 0;
+}
+
+void rows_take(const row_t *row)
+{
+    if (row_count == 0) {
+        stats_streaming_begins();
+        find_first(row);
+    } else {
+        uint32_t step = (row->t_us - last.t_us + STEP_UNIT_US / 2) / STEP_UNIT_US;
+        steps[step < STEPS ? step : STEPS - 1]++;
+    }
+    last = *row;
+    row_count++;
+    gated += (row->flags & FLAG_GATED) != 0;
+    coasted += (row->flags & FLAG_COASTED) != 0;
+    faulty += (row->flags & FLAG_FAULT) != 0;
+    extend(&all, row);
+    if ((row->flags & (FLAG_COASTED | FLAG_FAULT)) == 0) {
+        extend(&measured, row);
+    }
+}
+
+size_t rows_count(void)
+{
+    return row_count;
+}
+
+/* Median time from row to row in samples of the last rate in force: the `every` that was in force. */
+static unsigned every_seen(void)
+{
+    double period_us = sensor_period_us();
+    if (row_count < 2 || period_us <= 0.0) {
+        return 1;
+    }
+    size_t below = 0;
+    uint32_t step = 0;
+    while (below + steps[step] <= (row_count - 2) / 2) {
+        below += steps[step++];
+    }
+    double every = (double)step * STEP_UNIT_US / period_us + 0.5;
+    return every < 1.0 ? 1 : (unsigned)every;
+}
+
+/*
+ * Samples served from that of the first row to that of the last one that is no prediction, less those the rows stand
+ * for. Only for a run at one rate without resets or faults: the file of --served is the judge.
+ */
+static size_t lost(unsigned every)
+{
+    const class_t *rows = every > 1 ? &all : &measured;
+    size_t shown = rows->rows < 2 ? rows->samples : (rows->rows - 1) * every;
+    return rows->samples > shown ? rows->samples - shown : 0;
+}
+
+void rows_print(FILE *json)
+{
+    unsigned every = every_seen();
+    fprintf(json, "  \"rows\": %zu,\n  \"every\": %u,\n  \"lost\": %zu,\n", row_count, every, lost(every));
+    fprintf(json, "  \"gated\": %zu,\n  \"coasted\": %zu,\n  \"fault_rows\": %zu,\n", gated, coasted, faulty);
+}
