@@ -14,6 +14,7 @@
 #include "hal_sleep.h"
 #include "hal_time.h"
 #include "hal_uart.h"
+#include "hal_watchdog.h"
 #include "hang_test.h"
 #include "health.h"
 #include "pipeline.h"
@@ -25,6 +26,12 @@
 /* The banner at 9600 baud takes 0.4 s; the ring at 9600 baud drains in 0.27 s. */
 #define HOLD_LIMIT_US 1000000ul
 #define SERVICE_US 4000ul
+
+/*
+ * What hung so often in a row, each time within SETTLED_S of its start, hangs again: it gets the lowest rate, at which
+ * the processor has most time for everything else. Settings are not kept over a reset, so there are no others to undo.
+ */
+enum { RESETS_TO_SAFE = 3, SETTLED_S = 10 };
 
 enum { WHOLE_LOOP = 0x80 };
 
@@ -51,6 +58,11 @@ static void start_sensor(void)
     adxl345_start(&config);
 }
 
+bool app_is_safe(void)
+{
+    return hal_reset_repeats() >= RESETS_TO_SAFE;
+}
+
 void app_start(void)
 {
     settings_defaults();
@@ -65,6 +77,10 @@ void app_start(void)
     rows_start();
     pipeline_reset();
     health_start();
+    if (app_is_safe()) {
+        settings.rate_dhz = SETTINGS_RATE_MIN_DHZ;
+        settings_follow();
+    }
     health_pause_filtering(hal_time_us() + HOLD_LIMIT_US);
     hal_irq_enable();
     next_service_us = hal_time_us();
@@ -177,6 +193,9 @@ static void count_seconds(uint32_t now_us)
     if (hal_time_reached(now_us, next_second_us)) {
         next_second_us += 1000000ul;
         count(COUNT_SECONDS);
+        if ((uint8_t)counters[COUNT_SECONDS] == SETTLED_S) { /* and again later: no harm */
+            hal_reset_settled();
+        }
     }
 }
 

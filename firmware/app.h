@@ -10,6 +10,9 @@
 
 void app_start(void);
 
+/* The watchdog brought so many resets in a row that this run began at the lowest rate, and it has not lasted yet. */
+bool app_is_safe(void);
+
 /* Does all the work there is, then sleeps until there is more. */
 void app_pass(void);
 

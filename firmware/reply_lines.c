@@ -4,6 +4,7 @@
 #include <stdbool.h>
 
 #include "adxl345.h"
+#include "app.h"
 #include "counters.h"
 #include "filter_any.h"
 #include "flash.h"
@@ -159,6 +160,9 @@ static void say_on(uint8_t what)
         break;
     case SAY_THEN_CAUSE:
         said.next = (uint8_t)(TEXT_POWER_ON + hal_reset_cause());
+        break;
+    case SAY_THEN_SAFE:
+        said.next = app_is_safe() ? TEXT_SAFE : TEXT_NONE;
         break;
     case SAY_THEN_LEGAL:
         said.next = (uint8_t)(TEXT_LEGAL_FILTER - REPLY_FILTER + said.subject);

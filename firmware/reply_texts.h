@@ -33,12 +33,13 @@
 #define V_MORE "\x14"
 #define V_MORE_IF_FORCED "\x15"
 #define V_THEN_CAUSE "\x16"
-#define V_THEN_LEGAL "\x17"
-#define V_THEN_FAULT "\x18"
-#define V_THEN_STATE "\x19"
-#define V_THEN_WHY "\x1A"
-#define V_THEN_MODE "\x1B"
-#define V_THEN_REST "\x1C"
+#define V_THEN_SAFE "\x17"
+#define V_THEN_LEGAL "\x18"
+#define V_THEN_FAULT "\x19"
+#define V_THEN_STATE "\x1A"
+#define V_THEN_WHY "\x1B"
+#define V_THEN_MODE "\x1C"
+#define V_THEN_REST "\x1D"
 
 enum say {
     SAY_COUNT = 1, /* numbers: the next of the counters of the firmware, then of the driver */
@@ -62,6 +63,7 @@ enum say {
     SAY_MORE,           /* another line follows */
     SAY_MORE_IF_FORCED, /* it follows if another `every` is in force than was asked for */
     SAY_THEN_CAUSE,     /* goes on in another text: one for each cause of a reset */
+    SAY_THEN_SAFE,      /* in a text on safe settings, if they are in force */
     SAY_THEN_LEGAL,     /* ... setting */
     SAY_THEN_FAULT,     /* ... fault code */
     SAY_THEN_STATE,     /* ... phase of the driver */
@@ -173,7 +175,8 @@ enum say {
     X(POWER_ON, "power on")                                                                                           \
     X(EXTERNAL, "reset button or serial port opened")                                                                 \
     X(BROWN_OUT, W_SUPPLY " dropped")                                                                                 \
-    X(WATCHDOG, "watchdog, waiting for stage mask " V_NOTE " (1 sampling, 2 " W_FILTER "ing, 4 output)")              \
+    X(WATCHDOG, "watchdog, waiting for stage mask " V_NOTE " (1 sampling, 2 " W_FILTER "ing, 4 output)" V_THEN_SAFE)  \
+    X(SAFE, ", again and again: safe settings")                                                                       \
     X(STATE_STOPPED, W_STOP "ped" V_THEN_REST)                                                                        \
     X(STATE_STARTING, "starting" V_THEN_REST)                                                                         \
     X(STATE_STREAMING, "streaming" V_THEN_REST)                                                                       \

@@ -2,13 +2,18 @@
  * Watchdog (250 ms, reset only) and the cause of the last reset.
  *
  * The UNO's bootloader clears MCUSR before the application runs, so the cause is told by a breadcrumb in RAM that no
- * start-up code clears: a mark, the time since the last feed, and a note of the application.
+ * start-up code clears: a mark, the time since the last feed, a note of the application, and how many watchdog resets
+ * there were in a row. Behind a bootloader it cannot tell a supply that dropped, but not so far that RAM forgot, from
+ * the reset button.
  *
  *   void hal_watchdog_start(void)             main, once
  *   void hal_watchdog_feed(void)              main, in one place only
  *   void hal_watchdog_note(uint8_t note)      what main was waiting for; survives the reset (main)
  *   hal_reset_t hal_reset_cause(void)         of the start of this run (any context)
  *   uint8_t hal_reset_note(void)              the note left by the run before; 0 after power-on
+ *   uint8_t hal_reset_repeats(void)           watchdog resets in a row, this start's included, saturating; 0 after
+ *                                             another cause (any context)
+ *   void hal_reset_settled(void)              this run lasts: the next watchdog reset counts as the first (main)
  */
 #ifndef HAL_WATCHDOG_H
 #define HAL_WATCHDOG_H
@@ -46,6 +51,18 @@ static inline hal_reset_t hal_reset_classify(uint8_t mcusr, bool mark_intact, ui
         return HAL_RESET_POWER_ON;
     }
     return unfed_ticks >= 25u ? HAL_RESET_WATCHDOG : HAL_RESET_EXTERNAL;
+}
+
+/* Watchdog resets in a row, from the cause of this start and what the breadcrumb counted before. */
+static inline uint8_t hal_reset_count(hal_reset_t cause, bool mark_intact, uint8_t before)
+{
+    if (cause != HAL_RESET_WATCHDOG) {
+        return 0;
+    }
+    if (!mark_intact) {
+        return 1;
+    }
+    return before == UINT8_MAX ? before : (uint8_t)(before + 1u);
 }
 
 #include "hal_port.h"

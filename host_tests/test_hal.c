@@ -105,6 +105,18 @@ static void test_reset_cause_from_the_breadcrumb(void)
     TEST_ASSERT_EQUAL(HAL_RESET_EXTERNAL, hal_reset_classify(0, true, 3));
 }
 
+/* RAM that lost its content counts nothing; a saturated count does not begin anew. */
+static void test_watchdog_resets_in_a_row_are_counted(void)
+{
+    TEST_ASSERT_EQUAL_UINT8(1, hal_reset_count(HAL_RESET_WATCHDOG, true, 0));
+    TEST_ASSERT_EQUAL_UINT8(3, hal_reset_count(HAL_RESET_WATCHDOG, true, 2));
+    TEST_ASSERT_EQUAL_UINT8(1, hal_reset_count(HAL_RESET_WATCHDOG, false, 77));
+    TEST_ASSERT_EQUAL_UINT8(255, hal_reset_count(HAL_RESET_WATCHDOG, true, 255));
+    TEST_ASSERT_EQUAL_UINT8(0, hal_reset_count(HAL_RESET_EXTERNAL, true, 2));
+    TEST_ASSERT_EQUAL_UINT8(0, hal_reset_count(HAL_RESET_BROWN_OUT, true, 2));
+    TEST_ASSERT_EQUAL_UINT8(0, hal_reset_count(HAL_RESET_POWER_ON, true, 2));
+}
+
 static void test_watchdog_bites_after_250_ms(void)
 {
     hal_watchdog_start();
@@ -153,6 +165,7 @@ int main(void)
     RUN_TEST(test_wake_before_sleep_is_not_lost);
     RUN_TEST(test_reset_cause_from_mcusr);
     RUN_TEST(test_reset_cause_from_the_breadcrumb);
+    RUN_TEST(test_watchdog_resets_in_a_row_are_counted);
     RUN_TEST(test_watchdog_bites_after_250_ms);
     RUN_TEST(test_eeprom_is_busy_for_a_write);
     RUN_TEST(test_receive_ring_counts_what_it_loses);

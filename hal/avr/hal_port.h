@@ -143,6 +143,8 @@ void hal_watchdog_feed(void);
 void hal_watchdog_note(uint8_t note);
 uint8_t hal_watchdog_cause(void);
 uint8_t hal_reset_note(void);
+uint8_t hal_reset_repeats(void);
+void hal_reset_settled(void);
 void hal_watchdog_tick_isr(void);
 #define hal_reset_cause() ((hal_reset_t)hal_watchdog_cause())
 

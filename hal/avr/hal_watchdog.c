@@ -12,6 +12,7 @@ static struct {
     uint32_t mark;
     volatile uint8_t unfed_ticks;
     uint8_t note;
+    uint8_t repeats;
 } breadcrumb __attribute__((section(".noinit")));
 
 static uint8_t mcusr_at_start __attribute__((section(".noinit")));
@@ -34,6 +35,7 @@ void hal_watchdog_start(void)
     breadcrumb.mark = MARK;
     breadcrumb.unfed_ticks = 0;
     breadcrumb.note = 0;
+    breadcrumb.repeats = hal_reset_count((hal_reset_t)cause, intact, breadcrumb.repeats);
     wdt_enable(WDTO_250MS);
 }
 
@@ -56,6 +58,16 @@ uint8_t hal_watchdog_cause(void)
 uint8_t hal_reset_note(void)
 {
     return note_at_start;
+}
+
+uint8_t hal_reset_repeats(void)
+{
+    return breadcrumb.repeats;
+}
+
+void hal_reset_settled(void)
+{
+    breadcrumb.repeats = 0;
 }
 
 void hal_watchdog_tick_isr(void)

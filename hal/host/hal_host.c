@@ -31,6 +31,7 @@ static uint64_t bitten_at;
 static uint8_t reset_cause;
 static uint8_t note;
 static uint8_t note_before;
+static uint8_t repeats;
 static uint8_t eeprom[HAL_EEPROM_SIZE];
 static uint64_t eeprom_ready_at;
 static bool led;
@@ -61,6 +62,7 @@ void hal_host_reset_mcu(uint8_t cause)
     reset_cause = cause;
     note_before = cause == HAL_RESET_POWER_ON ? 0 : note;
     note = 0;
+    repeats = hal_reset_count((hal_reset_t)cause, true, repeats);
     eeprom_ready_at = 0;
     led = false;
     host_i2c_begin();
@@ -239,6 +241,16 @@ uint8_t hal_watchdog_cause(void)
 uint8_t hal_reset_note(void)
 {
     return note_before;
+}
+
+uint8_t hal_reset_repeats(void)
+{
+    return repeats;
+}
+
+void hal_reset_settled(void)
+{
+    repeats = 0;
 }
 
 bool hal_eeprom_ready(void)
