@@ -267,6 +267,14 @@ static void service(uint32_t now_us)
     health_pass(now_us);
 }
 
+static void set_alarm(void)
+{
+    uint32_t t_us;
+    if (adxl345_alarm_us(&t_us)) {
+        hal_wake_at(t_us);
+    }
+}
+
 void app_pass(void)
 {
     uint32_t now_us = hal_time_us();
@@ -283,5 +291,6 @@ void app_pass(void)
         next_service_us = now_us + SERVICE_US;
         service(now_us);
     }
+    set_alarm();
     hal_sleep_until_wake();
 }

@@ -189,7 +189,9 @@ enum say {
     X(BUS_FAULT, "I2C bus stuck or disturbed" W_CHECK "SDA, SCL" W_PULL_UPS)                                          \
     X(READ_BACK, "a register does" W_NOT "keep its value" W_CHECK W_SUPPLY ", bus")                                   \
     X(INT1_SILENT, W_THE W_SENSOR " has data, but INT1 does" W_NOT "rise" W_CHECK "INT1" W_TO "D2")                   \
-    X(NO_DATA, W_THE W_SENSOR " " W_STOP "ped measuring: power" W_LOST "?")
+    X(NO_DATA, W_THE W_SENSOR " " W_STOP "ped measuring: power" W_LOST "?")                                           \
+    X(SCL_LOW, "SCL held low" W_CHECK "SCL" W_TO "A5")                                                                \
+    X(SDA_LOW, "SDA held low" W_CHECK "SDA" W_TO "A4")
 
 #define REPLY_TEXT_ID(name, words) TEXT_##name,
 enum reply_text { REPLY_TEXTS(REPLY_TEXT_ID) TEXT_NONE };

@@ -13,20 +13,20 @@
 
 #define HELD_ROW_US 100000ul
 
-static uint8_t told;      /* fault code of the last line, NONE when all is well */
-static uint8_t told_mask; /* codes told since the fault began: each once */
+static uint8_t told;       /* fault code of the last line, NONE when all is well */
+static uint16_t told_mask; /* codes told since the fault began: each once */
 static uint32_t next_row_us;
 
 void sensor_watch_start(uint32_t now_us)
 {
     told = (uint8_t)adxl345_fault();
-    told_mask = (uint8_t)(1u << told);
+    told_mask = (uint16_t)(1u << told);
     next_row_us = now_us + HELD_ROW_US;
 }
 
 static void tell(uint8_t fault)
 {
-    uint8_t bit = (uint8_t)(1u << fault);
+    uint16_t bit = (uint16_t)(1u << fault);
     if (fault == ADXL345_FAULT_NONE) {
         if (replies_add(REPLY_FAULT_END, told)) {
             told = ADXL345_FAULT_NONE;

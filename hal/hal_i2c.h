@@ -6,9 +6,11 @@
  *   void hal_i2c_enable(bool fast)          take the pins; SCL 363.6 kHz (tLOW 1.375 us, in the ADXL345's spec), or
  *                                           400 kHz if fast
  *   void hal_i2c_disable(void)              release the pins at once; whatever ran is abandoned
- *   void hal_i2c_clear(void)                while disabled: clock a slave that holds SDA out of its byte, at most 16
- *                                           clocks of 10 us (UM10204 3.1.16); a reset of the MCU in the middle of a
- *                                           read leaves it so
+ *   uint8_t hal_i2c_clear(void)             while disabled, interrupts on: clock a slave that holds SDA out of its
+ *                                           byte, at most 16 clocks of 15 us (UM10204 3.1.16), and give a STOP by hand; a
+ *                                           reset of the MCU in the middle of a read leaves it so. Says which line is
+ *                                           low then, or HAL_I2C_FREE; gives no clock to an SCL that is low; never
+ *                                           drives a line high
  *   void hal_i2c_start(void)                ask for a START or repeated START
  *   void hal_i2c_send(uint8_t byte)         send an address or data byte
  *   void hal_i2c_receive(bool ack)          clock one byte in and answer it with ACK or NACK
@@ -40,6 +42,9 @@ enum hal_i2c_status {
     HAL_I2C_RECEIVED_NACK = 0x58,
     HAL_I2C_NOTHING = 0xF8
 };
+
+/* The bus while no master uses it. */
+enum hal_i2c_lines { HAL_I2C_FREE, HAL_I2C_SCL_LOW, HAL_I2C_SDA_LOW };
 
 #include "hal_port.h"
 

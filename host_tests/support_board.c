@@ -5,7 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "adxl345.h"
 #include "app.h"
+#include "hal_sleep.h"
+#include "hal_time.h"
 
 board_t board;
 
@@ -77,6 +80,15 @@ void board_run_ms(double ms)
     while (hal_host_now_ms() < end_ms && hal_host_watchdog_bite() == 0) {
         app_pass();
     }
+}
+
+void board_driver_sleep(void)
+{
+    uint32_t t_us;
+    if (adxl345_alarm_us(&t_us)) {
+        hal_wake_at(t_us);
+    }
+    hal_sleep_until_wake();
 }
 
 void board_type(const char *text)

@@ -40,6 +40,9 @@ void board_start_resting(void);
 /* Run for so many virtual milliseconds, or until the watchdog bites. */
 void board_run_ms(double ms);
 
+/* For a main of its own around the driver: sleeps as app_pass does, with the driver's alarm set. */
+void board_driver_sleep(void);
+
 /* Type a line (the newline is added). */
 void board_type(const char *line);
 

@@ -203,6 +203,21 @@ def bus_probe(*options):
 
 
 @test
+def line_held_low_is_told_by_its_name_and_never_driven_high():
+    """Both lines at phases of a sample: its own code, rows again in time, at most 16 clocks by hand and none into an SCL that is low."""
+    for phase in range(8):
+        for line, code in (("scl", 7), ("sda", 8)):
+            at_ms = 1000 + 1.3 * phase
+            _, notes, _, told = simrun(f"line-{line}", REST, "--fault", f"{at_ms:.1f}ms:{line}:60", "--max-ms", "1400")
+            begun = [note for note in notes if note.startswith("# fault") and "over" not in note]
+            assert len(begun) == 1 and begun[0].startswith(f"# fault {code}: {line.upper()} held low"), (phase, notes)
+            assert f"# fault {code} over: samples again" in notes, (phase, notes)
+            assert told["fault_1_recovered"] == 1 and told["i2c_driven_high"] is False, told
+            assert told["i2c_hand_clocks_max"] == (16 if line == "sda" else 1), told["i2c_hand_clocks_max"]
+            assert told["i2c_hand_stops"] >= 2, "one before first use, one when the line is free again"
+
+
+@test
 def lines_moved_by_hand_are_clocks_starts_and_stops():
     """DEVID is 11100101: left after two bits, the slave goes on with 100101 and the 1 of its acknowledge slot, until START or STOP."""
     said, told = bus_probe()

@@ -146,6 +146,33 @@ static void test_wires_off_are_told_as_a_missing_sensor(void)
     }
 }
 
+/* A line is low from a moment between two samples: known 3 ms after the next one began, told with its name and wire. */
+static void test_a_line_that_is_low_is_told(void)
+{
+    for (unsigned phase = 0; phase < 20; phase++) {
+        bool scl = (phase & 1u) != 0;
+        board_start_resting();
+        board_run_ms(500.0 + phase * 0.5);
+        size_t before = board.note_count;
+        hal_host_faults.scl_low = scl;
+        hal_host_faults.sda_low = !scl;
+        double low_ms = hal_host_now_ms();
+        while (adxl345_fault() == ADXL345_FAULT_NONE) {
+            TEST_ASSERT_TRUE(hal_host_now_ms() - low_ms < 10.0 + 3.5);
+            board_run_ms(0.1);
+        }
+        board_run_ms(100);
+        TEST_ASSERT_EQUAL_size_t(
+            1, board_notes_with(scl ? "# fault 7: SCL held low: check SCL to A5" :
+                                      "# fault 8: SDA held low: check SDA to A4", before));
+        TEST_ASSERT_EQUAL_size_t(1, board_notes_with("fault", before));
+        hal_host_faults.scl_low = false;
+        hal_host_faults.sda_low = false;
+        board_run_ms(100);
+        TEST_ASSERT_EQUAL_size_t(1, board_notes_with(scl ? "# fault 7 over" : "# fault 8 over", before));
+    }
+}
+
 static void test_ten_minutes_without_a_sensor(void)
 {
     board_start_resting();
@@ -256,6 +283,7 @@ int main(void)
     RUN_TEST(test_stop_at_any_moment_of_a_recovery_is_silent);
     RUN_TEST(test_stop_and_go_at_once_during_a_fault_do_not_call_it_over);
     RUN_TEST(test_wires_off_are_told_as_a_missing_sensor);
+    RUN_TEST(test_a_line_that_is_low_is_told);
     RUN_TEST(test_ten_minutes_without_a_sensor);
     RUN_TEST(test_ten_minutes_stopped);
     RUN_TEST(test_slowest_rate_and_largest_every);

@@ -1,16 +1,33 @@
-/* The one I2C verb that is more than a register access: getting a slave to let go of SDA. */
+/*
+ * The one I2C verb that is more than a register access: getting a slave to let go of SDA, with a STOP by hand. Each
+ * clock also pulls SDA while SCL is low and lets go of it while SCL is high, which is a STOP as soon as the slave lets
+ * SDA rise; so there is no need to know at which bit the slave stands, and no clock beyond those it needs.
+ */
 #include "hal_i2c.h"
 
 #include <util/delay.h>
 
-enum { CLOCKS_MAX = 16, HALF_CLOCK_US = 5 };
+enum { CLOCKS_MAX = 16, STEP_US = 5 }; /* STEP_US: rise of a line with 10 kOhm and 400 pF */
 
-void hal_i2c_clear(void)
+uint8_t hal_i2c_clear(void)
 {
-    for (uint8_t clocks = CLOCKS_MAX; clocks != 0 && !(PINC & _BV(PC4)); clocks--) {
+    for (uint8_t clocks = 0;; clocks++) {
+        _delay_us(STEP_US);
+        uint8_t lines = PINC;
+        if (!(lines & _BV(PC5))) {
+            return HAL_I2C_SCL_LOW;
+        }
+        if ((lines & _BV(PC4)) && clocks != 0) {
+            return HAL_I2C_FREE;
+        }
+        if (clocks == CLOCKS_MAX) {
+            return HAL_I2C_SDA_LOW;
+        }
         DDRC |= _BV(PC5);
-        _delay_us(HALF_CLOCK_US);
+        DDRC |= _BV(PC4);
+        _delay_us(STEP_US);
         DDRC &= (uint8_t)~_BV(PC5);
-        _delay_us(HALF_CLOCK_US);
+        _delay_us(STEP_US);
+        DDRC &= (uint8_t)~_BV(PC4);
     }
 }

@@ -50,7 +50,7 @@ static inline void hal_i2c_disable(void)
 }
 
 /* SDA is PC4, SCL PC5. Open drain by the direction register, the port bits stay 0: never drives high. */
-void hal_i2c_clear(void);
+uint8_t hal_i2c_clear(void);
 
 static inline void hal_i2c_start(void)
 {

@@ -47,6 +47,7 @@ void hal_host_begin(const hal_host_config_t *config, const stream_t *stream, boo
     hal_host_faults.next_status = -1;
     memset(eeprom, 0xFF, sizeof eeprom);
     host_sensor_begin(stream, loop);
+    host_i2c_power_on();
     hal_host_reset_mcu(HAL_RESET_POWER_ON);
 }
 

@@ -25,7 +25,9 @@ typedef struct {
 
 /* The bus and wiring faults a test can set at any time. */
 typedef struct {
-    bool bus_stuck;              /* a line is held low: nothing ever completes */
+    bool scl_low;                /* held low from outside: nothing ever completes */
+    bool sda_low;                /* the same */
+    bool stop_stuck;             /* a STOP does not get out, until the pins are given back */
     uint8_t hang_clocks;         /* a slave holds SDA low until it has seen so many clocks */
     bool int1_cut;               /* INT1 does not reach D2 */
     uint8_t write_lost_register; /* writes to this register do not reach the sensor; 0: all do */
@@ -58,6 +60,10 @@ void hal_host_type(const char *text);
 uint64_t hal_host_now(void);
 bool hal_host_stream_over(void);
 uint64_t hal_host_watchdog_bite(void);
+
+/* Clocks given by hand and STOPs by hand, since power-on. */
+uint32_t hal_host_hand_clocks(void);
+uint32_t hal_host_hand_stops(void);
 
 /* Milliseconds of virtual time. */
 double hal_host_now_ms(void);

@@ -15,6 +15,9 @@ static struct {
     unsigned bit_cycles;
 } i2c;
 
+static uint32_t hand_clocks;
+static uint32_t hand_stops;
+
 void host_i2c_begin(void)
 {
     if (i2c.in_transfer) {
@@ -30,12 +33,24 @@ void host_i2c_begin(void)
     i2c.bit_cycles = CYCLES_PER_BIT;
 }
 
+void host_i2c_power_on(void)
+{
+    hand_clocks = 0;
+    hand_stops = 0;
+}
+
+static bool sda_low(void)
+{
+    return hal_host_faults.sda_low || hal_host_faults.hang_clocks != 0;
+}
+
 uint64_t host_i2c_next(void)
 {
-    if (hal_host_faults.bus_stuck || hal_host_faults.hang_clocks != 0) {
+    if (hal_host_faults.scl_low || sda_low()) {
         return HOST_NEVER;
     }
-    return i2c.done_at < i2c.stop_at ? i2c.done_at : i2c.stop_at;
+    uint64_t stop_at = hal_host_faults.stop_stuck ? HOST_NEVER : i2c.stop_at;
+    return i2c.done_at < stop_at ? i2c.done_at : stop_at;
 }
 
 static void give(command_t command, unsigned bits)
@@ -59,15 +74,43 @@ void hal_i2c_disable(void)
     i2c.bit_cycles = bit_cycles;
 }
 
-void hal_i2c_clear(void)
+static uint8_t clock_by_hand(void)
 {
-    for (uint8_t clocks = CLEAR_CLOCKS_MAX; clocks != 0 && hal_host_faults.hang_clocks != 0; clocks--) {
-        hal_host_faults.hang_clocks--;
+    if (hal_host_faults.scl_low) {
+        return HAL_I2C_SCL_LOW;
     }
+    for (unsigned clocks = 0; clocks < CLEAR_CLOCKS_MAX; clocks++) {
+        hand_clocks++;
+        if (hal_host_faults.hang_clocks != 0) {
+            hal_host_faults.hang_clocks--;
+        }
+        if (!sda_low()) {
+            hand_stops++;
+            adxl345_model_stop(&hal_host_sensor);
+            return HAL_I2C_FREE;
+        }
+    }
+    return HAL_I2C_SDA_LOW;
+}
+
+uint8_t hal_i2c_clear(void)
+{
+    uint8_t lines = clock_by_hand();
     if (host_config.on_bus_clear != NULL) {
         host_config.on_bus_clear();
         host_drdy_serve();
     }
+    return lines;
+}
+
+uint32_t hal_host_hand_clocks(void)
+{
+    return hand_clocks;
+}
+
+uint32_t hal_host_hand_stops(void)
+{
+    return hand_stops;
 }
 
 void hal_i2c_start(void)
@@ -161,7 +204,7 @@ static uint8_t command_step(command_t command)
 
 void host_i2c_step(void)
 {
-    if (i2c.stop_at <= host_now) {
+    if (i2c.stop_at <= host_now && !hal_host_faults.stop_stuck) {
         i2c.stop_at = HOST_NEVER;
         i2c.stop_pending = false;
         i2c.in_transfer = false;

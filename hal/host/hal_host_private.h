@@ -14,6 +14,7 @@ void host_drdy_serve(void);
 
 /* hal_host_i2c.c */
 void hal_host_i2c_handler(void);
+void host_i2c_power_on(void);
 void host_i2c_begin(void);
 uint64_t host_i2c_next(void);
 void host_i2c_step(void);

@@ -16,7 +16,7 @@ void hal_irq_enable(void);
     void hal_host_i2c_handler(void)
 void hal_i2c_enable(bool fast);
 void hal_i2c_disable(void);
-void hal_i2c_clear(void);
+uint8_t hal_i2c_clear(void);
 void hal_i2c_start(void);
 void hal_i2c_send(uint8_t byte);
 void hal_i2c_receive(bool ack);

@@ -184,7 +184,9 @@ static void operate(fuzz_input_t *in)
         run_ms(value * 0.5, false);
         break;
     case 6:
-        hal_host_faults.bus_stuck = (value & 1) != 0;
+        hal_host_faults.scl_low = (value & 1) != 0;
+        hal_host_faults.sda_low = (value & 2) != 0;
+        hal_host_faults.stop_stuck = (value & 4) != 0;
         break;
     case 7:
         hal_host_faults.hang_clocks = value % 40;

@@ -1,10 +1,12 @@
 /*
- * The driver's state machine. Each step issues at most one register access, and has a deadline; adxl345_poll looks at
- * the result and goes on. All in main; the interrupts are in adxl345_burst.c.
+ * The driver's state machine; what it tells of itself is in adxl345_tell.c. Each step issues at most one register
+ * access, and has a deadline; adxl345_poll looks at the result and goes on. All in main; the interrupts are in
+ * adxl345_burst.c.
  */
 #include "adxl345.h"
 
 #include "adxl345_burst.h"
+#include "adxl345_driver.h"
 #include "adxl345_registers.h"
 #include "adxl345_table.h"
 #include "hal_drdy.h"
@@ -14,69 +16,25 @@
 /* A register access takes under 0.2 ms, a burst under 0.4 ms. */
 enum { TRANSFER_LIMIT_MS = 3, DRAIN_LIMIT_MS = 100, BACK_OFF_MIN_MS = 5, BACK_OFF_MAX_MS = 25 };
 
+#define MARGIN_US 3000u
 #define TURN_ON_MS 20u /* p. 5: period + 1.1 ms, with room for a slow start */
-#define MARGIN_MS 3u
 #define BURST_TRIES 3u
-#define SILENCE_MAX_MS 160u
+#define TRANSFER_LIMIT_US (TRANSFER_LIMIT_MS * INT32_C(1000))
+#define LOOK_US 500ul /* behind the moment when a sample was due, and again and again while none comes */
 
-typedef enum {
-    STEP_OFF,
-    STEP_PROBE,
-    STEP_CONFIGURE,
-    STEP_READ_BACK,
-    STEP_MEASURE,
-    STEP_STREAM,
-    STEP_ASK_SOURCE, /* no data in time: does the sensor have some? */
-    STEP_QUIET_STANDBY,
-    STEP_QUIET_DRAIN,
-    STEP_BACK_OFF
-} step_t;
+adxl345_driver_t driver;
 
-static struct {
-    adxl345_config_t config;
-    adxl345_counters_t counters;
-    uint32_t now_us; /* of the poll or call that runs */
-    uint32_t deadline_us;
-    uint32_t nominal_us; /* between samples, for the configured rate */
-    uint8_t back_off_ms;
-    uint8_t silence_ms; /* without a sample until the sensor is asked */
-    uint8_t step;
-    uint8_t row; /* of settings */
-    uint8_t address;
-    uint8_t device_id;
-    uint8_t fault;
-    uint8_t seen_successes;
-    bool issued; /* the step's register access is on the bus */
-    bool first_sample_seen;
-    bool stop_wanted; /* after quiescing: stop, not start */
-    bool alternate_tried;
-} driver;
-
-/* Three missing samples, but never so long that the watchdog (250 ms) could take the silence for a hang. */
-static uint8_t silence_limit_ms(uint16_t rate_dhz)
+static void set_limit(uint8_t limit_ms)
 {
-    uint16_t limit_ms = (uint16_t)(30000u / rate_dhz);
-    return (uint8_t)(MARGIN_MS + (limit_ms > SILENCE_MAX_MS ? SILENCE_MAX_MS : limit_ms));
+    driver.deadline_us = driver.now_us + (uint32_t)limit_ms * 1000u;
 }
 
-static void saturating_add(uint16_t *counter)
-{
-    if (*counter != UINT16_MAX) {
-        (*counter)++;
-    }
-}
-
-static void enter(step_t step, uint16_t limit_ms)
+static void enter(step_t step, uint8_t limit_ms)
 {
     driver.step = (uint8_t)step;
     driver.issued = false;
-    driver.deadline_us = driver.now_us + (uint32_t)limit_ms * 1000u;
+    set_limit(limit_ms);
     hal_wake();
-}
-
-static void expect_sample(void)
-{
-    driver.deadline_us = driver.now_us + (uint32_t)driver.silence_ms * 1000u;
 }
 
 static bool deadline_passed(void)
@@ -106,16 +64,23 @@ static void fail(adxl345_fault_t fault)
     }
 }
 
-static void take_bus(void)
+/* False when somebody holds a line low: that is a fault then. */
+static bool take_bus(void)
 {
-    burst_take_bus(driver.address, driver.config.rate_dhz == 8000);
+    uint8_t lines = burst_take_bus(driver.address, driver.config.rate_dhz == 8000);
+    if (lines == HAL_I2C_FREE) {
+        return true;
+    }
+    saturating_add(&driver.counters.bus_faults);
+    fail((adxl345_fault_t)(ADXL345_FAULT_SCL_LOW - HAL_I2C_SCL_LOW + lines));
+    return false;
 }
 
 static void probe(void)
 {
     burst_set_mode(BURST_IGNORE);
-    take_bus();
     enter(STEP_PROBE, TRANSFER_LIMIT_MS);
+    (void)take_bus();
 }
 
 void adxl345_init(void)
@@ -142,7 +107,6 @@ void adxl345_start(const adxl345_config_t *config)
     bool quiescing = quiesce();
     driver.config = *config;
     driver.nominal_us = table_period_us(config->rate_dhz);
-    driver.silence_ms = silence_limit_ms(config->rate_dhz);
     driver.stop_wanted = false;
     driver.back_off_ms = BACK_OFF_MIN_MS;
     if (!quiescing) {
@@ -155,7 +119,7 @@ void adxl345_stop(void)
 {
     if (!quiesce()) {
         burst_set_mode(BURST_IGNORE);
-        burst_take_bus(driver.address, false);
+        (void)burst_take_bus(driver.address, false);
         stopped();
     }
     driver.stop_wanted = true;
@@ -197,12 +161,13 @@ static void give_up(i2c_bus_state_t state)
     }
 }
 
-static void access_failed(i2c_bus_state_t state)
+/* A transfer did not end, or did not even begin, in time. */
+static void timed_out(void)
 {
-    if (state == I2C_BUS_TIMEOUT) {
-        saturating_add(&driver.counters.timeouts);
+    saturating_add(&driver.counters.timeouts);
+    if (take_bus()) {
+        give_up(I2C_BUS_TIMEOUT);
     }
-    give_up(state);
 }
 
 static void start_measuring(void)
@@ -211,7 +176,8 @@ static void start_measuring(void)
     burst_set_period(driver.nominal_us);
     driver.first_sample_seen = false;
     driver.seen_successes = burst_successes();
-    enter(STEP_STREAM, (uint16_t)(TURN_ON_MS + 30000u / driver.config.rate_dhz));
+    burst_expect(driver.now_us + TURN_ON_MS * 1000ul);
+    enter(STEP_STREAM, 1);
 }
 
 static void read_back(void)
@@ -235,15 +201,25 @@ static void probed(void)
     enter(STEP_CONFIGURE, TRANSFER_LIMIT_MS);
 }
 
-/* INT1 may have risen just now. Ones of a sensor that is gone show in the bits of functions that are off. */
+/* Since the newest burst, or until the first is expected (negative). */
+static int32_t silent_for_us(void)
+{
+    return (int32_t)(driver.now_us - burst_begun_us());
+}
+
+/*
+ * INT1 may have risen just now. Ones of a sensor that is gone show in the bits of functions that are off. A sensor that
+ * has none ready may still come: that is a fault after three periods.
+ */
 static void source_asked(void)
 {
-    if (hal_drdy_high()) {
+    uint8_t source = burst_register_value() & (uint8_t)(ADXL345_INT_DATA_READY | ADXL345_INT_EVENTS);
+    bool may_come = source == 0 && silent_for_us() < (int32_t)(driver.nominal_us * 3u + MARGIN_US);
+    if (may_come || hal_drdy_high()) {
         burst_set_mode(BURST_READ);
-        enter(STEP_STREAM, driver.silence_ms);
+        enter(STEP_STREAM, 1);
         return;
     }
-    uint8_t source = burst_register_value() & (uint8_t)(ADXL345_INT_DATA_READY | ADXL345_INT_EVENTS);
     fail(source == ADXL345_INT_DATA_READY ? ADXL345_FAULT_INT1_SILENT : ADXL345_FAULT_NO_DATA);
 }
 
@@ -279,29 +255,25 @@ static void advance(void)
     }
 }
 
-/* A step with one register access. */
+/* A step with one register access: a limit for getting the bus, and the same again for the transfer. */
 static void access_step(void)
 {
-    if (!driver.issued) {
-        driver.issued = issue();
-        if (!driver.issued && deadline_passed()) {
-            take_bus();
-            access_failed(I2C_BUS_TIMEOUT);
-        }
+    i2c_bus_state_t state = I2C_BUS_BUSY;
+    if (driver.issued) {
+        state = burst_bus_state();
+    } else if (issue()) {
+        driver.issued = true;
+        set_limit(TRANSFER_LIMIT_MS);
         return;
-    }
-    i2c_bus_state_t state = burst_bus_state();
-    if (state == I2C_BUS_BUSY) {
-        if (!deadline_passed()) {
-            return;
-        }
-        take_bus();
-        state = I2C_BUS_TIMEOUT;
+    } else {
+        hal_wake(); /* the end of a STOP tells nobody */
     }
     if (state == I2C_BUS_OK) {
         advance();
-    } else {
-        access_failed(state);
+    } else if (state != I2C_BUS_BUSY) {
+        give_up(state);
+    } else if (deadline_passed()) {
+        timed_out();
     }
 }
 
@@ -315,29 +287,53 @@ static void sample_arrived(void)
     driver.first_sample_seen = true;
     driver.alternate_tried = false;
     driver.back_off_ms = BACK_OFF_MIN_MS;
-    expect_sample();
+    driver.deadline_us = driver.now_us + driver.nominal_us + LOOK_US;
+}
+
+/* A burst or the STOP behind it hangs: the sample is read again, unless a line that is low says why. */
+static void end_hung_burst(void)
+{
+    saturating_add(&driver.counters.timeouts);
+    if (take_bus()) {
+        saturating_add(&driver.counters.bus_faults);
+        enter(STEP_STREAM, 1);
+    }
+}
+
+/*
+ * No sample came by the time it was due: a burst may hang, or there was none for two periods, so that the sensor is
+ * asked. One that failed counts as a sign of life: three in a row are a fault by themselves.
+ */
+static void look_for_sample(void)
+{
+    int32_t since_us = silent_for_us();
+    if (burst_bus_taken()) {
+        if (since_us >= TRANSFER_LIMIT_US) {
+            end_hung_burst();
+        } else {
+            driver.deadline_us = driver.now_us + (uint32_t)(TRANSFER_LIMIT_US - since_us);
+        }
+    } else if (since_us >= (int32_t)(driver.nominal_us * 2u) && !burst_queue_full()) {
+        burst_set_mode(BURST_STAMP);
+        enter(STEP_ASK_SOURCE, TRANSFER_LIMIT_MS);
+    } else {
+        driver.deadline_us = driver.now_us + LOOK_US;
+    }
 }
 
 static void stream_step(void)
 {
-    if (burst_failures() < BURST_TRIES) { /* else the state of the last one is still wanted */
-        (void)burst_drain();
-    }
-    if (burst_running() && hal_time_reached(driver.now_us, burst_begun_us() + TRANSFER_LIMIT_MS * 1000ul)) {
-        take_bus();
-        saturating_add(&driver.counters.timeouts);
-        saturating_add(&driver.counters.bus_faults);
-    }
-    if (burst_queue_full()) {
-        expect_sample();
-    }
     if (burst_failures() >= BURST_TRIES) {
         give_up(burst_bus_state());
-    } else if (burst_successes() != driver.seen_successes) {
+        return;
+    }
+    if (burst_successes() != driver.seen_successes) {
         sample_arrived();
     } else if (deadline_passed()) {
-        burst_set_mode(BURST_STAMP);
-        enter(STEP_ASK_SOURCE, TRANSFER_LIMIT_MS);
+        look_for_sample();
+    }
+    if (burst_drain()) {
+        set_limit(TRANSFER_LIMIT_MS);
     }
 }
 
@@ -380,70 +376,4 @@ void adxl345_poll(uint32_t now_us)
         access_step();
         break;
     }
-}
-
-bool adxl345_take(adxl345_sample_t *out)
-{
-    burst_entry_t entry;
-    if (!burst_take(&entry)) {
-        return false;
-    }
-    if (!entry.exact) {
-        saturating_add(&driver.counters.samples_drained);
-    }
-    *out = entry.sample;
-    return true;
-}
-
-uint8_t adxl345_queued(void)
-{
-    return burst_queued();
-}
-
-adxl345_phase_t adxl345_phase(void)
-{
-    switch (driver.step) {
-    case STEP_OFF:
-        return ADXL345_STOPPED;
-    case STEP_BACK_OFF:
-        return ADXL345_FAULTY;
-    case STEP_QUIET_STANDBY:
-    case STEP_QUIET_DRAIN:
-        return ADXL345_QUIESCING;
-    case STEP_STREAM:
-    case STEP_ASK_SOURCE:
-        return driver.first_sample_seen ? ADXL345_STREAMING : ADXL345_STARTING;
-    default:
-        return ADXL345_STARTING;
-    }
-}
-
-adxl345_fault_t adxl345_fault(void)
-{
-    return (adxl345_fault_t)driver.fault;
-}
-
-uint32_t adxl345_deadline_us(void)
-{
-    return driver.deadline_us;
-}
-
-uint8_t adxl345_address(void)
-{
-    return driver.address;
-}
-
-uint8_t adxl345_device_id(void)
-{
-    return driver.device_id;
-}
-
-uint32_t adxl345_period_us(void)
-{
-    return burst_period_us();
-}
-
-void adxl345_counters(adxl345_counters_t *out)
-{
-    *out = driver.counters;
 }

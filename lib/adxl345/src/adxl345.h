@@ -33,10 +33,12 @@ typedef enum {
     ADXL345_FAULT_NONE = 0,
     ADXL345_FAULT_NO_SENSOR = 1,   /* no ACK at 0x53 nor at 0x1D */
     ADXL345_FAULT_WRONG_ID = 2,    /* somebody answers, but DEVID is not 0xE5 */
-    ADXL345_FAULT_BUS = 3,         /* a transfer did not end in time, or bus error, or arbitration lost */
+    ADXL345_FAULT_BUS = 3,         /* a transfer did not end in time on free lines, bus error, arbitration lost */
     ADXL345_FAULT_READ_BACK = 4,   /* a register does not hold what was written */
     ADXL345_FAULT_INT1_SILENT = 5, /* data are ready inside the sensor, but INT1 does not rise */
-    ADXL345_FAULT_NO_DATA = 6      /* the sensor answers but measures no more: it has lost power or its registers */
+    ADXL345_FAULT_NO_DATA = 6,     /* the sensor answers but measures no more: it has lost power or its registers */
+    ADXL345_FAULT_SCL_LOW = 7,     /* somebody holds SCL low */
+    ADXL345_FAULT_SDA_LOW = 8      /* somebody holds SDA low, and 16 clocks have not freed it */
 } adxl345_fault_t;
 
 typedef enum {
@@ -73,6 +75,9 @@ adxl345_fault_t adxl345_fault(void);
 
 /* The moment by which adxl345_poll must have acted: a poll later than this means that main is stuck. */
 uint32_t adxl345_deadline_us(void);
+
+/* The same for main, which passes it to hal_wake_at before it sleeps. False: none, the driver is stopped. */
+bool adxl345_alarm_us(uint32_t *t_us);
 
 /* 7-bit address that answered last (0x53 before any did), and the DEVID read there. */
 uint8_t adxl345_address(void);

@@ -135,14 +135,14 @@ void burst_set_mode(burst_mode_t new_mode)
     hal_irq_restore(state);
 }
 
-void burst_take_bus(uint8_t address, bool fast)
+uint8_t burst_take_bus(uint8_t address, bool fast)
 {
     hal_irq_state_t state = hal_irq_save();
     hal_i2c_disable();
     bool was_busy = bus.state == I2C_BUS_BUSY;
     bus.state = I2C_BUS_BUSY; /* so that no edge starts a burst while the bus is being cleared, with interrupts on */
     hal_irq_restore(state);
-    hal_i2c_clear();
+    uint8_t lines = hal_i2c_clear();
     state = hal_irq_save();
     hal_i2c_enable(fast);
     bus.state = was_busy ? I2C_BUS_TIMEOUT : I2C_BUS_IDLE;
@@ -151,6 +151,7 @@ void burst_take_bus(uint8_t address, bool fast)
         end_burst();
     }
     hal_irq_restore(state);
+    return lines;
 }
 
 static bool begin_register(uint8_t reg, uint8_t value, uint8_t tx_length, uint8_t rx_length)
@@ -218,12 +219,24 @@ bool burst_running(void)
     return on_bus != 0;
 }
 
+bool burst_bus_taken(void)
+{
+    return on_bus != 0 || hal_i2c_stop_pending();
+}
+
 uint32_t burst_begun_us(void)
 {
     hal_irq_state_t state = hal_irq_save();
     uint32_t t_us = begun_us;
     hal_irq_restore(state);
     return t_us;
+}
+
+void burst_expect(uint32_t t_us)
+{
+    hal_irq_state_t state = hal_irq_save();
+    begun_us = t_us;
+    hal_irq_restore(state);
 }
 
 uint8_t burst_failures(void)

@@ -25,8 +25,11 @@ void burst_init(void);
 
 void burst_set_mode(burst_mode_t mode);
 
-/* Take the pins (anew); a transfer that runs is abandoned. */
-void burst_take_bus(uint8_t address, bool fast);
+/*
+ * Take the pins (anew): HAL_I2C_FREE, or the line that is low. A transfer that runs is abandoned, a slave in its byte
+ * clocked out of it.
+ */
+uint8_t burst_take_bus(uint8_t address, bool fast);
 
 /*
  * Register access outside streaming: false when the bus is not free yet. Poll burst_bus_state until it is not busy;
@@ -47,8 +50,12 @@ uint32_t burst_period_us(void);
 /* A burst is on the bus. */
 bool burst_running(void);
 
-/* When the newest burst was put on the bus. */
+/* A burst is on the bus, or the STOP of a transfer has not got out. */
+bool burst_bus_taken(void);
+
+/* When the newest burst was put on the bus; until the first, the moment by which it is expected. */
 uint32_t burst_begun_us(void);
+void burst_expect(uint32_t t_us);
 
 /* Bursts that failed one after another; 0 after a good one. Counts in the interrupt. */
 uint8_t burst_failures(void);

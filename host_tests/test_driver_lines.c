@@ -1,0 +1,339 @@
+/*
+ * The driver where lines are held low, a STOP does not get out, INT1 is silent: what it calls that, after how long, and
+ * what it does to the lines.
+ */
+#include "adxl345.h"
+#include "adxl345_burst.h"
+#include "adxl345_registers.h"
+#include "hal_drdy.h"
+#include "hal_host.h"
+#include "hal_i2c.h"
+#include "hal_sleep.h"
+#include "hal_time.h"
+#include "hal_uart.h"
+#include "support_board.h"
+#include "unity.h"
+
+static const adxl345_config_t at_100_hz = { 1000, 16 };
+static const adxl345_config_t at_800_hz = { 8000, 16 };
+static const uint16_t rates_dhz[] = { 125, 250, 500, 1000, 2000, 4000, 8000 };
+static stream_t stream;
+static size_t taken_count;
+static size_t latched_count;
+static int last_x;
+static uint32_t clocks_seen;
+static uint32_t most_clocks;
+static uint32_t clears;
+
+static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
+{
+    (void)t_us;
+    (void)row;
+    (void)lsb;
+    latched_count++;
+}
+
+static void on_bus_clear(void)
+{
+    uint32_t clocks = hal_host_hand_clocks() - clocks_seen;
+    clocks_seen += clocks;
+    most_clocks = clocks > most_clocks ? clocks : most_clocks;
+    clears++;
+}
+
+/* x counts, so that every sample tells which one it is. */
+static void begin(double rate_hz)
+{
+    stream_free(&stream);
+    stream = board_constant_stream(4000, rate_hz, 0, -100, 250);
+    for (size_t i = 0; i < stream.count; i++) {
+        stream.rows[i].lsb[0] = (int16_t)i;
+    }
+    hal_host_config_t config = { .time_start_us = 0xFFFFFFFFu - 300000u,
+                                 .on_latched = on_latched,
+                                 .on_bus_clear = on_bus_clear };
+    hal_host_begin(&config, &stream, false);
+    hal_uart_init(115200);
+    hal_time_init();
+    hal_drdy_enable();
+    adxl345_init();
+    taken_count = 0;
+    latched_count = 0;
+    last_x = -1;
+    clocks_seen = 0;
+    most_clocks = 0;
+    clears = 0;
+}
+
+void setUp(void)
+{
+    begin(100.0);
+}
+
+void tearDown(void)
+{
+    stream_free(&stream);
+}
+
+static void pass(void)
+{
+    adxl345_sample_t sample;
+    adxl345_poll(hal_time_us());
+    while (adxl345_take(&sample)) {
+        TEST_ASSERT_TRUE_MESSAGE(sample.lsb[0] > last_x, "a sample came twice");
+        last_x = sample.lsb[0];
+        taken_count++;
+        hal_wake();
+    }
+    board_driver_sleep();
+}
+
+static void run_ms(double ms)
+{
+    for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
+        pass();
+    }
+}
+
+/* Passes until the fault is told, or is over; how long that took. */
+static double ms_until_fault(bool wanted)
+{
+    double begun_ms = hal_host_now_ms();
+    while ((adxl345_fault() != ADXL345_FAULT_NONE) != wanted) {
+        TEST_ASSERT_TRUE_MESSAGE(hal_host_now_ms() - begun_ms < 600.0, "no change of the fault");
+        pass();
+    }
+    return hal_host_now_ms() - begun_ms;
+}
+
+static void hold(adxl345_fault_t line, bool low)
+{
+    if (line == ADXL345_FAULT_SCL_LOW) {
+        hal_host_faults.scl_low = low;
+    } else {
+        hal_host_faults.sda_low = low;
+    }
+}
+
+/* A line that is low from the start is seen before any transfer: no deadline is needed. */
+static void test_a_line_low_from_the_start_is_named_at_once(void)
+{
+    for (adxl345_fault_t line = ADXL345_FAULT_SCL_LOW; line <= ADXL345_FAULT_SDA_LOW; line++) {
+        begin(100.0);
+        hold(line, true);
+        adxl345_start(&at_100_hz);
+        TEST_ASSERT_EQUAL(line, adxl345_fault());
+        run_ms(300);
+        TEST_ASSERT_EQUAL(line, adxl345_fault());
+        TEST_ASSERT_TRUE(clears >= 12 && clears <= 20); /* at 0, 5, 15, 35 ms, then every 25 */
+        hold(line, false);
+        (void)ms_until_fault(false);
+        run_ms(100);
+        TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+    }
+}
+
+/* An SCL that is low is given no clock; for an SDA that stays low 16 are enough, and there is no STOP then. */
+static void test_clocks_by_hand(void)
+{
+    begin(100.0);
+    hold(ADXL345_FAULT_SCL_LOW, true);
+    adxl345_start(&at_100_hz);
+    run_ms(200);
+    TEST_ASSERT_EQUAL_UINT32(0, hal_host_hand_clocks());
+    TEST_ASSERT_EQUAL_UINT32(0, hal_host_hand_stops());
+    begin(100.0);
+    hold(ADXL345_FAULT_SDA_LOW, true);
+    adxl345_start(&at_100_hz);
+    run_ms(200);
+    TEST_ASSERT_EQUAL_UINT32(16, most_clocks);
+    TEST_ASSERT_EQUAL_UINT32(16u * clears, hal_host_hand_clocks());
+    TEST_ASSERT_EQUAL_UINT32(0, hal_host_hand_stops());
+    begin(100.0);
+    adxl345_start(&at_100_hz);
+    TEST_ASSERT_EQUAL_UINT32(1, hal_host_hand_clocks());
+    TEST_ASSERT_EQUAL_UINT32(1, hal_host_hand_stops());
+}
+
+/* The line goes low at every 0.1 ms of 20 ms of streaming: its name within a period and 3.3 ms, and back in time. */
+static void test_a_line_low_while_streaming_is_named(void)
+{
+    for (unsigned phase = 0; phase < 400; phase++) {
+        adxl345_fault_t line = (phase & 1u) != 0 ? ADXL345_FAULT_SCL_LOW : ADXL345_FAULT_SDA_LOW;
+        begin(100.0);
+        adxl345_start(&at_100_hz);
+        run_ms(100.0 + 0.05 * phase);
+        hold(line, true);
+        TEST_ASSERT_TRUE(ms_until_fault(true) <= 10.0 + 3.3);
+        TEST_ASSERT_EQUAL(line, adxl345_fault());
+        run_ms(50);
+        hold(line, false);
+        (void)ms_until_fault(false);
+        adxl345_stop();
+        run_ms(60);
+        TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
+    }
+}
+
+/* At any moment of the way from start to the first sample: 3 ms and main's pass later the driver has given up. */
+static void test_a_line_low_while_configuring_is_named_by_the_deadline(void)
+{
+    unsigned met = 0;
+    for (unsigned phase = 0; phase < 150; phase++) {
+        begin(100.0);
+        adxl345_start(&at_100_hz);
+        run_ms(0.02 * phase);
+        bool measures = hal_host_sensor.reg[ADXL345_POWER_CTL] == ADXL345_POWER_MEASURE;
+        hold(ADXL345_FAULT_SDA_LOW, true);
+        double took_ms = ms_until_fault(true);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_SDA_LOW, adxl345_fault());
+        if (!measures) {
+            TEST_ASSERT_TRUE(took_ms >= 2.8 && took_ms <= 3.3);
+            met++;
+        }
+    }
+    TEST_ASSERT_TRUE(met > 80 && met < 150);
+}
+
+/* A slave that holds SDA until it has seen so many clocks: up to 16 nobody notices, more take a second clearing. */
+static void test_a_hung_slave_is_freed(void)
+{
+    for (uint8_t clocks = 1; clocks <= 32; clocks++) {
+        begin(100.0);
+        adxl345_start(&at_100_hz);
+        run_ms(100);
+        while (hal_drdy_high() || burst_running()) {
+            run_ms(0.1);
+        }
+        hal_host_faults.hang_clocks = clocks;
+        bool told = false;
+        for (double end_ms = hal_host_now_ms() + 30.0; hal_host_now_ms() < end_ms;) {
+            pass();
+            told = told || adxl345_fault() == ADXL345_FAULT_SDA_LOW;
+            TEST_ASSERT_NOT_EQUAL(ADXL345_FAULT_BUS, adxl345_fault());
+        }
+        TEST_ASSERT_EQUAL(clocks > 16, told);
+        TEST_ASSERT_EQUAL_UINT8(0, hal_host_faults.hang_clocks);
+        run_ms(60);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+        adxl345_stop();
+        run_ms(60);
+        if (clocks <= 16) {
+            TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+        }
+    }
+}
+
+/* TWSTO never clears: no interrupt tells it, and no burst can begin. The bus is taken anew, no sample is lost. */
+static void test_a_stop_that_does_not_get_out(void)
+{
+    for (unsigned phase = 0; phase < 40; phase++) {
+        const adxl345_config_t *config = (phase & 1u) != 0 ? &at_800_hz : &at_100_hz;
+        double period_ms = 10000.0 / config->rate_dhz;
+        adxl345_counters_t before;
+        adxl345_counters_t after;
+        begin(config->rate_dhz / 10.0);
+        adxl345_start(config);
+        run_ms(100.0 + 0.3 * phase);
+        adxl345_counters(&before);
+        hal_host_faults.stop_stuck = true;
+        uint32_t clears_before = clears;
+        double begun_ms = hal_host_now_ms();
+        while (clears == clears_before && hal_host_now_ms() < begun_ms + 50.0) {
+            pass();
+        }
+        TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms <= 2.0 * period_ms + 3.5);
+        hal_host_faults.stop_stuck = false;
+        adxl345_counters(&after);
+        TEST_ASSERT_EQUAL_UINT16(before.timeouts + 1, after.timeouts);
+        run_ms(30);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+        adxl345_stop();
+        run_ms(60);
+        TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+    }
+}
+
+/* Main without a poll: 20 us each, the bus goes on. */
+static void away(unsigned passes)
+{
+    while (passes-- != 0) {
+        hal_wake();
+        board_driver_sleep();
+    }
+}
+
+/* At every phase of a burst and of its STOP: the sensor is told to rest as soon as the bus is free. */
+static void test_a_busy_bus_is_waited_for_no_longer_than_it_is_busy(void)
+{
+    for (unsigned phase = 0; phase < 25; phase++) {
+        begin(100.0);
+        adxl345_start(&at_100_hz);
+        run_ms(100);
+        while (!burst_running()) {
+            adxl345_poll(hal_time_us());
+            away(1);
+        }
+        away(phase);
+        double begun_ms = hal_host_now_ms();
+        adxl345_stop();
+        while (hal_host_sensor.reg[ADXL345_POWER_CTL] != 0) {
+            TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms < 0.6);
+            pass();
+        }
+    }
+}
+
+/* Main comes to each step 5 ms late: that is no fault of the bus. */
+static void test_a_late_main_is_no_timeout(void)
+{
+    adxl345_counters_t before;
+    adxl345_counters_t after;
+    adxl345_counters(&before);
+    adxl345_start(&at_100_hz);
+    for (unsigned i = 0; i < 60; i++) {
+        adxl345_poll(hal_time_us());
+        away(1);
+        adxl345_poll(hal_time_us());
+        away(250);
+    }
+    adxl345_counters(&after);
+    TEST_ASSERT_EQUAL_UINT16(before.timeouts, after.timeouts);
+    TEST_ASSERT_EQUAL_HEX8(ADXL345_POWER_MEASURE, hal_host_sensor.reg[ADXL345_POWER_CTL]);
+}
+
+/* INT1 falls silent at any phase: named within three periods of the last sample, at every rate. */
+static void test_silent_int1_is_noticed_within_three_periods(void)
+{
+    for (size_t r = 0; r < sizeof rates_dhz / sizeof rates_dhz[0]; r++) {
+        adxl345_config_t config = { rates_dhz[r], 16 };
+        double period_ms = 10000.0 / config.rate_dhz;
+        for (unsigned phase = 0; phase < 20; phase++) {
+            begin(config.rate_dhz / 10.0);
+            adxl345_start(&config);
+            run_ms(50.0 + (5.0 + phase / 20.0) * period_ms);
+            while (hal_drdy_high() || burst_running()) {
+                pass();
+            }
+            hal_host_faults.int1_cut = true;
+            double took_ms = ms_until_fault(true);
+            TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
+            TEST_ASSERT_TRUE(took_ms >= period_ms && took_ms <= 3.0 * period_ms);
+        }
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_line_low_from_the_start_is_named_at_once);
+    RUN_TEST(test_clocks_by_hand);
+    RUN_TEST(test_a_line_low_while_streaming_is_named);
+    RUN_TEST(test_a_line_low_while_configuring_is_named_by_the_deadline);
+    RUN_TEST(test_a_hung_slave_is_freed);
+    RUN_TEST(test_a_stop_that_does_not_get_out);
+    RUN_TEST(test_a_busy_bus_is_waited_for_no_longer_than_it_is_busy);
+    RUN_TEST(test_a_late_main_is_no_timeout);
+    RUN_TEST(test_silent_int1_is_noticed_within_three_periods);
+    return UNITY_END();
+}

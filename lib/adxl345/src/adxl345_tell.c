@@ -1,0 +1,75 @@
+/* What the driver tells of itself: samples, phase, fault, times, counters. */
+#include "adxl345_burst.h"
+#include "adxl345_driver.h"
+
+bool adxl345_take(adxl345_sample_t *out)
+{
+    burst_entry_t entry;
+    if (!burst_take(&entry)) {
+        return false;
+    }
+    if (!entry.exact) {
+        saturating_add(&driver.counters.samples_drained);
+    }
+    *out = entry.sample;
+    return true;
+}
+
+uint8_t adxl345_queued(void)
+{
+    return burst_queued();
+}
+
+adxl345_phase_t adxl345_phase(void)
+{
+    switch (driver.step) {
+    case STEP_OFF:
+        return ADXL345_STOPPED;
+    case STEP_BACK_OFF:
+        return ADXL345_FAULTY;
+    case STEP_QUIET_STANDBY:
+    case STEP_QUIET_DRAIN:
+        return ADXL345_QUIESCING;
+    case STEP_STREAM:
+    case STEP_ASK_SOURCE:
+        return driver.first_sample_seen ? ADXL345_STREAMING : ADXL345_STARTING;
+    default:
+        return ADXL345_STARTING;
+    }
+}
+
+adxl345_fault_t adxl345_fault(void)
+{
+    return (adxl345_fault_t)driver.fault;
+}
+
+uint32_t adxl345_deadline_us(void)
+{
+    return driver.deadline_us;
+}
+
+bool adxl345_alarm_us(uint32_t *t_us)
+{
+    *t_us = driver.deadline_us;
+    return driver.step != STEP_OFF;
+}
+
+uint8_t adxl345_address(void)
+{
+    return driver.address;
+}
+
+uint8_t adxl345_device_id(void)
+{
+    return driver.device_id;
+}
+
+uint32_t adxl345_period_us(void)
+{
+    return burst_period_us();
+}
+
+void adxl345_counters(adxl345_counters_t *out)
+{
+    *out = driver.counters;
+}
