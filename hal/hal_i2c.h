@@ -7,10 +7,10 @@
  *                                           400 kHz if fast
  *   void hal_i2c_disable(void)              release the pins at once; whatever ran is abandoned
  *   uint8_t hal_i2c_clear(void)             while disabled, interrupts on: clock a slave that holds SDA out of its
- *                                           byte, at most 16 clocks of 15 us (UM10204 3.1.16), and give a STOP by hand; a
- *                                           reset of the MCU in the middle of a read leaves it so. Says which line is
- *                                           low then, or HAL_I2C_FREE; gives no clock to an SCL that is low; never
- *                                           drives a line high
+ *                                           byte, at most 16 clocks of 15 us (UM10204 3.1.16), and give a STOP by
+ *                                           hand; a reset of the MCU in the middle of a read leaves it so. Says which
+ *                                           line is low then, or HAL_I2C_FREE; gives no clock to an SCL that is low;
+ *                                           never drives a line high
  *   void hal_i2c_start(void)                ask for a START or repeated START
  *   void hal_i2c_send(uint8_t byte)         send an address or data byte
  *   void hal_i2c_receive(bool ack)          clock one byte in and answer it with ACK or NACK

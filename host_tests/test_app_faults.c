@@ -162,9 +162,9 @@ static void test_a_line_that_is_low_is_told(void)
             board_run_ms(0.1);
         }
         board_run_ms(100);
-        TEST_ASSERT_EQUAL_size_t(
-            1, board_notes_with(scl ? "# fault 7: SCL held low: check SCL to A5" :
-                                      "# fault 8: SDA held low: check SDA to A4", before));
+        TEST_ASSERT_EQUAL_size_t(1, board_notes_with(scl ? "# fault 7: SCL held low: check SCL to A5"
+                                                         : "# fault 8: SDA held low: check SDA to A4",
+                                                     before));
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with("fault", before));
         hal_host_faults.scl_low = false;
         hal_host_faults.sda_low = false;
