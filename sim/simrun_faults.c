@@ -302,6 +302,7 @@ void faults_print(FILE *json)
         fprintf(json, "  \"fault_%u\": \"%s\",\n  \"fault_%u_injected\": %u,\n  \"fault_%u_recovered\": %u,\n", n,
                 fault->text, n, (unsigned)fault->injected, n, (unsigned)fault->recovered);
         fprintf(json, "  \"fault_%u_detectable\": %s,\n", n, fault_kinds[fault->kind].detectable ? "true" : "false");
+        fprintf(json, "  \"fault_%u_last_end_ms\": %.3f,\n", n, (double)fault->ended_at / CYCLES_PER_MS);
         fprintf(json, "  \"fault_%u_first_ms\": %.3f,\n  \"fault_%u_worst_recovery_ms\": %.3f,\n", n, fault->first_ms,
                 n, fault->worst_ms);
     }

@@ -72,6 +72,8 @@ PYTHON, WITH_PACKAGES = "python3", "build/venv/bin/python"
 JUDGES = {
     "system": (["system_images"], PYTHON, "host_tests/system_tests.py"),
     "resets": (["system_images"], PYTHON, "host_tests/test_resets.py"),
+    "faults": (["system_images"], PYTHON, "tools/faults.py"),
+    "campaign": (["system_images"], PYTHON, "host_tests/test_faults.py"),
     "papers": (["paper_programs"], PYTHON, "host_tests/test_papers.py"),
     "papers synthesis": (["paper_programs"], PYTHON, "host_tests/test_papers_synthesis.py"),
     "robust": (["build/host/pipeline_replay"], WITH_PACKAGES, "host_tests/test_robust.py"),

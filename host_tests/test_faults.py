@@ -1,0 +1,136 @@
+#!/usr/bin/env python3
+"""The fault campaign (tools/faults.py) and the soak (tools/soak.py): what they plan, and how they judge what a run of simrun says."""
+import pathlib
+import random
+import re
+import sys
+
+sys.path.insert(0, "tools")
+import faults  # noqa: E402
+import faults_runs  # noqa: E402
+import soak  # noqa: E402
+from system_support import FW, run_all, test  # noqa: E402
+
+
+def result(*names, **said):
+    """Of a run in which all went well but what is said."""
+    good = {"when": "1000ms", "filter_name": "kf", "hang": "", "injected": True, "recovered": True, "ms_to_good": 20.0, "lost": 0, "wrong": 0,
+            "resets": 0, "command": ""}
+    return faults_runs.Result(tuple(faults_runs.OF[name] for name in names), **(good | said))
+
+
+@test
+def a_run_in_which_all_went_well_fails_nothing():
+    for kind in faults_runs.KINDS:
+        assert result(kind.name).failures() == []
+
+
+@test
+def each_number_of_a_run_has_its_limit():
+    # the limits of issue 6: 50, 150 and 600 ms; two samples; no wrong row, no reset, no hang
+    for name, limit in (("sda", 50), ("hang", 50), ("nack", 50), ("unplug", 150), ("power", 150), ("devid", 150), ("starve", 600)):
+        assert not result(name, ms_to_good=limit).failures() and len(result(name, ms_to_good=limit + 0.1).failures()) == 1, name
+    for name in ("arb", "buserr", "nack", "nackdata", "torn", "hang", "glitch"):
+        assert not result(name, lost=2).failures() and len(result(name, lost=3).failures()) == 1, name
+    assert not result("sda", lost=6).failures(), "no fault of a single transfer"
+    assert result("sda", wrong=1).failures() == ["1 wrong rows"]
+    assert result("sda", resets=1).failures() == ["1 resets not asked for"]
+    assert result("sda", hang="crash").failures() == ["crash"]
+    assert result("sda", recovered=False).failures() == ["no good row any more"]
+
+
+@test
+def wrong_rows_of_what_nobody_can_see_are_reported_and_not_bounded():
+    for name in ("flip 1", "flip 2", "noise", "double", "mixed"):
+        assert not result(name, wrong=1).failures(), name
+        assert result(name, resets=1).failures(), name
+    assert not result("sda", "noise", wrong=1).failures() and result("sda", "torn", wrong=1).failures()
+
+
+@test
+def a_pair_has_the_longer_limit_and_is_judged_from_the_later_end():
+    assert not result("sda", "power", ms_to_good=150).failures() and result("sda", "power", ms_to_good=151).failures()
+    stats = {"fault_1": "a", "fault_1_injected": 1, "fault_1_recovered": 1, "fault_1_last_end_ms": 1010.0, "fault_1_worst_recovery_ms": 70.0,
+             "fault_2": "b", "fault_2_injected": 1, "fault_2_recovered": 1, "fault_2_last_end_ms": 1050.0, "fault_2_worst_recovery_ms": 30.0,
+             "fault_3": "c", "fault_3_injected": 0, "fault_3_recovered": 0, "fault_3_last_end_ms": 0.0, "fault_3_worst_recovery_ms": 0.0}
+    assert list(faults_runs.ends_of(stats)) == [(1010.0, 70.0), (1050.0, 30.0)]
+    stats["fault_2_recovered"] = 0
+    assert list(faults_runs.ends_of(stats))[1] == (1050.0, None)
+
+
+@test
+def phases_are_every_byte_every_stage_and_the_whole_period():
+    whens = faults_runs.phases(FW, faults_runs.OF["arb"], "kf", 50)
+    bytes_of = [tuple(map(int, w[5:].split("."))) for w in whens if w.startswith("xfer:")]
+    assert len(set(whens)) == len(whens) >= 50, len(whens)
+    assert len({transfer for transfer, _ in bytes_of}) == 1 and [byte for _, byte in bytes_of] == list(range(1, len(bytes_of) + 1)), bytes_of
+    assert len(bytes_of) in range(9, 16)
+    functions = {w[3:].partition("#")[0].partition(".")[0] for w in whens if w.startswith("pc:")}
+    assert functions >= {"burst_drain", "tilt_angles", "format_u32", "__vector_1", "__vector_24"} and "text_char" not in functions, functions
+    moments = [float(w[:-2]) for w in whens if w.endswith("ms")]
+    assert len(moments) >= 10 and min(moments) < 1001 and 1009 < max(moments) < 1010, moments
+
+
+@test
+def every_fault_of_a_plan_comes_and_a_run_is_judged_by_the_model():
+    whens = faults_runs.phases(FW, faults_runs.OF["flip 1"], "kf", 50)
+    for when in (whens[4], next(w for w in whens if w.startswith("pc:__vector_1#")), whens[-1]):
+        done = faults_runs.attempt(FW, "kf", (faults_runs.OF["flip 1"],), (when,))
+        assert done.injected and done.recovered and not done.failures() and done.lost == 0, done
+    # the byte of x: it is altered, so the judge that looks at the model alone finds the row wrong
+    assert faults_runs.attempt(FW, "kf", (faults_runs.OF["flip 1"],), (whens[4],)).wrong == 1
+    done = faults_runs.attempt(FW, "kf", (faults_runs.OF["reset"],), ("1000ms",))
+    assert done.recovered and done.resets == 0 and 20 < done.ms_to_good < 600, done
+
+
+@test
+def all_pairs_are_planned_and_the_same_for_the_same_seed():
+    count = len(faults_runs.KINDS)
+    pairs = list(faults_runs.seeded_pairs(5, 3))
+    assert len(pairs) == 5 * count * (count - 1) // 2 and len({frozenset(k.name for k in kinds) for kinds, _ in pairs}) == len(pairs) // 5
+    assert all(len(set(whens)) == 2 and all(1000 <= float(w[:-2]) <= 1100 for w in whens) for _, whens in pairs)
+    assert pairs == list(faults_runs.seeded_pairs(5, 3)) != list(faults_runs.seeded_pairs(5, 4))
+
+
+@test
+def every_kind_that_simrun_has_is_in_the_campaign():
+    table = pathlib.Path("sim/simrun_faults_parse.c").read_text(encoding="utf-8")
+    known = set(re.findall(r'\{ (?:\.name = )?"(\w+)"', table))
+    used = {what.partition(":")[0] for kind in faults_runs.KINDS for what in kind.what}
+    assert len(known) > 25 and known - used == {"plug", "poke"} and used <= known, known ^ used
+    undetectable = {kind.what[0].partition(":")[0] for kind in faults_runs.KINDS if not kind.detectable}
+    assert undetectable == {"flip", "noise", "double", "mixed"}, undetectable
+
+
+@test
+def a_sample_takes_all_kinds_alike():
+    runs = [((kind,), (f"{n}ms",), "kf") for kind in "abcde" for n in range(40)]
+    chosen = faults.take(random.Random(1), runs, 20)
+    assert len(chosen) == 20 and all(sum(run[0] == (kind,) for run in chosen) == 4 for kind in "abcde"), chosen
+    assert len({run[1] for run in chosen}) > 10 and len(faults.take(random.Random(1), runs, 500)) == 200
+
+
+def soak_stats(**said):
+    stats = {"rows": 180000, "rows_judged": 170000, "rows_wrong": 0, "rows_stale": 0, "rows_twice": 0, "t_us_steps_back": 0, "resets": 3}
+    for n, (fault, resets) in enumerate(soak.faults_of(600), 1):
+        stats |= {f"fault_{n}": fault, f"fault_{n}_injected": 1, f"fault_{n}_recovered": 1, f"fault_{n}_worst_recovery_ms": 30.0}
+    return stats | said
+
+
+@test
+def soak_finds_what_went_wrong():
+    path = pathlib.Path("build/system/soak.json")
+    many = soak.faults_of(600)
+    for said, status, words in (({}, 7, []), ({}, 0, []), ({"rows_wrong": 2}, 7, ["wrong: 2"]), ({"rows_stale": 1}, 7, ["stale: 1"]),
+                                ({"rows_twice": 1}, 7, ["twice: 1"]), ({"t_us_steps_back": 1}, 7, ["steps_back: 1"]),
+                                ({"resets": 9}, 7, ["5 resets not asked for"]), ({"rows": 100}, 7, ["100 rows of 180000"]),
+                                ({"fault_3_worst_recovery_ms": 5001.0}, 7, ["5001 ms to a good row after " + many[2][0].split(":", 2)[2]]),
+                                ({}, 3, ["crash: what it said"])):
+        path.write_text(soak.json.dumps(soak_stats(**said)), encoding="ascii")
+        row, wrong = soak.judged(0, status, "what it said", path, 1.8e6, many)
+        assert wrong == words and row["resets_asked_for"] == 4, (said, wrong, row)
+    assert soak.judged(0, 2, "refused", path.with_name("none.json"), 1.8e6, many)[1] == ["simrun gave status 2 and no statistics: refused"]
+
+
+if __name__ == "__main__":
+    sys.exit(run_all())

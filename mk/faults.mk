@@ -1,0 +1,15 @@
+# Faults in simrun: the campaign, and random faults for hours.
+
+## faults: every fault at every phase, every pair, into build/faults.json and docs/faults-campaign.md (4 minutes; SAMPLE=300: so many runs)
+faults:
+	@sh tools/deps.sh sim
+	@$(MAKE) $(U)/firmware.elf $(S)/simrun
+	@python3 tools/faults.py --sample $(or $(SAMPLE),0) $(if $(SAMPLE),--seed $(shell git rev-list --count HEAD 2>/dev/null || echo 1))
+
+## soak: simulated hours with random faults, in two halves side by side (HOURS=24: about 10 minutes on two cores)
+soak:
+	@sh tools/deps.sh sim
+	@$(MAKE) $(U)/firmware.elf $(S)/simrun
+	@python3 tools/soak.py --hours $(or $(HOURS),24)
+
+.PHONY: faults soak

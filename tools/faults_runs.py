@@ -1,0 +1,235 @@
+"""What the fault campaign does in one run of simrun, and how the run is judged; the campaign itself is tools/faults.py."""
+import csv
+import dataclasses
+import itertools
+import json
+import pathlib
+import random
+import re
+import subprocess
+import sys
+import tempfile
+import threading
+
+SIMRUN = pathlib.Path("build/sim/simrun")
+REST, MOVING = "sim/streams/rest-2lsb.csv", "sim/streams/tilt-slow.csv"
+BEGIN_MS, RUN_MS = 1000, 2600  # streaming and warmed up; the fault and the second after it
+PERIOD_MS = 10.0
+STATUS_WORDS = {1: "simrun failed", 2: "refused", 3: "crash", 4: "illegal opcode", 5: "stack overrun", 6: "UART overrun",
+                8: "sleeps with interrupts off", 9: "the sensor is not used"}
+RAW_FLAGS = 1 | 2 | 16 | 32 | 64
+BUS_MS, POWER_MS, RESET_MS = 50, 150, 600  # limits until the first good row
+NO_LIMIT = 9999  # readings that were true and are no longer at the rail: when the filter takes them is its own affair
+
+
+@dataclasses.dataclass(frozen=True)
+class Kind:
+    name: str
+    what: tuple  # KIND[:PARAM] of simrun, of faults that begin together
+    lasts_ms: float = 0  # the first of them, if it is a state
+    limit_ms: float = BUS_MS
+    lost_max: int = None  # samples that one transfer may cost
+    resets: int = 0
+    rate: int = 100
+    detectable: bool = True
+
+    def faults(self, when):
+        return [f"{when}:{what}" for what in self.what]
+
+
+def state(name, lasts_ms, limit_ms=BUS_MS, **more):
+    return Kind(name, (f"{more.pop('what', name)}:{lasts_ms}",), lasts_ms, limit_ms, **more)
+
+
+def once(name, what=None, **more):
+    return Kind(name, (what or name,), **more)
+
+
+KINDS = [
+    state("unplug", 200, POWER_MS), state("power", 50, POWER_MS), state("sda", 40), state("scl", 40),
+    once("hang", "hang:5", lost_max=2), once("hang a byte", "hang:9", lost_max=2), once("arb", lost_max=2), once("buserr", lost_max=2),
+    once("nack", lost_max=2), once("nackdata", lost_max=2), once("torn", lost_max=2),
+    Kind("devid", ("power:20", "devid:0:200"), 200, POWER_MS), state("noint", 200), once("glitch", lost_max=2),
+    state("storm", 200, what="storm:1000"), state("frozen", 300), state("clip", 200, NO_LIMIT, what="clip:z"),
+    state("odr fast", 400, what="odr:50000"), state("odr slow", 400, what="odr:-50000"), state("rxflood", 200), state("txstall", 150),
+    Kind("overrun", ("overrun:3",), 100, BUS_MS, rate=400), Kind("starve", ("starve:2000",), 250, RESET_MS, resets=1),
+    once("reset", resets=1, limit_ms=RESET_MS), once("mcupower", resets=1, limit_ms=RESET_MS), once("brownout", resets=1, limit_ms=RESET_MS),
+    once("flip 1", "flip:1", detectable=False), once("flip 2", "flip:2", detectable=False),
+    once("noise", "noise:60", detectable=False), once("double", "double:z", detectable=False), once("mixed", detectable=False),
+]
+OF = {kind.name: kind for kind in KINDS}
+
+
+class Fault(Exception):
+    """One sentence about what is wrong with the campaign itself."""
+
+
+LOCAL = threading.local()
+
+
+def folder():
+    """Each thread has a folder of its own for the files of its runs."""
+    if not hasattr(LOCAL, "folder"):
+        LOCAL.folder = tempfile.TemporaryDirectory(prefix="faults-")
+    return pathlib.Path(LOCAL.folder.name)
+
+
+def simulate(firmware, filter_name, *options, stream=REST, max_ms=RUN_MS, rate=100, profile=None):
+    """(exit status, what simrun said, --stats) of one run; the rows lie in folder()/out.csv."""
+    base = folder()
+    command = [SIMRUN, "--fw", firmware, "--in", stream, "--loop", "--out", base / "out.csv", "--stats", base / "stats.json", "--max-ms", max_ms]
+    command += ["--filter", filter_name] if filter_name else []
+    command += ["--baud", 500000, "--rate", rate] if rate != 100 else []
+    command += ["--profile", profile] if profile else []
+    (base / "stats.json").unlink(missing_ok=True)
+    done = subprocess.run([str(c) for c in command + list(options)], capture_output=True, text=True, timeout=600)
+    if not (base / "stats.json").is_file():
+        raise Fault(f"simrun gave status {done.returncode} and no statistics: {done.stderr.strip()[:300]}")
+    return done.returncode, done.stderr, json.loads((base / "stats.json").read_text(encoding="ascii"))
+
+
+# --- phases -----------------------------------------------------------------------------------------------------------
+
+def bus_bytes(firmware, filter_name, rate):
+    """WHEN of each byte of a read that comes soon after BEGIN_MS."""
+    short = simulate(firmware, filter_name, max_ms=BEGIN_MS, rate=rate)[2]
+    long = simulate(firmware, filter_name, max_ms=BEGIN_MS + 500, rate=rate)[2]
+    reads = long["i2c_transfers"] - short["i2c_transfers"]
+    count = round((long["i2c_bytes"] - short["i2c_bytes"]) / reads)
+    if not 9 <= count <= 20:
+        raise Fault(f"a read of a sample has {count} bytes on the bus: does the firmware stream?")
+    return [f"xfer:{short['i2c_transfers'] + 2}.{byte}" for byte in range(1, count + 1)]
+
+
+def entries(firmware, filter_name, rate, ms):
+    """{function: how often it was entered}."""
+    profile = folder() / "profile.csv"
+    simulate(firmware, filter_name, max_ms=ms, rate=rate, profile=profile)
+    names = [(row["symbol"].rpartition("+"), int(row["count"])) for row in csv.DictReader(open(profile, encoding="ascii"))]
+    return {name: count for (name, _, offset), count in names if offset == "0x0" and re.fullmatch(r"[a-z]\w*(\.\w+)*|__vector_\d+", name)}
+
+
+def stages(firmware, filter_name, rate):
+    """WHEN of each function that runs for every second sample or more often, at its first call after BEGIN_MS."""
+    before, after = (entries(firmware, filter_name, rate, ms) for ms in (BEGIN_MS, BEGIN_MS + 400))
+    return [f"pc:{name}#{before.get(name, 0) + 1}" for name in after if after[name] - before.get(name, 0) >= 0.2 * rate]
+
+
+def phases(firmware, kind, filter_name, wanted, memory={}):
+    """WHENs of a kind: every byte of a read, every stage of the main loop, and moments spread over a sample's period."""
+    key = (kind.rate, filter_name)
+    if key not in memory:
+        memory[key] = bus_bytes(firmware, filter_name, kind.rate) + stages(firmware, filter_name, kind.rate)
+    whens = list(memory[key])
+    spread = max(wanted - len(whens), 10)
+    return whens + [f"{BEGIN_MS + PERIOD_MS * (i + 0.37) / spread:.3f}ms" for i in range(spread)]
+
+
+# --- one run ----------------------------------------------------------------------------------------------------------
+
+@dataclasses.dataclass
+class Result:
+    kinds: tuple
+    when: str
+    filter_name: str
+    hang: str  # what went wrong with the whole run, empty: nothing
+    injected: bool
+    recovered: bool
+    ms_to_good: float
+    lost: int
+    wrong: int
+    resets: int  # beyond those that were asked for
+    command: str
+
+    def failures(self):
+        """Each as a few words."""
+        limit = max(kind.limit_ms for kind in self.kinds)
+        detectable = all(kind.detectable for kind in self.kinds)
+        lost_max = self.kinds[0].lost_max if len(self.kinds) == 1 else None
+        said = [self.hang] if self.hang else []
+        said += ["no good row any more"] if self.injected and not self.recovered and not self.hang else []
+        said += [f"{self.ms_to_good:.0f} ms to the first good row (limit {limit:.0f})"] if self.recovered and self.ms_to_good > limit else []
+        said += [f"{self.wrong} wrong rows"] if detectable and self.wrong else []
+        said += [f"{self.resets} resets not asked for"] if self.resets else []
+        said += [f"{self.lost} samples lost (limit {lost_max})"] if lost_max is not None and self.lost > lost_max else []
+        return said
+
+
+def ends_of(stats):
+    """(end in ms, ms from it to the first good row or None) of every fault that came."""
+    for n in itertools.count(1):
+        if f"fault_{n}" not in stats:
+            return
+        if stats[f"fault_{n}_injected"]:
+            good = stats[f"fault_{n}_recovered"] == stats[f"fault_{n}_injected"]
+            yield stats[f"fault_{n}_last_end_ms"], stats[f"fault_{n}_worst_recovery_ms"] if good else None
+
+
+def attempt(firmware, filter_name, kinds, whens, profile=None):
+    """One run with these kinds, each beginning at its WHEN."""
+    rate = max(kind.rate for kind in kinds)
+    faults = [fault for kind, when in zip(kinds, whens) for fault in kind.faults(when)]
+    expected = sum(kind.resets for kind in kinds)
+    options = [word for fault in faults for word in ("--fault", fault)] + ["--expect-resets", expected]
+    status, said, stats = simulate(firmware, filter_name, *options, rate=rate, profile=profile)
+    last_line = said.strip().splitlines()[-1] if said.strip() else "?"
+    hang = "" if status in (0, 7) else f"{STATUS_WORDS.get(status, status)}: {last_line}"
+    ends = list(ends_of(stats))
+    ms = max(ends, key=lambda end: end[0])[1] if ends else None
+    wrong = stats["rows_wrong"] + stats["rows_stale"] + stats["rows_twice"] + stats["t_us_steps_back"]
+    return Result(kinds, " + ".join(whens), filter_name, hang, bool(ends), bool(ends) and ms is not None, ms or 0.0, stats["lost"], wrong,
+                  max(0, stats["resets"] - expected), " ".join(map(str, options)))
+
+
+# --- values that no firmware can see to be wrong ----------------------------------------------------------------------
+
+def read_rows(path):
+    """Whole rows of the firmware's output, as numbers."""
+    with open(path, encoding="ascii") as file:
+        return [[int(v) for v in line.split(",")] for line in file if re.fullmatch(r"\d+(,-?\d+){8},\d+\n", line)]
+
+
+def flagged_share(firmware, kind, stream, sigma_lsb, seconds):
+    """(changes of 8 sigma or more, those of them that no row shows without a flag) with the default filter."""
+    path = folder() / "altered.csv"
+    options = ["--altered", path, "--seed", 7] + [word for fault in kind.faults("p:0.01") for word in ("--fault", fault)]
+    simulate(firmware, None, *options, stream=stream, max_ms=1000 * seconds)
+    rows = read_rows(folder() / "out.csv")
+    shown = {}
+    for row in rows:
+        shown.setdefault(tuple(row[1:4]), []).append(row)
+    large = unflagged = 0
+    for line in csv.DictReader(open(path, encoding="ascii")):
+        arrived = tuple(int(line[f"{a}_lsb"]) for a in "xyz")
+        sent = tuple(int(line[f"{a}_sent_lsb"]) for a in "xyz")
+        if max(abs(a - b) for a, b in zip(arrived, sent)) < 8 * sigma_lsb or int(line["t_us"]) < 500000:
+            continue
+        large += 1
+        unflagged += any(abs(row[0] - int(line["t_us"])) < 15000 and not row[9] & RAW_FLAGS for row in shown.get(arrived, []))
+    return large, large - unflagged
+
+
+def roll_differences(firmware, faults, stream, seconds):
+    """Differences of roll in hundredths of a degree, row by row, from the run without faults; default filter."""
+    rolls = []
+    for options in ([], [word for fault in faults for word in ("--fault", fault)]):
+        simulate(firmware, None, "--seed", 11, *options, stream=stream, max_ms=1000 * seconds)
+        rolls.append({round(row[0] / (1000 * PERIOD_MS)): row[7] for row in read_rows(folder() / "out.csv")})
+    calm, faulty = rolls
+    both = [n for n in calm if n in faulty]
+    if len(both) < 0.9 * len(calm):
+        raise Fault(f"{stream}: only {len(both)} of {len(calm)} rows are stamped alike with and without faults")
+    return [abs((calm[n] - faulty[n] + 18000) % 36000 - 18000) for n in both], len(calm) - len(both)
+
+
+def seeded_pairs(count, seed):
+    """(kinds, whens) of every unordered pair of kinds at so many moments."""
+    source = random.Random(seed)
+    for a, b in itertools.combinations(KINDS, 2):
+        for _ in range(count):
+            yield (a, b), tuple(f"{BEGIN_MS + source.uniform(0, 100):.3f}ms" for _ in range(2))
+
+
+def need(path, how):
+    if not pathlib.Path(path).is_file():
+        sys.exit(f"faults: there is no {path}: {how}")
