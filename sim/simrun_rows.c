@@ -7,7 +7,8 @@
 #include "simrun.h"
 
 enum { LOOK_BACK = 64, FLAG_GATED = 1, FLAG_COASTED = 2, FLAG_FAULT = 16 };
-enum { STEP_UNIT_US = 64, STEPS = 1 << 19 }; /* up to 33.5 s from row to row */
+enum { STEP_UNIT_US = 64 };
+#define STEPS 524288ul /* up to 33.5 s from row to row */
 
 /* Samples from that of the first row to that of the last row of one class, and rows of that class. */
 typedef struct {

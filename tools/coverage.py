@@ -3,6 +3,7 @@
 
     coverage.py judge GCOVR.json ELF FOLDER     tables, uncovered lines, build/coverage.json; 1 when below a target
     coverage.py twins GCOVR.json ELF FOLDER     one line of lib not executed, one run of the chip alone: must be below
+    coverage.py avr ELF FOLDER                  the binary's lines alone, as of the profiles of the fault campaign; 1 when below 95 %
     coverage.py check ELF PROFILE SOURCE        the tool itself: lines marked `ran` and `not reached` in a small program
 
 A line of the binary is executable when at least one instruction is attributed to it (.debug_line: with inlining and
@@ -22,6 +23,7 @@ EXCLUSIONS = pathlib.Path("host_tests/coverage_exclusions.txt")
 # two calls, which link-time optimisation takes in line: the instructions may carry the lines of what is called alone
 CALLS_ONLY = {"firmware/main.c"}
 HOST_LINES, HOST_BRANCHES, AVR_LINES = 100.0, 95.0, 85.0
+CAMPAIGN_LINES = 95.0
 
 
 def fail(reason):
@@ -225,6 +227,21 @@ def judge(report, elf, folder):
     return 0 if all(results) else 1
 
 
+def avr_alone(elf, folder):
+    profiles = sorted(pathlib.Path(folder).glob("*.csv"))
+    if not profiles:
+        fail(f"{folder} holds no profiles: faults.py --profiles writes them")
+    rows, missed = avr_rows(elf, profiles, Excluder(exclusions()))
+    ours = [row for row in rows if not row["file"].startswith("lib/filters/")]
+    complete(ours, "hal/avr/*.c", elf)
+    table(ours, [("lines", "lines_executed", "lines"), ("instructions", "instructions_executed", "instructions")])
+    print("\n".join(["uncovered:"] + missed))
+    good = judge_one(f"lines of the AVR binary but the filters, {len(profiles)} runs", percent(total(ours, "lines_executed"), total(ours, "lines")),
+                     CAMPAIGN_LINES)
+    print(f"{int(good)} passed, {int(not good)} failed")
+    return 0 if good else 1
+
+
 def twins(report, elf, folder):
     """The judge must see what is missing: the same data with a line of lib not executed, and with a single run."""
     nothing = Excluder([])
@@ -263,11 +280,13 @@ def main():
     arguments = sys.argv[1:]
     if len(arguments) == 4 and arguments[0] == "judge":
         return judge(*arguments[1:])
+    if len(arguments) == 3 and arguments[0] == "avr":
+        return avr_alone(*arguments[1:])
     if len(arguments) == 4 and arguments[0] == "twins":
         return twins(*arguments[1:])
     if len(arguments) == 4 and arguments[0] == "check":
         return check(*arguments[1:])
-    fail("usage: coverage.py judge|twins GCOVR.json ELF FOLDER, or check ELF PROFILE SOURCE")
+    fail("usage: coverage.py judge|twins GCOVR.json ELF FOLDER, avr ELF FOLDER, or check ELF PROFILE SOURCE")
     return 2
 
 

@@ -13,11 +13,14 @@ import concurrent.futures
 import json
 import pathlib
 import random
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
+import faults_runs
 from faults_runs import (KINDS, MOVING, NO_LIMIT, OF, REST, Fault, SIMRUN, attempt, flagged_share, need, phases, roll_differences, seeded_pairs)
 
 PAGE = pathlib.Path("docs/faults-campaign.md")
@@ -111,21 +114,26 @@ def summarised(results):
     return rows
 
 
+def share_flagged(firmware, kind, name, stream, sigma, seconds):
+    large, flagged = flagged_share(firmware, kind, stream, sigma, seconds)
+    return {"fault": f"{kind.name}, {name}", "changes_of_8_sigma": large, "flagged": flagged, "good": flagged >= SHARE_FLAGGED * large}
+
+
+def share_of_roll(firmware, what, faults, stream, seconds):
+    differences, missing = roll_differences(firmware, [f"p:1e-3:{fault}" for fault in faults], stream, seconds)
+    share = sum(d <= ROLL_CDEG for d in differences) / len(differences)
+    return {"fault": what, "rows": len(differences), "rows_without_partner": missing, "share_within_half_degree": round(share, 6),
+            "worst_cdeg": max(differences), "good": share >= SHARE_ROLL}
+
+
 def shares(options):
     """Rows of what no firmware can see to be wrong, and of roll at one fault in a thousand samples; with whether each is within its limit."""
     seconds = 20 if options.sample else 300
-    rows = []
-    for kind in (k for k in KINDS if not k.detectable):
-        for name, stream, sigma in (("at rest", REST, 2.0), ("moving", MOVING, 2.6)):
-            large, flagged = flagged_share(options.fw, kind, stream, sigma, seconds)
-            rows.append({"fault": f"{kind.name}, {name}", "changes_of_8_sigma": large, "flagged": flagged,
-                         "good": flagged >= SHARE_FLAGGED * large})
-    for what, faults, stream in ROLL_RUNS:
-        differences, missing = roll_differences(options.fw, [f"p:1e-3:{fault}" for fault in faults], stream, 3 * seconds)
-        share = sum(d <= ROLL_CDEG for d in differences) / len(differences)
-        rows.append({"fault": what, "rows": len(differences), "rows_without_partner": missing, "share_within_half_degree": round(share, 6),
-                     "worst_cdeg": max(differences), "good": share >= SHARE_ROLL})
-    return rows
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        waiting = [pool.submit(share_flagged, options.fw, kind, name, stream, sigma, seconds) for kind in KINDS if not kind.detectable
+                   for name, stream, sigma in (("at rest", REST, 2.0), ("moving", MOVING, 2.6))]
+        waiting += [pool.submit(share_of_roll, options.fw, *run, 2 * seconds) for run in ROLL_RUNS]
+        return [future.result() for future in waiting]
 
 
 def tables(rows, extra):
@@ -182,6 +190,14 @@ def main():
     need(SIMRUN, "make build/sim/simrun")
     need(options.fw, f"make {options.fw}")
     began = time.monotonic()
+    with tempfile.TemporaryDirectory(prefix="faults-programs-") as kept:
+        # what is built anew meanwhile does not disturb
+        options.fw = shutil.copy(options.fw, kept)
+        faults_runs.SIMRUN = shutil.copy(SIMRUN, kept)
+        return carried_out_and_told(options, began)
+
+
+def carried_out_and_told(options, began):
     runs = planned(options)
     print(f"faults: {len(runs)} runs, seed {options.seed}, {options.jobs} at a time", flush=True)
     results = carried_out(options, runs)
