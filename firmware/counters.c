@@ -19,3 +19,9 @@ FX_ONCE void count(uint8_t what)
         counters[what] = more;
     }
 }
+
+void count_lost(uint32_t missing)
+{
+    uint32_t sum = counters[COUNT_LOST] + missing;
+    counters[COUNT_LOST] = sum < missing ? UINT32_MAX : sum;
+}

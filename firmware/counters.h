@@ -14,6 +14,7 @@ enum counter {
     COUNT_ROWS,
     COUNT_DROPPED, /* rows for which the line had no room */
     COUNT_REFUSED, /* lines: too long, garbage, unknown, illegal value */
+    COUNT_LOST,    /* samples missing between two that came */
     COUNTERS
 };
 
@@ -23,5 +24,8 @@ void counters_start(void);
 
 /* One more of a kind (enum counter). */
 void count(uint8_t what);
+
+/* So many samples are missing. */
+void count_lost(uint32_t missing);
 
 #endif

@@ -24,6 +24,7 @@ static struct {
     uint16_t flags;
     uint8_t warm_rows;
     bool has_sample;
+    bool changed; /* the next sample is the first of another configuration, before which none is missing */
 } pipe;
 
 FX_NOINLINE void keep_estimate(uint8_t axis, int32_t x_lsb_q16)
@@ -52,6 +53,7 @@ static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool 
     bool new_noise = !keep || rate_dhz != pipe.rate_dhz;
     pipe.rate_dhz = rate_dhz;
     pipe.has_sample = keep;
+    pipe.changed = true;
     pipe.warm_rows = WARM_ROWS;
     pipe.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
     for (uint8_t axis = 0; axis < AXES; axis++) {
@@ -89,6 +91,9 @@ static void coast_over_gap(uint32_t t_us, uint32_t period_us)
     uint32_t at_us = period_us + (period_us >> 1);
     if (!pipe.has_sample || gap_us <= at_us) {
         return;
+    }
+    if (!pipe.changed) {
+        count_lost((gap_us - (period_us >> 1)) / period_us);
     }
     for (; at_us < gap_us && at_us < COAST_LIMIT_US; at_us += period_us) {
         for (uint8_t axis = 0; axis < AXES; axis++) {
@@ -138,6 +143,7 @@ void pipeline_sample(const adxl345_sample_t *sample, uint32_t period_us)
     coast_over_gap(sample->t_us, period_us);
     pipe.last_us = sample->t_us;
     pipe.has_sample = true;
+    pipe.changed = false;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         filter_axis(axis, sample->lsb[axis]);
     }

@@ -12,6 +12,7 @@
 #include "hal_uart.h"
 #include "hal_watchdog.h"
 #include "reply_texts.h"
+#include "sensor_watch.h"
 #include "settings.h"
 #include "text.h"
 
@@ -24,6 +25,7 @@ _Static_assert(FILTER_KIND_COUNT <= COMBINATION_RATE, "a filter's kind has four 
 _Static_assert(TEXT_FAULT_END - TEXT_WHO == (int)REPLY_FAULT_END, "a text for each reply");
 _Static_assert(TEXT_NAME_GO - TEXT_NAME_HELP == REPLY_GOING - REPLY_HELP, "a name for each command");
 _Static_assert(TEXT_LEGAL_MODE - TEXT_LEGAL_FILTER == REPLY_MODE - REPLY_FILTER, "legal values for each setting");
+_Static_assert(TEXT_TWO_SENSORS - TEXT_NO_SENSOR == ADXL345_FAULT_TWO_SENSORS - 1, "words for each fault");
 _Static_assert(TEXT_WATCHDOG - TEXT_POWER_ON == HAL_RESET_WATCHDOG, "words for each cause");
 _Static_assert(TEXT_STATE_FAULTY - TEXT_STATE_STOPPED == ADXL345_FAULTY, "words for each phase");
 
@@ -112,6 +114,10 @@ static uint32_t number(uint8_t what)
         return settings.baud;
     case SAY_NOTE:
         return hal_reset_note();
+    case SAY_OUTAGE_MS:
+        return sensor_watch_outage.ms;
+    case SAY_OUTAGE_LOST:
+        return sensor_watch_outage.lost;
     default:
         return said.subject;
     }

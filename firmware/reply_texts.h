@@ -23,23 +23,25 @@
 #define V_BAUD "\x09"
 #define V_NOTE "\x0B"
 #define V_SUBJECT "\x0C"
-#define V_NAME "\x0D"
-#define V_FILTER "\x0E"
-#define V_RATE "\x0F"
-#define V_BUS_KHZ "\x10"
-#define V_FILTERS "\x11"
-#define V_ADDRESS "\x12"
-#define V_DEVICE_ID "\x13"
-#define V_MORE "\x14"
-#define V_MORE_IF_FORCED "\x15"
-#define V_THEN_CAUSE "\x16"
-#define V_THEN_SAFE "\x17"
-#define V_THEN_LEGAL "\x18"
-#define V_THEN_FAULT "\x19"
-#define V_THEN_STATE "\x1A"
-#define V_THEN_WHY "\x1B"
-#define V_THEN_MODE "\x1C"
-#define V_THEN_REST "\x1D"
+#define V_OUTAGE_MS "\x0D"
+#define V_OUTAGE_LOST "\x0E"
+#define V_NAME "\x0F"
+#define V_FILTER "\x10"
+#define V_RATE "\x11"
+#define V_BUS_KHZ "\x12"
+#define V_FILTERS "\x13"
+#define V_ADDRESS "\x14"
+#define V_DEVICE_ID "\x15"
+#define V_MORE "\x16"
+#define V_MORE_IF_FORCED "\x17"
+#define V_THEN_CAUSE "\x18"
+#define V_THEN_SAFE "\x19"
+#define V_THEN_LEGAL "\x1A"
+#define V_THEN_FAULT "\x1B"
+#define V_THEN_STATE "\x1C"
+#define V_THEN_WHY "\x1D"
+#define V_THEN_MODE "\x1E"
+#define V_THEN_REST "\x1F"
 
 enum say {
     SAY_COUNT = 1, /* numbers: the next of the counters of the firmware, then of the driver */
@@ -53,8 +55,10 @@ enum say {
     SAY_BAUD,
     SAY_NOTE = 11, /* what the run before the reset left; 10 is the end of a line */
     SAY_SUBJECT,   /* the reply's argument, a fault code */
-    SAY_NAME,      /* of the setting that the line is about */
-    SAY_FILTER,    /* as set, or as asked for where that was refused */
+    SAY_OUTAGE_MS, /* how long the last fault was, and how many samples are missing of its time */
+    SAY_OUTAGE_LOST,
+    SAY_NAME,   /* of the setting that the line is about */
+    SAY_FILTER, /* as set, or as asked for where that was refused */
     SAY_RATE,
     SAY_BUS_KHZ,
     SAY_FILTERS, /* the image's */
@@ -99,99 +103,110 @@ enum say {
 #define W_HZ "\x96"
 #define W_THAT "\x97"
 #define W_NOT "\x98"
+#define W_HELD_LOW "\x99"
 
 #define SMALLEST ": " W_THE "smallest" W_THAT
 
 /*
  * First the words that others share, those of the commands before the rest; then one text for each reply_kind_t, in
- * its order; then the others, those that belong together in their order.
+ * its order; then the others, those that belong together in their order. Not formatted: aligned ends of the lines would
+ * all change with the longest.
  */
-#define REPLY_TEXTS(X)                                                                                                \
-    X(NAME_HELP, "help")                                                                                              \
-    X(NAME_STATUS, "status")                                                                                          \
-    X(NAME_FILTER, "filter")                                                                                          \
-    X(NAME_RATE, "rate")                                                                                              \
-    X(NAME_RANGE, "range")                                                                                            \
-    X(NAME_EVERY, "every")                                                                                            \
-    X(NAME_BAUD, "baud")                                                                                              \
-    X(NAME_MODE, "mode")                                                                                              \
-    X(NAME_STOP, "stop")                                                                                              \
-    X(NAME_GO, "go")                                                                                                  \
-    X(WORD_CHECK, ": check ")                                                                                         \
-    X(WORD_PULL_UPS, ", pull-ups, GND")                                                                               \
-    X(WORD_SENSOR, "sensor")                                                                                          \
-    X(WORD_AT, " at ")                                                                                                \
-    X(WORD_REFUSED, "refused: ")                                                                                      \
-    X(WORD_THE, "the ")                                                                                               \
-    X(WORD_TO, " to ")                                                                                                \
-    X(WORD_SAMPLE, "sample")                                                                                          \
-    X(WORD_FAULT, "fault ")                                                                                           \
-    X(WORD_LOST, " lost")                                                                                             \
-    X(WORD_SUPPLY, "supply")                                                                                          \
-    X(WORD_ADXL, " ADXL345")                                                                                          \
-    X(WORD_HZ, " Hz")                                                                                                 \
-    X(WORD_THAT, " that ")                                                                                            \
-    X(WORD_NOT, " not ")                                                                                              \
-    X(WHO, FIRMWARE_NAME " " FIRMWARE_VERSION ": roll and pitch from an" W_ADXL V_MORE)                               \
-    X(HELP, V_NAME ": " V_MORE V_THEN_LEGAL)                                                                          \
-    X(STATUS, "state " V_THEN_STATE)                                                                                  \
-    X(FILTER_NOW, W_FILTER " " V_FILTER V_MORE_IF_FORCED)                                                             \
-    X(RATE_NOW, W_RATE " " V_RATE W_HZ ", I2C" W_AT V_BUS_KHZ " kHz" V_MORE_IF_FORCED)                                \
-    X(RANGE_NOW, W_RANGE " " V_RANGE " g, 256 LSB per g")                                                             \
-    X(EVERY_NOW, W_EVERY " " V_EVERY V_THEN_WHY)                                                                      \
-    X(BAUD_NOW, W_BAUD " " V_BAUD V_MORE_IF_FORCED)                                                                   \
-    X(MODE_NOW, W_MODE " " V_THEN_MODE)                                                                               \
-    X(STOPPED, W_STOP "ped")                                                                                          \
-    X(GOING, "going")                                                                                                 \
-    X(UNKNOWN, "unknown command (type " W_HELP ")")                                                                   \
-    X(REFUSED, W_REFUSED V_NAME " is one of " V_THEN_LEGAL)                                                           \
-    X(TOO_SLOW, W_REFUSED V_FILTER " takes " V_CYCLES " of " W_THE V_LEFT " cycles" W_THAT                            \
-                                   "a " W_SAMPLE W_AT V_RATE W_HZ " leaves")                                          \
-    X(FAULT_BEGIN, W_FAULT V_SUBJECT ": " V_THEN_FAULT)                                                               \
-    X(FAULT_END, W_FAULT V_SUBJECT " over: " W_SAMPLE "s again")                                                      \
-    X(RESET, "reset: " V_MORE V_THEN_CAUSE)                                                                           \
+/* clang-format off */
+#define REPLY_TEXTS(X) \
+    X(NAME_HELP, "help") \
+    X(NAME_STATUS, "status") \
+    X(NAME_FILTER, "filter") \
+    X(NAME_RATE, "rate") \
+    X(NAME_RANGE, "range") \
+    X(NAME_EVERY, "every") \
+    X(NAME_BAUD, "baud") \
+    X(NAME_MODE, "mode") \
+    X(NAME_STOP, "stop") \
+    X(NAME_GO, "go") \
+    X(WORD_CHECK, ": check ") \
+    X(WORD_PULL_UPS, ", pull-ups, GND") \
+    X(WORD_SENSOR, "sensor") \
+    X(WORD_AT, " at ") \
+    X(WORD_REFUSED, "refused: ") \
+    X(WORD_THE, "the ") \
+    X(WORD_TO, " to ") \
+    X(WORD_SAMPLE, "sample") \
+    X(WORD_FAULT, "fault ") \
+    X(WORD_LOST, " lost") \
+    X(WORD_SUPPLY, "supply") \
+    X(WORD_ADXL, " ADXL345") \
+    X(WORD_HZ, " Hz") \
+    X(WORD_THAT, " that ") \
+    X(WORD_NOT, " not ") \
+    X(WORD_HELD_LOW, " held low") \
+    X(WHO, FIRMWARE_NAME " " FIRMWARE_VERSION ": roll and pitch from an" W_ADXL V_MORE) \
+    X(HELP, V_NAME ": " V_MORE V_THEN_LEGAL) \
+    X(STATUS, "state " V_THEN_STATE) \
+    X(FILTER_NOW, W_FILTER " " V_FILTER V_MORE_IF_FORCED) \
+    X(RATE_NOW, W_RATE " " V_RATE W_HZ ", I2C" W_AT V_BUS_KHZ " kHz" V_MORE_IF_FORCED) \
+    X(RANGE_NOW, W_RANGE " " V_RANGE " g, 256 LSB per g") \
+    X(EVERY_NOW, W_EVERY " " V_EVERY V_THEN_WHY) \
+    X(BAUD_NOW, W_BAUD " " V_BAUD V_MORE_IF_FORCED) \
+    X(MODE_NOW, W_MODE " " V_THEN_MODE) \
+    X(STOPPED, W_STOP "ped") \
+    X(GOING, "going") \
+    X(UNKNOWN, "unknown command (type " W_HELP ")") \
+    X(REFUSED, W_REFUSED V_NAME " is one of " V_THEN_LEGAL) \
+    X(TOO_SLOW, W_REFUSED V_FILTER " takes " V_CYCLES " of " W_THE V_LEFT " cycles" W_THAT \
+                                   "a " W_SAMPLE W_AT V_RATE W_HZ " leaves") \
+    X(FAULT_BEGIN, W_FAULT V_SUBJECT ": " V_THEN_FAULT) \
+    X(FAULT_END, W_FAULT V_SUBJECT " over: " W_SAMPLE "s again after " V_OUTAGE_MS " ms, " V_OUTAGE_LOST W_LOST) \
+    X(RESET, "reset: " V_MORE V_THEN_CAUSE) \
     X(SETTINGS, W_FILTER " " V_FILTER ", " W_RATE " " V_RATE W_HZ ", " W_RANGE " " V_RANGE " g, " W_EVERY " " V_EVERY \
-                         ", " W_BAUD " " V_BAUD V_MORE)                                                               \
-    X(HINT, "type " W_HELP ", or " W_MODE " plot for " W_THE "Arduino plotter" V_MORE)                                \
-    X(SENSOR, W_SENSOR ":" W_ADXL W_AT "0x" V_ADDRESS ", I2C" W_AT V_BUS_KHZ " kHz" V_MORE)                           \
-    X(HEADER, "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags")                                     \
-    X(VERBS, W_STOP ", go, status, " W_HELP "; NAME VALUE sets, NAME shows")                                          \
-    X(TOO_LONG, W_REFUSED "line too long")                                                                            \
-    X(GARBAGE, W_REFUSED "characters" W_THAT "no command has")                                                        \
-    X(SAMPLES, W_SAMPLE "s " V_COUNT ", gated " V_COUNT ", reacquired " V_COUNT ", clipped " V_COUNT V_MORE)          \
-    X(ROWS, "rows " V_COUNT ", dropped " V_COUNT ", serial bytes" W_LOST " " V_SERIAL_LOST                            \
-            ", lines refused " V_COUNT V_MORE)                                                                        \
-    X(BUS, "drained " V_COUNT ", bus faults " V_COUNT ", timeouts " V_COUNT ", restarts " V_COUNT)                    \
-    X(LINE_CARRIES, SMALLEST V_BAUD " " W_BAUD " carries" W_AT V_RATE W_HZ)                                           \
-    X(FILTER_LEAVES, SMALLEST V_FILTER " leaves time for" W_AT V_RATE W_HZ)                                           \
-    X(CSV, "csv")                                                                                                     \
-    X(PLOT, "plot")                                                                                                   \
-    X(LEGAL_FILTER, V_FILTERS)                                                                                        \
-    X(LEGAL_RATE, "12.5 25 50 100 200 400 800")                                                                       \
-    X(LEGAL_RANGE, "2 4 8 16")                                                                                        \
-    X(LEGAL_EVERY, "1 to 10000")                                                                                      \
-    X(LEGAL_BAUD, "9600 19200 38400 57600 115200 250000 500000 1000000")                                              \
-    X(LEGAL_MODE, "csv plot")                                                                                         \
-    X(POWER_ON, "power on")                                                                                           \
-    X(EXTERNAL, "reset button or serial port opened")                                                                 \
-    X(BROWN_OUT, W_SUPPLY " dropped")                                                                                 \
-    X(WATCHDOG, "watchdog, waiting for stage mask " V_NOTE " (1 sampling, 2 " W_FILTER "ing, 4 output)" V_THEN_SAFE)  \
-    X(SAFE, ", again and again: safe settings")                                                                       \
-    X(STATE_STOPPED, W_STOP "ped" V_THEN_REST)                                                                        \
-    X(STATE_STARTING, "starting" V_THEN_REST)                                                                         \
-    X(STATE_STREAMING, "streaming" V_THEN_REST)                                                                       \
-    X(STATE_QUIESCING, "starting" V_THEN_REST)                                                                        \
-    X(STATE_FAULTY, "fault" V_THEN_REST)                                                                              \
-    X(STATE_REST, ", " W_FAULT V_FAULT ", us per " W_SAMPLE " " V_PERIOD ", uptime s " V_COUNT V_MORE)                \
-    X(NO_SENSOR,                                                                                                      \
-      "no " W_SENSOR " answers" W_AT "0x53 or 0x1D" W_CHECK "power, SDA" W_TO "A4, SCL" W_TO "A5, CS" W_TO "3.3 V")   \
-    X(WRONG_ID, W_THE "device" W_AT "0x" V_ADDRESS " is no" W_ADXL ": DEVID reads 0x" V_DEVICE_ID "," W_NOT "0xE5")   \
-    X(BUS_FAULT, "I2C bus stuck or disturbed" W_CHECK "SDA, SCL" W_PULL_UPS)                                          \
-    X(READ_BACK, "a register does" W_NOT "keep its value" W_CHECK W_SUPPLY ", bus")                                   \
-    X(INT1_SILENT, W_THE W_SENSOR " has data, but INT1 does" W_NOT "rise" W_CHECK "INT1" W_TO "D2")                   \
-    X(NO_DATA, W_THE W_SENSOR " " W_STOP "ped measuring: power" W_LOST "?")                                           \
-    X(SCL_LOW, "SCL held low" W_CHECK "SCL" W_TO "A5")                                                                \
-    X(SDA_LOW, "SDA held low" W_CHECK "SDA" W_TO "A4")
+                         ", " W_BAUD " " V_BAUD V_MORE) \
+    X(HINT, "type " W_HELP ", or " W_MODE " plot for " W_THE "Arduino plotter" V_MORE) \
+    X(SENSOR, W_SENSOR ":" W_ADXL W_AT "0x" V_ADDRESS ", I2C" W_AT V_BUS_KHZ " kHz" V_MORE) \
+    X(HEADER, "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags") \
+    X(VERBS, W_STOP ", go, status, " W_HELP "; NAME VALUE sets, NAME shows") \
+    X(TOO_LONG, W_REFUSED "line too long") \
+    X(GARBAGE, W_REFUSED "characters" W_THAT "no command has") \
+    X(SAMPLES, W_SAMPLE "s " V_COUNT ", gated " V_COUNT ", reacquired " V_COUNT ", clipped " V_COUNT V_MORE) \
+    X(ROWS, "rows " V_COUNT ", dropped " V_COUNT ", serial bytes" W_LOST " " V_SERIAL_LOST \
+            ", lines refused " V_COUNT V_MORE) \
+    X(BUS, \
+      "lost " V_COUNT ", drained " V_COUNT ", bus faults " V_COUNT ", timeouts " V_COUNT ", restarts " V_COUNT V_MORE) \
+    X(RESET_AGAIN, "reset: " V_THEN_CAUSE) \
+    X(LINE_CARRIES, SMALLEST V_BAUD " " W_BAUD " carries" W_AT V_RATE W_HZ) \
+    X(FILTER_LEAVES, SMALLEST V_FILTER " leaves time for" W_AT V_RATE W_HZ) \
+    X(CSV, "csv") \
+    X(PLOT, "plot") \
+    X(LEGAL_FILTER, V_FILTERS) \
+    X(LEGAL_RATE, "12.5 25 50 100 200 400 800") \
+    X(LEGAL_RANGE, "2 4 8 16") \
+    X(LEGAL_EVERY, "1 to 10000") \
+    X(LEGAL_BAUD, "9600 19200 38400 57600 115200 250000 500000 1000000") \
+    X(LEGAL_MODE, "csv plot") \
+    X(POWER_ON, "power on") \
+    X(EXTERNAL, "reset button or serial port opened") \
+    X(BROWN_OUT, W_SUPPLY " dropped") \
+    X(WATCHDOG, "watchdog, waiting for stage mask " V_NOTE " (1 sampling, 2 " W_FILTER "ing, 4 output)" V_THEN_SAFE) \
+    X(SAFE, ", again and again: safe settings") \
+    X(STATE_STOPPED, W_STOP "ped" V_THEN_REST) \
+    X(STATE_STARTING, "starting" V_THEN_REST) \
+    X(STATE_STREAMING, "streaming" V_THEN_REST) \
+    X(STATE_QUIESCING, "starting" V_THEN_REST) \
+    X(STATE_FAULTY, "fault" V_THEN_REST) \
+    X(STATE_REST, ", " W_FAULT V_FAULT ", us per " W_SAMPLE " " V_PERIOD ", uptime s " V_COUNT V_MORE) \
+    X(NO_SENSOR, \
+      "no " W_SENSOR " answers" W_AT "0x53 or 0x1D" W_CHECK "power, SDA" W_TO "A4, SCL" W_TO "A5, CS" W_TO "3.3 V") \
+    X(WRONG_ID, W_THE "device" W_AT "0x" V_ADDRESS " is no" W_ADXL ": DEVID reads 0x" V_DEVICE_ID "," W_NOT "0xE5") \
+    X(BUS_FAULT, "I2C bus stuck or disturbed" W_CHECK "SDA, SCL" W_PULL_UPS) \
+    X(READ_BACK, "a register does" W_NOT "keep its value" W_CHECK W_SUPPLY ", bus") \
+    X(INT1_SILENT, W_THE W_SENSOR " has data, but INT1 does" W_NOT "rise" W_CHECK "INT1" W_TO "D2") \
+    X(NO_DATA, W_THE W_SENSOR " " W_STOP "ped measuring: power" W_LOST "?") \
+    X(SCL_LOW, "SCL" W_HELD_LOW W_CHECK "SCL" W_TO "A5" W_PULL_UPS) \
+    X(SDA_LOW, "SDA" W_HELD_LOW W_CHECK "SDA" W_TO "A4" W_PULL_UPS) \
+    X(INT1_STUCK, "INT1 is high without data" W_CHECK "INT1" W_TO "D2") \
+    X(STUCK, W_THE "values do" W_NOT "change" W_CHECK W_SUPPLY ", bus") \
+    X(TORN, "readings are torn" W_CHECK "SDA, SCL, " W_SUPPLY W_PULL_UPS) \
+    X(TWO_SENSORS, "values jump to their double" W_CHECK "for two " W_SENSOR "s" W_AT "0x" V_ADDRESS)
+/* clang-format on */
 
 #define REPLY_TEXT_ID(name, words) TEXT_##name,
 enum reply_text { REPLY_TEXTS(REPLY_TEXT_ID) TEXT_NONE };

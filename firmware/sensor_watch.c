@@ -1,9 +1,11 @@
-/* When a fault is told, and the rows without samples. The words are in reply_texts.h. */
+/* When a fault is told and shown, and the rows without samples. The words are in reply_texts.h. */
 #include "sensor_watch.h"
 
 #include <stdbool.h>
 
 #include "adxl345.h"
+#include "counters.h"
+#include "flash.h"
 #include "hal_led.h"
 #include "hal_time.h"
 #include "pipeline.h"
@@ -13,28 +15,72 @@
 
 #define HELD_ROW_US 100000ul
 
+/* A second is eight times this, as good as: what of the time of now goes into the pattern of the LED. */
+#define FLASH_SHIFT 16
+enum { FLASH_SLOTS = 8 };
+
+/* Flashes in a second, by what to look at: 1 the bus, 2 the sensor or its supply, 3 INT1, 4 the readings. */
+static const uint8_t flashes[] FLASH = {
+    [ADXL345_FAULT_NO_SENSOR] = 2, [ADXL345_FAULT_WRONG_ID] = 2,    [ADXL345_FAULT_BUS] = 1,
+    [ADXL345_FAULT_READ_BACK] = 2, [ADXL345_FAULT_INT1_SILENT] = 3, [ADXL345_FAULT_NO_DATA] = 2,
+    [ADXL345_FAULT_SCL_LOW] = 1,   [ADXL345_FAULT_SDA_LOW] = 1,     [ADXL345_FAULT_INT1_STUCK] = 3,
+    [ADXL345_FAULT_STUCK] = 4,     [ADXL345_FAULT_TORN] = 4,        [ADXL345_FAULT_TWO_SENSORS] = 4,
+};
+
+sensor_outage_t sensor_watch_outage;
+
 static uint8_t told;       /* fault code of the last line, NONE when all is well */
 static uint16_t told_mask; /* codes told since the fault began: each once */
 static uint32_t next_row_us;
+static uint32_t began_us; /* the fault */
+
+/* Until the end the numbers of the outage are those of its beginning. */
+static void begin_outage(uint32_t now_us)
+{
+    began_us = now_us;
+    sensor_watch_outage.ms = counters[COUNT_SECONDS];
+    sensor_watch_outage.lost = counters[COUNT_LOST];
+}
+
+/* Microseconds wrap after 71 minutes: an outage of more than a minute is told in whole seconds. */
+static void end_outage(uint32_t now_us)
+{
+    uint32_t seconds = counters[COUNT_SECONDS] - sensor_watch_outage.ms;
+    sensor_watch_outage.ms = seconds < 60u ? (now_us - began_us) / 1000u : seconds * 1000u;
+    sensor_watch_outage.lost = counters[COUNT_LOST] - sensor_watch_outage.lost;
+}
+
+/* The LED flashes for 65 ms in each of the first slots of 131 ms, of which a second has eight. */
+static void show(uint8_t fault, uint32_t now_us)
+{
+    uint8_t half_slot = (uint8_t)(now_us >> FLASH_SHIFT);
+    uint8_t slot = (half_slot >> 1) % FLASH_SLOTS;
+    hal_led_set((half_slot & 1u) == 0 && slot < flash_u8(&flashes[fault]));
+}
 
 void sensor_watch_start(uint32_t now_us)
 {
     told = (uint8_t)adxl345_fault();
     told_mask = (uint16_t)(1u << told);
+    begin_outage(now_us);
     next_row_us = now_us + HELD_ROW_US;
 }
 
-static void tell(uint8_t fault)
+static void tell(uint8_t fault, uint32_t now_us)
 {
     uint16_t bit = (uint16_t)(1u << fault);
     if (fault == ADXL345_FAULT_NONE) {
         if (replies_add(REPLY_FAULT_END, told)) {
+            end_outage(now_us);
             told = ADXL345_FAULT_NONE;
             told_mask = 0;
         }
     } else if (told_mask & bit) {
         told = fault;
     } else if (replies_add(REPLY_FAULT_BEGIN, fault)) {
+        if (told == ADXL345_FAULT_NONE) {
+            begin_outage(now_us);
+        }
         told = fault;
         told_mask |= bit;
     }
@@ -44,7 +90,7 @@ void sensor_watch_pass(uint32_t now_us)
 {
     uint8_t fault = (uint8_t)adxl345_fault();
     adxl345_phase_t phase = adxl345_phase();
-    hal_led_set(fault != ADXL345_FAULT_NONE);
+    show(fault, now_us);
     if (phase == ADXL345_STOPPED) {
         told = ADXL345_FAULT_NONE; /* not mended, only not asked any more */
         told_mask = 0;
@@ -52,7 +98,7 @@ void sensor_watch_pass(uint32_t now_us)
     /* a stop and a go between two looks leave no fault either, but no sample yet */
     bool known = fault != ADXL345_FAULT_NONE || phase == ADXL345_STREAMING;
     if (known && fault != told && settings.mode != MODE_PLOT) {
-        tell(fault);
+        tell(fault, now_us);
     }
     if (fault == ADXL345_FAULT_NONE) {
         next_row_us = now_us + HELD_ROW_US;

@@ -1,4 +1,7 @@
-/* Tells the user when the sensor fails and when it is back, and keeps rows coming meanwhile. Main only. */
+/*
+ * Tells the user when the sensor fails and when it is back, by lines and by the LED, and keeps rows coming meanwhile.
+ * Main only.
+ */
 #ifndef SENSOR_WATCH_H
 #define SENSOR_WATCH_H
 
@@ -7,7 +10,14 @@
 /* When rows begin; the banner has told a fault that is there by now. */
 void sensor_watch_start(uint32_t now_us);
 
-/* Once per pass of the main loop, after adxl345_poll. */
+/* When rows may have been waited for long enough: every few ms, after adxl345_poll. */
 void sensor_watch_pass(uint32_t now_us);
+
+/* Of the last fault that is over: how long it was, and how many samples are missing. */
+typedef struct {
+    uint32_t ms;
+    uint32_t lost;
+} sensor_outage_t;
+extern sensor_outage_t sensor_watch_outage;
 
 #endif

@@ -38,7 +38,11 @@ typedef enum {
     ADXL345_FAULT_INT1_SILENT = 5, /* data are ready inside the sensor, but INT1 does not rise */
     ADXL345_FAULT_NO_DATA = 6,     /* the sensor answers but measures no more: it has lost power or its registers */
     ADXL345_FAULT_SCL_LOW = 7,     /* somebody holds SCL low */
-    ADXL345_FAULT_SDA_LOW = 8      /* somebody holds SDA low, and 16 clocks have not freed it */
+    ADXL345_FAULT_SDA_LOW = 8,     /* somebody holds SDA low, and 16 clocks have not freed it */
+    ADXL345_FAULT_INT1_STUCK = 9,  /* INT1 stays high without data */
+    ADXL345_FAULT_STUCK = 10,      /* the same values again and again */
+    ADXL345_FAULT_TORN = 11,       /* three readings in a row were none of this sensor */
+    ADXL345_FAULT_TWO_SENSORS = 12 /* an axis jumps between a value and its double: two sensors on one address */
 } adxl345_fault_t;
 
 typedef enum {

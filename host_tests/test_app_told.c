@@ -1,0 +1,164 @@
+/* What the user is told of a fault: its words, how long it was, what it lost, and the LED. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "adxl345.h"
+#include "counters.h"
+#include "pipeline.h"
+#include "replies.h"
+#include "support_board.h"
+#include "text.h"
+#include "unity.h"
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+/*
+ * One pattern of 2^20 us, begun in its dark part: so many flashes of 65.5 ms. main looks every 8.2 ms at the latest, so
+ * each may begin and end that much late.
+ */
+static void assert_led_flashes(unsigned times)
+{
+    const double pattern_ms = 1048.576;
+    board_run_ms(pattern_ms - fmod(hal_host_now_ms(), pattern_ms) + 0.6 * pattern_ms);
+    unsigned flashes = 0;
+    double lit_ms = 0.0;
+    bool was = hal_host_led();
+    TEST_ASSERT_FALSE(was);
+    double now_ms = hal_host_now_ms();
+    for (double end_ms = now_ms + pattern_ms; now_ms < end_ms; now_ms = hal_host_now_ms()) {
+        board_run_ms(1.0);
+        lit_ms += was ? hal_host_now_ms() - now_ms : 0.0;
+        bool is = hal_host_led();
+        flashes += is && !was;
+        was = is;
+    }
+    TEST_ASSERT_EQUAL_UINT(times, flashes);
+    TEST_ASSERT_DOUBLE_WITHIN(10.0 * times, 65.5 * times, lit_ms);
+}
+
+static void test_led_flashes_by_what_to_look_at(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    adxl345_model_power(&hal_host_sensor, false);
+    assert_led_flashes(2);
+    board_start_resting();
+    hal_host_faults.id_wrong = true;
+    assert_led_flashes(2);
+    board_start_resting();
+    hal_host_faults.sda_low = true;
+    assert_led_flashes(1);
+    board_start_resting();
+    hal_host_faults.scl_low = true;
+    assert_led_flashes(1);
+    board_start_resting();
+    hal_host_faults.int1_cut = true;
+    assert_led_flashes(3);
+    board_start_resting();
+    assert_led_flashes(0);
+}
+
+/* Every code has words, also those that only a real sensor or bus can bring about. */
+static void test_each_fault_has_its_words(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    for (uint8_t code = ADXL345_FAULT_NO_SENSOR; code <= ADXL345_FAULT_TWO_SENSORS; code++) {
+        char begin[24];
+        snprintf(begin, sizeof begin, "# fault %u: ", code);
+        size_t before = board.note_count;
+        TEST_ASSERT_TRUE(replies_add(REPLY_FAULT_BEGIN, code));
+        board_run_ms(100);
+        TEST_ASSERT_EQUAL_size_t(1, board_notes_with(begin, before));
+        TEST_ASSERT_TRUE(strlen(board_last_note()) > strlen(begin) + 20);
+        TEST_ASSERT_TRUE(strlen(board_last_note()) < TEXT_LINE_MAX);
+    }
+}
+
+/* Rows of samples are those without predictions; returns how many are missing between the two about the gap. */
+static unsigned missing_after(size_t from_row)
+{
+    const board_row_t *last = &board.rows[from_row - 1];
+    for (size_t i = from_row; i < board.row_count; i++) {
+        if ((board.rows[i].flags & ROW_COASTED) == 0 && board.rows[i].t_us - last->t_us > 15000u) {
+            return (board.rows[i].t_us - last->t_us + 5000u) / 10000u - 1u;
+        }
+        last = (board.rows[i].flags & ROW_COASTED) ? last : &board.rows[i];
+    }
+    return 0;
+}
+
+/* What the line says is what the rows show, and what `status` adds up; the fault was told when its line left. */
+static void assert_outage_is_told(size_t note, size_t row, double tolerance_ms)
+{
+    unsigned code, ms, lost;
+    TEST_ASSERT_EQUAL_INT(
+        3, sscanf(board_last_note(), "# fault %u over: samples again after %u ms, %u lost", &code, &ms, &lost));
+    TEST_ASSERT_EQUAL_UINT(missing_after(row), lost);
+    TEST_ASSERT_DOUBLE_WITHIN(tolerance_ms, board.note_ms[board.note_count - 1] - board.note_ms[note], ms);
+    TEST_ASSERT_EQUAL_UINT32(lost, counters[COUNT_LOST]);
+}
+
+static void test_end_of_a_fault_tells_its_length_and_the_samples_lost(void)
+{
+    static const double lengths_ms[] = { 60, 333, 2000, 58000, 90000 };
+    for (size_t i = 0; i < sizeof lengths_ms / sizeof lengths_ms[0]; i++) {
+        board_start_resting();
+        board_run_ms(3500);
+        size_t note = board.note_count;
+        size_t row = board.row_count;
+        adxl345_model_power(&hal_host_sensor, false);
+        board_run_ms(lengths_ms[i]);
+        adxl345_model_power(&hal_host_sensor, true);
+        board_run_ms(500);
+        assert_outage_is_told(note, row, lengths_ms[i] < 59000 ? 20.0 : 1100.0);
+    }
+}
+
+/* The second outage tells of itself alone. */
+static void test_each_outage_begins_anew(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    unsigned lost[2];
+    for (unsigned i = 0; i < 2; i++) {
+        size_t row = board.row_count;
+        adxl345_model_power(&hal_host_sensor, false);
+        board_run_ms(i == 0 ? 700 : 300);
+        adxl345_model_power(&hal_host_sensor, true);
+        board_run_ms(500);
+        const char *count = strstr(board_last_note(), "ms, ");
+        TEST_ASSERT_NOT_NULL(count);
+        lost[i] = (unsigned)strtoul(count + 4, NULL, 10);
+        TEST_ASSERT_EQUAL_UINT(missing_after(row), lost[i]);
+    }
+    TEST_ASSERT_TRUE(lost[1] < lost[0]);
+    TEST_ASSERT_EQUAL_UINT32(lost[0] + lost[1], counters[COUNT_LOST]);
+}
+
+/* A change of rate stops the sensor for a moment: no sample is missing. */
+static void test_a_change_of_rate_loses_nothing(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    board_type("rate 200");
+    board_run_ms(500);
+    board_type("range 4");
+    board_run_ms(500);
+    TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LOST]);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_led_flashes_by_what_to_look_at);
+    RUN_TEST(test_each_fault_has_its_words);
+    RUN_TEST(test_end_of_a_fault_tells_its_length_and_the_samples_lost);
+    RUN_TEST(test_each_outage_begins_anew);
+    RUN_TEST(test_a_change_of_rate_loses_nothing);
+    return UNITY_END();
+}
