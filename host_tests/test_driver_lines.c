@@ -14,12 +14,18 @@
 #include "support_board.h"
 #include "unity.h"
 
+enum { ROWS = 4000 };
+
+static const uint32_t start_us = 0xFFFFFFFFu - 300000u;
 static const adxl345_config_t at_100_hz = { 1000, 16 };
 static const adxl345_config_t at_800_hz = { 8000, 16 };
 static const uint16_t rates_dhz[] = { 125, 250, 500, 1000, 2000, 4000, 8000 };
 static stream_t stream;
 static size_t taken_count;
 static size_t latched_count;
+static uint32_t latched_us[ROWS]; /* of the sample whose x is the index */
+static uint32_t oldest_us;        /* the most that a stamp was from the moment when its sample was latched */
+static double ppm;
 static int last_x;
 static uint32_t clocks_seen;
 static uint32_t most_clocks;
@@ -27,9 +33,8 @@ static uint32_t clears;
 
 static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
 {
-    (void)t_us;
     (void)row;
-    (void)lsb;
+    latched_us[lsb[0]] = start_us + (uint32_t)t_us;
     latched_count++;
 }
 
@@ -45,13 +50,13 @@ static void on_bus_clear(void)
 static void begin(double rate_hz)
 {
     stream_free(&stream);
-    stream = board_constant_stream(4000, rate_hz, 0, -100, 250);
+    stream = board_constant_stream(ROWS, rate_hz, 0, -100, 250);
     for (size_t i = 0; i < stream.count; i++) {
         stream.rows[i].lsb[0] = (int16_t)i;
     }
-    hal_host_config_t config = { .time_start_us = 0xFFFFFFFFu - 300000u,
-                                 .on_latched = on_latched,
-                                 .on_bus_clear = on_bus_clear };
+    hal_host_config_t config = {
+        .time_start_us = start_us, .ppm = ppm, .on_latched = on_latched, .on_bus_clear = on_bus_clear
+    };
     hal_host_begin(&config, &stream, false);
     hal_uart_init(115200);
     hal_time_init();
@@ -60,6 +65,7 @@ static void begin(double rate_hz)
     taken_count = 0;
     latched_count = 0;
     last_x = -1;
+    oldest_us = 0;
     clocks_seen = 0;
     most_clocks = 0;
     clears = 0;
@@ -67,6 +73,7 @@ static void begin(double rate_hz)
 
 void setUp(void)
 {
+    ppm = 0.0;
     begin(100.0);
 }
 
@@ -82,6 +89,10 @@ static void pass(void)
     while (adxl345_take(&sample)) {
         TEST_ASSERT_TRUE_MESSAGE(sample.lsb[0] > last_x, "a sample came twice");
         last_x = sample.lsb[0];
+        uint32_t early_us = latched_us[last_x] - sample.t_us;
+        uint32_t late_us = sample.t_us - latched_us[last_x];
+        uint32_t off_us = late_us < early_us ? late_us : early_us;
+        oldest_us = off_us > oldest_us ? off_us : oldest_us;
         taken_count++;
         hal_wake();
     }
@@ -323,6 +334,62 @@ static void test_silent_int1_is_noticed_within_three_periods(void)
     }
 }
 
+/*
+ * INT1 stays silent: read by the clock for two seconds, at every rate and with a sensor 5 % off. The fault stays told,
+ * no sample is lost, doubled or has the time of another; when INT1 is back the fault is over.
+ */
+static void test_without_int1_samples_are_read_by_the_clock(void)
+{
+    static const double clocks_ppm[] = { -50000.0, 0.0, 50000.0 };
+    for (unsigned i = 0; i < 3 * sizeof rates_dhz / sizeof rates_dhz[0]; i++) {
+        adxl345_config_t config = { rates_dhz[i / 3], 16 };
+        double period_ms = 10000.0 / config.rate_dhz;
+        ppm = clocks_ppm[i % 3];
+        begin(config.rate_dhz / 10.0);
+        adxl345_start(&config);
+        run_ms(50.0 + 6.0 * period_ms);
+        hal_host_faults.int1_cut = true;
+        (void)ms_until_fault(true);
+        run_ms(20.0 * period_ms);
+        size_t latched = latched_count;
+        size_t taken = taken_count;
+        oldest_us = 0;
+        for (unsigned ms = 0; ms < 2000; ms++) {
+            run_ms(1.0);
+            TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
+            TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+        }
+        TEST_ASSERT_INT_WITHIN(2, (int)(latched_count - latched), (int)(taken_count - taken));
+        TEST_ASSERT_TRUE(oldest_us <= 1000u * period_ms);
+        hal_host_faults.int1_cut = false;
+        TEST_ASSERT_TRUE(ms_until_fault(false) <= 2.0 * period_ms);
+        run_ms(50.0);
+        adxl345_stop();
+        run_ms(60.0 + 2.0 * period_ms);
+        TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+    }
+}
+
+/* A sensor that stops measuring while it is read by the clock: that is no silence of INT1 any more. */
+static void test_without_int1_a_sensor_that_stops_is_noticed(void)
+{
+    adxl345_start(&at_100_hz);
+    run_ms(200);
+    hal_host_faults.int1_cut = true;
+    run_ms(200);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
+    adxl345_model_power(&hal_host_sensor, false);
+    run_ms(20);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
+    adxl345_model_power(&hal_host_sensor, true);
+    run_ms(200);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
+    TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+    hal_host_faults.int1_cut = false;
+    run_ms(30);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -335,5 +402,7 @@ int main(void)
     RUN_TEST(test_a_busy_bus_is_waited_for_no_longer_than_it_is_busy);
     RUN_TEST(test_a_late_main_is_no_timeout);
     RUN_TEST(test_silent_int1_is_noticed_within_three_periods);
+    RUN_TEST(test_without_int1_samples_are_read_by_the_clock);
+    RUN_TEST(test_without_int1_a_sensor_that_stops_is_noticed);
     return UNITY_END();
 }

@@ -175,6 +175,8 @@ static void start_measuring(void)
     burst_set_mode(BURST_READ);
     burst_set_period(driver.nominal_us);
     driver.first_sample_seen = false;
+    driver.timed = TIMED_NONE;
+    driver.was_empty = false;
     driver.seen_successes = burst_successes();
     burst_expect(driver.now_us + TURN_ON_MS * 1000ul);
     enter(STEP_STREAM, 1);
@@ -214,13 +216,19 @@ static int32_t silent_for_us(void)
 static void source_asked(void)
 {
     uint8_t source = burst_register_value() & (uint8_t)(ADXL345_INT_DATA_READY | ADXL345_INT_EVENTS);
+    bool ready = source == ADXL345_INT_DATA_READY;
     bool may_come = source == 0 && silent_for_us() < (int32_t)(driver.nominal_us * 3u + MARGIN_US);
-    if (may_come || hal_drdy_high()) {
-        burst_set_mode(BURST_READ);
-        enter(STEP_STREAM, 1);
+    if (!ready && !may_come && !hal_drdy_high()) {
+        fail(ADXL345_FAULT_NO_DATA);
         return;
     }
-    fail(source == ADXL345_INT_DATA_READY ? ADXL345_FAULT_INT1_SILENT : ADXL345_FAULT_NO_DATA);
+    burst_set_mode(BURST_READ);
+    enter(STEP_STREAM, 1);
+    driver.was_empty = driver.was_empty || !ready;
+    if (ready && !hal_drdy_high()) {
+        driver.fault = ADXL345_FAULT_INT1_SILENT;
+        driver.timed = TIMED_WANTED;
+    }
 }
 
 /* The step's register access ended well. */
@@ -277,17 +285,30 @@ static void access_step(void)
     }
 }
 
+/*
+ * Without a sample until the sensor is asked: two periods, or while INT1 is known to be silent less than one, so that
+ * a sensor that is fast does not fill its FIFO.
+ */
+static uint32_t patience_us(void)
+{
+    uint32_t nominal_us = driver.nominal_us;
+    return driver.fault == ADXL345_FAULT_INT1_SILENT ? nominal_us - nominal_us / 4u : nominal_us * 2u;
+}
+
 static void sample_arrived(void)
 {
     driver.seen_successes = burst_successes();
-    if (driver.fault != ADXL345_FAULT_NONE) {
-        saturating_add(&driver.counters.restarts);
-    }
-    driver.fault = ADXL345_FAULT_NONE;
     driver.first_sample_seen = true;
     driver.alternate_tried = false;
     driver.back_off_ms = BACK_OFF_MIN_MS;
     driver.deadline_us = driver.now_us + driver.nominal_us + LOOK_US;
+    if (driver.timed == TIMED_READ) {
+        driver.deadline_us = burst_begun_us() + patience_us();
+    } else if (driver.fault != ADXL345_FAULT_NONE) {
+        saturating_add(&driver.counters.restarts);
+        driver.fault = ADXL345_FAULT_NONE;
+    }
+    driver.timed = TIMED_NONE;
 }
 
 /* A burst or the STOP behind it hangs: the sample is read again, unless a line that is low says why. */
@@ -301,8 +322,8 @@ static void end_hung_burst(void)
 }
 
 /*
- * No sample came by the time it was due: a burst may hang, or there was none for two periods, so that the sensor is
- * asked. One that failed counts as a sign of life: three in a row are a fault by themselves.
+ * No sample came by the time it was due: a burst may hang, or there was none for so long that the sensor is asked. One
+ * that failed counts as a sign of life: three in a row are a fault by themselves.
  */
 static void look_for_sample(void)
 {
@@ -313,7 +334,7 @@ static void look_for_sample(void)
         } else {
             driver.deadline_us = driver.now_us + (uint32_t)(TRANSFER_LIMIT_US - since_us);
         }
-    } else if (since_us >= (int32_t)(driver.nominal_us * 2u) && !burst_queue_full()) {
+    } else if (since_us >= (int32_t)patience_us() && !burst_queue_full()) {
         burst_set_mode(BURST_STAMP);
         enter(STEP_ASK_SOURCE, TRANSFER_LIMIT_MS);
     } else {
@@ -332,7 +353,13 @@ static void stream_step(void)
     } else if (deadline_passed()) {
         look_for_sample();
     }
-    if (burst_drain()) {
+    if (driver.timed != TIMED_WANTED) {
+        if (burst_drain()) {
+            set_limit(TRANSFER_LIMIT_MS);
+        }
+    } else if (burst_read(driver.was_empty)) {
+        driver.timed = TIMED_READ;
+        driver.was_empty = false;
         set_limit(TRANSFER_LIMIT_MS);
     }
 }

@@ -190,28 +190,33 @@ uint8_t burst_register_value(void)
     return register_value;
 }
 
-/* Stamp of a sample that was found waiting: its own edge, else one period after the one before it. */
-static uint32_t waiting_since_us(uint32_t now_us)
+/* Stamp of a sample that was found waiting: its own edge, else one period after the one before it unless it is new. */
+static uint32_t waiting_since_us(uint32_t now_us, bool is_new)
 {
     uint32_t period_us = burst_period_us();
     if (edge_waiting) {
         return edge_us;
     }
     uint32_t age_us = now_us - (last_us + period_us);
-    bool plausible = last_known && age_us <= SENSOR_DEPTH * period_us;
+    bool plausible = !is_new && last_known && age_us <= SENSOR_DEPTH * period_us;
     return plausible ? now_us - age_us : now_us;
+}
+
+bool burst_read(bool is_new)
+{
+    hal_irq_state_t state = hal_irq_save();
+    bool start = mode == BURST_READ && i2c_bus_free(&bus) && queue_has_room();
+    if (start) {
+        uint32_t now_us = hal_time_us_isr();
+        begin_burst(now_us, waiting_since_us(now_us, is_new), edge_waiting);
+    }
+    hal_irq_restore(state);
+    return start;
 }
 
 bool burst_drain(void)
 {
-    hal_irq_state_t state = hal_irq_save();
-    bool start = mode == BURST_READ && hal_drdy_high() && i2c_bus_free(&bus) && queue_has_room();
-    if (start) {
-        uint32_t now_us = hal_time_us_isr();
-        begin_burst(now_us, waiting_since_us(now_us), edge_waiting);
-    }
-    hal_irq_restore(state);
-    return start;
+    return hal_drdy_high() && burst_read(false);
 }
 
 bool burst_running(void)

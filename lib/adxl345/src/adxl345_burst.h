@@ -43,6 +43,12 @@ uint8_t burst_register_value(void);
 /* A sample waits (INT1 high), bus and queue are free: start reading it. True when a burst was started. */
 bool burst_drain(void);
 
+/*
+ * The same whatever INT1 says, for a sensor that has said by its registers that a sample waits; is_new: one that was
+ * not there a moment ago, else the next in the FIFO.
+ */
+bool burst_read(bool is_new);
+
 /* Time between samples: set to the nominal one, then measured from the stamps taken out. */
 void burst_set_period(uint32_t nominal_us);
 uint32_t burst_period_us(void);

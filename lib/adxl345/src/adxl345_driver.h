@@ -17,6 +17,9 @@ typedef enum {
     STEP_BACK_OFF
 } step_t;
 
+/* The sample that is read without INT1, because the sensor says that it is there while the pin is low. */
+typedef enum { TIMED_NONE, TIMED_WANTED, TIMED_READ } timed_t;
+
 typedef struct {
     adxl345_config_t config;
     adxl345_counters_t counters;
@@ -34,6 +37,8 @@ typedef struct {
     bool first_sample_seen;
     bool stop_wanted; /* after quiescing: stop, not start */
     bool alternate_tried;
+    uint8_t timed;  /* timed_t */
+    bool was_empty; /* when the sensor was asked last: a sample that is ready now is new */
 } adxl345_driver_t;
 
 extern adxl345_driver_t driver;
