@@ -89,9 +89,8 @@ static void pass(void)
     while (adxl345_take(&sample)) {
         TEST_ASSERT_TRUE_MESSAGE(sample.lsb[0] > last_x, "a sample came twice");
         last_x = sample.lsb[0];
-        uint32_t early_us = latched_us[last_x] - sample.t_us;
-        uint32_t late_us = sample.t_us - latched_us[last_x];
-        uint32_t off_us = late_us < early_us ? late_us : early_us;
+        int32_t late_us = (int32_t)(sample.t_us - latched_us[last_x]);
+        uint32_t off_us = (uint32_t)(late_us < 0 ? -late_us : late_us);
         oldest_us = off_us > oldest_us ? off_us : oldest_us;
         taken_count++;
         hal_wake();
@@ -119,11 +118,7 @@ static double ms_until_fault(bool wanted)
 
 static void hold(adxl345_fault_t line, bool low)
 {
-    if (line == ADXL345_FAULT_SCL_LOW) {
-        hal_host_faults.scl_low = low;
-    } else {
-        hal_host_faults.sda_low = low;
-    }
+    *(line == ADXL345_FAULT_SCL_LOW ? &hal_host_faults.scl_low : &hal_host_faults.sda_low) = low;
 }
 
 /* A line that is low from the start is seen before any transfer: no deadline is needed. */
@@ -147,7 +142,6 @@ static void test_a_line_low_from_the_start_is_named_at_once(void)
 /* An SCL that is low is given no clock; for an SDA that stays low 16 are enough, and there is no STOP then. */
 static void test_clocks_by_hand(void)
 {
-    begin(100.0);
     hold(ADXL345_FAULT_SCL_LOW, true);
     adxl345_start(&at_100_hz);
     run_ms(200);
@@ -229,9 +223,7 @@ static void test_a_hung_slave_is_freed(void)
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
         adxl345_stop();
         run_ms(60);
-        if (clocks <= 16) {
-            TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
-        }
+        TEST_ASSERT_TRUE(told || latched_count == taken_count);
     }
 }
 
