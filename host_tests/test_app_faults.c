@@ -51,7 +51,6 @@ static void test_silent_int1_is_told_once(void)
     hal_host_faults.int1_cut = true;
     board_run_ms(700);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("INT1 does not rise: check INT1 to D2", 0));
-    TEST_ASSERT_TRUE(hal_host_led());
     /* read by the clock: rows at the sensor's rate, each of a sample */
     size_t before = board.row_count;
     size_t latched = board.latched_count;
@@ -62,7 +61,7 @@ static void test_silent_int1_is_told_once(void)
     }
     hal_host_faults.int1_cut = false;
     board_run_ms(100);
-    TEST_ASSERT_EQUAL_STRING("# fault 5 over: samples again", board_last_note());
+    TEST_ASSERT_EQUAL_STRING_LEN("# fault 5 over: samples again after ", board_last_note(), 36);
 }
 
 static void test_fault_begins_and_ends_with_one_line_each(void)
