@@ -71,6 +71,7 @@ def make(*targets):
 PYTHON, WITH_PACKAGES = "python3", "build/venv/bin/python"
 JUDGES = {
     "system": (["system_images"], PYTHON, "host_tests/system_tests.py"),
+    "fault_page": (["help"], PYTHON, "host_tests/test_fault_page.py"),
     "resets": (["system_images"], PYTHON, "host_tests/test_resets.py"),
     "faults": (["system_images"], PYTHON, "tools/faults.py"),
     "campaign": (["system_images"], PYTHON, "host_tests/test_faults.py"),

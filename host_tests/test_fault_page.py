@@ -1,0 +1,75 @@
+"""docs/faults.md lists exactly the fault codes of the driver and the words that the firmware has for them, and each counter of `status`."""
+import pathlib
+import re
+import subprocess
+
+from system_support import run_all, test
+
+PAGE = pathlib.Path("docs/faults.md")
+INCLUDES = ["-Ifirmware", "-Ihal", "-Ihal/host"]
+SHARED = 0x80
+
+
+def texts():
+    """name -> words of firmware/reply_texts.h, shared words put in, a value as .. and what only steers left out."""
+    source = '#include "reply_texts.h"\n#define SHOWN(name, words) @name words\nREPLY_TEXTS(SHOWN)\n'
+    done = subprocess.run(["gcc", "-E", "-P", *INCLUDES, "-xc", "-"], input=source, capture_output=True, text=True, check=True)
+    raw = {}
+    for entry in done.stdout.split("@")[1:]:
+        name, rest = re.match(r"(\w+)(.*)", entry, re.S).groups()
+        words = "".join(re.findall(r'"((?:[^"\\]|\\.)*)"', rest))
+        raw[name] = re.sub(r"\\x([0-9A-Fa-f]{2})", lambda code: chr(int(code[1], 16)), words)
+    order = list(raw.values())
+    plain = {name: "".join(order[ord(c) - SHARED] if ord(c) >= SHARED else c for c in words) for name, words in raw.items()}
+    return {name: re.sub("[\x01-\x09\x0b-\x1f]", "..", words) for name, words in plain.items()}
+
+
+def codes():
+    """name -> number of the driver's enumeration, without NONE."""
+    text = pathlib.Path("lib/adxl345/src/adxl345.h").read_text(encoding="utf-8")
+    found = {name: int(number) for name, number in re.findall(r"ADXL345_FAULT_(\w+) = (\d+)", text)}
+    assert found.pop("NONE") == 0
+    return found
+
+
+def rows():
+    """(code, words, flashes) of the page's table."""
+    found = re.findall(r"^\| (\d+) \| (.+?) \| (\d) \| .+ \| .+ \|$", PAGE.read_text(encoding="utf-8"), re.M)
+    assert found, f"no table in {PAGE}"
+    return [(int(code), words, int(times)) for code, words, times in found]
+
+
+@test
+def every_code_and_no_other_is_on_the_page():
+    assert [row[0] for row in rows()] == sorted(codes().values()), f"{rows()} and {codes()}"
+
+
+@test
+def words_are_those_of_the_firmware():
+    said = texts()
+    first = list(said).index("NO_SENSOR")
+    for code, words, _ in rows():
+        firmware = list(said.values())[first + code - 1]
+        assert words == firmware, f"fault {code}: the page has {words!r}, the firmware {firmware!r}"
+
+
+@test
+def flashes_are_those_of_the_led():
+    source = pathlib.Path("firmware/sensor_watch.c").read_text(encoding="utf-8")
+    table = {name: int(times) for name, times in re.findall(r"\[ADXL345_FAULT_(\w+)\] = (\d)", source)}
+    assert {number: table[name] for name, number in codes().items()} == {code: times for code, _, times in rows()}
+
+
+@test
+def every_counter_and_cause_is_on_the_page():
+    page = " ".join(PAGE.read_text(encoding="utf-8").split())
+    said = texts()
+    for line in ("SAMPLES", "ROWS", "BUS"):
+        for name in re.findall(r"([a-z][a-z ]*) \.\.", said[line]):
+            assert name in page, f"{PAGE}: no counter {name!r}"
+    for cause in ("POWER_ON", "EXTERNAL", "BROWN_OUT"):
+        assert f"| {said[cause]} |" in page, f"{PAGE}: no cause {said[cause]!r}"
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_all())
