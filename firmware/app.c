@@ -221,7 +221,9 @@ static void filter_samples(void)
     if (HANGS(HEALTH_FILTERING)) {
         return;
     }
-    if (adxl345_take(&sample)) {
+    bool taken = adxl345_take(&sample);
+    pipeline_flag(adxl345_marks());
+    if (taken) {
         pipeline_sample(&sample, adxl345_period_us());
         rows_sample();
         health_sample_filtered();

@@ -100,7 +100,7 @@ void sensor_watch_pass(uint32_t now_us)
     if (known && fault != told && settings.mode != MODE_PLOT) {
         tell(fault, now_us);
     }
-    if (fault == ADXL345_FAULT_NONE || phase == ADXL345_STREAMING) { /* INT1 is silent, but samples come */
+    if (fault == ADXL345_FAULT_NONE || phase == ADXL345_STREAMING) { /* samples come, whatever is told of them */
         next_row_us = now_us + HELD_ROW_US;
         return;
     }

@@ -12,8 +12,8 @@
 #include "support_board.h"
 #include "unity.h"
 
-/* START, address, register, repeated START, address, six bytes. */
-enum { TAKEN_MAX = 4000, FIRST_DATA_EVENT = 5, EVENTS_PER_BURST = 11 };
+/* START, address, register, repeated START, address, two bytes, six of data, two more. */
+enum { TAKEN_MAX = 4000, FIRST_DATA_EVENT = 7, EVENTS_PER_BURST = 15 };
 
 static const adxl345_config_t at_100_hz = { 1000, 16 };
 static stream_t stream;

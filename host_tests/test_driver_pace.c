@@ -191,6 +191,7 @@ static void test_three_failed_bursts_are_a_fault(void)
         while (hal_host_faults.next_status >= 0 && hal_host_now_ms() < end_ms) {
             pass();
         }
+        adxl345_poll(hal_time_us());
         TEST_ASSERT_EQUAL_UINT8(failed, burst_failures());
     }
     run_ms(0.1);

@@ -137,12 +137,12 @@ void hal_drdy_enable(void)
 
 bool hal_drdy_high(void)
 {
-    return hal_host_sensor.pin_high[1] && !hal_host_faults.int1_cut;
+    return hal_host_faults.int1_high || (hal_host_sensor.pin_high[1] && !hal_host_faults.int1_cut);
 }
 
 void host_drdy_changed(bool high)
 {
-    if (high && drdy_enabled && !hal_host_faults.int1_cut) {
+    if (high && drdy_enabled && !hal_host_faults.int1_cut && !hal_host_faults.int1_high) {
         drdy_edge = true;
     }
 }

@@ -20,6 +20,7 @@ typedef struct {
     double ppm;                  /* error of the sensor's clock */
     void (*on_tx)(uint8_t byte); /* a byte left on the line; NULL: dropped */
     void (*on_latched)(uint64_t t_us, size_t row, const int16_t lsb[3]); /* the sensor took a sample; may be NULL */
+    uint8_t (*on_rx)(uint8_t reg, uint8_t byte); /* what arrives of a register's byte; NULL: the byte */
     void (*on_bus_clear)(void); /* the bus is being cleared, interrupts on: what comes meanwhile; may be NULL */
 } hal_host_config_t;
 
@@ -30,6 +31,7 @@ typedef struct {
     bool stop_stuck;             /* a STOP does not get out, until the pins are given back */
     uint8_t hang_clocks;         /* a slave holds SDA low until it has seen so many clocks */
     bool int1_cut;               /* INT1 does not reach D2 */
+    bool int1_high;              /* D2 is held high */
     uint8_t write_lost_register; /* writes to this register do not reach the sensor; 0: all do */
     bool id_wrong;               /* DEVID reads 0x00 */
     uint8_t corrupt_rx_every;    /* every Nth received UART byte has a framing error; 0 = none */

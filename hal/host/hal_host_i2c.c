@@ -194,8 +194,12 @@ static uint8_t command_step(command_t command)
     case COMMAND_SEND:
         return send_step();
     default: {
-        bool identity = hal_host_faults.id_wrong && hal_host_sensor.pointer == 0;
+        uint8_t reg = hal_host_sensor.pointer;
+        bool identity = hal_host_faults.id_wrong && reg == 0;
         uint8_t byte = adxl345_model_read(&hal_host_sensor);
+        if (host_config.on_rx != NULL) {
+            byte = host_config.on_rx(reg, byte);
+        }
         i2c.data = identity ? 0x00 : byte;
         return command == COMMAND_RECEIVE_ACK ? HAL_I2C_RECEIVED_ACK : HAL_I2C_RECEIVED_NACK;
     }

@@ -7,6 +7,7 @@
 
 #include "adxl345_burst.h"
 #include "adxl345_driver.h"
+#include "adxl345_integrity.h"
 #include "adxl345_registers.h"
 #include "adxl345_table.h"
 #include "hal_drdy.h"
@@ -86,6 +87,7 @@ static void probe(void)
 void adxl345_init(void)
 {
     burst_init();
+    integrity_init();
     stopped();
     driver.address = ADXL345_ADDRESS_LOW;
     driver.issued = false;
@@ -174,10 +176,11 @@ static void start_measuring(void)
 {
     burst_set_mode(BURST_READ);
     burst_set_period(driver.nominal_us);
+    integrity_start(driver.config.range_g);
     driver.first_sample_seen = false;
     driver.timed = TIMED_NONE;
     driver.was_empty = false;
-    driver.seen_successes = burst_successes();
+    driver.seen_good = integrity_good();
     burst_expect(driver.now_us + TURN_ON_MS * 1000ul);
     enter(STEP_STREAM, 1);
 }
@@ -203,29 +206,29 @@ static void probed(void)
     enter(STEP_CONFIGURE, TRANSFER_LIMIT_MS);
 }
 
-/* Since the newest burst, or until the first is expected (negative). */
+/* Since the newest burst that met a sample, or until the first is expected (negative). */
 static int32_t silent_for_us(void)
 {
-    return (int32_t)(driver.now_us - burst_begun_us());
+    return (int32_t)(driver.now_us - burst_met_sample_us());
 }
 
 /*
- * INT1 may have risen just now. Ones of a sensor that is gone show in the bits of functions that are off. A sensor that
- * has none ready may still come: that is a fault after three periods.
+ * INT1 may have risen just now, unless it is always high. Ones of a sensor that is gone show in the bits of functions
+ * that are off. A sensor that has none ready may still come: that is a fault after three periods.
  */
 static void source_asked(void)
 {
     uint8_t source = burst_register_value() & (uint8_t)(ADXL345_INT_DATA_READY | ADXL345_INT_EVENTS);
-    bool ready = source == ADXL345_INT_DATA_READY;
+    bool has_data = source == ADXL345_INT_DATA_READY;
     bool may_come = source == 0 && silent_for_us() < (int32_t)(driver.nominal_us * 3u + MARGIN_US);
-    if (!ready && !may_come && !hal_drdy_high()) {
+    if (!has_data && !may_come && (!hal_drdy_high() || integrity_int1_stuck())) {
         fail(ADXL345_FAULT_NO_DATA);
         return;
     }
     burst_set_mode(BURST_READ);
     enter(STEP_STREAM, 1);
-    driver.was_empty = driver.was_empty || !ready;
-    if (ready && !hal_drdy_high()) {
+    driver.was_empty = driver.was_empty || !has_data;
+    if (has_data && !hal_drdy_high()) {
         driver.fault = ADXL345_FAULT_INT1_SILENT;
         driver.timed = TIMED_WANTED;
     }
@@ -297,7 +300,7 @@ static uint32_t patience_us(void)
 
 static void sample_arrived(void)
 {
-    driver.seen_successes = burst_successes();
+    driver.seen_good = integrity_good();
     driver.first_sample_seen = true;
     driver.alternate_tried = false;
     driver.back_off_ms = BACK_OFF_MIN_MS;
@@ -327,14 +330,14 @@ static void end_hung_burst(void)
  */
 static void look_for_sample(void)
 {
-    int32_t since_us = silent_for_us();
+    int32_t since_us = (int32_t)(driver.now_us - burst_begun_us());
     if (burst_bus_taken()) {
         if (since_us >= TRANSFER_LIMIT_US) {
             end_hung_burst();
         } else {
             driver.deadline_us = driver.now_us + (uint32_t)(TRANSFER_LIMIT_US - since_us);
         }
-    } else if (since_us >= (int32_t)patience_us() && !burst_queue_full()) {
+    } else if (!waiting && silent_for_us() >= (int32_t)patience_us()) {
         burst_set_mode(BURST_STAMP);
         enter(STEP_ASK_SOURCE, TRANSFER_LIMIT_MS);
     } else {
@@ -342,15 +345,32 @@ static void look_for_sample(void)
     }
 }
 
+/* What the readings say; a sensor that has lost its configuration is given it again at once. */
+static bool readings_failed(void)
+{
+    adxl345_fault_t fault = integrity_fault();
+    if (fault == ADXL345_FAULT_NONE) {
+        return false;
+    }
+    fail(fault);
+    if (fault == ADXL345_FAULT_NO_DATA && driver.step == STEP_BACK_OFF) {
+        probe();
+    }
+    return true;
+}
+
 static void stream_step(void)
 {
+    if (readings_failed()) {
+        return;
+    }
     if (burst_failures() >= BURST_TRIES) {
         give_up(burst_bus_state());
         return;
     }
-    if (burst_successes() != driver.seen_successes) {
+    if (integrity_good() != driver.seen_good) {
         sample_arrived();
-    } else if (deadline_passed()) {
+    } else if (deadline_passed() || (burst_found_empty() && !burst_running())) {
         look_for_sample();
     }
     if (driver.timed != TIMED_WANTED) {
@@ -366,8 +386,11 @@ static void stream_step(void)
 
 static void drain_step(void)
 {
-    (void)burst_drain();
-    bool empty = !hal_drdy_high() && !burst_running() && burst_queued() == 0;
+    bool waiting = hal_drdy_high() && !burst_found_empty();
+    if (waiting) {
+        (void)burst_read_now();
+    }
+    bool empty = !waiting && !burst_running() && burst_queued() == 0;
     if (!empty && !deadline_passed()) {
         hal_wake();
         return;
@@ -384,6 +407,9 @@ static void drain_step(void)
 void adxl345_poll(uint32_t now_us)
 {
     driver.now_us = now_us;
+    if (burst_judge() > READING_GOOD) {
+        hal_wake(); /* nobody takes it, and the next one may wait */
+    }
     switch (driver.step) {
     case STEP_OFF:
         break;

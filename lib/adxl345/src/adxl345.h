@@ -75,6 +75,8 @@ bool adxl345_take(adxl345_sample_t *out);
 uint8_t adxl345_queued(void);
 
 adxl345_phase_t adxl345_phase(void);
+
+/* While ADXL345_STREAMING with a fault samples go on: something is wrong with them, or with how they come. */
 adxl345_fault_t adxl345_fault(void);
 
 /* The moment by which adxl345_poll must have acted: a poll later than this means that main is stuck. */
@@ -99,5 +101,17 @@ typedef struct {
     uint16_t restarts; /* sensor configured anew after a fault */
 } adxl345_counters_t;
 void adxl345_counters(adxl345_counters_t *out);
+
+/* What came over the bus and was no new sample, saturating. None of it went out. */
+typedef struct {
+    uint16_t failed;   /* torn, shifted, or nobody there */
+    uint16_t empty;    /* INT1 was high, but the sensor had no new sample */
+    uint16_t overruns; /* readings of a FIFO that had filled up: samples were lost */
+} adxl345_readings_t;
+void adxl345_readings(adxl345_readings_t *out);
+
+/* Since the last call: ADXL345_MARK_*, the bits of the row's flags that the driver knows of (docs/protocol.md). */
+enum { ADXL345_MARK_INTEGRITY = 64 };
+uint8_t adxl345_marks(void);
 
 #endif

@@ -1,8 +1,13 @@
 /*
- * One burst of six bytes per sample, straight into a slot of the queue. The data-ready handler starts it, the I2C
- * handler moves its bytes. When it fails before a data byte was asked for, the sample is still in the sensor and INT1
- * still high, so main reads it again with the stamp of its edge. When it fails inside the data, that sample has left
- * the FIFO (p. 21) and its stamp goes with it: what main reads next is a later one.
+ * One burst per sample: INT_SOURCE, DATA_FORMAT, the data, FIFO_CTL, FIFO_STATUS. The data-ready handler starts it, the
+ * I2C handler moves its bytes, main judges them (adxl345_integrity.h) and queues the sample; until main has done so no
+ * other burst begins, and samples wait in the sensor's FIFO. INT_SOURCE comes before the data because it says of them
+ * whether they are new and whether older ones were lost; behind them it no longer does (reading them clears both,
+ * p. 21).
+ *
+ * When a burst fails before a data byte was asked for, the sample is still in the sensor and INT1 still high, so main
+ * reads it again with the stamp of its edge. When it fails inside the data, that sample has left the FIFO (p. 21) and
+ * its stamp goes with it: what main reads next is a later one.
  */
 #include "adxl345_burst.h"
 
@@ -12,28 +17,27 @@
 #include "hal_sleep.h"
 #include "hal_time.h"
 
-enum { SAMPLE_BYTES = 6, QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1 };
+enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1 };
 
 #define SENSOR_DEPTH 33ul /* samples that the sensor can hold (p. 27) */
 
-typedef struct {
-    uint32_t t_us;
-    uint8_t raw[SAMPLE_BYTES];
-    uint8_t exact;
-} slot_t;
-
 static i2c_bus_t bus;
-static slot_t queue[ADXL345_QUEUE_LENGTH];
-static volatile uint8_t head; /* I2C handler */
-static volatile uint8_t tail; /* main */
+static burst_entry_t queue[ADXL345_QUEUE_LENGTH];
+static const int16_t *newest_lsb; /* of the last good one: taken or not, it is still there */
+static volatile uint8_t head;
+static volatile uint8_t tail;
 static volatile uint8_t mode;
-static volatile uint8_t on_bus; /* the transfer is a burst */
-static volatile uint8_t failures;
+static volatile uint8_t on_bus; /* a burst that main has not judged: it runs, or has ended */
 static volatile uint8_t edge_waiting;
 static volatile uint32_t edge_us;
-static volatile uint32_t begun_us;  /* when the newest burst was put on the bus */
-static volatile uint32_t last_us;   /* stamp of the newest sample that left the sensor, delivered or cut */
-static volatile uint8_t last_known; /* last_us belongs to this run of the sensor */
+static volatile uint32_t begun_us; /* when the newest burst was put on the bus */
+static uint8_t reading[READING_BYTES];
+static uint32_t reading_us; /* stamp of the sample that is read */
+static bool reading_exact;
+static uint8_t failures;
+static uint32_t last_us; /* stamp of the newest sample that left the sensor, delivered or cut */
+static bool last_known;  /* last_us belongs to this run of the sensor */
+static bool found_empty; /* the newest burst met no sample */
 static uint8_t register_value;
 static uint32_t period_us_q4;
 static uint32_t taken_us;
@@ -44,30 +48,35 @@ static inline bool queue_has_room(void)
     return (uint8_t)((uint8_t)(head + 1u) & QUEUE_MASK) != tail;
 }
 
-/* Interrupts off. */
-static inline void begin_burst(uint32_t now_us, uint32_t t_us, uint8_t exact)
+static inline bool can_begin(void)
 {
-    slot_t *slot = &queue[head];
-    slot->t_us = t_us;
-    slot->exact = exact;
+    return mode == BURST_READ && !on_bus && i2c_bus_free(&bus) && queue_has_room();
+}
+
+/* Interrupts off. */
+static inline void begin_burst(uint32_t now_us, uint32_t t_us, bool exact)
+{
+    reading_us = t_us;
+    reading_exact = exact;
     begun_us = now_us;
     edge_waiting = 0;
     on_bus = 1;
-    bus.tx[0] = ADXL345_DATAX0;
+    bus.tx[0] = ADXL345_INT_SOURCE;
     bus.tx_length = 1;
-    bus.rx_length = SAMPLE_BYTES;
-    bus.rx = slot->raw;
+    bus.rx_length = READING_BYTES;
+    bus.rx = reading;
     i2c_bus_begin(&bus);
 }
 
+/* An edge whose level is gone again is noise: data-ready stays high until the data are read (p. 20). */
 HAL_DRDY_ISR()
 {
-    uint32_t now_us = hal_time_us_isr();
-    if (mode == BURST_IGNORE) {
+    if (!hal_drdy_high()) {
         return;
     }
-    if (mode == BURST_READ && i2c_bus_free(&bus) && queue_has_room()) {
-        begin_burst(now_us, now_us, 1);
+    uint32_t now_us = hal_time_us_isr();
+    if (can_begin()) {
+        begin_burst(now_us, now_us, true);
         return;
     }
     edge_us = now_us;
@@ -75,50 +84,25 @@ HAL_DRDY_ISR()
     hal_wake();
 }
 
-/* A burst cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */
-static inline void end_burst(void)
-{
-    on_bus = 0;
-    if (i2c_bus_received(&bus)) {
-        last_us = queue[head].t_us;
-        last_known = 1;
-    }
-    if (bus.state == I2C_BUS_OK) {
-        head = (uint8_t)((uint8_t)(head + 1u) & QUEUE_MASK);
-        failures = 0;
-        return;
-    }
-    if (failures != UINT8_MAX) {
-        failures++;
-    }
-    if (queue[head].exact && !i2c_bus_asked(&bus)) {
-        edge_us = queue[head].t_us;
-        edge_waiting = 1;
-    }
-}
-
 HAL_I2C_ISR()
 {
     i2c_bus_step(&bus);
-    if (bus.state == I2C_BUS_BUSY) {
-        return;
+    if (bus.state != I2C_BUS_BUSY) {
+        hal_wake();
     }
-    if (on_bus) {
-        end_burst();
-    }
-    hal_wake();
 }
 
 void burst_init(void)
 {
     hal_irq_state_t state = hal_irq_save();
+    newest_lsb = queue[QUEUE_MASK].sample.lsb;
     head = 0;
     tail = 0;
     mode = BURST_IGNORE;
     on_bus = 0;
     failures = 0;
     edge_waiting = 0;
-    last_known = 0;
+    last_known = false;
     bus.state = I2C_BUS_IDLE;
     hal_irq_restore(state);
 }
@@ -129,8 +113,9 @@ void burst_set_mode(burst_mode_t new_mode)
     if (mode == BURST_IGNORE) {
         edge_waiting = 0;
         failures = 0;
-        last_known = 0;
+        last_known = false;
     }
+    found_empty = false;
     mode = (uint8_t)new_mode;
     hal_irq_restore(state);
 }
@@ -147,10 +132,8 @@ uint8_t burst_take_bus(uint8_t address, bool fast)
     hal_i2c_enable(fast);
     bus.state = was_busy ? I2C_BUS_TIMEOUT : I2C_BUS_IDLE;
     bus.address = (uint8_t)(address * 2U);
-    if (on_bus) {
-        end_burst();
-    }
     hal_irq_restore(state);
+    (void)burst_judge();
     return lines;
 }
 
@@ -190,25 +173,31 @@ uint8_t burst_register_value(void)
     return register_value;
 }
 
-/* Stamp of a sample that was found waiting: its own edge, else one period after the one before it unless it is new. */
+/*
+ * Stamp of a sample that was found waiting: its own edge, else one period after the one before it unless it is new, but
+ * not before the sensor was last seen empty.
+ */
 static uint32_t waiting_since_us(uint32_t now_us, bool is_new)
 {
     uint32_t period_us = burst_period_us();
     if (edge_waiting) {
         return edge_us;
     }
-    uint32_t age_us = now_us - (last_us + period_us);
-    bool plausible = !is_new && last_known && age_us <= SENSOR_DEPTH * period_us;
-    return plausible ? now_us - age_us : now_us;
+    uint32_t t_us = last_us + period_us;
+    if (found_empty && hal_time_reached(begun_us, t_us)) {
+        t_us = begun_us;
+    }
+    bool plausible = !is_new && last_known && now_us - t_us <= SENSOR_DEPTH * period_us;
+    return plausible ? t_us : now_us;
 }
 
 bool burst_read(bool is_new)
 {
     hal_irq_state_t state = hal_irq_save();
-    bool start = mode == BURST_READ && i2c_bus_free(&bus) && queue_has_room();
+    bool start = can_begin();
     if (start) {
         uint32_t now_us = hal_time_us_isr();
-        begin_burst(now_us, waiting_since_us(now_us, is_new), edge_waiting);
+        begin_burst(now_us, waiting_since_us(now_us, is_new), edge_waiting != 0);
     }
     hal_irq_restore(state);
     return start;
@@ -219,6 +208,55 @@ bool burst_drain(void)
     return hal_drdy_high() && burst_read(false);
 }
 
+/* One cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */
+static void keep_edge(void)
+{
+    if (failures != UINT8_MAX) {
+        failures++;
+    }
+    if (reading_exact && !i2c_bus_asked(&bus, READING_DATA)) {
+        edge_us = reading_us;
+        edge_waiting = 1;
+    }
+}
+
+static reading_t judge(void)
+{
+    burst_entry_t *entry = &queue[head];
+    reading_t verdict = integrity_judge(reading, entry->sample.lsb, newest_lsb);
+    failures = 0;
+    found_empty = verdict == READING_EMPTY;
+    if (verdict == READING_GOOD) {
+        newest_lsb = entry->sample.lsb;
+        entry->sample.t_us = reading_us;
+        entry->exact = reading_exact;
+        entry->stuck = integrity_stuck();
+        head = (uint8_t)((uint8_t)(head + 1u) & QUEUE_MASK);
+    }
+    return verdict;
+}
+
+/* No burst begins until on_bus is 0 again, so what the handlers wrote stays as it is. */
+reading_t burst_judge(void)
+{
+    reading_t verdict = READING_NONE;
+    if (!on_bus || bus.state == I2C_BUS_BUSY) {
+        return verdict;
+    }
+    if (bus.state == I2C_BUS_OK) {
+        verdict = judge();
+    } else {
+        keep_edge();
+    }
+    bool had_sample = i2c_bus_received(&bus, READING_DATA) && (reading[READING_SOURCE] & ADXL345_INT_DATA_READY);
+    if (verdict == READING_GOOD || had_sample) {
+        last_us = reading_us;
+        last_known = true;
+    }
+    on_bus = 0;
+    return verdict;
+}
+
 bool burst_running(void)
 {
     return on_bus != 0;
@@ -227,6 +265,11 @@ bool burst_running(void)
 bool burst_bus_taken(void)
 {
     return on_bus != 0 || hal_i2c_stop_pending();
+}
+
+bool burst_found_empty(void)
+{
+    return found_empty;
 }
 
 uint32_t burst_begun_us(void)
@@ -242,16 +285,17 @@ void burst_expect(uint32_t t_us)
     hal_irq_state_t state = hal_irq_save();
     begun_us = t_us;
     hal_irq_restore(state);
+    last_us = t_us;
+}
+
+uint32_t burst_met_sample_us(void)
+{
+    return found_empty ? last_us : burst_begun_us();
 }
 
 uint8_t burst_failures(void)
 {
     return failures;
-}
-
-uint8_t burst_successes(void)
-{
-    return head;
 }
 
 uint8_t burst_queued(void)
@@ -262,11 +306,6 @@ uint8_t burst_queued(void)
 bool burst_queue_full(void)
 {
     return !queue_has_room();
-}
-
-static inline int16_t axis(const uint8_t *raw)
-{
-    return (int16_t)(uint16_t)(raw[0] | (uint16_t)((uint16_t)raw[1] << 8));
 }
 
 void burst_set_period(uint32_t nominal_us)
@@ -299,12 +338,7 @@ bool burst_take(burst_entry_t *out)
     if (at == head) {
         return false;
     }
-    const slot_t *slot = &queue[at];
-    out->sample.t_us = slot->t_us;
-    out->exact = slot->exact != 0;
-    for (uint8_t i = 0; i < 3; i++) {
-        out->sample.lsb[i] = axis(&slot->raw[2u * i]);
-    }
+    *out = queue[at];
     tail = (uint8_t)((uint8_t)(at + 1u) & QUEUE_MASK);
     measure_period(out);
     return true;

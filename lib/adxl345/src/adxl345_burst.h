@@ -1,11 +1,12 @@
 /*
- * Inside the driver: the bus, the two interrupt handlers and the sample queue between them and main.
+ * Inside the driver: the bus, the two interrupt handlers, and the queue of samples that were found good.
  * Functions are for main unless they say otherwise.
  */
 #ifndef ADXL345_BURST_H
 #define ADXL345_BURST_H
 
 #include "adxl345.h"
+#include "adxl345_integrity.h"
 #include "i2c_bus.h"
 
 /* What an edge of data-ready does. */
@@ -18,6 +19,7 @@ typedef enum {
 typedef struct {
     adxl345_sample_t sample;
     bool exact; /* stamped by its own edge; false: interpolated */
+    bool stuck; /* as integrity_stuck */
 } burst_entry_t;
 
 /* Forget everything: queue, stamps, bus state. */
@@ -49,25 +51,34 @@ bool burst_drain(void);
  */
 bool burst_read(bool is_new);
 
+/*
+ * The verdict on a burst that has ended well; READING_NONE when there is none, or it failed on the bus. To be called in
+ * every pass, else no other burst begins. A good sample goes into the queue; of others nothing goes out.
+ */
+reading_t burst_judge(void);
+
 /* Time between samples: set to the nominal one, then measured from the stamps taken out. */
 void burst_set_period(uint32_t nominal_us);
 uint32_t burst_period_us(void);
 
-/* A burst is on the bus. */
+/* A burst is on the bus, or has not been judged. */
 bool burst_running(void);
 
 /* A burst is on the bus, or the STOP of a transfer has not got out. */
 bool burst_bus_taken(void);
 
+/* The newest burst since burst_set_mode met no sample. */
+bool burst_found_empty(void);
+
 /* When the newest burst was put on the bus; until the first, the moment by which it is expected. */
 uint32_t burst_begun_us(void);
 void burst_expect(uint32_t t_us);
 
-/* Bursts that failed one after another; 0 after a good one. Counts in the interrupt. */
-uint8_t burst_failures(void);
+/* The same, but an empty burst does not count: the time of the sample before it. */
+uint32_t burst_met_sample_us(void);
 
-/* Bursts that ended well, wraps: progress. */
-uint8_t burst_successes(void);
+/* Bursts that failed on the bus one after another; 0 after one that did not. */
+uint8_t burst_failures(void);
 
 uint8_t burst_queued(void);
 

@@ -32,7 +32,7 @@ typedef struct {
     uint8_t address;
     uint8_t device_id;
     uint8_t fault;
-    uint8_t seen_successes;
+    uint8_t seen_good;
     bool issued; /* the step's register access is on the bus */
     bool first_sample_seen;
     bool stop_wanted; /* after quiescing: stop, not start */

@@ -1,7 +1,6 @@
 /* What the driver writes into the sensor, and the codes of rates and ranges. */
 #include "adxl345_table.h"
 
-#include "adxl345_registers.h"
 #include "flash.h"
 
 typedef struct {
@@ -11,11 +10,8 @@ typedef struct {
 
 /*
  * Standby first, interrupt off before it is reconfigured (p. 20), bypass to clear the FIFO (p. 21); Measure is set
- * after the read-back. Offsets are cleared because the sensor may have kept another program's. FIFO_CTL carries a
- * Samples field of 10, which no reset leaves behind.
+ * after the read-back. Offsets are cleared because the sensor may have kept another program's.
  */
-enum { FIFO_CONFIGURED = ADXL345_FIFO_STREAM | 0x0A };
-
 static const setting_t table[] FLASH = {
     { ADXL345_POWER_CTL, 0 },
     { ADXL345_INT_ENABLE, 0 },
@@ -26,7 +22,7 @@ static const setting_t table[] FLASH = {
     { ADXL345_OFSY, 0 },
     { ADXL345_OFSZ, 0 },
     { ADXL345_INT_MAP, 0 },
-    { ADXL345_FIFO_CTL, FIFO_CONFIGURED },
+    { ADXL345_FIFO_CTL, TABLE_FIFO_CTL },
     { ADXL345_INT_ENABLE, ADXL345_INT_DATA_READY },
 };
 

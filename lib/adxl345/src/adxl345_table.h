@@ -5,6 +5,10 @@
 #define ADXL345_TABLE_H
 
 #include "adxl345.h"
+#include "adxl345_registers.h"
+
+/* What FIFO_CTL holds while measuring, in every mode of the driver: no reset leaves a Samples field of 10 behind. */
+#define TABLE_FIFO_CTL (ADXL345_FIFO_STREAM | 0x0Au)
 
 /* Rows of the table; from TABLE_READ_BACK on each register holds what its last row says. */
 #define TABLE_ROWS 11u

@@ -1,6 +1,7 @@
 /* What the driver tells of itself: samples, phase, fault, times, counters. */
 #include "adxl345_burst.h"
 #include "adxl345_driver.h"
+#include "adxl345_integrity.h"
 
 bool adxl345_take(adxl345_sample_t *out)
 {
@@ -40,6 +41,9 @@ adxl345_phase_t adxl345_phase(void)
 
 adxl345_fault_t adxl345_fault(void)
 {
+    if (driver.fault == ADXL345_FAULT_NONE && driver.step == STEP_STREAM && integrity_int1_stuck()) {
+        return ADXL345_FAULT_INT1_STUCK;
+    }
     return (adxl345_fault_t)driver.fault;
 }
 

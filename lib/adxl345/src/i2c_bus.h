@@ -52,16 +52,16 @@ static inline void i2c_bus_begin(i2c_bus_t *bus)
     hal_i2c_start();
 }
 
-/* The transfer that runs or ended last came so far that a byte was asked of the device. */
-static inline bool i2c_bus_asked(const i2c_bus_t *bus)
+/* The transfer that runs or ended last came so far that byte `at` (0: the first) was asked of the device. */
+static inline bool i2c_bus_asked(const i2c_bus_t *bus, uint8_t at)
 {
-    return bus->expected >= HAL_I2C_RECEIVED_ACK;
+    return bus->expected >= HAL_I2C_RECEIVED_ACK && bus->index >= at;
 }
 
-/* The same, and a byte that was not the last one came in (so a good transfer of two bytes or more: true). */
-static inline bool i2c_bus_received(const i2c_bus_t *bus)
+/* The same, and it came in and was not the last one (so a good transfer with another byte after it: true). */
+static inline bool i2c_bus_received(const i2c_bus_t *bus, uint8_t at)
 {
-    return i2c_bus_asked(bus) && bus->index != 0;
+    return bus->expected >= HAL_I2C_RECEIVED_ACK && bus->index > at;
 }
 
 static inline void i2c_bus_finish(i2c_bus_t *bus, i2c_bus_state_t state)
@@ -101,7 +101,7 @@ static inline void i2c_bus_unexpected(i2c_bus_t *bus, uint8_t status)
         bus->state = I2C_BUS_LOST;
         return;
     }
-    if (status == bus->expected + REFUSED) {
+    if (status == (uint8_t)(bus->expected + REFUSED)) {
         if (status == HAL_I2C_SENT_NACK) {
             state = I2C_BUS_NACK_DATA;
         } else if (status == HAL_I2C_WRITE_ADDRESS_NACK || status == HAL_I2C_READ_ADDRESS_NACK) {
@@ -139,8 +139,7 @@ static inline void i2c_bus_step(i2c_bus_t *bus)
         break;
     case HAL_I2C_RECEIVED_ACK:
         bus->rx[bus->index++] = hal_i2c_received();
-        i2c_bus_step_read(bus);
-        break;
+        /* fall through */
     case HAL_I2C_READ_ADDRESS_ACK:
         i2c_bus_step_read(bus);
         break;

@@ -1,0 +1,307 @@
+/*
+ * What a burst brings is a reading of this sensor, or nothing goes out: supply lost, bits that slip, wires off in every
+ * byte, a sensor that has forgotten its configuration.
+ */
+#include "adxl345.h"
+#include "adxl345_integrity.h"
+#include "adxl345_registers.h"
+#include "hal_drdy.h"
+#include "hal_host.h"
+#include "hal_sleep.h"
+#include "hal_time.h"
+#include "hal_uart.h"
+#include "support_board.h"
+#include "unity.h"
+
+enum { ROWS = 4000, STARTED_MS = 100, PATTERN = 0x8A };
+
+static const adxl345_config_t at_100_hz = { 1000, 16 };
+static stream_t stream;
+static size_t taken_count;
+static size_t latched_count;
+static uint32_t latched_us[ROWS]; /* of the sample whose x is the index */
+static int last_x;
+static uint8_t marks;
+
+/* An alteration of what arrives: from byte `from` on of the burst, for so many bursts. */
+typedef enum { NOTHING, POWER_OFF, ZEROS, ONES, LATE_BITS, EARLY_BITS, FLIP } change_t;
+static change_t change;
+static unsigned from;
+static unsigned bits; /* by which it is late or early; or the bits that flip */
+static bool level;    /* of SDA while the sensor did not drive it */
+static unsigned bursts_left;
+static uint8_t before;
+static unsigned next_byte; /* of the burst under way */
+
+static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
+{
+    (void)row;
+    latched_us[lsb[0]] = (uint32_t)t_us;
+    latched_count++;
+}
+
+/* So many bits late: they have the level of the line, and push the others back. */
+static uint8_t late(unsigned at, uint8_t byte)
+{
+    unsigned carry = at == from ? (level ? 0xFFu : 0u) : before;
+    before = byte;
+    return (uint8_t)(carry << (8u - bits) | (unsigned)byte >> bits);
+}
+
+/* So many bits were clocked out before the master looked. */
+static uint8_t early(uint8_t reg, uint8_t byte)
+{
+    unsigned next = hal_host_sensor.reg[(reg + 1u) & 0x3Fu];
+    return (uint8_t)((unsigned)byte << bits | next >> (8u - bits));
+}
+
+static uint8_t on_rx(uint8_t reg, uint8_t byte)
+{
+    unsigned at = (unsigned)reg - ADXL345_INT_SOURCE;
+    next_byte = reg == ADXL345_INT_SOURCE ? 0 : next_byte;
+    if (bursts_left == 0 || at != next_byte) {
+        return byte;
+    }
+    next_byte++;
+    bursts_left -= at == READING_BYTES - 1;
+    if (at < from) {
+        return byte;
+    }
+    switch (change) {
+    case POWER_OFF: /* this byte is the last one */
+        adxl345_model_power(&hal_host_sensor, false);
+        bursts_left = 0;
+        return byte;
+    case ZEROS:
+        return 0;
+    case ONES:
+        return 0xFF;
+    case LATE_BITS:
+        return late(at, byte);
+    case EARLY_BITS:
+        return early(reg, byte);
+    case FLIP:
+        return at == from ? (uint8_t)(byte ^ bits) : byte;
+    default:
+        return byte;
+    }
+}
+
+/* x counts, so that every sample tells which one it is. */
+static void begin(double rate_hz)
+{
+    stream_free(&stream);
+    stream = board_constant_stream(ROWS, rate_hz, 0, -100, 250);
+    for (size_t i = 0; i < stream.count; i++) {
+        stream.rows[i].lsb[0] = (int16_t)i;
+    }
+    taken_count = 0;
+    latched_count = 0;
+    last_x = -1;
+    marks = 0;
+    bursts_left = 0;
+    hal_host_config_t config = { .on_latched = on_latched, .on_rx = on_rx };
+    hal_host_begin(&config, &stream, false);
+    hal_uart_init(115200);
+    hal_time_init();
+    hal_drdy_enable();
+    adxl345_init();
+}
+
+void setUp(void)
+{
+    begin(100.0);
+}
+
+void tearDown(void)
+{
+    stream_free(&stream);
+}
+
+/* Each sample is one that the sensor held, later than the one before it, with its own time. */
+static void take_all(void)
+{
+    adxl345_sample_t sample;
+    while (adxl345_take(&sample)) {
+        TEST_ASSERT_TRUE(sample.lsb[0] > last_x && latched_us[sample.lsb[0]] != 0);
+        TEST_ASSERT_EQUAL_INT16(-100, sample.lsb[1]);
+        TEST_ASSERT_EQUAL_INT16(250, sample.lsb[2]);
+        last_x = sample.lsb[0];
+        TEST_ASSERT_INT32_WITHIN(100, 0, (int32_t)(sample.t_us - latched_us[last_x]));
+        taken_count++;
+        hal_wake();
+    }
+    marks |= adxl345_marks();
+}
+
+static void pass(void)
+{
+    adxl345_poll(hal_time_us());
+    take_all();
+    hal_sleep_until_wake();
+}
+
+static void run_ms(double ms)
+{
+    for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
+        pass();
+    }
+}
+
+static size_t lost(void)
+{
+    adxl345_stop();
+    run_ms(60);
+    TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
+    return latched_count - taken_count;
+}
+
+static void start_and_change(change_t what, unsigned at, unsigned by, unsigned bursts)
+{
+    begin(100.0);
+    adxl345_start(&at_100_hz);
+    run_ms(STARTED_MS);
+    TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+    (void)adxl345_marks();
+    marks = 0;
+    change = what;
+    from = at;
+    bits = by;
+    bursts_left = bursts;
+}
+
+static uint16_t failed(void)
+{
+    adxl345_readings_t readings;
+    adxl345_readings(&readings);
+    return readings.failed;
+}
+
+/* One burst goes wrong from a byte on: no sample of it comes out, and the sensor goes on as if nothing were. */
+static void test_a_burst_that_goes_wrong_at_any_byte_brings_nothing(void)
+{
+    static const change_t changes[] = { ZEROS, ONES };
+    for (unsigned c = 0; c < 2; c++) {
+        for (unsigned at = 0; at <= READING_FIFO_CTL; at++) {
+            start_and_change(changes[c], at, 0, 1);
+            uint16_t before_it = failed();
+            run_ms(60);
+            TEST_ASSERT_EQUAL_UINT16(before_it + 1, failed());
+            TEST_ASSERT_EQUAL_HEX8(ADXL345_MARK_INTEGRITY, marks);
+            run_ms(60);
+            TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+            TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+            TEST_ASSERT_EQUAL_size_t(1, lost());
+        }
+    }
+    start_and_change(ONES, READING_FIFO_STATUS, 0, 1); /* the data were right, but who knows */
+    run_ms(60);
+    TEST_ASSERT_EQUAL_size_t(1, lost());
+}
+
+static void test_supply_lost_at_any_byte_brings_nothing_wrong(void)
+{
+    for (unsigned at = 0; at < READING_BYTES; at++) {
+        start_and_change(POWER_OFF, at, 0, 1);
+        run_ms(100);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
+        adxl345_model_power(&hal_host_sensor, true);
+        run_ms(150);
+        TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+    }
+}
+
+/* A bit more or less than the master clocked, in either level of the line, from any byte on. */
+static void test_bits_that_slip_at_any_byte_bring_nothing(void)
+{
+    for (unsigned at = 0; at <= READING_FIFO_CTL; at++) {
+        for (unsigned by = 1; by < 8; by++) {
+            for (unsigned way = 0; way < 3; way++) {
+                start_and_change(way == 2 ? EARLY_BITS : LATE_BITS, at, by, 1);
+                level = way == 1;
+                run_ms(100);
+                TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+                TEST_ASSERT_EQUAL_HEX8(ADXL345_MARK_INTEGRITY, marks);
+                TEST_ASSERT_TRUE(lost() <= 2); /* zeros in FIFO_CTL: configured anew at once */
+            }
+        }
+    }
+}
+
+/* Two torn readings in a row are read over; the third is a fault with a name, and the sensor is configured anew. */
+static void test_three_torn_readings_in_a_row_are_a_fault(void)
+{
+    for (unsigned torn = 1; torn <= 4; torn++) {
+        start_and_change(FLIP, READING_FIFO_CTL, 0x40, torn);
+        unsigned told = 0;
+        for (double end_ms = hal_host_now_ms() + 150.0; hal_host_now_ms() < end_ms;) {
+            pass();
+            adxl345_fault_t fault = adxl345_fault();
+            TEST_ASSERT_TRUE(fault == ADXL345_FAULT_NONE || fault == ADXL345_FAULT_TORN);
+            told += fault == ADXL345_FAULT_TORN;
+        }
+        TEST_ASSERT_EQUAL(torn >= 3, told != 0);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+        TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+        TEST_ASSERT_EQUAL_HEX8(PATTERN, hal_host_sensor.reg[ADXL345_FIFO_CTL]);
+        /* configured anew within 3 ms, turned on for 11.1 ms, and no samples meanwhile but those of the fault */
+        TEST_ASSERT_EQUAL_size_t(torn, lost());
+    }
+}
+
+/* Torn readings with good ones in between are not in a row. */
+static void test_torn_readings_apart_are_no_fault(void)
+{
+    start_and_change(FLIP, READING_FIFO_CTL, 0x40, 0);
+    for (unsigned i = 0; i < 10; i++) {
+        bursts_left = 1;
+        run_ms(20);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+    }
+    TEST_ASSERT_EQUAL_size_t(10, lost());
+}
+
+/* FIFO_CTL as after power-on: no silence is awaited, no pause made. 21 accesses of under 0.2 ms, then the turn-on. */
+static void test_a_sensor_that_forgot_is_configured_at_once(void)
+{
+    start_and_change(FLIP, READING_FIFO_CTL, PATTERN, 1);
+    while (adxl345_fault() == ADXL345_FAULT_NONE) {
+        pass();
+    }
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_DATA, adxl345_fault());
+    TEST_ASSERT_EQUAL(ADXL345_STARTING, adxl345_phase());
+    double begun_ms = hal_host_now_ms();
+    while (adxl345_fault() != ADXL345_FAULT_NONE) {
+        pass();
+    }
+    TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms < 4.2 + 10.0 + 1.1 + 0.5);
+}
+
+/* A stop that comes with it stops. */
+static void test_a_stop_while_readings_fail_stops(void)
+{
+    for (unsigned b = 1; b < 4; b++) {
+        start_and_change(FLIP, READING_FIFO_CTL, b == 1 ? PATTERN : 0x40, b);
+        for (double end_ms = hal_host_now_ms() + 40; bursts_left != 0 && hal_host_now_ms() < end_ms;) {
+            pass();
+        }
+        adxl345_stop();
+        run_ms(120);
+        TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_burst_that_goes_wrong_at_any_byte_brings_nothing);
+    RUN_TEST(test_supply_lost_at_any_byte_brings_nothing_wrong);
+    RUN_TEST(test_bits_that_slip_at_any_byte_bring_nothing);
+    RUN_TEST(test_three_torn_readings_in_a_row_are_a_fault);
+    RUN_TEST(test_torn_readings_apart_are_no_fault);
+    RUN_TEST(test_a_sensor_that_forgot_is_configured_at_once);
+    RUN_TEST(test_a_stop_while_readings_fail_stops);
+    return UNITY_END();
+}

@@ -1,0 +1,116 @@
+/* The verdict on a reading: what each byte and bit of it must be, and what is counted. */
+#include "adxl345.h"
+#include "adxl345_integrity.h"
+#include "adxl345_table.h"
+#include "unity.h"
+
+enum { PATTERN = 0x8A };
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+/* No shift turns the neighbours of FIFO_CTL into its pattern: z's sign byte before it (16 g), FIFO_STATUS after it. */
+static void test_no_shift_keeps_the_pattern(void)
+{
+    TEST_ASSERT_EQUAL_HEX8(PATTERN, TABLE_FIFO_CTL);
+    for (unsigned by = 1; by < 8; by++) {
+        for (int high = -16; high < 16; high++) {
+            TEST_ASSERT_NOT_EQUAL(PATTERN, (uint8_t)((unsigned)high << (8 - by) | PATTERN >> by));
+        }
+        for (unsigned status = 0; status <= 33; status++) {
+            TEST_ASSERT_NOT_EQUAL(PATTERN, (uint8_t)(PATTERN << by | status >> (8 - by)));
+        }
+    }
+}
+
+static reading_t judged(const int16_t lsb[3], unsigned byte, uint8_t flipped)
+{
+    uint8_t reading[READING_BYTES] = { 0x83, 0x0B, 0, 0, 0, 0, 0, 0, PATTERN, 0 };
+    static const int16_t last[] = { 1, -2, 256 };
+    int16_t out[3] = { 0 };
+    for (unsigned i = 0; i < 6; i++) {
+        reading[READING_DATA + i] = (uint8_t)((uint16_t)lsb[i / 2] >> (i % 2 * 8));
+    }
+    reading[byte] ^= flipped;
+    reading_t verdict = integrity_judge(reading, out, last);
+    if (verdict == READING_GOOD && flipped == 0) {
+        TEST_ASSERT_EQUAL_INT16_ARRAY(lsb, out, 3);
+    }
+    return verdict;
+}
+
+/* Bits 15 down to the range's sign bit agree: 16 g has 13 bits, 2 g has 10 (full resolution, p. 27). */
+static void test_a_sign_bit_that_disagrees_is_no_reading(void)
+{
+    static const uint8_t ranges_g[] = { 2, 4, 8, 16 };
+    for (unsigned r = 0; r < 4; r++) {
+        int16_t rail = (int16_t)(ranges_g[r] * 256);
+        integrity_start(ranges_g[r]);
+        for (unsigned axis = 0; axis < 3; axis++) {
+            const int16_t ends[] = { (int16_t)-rail, -1, 0, (int16_t)(rail - 1) };
+            for (unsigned e = 0; e < 4; e++) {
+                int16_t lsb[3] = { 1, -2, 3 };
+                lsb[axis] = ends[e];
+                TEST_ASSERT_EQUAL(READING_GOOD, judged(lsb, 0, 0));
+                for (unsigned bit = 9 + r; bit < 16; bit++) {
+                    reading_t verdict = judged(lsb, READING_DATA + 2 * axis + 1, (uint8_t)(1u << (bit - 8)));
+                    TEST_ASSERT_EQUAL(READING_BAD, verdict);
+                }
+            }
+        }
+    }
+}
+
+static void test_every_single_flip_of_pattern_and_status(void)
+{
+    static const int16_t lsb[] = { 1, -2, 256 };
+    integrity_start(16);
+    for (unsigned bit = 0; bit < 8; bit++) {
+        TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_CTL, (uint8_t)(1u << bit)));
+        /* up to 33 samples wait: bits 0 to 5 tell nothing */
+        TEST_ASSERT_EQUAL(bit < 6 ? READING_GOOD : READING_BAD, judged(lsb, READING_FIFO_STATUS, (uint8_t)(1u << bit)));
+    }
+    TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_STATUS, 34));
+    TEST_ASSERT_EQUAL(READING_GOOD, judged(lsb, READING_FIFO_STATUS, 33));
+    TEST_ASSERT_EQUAL(READING_RESET, judged(lsb, READING_FIFO_CTL, PATTERN));
+    TEST_ASSERT_EQUAL(READING_EMPTY, judged(lsb, READING_SOURCE, 0x80));
+}
+
+static void test_ones_on_all_axes_are_nobody(void)
+{
+    static const int16_t nobody[] = { -1, -1, -1 };
+    integrity_start(16);
+    TEST_ASSERT_EQUAL(READING_BAD, judged(nobody, 0, 0));
+    for (unsigned byte = READING_DATA; byte < READING_FIFO_CTL; byte++) {
+        TEST_ASSERT_EQUAL(READING_GOOD, judged(nobody, byte, 1));
+    }
+}
+
+static void test_counters_saturate(void)
+{
+    static const int16_t lsb[] = { 1, -2, 256 };
+    adxl345_readings_t readings;
+    integrity_init();
+    integrity_start(16);
+    for (unsigned i = 0; i < 65536; i++) {
+        (void)judged(lsb, READING_FIFO_CTL, 1);
+        (void)judged(lsb, READING_SOURCE, 0x80);
+        (void)judged(lsb, READING_SOURCE, 0x02); /* Overrun is set in 0x83 already */
+    }
+    adxl345_readings(&readings);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, readings.failed);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, readings.empty);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, readings.overruns);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_no_shift_keeps_the_pattern);
+    RUN_TEST(test_a_sign_bit_that_disagrees_is_no_reading);
+    RUN_TEST(test_every_single_flip_of_pattern_and_status);
+    RUN_TEST(test_ones_on_all_axes_are_nobody);
+    RUN_TEST(test_counters_saturate);
+    return UNITY_END();
+}

@@ -1,0 +1,182 @@
+#include "adxl345_integrity.h"
+
+#include "adxl345_registers.h"
+#include "adxl345_table.h"
+#include "hal_drdy.h"
+
+#define SENSOR_DEPTH 33u /* samples that the sensor can hold (p. 27) */
+
+/*
+ * A run that means something. Above it in bad_run: the sensor's registers are those after power-on; in empty_run: good
+ * readings that must leave INT1 low before it is trusted again.
+ */
+enum { RUN_LIMIT = 3, RUN_RESET, RUN_EMPTY = RUN_LIMIT + 32 };
+
+static struct {
+    adxl345_readings_t counters;
+    uint8_t equal_run; /* good readings that were as the one before them */
+    bool has_last;
+    uint8_t range_g;
+    uint8_t good;
+    uint8_t bad_run;
+    uint8_t empty_run;
+    bool failed;
+} integrity;
+
+void integrity_init(void)
+{
+    integrity.counters = (adxl345_readings_t){ 0, 0, 0 };
+    integrity.failed = false;
+}
+
+void integrity_start(uint8_t range_g)
+{
+    integrity.range_g = range_g;
+    integrity.has_last = false;
+    integrity.equal_run = 0;
+    integrity.bad_run = 0;
+    integrity.empty_run = 0;
+}
+
+/*
+ * The data into lsb. Plausible: the bits above the range agree with the sign on every axis (the high byte is -range_g
+ * to range_g - 1), and not all bits are ones (a bus that nobody drives).
+ */
+static inline bool plausible(const uint8_t *raw, int16_t lsb[3])
+{
+    uint8_t above = 0;
+    uint8_t ones = UINT8_MAX;
+    for (uint8_t axis = 0; axis < 3; axis++) {
+        uint8_t low = *raw++;
+        uint8_t high = *raw++;
+        ones &= (uint8_t)(low & high);
+        above |= (uint8_t)(high + integrity.range_g);
+        lsb[axis] = (int16_t)(uint16_t)(low | (uint16_t)((uint16_t)high << 8));
+    }
+    return above < (uint8_t)(2u * integrity.range_g) && ones != UINT8_MAX;
+}
+
+static bool same(const int16_t *a, const int16_t *b)
+{
+    uint8_t axis = 3;
+    while (axis != 0 && *a++ == *b++) {
+        axis--;
+    }
+    return axis == 0;
+}
+
+/* FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). */
+static inline bool framed(const uint8_t *reading)
+{
+    return reading[READING_FIFO_CTL] == TABLE_FIFO_CTL && reading[READING_FIFO_STATUS] <= SENSOR_DEPTH;
+}
+
+/*
+ * A sample that comes between the byte of INT_SOURCE and the data is read too; it differs from the last, which an empty
+ * sensor shows again.
+ */
+static inline reading_t verdict(const uint8_t *reading, int16_t lsb[3], const int16_t last_lsb[3])
+{
+    if (!framed(reading) || !plausible(&reading[READING_DATA], lsb)) {
+        return reading[READING_FIFO_CTL] == ADXL345_FIFO_BYPASS ? READING_RESET : READING_BAD;
+    }
+    bool ready = (reading[READING_SOURCE] & ADXL345_INT_DATA_READY) != 0;
+    bool known = integrity.has_last;
+    if (!known || !same(lsb, last_lsb)) {
+        integrity.equal_run = 0;
+        return ready || known ? READING_GOOD : READING_EMPTY;
+    }
+    if (!ready) {
+        return READING_EMPTY;
+    }
+    if (integrity.equal_run != ADXL345_STUCK_REPEATS) {
+        integrity.equal_run++;
+    }
+    return READING_GOOD;
+}
+
+static void count(uint16_t *counter)
+{
+    if (*counter != UINT16_MAX) {
+        (*counter)++;
+    }
+}
+
+static void lengthen(uint8_t *run)
+{
+    if (*run < RUN_LIMIT) {
+        (*run)++;
+    }
+}
+
+static void discard(reading_t why)
+{
+    if (why == READING_EMPTY) {
+        lengthen(&integrity.empty_run);
+        if (integrity.empty_run == RUN_LIMIT) {
+            integrity.empty_run = RUN_EMPTY;
+        }
+        count(&integrity.counters.empty);
+        return;
+    }
+    integrity.failed = true;
+    lengthen(&integrity.bad_run);
+    if (why == READING_RESET) {
+        integrity.bad_run = RUN_RESET;
+    }
+    count(&integrity.counters.failed);
+}
+
+reading_t integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3])
+{
+    reading_t result = verdict(reading, lsb, last_lsb);
+    if (result != READING_GOOD) {
+        discard(result);
+        return result;
+    }
+    integrity.has_last = true;
+    integrity.good++;
+    integrity.bad_run = 0;
+    if (!hal_drdy_high()) {
+        integrity.empty_run = integrity_int1_stuck() ? (uint8_t)(integrity.empty_run - 1u) : 0;
+    }
+    if (reading[READING_SOURCE] & ADXL345_INT_OVERRUN) {
+        count(&integrity.counters.overruns);
+    }
+    return result;
+}
+
+uint8_t integrity_good(void)
+{
+    return integrity.good;
+}
+
+adxl345_fault_t integrity_fault(void)
+{
+    if (integrity.bad_run < RUN_LIMIT) {
+        return ADXL345_FAULT_NONE;
+    }
+    return integrity.bad_run == RUN_RESET ? ADXL345_FAULT_NO_DATA : ADXL345_FAULT_TORN;
+}
+
+bool integrity_int1_stuck(void)
+{
+    return integrity.empty_run >= RUN_LIMIT;
+}
+
+bool integrity_stuck(void)
+{
+    return integrity.equal_run == ADXL345_STUCK_REPEATS;
+}
+
+uint8_t adxl345_marks(void)
+{
+    uint8_t marks = integrity.failed ? ADXL345_MARK_INTEGRITY : 0;
+    integrity.failed = false;
+    return marks;
+}
+
+void adxl345_readings(adxl345_readings_t *out)
+{
+    *out = integrity.counters;
+}

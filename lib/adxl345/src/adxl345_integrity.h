@@ -1,0 +1,56 @@
+/*
+ * Inside the driver: is what a burst brought a reading of this sensor? Main only.
+ *
+ * A burst goes from INT_SOURCE through the data to FIFO_STATUS. The pattern in FIFO_CTL
+ * is what no reset leaves behind and what no dead bus reads as, so a sensor that has lost its supply, a byte or a bit
+ * that slipped and a wire that came off show, and no sample of such a burst goes out.
+ */
+#ifndef ADXL345_INTEGRITY_H
+#define ADXL345_INTEGRITY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "adxl345.h"
+
+/* The bytes of a reading: INT_SOURCE, DATA_FORMAT, six of data, FIFO_CTL, FIFO_STATUS. */
+enum { READING_SOURCE = 0, READING_DATA = 2, READING_FIFO_CTL = 8, READING_FIFO_STATUS = 9, READING_BYTES = 10 };
+
+typedef enum {
+    READING_NONE,  /* no burst ended well on the bus since the last look */
+    READING_GOOD,  /* a sample */
+    READING_EMPTY, /* the sensor had none: INT1 was high for nothing, the data are those of the sample before */
+    READING_BAD,   /* torn, shifted, or nobody there */
+    READING_RESET  /* FIFO_CTL as after power-on: the sensor has lost its configuration */
+} reading_t;
+
+/* Once, at the start of the program: counters (adxl345_readings) to zero. */
+void integrity_init(void);
+
+/* Runs begin anew, for this range (2, 4, 8, 16 g; always full resolution); the counters stay. */
+void integrity_start(uint8_t range_g);
+
+/*
+ * The verdict on a reading, which is counted. lsb: its data, x, y, z as in adxl345_sample_t, valid when GOOD; last_lsb:
+ * those of the last one that was GOOD.
+ */
+reading_t integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3]);
+
+/* Good readings, wraps. */
+uint8_t integrity_good(void);
+
+/*
+ * The newest good reading is at least the eighth in a row that is equal on all axes. With the least noise of the data
+ * sheet (p. 4: 0.75, 0.75 and 1.1 LSB rms) two samples at rest are equal with a chance of 0.376 x 0.376 x 0.256, seven
+ * repeats have 0.036^7 = 8e-11.
+ */
+#define ADXL345_STUCK_REPEATS 7u
+bool integrity_stuck(void);
+
+/* Why the sensor must be configured anew: ADXL345_FAULT_NO_DATA, ADXL345_FAULT_TORN, or NONE. */
+adxl345_fault_t integrity_fault(void);
+
+/* INT1 was high and the sensor empty three times without a good reading; until 32 of those have left INT1 low. */
+bool integrity_int1_stuck(void);
+
+#endif
