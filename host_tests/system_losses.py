@@ -33,9 +33,9 @@ def lose_nothing(name, stream, ppm, rate, baud, every, load_limit, fw=FW, shift_
     assert not any(r[9] & 256 for r in rows), "a row was dropped"
     assert 60000000 / 1e6 * rate / every * 0.995 < len(late), f"{len(late)} rows in 60 s"
     within(f"CPU load at {rate} Hz", stats["cpu_load"], load_limit)
-    # 84 bit times a sample: START, address, register, repeated START, address, six bytes, STOP
+    # 120 bit times a sample: START, address, register, repeated START, address, ten bytes, STOP
     bit_hz = 400e3 if rate == 800 else 16e6 / 44
-    assert abs(stats["i2c_load"] - rate * 84 / bit_hz) < 0.02 * stats["i2c_load"] + 0.0005, stats["i2c_load"]
+    assert abs(stats["i2c_load"] - rate * 120 / bit_hz) < 0.02 * stats["i2c_load"] + 0.0005, stats["i2c_load"]
     mean_us = (int(served[-1]["t_us"]) - int(served[200]["t_us"])) / (len(served) - 201)
     true_us = 1e6 / rate / (1 + ppm * 1e-6)
     assert abs(mean_us / true_us - 1) < 2e-5, f"the sensor's clock: {mean_us} us, {true_us} us asked for"
