@@ -164,7 +164,7 @@ static void test_a_hung_burst_is_given_up(void)
     double begun_ms = hal_host_now_ms();
     RUN_UNTIL(!burst_running(), 12);
     double took_ms = hal_host_now_ms() - begun_ms;
-    TEST_ASSERT_TRUE(took_ms >= 2.95 && took_ms <= 3.3);
+    TEST_ASSERT_TRUE(took_ms >= 2.95 && took_ms <= 3.0 + 0.5); /* the sample is read again at once */
     adxl345_counters(&after);
     TEST_ASSERT_EQUAL_UINT16(before.timeouts + 1, after.timeouts);
     TEST_ASSERT_EQUAL_UINT16(before.bus_faults + 1, after.bus_faults);

@@ -331,6 +331,7 @@ static void end_hung_burst(void)
 static void look_for_sample(void)
 {
     int32_t since_us = (int32_t)(driver.now_us - burst_begun_us());
+    bool waiting = burst_queue_full() || (hal_drdy_high() && !burst_found_empty()); /* main was late */
     if (burst_bus_taken()) {
         if (since_us >= TRANSFER_LIMIT_US) {
             end_hung_burst();
@@ -388,7 +389,7 @@ static void drain_step(void)
 {
     bool waiting = hal_drdy_high() && !burst_found_empty();
     if (waiting) {
-        (void)burst_read_now();
+        (void)burst_read(false);
     }
     bool empty = !waiting && !burst_running() && burst_queued() == 0;
     if (!empty && !deadline_passed()) {

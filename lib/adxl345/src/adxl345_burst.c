@@ -115,7 +115,7 @@ void burst_set_mode(burst_mode_t new_mode)
         failures = 0;
         last_known = false;
     }
-    found_empty = false;
+    found_empty = found_empty && new_mode != BURST_READ;
     mode = (uint8_t)new_mode;
     hal_irq_restore(state);
 }

@@ -67,7 +67,7 @@ bool burst_running(void);
 /* A burst is on the bus, or the STOP of a transfer has not got out. */
 bool burst_bus_taken(void);
 
-/* The newest burst since burst_set_mode met no sample. */
+/* The newest burst met no sample; false again with burst_set_mode(BURST_READ). */
 bool burst_found_empty(void);
 
 /* When the newest burst was put on the bus; until the first, the moment by which it is expected. */
