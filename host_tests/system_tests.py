@@ -22,7 +22,8 @@ def compare_with_native(stream, filter_name):
     # the end of a run differs: the simulator stops some ms after the stream, the native build 300 ms
     rows = rows[:len(served)]
     native = native[:len(rows)]
-    assert len(native) >= len(rows) - 1 and len(rows) >= len(served) - 2, f"{len(rows)} and {len(native)} rows, {len(served)} samples"
+    dead = triplets(served).count([-1, -1, -1])  # what a sensor without power reads as is never a row
+    assert len(native) >= len(rows) - 1 and len(rows) >= len(served) - dead - 2, f"{len(rows)} and {len(native)} rows, {len(served)} samples"
     for i, (chip, pc) in enumerate(zip(rows, native)):
         if (chip[9] | pc[9]) & 16 and "gaps" in stream.stem:
             # a silence of three samples restarts the sensor, and which sample it meets depends on microseconds
