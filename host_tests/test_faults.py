@@ -66,7 +66,7 @@ def phases_are_every_byte_every_stage_and_the_whole_period():
     assert len({transfer for transfer, _ in bytes_of}) == 1 and [byte for _, byte in bytes_of] == list(range(1, len(bytes_of) + 1)), bytes_of
     assert len(bytes_of) in range(9, 16)
     functions = {w[3:].partition("#")[0].partition(".")[0] for w in whens if w.startswith("pc:")}
-    assert functions >= {"burst_drain", "tilt_angles", "format_u32", "__vector_1", "__vector_24"} and "text_char" not in functions, functions
+    assert functions >= {"burst_judge", "tilt_angles", "format_u32", "__vector_1", "__vector_24"} and "text_char" not in functions, functions
     moments = [float(w[:-2]) for w in whens if w.endswith("ms")]
     assert len(moments) >= 10 and min(moments) < 1001 and 1009 < max(moments) < 1010, moments
 
@@ -74,11 +74,11 @@ def phases_are_every_byte_every_stage_and_the_whole_period():
 @test
 def every_fault_of_a_plan_comes_and_a_run_is_judged_by_the_model():
     whens = faults_runs.phases(FW, faults_runs.OF["flip 1"], "kf", 50)
-    for when in (whens[4], next(w for w in whens if w.startswith("pc:__vector_1#")), whens[-1]):
+    for when in (whens[5], next(w for w in whens if w.startswith("pc:__vector_1#")), whens[-1]):
         done = faults_runs.attempt(FW, "kf", (faults_runs.OF["flip 1"],), (when,))
         assert done.injected and done.recovered and not done.failures() and done.lost == 0, done
     # the byte of x: it is altered, so the judge that looks at the model alone finds the row wrong
-    assert faults_runs.attempt(FW, "kf", (faults_runs.OF["flip 1"],), (whens[4],)).wrong == 1
+    assert faults_runs.attempt(FW, "kf", (faults_runs.OF["flip 1"],), (whens[5],)).wrong == 1
     done = faults_runs.attempt(FW, "kf", (faults_runs.OF["reset"],), ("1000ms",))
     assert done.recovered and done.resets == 0 and 20 < done.ms_to_good < 600, done
 
