@@ -220,6 +220,13 @@ static void keep_edge(void)
     }
 }
 
+/* Data-ready of the sample behind which so many wait, the one before it being lost: the newest is half a period old. */
+static uint32_t oldest_us(uint8_t behind)
+{
+    uint32_t period_us = burst_period_us();
+    return begun_us - behind * period_us - (period_us >> 1);
+}
+
 static reading_t judge(void)
 {
     burst_entry_t *entry = &queue[head];
@@ -227,6 +234,10 @@ static reading_t judge(void)
     failures = 0;
     found_empty = verdict == READING_EMPTY;
     if (verdict == READING_GOOD) {
+        if (reading[READING_SOURCE] & ADXL345_INT_OVERRUN) {
+            reading_us = oldest_us(reading[READING_FIFO_STATUS]);
+            reading_exact = false;
+        }
         newest_lsb = entry->sample.lsb;
         entry->sample.t_us = reading_us;
         entry->exact = reading_exact;
