@@ -102,6 +102,7 @@ void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz);
 bool adaptive_init(adaptive_t *f, const adaptive_config_t *config);
 void adaptive_set_noise(adaptive_t *f, uint32_t r_lsb2_q8);
 void adaptive_reset(adaptive_t *f, int16_t z0_lsb);
+bool adaptive_reset_step(adaptive_t *f, int16_t z0_lsb, uint8_t step);
 int32_t adaptive_update(adaptive_t *f, int16_t z_lsb);
 int32_t adaptive_coast(adaptive_t *f);
 void adaptive_damp(adaptive_t *f);

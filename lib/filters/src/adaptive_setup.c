@@ -148,6 +148,13 @@ FX_NOINLINE void forget(adaptive_t *f)
     f->u.run.before_lsb_q16 = 0;
 }
 
+bool adaptive_reset_step(adaptive_t *f, int16_t z0_lsb, uint8_t step)
+{
+    (void)step;
+    adaptive_reset(f, z0_lsb);
+    return false;
+}
+
 FX_ONCE void adaptive_reset(adaptive_t *f, int16_t z0_lsb)
 {
     int16_t z0 = filter_clamp_z(z0_lsb);

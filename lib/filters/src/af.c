@@ -24,6 +24,11 @@ void af_reset(af_t *f, int16_t z0_lsb)
     mixture_reset(f, z0_lsb);
 }
 
+bool af_reset_step(af_t *f, int16_t z0_lsb, uint8_t step)
+{
+    return mixture_reset_step(f, z0_lsb, step);
+}
+
 /* Scaling: input any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB; the rest as in mixture.h. */
 int32_t af_update(af_t *f, int16_t z_lsb)
 {

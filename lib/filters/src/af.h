@@ -25,6 +25,7 @@ void af_defaults(af_config_t *config, uint16_t rate_dhz);
 bool af_init(af_t *f, const af_config_t *config);
 void af_set_noise(af_t *f, uint32_t r_lsb2_q8);
 void af_reset(af_t *f, int16_t z0_lsb);
+bool af_reset_step(af_t *f, int16_t z0_lsb, uint8_t step);
 int32_t af_update(af_t *f, int16_t z_lsb);
 int32_t af_coast(af_t *f);
 void af_damp(af_t *f);

@@ -6,6 +6,8 @@
  *            untouched
  *   void     F_set_noise(F_t *f, uint32_t r_lsb2_q8);             measurement variance R changed (estimated on line)
  *   void     F_reset(F_t *f, int16_t z0_lsb);                     as if z0 had been read for ever; no warm-up
+ *   bool     F_reset_step(F_t *f, int16_t z0_lsb, uint8_t step);  F_reset in parts that take no longer than an update:
+ *            step 0, 1, 2 ... until it is false; no other call in between
  *   int32_t  F_update(F_t *f, int16_t z_lsb);                     one sample in, estimate (LSB, Q16) out; total, cannot
  *            fail
  *   int32_t  F_coast(F_t *f);                                     sample missing: prediction only

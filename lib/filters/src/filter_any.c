@@ -124,6 +124,19 @@ void filter_any_reset(filter_any_t *f, int16_t z0_lsb)
     }
 }
 
+bool filter_any_reset_step(filter_any_t *f, int16_t z0_lsb, uint8_t step)
+{
+    switch (f->kind) {
+#define RESET_STEP(F)     \
+    case FILTER_KIND_##F: \
+        return F##_reset_step(&f->state.F, z0_lsb, step);
+        FILTER_LINKED(RESET_STEP)
+#undef RESET_STEP
+    default:
+        return false;
+    }
+}
+
 int32_t filter_any_update(filter_any_t *f, int16_t z_lsb)
 {
     switch (f->kind) {

@@ -55,6 +55,7 @@ void filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16
 bool filter_any_init(filter_any_t *f, filter_kind_t kind, const filter_any_config_t *config);
 void filter_any_set_noise(filter_any_t *f, uint32_t r_lsb2_q8);
 void filter_any_reset(filter_any_t *f, int16_t z0_lsb);
+bool filter_any_reset_step(filter_any_t *f, int16_t z0_lsb, uint8_t step);
 int32_t filter_any_update(filter_any_t *f, int16_t z_lsb);
 int32_t filter_any_coast(filter_any_t *f);
 void filter_any_damp(filter_any_t *f);

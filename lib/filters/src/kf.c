@@ -34,6 +34,11 @@ void kf_reset(kf_t *f, int16_t z0_lsb)
     (void)two_state_reset(&f->core, z0_lsb);
 }
 
+bool kf_reset_step(kf_t *f, int16_t z0_lsb, uint8_t step)
+{
+    return two_state_reset_step(&f->core, z0_lsb, step);
+}
+
 /*
  * Scaling: input any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB; formats, bounds and rounding
  * errors as two_state_step. Cost: docs/benchmarks.md.

@@ -30,6 +30,7 @@ void kf_defaults(kf_config_t *config, uint16_t rate_dhz);
 bool kf_init(kf_t *f, const kf_config_t *config);
 void kf_set_noise(kf_t *f, uint32_t r_lsb2_q8);
 void kf_reset(kf_t *f, int16_t z0_lsb);
+bool kf_reset_step(kf_t *f, int16_t z0_lsb, uint8_t step);
 int32_t kf_update(kf_t *f, int16_t z_lsb);
 int32_t kf_coast(kf_t *f);
 void kf_damp(kf_t *f);

@@ -227,6 +227,18 @@ void kf3_reset(kf3_t *f, int16_t z0_lsb)
     }
 }
 
+bool kf3_reset_step(kf3_t *f, int16_t z0_lsb, uint8_t step)
+{
+    int16_t z0 = filter_clamp_z(z0_lsb);
+    if (step == 0U) {
+        two_state_start(&f->core, (int32_t)z0 * 65536);
+        start_acceleration(f);
+    } else {
+        take(f, z0);
+    }
+    return step < SETTLE_STEPS;
+}
+
 /*
  * Scaling:
  *   input        Q0, any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB

@@ -58,6 +58,11 @@ void lrf_reset(lrf_t *f, int16_t z0_lsb)
     (void)two_state_reset(&f->core, z0_lsb);
 }
 
+bool lrf_reset_step(lrf_t *f, int16_t z0_lsb, uint8_t step)
+{
+    return two_state_reset_step(&f->core, z0_lsb, step);
+}
+
 /*
  * Scaling: input any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB; formats, bounds and rounding
  * errors as two_state_step, with P in units of R_L. R_L within 2^-13 of the formula. Cost: docs/benchmarks.md.

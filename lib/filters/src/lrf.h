@@ -44,6 +44,7 @@ void lrf_defaults(lrf_config_t *config, uint16_t rate_dhz);
 bool lrf_init(lrf_t *f, const lrf_config_t *config);
 void lrf_set_noise(lrf_t *f, uint32_t r_lsb2_q8);
 void lrf_reset(lrf_t *f, int16_t z0_lsb);
+bool lrf_reset_step(lrf_t *f, int16_t z0_lsb, uint8_t step);
 int32_t lrf_update(lrf_t *f, int16_t z_lsb);
 int32_t lrf_coast(lrf_t *f);
 void lrf_damp(lrf_t *f);

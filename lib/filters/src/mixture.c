@@ -113,6 +113,14 @@ void mixture_reset(mixture_t *f, int16_t z0_lsb)
     two_state_wide_reset(&f->core, z0_lsb);
 }
 
+bool mixture_reset_step(mixture_t *f, int16_t z0_lsb, uint8_t step)
+{
+    if (step == 0U) {
+        forget(f);
+    }
+    return two_state_wide_reset_step(&f->core, z0_lsb, step);
+}
+
 /* p into the mean of those before: q += (p - q) / n. */
 static void learn(mixture_t *f, mixture_posterior_t posterior)
 {

@@ -68,6 +68,7 @@ FX_ONCE bool mixture_init(mixture_t *f, const mixture_config_t *config, bool lea
 
 /* As F_reset of filter.h; what was learnt is forgotten. */
 FX_ONCE void mixture_reset(mixture_t *f, int16_t z0_lsb);
+FX_ONCE bool mixture_reset_step(mixture_t *f, int16_t z0_lsb, uint8_t step);
 
 /* As F_update of filter.h. */
 FX_ONCE int32_t mixture_update(mixture_t *f, int16_t z_lsb, mixture_rule_t rule);

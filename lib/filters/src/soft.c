@@ -71,6 +71,12 @@ void soft_reset(soft_t *f, int16_t z0_lsb)
     reacquire_reset(&f->again, two_state_reset(&f->core, z0_lsb));
 }
 
+bool soft_reset_step(soft_t *f, int16_t z0_lsb, uint8_t step)
+{
+    reacquire_reset(&f->again, filter_clamp_z(z0_lsb));
+    return two_state_reset_step(&f->core, z0_lsb, step);
+}
+
 /* One place in line each: told two the compiler makes a loop of them on AVR. */
 FX_INLINE uint32_t quarter(uint32_t v)
 {

@@ -45,6 +45,7 @@ void soft_defaults(soft_config_t *config, uint16_t rate_dhz);
 bool soft_init(soft_t *f, const soft_config_t *config);
 void soft_set_noise(soft_t *f, uint32_t r_lsb2_q8);
 void soft_reset(soft_t *f, int16_t z0_lsb);
+bool soft_reset_step(soft_t *f, int16_t z0_lsb, uint8_t step);
 int32_t soft_update(soft_t *f, int16_t z_lsb);
 int32_t soft_coast(soft_t *f);
 void soft_damp(soft_t *f);

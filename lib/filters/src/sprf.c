@@ -54,6 +54,12 @@ void sprf_reset(sprf_t *f, int16_t z0_lsb)
     reacquire_reset(&f->again, two_state_reset(&f->core, z0_lsb));
 }
 
+bool sprf_reset_step(sprf_t *f, int16_t z0_lsb, uint8_t step)
+{
+    reacquire_reset(&f->again, filter_clamp_z(z0_lsb));
+    return two_state_reset_step(&f->core, z0_lsb, step);
+}
+
 /*
  * The rate stands for a motion of which nothing was seen since the last accepted sample. Where nothing agrees for long,
  * as on a frame that shakes, the filter would run on by it. Without re-acquisition it does, as published.

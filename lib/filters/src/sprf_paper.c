@@ -47,6 +47,11 @@ void sprf_paper_reset(sprf_paper_t *f, int16_t z0_lsb)
     two_state_wide_reset(&f->core, z0_lsb);
 }
 
+bool sprf_paper_reset_step(sprf_paper_t *f, int16_t z0_lsb, uint8_t step)
+{
+    return two_state_wide_reset_step(&f->core, z0_lsb, step);
+}
+
 /*
  * Scaling: input any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB; r^2 / (R S) against the squared
  * gate in UQ8.8; the rest as in two_state_wide.h. Cost: docs/benchmarks.md.

@@ -97,6 +97,13 @@ void synth_set_noise(synth_t *f, uint32_t r_lsb2_q8)
     synth_take_noise_and_spread(&f->core, &f->spread, r_lsb2_q8);
 }
 
+bool synth_reset_step(synth_t *f, int16_t z0_lsb, uint8_t step)
+{
+    (void)step;
+    synth_reset(f, z0_lsb);
+    return false;
+}
+
 FX_ONCE void synth_reset(synth_t *f, int16_t z0_lsb)
 {
     synth_at_rest(&f->core, z0_lsb);

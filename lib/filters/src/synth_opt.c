@@ -60,6 +60,13 @@ void synth_opt_set_noise(synth_opt_t *f, uint32_t r_lsb2_q8)
     }
 }
 
+bool synth_opt_reset_step(synth_opt_t *f, int16_t z0_lsb, uint8_t step)
+{
+    (void)step;
+    synth_opt_reset(f, z0_lsb);
+    return false;
+}
+
 FX_ONCE void synth_opt_reset(synth_opt_t *f, int16_t z0_lsb)
 {
     synth_at_rest(&f->core, z0_lsb);

@@ -51,6 +51,7 @@ void synth_opt_defaults(synth_opt_config_t *config, uint16_t rate_dhz);
 bool synth_opt_init(synth_opt_t *f, const synth_opt_config_t *config);
 void synth_opt_set_noise(synth_opt_t *f, uint32_t r_lsb2_q8);
 void synth_opt_reset(synth_opt_t *f, int16_t z0_lsb);
+bool synth_opt_reset_step(synth_opt_t *f, int16_t z0_lsb, uint8_t step);
 int32_t synth_opt_update(synth_opt_t *f, int16_t z_lsb);
 int32_t synth_opt_coast(synth_opt_t *f);
 void synth_opt_damp(synth_opt_t *f);

@@ -120,6 +120,13 @@ void synth_plus_set_noise(synth_plus_t *f, uint32_t r_lsb2_q8)
     synth_take_noise_and_spread(&f->core, &f->spread, r_lsb2_q8);
 }
 
+bool synth_plus_reset_step(synth_plus_t *f, int16_t z0_lsb, uint8_t step)
+{
+    (void)step;
+    synth_plus_reset(f, z0_lsb);
+    return false;
+}
+
 FX_ONCE void synth_plus_reset(synth_plus_t *f, int16_t z0_lsb)
 {
     synth_at_rest(&f->core, z0_lsb);

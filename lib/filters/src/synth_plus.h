@@ -78,6 +78,7 @@ uint32_t synth_plus_noise_gain_uq16(const synth_plus_config_t *config);
 bool synth_plus_init(synth_plus_t *f, const synth_plus_config_t *config);
 void synth_plus_set_noise(synth_plus_t *f, uint32_t r_lsb2_q8);
 void synth_plus_reset(synth_plus_t *f, int16_t z0_lsb);
+bool synth_plus_reset_step(synth_plus_t *f, int16_t z0_lsb, uint8_t step);
 int32_t synth_plus_update(synth_plus_t *f, int16_t z_lsb);
 int32_t synth_plus_coast(synth_plus_t *f);
 void synth_plus_damp(synth_plus_t *f);

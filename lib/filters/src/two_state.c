@@ -126,13 +126,23 @@ void two_state_settle(two_state_t *s)
     }
 }
 
-int16_t two_state_reset(two_state_t *s, int16_t z0_lsb)
+bool two_state_reset_step(two_state_t *s, int16_t z0_lsb, uint8_t step)
 {
     int16_t z0 = filter_clamp_z(z0_lsb);
-    s->flags = 0;
-    two_state_start(s, (int32_t)z0 * 65536);
+    if (step == 0U) {
+        s->flags = 0;
+        two_state_start(s, (int32_t)z0 * 65536);
+    } else {
+        (void)two_state_step(s, z0, true);
+    }
+    return step < SETTLE_STEPS;
+}
+
+int16_t two_state_reset(two_state_t *s, int16_t z0_lsb)
+{
+    (void)two_state_reset_step(s, z0_lsb, 0);
     two_state_settle(s);
-    return z0;
+    return filter_clamp_z(z0_lsb);
 }
 
 void two_state_warm_up(two_state_t *s, int16_t z_lsb)

@@ -128,6 +128,9 @@ static inline bool two_state_warming_up(const two_state_t *s)
 /* Running as if z0, limited to its range, had been read for ever. Returns z0 limited. */
 FX_ONCE int16_t two_state_reset(two_state_t *s, int16_t z0_lsb);
 
+/* The same in steps of at most one two_state_step: step 0, 1, ... until it is false. */
+FX_ONCE bool two_state_reset_step(two_state_t *s, int16_t z0_lsb, uint8_t step);
+
 /*
  * P as if the whole-numbered estimate had been read for long: SETTLE_STEPS updates without innovation, 45,000 cycles.
  */

@@ -68,6 +68,18 @@ void two_state_wide_reset(two_state_wide_t *s, int16_t z0_lsb)
     }
 }
 
+bool two_state_wide_reset_step(two_state_wide_t *s, int16_t z0_lsb, uint8_t step)
+{
+    int16_t z0 = filter_clamp_z(z0_lsb);
+    if (step == 0U) {
+        two_state_wide_start(s, (int32_t)z0 * 65536);
+    } else {
+        (void)two_state_wide_predict(s, z0);
+        two_state_wide_update(s, 0, 0);
+    }
+    return step < SETTLE_STEPS;
+}
+
 void two_state_wide_warm_up(two_state_wide_t *s, int16_t z_lsb)
 {
     filter_warm_up_insert(s->u.start_lsb, s->collected, z_lsb);

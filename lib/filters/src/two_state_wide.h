@@ -82,6 +82,9 @@ void two_state_wide_begin(two_state_wide_t *s, int32_t x_lsb_q16, int32_t rate_l
 /* As if z0 (clamped) had been read for long: 64 of Kalman's updates without innovation. */
 FX_ONCE void two_state_wide_reset(two_state_wide_t *s, int16_t z0_lsb);
 
+/* The same in steps of at most one update: step 0, 1, ... until it is false. */
+FX_ONCE bool two_state_wide_reset_step(two_state_wide_t *s, int16_t z0_lsb, uint8_t step);
+
 static inline bool two_state_wide_warming_up(const two_state_wide_t *s)
 {
     return s->collected < FILTER_WARM_UP_SAMPLES;
