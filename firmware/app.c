@@ -17,6 +17,7 @@
 #include "hal_watchdog.h"
 #include "hang_test.h"
 #include "health.h"
+#include "pass.h"
 #include "pipeline.h"
 #include "replies.h"
 #include "rows.h"
@@ -45,10 +46,17 @@ typedef enum {
     STAGE_BAUD /* the line drains before its rate changes */
 } stage_t;
 
+/* A filter is for all samples to come; the others wait until those of the old configuration are filtered. */
+enum {
+    CHANGE_FILTER = 1,
+    CHANGE_CONFIG = 2,
+    CHANGE_COLD = 4 /* the filters begin anew */
+};
+
 static uint8_t stage;
-static bool sampling;       /* wanted: go or start-up, not stop */
-static bool restart_cold;   /* the first sample begins the filters anew */
-static bool config_changed; /* the samples of the old configuration are still coming */
+static bool sampling;   /* wanted: go or start-up, not stop */
+static uint8_t changes; /* that the pipeline is to follow yet */
+static bool row_due;    /* for the sample that the pipeline has, or had last */
 static uint32_t next_second_us;
 static uint32_t next_service_us;
 
@@ -87,8 +95,8 @@ void app_start(void)
     next_second_us = next_service_us + 1000000ul;
     stage = STAGE_BANNER;
     sampling = true;
-    restart_cold = false;
-    config_changed = false;
+    row_due = false;
+    changes = 0;
     pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
     (void)replies_add(REPLY_BANNER, 0);
     start_sensor();
@@ -102,7 +110,7 @@ app_answer_t app_set_filter(uint8_t filter_kind)
     if (settings.filter != filter_kind) {
         settings.filter = filter_kind;
         settings_follow();
-        pipeline_change(settings.filter, settings.rate_dhz, settings.range_g);
+        changes |= CHANGE_FILTER;
     }
     return APP_DONE;
 }
@@ -111,7 +119,7 @@ app_answer_t app_set_filter(uint8_t filter_kind)
 static void change_sensor(void)
 {
     if (sampling) {
-        config_changed = true;
+        changes |= CHANGE_CONFIG;
         start_sensor();
     }
 }
@@ -179,7 +187,7 @@ void app_stop(void)
 void app_go(void)
 {
     sampling = true;
-    restart_cold = true;
+    changes |= CHANGE_COLD;
     start_sensor();
 }
 
@@ -199,64 +207,72 @@ static void count_seconds(uint32_t now_us)
     }
 }
 
-/* Old samples are filtered as before; the first one after the driver's restart meets the new configuration. */
-static void follow_configuration(void)
+/* Begins the pipeline's change where there is one to follow. */
+static bool follow_settings(void)
 {
-    bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
-    if (old_samples) {
-        return;
+    if (changes == 0) {
+        return false;
     }
-    if (restart_cold) {
+    bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
+    uint8_t now = old_samples ? changes & CHANGE_FILTER : changes;
+    changes = (uint8_t)(changes & ~now);
+    if (now & CHANGE_COLD) {
         pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
-    } else if (config_changed) {
+    } else if (now != 0) {
         pipeline_change(settings.filter, settings.rate_dhz, settings.range_g);
     }
-    restart_cold = false;
-    config_changed = false;
+    return now != 0;
 }
 
-static void filter_samples(void)
+/* One piece of the samples' way; false: there is nothing to do. */
+static bool filter_samples(void)
 {
     adxl345_sample_t sample;
     if (HANGS(HEALTH_FILTERING)) {
-        return;
+        return false;
     }
-    bool taken = adxl345_take(&sample);
-    pipeline_flag(adxl345_marks());
-    if (taken) {
-        pipeline_sample(&sample, adxl345_period_us());
+    if (pipeline_work()) {
+        return true;
+    }
+    if (row_due) {
+        row_due = false;
         rows_sample();
         health_sample_filtered();
-        hal_wake();
-    } else if (restart_cold || config_changed) {
-        follow_configuration();
+        return true;
     }
+    if (follow_settings()) {
+        return true;
+    }
+    row_due = adxl345_take(&sample);
+    pipeline_flag(adxl345_marks());
+    if (row_due) {
+        pipeline_sample(&sample, adxl345_period_us());
+    }
+    return row_due;
 }
 
-static void run_stage(uint32_t now_us)
+static bool stage_piece(void)
 {
     switch (stage) {
     case STAGE_BANNER:
-        if (replies_empty()) {
-            rows_enable(true);
-            health_resume_filtering();
-            sensor_watch_start(now_us);
-            stage = STAGE_RUNNING;
-            hal_wake();
+        if (!replies_empty()) {
+            return false;
         }
+        rows_enable(true);
+        sensor_watch_start(hal_time_us());
         break;
     case STAGE_BAUD:
-        if (replies_empty() && hal_uart_tx_idle()) {
-            hal_uart_init(settings.baud);
-            health_resume_filtering();
-            stage = STAGE_RUNNING;
-            hal_wake();
+        if (!replies_empty() || !hal_uart_tx_idle()) {
+            return false;
         }
+        hal_uart_init(settings.baud);
         break;
     default:
-        filter_samples();
-        break;
+        return filter_samples();
     }
+    health_resume_filtering();
+    stage = STAGE_RUNNING;
+    return true;
 }
 
 /* What a person or the watchdog waits for need not run for every sample. */
@@ -277,8 +293,18 @@ static void set_alarm(void)
     }
 }
 
+/* Where something is left to do that waits for no interrupt. */
+static void wake_if_work_left(void)
+{
+    if (row_due || changes != 0 || pipeline_changing() || adxl345_queued() != 0 || !replies_empty()) {
+        hal_wake();
+    }
+}
+
+/* Samples go before replies. A pass that ends for lack of time is followed by another if there is a reason. */
 void app_pass(void)
 {
+    pass.began = hal_time_lap();
     uint32_t now_us = hal_time_us();
     if (!HANGS(HEALTH_SAMPLING)) {
         adxl345_poll(now_us);
@@ -286,12 +312,20 @@ void app_pass(void)
     }
     while (HANGS(WHOLE_LOOP)) {
     }
-    run_stage(now_us);
-    commands_pass();
-    replies_pass();
     if (hal_time_reached(now_us, next_service_us)) {
         next_service_us = now_us + SERVICE_US;
         service(now_us);
+    }
+    if (pass_in_time()) {
+        commands_pass();
+        while (stage_piece() || replies_pass()) {
+            if (!pass_in_time()) {
+                wake_if_work_left();
+                break;
+            }
+        }
+    } else {
+        hal_wake();
     }
     set_alarm();
     hal_sleep_until_wake();

@@ -8,6 +8,7 @@
 #include "filter_any.h"
 #include "flash.h"
 #include "fx.h"
+#include "hal_sleep.h"
 #include "hal_uart.h"
 #include "replies.h"
 #include "reply_lines.h"
@@ -236,6 +237,7 @@ void commands_pass(void)
     while (replies_room() && app_takes_commands() && hal_uart_rx(&byte)) {
         if (byte == '\r' || byte == '\n') {
             end_line();
+            hal_wake();
             return;
         }
         take_byte(byte);

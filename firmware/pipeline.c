@@ -5,11 +5,20 @@
 #include "filter_any.h"
 #include "fx.h"
 #include "noise.h"
+#include "pass.h"
 #include "tilt.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
 
+typedef enum {
+    WORK_NONE,
+    WORK_SAMPLE, /* through the filter of each axis */
+    WORK_CHANGE  /* each axis gets its new filter */
+} work_t;
+
 #define COAST_LIMIT_US 100000ul
+
+pass_t pass;
 
 static struct {
     filter_any_t filter[AXES];
@@ -22,7 +31,14 @@ static struct {
     int16_t rail_high_lsb;
     uint16_t rate_dhz;
     uint16_t flags;
+    uint16_t kept_flags; /* of the samples before the one under way */
     uint8_t warm_rows;
+    uint8_t work;    /* work_t */
+    uint8_t axis;    /* that the work goes on with */
+    uint8_t step;    /* of the change on that axis */
+    uint8_t missing; /* samples before that under way */
+    uint8_t new_kind;
+    bool new_noise;
     bool has_sample;
     bool changed; /* the next sample is the first of another configuration, before which none is missing */
 } pipe;
@@ -32,12 +48,11 @@ FX_NOINLINE void keep_estimate(uint8_t axis, int32_t x_lsb_q16)
     pipe.estimate_q8[axis] = (x_lsb_q16 + 128) >> 8;
 }
 
-static void init_filter(uint8_t axis, uint8_t filter_kind)
+FX_NOINLINE void init_filter(filter_any_t *filter)
 {
     filter_any_config_t config;
-    filter_any_defaults((filter_kind_t)filter_kind, &config, pipe.rate_dhz);
-    (void)filter_any_init(&pipe.filter[axis], (filter_kind_t)filter_kind, &config);
-    filter_any_set_noise(&pipe.filter[axis], noise_r_lsb2_q8(&pipe.noise[axis]));
+    filter_any_defaults((filter_kind_t)pipe.new_kind, &config, pipe.rate_dhz);
+    (void)filter_any_init(filter, (filter_kind_t)pipe.new_kind, &config);
 }
 
 void pipeline_reset(void)
@@ -50,20 +65,53 @@ void pipeline_reset(void)
 /* keep: the filters go on from the old output, the noise estimates too unless the rate is new. */
 static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool keep)
 {
-    bool new_noise = !keep || rate_dhz != pipe.rate_dhz;
+    pipe.new_noise = !keep || rate_dhz != pipe.rate_dhz;
+    pipe.new_kind = filter_kind;
     pipe.rate_dhz = rate_dhz;
     pipe.has_sample = keep;
     pipe.changed = true;
     pipe.warm_rows = WARM_ROWS;
     pipe.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
-    for (uint8_t axis = 0; axis < AXES; axis++) {
-        if (new_noise) {
-            noise_init(&pipe.noise[axis], rate_dhz, axis == 2);
+    pipe.work = WORK_CHANGE;
+    pipe.axis = 0;
+    pipe.step = 0;
+    pass.limit = PASS_CHANGING_US / HAL_LAP_US;
+}
+
+/* Initialised, then told its R, then settled where there is an output to go on from. True: that axis is done. */
+static bool change_axis(void)
+{
+    enum { STEP_INIT, STEP_NOISE, STEP_RESET };
+    filter_any_t *filter = &pipe.filter[pipe.axis];
+    noise_t *noise = &pipe.noise[pipe.axis];
+    FX_FENCE_OF(filter); /* else both addresses are computed anew at each use */
+    FX_FENCE_OF(noise);
+    uint8_t step = pipe.step++;
+    if (step == STEP_INIT) {
+        if (pipe.new_noise) {
+            noise_init(noise, pipe.rate_dhz, pipe.axis == 2);
         }
-        init_filter(axis, filter_kind);
-        if (keep) {
-            filter_any_reset(&pipe.filter[axis], (int16_t)((pipe.estimate_q8[axis] + 128) >> 8));
-        }
+        init_filter(filter);
+        return false;
+    }
+    if (step == STEP_NOISE) {
+        filter_any_set_noise(filter, noise_r_lsb2_q8(noise));
+        return !pipe.has_sample;
+    }
+    int16_t lsb = (int16_t)((pipe.estimate_q8[pipe.axis] + 128) >> 8);
+    return !filter_any_reset_step(filter, lsb, (uint8_t)(step - STEP_RESET));
+}
+
+FX_NOINLINE void change_step(void)
+{
+    if (!change_axis()) {
+        return;
+    }
+    pipe.step = 0;
+    pipe.axis++;
+    if (pipe.axis == AXES) {
+        pipe.work = WORK_NONE;
+        pass.limit = PASS_US / HAL_LAP_US;
     }
 }
 
@@ -84,23 +132,32 @@ static void collect_flags(uint8_t filter_flags)
     pipe.flags |= (filter_flags & FILTER_WARMING_UP) ? ROW_WARMING_UP : 0u;
 }
 
-/* Every missing sample is one prediction step, so that the rate goes on; after 100 ms the estimate holds. */
-static void coast_over_gap(uint32_t t_us, uint32_t period_us)
+/*
+ * How many samples are missing: every one is one prediction step, so that the rate goes on; after 100 ms the estimate
+ * holds.
+ */
+static uint8_t missing_samples(uint32_t t_us, uint32_t period_us)
 {
     uint32_t gap_us = t_us - pipe.last_us;
     uint32_t at_us = period_us + (period_us >> 1);
+    uint8_t missing = 0;
     if (!pipe.has_sample || gap_us <= at_us) {
-        return;
+        return 0;
     }
     if (!pipe.changed) {
         count_lost((gap_us - (period_us >> 1)) / period_us);
     }
     for (; at_us < gap_us && at_us < COAST_LIMIT_US; at_us += period_us) {
-        for (uint8_t axis = 0; axis < AXES; axis++) {
-            keep_estimate(axis, filter_any_coast(&pipe.filter[axis]));
-        }
+        missing++;
     }
+    return missing;
+}
+
+FX_NOINLINE void coast_step(void)
+{
+    pipe.missing--;
     for (uint8_t axis = 0; axis < AXES; axis++) {
+        keep_estimate(axis, filter_any_coast(&pipe.filter[axis]));
         noise_gap(&pipe.noise[axis]);
     }
 }
@@ -116,7 +173,6 @@ static void filter_axis(uint8_t axis, int16_t lsb)
     }
     keep_estimate(axis, filter_any_update(filter, lsb));
     collect_flags(filter_any_flags(filter));
-    pipe.lsb[axis] = lsb;
 }
 
 static void count_sample(void)
@@ -136,22 +192,64 @@ static void count_sample(void)
     }
 }
 
-void pipeline_sample(const adxl345_sample_t *sample, uint32_t period_us)
+static void end_sample(void)
 {
-    uint16_t kept = pipe.flags;
-    pipe.flags = 0;
-    coast_over_gap(sample->t_us, period_us);
-    pipe.last_us = sample->t_us;
-    pipe.has_sample = true;
-    pipe.changed = false;
-    for (uint8_t axis = 0; axis < AXES; axis++) {
-        filter_axis(axis, sample->lsb[axis]);
-    }
+    pipe.work = WORK_NONE;
     if (!tilt_gravity_plausible(pipe.estimate_q8[0], pipe.estimate_q8[1], pipe.estimate_q8[2])) {
         pipe.flags |= ROW_NOT_GRAVITY;
     }
     count_sample();
-    pipe.flags |= kept;
+    pipe.flags |= pipe.kept_flags;
+}
+
+bool pipeline_work(void)
+{
+    if (pipe.work == WORK_NONE) {
+        return false;
+    }
+    if (pipe.work == WORK_CHANGE) {
+        change_step();
+        return true;
+    }
+    if (pipe.missing != 0) {
+        coast_step();
+        return true;
+    }
+    do {
+        uint8_t axis = pipe.axis++;
+        filter_axis(axis, pipe.lsb[axis]);
+        if (axis == AXES - 1) {
+            end_sample();
+            break;
+        }
+    } while (pass_in_time());
+    return true;
+}
+
+bool pipeline_changing(void)
+{
+    return pipe.work == WORK_CHANGE;
+}
+
+void pipeline_finish(void)
+{
+    while (pipeline_work()) {
+    }
+}
+
+void pipeline_sample(const adxl345_sample_t *sample, uint32_t period_us)
+{
+    pipe.kept_flags = pipe.flags;
+    pipe.flags = 0;
+    pipe.missing = missing_samples(sample->t_us, period_us);
+    pipe.last_us = sample->t_us;
+    pipe.has_sample = true;
+    pipe.changed = false;
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        pipe.lsb[axis] = sample->lsb[axis];
+    }
+    pipe.work = WORK_SAMPLE;
+    pipe.axis = 0;
 }
 
 void pipeline_flag(uint16_t flags)

@@ -47,8 +47,21 @@ void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 
 /*
- * One sample through filters and noise estimates. Missing ones since the last (period_us apart) are coasted over, at
- * most 100 ms.
+ * Goes on with what pipeline_start, _change or _sample have begun, as long as there is time in the pass (pass.h), but
+ * with one piece at least; false: nothing was left to do. So the main loop can look after other things meanwhile.
+ * Nothing else is to be begun before, but a change takes the place of a change.
+ */
+bool pipeline_work(void);
+
+/* A change is under way. */
+bool pipeline_changing(void);
+
+/* All that is left to do, for a program without a main loop. */
+void pipeline_finish(void);
+
+/*
+ * One sample to filters and noise estimates, which pipeline_work takes axis by axis. Missing ones since the last
+ * (period_us apart) are coasted over, at most 100 ms.
  */
 void pipeline_sample(const adxl345_sample_t *sample, uint32_t period_us);
 

@@ -43,14 +43,14 @@ bool replies_add(reply_kind_t kind, uint8_t argument)
     return true;
 }
 
-void replies_pass(void)
+bool replies_pass(void)
 {
     if (count == 0 || !text_open((uint8_t)(TEXT_LINE_MAX + SETTINGS_ROW_MAX))) {
-        return;
+        return false;
     }
     reply_progress_t progress = reply_write_line((reply_kind_t)queue[0].kind, queue[0].argument, line);
     if (progress == REPLY_WAITS) {
-        return;
+        return false;
     }
     line++;
     if (progress == REPLY_ENDED) {
@@ -60,4 +60,5 @@ void replies_pass(void)
             queue[i] = queue[i + 1u];
         }
     }
+    return true;
 }

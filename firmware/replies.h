@@ -39,8 +39,8 @@ bool replies_room(void);
 /* All replies are out. */
 bool replies_empty(void);
 
-/* Writes at most one line, if there is room for it and a data row. */
-void replies_pass(void);
+/* Writes at most one line, if there is room for it and a data row; false: none was written. */
+bool replies_pass(void);
 
 /* Forget everything queued. */
 void replies_start(void);

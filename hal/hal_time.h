@@ -7,6 +7,7 @@
  *   void hal_wake_at(uint32_t t_us)   wake main at this moment (main); one alarm, a later call moves it. For moments
  *                                     more than 32.7 ms ahead main is also woken each 32.768 ms before, and the same
  *                                     after a moment that is past: so look at the clock, not at having been woken
+ *   uint8_t hal_time_lap(void)        counts HAL_LAP_US, wraps: for times of at most 2 ms (main)
  *
  *   uint32_t HAL_CPU_HZ               cycles of the processor in a second
  *
@@ -19,6 +20,7 @@
 #include <stdint.h>
 
 #define HAL_TICK_US 8192u
+#define HAL_LAP_US 8u
 
 /* now is at or after deadline, for moments less than 35 minutes apart (any context). */
 static inline bool hal_time_reached(uint32_t now_us, uint32_t deadline_us)

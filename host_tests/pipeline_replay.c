@@ -171,6 +171,7 @@ static void filter_and_print(const adxl345_sample_t *sample, uint32_t period_us)
 {
     row_t row;
     pipeline_sample(sample, period_us);
+    pipeline_finish();
     pipeline_row(&row);
     pipeline_row_done();
     printf("%u,%d,%d,%d,%d,%d,%d,%d,%d,%u\n", (unsigned)row.t_us, row.lsb[0], row.lsb[1], row.lsb[2], row.mg[0],
@@ -244,6 +245,7 @@ int main(int argc, char **argv)
     check_configuration(kind, rate_dhz);
     pipeline_reset();
     pipeline_start((uint8_t)kind, rate_dhz, range_g);
+    pipeline_finish();
     replay(argv[1], rate_dhz, (size_t)number("rows to skip", argv[5], 0, 1000000000));
     return 0;
 }

@@ -38,6 +38,7 @@ static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t
     chain_t chain[3];
     pipeline_reset();
     pipeline_start(kind, rate_dhz, range_g);
+    pipeline_finish();
     for (int axis = 0; axis < 3; axis++) {
         TEST_ASSERT_TRUE(chain_begin(&chain[axis], (filter_kind_t)kind, rate_dhz, range_g, axis));
     }
@@ -47,6 +48,7 @@ static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t
         row_t row;
         uint16_t flags = 0;
         pipeline_sample(&sample, chain[0].period_us);
+        pipeline_finish();
         pipeline_row(&row);
         pipeline_row_done();
         for (int axis = 0; axis < 3; axis++) {

@@ -99,8 +99,23 @@ static inline bool hal_i2c_stop_pending(void)
 #endif
 void hal_time_init(void);
 uint32_t hal_time_us(void);
-uint32_t hal_time_us_isr(void);
 void hal_wake_at(uint32_t t_us);
+
+extern volatile uint32_t hal_tick_us;    /* at the last tick of Timer1 */
+extern volatile uint16_t hal_tick_count; /* its counter then */
+
+/* In line, so that a handler saves few registers. A late tick only makes the difference longer: right for 32 ms. */
+static inline __attribute__((always_inline)) uint32_t hal_time_us_isr(void)
+{
+    uint16_t since = (uint16_t)(TCNT1 - hal_tick_count);
+    return hal_tick_us + (since >> 1);
+}
+
+/* Timer2 at 125 kHz */
+static inline uint8_t hal_time_lap(void)
+{
+    return TCNT2;
+}
 
 /* hal_drdy.h: INT0 is pin PD2 = D2 */
 #define HAL_DRDY_ISR() ISR(INT0_vect)

@@ -14,14 +14,15 @@ enum { COUNTS_PER_US = 2, COUNTS_PER_TICK = HAL_TICK_US * COUNTS_PER_US };
 #define HAL_TIME_START_US 0ul
 #endif
 
-static volatile uint32_t tick_us = HAL_TIME_START_US;
-static volatile uint16_t tick_count;
+volatile uint32_t hal_tick_us = HAL_TIME_START_US;
+volatile uint16_t hal_tick_count;
 
 ISR(TIMER1_COMPA_vect)
 {
-    tick_count = OCR1A;
-    OCR1A = (uint16_t)(tick_count + COUNTS_PER_TICK);
-    tick_us += HAL_TICK_US;
+    uint16_t count = OCR1A;
+    hal_tick_count = count;
+    OCR1A = (uint16_t)(count + COUNTS_PER_TICK);
+    hal_tick_us += HAL_TICK_US;
     hal_watchdog_tick_isr();
     hal_wake();
 }
@@ -39,13 +40,7 @@ void hal_time_init(void)
     OCR1A = COUNTS_PER_TICK;
     TIMSK1 = _BV(OCIE1A) | _BV(OCIE1B);
     TCCR1B = _BV(CS11);
-}
-
-/* A late tick only makes the difference longer: it stays right for 32 ms without one. */
-uint32_t hal_time_us_isr(void)
-{
-    uint16_t since = (uint16_t)(TCNT1 - tick_count);
-    return tick_us + (since >> 1);
+    TCCR2B = _BV(CS22) | _BV(CS20);
 }
 
 /* The counter begins at 0 at the start of time and is never written, so a moment has one count. */

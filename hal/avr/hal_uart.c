@@ -53,7 +53,8 @@ ISR(USART_UDRE_vect, ISR_NAKED)
           [ucsrb] "i"(_SFR_MEM_ADDR(UCSR0B)), [off] "n"(0xFF & ~_BV(UDRIE0)));
 }
 
-static void count_lost(void)
+/* In line, so that the handler saves few registers. */
+static inline __attribute__((always_inline)) void count_lost(void)
 {
     if (rx_lost != UINT8_MAX) {
         rx_lost++;
@@ -63,20 +64,23 @@ static void count_lost(void)
 /* A byte that was lost or damaged leaves a 0 in its place, so that the line it belonged to can be refused. */
 ISR(USART_RX_vect)
 {
-    uint8_t errors = UCSR0A & (_BV(FE0) | _BV(DOR0));
+    bool damaged = (UCSR0A & (_BV(FE0) | _BV(DOR0))) != 0;
     uint8_t byte = UDR0;
     hal_wake();
-    if (hal_ring_room(&rx, RX_MASK) == 0) {
+    bool full = hal_ring_room(&rx, RX_MASK) == 0;
+    if (damaged || full) {
         count_lost();
+    }
+    if (full) {
         rx_gap = true;
         return;
     }
-    if (errors) {
-        count_lost();
+    if (damaged || rx_gap) {
+        byte = 0;
     }
-    hal_ring_stage(&rx, rx_buffer, RX_MASK, (errors || rx_gap) ? 0 : byte);
-    hal_ring_commit(&rx);
     rx_gap = false;
+    hal_ring_stage(&rx, rx_buffer, RX_MASK, byte);
+    hal_ring_commit(&rx);
 }
 
 void hal_uart_init(uint32_t baud)
@@ -125,9 +129,11 @@ bool hal_uart_tx_write(const char *line, uint8_t length)
     if (hal_uart_tx_room() < length) {
         return false;
     }
+    uint8_t at = tx.staged; /* wraps as the ring does */
     while (length-- != 0) {
-        hal_ring_stage(&tx, tx_buffer, TX_MASK, (uint8_t)*line++);
+        tx_buffer[at++] = (uint8_t)*line++;
     }
+    tx.staged = at;
     hal_uart_tx_commit();
     return true;
 }

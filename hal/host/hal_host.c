@@ -130,6 +130,13 @@ void hal_wake_at(uint32_t t_us)
     alarm_at = begun_at + (uint64_t)(ahead_us == 0 ? ALARM_RANGE_US : ahead_us) * CYCLES_PER_US;
 }
 
+uint8_t hal_time_lap(void)
+{
+    static uint8_t lap;
+    lap = (uint8_t)(lap + hal_host_faults.lap_step);
+    return lap;
+}
+
 void hal_drdy_enable(void)
 {
     drdy_enabled = true;

@@ -33,6 +33,7 @@ void hal_time_init(void);
 uint32_t hal_time_us(void);
 uint32_t hal_time_us_isr(void);
 void hal_wake_at(uint32_t t_us);
+uint8_t hal_time_lap(void);
 
 /* hal_drdy.h */
 #define HAL_DRDY_ISR()                \

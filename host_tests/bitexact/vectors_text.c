@@ -101,6 +101,7 @@ static void begin_rows(uint8_t mode, uint16_t index)
     now_us = vectors_random();
     pipeline_reset();
     pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
+    pipeline_finish();
     rows_start();
     rows_enable(true);
 }
@@ -122,6 +123,7 @@ static void row_item(uint8_t mode, uint16_t index)
         vectors_input((uint16_t)sample.lsb[axis]);
     }
     pipeline_sample(&sample, period_us);
+    pipeline_finish();
     rows_sample();
 }
 

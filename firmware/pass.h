@@ -1,0 +1,32 @@
+/*
+ * The time of a pass of the main loop: who works through a list of pieces asks before each whether there is time for
+ * one more. A pass that ends for lack of time wakes itself (app.c). Main only.
+ */
+#ifndef PASS_H
+#define PASS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fx.h"
+#include "hal_time.h"
+
+/* No further piece begins after this: with the longest one, a row or a sample's axis, a pass stays below 1 ms. */
+#define PASS_US 320u
+
+/* The same while filters are initialised, which takes up to 0.8 ms for an axis. */
+#define PASS_CHANGING_US 128u
+
+typedef struct {
+    uint8_t began; /* hal_time_lap */
+    uint8_t limit; /* in HAL_LAP_US */
+} pass_t;
+
+extern pass_t pass;
+
+FX_INLINE bool pass_in_time(void)
+{
+    return (uint8_t)(hal_time_lap() - pass.began) < pass.limit;
+}
+
+#endif
