@@ -251,6 +251,7 @@ static bool filter_samples(void)
     return row_due;
 }
 
+/* One piece of what the stage has to do; false: nothing is left, or it waits. */
 static bool stage_piece(void)
 {
     switch (stage) {
@@ -272,7 +273,8 @@ static bool stage_piece(void)
     }
     health_resume_filtering();
     stage = STAGE_RUNNING;
-    return true;
+    hal_wake(); /* what was typed meanwhile goes before the samples */
+    return false;
 }
 
 /* What a person or the watchdog waits for need not run for every sample. */

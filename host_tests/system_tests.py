@@ -9,6 +9,7 @@ import sys
 import system_injections  # noqa: F401  (its tests join the list)
 import system_injections_more  # noqa: F401
 import system_losses  # noqa: F401
+import system_passes  # noqa: F401
 from system_support import FW, OUT, SET_IMAGES, SIMRUN, STREAMS, TESTS, image_with, read_output, run, run_all, simrun, test, triplets, within
 
 

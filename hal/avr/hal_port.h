@@ -54,6 +54,7 @@ uint8_t hal_i2c_clear(void);
 
 static inline void hal_i2c_start(void)
 {
+    __asm__ volatile("" ::: "memory"); /* what the handler is to find is written before */
     TWCR = HAL_I2C_GO | _BV(TWSTA);
 }
 

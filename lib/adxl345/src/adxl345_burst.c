@@ -43,23 +43,22 @@ static uint32_t period_us_q4;
 static uint32_t taken_us;
 static bool taken_exact;
 
-static inline bool queue_has_room(void)
+HAL_IRQ_INLINE bool queue_has_room(void)
 {
     return (uint8_t)((uint8_t)(head + 1u) & QUEUE_MASK) != tail;
 }
 
-static inline bool can_begin(void)
+HAL_IRQ_INLINE bool can_begin(void)
 {
     return mode == BURST_READ && !on_bus && i2c_bus_free(&bus) && queue_has_room();
 }
 
-/* Interrupts off. */
-static inline void begin_burst(uint32_t now_us, uint32_t t_us, bool exact)
+/* Interrupts off, or the bus made busy. */
+HAL_IRQ_INLINE void begin_burst(uint32_t now_us, uint32_t t_us, bool exact)
 {
     reading_us = t_us;
     reading_exact = exact;
     begun_us = now_us;
-    edge_waiting = 0;
     on_bus = 1;
     bus.tx[0] = ADXL345_INT_SOURCE;
     bus.tx_length = 1;
@@ -76,6 +75,7 @@ HAL_DRDY_ISR()
     }
     uint32_t now_us = hal_time_us_isr();
     if (can_begin()) {
+        edge_waiting = 0;
         begin_burst(now_us, now_us, true);
         return;
     }
@@ -174,15 +174,12 @@ uint8_t burst_register_value(void)
 }
 
 /*
- * Stamp of a sample that was found waiting: its own edge, else one period after the one before it unless it is new, but
- * not before the sensor was last seen empty.
+ * Stamp of a sample that was found waiting without an edge: one period after the one before it unless it is new, but not
+ * before the sensor was last seen empty.
  */
 static uint32_t waiting_since_us(uint32_t now_us, bool is_new)
 {
     uint32_t period_us = burst_period_us();
-    if (edge_waiting) {
-        return edge_us;
-    }
     uint32_t t_us = last_us + period_us;
     if (found_empty && hal_time_reached(begun_us, t_us)) {
         t_us = begun_us;
@@ -191,15 +188,22 @@ static uint32_t waiting_since_us(uint32_t now_us, bool is_new)
     return plausible ? t_us : now_us;
 }
 
+/* The bus is made busy first, so that no edge starts a burst and the rest needs no critical section. */
 bool burst_read(bool is_new)
 {
     hal_irq_state_t state = hal_irq_save();
     bool start = can_begin();
+    bool exact = edge_waiting != 0;
+    uint32_t t_us = edge_us;
     if (start) {
-        uint32_t now_us = hal_time_us_isr();
-        begin_burst(now_us, waiting_since_us(now_us, is_new), edge_waiting != 0);
+        bus.state = I2C_BUS_BUSY;
+        edge_waiting = 0;
     }
     hal_irq_restore(state);
+    if (start) {
+        uint32_t now_us = hal_time_us();
+        begin_burst(now_us, exact ? t_us : waiting_since_us(now_us, is_new), exact);
+    }
     return start;
 }
 

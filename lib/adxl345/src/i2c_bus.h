@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "hal_i2c.h"
+#include "hal_irq.h"
 
 #define I2C_BUS_TX_MAX 2
 
@@ -38,13 +39,13 @@ typedef struct {
 } i2c_bus_t;
 
 /* True when a transfer can begin: none under way and the last STOP is out (interrupts off, or in an interrupt). */
-static inline bool i2c_bus_free(const i2c_bus_t *bus)
+HAL_IRQ_INLINE bool i2c_bus_free(const i2c_bus_t *bus)
 {
     return bus->state != I2C_BUS_BUSY && !hal_i2c_stop_pending();
 }
 
 /* Begins the transfer set up in *bus. Only when i2c_bus_free; interrupts off, or in an interrupt. */
-static inline void i2c_bus_begin(i2c_bus_t *bus)
+HAL_IRQ_INLINE void i2c_bus_begin(i2c_bus_t *bus)
 {
     bus->index = 0;
     bus->expected = HAL_I2C_STARTED;
@@ -84,7 +85,7 @@ static inline void i2c_bus_step_write(i2c_bus_t *bus)
 }
 
 /* The last byte is refused, so that the device lets go of SDA. */
-static inline void i2c_bus_step_read(i2c_bus_t *bus)
+HAL_IRQ_INLINE void i2c_bus_step_read(i2c_bus_t *bus)
 {
     bool more = (uint8_t)(bus->index + 1u) < bus->rx_length;
     hal_i2c_receive(more);

@@ -1,0 +1,64 @@
+"""No pass of the main loop is longer than 1 ms, and no interrupt with a deadline waits longer than 15 us; part of system_tests.py."""
+import pathlib
+
+from system_support import SET_IMAGES, STREAMS, TESTS, image_with, simrun, test, within
+
+PASS_CYCLES = 16000
+LATENCY_CYCLES = 240
+# the I2C handler comes last: with a byte each way every 160 cycles it waits for more of them, and SCL stays low meanwhile, which costs nothing
+LATENCY_CYCLES_TWI_1000000 = 480
+# the others have no deadline: the next byte to send, and the alarm, which only wakes main
+WITH_DEADLINE = ("int0", "twi", "timer1_compa", "usart_rx")
+COMMANDS = ("status", "help", "filter {0}", "range 8", "filter", "filter {1}", "range 16", "every 3", "every 1", "stop", "go", "mode plot", "nonsense",
+            "filter {0}", "mode csv", "rate 50", "rate {2}", "filter {1}", "status")
+FAULTS = ("unplug:60", "power:20", "scl:40", "sda:40", "hang:5", "noint:60", "nack", "nackdata", "buserr", "arb", "devid:0:60", "storm:1000:30", "txstall:60")
+# rate, baud: a flood without pause leaves a processor at 1,000,000 baud too little for anything
+PACES = ((100, 115200, True), (800, 1000000, False), (400, 500000, True))
+
+
+def filters_of(image):
+    return pathlib.Path(image).with_name("filters.txt").read_text(encoding="ascii").split()
+
+
+def assert_prompt(name, stats, baud):
+    assert stats["passes"] > 100, stats["passes"]
+    within(f"{name}: pass of the main loop", stats["pass_max_cycles"], PASS_CYCLES)
+    for source in WITH_DEADLINE:
+        limit = LATENCY_CYCLES_TWI_1000000 if source == "twi" and baud == 1000000 else LATENCY_CYCLES
+        within(f"{name}: latency of {source}", stats.get(f"isr_{source}_worst_latency", 0), limit)
+
+
+def disturbed_run(image, filter_name, rate, baud, flood):
+    """Every command, then every fault, 130 and 300 ms apart, the filter changed to and fro."""
+    other = next(f for f in filters_of(image) if f != filter_name)
+    options = []
+    for i, text in enumerate(COMMANDS):
+        options += ["--cmd", f"{1000 + 130 * i}:{text.format(other, filter_name, rate)}"]
+    for i, fault in enumerate(FAULTS + (("rxflood:60",) if flood else ())):
+        options += ["--fault", f"{3700 + 300 * i}ms:{fault}"]
+    name = f"passes-{pathlib.Path(image).parent.name}-{filter_name}-{rate}"
+    _, _, _, stats = simrun(name, STREAMS / "outliers-15pct.csv", "--filter", filter_name, "--rate", rate, "--baud", baud, "--loop", "--max-ms",
+                            8200, *options, fw=image, judge=False)
+    assert_prompt(name, stats, baud)
+
+
+def make_disturbed_test(image, rate, baud, flood):
+    def check():
+        for filter_name in filters_of(image):
+            disturbed_run(image, filter_name, rate, baud, flood)
+    check.__name__ = f"no_pass_longer_than_1_ms_{pathlib.Path(image).parent.name}_{rate}_hz"
+    return check
+
+
+for set_image in SET_IMAGES:
+    for pace in PACES:
+        TESTS.append(make_disturbed_test(set_image, *pace))
+
+
+@test
+def no_pass_longer_than_1_ms_in_any_stream():
+    for stream in sorted(STREAMS.glob("*.csv")):
+        for rate, baud in ((12.5, 115200), (100, 115200), (400, 1000000), (800, 1000000)):
+            name = f"passes-{stream.stem}-{rate}"
+            _, _, _, stats = simrun(name, stream, "--rate", rate, "--baud", baud, "--loop", "--max-ms", 5000, fw=image_with("adaptive"), judge=False)
+            assert_prompt(name, stats, baud)

@@ -1,0 +1,85 @@
+/*
+ * A main loop that is out of time after each piece of work does the same as one that has time for all: an axis, a row,
+ * a reply and a step of a change of settings a pass, each pass followed at once by the next.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "support_board.h"
+#include "unity.h"
+
+enum { SLOW = 15 }; /* counts a look: the second comes too late for a step of a change, the third for all else */
+
+static stream_t stream;
+static board_t quick;
+
+void setUp(void)
+{
+    stream = board_noisy_stream(500, 100.0, 1.5, 11u);
+}
+
+void tearDown(void)
+{
+    stream_free(&stream);
+}
+
+static void run(uint8_t lap_step, const char *const *lines, size_t count)
+{
+    board_start(&stream, 0.0, 0);
+    hal_host_faults.lap_step = lap_step;
+    board_run_ms(300.0);
+    for (size_t i = 0; i < count; i++) {
+        board_type(lines[i]);
+        board_run_ms(400.0);
+    }
+}
+
+/* Rows, times of rows and notes of the board are those of `quick`. */
+static void assert_same(void)
+{
+    TEST_ASSERT_GREATER_THAN_UINT(50, quick.row_count);
+    TEST_ASSERT_EQUAL_UINT(quick.row_count, board.row_count);
+    for (size_t i = 0; i < quick.row_count; i++) {
+        const board_row_t *a = &quick.rows[i];
+        const board_row_t *b = &board.rows[i];
+        TEST_ASSERT_EQUAL_UINT32(a->t_us, b->t_us);
+        TEST_ASSERT_EQUAL_INT_ARRAY(a->lsb, b->lsb, 3);
+        TEST_ASSERT_EQUAL_INT_ARRAY(a->mg, b->mg, 3);
+        TEST_ASSERT_EQUAL_INT(a->roll_cdeg, b->roll_cdeg);
+        TEST_ASSERT_EQUAL_INT(a->pitch_cdeg, b->pitch_cdeg);
+        TEST_ASSERT_EQUAL_HEX(a->flags, b->flags);
+        TEST_ASSERT_TRUE_MESSAGE(b->at_ms - a->at_ms < 6.0, "the row comes late");
+    }
+    TEST_ASSERT_EQUAL_UINT(quick.note_count, board.note_count);
+    for (size_t i = 0; i < quick.note_count; i++) {
+        TEST_ASSERT_EQUAL_STRING(quick.notes[i], board.notes[i]);
+        TEST_ASSERT_TRUE_MESSAGE(board.note_ms[i] - quick.note_ms[i] < 6.0, "the note comes late");
+    }
+}
+
+static void test_samples_and_replies_in_pieces(void)
+{
+    static const char *const lines[] = { "help", "status", "every 2", "nonsense" };
+    run(0, lines, 3);
+    quick = board;
+    run(SLOW, lines, 3);
+    assert_same();
+}
+
+/* The filters go on from the same output; which sample meets the new ones first is the same at 100 Hz. */
+static void test_changes_in_pieces(void)
+{
+    static const char *const lines[] = { "filter sprf", "filter kf", "filter synth", "filter adaptive" };
+    run(0, lines, 4);
+    quick = board;
+    run(SLOW, lines, 4);
+    assert_same();
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_samples_and_replies_in_pieces);
+    RUN_TEST(test_changes_in_pieces);
+    return UNITY_END();
+}
