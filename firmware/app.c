@@ -280,6 +280,7 @@ static bool stage_piece(void)
 /* What a person or the watchdog waits for need not run for every sample. */
 static void service(uint32_t now_us)
 {
+    next_service_us = now_us + SERVICE_US;
     count_seconds(now_us);
     if (stage == STAGE_RUNNING) {
         sensor_watch_pass(now_us);
@@ -303,7 +304,10 @@ static void wake_if_work_left(void)
     }
 }
 
-/* Samples go before replies. A pass that ends for lack of time is followed by another if there is a reason. */
+/*
+ * Samples go before replies. A pass that ends for lack of time is followed by another if there is a reason. The service
+ * comes behind the samples, which it may find unfiltered else, and before them only when it is overdue.
+ */
 void app_pass(void)
 {
     pass.began = hal_time_lap();
@@ -314,8 +318,7 @@ void app_pass(void)
     }
     while (HANGS(WHOLE_LOOP)) {
     }
-    if (hal_time_reached(now_us, next_service_us)) {
-        next_service_us = now_us + SERVICE_US;
+    if (hal_time_reached(now_us, next_service_us + SERVICE_US)) {
         service(now_us);
     }
     if (pass_in_time()) {
@@ -328,6 +331,13 @@ void app_pass(void)
         }
     } else {
         hal_wake();
+    }
+    if (hal_time_reached(now_us, next_service_us)) {
+        if (pass_in_time()) {
+            service(now_us);
+        } else {
+            hal_wake();
+        }
     }
     set_alarm();
     hal_sleep_until_wake();

@@ -12,7 +12,7 @@
 #include "hal_time.h"
 
 /* No further piece begins after this: with the longest one, a row or a sample's axis, a pass stays below 1 ms. */
-#define PASS_US 320u
+#define PASS_US 288u
 
 /* The same while filters are initialised, which takes up to 0.8 ms for an axis. */
 #define PASS_CHANGING_US 128u
