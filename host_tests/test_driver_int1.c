@@ -226,7 +226,7 @@ static void test_edges_without_a_level_are_noise(void)
     TEST_ASSERT_EQUAL_size_t(0, lost());
 }
 
-/* Main stalls for longer than the FIFO is deep: samples are lost in the sensor, and counted; the rest keep their time. */
+/* Main stalls for longer than the FIFO is deep: lost samples are counted, and the rest keep their time. */
 static void test_overruns_are_counted(void)
 {
     adxl345_readings_t readings;

@@ -34,15 +34,17 @@ static void run(uint8_t lap_step, const char *const *lines, size_t count)
     }
 }
 
-/* Rows, times of rows and notes of the board are those of `quick`. */
+/* Rows, times of rows and notes of the board are those of `quick`; the sensor may start an access later. */
 static void assert_same(void)
 {
     TEST_ASSERT_GREATER_THAN_UINT(50, quick.row_count);
     TEST_ASSERT_EQUAL_UINT(quick.row_count, board.row_count);
+    uint32_t later_us = board.rows[0].t_us - quick.rows[0].t_us;
+    TEST_ASSERT_LESS_THAN_UINT32(500, later_us);
     for (size_t i = 0; i < quick.row_count; i++) {
         const board_row_t *a = &quick.rows[i];
         const board_row_t *b = &board.rows[i];
-        TEST_ASSERT_EQUAL_UINT32(a->t_us, b->t_us);
+        TEST_ASSERT_EQUAL_UINT32(a->t_us + later_us, b->t_us);
         TEST_ASSERT_EQUAL_INT_ARRAY(a->lsb, b->lsb, 3);
         TEST_ASSERT_EQUAL_INT_ARRAY(a->mg, b->mg, 3);
         TEST_ASSERT_EQUAL_INT(a->roll_cdeg, b->roll_cdeg);

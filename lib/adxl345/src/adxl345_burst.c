@@ -174,8 +174,8 @@ uint8_t burst_register_value(void)
 }
 
 /*
- * Stamp of a sample that was found waiting without an edge: one period after the one before it unless it is new, but not
- * before the sensor was last seen empty.
+ * Stamp of a sample that was found waiting without an edge: one period after the one before it unless it is new, but
+ * not before the sensor was last seen empty.
  */
 static uint32_t waiting_since_us(uint32_t now_us, bool is_new)
 {
