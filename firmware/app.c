@@ -28,6 +28,9 @@
 #define HOLD_LIMIT_US 1000000ul
 #define SERVICE_US 4000ul
 
+/* Main looks around every HAL_TICK_US: a service later than twice that waits for passes that are cut for lack of time. */
+#define OVERDUE_US 20000ul
+
 /*
  * What hung so often in a row, each time within SETTLED_S of its start, hangs again: it gets the lowest rate, at which
  * the processor has most time for everything else. Settings are not kept over a reset, so there are no others to undo.
@@ -318,7 +321,7 @@ void app_pass(void)
     }
     while (HANGS(WHOLE_LOOP)) {
     }
-    if (hal_time_reached(now_us, next_service_us + SERVICE_US)) {
+    if (hal_time_reached(now_us, next_service_us + OVERDUE_US)) {
         service(now_us);
     }
     if (pass_in_time()) {

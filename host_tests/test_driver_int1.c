@@ -252,6 +252,24 @@ static void test_overruns_are_counted(void)
     TEST_ASSERT_EQUAL_size_t(hal_host_sensor.overruns, lost());
 }
 
+/* INT1 comes back to a main that did not look for a while: the sample that the edge brings is older than the edge. */
+static void test_int1_comes_back_to_a_full_sensor(void)
+{
+    begin(100.0);
+    adxl345_start(&at_100_hz);
+    run_ms(300);
+    hal_host_faults.int1_cut = true;
+    for (double end_ms = hal_host_now_ms() + 200; hal_host_now_ms() < end_ms;) {
+        hal_sleep_until_wake();
+    }
+    hal_host_faults.int1_cut = false;
+    hal_host_drdy_handler();
+    stamp_limit_us = 6000;
+    run_ms(300);
+    TEST_ASSERT_EQUAL_UINT32(0, hal_host_sensor.overruns);
+    TEST_ASSERT_EQUAL_size_t(0, lost());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -262,5 +280,6 @@ int main(void)
     RUN_TEST(test_edges_for_nothing_bring_no_sample);
     RUN_TEST(test_edges_without_a_level_are_noise);
     RUN_TEST(test_overruns_are_counted);
+    RUN_TEST(test_int1_comes_back_to_a_full_sensor);
     return UNITY_END();
 }

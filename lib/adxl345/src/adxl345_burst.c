@@ -224,11 +224,22 @@ static void keep_edge(void)
     }
 }
 
-/* Data-ready of the sample behind which so many wait, the one before it being lost: the newest is half a period old. */
-static uint32_t oldest_us(uint8_t behind)
+/*
+ * Where samples ahead of this one were lost its stamp is theirs, and one that is more than two periods too late for
+ * the samples that wait behind it is that of INT1 coming back to a FIFO that had filled. The newest sample is half a
+ * period old then.
+ */
+static void restamp(uint8_t behind, bool overrun)
 {
+    if (behind < 2u) {
+        return;
+    }
     uint32_t period_us = burst_period_us();
-    return begun_us - behind * period_us - (period_us >> 1);
+    uint32_t age_us = behind * period_us + (period_us >> 1);
+    if (overrun || begun_us - reading_us + 2u * period_us < age_us) {
+        reading_us = begun_us - age_us;
+        reading_exact = false;
+    }
 }
 
 static reading_t judge(void)
@@ -238,10 +249,7 @@ static reading_t judge(void)
     failures = 0;
     found_empty = verdict == READING_EMPTY;
     if (verdict == READING_GOOD) {
-        if (reading[READING_SOURCE] & ADXL345_INT_OVERRUN) {
-            reading_us = oldest_us(reading[READING_FIFO_STATUS]);
-            reading_exact = false;
-        }
+        restamp(reading[READING_FIFO_STATUS], (reading[READING_SOURCE] & ADXL345_INT_OVERRUN) != 0);
         newest_lsb = entry->sample.lsb;
         entry->sample.t_us = reading_us;
         entry->exact = reading_exact;
