@@ -28,7 +28,7 @@
 #define HOLD_LIMIT_US 1000000ul
 #define SERVICE_US 4000ul
 
-/* Main looks around every HAL_TICK_US: a service later than twice that waits for passes that are cut for lack of time. */
+/* Main looks around every HAL_TICK_US; a service later than twice that is held up by passes cut for lack of time. */
 #define OVERDUE_US 20000ul
 
 /*

@@ -35,7 +35,7 @@ typedef struct {
  * in the sensor's FIFO and the driver's queue, 39 samples together, and is caught up with what a sample leaves over.
  * At 800 Hz the two leave 4,150 cycles, 1,383 for each axis, to a filter of which every row goes out: adaptive's 1,370.
  */
-#define SETTINGS_REST_CYCLES 6350u
+#define SETTINGS_REST_CYCLES 6400u
 #define SETTINGS_ROW_CYCLES 9750u
 
 extern settings_t settings;
