@@ -7,6 +7,7 @@ void adaptive_set_noise(adaptive_t *f, uint32_t r_lsb2_q8);
 bool adaptive_init(adaptive_t *f, const adaptive_config_t *config);
 /*@ requires BOUND(f); ensures BOUND(f); */
 void adaptive_reset(adaptive_t *f, int16_t z0_lsb);
+bool adaptive_reset_step(adaptive_t *f, int16_t z0_lsb, uint8_t step);
 /*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN_X(\result); */
 int32_t adaptive_update(adaptive_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN_X(\result); */
@@ -298,6 +299,23 @@ void proof_adaptive_reset(void)
             any_start(&f, 0, 4);
             any_weight(&f, weight, last);
             adaptive_reset(&f, ANY_Z());
+        }
+    }
+}
+
+void proof_adaptive_reset_step(void)
+{
+    adaptive_t f;
+    EACH_LAST(last)
+    {
+        EACH_WEIGHT(weight, last)
+        {
+            any_run(&f);
+            any_weight(&f, weight, last);
+            (void)adaptive_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
+            any_start(&f, 0, 4);
+            any_weight(&f, weight, last);
+            (void)adaptive_reset_step(&f, ANY_Z(), 0);
         }
     }
 }

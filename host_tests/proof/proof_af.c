@@ -9,6 +9,7 @@ bool af_init(af_t *f, const af_config_t *config);
 void af_set_noise(af_t *f, uint32_t r_lsb2_q8);
 /*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); */
 void af_reset(af_t *f, int16_t z0_lsb);
+bool af_reset_step(af_t *f, int16_t z0_lsb, uint8_t step);
 /*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t af_update(af_t *f, int16_t z_lsb);
 /*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
@@ -57,6 +58,18 @@ void proof_af_reset(void)
         af_reset(&f, ANY_Z());
         any_mixture(&f, range, true);
         af_reset(&f, ANY_Z());
+    }
+}
+
+/* Uses: two_state_wide_reset_step, mixture_log_odds_q9 */
+void proof_af_reset_step(void)
+{
+    for (uint8_t range = 0; range < RATIO_RANGES; range++) {
+        af_t f;
+        any_mixture(&f, range, false);
+        (void)af_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
+        any_mixture(&f, range, true);
+        (void)af_reset_step(&f, ANY_Z(), 0);
     }
 }
 

@@ -70,6 +70,7 @@ bool kf3_init(kf3_t *f, const kf3_config_t *config);
 void kf3_set_noise(kf3_t *f, uint32_t r_lsb2_q8);
 /*@ requires BOUND(f); ensures BOUND(f); */
 void kf3_reset(kf3_t *f, int16_t z0_lsb);
+bool kf3_reset_step(kf3_t *f, int16_t z0_lsb, uint8_t step);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t kf3_update(kf3_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
@@ -225,6 +226,16 @@ void proof_kf3_reset(void)
     kf3_reset(&f, ANY_Z());
     any_warm_up(&f, 0, 4);
     kf3_reset(&f, ANY_Z());
+}
+
+/* Uses: take */
+void proof_kf3_reset_step(void)
+{
+    kf3_t f;
+    any_run(&f);
+    (void)kf3_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
+    any_warm_up(&f, 0, 4);
+    (void)kf3_reset_step(&f, ANY_Z(), 0);
 }
 
 /* Uses: take */

@@ -23,6 +23,7 @@ bool lrf_init(lrf_t *f, const lrf_config_t *config);
 void lrf_set_noise(lrf_t *f, uint32_t r_lsb2_q8);
 /*@ requires BOUND(f); ensures BOUND(f); */
 void lrf_reset(lrf_t *f, int16_t z0_lsb);
+bool lrf_reset_step(lrf_t *f, int16_t z0_lsb, uint8_t step);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t lrf_update(lrf_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
@@ -127,6 +128,17 @@ void proof_lrf_reset(void)
     lrf_reset(&f, ANY_Z());
     any_warm_up(&f, 0, 4);
     lrf_reset(&f, ANY_Z());
+}
+
+/* Uses: two_state_step */
+void proof_lrf_reset_step(void)
+{
+    lrf_t f;
+    any_run(&f);
+    //@ admit COVARIANCE(&f.core);
+    (void)lrf_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
+    any_warm_up(&f, 0, 4);
+    (void)lrf_reset_step(&f, ANY_Z(), 0);
 }
 
 /* Uses: two_state_step */

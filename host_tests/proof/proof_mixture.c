@@ -86,3 +86,13 @@ void proof_mixture_reset(void)
     any_mixture(&f, 0, true);
     mixture_reset(&f, ANY_Z());
 }
+
+/* Uses: two_state_wide_reset_step, mixture_log_odds_q9 */
+void proof_mixture_reset_step(void)
+{
+    mixture_t f;
+    any_mixture(&f, 0, false);
+    (void)mixture_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
+    any_mixture(&f, 0, true);
+    (void)mixture_reset_step(&f, ANY_Z(), 0);
+}

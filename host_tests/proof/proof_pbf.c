@@ -9,6 +9,7 @@ bool pbf_init(pbf_t *f, const pbf_config_t *config);
 void pbf_set_noise(pbf_t *f, uint32_t r_lsb2_q8);
 /*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); */
 void pbf_reset(pbf_t *f, int16_t z0_lsb);
+bool pbf_reset_step(pbf_t *f, int16_t z0_lsb, uint8_t step);
 /*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t pbf_update(pbf_t *f, int16_t z_lsb);
 /*@ requires MIXTURE_BOUND(f); ensures MIXTURE_BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
@@ -57,6 +58,18 @@ void proof_pbf_reset(void)
         pbf_reset(&f, ANY_Z());
         any_mixture(&f, range, true);
         pbf_reset(&f, ANY_Z());
+    }
+}
+
+/* Uses: two_state_wide_reset_step, mixture_log_odds_q9 */
+void proof_pbf_reset_step(void)
+{
+    for (uint8_t range = 0; range < RATIO_RANGES; range++) {
+        pbf_t f;
+        any_mixture(&f, range, false);
+        (void)pbf_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
+        any_mixture(&f, range, true);
+        (void)pbf_reset_step(&f, ANY_Z(), 0);
     }
 }
 

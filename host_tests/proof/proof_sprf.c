@@ -13,6 +13,7 @@ bool sprf_init(sprf_t *f, const sprf_config_t *config);
 void sprf_set_noise(sprf_t *f, uint32_t r_lsb2_q8);
 /*@ requires BOUND(f); ensures BOUND(f); */
 void sprf_reset(sprf_t *f, int16_t z0_lsb);
+bool sprf_reset_step(sprf_t *f, int16_t z0_lsb, uint8_t step);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t sprf_update(sprf_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
@@ -81,6 +82,18 @@ void proof_sprf_reset(void)
     sprf_reset(&f, ANY_Z());
     any_start(&f.core);
     sprf_reset(&f, ANY_Z());
+}
+
+/* Uses: two_state_step */
+void proof_sprf_reset_step(void)
+{
+    sprf_t f;
+    any_gate(&f);
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
+    (void)sprf_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
+    any_start(&f.core);
+    (void)sprf_reset_step(&f, ANY_Z(), 0);
 }
 
 /* Uses: two_state_step, reacquire_refused */

@@ -11,6 +11,7 @@ bool sprf_paper_init(sprf_paper_t *f, const sprf_paper_config_t *config);
 void sprf_paper_set_noise(sprf_paper_t *f, uint32_t r_lsb2_q8);
 /*@ requires BOUND(f); ensures BOUND(f); */
 void sprf_paper_reset(sprf_paper_t *f, int16_t z0_lsb);
+bool sprf_paper_reset_step(sprf_paper_t *f, int16_t z0_lsb, uint8_t step);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
 int32_t sprf_paper_update(sprf_paper_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
@@ -67,6 +68,16 @@ void proof_sprf_paper_reset(void)
     sprf_paper_reset(&f, ANY_Z());
     any_sprf_paper(&f, true);
     sprf_paper_reset(&f, ANY_Z());
+}
+
+/* Uses: two_state_wide_reset_step */
+void proof_sprf_paper_reset_step(void)
+{
+    sprf_paper_t f;
+    any_sprf_paper(&f, false);
+    (void)sprf_paper_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
+    any_sprf_paper(&f, true);
+    (void)sprf_paper_reset_step(&f, ANY_Z(), 0);
 }
 
 /* Uses: two_state_wide_predict, two_state_wide_distance_uq8, two_state_wide_update */

@@ -13,6 +13,7 @@ bool synth_init(synth_t *f, const synth_config_t *config);
 void synth_set_noise(synth_t *f, uint32_t r_lsb2_q8);
 /*@ requires BOUND(f); ensures BOUND(f); */
 void synth_reset(synth_t *f, int16_t z0_lsb);
+bool synth_reset_step(synth_t *f, int16_t z0_lsb, uint8_t step);
 /*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN_X(\result); */
 int32_t synth_update(synth_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN_X(\result); */
@@ -100,6 +101,15 @@ void proof_synth_reset(void)
         synth_t f;
         any_state(&f, kind);
         synth_reset(&f, ANY_Z());
+    }
+}
+
+void proof_synth_reset_step(void)
+{
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_t f;
+        any_state(&f, kind);
+        (void)synth_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
     }
 }
 

@@ -17,6 +17,7 @@ bool synth_plus_init(synth_plus_t *f, const synth_plus_config_t *config);
 void synth_plus_set_noise(synth_plus_t *f, uint32_t r_lsb2_q8);
 /*@ requires BOUND(f); ensures BOUND(f); */
 void synth_plus_reset(synth_plus_t *f, int16_t z0_lsb);
+bool synth_plus_reset_step(synth_plus_t *f, int16_t z0_lsb, uint8_t step);
 /*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN_X(\result); */
 int32_t synth_plus_update(synth_plus_t *f, int16_t z_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN_X(\result); */
@@ -96,6 +97,15 @@ void proof_synth_plus_reset(void)
         synth_plus_t f;
         any_state(&f, kind);
         synth_plus_reset(&f, ANY_Z());
+    }
+}
+
+void proof_synth_plus_reset_step(void)
+{
+    for (uint8_t kind = 0; kind < CORE_KINDS; kind++) {
+        synth_plus_t f;
+        any_state(&f, kind);
+        (void)synth_plus_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
     }
 }
 

@@ -68,6 +68,15 @@ void proof_two_state_reset(void)
     (void)two_state_reset(&s, ANY_Z());
 }
 
+/* Uses: two_state_step */
+void proof_two_state_reset_step(void)
+{
+    two_state_t s;
+    any_state_of(&s, R_ANY);
+    //@ admit COVARIANCE(&s);
+    (void)two_state_reset_step(&s, ANY_Z(), ANY_U8(0, UINT8_MAX));
+}
+
 /* Any state and covariance, limited. */
 void proof_two_state_begin(void)
 {

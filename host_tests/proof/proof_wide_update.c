@@ -19,3 +19,11 @@ void proof_two_state_wide_reset(void)
     any_wide(&s, 16);
     two_state_wide_reset(&s, ANY_Z());
 }
+
+/* Uses: two_state_wide_predict, two_state_wide_update */
+void proof_two_state_wide_reset_step(void)
+{
+    two_state_wide_t s;
+    any_wide(&s, 16);
+    (void)two_state_wide_reset_step(&s, ANY_Z(), ANY_U8(0, UINT8_MAX));
+}

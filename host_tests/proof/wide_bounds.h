@@ -110,6 +110,16 @@ void two_state_wide_set_noise(two_state_wide_t *s, uint32_t r_lsb2_q8);
 */
 void two_state_wide_reset(two_state_wide_t *s, int16_t z0_lsb);
 
+/*@ requires WIDE_PARAMETERS(s);
+    requires step == 0 || (ESTIMATE(s) && s->collected == 5 && WIDE_P(s->u.p));
+    assigns s->x_lsb_q16, s->rate_lsb_q16, s->u, s->size_lsb_uq8, s->variance, s->inverse_uq16, s->gain_uq16, s->flags,
+            s->negative, s->collected, \result \from *s, z0_lsb, step;
+    ensures ESTIMATE(s) && s->collected == 5;
+    ensures WIDE_P(s->u.p);
+    ensures \result == 0 || \result == 1;
+*/
+bool two_state_wide_reset_step(two_state_wide_t *s, int16_t z0_lsb, uint8_t step);
+
 /*@ requires s->variance == 0 || S_PLACES(s);
     assigns *out \from *s, gate2_uq8;
 */
