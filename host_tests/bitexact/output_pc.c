@@ -4,6 +4,12 @@
 
 #include "hal_time.h"
 
+/* The passes of main, of which there is none here, are never out of time. */
+uint8_t hal_time_lap(void)
+{
+    return 0;
+}
+
 uint32_t hal_host_cpu_hz = 16000000; /* settings.c asks for the processor's clock */
 
 void output_start(void) {}
