@@ -14,9 +14,8 @@ void counters_start(void)
 
 FX_ONCE void count(uint8_t what)
 {
-    uint32_t more = counters[what] + 1u;
-    if (more != 0) {
-        counters[what] = more;
+    if (counters[what] != UINT32_MAX) {
+        counters[what]++;
     }
 }
 

@@ -73,7 +73,7 @@ def pipeline_of_chip_equals_pc_at_400_hz():
 
 @test
 def pipeline_of_chip_equals_pc_at_800_hz():
-    compare_pipeline("pipeline-800", 800, 1000000, lambda notes: "# rate 800 Hz, I2C at 400 kHz" in notes)
+    compare_pipeline("pipeline-800", 800, 1000000, lambda notes: "# rate 800 Hz, I2C at 400 kHz" in notes, "sprf")
 
 
 @test

@@ -313,9 +313,6 @@ void proof_adaptive_reset_step(void)
             any_run(&f);
             any_weight(&f, weight, last);
             (void)adaptive_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
-            any_start(&f, 0, 4);
-            any_weight(&f, weight, last);
-            (void)adaptive_reset_step(&f, ANY_Z(), 0);
         }
     }
 }

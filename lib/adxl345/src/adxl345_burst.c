@@ -236,7 +236,9 @@ static void restamp(uint8_t behind, bool overrun)
     }
     uint32_t period_us = burst_period_us();
     uint32_t age_us = behind * period_us + (period_us >> 1);
-    if (overrun || begun_us - reading_us + 2u * period_us < age_us) {
+    /* before the last one: a bit of the count was wrong */
+    bool after_last = !last_known || !hal_time_reached(last_us, begun_us - age_us);
+    if (after_last && (overrun || begun_us - reading_us + 2u * period_us < age_us)) {
         reading_us = begun_us - age_us;
         reading_exact = false;
     }
