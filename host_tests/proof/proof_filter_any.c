@@ -46,9 +46,11 @@
 
 #define parameters parameters_adaptive
 #define legal legal_adaptive
+#define forget forget_adaptive
 #include "adaptive_setup.c"
 #undef parameters
 #undef legal
+#undef forget
 #define parameters parameters_kf3
 #define limited limited_kf3
 #define correct correct_kf3
