@@ -70,7 +70,7 @@ check-deviations: check-objects
 	@$(PY) tools/check_deviations.py
 
 check-breakages:
-	@python3 tools/check_breakages.py
+	@WARNINGS="$(WARNINGS)" UNITY_DIR="$(UNITY_DIR)" python3 tools/check_breakages.py
 
 check-planted:
 	@python3 host_tests/test_planted.py
