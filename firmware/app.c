@@ -6,6 +6,7 @@
 #include "app.h"
 
 #include "adxl345.h"
+#include "coast.h"
 #include "commands.h"
 #include "counters.h"
 #include "hal_drdy.h"
@@ -60,6 +61,7 @@ static uint8_t stage;
 static bool sampling;   /* wanted: go or start-up, not stop */
 static uint8_t changes; /* that the pipeline is to follow yet */
 static bool row_due;    /* for the sample that the pipeline has, or had last */
+static bool row_missing; /* that one is of a sample that did not come */
 static uint32_t next_second_us;
 static uint32_t next_service_us;
 
@@ -100,6 +102,7 @@ void app_start(void)
     sampling = true;
     row_due = false;
     changes = 0;
+    coast_wait(next_service_us);
     pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
     (void)replies_add(REPLY_BANNER, 0);
     start_sensor();
@@ -227,10 +230,69 @@ static bool follow_settings(void)
     return now != 0;
 }
 
+/* Samples are due: not while the sensor is stopped or follows a command. */
+static bool sample_due(void)
+{
+    return adxl345_fault() != ADXL345_FAULT_NONE || adxl345_phase() == ADXL345_STREAMING;
+}
+
+/* Of the sample that the pipeline has, or of one that is missing, whose place it has filled. */
+static void write_row(void)
+{
+    row_due = false;
+    if (row_missing) {
+        row_missing = false;
+        hal_wake(); /* more may be missing */
+    }
+    if (pipeline_long_silent()) {
+        rows_at_once();
+    } else {
+        rows_sample();
+    }
+    health_sample_filtered();
+}
+
+/* The oldest sample, of this time, goes its way, unless its row is out already. */
+static void take_sample(uint32_t t_us, uint32_t period_us)
+{
+    adxl345_sample_t sample;
+    if (!adxl345_take(&sample)) {
+        return;
+    }
+    if (coast_too_late(t_us)) {
+        health_sample_filtered();
+    } else {
+        coast_end(t_us, period_us);
+        pipeline_sample(&sample);
+        row_due = true;
+    }
+}
+
+/* Begins the way of the oldest sample, or of one that is missing before it, or by now where none is on its way. */
+static bool next_sample(void)
+{
+    uint32_t period_us = adxl345_period_us();
+    uint32_t now_us = hal_time_us();
+    uint32_t t_us = now_us;
+    pipeline_flag(adxl345_marks());
+    bool queued = adxl345_oldest_us(&t_us);
+    bool known = queued || (sample_due() && !adxl345_sample_coming());
+    if (known && coast_over(t_us, period_us, queued)) {
+        row_due = true;
+        row_missing = true;
+        return true;
+    }
+    if (queued) {
+        take_sample(t_us, period_us);
+    } else if (!sample_due()) {
+        coast_wait(now_us);
+    }
+    return queued;
+}
+
 /* One piece of the samples' way; false: there is nothing to do. */
 static bool filter_samples(void)
 {
-    adxl345_sample_t sample;
     if (HANGS(HEALTH_FILTERING)) {
         return false;
     }
@@ -238,20 +300,10 @@ static bool filter_samples(void)
         return true;
     }
     if (row_due) {
-        row_due = false;
-        rows_sample();
-        health_sample_filtered();
+        write_row();
         return true;
     }
-    if (follow_settings()) {
-        return true;
-    }
-    row_due = adxl345_take(&sample);
-    pipeline_flag(adxl345_marks());
-    if (row_due) {
-        pipeline_sample(&sample, adxl345_period_us());
-    }
-    return row_due;
+    return follow_settings() || next_sample();
 }
 
 /* One piece of what the stage has to do; false: nothing is left, or it waits. */
@@ -264,6 +316,7 @@ static bool stage_piece(void)
         }
         rows_enable(true);
         sensor_watch_start(hal_time_us());
+        coast_wait(hal_time_us());
         break;
     case STAGE_BAUD:
         if (!replies_empty() || !hal_uart_tx_idle()) {
@@ -294,7 +347,13 @@ static void service(uint32_t now_us)
 static void set_alarm(void)
 {
     uint32_t t_us;
-    if (adxl345_alarm_us(&t_us)) {
+    bool driver_waits = adxl345_alarm_us(&t_us);
+    uint32_t row_us = coast_due_us(adxl345_period_us());
+    if (sample_due() && !(driver_waits && hal_time_reached(row_us, t_us))) {
+        t_us = row_us;
+        driver_waits = true;
+    }
+    if (driver_waits) {
         hal_wake_at(t_us);
     }
 }

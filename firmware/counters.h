@@ -14,7 +14,8 @@ enum counter {
     COUNT_ROWS,
     COUNT_DROPPED, /* rows for which the line had no room */
     COUNT_REFUSED, /* lines: too long, garbage, unknown, illegal value */
-    COUNT_LOST,    /* samples missing between two that came */
+    COUNT_LOST,    /* samples that did not come */
+    COUNT_LATE,    /* samples that came when their rows were out */
     COUNTERS
 };
 

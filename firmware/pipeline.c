@@ -13,10 +13,13 @@ enum { AXES = 3, WARM_ROWS = 5 };
 typedef enum {
     WORK_NONE,
     WORK_SAMPLE, /* through the filter of each axis */
+    WORK_RENEW,  /* amid a sample: its axis gets a filter that begins anew */
+    WORK_COAST,  /* the filter of each axis predicts */
     WORK_CHANGE  /* each axis gets its new filter */
 } work_t;
 
-#define COAST_LIMIT_US 100000ul
+/* Missing samples: 25 ms are 1/400 of the nominal rate in 0.1 Hz, so that the chip counts as the PC does. */
+enum { QUARTER_DHZ = 400, HOLD_QUARTERS = 4, LONG_QUARTERS = 40, FAULT_FROM = 3, AWAY_SAMPLES = 2 };
 
 pass_t pass;
 
@@ -32,15 +35,18 @@ static struct {
     uint16_t rate_dhz;
     uint16_t flags;
     uint16_t kept_flags; /* of the samples before the one under way */
+    uint16_t part_dhz;   /* of 25 ms, in shares of the rate */
+    uint8_t quarters;    /* times 25 ms without a sample, up to a second */
+    uint8_t passed;      /* of them, since the step before */
+    uint8_t missing;     /* samples on end, up to 3 */
+    uint8_t away[AXES];  /* after a hold: 1, and 1 more for each sample that lies away from what was held; else 0 */
     uint8_t warm_rows;
     uint8_t work;    /* work_t */
     uint8_t axis;    /* that the work goes on with */
     uint8_t step;    /* of the change on that axis */
-    uint8_t missing; /* samples before that under way */
     uint8_t new_kind;
     bool new_noise;
     bool has_sample;
-    bool changed; /* the next sample is the first of another configuration, before which none is missing */
 } pipe;
 
 FX_NOINLINE void keep_estimate(uint8_t axis, int32_t x_lsb_q16)
@@ -69,7 +75,6 @@ static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool 
     pipe.new_kind = filter_kind;
     pipe.rate_dhz = rate_dhz;
     pipe.has_sample = keep;
-    pipe.changed = true;
     pipe.warm_rows = WARM_ROWS;
     pipe.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
     pipe.work = WORK_CHANGE;
@@ -117,6 +122,11 @@ FX_NOINLINE void change_step(void)
 
 void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)
 {
+    pipe.missing = 0;
+    pipe.quarters = 0;
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        pipe.away[axis] = 0;
+    }
     begin(filter_kind, rate_dhz, range_g, false);
 }
 
@@ -133,46 +143,118 @@ static void collect_flags(uint8_t filter_flags)
 }
 
 /*
- * How many samples are missing: every one is one prediction step, so that the rate goes on; after 100 ms the estimate
- * holds.
+ * Step n of a prediction is made with the rate that is in force in its middle, (n - 1/2) / rate after the last sample.
+ * Returns how often 25 ms have passed since the step before.
  */
-static uint8_t missing_samples(uint32_t t_us, uint32_t period_us)
+static uint8_t count_missing(void)
 {
-    uint32_t gap_us = t_us - pipe.last_us;
-    uint32_t at_us = period_us + (period_us >> 1);
-    uint8_t missing = 0;
-    if (!pipe.has_sample || gap_us <= at_us) {
-        return 0;
+    uint8_t passed = 0;
+    pipe.part_dhz = (uint16_t)(pipe.part_dhz + QUARTER_DHZ);
+    if (pipe.missing == 0) {
+        pipe.part_dhz = QUARTER_DHZ / 2;
     }
-    if (!pipe.changed) {
-        count_lost((gap_us - (period_us >> 1)) / period_us);
+    for (; pipe.part_dhz >= pipe.rate_dhz; passed++) {
+        pipe.part_dhz = (uint16_t)(pipe.part_dhz - pipe.rate_dhz);
     }
-    for (; at_us < gap_us && at_us < COAST_LIMIT_US; at_us += period_us) {
-        missing++;
+    pipe.missing = (uint8_t)(pipe.missing + (pipe.missing < FAULT_FROM));
+    pipe.quarters = (uint8_t)(pipe.quarters + passed);
+    if (pipe.quarters > LONG_QUARTERS) {
+        pipe.quarters = LONG_QUARTERS;
     }
-    return missing;
+    return passed;
 }
 
-FX_NOINLINE void coast_step(void)
+FX_ONCE void pipeline_coast(uint32_t t_us)
 {
-    pipe.missing--;
-    for (uint8_t axis = 0; axis < AXES; axis++) {
+    pipe.passed = count_missing();
+    pipe.last_us = t_us;
+    pipe.flags |= ROW_COASTED;
+    if (pipe.missing == FAULT_FROM) {
+        pipe.flags |= ROW_FAULT;
+    }
+    pipe.work = WORK_COAST;
+    pipe.axis = 0;
+}
+
+static void coast_axis(uint8_t axis)
+{
+    bool holds = pipeline_holds();
+    if (!holds) {
+        for (uint8_t left = pipe.passed; left != 0; left--) {
+            filter_any_damp(&pipe.filter[axis]);
+        }
         keep_estimate(axis, filter_any_coast(&pipe.filter[axis]));
         noise_gap(&pipe.noise[axis]);
     }
+    pipe.away[axis] = holds && pipe.has_sample;
 }
 
-static void filter_axis(uint8_t axis, int16_t lsb)
+bool pipeline_holds(void)
+{
+    return pipe.quarters >= HOLD_QUARTERS;
+}
+
+bool pipeline_long_silent(void)
+{
+    return pipe.quarters == LONG_QUARTERS;
+}
+
+uint32_t pipeline_newest_us(void)
+{
+    return pipe.last_us;
+}
+
+/* Within 2.8 sigmas of the estimate, by the R of the noise, which is 3.5 of a healthy sensor's. */
+static bool near_estimate(uint8_t axis, int16_t lsb)
+{
+    int16_t off_lsb = (int16_t)(lsb - (int16_t)((pipe.estimate_q8[axis] + 128) >> 8));
+    uint16_t size_lsb = (uint16_t)(off_lsb < 0 ? -off_lsb : off_lsb);
+    return fx_mul_u16(size_lsb, size_lsb) <= noise_r_lsb2_q8(&pipe.noise[axis]) >> 5;
+}
+
+/*
+ * After a hold. True: the filter takes the sample; near the estimate it goes on from what was held. A single one away
+ * from it may be a bad reading: with the second on end the filter begins anew, with the noise as it is known. That is
+ * work of its own, amid the sample's.
+ */
+FX_NOINLINE bool rejoins(uint8_t axis, int16_t lsb)
+{
+    if (!near_estimate(axis, lsb)) {
+        if (pipe.away[axis]++ < AWAY_SAMPLES) {
+            pipe.flags |= ROW_GATED;
+            return false;
+        }
+        pipe.flags |= ROW_REACQUIRED;
+        pipe.work = WORK_RENEW;
+        pipe.step = 0;
+        pipe.new_noise = false;
+        pipe.has_sample = false;
+        pass.limit = PASS_CHANGING_US / HAL_LAP_US;
+    }
+    pipe.away[axis] = 0;
+    return true;
+}
+
+static void update_axis(uint8_t axis)
 {
     filter_any_t *filter = &pipe.filter[axis];
+    keep_estimate(axis, filter_any_update(filter, pipe.lsb[axis]));
+    collect_flags(filter_any_flags(filter));
+}
+
+static void filter_axis(uint8_t axis)
+{
+    int16_t lsb = pipe.lsb[axis];
     bool clipped = lsb >= pipe.rail_high_lsb || lsb <= (int16_t)(-pipe.rail_high_lsb - 1);
     if (clipped) {
         pipe.flags |= ROW_CLIPPED;
     } else if (noise_update(&pipe.noise[axis], lsb)) {
-        filter_any_set_noise(filter, noise_r_lsb2_q8(&pipe.noise[axis]));
+        filter_any_set_noise(&pipe.filter[axis], noise_r_lsb2_q8(&pipe.noise[axis]));
     }
-    keep_estimate(axis, filter_any_update(filter, lsb));
-    collect_flags(filter_any_flags(filter));
+    if (pipe.away[axis] != 0 && (!rejoins(axis, lsb) || pipe.work == WORK_RENEW)) {
+        return;
+    }
+    update_axis(axis);
 }
 
 static void count_sample(void)
@@ -194,12 +276,45 @@ static void count_sample(void)
 
 static void end_sample(void)
 {
-    pipe.work = WORK_NONE;
     if (!tilt_gravity_plausible(pipe.estimate_q8[0], pipe.estimate_q8[1], pipe.estimate_q8[2])) {
         pipe.flags |= ROW_NOT_GRAVITY;
     }
     count_sample();
     pipe.flags |= pipe.kept_flags;
+}
+
+FX_NOINLINE bool renewed(void)
+{
+    if (!change_axis()) {
+        return false;
+    }
+    pipe.work = WORK_SAMPLE;
+    pipe.has_sample = true;
+    pass.limit = PASS_US / HAL_LAP_US;
+    update_axis(pipe.axis);
+    return true;
+}
+
+/* One axis of a sample, or of one that is missing; a part of it while its filter begins anew. */
+static void axis_step(void)
+{
+    if (pipe.work == WORK_COAST) {
+        coast_axis(pipe.axis);
+    } else if (pipe.work == WORK_SAMPLE) {
+        filter_axis(pipe.axis);
+        if (pipe.work == WORK_RENEW) {
+            return;
+        }
+    } else if (!renewed()) {
+        return;
+    }
+    pipe.axis++;
+    if (pipe.axis == AXES) {
+        if (pipe.work == WORK_SAMPLE) {
+            end_sample();
+        }
+        pipe.work = WORK_NONE;
+    }
 }
 
 bool pipeline_work(void)
@@ -211,18 +326,9 @@ bool pipeline_work(void)
         change_step();
         return true;
     }
-    if (pipe.missing != 0) {
-        coast_step();
-        return true;
-    }
     do {
-        uint8_t axis = pipe.axis++;
-        filter_axis(axis, pipe.lsb[axis]);
-        if (axis == AXES - 1) {
-            end_sample();
-            break;
-        }
-    } while (pass_in_time());
+        axis_step();
+    } while (pipe.work != WORK_NONE && pass_in_time());
     return true;
 }
 
@@ -237,14 +343,14 @@ void pipeline_finish(void)
     }
 }
 
-void pipeline_sample(const adxl345_sample_t *sample, uint32_t period_us)
+void pipeline_sample(const adxl345_sample_t *sample)
 {
     pipe.kept_flags = pipe.flags;
     pipe.flags = 0;
-    pipe.missing = missing_samples(sample->t_us, period_us);
+    pipe.missing = 0;
+    pipe.quarters = 0;
     pipe.last_us = sample->t_us;
     pipe.has_sample = true;
-    pipe.changed = false;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         pipe.lsb[axis] = sample->lsb[axis];
     }
@@ -263,8 +369,9 @@ static int16_t to_mg(int32_t value_q8)
     return (int16_t)((value_q8 * 1000 + 32768) >> 16);
 }
 
-static void fill_row(row_t *row)
+void pipeline_row(row_t *row)
 {
+    row->t_us = pipe.last_us;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         row->lsb[axis] = pipe.lsb[axis];
         row->mg[axis] = to_mg(pipe.estimate_q8[axis]);
@@ -275,19 +382,6 @@ static void fill_row(row_t *row)
     row->flags = pipe.flags;
     row->flags |= pipe.tilt.roll_undefined ? ROW_ROLL_UNDEFINED : 0u;
     row->flags |= pipe.warm_rows != 0 ? ROW_WARMING_UP : 0u;
-}
-
-void pipeline_row(row_t *row)
-{
-    fill_row(row);
-    row->t_us = pipe.last_us;
-}
-
-void pipeline_held_row(row_t *row, uint32_t now_us)
-{
-    fill_row(row);
-    row->t_us = now_us;
-    row->flags |= ROW_COASTED | ROW_FAULT;
 }
 
 void pipeline_row_done(void)

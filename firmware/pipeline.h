@@ -47,9 +47,9 @@ void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 
 /*
- * Goes on with what pipeline_start, _change or _sample have begun, as long as there is time in the pass (pass.h), but
- * with one piece at least; false: nothing was left to do. So the main loop can look after other things meanwhile.
- * Nothing else is to be begun before, but a change takes the place of a change.
+ * Goes on with what pipeline_start, _change, _coast or _sample have begun, as long as there is time in the pass
+ * (pass.h), but with one piece at least; false: nothing was left to do. So the main loop can look after other things
+ * meanwhile. Nothing else is to be begun before, but a change takes the place of a change.
  */
 bool pipeline_work(void);
 
@@ -60,19 +60,30 @@ bool pipeline_changing(void);
 void pipeline_finish(void);
 
 /*
- * One sample to filters and noise estimates, which pipeline_work takes axis by axis. Missing ones since the last
- * (period_us apart) are coasted over, at most 100 ms.
+ * One sample to filters and noise estimates, which pipeline_work takes axis by axis. After a hold the filters go on
+ * from the estimate that was held when the sample agrees with it, and begin anew with the second on end that does not,
+ * each axis for itself.
  */
-void pipeline_sample(const adxl345_sample_t *sample, uint32_t period_us);
+void pipeline_sample(const adxl345_sample_t *sample);
+
+/*
+ * A sample is missing, and this is the time that it would have: the filters predict, for 100 ms at most, with the rate
+ * halved every 25 ms, then the estimate holds.
+ */
+void pipeline_coast(uint32_t t_us);
+
+/* So many samples are missing that the estimate holds; that a second has passed without one. */
+bool pipeline_holds(void);
+bool pipeline_long_silent(void);
+
+/* Time of the newest sample, or of the one that is missing. */
+uint32_t pipeline_newest_us(void);
 
 /* Flags that hold until the next row. */
 void pipeline_flag(uint16_t flags);
 
-/* The row for the newest sample, with the flags of all samples since pipeline_row_done. */
+/* The row for the newest sample, or for the missing one, with the flags of all samples since pipeline_row_done. */
 void pipeline_row(row_t *row);
-
-/* A row without a sample, at this time: the estimate held. */
-void pipeline_held_row(row_t *row, uint32_t now_us);
 
 /* The row went out: start collecting flags anew and count a warm-up row. */
 void pipeline_row_done(void);

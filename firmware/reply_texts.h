@@ -170,7 +170,8 @@ enum say {
     X(ROWS, "rows " V_COUNT ", dropped " V_COUNT ", serial bytes" W_LOST " " V_SERIAL_LOST \
             ", lines refused " V_COUNT V_MORE) \
     X(BUS, \
-      "lost " V_COUNT ", drained " V_COUNT ", bus faults " V_COUNT ", timeouts " V_COUNT ", restarts " V_COUNT V_MORE) \
+      "lost " V_COUNT ", late " V_COUNT ", drained " V_COUNT ", bus faults " V_COUNT \
+      ", timeouts " V_COUNT ", restarts " V_COUNT V_MORE) \
     X(RESET_AGAIN, "reset: " V_THEN_CAUSE) \
     X(LINE_CARRIES, SMALLEST V_BAUD " " W_BAUD " carries" W_AT V_RATE W_HZ) \
     X(FILTER_LEAVES, SMALLEST V_FILTER " leaves time for" W_AT V_RATE W_HZ) \

@@ -84,21 +84,18 @@ static void write(const row_t *row)
 void rows_sample(void)
 {
     since_row++;
-    if (!enabled || since_row < settings.every_smallest || since_row < settings.every) {
+    if (since_row >= settings.every_smallest && since_row >= settings.every) {
+        rows_at_once();
+    }
+}
+
+void rows_at_once(void)
+{
+    if (!enabled) {
         return;
     }
     since_row = 0;
     row_t row;
     pipeline_row(&row);
-    write(&row);
-}
-
-void rows_held(uint32_t now_us)
-{
-    if (!enabled) {
-        return;
-    }
-    row_t row;
-    pipeline_held_row(&row, now_us);
     write(&row);
 }

@@ -11,10 +11,10 @@ void rows_start(void);
 /* Rows may go out (false while the banner and the header are not through). */
 void rows_enable(bool enabled);
 
-/* A sample has been filtered: its row if it is the one in `every`. */
+/* A sample has been filtered, or is missing: its row if it is the one in `every`. */
 void rows_sample(void);
 
-/* A row without a sample, now. */
-void rows_held(uint32_t now_us);
+/* Its row, whatever `every` says. */
+void rows_at_once(void);
 
 #endif

@@ -1,4 +1,4 @@
-/* When a fault is told and shown, and the rows without samples. The words are in reply_texts.h. */
+/* When a fault is told and shown. The words are in reply_texts.h. */
 #include "sensor_watch.h"
 
 #include <stdbool.h>
@@ -7,13 +7,8 @@
 #include "counters.h"
 #include "flash.h"
 #include "hal_led.h"
-#include "hal_time.h"
-#include "pipeline.h"
 #include "replies.h"
-#include "rows.h"
 #include "settings.h"
-
-#define HELD_ROW_US 100000ul
 
 /* A second is eight times this, as good as: what of the time of now goes into the pattern of the LED. */
 #define FLASH_SHIFT 16
@@ -31,8 +26,7 @@ sensor_outage_t sensor_watch_outage;
 
 static uint8_t told;       /* fault code of the last line, NONE when all is well */
 static uint16_t told_mask; /* codes told since the fault began: each once */
-static uint32_t next_row_us;
-static uint32_t began_us; /* the fault */
+static uint32_t began_us;  /* the fault */
 
 /* Until the end the numbers of the outage are those of its beginning. */
 static void begin_outage(uint32_t now_us)
@@ -63,7 +57,6 @@ void sensor_watch_start(uint32_t now_us)
     told = (uint8_t)adxl345_fault();
     told_mask = (uint16_t)(1u << told);
     begin_outage(now_us);
-    next_row_us = now_us + HELD_ROW_US;
 }
 
 static void tell(uint8_t fault, uint32_t now_us)
@@ -99,14 +92,5 @@ void sensor_watch_pass(uint32_t now_us)
     bool known = fault != ADXL345_FAULT_NONE || phase == ADXL345_STREAMING;
     if (known && fault != told && settings.mode != MODE_PLOT) {
         tell(fault, now_us);
-    }
-    if (fault == ADXL345_FAULT_NONE || phase == ADXL345_STREAMING) { /* samples come, whatever is told of them */
-        next_row_us = now_us + HELD_ROW_US;
-        return;
-    }
-    pipeline_flag(ROW_FAULT);
-    if (hal_time_reached(now_us, next_row_us)) {
-        next_row_us += HELD_ROW_US;
-        rows_held(now_us);
     }
 }

@@ -1,6 +1,5 @@
 /*
- * Tells the user when the sensor fails and when it is back, by lines and by the LED, and keeps rows coming meanwhile.
- * Main only.
+ * Tells the user when the sensor fails and when it is back, by lines and by the LED. Main only.
  */
 #ifndef SENSOR_WATCH_H
 #define SENSOR_WATCH_H

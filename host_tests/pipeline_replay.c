@@ -17,6 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "coast.h"
 #include "filter_any.h"
 #include "noise.h"
 #include "pipeline.h"
@@ -167,15 +168,25 @@ static void check_configuration(filter_kind_t kind, uint16_t rate_dhz)
     }
 }
 
-static void filter_and_print(const adxl345_sample_t *sample, uint32_t period_us)
+static void print_row(void)
 {
     row_t row;
-    pipeline_sample(sample, period_us);
     pipeline_finish();
     pipeline_row(&row);
     pipeline_row_done();
     printf("%u,%d,%d,%d,%d,%d,%d,%d,%d,%u\n", (unsigned)row.t_us, row.lsb[0], row.lsb[1], row.lsb[2], row.mg[0],
            row.mg[1], row.mg[2], row.roll_cdeg, row.pitch_cdeg, row.flags);
+}
+
+/* A row for each sample, and for each that is missing before it while the filters predict. */
+static void filter_and_print(const adxl345_sample_t *sample, uint32_t period_us)
+{
+    while (coast_over(sample->t_us, period_us, true)) {
+        print_row();
+    }
+    coast_end(sample->t_us, period_us);
+    pipeline_sample(sample);
+    print_row();
 }
 
 /* Missing rows are no samples: the sample path finds the gap by the next one's time. */
@@ -243,6 +254,7 @@ int main(int argc, char **argv)
         note_change(argv[i]);
     }
     check_configuration(kind, rate_dhz);
+    coast_wait(0);
     pipeline_reset();
     pipeline_start((uint8_t)kind, rate_dhz, range_g);
     pipeline_finish();

@@ -2,7 +2,8 @@
 
 #include <string.h>
 
-#define COAST_LIMIT_US 100000U
+/* As in pipeline.c. */
+enum { QUARTER_DHZ = 400, HOLD_QUARTERS = 4, AWAY_SAMPLES = 2 };
 
 const char *median_init(median_t *m, unsigned window)
 {
@@ -43,24 +44,64 @@ bool chain_begin(chain_t *chain, filter_kind_t kind, uint16_t rate_dhz, uint8_t 
         return false;
     }
     filter_any_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
+    chain->rate_dhz = rate_dhz;
     chain->period_us = 10000000U / rate_dhz;
     chain->rail_high_lsb = (int16_t)(range_g * 256 - 1);
     return true;
 }
 
+/* One missing sample: pipeline.c, count_missing and predict. */
+static void coast(chain_t *chain)
+{
+    chain->part_dhz += QUARTER_DHZ;
+    if (chain->coasts == 0) {
+        chain->part_dhz = QUARTER_DHZ / 2;
+    }
+    for (; chain->part_dhz >= chain->rate_dhz; chain->part_dhz -= chain->rate_dhz) {
+        chain->quarters++;
+        filter_any_damp(&chain->filter);
+    }
+    chain->coasts++;
+}
+
 static void coast_over_gap(chain_t *chain, uint64_t t_us)
 {
     chain->coasts = 0;
-    uint64_t gap_us = t_us - chain->last_us;
-    uint64_t at_us = chain->period_us + (chain->period_us >> 1);
-    if (!chain->has_sample || gap_us <= at_us) {
+    chain->quarters = 0;
+    if (!chain->has_sample) {
         return;
     }
-    for (; at_us < gap_us && at_us < COAST_LIMIT_US; at_us += chain->period_us) {
+    for (; t_us - chain->last_us >= chain->period_us + (chain->period_us >> 1); chain->last_us += chain->period_us) {
+        filter_any_t before = chain->filter;
+        coast(chain);
+        if (chain->quarters >= HOLD_QUARTERS) {
+            chain->filter = before;
+            chain->coasts--;
+            chain->away = 1;
+            return;
+        }
         chain->x_lsb_q16 = filter_any_coast(&chain->filter);
-        chain->coasts++;
+        noise_gap(&chain->noise);
     }
-    noise_gap(&chain->noise);
+}
+
+/* After a hold: pipeline.c, rejoins. */
+static bool rejoins(chain_t *chain, int16_t lsb)
+{
+    int16_t off_lsb = (int16_t)(lsb - ((((chain->x_lsb_q16 + 128) >> 8) + 128) >> 8));
+    if ((uint32_t)(off_lsb * off_lsb) > noise_r_lsb2_q8(&chain->noise) >> 5) {
+        if (chain->away++ < AWAY_SAMPLES) {
+            return false;
+        }
+        filter_any_config_t config;
+        filter_kind_t kind = (filter_kind_t)chain->filter.kind;
+        filter_any_defaults(kind, &config, chain->rate_dhz);
+        (void)filter_any_init(&chain->filter, kind, &config);
+        filter_any_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
+        chain->begun = true;
+    }
+    chain->away = 0;
+    return true;
 }
 
 int32_t chain_sample(chain_t *chain, uint64_t t_us, int16_t lsb)
@@ -68,12 +109,16 @@ int32_t chain_sample(chain_t *chain, uint64_t t_us, int16_t lsb)
     coast_over_gap(chain, t_us);
     chain->last_us = t_us;
     chain->has_sample = true;
+    chain->begun = false;
     chain->clipped = lsb >= chain->rail_high_lsb || lsb <= -chain->rail_high_lsb - 1;
     if (!chain->clipped && noise_update(&chain->noise, lsb)) {
         filter_any_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
     }
     int16_t z_lsb = chain->median.window == 0U ? lsb : median_update(&chain->median, lsb);
-    chain->x_lsb_q16 = filter_any_update(&chain->filter, z_lsb);
+    chain->waits = chain->away != 0 && !rejoins(chain, lsb);
+    if (!chain->waits) {
+        chain->x_lsb_q16 = filter_any_update(&chain->filter, z_lsb);
+    }
     return chain->x_lsb_q16;
 }
 

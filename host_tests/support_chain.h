@@ -34,10 +34,16 @@ typedef struct {
     uint64_t last_us;
     uint32_t period_us;
     uint32_t coasts; /* predictions before the last sample */
+    uint16_t rate_dhz;
+    uint32_t part_dhz; /* of 25 ms, in shares of the rate */
+    uint32_t quarters; /* times 25 ms without a sample, until the estimate holds */
+    uint32_t away;     /* after a hold: 1, and 1 more for each sample away from what was held */
     int32_t x_lsb_q16;
     int16_t rail_high_lsb;
     bool has_sample;
     bool clipped; /* the last sample */
+    bool waits;   /* the last sample was not for the filter: away from what was held */
+    bool begun;   /* the filter began anew with it */
 } chain_t;
 
 /* A cold start with the filter's defaults; axis 2 is the noisier z. False: the rate is illegal. */

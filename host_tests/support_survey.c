@@ -37,6 +37,7 @@ typedef struct {
     band_t band;
     band_t second; /* the last second */
     hull_t hull;
+    bool begun; /* the filter began anew behind a hold */
     int16_t *z_lsb;
     size_t count;
     double r_max_lsb2;
@@ -129,9 +130,24 @@ static void count_flags(run_t *run, uint8_t flags)
     run->unbroken = run->chain.coasts == 0 ? run->unbroken + 1 : 0;
 }
 
+/* The rules see none of the samples before. */
+static void begin_rules(run_t *run)
+{
+    band_clear(&run->band);
+    band_clear(&run->second);
+    run->band.start = run->band.end = run->second.start = run->second.end = run->count - 1;
+    run->hull.filled = 0;
+    run->gated_run = run->refused = run->missing = run->unbroken = 0;
+    run->begun = false;
+}
+
 static void one_sample(run_t *run, uint64_t t_us, int16_t lsb)
 {
     int32_t x_lsb_q16 = chain_sample(&run->chain, t_us, lsb);
+    run->begun = run->begun || run->chain.begun;
+    if (run->chain.waits) {
+        return;
+    }
     filter_probe_t probe;
     filter_any_probe(&run->chain.filter, &probe);
     const char *broken = broken_bound(&run->chain.filter, &probe, x_lsb_q16);
@@ -144,8 +160,8 @@ static void one_sample(run_t *run, uint64_t t_us, int16_t lsb)
         return;
     }
     count_flags(run, probe.flags);
-    if (run->counts->samples == 1) { /* the first after the warm-up */
-        run->band.start = run->band.end = run->second.start = run->second.end = run->count - 1;
+    if (run->counts->samples == 1 || run->begun) { /* the first after a warm-up */
+        begin_rules(run);
     }
     judge_envelope(run, x_lsb_q16 / 65536.0);
     measure_outside(run, x_lsb_q16 / 65536.0);

@@ -6,7 +6,8 @@ import re
 import resource
 import sys
 
-import system_injections  # noqa: F401  (its tests join the list)
+import system_gaps  # noqa: F401  (its tests join the list)
+import system_injections  # noqa: F401
 import system_injections_more  # noqa: F401
 import system_losses  # noqa: F401
 import system_passes  # noqa: F401

@@ -2,6 +2,7 @@
  * What the filters do on real recordings, and on the shipped streams by the same rules: within their documented bounds,
  * no further from the raw samples than the rules of support_envelope.h allow, hardly anything refused at rest.
  */
+#include "coast.h"
 #include "pipeline.h"
 #include "support_recordings.h"
 #include "support_shipped.h"
@@ -36,6 +37,7 @@ static int16_t row_mg(const chain_t *chain)
 static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t rate_dhz, uint8_t range_g)
 {
     chain_t chain[3];
+    coast_wait(0);
     pipeline_reset();
     pipeline_start(kind, rate_dhz, range_g);
     pipeline_finish();
@@ -47,15 +49,20 @@ static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t
         adxl345_sample_t sample = { .t_us = (uint32_t)in->t_us, .lsb = { in->lsb[0], in->lsb[1], in->lsb[2] } };
         row_t row;
         uint16_t flags = 0;
-        pipeline_sample(&sample, chain[0].period_us);
+        while (coast_over(sample.t_us, chain[0].period_us, true)) {
+            pipeline_finish();
+            pipeline_row_done();
+        }
+        coast_end(sample.t_us, chain[0].period_us);
+        pipeline_sample(&sample);
         pipeline_finish();
         pipeline_row(&row);
         pipeline_row_done();
         for (int axis = 0; axis < 3; axis++) {
             (void)chain_sample(&chain[axis], in->t_us, in->lsb[axis]);
-            uint8_t own = filter_any_flags(&chain[axis].filter);
+            uint8_t own = chain[axis].waits ? FILTER_GATED : filter_any_flags(&chain[axis].filter);
             flags |= (own & FILTER_GATED) != 0U ? ROW_GATED : 0U;
-            flags |= (own & FILTER_REACQUIRED) != 0U ? ROW_REACQUIRED : 0U;
+            flags |= (own & FILTER_REACQUIRED) != 0U || chain[axis].begun ? ROW_REACQUIRED : 0U;
             flags |= chain[axis].clipped ? ROW_CLIPPED : 0U;
             TEST_ASSERT_EQUAL_INT16_MESSAGE(row.mg[axis], row_mg(&chain[axis]), about("pipeline", kind, axis, "mg"));
         }

@@ -6,12 +6,12 @@
 #include "health.h"
 #include "pipeline.h"
 
-void bench_sample_begins(const adxl345_sample_t *sample, uint32_t period_us);
+void bench_sample_begins(const adxl345_sample_t *sample);
 void bench_sample_ends(void);
 
-void __attribute__((noinline, noclone)) bench_sample_begins(const adxl345_sample_t *sample, uint32_t period_us)
+void __attribute__((noinline, noclone)) bench_sample_begins(const adxl345_sample_t *sample)
 {
-    pipeline_sample(sample, period_us);
+    pipeline_sample(sample);
 }
 
 void __attribute__((noinline, noclone)) bench_sample_ends(void)

@@ -2,6 +2,7 @@
  * Paths of the formatting: numbers, and whole rows of the real pipeline in both output modes. The UART of this program
  * is the output that is compared.
  */
+#include "coast.h"
 #include "format.h"
 #include "fx.h"
 #include "hal_uart.h"
@@ -99,6 +100,7 @@ static void begin_rows(uint8_t mode, uint16_t index)
     settings.filter = fx_flash_u8(&filters[turn % sizeof filters]);
     settings.rate_dhz = fx_flash_u16(&rates_dhz[turn % 3U]);
     now_us = vectors_random();
+    coast_wait(now_us);
     pipeline_reset();
     pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
     pipeline_finish();
@@ -122,7 +124,12 @@ static void row_item(uint8_t mode, uint16_t index)
         sample.lsb[axis] = (int16_t)(noise_lsb - 100 * (int16_t)axis + (int16_t)(index & 0xFFU));
         vectors_input((uint16_t)sample.lsb[axis]);
     }
-    pipeline_sample(&sample, period_us);
+    while (coast_over(now_us, period_us, true)) {
+        pipeline_finish();
+        rows_sample();
+    }
+    coast_end(now_us, period_us);
+    pipeline_sample(&sample);
     pipeline_finish();
     rows_sample();
 }

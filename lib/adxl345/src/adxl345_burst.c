@@ -357,6 +357,16 @@ static void measure_period(const burst_entry_t *entry)
     taken_exact = entry->exact;
 }
 
+bool burst_oldest_us(uint32_t *t_us)
+{
+    uint8_t at = tail;
+    if (at == head) {
+        return false;
+    }
+    *t_us = queue[at].sample.t_us;
+    return true;
+}
+
 bool burst_take(burst_entry_t *out)
 {
     uint8_t at = tail;

@@ -85,6 +85,9 @@ uint8_t burst_queued(void);
 /* No slot is free: samples wait in the sensor until main takes one. */
 bool burst_queue_full(void);
 
+/* Time of the oldest entry; false when the queue is empty. */
+bool burst_oldest_us(uint32_t *t_us);
+
 /* Oldest entry out; false when the queue is empty. */
 bool burst_take(burst_entry_t *out);
 

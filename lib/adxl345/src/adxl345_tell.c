@@ -2,6 +2,7 @@
 #include "adxl345_burst.h"
 #include "adxl345_driver.h"
 #include "adxl345_integrity.h"
+#include "hal_drdy.h"
 
 bool adxl345_take(adxl345_sample_t *out)
 {
@@ -19,6 +20,17 @@ bool adxl345_take(adxl345_sample_t *out)
 uint8_t adxl345_queued(void)
 {
     return burst_queued();
+}
+
+bool adxl345_oldest_us(uint32_t *t_us)
+{
+    return burst_oldest_us(t_us);
+}
+
+bool adxl345_sample_coming(void)
+{
+    bool read = driver.step == STEP_STREAM || driver.step == STEP_ASK_SOURCE;
+    return read && !burst_found_empty() && (burst_running() || hal_drdy_high());
 }
 
 adxl345_phase_t adxl345_phase(void)

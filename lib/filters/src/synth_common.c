@@ -230,13 +230,17 @@ FX_ONCE bool synth_coasts(synth_core_t *c)
     return true;
 }
 
-/* The older ones half way to the newest, rounded down: within the bound that all have. */
+/* Half way to another, rounded down: within the bound that both have. */
+FX_NOINLINE void approach(int32_t *x_lsb_q16, int32_t to_lsb_q16)
+{
+    *x_lsb_q16 = (*x_lsb_q16 + to_lsb_q16) >> 1;
+}
+
 FX_ONCE void synth_core_damp(synth_core_t *c)
 {
     if (c->collected >= FILTER_WARM_UP_SAMPLES) {
-        int32_t x1 = c->u.run.x_lsb_q16[0];
-        c->u.run.x_lsb_q16[1] = (x1 + c->u.run.x_lsb_q16[1]) >> 1;
-        c->u.run.x_lsb_q16[2] = (x1 + c->u.run.x_lsb_q16[2]) >> 1;
+        approach(&c->u.run.x_lsb_q16[1], c->u.run.x_lsb_q16[0]);
+        approach(&c->u.run.x_lsb_q16[2], c->u.run.x_lsb_q16[0]);
     }
 }
 

@@ -1,0 +1,40 @@
+"""Samples missing from a stream: the chip's rows in their places are those of the native build."""
+from system_support import OUT, STREAMS, TESTS, image_with, read_output, run, simrun
+
+
+def thinned(stream):
+    """A copy of a stream without one or two samples now and then: too few for the sensor to be asked what is wrong."""
+    path = OUT / "thinned.csv"
+    lines = stream.read_text(encoding="utf-8").splitlines()
+    header = next(i for i, line in enumerate(lines) if line.startswith("t_us"))
+    rows = lines[header + 1:]
+    missing = {at + i for turn, at in enumerate(range(200, len(rows) - 20, 37)) for i in range(1 + turn % 2)}
+    path.write_text("\n".join([lines[header]] + [row for i, row in enumerate(rows) if i not in missing]) + "\n", encoding="utf-8")
+    return path, missing
+
+
+def compare_thinned(filter_name):
+    stream, missing = thinned(STREAMS / "tilt-slow.csv")
+    name = f"thinned-{filter_name}"
+    rows, _, _, _ = simrun(name, stream, "--filter", filter_name, fw=image_with(filter_name))
+    run("build/host/native_replay", "--in", stream, "--out", OUT / f"{name}.native.csv", "--filter", filter_name)
+    native, _ = read_output(OUT / f"{name}.native.csv")
+    end = next((i for i, row in enumerate(rows) if row[9] & 16), len(rows)) - 3  # the stream is over
+    rows, native = rows[:end], native[:end]
+    for i, (chip, pc) in enumerate(zip(rows, native)):
+        assert chip[1:] == pc[1:], f"row {i}: chip {chip}, PC {pc}"
+    for a, b in zip(rows, rows[1:]):
+        assert abs(b[0] - a[0] - 10000) <= 200, f"{a[0]} and {b[0]}"
+    coasted = sum(row[9] & 2 != 0 for row in rows)
+    assert len(missing) - 4 <= coasted <= len(missing), (coasted, len(missing))
+
+
+def make_thinned_test(filter_name):
+    def check():
+        compare_thinned(filter_name)
+    check.__name__ = f"missing_samples_have_rows_on_chip_as_on_pc_{filter_name}"
+    return check
+
+
+for filter_kind in ("adaptive", "kf", "synth"):
+    TESTS.append(make_thinned_test(filter_kind))
