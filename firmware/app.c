@@ -58,9 +58,9 @@ enum {
 };
 
 static uint8_t stage;
-static bool sampling;   /* wanted: go or start-up, not stop */
-static uint8_t changes; /* that the pipeline is to follow yet */
-static bool row_due;    /* for the sample that the pipeline has, or had last */
+static bool sampling;    /* wanted: go or start-up, not stop */
+static uint8_t changes;  /* that the pipeline is to follow yet */
+static bool row_due;     /* for the sample that the pipeline has, or had last */
 static bool row_missing; /* that one is of a sample that did not come */
 static uint32_t next_second_us;
 static uint32_t next_service_us;
@@ -366,10 +366,7 @@ static void wake_if_work_left(void)
     }
 }
 
-/*
- * Samples go before replies. A pass that ends for lack of time is followed by another if there is a reason. The service
- * comes behind the samples, which it may find unfiltered else, and before them only when it is overdue.
- */
+/* Samples, replies, then the service unless it is overdue; out of time, another pass follows if there is a reason. */
 void app_pass(void)
 {
     pass.began = hal_time_lap();

@@ -41,9 +41,9 @@ static struct {
     uint8_t missing;     /* samples on end, up to 3 */
     uint8_t away[AXES];  /* after a hold: 1, and 1 more for each sample that lies away from what was held; else 0 */
     uint8_t warm_rows;
-    uint8_t work;    /* work_t */
-    uint8_t axis;    /* that the work goes on with */
-    uint8_t step;    /* of the change on that axis */
+    uint8_t work; /* work_t */
+    uint8_t axis; /* that the work goes on with */
+    uint8_t step; /* of the change on that axis */
     uint8_t new_kind;
     bool new_noise;
     bool has_sample;
