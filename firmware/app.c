@@ -61,7 +61,7 @@ static uint8_t stage;
 static bool sampling;    /* wanted: go or start-up, not stop */
 static uint8_t changes;  /* that the pipeline is to follow yet */
 static bool row_due;     /* for the sample that the pipeline has, or had last */
-static bool row_missing; /* that one is of a sample that did not come */
+static uint32_t pass_us; /* time at the beginning of the pass */
 static uint32_t next_second_us;
 static uint32_t next_service_us;
 
@@ -222,6 +222,9 @@ static bool follow_settings(void)
     bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
     uint8_t now = old_samples ? changes & CHANGE_FILTER : changes;
     changes = (uint8_t)(changes & ~now);
+    if (now & (CHANGE_COLD | CHANGE_CONFIG)) {
+        coast_wait(pass_us);
+    }
     if (now & CHANGE_COLD) {
         pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
     } else if (now != 0) {
@@ -240,10 +243,6 @@ static bool sample_due(void)
 static void write_row(void)
 {
     row_due = false;
-    if (row_missing) {
-        row_missing = false;
-        hal_wake(); /* more may be missing */
-    }
     if (pipeline_long_silent()) {
         rows_at_once();
     } else {
@@ -252,42 +251,39 @@ static void write_row(void)
     health_sample_filtered();
 }
 
-/* The oldest sample, of this time, goes its way, unless its row is out already. */
-static void take_sample(uint32_t t_us, uint32_t period_us)
+/* Begins the way of one that is missing: before the oldest sample, or by now where none is on its way. */
+static bool fill_gap(void)
 {
-    adxl345_sample_t sample;
-    if (!adxl345_take(&sample)) {
-        return;
+    uint32_t t_us = pass_us;
+    bool queued = adxl345_oldest_us(&t_us);
+    if (!coast_due(t_us)) {
+        return false;
     }
-    if (coast_too_late(t_us)) {
-        health_sample_filtered();
-    } else {
-        coast_end(t_us, period_us);
-        pipeline_sample(&sample);
-        row_due = true;
+    if (!queued && !sample_due()) {
+        coast_wait(t_us);
+        return false;
     }
+    return (queued || !adxl345_sample_coming()) && coast_over(adxl345_period_us(), queued);
 }
 
-/* Begins the way of the oldest sample, or of one that is missing before it, or by now where none is on its way. */
+/* Begins the way of the next sample. One that is in the queue came before this pass. */
 static bool next_sample(void)
 {
-    uint32_t period_us = adxl345_period_us();
-    uint32_t now_us = hal_time_us();
-    uint32_t t_us = now_us;
+    adxl345_sample_t sample;
+    row_due = coast_due(pass_us) && fill_gap();
+    if (!row_due && !adxl345_take(&sample)) {
+        return false;
+    }
+    if (!row_due) {
+        row_due = coast_sample(sample.t_us, adxl345_period_us());
+        if (row_due) {
+            pipeline_sample(&sample);
+        } else {
+            health_sample_filtered(); /* its row is out already */
+        }
+    }
     pipeline_flag(adxl345_marks());
-    bool queued = adxl345_oldest_us(&t_us);
-    bool known = queued || (sample_due() && !adxl345_sample_coming());
-    if (known && coast_over(t_us, period_us, queued)) {
-        row_due = true;
-        row_missing = true;
-        return true;
-    }
-    if (queued) {
-        take_sample(t_us, period_us);
-    } else if (!sample_due()) {
-        coast_wait(now_us);
-    }
-    return queued;
+    return true;
 }
 
 /* One piece of the samples' way; false: there is nothing to do. */
@@ -344,24 +340,22 @@ static void service(uint32_t now_us)
     health_pass(now_us);
 }
 
+/* A row that is due and waits for a sample to be read has no moment of its own; that of a stopped driver is past. */
 static void set_alarm(void)
 {
-    uint32_t t_us;
-    bool driver_waits = adxl345_alarm_us(&t_us);
-    uint32_t row_us = coast_due_us(adxl345_period_us());
-    if (sample_due() && !(driver_waits && hal_time_reached(row_us, t_us))) {
+    uint32_t t_us = adxl345_deadline_us();
+    uint32_t row_us = coast_due_us();
+    if (hal_time_reached(t_us, row_us) && !coast_due(pass_us)) {
         t_us = row_us;
-        driver_waits = true;
     }
-    if (driver_waits) {
-        hal_wake_at(t_us);
-    }
+    hal_wake_at(t_us);
 }
 
 /* Where something is left to do that waits for no interrupt. */
 static void wake_if_work_left(void)
 {
-    if (row_due || changes != 0 || pipeline_changing() || adxl345_queued() != 0 || !replies_empty()) {
+    if (row_due || changes != 0 || pipeline_changing() || adxl345_queued() != 0 || coast_due(pass_us) ||
+        !replies_empty()) {
         hal_wake();
     }
 }
@@ -371,6 +365,7 @@ void app_pass(void)
 {
     pass.began = hal_time_lap();
     uint32_t now_us = hal_time_us();
+    pass_us = now_us;
     if (!HANGS(HEALTH_SAMPLING)) {
         adxl345_poll(now_us);
         health_driver_polled();

@@ -7,64 +7,66 @@
 
 #define LONG_STEP_US UINT32_C(100000)
 
+typedef enum {
+    STATE_WAITING, /* for the first sample */
+    STATE_RUNNING,
+    STATE_COASTING /* the newest row is of a sample that is missing */
+} state_t;
+
 static struct {
-    uint32_t next_us;    /* time of the sample that comes next */
-    uint32_t counted_us; /* a period after the newest one that has come */
-    bool waiting;        /* for the first sample */
+    uint32_t next_us; /* time of the sample that comes next */
+    uint32_t due_us;  /* then it is missing */
+    uint32_t lost_us; /* COASTING: the same as it was behind the newest sample that has come */
+    uint8_t state;    /* state_t */
 } coast;
+
+static void expect(uint32_t t_us, uint32_t period_us)
+{
+    coast.next_us = t_us;
+    coast.due_us = t_us + (period_us >> 1);
+}
 
 void coast_wait(uint32_t now_us)
 {
-    coast.waiting = true;
-    coast.next_us = now_us + LONG_STEP_US;
+    coast.state = STATE_WAITING;
+    expect(now_us + LONG_STEP_US, 0);
 }
 
-bool coast_too_late(uint32_t t_us)
+bool coast_due(uint32_t t_us)
 {
-    bool late = !coast.waiting && hal_time_reached(pipeline_newest_us(), t_us);
-    if (late) {
-        count(COUNT_LATE);
-    }
-    return late;
+    return hal_time_reached(t_us, coast.due_us);
 }
 
-uint32_t coast_due_us(uint32_t period_us)
+uint32_t coast_due_us(void)
 {
-    return coast.next_us + (period_us >> 1);
+    return coast.due_us;
 }
 
-/* Those that did not come before a sample; once for each, however long it waits. */
-static void count_missing_before(uint32_t t_us, uint32_t period_us)
+bool coast_over(uint32_t period_us, bool sample)
 {
-    uint32_t behind_us = t_us + (period_us >> 1) - coast.counted_us;
-    if (!coast.waiting && hal_time_reached(behind_us, period_us)) {
-        count_lost(behind_us / period_us);
-    }
-    if (coast.waiting || hal_time_reached(t_us + period_us, coast.counted_us)) { /* not one that is too late */
-        coast.counted_us = t_us + period_us;
-    }
-}
-
-bool coast_over(uint32_t t_us, uint32_t period_us, bool sample)
-{
-    if (sample) {
-        count_missing_before(t_us, period_us);
-    }
-    bool skip = sample && (coast.waiting || pipeline_holds());
-    if (skip || !hal_time_reached(t_us, coast_due_us(period_us))) {
+    if (sample && (coast.state == STATE_WAITING || pipeline_holds())) {
         return false;
     }
-    pipeline_coast(coast.next_us);
-    if (pipeline_long_silent()) {
-        coast.next_us += LONG_STEP_US;
-    } else {
-        coast.next_us += period_us;
+    if (coast.state == STATE_RUNNING) {
+        coast.state = STATE_COASTING;
+        coast.lost_us = coast.due_us;
     }
+    pipeline_coast(coast.next_us);
+    expect(coast.next_us + (pipeline_long_silent() ? LONG_STEP_US : period_us), period_us);
     return true;
 }
 
-void coast_end(uint32_t t_us, uint32_t period_us)
+bool coast_sample(uint32_t t_us, uint32_t period_us)
 {
-    coast.waiting = false;
-    coast.next_us = t_us + period_us;
+    if (coast.state != STATE_WAITING && hal_time_reached(pipeline_newest_us(), t_us)) {
+        coast.lost_us = t_us + period_us + (period_us >> 1);
+        count(COUNT_LATE);
+        return false;
+    }
+    if (coast.state == STATE_COASTING && hal_time_reached(t_us, coast.lost_us)) {
+        count_lost((t_us - coast.lost_us) / period_us + 1u);
+    }
+    coast.state = STATE_RUNNING;
+    expect(t_us + period_us, period_us);
+    return true;
 }

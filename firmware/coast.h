@@ -14,20 +14,23 @@
 /* No sample is expected yet: none is missing before the first one, whenever that comes. Called as often as you like. */
 void coast_wait(uint32_t now_us);
 
-/* A sample with this time is older than the newest row: not to be used. Counts it. */
-bool coast_too_late(uint32_t t_us);
+/* At this time the next sample is missing, if it has not come. */
+bool coast_due(uint32_t t_us);
+
+/* When that will be. */
+uint32_t coast_due_us(void);
 
 /*
- * True when a sample is missing before t, one that has come (sample) or the present, and the pipeline has filled its
- * place: call again until it is false. period_us: between samples. Before a sample that comes after a long gap the rows
- * that were not written meanwhile are left out.
+ * A sample is missing, before one that has come (sample) or the present: true when the pipeline fills its place.
+ * period_us: between samples. Before a sample that comes after a long gap the rows that were not written meanwhile are
+ * left out.
  */
-bool coast_over(uint32_t t_us, uint32_t period_us, bool sample);
+bool coast_over(uint32_t period_us, bool sample);
 
-/* When the next sample will be missing, if it has not come. */
-uint32_t coast_due_us(uint32_t period_us);
-
-/* This sample goes into the pipeline: none is missing, and the next is expected a period later. */
-void coast_end(uint32_t t_us, uint32_t period_us);
+/*
+ * A sample with this time has come. True: it goes into the pipeline; those that did not come before it are counted, and
+ * the next is expected a period later. False: it is not after the newest row, which is counted, and not to be used.
+ */
+bool coast_sample(uint32_t t_us, uint32_t period_us);
 
 #endif

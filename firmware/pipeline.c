@@ -87,23 +87,28 @@ static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool 
 static bool change_axis(void)
 {
     enum { STEP_INIT, STEP_NOISE, STEP_RESET };
-    filter_any_t *filter = &pipe.filter[pipe.axis];
-    noise_t *noise = &pipe.noise[pipe.axis];
+    uint8_t axis = pipe.axis;
+    filter_any_t *filter = &pipe.filter[axis];
+    noise_t *noise = &pipe.noise[axis];
     FX_FENCE_OF(filter); /* else both addresses are computed anew at each use */
     FX_FENCE_OF(noise);
     uint8_t step = pipe.step++;
     if (step == STEP_INIT) {
         if (pipe.new_noise) {
-            noise_init(noise, pipe.rate_dhz, pipe.axis == 2);
+            noise_init(noise, pipe.rate_dhz, axis == 2);
         }
         init_filter(filter);
         return false;
     }
     if (step == STEP_NOISE) {
         filter_any_set_noise(filter, noise_r_lsb2_q8(noise));
-        return !pipe.has_sample;
+        if (pipe.has_sample) {
+            return false;
+        }
+        pipe.away[axis] = 0;
+        return true;
     }
-    int16_t lsb = (int16_t)((pipe.estimate_q8[pipe.axis] + 128) >> 8);
+    int16_t lsb = (int16_t)((pipe.estimate_q8[axis] + 128) >> 8);
     return !filter_any_reset_step(filter, lsb, (uint8_t)(step - STEP_RESET));
 }
 
@@ -122,11 +127,6 @@ FX_NOINLINE void change_step(void)
 
 void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)
 {
-    pipe.missing = 0;
-    pipe.quarters = 0;
-    for (uint8_t axis = 0; axis < AXES; axis++) {
-        pipe.away[axis] = 0;
-    }
     begin(filter_kind, rate_dhz, range_g, false);
 }
 
@@ -217,7 +217,7 @@ static bool near_estimate(uint8_t axis, int16_t lsb)
  * from it may be a bad reading: with the second on end the filter begins anew, with the noise as it is known. That is
  * work of its own, amid the sample's.
  */
-FX_NOINLINE bool rejoins(uint8_t axis, int16_t lsb)
+static bool rejoins(uint8_t axis, int16_t lsb)
 {
     if (!near_estimate(axis, lsb)) {
         if (pipe.away[axis]++ < AWAY_SAMPLES) {
@@ -242,7 +242,8 @@ static void update_axis(uint8_t axis)
     collect_flags(filter_any_flags(filter));
 }
 
-static void filter_axis(uint8_t axis)
+/* What comes before the filter of an axis; false: it does not take the sample, or begins anew before it does. */
+static bool prepare_axis(uint8_t axis)
 {
     int16_t lsb = pipe.lsb[axis];
     bool clipped = lsb >= pipe.rail_high_lsb || lsb <= (int16_t)(-pipe.rail_high_lsb - 1);
@@ -251,10 +252,7 @@ static void filter_axis(uint8_t axis)
     } else if (noise_update(&pipe.noise[axis], lsb)) {
         filter_any_set_noise(&pipe.filter[axis], noise_r_lsb2_q8(&pipe.noise[axis]));
     }
-    if (pipe.away[axis] != 0 && (!rejoins(axis, lsb) || pipe.work == WORK_RENEW)) {
-        return;
-    }
-    update_axis(axis);
+    return pipe.away[axis] == 0 || (rejoins(axis, lsb) && pipe.work != WORK_RENEW);
 }
 
 static void count_sample(void)
@@ -283,7 +281,7 @@ static void end_sample(void)
     pipe.flags |= pipe.kept_flags;
 }
 
-FX_NOINLINE bool renewed(void)
+static bool renewed(void)
 {
     if (!change_axis()) {
         return false;
@@ -291,25 +289,23 @@ FX_NOINLINE bool renewed(void)
     pipe.work = WORK_SAMPLE;
     pipe.has_sample = true;
     pass.limit = PASS_US / HAL_LAP_US;
-    update_axis(pipe.axis);
     return true;
 }
 
 /* One axis of a sample, or of one that is missing; a part of it while its filter begins anew. */
 static void axis_step(void)
 {
+    uint8_t axis = pipe.axis;
     if (pipe.work == WORK_COAST) {
-        coast_axis(pipe.axis);
-    } else if (pipe.work == WORK_SAMPLE) {
-        filter_axis(pipe.axis);
-        if (pipe.work == WORK_RENEW) {
-            return;
-        }
-    } else if (!renewed()) {
+        coast_axis(axis);
+    } else if (pipe.work == WORK_SAMPLE ? prepare_axis(axis) : renewed()) {
+        update_axis(axis);
+    } else if (pipe.work == WORK_RENEW) {
         return;
     }
-    pipe.axis++;
-    if (pipe.axis == AXES) {
+    axis++;
+    pipe.axis = axis;
+    if (axis == AXES) {
         if (pipe.work == WORK_SAMPLE) {
             end_sample();
         }

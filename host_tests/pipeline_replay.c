@@ -181,12 +181,13 @@ static void print_row(void)
 /* A row for each sample, and for each that is missing before it while the filters predict. */
 static void filter_and_print(const adxl345_sample_t *sample, uint32_t period_us)
 {
-    while (coast_over(sample->t_us, period_us, true)) {
+    while (coast_due(sample->t_us) && coast_over(period_us, true)) {
         print_row();
     }
-    coast_end(sample->t_us, period_us);
-    pipeline_sample(sample);
-    print_row();
+    if (coast_sample(sample->t_us, period_us)) {
+        pipeline_sample(sample);
+        print_row();
+    }
 }
 
 /* Missing rows are no samples: the sample path finds the gap by the next one's time. */

@@ -84,10 +84,7 @@ void board_run_ms(double ms)
 
 void board_driver_sleep(void)
 {
-    uint32_t t_us;
-    if (adxl345_alarm_us(&t_us)) {
-        hal_wake_at(t_us);
-    }
+    hal_wake_at(adxl345_deadline_us());
     hal_sleep_until_wake();
 }
 

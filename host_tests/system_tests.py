@@ -208,7 +208,7 @@ def two_runs_are_identical_and_a_changed_input_is_not():
 def output_is_a_valid_stream():
     rows, _, _, _ = simrun("first", STREAMS / "tilt-fast.csv")
     again, _, served, _ = simrun("second", OUT / "first.csv")
-    assert triplets(served) == [r[1:4] for r in rows]
+    assert triplets(served) == [r[1:4] for r in rows if not r[9] & 2]
 
 
 # --- faults and resets ------------------------------------------------------------------------------------------------

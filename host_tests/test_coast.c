@@ -65,6 +65,11 @@ static void begin(uint8_t kind, uint16_t rate_dhz, double slope)
     pipeline_finish();
 }
 
+static bool missing_by(uint32_t t_us, bool sample)
+{
+    return coast_due(t_us) && coast_over(world.period_us, sample);
+}
+
 static void sample(void)
 {
     double sigma = world.quiet ? 0.0 : NOISE_LSB_PER_ROOT_HZ * sqrt(world.rate_dhz / 10.0);
@@ -74,11 +79,10 @@ static void sample(void)
                  (int16_t)lround(256.0 * sin(world.roll_deg * DEGREES) + sigma * random_normal(&world.random)),
                  (int16_t)lround(256.0 * cos(world.roll_deg * DEGREES) + 1.3 * sigma * random_normal(&world.random)) }
     };
-    while (coast_over(s.t_us, world.period_us, true)) {
+    while (missing_by(s.t_us, true)) {
         take_row();
     }
-    TEST_ASSERT_FALSE(coast_too_late(s.t_us));
-    coast_end(s.t_us, world.period_us);
+    TEST_ASSERT_TRUE(coast_sample(s.t_us, world.period_us));
     pipeline_sample(&s);
     take_row();
 }
@@ -104,7 +108,7 @@ static void gap(unsigned missing)
     uint32_t now_us = world.t_us;
     while (end_us - now_us > 4000u) {
         now_us += 4000u;
-        while (coast_over(now_us, world.period_us, false)) {
+        while (missing_by(now_us, false)) {
             take_row();
         }
     }
@@ -200,7 +204,7 @@ static void test_rate_is_halved_every_25_ms_and_then_held(void)
         samples(200);
         int before_cdeg = world.row.roll_cdeg;
         for (unsigned n = 1; n <= 60u; n++) {
-            TEST_ASSERT_TRUE(coast_over(world.t_us + n * world.period_us + 5000u, world.period_us, false));
+            TEST_ASSERT_TRUE(missing_by(world.t_us + n * world.period_us + 5000u, false));
             take_row();
             double steps = n <= 2u ? n : 2.0 + 0.5 * fmin(n - 2.0, 3.0);
             steps += n <= 5u ? 0.0 : 0.25 * fmin(n - 5.0, 2.0);
@@ -220,8 +224,8 @@ static void test_rows_of_missing_samples(void)
     uint32_t last_us = world.t_us;
     for (unsigned n = 1; n <= 460u; n++) {
         uint32_t due_us = n <= 401u ? n * 2500u : 1002500u + (n - 401u) * 100000u;
-        TEST_ASSERT_FALSE(coast_over(last_us + due_us + 1249u, world.period_us, false));
-        TEST_ASSERT_TRUE(coast_over(last_us + due_us + 1250u, world.period_us, false));
+        TEST_ASSERT_FALSE(missing_by(last_us + due_us + 1249u, false));
+        TEST_ASSERT_TRUE(missing_by(last_us + due_us + 1250u, false));
         take_row();
         TEST_ASSERT_EQUAL_UINT32(last_us + due_us, world.row.t_us);
         TEST_ASSERT_EQUAL_HEX16(n < 3u ? ROW_COASTED : ROW_COASTED | ROW_FAULT, world.row.flags);
@@ -274,14 +278,15 @@ static void test_samples_older_than_the_newest_row_are_dropped(void)
     begin(0, 1000, 0.0);
     samples(100);
     uint32_t last_us = world.t_us;
-    TEST_ASSERT_TRUE(coast_too_late(last_us));
-    TEST_ASSERT_FALSE(coast_too_late(last_us + 1u));
-    TEST_ASSERT_TRUE(coast_over(last_us + 15000u, world.period_us, false));
-    TEST_ASSERT_TRUE(coast_too_late(last_us + 10000u));
-    TEST_ASSERT_FALSE(coast_too_late(last_us + 10001u));
+    TEST_ASSERT_FALSE(coast_sample(last_us, world.period_us));
+    TEST_ASSERT_TRUE(missing_by(last_us + 15000u, false));
+    TEST_ASSERT_FALSE(coast_sample(last_us + 10000u, world.period_us));
     TEST_ASSERT_EQUAL_UINT32(2, counters[COUNT_LATE]);
-    coast_wait(last_us); /* stopped for an hour: any time may come */
-    TEST_ASSERT_FALSE(coast_too_late(last_us - 1u));
+    TEST_ASSERT_TRUE(coast_sample(last_us + 10001u, world.period_us));
+    TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LOST]); /* late, not lost */
+    coast_wait(last_us);                               /* stopped for an hour: any time may come */
+    TEST_ASSERT_TRUE(coast_sample(last_us - 1u, world.period_us));
+    TEST_ASSERT_EQUAL_UINT32(2, counters[COUNT_LATE]);
 }
 
 /* One bad reading is all that comes back from a hold: refused, and the filter goes on from what was held. */

@@ -34,6 +34,17 @@ static int16_t row_mg(const chain_t *chain)
     return (int16_t)((x_lsb_q8 * 1000 + 32768) >> 16);
 }
 
+static void filter_sample(const adxl345_sample_t *sample, uint32_t period_us)
+{
+    while (coast_due(sample->t_us) && coast_over(period_us, true)) {
+        pipeline_finish();
+        pipeline_row_done();
+    }
+    TEST_ASSERT_TRUE(coast_sample(sample->t_us, period_us));
+    pipeline_sample(sample);
+    pipeline_finish();
+}
+
 static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t rate_dhz, uint8_t range_g)
 {
     chain_t chain[3];
@@ -49,13 +60,7 @@ static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t
         adxl345_sample_t sample = { .t_us = (uint32_t)in->t_us, .lsb = { in->lsb[0], in->lsb[1], in->lsb[2] } };
         row_t row;
         uint16_t flags = 0;
-        while (coast_over(sample.t_us, chain[0].period_us, true)) {
-            pipeline_finish();
-            pipeline_row_done();
-        }
-        coast_end(sample.t_us, chain[0].period_us);
-        pipeline_sample(&sample);
-        pipeline_finish();
+        filter_sample(&sample, chain[0].period_us);
         pipeline_row(&row);
         pipeline_row_done();
         for (int axis = 0; axis < 3; axis++) {

@@ -124,11 +124,11 @@ static void row_item(uint8_t mode, uint16_t index)
         sample.lsb[axis] = (int16_t)(noise_lsb - 100 * (int16_t)axis + (int16_t)(index & 0xFFU));
         vectors_input((uint16_t)sample.lsb[axis]);
     }
-    while (coast_over(now_us, period_us, true)) {
+    while (coast_due(now_us) && coast_over(period_us, true)) {
         pipeline_finish();
         rows_sample();
     }
-    coast_end(now_us, period_us);
+    (void)coast_sample(now_us, period_us);
     pipeline_sample(&sample);
     pipeline_finish();
     rows_sample();

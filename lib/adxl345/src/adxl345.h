@@ -88,11 +88,11 @@ adxl345_phase_t adxl345_phase(void);
 /* While ADXL345_STREAMING with a fault samples go on: something is wrong with them, or with how they come. */
 adxl345_fault_t adxl345_fault(void);
 
-/* The moment by which adxl345_poll must have acted: a poll later than this means that main is stuck. */
+/*
+ * The moment by which adxl345_poll must have acted, which main passes to hal_wake_at before it sleeps: a poll later
+ * than this means that main is stuck. Past, and of no meaning, while the driver is stopped.
+ */
 uint32_t adxl345_deadline_us(void);
-
-/* The same for main, which passes it to hal_wake_at before it sleeps. False: none, the driver is stopped. */
-bool adxl345_alarm_us(uint32_t *t_us);
 
 /* 7-bit address that answered last (0x53 before any did), and the DEVID read there. */
 uint8_t adxl345_address(void);

@@ -64,12 +64,6 @@ uint32_t adxl345_deadline_us(void)
     return driver.deadline_us;
 }
 
-bool adxl345_alarm_us(uint32_t *t_us)
-{
-    *t_us = driver.deadline_us;
-    return driver.step != STEP_OFF;
-}
-
 uint8_t adxl345_address(void)
 {
     return driver.address;
