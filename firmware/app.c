@@ -271,10 +271,10 @@ static bool next_sample(void)
 {
     adxl345_sample_t sample;
     row_due = coast_due(pass_us) && fill_gap();
-    if (!row_due && !adxl345_take(&sample)) {
-        return false;
-    }
     if (!row_due) {
+        if (!adxl345_take(&sample)) {
+            return false;
+        }
         row_due = coast_sample(sample.t_us, adxl345_period_us());
         if (row_due) {
             pipeline_sample(&sample);

@@ -84,6 +84,14 @@ static void probe(void)
     (void)take_bus();
 }
 
+/* With a new configuration; what was measured of a sensor that has to be found again still holds. */
+static void begin(void)
+{
+    burst_set_period(driver.nominal_us);
+    driver.alternate_tried = false;
+    probe();
+}
+
 void adxl345_init(void)
 {
     burst_init();
@@ -112,8 +120,7 @@ void adxl345_start(const adxl345_config_t *config)
     driver.stop_wanted = false;
     driver.back_off_ms = BACK_OFF_MIN_MS;
     if (!quiescing) {
-        driver.alternate_tried = false;
-        probe();
+        begin();
     }
 }
 
@@ -175,7 +182,6 @@ static void timed_out(void)
 static void start_measuring(void)
 {
     burst_set_mode(BURST_READ);
-    burst_set_period(driver.nominal_us);
     integrity_start(driver.config.range_g);
     driver.first_sample_seen = false;
     driver.timed = TIMED_NONE;
@@ -401,8 +407,7 @@ static void drain_step(void)
         stopped();
         return;
     }
-    driver.alternate_tried = false;
-    probe();
+    begin();
 }
 
 void adxl345_poll(uint32_t now_us)
