@@ -138,6 +138,25 @@ def frozen_sensor_latches_one_reading_again_and_again():
 
 
 @test
+def frozen_sensor_is_flagged_from_the_tenth_reading_and_told_once():
+    rows, notes, served, _ = injected("stuck", "2000ms:frozen:1000", judge=True, max_ms=5000)
+    held = next(lsb for s, lsb in zip(served, triplets(served)) if 2500000 < int(s["t_us"]))
+    inside = [i for i, row in enumerate(rows) if row[1:4] == held and 1900000 < row[0] < 3005000]
+    assert inside == list(range(inside[0], inside[-1] + 1)) and 100 <= len(inside) <= 102, inside
+    assert [i for i, row in enumerate(rows) if row[9] & 32] == inside[9:], "flag 32"
+    assert [n.split(":")[0] for n in notes if n.startswith("# fault")] == ["# fault 10", "# fault 10 over"], notes
+
+
+@test
+def doubled_axis_is_told_as_two_sensors_and_one_doubled_reading_is_not():
+    rows, notes, _, stats = injected("two", *[f"{2000 + 100 * i}ms:double:z" for i in range(20)], judge=False, max_ms=8000)
+    assert [n.split(":")[0] for n in notes if n.startswith("# fault")] == ["# fault 12", "# fault 12 over"], notes
+    assert stats["samples_altered"] == 20 and not any(row[9] & (16 | 32 | 64) for row in rows)
+    _, notes, _, stats = injected("one", *[f"{2000 + 500 * i}ms:double:z" for i in range(10)], judge=False, max_ms=8000)
+    assert stats["samples_altered"] == 10 and not any(n.startswith("# fault") for n in notes), notes
+
+
+@test
 def storm_on_int1_comes_at_its_rate():
     edges = injected("calm", judge=True, max_ms=3000)[3]["isr_int0_n"]
     rows, _, served, stats = injected("storm", "1000ms:storm:1000:500", max_ms=3000)

@@ -65,7 +65,7 @@ static void test_values_of_a_resting_board(void)
     TEST_ASSERT_EQUAL_INT(969, row->mg[2]);
     TEST_ASSERT_INT_WITHIN(6, -1206, row->roll_cdeg);
     TEST_ASSERT_INT_WITHIN(6, -697, row->pitch_cdeg);
-    TEST_ASSERT_EQUAL_UINT(0, row->flags);
+    TEST_ASSERT_EQUAL_UINT(ROW_STUCK, row->flags);
     stream_free(&still);
 }
 

@@ -1,7 +1,11 @@
 /* The verdict on a reading: what each byte and bit of it must be, and what is counted. */
+#include <math.h>
+#include <string.h>
+
 #include "adxl345.h"
 #include "adxl345_integrity.h"
 #include "adxl345_table.h"
+#include "support_random.h"
 #include "unity.h"
 
 enum { PATTERN = 0x8A };
@@ -104,6 +108,87 @@ static void test_counters_saturate(void)
     TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, readings.overruns);
 }
 
+/* The tenth equal triplet in a row and all that follow it, until one differs in one axis. */
+static void test_the_tenth_equal_reading_is_stuck(void)
+{
+    for (unsigned axis = 0; axis < 3; axis++) {
+        uint8_t reading[READING_BYTES] = { 0x80, 0x0B, 1, 0, 2, 0, 3, 0, PATTERN, 0 };
+        int16_t lsb[2][3] = { { 0 }, { 0 } };
+        integrity_start(16);
+        for (unsigned i = 1; i <= 300; i++) {
+            TEST_ASSERT_EQUAL(READING_GOOD, integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]));
+            TEST_ASSERT_EQUAL(i >= 10, integrity_stuck());
+        }
+        reading[READING_DATA + 2 * axis]++;
+        TEST_ASSERT_EQUAL(READING_GOOD, integrity_judge(reading, lsb[1], lsb[0]));
+        TEST_ASSERT_FALSE(integrity_stuck());
+    }
+}
+
+/* The chance of a code for a true value that lies offset_lsb beside it. */
+static double code_chance(double sigma_lsb, double offset_lsb)
+{
+    double scale = 1.0 / (sigma_lsb * sqrt(2.0));
+    return 0.5 * (erf((offset_lsb + 0.5) * scale) - erf((offset_lsb - 0.5) * scale));
+}
+
+/* That so many readings of all axes at rest are equal, for the most unfavourable true values. */
+static double equal_chance(const double sigma_lsb[3], unsigned readings)
+{
+    double chance = 1.0;
+    for (unsigned axis = 0; axis < 3; axis++) {
+        double worst = 0.0;
+        for (double fraction = 0.0; fraction <= 0.5; fraction += 0.01) {
+            double sum = 0.0;
+            for (int code = -8; code <= 8; code++) {
+                sum += pow(code_chance(sigma_lsb[axis], code - fraction), readings);
+            }
+            worst = fmax(worst, sum);
+        }
+        chance *= worst;
+    }
+    return chance;
+}
+
+/* By the data sheet (p. 4) and by the quietest recording; the sum over codes is judged by what is drawn below. */
+static const double data_sheet_lsb[] = { 0.75, 0.75, 1.1 };
+
+static void test_the_bound_of_a_false_alarm(void)
+{
+    static const double recorded_lsb[] = { 0.72, 0.78, 0.99 };
+    const unsigned readings = ADXL345_STUCK_REPEATS + 1u;
+    TEST_ASSERT_TRUE(equal_chance(data_sheet_lsb, readings) < 2.4e-11);
+    TEST_ASSERT_TRUE(equal_chance(recorded_lsb, readings) < 8e-11);
+    TEST_ASSERT_TRUE(equal_chance(recorded_lsb, readings - 1u) > 8e-11);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1e-9, 3.3e-9, equal_chance(data_sheet_lsb, 8));
+}
+
+/* Ten million samples at rest on whole codes: 2.3e-11 each. Of four equal ones there are as many as derived. */
+static void test_noise_is_never_stuck(void)
+{
+    enum { SAMPLES = 10000000 };
+    uint8_t reading[READING_BYTES] = { 0x80, 0x0B, 0, 0, 0, 0, 0, 0, PATTERN, 0 };
+    int16_t lsb[2][3] = { { 0 }, { 0 } };
+    unsigned run = 0;
+    unsigned fours = 0;
+    test_random_t random;
+    random_seed(&random, 20261122u);
+    integrity_start(16);
+    for (unsigned i = 0; i < SAMPLES; i++) {
+        for (unsigned axis = 0; axis < 3; axis++) {
+            uint16_t word = (uint16_t)(100 + lround(data_sheet_lsb[axis] * random_normal(&random)));
+            reading[READING_DATA + 2 * axis] = (uint8_t)word;
+            reading[READING_DATA + 2 * axis + 1] = (uint8_t)(word >> 8);
+        }
+        (void)integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]);
+        TEST_ASSERT_FALSE(integrity_stuck());
+        run = memcmp(lsb[0], lsb[1], sizeof lsb[0]) == 0 ? run + 1 : 0;
+        fours += run >= 3;
+    }
+    double expected = SAMPLES * equal_chance(data_sheet_lsb, 4);
+    TEST_ASSERT_DOUBLE_WITHIN(8.0 * sqrt(expected), expected, fours);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -112,5 +197,8 @@ int main(void)
     RUN_TEST(test_every_single_flip_of_pattern_and_status);
     RUN_TEST(test_ones_on_all_axes_are_nobody);
     RUN_TEST(test_counters_saturate);
+    RUN_TEST(test_the_tenth_equal_reading_is_stuck);
+    RUN_TEST(test_the_bound_of_a_false_alarm);
+    RUN_TEST(test_noise_is_never_stuck);
     return UNITY_END();
 }

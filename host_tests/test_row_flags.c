@@ -1,5 +1,6 @@
 /* Each flag of a row: a stream that must raise it and one beside it that must not. */
 #include <stdio.h>
+#include <string.h>
 
 #include "pipeline.h"
 #include "support_board.h"
@@ -9,7 +10,10 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-/* Flags of the last of 60 rows of a board that reads (x, y, z), after the command if there is one. */
+/*
+ * Flags of the last of 60 rows of a board that reads (x, y, z), after the command if there is one; without that of a
+ * sensor that repeats itself.
+ */
 static unsigned flags_of(const char *command, int16_t x, int16_t y, int16_t z)
 {
     stream_t stream = board_constant_stream(400, 100.0, x, y, z);
@@ -20,7 +24,7 @@ static unsigned flags_of(const char *command, int16_t x, int16_t y, int16_t z)
     }
     board_run_ms(600);
     stream_free(&stream);
-    return board.rows[board.row_count - 1].flags;
+    return board.rows[board.row_count - 1].flags & ~(unsigned)ROW_STUCK;
 }
 
 /* 0.85 g are 217.6 LSB, 1.15 g are 294.4. */
@@ -81,6 +85,51 @@ static void test_missing_samples_are_coasted_over(void)
     stream_free(&ramp);
 }
 
+/* A sensor hangs on one reading for 60 samples: the tenth and those behind it are marked, the fault is told once. */
+static void test_stuck_from_the_tenth_equal_reading_on(void)
+{
+    stream_t stream = board_noisy_stream(1000, 100.0, 1.5, 11u);
+    for (size_t i = 301; i < 360; i++) {
+        memcpy(stream.rows[i].lsb, stream.rows[300].lsb, sizeof stream.rows[i].lsb);
+    }
+    board_start(&stream, 0.0, 0);
+    board_run_ms(8000);
+    size_t equal = 0;
+    size_t marked = 0;
+    for (size_t i = 1; i < board.row_count; i++) {
+        bool same = memcmp(board.rows[i].lsb, board.rows[i - 1].lsb, sizeof board.rows[i].lsb) == 0;
+        equal = same ? equal + 1 : 0;
+        TEST_ASSERT_EQUAL_UINT(equal >= 9 ? ROW_STUCK : 0, board.rows[i].flags & (ROW_STUCK | ROW_FAULT));
+        marked += equal >= 9;
+    }
+    TEST_ASSERT_EQUAL_size_t(51, marked);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 10: the values do not change: check ", 0));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 10 over: ", 0));
+    TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# fault", 0));
+    stream_free(&stream);
+}
+
+/* One reading of z in ten is doubled for 3 s: told once, and once that it is over, within 2.6 s. */
+static void test_two_sensors_are_told(void)
+{
+    stream_t stream = board_noisy_stream(1500, 100.0, 1.5, 12u);
+    for (size_t i = 300; i < 600; i += 10) {
+        stream.rows[i].lsb[2] = (int16_t)(2 * stream.rows[i].lsb[2]);
+    }
+    board_start(&stream, 0.0, 0);
+    board_run_ms(2900);
+    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault", 0));
+    board_run_ms(3100);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 12: values jump to their double: check for two sensors", 0));
+    board_run_ms(2700);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 12 over: ", 0));
+    TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# fault", 0));
+    for (size_t i = 0; i < board.row_count; i++) {
+        TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & (ROW_STUCK | ROW_FAULT | ROW_INTEGRITY));
+    }
+    stream_free(&stream);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -88,5 +137,7 @@ int main(void)
     RUN_TEST(test_roll_undefined_is_flagged_and_held);
     RUN_TEST(test_clipped_at_the_rails_of_the_range_in_force);
     RUN_TEST(test_missing_samples_are_coasted_over);
+    RUN_TEST(test_stuck_from_the_tenth_equal_reading_on);
+    RUN_TEST(test_two_sensors_are_told);
     return UNITY_END();
 }

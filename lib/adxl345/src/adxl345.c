@@ -10,6 +10,7 @@
 #include "adxl345_integrity.h"
 #include "adxl345_registers.h"
 #include "adxl345_table.h"
+#include "adxl345_watch.h"
 #include "hal_drdy.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
@@ -183,6 +184,7 @@ static void start_measuring(void)
 {
     burst_set_mode(BURST_READ);
     integrity_start(driver.config.range_g);
+    watch_start();
     driver.first_sample_seen = false;
     driver.timed = TIMED_NONE;
     driver.was_empty = false;

@@ -120,7 +120,7 @@ typedef struct {
 void adxl345_readings(adxl345_readings_t *out);
 
 /* Since the last call: ADXL345_MARK_*, the bits of the row's flags that the driver knows of (docs/protocol.md). */
-enum { ADXL345_MARK_INTEGRITY = 64 };
+enum { ADXL345_MARK_STUCK = 32, ADXL345_MARK_INTEGRITY = 64 };
 uint8_t adxl345_marks(void);
 
 #endif

@@ -12,6 +12,7 @@
 #include "adxl345_burst.h"
 
 #include "adxl345_registers.h"
+#include "adxl345_watch.h"
 #include "hal_drdy.h"
 #include "hal_irq.h"
 #include "hal_sleep.h"
@@ -375,6 +376,7 @@ bool burst_take(burst_entry_t *out)
     }
     *out = queue[at];
     tail = (uint8_t)((uint8_t)(at + 1u) & QUEUE_MASK);
+    watch_sample(out->sample.lsb, queue[(uint8_t)(at - 1u) & QUEUE_MASK].sample.lsb);
     measure_period(out);
     return true;
 }

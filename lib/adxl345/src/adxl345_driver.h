@@ -33,7 +33,8 @@ typedef struct {
     uint8_t device_id;
     uint8_t fault;
     uint8_t seen_good;
-    bool issued; /* the step's register access is on the bus */
+    uint8_t marks; /* of the samples taken since adxl345_marks */
+    bool issued;   /* the step's register access is on the bus */
     bool first_sample_seen;
     bool stop_wanted; /* after quiescing: stop, not start */
     bool alternate_tried;

@@ -169,7 +169,7 @@ bool integrity_stuck(void)
     return integrity.equal_run == ADXL345_STUCK_REPEATS;
 }
 
-uint8_t adxl345_marks(void)
+uint8_t integrity_marks(void)
 {
     uint8_t marks = integrity.failed ? ADXL345_MARK_INTEGRITY : 0;
     integrity.failed = false;

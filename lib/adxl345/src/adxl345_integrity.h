@@ -40,11 +40,16 @@ reading_t integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], 
 uint8_t integrity_good(void);
 
 /*
- * The newest good reading is at least the eighth in a row that is equal on all axes. With the least noise of the data
- * sheet (p. 4: 0.75, 0.75 and 1.1 LSB rms) two samples at rest are equal with a chance of 0.376 x 0.376 x 0.256, seven
- * repeats have 0.036^7 = 8e-11.
+ * The newest good reading is at least the tenth in a row that is equal on all axes.
+ *
+ * Noise does that at rest with a chance of sum over k of p(k)^10 for each axis, p(k) the chance of code k; it is
+ * greatest where the true value is a whole code. The least noise is that of 100 Hz and below: 0.75, 0.75 and 1.1 LSB
+ * rms (data sheet, p. 4 and 33; at every range, because full resolution keeps the LSB), which gives 2.3e-11 a sample,
+ * and 6.0e-11 with that of the quietest recording (0.72, 0.78, 0.99). The chance of two equal ones, 0.036, to the
+ * seventh power is 8e-11 too, but repeats are not independent: once a code is the likeliest one it stays so, and eight
+ * equal ones have 3.3e-9.
  */
-#define ADXL345_STUCK_REPEATS 7u
+#define ADXL345_STUCK_REPEATS 9u
 bool integrity_stuck(void);
 
 /* Why the sensor must be configured anew: ADXL345_FAULT_NO_DATA, ADXL345_FAULT_TORN, or NONE. */
@@ -52,5 +57,8 @@ adxl345_fault_t integrity_fault(void);
 
 /* INT1 was high and the sensor empty three times without a good reading; until 32 of those have left INT1 low. */
 bool integrity_int1_stuck(void);
+
+/* ADXL345_MARK_INTEGRITY when a reading was discarded as BAD or RESET since the last call, else 0. */
+uint8_t integrity_marks(void);
 
 #endif

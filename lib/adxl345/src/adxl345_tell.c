@@ -2,6 +2,7 @@
 #include "adxl345_burst.h"
 #include "adxl345_driver.h"
 #include "adxl345_integrity.h"
+#include "adxl345_watch.h"
 #include "hal_drdy.h"
 
 bool adxl345_take(adxl345_sample_t *out)
@@ -13,13 +14,29 @@ bool adxl345_take(adxl345_sample_t *out)
     if (!entry.exact) {
         saturating_add(&driver.counters.samples_drained);
     }
+    if (entry.stuck) {
+        driver.marks = ADXL345_MARK_STUCK;
+    }
     *out = entry.sample;
     return true;
+}
+
+uint8_t adxl345_marks(void)
+{
+    uint8_t marks = (uint8_t)(driver.marks | integrity_marks());
+    driver.marks = 0;
+    return marks;
 }
 
 uint8_t adxl345_queued(void)
 {
     return burst_queued();
+}
+
+/* Bursts bring samples, or the sensor is being asked why they do not. */
+static bool streams(void)
+{
+    return driver.step == STEP_STREAM || driver.step == STEP_ASK_SOURCE;
 }
 
 bool adxl345_oldest_us(uint32_t *t_us)
@@ -29,12 +46,14 @@ bool adxl345_oldest_us(uint32_t *t_us)
 
 bool adxl345_sample_coming(void)
 {
-    bool read = driver.step == STEP_STREAM || driver.step == STEP_ASK_SOURCE;
-    return read && !burst_found_empty() && (burst_running() || hal_drdy_high());
+    return streams() && !burst_found_empty() && (burst_running() || hal_drdy_high());
 }
 
 adxl345_phase_t adxl345_phase(void)
 {
+    if (streams()) {
+        return driver.first_sample_seen ? ADXL345_STREAMING : ADXL345_STARTING;
+    }
     switch (driver.step) {
     case STEP_OFF:
         return ADXL345_STOPPED;
@@ -43,9 +62,6 @@ adxl345_phase_t adxl345_phase(void)
     case STEP_QUIET_STANDBY:
     case STEP_QUIET_DRAIN:
         return ADXL345_QUIESCING;
-    case STEP_STREAM:
-    case STEP_ASK_SOURCE:
-        return driver.first_sample_seen ? ADXL345_STREAMING : ADXL345_STARTING;
     default:
         return ADXL345_STARTING;
     }
@@ -53,10 +69,16 @@ adxl345_phase_t adxl345_phase(void)
 
 adxl345_fault_t adxl345_fault(void)
 {
-    if (driver.fault == ADXL345_FAULT_NONE && driver.step == STEP_STREAM && integrity_int1_stuck()) {
+    if (driver.fault != ADXL345_FAULT_NONE || !streams()) {
+        return (adxl345_fault_t)driver.fault;
+    }
+    if (integrity_int1_stuck()) {
         return ADXL345_FAULT_INT1_STUCK;
     }
-    return (adxl345_fault_t)driver.fault;
+    if (integrity_stuck()) {
+        return ADXL345_FAULT_STUCK;
+    }
+    return watch_two_sensors() ? ADXL345_FAULT_TWO_SENSORS : ADXL345_FAULT_NONE;
 }
 
 uint32_t adxl345_deadline_us(void)
