@@ -15,7 +15,7 @@ STREAMS = pathlib.Path("sim/streams")
 MADE = pathlib.Path("build/robust")  # streams made for one table only
 RANGE_G = 16
 ROW_COLUMNS = 10
-FLAG_GATED, FLAG_REACQUIRED, FLAG_WARMING_UP = 1, 4, 128
+FLAG_GATED, FLAG_COASTED, FLAG_REACQUIRED, FLAG_WARMING_UP = 1, 2, 4, 128
 MG_PER_LSB = 1000.0 / 256.0
 # roll grows undefined towards pitch 90: noise of the y axis counts 1 / cos(pitch) times, here 5.8 times at most
 PITCH_LIMIT_CDEG = 8000
@@ -95,6 +95,7 @@ def replay(stream, name, changes=()):
         rows = table_of(text.splitlines())
     except ValueError as problem:
         raise Fault(f"{stream.path}: {REPLAY} prints a row that cannot be read: {str(problem).splitlines()[0]}") from problem
+    rows = rows[rows[:, 9] & FLAG_COASTED == 0]  # predictions, in the stead of samples that are missing
     if rows.shape != (len(stream.lsb), ROW_COLUMNS):
         raise Fault(f"{stream.path}: {len(stream.lsb)} rows in, {rows.shape[0]} out")
     return Run(rows[:, 7:9], rows[:, 4:7], rows[:, 9])
