@@ -221,7 +221,7 @@ def judge_ends_the_run_with_its_status_and_names_the_first_row():
 
 @test
 def faults_that_no_firmware_can_see_are_marked():
-    kinds = ("unplug plug power sda scl hang arb buserr nack nackdata devid noint reset mcupower flip noise double frozen storm odr "
+    kinds = ("unplug plug power sda scl hang arb buserr nack nackdata devid noint inthigh reset mcupower flip noise double frozen storm odr "
              "rxflood torn starve overrun brownout mixed glitch clip txstall").split()
     stats = injected("marks", *[f"5000ms:{kind}" for kind in kinds], judge=True, max_ms=100)[3]
     assert [kind for i, kind in enumerate(kinds, 1) if not stats[f"fault_{i}_detectable"]] == ["flip", "noise", "double", "mixed"], stats

@@ -59,6 +59,58 @@ def a_pair_has_the_longer_limit_and_is_judged_from_the_later_end():
 
 
 @test
+def below_100_hz_three_periods_are_granted_and_above_none():
+    rated = {kind.name: kind for kind in faults_runs.rated()}
+    assert {name.partition(",")[0] for name in rated} == set(faults_runs.OF)
+    for name, limit in (("sda, 12.5 Hz", 290), ("sda, 400 Hz", 50), ("sda, 800 Hz", 50), ("power, 12.5 Hz", 390), ("power, 800 Hz", 150)):
+        kind = rated[name]
+        assert kind.limit_ms == limit and f"{kind.rate:g} Hz" in name and kind.what == faults_runs.OF[kind.base].what, kind
+        whens = [float(when[:-2]) for when in faults_runs.moments(kind, 8, 1)]
+        assert whens == sorted(set(whens)) and 1000 <= whens[0] < whens[-1] < 1000 + 2000 / kind.rate, whens
+    done = faults_runs.attempt(FW, "adaptive", (rated["nack, 800 Hz"],), ("1000.4ms",))
+    assert done.injected and done.recovered and not done.failures() and done.ms_to_good < 10, done
+
+
+@test
+def words_choose_kinds_and_pairs():
+    def names(*words):
+        kinds = [kind.name for kind in faults_runs.KINDS if faults.wanted(words, kind)]
+        return kinds, [(a.name, b.name) for a in faults_runs.KINDS for b in faults_runs.KINDS if faults.wanted(words, a, b)]
+
+    assert names("sd", "odr") == (["sda", "odr fast", "odr slow"], [])
+    assert names("sda+noint") == ([], [("sda", "noint"), ("noint", "sda")])
+    assert len(names()[0]) == len(faults_runs.KINDS) and len(names()[1]) == len(faults_runs.KINDS) ** 2
+
+
+@test
+def a_kind_of_several_faults_has_each_at_its_time():
+    kind = next(kind for kind in faults_runs.TYPED if kind.name == "starve again")
+    assert kind.faults("1000.5ms")[:2] == ["1000.5ms:starve:2000", "1450.500ms:starve:2000"]
+    assert faults_runs.OF["devid"].faults("xfer:3.4") == ["xfer:3.4:power:20", "xfer:3.4:devid:0:200"]
+    done = faults_runs.attempt(FW, "adaptive", (kind,), ("1003ms",))
+    assert done.injected and not done.failures() and done.resets == 0, done
+
+
+@test
+def what_is_typed_in_a_run_is_answered():
+    kind = next(kind for kind in faults_runs.TYPED if kind.name == "typed: words")
+    done = faults_runs.attempt(FW, "adaptive", (kind,), ("1000ms",))
+    said = (faults_runs.folder() / "out.csv").read_text(encoding="ascii")
+    assert done.recovered and not done.failures(), done
+    for words in ("# state ", "no command has", "line too long", "unknown command", "# stopped", "# going", "roll_raw:", "mode is one of"):
+        assert words in said, words
+
+
+@test
+def lines_that_no_run_reached_are_missed():
+    profile = set()
+    faults_runs.simulate(FW, "adaptive", max_ms=600, profile=profile)
+    ran, lines, missed = faults.coverage.campaign_lines(FW, {int(address, 16) for address in profile})
+    assert 0.3 * lines < ran < 0.9 * lines and len(missed) >= lines - ran, (ran, lines)
+    assert any("adxl345.c:" in line for line in missed) and any("filter" in line for line in missed)
+
+
+@test
 def phases_are_every_byte_every_stage_and_the_whole_period():
     whens = faults_runs.phases(FW, faults_runs.OF["arb"], "kf", 50)
     bytes_of = [tuple(map(int, w[5:].split("."))) for w in whens if w.startswith("xfer:")]

@@ -106,8 +106,8 @@ static void a_sample_of_the_future_is_wrong(void)
 {
     /* sample 6 comes at 70 ms: this row is sent before; the next is sent after, with a stamp that lies */
     TEST_ASSERT_EQUAL(JUDGE_WRONG, verdict_of(row_of(6, 69000, 0, 999)));
-    TEST_ASSERT_EQUAL(JUDGE_WRONG, verdict_of(row_of(6, 49999, 0, 30000)));
-    TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(6, 50000, 0, 30000)));
+    TEST_ASSERT_EQUAL(JUDGE_WRONG, verdict_of(row_of(6, 39999, 0, 40000)));
+    TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(6, 40000, 0, 40000)));
 }
 
 static void only_five_flags_disown_a_row(void)

@@ -130,7 +130,7 @@ uint64_t sensor_next(void);
 void sensor_step(void);
 void sensor_check_rate(void);
 void sensor_show_pin(void); /* drive D2 anew (after a reset, or when the wire changed) */
-void sensor_cut_int1(bool cut);
+void sensor_hold_int1(bool cut, bool high);
 void sensor_disturb_int1(bool disturbed); /* the wire has the level against the sensor's */
 void sensor_set_clock_error(double ppm);
 uint64_t sensor_last_tick(void);               /* cycle of the last output-data-rate tick, 0: none */
@@ -174,6 +174,7 @@ uint64_t faults_next(void);
 void faults_step(void);
 void faults_on_sample(void);
 void faults_on_byte(uint32_t transfer, uint32_t byte);
+void faults_after_byte(void);
 void faults_on_eeprom_write(uint32_t count);
 extern bool faults_watch_pc;
 void faults_on_pc(uint32_t pc);

@@ -234,6 +234,22 @@ void alter_begin(const fault_t *fault)
     }
 }
 
+bool alter_waits(kind_t kind)
+{
+    switch (kind) {
+    case KIND_FLIP:
+        return flip_bits != 0;
+    case KIND_NOISE:
+        return wanted.sigma_lsb != 0;
+    case KIND_DOUBLE:
+        return wanted.doubled[0] || wanted.doubled[1] || wanted.doubled[2];
+    case KIND_MIXED:
+        return mixing;
+    default:
+        return false;
+    }
+}
+
 void alter_end(const fault_t *fault)
 {
     switch (fault->kind) {

@@ -44,6 +44,11 @@ static void follow_lines(void)
     vcd_change(VCD_SCL_LOW, scl);
 }
 
+static void follow_int1(void)
+{
+    sensor_hold_int1(any_active(KIND_NOINT), any_active(KIND_INTHIGH));
+}
+
 static void set_power(bool on)
 {
     adxl345_model_power(&sensor, on);
@@ -99,7 +104,8 @@ static void apply(const fault_t *fault)
         sensor.device_id = sensor.reg[0] = (uint8_t)fault->parameter;
         break;
     case KIND_NOINT:
-        sensor_cut_int1(true);
+    case KIND_INTHIGH:
+        follow_int1();
         break;
     case KIND_STARVE:
     case KIND_OVERRUN:
@@ -137,7 +143,8 @@ static void release(fault_t *fault)
         sensor.device_id = sensor.reg[0] = 0xE5;
         break;
     case KIND_NOINT:
-        sensor_cut_int1(any_active(KIND_NOINT));
+    case KIND_INTHIGH:
+        follow_int1();
         break;
     case KIND_STARVE:
     case KIND_OVERRUN:
@@ -146,6 +153,37 @@ static void release(fault_t *fault)
     default:
         follow_lines();
         break;
+    }
+}
+
+/* What it strikes is still to come: a byte, an acknowledge, the bus itself after a time in which nothing moved. */
+static bool waits(const fault_t *fault)
+{
+    switch (fault->kind) {
+    case KIND_ARB:
+        return twi.lose_arbitration;
+    case KIND_BUSERR:
+        return twi.bus_error;
+    case KIND_NACK:
+        return twi.nack_address;
+    case KIND_NACKDATA:
+        return twi.nack_data;
+    case KIND_TORN:
+        return twi.let_go;
+    default:
+        return alter_waits(fault->kind);
+    }
+}
+
+void faults_after_byte(void)
+{
+    for (size_t i = 0; i < fault_count; i++) {
+        fault_t *fault = &faults[i];
+        if (fault->awaits_byte && !waits(fault)) {
+            fault->awaits_byte = false;
+            fault->awaits_row = true;
+            fault->ended_at = mcu->cycle;
+        }
     }
 }
 
@@ -169,6 +207,10 @@ static void begin(fault_t *fault)
         alter_begin(fault);
     } else {
         apply(fault);
+    }
+    if (waits(fault)) {
+        fault->awaits_byte = true;
+        fault->awaits_row = false;
     }
     machine_reschedule();
 }

@@ -19,6 +19,7 @@ typedef enum {
     KIND_NACKDATA,
     KIND_DEVID,
     KIND_NOINT,
+    KIND_INTHIGH,
     KIND_RESET,
     KIND_MCUPOWER,
     KIND_BROWNOUT,
@@ -57,6 +58,7 @@ typedef struct {
     bool armed;     /* has still to come (WHEN_SAMPLE: always) */
     bool active;
     uint64_t ends; /* cycle, while active */
+    bool awaits_byte; /* has come, and no byte yet that it could strike: it ends when it has */
     bool awaits_row;
     uint64_t ended_at;
     uint32_t injected, recovered;
@@ -80,5 +82,8 @@ void fault_parse(fault_t *fault, const char *text);
 /* The kinds from KIND_FLIP on: begins; the last of its kind ends. */
 void alter_begin(const fault_t *fault);
 void alter_end(const fault_t *fault);
+
+/* A kind that happens once has begun, and the byte or reading that it alters is still to come. */
+bool alter_waits(kind_t kind);
 
 #endif

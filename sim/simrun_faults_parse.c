@@ -19,6 +19,7 @@ const kind_properties_t fault_kinds[KIND_COUNT] = {
     [KIND_NACKDATA] = { .name = "nackdata", .on_bus = true, .detectable = true },
     [KIND_DEVID] = { "devid", true, false, true, false, 0, 0, 255 },
     [KIND_NOINT] = { .name = "noint", .lasts = true, .detectable = true },
+    [KIND_INTHIGH] = { .name = "inthigh", .lasts = true, .detectable = true },
     [KIND_RESET] = { .name = "reset", .on_bus = true, .detectable = true },
     [KIND_MCUPOWER] = { .name = "mcupower", .on_bus = true, .detectable = true },
     [KIND_BROWNOUT] = { .name = "brownout", .on_bus = true, .detectable = true },

@@ -32,17 +32,19 @@ static int64_t stamped_at(const judge_t *judge, const row_t *row)
 
 /*
  * Equal samples near the stamp: the oldest that no row has shown becomes this row's own. Without any the newest equal
- * sample decides that is not too new.
+ * sample decides that is not too new. A sample is younger than its stamp says where the stamp was reckoned back from
+ * the 33 that a full FIFO holds, by a period that had become 5 % shorter meanwhile: up to 33 x 0.05 + 0.5 periods.
  */
 static judge_verdict_t compare(const row_t *row, int64_t at, int64_t near, served_t *served, size_t count)
 {
+    int64_t early = near + near / 2;
     size_t oldest = count > LOOK_BACK ? count - LOOK_BACK : 0;
     served_t *own = NULL;
     judge_verdict_t verdict = JUDGE_WRONG;
     for (size_t i = count; i > oldest; i--) {
         served_t *sample = &served[i - 1];
         int64_t age = at - (int64_t)sample->cycle;
-        if (sample->cycle > row->sent || age < -near || memcmp(sample->lsb, row->lsb, sizeof row->lsb) != 0) {
+        if (sample->cycle > row->sent || age < -early || memcmp(sample->lsb, row->lsb, sizeof row->lsb) != 0) {
             continue;
         }
         if (age > near) {

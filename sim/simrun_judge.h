@@ -4,9 +4,9 @@
  * count. Plain C without simavr, so that a test can give it rows made by hand.
  *
  * A row whose flags say nothing against it (none of JUDGE_DISOWNED) is right when its readings are a triplet that the
- * model latched within two sample periods of the row's time stamp, and before the row was sent, and that no right row
- * has shown yet: a row of a sample that was delivered twice is told as such. It is stale when the model latched that
- * triplet, but longer before; else it is wrong.
+ * model latched at most two sample periods before the row's time stamp, at most three behind it, and before the row was
+ * sent, and that no right row has shown yet: a row of a sample that was delivered twice is told as such. It is stale
+ * when the model latched that triplet, but longer before; else it is wrong.
  */
 #ifndef SIMRUN_JUDGE_H
 #define SIMRUN_JUDGE_H

@@ -151,6 +151,7 @@ static void after_bus_byte(void *owner)
 {
     (void)owner;
     sensor_check_rate();
+    faults_after_byte();
 }
 
 /* What a reset of the MCU leaves to us. */

@@ -104,6 +104,7 @@ static const char help_text[] =
     "           arb buserr nack nackdata     once: arbitration lost, bus error, address or data refused\n"
     "           devid[:VALUE][:MS]           DEVID reads VALUE (0)\n"
     "           noint[:MS]                   INT1 does not reach D2\n"
+    "           inthigh[:MS]                 D2 is high whatever INT1 is\n"
     "           torn                         slave lets go of SDA for the rest of the read: ones\n"
     "           reset mcupower brownout      MCU: external reset; power cycle with junk in its RAM; brown-out\n"
     "           starve[:MS] overrun[:N]      main loop without time, interrupts go on: for MS; until the sensor's "

@@ -23,7 +23,7 @@ static double next_tick; /* cycles */
 static uint64_t last_tick;
 static size_t row_now;
 static uint64_t over_at = NEVER;
-static bool int1_cut, int1_disturbed;
+static bool int1_cut, int1_held_high, int1_disturbed;
 static double clock_error_ppm;
 static avr_irq_t *pin_d2;
 static FILE *served_file;
@@ -42,7 +42,7 @@ static void on_pin(void *owner, unsigned pin, bool high)
 
 void sensor_show_pin(void)
 {
-    bool high = (sensor.pin_high[1] && !int1_cut) != int1_disturbed;
+    bool high = (int1_held_high || (sensor.pin_high[1] && !int1_cut)) != int1_disturbed;
     avr_raise_irq(pin_d2, high);
     /* after a reset PIND is 0 and simavr's IRQ is silent, because the level is not new to it */
     uint8_t mask = 1u << PIN_D2;
@@ -50,9 +50,10 @@ void sensor_show_pin(void)
     vcd_change(VCD_INT1, high);
 }
 
-void sensor_cut_int1(bool cut)
+void sensor_hold_int1(bool cut, bool high)
 {
     int1_cut = cut;
+    int1_held_high = high;
     sensor_show_pin();
 }
 

@@ -128,11 +128,26 @@ static void on_line(void)
     line_length = 0;
 }
 
+static uint64_t byte_cycles(void)
+{
+    unsigned divider = (mcu->data[REG_UBRR0L] | (unsigned)mcu->data[REG_UBRR0H] << 8) + 1u;
+    unsigned oversampling = (mcu->data[REG_UCSR0A] & BIT_U2X) ? 8 : 16;
+    return (uint64_t)divider * oversampling * BITS_PER_BYTE;
+}
+
+/* For the bytes that the transmitter takes from now on. */
+static void set_byte_time(void)
+{
+    uint64_t held = stalled_until > mcu->cycle ? stalled_until - mcu->cycle : 0;
+    uart->cycles_per_byte = byte_cycles() + (held < STALL_MAX_CYCLES ? held : STALL_MAX_CYCLES);
+}
+
 static void on_output(avr_irq_t *irq, uint32_t value, void *param)
 {
     (void)irq;
     (void)param;
     uint8_t byte = (uint8_t)value;
+    set_byte_time(); /* a stall ends when it ends, whenever this byte begins */
     if (uart->tx_cnt >= 2) {
         machine_fail(EXIT_UART, "a byte was written to the UART before it was ready");
     }
@@ -148,20 +163,6 @@ static void on_output(avr_irq_t *irq, uint32_t value, void *param)
     } else if (line_length < LINE_MAX_LENGTH) {
         line[line_length++] = (char)byte;
     }
-}
-
-static uint64_t byte_cycles(void)
-{
-    unsigned divider = (mcu->data[REG_UBRR0L] | (unsigned)mcu->data[REG_UBRR0H] << 8) + 1u;
-    unsigned oversampling = (mcu->data[REG_UCSR0A] & BIT_U2X) ? 8 : 16;
-    return (uint64_t)divider * oversampling * BITS_PER_BYTE;
-}
-
-/* For the bytes that the transmitter takes from now on. */
-static void set_byte_time(void)
-{
-    uint64_t held = stalled_until > mcu->cycle ? stalled_until - mcu->cycle : 0;
-    uart->cycles_per_byte = byte_cycles() + (held < STALL_MAX_CYCLES ? held : STALL_MAX_CYCLES);
 }
 
 static void on_baud(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Coverage: of lib on the PC (gcov, from the Unity tests) and of the unmodified AVR binary (simrun's profiles, system tests).
+"""Coverage: of lib on the PC (gcov, from the Unity tests) and of the unmodified AVR binary (simrun's profiles, system tests; the lines
+that the fault campaign reaches are counted here too, for tools/faults.py).
 
     coverage.py judge GCOVR.json ELF FOLDER     tables, uncovered lines, build/coverage.json; 1 when below a target
     coverage.py twins GCOVR.json ELF FOLDER     one line of lib not executed, one run of the chip alone: must be below
-    coverage.py avr ELF FOLDER                  the binary's lines alone, as of the profiles of the fault campaign; 1 when below 95 %
     coverage.py check ELF PROFILE SOURCE        the tool itself: lines marked `ran` and `not reached` in a small program
 
 A line of the binary is executable when at least one instruction is attributed to it (.debug_line: with inlining and
@@ -24,6 +24,7 @@ EXCLUSIONS = pathlib.Path("host_tests/coverage_exclusions.txt")
 CALLS_ONLY = {"firmware/main.c"}
 HOST_LINES, HOST_BRANCHES, AVR_LINES = 100.0, 95.0, 85.0
 CAMPAIGN_LINES = 95.0
+PLACES = ("host", "host-branch", "avr", "campaign")
 
 
 def fail(reason):
@@ -68,9 +69,8 @@ def executed(profiles):
     return found
 
 
-def avr_lines(elf, profiles):
-    """{file: {line: executed}} and {file: [instructions, executed]}."""
-    ran = executed(profiles)
+def avr_lines(elf, ran):
+    """{file: {line: executed}} and {file: [instructions, executed]}; ran: the addresses of what was executed."""
     addresses = instructions(elf)
     strange = ran - addresses.keys()
     if len(strange) > len(ran) // 100:
@@ -107,14 +107,14 @@ def host_lines(report):
 # --- exclusions -------------------------------------------------------------------------------------------------------
 
 def exclusions():
-    """Rows `where | file | text of the line | reason`; where is host, host-branch or avr."""
+    """Rows `where | file | text of the line | reason`; where is one of PLACES."""
     rows = []
     for number, row in enumerate(EXCLUSIONS.read_text(encoding="ascii").splitlines(), 1):
         if not row.strip() or row.startswith("#"):
             continue
         fields = [f.strip() for f in row.split(" | ")]
-        if len(fields) != 4 or fields[0] not in ("host", "host-branch", "avr") or not fields[3]:
-            fail(f"{EXCLUSIONS}:{number}: not `host|host-branch|avr | file | text | reason`")
+        if len(fields) != 4 or fields[0] not in PLACES or not fields[3]:
+            fail(f"{EXCLUSIONS}:{number}: not `{'|'.join(PLACES)} | file | text | reason`")
         rows.append((number, *fields))
     return rows
 
@@ -138,8 +138,9 @@ class Excluder:
                 return True
         return False
 
-    def stale(self):
-        return [f"{EXCLUSIONS}:{row[0]}: nothing uncovered in {row[2]} reads '{row[3]}'" for row in self.rows if row[0] not in self.used]
+    def stale(self, *places):
+        return [f"{EXCLUSIONS}:{row[0]}: nothing uncovered in {row[2]} reads '{row[3]}'" for row in self.rows
+                if row[1] in places and row[0] not in self.used]
 
 
 # --- tables -----------------------------------------------------------------------------------------------------------
@@ -161,14 +162,15 @@ def host_rows(report, excluder):
     return rows, uncovered, half
 
 
-def avr_rows(elf, profiles, excluder):
+def avr_rows(elf, ran, excluder, apart="lib/", where="avr"):
+    """Rows of the files, and what did not run; apart: of which files that is not asked."""
     rows, uncovered = [], []
-    lines_of, count_of = avr_lines(elf, profiles)
+    lines_of, count_of = avr_lines(elf, ran)
     for file, lines in sorted(lines_of.items()):
         if not file.startswith(("firmware/", "hal/", "lib/")):
             continue
-        judged = not file.startswith("lib/")
-        missed = [n for n, ran in sorted(lines.items()) if not ran and not (judged and excluder.excludes("avr", file, n))]
+        judged = not file.startswith(apart)
+        missed = [n for n, was in sorted(lines.items()) if not was and not (judged and excluder.excludes(where, file, n))]
         rows.append({"file": file, "where": "avr", "lines": len(lines), "lines_executed": len(lines) - len(missed),
                      "instructions": count_of[file][0], "instructions_executed": count_of[file][1], "uncovered": missed})
         if judged:
@@ -206,7 +208,7 @@ def judge(report, elf, folder):
         fail(f"{folder} holds no profiles: did the system tests run?")
     excluder = Excluder(exclusions())
     host, host_missed, half = host_rows(report, excluder)
-    avr, avr_missed = avr_rows(elf, profiles, excluder)
+    avr, avr_missed = avr_rows(elf, executed(profiles), excluder)
     ours = [row for row in avr if not row["file"].startswith("lib/")]
     complete(host, "lib/*/src/*.c", report)
     complete(ours, "firmware/*.c", elf)
@@ -215,31 +217,25 @@ def judge(report, elf, folder):
     table(host, [("lines", "lines_executed", "lines"), ("branches", "branches_taken", "branches")])
     print(f"the AVR binary, {len(profiles)} runs of the system tests:")
     table(avr, [("lines", "lines_executed", "lines"), ("instructions", "instructions_executed", "instructions")])
-    print("\n".join(["uncovered:"] + host_missed + half + avr_missed + excluder.stale()))
+    print("\n".join(["uncovered:"] + host_missed + half + avr_missed + excluder.stale(*PLACES[:3])))
     results = [judge_one("lib lines on the PC", percent(total(host, "lines_executed"), total(host, "lines")), HOST_LINES),
                judge_one("lib branches on the PC", percent(total(host, "branches_taken"), total(host, "branches")), HOST_BRANCHES),
                judge_one("firmware and hal lines on the AVR binary", percent(total(ours, "lines_executed"), total(ours, "lines")),
                          AVR_LINES),
-               not excluder.stale()]
+               not excluder.stale(*PLACES[:3])]
     pathlib.Path("build/coverage.json").write_text(json.dumps(host + avr, indent=1) + "\n", encoding="ascii")
     print("build/coverage.json written; lib in HTML: build/coverage/html/index.html")
     print(f"{sum(results)} passed, {len(results) - sum(results)} failed")
     return 0 if all(results) else 1
 
 
-def avr_alone(elf, folder):
-    profiles = sorted(pathlib.Path(folder).glob("*.csv"))
-    if not profiles:
-        fail(f"{folder} holds no profiles: faults.py --profiles writes them")
-    rows, missed = avr_rows(elf, profiles, Excluder(exclusions()))
-    ours = [row for row in rows if not row["file"].startswith("lib/filters/")]
-    complete(ours, "hal/avr/*.c", elf)
-    table(ours, [("lines", "lines_executed", "lines"), ("instructions", "instructions_executed", "instructions")])
-    print("\n".join(["uncovered:"] + missed))
-    good = judge_one(f"lines of the AVR binary but the filters, {len(profiles)} runs", percent(total(ours, "lines_executed"), total(ours, "lines")),
-                     CAMPAIGN_LINES)
-    print(f"{int(good)} passed, {int(not good)} failed")
-    return 0 if good else 1
+def campaign_lines(elf, ran):
+    """(lines that ran, lines, those that did not) of the whole binary, by the addresses that a campaign executed."""
+    excluder = Excluder(exclusions())
+    rows, missed = avr_rows(elf, ran, excluder, "-", "campaign")
+    complete(rows, "hal/avr/*.c", elf)
+    complete(rows, "firmware/*.c", elf)
+    return total(rows, "lines_executed"), total(rows, "lines"), missed + excluder.stale("campaign")
 
 
 def twins(report, elf, folder):
@@ -257,7 +253,7 @@ def twins(report, elf, folder):
     rows, missed, _ = host_rows(path, nothing)
     lib_seen = f"{file}:{row['line_number']}: not executed by the unit tests" in missed and total(rows, "lines_executed") < total(rows, "lines")
     one = sorted(pathlib.Path(folder).glob("*.csv"))[:1]
-    ours = [r for r in avr_rows(elf, one, nothing)[0] if not r["file"].startswith("lib/")]
+    ours = [r for r in avr_rows(elf, executed(one), nothing)[0] if not r["file"].startswith("lib/")]
     share = percent(total(ours, "lines_executed"), total(ours, "lines"))
     print(f"twins: a line of {file} not executed: {'seen' if lib_seen else 'NOT SEEN'}; one run alone: {share:.1f} % of the AVR lines")
     return 0 if lib_seen and share < AVR_LINES else 1
@@ -265,7 +261,7 @@ def twins(report, elf, folder):
 
 def check(elf, profile, source):
     """Every executable line of the program says in a comment whether it must have run."""
-    lines, _ = avr_lines(elf, [profile])
+    lines, _ = avr_lines(elf, executed([profile]))
     found = lines[str(source)]
     text = pathlib.Path(source).read_text(encoding="ascii").splitlines()
     wanted = {n: "/* ran" in row for n, row in enumerate(text, 1) if "/* ran" in row or "/* not reached" in row}
@@ -280,13 +276,11 @@ def main():
     arguments = sys.argv[1:]
     if len(arguments) == 4 and arguments[0] == "judge":
         return judge(*arguments[1:])
-    if len(arguments) == 3 and arguments[0] == "avr":
-        return avr_alone(*arguments[1:])
     if len(arguments) == 4 and arguments[0] == "twins":
         return twins(*arguments[1:])
     if len(arguments) == 4 and arguments[0] == "check":
         return check(*arguments[1:])
-    fail("usage: coverage.py judge|twins GCOVR.json ELF FOLDER, avr ELF FOLDER, or check ELF PROFILE SOURCE")
+    fail("usage: coverage.py judge|twins GCOVR.json ELF FOLDER, or check ELF PROFILE SOURCE")
     return 2
 
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """The fault campaign: every fault of simrun at every bus byte, main-loop stage and moment, every pair of faults, judged by the model.
 
-    faults.py [--fw ELF] [--sample N] [--pairs N] [--jobs N] [--seed N] [--profiles FOLDER] [--no-page] [WORD...]
+    faults.py [--fw ELF] [--sample N] [--pairs N] [--jobs N] [--seed N] [--no-page] [WORD...]
 
-WORDs: only kinds whose name begins with one of them, and no pairs. --sample: so many runs in all, chosen by the seed. Results go
-into build/faults.json, the table into docs/faults-campaign.md (whole campaigns only), what fails to stdout. Exit status 1 when
-anything is above its limit.
+WORDs: only kinds whose name begins with one of them; A+B: the pairs of two such kinds; no word: all. --sample: so many runs in all,
+chosen by the seed. Results go into build/faults.json, the table into docs/faults-campaign.md (whole campaigns only), what fails to
+stdout. Exit status 1 when anything is above its limit.
 """
 import argparse
 import collections
@@ -20,12 +20,14 @@ import sys
 import tempfile
 import time
 
+import coverage
 import faults_runs
-from faults_runs import (KINDS, MOVING, NO_LIMIT, OF, REST, Fault, SIMRUN, attempt, flagged_share, need, phases, roll_differences, seeded_pairs)
+from faults_runs import (KINDS, MOVING, NO_LIMIT, OF, OTHER_RATES, REST, TYPED, Fault, SIMRUN, attempt, flagged_share, moments, need, phases,
+                         rated, roll_differences, seeded_pairs)
 
 PAGE = pathlib.Path("docs/faults-campaign.md")
 RESULTS = pathlib.Path("build/faults.json")
-PHASES, FILTERS = 50, ("adaptive", "kf")
+PHASES, MOMENTS, FILTERS = 50, 8, ("adaptive", "kf")
 SHARE_FLAGGED, SHARE_ROLL, ROLL_CDEG = 0.99, 0.999, 50
 # (what, faults, stream): once in a thousand samples
 ROLL_RUNS = [("bad reads, at rest", ["arb", "nack", "buserr", "torn"], REST), ("bad reads, moving", ["arb", "nack", "buserr", "torn"], MOVING),
@@ -39,7 +41,6 @@ def arguments():
     parser.add_argument("--pairs", type=int, default=5)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--profiles")
     parser.add_argument("--no-page", action="store_true")
     parser.add_argument("words", nargs="*")
     options = parser.parse_args()
@@ -48,13 +49,22 @@ def arguments():
     return options
 
 
+def wanted(words, *kinds):
+    """Whether a word asks for a kind, or a word A+B for a pair."""
+    names = [kind.name for kind in kinds]
+    return not words or any(len(begins) == len(names) and any(all(map(str.startswith, order, begins)) for order in (names, names[::-1]))
+                            for begins in (word.split("+") for word in words))
+
+
 def planned(options):
     """[(kinds, whens, filter)] of the campaign."""
-    kinds = [kind for kind in KINDS if not options.words or any(kind.name.startswith(word) for word in options.words)]
-    if not kinds:
-        sys.exit(f"faults: no kind begins with {' '.join(options.words)}; there are: {', '.join(OF)}")
+    kinds = [kind for kind in KINDS if wanted(options.words, kind)]
+    others = [kind for kind in rated() + TYPED if wanted(options.words, kind)]
     singles = [((kind,), (when,), name) for kind in kinds for name in FILTERS for when in phases(options.fw, kind, name, PHASES)]
-    pairs = [] if options.words else [(*pair, FILTERS[0]) for pair in seeded_pairs(options.pairs, options.seed)]
+    singles += [((kind,), (when,), kind.filter_name) for kind in others for when in moments(kind, MOMENTS, options.seed)]
+    pairs = [(kinds, whens, FILTERS[0]) for kinds, whens in seeded_pairs(options.pairs, options.seed) if wanted(options.words, *kinds)]
+    if not singles and not pairs:
+        sys.exit(f"faults: no kind begins with {' '.join(options.words)}; there are: {', '.join(OF)}")
     if not options.sample or options.sample >= len(singles) + len(pairs):
         return singles + pairs
     source = random.Random(options.seed)
@@ -76,15 +86,11 @@ def take(source, runs, count):
     return [runs[n] for n in sorted(chosen[:count])]
 
 
-def carried_out(options, runs):
-    """The results in the order of the plan, with a line of progress every ten seconds."""
-    profiles = pathlib.Path(options.profiles) if options.profiles else None
-    if profiles:
-        profiles.mkdir(parents=True, exist_ok=True)
+def carried_out(options, runs, profile):
+    """The results in the order of the plan, with a line of progress every ten seconds; profile: receives the addresses that ran."""
     results, told = [], time.monotonic()
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        waiting = [pool.submit(attempt, options.fw, name, kinds, whens, profiles / f"{n:05}.csv" if profiles and len(kinds) == 1 else None)
-                   for n, (kinds, whens, name) in enumerate(runs)]
+        waiting = [pool.submit(attempt, options.fw, name, kinds, whens, profile) for kinds, whens, name in runs]
         try:
             for future in waiting:
                 results.append(future.result())
@@ -97,6 +103,12 @@ def carried_out(options, runs):
     return results
 
 
+def group_of(kinds):
+    if len(kinds) > 1:
+        return "pair"
+    return "rate" if kinds[0].base else "typed" if kinds[0] in TYPED else "single"
+
+
 def summarised(results):
     """A row of build/faults.json per kind or pair."""
     groups = collections.defaultdict(list)
@@ -105,7 +117,7 @@ def summarised(results):
     rows = []
     for kinds, group in groups.items():
         came = [r for r in group if r.injected]
-        rows.append({"fault": " + ".join(k.name for k in kinds), "detectable": all(k.detectable for k in kinds),
+        rows.append({"fault": " + ".join(k.name for k in kinds), "group": group_of(kinds), "detectable": all(k.detectable for k in kinds),
                      "phases": len({r.when for r in came}), "runs": len(came), "recovered": sum(r.recovered for r in came),
                      "limit_ms": max(k.limit_ms for k in kinds), "worst_ms_to_good": round(max((r.ms_to_good for r in came), default=0.0), 3),
                      "worst_rows_lost": max((r.lost for r in came), default=0), "wrong_rows": sum(r.wrong for r in came),
@@ -136,18 +148,39 @@ def shares(options):
         return [future.result() for future in waiting]
 
 
+def lines_that_ran(options, profile):
+    """The row of the lines of the AVR binary that the campaign's runs have executed."""
+    executed, whole, missed = coverage.campaign_lines(options.fw, {int(address, 16) for address in profile})
+    print("\n".join(["lines of the AVR binary that no run reaches:", *(f"    {line}" for line in missed)]))
+    return {"fault": "lines of the AVR binary", "lines": whole, "lines_executed": executed, "good": executed >= coverage.CAMPAIGN_LINES / 100 * whole}
+
+
+def rates_table(rows):
+    """A line for each kind, with what it came to at each of the other rates."""
+    of = {row["fault"]: row for row in rows}
+    lines = ["| fault at other rates: worst ms to a good row, samples lost | " + " | ".join(f"{rate:g} Hz" for rate in OTHER_RATES) + " |",
+             "|---|" + "---|" * len(OTHER_RATES)]
+    for name in dict.fromkeys(fault.rpartition(",")[0] for fault in of):
+        cells = []
+        for rate in OTHER_RATES:
+            row = of.get(f"{name}, {rate:g} Hz")
+            failed = f", {row['failed']} FAILED" if row and row["failed"] else ""
+            cells.append(f"{row['worst_ms_to_good']:.1f}, {row['worst_rows_lost']}{failed}" if row else "-")
+        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    return lines
+
+
 def tables(rows, extra):
     """The page's tables, as lines."""
     lines = ["| fault | phases | recovered | worst ms to a good row | limit | worst rows lost | wrong rows | resets not asked for | failed |",
              "|---|---|---|---|---|---|---|---|---|"]
-    for row in rows:
-        if " + " in row["fault"]:
-            continue
+    for row in (row for row in rows if row["group"] in ("single", "typed")):
         wrong = row["wrong_rows"] if row["detectable"] else f"{row['wrong_rows']} (not detectable)"
         limit = row["limit_ms"] if row["limit_ms"] < NO_LIMIT else "-"
         lines.append(f"| {row['fault']} | {row['phases']} | {row['recovered']} of {row['runs']} | {row['worst_ms_to_good']:.1f} | "
                      f"{limit} | {row['worst_rows_lost']} | {wrong} | {row['resets']} | {row['failed']} |")
-    pairs = [row for row in rows if " + " in row["fault"]]
+    lines += ["", *rates_table([row for row in rows if row["group"] == "rate"])]
+    pairs = [row for row in rows if row["group"] == "pair"]
     failing = [row for row in pairs if row["failed"]]
     lines += ["", f"Pairs: {len(pairs)} of them, {sum(r['runs'] for r in pairs)} runs, {sum(r['failed'] for r in pairs)} failed"
               + (": " + "; ".join(f"{r['fault']} ({r['failed']} of {r['runs']})" for r in failing[:40]) if failing else "") + ".", ""]
@@ -157,6 +190,8 @@ def tables(rows, extra):
     lines += ["", "| once in 1,000 samples | rows | roll within 0.5 degree of the run without faults | worst (degree) |", "|---|---|---|---|"]
     lines += [f"| {r['fault']} | {r['rows']} | {100 * r['share_within_half_degree']:.3f} % | {r['worst_cdeg'] / 100:.2f} |"
               for r in extra if "rows" in r]
+    lines += ["".join(f"\nLines of the AVR binary that these runs execute: {r['lines_executed']} of {r['lines']}, "
+                      f"{100 * r['lines_executed'] / r['lines']:.1f} %." for r in extra if "lines" in r)]
     return lines
 
 
@@ -200,10 +235,12 @@ def main():
 def carried_out_and_told(options, began):
     runs = planned(options)
     print(f"faults: {len(runs)} runs, seed {options.seed}, {options.jobs} at a time", flush=True)
-    results = carried_out(options, runs)
+    profile = set()
+    results = carried_out(options, runs, profile)
     rows = summarised(results)
     whole = len(results) == len(runs)
     extra = shares(options) if whole and not options.words else []
+    extra += [lines_that_ran(options, profile)] if whole and not (options.words or options.sample) else []
     RESULTS.parent.mkdir(exist_ok=True)
     RESULTS.write_text(json.dumps(rows + extra, indent=1) + "\n", encoding="ascii")
     tell_failures(results)

@@ -22,19 +22,28 @@ BUS_MS, POWER_MS, RESET_MS = 50, 150, 600  # limits until the first good row
 NO_LIMIT = 9999  # readings that were true and are no longer at the rail: when the filter takes them is its own affair
 
 
+def later(when, what):
+    """WHEN of one of a kind's faults: "@MS fault" comes so much later than the first."""
+    return f"{float(when[:-2]) + float(what.partition(' ')[0][1:]):.3f}ms" if what.startswith("@") else when
+
+
 @dataclasses.dataclass(frozen=True)
 class Kind:
     name: str
-    what: tuple  # KIND[:PARAM] of simrun, of faults that begin together
+    what: tuple  # KIND[:PARAM] of simrun, of faults that begin together, or so many ms later: "@MS KIND"
     lasts_ms: float = 0  # the first of them, if it is a state
     limit_ms: float = BUS_MS
     lost_max: int = None  # samples that one transfer may cost
     resets: int = 0
     rate: int = 100
     detectable: bool = True
+    typed: tuple = ()  # MS:TEXT, commands that come meanwhile
+    stream: str = None  # where it is not that of the rate
+    base: str = ""  # of one at another rate: the kind's name at its own
+    filter_name: str = "adaptive"  # where the campaign has it in one only; None: nobody asks for one
 
     def faults(self, when):
-        return [f"{when}:{what}" for what in self.what]
+        return [f"{later(when, what)}:{what.rpartition(' ')[2]}" for what in self.what]
 
 
 def state(name, lasts_ms, limit_ms=BUS_MS, **more):
@@ -49,22 +58,59 @@ KINDS = [
     state("unplug", 200, POWER_MS), state("power", 50, POWER_MS), state("sda", 40), state("scl", 40),
     once("hang", "hang:5", lost_max=2), once("hang a byte", "hang:9", lost_max=2), once("arb", lost_max=2), once("buserr", lost_max=2),
     once("nack", lost_max=2), once("nackdata", lost_max=2), once("torn", lost_max=2),
-    Kind("devid", ("power:20", "devid:0:200"), 200, POWER_MS), state("noint", 200), once("glitch", lost_max=2),
-    state("storm", 200, what="storm:1000"), state("frozen", 300), state("clip", 200, NO_LIMIT, what="clip:z"),
+    Kind("devid", ("power:20", "devid:0:200"), 200, POWER_MS), state("noint", 200), state("inthigh", 200), once("glitch", lost_max=2),
+    state("storm", 200, what="storm:1000"), state("frozen", 300, POWER_MS), state("clip", 200, NO_LIMIT, what="clip:z"),
     state("odr fast", 400, what="odr:50000"), state("odr slow", 400, what="odr:-50000"), state("rxflood", 200), state("txstall", 150),
-    Kind("overrun", ("overrun:3",), 100, BUS_MS, rate=400), Kind("starve", ("starve:2000",), 250, RESET_MS, resets=1),
+    Kind("overrun", ("overrun:3:150",), 100, BUS_MS, rate=400), Kind("starve", ("starve:2000",), 250, RESET_MS, resets=1),
     once("reset", resets=1, limit_ms=RESET_MS), once("mcupower", resets=1, limit_ms=RESET_MS), once("brownout", resets=1, limit_ms=RESET_MS),
     once("flip 1", "flip:1", detectable=False), once("flip 2", "flip:2", detectable=False),
     once("noise", "noise:60", detectable=False), once("double", "double:z", detectable=False), once("mixed", detectable=False),
 ]
+
+
+def typed(name, what, *lines, begin_ms=BEGIN_MS - 20, every_ms=45, **more):
+    """A fault while somebody types: what is judged is that nothing hangs and that no row is wrong."""
+    commands = tuple(f"{begin_ms + every_ms * n}:{line}" for n, line in enumerate(lines))
+    return Kind(name, (what,) if isinstance(what, str) else what, limit_ms=NO_LIMIT, typed=commands, **more)
+
+
+TYPED = [
+    typed("typed: filters", "scl:40", "filter kf", "filter sprf", "filter synth", "filter adaptive", "filter", "filter none", "status",
+          filter_name=None),
+    typed("typed: settings", "noint:300", "rate 200", "rate", "rate 3", "rate 99999999", "range 4", "range 3", "range", "every 3", "every 0", "every",
+          "rate 800", "status", "baud 250000", "baud 1", "baud 9600", "baud", "rate 800", "every"),
+    typed("typed: words", "unplug:300", "help", "status", "st\x07atus", "x" * 90, "HELP 3", "go now", "stop", "go", "mode plot", "mode", "mode csv",
+          "mode x", "status", "help"),
+    typed("typed: stop", "power:50", "stop", "status", "go", "stop", "go", "stop", "stop", "range 2", "go", every_ms=11),
+    typed("typed: plot", "sda:60", "mode plot", "status", "mode csv", every_ms=400, filter_name="sprf"),
+    typed("typed: kf", "frozen:200", "filter kf", "filter synth", every_ms=300, filter_name="synth"),
+    typed("upside down", "nack", stream="sim/streams/through-roll-180.csv"), typed("upright", "nackdata", stream="sim/streams/through-pitch-90.csv"),
+    *(typed(f"outliers, {name}", "nack", stream="sim/streams/steps-outliers.csv", filter_name=name) for name in ("adaptive", "sprf", "synth")),
+    *(typed(f"vibration, {name}", "buserr", stream="sim/streams/vibration.csv", filter_name=name) for name in ("sprf", "synth")),
+    # behind one another; the fourth start in a row by the watchdog is with safe settings
+    typed("starve again", ("starve:2000", "@450 starve:2000", "@900 starve:2000", "@1350 starve:2000"), "status", begin_ms=3300, resets=4),
+]
 OF = {kind.name: kind for kind in KINDS}
+# the same at other rates; below 100 Hz the first good row may take three periods more
+OTHER_RATES = (12.5, 400, 800)
+
+
+def at_rate(kind, rate):
+    longer = 3000.0 / rate if rate < 100 else 0
+    return dataclasses.replace(kind, name=f"{kind.name}, {rate:g} Hz", base=kind.name, rate=rate, limit_ms=kind.limit_ms + longer)
+
+
+def rated():
+    """Every kind at each of the other rates but its own; at 12.5 Hz no sensor's FIFO runs over before the watchdog barks."""
+    return [at_rate(kind, rate) for kind in KINDS for rate in OTHER_RATES if kind.rate != rate and not (kind.name == "overrun" and rate < 100)]
 
 
 class Fault(Exception):
     """One sentence about what is wrong with the campaign itself."""
 
 
-LOCAL = threading.local()
+LOCAL, LOCK = threading.local(), threading.Lock()
+STREAMS = tempfile.TemporaryDirectory(prefix="faults-streams-")
 
 
 def folder():
@@ -74,18 +120,37 @@ def folder():
     return pathlib.Path(LOCAL.folder.name)
 
 
-def simulate(firmware, filter_name, *options, stream=REST, max_ms=RUN_MS, rate=100, profile=None):
+def simulate(firmware, filter_name, *options, stream=None, max_ms=RUN_MS, rate=100, profile=None):
     """(exit status, what simrun said, --stats) of one run; the rows lie in folder()/out.csv."""
     base = folder()
-    command = [SIMRUN, "--fw", firmware, "--in", stream, "--loop", "--out", base / "out.csv", "--stats", base / "stats.json", "--max-ms", max_ms]
+    command = [SIMRUN, "--fw", firmware, "--in", stream or noise_at(rate), "--loop", "--out", base / "out.csv", "--stats", base / "stats.json", "--max-ms", max_ms]
     command += ["--filter", filter_name] if filter_name else []
-    command += ["--baud", 500000, "--rate", rate] if rate != 100 else []
-    command += ["--profile", profile] if profile else []
+    command += ["--baud", 500000] if rate > 100 else []
+    command += ["--rate", f"{rate:g}"] if rate != 100 else []
+    command += ["--profile", base / "profile.csv"] if profile is not None else []
     (base / "stats.json").unlink(missing_ok=True)
     done = subprocess.run([str(c) for c in command + list(options)], capture_output=True, text=True, timeout=600)
     if not (base / "stats.json").is_file():
         raise Fault(f"simrun gave status {done.returncode} and no statistics: {done.stderr.strip()[:300]}")
+    if profile is not None:
+        profile.update(line.partition(",")[0] for line in (base / "profile.csv").read_text(encoding="ascii").splitlines()[1:])
     return done.returncode, done.stderr, json.loads((base / "stats.json").read_text(encoding="ascii"))
+
+
+def noise_at(rate, memory={}):
+    """A stream for rates above that of REST, which would show every reading several times: at rest, white noise of 2 LSB rms."""
+    if rate <= 100:
+        return REST
+    with LOCK:
+        if rate not in memory:
+            memory[rate] = pathlib.Path(STREAMS.name) / f"rest-{rate}.csv"
+            source = random.Random(rate)
+            with open(memory[rate], "w", encoding="ascii") as file:
+                file.write("t_us,x,y,z\n")
+                for n in range(4 * rate):
+                    x, y, z = (round(source.gauss(mean, 2)) for mean in (31, 52, 249))
+                    file.write(f"{round(1e6 * n / rate)},{x},{y},{z}\n")
+    return memory[rate]
 
 
 # --- phases -----------------------------------------------------------------------------------------------------------
@@ -103,9 +168,8 @@ def bus_bytes(firmware, filter_name, rate):
 
 def entries(firmware, filter_name, rate, ms):
     """{function: how often it was entered}."""
-    profile = folder() / "profile.csv"
-    simulate(firmware, filter_name, max_ms=ms, rate=rate, profile=profile)
-    names = [(row["symbol"].rpartition("+"), int(row["count"])) for row in csv.DictReader(open(profile, encoding="ascii"))]
+    simulate(firmware, filter_name, max_ms=ms, rate=rate, profile=set())
+    names = [(row["symbol"].rpartition("+"), int(row["count"])) for row in csv.DictReader(open(folder() / "profile.csv", encoding="ascii"))]
     return {name: count for (name, _, offset), count in names if offset == "0x0" and re.fullmatch(r"[a-z]\w*(\.\w+)*|__vector_\d+", name)}
 
 
@@ -123,6 +187,12 @@ def phases(firmware, kind, filter_name, wanted, memory={}):
     whens = list(memory[key])
     spread = max(wanted - len(whens), 10)
     return whens + [f"{BEGIN_MS + PERIOD_MS * (i + 0.37) / spread:.3f}ms" for i in range(spread)]
+
+
+def moments(kind, count, seed):
+    """WHENs spread over two periods, each somewhere in its share of them."""
+    source = random.Random(f"{seed} {kind.name}")
+    return [f"{BEGIN_MS + 2000 / kind.rate * (i + source.random()) / count:.3f}ms" for i in range(count)]
 
 
 # --- one run ----------------------------------------------------------------------------------------------------------
@@ -171,7 +241,10 @@ def attempt(firmware, filter_name, kinds, whens, profile=None):
     faults = [fault for kind, when in zip(kinds, whens) for fault in kind.faults(when)]
     expected = sum(kind.resets for kind in kinds)
     options = [word for fault in faults for word in ("--fault", fault)] + ["--expect-resets", expected]
-    status, said, stats = simulate(firmware, filter_name, *options, rate=rate, profile=profile)
+    options += [word for kind in kinds for typed in kind.typed for word in ("--cmd", typed)]
+    options += ["--in", kinds[0].stream] if kinds[0].stream else []
+    longer_ms = 1500 if expected > 1 else 0
+    status, said, stats = simulate(firmware, filter_name, *options, rate=rate, profile=profile, max_ms=RUN_MS + longer_ms)
     last_line = said.strip().splitlines()[-1] if said.strip() else "?"
     hang = "" if status in (0, 7) else f"{STATUS_WORDS.get(status, status)}: {last_line}"
     ends = list(ends_of(stats))
