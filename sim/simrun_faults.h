@@ -57,7 +57,7 @@ typedef struct {
     uint64_t lasts; /* cycles, NEVER: to the end */
     bool armed;     /* has still to come (WHEN_SAMPLE: always) */
     bool active;
-    uint64_t ends; /* cycle, while active */
+    uint64_t ends;    /* cycle, while active */
     bool awaits_byte; /* has come, and no byte yet that it could strike: it ends when it has */
     bool awaits_row;
     uint64_t ended_at;

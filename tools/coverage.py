@@ -46,6 +46,14 @@ def instructions(elf):
     return {int(m.group(1), 16): m.group(2) == "ldi" for m in re.finditer(r"^\s+([0-9a-f]+):\t[0-9a-f ]+\t(\S+)", listing, re.M)}
 
 
+def in_repository(path, memory={}):
+    """A file's name relative to the repository, although the binary may have been built in a copy of it."""
+    if path not in memory:
+        tails = (pathlib.Path(*path.parts[n:]) for n in range(1, len(path.parts)))
+        memory[path] = str(next((tail for tail in tails if (ROOT / tail).is_file()), path) if path.is_absolute() else path)
+    return memory[path]
+
+
 def line_of_each(elf, addresses):
     """{address: (file, line)} for those that have one, with files relative to the repository."""
     said = tool("avr-addr2line", "-e", elf, text="".join(f"0x{a:x}\n" for a in addresses)).splitlines()
@@ -56,8 +64,7 @@ def line_of_each(elf, addresses):
         file, _, number = text.partition(" (")[0].rpartition(":")
         if number.isdigit() and number != "0" and file != "??":
             path = pathlib.Path(file)
-            path = path.relative_to(ROOT) if path.is_absolute() and path.is_relative_to(ROOT) else path
-            lines[address] = (str(path), int(number))
+            lines[address] = (in_repository(path), int(number))
     return lines
 
 

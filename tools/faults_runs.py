@@ -123,7 +123,8 @@ def folder():
 def simulate(firmware, filter_name, *options, stream=None, max_ms=RUN_MS, rate=100, profile=None):
     """(exit status, what simrun said, --stats) of one run; the rows lie in folder()/out.csv."""
     base = folder()
-    command = [SIMRUN, "--fw", firmware, "--in", stream or noise_at(rate), "--loop", "--out", base / "out.csv", "--stats", base / "stats.json", "--max-ms", max_ms]
+    command = [SIMRUN, "--fw", firmware, "--in", stream or noise_at(rate), "--loop", "--out", base / "out.csv", "--stats", base / "stats.json"]
+    command += ["--max-ms", max_ms]
     command += ["--filter", filter_name] if filter_name else []
     command += ["--baud", 500000] if rate > 100 else []
     command += ["--rate", f"{rate:g}"] if rate != 100 else []
