@@ -1,12 +1,15 @@
 # Coverage of lib by the unit tests (gcov; built apart, without sanitizers) and of the AVR binary by the system tests.
 C := $(B)/coverage
-COVERAGE_LIB  := $(LIB_SRC:%.c=$(C)/%.o)
-COVERAGE_REST := $(patsubst %.c,$(C)/%.o,$(filter-out $(LIB_SRC),$(HOST_SRC)) $(wildcard host_tests/support_*.c)) \
+# what watches over the sensor and the stages is judged beside lib
+SUPERVISION   := $(wildcard $(addprefix firmware/,sensor_watch.c health.c pipeline.c coast.c))
+COVERED       := $(LIB_SRC) $(SUPERVISION)
+COVERAGE_LIB  := $(COVERED:%.c=$(C)/%.o)
+COVERAGE_REST := $(patsubst %.c,$(C)/%.o,$(filter-out $(COVERED),$(HOST_SRC)) $(wildcard host_tests/support_*.c)) \
                  $(patsubst %.cpp,$(C)/%.o,$(wildcard host_tests/reference_*.cpp)) $(C)/unity.o
 COVERAGE_TESTS := $(patsubst host_tests/%.c,$(C)/%,$(wildcard host_tests/test_*.c))
 
-# the tests too, for what they call inline from the headers of lib; gcovr keeps lib only
-$(C)/lib/%.o $(C)/host_tests/test_%.o: COVERAGE_FLAGS := --coverage -fprofile-update=atomic
+# the tests too, for what they call inline from the headers of lib; gcovr keeps what is judged
+$(C)/lib/%.o $(SUPERVISION:%.c=$(C)/%.o) $(C)/host_tests/test_%.o: COVERAGE_FLAGS := --coverage -fprofile-update=atomic
 
 $(C)/%.o: %.c Makefile mk/coverage.mk
 	@mkdir -p $(@D)
@@ -30,7 +33,7 @@ $(C)/host.json: $(COVERAGE_TESTS)
 	@for t in $(COVERAGE_TESTS); do \
 	    timeout 300 $$t > $$t.log 2>&1 || { echo "coverage: $$t failed:"; grep ':FAIL' $$t.log; exit 1; }; done
 	@mkdir -p $(C)/html
-	@gcovr --root . --object-directory $(C) --filter '$(CURDIR)/lib/' --exclude-unreachable-branches --json $@ \
+	@gcovr --root . --object-directory $(C) --filter '$(CURDIR)/lib/' $(SUPERVISION:%=--filter '$(CURDIR)/%') --exclude-unreachable-branches --json $@ \
 	    --html-details $(C)/html/index.html $(C) > $(C)/gcovr.log 2>&1 || { cat $(C)/gcovr.log; exit 1; }
 
 $(C)/probe.elf: host_tests/avr/coverage_probe.c Makefile
