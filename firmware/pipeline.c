@@ -180,6 +180,9 @@ static void coast_axis(uint8_t axis)
 {
     bool holds = pipeline_holds();
     if (!holds) {
+        if (pipe.missing == 1u) {
+            filter_any_gap(&pipe.filter[axis]);
+        }
         for (uint8_t left = pipe.passed; left != 0; left--) {
             filter_any_damp(&pipe.filter[axis]);
         }

@@ -57,6 +57,9 @@ static void coast(chain_t *chain)
     if (chain->coasts == 0) {
         chain->part_dhz = QUARTER_DHZ / 2;
     }
+    if (chain->coasts == 0) {
+        filter_any_gap(&chain->filter);
+    }
     for (; chain->part_dhz >= chain->rate_dhz; chain->part_dhz -= chain->rate_dhz) {
         chain->quarters++;
         filter_any_damp(&chain->filter);

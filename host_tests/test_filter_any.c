@@ -34,6 +34,7 @@ static void test_an_unknown_kind_changes_nothing(void)
     TEST_ASSERT_EQUAL_INT32(0, filter_any_update(&f, 100));
     TEST_ASSERT_EQUAL_INT32(0, filter_any_coast(&f));
     filter_any_damp(&f);
+    filter_any_gap(&f);
     filter_any_hold(&f);
     filter_any_restart(&f);
     TEST_ASSERT_EQUAL_UINT8(0, filter_any_flags(&f));

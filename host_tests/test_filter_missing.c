@@ -95,6 +95,59 @@ static void test_damp_of_synth_bends_nothing(void)
     TEST_ASSERT_INT32_WITHIN(65536 / 64, RAMP_LSB * 65536L / 2, synth_coast(&f) - x);
 }
 
+static bool rate_is_a_difference(uint8_t kind)
+{
+    return kind == (uint8_t)FILTER_KIND_synth || kind == (uint8_t)FILTER_KIND_synth_opt;
+}
+
+/* R is 3 LSB^2 at 100 Hz, three sigmas 5.2 LSB: a rate of 5 LSB per sample may be noise, one of 6 is none. */
+static void test_a_gap_stops_only_a_rate_that_may_be_noise(void)
+{
+    FOR_EACH_KIND(kind)
+    {
+        for (int16_t slope_lsb = 5; slope_lsb <= 6; slope_lsb++) {
+            filter_any_t f;
+            settle_on_ramp(&f, kind, slope_lsb);
+            filter_any_t told = f;
+            filter_any_gap(&told);
+            TEST_ASSERT_EQUAL_INT32(probed(&f).x_lsb_q16, probed(&told).x_lsb_q16);
+            if (rate_is_a_difference(kind) && slope_lsb == 5) {
+                TEST_ASSERT_EQUAL_INT32(probed(&f).x_lsb_q16, filter_any_coast(&told));
+                continue;
+            }
+            for (uint8_t k = 0; k < 3; k++) {
+                TEST_ASSERT_EQUAL_INT32(filter_any_coast(&f), filter_any_coast(&told));
+            }
+        }
+    }
+}
+
+/* Halved with its variance: the sample behind a gap is believed less than without, so its noise makes no jump. */
+static void test_damp_leaves_less_gain_behind_a_gap(void)
+{
+    FOR_EACH_KIND(kind)
+    {
+        filter_any_t damped;
+        settle_on_ramp(&damped, kind, 0);
+        uint16_t steady_uq16 = probed(&damped).gain_uq16;
+        filter_any_t plain = damped;
+        for (uint8_t k = 1; k <= 10U; k++) {
+            if (k == 3U || k == 6U || k == 8U) { /* each 25 ms of 100 Hz */
+                filter_any_damp(&damped);
+            }
+            (void)filter_any_coast(&damped);
+            (void)filter_any_coast(&plain);
+        }
+        (void)filter_any_update(&damped, 0);
+        (void)filter_any_update(&plain, 0);
+        if (probed(&plain).gain_uq16 > steady_uq16) { /* those with a covariance */
+            TEST_ASSERT_LESS_THAN_UINT16(probed(&plain).gain_uq16, probed(&damped).gain_uq16);
+        } else {
+            TEST_ASSERT_EQUAL_UINT16(probed(&plain).gain_uq16, probed(&damped).gain_uq16);
+        }
+    }
+}
+
 /* The start of some filters lies where their estimates will be. */
 static void test_damp_and_hold_leave_a_start_alone(void)
 {
@@ -105,6 +158,7 @@ static void test_damp_and_hold_leave_a_start_alone(void)
         make(&plain, kind);
         make(&told, kind);
         for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
+            filter_any_gap(&told);
             filter_any_damp(&told);
             filter_any_hold(&told);
             int16_t z = any_sample();
@@ -220,6 +274,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_damp_halves_the_rate_and_moves_nothing);
     RUN_TEST(test_damp_of_synth_bends_nothing);
+    RUN_TEST(test_a_gap_stops_only_a_rate_that_may_be_noise);
+    RUN_TEST(test_damp_leaves_less_gain_behind_a_gap);
     RUN_TEST(test_damp_and_hold_leave_a_start_alone);
     RUN_TEST(test_restart_is_as_begun_just_now);
     RUN_TEST(test_restart_keeps_what_was_learnt_of_the_noise);

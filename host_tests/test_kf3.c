@@ -132,6 +132,29 @@ static void step_is_answered_as_by_the_steady_gains(void)
  * Missing samples: x(k) = x + k v + k (k + 1) / 2 a while P is predicted, 11 samples at q33 = 1e-5 (P11 = 4.17 then);
  * later along the straight line, because the acceleration is not believed any more.
  */
+/* Rate and acceleration halved: P is that of (x, v / 2, a / 2). */
+static void damp_halves_what_moves_and_its_covariance(void)
+{
+    kf3_config_t config;
+    kf3_t f;
+    kf3_defaults(&config, 1000);
+    TEST_ASSERT_TRUE(kf3_init(&f, &config));
+    kf3_reset(&f, 0);
+    for (int16_t k = 0; k < 20; k++) {
+        (void)kf3_update(&f, (int16_t)(k * k));
+    }
+    kf3_t damped = f;
+    kf3_damp(&damped);
+    TEST_ASSERT_EQUAL_INT32(f.core.rate_lsb_q16 >> 1, damped.core.rate_lsb_q16);
+    TEST_ASSERT_EQUAL_INT32(f.acceleration_q16 >> 1, damped.acceleration_q16);
+    TEST_ASSERT_EQUAL_UINT32(f.core.u.p.p11_uq28, damped.core.u.p.p11_uq28);
+    TEST_ASSERT_EQUAL_UINT32(f.core.u.p.p12_uq28 / 2U, damped.core.u.p.p12_uq28);
+    TEST_ASSERT_EQUAL_UINT32(f.core.u.p.p22_uq28 / 4U, damped.core.u.p.p22_uq28);
+    TEST_ASSERT_EQUAL_UINT32(f.p13_uq28 / 2U, damped.p13_uq28);
+    TEST_ASSERT_EQUAL_UINT32(f.p23_uq28 / 4U, damped.p23_uq28);
+    TEST_ASSERT_EQUAL_UINT32(f.p33_uq28 / 4U, damped.p33_uq28);
+}
+
 static void coast_goes_on_along_the_parabola_and_then_the_line(void)
 {
     kf3_t f = made(1000, 768, 300000);
@@ -261,6 +284,7 @@ int main(void)
     RUN_TEST(start_is_that_of_the_recursion);
     RUN_TEST(follows_constant_acceleration_without_lag);
     RUN_TEST(step_is_answered_as_by_the_steady_gains);
+    RUN_TEST(damp_halves_what_moves_and_its_covariance);
     RUN_TEST(coast_goes_on_along_the_parabola_and_then_the_line);
     RUN_TEST(comes_back_from_a_gap_of_ten_thousand);
     RUN_TEST(reset_is_as_if_read_for_ever);

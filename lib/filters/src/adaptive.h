@@ -111,6 +111,12 @@ void adaptive_restart(adaptive_t *f);
 uint8_t adaptive_flags(const adaptive_t *f);
 void adaptive_probe(const adaptive_t *f, filter_probe_t *out);
 
+/* Its rate is worth more than one sample's noise. */
+static inline void adaptive_gap(adaptive_t *f)
+{
+    (void)f;
+}
+
 /* The measurement variance R in force, identified or given: LSB^2 in Q8. */
 uint32_t adaptive_r_lsb2_q8(const adaptive_t *f);
 

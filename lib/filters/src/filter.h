@@ -11,6 +11,8 @@
  *   int32_t  F_update(F_t *f, int16_t z_lsb);                     one sample in, estimate (LSB, Q16) out; total, cannot
  *            fail
  *   int32_t  F_coast(F_t *f);                                     sample missing: prediction only
+ *   void     F_gap(F_t *f);                                       samples begin to be missing, before the first
+ *            F_coast: a rate that may be all noise is not believed
  *   void     F_damp(F_t *f);                                      the estimated rate of change halved: samples have
  *            been missing for a while
  *   void     F_hold(F_t *f);                                      before and after an update with a sample that tells

@@ -163,6 +163,20 @@ int32_t filter_any_coast(filter_any_t *f)
     }
 }
 
+void filter_any_gap(filter_any_t *f)
+{
+    switch (f->kind) {
+#define GAP(F)                \
+    case FILTER_KIND_##F:     \
+        F##_gap(&f->state.F); \
+        break;
+        FILTER_LINKED(GAP)
+#undef GAP
+    default:
+        break;
+    }
+}
+
 void filter_any_damp(filter_any_t *f)
 {
     switch (f->kind) {

@@ -58,6 +58,7 @@ void filter_any_reset(filter_any_t *f, int16_t z0_lsb);
 bool filter_any_reset_step(filter_any_t *f, int16_t z0_lsb, uint8_t step);
 int32_t filter_any_update(filter_any_t *f, int16_t z_lsb);
 int32_t filter_any_coast(filter_any_t *f);
+void filter_any_gap(filter_any_t *f);
 void filter_any_damp(filter_any_t *f);
 void filter_any_hold(filter_any_t *f);
 void filter_any_restart(filter_any_t *f);

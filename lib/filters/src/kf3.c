@@ -282,6 +282,9 @@ void kf3_damp(kf3_t *f)
 {
     two_state_damp(&f->core);
     f->acceleration_q16 >>= 1;
+    f->p13_uq28 >>= 1;
+    f->p23_uq28 >>= 2;
+    f->p33_uq28 >>= 2;
 }
 
 /* Takes every sample as it is: nothing to be held back. */

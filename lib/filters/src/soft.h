@@ -54,6 +54,12 @@ void soft_restart(soft_t *f);
 uint8_t soft_flags(const soft_t *f);
 void soft_probe(const soft_t *f, filter_probe_t *out);
 
+/* Its rate is worth more than one sample's noise. */
+static inline void soft_gap(soft_t *f)
+{
+    (void)f;
+}
+
 #ifdef __cplusplus
 }
 #endif

@@ -52,6 +52,12 @@ void sprf_restart(sprf_t *f);
 uint8_t sprf_flags(const sprf_t *f);
 void sprf_probe(const sprf_t *f, filter_probe_t *out);
 
+/* Its rate is worth more than one sample's noise. */
+static inline void sprf_gap(sprf_t *f)
+{
+    (void)f;
+}
+
 #ifdef __cplusplus
 }
 #endif

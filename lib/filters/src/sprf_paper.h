@@ -48,6 +48,12 @@ void sprf_paper_restart(sprf_paper_t *f);
 uint8_t sprf_paper_flags(const sprf_paper_t *f);
 void sprf_paper_probe(const sprf_paper_t *f, filter_probe_t *out);
 
+/* Its rate is worth more than one sample's noise. */
+static inline void sprf_paper_gap(sprf_paper_t *f)
+{
+    (void)f;
+}
+
 #ifdef __cplusplus
 }
 #endif

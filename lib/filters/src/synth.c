@@ -164,6 +164,11 @@ void synth_damp(synth_t *f)
     synth_core_damp(&f->core);
 }
 
+void synth_gap(synth_t *f)
+{
+    synth_core_gap(&f->core);
+}
+
 /* Takes every sample as it is: nothing to be held back. */
 void synth_hold(synth_t *f)
 {

@@ -64,6 +64,7 @@ bool synth_reset_step(synth_t *f, int16_t z0_lsb, uint8_t step);
 int32_t synth_update(synth_t *f, int16_t z_lsb);
 int32_t synth_coast(synth_t *f);
 void synth_damp(synth_t *f);
+void synth_gap(synth_t *f);
 void synth_hold(synth_t *f);
 void synth_restart(synth_t *f);
 uint8_t synth_flags(const synth_t *f);

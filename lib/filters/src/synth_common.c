@@ -244,6 +244,21 @@ FX_ONCE void synth_core_damp(synth_core_t *c)
     }
 }
 
+/* More than three sigmas of a sample: both squares in UQ16.16, 9 R < 2^14. */
+FX_INLINE bool rate_counts(const synth_core_t *c)
+{
+    uint32_t size_lsb_uq8 = fx_abs32(c->u.run.x_lsb_q16[0] - c->u.run.x_lsb_q16[1]) >> 8;
+    uint16_t size = (uint16_t)size_lsb_uq8;
+    return (size_lsb_uq8 >> 16) != 0U || fx_mul_u16(size, size) > (9U * c->r_lsb2_q8) << 8;
+}
+
+FX_ONCE void synth_core_gap(synth_core_t *c)
+{
+    if (c->collected >= FILTER_WARM_UP_SAMPLES && !rate_counts(c)) {
+        all_at(c, c->u.run.x_lsb_q16[0]);
+    }
+}
+
 FX_ONCE void synth_core_restart(synth_core_t *c)
 {
     for (uint8_t i = 0; i < FILTER_WARM_UP_SAMPLES; i++) {

@@ -98,6 +98,12 @@ bool synth_coasts(synth_core_t *c);
 /* The last steps of the estimate halved, and with them its rate and its curvature; nothing in the start. */
 void synth_core_damp(synth_core_t *c);
 
+/*
+ * For a filter whose rate is the difference of two estimates, the noise of which is 0.3 to 0.7 sigmas of a sample:
+ * unless it is more than three it is taken as 0, and so is the curvature. Nothing in the start.
+ */
+void synth_core_gap(synth_core_t *c);
+
 /* Nothing collected any more; the estimate is unknown until the next sample. */
 void synth_core_restart(synth_core_t *c);
 

@@ -147,6 +147,11 @@ void synth_opt_damp(synth_opt_t *f)
     synth_core_damp(&f->core);
 }
 
+void synth_opt_gap(synth_opt_t *f)
+{
+    synth_core_gap(&f->core);
+}
+
 /* Takes every sample as it is: nothing to be held back. */
 void synth_opt_hold(synth_opt_t *f)
 {

@@ -55,6 +55,7 @@ bool synth_opt_reset_step(synth_opt_t *f, int16_t z0_lsb, uint8_t step);
 int32_t synth_opt_update(synth_opt_t *f, int16_t z_lsb);
 int32_t synth_opt_coast(synth_opt_t *f);
 void synth_opt_damp(synth_opt_t *f);
+void synth_opt_gap(synth_opt_t *f);
 void synth_opt_hold(synth_opt_t *f);
 void synth_opt_restart(synth_opt_t *f);
 uint8_t synth_opt_flags(const synth_opt_t *f);

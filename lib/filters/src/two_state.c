@@ -280,10 +280,17 @@ int32_t two_state_coast(two_state_t *s)
     return s->x_lsb_q16;
 }
 
-/* Rounded down to 2^-16 LSB per sample, so within the bound of the rate. */
+/*
+ * Rounded down to 2^-16 LSB per sample, so within the bound of the rate. P is that of (x, v / 2), so it stays a
+ * covariance within its bounds, and the sample behind a gap meets no gain that grew with a rate no longer believed.
+ */
 void two_state_damp(two_state_t *s)
 {
     s->rate_lsb_q16 >>= 1;
+    if (!two_state_warming_up(s)) {
+        s->u.p.p12_uq28 >>= 1;
+        s->u.p.p22_uq28 >>= 2;
+    }
 }
 
 void two_state_restart(two_state_t *s)

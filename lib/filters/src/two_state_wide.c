@@ -251,6 +251,10 @@ int32_t two_state_wide_coast(two_state_wide_t *s)
 void two_state_wide_damp(two_state_wide_t *s)
 {
     s->rate_lsb_q16 >>= 1;
+    if (!two_state_wide_warming_up(s)) {
+        s->u.p.p12_uq24 >>= 1;
+        s->u.p.p22_uq28 >>= 2;
+    }
 }
 
 /* The elements that predict_covariance looks at; while warming up there is no P yet. */

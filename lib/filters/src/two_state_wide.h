@@ -130,7 +130,7 @@ FX_ONCE void two_state_wide_refuse(two_state_wide_t *s, bool grows);
 /* Sample missing, during the warm-up or not: prediction. Returns the estimate. */
 FX_ONCE int32_t two_state_wide_coast(two_state_wide_t *s);
 
-/* The rate halved. */
+/* The rate halved, and P with it. */
 FX_ONCE void two_state_wide_damp(two_state_wide_t *s);
 
 /*
