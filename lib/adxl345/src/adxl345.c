@@ -362,7 +362,7 @@ static bool readings_failed(void)
         return false;
     }
     fail(fault);
-    if (fault == ADXL345_FAULT_NO_DATA && driver.step == STEP_BACK_OFF) {
+    if (fault == ADXL345_FAULT_NO_DATA) {
         probe();
     }
     return true;
