@@ -32,6 +32,9 @@ static inline void hal_irq_enable(void)
     sei();
 }
 
+/* hal_pointer.h */
+#define HAL_POINTER(p) __asm__("" : "+b"(p))
+
 /* hal_i2c.h: TWBR 14 and 12 give 16 MHz / (16 + 2 TWBR) = 363.6 and 400 kHz. The internal pull-ups stay off (5 V). */
 #define HAL_I2C_ISR() ISR(TWI_vect)
 
@@ -128,7 +131,7 @@ static inline void hal_drdy_enable(void)
     EIMSK = _BV(INT0);
 }
 
-static inline bool hal_drdy_high(void)
+static inline __attribute__((always_inline)) bool hal_drdy_high(void) /* a handler asks */
 {
     return (PIND & _BV(PD2)) != 0;
 }

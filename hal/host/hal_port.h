@@ -10,6 +10,9 @@ uint8_t hal_irq_save(void);
 void hal_irq_restore(uint8_t state);
 void hal_irq_enable(void);
 
+/* hal_pointer.h */
+#define HAL_POINTER(p) ((void)(p))
+
 /* hal_i2c.h */
 #define HAL_I2C_ISR()                \
     void hal_host_i2c_handler(void); \

@@ -182,7 +182,6 @@ static void timed_out(void)
 
 static void start_measuring(void)
 {
-    burst_set_mode(BURST_READ);
     integrity_start(driver.config.range_g);
     watch_start();
     driver.first_sample_seen = false;
@@ -190,6 +189,7 @@ static void start_measuring(void)
     driver.was_empty = false;
     driver.seen_good = integrity_good();
     burst_expect(driver.now_us + TURN_ON_MS * 1000ul);
+    burst_set_mode(BURST_READ); /* last: an edge may come with it */
     enter(STEP_STREAM, 1);
 }
 

@@ -15,6 +15,7 @@
 #include "adxl345_watch.h"
 #include "hal_drdy.h"
 #include "hal_irq.h"
+#include "hal_pointer.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 
@@ -22,50 +23,62 @@ enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1 };
 
 #define SENSOR_DEPTH 33ul /* samples that the sensor can hold (p. 27) */
 
-static i2c_bus_t bus;
-static burst_entry_t queue[ADXL345_QUEUE_LENGTH];
-static const int16_t *newest_lsb; /* of the last good one: taken or not, it is still there */
-static volatile uint8_t head;
-static volatile uint8_t tail;
-static volatile uint8_t mode;
-static volatile uint8_t on_bus; /* a burst that main has not judged: it runs, or has ended */
-static volatile uint8_t edge_waiting;
-static volatile uint32_t edge_us;
-static volatile uint32_t begun_us; /* when the newest burst was put on the bus */
-static uint8_t reading[READING_BYTES];
-static uint32_t reading_us; /* stamp of the sample that is read */
-static bool reading_exact;
-static uint8_t failures;
-static uint32_t last_us; /* stamp of the newest sample that left the sensor, delivered or cut */
-static bool last_known;  /* last_us belongs to this run of the sensor */
-static bool found_empty; /* the newest burst met no sample */
-static uint8_t register_value;
-static uint32_t period_us_q4;
-static uint32_t taken_us;
-static bool taken_exact;
+/*
+ * What the handlers use they find at fixed addresses, which costs them no pointer register; functions of main that
+ * touch much of it go through a pointer (base).
+ */
+static struct burst {
+    i2c_bus_t bus;
+    const int16_t *newest_lsb; /* of the last good one: taken or not, it is still there */
+    volatile uint8_t head;
+    volatile uint8_t tail;
+    volatile uint8_t mode;
+    volatile uint8_t on_bus; /* a burst that main has not judged: it runs, or has ended */
+    volatile uint8_t edge_waiting;
+    volatile uint32_t edge_us;
+    volatile uint32_t begun_us; /* when the newest burst was put on the bus, */
+    volatile uint8_t by_edge;   /* by the edge of its own sample */
+    uint8_t reading[READING_BYTES];
+    uint32_t reading_us; /* stamp of the sample that is read */
+    bool reading_exact;
+    uint8_t failures;
+    uint32_t last_us; /* stamp of the newest sample that left the sensor, delivered or cut */
+    bool last_known;  /* last_us belongs to this run of the sensor */
+    bool found_empty; /* the newest burst met no sample */
+    uint8_t register_value;
+    uint32_t period_us_q8;
+    uint32_t taken_us;
+    bool taken_exact;
+    burst_entry_t queue[ADXL345_QUEUE_LENGTH];
+} burst;
+
+/* Kept out of its caller, which saves fewer registers then. */
+#define APART static __attribute__((noinline))
+
+static inline struct burst *base(void)
+{
+    struct burst *b = &burst;
+    HAL_POINTER(b);
+    return b;
+}
 
 HAL_IRQ_INLINE bool queue_has_room(void)
 {
-    return (uint8_t)((uint8_t)(head + 1u) & QUEUE_MASK) != tail;
+    return (uint8_t)((uint8_t)(burst.head + 1u) & QUEUE_MASK) != burst.tail;
 }
 
 HAL_IRQ_INLINE bool can_begin(void)
 {
-    return mode == BURST_READ && !on_bus && i2c_bus_free(&bus) && queue_has_room();
+    return burst.mode == BURST_READ && !burst.on_bus && i2c_bus_free(&burst.bus) && queue_has_room();
 }
 
 /* Interrupts off, or the bus made busy. */
-HAL_IRQ_INLINE void begin_burst(uint32_t now_us, uint32_t t_us, bool exact)
+HAL_IRQ_INLINE void begin_burst(uint32_t now_us, bool by_edge)
 {
-    reading_us = t_us;
-    reading_exact = exact;
-    begun_us = now_us;
-    on_bus = 1;
-    bus.tx[0] = ADXL345_INT_SOURCE;
-    bus.tx_length = 1;
-    bus.rx_length = READING_BYTES;
-    bus.rx = reading;
-    i2c_bus_begin(&bus);
+    burst.begun_us = now_us;
+    burst.by_edge = by_edge;
+    burst.on_bus = 1;
+    i2c_bus_begin(&burst.bus);
 }
 
 /* An edge whose level is gone again is noise: data-ready stays high until the data are read (p. 20). */
@@ -76,63 +89,68 @@ HAL_DRDY_ISR()
     }
     uint32_t now_us = hal_time_us_isr();
     if (can_begin()) {
-        edge_waiting = 0;
-        begin_burst(now_us, now_us, true);
+        burst.edge_waiting = 0;
+        begin_burst(now_us, true);
         return;
     }
-    edge_us = now_us;
-    edge_waiting = 1;
+    burst.edge_us = now_us;
+    burst.edge_waiting = 1;
     hal_wake();
 }
 
 HAL_I2C_ISR()
 {
-    i2c_bus_step(&bus);
-    if (bus.state != I2C_BUS_BUSY) {
-        hal_wake();
-    }
+    i2c_bus_step(&burst.bus);
 }
 
 void burst_init(void)
 {
+    struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
-    newest_lsb = queue[QUEUE_MASK].sample.lsb;
-    head = 0;
-    tail = 0;
-    mode = BURST_IGNORE;
-    on_bus = 0;
-    failures = 0;
-    edge_waiting = 0;
-    last_known = false;
-    bus.state = I2C_BUS_IDLE;
+    b->newest_lsb = b->queue[QUEUE_MASK].sample.lsb;
+    b->head = 0;
+    b->tail = 0;
+    b->mode = BURST_IGNORE;
+    b->on_bus = 0;
+    b->failures = 0;
+    b->edge_waiting = 0;
+    b->last_known = false;
+    b->bus.state = I2C_BUS_IDLE;
     hal_irq_restore(state);
 }
 
 void burst_set_mode(burst_mode_t new_mode)
 {
     hal_irq_state_t state = hal_irq_save();
-    if (mode == BURST_IGNORE) {
-        edge_waiting = 0;
-        failures = 0;
-        last_known = false;
+    if (burst.mode == BURST_IGNORE) {
+        burst.edge_waiting = 0;
+        burst.failures = 0;
+        burst.last_known = false;
     }
-    found_empty = found_empty && new_mode != BURST_READ;
-    mode = (uint8_t)new_mode;
+    if (new_mode == BURST_READ) { /* what each burst transfers, until main uses the bus again; none runs now */
+        burst.found_empty = false;
+        burst.bus.tx[0] = ADXL345_INT_SOURCE;
+        burst.bus.tx_length = 1;
+        burst.bus.rx_length = READING_BYTES;
+        burst.bus.rx = burst.reading;
+    }
+    burst.mode = (uint8_t)new_mode;
     hal_irq_restore(state);
 }
 
 uint8_t burst_take_bus(uint8_t address, bool fast)
 {
+    struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
     hal_i2c_disable();
-    bool was_busy = bus.state == I2C_BUS_BUSY;
-    bus.state = I2C_BUS_BUSY; /* so that no edge starts a burst while the bus is being cleared, with interrupts on */
+    bool was_busy = b->bus.state == I2C_BUS_BUSY;
+    b->bus.state = I2C_BUS_BUSY; /* so that no edge starts a burst while the bus is being cleared, with interrupts on */
     hal_irq_restore(state);
     uint8_t lines = hal_i2c_clear();
     state = hal_irq_save();
     hal_i2c_enable(fast);
-    bus.state = was_busy ? I2C_BUS_TIMEOUT : I2C_BUS_IDLE;
-    bus.address = (uint8_t)(address * 2U);
+    b->bus.state = was_busy ? I2C_BUS_TIMEOUT : I2C_BUS_IDLE;
+    b->bus.address = (uint8_t)(address * 2U);
     hal_irq_restore(state);
     (void)burst_judge();
     return lines;
@@ -140,15 +158,16 @@ uint8_t burst_take_bus(uint8_t address, bool fast)
 
 static bool begin_register(uint8_t reg, uint8_t value, uint8_t tx_length, uint8_t rx_length)
 {
+    struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
-    bool free = i2c_bus_free(&bus);
+    bool free = i2c_bus_free(&b->bus);
     if (free) {
-        bus.tx[0] = reg;
-        bus.tx[1] = value;
-        bus.tx_length = tx_length;
-        bus.rx_length = rx_length;
-        bus.rx = &register_value;
-        i2c_bus_begin(&bus);
+        b->bus.tx[0] = reg;
+        b->bus.tx[1] = value;
+        b->bus.tx_length = tx_length;
+        b->bus.rx_length = rx_length;
+        b->bus.rx = &b->register_value;
+        i2c_bus_begin(&b->bus);
     }
     hal_irq_restore(state);
     return free;
@@ -166,44 +185,47 @@ bool burst_read_register(uint8_t reg)
 
 i2c_bus_state_t burst_bus_state(void)
 {
-    return (i2c_bus_state_t)bus.state;
+    return (i2c_bus_state_t)burst.bus.state;
 }
 
 uint8_t burst_register_value(void)
 {
-    return register_value;
+    return burst.register_value;
 }
 
 /*
  * Stamp of a sample that was found waiting without an edge: one period after the one before it unless it is new, but
  * not before the sensor was last seen empty.
  */
-static uint32_t waiting_since_us(uint32_t now_us, bool is_new)
+static uint32_t waiting_since_us(struct burst *b, uint32_t now_us, bool is_new)
 {
     uint32_t period_us = burst_period_us();
-    uint32_t t_us = last_us + period_us;
-    if (found_empty && hal_time_reached(begun_us, t_us)) {
-        t_us = begun_us;
+    uint32_t t_us = b->last_us + period_us;
+    if (b->found_empty && hal_time_reached(b->begun_us, t_us)) {
+        t_us = b->begun_us;
     }
-    bool plausible = !is_new && last_known && now_us - t_us <= SENSOR_DEPTH * period_us;
+    bool plausible = !is_new && b->last_known && now_us - t_us <= SENSOR_DEPTH * period_us;
     return plausible ? t_us : now_us;
 }
 
 /* The bus is made busy first, so that no edge starts a burst and the rest needs no critical section. */
 bool burst_read(bool is_new)
 {
+    struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
     bool start = can_begin();
-    bool exact = edge_waiting != 0;
-    uint32_t t_us = edge_us;
+    bool exact = b->edge_waiting != 0;
+    uint32_t t_us = b->edge_us;
     if (start) {
-        bus.state = I2C_BUS_BUSY;
-        edge_waiting = 0;
+        b->bus.state = I2C_BUS_BUSY;
+        b->edge_waiting = 0;
     }
     hal_irq_restore(state);
     if (start) {
         uint32_t now_us = hal_time_us();
-        begin_burst(now_us, exact ? t_us : waiting_since_us(now_us, is_new), exact);
+        b->reading_us = exact ? t_us : waiting_since_us(b, now_us, is_new);
+        b->reading_exact = exact;
+        begin_burst(now_us, false);
     }
     return start;
 }
@@ -214,14 +236,14 @@ bool burst_drain(void)
 }
 
 /* One cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */
-static void keep_edge(void)
+static void keep_edge(struct burst *b)
 {
-    if (failures != UINT8_MAX) {
-        failures++;
+    if (b->failures != UINT8_MAX) {
+        b->failures++;
     }
-    if (reading_exact && !i2c_bus_asked(&bus, READING_DATA)) {
-        edge_us = reading_us;
-        edge_waiting = 1;
+    if (b->reading_exact && !i2c_bus_asked(&b->bus, READING_DATA)) {
+        b->edge_us = b->reading_us;
+        b->edge_waiting = 1;
     }
 }
 
@@ -230,78 +252,89 @@ static void keep_edge(void)
  * the samples that wait behind it is that of INT1 coming back to a FIFO that had filled. The newest sample is half a
  * period old then.
  */
-static void restamp(uint8_t behind, bool overrun)
+APART void restamp(struct burst *b)
 {
-    if (behind < 2u) {
-        return;
-    }
-    uint32_t period_us = burst_period_us();
+    uint8_t behind = b->reading[READING_FIFO_STATUS];
+    bool overrun = (b->reading[READING_SOURCE] & ADXL345_INT_OVERRUN) != 0;
+    uint32_t period_us = b->period_us_q8 >> 8;
     uint32_t age_us = behind * period_us + (period_us >> 1);
     /* before the last one: a bit of the count was wrong */
-    bool after_last = !last_known || !hal_time_reached(last_us, begun_us - age_us);
-    if (after_last && (overrun || begun_us - reading_us + 2u * period_us < age_us)) {
-        reading_us = begun_us - age_us;
-        reading_exact = false;
+    bool after_last = !b->last_known || !hal_time_reached(b->last_us, b->begun_us - age_us);
+    if (after_last && (overrun || b->begun_us - b->reading_us + 2u * period_us < age_us)) {
+        b->reading_us = b->begun_us - age_us;
+        b->reading_exact = false;
     }
 }
 
-static reading_t judge(void)
+static reading_t judge(struct burst *b)
 {
-    burst_entry_t *entry = &queue[head];
-    reading_t verdict = integrity_judge(reading, entry->sample.lsb, newest_lsb);
-    failures = 0;
-    found_empty = verdict == READING_EMPTY;
-    if (verdict == READING_GOOD) {
-        restamp(reading[READING_FIFO_STATUS], (reading[READING_SOURCE] & ADXL345_INT_OVERRUN) != 0);
-        newest_lsb = entry->sample.lsb;
-        entry->sample.t_us = reading_us;
-        entry->exact = reading_exact;
-        entry->stuck = integrity_stuck();
-        head = (uint8_t)((uint8_t)(head + 1u) & QUEUE_MASK);
+    burst_entry_t *entry = &b->queue[b->head];
+    HAL_POINTER(entry); /* else its address is computed anew at each use */
+    b->failures = 0;
+    reading_t verdict = integrity_judge(b->reading, entry->sample.lsb, b->newest_lsb);
+    b->found_empty = verdict == READING_EMPTY;
+    if (verdict != READING_GOOD) {
+        return verdict;
     }
+    if (b->reading[READING_FIFO_STATUS] >= 2u) {
+        restamp(b);
+    }
+    b->newest_lsb = entry->sample.lsb;
+    entry->sample.t_us = b->reading_us;
+    entry->exact = b->reading_exact;
+    entry->stuck = integrity_stuck();
+    b->head = (uint8_t)((uint8_t)(b->head + 1u) & QUEUE_MASK);
     return verdict;
 }
 
 /* No burst begins until on_bus is 0 again, so what the handlers wrote stays as it is. */
+APART reading_t judge_ended(void)
+{
+    struct burst *b = base();
+    reading_t verdict = READING_NONE;
+    if (b->by_edge) {
+        b->reading_us = b->begun_us;
+        b->reading_exact = true;
+    }
+    if (b->bus.state == I2C_BUS_OK) {
+        verdict = judge(b);
+    } else {
+        keep_edge(b);
+    }
+    bool had_sample = i2c_bus_received(&b->bus, READING_DATA) && (b->reading[READING_SOURCE] & ADXL345_INT_DATA_READY);
+    if (verdict == READING_GOOD || had_sample) {
+        b->last_us = b->reading_us;
+        b->last_known = true;
+    }
+    b->on_bus = 0;
+    return verdict;
+}
+
+/* Asked in every pass, of which most find nothing. */
 reading_t burst_judge(void)
 {
-    reading_t verdict = READING_NONE;
-    if (!on_bus || bus.state == I2C_BUS_BUSY) {
-        return verdict;
-    }
-    if (bus.state == I2C_BUS_OK) {
-        verdict = judge();
-    } else {
-        keep_edge();
-    }
-    bool had_sample = i2c_bus_received(&bus, READING_DATA) && (reading[READING_SOURCE] & ADXL345_INT_DATA_READY);
-    if (verdict == READING_GOOD || had_sample) {
-        last_us = reading_us;
-        last_known = true;
-    }
-    on_bus = 0;
-    return verdict;
+    return !burst.on_bus || burst.bus.state == I2C_BUS_BUSY ? READING_NONE : judge_ended();
 }
 
 bool burst_running(void)
 {
-    return on_bus != 0;
+    return burst.on_bus != 0;
 }
 
 bool burst_bus_taken(void)
 {
-    return on_bus != 0 || hal_i2c_stop_pending();
+    return burst.on_bus != 0 || hal_i2c_stop_pending();
 }
 
 bool burst_found_empty(void)
 {
-    return found_empty;
+    return burst.found_empty;
 }
 
 uint32_t burst_begun_us(void)
 {
     hal_irq_state_t state = hal_irq_save();
-    uint32_t t_us = begun_us;
+    uint32_t t_us = burst.begun_us;
     hal_irq_restore(state);
     return t_us;
 }
@@ -309,24 +342,24 @@ uint32_t burst_begun_us(void)
 void burst_expect(uint32_t t_us)
 {
     hal_irq_state_t state = hal_irq_save();
-    begun_us = t_us;
+    burst.begun_us = t_us;
     hal_irq_restore(state);
-    last_us = t_us;
+    burst.last_us = t_us;
 }
 
 uint32_t burst_met_sample_us(void)
 {
-    return found_empty ? last_us : burst_begun_us();
+    return burst.found_empty ? burst.last_us : burst_begun_us();
 }
 
 uint8_t burst_failures(void)
 {
-    return failures;
+    return burst.failures;
 }
 
 uint8_t burst_queued(void)
 {
-    return (uint8_t)((uint8_t)(head - tail) & QUEUE_MASK);
+    return (uint8_t)((uint8_t)(burst.head - burst.tail) & QUEUE_MASK);
 }
 
 bool burst_queue_full(void)
@@ -336,47 +369,49 @@ bool burst_queue_full(void)
 
 void burst_set_period(uint32_t nominal_us)
 {
-    period_us_q4 = nominal_us * 16u;
-    taken_exact = false;
+    burst.period_us_q8 = nominal_us << 8;
+    burst.taken_exact = false;
 }
 
 uint32_t burst_period_us(void)
 {
-    return period_us_q4 >> 4;
+    return burst.period_us_q8 >> 8;
 }
 
 /* Follows the true period (a sixteenth of each difference) where two stamps in a row are exact and near it. */
 static void measure_period(const burst_entry_t *entry)
 {
+    struct burst *b = base();
     uint32_t period_us = burst_period_us();
-    uint32_t error_us = entry->sample.t_us - taken_us - period_us;
+    uint32_t error_us = entry->sample.t_us - b->taken_us - period_us;
     uint32_t eighth_us = period_us >> 3;
-    if (entry->exact && taken_exact && error_us + eighth_us <= eighth_us + eighth_us) {
-        period_us_q4 += error_us;
+    if (entry->exact && b->taken_exact && error_us + eighth_us <= eighth_us + eighth_us) {
+        b->period_us_q8 += error_us << 4;
     }
-    taken_us = entry->sample.t_us;
-    taken_exact = entry->exact;
+    b->taken_us = entry->sample.t_us;
+    b->taken_exact = entry->exact;
 }
 
 bool burst_oldest_us(uint32_t *t_us)
 {
-    uint8_t at = tail;
-    if (at == head) {
+    uint8_t at = burst.tail;
+    if (at == burst.head) {
         return false;
     }
-    *t_us = queue[at].sample.t_us;
+    *t_us = burst.queue[at].sample.t_us;
     return true;
 }
 
 bool burst_take(burst_entry_t *out)
 {
-    uint8_t at = tail;
-    if (at == head) {
+    struct burst *b = base();
+    uint8_t at = b->tail;
+    if (at == b->head) {
         return false;
     }
-    *out = queue[at];
-    tail = (uint8_t)((uint8_t)(at + 1u) & QUEUE_MASK);
-    watch_sample(out->sample.lsb, queue[(uint8_t)(at - 1u) & QUEUE_MASK].sample.lsb);
+    *out = b->queue[at];
+    b->tail = (uint8_t)((uint8_t)(at + 1u) & QUEUE_MASK);
+    watch_sample(out->sample.lsb, b->queue[(uint8_t)(at - 1u) & QUEUE_MASK].sample.lsb);
     measure_period(out);
     return true;
 }

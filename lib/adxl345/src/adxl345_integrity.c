@@ -44,16 +44,17 @@ void integrity_start(uint8_t range_g)
  */
 static inline bool plausible(const uint8_t *raw, int16_t lsb[3])
 {
+    uint8_t range_g = integrity.range_g;
     uint8_t above = 0;
     uint8_t ones = UINT8_MAX;
-    for (uint8_t axis = 0; axis < 3; axis++) {
+    for (uint8_t axis = 3; axis != 0; axis--) {
         uint8_t low = *raw++;
         uint8_t high = *raw++;
         ones &= (uint8_t)(low & high);
-        above |= (uint8_t)(high + integrity.range_g);
-        lsb[axis] = (int16_t)(uint16_t)(low | (uint16_t)((uint16_t)high << 8));
+        *lsb++ = (int16_t)(uint16_t)(low | (uint16_t)((uint16_t)high << 8));
+        above |= (uint8_t)(high + range_g);
     }
-    return above < (uint8_t)(2u * integrity.range_g) && ones != UINT8_MAX;
+    return above < (uint8_t)(2u * range_g) && ones != UINT8_MAX;
 }
 
 static bool same(const int16_t *a, const int16_t *b)
@@ -63,36 +64,6 @@ static bool same(const int16_t *a, const int16_t *b)
         axis--;
     }
     return axis == 0;
-}
-
-/* FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). */
-static inline bool framed(const uint8_t *reading)
-{
-    return reading[READING_FIFO_CTL] == TABLE_FIFO_CTL && reading[READING_FIFO_STATUS] <= SENSOR_DEPTH;
-}
-
-/*
- * A sample that comes between the byte of INT_SOURCE and the data is read too; it differs from the last, which an empty
- * sensor shows again.
- */
-static inline reading_t verdict(const uint8_t *reading, int16_t lsb[3], const int16_t last_lsb[3])
-{
-    if (!framed(reading) || !plausible(&reading[READING_DATA], lsb)) {
-        return reading[READING_FIFO_CTL] == ADXL345_FIFO_BYPASS ? READING_RESET : READING_BAD;
-    }
-    bool ready = (reading[READING_SOURCE] & ADXL345_INT_DATA_READY) != 0;
-    bool known = integrity.has_last;
-    if (!known || !same(lsb, last_lsb)) {
-        integrity.equal_run = 0;
-        return ready || known ? READING_GOOD : READING_EMPTY;
-    }
-    if (!ready) {
-        return READING_EMPTY;
-    }
-    if (integrity.equal_run != ADXL345_STUCK_REPEATS) {
-        integrity.equal_run++;
-    }
-    return READING_GOOD;
 }
 
 static void count(uint16_t *counter)
@@ -109,7 +80,8 @@ static void lengthen(uint8_t *run)
     }
 }
 
-static void discard(reading_t why)
+/* Kept out of its caller, which saves fewer registers then. */
+static __attribute__((noinline)) reading_t discard(reading_t why)
 {
     if (why == READING_EMPTY) {
         lengthen(&integrity.empty_run);
@@ -117,7 +89,7 @@ static void discard(reading_t why)
             integrity.empty_run = RUN_EMPTY;
         }
         count(&integrity.counters.empty);
-        return;
+        return why;
     }
     integrity.failed = true;
     lengthen(&integrity.bad_run);
@@ -125,14 +97,35 @@ static void discard(reading_t why)
         integrity.bad_run = RUN_RESET;
     }
     count(&integrity.counters.failed);
+    return why;
 }
 
+/*
+ * FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). A sample that comes between
+ * the byte of INT_SOURCE and the data is read too; it differs from the last, which an empty sensor shows again.
+ */
 reading_t integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3])
 {
-    reading_t result = verdict(reading, lsb, last_lsb);
-    if (result != READING_GOOD) {
-        discard(result);
-        return result;
+    if (reading[READING_FIFO_CTL] != TABLE_FIFO_CTL) {
+        return discard(reading[READING_FIFO_CTL] == ADXL345_FIFO_BYPASS ? READING_RESET : READING_BAD);
+    }
+    if (reading[READING_FIFO_STATUS] > SENSOR_DEPTH || !plausible(&reading[READING_DATA], lsb)) {
+        return discard(READING_BAD);
+    }
+    uint8_t source = reading[READING_SOURCE];
+    bool ready = (source & ADXL345_INT_DATA_READY) != 0;
+    if (integrity.has_last && same(lsb, last_lsb)) {
+        if (!ready) {
+            return discard(READING_EMPTY);
+        }
+        if (integrity.equal_run != ADXL345_STUCK_REPEATS) {
+            integrity.equal_run++;
+        }
+    } else {
+        integrity.equal_run = 0;
+        if (!integrity.has_last && !ready) {
+            return discard(READING_EMPTY);
+        }
     }
     integrity.has_last = true;
     integrity.good++;
@@ -140,10 +133,10 @@ reading_t integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], 
     if (!hal_drdy_high()) {
         integrity.empty_run = integrity_int1_stuck() ? (uint8_t)(integrity.empty_run - 1u) : 0;
     }
-    if (reading[READING_SOURCE] & ADXL345_INT_OVERRUN) {
+    if (source & ADXL345_INT_OVERRUN) {
         count(&integrity.counters.overruns);
     }
-    return result;
+    return READING_GOOD;
 }
 
 uint8_t integrity_good(void)

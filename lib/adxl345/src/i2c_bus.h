@@ -13,6 +13,7 @@
 
 #include "hal_i2c.h"
 #include "hal_irq.h"
+#include "hal_sleep.h"
 
 #define I2C_BUS_TX_MAX 2
 
@@ -69,6 +70,7 @@ static inline void i2c_bus_finish(i2c_bus_t *bus, i2c_bus_state_t state)
 {
     hal_i2c_stop();
     bus->state = (uint8_t)state;
+    hal_wake();
 }
 
 static inline void i2c_bus_step_write(i2c_bus_t *bus)
@@ -85,11 +87,16 @@ static inline void i2c_bus_step_write(i2c_bus_t *bus)
 }
 
 /* The last byte is refused, so that the device lets go of SDA. */
-HAL_IRQ_INLINE void i2c_bus_step_read(i2c_bus_t *bus)
+HAL_IRQ_INLINE void i2c_bus_step_read(i2c_bus_t *bus, uint8_t index)
 {
-    bool more = (uint8_t)(bus->index + 1u) < bus->rx_length;
-    hal_i2c_receive(more);
-    bus->expected = more ? HAL_I2C_RECEIVED_ACK : HAL_I2C_RECEIVED_NACK;
+    bus->index = index;
+    if ((uint8_t)(index + 1u) < bus->rx_length) {
+        hal_i2c_receive(true);
+        bus->expected = HAL_I2C_RECEIVED_ACK;
+    } else {
+        hal_i2c_receive(false);
+        bus->expected = HAL_I2C_RECEIVED_NACK;
+    }
 }
 
 /* Any status but the expected one. A refusal counts as one only where an answer was awaited. */
@@ -100,6 +107,7 @@ static inline void i2c_bus_unexpected(i2c_bus_t *bus, uint8_t status)
     if (status == HAL_I2C_ARBITRATION_LOST) {
         hal_i2c_release();
         bus->state = I2C_BUS_LOST;
+        hal_wake();
         return;
     }
     if (status == (uint8_t)(bus->expected + REFUSED)) {
@@ -124,6 +132,12 @@ static inline void i2c_bus_step(i2c_bus_t *bus)
         i2c_bus_unexpected(bus, status);
         return;
     }
+    if (status == HAL_I2C_RECEIVED_ACK) { /* first, because most are */
+        uint8_t index = bus->index;
+        bus->rx[index] = hal_i2c_received();
+        i2c_bus_step_read(bus, (uint8_t)(index + 1u));
+        return;
+    }
     switch (status) {
     case HAL_I2C_STARTED:
         hal_i2c_send(bus->address);
@@ -134,15 +148,11 @@ static inline void i2c_bus_step(i2c_bus_t *bus)
         i2c_bus_step_write(bus);
         break;
     case HAL_I2C_RESTARTED:
-        bus->index = 0;
         hal_i2c_send((uint8_t)(bus->address | 1u));
         bus->expected = HAL_I2C_READ_ADDRESS_ACK;
         break;
-    case HAL_I2C_RECEIVED_ACK:
-        bus->rx[bus->index++] = hal_i2c_received();
-        /* fall through */
     case HAL_I2C_READ_ADDRESS_ACK:
-        i2c_bus_step_read(bus);
+        i2c_bus_step_read(bus, 0);
         break;
     default: /* HAL_I2C_RECEIVED_NACK */
         bus->rx[bus->index] = hal_i2c_received();
