@@ -46,7 +46,7 @@ static bool equal(const char *ram, flash_text_t words)
 }
 
 /* Written out: the product would be a call of 32 by 32 bits. */
-FX_NOINLINE uint32_t times_ten(uint32_t number)
+static uint32_t times_ten(uint32_t number)
 {
     number += number << 2;
     return number << 1;

@@ -54,13 +54,6 @@ FX_NOINLINE void keep_estimate(uint8_t axis, int32_t x_lsb_q16)
     pipe.estimate_q8[axis] = (x_lsb_q16 + 128) >> 8;
 }
 
-FX_NOINLINE void init_filter(filter_any_t *filter)
-{
-    filter_any_config_t config;
-    filter_any_defaults((filter_kind_t)pipe.new_kind, &config, pipe.rate_dhz);
-    (void)filter_any_init(filter, (filter_kind_t)pipe.new_kind, &config);
-}
-
 void pipeline_reset(void)
 {
     pipe.tilt = (tilt_t){ 0, 0, false };
@@ -97,7 +90,7 @@ static bool change_axis(void)
         if (pipe.new_noise) {
             noise_init(noise, pipe.rate_dhz, axis == 2);
         }
-        init_filter(filter);
+        filter_any_start(filter, (filter_kind_t)pipe.new_kind, pipe.rate_dhz);
         return false;
     }
     if (step == STEP_NOISE) {

@@ -191,7 +191,7 @@ static void say_on(uint8_t what)
     }
 }
 
-static void say_byte(uint8_t c)
+FX_NOINLINE void say_byte(uint8_t c)
 {
     if (c >= ' ') {
         text_char((char)c);

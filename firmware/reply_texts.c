@@ -3,6 +3,8 @@
 
 #include <stddef.h>
 
+#include "fx.h"
+
 #define PLACE(name, words) char name[sizeof(words)];
 #define WORDS(name, words) words,
 #define START(name, words) offsetof(struct texts, name),
@@ -13,7 +15,7 @@ static const struct texts {
 
 static const uint16_t starts[] FLASH = { REPLY_TEXTS(START) };
 
-flash_text_t reply_text(uint8_t id)
+FX_ONCE flash_text_t reply_text(uint8_t id)
 {
     return (flash_text_t)&texts + flash_u16(&starts[id]);
 }

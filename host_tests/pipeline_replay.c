@@ -8,7 +8,7 @@
  *
  * CSV: a stream as in docs/protocol.md, whose rows come at the rate given; its times are counted from its first row.
  * SKIP: data rows before the cold start. NAME is a parameter of the filter as its descriptor names it, VALUE in its
- * unit; R=VALUE multiplies what the noise estimate says. The program is linked with --wrap for filter_any_defaults and
+ * unit; R=VALUE multiplies what the noise estimate says. The program is linked with --wrap for filter_any_start and
  * noise_r_lsb2_q8, so that the sample path meets these in place of the shipped values and is itself unchanged.
  */
 #include <math.h>
@@ -36,8 +36,7 @@ static change_t changes[CHANGES_MAX];
 static size_t change_count;
 static double r_factor = 1.0;
 
-void __real_filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16_t rate_dhz);
-void __wrap_filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16_t rate_dhz);
+void __wrap_filter_any_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz);
 uint32_t __real_noise_r_lsb2_q8(const noise_t *n);
 uint32_t __wrap_noise_r_lsb2_q8(const noise_t *n);
 
@@ -83,12 +82,20 @@ static void apply(const change_t *change, filter_kind_t kind, filter_any_config_
     fail("%s has no parameter %s", descriptor->name, change->name);
 }
 
-void __wrap_filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16_t rate_dhz)
+/* The filter with its changed parameters; false when it refuses them. */
+static bool start_changed(filter_any_t *f, filter_kind_t kind, filter_any_config_t *config, uint16_t rate_dhz)
 {
-    __real_filter_any_defaults(kind, config, rate_dhz);
+    filter_any_defaults(kind, config, rate_dhz);
     for (size_t i = 0; i < change_count; i++) {
         apply(&changes[i], kind, config);
     }
+    return filter_any_init(f, kind, config);
+}
+
+void __wrap_filter_any_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz)
+{
+    filter_any_config_t config;
+    (void)start_changed(f, kind, &config, rate_dhz); /* check_configuration has asked */
 }
 
 uint32_t __wrap_noise_r_lsb2_q8(const noise_t *n)
@@ -158,8 +165,7 @@ static void check_configuration(filter_kind_t kind, uint16_t rate_dhz)
 {
     filter_any_config_t config;
     filter_any_t filter;
-    filter_any_defaults(kind, &config, rate_dhz);
-    if (!filter_any_init(&filter, kind, &config)) {
+    if (!start_changed(&filter, kind, &config, rate_dhz)) {
         const filter_descriptor_t *descriptor = filter_any_descriptor(kind);
         uint8_t which = filter_any_refused(kind, &config);
         bool one = which < descriptor->parameter_count;

@@ -28,6 +28,9 @@ static void test_an_unknown_kind_changes_nothing(void)
     filter_any_defaults(FILTER_KIND_COUNT, &config, 1000);
     TEST_ASSERT_EQUAL_MEMORY(&config_before, &config, sizeof config);
     TEST_ASSERT_FALSE(filter_any_init(&f, FILTER_KIND_COUNT, &config));
+    f.kind = FILTER_KIND_COUNT + 1;
+    f_before.kind = f.kind;
+    filter_any_start(&f, FILTER_KIND_COUNT, 1000);
     filter_any_set_noise(&f, 256);
     filter_any_reset(&f, 100);
     TEST_ASSERT_FALSE(filter_any_reset_step(&f, 100, 0));
@@ -41,6 +44,24 @@ static void test_an_unknown_kind_changes_nothing(void)
     TEST_ASSERT_EQUAL_MEMORY(&f_before, &f, sizeof f);
     filter_any_probe(&f, &probe);
     TEST_ASSERT_EQUAL_MEMORY(&probe_before, &probe, sizeof probe);
+}
+
+/* At each rate of its range, whose defaults are legal; not looked at: what lies between the fields. */
+static void test_start_is_defaults_and_init(void)
+{
+    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        for (uint32_t rate_dhz = FILTER_RATE_MIN_DHZ; rate_dhz <= FILTER_RATE_MAX_DHZ; rate_dhz++) {
+            filter_any_t started;
+            filter_any_t initialised;
+            filter_any_config_t config;
+            memset(&started, 0, sizeof started);
+            memset(&initialised, 0, sizeof initialised);
+            filter_any_start(&started, (filter_kind_t)kind, (uint16_t)rate_dhz);
+            filter_any_defaults((filter_kind_t)kind, &config, (uint16_t)rate_dhz);
+            TEST_ASSERT_TRUE(filter_any_init(&initialised, (filter_kind_t)kind, &config));
+            TEST_ASSERT_EQUAL_MEMORY(&initialised, &started, sizeof started);
+        }
+    }
 }
 
 static void test_name_and_descriptor_agree(void)
@@ -165,6 +186,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_an_unknown_kind_changes_nothing);
+    RUN_TEST(test_start_is_defaults_and_init);
     RUN_TEST(test_name_and_descriptor_agree);
     RUN_TEST(test_reset_in_steps_is_reset);
     RUN_TEST(test_a_refusal_names_the_parameter);

@@ -12,6 +12,7 @@
 #include "adxl345_table.h"
 #include "adxl345_watch.h"
 #include "hal_drdy.h"
+#include "hal_pointer.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 
@@ -25,6 +26,17 @@ enum { TRANSFER_LIMIT_MS = 3, DRAIN_LIMIT_MS = 100, BACK_OFF_MIN_MS = 5, BACK_OF
 #define LOOK_US 500ul /* behind the moment when a sample was due, and again and again while none comes */
 
 adxl345_driver_t driver;
+
+/*
+ * What a poll does finds the driver through a pointer; what is called from elsewhere too, and small, at its fixed
+ * address.
+ */
+static inline adxl345_driver_t *here(void)
+{
+    adxl345_driver_t *d = &driver;
+    HAL_POINTER(d);
+    return d;
+}
 
 static void set_limit(uint8_t limit_ms)
 {
@@ -136,15 +148,15 @@ void adxl345_stop(void)
 }
 
 /* Puts the step's register access on the bus; false when the bus is not free. */
-static bool issue(void)
+static bool issue(adxl345_driver_t *d)
 {
-    switch (driver.step) {
+    switch (d->step) {
     case STEP_PROBE:
         return burst_read_register(ADXL345_DEVID);
     case STEP_CONFIGURE:
-        return burst_write_register(table_register(driver.row), table_value(driver.row, &driver.config));
+        return burst_write_register(table_register(d->row), table_value(d->row, &d->config));
     case STEP_READ_BACK:
-        return burst_read_register(table_register(driver.row));
+        return burst_read_register(table_register(d->row));
     case STEP_MEASURE:
         return burst_write_register(ADXL345_POWER_CTL, ADXL345_POWER_MEASURE);
     case STEP_ASK_SOURCE:
@@ -155,16 +167,16 @@ static bool issue(void)
 }
 
 /* A transfer failed, or three bursts did: names the fault, or tries the other address. */
-static void give_up(i2c_bus_state_t state)
+static void give_up(adxl345_driver_t *d, i2c_bus_state_t state)
 {
-    saturating_add(&driver.counters.bus_faults);
+    saturating_add(&d->counters.bus_faults);
     if (state != I2C_BUS_NACK_ADDRESS) {
         fail(ADXL345_FAULT_BUS);
         return;
     }
-    driver.address = driver.address == ADXL345_ADDRESS_LOW ? ADXL345_ADDRESS_HIGH : ADXL345_ADDRESS_LOW;
-    if (driver.step == STEP_PROBE && !driver.alternate_tried) {
-        driver.alternate_tried = true;
+    d->address = d->address == ADXL345_ADDRESS_LOW ? ADXL345_ADDRESS_HIGH : ADXL345_ADDRESS_LOW;
+    if (d->step == STEP_PROBE && !d->alternate_tried) {
+        d->alternate_tried = true;
         probe();
     } else {
         fail(ADXL345_FAULT_NO_SENSOR);
@@ -172,45 +184,45 @@ static void give_up(i2c_bus_state_t state)
 }
 
 /* A transfer did not end, or did not even begin, in time. */
-static void timed_out(void)
+static void timed_out(adxl345_driver_t *d)
 {
-    saturating_add(&driver.counters.timeouts);
+    saturating_add(&d->counters.timeouts);
     if (take_bus()) {
-        give_up(I2C_BUS_TIMEOUT);
+        give_up(d, I2C_BUS_TIMEOUT);
     }
 }
 
-static void start_measuring(void)
+static void start_measuring(adxl345_driver_t *d)
 {
-    integrity_start(driver.config.range_g);
+    integrity_start(d->config.range_g);
     watch_start();
-    driver.first_sample_seen = false;
-    driver.timed = TIMED_NONE;
-    driver.was_empty = false;
-    driver.seen_good = integrity_good();
-    burst_expect(driver.now_us + TURN_ON_MS * 1000ul);
+    d->first_sample_seen = false;
+    d->timed = TIMED_NONE;
+    d->was_empty = false;
+    d->seen_good = integrity_good();
+    burst_expect(d->now_us + TURN_ON_MS * 1000ul);
     burst_set_mode(BURST_READ); /* last: an edge may come with it */
     enter(STEP_STREAM, 1);
 }
 
-static void read_back(void)
+static void read_back(adxl345_driver_t *d)
 {
-    if (burst_register_value() != table_value(driver.row, &driver.config)) {
+    if (burst_register_value() != table_value(d->row, &d->config)) {
         fail(ADXL345_FAULT_READ_BACK);
         return;
     }
-    driver.row++;
-    enter(driver.row < TABLE_ROWS ? STEP_READ_BACK : STEP_MEASURE, TRANSFER_LIMIT_MS);
+    d->row++;
+    enter(d->row < TABLE_ROWS ? STEP_READ_BACK : STEP_MEASURE, TRANSFER_LIMIT_MS);
 }
 
-static void probed(void)
+static void probed(adxl345_driver_t *d)
 {
-    driver.device_id = burst_register_value();
-    if (driver.device_id != ADXL345_DEVID_VALUE) {
+    d->device_id = burst_register_value();
+    if (d->device_id != ADXL345_DEVID_VALUE) {
         fail(ADXL345_FAULT_WRONG_ID);
         return;
     }
-    driver.row = 0;
+    d->row = 0;
     enter(STEP_CONFIGURE, TRANSFER_LIMIT_MS);
 }
 
@@ -224,48 +236,48 @@ static int32_t silent_for_us(void)
  * INT1 may have risen just now, unless it is always high. Ones of a sensor that is gone show in the bits of functions
  * that are off. A sensor that has none ready may still come: that is a fault after three periods.
  */
-static void source_asked(void)
+static void source_asked(adxl345_driver_t *d)
 {
     uint8_t source = burst_register_value() & (uint8_t)(ADXL345_INT_DATA_READY | ADXL345_INT_EVENTS);
     bool has_data = source == ADXL345_INT_DATA_READY;
-    bool may_come = source == 0 && silent_for_us() < (int32_t)(driver.nominal_us * 3u + MARGIN_US);
+    bool may_come = source == 0 && silent_for_us() < (int32_t)(d->nominal_us * 3u + MARGIN_US);
     if (!has_data && !may_come && (!hal_drdy_high() || integrity_int1_stuck())) {
         fail(ADXL345_FAULT_NO_DATA);
         return;
     }
     burst_set_mode(BURST_READ);
     enter(STEP_STREAM, 1);
-    driver.was_empty = driver.was_empty || !has_data;
+    d->was_empty = d->was_empty || !has_data;
     if (has_data && !hal_drdy_high()) {
-        driver.fault = ADXL345_FAULT_INT1_SILENT;
-        driver.timed = TIMED_WANTED;
+        d->fault = ADXL345_FAULT_INT1_SILENT;
+        d->timed = TIMED_WANTED;
     }
 }
 
 /* The step's register access ended well. */
-static void advance(void)
+static void advance(adxl345_driver_t *d)
 {
-    switch (driver.step) {
+    switch (d->step) {
     case STEP_PROBE:
-        probed();
+        probed(d);
         break;
     case STEP_CONFIGURE:
-        driver.row++;
-        if (driver.row == TABLE_ROWS) {
-            driver.row = TABLE_READ_BACK;
+        d->row++;
+        if (d->row == TABLE_ROWS) {
+            d->row = TABLE_READ_BACK;
             enter(STEP_READ_BACK, TRANSFER_LIMIT_MS);
         } else {
             enter(STEP_CONFIGURE, TRANSFER_LIMIT_MS);
         }
         break;
     case STEP_READ_BACK:
-        read_back();
+        read_back(d);
         break;
     case STEP_MEASURE:
-        start_measuring();
+        start_measuring(d);
         break;
     case STEP_ASK_SOURCE:
-        source_asked();
+        source_asked(d);
         break;
     default: /* STEP_QUIET_STANDBY */
         burst_set_mode(BURST_READ);
@@ -275,24 +287,24 @@ static void advance(void)
 }
 
 /* A step with one register access: a limit for getting the bus, and the same again for the transfer. */
-static void access_step(void)
+static void access_step(adxl345_driver_t *d)
 {
     i2c_bus_state_t state = I2C_BUS_BUSY;
-    if (driver.issued) {
+    if (d->issued) {
         state = burst_bus_state();
-    } else if (issue()) {
-        driver.issued = true;
+    } else if (issue(d)) {
+        d->issued = true;
         set_limit(TRANSFER_LIMIT_MS);
         return;
     } else {
         hal_wake(); /* the end of a STOP tells nobody */
     }
     if (state == I2C_BUS_OK) {
-        advance();
+        advance(d);
     } else if (state != I2C_BUS_BUSY) {
-        give_up(state);
+        give_up(d, state);
     } else if (deadline_passed()) {
-        timed_out();
+        timed_out(d);
     }
 }
 
@@ -300,34 +312,34 @@ static void access_step(void)
  * Without a sample until the sensor is asked: two periods, or while INT1 is known to be silent less than one, so that
  * a sensor that is fast does not fill its FIFO.
  */
-static uint32_t patience_us(void)
+static uint32_t patience_us(adxl345_driver_t *d)
 {
-    uint32_t nominal_us = driver.nominal_us;
-    return driver.fault == ADXL345_FAULT_INT1_SILENT ? nominal_us - nominal_us / 4u : nominal_us * 2u;
+    uint32_t nominal_us = d->nominal_us;
+    return d->fault == ADXL345_FAULT_INT1_SILENT ? nominal_us - nominal_us / 4u : nominal_us * 2u;
 }
 
-static void sample_arrived(void)
+static void sample_arrived(adxl345_driver_t *d)
 {
-    driver.seen_good = integrity_good();
-    driver.first_sample_seen = true;
-    driver.alternate_tried = false;
-    driver.back_off_ms = BACK_OFF_MIN_MS;
-    driver.deadline_us = driver.now_us + driver.nominal_us + LOOK_US;
-    if (driver.timed == TIMED_READ) {
-        driver.deadline_us = burst_begun_us() + patience_us();
-    } else if (driver.fault != ADXL345_FAULT_NONE) {
-        saturating_add(&driver.counters.restarts);
-        driver.fault = ADXL345_FAULT_NONE;
+    d->seen_good = integrity_good();
+    d->first_sample_seen = true;
+    d->alternate_tried = false;
+    d->back_off_ms = BACK_OFF_MIN_MS;
+    d->deadline_us = d->now_us + d->nominal_us + LOOK_US;
+    if (d->timed == TIMED_READ) {
+        d->deadline_us = burst_begun_us() + patience_us(d);
+    } else if (d->fault != ADXL345_FAULT_NONE) {
+        saturating_add(&d->counters.restarts);
+        d->fault = ADXL345_FAULT_NONE;
     }
-    driver.timed = TIMED_NONE;
+    d->timed = TIMED_NONE;
 }
 
 /* A burst or the STOP behind it hangs: the sample is read again, unless a line that is low says why. */
-static void end_hung_burst(void)
+static void end_hung_burst(adxl345_driver_t *d)
 {
-    saturating_add(&driver.counters.timeouts);
+    saturating_add(&d->counters.timeouts);
     if (take_bus()) {
-        saturating_add(&driver.counters.bus_faults);
+        saturating_add(&d->counters.bus_faults);
         enter(STEP_STREAM, 1);
     }
 }
@@ -336,21 +348,21 @@ static void end_hung_burst(void)
  * No sample came by the time it was due: a burst may hang, or there was none for so long that the sensor is asked. One
  * that failed counts as a sign of life: three in a row are a fault by themselves.
  */
-static void look_for_sample(void)
+static void look_for_sample(adxl345_driver_t *d)
 {
-    int32_t since_us = (int32_t)(driver.now_us - burst_begun_us());
+    int32_t since_us = (int32_t)(d->now_us - burst_begun_us());
     bool waiting = burst_queue_full() || (hal_drdy_high() && !burst_found_empty()); /* main was late */
     if (burst_bus_taken()) {
         if (since_us >= TRANSFER_LIMIT_US) {
-            end_hung_burst();
+            end_hung_burst(d);
         } else {
-            driver.deadline_us = driver.now_us + (uint32_t)(TRANSFER_LIMIT_US - since_us);
+            d->deadline_us = d->now_us + (uint32_t)(TRANSFER_LIMIT_US - since_us);
         }
-    } else if (!waiting && silent_for_us() >= (int32_t)patience_us()) {
+    } else if (!waiting && silent_for_us() >= (int32_t)patience_us(d)) {
         burst_set_mode(BURST_STAMP);
         enter(STEP_ASK_SOURCE, TRANSFER_LIMIT_MS);
     } else {
-        driver.deadline_us = driver.now_us + LOOK_US;
+        d->deadline_us = d->now_us + LOOK_US;
     }
 }
 
@@ -368,32 +380,32 @@ static bool readings_failed(void)
     return true;
 }
 
-static void stream_step(void)
+static void stream_step(adxl345_driver_t *d)
 {
     if (readings_failed()) {
         return;
     }
     if (burst_failures() >= BURST_TRIES) {
-        give_up(burst_bus_state());
+        give_up(d, burst_bus_state());
         return;
     }
-    if (integrity_good() != driver.seen_good) {
-        sample_arrived();
+    if (integrity_good() != d->seen_good) {
+        sample_arrived(d);
     } else if (deadline_passed() || (burst_found_empty() && !burst_running())) {
-        look_for_sample();
+        look_for_sample(d);
     }
-    if (driver.timed != TIMED_WANTED) {
+    if (d->timed != TIMED_WANTED) {
         if (burst_drain()) {
             set_limit(TRANSFER_LIMIT_MS);
         }
-    } else if (burst_read(driver.was_empty)) {
-        driver.timed = TIMED_READ;
-        driver.was_empty = false;
+    } else if (burst_read(d->was_empty)) {
+        d->timed = TIMED_READ;
+        d->was_empty = false;
         set_limit(TRANSFER_LIMIT_MS);
     }
 }
 
-static void drain_step(void)
+static void drain_step(adxl345_driver_t *d)
 {
     bool waiting = hal_drdy_high() && !burst_found_empty();
     if (waiting) {
@@ -405,36 +417,37 @@ static void drain_step(void)
         return;
     }
     burst_set_mode(BURST_IGNORE);
-    if (driver.stop_wanted) {
+    if (d->stop_wanted) {
         stopped();
         return;
     }
     begin();
 }
 
-void adxl345_poll(uint32_t now_us)
+HAL_APART void adxl345_poll(uint32_t now_us)
 {
-    driver.now_us = now_us;
+    adxl345_driver_t *d = here();
+    d->now_us = now_us;
     if (burst_judge() > READING_GOOD) {
         hal_wake(); /* nobody takes it, and the next one may wait */
     }
-    switch (driver.step) {
+    switch (d->step) {
     case STEP_OFF:
         break;
     case STEP_STREAM:
-        stream_step();
+        stream_step(d);
         break;
     case STEP_QUIET_DRAIN:
-        drain_step();
+        drain_step(d);
         break;
     case STEP_BACK_OFF:
         if (deadline_passed()) {
-            driver.alternate_tried = false;
+            d->alternate_tried = false;
             probe();
         }
         break;
     default:
-        access_step();
+        access_step(d);
         break;
     }
 }

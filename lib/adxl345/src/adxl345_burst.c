@@ -11,6 +11,7 @@
  */
 #include "adxl345_burst.h"
 
+#include "adxl345_burst_state.h"
 #include "adxl345_registers.h"
 #include "adxl345_watch.h"
 #include "hal_drdy.h"
@@ -23,38 +24,12 @@ enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1 };
 
 #define SENSOR_DEPTH 33ul /* samples that the sensor can hold (p. 27) */
 
+static struct burst burst;
+
 /*
- * What the handlers use they find at fixed addresses, which costs them no pointer register; functions of main that
- * touch much of it go through a pointer (base).
+ * For functions of main that touch much of it; the handlers find it at its fixed address, which costs them no pointer
+ * register.
  */
-static struct burst {
-    i2c_bus_t bus;
-    const int16_t *newest_lsb; /* of the last good one: taken or not, it is still there */
-    volatile uint8_t head;
-    volatile uint8_t tail;
-    volatile uint8_t mode;
-    volatile uint8_t on_bus; /* a burst that main has not judged: it runs, or has ended */
-    volatile uint8_t edge_waiting;
-    volatile uint32_t edge_us;
-    volatile uint32_t begun_us; /* when the newest burst was put on the bus, */
-    volatile uint8_t by_edge;   /* by the edge of its own sample */
-    uint8_t reading[READING_BYTES];
-    uint32_t reading_us; /* stamp of the sample that is read */
-    bool reading_exact;
-    uint8_t failures;
-    uint32_t last_us; /* stamp of the newest sample that left the sensor, delivered or cut */
-    bool last_known;  /* last_us belongs to this run of the sensor */
-    bool found_empty; /* the newest burst met no sample */
-    uint8_t register_value;
-    uint32_t period_us_q8;
-    uint32_t taken_us;
-    bool taken_exact;
-    burst_entry_t queue[ADXL345_QUEUE_LENGTH];
-} burst;
-
-/* Kept out of its caller, which saves fewer registers then. */
-#define APART static __attribute__((noinline))
-
 static inline struct burst *base(void)
 {
     struct burst *b = &burst;
@@ -252,7 +227,7 @@ static void keep_edge(struct burst *b)
  * the samples that wait behind it is that of INT1 coming back to a FIFO that had filled. The newest sample is half a
  * period old then.
  */
-APART void restamp(struct burst *b)
+static HAL_APART void restamp(struct burst *b)
 {
     uint8_t behind = b->reading[READING_FIFO_STATUS];
     bool overrun = (b->reading[READING_SOURCE] & ADXL345_INT_OVERRUN) != 0;
@@ -288,7 +263,7 @@ static reading_t judge(struct burst *b)
 }
 
 /* No burst begins until on_bus is 0 again, so what the handlers wrote stays as it is. */
-APART reading_t judge_ended(void)
+static HAL_APART reading_t judge_ended(void)
 {
     struct burst *b = base();
     reading_t verdict = READING_NONE;

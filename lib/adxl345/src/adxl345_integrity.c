@@ -3,6 +3,7 @@
 #include "adxl345_registers.h"
 #include "adxl345_table.h"
 #include "hal_drdy.h"
+#include "hal_pointer.h"
 
 #define SENSOR_DEPTH 33u /* samples that the sensor can hold (p. 27) */
 
@@ -80,8 +81,7 @@ static void lengthen(uint8_t *run)
     }
 }
 
-/* Kept out of its caller, which saves fewer registers then. */
-static __attribute__((noinline)) reading_t discard(reading_t why)
+static HAL_APART reading_t discard(reading_t why)
 {
     if (why == READING_EMPTY) {
         lengthen(&integrity.empty_run);
@@ -100,6 +100,24 @@ static __attribute__((noinline)) reading_t discard(reading_t why)
     return why;
 }
 
+static void accept(uint8_t source, bool repeated)
+{
+    if (!repeated) {
+        integrity.equal_run = 0;
+    } else if (integrity.equal_run != ADXL345_STUCK_REPEATS) {
+        integrity.equal_run++;
+    }
+    integrity.has_last = true;
+    integrity.good++;
+    integrity.bad_run = 0;
+    if (!hal_drdy_high()) {
+        integrity.empty_run = integrity_int1_stuck() ? (uint8_t)(integrity.empty_run - 1u) : 0;
+    }
+    if (source & ADXL345_INT_OVERRUN) {
+        count(&integrity.counters.overruns);
+    }
+}
+
 /*
  * FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). A sample that comes between
  * the byte of INT_SOURCE and the data is read too; it differs from the last, which an empty sensor shows again.
@@ -114,28 +132,11 @@ reading_t integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], 
     }
     uint8_t source = reading[READING_SOURCE];
     bool ready = (source & ADXL345_INT_DATA_READY) != 0;
-    if (integrity.has_last && same(lsb, last_lsb)) {
-        if (!ready) {
-            return discard(READING_EMPTY);
-        }
-        if (integrity.equal_run != ADXL345_STUCK_REPEATS) {
-            integrity.equal_run++;
-        }
-    } else {
-        integrity.equal_run = 0;
-        if (!integrity.has_last && !ready) {
-            return discard(READING_EMPTY);
-        }
+    bool repeated = integrity.has_last && same(lsb, last_lsb);
+    if (!ready && (repeated || !integrity.has_last)) {
+        return discard(READING_EMPTY);
     }
-    integrity.has_last = true;
-    integrity.good++;
-    integrity.bad_run = 0;
-    if (!hal_drdy_high()) {
-        integrity.empty_run = integrity_int1_stuck() ? (uint8_t)(integrity.empty_run - 1u) : 0;
-    }
-    if (source & ADXL345_INT_OVERRUN) {
-        count(&integrity.counters.overruns);
-    }
+    accept(source, repeated);
     return READING_GOOD;
 }
 

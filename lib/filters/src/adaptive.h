@@ -100,6 +100,7 @@ enum { adaptive_worst_cycles = 1370 }; /* of adaptive_update, as in filter.h */
 
 void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz);
 bool adaptive_init(adaptive_t *f, const adaptive_config_t *config);
+void adaptive_configure(adaptive_t *f, const adaptive_config_t *config);
 void adaptive_set_noise(adaptive_t *f, uint32_t r_lsb2_q8);
 void adaptive_reset(adaptive_t *f, int16_t z0_lsb);
 bool adaptive_reset_step(adaptive_t *f, int16_t z0_lsb, uint8_t step);

@@ -45,7 +45,7 @@ void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz)
 }
 
 /* k = 2 / memory, UQ0.16, limited. */
-static uint16_t k_of(uint16_t memory_ms, uint16_t rate_dhz)
+FX_NOINLINE uint16_t k_of(uint16_t memory_ms, uint16_t rate_dhz)
 {
     uint32_t k = 1310720000U / ((uint32_t)memory_ms * rate_dhz);
     if (k > K_MAX_UQ16) {
@@ -102,15 +102,9 @@ static void set_limits(adaptive_t *f, const adaptive_config_t *config)
     }
 }
 
-FX_ONCE bool adaptive_init(adaptive_t *f, const adaptive_config_t *config)
+void adaptive_configure(adaptive_t *f, const adaptive_config_t *config)
 {
-    if (!legal(config)) {
-        return false;
-    }
-    uint8_t *bytes = (uint8_t *)f;
-    for (size_t i = 0; i < sizeof *f; i++) {
-        bytes[i] = 0;
-    }
+    filter_zero(f, sizeof *f);
     f->flags = FILTER_WARMING_UP;
     f->guarded = config->guard_sigma_q8 != 0U;
     f->gate_sigma_q8 = f->guarded ? config->guard_sigma_q8 : UNGUARDED_SIGMA_Q8;
@@ -120,6 +114,14 @@ FX_ONCE bool adaptive_init(adaptive_t *f, const adaptive_config_t *config)
     set_memory(f, config);
     set_limits(f, config);
     adaptive_set_noise(f, config->r_lsb2_q8);
+}
+
+FX_ONCE bool adaptive_init(adaptive_t *f, const adaptive_config_t *config)
+{
+    if (!legal(config)) {
+        return false;
+    }
+    adaptive_configure(f, config);
     return true;
 }
 

@@ -9,6 +9,11 @@ void af_defaults(af_config_t *config, uint16_t rate_dhz)
     config->clean_uq16 = MIXTURE_CLEAN_MIN_UQ16; /* one half: no opinion */
 }
 
+void af_configure(af_t *f, const af_config_t *config)
+{
+    mixture_configure(f, config, true);
+}
+
 bool af_init(af_t *f, const af_config_t *config)
 {
     return mixture_init(f, config, true);

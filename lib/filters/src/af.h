@@ -23,6 +23,7 @@ enum { af_worst_cycles = 4150 }; /* of af_update, as in filter.h */
 
 void af_defaults(af_config_t *config, uint16_t rate_dhz);
 bool af_init(af_t *f, const af_config_t *config);
+void af_configure(af_t *f, const af_config_t *config);
 void af_set_noise(af_t *f, uint32_t r_lsb2_q8);
 void af_reset(af_t *f, int16_t z0_lsb);
 bool af_reset_step(af_t *f, int16_t z0_lsb, uint8_t step);

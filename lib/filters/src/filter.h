@@ -4,6 +4,8 @@
  *   void     F_defaults(F_config_t *config, uint16_t rate_dhz);   the shipped values at that output data rate
  *   bool     F_init(F_t *f, const F_config_t *config);            false: a parameter is outside its legal range, f
  *            untouched
+ *   void     F_configure(F_t *f, const F_config_t *config);       the same for what is known to be legal, as the
+ *            defaults are at a rate of FILTER_RATE_MIN_DHZ to FILTER_RATE_MAX_DHZ
  *   void     F_set_noise(F_t *f, uint32_t r_lsb2_q8);             measurement variance R changed (estimated on line)
  *   void     F_reset(F_t *f, int16_t z0_lsb);                     as if z0 had been read for ever; no warm-up
  *   bool     F_reset_step(F_t *f, int16_t z0_lsb, uint8_t step);  F_reset in parts that take no longer than an update:

@@ -96,6 +96,24 @@ bool filter_any_init(filter_any_t *f, filter_kind_t kind, const filter_any_confi
     return true;
 }
 
+FX_ONCE void filter_any_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz)
+{
+    switch (kind) {
+#define START(F)                             \
+    case FILTER_KIND_##F: {                  \
+        F##_config_t config;                 \
+        F##_defaults(&config, rate_dhz);     \
+        F##_configure(&f->state.F, &config); \
+        break;                               \
+    }
+        FILTER_LINKED(START)
+#undef START
+    default:
+        return;
+    }
+    f->kind = (uint8_t)kind;
+}
+
 void filter_any_set_noise(filter_any_t *f, uint32_t r_lsb2_q8)
 {
     switch (f->kind) {

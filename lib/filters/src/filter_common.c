@@ -9,6 +9,15 @@ bool filter_common_legal(uint16_t rate_dhz, uint32_t r_lsb2_q8)
            filter_limited_r_lsb2_q8(r_lsb2_q8) == r_lsb2_q8;
 }
 
+FX_ONCE void filter_zero(void *state, size_t size)
+{
+    uint8_t *at = (uint8_t *)state;
+    while (size != 0U) {
+        *at++ = 0;
+        size--;
+    }
+}
+
 uint32_t filter_default_r_lsb2_q8(uint16_t rate_dhz)
 {
     uint32_t r = ((uint32_t)rate_dhz * 768U + 500U) / 1000U;      /* 0.003 per 0.1 Hz, Q8 */

@@ -11,6 +11,9 @@
 extern "C" {
 #endif
 
+/* All of a state to 0, gaps too. */
+void filter_zero(void *state, size_t size);
+
 /* True when rate and R are within their legal ranges. */
 bool filter_common_legal(uint16_t rate_dhz, uint32_t r_lsb2_q8);
 

@@ -15,12 +15,17 @@ void kf_defaults(kf_config_t *config, uint16_t rate_dhz)
     config->q_lsb2_s3 = TWO_STATE_Q_DEFAULT_LSB2_S3;
 }
 
+void kf_configure(kf_t *f, const kf_config_t *config)
+{
+    two_state_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3, 0);
+}
+
 bool kf_init(kf_t *f, const kf_config_t *config)
 {
     if (!two_state_legal(config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3)) {
         return false;
     }
-    two_state_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3, 0);
+    kf_configure(f, config);
     return true;
 }
 

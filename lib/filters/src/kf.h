@@ -28,6 +28,7 @@ enum { kf_worst_cycles = 800 }; /* of kf_update, as in filter.h */
 
 void kf_defaults(kf_config_t *config, uint16_t rate_dhz);
 bool kf_init(kf_t *f, const kf_config_t *config);
+void kf_configure(kf_t *f, const kf_config_t *config);
 void kf_set_noise(kf_t *f, uint32_t r_lsb2_q8);
 void kf_reset(kf_t *f, int16_t z0_lsb);
 bool kf_reset_step(kf_t *f, int16_t z0_lsb, uint8_t step);

@@ -38,11 +38,8 @@ static void start_acceleration(kf3_t *f)
     f->p33_uq28 = fx_sixteenth(p22);
 }
 
-bool kf3_init(kf3_t *f, const kf3_config_t *config)
+void kf3_configure(kf3_t *f, const kf3_config_t *config)
 {
-    if (!two_state_legal(config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s5)) {
-        return false;
-    }
     two_state_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s5, 0);
     f->fine = config->rate_dhz >= KF3_FINE_FROM_DHZ;
     fx_scaled_t period_s = fx_scaled_div(fx_scaled(10), fx_scaled(config->rate_dhz));
@@ -56,6 +53,14 @@ bool kf3_init(kf3_t *f, const kf3_config_t *config)
     f->p23_uq28 = 0;
     f->p33_uq28 = 0;
     kf3_set_noise(f, config->r_lsb2_q8);
+}
+
+bool kf3_init(kf3_t *f, const kf3_config_t *config)
+{
+    if (!two_state_legal(config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s5)) {
+        return false;
+    }
+    kf3_configure(f, config);
     return true;
 }
 

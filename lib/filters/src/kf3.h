@@ -54,6 +54,7 @@ enum { kf3_worst_cycles = 2350 }; /* of kf3_update, as in filter.h */
 
 void kf3_defaults(kf3_config_t *config, uint16_t rate_dhz);
 bool kf3_init(kf3_t *f, const kf3_config_t *config);
+void kf3_configure(kf3_t *f, const kf3_config_t *config);
 void kf3_set_noise(kf3_t *f, uint32_t r_lsb2_q8);
 void kf3_reset(kf3_t *f, int16_t z0_lsb);
 bool kf3_reset_step(kf3_t *f, int16_t z0_lsb, uint8_t step);

@@ -33,15 +33,20 @@ static uint32_t factor_uq16(uint16_t clean_uq16, uint16_t ratio_uq8)
     return square_uq16 - fx_mul_uq16(square_uq16 - 65536U, clean_uq16);
 }
 
+void lrf_configure(lrf_t *f, const lrf_config_t *config)
+{
+    two_state_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3, 0);
+    f->factor_uq16 = factor_uq16(config->clean_uq16, config->ratio_uq8);
+    lrf_set_noise(f, config->r_lsb2_q8);
+}
+
 bool lrf_init(lrf_t *f, const lrf_config_t *config)
 {
     if (!two_state_legal(config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3) ||
         config->clean_uq16 < CLEAN_MIN_UQ16 || config->ratio_uq8 < RATIO_MIN_UQ8 || config->ratio_uq8 > RATIO_MAX_UQ8) {
         return false;
     }
-    two_state_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3, 0);
-    f->factor_uq16 = factor_uq16(config->clean_uq16, config->ratio_uq8);
-    lrf_set_noise(f, config->r_lsb2_q8);
+    lrf_configure(f, config);
     return true;
 }
 

@@ -42,6 +42,7 @@ enum { lrf_worst_cycles = 800 }; /* of lrf_update, as in filter.h */
 
 void lrf_defaults(lrf_config_t *config, uint16_t rate_dhz);
 bool lrf_init(lrf_t *f, const lrf_config_t *config);
+void lrf_configure(lrf_t *f, const lrf_config_t *config);
 void lrf_set_noise(lrf_t *f, uint32_t r_lsb2_q8);
 void lrf_reset(lrf_t *f, int16_t z0_lsb);
 bool lrf_reset_step(lrf_t *f, int16_t z0_lsb, uint8_t step);

@@ -93,17 +93,22 @@ static void forget(mixture_t *f)
     }
 }
 
-bool mixture_init(mixture_t *f, const mixture_config_t *config, bool learning)
+void mixture_configure(mixture_t *f, const mixture_config_t *config, bool learning)
 {
-    if (!legal(config)) {
-        return false;
-    }
     two_state_wide_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3);
     f->span_uq16 = fx_mul_u16(config->ratio_uq8, config->ratio_uq8) - ONE_UQ16;
     f->span = fx_leading(f->span_uq16);
     f->clean_uq16 = config->clean_uq16;
     f->learnt_from = learning ? LEARNT_FROM_START : 0U;
     forget(f);
+}
+
+bool mixture_init(mixture_t *f, const mixture_config_t *config, bool learning)
+{
+    if (!legal(config)) {
+        return false;
+    }
+    mixture_configure(f, config, learning);
     return true;
 }
 

@@ -65,6 +65,7 @@ FX_ONCE void mixture_defaults(mixture_config_t *config, uint16_t rate_dhz);
 
 /* False: a parameter is outside its legal range, f untouched. learning: of q. */
 FX_ONCE bool mixture_init(mixture_t *f, const mixture_config_t *config, bool learning);
+FX_ONCE void mixture_configure(mixture_t *f, const mixture_config_t *config, bool learning);
 
 /* As F_reset of filter.h; what was learnt is forgotten. */
 FX_ONCE void mixture_reset(mixture_t *f, int16_t z0_lsb);

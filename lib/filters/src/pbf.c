@@ -8,6 +8,11 @@ void pbf_defaults(pbf_config_t *config, uint16_t rate_dhz)
     mixture_defaults(config, rate_dhz);
 }
 
+void pbf_configure(pbf_t *f, const pbf_config_t *config)
+{
+    mixture_configure(f, config, false);
+}
+
 bool pbf_init(pbf_t *f, const pbf_config_t *config)
 {
     return mixture_init(f, config, false);

@@ -24,6 +24,7 @@ enum { pbf_worst_cycles = 3450 }; /* of pbf_update, as in filter.h */
 
 void pbf_defaults(pbf_config_t *config, uint16_t rate_dhz);
 bool pbf_init(pbf_t *f, const pbf_config_t *config);
+void pbf_configure(pbf_t *f, const pbf_config_t *config);
 void pbf_set_noise(pbf_t *f, uint32_t r_lsb2_q8);
 void pbf_reset(pbf_t *f, int16_t z0_lsb);
 bool pbf_reset_step(pbf_t *f, int16_t z0_lsb, uint8_t step);

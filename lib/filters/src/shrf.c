@@ -8,6 +8,11 @@ void shrf_defaults(shrf_config_t *config, uint16_t rate_dhz)
     mixture_defaults(config, rate_dhz);
 }
 
+void shrf_configure(shrf_t *f, const shrf_config_t *config)
+{
+    mixture_configure(f, config, false);
+}
+
 bool shrf_init(shrf_t *f, const shrf_config_t *config)
 {
     return mixture_init(f, config, false);

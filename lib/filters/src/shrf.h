@@ -24,6 +24,7 @@ enum { shrf_worst_cycles = 3450 }; /* of shrf_update, as in filter.h */
 
 void shrf_defaults(shrf_config_t *config, uint16_t rate_dhz);
 bool shrf_init(shrf_t *f, const shrf_config_t *config);
+void shrf_configure(shrf_t *f, const shrf_config_t *config);
 void shrf_set_noise(shrf_t *f, uint32_t r_lsb2_q8);
 void shrf_reset(shrf_t *f, int16_t z0_lsb);
 bool shrf_reset_step(shrf_t *f, int16_t z0_lsb, uint8_t step);

@@ -44,6 +44,15 @@ static uint16_t flagged_share_uq16(uint16_t soft_sigma_q8, uint16_t gate_sigma_q
     return (share > 0xFFFFU) ? 0xFFFFU : (uint16_t)share;
 }
 
+void soft_configure(soft_t *f, const soft_config_t *config)
+{
+    two_state_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3, config->rate_max_lsb_s);
+    reacquire_init(&f->again, config->reacquire_samples);
+    f->soft_sigma_q8 = config->soft_sigma_q8;
+    f->share_uq16 = flagged_share_uq16(config->soft_sigma_q8, config->gate_sigma_q8);
+    soft_set_noise(f, config->r_lsb2_q8);
+}
+
 bool soft_init(soft_t *f, const soft_config_t *config)
 {
     if (!two_state_legal(config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3) ||
@@ -51,11 +60,7 @@ bool soft_init(soft_t *f, const soft_config_t *config)
         !reacquire_legal(config->reacquire_samples, config->rate_max_lsb_s)) {
         return false;
     }
-    two_state_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3, config->rate_max_lsb_s);
-    reacquire_init(&f->again, config->reacquire_samples);
-    f->soft_sigma_q8 = config->soft_sigma_q8;
-    f->share_uq16 = flagged_share_uq16(config->soft_sigma_q8, config->gate_sigma_q8);
-    soft_set_noise(f, config->r_lsb2_q8);
+    soft_configure(f, config);
     return true;
 }
 

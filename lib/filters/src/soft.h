@@ -43,6 +43,7 @@ enum { soft_worst_cycles = 1300 }; /* of soft_update, as in filter.h */
 
 void soft_defaults(soft_config_t *config, uint16_t rate_dhz);
 bool soft_init(soft_t *f, const soft_config_t *config);
+void soft_configure(soft_t *f, const soft_config_t *config);
 void soft_set_noise(soft_t *f, uint32_t r_lsb2_q8);
 void soft_reset(soft_t *f, int16_t z0_lsb);
 bool soft_reset_step(soft_t *f, int16_t z0_lsb, uint8_t step);

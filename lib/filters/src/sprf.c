@@ -27,6 +27,15 @@ void sprf_defaults(sprf_config_t *config, uint16_t rate_dhz)
     config->rate_max_lsb_s = REACQUIRE_RATE_MAX_DEFAULT_LSB_S;
 }
 
+void sprf_configure(sprf_t *f, const sprf_config_t *config)
+{
+    two_state_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3, config->rate_max_lsb_s);
+    reacquire_init(&f->again, config->reacquire_samples);
+    f->gate_sigma_q8 = config->gate_sigma_q8;
+    f->refused = 0;
+    sprf_set_noise(f, config->r_lsb2_q8);
+}
+
 bool sprf_init(sprf_t *f, const sprf_config_t *config)
 {
     if (!two_state_legal(config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3) ||
@@ -34,11 +43,7 @@ bool sprf_init(sprf_t *f, const sprf_config_t *config)
         !reacquire_legal(config->reacquire_samples, config->rate_max_lsb_s)) {
         return false;
     }
-    two_state_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3, config->rate_max_lsb_s);
-    reacquire_init(&f->again, config->reacquire_samples);
-    f->gate_sigma_q8 = config->gate_sigma_q8;
-    f->refused = 0;
-    sprf_set_noise(f, config->r_lsb2_q8);
+    sprf_configure(f, config);
     return true;
 }
 

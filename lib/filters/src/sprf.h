@@ -41,6 +41,7 @@ enum { sprf_worst_cycles = 1000 }; /* of sprf_update, as in filter.h */
 
 void sprf_defaults(sprf_config_t *config, uint16_t rate_dhz);
 bool sprf_init(sprf_t *f, const sprf_config_t *config);
+void sprf_configure(sprf_t *f, const sprf_config_t *config);
 void sprf_set_noise(sprf_t *f, uint32_t r_lsb2_q8);
 void sprf_reset(sprf_t *f, int16_t z0_lsb);
 bool sprf_reset_step(sprf_t *f, int16_t z0_lsb, uint8_t step);

@@ -23,6 +23,15 @@ void sprf_paper_defaults(sprf_paper_config_t *config, uint16_t rate_dhz)
     config->gate_sigma_q8 = GATE_PUBLISHED_SIGMA_Q8;
 }
 
+void sprf_paper_configure(sprf_paper_t *f, const sprf_paper_config_t *config)
+{
+    uint16_t gate = config->gate_sigma_q8;
+    two_state_wide_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3);
+    /* below the saturated distance: 16 sigma are 15.9998 */
+    uint32_t gate2_uq8 = fx_mul_u16(gate, gate) >> 8;
+    f->gate2_uq8 = (gate2_uq8 >= UINT16_MAX) ? UINT16_MAX - 1U : (uint16_t)gate2_uq8;
+}
+
 bool sprf_paper_init(sprf_paper_t *f, const sprf_paper_config_t *config)
 {
     uint16_t gate = config->gate_sigma_q8;
@@ -30,10 +39,7 @@ bool sprf_paper_init(sprf_paper_t *f, const sprf_paper_config_t *config)
         gate > GATE_MAX_SIGMA_Q8) {
         return false;
     }
-    two_state_wide_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3);
-    /* below the saturated distance: 16 sigma are 15.9998 */
-    uint32_t gate2_uq8 = fx_mul_u16(gate, gate) >> 8;
-    f->gate2_uq8 = (gate2_uq8 >= UINT16_MAX) ? UINT16_MAX - 1U : (uint16_t)gate2_uq8;
+    sprf_paper_configure(f, config);
     return true;
 }
 

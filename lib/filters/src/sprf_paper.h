@@ -37,6 +37,7 @@ enum { sprf_paper_worst_cycles = 2150 }; /* of sprf_paper_update, as in filter.h
 
 void sprf_paper_defaults(sprf_paper_config_t *config, uint16_t rate_dhz);
 bool sprf_paper_init(sprf_paper_t *f, const sprf_paper_config_t *config);
+void sprf_paper_configure(sprf_paper_t *f, const sprf_paper_config_t *config);
 void sprf_paper_set_noise(sprf_paper_t *f, uint32_t r_lsb2_q8);
 void sprf_paper_reset(sprf_paper_t *f, int16_t z0_lsb);
 bool sprf_paper_reset_step(sprf_paper_t *f, int16_t z0_lsb, uint8_t step);

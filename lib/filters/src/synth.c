@@ -76,6 +76,16 @@ uint32_t synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16)
     return fx_scaled_fixed(fx_scaled_div(above, below), 16);
 }
 
+void synth_configure(synth_t *f, const synth_config_t *config)
+{
+    synth_begin(&f->core, sizeof *f);
+    f->a1_uq16 = magnitude(config->a1_q16);
+    f->a1_negative = config->a1_q16 < 0;
+    f->b0_uq16 = config->b0_uq16;
+    synth_spread_of_rate(&f->spread, config->rate_dhz);
+    synth_set_noise(f, config->r_lsb2_q8);
+}
+
 FX_ONCE bool synth_init(synth_t *f, const synth_config_t *config)
 {
     bool legal = filter_common_legal(config->rate_dhz, config->r_lsb2_q8) && config->b0_uq16 >= SYNTH_B0_MIN_UQ16 &&
@@ -83,12 +93,7 @@ FX_ONCE bool synth_init(synth_t *f, const synth_config_t *config)
     if (!legal || !stable(config->b0_uq16, config->a1_q16)) {
         return false;
     }
-    synth_begin(&f->core, sizeof *f);
-    f->a1_uq16 = magnitude(config->a1_q16);
-    f->a1_negative = config->a1_q16 < 0;
-    f->b0_uq16 = config->b0_uq16;
-    synth_spread_of_rate(&f->spread, config->rate_dhz);
-    synth_set_noise(f, config->r_lsb2_q8);
+    synth_configure(f, config);
     return true;
 }
 

@@ -24,10 +24,7 @@ static const uint16_t start_gains_uq16[SYNTH_END_GAIN - SYNTH_FIRST_GAIN] FX_FLA
 
 void synth_begin(synth_core_t *c, size_t size)
 {
-    uint8_t *bytes = (uint8_t *)c;
-    for (size_t i = 0; i < size; i++) {
-        bytes[i] = 0;
-    }
+    filter_zero(c, size);
     c->flags = FILTER_WARMING_UP;
 }
 

@@ -30,16 +30,21 @@ void synth_opt_defaults(synth_opt_config_t *config, uint16_t rate_dhz)
     config->p0_lsb2_q8 = distance_lsb_q4 * distance_lsb_q4 + 1U + (config->r_lsb2_q8 * 19U) / 64U;
 }
 
+void synth_opt_configure(synth_opt_t *f, const synth_opt_config_t *config)
+{
+    synth_begin(&f->core, sizeof *f);
+    f->variant_u = config->variant_u != 0U;
+    f->p0_lsb2_q8 = config->p0_lsb2_q8;
+    synth_opt_set_noise(f, config->r_lsb2_q8);
+}
+
 FX_ONCE bool synth_opt_init(synth_opt_t *f, const synth_opt_config_t *config)
 {
     if (!filter_common_legal(config->rate_dhz, config->r_lsb2_q8) || config->variant_u > 1U ||
         config->p0_lsb2_q8 < P0_MIN_LSB2_Q8 || config->p0_lsb2_q8 > P0_MAX_LSB2_Q8) {
         return false;
     }
-    synth_begin(&f->core, sizeof *f);
-    f->variant_u = config->variant_u != 0U;
-    f->p0_lsb2_q8 = config->p0_lsb2_q8;
-    synth_opt_set_noise(f, config->r_lsb2_q8);
+    synth_opt_configure(f, config);
     return true;
 }
 

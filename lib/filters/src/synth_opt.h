@@ -49,6 +49,7 @@ enum { synth_opt_worst_cycles = 500 }; /* of synth_opt_update, as in filter.h */
 void synth_opt_defaults(synth_opt_config_t *config, uint16_t rate_dhz);
 
 bool synth_opt_init(synth_opt_t *f, const synth_opt_config_t *config);
+void synth_opt_configure(synth_opt_t *f, const synth_opt_config_t *config);
 void synth_opt_set_noise(synth_opt_t *f, uint32_t r_lsb2_q8);
 void synth_opt_reset(synth_opt_t *f, int16_t z0_lsb);
 bool synth_opt_reset_step(synth_opt_t *f, int16_t z0_lsb, uint8_t step);

@@ -96,12 +96,8 @@ static bool within(int32_t q16)
     return q16 >= -SYNTH_A1_MAX_Q16 && q16 <= SYNTH_A1_MAX_Q16;
 }
 
-FX_ONCE bool synth_plus_init(synth_plus_t *f, const synth_plus_config_t *config)
+void synth_plus_configure(synth_plus_t *f, const synth_plus_config_t *config)
 {
-    if (!filter_common_legal(config->rate_dhz, config->r_lsb2_q8) || config->b0_uq16 < SYNTH_B0_MIN_UQ16 ||
-        config->k > K_MAX || !within(config->b1_q16) || !within(config->b2_q16) || !plus_stable(config)) {
-        return false;
-    }
     synth_begin(&f->core, sizeof *f);
     f->b0_uq16 = config->b0_uq16;
     f->k = (uint8_t)config->k;
@@ -112,6 +108,15 @@ FX_ONCE bool synth_plus_init(synth_plus_t *f, const synth_plus_config_t *config)
     f->b2_negative = config->b2_q16 < 0;
     synth_spread_of_rate(&f->spread, config->rate_dhz);
     synth_plus_set_noise(f, config->r_lsb2_q8);
+}
+
+FX_ONCE bool synth_plus_init(synth_plus_t *f, const synth_plus_config_t *config)
+{
+    if (!filter_common_legal(config->rate_dhz, config->r_lsb2_q8) || config->b0_uq16 < SYNTH_B0_MIN_UQ16 ||
+        config->k > K_MAX || !within(config->b1_q16) || !within(config->b2_q16) || !plus_stable(config)) {
+        return false;
+    }
+    synth_plus_configure(f, config);
     return true;
 }
 

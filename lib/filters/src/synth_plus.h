@@ -76,6 +76,7 @@ void synth_plus_defaults(synth_plus_config_t *config, uint16_t rate_dhz);
 uint32_t synth_plus_noise_gain_uq16(const synth_plus_config_t *config);
 
 bool synth_plus_init(synth_plus_t *f, const synth_plus_config_t *config);
+void synth_plus_configure(synth_plus_t *f, const synth_plus_config_t *config);
 void synth_plus_set_noise(synth_plus_t *f, uint32_t r_lsb2_q8);
 void synth_plus_reset(synth_plus_t *f, int16_t z0_lsb);
 bool synth_plus_reset_step(synth_plus_t *f, int16_t z0_lsb, uint8_t step);

@@ -38,10 +38,7 @@ fx_scaled_t two_state_scales(uint16_t rate_dhz, uint32_t q_lsb2_s3, fx_scaled_t 
 
 void two_state_init(two_state_t *s, uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3, uint32_t rate_max_lsb_s)
 {
-    uint8_t *bytes = (uint8_t *)s;
-    for (size_t i = 0; i < sizeof *s; i++) {
-        bytes[i] = 0;
-    }
+    filter_zero(s, sizeof *s);
     s->flags = FILTER_WARMING_UP;
     fx_scaled_t period_s = two_state_scales(rate_dhz, q_lsb2_s3, &s->drive_lsb2, &s->start_lsb2);
     uint32_t limit = (uint32_t)X_MAX_LSB_Q16;

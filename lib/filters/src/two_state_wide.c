@@ -9,10 +9,7 @@
 
 void two_state_wide_init(two_state_wide_t *s, uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s3)
 {
-    uint8_t *bytes = (uint8_t *)s;
-    for (size_t i = 0; i < sizeof *s; i++) {
-        bytes[i] = 0;
-    }
+    filter_zero(s, sizeof *s);
     s->flags = FILTER_WARMING_UP;
     (void)two_state_scales(rate_dhz, q_lsb2_s3, &s->drive_lsb2, &s->start_lsb2);
     two_state_wide_set_noise(s, r_lsb2_q8);

@@ -1,0 +1,32 @@
+/* What adxl345_burst.c alone keeps: volatile is what its handlers share with main. */
+#ifndef ADXL345_BURST_STATE_H
+#define ADXL345_BURST_STATE_H
+
+#include "adxl345_burst.h"
+
+struct burst {
+    i2c_bus_t bus;
+    const int16_t *newest_lsb; /* of the last good one: taken or not, it is still there */
+    volatile uint8_t head;
+    volatile uint8_t tail;
+    volatile uint8_t mode;
+    volatile uint8_t on_bus; /* a burst that main has not judged: it runs, or has ended */
+    volatile uint8_t edge_waiting;
+    volatile uint32_t edge_us;
+    volatile uint32_t begun_us; /* when the newest burst was put on the bus, */
+    volatile uint8_t by_edge;   /* by the edge of its own sample */
+    uint8_t reading[READING_BYTES];
+    uint32_t reading_us; /* stamp of the sample that is read */
+    bool reading_exact;
+    uint8_t failures;
+    uint32_t last_us; /* stamp of the newest sample that left the sensor, delivered or cut */
+    bool last_known;  /* last_us belongs to this run of the sensor */
+    bool found_empty; /* the newest burst met no sample */
+    uint8_t register_value;
+    uint32_t period_us_q8;
+    uint32_t taken_us;
+    bool taken_exact;
+    burst_entry_t queue[ADXL345_QUEUE_LENGTH];
+};
+
+#endif
