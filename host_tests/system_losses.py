@@ -48,6 +48,22 @@ def lose_nothing(name, stream, ppm, rate, baud, every, load_limit, fw=FW, shift_
     return rows
 
 
+@test
+def supervision_costs_at_most_600_cycles_a_sample():
+    """Against an image that takes readings as they come, and the four bytes that a plain read does without (INT_SOURCE to FIFO_STATUS)."""
+    def cycles(name, fw, rate):
+        _, _, _, stats = simrun(f"supervision-{name}", STREAMS / "tilt-slow.csv", "--rate", rate, "--baud", 1000000, "--loop", "--max-ms", 20500, fw=fw)
+        return stats["cpu_load"] * 16e6 / rate, stats["isr_twi_mean"]
+
+    for rate in (100, 400, 800):
+        plain, _ = cycles("plain", "build/uno/plain/firmware.elf", rate)
+        judged, a_byte = cycles("judged", FW, rate)
+        verdict = judged - plain
+        assert verdict > 50, f"the verdict takes {verdict} cycles: it is not in the image"
+        what = f"supervision at {rate} Hz ({verdict:.0f} cycles the verdict, 4 x {a_byte:.0f} the bytes)"
+        within(what, round(verdict + 4 * a_byte), SUPERVISION_CYCLES)
+
+
 def make_loss_test(filter_name, rate, baud, every, load_limit, ppm):
     def check():
         lose_nothing(f"loss-{filter_name}-{rate}-{ppm}", STREAMS / "tilt-slow.csv", ppm, rate, baud, every, load_limit, filter_name=filter_name)
