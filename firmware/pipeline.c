@@ -46,6 +46,7 @@ static struct {
     uint8_t step; /* of the change on that axis */
     uint8_t new_kind;
     bool new_noise;
+    bool clipped; /* the reading of this axis */
     bool has_sample;
 } pipe;
 
@@ -210,13 +211,13 @@ static bool near_estimate(uint8_t axis, int16_t lsb)
 
 /*
  * After a hold. True: the filter takes the sample; near the estimate it goes on from what was held. A single one away
- * from it may be a bad reading: with the second on end the filter begins anew, with the noise as it is known. That is
- * work of its own, amid the sample's.
+ * from it may be a bad reading: with the second on end that is not at the rail the filter begins anew, with the noise
+ * as it is known. That is work of its own, amid the sample's.
  */
 static bool rejoins(uint8_t axis, int16_t lsb)
 {
     if (!near_estimate(axis, lsb)) {
-        if (pipe.away[axis]++ < AWAY_SAMPLES) {
+        if (pipe.clipped || pipe.away[axis]++ < AWAY_SAMPLES) {
             pipe.flags |= ROW_GATED;
             return false;
         }
@@ -236,6 +237,9 @@ static void update_axis(uint8_t axis)
     filter_any_t *filter = &pipe.filter[axis];
     keep_estimate(axis, filter_any_update(filter, pipe.lsb[axis]));
     collect_flags(filter_any_flags(filter));
+    if (pipe.clipped) {
+        filter_any_hold(filter);
+    }
 }
 
 /* What comes before the filter of an axis; false: it does not take the sample, or begins anew before it does. */
@@ -243,8 +247,10 @@ static bool prepare_axis(uint8_t axis)
 {
     int16_t lsb = pipe.lsb[axis];
     bool clipped = lsb >= pipe.rail_high_lsb || lsb <= (int16_t)(-pipe.rail_high_lsb - 1);
+    pipe.clipped = clipped;
     if (clipped) {
         pipe.flags |= ROW_CLIPPED;
+        filter_any_hold(&pipe.filter[axis]);
     } else if (noise_update(&pipe.noise[axis], lsb)) {
         filter_any_set_noise(&pipe.filter[axis], noise_r_lsb2_q8(&pipe.noise[axis]));
     }

@@ -93,7 +93,7 @@ static bool rejoins(chain_t *chain, int16_t lsb)
 {
     int16_t off_lsb = (int16_t)(lsb - ((((chain->x_lsb_q16 + 128) >> 8) + 128) >> 8));
     if ((uint32_t)(off_lsb * off_lsb) > noise_r_lsb2_q8(&chain->noise) >> 5) {
-        if (chain->away++ < AWAY_SAMPLES) {
+        if (chain->clipped || chain->away++ < AWAY_SAMPLES) {
             return false;
         }
         filter_any_config_t config;
@@ -118,9 +118,15 @@ int32_t chain_sample(chain_t *chain, uint64_t t_us, int16_t lsb)
         filter_any_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
     }
     int16_t z_lsb = chain->median.window == 0U ? lsb : median_update(&chain->median, lsb);
+    if (chain->clipped) {
+        filter_any_hold(&chain->filter);
+    }
     chain->waits = chain->away != 0 && !rejoins(chain, lsb);
     if (!chain->waits) {
         chain->x_lsb_q16 = filter_any_update(&chain->filter, z_lsb);
+    }
+    if (chain->clipped) {
+        filter_any_hold(&chain->filter);
     }
     return chain->x_lsb_q16;
 }

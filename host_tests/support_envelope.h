@@ -15,11 +15,11 @@
  * samples, q22 = q T^3 / R limited as in two_state.c, R the largest so far; of kf3 2 / q33^(1/6) samples, q33 = q T^5 /
  * R limited as in kf3.c: small gains make a Butterworth filter of third order.
  *
- * Hull, sprf and soft: whenever the last five raw samples agree (steps of at most 3 sqrt(2 R) + ratemax, as reacquire.h
- * counts), one of them was within the gate or all five were refused and the filter restarted on one of them. Within the
- * gate of 3 sigma is within 9 sqrt(R), because S < 9 R (two_state.h); from there the estimate moves towards samples, or
- * by the limited rate per sample missing or refused. So x is no further from the hull of the five than
- * 9 sqrt(R) + (4 + missing) ratemax, R the largest among the five.
+ * Hull, sprf and soft: whenever the last five raw samples agree, none at the rail (steps <= 3 sqrt(2 R) + ratemax, as
+ * in reacquire.h), one of them was within the gate or all five were refused and the filter restarted on one of them.
+ * Within the gate of 3 sigma is within 9 sqrt(R), because S < 9 R (two_state.h); from there the estimate moves towards
+ * samples, or by the limited rate per sample missing or refused. So x is no further from the hull of the five than 9
+ * sqrt(R) + (4 + missing) ratemax, R the largest among the five.
  *
  * Run, sprf and soft: where the samples do not agree it may go on by its rate, and no faster: with n samples refused or
  * missing since the last that was within the gate or restarted it, and that one among the last W, |x - m| <= D +

@@ -101,6 +101,10 @@ static void measure_outside(run_t *run, double x_lsb)
 
 static void judge_hull(run_t *run, int16_t lsb, double x_lsb)
 {
+    if (run->chain.clipped) { /* on a reading at the rail no filter restarts */
+        run->hull.filled = 0;
+        return;
+    }
     hull_add(&run->hull, lsb, chain_r_lsb2(&run->chain), run->chain.coasts);
     double left_lsb;
     bool has_hull = run->facts.rule == ENVELOPE_REACQUIRES || run->facts.rule == ENVELOPE_STANDS;

@@ -321,6 +321,61 @@ static void test_a_bad_reading_behind_a_hold_begins_nothing(void)
     }
 }
 
+static void sample_of_y(int16_t y_lsb)
+{
+    pass_time(world.period_us);
+    adxl345_sample_t s = { .t_us = world.t_us, .lsb = { 0, y_lsb, 241 } }; /* z as it was */
+    TEST_ASSERT_TRUE(coast_sample(s.t_us, world.period_us));
+    pipeline_sample(&s);
+    take_row();
+}
+
+/* Samples that are not clipped until a filter begins anew on one, behind some that are. */
+static unsigned samples_to_begin_anew(uint8_t kind, unsigned clipped)
+{
+    random_seed(&world.random, SEED);
+    begin(kind, 1000, 0.0);
+    samples(300);
+    for (unsigned k = 0; k < clipped; k++) {
+        sample_of_y(4095);
+    }
+    for (unsigned k = 1; k < 60u; k++) {
+        sample_of_y(4090);
+        if (world.row.flags & ROW_REACQUIRED) {
+            return k;
+        }
+    }
+    return 0;
+}
+
+/* Three in the run that restarts a filter are worth no more than one. */
+static void test_clipped_samples_do_not_count_in_a_run(void)
+{
+    FOR_EACH_FILTER(kind)
+    {
+        TEST_ASSERT_EQUAL_UINT(samples_to_begin_anew(kind, 1), samples_to_begin_anew(kind, 3));
+    }
+    TEST_ASSERT_TRUE(samples_to_begin_anew((uint8_t)FILTER_KIND_sprf, 3) != 0);
+}
+
+/* 30 seconds at the rail of 16 g, with a hold in the midst: the rows say so, and no filter begins anew on one. */
+static void test_no_filter_begins_anew_at_the_rail(void)
+{
+    FOR_EACH_FILTER(kind)
+    {
+        begin(kind, 1000, 0.0);
+        samples(300);
+        for (unsigned k = 0; k < 3000u; k++) {
+            if (k == 1500u) {
+                gap(30);
+            }
+            sample_of_y(k < 4u ? 4094 : 4095);
+            TEST_ASSERT_EQUAL_HEX16_MESSAGE(k < 4u ? 0 : ROW_CLIPPED, world.row.flags & (ROW_CLIPPED | ROW_REACQUIRED),
+                                            about(kind, k));
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -332,5 +387,7 @@ int main(void)
     RUN_TEST(test_a_sample_behind_a_long_gap_is_not_kept_waiting);
     RUN_TEST(test_samples_older_than_the_newest_row_are_dropped);
     RUN_TEST(test_a_bad_reading_behind_a_hold_begins_nothing);
+    RUN_TEST(test_clipped_samples_do_not_count_in_a_run);
+    RUN_TEST(test_no_filter_begins_anew_at_the_rail);
     return UNITY_END();
 }
