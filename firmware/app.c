@@ -24,6 +24,7 @@
 #include "rows.h"
 #include "sensor_watch.h"
 #include "settings.h"
+#include "silence.h"
 
 /* The banner at 9600 baud takes 0.4 s; the ring at 9600 baud drains in 0.27 s. */
 #define HOLD_LIMIT_US 1000000ul
@@ -243,7 +244,7 @@ static bool sample_due(void)
 static void write_row(void)
 {
     row_due = false;
-    if (pipeline_long_silent()) {
+    if (silence_long()) {
         rows_at_once();
     } else {
         rows_sample();

@@ -4,6 +4,7 @@
 #include "counters.h"
 #include "hal_time.h"
 #include "pipeline.h"
+#include "silence.h"
 
 #define LONG_STEP_US UINT32_C(100000)
 
@@ -44,7 +45,7 @@ uint32_t coast_due_us(void)
 
 bool coast_over(uint32_t period_us, bool sample)
 {
-    if (sample && (coast.state == STATE_WAITING || pipeline_holds())) {
+    if (sample && (coast.state == STATE_WAITING || silence_holds())) {
         return false;
     }
     if (coast.state == STATE_RUNNING) {
@@ -52,7 +53,7 @@ bool coast_over(uint32_t period_us, bool sample)
         coast.lost_us = coast.due_us;
     }
     pipeline_coast(coast.next_us);
-    expect(coast.next_us + (pipeline_long_silent() ? LONG_STEP_US : period_us), period_us);
+    expect(coast.next_us + (silence_long() ? LONG_STEP_US : period_us), period_us);
     return true;
 }
 

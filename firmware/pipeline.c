@@ -6,6 +6,7 @@
 #include "fx.h"
 #include "noise.h"
 #include "pass.h"
+#include "silence.h"
 #include "tilt.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
@@ -18,8 +19,8 @@ typedef enum {
     WORK_CHANGE  /* each axis gets its new filter */
 } work_t;
 
-/* Missing samples: 25 ms are 1/400 of the nominal rate in 0.1 Hz, so that the chip counts as the PC does. */
-enum { QUARTER_DHZ = 400, HOLD_QUARTERS = 4, LONG_QUARTERS = 40, FAULT_FROM = 3, AWAY_SAMPLES = 2 };
+/* So many on end away from what was held are no bad reading. */
+enum { AWAY_SAMPLES = 2 };
 
 pass_t pass;
 
@@ -35,10 +36,7 @@ static struct {
     uint16_t rate_dhz;
     uint16_t flags;
     uint16_t kept_flags; /* of the samples before the one under way */
-    uint16_t part_dhz;   /* of 25 ms, in shares of the rate */
-    uint8_t quarters;    /* times 25 ms without a sample, up to a second */
-    uint8_t passed;      /* of them, since the step before */
-    uint8_t missing;     /* samples on end, up to 3 */
+    uint8_t passed;      /* times 25 ms, between the newest two steps of a silence */
     uint8_t away[AXES];  /* after a hold: 1, and 1 more for each sample that lies away from what was held; else 0 */
     uint8_t warm_rows;
     uint8_t work; /* work_t */
@@ -136,34 +134,12 @@ static void collect_flags(uint8_t filter_flags)
     pipe.flags |= (filter_flags & FILTER_WARMING_UP) ? ROW_WARMING_UP : 0u;
 }
 
-/*
- * Step n of a prediction is made with the rate that is in force in its middle, (n - 1/2) / rate after the last sample.
- * Returns how often 25 ms have passed since the step before.
- */
-static uint8_t count_missing(void)
-{
-    uint8_t passed = 0;
-    pipe.part_dhz = (uint16_t)(pipe.part_dhz + QUARTER_DHZ);
-    if (pipe.missing == 0) {
-        pipe.part_dhz = QUARTER_DHZ / 2;
-    }
-    for (; pipe.part_dhz >= pipe.rate_dhz; passed++) {
-        pipe.part_dhz = (uint16_t)(pipe.part_dhz - pipe.rate_dhz);
-    }
-    pipe.missing = (uint8_t)(pipe.missing + (pipe.missing < FAULT_FROM));
-    pipe.quarters = (uint8_t)(pipe.quarters + passed);
-    if (pipe.quarters > LONG_QUARTERS) {
-        pipe.quarters = LONG_QUARTERS;
-    }
-    return passed;
-}
-
 FX_ONCE void pipeline_coast(uint32_t t_us)
 {
-    pipe.passed = count_missing();
+    pipe.passed = silence_step(pipe.rate_dhz);
     pipe.last_us = t_us;
     pipe.flags |= ROW_COASTED;
-    if (pipe.missing == FAULT_FROM) {
+    if (silence_samples() == SILENCE_FAULT_FROM) {
         pipe.flags |= ROW_FAULT;
     }
     pipe.work = WORK_COAST;
@@ -172,9 +148,9 @@ FX_ONCE void pipeline_coast(uint32_t t_us)
 
 static void coast_axis(uint8_t axis)
 {
-    bool holds = pipeline_holds();
+    bool holds = silence_holds();
     if (!holds) {
-        if (pipe.missing == 1u) {
+        if (silence_samples() == 1u) {
             filter_any_gap(&pipe.filter[axis]);
         }
         for (uint8_t left = pipe.passed; left != 0; left--) {
@@ -184,16 +160,6 @@ static void coast_axis(uint8_t axis)
         noise_gap(&pipe.noise[axis]);
     }
     pipe.away[axis] = holds && pipe.has_sample;
-}
-
-bool pipeline_holds(void)
-{
-    return pipe.quarters >= HOLD_QUARTERS;
-}
-
-bool pipeline_long_silent(void)
-{
-    return pipe.quarters == LONG_QUARTERS;
 }
 
 uint32_t pipeline_newest_us(void)
@@ -345,8 +311,7 @@ void pipeline_sample(const adxl345_sample_t *sample)
 {
     pipe.kept_flags = pipe.flags;
     pipe.flags = 0;
-    pipe.missing = 0;
-    pipe.quarters = 0;
+    silence_end();
     pipe.last_us = sample->t_us;
     pipe.has_sample = true;
     for (uint8_t axis = 0; axis < AXES; axis++) {

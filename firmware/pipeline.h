@@ -72,10 +72,6 @@ void pipeline_sample(const adxl345_sample_t *sample);
  */
 void pipeline_coast(uint32_t t_us);
 
-/* So many samples are missing that the estimate holds; that a second has passed without one. */
-bool pipeline_holds(void);
-bool pipeline_long_silent(void);
-
 /* Time of the newest sample, or of the one that is missing. */
 uint32_t pipeline_newest_us(void);
 

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* As in pipeline.c. */
+/* As in silence.c and pipeline.c. */
 enum { QUARTER_DHZ = 400, HOLD_QUARTERS = 4, AWAY_SAMPLES = 2 };
 
 const char *median_init(median_t *m, unsigned window)
@@ -50,7 +50,7 @@ bool chain_begin(chain_t *chain, filter_kind_t kind, uint16_t rate_dhz, uint8_t 
     return true;
 }
 
-/* One missing sample: pipeline.c, count_missing and predict. */
+/* One missing sample: silence.c, silence_step, and pipeline.c, coast_axis. */
 static void coast(chain_t *chain)
 {
     chain->part_dhz += QUARTER_DHZ;

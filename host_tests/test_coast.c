@@ -10,6 +10,7 @@
 #include "counters.h"
 #include "filter_any.h"
 #include "pipeline.h"
+#include "silence.h"
 #include "support_random.h"
 #include "unity.h"
 
@@ -240,7 +241,7 @@ static void test_rows_of_missing_samples(void)
         take_row();
         TEST_ASSERT_EQUAL_UINT32(last_us + due_us, world.row.t_us);
         TEST_ASSERT_EQUAL_HEX16(n < 3u ? ROW_COASTED : ROW_COASTED | ROW_FAULT, world.row.flags);
-        TEST_ASSERT_EQUAL_INT(n >= 401u, pipeline_long_silent());
+        TEST_ASSERT_EQUAL_INT(n >= 401u, silence_long());
     }
     TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LOST]);
     pass_time(7000000u + 2500u); /* counted when it is known how many they were */

@@ -1,0 +1,26 @@
+/*
+ * How long no sample has come, in missing samples and in 25 ms, up to a second: what the filters do meanwhile depends
+ * on it. Counted, not measured, so that the chip counts as the PC does. Main only.
+ */
+#ifndef SILENCE_H
+#define SILENCE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { SILENCE_FAULT_FROM = 3 };
+
+/* A sample has come. */
+void silence_end(void);
+
+/* One is missing. Returns how often 25 ms have passed since the step before. */
+uint8_t silence_step(uint16_t rate_dhz);
+
+/* Samples on end, up to SILENCE_FAULT_FROM. */
+uint8_t silence_samples(void);
+
+/* So many samples are missing that the estimate holds (100 ms); that a second has passed without one. */
+bool silence_holds(void);
+bool silence_long(void);
+
+#endif
