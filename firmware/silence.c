@@ -15,7 +15,7 @@ void silence_end(void)
     silence.quarters = 0;
 }
 
-/* Step n of a prediction is made with the rate that is in force in its middle, (n - 1/2) / rate after the last sample. */
+/* Step n of a prediction is made with what is in force in its middle, (n - 1/2) / rate after the last sample. */
 uint8_t silence_step(uint16_t rate_dhz)
 {
     uint8_t passed = 0;
