@@ -63,6 +63,16 @@ static void say_filters(void)
     }
 }
 
+/* value / 100, with both decimals. */
+static void say_hundredths(uint32_t value)
+{
+    uint8_t cents = (uint8_t)(value % 100u);
+    text_u32(value / 100u);
+    text_char('.');
+    text_char((char)('0' + cents / 10u));
+    text_char((char)('0' + cents % 10u));
+}
+
 /* The counters of the firmware, then those of the driver. */
 static uint32_t next_count(void)
 {
@@ -70,12 +80,7 @@ static uint32_t next_count(void)
     if (at < COUNTERS) {
         return counters[at];
     }
-    union {
-        adxl345_counters_t named;
-        uint16_t in_order[sizeof(adxl345_counters_t) / sizeof(uint16_t)];
-    } driver;
-    adxl345_counters(&driver.named);
-    return driver.in_order[at - COUNTERS];
+    return adxl345_count((uint8_t)(at - COUNTERS));
 }
 
 static bool every_is_forced(void)
@@ -98,8 +103,6 @@ static uint32_t number(uint8_t what)
         return next_count();
     case SAY_FAULT:
         return (uint32_t)adxl345_fault();
-    case SAY_PERIOD:
-        return adxl345_period_us();
     case SAY_SERIAL_LOST:
         return hal_uart_rx_lost();
     case SAY_CYCLES:
@@ -135,6 +138,9 @@ static void say_value(uint8_t what)
         break;
     case SAY_RATE:
         text_tenths(said.rate_dhz);
+        break;
+    case SAY_MEASURED:
+        say_hundredths(adxl345_rate_chz());
         break;
     case SAY_BUS_KHZ: /* 800 Hz needs 400, where tLOW is 1.25 us instead of the 1.3 us of both data sheets */
         text_tenths(settings.rate_dhz == 8000 ? 4000 : 3636);

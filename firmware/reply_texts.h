@@ -14,7 +14,7 @@
 /* The bytes of enum say, to be written between the words. */
 #define V_COUNT "\x01"
 #define V_FAULT "\x02"
-#define V_PERIOD "\x03"
+#define V_MEASURED "\x03"
 #define V_SERIAL_LOST "\x04"
 #define V_CYCLES "\x05"
 #define V_LEFT "\x06"
@@ -46,7 +46,7 @@
 enum say {
     SAY_COUNT = 1, /* numbers: the next of the counters of the firmware, then of the driver */
     SAY_FAULT,
-    SAY_PERIOD,
+    SAY_MEASURED, /* output data rate */
     SAY_SERIAL_LOST,
     SAY_CYCLES, /* that the filter takes, and that are left for it */
     SAY_LEFT,
@@ -169,9 +169,11 @@ enum say {
     X(SAMPLES, W_SAMPLE "s " V_COUNT ", gated " V_COUNT ", reacquired " V_COUNT ", clipped " V_COUNT V_MORE) \
     X(ROWS, "rows " V_COUNT ", dropped " V_COUNT ", serial bytes" W_LOST " " V_SERIAL_LOST \
             ", lines refused " V_COUNT V_MORE) \
+    X(MISSING, "lost " V_COUNT ", late " V_COUNT ", drained " V_COUNT ", stuck " V_COUNT ", restarts " V_COUNT V_MORE) \
     X(BUS, \
-      "lost " V_COUNT ", late " V_COUNT ", drained " V_COUNT ", bus faults " V_COUNT \
-      ", timeouts " V_COUNT ", restarts " V_COUNT V_MORE) \
+      "not acknowledged " V_COUNT ", arbitration" W_LOST " " V_COUNT ", bus errors " V_COUNT \
+      ", timeouts " V_COUNT V_MORE) \
+    X(READINGS, "readings torn " V_COUNT ", empty " V_COUNT ", overruns " V_COUNT V_MORE) \
     X(RESET_AGAIN, "reset: " V_THEN_CAUSE) \
     X(LINE_CARRIES, SMALLEST V_BAUD " " W_BAUD " carries" W_AT V_RATE W_HZ) \
     X(FILTER_LEAVES, SMALLEST V_FILTER " leaves time for" W_AT V_RATE W_HZ) \
@@ -193,7 +195,8 @@ enum say {
     X(STATE_STREAMING, "streaming" V_THEN_REST) \
     X(STATE_QUIESCING, "starting" V_THEN_REST) \
     X(STATE_FAULTY, "fault" V_THEN_REST) \
-    X(STATE_REST, ", " W_FAULT V_FAULT ", us per " W_SAMPLE " " V_PERIOD ", uptime s " V_COUNT V_MORE) \
+    X(STATE_REST, ", " W_FAULT V_FAULT ", " W_RATE " " V_RATE W_HZ ", measured " V_MEASURED W_HZ ", uptime s " V_COUNT \
+                  V_MORE) \
     X(NO_SENSOR, \
       "no " W_SENSOR " answers" W_AT "0x53 or 0x1D" W_CHECK "power, SDA" W_TO "A4, SCL" W_TO "A5, CS" W_TO "3.3 V") \
     X(WRONG_ID, W_THE "device" W_AT "0x" V_ADDRESS " is no" W_ADXL ": DEVID reads 0x" V_DEVICE_ID "," W_NOT "0xE5") \

@@ -55,15 +55,26 @@ static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
     }
 }
 
-void board_start(const stream_t *stream, double ppm, uint32_t time_start_us)
+static void begin(hal_host_config_t config, const stream_t *stream)
 {
-    hal_host_config_t config = { .time_start_us = time_start_us, .ppm = ppm, .on_tx = on_tx, .on_latched = on_latched };
+    config.on_tx = on_tx;
+    config.on_latched = on_latched;
     board.row_count = 0;
     board.note_count = 0;
     board.latched_count = 0;
     line_length = 0;
     hal_host_begin(&config, stream, true);
     app_start();
+}
+
+void board_start(const stream_t *stream, double ppm, uint32_t time_start_us)
+{
+    begin((hal_host_config_t){ .time_start_us = time_start_us, .ppm = ppm }, stream);
+}
+
+void board_start_with_rx(const stream_t *stream, uint8_t (*on_rx)(uint8_t reg, uint8_t byte))
+{
+    begin((hal_host_config_t){ .on_rx = on_rx }, stream);
 }
 
 void board_start_resting(void)

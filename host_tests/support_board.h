@@ -34,6 +34,9 @@ extern board_t board;
 /* Power on with a stream (NULL: a sensor that never has data), clock error and start time, and start the firmware. */
 void board_start(const stream_t *stream, double ppm, uint32_t time_start_us);
 
+/* The same, where on_rx says what arrives of each byte of a register. */
+void board_start_with_rx(const stream_t *stream, uint8_t (*on_rx)(uint8_t reg, uint8_t byte));
+
 /* The same with a stream of n rows of one resting vector at 100 Hz, looped. */
 void board_start_resting(void);
 

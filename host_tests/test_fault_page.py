@@ -64,7 +64,7 @@ def flashes_are_those_of_the_led():
 def every_counter_and_cause_is_on_the_page():
     page = " ".join(PAGE.read_text(encoding="utf-8").split())
     said = texts()
-    for line in ("SAMPLES", "ROWS", "BUS"):
+    for line in ("SAMPLES", "ROWS", "MISSING", "BUS", "READINGS"):
         for name in re.findall(r"([a-z][a-z ]*) \.\.", said[line]):
             assert name in page, f"{PAGE}: no counter {name!r}"
     for cause in ("POWER_ON", "EXTERNAL", "BROWN_OUT"):

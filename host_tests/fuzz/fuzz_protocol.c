@@ -276,7 +276,7 @@ static unsigned lines_after(const char *first, const char **optional)
     } else if (begins(first, "# mode csv")) {
         *optional = header;
     }
-    return begins(first, "# filter: ") ? 6 : (begins(first, "# state ") ? 4 : 0);
+    return begins(first, "# filter: ") ? 6 : (begins(first, "# state ") ? 6 : 0);
 }
 
 /* Whether reply line i, if there is one, begins so. */

@@ -85,7 +85,6 @@ static bool take_bus(void)
     if (lines == HAL_I2C_FREE) {
         return true;
     }
-    saturating_add(&driver.counters.bus_faults);
     fail((adxl345_fault_t)(ADXL345_FAULT_SCL_LOW - HAL_I2C_SCL_LOW + lines));
     return false;
 }
@@ -166,10 +165,20 @@ static bool issue(adxl345_driver_t *d)
     }
 }
 
+static void count_failure(i2c_bus_state_t state)
+{
+    uint16_t *counter = &driver.counters.bus_errors;
+    if (state == I2C_BUS_LOST) {
+        counter = &driver.counters.arbitrations_lost;
+    } else if (state == I2C_BUS_NACK_ADDRESS || state == I2C_BUS_NACK_DATA) {
+        counter = &driver.counters.nacks;
+    }
+    saturating_add(counter);
+}
+
 /* A transfer failed, or three bursts did: names the fault, or tries the other address. */
 static void give_up(adxl345_driver_t *d, i2c_bus_state_t state)
 {
-    saturating_add(&d->counters.bus_faults);
     if (state != I2C_BUS_NACK_ADDRESS) {
         fail(ADXL345_FAULT_BUS);
         return;
@@ -302,6 +311,7 @@ static void access_step(adxl345_driver_t *d)
     if (state == I2C_BUS_OK) {
         advance(d);
     } else if (state != I2C_BUS_BUSY) {
+        count_failure(state);
         give_up(d, state);
     } else if (deadline_passed()) {
         timed_out(d);
@@ -339,7 +349,6 @@ static void end_hung_burst(adxl345_driver_t *d)
 {
     saturating_add(&d->counters.timeouts);
     if (take_bus()) {
-        saturating_add(&d->counters.bus_faults);
         enter(STEP_STREAM, 1);
     }
 }
@@ -428,8 +437,12 @@ HAL_APART void adxl345_poll(uint32_t now_us)
 {
     adxl345_driver_t *d = here();
     d->now_us = now_us;
-    if (burst_judge() > READING_GOOD) {
+    reading_t reading = burst_judge();
+    if (reading > READING_GOOD) {
         hal_wake(); /* nobody takes it, and the next one may wait */
+        if (reading == READING_FAILED) {
+            count_failure(burst_bus_state());
+        }
     }
     switch (d->step) {
     case STEP_OFF:

@@ -98,16 +98,21 @@ uint32_t adxl345_deadline_us(void);
 uint8_t adxl345_address(void);
 uint8_t adxl345_device_id(void);
 
-/* Measured time between samples, us (nominal until measured). */
+/* Measured time between samples, us (nominal until measured), by the board's clock. */
 uint32_t adxl345_period_us(void);
 
-/* Counters, saturating. */
+/* The same as output data rate, 0.01 Hz; the mean of 16 samples on end that were read in time. Divides. */
+uint32_t adxl345_rate_chz(void);
+
+/* Counters, saturating. Each transfer that failed is in one of the last four, whether its sample was lost or not. */
 typedef struct {
-    uint16_t samples_drained; /* read late, with an interpolated stamp */
-    uint16_t
-        bus_faults; /* register accesses that failed, hung bursts, three failed bursts in a row; not one read again */
-    uint16_t timeouts; /* of those: did not end in time */
-    uint16_t restarts; /* sensor configured anew after a fault */
+    uint16_t samples_drained;   /* read late, with an interpolated stamp */
+    uint16_t samples_stuck;     /* as ADXL345_MARK_STUCK */
+    uint16_t restarts;          /* sensor configured anew after a fault */
+    uint16_t nacks;             /* address or data not acknowledged */
+    uint16_t arbitrations_lost; /* noise, or another master */
+    uint16_t bus_errors;        /* START or STOP out of place, or a status that cannot be */
+    uint16_t timeouts;          /* did not end, or not begin, in time */
 } adxl345_counters_t;
 void adxl345_counters(adxl345_counters_t *out);
 
@@ -118,6 +123,9 @@ typedef struct {
     uint16_t overruns; /* readings of a FIFO that had filled up: samples were lost */
 } adxl345_readings_t;
 void adxl345_readings(adxl345_readings_t *out);
+
+/* One of these counters by its place: first those of adxl345_counters_t, then those of adxl345_readings_t. */
+uint16_t adxl345_count(uint8_t at);
 
 /* Since the last call: ADXL345_MARK_*, the bits of the row's flags that the driver knows of (docs/protocol.md). */
 enum { ADXL345_MARK_STUCK = 32, ADXL345_MARK_INTEGRITY = 64 };

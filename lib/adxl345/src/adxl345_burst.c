@@ -20,7 +20,7 @@
 #include "hal_sleep.h"
 #include "hal_time.h"
 
-enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1 };
+enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1, PERIOD_STEPS = 16 };
 
 #define SENSOR_DEPTH 33ul /* samples that the sensor can hold (p. 27) */
 
@@ -275,6 +275,7 @@ static HAL_APART reading_t judge_ended(void)
         verdict = judge(b);
     } else {
         keep_edge(b);
+        verdict = READING_FAILED;
     }
     bool had_sample = i2c_bus_received(&b->bus, READING_DATA) && (b->reading[READING_SOURCE] & ADXL345_INT_DATA_READY);
     if (verdict == READING_GOOD || had_sample) {
@@ -344,8 +345,11 @@ bool burst_queue_full(void)
 
 void burst_set_period(uint32_t nominal_us)
 {
-    burst.period_us_q8 = nominal_us << 8;
-    burst.taken_exact = false;
+    struct burst *b = base();
+    b->period_us_q8 = nominal_us << 8;
+    b->step_span_us = (uint16_t)(nominal_us >> 2);
+    b->shortest_us = nominal_us - (nominal_us >> 3);
+    b->steps = 0;
 }
 
 uint32_t burst_period_us(void)
@@ -353,18 +357,29 @@ uint32_t burst_period_us(void)
     return burst.period_us_q8 >> 8;
 }
 
-/* Follows the true period (a sixteenth of each difference) where two stamps in a row are exact and near it. */
+uint32_t burst_period_us_q8(void)
+{
+    return burst.period_us_q8;
+}
+
+/*
+ * The mean of PERIOD_STEPS steps on end between stamps that are exact, each within an eighth of the nominal one: that
+ * takes less time for a sample than a mean that follows each, and does not hang half a microsecond beside the truth.
+ */
 static void measure_period(const burst_entry_t *entry)
 {
     struct burst *b = base();
-    uint32_t period_us = burst_period_us();
-    uint32_t error_us = entry->sample.t_us - b->taken_us - period_us;
-    uint32_t eighth_us = period_us >> 3;
-    if (entry->exact && b->taken_exact && error_us + eighth_us <= eighth_us + eighth_us) {
-        b->period_us_q8 += error_us << 4;
-    }
+    uint32_t step_us = entry->sample.t_us - b->taken_us;
     b->taken_us = entry->sample.t_us;
-    b->taken_exact = entry->exact;
+    if (b->steps != 0 && entry->exact && step_us - b->shortest_us <= b->step_span_us) {
+        if (b->steps != PERIOD_STEPS) {
+            b->steps++;
+            return;
+        }
+        b->period_us_q8 = (b->taken_us - b->measured_from_us) * (256u / PERIOD_STEPS);
+    }
+    b->steps = entry->exact;
+    b->measured_from_us = b->taken_us;
 }
 
 bool burst_oldest_us(uint32_t *t_us)
@@ -377,16 +392,16 @@ bool burst_oldest_us(uint32_t *t_us)
     return true;
 }
 
-bool burst_take(burst_entry_t *out)
+const burst_entry_t *burst_take(void)
 {
     struct burst *b = base();
     uint8_t at = b->tail;
     if (at == b->head) {
-        return false;
+        return NULL;
     }
-    *out = b->queue[at];
+    const burst_entry_t *entry = &b->queue[at];
     b->tail = (uint8_t)((uint8_t)(at + 1u) & QUEUE_MASK);
-    watch_sample(out->sample.lsb, b->queue[(uint8_t)(at - 1u) & QUEUE_MASK].sample.lsb);
-    measure_period(out);
-    return true;
+    watch_sample(entry->sample.lsb, b->queue[(uint8_t)(at - 1u) & QUEUE_MASK].sample.lsb);
+    measure_period(entry);
+    return entry;
 }

@@ -5,6 +5,8 @@
 #ifndef ADXL345_BURST_H
 #define ADXL345_BURST_H
 
+#include <stddef.h>
+
 #include "adxl345.h"
 #include "adxl345_integrity.h"
 #include "i2c_bus.h"
@@ -52,14 +54,15 @@ bool burst_drain(void);
 bool burst_read(bool is_new);
 
 /*
- * The verdict on a burst that has ended well; READING_NONE when there is none, or it failed on the bus. To be called in
- * every pass, else no other burst begins. A good sample goes into the queue; of others nothing goes out.
+ * The verdict on a burst that has ended, by itself or because the bus was taken. To be called in every pass, else no
+ * other burst begins. A good sample goes into the queue; of others nothing goes out.
  */
 reading_t burst_judge(void);
 
 /* Time between samples: set to the nominal one, then measured from the stamps taken out. */
 void burst_set_period(uint32_t nominal_us);
 uint32_t burst_period_us(void);
+uint32_t burst_period_us_q8(void);
 
 /* A burst is on the bus, or has not been judged. */
 bool burst_running(void);
@@ -88,7 +91,7 @@ bool burst_queue_full(void);
 /* Time of the oldest entry; false when the queue is empty. */
 bool burst_oldest_us(uint32_t *t_us);
 
-/* Oldest entry out; false when the queue is empty. */
-bool burst_take(burst_entry_t *out);
+/* Oldest entry out, which stays as it is until the next burst is judged; NULL when the queue is empty. */
+const burst_entry_t *burst_take(void);
 
 #endif

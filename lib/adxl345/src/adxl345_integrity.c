@@ -170,7 +170,7 @@ uint8_t integrity_marks(void)
     return marks;
 }
 
-void adxl345_readings(adxl345_readings_t *out)
+const adxl345_readings_t *integrity_counters(void)
 {
-    *out = integrity.counters;
+    return &integrity.counters;
 }

@@ -17,15 +17,17 @@
 enum { READING_SOURCE = 0, READING_DATA = 2, READING_FIFO_CTL = 8, READING_FIFO_STATUS = 9, READING_BYTES = 10 };
 
 typedef enum {
-    READING_NONE,  /* no burst ended well on the bus since the last look */
+    READING_NONE,  /* no burst ended since the last look */
     READING_GOOD,  /* a sample */
     READING_EMPTY, /* the sensor had none: INT1 was high for nothing, the data are those of the sample before */
     READING_BAD,   /* torn, shifted, or nobody there */
-    READING_RESET  /* FIFO_CTL as after power-on: the sensor has lost its configuration */
+    READING_RESET, /* FIFO_CTL as after power-on: the sensor has lost its configuration */
+    READING_FAILED /* the transfer did */
 } reading_t;
 
-/* Once, at the start of the program: counters (adxl345_readings) to zero. */
+/* Once, at the start of the program: counters to zero. */
 void integrity_init(void);
+const adxl345_readings_t *integrity_counters(void);
 
 /* Runs begin anew, for this range (2, 4, 8, 16 g; always full resolution); the counters stay. */
 void integrity_start(uint8_t range_g);
