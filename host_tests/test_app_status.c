@@ -225,6 +225,16 @@ static void test_stuck_samples_are_counted(void)
     stream_free(&stream);
 }
 
+/* Nobody has answered yet: there is no rate. */
+static void test_no_sensor_has_no_rate(void)
+{
+    board_start_resting();
+    adxl345_model_power(&hal_host_sensor, false);
+    board_run_ms(500);
+    ask();
+    TEST_ASSERT_NOT_NULL(strstr(board.notes[newest], "fault 1, rate 100 Hz, measured 0.00 Hz, uptime s 0"));
+}
+
 static void test_restarts_are_counted(void)
 {
     start(NULL, NULL);
@@ -274,6 +284,7 @@ static void test_measured_rate(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_no_sensor_has_no_rate); /* first: the driver keeps what it has measured */
     RUN_TEST(test_failed_transfers_are_told_apart);
     RUN_TEST(test_a_calm_sensor_counts_nothing);
     RUN_TEST(test_readings_that_were_none_are_told);

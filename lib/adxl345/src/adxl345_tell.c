@@ -106,6 +106,9 @@ uint32_t adxl345_period_us(void)
 uint32_t adxl345_rate_chz(void)
 {
     uint32_t eighth_us_q8 = (burst_period_us_q8() + 4u) >> 3;
+    if (eighth_us_q8 == 0) {
+        return 0;
+    }
     return (UINT32_C(3200000000) + (eighth_us_q8 >> 1)) / eighth_us_q8;
 }
 
