@@ -350,6 +350,7 @@ void burst_set_period(uint32_t nominal_us)
     b->step_span_us = (uint16_t)(nominal_us >> 2);
     b->shortest_us = nominal_us - (nominal_us >> 3);
     b->steps = 0;
+    b->period_measured = false;
 }
 
 uint32_t burst_period_us(void)
@@ -357,9 +358,9 @@ uint32_t burst_period_us(void)
     return burst.period_us_q8 >> 8;
 }
 
-uint32_t burst_period_us_q8(void)
+uint32_t burst_measured_us_q8(void)
 {
-    return burst.period_us_q8;
+    return burst.period_measured ? burst.period_us_q8 : 0;
 }
 
 /*
@@ -377,6 +378,7 @@ static void measure_period(const burst_entry_t *entry)
             return;
         }
         b->period_us_q8 = (b->taken_us - b->measured_from_us) * (256u / PERIOD_STEPS);
+        b->period_measured = true;
     }
     b->steps = entry->exact;
     b->measured_from_us = b->taken_us;

@@ -28,6 +28,7 @@ struct burst {
     uint16_t step_span_us;
     uint32_t taken_us;
     uint32_t measured_from_us;
+    bool period_measured;
     uint8_t steps; /* since then, and one; 0: that stamp is not exact */
     burst_entry_t queue[ADXL345_QUEUE_LENGTH];
 };

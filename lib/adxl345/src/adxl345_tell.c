@@ -105,7 +105,7 @@ uint32_t adxl345_period_us(void)
 /* 1e8 us x 256 over the period, both by 8 that 32 bits are enough; that rounds by 1.3e-5 at 800 Hz, less below. */
 uint32_t adxl345_rate_chz(void)
 {
-    uint32_t eighth_us_q8 = (burst_period_us_q8() + 4u) >> 3;
+    uint32_t eighth_us_q8 = (burst_measured_us_q8() + 4u) >> 3;
     if (eighth_us_q8 == 0) {
         return 0;
     }
