@@ -23,6 +23,14 @@ void tearDown(void)
     TEST_ASSERT_EQUAL_MESSAGE(0, hal_host_faults.tx_stuck, "a test left a fault behind");
 }
 
+/* A board at rest that has sent rows for a while; returns how many other lines. */
+static size_t start_streaming(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    return board.note_count;
+}
+
 static void assert_fault_is_told(const char *words)
 {
     board_run_ms(700);
@@ -66,9 +74,7 @@ static void test_silent_int1_is_told_once(void)
 
 static void test_fault_begins_and_ends_with_one_line_each(void)
 {
-    board_start_resting();
-    board_run_ms(500);
-    size_t before = board.note_count;
+    size_t before = start_streaming();
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(2000);
     adxl345_model_power(&hal_host_sensor, true);
@@ -82,8 +88,7 @@ static void test_fault_begins_and_ends_with_one_line_each(void)
 
 static void test_stop_during_a_fault_does_not_call_it_over(void)
 {
-    board_start_resting();
-    board_run_ms(500);
+    (void)start_streaming();
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(300);
     size_t before = board.note_count;
@@ -109,9 +114,7 @@ static void assert_silent_after_stop(size_t from)
 static void test_stop_at_any_moment_of_a_recovery_is_silent(void)
 {
     for (unsigned phase = 0; phase < 140; phase++) {
-        board_start_resting();
-        board_run_ms(500);
-        size_t before = board.note_count;
+        size_t before = start_streaming();
         adxl345_model_power(&hal_host_sensor, false);
         board_run_ms(200);
         adxl345_model_power(&hal_host_sensor, true);
@@ -125,9 +128,7 @@ static void test_stop_at_any_moment_of_a_recovery_is_silent(void)
 /* Both at once, as a script sends them: the sensor is still away, so nothing is over, wherever main is meanwhile. */
 static void test_stop_and_go_at_once_during_a_fault_do_not_call_it_over(void)
 {
-    board_start_resting();
-    board_run_ms(500);
-    size_t before = board.note_count;
+    size_t before = start_streaming();
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(300);
     for (int blanks = 0; blanks < 120; blanks++) { /* 87 us each before the commands: 10 ms of phases */
@@ -196,8 +197,7 @@ static void test_ten_minutes_without_a_sensor(void)
 
 static void test_ten_minutes_stopped(void)
 {
-    board_start_resting();
-    board_run_ms(500);
+    (void)start_streaming();
     board_type("stop");
     board_run_ms(600e3);
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
@@ -261,8 +261,7 @@ static void assert_bite(uint8_t stage)
 
 static void test_hung_sampling_is_bitten(void)
 {
-    board_start_resting();
-    board_run_ms(500);
+    (void)start_streaming();
     hal_host_faults.int1_cut = true;
     hang_stages = HEALTH_SAMPLING;
     assert_bite(HEALTH_SAMPLING);
@@ -270,16 +269,14 @@ static void test_hung_sampling_is_bitten(void)
 
 static void test_hung_filtering_is_bitten(void)
 {
-    board_start_resting();
-    board_run_ms(500);
+    (void)start_streaming();
     hang_stages = HEALTH_FILTERING;
     assert_bite(HEALTH_FILTERING);
 }
 
 static void test_hung_output_is_bitten(void)
 {
-    board_start_resting();
-    board_run_ms(500);
+    (void)start_streaming();
     hal_host_faults.tx_stuck = true;
     assert_bite(HEALTH_OUTPUT);
 }

@@ -125,7 +125,7 @@ void adxl345_readings(adxl345_readings_t *out)
 uint16_t adxl345_count(uint8_t at)
 {
     enum { OWN = sizeof driver.counters / sizeof(uint16_t) };
-    const uint16_t *own = &driver.counters.samples_drained;
-    const uint16_t *readings = &integrity_counters()->failed;
+    const uint16_t *own = (const uint16_t *)&driver.counters;
+    const uint16_t *readings = (const uint16_t *)integrity_counters();
     return at < OWN ? own[at] : readings[at - OWN];
 }

@@ -10,6 +10,7 @@
 #include "adxl345_watch.h"
 
 enum { MIN_LSB = 64, TOLERANCE_SHIFT = 4, LEAST_JUMP_LSB = MIN_LSB - (MIN_LSB >> TOLERANCE_SHIFT) };
+enum { CALM_LSB = LEAST_JUMP_LSB - 1, CALM_SPAN_LSB = CALM_LSB + CALM_LSB };
 enum { RAISE = 16, LIMIT = 128, SCORE_MAX = 255 };
 
 static uint8_t score;
@@ -30,7 +31,7 @@ static bool is_double(int16_t lsb, int16_t of_lsb)
 {
     int16_t level_lsb = magnitude(of_lsb);
     return level_lsb >= MIN_LSB &&
-           magnitude((int16_t)(lsb - 2 * of_lsb)) <= (int16_t)((uint16_t)level_lsb >> TOLERANCE_SHIFT);
+           magnitude((int16_t)(lsb - of_lsb - of_lsb)) <= (int16_t)((uint16_t)level_lsb >> TOLERANCE_SHIFT);
 }
 
 static bool doubled(const int16_t *now_lsb, const int16_t *before_lsb)
@@ -41,7 +42,7 @@ static bool doubled(const int16_t *now_lsb, const int16_t *before_lsb)
     for (uint8_t axis = 0; axis < 3; axis++) {
         int16_t before = *before_lsb++;
         int16_t now = *now_lsb++;
-        if ((uint16_t)(now - before + LEAST_JUMP_LSB - 1) > 2u * (LEAST_JUMP_LSB - 1)) {
+        if ((uint16_t)(now - before + CALM_LSB) > (uint16_t)CALM_SPAN_LSB) {
             jumps++;
             from_lsb = before;
             to_lsb = now;
