@@ -39,6 +39,11 @@ int32_t filter_warm_up_median_q16(const int16_t *ascending_lsb, uint8_t count)
     return ((int32_t)(int16_t)(low + high) * 65536) >> 1; /* even before the halving: exact */
 }
 
+FX_ONCE void filter_halve(uint32_t *p)
+{
+    *p >>= 1;
+}
+
 FX_ONCE void filter_warm_up_insert(int16_t *ascending_lsb, uint8_t count, int16_t z_lsb)
 {
     int16_t *at = &ascending_lsb[count];

@@ -29,6 +29,9 @@ uint32_t filter_limited_r_lsb2_q8(uint32_t r_lsb2_q8);
 /* Median of `count` ascending samples, LSB in Q16: the mean of the middle two when count is even; count >= 1. */
 int32_t filter_warm_up_median_q16(const int16_t *ascending_lsb, uint8_t count);
 
+/* An element of a covariance halved. */
+void filter_halve(uint32_t *p);
+
 /* One sample more, kept ascending; count samples are there before. */
 void filter_warm_up_insert(int16_t *ascending_lsb, uint8_t count, int16_t z_lsb);
 

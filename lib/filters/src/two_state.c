@@ -285,8 +285,9 @@ void two_state_damp(two_state_t *s)
 {
     s->rate_lsb_q16 >>= 1;
     if (!two_state_warming_up(s)) {
-        s->u.p.p12_uq28 >>= 1;
-        s->u.p.p22_uq28 >>= 2;
+        filter_halve(&s->u.p.p12_uq28);
+        filter_halve(&s->u.p.p22_uq28);
+        filter_halve(&s->u.p.p22_uq28);
     }
 }
 

@@ -249,8 +249,9 @@ void two_state_wide_damp(two_state_wide_t *s)
 {
     s->rate_lsb_q16 >>= 1;
     if (!two_state_wide_warming_up(s)) {
-        s->u.p.p12_uq24 >>= 1;
-        s->u.p.p22_uq28 >>= 2;
+        filter_halve(&s->u.p.p12_uq24);
+        filter_halve(&s->u.p.p22_uq28);
+        filter_halve(&s->u.p.p22_uq28);
     }
 }
 
@@ -259,9 +260,9 @@ void two_state_wide_hold(two_state_wide_t *s)
 {
     uint32_t either = s->u.p.p11_uq16 | s->u.p.p12_uq24;
     if (!two_state_wide_warming_up(s) && (either & TWO_STATE_WIDE_P_END) != 0U) {
-        s->u.p.p11_uq16 >>= 1;
-        s->u.p.p12_uq24 >>= 1;
-        s->u.p.p22_uq28 >>= 1;
+        filter_halve(&s->u.p.p11_uq16);
+        filter_halve(&s->u.p.p12_uq24);
+        filter_halve(&s->u.p.p22_uq28);
     }
 }
 
