@@ -211,6 +211,7 @@ static void count_seconds(uint32_t now_us)
         if ((uint8_t)counters[COUNT_SECONDS] == SETTLED_S) { /* and again later: no harm */
             hal_reset_settled();
         }
+        pipeline_retime(adxl345_period_us());
     }
 }
 

@@ -10,6 +10,7 @@
 #include "tilt.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
+enum { CALLS_OFF = 5, STILL_CDEG = 100 }; /* pipeline_retime */
 
 typedef enum {
     WORK_NONE,
@@ -19,8 +20,7 @@ typedef enum {
     WORK_CHANGE  /* each axis gets its new filter */
 } work_t;
 
-/* So many on end away from what was held are no bad reading. */
-enum { AWAY_SAMPLES = 2 };
+enum { AWAY_SAMPLES = 2 }; /* on end, away from what was held: no bad reading */
 
 pass_t pass;
 
@@ -33,7 +33,10 @@ static struct {
     int32_t estimate_q8[AXES];
     int16_t lsb[AXES];
     int16_t rail_high_lsb;
-    uint16_t rate_dhz;
+    uint16_t rate_dhz;    /* nominal */
+    uint16_t true_dhz;    /* that the filters have */
+    uint16_t looked_cdeg; /* roll and pitch, in sum, a second ago */
+    uint8_t calls_off;
     uint16_t flags;
     uint16_t kept_flags; /* of the samples before the one under way */
     uint8_t passed;      /* times 25 ms, between the newest two steps of a silence */
@@ -60,19 +63,46 @@ void pipeline_reset(void)
     pipe.flags = 0;
 }
 
+static void change(bool new_noise)
+{
+    pipe.new_noise = new_noise;
+    pipe.work = WORK_CHANGE;
+    pipe.axis = 0;
+    pipe.step = 0;
+    pass.limit = PASS_CHANGING_US / HAL_LAP_US;
+}
+
 /* keep: the filters go on from the old output, the noise estimates too unless the rate is new. */
 static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool keep)
 {
-    pipe.new_noise = !keep || rate_dhz != pipe.rate_dhz;
+    bool cold = !keep || rate_dhz != pipe.rate_dhz;
+    if (cold) {
+        pipe.true_dhz = rate_dhz;
+        pipe.calls_off = 0;
+    }
     pipe.new_kind = filter_kind;
     pipe.rate_dhz = rate_dhz;
     pipe.has_sample = keep;
     pipe.warm_rows = WARM_ROWS;
     pipe.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
-    pipe.work = WORK_CHANGE;
-    pipe.axis = 0;
-    pipe.step = 0;
-    pass.limit = PASS_CHANGING_US / HAL_LAP_US;
+    change(cold);
+}
+
+FX_ONCE void pipeline_retime(uint32_t period_us)
+{
+    uint16_t now_cdeg = (uint16_t)(pipe.tilt.roll_cdeg + pipe.tilt.pitch_cdeg);
+    uint16_t moved_cdeg = (uint16_t)(now_cdeg - pipe.looked_cdeg + STILL_CDEG);
+    pipe.looked_cdeg = now_cdeg;
+    uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
+    uint16_t near_dhz = (pipe.true_dhz >> 7) + 1u;
+    if ((uint16_t)(true_dhz - pipe.true_dhz + near_dhz) <= 2u * near_dhz) {
+        pipe.calls_off = 0;
+    } else if (pipe.calls_off < CALLS_OFF) {
+        pipe.calls_off++;
+    } else if (moved_cdeg <= 2u * STILL_CDEG && pipe.work == WORK_NONE) {
+        pipe.true_dhz = true_dhz;
+        change(false);
+    }
 }
 
 /* Initialised, then told its R, then settled where there is an output to go on from. True: that axis is done. */
@@ -89,7 +119,7 @@ static bool change_axis(void)
         if (pipe.new_noise) {
             noise_init(noise, pipe.rate_dhz, axis == 2);
         }
-        filter_any_start(filter, (filter_kind_t)pipe.new_kind, pipe.rate_dhz);
+        filter_any_start(filter, (filter_kind_t)pipe.new_kind, pipe.true_dhz);
         return false;
     }
     if (step == STEP_NOISE) {

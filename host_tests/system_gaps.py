@@ -38,3 +38,25 @@ def make_thinned_test(filter_name):
 
 for filter_kind in ("adaptive", "kf", "synth"):
     TESTS.append(make_thinned_test(filter_kind))
+
+
+def check_true_rate(ppm):
+    """From the second second on the sensor's clock is off: measured, handed to the filters, and no row shows it."""
+    name = f"true-rate{ppm:+d}"
+    rows, _, _, _ = simrun(name, STREAMS / "rest-2lsb.csv", "--fault", f"1000ms:odr:{ppm}", "--max-ms", "14000")
+    late = [row for row in rows if row[0] > 1500000]
+    assert len(late) >= 1150 and not any(row[9] & (2 | 16 | 64 | 128) for row in late), [row for row in late if row[9] & 210][:3]
+    assert max(abs(b[7] - a[7]) for a, b in zip(late, late[1:])) <= 100
+    period_us = 10000 / (1 + ppm * 1e-6)
+    assert all(abs(b[0] - a[0] - period_us) <= 30 for a, b in zip(late, late[1:])), period_us
+
+
+def make_true_rate_test(ppm):
+    def check():
+        check_true_rate(ppm)
+    check.__name__ = f"rate_off_by_{ppm:+d}_ppm_is_taken_over_unseen".replace("+", "plus_").replace("-", "minus_")
+    return check
+
+
+for clock_ppm in (-50000, 50000):
+    TESTS.append(make_true_rate_test(clock_ppm))

@@ -1,0 +1,190 @@
+/*
+ * The measured rate of a sensor handed to the filters: when, and that no row shows it but by what the filters do. The
+ * pipeline alone, then the whole firmware on the host's HAL.
+ */
+#include <stdlib.h>
+
+#include "app.h"
+#include "coast.h"
+#include "counters.h"
+#include "filter_any.h"
+#include "pipeline.h"
+#include "support_board.h"
+#include "unity.h"
+
+#define FOR_EACH_FILTER(kind) for (uint8_t kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++)
+
+static uint32_t t_us;
+static row_t row;
+
+void setUp(void)
+{
+    t_us = 0;
+}
+
+void tearDown(void) {}
+
+static void begin(uint8_t kind)
+{
+    counters_start();
+    coast_wait(0);
+    pipeline_reset();
+    pipeline_start(kind, 1000, 16);
+    pipeline_finish();
+}
+
+static void sample(int16_t y_lsb)
+{
+    adxl345_sample_t s = { .t_us = t_us, .lsb = { 0, y_lsb, 248 } };
+    t_us += 10000u;
+    pipeline_sample(&s);
+    pipeline_finish();
+    pipeline_row(&row);
+    pipeline_row_done();
+}
+
+/* A second of samples, then a look; true when the filters get another rate. */
+static bool second(uint32_t period_us, int16_t from_lsb, int16_t step_lsb)
+{
+    for (int16_t k = 0; k < 100; k++) {
+        sample((int16_t)(from_lsb + k * step_lsb / 100));
+    }
+    pipeline_retime(period_us);
+    bool changing = pipeline_changing();
+    pipeline_finish();
+    return changing;
+}
+
+static void test_the_sixth_second_off_hands_the_rate_over_once(void)
+{
+    static const uint32_t periods_us[] = { 9500, 9900, 10100, 10500 };
+    for (size_t i = 0; i < 4; i++) {
+        begin(0);
+        (void)second(10000, 60, 0);
+        for (int k = 1; k <= 30; k++) {
+            TEST_ASSERT_EQUAL_INT(k == 6, second(periods_us[i], 60, 0));
+        }
+        for (int k = 1; k <= 6; k++) { /* the nominal one is the one that is off now */
+            TEST_ASSERT_EQUAL_INT(k == 6, second(10000, 60, 0));
+        }
+    }
+}
+
+static void test_what_is_near_or_comes_back_changes_nothing(void)
+{
+    begin(0);
+    for (int k = 1; k <= 60; k++) {
+        TEST_ASSERT_FALSE(second(k % 5 == 0 ? 10000 : 10300, 60, 0));
+        TEST_ASSERT_FALSE(second(k & 1 ? 9950 : 10050, 60, 0));
+    }
+}
+
+static void test_a_board_that_moves_keeps_its_rates_of_change(void)
+{
+    begin(0);
+    (void)second(10000, -120, 20);
+    for (int16_t k = 1; k <= 12; k++) {
+        TEST_ASSERT_FALSE(second(10300, (int16_t)(-120 + 20 * k), 20)); /* 4.5 degrees a second */
+    }
+    TEST_ASSERT_TRUE(second(10300, 140, 0));
+}
+
+/* Rows before and behind it: no flag, and no more change than half a reading's unit, 0.12 degree. */
+static void test_no_row_shows_it(void)
+{
+    FOR_EACH_FILTER(kind)
+    {
+        begin(kind);
+        for (int k = 1; k <= 5; k++) {
+            TEST_ASSERT_FALSE(second(10500, 60, 0));
+        }
+        int before_cdeg = row.roll_cdeg;
+        (void)second(10500, 60, 0);
+        for (int k = 0; k < 20; k++) {
+            sample(60);
+            TEST_ASSERT_EQUAL_HEX16_MESSAGE(0, row.flags, filter_any_name((filter_kind_t)kind));
+            TEST_ASSERT_INT_WITHIN_MESSAGE(12, before_cdeg, row.roll_cdeg, filter_any_name((filter_kind_t)kind));
+        }
+    }
+}
+
+/* Longer steps of time let the rate wander more from one to the next: a plain Kalman filter follows a step faster. */
+static int16_t answer_to_a_step(uint32_t period_us)
+{
+    begin((uint8_t)FILTER_KIND_kf);
+    for (int k = 0; k < 8; k++) {
+        (void)second(period_us, 60, 0);
+    }
+    sample(100);
+    return row.mg[1];
+}
+
+static void test_the_filter_has_the_parameters_of_the_true_rate(void)
+{
+    int16_t nominal_mg = answer_to_a_step(10000);
+    TEST_ASSERT_GREATER_THAN_INT16(nominal_mg, answer_to_a_step(11000));
+    TEST_ASSERT_LESS_THAN_INT16(nominal_mg, answer_to_a_step(9000));
+}
+
+/* A change of filter goes on with it, a start or another nominal rate does not. */
+static void test_how_long_it_holds(void)
+{
+    begin(0);
+    for (int k = 1; k <= 6; k++) {
+        (void)second(10500, 60, 0);
+    }
+    pipeline_change(1, 1000, 16);
+    pipeline_finish();
+    for (int k = 1; k <= 10; k++) {
+        TEST_ASSERT_FALSE(second(10500, 60, 0));
+    }
+    pipeline_change(1, 2000, 16);
+    pipeline_finish();
+    for (int k = 1; k <= 10; k++) {
+        TEST_ASSERT_FALSE(second(5000, 60, 0));
+    }
+}
+
+/* The seconds from the start to the hand-over, 0: none in 20; rows are checked on the way. */
+static double handed_over_at_s(double ppm)
+{
+    stream_t stream = board_noisy_stream(2000, 100.0, 0.7, 61006);
+    board_start(&stream, ppm, 0);
+    board_run_ms(1000);
+    double at_s = 0.0;
+    while (hal_host_now_ms() < 20000.0) {
+        app_pass();
+        if (pipeline_changing() && at_s == 0.0) {
+            at_s = hal_host_now_ms() / 1000.0;
+        }
+    }
+    for (size_t i = 200; i + 1 < board.row_count; i++) {
+        TEST_ASSERT_EQUAL_HEX16(0, board.rows[i].flags & ~(unsigned)ROW_GATED);
+        TEST_ASSERT_INT_WITHIN(100, board.rows[i].roll_cdeg, board.rows[i + 1].roll_cdeg);
+    }
+    stream_free(&stream);
+    return at_s;
+}
+
+static void test_the_firmware_hands_over_what_it_has_measured(void)
+{
+    static const double clocks_ppm[] = { -50000.0, -20000.0, 20000.0, 50000.0 };
+    for (size_t i = 0; i < 4; i++) {
+        double at_s = handed_over_at_s(clocks_ppm[i]);
+        TEST_ASSERT_TRUE(at_s >= 5.0 && at_s <= 10.0);
+    }
+    TEST_ASSERT_TRUE(handed_over_at_s(5000.0) == 0.0);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_sixth_second_off_hands_the_rate_over_once);
+    RUN_TEST(test_what_is_near_or_comes_back_changes_nothing);
+    RUN_TEST(test_a_board_that_moves_keeps_its_rates_of_change);
+    RUN_TEST(test_no_row_shows_it);
+    RUN_TEST(test_the_filter_has_the_parameters_of_the_true_rate);
+    RUN_TEST(test_how_long_it_holds);
+    RUN_TEST(test_the_firmware_hands_over_what_it_has_measured);
+    return UNITY_END();
+}
