@@ -152,6 +152,35 @@ static void test_a_change_of_rate_loses_nothing(void)
     TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LOST]);
 }
 
+/* As many replies wait as there is room for, and the line stands still. */
+static void fill_replies(void)
+{
+    hal_host_faults.tx_stuck = true;
+    for (int i = 0; i < 12; i++) {
+        board_type("help");
+    }
+    board_run_ms(20);
+    TEST_ASSERT_FALSE(replies_room());
+}
+
+static void test_a_fault_for_which_there_is_no_room_is_told_later(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    for (int ends = 0; ends <= 1; ends++) {
+        const char *words = ends ? "# fault 1 over" : "# fault 1: ";
+        fill_replies();
+        adxl345_model_power(&hal_host_sensor, ends);
+        board_run_ms(150);
+        TEST_ASSERT_EQUAL(ends ? ADXL345_FAULT_NONE : ADXL345_FAULT_NO_SENSOR, adxl345_fault());
+        TEST_ASSERT_EQUAL_size_t(0, board_notes_with(words, 0));
+        hal_host_faults.tx_stuck = false;
+        board_run_ms(2000);
+        TEST_ASSERT_EQUAL_size_t(1, board_notes_with(words, 0));
+    }
+    TEST_ASSERT_EQUAL_UINT64(0, hal_host_watchdog_bite());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -160,5 +189,6 @@ int main(void)
     RUN_TEST(test_end_of_a_fault_tells_its_length_and_the_samples_lost);
     RUN_TEST(test_each_outage_begins_anew);
     RUN_TEST(test_a_change_of_rate_loses_nothing);
+    RUN_TEST(test_a_fault_for_which_there_is_no_room_is_told_later);
     return UNITY_END();
 }

@@ -275,6 +275,28 @@ static void test_stop_while_every_read_fails(void)
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
 
+/* Whether a sample is on its way: INT1 is high, unless the newest read has shown that it is high for nothing. */
+static void test_a_sample_is_coming_while_int1_is_high(void)
+{
+    stream_for_ms(205);
+    TEST_ASSERT_FALSE(adxl345_sample_coming());
+    takes = false;
+    run_ms(12 * PERIOD_MS); /* the queue is full: nothing is on the bus */
+    TEST_ASSERT_FALSE(burst_running());
+    TEST_ASSERT_TRUE(adxl345_sample_coming());
+    takes = true;
+    run_ms(5 * PERIOD_MS);
+    hal_host_faults.int1_high = true;
+    run_ms(2.5 * PERIOD_MS);
+    while (burst_running() || !burst_found_empty()) {
+        pass();
+    }
+    TEST_ASSERT_FALSE(adxl345_sample_coming());
+    hal_host_faults.int1_high = false;
+    TEST_ASSERT_EQUAL_size_t(0, lost());
+    TEST_ASSERT_FALSE(adxl345_sample_coming());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -285,5 +307,6 @@ int main(void)
     RUN_TEST(test_count_with_a_wrong_bit_moves_no_stamp);
     RUN_TEST(test_int1_that_rises_while_the_sensor_says_it_has_none);
     RUN_TEST(test_stop_while_every_read_fails);
+    RUN_TEST(test_a_sample_is_coming_while_int1_is_high);
     return UNITY_END();
 }
