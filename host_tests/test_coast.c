@@ -301,6 +301,16 @@ static void test_samples_older_than_the_newest_row_are_dropped(void)
     TEST_ASSERT_EQUAL_UINT32(2, counters[COUNT_LATE]);
 }
 
+/* Rows without samples begin 0.1 s after the start, but not where the first sample is just being read. */
+static void test_no_row_in_the_place_of_a_first_sample_on_its_way(void)
+{
+    begin(0, 1000, 0.0);
+    uint32_t late_us = world.t_us + 100001u;
+    TEST_ASSERT_FALSE(missing_by(late_us, true));
+    TEST_ASSERT_FALSE(missing_by(late_us, true));
+    TEST_ASSERT_TRUE(missing_by(late_us, false));
+}
+
 /* One bad reading is all that comes back from a hold: refused, and the filter goes on from what was held. */
 static void test_a_bad_reading_behind_a_hold_begins_nothing(void)
 {
@@ -380,6 +390,7 @@ static void test_no_filter_begins_anew_at_the_rail(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_no_row_in_the_place_of_a_first_sample_on_its_way);
     RUN_TEST(test_no_jump_at_rest_when_data_return);
     RUN_TEST(test_gaps_on_a_ramp_are_rejoined_within_the_gate);
     RUN_TEST(test_rate_is_halved_every_25_ms_and_then_held);
