@@ -52,7 +52,8 @@ def lose_nothing(name, stream, ppm, rate, baud, every, load_limit, fw=FW, shift_
 def supervision_costs_at_most_600_cycles_a_sample():
     """Against an image that takes readings as they come, and the four bytes that a plain read does without (INT_SOURCE to FIFO_STATUS)."""
     def cycles(name, fw, rate):
-        _, _, _, stats = simrun(f"supervision-{name}", STREAMS / "tilt-slow.csv", "--rate", rate, "--baud", 1000000, "--loop", "--max-ms", 20500, fw=fw)
+        _, _, _, stats = simrun(f"supervision-{name}", STREAMS / "tilt-slow.csv", "--rate", rate, "--baud", 1000000, "--loop", "--max-ms", 20500,
+                                fw=fw)
         return stats["cpu_load"] * 16e6 / rate, stats["isr_twi_mean"]
 
     for rate in (100, 400, 800):
