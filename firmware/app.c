@@ -64,6 +64,7 @@ static uint8_t changes;  /* that the pipeline is to follow yet */
 static bool row_due;     /* for the sample that the pipeline has, or had last */
 static uint32_t pass_us; /* time at the beginning of the pass */
 static uint32_t next_second_us;
+static bool look_at_rate; /* each second, where a pass has time for it */
 static uint32_t next_service_us;
 
 static void start_sensor(void)
@@ -211,7 +212,7 @@ static void count_seconds(uint32_t now_us)
         if ((uint8_t)counters[COUNT_SECONDS] == SETTLED_S) { /* and again later: no harm */
             hal_reset_settled();
         }
-        pipeline_retime(adxl345_period_us());
+        look_at_rate = true;
     }
 }
 
@@ -299,6 +300,11 @@ static bool filter_samples(void)
     }
     if (row_due) {
         write_row();
+        return true;
+    }
+    if (look_at_rate) {
+        look_at_rate = false;
+        pipeline_retime(adxl345_period_us());
         return true;
     }
     return follow_settings() || next_sample();

@@ -4,6 +4,7 @@
  */
 #include "adxl345.h"
 #include "adxl345_burst.h"
+#include "adxl345_period.h"
 #include "adxl345_registers.h"
 #include "hal_drdy.h"
 #include "hal_host.h"
@@ -137,7 +138,7 @@ static void test_times_follow_while_int1_is_stuck(void)
         run_ms(300);
         hal_host_faults.int1_high = true;
         stamp_limit_us = percent > 0 ? 33 * 900 : 500; /* times that lag show after 33 periods */
-        burst_set_period(10000u - (uint32_t)(percent * 100));
+        period_start(10000u - (uint32_t)(percent * 100));
         run_ms(3000);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
         TEST_ASSERT_EQUAL_size_t(0, lost());

@@ -8,6 +8,7 @@
 #include "adxl345_burst.h"
 #include "adxl345_driver.h"
 #include "adxl345_integrity.h"
+#include "adxl345_period.h"
 #include "adxl345_registers.h"
 #include "adxl345_table.h"
 #include "adxl345_watch.h"
@@ -99,7 +100,7 @@ static void probe(void)
 /* With a new configuration; what was measured of a sensor that has to be found again still holds. */
 static void begin(void)
 {
-    burst_set_period(driver.nominal_us);
+    period_start(driver.nominal_us);
     driver.alternate_tried = false;
     probe();
 }

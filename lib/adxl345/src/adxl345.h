@@ -101,7 +101,7 @@ uint8_t adxl345_device_id(void);
 /* Measured time between samples, us (nominal until measured), by the board's clock. */
 uint32_t adxl345_period_us(void);
 
-/* The same as output data rate, 0.01 Hz; the mean of 16 samples on end that were read in time; 0 until there were. Divides. */
+/* The same as output data rate, 0.01 Hz: of 16 samples on end that were read in time; 0 until there were. Divides. */
 uint32_t adxl345_rate_chz(void);
 
 /* Counters, saturating. Each transfer that failed is in one of the last four, whether its sample was lost or not. */

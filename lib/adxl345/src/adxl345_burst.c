@@ -12,6 +12,7 @@
 #include "adxl345_burst.h"
 
 #include "adxl345_burst_state.h"
+#include "adxl345_period.h"
 #include "adxl345_registers.h"
 #include "adxl345_watch.h"
 #include "hal_drdy.h"
@@ -20,7 +21,7 @@
 #include "hal_sleep.h"
 #include "hal_time.h"
 
-enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1, PERIOD_STEPS = 16 };
+enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1 };
 
 #define SENSOR_DEPTH 33ul /* samples that the sensor can hold (p. 27) */
 
@@ -174,12 +175,12 @@ uint8_t burst_register_value(void)
  */
 static uint32_t waiting_since_us(struct burst *b, uint32_t now_us, bool is_new)
 {
-    uint32_t period_us = burst_period_us();
-    uint32_t t_us = b->last_us + period_us;
+    uint32_t step_us = period_us();
+    uint32_t t_us = b->last_us + step_us;
     if (b->found_empty && hal_time_reached(b->begun_us, t_us)) {
         t_us = b->begun_us;
     }
-    bool plausible = !is_new && b->last_known && now_us - t_us <= SENSOR_DEPTH * period_us;
+    bool plausible = !is_new && b->last_known && now_us - t_us <= SENSOR_DEPTH * step_us;
     return plausible ? t_us : now_us;
 }
 
@@ -231,11 +232,11 @@ static HAL_APART void restamp(struct burst *b)
 {
     uint8_t behind = b->reading[READING_FIFO_STATUS];
     bool overrun = (b->reading[READING_SOURCE] & ADXL345_INT_OVERRUN) != 0;
-    uint32_t period_us = b->period_us_q8 >> 8;
-    uint32_t age_us = behind * period_us + (period_us >> 1);
+    uint32_t step_us = period_us();
+    uint32_t age_us = behind * step_us + (step_us >> 1);
     /* before the last one: a bit of the count was wrong */
     bool after_last = !b->last_known || !hal_time_reached(b->last_us, b->begun_us - age_us);
-    if (after_last && (overrun || b->begun_us - b->reading_us + 2u * period_us < age_us)) {
+    if (after_last && (overrun || b->begun_us - b->reading_us + 2u * step_us < age_us)) {
         b->reading_us = b->begun_us - age_us;
         b->reading_exact = false;
     }
@@ -343,47 +344,6 @@ bool burst_queue_full(void)
     return !queue_has_room();
 }
 
-void burst_set_period(uint32_t nominal_us)
-{
-    struct burst *b = base();
-    b->period_us_q8 = nominal_us << 8;
-    b->step_span_us = (uint16_t)(nominal_us >> 2);
-    b->shortest_us = nominal_us - (nominal_us >> 3);
-    b->steps = 0;
-    b->period_measured = false;
-}
-
-uint32_t burst_period_us(void)
-{
-    return burst.period_us_q8 >> 8;
-}
-
-uint32_t burst_measured_us_q8(void)
-{
-    return burst.period_measured ? burst.period_us_q8 : 0;
-}
-
-/*
- * The mean of PERIOD_STEPS steps on end between stamps that are exact, each within an eighth of the nominal one: that
- * takes less time for a sample than a mean that follows each, and does not hang half a microsecond beside the truth.
- */
-static void measure_period(const burst_entry_t *entry)
-{
-    struct burst *b = base();
-    uint32_t step_us = entry->sample.t_us - b->taken_us;
-    b->taken_us = entry->sample.t_us;
-    if (b->steps != 0 && entry->exact && step_us - b->shortest_us <= b->step_span_us) {
-        if (b->steps != PERIOD_STEPS) {
-            b->steps++;
-            return;
-        }
-        b->period_us_q8 = (b->taken_us - b->measured_from_us) * (256u / PERIOD_STEPS);
-        b->period_measured = true;
-    }
-    b->steps = entry->exact;
-    b->measured_from_us = b->taken_us;
-}
-
 bool burst_oldest_us(uint32_t *t_us)
 {
     uint8_t at = burst.tail;
@@ -404,6 +364,6 @@ const burst_entry_t *burst_take(void)
     const burst_entry_t *entry = &b->queue[at];
     b->tail = (uint8_t)((uint8_t)(at + 1u) & QUEUE_MASK);
     watch_sample(entry->sample.lsb, b->queue[(uint8_t)(at - 1u) & QUEUE_MASK].sample.lsb);
-    measure_period(entry);
+    period_sample(entry->sample.t_us, entry->exact);
     return entry;
 }

@@ -59,13 +59,6 @@ bool burst_read(bool is_new);
  */
 reading_t burst_judge(void);
 
-/* Time between samples: set to the nominal one, then measured from the stamps taken out. */
-void burst_set_period(uint32_t nominal_us);
-uint32_t burst_period_us(void);
-
-/* The measured one in 1/256 us; 0 until it was measured. */
-uint32_t burst_measured_us_q8(void);
-
 /* A burst is on the bus, or has not been judged. */
 bool burst_running(void);
 

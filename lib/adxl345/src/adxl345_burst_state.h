@@ -23,13 +23,6 @@ struct burst {
     bool last_known;  /* last_us belongs to this run of the sensor */
     bool found_empty; /* the newest burst met no sample */
     uint8_t register_value;
-    uint32_t period_us_q8;
-    uint32_t shortest_us; /* what may be a step between two samples: from here on */
-    uint16_t step_span_us;
-    uint32_t taken_us;
-    uint32_t measured_from_us;
-    bool period_measured;
-    uint8_t steps; /* since then, and one; 0: that stamp is not exact */
     burst_entry_t queue[ADXL345_QUEUE_LENGTH];
 };
 

@@ -2,6 +2,7 @@
 #include "adxl345_burst.h"
 #include "adxl345_driver.h"
 #include "adxl345_integrity.h"
+#include "adxl345_period.h"
 #include "adxl345_watch.h"
 #include "hal_drdy.h"
 
@@ -99,13 +100,13 @@ uint8_t adxl345_device_id(void)
 
 uint32_t adxl345_period_us(void)
 {
-    return burst_period_us();
+    return period_us();
 }
 
 /* 1e8 us x 256 over the period, both by 8 that 32 bits are enough; that rounds by 1.3e-5 at 800 Hz, less below. */
 uint32_t adxl345_rate_chz(void)
 {
-    uint32_t eighth_us_q8 = (burst_measured_us_q8() + 4u) >> 3;
+    uint32_t eighth_us_q8 = (period_measured_us_q8() + 4u) >> 3;
     if (eighth_us_q8 == 0) {
         return 0;
     }

@@ -1,0 +1,23 @@
+/*
+ * Inside the driver: the time between samples, measured from their stamps, since a sensor's clock is 2 to 4 % off. Main
+ * only.
+ */
+#ifndef ADXL345_PERIOD_H
+#define ADXL345_PERIOD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Begins with the nominal one, 1250..80000 us. */
+void period_start(uint32_t nominal_us);
+
+/* The stamp of the next sample, us; exact: the sample was read as it became ready. */
+void period_sample(uint32_t t_us, bool exact);
+
+/* The nominal one until it was measured. */
+uint32_t period_us(void);
+
+/* The measured one in 1/256 us; 0 until it was measured. */
+uint32_t period_measured_us_q8(void);
+
+#endif
