@@ -30,8 +30,7 @@
 #define HOLD_LIMIT_US 1000000ul
 #define SERVICE_US 4000ul
 
-/* Main looks around every HAL_TICK_US; a service later than twice that is held up by passes cut for lack of time. */
-#define OVERDUE_US 20000ul
+#define OVERDUE_US 20000ul /* twice HAL_TICK_US and more: passes cut for lack of time hold the service up */
 
 /*
  * What hung so often in a row, each time within SETTLED_S of its start, hangs again: it gets the lowest rate, at which
@@ -40,10 +39,6 @@
 enum { RESETS_TO_SAFE = 3, SETTLED_S = 10 };
 
 enum { WHOLE_LOOP = 0x80 };
-
-#if HANG_TEST
-volatile uint8_t hang_stages;
-#endif
 
 typedef enum {
     STAGE_BANNER, /* banner and header are going out */
@@ -103,6 +98,7 @@ void app_start(void)
     stage = STAGE_BANNER;
     sampling = true;
     row_due = false;
+    look_at_rate = false;
     changes = 0;
     coast_wait(next_service_us);
     pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);

@@ -7,9 +7,14 @@
 #include "hal_time.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
+#include "hang_test.h"
 
 /* A poll at the deadline moves it; one that finds it this long past shows that the driver does not. */
 #define POLL_GRACE_US 20000ul
+
+#if HANG_TEST
+volatile uint8_t hang_stages;
+#endif
 
 static uint8_t checked_in;
 static uint8_t tx_sent_seen;

@@ -126,19 +126,13 @@ static const char *about(uint8_t kind, unsigned missing)
 
 #define FOR_EACH_FILTER(kind) for (uint8_t kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++)
 
-/*
- * These have no rate but the difference of two estimates, whose gain is the same at every rate: a third to two thirds
- * of a sample's sigma per sample at rest, 314 and 589 degrees a second at 800 Hz.
- */
+/* These have no rate but the difference of two estimates: at rest 314 and 589 degrees a second at 800 Hz. */
 static bool rate_is_a_difference(uint8_t kind)
 {
     return kind == (uint8_t)FILTER_KIND_synth || kind == (uint8_t)FILTER_KIND_synth_opt;
 }
 
-/*
- * At rest, over gaps from 20 ms to a minute. From 200 Hz on those whose rate is a difference jump as far from any row
- * to the next: a gap must not add to it.
- */
+/* At rest. Those whose rate is a difference jump as far from any row to the next: a gap must not add to it. */
 static void test_no_jump_at_rest_when_data_return(void)
 {
     static const uint16_t rates_dhz[] = { 125, 1000, 4000, 8000 };
