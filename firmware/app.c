@@ -29,7 +29,6 @@
 /* The banner at 9600 baud takes 0.4 s; the ring at 9600 baud drains in 0.27 s. */
 #define HOLD_LIMIT_US 1000000ul
 #define SERVICE_US 4000ul
-
 #define OVERDUE_US 20000ul /* twice HAL_TICK_US and more: passes cut for lack of time hold the service up */
 
 /*
@@ -37,7 +36,6 @@
  * the processor has most time for everything else. Settings are not kept over a reset, so there are no others to undo.
  */
 enum { RESETS_TO_SAFE = 3, SETTLED_S = 10 };
-
 enum { WHOLE_LOOP = 0x80 };
 
 typedef enum {
@@ -205,10 +203,10 @@ static void count_seconds(uint32_t now_us)
     if (hal_time_reached(now_us, next_second_us)) {
         next_second_us += 1000000ul;
         count(COUNT_SECONDS);
+        look_at_rate = true;
         if ((uint8_t)counters[COUNT_SECONDS] == SETTLED_S) { /* and again later: no harm */
             hal_reset_settled();
         }
-        look_at_rate = true;
     }
 }
 
