@@ -34,7 +34,7 @@ AVR_CC      := avr-gcc
 # what makes the smallest image with avr-gcc 5.4.0 (and no table of a switch in RAM); the filters keep their speed
 AVR_SMALL   := -Os -flto -mrelax -mcall-prologues -maccumulate-args -fshort-enums -fno-inline-small-functions \
                -fno-tree-dominator-opts -fno-tree-fre -fno-tree-switch-conversion -fno-forward-propagate -fno-tree-loop-im \
-               -fno-tree-loop-ivcanon -fno-tree-sra
+               -fno-tree-loop-ivcanon -fno-tree-copy-prop
 AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -gdwarf-2 -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr $(FILTER_FLAG)
 AVR_LINK    := -mmcu=atmega328p -gdwarf-2 $(AVR_SMALL) -Wl,--gc-sections

@@ -33,10 +33,10 @@ typedef struct {
  * of the main loop, three noise estimates, and new variances as often as an estimate can leave the last by an eighth.
  * What is longer but rare (five warm-up samples, variances on all axes at once, replies, a change of settings) waits
  * in the sensor's FIFO and the driver's queue, 39 samples together, and is caught up with what a sample leaves over.
- * At 800 Hz the two leave 4,150 cycles, 1,383 for each axis, to a filter of which every row goes out: adaptive's 1,370.
+ * At 800 Hz the two leave 3,950 cycles, 1,316 for each axis, to a filter of which every row goes out: soft's 1,300.
  */
-#define SETTINGS_REST_CYCLES 6400u
-#define SETTINGS_ROW_CYCLES 9750u
+#define SETTINGS_REST_CYCLES 6450u
+#define SETTINGS_ROW_CYCLES 9600u
 
 extern settings_t settings;
 
