@@ -239,6 +239,17 @@ def wrong_parameters_of_a_fault_are_refused():
         assert words in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
 
 
+@test
+def wrong_occasions_of_a_fault_are_refused():
+    occasions, counted = "WHEN is 12.3ms, xfer:N.K, pc:SYMBOL#N, eeprom:N or p:CHANCE", "are counted from 1"
+    for when, words in (("", occasions), ("soon", occasions), ("12", occasions), ("12 ms", occasions), ("-1ms", "before the beginning"),
+                        ("nanms", "too late"), ("1e10ms", "too late"), ("xfer:3", "a whole number"),
+                        ("xfer:0.1", counted), ("xfer:1.0", counted), ("pc:main#0", counted), ("eeprom:0", counted),
+                        ("pc:", "no such function"), ("pc:#2", "no such function"), ("p:1.1", "a chance from 0 to 1")):
+        done = run(SIMRUN, "--fw", FW, "--in", REST, "--out", OUT / "x.csv", "--fault", f"{when}:glitch", expect=2)
+        assert words in done.stderr and len(done.stderr.splitlines()) == 1, (when, done.stderr)
+
+
 def bus_probe(*options):
     """The words that a program without driver says, which moves the lines by hand, and the statistics of its run."""
     elf, stats = OUT / "lines_by_hand.elf", OUT / "lines_by_hand.json"

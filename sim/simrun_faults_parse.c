@@ -5,6 +5,7 @@
 #include "simrun_faults.h"
 
 enum { POWER_OFF_MS = 5 };
+#define LAST_MS 1e9 /* that of --max-ms */
 
 const kind_properties_t fault_kinds[KIND_COUNT] = {
     [KIND_UNPLUG] = { .name = "unplug", .lasts = true, .detectable = true },
@@ -82,6 +83,16 @@ static uint32_t whole(const fault_t *fault, const char *text, char stop, char **
     return (uint32_t)value;
 }
 
+/* The same of what is counted from 1. */
+static uint32_t ordinal(const fault_t *fault, const char *text, char stop, char **rest)
+{
+    uint32_t value = whole(fault, text, stop, rest);
+    if (value == 0) {
+        refuse(fault->text, "transfers, bytes, visits and writes are counted from 1");
+    }
+    return value;
+}
+
 static void parse_symbol(fault_t *fault, char *text)
 {
     char *hash = strchr(text, '#');
@@ -89,9 +100,9 @@ static void parse_symbol(fault_t *fault, char *text)
     if (hash != NULL) {
         *hash = '\0';
         char *end;
-        fault->visits_left = whole(fault, hash + 1, '\0', &end);
+        fault->visits_left = ordinal(fault, hash + 1, '\0', &end);
     }
-    if (!symbols_find(text, &fault->pc)) {
+    if (*text == '\0' || !symbols_find(text, &fault->pc)) {
         refuse(fault->text, "no such function in the firmware");
     }
 }
@@ -102,14 +113,14 @@ static void parse_occasion(fault_t *fault, char *text)
     char *end = text;
     switch (fault->when) {
     case WHEN_BYTE:
-        fault->transfer = whole(fault, text, '.', &end);
-        fault->byte = whole(fault, end, '\0', &end);
+        fault->transfer = ordinal(fault, text, '.', &end);
+        fault->byte = ordinal(fault, end, '\0', &end);
         break;
     case WHEN_PC:
         parse_symbol(fault, text);
         break;
     case WHEN_EEPROM:
-        fault->eeprom_write = whole(fault, text, '\0', &end);
+        fault->eeprom_write = ordinal(fault, text, '\0', &end);
         break;
     default: {
         double chance = number(fault, text, &end);
@@ -141,10 +152,14 @@ static void parse_when(fault_t *fault, char **rest)
         return;
     }
     char *end = NULL;
-    fault->at = (uint64_t)(number(fault, part, &end) * CYCLES_PER_MS);
-    if (strcmp(end, "ms") != 0) {
+    double at_ms = strtod(part, &end);
+    if (end == part || strcmp(end, "ms") != 0) {
         refuse(fault->text, "WHEN is 12.3ms, xfer:N.K, pc:SYMBOL#N, eeprom:N or p:CHANCE");
     }
+    if (!(at_ms >= 0.0 && at_ms <= LAST_MS)) {
+        refuse(fault->text, "WHEN is before the beginning or too late");
+    }
+    fault->at = (uint64_t)(at_ms * CYCLES_PER_MS);
 }
 
 static void parse_kind(fault_t *fault, const char *name)
