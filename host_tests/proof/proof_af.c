@@ -35,6 +35,8 @@ void proof_af_init(void)
     }
     af_config_t config;
     af_defaults(&config, ANY_U16(50, 40000));
+    af_t f;
+    af_configure(&f, &config);
 }
 
 /* Uses: two_state_wide_set_noise */
@@ -110,7 +112,11 @@ void proof_af_gap(void)
         any_mixture(&f, range, true);
         af_damp(&f);
         any_mixture(&f, range, false);
+        af_gap(&f);
+        any_mixture(&f, range, false);
         af_hold(&f);
+        any_mixture(&f, range, true);
+        af_gap(&f);
         any_mixture(&f, range, true);
         af_hold(&f);
         any_mixture(&f, range, false);

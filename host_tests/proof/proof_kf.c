@@ -129,7 +129,12 @@ void proof_kf_gap(void)
     kf_damp(&f);
     any_state(&f.core);
     //@ admit COVARIANCE(&f.core);
+    kf_gap(&f);
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
     kf_hold(&f);
+    any_start(&f.core);
+    kf_gap(&f);
     any_start(&f.core);
     kf_hold(&f);
     any_state(&f.core);

@@ -273,7 +273,11 @@ void proof_kf3_gap(void)
     any_warm_up(&f, 0, 4);
     kf3_damp(&f);
     any_run(&f);
+    kf3_gap(&f);
+    any_run(&f);
     kf3_hold(&f);
+    any_warm_up(&f, 0, 4);
+    kf3_gap(&f);
     any_warm_up(&f, 0, 4);
     kf3_hold(&f);
     any_run(&f);

@@ -179,7 +179,12 @@ void proof_lrf_gap(void)
     lrf_damp(&f);
     any_run(&f);
     //@ admit COVARIANCE(&f.core);
+    lrf_gap(&f);
+    any_run(&f);
+    //@ admit COVARIANCE(&f.core);
     lrf_hold(&f);
+    any_warm_up(&f, 0, 4);
+    lrf_gap(&f);
     any_warm_up(&f, 0, 4);
     lrf_hold(&f);
     any_run(&f);

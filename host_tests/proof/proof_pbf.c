@@ -35,6 +35,8 @@ void proof_pbf_init(void)
     }
     pbf_config_t config;
     pbf_defaults(&config, ANY_U16(50, 40000));
+    pbf_t f;
+    pbf_configure(&f, &config);
 }
 
 /* Uses: two_state_wide_set_noise */
@@ -110,7 +112,11 @@ void proof_pbf_gap(void)
         any_mixture(&f, range, true);
         pbf_damp(&f);
         any_mixture(&f, range, false);
+        pbf_gap(&f);
+        any_mixture(&f, range, false);
         pbf_hold(&f);
+        any_mixture(&f, range, true);
+        pbf_gap(&f);
         any_mixture(&f, range, true);
         pbf_hold(&f);
         any_mixture(&f, range, false);

@@ -35,6 +35,8 @@ void proof_shrf_init(void)
     }
     shrf_config_t config;
     shrf_defaults(&config, ANY_U16(50, 40000));
+    shrf_t f;
+    shrf_configure(&f, &config);
 }
 
 /* Uses: two_state_wide_set_noise */
@@ -110,7 +112,11 @@ void proof_shrf_gap(void)
         any_mixture(&f, range, true);
         shrf_damp(&f);
         any_mixture(&f, range, false);
+        shrf_gap(&f);
+        any_mixture(&f, range, false);
         shrf_hold(&f);
+        any_mixture(&f, range, true);
+        shrf_gap(&f);
         any_mixture(&f, range, true);
         shrf_hold(&f);
         any_mixture(&f, range, false);

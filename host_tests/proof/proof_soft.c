@@ -288,7 +288,13 @@ void proof_soft_gap(void)
     any_gate(&f);
     any_state(&f.core);
     //@ admit COVARIANCE(&f.core);
+    soft_gap(&f);
+    any_gate(&f);
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
     soft_hold(&f);
+    any_start(&f.core);
+    soft_gap(&f);
     any_start(&f.core);
     soft_hold(&f);
     any_gate(&f);

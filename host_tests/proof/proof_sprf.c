@@ -141,7 +141,13 @@ void proof_sprf_gap(void)
     any_gate(&f);
     any_state(&f.core);
     //@ admit COVARIANCE(&f.core);
+    sprf_gap(&f);
+    any_gate(&f);
+    any_state(&f.core);
+    //@ admit COVARIANCE(&f.core);
     sprf_hold(&f);
+    any_start(&f.core);
+    sprf_gap(&f);
     any_start(&f.core);
     sprf_hold(&f);
     any_gate(&f);

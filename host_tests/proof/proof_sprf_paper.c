@@ -112,7 +112,11 @@ void proof_sprf_paper_gap(void)
     any_sprf_paper(&f, true);
     sprf_paper_damp(&f);
     any_sprf_paper(&f, false);
+    sprf_paper_gap(&f);
+    any_sprf_paper(&f, false);
     sprf_paper_hold(&f);
+    any_sprf_paper(&f, true);
+    sprf_paper_gap(&f);
     any_sprf_paper(&f, true);
     sprf_paper_hold(&f);
     any_sprf_paper(&f, false);

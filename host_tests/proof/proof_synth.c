@@ -144,6 +144,8 @@ void proof_synth_gap(void)
         any_state(&f, kind);
         synth_damp(&f);
         any_state(&f, kind);
+        synth_gap(&f);
+        any_state(&f, kind);
         synth_hold(&f);
         any_state(&f, kind);
         synth_restart(&f);

@@ -115,6 +115,8 @@ void proof_synth_opt_gap(void)
         any_state(&f, kind);
         synth_opt_damp(&f);
         any_state(&f, kind);
+        synth_opt_gap(&f);
+        any_state(&f, kind);
         synth_opt_hold(&f);
         any_state(&f, kind);
         synth_opt_restart(&f);

@@ -140,6 +140,8 @@ void proof_synth_plus_gap(void)
         any_state(&f, kind);
         synth_plus_damp(&f);
         any_state(&f, kind);
+        synth_plus_gap(&f);
+        any_state(&f, kind);
         synth_plus_hold(&f);
         any_state(&f, kind);
         synth_plus_restart(&f);
