@@ -219,7 +219,7 @@ static bool follow_settings(void)
     bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
     uint8_t now = old_samples ? changes & CHANGE_FILTER : changes;
     changes = (uint8_t)(changes & ~now);
-    if (now & (CHANGE_COLD | CHANGE_CONFIG)) {
+    if ((now & CHANGE_COLD) || ((now & CHANGE_CONFIG) && !silence_holds())) { /* else more is lost, and rows go on */
         coast_wait(pass_us);
     }
     if (now & CHANGE_COLD) {

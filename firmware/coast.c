@@ -9,7 +9,7 @@
 #define LONG_STEP_US UINT32_C(100000)
 
 typedef enum {
-    STATE_WAITING, /* for the first sample */
+    STATE_WAITING, /* for the first sample, and no row is out yet */
     STATE_RUNNING,
     STATE_COASTING /* the newest row is of a sample that is missing */
 } state_t;
@@ -17,7 +17,7 @@ typedef enum {
 static struct {
     uint32_t next_us; /* time of the sample that comes next */
     uint32_t due_us;  /* then it is missing */
-    uint32_t lost_us; /* COASTING: the same as it was behind the newest sample that has come */
+    uint32_t lost_us; /* COASTING: the same as it was behind the newest sample that has come, or for the first row */
     uint8_t state;    /* state_t */
 } coast;
 
@@ -48,7 +48,7 @@ bool coast_over(uint32_t period_us, bool sample)
     if (sample && (coast.state == STATE_WAITING || silence_holds())) {
         return false;
     }
-    if (coast.state == STATE_RUNNING) {
+    if (coast.state != STATE_COASTING) {
         coast.state = STATE_COASTING;
         coast.lost_us = coast.due_us;
     }
@@ -64,8 +64,9 @@ bool coast_sample(uint32_t t_us, uint32_t period_us)
         count(COUNT_LATE);
         return false;
     }
-    if (coast.state == STATE_COASTING && hal_time_reached(t_us, coast.lost_us)) {
-        count_lost((t_us - coast.lost_us) / period_us + 1u);
+    if (coast.state == STATE_COASTING) { /* t_us is two periods before lost_us at most, or up to 71 minutes behind */
+        uint32_t periods = (t_us - coast.lost_us + 2u * period_us) / period_us;
+        count_lost(periods > 1u ? periods - 1u : 0u);
     }
     coast.state = STATE_RUNNING;
     expect(t_us + period_us, period_us);

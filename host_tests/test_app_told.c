@@ -152,6 +152,21 @@ static void test_a_change_of_rate_loses_nothing(void)
     TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LOST]);
 }
 
+/* What is missing of a second at the new rate: the old one ends with its command. */
+static void test_a_change_of_rate_in_an_outage_forgets_no_sample(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    adxl345_model_power(&hal_host_sensor, false);
+    board_run_ms(500);
+    board_type("rate 200");
+    board_run_ms(500);
+    adxl345_model_power(&hal_host_sensor, true);
+    board_run_ms(500);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1 over", 0));
+    TEST_ASSERT_UINT32_WITHIN(10, 205, counters[COUNT_LOST]);
+}
+
 /* As many replies wait as there is room for, and the line stands still. */
 static void fill_replies(void)
 {
@@ -189,6 +204,7 @@ int main(void)
     RUN_TEST(test_end_of_a_fault_tells_its_length_and_the_samples_lost);
     RUN_TEST(test_each_outage_begins_anew);
     RUN_TEST(test_a_change_of_rate_loses_nothing);
+    RUN_TEST(test_a_change_of_rate_in_an_outage_forgets_no_sample);
     RUN_TEST(test_a_fault_for_which_there_is_no_room_is_told_later);
     return UNITY_END();
 }

@@ -1,0 +1,75 @@
+/* What the clock of missing samples counts, and which samples it keeps out, from the start and through long outages. */
+#include "coast.h"
+#include "counters.h"
+#include "pipeline.h"
+#include "unity.h"
+
+enum { PERIOD_US = 10000, LOOK_US = 4000, START_US = 1000000 };
+
+void setUp(void)
+{
+    counters_start();
+    pipeline_reset();
+    pipeline_start(0, 1000, 16);
+    pipeline_finish();
+    coast_wait(START_US);
+}
+
+void tearDown(void) {}
+
+static bool row_by(uint32_t t_us)
+{
+    bool row = coast_due(t_us) && coast_over(PERIOD_US, false);
+    pipeline_finish();
+    return row;
+}
+
+static bool sample_at(uint32_t t_us)
+{
+    adxl345_sample_t sample = { .t_us = t_us, .lsb = { 0, 0, 256 } };
+    bool taken = coast_sample(t_us, PERIOD_US);
+    if (taken) {
+        pipeline_sample(&sample);
+        pipeline_finish();
+    }
+    return taken;
+}
+
+/* The first sample may have waited in the sensor while rows went out that no sample came for. */
+static void test_a_first_sample_older_than_the_newest_row_is_dropped(void)
+{
+    TEST_ASSERT_TRUE(row_by(START_US + 100001u));
+    uint32_t newest_us = pipeline_newest_us();
+    TEST_ASSERT_FALSE(sample_at(newest_us));
+    TEST_ASSERT_EQUAL_UINT32(1, counters[COUNT_LATE]);
+    TEST_ASSERT_TRUE(sample_at(newest_us + 1u));
+    TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LOST]);
+}
+
+/* More than half of what the clock of the samples counts, which wraps meanwhile. */
+static void test_samples_lost_in_a_long_outage_are_counted(void)
+{
+    static const uint32_t missing[] = { 3, 100, 214000, 216000, 420000 };
+    uint32_t t_us = START_US;
+    uint32_t sum = 0;
+    TEST_ASSERT_TRUE(sample_at(t_us));
+    for (unsigned i = 0; i < sizeof missing / sizeof missing[0]; i++) {
+        uint32_t gap_us = (missing[i] + 1u) * PERIOD_US;
+        for (uint32_t past_us = 0; past_us < gap_us; past_us += LOOK_US) {
+            while (row_by(t_us + past_us)) {
+            }
+        }
+        t_us += gap_us;
+        sum += missing[i];
+        TEST_ASSERT_TRUE(sample_at(t_us));
+        TEST_ASSERT_EQUAL_UINT32(sum, counters[COUNT_LOST]);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_first_sample_older_than_the_newest_row_is_dropped);
+    RUN_TEST(test_samples_lost_in_a_long_outage_are_counted);
+    return UNITY_END();
+}
