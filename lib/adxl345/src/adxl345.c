@@ -242,6 +242,17 @@ static int32_t silent_for_us(void)
     return (int32_t)(driver.now_us - burst_met_sample_us());
 }
 
+/* A sample waits: INT1 that is low has failed to tell, one that is stuck tells nothing. */
+static void read_by_clock(adxl345_driver_t *d)
+{
+    if (!hal_drdy_high()) {
+        d->fault = ADXL345_FAULT_INT1_SILENT;
+        d->timed = TIMED_WANTED;
+    } else if (integrity_int1_stuck()) {
+        d->timed = TIMED_WANTED;
+    }
+}
+
 /*
  * INT1 may have risen just now, unless it is always high. Ones of a sensor that is gone show in the bits of functions
  * that are off. A sensor that has none ready may still come: that is a fault after three periods.
@@ -258,9 +269,8 @@ static void source_asked(adxl345_driver_t *d)
     burst_set_mode(BURST_READ);
     enter(STEP_STREAM, 1);
     d->was_empty = d->was_empty || !has_data;
-    if (has_data && !hal_drdy_high()) {
-        d->fault = ADXL345_FAULT_INT1_SILENT;
-        d->timed = TIMED_WANTED;
+    if (has_data) {
+        read_by_clock(d);
     }
 }
 
@@ -320,13 +330,14 @@ static void access_step(adxl345_driver_t *d)
 }
 
 /*
- * Without a sample until the sensor is asked: two periods, or while INT1 is known to be silent less than one, so that
- * a sensor that is fast does not fill its FIFO.
+ * Without a sample until the sensor is asked: two periods, or while INT1 is known to tell nothing less than one, so
+ * that a sensor that is fast does not fill its FIFO.
  */
 static uint32_t patience_us(adxl345_driver_t *d)
 {
     uint32_t nominal_us = d->nominal_us;
-    return d->fault == ADXL345_FAULT_INT1_SILENT ? nominal_us - nominal_us / 4u : nominal_us * 2u;
+    bool no_edges = d->fault == ADXL345_FAULT_INT1_SILENT || integrity_int1_stuck();
+    return no_edges ? nominal_us - nominal_us / 4u : nominal_us * 2u;
 }
 
 static void sample_arrived(adxl345_driver_t *d)
@@ -338,7 +349,10 @@ static void sample_arrived(adxl345_driver_t *d)
     d->deadline_us = d->now_us + d->nominal_us + LOOK_US;
     if (d->timed == TIMED_READ) {
         d->deadline_us = burst_begun_us() + patience_us(d);
-    } else if (d->fault != ADXL345_FAULT_NONE) {
+        d->timed = burst_left_more() ? TIMED_WANTED : TIMED_NONE;
+        return;
+    }
+    if (d->fault != ADXL345_FAULT_NONE) {
         saturating_add(&d->counters.restarts);
         d->fault = ADXL345_FAULT_NONE;
     }

@@ -308,6 +308,11 @@ bool burst_found_empty(void)
     return burst.found_empty;
 }
 
+bool burst_left_more(void)
+{
+    return burst.reading[READING_FIFO_STATUS] != 0;
+}
+
 uint32_t burst_begun_us(void)
 {
     hal_irq_state_t state = hal_irq_save();

@@ -68,6 +68,9 @@ bool burst_bus_taken(void);
 /* The newest burst met no sample; false again with burst_set_mode(BURST_READ). */
 bool burst_found_empty(void);
 
+/* The newest good reading left samples in the sensor's FIFO. An edge may have begun another since: a hint then. */
+bool burst_left_more(void);
+
 /* When the newest burst was put on the bus; until the first, the moment by which it is expected. */
 uint32_t burst_begun_us(void);
 void burst_expect(uint32_t t_us);
