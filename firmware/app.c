@@ -251,7 +251,7 @@ static void write_row(void)
 /* Begins the way of one that is missing: before the oldest sample, or by now where none is on its way. */
 static bool fill_gap(void)
 {
-    uint32_t t_us = pass_us;
+    uint32_t t_us = pass_us - adxl345_lateness_us();
     bool queued = adxl345_oldest_us(&t_us);
     if (!coast_due(t_us)) {
         return false;

@@ -22,7 +22,7 @@ ROOT = pathlib.Path.cwd()
 EXCLUSIONS = pathlib.Path("host_tests/coverage_exclusions.txt")
 # two calls, which link-time optimisation takes in line: the instructions may carry the lines of what is called alone
 CALLS_ONLY = {"firmware/main.c"}
-HOST_LINES, HOST_BRANCHES, AVR_LINES = 100.0, 95.0, 85.0
+HOST_LINES, HOST_BRANCHES, AVR_LINES = 100.0, 95.0, 95.0
 CAMPAIGN_LINES, WATCHING_BRANCHES = 95.0, 100.0
 PLACES = ("host", "host-branch", "avr", "campaign")
 

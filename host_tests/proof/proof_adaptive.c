@@ -373,12 +373,7 @@ void proof_adaptive_gap(void)
             any_run(&f);
             any_weight(&f, weight, last);
             adaptive_gap(&f);
-            any_run(&f);
-            any_weight(&f, weight, last);
             adaptive_hold(&f);
-            any_start(&f, 0, 4);
-            any_weight(&f, weight, last);
-            adaptive_gap(&f);
             any_start(&f, 0, 4);
             any_weight(&f, weight, last);
             adaptive_hold(&f);

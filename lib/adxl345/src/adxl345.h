@@ -83,6 +83,9 @@ bool adxl345_oldest_us(uint32_t *t_us);
  */
 bool adxl345_sample_coming(void);
 
+/* So much later than by INT1 may a sample come, us: two periods while INT1 tells nothing and the clock is asked. */
+uint32_t adxl345_lateness_us(void);
+
 adxl345_phase_t adxl345_phase(void);
 
 /* While ADXL345_STREAMING with a fault samples go on: something is wrong with them, or with how they come. */

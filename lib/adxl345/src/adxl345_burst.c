@@ -136,7 +136,7 @@ static bool begin_register(uint8_t reg, uint8_t value, uint8_t tx_length, uint8_
 {
     struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
-    bool free = i2c_bus_free(&b->bus);
+    bool free = !b->on_bus && i2c_bus_free(&b->bus); /* what main has not judged keeps its state */
     if (free) {
         b->bus.tx[0] = reg;
         b->bus.tx[1] = value;

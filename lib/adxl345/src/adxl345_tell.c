@@ -51,6 +51,12 @@ bool adxl345_sample_coming(void)
     return streams() && !burst_found_empty() && (burst_running() || hal_drdy_high());
 }
 
+uint32_t adxl345_lateness_us(void)
+{
+    bool no_edges = driver.fault == ADXL345_FAULT_INT1_SILENT || integrity_int1_stuck();
+    return no_edges ? 2u * period_us() : 0;
+}
+
 adxl345_phase_t adxl345_phase(void)
 {
     if (streams()) {
