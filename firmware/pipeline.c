@@ -95,7 +95,7 @@ FX_ONCE void pipeline_retime(uint32_t period_us)
     pipe.looked_cdeg = now_cdeg;
     uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
     uint16_t near_dhz = (pipe.true_dhz >> 7) + 1u;
-    if ((uint16_t)(true_dhz - pipe.true_dhz + near_dhz) <= 2u * near_dhz) {
+    if ((uint16_t)(true_dhz - pipe.true_dhz + near_dhz) <= (uint16_t)(2u * near_dhz)) {
         pipe.calls_off = 0;
     } else if (pipe.calls_off < CALLS_OFF) {
         pipe.calls_off++;

@@ -128,9 +128,9 @@ def a_filter_too_slow_for_the_rate_is_refused_and_samples_go_on():
     rows, notes, served, _ = simrun("tight-filter", STREAMS / "rest-2lsb.csv", "--filter", "pbf", "--rate", 800, "--baud", 1000000, "--cmd",
                                     "1500:filter af", "--cmd", "1600:filter", "--loop", "--max-ms", 3000, fw=tight)
     assert notes.count(reply) == 1 and notes[notes.index(reply) + 1] == "# filter pbf", notes
-    # 17,500 - 6,400 - 10,350 cycles a sample are left for rows of 9,750
-    assert "# every 13: the smallest that pbf leaves time for at 800 Hz" in notes, notes
-    assert_nothing_lost(rows, served, 13, from_us=1000000, end_us=2900000)
+    # 17,500 - 6,450 - 10,350 cycles a sample are left for rows of 9,600
+    assert "# every 14: the smallest that pbf leaves time for at 800 Hz" in notes, notes
+    assert_nothing_lost(rows, served, 14, from_us=1000000, end_us=2900000)
     assert not any(r[9] & (128 | 256) for r in rows if r[0] > 1400000)
     rows, notes, served, _ = simrun("tight-rate", STREAMS / "rest-2lsb.csv", "--filter", "af", "--cmd", "1500:rate 800", "--cmd", "1600:rate",
                                     "--loop", "--max-ms", 3000, fw=tight)

@@ -229,7 +229,7 @@ static void test_count_with_a_wrong_bit_moves_no_stamp(void)
 /* The sensor has none and is not waited for any more, but INT1 rises just then: one more look before it is a fault. */
 static void test_int1_that_rises_while_the_sensor_says_it_has_none(void)
 {
-    double told_ms[2];
+    double told_ms[2] = { 0.0 };
     for (int rises = 0; rises <= 1; rises++) {
         tearDown();
         setUp();
