@@ -99,7 +99,7 @@ FX_ONCE void pipeline_retime(uint32_t period_us)
         pipe.calls_off = 0;
     } else if (pipe.calls_off < CALLS_OFF) {
         pipe.calls_off++;
-    } else if (moved_cdeg <= 2u * STILL_CDEG && pipe.work == WORK_NONE) {
+    } else if (moved_cdeg <= 2u * STILL_CDEG) {
         pipe.true_dhz = true_dhz;
         change(false);
     }

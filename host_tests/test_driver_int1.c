@@ -116,6 +116,7 @@ static void test_int1_stuck_high(void)
         run_ms(3 * period_ms);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+        TEST_ASSERT_EQUAL_UINT32(2u * adxl345_period_us(), adxl345_lateness_us());
         run_ms(20 * period_ms);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
         adxl345_readings(&readings);
@@ -125,6 +126,7 @@ static void test_int1_stuck_high(void)
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
         run_ms(5 * period_ms);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+        TEST_ASSERT_EQUAL_UINT32(0, adxl345_lateness_us());
         TEST_ASSERT_EQUAL_size_t(0, lost());
     }
 }
