@@ -249,6 +249,21 @@ static void test_restarts_are_counted(void)
     TEST_ASSERT_TRUE(told("not acknowledged ") >= 8); /* both addresses, at least once each time */
 }
 
+/* INT1 that came back is not a restart: the sensor was configured once. */
+static void test_a_wire_of_int1_that_came_back_is_no_restart(void)
+{
+    start(NULL, NULL);
+    board_run_ms(300);
+    hal_host_faults.int1_cut = true;
+    board_run_ms(300);
+    TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
+    hal_host_faults.int1_cut = false;
+    board_run_ms(300);
+    TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_NONE, adxl345_fault());
+    ask();
+    TEST_ASSERT_EQUAL_UINT(0, told("restarts "));
+}
+
 /* The sensor's clock is off by up to 5 %: what is told is its rate, within 0.05 %, at every rate. */
 static void test_measured_rate(void)
 {
@@ -292,6 +307,7 @@ int main(void)
     RUN_TEST(test_readings_without_a_sample_are_told);
     RUN_TEST(test_stuck_samples_are_counted);
     RUN_TEST(test_restarts_are_counted);
+    RUN_TEST(test_a_wire_of_int1_that_came_back_is_no_restart);
     RUN_TEST(test_measured_rate);
     return UNITY_END();
 }

@@ -1,8 +1,15 @@
-/* Inside the driver: its state, for its own two files. Main only. */
+/*
+ * Inside the driver: its state, and what its files call of each other. adxl345.c finds and configures the sensor,
+ * adxl345_stream.c takes samples of it, adxl345_tell.c tells. Main only.
+ */
 #ifndef ADXL345_DRIVER_H
 #define ADXL345_DRIVER_H
 
 #include "adxl345.h"
+#include "i2c_bus.h"
+
+/* A register access takes under 0.2 ms, a burst under 0.4 ms. */
+enum { TRANSFER_LIMIT_MS = 3, BACK_OFF_MIN_MS = 5 };
 
 typedef enum {
     STEP_OFF,
@@ -44,11 +51,39 @@ typedef struct {
 
 extern adxl345_driver_t driver;
 
-static inline void saturating_add(uint16_t *counter)
-{
-    if (*counter != UINT16_MAX) {
-        (*counter)++;
-    }
-}
+/* The step that runs from now on, with a deadline in limit_ms; main passes again at once. */
+void driver_enter(step_t step, uint8_t limit_ms);
+
+/* Another deadline for the step that runs, counted from the poll's time. */
+void driver_set_limit(uint8_t limit_ms);
+
+bool driver_deadline_passed(void);
+
+/* Ends the step with a fault: backs off before the sensor is looked for again, or stops when that is asked for. */
+void driver_fail(adxl345_fault_t fault);
+
+/* Frees the bus of a transfer that hangs; false when somebody holds a line low: that is a fault then, and told. */
+bool driver_take_bus(void);
+
+/* A transfer failed, or three bursts did: names the fault, or tries the other address. */
+void driver_give_up(adxl345_driver_t *d, i2c_bus_state_t state);
+
+/* Looks for the sensor at the address that is held, at once. */
+void driver_probe(void);
+
+/* The sensor measures from now on: expects its first sample. */
+void stream_start(adxl345_driver_t *d);
+
+/* STEP_STREAM, once a poll. */
+void stream_poll(adxl345_driver_t *d);
+
+/* STEP_ASK_SOURCE has INT_SOURCE: reads the sample that waits, waits on, or fails for want of data. */
+void stream_source_asked(adxl345_driver_t *d);
+
+/* INT1 is known to tell nothing, low or high: samples are read by the clock. */
+bool stream_without_edges(void);
+
+/* One more, up to 65,535. */
+void driver_count(uint16_t *counter);
 
 #endif

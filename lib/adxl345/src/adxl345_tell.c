@@ -13,11 +13,11 @@ bool adxl345_take(adxl345_sample_t *out)
         return false;
     }
     if (!entry->exact) {
-        saturating_add(&driver.counters.samples_drained);
+        driver_count(&driver.counters.samples_drained);
     }
     if (entry->stuck) {
         driver.marks = ADXL345_MARK_STUCK;
-        saturating_add(&driver.counters.samples_stuck);
+        driver_count(&driver.counters.samples_stuck);
     }
     *out = entry->sample;
     return true;
@@ -53,8 +53,7 @@ bool adxl345_sample_coming(void)
 
 uint32_t adxl345_lateness_us(void)
 {
-    bool no_edges = driver.fault == ADXL345_FAULT_INT1_SILENT || integrity_int1_stuck();
-    return no_edges ? 2u * period_us() : 0;
+    return stream_without_edges() ? 2u * period_us() : 0;
 }
 
 adxl345_phase_t adxl345_phase(void)

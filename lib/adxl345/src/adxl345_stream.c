@@ -1,0 +1,173 @@
+/*
+ * The step of the driver's state machine in which samples come: when the sensor is asked why none does, when it is read
+ * by the clock because INT1 tells nothing, and what failed. All in main.
+ */
+#include "adxl345_burst.h"
+#include "adxl345_driver.h"
+#include "adxl345_integrity.h"
+#include "adxl345_registers.h"
+#include "adxl345_watch.h"
+#include "hal_drdy.h"
+#include "hal_pointer.h"
+#include "hal_time.h"
+
+#define MARGIN_US 3000u
+#define TURN_ON_MS 20u /* p. 5: period + 1.1 ms, with room for a slow start */
+#define BURST_TRIES 3u
+#define TRANSFER_LIMIT_US (TRANSFER_LIMIT_MS * INT32_C(1000))
+#define LOOK_US 500ul /* behind the moment when a sample was due, and again and again while none comes */
+
+/* Since the newest burst that met a sample, or until the first is expected (negative). */
+static HAL_APART int32_t silent_for_us(void)
+{
+    return (int32_t)(driver.now_us - burst_met_sample_us());
+}
+
+/* A sample waits: INT1 that is low has failed to tell, one that is stuck tells nothing. */
+static void read_by_clock(adxl345_driver_t *d)
+{
+    if (!hal_drdy_high()) {
+        d->fault = ADXL345_FAULT_INT1_SILENT;
+        d->timed = TIMED_WANTED;
+    } else if (integrity_int1_stuck()) {
+        d->timed = TIMED_WANTED;
+    }
+}
+
+/*
+ * INT1 may have risen just now, unless it is always high. Ones of a sensor that is gone show in the bits of functions
+ * that are off. A sensor that has none ready may still come: that is a fault after three periods.
+ */
+void stream_source_asked(adxl345_driver_t *d)
+{
+    uint8_t source = burst_register_value() & (uint8_t)(ADXL345_INT_DATA_READY | ADXL345_INT_EVENTS);
+    bool has_data = source == ADXL345_INT_DATA_READY;
+    bool may_come = source == 0 && silent_for_us() < (int32_t)(d->nominal_us * 3u + MARGIN_US);
+    if (!has_data && !may_come && (!hal_drdy_high() || integrity_int1_stuck())) {
+        driver_fail(ADXL345_FAULT_NO_DATA);
+        return;
+    }
+    burst_set_mode(BURST_READ);
+    driver_enter(STEP_STREAM, 1);
+    d->was_empty = d->was_empty || !has_data;
+    if (has_data) {
+        read_by_clock(d);
+    }
+}
+
+void stream_start(adxl345_driver_t *d)
+{
+    if (d->fault != ADXL345_FAULT_NONE) {
+        driver_count(&d->counters.restarts);
+    }
+    integrity_start(d->config.range_g);
+    watch_start();
+    d->first_sample_seen = false;
+    d->timed = TIMED_NONE;
+    d->was_empty = false;
+    d->seen_good = integrity_good();
+    burst_expect(d->now_us + TURN_ON_MS * 1000ul);
+    burst_set_mode(BURST_READ); /* last: an edge may come with it */
+    driver_enter(STEP_STREAM, 1);
+}
+
+bool stream_without_edges(void)
+{
+    return driver.fault == ADXL345_FAULT_INT1_SILENT || integrity_int1_stuck();
+}
+
+/*
+ * Without a sample until the sensor is asked: two periods, or while INT1 is known to tell nothing less than one, so
+ * that a sensor that is fast does not fill its FIFO.
+ */
+static HAL_APART uint32_t patience_us(adxl345_driver_t *d)
+{
+    uint32_t nominal_us = d->nominal_us;
+    return stream_without_edges() ? nominal_us - nominal_us / 4u : nominal_us * 2u;
+}
+
+static void sample_arrived(adxl345_driver_t *d)
+{
+    d->seen_good = integrity_good();
+    d->first_sample_seen = true;
+    d->alternate_tried = false;
+    d->back_off_ms = BACK_OFF_MIN_MS;
+    d->deadline_us = d->now_us + d->nominal_us + LOOK_US;
+    if (d->timed == TIMED_READ) {
+        d->deadline_us = burst_begun_us() + patience_us(d);
+        d->timed = burst_left_more() ? TIMED_WANTED : TIMED_NONE;
+        return;
+    }
+    d->fault = ADXL345_FAULT_NONE;
+    d->timed = TIMED_NONE;
+}
+
+/* A burst or the STOP behind it hangs: the sample is read again, unless a line that is low says why. */
+static void end_hung_burst(adxl345_driver_t *d)
+{
+    driver_count(&d->counters.timeouts);
+    if (driver_take_bus()) {
+        driver_enter(STEP_STREAM, 1);
+    }
+}
+
+/*
+ * No sample came by the time it was due: a burst may hang, or there was none for so long that the sensor is asked. One
+ * that failed counts as a sign of life: three in a row are a fault by themselves.
+ */
+static void look_for_sample(adxl345_driver_t *d)
+{
+    int32_t since_us = (int32_t)(d->now_us - burst_begun_us());
+    bool waiting = burst_queue_full() || (hal_drdy_high() && !burst_found_empty()); /* main was late */
+    if (burst_bus_taken()) {
+        if (since_us >= TRANSFER_LIMIT_US) {
+            end_hung_burst(d);
+        } else {
+            d->deadline_us = d->now_us + (uint32_t)(TRANSFER_LIMIT_US - since_us);
+        }
+    } else if (!waiting && silent_for_us() >= (int32_t)patience_us(d)) {
+        burst_set_mode(BURST_STAMP);
+        driver_enter(STEP_ASK_SOURCE, TRANSFER_LIMIT_MS);
+    } else {
+        d->deadline_us = d->now_us + LOOK_US;
+    }
+}
+
+/* What the readings say; a sensor that has lost its configuration is given it again at once. */
+static bool readings_failed(void)
+{
+    adxl345_fault_t fault = integrity_fault();
+    if (fault == ADXL345_FAULT_NONE) {
+        return false;
+    }
+    driver_fail(fault);
+    if (fault == ADXL345_FAULT_NO_DATA) {
+        driver_probe();
+    }
+    return true;
+}
+
+void stream_poll(adxl345_driver_t *d)
+{
+    if (readings_failed()) {
+        return;
+    }
+    if (burst_failures() >= BURST_TRIES) {
+        driver_give_up(d, burst_bus_state());
+        return;
+    }
+    if (integrity_good() != d->seen_good) {
+        sample_arrived(d);
+    } else if (driver_deadline_passed() || (burst_found_empty() && !burst_running())) {
+        look_for_sample(d);
+    }
+    if (d->timed != TIMED_WANTED) {
+        if (burst_drain()) {
+            driver_set_limit(TRANSFER_LIMIT_MS);
+        }
+    } else if (burst_read(d->was_empty)) {
+        d->timed = TIMED_READ;
+        d->was_empty = false;
+        driver_set_limit(TRANSFER_LIMIT_MS);
+    }
+}
