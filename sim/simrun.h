@@ -83,17 +83,24 @@ void machine_start(void);
 exit_status_t machine_run(const char **reason);
 /* Some part's next event has changed: wake up for the earliest. */
 void machine_reschedule(void);
-typedef enum { RESET_EXTERNAL, RESET_POWER_ON, RESET_BROWN_OUT } reset_t;
-/* Asked for from anywhere, done between two instructions; the last one asked for counts. */
-void machine_reset(reset_t kind);
-/* Somebody opened the pseudo terminal: with a boot loader an external reset, as DTR gives an UNO; not counted. */
-void machine_port_opened(void);
 /* First cause wins; ends the run. `reason` stays valid. */
 void machine_fail(exit_status_t status, const char *reason);
-uint32_t machine_resets(void);
-uint32_t machine_boot_resets(void); /* out of the boot loader; not counted above */
 double machine_ms(void);
-uint32_t machine_random(void); /* xorshift32 from --seed */
+uint32_t machine_random(void);            /* xorshift32 from --seed */
+bool machine_in_boot_loader(uint32_t pc); /* byte address; false without --bootloader */
+
+/* --- resets of the MCU --- */
+typedef enum { RESET_EXTERNAL, RESET_POWER_ON, RESET_BROWN_OUT } reset_t;
+/* Once every other part has started: sets up what a reset leaves to us; from here on resets are seen. */
+void resets_start(void);
+/* Asked for from anywhere, done between two instructions; the last one asked for counts. */
+void resets_want(reset_t kind);
+/* Somebody opened the pseudo terminal: with a boot loader an external reset, as DTR gives an UNO; not counted. */
+void resets_port_opened(void);
+/* Between two instructions: counts a reset that came, does a wanted one. last_pc: where the step just run began. */
+void resets_watch(uint32_t last_pc);
+uint32_t resets_count(void);
+uint32_t resets_boot_count(void); /* out of the boot loader; not counted above */
 
 /* --- stack --- */
 void stack_paint(void);                /* before the start */

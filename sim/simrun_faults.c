@@ -115,9 +115,9 @@ static void apply(const fault_t *fault)
         mcu->data[fault->address] = (uint8_t)fault->parameter;
         break;
     default:
-        machine_reset(fault->kind == KIND_MCUPOWER   ? RESET_POWER_ON
-                      : fault->kind == KIND_BROWNOUT ? RESET_BROWN_OUT
-                                                     : RESET_EXTERNAL);
+        resets_want(fault->kind == KIND_MCUPOWER   ? RESET_POWER_ON
+                    : fault->kind == KIND_BROWNOUT ? RESET_BROWN_OUT
+                                                   : RESET_EXTERNAL);
         break;
     }
 }

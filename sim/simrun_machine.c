@@ -1,21 +1,19 @@
 /*
- * The ATmega328P: what simavr 1.6 gets wrong is put right here (no-op sleep, interrupt entry time, level interrupts,
- * frequency, resets that drop every timer), and every instruction is watched: program counter, stack pointer, illegal
- * opcodes.
+ * The ATmega328P: what simavr 1.6 gets wrong is put right here (no-op sleep, interrupt entry time, frequency) and in
+ * simrun_resets.c (resets that drop every timer, level interrupts), and every instruction is watched: program counter,
+ * stack pointer, illegal opcodes.
  */
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "avr_extint.h"
+#include "sim_avr.h"
 #include "sim_core.h"
 #include "sim_elf.h"
 #include "sim_gdb.h"
 #include "simrun.h"
 
 enum {
-    RAM_START = 0x100,
-    RAM_END = 0x8FF,
     FLASH_BYTES = 0x8000,
     CHUNK_CYCLES = 24 /* instructions run in one go between two looks at PC and stack */
 };
@@ -27,10 +25,6 @@ twi_peripheral_t twi;
 
 program_size_t machine_size;
 static uint32_t boot_start = FLASH_BYTES;
-static void (*core_reset)(avr_t *);
-static bool reset_happened, reset_wanted, port_opened;
-static reset_t wanted_kind;
-static uint32_t resets, boot_resets;
 static uint32_t last_pc;
 static exit_status_t failure;
 static const char *failure_reason;
@@ -49,14 +43,9 @@ double machine_ms(void)
     return (double)mcu->cycle / CYCLES_PER_MS;
 }
 
-uint32_t machine_resets(void)
+bool machine_in_boot_loader(uint32_t pc)
 {
-    return resets;
-}
-
-uint32_t machine_boot_resets(void)
-{
-    return boot_resets;
+    return pc >= boot_start && pc < FLASH_BYTES;
 }
 
 uint32_t machine_random(void)
@@ -98,15 +87,6 @@ static void no_sleep(avr_t *avr, avr_cycle_count_t cycles)
     (void)avr;
     pass_ends();
     stats_slept += cycles + 1; /* simavr adds them to avr->cycle itself */
-}
-
-/* Only notes it: after this simavr still resets its own parts and drops all timers. */
-static void on_reset(avr_t *avr)
-{
-    if (core_reset != NULL) {
-        core_reset(avr);
-    }
-    reset_happened = true;
 }
 
 static avr_cycle_count_t on_event(avr_t *avr, avr_cycle_count_t when, void *param)
@@ -152,66 +132,6 @@ static void after_bus_byte(void *owner)
     (void)owner;
     sensor_check_rate();
     faults_after_byte();
-}
-
-/* What a reset of the MCU leaves to us. */
-static void set_up_again(bool power_lost)
-{
-    avr_extint_set_strict_lvl_trig(mcu, 0, 0);
-    avr_extint_set_strict_lvl_trig(mcu, 1, 0);
-    twi_reset(&twi);
-    uart_reset();
-    stats_reset();
-    span_reset();
-    pass_reset();
-    faults_on_reset();
-    eeprom_reset(power_lost);
-    sensor_show_pin();
-    machine_reschedule();
-}
-
-static void power_cycle(void)
-{
-    (void)stack_high_water();
-    for (unsigned i = 0; i <= RAM_END; i++) {
-        if (i < 32 || i >= RAM_START) {
-            mcu->data[i] = (uint8_t)machine_random();
-        }
-    }
-    stack_paint_is();
-}
-
-static void do_wanted_reset(void)
-{
-    bool power = wanted_kind == RESET_POWER_ON;
-    bool counted = !port_opened;
-    reset_wanted = false;
-    port_opened = false;
-    if (power) {
-        power_cycle();
-    }
-    avr_reset(mcu);
-    const avr_regbit_t cause[] = { [RESET_EXTERNAL] = mcu->reset_flags.extrf,
-                                   [RESET_POWER_ON] = mcu->reset_flags.porf,
-                                   [RESET_BROWN_OUT] = mcu->reset_flags.borf };
-    avr_regbit_set(mcu, cause[wanted_kind]);
-    set_up_again(power);
-    resets += counted ? 1u : 0u;
-    reset_happened = false;
-}
-
-void machine_reset(reset_t kind)
-{
-    reset_wanted = true;
-    wanted_kind = kind;
-}
-
-void machine_port_opened(void)
-{
-    if (boot_start != FLASH_BYTES) {
-        port_opened = !reset_wanted;
-        machine_reset(RESET_EXTERNAL);
-    }
 }
 
 static void refuse(const char *path, const char *reason) __attribute__((noreturn));
@@ -289,8 +209,6 @@ void machine_start(void)
         fprintf(stderr, "simrun: waiting for avr-gdb: target remote :%u\n", options.gdb_port);
     }
     mcu->sleep = no_sleep;
-    core_reset = mcu->reset;
-    mcu->reset = on_reset;
     twi.sensor = &sensor;
     twi.before_byte = on_bus_byte;
     twi.after_byte = after_bus_byte;
@@ -309,18 +227,7 @@ void machine_start(void)
     if (faults_watch_pc || span_wanted || options.profile != NULL) {
         chunk_cycles = 0;
     }
-    set_up_again(false);
-}
-
-static void watch_reset(void)
-{
-    reset_happened = false;
-    set_up_again(false);
-    if (last_pc >= boot_start) {
-        boot_resets++;
-    } else {
-        resets++;
-    }
+    resets_start();
 }
 
 static bool ended(void)
@@ -345,7 +252,7 @@ static bool ended(void)
 
 static void watch_state(int state)
 {
-    bool in_program = mcu->pc < machine_size.flash_bytes || (mcu->pc >= boot_start && mcu->pc < FLASH_BYTES);
+    bool in_program = mcu->pc < machine_size.flash_bytes || machine_in_boot_loader(mcu->pc);
     if (state == cpu_Crashed) {
         machine_fail(EXIT_CRASH, "crash: jump out of the flash or access beyond the RAM");
     } else if (state == cpu_Done) {
@@ -394,12 +301,7 @@ static bool step(uint64_t chunk)
 
 static void watch_everything(int state)
 {
-    if (reset_happened) {
-        watch_reset();
-    }
-    if (reset_wanted) {
-        do_wanted_reset();
-    }
+    resets_watch(last_pc);
     watch_state(state);
 }
 
@@ -435,9 +337,9 @@ exit_status_t machine_run(const char **reason)
     static char text[512];
     run();
     stopping = true;
-    if (failure == EXIT_OK && resets != options.expect_resets) {
+    if (failure == EXIT_OK && resets_count() != options.expect_resets) {
         failure = EXIT_RESETS;
-        snprintf(text, sizeof text, "%u resets of the MCU, %u expected (--expect-resets)", (unsigned)resets,
+        snprintf(text, sizeof text, "%u resets of the MCU, %u expected (--expect-resets)", (unsigned)resets_count(),
                  options.expect_resets);
     } else if (failure == EXIT_OK && verdict_reason() != NULL) {
         failure = EXIT_WRONG;

@@ -50,7 +50,7 @@ static void look_for_user(void)
         if (!make_raw(master)) {
             perror("simrun: pseudo terminal");
         }
-        machine_port_opened();
+        resets_port_opened();
     }
     opened = now;
 }

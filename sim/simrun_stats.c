@@ -221,8 +221,8 @@ void stats_write(exit_status_t status)
             ram + (unsigned)stack_high_water());
     faults_print(file);
     verdict_print(file);
-    fprintf(file, "  \"boot_resets\": %u,\n  \"resets\": %u\n}\n", (unsigned)machine_boot_resets(),
-            (unsigned)machine_resets());
+    fprintf(file, "  \"boot_resets\": %u,\n  \"resets\": %u\n}\n", (unsigned)resets_boot_count(),
+            (unsigned)resets_count());
     output_close(file, options.stats);
 }
 
@@ -230,5 +230,5 @@ void stats_summary(void)
 {
     fprintf(stderr, "simrun: %.1f ms, %zu samples served, %zu rows, load %.2f %%, stack %u of %u bytes, %u resets\n",
             machine_ms(), sensor_served_count(), rows_count(), 100.0 * load(), (unsigned)stack_high_water(),
-            (unsigned)(RAM_END + 1 - machine_size.end_of_ram), (unsigned)machine_resets());
+            (unsigned)(RAM_END + 1 - machine_size.end_of_ram), (unsigned)resets_count());
 }

@@ -1,0 +1,124 @@
+/*
+ * Resets of the MCU: those that simavr does itself (the watchdog's, gdb's), those that a fault or an opened port asks
+ * for, how many there were, and what each leaves for the parts around the core to do.
+ */
+#include "avr_extint.h"
+#include "simrun.h"
+
+enum {
+    REGISTERS_END = 32, /* r0..r31; from here to RAM_START lie the I/O registers, which a reset sets itself */
+    RAM_START = 0x100,
+    RAM_END = 0x8FF
+};
+
+static void (*core_reset)(avr_t *);
+static bool reset_happened, reset_wanted, port_opened;
+static reset_t wanted_kind;
+static uint32_t resets, boot_resets;
+
+uint32_t resets_count(void)
+{
+    return resets;
+}
+
+uint32_t resets_boot_count(void)
+{
+    return boot_resets;
+}
+
+/* Only notes it: after this simavr still resets its own parts and drops all timers. */
+static void on_reset(avr_t *avr)
+{
+    if (core_reset != NULL) {
+        core_reset(avr);
+    }
+    reset_happened = true;
+}
+
+/* What a reset of the MCU leaves to us. */
+static void set_up_again(bool power_lost)
+{
+    avr_extint_set_strict_lvl_trig(mcu, 0, 0);
+    avr_extint_set_strict_lvl_trig(mcu, 1, 0);
+    twi_reset(&twi);
+    uart_reset();
+    stats_reset();
+    span_reset();
+    pass_reset();
+    faults_on_reset();
+    eeprom_reset(power_lost);
+    sensor_show_pin();
+    machine_reschedule();
+}
+
+static void power_cycle(void)
+{
+    (void)stack_high_water();
+    for (unsigned i = 0; i <= RAM_END; i++) {
+        if (i < REGISTERS_END || i >= RAM_START) {
+            mcu->data[i] = (uint8_t)machine_random();
+        }
+    }
+    stack_paint_is();
+}
+
+static void do_wanted_reset(void)
+{
+    bool power = wanted_kind == RESET_POWER_ON;
+    bool counted = !port_opened;
+    reset_wanted = false;
+    port_opened = false;
+    if (power) {
+        power_cycle();
+    }
+    avr_reset(mcu);
+    const avr_regbit_t cause[] = { [RESET_EXTERNAL] = mcu->reset_flags.extrf,
+                                   [RESET_POWER_ON] = mcu->reset_flags.porf,
+                                   [RESET_BROWN_OUT] = mcu->reset_flags.borf };
+    avr_regbit_set(mcu, cause[wanted_kind]);
+    set_up_again(power);
+    resets += counted ? 1u : 0u;
+    reset_happened = false;
+}
+
+void resets_want(reset_t kind)
+{
+    reset_wanted = true;
+    wanted_kind = kind;
+}
+
+void resets_port_opened(void)
+{
+    if (options.bootloader != NULL) {
+        port_opened = !reset_wanted;
+        resets_want(RESET_EXTERNAL);
+    }
+}
+
+static void own_reset_came(uint32_t last_pc)
+{
+    reset_happened = false;
+    set_up_again(false);
+    if (machine_in_boot_loader(last_pc)) {
+        boot_resets++;
+    } else {
+        resets++;
+    }
+}
+
+void resets_start(void)
+{
+    core_reset = mcu->reset;
+    mcu->reset = on_reset;
+    set_up_again(false);
+}
+
+void resets_watch(uint32_t last_pc)
+{
+    if (reset_happened) {
+        own_reset_came(last_pc);
+    }
+    if (reset_wanted) {
+        do_wanted_reset();
+    }
+}
