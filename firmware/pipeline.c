@@ -10,7 +10,7 @@
 #include "tilt.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
-enum { CALLS_OFF = 5, STILL_CDEG = 100 }; /* pipeline_retime */
+enum { CALLS_OFF = 5, STILL_LSB_Q4 = 72 }; /* pipeline_retime; 1 degree */
 
 typedef enum {
     WORK_NONE,
@@ -35,7 +35,7 @@ static struct {
     int16_t rail_high_lsb;
     uint16_t rate_dhz;    /* nominal */
     uint16_t true_dhz;    /* that the filters have */
-    uint16_t looked_cdeg; /* roll and pitch, in sum, a second ago */
+    uint16_t looked_lsb_q4; /* the estimates in sum, a second ago */
     uint8_t calls_off;
     uint16_t flags;
     uint16_t kept_flags; /* of the samples before the one under way */
@@ -90,16 +90,16 @@ static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool 
 
 FX_ONCE void pipeline_retime(uint32_t period_us)
 {
-    uint16_t now_cdeg = (uint16_t)(pipe.tilt.roll_cdeg + pipe.tilt.pitch_cdeg);
-    uint16_t moved_cdeg = (uint16_t)(now_cdeg - pipe.looked_cdeg + STILL_CDEG);
-    pipe.looked_cdeg = now_cdeg;
+    uint16_t now_lsb_q4 = (uint16_t)((pipe.estimate_q8[0] + pipe.estimate_q8[1] + pipe.estimate_q8[2]) >> 4);
+    uint16_t moved_lsb_q4 = (uint16_t)(now_lsb_q4 - pipe.looked_lsb_q4 + STILL_LSB_Q4);
+    pipe.looked_lsb_q4 = now_lsb_q4;
     uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
     uint16_t near_dhz = (pipe.true_dhz >> 7) + 1u;
     if ((uint16_t)(true_dhz - pipe.true_dhz + near_dhz) <= (uint16_t)(2u * near_dhz)) {
         pipe.calls_off = 0;
     } else if (pipe.calls_off < CALLS_OFF) {
         pipe.calls_off++;
-    } else if (moved_cdeg <= 2u * STILL_CDEG) {
+    } else if (moved_lsb_q4 <= 2u * STILL_LSB_Q4) {
         pipe.true_dhz = true_dhz;
         change(false);
     }

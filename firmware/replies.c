@@ -27,6 +27,16 @@ bool replies_room(void)
     return count < QUEUE_LENGTH;
 }
 
+bool replies_hold(reply_kind_t kind)
+{
+    for (uint8_t i = 0; i < count; i++) {
+        if (queue[i].kind == (uint8_t)kind) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool replies_empty(void)
 {
     return count == 0;

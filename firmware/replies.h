@@ -36,6 +36,9 @@ bool replies_add(reply_kind_t kind, uint8_t argument);
 /* Room for one more reply. */
 bool replies_room(void);
 
+/* A reply of this kind is not out yet. */
+bool replies_hold(reply_kind_t kind);
+
 /* All replies are out. */
 bool replies_empty(void);
 

@@ -14,6 +14,8 @@
 #define FLASH_SHIFT 16
 enum { FLASH_SLOTS = 8 };
 
+#define MS_WRAP_S (UINT32_MAX / 1000u)
+
 /* Flashes in a second, by what to look at: 1 the bus, 2 the sensor or its supply, 3 INT1, 4 the readings. */
 static const uint8_t flashes[] FLASH = {
     [ADXL345_FAULT_NO_SENSOR] = 2, [ADXL345_FAULT_WRONG_ID] = 2,    [ADXL345_FAULT_BUS] = 1,
@@ -26,22 +28,27 @@ sensor_outage_t sensor_watch_outage;
 
 static uint8_t told;       /* fault code of the last line, NONE when all is well */
 static uint16_t told_mask; /* codes told since the fault began: each once */
-static uint32_t began_us;  /* the fault */
+static uint32_t began_us;  /* the fault; what the counters were then: */
+static uint32_t began_s;
+static uint32_t began_lost;
 
-/* Until the end the numbers of the outage are those of its beginning. */
 static void begin_outage(uint32_t now_us)
 {
     began_us = now_us;
-    sensor_watch_outage.ms = counters[COUNT_SECONDS];
-    sensor_watch_outage.lost = counters[COUNT_LOST];
+    began_s = counters[COUNT_SECONDS];
+    began_lost = counters[COUNT_LOST];
 }
 
-/* Microseconds wrap after 71 minutes: an outage of more than a minute is told in whole seconds. */
+/* Microseconds wrap after 71 minutes: an outage of more than a minute is told in whole seconds. So do milliseconds. */
 static void end_outage(uint32_t now_us)
 {
-    uint32_t seconds = counters[COUNT_SECONDS] - sensor_watch_outage.ms;
-    sensor_watch_outage.ms = seconds < 60u ? (now_us - began_us) / 1000u : seconds * 1000u;
-    sensor_watch_outage.lost = counters[COUNT_LOST] - sensor_watch_outage.lost;
+    uint32_t seconds = counters[COUNT_SECONDS] - began_s;
+    if (seconds < 60u) {
+        sensor_watch_outage.ms = (now_us - began_us) / 1000u;
+    } else {
+        sensor_watch_outage.ms = seconds < MS_WRAP_S ? seconds * 1000u : UINT32_MAX;
+    }
+    sensor_watch_outage.lost = counters[COUNT_LOST] - began_lost;
 }
 
 /* The LED flashes for 65 ms in each of the first slots of 131 ms, of which a second has eight. */
@@ -63,7 +70,7 @@ static void tell(uint8_t fault, uint32_t now_us)
 {
     uint16_t bit = (uint16_t)(1u << fault);
     if (fault == ADXL345_FAULT_NONE) {
-        if (replies_add(REPLY_FAULT_END, told)) {
+        if (!replies_hold(REPLY_FAULT_END) && replies_add(REPLY_FAULT_END, told)) {
             end_outage(now_us);
             told = ADXL345_FAULT_NONE;
             told_mask = 0;

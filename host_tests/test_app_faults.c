@@ -125,6 +125,21 @@ static void test_stop_at_any_moment_of_a_recovery_is_silent(void)
     }
 }
 
+/* A line is low from a moment in a burst on, until main backs off; stop then: the sensor, which measures, is to rest. */
+static void test_stop_between_two_attempts_puts_the_sensor_to_rest(void)
+{
+    for (unsigned phase = 0; phase < 60; phase++) {
+        size_t before = start_streaming();
+        hal_host_faults.sda_low = true;
+        board_run_ms(40.0 + phase * 0.5);
+        TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_SDA_LOW, adxl345_fault());
+        hal_host_faults.sda_low = false;
+        board_type("stop");
+        assert_silent_after_stop(before);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, adxl345_model_odr_hz(&hal_host_sensor));
+    }
+}
+
 /* Both at once, as a script sends them: the sensor is still away, so nothing is over, wherever main is meanwhile. */
 static void test_stop_and_go_at_once_during_a_fault_do_not_call_it_over(void)
 {
@@ -290,6 +305,7 @@ int main(void)
     RUN_TEST(test_fault_begins_and_ends_with_one_line_each);
     RUN_TEST(test_stop_during_a_fault_does_not_call_it_over);
     RUN_TEST(test_stop_at_any_moment_of_a_recovery_is_silent);
+    RUN_TEST(test_stop_between_two_attempts_puts_the_sensor_to_rest);
     RUN_TEST(test_stop_and_go_at_once_during_a_fault_do_not_call_it_over);
     RUN_TEST(test_wires_off_are_told_as_a_missing_sensor);
     RUN_TEST(test_a_line_that_is_low_is_told);

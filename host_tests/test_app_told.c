@@ -196,6 +196,121 @@ static void test_a_fault_for_which_there_is_no_room_is_told_later(void)
     TEST_ASSERT_EQUAL_UINT64(0, hal_host_watchdog_bite());
 }
 
+/* The line is slow, and one fault ends and another one passes while it carries a text: each is told with its own numbers. */
+static void test_the_end_of_a_fault_keeps_its_numbers_until_it_is_told(void)
+{
+    unsigned code, ms[2], lost[2];
+    board_start_resting();
+    board_type("baud 9600");
+    board_run_ms(1000);
+    size_t before = board.note_count;
+    adxl345_model_power(&hal_host_sensor, false);
+    board_run_ms(700);
+    for (int i = 0; i < 6; i++) {
+        board_type("help");
+    }
+    for (int fault = 0; fault < 2; fault++) {
+        adxl345_model_power(&hal_host_sensor, true);
+        board_run_ms(200);
+        adxl345_model_power(&hal_host_sensor, fault != 0);
+        board_run_ms(300);
+    }
+    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
+    board_run_ms(20000);
+    size_t ends = 0;
+    for (size_t i = before; i < board.note_count; i++) {
+        static const char words[] = "# fault %u over: samples again after %u ms, %u lost";
+        if (strstr(board.notes[i], "over") != NULL && ends < 2) {
+            TEST_ASSERT_EQUAL_INT(3, sscanf(board.notes[i], words, &code, &ms[ends], &lost[ends]));
+            ends++;
+        }
+    }
+    TEST_ASSERT_EQUAL_size_t(2, ends);
+    TEST_ASSERT_UINT_WITHIN(60, 720, ms[0]);
+    TEST_ASSERT_UINT_WITHIN(6, 72, lost[0]);
+    TEST_ASSERT_UINT_WITHIN(6, 32, lost[1]);
+}
+
+/* Milliseconds in 32 bits wrap after 49.7 days: what is longer is told as the greatest number. */
+static void test_an_outage_of_two_months_is_not_told_as_a_short_one(void)
+{
+    static const uint32_t passed_s[] = { 4294900u, 4294967u, 5184000u };
+    for (size_t i = 0; i < sizeof passed_s / sizeof passed_s[0]; i++) {
+        unsigned code;
+        double ms;
+        board_start_resting();
+        board_run_ms(500);
+        adxl345_model_power(&hal_host_sensor, false);
+        board_run_ms(500);
+        counters[COUNT_SECONDS] += passed_s[i];
+        adxl345_model_power(&hal_host_sensor, true);
+        board_run_ms(500);
+        TEST_ASSERT_EQUAL_INT(2, sscanf(board_last_note(), "# fault %u over: samples again after %lf ms", &code, &ms));
+        TEST_ASSERT_DOUBLE_WITHIN(2000.0, fmin(passed_s[i] * 1e3, UINT32_MAX), ms);
+    }
+}
+
+/* x jumps to its double and back, as where two sensors answer. */
+static stream_t two_sensors(void)
+{
+    stream_t stream = board_noisy_stream(8000, 100.0, 1.5, 5u);
+    for (size_t i = 0; i < stream.count; i++) {
+        stream.rows[i].lsb[0] = (int16_t)(stream.rows[i].lsb[0] + (i % 5 == 0 ? 400 - 31 : 200 - 31));
+    }
+    return stream;
+}
+
+/* A command configures the sensor anew, which mends neither its wires nor itself: nothing is over by it. */
+static void test_a_command_does_not_call_a_lasting_fault_over(void)
+{
+    static const uint8_t faults[] = { ADXL345_FAULT_INT1_STUCK, ADXL345_FAULT_STUCK, ADXL345_FAULT_TWO_SENSORS };
+    static const char *const commands[] = { "rate 50", "range 8", "rate 100" };
+    for (size_t i = 0; i < sizeof faults; i++) {
+        stream_t stream =
+            faults[i] == ADXL345_FAULT_STUCK ? board_constant_stream(8000, 100.0, 5, 6, 250) : two_sensors();
+        board_start(&stream, 0.0, 0);
+        hal_host_faults.int1_high = faults[i] == ADXL345_FAULT_INT1_STUCK;
+        board_run_ms(4000);
+        TEST_ASSERT_EQUAL_UINT(faults[i], adxl345_fault());
+        size_t before = board.note_count;
+        for (size_t k = 0; k < sizeof commands / sizeof commands[0]; k++) {
+            board_type(commands[k]);
+            board_run_ms(700);
+            TEST_ASSERT_EQUAL_UINT_MESSAGE(faults[i], adxl345_fault(), commands[k]);
+        }
+        TEST_ASSERT_EQUAL_size_t(0, board_notes_with("fault", before));
+        board_type("stop");
+        board_run_ms(200);
+        board_type("go");
+        board_run_ms(700);
+        TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
+        TEST_ASSERT_EQUAL_size_t(1, board_notes_with("fault", before)); /* told again behind the stop */
+        stream_free(&stream);
+    }
+}
+
+/* What repeats, or holds INT1, may have been taken away with the supply: no suspicion is left. */
+static void test_a_sensor_that_was_away_is_not_suspected(void)
+{
+    stream_t stream = board_noisy_stream(8000, 100.0, 1.5, 5u);
+    for (size_t i = 100; i < 210; i++) {
+        memcpy(stream.rows[i].lsb, stream.rows[100].lsb, sizeof stream.rows[i].lsb);
+    }
+    board_start(&stream, 0.0, 0);
+    board_run_ms(2000);
+    TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_STUCK, adxl345_fault());
+    adxl345_model_power(&hal_host_sensor, false);
+    board_run_ms(1500);
+    size_t row = board.row_count;
+    adxl345_model_power(&hal_host_sensor, true);
+    board_run_ms(500);
+    for (; row < board.row_count; row++) {
+        TEST_ASSERT_EQUAL_UINT(0, board.rows[row].flags & ROW_STUCK);
+    }
+    TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_NONE, adxl345_fault());
+    stream_free(&stream);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -206,5 +321,9 @@ int main(void)
     RUN_TEST(test_a_change_of_rate_loses_nothing);
     RUN_TEST(test_a_change_of_rate_in_an_outage_forgets_no_sample);
     RUN_TEST(test_a_fault_for_which_there_is_no_room_is_told_later);
+    RUN_TEST(test_the_end_of_a_fault_keeps_its_numbers_until_it_is_told);
+    RUN_TEST(test_an_outage_of_two_months_is_not_told_as_a_short_one);
+    RUN_TEST(test_a_command_does_not_call_a_lasting_fault_over);
+    RUN_TEST(test_a_sensor_that_was_away_is_not_suspected);
     return UNITY_END();
 }

@@ -12,6 +12,7 @@
 #include "adxl345_period.h"
 #include "adxl345_registers.h"
 #include "adxl345_table.h"
+#include "adxl345_watch.h"
 #include "hal_drdy.h"
 #include "hal_pointer.h"
 #include "hal_sleep.h"
@@ -89,11 +90,17 @@ bool driver_take_bus(void)
     return false;
 }
 
-void driver_probe(void)
+/* With a bus of its own, of which no data come. */
+static void begin_access(step_t step)
 {
     burst_set_mode(BURST_IGNORE);
-    driver_enter(STEP_PROBE, TRANSFER_LIMIT_MS);
+    driver_enter(step, TRANSFER_LIMIT_MS);
     (void)driver_take_bus();
+}
+
+void driver_probe(void)
+{
+    begin_access(STEP_PROBE);
 }
 
 /* With a new configuration; what was measured of a sensor that has to be found again still holds. */
@@ -108,6 +115,7 @@ void adxl345_init(void)
 {
     burst_init();
     integrity_init();
+    watch_start();
     stopped();
     driver.address = ADXL345_ADDRESS_LOW;
     driver.issued = false;
@@ -138,12 +146,11 @@ void adxl345_start(const adxl345_config_t *config)
 
 void adxl345_stop(void)
 {
-    if (!quiesce()) {
-        burst_set_mode(BURST_IGNORE);
-        (void)burst_take_bus(driver.address, false);
-        stopped();
-    }
+    bool quiescing = quiesce();
     driver.stop_wanted = true;
+    if (!quiescing && driver.step != STEP_OFF) {
+        begin_access(STEP_STANDBY);
+    }
 }
 
 /* Puts the step's register access on the bus; false when the bus is not free. */
@@ -160,7 +167,7 @@ static bool issue(adxl345_driver_t *d)
         return burst_write_register(ADXL345_POWER_CTL, ADXL345_POWER_MEASURE);
     case STEP_ASK_SOURCE:
         return burst_read_register(ADXL345_INT_SOURCE);
-    default: /* STEP_QUIET_STANDBY */
+    default: /* STEP_QUIET_STANDBY, STEP_STANDBY */
         return burst_write_register(ADXL345_POWER_CTL, 0);
     }
 }
@@ -246,6 +253,9 @@ static void advance(adxl345_driver_t *d)
     case STEP_ASK_SOURCE:
         stream_source_asked(d);
         break;
+    case STEP_STANDBY:
+        stopped();
+        break;
     default: /* STEP_QUIET_STANDBY */
         burst_set_mode(BURST_READ);
         driver_enter(STEP_QUIET_DRAIN, DRAIN_LIMIT_MS);
@@ -303,7 +313,7 @@ HAL_APART void adxl345_poll(uint32_t now_us)
     if (reading > READING_GOOD) {
         hal_wake(); /* nobody takes it, and the next one may wait */
         if (reading == READING_FAILED) {
-            count_failure(burst_bus_state());
+            count_failure(burst_failed_state());
         }
     }
     switch (d->step) {

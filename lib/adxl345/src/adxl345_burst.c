@@ -119,13 +119,13 @@ uint8_t burst_take_bus(uint8_t address, bool fast)
     struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
     hal_i2c_disable();
-    bool was_busy = b->bus.state == I2C_BUS_BUSY;
+    uint8_t was = b->bus.state;
     b->bus.state = I2C_BUS_BUSY; /* so that no edge starts a burst while the bus is being cleared, with interrupts on */
     hal_irq_restore(state);
     uint8_t lines = hal_i2c_clear();
     state = hal_irq_save();
     hal_i2c_enable(fast);
-    b->bus.state = was_busy ? I2C_BUS_TIMEOUT : I2C_BUS_IDLE;
+    b->bus.state = was == I2C_BUS_BUSY ? (uint8_t)I2C_BUS_TIMEOUT : was;
     b->bus.address = (uint8_t)(address * 2U);
     hal_irq_restore(state);
     (void)burst_judge();
@@ -214,6 +214,7 @@ bool burst_drain(void)
 /* One cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */
 static void keep_edge(struct burst *b)
 {
+    b->failed_state = b->bus.state;
     if (b->failures != UINT8_MAX) {
         b->failures++;
     }
@@ -332,6 +333,11 @@ void burst_expect(uint32_t t_us)
 uint32_t burst_met_sample_us(void)
 {
     return burst.found_empty ? burst.last_us : burst_begun_us();
+}
+
+i2c_bus_state_t burst_failed_state(void)
+{
+    return (i2c_bus_state_t)burst.failed_state;
 }
 
 uint8_t burst_failures(void)

@@ -81,6 +81,9 @@ uint32_t burst_met_sample_us(void);
 /* Bursts that failed on the bus one after another; 0 after one that did not. */
 uint8_t burst_failures(void);
 
+/* How the newest of them ended; another burst may be on the bus by now. */
+i2c_bus_state_t burst_failed_state(void);
+
 uint8_t burst_queued(void);
 
 /* No slot is free: samples wait in the sensor until main takes one. */

@@ -21,6 +21,7 @@ typedef enum {
     STEP_ASK_SOURCE, /* no data in time: does the sensor have some? */
     STEP_QUIET_STANDBY,
     STEP_QUIET_DRAIN,
+    STEP_STANDBY, /* a stop while no samples come */
     STEP_BACK_OFF
 } step_t;
 

@@ -28,15 +28,20 @@ void integrity_init(void)
 {
     integrity.counters = (adxl345_readings_t){ 0, 0, 0 };
     integrity.failed = false;
+    integrity_forget();
+}
+
+void integrity_forget(void)
+{
+    integrity.equal_run = 0;
+    integrity.empty_run = 0;
 }
 
 void integrity_start(uint8_t range_g)
 {
     integrity.range_g = range_g;
     integrity.has_last = false;
-    integrity.equal_run = 0;
     integrity.bad_run = 0;
-    integrity.empty_run = 0;
 }
 
 /*
@@ -103,7 +108,9 @@ static HAL_APART reading_t discard(reading_t why)
 static void accept(uint8_t source, bool repeated)
 {
     if (!repeated) {
-        integrity.equal_run = 0;
+        if (integrity.has_last) {
+            integrity.equal_run = 0;
+        }
     } else if (integrity.equal_run != ADXL345_STUCK_REPEATS) {
         integrity.equal_run++;
     }

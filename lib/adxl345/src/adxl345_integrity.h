@@ -29,8 +29,11 @@ typedef enum {
 void integrity_init(void);
 const adxl345_readings_t *integrity_counters(void);
 
-/* Runs begin anew, for this range (2, 4, 8, 16 g; always full resolution); the counters stay. */
+/* Readings come with this range from now on (2, 4, 8, 16 g; always full resolution), the first behind no other. */
 void integrity_start(uint8_t range_g);
+
+/* The sensor may be another: no value is known to repeat, and INT1 not to be stuck. */
+void integrity_forget(void);
 
 /*
  * The verdict on a reading, which is counted. lsb: its data, x, y, z as in adxl345_sample_t, valid when GOOD; last_lsb:

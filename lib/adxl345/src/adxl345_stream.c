@@ -59,9 +59,10 @@ void stream_start(adxl345_driver_t *d)
 {
     if (d->fault != ADXL345_FAULT_NONE) {
         driver_count(&d->counters.restarts);
+        integrity_forget();
+        watch_start();
     }
     integrity_start(d->config.range_g);
-    watch_start();
     d->first_sample_seen = false;
     d->timed = TIMED_NONE;
     d->was_empty = false;
@@ -153,7 +154,7 @@ void stream_poll(adxl345_driver_t *d)
         return;
     }
     if (burst_failures() >= BURST_TRIES) {
-        driver_give_up(d, burst_bus_state());
+        driver_give_up(d, burst_failed_state());
         return;
     }
     if (integrity_good() != d->seen_good) {

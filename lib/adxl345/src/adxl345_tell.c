@@ -68,6 +68,7 @@ adxl345_phase_t adxl345_phase(void)
         return ADXL345_FAULTY;
     case STEP_QUIET_STANDBY:
     case STEP_QUIET_DRAIN:
+    case STEP_STANDBY:
         return ADXL345_QUIESCING;
     default:
         return ADXL345_STARTING;

@@ -18,7 +18,7 @@
 #define I2C_BUS_TX_MAX 2
 
 typedef enum {
-    I2C_BUS_IDLE, /* nothing since the bus was taken */
+    I2C_BUS_IDLE, /* none yet */
     I2C_BUS_BUSY,
     I2C_BUS_OK,
     I2C_BUS_NACK_ADDRESS, /* nobody at that address */
