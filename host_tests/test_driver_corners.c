@@ -5,33 +5,18 @@
 #include "adxl345.h"
 #include "adxl345_burst.h"
 #include "adxl345_registers.h"
-#include "hal_drdy.h"
 #include "hal_host.h"
 #include "hal_i2c.h"
-#include "hal_sleep.h"
 #include "hal_time.h"
-#include "hal_uart.h"
 #include "support_board.h"
+#include "support_rig.h"
 #include "unity.h"
 
-enum { ROWS = 4000, PERIOD_MS = 10 };
+enum { PERIOD_MS = 10 };
 
 static const adxl345_config_t at_100_hz = { 1000, 16 };
-static stream_t stream;
-static size_t taken_count;
-static size_t latched_count;
-static uint32_t latched_us[ROWS]; /* of the sample whose x is the index */
-static uint32_t off_us;           /* the most that a stamp was from the moment when its sample was latched */
-static uint8_t count_flip;        /* of FIFO_STATUS, on its way */
-static double rises_ms;           /* INT1, when INT_SOURCE is read after this time */
-static bool takes;                /* main takes samples */
-
-static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
-{
-    (void)row;
-    latched_us[lsb[0]] = (uint32_t)t_us;
-    latched_count++;
-}
+static uint8_t count_flip; /* of FIFO_STATUS, on its way */
+static double rises_ms;    /* INT1, when INT_SOURCE is read after this time */
 
 static uint8_t on_rx(uint8_t reg, uint8_t byte)
 {
@@ -41,69 +26,25 @@ static uint8_t on_rx(uint8_t reg, uint8_t byte)
     return reg == ADXL345_FIFO_STATUS ? byte ^ count_flip : byte;
 }
 
-/* x counts, so that every sample tells which one it is. */
 void setUp(void)
 {
-    stream = board_constant_stream(ROWS, 1000.0 / PERIOD_MS, 0, -100, 250);
-    for (size_t i = 0; i < stream.count; i++) {
-        stream.rows[i].lsb[0] = (int16_t)i;
-    }
-    taken_count = 0;
-    latched_count = 0;
-    off_us = 0;
     count_flip = 0;
     rises_ms = 1e9;
-    takes = true;
-    hal_host_config_t config = { .on_latched = on_latched, .on_rx = on_rx };
-    hal_host_begin(&config, &stream, false);
-    hal_uart_init(115200);
-    hal_time_init();
-    hal_drdy_enable();
-    adxl345_init();
+    rig_begin(1000.0 / PERIOD_MS, (hal_host_config_t){ .on_rx = on_rx });
+    rig.limit_us = UINT32_MAX; /* each test says what it may be */
 }
 
 void tearDown(void)
 {
-    stream_free(&stream);
-}
-
-static void pass(void)
-{
-    adxl345_sample_t sample;
-    adxl345_poll(hal_time_us());
-    while (takes && adxl345_take(&sample)) {
-        int32_t late_us = (int32_t)(sample.t_us - latched_us[sample.lsb[0]]);
-        uint32_t distance_us = (uint32_t)(late_us < 0 ? -late_us : late_us);
-        off_us = distance_us > off_us ? distance_us : off_us;
-        taken_count++;
-        hal_wake();
-    }
-    board_driver_sleep();
-}
-
-static void run_ms(double ms)
-{
-    for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
-        pass();
-    }
+    rig_end();
 }
 
 static void stream_for_ms(double ms)
 {
     adxl345_start(&at_100_hz);
-    run_ms(ms);
+    rig_run_ms(ms);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-    TEST_ASSERT_TRUE(taken_count > 3);
-}
-
-/* Stops, and says how many samples that the sensor latched did not come. */
-static size_t lost(void)
-{
-    takes = true;
-    adxl345_stop();
-    run_ms(6 * PERIOD_MS);
-    TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
-    return latched_count - taken_count;
+    TEST_ASSERT_TRUE(rig.taken_count > 3);
 }
 
 /* The line is free again when time is up: none can be named. */
@@ -125,9 +66,9 @@ static void test_transfer_without_end_on_free_lines_is_a_fault_of_the_bus(void)
     adxl345_counters(&counters);
     TEST_ASSERT_EQUAL_UINT16(1, counters.timeouts - before.timeouts);
     TEST_ASSERT_EQUAL_UINT16(0, counters.bus_errors - before.bus_errors);
-    run_ms(60);
+    rig_run_ms(60);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
-    TEST_ASSERT_EQUAL_size_t(0, lost());
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(6 * PERIOD_MS));
 }
 
 /* INT1 is silent, and the STOP of the question does not get out at once: the sample is read when it has. */
@@ -137,47 +78,46 @@ static void test_stop_holds_up_the_reading_by_the_clock(void)
     hal_host_faults.int1_cut = true;
     hal_host_faults.stop_stuck = true; /* the first STOP from now on is that of the question */
     while (!hal_i2c_stop_pending()) {
-        pass();
+        rig_pass();
     }
     while (adxl345_fault() != ADXL345_FAULT_INT1_SILENT) {
-        pass();
+        rig_pass();
     }
     adxl345_poll(hal_time_us());
     TEST_ASSERT_TRUE(hal_i2c_stop_pending());
     hal_host_faults.stop_stuck = false;
-    size_t before = taken_count;
-    run_ms(2);
-    TEST_ASSERT_TRUE_MESSAGE(taken_count > before, "the sample was asked for, and not read");
-    run_ms(10 * PERIOD_MS);
-    TEST_ASSERT_UINT32_WITHIN(3, 11, (uint32_t)(taken_count - before));
+    size_t before = rig.taken_count;
+    rig_run_ms(2);
+    TEST_ASSERT_TRUE_MESSAGE(rig.taken_count > before, "the sample was asked for, and not read");
+    rig_run_ms(10 * PERIOD_MS);
+    TEST_ASSERT_UINT32_WITHIN(3, 11, (uint32_t)(rig.taken_count - before));
     TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
-    TEST_ASSERT_EQUAL_size_t(0, lost());
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(6 * PERIOD_MS));
 }
 
 /* What is asked while samples are fetched after a change of settings waits for them; the last of it counts. */
 static void test_commands_while_samples_are_fetched(void)
 {
     for (int stops = 0; stops <= 1; stops++) {
-        tearDown();
         setUp();
         stream_for_ms(205);
-        takes = false;
-        run_ms(12 * PERIOD_MS);
+        rig.leaves = true;
+        rig_run_ms(12 * PERIOD_MS);
         adxl345_config_t other = { 1000, 4 };
         adxl345_start(&other);
-        run_ms(1); /* standby is set, samples wait for main and, behind a full queue, in the sensor */
+        rig_run_ms(1); /* standby is set, samples wait for main and, behind a full queue, in the sensor */
         TEST_ASSERT_TRUE(hal_host_sensor.fifo_count >= 2);
         if (stops) {
             adxl345_stop();
         } else {
             adxl345_start(&at_100_hz);
         }
-        takes = true;
-        run_ms(5 * PERIOD_MS);
+        rig.leaves = false;
+        rig_run_ms(5 * PERIOD_MS);
         TEST_ASSERT_EQUAL(stops ? ADXL345_STOPPED : ADXL345_STREAMING, adxl345_phase());
         TEST_ASSERT_EQUAL_HEX8(stops ? 0x00 : 0x08, hal_host_sensor.reg[ADXL345_POWER_CTL]);
         TEST_ASSERT_EQUAL_HEX8(0x0B, hal_host_sensor.reg[ADXL345_DATA_FORMAT]);
-        TEST_ASSERT_EQUAL_size_t(0, lost());
+        TEST_ASSERT_EQUAL_size_t(0, rig_lost(6 * PERIOD_MS));
     }
 }
 
@@ -185,28 +125,24 @@ static void test_commands_while_samples_are_fetched(void)
 static void test_failed_read_of_a_sample_that_had_waited(void)
 {
     for (unsigned skip = 0; skip < 5; skip++) { /* START, address, register, START, address: no data asked yet */
-        tearDown();
         setUp();
         stream_for_ms(205);
-        takes = false;
-        run_ms(12 * PERIOD_MS); /* more than the queue holds: they wait in the sensor, with one edge for all */
+        rig.leaves = true;
+        rig_run_ms(12 * PERIOD_MS); /* more than the queue holds: they wait in the sensor, with one edge for all */
         TEST_ASSERT_TRUE(hal_host_sensor.fifo_count >= 3);
-        takes = true;
-        adxl345_sample_t sample;
-        while (adxl345_take(&sample)) {
-            taken_count++;
-        }
+        rig.leaves = false;
+        rig_take_all();
         adxl345_poll(hal_time_us());
         board_driver_sleep();
         while (hal_host_sensor.fifo_count >= 3) {
-            pass();
+            rig_pass();
         }
         hal_host_faults.next_status = HAL_I2C_ARBITRATION_LOST;
         hal_host_faults.status_skip = skip;
-        run_ms(20 * PERIOD_MS);
+        rig_run_ms(20 * PERIOD_MS);
         TEST_ASSERT_EQUAL(-1, hal_host_faults.next_status);
-        TEST_ASSERT_TRUE_MESSAGE(off_us < 1000u * PERIOD_MS, "a sample has the time of another one");
-        TEST_ASSERT_EQUAL_size_t(0, lost());
+        TEST_ASSERT_TRUE_MESSAGE(rig.off_us < 1000u * PERIOD_MS, "a sample has the time of another one");
+        TEST_ASSERT_EQUAL_size_t(0, rig_lost(6 * PERIOD_MS));
     }
 }
 
@@ -214,15 +150,14 @@ static void test_failed_read_of_a_sample_that_had_waited(void)
 static void test_count_with_a_wrong_bit_moves_no_stamp(void)
 {
     for (unsigned bit = 1; bit < 6; bit++) {
-        tearDown();
         setUp();
         stream_for_ms(205);
         count_flip = (uint8_t)(1u << bit);
-        run_ms(10 * PERIOD_MS);
+        rig_run_ms(10 * PERIOD_MS);
         count_flip = 0;
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
-        TEST_ASSERT_EQUAL_size_t(0, lost());
-        TEST_ASSERT_TRUE_MESSAGE(off_us < 100, "a stamp was moved");
+        TEST_ASSERT_EQUAL_size_t(0, rig_lost(6 * PERIOD_MS));
+        TEST_ASSERT_TRUE_MESSAGE(rig.off_us < 100, "a stamp was moved");
     }
 }
 
@@ -231,19 +166,18 @@ static void test_int1_that_rises_while_the_sensor_says_it_has_none(void)
 {
     double told_ms[2] = { 0.0 };
     for (int rises = 0; rises <= 1; rises++) {
-        tearDown();
         setUp();
         stream_for_ms(205);
         hal_host_sensor.reg[ADXL345_POWER_CTL] = 0; /* it measures no more */
         rises_ms = rises ? told_ms[0] - 0.3 : 1e9;
         while (adxl345_fault() != ADXL345_FAULT_NO_DATA) {
-            pass();
+            rig_pass();
         }
         told_ms[rises] = hal_host_now_ms();
         TEST_ASSERT_EQUAL(rises, hal_host_faults.int1_high);
         rises_ms = 1e9;
         hal_host_faults.int1_high = false;
-        run_ms(8 * PERIOD_MS);
+        rig_run_ms(8 * PERIOD_MS);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
     }
@@ -256,10 +190,10 @@ static void test_int1_that_rises_while_the_sensor_says_it_has_none(void)
 static void test_stop_while_every_read_fails(void)
 {
     stream_for_ms(205);
-    takes = false;
+    rig.leaves = true;
     adxl345_stop();
     while ((hal_host_sensor.reg[ADXL345_POWER_CTL] & ADXL345_POWER_MEASURE) != 0) {
-        pass();
+        rig_pass();
     }
     adxl345_model_power(&hal_host_sensor, false);
     hal_host_faults.int1_high = true;
@@ -267,7 +201,7 @@ static void test_stop_while_every_read_fails(void)
     unsigned tries = 0;
     while (adxl345_phase() != ADXL345_STOPPED) {
         uint32_t begun_us = burst_begun_us();
-        pass();
+        rig_pass();
         tries += burst_begun_us() != begun_us;
         TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms < 110);
     }
@@ -280,20 +214,20 @@ static void test_a_sample_is_coming_while_int1_is_high(void)
 {
     stream_for_ms(205);
     TEST_ASSERT_FALSE(adxl345_sample_coming());
-    takes = false;
-    run_ms(12 * PERIOD_MS); /* the queue is full: nothing is on the bus */
+    rig.leaves = true;
+    rig_run_ms(12 * PERIOD_MS); /* the queue is full: nothing is on the bus */
     TEST_ASSERT_FALSE(burst_running());
     TEST_ASSERT_TRUE(adxl345_sample_coming());
-    takes = true;
-    run_ms(5 * PERIOD_MS);
+    rig.leaves = false;
+    rig_run_ms(5 * PERIOD_MS);
     hal_host_faults.int1_high = true;
-    run_ms(2.5 * PERIOD_MS);
+    rig_run_ms(2.5 * PERIOD_MS);
     while (burst_running() || !burst_found_empty()) {
-        pass();
+        rig_pass();
     }
     TEST_ASSERT_FALSE(adxl345_sample_coming());
     hal_host_faults.int1_high = false;
-    TEST_ASSERT_EQUAL_size_t(0, lost());
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(6 * PERIOD_MS));
     TEST_ASSERT_FALSE(adxl345_sample_coming());
 }
 

@@ -9,52 +9,19 @@
 #include "hal_drdy.h"
 #include "hal_host.h"
 #include "hal_i2c.h"
-#include "hal_sleep.h"
-#include "hal_time.h"
-#include "hal_uart.h"
 #include "support_board.h"
+#include "support_rig.h"
 #include "unity.h"
 
 /* START, address, register, repeated START, address, INT_SOURCE, DATA_FORMAT, six of data, FIFO_CTL, FIFO_STATUS. */
-enum { ROWS = 4000, FIRST_DATA_EVENT = 7, LAST_DATA_EVENT = 12, EVENTS_PER_BURST = 15 };
+enum { FIRST_DATA_EVENT = 7, LAST_DATA_EVENT = 12, EVENTS_PER_BURST = 15 };
 
-static const uint32_t start_us = 0xFFFFFFFFu - 300000u;
 static const adxl345_config_t at_100_hz = { 1000, 16 };
 static const adxl345_config_t at_800_hz = { 8000, 16 };
-static stream_t stream;
-static size_t taken_count;
-static size_t latched_count;
-static uint32_t latched_us[ROWS]; /* of the sample whose x is the index */
-static int last_x;
-static uint32_t stamp_limit_us;
-static bool leave_in_queue;
 
-static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
-{
-    (void)row;
-    latched_us[lsb[0]] = start_us + (uint32_t)t_us;
-    latched_count++;
-}
-
-/* x counts, so that every sample tells which one it is. */
 static void begin(double rate_hz)
 {
-    stream_free(&stream);
-    stream = board_constant_stream(ROWS, rate_hz, 0, -100, 250);
-    for (size_t i = 0; i < stream.count; i++) {
-        stream.rows[i].lsb[0] = (int16_t)i;
-    }
-    taken_count = 0;
-    latched_count = 0;
-    last_x = -1;
-    stamp_limit_us = 100;
-    leave_in_queue = false;
-    hal_host_config_t config = { .time_start_us = start_us, .on_latched = on_latched };
-    hal_host_begin(&config, &stream, false);
-    hal_uart_init(115200);
-    hal_time_init();
-    hal_drdy_enable();
-    adxl345_init();
+    rig_begin(rate_hz, (hal_host_config_t){ .time_start_us = 0xFFFFFFFFu - 300000u });
 }
 
 void setUp(void)
@@ -64,61 +31,7 @@ void setUp(void)
 
 void tearDown(void)
 {
-    stream_free(&stream);
-}
-
-/* Each sample is one that the sensor held, later than the one before it, with its own time. */
-static void take_all(void)
-{
-    adxl345_sample_t sample;
-    while (!leave_in_queue && adxl345_take(&sample)) {
-        TEST_ASSERT_TRUE(sample.lsb[0] > last_x && sample.lsb[0] < ROWS);
-        TEST_ASSERT_EQUAL_INT16(-100, sample.lsb[1]);
-        TEST_ASSERT_EQUAL_INT16(250, sample.lsb[2]);
-        last_x = sample.lsb[0];
-        int32_t late_us = (int32_t)(sample.t_us - latched_us[last_x]);
-        TEST_ASSERT_INT32_WITHIN_MESSAGE((int32_t)stamp_limit_us, 0, late_us, "the time of another sample");
-        taken_count++;
-        hal_wake();
-    }
-}
-
-static void pass(void)
-{
-    adxl345_poll(hal_time_us());
-    take_all();
-    board_driver_sleep();
-}
-
-static void run_ms(double ms)
-{
-    for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
-        pass();
-    }
-}
-
-/* Stops, and says how many samples did not come out. */
-static size_t lost(void)
-{
-    adxl345_stop();
-    run_ms(60);
-    TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
-    return latched_count - taken_count;
-}
-
-/* 20 us of the bus, without a poll. */
-static void go_on_20_us(void)
-{
-    hal_wake();
-    board_driver_sleep();
-}
-
-/* No burst runs and none is due for a while: the next event is the START of the next sample. */
-static void wait_for_a_pause(void)
-{
-    while (hal_drdy_high() || burst_running()) {
-        run_ms(0.1);
-    }
+    rig_end();
 }
 
 static void disturb(unsigned event, uint8_t status)
@@ -144,17 +57,17 @@ static void test_no_status_at_any_event_makes_a_wrong_sample(void)
             }
             begin(100.0);
             adxl345_start(&at_100_hz);
-            run_ms(100);
-            wait_for_a_pause();
+            rig_run_ms(100);
+            rig_until_pause();
             disturb(event, statuses[s]);
             /* without a STOP a sample cut in its data is shown again, with the time of that burst */
             bool no_stop = statuses[s] == HAL_I2C_ARBITRATION_LOST && event <= LAST_DATA_EVENT;
-            stamp_limit_us = no_stop ? 500 : 100;
-            run_ms(25);
+            rig.limit_us = no_stop ? 500 : 100;
+            rig_run_ms(25);
             TEST_ASSERT_EQUAL(-1, hal_host_faults.next_status);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
             /* in its first data byte the sensor has not been read yet, here; a real one may have been */
-            TEST_ASSERT_EQUAL_size_t(event > FIRST_DATA_EVENT && !no_stop ? 1 : 0, lost());
+            TEST_ASSERT_EQUAL_size_t(event > FIRST_DATA_EVENT && !no_stop ? 1 : 0, rig_lost(60));
         }
     }
 }
@@ -168,21 +81,21 @@ static void cut_with_more_in_the_fifo(const adxl345_config_t *config, unsigned w
     double period_ms = 10000.0 / config->rate_dhz;
     begin(config->rate_dhz / 10.0);
     adxl345_start(config);
-    run_ms(100);
-    wait_for_a_pause();
+    rig_run_ms(100);
+    rig_until_pause();
     /* the edge's burst is refused at its address, which leaves the stamp; main does not look until `waiting` wait */
     disturb(1, HAL_I2C_WRITE_ADDRESS_NACK);
-    for (size_t end = latched_count + waiting; latched_count < end;) {
+    for (size_t end = rig.latched_count + waiting; rig.latched_count < end;) {
         board_driver_sleep();
     }
     double end_ms = hal_host_now_ms() + period_ms / 4.0;
     disturb(event, HAL_I2C_BUS_ERROR);
     while (hal_host_now_ms() < end_ms) {
-        pass();
+        rig_pass();
     }
     TEST_ASSERT_EQUAL(-1, hal_host_faults.next_status);
-    run_ms(10.0 * period_ms);
-    TEST_ASSERT_EQUAL_size_t(event > FIRST_DATA_EVENT ? 1 : 0, lost());
+    rig_run_ms(10.0 * period_ms);
+    TEST_ASSERT_EQUAL_size_t(event > FIRST_DATA_EVENT ? 1 : 0, rig_lost(60));
 }
 
 static void test_what_follows_a_sample_that_was_cut_has_its_own_time(void)
@@ -201,25 +114,18 @@ static void test_what_follows_a_burst_that_hung_has_its_own_time(void)
     for (unsigned phase = 0; phase < 24; phase++) {
         begin(800.0);
         adxl345_start(&at_800_hz);
-        run_ms(100.0 + phase * 0.5);
-        wait_for_a_pause();
-        while (!burst_running()) {
-            adxl345_poll(hal_time_us());
-            hal_wake();
-            board_driver_sleep();
-        }
-        for (unsigned i = 0; i < phase; i++) { /* 20 us each; a burst takes 300 us */
-            hal_wake();
-            board_driver_sleep();
-        }
+        rig_run_ms(100.0 + phase * 0.5);
+        rig_until_pause();
+        rig_until_burst();
+        rig_away(phase); /* a burst takes 300 us */
         bool cut = burst_bus_state() == I2C_BUS_BUSY;
         inside += cut;
         hal_host_faults.hang_clocks = 9;
         while (burst_running()) {
-            pass();
+            rig_pass();
         }
-        run_ms(30);
-        TEST_ASSERT_TRUE(lost() <= (cut ? 1u : 0u));
+        rig_run_ms(30);
+        TEST_ASSERT_TRUE(rig_lost(60) <= (cut ? 1u : 0u));
     }
     TEST_ASSERT_TRUE(inside > 12 && inside < 24);
 }
@@ -231,17 +137,17 @@ static void test_stop_at_any_moment_of_a_recovery_leaves_no_fault(void)
     for (unsigned phase = 0; phase < 400; phase++) {
         begin(100.0);
         adxl345_start(&at_100_hz);
-        run_ms(100);
+        rig_run_ms(100);
         adxl345_model_power(&hal_host_sensor, false);
-        run_ms(100);
+        rig_run_ms(100);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
         adxl345_model_power(&hal_host_sensor, true);
-        run_ms(phase * 0.2);
+        rig_run_ms(phase * 0.2);
         bool recovering = adxl345_fault() != ADXL345_FAULT_NONE;
         adxl345_stop();
         quiesced += recovering && adxl345_phase() == ADXL345_QUIESCING;
         hal_host_faults.sda_low = (phase & 1u) != 0; /* ends by the deadline of a transfer, else by the drain */
-        run_ms(60);
+        rig_run_ms(60);
         TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
     }
@@ -254,20 +160,20 @@ static void test_wires_off_with_int1_high_are_a_missing_sensor(void)
     for (unsigned phase = 0; phase < 4; phase++) {
         begin(100.0);
         adxl345_start(&at_100_hz);
-        run_ms(300);
-        wait_for_a_pause();
+        rig_run_ms(300);
+        rig_until_pause();
         hal_host_sensor.address = 0x2A;
         for (double end_ms = hal_host_now_ms() + 100.0; hal_host_now_ms() < end_ms;) {
-            pass();
+            rig_pass();
             adxl345_fault_t fault = adxl345_fault();
             TEST_ASSERT_TRUE(fault == ADXL345_FAULT_NONE || fault == ADXL345_FAULT_NO_SENSOR);
             for (unsigned i = 0; burst_failures() == 3 && i < phase; i++) {
-                go_on_20_us(); /* main is late at the third: the bus is free again */
+                rig_away(1); /* main is late at the third: the bus is free again */
             }
         }
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
         hal_host_sensor.address = 0x53;
-        run_ms(100);
+        rig_run_ms(100);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
     }
 }
@@ -277,17 +183,9 @@ static void until_the_source_is_asked(void)
 {
     begin(100.0);
     adxl345_start(&at_100_hz);
-    run_ms(300);
-    wait_for_a_pause();
-    hal_host_faults.int1_cut = true;
-    for (double end_ms = hal_host_now_ms() + 60.0; burst_running() || burst_bus_state() != I2C_BUS_BUSY;) {
-        TEST_ASSERT_TRUE(hal_host_now_ms() < end_ms);
-        adxl345_poll(hal_time_us());
-        take_all();
-        if (burst_bus_state() != I2C_BUS_BUSY) {
-            board_driver_sleep();
-        }
-    }
+    rig_run_ms(300);
+    rig_until_pause();
+    rig_until_source_asked();
 }
 
 /* The supply fails before or inside the answer: what is read are ones, and no sign that data are ready. */
@@ -296,14 +194,12 @@ static void test_a_sensor_lost_while_it_is_asked_has_no_data(void)
     unsigned cut = 0;
     for (unsigned phase = 0; phase < 20; phase++) {
         until_the_source_is_asked();
-        for (unsigned i = 0; i < phase; i++) {
-            go_on_20_us();
-        }
+        rig_away(phase);
         bool inside = burst_bus_state() == I2C_BUS_BUSY;
         cut += inside;
         adxl345_model_power(&hal_host_sensor, false);
         while (adxl345_fault() == ADXL345_FAULT_NONE) {
-            pass();
+            rig_pass();
         }
         TEST_ASSERT_EQUAL(!inside, adxl345_fault() == ADXL345_FAULT_INT1_SILENT);
     }
@@ -318,10 +214,10 @@ static void test_ones_in_the_source_are_no_data(void)
         until_the_source_is_asked();
         while (burst_bus_state() == I2C_BUS_BUSY) {
             hal_host_sensor.reg[ADXL345_INT_SOURCE] = value;
-            go_on_20_us();
+            rig_away(1);
         }
         TEST_ASSERT_EQUAL_HEX8(value, burst_register_value());
-        pass();
+        rig_pass();
         /* bits 6 to 2 belong to functions that are off (p. 26): with all of them read, it is the sensor's own answer */
         TEST_ASSERT_EQUAL(bits >= 6 ? ADXL345_FAULT_INT1_SILENT : ADXL345_FAULT_NO_DATA, adxl345_fault());
     }
@@ -332,26 +228,22 @@ static void test_stop_and_start_while_the_sensor_is_asked_deliver_first(void)
 {
     for (unsigned phase = 0; phase < 8; phase++) {
         until_the_source_is_asked();
-        for (unsigned i = 0; i < phase; i++) {
-            go_on_20_us();
-        }
+        rig_away(phase);
         hal_host_faults.int1_cut = false;
         TEST_ASSERT_TRUE(hal_drdy_high());
-        TEST_ASSERT_EQUAL_size_t(0, lost());
+        TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
         TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor.reg[ADXL345_POWER_CTL]);
 
         static const adxl345_config_t at_50_hz = { 500, 16 };
         until_the_source_is_asked();
-        for (unsigned i = 0; i < phase; i++) {
-            go_on_20_us();
-        }
+        rig_away(phase);
         hal_host_faults.int1_cut = false;
         adxl345_start(&at_50_hz);
         TEST_ASSERT_EQUAL(ADXL345_QUIESCING, adxl345_phase());
-        run_ms(200);
+        rig_run_ms(200);
         TEST_ASSERT_EQUAL_HEX8(0x09, hal_host_sensor.reg[ADXL345_BW_RATE]);
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-        TEST_ASSERT_EQUAL_size_t(0, lost());
+        TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
     }
 }
 

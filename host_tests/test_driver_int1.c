@@ -9,92 +9,38 @@
 #include "hal_drdy.h"
 #include "hal_host.h"
 #include "hal_sleep.h"
-#include "hal_time.h"
-#include "hal_uart.h"
-#include "support_board.h"
+#include "support_rig.h"
 #include "unity.h"
 
-enum { ROWS = 4000 };
-
 static const adxl345_config_t at_100_hz = { 1000, 16 };
-static stream_t stream;
-static size_t taken_count;
-static size_t latched_count;
-static uint32_t latched_us[ROWS]; /* of the sample whose x is the index */
-static int last_x;
-static uint32_t stamp_limit_us;
 
 void hal_host_drdy_handler(void);
 
-static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
-{
-    (void)row;
-    latched_us[lsb[0]] = (uint32_t)t_us;
-    latched_count++;
-}
-
-/* x counts, so that every sample tells which one it is. */
 static void begin(double rate_hz)
 {
-    stream_free(&stream);
-    stream = board_constant_stream(ROWS, rate_hz, 0, -100, 250);
-    for (size_t i = 0; i < stream.count; i++) {
-        stream.rows[i].lsb[0] = (int16_t)i;
+    rig_begin(rate_hz, (hal_host_config_t){ 0 });
+}
+
+static void stream_for_ms(double ms)
+{
+    begin(100.0);
+    adxl345_start(&at_100_hz);
+    rig_run_ms(ms);
+}
+
+/* Main does not look for so long. */
+static void stall_ms(double ms)
+{
+    for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
+        hal_sleep_until_wake();
     }
-    taken_count = 0;
-    latched_count = 0;
-    last_x = -1;
-    stamp_limit_us = 100;
-    hal_host_config_t config = { .on_latched = on_latched };
-    hal_host_begin(&config, &stream, false);
-    hal_uart_init(115200);
-    hal_time_init();
-    hal_drdy_enable();
-    adxl345_init();
 }
 
 void setUp(void) {}
 
 void tearDown(void)
 {
-    stream_free(&stream);
-}
-
-/* Each sample is one that the sensor held, later than the one before it, with its own time. */
-static void take_all(void)
-{
-    adxl345_sample_t sample;
-    while (adxl345_take(&sample)) {
-        TEST_ASSERT_TRUE(sample.lsb[0] > last_x && latched_us[sample.lsb[0]] != 0);
-        TEST_ASSERT_EQUAL_INT16(-100, sample.lsb[1]);
-        TEST_ASSERT_EQUAL_INT16(250, sample.lsb[2]);
-        last_x = sample.lsb[0];
-        TEST_ASSERT_INT32_WITHIN((int32_t)stamp_limit_us, 0, (int32_t)(sample.t_us - latched_us[last_x]));
-        taken_count++;
-        hal_wake();
-    }
-}
-
-static void pass(void)
-{
-    adxl345_poll(hal_time_us());
-    take_all();
-    hal_sleep_until_wake();
-}
-
-static void run_ms(double ms)
-{
-    for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
-        pass();
-    }
-}
-
-static size_t lost(void)
-{
-    adxl345_stop();
-    run_ms(60);
-    TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
-    return latched_count - taken_count;
+    rig_end();
 }
 
 /*
@@ -110,24 +56,24 @@ static void test_int1_stuck_high(void)
         adxl345_readings_t readings;
         begin(rates_dhz[r] / 10.0);
         adxl345_start(&config);
-        run_ms(20 + 5 * period_ms);
-        stamp_limit_us = 500;
+        rig_run_ms(20 + 5 * period_ms);
+        rig.limit_us = 500;
         hal_host_faults.int1_high = true;
-        run_ms(3 * period_ms);
+        rig_run_ms(3 * period_ms);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
         TEST_ASSERT_EQUAL_UINT32(2u * adxl345_period_us(), adxl345_lateness_us());
-        run_ms(20 * period_ms);
+        rig_run_ms(20 * period_ms);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
         adxl345_readings(&readings);
         TEST_ASSERT_TRUE(readings.empty >= 3);
         hal_host_faults.int1_high = false;
-        run_ms(30 * period_ms);
+        rig_run_ms(30 * period_ms);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
-        run_ms(5 * period_ms);
+        rig_run_ms(5 * period_ms);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
         TEST_ASSERT_EQUAL_UINT32(0, adxl345_lateness_us());
-        TEST_ASSERT_EQUAL_size_t(0, lost());
+        TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
     }
 }
 
@@ -135,68 +81,57 @@ static void test_int1_stuck_high(void)
 static void test_times_follow_while_int1_is_stuck(void)
 {
     for (int percent = -9; percent <= 9; percent += 18) {
-        begin(100.0);
-        adxl345_start(&at_100_hz);
-        run_ms(300);
+        stream_for_ms(300);
         hal_host_faults.int1_high = true;
-        stamp_limit_us = percent > 0 ? 33 * 900 : 500; /* times that lag show after 33 periods */
+        rig.limit_us = percent > 0 ? 33 * 900 : 500; /* times that lag show after 33 periods */
         period_start(10000u - (uint32_t)(percent * 100));
-        run_ms(3000);
+        rig_run_ms(3000);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
-        TEST_ASSERT_EQUAL_size_t(0, lost());
+        TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
     }
 }
 
 /* D2 is high for ever and the sensor measures no more: that is what is told. */
 static void test_int1_stuck_high_on_a_sensor_without_data(void)
 {
-    begin(100.0);
-    adxl345_start(&at_100_hz);
-    run_ms(300);
-    stamp_limit_us = 500;
+    stream_for_ms(300);
+    rig.limit_us = 500;
     hal_host_faults.int1_high = true;
     hal_host_sensor.reg[ADXL345_POWER_CTL] = 0;
     for (double end_ms = hal_host_now_ms() + 60; adxl345_fault() != ADXL345_FAULT_NO_DATA;) {
         TEST_ASSERT_TRUE(hal_host_now_ms() < end_ms);
-        pass();
+        rig_pass();
     }
-    run_ms(100);
+    rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
     hal_host_faults.int1_high = false;
-    run_ms(400);
+    rig_run_ms(400);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
 
 /* What the sensor still shows of before a reset of the MCU is no sample, however high INT1 is. */
 static void test_what_was_shown_before_the_first_sample_is_none(void)
 {
-    begin(100.0);
-    adxl345_start(&at_100_hz);
-    run_ms(305);
-    TEST_ASSERT_TRUE(last_x > 8);
+    stream_for_ms(305);
+    TEST_ASSERT_TRUE(rig.last_x > 8);
     hal_host_reset_mcu(1);
-    hal_uart_init(115200);
-    hal_time_init();
-    hal_drdy_enable();
-    adxl345_init();
+    rig_reset();
     hal_host_faults.int1_high = true;
-    stamp_limit_us = 500;
-    size_t before = taken_count;
+    rig.limit_us = 500;
+    size_t before = rig.taken_count;
     adxl345_start(&at_100_hz);
-    run_ms(100);
-    TEST_ASSERT_TRUE(taken_count > before);
+    rig_run_ms(100);
+    TEST_ASSERT_TRUE(rig.taken_count > before);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
 }
 
 /* Edges for nothing, with INT1 still high when they are looked at, at many phases: no sample comes twice. */
 static void test_edges_for_nothing_bring_no_sample(void)
 {
-    begin(100.0);
-    adxl345_start(&at_100_hz);
-    run_ms(300);
-    stamp_limit_us = 500;
+    stream_for_ms(300);
+    rig.limit_us = 500;
     for (unsigned i = 0; i < 500; i++) {
-        run_ms(1.3);
+        rig_run_ms(1.3);
         if (!hal_drdy_high()) {
             hal_host_faults.int1_high = true;
             hal_host_drdy_handler();
@@ -206,17 +141,15 @@ static void test_edges_for_nothing_bring_no_sample(void)
     adxl345_readings_t readings;
     adxl345_readings(&readings);
     TEST_ASSERT_TRUE(readings.empty > 200);
-    TEST_ASSERT_EQUAL_size_t(0, lost()); /* what is latched between INT_SOURCE and the data comes too */
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(60)); /* what is latched between INT_SOURCE and the data comes too */
 }
 
 /* An edge whose level is gone puts nothing on the bus, and leaves no time for another sample. */
 static void test_edges_without_a_level_are_noise(void)
 {
-    begin(100.0);
-    adxl345_start(&at_100_hz);
-    run_ms(300);
+    stream_for_ms(300);
     for (unsigned i = 0; i < 300; i++) {
-        run_ms(1.3);
+        rig_run_ms(1.3);
         if (!hal_drdy_high()) {
             uint32_t begun_us = burst_begun_us();
             hal_host_drdy_handler();
@@ -226,51 +159,41 @@ static void test_edges_without_a_level_are_noise(void)
     adxl345_readings_t readings;
     adxl345_readings(&readings);
     TEST_ASSERT_EQUAL_UINT16(0, readings.empty);
-    TEST_ASSERT_EQUAL_size_t(0, lost());
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
 }
 
 /* Main stalls for longer than the FIFO is deep: lost samples are counted, and the rest keep their time. */
 static void test_overruns_are_counted(void)
 {
     adxl345_readings_t readings;
-    begin(100.0);
-    adxl345_start(&at_100_hz);
-    run_ms(300);
-    for (double end_ms = hal_host_now_ms() + 250; hal_host_now_ms() < end_ms;) {
-        hal_sleep_until_wake();
-    }
-    run_ms(100);
+    stream_for_ms(300);
+    stall_ms(250);
+    rig_run_ms(100);
     adxl345_readings(&readings);
     TEST_ASSERT_EQUAL_UINT16(0, readings.overruns);
     TEST_ASSERT_EQUAL_UINT32(0, hal_host_sensor.overruns);
-    stamp_limit_us =
+    rig.limit_us =
         6000; /* how many are lost is not known; FIFO_STATUS says how many wait: half a period, and a burst */
-    for (double end_ms = hal_host_now_ms() + 500; hal_host_now_ms() < end_ms;) {
-        hal_sleep_until_wake();
-    }
-    run_ms(100);
+    stall_ms(500);
+    rig_run_ms(100);
     adxl345_readings(&readings);
     TEST_ASSERT_EQUAL_UINT16(1, readings.overruns);
     TEST_ASSERT_TRUE(hal_host_sensor.overruns > 0);
-    TEST_ASSERT_EQUAL_size_t(hal_host_sensor.overruns, lost());
+    TEST_ASSERT_EQUAL_size_t(hal_host_sensor.overruns, rig_lost(60));
 }
 
 /* INT1 comes back to a main that did not look for a while: the sample that the edge brings is older than the edge. */
 static void test_int1_comes_back_to_a_full_sensor(void)
 {
-    begin(100.0);
-    adxl345_start(&at_100_hz);
-    run_ms(300);
+    stream_for_ms(300);
     hal_host_faults.int1_cut = true;
-    for (double end_ms = hal_host_now_ms() + 200; hal_host_now_ms() < end_ms;) {
-        hal_sleep_until_wake();
-    }
+    stall_ms(200);
     hal_host_faults.int1_cut = false;
     hal_host_drdy_handler();
-    stamp_limit_us = 6000;
-    run_ms(300);
+    rig.limit_us = 6000;
+    rig_run_ms(300);
     TEST_ASSERT_EQUAL_UINT32(0, hal_host_sensor.overruns);
-    TEST_ASSERT_EQUAL_size_t(0, lost());
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
 }
 
 int main(void)

@@ -5,22 +5,13 @@
 #include "adxl345.h"
 #include "adxl345_integrity.h"
 #include "adxl345_registers.h"
-#include "hal_drdy.h"
 #include "hal_host.h"
-#include "hal_sleep.h"
-#include "hal_time.h"
-#include "hal_uart.h"
-#include "support_board.h"
+#include "support_rig.h"
 #include "unity.h"
 
-enum { ROWS = 4000, STARTED_MS = 100, PATTERN = 0x8A };
+enum { STARTED_MS = 100, PATTERN = 0x8A };
 
 static const adxl345_config_t at_100_hz = { 1000, 16 };
-static stream_t stream;
-static size_t taken_count;
-static size_t latched_count;
-static uint32_t latched_us[ROWS]; /* of the sample whose x is the index */
-static int last_x;
 static uint8_t marks;
 
 /* An alteration of what arrives: from byte `from` on of the burst, for so many bursts. */
@@ -32,13 +23,6 @@ static bool level;    /* of SDA while the sensor did not drive it */
 static unsigned bursts_left;
 static uint8_t before;
 static unsigned next_byte; /* of the burst under way */
-
-static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
-{
-    (void)row;
-    latched_us[lsb[0]] = (uint32_t)t_us;
-    latched_count++;
-}
 
 /* So many bits late: they have the level of the line, and push the others back. */
 static uint8_t late(unsigned at, uint8_t byte)
@@ -87,80 +71,30 @@ static uint8_t on_rx(uint8_t reg, uint8_t byte)
     }
 }
 
-/* x counts, so that every sample tells which one it is. */
-static void begin(double rate_hz)
+static void pass(void)
 {
-    stream_free(&stream);
-    stream = board_constant_stream(ROWS, rate_hz, 0, -100, 250);
-    for (size_t i = 0; i < stream.count; i++) {
-        stream.rows[i].lsb[0] = (int16_t)i;
-    }
-    taken_count = 0;
-    latched_count = 0;
-    last_x = -1;
-    marks = 0;
-    bursts_left = 0;
-    hal_host_config_t config = { .on_latched = on_latched, .on_rx = on_rx };
-    hal_host_begin(&config, &stream, false);
-    hal_uart_init(115200);
-    hal_time_init();
-    hal_drdy_enable();
-    adxl345_init();
+    rig_pass();
+    marks |= adxl345_marks();
 }
 
 void setUp(void)
 {
-    begin(100.0);
+    marks = 0;
+    bursts_left = 0;
+    rig_begin(100.0, (hal_host_config_t){ .on_rx = on_rx });
+    rig.pass = pass;
 }
 
 void tearDown(void)
 {
-    stream_free(&stream);
-}
-
-/* Each sample is one that the sensor held, later than the one before it, with its own time. */
-static void take_all(void)
-{
-    adxl345_sample_t sample;
-    while (adxl345_take(&sample)) {
-        TEST_ASSERT_TRUE(sample.lsb[0] > last_x && latched_us[sample.lsb[0]] != 0);
-        TEST_ASSERT_EQUAL_INT16(-100, sample.lsb[1]);
-        TEST_ASSERT_EQUAL_INT16(250, sample.lsb[2]);
-        last_x = sample.lsb[0];
-        TEST_ASSERT_INT32_WITHIN(100, 0, (int32_t)(sample.t_us - latched_us[last_x]));
-        taken_count++;
-        hal_wake();
-    }
-    marks |= adxl345_marks();
-}
-
-static void pass(void)
-{
-    adxl345_poll(hal_time_us());
-    take_all();
-    hal_sleep_until_wake();
-}
-
-static void run_ms(double ms)
-{
-    for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
-        pass();
-    }
-}
-
-static size_t lost(void)
-{
-    adxl345_stop();
-    run_ms(60);
-    TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
-    return latched_count - taken_count;
+    rig_end();
 }
 
 static void start_and_change(change_t what, unsigned at, unsigned by, unsigned bursts)
 {
-    begin(100.0);
+    setUp();
     adxl345_start(&at_100_hz);
-    run_ms(STARTED_MS);
+    rig_run_ms(STARTED_MS);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
     (void)adxl345_marks();
     marks = 0;
@@ -185,28 +119,28 @@ static void test_a_burst_that_goes_wrong_at_any_byte_brings_nothing(void)
         for (unsigned at = 0; at <= READING_FIFO_CTL; at++) {
             start_and_change(changes[c], at, 0, 1);
             uint16_t before_it = failed();
-            run_ms(60);
+            rig_run_ms(60);
             TEST_ASSERT_EQUAL_UINT16(before_it + 1, failed());
             TEST_ASSERT_EQUAL_HEX8(ADXL345_MARK_INTEGRITY, marks);
-            run_ms(60);
+            rig_run_ms(60);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
             TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-            TEST_ASSERT_EQUAL_size_t(1, lost());
+            TEST_ASSERT_EQUAL_size_t(1, rig_lost(60));
         }
     }
     start_and_change(ONES, READING_FIFO_STATUS, 0, 1); /* the data were right, but who knows */
-    run_ms(60);
-    TEST_ASSERT_EQUAL_size_t(1, lost());
+    rig_run_ms(60);
+    TEST_ASSERT_EQUAL_size_t(1, rig_lost(60));
 }
 
 static void test_supply_lost_at_any_byte_brings_nothing_wrong(void)
 {
     for (unsigned at = 0; at < READING_BYTES; at++) {
         start_and_change(POWER_OFF, at, 0, 1);
-        run_ms(100);
+        rig_run_ms(100);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
         adxl345_model_power(&hal_host_sensor, true);
-        run_ms(150);
+        rig_run_ms(150);
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
     }
@@ -220,10 +154,10 @@ static void test_bits_that_slip_at_any_byte_bring_nothing(void)
             for (unsigned way = 0; way < 3; way++) {
                 start_and_change(way == 2 ? EARLY_BITS : LATE_BITS, at, by, 1);
                 level = way == 1;
-                run_ms(100);
+                rig_run_ms(100);
                 TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
                 TEST_ASSERT_EQUAL_HEX8(ADXL345_MARK_INTEGRITY, marks);
-                TEST_ASSERT_TRUE(lost() <= 2); /* zeros in FIFO_CTL: configured anew at once */
+                TEST_ASSERT_TRUE(rig_lost(60) <= 2); /* zeros in FIFO_CTL: configured anew at once */
             }
         }
     }
@@ -246,7 +180,7 @@ static void test_three_torn_readings_in_a_row_are_a_fault(void)
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
         TEST_ASSERT_EQUAL_HEX8(PATTERN, hal_host_sensor.reg[ADXL345_FIFO_CTL]);
         /* configured anew within 3 ms, turned on for 11.1 ms, and no samples meanwhile but those of the fault */
-        TEST_ASSERT_EQUAL_size_t(torn, lost());
+        TEST_ASSERT_EQUAL_size_t(torn, rig_lost(60));
     }
 }
 
@@ -256,10 +190,10 @@ static void test_torn_readings_apart_are_no_fault(void)
     start_and_change(FLIP, READING_FIFO_CTL, 0x40, 0);
     for (unsigned i = 0; i < 10; i++) {
         bursts_left = 1;
-        run_ms(20);
+        rig_run_ms(20);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
     }
-    TEST_ASSERT_EQUAL_size_t(10, lost());
+    TEST_ASSERT_EQUAL_size_t(10, rig_lost(60));
 }
 
 /* FIFO_CTL as after power-on: no silence is awaited, no pause made. 21 accesses of under 0.2 ms, then the turn-on. */
@@ -287,7 +221,7 @@ static void test_a_stop_while_readings_fail_stops(void)
             pass();
         }
         adxl345_stop();
-        run_ms(120);
+        rig_run_ms(120);
         TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
     }

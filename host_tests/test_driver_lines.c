@@ -7,36 +7,17 @@
 #include "adxl345_registers.h"
 #include "hal_drdy.h"
 #include "hal_host.h"
-#include "hal_i2c.h"
-#include "hal_sleep.h"
 #include "hal_time.h"
-#include "hal_uart.h"
-#include "support_board.h"
+#include "support_rig.h"
 #include "unity.h"
 
-enum { ROWS = 4000 };
-
-static const uint32_t start_us = 0xFFFFFFFFu - 300000u;
 static const adxl345_config_t at_100_hz = { 1000, 16 };
 static const adxl345_config_t at_800_hz = { 8000, 16 };
 static const uint16_t rates_dhz[] = { 125, 250, 500, 1000, 2000, 4000, 8000 };
-static stream_t stream;
-static size_t taken_count;
-static size_t latched_count;
-static uint32_t latched_us[ROWS]; /* of the sample whose x is the index */
-static uint32_t oldest_us;        /* the most that a stamp was from the moment when its sample was latched */
 static double ppm;
-static int last_x;
 static uint32_t clocks_seen;
 static uint32_t most_clocks;
 static uint32_t clears;
-
-static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
-{
-    (void)row;
-    latched_us[lsb[0]] = start_us + (uint32_t)t_us;
-    latched_count++;
-}
 
 static void on_bus_clear(void)
 {
@@ -46,26 +27,11 @@ static void on_bus_clear(void)
     clears++;
 }
 
-/* x counts, so that every sample tells which one it is. */
 static void begin(double rate_hz)
 {
-    stream_free(&stream);
-    stream = board_constant_stream(ROWS, rate_hz, 0, -100, 250);
-    for (size_t i = 0; i < stream.count; i++) {
-        stream.rows[i].lsb[0] = (int16_t)i;
-    }
-    hal_host_config_t config = {
-        .time_start_us = start_us, .ppm = ppm, .on_latched = on_latched, .on_bus_clear = on_bus_clear
-    };
-    hal_host_begin(&config, &stream, false);
-    hal_uart_init(115200);
-    hal_time_init();
-    hal_drdy_enable();
-    adxl345_init();
-    taken_count = 0;
-    latched_count = 0;
-    last_x = -1;
-    oldest_us = 0;
+    const uint32_t start_us = 0xFFFFFFFFu - 300000u;
+    rig_begin(rate_hz, (hal_host_config_t){ .time_start_us = start_us, .ppm = ppm, .on_bus_clear = on_bus_clear });
+    rig.limit_us = UINT32_MAX; /* a test says what it may be */
     clocks_seen = 0;
     most_clocks = 0;
     clears = 0;
@@ -79,30 +45,7 @@ void setUp(void)
 
 void tearDown(void)
 {
-    stream_free(&stream);
-}
-
-static void pass(void)
-{
-    adxl345_sample_t sample;
-    adxl345_poll(hal_time_us());
-    while (adxl345_take(&sample)) {
-        TEST_ASSERT_TRUE_MESSAGE(sample.lsb[0] > last_x, "a sample came twice");
-        last_x = sample.lsb[0];
-        int32_t late_us = (int32_t)(sample.t_us - latched_us[last_x]);
-        uint32_t off_us = (uint32_t)(late_us < 0 ? -late_us : late_us);
-        oldest_us = off_us > oldest_us ? off_us : oldest_us;
-        taken_count++;
-        hal_wake();
-    }
-    board_driver_sleep();
-}
-
-static void run_ms(double ms)
-{
-    for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
-        pass();
-    }
+    rig_end();
 }
 
 /* Passes until the fault is told, or is over; how long that took. */
@@ -111,7 +54,7 @@ static double ms_until_fault(bool wanted)
     double begun_ms = hal_host_now_ms();
     while ((adxl345_fault() != ADXL345_FAULT_NONE) != wanted) {
         TEST_ASSERT_TRUE_MESSAGE(hal_host_now_ms() - begun_ms < 600.0, "no change of the fault");
-        pass();
+        rig_pass();
     }
     return hal_host_now_ms() - begun_ms;
 }
@@ -129,12 +72,12 @@ static void test_a_line_low_from_the_start_is_named_at_once(void)
         hold(line, true);
         adxl345_start(&at_100_hz);
         TEST_ASSERT_EQUAL(line, adxl345_fault());
-        run_ms(300);
+        rig_run_ms(300);
         TEST_ASSERT_EQUAL(line, adxl345_fault());
         TEST_ASSERT_TRUE(clears >= 12 && clears <= 20); /* at 0, 5, 15, 35 ms, then every 25 */
         hold(line, false);
         (void)ms_until_fault(false);
-        run_ms(100);
+        rig_run_ms(100);
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
     }
 }
@@ -144,13 +87,13 @@ static void test_clocks_by_hand(void)
 {
     hold(ADXL345_FAULT_SCL_LOW, true);
     adxl345_start(&at_100_hz);
-    run_ms(200);
+    rig_run_ms(200);
     TEST_ASSERT_EQUAL_UINT32(0, hal_host_hand_clocks());
     TEST_ASSERT_EQUAL_UINT32(0, hal_host_hand_stops());
     begin(100.0);
     hold(ADXL345_FAULT_SDA_LOW, true);
     adxl345_start(&at_100_hz);
-    run_ms(200);
+    rig_run_ms(200);
     TEST_ASSERT_EQUAL_UINT32(16, most_clocks);
     TEST_ASSERT_EQUAL_UINT32(16u * clears, hal_host_hand_clocks());
     TEST_ASSERT_EQUAL_UINT32(0, hal_host_hand_stops());
@@ -167,16 +110,14 @@ static void test_a_line_low_while_streaming_is_named(void)
         adxl345_fault_t line = (phase & 1u) != 0 ? ADXL345_FAULT_SCL_LOW : ADXL345_FAULT_SDA_LOW;
         begin(100.0);
         adxl345_start(&at_100_hz);
-        run_ms(100.0 + 0.05 * phase);
+        rig_run_ms(100.0 + 0.05 * phase);
         hold(line, true);
         TEST_ASSERT_TRUE(ms_until_fault(true) <= 10.0 + 3.3);
         TEST_ASSERT_EQUAL(line, adxl345_fault());
-        run_ms(50);
+        rig_run_ms(50);
         hold(line, false);
         (void)ms_until_fault(false);
-        adxl345_stop();
-        run_ms(60);
-        TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
+        (void)rig_lost(60);
     }
 }
 
@@ -187,7 +128,7 @@ static void test_a_line_low_while_configuring_is_named_by_the_deadline(void)
     for (unsigned phase = 0; phase < 150; phase++) {
         begin(100.0);
         adxl345_start(&at_100_hz);
-        run_ms(0.02 * phase);
+        rig_run_ms(0.02 * phase);
         bool measures = hal_host_sensor.reg[ADXL345_POWER_CTL] == ADXL345_POWER_MEASURE;
         hold(ADXL345_FAULT_SDA_LOW, true);
         double took_ms = ms_until_fault(true);
@@ -206,24 +147,20 @@ static void test_a_hung_slave_is_freed(void)
     for (uint8_t clocks = 1; clocks <= 32; clocks++) {
         begin(100.0);
         adxl345_start(&at_100_hz);
-        run_ms(100);
-        while (hal_drdy_high() || burst_running()) {
-            run_ms(0.1);
-        }
+        rig_run_ms(100);
+        rig_until_pause();
         hal_host_faults.hang_clocks = clocks;
         bool told = false;
         for (double end_ms = hal_host_now_ms() + 30.0; hal_host_now_ms() < end_ms;) {
-            pass();
+            rig_pass();
             told = told || adxl345_fault() == ADXL345_FAULT_SDA_LOW;
             TEST_ASSERT_NOT_EQUAL(ADXL345_FAULT_BUS, adxl345_fault());
         }
         TEST_ASSERT_EQUAL(clocks > 16, told);
         TEST_ASSERT_EQUAL_UINT8(0, hal_host_faults.hang_clocks);
-        run_ms(60);
+        rig_run_ms(60);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
-        adxl345_stop();
-        run_ms(60);
-        TEST_ASSERT_TRUE(told || latched_count == taken_count);
+        TEST_ASSERT_TRUE(rig_lost(60) == 0 || told);
     }
 }
 
@@ -237,32 +174,21 @@ static void test_a_stop_that_does_not_get_out(void)
         adxl345_counters_t after;
         begin(config->rate_dhz / 10.0);
         adxl345_start(config);
-        run_ms(100.0 + 0.3 * phase);
+        rig_run_ms(100.0 + 0.3 * phase);
         adxl345_counters(&before);
         hal_host_faults.stop_stuck = true;
         uint32_t clears_before = clears;
         double begun_ms = hal_host_now_ms();
         while (clears == clears_before && hal_host_now_ms() < begun_ms + 50.0) {
-            pass();
+            rig_pass();
         }
         TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms <= 2.0 * period_ms + 3.5);
         hal_host_faults.stop_stuck = false;
         adxl345_counters(&after);
         TEST_ASSERT_EQUAL_UINT16(before.timeouts + 1, after.timeouts);
-        run_ms(30);
+        rig_run_ms(30);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
-        adxl345_stop();
-        run_ms(60);
-        TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
-    }
-}
-
-/* Main without a poll: 20 us each, the bus goes on. */
-static void away(unsigned passes)
-{
-    while (passes-- != 0) {
-        hal_wake();
-        board_driver_sleep();
+        TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
     }
 }
 
@@ -272,17 +198,14 @@ static void test_a_busy_bus_is_waited_for_no_longer_than_it_is_busy(void)
     for (unsigned phase = 0; phase < 25; phase++) {
         begin(100.0);
         adxl345_start(&at_100_hz);
-        run_ms(100);
-        while (!burst_running()) {
-            adxl345_poll(hal_time_us());
-            away(1);
-        }
-        away(phase);
+        rig_run_ms(100);
+        rig_until_burst();
+        rig_away(phase);
         double begun_ms = hal_host_now_ms();
         adxl345_stop();
         while (hal_host_sensor.reg[ADXL345_POWER_CTL] != 0) {
             TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms < 0.6);
-            pass();
+            rig_pass();
         }
     }
 }
@@ -296,9 +219,9 @@ static void test_a_late_main_is_no_timeout(void)
     adxl345_start(&at_100_hz);
     for (unsigned i = 0; i < 60; i++) {
         adxl345_poll(hal_time_us());
-        away(1);
+        rig_away(1);
         adxl345_poll(hal_time_us());
-        away(250);
+        rig_away(250);
     }
     adxl345_counters(&after);
     TEST_ASSERT_EQUAL_UINT16(before.timeouts, after.timeouts);
@@ -314,9 +237,9 @@ static void test_silent_int1_is_noticed_within_three_periods(void)
         for (unsigned phase = 0; phase < 20; phase++) {
             begin(config.rate_dhz / 10.0);
             adxl345_start(&config);
-            run_ms(50.0 + (5.0 + phase / 20.0) * period_ms);
+            rig_run_ms(50.0 + (5.0 + phase / 20.0) * period_ms);
             while (hal_drdy_high() || burst_running()) {
-                pass();
+                rig_pass();
             }
             hal_host_faults.int1_cut = true;
             double took_ms = ms_until_fault(true);
@@ -339,26 +262,24 @@ static void test_without_int1_samples_are_read_by_the_clock(void)
         ppm = clocks_ppm[i % 3];
         begin(config.rate_dhz / 10.0);
         adxl345_start(&config);
-        run_ms(50.0 + 6.0 * period_ms);
+        rig_run_ms(50.0 + 6.0 * period_ms);
         hal_host_faults.int1_cut = true;
         (void)ms_until_fault(true);
-        run_ms(20.0 * period_ms);
-        size_t latched = latched_count;
-        size_t taken = taken_count;
-        oldest_us = 0;
+        rig_run_ms(20.0 * period_ms);
+        size_t latched = rig.latched_count;
+        size_t taken = rig.taken_count;
+        rig.off_us = 0;
         for (unsigned ms = 0; ms < 2000; ms++) {
-            run_ms(1.0);
+            rig_run_ms(1.0);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
             TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
         }
-        TEST_ASSERT_INT_WITHIN(2, (int)(latched_count - latched), (int)(taken_count - taken));
-        TEST_ASSERT_TRUE(oldest_us <= 1000u * period_ms);
+        TEST_ASSERT_INT_WITHIN(2, (int)(rig.latched_count - latched), (int)(rig.taken_count - taken));
+        TEST_ASSERT_TRUE(rig.off_us <= 1000u * period_ms);
         hal_host_faults.int1_cut = false;
         TEST_ASSERT_TRUE(ms_until_fault(false) <= 2.0 * period_ms);
-        run_ms(50.0);
-        adxl345_stop();
-        run_ms(60.0 + 2.0 * period_ms);
-        TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+        rig_run_ms(50.0);
+        TEST_ASSERT_EQUAL_size_t(0, rig_lost(60.0 + 2.0 * period_ms));
     }
 }
 
@@ -366,19 +287,19 @@ static void test_without_int1_samples_are_read_by_the_clock(void)
 static void test_without_int1_a_sensor_that_stops_is_noticed(void)
 {
     adxl345_start(&at_100_hz);
-    run_ms(200);
+    rig_run_ms(200);
     hal_host_faults.int1_cut = true;
-    run_ms(200);
+    rig_run_ms(200);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
     adxl345_model_power(&hal_host_sensor, false);
-    run_ms(20);
+    rig_run_ms(20);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
     adxl345_model_power(&hal_host_sensor, true);
-    run_ms(200);
+    rig_run_ms(200);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
     hal_host_faults.int1_cut = false;
-    run_ms(30);
+    rig_run_ms(30);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
 

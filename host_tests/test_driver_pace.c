@@ -1,25 +1,18 @@
 /* The driver's time: how often it tries again, how long a burst may hang, stops and starts while it awaits the bus. */
-#include <string.h>
-
 #include "adxl345.h"
 #include "adxl345_burst.h"
 #include "adxl345_registers.h"
 #include "hal_drdy.h"
 #include "hal_host.h"
 #include "hal_i2c.h"
-#include "hal_sleep.h"
 #include "hal_time.h"
-#include "hal_uart.h"
 #include "support_board.h"
+#include "support_rig.h"
 #include "unity.h"
 
 enum { PROBES_MAX = 64 };
 
 static const adxl345_config_t at_100_hz = { 1000, 16 };
-static stream_t stream;
-static size_t taken_count;
-static size_t latched_count;
-static int16_t last_x;
 static double probed_ms[PROBES_MAX];
 static size_t probes;
 
@@ -27,14 +20,6 @@ static uint32_t edge_us;
 static bool sample_comes_while_clearing;
 
 void hal_host_i2c_handler(void);
-
-static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
-{
-    (void)t_us;
-    (void)row;
-    (void)lsb;
-    latched_count++;
-}
 
 /* Interrupts are on while the bus is being cleared: a sample is latched, INT1 rises and its interrupt is served. */
 static void on_bus_clear(void)
@@ -47,41 +32,6 @@ static void on_bus_clear(void)
     }
 }
 
-/* x counts. */
-void setUp(void)
-{
-    stream = board_constant_stream(4000, 100.0, 0, -100, 250);
-    for (size_t i = 0; i < stream.count; i++) {
-        stream.rows[i].lsb[0] = (int16_t)i;
-    }
-    taken_count = 0;
-    latched_count = 0;
-    probes = 0;
-    hal_host_config_t config = { .on_latched = on_latched, .on_bus_clear = on_bus_clear };
-    sample_comes_while_clearing = false;
-    hal_host_begin(&config, &stream, false);
-    hal_uart_init(115200);
-    hal_time_init();
-    hal_drdy_enable();
-    adxl345_init();
-}
-
-void tearDown(void)
-{
-    stream_free(&stream);
-}
-
-static void take_all(void)
-{
-    adxl345_sample_t sample;
-    while (adxl345_take(&sample)) {
-        TEST_ASSERT_TRUE(taken_count == 0 || sample.lsb[0] >= last_x);
-        last_x = sample.lsb[0];
-        taken_count++;
-        hal_wake();
-    }
-}
-
 /* One poll and sleep; notes when the driver leaves its back-off for another try. */
 static void pass(void)
 {
@@ -90,15 +40,21 @@ static void pass(void)
     if (before == ADXL345_FAULTY && adxl345_phase() == ADXL345_STARTING && probes < PROBES_MAX) {
         probed_ms[probes++] = hal_host_now_ms();
     }
-    take_all();
+    rig_take_all();
     board_driver_sleep();
 }
 
-static void run_ms(double ms)
+void setUp(void)
 {
-    for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
-        pass();
-    }
+    probes = 0;
+    sample_comes_while_clearing = false;
+    rig_begin(100.0, (hal_host_config_t){ .on_bus_clear = on_bus_clear });
+    rig.pass = pass;
+}
+
+void tearDown(void)
+{
+    rig_end();
 }
 
 /* Runs until the condition holds; fails after so many virtual milliseconds. */
@@ -133,10 +89,10 @@ static void test_a_good_sample_resets_the_pace(void)
 {
     adxl345_model_power(&hal_host_sensor, false);
     adxl345_start(&at_100_hz);
-    run_ms(300);
+    rig_run_ms(300);
     adxl345_model_power(&hal_host_sensor, true);
     RUN_UNTIL(adxl345_phase() == ADXL345_STREAMING, 200);
-    run_ms(100);
+    rig_run_ms(100);
     adxl345_model_power(&hal_host_sensor, false);
     RUN_UNTIL(adxl345_phase() == ADXL345_FAULTY, 100);
     double failed_ms = hal_host_now_ms();
@@ -151,16 +107,12 @@ static void test_a_hung_burst_is_given_up(void)
     adxl345_counters_t before;
     adxl345_counters_t after;
     adxl345_start(&at_100_hz);
-    run_ms(300);
+    rig_run_ms(300);
     adxl345_counters(&before);
     RUN_UNTIL(!hal_drdy_high() && !burst_running(), 50);
-    run_ms(2); /* the last STOP is out */
+    rig_run_ms(2); /* the last STOP is out */
     hal_host_faults.hang_clocks = 9;
-    while (!burst_running()) {
-        adxl345_poll(hal_time_us());
-        hal_wake();
-        board_driver_sleep();
-    }
+    rig_until_burst();
     double begun_ms = hal_host_now_ms();
     RUN_UNTIL(!burst_running(), 12);
     double took_ms = hal_host_now_ms() - begun_ms;
@@ -168,11 +120,9 @@ static void test_a_hung_burst_is_given_up(void)
     adxl345_counters(&after);
     TEST_ASSERT_EQUAL_UINT16(before.timeouts + 1, after.timeouts);
     TEST_ASSERT_EQUAL_UINT16(before.bus_errors, after.bus_errors);
-    run_ms(100);
+    rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
-    adxl345_stop();
-    run_ms(50);
-    TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(50));
 }
 
 /* Three failed bursts in a row are a fault of the bus; the first two are read again without a word. */
@@ -180,7 +130,7 @@ static void test_three_failed_bursts_are_a_fault(void)
 {
     adxl345_counters_t counters;
     adxl345_start(&at_100_hz);
-    run_ms(300);
+    rig_run_ms(300);
     RUN_UNTIL(!hal_drdy_high() && !burst_running(), 20);
     adxl345_counters(&counters);
     uint16_t errors_before = counters.bus_errors;
@@ -194,11 +144,11 @@ static void test_three_failed_bursts_are_a_fault(void)
         adxl345_poll(hal_time_us());
         TEST_ASSERT_EQUAL_UINT8(failed, burst_failures());
     }
-    run_ms(0.1);
+    rig_run_ms(0.1);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_BUS, adxl345_fault());
     adxl345_counters(&counters);
     TEST_ASSERT_EQUAL_UINT16(errors_before + 3, counters.bus_errors);
-    run_ms(200);
+    rig_run_ms(200);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
 
@@ -206,42 +156,30 @@ static void test_three_failed_bursts_are_a_fault(void)
 static void test_int1_that_rises_while_the_sensor_is_asked_is_no_fault(void)
 {
     adxl345_start(&at_100_hz);
-    run_ms(300);
-    hal_host_faults.int1_cut = true;
-    double end_ms = hal_host_now_ms() + 60;
-    while (burst_running() || burst_bus_state() != I2C_BUS_BUSY) {
-        TEST_ASSERT_TRUE(hal_host_now_ms() < end_ms);
-        adxl345_poll(hal_time_us());
-        take_all();
-        if (!burst_running() && burst_bus_state() == I2C_BUS_BUSY) {
-            break;
-        }
-        board_driver_sleep();
-    }
+    rig_run_ms(300);
+    rig_until_source_asked();
     hal_host_faults.int1_cut = false;
     TEST_ASSERT_TRUE(hal_drdy_high());
     for (int i = 0; i < 500; i++) {
         pass();
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
     }
-    adxl345_stop();
-    run_ms(50);
-    TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(50));
 }
 
 static void test_stop_with_a_stuck_bus_stops(void)
 {
     adxl345_start(&at_100_hz);
-    run_ms(300);
+    rig_run_ms(300);
     hal_host_faults.sda_low = true;
     adxl345_stop();
     TEST_ASSERT_EQUAL(ADXL345_QUIESCING, adxl345_phase());
     RUN_UNTIL(adxl345_phase() == ADXL345_STOPPED, 20);
-    run_ms(100);
+    rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
     hal_host_faults.sda_low = false;
     adxl345_start(&at_100_hz);
-    run_ms(100);
+    rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
 }
 
@@ -250,32 +188,32 @@ static void test_start_and_stop_while_quiescing(void)
 {
     static const adxl345_config_t at_400_hz = { 4000, 16 };
     adxl345_start(&at_100_hz);
-    run_ms(300);
+    rig_run_ms(300);
     adxl345_stop();
     adxl345_start(&at_400_hz);
     TEST_ASSERT_EQUAL(ADXL345_QUIESCING, adxl345_phase());
-    run_ms(100);
+    rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
     TEST_ASSERT_EQUAL_HEX8(0x0C, hal_host_sensor.reg[ADXL345_BW_RATE]);
     adxl345_start(&at_100_hz);
     adxl345_stop();
     adxl345_stop();
-    run_ms(50);
+    rig_run_ms(50);
     TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
     TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor.reg[ADXL345_POWER_CTL]);
-    TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+    TEST_ASSERT_EQUAL_size_t(rig.latched_count, rig.taken_count);
 }
 
 /* Main takes nothing while the driver drains: it gives up after 100 ms instead of waiting for ever. */
 static void test_drain_that_nobody_empties_ends(void)
 {
     adxl345_start(&at_100_hz);
-    run_ms(300);
+    rig_run_ms(300);
     adxl345_stop();
     double begun_ms = hal_host_now_ms();
     double end_ms = begun_ms + 150;
     adxl345_poll(hal_time_us());
-    adxl345_model_tick(&hal_host_sensor, stream.rows[0].lsb);
+    adxl345_model_tick(&hal_host_sensor, rig.stream.rows[0].lsb);
     while (adxl345_phase() != ADXL345_STOPPED && hal_host_now_ms() < end_ms) {
         board_driver_sleep();
         adxl345_poll(hal_time_us());
@@ -289,17 +227,15 @@ static void test_drain_that_nobody_empties_ends(void)
 static void test_a_stale_bus_event_is_ignored(void)
 {
     adxl345_start(&at_100_hz);
-    run_ms(300);
+    rig_run_ms(300);
     RUN_UNTIL(!burst_running() && !hal_drdy_high(), 20);
     burst_take_bus(0x53, false);
     TEST_ASSERT_EQUAL(I2C_BUS_OK, burst_bus_state());
     hal_host_i2c_handler();
     TEST_ASSERT_EQUAL(I2C_BUS_OK, burst_bus_state());
     TEST_ASSERT_EQUAL_UINT8(0, adxl345_queued());
-    run_ms(300);
-    adxl345_stop();
-    run_ms(50);
-    TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+    rig_run_ms(300);
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(50));
 }
 
 /*
@@ -310,9 +246,9 @@ static void test_an_edge_while_the_bus_is_cleared_starts_no_transfer(void)
 {
     adxl345_sample_t sample = { 0 };
     adxl345_start(&at_100_hz);
-    run_ms(300);
+    rig_run_ms(300);
     RUN_UNTIL(!burst_running() && !hal_drdy_high(), 20);
-    run_ms(2); /* the last STOP is out */
+    rig_run_ms(2); /* the last STOP is out */
     sample_comes_while_clearing = true;
     burst_take_bus(0x53, false);
     TEST_ASSERT_TRUE(hal_drdy_high());
@@ -339,17 +275,15 @@ static void test_edges_before_streaming_are_ignored(void)
     adxl345_model_write(&hal_host_sensor, ADXL345_POWER_MEASURE);
     adxl345_model_write(&hal_host_sensor, ADXL345_INT_DATA_READY);
     adxl345_model_stop(&hal_host_sensor);
-    TEST_ASSERT_TRUE(adxl345_model_tick(&hal_host_sensor, stream.rows[7].lsb));
+    TEST_ASSERT_TRUE(adxl345_model_tick(&hal_host_sensor, rig.stream.rows[7].lsb));
     TEST_ASSERT_TRUE(hal_drdy_high());
-    run_ms(5);
+    rig_run_ms(5);
     TEST_ASSERT_EQUAL_UINT8(0, adxl345_queued());
     TEST_ASSERT_FALSE(burst_running());
-    latched_count = 0;
+    rig.latched_count = 0;
     adxl345_start(&at_100_hz);
-    run_ms(300);
-    adxl345_stop();
-    run_ms(50);
-    TEST_ASSERT_EQUAL_size_t(latched_count, taken_count);
+    rig_run_ms(300);
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(50));
 }
 
 /* 25 ms a try and two addresses: 65,535 failed accesses in a quarter of an hour. Counters stop there. */
@@ -358,10 +292,10 @@ static void test_counters_saturate(void)
     adxl345_counters_t counters;
     adxl345_model_power(&hal_host_sensor, false);
     adxl345_start(&at_100_hz);
-    run_ms(1200e3);
+    rig_run_ms(1200e3);
     adxl345_counters(&counters);
     TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, counters.nacks);
-    run_ms(100);
+    rig_run_ms(100);
     adxl345_counters(&counters);
     TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, counters.nacks);
 }
