@@ -317,9 +317,6 @@ static bool stage_piece(void)
         coast_wait(hal_time_us());
         break;
     case STAGE_BAUD:
-        if (changes != 0) {
-            return filter_samples(); /* else those of the new configuration join the old ones in the queue */
-        }
         if (!replies_empty() || !hal_uart_tx_idle()) {
             return false;
         }

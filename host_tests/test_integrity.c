@@ -114,6 +114,7 @@ static void test_the_tenth_equal_reading_is_stuck(void)
     for (unsigned axis = 0; axis < 3; axis++) {
         uint8_t reading[READING_BYTES] = { 0x80, 0x0B, 1, 0, 2, 0, 3, 0, PATTERN, 0 };
         int16_t lsb[2][3] = { { 0 }, { 0 } };
+        integrity_forget();
         integrity_start(16);
         for (unsigned i = 1; i <= 300; i++) {
             TEST_ASSERT_EQUAL(READING_GOOD, integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]));
@@ -173,6 +174,7 @@ static void test_noise_is_never_stuck(void)
     unsigned fours = 0;
     test_random_t random;
     random_seed(&random, 20261122u);
+    integrity_forget();
     integrity_start(16);
     for (unsigned i = 0; i < SAMPLES; i++) {
         for (unsigned axis = 0; axis < 3; axis++) {
