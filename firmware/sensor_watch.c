@@ -28,6 +28,7 @@ sensor_outage_t sensor_watch_outage;
 
 static uint8_t told;       /* fault code of the last line, NONE when all is well */
 static uint16_t told_mask; /* codes told since the fault began: each once */
+static bool over;          /* what was told; the line that says so is not queued yet */
 static uint32_t began_us;  /* the fault; what the counters were then: */
 static uint32_t began_s;
 static uint32_t began_lost;
@@ -51,6 +52,16 @@ static void end_outage(uint32_t now_us)
     sensor_watch_outage.lost = counters[COUNT_LOST] - began_lost;
 }
 
+/* The numbers of one that is over wait for the line that tells them. */
+static bool outage_over(uint32_t now_us)
+{
+    if (!over && !replies_hold(REPLY_FAULT_END)) {
+        end_outage(now_us);
+        over = true;
+    }
+    return over;
+}
+
 /* The LED flashes for 65 ms in each of the first slots of 131 ms, of which a second has eight. */
 static void show(uint8_t fault, uint32_t now_us)
 {
@@ -69,15 +80,15 @@ void sensor_watch_start(uint32_t now_us)
 static void tell(uint8_t fault, uint32_t now_us)
 {
     uint16_t bit = (uint16_t)(1u << fault);
+    bool in_words = settings.mode != MODE_PLOT;
     if (fault == ADXL345_FAULT_NONE) {
-        if (!replies_hold(REPLY_FAULT_END) && replies_add(REPLY_FAULT_END, told)) {
-            end_outage(now_us);
+        if (outage_over(now_us) && in_words && replies_add(REPLY_FAULT_END, told)) {
             told = ADXL345_FAULT_NONE;
             told_mask = 0;
         }
     } else if (told_mask & bit) {
         told = fault;
-    } else if (replies_add(REPLY_FAULT_BEGIN, fault)) {
+    } else if (in_words && replies_add(REPLY_FAULT_BEGIN, fault)) {
         if (told == ADXL345_FAULT_NONE) {
             begin_outage(now_us);
         }
@@ -95,9 +106,12 @@ void sensor_watch_pass(uint32_t now_us)
         told = ADXL345_FAULT_NONE; /* not mended, only not asked any more */
         told_mask = 0;
     }
+    if (fault != ADXL345_FAULT_NONE) {
+        over = false;
+    }
     /* a stop and a go between two looks leave no fault either, but no sample yet */
     bool known = fault != ADXL345_FAULT_NONE || phase == ADXL345_STREAMING;
-    if (known && fault != told && settings.mode != MODE_PLOT) {
+    if (known && fault != told) {
         tell(fault, now_us);
     }
 }

@@ -250,6 +250,37 @@ static void test_an_outage_of_two_months_is_not_told_as_a_short_one(void)
     }
 }
 
+/* A plot has no lines: what ended meanwhile is told behind it, as long as it was. */
+static void test_a_fault_that_ends_in_a_plot_is_told_with_its_length(void)
+{
+    unsigned code, ms, lost;
+    board_start_resting();
+    board_run_ms(500);
+    for (int twice = 0; twice <= 1; twice++) {
+        adxl345_model_power(&hal_host_sensor, false);
+        board_run_ms(300);
+        size_t before = board.note_count;
+        board_type("mode plot");
+        board_run_ms(400);
+        adxl345_model_power(&hal_host_sensor, true);
+        board_run_ms(2000);
+        if (twice) { /* gone again before it was told: one outage */
+            adxl345_model_power(&hal_host_sensor, false);
+            board_run_ms(500);
+            adxl345_model_power(&hal_host_sensor, true);
+            board_run_ms(2000);
+        }
+        TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
+        board_type("mode csv");
+        board_run_ms(200);
+        TEST_ASSERT_EQUAL_size_t(1, board_notes_with("over", before));
+        TEST_ASSERT_EQUAL_INT(
+            3, sscanf(board_last_note(), "# fault %u over: samples again after %u ms, %u lost", &code, &ms, &lost));
+        TEST_ASSERT_UINT_WITHIN(50, twice ? 3220 : 720, ms);
+        TEST_ASSERT_UINT_WITHIN(6, twice ? 123 : 71, lost);
+    }
+}
+
 /* x jumps to its double and back, as where two sensors answer. */
 static stream_t two_sensors(void)
 {
@@ -322,6 +353,7 @@ int main(void)
     RUN_TEST(test_a_change_of_rate_in_an_outage_forgets_no_sample);
     RUN_TEST(test_a_fault_for_which_there_is_no_room_is_told_later);
     RUN_TEST(test_the_end_of_a_fault_keeps_its_numbers_until_it_is_told);
+    RUN_TEST(test_a_fault_that_ends_in_a_plot_is_told_with_its_length);
     RUN_TEST(test_an_outage_of_two_months_is_not_told_as_a_short_one);
     RUN_TEST(test_a_command_does_not_call_a_lasting_fault_over);
     RUN_TEST(test_a_sensor_that_was_away_is_not_suspected);
