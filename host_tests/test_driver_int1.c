@@ -144,6 +144,38 @@ static void test_edges_for_nothing_bring_no_sample(void)
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(60)); /* what is latched between INT_SOURCE and the data comes too */
 }
 
+/*
+ * INT1 goes high for nothing shortly before a sample, of a sensor that is 5 % slow and not
+ * measured yet: one nominal period after the last sample it had none, so the new one is not that old.
+ */
+static void test_a_sample_is_not_older_than_the_sensor_was_empty(void)
+{
+    static const adxl345_config_t at_12_5_hz = { 125, 16 };
+    unsigned met_empty = 0;
+    for (unsigned phase = 0; phase < 25; phase++) {
+        adxl345_readings_t before;
+        adxl345_readings_t after;
+        rig_begin(12.5, (hal_host_config_t){ .ppm = -50000.0 });
+        adxl345_start(&at_12_5_hz);
+        while (rig.taken_count < 3) {
+            rig_pass();
+        }
+        rig_away(4160 + phase); /* 83.2 ms or more; a period is 84.2 */
+        adxl345_readings(&before);
+        rig.limit_us = 500;
+        hal_host_faults.int1_high = true;
+        hal_host_drdy_handler();
+        while (rig.taken_count == 3) {
+            rig_pass();
+        }
+        adxl345_readings(&after);
+        met_empty += after.empty != before.empty;
+        TEST_ASSERT_EQUAL_size_t(4, rig.latched_count);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+    }
+    TEST_ASSERT_TRUE(met_empty > 5);
+}
+
 /* An edge whose level is gone puts nothing on the bus, and leaves no time for another sample. */
 static void test_edges_without_a_level_are_noise(void)
 {
@@ -204,6 +236,7 @@ int main(void)
     RUN_TEST(test_int1_stuck_high_on_a_sensor_without_data);
     RUN_TEST(test_what_was_shown_before_the_first_sample_is_none);
     RUN_TEST(test_edges_for_nothing_bring_no_sample);
+    RUN_TEST(test_a_sample_is_not_older_than_the_sensor_was_empty);
     RUN_TEST(test_edges_without_a_level_are_noise);
     RUN_TEST(test_overruns_are_counted);
     RUN_TEST(test_int1_comes_back_to_a_full_sensor);

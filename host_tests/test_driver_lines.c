@@ -192,40 +192,54 @@ static void test_a_stop_that_does_not_get_out(void)
     }
 }
 
-/* At every phase of a burst and of its STOP: the sensor is told to rest as soon as the bus is free. */
+/*
+ * At every phase of a burst and of its STOP: the sensor is told to rest as soon as the bus is free, also by a main that
+ * leaves the burst's sample in the queue and so has no reason of its own to pass again.
+ */
 static void test_a_busy_bus_is_waited_for_no_longer_than_it_is_busy(void)
 {
-    for (unsigned phase = 0; phase < 25; phase++) {
+    unsigned running = 0;
+    for (unsigned i = 0; i < 50; i++) {
         begin(100.0);
         adxl345_start(&at_100_hz);
         rig_run_ms(100);
+        rig_until_pause();
         rig_until_burst();
-        rig_away(phase);
+        rig_away(i / 2);
+        running += burst_bus_state() == I2C_BUS_BUSY;
+        rig.leaves = (i & 1u) != 0;
         double begun_ms = hal_host_now_ms();
         adxl345_stop();
         while (hal_host_sensor.reg[ADXL345_POWER_CTL] != 0) {
-            TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms < 0.6);
             rig_pass();
+            TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms < 0.6);
         }
     }
+    TEST_ASSERT_TRUE(running > 30 && running < 50);
 }
 
-/* Main comes to each step 5 ms late: that is no fault of the bus. */
+/*
+ * Main comes 5 ms late to what a step begins, to its end, or to both: that is no fault of the bus. The limit of the
+ * transfer begins when it does.
+ */
 static void test_a_late_main_is_no_timeout(void)
 {
-    adxl345_counters_t before;
-    adxl345_counters_t after;
-    adxl345_counters(&before);
-    adxl345_start(&at_100_hz);
-    for (unsigned i = 0; i < 60; i++) {
-        adxl345_poll(hal_time_us());
-        rig_away(1);
-        adxl345_poll(hal_time_us());
-        rig_away(250);
+    static const unsigned away[3][3] = { { 1, 250, 1 }, { 250, 1, 250 }, { 250, 250, 250 } };
+    for (unsigned way = 0; way < 3; way++) {
+        adxl345_counters_t before;
+        adxl345_counters_t after;
+        begin(100.0);
+        adxl345_counters(&before);
+        adxl345_start(&at_100_hz);
+        for (unsigned i = 0; i < 120; i++) {
+            adxl345_poll(hal_time_us());
+            rig_away(away[way][i % 3]);
+        }
+        adxl345_counters(&after);
+        TEST_ASSERT_EQUAL_UINT16(before.timeouts, after.timeouts);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+        TEST_ASSERT_EQUAL_HEX8(ADXL345_POWER_MEASURE, hal_host_sensor.reg[ADXL345_POWER_CTL]);
     }
-    adxl345_counters(&after);
-    TEST_ASSERT_EQUAL_UINT16(before.timeouts, after.timeouts);
-    TEST_ASSERT_EQUAL_HEX8(ADXL345_POWER_MEASURE, hal_host_sensor.reg[ADXL345_POWER_CTL]);
 }
 
 /* INT1 falls silent at any phase: named within three periods of the last sample, at every rate. */
