@@ -130,6 +130,34 @@ static void test_two_sensors_are_told(void)
     stream_free(&stream);
 }
 
+/* It has learned that there is no noise, and learns it anew: the angles are right at once, the flags soon. */
+static void test_the_default_filter_behind_a_sensor_that_hung(void)
+{
+    for (size_t hung = 60; hung <= 960; hung *= 2) {
+        stream_t stream = board_noisy_stream(2000, 100.0, 1.5, (uint32_t)hung);
+        for (size_t i = 301; i < 300 + hung; i++) {
+            memcpy(stream.rows[i].lsb, stream.rows[300].lsb, sizeof stream.rows[i].lsb);
+        }
+        board_start(&stream, 0.0, 0);
+        board_run_ms(19000);
+        unsigned refused[8] = { 0 };
+        size_t behind = 0;
+        for (size_t i = 1; i < board.row_count; i++) {
+            bool stuck = (board.rows[i].flags & ROW_STUCK) != 0;
+            behind = stuck ? 1 : behind + (behind != 0);
+            if (!stuck && behind != 0 && behind <= 800) {
+                refused[(behind - 1) / 100] += (board.rows[i].flags & ROW_GATED) != 0;
+                TEST_ASSERT_INT_WITHIN(100, -1206, board.rows[i].roll_cdeg); /* atan2(-53, 248) */
+            }
+        }
+        TEST_ASSERT_TRUE(refused[0] <= 50);
+        for (size_t second = 2; second < 8; second++) {
+            TEST_ASSERT_TRUE(refused[second] <= 2); /* that is chance */
+        }
+        stream_free(&stream);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -139,5 +167,6 @@ int main(void)
     RUN_TEST(test_missing_samples_are_coasted_over);
     RUN_TEST(test_stuck_from_the_tenth_equal_reading_on);
     RUN_TEST(test_two_sensors_are_told);
+    RUN_TEST(test_the_default_filter_behind_a_sensor_that_hung);
     return UNITY_END();
 }
