@@ -33,8 +33,8 @@ static struct {
     int32_t estimate_q8[AXES];
     int16_t lsb[AXES];
     int16_t rail_high_lsb;
-    uint16_t rate_dhz;    /* nominal */
-    uint16_t true_dhz;    /* that the filters have */
+    uint16_t rate_dhz;      /* nominal */
+    uint16_t true_dhz;      /* that the filters have */
     uint16_t looked_lsb_q4; /* the estimates in sum, a second ago */
     uint8_t calls_off;
     uint16_t flags;

@@ -297,8 +297,8 @@ static void test_a_command_does_not_call_a_lasting_fault_over(void)
     static const uint8_t faults[] = { ADXL345_FAULT_INT1_STUCK, ADXL345_FAULT_STUCK, ADXL345_FAULT_TWO_SENSORS };
     static const char *const commands[] = { "rate 50", "range 8", "rate 100" };
     for (size_t i = 0; i < sizeof faults; i++) {
-        stream_t stream =
-            faults[i] == ADXL345_FAULT_STUCK ? board_constant_stream(8000, 100.0, 5, 6, 250) : two_sensors();
+        stream_t stream = faults[i] == ADXL345_FAULT_STUCK ? board_constant_stream(8000, 100.0, 5, 6, 250)
+                                                           : two_sensors();
         board_start(&stream, 0.0, 0);
         hal_host_faults.int1_high = faults[i] == ADXL345_FAULT_INT1_STUCK;
         board_run_ms(4000);
