@@ -9,6 +9,7 @@
 #include "hal_drdy.h"
 #include "hal_host.h"
 #include "hal_i2c.h"
+#include "hal_time.h"
 #include "support_board.h"
 #include "support_rig.h"
 #include "unity.h"
@@ -18,6 +19,8 @@ enum { FIRST_DATA_EVENT = 7, LAST_DATA_EVENT = 12, EVENTS_PER_BURST = 15 };
 
 static const adxl345_config_t at_100_hz = { 1000, 16 };
 static const adxl345_config_t at_800_hz = { 8000, 16 };
+
+void hal_host_drdy_handler(void);
 
 static void begin(double rate_hz)
 {
@@ -167,15 +170,87 @@ static void test_wires_off_with_int1_high_are_a_missing_sensor(void)
             rig_pass();
             adxl345_fault_t fault = adxl345_fault();
             TEST_ASSERT_TRUE(fault == ADXL345_FAULT_NONE || fault == ADXL345_FAULT_NO_SENSOR);
-            for (unsigned i = 0; burst_failures() == 3 && i < phase; i++) {
-                rig_away(1); /* main is late at the third: the bus is free again */
-            }
+            rig_away(phase); /* a late main: the bus is free again when it looks */
         }
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
         hal_host_sensor.address = 0x53;
         rig_run_ms(100);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
     }
+}
+
+/*
+ * Two bursts were refused at their address and a third is, and is judged as a poll does it; then INT1, which flaps,
+ * begins another one before the poll looks at what the third was.
+ */
+static void until_a_burst_behind_the_last_refused_one(void)
+{
+    begin(100.0);
+    adxl345_start(&at_100_hz);
+    rig_run_ms(100);
+    rig_until_pause();
+    hal_host_sensor.address = 0x2A;
+    while (burst_failures() < 2) {
+        adxl345_poll(hal_time_us());
+        rig_away(1);
+    }
+    rig_until_burst();
+    while (burst_bus_state() == I2C_BUS_BUSY) {
+        rig_away(1);
+    }
+    rig_away(1); /* its STOP is out */
+    TEST_ASSERT_EQUAL(READING_FAILED, burst_judge());
+    TEST_ASSERT_EQUAL_UINT8(3, burst_failures());
+    hal_host_drdy_handler();
+    TEST_ASSERT_EQUAL(I2C_BUS_BUSY, burst_bus_state());
+}
+
+static void test_a_burst_behind_the_last_refused_one_does_not_hide_it(void)
+{
+    adxl345_counters_t before;
+    adxl345_counters_t after;
+    adxl345_counters(&before);
+    until_a_burst_behind_the_last_refused_one();
+    adxl345_poll(hal_time_us());
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
+    rig_run_ms(1);
+    adxl345_counters(&after);
+    /* the first two and the one behind; the verdict on the third was this test's */
+    TEST_ASSERT_EQUAL_UINT16(before.nacks + 3, after.nacks);
+    TEST_ASSERT_EQUAL_UINT16(before.bus_errors, after.bus_errors);
+    hal_host_sensor.address = 0x53;
+    rig.limit_us = 1000; /* the edge was not that of the sample */
+    rig_run_ms(100);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+}
+
+/* The sensor answers that burst, and main stops or starts anew before it has looked: its sample comes all the same. */
+static void test_a_burst_that_ended_well_when_the_bus_is_taken_is_delivered(void)
+{
+    unsigned ended = 0;
+    for (unsigned phase = 0; phase < 60; phase++) {
+        until_a_burst_behind_the_last_refused_one();
+        hal_host_sensor.address = 0x53;
+        rig.limit_us = 1000;
+        adxl345_poll(hal_time_us());
+        TEST_ASSERT_EQUAL(ADXL345_FAULTY, adxl345_phase());
+        rig_away(phase / 2);
+        bool whole = burst_bus_state() == I2C_BUS_OK;
+        ended += whole;
+        size_t latched = rig.latched_count;
+        if ((phase & 1u) != 0) {
+            adxl345_start(&at_100_hz);
+        } else {
+            adxl345_stop();
+        }
+        TEST_ASSERT_EQUAL_UINT8(whole, adxl345_queued());
+        TEST_ASSERT_EQUAL_UINT8(!whole, burst_failures());
+        rig_take_all();
+        TEST_ASSERT_TRUE(!whole || rig.taken_count == latched);
+        rig_run_ms(60);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+    }
+    TEST_ASSERT_TRUE(ended > 10 && ended < 50);
 }
 
 /* INT1 is cut and the sensor is being asked why: the read of INT_SOURCE has just been put on the bus. */
@@ -255,6 +330,8 @@ int main(void)
     RUN_TEST(test_what_follows_a_burst_that_hung_has_its_own_time);
     RUN_TEST(test_stop_at_any_moment_of_a_recovery_leaves_no_fault);
     RUN_TEST(test_wires_off_with_int1_high_are_a_missing_sensor);
+    RUN_TEST(test_a_burst_behind_the_last_refused_one_does_not_hide_it);
+    RUN_TEST(test_a_burst_that_ended_well_when_the_bus_is_taken_is_delivered);
     RUN_TEST(test_a_sensor_lost_while_it_is_asked_has_no_data);
     RUN_TEST(test_ones_in_the_source_are_no_data);
     RUN_TEST(test_stop_and_start_while_the_sensor_is_asked_deliver_first);
