@@ -125,7 +125,7 @@ static void test_stop_at_any_moment_of_a_recovery_is_silent(void)
     }
 }
 
-/* A line is low from a moment in a burst on, until main backs off; stop then: the sensor, which measures, is to rest. */
+/* A line is low until main backs off; stop then: the sensor still measures, and is to rest. */
 static void test_stop_between_two_attempts_puts_the_sensor_to_rest(void)
 {
     for (unsigned phase = 0; phase < 60; phase++) {

@@ -196,7 +196,7 @@ static void test_a_fault_for_which_there_is_no_room_is_told_later(void)
     TEST_ASSERT_EQUAL_UINT64(0, hal_host_watchdog_bite());
 }
 
-/* The line is slow, and one fault ends and another one passes while it carries a text: each is told with its own numbers. */
+/* While a slow line carries a text one fault ends and another one passes: each is told with its own numbers. */
 static void test_the_end_of_a_fault_keeps_its_numbers_until_it_is_told(void)
 {
     unsigned code, ms[2], lost[2];
