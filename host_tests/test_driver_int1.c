@@ -83,12 +83,45 @@ static void test_times_follow_while_int1_is_stuck(void)
     for (int percent = -9; percent <= 9; percent += 18) {
         stream_for_ms(300);
         hal_host_faults.int1_high = true;
-        rig.limit_us = percent > 0 ? 33 * 900 : 500; /* times that lag show after 33 periods */
+        rig.limit_us = 1000; /* a sample that is read before the sensor was found empty is 900 us off */
         period_start(10000u - (uint32_t)(percent * 100));
         rig_run_ms(3000);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
     }
+}
+
+/* The same from the start, so that the period is never measured, with a sensor that is 5 % slow. */
+static void test_times_of_a_slow_sensor_follow_while_int1_is_stuck(void)
+{
+    static const adxl345_config_t at_12_5_hz = { 125, 16 };
+    rig_begin(12.5, (hal_host_config_t){ .ppm = -50000.0 });
+    rig.limit_us = 500;
+    hal_host_faults.int1_high = true;
+    adxl345_start(&at_12_5_hz);
+    rig_run_ms(10e3);
+    TEST_ASSERT_UINT32_WITHIN(3, 118, (uint32_t)rig.taken_count);
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(120));
+}
+
+/* INT1 was stuck once and is well; it falls silent now: the first sample read by the clock has its own time. */
+static void test_an_int1_that_was_stuck_once_moves_no_later_stamp(void)
+{
+    stream_for_ms(300);
+    rig.limit_us = 1000; /* a burst and a pass, and by the clock */
+    hal_host_faults.int1_high = true;
+    rig_run_ms(100);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
+    hal_host_faults.int1_high = false;
+    rig_run_ms(600);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+    rig_until_pause();
+    hal_host_faults.int1_cut = true;
+    rig_run_ms(60);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
+    hal_host_faults.int1_cut = false;
+    rig_run_ms(60);
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
 }
 
 /* D2 is high for ever and the sensor measures no more: that is what is told. */
@@ -233,6 +266,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_int1_stuck_high);
     RUN_TEST(test_times_follow_while_int1_is_stuck);
+    RUN_TEST(test_times_of_a_slow_sensor_follow_while_int1_is_stuck);
+    RUN_TEST(test_an_int1_that_was_stuck_once_moves_no_later_stamp);
     RUN_TEST(test_int1_stuck_high_on_a_sensor_without_data);
     RUN_TEST(test_what_was_shown_before_the_first_sample_is_none);
     RUN_TEST(test_edges_for_nothing_bring_no_sample);

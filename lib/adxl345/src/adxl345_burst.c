@@ -206,9 +206,9 @@ bool burst_read(bool is_new)
     return start;
 }
 
-bool burst_drain(void)
+bool burst_drain(bool is_new)
 {
-    return hal_drdy_high() && burst_read(false);
+    return hal_drdy_high() && burst_read(is_new);
 }
 
 /* One cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */

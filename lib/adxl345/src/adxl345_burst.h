@@ -44,13 +44,13 @@ bool burst_read_register(uint8_t reg);
 i2c_bus_state_t burst_bus_state(void);
 uint8_t burst_register_value(void);
 
-/* A sample waits (INT1 high), bus and queue are free: start reading it. True when a burst was started. */
-bool burst_drain(void);
-
 /*
- * The same whatever INT1 says, for a sensor that has said by its registers that a sample waits; is_new: one that was
- * not there a moment ago, else the next in the FIFO.
+ * A sample waits (INT1 high), bus and queue are free: start reading it. is_new: one that was not there a moment ago,
+ * else the next in the FIFO. True when a burst was started.
  */
+bool burst_drain(bool is_new);
+
+/* The same whatever INT1 says, for a sensor that has said by its registers that a sample waits. */
 bool burst_read(bool is_new);
 
 /*

@@ -90,6 +90,7 @@ static HAL_APART uint32_t patience_us(adxl345_driver_t *d)
 static void sample_arrived(adxl345_driver_t *d)
 {
     d->seen_good = integrity_good();
+    d->was_empty = false;
     d->first_sample_seen = true;
     d->alternate_tried = false;
     d->back_off_ms = BACK_OFF_MIN_MS;
@@ -163,12 +164,11 @@ void stream_poll(adxl345_driver_t *d)
         look_for_sample(d);
     }
     if (d->timed != TIMED_WANTED) {
-        if (burst_drain()) {
+        if (burst_drain(d->was_empty)) {
             driver_set_limit(TRANSFER_LIMIT_MS);
         }
     } else if (burst_read(d->was_empty)) {
         d->timed = TIMED_READ;
-        d->was_empty = false;
         driver_set_limit(TRANSFER_LIMIT_MS);
     }
 }
