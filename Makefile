@@ -32,7 +32,7 @@ deps:
 U := $(B)/uno
 AVR_CC      := avr-gcc
 # what makes the smallest image with avr-gcc 5.4.0 (and no table of a switch in RAM); the filters keep their speed
-AVR_SMALL   := -Os -flto -mrelax -mcall-prologues -maccumulate-args -fshort-enums -fno-inline-small-functions \
+AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -maccumulate-args -fshort-enums -fno-inline-small-functions \
                -fno-tree-dominator-opts -fno-tree-fre -fno-tree-switch-conversion -fno-forward-propagate -fno-tree-loop-im \
                -fno-tree-loop-ivcanon -fno-tree-copy-prop
 AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -gdwarf-2 -ffunction-sections -fdata-sections $(WARNINGS) \

@@ -9,6 +9,7 @@
 #include "coast.h"
 #include "commands.h"
 #include "counters.h"
+#include "fx.h"
 #include "hal_drdy.h"
 #include "hal_irq.h"
 #include "hal_led.h"
@@ -35,8 +36,7 @@
  * What hung so often in a row, each time within SETTLED_S of its start, hangs again: it gets the lowest rate, at which
  * the processor has most time for everything else. Settings are not kept over a reset, so there are no others to undo.
  */
-enum { RESETS_TO_SAFE = 3, SETTLED_S = 10 };
-enum { WHOLE_LOOP = 0x80 };
+enum { RESETS_TO_SAFE = 3, SETTLED_S = 10, WHOLE_LOOP = 0x80 };
 
 typedef enum {
     STAGE_BANNER, /* banner and header are going out */
@@ -264,7 +264,7 @@ static bool fill_gap(void)
 }
 
 /* Begins the way of the next sample. One that is in the queue came before this pass. */
-static bool next_sample(void)
+FX_NOINLINE bool next_sample(void)
 {
     adxl345_sample_t sample;
     row_due = coast_due(pass_us) && fill_gap();

@@ -11,6 +11,7 @@
 
 enum { AXES = 3, WARM_ROWS = 5 };
 enum { CALLS_OFF = 5, STILL_LSB_Q4 = 72 }; /* pipeline_retime; 1 degree */
+enum { AWAY_SAMPLES = 2 };                 /* on end, away from what was held: no bad reading */
 
 typedef enum {
     WORK_NONE,
@@ -20,18 +21,21 @@ typedef enum {
     WORK_CHANGE  /* each axis gets its new filter */
 } work_t;
 
-enum { AWAY_SAMPLES = 2 }; /* on end, away from what was held: no bad reading */
-
 pass_t pass;
 
+typedef struct {
+    int32_t estimate_q8;
+    int16_t lsb;
+    uint8_t away; /* after a hold: 1, and 1 more for each sample that lies away from what was held; else 0 */
+    noise_t noise;
+    filter_any_t filter;
+} axis_t;
+
 static struct {
-    filter_any_t filter[AXES];
-    noise_t noise[AXES];
+    axis_t axes[AXES];
     tilt_t tilt;
     tilt_t raw_tilt;
     uint32_t last_us;
-    int32_t estimate_q8[AXES];
-    int16_t lsb[AXES];
     int16_t rail_high_lsb;
     uint16_t rate_dhz;      /* nominal */
     uint16_t true_dhz;      /* that the filters have */
@@ -40,7 +44,6 @@ static struct {
     uint16_t flags;
     uint16_t kept_flags; /* of the samples before the one under way */
     uint8_t passed;      /* times 25 ms, between the newest two steps of a silence */
-    uint8_t away[AXES];  /* after a hold: 1, and 1 more for each sample that lies away from what was held; else 0 */
     uint8_t warm_rows;
     uint8_t work; /* work_t */
     uint8_t axis; /* that the work goes on with */
@@ -51,9 +54,22 @@ static struct {
     bool has_sample;
 } pipe;
 
-FX_NOINLINE void keep_estimate(uint8_t axis, int32_t x_lsb_q16)
+/* The axis that the work goes on with. */
+static axis_t *axis_now(void)
 {
-    pipe.estimate_q8[axis] = (x_lsb_q16 + 128) >> 8;
+    axis_t *axis = &pipe.axes[pipe.axis];
+    FX_FENCE_OF(axis); /* else its address is computed anew at each use */
+    return axis;
+}
+
+FX_NOINLINE void keep_estimate(axis_t *axis, int32_t x_lsb_q16)
+{
+    axis->estimate_q8 = (x_lsb_q16 + 128) >> 8;
+}
+
+static int16_t estimate_lsb(const axis_t *axis)
+{
+    return (int16_t)((axis->estimate_q8 + 128) >> 8);
 }
 
 void pipeline_reset(void)
@@ -90,7 +106,8 @@ static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool 
 
 FX_ONCE void pipeline_retime(uint32_t period_us)
 {
-    uint16_t now_lsb_q4 = (uint16_t)((pipe.estimate_q8[0] + pipe.estimate_q8[1] + pipe.estimate_q8[2]) >> 4);
+    int32_t sum_q8 = pipe.axes[0].estimate_q8 + pipe.axes[1].estimate_q8 + pipe.axes[2].estimate_q8;
+    uint16_t now_lsb_q4 = (uint16_t)(sum_q8 >> 4);
     uint16_t moved_lsb_q4 = (uint16_t)(now_lsb_q4 - pipe.looked_lsb_q4 + STILL_LSB_Q4);
     pipe.looked_lsb_q4 = now_lsb_q4;
     uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
@@ -109,29 +126,24 @@ FX_ONCE void pipeline_retime(uint32_t period_us)
 static bool change_axis(void)
 {
     enum { STEP_INIT, STEP_NOISE, STEP_RESET };
-    uint8_t axis = pipe.axis;
-    filter_any_t *filter = &pipe.filter[axis];
-    noise_t *noise = &pipe.noise[axis];
-    FX_FENCE_OF(filter); /* else both addresses are computed anew at each use */
-    FX_FENCE_OF(noise);
+    axis_t *axis = axis_now();
     uint8_t step = pipe.step++;
     if (step == STEP_INIT) {
         if (pipe.new_noise) {
-            noise_init(noise, pipe.rate_dhz, axis == 2);
+            noise_init(&axis->noise, pipe.rate_dhz, pipe.axis == 2);
         }
-        filter_any_start(filter, (filter_kind_t)pipe.new_kind, pipe.true_dhz);
+        filter_any_start(&axis->filter, (filter_kind_t)pipe.new_kind, pipe.true_dhz);
         return false;
     }
     if (step == STEP_NOISE) {
-        filter_any_set_noise(filter, noise_r_lsb2_q8(noise));
+        filter_any_set_noise(&axis->filter, noise_r_lsb2_q8(&axis->noise));
         if (pipe.has_sample) {
             return false;
         }
-        pipe.away[axis] = 0;
+        axis->away = 0;
         return true;
     }
-    int16_t lsb = (int16_t)((pipe.estimate_q8[axis] + 128) >> 8);
-    return !filter_any_reset_step(filter, lsb, (uint8_t)(step - STEP_RESET));
+    return !filter_any_reset_step(&axis->filter, estimate_lsb(axis), (uint8_t)(step - STEP_RESET));
 }
 
 FX_NOINLINE void change_step(void)
@@ -140,8 +152,7 @@ FX_NOINLINE void change_step(void)
         return;
     }
     pipe.step = 0;
-    pipe.axis++;
-    if (pipe.axis == AXES) {
+    if (++pipe.axis == AXES) {
         pipe.work = WORK_NONE;
         pass.limit = PASS_US / HAL_LAP_US;
     }
@@ -157,39 +168,29 @@ void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)
     begin(filter_kind, rate_dhz, range_g, pipe.has_sample);
 }
 
-static void collect_flags(uint8_t filter_flags)
-{
-    pipe.flags |= (filter_flags & FILTER_GATED) ? ROW_GATED : 0u;
-    pipe.flags |= (filter_flags & FILTER_REACQUIRED) ? ROW_REACQUIRED : 0u;
-    pipe.flags |= (filter_flags & FILTER_WARMING_UP) ? ROW_WARMING_UP : 0u;
-}
-
 FX_ONCE void pipeline_coast(uint32_t t_us)
 {
     pipe.passed = silence_step(pipe.rate_dhz);
     pipe.last_us = t_us;
-    pipe.flags |= ROW_COASTED;
-    if (silence_samples() == SILENCE_FAULT_FROM) {
-        pipe.flags |= ROW_FAULT;
-    }
+    pipeline_flag(silence_samples() == SILENCE_FAULT_FROM ? ROW_COASTED | ROW_FAULT : ROW_COASTED);
     pipe.work = WORK_COAST;
     pipe.axis = 0;
 }
 
-static void coast_axis(uint8_t axis)
+static void coast_axis(axis_t *axis)
 {
     bool holds = silence_holds();
     if (!holds) {
         if (silence_samples() == 1u) {
-            filter_any_gap(&pipe.filter[axis]);
+            filter_any_gap(&axis->filter);
         }
         for (uint8_t left = pipe.passed; left != 0; left--) {
-            filter_any_damp(&pipe.filter[axis]);
+            filter_any_damp(&axis->filter);
         }
-        keep_estimate(axis, filter_any_coast(&pipe.filter[axis]));
-        noise_gap(&pipe.noise[axis]);
+        keep_estimate(axis, filter_any_coast(&axis->filter));
+        noise_gap(&axis->noise);
     }
-    pipe.away[axis] = holds && pipe.has_sample;
+    axis->away = holds && pipe.has_sample;
 }
 
 uint32_t pipeline_newest_us(void)
@@ -198,11 +199,11 @@ uint32_t pipeline_newest_us(void)
 }
 
 /* Within 2.8 sigmas of the estimate, by the R of the noise, which is 3.5 of a healthy sensor's. */
-static bool near_estimate(uint8_t axis, int16_t lsb)
+static bool near_estimate(const axis_t *axis)
 {
-    int16_t off_lsb = (int16_t)(lsb - (int16_t)((pipe.estimate_q8[axis] + 128) >> 8));
+    int16_t off_lsb = (int16_t)(axis->lsb - estimate_lsb(axis));
     uint16_t size_lsb = (uint16_t)(off_lsb < 0 ? -off_lsb : off_lsb);
-    return fx_mul_u16(size_lsb, size_lsb) <= noise_r_lsb2_q8(&pipe.noise[axis]) >> 5;
+    return fx_mul_u16(size_lsb, size_lsb) <= noise_r_lsb2_q8(&axis->noise) >> 5;
 }
 
 /*
@@ -210,73 +211,74 @@ static bool near_estimate(uint8_t axis, int16_t lsb)
  * from it may be a bad reading: with the second on end that is not at the rail the filter begins anew, with the noise
  * as it is known. That is work of its own, amid the sample's.
  */
-static bool rejoins(uint8_t axis, int16_t lsb)
+static bool rejoins(axis_t *axis)
 {
-    if (!near_estimate(axis, lsb)) {
-        if (pipe.clipped || pipe.away[axis]++ < AWAY_SAMPLES) {
-            pipe.flags |= ROW_GATED;
+    if (!near_estimate(axis)) {
+        if (pipe.clipped || axis->away++ < AWAY_SAMPLES) {
+            pipeline_flag(ROW_GATED);
             return false;
         }
-        pipe.flags |= ROW_REACQUIRED;
+        pipeline_flag(ROW_REACQUIRED);
         pipe.work = WORK_RENEW;
         pipe.step = 0;
         pipe.new_noise = false;
         pipe.has_sample = false;
         pass.limit = PASS_CHANGING_US / HAL_LAP_US;
     }
-    pipe.away[axis] = 0;
+    axis->away = 0;
     return true;
 }
 
-static void update_axis(uint8_t axis)
+_Static_assert((int)FILTER_GATED == (int)ROW_GATED && (int)FILTER_REACQUIRED == (int)ROW_REACQUIRED, "same bits");
+
+static void update_axis(axis_t *axis)
 {
-    filter_any_t *filter = &pipe.filter[axis];
-    keep_estimate(axis, filter_any_update(filter, pipe.lsb[axis]));
-    collect_flags(filter_any_flags(filter));
+    keep_estimate(axis, filter_any_update(&axis->filter, axis->lsb));
+    uint8_t flags = filter_any_flags(&axis->filter);
+    uint8_t same = flags & (FILTER_GATED | FILTER_REACQUIRED);
+    pipeline_flag((uint16_t)((flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same));
     if (pipe.clipped) {
-        filter_any_hold(filter);
+        filter_any_hold(&axis->filter);
     }
 }
 
 /* What comes before the filter of an axis; false: it does not take the sample, or begins anew before it does. */
-static bool prepare_axis(uint8_t axis)
+static bool prepare_axis(axis_t *axis)
 {
-    int16_t lsb = pipe.lsb[axis];
+    int16_t lsb = axis->lsb;
     bool clipped = lsb >= pipe.rail_high_lsb || lsb <= (int16_t)(-pipe.rail_high_lsb - 1);
     pipe.clipped = clipped;
     if (clipped) {
-        pipe.flags |= ROW_CLIPPED;
-        filter_any_hold(&pipe.filter[axis]);
-    } else if (noise_update(&pipe.noise[axis], lsb)) {
-        filter_any_set_noise(&pipe.filter[axis], noise_r_lsb2_q8(&pipe.noise[axis]));
+        pipeline_flag(ROW_CLIPPED);
+        filter_any_hold(&axis->filter);
+    } else if (noise_update(&axis->noise, lsb)) {
+        filter_any_set_noise(&axis->filter, noise_r_lsb2_q8(&axis->noise));
     }
-    return pipe.away[axis] == 0 || (rejoins(axis, lsb) && pipe.work != WORK_RENEW);
+    return axis->away == 0 || (rejoins(axis) && pipe.work != WORK_RENEW);
 }
 
 static void count_sample(void)
 {
+    uint8_t flags = (uint8_t)pipe.flags;
     count(COUNT_SAMPLES);
-    if ((pipe.flags & (ROW_GATED | ROW_REACQUIRED | ROW_CLIPPED)) == 0) {
-        return;
-    }
-    if (pipe.flags & ROW_GATED) {
+    if (flags & ROW_GATED) {
         count(COUNT_GATED);
     }
-    if (pipe.flags & ROW_REACQUIRED) {
+    if (flags & ROW_REACQUIRED) {
         count(COUNT_REACQUIRED);
     }
-    if (pipe.flags & ROW_CLIPPED) {
+    if (flags & ROW_CLIPPED) {
         count(COUNT_CLIPPED);
     }
 }
 
 static void end_sample(void)
 {
-    if (!tilt_gravity_plausible(pipe.estimate_q8[0], pipe.estimate_q8[1], pipe.estimate_q8[2])) {
-        pipe.flags |= ROW_NOT_GRAVITY;
+    if (!tilt_gravity_plausible(pipe.axes[0].estimate_q8, pipe.axes[1].estimate_q8, pipe.axes[2].estimate_q8)) {
+        pipeline_flag(ROW_NOT_GRAVITY);
     }
     count_sample();
-    pipe.flags |= pipe.kept_flags;
+    pipeline_flag(pipe.kept_flags);
 }
 
 static bool renewed(void)
@@ -293,7 +295,7 @@ static bool renewed(void)
 /* One axis of a sample, or of one that is missing; a part of it while its filter begins anew. */
 static void axis_step(void)
 {
-    uint8_t axis = pipe.axis;
+    axis_t *axis = axis_now();
     if (pipe.work == WORK_COAST) {
         coast_axis(axis);
     } else if (pipe.work == WORK_SAMPLE ? prepare_axis(axis) : renewed()) {
@@ -301,14 +303,20 @@ static void axis_step(void)
     } else if (pipe.work == WORK_RENEW) {
         return;
     }
-    axis++;
-    pipe.axis = axis;
-    if (axis == AXES) {
+    if (++pipe.axis == AXES) {
         if (pipe.work == WORK_SAMPLE) {
             end_sample();
         }
         pipe.work = WORK_NONE;
     }
+}
+
+/* Apart: it needs every register, and most calls of pipeline_work find nothing to do. */
+FX_NOINLINE void axis_steps(void)
+{
+    do {
+        axis_step();
+    } while (pipe.work != WORK_NONE && pass_in_time());
 }
 
 bool pipeline_work(void)
@@ -318,11 +326,9 @@ bool pipeline_work(void)
     }
     if (pipe.work == WORK_CHANGE) {
         change_step();
-        return true;
+    } else {
+        axis_steps();
     }
-    do {
-        axis_step();
-    } while (pipe.work != WORK_NONE && pass_in_time());
     return true;
 }
 
@@ -345,13 +351,13 @@ void pipeline_sample(const adxl345_sample_t *sample)
     pipe.last_us = sample->t_us;
     pipe.has_sample = true;
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        pipe.lsb[axis] = sample->lsb[axis];
+        pipe.axes[axis].lsb = sample->lsb[axis];
     }
     pipe.work = WORK_SAMPLE;
     pipe.axis = 0;
 }
 
-void pipeline_flag(uint16_t flags)
+FX_ONCE void pipeline_flag(uint16_t flags)
 {
     pipe.flags |= flags;
 }
@@ -366,10 +372,10 @@ void pipeline_row(row_t *row)
 {
     row->t_us = pipe.last_us;
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        row->lsb[axis] = pipe.lsb[axis];
-        row->mg[axis] = to_mg(pipe.estimate_q8[axis]);
+        row->lsb[axis] = pipe.axes[axis].lsb;
+        row->mg[axis] = to_mg(pipe.axes[axis].estimate_q8);
     }
-    tilt_angles(&pipe.tilt, pipe.estimate_q8[0], pipe.estimate_q8[1], pipe.estimate_q8[2]);
+    tilt_angles(&pipe.tilt, pipe.axes[0].estimate_q8, pipe.axes[1].estimate_q8, pipe.axes[2].estimate_q8);
     row->roll_cdeg = pipe.tilt.roll_cdeg;
     row->pitch_cdeg = pipe.tilt.pitch_cdeg;
     row->flags = pipe.flags;
@@ -387,7 +393,8 @@ void pipeline_row_done(void)
 
 void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg)
 {
-    tilt_angles(&pipe.raw_tilt, (int32_t)pipe.lsb[0] * 256, (int32_t)pipe.lsb[1] * 256, (int32_t)pipe.lsb[2] * 256);
+    tilt_angles(&pipe.raw_tilt, (int32_t)pipe.axes[0].lsb * 256, (int32_t)pipe.axes[1].lsb * 256,
+                (int32_t)pipe.axes[2].lsb * 256);
     *roll_cdeg = pipe.raw_tilt.roll_cdeg;
     *pitch_cdeg = pipe.raw_tilt.pitch_cdeg;
 }
