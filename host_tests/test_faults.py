@@ -9,14 +9,8 @@ sys.path.insert(0, "tools")
 import faults  # noqa: E402
 import faults_runs  # noqa: E402
 import soak  # noqa: E402
+from faults_judged import result  # noqa: E402
 from system_support import FW, run_all, test  # noqa: E402
-
-
-def result(*names, **said):
-    """Of a run in which all went well but what is said."""
-    good = {"when": "1000ms", "filter_name": "kf", "hang": "", "injected": True, "recovered": True, "ms_to_good": 20.0, "lost": 0, "wrong": 0,
-            "resets": 0, "command": ""}
-    return faults_runs.Result(tuple(faults_runs.OF[name] for name in names), **(good | said))
 
 
 @test
@@ -34,7 +28,7 @@ def each_number_of_a_run_has_its_limit():
         assert not result(name, lost=2).failures() and len(result(name, lost=3).failures()) == 1, name
     assert not result("sda", lost=6).failures(), "no fault of a single transfer"
     assert result("sda", wrong=1).failures() == ["1 wrong rows"]
-    assert result("sda", resets=1).failures() == ["1 resets not asked for"]
+    assert result("sda", resets=1).failures() == ["1 resets instead of 0"]
     assert result("sda", hang="crash").failures() == ["crash"]
     assert result("sda", recovered=False).failures() == ["no good row any more"]
 
@@ -88,7 +82,7 @@ def a_kind_of_several_faults_has_each_at_its_time():
     assert kind.faults("1000.5ms")[:2] == ["1000.5ms:starve:2000", "1450.500ms:starve:2000"]
     assert faults_runs.OF["devid"].faults("xfer:3.4") == ["xfer:3.4:power:20", "xfer:3.4:devid:0:200"]
     done = faults_runs.attempt(FW, "adaptive", (kind,), ("1003ms",))
-    assert done.injected and not done.failures() and done.resets == 0, done
+    assert done.injected and not done.failures() and done.resets == done.resets_due == 4, done
 
 
 @test
@@ -132,7 +126,7 @@ def every_fault_of_a_plan_comes_and_a_run_is_judged_by_the_model():
     # the byte of x: it is altered, so the judge that looks at the model alone finds the row wrong
     assert faults_runs.attempt(FW, "kf", (faults_runs.OF["flip 1"],), (whens[5],)).wrong == 1
     done = faults_runs.attempt(FW, "kf", (faults_runs.OF["reset"],), ("1000ms",))
-    assert done.recovered and done.resets == 0 and 20 < done.ms_to_good < 600, done
+    assert done.recovered and done.resets == done.resets_due == 1 and 20 < done.ms_to_good < 600, done
 
 
 @test
@@ -163,7 +157,8 @@ def a_sample_takes_all_kinds_alike():
 
 
 def soak_stats(**said):
-    stats = {"rows": 180000, "rows_judged": 170000, "rows_wrong": 0, "rows_stale": 0, "rows_twice": 0, "t_us_steps_back": 0, "resets": 3}
+    stats = {"rows": 180000, "rows_judged": 170000, "rows_wrong": 0, "rows_stale": 0, "rows_twice": 0, "t_us_steps_back": 0, "resets": 4,
+             "sim_ms": 1.8e6, "pass_max_cycles": 16000, "rows_gap_ms": 300.0, "rows_last_good_ms": 1.8e6 - 9.0}
     for n, (fault, resets) in enumerate(soak.faults_of(600), 1):
         stats |= {f"fault_{n}": fault, f"fault_{n}_injected": 1, f"fault_{n}_recovered": 1, f"fault_{n}_worst_recovery_ms": 30.0}
     return stats | said
@@ -176,11 +171,18 @@ def soak_finds_what_went_wrong():
     for said, status, words in (({}, 7, []), ({}, 0, []), ({"rows_wrong": 2}, 7, ["wrong: 2"]), ({"rows_stale": 1}, 7, ["stale: 1"]),
                                 ({"rows_twice": 1}, 7, ["twice: 1"]), ({"t_us_steps_back": 1}, 7, ["steps_back: 1"]),
                                 ({"resets": 9}, 7, ["5 resets not asked for"]), ({"rows": 100}, 7, ["100 rows of 180000"]),
-                                ({"fault_3_worst_recovery_ms": 5001.0}, 7, ["5001 ms to a good row after " + many[2][0].split(":", 2)[2]]),
+                                ({"fault_3_worst_recovery_ms": 1011.0}, 7, ["1011 ms to a good row after " + many[2][0].split(":", 2)[2]]),
+                                ({"fault_3_worst_recovery_ms": 1010.0, "rows_gap_ms": 1010.0, "rows_last_good_ms": 1.8e6 - 1010.0}, 7, []),
+                                ({"rows_gap_ms": 1011.0}, 7, ["1011 ms without a sample's row"]),
+                                ({"rows_last_good_ms": 1.8e6 - 1011}, 7, ["last good row 1011 ms before the end"]),
+                                ({"rows_last_good_ms": None}, 7, ["no good row"]), ({"pass_max_cycles": 16001}, 7, ["a pass of 16001 cycles"]),
+                                ({"sim_ms": 1.7e6, "rows_last_good_ms": 1.7e6}, 0, ["ended after 1700000 of 1800000 ms"]),
+                                ({"resets": 2}, 7, ["2 resets asked for did not come"]),
                                 ({}, 3, ["crash: what it said"])):
         path.write_text(soak.json.dumps(soak_stats(**said)), encoding="ascii")
         row, wrong = soak.judged(0, status, "what it said", path, 1.8e6, many)
         assert wrong == words and row["resets_asked_for"] == 4, (said, wrong, row)
+    assert soak.GOOD_ROW_WITHIN_MS == 1010 and soak.judged(0, 1, "ended by a signal", path, None, many)[1] == ["crash: what it said"][1:]
     assert soak.judged(0, 2, "refused", path.with_name("none.json"), 1.8e6, many)[1] == ["simrun gave status 2 and no statistics: refused"]
 
 

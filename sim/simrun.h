@@ -27,7 +27,7 @@ enum { SERVED_KEPT = 8192 };
 /* --- exit statuses (docs: simrun --help) --- */
 typedef enum {
     EXIT_OK = 0,
-    EXIT_INTERNAL = 1, /* simrun itself failed: memory, writing a file */
+    EXIT_INTERNAL = 1, /* simrun itself failed: memory, writing a file; or a signal ended it */
     EXIT_INPUT = 2,    /* usage, or a file that cannot be read or is wrong */
     EXIT_CRASH = 3,    /* jump out of the program, access beyond RAM */
     EXIT_OPCODE = 4,   /* illegal opcode */
@@ -186,6 +186,7 @@ void faults_on_eeprom_write(uint32_t count);
 extern bool faults_watch_pc;
 void faults_on_pc(uint32_t pc);
 void faults_on_row(const row_t *row);
+bool faults_over(void);     /* some have come; none is under way, and each has had its good row */
 void faults_on_reset(void); /* of the MCU: it has its time again */
 void faults_print(FILE *json);
 void faults_warn(void); /* stderr: faults that never came */
@@ -210,6 +211,10 @@ const char *verdict_reason(void);
 void rows_take(const row_t *row);
 size_t rows_count(void);
 void rows_print(FILE *json);
+
+/* --- good rows go on (simrun_flow.c) --- */
+void flow_on_row(const row_t *row); /* before the faults hear of the row */
+void flow_print(FILE *json);
 
 /* --- statistics --- */
 extern uint64_t stats_slept;       /* cycles asleep */

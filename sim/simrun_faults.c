@@ -336,6 +336,19 @@ void faults_on_row(const row_t *row)
     }
 }
 
+bool faults_over(void)
+{
+    bool any = false;
+    for (size_t i = 0; i < fault_count; i++) {
+        const fault_t *fault = &faults[i];
+        if (fault->active || fault->awaits_byte || fault->awaits_row) {
+            return false;
+        }
+        any = any || fault->injected != 0;
+    }
+    return any;
+}
+
 void faults_print(FILE *json)
 {
     for (size_t i = 0; i < fault_count; i++) {

@@ -155,7 +155,7 @@ static void load_boot_loader(void)
     avr_regbit_set(mcu, mcu->reset_flags.extrf);
 }
 
-/* A run that a person ends keeps its files. */
+/* A run that is ended keeps its files, and says what it has seen. */
 static void on_signal(int number)
 {
     (void)number;
@@ -191,10 +191,8 @@ void machine_start(void)
     random_state = options.seed * 2654435769u; /* a small seed begins with small numbers, below every chance */
     max_cycle = options.max_ms > 0.0 ? (uint64_t)(options.max_ms * CYCLES_PER_MS) : NEVER;
     interactive = options.pty || options.gdb_port != 0;
-    if (interactive) {
-        (void)signal(SIGINT, on_signal);
-        (void)signal(SIGTERM, on_signal);
-    }
+    (void)signal(SIGINT, on_signal);
+    (void)signal(SIGTERM, on_signal);
     avr_global_logger_set(on_log);
     load_program();
     stack_paint();
@@ -291,9 +289,8 @@ static bool step(uint64_t chunk)
         if (mcu->interrupt_state != 0) {
             avr_service_interrupts(mcu);
         }
-        if (next_timer() <= mcu->cycle) {
-            avr_cycle_timer_process(
-                mcu); /* the entry took time: simavr's timer drops a compare it sees 9 cycles late */
+        if (next_timer() <= mcu->cycle) { /* the entry took time: simavr drops a compare it sees 9 cycles late */
+            avr_cycle_timer_process(mcu);
         }
     }
     return true;
@@ -337,6 +334,9 @@ exit_status_t machine_run(const char **reason)
     static char text[512];
     run();
     stopping = true;
+    if (asked_to_end && !interactive) {
+        machine_fail(EXIT_INTERNAL, "ended by a signal");
+    }
     if (failure == EXIT_OK && resets_count() != options.expect_resets) {
         failure = EXIT_RESETS;
         snprintf(text, sizeof text, "%u resets of the MCU, %u expected (--expect-resets)", (unsigned)resets_count(),

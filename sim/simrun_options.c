@@ -149,8 +149,9 @@ static const char help_text[] =
     "The run ends 20 ms after the stream, when the UART has been silent for 30 ms (2 s at most); with --pty or --gdb "
     "Ctrl-C\n"
     "ends it too.\n"
-    "Exit status: 0 ran to the end; 1 simrun failed; 2 usage or input; 3 crash; 4 illegal opcode; 5 stack overrun;\n"
-    "6 UART overrun; 7 unexpected number of resets; 8 firmware slept with interrupts off;\n"
+    "Exit status: 0 ran to the end; 1 simrun failed, or a signal ended it; 2 usage or input; 3 crash;\n"
+    "4 illegal opcode; 5 stack overrun; 6 UART overrun; 7 unexpected number of resets;\n"
+    "8 firmware slept with interrupts off;\n"
     "9 without --max-ms: the firmware did not use the sensor for 20 s; 10 --judge: a row is not right.\n";
 
 static void refuse(const char *format, ...) __attribute__((format(printf, 1, 2), noreturn));

@@ -19,7 +19,8 @@ static size_t row_count, gated, coasted, faulty;
 static row_t first, last;
 static size_t first_number; /* of the sample of the first row, in the whole run */
 static uint64_t first_cycle;
-static class_t all, measured; /* measured: rows that are no prediction */
+static class_t measured; /* rows that are no prediction */
+static uint32_t first_resets;
 static uint32_t steps[STEPS];
 
 /* How many samples were latched until then. */
@@ -64,11 +65,17 @@ static void extend(class_t *rows, const row_t *row)
     rows->samples = number > first_number ? number - first_number : 0;
 }
 
+static uint32_t resets_so_far(void)
+{
+    return machine_resets() + machine_boot_resets();
+}
+
 void rows_take(const row_t *row)
 {
     if (row_count == 0) {
         stats_streaming_begins();
         find_first(row);
+        first_resets = resets_so_far();
     } else {
         uint32_t step = (row->t_us - last.t_us + STEP_UNIT_US / 2) / STEP_UNIT_US;
         steps[step < STEPS ? step : STEPS - 1]++;
@@ -78,7 +85,6 @@ void rows_take(const row_t *row)
     gated += (row->flags & FLAG_GATED) != 0;
     coasted += (row->flags & FLAG_COASTED) != 0;
     faulty += (row->flags & FLAG_FAULT) != 0;
-    extend(&all, row);
     if ((row->flags & (FLAG_COASTED | FLAG_FAULT)) == 0) {
         extend(&measured, row);
     }
@@ -106,19 +112,29 @@ static unsigned every_seen(void)
 }
 
 /*
- * Samples served from that of the first row to that of the last one that is no prediction, less those the rows stand
- * for. Only for a run at one rate without resets or faults: the file of --served is the judge.
+ * Where only every Nth sample has a row, nobody tells of those between two rows whether they came or were coasted; and
+ * a reset begins the rows' clock anew.
  */
-static size_t lost(unsigned every)
+static bool lost_is_known(unsigned every)
 {
-    const class_t *rows = every > 1 ? &all : &measured;
-    size_t shown = rows->rows < 2 ? rows->samples : (rows->rows - 1) * every;
-    return rows->samples > shown ? rows->samples - shown : 0;
+    return every == 1 && resets_so_far() == first_resets;
+}
+
+/* Samples served from that of the first row to that of the last one that is no prediction, less those rows. */
+static size_t lost(void)
+{
+    size_t shown = measured.rows < 2 ? measured.samples : measured.rows - 1;
+    return measured.samples > shown ? measured.samples - shown : 0;
 }
 
 void rows_print(FILE *json)
 {
     unsigned every = every_seen();
-    fprintf(json, "  \"rows\": %zu,\n  \"every\": %u,\n  \"lost\": %zu,\n", row_count, every, lost(every));
+    fprintf(json, "  \"rows\": %zu,\n  \"every\": %u,\n", row_count, every);
+    if (lost_is_known(every)) {
+        fprintf(json, "  \"lost\": %zu,\n", lost());
+    } else {
+        fputs("  \"lost\": null,\n", json);
+    }
     fprintf(json, "  \"gated\": %zu,\n  \"coasted\": %zu,\n  \"fault_rows\": %zu,\n", gated, coasted, faulty);
 }

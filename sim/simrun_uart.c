@@ -122,6 +122,7 @@ static void on_line(void)
         header_seen = true;
     } else if (isdigit((unsigned char)line[0]) && parse_row(&row)) {
         rows_take(&row);
+        flow_on_row(&row);
         faults_on_row(&row);
         verdict_on_row(&row);
     }

@@ -1,4 +1,4 @@
-"""What the fault campaign does in one run of simrun, and how the run is judged; the campaign itself is tools/faults.py."""
+"""What the fault campaign does in one run of simrun; how the run is judged is in tools/faults_judge.py, the campaign in tools/faults.py."""
 import csv
 import dataclasses
 import itertools
@@ -10,6 +10,9 @@ import subprocess
 import sys
 import tempfile
 import threading
+
+import faults_judge
+from faults_judge import GATED_ROWS, LINE_MS, PASS_CYCLES, Result
 
 SIMRUN = pathlib.Path("build/sim/simrun")
 REST, MOVING = "sim/streams/rest-2lsb.csv", "sim/streams/tilt-slow.csv"
@@ -41,6 +44,10 @@ class Kind:
     stream: str = None  # where it is not that of the rate
     base: str = ""  # of one at another rate: the kind's name at its own
     filter_name: str = "adaptive"  # where the campaign has it in one only; None: nobody asks for one
+    pass_cycles: int = PASS_CYCLES  # the longest pass of the main loop
+    row_ms: float = 0  # from row to row at the end, where it is not that of the rate
+    said_ms: float = LINE_MS  # what the firmware says at once ahead of a row, as long as it takes
+    gated_rows: int = GATED_ROWS  # that a filter may refuse, one after another
 
     def faults(self, when):
         return [f"{later(when, what)}:{what.rpartition(' ')[2]}" for what in self.what]
@@ -76,19 +83,26 @@ def typed(name, what, *lines, begin_ms=BEGIN_MS - 20, every_ms=45, **more):
 
 TYPED = [
     typed("typed: filters", "scl:40", "filter kf", "filter sprf", "filter synth", "filter adaptive", "filter", "filter none", "status",
-          filter_name=None),
+          filter_name=None, said_ms=40),  # the status is 0.4 kB
     typed("typed: settings", "noint:300", "rate 200", "rate", "rate 3", "rate 99999999", "range 4", "range 3", "range", "every 3", "every 0", "every",
-          "rate 800", "status", "baud 250000", "baud 1", "baud 9600", "baud", "rate 800", "every"),
+          "rate 800", "status", "baud 250000", "baud 1", "baud 9600", "baud", "rate 800", "every",
+          row_ms=75, said_ms=260),  # every 60 at 800 Hz, and five replies, 250 characters at 9600 baud
     typed("typed: words", "unplug:300", "help", "status", "st\x07atus", "x" * 90, "HELP 3", "go now", "stop", "go", "mode plot", "mode", "mode csv",
-          "mode x", "status", "help"),
+          "mode x", "status", "help", said_ms=110),  # the help is 1.1 kB
     typed("typed: stop", "power:50", "stop", "status", "go", "stop", "go", "stop", "stop", "range 2", "go", every_ms=11),
     typed("typed: plot", "sda:60", "mode plot", "status", "mode csv", every_ms=400, filter_name="sprf"),
     typed("typed: kf", "frozen:200", "filter kf", "filter synth", every_ms=300, filter_name="synth"),
     typed("upside down", "nack", stream="sim/streams/through-roll-180.csv"), typed("upright", "nackdata", stream="sim/streams/through-pitch-90.csv"),
-    *(typed(f"outliers, {name}", "nack", stream="sim/streams/steps-outliers.csv", filter_name=name) for name in ("adaptive", "sprf", "synth")),
-    *(typed(f"vibration, {name}", "buserr", stream="sim/streams/vibration.csv", filter_name=name) for name in ("sprf", "synth")),
+    # what these streams do to one axis, the filter sees on the others at another time
+    *(typed(f"outliers, {name}", "nack", stream="sim/streams/steps-outliers.csv", filter_name=name, gated_rows=3 * GATED_ROWS)
+      for name in ("adaptive", "sprf", "synth")),
+    *(typed(f"vibration, {name}", "buserr", stream="sim/streams/vibration.csv", filter_name=name, gated_rows=3 * GATED_ROWS)
+      for name in ("sprf", "synth")),
+    # a byte every 160 cycles, and its handler takes 66 of them: the one exception to 1 ms of main loop, 1.4 ms
+    typed("flood at 1000000 baud", "rxflood:200", "baud 1000000", begin_ms=900, pass_cycles=22400),
     # behind one another; the fourth start in a row by the watchdog is with safe settings
-    typed("starve again", ("starve:2000", "@450 starve:2000", "@900 starve:2000", "@1350 starve:2000"), "status", begin_ms=3300, resets=4),
+    typed("starve again", ("starve:2000", "@450 starve:2000", "@900 starve:2000", "@1350 starve:2000"), "status", begin_ms=3300, resets=4,
+          row_ms=80),
 ]
 OF = {kind.name: kind for kind in KINDS}
 # the same at other rates; below 100 Hz the first good row may take three periods more
@@ -120,6 +134,28 @@ def folder():
     return pathlib.Path(LOCAL.folder.name)
 
 
+RUNNING = set()
+
+
+def called(command):
+    """(exit status, stderr) of simrun; end_runs() ends it."""
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        RUNNING.add(process)
+        try:
+            said = process.communicate(timeout=600)[1]
+            return process.returncode, said
+        except subprocess.TimeoutExpired:
+            process.kill()
+            raise
+        finally:
+            RUNNING.discard(process)
+
+
+def end_runs():
+    for process in list(RUNNING):
+        process.terminate()
+
+
 def simulate(firmware, filter_name, *options, stream=None, max_ms=RUN_MS, rate=100, profile=None):
     """(exit status, what simrun said, --stats) of one run; the rows lie in folder()/out.csv."""
     base = folder()
@@ -130,12 +166,12 @@ def simulate(firmware, filter_name, *options, stream=None, max_ms=RUN_MS, rate=1
     command += ["--rate", f"{rate:g}"] if rate != 100 else []
     command += ["--profile", base / "profile.csv"] if profile is not None else []
     (base / "stats.json").unlink(missing_ok=True)
-    done = subprocess.run([str(c) for c in command + list(options)], capture_output=True, text=True, timeout=600)
+    status, said = called([str(c) for c in command + list(options)])
     if not (base / "stats.json").is_file():
-        raise Fault(f"simrun gave status {done.returncode} and no statistics: {done.stderr.strip()[:300]}")
+        raise Fault(f"simrun gave status {status} and no statistics: {said.strip()[:300]}")
     if profile is not None:
         profile.update(line.partition(",")[0] for line in (base / "profile.csv").read_text(encoding="ascii").splitlines()[1:])
-    return done.returncode, done.stderr, json.loads((base / "stats.json").read_text(encoding="ascii"))
+    return status, said, json.loads((base / "stats.json").read_text(encoding="ascii"))
 
 
 def noise_at(rate, memory={}):
@@ -161,7 +197,7 @@ def bus_bytes(firmware, filter_name, rate):
     short = simulate(firmware, filter_name, max_ms=BEGIN_MS, rate=rate)[2]
     long = simulate(firmware, filter_name, max_ms=BEGIN_MS + 500, rate=rate)[2]
     reads = long["i2c_transfers"] - short["i2c_transfers"]
-    count = round((long["i2c_bytes"] - short["i2c_bytes"]) / reads)
+    count = round((long["i2c_bytes"] - short["i2c_bytes"]) / max(1, reads))
     if not 9 <= count <= 20:
         raise Fault(f"a read of a sample has {count} bytes on the bus: does the firmware stream?")
     return [f"xfer:{short['i2c_transfers'] + 2}.{byte}" for byte in range(1, count + 1)]
@@ -198,34 +234,6 @@ def moments(kind, count, seed):
 
 # --- one run ----------------------------------------------------------------------------------------------------------
 
-@dataclasses.dataclass
-class Result:
-    kinds: tuple
-    when: str
-    filter_name: str
-    hang: str  # what went wrong with the whole run, empty: nothing
-    injected: bool
-    recovered: bool
-    ms_to_good: float
-    lost: int
-    wrong: int
-    resets: int  # beyond those that were asked for
-    command: str
-
-    def failures(self):
-        """Each as a few words."""
-        limit = max(kind.limit_ms for kind in self.kinds)
-        detectable = all(kind.detectable for kind in self.kinds)
-        lost_max = self.kinds[0].lost_max if len(self.kinds) == 1 else None
-        said = [self.hang] if self.hang else []
-        said += ["no good row any more"] if self.injected and not self.recovered and not self.hang else []
-        said += [f"{self.ms_to_good:.0f} ms to the first good row (limit {limit:.0f})"] if self.recovered and self.ms_to_good > limit else []
-        said += [f"{self.wrong} wrong rows"] if detectable and self.wrong else []
-        said += [f"{self.resets} resets not asked for"] if self.resets else []
-        said += [f"{self.lost} samples lost (limit {lost_max})"] if lost_max is not None and self.lost > lost_max else []
-        return said
-
-
 def ends_of(stats):
     """(end in ms, ms from it to the first good row or None) of every fault that came."""
     for n in itertools.count(1):
@@ -236,23 +244,42 @@ def ends_of(stats):
             yield stats[f"fault_{n}_last_end_ms"], stats[f"fault_{n}_worst_recovery_ms"] if good else None
 
 
-def attempt(firmware, filter_name, kinds, whens, profile=None):
-    """One run with these kinds, each beginning at its WHEN."""
-    rate = max(kind.rate for kind in kinds)
-    faults = [fault for kind, when in zip(kinds, whens) for fault in kind.faults(when)]
-    expected = sum(kind.resets for kind in kinds)
-    options = [word for fault in faults for word in ("--fault", fault)] + ["--expect-resets", expected]
+def options_of(kinds, whens):
+    """What a run with these kinds, each beginning at its WHEN, gives to simrun."""
+    options = [word for kind, when in zip(kinds, whens) for fault in kind.faults(when) for word in ("--fault", fault)]
+    options += ["--expect-resets", sum(kind.resets for kind in kinds)]
     options += [word for kind in kinds for typed in kind.typed for word in ("--cmd", typed)]
-    options += ["--in", kinds[0].stream] if kinds[0].stream else []
-    longer_ms = 1500 if expected > 1 else 0
-    status, said, stats = simulate(firmware, filter_name, *options, rate=rate, profile=profile, max_ms=RUN_MS + longer_ms)
+    return options + (["--in", kinds[0].stream] if kinds[0].stream else [])
+
+
+def attempt(firmware, filter_name, kinds, whens, profile=None):
+    """One run, judged. One that dies is a failure of its own: the others go on."""
+    options = options_of(kinds, whens)
+    max_ms = RUN_MS + (1500 if sum(kind.resets for kind in kinds) > 1 else 0)
+    command = " ".join(map(str, options))
+    try:
+        done = simulate(firmware, filter_name, *options, rate=max(kind.rate for kind in kinds), profile=profile, max_ms=max_ms)
+        return judged(filter_name, kinds, whens, max_ms, command, *done)
+    except Exception as problem:
+        return Result(kinds, " + ".join(whens), filter_name, f"the run died: {type(problem).__name__}: {str(problem)[:200]}", injected=False,
+                      recovered=False, ms_to_good=0.0, lost=None, wrong=0, resets=0, resets_due=None, pass_cycles=0, calm_gap_ms=0.0,
+                      since_good_ms=None, command=command)
+
+
+def judged(filter_name, kinds, whens, max_ms, command, status, said, stats):
+    """What simrun gave for a run, as the judge looks at it."""
     last_line = said.strip().splitlines()[-1] if said.strip() else "?"
     hang = "" if status in (0, 7) else f"{STATUS_WORDS.get(status, status)}: {last_line}"
+    if not hang and stats["sim_ms"] < max_ms - 1:
+        hang = f"ended after {stats['sim_ms']:.0f} of {max_ms:.0f} ms"
     ends = list(ends_of(stats))
     ms = max(ends, key=lambda end: end[0])[1] if ends else None
     wrong = stats["rows_wrong"] + stats["rows_stale"] + stats["rows_twice"] + stats["t_us_steps_back"]
-    return Result(kinds, " + ".join(whens), filter_name, hang, bool(ends), bool(ends) and ms is not None, ms or 0.0, stats["lost"], wrong,
-                  max(0, stats["resets"] - expected), " ".join(map(str, options)))
+    last_ms = stats["rows_last_good_ms"]
+    return Result(kinds, " + ".join(whens), filter_name, hang, injected=bool(ends), recovered=bool(ends) and ms is not None, ms_to_good=ms or 0.0,
+                  lost=stats["lost"], wrong=wrong, resets=stats["resets"], resets_due=faults_judge.resets_due(kinds, whens),
+                  pass_cycles=stats["pass_max_cycles"], calm_gap_ms=stats["rows_calm_gap_ms"],
+                  since_good_ms=None if last_ms is None else stats["sim_ms"] - last_ms, command=command)
 
 
 # --- values that no firmware can see to be wrong ----------------------------------------------------------------------
@@ -304,6 +331,6 @@ def seeded_pairs(count, seed):
             yield (a, b), tuple(f"{BEGIN_MS + source.uniform(0, 100):.3f}ms" for _ in range(2))
 
 
-def need(path, how):
+def need(path, how, program="faults"):
     if not pathlib.Path(path).is_file():
-        sys.exit(f"faults: there is no {path}: {how}")
+        sys.exit(f"{program}: there is no file {path}: {how}")

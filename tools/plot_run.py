@@ -224,7 +224,7 @@ def percent(part, whole):
 def summary_lines(result, stats, cut):
     unscored = int(np.sum(result.warming | result.no_sample))
     known = [("samples served", "samples_served"), ("lost", "lost"), ("resets", "resets")]
-    head = [f"rows {result.rows}"] + [f"{label} {stats[key]}" for label, key in known if key in stats]
+    head = [f"rows {result.rows}"] + [f"{label} {stats[key]}" for label, key in known if stats.get(key) is not None]
     head.append(f"gated {percent(np.sum(result.gated), result.rows)}")
     if isinstance(stats.get("cpu_load"), (int, float)):
         head.append(f"CPU load {100.0 * stats['cpu_load']:.1f} %")

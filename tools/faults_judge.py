@@ -1,0 +1,103 @@
+"""How the fault campaign judges one run and a whole campaign: every limit, and which kind of fault has another one (a field of its Kind)."""
+import dataclasses
+
+PASS_CYCLES = 16000  # 1 ms of main loop at 16 MHz
+LINE_MS = 8  # a row waits until the line ahead of it is out: 90 characters at 115200 baud
+# samples that a filter refuses at most, one after another, before it restarts from them (lib/filters/src/reacquire.h: default)
+GATED_ROWS = 5
+PHASES_AT_LEAST, PAIR_PHASES_AT_LEAST = 50, 5
+# issue 6, item 6: what it names, and the kinds that are it
+ISSUE = {
+    "unplug and plug": ("unplug",), "power cycle": ("power",), "SDA low": ("sda",), "SCL low": ("scl",),
+    "slave hung inside a byte": ("hang", "hang a byte"), "arbitration lost": ("arb",), "bus error": ("buserr",), "address NACK": ("nack",),
+    "data NACK": ("nackdata",), "wrong DEVID": ("devid",), "frozen data": ("frozen",), "missing data-ready": ("noint",),
+    "storming data-ready": ("storm",), "torn burst": ("torn",), "single bit flips": ("flip 1",), "double bit flips": ("flip 2",),
+    "value noise": ("noise",), "doubled axis": ("double",), "FIFO overrun": ("overrun",), "UART RX garbage flood": ("rxflood",),
+    "TX back-pressure": ("txstall",), "watchdog starvation": ("starve",), "ODR +-5 %": ("odr fast", "odr slow"),
+}
+
+
+def row_ms(kinds):
+    """From row to row when all is over. Settings are not saved: after a reset they are those of the start, 100 Hz."""
+    if kinds[0].row_ms:
+        return kinds[0].row_ms
+    rate = 100 if any(kind.resets for kind in kinds) else max(kind.rate for kind in kinds)
+    every = 2 if rate > 400 else 1  # what 500,000 baud carry
+    return 1000 * every / rate
+
+
+def resets_due(kinds, whens):
+    """
+    How many resets there have to be. Each kind says for itself; of a pair, a reset ends the starvation before the watchdog has seen its
+    250 ms of it, when it comes into it: None where that cannot be known, because the reset comes about as late as the watchdog barks.
+    """
+    due = sum(kind.resets for kind in kinds)
+    names = [kind.name for kind in kinds]
+    if due < 2 or len(kinds) < 2 or "starve" not in names:
+        return due
+    begins = names.index("starve")
+    later_ms = float(whens[1 - begins][:-2]) - float(whens[begins][:-2])
+    return due if later_ms < 0 else due - 1 if later_ms < 200 else None
+
+
+@dataclasses.dataclass
+class Result:
+    kinds: tuple
+    when: str
+    filter_name: str
+    hang: str  # what went wrong with the whole run, empty: nothing
+    injected: bool
+    recovered: bool
+    ms_to_good: float
+    lost: int  # None: not known
+    wrong: int
+    resets: int
+    resets_due: int  # None: not known
+    pass_cycles: int
+    calm_gap_ms: float  # longest time between two rows that show a sample, when every fault was over
+    since_good_ms: float  # from the last good row to the end of the run; None: there was none
+    command: str
+
+    def failures(self):
+        """Each as a few words."""
+        said = [self.hang] if self.hang else []
+        said += ["no good row any more"] if self.injected and not self.recovered and not self.hang else []
+        return said + self.beyond_limits() + (self.stream_ends() if self.recovered else [])
+
+    def beyond_limits(self):
+        limit = max(kind.limit_ms for kind in self.kinds)
+        detectable = all(kind.detectable for kind in self.kinds)
+        lost_max = self.kinds[0].lost_max if len(self.kinds) == 1 and self.lost is not None else None
+        cycles = max(kind.pass_cycles for kind in self.kinds)
+        said = [f"{self.ms_to_good:.0f} ms to the first good row (limit {limit:.0f})"] if self.recovered and self.ms_to_good > limit else []
+        said += [f"{self.wrong} wrong rows"] if detectable and self.wrong else []
+        said += [f"{self.resets} resets instead of {self.resets_due}"] if self.wrong_resets() else []
+        said += [f"{self.lost} samples lost (limit {lost_max})"] if lost_max is not None and self.lost > lost_max else []
+        said += [f"a pass of {self.pass_cycles} cycles (limit {cycles})"] if self.pass_cycles > cycles else []
+        return said
+
+    def wrong_resets(self):
+        return 0 if self.resets_due is None or self.hang else abs(self.resets - self.resets_due)
+
+    def stream_ends(self):
+        """
+        What says that rows do not go on. Behind a row the next one that shows a sample comes a row's time later, when the line that may be
+        ahead of it is out. A good one may be later still, by the samples that the filter refuses.
+        """
+        said_ms, gated = (max(getattr(kind, field) for kind in self.kinds) for field in ("said_ms", "gated_rows"))
+        gap_ms, end_ms = row_ms(self.kinds) + said_ms, (gated + 1) * row_ms(self.kinds) + said_ms
+        said = [f"{self.calm_gap_ms:.0f} ms without a sample's row when all was over (limit {gap_ms:.0f})"] if self.calm_gap_ms > gap_ms else []
+        since = "no good row" if self.since_good_ms is None else f"last good row {self.since_good_ms:.0f} ms before the end (limit {end_ms:.0f})"
+        return said + ([since] if self.since_good_ms is None or self.since_good_ms > end_ms else [])
+
+
+def shortfalls(rows, kinds):
+    """What a whole campaign has to have and these rows of build/faults.json have not, each as one sentence."""
+    judged = {(row["group"], row["fault"]): row["phases"] for row in rows}
+    said = [f"the issue's {item!r} is in no run: there is no kind {name!r}" for item, names in ISSUE.items() for name in names
+            if ("single", name) not in judged]
+    for group, name, least in ([("single", kind.name, PHASES_AT_LEAST) for kind in kinds]
+                               + [("pair", f"{a.name} + {b.name}", PAIR_PHASES_AT_LEAST) for n, a in enumerate(kinds) for b in kinds[n + 1:]]):
+        count = judged.get((group, name), 0)
+        said += [f"{name}: {count} phases were judged of at least {least}"] if count < least else []
+    return said
