@@ -67,7 +67,7 @@ static void extend(class_t *rows, const row_t *row)
 
 static uint32_t resets_so_far(void)
 {
-    return machine_resets() + machine_boot_resets();
+    return resets_count() + resets_boot_count();
 }
 
 void rows_take(const row_t *row)
