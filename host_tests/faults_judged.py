@@ -85,7 +85,9 @@ def simrun_says_how_long_no_row_came_and_when_the_last_good_one_did():
     assert stats["rows"] > 200 and stats["rows_last_good_ms"] < 1100, stats
     # what the filter's gate refuses is no good row, but shows a sample
     stats = faults_runs.simulate(FW, "adaptive", "--fault", "1000ms:clip:z")[2]
-    assert stats["rows_last_good_ms"] < 1100 and stats["rows_gap_ms"] < 11, stats
+    assert stats["rows_last_good_ms"] < 1100, stats
+    stats = faults_runs.simulate(FW, "adaptive", "--fault", "1000ms:clip:z:200")[2]
+    assert stats["gated"] > 10 and stats["rows_gap_ms"] < 11, stats
 
 
 @test
