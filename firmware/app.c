@@ -13,6 +13,7 @@
 #include "hal_drdy.h"
 #include "hal_irq.h"
 #include "hal_led.h"
+#include "hal_ram.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 #include "hal_uart.h"
@@ -38,18 +39,11 @@
  */
 enum { RESETS_TO_SAFE = 3, SETTLED_S = 10, WHOLE_LOOP = 0x80 };
 
-typedef enum {
-    STAGE_BANNER, /* banner and header are going out */
-    STAGE_RUNNING,
-    STAGE_BAUD /* the line drains before its rate changes */
-} stage_t;
+/* BANNER: banner and header are going out; BAUD: the line drains before its rate changes. */
+typedef enum { STAGE_BANNER, STAGE_RUNNING, STAGE_BAUD } stage_t;
 
-/* A filter is for all samples to come; the others wait until those of the old configuration are filtered. */
-enum {
-    CHANGE_FILTER = 1,
-    CHANGE_CONFIG = 2,
-    CHANGE_COLD = 4 /* the filters begin anew */
-};
+/* FILTER is for all samples to come, the others wait for those of the old configuration. COLD: filters begin anew. */
+enum { CHANGE_FILTER = 1, CHANGE_CONFIG = 2, CHANGE_COLD = 4 };
 
 static uint8_t stage;
 static bool sampling;    /* wanted: go or start-up, not stop */
@@ -71,6 +65,19 @@ bool app_is_safe(void)
     return hal_reset_repeats() >= RESETS_TO_SAFE;
 }
 
+static void forget(void)
+{
+    counters_start();
+    replies_start();
+    commands_start();
+    rows_start();
+    pipeline_reset();
+    stage = STAGE_BANNER;
+    row_due = false;
+    look_at_rate = false;
+    changes = 0;
+}
+
 void app_start(void)
 {
     settings_defaults();
@@ -79,11 +86,9 @@ void app_start(void)
     hal_time_init();
     hal_drdy_enable();
     adxl345_init();
-    counters_start();
-    replies_start();
-    commands_start();
-    rows_start();
-    pipeline_reset();
+    if (!HAL_RAM_CLEARED) {
+        forget();
+    }
     health_start();
     if (app_is_safe()) {
         settings.rate_dhz = SETTINGS_RATE_MIN_DHZ;
@@ -93,11 +98,7 @@ void app_start(void)
     hal_irq_enable();
     next_service_us = hal_time_us();
     next_second_us = next_service_us + 1000000ul;
-    stage = STAGE_BANNER;
     sampling = true;
-    row_due = false;
-    look_at_rate = false;
-    changes = 0;
     coast_wait(next_service_us);
     pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
     (void)replies_add(REPLY_BANNER, 0);
@@ -346,11 +347,8 @@ static void service(uint32_t now_us)
 static void set_alarm(void)
 {
     uint32_t t_us = adxl345_deadline_us();
-    uint32_t row_us = coast_due_us();
-    if (hal_time_reached(t_us, row_us) && !coast_due(pass_us)) {
-        t_us = row_us;
-    }
-    hal_wake_at(t_us);
+    bool row_first = coast_due(t_us) && !coast_due(pass_us);
+    hal_wake_at(row_first ? coast_due_us() : t_us);
 }
 
 /* Where something is left to do that waits for no interrupt. */

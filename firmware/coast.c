@@ -2,6 +2,7 @@
 #include "coast.h"
 
 #include "counters.h"
+#include "fx.h"
 #include "hal_time.h"
 #include "pipeline.h"
 #include "silence.h"
@@ -21,7 +22,7 @@ static struct {
     uint8_t state;    /* state_t */
 } coast;
 
-static void expect(uint32_t t_us, uint32_t period_us)
+FX_NOINLINE void expect(uint32_t t_us, uint32_t period_us)
 {
     coast.next_us = t_us;
     coast.due_us = t_us + (period_us >> 1);

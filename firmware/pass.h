@@ -8,7 +8,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "fx.h"
 #include "hal_time.h"
 
 /* No further piece begins after this: with the longest one, a row or a sample's axis, a pass stays below 1 ms. */
@@ -24,9 +23,6 @@ typedef struct {
 
 extern pass_t pass;
 
-FX_INLINE bool pass_in_time(void)
-{
-    return (uint8_t)(hal_time_lap() - pass.began) < pass.limit;
-}
+bool pass_in_time(void);
 
 #endif

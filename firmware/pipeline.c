@@ -21,8 +21,6 @@ typedef enum {
     WORK_CHANGE  /* each axis gets its new filter */
 } work_t;
 
-pass_t pass;
-
 typedef struct {
     int32_t estimate_q8;
     int16_t lsb;

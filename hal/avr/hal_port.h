@@ -32,6 +32,9 @@ static inline void hal_irq_enable(void)
     sei();
 }
 
+/* hal_ram.h */
+#define HAL_RAM_CLEARED 1
+
 /* hal_pointer.h */
 #define HAL_POINTER(p) __asm__("" : "+b"(p))
 

@@ -10,6 +10,9 @@ uint8_t hal_irq_save(void);
 void hal_irq_restore(uint8_t state);
 void hal_irq_enable(void);
 
+/* hal_ram.h */
+#define HAL_RAM_CLEARED 0
+
 /* hal_pointer.h */
 #define HAL_POINTER(p) ((void)(p))
 

@@ -15,6 +15,7 @@
 #include "adxl345_watch.h"
 #include "hal_drdy.h"
 #include "hal_pointer.h"
+#include "hal_ram.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 
@@ -114,11 +115,13 @@ static void begin(void)
 void adxl345_init(void)
 {
     burst_init();
-    integrity_init();
-    watch_start();
-    stopped();
+    if (!HAL_RAM_CLEARED) {
+        integrity_init();
+        watch_start();
+        stopped();
+        driver.issued = false;
+    }
     driver.address = ADXL345_ADDRESS_LOW;
-    driver.issued = false;
 }
 
 /* Where samples may be waiting, begins to put the sensor to rest; true when that is under way. */

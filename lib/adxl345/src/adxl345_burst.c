@@ -18,6 +18,7 @@
 #include "hal_drdy.h"
 #include "hal_irq.h"
 #include "hal_pointer.h"
+#include "hal_ram.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 
@@ -82,8 +83,11 @@ HAL_I2C_ISR()
 void burst_init(void)
 {
     struct burst *b = base();
-    hal_irq_state_t state = hal_irq_save();
     b->newest_lsb = b->queue[QUEUE_MASK].sample.lsb;
+    if (HAL_RAM_CLEARED) {
+        return;
+    }
+    hal_irq_state_t state = hal_irq_save();
     b->head = 0;
     b->tail = 0;
     b->mode = BURST_IGNORE;

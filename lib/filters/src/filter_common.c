@@ -18,7 +18,7 @@ FX_ONCE void filter_zero(void *state, size_t size)
     }
 }
 
-uint32_t filter_default_r_lsb2_q8(uint16_t rate_dhz)
+FX_ONCE uint32_t filter_default_r_lsb2_q8(uint16_t rate_dhz)
 {
     uint32_t r = ((uint32_t)rate_dhz * 768U + 500U) / 1000U;      /* 0.003 per 0.1 Hz, Q8 */
     return (r < FILTER_R_MIN_LSB2_Q8) ? FILTER_R_MIN_LSB2_Q8 : r; /* <= 30720 */

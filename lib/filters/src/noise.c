@@ -34,7 +34,8 @@ static uint32_t r_of(uint32_t mean_lsb2_q16)
 void noise_init(noise_t *n, uint16_t rate_dhz, bool noisy_axis)
 {
     /* 0.02 LSB^2 / Hz in Q16 per 0.1 Hz: 131.07; times 1.7 */
-    n->floor_lsb2_q16 = (uint32_t)rate_dhz * (noisy_axis ? 223U : 131U);
+    uint16_t each_q16 = noisy_axis ? 223U : 131U;
+    n->floor_lsb2_q16 = (uint32_t)rate_dhz * each_q16;
     n->mean_lsb2_q16 = n->floor_lsb2_q16;
     n->r_lsb2_q8 = r_of(n->floor_lsb2_q16);
     for (uint8_t i = 0; i < HISTORY; i++) {
