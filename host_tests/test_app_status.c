@@ -249,6 +249,31 @@ static void test_restarts_are_counted(void)
     TEST_ASSERT_TRUE(told("not acknowledged ") >= 8); /* both addresses, at least once each time */
 }
 
+/* INT1 was away for some samples, or a slave hung: what has gathered is fetched, and no sample is lost from then on. */
+static void test_a_fifo_that_is_behind_is_fetched(void)
+{
+    static const char *const commands[] = { "rate 400", "rate 800" };
+    for (unsigned i = 0; i < 4; i++) {
+        start(NULL, NULL);
+        board_type(commands[i / 2]);
+        board_run_ms(500);
+        if (i % 2 == 0) {
+            hal_host_faults.int1_cut = true;
+            board_run_ms(10);
+            hal_host_faults.int1_cut = false;
+        } else {
+            hal_host_faults.hang_clocks = 9;
+        }
+        board_run_ms(300);
+        ask();
+        board_run_ms(2000);
+        ask();
+        TEST_ASSERT_EQUAL_UINT(0, told("overruns "));
+        TEST_ASSERT_EQUAL_UINT(0, told("lost "));
+        TEST_ASSERT_TRUE(hal_host_sensor.fifo_count <= 2);
+    }
+}
+
 /* INT1 that came back is none: the sensor keeps its configuration. Nor is what a command asks for. */
 static void test_what_is_no_restart(void)
 {
@@ -310,6 +335,7 @@ int main(void)
     RUN_TEST(test_stuck_samples_are_counted);
     RUN_TEST(test_restarts_are_counted);
     RUN_TEST(test_what_is_no_restart);
+    RUN_TEST(test_a_fifo_that_is_behind_is_fetched);
     RUN_TEST(test_measured_rate);
     return UNITY_END();
 }

@@ -47,13 +47,9 @@ static void stream_for_ms(double ms)
     TEST_ASSERT_TRUE(rig.taken_count > 3);
 }
 
-/* The line is free again when time is up: none can be named. */
-static void test_transfer_without_end_on_free_lines_is_a_fault_of_the_bus(void)
+/* Time is up for a transfer, and the line that was low is free again. */
+static void transfer_without_end(void)
 {
-    adxl345_counters_t before;
-    adxl345_counters_t counters;
-    adxl345_counters(&before);
-    adxl345_start(&at_100_hz);
     adxl345_poll(hal_time_us()); /* DEVID is asked */
     hal_host_faults.scl_low = true;
     uint32_t begun_us = hal_time_us();
@@ -62,13 +58,28 @@ static void test_transfer_without_end_on_free_lines_is_a_fault_of_the_bus(void)
     }
     hal_host_faults.scl_low = false;
     adxl345_poll(hal_time_us());
-    TEST_ASSERT_EQUAL(ADXL345_FAULT_BUS, adxl345_fault());
-    adxl345_counters(&counters);
-    TEST_ASSERT_EQUAL_UINT16(1, counters.timeouts - before.timeouts);
-    TEST_ASSERT_EQUAL_UINT16(0, counters.bus_errors - before.bus_errors);
-    rig_run_ms(60);
-    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
-    TEST_ASSERT_EQUAL_size_t(0, rig_lost(6 * PERIOD_MS));
+}
+
+/* No line can be named. The first two are made again, the third is a fault. */
+static void test_three_transfers_without_end_on_free_lines_are_a_fault_of_the_bus(void)
+{
+    for (unsigned times = 1; times <= 3; times++) {
+        adxl345_counters_t before;
+        adxl345_counters_t counters;
+        setUp();
+        adxl345_counters(&before);
+        adxl345_start(&at_100_hz);
+        for (unsigned i = 1; i <= times; i++) {
+            transfer_without_end();
+            TEST_ASSERT_EQUAL(i == 3 ? ADXL345_FAULT_BUS : ADXL345_FAULT_NONE, adxl345_fault());
+        }
+        adxl345_counters(&counters);
+        TEST_ASSERT_EQUAL_UINT16(times, counters.timeouts - before.timeouts);
+        TEST_ASSERT_EQUAL_UINT16(0, counters.bus_errors - before.bus_errors);
+        rig_run_ms(60);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+        TEST_ASSERT_EQUAL_size_t(0, rig_lost(6 * PERIOD_MS));
+    }
 }
 
 /* INT1 is silent, and the STOP of the question does not get out at once: the sample is read when it has. */
@@ -234,7 +245,7 @@ static void test_a_sample_is_coming_while_int1_is_high(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_transfer_without_end_on_free_lines_is_a_fault_of_the_bus);
+    RUN_TEST(test_three_transfers_without_end_on_free_lines_are_a_fault_of_the_bus);
     RUN_TEST(test_stop_holds_up_the_reading_by_the_clock);
     RUN_TEST(test_commands_while_samples_are_fetched);
     RUN_TEST(test_failed_read_of_a_sample_that_had_waited);

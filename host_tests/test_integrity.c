@@ -28,9 +28,11 @@ static void test_no_shift_keeps_the_pattern(void)
     }
 }
 
+static uint8_t format; /* of the range in force */
+
 static reading_t judged(const int16_t lsb[3], unsigned byte, uint8_t flipped)
 {
-    uint8_t reading[READING_BYTES] = { 0x83, 0x0B, 0, 0, 0, 0, 0, 0, PATTERN, 0 };
+    uint8_t reading[READING_BYTES] = { 0x83, format, 0, 0, 0, 0, 0, 0, PATTERN, 0 };
     static const int16_t last[] = { 1, -2, 256 };
     int16_t out[3] = { 0 };
     for (unsigned i = 0; i < 6; i++) {
@@ -44,6 +46,21 @@ static reading_t judged(const int16_t lsb[3], unsigned byte, uint8_t flipped)
     return verdict;
 }
 
+/* All that power-on leaves, and nothing less: zeros alone are a line that is low. */
+static void test_registers_after_power_on(void)
+{
+    uint8_t reading[READING_BYTES] = { 0x02, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
+    static const int16_t last[] = { 1, -2, 256 };
+    int16_t out[3];
+    integrity_start(16);
+    TEST_ASSERT_EQUAL(READING_RESET, integrity_judge(reading, out, last));
+    reading[READING_SOURCE] = 0;
+    TEST_ASSERT_EQUAL(READING_BAD, integrity_judge(reading, out, last));
+    reading[READING_SOURCE] = 0x02;
+    reading[READING_FORMAT] = 0x0B;
+    TEST_ASSERT_EQUAL(READING_BAD, integrity_judge(reading, out, last));
+}
+
 /* Bits 15 down to the range's sign bit agree: 16 g has 13 bits, 2 g has 10 (full resolution, p. 27). */
 static void test_a_sign_bit_that_disagrees_is_no_reading(void)
 {
@@ -51,6 +68,7 @@ static void test_a_sign_bit_that_disagrees_is_no_reading(void)
     for (unsigned r = 0; r < 4; r++) {
         int16_t rail = (int16_t)(ranges_g[r] * 256);
         integrity_start(ranges_g[r]);
+        format = (uint8_t)(0x08 + r);
         for (unsigned axis = 0; axis < 3; axis++) {
             const int16_t ends[] = { (int16_t)-rail, -1, 0, (int16_t)(rail - 1) };
             for (unsigned e = 0; e < 4; e++) {
@@ -70,6 +88,7 @@ static void test_every_single_flip_of_pattern_and_status(void)
 {
     static const int16_t lsb[] = { 1, -2, 256 };
     integrity_start(16);
+    format = 0x0B;
     for (unsigned bit = 0; bit < 8; bit++) {
         TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_CTL, (uint8_t)(1u << bit)));
         /* up to 33 samples wait: bits 0 to 5 tell nothing */
@@ -77,7 +96,11 @@ static void test_every_single_flip_of_pattern_and_status(void)
     }
     TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_STATUS, 34));
     TEST_ASSERT_EQUAL(READING_GOOD, judged(lsb, READING_FIFO_STATUS, 33));
-    TEST_ASSERT_EQUAL(READING_RESET, judged(lsb, READING_FIFO_CTL, PATTERN));
+    for (unsigned bit = 0; bit < 8; bit++) {
+        TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FORMAT, (uint8_t)(1u << bit)));
+    }
+    TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_CTL, PATTERN));
+    TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FORMAT, format));
     TEST_ASSERT_EQUAL(READING_EMPTY, judged(lsb, READING_SOURCE, 0x80));
 }
 
@@ -194,6 +217,7 @@ static void test_noise_is_never_stuck(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_registers_after_power_on);
     RUN_TEST(test_no_shift_keeps_the_pattern);
     RUN_TEST(test_a_sign_bit_that_disagrees_is_no_reading);
     RUN_TEST(test_every_single_flip_of_pattern_and_status);

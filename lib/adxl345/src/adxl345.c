@@ -50,6 +50,7 @@ void driver_enter(step_t step, uint8_t limit_ms)
 {
     driver.step = (uint8_t)step;
     driver.issued = false;
+    driver.tries = 0;
     driver_set_limit(limit_ms);
     hal_wake();
 }
@@ -74,6 +75,7 @@ void driver_fail(adxl345_fault_t fault)
         return;
     }
     driver.fault = (uint8_t)fault;
+    driver.after_fault = true;
     driver_enter(STEP_BACK_OFF, driver.back_off_ms);
     driver.back_off_ms = (uint8_t)(driver.back_off_ms * 2u);
     if (driver.back_off_ms > BACK_OFF_MAX_MS) {
@@ -99,17 +101,15 @@ static void begin_access(step_t step)
     (void)driver_take_bus();
 }
 
+/* What was measured of a sensor that has to be found again still holds, unless its rate is another one now. */
 void driver_probe(void)
 {
-    begin_access(STEP_PROBE);
-}
-
-/* With a new configuration; what was measured of a sensor that has to be found again still holds. */
-static void begin(void)
-{
-    period_start(driver.nominal_us);
+    if (driver.renewed) {
+        driver.renewed = false;
+        period_start(driver.nominal_us);
+    }
     driver.alternate_tried = false;
-    driver_probe();
+    begin_access(STEP_PROBE);
 }
 
 void adxl345_init(void)
@@ -141,9 +141,10 @@ void adxl345_start(const adxl345_config_t *config)
     driver.config = *config;
     driver.nominal_us = table_period_us(config->rate_dhz);
     driver.stop_wanted = false;
+    driver.renewed = true;
     driver.back_off_ms = BACK_OFF_MIN_MS;
     if (!quiescing) {
-        begin();
+        driver_probe();
     }
 }
 
@@ -186,18 +187,46 @@ static void count_failure(i2c_bus_state_t state)
     driver_count(counter);
 }
 
-void driver_give_up(adxl345_driver_t *d, i2c_bus_state_t state)
+/*
+ * No sensor at this address. That is told when the other one has none either: by the name of the device that did
+ * answer if there is one, and with its address.
+ */
+static void not_here(adxl345_driver_t *d, adxl345_fault_t fault)
 {
-    if (state != I2C_BUS_NACK_ADDRESS) {
-        driver_fail(ADXL345_FAULT_BUS);
+    if (!d->alternate_tried || fault == ADXL345_FAULT_NO_SENSOR) {
+        d->address = d->address == ADXL345_ADDRESS_LOW ? ADXL345_ADDRESS_HIGH : ADXL345_ADDRESS_LOW;
+    }
+    if (d->alternate_tried) {
+        driver_fail(fault == ADXL345_FAULT_NO_SENSOR ? (adxl345_fault_t)d->found : fault);
         return;
     }
-    d->address = d->address == ADXL345_ADDRESS_LOW ? ADXL345_ADDRESS_HIGH : ADXL345_ADDRESS_LOW;
-    if (d->step == STEP_PROBE && !d->alternate_tried) {
-        d->alternate_tried = true;
-        driver_probe();
+    d->alternate_tried = true;
+    d->found = (uint8_t)fault;
+    begin_access(STEP_PROBE);
+}
+
+void driver_give_up(adxl345_driver_t *d, i2c_bus_state_t state)
+{
+    if (state != I2C_BUS_NACK_ADDRESS || d->stop_wanted) {
+        driver_fail(ADXL345_FAULT_BUS);
+    } else if (d->step == STEP_PROBE) {
+        not_here(d, ADXL345_FAULT_NO_SENSOR);
     } else {
-        driver_fail(ADXL345_FAULT_NO_SENSOR);
+        d->after_fault = true;
+        driver_probe();
+    }
+}
+
+/* The step's register access failed: again, with a free bus, or that is enough. */
+static void access_failed(adxl345_driver_t *d, i2c_bus_state_t state)
+{
+    d->issued = false;
+    d->tries++;
+    if (d->tries == TRIES) {
+        driver_give_up(d, state);
+    } else {
+        driver_set_limit(TRANSFER_LIMIT_MS);
+        hal_wake();
     }
 }
 
@@ -206,7 +235,7 @@ static void timed_out(adxl345_driver_t *d)
 {
     driver_count(&d->counters.timeouts);
     if (driver_take_bus()) {
-        driver_give_up(d, I2C_BUS_TIMEOUT);
+        access_failed(d, I2C_BUS_TIMEOUT);
     }
 }
 
@@ -224,7 +253,7 @@ static void probed(adxl345_driver_t *d)
 {
     d->device_id = burst_register_value();
     if (d->device_id != ADXL345_DEVID_VALUE) {
-        driver_fail(ADXL345_FAULT_WRONG_ID);
+        not_here(d, ADXL345_FAULT_WRONG_ID);
         return;
     }
     d->row = 0;
@@ -283,7 +312,7 @@ static void access_step(adxl345_driver_t *d)
         advance(d);
     } else if (state != I2C_BUS_BUSY) {
         count_failure(state);
-        driver_give_up(d, state);
+        access_failed(d, state);
     } else if (driver_deadline_passed()) {
         timed_out(d);
     }
@@ -305,7 +334,7 @@ static void drain_step(adxl345_driver_t *d)
         stopped();
         return;
     }
-    begin();
+    driver_probe();
 }
 
 HAL_APART void adxl345_poll(uint32_t now_us)
@@ -330,7 +359,6 @@ HAL_APART void adxl345_poll(uint32_t now_us)
         break;
     case STEP_BACK_OFF:
         if (driver_deadline_passed()) {
-            d->alternate_tried = false;
             driver_probe();
         }
         break;

@@ -11,6 +11,9 @@
 /* A register access takes under 0.2 ms, a burst under 0.4 ms. */
 enum { TRANSFER_LIMIT_MS = 3, BACK_OFF_MIN_MS = 5 };
 
+/* Failed transfers of one kind that are a fault: a single one may be noise. */
+enum { TRIES = 3 };
+
 typedef enum {
     STEP_OFF,
     STEP_PROBE,
@@ -46,8 +49,12 @@ typedef struct {
     bool first_sample_seen;
     bool stop_wanted; /* after quiescing: stop, not start */
     bool alternate_tried;
-    uint8_t timed;  /* timed_t */
-    bool was_empty; /* when the sensor was asked last: a sample that is ready now is new */
+    uint8_t found;    /* at the first of both addresses: the fault that it would be */
+    uint8_t tries;    /* of the step's register access that failed */
+    bool renewed;     /* a configuration was asked for that the sensor has not been looked for with */
+    bool after_fault; /* since the sensor was configured last */
+    uint8_t timed;    /* timed_t */
+    bool was_empty;   /* when the sensor was asked last: a sample that is ready now is new */
 } adxl345_driver_t;
 
 extern adxl345_driver_t driver;
@@ -66,10 +73,10 @@ void driver_fail(adxl345_fault_t fault);
 /* Frees the bus of a transfer that hangs; false when somebody holds a line low: that is a fault then, and told. */
 bool driver_take_bus(void);
 
-/* A transfer failed, or three bursts did: names the fault, or tries the other address. */
+/* Three transfers in a row failed: names the fault, or looks for a sensor that does not answer. */
 void driver_give_up(adxl345_driver_t *d, i2c_bus_state_t state);
 
-/* Looks for the sensor at the address that is held, at once. */
+/* Looks for the sensor at once, at the address that it had, then at the other one. */
 void driver_probe(void);
 
 /* The sensor measures from now on: expects its first sample. */

@@ -18,6 +18,7 @@ static struct {
     uint8_t equal_run; /* good readings that were as the one before them */
     bool has_last;
     uint8_t range_g;
+    uint8_t format; /* what DATA_FORMAT holds for it */
     uint8_t good;
     uint8_t bad_run;
     uint8_t empty_run;
@@ -40,6 +41,7 @@ void integrity_forget(void)
 void integrity_start(uint8_t range_g)
 {
     integrity.range_g = range_g;
+    integrity.format = table_format(range_g);
     integrity.has_last = false;
     integrity.bad_run = 0;
 }
@@ -126,13 +128,23 @@ static void accept(uint8_t source, bool repeated)
 }
 
 /*
+ * INT_SOURCE has the bit of its watermark after power-on (p. 26), so that bits which a low SDA makes zeros do not pass
+ * for a lost configuration.
+ */
+static bool after_power_on(const uint8_t reading[READING_BYTES])
+{
+    return reading[READING_FIFO_CTL] == ADXL345_FIFO_BYPASS && reading[READING_FORMAT] == 0 &&
+           (reading[READING_SOURCE] & ADXL345_INT_WATERMARK) != 0;
+}
+
+/*
  * FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). A sample that comes between
  * the byte of INT_SOURCE and the data is read too; it differs from the last, which an empty sensor shows again.
  */
 reading_t integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3])
 {
-    if (reading[READING_FIFO_CTL] != TABLE_FIFO_CTL) {
-        return discard(reading[READING_FIFO_CTL] == ADXL345_FIFO_BYPASS ? READING_RESET : READING_BAD);
+    if (reading[READING_FIFO_CTL] != TABLE_FIFO_CTL || reading[READING_FORMAT] != integrity.format) {
+        return discard(after_power_on(reading) ? READING_RESET : READING_BAD);
     }
     if (reading[READING_FIFO_STATUS] > SENSOR_DEPTH || !plausible(&reading[READING_DATA], lsb)) {
         return discard(READING_BAD);

@@ -14,14 +14,21 @@
 #include "adxl345.h"
 
 /* The bytes of a reading: INT_SOURCE, DATA_FORMAT, six of data, FIFO_CTL, FIFO_STATUS. */
-enum { READING_SOURCE = 0, READING_DATA = 2, READING_FIFO_CTL = 8, READING_FIFO_STATUS = 9, READING_BYTES = 10 };
+enum {
+    READING_SOURCE = 0,
+    READING_FORMAT = 1,
+    READING_DATA = 2,
+    READING_FIFO_CTL = 8,
+    READING_FIFO_STATUS = 9,
+    READING_BYTES = 10
+};
 
 typedef enum {
     READING_NONE,  /* no burst ended since the last look */
     READING_GOOD,  /* a sample */
     READING_EMPTY, /* the sensor had none: INT1 was high for nothing, the data are those of the sample before */
     READING_BAD,   /* torn, shifted, or nobody there */
-    READING_RESET, /* FIFO_CTL as after power-on: the sensor has lost its configuration */
+    READING_RESET, /* registers as after power-on: the sensor has lost its configuration */
     READING_FAILED /* the transfer did */
 } reading_t;
 

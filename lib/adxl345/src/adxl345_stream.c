@@ -8,12 +8,13 @@
 #include "adxl345_registers.h"
 #include "adxl345_watch.h"
 #include "hal_drdy.h"
+#include "hal_i2c.h"
 #include "hal_pointer.h"
+#include "hal_sleep.h"
 #include "hal_time.h"
 
 #define MARGIN_US 3000u
 #define TURN_ON_MS 20u /* p. 5: period + 1.1 ms, with room for a slow start */
-#define BURST_TRIES 3u
 #define TRANSFER_LIMIT_US (TRANSFER_LIMIT_MS * INT32_C(1000))
 #define LOOK_US 500ul /* behind the moment when a sample was due, and again and again while none comes */
 
@@ -57,7 +58,8 @@ void stream_source_asked(adxl345_driver_t *d)
 
 void stream_start(adxl345_driver_t *d)
 {
-    if (d->fault != ADXL345_FAULT_NONE) {
+    if (d->after_fault) {
+        d->after_fault = false;
         driver_count(&d->counters.restarts);
         integrity_forget();
         watch_start();
@@ -92,7 +94,6 @@ static void sample_arrived(adxl345_driver_t *d)
     d->seen_good = integrity_good();
     d->was_empty = false;
     d->first_sample_seen = true;
-    d->alternate_tried = false;
     d->back_off_ms = BACK_OFF_MIN_MS;
     d->deadline_us = d->now_us + d->nominal_us + LOOK_US;
     if (d->timed == TIMED_READ) {
@@ -149,12 +150,27 @@ static bool readings_failed(void)
     return true;
 }
 
+/* Begins the burst of a sample that waits, seen by INT1 or by the clock. */
+static void fetch(adxl345_driver_t *d)
+{
+    if (d->timed != TIMED_WANTED) {
+        if (burst_drain(d->was_empty)) {
+            driver_set_limit(TRANSFER_LIMIT_MS);
+        } else if (hal_drdy_high() && hal_i2c_stop_pending()) {
+            hal_wake(); /* the end of a STOP tells nobody */
+        }
+    } else if (burst_read(d->was_empty)) {
+        d->timed = TIMED_READ;
+        driver_set_limit(TRANSFER_LIMIT_MS);
+    }
+}
+
 void stream_poll(adxl345_driver_t *d)
 {
     if (readings_failed()) {
         return;
     }
-    if (burst_failures() >= BURST_TRIES) {
+    if (burst_failures() >= (uint8_t)TRIES) {
         driver_give_up(d, burst_failed_state());
         return;
     }
@@ -163,12 +179,5 @@ void stream_poll(adxl345_driver_t *d)
     } else if (driver_deadline_passed() || (burst_found_empty() && !burst_running())) {
         look_for_sample(d);
     }
-    if (d->timed != TIMED_WANTED) {
-        if (burst_drain(d->was_empty)) {
-            driver_set_limit(TRANSFER_LIMIT_MS);
-        }
-    } else if (burst_read(d->was_empty)) {
-        d->timed = TIMED_READ;
-        driver_set_limit(TRANSFER_LIMIT_MS);
-    }
+    fetch(d);
 }

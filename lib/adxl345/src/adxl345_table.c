@@ -5,7 +5,7 @@
 
 typedef struct {
     uint8_t reg;
-    uint8_t value; /* rate and range are added to BW_RATE and DATA_FORMAT */
+    uint8_t value; /* BW_RATE and DATA_FORMAT: from rate and range */
 } setting_t;
 
 /*
@@ -17,7 +17,7 @@ static const setting_t table[] FLASH = {
     { ADXL345_INT_ENABLE, 0 },
     { ADXL345_FIFO_CTL, ADXL345_FIFO_BYPASS },
     { ADXL345_BW_RATE, 0 },
-    { ADXL345_DATA_FORMAT, ADXL345_FORMAT_FULL_RES },
+    { ADXL345_DATA_FORMAT, 0 },
     { ADXL345_OFSX, 0 },
     { ADXL345_OFSY, 0 },
     { ADXL345_OFSZ, 0 },
@@ -48,6 +48,11 @@ static uint8_t range_code(uint8_t range_g)
     return code;
 }
 
+uint8_t table_format(uint8_t range_g)
+{
+    return (uint8_t)(ADXL345_FORMAT_FULL_RES | range_code(range_g));
+}
+
 uint32_t table_period_us(uint16_t rate_dhz)
 {
     return 80000ul >> (rate_code(rate_dhz) - RATE_CODE_12_5_HZ);
@@ -75,7 +80,7 @@ uint8_t table_value(uint8_t row, const adxl345_config_t *config)
     if (reg == ADXL345_BW_RATE) {
         value = rate_code(config->rate_dhz);
     } else if (reg == ADXL345_DATA_FORMAT) {
-        value = (uint8_t)(value | range_code(config->range_g));
+        value = table_format(config->range_g);
     }
     return value;
 }
