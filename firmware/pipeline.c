@@ -49,6 +49,7 @@ static struct {
     uint8_t new_kind;
     bool new_noise;
     bool clipped; /* the reading of this axis */
+    bool stuck;   /* the sample before */
     bool has_sample;
 } pipe;
 
@@ -97,6 +98,7 @@ static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool 
     pipe.new_kind = filter_kind;
     pipe.rate_dhz = rate_dhz;
     pipe.has_sample = keep;
+    pipe.stuck = keep && pipe.stuck;
     pipe.warm_rows = WARM_ROWS;
     pipe.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
     change(cold);
@@ -205,6 +207,19 @@ static bool near_estimate(const axis_t *axis)
 }
 
 /*
+ * Amid a sample, the filter of its axis begins anew. From the estimate, where the noise that it has learned was that of
+ * a sensor that hung: none, so that it would refuse what comes now. Else on the sample, with the noise as it is known.
+ */
+static void renew(bool from_estimate)
+{
+    pipe.work = WORK_RENEW;
+    pipe.step = 0;
+    pipe.new_noise = from_estimate;
+    pipe.has_sample = from_estimate;
+    pass.limit = PASS_CHANGING_US / HAL_LAP_US;
+}
+
+/*
  * After a hold. True: the filter takes the sample; near the estimate it goes on from what was held. A single one away
  * from it may be a bad reading: with the second on end that is not at the rail the filter begins anew, with the noise
  * as it is known. That is work of its own, amid the sample's.
@@ -217,11 +232,7 @@ static bool rejoins(axis_t *axis)
             return false;
         }
         pipeline_flag(ROW_REACQUIRED);
-        pipe.work = WORK_RENEW;
-        pipe.step = 0;
-        pipe.new_noise = false;
-        pipe.has_sample = false;
-        pass.limit = PASS_CHANGING_US / HAL_LAP_US;
+        renew(false);
     }
     axis->away = 0;
     return true;
@@ -249,7 +260,12 @@ static bool prepare_axis(axis_t *axis)
     if (clipped) {
         pipeline_flag(ROW_CLIPPED);
         filter_any_hold(&axis->filter);
-    } else if (noise_update(&axis->noise, lsb)) {
+    }
+    if (pipe.stuck && !(pipe.flags & ROW_STUCK)) {
+        renew(true);
+        return false;
+    }
+    if (!clipped && noise_update(&axis->noise, lsb)) {
         filter_any_set_noise(&axis->filter, noise_r_lsb2_q8(&axis->noise));
     }
     return axis->away == 0 || (rejoins(axis) && pipe.work != WORK_RENEW);
@@ -276,6 +292,7 @@ static void end_sample(void)
         pipeline_flag(ROW_NOT_GRAVITY);
     }
     count_sample();
+    pipe.stuck = (pipe.flags & ROW_STUCK) != 0;
     pipeline_flag(pipe.kept_flags);
 }
 
