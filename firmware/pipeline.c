@@ -12,6 +12,7 @@
 enum { AXES = 3, WARM_ROWS = 5 };
 enum { CALLS_OFF = 5, STILL_LSB_Q4 = 72 }; /* pipeline_retime; 1 degree */
 enum { AWAY_SAMPLES = 2 };                 /* on end, away from what was held: no bad reading */
+enum { HUNG_SAMPLES = 16 };                /* with ROW_STUCK, on end: a filter has learned from them */
 
 typedef enum {
     WORK_NONE,
@@ -48,8 +49,8 @@ static struct {
     uint8_t step; /* of the change on that axis */
     uint8_t new_kind;
     bool new_noise;
-    bool clipped; /* the reading of this axis */
-    bool stuck;   /* the sample before */
+    bool clipped;  /* the reading of this axis */
+    uint8_t stuck; /* samples with ROW_STUCK on end before this one, up to HUNG_SAMPLES */
     bool has_sample;
 } pipe;
 
@@ -98,7 +99,7 @@ static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool 
     pipe.new_kind = filter_kind;
     pipe.rate_dhz = rate_dhz;
     pipe.has_sample = keep;
-    pipe.stuck = keep && pipe.stuck;
+    pipe.stuck = keep ? pipe.stuck : 0;
     pipe.warm_rows = WARM_ROWS;
     pipe.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
     change(cold);
@@ -261,7 +262,7 @@ static bool prepare_axis(axis_t *axis)
         pipeline_flag(ROW_CLIPPED);
         filter_any_hold(&axis->filter);
     }
-    if (pipe.stuck && !(pipe.flags & ROW_STUCK)) {
+    if (pipe.stuck == HUNG_SAMPLES && !(pipe.flags & ROW_STUCK)) {
         renew(true);
         return false;
     }
@@ -292,7 +293,11 @@ static void end_sample(void)
         pipeline_flag(ROW_NOT_GRAVITY);
     }
     count_sample();
-    pipe.stuck = (pipe.flags & ROW_STUCK) != 0;
+    if ((pipe.flags & ROW_STUCK) == 0) {
+        pipe.stuck = 0;
+    } else if (pipe.stuck != HUNG_SAMPLES) {
+        pipe.stuck++;
+    }
     pipeline_flag(pipe.kept_flags);
 }
 
