@@ -10,7 +10,7 @@
 #include "tilt.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
-enum { CALLS_OFF = 5, STILL_LSB_Q4 = 72 }; /* pipeline_retime; 1 degree */
+enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_retime; 1 degree */
 enum { AWAY_SAMPLES = 2 };                 /* on end, away from what was held: no bad reading */
 enum { HUNG_SAMPLES = 16 };                /* with ROW_STUCK, on end: a filter has learned from them */
 
@@ -24,6 +24,7 @@ typedef enum {
 
 typedef struct {
     int32_t estimate_q8;
+    uint16_t looked_lsb_q2; /* the estimate a second ago */
     int16_t lsb;
     uint8_t away; /* after a hold: 1, and 1 more for each sample that lies away from what was held; else 0 */
     noise_t noise;
@@ -36,9 +37,8 @@ static struct {
     tilt_t raw_tilt;
     uint32_t last_us;
     int16_t rail_high_lsb;
-    uint16_t rate_dhz;      /* nominal */
-    uint16_t true_dhz;      /* that the filters have */
-    uint16_t looked_lsb_q4; /* the estimates in sum, a second ago */
+    uint16_t rate_dhz; /* nominal */
+    uint16_t true_dhz; /* that the filters have */
     uint8_t calls_off;
     uint16_t flags;
     uint16_t kept_flags; /* of the samples before the one under way */
@@ -107,17 +107,19 @@ static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool 
 
 FX_ONCE void pipeline_retime(uint32_t period_us)
 {
-    int32_t sum_q8 = pipe.axes[0].estimate_q8 + pipe.axes[1].estimate_q8 + pipe.axes[2].estimate_q8;
-    uint16_t now_lsb_q4 = (uint16_t)(sum_q8 >> 4);
-    uint16_t moved_lsb_q4 = (uint16_t)(now_lsb_q4 - pipe.looked_lsb_q4 + STILL_LSB_Q4);
-    pipe.looked_lsb_q4 = now_lsb_q4;
+    bool still = true;
+    for (axis_t *axis = pipe.axes; axis != pipe.axes + AXES; axis++) {
+        uint16_t now_lsb_q2 = (uint16_t)(axis->estimate_q8 >> 6);
+        still = (uint16_t)(now_lsb_q2 - axis->looked_lsb_q2 + STILL_LSB_Q2) <= 2u * STILL_LSB_Q2 && still;
+        axis->looked_lsb_q2 = now_lsb_q2;
+    }
     uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
     uint16_t near_dhz = (pipe.true_dhz >> 7) + 1u;
     if ((uint16_t)(true_dhz - pipe.true_dhz + near_dhz) <= (uint16_t)(2u * near_dhz)) {
         pipe.calls_off = 0;
     } else if (pipe.calls_off < CALLS_OFF) {
         pipe.calls_off++;
-    } else if (moved_lsb_q4 <= 2u * STILL_LSB_Q4) {
+    } else if (still) {
         pipe.true_dhz = true_dhz;
         change(false);
     }

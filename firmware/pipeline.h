@@ -49,8 +49,8 @@ void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 /*
  * Each second the measured time between samples: when its rate is 0.8 % (at 12.5 Hz 1.6 %) or more from what the
  * filters have, for 5 seconds, they go on from their outputs with its parameters. That costs them their rates of
- * change, so it waits until the estimates, in sum, have moved by what a degree makes at most in a second. No row says
- * so.
+ * change, so it waits until each axis' estimate is where it was a second ago, within what a degree makes (4.5 LSB). No
+ * row says so.
  */
 void pipeline_retime(uint32_t period_us);
 

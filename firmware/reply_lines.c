@@ -151,6 +151,9 @@ static void say_value(uint8_t what)
     case SAY_ADDRESS:
         text_hex8(adxl345_address());
         break;
+    case SAY_OUTAGE_ADDRESS:
+        text_hex8(sensor_watch_outage.address);
+        break;
     case SAY_DEVICE_ID:
         text_hex8(adxl345_device_id());
         break;

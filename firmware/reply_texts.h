@@ -21,6 +21,7 @@
 #define V_RANGE "\x07"
 #define V_EVERY "\x08"
 #define V_BAUD "\x09"
+#define V_OUTAGE_ADDRESS "\x0A"
 #define V_NOTE "\x0B"
 #define V_SUBJECT "\x0C"
 #define V_OUTAGE_MS "\x0D"
@@ -53,9 +54,10 @@ enum say {
     SAY_RANGE,
     SAY_EVERY, /* in force */
     SAY_BAUD,
-    SAY_NOTE = 11, /* what the run before the reset left; 10 is the end of a line */
-    SAY_SUBJECT,   /* the reply's argument, a fault code */
-    SAY_OUTAGE_MS, /* how long the last fault was, and how many samples are missing of its time */
+    SAY_OUTAGE_ADDRESS, /* where the sensor was when the last fault was over */
+    SAY_NOTE,           /* what the run before the reset left */
+    SAY_SUBJECT,        /* the reply's argument, a fault code */
+    SAY_OUTAGE_MS,      /* how long the last fault was, and how many samples are missing of its time */
     SAY_OUTAGE_LOST,
     SAY_NAME,   /* of the setting that the line is about */
     SAY_FILTER, /* as set, or as asked for where that was refused */
@@ -158,7 +160,8 @@ enum say {
     X(TOO_SLOW, W_REFUSED V_FILTER " takes " V_CYCLES " of " W_THE V_LEFT " cycles" W_THAT \
                                    "a " W_SAMPLE W_AT V_RATE W_HZ " leaves") \
     X(FAULT_BEGIN, W_FAULT V_SUBJECT ": " V_THEN_FAULT) \
-    X(FAULT_END, W_FAULT V_SUBJECT " over: " W_SAMPLE "s again after " V_OUTAGE_MS " ms" AND V_OUTAGE_LOST W_LOST) \
+    X(FAULT_END, W_FAULT V_SUBJECT " over: " W_SAMPLE "s again after " V_OUTAGE_MS " ms" AND V_OUTAGE_LOST W_LOST \
+                   AND W_SENSOR W_AT "0x" V_OUTAGE_ADDRESS) \
     X(RESET, "reset: " V_MORE V_THEN_CAUSE) \
     X(SETTINGS, W_FILTER " " V_FILTER AND W_RATE " " V_RATE W_HZ AND W_RANGE " " V_RANGE " g" \
                          AND W_EVERY " " V_EVERY AND W_BAUD " " V_BAUD V_MORE) \

@@ -6,7 +6,9 @@
 #include "adxl345.h"
 #include "counters.h"
 #include "flash.h"
+#include "fx.h"
 #include "hal_led.h"
+#include "hal_pointer.h"
 #include "replies.h"
 #include "settings.h"
 
@@ -26,40 +28,63 @@ static const uint8_t flashes[] FLASH = {
 
 sensor_outage_t sensor_watch_outage;
 
-static uint8_t told;       /* fault code of the last line, NONE when all is well */
-static uint16_t told_mask; /* codes told since the fault began: each once */
-static bool over;          /* what was told; the line that says so is not queued yet */
-static uint32_t began_us;  /* the fault; what the counters were then: */
-static uint32_t began_s;
-static uint32_t began_lost;
+typedef struct {
+    uint32_t began_us; /* the outage; what the counters were then: */
+    uint32_t began_s;
+    uint32_t began_lost;
+    sensor_outage_t outage; /* that is over: its numbers, until the line that tells them is queued */
+    uint16_t told_mask;     /* codes told since it began: each once */
+    uint8_t newest;         /* of its fault codes; NONE: no outage */
+    bool over;              /* and the line that says so is not queued yet */
+} watch_t;
 
-static void begin_outage(uint32_t now_us)
+static watch_t watch;
+
+/* Nothing is told of what was before. */
+FX_NOINLINE void forget(void)
 {
-    began_us = now_us;
-    began_s = counters[COUNT_SECONDS];
-    began_lost = counters[COUNT_LOST];
+    watch.newest = ADXL345_FAULT_NONE;
+    watch.told_mask = 0;
+}
+
+static void begin_outage(watch_t *w, uint32_t now_us)
+{
+    w->began_us = now_us;
+    w->began_s = counters[COUNT_SECONDS];
+    w->began_lost = counters[COUNT_LOST];
 }
 
 /* Microseconds wrap after 71 minutes: an outage of more than a minute is told in whole seconds. So do milliseconds. */
-static void end_outage(uint32_t now_us)
+static void end_outage(watch_t *w, uint32_t now_us)
 {
-    uint32_t seconds = counters[COUNT_SECONDS] - began_s;
+    uint32_t seconds = counters[COUNT_SECONDS] - w->began_s;
     if (seconds < 60u) {
-        sensor_watch_outage.ms = (now_us - began_us) / 1000u;
+        w->outage.ms = (now_us - w->began_us) / 1000u;
     } else {
-        sensor_watch_outage.ms = seconds < MS_WRAP_S ? seconds * 1000u : UINT32_MAX;
+        w->outage.ms = seconds < MS_WRAP_S ? seconds * 1000u : UINT32_MAX;
     }
-    sensor_watch_outage.lost = counters[COUNT_LOST] - began_lost;
+    w->outage.lost = counters[COUNT_LOST] - w->began_lost;
+    w->outage.address = adxl345_address();
+    w->over = true;
 }
 
-/* The numbers of one that is over wait for the line that tells them. */
-static bool outage_over(uint32_t now_us)
+/*
+ * What is seen, whether it can be told or not. A fault that is back before the end is told goes on as the same outage.
+ * It is over when the pipeline has taken the samples that have come again: those that are missing are counted then.
+ */
+FX_NOINLINE void note(uint8_t fault, uint32_t now_us)
 {
-    if (!over && !replies_hold(REPLY_FAULT_END)) {
-        end_outage(now_us);
-        over = true;
+    watch_t *w = &watch;
+    HAL_POINTER(w);
+    if (fault != ADXL345_FAULT_NONE) {
+        if (w->newest == ADXL345_FAULT_NONE) {
+            begin_outage(w, now_us);
+        }
+        w->newest = fault;
+        w->over = false;
+    } else if (!w->over && adxl345_phase() == ADXL345_STREAMING && adxl345_queued() == 0) {
+        end_outage(w, now_us);
     }
-    return over;
 }
 
 /* The LED flashes for 65 ms in each of the first slots of 131 ms, of which a second has eight. */
@@ -72,46 +97,35 @@ static void show(uint8_t fault, uint32_t now_us)
 
 void sensor_watch_start(uint32_t now_us)
 {
-    told = (uint8_t)adxl345_fault();
-    told_mask = (uint16_t)(1u << told);
-    begin_outage(now_us);
+    forget();
+    note((uint8_t)adxl345_fault(), now_us);
+    watch.told_mask = (uint16_t)(1u << watch.newest);
 }
 
-static void tell(uint8_t fault, uint32_t now_us)
+/* What was noted and is not told yet, a line at a time. */
+static void tell(void)
 {
-    uint16_t bit = (uint16_t)(1u << fault);
-    bool in_words = settings.mode != MODE_PLOT;
-    if (fault == ADXL345_FAULT_NONE) {
-        if (outage_over(now_us) && in_words && replies_add(REPLY_FAULT_END, told)) {
-            told = ADXL345_FAULT_NONE;
-            told_mask = 0;
+    uint16_t bit = (uint16_t)(1u << watch.newest);
+    if (watch.newest == ADXL345_FAULT_NONE || settings.mode == MODE_PLOT) {
+        return;
+    }
+    if (!(watch.told_mask & bit)) {
+        if (replies_add(REPLY_FAULT_BEGIN, watch.newest)) {
+            watch.told_mask |= bit;
         }
-    } else if (told_mask & bit) {
-        told = fault;
-    } else if (in_words && replies_add(REPLY_FAULT_BEGIN, fault)) {
-        if (told == ADXL345_FAULT_NONE) {
-            begin_outage(now_us);
-        }
-        told = fault;
-        told_mask |= bit;
+    } else if (watch.over && !replies_hold(REPLY_FAULT_END) && replies_add(REPLY_FAULT_END, watch.newest)) {
+        sensor_watch_outage = watch.outage;
+        forget();
     }
 }
 
 void sensor_watch_pass(uint32_t now_us)
 {
     uint8_t fault = (uint8_t)adxl345_fault();
-    adxl345_phase_t phase = adxl345_phase();
     show(fault, now_us);
-    if (phase == ADXL345_STOPPED) {
-        told = ADXL345_FAULT_NONE; /* not mended, only not asked any more */
-        told_mask = 0;
+    if (adxl345_phase() == ADXL345_STOPPED) {
+        forget(); /* not mended, only not asked any more */
     }
-    if (fault != ADXL345_FAULT_NONE) {
-        over = false;
-    }
-    /* a stop and a go between two looks leave no fault either, but no sample yet */
-    bool known = fault != ADXL345_FAULT_NONE || phase == ADXL345_STREAMING;
-    if (known && fault != told) {
-        tell(fault, now_us);
-    }
+    note(fault, now_us);
+    tell();
 }

@@ -12,10 +12,11 @@ void sensor_watch_start(uint32_t now_us);
 /* When rows may have been waited for long enough: every few ms, after adxl345_poll. */
 void sensor_watch_pass(uint32_t now_us);
 
-/* Of the last fault that is over: how long it was, and how many samples are missing. */
+/* Of the last fault whose end is told: how long it was, how many samples are missing, where they come from again. */
 typedef struct {
     uint32_t ms;
     uint32_t lost;
+    uint8_t address;
 } sensor_outage_t;
 extern sensor_outage_t sensor_watch_outage;
 

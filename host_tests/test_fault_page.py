@@ -21,7 +21,7 @@ def texts():
         raw[name] = re.sub(r"\\x([0-9A-Fa-f]{2})", lambda code: chr(int(code[1], 16)), words)
     order = list(raw.values())
     plain = {name: "".join(order[ord(c) - SHARED] if ord(c) >= SHARED else c for c in words) for name, words in raw.items()}
-    return {name: re.sub("[\x01-\x09\x0b-\x1f]", "..", words) for name, words in plain.items()}
+    return {name: re.sub("[\x01-\x1f]", "..", words) for name, words in plain.items()}
 
 
 def codes():

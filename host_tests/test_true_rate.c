@@ -2,6 +2,7 @@
  * The measured rate of a sensor handed to the filters: when, and that no row shows it but by what the filters do. The
  * pipeline alone, then the whole firmware on the host's HAL.
  */
+#include <math.h>
 #include <stdlib.h>
 
 #include "app.h"
@@ -35,9 +36,9 @@ static void begin(uint8_t kind)
     pipeline_finish();
 }
 
-static void sample(int16_t y_lsb)
+static void sample_of(int16_t x_lsb, int16_t y_lsb, int16_t z_lsb)
 {
-    adxl345_sample_t s = { .t_us = t_us, .lsb = { 0, y_lsb, 248 } };
+    adxl345_sample_t s = { .t_us = t_us, .lsb = { x_lsb, y_lsb, z_lsb } };
     t_us += 10000u;
     pipeline_sample(&s);
     pipeline_finish();
@@ -47,16 +48,40 @@ static void sample(int16_t y_lsb)
     }
 }
 
-/* A second of samples, then a look; true when the filters get another rate. */
+static void sample(int16_t y_lsb)
+{
+    sample_of(0, y_lsb, 248);
+}
+
+/* The look at the end of each second; true when the filters get another rate. */
+static bool look(uint32_t period_us)
+{
+    pipeline_retime(period_us);
+    bool changing = pipeline_changing();
+    pipeline_finish();
+    return changing;
+}
+
 static bool second(uint32_t period_us, int16_t from_lsb, int16_t step_lsb)
 {
     for (int16_t k = 0; k < 100; k++) {
         sample((int16_t)(from_lsb + k * step_lsb / 100));
     }
-    pipeline_retime(period_us);
-    bool changing = pipeline_changing();
-    pipeline_finish();
-    return changing;
+    return look(period_us);
+}
+
+/* About (1,1,1), which leaves the sum of the axes as it is; gravity 30 degrees off it. Angles in radians. */
+static bool second_of_turn(uint32_t period_us, double from, double step)
+{
+    const double third = 2.0943951023931953;
+    for (int k = 0; k < 100; k++) {
+        double lsb[3];
+        for (int axis = 0; axis < 3; axis++) {
+            lsb[axis] = 128.0 + 104.5 * cos(from + step * k / 100.0 - third * axis);
+        }
+        sample_of((int16_t)lrint(lsb[0]), (int16_t)lrint(lsb[1]), (int16_t)lrint(lsb[2]));
+    }
+    return look(period_us);
 }
 
 static void test_the_sixth_second_off_hands_the_rate_over_once(void)
@@ -95,6 +120,17 @@ static void test_a_board_that_moves_keeps_its_rates_of_change(void)
         }
         TEST_ASSERT_TRUE(second(10300, 140, 0));
     }
+}
+
+static void test_a_turn_that_leaves_the_sum_of_the_axes_is_no_standing_still(void)
+{
+    const double step = 0.2; /* 11 degrees a second, 6 of gravity's direction */
+    begin(0);
+    (void)second_of_turn(10000, -step, step);
+    for (int k = 0; k < 40; k++) {
+        TEST_ASSERT_FALSE(second_of_turn(10300, k * step, step));
+    }
+    TEST_ASSERT_TRUE(second_of_turn(10300, 40 * step, 0));
 }
 
 /* Rows before and behind it: no flag, and no more change than half a reading's unit, 0.12 degree. */
@@ -192,6 +228,7 @@ int main(void)
     RUN_TEST(test_the_sixth_second_off_hands_the_rate_over_once);
     RUN_TEST(test_what_is_near_or_comes_back_changes_nothing);
     RUN_TEST(test_a_board_that_moves_keeps_its_rates_of_change);
+    RUN_TEST(test_a_turn_that_leaves_the_sum_of_the_axes_is_no_standing_still);
     RUN_TEST(test_no_row_shows_it);
     RUN_TEST(test_the_filter_has_the_parameters_of_the_true_rate);
     RUN_TEST(test_how_long_it_holds);
