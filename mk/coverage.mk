@@ -1,7 +1,7 @@
 # Coverage of lib by the unit tests (gcov; built apart, without sanitizers) and of the AVR binary by the system tests.
 C := $(B)/coverage
 # what watches over the sensor and the stages is judged beside lib
-SUPERVISION   := $(wildcard $(addprefix firmware/,sensor_watch.c health.c pipeline.c coast.c))
+SUPERVISION   := $(wildcard $(addprefix firmware/,sensor_watch.c health.c pipeline.c pipeline_change.c coast.c))
 COVERED       := $(LIB_SRC) $(SUPERVISION)
 COVERAGE_LIB  := $(COVERED:%.c=$(C)/%.o)
 COVERAGE_REST := $(patsubst %.c,$(C)/%.o,$(filter-out $(COVERED),$(HOST_SRC)) $(wildcard host_tests/support_*.c)) \
