@@ -11,12 +11,13 @@ import sys
 import time
 
 import faults
+import faults_commands
 import faults_judge
 import faults_runs
 import soak
 from system_support import FW, test
 
-ALL = {kind.name: kind for kind in faults_runs.KINDS + faults_runs.rated() + faults_runs.TYPED}
+ALL = {kind.name: kind for kind in faults_runs.KINDS + faults_runs.rated() + faults_runs.TYPED + faults_commands.KINDS}
 
 
 def result(*names, **said):
@@ -113,6 +114,10 @@ def a_whole_campaign_has_every_kind_of_the_issue_at_50_phases_and_every_pair_at_
     gone = [result("torn", when=f"{n}ms", injected=False) for n in range(60)]
     assert faults.summarised(gone)[0]["phases"] == 0
     without = [kind for kind in kinds if kind.name != "double"]
+    commands = [kind for kind in faults_commands.KINDS if kind.command.name == "stop"]
+    few = rows + [{"group": "command", "fault": kind.name, "phases": 6 - (kind.base == "scl")} for kind in commands if kind.base != "arb"]
+    assert faults_judge.shortfalls(few, kinds, commands) == ["command stop: arb: 0 phases were judged of at least 6",
+                                                             "command stop: scl: 5 phases were judged of at least 6"]
     said = faults_judge.shortfalls([row for row in rows if "double" not in row["fault"]], without)
     assert said == ["the issue's 'doubled axis' is in no run: there is no kind 'double'"], said
 
@@ -171,14 +176,15 @@ def what_a_whole_campaign_lacks_is_a_failure():
 
     runs = [((kind,), (f"{1000 + n}ms",), "kf") for kind in faults_runs.KINDS for n in range(50)]
     runs += [(pair, (f"{1000 + n}ms",) * 2, "kf") for pair in faults.itertools.combinations(faults_runs.KINDS, 2) for n in (0, 2, 3, 4, 5)]
+    runs += [((kind,), (f"{1002 + n}ms",), "adaptive") for kind in faults_commands.KINDS for n in range(5 if kind.name == "command stop: scl" else 6)]
     kept, faults.lines_that_ran = faults.lines_that_ran, lambda options, profile: {"fault": "lines", "good": True}
     try:
         status, said = told_by(runs, attempt, words=[])
     finally:
         faults.lines_that_ran = kept
     kinds = len(faults_runs.KINDS)
-    assert status == 1 and said.endswith(f"{len(runs) - kinds + 1} passed, {kinds} failed\n"), said[-300:]
-    assert "faults: torn: 49 phases were judged of at least 50" in said, said[-900:]
+    assert status == 1 and said.endswith(f"{len(runs) - kinds + 1} passed, {kinds + 1} failed\n"), said[-300:]
+    assert "faults: torn: 49 phases were judged of at least 50" in said and "faults: command stop: scl: 5 phases were" in said, said[-900:]
     # more than one in ten that never came
     status, said = told_by(runs[1:3], attempt)
     assert status == 1 and said.endswith("1 passed, 1 failed\n") and "1 of 2 faults never came" in said, said

@@ -9,6 +9,7 @@ sys.path.insert(0, "tools")
 import faults  # noqa: E402
 import faults_runs  # noqa: E402
 import soak  # noqa: E402
+import faults_commanded  # noqa: E402, F401
 from faults_judged import result  # noqa: E402
 from system_support import FW, run_all, test  # noqa: E402
 

@@ -146,6 +146,7 @@ double sensor_period_us(void);                 /* of the last rate in force, wit
 double sensor_true_period_us(void);            /* the same with the error of the sensor's clock */
 size_t sensor_served_count(void);              /* of the whole run */
 served_t *sensor_served_lately(size_t *count); /* the newest of them, at least SERVED_KEPT if there were as many */
+void sensor_print(FILE *json);                 /* how it is set at the end, and when it measured last */
 void sensor_print_mode(FILE *to);              /* which feed mode was used */
 const stream_t *sensor_stream(void);
 

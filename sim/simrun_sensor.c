@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "adxl345_registers.h"
 #include "avr_ioport.h"
 #include "sim_io.h"
 #include "simrun.h"
@@ -204,6 +205,14 @@ served_t *sensor_served_lately(size_t *count)
 const stream_t *sensor_stream(void)
 {
     return &stream;
+}
+
+/* A tick is a measurement: in standby and without power there is none. */
+void sensor_print(FILE *json)
+{
+    fprintf(json, "  \"sensor_hz\": %.4g,\n  \"sensor_range_g\": %u,\n", adxl345_model_odr_hz(&sensor),
+            2u << (sensor.reg[ADXL345_DATA_FORMAT] & ADXL345_FORMAT_RANGE_MASK));
+    fprintf(json, "  \"sensor_last_tick_ms\": %.3f,\n", (double)last_tick / CYCLES_PER_MS);
 }
 
 void sensor_print_mode(FILE *to)

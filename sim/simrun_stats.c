@@ -190,6 +190,7 @@ static void write_samples(FILE *file)
 {
     fprintf(file, "  \"samples_served\": %zu,\n  \"sensor_overruns\": %u,\n", sensor_served_count(),
             (unsigned)sensor.overruns);
+    sensor_print(file);
     fprintf(file, "  \"samples_altered\": %u,\n", (unsigned)alter_count());
     rows_print(file);
     flow_print(file);

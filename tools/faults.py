@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The fault campaign: every fault of simrun at every bus byte, main-loop stage and moment, every pair of faults, judged by the model.
+"""The fault campaign: every fault of simrun at every bus byte, main-loop stage and moment, every pair of faults, every
+command under a fault, judged by the model.
 
     faults.py [--fw ELF] [--sample N] [--pairs N] [--jobs N] [--seed N] [--no-page] [WORD...]
 
@@ -22,6 +23,7 @@ import tempfile
 import time
 
 import coverage
+import faults_commands
 import faults_judge
 import faults_runs
 from faults_runs import (KINDS, MOVING, NO_LIMIT, OF, OTHER_RATES, REST, TYPED, Fault, SIMRUN, attempt, flagged_share, moments, need, phases,
@@ -60,7 +62,7 @@ def wanted(words, *kinds):
 
 def check_words(words):
     """Ends the program at a word that asks for nothing."""
-    kinds = KINDS + rated() + TYPED
+    kinds = KINDS + rated() + TYPED + faults_commands.KINDS
     for word in words:
         if any(wanted([word], kind) for kind in kinds) or any(wanted([word], a, b) for a, b in itertools.combinations(KINDS, 2)):
             continue
@@ -77,6 +79,8 @@ def planned(options):
     others = [kind for kind in rated() + TYPED if wanted(options.words, kind)]
     singles = [((kind,), (when,), name) for kind in kinds for name in FILTERS for when in phases(options.fw, kind, name, PHASES)]
     singles += [((kind,), (when,), kind.filter_name) for kind in others for when in moments(kind, MOMENTS, options.seed)]
+    singles += [((kind,), (when,), kind.filter_name) for kind in faults_commands.KINDS if wanted(options.words, kind)
+                for when in faults_commands.phases(options.fw, kind, options.seed)]
     pairs = [(kinds, whens, FILTERS[0]) for kinds, whens in seeded_pairs(options.pairs, options.seed) if wanted(options.words, *kinds)]
     if not singles and not pairs:
         sys.exit(f"faults: {' '.join(options.words)}: no run of a pair with --pairs 0")
@@ -130,6 +134,8 @@ def carried_out(options, runs, profile, results):
 def group_of(kinds):
     if len(kinds) > 1:
         return "pair"
+    if kinds[0].command:
+        return "command"
     return "rate" if kinds[0].base else "typed" if kinds[0] in TYPED else "single"
 
 
@@ -207,6 +213,22 @@ def rates_table(rows):
     return lines
 
 
+def commands_table(rows):
+    """A line for each kind, with what it came to under each command: where it ends in standby, no good row comes."""
+    of = {row["fault"]: row for row in rows}
+    names = [command.name for command in faults_commands.COMMANDS]
+    lines = ["| fault while a command is carried out: phases, worst ms to a good row | " + " | ".join(f"`{name}`" for name in names) + " |",
+             "|---|" + "---|" * len(names)]
+    for base in dict.fromkeys(fault.rpartition(": ")[2] for fault in of):
+        cells = []
+        for name in names:
+            row = of.get(f"command {name}: {base}")
+            failed = f", {row['failed']} FAILED" if row and row["failed"] else ""
+            cells.append(f"{row['phases']}, " + (f"{row['worst_ms_to_good']:.1f}" if name != "stop" else "-") + failed if row else "-")
+        lines.append(f"| {base} | " + " | ".join(cells) + " |")
+    return lines
+
+
 def tables(rows, extra):
     """The page's tables, as lines."""
     lines = ["| fault | phases | recovered | worst ms to a good row | limit | worst rows lost | wrong rows | resets too many or too few "
@@ -217,6 +239,7 @@ def tables(rows, extra):
         lines.append(f"| {row['fault']} | {row['phases']} | {row['recovered']} of {row['runs']} | {row['worst_ms_to_good']:.1f} | "
                      f"{limit} | {lost_words(row)} | {wrong} | {row['wrong_resets']} | {row['longest_pass_cycles'] / 16000:.2f} | {row['failed']} |")
     lines += ["", *rates_table([row for row in rows if row["group"] == "rate"])]
+    lines += ["", *commands_table([row for row in rows if row["group"] == "command"])]
     pairs = [row for row in rows if row["group"] == "pair"]
     failing = [row for row in pairs if row["failed"]]
     lines += ["", f"Pairs: {len(pairs)} of them, {sum(r['runs'] for r in pairs)} runs, {sum(r['failed'] for r in pairs)} failed"
@@ -299,7 +322,7 @@ def carried_out_and_told(options, began):
         print(f"faults: ended by a signal after {len(results)} of {len(runs) or '?'} runs", flush=True)
         ended = True
     rows = summarised(results)
-    lacking = faults_judge.shortfalls(rows, KINDS) if complete and not ended else []
+    lacking = faults_judge.shortfalls(rows, KINDS, faults_commands.KINDS) if complete and not ended else []
     absent = sum(not r.injected and not r.failures() for r in results)
     lacking += [f"{absent} of {len(results)} faults never came: more than one in ten"] if absent > len(results) // 10 else []
     RESULTS.parent.mkdir(exist_ok=True)

@@ -5,7 +5,11 @@ PASS_CYCLES = 16000  # 1 ms of main loop at 16 MHz
 LINE_MS = 8  # a row waits until the line ahead of it is out: 90 characters at 115200 baud
 # samples that a filter refuses at most, one after another, before it restarts from them (lib/filters/src/reacquire.h: default)
 GATED_ROWS = 5
-PHASES_AT_LEAST, PAIR_PHASES_AT_LEAST = 50, 5
+PHASES_AT_LEAST, PAIR_PHASES_AT_LEAST, COMMAND_PHASES_AT_LEAST = 50, 5, 6
+STANDBY_MS = 100  # a sensor that is to stand still has it from the end of a fault
+STOP_MS = 20  # rows of what was under way when `stop` came
+STEP_SHARE, MEASURED_SHARE = 0.25, 0.02  # by which two rows' distance and the rate in `status` may be off
+LAST_MS = 500  # of a run, in which the command's work is done
 # issue 6, item 6: what it names, and the kinds that are it
 ISSUE = {
     "unplug and plug": ("unplug",), "power cycle": ("power",), "SDA low": ("sda",), "SCL low": ("scl",),
@@ -40,6 +44,64 @@ def resets_due(kinds, whens):
     return due if later_ms < 0 else due - 1 if later_ms < 200 else None
 
 
+@dataclasses.dataclass(frozen=True)
+class Command:
+    """What somebody types while the fault comes, and what has to be in force at the end."""
+    name: str
+    typed: tuple  # MS:TEXT; with the last one the command is given
+    rate: int = 100  # 0: stopped
+    range_g: int = 16
+
+    def given_ms(self):
+        return float(self.typed[-1].partition(":")[0])
+
+
+@dataclasses.dataclass(frozen=True)
+class Ending:
+    """What a run with a command has come to, in its last half second: what the virtual sensor does, the rows, and what `status` says twice."""
+    sensor_hz: float  # 0: standby
+    range_g: int
+    measured_since_ms: float  # from the end of the fault, or from the command, whichever came later, until the sensor measured last
+    steps_us: tuple  # from row to row
+    coasted: int  # rows that are a prediction
+    rows_since: int  # rows stamped later than STOP_MS after the command
+    states: tuple  # (state, rate, measured rate) of each status
+    lost: tuple  # samples lost, as each status has it
+    no_sensor: int  # lines that tell fault 1
+
+    def failures(self, command, once):
+        """once: a single transfer failed, of a sensor that was there."""
+        said = [f"{self.no_sensor} times told that no sensor answers"] if once and self.no_sensor else []
+        return said + (self.streaming_failures(command) if command.rate else self.stopped_failures())
+
+    def stopped_failures(self):
+        since = self.measured_since_ms
+        said = [f"the sensor still measures, at {self.sensor_hz:g} Hz"] if self.sensor_hz else []
+        said += [f"the sensor measured for {since:.0f} ms (limit {STANDBY_MS})"] if not self.sensor_hz and since > STANDBY_MS else []
+        said += [f"{self.rows_since} rows of a stopped sensor"] if self.rows_since else []
+        return said + self.told_failures("stopped", 0)
+
+    def streaming_failures(self, command):
+        due = 1e6 / command.rate
+        wrong = [step for step in self.steps_us if abs(step - due) > STEP_SHARE * due]
+        few = len(self.steps_us) < LAST_MS * 1000 / due - 3
+        said = [f"the sensor has {self.sensor_hz:g} Hz instead of {command.rate}"] if self.sensor_hz != command.rate else []
+        said += [f"the sensor has {self.range_g} g instead of {command.range_g}"] if self.range_g != command.range_g else []
+        said += [f"{len(wrong)} rows {wrong[0] / 1000:.1f} ms behind the one ahead instead of {due / 1000:.1f}"] if wrong else []
+        said += [f"only {len(self.steps_us) + 1} rows in the last {LAST_MS} ms"] if few and not wrong else []
+        said += [f"{self.coasted} rows coasted to the end"] if self.coasted else []
+        said += [f"lost goes on growing: {self.lost[0]}, {self.lost[-1]}"] if self.lost and self.lost[-1] > self.lost[0] else []
+        return said + self.told_failures("streaming", command.rate)
+
+    def told_failures(self, state, rate):
+        """What `status` says."""
+        if len(self.states) != 2 or len(self.lost) != 2:
+            return [f"{len(self.states)} of 2 status replies are whole"]
+        said = [f"status says {told}" for told, _, _ in self.states[-1:] if told != state]
+        return said + [f"status says {asked:g} Hz, measured {measured:g} Hz" for _, asked, measured in self.states[-1:]
+                       if rate and (asked != rate or abs(measured - rate) > MEASURED_SHARE * rate)]
+
+
 @dataclasses.dataclass
 class Result:
     kinds: tuple
@@ -57,12 +119,15 @@ class Result:
     calm_gap_ms: float  # longest time between two rows that show a sample, when every fault was over
     since_good_ms: float  # from the last good row to the end of the run; None: there was none
     command: str
+    ending: Ending = None  # of a run with a command
 
     def failures(self):
         """Each as a few words."""
         said = [self.hang] if self.hang else []
-        said += ["no good row any more"] if self.injected and not self.recovered and not self.hang else []
-        return said + self.beyond_limits() + (self.stream_ends() if self.recovered else [])
+        stops = self.kinds[0].stops()
+        said += ["no good row any more"] if self.injected and not self.recovered and not self.hang and not stops else []
+        said += self.ending.failures(self.kinds[0].command, self.kinds[0].once) if self.ending and self.injected and not self.hang else []
+        return said + self.beyond_limits() + (self.stream_ends() if self.recovered and not stops else [])
 
     def beyond_limits(self):
         limit = max(kind.limit_ms for kind in self.kinds)
@@ -91,13 +156,14 @@ class Result:
         return said + ([since] if self.since_good_ms is None or self.since_good_ms > end_ms else [])
 
 
-def shortfalls(rows, kinds):
+def shortfalls(rows, kinds, commands=()):
     """What a whole campaign has to have and these rows of build/faults.json have not, each as one sentence."""
     judged = {(row["group"], row["fault"]): row["phases"] for row in rows}
     said = [f"the issue's {item!r} is in no run: there is no kind {name!r}" for item, names in ISSUE.items() for name in names
             if ("single", name) not in judged]
     for group, name, least in ([("single", kind.name, PHASES_AT_LEAST) for kind in kinds]
-                               + [("pair", f"{a.name} + {b.name}", PAIR_PHASES_AT_LEAST) for n, a in enumerate(kinds) for b in kinds[n + 1:]]):
+                               + [("pair", f"{a.name} + {b.name}", PAIR_PHASES_AT_LEAST) for n, a in enumerate(kinds) for b in kinds[n + 1:]]
+                               + [("command", kind.name, COMMAND_PHASES_AT_LEAST) for kind in commands]):
         count = judged.get((group, name), 0)
         said += [f"{name}: {count} phases were judged of at least {least}"] if count < least else []
     return said

@@ -12,7 +12,7 @@ import tempfile
 import threading
 
 import faults_judge
-from faults_judge import GATED_ROWS, LINE_MS, PASS_CYCLES, Result
+from faults_judge import GATED_ROWS, LINE_MS, PASS_CYCLES, Command, Ending, Result
 
 SIMRUN = pathlib.Path("build/sim/simrun")
 REST, MOVING = "sim/streams/rest-2lsb.csv", "sim/streams/tilt-slow.csv"
@@ -48,6 +48,11 @@ class Kind:
     row_ms: float = 0  # from row to row at the end, where it is not that of the rate
     said_ms: float = LINE_MS  # what the firmware says at once ahead of a row, as long as it takes
     gated_rows: int = GATED_ROWS  # that a filter may refuse, one after another
+    command: Command = None  # that is carried out while the fault comes
+    once: bool = False  # of such a kind: it strikes a single transfer
+
+    def stops(self):
+        return self.command is not None and not self.command.rate
 
     def faults(self, when):
         return [f"{later(when, what)}:{what.rpartition(' ')[2]}" for what in self.what]
@@ -249,7 +254,8 @@ def options_of(kinds, whens):
     options = [word for kind, when in zip(kinds, whens) for fault in kind.faults(when) for word in ("--fault", fault)]
     options += ["--expect-resets", sum(kind.resets for kind in kinds)]
     options += [word for kind in kinds for typed in kind.typed for word in ("--cmd", typed)]
-    return options + (["--in", kinds[0].stream] if kinds[0].stream else [])
+    stream = noise_at(kinds[0].command.rate) if kinds[0].command else kinds[0].stream
+    return options + (["--in", stream] if stream else [])
 
 
 def attempt(firmware, filter_name, kinds, whens, profile=None):
@@ -259,7 +265,9 @@ def attempt(firmware, filter_name, kinds, whens, profile=None):
     command = " ".join(map(str, options))
     try:
         done = simulate(firmware, filter_name, *options, rate=max(kind.rate for kind in kinds), profile=profile, max_ms=max_ms)
-        return judged(filter_name, kinds, whens, max_ms, command, *done)
+        result = judged(filter_name, kinds, whens, max_ms, command, *done)
+        result.ending = ending(kinds[0].command, done[2]) if kinds[0].command else None
+        return result
     except Exception as problem:
         return Result(kinds, " + ".join(whens), filter_name, f"the run died: {type(problem).__name__}: {str(problem)[:200]}", injected=False,
                       recovered=False, ms_to_good=0.0, lost=None, wrong=0, resets=0, resets_due=None, pass_cycles=0, calm_gap_ms=0.0,
@@ -280,6 +288,20 @@ def judged(filter_name, kinds, whens, max_ms, command, status, said, stats):
                   lost=stats["lost"], wrong=wrong, resets=stats["resets"], resets_due=faults_judge.resets_due(kinds, whens),
                   pass_cycles=stats["pass_max_cycles"], calm_gap_ms=stats["rows_calm_gap_ms"],
                   since_good_ms=None if last_ms is None else stats["sim_ms"] - last_ms, command=command)
+
+
+def ending(command, stats):
+    """What a run with a command has come to, from its rows, from what it said, and from the virtual sensor."""
+    rows = read_rows(folder() / "out.csv")
+    late = [row for row in rows if row[0] > 1000 * (stats["sim_ms"] - faults_judge.LAST_MS)]
+    said = (folder() / "out.csv").read_text(encoding="ascii", errors="replace")
+    states = re.findall(r"^# state (\w+),.* rate ([\d.]+) Hz(?:, measured ([\d.]+) Hz)?", said, re.MULTILINE)
+    over = max([command.given_ms(), *(end for end, _ in ends_of(stats))])
+    return Ending(stats["sensor_hz"], stats["sensor_range_g"], stats["sensor_last_tick_ms"] - over,
+                  tuple(b[0] - a[0] for a, b in zip(late, late[1:])), sum(bool(row[9] & 2) for row in late),
+                  sum(row[0] > 1000 * (command.given_ms() + faults_judge.STOP_MS) for row in rows),
+                  tuple((state, float(rate), float(measured or 0)) for state, rate, measured in states),
+                  tuple(int(lost) for lost in re.findall(r"^# lost (\d+),", said, re.MULTILINE)), len(re.findall("^# fault 1:", said, re.MULTILINE)))
 
 
 # --- values that no firmware can see to be wrong ----------------------------------------------------------------------
