@@ -17,15 +17,16 @@ import faults_runs
 import soak
 from system_support import FW, test
 
-ALL = {kind.name: kind for kind in faults_runs.KINDS + faults_runs.rated() + faults_runs.TYPED + faults_commands.KINDS}
+ALL = {kind.name: kind for kind in faults_runs.KINDS + faults_runs.LONG + faults_runs.rated() + faults_runs.TYPED + faults_commands.KINDS}
 
 
 def result(*names, **said):
     """Of a run in which all went well but what is said."""
     kinds = tuple(ALL[name] for name in names)
     due = sum(kind.resets for kind in kinds)
-    good = {"when": "1000ms", "filter_name": "kf", "hang": "", "injected": True, "recovered": True, "ms_to_good": 20.0, "lost": 0, "wrong": 0,
-            "resets": due, "resets_due": due, "pass_cycles": 16000, "calm_gap_ms": 10.1, "since_good_ms": 9.9, "command": ""}
+    good = {"when": "1000ms", "filter_name": "kf", "hang": "", "injected": True, "recovered": True, "ms_to_good": 20.0, "lost": 0,
+            "wrong": 0, "steps_back": 0, "altered": 0, "resets": due, "resets_due": due, "pass_cycles": 16000, "waits": (),
+            "calm_gap_ms": 10.1, "since_good_ms": 9.9, "command": ""}
     return faults_judge.Result(kinds, **(good | said))
 
 
@@ -97,6 +98,7 @@ def what_is_lost_is_not_judged_where_nobody_knows():
         done = faults_runs.attempt(FW, "adaptive", (ALL[name],), ("1000.4ms",))
         assert (done.lost is not None) == known and not done.failures(), done
     assert result("arb", lost=None).failures() == [] and result("arb", lost=3).failures()
+    assert result("sda", "power", lost=None).failures() == []
     rows = faults.summarised([result("arb", lost=None), result("sda", lost=None), result("sda", lost=2)])
     assert [row["worst_rows_lost"] for row in rows] == [None, 2] and "| - |" in "\n".join(faults.tables(rows, []))
 
@@ -131,6 +133,8 @@ def a_run_that_dies_is_a_failure_with_its_command():
     arb = (faults_runs.OF["arb"],)
     assert faults_runs.judged("adaptive", arb, ("1000ms",), 2600, "", 0, "", stats).failures() == []
     assert faults_runs.judged("adaptive", arb, ("1000ms",), 9000, "", 0, "", stats).failures() == ["ended after 2600 of 9000 ms"]
+    back = faults_runs.judged("adaptive", arb, ("1000ms",), 2600, "", 0, "", stats | {"t_us_steps_back": 2})
+    assert back.failures() == ["2 steps back in time"], back
     assert faults.share(faults.share_of_roll, "build/no.elf", "bad reads", ["arb"], faults.REST, 1)["good"] is False
 
 
@@ -175,6 +179,7 @@ def what_a_whole_campaign_lacks_is_a_failure():
         return result(*(kind.name for kind in kinds), when=whens[0], injected=whens[0] != "1001ms")
 
     runs = [((kind,), (f"{1000 + n}ms",), "kf") for kind in faults_runs.KINDS for n in range(50)]
+    runs += [((kind,), (f"{1010 + n}ms",), "kf") for kind in faults_runs.LONG for n in range(8)]
     runs += [(pair, (f"{1000 + n}ms",) * 2, "kf") for pair in faults.itertools.combinations(faults_runs.KINDS, 2) for n in (0, 2, 3, 4, 5)]
     runs += [((kind,), (f"{1002 + n}ms",), "adaptive") for kind in faults_commands.KINDS for n in range(5 if kind.name == "command stop: scl" else 6)]
     kept, faults.lines_that_ran = faults.lines_that_ran, lambda options, profile: {"fault": "lines", "good": True}

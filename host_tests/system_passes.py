@@ -1,32 +1,12 @@
 """No pass of the main loop is longer than 1 ms, and no interrupt with a deadline waits longer than 15 us; part of system_tests.py."""
-import math
 import pathlib
+import sys
 
-from system_support import SET_IMAGES, STREAMS, TESTS, image_with, simrun, test, within
+sys.path.insert(0, "tools")
+import latency  # noqa: E402
+from system_support import SET_IMAGES, STREAMS, TESTS, image_with, simrun, test, within  # noqa: E402
 
 PASS_CYCLES = 16000
-LATENCY_CYCLES = 240
-
-# I2C is served last. It has no deadline: SCL stays low meanwhile. Where bytes are quick the handlers of all others meet now and then.
-ONCE_CYCLES = 100 + 145 + 83 + 13  # main with interrupts off, data-ready, the clock, the alarm
-BYTE_IN_CYCLES, BYTE_OUT_CYCLES = 66, 52
-
-
-def longest_wait_of_twi(baud, flood):
-    """Cycles: all others once, and a byte out each time the line has sent one; a byte in too, or a single one without a flood."""
-    if baud == 115200:
-        return LATENCY_CYCLES
-    per_byte = BYTE_OUT_CYCLES + flood * BYTE_IN_CYCLES
-    once = ONCE_CYCLES + (not flood) * BYTE_IN_CYCLES
-    wait, longer = 0, once
-    while longer > wait:
-        wait = longer
-        longer = once + per_byte * math.ceil(wait * baud / 160e6)
-    return wait
-
-
-# the others have no deadline: the next byte to send, and the alarm, which only wakes main
-WITH_DEADLINE = ("int0", "twi", "timer1_compa", "usart_rx")
 COMMANDS = ("status", "help", "filter {0}", "range 8", "filter", "filter {1}", "range 16", "every 3", "every 1", "stop", "go", "mode plot",
             "nonsense", "filter {0}", "mode csv", "rate 50", "rate {2}", "filter {1}", "status")
 FAULTS = ("unplug:60", "power:20", "scl:40", "sda:40", "hang:5", "noint:60", "nack", "nackdata", "buserr", "arb", "devid:0:60", "storm:1000:30",
@@ -42,9 +22,8 @@ def filters_of(image):
 def assert_prompt(name, stats, baud, flood):
     assert stats["passes"] > 100, stats["passes"]
     within(f"{name}: pass of the main loop", stats["pass_max_cycles"], PASS_CYCLES)
-    for source in WITH_DEADLINE:
-        limit = longest_wait_of_twi(baud, flood) if source == "twi" else LATENCY_CYCLES
-        within(f"{name}: latency of {source}", stats.get(f"isr_{source}_worst_latency", 0), limit)
+    for source, cycles, limit in latency.waits(stats, baud, flood):
+        within(f"{name}: latency of {source}", cycles, limit)
 
 
 def disturbed_run(image, filter_name, rate, baud, flood):

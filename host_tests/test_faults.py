@@ -11,6 +11,7 @@ import faults_runs  # noqa: E402
 import soak  # noqa: E402
 import faults_commanded  # noqa: E402, F401
 from faults_judged import result  # noqa: E402
+import faults_shares  # noqa: E402,F401
 from system_support import FW, run_all, test  # noqa: E402
 
 
@@ -27,7 +28,6 @@ def each_number_of_a_run_has_its_limit():
         assert not result(name, ms_to_good=limit).failures() and len(result(name, ms_to_good=limit + 0.1).failures()) == 1, name
     for name in ("arb", "buserr", "nack", "nackdata", "torn", "hang", "glitch"):
         assert not result(name, lost=2).failures() and len(result(name, lost=3).failures()) == 1, name
-    assert not result("sda", lost=6).failures(), "no fault of a single transfer"
     assert result("sda", wrong=1).failures() == ["1 wrong rows"]
     assert result("sda", resets=1).failures() == ["1 resets instead of 0"]
     assert result("sda", hang="crash").failures() == ["crash"]
@@ -35,11 +35,15 @@ def each_number_of_a_run_has_its_limit():
 
 
 @test
-def wrong_rows_of_what_nobody_can_see_are_reported_and_not_bounded():
+def of_what_nobody_can_see_as_many_rows_may_be_wrong_as_samples_were_altered():
     for name in ("flip 1", "flip 2", "noise", "double", "mixed"):
-        assert not result(name, wrong=1).failures(), name
+        assert not result(name, wrong=1, altered=1).failures(), name
+        assert result(name, wrong=1).failures() == ["1 wrong rows"], name
+        assert result(name, wrong=3, altered=2).failures() == ["3 wrong rows of 2 samples altered"], name
+        assert result(name, altered=1, steps_back=1).failures() == ["1 steps back in time"], name
         assert result(name, resets=1).failures(), name
-    assert not result("sda", "noise", wrong=1).failures() and result("sda", "torn", wrong=1).failures()
+    assert not result("sda", "noise", wrong=1, altered=1).failures() and result("sda", "torn", wrong=1, altered=1).failures()
+    assert result("sda", "noise", wrong=2, altered=1).failures() and result("sda", "noise", steps_back=1, altered=1).failures()
 
 
 @test
@@ -125,7 +129,8 @@ def every_fault_of_a_plan_comes_and_a_run_is_judged_by_the_model():
         done = faults_runs.attempt(FW, "kf", (faults_runs.OF["flip 1"],), (when,))
         assert done.injected and done.recovered and not done.failures() and done.lost == 0, done
     # the byte of x: it is altered, so the judge that looks at the model alone finds the row wrong
-    assert faults_runs.attempt(FW, "kf", (faults_runs.OF["flip 1"],), (whens[5],)).wrong == 1
+    done = faults_runs.attempt(FW, "kf", (faults_runs.OF["flip 1"],), (whens[5],))
+    assert done.wrong == done.altered == 1, done
     done = faults_runs.attempt(FW, "kf", (faults_runs.OF["reset"],), ("1000ms",))
     assert done.recovered and done.resets == done.resets_due == 1 and 20 < done.ms_to_good < 600, done
 

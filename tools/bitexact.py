@@ -23,7 +23,8 @@ STREAM = "sim/streams/tilt-fast.csv"
 STOPPED = 8          # simrun: the program slept with interrupts off
 BLOCK = 200          # VECTORS_BLOCK of vectors.h
 SHOWN = 3            # differences shown in detail
-FIRMWARE = [f"firmware/{name}.c" for name in ("format", "text", "rows", "pipeline", "pipeline_change", "pass", "settings", "counters", "coast", "silence")]
+FIRMWARE = [f"firmware/{name}.c" for name in ("format", "text", "rows", "pipeline", "pipeline_change", "pass", "settings", "counters", "coast",
+                                              "silence")]
 HEADERS = ["lib", "firmware", "hal", "host_tests"]
 SANITIZE = "-O1 -fsanitize=address,undefined -fno-sanitize-recover=all"
 # as the planted differences: name, file under lib, text, broken text, build, paths that must be named

@@ -1,11 +1,13 @@
 """How the fault campaign judges one run and a whole campaign: every limit, and which kind of fault has another one (a field of its Kind)."""
 import dataclasses
+import math
 
+NO_LIMIT = 9999  # ms to a good row: readings that were true and are no longer at the rail; when the filter takes them is its own affair
 PASS_CYCLES = 16000  # 1 ms of main loop at 16 MHz
 LINE_MS = 8  # a row waits until the line ahead of it is out: 90 characters at 115200 baud
 # samples that a filter refuses at most, one after another, before it restarts from them (lib/filters/src/reacquire.h: default)
 GATED_ROWS = 5
-PHASES_AT_LEAST, PAIR_PHASES_AT_LEAST, COMMAND_PHASES_AT_LEAST = 50, 5, 6
+PHASES_AT_LEAST, LONG_PHASES_AT_LEAST, PAIR_PHASES_AT_LEAST, COMMAND_PHASES_AT_LEAST = 50, 8, 5, 6
 STANDBY_MS = 100  # a sensor that is to stand still has it from the end of a fault
 STOP_MS = 20  # rows of what was under way when `stop` came
 STEP_SHARE, MEASURED_SHARE = 0.25, 0.02  # by which two rows' distance and the rate in `status` may be off
@@ -28,6 +30,17 @@ def row_ms(kinds):
     rate = 100 if any(kind.resets for kind in kinds) else max(kind.rate for kind in kinds)
     every = 2 if rate > 400 else 1  # what 500,000 baud carry
     return 1000 * every / rate
+
+
+def lost_most(kinds):
+    """
+    How many samples they may cost together: as many as a kind says, else those of the time that it lasts and of its limit to the first good
+    row. None: what somebody types has no limit.
+    """
+    if any(kind.lost_max is None and kind.limit_ms >= NO_LIMIT for kind in kinds):
+        return None
+    rate = max(kind.rate for kind in kinds)
+    return sum(math.ceil((kind.lasts_ms + kind.limit_ms) * rate / 1000) if kind.lost_max is None else kind.lost_max for kind in kinds)
 
 
 def resets_due(kinds, whens):
@@ -112,10 +125,13 @@ class Result:
     recovered: bool
     ms_to_good: float
     lost: int  # None: not known
-    wrong: int
+    wrong: int  # rows: wrong, stale, or the second with a sample
+    steps_back: int  # rows stamped before the one ahead of them
+    altered: int  # samples whose values a fault changed on their way
     resets: int
     resets_due: int  # None: not known
     pass_cycles: int
+    waits: tuple  # (interrupt, its longest wait, limit) in cycles, of those that have a deadline
     calm_gap_ms: float  # longest time between two rows that show a sample, when every fault was over
     since_good_ms: float  # from the last good row to the end of the run; None: there was none
     command: str
@@ -131,15 +147,17 @@ class Result:
 
     def beyond_limits(self):
         limit = max(kind.limit_ms for kind in self.kinds)
-        detectable = all(kind.detectable for kind in self.kinds)
-        lost_max = self.kinds[0].lost_max if len(self.kinds) == 1 and self.lost is not None else None
+        # a value that changed inside a well-formed transfer makes one row wrong
+        wrong_most = 0 if all(kind.detectable for kind in self.kinds) else self.altered
+        lost_max = lost_most(self.kinds) if self.lost is not None else None
         cycles = max(kind.pass_cycles for kind in self.kinds)
         said = [f"{self.ms_to_good:.0f} ms to the first good row (limit {limit:.0f})"] if self.recovered and self.ms_to_good > limit else []
-        said += [f"{self.wrong} wrong rows"] if detectable and self.wrong else []
+        said += [f"{self.wrong} wrong rows" + f" of {wrong_most} samples altered" * (wrong_most > 0)] if self.wrong > wrong_most else []
+        said += [f"{self.steps_back} steps back in time"] if self.steps_back else []
         said += [f"{self.resets} resets instead of {self.resets_due}"] if self.wrong_resets() else []
         said += [f"{self.lost} samples lost (limit {lost_max})"] if lost_max is not None and self.lost > lost_max else []
         said += [f"a pass of {self.pass_cycles} cycles (limit {cycles})"] if self.pass_cycles > cycles else []
-        return said
+        return said + [f"{name} waited {cycles} cycles (limit {most})" for name, cycles, most in self.waits if cycles > most]
 
     def wrong_resets(self):
         return 0 if self.resets_due is None or self.hang else abs(self.resets - self.resets_due)
@@ -156,12 +174,13 @@ class Result:
         return said + ([since] if self.since_good_ms is None or self.since_good_ms > end_ms else [])
 
 
-def shortfalls(rows, kinds, commands=()):
+def shortfalls(rows, kinds, long=(), commands=()):
     """What a whole campaign has to have and these rows of build/faults.json have not, each as one sentence."""
     judged = {(row["group"], row["fault"]): row["phases"] for row in rows}
     said = [f"the issue's {item!r} is in no run: there is no kind {name!r}" for item, names in ISSUE.items() for name in names
             if ("single", name) not in judged]
     for group, name, least in ([("single", kind.name, PHASES_AT_LEAST) for kind in kinds]
+                               + [("long", kind.name, LONG_PHASES_AT_LEAST) for kind in long]
                                + [("pair", f"{a.name} + {b.name}", PAIR_PHASES_AT_LEAST) for n, a in enumerate(kinds) for b in kinds[n + 1:]]
                                + [("command", kind.name, COMMAND_PHASES_AT_LEAST) for kind in commands]):
         count = judged.get((group, name), 0)

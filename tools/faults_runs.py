@@ -12,7 +12,8 @@ import tempfile
 import threading
 
 import faults_judge
-from faults_judge import GATED_ROWS, LINE_MS, PASS_CYCLES, Command, Ending, Result
+import latency
+from faults_judge import GATED_ROWS, LINE_MS, NO_LIMIT, PASS_CYCLES, Command, Ending, Result
 
 SIMRUN = pathlib.Path("build/sim/simrun")
 REST, MOVING = "sim/streams/rest-2lsb.csv", "sim/streams/tilt-slow.csv"
@@ -22,7 +23,6 @@ STATUS_WORDS = {1: "simrun failed", 2: "refused", 3: "crash", 4: "illegal opcode
                 8: "sleeps with interrupts off", 9: "the sensor is not used"}
 RAW_FLAGS = 1 | 2 | 16 | 32 | 64
 BUS_MS, POWER_MS, RESET_MS = 50, 150, 600  # limits until the first good row
-NO_LIMIT = 9999  # readings that were true and are no longer at the rail: when the filter takes them is its own affair
 
 
 def later(when, what):
@@ -36,7 +36,7 @@ class Kind:
     what: tuple  # KIND[:PARAM] of simrun, of faults that begin together, or so many ms later: "@MS KIND"
     lasts_ms: float = 0  # the first of them, if it is a state
     limit_ms: float = BUS_MS
-    lost_max: int = None  # samples that one transfer may cost
+    lost_max: int = None  # samples that it may cost, where it is not for the time that it lasts
     resets: int = 0
     rate: int = 100
     detectable: bool = True
@@ -66,17 +66,18 @@ def once(name, what=None, **more):
     return Kind(name, (what or name,), **more)
 
 
+UNSEEN = {"detectable": False, "lost_max": 2}
 KINDS = [
     state("unplug", 200, POWER_MS), state("power", 50, POWER_MS), state("sda", 40), state("scl", 40),
     once("hang", "hang:5", lost_max=2), once("hang a byte", "hang:9", lost_max=2), once("arb", lost_max=2), once("buserr", lost_max=2),
     once("nack", lost_max=2), once("nackdata", lost_max=2), once("torn", lost_max=2),
     Kind("devid", ("power:20", "devid:0:200"), 200, POWER_MS), state("noint", 200), state("inthigh", 200), once("glitch", lost_max=2),
-    state("storm", 200, what="storm:1000"), state("frozen", 300, POWER_MS), state("clip", 200, NO_LIMIT, what="clip:z"),
+    state("storm", 200, what="storm:1000"), state("frozen", 300, POWER_MS), state("clip", 200, NO_LIMIT, what="clip:z", lost_max=2),
     state("odr fast", 400, what="odr:50000"), state("odr slow", 400, what="odr:-50000"), state("rxflood", 200), state("txstall", 150),
     Kind("overrun", ("overrun:3:150",), 100, BUS_MS, rate=400), Kind("starve", ("starve:2000",), 250, RESET_MS, resets=1),
     once("reset", resets=1, limit_ms=RESET_MS), once("mcupower", resets=1, limit_ms=RESET_MS), once("brownout", resets=1, limit_ms=RESET_MS),
-    once("flip 1", "flip:1", detectable=False), once("flip 2", "flip:2", detectable=False),
-    once("noise", "noise:60", detectable=False), once("double", "double:z", detectable=False), once("mixed", detectable=False),
+    once("flip 1", "flip:1", **UNSEEN), once("flip 2", "flip:2", **UNSEEN),
+    once("noise", "noise:60", **UNSEEN), once("double", "double:z", **UNSEEN), once("mixed", **UNSEEN),
 ]
 
 
@@ -110,6 +111,18 @@ TYPED = [
           row_ms=80),
 ]
 OF = {kind.name: kind for kind in KINDS}
+
+
+def longer(name, lasts_ms):
+    """A kind whose state lasts as many seconds as somebody needs to pull a plug and put it in again: the limits are those of the short one."""
+    kind = OF[name]
+    first, last = kind.what[:-1], kind.what[-1].rpartition(":")[0]
+    return dataclasses.replace(kind, name=f"{name}, {lasts_ms / 1000:g} s", what=(*first, f"{last}:{lasts_ms}"), lasts_ms=lasts_ms)
+
+
+# what counts tries or doubles a time from try to try shows only here
+LONG = [longer(name, ms) for name in ("unplug", "power", "sda", "scl", "devid", "noint", "inthigh") for ms in (3000, 10000)]
+LONG += [longer("frozen", ms) for ms in (1500, 10000)]
 # the same at other rates; below 100 Hz the first good row may take three periods more
 OTHER_RATES = (12.5, 400, 800)
 
@@ -261,7 +274,7 @@ def options_of(kinds, whens):
 def attempt(firmware, filter_name, kinds, whens, profile=None):
     """One run, judged. One that dies is a failure of its own: the others go on."""
     options = options_of(kinds, whens)
-    max_ms = RUN_MS + (1500 if sum(kind.resets for kind in kinds) > 1 else 0)
+    max_ms = RUN_MS + (1500 if sum(kind.resets for kind in kinds) > 1 else 0) + sum(kind.lasts_ms for kind in kinds if kind in LONG)
     command = " ".join(map(str, options))
     try:
         done = simulate(firmware, filter_name, *options, rate=max(kind.rate for kind in kinds), profile=profile, max_ms=max_ms)
@@ -270,8 +283,17 @@ def attempt(firmware, filter_name, kinds, whens, profile=None):
         return result
     except Exception as problem:
         return Result(kinds, " + ".join(whens), filter_name, f"the run died: {type(problem).__name__}: {str(problem)[:200]}", injected=False,
-                      recovered=False, ms_to_good=0.0, lost=None, wrong=0, resets=0, resets_due=None, pass_cycles=0, calm_gap_ms=0.0,
-                      since_good_ms=None, command=command)
+                      recovered=False, ms_to_good=0.0, lost=None, wrong=0, steps_back=0, altered=0, resets=0, resets_due=None, pass_cycles=0,
+                      waits=(), calm_gap_ms=0.0, since_good_ms=None, command=command)
+
+
+def waits_of(kinds, stats):
+    """How long interrupts waited. To starve main, the simulator sleeps in its place, and sleeps through what is due meanwhile: none then."""
+    if any(word in what for kind in kinds for what in kind.what for word in ("starve", "overrun")):
+        return ()
+    typed = [int(baud) for kind in kinds for line in kind.typed for baud in re.findall(r":baud (\d+)$", line)]
+    baud = max([500000 if max(kind.rate for kind in kinds) > 100 else 115200, *typed])
+    return tuple(latency.waits(stats, baud, any("rxflood" in what for kind in kinds for what in kind.what)))
 
 
 def judged(filter_name, kinds, whens, max_ms, command, status, said, stats):
@@ -282,11 +304,12 @@ def judged(filter_name, kinds, whens, max_ms, command, status, said, stats):
         hang = f"ended after {stats['sim_ms']:.0f} of {max_ms:.0f} ms"
     ends = list(ends_of(stats))
     ms = max(ends, key=lambda end: end[0])[1] if ends else None
-    wrong = stats["rows_wrong"] + stats["rows_stale"] + stats["rows_twice"] + stats["t_us_steps_back"]
+    wrong = stats["rows_wrong"] + stats["rows_stale"] + stats["rows_twice"]
     last_ms = stats["rows_last_good_ms"]
     return Result(kinds, " + ".join(whens), filter_name, hang, injected=bool(ends), recovered=bool(ends) and ms is not None, ms_to_good=ms or 0.0,
-                  lost=stats["lost"], wrong=wrong, resets=stats["resets"], resets_due=faults_judge.resets_due(kinds, whens),
-                  pass_cycles=stats["pass_max_cycles"], calm_gap_ms=stats["rows_calm_gap_ms"],
+                  lost=stats["lost"], wrong=wrong, steps_back=stats["t_us_steps_back"], altered=stats["samples_altered"],
+                  resets=stats["resets"], resets_due=faults_judge.resets_due(kinds, whens),
+                  pass_cycles=stats["pass_max_cycles"], waits=waits_of(kinds, stats), calm_gap_ms=stats["rows_calm_gap_ms"],
                   since_good_ms=None if last_ms is None else stats["sim_ms"] - last_ms, command=command)
 
 
