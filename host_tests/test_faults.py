@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The fault campaign (tools/faults.py) and the soak (tools/soak.py): what they plan, and how they judge what a run of simrun says."""
+import itertools
 import pathlib
 import random
 import re
@@ -163,9 +164,9 @@ def a_sample_takes_all_kinds_alike():
 
 
 def soak_stats(**said):
-    stats = {"rows": 180000, "rows_judged": 170000, "rows_wrong": 0, "rows_stale": 0, "rows_twice": 0, "t_us_steps_back": 0, "resets": 4,
+    stats = {"rows": 180000, "rows_judged": 170000, "rows_wrong": 0, "rows_stale": 0, "rows_twice": 0, "t_us_steps_back": 0, "resets": 8,
              "sim_ms": 1.8e6, "pass_max_cycles": 16000, "rows_gap_ms": 300.0, "rows_last_good_ms": 1.8e6 - 9.0}
-    for n, (fault, resets) in enumerate(soak.faults_of(600), 1):
+    for n, (fault, _) in enumerate(soak.faults_of(600, 1.8e6, 1), 1):
         stats |= {f"fault_{n}": fault, f"fault_{n}_injected": 1, f"fault_{n}_recovered": 1, f"fault_{n}_worst_recovery_ms": 30.0}
     return stats | said
 
@@ -173,23 +174,48 @@ def soak_stats(**said):
 @test
 def soak_finds_what_went_wrong():
     path = pathlib.Path("build/system/soak.json")
-    many = soak.faults_of(600)
+    many = soak.faults_of(600, 1.8e6, 1)
+    # every kind twice: its time and its limit until the first good row, and the start
+    gone_ms = 1000 + 2 * sum(len(kind.what) * (kind.lasts_ms + (kind.limit_ms if kind.name != "clip" else 50)) for kind in soak.ASKED)
+    least = 180000 - gone_ms // 10
+    whats = [soak.what_of(fault) for fault, _ in many]
+    never = {f"fault_{n}_injected": 0 for n, what in enumerate(whats, 1) if what.startswith("sda")}
     for said, status, words in (({}, 7, []), ({}, 0, []), ({"rows_wrong": 2}, 7, ["wrong: 2"]), ({"rows_stale": 1}, 7, ["stale: 1"]),
                                 ({"rows_twice": 1}, 7, ["twice: 1"]), ({"t_us_steps_back": 1}, 7, ["steps_back: 1"]),
-                                ({"resets": 9}, 7, ["5 resets not asked for"]), ({"rows": 100}, 7, ["100 rows of 180000"]),
-                                ({"fault_3_worst_recovery_ms": 1011.0}, 7, ["1011 ms to a good row after " + many[2][0].split(":", 2)[2]]),
+                                ({"resets": 13}, 7, ["5 resets not asked for"]), ({"rows": 100}, 7, [f"100 rows of {least} at least"]),
+                                ({"rows": least}, 7, []), ({"rows": least - 1}, 7, [f"{least - 1} rows of {least} at least"]),
+                                (never, 7, ["sda:40 never came"]),
+                                ({"fault_3_worst_recovery_ms": 1011.0}, 7, ["1011 ms to a good row after sda:40"]),
                                 ({"fault_3_worst_recovery_ms": 1010.0, "rows_gap_ms": 1010.0, "rows_last_good_ms": 1.8e6 - 1010.0}, 7, []),
                                 ({"rows_gap_ms": 1011.0}, 7, ["1011 ms without a sample's row"]),
                                 ({"rows_last_good_ms": 1.8e6 - 1011}, 7, ["last good row 1011 ms before the end"]),
                                 ({"rows_last_good_ms": None}, 7, ["no good row"]), ({"pass_max_cycles": 16001}, 7, ["a pass of 16001 cycles"]),
                                 ({"sim_ms": 1.7e6, "rows_last_good_ms": 1.7e6}, 0, ["ended after 1700000 of 1800000 ms"]),
-                                ({"resets": 2}, 7, ["2 resets asked for did not come"]),
+                                ({"resets": 6}, 7, ["2 resets asked for did not come"]),
                                 ({}, 3, ["crash: what it said"])):
         path.write_text(soak.json.dumps(soak_stats(**said)), encoding="ascii")
         row, wrong = soak.judged(0, status, "what it said", path, 1.8e6, many)
-        assert wrong == words and row["resets_asked_for"] == 4, (said, wrong, row)
-    assert soak.GOOD_ROW_WITHIN_MS == 1010 and soak.judged(0, 1, "ended by a signal", path, None, many)[1] == ["crash: what it said"][1:]
+        assert wrong == words and row["resets_asked_for"] == 8, (said, wrong, row)
+    assert soak.GOOD_ROW_WITHIN_MS == 1010 and soak.judged(0, 1, "ended by a signal", path, None, many)[1] == []
+    # ended by a signal, a half is asked neither for a fault nor, while it starts, for a row
+    none = {f"fault_{n}_injected": 0 for n in range(1, len(many) + 1)}
+    path.write_text(soak.json.dumps(soak_stats(**none, resets=0, sim_ms=30.0, rows=0, rows_judged=0, rows_last_good_ms=None)), encoding="ascii")
+    assert soak.judged(0, 1, "ended by a signal", path, None, many)[1] == []
     assert soak.judged(0, 2, "refused", path.with_name("none.json"), 1.8e6, many)[1] == ["simrun gave status 2 and no statistics: refused"]
+
+
+@test
+def each_kind_comes_in_each_half_of_a_soak():
+    for hours, every in ((0.1667, 100), (24, 600)):
+        options = soak.arguments(["--hours", str(hours)])
+        assert round(options.every) == every, options
+        faults_due = soak.faults_of(options.every, hours * 1.8e6, 1)
+        by_chance = [fault for fault, _ in faults_due if fault.startswith("p:")]
+        moments = {kind.name: float(fault.partition("ms:")[0]) for fault, kind in faults_due if "ms:" in fault}
+        assert set(moments) == {kind.name for kind in soak.ASKED} and len(by_chance) == len(faults_due) // 2 <= 32, faults_due
+        between = [b - a for a, b in itertools.pairwise(sorted(moments.values()))]
+        assert min(moments.values()) >= 1000 and max(moments.values()) < hours * 1.8e6 - 1000 and min(between) > 1500, moments
+    assert soak.faults_of(600, 3e5, 1) != soak.faults_of(600, 3e5, 2)
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ typedef enum {
 } exit_status_t;
 
 /* --- options --- */
-enum { TYPED_MAX = 64, FAULTS_MAX = 32 };
+enum { TYPED_MAX = 64, FAULTS_MAX = 64 };
 
 typedef struct {
     double at_ms;     /* not before this simulated time */

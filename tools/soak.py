@@ -4,26 +4,30 @@
     soak.py [--fw ELF] [--hours H] [--seed N] [--every S]
 
 Two halves run side by side, one with the filter adaptive and one with kf, each with its own seed, in one piece each; a fault of each kind
-comes about every --every seconds (600). Results: build/soak.json. Exit status 1 when anything is not as it has to be.
+comes once at a moment of its own, and about every --every seconds (600, or a third of a shorter half) as chance has it.
+Results: build/soak.json. Exit status 1 when anything is not as it has to be.
 """
 import argparse
+import collections
 import json
 import pathlib
+import random
 import signal
 import subprocess
 import sys
 import time
 
-from faults_judge import PASS_CYCLES
-from faults_runs import KINDS, REST, RESET_MS, SIMRUN, STATUS_WORDS, need
+from faults_judge import NO_LIMIT, PASS_CYCLES
+from faults_runs import BUS_MS, KINDS, REST, RESET_MS, SIMRUN, STATUS_WORDS, need
 
 FILTERS = ("adaptive", "kf")
-RATE_HZ, ROWS_AT_LEAST = 100, 0.9
+RATE_HZ, START_MS = 100, 1000  # until rows come, and filters have warmed up
 ASKED = [kind for kind in KINDS if kind.detectable and kind.rate == RATE_HZ]
 # Faults overlap: when one is over the longest other one may just have begun; then the issue's longest recovery, and a row. As long may no
 # row at all show a sample: the fault itself, recovery and a row.
 GOOD_ROW_WITHIN_MS = max(kind.lasts_ms for kind in ASKED) + RESET_MS + 1000 / RATE_HZ
-HOURS_MAX, EVERY_MAX_S = 1000, 1e6
+# each kind has 3 s of its own in each half at least
+HOURS_MIN, HOURS_MAX, EVERY_S, EVERY_MAX_S = 0.05, 1000, 600.0, 1e6
 
 
 class Parser(argparse.ArgumentParser):
@@ -36,11 +40,13 @@ def arguments(words=None):
     parser.add_argument("--fw", default="build/uno/firmware.elf")
     parser.add_argument("--hours", type=float, default=24.0)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--every", type=float, default=600.0)
+    parser.add_argument("--every", type=float)
     options = parser.parse_args(words)
     # comparisons that nan does not pass
-    if not 0 < options.hours <= HOURS_MAX:
-        sys.exit(f"soak: --hours wants more than 0 and at most {HOURS_MAX}, not {options.hours:g}")
+    if not HOURS_MIN <= options.hours <= HOURS_MAX:
+        sys.exit(f"soak: --hours wants {HOURS_MIN} (in less, not every kind has its time) to {HOURS_MAX}, not {options.hours:g}")
+    if options.every is None:
+        options.every = min(EVERY_S, options.hours * 1800 / 3)
     if not 1 <= options.every <= EVERY_MAX_S:
         sys.exit(f"soak: --every wants 1 to {EVERY_MAX_S:g} seconds, not {options.every:g}")
     if not 1 <= options.seed < 2**32 - 1:
@@ -48,10 +54,14 @@ def arguments(words=None):
     return options
 
 
-def faults_of(every_s):
-    """(WHEN:KIND of simrun, resets it asks for) of every kind that can be seen, at 100 Hz."""
+def faults_of(every_s, half_ms, seed):
+    """(WHEN:KIND of simrun, its kind) of every kind that can be seen, at 100 Hz: by chance, and once for sure in a share of the half's time."""
     chance = 1.0 / (every_s * RATE_HZ)
-    return [(f"p:{chance:.9f}:{what}", kind.resets) for kind in ASKED for what in kind.what]
+    source = random.Random(seed)
+    share_ms = (half_ms - 2 * START_MS) / len(ASKED)
+    sure = [(START_MS + (n + source.random() / 2) * share_ms, kind) for n, kind in enumerate(source.sample(ASKED, len(ASKED)))]
+    return ([(f"p:{chance:.9f}:{what}", kind) for kind in ASKED for what in kind.what]
+            + [(f"{ms:.3f}ms:{what}", kind) for ms, kind in sure for what in kind.what])
 
 
 def simrun(firmware, filter_name, ms, stats, *more):
@@ -73,25 +83,38 @@ def check_firmware(firmware):
             sys.exit(f"soak: {firmware} gives no row in a second with the filter {filter_name}: is it the firmware?")
 
 
-def started(options, number, ms):
+def started(options, number, ms, asked):
     stats = pathlib.Path(f"build/soak-{number}.json")
     stats.unlink(missing_ok=True)
     seed = options.seed + number
     print(f"soak: half {number + 1}: filter {FILTERS[number]}, seed {seed}, {ms / 3.6e6:g} hours", flush=True)
-    faults = [word for fault, _ in faults_of(options.every) for word in ("--fault", fault)]
+    faults = [word for fault, _ in asked for word in ("--fault", fault)]
     return simrun(options.fw, FILTERS[number], ms, stats, "--seed", seed, *faults), stats
+
+
+def what_of(fault):
+    """KIND:PARAM behind p:CHANCE: or MSms:."""
+    return fault.split(":", 2 if fault.startswith("p:") else 1)[-1]
+
+
+def came_of(stats, faults):
+    """{(KIND:PARAM, its kind): how often it came}."""
+    came = collections.Counter()
+    for n, (fault, kind) in enumerate(faults, 1):
+        came[what_of(fault), kind] += stats[f"fault_{n}_injected"]
+    return came
 
 
 def row_of(number, stats, faults):
     """What build/soak.json says of a half."""
-    asked = sum(stats[f"fault_{n}_injected"] for n, (_, resets) in enumerate(faults, 1) if resets)
-    came = sum(stats[f"fault_{n}_injected"] for n in range(1, len(faults) + 1))
+    came = came_of(stats, faults)
+    asked = sum(count for (_, kind), count in came.items() if kind.resets)
     slowest = max(range(1, len(faults) + 1), key=lambda n: stats[f"fault_{n}_worst_recovery_ms"])
-    return {"half": number + 1, "filter": FILTERS[number], "hours": stats["sim_ms"] / 3.6e6, "faults": came, "rows": stats["rows"],
+    return {"half": number + 1, "filter": FILTERS[number], "hours": stats["sim_ms"] / 3.6e6, "faults": sum(came.values()), "rows": stats["rows"],
             "judged": stats["rows_judged"], "wrong": stats["rows_wrong"], "stale": stats["rows_stale"], "twice": stats["rows_twice"],
             "steps_back": stats["t_us_steps_back"], "resets": stats["resets"], "resets_asked_for": asked,
             "longest_pass_cycles": stats["pass_max_cycles"], "worst_gap_ms": stats["rows_gap_ms"],
-            "worst_ms_to_good": stats[f"fault_{slowest}_worst_recovery_ms"], "worst_fault": stats[f"fault_{slowest}"].split(":", 2)[2]}
+            "worst_ms_to_good": stats[f"fault_{slowest}_worst_recovery_ms"], "worst_fault": what_of(stats[f"fault_{slowest}"])}
 
 
 def judged(number, status, said, stats_path, ms, faults):
@@ -111,12 +134,22 @@ def judged(number, status, said, stats_path, ms, faults):
     wrong += [f"{row['worst_ms_to_good']:.0f} ms to a good row after {row['worst_fault']}"] if row["worst_ms_to_good"] > GOOD_ROW_WITHIN_MS else []
     wrong += [f"{row['worst_gap_ms']:.0f} ms without a sample's row"] if row["worst_gap_ms"] > GOOD_ROW_WITHIN_MS else []
     wrong += [f"a pass of {row['longest_pass_cycles']} cycles"] if row["longest_pass_cycles"] > PASS_CYCLES else []
-    return row, wrong + stream_ends(stats) + (["no fault came"] if row["faults"] == 0 else [])
+    wrong += [f"{what} never came" for (what, _), count in came_of(stats, faults).items() if count == 0 and ms is not None]
+    return row, wrong + stream_ends(stats, came_of(stats, faults))
 
 
-def stream_ends(stats):
-    last_ms, nominal = stats["rows_last_good_ms"], stats["sim_ms"] / 1000 * RATE_HZ
-    wrong = [f"{stats['rows']} rows of {nominal:.0f}"] if stats["rows"] < ROWS_AT_LEAST * nominal else []
+def rows_at_least(stats, came):
+    """Without those of the start, and of the time that each fault lasts and may need until the first good row."""
+    gone_ms = START_MS + sum(count * (kind.lasts_ms + (kind.limit_ms if kind.limit_ms < NO_LIMIT else BUS_MS)) for (_, kind), count in came.items())
+    return (stats["sim_ms"] - gone_ms) / 1000 * RATE_HZ
+
+
+def stream_ends(stats, came):
+    """What says that rows do not go on; a half that was ended while it started has none yet."""
+    last_ms, least = stats["rows_last_good_ms"], rows_at_least(stats, came)
+    if stats["sim_ms"] < 2 * START_MS:
+        return []
+    wrong = [f"{stats['rows']} rows of {least:.0f} at least"] if stats["rows"] < least else []
     if last_ms is None:
         return wrong + ["no good row"]
     since_ms = stats["sim_ms"] - last_ms
@@ -155,11 +188,12 @@ def main():
         signal.signal(each, ended_by_signal)
     check_firmware(options.fw)
     ms, began = options.hours * 3.6e6 / 2, time.monotonic()
-    runs = [started(options, number, ms) for number in range(2)]
+    asked = [faults_of(options.every, ms, options.seed + number) for number in range(2)]
+    runs = [started(options, number, ms, asked[number]) for number in range(2)]
     complete = wait_for(runs)
-    faults, rows, bad = faults_of(options.every), [], 0
+    rows, bad = [], 0
     for number, (process, stats_path) in enumerate(runs):
-        row, wrong = judged(number, process.returncode, process.stderr.read(), stats_path, ms if complete else None, faults)
+        row, wrong = judged(number, process.returncode, process.stderr.read(), stats_path, ms if complete else None, asked[number])
         rows.append(row)
         bad += bool(wrong)
         print(f"half {number + 1}: " + ", ".join(f"{key} {value}" for key, value in row.items() if key != "half"))
