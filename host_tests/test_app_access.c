@@ -129,6 +129,38 @@ static void test_a_stop_behind_refused_transfers_finds_the_sensor(void)
     }
 }
 
+/* A line is low when the stop comes: silence at once, and the sensor rests when the line is free. For ever, it is let be. */
+static void test_a_stop_while_a_line_is_low_reaches_the_sensor_later(void)
+{
+    for (unsigned phase = 0; phase < 40; phase++) {
+        start();
+        size_t rows = board.row_count;
+        hal_host_faults.sda_low = phase % 2 == 0;
+        hal_host_faults.scl_low = phase % 2 != 0;
+        board_run_ms(phase * 0.5);
+        board_type("stop");
+        board_run_ms(200);
+        TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
+        TEST_ASSERT_TRUE(board.row_count <= rows + 4);
+        rows = board.row_count;
+        hal_host_faults.sda_low = false;
+        hal_host_faults.scl_low = false;
+        board_run_ms(50);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, adxl345_model_odr_hz(&hal_host_sensor));
+        TEST_ASSERT_EQUAL_size_t(rows, board.row_count);
+    }
+    start();
+    adxl345_model_power(&hal_host_sensor, false);
+    board_type("stop");
+    board_run_ms(2500);
+    adxl345_counters_t before;
+    adxl345_counters_t after;
+    adxl345_counters(&before);
+    board_run_ms(1000);
+    adxl345_counters(&after);
+    TEST_ASSERT_EQUAL_UINT16(before.nacks, after.nacks);
+}
+
 /* Another device answers at one address; the sensor is at the other one, has lost contact, and is found again. */
 static void test_a_neighbour_at_the_other_address_does_not_keep_the_sensor_out(void)
 {
@@ -191,6 +223,7 @@ int main(void)
     RUN_TEST(test_one_failed_access_in_a_stop_leaves_no_sensor_awake);
     RUN_TEST(test_a_fault_in_a_change_of_rate_keeps_no_old_period);
     RUN_TEST(test_a_stop_behind_refused_transfers_finds_the_sensor);
+    RUN_TEST(test_a_stop_while_a_line_is_low_reaches_the_sensor_later);
     RUN_TEST(test_a_neighbour_at_the_other_address_does_not_keep_the_sensor_out);
     RUN_TEST(test_three_refused_bursts_of_a_sensor_that_is_there);
     RUN_TEST(test_no_sensor_is_told_when_neither_address_has_answered);

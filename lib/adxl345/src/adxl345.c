@@ -19,7 +19,8 @@
 #include "hal_sleep.h"
 #include "hal_time.h"
 
-enum { DRAIN_LIMIT_MS = 100, BACK_OFF_MAX_MS = 25 };
+/* A sensor that was not reached by a stop is looked for so many times more, for a second. */
+enum { DRAIN_LIMIT_MS = 100, BACK_OFF_MAX_MS = 25, RESTS = 40 };
 
 adxl345_driver_t driver;
 
@@ -72,6 +73,10 @@ void driver_fail(adxl345_fault_t fault)
     burst_set_mode(BURST_IGNORE);
     if (driver.stop_wanted) {
         stopped();
+        if (driver.rests != 0) {
+            driver.rests--;
+            driver_enter(STEP_REST_LATER, BACK_OFF_MAX_MS);
+        }
         return;
     }
     driver.fault = (uint8_t)fault;
@@ -152,6 +157,7 @@ void adxl345_stop(void)
 {
     bool quiescing = quiesce();
     driver.stop_wanted = true;
+    driver.rests = RESTS;
     if (!quiescing && driver.step != STEP_OFF) {
         begin_access(STEP_STANDBY);
     }
@@ -360,6 +366,11 @@ HAL_APART void adxl345_poll(uint32_t now_us)
     case STEP_BACK_OFF:
         if (driver_deadline_passed()) {
             driver_probe();
+        }
+        break;
+    case STEP_REST_LATER:
+        if (driver_deadline_passed()) {
+            begin_access(STEP_STANDBY);
         }
         break;
     default:

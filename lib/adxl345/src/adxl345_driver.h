@@ -24,7 +24,8 @@ typedef enum {
     STEP_ASK_SOURCE, /* no data in time: does the sensor have some? */
     STEP_QUIET_STANDBY,
     STEP_QUIET_DRAIN,
-    STEP_STANDBY, /* a stop while no samples come */
+    STEP_STANDBY,    /* a stop while no samples come */
+    STEP_REST_LATER, /* stopped, but the sensor was not reached */
     STEP_BACK_OFF
 } step_t;
 
@@ -50,6 +51,7 @@ typedef struct {
     bool stop_wanted; /* after quiescing: stop, not start */
     bool alternate_tried;
     uint8_t found;    /* at the first of both addresses: the fault that it would be */
+    uint8_t rests;    /* attempts left to put a sensor to rest that a stop has not reached */
     uint8_t tries;    /* of the step's register access that failed */
     bool renewed;     /* a configuration was asked for that the sensor has not been looked for with */
     bool after_fault; /* since the sensor was configured last */

@@ -63,6 +63,7 @@ adxl345_phase_t adxl345_phase(void)
     }
     switch (driver.step) {
     case STEP_OFF:
+    case STEP_REST_LATER:
         return ADXL345_STOPPED;
     case STEP_BACK_OFF:
         return ADXL345_FAULTY;
