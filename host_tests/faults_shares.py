@@ -1,9 +1,11 @@
 """The fault campaign's long faults and the shares that issue 6 asks for; part of test_faults.py."""
 import argparse
+import pathlib
 
 import faults
 import faults_judge
 import faults_runs
+import soak
 from faults_judged import ALL, result
 from system_support import FW, test
 
@@ -116,3 +118,32 @@ def interrupts_with_a_deadline_have_15_us_in_every_run_but_starved_ones():
         assert faults_runs.waits_of((sda, ALL[name]), short) == (), name
     done = faults_runs.attempt(FW, "adaptive", (sda,), ("1003ms",))
     assert len(done.waits) == 4 and all(0 < cycles <= most for name, cycles, most in done.waits if name != "usart_rx"), done
+
+
+@test
+def a_full_disk_is_one_sentence_and_leaves_what_was_there():
+    path = pathlib.Path("build/system/whole.json")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    faults_runs.write_whole(path, "before")
+    try:
+        faults_runs.write_whole(path, "half\udc80")  # what cannot be written breaks off
+        raise AssertionError("written")
+    except UnicodeEncodeError:
+        assert path.read_text(encoding="utf-8") == "before" and not path.with_name("whole.json.new").exists()
+
+    def broken(command):
+        pathlib.Path(command[command.index("--stats") + 1]).write_text('{ "rows": 1, ', encoding="ascii")
+        return 0, ""
+
+    kept, faults_runs.called = faults_runs.called, broken
+    try:
+        faults_runs.simulate(FW, "adaptive")
+        raise AssertionError("read")
+    except faults_runs.Fault as problem:
+        assert "breaks off: is the disk full?" in str(problem), problem
+        broken_off = faults_runs.attempt(FW, "adaptive", (faults_runs.OF["sda"],), ("1000ms",)).failures()
+        assert len(broken_off) == 1 and "is the disk full?" in broken_off[0], broken_off
+    finally:
+        faults_runs.called = kept
+    path.write_text('{ "rows": ', encoding="ascii")
+    assert "breaks off" in soak.judged(0, 7, "", path, 1.8e6, [])[1][0]

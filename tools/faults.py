@@ -27,7 +27,7 @@ import faults_commands
 import faults_judge
 import faults_runs
 from faults_runs import (KINDS, LONG, MOVING, NO_LIMIT, OF, OTHER_RATES, REST, TYPED, Fault, SIMRUN, attempt, flagged_share, moments, need, phases,
-                         rated, roll_differences, seeded_pairs)
+                         rated, roll_differences, seeded_pairs, simulate, write_whole)
 
 PAGE = pathlib.Path("docs/faults-campaign.md")
 RESULTS = pathlib.Path("build/faults.json")
@@ -43,18 +43,23 @@ ROLL_RUNS = [("bad reads, at rest", ["arb", "nack", "buserr", "torn"], REST), ("
              ("bit flips, at rest", ["flip:1"], REST), ("bit flips, moving", ["flip:1"], MOVING)]
 
 
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        sys.exit(f"faults: {message}")
+
+
 def arguments():
-    parser = argparse.ArgumentParser(usage=__doc__.split("\n\n")[1].strip())
+    parser = Parser(usage=__doc__.split("\n\n")[1].strip())
     parser.add_argument("--fw", default="build/uno/firmware.elf")
-    parser.add_argument("--sample", type=int, default=0)
+    parser.add_argument("--sample", type=int)
     parser.add_argument("--pairs", type=int, default=5)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--no-page", action="store_true")
     parser.add_argument("words", nargs="*")
     options = parser.parse_args()
-    if options.sample < 0 or options.pairs < 0 or options.jobs < 1:
-        sys.exit("faults: --sample and --pairs want 0 or more, --jobs 1 or more")
+    if options.sample is not None and options.sample < 1 or options.pairs < 0 or options.jobs < 1:
+        sys.exit("faults: --sample and --jobs want 1 or more, --pairs 0 or more")
     return options
 
 
@@ -289,7 +294,7 @@ def write_page(rows, extra):
     _, end, tail = rest.partition("<!-- end -->")
     if not begin or not end:
         raise Fault(f"{PAGE} has no lines '<!-- table: make faults -->' and '<!-- end -->'")
-    PAGE.write_text(head + begin + "\n".join(tables(rows, extra)) + "\n" + end + tail, encoding="utf-8")
+    write_whole(PAGE, head + begin + "\n".join(tables(rows, extra)) + "\n" + end + tail)
 
 
 def ended_by_signal(number, frame):
@@ -309,8 +314,10 @@ def main():
     began = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="faults-programs-") as kept:
         # what is built anew meanwhile does not disturb
-        options.fw = shutil.copy(options.fw, kept)
+        firmware, options.fw = options.fw, shutil.copy(options.fw, kept)
         faults_runs.SIMRUN = shutil.copy(SIMRUN, kept)
+        if not simulate(options.fw, None, max_ms=1000)[2]["rows"]:
+            raise Fault(f"{firmware} gives no row in a second: is it the firmware?")
         return carried_out_and_told(options, began)
 
 
@@ -333,7 +340,7 @@ def carried_out_and_told(options, began):
     absent = sum(not r.injected and not r.failures() for r in results)
     lacking += [f"{absent} of {len(results)} faults never came: more than one in ten"] if absent > len(results) // 10 else []
     RESULTS.parent.mkdir(exist_ok=True)
-    RESULTS.write_text(json.dumps(rows + extra, indent=1) + "\n", encoding="ascii")
+    write_whole(RESULTS, json.dumps(rows + extra, indent=1) + "\n")
     tell_failures(results, extra, lacking)
     print("\n".join(tables(rows, extra)))
     if complete and not ended and not options.no_page:

@@ -169,6 +169,16 @@ def called(command):
             RUNNING.discard(process)
 
 
+def write_whole(path, text):
+    """A file as a whole: what cannot be written, a full disk or a signal, leaves the one before."""
+    beside = path.with_name(path.name + ".new")
+    try:
+        beside.write_text(text, encoding="utf-8")
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
 def end_runs():
     for process in list(RUNNING):
         process.terminate()
@@ -187,9 +197,15 @@ def simulate(firmware, filter_name, *options, stream=None, max_ms=RUN_MS, rate=1
     status, said = called([str(c) for c in command + list(options)])
     if not (base / "stats.json").is_file():
         raise Fault(f"simrun gave status {status} and no statistics: {said.strip()[:300]}")
+    if status == 1:
+        raise Fault(f"simrun failed: {said.strip()[-300:]}")
+    try:
+        stats = json.loads((base / "stats.json").read_text(encoding="ascii"))
+    except json.JSONDecodeError:
+        raise Fault(f"{base / 'stats.json'} breaks off: is the disk full?") from None
     if profile is not None:
         profile.update(line.partition(",")[0] for line in (base / "profile.csv").read_text(encoding="ascii").splitlines()[1:])
-    return status, said, json.loads((base / "stats.json").read_text(encoding="ascii"))
+    return status, said, stats
 
 
 def noise_at(rate, memory={}):

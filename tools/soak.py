@@ -18,7 +18,7 @@ import sys
 import time
 
 from faults_judge import NO_LIMIT, PASS_CYCLES
-from faults_runs import BUS_MS, KINDS, REST, RESET_MS, SIMRUN, STATUS_WORDS, need
+from faults_runs import BUS_MS, KINDS, REST, RESET_MS, SIMRUN, STATUS_WORDS, need, write_whole
 
 FILTERS = ("adaptive", "kf")
 RATE_HZ, START_MS = 100, 1000  # until rows come, and filters have warmed up
@@ -121,7 +121,10 @@ def judged(number, status, said, stats_path, ms, faults):
     """(row of build/soak.json, what is wrong) of a half that ran until ms; None: until it was ended."""
     if not stats_path.is_file():
         return {"half": number + 1}, [f"simrun gave status {status} and no statistics: {said.strip()[-300:]}"]
-    stats = json.loads(stats_path.read_text(encoding="ascii"))
+    try:
+        stats = json.loads(stats_path.read_text(encoding="ascii"))
+    except json.JSONDecodeError:
+        return {"half": number + 1}, [f"{stats_path} breaks off: is the disk full?"]
     row = row_of(number, stats, faults)
     wrong = [f"{key}: {row[key]}" for key in ("wrong", "stale", "twice", "steps_back") if row[key]]
     good = (0, 7) if ms is not None else (0, 1, 7)  # 1: ended
@@ -198,7 +201,7 @@ def main():
         bad += bool(wrong)
         print(f"half {number + 1}: " + ", ".join(f"{key} {value}" for key, value in row.items() if key != "half"))
         print("".join(f"    WRONG: {words}\n" for words in wrong), end="")
-    pathlib.Path("build/soak.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="ascii")
+    write_whole(pathlib.Path("build/soak.json"), json.dumps(rows, indent=1) + "\n")
     hours = sum(row.get("hours", 0.0) for row in rows)
     ended = "" if complete else f", ended by a signal, of {options.hours:g}"
     print(f"soak: {hours:.3g} simulated hours in {time.monotonic() - began:.0f} s{ended}; build/soak.json written")
