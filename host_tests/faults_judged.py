@@ -219,7 +219,8 @@ def what_cannot_be_is_one_sentence():
                             (("sda+nosuch",), "faults: sda+nosuch: no kind begins with nosuch; there are: "),
                             (("a+b+c",), "faults: a+b+c: a pair is A+B, of two kinds"),
                             (("--fw", "build/no.elf"), "faults: there is no file build/no.elf: "),
-                            (("--fw", "build/uno/hal_probe.elf", "sda"), "faults: build/uno/hal_probe.elf gives no row in a second: is it the firmware?"),
+                            (("--fw", "build/uno/hal_probe.elf", "sda"),
+                             "faults: build/uno/hal_probe.elf gives no row in a second: is it the firmware?"),
                             (("--fw", "/etc/passwd", "sda+scl"), "faults: simrun gave status 2 and no statistics: "),
                             (("--sample", "abc"), "faults: argument --sample: invalid int value: 'abc'"),
                             (("--sample", "0"), "faults: --sample and --jobs want 1 or more, --pairs 0 or more")):
