@@ -118,8 +118,8 @@ def a_whole_campaign_has_every_kind_of_the_issue_at_50_phases_and_every_pair_at_
     without = [kind for kind in kinds if kind.name != "double"]
     commands = [kind for kind in faults_commands.KINDS if kind.command.name == "stop"]
     few = rows + [{"group": "command", "fault": kind.name, "phases": 6 - (kind.base == "scl")} for kind in commands if kind.base != "arb"]
-    assert faults_judge.shortfalls(few, kinds, commands) == ["command stop: arb: 0 phases were judged of at least 6",
-                                                             "command stop: scl: 5 phases were judged of at least 6"]
+    assert faults_judge.shortfalls(few, kinds, commands=commands) == ["command stop: arb: 0 phases were judged of at least 6",
+                                                                      "command stop: scl: 5 phases were judged of at least 6"]
     said = faults_judge.shortfalls([row for row in rows if "double" not in row["fault"]], without)
     assert said == ["the issue's 'doubled axis' is in no run: there is no kind 'double'"], said
 

@@ -129,7 +129,7 @@ static void test_a_stop_behind_refused_transfers_finds_the_sensor(void)
     }
 }
 
-/* A line is low when the stop comes: silence at once, and the sensor rests when the line is free. For ever, it is let be. */
+/* A line is low when the stop comes: silence at once, and the sensor rests when it is free. In the end it is let be. */
 static void test_a_stop_while_a_line_is_low_reaches_the_sensor_later(void)
 {
     for (unsigned phase = 0; phase < 40; phase++) {

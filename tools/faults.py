@@ -145,7 +145,8 @@ def group_of(kinds):
     if len(kinds) > 1:
         return "pair"
     if kinds[0].command:
-        return "rate" if kinds[0].base else "typed" if kinds[0] in TYPED else "long" if kinds[0] in LONG else "single"
+        return "command"
+    return "rate" if kinds[0].base else "typed" if kinds[0] in TYPED else "long" if kinds[0] in LONG else "single"
 
 
 def summarised(results):
