@@ -39,7 +39,7 @@ def lost_most(kinds):
     """
     if any(kind.lost_max is None and kind.limit_ms >= NO_LIMIT for kind in kinds):
         return None
-    rate = max(kind.rate for kind in kinds)
+    rate = max(max(kind.rate, kind.command.rate if kind.command else 0) for kind in kinds)
     return sum(math.ceil((kind.lasts_ms + kind.limit_ms) * rate / 1000) if kind.lost_max is None else kind.lost_max for kind in kinds)
 
 
