@@ -234,7 +234,7 @@ static bool follow_settings(void)
 /* Samples are due: not while the sensor is stopped or follows a command. */
 static bool sample_due(void)
 {
-    return adxl345_fault() != ADXL345_FAULT_NONE || adxl345_phase() == ADXL345_STREAMING;
+    return adxl345_fault() != ADXL345_FAULT_NONE || adxl345_interrupted() || adxl345_phase() == ADXL345_STREAMING;
 }
 
 /* Of the sample that the pipeline has, or of one that is missing, whose place it has filled. */

@@ -120,7 +120,7 @@ static bool prepare_axis(axis_t *axis)
         pipeline_flag(ROW_CLIPPED);
         filter_any_hold(&axis->filter);
     }
-    if (pipeline.stuck == HUNG_SAMPLES && !(pipeline.flags & ROW_STUCK)) {
+    if (pipeline.stuck == HUNG_SAMPLES && !(pipeline.flags & ROW_STUCK) && axis->away == 0) {
         renew(true);
         return false;
     }

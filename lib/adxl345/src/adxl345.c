@@ -65,6 +65,7 @@ bool driver_deadline_passed(void)
 static void stopped(void)
 {
     driver.fault = ADXL345_FAULT_NONE;
+    driver.after_fault = false;
     driver.step = STEP_OFF;
 }
 
@@ -106,6 +107,13 @@ static void begin_access(step_t step)
     (void)driver_take_bus();
 }
 
+/* The one that was found last: who answers at the other address may be another device. */
+static void rest_sensor(void)
+{
+    driver.address = driver.known;
+    begin_access(STEP_STANDBY);
+}
+
 /* What was measured of a sensor that has to be found again still holds, unless its rate is another one now. */
 void driver_probe(void)
 {
@@ -127,6 +135,7 @@ void adxl345_init(void)
         driver.issued = false;
     }
     driver.address = ADXL345_ADDRESS_LOW;
+    driver.known = ADXL345_ADDRESS_LOW;
 }
 
 /* Where samples may be waiting, begins to put the sensor to rest; true when that is under way. */
@@ -159,7 +168,7 @@ void adxl345_stop(void)
     driver.stop_wanted = true;
     driver.rests = RESTS;
     if (!quiescing && driver.step != STEP_OFF) {
-        begin_access(STEP_STANDBY);
+        rest_sensor();
     }
 }
 
@@ -262,6 +271,7 @@ static void probed(adxl345_driver_t *d)
         not_here(d, ADXL345_FAULT_WRONG_ID);
         return;
     }
+    d->known = d->address;
     d->row = 0;
     driver_enter(STEP_CONFIGURE, TRANSFER_LIMIT_MS);
 }
@@ -370,7 +380,7 @@ HAL_APART void adxl345_poll(uint32_t now_us)
         break;
     case STEP_REST_LATER:
         if (driver_deadline_passed()) {
-            begin_access(STEP_STANDBY);
+            rest_sensor();
         }
         break;
     default:

@@ -91,6 +91,9 @@ adxl345_phase_t adxl345_phase(void);
 /* While ADXL345_STREAMING with a fault samples go on: something is wrong with them, or with how they come. */
 adxl345_fault_t adxl345_fault(void);
 
+/* The sensor is looked for and configured anew because it failed, though that need not be a fault yet. Main. */
+bool adxl345_interrupted(void);
+
 /*
  * The moment by which adxl345_poll must have acted, which main passes to hal_wake_at before it sleeps: a poll later
  * than this means that main is stuck. Past, and of no meaning, while the driver is stopped.

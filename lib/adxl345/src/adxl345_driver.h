@@ -42,6 +42,7 @@ typedef struct {
     uint8_t step;
     uint8_t row; /* of settings */
     uint8_t address;
+    uint8_t known; /* the address at which the sensor was found last */
     uint8_t device_id;
     uint8_t fault;
     uint8_t seen_good;

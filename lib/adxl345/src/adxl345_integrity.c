@@ -44,6 +44,9 @@ void integrity_start(uint8_t range_g)
     integrity.format = table_format(range_g);
     integrity.has_last = false;
     integrity.bad_run = 0;
+    if (!integrity_stuck()) {
+        integrity.equal_run = 0;
+    }
 }
 
 /*

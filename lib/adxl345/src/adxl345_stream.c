@@ -59,7 +59,6 @@ void stream_source_asked(adxl345_driver_t *d)
 void stream_start(adxl345_driver_t *d)
 {
     if (d->after_fault) {
-        d->after_fault = false;
         driver_count(&d->counters.restarts);
         integrity_forget();
         watch_start();
@@ -93,6 +92,7 @@ static void sample_arrived(adxl345_driver_t *d)
 {
     d->seen_good = integrity_good();
     d->was_empty = false;
+    d->after_fault = false;
     d->first_sample_seen = true;
     d->back_off_ms = BACK_OFF_MIN_MS;
     d->deadline_us = d->now_us + d->nominal_us + LOOK_US;

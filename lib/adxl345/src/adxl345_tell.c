@@ -90,6 +90,11 @@ adxl345_fault_t adxl345_fault(void)
     return watch_two_sensors() ? ADXL345_FAULT_TWO_SENSORS : ADXL345_FAULT_NONE;
 }
 
+bool adxl345_interrupted(void)
+{
+    return driver.after_fault;
+}
+
 uint32_t adxl345_deadline_us(void)
 {
     return driver.deadline_us;
