@@ -24,7 +24,7 @@ help:
 
 ## deps: install what any target needs (says what, before it does)
 deps:
-	@sh tools/deps.sh sim test check flash
+	@sh tools/deps.sh sim test check flash tilt
 
 .PHONY: help deps
 
@@ -154,6 +154,7 @@ test:
 	@sh tools/deps.sh test
 	@sh tools/deps.sh flashtest || echo "test: test_flash will be skipped"
 	@sh tools/deps.sh design || echo "test: test_design will be skipped"
+	@sh tools/deps.sh tilt || echo "test: the tests of tilt will be skipped"
 	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt system_images paper_programs $(SEQUENCES) $(CHIP_TESTS) $(FLASHTEST_IMAGES)
 	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" CHIP_SECOND="$(CHIP_SECOND)" python3 tools/run_tests.py $(TESTS)
 

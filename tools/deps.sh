@@ -1,7 +1,7 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
-# Groups: firmware sim test check flash flashtest bench piocheck papers design fuzz coverage proof. Packages come by apt-get,
-# numpy and matplotlib (check: lizard, design: scipy) by pip into build/venv, Unity by tools/get_unity.sh into build/unity
+# Groups: firmware sim test check flash flashtest bench piocheck papers design tilt fuzz coverage proof. Packages come by
+# apt-get, numpy and matplotlib (check: lizard, design: scipy, tilt: tools/pyproject.toml) by pip into build/venv, Unity by tools/get_unity.sh into build/unity
 # (UNITY_DIR=folder: use that one). Uses sudo only when not root.
 set -eu
 
@@ -12,6 +12,7 @@ missing=''
 want_venv=no
 want_lizard=no
 want_scipy=no
+want_tilt=no
 want_unity=no
 want_pio=no
 pio_requirements='platformio==6.2.0 scons==4.11.1' # the versions that tools/pio_standins.py stands in for
@@ -47,6 +48,11 @@ has_certificates() {
 # Packages are complete when the stamp written after pip equals the requirements.
 has_plot_packages() {
     [ -x "$venv/bin/python" ] && cmp -s tools/requirements.txt "$venv/requirements.installed"
+}
+
+# the command tilt runs from tools/, and what it imports is installed
+has_tilt() {
+    [ -x "$venv/bin/tilt" ] && cmp -s tools/pyproject.toml "$venv/pyproject.installed" && "$venv/bin/tilt" --help > /dev/null 2>&1
 }
 
 has_lizard() {
@@ -115,6 +121,13 @@ need_scipy() {
     want_scipy=yes
 }
 
+need_tilt() {
+    want_tilt=yes
+    has_tilt && return
+    need python3-venv has_venv_module
+    need ca-certificates has_certificates
+}
+
 need_unity() {
     want_unity=yes
     need g++ has g++
@@ -137,13 +150,14 @@ collect() {
                 need clang-format has clang-format
                 need cppcheck has cppcheck ;;
             design) need_scipy ;;
+            tilt) need_tilt ;;
             flash) need_avr; need avrdude has avrdude ;;
             piocheck) need_avr; need_host_compiler; want_pio=yes; need python3-venv has_venv_module; need ca-certificates has_certificates ;;
             flashtest) need_simulator; need avrdude has avrdude; need arduino-core-avr has_optiboot ;;
             fuzz) need_host_compiler; need python3 has python3; need binutils has objcopy ;;
             coverage) need_simulator; need_plots; need_unity; need gcovr has gcovr ;;
             proof) need python3 has python3; need frama-c-base has frama-c ;;
-            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, design, fuzz, coverage or proof" ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, design, tilt, fuzz, coverage or proof" ;;
         esac
     done
     missing=${missing# }
@@ -209,6 +223,17 @@ install_scipy() {
         fail "cannot install scipy ($(first_error)): check the network and pip's index, or install it into $venv; log in $log"
 }
 
+install_tilt() {
+    echo "deps: installing with pip into $venv: the command tilt (pandas scipy matplotlib pyserial tqdm)"
+    if [ ! -x "$venv/bin/python" ]; then
+        python3 -m venv "$venv" > "$log" 2>&1 ||
+            fail "cannot make $venv ($(tail -n 1 "$log")): $(how_to_supply python3-venv)"
+    fi
+    "$venv/bin/python" -m pip install --disable-pip-version-check --no-input --retries 2 --timeout 20 -e tools > "$log" 2>&1 ||
+        fail "cannot install the command tilt ($(first_error)): check the network and pip's index; log in $log"
+    cp tools/pyproject.toml "$venv/pyproject.installed"
+}
+
 install_plot_packages() {
     if [ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import numpy, matplotlib' > /dev/null 2>&1; then
         cp tools/requirements.txt "$venv/requirements.installed"
@@ -248,7 +273,7 @@ install_unity() {
     tools/get_unity.sh build/unity
 }
 
-[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, design, fuzz, coverage, proof)"
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, design, tilt, fuzz, coverage, proof)"
 collect "$@"
 mkdir -p build
 if [ -n "$missing" ]; then
@@ -261,6 +286,9 @@ if [ $want_venv = yes ] && ! has_plot_packages; then
 fi
 if [ $want_scipy = yes ] && ! has_scipy; then
     install_scipy
+fi
+if [ $want_tilt = yes ] && ! has_tilt; then
+    install_tilt
 fi
 if [ $want_pio = yes ] && ! has_pio; then
     install_pio

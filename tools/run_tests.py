@@ -17,6 +17,7 @@ SUM = re.compile(r"^(\d+) Tests (\d+) Failures (\d+) Ignored", re.M)
 PLAIN = ["test_flash", "test_resets", "test_fault_page", "test_bench", "test_papers", "test_papers_synthesis", "test_schedule", "test_pages",
          "test_default", "test_images", "test_run_tests", "test_faults"]
 WITH_NUMPY = ["test_plot_run", "test_robust", "test_design", "test_design_command", "test_design_refusals", "test_synthesised"]
+TILT = sorted(pathlib.Path("host_tests/tilt").glob("test_*.py"))
 FIRST = ["system_tests", "bitexact", "test_design_command", "test_design", "test_design_refusals", "chip_filter_sequence_2", "chip_filter_sequence_1",
          "test_synth_opt_reference", "test_flash"]  # begun before the others: what takes long begins early
 running = set()  # programs, to be ended with this one
@@ -32,6 +33,7 @@ def commands(tests):
     runs["exhaustive_isqrt"] = [OUT / "exhaustive_isqrt"]
     runs |= {name: ["python3", f"host_tests/{name}.py"] for name in PLAIN}
     runs |= {name: [VENV, f"host_tests/{name}.py"] for name in WITH_NUMPY}
+    runs |= {f"tilt_{path.stem.removeprefix('test_')}": [VENV, path] for path in TILT}
     runs["system_tests"] = ["python3", "host_tests/system_tests.py"]
     return runs
 

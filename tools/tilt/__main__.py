@@ -1,0 +1,5 @@
+import sys
+
+from tilt.cli import main
+
+sys.exit(main())

@@ -1,0 +1,49 @@
+"""`tilt`: finds its sub-commands in tilt.commands and turns what they raise into one line and an exit status.
+
+Status: 0 done, 1 the answer is no (a comparison that fails, rows lost where none may be), 2 a file or an option cannot be used, 130 Ctrl-C.
+"""
+import argparse
+import importlib
+import os
+import pkgutil
+import sys
+
+from tilt import commands
+from tilt.errors import TiltError
+
+EXIT_UNUSABLE, EXIT_INTERRUPTED = 2, 130
+
+
+def modules():
+    """The modules of the sub-commands, by name."""
+    found = [importlib.import_module(f"{commands.__name__}.{place.name}") for place in pkgutil.iter_modules(commands.__path__)]
+    return {module.NAME: module for module in sorted(found, key=lambda module: module.NAME)}
+
+
+def parser_of(found):
+    parser = argparse.ArgumentParser(prog="tilt", description="Recordings and boards of tilt-uno, on the PC.")
+    jobs = parser.add_subparsers(dest="job", metavar="COMMAND", required=True)
+    for name, module in found.items():
+        job = jobs.add_parser(name, help=module.SUMMARY, description=module.__doc__,
+                              formatter_class=argparse.RawDescriptionHelpFormatter)
+        module.arguments(job)
+    return parser
+
+
+def main(words=None):
+    found = modules()
+    args = parser_of(found).parse_args(words)
+    try:
+        return found[args.job].run(args) or 0
+    except TiltError as error:
+        print(f"tilt {args.job}: {error}", file=sys.stderr)
+        return EXIT_UNUSABLE
+    except KeyboardInterrupt:
+        return EXIT_INTERRUPTED
+    except BrokenPipeError:  # the reader of the output has gone, as `head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
