@@ -104,12 +104,12 @@ def what_is_lost_is_not_judged_where_nobody_knows():
 
 
 @test
-def a_whole_campaign_has_every_kind_of_the_issue_at_50_phases_and_every_pair_at_5():
+def a_whole_campaign_has_every_required_kind_at_50_phases_and_every_pair_at_5():
     kinds = faults_runs.KINDS
     rows = [{"group": "single", "fault": kind.name, "phases": 50} for kind in kinds]
     rows += [{"group": "pair", "fault": f"{a.name} + {b.name}", "phases": 5} for n, a in enumerate(kinds) for b in kinds[n + 1:]]
     assert faults_judge.shortfalls(rows, kinds) == []
-    assert {name for names in faults_judge.ISSUE.values() for name in names} <= set(faults_runs.OF) and len(faults_judge.ISSUE) == 23
+    assert {name for names in faults_judge.REQUIRED.values() for name in names} <= set(faults_runs.OF) and len(faults_judge.REQUIRED) == 23
     few = [row | {"phases": row["phases"] - (row["fault"] in ("torn", "sda + scl"))} for row in rows]
     assert faults_judge.shortfalls(few, kinds) == ["torn: 49 phases were judged of at least 50", "sda + scl: 4 phases were judged of at least 5"]
     # runs whose fault never came, or that died, are no judged phases
@@ -121,7 +121,7 @@ def a_whole_campaign_has_every_kind_of_the_issue_at_50_phases_and_every_pair_at_
     assert faults_judge.shortfalls(few, kinds, commands=commands) == ["command stop: arb: 0 phases were judged of at least 6",
                                                                       "command stop: scl: 5 phases were judged of at least 6"]
     said = faults_judge.shortfalls([row for row in rows if "double" not in row["fault"]], without)
-    assert said == ["the issue's 'doubled axis' is in no run: there is no kind 'double'"], said
+    assert said == ["the required 'doubled axis' is in no run: there is no kind 'double'"], said
 
 
 @test

@@ -1,4 +1,4 @@
-"""The fault campaign's long faults and the shares that issue 6 asks for; part of test_faults.py."""
+"""The fault campaign's long faults and the shares that are asked for; part of test_faults.py."""
 import argparse
 import pathlib
 

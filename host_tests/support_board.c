@@ -150,3 +150,12 @@ stream_t board_noisy_stream(size_t n, double rate_hz, double sigma_lsb, uint32_t
     }
     return stream;
 }
+
+stream_t board_hung_stream(size_t n, uint32_t seed, size_t first, size_t equal)
+{
+    stream_t stream = board_noisy_stream(n, 100.0, 1.5, seed);
+    for (size_t i = first + 1; i < first + equal; i++) {
+        memcpy(stream.rows[i].lsb, stream.rows[first].lsb, sizeof stream.rows[i].lsb);
+    }
+    return stream;
+}

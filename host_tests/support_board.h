@@ -61,4 +61,7 @@ stream_t board_constant_stream(size_t n, double rate_hz, int16_t x, int16_t y, i
 /* As above with Gaussian-like noise of about sigma LSB and a counter in no axis; seed fixed by the caller. */
 stream_t board_noisy_stream(size_t n, double rate_hz, double sigma_lsb, uint32_t seed);
 
+/* The same at 100 Hz with 1.5 LSB, but rows first + 1 to first + equal - 1 repeat row `first`. */
+stream_t board_hung_stream(size_t n, uint32_t seed, size_t first, size_t equal);
+
 #endif

@@ -24,7 +24,7 @@ def a_run_in_which_all_went_well_fails_nothing():
 
 @test
 def each_number_of_a_run_has_its_limit():
-    # the limits of issue 6: 50, 150 and 600 ms; two samples; no wrong row, no reset, no hang
+    # the limits: 50, 150 and 600 ms; two samples; no wrong row, no reset, no hang
     for name, limit in (("sda", 50), ("hang", 50), ("nack", 50), ("unplug", 150), ("power", 150), ("devid", 150), ("starve", 600)):
         assert not result(name, ms_to_good=limit).failures() and len(result(name, ms_to_good=limit + 0.1).failures()) == 1, name
     for name in ("arb", "buserr", "nack", "nackdata", "torn", "hang", "glitch"):

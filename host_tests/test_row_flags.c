@@ -89,10 +89,7 @@ static void test_missing_samples_are_coasted_over(void)
 /* A sensor hangs on one reading for 60 samples: the tenth and those behind it are marked, the fault is told once. */
 static void test_stuck_from_the_tenth_equal_reading_on(void)
 {
-    stream_t stream = board_noisy_stream(1000, 100.0, 1.5, 11u);
-    for (size_t i = 301; i < 360; i++) {
-        memcpy(stream.rows[i].lsb, stream.rows[300].lsb, sizeof stream.rows[i].lsb);
-    }
+    stream_t stream = board_hung_stream(1000, 11u, 300, 60);
     board_start(&stream, 0.0, 0);
     board_run_ms(8000);
     size_t equal = 0;
@@ -134,10 +131,7 @@ static void test_two_sensors_are_told(void)
 /* A sensor hangs for so many samples, y reads this behind it for one sample, and then it is well. */
 static void hangs(size_t hung, int16_t then_lsb)
 {
-    stream_t stream = board_noisy_stream(3000, 100.0, 1.5, (uint32_t)hung);
-    for (size_t i = 301; i < 300 + hung; i++) {
-        memcpy(stream.rows[i].lsb, stream.rows[300].lsb, sizeof stream.rows[i].lsb);
-    }
+    stream_t stream = board_hung_stream(3000, (uint32_t)hung, 300, hung);
     stream.rows[300 + hung].lsb[1] = then_lsb;
     board_start(&stream, 0.0, 0);
     board_run_ms(10.0 * (double)(300 + hung + 400));

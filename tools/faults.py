@@ -209,35 +209,29 @@ def lost_words(row):
     return "-" if row["worst_rows_lost"] is None else row["worst_rows_lost"]
 
 
+def crossed(title, columns, bases, cell, named):
+    """A line for each base, with a cell for each column (heading, key): what cell(row, key) says of the row that named(base, key) gives."""
+    def filled(row, key):
+        return cell(row, key) + (f", {row['failed']} FAILED" if row["failed"] else "") if row else "-"
+    lines = [f"| {title} | " + " | ".join(heading for heading, _ in columns) + " |", "|---|" + "---|" * len(columns)]
+    return lines + [f"| {base} | " + " | ".join(filled(named(base, key), key) for _, key in columns) + " |" for base in dict.fromkeys(bases)]
+
+
 def rates_table(rows):
     """A line for each kind, with what it came to at each of the other rates."""
     of = {row["fault"]: row for row in rows}
-    lines = ["| fault at other rates: worst ms to a good row, samples lost | " + " | ".join(f"{rate:g} Hz" for rate in OTHER_RATES) + " |",
-             "|---|" + "---|" * len(OTHER_RATES)]
-    for name in dict.fromkeys(fault.rpartition(",")[0] for fault in of):
-        cells = []
-        for rate in OTHER_RATES:
-            row = of.get(f"{name}, {rate:g} Hz")
-            failed = f", {row['failed']} FAILED" if row and row["failed"] else ""
-            cells.append(f"{row['worst_ms_to_good']:.1f}, {lost_words(row)}{failed}" if row else "-")
-        lines.append(f"| {name} | " + " | ".join(cells) + " |")
-    return lines
+    return crossed("fault at other rates: worst ms to a good row, samples lost", [(f"{rate:g} Hz", rate) for rate in OTHER_RATES],
+                   (fault.rpartition(",")[0] for fault in of), lambda row, rate: f"{row['worst_ms_to_good']:.1f}, {lost_words(row)}",
+                   lambda base, rate: of.get(f"{base}, {rate:g} Hz"))
 
 
 def commands_table(rows):
     """A line for each kind, with what it came to under each command: where it ends in standby, no good row comes."""
     of = {row["fault"]: row for row in rows}
-    names = [command.name for command in faults_commands.COMMANDS]
-    lines = ["| fault while a command is carried out: phases, worst ms to a good row | " + " | ".join(f"`{name}`" for name in names) + " |",
-             "|---|" + "---|" * len(names)]
-    for base in dict.fromkeys(fault.rpartition(": ")[2] for fault in of):
-        cells = []
-        for name in names:
-            row = of.get(f"command {name}: {base}")
-            failed = f", {row['failed']} FAILED" if row and row["failed"] else ""
-            cells.append(f"{row['phases']}, " + (f"{row['worst_ms_to_good']:.1f}" if name != "stop" else "-") + failed if row else "-")
-        lines.append(f"| {base} | " + " | ".join(cells) + " |")
-    return lines
+    return crossed("fault while a command is carried out: phases, worst ms to a good row",
+                   [(f"`{command.name}`", command.name) for command in faults_commands.COMMANDS], (fault.rpartition(": ")[2] for fault in of),
+                   lambda row, name: f"{row['phases']}, " + (f"{row['worst_ms_to_good']:.1f}" if name != "stop" else "-"),
+                   lambda base, name: of.get(f"command {name}: {base}"))
 
 
 def tables(rows, extra):

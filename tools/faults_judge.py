@@ -12,8 +12,8 @@ STANDBY_MS = 100  # a sensor that is to stand still has it from the end of a fau
 STOP_MS = 20  # rows of what was under way when `stop` came
 STEP_SHARE, MEASURED_SHARE = 0.25, 0.02  # by which two rows' distance and the rate in `status` may be off
 LAST_MS = 500  # of a run, in which the command's work is done
-# issue 6, item 6: what it names, and the kinds that are it
-ISSUE = {
+# what a whole campaign has to have, and the kinds that are it
+REQUIRED = {
     "unplug and plug": ("unplug",), "power cycle": ("power",), "SDA low": ("sda",), "SCL low": ("scl",),
     "slave hung inside a byte": ("hang", "hang a byte"), "arbitration lost": ("arb",), "bus error": ("buserr",), "address NACK": ("nack",),
     "data NACK": ("nackdata",), "wrong DEVID": ("devid",), "frozen data": ("frozen",), "missing data-ready": ("noint",),
@@ -177,7 +177,7 @@ class Result:
 def shortfalls(rows, kinds, long=(), commands=()):
     """What a whole campaign has to have and these rows of build/faults.json have not, each as one sentence."""
     judged = {(row["group"], row["fault"]): row["phases"] for row in rows}
-    said = [f"the issue's {item!r} is in no run: there is no kind {name!r}" for item, names in ISSUE.items() for name in names
+    said = [f"the required {item!r} is in no run: there is no kind {name!r}" for item, names in REQUIRED.items() for name in names
             if ("single", name) not in judged]
     for group, name, least in ([("single", kind.name, PHASES_AT_LEAST) for kind in kinds]
                                + [("long", kind.name, LONG_PHASES_AT_LEAST) for kind in long]

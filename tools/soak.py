@@ -23,7 +23,7 @@ from faults_runs import BUS_MS, KINDS, REST, RESET_MS, SIMRUN, STATUS_WORDS, nee
 FILTERS = ("adaptive", "kf")
 RATE_HZ, START_MS = 100, 1000  # until rows come, and filters have warmed up
 ASKED = [kind for kind in KINDS if kind.detectable and kind.rate == RATE_HZ]
-# Faults overlap: when one is over the longest other one may just have begun; then the longest recovery, and a row. As long may no
+# Faults overlap: when one is over the longest other one may just have begun; then the longest recovery allowed, and a row. As long may no
 # row at all show a sample: the fault itself, recovery and a row.
 GOOD_ROW_WITHIN_MS = max(kind.lasts_ms for kind in ASKED) + RESET_MS + 1000 / RATE_HZ
 # each kind has 3 s of its own in each half at least

@@ -1,5 +1,6 @@
 #include "adxl345_integrity.h"
 
+#include "adxl345_driver.h"
 #include "adxl345_registers.h"
 #include "adxl345_table.h"
 #include "hal_drdy.h"
@@ -77,13 +78,6 @@ static bool same(const int16_t *a, const int16_t *b)
     return axis == 0;
 }
 
-static void count(uint16_t *counter)
-{
-    if (*counter != UINT16_MAX) {
-        (*counter)++;
-    }
-}
-
 static void lengthen(uint8_t *run)
 {
     if (*run < RUN_LIMIT) {
@@ -98,7 +92,7 @@ static HAL_APART reading_t discard(reading_t why)
         if (integrity.empty_run == RUN_LIMIT) {
             integrity.empty_run = RUN_EMPTY;
         }
-        count(&integrity.counters.empty);
+        driver_count(&integrity.counters.empty);
         return why;
     }
     integrity.failed = true;
@@ -106,7 +100,7 @@ static HAL_APART reading_t discard(reading_t why)
     if (why == READING_RESET) {
         integrity.bad_run = RUN_RESET;
     }
-    count(&integrity.counters.failed);
+    driver_count(&integrity.counters.failed);
     return why;
 }
 
@@ -126,7 +120,7 @@ static void accept(uint8_t source, bool repeated)
         integrity.empty_run = integrity_int1_stuck() ? (uint8_t)(integrity.empty_run - 1u) : 0;
     }
     if (source & ADXL345_INT_OVERRUN) {
-        count(&integrity.counters.overruns);
+        driver_count(&integrity.counters.overruns);
     }
 }
 
