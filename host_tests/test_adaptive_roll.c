@@ -1,6 +1,6 @@
 /*
  * The guarded adaptive filter on paper 000's roll profiles (15 s at 10 Hz, 6-10 s in motion, R = 0.6 deg^2, 16 LSB per
- * degree): mean square errors and the identified noise, each against the bound that the issue sets.
+ * degree): mean square errors and the identified noise, each against its bound.
  */
 #include "adaptive.h"
 #include "support_filters.h"

@@ -137,7 +137,7 @@ def the_image_with_a_filter_holds_it():
 
 
 def decided():
-    """The issue's rule put to the table of the page."""
+    """The rule put to the table of the page."""
     scores = {}
     for title, group, name, cell in default_filter.PAGE.cells(default_filter.DOCUMENT.read_text(encoding="utf-8")):
         if title == "RMSE by class":

@@ -45,7 +45,7 @@ static void doubtful_sample_counts_a_little_and_lets_p_grow(void)
     TEST_ASSERT_TRUE(f.core.u.p.p11_uq16 > predicted.core.u.p.p11_uq16);
 }
 
-/* 1..100 sigma, within 1,200 samples: the limit. */
+/* 1..100 sigma, within 1,200 samples, the limit. */
 static void every_step_is_followed(void)
 {
     static const int16_t steps_lsb[] = { 4, 8, 20, 40, 80, 200, 400 };

@@ -1,5 +1,5 @@
 /*
- * The judge of the rows, given rows and samples made by hand. The rule (issue 6): a row without flag 1, 2, 16, 32 or 64
+ * The judge of the rows, given rows and samples made by hand. The rule: a row without flag 1, 2, 16, 32 or 64
  * equals a triplet that the model latched, no older than two sample periods; and time stamps do not step back.
  */
 #include <string.h>

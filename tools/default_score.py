@@ -160,7 +160,7 @@ class Verdict:
 
 
 def verdict(scores, candidate=CANDIDATE, named=NAMED):
-    """The issue's rule. scores: {class: {filter: LSB}}; a class or the candidate missing keeps the default."""
+    """The rule of the choice. scores: {class: {filter: LSB}}; a class or the candidate missing keeps the default."""
     missing = [group for group in CLASSES if group not in scores]
     if missing:
         return Verdict(KEPT, {}, missing, [], f"no stream of class {', '.join(missing)}")
