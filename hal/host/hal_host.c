@@ -1,9 +1,8 @@
-/* The virtual clock, interrupts, sleep, watchdog, EEPROM and LED of the host. */
+/* The virtual clock, interrupts, sleep, watchdog and LED of the host. */
 #include "hal_host.h"
 
 #include <string.h>
 
-#include "hal_eeprom.h"
 #include "hal_host_private.h"
 #include "hal_irq.h"
 #include "hal_led.h"
@@ -12,7 +11,7 @@
 #include "hal_watchdog.h"
 
 /* A pass of main takes time too; without it a main loop that asks to be called again would stop the clock. */
-enum { CYCLES_PER_US = 16, EEPROM_WRITE_US = 3400, PASS_CYCLES = 320 };
+enum { CYCLES_PER_US = 16, PASS_CYCLES = 320 };
 
 #define ALARM_RANGE_US 32768u /* of the UNO's 16-bit counter: the alarm comes again after it */
 
@@ -32,8 +31,6 @@ static uint8_t reset_cause;
 static uint8_t note;
 static uint8_t note_before;
 static uint8_t repeats;
-static uint8_t eeprom[HAL_EEPROM_SIZE];
-static uint64_t eeprom_ready_at;
 static bool led;
 
 void hal_host_drdy_handler(void);
@@ -45,7 +42,7 @@ void hal_host_begin(const hal_host_config_t *config, const stream_t *stream, boo
     hal_host_cpu_hz = (uint32_t)HAL_HOST_HZ;
     memset(&hal_host_faults, 0, sizeof hal_host_faults);
     hal_host_faults.next_status = -1;
-    memset(eeprom, 0xFF, sizeof eeprom);
+    host_eeprom_power_on();
     host_sensor_begin(stream, loop);
     host_i2c_power_on();
     hal_host_reset_mcu(HAL_RESET_POWER_ON);
@@ -64,7 +61,7 @@ void hal_host_reset_mcu(uint8_t cause)
     note_before = cause == HAL_RESET_POWER_ON ? 0 : note;
     note = 0;
     repeats = hal_reset_count((hal_reset_t)cause, true, repeats);
-    eeprom_ready_at = 0;
+    host_eeprom_reset();
     led = false;
     host_i2c_begin();
     host_uart_begin();
@@ -88,11 +85,6 @@ uint64_t hal_host_watchdog_bite(void)
 bool hal_host_led(void)
 {
     return led;
-}
-
-uint8_t *hal_host_eeprom(void)
-{
-    return eeprom;
 }
 
 /* Main is never interrupted here, so there is nothing to hold off. */
@@ -259,22 +251,6 @@ uint8_t hal_reset_repeats(void)
 void hal_reset_settled(void)
 {
     repeats = 0;
-}
-
-bool hal_eeprom_ready(void)
-{
-    return host_now >= eeprom_ready_at;
-}
-
-uint8_t hal_eeprom_read(uint16_t address)
-{
-    return eeprom[address % HAL_EEPROM_SIZE];
-}
-
-void hal_eeprom_write_start(uint16_t address, uint8_t value)
-{
-    eeprom[address % HAL_EEPROM_SIZE] = value;
-    eeprom_ready_at = host_now + (uint64_t)EEPROM_WRITE_US * CYCLES_PER_US;
 }
 
 void hal_led_init(void) {}

@@ -74,6 +74,23 @@ double hal_host_now_ms(void);
 /* The state that a person could see. */
 uint32_t hal_host_baud(void);
 bool hal_host_led(void);
+
+/* The EEPROM's HAL_EEPROM_SIZE cells, 0xFF at power-on; a reset of the MCU leaves them. How often one was written. */
 uint8_t *hal_host_eeprom(void);
+uint32_t hal_host_eeprom_writes(uint16_t address);
+
+/* What a cut leaves in the cell that is being written. OLD is a cut just before the write too, NEW one just after. */
+typedef enum { HAL_HOST_LEFT_OLD, HAL_HOST_LEFT_NEW, HAL_HOST_LEFT_ERASED, HAL_HOST_LEFT_VALUE } hal_host_left_t;
+
+/*
+ * The supply goes in the Nth write from now, 1 being the next (0: in none), which leaves that in its cell, for
+ * HAL_HOST_LEFT_VALUE this value. From then on nothing is written and the EEPROM is not ready, until
+ * hal_host_reset_mcu.
+ */
+void hal_host_eeprom_cut(uint32_t nth, hal_host_left_t left, uint8_t value);
+bool hal_host_eeprom_was_cut(void);
+
+/* This cell keeps what it holds, whatever is written; HAL_EEPROM_SIZE: none. */
+void hal_host_eeprom_wear_out(uint16_t address);
 
 #endif

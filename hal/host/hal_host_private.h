@@ -12,6 +12,10 @@ extern hal_host_config_t host_config;
 void host_drdy_changed(bool high);
 void host_drdy_serve(void);
 
+/* hal_host_eeprom.c */
+void host_eeprom_power_on(void);
+void host_eeprom_reset(void);
+
 /* hal_host_i2c.c */
 void hal_host_i2c_handler(void);
 void host_i2c_power_on(void);
