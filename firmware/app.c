@@ -56,7 +56,7 @@ static uint32_t next_service_us;
 
 static void start_sensor(void)
 {
-    adxl345_config_t config = { settings.rate_dhz, settings.range_g };
+    adxl345_config_t config = { settings.rate_dhz, settings.range_g, false };
     adxl345_start(&config);
 }
 

@@ -251,14 +251,39 @@ static void test_p24_offsets(void)
     TEST_ASSERT_EQUAL_INT16(63, sensor_seen.last[0]);
 }
 
-/* p. 5 and Table 15 (p. 31): limits of the self-test shift in full resolution at 2.5 V */
+/*
+ * Limits of the self-test shift in full resolution at 2.5 V (p. 5 and Table 15, p. 31), times 1.77 on x and y and 1.47
+ * on z for 3.3 V (Table 14): 89..955, -955..-89, 111..1286.
+ */
 static void test_p31_self_test_shift_is_within_the_limits(void)
 {
     sensor_measure(FULL_RES_16G | 0x80, 0x00);
     sensor_tick(0, 0, 256);
-    TEST_ASSERT_INT_WITHIN(245, 295, sensor_seen.last[0]);       /* 50..540 */
-    TEST_ASSERT_INT_WITHIN(245, -295, sensor_seen.last[1]);      /* -540..-50 */
-    TEST_ASSERT_INT_WITHIN(400, 475, sensor_seen.last[2] - 256); /* 75..875 */
+    TEST_ASSERT_INT_WITHIN(433, 522, sensor_seen.last[0]);
+    TEST_ASSERT_INT_WITHIN(433, -522, sensor_seen.last[1]);
+    TEST_ASSERT_INT_WITHIN(587, 698, sensor_seen.last[2] - 256);
+}
+
+/* 1.1 x 200 + 30 = 250; 0.9 x -100 - 7 = -97; 1.1 x 5 = 5.5, half up 6; OFSX adds 4; self-test comes on top of it. */
+static void test_a_part_has_gain_offset_and_shift_of_its_own(void)
+{
+    sensor_model.part = (adxl345_part_t){ { 1.1, 0.9, 1.1 }, { 30, -7, 0 }, { 100, 0, -50 } };
+    sensor_write(OFSX, 1);
+    sensor_measure(FULL_RES_16G, 0x00);
+    sensor_tick(200, -100, 5);
+    TEST_ASSERT_EQUAL_INT16(254, sensor_seen.last[0]);
+    TEST_ASSERT_EQUAL_INT16(-97, sensor_seen.last[1]);
+    TEST_ASSERT_EQUAL_INT16(6, sensor_seen.last[2]);
+    sensor_measure(FULL_RES_16G | 0x80, 0x00);
+    sensor_tick(200, -100, 5);
+    TEST_ASSERT_EQUAL_INT16(354, sensor_seen.last[0]);
+    TEST_ASSERT_EQUAL_INT16(-97, sensor_seen.last[1]);
+    TEST_ASSERT_EQUAL_INT16(-44, sensor_seen.last[2]);
+    adxl345_model_power(&sensor_model, false);
+    adxl345_model_power(&sensor_model, true);
+    sensor_measure(FULL_RES_16G, 0x00);
+    sensor_tick(200, -100, 5);
+    TEST_ASSERT_EQUAL_INT16_MESSAGE(250, sensor_seen.last[0], "the part is the same after a power cycle, OFSX is 0");
 }
 
 /*
@@ -322,6 +347,7 @@ int main(void)
     RUN_TEST(test_p32_lsb_at_1600_and_3200_hz);
     RUN_TEST(test_p24_offsets);
     RUN_TEST(test_p31_self_test_shift_is_within_the_limits);
+    RUN_TEST(test_a_part_has_gain_offset_and_shift_of_its_own);
     RUN_TEST(test_power_cycle);
     RUN_TEST(test_start_after_an_abandoned_transfer);
     RUN_TEST(test_writes_while_measuring_are_counted);

@@ -12,7 +12,7 @@
 
 enum { PROBES_MAX = 64 };
 
-static const adxl345_config_t at_100_hz = { 1000, 16 };
+static const adxl345_config_t at_100_hz = { 1000, 16, false };
 static double probed_ms[PROBES_MAX];
 static size_t probes;
 
@@ -186,7 +186,7 @@ static void test_stop_with_a_stuck_bus_stops(void)
 /* The last word counts, whatever comes while the sensor is being put to rest. */
 static void test_start_and_stop_while_quiescing(void)
 {
-    static const adxl345_config_t at_400_hz = { 4000, 16 };
+    static const adxl345_config_t at_400_hz = { 4000, 16, false };
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
     adxl345_stop();

@@ -46,13 +46,19 @@ static reading_t judged(const int16_t lsb[3], unsigned byte, uint8_t flipped)
     return verdict;
 }
 
+static void start(uint8_t range_g, bool self_test)
+{
+    adxl345_config_t config = { 1000, range_g, self_test };
+    integrity_start(&config);
+}
+
 /* All that power-on leaves, and nothing less: zeros alone are a line that is low. */
 static void test_registers_after_power_on(void)
 {
     uint8_t reading[READING_BYTES] = { 0x02, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
     static const int16_t last[] = { 1, -2, 256 };
     int16_t out[3];
-    integrity_start(16);
+    start(16, false);
     TEST_ASSERT_EQUAL(READING_RESET, integrity_judge(reading, out, last));
     reading[READING_SOURCE] = 0;
     TEST_ASSERT_EQUAL(READING_BAD, integrity_judge(reading, out, last));
@@ -61,13 +67,26 @@ static void test_registers_after_power_on(void)
     TEST_ASSERT_EQUAL(READING_BAD, integrity_judge(reading, out, last));
 }
 
+/* A reading is of the self-test if it was asked for, and only then. */
+static void test_a_reading_with_the_other_self_test_bit_is_no_reading(void)
+{
+    static const int16_t lsb[] = { 100, -200, 300 };
+    for (unsigned asked = 0; asked < 2; asked++) {
+        for (unsigned set = 0; set < 2; set++) {
+            start(16, asked != 0);
+            format = (uint8_t)(0x0B | (set << 7));
+            TEST_ASSERT_EQUAL(asked == set ? READING_GOOD : READING_BAD, judged(lsb, 0, 0));
+        }
+    }
+}
+
 /* Bits 15 down to the range's sign bit agree: 16 g has 13 bits, 2 g has 10 (full resolution, p. 27). */
 static void test_a_sign_bit_that_disagrees_is_no_reading(void)
 {
     static const uint8_t ranges_g[] = { 2, 4, 8, 16 };
     for (unsigned r = 0; r < 4; r++) {
         int16_t rail = (int16_t)(ranges_g[r] * 256);
-        integrity_start(ranges_g[r]);
+        start(ranges_g[r], false);
         format = (uint8_t)(0x08 + r);
         for (unsigned axis = 0; axis < 3; axis++) {
             const int16_t ends[] = { (int16_t)-rail, -1, 0, (int16_t)(rail - 1) };
@@ -87,7 +106,7 @@ static void test_a_sign_bit_that_disagrees_is_no_reading(void)
 static void test_every_single_flip_of_pattern_and_status(void)
 {
     static const int16_t lsb[] = { 1, -2, 256 };
-    integrity_start(16);
+    start(16, false);
     format = 0x0B;
     for (unsigned bit = 0; bit < 8; bit++) {
         TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_CTL, (uint8_t)(1u << bit)));
@@ -107,7 +126,7 @@ static void test_every_single_flip_of_pattern_and_status(void)
 static void test_ones_on_all_axes_are_nobody(void)
 {
     static const int16_t nobody[] = { -1, -1, -1 };
-    integrity_start(16);
+    start(16, false);
     TEST_ASSERT_EQUAL(READING_BAD, judged(nobody, 0, 0));
     for (unsigned byte = READING_DATA; byte < READING_FIFO_CTL; byte++) {
         TEST_ASSERT_EQUAL(READING_GOOD, judged(nobody, byte, 1));
@@ -119,7 +138,7 @@ static void test_counters_saturate(void)
     static const int16_t lsb[] = { 1, -2, 256 };
     adxl345_readings_t readings;
     integrity_init();
-    integrity_start(16);
+    start(16, false);
     for (unsigned i = 0; i < 65536; i++) {
         (void)judged(lsb, READING_FIFO_CTL, 1);
         (void)judged(lsb, READING_SOURCE, 0x80);
@@ -138,7 +157,7 @@ static void test_the_tenth_equal_reading_is_stuck(void)
         uint8_t reading[READING_BYTES] = { 0x80, 0x0B, 1, 0, 2, 0, 3, 0, PATTERN, 0 };
         int16_t lsb[2][3] = { { 0 }, { 0 } };
         integrity_forget();
-        integrity_start(16);
+        start(16, false);
         for (unsigned i = 1; i <= 300; i++) {
             TEST_ASSERT_EQUAL(READING_GOOD, integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]));
             TEST_ASSERT_EQUAL(i >= 10, integrity_stuck());
@@ -198,7 +217,7 @@ static void test_noise_is_never_stuck(void)
     test_random_t random;
     random_seed(&random, 20261122u);
     integrity_forget();
-    integrity_start(16);
+    start(16, false);
     for (unsigned i = 0; i < SAMPLES; i++) {
         for (unsigned axis = 0; axis < 3; axis++) {
             uint16_t word = (uint16_t)(100 + lround(data_sheet_lsb[axis] * random_normal(&random)));
@@ -219,6 +238,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_registers_after_power_on);
     RUN_TEST(test_no_shift_keeps_the_pattern);
+    RUN_TEST(test_a_reading_with_the_other_self_test_bit_is_no_reading);
     RUN_TEST(test_a_sign_bit_that_disagrees_is_no_reading);
     RUN_TEST(test_every_single_flip_of_pattern_and_status);
     RUN_TEST(test_ones_on_all_axes_are_nobody);

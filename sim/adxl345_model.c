@@ -4,6 +4,7 @@
  */
 #include "adxl345_model.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -15,7 +16,6 @@ enum {
     DATA_LAST = ADXL345_DATAX0 + 5,
     REGISTER_MASK = 0x3F,
     MEASURE_BITS = ADXL345_POWER_MEASURE | 0x04, /* Measure and Sleep */
-    BIT_SELF_TEST = 0x80,
     BIT_INVERT = 0x20,
     BIT_JUSTIFY = 0x04,
     BIT_TRIGGER_ON_INT2 = 0x20,
@@ -29,8 +29,11 @@ enum {
 
 enum fifo_mode { MODE_BYPASS = 0, MODE_FIFO = 1, MODE_STREAM = 2, MODE_TRIGGER = 3 };
 
-/* Middle of the self-test limits at 2.5 V, full resolution: 50..540, -540..-50, 75..875 LSB (p. 5; Table 15, p. 31) */
-static const int16_t self_test_lsb[3] = { 295, -295, 475 };
+/*
+ * Middle of the self-test limits in full resolution, 50..540, -540..-50 and 75..875 LSB at 2.5 V (p. 5; Table 15,
+ * p. 31), times what 3.3 V makes of them: 1.77 on x and y, 1.47 on z (Table 14, p. 31).
+ */
+const adxl345_part_t adxl345_part_typical = { { 1.0, 1.0, 1.0 }, { 0, 0, 0 }, { 522, -522, 698 } };
 
 static unsigned fifo_mode(const adxl345_model_t *m)
 {
@@ -145,6 +148,7 @@ void adxl345_model_init(adxl345_model_t *m)
     m->address = ADXL345_ADDRESS_LOW;
     m->device_id = ADXL345_DEVID_VALUE;
     m->shadowing = true;
+    m->part = adxl345_part_typical;
     m->powered = true;
     registers_at_reset(m);
     refresh(m);
@@ -357,6 +361,13 @@ static int32_t clamp(int32_t value, int32_t low, int32_t high)
     return value > high ? high : value;
 }
 
+/* What this part makes of an acceleration, in full resolution before its offset registers; rounded half up. */
+static int32_t sense(const adxl345_part_t *part, size_t axis, int16_t full, bool self_test)
+{
+    int32_t value = (int32_t)floor(full * part->gain[axis] + 0.5) + part->offset_lsb[axis];
+    return self_test ? value + part->self_test_lsb[axis] : value;
+}
+
 void adxl345_model_convert(const adxl345_model_t *m, const int16_t full[3], int16_t lsb[3])
 {
     uint8_t format = m->reg[ADXL345_DATA_FORMAT];
@@ -368,9 +379,8 @@ void adxl345_model_convert(const adxl345_model_t *m, const int16_t full[3], int1
     /* left justified: the sign bit is bit 15 (p. 27); 10 bits, and one more per range step in full resolution */
     int32_t justify = (format & BIT_JUSTIFY) ? 32768 / rail : 1;
     for (size_t axis = 0; axis < 3; axis++) {
-        int32_t value = full[axis];
+        int32_t value = sense(&m->part, axis, full[axis], (format & ADXL345_FORMAT_SELF_TEST) != 0);
         value += (int32_t)(int8_t)m->reg[ADXL345_OFSX + axis] * OFFSET_LSB;
-        value += (format & BIT_SELF_TEST) ? self_test_lsb[axis] : 0;
         value = clamp(divide_down(value, divisor), -rail, rail - 1);
         if (coarse) {
             value = divide_down(value, 2) * 2; /* the LSB is always 0 at 1600 and 3200 Hz (p. 32) */

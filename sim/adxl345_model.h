@@ -12,6 +12,19 @@
 
 #define ADXL345_MODEL_FIFO_DEPTH 33 /* 32 in the FIFO and one in the output filter (p. 27) */
 
+/*
+ * What differs from one part to the next, each for x, y, z. Data sheet p. 4: gain 230..282 of 256 LSB/g (a tenth to
+ * each side), offsets of up to 38 LSB (x, y) and 64 LSB (z); p. 5: self-test.
+ */
+typedef struct {
+    double gain[3];           /* 1: 256 LSB/g */
+    int16_t offset_lsb[3];    /* what 0 g reads, full resolution */
+    int16_t self_test_lsb[3]; /* what SELF_TEST adds, full resolution */
+} adxl345_part_t;
+
+/* Exact gain, no offset, the self-test shift that is typical at 3.3 V. */
+extern const adxl345_part_t adxl345_part_typical;
+
 typedef struct adxl345_model {
     /* wiring and options, set by the owner after adxl345_model_init */
     uint8_t address;                                           /* 7 bit: 0x53, or 0x1D with ALT ADDRESS high */
@@ -21,6 +34,7 @@ typedef struct adxl345_model {
     void (*latched)(void *owner, const int16_t lsb[3]); /* may be NULL */
     void *owner;
     bool shadowing; /* true: a burst of the data registers is never torn (p. 21) */
+    adxl345_part_t part;
 
     /* state: read it in tests, write it only through the functions below */
     uint8_t reg[64];
@@ -40,7 +54,7 @@ typedef struct adxl345_model {
     uint32_t samples, overruns, torn, data_reads, writes_while_measuring;
 } adxl345_model_t;
 
-/* Powered, registers at their reset values, address 0x53, shadowing on, no callbacks. */
+/* Powered, registers at their reset values, address 0x53, shadowing on, no callbacks; the typical part. */
 void adxl345_model_init(adxl345_model_t *m);
 
 /*
@@ -69,8 +83,9 @@ double adxl345_model_odr_hz(const adxl345_model_t *m);
 
 /*
  * One output-data-rate period has passed and the acceleration is `full` (full-resolution LSB at +-16 g, 256 LSB/g).
- * Applies self-test shift, offset registers, range, resolution, justification and rails, then stores into the data
- * registers or the FIFO according to its mode. Returns false when not measuring (nothing stored).
+ * Applies the part's gain and offset, self-test shift, offset registers, range, resolution, justification and rails,
+ * then stores into the data registers or the FIFO according to its mode. Returns false when not measuring (nothing
+ * stored).
  * Turn-on: the owner makes the first tick one period and 1.1 ms after Measure was set (p. 5), the others one period
  * apart.
  */

@@ -52,6 +52,7 @@ typedef struct {
     const char *fw, *in, *out, *served, *altered, *eeprom, *stats, *profile, *vcd, *bootloader, *filter, *span;
     bool loop, pty, blank, judge;
     double ppm, max_ms; /* max_ms 0: none */
+    adxl345_part_t part;
     unsigned expect_resets, gdb_port;
     uint32_t seed, clock_start_us;
     typed_line_t typed[TYPED_MAX];
@@ -64,6 +65,9 @@ extern options_t options;
 
 /* Fills `options` from the command line; prints the reason and exits with EXIT_INPUT (or EXIT_OK after --help). */
 void options_parse(int argc, char **argv);
+
+/* Into what is named of `part`; false: the argument of --part is not a legal one. */
+bool part_take(const char *argument, adxl345_part_t *part);
 
 /* --- the machine --- */
 typedef struct {

@@ -34,6 +34,7 @@ enum option_code {
     OPTION_FAULT,
     OPTION_SETTING,
     OPTION_FILTER,
+    OPTION_PART,
     OPTION_HELP
 };
 
@@ -65,6 +66,7 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "every", required_argument, NULL, OPTION_SETTING },
                                        { "range", required_argument, NULL, OPTION_SETTING },
                                        { "filter", required_argument, NULL, OPTION_FILTER },
+                                       { "part", required_argument, NULL, OPTION_PART },
                                        { "help", no_argument, NULL, OPTION_HELP },
                                        { NULL, 0, NULL, 0 } };
 
@@ -80,6 +82,10 @@ static const char help_text[] =
     "                     typed as commands, in this order of options, when the banner has appeared\n"
     "  --cmd MS:TEXT      types TEXT and a line end, not before MS\n"
     "  --ppm N            error of the sensor's clock\n"
+    "  --part 'gain=X,Y,Z offset=X,Y,Z selftest=X,Y,Z'\n"
+    "                     this ADXL345: gain (1,1,1) times the stream's LSB, then offset (0,0,0) and, while SELF_TEST "
+    "is set,\n"
+    "                     its shift (522,-522,698: typical at 3.3 V) in LSB; any of the three, also in several --part\n"
     "  --served CSV       every sample the sensor latched: served,t_us,row,line,x_lsb,y_lsb,z_lsb[,truth]\n"
     "  --altered CSV      every sample that a fault altered on its way to the MCU: altered,t_us,x_lsb,y_lsb,z_lsb as "
     "it "
@@ -206,6 +212,15 @@ static void add_command(const char *argument)
     add_typed(at_ms, end + 1, false);
 }
 
+static void add_part(const char *argument)
+{
+    if (!part_take(argument, &options.part)) {
+        refuse("--part wants gain=X,Y,Z (0.5 to 2), offset=X,Y,Z (-1000 to 1000) or selftest=X,Y,Z (-4096 to 4095), "
+               "whole LSB, not '%s'",
+               argument);
+    }
+}
+
 static void add_fault(const char *argument)
 {
     if (options.fault_count == FAULTS_MAX) {
@@ -284,6 +299,9 @@ static void take(int code, const char *name, const char *argument)
     case OPTION_FAULT:
         add_fault(argument);
         break;
+    case OPTION_PART:
+        add_part(argument);
+        break;
     case OPTION_FILTER:
         options.filter = argument;
         add_setting(name, argument);
@@ -320,6 +338,7 @@ void options_parse(int argc, char **argv)
 {
     int index = 0;
     int code;
+    options.part = adxl345_part_typical;
     while ((code = getopt_long(argc, argv, "", known, &index)) != -1) {
         take(code, known[index].name, optarg);
     }

@@ -103,6 +103,7 @@ void sensor_start(void)
     }
     pin_d2 = avr_io_getirq(mcu, AVR_IOCTL_IOPORT_GETIRQ('D'), PIN_D2);
     adxl345_model_init(&sensor);
+    sensor.part = options.part;
     clock_error_ppm = options.ppm;
     sensor.pin_changed = on_pin;
     sensor.latched = on_latched;

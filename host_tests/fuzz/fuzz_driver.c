@@ -143,7 +143,7 @@ static void set_power(bool on)
 
 static void start(uint8_t choice)
 {
-    config = (adxl345_config_t){ rates_dhz[choice % 7], ranges_g[choice / 7 % 4] };
+    config = (adxl345_config_t){ rates_dhz[choice % 7], ranges_g[choice / 7 % 4], choice / 28 % 2 != 0 };
     adxl345_start(&config);
     running = true;
 }

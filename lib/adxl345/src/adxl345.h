@@ -26,6 +26,7 @@ typedef struct {
 typedef struct {
     uint16_t rate_dhz; /* output data rate in 0.1 Hz: 125, 250, 500, 1000, 2000, 4000, 8000 */
     uint8_t range_g;   /* 2, 4, 8, 16; always full resolution */
+    bool self_test;    /* the sensor's electrostatic force acts on all axes: readings are shifted (p. 22) */
 } adxl345_config_t;
 
 /* What is wrong, in the order in which the driver finds out. Numbers are part of the protocol (docs/protocol.md). */

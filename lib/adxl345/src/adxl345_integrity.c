@@ -19,7 +19,7 @@ static struct {
     uint8_t equal_run; /* good readings that were as the one before them */
     bool has_last;
     uint8_t range_g;
-    uint8_t format; /* what DATA_FORMAT holds for it */
+    uint8_t format; /* what DATA_FORMAT holds */
     uint8_t good;
     uint8_t bad_run;
     uint8_t empty_run;
@@ -39,10 +39,10 @@ void integrity_forget(void)
     integrity.empty_run = 0;
 }
 
-void integrity_start(uint8_t range_g)
+void integrity_start(const adxl345_config_t *config)
 {
-    integrity.range_g = range_g;
-    integrity.format = table_format(range_g);
+    integrity.range_g = config->range_g;
+    integrity.format = table_format(config);
     integrity.has_last = false;
     integrity.bad_run = 0;
     if (!integrity_stuck()) {

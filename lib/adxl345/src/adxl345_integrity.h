@@ -36,8 +36,8 @@ typedef enum {
 void integrity_init(void);
 const adxl345_readings_t *integrity_counters(void);
 
-/* Readings come with this range from now on (2, 4, 8, 16 g; always full resolution), the first behind no other. */
-void integrity_start(uint8_t range_g);
+/* Readings come with this configuration's range and self-test from now on, the first behind no other. */
+void integrity_start(const adxl345_config_t *config);
 
 /* The sensor may be another: no value is known to repeat, and INT1 not to be stuck. */
 void integrity_forget(void);

@@ -31,6 +31,7 @@ enum adxl345_bits {
     ADXL345_INT_EVENTS = 0x7C, /* taps, activity, inactivity, free fall: never without their function (p. 26) */
     ADXL345_INT_WATERMARK = 0x02,
     ADXL345_INT_OVERRUN = 0x01,
+    ADXL345_FORMAT_SELF_TEST = 0x80,
     ADXL345_FORMAT_FULL_RES = 0x08,
     ADXL345_FORMAT_RANGE_MASK = 0x03, /* 2, 4, 8, 16 g */
     ADXL345_FIFO_BYPASS = 0x00,

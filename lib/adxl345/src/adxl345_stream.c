@@ -63,7 +63,7 @@ void stream_start(adxl345_driver_t *d)
         integrity_forget();
         watch_start();
     }
-    integrity_start(d->config.range_g);
+    integrity_start(&d->config);
     d->first_sample_seen = false;
     d->timed = TIMED_NONE;
     d->was_empty = false;

@@ -48,9 +48,10 @@ static uint8_t range_code(uint8_t range_g)
     return code;
 }
 
-uint8_t table_format(uint8_t range_g)
+uint8_t table_format(const adxl345_config_t *config)
 {
-    return (uint8_t)(ADXL345_FORMAT_FULL_RES | range_code(range_g));
+    uint8_t force = config->self_test ? ADXL345_FORMAT_SELF_TEST : 0;
+    return (uint8_t)(ADXL345_FORMAT_FULL_RES | force | range_code(config->range_g));
 }
 
 uint32_t table_period_us(uint16_t rate_dhz)
@@ -80,7 +81,7 @@ uint8_t table_value(uint8_t row, const adxl345_config_t *config)
     if (reg == ADXL345_BW_RATE) {
         value = rate_code(config->rate_dhz);
     } else if (reg == ADXL345_DATA_FORMAT) {
-        value = table_format(config->range_g);
+        value = table_format(config);
     }
     return value;
 }

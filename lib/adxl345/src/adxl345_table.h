@@ -18,8 +18,8 @@
 uint8_t table_register(uint8_t row);
 uint8_t table_value(uint8_t row, const adxl345_config_t *config);
 
-/* What DATA_FORMAT holds while measuring with this range. */
-uint8_t table_format(uint8_t range_g);
+/* What DATA_FORMAT holds while measuring with this configuration. */
+uint8_t table_format(const adxl345_config_t *config);
 
 /* Nominal time between samples at a legal rate. */
 uint32_t table_period_us(uint16_t rate_dhz);
