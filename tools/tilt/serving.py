@@ -1,0 +1,163 @@
+"""The page of `tilt live`, served to this machine alone, and what it needs: the board's lines as server-sent events, commands by POST.
+
+Other sites that the browser shows must neither read nor type: each request carries a random token (in the address that is opened, behind
+the #, which is never sent by itself), the Host must be this server's (a name that somebody points at 127.0.0.1 is refused), and nothing
+allows another origin.
+"""
+import http.server
+import json
+import pathlib
+import secrets
+import threading
+import time
+import urllib.parse
+
+from tilt.errors import TiltError
+
+PAGE = pathlib.Path(__file__).with_name("page") / "live.html"
+ADDRESS = "127.0.0.1"
+ALIVE_S = 5.0      # a sign of life, by which a browser that has gone is noticed
+BATCH_S = 0.02     # lines that come within it are one event
+LONGEST_BODY = 200
+SAFE_HEADERS = {"Cache-Control": "no-store", "X-Content-Type-Options": "nosniff", "X-Frame-Options": "DENY", "Referrer-Policy": "no-referrer",
+                "Cross-Origin-Resource-Policy": "same-origin"}
+
+
+def event(number, kind, data):
+    """One server-sent event; JSON keeps its data on one line."""
+    return f"id: {number}\nevent: {kind}\ndata: {json.dumps(data)}\n\n".encode("ascii")
+
+
+def events_of(entries):
+    """The entries as events, lines on end joined in one."""
+    parts, joined, last = [], [], 0
+    for number, kind, data in entries:
+        if kind == "lines":
+            joined.append(data)
+            last = number
+            continue
+        if joined:
+            parts.append(event(last, "lines", b"".join(joined).decode("latin-1")))
+            joined = []
+        parts.append(event(number, kind, data))
+    if joined:
+        parts.append(event(last, "lines", b"".join(joined).decode("latin-1")))
+    return b"".join(parts)
+
+
+class Handler(http.server.BaseHTTPRequestHandler):
+    """One request, in a thread of its own."""
+
+    server_version, sys_version = "tilt", ""
+
+    def log_message(self, *_):
+        """Nothing: the terminal is for what a person must know."""
+
+    def do_GET(self):
+        where = urllib.parse.urlsplit(self.path)
+        if not self._is_for_us():
+            return
+        if where.path == "/":
+            self._answer(200, self.server.page, "text/html; charset=utf-8")
+        elif where.path == "/events":
+            if self._knows(urllib.parse.parse_qs(where.query).get("token", [""])[0]):
+                self._stream()
+        else:
+            self._refuse(404, "nothing here")
+
+    def do_POST(self):
+        if not self._is_for_us() or not self._knows(self.headers.get("X-Tilt-Token", "")):
+            return
+        if self.path != "/send":
+            self._refuse(404, "nothing here")
+            return
+        size = self.headers.get("Content-Length", "")
+        if not size.isdecimal() or int(size) > LONGEST_BODY:
+            self._refuse(413, f"a command of more than {LONGEST_BODY} bytes")
+            return
+        try:
+            self.server.board.send(self.rfile.read(int(size)).decode("utf-8", "replace").strip())
+        except TiltError as error:
+            self._refuse(409, str(error))
+            return
+        self._answer(204, b"", "text/plain")
+
+    def _is_for_us(self):
+        own = {f"{name}:{self.server.server_port}" for name in (ADDRESS, "localhost")}
+        origin = self.headers.get("Origin")
+        if self.headers.get("Host", "") in own and (origin is None or origin in {f"http://{name}" for name in own}):
+            return True
+        self._refuse(403, "not asked by the page of tilt live")
+        return False
+
+    def _knows(self, token):
+        if secrets.compare_digest(token.encode("utf-8", "replace"), self.server.token.encode("ascii")):
+            return True
+        self._refuse(403, "open the address that tilt live has printed: it ends in a token")
+        return False
+
+    def _refuse(self, status, why):
+        self.close_connection = True
+        self._answer(status, why.encode("utf-8"), "text/plain; charset=utf-8")
+
+    def _answer(self, status, body, kind):
+        self.send_response(status)
+        self._headers({"Content-Type": kind, "Content-Length": str(len(body))})
+        self.wfile.write(body)
+
+    def _headers(self, more):
+        for name, value in {**SAFE_HEADERS, **more}.items():
+            self.send_header(name, value)
+        self.end_headers()
+
+    def _stream(self):
+        last = self.headers.get("Last-Event-ID", "")
+        number = int(last) if last.isdecimal() else 0
+        self.send_response(200)
+        self._headers({"Content-Type": "text/event-stream", "Connection": "close"})
+        self.close_connection = True
+        try:
+            self.wfile.write(b"retry: 500\n\n")
+            while not self.server.ending.is_set():
+                number = self._pass_on(number)
+                time.sleep(BATCH_S)
+        except OSError:
+            pass  # the page was closed
+
+    def _pass_on(self, number):
+        entries, missed = self.server.feed.after(number, ALIVE_S)
+        if missed:
+            self.wfile.write(event(entries[-1][0] if entries else number, "missed", missed))
+        self.wfile.write(events_of(entries) or b": alive\n\n")
+        return entries[-1][0] if entries else number
+
+
+class Server(http.server.ThreadingHTTPServer):
+    """Serves from its creation until close(). `address` is what a person opens; TiltError where the port is taken."""
+
+    daemon_threads = True
+    allow_reuse_address = True
+
+    def __init__(self, feed, board, port=0):
+        self.feed, self.board = feed, board
+        self.token = secrets.token_urlsafe(18)
+        self.ending = threading.Event()
+        self.page = PAGE.read_bytes()
+        try:
+            super().__init__((ADDRESS, port), Handler)
+        except (OSError, OverflowError) as error:
+            raise TiltError(f"{ADDRESS}:{port}: {getattr(error, 'strerror', None) or error}: choose another --port-http") from error
+        self.address = f"http://{ADDRESS}:{self.server_port}/#{self.token}"
+        self._thread = threading.Thread(target=self.serve_forever, name="pages", daemon=True)
+        self._thread.start()
+
+    def close(self):
+        """Tells the pages and ends."""
+        self.feed.put("ended", "")
+        time.sleep(2 * BATCH_S + 0.01)
+        self.ending.set()
+        self.shutdown()
+        self.server_close()
+
+    def handle_error(self, request, client_address):
+        """A browser that goes away in the middle of an answer is no event."""
