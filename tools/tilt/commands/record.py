@@ -1,0 +1,282 @@
+"""Writes what the board sends into a file that every other command, the simulator and a spreadsheet can read.
+
+Opening the port resets the board (as every serial monitor does), so the file begins with its banner. With --no-reset it joins what runs.
+Rows go to the file as they come. When the port disappears the command waits for it and goes on in the same file, where a repeated header begins
+a new segment. It ends after --seconds, by Ctrl-C, or by SIGTERM.
+
+Status: 0 nothing is missing, 1 rows are missing (how many, and why, is told), 2 the port or the file cannot be used.
+"""
+import contextlib
+import datetime
+import pathlib
+import re
+import signal
+import sys
+import time
+
+from tilt import protocol
+from tilt.errors import TiltError
+from tilt.port import Gone, Port
+from tilt.recorder import Recorder
+
+NAME = "record"
+SUMMARY = "write what a board sends into a file, and count what is missing"
+SILENT_S = 6.0        # the boot loader takes 2 s, the banner at 9600 baud 0.4 s
+STRANGE_BYTES, STRANGE_S = 200, 2.0  # of which no line is ours: the port is not what it should be
+PRINTABLE_SHARE = 0.95
+SEND_AFTER_S, SEND_SILENT_S = 1.0, 3.0  # where no header has come: it may be in plotter mode; it may have been stopped
+LISTEN_S = 0.6        # at each baud rate, when looking for the right one
+BACK_AFTER_S = 1.5    # without a line that can be read, to the baud rate at start
+RETRY_S = 0.2
+SHOW_S = 0.5
+GRACE_S = 1.0         # by the PC's clock, over --seconds by the board's
+BAUD_SET = re.compile(r"# baud (\d+)\Z")
+
+
+def arguments(parser):
+    parser.add_argument("port", metavar="PORT", help="/dev/ttyACM0, /dev/serial/by-id/..., COM3, or simrun's pseudo terminal")
+    parser.add_argument("-o", "--output", metavar="FILE", help="to write (default: tilt-DATE-TIME.csv here)")
+    parser.add_argument("--force", action="store_true", help="overwrite FILE")
+    parser.add_argument("--seconds", type=float, metavar="N", help="end after N seconds by the board's clock (the PC's while nothing comes)")
+    parser.add_argument("--baud", type=int, default=protocol.BAUD_AT_START, metavar="N", help=f"of the line (default {protocol.BAUD_AT_START})")
+    parser.add_argument("--send", action="append", default=[], metavar="COMMAND", help="type this when the board is there, as 'filter sprf'; "
+                        "again after each reset; may be given more than once; `baud N` is followed")
+    parser.add_argument("--no-reset", action="store_true", help="do not reset the board: join what runs (on Linux the very first opening after "
+                        "plugging in may reset it all the same)")
+    parser.add_argument("--no-reconnect", action="store_true", help="end when the port disappears")
+
+
+class Output:
+    """The file; made with its first line, so that a port that is not a board leaves none."""
+
+    def __init__(self, path, force):
+        self.path, self.force, self.file, self.size = path, force, None, 0
+        if path.exists() and not force:
+            raise TiltError(f"{path}: is there already (--force overwrites it, -o takes another name)")
+        if not path.parent.is_dir():
+            raise TiltError(f"{path}: no folder {path.parent}")
+
+    def write(self, data):
+        """All of it, or nothing and TiltError: no half row stays when the disk is full."""
+        try:
+            if self.file is None:
+                self.file = open(self.path, "wb" if self.force else "xb", buffering=0)  # pylint: disable=consider-using-with
+            rest = memoryview(data)
+            while rest:
+                rest = rest[self.file.write(rest):]
+            self.size += len(data)
+        except OSError as why:
+            self.cut_back()
+            raise TiltError(f"{self.path}: {why.strerror}; what came before is in the file") from why
+
+    def cut_back(self):
+        with contextlib.suppress(OSError, AttributeError):
+            self.file.truncate(self.size)
+
+    def close(self):
+        if self.file is not None:
+            self.file.close()
+
+
+class Screen:
+    """What a person sees meanwhile, on stderr: the board's words, and on a terminal one line that is kept up to date."""
+
+    def __init__(self):
+        self.live, self.shown, self.rows = sys.stderr.isatty(), 0.0, (0.0, 0)
+
+    def say(self, text):
+        print(("\r\x1b[K" if self.live else "") + text, file=sys.stderr, flush=True)
+
+    def end(self):
+        if self.live:
+            print(file=sys.stderr)
+
+    def update(self, recorder):
+        now = time.monotonic()
+        if not self.live or now - self.shown < SHOW_S:
+            return
+        (then, rows_then), rows = self.rows, recorder.counts.rows
+        rate = (rows - rows_then) / (now - then) if rows >= rows_then and then else 0.0
+        self.shown, self.rows = now, (now, rows)
+        counts, last = recorder.counts, recorder.last
+        flags = protocol.flags_in_words(last.flags) if last else "-"
+        sys.stderr.write(f"\r\x1b[K{counts.span_us * 1e-6:.1f} s, {rows:,} rows ({rate:.0f}/s), lost {counts.gaps.lost}, "
+                         f"malformed {counts.malformed + counts.cut}, flags {flags}")
+        sys.stderr.flush()
+
+
+class Session:
+    """One recording: the port, the recorder, and what has been typed."""
+
+    def __init__(self, args, port, recorder, screen):
+        self.args, self.port, self.recorder, self.screen = args, port, recorder, screen
+        self.ends, self.first_row, self.strange = False, None, b""
+        self.opened()
+
+    def opened(self):
+        self.since = self.heard = time.monotonic()
+        self.sent = None
+
+    def run(self):
+        while not self.over():
+            try:
+                self.take(self.port.read())
+                self.type_commands()
+            except Gone:
+                if not self.wait_for_port():
+                    return
+            self.screen.update(self.recorder)
+
+    def over(self):
+        if self.ends or self.args.seconds is None or self.first_row is None:
+            return self.ends
+        return self.recorder.counts.span_us >= self.args.seconds * 1e6 or time.monotonic() - self.first_row > self.args.seconds + GRACE_S
+
+    def said(self, text):
+        """A '#' line of the board."""
+        self.screen.say(text)
+        baud = BAUD_SET.match(text)
+        if baud:
+            self.port.baud = int(baud.group(1))
+            self.recorder.join()
+        if text.startswith(protocol.BANNER):
+            self.sent = None
+
+    def take(self, data):
+        now, before = time.monotonic(), self.recorder.understood
+        self.recorder.feed(data)
+        if self.recorder.understood > before:
+            self.heard = now
+        if self.first_row is None and self.recorder.counts.rows:
+            self.first_row = now
+        if not self.recorder.ours:
+            self.strange += data
+            self.judge_strange(now - (self.sent or self.since))
+        elif data and now - self.heard > BACK_AFTER_S and self.port.baud != self.args.baud:
+            self.screen.say(f"tilt record: nothing to read at {self.port.baud} baud: back to {self.args.baud}")
+            self.port.baud, self.heard = self.args.baud, now
+
+    def judge_strange(self, waited_s):
+        """TiltError when what comes is not this firmware's, or nothing comes."""
+        if not self.strange and waited_s > SILENT_S:
+            raise TiltError(f"{self.port.name}: nothing came in {waited_s:.0f} s at {self.port.baud} baud: is it the right port, has the board "
+                            "this firmware, was it stopped (--send go)?")
+        if len(self.strange) > STRANGE_BYTES and waited_s > STRANGE_S and (self.sent or not self.args.send):
+            raise TiltError(f"{self.port.name}: {what_it_is(self.strange, self.port)}")
+
+    def type_commands(self):
+        waited_s = time.monotonic() - self.since
+        ready = self.recorder.header is not None or waited_s > (SEND_AFTER_S if self.strange else SEND_SILENT_S)
+        if self.sent is not None or not ready:
+            return
+        self.sent = time.monotonic()
+        for text in self.args.send:
+            self.port.send(text)
+
+    def wait_for_port(self):
+        """False: not to be waited for, or ended meanwhile."""
+        self.recorder.outage()
+        self.port.baud_at_next_opening(self.args.baud)
+        if self.args.no_reconnect:
+            self.screen.say(f"tilt record: {self.port.name} is gone")
+            return False
+        self.screen.say(f"tilt record: {self.port.name} is gone: waiting for it (Ctrl-C ends)")
+        while not self.over():
+            if self.port.come_back():
+                self.screen.say(f"tilt record: {self.port.name} is back")
+                self.opened()
+                return True
+            time.sleep(RETRY_S)
+        return False
+
+
+def what_it_is(strange, port):
+    """Why bytes of which no line is ours came, and what to do."""
+    lines = strange.decode("latin-1").replace("\r", "").split("\n")
+    if any(protocol.PLOTTER_ROW.match(line) for line in lines):
+        return "the board is in plotter mode: --send 'mode csv'"
+    if sum(32 <= byte < 127 or byte in b"\t\r\n" for byte in strange) > PRINTABLE_SHARE * len(strange):
+        return f"text comes, but not this firmware's: '{max(lines[:4], key=len)[:80].strip()}'"
+    tried = port.baud
+    found = find_baud(port)
+    if found:
+        return f"what comes at {tried} baud is no text; at {found} baud it is this firmware's: --baud {found}"
+    return f"what comes at {tried} baud is no text, nor at {', '.join(str(baud) for baud in protocol.BAUDS if baud != tried)}: is it the right port?"
+
+
+def find_baud(port):
+    """The baud rate at which the lines are ours, or None."""
+    print(f"tilt record: no text at {port.baud} baud, trying others", file=sys.stderr)
+    for baud in sorted(protocol.BAUDS, reverse=True):
+        if baud == port.baud:
+            continue
+        port.baud = baud
+        recorder, end = Recorder(lambda data: None), time.monotonic() + LISTEN_S
+        while time.monotonic() < end:
+            recorder.feed(port.read())
+            if recorder.ours:
+                return baud
+    return None
+
+
+def summary(counts, path):
+    lines = [f"{path}: {counts.rows:,} rows, {counts.span_us * 1e-6:.1f} s"]
+    gaps = counts.gaps
+    told = [(gaps.on_the_way, "rows missing by their times: lost on the way"), (gaps.by_the_board, "rows dropped by the board: the line is too slow"),
+            (counts.cut, "rows cut short"), (counts.resets, "resets of the board"), (counts.outages, "times the port was gone")]
+    lines += [f"{number} {text}" for number, text in told if number]
+    if counts.malformed:
+        places = ", ".join(map(str, counts.malformed_at)) + (", ..." if counts.malformed > len(counts.malformed_at) else "")
+        lines.append(f"{counts.malformed} lines that are no rows, kept as # lines: {path}:{places}")
+    if counts.plotter:
+        lines.append(f"{counts.plotter} rows of the plotter mode, kept as # lines")
+    if gaps.pauses:
+        lines.append(f"{gaps.pauses} pauses where the board had no sample or was told something, {gaps.pauses_us * 1e-6:.1f} s in all")
+    lines.append("nothing is missing" if counts.complete() else "something is missing")
+    return "\n".join(lines)
+
+
+def default_path():
+    return pathlib.Path(f"tilt-{datetime.datetime.now():%Y%m%d-%H%M%S}.csv")
+
+
+def checked(args):
+    if args.seconds is not None and not 0 < args.seconds < float("inf"):
+        raise TiltError(f"--seconds {args.seconds:g}: a time greater than 0")
+    if args.baud <= 0:
+        raise TiltError(f"--baud {args.baud}: one of {', '.join(map(str, protocol.BAUDS))}")
+
+
+@contextlib.contextmanager
+def ended_by_signals(session):
+    """Ctrl-C and SIGTERM end the recording at the next line, never within one."""
+    def end(*_):
+        session.ends = True
+    before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def run(args):
+    checked(args)
+    path = pathlib.Path(args.output) if args.output else default_path()
+    output, port = Output(path, args.force), Port(args.port, args.baud, reset=not args.no_reset)
+    port.open()
+    recorder = Recorder(output.write)
+    session = Session(args, port, recorder, Screen())
+    recorder.said = session.said
+    try:
+        with ended_by_signals(session):
+            session.run()
+        recorder.finish()
+    finally:
+        port.close()
+        output.close()
+    session.screen.end()
+    if not recorder.counts.rows:
+        raise TiltError(f"{args.port}: no row came")
+    print(summary(recorder.counts, path))
+    return 0 if recorder.counts.complete() else 1
