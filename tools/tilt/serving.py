@@ -148,7 +148,7 @@ class Server(http.server.ThreadingHTTPServer):
         except (OSError, OverflowError) as error:
             raise TiltError(f"{ADDRESS}:{port}: {getattr(error, 'strerror', None) or error}: choose another --port-http") from error
         self.address = f"http://{ADDRESS}:{self.server_port}/#{self.token}"
-        self._thread = threading.Thread(target=self.serve_forever, name="pages", daemon=True)
+        self._thread = threading.Thread(target=self.serve_forever, args=(0.05,), name="pages", daemon=True)
         self._thread.start()
 
     def close(self):

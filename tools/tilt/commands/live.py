@@ -1,61 +1,82 @@
 """Shows a board in the browser: raw against filtered roll and pitch, an artificial horizon, the flags, the filter to choose.
 
-The page is served to this machine alone, at the address that is printed. An unplugged board is waited for. Ctrl-C ends it.
+The page is served to this machine alone, at the address that is printed. A board that is unplugged is waited for. Ctrl-C ends it.
 PORT is a serial port (/dev/ttyACM0, COM3) or the pseudo terminal that build/sim/simrun --pty names. Without this
 command the page works too: open tools/tilt/page/live.html itself in Chrome or Edge, which read the port by WebSerial.
+
+Status: 0 ended by Ctrl-C or SIGTERM, 1 the recording had to end before, 2 the port, the file or the address cannot be used.
 """
+import contextlib
+import pathlib
 import signal
 import sys
 import threading
 import webbrowser
+
+from tilt import protocol
 
 NAME = "live"
 SUMMARY = "show a board in the browser"
 
 
 def arguments(parser):
-    parser.add_argument("port", metavar="PORT", help="serial port of the board")
-    parser.add_argument("--baud", type=int, default=115200, metavar="N", help="rate of the line when it is opened (115200); `baud N`, typed in "
-                        "the page, is followed")
-    parser.add_argument("--port-http", type=int, default=0, metavar="N", help="TCP port of the page (a free one)")
+    parser.add_argument("port", metavar="PORT", help="/dev/ttyACM0, /dev/serial/by-id/..., COM3, or simrun's pseudo terminal")
+    parser.add_argument("--baud", type=int, default=protocol.BAUD_AT_START, metavar="N", help="of the line when it is opened (default "
+                        f"{protocol.BAUD_AT_START}); `baud N`, typed in the page, is followed")
+    parser.add_argument("--no-reset", action="store_true", help="do not reset the board: join what runs")
+    parser.add_argument("--port-http", type=int, default=0, metavar="N", help="TCP port of the page (default: a free one)")
     parser.add_argument("--no-browser", action="store_true", help="only print the address")
-    parser.add_argument("--record", metavar="FILE", help="write what comes to a new file, as it comes")
+    parser.add_argument("--record", metavar="FILE", help="write what comes to a new file, as it comes (as `tilt record` does)")
 
 
 def say(text):
     print(f"tilt live: {text}", file=sys.stderr, flush=True)
 
 
+@contextlib.contextmanager
+def signals():
+    """An event that Ctrl-C and SIGTERM set."""
+    ending = threading.Event()
+    before = {number: signal.signal(number, lambda *_: ending.set()) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield ending
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
 def run(args):
-    from tilt.board import Board, Recorder
+    from tilt.board import Board
+    from tilt.commands.record import Output
     from tilt.feed import Feed
+    from tilt.port import Port
+    from tilt.recorder import Recorder
     from tilt.serving import Server
 
-    ending = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: ending.set())
-    recorder = Recorder(args.record) if args.record else None
-    feed = Feed()
-    board = Board(args.port, args.baud, feed, recorder.take if recorder else None)
-    server = Server(feed, board, args.port_http)
-    board.start()
-    try:
-        print(server.address, flush=True)
-        if not args.no_browser and not webbrowser.open(server.address):
-            say("no browser found: open the address above")
+    with contextlib.ExitStack() as stack:
+        ending = stack.enter_context(signals())
+        output = Output(pathlib.Path(args.record), False) if args.record else None
+        recorder = Recorder(output.write) if output else None
+        board = Board(Port(args.port, args.baud, reset=not args.no_reset), Feed(), recorder)
+        server = Server(board.feed, board, args.port_http)
+        stack.callback(board.end)
+        stack.callback(server.close)
+        board.start()
+        show(server.address, args.no_browser)
         while not ending.wait(0.5):
             pass
-    finally:
-        server.close()
-        board.end()
-    return finish(recorder)
+    if output:
+        output.close()
+        tell_recorded(recorder.counts, output.path)
+    return 1 if board.failed else 0
 
 
-def finish(recorder):
-    """Exit status: 1 where the recording had to end before."""
-    if recorder is None:
-        return 0
-    recorder.close()
-    aside = f", {recorder.kept_aside} lines that are no rows kept as comments" if recorder.kept_aside else ""
-    say(recorder.failed or f"{recorder.path}: {recorder.rows} rows{aside}")
-    return 1 if recorder.failed else 0
+def show(address, only_print):
+    print(address, flush=True)
+    if not only_print and not webbrowser.open(address):
+        say("no browser found: open the address above")
+
+
+def tell_recorded(counts, path):
+    from tilt.commands.record import summary
+    print(summary(counts, path) if counts.rows else f"{path}: no row came", file=sys.stderr)

@@ -1,0 +1,93 @@
+"""What the tests of the page of `tilt live` share: a board that talks as the firmware does, and the page that shows it."""
+import contextlib
+import pathlib
+import tempfile
+import threading
+import time
+import unittest
+
+from tilt import serving
+from tilt.board import Board
+from tilt.feed import Feed
+from tilt.port import Port
+from browser import Browser
+from fake_board import BANNER, HEADER, FakeBoard, row
+
+FILTERS = ("adaptive", "kf", "sprf", "synth")
+PAGE_FILE = serving.PAGE.resolve().as_uri()
+
+
+class Talk:
+    """A script for FakeBoard: banner, header, then `count` rows (None: no end) at rate_hz in real time, those of `left_out` not sent; answers
+    `filter`, `help` and what is in `answers`. say(text) puts a line among the rows. `sent`: rows on the line so far; `over`: all are."""
+
+    def __init__(self, rate_hz=100, count=None, left_out=frozenset(), flags=lambda number: 0):
+        self.rate_hz, self.count, self.left_out, self.flags = rate_hz, count, left_out, flags
+        self.sent, self.said, self.filter, self.over = 0, [], "adaptive", threading.Event()
+        self.commands = []
+
+    def say(self, text):
+        self.said.append(text.encode("ascii") + b"\n")
+
+    def __call__(self, board):
+        board.send(BANNER + b"# filter adaptive, rate 100 Hz, range 16 g, every 1, baud 115200\n" + HEADER)
+        began, number = time.monotonic(), 0
+        while True:
+            due = min(int((time.monotonic() - began) * self.rate_hz), self.count if self.count is not None else 1 << 60)
+            chosen = [each for each in range(number, due) if each not in self.left_out]
+            board.send(b"".join(row(each, round(1e6 / self.rate_hz), self.flags(each)) for each in chosen))
+            number, self.sent = due, self.sent + len(chosen)
+            self.answer(board)
+            if number == self.count:
+                self.over.set()
+            time.sleep(0.01)
+
+    def answer(self, board):
+        board.listen()
+        *lines, board.typed = board.typed.split(b"\n")
+        for line in lines:
+            self.commands.append(line.decode("ascii"))
+            board.send(self.reply(self.commands[-1]))
+        while self.said:
+            board.send(self.said.pop(0))
+
+    def reply(self, command):
+        name, _, value = command.partition(" ")
+        if command == "help":
+            return f"# filter: {' '.join(FILTERS)}\n# rate: 12.5 25 50 100 200 400 800\n".encode("ascii")
+        if name == "filter" and value and value not in FILTERS:
+            return f"# refused: filter is one of {' '.join(FILTERS)}\n".encode("ascii")
+        if name == "filter":
+            self.filter = value or self.filter
+            return f"# filter {self.filter}\n".encode("ascii")
+        return b"# unknown command (type help)\n"
+
+
+@contextlib.contextmanager
+def watched(talk):
+    """(address of the page, fake board) of a talking board that is served."""
+    with contextlib.ExitStack() as stack:
+        folder = stack.enter_context(tempfile.TemporaryDirectory())
+        fake = stack.enter_context(FakeBoard(pathlib.Path(folder), talk))
+        board = Board(Port(fake.name, 115200), Feed())
+        server = serving.Server(board.feed, board)
+        stack.callback(board.end)
+        stack.callback(server.close)
+        board.start()
+        yield server, fake
+
+
+class Case(unittest.TestCase):
+    """One browser for all tests of a class."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.__exit__)
+
+    def opened(self, address, before=None, size=(1280, 900)):
+        page = self.browser.open(address, before, size)
+        self.addCleanup(self.browser.call, "Target.closeTarget", targetId=page.target)
+        page.until("true")
+        self.addCleanup(lambda: self.assertEqual(page.errors(), []))
+        return page

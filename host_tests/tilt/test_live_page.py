@@ -1,0 +1,228 @@
+"""Tests of the page of `tilt live` in a headless Chromium: lamps, filter switch, commands, WebSerial (mocked),
+light and dark, a narrow window. Run from the repository root with build/venv/bin/python."""
+import json
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, "tools")
+from tilt import protocol  # noqa: E402
+from browser import ABSENT  # noqa: E402
+from fake_board import BANNER, HEADER, row, rows, until  # noqa: E402
+from live_support import FILTERS, PAGE_FILE, Case, Talk, watched  # noqa: E402
+
+SPEAKS = """
+  window.typed = []; window.opened = [];
+  class MockPort extends EventTarget {
+    async open(options) {
+      if (this.busy) throw new DOMException("Failed to open serial port.", "NetworkError");
+      opened.push(options.baudRate);
+      this.readable = new ReadableStream({ start: (controller) => { this.controller = controller; } });
+      this.writable = new WritableStream({ write: (bytes) => { typed.push(new TextDecoder().decode(bytes)); } });
+    }
+    async close() { this.readable = this.writable = null; }
+    say(text) { this.controller.enqueue(new TextEncoder().encode(text)); }
+    unplug() {
+      const controller = this.controller;
+      this.readable = null;
+      controller.error(new DOMException("The device has been lost.", "NetworkError"));
+    }
+  }
+  class MockSerial extends EventTarget { async requestPort() { return port; } async getPorts() { return [port]; } }
+  window.port = new MockPort();
+  Object.defineProperty(navigator, "serial", { value: new MockSerial() });
+"""
+
+
+@unittest.skipIf(ABSENT, ABSENT)
+class TestServed(Case):
+    def test_filter_switch_and_faults(self):
+        talk = Talk()
+        with watched(talk) as (server, _):
+            page = self.opened(server.address)
+            self.assertEqual(page.until("tiltLive.figures().filters.length && tiltLive.figures().filters"), list(FILTERS))
+            self.assertEqual(talk.commands, ["filter", "help"])
+            page.value("document.querySelector('input[value=sprf]').click()")
+            page.until("tiltLive.figures().filter === 'sprf'")
+            self.assertEqual((talk.filter, talk.commands[2:]), ("sprf", ["filter sprf"]))
+            self.assertTrue(page.value("document.querySelector('input[value=sprf]').checked"))
+            self.lights(page, talk)
+
+    def lights(self, page, talk):
+        fault = "document.getElementById('fault')"
+        self.assertEqual(page.value(f"[{fault}.className, {fault}.textContent]"), ["card fault", "no fault told"])
+        talk.say("# fault 8: SDA held low: check SDA to A4, pull-ups, GND")
+        page.until(f"{fault}.classList.contains('lit')")
+        self.assertEqual(page.value(f"{fault}.textContent"), "fault 8: SDA held low: check SDA to A4, pull-ups, GND")
+        talk.say("# fault 8 over: samples again after 1234 ms, 123 lost, sensor at 0x53")
+        page.until(f"!{fault}.classList.contains('lit')")
+        for line in ("# fault 8: SDA held low", "fault 8 over"):
+            self.assertIn(line, page.value("document.getElementById('log').innerText"))
+
+    def test_lamps_light_for_their_flag_alone_and_go_out(self):
+        for bit, name in protocol.FLAG_NAMES.items():
+            if bit not in (protocol.GATED, protocol.SILENCE, protocol.ROLL_UNDEFINED):
+                continue
+            with watched(Talk(flags=lambda number, bit=bit: bit if 20 <= number < 25 else 0)) as (server, _):
+                page = self.opened(server.address)
+                page.until(f"tiltLive.figures().lamps[{name!r}].lit")
+                lamps = page.figures()["lamps"]
+                self.assertEqual({each for each, lamp in lamps.items() if lamp["lit"]}, {name})
+                page.until(f"!tiltLive.figures().lamps[{name!r}].lit")
+                self.assertEqual({each: lamp["count"] for each, lamp in page.figures()["lamps"].items() if lamp["count"]}, {name: 5})
+
+    def test_by_the_keyboard_alone(self):
+        talk = Talk()
+        with watched(talk) as (server, _):
+            page = self.opened(server.address)
+            page.until("tiltLive.figures().filters.length")
+            for _ in range(12):
+                page.press("Tab")
+                if page.value("document.activeElement.name") == "filter":
+                    break
+            page.press("ArrowRight")
+            page.until("tiltLive.figures().filter === 'kf'")
+            for _ in range(4):
+                page.press("Tab")
+                if page.value("document.activeElement.id") == "line":
+                    break
+            page.type("FILTER nix")
+            page.press("Enter")
+            until(lambda: "FILTER nix" in talk.commands)
+            page.press("ArrowUp")
+            self.assertEqual(page.value("document.getElementById('line').value"), "FILTER nix")
+
+    def test_refused_filter_leaves_what_is_in_force_marked(self):
+        talk = Talk()
+        talk.reply_before = talk.reply
+        talk.reply = lambda command: b"# refused: kf takes 12450 of the 11050 cycles that a sample at 800 Hz leaves\n# filter adaptive\n" \
+            if command == "filter kf" else talk.reply_before(command)
+        with watched(talk) as (server, _):
+            page = self.opened(server.address)
+            page.until("tiltLive.figures().filters.length")
+            page.value("document.querySelector('input[value=kf]').click()")
+            page.until("document.getElementById('log').innerText.includes('refused: kf')")
+            page.until("document.querySelector('input[value=adaptive]').checked")
+
+    def test_unplugged_is_said_and_the_end_too(self):
+        with watched(Talk()) as (server, fake):
+            page = self.opened(server.address)
+            page.until("tiltLive.figures().rows > 20")
+            fake.unplug()
+            self.assertIn("waiting for it", page.until("tiltLive.figures().kind === 'wait' && tiltLive.figures().words"))
+            page.until("document.getElementById('rate').textContent === '0.0'")  # nothing comes: no rate is shown
+            page.value("tiltLive.app.send('go')")
+            page.until("document.getElementById('log').innerText.includes('go: not sent: ')")
+        self.assertIn("tilt live has ended", page.until("tiltLive.figures().kind === 'down' && tiltLive.figures().words"))
+
+    def test_wrong_token_and_broken_lines_are_said(self):
+        with watched(Talk()) as (server, _):
+            page = self.opened(server.address.partition("#")[0] + "#guessed")
+            self.assertIn("refused", page.until("tiltLive.figures().kind === 'wait' && tiltLive.figures().words"))
+            page = self.opened(server.address)
+            page.until("tiltLive.figures().rows > 5")
+            server.feed.put("lines", b"12,\xff\xfe\x80\n" * 3)
+            page.until("tiltLive.figures().broken === 3")
+            page.until("document.getElementById('broken').textContent === '3'")
+
+    def test_nothing_sticks_out_of_a_narrow_window(self):
+        with watched(Talk()) as (server, _):
+            page = self.opened(server.address, size=(390, 800))
+            page.until("tiltLive.figures().filters.length")
+            self.assertLessEqual(page.value("document.documentElement.scrollWidth"), 390)
+
+    def test_light_and_dark_are_legible(self):
+        with watched(Talk()) as (server, _):
+            page = self.opened(server.address)
+            for theme in ("light", "dark"):
+                page.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
+                page.until(f"tiltLive.app.isDark() === {json.dumps(theme == 'dark')}")
+                ink, dim, card = page.value("""['ink', 'dim', 'card'].map((name) => {
+                  const pen = document.createElement('canvas').getContext('2d'), probe = document.createElement('b');
+                  document.body.append(probe);
+                  probe.style.color = `var(--${name})`;
+                  pen.fillStyle = getComputedStyle(probe).color;
+                  pen.fillRect(0, 0, 1, 1);
+                  probe.remove();
+                  return [...pen.getImageData(0, 0, 1, 1).data].slice(0, 3); })""")
+                self.assertGreaterEqual(contrast(ink, card), 7.0)  # WCAG 2: AAA for text, AA for what is beside it
+                self.assertGreaterEqual(contrast(dim, card), 4.5)
+            page.value("document.getElementById('theme').click()")
+            self.assertFalse(page.value("tiltLive.app.isDark()"))
+
+
+def contrast(one, other):
+    """Of two sRGB colours, as WCAG 2 defines it."""
+    def luminance(colour):
+        parts = [part / 255 / 12.92 if part <= 10 else ((part / 255 + 0.055) / 1.055) ** 2.4 for part in colour]
+        return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
+    light, dark = sorted((luminance(one), luminance(other)), reverse=True)
+    return (light + 0.05) / (dark + 0.05)
+
+
+@unittest.skipIf(ABSENT, ABSENT)
+class TestDirect(Case):
+    """The same file, opened as a file: the browser reads the port itself."""
+
+    def connected(self):
+        page = self.opened(PAGE_FILE, before=SPEAKS)
+        self.assertFalse(page.value("document.getElementById('direct').hidden"))
+        page.value("document.getElementById('baud').value = '250000'; document.getElementById('connect').click()")
+        page.until("opened.length === 1 && tiltLive.figures().kind === 'up'")
+        self.assertEqual(page.value("opened"), [250000])
+        return page
+
+    def say(self, page, data):
+        page.value(f"port.say({json.dumps(data.decode('ascii'))})")
+
+    def test_rows_and_commands(self):
+        page = self.connected()
+        self.say(page, b"5,0,0,256,0,0,1000,0,0,0\n" + BANNER + HEADER + rows(0, 30))
+        page.until("tiltLive.figures().rows === 30 && tiltLive.figures().firstPictureMs")
+        page.until("typed.length === 2")
+        self.assertEqual(page.value("typed"), ["filter\n", "help\n"])
+        self.say(page, b"# filter: adaptive kf\n# filter kf\n" + rows(30, 60))
+        page.until("tiltLive.figures().filter === 'kf'")
+        page.value("document.querySelector('input[value=adaptive]').click()")
+        page.until("typed.length === 3")
+        self.assertEqual(page.value("typed[2]"), "filter adaptive\n")
+        self.assertEqual(page.figures()["lost"], 0)
+
+    def test_baud_is_not_changed_under_the_browser(self):
+        page = self.connected()
+        page.value("tiltLive.app.send('baud 9600')")
+        page.until("document.getElementById('log').innerText.includes('baud 9600: not sent: ')")
+        self.assertEqual(page.value("typed"), [])
+
+    def test_unplugged_and_plugged_in_again(self):
+        page = self.connected()
+        self.say(page, HEADER + rows(0, 30))
+        page.until("tiltLive.figures().rows === 29 || tiltLive.figures().rows === 30")
+        page.value("port.unplug()")
+        self.assertIn("plug it in again", page.until("tiltLive.figures().kind === 'wait' && tiltLive.figures().words"))
+        page.value("port.open = MockOpen = Object.getPrototypeOf(port).open; "
+                   "port.dispatchEvent(new Event('connect')); navigator.serial.dispatchEvent(Object.defineProperty(new Event('connect'), "
+                   "'target', { value: port }))")
+        page.until("opened.length === 2 && tiltLive.figures().kind === 'up'")
+        self.say(page, b"\n" + BANNER + HEADER + row(0) + rows(1, 12))
+        page.until("tiltLive.figures().rows >= 41")
+        self.assertEqual(page.figures()["lost"], 0)
+
+    def test_disconnect_gives_the_port_back(self):
+        page = self.connected()
+        page.value("document.getElementById('connect').click()")
+        page.until("tiltLive.figures().words === 'not connected' && port.readable === null")
+
+    def test_port_in_use_is_said(self):
+        page = self.opened(PAGE_FILE, before=SPEAKS)
+        page.value("port.busy = true; document.getElementById('connect').click()")
+        self.assertIn("does another program use it", page.until("tiltLive.figures().kind === 'down' && tiltLive.figures().words"))
+
+    def test_browser_without_webserial_is_told(self):
+        page = self.opened(PAGE_FILE, before="delete Navigator.prototype.serial")
+        self.assertIn("tilt live PORT", page.until("tiltLive.figures().words"))
+
+
+if __name__ == "__main__":
+    from unity_line import main
+    main()
