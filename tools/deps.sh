@@ -1,6 +1,6 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
-# Groups: firmware sim test check flash flashtest bench piocheck papers design tilt fuzz coverage proof. Packages come by
+# Groups: firmware sim test check flash flashtest bench piocheck papers design tilt live fuzz coverage proof. Packages come by
 # apt-get, numpy and matplotlib (check: lizard, design: scipy, tilt: tools/pyproject.toml) by pip into build/venv, Unity by tools/get_unity.sh into build/unity
 # (UNITY_DIR=folder: use that one). Uses sudo only when not root.
 set -eu
@@ -66,6 +66,11 @@ has_scipy() {
 # clang-query comes with the version of clang-tidy that is installed
 has_clang_query() {
     has clang-tidy && { [ -x "$(dirname "$(readlink -f "$(command -v clang-tidy)")")/clang-query" ] || has clang-query; }
+}
+
+# the browser in which the tests of `tilt live` run
+has_chromium() {
+    has chromium || has chromium-browser || has google-chrome || has chrome
 }
 
 # need PACKAGE TEST...: note the package as missing unless the test holds
@@ -151,13 +156,14 @@ collect() {
                 need cppcheck has cppcheck ;;
             design) need_scipy ;;
             tilt) need_tilt ;;
+            live) need_tilt; need chromium has_chromium ;;
             flash) need_avr; need avrdude has avrdude ;;
             piocheck) need_avr; need_host_compiler; want_pio=yes; need python3-venv has_venv_module; need ca-certificates has_certificates ;;
             flashtest) need_simulator; need avrdude has avrdude; need arduino-core-avr has_optiboot ;;
             fuzz) need_host_compiler; need python3 has python3; need binutils has objcopy ;;
             coverage) need_simulator; need_plots; need_unity; need gcovr has gcovr ;;
             proof) need python3 has python3; need frama-c-base has frama-c ;;
-            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, design, tilt, fuzz, coverage or proof" ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, design, tilt, live, fuzz, coverage or proof" ;;
         esac
     done
     missing=${missing# }
@@ -273,7 +279,7 @@ install_unity() {
     tools/get_unity.sh build/unity
 }
 
-[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, design, tilt, fuzz, coverage, proof)"
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof)"
 collect "$@"
 mkdir -p build
 if [ -n "$missing" ]; then

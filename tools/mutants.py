@@ -90,6 +90,9 @@ JUDGES = {
 
 def program_of(judge):
     """(targets of make, command) of a judge as host_tests/mutants.txt names it."""
+    if judge.startswith("tilt_"):  # a file of host_tests/tilt, named as tools/run_tests.py does, and which of its tests
+        name, *words = judge.removeprefix("tilt_").split()
+        return ["help"], [WITH_PACKAGES, f"host_tests/tilt/test_{name}.py", *words]
     for kind in sorted(JUDGES, key=len, reverse=True):
         if judge == kind or judge.startswith(kind + " "):
             targets, *command = JUDGES[kind]

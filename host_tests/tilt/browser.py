@@ -86,8 +86,8 @@ class Browser:
                 self.messages.append(message)
 
     def open(self, address, before=None, size=(1280, 900)):
-        """A new page; `before` is JavaScript that runs in it ahead of its own."""
-        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        """A new page in a window of its own, so that none is hidden and stops drawing; `before` is JavaScript that runs in it ahead of its own."""
+        target = self.call("Target.createTarget", url="about:blank", newWindow=True)["targetId"]
         page = Page(self, self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"], target)
         page.call("Page.enable")
         page.call("Runtime.enable")
