@@ -104,6 +104,39 @@ class TestServed(Case):
             page.until("document.getElementById('log').innerText.includes('refused: kf')")
             page.until("document.querySelector('input[value=adaptive]').checked")
 
+    def test_picture_moves_and_stands_still_in_a_pause(self):
+        with watched(Talk()) as (server, _):
+            page = self.opened(server.address)
+            page.until("tiltLive.figures().firstPictureMs")
+            shown = "document.getElementById('pitch').toDataURL()"
+            first = page.value(shown)
+            page.until(f"{shown} !== {json.dumps(first)}")
+            page.value("document.getElementById('pause').click()")
+            page.value("new Promise((done) => setTimeout(done, 200))")  # what was to be drawn is
+            still, rows_then = page.value(f"[{shown}, tiltLive.figures().rows]")
+            page.until(f"tiltLive.figures().rows > {rows_then + 30}")
+            self.assertEqual(page.value(shown), still)
+            page.value("document.getElementById('pause').click()")
+            page.until(f"{shown} !== {json.dumps(still)}")
+
+    def test_filtered_line_is_where_its_angle_is(self):
+        with watched(Talk()) as (server, _):  # roll is 0.45 degrees in each row, raw roll 0.448
+            page = self.opened(server.address)
+            page.value("document.getElementById('scale').value = '15'; document.getElementById('scale').dispatchEvent(new Event('change'))")
+            page.until("tiltLive.figures().rows > 150")
+            heights = page.value("""(() => {
+              const canvas = document.getElementById('roll'), pen = canvas.getContext('2d'), found = [];
+              const [r, g, b] = tiltLive.app.colours.filtered.match(/[0-9]+/g).map(Number);
+              const pixels = pen.getImageData(canvas.width - 30, 0, 1, canvas.height).data;
+              for (let y = 0; y < canvas.height; y++)
+                if (Math.abs(pixels[4 * y] - r) + Math.abs(pixels[4 * y + 1] - g) + Math.abs(pixels[4 * y + 2] - b) < 20) found.push(y);
+              return [found, canvas.height]; })()""")
+            found, height = heights
+            top, bottom = 22, height - 20  # what Chart leaves for the words
+            meant = top + (15 - 0.45) * (bottom - top) / 30
+            self.assertTrue(found)
+            self.assertLess(abs(sum(found) / len(found) + 0.5 - meant), 1.5, heights)
+
     def test_unplugged_is_said_and_the_end_too(self):
         with watched(Talk()) as (server, fake):
             page = self.opened(server.address)
