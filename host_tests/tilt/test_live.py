@@ -1,6 +1,8 @@
 """Tests of the server's side of `tilt live` (tools/tilt/feed.py, board.py, serving.py, commands/live.py): who gets what, in which order, what
 is refused, a board that goes and comes. Run from the repository root with build/venv/bin/python."""
+import contextlib
 import http.client
+import io
 import json
 import os
 import pathlib
@@ -19,6 +21,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
 from tilt import board as board_module  # noqa: E402
 from tilt import cli, serving, stream  # noqa: E402
+from tilt.commands import live  # noqa: E402
 from tilt.board import Board  # noqa: E402
 from tilt.errors import TiltError  # noqa: E402
 from tilt.feed import Feed, Lines  # noqa: E402
@@ -152,8 +155,9 @@ class TestServer(unittest.TestCase):
         headers = {} if number is None else {"Last_Event_ID": str(number)}
         answer = self.ask("GET", f"/events?token={self.server.token}", **headers)
         self.assertEqual((answer.status, answer.headers["Content-Type"]), (200, "text/event-stream"))
-        found = []
+        found, end = [], time.monotonic() + 10
         while len(found) < count:
+            self.assertLess(time.monotonic(), end, found)
             fields = dict(line.decode().rstrip("\n").split(": ", 1) for line in iter(answer.readline, b"\n") if b": " in line)
             if "data" in fields:
                 found.append((int(fields["id"]), fields["event"], json.loads(fields["data"])))
@@ -260,6 +264,20 @@ class TestBoard(unittest.TestCase):
                 self.assertIn(b"# baud 500000\n" + rows(6, 40), watched.lines())  # the first line after the change is a piece
                 self.assertEqual([state["baud"] for state in watched.states()], [115200, 500000, 115200])
 
+    def test_board_that_comes_back_under_another_name_is_found(self):
+        def usb(device, serial_number):
+            return SimpleNamespace(device=device, vid=0x2341, pid=0x43, serial_number=serial_number)
+
+        board = Board(Port("/dev/ttyACM0", 115200), Feed())
+        here = [usb("/dev/ttyACM0", "mine")]
+        with mock.patch.object(board_module.list_ports, "comports", lambda: here):
+            board._identity = board_module.identity("/dev/ttyACM0")
+            self.assertEqual(board._where_now(), "/dev/ttyACM0")
+            here[:] = [usb("/dev/ttyACM0", "another's"), usb("/dev/ttyACM1", "mine")]
+            self.assertEqual(board._where_now(), "/dev/ttyACM1")
+            here[:] = [usb("/dev/ttyACM0", "another's")]
+            self.assertEqual(board._where_now(), "/dev/ttyACM0")  # nowhere yet: asked for again in a while
+
     def test_port_that_is_not_there_is_named(self):
         with self.assertRaisesRegex(TiltError, r"/dev/no_such_port: .*No such file"):
             Watched("/dev/no_such_port").board.start()
@@ -323,6 +341,14 @@ class TestCommand(unittest.TestCase):
                 until(lambda: rows(49, 50) in watched.lines())
                 self.assertEqual(watched.got("problem"), ["the recording has ended: full.csv: No space left on device"])
         self.assertIn("No space", watched.board.failed)
+
+    def test_browser_is_opened_unless_told_not_to(self):
+        with mock.patch.object(live.webbrowser, "open", return_value=True) as opened, contextlib.redirect_stdout(io.StringIO()) as out:
+            live.show("http://127.0.0.1:1/#a", True)
+            opened.assert_not_called()
+            live.show("http://127.0.0.1:1/#a", False)
+            opened.assert_called_once_with("http://127.0.0.1:1/#a")
+        self.assertEqual(out.getvalue(), "http://127.0.0.1:1/#a\n" * 2)
 
     def test_command_is_found(self):
         self.assertIn("live", cli.modules())
