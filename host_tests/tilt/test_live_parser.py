@@ -98,6 +98,11 @@ class TestParser(Case):
     def test_gap_among_the_first_rows_counts(self):
         self.assertEqual(self.lost([10000 * n for n in range(30) if n not in (2, 3, 5)]), 3)
 
+    def test_interval_follows_the_sensor(self):
+        """9300 us at first, 10000 then: a gap of 9 intervals reckoned with the first would be 9.7, one row too many."""
+        times = [9300 * n for n in range(12)] + [102300 + 10000 * n for n in range(1, 300) if not 200 <= n < 208]
+        self.assertEqual(self.lost(times), 8)
+
     def test_flag_dropped_is_one_row_at_least_and_the_gap_tells_how_many(self):
         times = [10000 * n for n in range(60) if n not in (30, 31, 40)]
         flagged = {28, 29, 45}  # row 29 is late by nothing; 32 (index 30) has no flag: lost on the line; index 45 was late by nothing
