@@ -18,7 +18,7 @@ PARSE = """((pieces, whole) => {
   const rows = [], notes = [], protocol = new tiltLive.Protocol({ row: (row) => rows.push(row), note: (text) => notes.push(text) });
   protocol.begin(whole);
   for (const [text, ms] of pieces) protocol.feed(text, ms);
-  return { rows, notes, count: protocol.rows, broken: protocol.broken, lost: protocol.losses.lost, restarts: protocol.losses.restarts,
+  return { rows, notes, count: protocol.rows, broken: protocol.broken, lost: protocol.losses.lost, restarts: protocol.restarts,
     mode: protocol.mode };
 })"""
 
@@ -78,6 +78,26 @@ class TestParser(Case):
         self.assertEqual((found["restarts"], found["lost"]), (1, 0))
         self.assertTrue(found["rows"][2]["apart"] and not found["rows"][3]["apart"])
         self.assertGreater(found["rows"][2]["s"], found["rows"][1]["s"])
+
+    def test_digit_lost_in_a_time_costs_its_row_alone(self):
+        good = [f"{15000 + 10000 * n}" for n in range(100)]
+        for wrong in (good[60][:-1], good[60][1:], "9" + good[60], "4000000000"):
+            times = [*good[:60], wrong, *good[61:]]
+            found = self.parse("".join(f"{t},0,0,256,0,0,1000,0,0,0\n" for t in times))
+            self.assertEqual([found[name] for name in ("count", "broken", "lost", "restarts")], [99, 1, 1, 0], wrong)
+
+    def test_held_row_goes_where_the_interval_changes(self):
+        text = "".join(f"{t},0,0,256,0,0,1000,0,0,0\n" for t in [*range(0, 300000, 10000), 77])
+        for line in ("# going", "# tilt-uno 0.1.0: roll and pitch from an ADXL345"):
+            found = self.parse(text + line + "\n" + "".join(f"{t},0,0,256,0,0,1000,0,0,0\n" for t in range(9000000, 9100000, 10000)))
+            self.assertEqual([found[name] for name in ("count", "broken", "lost", "restarts")], [40, 1, 0, 0], line)
+
+    def test_long_gap_counts(self):
+        self.assertEqual(self.lost([10000 * n for n in range(2000) if not 100 <= n < 1500]), 1400)  # 14 s
+
+    def test_rows_minutes_apart_are_rows(self):
+        found = self.parse("".join(f"{t},0,0,256,0,0,1000,0,0,0\n" for t in range(0, 3200000001, 800000000)))  # every 10000 at 12.5 Hz
+        self.assertEqual((found["count"], found["broken"], found["lost"]), (5, 0, 0))
 
     def test_plotter_rows_are_spread_over_their_arrival(self):
         line = "roll_raw:1.23,roll:1.20,pitch_raw:-0.42,pitch:-0.40,gated:1\n"
