@@ -30,7 +30,7 @@ class Talk:
         self.said.append(text.encode("ascii") + b"\n")
 
     def __call__(self, board):
-        board.send(BANNER + b"# filter adaptive, rate 100 Hz, range 16 g, every 1, baud 115200\n" + HEADER)
+        board.send(BANNER + b"# filter adaptive, rate 100 Hz, range 16 g, every 1, baud 115200\n# settings: as saved\n" + HEADER)
         began, number = time.monotonic(), 0
         while True:
             due = min(int((time.monotonic() - began) * self.rate_hz), self.count if self.count is not None else 1 << 60)
@@ -56,11 +56,11 @@ class Talk:
         if command == "help":
             return f"# filter: {' '.join(FILTERS)}\n# rate: 12.5 25 50 100 200 400 800\n".encode("ascii")
         if name == "filter" and value and value not in FILTERS:
-            return f"# refused: filter is one of {' '.join(FILTERS)}\n".encode("ascii")
+            return f"# refused 4: filter is one of {' '.join(FILTERS)}\n".encode("ascii")
         if name == "filter":
             self.filter = value or self.filter
             return f"# filter {self.filter}\n".encode("ascii")
-        return b"# unknown command (type help)\n"
+        return b"# refused 1: unknown command (type help)\n"
 
 
 @contextlib.contextmanager

@@ -257,12 +257,25 @@ class TestBoard(unittest.TestCase):
 
         with FakeBoard(self.folder, script, termios.B115200) as fake:
             self.watched = Watched(fake.name)
-            with self.watched as watched, mock.patch.object(board_module, "BACK_AFTER_S", 0.1):
+            with self.watched as watched, mock.patch.object(board_module, "UNREADABLE_S", 0.1):
                 until(lambda: rows(4, 5) in watched.lines())
                 watched.board.send("baud 500000")
                 until(lambda: watched.lines().endswith(HEADER + rows(0, 3)))
                 self.assertIn(b"# baud 500000\n" + rows(6, 40), watched.lines())  # the first line after the change is a piece
                 self.assertEqual([state["baud"] for state in watched.states()], [115200, 500000, 115200])
+
+    def test_rate_that_the_board_has_saved_is_found(self):
+        def script(board):
+            while self.watched.states()[-1]["baud"] != 9600:
+                board.send(rows(0, 5))
+                time.sleep(0.01)
+            board.send(b"\n" + HEADER + rows(0, 3))
+
+        with FakeBoard(self.folder, script, termios.B9600) as fake, mock.patch.object(board_module, "UNREADABLE_S", 0.05):
+            self.watched = Watched(fake.name)
+            with self.watched as watched:
+                until(lambda: watched.lines().endswith(HEADER + rows(0, 3)))
+                self.assertEqual([state["baud"] for state in watched.states()], [115200, 1000000, 500000, 250000, 57600, 38400, 19200, 9600])
 
     def test_board_that_comes_back_under_another_name_is_found(self):
         def usb(device, serial_number):

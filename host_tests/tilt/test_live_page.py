@@ -95,14 +95,28 @@ class TestServed(Case):
     def test_refused_filter_leaves_what_is_in_force_marked(self):
         talk = Talk()
         talk.reply_before = talk.reply
-        talk.reply = lambda command: b"# refused: kf takes 12450 of the 11050 cycles that a sample at 800 Hz leaves\n# filter adaptive\n" \
+        talk.reply = lambda command: b"# refused 5: kf takes 12450 of the 11050 cycles that a sample at 800 Hz leaves\n# filter adaptive\n" \
             if command == "filter kf" else talk.reply_before(command)
         with watched(talk) as (server, _):
             page = self.opened(server.address)
             page.until("tiltLive.figures().filters.length")
             page.value("document.querySelector('input[value=kf]').click()")
-            page.until("document.getElementById('log').innerText.includes('refused: kf')")
+            page.until("document.getElementById('log').innerText.includes('refused 5: kf')")
             page.until("document.querySelector('input[value=adaptive]').checked")
+
+    def test_filter_is_asked_for_again_where_settings_were_loaded(self):
+        talk = Talk()
+        with watched(talk) as (server, _):
+            page = self.opened(server.address)
+            page.until("tiltLive.figures().filters.length")
+            talk.filter = "synth"
+            talk.say("# settings: as saved")
+            page.until("tiltLive.figures().filter === 'synth'")
+            talk.say("# filter kf: kf synth sprf")
+            page.until("tiltLive.figures().filters.join() === 'kf,synth,sprf' && tiltLive.figures().filter === 'kf'")
+            talk.say("# filter synth")
+            talk.say("# refused 4: filter is one of synth kf")
+            page.until("tiltLive.figures().filters.join() === 'synth,kf' && tiltLive.figures().filter === 'synth'")
 
     def test_picture_moves_and_stands_still_in_a_pause(self):
         with watched(Talk()) as (server, _):

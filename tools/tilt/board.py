@@ -6,6 +6,7 @@ import time
 
 from serial.tools import list_ports
 
+from tilt import protocol
 from tilt.errors import TiltError
 from tilt.feed import Lines
 from tilt.port import Gone
@@ -13,8 +14,8 @@ from tilt.port import Gone
 AGAIN_S = 0.5
 GATHER_S = 0.004  # fewer and longer pieces: 400 bytes at 1000000 baud, a tenth of what a terminal holds
 BAUD_REPLY = re.compile(rb"^# baud (\d+)\r?$", re.M)  # the board's last line at the old rate
-TEXT = re.compile(rb"[ -~\r\n]+$")
-BACK_AFTER_S = 1.5  # of bytes, none of which makes a line of text
+TEXT = re.compile(rb"[ -~\r\n]{8,}$")  # by chance, bytes read at a wrong rate may be a shorter one
+UNREADABLE_S = 1.5  # of bytes, none of which makes a line of text
 LONGEST_COMMAND = 32
 
 
@@ -31,15 +32,15 @@ class Board:
     port, baud, why) and `sent` (what was typed).
 
     recorder: a tilt.recorder.Recorder that gets the same bytes; where it cannot write any more, `failed` says why and the view goes on.
-    The rate of the line follows the board's reply to `baud N`, and goes back to the first one where the port comes back, since the board
-    has been reset by then.
+    The rate of the line follows the board's reply to `baud N`. Where what comes is no text, because the board was reset or has loaded what
+    it had saved, the first rate is tried again, then the others. A port that comes back has the first one.
     """
 
     def __init__(self, port, feed, recorder=None):
         self.port, self.feed, self.recorder, self.failed = port, feed, recorder, None
         self._first_baud, self._identity = port.baud, None
         self._connected, self._writing, self._ending = False, threading.Lock(), threading.Event()
-        self._lines, self._readable = Lines(), 0.0
+        self._lines, self._readable, self._to_try = Lines(), 0.0, self._all_bauds()
         self._thread = threading.Thread(target=self._run, name="board", daemon=True)
 
     def start(self):
@@ -114,11 +115,15 @@ class Board:
     def _follow_baud(self, whole):
         told, now = BAUD_REPLY.findall(whole), time.monotonic()
         if TEXT.match(whole):
-            self._readable = now
+            self._readable, self._to_try = now, self._all_bauds()
         if told:
             self._change_baud(int(told[-1]))
-        elif now - self._readable > BACK_AFTER_S:  # a board that was reset talks at the first rate again
-            self._change_baud(self._first_baud)
+        elif now - self._readable > UNREADABLE_S:
+            self._to_try = self._to_try or self._all_bauds()
+            self._change_baud(self._to_try.pop(0))
+
+    def _all_bauds(self):
+        return [self._first_baud] + sorted(set(protocol.BAUDS) - {self._first_baud}, reverse=True)
 
     def _change_baud(self, baud):
         if baud != self.port.baud:
