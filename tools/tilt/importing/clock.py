@@ -1,0 +1,104 @@
+"""Times as a file has them to microseconds from the first row, never stepping back."""
+import numpy as np
+
+from tilt.errors import TiltError
+
+PER_SECOND = {"s": 1.0, "clock": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
+DAY_S, WRAP, WRAP_STEP = 86400.0, 2.0 ** 32, 2.0 ** 31
+RATE_LOW, RATE_HIGH = 4.0, 4000.0  # Hz; a factor of 1,000, so that of s, ms, us, ns only one can be meant
+GAP = 2.5  # periods
+
+
+def to_us(readings, rate, notes):
+    """int64 microseconds. rate: Hz as asked for, or None. TiltError with the line where time steps back or cannot be told."""
+    count = len(readings.values)
+    if rate is not None and readings.time_unit == "count" and readings.time is not None:
+        return of_count(readings, rate, notes)
+    if rate is not None:
+        if readings.time is not None:
+            notes.append(f"times of the file not used: --rate {rate:g}")
+        return np.rint(np.arange(count) * (1e6 / rate)).astype(np.int64)
+    if readings.time is None:
+        raise TiltError(f"{readings.path}: no column of times: give the rate with --rate HZ")
+    if readings.time_unit == "count":
+        raise TiltError(f"{readings.path}: a counter of samples, no times: give the rate with --rate HZ")
+    unit = readings.time_unit or unit_by_steps(readings)
+    time = segments_joined(readings, unwrapped(readings, unit))
+    if readings.own:
+        return time.astype(np.int64)
+    first = time[0]
+    if first != 0.0:
+        notes.append(f"first time {first:.6f} s" if unit == "s" else f"first time {first:g} {'s of the day' if unit == 'clock' else unit}")
+    return np.rint((time - first) * (1e6 / PER_SECOND[unit])).astype(np.int64)
+
+
+def of_count(readings, rate, notes):
+    steps = np.diff(readings.time)
+    back = np.flatnonzero(steps <= 0)
+    if len(back):
+        raise readings.fault(int(back[0]) + 1, f"the counter goes from {readings.time[back[0]]:g} to {readings.time[back[0] + 1]:g}")
+    if (steps > 1).any():
+        notes.append(f"the counter leaves out {int((steps - 1).sum())} samples")
+    return np.rint((readings.time - readings.time[0]) * (1e6 / rate)).astype(np.int64)
+
+
+def unit_by_steps(readings):
+    """s, ms, us or ns: that which makes the usual step one of a sensor's."""
+    steps = np.diff(readings.time)
+    steps = steps[steps > 0]
+    if len(steps) == 0:
+        raise TiltError(f"{readings.path}: times do not move: give the rate with --rate HZ")
+    step = float(np.median(steps))
+    for unit in ("s", "ms", "us", "ns"):
+        if RATE_LOW <= PER_SECOND[unit] / step < RATE_HIGH:
+            return unit
+    for unit in ("s", "ms", "us", "ns"):  # a slow logger
+        if 1.0 <= PER_SECOND[unit] / step < RATE_HIGH:
+            return unit
+    raise TiltError(f"{readings.path}: steps of {step:g} in the times are no sensor's in s, ms, us or ns: give the rate with --rate HZ")
+
+
+def unwrapped(readings, unit):
+    """Midnight of a wall clock and the wrap of a 32-bit counter undone; any other step back is a fault."""
+    time = readings.time
+    steps = np.diff(time)
+    back = steps < 0
+    for row in readings.segments:
+        back[row - 1] = False
+    if not back.any():
+        return time
+    turn, least = (DAY_S, DAY_S / 2) if unit == "clock" else (WRAP, WRAP_STEP)
+    wraps = back & (steps < -least) & (unit in ("clock", "ms", "us")) & (time[:-1] < turn)
+    if (back & ~wraps).any():
+        row = int(np.flatnonzero(back & ~wraps)[0]) + 1
+        raise readings.fault(row, f"time goes backwards: {time[row]:.10g} after {time[row - 1]:.10g}")
+    marks = np.concatenate([[0], np.cumsum(wraps)])
+    for row in readings.segments:
+        marks[row:] -= marks[row]
+    return time + turn * marks
+
+
+def segments_joined(readings, time):
+    """A header that stands again: the board began anew. Its time goes on one period later (docs/protocol.md)."""
+    if not readings.segments:
+        return time
+    inside = np.ones(len(time) - 1, dtype=bool)
+    inside[np.array(readings.segments) - 1] = False
+    steps = np.sort(np.diff(time)[inside])
+    period = steps[len(steps) // 2] if len(steps) else 0.0
+    time = time.copy()
+    for row in readings.segments:
+        time[row:] += time[row - 1] + period - time[row]
+    return time
+
+
+def seen(t_us):
+    """(rate in Hz or None, gaps, longest step in us, share of equal times)"""
+    steps = np.diff(t_us)
+    moving = steps[steps > 0]
+    if len(moving) == 0:
+        return None, 0, 0, 0.0
+    usual = float(np.median(moving))
+    whole = steps <= GAP * usual
+    span = float(steps[whole].sum())
+    return whole.sum() * 1e6 / span if span else None, int((~whole).sum()), int(steps.max()), float((steps == 0).mean())

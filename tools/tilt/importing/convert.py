@@ -1,0 +1,89 @@
+"""A recording in any known format to a stream in a file."""
+import os
+import pathlib
+
+import numpy as np
+
+from tilt.errors import TiltError
+from tilt.importing import clock, cwa, jsons, report, source, text, units
+from tilt.importing.readings import FLAG_COASTED, joined
+
+CHUNK_ROWS = 1_000_000
+
+
+def read(path, options):
+    """The Readings of one file, whatever its format. options: sensor, columns."""
+    file, head = source.opened(path)
+    with file:
+        if source.is_cwa(head):
+            return cwa.read(path, file)
+        body = source.as_text(path, file, head)
+        if jsons.is_json(head):
+            return jsons.read(path, body, options)
+        return text.read(path, body, head, options)
+
+
+def scale_of(readings, asked, notes):
+    """(Scale, why it was taken)"""
+    if asked is not None and asked not in units.UNITS:
+        return units.forced(asked, readings.values, readings.decimals, notes), "--unit"
+    if readings.multiplier is not None:
+        return multiplied(readings, notes)
+    unit = asked or readings.unit
+    why = "--unit" if asked else "said by the file" if readings.unit else "found by whole numbers"
+    return units.choose(readings.path, readings.values, readings.decimals, unit, notes, readings.other_sensors), why
+
+
+def multiplied(readings, notes):
+    """A file with a scale in each row: values are either counts or counts times the scale; the counts are taken."""
+    if (readings.multiplier <= 0.0).any() or not np.isfinite(readings.multiplier).all():
+        row = int(np.flatnonzero(~(readings.multiplier > 0.0))[0])
+        raise readings.fault(row, f"a multiplier of {readings.multiplier[row]:g}")
+    counts = units.tried(units.candidates("raw")[0], units.sample_of(readings.values), 1e-7)
+    if counts.fits:
+        return counts, "counts; the file's multiplier not needed"
+    readings.values = readings.values / readings.multiplier[:, None]
+    scale = units.choose(readings.path, np.where(np.abs(readings.values - np.rint(readings.values)) < units.MARGIN_LSB, np.rint(readings.values),
+                                                 readings.values), 0, "raw", notes)
+    return scale, "divided by the file's multiplier"
+
+
+def converted(paths, options, out):
+    """Writes the stream of one file, or of several joined, to out; returns the lines to tell. options: sensor, columns, unit, rate."""
+    parts = [read(path, options) for path in paths]
+    readings = parts[0] if len(parts) == 1 else joined(parts)
+    notes = []
+    scale, why = scale_of(readings, options.unit, notes)
+    lsb, missing = units.to_lsb(readings, scale, notes)
+    t_us = clock.to_us(readings, options.rate, notes)
+    write(out, t_us, lsb, missing, readings.kept)
+    name = paths[0] if len(paths) == 1 else f"{paths[0]} and {len(paths) - 1} more"
+    told = [report.summary(name, out, readings, scale, t_us, why)]
+    return told + [f"  {note}" for note in readings.notes + notes + report.notes_of(t_us, lsb, missing)]
+
+
+def columns_of(t_us, lsb, missing, kept):
+    """{name: whole numbers} of the stream (docs/protocol.md)."""
+    found = {"t_us": t_us, "x": lsb[:, 0], "y": lsb[:, 1], "z": lsb[:, 2], **kept}
+    if missing.any():
+        found["flags"] = found.get("flags", np.zeros(len(t_us), dtype=np.int64)) | np.where(missing, FLAG_COASTED, 0)
+    return found
+
+
+def write(out, t_us, lsb, missing, kept):
+    """The stream, written beside its place and moved there when it is whole."""
+    import pandas
+    found = columns_of(t_us, lsb, missing, kept)
+    part = pathlib.Path(f"{out}.part")
+    try:
+        with open(part, "w", encoding="ascii", newline="") as file, source.progress(len(t_us), out, "write") as bar:
+            file.write(",".join(found) + "\n")
+            for start in range(0, len(t_us), CHUNK_ROWS):
+                rows = slice(start, start + CHUNK_ROWS)
+                pandas.DataFrame({name: column[rows] for name, column in found.items()}).to_csv(file, header=False, index=False, lineterminator="\n")
+                bar.update(len(t_us[rows]))
+        os.replace(part, out)
+    except OSError as why:
+        raise TiltError(f"{out}: {why.strerror}") from None
+    finally:
+        part.unlink(missing_ok=True)

@@ -1,0 +1,162 @@
+"""What the first lines of a text settle for the whole file: how a line becomes fields, how many there are, and which is what."""
+import re
+from collections import Counter
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from typing import Optional
+
+import numpy as np
+
+from tilt.errors import TiltError, at
+from tilt.importing import columns as cols
+from tilt.importing import forms
+
+SAMPLE_LINES, SAMPLE_ROWS = 4000, 400
+WALL = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)")
+DATED = re.compile(r"\d{4}-\d{2}-\d{2}[ T]\d{2}:\d{2}:\d{2}(?:[.,]\d+)?(?:Z|[+-]\d{2}:?\d{2})?")
+
+
+@dataclass
+class Settled:
+    plan: forms.Plan
+    columns: cols.Columns
+    header: Optional[list]
+    width: int  # fields of a row
+    trail: int  # empty fields after them
+    decimals: int
+    time_unit: Optional[str]
+
+
+def number_or_time(text):
+    """(value, unit): a number (unit None), a time of day in seconds (clock), or a date in seconds since 1970 (s). ValueError for others."""
+    try:
+        return float(text), None
+    except ValueError:
+        pass
+    text = text.strip("\"'")
+    wall = WALL.fullmatch(text)
+    if wall:
+        hours, minutes, seconds = wall.groups()
+        return int(hours) * 3600 + int(minutes) * 60 + float(seconds.replace(",", ".")), "clock"
+    if DATED.fullmatch(text):
+        whole, _, fraction = re.sub(r"(Z|[+-]\d{2}:?\d{2})$", "", text).replace(",", ".").partition(".")
+        moment = datetime.fromisoformat(whole.replace("T", " ")).replace(tzinfo=timezone.utc)
+        return moment.timestamp() + float(f"0.{fraction or 0}"), "s"
+    raise ValueError(text)
+
+
+def header_cells(line):
+    """The names in a header line, None for any other line. Klipper's stands behind a #."""
+    text = line.strip()
+    if text.startswith("##"):
+        return None
+    text = text.lstrip("#").strip()
+    clock = forms.CLOCKED.fullmatch(text)
+    text = clock.group(2) if clock else text
+    for separator in (",", ";", "\t", None):
+        cells = [cell.strip() for cell in text.split(separator)]
+        if cols.is_header(cells):
+            return cells
+    return None
+
+
+def find_header(lines):
+    """The first header before the first row."""
+    for line in lines:
+        cells = header_cells(line)
+        if cells:
+            return cells
+        if len(forms.NUMBERS.findall(line)) >= 3 and not line.lstrip().startswith("#"):
+            return None
+    return None
+
+
+def sampled(plan, lines, first_line):
+    """[(line, fields)] of the first rows."""
+    rows = []
+    for line, text in enumerate(lines, first_line):
+        found = plan.payload(text) if text.strip() and text.lstrip()[0] != "#" else None
+        cells = plan.fields(found[1]) if found else None
+        if cells and sum(forms.is_number(cell) for cell in cells) >= 3:
+            rows.append((line, cells))
+        if len(rows) == SAMPLE_ROWS:
+            break
+    return rows
+
+
+def whole_sensors(header, width):
+    """Rows that leave out the last sensors that the header names: time and a whole number of triples."""
+    return width < len(header) and width % 3 == 1 and len(header) % 3 == 1 and cols.plain_name(header[0])[0] in cols.TIMES
+
+
+def width_of(path, header, rows):
+    """(fields of a row, empty fields after them, note or None). TiltError where header and rows do not fit."""
+    line, width = rows[0][0], Counter(len(cells) for _, cells in rows).most_common(1)[0][0]
+    ends_empty = all(cells[-1] == "" for _, cells in rows)
+    if header is None:
+        return (width - 1, 1, None) if ends_empty else (width, 0, None)
+    if width == len(header):
+        return width, 0, None
+    if width == len(header) + 1 and ends_empty:
+        return width - 1, 1, None
+    if whole_sensors(header, width):
+        return width, 0, f"rows of {width} fields under a header of {len(header)}: the last {(len(header) - width) // 3} sensors are not there"
+    raise at(path, line, f"{len(rows[0][1])} fields where the header has {len(header)}")
+
+
+def columns_of(path, options, header, rows, width):
+    if options.columns:
+        chosen = cols.of_option(options.columns, header, path)
+    elif header:
+        chosen = cols.of_header(header[:width], path, options.sensor)
+    else:
+        chosen = cols.of_numbers(numbers_of(rows, width), path)
+    if max(chosen.axes + (chosen.time or 0,)) >= width:
+        raise TiltError(f"{path}: column {max(chosen.axes + (chosen.time or 0,)) + 1} is asked for and rows have {width}")
+    return chosen
+
+
+def numbers_of(rows, width):
+    """The rows of that many fields, NaN where a field is no number."""
+    def number(cell):
+        try:
+            return number_or_time(cell)[0]
+        except ValueError:
+            return np.nan
+    return np.array([[number(cell) for cell in cells[:width]] for _, cells in rows if len(cells) >= width])
+
+
+def decimals_of(rows, axes):
+    """The most digits after a point with which the sample prints a value."""
+    cells = [cells[index] for _, cells in rows for index in axes if index < len(cells)]
+    return max([len(cell.partition(".")[2].rstrip()) + (20 if "e" in cell.lower() else 0) for cell in cells] or [0])
+
+
+def settle(path, options, lines, first_line):
+    """Of the first lines of a file. options: sensor, columns. TiltError for what is no recording."""
+    header = find_header(lines)
+    plan = forms.plan_of(lines, options.sensor)
+    if header and not options.columns:
+        cols.of_header(header, path, 1)  # a spectrum, or no accelerations
+    if plan is None and header:
+        raise TiltError(f"{path}: only a header, no rows")
+    if plan is not None and header:
+        plan.lead = 0
+    rows = sampled(plan, lines, first_line) if plan else []
+    if not rows:
+        raise TiltError(f"{path}: no row of three numbers in its first {len(lines)} lines: this is no recording")
+    header = list(plan.names) if plan.names is not None else header
+    width, trail, note = width_of(path, header, rows)
+    chosen = columns_of(path, options, header, rows, width)
+    if plan.keywords[1:]:
+        chosen.other_sensors = True
+        chosen.notes.append(f"lines '{plan.keyword}:' taken of {', '.join(plan.keywords)} (--sensor N for another)")
+    chosen.notes += [note] if note else []
+    unit = "clock" if plan.clock and chosen.time is None else chosen.time_unit
+    if chosen.time is not None and chosen.time < len(rows[0][1]):
+        try:
+            unit = number_or_time(rows[0][1][chosen.time])[1] or unit
+        except ValueError:
+            pass  # the reading of the row says so
+    chosen.unit = chosen.unit or plan.unit
+    return Settled(plan, chosen, header, width, trail, decimals_of(rows, chosen.axes), unit)

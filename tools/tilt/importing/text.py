@@ -1,0 +1,187 @@
+"""Lines of text to readings: the quick way for blocks of nothing but numbers, line by line for all others."""
+import io
+from array import array
+
+import numpy as np
+
+from tilt.errors import TiltError, at
+from tilt.importing import forms
+from tilt.importing.readings import Readings
+from tilt.importing.settle import SAMPLE_LINES, header_cells, number_or_time, settle
+from tilt.importing.source import blocks
+
+ABSENT = ("", "nan", "+nan", "-nan", "null", "none", "n/a")
+SHOWN = 40
+
+
+def decoded(block):
+    return block.decode("utf-8", "replace")
+
+
+class Reader:
+    """Reads one file, block by block; the first block settles what a row is."""
+
+    def __init__(self, path, options):
+        self.path, self.options, self.settled = path, options, None
+        self.parts, self.lines = [], []  # of each block: (rows, columns) of the wanted columns, lines
+        self.count, self.segments, self.skipped = 0, [], []
+
+    def take(self, line, block):
+        if self.settled is None:
+            text = decoded(block[:SAMPLE_LINES * 400]).replace("\r", "\n") if b"\n" not in block else decoded(block[:SAMPLE_LINES * 400])
+            self.settled = settle(self.path, self.options, text.split("\n")[:SAMPLE_LINES], line)
+            self.wanted = self.columns_wanted()
+        found = self.quick(line, block) if self.settled.plan.plain() and not self.settled.trail else None
+        values, lines = found or self.slow(line, block)
+        self.parts.append(values)
+        self.lines.append(lines)
+        self.count += len(values)
+
+    def columns_wanted(self):
+        """Fields to keep, in the order x, y, z, time, multiplier, then those that go along; None: not there."""
+        c = self.settled.columns
+        return [*c.axes, c.time, c.multiplier, *c.kept.values()]
+
+    def quick(self, line, block):
+        """(values, lines) of a block in which every line is a row of numbers; None for any other."""
+        import pandas
+        start = 0
+        if line == 1 and self.settled.header:
+            start = block.find(b"\n") + 1
+            if start == 0 or header_cells(decoded(block[:start])) != self.settled.header:
+                return None
+        rows = block.count(b"\n", start) + (not block.endswith(b"\n"))
+        separators = block.count(self.settled.plan.separator.encode(), start)
+        if separators != rows * (self.settled.width - 1) or rows == 0:
+            return None
+        try:
+            table = pandas.read_csv(io.BytesIO(memoryview(block)[start:]), sep=self.settled.plan.separator, header=None, dtype="float64",
+                                    names=range(self.settled.width), index_col=False, skipinitialspace=True, skip_blank_lines=True,
+                                    engine="c").to_numpy()
+        except (ValueError, pandas.errors.ParserError):
+            return None
+        if len(table) != rows or not np.isfinite(table).all():
+            return None
+        values = np.column_stack([table[:, column] if column is not None else np.full(rows, np.nan) for column in self.wanted])
+        return values, line + (start > 0) + np.arange(rows, dtype=np.int64)
+
+    def slow(self, first_line, block):
+        numbers, lines = array("d"), array("q")
+        for line, whole in enumerate(decoded(block).split("\n"), first_line):
+            for text in whole.split("\r") if "\r" in whole.rstrip() else (whole,):
+                text = text.strip()
+                if text and text[0] != "#":
+                    row = self.row(line, text, len(lines))
+                    if row:
+                        numbers.extend(row)
+                        lines.append(line)
+        return np.frombuffer(numbers, dtype=np.float64).reshape(-1, len(self.wanted)) if numbers else \
+            np.empty((0, len(self.wanted))), np.array(lines, dtype=np.int64)
+
+    def row(self, line, text, before):
+        """The wanted numbers of a line, None where it is no row. before: rows of this block so far."""
+        settled = self.settled
+        found = settled.plan.payload(text)
+        if found is None:
+            return self.other(line, text)
+        time, body = found
+        if not body or body[0] == "#":
+            return None
+        cells = settled.plan.fields(body)
+        if cells is None:
+            return self.other(line, text)
+        if settled.trail and len(cells) == settled.width + settled.trail and cells[-1] == "":
+            cells = cells[:-settled.trail]
+        if not self.is_row(cells, body, before):
+            return self.other(line, text) if self.count + before and not header_cells(body) else None
+        if len(cells) != settled.width:
+            raise at(self.path, line, f"{len(cells)} fields where {'the header has' if settled.header else 'the other rows have'} {settled.width}"
+                     if settled.header is None or len(settled.header) == settled.width
+                     else f"{len(cells)} fields where the other rows have {settled.width}")
+        return self.numbers(line, cells, time)
+
+    def is_row(self, cells, body, before):
+        """Numbers, or what is meant to be; a header that stands again begins a new segment."""
+        if forms.is_number(cells[0]) or sum(map(forms.is_number, cells)) >= min(3, len(cells)):
+            return True
+        if self.settled.header and header_cells(body) == self.settled.header:
+            if self.count + before:
+                self.segments.append(self.count + before)
+            return False
+        time = self.settled.columns.time
+        if time is not None and time < len(cells):
+            try:
+                number_or_time(cells[time])
+                return True
+            except ValueError:
+                pass
+        return len(cells) == self.settled.width and any(map(forms.is_number, cells))
+
+    def other(self, line, text):
+        """A line that is no row: text among the rows is left out and told of, unless it holds what a row would."""
+        plan = self.settled.plan
+        if plan.keyword is None and len(forms.NUMBERS.findall(text)) >= 3 and not any(c.isalpha() for c in text.replace("e", "").replace("E", "")):
+            raise at(self.path, line, f"not of the form of the other rows: '{text[:SHOWN]}'")
+        if plan.keyword is None and self.count:
+            self.skipped.append((line, text))
+        elif plan.keyword is None:
+            self.skipped.append((line, text))
+        return None
+
+    def numbers(self, line, cells, time):
+        row = []
+        for place, column in enumerate(self.wanted):
+            if column is None:
+                row.append(number_or_time(time)[0] if place == 3 and time is not None else np.nan)
+                continue
+            text = cells[column]
+            try:
+                value = float(text) if place != 3 else number_or_time(text)[0]
+            except ValueError:
+                if text.lower() not in ABSENT or place == 3:
+                    raise at(self.path, line, f"not a number: '{text[:SHOWN]}'") from None
+                value = np.nan
+            if value in (np.inf, -np.inf) or (place == 3 and value != value):
+                raise at(self.path, line, f"not a number: '{text[:SHOWN]}'")
+            row.append(value)
+        return row
+
+
+def read(path, file, head, options):
+    """The Readings of a text file. options: sensor, columns."""
+    reader = Reader(path, options)
+    for line, block in blocks(path, file, head):
+        reader.take(line, block)
+    if not reader.count:
+        raise TiltError(f"{path}: no rows")
+    settled, columns = reader.settled, reader.settled.columns
+    table, lines = np.concatenate(reader.parts), np.concatenate(reader.lines)
+    timed = columns.time is not None or settled.plan.clock
+    kept = {name: whole(reader, table[:, 5 + place], lines, name) for place, name in enumerate(columns.kept)}
+    return Readings(path, words_of(settled), table[:, :3], lines, table[:, 3] if timed else None, settled.time_unit, settled.decimals,
+                    columns.unit, table[:, 4] if columns.multiplier is not None else None, kept, reader.segments,
+                    columns.notes + skipped_note(reader), columns.other_sensors, own=columns.own)
+
+
+def whole(reader, column, lines, name):
+    """A column of whole numbers."""
+    bad = np.flatnonzero(column != np.rint(column))
+    if len(bad):
+        raise at(reader.path, int(lines[bad[0]]), f"{name} is not a whole number")
+    return column.astype(np.int64)
+
+
+def skipped_note(reader):
+    if not reader.skipped:
+        return []
+    line, text = reader.skipped[0]
+    return [f"{len(reader.skipped)} lines of text left out, the first: line {line} '{text[:SHOWN]}'"]
+
+
+def words_of(settled):
+    plan = settled.plan
+    if settled.columns.own:
+        return "stream"
+    kinds = [(plan.clock, "serial monitor"), (plan.keyword, f"'{plan.keyword}:' lines"), (plan.literal, "Python bytes"),
+             (plan.names, "NAME = VALUE lines")]
+    return next((words for there, words in kinds if there), "columns" if settled.header is None else f"columns {','.join(settled.header[:4])}")
