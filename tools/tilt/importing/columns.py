@@ -52,11 +52,13 @@ def axis_of(name):
     return match.groupdict() if match else None
 
 
-def is_header(cells):
-    """A line of names, at least one of which means something here."""
+def is_header(cells, wanted=frozenset()):
+    """A line of names that mean something here, or that --columns asks for."""
     if any(is_number(cell) for cell in cells) or len(cells) < 3:
         return False
     names = [name for name, _ in names_of(cells)]
+    if wanted:
+        return wanted <= set(names)
     return "freq" in names or sum(name in TIMES for name in names) + sum(axis_of(name) is not None for name in names) >= 2 \
         or (names[0] in TIMES and all(re.fullmatch(r"[a-z][\w *./^-]*", name) for name in names if name))
 
@@ -102,6 +104,11 @@ def of_header(cells, path, sensor):
         chosen.other_sensors = True
         chosen.notes.append(f"sensor {sensor} of {len(sensors)} taken (--sensor N for another)")
     return chosen
+
+
+def names_in(option):
+    """The names among the columns of --columns, in small letters."""
+    return frozenset(word.strip().lower() for word in (option or "").split(",") if word.strip() and not word.strip().isdigit())
 
 
 def of_option(text, cells, path):

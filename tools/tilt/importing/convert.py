@@ -1,12 +1,9 @@
 """A recording in any known format to a stream in a file."""
-import os
-import pathlib
-
 import numpy as np
 
-from tilt.errors import TiltError
 from tilt.importing import clock, cwa, jsons, report, source, text, units
-from tilt.importing.readings import FLAG_COASTED, joined
+from tilt.importing.readings import FLAG_COASTED, MISSING_FLAGS, joined
+from tilt.output import whole_file
 
 CHUNK_ROWS = 1_000_000
 
@@ -59,7 +56,16 @@ def converted(paths, options, out):
     write(out, t_us, lsb, missing, readings.kept)
     name = paths[0] if len(paths) == 1 else f"{paths[0]} and {len(paths) - 1} more"
     told = [report.summary(name, out, readings, scale, t_us, why)]
-    return told + [f"  {note}" for note in readings.notes + notes + report.notes_of(t_us, lsb, missing)]
+    shown = report.notes_of(t_us, lsb, flagged(missing, readings.kept, notes))
+    return told + [f"  {note}" for note in readings.notes + notes + shown]
+
+
+def flagged(missing, kept, notes):
+    """Rows that hold no reading, those that the file itself flags among them."""
+    marked = (kept.get("flags", np.zeros(len(missing), dtype=np.int64)) & MISSING_FLAGS) != 0
+    if marked.any():
+        notes.append(f"{int(marked.sum()):,} rows are flagged as missing samples by the file")
+    return missing | marked
 
 
 def columns_of(t_us, lsb, missing, kept):
@@ -74,16 +80,9 @@ def write(out, t_us, lsb, missing, kept):
     """The stream, written beside its place and moved there when it is whole."""
     import pandas
     found = columns_of(t_us, lsb, missing, kept)
-    part = pathlib.Path(f"{out}.part")
-    try:
-        with open(part, "w", encoding="ascii", newline="") as file, source.progress(len(t_us), out, "write") as bar:
-            file.write(",".join(found) + "\n")
-            for start in range(0, len(t_us), CHUNK_ROWS):
-                rows = slice(start, start + CHUNK_ROWS)
-                pandas.DataFrame({name: column[rows] for name, column in found.items()}).to_csv(file, header=False, index=False, lineterminator="\n")
-                bar.update(len(t_us[rows]))
-        os.replace(part, out)
-    except OSError as why:
-        raise TiltError(f"{out}: {why.strerror}") from None
-    finally:
-        part.unlink(missing_ok=True)
+    with whole_file(out) as file, source.progress(len(t_us), out, "write") as bar:
+        file.write(",".join(found) + "\n")
+        for start in range(0, len(t_us), CHUNK_ROWS):
+            rows = slice(start, start + CHUNK_ROWS)
+            pandas.DataFrame({name: column[rows] for name, column in found.items()}).to_csv(file, header=False, index=False, lineterminator="\n")
+            bar.update(len(t_us[rows]))

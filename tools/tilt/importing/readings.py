@@ -38,12 +38,15 @@ class Readings:
         return at(path, int(self.lines[row]), reason) if self.lines is not None else TiltError(f"{path}: row {row + 1}: {reason}")
 
 
+def kind_of(readings):
+    return readings.form, readings.time is None, readings.time_unit, readings.unit, readings.multiplier is None, sorted(readings.kept)
+
+
 def joined(readings):
     """One Readings of several files, one after the other. They must be of one form."""
     first = readings[0]
     for other in readings[1:]:
-        if (other.time is None, other.time_unit, other.unit, sorted(other.kept)) != (first.time is None, first.time_unit, first.unit,
-                                                                                     sorted(first.kept)):
+        if kind_of(other) != kind_of(first):
             raise TiltError(f"{other.path}: not of one form with {first.path}: their times, units or columns differ")
     starts = np.cumsum([0] + [len(part.values) for part in readings])
 

@@ -45,8 +45,8 @@ def number_or_time(text):
     raise ValueError(text)
 
 
-def header_cells(line):
-    """The names in a header line, None for any other line. Klipper's stands behind a #."""
+def header_cells(line, wanted=frozenset()):
+    """The names in a header line, None for any other line. wanted: names that --columns asks for. Klipper's stands behind a #."""
     text = line.strip()
     if text.startswith("##"):
         return None
@@ -55,15 +55,15 @@ def header_cells(line):
     text = clock.group(2) if clock else text
     for separator in (",", ";", "\t", None):
         cells = [cell.strip() for cell in text.split(separator)]
-        if cols.is_header(cells):
+        if cols.is_header(cells, wanted):
             return cells
     return None
 
 
-def find_header(lines):
+def find_header(lines, wanted):
     """The first header before the first row."""
     for line in lines:
-        cells = header_cells(line)
+        cells = header_cells(line, wanted)
         if cells:
             return cells
         if len(forms.NUMBERS.findall(line)) >= 3 and not line.lstrip().startswith("#"):
@@ -134,7 +134,7 @@ def decimals_of(rows, axes):
 
 def settle(path, options, lines, first_line):
     """Of the first lines of a file. options: sensor, columns. TiltError for what is no recording."""
-    header = find_header(lines)
+    header = find_header(lines, cols.names_in(options.columns))
     plan = forms.plan_of(lines, options.sensor)
     if header and not options.columns:
         cols.of_header(header, path, 1)  # a spectrum, or no accelerations

@@ -6,12 +6,14 @@ import numpy as np
 
 from tilt.errors import TiltError, at
 from tilt.importing import forms
+from tilt.importing.columns import names_in
 from tilt.importing.readings import Readings
 from tilt.importing.settle import SAMPLE_LINES, header_cells, number_or_time, settle
 from tilt.importing.source import blocks
 
 ABSENT = ("", "nan", "+nan", "-nan", "null", "none", "n/a")
 SHOWN = 40
+SAMPLE_BYTES = 400_000
 
 
 def decoded(block):
@@ -23,13 +25,14 @@ class Reader:
 
     def __init__(self, path, options):
         self.path, self.options, self.settled = path, options, None
+        self.names = names_in(options.columns)
         self.parts, self.lines = [], []  # of each block: (rows, columns) of the wanted columns, lines
-        self.count, self.segments, self.skipped = 0, [], []
+        self.count, self.segments, self.skipped, self.notes = 0, [], [], []
 
     def take(self, line, block):
         if self.settled is None:
-            text = decoded(block[:SAMPLE_LINES * 400]).replace("\r", "\n") if b"\n" not in block else decoded(block[:SAMPLE_LINES * 400])
-            self.settled = settle(self.path, self.options, text.split("\n")[:SAMPLE_LINES], line)
+            lines = decoded(block[:SAMPLE_BYTES]).split("\n")
+            self.settled = settle(self.path, self.options, lines[:SAMPLE_LINES] if len(block) > SAMPLE_BYTES else lines, line)
             self.wanted = self.columns_wanted()
         found = self.quick(line, block) if self.settled.plan.plain() and not self.settled.trail else None
         values, lines = found or self.slow(line, block)
@@ -48,7 +51,7 @@ class Reader:
         start = 0
         if line == 1 and self.settled.header:
             start = block.find(b"\n") + 1
-            if start == 0 or header_cells(decoded(block[:start])) != self.settled.header:
+            if start == 0 or header_cells(decoded(block[:start]), self.names) != self.settled.header:
                 return None
         rows = block.count(b"\n", start) + (not block.endswith(b"\n"))
         separators = block.count(self.settled.plan.separator.encode(), start)
@@ -67,44 +70,42 @@ class Reader:
 
     def slow(self, first_line, block):
         numbers, lines = array("d"), array("q")
-        for line, whole in enumerate(decoded(block).split("\n"), first_line):
+        texts = decoded(block).split("\n")
+        for line, whole in enumerate(texts, first_line):
+            cut_off = line == first_line + len(texts) - 1  # what follows the last line end: only at the end of the file is there anything
             for text in whole.split("\r") if "\r" in whole.rstrip() else (whole,):
                 text = text.strip()
-                if text and text[0] != "#":
-                    row = self.row(line, text, len(lines))
-                    if row:
-                        numbers.extend(row)
-                        lines.append(line)
-        return np.frombuffer(numbers, dtype=np.float64).reshape(-1, len(self.wanted)) if numbers else \
-            np.empty((0, len(self.wanted))), np.array(lines, dtype=np.int64)
+                row = self.row(line, text, len(lines), cut_off) if text and text[0] != "#" else None
+                if row:
+                    numbers.extend(row)
+                    lines.append(line)
+        return np.array(numbers).reshape(-1, len(self.wanted)), np.array(lines, dtype=np.int64)
 
-    def row(self, line, text, before):
+    def row(self, line, text, before, cut_off):
         """The wanted numbers of a line, None where it is no row. before: rows of this block so far."""
         settled = self.settled
         found = settled.plan.payload(text)
-        if found is None:
-            return self.other(line, text)
-        time, body = found
-        if not body or body[0] == "#":
-            return None
-        cells = settled.plan.fields(body)
+        time, body = found or (None, "")
+        cells = settled.plan.fields(body) if body and body[0] != "#" else None
         if cells is None:
-            return self.other(line, text)
+            return None if found and (not body or body[0] == "#") else self.other(line, text)
         if settled.trail and len(cells) == settled.width + settled.trail and cells[-1] == "":
             cells = cells[:-settled.trail]
-        if not self.is_row(cells, body, before):
-            return self.other(line, text) if self.count + before and not header_cells(body) else None
+        if not cells or not self.is_row(cells, body, before):
+            return None if header_cells(body, self.names) else self.other(line, text)
+        if len(cells) < settled.width and cut_off:
+            self.notes.append(f"line {line}, the last, is cut off and left out: '{text[:SHOWN]}'")
+            return None
         if len(cells) != settled.width:
-            raise at(self.path, line, f"{len(cells)} fields where {'the header has' if settled.header else 'the other rows have'} {settled.width}"
-                     if settled.header is None or len(settled.header) == settled.width
-                     else f"{len(cells)} fields where the other rows have {settled.width}")
+            whose = "the header has" if settled.header and len(settled.header) == settled.width else "the other rows have"
+            raise at(self.path, line, f"{len(cells)} fields where {whose} {settled.width}")
         return self.numbers(line, cells, time)
 
     def is_row(self, cells, body, before):
         """Numbers, or what is meant to be; a header that stands again begins a new segment."""
         if forms.is_number(cells[0]) or sum(map(forms.is_number, cells)) >= min(3, len(cells)):
             return True
-        if self.settled.header and header_cells(body) == self.settled.header:
+        if self.settled.header and header_cells(body, self.names) == self.settled.header:
             if self.count + before:
                 self.segments.append(self.count + before)
             return False
@@ -118,15 +119,12 @@ class Reader:
         return len(cells) == self.settled.width and any(map(forms.is_number, cells))
 
     def other(self, line, text):
-        """A line that is no row: text among the rows is left out and told of, unless it holds what a row would."""
-        plan = self.settled.plan
-        if plan.keyword is None and len(forms.NUMBERS.findall(text)) >= 3 and not any(c.isalpha() for c in text.replace("e", "").replace("E", "")):
+        """A line that is no row: text is left out and told of, unless it holds the numbers of a row."""
+        if self.settled.plan.keyword is not None:
+            return
+        if len(forms.NUMBERS.findall(text)) >= 3 and not any(c.isalpha() for c in text.replace("e", "").replace("E", "")):
             raise at(self.path, line, f"not of the form of the other rows: '{text[:SHOWN]}'")
-        if plan.keyword is None and self.count:
-            self.skipped.append((line, text))
-        elif plan.keyword is None:
-            self.skipped.append((line, text))
-        return None
+        self.skipped.append((line, text))
 
     def numbers(self, line, cells, time):
         row = []
@@ -160,7 +158,7 @@ def read(path, file, head, options):
     kept = {name: whole(reader, table[:, 5 + place], lines, name) for place, name in enumerate(columns.kept)}
     return Readings(path, words_of(settled), table[:, :3], lines, table[:, 3] if timed else None, settled.time_unit, settled.decimals,
                     columns.unit, table[:, 4] if columns.multiplier is not None else None, kept, reader.segments,
-                    columns.notes + skipped_note(reader), columns.other_sensors, own=columns.own)
+                    columns.notes + reader.notes + skipped_note(reader), columns.other_sensors, own=columns.own)
 
 
 def whole(reader, column, lines, name):

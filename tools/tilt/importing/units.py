@@ -58,11 +58,13 @@ def tried(scale, values, digit):
     scale.magnitude_lsb = float(np.median(np.sqrt((lsb ** 2).sum(axis=1))))
     scale.digit_lsb = float(digit / scale.per_lsb.min())
     near = np.abs(off) <= 0.5 * scale.digit_lsb + MARGIN_LSB
-    scale.fits = bool(scale.digit_lsb < TELLING_LSB or scale.unit == "raw") and near.mean() >= FITS_SHARE
+    scale.fits = bool(scale.digit_lsb < TELLING_LSB and near.mean() >= FITS_SHARE)
     if scale.unit == "raw":
-        scale.fits = scale.fits and scale.residual_lsb < 1e-6
+        scale.fits = bool(scale.residual_lsb < 1e-6)
     elif np.abs(lsb).max() < LEAST_LSB:
         scale.fits = False  # all are 0 when rounded: that fits whatever it is
+    elif ((lsb < LSB_MIN) | (lsb > LSB_MAX)).mean() > 1.0 - FITS_SHARE:
+        scale.fits = False
     return scale
 
 
