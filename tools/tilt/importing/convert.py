@@ -10,8 +10,8 @@ CHUNK_ROWS = 1_000_000
 
 def read(path, options):
     """The Readings of one file, whatever its format. options: sensor, columns."""
-    file, head = source.opened(path)
-    with file:
+    head = source.begin(path)
+    with open(path, "rb") as file:
         if source.is_cwa(head):
             return cwa.read(path, file)
         body = source.as_text(path, file, head)

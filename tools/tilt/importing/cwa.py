@@ -89,6 +89,7 @@ def times_of(heads, notes):
     counts = heads["count"].astype(np.int64)
     starts = np.concatenate([[0], np.cumsum(counts)])
     stamps = np.array([seconds_of(int(stamp)) for stamp in heads["stamp"]], dtype=np.float64)
+    stamps -= stamps[0]  # small numbers keep their microseconds
     rates = np.array([rate_of(code) for code in heads["rate"]])
     fractions = np.where(heads["fraction"] & 0x8000, (heads["fraction"] & 0x7FFF) / 32768.0, 0.0)
     # with a fraction the recorder moved the offset back by that part of a second, in whole samples

@@ -139,7 +139,7 @@ def settle(path, options, lines, first_line):
     if header and not options.columns:
         cols.of_header(header, path, 1)  # a spectrum, or no accelerations
     if plan is None and header:
-        raise TiltError(f"{path}: only a header, no rows")
+        raise TiltError(f"{path}: only a header, no rows of numbers")
     if plan is not None and header:
         plan.lead = 0
     rows = sampled(plan, lines, first_line) if plan else []

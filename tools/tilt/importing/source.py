@@ -23,12 +23,11 @@ def progress(total, path, words):
                 disable=total < LONG_BYTES or not sys.stderr.isatty())
 
 
-def opened(path):
-    """The file, open for reading bytes, and its first bytes. TiltError where it cannot be one of ours."""
+def begin(path):
+    """The first bytes of a file. TiltError where it cannot be one of ours."""
     try:
-        file = open(path, "rb")
-        head = file.read(PROBE_BYTES)
-        file.seek(0)
+        with open(path, "rb") as file:
+            head = file.read(PROBE_BYTES)
     except OSError as why:
         raise TiltError(f"{path}: {why.strerror}") from None
     if not head:
@@ -37,7 +36,7 @@ def opened(path):
         for mark, name in marks.items():
             if head.startswith(mark):
                 raise TiltError(f"{path}: {words.format(name)}")
-    return file, head
+    return head
 
 
 def is_cwa(head):
