@@ -114,7 +114,8 @@ class Refused(Case):
         self.refused(header(0x64) + self.good[1024:], "of an AX6, which holds no ADXL345")
         rows = many(1, 40)[0]
         self.refused(header() + block(0, START, rows, axes=0x62), "block 2 (byte 1024): not three axes, packed or in words")
-        self.refused(header() + block(0, START, rows, axes=WORDS, light=3 << 13), "block 2 (byte 1024): counts of another size than 1/256 g: no ADXL345")
+        self.refused(header() + block(0, START, rows, axes=WORDS, light=3 << 13),
+                     "block 2 (byte 1024): counts of another size than 1/256 g: no ADXL345")
 
     def test_numbers_of_samples(self):
         for rows, axes in (([], PACKED), ([(0, 0, 256)] * 80, WORDS)):

@@ -222,6 +222,10 @@ class Variants(Case):
     def test_decimal_comma_after_semicolons(self):
         self.gives(self.table(";", decimal=","), LSB, every(10000))
 
+    def test_quoted_cells(self):
+        text = '"Time (s)","X","Y","Z"\n' + "".join(f'"{i * 0.01:.2f}",' + ",".join(f'"{value / 256:.5f}"' for value in LSB[i]) + "\n" for i in range(ROWS))
+        self.gives(text, LSB, every(10000))
+
     def test_wide_text_of_powershell(self):
         self.gives(self.table().encode("utf-16"), LSB, every(10000))
 

@@ -8,7 +8,7 @@ import json
 import lzma
 import zipfile
 
-from import_support import LSB, ROWS, Case
+from import_support import LSB, ROWS, Case, every
 
 TABLE = "t_ms,x,y,z\n" + "".join(f"{10 * i},{x},{y},{z}\n" for i, (x, y, z) in enumerate(LSB))
 
@@ -57,9 +57,19 @@ class Files(Case):
             self.refused(head + "5.0,1.5,2.5,3.5,4.5,1.0\n" * 5, f"a spectrum ({words}), not accelerations over time")
 
     def test_other_sensors(self):
-        self.refused("time,gx,gy,gz\n0,1,2,3\n10,1,2,3\n", "no columns x, y, z among time, gx, gy, gz: not accelerations, or name them with --columns")
+        self.refused("time,gx,gy,gz\n0,1,2,3\n10,1,2,3\n",
+                     "no columns x, y, z among time, gx, gy, gz: not accelerations, or name them with --columns")
         self.refused("time,temp,hum,pres\n0,1,2,3\n10,1,2,3\n",
                      "no columns x, y, z among time, temp, hum, pres: not accelerations, or name them with --columns")
+
+    def test_names_that_mean_nothing_here(self):
+        self.refused("temp,hum,pres\n" + "201,402,10003\n" * 9,
+                     "no columns x, y, z among temp, hum, pres: not accelerations, or name them with --columns")
+        self.gives("east,north,up\n" + "".join(f"{x},{y},{z}\n" for x, y, z in LSB), LSB, every(10000), "--rate", "100", "--columns", "1,2,3")
+
+    def test_lines_of_pairs_that_lack_one(self):
+        text = "".join(f"x = {x}, y = {y}, z = {z}\n" for x, y, z in LSB)
+        self.refused(text + "x = 1, y = 2\n", "2 fields where the header has 3", line=ROWS + 1)
 
     def test_plotter_lines(self):
         self.refused("roll_raw:1.23,roll:1.20,pitch_raw:-0.42,pitch:-0.40,gated:0\n" * 9,
@@ -89,6 +99,7 @@ class Rows(Case):
     def test_what_is_no_number(self):
         self.refused(changed(30, "280,1,2x,3"), "not a number: '2x'", line=30)
         self.refused(changed(30, "280,1,inf,3"), "not a number: 'inf'", line=30)
+        self.refused(changed(30, "280,1,2_0,3"), "not a number: '2_0'", line=30)
         self.refused(changed(30, "28o,1,2,3"), "not a number: '28o'", line=30)
         self.refused(changed(30, ",1,2,3"), "not a number: ''", line=30)
         self.refused(changed(30, "280,1,2,0x1F"), "not a number: '0x1F'", line=30)
@@ -168,7 +179,8 @@ class Options(Case):
         status, said = self.run_tilt(self.file(TABLE, "a.csv"), self.file(TABLE, "a.txt"))
         self.assertEqual(status, 2)
         self.assertIn("two files would go to", said)
-        self.assertEqual(self.run_tilt(self.file(TABLE), self.file(TABLE, "b.txt"), "-o", self.out), (2, "tilt import: -o takes one file, or --join\n"))
+        self.assertEqual(self.run_tilt(self.file(TABLE), self.file(TABLE, "b.txt"), "-o", self.out),
+                         (2, "tilt import: -o takes one file, or --join\n"))
 
     def test_a_refused_file_leaves_what_is_there(self):
         self.out.write_text("before", encoding="ascii")

@@ -52,6 +52,10 @@ def axis_of(name):
     return match.groupdict() if match else None
 
 
+def is_spectrum(names):
+    return any(name.startswith(("freq", "psd_")) for name in names)
+
+
 def is_header(cells, wanted=frozenset()):
     """A line of names that mean something here, or that --columns asks for."""
     if any(is_number(cell) for cell in cells) or len(cells) < 3:
@@ -59,7 +63,7 @@ def is_header(cells, wanted=frozenset()):
     names = [name for name, _ in names_of(cells)]
     if wanted and wanted <= set(names):
         return True
-    return "freq" in names or sum(name in TIMES for name in names) + sum(axis_of(name) is not None for name in names) >= 2 \
+    return is_spectrum(names) or sum(name in TIMES for name in names) + sum(axis_of(name) is not None for name in names) >= 2 \
         or (names[0] in TIMES and all(re.fullmatch(r"[a-z][\w *./^-]*", name) for name in names if name))
 
 
@@ -82,7 +86,7 @@ def of_header(cells, path, sensor):
     """The columns by their names. TiltError where they are no accelerations."""
     names = names_of(cells)
     words = [name for name, _ in names]
-    if "freq" in words or any(name.startswith("psd_") for name in words):
+    if is_spectrum(words):
         raise TiltError(f"{path}: a spectrum ({', '.join(words[:4])}), not accelerations over time")
     sensors = sensors_of(names)
     if not sensors:

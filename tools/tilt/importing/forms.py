@@ -57,14 +57,14 @@ class Plan:
     def fields(self, text):
         """Of a payload; None where it is text."""
         if self.names is not None:
-            pairs = PAIRS.findall(text)
-            return [value for _, value in pairs] if tuple(name.lower() for name, _ in pairs) == self.names else None
+            pairs = {name.lower(): value for name, value in PAIRS.findall(text)}
+            return [pairs[name] for name in self.names if name in pairs] or None
         return self.cut(text)
 
     def cut(self, text):
         """The fields of a payload, the unit at its end and what stands before the numbers left out."""
-        found = [part.strip() for part in text.rstrip("; ").split(self.separator)] if self.separator != ";" else \
-                [part.strip() for part in text.split(";")]
+        text = text.rstrip("; ") if self.separator != ";" else text
+        found = [part.strip().strip('"') for part in text.split(self.separator)]
         if self.unit and found and found[-1].lower() in UNIT_WORDS:
             found.pop()
         if self.decimal_comma:

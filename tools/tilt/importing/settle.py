@@ -12,6 +12,7 @@ from tilt.importing import columns as cols
 from tilt.importing import forms
 
 SAMPLE_LINES, SAMPLE_ROWS = 4000, 400
+NAME = re.compile(r"[A-Za-z_][\w ()/^*.-]*")
 WALL = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)")
 DATED = re.compile(r"\d{4}-\d{2}-\d{2}[ T]\d{2}:\d{2}:\d{2}(?:[.,]\d+)?(?:Z|[+-]\d{2}:?\d{2})?")
 
@@ -69,6 +70,14 @@ def find_header(lines, wanted):
         if len(forms.NUMBERS.findall(line)) >= 3 and not line.lstrip().startswith("#"):
             return None
     return None
+
+
+def unknown_header(plan, lines, rows, first_line):
+    """Names of which none is known, in the line above the first row: better refused than taken for text above x, y, z."""
+    line, cells = rows[0]
+    above = [text for text in lines[:line - first_line] if text.strip()]
+    names = [name.strip() for name in above[-1].split(plan.separator)] if above and plan.separator and plan.names is None else []
+    return names if len(names) == len(cells) and all(NAME.fullmatch(name) for name in names) else None
 
 
 def sampled(plan, lines, first_line):
@@ -145,7 +154,7 @@ def settle(path, options, lines, first_line):
     rows = sampled(plan, lines, first_line) if plan else []
     if not rows:
         raise TiltError(f"{path}: no row of three numbers in its first {len(lines)} lines: this is no recording")
-    header = list(plan.names) if plan.names is not None else header
+    header = list(plan.names) if plan.names is not None else header or unknown_header(plan, lines, rows, first_line)
     width, trail, note = width_of(path, header, rows)
     chosen = columns_of(path, options, header, rows, width)
     if plan.keywords[1:]:

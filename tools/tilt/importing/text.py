@@ -13,7 +13,9 @@ from tilt.importing.source import blocks
 
 ABSENT = ("", "nan", "+nan", "-nan", "null", "none", "n/a")
 SHOWN = 40
+TIME = 3  # place of the time among the wanted columns
 SAMPLE_BYTES = 400_000
+QUICK_BYTES = 200_000  # less is read line by line before pandas is there
 
 
 def decoded(block):
@@ -34,7 +36,8 @@ class Reader:
             lines = decoded(block[:SAMPLE_BYTES]).split("\n")
             self.settled = settle(self.path, self.options, lines[:SAMPLE_LINES] if len(block) > SAMPLE_BYTES else lines, line)
             self.wanted = self.columns_wanted()
-        found = self.quick(line, block) if self.settled.plan.plain() and not self.settled.trail else None
+        plain = self.settled.plan.plain() and not self.settled.trail and len(block) >= QUICK_BYTES
+        found = self.quick(line, block) if plain else None
         values, lines = found or self.slow(line, block)
         self.parts.append(values)
         self.lines.append(lines)
@@ -126,23 +129,21 @@ class Reader:
             raise at(self.path, line, f"not of the form of the other rows: '{text[:SHOWN]}'")
         self.skipped.append((line, text))
 
-    def numbers(self, line, cells, time):
-        row = []
-        for place, column in enumerate(self.wanted):
-            if column is None:
-                row.append(number_or_time(time)[0] if place == 3 and time is not None else np.nan)
-                continue
-            text = cells[column]
-            try:
-                value = float(text) if place != 3 else number_or_time(text)[0]
-            except ValueError:
-                if text.lower() not in ABSENT or place == 3:
-                    raise at(self.path, line, f"not a number: '{text[:SHOWN]}'") from None
-                value = np.nan
-            if value in (np.inf, -np.inf) or (place == 3 and value != value):
-                raise at(self.path, line, f"not a number: '{text[:SHOWN]}'")
-            row.append(value)
-        return row
+    def numbers(self, line, cells, clock):
+        """The wanted columns of a row. clock: what the serial monitor put before it."""
+        texts = [cells[column] if column is not None else None for column in self.wanted]
+        texts[TIME] = clock if texts[TIME] is None else texts[TIME]
+        return [np.nan if text is None else self.number(line, place, text) for place, text in enumerate(texts)]
+
+    def number(self, line, place, text):
+        """A field; NaN for a reading that is missing, never for a time."""
+        try:
+            value = number_or_time(text)[0] if place == TIME else float(text)
+        except ValueError:
+            value = np.inf if place == TIME or text.lower() not in ABSENT else np.nan
+        if abs(value) == np.inf or "_" in text or (place == TIME and value != value):
+            raise at(self.path, line, f"not a number: '{text[:SHOWN]}'")
+        return value
 
 
 def read(path, file, head, options):
