@@ -223,7 +223,8 @@ class Variants(Case):
         self.gives(self.table(";", decimal=","), LSB, every(10000))
 
     def test_quoted_cells(self):
-        text = '"Time (s)","X","Y","Z"\n' + "".join(f'"{i * 0.01:.2f}",' + ",".join(f'"{value / 256:.5f}"' for value in LSB[i]) + "\n" for i in range(ROWS))
+        rows = [[f"{i * 0.01:.2f}"] + [f"{value / 256:.5f}" for value in LSB[i]] for i in range(ROWS)]
+        text = "".join(",".join(f'"{cell}"' for cell in row) + "\n" for row in [["Time (s)", "X", "Y", "Z"], *rows])
         self.gives(text, LSB, every(10000))
 
     def test_wide_text_of_powershell(self):

@@ -5,8 +5,10 @@ import csv
 import os
 import pathlib
 import subprocess
+from unittest import mock
 
 from import_support import LSB, Case, every
+from tilt.importing import source, text  # found by import_support
 
 SIMRUN, FIRMWARE = pathlib.Path("build/sim/simrun"), pathlib.Path("build/uno/firmware.elf")
 SHIPPED = sorted(pathlib.Path("sim/streams").glob("*.csv"))
@@ -41,9 +43,9 @@ class Own(Case):
 
     def test_times_stay_and_wraps_are_undone(self):
         start = 2 ** 32 - 300000
-        text = "t_us,x_lsb,y_lsb,z_lsb,flags\n" + "".join(f"{(start + 10000 * i) % 2 ** 32},{x},{y},{z},{16 * (i % 2)}\n"
+        content = "t_us,x_lsb,y_lsb,z_lsb,flags\n" + "".join(f"{(start + 10000 * i) % 2 ** 32},{x},{y},{z},{16 * (i % 2)}\n"
                                                          for i, (x, y, z) in enumerate(LSB))
-        status, said = self.run_tilt(self.file(text), "-o", self.out)
+        status, said = self.run_tilt(self.file(content), "-o", self.out)
         self.assertEqual(status, 0, said)
         self.assertEqual(self.rows(), ("t_us,x,y,z,flags", [(start + 10000 * i, *LSB[i], 16 * (i % 2)) for i in range(60)]))
         self.assertIn("30 rows are flagged as missing samples by the file", said)
@@ -55,8 +57,8 @@ class Own(Case):
         self.gives(head + "".join(rows[:20]) + "# reset: watchdog\n" + head + "".join(again[:40]), LSB[:20] + LSB[:40], every(10000))
 
     def test_a_step_back_is_no_wrap(self):
-        text = "t_us,x,y,z\n5000000,1,2,3\n4000000,1,2,3\n"
-        self.refused(text, "time goes backwards: 4000000 after 5000000", line=3)
+        content = "t_us,x,y,z\n5000000,1,2,3\n4000000,1,2,3\n"
+        self.refused(content, "time goes backwards: 4000000 after 5000000", line=3)
 
     def test_a_log_that_begins_among_the_rows(self):
         rows = [f"{i * 10000 + 5},{x},{y},{z},1,2,1000,0,0,0\n" for i, (x, y, z) in enumerate(LSB)]
@@ -64,9 +66,6 @@ class Own(Case):
 
     def test_blocks_and_lines_give_the_same(self):
         """The quick reader of whole blocks against the one of lines, with blocks of every size around a line."""
-        from unittest import mock
-
-        from tilt.importing import source, text
         table = "#time,accel_x,accel_y,accel_z\n" + "".join(f"{100 + i * 0.01:.6f},{x * 39.2266:.6f},{y * 39.2266:.6f},{z * 39.2266:.6f}\n"
                                                             for i, (x, y, z) in enumerate(LSB))
         not_by_lines = mock.patch.object(text.Reader, "slow", side_effect=AssertionError("quick is enough"))
@@ -79,6 +78,36 @@ class Own(Case):
                 self.gives(table, LSB, every(10000))
         with mock.patch.object(source, "BLOCK_BYTES", 200), mock.patch.object(text, "QUICK_BYTES", 0):
             self.refused(table.replace("100.410000,", "100.410000,,"), "5 fields where the header has 4", line=43)
+
+
+class Quick(Case):
+    """Faults in blocks that are read at one go have their lines all the same."""
+
+    def test_faults(self):
+        rows = [f"{10 * i},{x},{y},{z}" for i, (x, y, z) in enumerate(LSB)]
+        cases = ((20, "200,1,2,9999", "1, 2, 9999 LSB by raw of 1 per LSB: outside -4096..4095, what an ADXL345 can give"),
+                 (20, "189,1,2,3", "time goes backwards: 189 after 190"), (20, "200,1,2,3x", "not a number: '3x'"),
+                 (20, "200,1,2", "3 fields where the header has 4"))
+        for place, bad, reason in cases:
+            with mock.patch.object(text, "QUICK_BYTES", 0):
+                self.refused("\n".join(["t_ms,x,y,z", *rows[:place], bad, *rows[place + 1:]]) + "\n", reason, line=place + 2)
+
+    def test_a_row_too_short_and_one_too_long(self):
+        rows = [f"{10 * i},{x},{y},{z}" for i, (x, y, z) in enumerate(LSB)]
+        for short, long in ((20, 30), (30, 20), (1, 0), (58, 59)):
+            spoilt = list(rows)
+            spoilt[short], spoilt[long] = f"{10 * short},1,2", f"{10 * long},1,2,3,4"
+            first = min(short, long)
+            with mock.patch.object(text, "QUICK_BYTES", 0):
+                self.refused("\n".join(["t_ms,x,y,z", *spoilt]) + "\n", f"{3 if first == short else 5} fields where the header has 4", line=first + 2)
+
+    def test_a_missing_reading(self):
+        rows = [f"{10 * i},{x},{y},{z}" for i, (x, y, z) in enumerate(LSB)]
+        rows[20] = "200,1,,3"
+        with mock.patch.object(text, "QUICK_BYTES", 0):
+            status, said = self.run_tilt(self.file("\n".join(["t_ms,x,y,z", *rows]) + "\n"), "-o", self.out)
+        self.assertEqual(status, 0, said)
+        self.assertEqual(self.rows()[1][19:22], [(190000, *LSB[19], 0), (200000, *LSB[19], 2), (210000, *LSB[21], 0)])
 
 
 class Firmware(Case):
@@ -94,8 +123,8 @@ class Firmware(Case):
             self.skipTest("no build/sim/simrun and build/uno/firmware.elf (make sim)")
         lsb = LSB * 5
         first = self.place / "first.csv"
-        text = "time, x, y, z\n" + "".join(f"{i * 0.01:.5f}, {x / 256:.5f}, {y / 256:.5f}, {z / 256:.5f}\n" for i, (x, y, z) in enumerate(lsb))
-        self.assertEqual(self.run_tilt(self.file(text), "-o", first)[0], 0)
+        content = "time, x, y, z\n" + "".join(f"{i * 0.01:.5f}, {x / 256:.5f}, {y / 256:.5f}, {z / 256:.5f}\n" for i, (x, y, z) in enumerate(lsb))
+        self.assertEqual(self.run_tilt(self.file(content), "-o", first)[0], 0)
         self.assertEqual(stream_rows(first), [(10000 * i, *row) for i, row in enumerate(lsb)])
         sent, served = self.simulated(first)
         self.assertEqual([row[1:] for row in served[:len(lsb)]], lsb)

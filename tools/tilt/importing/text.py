@@ -1,5 +1,6 @@
 """Lines of text to readings: the quick way for blocks of nothing but numbers, line by line for all others."""
 import io
+import warnings
 from array import array
 
 import numpy as np
@@ -61,10 +62,11 @@ class Reader:
         if separators != rows * (self.settled.width - 1) or rows == 0:
             return None
         try:
-            table = pandas.read_csv(io.BytesIO(memoryview(block)[start:]), sep=self.settled.plan.separator, header=None, dtype="float64",
-                                    names=range(self.settled.width), index_col=False, skipinitialspace=True, skip_blank_lines=True,
-                                    engine="c").to_numpy()
-        except (ValueError, pandas.errors.ParserError):
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", pandas.errors.ParserWarning)
+                table = pandas.read_csv(io.BytesIO(memoryview(block)[start:]), sep=self.settled.plan.separator, header=None, dtype="float64",
+                                        names=range(self.settled.width), index_col=False, skipinitialspace=True, engine="c").to_numpy()
+        except (ValueError, pandas.errors.ParserError, pandas.errors.ParserWarning):
             return None
         if len(table) != rows or not np.isfinite(table).all():
             return None
