@@ -50,6 +50,12 @@ class Found(Case):
         self.assertIn("unit raw", self.gives(table([map(str, row) for row in small]), small, every(10000)))
         self.assertIn("unit g, 4 mg", self.gives(printed((0.004,) * 3, 3, small), small, every(10000)))
 
+    def test_coarse_values_that_are_nothing_in_another_unit(self):
+        """All below 0.02 LSB of mm/s2, which would be whole numbers: 0."""
+        low = [(90 + i % 7, 90 - i % 5, 100 + i % 3) for i in range(ROWS)]
+        expected = [tuple(round(float(f"{value / 256:.2f}") * 256) for value in row) for row in low]
+        self.assertIn("unit g, 1/256 g", self.gives(printed((1 / 256,) * 3, 2, low), expected, every(10000)))
+
     def test_other_gravities(self):
         for g in (9.81, 9.8):
             self.assertIn(f"unit m/s2, 1/256 g of {g} m/s2", self.gives(printed((g / 256,) * 3, 6), LSB, every(10000)))

@@ -104,7 +104,8 @@ def separator_of(payloads):
 
 def plan_of(lines, sensor):
     """The plan of a file from its first lines; None where none holds three numbers. sensor: which of several keywords, from 1."""
-    shapes = [shape_of(line) for line in lines if len(NUMBERS.findall(line)) >= 3 and not line.lstrip().startswith("#")]
+    found = [shape_of(line.strip()) for line in lines if not line.lstrip().startswith("#")]
+    shapes = [(shape, text) for shape, text in found if len(NUMBERS.findall(text)) >= 3 and text[0] != "#"]
     if not shapes:
         return None
     counts = Counter(shape for shape, _ in shapes)
