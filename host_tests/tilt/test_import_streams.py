@@ -50,6 +50,10 @@ class Own(Case):
         self.assertEqual(self.rows(), ("t_us,x,y,z,flags", [(start + 10000 * i, *LSB[i], 16 * (i % 2)) for i in range(60)]))
         self.assertIn("30 rows are flagged as missing samples by the file", said)
 
+    def test_counts_are_taken_where_mg_stand_beside_them(self):
+        rows = "".join(f"{10000 * i},7,8,900,{x},{y},{z}\n" for i, (x, y, z) in enumerate(LSB))
+        self.gives("# banner\nt_us,x_mg,y_mg,z_mg,x_lsb,y_lsb,z_lsb\n" + rows, LSB, every(10000))
+
     def test_a_header_again_begins_a_segment_a_period_later(self):
         head = "t_us,x,y,z\n"
         rows = [f"{10000 * i},{x},{y},{z}\n" for i, (x, y, z) in enumerate(LSB)]
