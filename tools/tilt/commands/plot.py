@@ -1,0 +1,72 @@
+"""Draws recordings: raw against filtered roll and pitch, what the filter refused, the flags, the truth where the file has it, and the spectrum.
+
+Takes what the firmware sent (tilt record), what tilt replay wrote, and plain streams (t_us,x,y,z). Several files are drawn over each other, or
+with --stack one below the other. The suffix of -o says which: .png and .svg are pictures, .html is a page of one file that opens in any
+browser without a network, with zoom, drag and the numbers under the pointer.
+"""
+import pathlib
+import sys
+
+from tilt.errors import TiltError
+
+NAME = "plot"
+SUMMARY = "draw recordings: raw against filtered, flags, spectrum (PNG, SVG, HTML)"
+SUFFIXES = ("png", "svg", "html")
+KINDS = ("roll", "pitch", "x", "y", "z", "flags", "spectrum")
+USUAL = ("roll", "pitch", "flags", "spectrum")
+BIG_BYTES = 8 << 20  # from here on reading shows how far it is
+
+
+def arguments(parser):
+    parser.add_argument("files", nargs="+", metavar="FILE", help="recordings or streams")
+    parser.add_argument("-o", "--output", metavar="OUT", help="OUT.png, OUT.svg or OUT.html (default: the first FILE with .png, here)")
+    parser.add_argument("--columns", metavar="LIST", default=",".join(USUAL), help=f"of {' '.join(KINDS)}, with commas (default: %(default)s)")
+    parser.add_argument("--from", dest="from_s", type=float, metavar="S", help="begin at S seconds from the start of each file")
+    parser.add_argument("--to", dest="to_s", type=float, metavar="S", help="end at S seconds")
+    parser.add_argument("--stack", action="store_true", help="files one below the other")
+    parser.add_argument("--title", help="headline (default: the files' names)")
+
+
+def kinds_of(text):
+    kinds = [word.strip() for word in text.split(",") if word.strip()]
+    for kind in kinds:
+        if kind not in KINDS:
+            raise TiltError(f"--columns: no column {kind}; there are {' '.join(KINDS)}")
+    if not kinds:
+        raise TiltError("--columns: none is named")
+    return [kind for kind in KINDS if kind in kinds]
+
+
+def output_of(args):
+    path = pathlib.Path(args.output or pathlib.Path(args.files[0]).with_suffix(".png").name)
+    suffix = path.suffix[1:].lower()
+    if suffix not in SUFFIXES:
+        raise TiltError(f"{path}: a name that ends with .{' .'.join(SUFFIXES)} is needed")
+    return path, suffix
+
+
+def progress_of(path):
+    """A progress bar for a big file, on a terminal."""
+    if not sys.stderr.isatty() or not pathlib.Path(path).is_file() or pathlib.Path(path).stat().st_size < BIG_BYTES:
+        return None
+    from tqdm import tqdm
+    bar = tqdm(total=1.0, desc=f"reading {path}", bar_format="{desc}: {percentage:3.0f}% {bar}", leave=False)
+    return lambda done, whole: bar.update(done / whole - bar.n)
+
+
+def run(args):
+    path, suffix = output_of(args)
+    kinds = kinds_of(args.columns)
+    from tilt import pictured
+    files = [pictured.load(name, args.from_s, args.to_s, progress_of(name)) for name in args.files]
+    title = args.title or ", ".join(one.name for one in files)
+    if suffix == "html":
+        from tilt import plot_page
+        plot_page.write(path, files, kinds, not args.stack, title)
+    else:
+        from tilt import picture
+        picture.write(path, suffix, files, kinds, not args.stack, title)
+    for one in files:
+        print(f"{one.name}: {len(one):,} rows, {one.t_s[-1] - one.t_s[0]:.1f} s at {one.rate_hz:.4g} Hz, gated {int(one.gated.sum()):,}, "
+              f"without a sample {int(one.missing.sum()):,}")
+    print(f"{'page' if suffix == 'html' else 'picture'}: {path}")

@@ -1,0 +1,78 @@
+"""A recording as it is drawn: time from its start, raw and filtered series, flags, truth, spectrum."""
+import pathlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from tilt import protocol, spectrum, stream
+from tilt.angles import ANGLES, raw_angles_deg
+from tilt.errors import TiltError
+
+AXES = ("x", "y", "z")
+LSB_PER_G = 256.0
+FILTERED = {"roll": "roll_cdeg", "pitch": "pitch_cdeg", "x": "x_mg", "y": "y_mg", "z": "z_mg"}
+GAP_STEPS, GAP_US = 3.5, 250_000  # a line is not drawn over more of both: in a long silence the board sends a row each 100 ms
+
+
+@dataclass
+class Pictured:
+    """raw, filtered, truth: {quantity: series} in degrees (roll, pitch) and mg (x, y, z; raw at 256 LSB/g); filtered and truth may lack any."""
+    name: str
+    t_s: np.ndarray
+    raw: dict
+    filtered: dict
+    truth: dict
+    lsb: np.ndarray
+    flags: np.ndarray
+    missing: np.ndarray
+    begins: np.ndarray  # rows that do not follow the one before: no line is drawn there
+    rate_hz: float
+    raw_density: object
+    filtered_density: object
+
+    def __len__(self):
+        return len(self.t_s)
+
+    @property
+    def gated(self):
+        return (self.flags & protocol.GATED) != 0
+
+
+def columns_in(path):
+    """Names in the first header of the file, or nothing: what is wrong with the file is told by stream.read."""
+    try:
+        with open(path, encoding="utf-8-sig", errors="replace") as file:
+            for line in file:
+                if line.strip() and not line.startswith("#"):
+                    return [name.strip() for name in line.split(",")]
+    except OSError:
+        pass
+    return []
+
+
+def load(path, from_s=None, to_s=None, progress=None):
+    """The part between two times from the start; TiltError when the file is no stream or has no row there."""
+    extra = [name for name in FILTERED.values() if name in columns_in(path)]
+    whole = stream.read(path, extra, progress)
+    t_s = whole.t_us * 1e-6
+    part = slice(*np.searchsorted(t_s, [-1.0 if from_s is None else from_s, np.inf if to_s is None else to_s]).tolist())
+    if part.start >= part.stop:
+        raise TiltError(f"{path}: no row from {from_s or 0:g} s to {whole.seconds if to_s is None else to_s:g} s; it has {whole.seconds:.1f} s")
+    begins = np.concatenate(([True], np.diff(whole.t_us) > max(GAP_STEPS * whole.step_us, GAP_US)))
+    begins[[segment.start for segment in whole.segments]] = True
+    lsb, missing = whole.lsb[part], whole.missing[part]
+    filtered = {kind: whole.columns[name][part] / (100.0 if kind in ANGLES else 1.0) for kind, name in FILTERED.items() if name in extra}
+    raw = raw_angles_deg(lsb) | {axis: lsb[:, i] * (1000.0 / LSB_PER_G) for i, axis in enumerate(AXES)}
+    truth = {"roll": whole.roll_true_cdeg[part] / 100.0, "pitch": whole.pitch_true_cdeg[part] / 100.0} if whole.has_truth else {}
+    shown = Pictured(pathlib.Path(path).name, t_s[part], raw, filtered, truth, lsb, whole.flags[part], missing, begins[part], whole.rate_hz, None, None)
+    add_spectrum(shown, whole, part)
+    return shown
+
+
+def add_spectrum(shown, whole, part):
+    segments = [slice(max(s.start - part.start, 0), s.stop - part.start) for s in whole.segments if s.stop > part.start and s.start < part.stop]
+    stretches = spectrum.even_stretches(whole.t_us[part], shown.missing, segments, whole.step_us)
+    shown.raw_density = spectrum.density(shown.lsb.astype(float), stretches, shown.rate_hz)
+    if all(axis in shown.filtered for axis in AXES):
+        lsb = np.stack([shown.filtered[axis] for axis in AXES], axis=1) * (LSB_PER_G / 1000.0)
+        shown.filtered_density = spectrum.density(lsb, stretches, shown.rate_hz)
