@@ -4,8 +4,10 @@ import numpy as np
 
 from tilt import protocol, spectrum, thin
 from tilt.angles import ANGLES, seam_crossings
+from tilt.look import (AXIS_COLOURS, FILE_COLOURS, FLAG_COLOURS, GATED_COLOUR, GRID_COLOUR, MISSING_BAND, RAW_COLOUR, TRUTH_COLOUR,
+                       WARMING_BAND)
 from tilt.output import whole_file
-from tilt.pictured import AXES
+from tilt.pictured import AXES, same_readings
 
 matplotlib.use("Agg")
 from matplotlib.colors import to_rgb  # noqa: E402
@@ -13,15 +15,9 @@ from matplotlib.figure import Figure  # noqa: E402
 
 WIDTH_INCHES, PANEL_INCHES, LANE_INCHES, SPECTRUM_INCHES, DPI = 12.0, 3.0, 0.22, 3.2, 100
 COLUMNS, LEVELS = 2400, 600  # of the grid that points are thinned to: finer than the picture
+POINTS_AS_SHAPES = 6000  # more are pixels in an SVG too: a file of tens of MB opens nowhere
 LANE_COLUMNS, LEAST_SHADE = 900, 0.3
 LIMIT_PERCENTILES = (0.5, 99.5)
-RAW_COLOUR, GATED_COLOUR, TRUTH_COLOUR, GRID_COLOUR = "#9aa3ad", "#d1495b", "#111111", "#e3e6ea"
-FILE_COLOURS = ("#1f5fbf", "#e07b00", "#0f8a5f", "#8b3fc4", "#b8860b", "#008b9e")
-AXIS_COLOURS = {"x": "#1f5fbf", "y": "#e07b00", "z": "#0f8a5f"}
-BANDS = (("missing", "#cfd8e3", "no sample: predicted"), ("warming", "#fde9b8", "warming up"))
-FLAG_COLOURS = {protocol.GATED: GATED_COLOUR, protocol.COASTED: "#7a8ea5", protocol.SILENCE: "#3d4f63", protocol.CLIPPED: "#e07b00",
-                protocol.STUCK: "#8b3fc4", protocol.WARMING_UP: "#e5b93c", protocol.NOT_GRAVITY: "#0f8a5f"}
-OTHER_FLAG_COLOUR = "#555555"
 
 
 def style(axes, label):
@@ -62,7 +58,7 @@ def line(axes, t_s, values, begins, seam, **look):
 def points(axes, t_s, values, mask, limits, **look):
     shown = np.flatnonzero(mask)
     shown = shown[thin.spots(t_s[shown], values[shown], COLUMNS, LEVELS, limits)] if len(shown) else shown
-    axes.plot(t_s[shown], values[shown], **look)
+    axes.plot(t_s[shown], values[shown], rasterized=len(shown) > POINTS_AS_SHAPES, **look)
 
 
 def refused(axes, t_s, values, mask, limits, colour, label):
@@ -88,18 +84,14 @@ def unit(kind):
     return f"{kind} in degrees" if kind in ANGLES else f"{kind} in mg"
 
 
-def same_readings(group):
-    return len(group) == 1 or all(len(one) == len(group[0]) and np.array_equal(one.lsb, group[0].lsb) for one in group[1:])
-
-
 def draw_quantity(axes, group, colours, kind):
     alone, shared = len(group) == 1, same_readings(group)
     lines = [one.filtered[kind] for one in group if kind in one.filtered] + [one.truth[kind] for one in group[:1] if kind in one.truth]
     raw = np.concatenate([one.raw[kind][~one.missing] for one in (group[:1] if shared else group)])
     limits = limits_of(raw, lines)
     if alone:
-        for mask, (_, colour, label) in zip((group[0].missing, (group[0].flags & protocol.WARMING_UP) != 0), BANDS):
-            shade(axes, group[0].t_s, mask, colour, label)
+        shade(axes, group[0].t_s, group[0].missing, *MISSING_BAND)
+        shade(axes, group[0].t_s, (group[0].flags & protocol.WARMING_UP) != 0, *WARMING_BAND)
     for i, (one, colour) in enumerate(zip(group, colours)):
         measured = ~one.missing
         if i == 0 or not shared:
@@ -130,7 +122,7 @@ def draw_flags(axes, group, span):
         mask = (one.flags & bit) != 0
         share = thin.shares(one.t_s, mask, LANE_COLUMNS, span)
         image = np.zeros((1, LANE_COLUMNS, 4))
-        image[0, :, :3] = to_rgb(FLAG_COLOURS.get(bit, OTHER_FLAG_COLOUR))
+        image[0, :, :3] = to_rgb(FLAG_COLOURS[bit])
         image[0, :, 3] = np.where(share > 0.0, LEAST_SHADE + (1.0 - LEAST_SHADE) * share, 0.0)
         axes.imshow(image, extent=(*span, lane + 0.4, lane - 0.4), aspect="auto", interpolation="nearest", zorder=2)
         axes.text(1.005, lane, f"{int(mask.sum()):,} rows, {100.0 * mask.mean():.2g} %", transform=axes.get_yaxis_transform(), fontsize=8,

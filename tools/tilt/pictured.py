@@ -38,6 +38,11 @@ class Pictured:
         return (self.flags & protocol.GATED) != 0
 
 
+def same_readings(group):
+    """One recording, or several runs over the same readings."""
+    return len(group) == 1 or all(len(one) == len(group[0]) and np.array_equal(one.lsb, group[0].lsb) for one in group[1:])
+
+
 def columns_in(path):
     """Names in the first header of the file, or nothing: what is wrong with the file is told by stream.read."""
     try:
