@@ -15,23 +15,21 @@ from types import SimpleNamespace
 
 try:
     import numpy as np
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+
+    from tilt import picture
+    from tilt.angles import ANGLES, raw_angles_deg, wrapped_deg
+    from tilt.look import FILE_COLOURS, GATED_COLOUR, MISSING_BAND, RAW_COLOUR, TRUTH_COLOUR, WARMING_BAND
+    from tilt.protocol import GATED, NO_SAMPLE, WARMING_UP, WRAP_US
 except ImportError as missing:
     sys.exit(f"plot_run: {missing.name} is missing: run `make deps`, or use a Python that has tools/requirements.txt")
 
 RUN_COLUMNS = ["t_us", "x_lsb", "y_lsb", "z_lsb", "x_mg", "y_mg", "z_mg", "roll_cdeg", "pitch_cdeg", "flags"]
 READING = ["x_lsb", "y_lsb", "z_lsb"]
 TRUTH = ["roll_true_cdeg", "pitch_true_cdeg"]
-FLAG_GATED, FLAG_COASTED, FLAG_FAULT, FLAG_WARMING_UP = 1, 2, 16, 128
-WRAP_US = 1 << 32
 OFFSET_BIN_US = 100       # clocks are aligned by the most frequent difference, to this resolution
 VOTING_ROWS = 400         # rows that vote on it
 MATCH_WINDOW_STEPS = 1.5  # a row's truth is at most this many rows away in time
-LIMIT_PERCENTILES = (0.5, 99.5)
 PICTURE_INCHES, PICTURE_DPI = (12.0, 7.0), 100
-RAW_COLOUR, FILTERED_COLOUR, GATED_COLOUR, TRUTH_COLOUR = "#9aa3ad", "#1f5fbf", "#d1495b", "#111111"
 
 
 class InputError(Exception):
@@ -127,15 +125,6 @@ def segments(t_us):
     return [slice(a, b) for a, b in zip([0, *cuts], [*cuts, len(t_us)])]
 
 
-def raw_angles_deg(table):
-    x, y, z = (table[name].astype(float) for name in READING)
-    return {"roll": np.degrees(np.arctan2(y, z)), "pitch": np.degrees(np.arctan2(-x, np.hypot(y, z)))}
-
-
-def wrapped_deg(difference):
-    return (difference + 180.0) % 360.0 - 180.0
-
-
 def reading_keys(table):
     x, y, z = (table[name] + 32768 for name in READING)
     return (x << 32) | (y << 16) | z
@@ -176,7 +165,7 @@ def match_rows(run, source):
         offset = clock_offset_us(t_us, keys[part], source_t, source_keys)
         if offset is not None:
             matched[part] = nearest_same_reading(t_us - offset, keys[part], source_t, source_keys)
-    matched[(run["flags"] & (FLAG_COASTED | FLAG_FAULT)) != 0] = -1
+    matched[(run["flags"] & NO_SAMPLE) != 0] = -1
     return matched
 
 
@@ -184,7 +173,7 @@ def take_truth(source, matched):
     if source is None or any(name not in source for name in TRUTH):
         return None
     return {angle: np.where(matched >= 0, source[name][matched] / 100.0, np.nan)
-            for angle, name in zip(("roll", "pitch"), TRUTH)}
+            for angle, name in zip(ANGLES, TRUTH)}
 
 
 # --- summary ----------------------------------------------------------------------------------------------------------
@@ -195,15 +184,15 @@ def analyse(run, source):
     flags = run["flags"]
     result = SimpleNamespace(rows=len(flags), flags=flags)
     result.t_s = (unwrap_us(run["t_us"]) - run["t_us"][0]) * 1e-6
-    result.raw = raw_angles_deg(run)
-    result.filtered = {angle: run[angle + "_cdeg"] / 100.0 for angle in ("roll", "pitch")}
-    result.no_sample = (flags & (FLAG_COASTED | FLAG_FAULT)) != 0
-    result.warming = (flags & FLAG_WARMING_UP) != 0
-    result.gated = (flags & FLAG_GATED) != 0
+    result.raw = raw_angles_deg(np.stack([run[name] for name in READING], axis=1))
+    result.filtered = {angle: run[angle + "_cdeg"] / 100.0 for angle in ANGLES}
+    result.no_sample = (flags & NO_SAMPLE) != 0
+    result.warming = (flags & WARMING_UP) != 0
+    result.gated = (flags & GATED) != 0
     matched = match_rows(run, source) if source is not None else None
     result.unmatched = None if matched is None else int(np.sum((matched < 0) & ~result.no_sample))
     result.truth = None if matched is None else take_truth(source, matched)
-    result.rmse = {} if result.truth is None else {angle: rmse_pair(result, angle) for angle in ("roll", "pitch")}
+    result.rmse = {} if result.truth is None else {angle: rmse_pair(result, angle) for angle in ANGLES}
     return result
 
 
@@ -245,67 +234,28 @@ def summary_lines(result, stats, cut):
 # --- picture ----------------------------------------------------------------------------------------------------------
 
 
-def without_wraps(series):
-    """The series with NaN where it jumps over the +-180 seam, so that no line is drawn across the picture."""
-    broken = series.astype(float).copy()
-    with np.errstate(invalid="ignore"):
-        broken[1:][np.abs(np.diff(series)) > 180.0] = np.nan
-    return broken
-
-
-def axis_limits(result, angle):
-    """Limits that show all of the filtered line and the truth, and the raw points but the wildest percent."""
-    low, high = np.percentile(result.raw[angle], LIMIT_PERCENTILES)
-    shown = [low, high, *result.filtered[angle]]
-    if result.truth is not None:
-        shown += [value for value in result.truth[angle] if not np.isnan(value)]
-    margin = max(0.06 * (max(shown) - min(shown)), 0.5)
-    return min(shown) - margin, max(shown) + margin
-
-
-def shade(axes, result, mask, colour, label):
-    """Vertical bands over the stretches of rows in the mask."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(int), [0]))))
-    half_step = 0.5 * float(np.median(np.diff(result.t_s))) if result.rows > 1 else 0.005
-    for begin, end in zip(edges[::2], edges[1::2]):
-        axes.axvspan(result.t_s[begin] - half_step, result.t_s[end - 1] + half_step, color=colour, alpha=0.55, lw=0,
-                     label=label, zorder=0)
-        label = None
-
-
 def draw_panel(axes, result, angle):
-    raw, gated, accepted = result.raw[angle], result.gated & ~result.no_sample, ~result.gated & ~result.no_sample
-    shade(axes, result, result.no_sample, "#cfd8e3", "no sample: predicted")
-    shade(axes, result, result.warming, "#fde9b8", "warming up")
-    axes.plot(result.t_s[accepted], raw[accepted], ".", ms=2.4, color=RAW_COLOUR, label="raw", zorder=1)
-    axes.plot(result.t_s[gated], raw[gated], "x", ms=3.2, mew=0.7, color=GATED_COLOUR, alpha=0.75,
-              label="raw of gated rows", zorder=2)
-    axes.plot(result.t_s, without_wraps(result.filtered[angle]), "-", lw=1.5, color=FILTERED_COLOUR, label="filtered",
-              zorder=4)
+    measured, lines = ~result.no_sample, [result.filtered[angle]] + ([] if result.truth is None else [result.truth[angle]])
+    raw, limits = result.raw[angle], picture.limits_of(result.raw[angle], lines)
+    unbroken = np.zeros(result.rows, bool)
+    picture.shade(axes, result.t_s, result.no_sample, *MISSING_BAND)
+    picture.shade(axes, result.t_s, result.warming, *WARMING_BAND)
+    picture.points(axes, result.t_s, raw, ~result.gated & measured, limits, ls="", marker=".", ms=2.4, color=RAW_COLOUR, label="raw", zorder=1)
+    picture.refused(axes, result.t_s, raw, result.gated & measured, limits, GATED_COLOUR, "raw of gated rows")
+    picture.line(axes, result.t_s, result.filtered[angle], unbroken, True, lw=1.5, color=FILE_COLOURS[0], label="filtered", zorder=4)
     if result.truth is not None:
-        axes.plot(result.t_s, without_wraps(result.truth[angle]), "--", lw=1.0, color=TRUTH_COLOUR, label="truth",
-                  zorder=5)
-    axes.set_ylim(*axis_limits(result, angle))
-    axes.set_ylabel(f"{angle} in degrees")
-    axes.grid(True, color="#e3e6ea", lw=0.6)
-    axes.set_title(panel_note(axes, result, angle), loc="right", fontsize=9, color="#444444", pad=3)
-
-
-def panel_note(axes, result, angle):
-    raw = result.raw[angle][~result.no_sample] if not np.all(result.no_sample) else np.zeros(1)
-    low, high = axes.get_ylim()
-    outside = int(np.sum((raw < low) | (raw > high)))
-    notes = []
-    if angle in result.rmse:
-        notes.append("rms error: raw {:.2f}, filtered {:.2f} degrees".format(*result.rmse[angle]))
-    if outside:
-        notes.append(f"{outside} raw points outside ({raw.min():.1f} to {raw.max():.1f})")
-    return "   ".join(notes)
+        picture.line(axes, result.t_s, result.truth[angle], unbroken, True, lw=1.0, ls="--", color=TRUTH_COLOUR, label="truth", zorder=5)
+    axes.set_ylim(*limits)
+    picture.style(axes, picture.unit(angle))
+    notes = ["rms error: raw {:.2f}, filtered {:.2f} degrees".format(*result.rmse[angle])] if angle in result.rmse else []
+    notes.append(picture.outside_note(raw[measured], limits))
+    axes.set_title("   ".join(filter(None, notes)), loc="right", fontsize=9, color="#444444", pad=3)
 
 
 def draw(result, title, png):
-    figure, panels = plt.subplots(2, 1, sharex=True, figsize=PICTURE_INCHES, dpi=PICTURE_DPI)
-    for axes, angle in zip(panels, ("roll", "pitch")):
+    figure = picture.Figure(figsize=PICTURE_INCHES, dpi=PICTURE_DPI)
+    panels = figure.subplots(2, 1, sharex=True)
+    for axes, angle in zip(panels, ANGLES):
         draw_panel(axes, result, angle)
     panels[1].set_xlabel("seconds")
     panels[1].set_xlim(result.t_s[0], max(result.t_s[-1], result.t_s[0] + 0.01))
@@ -317,7 +267,6 @@ def draw(result, title, png):
         figure.savefig(png)
     except OSError as error:
         raise InputError(f"{png}: {error.strerror}") from error
-    plt.close(figure)
 
 
 # --- command ----------------------------------------------------------------------------------------------------------

@@ -107,8 +107,8 @@ class Lines(Case):
         self.assertEqual(int(self.stream_of(text).t_us[-1]), 590_000)
 
     def test_plotter_rows_are_kept_as_comments(self):
-        counts, text = recorded(HEADER + rows(0, 9) + b"# mode plot\nroll_raw:1.23,roll:1.20,pitch_raw:-0.42,pitch:-0.40,gated:0\n# mode csv\n" + HEADER
-                                + rows(200, 209))
+        plotter = b"# mode plot\nroll_raw:1.23,roll:1.20,pitch_raw:-0.42,pitch:-0.40,gated:0\n# mode csv\n"
+        counts, text = recorded(HEADER + rows(0, 9) + plotter + HEADER + rows(200, 209))
         self.assertEqual((counts.plotter, counts.malformed, counts.complete(), len(self.stream_of(text))), (1, 0, True, 18))
 
     def test_what_is_never_ours_is_never_written(self):

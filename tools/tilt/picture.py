@@ -65,14 +65,17 @@ def refused(axes, t_s, values, mask, limits, colour, label):
     """Crosses at the gated readings; those outside the picture as triangles at its edge, so that none goes unseen."""
     if not np.any(mask):
         return
-    points(axes, t_s, values, mask, limits, ls="", marker="x", ms=3.2, mew=0.7, color=colour, alpha=0.75, label=label, zorder=2)
     low, high = limits
+    points(axes, t_s, values, mask & (values >= low) & (values <= high), limits, ls="", marker="x", ms=3.2, mew=0.7, color=colour, alpha=0.75,
+           label=label, zorder=2)
     for outside, edge, marker in ((mask & (values > high), high, "^"), (mask & (values < low), low, "v")):
         if np.any(outside):
-            points(axes, t_s, np.full(len(t_s), edge), outside, limits, ls="", marker=marker, ms=3.5, color=colour, alpha=0.75, zorder=2, clip_on=False)
+            points(axes, t_s, np.full(len(t_s), edge), outside, limits, ls="", marker=marker, ms=3.5, color=colour, alpha=0.75, zorder=2,
+                   clip_on=False)
 
 
 def outside_note(raw, limits):
+    """How many raw points the picture does not show; "" for none."""
     outside = int(np.sum((raw < limits[0]) | (raw > limits[1])))
     return f"{outside:,} raw points outside ({raw.min():.1f} to {raw.max():.1f})" if outside else ""
 
@@ -100,7 +103,8 @@ def draw_quantity(axes, group, colours, kind):
         refused(axes, one.t_s, one.raw[kind], measured & one.gated, limits, GATED_COLOUR if alone else colour,
                 "raw of gated rows" if alone else f"gated by {one.name}")
         if kind in one.filtered:
-            line(axes, one.t_s, one.filtered[kind], one.begins, kind == "roll", lw=1.5, color=colour, zorder=4, label="filtered" if alone else one.name)
+            line(axes, one.t_s, one.filtered[kind], one.begins, kind == "roll", lw=1.5, color=colour, zorder=4,
+                 label="filtered" if alone else one.name)
         if kind in one.truth and i == 0:
             line(axes, one.t_s, one.truth[kind], one.begins, kind == "roll", lw=1.0, ls="--", color=TRUTH_COLOUR, zorder=5, label="truth")
     axes.set_ylim(*limits)
@@ -143,10 +147,11 @@ def draw_spectrum(axes, files):
     """One file: its three axes, raw and filtered; several: the mean of the axes of each."""
     drawn = [one for one in files if one.raw_density is not None]
     if len(files) == 1 and drawn:
+        raw, filtered = drawn[0].raw_density, drawn[0].filtered_density
         for i, axis in enumerate(AXES):
-            axes.loglog(drawn[0].raw_density.hz, drawn[0].raw_density.lsb_rthz[:, i], lw=0.9, alpha=0.55, color=AXIS_COLOURS[axis], label=f"{axis} raw")
-            if drawn[0].filtered_density is not None:
-                axes.loglog(drawn[0].filtered_density.hz, drawn[0].filtered_density.lsb_rthz[:, i], lw=1.7, color=AXIS_COLOURS[axis], label=f"{axis} filtered")
+            axes.loglog(raw.hz, raw.lsb_rthz[:, i], lw=0.9, alpha=0.55, color=AXIS_COLOURS[axis], label=f"{axis} raw")
+            if filtered is not None:
+                axes.loglog(filtered.hz, filtered.lsb_rthz[:, i], lw=1.7, color=AXIS_COLOURS[axis], label=f"{axis} filtered")
     elif drawn:
         shared = same_readings(files)
         for i, (one, colour) in enumerate(zip(files, FILE_COLOURS * len(files))):
@@ -214,7 +219,8 @@ def draw_group(panels, at, group, kinds, span, name):
     if at > first:
         panels[first].set_title(name, loc="left", fontsize=10, fontweight="bold", pad=3)
         handles, labels = panels[first].get_legend_handles_labels()
-        panels[first].legend(handles, labels, loc="lower left", bbox_to_anchor=(0.0, 1.08), ncol=min(len(labels), 6), fontsize=9, frameon=False, markerscale=2.0)
+        panels[first].legend(handles, labels, loc="lower left", bbox_to_anchor=(0.0, 1.08), ncol=min(len(labels), 6), fontsize=9,
+                             frameon=False, markerscale=2.0)
     if "flags" in kinds:
         draw_flags(panels[at], group, span)
         at += 1

@@ -27,8 +27,8 @@ class Pictured:
     missing: np.ndarray
     begins: np.ndarray  # rows that do not follow the one before: no line is drawn there
     rate_hz: float
-    raw_density: object
-    filtered_density: object
+    raw_density: spectrum.Density | None = None
+    filtered_density: spectrum.Density | None = None
 
     def __len__(self):
         return len(self.t_s)
@@ -69,7 +69,7 @@ def load(path, from_s=None, to_s=None, progress=None):
     filtered = {kind: whole.columns[name][part] / (100.0 if kind in ANGLES else 1.0) for kind, name in FILTERED.items() if name in extra}
     raw = raw_angles_deg(lsb) | {axis: lsb[:, i] * (1000.0 / LSB_PER_G) for i, axis in enumerate(AXES)}
     truth = {"roll": whole.roll_true_cdeg[part] / 100.0, "pitch": whole.pitch_true_cdeg[part] / 100.0} if whole.has_truth else {}
-    shown = Pictured(pathlib.Path(path).name, t_s[part], raw, filtered, truth, lsb, whole.flags[part], missing, begins[part], whole.rate_hz, None, None)
+    shown = Pictured(pathlib.Path(path).name, t_s[part], raw, filtered, truth, lsb, whole.flags[part], missing, begins[part], whole.rate_hz)
     add_spectrum(shown, whole, part)
     return shown
 
