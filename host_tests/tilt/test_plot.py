@@ -96,12 +96,12 @@ class Thinned(Case):
         t_s, values = np.arange(50_000) * 0.01, noise(50_000)[:, 0]
         values[123], values[44_000] = 99.0, -99.0  # alone at the edges
         values[500] = np.nan
-        kept = thin.spots(t_s, values, 40, 30, (-2.0, 2.0))
+        kept = thin.spots(t_s, values, 40, 30, (-6.0, 6.0))
 
         def cells(rows):
             rows = rows[~np.isnan(values[rows])]
             across = np.minimum((t_s[rows] * (40 / t_s[-1])).astype(int), 39)
-            return list(zip(across, np.clip((values[rows] + 2.0) * (30 / 4.0), 0, 29).astype(int)))
+            return list(zip(across, np.clip((values[rows] + 6.0) * (30 / 12.0), 0, 29).astype(int)))
         self.assertEqual(sorted(cells(kept)), sorted(set(cells(np.arange(50_000)))))
 
     def test_shares(self):
@@ -190,7 +190,7 @@ class Picture(Case):
 
     def test_no_gate_hit_of_an_hour_goes_unseen(self):
         gated = (1, 23_456, 60_000, 89_998)
-        one = pictured.load(self.recording(90_000, gated, step_us=40_000))
+        (one,) = pictured.load(self.recording(90_000, gated, step_us=40_000))
         figure = picture.draw([one], USUAL, True, "an hour")
         seen, at_edge = self.marked(figure)
         np.testing.assert_allclose(sorted(seen), [0.04 * row for row in gated])
@@ -201,7 +201,7 @@ class Picture(Case):
     def test_lanes_show_a_single_row_with_its_count(self):
         flags = np.zeros(50_000, int)
         flags[40_000] = 8
-        figure = picture.draw([pictured.load(self.recording(50_000, (7,), flags=flags))], ["flags"], True, "")
+        figure = picture.draw(pictured.load(self.recording(50_000, (7,), flags=flags)), ["flags"], True, "")
         lanes = figure.axes[0]
         self.assertEqual([label.get_text() for label in lanes.get_yticklabels()], ["gated", "clipped"])
         self.assertEqual([text.get_text() for text in lanes.texts], ["1 rows, 0.002 %"] * 2)
@@ -219,7 +219,8 @@ class Picture(Case):
         self.assertEqual(gaps.tolist(), [2, 6])  # before row 2, and before row 5
 
     def test_pictures_of_each_kind(self):
-        runs = self.recording(500, gated=(5, 50), truth=True), self.recording(500, name="plain.csv", filtered=False), self.recording(20, name="short.csv")
+        runs = (self.recording(500, gated=(5, 50), truth=True), self.recording(500, name="plain.csv", filtered=False),
+                self.recording(20, name="short.csv"))
         for suffix, *words in (("svg", runs[0]), ("png", runs[1]), ("png", *runs, "--columns", "roll,flags,spectrum"), ("html", *runs),
                                ("png", runs[0], runs[2], "--stack", "--columns", "x,y,flags,spectrum"), ("html", *runs, "--stack"),
                                ("html", runs[0], "--columns", "spectrum"), ("png", runs[2], "--columns", "z", "--from", 0.05, "--to", 0.1)):
@@ -229,6 +230,16 @@ class Picture(Case):
             self.assertIn(str(out), said)
         self.assertTrue((self.folder / "out.png").read_bytes().startswith(b"\x89PNG\r\n\x1a\n"))
         self.assertTrue(xml.etree.ElementTree.parse(self.folder / "out.svg").getroot().tag.endswith("svg"))
+
+    def test_several_filters_in_one_file_as_replay_writes_them(self):
+        path = self.folder / "several.csv"
+        columns = {f"{name}_{end}": np.full(40, value) for end, value in (("kf", 100), ("sprf_paper", 200)) for name in ("roll_cdeg", "x_mg", "flags")}
+        stream.write(path, 10_000 * np.arange(40), np.full((40, 3), 100), flags=np.zeros(40, int), columns=columns | {"flags_kf": np.arange(40) == 3})
+        found = pictured.load(path)
+        self.assertEqual([one.name for one in found], ["several.csv: kf", "several.csv: sprf_paper"])
+        self.assertEqual([(one.filtered["roll"][0], one.filtered["x"][0], int(one.flags[5])) for one in found], [(1.0, 100.0, 0), (2.0, 200.0, 200)])
+        self.assertEqual([np.flatnonzero(one.gated).tolist() for one in found], [[3], []])
+        self.assertTrue(pictured.same_readings(found))
 
     def test_a_part(self):
         status, out, _ = self.tilt(self.recording(), "-o", self.folder / "a.html", "--from", 5, "--to", 7)
@@ -246,7 +257,8 @@ class Refused(Case):
     def test_a_bad_file_with_its_line(self):
         path = self.recording(20)
         lines = path.read_text().splitlines()
-        for number, bad, reason in ((5, "1,2,3", "3 fields where the header has 10"), (9, lines[8].replace("2000", "20.5"), "not a whole number: '20.5'")):
+        for number, bad, reason in ((5, "1,2,3", "3 fields where the header has 10"),
+                                    (9, lines[8].replace("2000", "20.5"), "not a whole number: '20.5'")):
             path.write_text("\n".join(lines[:number - 1] + [bad] + lines[number:]))
             self.refused(f"run.csv:{number}: ", path, "-o", self.folder / "out.png")
             self.refused(reason, path, "-o", self.folder / "out.png")
@@ -306,7 +318,8 @@ class Page(Case):
         script = """<script>
 const key = name => document.dispatchEvent(new KeyboardEvent("keydown", { key: name }));
 const span = () => Math.round(view.a) + " " + Math.round(view.b), told = [];
-told.push(span()); key("+"); told.push(span()); key("ArrowLeft"); told.push(span()); key("ArrowRight"); key("ArrowRight"); key("ArrowRight"); told.push(span());
+told.push(span()); key("+"); told.push(span()); key("ArrowLeft"); told.push(span());
+key("ArrowRight"); key("ArrowRight"); key("ArrowRight"); told.push(span());
 key("0"); told.push(span()); zoom(0.1, 10000); told.push(span()); show(0, 1e9);
 tell(9960); document.body.dataset.readout = document.getElementById("readout").textContent;
 document.body.dataset.spans = told.join("; ");
@@ -315,8 +328,8 @@ requestAnimationFrame(() => { new Plot(drawings[0][0], 0, 100).marks(DATA.files[
   i => DATA.files[0].flags[i] & 1, 2, () => document.body.dataset.crosses++); });
 </script></body>"""
         page.write_text(page.read_text().replace("</body>", script))
-        done = subprocess.run([BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=3000", f"--user-data-dir={self.folder}/user",
-                               "--dump-dom", f"file://{page}"], capture_output=True, text=True, timeout=60, check=False)
+        command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=3000", f"--user-data-dir={self.folder}/user"]
+        done = subprocess.run([*command, "--dump-dom", f"file://{page}"], capture_output=True, text=True, timeout=60, check=False)
         body = re.search(r"<body([^>]*)>", done.stdout).group(1)
         # 3.59 s in ticks of 0.1 ms; 0.6 of it about the middle; a quarter of that earlier; 3 later, as far as it goes; all; a tenth about 1 s
         self.assertIn('data-spans="0 35900; 7180 28720; 1795 23335; 14360 35900; 0 35900; 9000 12590"', body)

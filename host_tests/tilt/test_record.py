@@ -6,6 +6,7 @@ import io
 import os
 import pathlib
 import signal
+import subprocess
 import sys
 import tempfile
 import termios
@@ -311,6 +312,31 @@ class Command(Case):
             with contextlib.redirect_stderr(io.StringIO()) as err:
                 self.assertEqual(cli.main(["record", "nowhere", *words]), 2)
             self.assertIn(words[0], err.getvalue())
+
+
+class Simulated(Case):
+    """The firmware itself, in the simulator, on its pseudo terminal."""
+
+    SIMRUN, FIRMWARE, STREAM = "build/sim/simrun", "build/uno/firmware.elf", "sim/streams/tilt-fast.csv"
+
+    @unittest.skipUnless(os.path.exists(SIMRUN) and os.path.exists(FIRMWARE), "no simulator or firmware: make system_images")
+    def test_the_firmwares_rows(self):
+        """A second of them, equal to what left the simulated UART."""
+        command = [self.SIMRUN, "--fw", self.FIRMWARE, "--in", self.STREAM, "--out", str(self.folder / "all.csv"), "--pty", "--loop"]
+        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as board:
+            try:
+                name = next(line for line in board.stderr if "UART on" in line).split()[-1]
+                with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()):
+                    status = cli.main(["record", name, "-o", str(self.file), "--seconds", "1", "--send", "every 1"])
+            finally:
+                board.terminate()
+                board.stderr.read()
+        self.assertEqual(status, 0, out.getvalue())
+        sent = (self.folder / "all.csv").read_text().splitlines()
+        rows = [line for line in self.file.read_text().splitlines() if line[0].isdigit()]
+        first = sent.index(rows[0])
+        self.assertGreaterEqual(len(rows), 100)
+        self.assertEqual([line for line in sent[first:] if line[:1].isdigit()][:len(rows)], rows)
 
 
 if __name__ == "__main__":

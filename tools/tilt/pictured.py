@@ -55,21 +55,36 @@ def columns_in(path):
     return []
 
 
+def filters_in(names):
+    """What stands behind the columns of each filter in a file: "" as the firmware has them, "_kf" as `tilt replay` writes several; [""] with none."""
+    behind = [name.removeprefix("roll_cdeg") for name in names if name == "roll_cdeg" or name.startswith("roll_cdeg_")]
+    return behind or [""]
+
+
 def load(path, from_s=None, to_s=None, progress=None):
-    """The part between two times from the start; TiltError when the file is no stream or has no row there."""
-    extra = [name for name in FILTERED.values() if name in columns_in(path)]
+    """A list, one for each filter in the file, of the part between two times from the start. TiltError: the file is no stream, or has no
+    row there."""
+    names = columns_in(path)
+    behind = filters_in(names)
+    extra = [name + end for end in behind for name in (*FILTERED.values(), *(("flags",) if end else ())) if name + end in names]
     whole = stream.read(path, extra, progress)
     t_s = whole.t_us * 1e-6
     part = slice(*np.searchsorted(t_s, [-1.0 if from_s is None else from_s, np.inf if to_s is None else to_s]).tolist())
     if part.start >= part.stop:
         raise TiltError(f"{path}: no row from {from_s or 0:g} s to {whole.seconds if to_s is None else to_s:g} s; it has {whole.seconds:.1f} s")
+    return [of_filter(pathlib.Path(path).name, whole, t_s, part, end) for end in behind]
+
+
+def of_filter(name, whole, t_s, part, end):
     begins = np.concatenate(([True], np.diff(whole.t_us) > max(GAP_STEPS * whole.step_us, GAP_US)))
     begins[[segment.start for segment in whole.segments]] = True
     lsb, missing = whole.lsb[part], whole.missing[part]
-    filtered = {kind: whole.columns[name][part] / (100.0 if kind in ANGLES else 1.0) for kind, name in FILTERED.items() if name in extra}
+    filtered = {kind: whole.columns[column + end][part] / (100.0 if kind in ANGLES else 1.0) for kind, column in FILTERED.items()
+                if column + end in whole.columns}
     raw = raw_angles_deg(lsb) | {axis: lsb[:, i] * (1000.0 / LSB_PER_G) for i, axis in enumerate(AXES)}
     truth = {"roll": whole.roll_true_cdeg[part] / 100.0, "pitch": whole.pitch_true_cdeg[part] / 100.0} if whole.has_truth else {}
-    shown = Pictured(pathlib.Path(path).name, t_s[part], raw, filtered, truth, lsb, whole.flags[part], missing, begins[part], whole.rate_hz)
+    flags = whole.columns.get("flags" + end, whole.flags)[part] if end else whole.flags[part]
+    shown = Pictured(name + (f": {end[1:]}" if end else ""), t_s[part], raw, filtered, truth, lsb, flags, missing, begins[part], whole.rate_hz)
     add_spectrum(shown, whole, part)
     return shown
 

@@ -58,8 +58,8 @@ def run(args):
     path, suffix = output_of(args)
     kinds = kinds_of(args.columns)
     from tilt import pictured
-    files = [pictured.load(name, args.from_s, args.to_s, progress_of(name)) for name in args.files]
-    title = args.title or ", ".join(one.name for one in files)
+    files = [one for name in args.files for one in pictured.load(name, args.from_s, args.to_s, progress_of(name))]
+    title = args.title or ", ".join(pathlib.Path(name).name for name in args.files)
     if suffix == "html":
         from tilt import plot_page
         plot_page.write(path, files, kinds, not args.stack, title)
