@@ -233,8 +233,9 @@ class Picture(Case):
 
     def test_several_filters_in_one_file_as_replay_writes_them(self):
         path = self.folder / "several.csv"
-        columns = {f"{name}_{end}": np.full(40, value) for end, value in (("kf", 100), ("sprf_paper", 200)) for name in ("roll_cdeg", "x_mg", "flags")}
-        stream.write(path, 10_000 * np.arange(40), np.full((40, 3), 100), flags=np.zeros(40, int), columns=columns | {"flags_kf": np.arange(40) == 3})
+        columns = {f"{name}_{end}": np.full(40, value) for end, value in (("kf", 100), ("sprf_paper", 200)) for name in ("roll_cdeg", "x_mg")}
+        columns |= {"flags_kf": np.arange(40) == 3, "flags_sprf_paper": np.full(40, 200)}
+        stream.write(path, 10_000 * np.arange(40), np.full((40, 3), 100), flags=np.zeros(40, int), columns=columns)
         found = pictured.load(path)
         self.assertEqual([one.name for one in found], ["several.csv: kf", "several.csv: sprf_paper"])
         self.assertEqual([(one.filtered["roll"][0], one.filtered["x"][0], int(one.flags[5])) for one in found], [(1.0, 100.0, 0), (2.0, 200.0, 200)])

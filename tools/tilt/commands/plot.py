@@ -10,7 +10,7 @@ import sys
 from tilt.errors import TiltError
 
 NAME = "plot"
-SUMMARY = "draw recordings: raw against filtered, flags, spectrum (PNG, SVG, HTML)"
+SUMMARY = "draw recordings: raw against filtered, flags, spectrum"
 SUFFIXES = ("png", "svg", "html")
 KINDS = ("roll", "pitch", "x", "y", "z", "flags", "spectrum")
 USUAL = ("roll", "pitch", "flags", "spectrum")
