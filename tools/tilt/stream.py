@@ -359,16 +359,18 @@ def _checked(t_us, lsb, segments, columns):
             raise ValueError(f"{name} is out of its range")
 
 
-def write(path, t_us, lsb, *, flags=None, roll_true_cdeg=None, pitch_true_cdeg=None, columns=None, comments=(), segments=None):
+def write(path, t_us, lsb, *, flags=None, roll_true_cdeg=None, pitch_true_cdeg=None, columns=None, comments=(), segments=None,
+          progress=None):
     """Writes a stream that read() gives back: times in us that do not go backwards (more than 32 bits may be), readings (rows, 3) in LSB,
-    further columns {name: whole numbers}, comments (lines, without the `#`), segments (slices; one header each).
+    further columns {name: whole numbers}, comments (lines, without the `#`), segments (slices; one header each), progress(rows done, all).
 
     ValueError: values that no stream may have; TiltError: the file cannot be written. The file has its name only when it is whole.
     """
     t_us, lsb = np.asarray(t_us, np.int64), np.asarray(lsb, np.int64).reshape(-1, 3)
-    segments = segments or [slice(0, len(t_us))]
-    optional = {FLAGS: flags, TRUTH[0]: roll_true_cdeg, TRUTH[1]: pitch_true_cdeg} | dict(columns or {})
-    optional = {name: np.asarray(column, np.int64) for name, column in optional.items() if column is not None}
+    segments, progress = segments or [slice(0, len(t_us))], progress or (lambda done, whole: None)
+    known = {FLAGS: flags, TRUTH[0]: roll_true_cdeg, TRUTH[1]: pitch_true_cdeg}
+    optional = dict(columns or {}) | {name: column for name, column in known.items() if column is not None}
+    optional = {name: np.asarray(column, np.int64) for name, column in optional.items()}
     _checked(t_us, lsb, segments, optional)
     head = ",".join([TIME, "x_lsb", "y_lsb", "z_lsb", *optional]) + "\n"
     form = ",".join(["%d"] * (4 + len(optional))) + "\n"
@@ -376,5 +378,8 @@ def write(path, t_us, lsb, *, flags=None, roll_true_cdeg=None, pitch_true_cdeg=N
         file.writelines(f"# {text}\n" for text in comments)
         for part in segments:
             file.write(head)
-            table = (t_us[part], *lsb[part].T, *(column[part] for column in optional.values()))
-            file.writelines(form % row for row in zip(*(column.tolist() for column in table)))
+            for begin in range(part.start, part.stop, ROWS_AT_A_TIME // 10):  # numbers of Python take five times the room
+                piece = slice(begin, min(begin + ROWS_AT_A_TIME // 10, part.stop))
+                table = (t_us[piece], *lsb[piece].T, *(column[piece] for column in optional.values()))
+                file.writelines(form % row for row in zip(*(column.tolist() for column in table)))
+                progress(piece.stop, len(t_us))

@@ -1,0 +1,109 @@
+"""Runs a recording through the firmware's own filters on the PC.
+
+The rows are those that the board would send, to the last digit (docs/tools.md says where that ends). With one filter the columns of the
+output are the firmware's; with several each has its own, as roll_cdeg_kf, and `flags` holds what they have in common. Truth columns are
+passed on. Rows go out at the times of the recording; a row that stands for a sample that is missing has flag 2.
+"""
+import sys
+import time
+
+from tilt.errors import TiltError
+
+NAME = "replay"
+SUMMARY = "run a recording through the shipped filters, many at once"
+OWN = ("x_mg", "y_mg", "z_mg", "roll_cdeg", "pitch_cdeg", "flags")
+
+
+def stream_arguments(parser):
+    """What replay, compare and tune have in common."""
+    parser.add_argument("stream", metavar="STREAM", help="recording (docs/protocol.md, Streams)")
+    parser.add_argument("--filter", metavar="A,B,C", help="names of filters (default: all)")
+    parser.add_argument("--rate", metavar="HZ", type=float, help="output data rate of the sensor (default: that of the firmware's nearest to the recording)")
+
+
+def arguments(parser):
+    stream_arguments(parser)
+    parser.add_argument("--range", metavar="G", type=int, choices=(2, 4, 8, 16), default=16, help="range of the sensor: 2 4 8 16 (default 16)")
+    parser.add_argument("-o", "--output", metavar="OUT.csv", help="rows, - for standard output")
+
+
+def columns_of(tables):
+    """{column: numbers} of the rows of all filters, and the flags that all have."""
+    import numpy as np
+
+    found, alone = {}, len(tables) == 1
+    for name, rows in tables.items():
+        own = dict(zip(OWN, (*rows["mg"].T, rows["roll_cdeg"], rows["pitch_cdeg"], rows["flags"])))
+        found |= {column if alone else f"{column}_{name}": values for column, values in own.items()}
+    if not alone:
+        found["flags"] = np.bitwise_and.reduce([rows["flags"] for rows in tables.values()])
+    return found
+
+
+def truth_of(stream, rows):
+    """The truth columns for these rows; that of the row before for a prediction."""
+    import numpy as np
+
+    if not stream.has_truth:
+        return {}
+    source = np.maximum.accumulate(rows["source"])
+    return {"roll_true_cdeg": stream.roll_true_cdeg[source], "pitch_true_cdeg": stream.pitch_true_cdeg[source]}
+
+
+def write(path, stream, tables, told):
+    from tilt import stream as streams
+
+    rows = next(iter(tables.values()))
+    streams.write("/dev/stdout" if path == "-" else path, rows["t_us"] + stream.start_us, rows["lsb"], columns=columns_of(tables),
+                  **truth_of(stream, rows), progress=told)
+
+
+def replayed(stream, names, rate_dhz, range_g=16):
+    """native.replay, with a bar; TiltError where no row comes out."""
+    from tilt import native
+    from tilt.progress import bar
+
+    with bar("filters", "filter") as told:
+        tables = native.replay(stream, names, rate_dhz, range_g, told)
+    if not len(tables[names[0]]):
+        raise TiltError(f"{stream.path}: no row: every row is missing or reads -1,-1,-1, as a sensor without power does")
+    return tables
+
+
+def share(flags, bit):
+    return 100.0 * float(((flags & bit) != 0).mean())
+
+
+def summary(stream, tables, rate_dhz):
+    from tilt import native
+
+    how = "a row a tick" if native.row_per_tick(stream, rate_dhz) else "each tick the row in force then"
+    lines = [f"{stream.path}: {len(stream)} rows at {stream.rate_hz:.1f} Hz, {stream.seconds:.1f} s; sensor at {rate_dhz / 10:g} Hz: {how}",
+             f"{'filter':<11}{'rows':>8}{'gated %':>9}{'re-acquired':>13}{'predicted %':>13}{'clipped %':>11}{'not 1 g %':>11}"]
+    for name, rows in tables.items():
+        flags = rows["flags"]
+        lines.append(f"{name:<11}{len(rows):>8}{share(flags, 1):>9.2f}{int(((flags & 4) != 0).sum()):>13}{share(flags, 2):>13.2f}"
+                     f"{share(flags, 8):>11.2f}{share(flags, 512):>11.2f}")
+    return lines
+
+
+def run(args):
+    from tilt import native, stream as streams
+    from tilt.progress import bar
+
+    names = native.chosen(args.filter)
+    began = time.perf_counter()
+    with bar("reading", "B") as told:
+        stream = streams.read(args.stream, progress=told)
+    rate_dhz = native.rate_of(stream, args.rate)
+    tables = replayed(stream, names, rate_dhz, args.range)
+    took = time.perf_counter() - began
+    if args.output:
+        with bar("writing", "row") as told:
+            write(args.output, stream, tables, told)
+    out = sys.stderr if args.output == "-" else sys.stdout
+    print("\n".join(summary(stream, tables, rate_dhz)), file=out)
+    what = f"{len(names)} filters" if len(names) > 1 else "1 filter"
+    print(f"{what} in {took:.2f} s, reading included: {stream.seconds / took:,.0f} times real time", file=out)
+    if args.output and args.output != "-":
+        print(f"{args.output}: {len(next(iter(tables.values())))} rows written", file=out)
