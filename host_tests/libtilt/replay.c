@@ -33,10 +33,11 @@ typedef struct {
     uint16_t marks; /* of the driver, for the next row */
 } replay_t;
 
-/* Time in the recording of a moment of the sensor's clock, whose periods are the recording's median steps. */
+/* Time in the recording of a row, by the sensor's clock not after now; its periods are the recording's median steps. */
 static int64_t recorded_us(const replay_t *r, uint32_t t_us)
 {
-    int64_t behind_us = (int64_t)(uint32_t)(t_us - (uint32_t)r->sample_at_us);
+    uint32_t ago_us = (uint32_t)r->now_us - t_us;
+    int64_t behind_us = (int64_t)(r->now_us - ago_us - r->sample_at_us);
     if (r->row_per_tick && r->in->step_us != 0) {
         behind_us = behind_us * r->in->step_us / (int64_t)r->period_us;
     }
