@@ -4,6 +4,8 @@ none, is as in sim/stream.c, the reader of the simulator.
 An hour at 100 Hz is read in a fraction of a second: all lines at once where each is plain, digits and commas alone. A file with anything
 else in its rows (blanks, plus signs, a fault) is read line by line, which also tells the line of a fault.
 """
+from __future__ import annotations
+
 import re
 from dataclasses import dataclass, field
 

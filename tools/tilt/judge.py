@@ -1,0 +1,164 @@
+"""What filters are judged by: distance from the truth, else what their innovations tell; and whether two of them differ at all."""
+from dataclasses import dataclass
+
+import numpy as np
+
+from tilt import native
+
+COASTED, CLIPPED, FAULT, WARMING, ROLL_UNDEFINED = 2, 8, 16, 128, 1024
+BATCHES, BATCHES_MOST, BATCH_MIN, BATCH_S = 20, 200, 10, 0.5  # half a second: the memory of most filters
+NOISE_T = 3.5               # Student's t with 14 degrees of freedom: 5 % both ways, shared by the twelve comparisons with the best
+CUT = 4.0                   # sigmas: an innovation counts no more than this, so that those of outliers are alike for all filters
+BOARD_FACTOR = 1.5          # R that the board takes, over the variance (noise.h)
+MOVES_DEG_S = 0.5           # rms rate of the truth from which a lag can be told
+LAG_KNOWN_MS = 2.0
+JUMP_DEG_S = 400.0          # faster than this the truth steps, or changes sign at 180 degrees
+CHI2_MEDIAN = 0.4549
+
+
+def wrapped_deg(difference):
+    return (difference + 180.0) % 360.0 - 180.0
+
+
+def direction(roll_deg, pitch_deg):
+    """Unit vectors of gravity, x y z, as roll = atan2(y, z), pitch = atan2(-x, hypot(y, z)) come from."""
+    roll, pitch = np.radians(roll_deg), np.radians(pitch_deg)
+    return np.stack([-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)], axis=-1)
+
+
+def angle_deg(a, b):
+    """Between unit vectors; exact for small ones too."""
+    return np.degrees(2.0 * np.arcsin(np.minimum(1.0, 0.5 * np.linalg.norm(a - b, axis=-1))))
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else float("nan")
+
+
+@dataclass
+class Difference:
+    """Of two filters' losses, sample by sample: in units of its own standard error."""
+    mean: float
+    t: float
+
+    @property
+    def told(self):
+        return abs(self.t) >= NOISE_T
+
+
+def difference(loss, best, rate_hz):
+    """Mean of loss - best, with its error by what the noise of the readings makes of it: batches of samples on end, which correlation hardly
+    reaches across, each against the next but one, so that a stretch of the recording that suits one filter is no noise. Fewer than 200
+    samples tell nothing."""
+    away = loss - best
+    if len(away) < BATCHES * BATCH_MIN:
+        return Difference(float(away.mean()) if len(away) else 0.0, 0.0)
+    count = int(np.clip(len(away) / max(BATCH_MIN, BATCH_S * rate_hz), BATCHES, BATCHES_MOST))
+    means = np.array([part.mean() for part in np.array_split(away, count)])
+    error = np.sqrt(np.mean((means[2:] - means[:-2]) ** 2) / 2.0 / count)
+    if error == 0.0:
+        return Difference(float(means.mean()), 0.0 if means.mean() == 0.0 else float(np.copysign(np.inf, means.mean())))
+    return Difference(float(means.mean()), float(means.mean() / error))
+
+
+# --- with truth -------------------------------------------------------------------------------------------------------
+
+
+def scored(tables):
+    """Rows with a sample, behind the start of every filter."""
+    rows = list(tables.values())
+    return np.all([(part["source"] >= 0) & ((part["flags"] & (COASTED | FAULT | WARMING)) == 0) for part in rows], axis=0)
+
+
+def lag_ms(t_us, errors_deg, truth_deg):
+    """By how much the estimate is the truth of earlier: -sum(e v) / sum(v^2) over roll and pitch, v the truth's rate. None where that is not
+    known to 2 ms or a half: at rest, or where errors are large (a fifth of the samples counts as independent)."""
+    products = squares = spread = count = 0.0
+    for error, truth in zip(errors_deg, truth_deg):
+        step_s = np.maximum(t_us[2:] - t_us[:-2], 1) * 1e-6
+        rate = wrapped_deg(truth[2:] - truth[:-2]) / step_s
+        steady = (np.abs(rate) < JUMP_DEG_S) & (step_s < 4.0 * np.median(step_s))
+        products += np.sum(error[1:-1][steady] * rate[steady])
+        squares += np.sum(rate[steady] ** 2)
+        spread += 5.0 * np.sum((error[1:-1][steady] * rate[steady]) ** 2)
+        count += np.count_nonzero(steady)
+    if not count or squares / count < MOVES_DEG_S ** 2:
+        return None
+    lag, known_to = -1000.0 * products / squares, 1000.0 * np.sqrt(spread) / squares
+    return float(lag) if known_to <= max(LAG_KNOWN_MS, 0.5 * abs(lag)) else None
+
+
+def against_truth(stream, rows, use):
+    """(numbers, loss per row) of one filter over the rows to use."""
+    rows = rows[use]
+    truth = [stream.roll_true_cdeg[rows["source"]] / 100.0, stream.pitch_true_cdeg[rows["source"]] / 100.0]
+    shown = [rows["roll_cdeg"] / 100.0, rows["pitch_cdeg"] / 100.0]
+    errors = [wrapped_deg(own - true) for own, true in zip(shown, truth)]
+    tilt = angle_deg(direction(*shown), direction(*truth))
+    defined = (rows["flags"] & ROLL_UNDEFINED) == 0
+    return {"tilt_rms_deg": rms(tilt), "roll_rms_deg": rms(errors[0][defined]), "pitch_rms_deg": rms(errors[1]), "worst_deg": float(tilt.max()),
+            "lag_ms": lag_ms(rows["t_us"], errors, truth)}, tilt ** 2
+
+
+# --- without ----------------------------------------------------------------------------------------------------------
+
+
+def states(rows):
+    """Per row and axis: missing, there, or at a rail of 16 g."""
+    found = np.full(rows["lsb"].shape, native.THERE, np.uint8)
+    found[(rows["lsb"] >= 4095) | (rows["lsb"] <= -4096)] = native.AT_RAIL
+    found[(rows["flags"] & (COASTED | FAULT)) != 0] = native.MISSING
+    return found
+
+
+def probes_of(name, rate_dhz, rows, state, **options):
+    """One table of probes for each axis, as the board runs them."""
+    return [native.axis(name, rate_dhz, rows["lsb"][:, i], state[:, i], noisy_axis=i == 2, **options) for i in range(3)]
+
+
+def variance_of(probes):
+    """Of each innovation, as the filter's gain says: R / (1 - K), K that of the last sample that it took; inf before there is one."""
+    gain = probes["gain_uq16"] / 65536.0
+    newest = np.maximum.accumulate(np.where((gain > 0.0) & ((probes["flags"] & native.GATED) == 0), np.arange(len(gain)), -1))
+    taken = np.where(newest >= 0, gain[newest], 0.0)
+    return np.where(newest >= 0, probes["r_lsb2_q8"] / 256.0 / (1.0 - np.minimum(taken, 0.9999)), np.inf)
+
+
+def innovations(probes):
+    return probes["innovation_lsb_q16"] / 65536.0
+
+
+def correlation(values, whole):
+    """Of neighbours that are whole (no outliers, both judged), about 0."""
+    pairs = whole[1:] & whole[:-1]
+    first, second = values[:-1][pairs], values[1:][pairs]
+    power = np.sum(first ** 2) + np.sum(second ** 2)
+    return float(2.0 * np.sum(first * second) / power) if power > 0.0 else 0.0
+
+
+def by_innovations(axes, use, sigma_lsb):
+    """(numbers, loss per row) of one filter: axes its probes, sigma_lsb of a sample per axis, the same for all filters."""
+    losses, ratios, correlations = [], [], []
+    for probes, sigma in zip(axes, sigma_lsb):
+        away, variance = innovations(probes), variance_of(probes)
+        losses.append(np.minimum((away[use] / sigma) ** 2, CUT ** 2))
+        ratios.append(float(np.median(away[use] ** 2 / variance[use])) / CHI2_MEDIAN)
+        correlations.append(correlation(away / sigma, use & (away ** 2 < CUT ** 2 * sigma ** 2)))
+    loss = np.mean(losses, axis=0)
+    return {"misses_sigma": float(np.sqrt(loss.mean())), "nis": float(np.mean(ratios)),
+            "lag1": max(correlations, key=abs)}, loss
+
+
+def judged(tables_of_probes):
+    """Rows in which every filter predicted a sample on every axis."""
+    return np.all([probes["judged"] == 1 for axes in tables_of_probes for probes in axes], axis=0)
+
+
+def wander_deg(rows, stretches):
+    """Rms angle of the filtered direction from its mean over each stretch at rest; None where there is none."""
+    away = []
+    for part in stretches:
+        shown = direction(rows["roll_cdeg"][part] / 100.0, rows["pitch_cdeg"][part] / 100.0)
+        middle = shown.mean(axis=0)
+        away.append(angle_deg(shown, middle / np.linalg.norm(middle)))
+    return rms(np.concatenate(away)) if away else None
