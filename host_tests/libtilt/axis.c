@@ -91,7 +91,7 @@ static void take(axis_t *a, int16_t z_lsb, bool at_rail)
     }
 }
 
-static void keep(const axis_t *a, uint8_t state, bool warm, libtilt_probe_t *out)
+static void keep(const axis_t *a, uint8_t state, libtilt_probe_t *out)
 {
     filter_probe_t probe = { 0 };
     filter_any_probe(&a->filter, &probe);
@@ -99,7 +99,7 @@ static void keep(const axis_t *a, uint8_t state, bool warm, libtilt_probe_t *out
                               .innovation_lsb_q16 = probe.innovation_lsb_q16, .p_lsb2_q8 = probe.p_lsb2_q8,
                               .gate_lsb2_q8 = probe.gate_lsb2_q8, .r_lsb2_q8 = a->r_lsb2_q8,
                               .gain_uq16 = probe.gain_uq16, .flags = probe.flags,
-                              .judged = state != MISSING && state != AT_RAIL && warm };
+                              .judged = state != MISSING && state != AT_RAIL && (probe.flags & FILTER_WARMING_UP) == 0 };
 }
 
 int libtilt_axis(int kind, uint16_t rate_dhz, const int64_t *values, const uint8_t *changed, uint32_t r_lsb2_q8,
@@ -120,15 +120,13 @@ int libtilt_axis(int kind, uint16_t rate_dhz, const int64_t *values, const uint8
     noise_init(&axis.noise, rate_dhz, noisy_axis);
     axis.r_lsb2_q8 = r_lsb2_q8 != 0 ? r_lsb2_q8 : noise_r_lsb2_q8(&axis.noise);
     filter_any_set_noise(&axis.filter, axis.r_lsb2_q8);
-    bool warm = false;
     for (int64_t i = 0; i < count; i++) {
         if (state[i] == MISSING) {
             miss(&axis);
         } else {
             take(&axis, z_lsb[i], state[i] == AT_RAIL);
         }
-        keep(&axis, state[i], warm, &out[i]);
-        warm = (filter_any_flags(&axis.filter) & FILTER_WARMING_UP) == 0;
+        keep(&axis, state[i], &out[i]);
     }
     return 0;
 }

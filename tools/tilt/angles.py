@@ -4,10 +4,15 @@ import numpy as np
 ANGLES = ("roll", "pitch")
 
 
+def of_readings(x, y, z):
+    """(roll, pitch) of readings in any unit."""
+    x, y, z = (np.asarray(axis, float) for axis in (x, y, z))
+    return np.degrees(np.arctan2(y, z)), np.degrees(np.arctan2(-x, np.hypot(y, z)))
+
+
 def raw_angles_deg(lsb):
     """{"roll", "pitch"} of readings (rows, 3)."""
-    x, y, z = np.asarray(lsb, float).T
-    return {"roll": np.degrees(np.arctan2(y, z)), "pitch": np.degrees(np.arctan2(-x, np.hypot(y, z)))}
+    return dict(zip(ANGLES, of_readings(*np.asarray(lsb, float).T)))
 
 
 def wrapped_deg(difference):
@@ -19,3 +24,14 @@ def seam_crossings(series_deg):
     """True at rows that lie on the other side of the +-180 seam than the row before."""
     with np.errstate(invalid="ignore"):
         return np.concatenate(([False], np.abs(np.diff(series_deg)) > 180.0))
+
+
+def direction(roll_deg, pitch_deg):
+    """Unit vectors of gravity, x y z, that these come from."""
+    roll, pitch = np.radians(roll_deg), np.radians(pitch_deg)
+    return np.stack([-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)], axis=-1)
+
+
+def angle_deg(a, b):
+    """Between unit vectors; exact for small ones too."""
+    return np.degrees(2.0 * np.arcsin(np.minimum(1.0, 0.5 * np.linalg.norm(a - b, axis=-1))))

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tilt import native
+from tilt.angles import angle_deg, direction, wrapped_deg
 
 COASTED, CLIPPED, FAULT, WARMING, ROLL_UNDEFINED = 2, 8, 16, 128, 1024
 BATCHES, BATCHES_MOST, BATCH_MIN, BATCH_S = 20, 200, 10, 0.5  # half a second: the memory of most filters
@@ -14,21 +15,6 @@ MOVES_DEG_S = 0.5           # rms rate of the truth from which a lag can be told
 LAG_KNOWN_MS = 2.0
 JUMP_DEG_S = 400.0          # faster than this the truth steps, or changes sign at 180 degrees
 CHI2_MEDIAN = 0.4549
-
-
-def wrapped_deg(difference):
-    return (difference + 180.0) % 360.0 - 180.0
-
-
-def direction(roll_deg, pitch_deg):
-    """Unit vectors of gravity, x y z, as roll = atan2(y, z), pitch = atan2(-x, hypot(y, z)) come from."""
-    roll, pitch = np.radians(roll_deg), np.radians(pitch_deg)
-    return np.stack([-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)], axis=-1)
-
-
-def angle_deg(a, b):
-    """Between unit vectors; exact for small ones too."""
-    return np.degrees(2.0 * np.arcsin(np.minimum(1.0, 0.5 * np.linalg.norm(a - b, axis=-1))))
 
 
 def rms(values):
