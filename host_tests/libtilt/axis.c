@@ -46,8 +46,11 @@ bool libtilt_parameter(int kind, int index, uint16_t rate_dhz, libtilt_parameter
     const filter_parameter_t *p = &descriptor->parameters[index];
     filter_any_config_t config;
     filter_any_defaults((filter_kind_t)kind, &config, rate_dhz);
-    *out = (libtilt_parameter_t){ .min = p->min, .max = p->max, .value = field(p, &config),
-                                  .fraction_bits = p->fraction_bits, .zero_means_off = p->zero_means_off };
+    *out = (libtilt_parameter_t){ .min = p->min,
+                                  .max = p->max,
+                                  .value = field(p, &config),
+                                  .fraction_bits = p->fraction_bits,
+                                  .zero_means_off = p->zero_means_off };
     memcpy(out->name, p->name, sizeof p->name);
     memcpy(out->unit, p->unit, sizeof p->unit);
     return true;
@@ -95,11 +98,16 @@ static void keep(const axis_t *a, uint8_t state, libtilt_probe_t *out)
 {
     filter_probe_t probe = { 0 };
     filter_any_probe(&a->filter, &probe);
-    *out = (libtilt_probe_t){ .x_lsb_q16 = probe.x_lsb_q16, .rate_lsb_q16 = probe.rate_lsb_q16,
-                              .innovation_lsb_q16 = probe.innovation_lsb_q16, .p_lsb2_q8 = probe.p_lsb2_q8,
-                              .gate_lsb2_q8 = probe.gate_lsb2_q8, .r_lsb2_q8 = a->r_lsb2_q8,
-                              .gain_uq16 = probe.gain_uq16, .flags = probe.flags,
-                              .judged = state != MISSING && state != AT_RAIL && (probe.flags & FILTER_WARMING_UP) == 0 };
+    *out = (libtilt_probe_t){ .x_lsb_q16 = probe.x_lsb_q16,
+                              .rate_lsb_q16 = probe.rate_lsb_q16,
+                              .innovation_lsb_q16 = probe.innovation_lsb_q16,
+                              .p_lsb2_q8 = probe.p_lsb2_q8,
+                              .gate_lsb2_q8 = probe.gate_lsb2_q8,
+                              .r_lsb2_q8 = a->r_lsb2_q8,
+                              .gain_uq16 = probe.gain_uq16,
+                              .flags = probe.flags,
+                              .judged = state != MISSING && state != AT_RAIL &&
+                                        (probe.flags & FILTER_WARMING_UP) == 0 };
 }
 
 int libtilt_axis(int kind, uint16_t rate_dhz, const int64_t *values, const uint8_t *changed, uint32_t r_lsb2_q8,

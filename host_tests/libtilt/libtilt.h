@@ -48,7 +48,7 @@ typedef struct {
     uint32_t gate_lsb2_q8;
     uint32_t r_lsb2_q8;
     uint16_t gain_uq16;
-    uint8_t flags; /* of filter.h */
+    uint8_t flags;  /* of filter.h */
     uint8_t judged; /* 1: a sample came and the filter predicted it; 0: missing, clipped, or the filter was starting */
 } libtilt_probe_t;
 

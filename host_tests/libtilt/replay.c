@@ -20,7 +20,7 @@ typedef struct {
     libtilt_row_t *out;
     int64_t room;
     int64_t count;
-    uint64_t now_us;       /* of the sensor's clock: a period a tick */
+    uint64_t now_us; /* of the sensor's clock: a period a tick */
     uint32_t period_us;
     int16_t rail_lsb;
     bool row_per_tick;
@@ -54,8 +54,11 @@ static void keep_row(replay_t *r, int32_t source)
     pipeline_row_done();
     if (r->count < r->room) {
         libtilt_row_t *out = &r->out[r->count];
-        *out = (libtilt_row_t){ .t_us = recorded_us(r, row.t_us), .source = source, .roll_cdeg = row.roll_cdeg,
-                                .pitch_cdeg = row.pitch_cdeg, .flags = row.flags };
+        *out = (libtilt_row_t){ .t_us = recorded_us(r, row.t_us),
+                                .source = source,
+                                .roll_cdeg = row.roll_cdeg,
+                                .pitch_cdeg = row.pitch_cdeg,
+                                .flags = row.flags };
         memcpy(out->lsb, row.lsb, sizeof row.lsb);
         memcpy(out->mg, row.mg, sizeof row.mg);
     }
@@ -99,10 +102,12 @@ static void take(replay_t *r, size_t source)
     if (!plausible(r, sample.lsb) || !coast_sample(sample.t_us, r->period_us)) {
         return;
     }
-    int64_t from_us = r->running ? r->sample_us : r->in->t_us[source];
-    r->sample_us = r->row_per_tick ? r->in->t_us[source] : from_us + (int64_t)(r->now_us - r->sample_at_us);
+    if (r->row_per_tick || !r->running) {
+        r->sample_us = r->in->t_us[source];
+    } else {
+        r->sample_us += (int64_t)(r->now_us - r->sample_at_us);
+    }
     r->sample_at_us = r->now_us;
-    r->sample_us = r->running ? r->sample_us : r->in->t_us[source];
     r->running = true;
     pipeline_sample(&sample);
     keep_row(r, (int32_t)source);
@@ -163,8 +168,12 @@ int64_t libtilt_replay(const libtilt_stream_t *in, int kind, uint16_t rate_dhz, 
         return -2;
     }
     feed_t feed = make_feed(&stream, rate_dhz);
-    replay_t replay = { .in = in, .out = out, .room = room, .period_us = 10000000u / rate_dhz,
-                        .rail_lsb = (int16_t)(range_g * 256 - 1), .row_per_tick = feed.mode == FEED_ROW_PER_TICK };
+    replay_t replay = { .in = in,
+                        .out = out,
+                        .room = room,
+                        .period_us = 10000000u / rate_dhz,
+                        .rail_lsb = (int16_t)(range_g * 256 - 1),
+                        .row_per_tick = feed.mode == FEED_ROW_PER_TICK };
     silence_end();
     coast_wait(0);
     pipeline_reset();

@@ -202,7 +202,8 @@ class Command(unittest.TestCase):
     def test_json(self):
         status, out, _ = run(STREAMS / "steps.csv", "--filter", "kf,sprf", "--json")
         answer = json.loads(out)
-        self.assertEqual((status, answer["rate_hz"], answer["rows_judged"], {row["filter"] for row in answer["filters"]}), (0, 100.0, 5095, {"kf", "sprf"}))
+        self.assertEqual((status, answer["rate_hz"], answer["rows_judged"]), (0, 100.0, 5095))
+        self.assertEqual({row["filter"] for row in answer["filters"]}, {"kf", "sprf"})
         self.assertEqual(answer["best"], answer["filters"][0]["filter"])
 
     def test_one_filter_and_a_short_recording(self):

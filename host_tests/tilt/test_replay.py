@@ -193,7 +193,8 @@ class Itself(Case):
 
     def test_a_night_of_silence(self):
         """8 h without a sample: a row each tick for a second, then ten a second."""
-        path = self.made(np.tile([0, 1, 256], (200, 1)) + np.arange(200)[:, None] % 2, t_us=np.arange(200) * 10000 + (np.arange(200) >= 100) * 28_800_000_000)
+        at = np.arange(200)
+        path = self.made(np.tile([0, 1, 256], (200, 1)) + at[:, None] % 2, t_us=at * 10000 + (at >= 100) * 28_800_000_000)
         rows = native.replay(stream.read(path), ["kf"], 1000)["kf"]
         silent = int(((rows["flags"] & COASTED) != 0).sum())
         # ticks 1..101 (100 ms more than a second: the long step follows the row that finds it long), then each 10th of 2,880,000
@@ -256,7 +257,7 @@ class Library(unittest.TestCase):
             with mock.patch.dict(os.environ, {"PATH": folder}), self.assertRaisesRegex(errors.TiltError, "make cannot be run"):
                 native.library(root)
             (root / "Makefile").write_text("build/host/libtilt.so:\n\t@no-such-compiler -o $@\n", encoding="ascii")
-            with self.assertRaisesRegex(errors.TiltError, r"make could not build .*libtilt.so: .*no-such-compiler: No such file.*installs the compiler"):
+            with self.assertRaisesRegex(errors.TiltError, r"make could not build .*libtilt.so: .*no-such-compiler: .*installs the compiler"):
                 native.library(root)
 
     def test_it_is_built_again_when_a_source_is_newer(self):

@@ -15,6 +15,7 @@ from tilt import judge, native, rest
 CUT = 4.0                   # sigmas, of gate and sum
 GAP_SAMPLES_S = 0.3         # a longer gap is as one of this: the filter starts anew behind it
 GRID = np.arange(0.0, 9.01, 0.5)  # log10 of q in LSB2/s3: its legal range
+WIDTHS = (0.25, 0.1, 0.2)   # decades of three parabolas: the last tells the curvature, which filters in whole numbers blur below 0.1
 CHI2_95 = 3.84
 EDGE = 0.05                 # decades from the end of the range
 NIS_MAX, CORRELATION_MAX, RUNS_MAX = 1.25, 0.10, 0.20  # of a model that fits
@@ -101,13 +102,13 @@ def find_q(samples, r_lsb2, told=lambda done, whole: None):
     for i, log_q in enumerate(GRID):
         coarse.append(deviance(samples, r_lsb2, log_q, use))
         told(i + 1, len(GRID) + 9)
-    best, width, second = float(GRID[int(np.argmin(coarse))]), 0.25, 0.0
-    for i in range(3):
+    best, second = float(GRID[int(np.argmin(coarse))]), 0.0
+    for i, width in enumerate(WIDTHS):
         at = np.clip(best + width * np.array([-1.0, 0.0, 1.0]), GRID[0], GRID[-1])
         if at[0] == at[1] or at[1] == at[2]:
             break
         place, second = _parabola(at, [deviance(samples, r_lsb2, log_q, use) for log_q in at])
-        best, width = float(np.clip(place, at[0], at[2])), width / 2.0
+        best = float(np.clip(place, at[0], at[2]))
         told(len(GRID) + 3 * i + 3, len(GRID) + 9)
     if best < GRID[0] + EDGE or best > GRID[-1] - EDGE or second <= 0.0:
         return Drive(10.0 ** best, 0.0, float("inf"), "q has no best value within its range of 1 to 1e9 LSB2/s3")

@@ -124,7 +124,8 @@ def reasons(answer, rows, best):
         plain = f"; kf, which takes every one, is at {size(rows['kf'])}" if "kf" in rows and best["filter"] != "kf" else ""
         said.append(f"{answer['outliers_percent']:.1f} % of the readings lie more than 4 sigmas from where sprf expects them{plain}.")
     else:
-        said.append(f"{answer['outliers_percent']:.2f} % of the readings lie more than 4 sigmas from where sprf expects them: no outliers to speak of.")
+        said.append(f"{answer['outliers_percent']:.2f} % of the readings lie more than 4 sigmas from where sprf expects them: no outliers to "
+                    "speak of.")
     if answer["still_share"] >= STILL_SHARE:
         said.append(f"It lies still for {100 * answer['still_share']:.0f} % of the time: a long memory wins here, and would lag in motion.")
     elif best.get("lag_ms") is not None:

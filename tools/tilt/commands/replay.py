@@ -18,7 +18,8 @@ def stream_arguments(parser):
     """What replay, compare and tune have in common."""
     parser.add_argument("stream", metavar="STREAM", help="recording (docs/protocol.md, Streams)")
     parser.add_argument("--filter", metavar="A,B,C", help="names of filters (default: all)")
-    parser.add_argument("--rate", metavar="HZ", type=float, help="output data rate of the sensor (default: that of the firmware's nearest to the recording)")
+    parser.add_argument("--rate", metavar="HZ", type=float, 
+                        help="output data rate of the sensor (default: that of the firmware's nearest to the recording)")
 
 
 def arguments(parser):

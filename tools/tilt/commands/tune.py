@@ -97,7 +97,8 @@ def lines(answer):
             f"R     {three(r, '{:.2f}')} LSB^2 (x y z; rms {three([value ** 0.5 for value in r], '{:.2f}')} LSB); the board finds it by itself and "
             f"takes {three(answer['board_r_lsb2'], '{:.2f}')}"]
     if answer["commands"]:
-        said += [f"q     {answer['q']:.0f} LSB2/s3 (95 %: {answer['q_low']:.0f} to {answer['q_high']:.0f}); with the board's R {answer['board_q']:.0f}"]
+        said += [f"q     {answer['q']:.0f} LSB2/s3 (95 %: {answer['q_low']:.0f} to {answer['q_high']:.0f}); with the board's R "
+                 f"{answer['board_q']:.0f}"]
         if "gate" in answer:
             equal = answer["gates_as_good"]
             as_good = f" ({equal[0]:g} to {equal[-1]:g} cannot be told apart)" if len(equal) > 1 else ""
