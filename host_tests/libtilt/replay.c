@@ -73,23 +73,30 @@ static int16_t within_range(const replay_t *r, int16_t lsb)
     return lsb < -r->rail_lsb - 1 ? (int16_t)(-r->rail_lsb - 1) : lsb;
 }
 
-/* As integrity_judge; a silence of three samples restarts the sensor, after which nothing is known to repeat. */
+/* Counts equal readings as the driver: a silence of three samples restarts the sensor, then none is known before it. */
+static void look_for_repeats(replay_t *r, const int16_t lsb[3])
+{
+    bool known = r->has_last && !(r->running && silence_samples() >= SILENCE_FAULT_FROM);
+    if (known && memcmp(lsb, r->last_lsb, sizeof r->last_lsb) == 0) {
+        r->equal_run = (uint8_t)(r->equal_run + (r->equal_run < STUCK_REPEATS));
+    } else if (known || r->equal_run != STUCK_REPEATS) {
+        r->equal_run = 0;
+    }
+    r->has_last = true;
+    memcpy(r->last_lsb, lsb, sizeof r->last_lsb);
+}
+
+/* As integrity_judge. */
 static bool plausible(replay_t *r, const int16_t lsb[3])
 {
     if (lsb[0] == -1 && lsb[1] == -1 && lsb[2] == -1) {
         r->marks |= ROW_INTEGRITY;
         return false;
     }
-    bool known = r->has_last && !(r->running && silence_samples() >= SILENCE_FAULT_FROM);
-    bool same = known && memcmp(lsb, r->last_lsb, sizeof r->last_lsb) == 0;
-    if (same && r->equal_run < STUCK_REPEATS) {
-        r->equal_run++;
-    } else if (!same && (known || r->equal_run != STUCK_REPEATS)) {
-        r->equal_run = 0;
+    look_for_repeats(r, lsb);
+    if (r->equal_run == STUCK_REPEATS) {
+        r->marks |= ROW_STUCK;
     }
-    r->has_last = true;
-    memcpy(r->last_lsb, lsb, sizeof r->last_lsb);
-    r->marks |= r->equal_run == STUCK_REPEATS ? ROW_STUCK : 0;
     return true;
 }
 
