@@ -91,7 +91,8 @@ def lines(answer):
         return " ".join(form.format(value) for value in values)
 
     r = answer["r_lsb2"]
-    where = f"{answer['rest_stretches']} stretches at rest, {answer['rest_seconds']:.1f} s" if answer["rest_stretches"] else \
+    stretches = "1 stretch" if answer["rest_stretches"] == 1 else f"{answer['rest_stretches']} stretches"
+    where = f"{stretches} at rest, {answer['rest_seconds']:.1f} s" if answer["rest_stretches"] else \
         "no stretch at rest was found: R is what the innovations in motion leave, which cannot be checked"
     said = [f"{answer['stream']}: {where}",
             f"R     {three(r, '{:.2f}')} LSB^2 (x y z; rms {three([value ** 0.5 for value in r], '{:.2f}')} LSB); the board finds it by itself and "
