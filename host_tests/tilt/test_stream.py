@@ -124,6 +124,8 @@ class Refuses(Case):
                             ("0,4096,0,0", "x is outside -4096..4095: 4096"), ("0,0,0,-4097", "z is outside -4096..4095: -4097"),
                             ("1#", "1 fields where the header has 4")):
             self.refused(f"# one\nt_us,x,y,z\n0,0,0,0\n{row}\n0,0,0,0,0,0\n", 4, reason)
+        for row, fields in (("0,0,0,0", 4), ("0,0,0,0,note,", 6)):  # the last column is not read
+            self.refused(f"t_us,x,y,z,note\n{row}\n", 2, f"{fields} fields where the header has 5")
         self.refused("t_us,x,y,z,flags\n0,0,0,0,65536\n", 2, "flags is outside 0..65535: 65536")
         self.refused("t_us,x,y,z,roll_true_cdeg,pitch_true_cdeg\n0,0,0,0,18001,0\n", 2, "roll_true_cdeg is outside -18000..18000: 18001")
 

@@ -207,8 +207,15 @@ class Rest(unittest.TestCase):
         self.assertEqual([(part.start, part.stop) for part in found.stretches], [(0, 1000), (2000, 3000)])
 
     def test_slow_motion_is_none(self):
-        """3 degrees a second, 13 LSB: halves of a second differ by 6.7, medians of 2 LSB by 4 * 0.35 * 1.25 + 0.5 at most."""
-        lsb = np.random.default_rng(11).normal(0, 2.0, (3000, 3)) + 13.4 * 0.01 * np.arange(3000)[:, None]
+        """6 LSB a second widen the scatter of 2 LSB to sqrt(4 + 36 / 12) = 2.6, which passes; but medians of 100 samples of it may differ by
+        4 * 2 * 1.25 * sqrt(2 / 100) + 0.5 = 1.9."""
+        lsb = np.random.default_rng(11).normal(0, 2.0, (3000, 3)) + 0.06 * np.arange(3000)[:, None]
+        self.assertEqual(self.found(lsb).stretches, [])
+
+    def test_shaking_about_one_level_is_none(self):
+        """2 Hz, 20 LSB: a scatter of 14, of which differences over two samples see 14 * 0.25^2 / sqrt(6) = 0.4 beside the noise of 2."""
+        shaken = 20 * np.sin(2 * np.pi * 2 * 0.01 * np.arange(3000))
+        lsb = np.random.default_rng(14).normal(0, 2.0, (3000, 3)) + shaken[:, None]
         self.assertEqual(self.found(lsb).stretches, [])
 
     def test_a_missing_sample_ends_a_stretch(self):

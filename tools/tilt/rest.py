@@ -1,7 +1,7 @@
 """Where a recording lies still, and how much its readings scatter there.
 
-A window of a second is still when its scatter about its median is that which second differences show, which motion hardly touches, and its
-two halves lie at one level. Still windows on end at one level are a stretch. Outliers are cut off before anything is measured.
+A window of a second is still when its scatter about its median is that which second differences show, which motion hardly touches. Still
+windows on end at one level are a stretch, three at least. Outliers are cut off before anything is measured.
 """
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 WINDOW_S, WINDOW_MIN = 1.0, 32
 STRETCH_WINDOWS = 3
 SCATTER_MAX = 1.5           # times that of differences: four sigmas of the ratio at 100 samples
-LEVEL_SIGMAS = 4.0          # by which the medians of two halves may differ
+LEVEL_SIGMAS = 4.0          # by which the medians of two windows may differ
 CUT_SIGMAS = 3.5
 KEPT_VARIANCE = 0.9939      # E(g^2 | |g| < 3.5) of a Gaussian g: 1 - 7 phi(3.5) / (2 Phi(3.5) - 1)
 SCATTER_MIN_LSB = 0.4       # of whole numbers: a constant rounds to 0.29 at most
@@ -50,10 +50,8 @@ def _still(values, spacing):
     """(whether the window of one axis lies still, its median, by how much two of them may differ)"""
     differences = (values[2 * spacing:] - 2.0 * values[spacing:-spacing] + values[:-2 * spacing]) / np.sqrt(6.0)
     of_all, of_differences = scatter(values), scatter(differences)
-    half = len(values) // 2
-    allowed = LEVEL_SIGMAS * min(of_all, of_differences) * MEDIAN_COST * np.sqrt(2.0 / half) + 0.5  # medians of whole numbers
-    level = abs(np.median(values[:half]) - np.median(values[half:])) <= allowed
-    return bool(of_all <= SCATTER_MAX * of_differences and level), float(np.median(values)), allowed
+    allowed = LEVEL_SIGMAS * min(of_all, of_differences) * MEDIAN_COST * np.sqrt(2.0 / len(values)) + 0.5  # medians of whole numbers
+    return of_all <= SCATTER_MAX * of_differences, float(np.median(values)), allowed
 
 
 def _windows(lsb, there, rate_hz):
