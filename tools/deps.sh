@@ -1,6 +1,6 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
-# Groups: firmware sim test check flash flashtest bench piocheck papers design tilt live fuzz coverage proof. Packages come by
+# Groups: firmware sim test check flash flashtest arduino bench piocheck papers design tilt live fuzz coverage proof. Packages come by
 # apt-get, numpy and matplotlib (check: lizard, design: scipy, tilt: tools/pyproject.toml) by pip into build/venv, Unity by tools/get_unity.sh into build/unity
 # (UNITY_DIR=folder: use that one). Uses sudo only when not root.
 set -eu
@@ -93,6 +93,10 @@ has_optiboot() {
     [ -f "${OPTIBOOT_DIR:-/usr/share/arduino/hardware/arduino/avr/bootloaders/optiboot}/optiboot.c" ]
 }
 
+has_arduino_core() {
+    [ -f "${ARDUINO_DIR:-/usr/share/arduino/hardware/arduino/avr}/cores/arduino/Arduino.h" ]
+}
+
 need_host_compiler() {
     need gcc has gcc
     need libc6-dev test -f /usr/include/stdio.h
@@ -160,10 +164,11 @@ collect() {
             flash) need_avr; need avrdude has avrdude ;;
             piocheck) need_avr; need_host_compiler; want_pio=yes; need python3-venv has_venv_module; need ca-certificates has_certificates ;;
             flashtest) need_simulator; need avrdude has avrdude; need arduino-core-avr has_optiboot ;;
+            arduino) need_simulator; need g++ has g++; need python3 has python3; need arduino-core-avr has_arduino_core ;;
             fuzz) need_host_compiler; need python3 has python3; need binutils has objcopy ;;
             coverage) need_simulator; need_plots; need_unity; need gcovr has gcovr ;;
             proof) need python3 has python3; need frama-c-base has frama-c ;;
-            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, design, tilt, live, fuzz, coverage or proof" ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage or proof" ;;
         esac
     done
     missing=${missing# }
@@ -279,7 +284,7 @@ install_unity() {
     tools/get_unity.sh build/unity
 }
 
-[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof)"
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof)"
 collect "$@"
 mkdir -p build
 if [ -n "$missing" ]; then

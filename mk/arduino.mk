@@ -1,0 +1,49 @@
+# lib/filters as an Arduino library: its example sketches with the Arduino core (Debian: arduino-core-avr 1.8.7), flags as platform.txt
+# of the core has them (-isystem would make its headers C for this compiler). DECIMAL_DIG: avr-gcc 5.4.0 defines it only with its underscores in C++11, and WString.cpp wants it.
+ARDUINO_DIR ?= /usr/share/arduino/hardware/arduino/avr
+A := $(B)/arduino
+ARDUINO_FLAGS := -c -g -Os -flto -ffunction-sections -fdata-sections -MMD -MP -mmcu=atmega328p -DF_CPU=16000000L -DARDUINO=10819 \
+                 -DARDUINO_AVR_UNO -DARDUINO_ARCH_AVR -DDECIMAL_DIG=__DECIMAL_DIG__ \
+                 $(addprefix -I$(ARDUINO_DIR)/,cores/arduino variants/standard libraries/Wire/src libraries/Wire/src/utility)
+ARDUINO_C   := $(AVR_CC) -std=gnu11 $(ARDUINO_FLAGS)
+ARDUINO_CXX := avr-g++ -std=gnu++11 -fpermissive -fno-exceptions -fno-threadsafe-statics $(ARDUINO_FLAGS)
+ARDUINO_SRC := $(wildcard $(addprefix $(ARDUINO_DIR)/,cores/arduino/*.c cores/arduino/*.cpp libraries/Wire/src/*.cpp libraries/Wire/src/utility/*.c))
+ARDUINO_OBJ := $(patsubst $(ARDUINO_DIR)/%,$(A)/core/%.o,$(ARDUINO_SRC)) $(patsubst %.c,$(A)/%.o,$(wildcard lib/filters/src/*.c))
+SKETCHES    := $(wildcard lib/filters/examples/*/*.ino)
+# what make test builds for it: without the core the sketches are skipped
+ARDUINO_IMAGES := $(A)/libfilters.so $(if $(ARDUINO_SRC),$(SKETCHES:lib/filters/examples/%.ino=$(A)/%.elf))
+
+$(A)/core/%.c.o: $(ARDUINO_DIR)/%.c mk/arduino.mk
+	@mkdir -p $(@D)
+	@$(ARDUINO_C) -w $< -o $@
+
+$(A)/core/%.cpp.o: $(ARDUINO_DIR)/%.cpp mk/arduino.mk
+	@mkdir -p $(@D)
+	@$(ARDUINO_CXX) -w $< -o $@
+
+$(A)/lib/%.o: lib/%.c mk/arduino.mk
+	@mkdir -p $(@D)
+	@$(ARDUINO_C) -Wall -Wextra -Werror $< -o $@
+
+# a sketch is C++ behind Arduino.h
+$(A)/%.ino.o: lib/filters/examples/%.ino mk/arduino.mk
+	@mkdir -p $(@D)
+	@$(ARDUINO_CXX) -Wall -Wextra -Werror -Ilib/filters/src -include Arduino.h -x c++ $< -o $@
+
+$(A)/%.elf: $(A)/%.ino.o $(ARDUINO_OBJ)
+	@$(AVR_CC) -Os -g -flto -fuse-linker-plugin -Wl,--gc-sections -mmcu=atmega328p $^ -lm -o $@
+
+# the same filters on the PC, to say what the sketches have to print
+$(A)/libfilters.so: $(wildcard lib/filters/src/*.c lib/filters/src/*.h) mk/arduino.mk
+	@mkdir -p $(@D)
+	@$(HOST_CC) -std=c11 -O2 $(WARNINGS) -fPIC -shared $(filter %.c,$^) -o $@
+
+## arduino: lib/filters as an Arduino library: rules of its files, its sketches with the Arduino core in the simulated UNO (1 minute)
+arduino:
+	@sh tools/deps.sh arduino
+	@$(MAKE) $(ARDUINO_IMAGES) $(S)/simrun
+	@python3 host_tests/test_arduino.py
+
+.PHONY: arduino
+
+-include $(shell find $(A) -name '*.d' 2>/dev/null)
