@@ -41,9 +41,11 @@ $(A)/libfilters.so: $(wildcard lib/filters/src/*.c lib/filters/src/*.h) mk/ardui
 ## arduino: lib/filters as an Arduino library: rules of its files, its sketches with the Arduino core in the simulated UNO (1 minute)
 arduino:
 	@sh tools/deps.sh arduino
-	@$(MAKE) $(ARDUINO_IMAGES) $(S)/simrun
+	@$(MAKE) arduino_images
 	@python3 host_tests/test_arduino.py
 
-.PHONY: arduino
+arduino_images: $(ARDUINO_IMAGES) $(S)/simrun
+
+.PHONY: arduino arduino_images
 
 -include $(shell find $(A) -name '*.d' 2>/dev/null)

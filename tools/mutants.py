@@ -85,8 +85,7 @@ JUDGES = {
     "design_refusals": (["help"], WITH_PACKAGES, "host_tests/test_design_refusals.py"),
     "synthesised": (["build/host/roll_replay"], WITH_PACKAGES, "host_tests/test_synthesised.py"),
     "plotter": (["system_images"], PYTHON, "host_tests/test_plotter.py"),
-    "arduino": (["build/arduino/libfilters.so", "build/arduino/outliers/outliers.elf", "build/arduino/adxl345/adxl345.elf", "build/sim/simrun"], PYTHON,
-                "host_tests/test_arduino.py"),
+    "arduino": (["arduino_images"], PYTHON, "host_tests/test_arduino.py"),
     "compile_commands": (["compile_commands"], PYTHON, "host_tests/test_compile_commands.py"),
     "schedule": (["help"], PYTHON, "host_tests/test_schedule.py"),
 }

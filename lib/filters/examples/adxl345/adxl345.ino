@@ -1,6 +1,7 @@
 /*
- * An ADXL345 at 100 Hz, raw and filtered, in LSB (256 per g), for the serial plotter at 115200 baud. Outliers are refused,
- * a reading that fails is made again, and behind a bus that hung or a sensor that lost its supply the sketch goes on.
+ * An ADXL345 at 100 Hz, raw and filtered, in LSB (256 per g), for the serial plotter at 115200 baud. Outliers are
+ * refused, a reading that fails is made again, and behind a bus that hung or a sensor that lost its supply the sketch
+ * goes on.
  * SDA to A4, SCL to A5 (through a level shifter: the sensor is a 3.3 V part), CS to 3.3 V, SDO to GND.
  */
 #include <Wire.h>
@@ -8,7 +9,8 @@
 #include <sprf.h>
 
 static const uint8_t ADXL345 = 0x53;
-static const uint8_t DEVID = 0x00, BW_RATE = 0x2C, POWER_CTL = 0x2D, INT_SOURCE = 0x30, DATA_FORMAT = 0x31, DATA = 0x32;
+static const uint8_t DEVID = 0x00, BW_RATE = 0x2C, POWER_CTL = 0x2D;
+static const uint8_t INT_SOURCE = 0x30, DATA_FORMAT = 0x31, DATA = 0x32;
 static const uint8_t DATA_READY = 0x80;
 static const uint16_t RATE_DHZ = 1000;  // 100 Hz
 static const char NAMES[] = "xyz";
@@ -70,8 +72,8 @@ static void start_bus()
 static bool configure()
 {
     uint8_t id;
-    return read_registers(DEVID, &id, 1) && id == 0xE5 && write_register(POWER_CTL, 0x00) && write_register(BW_RATE, 0x0A) &&
-           write_register(DATA_FORMAT, 0x0B) && write_register(POWER_CTL, 0x08);
+    return read_registers(DEVID, &id, 1) && id == 0xE5 && write_register(POWER_CTL, 0x00) &&
+           write_register(BW_RATE, 0x0A) && write_register(DATA_FORMAT, 0x0B) && write_register(POWER_CTL, 0x08);
 }
 
 static bool sample_waits()

@@ -1,0 +1,9 @@
+COMPILE_COMMANDS ?= compile_commands.json
+COMPILED_TARGETS = $(TESTS) $(H)/exhaustive_isqrt system_images paper_programs $(SEQUENCES) $(CHIP_TESTS) $(BENCH_IMAGES) $(FUZZ_BIN) \
+                   $(H)/recordings $(H)/default_filter $(H)/roll_replay
+
+## compile_commands: write compile_commands.json for clangd: how every source is compiled, for the PC and for the chip
+compile_commands:
+	@WARNINGS="$(WARNINGS)" UNITY_DIR="$(UNITY_DIR)" python3 tools/compile_commands.py --out $(COMPILE_COMMANDS) $(COMPILED_TARGETS)
+
+.PHONY: compile_commands
