@@ -46,6 +46,10 @@ arduino:
 
 arduino_images: $(ARDUINO_IMAGES) $(S)/simrun
 
-.PHONY: arduino arduino_images
+clean: clean_arduino
+clean_arduino:
+	@rm -rf $(A)
+
+.PHONY: arduino arduino_images clean_arduino
 
 -include $(shell find $(A) -name '*.d' 2>/dev/null)
