@@ -1,4 +1,5 @@
 """make compile_commands: every C file is in it, and every command of it compiles its file."""
+import functools
 import json
 import os
 import pathlib
@@ -19,14 +20,12 @@ DATABASE = OUT / "compile_commands.json"
 SIDES = {"firmware": {"PC", "chip"}, "firmware/main.c": {"chip"}, "lib": {"PC", "chip"}, "hal/avr": {"chip"}, "hal/host": {"PC"}, "sim": {"PC"}}
 
 
-def database(*words):
-    return subprocess.run(["make", "-s", "compile_commands", f"COMPILE_COMMANDS={DATABASE}", *words], capture_output=True, text=True, check=False)
-
-
+@functools.cache
 def entries():
-    if not DATABASE.exists():
-        done = database()
-        assert done.returncode == 0, done.stderr
+    """Made anew by each run of these tests."""
+    DATABASE.unlink(missing_ok=True)
+    done = subprocess.run(["make", "-s", "compile_commands", f"COMPILE_COMMANDS={DATABASE}"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
     return json.loads(DATABASE.read_text(encoding="utf-8"))
 
 
@@ -57,7 +56,6 @@ def compiles(entry, *more, compiler=None):
 
 @test
 def every_c_file_is_in_it_for_each_side_that_it_is_built_for():
-    DATABASE.unlink(missing_ok=True)
     found = entries()
     assert len(own_files()) > 200 and missing(found) == [], missing(found)
     lone = [entry for entry in found if entry["file"] not in ("sim/stream.c", "host_tests/test_fx.c")]
