@@ -1,10 +1,12 @@
 """What the Arduino library specification (docs.arduino.cc/arduino-cli/library-specification) and PlatformIO's library.json ask of a folder.
 
 findings(folder) -> a sentence for each breach, with file and line. Written from the specification's words; part of test_arduino.py.
+`python3 host_tests/arduino_rules.py lib/filters` writes keywords.txt anew from the headers.
 """
 import json
 import pathlib
 import re
+import sys
 
 REQUIRED = ("name", "version", "author", "maintainer", "sentence", "paragraph", "category", "url", "architectures", "includes")
 CATEGORIES = ("Display", "Communication", "Signal Input/Output", "Sensors", "Device Control", "Timing", "Data Storage", "Data Processing", "Other")
@@ -106,3 +108,13 @@ def layout_findings(folder):
     sketches = list((folder / "examples").glob("*")) if (folder / "examples").is_dir() else []
     said += [f"{sketch}: no sketch {sketch.name}.ino" for sketch in sketches if not (sketch / f"{sketch.name}.ino").is_file()]
     return said + ([] if sketches else [f"{folder}/examples: no sketch"])
+
+
+def write_keywords(folder):
+    names = public_names(folder)
+    lines = [f"{name}\t{kind}\n" for kind in KEYWORDS for name in names if names[name] == kind]
+    (folder / "keywords.txt").write_text("".join(lines), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write_keywords(pathlib.Path(sys.argv[1]))

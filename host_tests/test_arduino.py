@@ -22,7 +22,8 @@ PRINTED = 0.005 + 4608 / 2**24
 
 @test
 def every_file_of_the_library_keeps_the_rules():
-    assert arduino_rules.findings(LIBRARY) == []
+    found = arduino_rules.findings(LIBRARY)
+    assert found == [], found
     assert (LIBRARY / "LICENSE").read_text(encoding="utf-8") == pathlib.Path("LICENSE").read_text(encoding="utf-8")
     version = re.search(r'FIRMWARE_VERSION "(.*)"', pathlib.Path("firmware/version.h").read_text(encoding="utf-8"))[1]
     assert arduino_rules.properties(LIBRARY / "library.properties")[0]["version"][1] == version
