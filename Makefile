@@ -56,7 +56,11 @@ $(U)/hal_probe.elf: host_tests/avr/hal_probe.c $(wildcard hal/avr/*.c hal/*.h ha
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr $(filter %.c,$^) -o $@
 
-TEST_IMAGES := $(U)/hal_probe.elf $(U)/fx_twins.elf $(U)/fx_twins_firmware.elf $(FIRMWARE_IMAGES)
+$(U)/store_probe.elf: host_tests/avr/store_probe.c firmware/store.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) firmware/store.h Makefile
+	@mkdir -p $(@D)
+	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr -Ifirmware -Ilib/filters/src $(filter %.c,$^) -o $@
+
+TEST_IMAGES := $(U)/hal_probe.elf $(U)/store_probe.elf $(U)/fx_twins.elf $(U)/fx_twins_firmware.elf $(FIRMWARE_IMAGES)
 
 $(U)/firmware.hex: $(U)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $< $@

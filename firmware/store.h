@@ -54,7 +54,7 @@ store_status_t store_load(uint8_t record[STORE_RECORD_SIZE]);
 
 /*
  * Begins to save the record's image, which is read while store_busy(): if it changes meanwhile the save fails, or a
- * later store_load takes the set before it. False, and nothing done, while a save is under way. Takes 0.1 ms.
+ * later store_load takes the set before it. False, and nothing done, while a save is under way. Takes 0.05 ms.
  */
 bool store_save_begin(void);
 

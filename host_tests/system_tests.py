@@ -11,6 +11,7 @@ import system_injections  # noqa: F401
 import system_injections_more  # noqa: F401
 import system_losses  # noqa: F401
 import system_passes  # noqa: F401
+import system_store  # noqa: F401
 from system_support import FW, OUT, SET_IMAGES, SIMRUN, STREAMS, TESTS, image_with, read_output, run, run_all, simrun, test, triplets, within
 
 
@@ -100,22 +101,6 @@ def assembler_primitives_equal_their_c_twins():
 @test
 def assembler_primitives_equal_their_c_twins_as_the_firmware_is_built():
     compare_twins("fx_twins_firmware")
-
-
-@test
-def eeprom_is_written_on_the_chip_and_kept_in_the_file():
-    image = OUT / "eeprom.bin"
-    image.write_bytes(bytes([0xFF] * 1023 + [0x5A]))
-    done = run(SIMRUN, "--fw", "build/uno/hal_probe.elf", "--in", STREAMS / "tilt-fast.csv", "--out", OUT / "eeprom.txt", "--eeprom", image,
-               "--max-ms", "1000", expect=None)
-    assert done.returncode == 8, done.stderr
-    lines = [line.split() for line in (OUT / "eeprom.txt").read_text().splitlines()]
-    said = dict(lines)
-    assert said["before"] == "01011010" and said["after"] == "10100101" and said["ready"] == "00000000", said
-    assert said["ticks"] == "00000001", "3.4 ms are less than one tick of 8 ms"
-    assert image.read_bytes() == bytes([0xFF] * 1023 + [0xA5])
-    late_us = [int(value, 2) for name, value in lines if name == "late"]
-    assert len(late_us) == 7 and max(late_us) <= 20, f"main wakes {late_us} us behind its alarm"
 
 
 # --- nothing is lost (more in system_losses.py) ----------------------------------------------------------------------

@@ -99,6 +99,7 @@ typedef enum { RESET_EXTERNAL, RESET_POWER_ON, RESET_BROWN_OUT } reset_t;
 void resets_start(void);
 /* Asked for from anywhere, done between two instructions; the last one asked for counts. */
 void resets_want(reset_t kind);
+bool resets_wanted(void); /* one comes after this instruction */
 /* Somebody opened the pseudo terminal: with a boot loader an external reset, as DTR gives an UNO; not counted. */
 void resets_port_opened(void);
 /* Between two instructions: counts a reset that came, does a wanted one. last_pc: where the step just run began. */
@@ -176,6 +177,10 @@ void pty_pace(void); /* sleep until real time has caught up */
 void eeprom_start(void);
 void eeprom_finish(void);
 void eeprom_reset(bool power_lost);
+/* What a power cycle leaves in the cell that is being written: an erased, the old or the new byte, or junk. */
+typedef enum { EEPROM_LEFT_FF, EEPROM_LEFT_OLD, EEPROM_LEFT_NEW, EEPROM_LEFT_RANDOM } eeprom_left_t;
+void eeprom_leave(eeprom_left_t what);
+void eeprom_print(FILE *json);
 uint64_t eeprom_next(void);
 void eeprom_step(void);
 
@@ -187,7 +192,8 @@ void faults_step(void);
 void faults_on_sample(void);
 void faults_on_byte(uint32_t transfer, uint32_t byte);
 void faults_after_byte(void);
-void faults_on_eeprom_write(uint32_t count);
+typedef enum { EEPROM_IN, EEPROM_BEFORE, EEPROM_AFTER } eeprom_moment_t;
+void faults_on_eeprom_write(uint32_t count, eeprom_moment_t moment);
 extern bool faults_watch_pc;
 void faults_on_pc(uint32_t pc);
 void faults_on_row(const row_t *row);

@@ -1,6 +1,6 @@
 /*
  * EEPROM contents in a file, and the 3.4 ms of a write, which simavr 1.6 does in no time: EEPE stays set, and a power
- * cycle in that time leaves junk in the cell.
+ * cycle in that time leaves junk in the cell, or what the fault says.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,10 @@ static avr_io_write_t core_write;
 static void *core_param;
 static uint64_t busy_until = NEVER;
 static uint16_t busy_address;
+static uint8_t cell_before;
+static eeprom_left_t left = EEPROM_LEFT_RANDOM;
 static uint32_t write_count;
+static uint32_t cell_writes[EEPROM_BYTES];
 
 static void on_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
@@ -34,13 +37,22 @@ static void on_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *p
         return;
     }
     bool writes = (value & BIT_EEPE) != 0 && (avr->data[REG_EECR] & BIT_EEMPE) != 0;
+    if (writes) {
+        faults_on_eeprom_write(++write_count, EEPROM_BEFORE);
+        if (resets_wanted()) { /* it comes before the write */
+            core_write(avr, address, value & (uint8_t) ~(BIT_EEPE | BIT_EEMPE), core_param);
+            return;
+        }
+        busy_address = (uint16_t)((avr->data[REG_EEARL] | (unsigned)avr->data[REG_EEARH] << 8) % EEPROM_BYTES);
+        cell_before = eeprom->eeprom[busy_address];
+        cell_writes[busy_address]++;
+    }
     core_write(avr, address, value, core_param);
     if (writes) {
-        busy_address = (uint16_t)((avr->data[REG_EEARL] | (unsigned)avr->data[REG_EEARH] << 8) % EEPROM_BYTES);
         busy_until = avr->cycle + (uint64_t)WRITE_US * CYCLES_PER_US;
         avr->data[REG_EECR] |= BIT_EEPE;
         machine_reschedule();
-        faults_on_eeprom_write(++write_count);
+        faults_on_eeprom_write(write_count, EEPROM_IN);
     }
 }
 
@@ -53,6 +65,26 @@ void eeprom_step(void)
 {
     busy_until = NEVER;
     mcu->data[REG_EECR] &= (uint8_t)~BIT_EEPE;
+    faults_on_eeprom_write(write_count, EEPROM_AFTER);
+}
+
+void eeprom_leave(eeprom_left_t what)
+{
+    left = what;
+}
+
+static uint8_t what_is_left(void)
+{
+    switch (left) {
+    case EEPROM_LEFT_FF:
+        return 0xFF;
+    case EEPROM_LEFT_OLD:
+        return cell_before;
+    case EEPROM_LEFT_NEW:
+        return eeprom->eeprom[busy_address];
+    default:
+        return (uint8_t)machine_random();
+    }
 }
 
 /* A reset lets a write finish (data sheet, "EEPROM Write"); without power the cell is left half written. */
@@ -62,7 +94,7 @@ void eeprom_reset(bool power_lost)
         return;
     }
     if (power_lost) {
-        eeprom->eeprom[busy_address] = (uint8_t)machine_random();
+        eeprom->eeprom[busy_address] = what_is_left();
         busy_until = NEVER;
     } else {
         mcu->data[REG_EECR] |= BIT_EEPE;
@@ -91,6 +123,15 @@ void eeprom_start(void)
     }
     fclose(file);
     memcpy(eeprom->eeprom, contents, length);
+}
+
+void eeprom_print(FILE *json)
+{
+    uint32_t most = 0;
+    for (unsigned i = 0; i < EEPROM_BYTES; i++) {
+        most = cell_writes[i] > most ? cell_writes[i] : most;
+    }
+    fprintf(json, "  \"eeprom_writes\": %u,\n  \"eeprom_cell_writes_max\": %u,\n", (unsigned)write_count, (unsigned)most);
 }
 
 void eeprom_finish(void)

@@ -114,10 +114,12 @@ static void apply(const fault_t *fault)
     case KIND_POKE:
         mcu->data[fault->address] = (uint8_t)fault->parameter;
         break;
+    case KIND_MCUPOWER:
+        eeprom_leave((eeprom_left_t)fault->parameter);
+        resets_want(RESET_POWER_ON);
+        break;
     default:
-        resets_want(fault->kind == KIND_MCUPOWER   ? RESET_POWER_ON
-                    : fault->kind == KIND_BROWNOUT ? RESET_BROWN_OUT
-                                                   : RESET_EXTERNAL);
+        resets_want(fault->kind == KIND_BROWNOUT ? RESET_BROWN_OUT : RESET_EXTERNAL);
         break;
     }
 }
@@ -277,11 +279,13 @@ void faults_on_byte(uint32_t transfer, uint32_t byte)
     }
 }
 
-void faults_on_eeprom_write(uint32_t count)
+void faults_on_eeprom_write(uint32_t count, eeprom_moment_t moment)
 {
     for (size_t i = 0; i < fault_count; i++) {
-        if (faults[i].when == WHEN_EEPROM && faults[i].armed && faults[i].eeprom_write == count) {
-            begin(&faults[i]);
+        fault_t *fault = &faults[i];
+        bool named = fault->when == WHEN_EEPROM && fault->eeprom_write == count && fault->eeprom_moment == moment;
+        if (named && fault->armed) {
+            begin(fault);
         }
     }
 }

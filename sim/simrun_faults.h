@@ -50,6 +50,7 @@ typedef struct {
     uint32_t bytes_left; /* WHEN_SAMPLE on the bus: until it begins, 0: not under way */
     uint32_t pc, visits_left;
     uint32_t eeprom_write;
+    eeprom_moment_t eeprom_moment;
     uint32_t chance; /* WHEN_SAMPLE: of 2^32 */
     int32_t parameter;
     uint32_t address; /* KIND_POKE: of the variable */
@@ -72,6 +73,7 @@ typedef struct {
     bool detectable;                /* false: alters the value inside a transfer that is well formed */
     bool axis;                      /* PARAM is x, y or z */
     int32_t lowest, usual, highest; /* PARAM; all 0: takes none */
+    bool left;                      /* PARAM is what is left of a byte of EEPROM */
 } kind_properties_t;
 
 extern const kind_properties_t fault_kinds[KIND_COUNT];

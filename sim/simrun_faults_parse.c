@@ -22,7 +22,8 @@ const kind_properties_t fault_kinds[KIND_COUNT] = {
     [KIND_NOINT] = { .name = "noint", .lasts = true, .detectable = true },
     [KIND_INTHIGH] = { .name = "inthigh", .lasts = true, .detectable = true },
     [KIND_RESET] = { .name = "reset", .on_bus = true, .detectable = true },
-    [KIND_MCUPOWER] = { .name = "mcupower", .on_bus = true, .detectable = true },
+    [KIND_MCUPOWER] = { "mcupower", false, true, true, false, EEPROM_LEFT_FF, EEPROM_LEFT_RANDOM, EEPROM_LEFT_RANDOM,
+                        .left = true },
     [KIND_BROWNOUT] = { .name = "brownout", .on_bus = true, .detectable = true },
     [KIND_TORN] = { .name = "torn", .on_bus = true, .detectable = true },
     [KIND_STARVE] = { .name = "starve", .lasts = true, .detectable = true },
@@ -107,6 +108,22 @@ static void parse_symbol(fault_t *fault, char *text)
     }
 }
 
+/* The number of a write, or that and .before or .after. */
+static void parse_write(fault_t *fault, char *text)
+{
+    char *end;
+    char *dot = strchr(text, '.');
+    if (dot == NULL) {
+        fault->eeprom_write = ordinal(fault, text, '\0', &end);
+        return;
+    }
+    fault->eeprom_write = ordinal(fault, text, '.', &end);
+    if (strcmp(dot, ".before") != 0 && strcmp(dot, ".after") != 0) {
+        refuse(fault->text, "eeprom: wants N, N.before or N.after");
+    }
+    fault->eeprom_moment = strcmp(dot, ".before") == 0 ? EEPROM_BEFORE : EEPROM_AFTER;
+}
+
 /* What follows xfer:, pc:, eeprom: or p: */
 static void parse_occasion(fault_t *fault, char *text)
 {
@@ -120,7 +137,7 @@ static void parse_occasion(fault_t *fault, char *text)
         parse_symbol(fault, text);
         break;
     case WHEN_EEPROM:
-        fault->eeprom_write = ordinal(fault, text, '\0', &end);
+        parse_write(fault, text);
         break;
     default: {
         double chance = number(fault, text, &end);
@@ -201,6 +218,19 @@ static int32_t parse_axis(const fault_t *fault, const char *text)
     return *text - 'x';
 }
 
+static int32_t parse_left(const fault_t *fault, const char *text)
+{
+    static const char *const names[] = {
+        [EEPROM_LEFT_FF] = "ff", [EEPROM_LEFT_OLD] = "old", [EEPROM_LEFT_NEW] = "new", [EEPROM_LEFT_RANDOM] = "random"
+    };
+    for (eeprom_left_t left = EEPROM_LEFT_FF; left <= EEPROM_LEFT_RANDOM; left++) {
+        if (strcmp(text, names[left]) == 0) {
+            return (int32_t)left;
+        }
+    }
+    refuse(fault->text, "mcupower wants what it leaves of a byte of EEPROM: ff, old, new or random");
+}
+
 /* A whole number that may be negative. */
 static int32_t parse_number(const fault_t *fault, const char *text)
 {
@@ -216,6 +246,12 @@ static int32_t parse_number(const fault_t *fault, const char *text)
     return (int32_t)value;
 }
 
+static int32_t parse_parameter(const fault_t *fault, const char *text)
+{
+    const kind_properties_t *kind = &fault_kinds[fault->kind];
+    return kind->axis ? parse_axis(fault, text) : kind->left ? parse_left(fault, text) : parse_number(fault, text);
+}
+
 static void parse_what(fault_t *fault, char **rest)
 {
     parse_kind(fault, next_part(rest));
@@ -225,7 +261,7 @@ static void parse_what(fault_t *fault, char **rest)
         parse_poke(fault, part);
         part = next_part(rest);
     } else if (part != NULL && fault_kinds[fault->kind].highest != 0) {
-        fault->parameter = fault_kinds[fault->kind].axis ? parse_axis(fault, part) : parse_number(fault, part);
+        fault->parameter = parse_parameter(fault, part);
         part = next_part(rest);
     }
     if (part != NULL && fault_kinds[fault->kind].lasts) {

@@ -87,6 +87,11 @@ void resets_want(reset_t kind)
     wanted_kind = kind;
 }
 
+bool resets_wanted(void)
+{
+    return reset_wanted;
+}
+
 void resets_port_opened(void)
 {
     if (options.bootloader != NULL) {

@@ -194,6 +194,7 @@ static void write_samples(FILE *file)
     fprintf(file, "  \"samples_altered\": %u,\n", (unsigned)alter_count());
     rows_print(file);
     flow_print(file);
+    eeprom_print(file);
     fprintf(file, "  \"uart_bytes\": %llu,\n  \"uart_rx_overruns\": %u,\n", (unsigned long long)uart_bytes(),
             (unsigned)uart_rx_overruns());
     fprintf(file, "  \"i2c_transfers\": %u,\n  \"i2c_bytes\": %llu,\n", (unsigned)twi.transfer,

@@ -1,0 +1,87 @@
+"""The EEPROM on the chip: written, kept in simrun's file, and the store in it (store_probe.c) when the supply goes in a save."""
+import json
+
+from system_support import OUT, SIMRUN, STREAMS, run, test
+
+STATUS = "damaged empty other_version good other_copy".split()
+PROBE = "build/uno/store_probe.elf"
+LEFT = ("ff", "old", "new", "random")
+
+
+@test
+def eeprom_is_written_on_the_chip_and_kept_in_the_file():
+    image = OUT / "eeprom.bin"
+    image.write_bytes(bytes([0xFF] * 1023 + [0x5A]))
+    done = run(SIMRUN, "--fw", "build/uno/hal_probe.elf", "--in", STREAMS / "tilt-fast.csv", "--out", OUT / "eeprom.txt", "--eeprom", image,
+               "--max-ms", "1000", expect=None)
+    assert done.returncode == 8, done.stderr
+    lines = [line.split() for line in (OUT / "eeprom.txt").read_text().splitlines()]
+    said = dict(lines)
+    assert said["before"] == "01011010" and said["after"] == "10100101" and said["ready"] == "00000000", said
+    assert said["ticks"] == "00000001", "3.4 ms are less than one tick of 8 ms"
+    assert image.read_bytes() == bytes([0xFF] * 1023 + [0xA5])
+    late_us = [int(value, 2) for name, value in lines if name == "late"]
+    assert len(late_us) == 7 and max(late_us) <= 20, f"main wakes {late_us} us behind its alarm"
+
+
+def probe(image, *faults, seed=1):
+    """What the probe says, one dictionary a start, and the statistics; the EEPROM is that of the file, before and after."""
+    out, stats = OUT / "store.txt", OUT / "store.json"
+    options = [word for fault in faults for word in ("--fault", fault)]
+    done = run(SIMRUN, "--fw", PROBE, "--in", STREAMS / "tilt-fast.csv", "--out", out, "--eeprom", image, "--stats", stats,
+               "--max-ms", "3000", "--seed", seed, "--expect-resets", len(faults), *options, expect=None)
+    assert done.returncode == 8, done.stderr
+    starts = []
+    for name, *value in (line.split() for line in out.read_text(encoding="ascii").splitlines()):
+        if name == "status":
+            starts.append({})
+        starts[-1][name] = STATUS[int(value[0])] if name == "status" else "".join(value)
+    return starts, json.loads(stats.read_text(encoding="ascii"))
+
+
+@test
+def store_keeps_a_set_over_power_cycles_on_the_chip():
+    image = OUT / "store.bin"
+    image.unlink(missing_ok=True)
+    told = [probe(image) for _ in range(4)]
+    starts = [starts for starts, _ in told]
+    assert starts == [[{"status": "empty", "set": "-", "save": "+", "end": ""}]] + [
+        [{"status": "good", "set": str(n), "save": "+", "end": ""}] for n in (1, 2, 3)], starts
+    # 44 bytes of image, sequence number, two checks, and the mark twice, or the version and it once
+    assert [stats["eeprom_writes"] for _, stats in told] == [49] * 4, told
+
+
+def cut(kept, fault, seed=1):
+    """A save cut by this fault on a board that keeps set 4: what the next start finds, and that it saves again."""
+    image = OUT / "store_cut.bin"
+    image.write_bytes(kept)
+    (first, second), _ = probe(image, fault, seed=seed)
+    assert first == {"status": "good", "set": "4"}, (fault, first)
+    assert second["set"] in ("4", "5") and second["status"] in ("good", "other_copy") and second["save"] == "+", (fault, second)
+    return second
+
+
+@test
+def store_survives_power_cuts_on_the_chip():
+    """In every one of the 49 writes with one kind of what is left in turn; in the outer ones all kinds, before and after too."""
+    kept = (OUT / "store.bin").read_bytes()
+    outer = (1, 2, 25, 48, 49)
+    for n in range(1, 50):
+        for left in LEFT if n in outer else LEFT[n % 4:n % 4 + 1]:
+            found = cut(kept, f"eeprom:{n}:mcupower:{left}", seed=n)
+            assert found["set"] == "4" or n == 49 and left in ("new", "random"), (n, left, found)
+            assert found["status"] == "other_copy" or n in (1, 49), "a save that was cut is told"
+    for n in outer:
+        assert cut(kept, f"eeprom:{n}.before:mcupower")["set"] == "4"
+        assert cut(kept, f"eeprom:{n}.after:mcupower")["set"] == ("5" if n == 49 else "4")
+        (third,), _ = probe(OUT / "store_cut.bin")
+        assert third["status"] == "good" and third["set"] == ("6" if n == 49 else "5"), (n, third)
+
+
+@test
+def store_fault_words_are_refused():
+    for words, reason in (("eeprom:3.during:mcupower", "eeprom: wants N, N.before or N.after"), ("eeprom:0.after:mcupower", "counted from 1"),
+                          ("eeprom:3.:mcupower", "eeprom: wants N, N.before or N.after"), ("eeprom:x.before:mcupower", "a whole number"),
+                          ("eeprom:3:mcupower:half", "ff, old, new or random"), ("eeprom:3:mcupower:ff:2", "too many parts")):
+        done = run(SIMRUN, "--fw", PROBE, "--in", STREAMS / "tilt-fast.csv", "--out", OUT / "x.csv", "--fault", words, expect=2)
+        assert reason in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
