@@ -187,6 +187,7 @@ static void test_three_hundred_saves_on_end(void)
         store_save(i % 256);
         TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
         TEST_ASSERT_TRUE(store_holds(i % 256));
+        TEST_ASSERT_EQUAL_UINT8(i % 128, store_copy((int)(i % 2))[STORE_AT_SEQUENCE]);
     }
     /* 150 saves each, which open and close it, but the first, which finds it open */
     TEST_ASSERT_EQUAL_UINT32(299, hal_host_eeprom_writes(STORE_COPY_0 + STORE_AT_MARK));
