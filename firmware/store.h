@@ -6,9 +6,9 @@
  * first becomes STORE_OPEN and is read back: from then on it is no copy, whatever the rest of it says. Image, version,
  * sequence number and check follow, each byte read back; then the mark becomes STORE_IMAGE_SIZE. So whatever byte a cut
  * leaves, erased, old, new or anything, the other copy is as it was and this one open or whole, and nothing rests on a
- * check happening not to fit. A mark that is torn stands with bytes that are all of one save: the copy's older one while
- * it opens, the new one while it closes. When that happens again as the next save opens this copy anew, and the torn
- * mark then reads as right (1 in 256), the set of the save that was cut first is the one that counts: whole, too.
+ * check happening not to fit. A mark that is torn stands with bytes that are all of one save: the copy's older one
+ * while it opens, the new one while it closes. When that happens again as the next save opens this copy anew, and the
+ * torn mark then reads as right (1 in 256), the set of the save that was cut first is the one that counts: whole, too.
  *
  * The check (store.c) finds every damage to one or two bytes of a copy, whatever they have become, and misses one in
  * 65,536 of greater ones.
@@ -36,19 +36,19 @@
 #define STORE_COPY_0 0x100u
 #define STORE_COPY_1 0x200u
 
-typedef enum { /* of two copies the greater one counts, of equal ones the later */
-    STORE_DAMAGED,       /* no copy is whole: damaged, or the first save was cut short */
-    STORE_EMPTY,         /* nothing was ever saved */
-    STORE_OTHER_VERSION, /* what is whole was saved with another STORE_VERSION */
-    STORE_GOOD,          /* the image is the last one saved */
-    STORE_OTHER_COPY     /* the image is of one copy; the other is damaged, or its save was cut short */
+typedef enum {                      /* of two copies the greater one counts, of equal ones the later */
+               STORE_DAMAGED,       /* no copy is whole: damaged, or the first save was cut short */
+               STORE_EMPTY,         /* nothing was ever saved */
+               STORE_OTHER_VERSION, /* what is whole was saved with another STORE_VERSION */
+               STORE_GOOD,          /* the image is the last one saved */
+               STORE_OTHER_COPY     /* the image is of one copy; the other is damaged, or its save was cut short */
 } store_status_t;
 
 /*
  * At start-up, before anything else here, and later while no save is under way. The record must stay where it is: the
  * store goes on using it, and nobody else changes its tail. From STORE_GOOD on its image is what was saved; else it is
- * junk, the caller puts his defaults there. Waits for a write that was under way when the processor was reset, 3.4 ms at
- * most.
+ * junk, the caller puts his defaults there. Waits for a write that was under way when the processor was reset, 3.4 ms
+ * at most.
  */
 store_status_t store_load(uint8_t record[STORE_RECORD_SIZE]);
 

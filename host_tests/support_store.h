@@ -11,12 +11,7 @@
 #include "store.h"
 
 /* Places behind the image, as store.h orders its tail. */
-enum {
-    STORE_AT_VERSION = STORE_IMAGE_SIZE,
-    STORE_AT_SEQUENCE,
-    STORE_AT_CHECK,
-    STORE_AT_MARK = STORE_RECORD_SIZE - 1
-};
+enum { STORE_AT_VERSION = STORE_IMAGE_SIZE, STORE_AT_SEQUENCE, STORE_AT_CHECK, STORE_AT_MARK = STORE_RECORD_SIZE - 1 };
 
 extern uint8_t store_record[STORE_RECORD_SIZE];
 

@@ -1,8 +1,13 @@
 """The EEPROM on the chip: written, kept in simrun's file, and the store in it (store_probe.c) when the supply goes in a save."""
 import json
+import pathlib
+import re
 
 from system_support import OUT, SIMRUN, STREAMS, run, test
 
+# the image, sequence number, two checks, and the mark twice, or the version and it once
+IMAGE_SIZE = int(re.search(r"STORE_IMAGE_SIZE (\d+)u", pathlib.Path("firmware/store.h").read_text(encoding="ascii")).group(1))
+WRITES = IMAGE_SIZE + 5
 STATUS = "damaged empty other_version good other_copy".split()
 PROBE = "build/uno/store_probe.elf"
 LEFT = ("ff", "old", "new", "random")
@@ -47,8 +52,7 @@ def store_keeps_a_set_over_power_cycles_on_the_chip():
     starts = [starts for starts, _ in told]
     assert starts == [[{"status": "empty", "set": "-", "save": "+", "end": ""}]] + [
         [{"status": "good", "set": str(n), "save": "+", "end": ""}] for n in (1, 2, 3)], starts
-    # 44 bytes of image, sequence number, two checks, and the mark twice, or the version and it once
-    assert [stats["eeprom_writes"] for _, stats in told] == [49] * 4, told
+    assert [stats["eeprom_writes"] for _, stats in told] == [WRITES] * 4, told
 
 
 def cut(kept, fault, seed=1):
@@ -63,19 +67,19 @@ def cut(kept, fault, seed=1):
 
 @test
 def store_survives_power_cuts_on_the_chip():
-    """In every one of the 49 writes with one kind of what is left in turn; in the outer ones all kinds, before and after too."""
+    """In every write with one kind of what is left in turn; in the outer ones all kinds, before and after too."""
     kept = (OUT / "store.bin").read_bytes()
-    outer = (1, 2, 25, 48, 49)
-    for n in range(1, 50):
+    outer = (1, 2, 25, WRITES - 1, WRITES)
+    for n in range(1, WRITES + 1):
         for left in LEFT if n in outer else LEFT[n % 4:n % 4 + 1]:
             found = cut(kept, f"eeprom:{n}:mcupower:{left}", seed=n)
-            assert found["set"] == "4" or n == 49 and left in ("new", "random"), (n, left, found)
-            assert found["status"] == "other_copy" or n in (1, 49), "a save that was cut is told"
+            assert found["set"] == "4" or n == WRITES and left in ("new", "random"), (n, left, found)
+            assert found["status"] == "other_copy" or n in (1, WRITES), "a save that was cut is told"
     for n in outer:
         assert cut(kept, f"eeprom:{n}.before:mcupower")["set"] == "4"
-        assert cut(kept, f"eeprom:{n}.after:mcupower")["set"] == ("5" if n == 49 else "4")
+        assert cut(kept, f"eeprom:{n}.after:mcupower")["set"] == ("5" if n == WRITES else "4")
         (third,), _ = probe(OUT / "store_cut.bin")
-        assert third["status"] == "good" and third["set"] == ("6" if n == 49 else "5"), (n, third)
+        assert third["status"] == "good" and third["set"] == ("6" if n == WRITES else "5"), (n, third)
 
 
 @test

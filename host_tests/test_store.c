@@ -143,7 +143,7 @@ static void test_supply_cut_in_a_save_of_one_changed_byte(void)
 static const hal_host_left_t lefts[] = { HAL_HOST_LEFT_OLD, HAL_HOST_LEFT_NEW, HAL_HOST_LEFT_ERASED,
                                          HAL_HOST_LEFT_VALUE };
 
-/* A cut in a save of NEW, then one in a save of OTHER; what may count then is whole, and of the three the right ones. */
+/* A cut in a save of NEW, then one in a save of OTHER; what counts then is whole, and one that may. */
 static void cut_twice(int old, uint32_t first, test_random_t *random)
 {
     enum { OTHER = 100 };
@@ -194,7 +194,7 @@ static void test_three_hundred_saves_on_end(void)
     TEST_ASSERT_EQUAL_UINT32(299, hal_host_eeprom_writes(STORE_COPY_1 + STORE_AT_MARK));
 }
 
-/* The later of every two neighbours counts, in either copy; two of one number are whole, and what is saved next counts. */
+/* The later of two neighbours counts, in either copy; of two with one number either, and then what is saved next. */
 static void test_every_sequence_number(void)
 {
     for (unsigned n = 0; n < 128; n++) {

@@ -38,7 +38,7 @@ static void boots_without(int copy)
     boots_to(STORE_OTHER_COPY, copy == 0 ? LATEST : OLDER);
 }
 
-/* The twin of all that follows: undamaged, and each copy as the store sealed it is what another way of reckoning gives. */
+/* The twin of all that follows: undamaged; and the store seals a copy as another way of reckoning does. */
 static void test_undamaged(void)
 {
     boots_to(STORE_GOOD, LATEST);
@@ -169,7 +169,7 @@ static void test_junk_under_a_right_mark(void)
         }
         taken += store_boot() != STORE_DAMAGED;
     }
-    TEST_ASSERT_TRUE_MESSAGE(taken <= 4, "40,000 copies of junk, 0.6 to be expected: five or more for one seed in 2,400");
+    TEST_ASSERT_TRUE_MESSAGE(taken <= 4, "40,000 copies, 0.6 to be expected: five or more for one seed in 2,400");
 }
 
 /* Contents that programs and programmers leave: all 00 and any one value are not ours, all FF is an empty store. */

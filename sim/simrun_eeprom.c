@@ -131,7 +131,8 @@ void eeprom_print(FILE *json)
     for (unsigned i = 0; i < EEPROM_BYTES; i++) {
         most = cell_writes[i] > most ? cell_writes[i] : most;
     }
-    fprintf(json, "  \"eeprom_writes\": %u,\n  \"eeprom_cell_writes_max\": %u,\n", (unsigned)write_count, (unsigned)most);
+    fprintf(json, "  \"eeprom_writes\": %u,\n  \"eeprom_cell_writes_max\": %u,\n", (unsigned)write_count,
+            (unsigned)most);
 }
 
 void eeprom_finish(void)

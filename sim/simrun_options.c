@@ -114,7 +114,7 @@ static const char help_text[] =
     "           inthigh[:MS]                 D2 is high whatever INT1 is\n"
     "           torn                         slave lets go of SDA for the rest of the read: ones\n"
     "           reset brownout               MCU: external reset; brown-out\n"
-    "           mcupower[:LEFT]              power cycle of the MCU with junk in its RAM; leaves of an EEPROM byte that is\n"
+    "           mcupower[:LEFT]              power cycle with junk in the MCU's RAM; leaves of an EEPROM byte that is\n"
     "                                        being written: ff, old, new or random (random)\n"
     "           starve[:MS] overrun[:N]      main loop without time, interrupts go on: for MS; until the sensor's "
     "FIFO\n"
