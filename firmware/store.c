@@ -49,7 +49,7 @@ FX_NOINLINE uint16_t remainder_of(uint8_t count)
     uint8_t low = 0;
     do {
         uint8_t out = *byte++ ^ high;
-        uint8_t doubled = (uint8_t)(out << 1);
+        uint8_t doubled = (uint8_t)(out * 2u);
         if ((out & 0x80u) != 0) {
             doubled ^= FIELD_POLYNOMIAL;
         }
