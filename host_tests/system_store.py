@@ -76,8 +76,8 @@ def store_survives_power_cuts_on_the_chip():
             assert found["set"] == "4" or n == WRITES and left in ("new", "random"), (n, left, found)
             assert found["status"] == "other_copy" or n in (1, WRITES), "a save that was cut is told"
     for n in outer:
-        assert cut(kept, f"eeprom:{n}.before:mcupower")["set"] == "4"
-        assert cut(kept, f"eeprom:{n}.after:mcupower")["set"] == ("5" if n == WRITES else "4")
+        assert cut(kept, f"eeprom:{n}.before:mcupower:new")["set"] == "4"
+        assert cut(kept, f"eeprom:{n}.after:mcupower:old")["set"] == ("5" if n == WRITES else "4")
         (third,), _ = probe(OUT / "store_cut.bin")
         assert third["status"] == "good" and third["set"] == ("6" if n == WRITES else "5"), (n, third)
 
