@@ -44,11 +44,11 @@ include mk/images.mk
 
 # assembler primitives against their C twins, on the chip: with plain -Os, and as the firmware is built
 TWINS_SRC := host_tests/avr/fx_twins.c lib/filters/src/fx.c
-$(U)/fx_twins.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx_avr.h Makefile
+$(U)/fx_twins.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx_avr.h lib/filters/src/fx_dot.h Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ilib/filters/src $(TWINS_SRC) -o $@
 
-$(U)/fx_twins_firmware.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx_avr.h Makefile
+$(U)/fx_twins_firmware.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx_avr.h lib/filters/src/fx_dot.h Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -Wl,--gc-sections $(TWINS_SRC) -o $@
 

@@ -84,8 +84,8 @@ def pipeline_of_chip_equals_pc_at_12_5_hz():
 
 
 def compare_twins(name):
-    """One line for each primitive of fx.h with a C twin. Status 8: the program ends by sleeping with interrupts off."""
-    twins = {f"PASS {twin}" for twin in re.findall(r"\bfx_(\w+)_c\(", pathlib.Path("lib/filters/src/fx.h").read_text(encoding="utf-8"))}
+    """One line for each primitive of fx*.h with a C twin. Status 8: the program ends by sleeping with interrupts off."""
+    twins = {f"PASS {t}" for h in pathlib.Path("lib/filters/src").glob("fx*.h") for t in re.findall(r"\bfx_(\w+)_c\(", h.read_text("utf-8"))}
     out = OUT / f"{name}.txt"
     done = run(SIMRUN, "--fw", f"build/uno/{name}.elf", "--in", STREAMS / "tilt-fast.csv", "--out", out, "--max-ms", "60000", expect=None)
     lines = out.read_text().splitlines()

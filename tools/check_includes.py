@@ -28,7 +28,7 @@ MODEL = {"adxl345_model.h", "stream.h"}
 RULES = {
     "lib/filters/src": (STANDARD | FILTERS, None),
     "lib/filters/examples": (STANDARD | FILTERS | {"Arduino.h", "Wire.h", "SPI.h"}, None),
-    "lib/tilt/src": (STANDARD | TILT | {"fx.h"}, None),
+    "lib/tilt/src": (STANDARD | TILT | {"fx.h", "fx_dot.h"}, None),
     "lib/adxl345/src": (STANDARD | ADXL | HAL, None),
     "hal": (STANDARD | {"hal_port.h"}, None),
     "hal/avr": (STANDARD | HAL | headers("hal/avr"), AVR_LIBC),

@@ -4,6 +4,7 @@
  * interrupts off.
  */
 #include "fx.h"
+#include "fx_dot.h"
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -99,6 +100,14 @@ static bool twin_normalise(uint32_t a, uint32_t b)
     return fx_normalise(&by_assembler) == fx_normalise_c(&by_c) && by_assembler == by_c;
 }
 
+/* Either operand's bytes in every place of the row and of the column. */
+static bool twin_dot24(uint32_t a, uint32_t b)
+{
+    const int32_t row[3] = { (int32_t)a, (int32_t)b, (int32_t)(a >> 8) };
+    const int16_t column[3] = { (int16_t)b, (int16_t)(a >> 16), (int16_t)(b >> 8) };
+    return fx_dot24((int32_t)b, row, column) == fx_dot24_c((int32_t)b, row, column);
+}
+
 static bool run(bool (*twin)(uint32_t, uint32_t), const char *flash_name)
 {
     uint32_t a = 0;
@@ -147,6 +156,7 @@ int main(void)
     RUN(clamp_high);
     RUN(shift_right);
     RUN(normalise);
+    RUN(dot24);
     while ((UCSR0A & _BV(UDRE0)) == 0) {
     }
     cli();

@@ -6,6 +6,9 @@
 #ifndef FX_AVR_H
 #define FX_AVR_H
 
+/* Here the assembler twins are used: fx_dot.h asks. */
+#define FX_ASSEMBLER
+
 FX_INLINE uint32_t fx_mul_u16(uint16_t a, uint16_t b)
 {
     uint32_t product;

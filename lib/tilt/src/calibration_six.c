@@ -1,0 +1,90 @@
+/*
+ * Offsets and scales from six rests, each up to 20 degrees from its axis.
+ *
+ * Each of the six readings must have the length of 1 g. For an axis, its component in its two positions is then
+ * +-sqrt(1 - b^2 - c^2) with b, c of the other axes by the offsets and scales known so far, and two readings make a
+ * line: its slope is the scale, its reading at 0 the offset. Round after round b and c get better, four times and more:
+ * at 20 degrees six rounds leave 0.005 LSB, at 15 degrees 0.0002 (600 parts each, half of them tilted the worst way).
+ */
+#include "calibration.h"
+#include "calibration_inside.h"
+#include "fx.h"
+
+#define ONE_Q28 (1UL << 28)
+#define ACROSS_MAX_Q28 (ONE_Q28 / 4U) /* sin(30 degrees)^2: what is 20 degrees off stays below in every round */
+
+enum { ROUNDS = 6, RESIDUAL_MAX_Q14 = 160 };
+
+/*
+ * Two readings of an axis, Q4, are 6,014 to 10,560 apart for legal scales and 20 degrees. Others cannot become legal,
+ * and the numbers that follow would not fit.
+ */
+enum { APART_MIN_Q4 = 6000, APART_MAX_Q4 = 10600 };
+
+/* What the six rests say: x, y, z of each position in turn. */
+typedef const int16_t *means_t;
+
+/* Component of gravity along the axis of a position, from what the two others leave; 0: they leave too little. */
+static uint16_t component_q14(const calibration_t *c, means_t means, uint8_t position)
+{
+    uint32_t across_q28 = 0;
+    for (uint8_t axis = 0; axis < 3U; axis++) {
+        if (axis != position >> 1) {
+            across_q28 += calibration_square(calibration_gravity_q14(c, axis, means[3U * position + axis]));
+        }
+    }
+    return across_q28 > ACROSS_MAX_Q28 ? 0U : fx_isqrt32(ONE_Q28 - across_q28);
+}
+
+/* Line through the two readings of an axis, where its components are plus and -minus; false: it is no scale. */
+static bool draw_line(calibration_t *c, means_t means, uint8_t axis, const uint16_t component_q14[2])
+{
+    int16_t upper_q4 = means[7U * axis];
+    uint16_t apart_q4 = (uint16_t)(upper_q4 - means[7U * axis + 3U]);
+    if ((uint16_t)(apart_q4 - APART_MIN_Q4) > APART_MAX_Q4 - APART_MIN_Q4) {
+        return false;
+    }
+    uint16_t scale_uq6 = (uint16_t)calibration_over(apart_q4, (uint16_t)(component_q14[0] + component_q14[1]));
+    c->scale_lsb_per_g_uq6[axis] = scale_uq6;
+    uint16_t rise_q5 = fx_high_u16((uint16_t)(scale_uq6 << 1), component_q14[0]); /* scale < 2^15 */
+    c->offset_lsb_q4[axis] = (int16_t)(upper_q4 - (int16_t)((rise_q5 + 1U) >> 1));
+    return true;
+}
+
+FX_ONCE calibration_verdict_t calibration_six(calibration_t *c, const int16_t mean_lsb_q4[3 * CALIBRATION_POSITIONS],
+                                              uint16_t *residual_mg)
+{
+    calibration_t found = *c;
+    uint16_t known_q14[CALIBRATION_POSITIONS];
+    for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
+        known_q14[position] = CALIBRATION_ONE_Q14;
+    }
+    uint16_t off_q14 = 0;
+    uint8_t where = 0;
+    for (uint8_t round = 0; round <= ROUNDS; round++) {
+        for (uint8_t axis = 0; axis < 3U; axis++) {
+            if (!draw_line(&found, mean_lsb_q4, axis, &known_q14[2U * axis])) {
+                return calibration_verdict(CALIBRATION_SCALE, axis);
+            }
+        }
+        off_q14 = 0;
+        for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
+            uint16_t better_q14 = component_q14(&found, mean_lsb_q4, position);
+            if (better_q14 == 0U) {
+                return calibration_verdict(CALIBRATION_TILTED, position);
+            }
+            int16_t change_q14 = (int16_t)(better_q14 - known_q14[position]);
+            uint16_t size_q14 = (uint16_t)(change_q14 < 0 ? -change_q14 : change_q14);
+            if (size_q14 > off_q14) {
+                off_q14 = size_q14;
+                where = position;
+            }
+            known_q14[position] = better_q14;
+        }
+    }
+    *residual_mg = (uint16_t)(((uint32_t)off_q14 * 125U + 1024U) >> 11);
+    if (off_q14 > RESIDUAL_MAX_Q14) {
+        return calibration_verdict(CALIBRATION_RESIDUAL, where);
+    }
+    return calibration_commit(c, &found);
+}
