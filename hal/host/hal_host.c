@@ -7,7 +7,6 @@
 #include "hal_irq.h"
 #include "hal_led.h"
 #include "hal_sleep.h"
-#include "hal_strap.h"
 #include "hal_time.h"
 #include "hal_watchdog.h"
 
