@@ -106,7 +106,7 @@ enum say {
 #define W_THAT "\x97"
 #define W_NOT "\x98"
 #define W_HELD_LOW "\x99"
-#define AND "\x9A"
+#define W_COMMA "\x9A"
 
 #define SMALLEST ": " W_THE "smallest" W_THAT
 
@@ -143,13 +143,13 @@ enum say {
     X(WORD_THAT, " that ") \
     X(WORD_NOT, " not ") \
     X(WORD_HELD_LOW, " held low") \
-    X(WORD_AND, ", ") \
+    X(WORD_COMMA, ", ") \
     X(WHO, FIRMWARE_NAME " " FIRMWARE_VERSION ": roll and pitch from an" W_ADXL V_MORE) \
     X(HELP, V_NAME ": " V_MORE V_THEN_LEGAL) \
     X(STATUS, "state " V_THEN_STATE) \
     X(FILTER_NOW, W_FILTER " " V_FILTER V_MORE_IF_FORCED) \
-    X(RATE_NOW, W_RATE " " V_RATE W_HZ AND "I2C" W_AT V_BUS_KHZ " kHz" V_MORE_IF_FORCED) \
-    X(RANGE_NOW, W_RANGE " " V_RANGE " g" AND "256 LSB per g") \
+    X(RATE_NOW, W_RATE " " V_RATE W_HZ W_COMMA "I2C" W_AT V_BUS_KHZ " kHz" V_MORE_IF_FORCED) \
+    X(RANGE_NOW, W_RANGE " " V_RANGE " g" W_COMMA "256 LSB per g") \
     X(EVERY_NOW, W_EVERY " " V_EVERY V_THEN_WHY) \
     X(BAUD_NOW, W_BAUD " " V_BAUD V_MORE_IF_FORCED) \
     X(MODE_NOW, W_MODE " " V_THEN_MODE) \
@@ -160,26 +160,27 @@ enum say {
     X(TOO_SLOW, W_REFUSED V_FILTER " takes " V_CYCLES " of " W_THE V_LEFT " cycles" W_THAT \
                                    "a " W_SAMPLE W_AT V_RATE W_HZ " leaves") \
     X(FAULT_BEGIN, W_FAULT V_SUBJECT ": " V_THEN_FAULT) \
-    X(FAULT_END, W_FAULT V_SUBJECT " over: " W_SAMPLE "s again after " V_OUTAGE_MS " ms" AND V_OUTAGE_LOST W_LOST \
-                   AND W_SENSOR W_AT "0x" V_OUTAGE_ADDRESS) \
+    X(FAULT_END, W_FAULT V_SUBJECT " over: " W_SAMPLE "s again after " V_OUTAGE_MS " ms" W_COMMA V_OUTAGE_LOST W_LOST \
+                   W_COMMA W_SENSOR W_AT "0x" V_OUTAGE_ADDRESS) \
     X(RESET, "reset: " V_MORE V_THEN_CAUSE) \
-    X(SETTINGS, W_FILTER " " V_FILTER AND W_RATE " " V_RATE W_HZ AND W_RANGE " " V_RANGE " g" \
-                         AND W_EVERY " " V_EVERY AND W_BAUD " " V_BAUD V_MORE) \
-    X(HINT, "type " W_HELP AND "or " W_MODE " plot for " W_THE "Arduino plotter" V_MORE) \
-    X(SENSOR, W_SENSOR ":" W_ADXL W_AT "0x" V_ADDRESS AND "I2C" W_AT V_BUS_KHZ " kHz" V_MORE) \
+    X(SETTINGS, W_FILTER " " V_FILTER W_COMMA W_RATE " " V_RATE W_HZ W_COMMA W_RANGE " " V_RANGE " g" \
+                         W_COMMA W_EVERY " " V_EVERY W_COMMA W_BAUD " " V_BAUD V_MORE) \
+    X(HINT, "type " W_HELP W_COMMA "or " W_MODE " plot for " W_THE "Arduino plotter" V_MORE) \
+    X(SENSOR, W_SENSOR ":" W_ADXL W_AT "0x" V_ADDRESS W_COMMA "I2C" W_AT V_BUS_KHZ " kHz" V_MORE) \
     X(HEADER, "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags") \
-    X(VERBS, W_STOP AND "go" AND "status" AND W_HELP "; NAME VALUE sets" AND "NAME shows") \
+    X(VERBS, W_STOP W_COMMA "go" W_COMMA "status" W_COMMA W_HELP "; NAME VALUE sets" W_COMMA "NAME shows") \
     X(TOO_LONG, W_REFUSED "line too long") \
     X(GARBAGE, W_REFUSED "characters" W_THAT "no command has") \
-    X(SAMPLES, W_SAMPLE "s " V_COUNT AND "gated " V_COUNT AND "reacquired " V_COUNT AND "clipped " V_COUNT V_MORE) \
-    X(ROWS, "rows " V_COUNT AND "dropped " V_COUNT AND "serial bytes" W_LOST " " V_SERIAL_LOST \
-            AND "lines refused " V_COUNT V_MORE) \
-    X(MISSING, "lost " V_COUNT AND "late " V_COUNT AND "drained " V_COUNT AND "stuck " V_COUNT \
-      AND "restarts " V_COUNT V_MORE) \
+    X(SAMPLES, W_SAMPLE "s " V_COUNT W_COMMA "gated " V_COUNT W_COMMA "reacquired " V_COUNT \
+      W_COMMA "clipped " V_COUNT V_MORE) \
+    X(ROWS, "rows " V_COUNT W_COMMA "dropped " V_COUNT W_COMMA "serial bytes" W_LOST " " V_SERIAL_LOST \
+            W_COMMA "lines refused " V_COUNT V_MORE) \
+    X(MISSING, "lost " V_COUNT W_COMMA "late " V_COUNT W_COMMA "drained " V_COUNT W_COMMA "stuck " V_COUNT \
+      W_COMMA "restarts " V_COUNT V_MORE) \
     X(BUS, \
-      "not acknowledged " V_COUNT AND "arbitration" W_LOST " " V_COUNT AND "bus errors " V_COUNT \
-      AND "timeouts " V_COUNT V_MORE) \
-    X(READINGS, "readings torn " V_COUNT AND "empty " V_COUNT AND "overruns " V_COUNT V_MORE) \
+      "not acknowledged " V_COUNT W_COMMA "arbitration" W_LOST " " V_COUNT W_COMMA "bus errors " V_COUNT \
+      W_COMMA "timeouts " V_COUNT V_MORE) \
+    X(READINGS, "readings torn " V_COUNT W_COMMA "empty " V_COUNT W_COMMA "overruns " V_COUNT V_MORE) \
     X(RESET_AGAIN, "reset: " V_THEN_CAUSE) \
     X(LINE_CARRIES, SMALLEST V_BAUD " " W_BAUD " carries" W_AT V_RATE W_HZ) \
     X(FILTER_LEAVES, SMALLEST V_FILTER " leaves time for" W_AT V_RATE W_HZ) \
@@ -194,30 +195,30 @@ enum say {
     X(POWER_ON, "power on") \
     X(EXTERNAL, "reset button or serial port opened") \
     X(BROWN_OUT, W_SUPPLY " dropped") \
-    X(WATCHDOG, "watchdog" AND "waiting for stage mask " V_NOTE " (1 sampling" AND "2 " W_FILTER "ing" \
-      AND "4 output)" V_THEN_SAFE) \
-    X(SAFE, AND "again and again: safe settings") \
+    X(WATCHDOG, "watchdog" W_COMMA "waiting for stage mask " V_NOTE " (1 sampling" W_COMMA "2 " W_FILTER "ing" \
+      W_COMMA "4 output)" V_THEN_SAFE) \
+    X(SAFE, W_COMMA "again and again: safe settings") \
     X(STATE_STOPPED, W_STOP "ped" V_THEN_REST) \
     X(STATE_STARTING, "starting" V_THEN_REST) \
     X(STATE_STREAMING, "streaming" V_THEN_REST) \
     X(STATE_QUIESCING, "starting" V_THEN_REST) \
     X(STATE_FAULTY, "fault" V_THEN_REST) \
-    X(STATE_REST, AND W_FAULT V_FAULT AND W_RATE " " V_RATE W_HZ AND "measured " V_MEASURED W_HZ \
-      AND "uptime s " V_COUNT \
+    X(STATE_REST, W_COMMA W_FAULT V_FAULT W_COMMA W_RATE " " V_RATE W_HZ W_COMMA "measured " V_MEASURED W_HZ \
+      W_COMMA "uptime s " V_COUNT \
                   V_MORE) \
     X(NO_SENSOR, \
-      "no " W_SENSOR " answers" W_AT "0x53 or 0x1D" W_CHECK "power" AND "SDA" W_TO "A4" AND "SCL" W_TO "A5" \
-      AND "CS" W_TO "3.3 V") \
+      "no " W_SENSOR " answers" W_AT "0x53 or 0x1D" W_CHECK "power" W_COMMA "SDA" W_TO "A4" W_COMMA "SCL" W_TO "A5" \
+      W_COMMA "CS" W_TO "3.3 V") \
     X(WRONG_ID, W_THE "device" W_AT "0x" V_ADDRESS " is no" W_ADXL ": DEVID reads 0x" V_DEVICE_ID "," W_NOT "0xE5") \
-    X(BUS_FAULT, "I2C bus stuck or disturbed" W_CHECK "SDA" AND "SCL" W_PULL_UPS) \
-    X(READ_BACK, "a register does" W_NOT "keep its value" W_CHECK W_SUPPLY AND "bus") \
-    X(INT1_SILENT, W_THE W_SENSOR " has data" AND "but INT1 does" W_NOT "rise" W_CHECK "INT1" W_TO "D2") \
+    X(BUS_FAULT, "I2C bus stuck or disturbed" W_CHECK "SDA" W_COMMA "SCL" W_PULL_UPS) \
+    X(READ_BACK, "a register does" W_NOT "keep its value" W_CHECK W_SUPPLY W_COMMA "bus") \
+    X(INT1_SILENT, W_THE W_SENSOR " has data" W_COMMA "but INT1 does" W_NOT "rise" W_CHECK "INT1" W_TO "D2") \
     X(NO_DATA, W_THE W_SENSOR " " W_STOP "ped measuring: power" W_LOST "?") \
     X(SCL_LOW, "SCL" W_HELD_LOW W_CHECK "SCL" W_TO "A5" W_PULL_UPS) \
     X(SDA_LOW, "SDA" W_HELD_LOW W_CHECK "SDA" W_TO "A4" W_PULL_UPS) \
     X(INT1_STUCK, "INT1 is high without data" W_CHECK "INT1" W_TO "D2") \
-    X(STUCK, W_THE "values do" W_NOT "change" W_CHECK W_SUPPLY AND "bus") \
-    X(TORN, "readings are torn" W_CHECK "SDA" AND "SCL" AND W_SUPPLY W_PULL_UPS) \
+    X(STUCK, W_THE "values do" W_NOT "change" W_CHECK W_SUPPLY W_COMMA "bus") \
+    X(TORN, "readings are torn" W_CHECK "SDA" W_COMMA "SCL" W_COMMA W_SUPPLY W_PULL_UPS) \
     X(TWO_SENSORS, "values jump to their double" W_CHECK "for two " W_SENSOR "s" W_AT "0x" V_ADDRESS)
 /* clang-format on */
 

@@ -6,7 +6,9 @@
 extern "C" {
 #endif
 
-/* Turn by the smallest angle that takes the direction u to (0, 0, 1), by quaternion; row by row. u is not (0, 0, -1). */
+/*
+ * Turn by the smallest angle that takes the direction u to (0, 0, 1), by quaternion; row by row. u is not (0, 0, -1).
+ */
 void reference_smallest_turn(const double u[3], double m[9]);
 
 /* The matrix tau (3.34) of paper 003 as printed, m = (m1, m2, m3): takes m / |m| to the first axis; row by row. */
