@@ -130,6 +130,22 @@ class Missing(unittest.TestCase):
         gaps = self.lost(*(n for n in range(100) if n not in gone))
         self.assertEqual((gaps.on_the_way, gaps.by_the_board), (7, 0))
 
+    def test_a_rate_that_the_board_says_has_changed_is_not_lost_rows(self):
+        """100 Hz, then 400, and back; 4 of the changes lie nearer to an end than half a window. A row lost beside each still counts."""
+        for first in (1, 2, 3, 6, 20):
+            for last in (1, 2, 3, 6, 20):
+                gaps = Gaps()
+                for us, many in ((10_000, first), (2_500, 30), (10_000, last)):
+                    for number in range(many):
+                        gaps.add(us, spoken=number == 0 and gaps.steps)
+                gaps.cut()
+                self.assertEqual(gaps.lost, 0, (first, last))
+        gaps = Gaps()
+        for number, us in enumerate((10_000, 20_000, 10_000, 10_000, 2_500, 2_500, 5_000, 2_500, 2_500)):
+            gaps.add(us, spoken=number == 4)
+        gaps.cut()
+        self.assertEqual(gaps.lost, 2)
+
     def test_the_first_and_last_rows_too(self):
         self.assertEqual(self.lost(0, 1, 2, 5, 6).on_the_way, 2)
         self.assertEqual(self.lost(0, 1, 2, 3, 6).on_the_way, 2)
@@ -257,11 +273,30 @@ class Command(Case):
         self.assertEqual(status, 0, out + err)
         self.assertIn(row(52).decode(), self.file.read_text())
 
+    def test_a_command_waits_for_the_answer_to_the_one_before(self):
+        """`rate 400` at the old speed would be noise to a board that has changed to the new one; an unanswered command holds none up."""
+        typed = []
+
+        def script(board):
+            board.send(BANNER + HEADER + rows(0, 50))
+            board.heard(b"baud 500000\n")
+            board.send(rows(50, 60))
+            typed.append(board.typed)
+            board.send(b"# baud 500000\n")
+            board.speed = termios.B500000
+            board.heard(b"rate 400\n")
+            typed.append(termios.tcgetattr(board.slave)[4])
+            board.heard(b"every 1\n")
+            board.send(rows(60, 250))
+        status, out, err, _ = self.run_tilt(script, *self.for_seconds(2.4), "--send", "baud 500000", "--send", "rate 400", "--send", "every 1",
+                                            speed=termios.B115200, ANSWER_S=0.1)
+        self.assertEqual((status, typed), (0, [b"baud 500000\n", termios.B500000]), out + err)
+
     def test_a_wrong_baud_rate_is_told_with_the_right_one(self):
         def script(board):
             while True:
                 board.send(rows(0, 100))
-        status, _, err, _ = self.run_tilt(script, speed=termios.B500000)
+        status, _, err, _ = self.run_tilt(script, speed=termios.B500000, LISTEN_S=2.0)
         self.assertEqual(status, 2)
         self.assertIn("at 115200 baud is no text; at 500000 baud it is this firmware's: --baud 500000", err)
         self.assertFalse(self.file.exists())

@@ -182,7 +182,7 @@ class Recorder:
         if self.last is not None:
             step = step_us(self.last, row)
             no_sample = (row.flags | self.last.flags) & protocol.NO_SAMPLE
-            self.counts.gaps.add(step, bool(row.flags & protocol.DROPPED), bool(no_sample) or self.spoken)
+            self.counts.gaps.add(step, bool(row.flags & protocol.DROPPED), bool(no_sample), self.spoken)
             self.counts.span_us += step
         self.counts.rows += 1
         self.understood += 1

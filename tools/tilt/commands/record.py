@@ -25,6 +25,7 @@ SILENT_S = 6.0        # the boot loader takes 2 s, the banner at 9600 baud 0.4 s
 STRANGE_BYTES, STRANGE_S = 200, 2.0  # of which no line is ours: the port is not what it should be
 PRINTABLE_SHARE = 0.95
 SEND_AFTER_S, SEND_SILENT_S = 1.0, 3.0  # where no header has come: it may be in plotter mode; it may have been stopped
+ANSWER_S = 1.0        # the next command waits for the answer to the one before: the board holds 64 bytes, and `baud` changes the line
 LISTEN_S = 0.6        # at each baud rate, when looking for the right one
 BACK_AFTER_S = 1.5    # without a line that can be read, to the baud rate at start
 RETRY_S = 0.2
@@ -110,12 +111,12 @@ class Session:
 
     def __init__(self, args, port, recorder, screen):
         self.args, self.port, self.recorder, self.screen = args, port, recorder, screen
-        self.ends, self.first_row, self.strange = False, None, b""
+        self.ends, self.first_row, self.strange, self.answered = False, None, b"", False
         self.opened()
 
     def opened(self):
         self.since = self.heard = time.monotonic()
-        self.sent = None
+        self.sent, self.to_send = None, []
 
     def run(self):
         while not self.over():
@@ -140,11 +141,14 @@ class Session:
             self.port.baud = int(baud.group(1))
             self.recorder.join()
         if text.startswith(protocol.BANNER):
-            self.sent = None
+            self.sent, self.to_send = None, []
+        self.answered = True
 
     def take(self, data):
-        now, before = time.monotonic(), self.recorder.understood
+        now, before, self.answered = time.monotonic(), self.recorder.understood, False
         self.recorder.feed(data)
+        if self.answered:
+            self.send_next()
         if self.recorder.understood > before:
             self.heard = now
         if self.first_row is None and self.recorder.counts.rows:
@@ -167,11 +171,16 @@ class Session:
     def type_commands(self):
         waited_s = time.monotonic() - self.since
         ready = self.recorder.header is not None or waited_s > (SEND_AFTER_S if self.strange else SEND_SILENT_S)
-        if self.sent is not None or not ready:
-            return
-        self.sent = time.monotonic()
-        for text in self.args.send:
-            self.port.send(text)
+        if self.sent is None and ready:
+            self.sent, self.to_send = time.monotonic(), list(self.args.send)
+            self.send_next()
+        elif self.to_send and time.monotonic() - self.typed > ANSWER_S:
+            self.send_next()
+
+    def send_next(self):
+        if self.to_send:
+            self.typed = time.monotonic()
+            self.port.send(self.to_send.pop(0))
 
     def wait_for_port(self):
         """False: not to be waited for, or ended meanwhile."""
