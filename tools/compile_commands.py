@@ -9,6 +9,7 @@ only concern the machine code are left out, because Clang does not know those of
 """
 import argparse
 import json
+import os
 import pathlib
 import re
 import shlex
@@ -23,10 +24,13 @@ SOURCES = (".c", ".cpp")
 WITH_VALUE = ("-I", "-isystem", "-D", "-U", "-include")
 KEPT = re.compile(r"-(std=|mmcu=|W(?!l,|a,|p,)|O|fshort-enums$)")
 
+# not as a part of the make that called this program
+OWN_MAKE = {name: value for name, value in os.environ.items() if name not in ("MAKELEVEL", "MAKEFLAGS", "MFLAGS")}
+
 
 def planned(targets):
     """Every line that make would carry out for them, were nothing built."""
-    done = subprocess.run(["make", "-nB", *targets], capture_output=True, text=True, check=False)
+    done = subprocess.run(["make", "-nB", *targets], capture_output=True, text=True, check=False, env=OWN_MAKE)
     if done.returncode != 0:
         raise Stop(f"make -nB: {(done.stderr.strip() or '?').splitlines()[-1]}")
     return done.stdout.replace("\\\n", " ").splitlines()
