@@ -244,6 +244,19 @@ class Command(Case):
             self.assertEqual((status, out), (2, ""))
             self.assertIn(said, err)
 
+    def test_the_recording_is_never_replaced(self):
+        """Nor by another name of it: it holds what the rows do not, as the board's words."""
+        mine, other = self.path / "mine.csv", self.path / "other.csv"
+        mine.write_text("# a word of the board\nt_us,x,y,z\n" + "".join(f"{10000 * n},1,2,256\n" for n in range(30)), encoding="ascii")
+        other.symlink_to(mine)
+        before = mine.read_bytes()
+        for out in (mine, other):
+            err = io.StringIO()
+            with contextlib.redirect_stderr(err):
+                self.assertEqual(cli.main(["replay", str(mine), "--filter", "kf", "-o", str(out)]), 2)
+            self.assertIn("would replace the recording", err.getvalue())
+            self.assertEqual(mine.read_bytes(), before)
+
     def test_one_row_has_no_rate(self):
         path = self.made(np.array([[0, 0, 256]]))
         self.assertIn("all rows have one time", self.run_it(path)[2])

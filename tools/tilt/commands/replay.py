@@ -4,6 +4,7 @@ The rows are those that the board would send, to the last digit (docs/tools.md s
 output are the firmware's; with several each has its own, as roll_cdeg_kf, and `flags` holds what they have in common. Truth columns are
 passed on. Rows go out at the times of the recording; a row that stands for a sample that is missing has flag 2.
 """
+import os
 import sys
 import time
 
@@ -18,7 +19,7 @@ def stream_arguments(parser):
     """What replay, compare and tune have in common."""
     parser.add_argument("stream", metavar="STREAM", help="recording (docs/protocol.md, Streams)")
     parser.add_argument("--filter", metavar="A,B,C", help="names of filters (default: all)")
-    parser.add_argument("--rate", metavar="HZ", type=float, 
+    parser.add_argument("--rate", metavar="HZ", type=float,
                         help="output data rate of the sensor (default: that of the firmware's nearest to the recording)")
 
 
@@ -88,6 +89,12 @@ def summary(stream, tables, rate_dhz):
     return lines
 
 
+def checked_output(args):
+    """TiltError where the rows would replace the recording, with what only it holds."""
+    if args.output and args.output != "-" and os.path.exists(args.output) and os.path.samefile(args.stream, args.output):
+        raise TiltError(f"{args.output}: the rows would replace the recording: give another name with -o")
+
+
 def run(args):
     from tilt import native, stream as streams
     from tilt.progress import bar
@@ -97,6 +104,7 @@ def run(args):
     with bar("reading", "B") as told:
         stream = streams.read(args.stream, progress=told)
     rate_dhz = native.rate_of(stream, args.rate)
+    checked_output(args)
     tables = replayed(stream, names, rate_dhz, args.range)
     took = time.perf_counter() - began
     if args.output:
