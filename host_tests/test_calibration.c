@@ -5,6 +5,7 @@
 #include "calibration.h"
 #include "support_filters.h"
 #include "unity.h"
+#include <stdlib.h>
 
 static calibration_t c;
 static calibration_applied_t applied;
@@ -98,7 +99,8 @@ static void test_mountings_that_are_exact(void)
         calibration_apply(&applied, a, out);
         for (uint8_t j = 0; j < 3; j++) {
             int8_t from = signs_and_axes[i][j];
-            TEST_ASSERT_EQUAL_INT32(from < 0 ? -a[-from - 1] : a[from - 1], out[j]);
+            int32_t size = a[abs(from) - 1];
+            TEST_ASSERT_EQUAL_INT32(from < 0 ? -size : size, out[j]);
         }
     }
 }
