@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#define COMMANDS_LINE_MAX 32u
+#define COMMANDS_LINE_MAX 40u
 
 void commands_start(void);
 

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "adxl345.h"
+#include "calibration.h"
 
 /* Bits of the row's `flags` column (docs/protocol.md). */
 enum row_flag {
@@ -36,6 +37,9 @@ typedef struct {
 
 /* Once at start-up: angles level. */
 void pipeline_reset(void);
+
+/* What turns readings into accelerations (calibration.h); false: not legal, the one in force stays. */
+bool pipeline_calibrate(const calibration_t *calibration);
 
 /* Begin anew: filters collect a robust start, noise estimates start at their floor. */
 void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);

@@ -27,10 +27,10 @@ bool replies_room(void)
     return count < QUEUE_LENGTH;
 }
 
-bool replies_hold(reply_kind_t kind)
+bool replies_hold(reply_kind_t first, reply_kind_t last)
 {
     for (uint8_t i = 0; i < count; i++) {
-        if (queue[i].kind == (uint8_t)kind) {
+        if (queue[i].kind >= (uint8_t)first && queue[i].kind <= (uint8_t)last) {
             return true;
         }
     }

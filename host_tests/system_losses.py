@@ -124,7 +124,7 @@ for slow_filter in ("pbf", "af"):
 def a_filter_too_slow_for_the_rate_is_refused_and_samples_go_on():
     # this image is told of 14 MHz: af takes more than a sample at 800 Hz leaves, pbf does not
     tight = "build/uno/tight/firmware.elf"
-    reply = "# refused: af takes 12450 of the 11050 cycles that a sample at 800 Hz leaves"
+    reply = "# refused 5: af takes 12450 of the 11050 cycles that a sample at 800 Hz leaves"
     rows, notes, served, _ = simrun("tight-filter", STREAMS / "rest-2lsb.csv", "--filter", "pbf", "--rate", 800, "--baud", 1000000, "--cmd",
                                     "1500:filter af", "--cmd", "1600:filter", "--loop", "--max-ms", 3000, fw=tight)
     assert notes.count(reply) == 1 and notes[notes.index(reply) + 1] == "# filter pbf", notes

@@ -207,7 +207,7 @@ static void test_ten_minutes_without_a_sensor(void)
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(600e3);
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("fault", 0));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault ", 0));
 }
 
 static void test_ten_minutes_stopped(void)

@@ -12,6 +12,7 @@ import tempfile
 import threading
 
 import faults_judge
+import images
 import latency
 from faults_judge import GATED_ROWS, LINE_MS, NO_LIMIT, PASS_CYCLES, Command, Ending, Result
 
@@ -187,8 +188,8 @@ def end_runs():
 def simulate(firmware, filter_name, *options, stream=None, max_ms=RUN_MS, rate=100, profile=None):
     """(exit status, what simrun said, --stats) of one run; the rows lie in folder()/out.csv."""
     base = folder()
-    command = [SIMRUN, "--fw", firmware, "--in", stream or noise_at(rate), "--loop", "--out", base / "out.csv", "--stats", base / "stats.json"]
-    command += ["--max-ms", max_ms]
+    command = [SIMRUN, "--fw", images.image_for(firmware, filter_name), "--in", stream or noise_at(rate), "--loop", "--out", base / "out.csv"]
+    command += ["--stats", base / "stats.json", "--max-ms", max_ms]
     command += ["--filter", filter_name] if filter_name else []
     command += ["--baud", 500000] if rate > 100 else []
     command += ["--rate", f"{rate:g}"] if rate != 100 else []
@@ -203,7 +204,7 @@ def simulate(firmware, filter_name, *options, stream=None, max_ms=RUN_MS, rate=1
         stats = json.loads((base / "stats.json").read_text(encoding="ascii"))
     except json.JSONDecodeError:
         raise Fault(f"{base / 'stats.json'} breaks off: is the disk full?") from None
-    if profile is not None:
+    if profile is not None and images.image_for(firmware, filter_name) == firmware:  # another image has its own addresses
         profile.update(line.partition(",")[0] for line in (base / "profile.csv").read_text(encoding="ascii").splitlines()[1:])
     return status, said, stats
 

@@ -7,6 +7,7 @@
 #include "hal_irq.h"
 #include "hal_led.h"
 #include "hal_sleep.h"
+#include "hal_strap.h"
 #include "hal_time.h"
 #include "hal_watchdog.h"
 
@@ -251,6 +252,13 @@ uint8_t hal_reset_repeats(void)
 void hal_reset_settled(void)
 {
     repeats = 0;
+}
+
+void hal_strap_init(void) {}
+
+bool hal_strap_low(void)
+{
+    return hal_host_faults.strap_low;
 }
 
 void hal_led_init(void) {}

@@ -105,11 +105,11 @@ static void poll(void)
 
 static void run_ms(double ms, bool take)
 {
-    adxl345_sample_t sample;
+    const adxl345_sample_t *sample;
     for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
         poll();
-        while (take && adxl345_take(&sample)) {
-            check_sample(&sample);
+        while (take && (sample = adxl345_take()) != NULL) {
+            check_sample(sample);
             hal_wake(); /* a slot is free: the driver may go on, as in firmware/app.c */
         }
         hal_sleep_until_wake();
