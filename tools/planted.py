@@ -3,10 +3,13 @@
 of the file what is wrong with it (host_tests/test_planted.py shows that another complaint does not count).
 
     planted.py [WORD...]     all of host_tests/planted.txt, or those whose name contains a word
+    PLANTED=20 planted.py    so many of them, others for each commit
 """
 import concurrent.futures
+import os
 import pathlib
 import queue
+import random
 import re
 import shutil
 import subprocess
@@ -159,6 +162,10 @@ def restore(copy, fault, whole):
 def main():
     words = sys.argv[1:]
     faults = [f for f in load(LIST.read_text(encoding="utf-8")) if not words or any(w in f["name"] for w in words)]
+    sample = os.environ.get("PLANTED", "")
+    if sample and not (sample.isdecimal() and int(sample) > 0):
+        print(f"planted: PLANTED={sample} is no number of faults")
+        return 2
     if not faults:
         print(f"planted: no fault's name contains {' or '.join(words)}")
         return 2
@@ -170,6 +177,10 @@ def main():
     for check in unplanted(faults) if not words else []:
         print(f"check-{check}: no fault is planted for it in {LIST}")
         bad += 1
+    if sample and int(sample) < len(faults):
+        head = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True).stdout.strip()
+        print(f"planted: {sample} of {len(faults)} faults, chosen by commit {head[:8] or 'none'}")
+        faults = random.Random(head).sample(faults, int(sample))
     with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
         for fault, results in zip(faults, pool.map(lambda f: try_one(copies, f), faults)):
             for text, found in results:
