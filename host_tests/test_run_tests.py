@@ -2,7 +2,9 @@
 """Tests of tools/run_tests.py: what a program says and how it ends, into one line and the sum."""
 import contextlib
 import io
+import os
 import pathlib
+import subprocess
 import sys
 import tempfile
 
@@ -53,6 +55,13 @@ def program_that_is_not_there_is_a_failure_that_names_it():
         run_tests.OUT = pathlib.Path(folder)
         status, said, _ = run_tests.run("it", [f"{folder}/nothing"])
     assert told(status, said)[0] == (1, 1, 0) and "nothing: No such file" in said
+
+
+@test
+def what_is_left_out_must_be_a_test():
+    done = subprocess.run([sys.executable, "tools/run_tests.py"], env={**os.environ, "LEAVE_OUT": "test_design nothing"}, capture_output=True,
+                          text=True, timeout=60, check=False)
+    assert done.returncode == 1 and done.stderr == "run_tests: LEAVE_OUT names what is no test: nothing\n" and not done.stdout, done
 
 
 @test
