@@ -33,8 +33,8 @@ U := $(B)/uno
 AVR_CC      := avr-gcc
 # what makes the smallest image with avr-gcc 5.4.0 (and no table of a switch in RAM); the filters keep their speed
 AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -maccumulate-args -fshort-enums -fno-inline-small-functions \
-               -fno-tree-dominator-opts -fno-tree-fre -fno-tree-switch-conversion -fno-forward-propagate -fno-tree-loop-im \
-               -fno-tree-loop-ivcanon -fno-tree-copy-prop
+               -fno-tree-dominator-opts -fno-tree-switch-conversion -fno-forward-propagate \
+               -fno-tree-loop-ivcanon -fno-tree-copy-prop -fno-move-loop-invariants -frename-registers -fno-jump-tables
 AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -gdwarf-2 -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr $(FILTER_FLAG)
 AVR_LINK    := -mmcu=atmega328p -gdwarf-2 $(AVR_SMALL) -Wl,--gc-sections
@@ -126,7 +126,7 @@ $(H)/native_replay: host_tests/native_replay.c $(HOST_SRC) $(wildcard */*.h lib/
 
 $(H)/pipeline_replay: host_tests/pipeline_replay.c $(HOST_SRC) $(wildcard */*.h lib/*/src/*.h hal/*/*.h)
 	@mkdir -p $(@D)
-	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) -Wl,--wrap=filter_any_start,--wrap=noise_r_lsb2_q8 \
+	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) -Wl,--wrap=parameters_start,--wrap=noise_r_lsb2_q8 \
 	    host_tests/pipeline_replay.c $(HOST_SRC) -lm -o $@
 
 $(H)/exhaustive_isqrt: host_tests/exhaustive_isqrt.c lib/tilt/src/tilt.c lib/filters/src/fx.c $(wildcard lib/*/src/*.h)

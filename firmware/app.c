@@ -5,7 +5,10 @@
  */
 #include "app.h"
 
+#include <stddef.h>
+
 #include "adxl345.h"
+#include "app_state.h"
 #include "coast.h"
 #include "commands.h"
 #include "counters.h"
@@ -13,50 +16,58 @@
 #include "hal_drdy.h"
 #include "hal_irq.h"
 #include "hal_led.h"
+#include "hal_pointer.h"
 #include "hal_ram.h"
 #include "hal_sleep.h"
+#include "hal_strap.h"
 #include "hal_time.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
 #include "hang_test.h"
 #include "health.h"
+#include "measure.h"
 #include "pass.h"
 #include "pipeline.h"
 #include "replies.h"
 #include "rows.h"
 #include "sensor_watch.h"
 #include "settings.h"
+#include "settings_kept.h"
 #include "silence.h"
+#include "store.h"
 
-/* The banner at 9600 baud takes 0.4 s; the ring at 9600 baud drains in 0.27 s. */
-#define HOLD_LIMIT_US 1000000ul
 #define SERVICE_US 4000ul
 #define OVERDUE_US 20000ul /* twice HAL_TICK_US and more: passes cut for lack of time hold the service up */
 
 /*
  * What hung so often in a row, each time within SETTLED_S of its start, hangs again: it gets the lowest rate, at which
- * the processor has most time for everything else. Settings are not kept over a reset, so there are no others to undo.
+ * the processor has most time for everything else. Saved settings are
+ * left alone.
  */
 enum { RESETS_TO_SAFE = 3, SETTLED_S = 10, WHOLE_LOOP = 0x80 };
 
-/* BANNER: banner and header are going out; BAUD: the line drains before its rate changes. */
-typedef enum { STAGE_BANNER, STAGE_RUNNING, STAGE_BAUD } stage_t;
+app_state_t app;
 
-/* FILTER is for all samples to come, the others wait for those of the old configuration. COLD: filters begin anew. */
-enum { CHANGE_FILTER = 1, CHANGE_CONFIG = 2, CHANGE_COLD = 4 };
+static struct loop {
+    uint32_t pass_us; /* time at the beginning of the pass */
+    uint32_t next_second_us;
+    uint32_t next_service_us;
+    bool row_due;      /* for the sample that the pipeline has, or had last */
+    bool look_at_rate; /* each second, where a pass has time for it */
+} loop;
 
-static uint8_t stage;
-static bool sampling;    /* wanted: go or start-up, not stop */
-static uint8_t changes;  /* that the pipeline is to follow yet */
-static bool row_due;     /* for the sample that the pipeline has, or had last */
-static uint32_t pass_us; /* time at the beginning of the pass */
-static uint32_t next_second_us;
-static bool look_at_rate; /* each second, where a pass has time for it */
-static uint32_t next_service_us;
-
-static void start_sensor(void)
+/* Known by its address in a register, an access to it is half as long. */
+static inline struct loop *here(void)
 {
-    adxl345_config_t config = { settings.rate_dhz, settings.range_g, false };
+    struct loop *l = &loop;
+    HAL_POINTER(l);
+    return l;
+}
+
+void app_start_sensor(void)
+{
+    adxl345_config_t config = { settings.rate_dhz, settings.range_g, false, settings.address };
+    measure_configure(&config);
     adxl345_start(&config);
 }
 
@@ -71,18 +82,19 @@ static void forget(void)
     replies_start();
     commands_start();
     rows_start();
+    measure_reset();
     pipeline_reset();
-    stage = STAGE_BANNER;
-    row_due = false;
-    look_at_rate = false;
-    changes = 0;
+    app.stage = STAGE_BANNER;
+    loop.row_due = false;
+    loop.look_at_rate = false;
+    app.changes = 0;
 }
 
 void app_start(void)
 {
-    settings_defaults();
+    struct loop *l = here();
+    hal_strap_init();
     hal_led_init();
-    hal_uart_init(settings.baud);
     hal_time_init();
     hal_drdy_enable();
     adxl345_init();
@@ -90,121 +102,40 @@ void app_start(void)
         forget();
     }
     health_start();
+    settings_load();
+    if (hal_strap_low() || app_is_safe()) {
+        settings_defaults();
+        settings_kept = KEPT_UNREAD;
+    }
     if (app_is_safe()) {
         settings.rate_dhz = SETTINGS_RATE_MIN_DHZ;
         settings_follow();
     }
-    health_pause_filtering(hal_time_us() + HOLD_LIMIT_US);
+    pipeline_calibrate(&settings.calibration);
+    hal_uart_init(settings.baud);
+    health_pause_filtering(hal_time_us() + APP_HOLD_LIMIT_US);
     hal_irq_enable();
-    next_service_us = hal_time_us();
-    next_second_us = next_service_us + 1000000ul;
-    sampling = true;
-    coast_wait(next_service_us);
+    l->next_service_us = hal_time_us();
+    l->next_second_us = l->next_service_us + 1000000ul;
+    app.sampling = true;
+    coast_wait(l->next_service_us);
     pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
     (void)replies_add(REPLY_BANNER, 0);
-    start_sensor();
-}
-
-app_answer_t app_set_filter(uint8_t filter_kind)
-{
-    if (!settings_fit(filter_kind, settings.rate_dhz)) {
-        return APP_TOO_SLOW;
-    }
-    if (settings.filter != filter_kind) {
-        settings.filter = filter_kind;
-        settings_follow();
-        changes |= CHANGE_FILTER;
-    }
-    return APP_DONE;
-}
-
-/* The pipeline follows when the driver has delivered the last sample of the old configuration. */
-static void change_sensor(void)
-{
-    if (sampling) {
-        changes |= CHANGE_CONFIG;
-        start_sensor();
-    }
-}
-
-app_answer_t app_set_rate(uint16_t rate_dhz)
-{
-    if (!settings_doubled(SETTINGS_RATE_MIN_DHZ, SETTINGS_RATE_MAX_DHZ, rate_dhz)) {
-        return APP_ILLEGAL;
-    }
-    if (!settings_fit(settings.filter, rate_dhz)) {
-        return APP_TOO_SLOW;
-    }
-    if (settings.rate_dhz != rate_dhz) {
-        settings.rate_dhz = rate_dhz;
-        settings_follow();
-        change_sensor();
-    }
-    return APP_DONE;
-}
-
-app_answer_t app_set_range(uint16_t range_g)
-{
-    if (!settings_doubled(SETTINGS_RANGE_MIN_G, SETTINGS_RANGE_MAX_G, range_g)) {
-        return APP_ILLEGAL;
-    }
-    if (settings.range_g != range_g) {
-        settings.range_g = (uint8_t)range_g;
-        change_sensor();
-    }
-    return APP_DONE;
-}
-
-app_answer_t app_set_every(uint16_t every)
-{
-    if (every == 0 || every > SETTINGS_EVERY_MAX) {
-        return APP_ILLEGAL;
-    }
-    settings.every = every;
-    return APP_DONE;
-}
-
-app_answer_t app_set_baud(uint32_t baud)
-{
-    if (!settings_baud_valid(baud)) {
-        return APP_ILLEGAL;
-    }
-    settings.baud = baud;
-    settings_follow();
-    stage = STAGE_BAUD;
-    health_pause_filtering(hal_time_us() + HOLD_LIMIT_US);
-    return APP_DONE;
-}
-
-void app_set_mode(uint8_t mode)
-{
-    settings.mode = mode;
-}
-
-void app_stop(void)
-{
-    sampling = false;
-    adxl345_stop();
-}
-
-void app_go(void)
-{
-    sampling = true;
-    changes |= CHANGE_COLD;
-    start_sensor();
+    app_start_sensor();
 }
 
 bool app_takes_commands(void)
 {
-    return stage == STAGE_RUNNING;
+    return app.stage == STAGE_RUNNING && !store_busy();
 }
 
 static void count_seconds(uint32_t now_us)
 {
-    if (hal_time_reached(now_us, next_second_us)) {
-        next_second_us += 1000000ul;
+    struct loop *l = here();
+    if (hal_time_reached(now_us, l->next_second_us)) {
+        l->next_second_us += 1000000ul;
         count(COUNT_SECONDS);
-        look_at_rate = true;
+        l->look_at_rate = true;
         if ((uint8_t)counters[COUNT_SECONDS] == SETTLED_S) { /* and again later: no harm */
             hal_reset_settled();
         }
@@ -214,18 +145,21 @@ static void count_seconds(uint32_t now_us)
 /* Begins the pipeline's change where there is one to follow. */
 static bool follow_settings(void)
 {
-    if (changes == 0) {
+    if (app.changes == 0) {
         return false;
     }
     bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
-    uint8_t now = old_samples ? changes & CHANGE_FILTER : changes;
-    changes = (uint8_t)(changes & ~now);
+    uint8_t now = old_samples ? app.changes & CHANGE_FILTER : app.changes;
+    app.changes = (uint8_t)(app.changes & ~now);
+    if (now & CHANGE_MEASURE) {
+        measure_configured();
+    }
     if ((now & CHANGE_COLD) || ((now & CHANGE_CONFIG) && !silence_holds())) { /* else more is lost, and rows go on */
-        coast_wait(pass_us);
+        coast_wait(loop.pass_us);
     }
     if (now & CHANGE_COLD) {
         pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
-    } else if (now != 0) {
+    } else if (now & (CHANGE_FILTER | CHANGE_CONFIG)) {
         pipeline_change(settings.filter, settings.rate_dhz, settings.range_g);
     }
     return now != 0;
@@ -240,7 +174,7 @@ static bool sample_due(void)
 /* Of the sample that the pipeline has, or of one that is missing, whose place it has filled. */
 static void write_row(void)
 {
-    row_due = false;
+    loop.row_due = false;
     if (silence_long()) {
         rows_at_once();
     } else {
@@ -252,7 +186,7 @@ static void write_row(void)
 /* Begins the way of one that is missing: before the oldest sample, or by now where none is on its way. */
 static bool fill_gap(void)
 {
-    uint32_t t_us = pass_us - adxl345_lateness_us();
+    uint32_t t_us = loop.pass_us - adxl345_lateness_us();
     bool queued = adxl345_oldest_us(&t_us);
     if (!coast_due(t_us)) {
         return false;
@@ -267,15 +201,23 @@ static bool fill_gap(void)
 /* Begins the way of the next sample. One that is in the queue came before this pass. */
 FX_NOINLINE bool next_sample(void)
 {
-    adxl345_sample_t sample;
-    row_due = coast_due(pass_us) && fill_gap();
-    if (!row_due) {
-        if (!adxl345_take(&sample)) {
+    if (measure_borrows()) {
+        coast_wait(loop.pass_us);
+    }
+    loop.row_due = coast_due(loop.pass_us) && fill_gap();
+    if (!loop.row_due) {
+        const adxl345_sample_t *sample = adxl345_take();
+        if (sample == NULL) {
             return false;
         }
-        row_due = coast_sample(sample.t_us, adxl345_period_us());
-        if (row_due) {
-            pipeline_sample(&sample);
+        hal_wake_at(loop.pass_us - HAL_WAKE_LATE_US); /* the alarm for this sample would else call for another pass */
+        if (measure_sample(sample->lsb)) {
+            health_sample_filtered();
+            return true;
+        }
+        loop.row_due = coast_sample(sample->t_us, adxl345_period_us());
+        if (loop.row_due) {
+            pipeline_sample(sample);
         } else {
             health_sample_filtered(); /* its row is out already */
         }
@@ -293,12 +235,15 @@ static bool filter_samples(void)
     if (pipeline_work()) {
         return true;
     }
-    if (row_due) {
+    if (loop.row_due) {
+        if (replies_speaking()) {
+            return false;
+        }
         write_row();
         return true;
     }
-    if (look_at_rate) {
-        look_at_rate = false;
+    if (loop.look_at_rate) {
+        loop.look_at_rate = false;
         pipeline_retime(adxl345_period_us());
         return true;
     }
@@ -308,7 +253,7 @@ static bool filter_samples(void)
 /* One piece of what the stage has to do; false: nothing is left, or it waits. */
 static bool stage_piece(void)
 {
-    switch (stage) {
+    switch (app.stage) {
     case STAGE_BANNER:
         if (!replies_empty()) {
             return false;
@@ -327,7 +272,7 @@ static bool stage_piece(void)
         return filter_samples();
     }
     health_resume_filtering();
-    stage = STAGE_RUNNING;
+    app.stage = STAGE_RUNNING;
     hal_wake(); /* what was typed meanwhile goes before the samples */
     return false;
 }
@@ -335,9 +280,10 @@ static bool stage_piece(void)
 /* What a person or the watchdog waits for need not run for every sample. */
 static void service(uint32_t now_us)
 {
-    next_service_us = now_us + SERVICE_US;
+    struct loop *l = here();
+    l->next_service_us = now_us + SERVICE_US;
     count_seconds(now_us);
-    if (stage == STAGE_RUNNING) {
+    if (app.stage == STAGE_RUNNING) {
         sensor_watch_pass(now_us);
     }
     health_pass(now_us);
@@ -346,47 +292,62 @@ static void service(uint32_t now_us)
 /* A row that is due and waits for a sample to be read has no moment of its own; that of a stopped driver is past. */
 static void set_alarm(void)
 {
+    struct loop *l = here();
     uint32_t t_us = adxl345_deadline_us();
-    bool row_first = coast_due(t_us) && !coast_due(pass_us);
+    bool row_first = coast_due(t_us) && !coast_due(l->pass_us);
     hal_wake_at(row_first ? coast_due_us() : t_us);
 }
 
 /* Where something is left to do that waits for no interrupt. */
 static void wake_if_work_left(void)
 {
-    if (row_due || changes != 0 || pipeline_changing() || adxl345_queued() != 0 || coast_due(pass_us) ||
+    struct loop *l = here();
+    if (l->row_due || app.changes != 0 || pipeline_changing() || adxl345_queued() != 0 || coast_due(l->pass_us) ||
         !replies_empty()) {
         hal_wake();
     }
 }
 
-/* Samples, replies, then the service unless it is overdue; out of time, another pass follows if there is a reason. */
+/* Commands, samples, replies, while the pass has time; out of time, another pass follows if there is a reason. */
+static void serve(void)
+{
+    if (!pass_in_time()) {
+        hal_wake();
+        return;
+    }
+    if (commands_pass() && !pass_in_time()) {
+        return;
+    }
+    while (stage_piece() || replies_pass()) {
+        if (!pass_in_time()) {
+            wake_if_work_left();
+            break;
+        }
+    }
+}
+
+/* The service comes last, unless it is overdue. */
 void app_pass(void)
 {
     pass.began = hal_time_lap();
     uint32_t now_us = hal_time_us();
-    pass_us = now_us;
+    loop.pass_us = now_us;
     if (!HANGS(HEALTH_SAMPLING)) {
         adxl345_poll(now_us);
         health_driver_polled();
     }
     while (HANGS(WHOLE_LOOP)) {
     }
-    if (hal_time_reached(now_us, next_service_us + OVERDUE_US)) {
+    if (hal_time_reached(now_us, loop.next_service_us + OVERDUE_US)) {
         service(now_us);
     }
-    if (pass_in_time()) {
-        commands_pass();
-        while (stage_piece() || replies_pass()) {
-            if (!pass_in_time()) {
-                wake_if_work_left();
-                break;
-            }
-        }
-    } else {
+    measure_pass();
+    serve();
+    if (store_busy()) {
+        (void)store_pass();
         hal_wake();
     }
-    if (hal_time_reached(now_us, next_service_us)) {
+    if (hal_time_reached(now_us, loop.next_service_us)) {
         if (pass_in_time()) {
             service(now_us);
         } else {

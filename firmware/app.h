@@ -28,6 +28,23 @@ app_answer_t app_set_range(uint16_t range_g);
 app_answer_t app_set_every(uint16_t every);
 app_answer_t app_set_baud(uint32_t baud);
 void app_set_mode(uint8_t mode);
+void app_set_address(uint8_t address);
+
+/* A number or vector of parameters.h, as stored. False: illegal, nothing changed. */
+bool app_set_parameter(uint8_t which, const uint32_t values[3]);
+
+/* All settings as saved (settings_kept.h), or as shipped; they take effect like each by itself. */
+void app_load(void);
+void app_defaults(void);
+
+/* Begins to save all settings; false while sampling. Until it is over (store_busy) no command is taken. */
+bool app_save(void);
+
+/*
+ * The sensor is to follow measure_configure; measure_configured is called when the samples of before are taken. anew:
+ * then filters begin anew.
+ */
+void app_configure(bool anew);
 
 /* Sampling off (sensor in standby) and on. */
 void app_stop(void);

@@ -2,13 +2,17 @@
 #ifndef COMMANDS_H
 #define COMMANDS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
-#define COMMANDS_LINE_MAX 32u
+#define COMMANDS_LINE_MAX 40u
 
 void commands_start(void);
 
-/* Takes received bytes; runs at most one complete line, and only while there is room for its replies. */
-void commands_pass(void);
+/*
+ * Takes received bytes while the pass has time, one at least; runs at most one complete line, and only while there is
+ * room for its replies. True: it has run one.
+ */
+bool commands_pass(void);
 
 #endif

@@ -2,6 +2,7 @@
 #include "counters.h"
 
 #include "fx.h"
+#include "hal_pointer.h"
 
 uint32_t counters[COUNTERS];
 
@@ -14,13 +15,21 @@ void counters_start(void)
 
 FX_ONCE void count(uint8_t what)
 {
-    if (counters[what] != UINT32_MAX) {
-        counters[what]++;
+    uint32_t *counter = &counters[what];
+    HAL_POINTER(counter);
+    uint32_t now = *counter;
+    if (now != UINT32_MAX) {
+        *counter = now + 1u;
     }
 }
 
 void count_lost(uint32_t missing)
 {
-    uint32_t sum = counters[COUNT_LOST] + missing;
-    counters[COUNT_LOST] = sum < missing ? UINT32_MAX : sum;
+    uint32_t *lost = &counters[COUNT_LOST];
+    HAL_POINTER(lost);
+    uint32_t sum = *lost + missing;
+    if (sum < missing) {
+        sum = UINT32_MAX;
+    }
+    *lost = sum;
 }

@@ -4,6 +4,7 @@
 #include <stdbool.h>
 
 #include "adxl345.h"
+#include "hal_pointer.h"
 #include "hal_time.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
@@ -16,70 +17,85 @@
 volatile uint8_t hang_stages;
 #endif
 
-static uint8_t checked_in;
-static uint8_t tx_sent_seen;
-static uint32_t pause_until_us;
-static bool paused;
-static bool polled;
+static struct health {
+    uint32_t pause_until_us;
+    uint8_t checked_in;
+    uint8_t tx_sent_seen;
+    bool paused;
+    bool polled;
+} health;
+
+/* Known by its address in a register, an access to it is half as long. */
+static inline struct health *here(void)
+{
+    struct health *h = &health;
+    HAL_POINTER(h);
+    return h;
+}
 
 void health_start(void)
 {
-    checked_in = 0;
-    paused = false;
-    polled = false;
-    tx_sent_seen = hal_uart_tx_sent();
+    struct health *h = here();
+    h->checked_in = 0;
+    h->paused = false;
+    h->polled = false;
+    h->tx_sent_seen = hal_uart_tx_sent();
     hal_watchdog_start();
 }
 
 void health_driver_polled(void)
 {
-    polled = true;
+    health.polled = true;
 }
 
 static void look_at_sampling(uint32_t now_us)
 {
-    if (!polled) {
+    struct health *h = here();
+    if (!h->polled) {
         return;
     }
-    polled = false;
+    h->polled = false;
     bool stopped = adxl345_phase() == ADXL345_STOPPED;
     if (stopped || !hal_time_reached(now_us, adxl345_deadline_us() + POLL_GRACE_US)) {
-        checked_in |= HEALTH_SAMPLING;
+        h->checked_in |= HEALTH_SAMPLING;
     }
 }
 
 void health_sample_filtered(void)
 {
-    checked_in |= HEALTH_FILTERING;
+    health.checked_in |= HEALTH_FILTERING;
 }
 
 void health_pause_filtering(uint32_t until_us)
 {
-    pause_until_us = until_us;
-    paused = true;
+    struct health *h = here();
+    h->pause_until_us = until_us;
+    h->paused = true;
 }
 
 void health_resume_filtering(void)
 {
-    paused = false;
+    health.paused = false;
 }
 
 static void look_at_filtering(uint32_t now_us)
 {
-    if (paused && hal_time_reached(now_us, pause_until_us)) {
-        paused = false;
+    struct health *h = here();
+    if (h->paused && hal_time_reached(now_us, h->pause_until_us)) {
+        h->paused = false;
     }
-    if (paused || adxl345_queued() == 0) {
-        checked_in |= HEALTH_FILTERING;
+    if (h->paused || adxl345_queued() == 0) {
+        h->checked_in |= HEALTH_FILTERING;
     }
 }
 
 static void look_at_output(void)
 {
+    struct health *h = here();
     uint8_t sent = hal_uart_tx_sent();
-    if (sent != tx_sent_seen || hal_uart_tx_idle()) {
-        tx_sent_seen = sent;
-        checked_in |= HEALTH_OUTPUT;
+    if (sent != h->tx_sent_seen || hal_uart_tx_idle()) {
+        h->tx_sent_seen = sent;
+        h->checked_in |= HEALTH_OUTPUT;
     }
 }
 
@@ -88,9 +104,9 @@ void health_pass(uint32_t now_us)
     look_at_sampling(now_us);
     look_at_filtering(now_us);
     look_at_output();
-    if (checked_in == HEALTH_ALL) {
+    if (health.checked_in == HEALTH_ALL) {
         hal_watchdog_feed();
-        checked_in = 0;
+        health.checked_in = 0;
     }
-    hal_watchdog_note((uint8_t)(HEALTH_ALL & (uint8_t)~checked_in));
+    hal_watchdog_note((uint8_t)(HEALTH_ALL & (uint8_t)~health.checked_in));
 }

@@ -16,6 +16,9 @@
 /* The same while filters are initialised, which takes up to 0.8 ms for an axis. */
 #define PASS_CHANGING_US 128u
 
+/* A command begins no later: with the longest one a pass stays below 1 ms. */
+#define PASS_EARLY_US 128u
+
 typedef struct {
     uint8_t began; /* hal_time_lap */
     uint8_t limit; /* in HAL_LAP_US */
@@ -24,5 +27,6 @@ typedef struct {
 extern pass_t pass;
 
 bool pass_in_time(void);
+bool pass_early(void);
 
 #endif

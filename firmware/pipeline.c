@@ -6,6 +6,7 @@
 
 #include "counters.h"
 #include "fx.h"
+#include "parameters.h"
 #include "pass.h"
 #include "pipeline_state.h"
 #include "silence.h"
@@ -55,6 +56,12 @@ static void coast_axis(axis_t *axis)
 uint32_t pipeline_newest_us(void)
 {
     return pipeline.last_us;
+}
+
+uint32_t axis_r_lsb2_q8(const axis_t *axis)
+{
+    uint32_t set_lsb2_q8 = parameters_r_lsb2_q8();
+    return set_lsb2_q8 != 0 ? set_lsb2_q8 : noise_r_lsb2_q8(&axis->noise);
 }
 
 /* Within 2.8 sigmas of the estimate, by the R of the noise, which is 3.5 of a healthy sensor's. */
@@ -125,7 +132,7 @@ static bool prepare_axis(axis_t *axis)
         return false;
     }
     if (!clipped && noise_update(&axis->noise, lsb)) {
-        filter_any_set_noise(&axis->filter, noise_r_lsb2_q8(&axis->noise));
+        filter_any_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
     }
     return axis->away == 0 || (rejoins(axis) && pipeline.work != WORK_RENEW);
 }
@@ -145,10 +152,25 @@ static void count_sample(void)
     }
 }
 
+void pipeline_calibrate(const calibration_t *calibration)
+{
+    pipeline.calibration = calibration;
+    pipeline.columns = 0;
+}
+
+/* Once for the sample, or the missing one, because it is dear: the row takes what the check of gravity took. */
+static void find_accelerations(void)
+{
+    int32_t estimates_q8[AXES];
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        estimates_q8[axis] = pipeline.axes[axis].estimate_q8;
+    }
+    calibration_apply(&pipeline.applied, estimates_q8, pipeline.a_q8);
+}
+
 static void end_sample(void)
 {
-    if (!tilt_gravity_plausible(pipeline.axes[0].estimate_q8, pipeline.axes[1].estimate_q8,
-                                pipeline.axes[2].estimate_q8)) {
+    if (!tilt_gravity_plausible(pipeline.a_q8[0], pipeline.a_q8[1], pipeline.a_q8[2])) {
         pipeline_flag(ROW_NOT_GRAVITY);
     }
     count_sample();
@@ -183,6 +205,7 @@ static void axis_step(void)
         return;
     }
     if (++pipeline.axis == AXES) {
+        find_accelerations();
         if (pipeline.work == WORK_SAMPLE) {
             end_sample();
         }
@@ -201,9 +224,11 @@ FX_NOINLINE void axis_steps(void)
 bool pipeline_work(void)
 {
     if (pipeline.work == WORK_NONE) {
-        return false;
-    }
-    if (pipeline.work == WORK_CHANGE) {
+        if (pipeline.columns == AXES) {
+            return false;
+        }
+        calibration_prepare_column(&pipeline.applied, pipeline.calibration, pipeline.columns++);
+    } else if (pipeline.work == WORK_CHANGE) {
         change_step();
     } else {
         axis_steps();
@@ -213,7 +238,7 @@ bool pipeline_work(void)
 
 bool pipeline_changing(void)
 {
-    return pipeline.work == WORK_CHANGE;
+    return pipeline.work == WORK_CHANGE || pipeline.columns != AXES;
 }
 
 void pipeline_finish(void)
@@ -241,10 +266,13 @@ FX_ONCE void pipeline_flag(uint16_t flags)
     pipeline.flags |= flags;
 }
 
-/* LSB/256 to mg: x 1000 / 256, rounded half up; |estimate_q8 x 1000| < 2^31 because |estimate| <= 4608 LSB. */
+/*
+ * 1/256 g in Q8 to mg: x 1000 / 256, rounded half up. Limited to 32 g, so that the product fits 32 bits and mg 16: 18 g
+ * on all axes of a weak part can come to 41 g on one of a carrier that lies across.
+ */
 static int16_t to_mg(int32_t value_q8)
 {
-    return (int16_t)((value_q8 * 1000 + 32768) >> 16);
+    return (int16_t)((fx_clamp(value_q8, 0x1FFFFF) * 1000 + 32768) >> 16);
 }
 
 void pipeline_row(row_t *row)
@@ -252,10 +280,9 @@ void pipeline_row(row_t *row)
     row->t_us = pipeline.last_us;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         row->lsb[axis] = pipeline.axes[axis].lsb;
-        row->mg[axis] = to_mg(pipeline.axes[axis].estimate_q8);
+        row->mg[axis] = to_mg(pipeline.a_q8[axis]);
     }
-    tilt_angles(&pipeline.tilt, pipeline.axes[0].estimate_q8, pipeline.axes[1].estimate_q8,
-                pipeline.axes[2].estimate_q8);
+    tilt_angles(&pipeline.tilt, pipeline.a_q8[0], pipeline.a_q8[1], pipeline.a_q8[2]);
     row->roll_cdeg = pipeline.tilt.roll_cdeg;
     row->pitch_cdeg = pipeline.tilt.pitch_cdeg;
     row->flags = pipeline.flags;
@@ -273,8 +300,13 @@ void pipeline_row_done(void)
 
 void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg)
 {
-    tilt_angles(&pipeline.raw_tilt, (int32_t)pipeline.axes[0].lsb * 256, (int32_t)pipeline.axes[1].lsb * 256,
-                (int32_t)pipeline.axes[2].lsb * 256);
+    int32_t readings_q8[AXES];
+    int32_t a_q8[AXES];
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        readings_q8[axis] = (int32_t)pipeline.axes[axis].lsb * 256;
+    }
+    calibration_apply(&pipeline.applied, readings_q8, a_q8);
+    tilt_angles(&pipeline.raw_tilt, a_q8[0], a_q8[1], a_q8[2]);
     *roll_cdeg = pipeline.raw_tilt.roll_cdeg;
     *pitch_cdeg = pipeline.raw_tilt.pitch_cdeg;
 }

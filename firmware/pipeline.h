@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "adxl345.h"
+#include "calibration.h"
 
 /* Bits of the row's `flags` column (docs/protocol.md). */
 enum row_flag {
@@ -37,6 +38,12 @@ typedef struct {
 /* Once at start-up: angles level. */
 void pipeline_reset(void);
 
+/*
+ * What turns readings into accelerations, legal (calibration.h) and to be left where it lies: pipeline_work takes it up
+ * between two samples.
+ */
+void pipeline_calibrate(const calibration_t *calibration);
+
 /* Begin anew: filters collect a robust start, noise estimates start at their floor. */
 void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 
@@ -61,7 +68,7 @@ void pipeline_retime(uint32_t period_us);
  */
 bool pipeline_work(void);
 
-/* A change is under way. */
+/* A change is under way, or a calibration is taken up. */
 bool pipeline_changing(void);
 
 /* All that is left to do, for a program without a main loop. */

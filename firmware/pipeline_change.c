@@ -1,5 +1,6 @@
 /* The filters of the axes: chosen, begun, changed, told the sensor's true rate. */
 #include "fx.h"
+#include "parameters.h"
 #include "pass.h"
 #include "pipeline_state.h"
 
@@ -61,11 +62,11 @@ FX_ONCE bool change_axis(void)
         if (pipeline.new_noise) {
             noise_init(&axis->noise, pipeline.rate_dhz, pipeline.axis == 2);
         }
-        filter_any_start(&axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
+        parameters_start(&axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
         return false;
     }
     if (step == STEP_NOISE) {
-        filter_any_set_noise(&axis->filter, noise_r_lsb2_q8(&axis->noise));
+        filter_any_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
         if (pipeline.has_sample) {
             return false;
         }

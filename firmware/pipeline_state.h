@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "calibration.h"
 #include "filter_any.h"
 #include "fx.h"
 #include "noise.h"
@@ -32,6 +33,10 @@ typedef struct {
 
 typedef struct {
     axis_t axes[AXES];
+    int32_t a_q8[AXES]; /* the estimates in the axes of the carrier, 1/256 g */
+    calibration_applied_t applied;
+    const calibration_t *calibration; /* that is applied */
+    uint8_t columns;                  /* of its matrix that are ready: all when AXES */
     tilt_t tilt;
     tilt_t raw_tilt;
     uint32_t last_us;
@@ -67,6 +72,9 @@ static inline int16_t estimate_lsb(const axis_t *axis)
 {
     return (int16_t)((axis->estimate_q8 + 128) >> 8);
 }
+
+/* Measurement variance R that its filter is to have: the user's, else the estimated one; LSB^2 Q8. */
+uint32_t axis_r_lsb2_q8(const axis_t *axis);
 
 /* One piece of giving the axis its new filter: initialised, told its R, settled. True: it is done. */
 bool change_axis(void);

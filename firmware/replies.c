@@ -15,11 +15,13 @@ typedef struct {
 static reply_t queue[QUEUE_LENGTH];
 static uint8_t count;
 static uint8_t line;
+static bool speaking; /* amid a line */
 
 void replies_start(void)
 {
     count = 0;
     line = 0;
+    speaking = false;
 }
 
 bool replies_room(void)
@@ -27,10 +29,10 @@ bool replies_room(void)
     return count < QUEUE_LENGTH;
 }
 
-bool replies_hold(reply_kind_t kind)
+bool replies_hold(reply_kind_t first, reply_kind_t last)
 {
     for (uint8_t i = 0; i < count; i++) {
-        if (queue[i].kind == (uint8_t)kind) {
+        if (queue[i].kind >= (uint8_t)first && queue[i].kind <= (uint8_t)last) {
             return true;
         }
     }
@@ -53,15 +55,25 @@ bool replies_add(reply_kind_t kind, uint8_t argument)
     return true;
 }
 
+bool replies_speaking(void)
+{
+    return speaking;
+}
+
 bool replies_pass(void)
 {
-    if (count == 0 || !text_open((uint8_t)(TEXT_LINE_MAX + SETTINGS_ROW_MAX))) {
-        return false;
+    if (!speaking) {
+        if (count == 0 || !text_open((uint8_t)(TEXT_LINE_MAX + SETTINGS_ROW_MAX)) ||
+            !reply_begin_line((reply_kind_t)queue[0].kind, queue[0].argument, line)) {
+            return false;
+        }
+        speaking = true;
     }
-    reply_progress_t progress = reply_write_line((reply_kind_t)queue[0].kind, queue[0].argument, line);
-    if (progress == REPLY_WAITS) {
-        return false;
+    reply_progress_t progress = reply_speak();
+    if (progress == REPLY_SPEAKS) {
+        return true;
     }
+    speaking = false;
     line++;
     if (progress == REPLY_ENDED) {
         line = 0;

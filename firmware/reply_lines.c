@@ -1,47 +1,37 @@
-/* Speaks the texts of reply_texts.h: which ones make a reply's lines, and the values in them. */
+/* Which texts of reply_texts.h make a reply's lines, and how far the one that is being spoken has come. */
 #include "reply_lines.h"
 
 #include <stdbool.h>
 
 #include "adxl345.h"
-#include "app.h"
-#include "counters.h"
-#include "filter_any.h"
+#include "calibrate.h"
 #include "flash.h"
 #include "fx.h"
-#include "hal_uart.h"
-#include "hal_watchdog.h"
+#include "measure.h"
+#include "parameters.h"
+#include "pass.h"
+#include "reply_said.h"
 #include "reply_texts.h"
-#include "sensor_watch.h"
 #include "settings.h"
+#include "store.h"
 #include "text.h"
 
 #define RATE_LOWEST_DHZ 125u
 #define COMBINATION_RATE 16u
 
-enum { BANNER_DIAGNOSIS = 4, HELP_VERBS = REPLY_SETTINGS_END - REPLY_FILTER };
+enum { BANNER_DIAGNOSIS = 5, HELP_VERBS = REPLY_SETTINGS_END - REPLY_FILTER };
 
 _Static_assert(FILTER_KIND_COUNT <= COMBINATION_RATE, "a filter's kind has four bits in reply_combination");
 _Static_assert(TEXT_FAULT_END - TEXT_WHO == (int)REPLY_FAULT_END, "a text for each reply");
-_Static_assert(TEXT_NAME_GO - TEXT_NAME_HELP == REPLY_GOING - REPLY_HELP, "a name for each command");
-_Static_assert(TEXT_LEGAL_MODE - TEXT_LEGAL_FILTER == REPLY_MODE - REPLY_FILTER, "legal values for each setting");
-_Static_assert(TEXT_TWO_SENSORS - TEXT_NO_SENSOR == ADXL345_FAULT_TWO_SENSORS - 1, "words for each fault");
-_Static_assert(TEXT_WATCHDOG - TEXT_POWER_ON == HAL_RESET_WATCHDOG, "words for each cause");
-_Static_assert(TEXT_STATE_FAULTY - TEXT_STATE_STOPPED == ADXL345_FAULTY, "words for each phase");
+_Static_assert(TEXT_LEGAL_AXES - TEXT_LEGAL_FILTER == REPLY_AXES - REPLY_FILTER, "legal values for each setting");
+_Static_assert(TEXT_REPEATED - TEXT_HOLD_STILL == MEASURE_REPEATED - MEASURE_BEGUN, "words for each outcome");
+_Static_assert(TEXT_NO_GRAVITY - TEXT_TILTED == CALIBRATION_NO_GRAVITY - CALIBRATION_TILTED, "words for each verdict");
 
-/* What the line that is being spoken is about. */
-static struct {
-    uint16_t rate_dhz;
-    uint8_t filter;
-    uint8_t subject;      /* the reply's argument; the setting in a list of settings */
-    uint8_t counters_out; /* how many `status` has told */
-    uint8_t next;         /* enum reply_text: where it goes on */
-    uint8_t progress;
-} said;
+static uint8_t listed_progress; /* of the line of a listing, which its texts do not decide; else REPLY_SPEAKS */
 
 flash_text_t reply_command_name(uint8_t kind)
 {
-    return reply_text((uint8_t)(TEXT_NAME_HELP - REPLY_HELP + kind));
+    return reply_name((uint8_t)(kind - REPLY_HELP));
 }
 
 /* The rates are 12.5 Hz times a power of two: its exponent above four bits of the filter's kind. */
@@ -51,193 +41,6 @@ uint8_t reply_combination(uint8_t filter, uint16_t rate_dhz)
         filter = (uint8_t)(filter + COMBINATION_RATE);
     }
     return filter;
-}
-
-static void say_filters(void)
-{
-    for (uint8_t kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-        if (kind != 0) {
-            text_char(' ');
-        }
-        text_words(filter_any_name((filter_kind_t)kind));
-    }
-}
-
-/* value / 100, with both decimals. */
-static void say_hundredths(uint32_t value)
-{
-    uint8_t cents = (uint8_t)(value % 100u);
-    text_u32(value / 100u);
-    text_char('.');
-    text_char((char)('0' + cents / 10u));
-    text_char((char)('0' + cents % 10u));
-}
-
-/* The counters of the firmware, then those of the driver. */
-static uint32_t next_count(void)
-{
-    uint8_t at = said.counters_out++;
-    if (at < COUNTERS) {
-        return counters[at];
-    }
-    return adxl345_count((uint8_t)(at - COUNTERS));
-}
-
-static bool every_is_forced(void)
-{
-    return settings_every_in_force() != settings.every;
-}
-
-static void say_why(void)
-{
-    if (every_is_forced()) {
-        bool carried = settings_every_in_force() == settings_smallest_every(settings.baud, settings.rate_dhz);
-        said.next = carried ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES;
-    }
-}
-
-static uint32_t number(uint8_t what)
-{
-    switch (what) {
-    case SAY_COUNT:
-        return next_count();
-    case SAY_FAULT:
-        return (uint32_t)adxl345_fault();
-    case SAY_SERIAL_LOST:
-        return hal_uart_rx_lost();
-    case SAY_CYCLES:
-        return settings_filter_cycles(said.filter);
-    case SAY_LEFT:
-        return settings_left_cycles(said.rate_dhz);
-    case SAY_RANGE:
-        return settings.range_g;
-    case SAY_EVERY:
-        return settings_every_in_force();
-    case SAY_BAUD:
-        return settings.baud;
-    case SAY_NOTE:
-        return hal_reset_note();
-    case SAY_OUTAGE_MS:
-        return sensor_watch_outage.ms;
-    case SAY_OUTAGE_LOST:
-        return sensor_watch_outage.lost;
-    default:
-        return said.subject;
-    }
-}
-
-/* What stands for a value. */
-static void say_value(uint8_t what)
-{
-    switch (what) {
-    case SAY_NAME:
-        text_words(reply_command_name(said.subject));
-        break;
-    case SAY_FILTER:
-        text_words(filter_any_name((filter_kind_t)said.filter));
-        break;
-    case SAY_RATE:
-        text_tenths(said.rate_dhz);
-        break;
-    case SAY_MEASURED:
-        say_hundredths(adxl345_rate_chz());
-        break;
-    case SAY_BUS_KHZ: /* 800 Hz needs 400, where tLOW is 1.25 us instead of the 1.3 us of both data sheets */
-        text_tenths(settings.rate_dhz == 8000 ? 4000 : 3636);
-        break;
-    case SAY_FILTERS:
-        say_filters();
-        break;
-    case SAY_ADDRESS:
-        text_hex8(adxl345_address());
-        break;
-    case SAY_OUTAGE_ADDRESS:
-        text_hex8(sensor_watch_outage.address);
-        break;
-    case SAY_DEVICE_ID:
-        text_hex8(adxl345_device_id());
-        break;
-    default:
-        text_u32(number(what));
-        break;
-    }
-}
-
-/* What decides how the line or the reply goes on. */
-static void say_on(uint8_t what)
-{
-    switch (what) {
-    case SAY_MORE:
-        said.progress = REPLY_GOES_ON;
-        break;
-    case SAY_MORE_IF_FORCED:
-        said.progress = every_is_forced() ? REPLY_GOES_ON : REPLY_ENDED;
-        break;
-    case SAY_THEN_CAUSE:
-        said.next = (uint8_t)(TEXT_POWER_ON + hal_reset_cause());
-        break;
-    case SAY_THEN_SAFE:
-        said.next = app_is_safe() ? TEXT_SAFE : TEXT_NONE;
-        break;
-    case SAY_THEN_LEGAL:
-        said.next = (uint8_t)(TEXT_LEGAL_FILTER - REPLY_FILTER + said.subject);
-        break;
-    case SAY_THEN_FAULT:
-        said.next = (uint8_t)(TEXT_NO_SENSOR - ADXL345_FAULT_NO_SENSOR + said.subject);
-        break;
-    case SAY_THEN_STATE:
-        said.next = (uint8_t)(TEXT_STATE_STOPPED + adxl345_phase());
-        break;
-    case SAY_THEN_WHY:
-        say_why();
-        break;
-    case SAY_THEN_MODE:
-        said.next = (uint8_t)(TEXT_CSV + settings.mode);
-        break;
-    default:
-        said.next = TEXT_STATE_REST;
-        break;
-    }
-}
-
-FX_NOINLINE void say_byte(uint8_t c)
-{
-    if (c >= ' ') {
-        text_char((char)c);
-    } else if (c < SAY_MORE) {
-        say_value(c);
-    } else {
-        say_on(c);
-    }
-}
-
-/* A shared word holds no other, so one place to come back to is enough. */
-static void say(uint8_t id)
-{
-    if (id != TEXT_HEADER) {
-        text_words(FLASH_TEXT("\n# ") + (id != TEXT_WHO)); /* the first ends a line that a reset has cut */
-    }
-    flash_text_t back = 0;
-    said.next = id;
-    while (said.next != TEXT_NONE) {
-        flash_text_t words = reply_text(said.next);
-        said.next = TEXT_NONE;
-        for (;;) {
-            uint8_t c = (uint8_t)flash_char(words++);
-            if (c >= SHARED_WORD) {
-                back = words;
-                words = reply_text((uint8_t)(c - SHARED_WORD));
-            } else if (c != '\0') {
-                say_byte(c);
-            } else if (back != 0) {
-                words = back;
-                back = 0;
-            } else {
-                break;
-            }
-        }
-    }
-    text_close();
 }
 
 /* The texts of a banner follow each other; one waits for the sensor, and says instead what is wrong with it. */
@@ -266,19 +69,39 @@ static uint8_t help_text(uint8_t line)
     return line < HELP_VERBS ? TEXT_HELP : TEXT_VERBS;
 }
 
-/* A setting that rows depend on, and then what it makes of `every`; after a change to csv the header. */
-static uint8_t setting_text(uint8_t kind, uint8_t line)
+/* The settings with what is legal, then the parameters. */
+static uint8_t listing_text(uint8_t line)
 {
-    if (kind != REPLY_MODE) {
-        return (uint8_t)(TEXT_WHO + (line == 0 ? kind : (uint8_t)REPLY_EVERY));
+    bool last = line + 1u == (uint8_t)(HELP_VERBS + parameters_count());
+    listed_progress = last ? REPLY_ENDED : REPLY_GOES_ON;
+    if (line >= HELP_VERBS) {
+        said.subject = (uint8_t)(line - HELP_VERBS);
+        return TEXT_PARAMETER;
     }
+    said.subject = (uint8_t)(REPLY_FILTER + line);
+    said.listed = true;
+    return (uint8_t)(TEXT_FILTER_NOW + line);
+}
+
+/* What may have changed the mode: where it is csv now, the header follows. */
+static uint8_t text_and_header(uint8_t kind, uint8_t line)
+{
     if (line != 0) {
         return TEXT_HEADER;
     }
-    if (said.subject != 0 && settings.mode == MODE_CSV) {
+    if (settings.mode == MODE_CSV) {
         said.progress = REPLY_GOES_ON;
     }
-    return TEXT_MODE_NOW;
+    return (uint8_t)(TEXT_WHO + kind);
+}
+
+/* A setting that rows depend on, and then what it makes of `every`. */
+static uint8_t setting_text(uint8_t kind, uint8_t line)
+{
+    if (kind == REPLY_MODE && said.subject != 0) {
+        return text_and_header(kind, line);
+    }
+    return (uint8_t)(TEXT_WHO + (line == 0 ? kind : (uint8_t)REPLY_EVERY));
 }
 
 static uint8_t too_slow_text(void)
@@ -297,6 +120,51 @@ static uint8_t status_text(uint8_t line)
     return (uint8_t)(TEXT_SAMPLES - 1 + line);
 }
 
+static uint8_t saved_text(void)
+{
+    if (store_busy()) {
+        return TEXT_NONE;
+    }
+    return store_failed() ? TEXT_NOT_SAVED : TEXT_SAVED;
+}
+
+/* The vectors of parameters.h that are new; of cal6 the residual before them. */
+static uint8_t calibrated_text(uint8_t kind, uint8_t line)
+{
+    enum { OFFSET, SCALE, LEVEL };
+    if (kind != REPLY_CAL6) {
+        said.subject = kind == REPLY_TARE ? LEVEL : OFFSET;
+        return TEXT_PARAMETER;
+    }
+    said.progress = line < 2 ? REPLY_GOES_ON : REPLY_ENDED;
+    if (line == 0) {
+        return TEXT_CAL6;
+    }
+    said.subject = (uint8_t)(OFFSET - 1 + line);
+    return TEXT_PARAMETER;
+}
+
+/* A line for each axis, or why there is no result. */
+static uint8_t measured_text(uint8_t kind, uint8_t line)
+{
+    uint8_t outcome = said.subject;
+    said.subject = kind;
+    if (outcome == MEASURE_WRONG) {
+        said.axis = calibrate_told.verdict.where;
+        return (uint8_t)(TEXT_TILTED - CALIBRATION_TILTED + calibrate_told.verdict.why);
+    }
+    if (outcome != MEASURE_DONE) {
+        said.axis = calibrate_told.position;
+        return (uint8_t)(TEXT_HOLD_STILL - MEASURE_BEGUN + outcome);
+    }
+    if (kind >= REPLY_TARE) {
+        return calibrated_text(kind, line);
+    }
+    said.axis = line;
+    said.progress = line < 2 ? REPLY_GOES_ON : REPLY_ENDED;
+    return (uint8_t)(TEXT_WHO + kind);
+}
+
 static uint8_t text_of(uint8_t kind, uint8_t line)
 {
     switch (kind) {
@@ -306,25 +174,74 @@ static uint8_t text_of(uint8_t kind, uint8_t line)
         return help_text(line);
     case REPLY_STATUS:
         return status_text(line);
+    case REPLY_LISTING:
+        return listing_text(line);
     case REPLY_UNKNOWN:
         return said.subject == PROBLEM_COMMAND ? (uint8_t)TEXT_UNKNOWN : (uint8_t)(TEXT_TOO_LONG - 1 + said.subject);
+    case REPLY_SAVED:
+        return saved_text();
+    case REPLY_ODR:
+        return adxl345_rate_chz() == 0 ? (uint8_t)TEXT_ODR_UNKNOWN : (uint8_t)TEXT_ODR;
+    case REPLY_NOISE:
+    case REPLY_SELFTEST:
+    case REPLY_TARE:
+    case REPLY_CAL:
+    case REPLY_CAL6:
+        return measured_text(kind, line);
     case REPLY_TOO_SLOW:
         return too_slow_text();
+    case REPLY_LOADED:
+    case REPLY_DEFAULTS:
+        return text_and_header(kind, line);
     default:
         return kind < REPLY_SETTINGS_END ? setting_text(kind, line) : (uint8_t)(TEXT_WHO + kind);
     }
 }
 
-reply_progress_t reply_write_line(reply_kind_t kind, uint8_t argument, uint8_t line)
+/* The text in which the line goes on; false: there is none. */
+static bool open_next(void)
+{
+    if (said.listed && said.next == TEXT_NONE) {
+        said.listed = false;
+        text_words(FLASH_TEXT(": "));
+        said.next = (uint8_t)(TEXT_LEGAL_FILTER - REPLY_FILTER + said.subject);
+    }
+    uint8_t id = said.next;
+    said.next = TEXT_NONE;
+    if (id != TEXT_NONE) {
+        reply_text_open(id);
+    }
+    return id != TEXT_NONE;
+}
+
+bool reply_begin_line(reply_kind_t kind, uint8_t argument, uint8_t line)
 {
     said.rate_dhz = settings.rate_dhz;
     said.filter = settings.filter;
     said.subject = argument;
     said.progress = REPLY_ENDED;
+    listed_progress = REPLY_SPEAKS;
     uint8_t id = text_of((uint8_t)kind, line);
+    said.next = id;
     if (id == TEXT_NONE) {
-        return REPLY_WAITS;
+        return false;
     }
-    say(id);
-    return (reply_progress_t)said.progress;
+    if (id != TEXT_HEADER) {
+        text_words(FLASH_TEXT("\n# ") + (id != TEXT_WHO)); /* the first ends a line that a reset has cut */
+    }
+    return open_next();
+}
+
+reply_progress_t reply_speak(void)
+{
+    do {
+        uint8_t c = reply_text_next();
+        if (c != 0) {
+            say_byte(c);
+        } else if (!open_next()) {
+            text_close();
+            return (reply_progress_t)(listed_progress != REPLY_SPEAKS ? listed_progress : said.progress);
+        }
+    } while (pass_in_time());
+    return REPLY_SPEAKS;
 }

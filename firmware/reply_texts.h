@@ -1,7 +1,6 @@
 /*
- * All the words that the firmware says in answer to something, in program memory. reply_lines.c speaks them: a byte
- * below ' ' is one of enum say, one from SHARED_WORD on is a word that texts share. Each line gets "# " in front. Main
- * only.
+ * All the words that the firmware says in answer to something. reply_lines.c speaks them: a byte below ' ' or from 0x80
+ * on is one of enum say. Each line gets "# " in front. Main only.
  */
 #ifndef REPLY_TEXTS_H
 #define REPLY_TEXTS_H
@@ -43,6 +42,21 @@
 #define V_THEN_WHY "\x1D"
 #define V_THEN_MODE "\x1E"
 #define V_THEN_REST "\x1F"
+#define V_PARAMETER "\x80"
+#define V_SET_ADDRESS "\x81"
+#define V_AXES "\x82"
+#define V_AXIS "\x83"
+#define V_SHIFT "\x84"
+#define V_RMS "\x85"
+#define V_R "\x86"
+#define V_OFF "\x87"
+#define V_POSITION "\x88"
+#define V_RESIDUAL "\x89"
+#define V_TO_GO "\x8A"
+#define V_PARAMETER_RANGE "\x8B"
+#define V_THEN_KEPT "\x8C"
+#define V_THEN_LIMITS "\x8D"
+#define V_THEN_VERDICT "\x8E"
 
 enum say {
     SAY_COUNT = 1, /* numbers: the next of the counters of the firmware, then of the driver */
@@ -66,124 +80,139 @@ enum say {
     SAY_FILTERS, /* the image's */
     SAY_ADDRESS, /* of the sensor, and what it reads as DEVID */
     SAY_DEVICE_ID,
-    SAY_MORE,           /* another line follows */
-    SAY_MORE_IF_FORCED, /* it follows if another `every` is in force than was asked for */
-    SAY_THEN_CAUSE,     /* goes on in another text: one for each cause of a reset */
-    SAY_THEN_SAFE,      /* in a text on safe settings, if they are in force */
-    SAY_THEN_LEGAL,     /* ... setting */
-    SAY_THEN_FAULT,     /* ... fault code */
-    SAY_THEN_STATE,     /* ... phase of the driver */
-    SAY_THEN_WHY,       /* why this `every` is in force, if it was not asked for */
-    SAY_THEN_MODE,      /* ... output mode */
-    SAY_THEN_REST       /* the rest of the line of the state */
+    SAY_MORE,             /* another line follows */
+    SAY_MORE_IF_FORCED,   /* it follows if another `every` is in force than was asked for */
+    SAY_THEN_CAUSE,       /* goes on in another text: one for each cause of a reset */
+    SAY_THEN_SAFE,        /* in a text on safe settings, if they are in force */
+    SAY_THEN_LEGAL,       /* ... setting */
+    SAY_THEN_FAULT,       /* ... fault code */
+    SAY_THEN_STATE,       /* ... phase of the driver */
+    SAY_THEN_WHY,         /* why this `every` is in force, if it was not asked for */
+    SAY_THEN_MODE,        /* ... output mode */
+    SAY_THEN_REST,        /* the rest of the line of the state */
+    SAY_PARAMETER = 0x80, /* of the filter: name, value, unit */
+    SAY_SET_ADDRESS,
+    SAY_AXES,
+    SAY_AXIS,  /* of measurements: the axis of the line */
+    SAY_SHIFT, /* by the self-test */
+    SAY_RMS,
+    SAY_R,
+    SAY_OFF,      /* how far the measured rate is from the nominal one, % */
+    SAY_POSITION, /* of cal6: which of the sensor's axes points up */
+    SAY_RESIDUAL,
+    SAY_TO_GO, /* how many positions are not known yet */
+    SAY_PARAMETER_RANGE,
+    SAY_THEN_KEPT,    /* goes on in another text: what the settings began as */
+    SAY_THEN_LIMITS,  /* ... the limits of the self-test */
+    SAY_THEN_VERDICT, /* ... what they say of the line's axis */
 };
 
-/* Bytes from SHARED_WORD on: the texts at the head of the list, which are words that others share. */
-#define SHARED_WORD 0x80u
-#define W_HELP "\x80"
-#define W_STATUS "\x81"
-#define W_FILTER "\x82"
-#define W_RATE "\x83"
-#define W_RANGE "\x84"
-#define W_EVERY "\x85"
-#define W_BAUD "\x86"
-#define W_MODE "\x87"
-#define W_STOP "\x88"
-#define W_GO "\x89"
-#define W_CHECK "\x8A"
-#define W_PULL_UPS "\x8B"
-#define W_SENSOR "\x8C"
-#define W_AT "\x8D"
-#define W_REFUSED "\x8E"
-#define W_THE "\x8F"
-#define W_TO "\x90"
-#define W_SAMPLE "\x91"
-#define W_FAULT "\x92"
-#define W_LOST "\x93"
-#define W_SUPPLY "\x94"
-#define W_ADXL "\x95"
-#define W_HZ "\x96"
-#define W_THAT "\x97"
-#define W_NOT "\x98"
-#define W_HELD_LOW "\x99"
-#define W_COMMA "\x9A"
-
-#define SMALLEST ": " W_THE "smallest" W_THAT
+/* The commands, a name for each reply_kind_t from REPLY_HELP on, in its order: as typed. */
+#define REPLY_NAMES(X) \
+    X("help")          \
+    X("status")        \
+    X("filter")        \
+    X("rate")          \
+    X("range")         \
+    X("every")         \
+    X("baud")          \
+    X("mode")          \
+    X("address")       \
+    X("axes")          \
+    X("stop")          \
+    X("go")            \
+    X("save")          \
+    X("load")          \
+    X("defaults")      \
+    X("odr")           \
+    X("noise")         \
+    X("selftest")      \
+    X("tare")          \
+    X("cal")           \
+    X("cal6")          \
+    X("settings")
 
 /*
- * First the words that others share, those of the commands before the rest; then one text for each reply_kind_t, in
- * its order; then the others, those that belong together in their order. Not formatted: aligned ends of the lines would
+ * One text for each reply_kind_t, in its order; then the others, those that belong together in their order. They are
+ * packed into program memory by tools/pack_texts.py (reply_packed.h). Not formatted: aligned ends of the lines would
  * all change with the longest.
  */
 /* clang-format off */
 #define REPLY_TEXTS(X) \
-    X(NAME_HELP, "help") \
-    X(NAME_STATUS, "status") \
-    X(NAME_FILTER, "filter") \
-    X(NAME_RATE, "rate") \
-    X(NAME_RANGE, "range") \
-    X(NAME_EVERY, "every") \
-    X(NAME_BAUD, "baud") \
-    X(NAME_MODE, "mode") \
-    X(NAME_STOP, "stop") \
-    X(NAME_GO, "go") \
-    X(WORD_CHECK, ": check ") \
-    X(WORD_PULL_UPS, ", pull-ups, GND") \
-    X(WORD_SENSOR, "sensor") \
-    X(WORD_AT, " at ") \
-    X(WORD_REFUSED, "refused: ") \
-    X(WORD_THE, "the ") \
-    X(WORD_TO, " to ") \
-    X(WORD_SAMPLE, "sample") \
-    X(WORD_FAULT, "fault ") \
-    X(WORD_LOST, " lost") \
-    X(WORD_SUPPLY, "supply") \
-    X(WORD_ADXL, " ADXL345") \
-    X(WORD_HZ, " Hz") \
-    X(WORD_THAT, " that ") \
-    X(WORD_NOT, " not ") \
-    X(WORD_HELD_LOW, " held low") \
-    X(WORD_COMMA, ", ") \
-    X(WHO, FIRMWARE_NAME " " FIRMWARE_VERSION ": roll and pitch from an" W_ADXL V_MORE) \
+    X(WHO, FIRMWARE_NAME " " FIRMWARE_VERSION ": roll and pitch from an ADXL345" V_MORE) \
     X(HELP, V_NAME ": " V_MORE V_THEN_LEGAL) \
     X(STATUS, "state " V_THEN_STATE) \
-    X(FILTER_NOW, W_FILTER " " V_FILTER V_MORE_IF_FORCED) \
-    X(RATE_NOW, W_RATE " " V_RATE W_HZ W_COMMA "I2C" W_AT V_BUS_KHZ " kHz" V_MORE_IF_FORCED) \
-    X(RANGE_NOW, W_RANGE " " V_RANGE " g" W_COMMA "256 LSB per g") \
-    X(EVERY_NOW, W_EVERY " " V_EVERY V_THEN_WHY) \
-    X(BAUD_NOW, W_BAUD " " V_BAUD V_MORE_IF_FORCED) \
-    X(MODE_NOW, W_MODE " " V_THEN_MODE) \
-    X(STOPPED, W_STOP "ped") \
+    X(FILTER_NOW, "filter " V_FILTER V_MORE_IF_FORCED) \
+    X(RATE_NOW, "rate " V_RATE " Hz, I2C at " V_BUS_KHZ " kHz" V_MORE_IF_FORCED) \
+    X(RANGE_NOW, "range " V_RANGE " g, 256 LSB per g") \
+    X(EVERY_NOW, "every " V_EVERY V_THEN_WHY) \
+    X(BAUD_NOW, "baud " V_BAUD V_MORE_IF_FORCED) \
+    X(MODE_NOW, "mode " V_THEN_MODE) \
+    X(ADDRESS_NOW, "address " V_SET_ADDRESS) \
+    X(AXES_NOW, "axes " V_AXES) \
+    X(STOPPED, "stopped") \
     X(GOING, "going") \
-    X(UNKNOWN, "unknown command (type " W_HELP ")") \
-    X(REFUSED, W_REFUSED V_NAME " is one of " V_THEN_LEGAL) \
-    X(TOO_SLOW, W_REFUSED V_FILTER " takes " V_CYCLES " of " W_THE V_LEFT " cycles" W_THAT \
-                                   "a " W_SAMPLE W_AT V_RATE W_HZ " leaves") \
-    X(FAULT_BEGIN, W_FAULT V_SUBJECT ": " V_THEN_FAULT) \
-    X(FAULT_END, W_FAULT V_SUBJECT " over: " W_SAMPLE "s again after " V_OUTAGE_MS " ms" W_COMMA V_OUTAGE_LOST W_LOST \
-                   W_COMMA W_SENSOR W_AT "0x" V_OUTAGE_ADDRESS) \
+    X(SAVED, "saved") \
+    X(LOADED, "settings: " V_THEN_KEPT) \
+    X(DEFAULTS, "settings: defaults") \
+    X(ODR, "odr " V_MEASURED " Hz, " V_OFF " % from " V_RATE " Hz") \
+    X(NOISE, "noise " V_AXIS " " V_RMS " LSB rms, R " V_R " LSB^2") \
+    X(SELFTEST, "selftest " V_AXIS " " V_SHIFT " LSB, " V_THEN_LIMITS) \
+    X(TARE, "") \
+    X(CAL, "") \
+    X(CAL6, "cal6: residual " V_RESIDUAL " mg") \
+    X(LISTING, "settings") \
+    X(PARAMETER, V_PARAMETER V_PARAMETER_RANGE) \
+    X(ILLEGAL_PARAMETER, "refused 4: illegal value; " V_PARAMETER V_PARAMETER_RANGE) \
+    X(UNKNOWN, "refused 1: unknown command (type help)") \
+    X(REFUSED, "refused 4: " V_NAME " is one of " V_THEN_LEGAL) \
+    X(TOO_SLOW, "refused 5: " V_FILTER " takes " V_CYCLES " of the " V_LEFT " cycles that a sample at " V_RATE \
+      " Hz leaves") \
+    X(STREAMING, "refused 6: type stop first") \
+    X(BUSY, "refused 10: one measurement at a time") \
+    X(NO_ROOM, "refused 12: not in this image; cal6 in another one, then save there") \
+    X(FAULT_BEGIN, "fault " V_SUBJECT ": " V_THEN_FAULT) \
+    X(FAULT_END, "fault " V_SUBJECT " over: samples again after " V_OUTAGE_MS " ms, " V_OUTAGE_LOST \
+      " lost, sensor at 0x" V_OUTAGE_ADDRESS) \
     X(RESET, "reset: " V_MORE V_THEN_CAUSE) \
-    X(SETTINGS, W_FILTER " " V_FILTER W_COMMA W_RATE " " V_RATE W_HZ W_COMMA W_RANGE " " V_RANGE " g" \
-                         W_COMMA W_EVERY " " V_EVERY W_COMMA W_BAUD " " V_BAUD V_MORE) \
-    X(HINT, "type " W_HELP W_COMMA "or " W_MODE " plot for " W_THE "Arduino plotter" V_MORE) \
-    X(SENSOR, W_SENSOR ":" W_ADXL W_AT "0x" V_ADDRESS W_COMMA "I2C" W_AT V_BUS_KHZ " kHz" V_MORE) \
+    X(SETTINGS, "filter " V_FILTER ", rate " V_RATE " Hz, range " V_RANGE " g, every " V_EVERY ", baud " V_BAUD \
+      V_MORE) \
+    X(KEPT, "settings: " V_MORE V_THEN_KEPT) \
+    X(HINT, "type help, or mode plot for the Arduino plotter" V_MORE) \
+    X(SENSOR, "sensor: ADXL345 at 0x" V_ADDRESS ", I2C at " V_BUS_KHZ " kHz" V_MORE) \
     X(HEADER, "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags") \
-    X(VERBS, W_STOP W_COMMA "go" W_COMMA "status" W_COMMA W_HELP "; NAME VALUE sets" W_COMMA "NAME shows") \
-    X(TOO_LONG, W_REFUSED "line too long") \
-    X(GARBAGE, W_REFUSED "characters" W_THAT "no command has") \
-    X(SAMPLES, W_SAMPLE "s " V_COUNT W_COMMA "gated " V_COUNT W_COMMA "reacquired " V_COUNT \
-      W_COMMA "clipped " V_COUNT V_MORE) \
-    X(ROWS, "rows " V_COUNT W_COMMA "dropped " V_COUNT W_COMMA "serial bytes" W_LOST " " V_SERIAL_LOST \
-            W_COMMA "lines refused " V_COUNT V_MORE) \
-    X(MISSING, "lost " V_COUNT W_COMMA "late " V_COUNT W_COMMA "drained " V_COUNT W_COMMA "stuck " V_COUNT \
-      W_COMMA "restarts " V_COUNT V_MORE) \
-    X(BUS, \
-      "not acknowledged " V_COUNT W_COMMA "arbitration" W_LOST " " V_COUNT W_COMMA "bus errors " V_COUNT \
-      W_COMMA "timeouts " V_COUNT V_MORE) \
-    X(READINGS, "readings torn " V_COUNT W_COMMA "empty " V_COUNT W_COMMA "overruns " V_COUNT V_MORE) \
+    X(VERBS, "stop, go, save, load, defaults, status, settings, odr, noise, selftest, tare, cal, cal6, help; " \
+      "NAME VALUE sets") \
+    X(ODR_UNKNOWN, "odr: not measured yet") \
+    X(LIMITS_XY, "88.5 to 955.8: " V_THEN_VERDICT) \
+    X(LIMITS_Z, "110.25 to 1286.25: " V_THEN_VERDICT) \
+    X(FAIL, "FAIL") \
+    X(PASS, "pass") \
+    X(HIGH, "high") \
+    X(HOLD_STILL, V_NAME ": hold still") \
+    X(MOVED, "refused 8: moving") \
+    X(ABORTED, "refused 9: samples lost, or another configuration") \
+    X(CAL_STOPPED, "cal6: stopped") \
+    X(POSITION, "cal6: " V_POSITION " up, " V_TO_GO " to go") \
+    X(REPEATED, "cal6: " V_POSITION " up again: another, please") \
+    X(TILTED, "refused 11: " V_POSITION " was not up, but 20 degrees off or more") \
+    X(OFFSET, "refused 11: offset of " V_AXIS " is not legal") \
+    X(SCALE, "refused 11: scale of " V_AXIS " is not legal") \
+    X(RESIDUAL, "refused 11: " V_POSITION " up does not fit the others") \
+    X(AXES, "") \
+    X(NO_GRAVITY, "refused 11: not 1 g") \
+    X(TOO_LONG, "refused 2: line too long") \
+    X(GARBAGE, "refused 3: characters that no command has") \
+    X(SAMPLES, "samples " V_COUNT ", gated " V_COUNT ", reacquired " V_COUNT ", clipped " V_COUNT V_MORE) \
+    X(ROWS, "rows " V_COUNT ", dropped " V_COUNT ", serial bytes lost " V_SERIAL_LOST ", lines refused " V_COUNT \
+      V_MORE) \
+    X(MISSING, "lost " V_COUNT ", late " V_COUNT ", drained " V_COUNT ", stuck " V_COUNT ", restarts " V_COUNT V_MORE) \
+    X(BUS, "not acknowledged " V_COUNT ", arbitration lost " V_COUNT ", bus errors " V_COUNT ", timeouts " V_COUNT \
+      V_MORE) \
+    X(READINGS, "readings torn " V_COUNT ", empty " V_COUNT ", overruns " V_COUNT V_MORE) \
     X(RESET_AGAIN, "reset: " V_THEN_CAUSE) \
-    X(LINE_CARRIES, SMALLEST V_BAUD " " W_BAUD " carries" W_AT V_RATE W_HZ) \
-    X(FILTER_LEAVES, SMALLEST V_FILTER " leaves time for" W_AT V_RATE W_HZ) \
+    X(LINE_CARRIES, ": the smallest that " V_BAUD " baud carries at " V_RATE " Hz") \
+    X(FILTER_LEAVES, ": the smallest that " V_FILTER " leaves time for at " V_RATE " Hz") \
     X(CSV, "csv") \
     X(PLOT, "plot") \
     X(LEGAL_FILTER, V_FILTERS) \
@@ -192,41 +221,50 @@ enum say {
     X(LEGAL_EVERY, "1 to 10000") \
     X(LEGAL_BAUD, "9600 19200 38400 57600 115200 250000 500000 1000000") \
     X(LEGAL_MODE, "csv plot") \
+    X(LEGAL_ADDRESS, "auto 53 1d") \
+    X(LEGAL_AXES, "24 like xyz or -yxz") \
     X(POWER_ON, "power on") \
     X(EXTERNAL, "reset button or serial port opened") \
-    X(BROWN_OUT, W_SUPPLY " dropped") \
-    X(WATCHDOG, "watchdog" W_COMMA "waiting for stage mask " V_NOTE " (1 sampling" W_COMMA "2 " W_FILTER "ing" \
-      W_COMMA "4 output)" V_THEN_SAFE) \
-    X(SAFE, W_COMMA "again and again: safe settings") \
-    X(STATE_STOPPED, W_STOP "ped" V_THEN_REST) \
+    X(BROWN_OUT, "supply dropped") \
+    X(WATCHDOG, "watchdog, waiting for stage mask " V_NOTE " (1 sampling, 2 filtering, 4 output)" V_THEN_SAFE) \
+    X(SAFE, ", again and again: safe settings") \
+    X(STATE_STOPPED, "stopped" V_THEN_REST) \
     X(STATE_STARTING, "starting" V_THEN_REST) \
     X(STATE_STREAMING, "streaming" V_THEN_REST) \
     X(STATE_QUIESCING, "starting" V_THEN_REST) \
     X(STATE_FAULTY, "fault" V_THEN_REST) \
-    X(STATE_REST, W_COMMA W_FAULT V_FAULT W_COMMA W_RATE " " V_RATE W_HZ W_COMMA "measured " V_MEASURED W_HZ \
-      W_COMMA "uptime s " V_COUNT \
-                  V_MORE) \
-    X(NO_SENSOR, \
-      "no " W_SENSOR " answers" W_AT "0x53 or 0x1D" W_CHECK "power" W_COMMA "SDA" W_TO "A4" W_COMMA "SCL" W_TO "A5" \
-      W_COMMA "CS" W_TO "3.3 V") \
-    X(WRONG_ID, W_THE "device" W_AT "0x" V_ADDRESS " is no" W_ADXL ": DEVID reads 0x" V_DEVICE_ID "," W_NOT "0xE5") \
-    X(BUS_FAULT, "I2C bus stuck or disturbed" W_CHECK "SDA" W_COMMA "SCL" W_PULL_UPS) \
-    X(READ_BACK, "a register does" W_NOT "keep its value" W_CHECK W_SUPPLY W_COMMA "bus") \
-    X(INT1_SILENT, W_THE W_SENSOR " has data" W_COMMA "but INT1 does" W_NOT "rise" W_CHECK "INT1" W_TO "D2") \
-    X(NO_DATA, W_THE W_SENSOR " " W_STOP "ped measuring: power" W_LOST "?") \
-    X(SCL_LOW, "SCL" W_HELD_LOW W_CHECK "SCL" W_TO "A5" W_PULL_UPS) \
-    X(SDA_LOW, "SDA" W_HELD_LOW W_CHECK "SDA" W_TO "A4" W_PULL_UPS) \
-    X(INT1_STUCK, "INT1 is high without data" W_CHECK "INT1" W_TO "D2") \
-    X(STUCK, W_THE "values do" W_NOT "change" W_CHECK W_SUPPLY W_COMMA "bus") \
-    X(TORN, "readings are torn" W_CHECK "SDA" W_COMMA "SCL" W_COMMA W_SUPPLY W_PULL_UPS) \
-    X(TWO_SENSORS, "values jump to their double" W_CHECK "for two " W_SENSOR "s" W_AT "0x" V_ADDRESS)
+    X(STATE_REST, ", fault " V_FAULT ", rate " V_RATE " Hz, measured " V_MEASURED " Hz, uptime s " V_COUNT V_MORE) \
+    X(KEPT_DAMAGED, "defaults, the saved ones are damaged") \
+    X(KEPT_EMPTY, "defaults, none saved") \
+    X(KEPT_OTHER_VERSION, "defaults, the saved ones are of another version") \
+    X(KEPT_GOOD, "as saved") \
+    X(KEPT_OLDER, "as saved before: the newest are damaged") \
+    X(KEPT_NO_FILTER, "as saved, but for the filter") \
+    X(KEPT_UNREAD, "defaults, the saved ones are left alone") \
+    X(NOT_SAVED, "refused 7: the EEPROM does not keep a byte") \
+    X(NO_SENSOR, "no sensor answers at 0x53 or 0x1D: check power, SDA to A4, SCL to A5, CS to 3.3 V") \
+    X(WRONG_ID, "the device at 0x" V_ADDRESS " is no ADXL345: DEVID reads 0x" V_DEVICE_ID ", not 0xE5") \
+    X(BUS_FAULT, "I2C bus stuck or disturbed: check SDA, SCL, pull-ups, GND") \
+    X(READ_BACK, "a register does not keep its value: check supply, bus") \
+    X(INT1_SILENT, "the sensor has data, but INT1 does not rise: check INT1 to D2") \
+    X(NO_DATA, "the sensor stopped measuring: power lost?") \
+    X(SCL_LOW, "SCL held low: check SCL to A5, pull-ups, GND") \
+    X(SDA_LOW, "SDA held low: check SDA to A4, pull-ups, GND") \
+    X(INT1_STUCK, "INT1 is high without data: check INT1 to D2") \
+    X(STUCK, "the values do not change: check supply, bus") \
+    X(TORN, "readings are torn: check SDA, SCL, supply, pull-ups, GND") \
+    X(TWO_SENSORS, "values jump to their double: check for two sensors at 0x" V_ADDRESS)
 /* clang-format on */
 
 #define REPLY_TEXT_ID(name, words) TEXT_##name,
 enum reply_text { REPLY_TEXTS(REPLY_TEXT_ID) TEXT_NONE };
 #undef REPLY_TEXT_ID
 
-/* Where a text (enum reply_text) begins. */
-flash_text_t reply_text(uint8_t id);
+/* Begins with a text (enum reply_text); reply_text_next gives its bytes one by one, then 0. One text at a time. */
+void reply_text_open(uint8_t id);
+uint8_t reply_text_next(void);
+
+/* The name of a command, counted from 0 in REPLY_NAMES, in program memory. */
+flash_text_t reply_name(uint8_t command);
 
 #endif

@@ -50,20 +50,24 @@ FX_NOINLINE void forget(void)
 static void begin_outage(watch_t *w, uint32_t now_us)
 {
     w->began_us = now_us;
-    w->began_s = counters[COUNT_SECONDS];
-    w->began_lost = counters[COUNT_LOST];
+    const uint32_t *at = counters;
+    HAL_POINTER(at);
+    w->began_s = at[COUNT_SECONDS];
+    w->began_lost = at[COUNT_LOST];
 }
 
 /* Microseconds wrap after 71 minutes: an outage of more than a minute is told in whole seconds. So do milliseconds. */
 static void end_outage(watch_t *w, uint32_t now_us)
 {
-    uint32_t seconds = counters[COUNT_SECONDS] - w->began_s;
+    const uint32_t *at = counters;
+    HAL_POINTER(at);
+    uint32_t seconds = at[COUNT_SECONDS] - w->began_s;
     if (seconds < 60u) {
         w->outage.ms = (now_us - w->began_us) / 1000u;
     } else {
         w->outage.ms = seconds < MS_WRAP_S ? seconds * 1000u : UINT32_MAX;
     }
-    w->outage.lost = counters[COUNT_LOST] - w->began_lost;
+    w->outage.lost = at[COUNT_LOST] - w->began_lost;
     w->outage.address = adxl345_address();
     w->over = true;
 }
@@ -113,7 +117,8 @@ static void tell(void)
         if (replies_add(REPLY_FAULT_BEGIN, watch.newest)) {
             watch.told_mask |= bit;
         }
-    } else if (watch.over && !replies_hold(REPLY_FAULT_END) && replies_add(REPLY_FAULT_END, watch.newest)) {
+    } else if (watch.over && !replies_hold(REPLY_FAULT_END, REPLY_FAULT_END) &&
+               replies_add(REPLY_FAULT_END, watch.newest)) {
         sensor_watch_outage = watch.outage;
         forget();
     }

@@ -5,6 +5,7 @@
 #include "flash.h"
 #include "fx.h"
 #include "hal_time.h"
+#include "pipeline.h"
 
 settings_t settings;
 
@@ -18,9 +19,39 @@ void settings_defaults(void)
     settings.rate_dhz = 1000;
     settings.every = 1;
     settings.range_g = 16;
-    settings.filter = 0; /* the first of the image's filters */
+    settings_take_filter(0); /* the first of the image's */
     settings.mode = MODE_CSV;
+    settings.address = 0;
+    calibration_plain(&settings.calibration, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6);
     settings_follow();
+}
+
+uint8_t settings_filter_mark(uint8_t filter)
+{
+    const char *name = filter_any_name((filter_kind_t)filter);
+    uint8_t mark = 0;
+    for (char c = flash_char(name); c != '\0'; c = flash_char(name)) {
+        mark = (uint8_t)(mark * 2u + (uint8_t)c);
+        name++;
+    }
+    return mark;
+}
+
+void settings_take_filter(uint8_t filter)
+{
+    settings.filter = filter;
+    settings.filter_mark = settings_filter_mark(filter);
+    settings.own = 0;
+}
+
+bool settings_calibrate(const calibration_t *calibration)
+{
+    if (calibration_check(calibration).why != CALIBRATION_GOOD) {
+        return false;
+    }
+    settings.calibration = *calibration;
+    pipeline_calibrate(&settings.calibration);
+    return true;
 }
 
 bool settings_baud_valid(uint32_t baud)

@@ -5,15 +5,32 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "calibration.h"
+#include "store.h"
+
+enum { SETTINGS_PARAMETERS_MAX = 8 };
+
 typedef enum { MODE_CSV, MODE_PLOT } output_mode_t;
 
+/* All that is kept; the image has room for what later versions keep. */
+#define SETTINGS_KEPT_BYTES (45u + sizeof(calibration_t))
+
+/* Little-endian on PC and chip and without gaps, as far as it is kept: its bytes are the image that `save` writes. */
 typedef struct {
-    uint32_t baud;           /* SETTINGS_BAUD_DEFAULT, see settings_baud_valid */
-    uint16_t rate_dhz;       /* output data rate in 0.1 Hz */
-    uint16_t every;          /* a row for every Nth sample, as asked for: 1..SETTINGS_EVERY_MAX */
-    uint8_t range_g;         /* 2, 4, 8, 16 */
+    uint32_t parameters[SETTINGS_PARAMETERS_MAX]; /* of the filter, as stored: those of which `own` has a bit */
+    uint32_t baud;                                /* SETTINGS_BAUD_DEFAULT, see settings_baud_valid */
+    uint16_t rate_dhz;                            /* output data rate in 0.1 Hz */
+    uint16_t every;                               /* a row for every Nth sample, as asked for: 1..SETTINGS_EVERY_MAX */
+    calibration_t calibration;                    /* legal: settings_calibrate */
+    uint8_t range_g;                              /* 2, 4, 8, 16 */
+    uint8_t mode;                                 /* output_mode_t */
+    uint8_t address;                              /* of the sensor, 7 bits; 0: the one that answers */
+    uint8_t own;                                  /* bits: which parameters of the filter the user has set */
+    uint8_t filter_mark; /* settings_filter_mark of the filter: kinds are numbered anew in each image */
+    uint8_t spare[STORE_IMAGE_SIZE - SETTINGS_KEPT_BYTES];
+    uint8_t store_tail[STORE_TAIL_SIZE]; /* the store's own, see store.h */
+    /* not kept */
     uint8_t filter;          /* filter_kind_t */
-    uint8_t mode;            /* output_mode_t */
     uint16_t every_smallest; /* follows from baud, rate and filter: settings_follow */
 } settings_t;
 
@@ -33,18 +50,27 @@ typedef struct {
  * of the main loop, three noise estimates, and new variances as often as an estimate can leave the last by an eighth.
  * What is longer but rare (five warm-up samples, variances on all axes at once, replies, a change of settings) waits
  * in the sensor's FIFO and the driver's queue, 39 samples together, and is caught up with what a sample leaves over.
- * At 800 Hz the two leave 3,950 cycles, 1,316 for each axis, to a filter of which every row goes out: soft's 1,300.
+ * At 800 Hz the two leave 1,500 cycles, 500 for each axis, to a filter of which every row goes out: synth's 500.
  */
-#define SETTINGS_REST_CYCLES 6450u
-#define SETTINGS_ROW_CYCLES 9600u
+#define SETTINGS_REST_CYCLES 8050u
+#define SETTINGS_ROW_CYCLES 10450u
 
 extern settings_t settings;
 
 void settings_defaults(void);
+
+/* A byte that tells each filter of filter_list.h from the others, whatever image holds it. */
+uint8_t settings_filter_mark(uint8_t filter);
+
+/* The setting `filter`: with its mark, its parameters as shipped. */
+void settings_take_filter(uint8_t filter);
 bool settings_baud_valid(uint32_t baud);
 
 /* The value is the lowest, or that times two, four, ..., up to the highest. */
 bool settings_doubled(uint16_t lowest, uint16_t highest, uint16_t value);
+
+/* A calibration takes effect and is in the settings; false: it is not legal, nothing changes. */
+bool settings_calibrate(const calibration_t *calibration);
 
 /* Cycles that three axes of a filter take at most, and those that this output data rate leaves for them. */
 uint16_t settings_filter_cycles(uint8_t filter);

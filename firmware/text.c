@@ -61,3 +61,14 @@ void text_tenths(uint16_t value)
         text_u32(tenths);
     }
 }
+
+bool text_equal(const char *ram, flash_text_t words)
+{
+    char c = flash_char(words);
+    while (c != '\0' && *ram == c) {
+        ram++;
+        words++;
+        c = flash_char(words);
+    }
+    return c == '\0' && *ram == '\0';
+}

@@ -6,7 +6,8 @@
  *   uint32_t hal_time_us_isr(void)    the same, cheaper, with interrupts already off
  *   void hal_wake_at(uint32_t t_us)   wake main at this moment (main); one alarm, a later call moves it. For moments
  *                                     more than 32.7 ms ahead main is also woken each 32.768 ms before, and the same
- *                                     after a moment that is past: so look at the clock, not at having been woken
+ *                                     after a moment that is past: so look at the clock, not at having been woken. At
+ *                                     once where it has just passed, less than HAL_WAKE_LATE_US ago
  *   uint8_t hal_time_lap(void)        counts HAL_LAP_US, wraps: for times of at most 2 ms (main)
  *
  *   uint32_t HAL_CPU_HZ               cycles of the processor in a second
@@ -21,6 +22,7 @@
 
 #define HAL_TICK_US 8192u
 #define HAL_LAP_US 8u
+#define HAL_WAKE_LATE_US 1000u
 
 /* now is at or after deadline, for moments less than 35 minutes apart (any context). */
 static inline bool hal_time_reached(uint32_t now_us, uint32_t deadline_us)

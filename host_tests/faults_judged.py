@@ -31,14 +31,12 @@ def result(*names, **said):
 
 
 @test
-def a_pass_of_the_main_loop_has_1_ms_and_one_kind_more():
+def a_pass_of_the_main_loop_has_1_ms():
     for name in ALL:
-        exception = name == "flood at 1000000 baud"
-        assert result(name, pass_cycles=16001).failures() == ([] if exception else ["a pass of 16001 cycles (limit 16000)"]), name
-    assert result("flood at 1000000 baud", pass_cycles=22401).failures() == ["a pass of 22401 cycles (limit 22400)"]
-    flood = ALL["flood at 1000000 baud"]
-    done = faults_runs.attempt(FW, "adaptive", (flood,), ("1008.954ms",))
-    assert done.recovered and not done.failures() and 16000 < done.pass_cycles, done
+        assert result(name, pass_cycles=16001).failures() == ["a pass of 16001 cycles (limit 16000)"], name
+    done = faults_runs.attempt(FW, "adaptive", (ALL["flood at 1000000 baud"],), ("1008.954ms",))
+    assert done.recovered and not done.failures() and 6000 < done.pass_cycles, done
+    print(f"    under a flood of bytes: {done.pass_cycles} cycles")
 
 
 @test

@@ -8,7 +8,7 @@
  *
  * CSV: a stream as in docs/protocol.md, whose rows come at the rate given; its times are counted from its first row.
  * SKIP: data rows before the cold start. NAME is a parameter of the filter as its descriptor names it, VALUE in its
- * unit; R=VALUE multiplies what the noise estimate says. The program is linked with --wrap for filter_any_start and
+ * unit; R=VALUE multiplies what the noise estimate says. The program is linked with --wrap for parameters_start and
  * noise_r_lsb2_q8, so that the sample path meets these in place of the shipped values and is itself unchanged.
  */
 #include <math.h>
@@ -21,6 +21,7 @@
 #include "filter_any.h"
 #include "noise.h"
 #include "pipeline.h"
+#include "settings.h"
 #include "stream.h"
 
 enum { CHANGES_MAX = 16, RATE_TOLERANCE_PERCENT = 5 };
@@ -36,7 +37,7 @@ static change_t changes[CHANGES_MAX];
 static size_t change_count;
 static double r_factor = 1.0;
 
-void __wrap_filter_any_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz);
+void __wrap_parameters_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz);
 uint32_t __real_noise_r_lsb2_q8(const noise_t *n);
 uint32_t __wrap_noise_r_lsb2_q8(const noise_t *n);
 
@@ -92,7 +93,7 @@ static bool start_changed(filter_any_t *f, filter_kind_t kind, filter_any_config
     return filter_any_init(f, kind, config);
 }
 
-void __wrap_filter_any_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz)
+void __wrap_parameters_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz)
 {
     filter_any_config_t config;
     (void)start_changed(f, kind, &config, rate_dhz); /* check_configuration has asked */
@@ -263,6 +264,8 @@ int main(int argc, char **argv)
     check_configuration(kind, rate_dhz);
     coast_wait(0);
     pipeline_reset();
+    settings_defaults();
+    pipeline_calibrate(&settings.calibration);
     pipeline_start((uint8_t)kind, rate_dhz, range_g);
     pipeline_finish();
     replay(argv[1], rate_dhz, (size_t)number("rows to skip", argv[5], 0, 1000000000));

@@ -80,9 +80,9 @@ static void check(const adxl345_sample_t *sample)
 
 void rig_take_all(void)
 {
-    adxl345_sample_t sample;
-    while (!rig.leaves && adxl345_take(&sample)) {
-        check(&sample);
+    const adxl345_sample_t *sample;
+    while (!rig.leaves && (sample = adxl345_take()) != NULL) {
+        check(sample);
         rig.taken_count++;
         hal_wake();
     }

@@ -3,7 +3,7 @@ import csv
 import json
 import statistics
 
-from system_support import FW, OUT, SIMRUN, STREAMS, run, simrun, test, triplets
+from system_support import FW, OUT, SIMRUN, STREAMS, image_with, run, simrun, test, triplets
 
 REST = STREAMS / "rest-2lsb.csv"
 LENGTH_MS = 12000
@@ -213,7 +213,7 @@ def judge_ends_the_run_with_its_status_and_names_the_first_row():
     number, row = wrong[0]
     words = f"1 wrong, 0 stale, 0 twice; 0 steps back in time; first row {number}: t_us {row[0]}, readings {row[1]},{row[2]},{row[3]}, "
     assert words in stats["stderr"]
-    command = [SIMRUN, "--fw", FW, "--in", REST, "--out", OUT / "judged.csv", "--filter", "kf", "--max-ms", "1500", "--judge"]
+    command = [SIMRUN, "--fw", image_with("kf"), "--in", REST, "--out", OUT / "judged.csv", "--filter", "kf", "--max-ms", "1500", "--judge"]
     assert f"status 10: {stats['rows_judged']} rows judged: {words}" in run(*command, "--fault", IN_Y, expect=10).stderr
     run(*command)
     # a clock that is said to begin elsewhere makes every stamp one second early
@@ -270,7 +270,9 @@ def line_held_low_is_told_by_its_name_and_never_driven_high():
             assert len(begun) == 1 and begun[0].startswith(f"# fault {code}: {line.upper()} held low"), (phase, notes)
             assert any(note.startswith(f"# fault {code} over: samples again after ") for note in notes), (phase, notes)
             assert told["fault_1_recovered"] == 1 and told["i2c_driven_high"] is False, told
-            assert told["i2c_hand_clocks_max"] == (16 if line == "sda" else 1), told["i2c_hand_clocks_max"]
+            # a slave that SCL stopped within a byte holds SDA until it has had the rest of its clocks
+            clocks = told["i2c_hand_clocks_max"]
+            assert clocks == 16 if line == "sda" else 1 <= clocks <= 9, (line, clocks)
             assert told["i2c_hand_stops"] >= 2, "one before first use, one when the line is free again"
 
 

@@ -17,6 +17,7 @@ def worst_width_stream():
 
 # what checking and supervising a sample may cost beside reading, filtering and writing it, to which the limits below belong
 SUPERVISION_CYCLES = 600
+CALIBRATION_CYCLES = 1800  # calibrating a sample (660), and what a program that fills the flash takes more on its way and for its row
 
 
 def lose_nothing(name, stream, ppm, rate, baud, every, load_limit, fw=FW, shift_us=0, filter_name=None):
@@ -36,7 +37,7 @@ def lose_nothing(name, stream, ppm, rate, baud, every, load_limit, fw=FW, shift_
     late = [r for r in rows if r[0] >= 1000000]
     assert not any(r[9] & 256 for r in rows), "a row was dropped"
     assert 60000000 / 1e6 * rate / every * 0.995 < len(late), f"{len(late)} rows in 60 s"
-    within(f"CPU load at {rate} Hz", stats["cpu_load"], load_limit + SUPERVISION_CYCLES * rate / 16e6)
+    within(f"CPU load at {rate} Hz", stats["cpu_load"], load_limit + (SUPERVISION_CYCLES + CALIBRATION_CYCLES) * rate / 16e6)
     # 120 bit times a sample: START, address, register, repeated START, address, ten bytes, STOP
     bit_hz = 400e3 if rate == 800 else 16e6 / 44
     assert abs(stats["i2c_load"] - rate * 120 / bit_hz) < 0.02 * stats["i2c_load"] + 0.0005, stats["i2c_load"]
@@ -92,7 +93,7 @@ def make_width_test(rate, baud, every):
 
 TESTS.append(make_width_test(100, 115200, 1))
 TESTS.append(make_width_test(400, 500000, 1))
-TESTS.append(make_width_test(800, 500000, 4))
+TESTS.append(make_width_test(800, 500000, 7))  # of the filters there none leaves time for more
 
 
 def forced_every(filter_name, rate):
@@ -116,21 +117,21 @@ def make_time_test(filter_name, rate):
     return check
 
 
-for slow_filter in ("pbf", "af"):
-    TESTS.append(make_time_test(slow_filter, 800))
+for slow_filter, its_rate in (("shrf", 800), ("pbf", 800), ("af", 400)):
+    TESTS.append(make_time_test(slow_filter, its_rate))
 
 
 @test
 def a_filter_too_slow_for_the_rate_is_refused_and_samples_go_on():
-    # this image is told of 14 MHz: af takes more than a sample at 800 Hz leaves, pbf does not
+    # this image is told of 15 MHz: af takes more than a sample at 800 Hz leaves, pbf does not
     tight = "build/uno/tight/firmware.elf"
-    reply = "# refused: af takes 12450 of the 11050 cycles that a sample at 800 Hz leaves"
+    reply = "# refused 5: af takes 12600 of the 10700 cycles that a sample at 800 Hz leaves"
     rows, notes, served, _ = simrun("tight-filter", STREAMS / "rest-2lsb.csv", "--filter", "pbf", "--rate", 800, "--baud", 1000000, "--cmd",
                                     "1500:filter af", "--cmd", "1600:filter", "--loop", "--max-ms", 3000, fw=tight)
     assert notes.count(reply) == 1 and notes[notes.index(reply) + 1] == "# filter pbf", notes
-    # 17,500 - 6,450 - 10,350 cycles a sample are left for rows of 9,600
-    assert "# every 14: the smallest that pbf leaves time for at 800 Hz" in notes, notes
-    assert_nothing_lost(rows, served, 14, from_us=1000000, end_us=2900000)
+    # 18,750 - 8,050 - 10,500 cycles a sample are left for rows of 10,450
+    assert "# every 53: the smallest that pbf leaves time for at 800 Hz" in notes, notes
+    assert_nothing_lost(rows, served, 53, from_us=1000000, end_us=2900000)
     assert not any(r[9] & (128 | 256) for r in rows if r[0] > 1400000)
     rows, notes, served, _ = simrun("tight-rate", STREAMS / "rest-2lsb.csv", "--filter", "af", "--cmd", "1500:rate 800", "--cmd", "1600:rate",
                                     "--loop", "--max-ms", 3000, fw=tight)

@@ -9,6 +9,13 @@ from system_support import SET_IMAGES, STREAMS, TESTS, image_with, simrun, test,
 PASS_CYCLES = 16000
 COMMANDS = ("status", "help", "filter {0}", "range 8", "filter", "filter {1}", "range 16", "every 3", "every 1", "stop", "go", "mode plot",
             "nonsense", "filter {0}", "mode csv", "rate 50", "rate {2}", "filter {1}", "status")
+# with what each is answered by, begun anywhere: settings, calibration and measurements, each told of, in this order
+SETTING_COMMANDS = (("settings", "# level "), ("level 0.5 0.5 0.7", "# level 0.5 0.5 0.7"), ("axes -yxz", "# axes -yxz"), ("odr", "# odr "),
+                    ("offset -79.9375 64.0625 33", "# offset -79.9375"), ("scale 200.5 329.25 256", "# scale 200.5"), ("cal6", "# cal6: hold still"),
+                    ("tare", "# refused 10"), ("cal6 stop", "# cal6: stopped"), ("noise", "# noise: hold still"), ("stop", "# stopped"),
+                    ("save", "# saved"), ("load", "# settings: as saved"), ("go", "# going"), ("save", "# refused 6"),
+                    ("selftest", "# selftest: hold still"), ("settings", "# scale "), ("address 53", "# address 53"),
+                    ("defaults", "# settings: defaults"))
 FAULTS = ("unplug:60", "power:20", "scl:40", "sda:40", "hang:5", "noint:60", "nack", "nackdata", "buserr", "arb", "devid:0:60", "storm:1000:30",
           "txstall:60")
 # rate, baud: a flood without pause leaves a processor at 1,000,000 baud too little for anything
@@ -28,7 +35,7 @@ def assert_prompt(name, stats, baud, flood):
 
 def disturbed_run(image, filter_name, rate, baud, flood):
     """Every command, then every fault, 130 and 300 ms apart, the filter changed to and fro."""
-    other = next(f for f in filters_of(image) if f != filter_name)
+    other = next((f for f in filters_of(image) if f != filter_name), filter_name)
     options = []
     for i, text in enumerate(COMMANDS):
         options += ["--cmd", f"{1000 + 130 * i}:{text.format(other, filter_name, rate)}"]
@@ -48,9 +55,34 @@ def make_disturbed_test(image, rate, baud, flood):
     return check
 
 
+def settings_run(image, rate, baud):
+    """Settings, calibration, EEPROM and measurements on a stream with outliers; each command must have been run."""
+    name = f"passes-settings-{pathlib.Path(image).parent.name}-{rate}"
+    options = [word for i, (text, _) in enumerate(SETTING_COMMANDS) for word in ("--cmd", f"{1000 + 400 * i}:{text}")]
+    _, notes, _, stats = simrun(name, STREAMS / "outliers-15pct.csv", "--filter", filters_of(image)[0], "--rate", rate, "--baud", baud, "--loop",
+                                "--max-ms", 9000, *options, fw=image, judge=False)
+    begins = 0
+    without_cal6 = any(note.startswith("# refused 12") for note in notes)
+    for text, answer in SETTING_COMMANDS:
+        if without_cal6:  # nothing runs that keeps tare from beginning
+            answer = {"cal6": "# refused 12", "tare": "# tare: hold still"}.get(text, answer)
+        found = [i for i, note in enumerate(notes) if i >= begins and note.startswith(answer)]
+        assert found, f"{text}: no {answer} from note {begins} on: {notes}"
+        begins = found[0]
+    assert_prompt(name, stats, baud, False)
+
+
+def make_settings_test(image, rate, baud):
+    def check():
+        settings_run(image, rate, baud)
+    check.__name__ = f"no_pass_longer_than_1_ms_in_settings_{pathlib.Path(image).parent.name}_{rate}_hz"
+    return check
+
+
 for set_image in SET_IMAGES:
     for pace in PACES:
         TESTS.append(make_disturbed_test(set_image, *pace))
+        TESTS.append(make_settings_test(set_image, *pace[:2]))
 
 
 @test

@@ -10,13 +10,14 @@ import subprocess
 import sys
 import traceback
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, "tools")
+import images  # noqa: E402
+from images import FW, SET_IMAGES  # noqa: E402
+
 OUT = pathlib.Path("build/system")
 SIMRUN = "build/sim/simrun"
-FW = "build/uno/firmware.elf"
 STREAMS = pathlib.Path("sim/streams")
-# that one, and those with the filters for which it has no room
-SETS = re.search(r"^FILTER_SETS *:= *(.*)$", pathlib.Path("mk/images.mk").read_text(encoding="utf-8"), re.M).group(1).split()
-SET_IMAGES = [FW] + [f"build/uno/{name}/firmware.elf" for name in SETS[1:]]
 # images whose clock does not start at 0
 CLOCK_STARTS = dict(re.findall(r"IMAGE,(\w+),.*HAL_TIME_START_US=(\d+)ul", pathlib.Path("mk/images.mk").read_text(encoding="utf-8")))
 TESTS = []
@@ -35,11 +36,8 @@ def within(what, value, limit):
 
 
 def image_with(filter_name):
-    """The image of the firmware that holds a filter: the one flashed unless asked for another, if it does."""
-    for image in SET_IMAGES:
-        if filter_name in pathlib.Path(image).with_name("filters.txt").read_text(encoding="ascii").split():
-            return image
-    raise AssertionError(f"no image holds the filter {filter_name} (sets of filters: mk/images.mk)")
+    """As images.image_with, over the images of this module."""
+    return images.image_with(filter_name, SET_IMAGES)
 
 
 class Skip(Exception):
@@ -69,9 +67,18 @@ def run(*command, expect=0):
     return done
 
 
+def image_for(options, fw=FW):
+    """The image, or where it does not hold the filter that these options ask for, the one that does."""
+    words = [str(word) for word in options]
+    if fw != FW or "--filter" not in words:
+        return fw
+    return image_with(words[words.index("--filter") + 1])
+
+
 def simrun(name, stream, *options, fw=FW, expect=0, judge=True):
     """A run, of which simrun finds every row right unless judge=False; returns (rows, notes, served, stats)."""
     base = OUT / name
+    fw = image_for(options, fw)
     options += ("--clock-start", CLOCK_STARTS.get(pathlib.Path(fw).parent.name, "0"), *(["--judge"] if judge else []))
     if PROFILES and fw == FW and "--profile" not in options:
         options += ("--profile", pathlib.Path(PROFILES) / f"{next(RUN_NUMBERS):04}.csv")

@@ -37,9 +37,10 @@ static void test_banner_then_header_then_rows(void)
     TEST_ASSERT_EQUAL_STRING_LEN("# tilt-uno ", board.notes[0], 11);
     TEST_ASSERT_EQUAL_STRING("# reset: power on", board.notes[1]);
     TEST_ASSERT_EQUAL_STRING("# filter adaptive, rate 100 Hz, range 16 g, every 1, baud 115200", board.notes[2]);
-    TEST_ASSERT_EQUAL_STRING("# sensor: ADXL345 at 0x53, I2C at 363.6 kHz", board.notes[4]);
-    TEST_ASSERT_EQUAL_STRING("t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags", board.notes[5]);
-    TEST_ASSERT_EQUAL_size_t(6, board.note_count);
+    TEST_ASSERT_EQUAL_STRING("# settings: defaults, none saved", board.notes[3]);
+    TEST_ASSERT_EQUAL_STRING("# sensor: ADXL345 at 0x53, I2C at 363.6 kHz", board.notes[5]);
+    TEST_ASSERT_EQUAL_STRING("t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags", board.notes[6]);
+    TEST_ASSERT_EQUAL_size_t(7, board.note_count);
     assert_every_latched_sample_has_its_row(1);
     TEST_ASSERT_INT_WITHIN(6, 98, (int)board.row_count);
 }
@@ -116,23 +117,23 @@ static void test_refusals_name_the_legal_values(void)
 {
     static const struct {
         const char *typed, *answer;
-    } talk[] = { { "rate 60", "# refused: rate is one of 12.5 25 50 100 200 400 800" },
-                 { "rate 1600", "# refused: rate is one of 12.5 25 50 100 200 400 800" },
-                 { "rate 100.55", "# refused: rate is one of 12.5 25 50 100 200 400 800" },
-                 { "rate -100", "# refused: rate is one of 12.5 25 50 100 200 400 800" },
-                 { "rate 99999999999", "# refused: rate is one of 12.5 25 50 100 200 400 800" },
-                 { "range 3", "# refused: range is one of 2 4 8 16" },
-                 { "range 258", "# refused: range is one of 2 4 8 16" },
-                 { "every 0", "# refused: every is one of 1 to 10000" },
-                 { "every 10001", "# refused: every is one of 1 to 10000" },
-                 { "every 65537", "# refused: every is one of 1 to 10000" },
-                 { "every 1.5", "# refused: every is one of 1 to 10000" },
-                 { "baud 12345", "# refused: baud is one of 9600 19200 38400 57600 115200 250000 500000 1000000" },
-                 { "filter median", "# refused: filter is one of adaptive kf sprf synth lrf soft sprf_paper shrf pbf "
+    } talk[] = { { "rate 60", "# refused 4: rate is one of 12.5 25 50 100 200 400 800" },
+                 { "rate 1600", "# refused 4: rate is one of 12.5 25 50 100 200 400 800" },
+                 { "rate 100.55", "# refused 4: rate is one of 12.5 25 50 100 200 400 800" },
+                 { "rate -100", "# refused 4: rate is one of 12.5 25 50 100 200 400 800" },
+                 { "rate 99999999999", "# refused 4: rate is one of 12.5 25 50 100 200 400 800" },
+                 { "range 3", "# refused 4: range is one of 2 4 8 16" },
+                 { "range 258", "# refused 4: range is one of 2 4 8 16" },
+                 { "every 0", "# refused 4: every is one of 1 to 10000" },
+                 { "every 10001", "# refused 4: every is one of 1 to 10000" },
+                 { "every 65537", "# refused 4: every is one of 1 to 10000" },
+                 { "every 1.5", "# refused 4: every is one of 1 to 10000" },
+                 { "baud 12345", "# refused 4: baud is one of 9600 19200 38400 57600 115200 250000 500000 1000000" },
+                 { "filter median", "# refused 4: filter is one of adaptive kf sprf synth lrf soft sprf_paper shrf pbf "
                                     "af synth_opt synth_plus kf3" },
-                 { "mode xml", "# refused: mode is one of csv plot" },
-                 { "hello", "# unknown command (type help)" },
-                 { "stop now", "# unknown command (type help)" } };
+                 { "mode xml", "# refused 4: mode is one of csv plot" },
+                 { "hello", "# refused 1: unknown command (type help)" },
+                 { "stop now", "# refused 1: unknown command (type help)" } };
     board_start_resting();
     board_run_ms(200);
     for (size_t i = 0; i < sizeof talk / sizeof talk[0]; i++) {
@@ -164,10 +165,10 @@ static void test_garbage_and_long_lines_are_refused_whole(void)
     size_t before = board.note_count;
     board_type("rate 400 and then a great deal more than any command has");
     board_run_ms(100);
-    TEST_ASSERT_EQUAL_STRING("# refused: line too long", board.notes[before]);
+    TEST_ASSERT_EQUAL_STRING("# refused 2: line too long", board.notes[before]);
     board_type("ra\x01te 400");
     board_run_ms(100);
-    TEST_ASSERT_EQUAL_STRING("# refused: characters that no command has", board.notes[before + 1]);
+    TEST_ASSERT_EQUAL_STRING("# refused 3: characters that no command has", board.notes[before + 1]);
     TEST_ASSERT_EQUAL_UINT(1000, settings.rate_dhz);
     board_type("status");
     board_run_ms(300);
@@ -359,7 +360,7 @@ static void test_a_line_with_a_lost_byte_is_refused(void)
     board_run_ms(100);
     hal_host_faults.corrupt_rx_every = 0;
     TEST_ASSERT_EQUAL_UINT(1, settings.every);
-    TEST_ASSERT_EQUAL_STRING("# refused: characters that no command has", board_last_note());
+    TEST_ASSERT_EQUAL_STRING("# refused 3: characters that no command has", board_last_note());
 }
 
 /* The slowest line with the widest plot rows still answers and still obeys. */

@@ -17,13 +17,13 @@ void setUp(void)
 void tearDown(void) {}
 
 /*
- * A processor of 14 MHz: 17,500 cycles a sample at 800 Hz, 11,000 without the rest of its way. 3 x 4,150 of af are too
+ * A processor of 15 MHz: 18,750 cycles a sample at 800 Hz, 10,950 without the rest of its way. 3 x 4,150 of af are too
  * many, 3 x 3,450 of pbf are not.
  */
 static void board_start_with_a_slow_processor(void)
 {
     board_start_resting();
-    hal_host_cpu_hz = 14000000;
+    hal_host_cpu_hz = 15000000;
     board_run_ms(200);
 }
 
@@ -42,7 +42,7 @@ static void test_a_filter_too_slow_for_the_rate_is_refused(void)
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
     settings_t kept = settings;
     size_t rows = board.row_count;
-    type_and_read("filter af", "# refused: af takes 12450 of the 11050 cycles that a sample at 800 Hz leaves");
+    type_and_read("filter af", "# refused 5: af takes 12600 of the 10700 cycles that a sample at 800 Hz leaves");
     TEST_ASSERT_EQUAL_MEMORY(&kept, &settings, sizeof kept);
     for (size_t i = rows + 1; i < board.row_count; i++) {
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & ROW_WARMING_UP);
@@ -60,29 +60,31 @@ static void test_a_rate_too_fast_for_the_filter_is_refused(void)
     type_and_read("filter af", "# filter af");
     settings_t kept = settings;
     size_t before = board.note_count;
-    type_and_read("rate 800", "# refused: af takes 12450 of the 11050 cycles that a sample at 800 Hz leaves");
+    type_and_read("rate 800", "# refused 5: af takes 12600 of the 10700 cycles that a sample at 800 Hz leaves");
     TEST_ASSERT_EQUAL_size_t(before + 1, board.note_count);
     TEST_ASSERT_EQUAL_MEMORY(&kept, &settings, sizeof kept);
-    type_and_read("rate 1600", "# refused: rate is one of 12.5 25 50 100 200 400 800");
+    type_and_read("rate 1600", "# refused 4: rate is one of 12.5 25 50 100 200 400 800");
     type_and_read("rate 400", "# rate 400 Hz, I2C at 363.6 kHz");
     type_and_read("rate 12.5", "# rate 12.5 Hz, I2C at 363.6 kHz");
     type_and_read("filter kf", "# filter kf");
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
     hal_host_cpu_hz = 5000000; /* not even the rest of a sample's way */
-    type_and_read("filter synth", "# refused: synth takes 1500 of the 0 cycles that a sample at 800 Hz leaves");
+    type_and_read("filter synth", "# refused 5: synth takes 1500 of the 0 cycles that a sample at 800 Hz leaves");
     board_type("status");
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("lines refused 3", before));
 }
 
 /* On this board: what starts is allowed, what is refused. */
-static void test_every_filter_fits_every_rate_of_this_board(void)
+static void test_every_filter_fits_every_rate_of_this_board_but_af_800_hz(void)
 {
     board_start_resting();
     TEST_ASSERT_TRUE(settings_fit(settings.filter, settings.rate_dhz));
     for (uint8_t filter = 0; filter < FILTER_KIND_COUNT; filter++) {
         for (uint16_t rate_dhz = 125; rate_dhz <= 8000; rate_dhz = (uint16_t)(rate_dhz * 2u)) {
-            TEST_ASSERT_TRUE_MESSAGE(settings_fit(filter, rate_dhz), filter_any_name((filter_kind_t)filter));
+            bool fits = filter != FILTER_KIND_af || rate_dhz != 8000;
+            const char *name = filter_any_name((filter_kind_t)filter);
+            TEST_ASSERT_EQUAL_MESSAGE(fits, settings_fit(filter, rate_dhz), name);
         }
     }
     TEST_ASSERT_EQUAL_UINT16(3u * filter_any_worst_cycles(FILTER_KIND_af), settings_filter_cycles(FILTER_KIND_af));
@@ -104,7 +106,7 @@ static void test_every_follows_what_the_filter_leaves_time_for(void)
                     { "soft", soft_worst_cycles },
                     { "sprf_paper", sprf_paper_worst_cycles },
                     { "pbf", pbf_worst_cycles },
-                    { "af", af_worst_cycles } };
+                    { "shrf", shrf_worst_cycles } };
     board_start_resting();
     board_run_ms(200);
     board_type("baud 1000000");
@@ -136,7 +138,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_filter_too_slow_for_the_rate_is_refused);
     RUN_TEST(test_a_rate_too_fast_for_the_filter_is_refused);
-    RUN_TEST(test_every_filter_fits_every_rate_of_this_board);
+    RUN_TEST(test_every_filter_fits_every_rate_of_this_board_but_af_800_hz);
     RUN_TEST(test_every_follows_what_the_filter_leaves_time_for);
     return UNITY_END();
 }

@@ -112,7 +112,7 @@ static void test_failed_transfers_are_told_apart(void)
     TEST_ASSERT_EQUAL_UINT(4, told("bus errors "));
     TEST_ASSERT_EQUAL_UINT(6, told("timeouts "));
     TEST_ASSERT_EQUAL_UINT(0, told("restarts "));
-    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("fault 3", 0));
+    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault 3", 0));
 }
 
 static void test_a_calm_sensor_counts_nothing(void)

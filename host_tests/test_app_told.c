@@ -134,13 +134,13 @@ static void test_a_command_does_not_call_a_lasting_fault_over(void)
             board_run_ms(700);
             TEST_ASSERT_EQUAL_UINT_MESSAGE(faults[i], adxl345_fault(), commands[k]);
         }
-        TEST_ASSERT_EQUAL_size_t(0, board_notes_with("fault", before));
+        TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault", before));
         board_type("stop");
         board_run_ms(200);
         board_type("go");
         board_run_ms(700);
         TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
-        TEST_ASSERT_EQUAL_size_t(1, board_notes_with("fault", before)); /* told again behind the stop */
+        TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault", before)); /* told again behind the stop */
         stream_free(&stream);
     }
 }

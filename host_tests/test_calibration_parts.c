@@ -82,7 +82,7 @@ static void held(int position, double tilt_deg, double u[3])
     }
 }
 
-/* Mean of so many readings at 100 Hz on a desk: 2 LSB^2 on x and y, 1.7 times that on z (0: one exact reading). */
+/* Mean of readings at 100 Hz on a desk: 2 LSB^2 on x and y, 1.7 times that on z (0: one exact reading). */
 static void rest_mean(const part_t *part, const double u[3], int readings, int16_t mean_lsb_q4[3])
 {
     rest_t rest;
@@ -98,7 +98,7 @@ static void rest_mean(const part_t *part, const double u[3], int readings, int16
     TEST_ASSERT_TRUE(readings == 0 || rest_still(&rest, 1000));
     for (uint8_t i = 0; i < 3; i++) {
         mean_lsb_q4[i] = readings == 0 ? (int16_t)lround(16.0 * (part->offset[i] + part->scale[i] * u[i]))
-                                       : rest_mean_lsb_q4(&rest, i);
+                                       : rest_mean_lsb_q4(&rest.axes[i]);
     }
 }
 
@@ -164,7 +164,7 @@ static void test_six_positions_reach_0_3_degree(void)
         int16_t means[18];
         uint16_t residual_mg = 999;
         part_t part = random_part(0.1, 40.0);
-        TEST_ASSERT_EQUAL_UINT8(CALIBRATION_GOOD, six(&part, 15.0, 100, means, &residual_mg).why);
+        TEST_ASSERT_EQUAL_UINT8(CALIBRATION_GOOD, six(&part, 15.0, REST_SAMPLES, means, &residual_mg).why);
         worst_residual = residual_mg > worst_residual ? residual_mg : worst_residual;
         worst = fmax(worst, worst_attitude(&part, &c, 200, &sum2));
         worst_before = fmax(worst_before, worst_attitude(&part, &none, 200, &sum2_before));
@@ -291,7 +291,7 @@ static void test_tare_of_any_mounting(void)
             c.scale_lsb_per_g_uq6[i] = (uint16_t)lround(64.0 * part.scale[i]);
         }
         direction(u);
-        rest_mean(&part, u, 200, mean);
+        rest_mean(&part, u, REST_SAMPLES, mean);
         TEST_ASSERT_EQUAL_UINT8(CALIBRATION_GOOD, calibration_tare(&c, mean).why);
         calibration_applied_t applied;
         int32_t a_q8[3];

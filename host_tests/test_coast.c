@@ -10,6 +10,7 @@
 #include "counters.h"
 #include "filter_any.h"
 #include "pipeline.h"
+#include "settings.h"
 #include "silence.h"
 #include "support_random.h"
 #include "unity.h"
@@ -62,6 +63,8 @@ static void begin(uint8_t kind, uint16_t rate_dhz, double slope)
     counters_start();
     coast_wait(world.t_us);
     pipeline_reset();
+    settings_defaults();
+    pipeline_calibrate(&settings.calibration);
     pipeline_start(kind, rate_dhz, 16);
     pipeline_finish();
 }
@@ -341,13 +344,10 @@ static unsigned samples_to_begin_anew(uint8_t kind, unsigned clipped)
     random_seed(&world.random, SEED);
     begin(kind, 1000, 0.0);
     samples(300);
-    for (unsigned k = 0; k < clipped; k++) {
-        sample_of_y(4095);
-    }
-    for (unsigned k = 1; k < 60u; k++) {
-        sample_of_y(4090);
-        if (world.row.flags & ROW_REACQUIRED) {
-            return k;
+    for (unsigned k = 1; k < clipped + 60u; k++) {
+        sample_of_y(k <= clipped ? 4095 : 4090);
+        if (k > clipped && (world.row.flags & ROW_REACQUIRED)) {
+            return k - clipped;
         }
     }
     return 0;

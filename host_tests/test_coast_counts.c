@@ -2,6 +2,7 @@
 #include "coast.h"
 #include "counters.h"
 #include "pipeline.h"
+#include "settings.h"
 #include "unity.h"
 
 enum { PERIOD_US = 10000, LOOK_US = 4000, START_US = 1000000 };
@@ -10,6 +11,8 @@ void setUp(void)
 {
     counters_start();
     pipeline_reset();
+    settings_defaults();
+    pipeline_calibrate(&settings.calibration);
     pipeline_start(0, 1000, 16);
     pipeline_finish();
     coast_wait(START_US);

@@ -10,7 +10,7 @@
 /* START, address, register, repeated START, address, two bytes, six of data, two more. */
 enum { FIRST_DATA_EVENT = 7, EVENTS_PER_BURST = 15 };
 
-static const adxl345_config_t at_100_hz = { 1000, 16, false };
+static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
 
 void setUp(void)
 {
@@ -47,7 +47,7 @@ static void test_rates_and_ranges_reach_the_registers(void)
         uint8_t format;
     } ranges[] = { { 2, 0x08 }, { 4, 0x09 }, { 8, 0x0A }, { 16, 0x0B } };
     for (size_t i = 0; i < 7; i++) {
-        adxl345_config_t config = { rates[i].rate_dhz, ranges[i % 4].range_g, false };
+        adxl345_config_t config = { rates[i].rate_dhz, ranges[i % 4].range_g, false, 0 };
         TEST_ASSERT_TRUE(adxl345_config_valid(&config));
         adxl345_start(&config);
         rig_run_ms(300);
@@ -61,7 +61,7 @@ static void test_rates_and_ranges_reach_the_registers(void)
 /* DATA_FORMAT's bit 7 (p. 26), in every reading too; the sensor keeps it over a reset of the MCU, and it is cleared. */
 static void test_self_test_is_set_and_cleared(void)
 {
-    static const adxl345_config_t with_force = { 1000, 16, true };
+    static const adxl345_config_t with_force = { 1000, 16, true, 0 };
     static const adxl345_part_t unmoved = { { 1.0, 1.0, 1.0 }, { 0, 0, 0 }, { 0, 0, 0 } }; /* as the rig checks */
     hal_host_sensor.part = unmoved;
     adxl345_start(&with_force);
@@ -80,7 +80,7 @@ static void test_self_test_is_set_and_cleared(void)
 /* Without SELF_TEST the configuration is not what was asked for: READ_BACK, never streaming. */
 static void test_a_self_test_bit_that_is_not_kept_is_found(void)
 {
-    static const adxl345_config_t with_force = { 1000, 16, true };
+    static const adxl345_config_t with_force = { 1000, 16, true, 0 };
     adxl345_start(&at_100_hz);
     rig_run_ms(100);
     hal_host_faults.write_lost_register = ADXL345_DATA_FORMAT;
@@ -92,9 +92,9 @@ static void test_a_self_test_bit_that_is_not_kept_is_found(void)
 
 static void test_refuses_rates_and_ranges_the_chip_lacks(void)
 {
-    static const adxl345_config_t wrong[] = { { 0, 16, false },     { 124, 16, false },   { 1001, 16, false },
-                                              { 16000, 16, false }, { 32000, 16, false }, { 1000, 0, false },
-                                              { 1000, 3, false },   { 1000, 32, false } };
+    static const adxl345_config_t wrong[] = { { 0, 16, false, 0 },     { 124, 16, false, 0 },   { 1001, 16, false, 0 },
+                                              { 16000, 16, false, 0 }, { 32000, 16, false, 0 }, { 1000, 0, false, 0 },
+                                              { 1000, 3, false, 0 },   { 1000, 32, false, 0 } };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         TEST_ASSERT_FALSE(adxl345_config_valid(&wrong[i]));
     }
@@ -142,7 +142,7 @@ static void test_wrong_identity_is_named(void)
 static void test_register_that_does_not_keep_its_value_is_named(void)
 {
     hal_host_faults.write_lost_register = ADXL345_BW_RATE;
-    static const adxl345_config_t at_400_hz = { 4000, 16, false };
+    static const adxl345_config_t at_400_hz = { 4000, 16, false, 0 };
     adxl345_start(&at_400_hz);
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_READ_BACK, adxl345_fault());
@@ -275,7 +275,7 @@ static void test_rate_change_at_every_phase(void)
     adxl345_start(&at_100_hz);
     rig_run_ms(100);
     for (unsigned i = 0; i < 200; i++) {
-        adxl345_config_t config = { rates[i % 4], 16, false };
+        adxl345_config_t config = { rates[i % 4], 16, false, 0 };
         rig_run_ms(20.0 + (double)i * 0.053);
         adxl345_start(&config);
     }

@@ -14,7 +14,7 @@
 
 enum { PERIOD_MS = 10 };
 
-static const adxl345_config_t at_100_hz = { 1000, 16, false };
+static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
 static uint8_t count_flip; /* of FIFO_STATUS, on its way */
 static double rises_ms;    /* INT1, when INT_SOURCE is read after this time */
 
@@ -114,7 +114,7 @@ static void test_commands_while_samples_are_fetched(void)
         stream_for_ms(205);
         rig.leaves = true;
         rig_run_ms(12 * PERIOD_MS);
-        adxl345_config_t other = { 1000, 4, false };
+        adxl345_config_t other = { 1000, 4, false, 0 };
         adxl345_start(&other);
         rig_run_ms(1); /* standby is set, samples wait for main and, behind a full queue, in the sensor */
         TEST_ASSERT_TRUE(hal_host_sensor.fifo_count >= 2);

@@ -17,8 +17,8 @@
 /* START, address, register, repeated START, address, INT_SOURCE, DATA_FORMAT, six of data, FIFO_CTL, FIFO_STATUS. */
 enum { FIRST_DATA_EVENT = 7, LAST_DATA_EVENT = 12, EVENTS_PER_BURST = 15 };
 
-static const adxl345_config_t at_100_hz = { 1000, 16, false };
-static const adxl345_config_t at_800_hz = { 8000, 16, false };
+static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
+static const adxl345_config_t at_800_hz = { 8000, 16, false, 0 };
 
 void hal_host_drdy_handler(void);
 
@@ -282,7 +282,7 @@ static void test_stop_and_start_while_the_sensor_is_asked_deliver_first(void)
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
         TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor.reg[ADXL345_POWER_CTL]);
 
-        static const adxl345_config_t at_50_hz = { 500, 16, false };
+        static const adxl345_config_t at_50_hz = { 500, 16, false, 0 };
         until_the_source_is_asked();
         rig_away(phase);
         hal_host_faults.int1_cut = false;

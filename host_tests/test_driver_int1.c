@@ -12,7 +12,7 @@
 #include "support_rig.h"
 #include "unity.h"
 
-static const adxl345_config_t at_100_hz = { 1000, 16, false };
+static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
 
 void hal_host_drdy_handler(void);
 
@@ -52,7 +52,7 @@ static void test_int1_stuck_high(void)
     static const uint16_t rates_dhz[] = { 125, 250, 500, 1000, 2000, 4000, 8000 };
     for (unsigned r = 0; r < 7; r++) {
         double period_ms = 10000.0 / rates_dhz[r];
-        adxl345_config_t config = { rates_dhz[r], 16, false };
+        adxl345_config_t config = { rates_dhz[r], 16, false, 0 };
         adxl345_readings_t readings;
         begin(rates_dhz[r] / 10.0);
         adxl345_start(&config);
@@ -94,7 +94,7 @@ static void test_times_follow_while_int1_is_stuck(void)
 /* The same from the start, so that the period is never measured, with a sensor that is 5 % slow. */
 static void test_times_of_a_slow_sensor_follow_while_int1_is_stuck(void)
 {
-    static const adxl345_config_t at_12_5_hz = { 125, 16, false };
+    static const adxl345_config_t at_12_5_hz = { 125, 16, false, 0 };
     rig_begin(12.5, (hal_host_config_t){ .ppm = -50000.0 });
     rig.limit_us = 500;
     hal_host_faults.int1_high = true;
@@ -183,7 +183,7 @@ static void test_edges_for_nothing_bring_no_sample(void)
  */
 static void test_a_sample_is_not_older_than_the_sensor_was_empty(void)
 {
-    static const adxl345_config_t at_12_5_hz = { 125, 16, false };
+    static const adxl345_config_t at_12_5_hz = { 125, 16, false, 0 };
     unsigned met_empty = 0;
     for (unsigned phase = 0; phase < 25; phase++) {
         adxl345_readings_t before;

@@ -13,7 +13,7 @@
 
 enum { STARTED_MS = 100, PATTERN = 0x8A };
 
-static const adxl345_config_t at_100_hz = { 1000, 16, false };
+static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
 static uint8_t marks;
 
 /* An alteration of what arrives: from byte `from` on of the burst, for so many bursts. */

@@ -11,8 +11,8 @@
 #include "support_rig.h"
 #include "unity.h"
 
-static const adxl345_config_t at_100_hz = { 1000, 16, false };
-static const adxl345_config_t at_800_hz = { 8000, 16, false };
+static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
+static const adxl345_config_t at_800_hz = { 8000, 16, false, 0 };
 static const uint16_t rates_dhz[] = { 125, 250, 500, 1000, 2000, 4000, 8000 };
 static double ppm;
 static uint32_t clocks_seen;
@@ -246,7 +246,7 @@ static void test_a_late_main_is_no_timeout(void)
 static void test_silent_int1_is_noticed_within_three_periods(void)
 {
     for (size_t r = 0; r < sizeof rates_dhz / sizeof rates_dhz[0]; r++) {
-        adxl345_config_t config = { rates_dhz[r], 16, false };
+        adxl345_config_t config = { rates_dhz[r], 16, false, 0 };
         double period_ms = 10000.0 / config.rate_dhz;
         for (unsigned phase = 0; phase < 20; phase++) {
             begin(config.rate_dhz / 10.0);
@@ -271,7 +271,7 @@ static void test_without_int1_samples_are_read_by_the_clock(void)
 {
     static const double clocks_ppm[] = { -50000.0, 0.0, 50000.0 };
     for (unsigned i = 0; i < 3 * sizeof rates_dhz / sizeof rates_dhz[0]; i++) {
-        adxl345_config_t config = { rates_dhz[i / 3], 16, false };
+        adxl345_config_t config = { rates_dhz[i / 3], 16, false, 0 };
         double period_ms = 10000.0 / config.rate_dhz;
         ppm = clocks_ppm[i % 3];
         begin(config.rate_dhz / 10.0);

@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "filter_any.h"
+#include "filter_parameter.h"
 #include "support_filters.h"
+#include "support_random.h"
 #include "unity.h"
 
 void setUp(void) {}
@@ -30,7 +32,8 @@ static void test_an_unknown_kind_changes_nothing(void)
     TEST_ASSERT_FALSE(filter_any_init(&f, FILTER_KIND_COUNT, &config));
     f.kind = FILTER_KIND_COUNT + 1;
     f_before.kind = f.kind;
-    filter_any_start(&f, FILTER_KIND_COUNT, 1000);
+    filter_any_configure(&f, FILTER_KIND_COUNT, &config);
+    TEST_ASSERT_FALSE(filter_any_together(FILTER_KIND_COUNT, &config));
     filter_any_set_noise(&f, 256);
     filter_any_reset(&f, 100);
     TEST_ASSERT_FALSE(filter_any_reset_step(&f, 100, 0));
@@ -47,21 +50,70 @@ static void test_an_unknown_kind_changes_nothing(void)
 }
 
 /* At each rate of its range, whose defaults are legal; not looked at: what lies between the fields. */
-static void test_start_is_defaults_and_init(void)
+static void test_configure_is_init_without_the_question(void)
 {
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         for (uint32_t rate_dhz = FILTER_RATE_MIN_DHZ; rate_dhz <= FILTER_RATE_MAX_DHZ; rate_dhz++) {
-            filter_any_t started;
+            filter_any_t configured;
             filter_any_t initialised;
             filter_any_config_t config;
-            memset(&started, 0, sizeof started);
+            memset(&configured, 0, sizeof configured);
             memset(&initialised, 0, sizeof initialised);
-            filter_any_start(&started, (filter_kind_t)kind, (uint16_t)rate_dhz);
             filter_any_defaults((filter_kind_t)kind, &config, (uint16_t)rate_dhz);
+            filter_any_configure(&configured, (filter_kind_t)kind, &config);
             TEST_ASSERT_TRUE(filter_any_init(&initialised, (filter_kind_t)kind, &config));
-            TEST_ASSERT_EQUAL_MEMORY(&initialised, &started, sizeof started);
+            TEST_ASSERT_EQUAL_MEMORY(&initialised, &configured, sizeof configured);
         }
     }
+}
+
+static test_random_t random_source;
+
+/* A value of a parameter: at and around the ends of its range, in it, anywhere, 0. */
+static uint32_t some_value(const filter_parameter_t *p, unsigned which)
+{
+    uint32_t span = (uint32_t)p->max - (uint32_t)p->min;
+    uint32_t inside = (uint32_t)p->min +
+                      (span == UINT32_MAX ? random_u32(&random_source) : random_u32(&random_source) % (span + 1u));
+    const uint32_t values[] = { (uint32_t)p->min,
+                                (uint32_t)p->max,
+                                (uint32_t)p->min - 1u,
+                                (uint32_t)p->max + 1u,
+                                0,
+                                random_u32(&random_source),
+                                inside,
+                                inside,
+                                inside,
+                                inside };
+    return values[which % (sizeof values / sizeof values[0])];
+}
+
+/* What init takes is what the ranges of the descriptor and `together` take; a field of 16 bits holds no more. */
+static void test_ranges_and_together_are_what_init_asks(void)
+{
+    unsigned taken = 0;
+    unsigned refused = 0;
+    random_seed(&random_source, 11);
+    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        const filter_descriptor_t *d = filter_any_descriptor((filter_kind_t)kind);
+        for (int i = 0; i < 20000; i++) {
+            filter_any_t f;
+            filter_any_config_t config;
+            bool in_range = true;
+            filter_any_defaults((filter_kind_t)kind, &config, 1000);
+            for (uint8_t p = 0; p < d->parameter_count; p++) {
+                uint32_t value = some_value(&d->parameters[p], random_u32(&random_source));
+                filter_parameter_set(&config, &d->parameters[p], value);
+                value = filter_parameter_get(&config, &d->parameters[p]);
+                in_range = in_range && filter_parameter_in_range(&d->parameters[p], value);
+            }
+            bool legal = in_range && filter_any_together((filter_kind_t)kind, &config);
+            TEST_ASSERT_EQUAL_MESSAGE(filter_any_init(&f, (filter_kind_t)kind, &config), legal, d->name);
+            taken += legal;
+            refused += !legal;
+        }
+    }
+    TEST_ASSERT_TRUE(taken > 10000 && refused > 10000);
 }
 
 static void test_name_and_descriptor_agree(void)
@@ -186,7 +238,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_an_unknown_kind_changes_nothing);
-    RUN_TEST(test_start_is_defaults_and_init);
+    RUN_TEST(test_configure_is_init_without_the_question);
+    RUN_TEST(test_ranges_and_together_are_what_init_asks);
     RUN_TEST(test_name_and_descriptor_agree);
     RUN_TEST(test_reset_in_steps_is_reset);
     RUN_TEST(test_a_refusal_names_the_parameter);

@@ -13,7 +13,7 @@
 /* A pass of main takes 20 us on the host. */
 #define PASS_MS 0.021
 
-static const adxl345_config_t at_100_hz = { 1000, 16, false };
+static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
 static stream_t stream;
 
 /* No sensor, no line: only what a test does reports progress. Time begins 1 s before its wrap. */

@@ -123,7 +123,7 @@ def the_image_with_a_filter_holds_it():
             assert {name: system_support.image_with(name) for name in EVERY} == wanted, choice
             try:
                 system_support.image_with("kff")
-            except AssertionError as problem:
+            except LookupError as problem:
                 assert "no image holds the filter kff" in str(problem)
             else:
                 raise AssertionError("an image for kff")

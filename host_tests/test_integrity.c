@@ -48,7 +48,7 @@ static reading_t judged(const int16_t lsb[3], unsigned byte, uint8_t flipped)
 
 static void start(uint8_t range_g, bool self_test)
 {
-    adxl345_config_t config = { 1000, range_g, self_test };
+    adxl345_config_t config = { 1000, range_g, self_test, 0 };
     integrity_start(&config);
 }
 

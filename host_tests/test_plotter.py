@@ -94,7 +94,8 @@ def sent(name, *options, stream="outliers-15pct"):
     """The bytes of a run."""
     out = OUT / f"plot-{name}.txt"
     system_support.run(SIMRUN, "--fw", system_support.FW, "--in", STREAMS / f"{stream}.csv", "--loop", "--out", out, *options)
-    return out.read_bytes().decode("ascii")
+    said = out.read_bytes().decode("ascii")
+    return said[:said.rindex("\n") + 1]  # the end of the run cuts a line
 
 
 def words(option, values):

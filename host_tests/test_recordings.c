@@ -4,6 +4,7 @@
  */
 #include "coast.h"
 #include "pipeline.h"
+#include "settings.h"
 #include "support_recordings.h"
 #include "support_shipped.h"
 #include "support_survey.h"
@@ -50,6 +51,8 @@ static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t
     chain_t chain[3];
     coast_wait(0);
     pipeline_reset();
+    settings_defaults();
+    pipeline_calibrate(&settings.calibration);
     pipeline_start(kind, rate_dhz, range_g);
     pipeline_finish();
     for (int axis = 0; axis < 3; axis++) {

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { HZ_100 = 1000, HZ_800 = 8000 };
+enum { HZ_100 = 1000, HZ_800 = 8000, N = REST_SAMPLES };
 
 static rest_t rest;
 
@@ -21,10 +21,10 @@ void setUp(void)
 
 void tearDown(void) {}
 
-static void add(int x, int y, int z)
+static bool add(int x, int y, int z)
 {
     const int16_t lsb[3] = { (int16_t)x, (int16_t)y, (int16_t)z };
-    rest_add(&rest, lsb);
+    return rest_add(&rest, lsb);
 }
 
 /* floor(a / b + 1/2) for b > 0 */
@@ -34,195 +34,195 @@ static int64_t half_up(int64_t a, int64_t b)
     return (twice >= 0) ? twice / (2 * b) : -((-twice + 2 * b - 1) / (2 * b));
 }
 
-static void test_nothing_read_is_nothing(void)
+/* 256 readings, and each of them says whether it was the last. */
+static void test_it_is_full_with_256_readings(void)
 {
-    TEST_ASSERT_EQUAL_INT16(0, rest_mean_lsb_q4(&rest, 0));
-    TEST_ASSERT_EQUAL_UINT32(0, rest_variance_lsb2_q8(&rest, 0));
-    TEST_ASSERT_FALSE(rest_still(&rest, HZ_100));
+    for (int k = 1; k <= N; k++) {
+        TEST_ASSERT_EQUAL(k == N, add(3, -4, 256));
+    }
+    TEST_ASSERT_EQUAL_INT16(48, rest_mean_lsb_q4(&rest.axes[0]));
+    TEST_ASSERT_EQUAL_INT16(-64, rest_mean_lsb_q4(&rest.axes[1]));
+    TEST_ASSERT_EQUAL_INT16(4096, rest_mean_lsb_q4(&rest.axes[2]));
+    TEST_ASSERT_TRUE(rest_still(&rest, HZ_100));
 }
 
-/* Any centre, any spread, any number of readings, against sums of 64 bits over the readings themselves. */
+/* Any centre and any spread, against sums of 64 bits over the readings themselves. */
 static void test_mean_and_variance_against_exact_sums(void)
 {
     test_random_t random;
     random_seed(&random, 71);
     for (int run = 0; run < 20000; run++) {
-        int n = 1 + (int)random_below(&random, REST_SAMPLES_MAX);
         int spread = 1 + (int)random_below(&random, 127);
         int centre = (int)random_below(&random, 3001) - 1500;
         int64_t sum = 0;
         int64_t squares = 0;
         rest_start(&rest);
-        for (int k = 0; k < n; k++) {
+        for (int k = 0; k < N; k++) {
             int value = centre + (int)random_below(&random, (uint32_t)spread + 1U) - spread / 2;
-            add(0, value, 0);
+            (void)add(0, value, 0);
             sum += value;
             squares += (int64_t)value * value;
         }
         TEST_ASSERT_FALSE(rest.moved);
-        TEST_ASSERT_EQUAL_INT(n, rest.samples);
-        TEST_ASSERT_EQUAL_INT64(half_up(16 * sum, n), rest_mean_lsb_q4(&rest, 1));
-        double exact_q8 = 256.0 * (double)(n * squares - sum * sum) / ((double)n * n);
-        double got_q8 = rest_variance_lsb2_q8(&rest, 1);
-        TEST_ASSERT_TRUE(got_q8 <= exact_q8 + 0.5 && got_q8 >= exact_q8 - 256.0 / n - 0.5);
+        TEST_ASSERT_EQUAL_INT64(half_up(16 * sum, N), rest_mean_lsb_q4(&rest.axes[1]));
+        double exact_q8 = 256.0 * (double)(N * squares - sum * sum) / ((double)N * N);
+        double got_q8 = rest_variance_lsb2_q8(&rest.axes[1]);
+        TEST_ASSERT_TRUE(got_q8 >= exact_q8 && got_q8 < exact_q8 + 1.0);
     }
 }
 
-/* The largest sums: half of 512 readings 127 above the first, or all of them but it. */
+/* All but the first as far from it as may be, or the second half of them, on axes at the greatest first reading. */
 static void test_the_largest_sums_do_not_wrap(void)
 {
-    for (int sign = -1; sign <= 1; sign += 2) {
+    for (int far = -128; far <= 127; far += 255) {
         rest_start(&rest);
-        for (int k = 0; k < (int)REST_SAMPLES_MAX; k++) {
-            add(k == 0 ? 0 : sign * 127, k < 256 ? 0 : sign * 127, -sign * 1900);
+        for (int k = 0; k < N; k++) {
+            (void)add(k == 0 ? 0 : far, k < N / 2 ? 0 : far, far < 0 ? -1900 : 1900);
         }
         TEST_ASSERT_FALSE(rest.moved);
-        TEST_ASSERT_EQUAL_INT16(half_up(16L * sign * 127 * 511, 512), rest_mean_lsb_q4(&rest, 0));
-        TEST_ASSERT_EQUAL_INT16(sign * 1016, rest_mean_lsb_q4(&rest, 1)); /* 63.5 */
-        TEST_ASSERT_EQUAL_INT16(-sign * 30400, rest_mean_lsb_q4(&rest, 2));
-        TEST_ASSERT_EQUAL_UINT32(1032256, rest_variance_lsb2_q8(&rest, 1)); /* 63.5^2 = 4032.25 */
-        TEST_ASSERT_EQUAL_UINT32(0, rest_variance_lsb2_q8(&rest, 2));
-        TEST_ASSERT_FALSE(rest_still(&rest, HZ_100));
+        TEST_ASSERT_EQUAL_INT16(half_up(16L * far * 255, 256), rest_mean_lsb_q4(&rest.axes[0]));
+        TEST_ASSERT_EQUAL_INT16(8 * far, rest_mean_lsb_q4(&rest.axes[1]));
+        TEST_ASSERT_EQUAL_INT16(far < 0 ? -30400 : 30400, rest_mean_lsb_q4(&rest.axes[2]));
+        /* squares - sum^2 / 256: of 255 equal ones 255/256 of one square; of half of them a quarter of 256 squares */
+        TEST_ASSERT_EQUAL_UINT32((far * far * 255 + 255) / 256, rest_variance_lsb2_q8(&rest.axes[0]));
+        TEST_ASSERT_EQUAL_UINT32(far * far * 64, rest_variance_lsb2_q8(&rest.axes[1]));
+        TEST_ASSERT_EQUAL_UINT32(0, rest_variance_lsb2_q8(&rest.axes[2]));
+        TEST_ASSERT_FALSE(rest_still(&rest, HZ_800));
     }
 }
 
-static void test_no_more_than_the_most_readings_count(void)
-{
-    for (int k = 0; k < (int)REST_SAMPLES_MAX + 100; k++) {
-        add(k < (int)REST_SAMPLES_MAX ? 10 : 60, 0, 256);
-    }
-    TEST_ASSERT_EQUAL_INT16(160, rest_mean_lsb_q4(&rest, 0));
-    TEST_ASSERT_TRUE(rest_still(&rest, HZ_100));
-}
-
-static void test_a_reading_far_away_is_no_rest(void)
+/* -128..127 LSB from the first. */
+static void test_a_difference_fits_eight_bits_or_it_has_moved(void)
 {
     for (int axis = 0; axis < 3; axis++) {
-        for (int off = -128; off <= 128; off += 1) {
+        for (int off = -300; off <= 300; off++) {
             int16_t lsb[3] = { 3, -4, 256 };
             rest_start(&rest);
-            rest_add(&rest, lsb);
+            TEST_ASSERT_FALSE(rest_add(&rest, lsb));
             lsb[axis] = (int16_t)(lsb[axis] + off);
-            rest_add(&rest, lsb);
-            TEST_ASSERT_EQUAL(abs(off) == 128, rest.moved);
+            bool near = off >= -128 && off <= 127;
+            TEST_ASSERT_EQUAL(!near, rest_add(&rest, lsb));
+            TEST_ASSERT_EQUAL(!near, rest.moved);
         }
     }
 }
 
+/* Whatever comes as first and second reading; one that is far away is never forgotten. */
 static void test_any_reading_is_safe(void)
 {
     static const int ends[] = { -32768, -4096, -1901, -1900, 1900, 1901, 4095, 32767 };
     for (int i = 0; i < 8; i++) {
         for (int j = 0; j < 8; j++) {
             rest_start(&rest);
-            add(0, 0, ends[i]);
-            add(0, 0, ends[j]);
-            TEST_ASSERT_EQUAL(!(i == j && abs(ends[i]) == 1900), rest.moved);
-            for (int k = 0; k < 100; k++) {
-                add(0, 0, 256);
+            (void)add(0, 0, ends[i]);
+            (void)add(0, 0, ends[j]);
+            bool good = abs(ends[i]) == 1900 && abs(ends[j] - ends[i]) <= 1;
+            TEST_ASSERT_EQUAL(!good, rest.moved);
+            for (int k = 0; k < N - 2; k++) {
+                (void)add(0, 0, ends[i]);
             }
-            TEST_ASSERT_FALSE(rest_still(&rest, HZ_800));
+            TEST_ASSERT_EQUAL(good, rest_still(&rest, HZ_800));
         }
     }
 }
 
-static void test_fifteen_readings_are_too_few(void)
-{
-    for (int k = 0; k < 16; k++) {
-        TEST_ASSERT_FALSE(rest_still(&rest, HZ_100));
-        add(0, 0, 256);
-    }
-    TEST_ASSERT_TRUE(rest_still(&rest, HZ_100));
-}
-
-/* Readings centre + size, centre - size by turns: the variance is size^2; a line through them rises by 12 size / 2n. */
+/* Readings centre + size, centre - size by turns: the variance is size^2, and both halves have the same mean. */
 static bool still_with(int axis, int size, uint16_t rate_dhz)
 {
     rest_start(&rest);
-    for (int k = 0; k < 64; k++) {
+    for (int k = 0; k < N; k++) {
         int16_t lsb[3] = { 0, 0, 256 };
         lsb[axis] = (int16_t)(lsb[axis] + ((k & 1) != 0 ? size : -size));
-        rest_add(&rest, lsb);
+        (void)rest_add(&rest, lsb);
     }
     return rest_still(&rest, rate_dhz);
 }
 
-/* Limits by definition: 31.25 x 0.02 x 100 = 62.5 LSB^2 and 105.5 on z; at 800 Hz 500 and 843.8. */
+/* Below 62.5 x 0.02 x rate: 125 LSB^2 at 100 Hz (11^2 = 121, 12^2 = 144), 1,000 at 800 Hz (31^2 = 961, 32^2 = 1024). */
 static void test_the_limits_of_the_variance(void)
 {
     for (int axis = 0; axis < 3; axis++) {
-        TEST_ASSERT_TRUE(still_with(axis, axis == 2 ? 10 : 7, HZ_100));
-        TEST_ASSERT_FALSE(still_with(axis, axis == 2 ? 11 : 8, HZ_100));
-        TEST_ASSERT_TRUE(still_with(axis, axis == 2 ? 29 : 22, HZ_800));
-        TEST_ASSERT_FALSE(still_with(axis, axis == 2 ? 30 : 23, HZ_800));
+        TEST_ASSERT_TRUE(still_with(axis, 11, HZ_100));
+        TEST_ASSERT_FALSE(still_with(axis, 12, HZ_100));
+        TEST_ASSERT_TRUE(still_with(axis, 31, HZ_800));
+        TEST_ASSERT_FALSE(still_with(axis, 32, HZ_800));
     }
 }
 
-/* A step in the middle by h: T = h n^2 / 8, so the line rises by 1.5 h; by 4 LSB at h = 2.67. */
-static void test_a_small_step_in_the_middle_shows(void)
+/* A step in the middle by 2 LSB is the limit of the halves' means, and so is a rise by 4; the next readings beyond. */
+static void test_a_small_drift_shows(void)
 {
     for (int axis = 0; axis < 3; axis++) {
         for (int step = -3; step <= 3; step++) {
             rest_start(&rest);
-            for (int k = 0; k < 128; k++) {
+            for (int k = 0; k < N; k++) {
                 int16_t lsb[3] = { 0, 0, 256 };
-                lsb[axis] = (int16_t)(lsb[axis] + (k >= 64 ? step : 0));
-                rest_add(&rest, lsb);
+                lsb[axis] = (int16_t)(lsb[axis] + (k >= N / 2 ? step : 0));
+                (void)rest_add(&rest, lsb);
             }
-            TEST_ASSERT_EQUAL(abs(step) < 3, rest_still(&rest, HZ_100));
+            TEST_ASSERT_EQUAL(abs(step) <= 2, rest_still(&rest, HZ_100));
+        }
+        for (int rise = 3; rise <= 5; rise++) {
+            rest_start(&rest);
+            for (int k = 0; k < N; k++) {
+                int16_t lsb[3] = { 0, 0, 256 };
+                lsb[axis] = (int16_t)(lsb[axis] - k * (rise + 1) / N); /* 0 to -rise */
+                (void)rest_add(&rest, lsb);
+            }
+            TEST_ASSERT_EQUAL(rise < 4, rest_still(&rest, HZ_100));
         }
     }
 }
 
-/* Share of 2,000 rests with white noise and a steady turning that are called still; n readings. */
-static double still_share(uint16_t rate_dhz, double variance_lsb2, double rise_lsb, int n)
+/* Share of 2,000 rests with white noise and a steady turning that are called still. */
+static double still_share(uint16_t rate_dhz, double variance_lsb2, double rise_lsb)
 {
     test_random_t random;
     random_seed(&random, 72);
     int still = 0;
     for (int run = 0; run < 2000; run++) {
+        bool last = false;
         rest_start(&rest);
-        for (int k = 0; k < n; k++) {
+        for (int k = 0; k < N && !last; k++) {
             int16_t lsb[3];
             for (int axis = 0; axis < 3; axis++) {
                 double sigma = sqrt(variance_lsb2 * (axis == 2 ? 1.7 : 1.0));
-                lsb[axis] = as_sample((axis == 2 ? 256.0 : rise_lsb * k / n) + sigma * random_normal(&random));
+                lsb[axis] = as_sample((axis == 2 ? 256.0 : rise_lsb * k / N) + sigma * random_normal(&random));
             }
-            rest_add(&rest, lsb);
+            last = rest_add(&rest, lsb);
         }
         still += rest_still(&rest, rate_dhz);
     }
-    printf("%5.1f Hz, %5.1f LSB^2, rise %4.1f LSB, %3d readings: still in %.2f %%\n", rate_dhz / 10.0, variance_lsb2,
-           rise_lsb, n, still / 20.0);
+    printf("%5.1f Hz, %5.1f LSB^2, rise %4.1f LSB: still in %.2f %%\n", rate_dhz / 10.0, variance_lsb2, rise_lsb,
+           still / 20.0);
     return still / 2000.0;
 }
 
 /*
- * The rise of white noise has the deviation s = sqrt(12 V / n). A desk at 100 Hz, n = 100: V = 2 (z 3.4), s = 0.49 and
- * 0.64 LSB: 4 LSB are 6 s. A powered airframe, V = 33 (its z is no noisier than x; 56 here), n = 256: s = 1.24, 1.62,
- * so P(still) = 0.9988^2 x 0.986 = 0.984. Turning that makes 6 LSB: 2 LSB beyond the limit, 4 s: never.
+ * The means of the halves differ by s = sqrt(V / 64) rms. A desk at 100 Hz, V = 2 (z 3.4): s = 0.18 and 0.23 LSB, 2 LSB
+ * are 8 s. A powered airframe, V = 33 (z 56): s = 0.72, 0.94; P(still) = 0.9945^2 x 0.9666 = 0.956. At 800 Hz a sensor
+ * alone has V = 16, z 27: s = 0.5, 0.65, 0.99994^2 x 0.9979 = 0.998. Turning by 6 LSB makes 3 of the 2 LSB: on two
+ * axes with s = 0.18 never still. V = 160: above the limit by 35, whose deviation is 160 sqrt(2 / 256) = 14; on z more.
  */
 static void test_desk_and_airframe_are_still_and_slow_turning_is_not(void)
 {
-    TEST_ASSERT_TRUE(still_share(HZ_100, 2.0, 0.0, 100) == 1.0);
-    TEST_ASSERT_TRUE(still_share(HZ_800, 16.0, 0.0, 512) == 1.0);
-    TEST_ASSERT_DOUBLE_WITHIN(0.012, 0.984, still_share(HZ_100, 33.0, 0.0, 256));
-    TEST_ASSERT_TRUE(still_share(HZ_100, 2.0, 6.0, 100) <= 0.001);
-    TEST_ASSERT_TRUE(still_share(HZ_100, 90.0, 0.0, 256) <= 0.001);
+    TEST_ASSERT_TRUE(still_share(HZ_100, 2.0, 0.0) == 1.0);
+    TEST_ASSERT_DOUBLE_WITHIN(0.004, 0.998, still_share(HZ_800, 16.0, 0.0));
+    TEST_ASSERT_DOUBLE_WITHIN(0.018, 0.956, still_share(HZ_100, 33.0, 0.0));
+    TEST_ASSERT_TRUE(still_share(HZ_100, 2.0, 6.0) <= 0.001);
+    TEST_ASSERT_TRUE(still_share(HZ_100, 160.0, 0.0) <= 0.002);
 }
 
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_nothing_read_is_nothing);
+    RUN_TEST(test_it_is_full_with_256_readings);
     RUN_TEST(test_mean_and_variance_against_exact_sums);
     RUN_TEST(test_the_largest_sums_do_not_wrap);
-    RUN_TEST(test_no_more_than_the_most_readings_count);
-    RUN_TEST(test_a_reading_far_away_is_no_rest);
+    RUN_TEST(test_a_difference_fits_eight_bits_or_it_has_moved);
     RUN_TEST(test_any_reading_is_safe);
-    RUN_TEST(test_fifteen_readings_are_too_few);
     RUN_TEST(test_the_limits_of_the_variance);
-    RUN_TEST(test_a_small_step_in_the_middle_shows);
+    RUN_TEST(test_a_small_drift_shows);
     RUN_TEST(test_desk_and_airframe_are_still_and_slow_turning_is_not);
     return UNITY_END();
 }

@@ -10,6 +10,7 @@
 #include "counters.h"
 #include "filter_any.h"
 #include "pipeline.h"
+#include "settings.h"
 #include "support_board.h"
 #include "unity.h"
 
@@ -32,6 +33,8 @@ static void begin(uint8_t kind)
     counters_start();
     coast_wait(0);
     pipeline_reset();
+    settings_defaults();
+    pipeline_calibrate(&settings.calibration);
     pipeline_start(kind, 1000, 16);
     pipeline_finish();
 }

@@ -11,7 +11,7 @@ $(CHK)/avr/%.o: %.c Makefile mk/check.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(filter-out -flto -Werror,$(AVR_FLAGS)) -fstack-usage -MMD -MP -c $< -o $@ 2> $@.log || { cat $@.log >&2; exit 1; }
 
-CHECKS := compile tidy int16 cppcheck includes format lengths symbols memory frames painted size seam deviations breakages
+CHECKS := compile tidy int16 cppcheck includes format lengths symbols memory frames painted size seam deviations breakages texts
 
 ## check: every rule of the tree, and a planted fault for each that must be found (8 minutes; PLANTED=20: a sample of them)
 check:
@@ -72,10 +72,21 @@ check-deviations: check-objects
 check-breakages:
 	@WARNINGS="$(WARNINGS)" UNITY_DIR="$(UNITY_DIR)" python3 tools/check_breakages.py
 
+check-texts:
+	@mkdir -p $(CHK)
+	@python3 tools/pack_texts.py $(CHK)/reply_packed.h
+	@cmp -s $(CHK)/reply_packed.h firmware/reply_packed.h || \
+	    { echo 'texts: firmware/reply_texts.h is not what firmware/reply_packed.h was made of: make texts' >&2; exit 1; }
+	@echo 'texts: packed as they are written'
+
 check-planted:
 	@python3 host_tests/test_planted.py
 	@python3 tools/planted.py $(ONLY)
 
-.PHONY: check check-built check-objects check-planted $(CHECKS:%=check-%)
+## texts: pack the firmware's words anew after a change of firmware/reply_texts.h
+texts:
+	@python3 tools/pack_texts.py firmware/reply_packed.h
+
+.PHONY: texts check check-built check-objects check-planted $(CHECKS:%=check-%)
 
 -include $(shell find $(CHK) -name '*.d' 2>/dev/null)

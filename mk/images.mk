@@ -2,15 +2,24 @@
 
 # Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter_list.h; the firmware starts with
 # the first. The first set is what is built and flashed when nothing is said; together they hold every filter.
-FILTER_SETS          := everyday robust synthesised
-FILTERS_everyday     := adaptive kf sprf synth
-FILTERS_robust       := sprf kf lrf soft sprf_paper shrf pbf af
-FILTERS_synthesised  := kf synth synth_opt synth_plus kf3
+FILTER_SETS          := everyday robust soft mixture published synthesised schedule linear acceleration
+FILTERS_everyday     := adaptive
+FILTERS_robust       := sprf kf
+FILTERS_soft         := soft
+FILTERS_mixture      := shrf pbf af
+FILTERS_published    := sprf_paper
+FILTERS_synthesised  := synth synth_plus
+FILTERS_schedule     := synth_opt
+FILTERS_linear       := lrf kf
+FILTERS_acceleration := kf3
 FILTERS              := $(firstword $(FILTER_SETS))
+
+# images with one of these have no room for cal6; the calibration that another image saves is theirs too
+WITHOUT_CAL6   := soft shrf
 
 CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))
 IMAGE_FILTERS   = $(FILTERS_everyday)
-FILTER_FLAG     = '-DFILTER_LIST(X)=$(foreach f,$(IMAGE_FILTERS),X($(f)))'
+FILTER_FLAG     = '-DFILTER_LIST(X)=$(foreach f,$(IMAGE_FILTERS),X($(f)))' $(if $(filter $(WITHOUT_CAL6),$(IMAGE_FILTERS)),-DCALIBRATE_SIX=0)
 
 # the image that holds a filter: the chosen one if it does, else the first set's that does
 image_with = $(or $(firstword $(if $(filter $(1),$(CHOSEN_FILTERS)),$(U)/firmware.elf) \
@@ -51,9 +60,9 @@ $(foreach s,$(FILTER_SETS),$(eval $(call IMAGE,$(s),$(FILTERS_$(s)))))
 $(eval $(call IMAGE,hang,$(FILTERS_everyday),-DHANG_TEST=1))
 # the clock starts shortly before its wrap; at ten digits
 $(eval $(call IMAGE,wrap,$(FILTERS_everyday),-DHAL_TIME_START_US=4289967296ul))
-$(eval $(call IMAGE,late,$(FILTERS_robust),-DHAL_TIME_START_US=4200000000ul))
+$(eval $(call IMAGE,late,$(FILTERS_mixture),-DHAL_TIME_START_US=4200000000ul))
 # told of a slower processor: its sample period is short for a filter
-$(eval $(call IMAGE,tight,$(FILTERS_robust),-DHAL_CPU_HZ=14000000ul))
+$(eval $(call IMAGE,tight,$(FILTERS_mixture),-DHAL_CPU_HZ=15000000ul))
 
 # beside the first, its readings are believed unseen: the difference is what checking them costs
 PLAIN_OBJ := $(AVR_SRC:%.c=$(U)/plain/%.o) $(U)/plain/host_tests/avr/plain_read.o

@@ -23,6 +23,7 @@ enum {
     SAMPLES_MASK = 0x1F,
     FIFO_FILLED = 32,   /* p. 21: "until it is full (32 samples)" */
     EVENTS_MASK = 0x7C, /* taps, activity, inactivity, free fall: cleared by reading INT_SOURCE (p. 26) */
+    SETTLED = 5,        /* samples until the force is all there */
     OFFSET_LSB = 4,     /* 15.6 mg / 3.9 mg (p. 24) */
     RATE_CODE_1600 = 0x0E
 };
@@ -361,11 +362,18 @@ static int32_t clamp(int32_t value, int32_t low, int32_t high)
     return value > high ? high : value;
 }
 
-/* What this part makes of an acceleration, in full resolution before its offset registers; rounded half up. */
-static int32_t sense(const adxl345_part_t *part, size_t axis, int16_t full, bool self_test)
+/*
+ * What this part makes of an acceleration, in full resolution before its offset registers; rounded half up. The force
+ * of the self-test settles over four samples (p. 22).
+ */
+static int32_t sense(const adxl345_model_t *m, size_t axis, int16_t full)
 {
-    int32_t value = (int32_t)floor(full * part->gain[axis] + 0.5) + part->offset_lsb[axis];
-    return self_test ? value + part->self_test_lsb[axis] : value;
+    int32_t value = (int32_t)floor(full * m->part.gain[axis] + 0.5) + m->part.offset_lsb[axis];
+    if ((m->reg[ADXL345_DATA_FORMAT] & ADXL345_FORMAT_SELF_TEST) != 0) {
+        int32_t samples = m->ticks_in_measure < SETTLED ? (int32_t)m->ticks_in_measure : SETTLED;
+        value += m->part.self_test_lsb[axis] * samples / SETTLED;
+    }
+    return value;
 }
 
 void adxl345_model_convert(const adxl345_model_t *m, const int16_t full[3], int16_t lsb[3])
@@ -379,7 +387,7 @@ void adxl345_model_convert(const adxl345_model_t *m, const int16_t full[3], int1
     /* left justified: the sign bit is bit 15 (p. 27); 10 bits, and one more per range step in full resolution */
     int32_t justify = (format & BIT_JUSTIFY) ? 32768 / rail : 1;
     for (size_t axis = 0; axis < 3; axis++) {
-        int32_t value = sense(&m->part, axis, full[axis], (format & ADXL345_FORMAT_SELF_TEST) != 0);
+        int32_t value = sense(m, axis, full[axis]);
         value += (int32_t)(int8_t)m->reg[ADXL345_OFSX + axis] * OFFSET_LSB;
         value = clamp(divide_down(value, divisor), -rail, rail - 1);
         if (coarse) {

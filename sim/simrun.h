@@ -24,6 +24,8 @@
 /* samples that the judge can look back at: what is older decides nothing, and a day has 8.6 million at 100 Hz */
 enum { SERVED_KEPT = 8192 };
 
+enum { PIN_STRAP = 4 }; /* of port D */
+
 /* --- exit statuses (docs: simrun --help) --- */
 typedef enum {
     EXIT_OK = 0,
@@ -50,7 +52,7 @@ typedef struct {
 
 typedef struct {
     const char *fw, *in, *out, *served, *altered, *eeprom, *stats, *profile, *vcd, *bootloader, *filter, *span;
-    bool loop, pty, blank, judge;
+    bool loop, pty, blank, judge, strap;
     double ppm, max_ms; /* max_ms 0: none */
     adxl345_part_t part;
     unsigned expect_resets, gdb_port;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "avr_ioport.h"
 #include "sim_avr.h"
 #include "sim_core.h"
 #include "sim_elf.h"
@@ -198,6 +199,10 @@ void machine_start(void)
     stack_paint();
     if (options.bootloader != NULL) {
         load_boot_loader();
+    }
+    if (options.strap) {
+        avr_ioport_external_t ground = { .name = 'D', .mask = 1u << PIN_STRAP, .value = 0 };
+        avr_ioctl(mcu, AVR_IOCTL_IOPORT_SET_EXTERNAL('D'), &ground);
     }
     plain_run = mcu->run;
     if (options.gdb_port != 0) {

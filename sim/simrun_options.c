@@ -21,6 +21,7 @@ enum option_code {
     OPTION_VCD,
     OPTION_BOOTLOADER,
     OPTION_BLANK,
+    OPTION_STRAP,
     OPTION_LOOP,
     OPTION_PTY,
     OPTION_PPM,
@@ -50,6 +51,7 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "vcd", required_argument, NULL, OPTION_VCD },
                                        { "bootloader", required_argument, NULL, OPTION_BOOTLOADER },
                                        { "blank", no_argument, NULL, OPTION_BLANK },
+                                       { "strap", no_argument, NULL, OPTION_STRAP },
                                        { "loop", no_argument, NULL, OPTION_LOOP },
                                        { "pty", no_argument, NULL, OPTION_PTY },
                                        { "ppm", required_argument, NULL, OPTION_PPM },
@@ -99,6 +101,7 @@ static const char help_text[] =
     "                     them; and no t_us steps back. Counted without it too: rows_judged, rows_wrong, rows_stale,\n"
     "                     rows_twice, t_us_steps_back in --stats, and on stderr\n"
     "  --clock-start US   what the firmware's clock reads when Timer1 begins to count (0)\n"
+    "  --strap            D4 is at ground: the firmware starts with default settings\n"
     "  --fault WHEN:KIND[:PARAM][:MS]\n"
     "    WHEN   12.3ms | xfer:N.K (byte K of I2C transfer N, the address is byte 1) | pc:SYMBOL[#N] (Nth time it is "
     "reached)\n"
@@ -292,6 +295,9 @@ static void take(int code, const char *name, const char *argument)
         break;
     case OPTION_BLANK:
         options.blank = true;
+        break;
+    case OPTION_STRAP:
+        options.strap = true;
         break;
     case OPTION_JUDGE:
         options.judge = true;

@@ -3,6 +3,7 @@
  * for, how many there were, and what each leaves for the parts around the core to do.
  */
 #include "avr_extint.h"
+#include "avr_ioport.h"
 #include "simrun.h"
 
 enum {
@@ -35,6 +36,12 @@ static void on_reset(avr_t *avr)
     reset_happened = true;
 }
 
+/* simavr forgets what the strap's pin reads, but not what is on its line: a pull-up would tell it nothing new. */
+static void forget_strap(void)
+{
+    avr_io_getirq(mcu, AVR_IOCTL_IOPORT_GETIRQ('D'), PIN_STRAP)->value = 0;
+}
+
 /* What a reset of the MCU leaves to us. */
 static void set_up_again(bool power_lost)
 {
@@ -47,6 +54,7 @@ static void set_up_again(bool power_lost)
     pass_reset();
     faults_on_reset();
     eeprom_reset(power_lost);
+    forget_strap();
     sensor_show_pin();
     machine_reschedule();
 }

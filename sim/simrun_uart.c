@@ -99,8 +99,9 @@ static void on_refusal(const char *setting)
 
 static void on_comment(void)
 {
-    if (strncmp(line, "# refused: ", 11) == 0) {
-        on_refusal(line + 11);
+    const char *words = strncmp(line, "# refused ", 10) == 0 ? strstr(line, ": ") : NULL;
+    if (words != NULL) {
+        on_refusal(words + 2);
     }
     if (!banner_seen) {
         begin_typing();

@@ -9,6 +9,7 @@ import subprocess
 import sys
 
 import bench_where
+import images
 from bench_firmware import OUT, SIMRUN, Fault, measure_rest, measure_sample, run
 
 JSON = pathlib.Path("build/bench.json")
@@ -95,8 +96,8 @@ def measure(images):
 def measure_where():
     """The table of where the dearest filter's cycles go."""
     profile = OUT / "bench_where.csv"
-    run([SIMRUN, "--fw", OUT / "robust/firmware.elf", "--in", f"sim/streams/{bench_where.STREAM}.csv", "--out", OUT / "bench_where.txt", "--filter",
-         bench_where.FILTER, "--profile", profile])
+    run([SIMRUN, "--fw", images.image_with(bench_where.FILTER), "--in", f"sim/streams/{bench_where.STREAM}.csv",
+         "--out", OUT / "bench_where.txt", "--filter", bench_where.FILTER, "--profile", profile])
     try:
         return bench_where.page_lines(bench_where.parts(*bench_where.read_profile(profile)))
     except LookupError as problem:

@@ -24,7 +24,7 @@ STOPPED = 8          # simrun: the program slept with interrupts off
 BLOCK = 200          # VECTORS_BLOCK of vectors.h
 SHOWN = 3            # differences shown in detail
 FIRMWARE = [f"firmware/{name}.c" for name in ("format", "text", "rows", "pipeline", "pipeline_change", "pass", "settings", "counters", "coast",
-                                              "silence")]
+                                              "silence", "parameters")]
 HEADERS = ["lib", "firmware", "hal", "host_tests"]
 SANITIZE = "-O1 -fsanitize=address,undefined -fno-sanitize-recover=all"
 # as the planted differences: name, file under lib, text, broken text, build, paths that must be named
@@ -129,7 +129,7 @@ def sources(chip, lib):
                 "host_tests", HERE]
     files = sorted(pathlib.Path(HERE).glob("vectors*.c"))
     files += [f"{HERE}/crc32.c", f"{HERE}/output.c", f"{HERE}/output_{'chip' if chip else 'pc'}.c", "host_tests/support_filters.c"]
-    files += FIRMWARE + sorted(pathlib.Path(lib).glob("filters/src/*.c")) + [f"{lib}/tilt/src/tilt.c"]
+    files += FIRMWARE + sorted(pathlib.Path(lib).glob("filters/src/*.c")) + [f"{lib}/tilt/src/tilt.c", f"{lib}/tilt/src/calibration.c"]
     return [f"-I{folder}" for folder in includes] + [str(file) for file in files]
 
 

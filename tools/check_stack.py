@@ -54,8 +54,10 @@ def check_frames():
 
 def commands(filters):
     """Everything one can type, the longest replies, and each filter of the image at work on outliers."""
-    typed = ["help", "status", *SETTINGS, *(f"{name} nonsense" for name in SETTINGS), "rate 123", "nonsense", "x" * 40, "mode plot", "help",
-             "status", "mode csv", "rate 400", "rate 12.5", "rate 100", "range 2", "range 16", "every 3", "every 1", "stop", "status", "go"]
+    typed = ["help", "status", *SETTINGS, *(f"{name} nonsense" for name in SETTINGS), "rate 123", "nonsense", "x" * 48, "mode plot", "help",
+             "status", "mode csv", "rate 400", "rate 12.5", "rate 100", "range 2", "range 16", "every 3", "every 1", "stop", "status",
+             "go", "settings", "odr", "level 0.5 0.5 0.7", "axes -yxz", "noise", "nonsense 1", "cal6", "cal6 stop", "stop", "save",
+             "load", "go", "defaults"]
     typed += [f"filter {name}" for name in filters] + ["status"]
     return [word for at, text in enumerate(typed) for word in ("--cmd", f"{1000 + 400 * at}:{text}")], 1000 + 400 * len(typed)
 
@@ -73,7 +75,7 @@ def check_painted(elf):
         return 1
     measured = json.loads(stats.read_text(encoding="utf-8"))
     said = RUN.with_suffix(".csv").read_text(encoding="ascii", errors="replace")
-    if not all(words in said for words in ("# unknown command", "# refused: line too long", "lines refused", "# fault")):
+    if not all(words in said for words in ("# refused 1: unknown command", "# refused 2: line too long", "lines refused", "# fault")):
         raise Stop(f"the painted run did not get the replies it is for: {RUN.with_suffix('.csv')}")
     used, limit = measured["ram_used_bytes"], budget("ram_and_stack_bytes")
     found = []

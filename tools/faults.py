@@ -26,6 +26,7 @@ import coverage
 import faults_commands
 import faults_judge
 import faults_runs
+import images
 from faults_runs import (KINDS, LONG, MOVING, NO_LIMIT, OF, OTHER_RATES, REST, TYPED, Fault, SIMRUN, attempt, flagged_share, moments, need, phases,
                          rated, roll_differences, seeded_pairs, simulate, write_whole)
 
@@ -309,7 +310,7 @@ def main():
     began = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="faults-programs-") as kept:
         # what is built anew meanwhile does not disturb
-        firmware, options.fw = options.fw, shutil.copy(options.fw, kept)
+        firmware, options.fw = options.fw, images.copied(options.fw, kept)
         faults_runs.SIMRUN = shutil.copy(SIMRUN, kept)
         if not simulate(options.fw, None, max_ms=1000)[2]["rows"]:
             raise Fault(f"{firmware} gives no row in a second: is it the firmware?")

@@ -17,6 +17,7 @@ import subprocess
 import sys
 import time
 
+import images
 from faults_judge import NO_LIMIT, PASS_CYCLES
 from faults_runs import BUS_MS, KINDS, REST, RESET_MS, SIMRUN, STATUS_WORDS, need, write_whole
 
@@ -65,8 +66,8 @@ def faults_of(every_s, half_ms, seed):
 
 
 def simrun(firmware, filter_name, ms, stats, *more):
-    command = [SIMRUN, "--fw", firmware, "--in", REST, "--loop", "--out", "/dev/null", "--max-ms", f"{ms:.0f}", "--filter", filter_name,
-               "--stats", stats, *more]
+    command = [SIMRUN, "--fw", images.image_for(firmware, filter_name), "--in", REST, "--loop", "--out", "/dev/null",
+               "--max-ms", f"{ms:.0f}", "--filter", filter_name, "--stats", stats, *more]
     return subprocess.Popen([str(word) for word in command], stderr=subprocess.PIPE, text=True)
 
 

@@ -208,6 +208,17 @@ static inline void hal_led_set(bool on)
     }
 }
 
+/* hal_strap.h: D4 is PD4 */
+static inline void hal_strap_init(void)
+{
+    PORTD |= _BV(PD4);
+}
+
+static inline bool hal_strap_low(void)
+{
+    return (PIND & _BV(PD4)) == 0;
+}
+
 /* flash.h */
 #define FLASH PROGMEM
 #define FLASH_TEXT(words) PSTR(words)

@@ -49,6 +49,9 @@ void hal_wake_at(uint32_t t_us)
     uint16_t count = (uint16_t)((t_us - HAL_TIME_START_US) * COUNTS_PER_US);
     hal_irq_state_t state = hal_irq_save(); /* the timer's 16-bit registers share a byte with the handlers' reads */
     OCR1B = count;
+    if ((uint16_t)(TCNT1 - count) < HAL_WAKE_LATE_US * COUNTS_PER_US) {
+        hal_wake();
+    }
     hal_irq_restore(state);
 }
 

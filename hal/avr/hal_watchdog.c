@@ -4,11 +4,12 @@
  */
 #include "hal_watchdog.h"
 
+#include "hal_pointer.h"
 #include "hal_time.h"
 
 #define MARK 0x7117A117ul
 
-static struct {
+static struct breadcrumb {
     uint32_t mark;
     volatile uint8_t unfed_ticks;
     uint8_t note;
@@ -29,13 +30,15 @@ void hal_watchdog_early(void)
 
 void hal_watchdog_start(void)
 {
-    bool intact = breadcrumb.mark == MARK;
-    cause = (uint8_t)hal_reset_classify(mcusr_at_start, intact, breadcrumb.unfed_ticks);
-    note_at_start = (intact && cause != HAL_RESET_POWER_ON) ? breadcrumb.note : 0;
-    breadcrumb.mark = MARK;
-    breadcrumb.unfed_ticks = 0;
-    breadcrumb.note = 0;
-    breadcrumb.repeats = hal_reset_count((hal_reset_t)cause, intact, breadcrumb.repeats);
+    struct breadcrumb *b = &breadcrumb;
+    HAL_POINTER(b); /* an access is half as long */
+    bool intact = b->mark == MARK;
+    cause = (uint8_t)hal_reset_classify(mcusr_at_start, intact, b->unfed_ticks);
+    note_at_start = (intact && cause != HAL_RESET_POWER_ON) ? b->note : 0;
+    b->mark = MARK;
+    b->unfed_ticks = 0;
+    b->note = 0;
+    b->repeats = hal_reset_count((hal_reset_t)cause, intact, b->repeats);
     wdt_enable(WDTO_250MS);
 }
 

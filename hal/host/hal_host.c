@@ -7,6 +7,7 @@
 #include "hal_irq.h"
 #include "hal_led.h"
 #include "hal_sleep.h"
+#include "hal_strap.h"
 #include "hal_time.h"
 #include "hal_watchdog.h"
 
@@ -120,6 +121,9 @@ void hal_wake_at(uint32_t t_us)
     uint32_t ahead_us = (t_us - hal_time_us_isr()) % ALARM_RANGE_US;
     uint64_t begun_at = host_now - host_now % CYCLES_PER_US; /* the microsecond that runs */
     alarm_at = begun_at + (uint64_t)(ahead_us == 0 ? ALARM_RANGE_US : ahead_us) * CYCLES_PER_US;
+    if ((hal_time_us_isr() - t_us) % ALARM_RANGE_US < HAL_WAKE_LATE_US) {
+        hal_wake();
+    }
 }
 
 uint8_t hal_time_lap(void)
@@ -251,6 +255,13 @@ uint8_t hal_reset_repeats(void)
 void hal_reset_settled(void)
 {
     repeats = 0;
+}
+
+void hal_strap_init(void) {}
+
+bool hal_strap_low(void)
+{
+    return hal_host_faults.strap_low;
 }
 
 void hal_led_init(void) {}

@@ -38,6 +38,7 @@ typedef struct {
     int next_status;             /* >= 0: a coming bus event reports this status instead, the sensor does not see it */
     unsigned status_skip;        /* bus events to let pass before that one */
     bool tx_stuck;               /* the UART sends no more */
+    bool strap_low;              /* D4 at ground */
     uint8_t lap_step;            /* so much later does each look at hal_time_lap find it: main is slow */
 } hal_host_faults_t;
 

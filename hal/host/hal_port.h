@@ -79,6 +79,10 @@ bool hal_eeprom_ready(void);
 uint8_t hal_eeprom_read(uint16_t address);
 void hal_eeprom_write_start(uint16_t address, uint8_t value);
 
+/* hal_strap.h */
+void hal_strap_init(void);
+bool hal_strap_low(void);
+
 /* hal_led.h */
 void hal_led_init(void);
 void hal_led_set(bool on);

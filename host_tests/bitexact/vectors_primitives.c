@@ -60,6 +60,7 @@ static uint32_t normalised_c(uint32_t v)
 /* X(name, what it gives for the operands a and b) */
 #define PRIMITIVES(X)                                                                  \
     X(fx_mul_u16, fx_mul_u16(A16, B16))                                                \
+    X(fx_product_u16, fx_product_u16(A16, B16))                                        \
     X(fx_mul_uq16, fx_mul_uq16(a, B16))                                                \
     X(fx_mul16_uq16, fx_mul16_uq16(A16, B16))                                          \
     X(fx_mul24_uq16, fx_mul24_uq16(A24, B16))                                          \

@@ -102,6 +102,7 @@ static void begin_rows(uint8_t mode, uint16_t index)
     now_us = vectors_random();
     coast_wait(now_us);
     pipeline_reset();
+    pipeline_calibrate(&settings.calibration);
     pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
     pipeline_finish();
     rows_start();

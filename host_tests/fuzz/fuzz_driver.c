@@ -108,11 +108,11 @@ static void poll(void)
 
 static void run_ms(double ms, bool take)
 {
-    adxl345_sample_t sample;
+    const adxl345_sample_t *sample;
     for (double end_ms = hal_host_now_ms() + ms; hal_host_now_ms() < end_ms;) {
         poll();
-        while (take && adxl345_take(&sample)) {
-            check_sample(&sample);
+        while (take && (sample = adxl345_take()) != NULL) {
+            check_sample(sample);
             hal_wake(); /* a slot is free: the driver may go on, as in firmware/app.c */
         }
         hal_sleep_until_wake();
@@ -146,7 +146,7 @@ static void set_power(bool on)
 
 static void start(uint8_t choice)
 {
-    config = (adxl345_config_t){ rates_dhz[choice % 7], ranges_g[choice / 7 % 4], choice / 28 % 2 != 0 };
+    config = (adxl345_config_t){ rates_dhz[choice % 7], ranges_g[choice / 7 % 4], choice / 28 % 2 != 0, 0 };
     adxl345_start(&config);
     running = true;
 }

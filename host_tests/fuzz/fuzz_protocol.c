@@ -1,4 +1,5 @@
 /* docs/protocol.md once more, for judging: written from the document, sharing nothing with firmware/commands.c. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,9 +8,8 @@
 #include "fuzz.h"
 #include "fuzz_commands.h"
 
-enum { LINE_MAX = 32, ROW_FLAGS = 0x7FF };
+enum { SETTINGS = FUZZ_SETTINGS, LINE_MAX = 40 };
 
-static const char header[] = "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags";
 static const double rates_hz[] = { 12.5, 25, 50, 100, 200, 400, 800 };
 static const double ranges_g[] = { 2, 4, 8, 16 };
 static const double bauds[] = { 9600, 19200, 38400, 57600, 115200, 250000, 500000, 1000000 };
@@ -30,11 +30,41 @@ bool settings_legal(const settings_t *s)
            one_of(s->rate_dhz / 10.0, rates_hz, 7) && one_of(s->range_g, ranges_g, 4) && one_of(s->baud, bauds, 8);
 }
 
+bool settings_equal(const settings_t *a, const settings_t *b)
+{
+    for (unsigned i = 0; i < SETTINGS_PARAMETERS_MAX; i++) {
+        if ((a->own >> i & 1u) && a->parameters[i] != b->parameters[i]) {
+            return false;
+        }
+    }
+    const calibration_t *c = &a->calibration;
+    const calibration_t *d = &b->calibration;
+    if (memcmp(c->offset_lsb_q4, d->offset_lsb_q4, 6) != 0 ||
+        memcmp(c->scale_lsb_per_g_uq6, d->scale_lsb_per_g_uq6, 6) != 0 || memcmp(c->axes, d->axes, 3) != 0 ||
+        memcmp(c->level_q14, d->level_q14, 6) != 0) {
+        return false;
+    }
+    return a->own == b->own && a->baud == b->baud && a->rate_dhz == b->rate_dhz && a->every == b->every &&
+           a->range_g == b->range_g && a->mode == b->mode && a->address == b->address && a->filter == b->filter;
+}
+
+static settings_t defaults(void)
+{
+    settings_t s = { .baud = 115200, .rate_dhz = 1000, .every = 1, .range_g = 16, .mode = MODE_CSV };
+    s.filter = (uint8_t)filter_any_find("adaptive");
+    for (int8_t i = 0; i < 3; i++) {
+        s.calibration.scale_lsb_per_g_uq6[i] = 256 * 64;
+        s.calibration.axes[i] = (int8_t)(i + 1);
+    }
+    s.calibration.level_q14[2] = 16384;
+    return s;
+}
+
 void expected_begin(expected_t *e)
 {
     memset(e, 0, sizeof *e);
-    e->settings = (settings_t){ .baud = 115200, .rate_dhz = 1000, .every = 1, .range_g = 16, .mode = MODE_CSV };
-    e->settings.filter = (uint8_t)filter_any_find("adaptive");
+    e->settings = defaults();
+    e->sampling = true;
 }
 
 static void expect(expected_t *e, const char *reply)
@@ -43,17 +73,31 @@ static void expect(expected_t *e, const char *reply)
     snprintf(e->reply[e->count++], REPLY_TEXT, "%s", reply);
 }
 
-/* Up to seven digits, in tenths with at most one decimal. */
-static bool number(const char *text, bool tenths, double *value)
+/*
+ * A sign, digits, and where there are fraction bits perhaps a point and one to four digits: below 2^31 without the
+ * point in units of the last fraction bit, and taken to the nearest of these.
+ */
+bool expected_number(const char *text, unsigned fraction_bits, double *value)
 {
-    size_t digits = strspn(text, "0123456789");
-    const char *rest = text + digits;
-    *value = strtod(text, NULL);
-    if (tenths && rest[0] == '.' && digits != 0) {
+    double sign = *text == '-' ? -1.0 : 1.0;
+    const char *first = text + (*text == '-');
+    size_t digits = strspn(first, "0123456789");
+    const char *rest = first + digits;
+    double one = (double)(1ul << fraction_bits);
+    double written = strtod(first, NULL);
+    double without_point = written;
+    if (rest[0] == '.' && fraction_bits != 0) {
         size_t decimals = strspn(rest + 1, "0123456789");
-        return decimals == 1 && rest[2] == '\0' && digits + decimals <= 7;
+        if (decimals < 1 || decimals > 4) {
+            return false;
+        }
+        rest += 1 + decimals;
+        for (; decimals != 0; decimals--) {
+            without_point *= 10.0;
+        }
     }
-    return digits != 0 && digits <= 7 && *rest == '\0';
+    *value = sign * floor(written * one + 0.5) / one;
+    return digits != 0 && *rest == '\0' && floor(without_point + 0.5) <= floor(2147483647.0 / one);
 }
 
 static bool set_rate(settings_t *s, double v)
@@ -88,16 +132,24 @@ static bool set(settings_t *s, const char *name, const char *value)
 {
     static const struct {
         const char *name;
-        bool tenths;
+        unsigned fraction_bits;
         bool (*set)(settings_t *s, double v);
-    } numbers[] = { { "rate", true, set_rate },
-                    { "range", false, set_range },
-                    { "every", false, set_every },
-                    { "baud", false, set_baud } };
+    } numbers[] = {
+        { "rate", 6, set_rate }, { "range", 0, set_range }, { "every", 0, set_every }, { "baud", 0, set_baud }
+    };
     double v = 0.0;
     if (strcmp(name, "filter") == 0) {
-        s->filter = (uint8_t)filter_any_find(value);
-        return s->filter < FILTER_KIND_COUNT;
+        uint8_t filter = (uint8_t)filter_any_find(value);
+        s->own = filter == s->filter ? s->own : 0;
+        s->filter = filter;
+        return filter < FILTER_KIND_COUNT;
+    }
+    if (strcmp(name, "axes") == 0) {
+        return expected_axes(s, value);
+    }
+    if (strcmp(name, "address") == 0) {
+        s->address = strcmp(value, "auto") == 0 ? 0 : (uint8_t)strtol(value, NULL, 16);
+        return strcmp(value, "auto") == 0 || strcmp(value, "53") == 0 || strcmp(value, "1d") == 0;
     }
     if (strcmp(name, "mode") == 0) {
         s->mode = strcmp(value, "plot") == 0 ? MODE_PLOT : MODE_CSV;
@@ -105,7 +157,7 @@ static bool set(settings_t *s, const char *name, const char *value)
     }
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         if (strcmp(name, numbers[i].name) == 0) {
-            return number(value, numbers[i].tenths, &v) && numbers[i].set(s, v);
+            return expected_number(value, numbers[i].fraction_bits, &v) && numbers[i].set(s, v);
         }
     }
     fuzz_fail(__FILE__, __LINE__, "no setting %s", name);
@@ -116,7 +168,7 @@ static void expect_setting(expected_t *e, const char *name, const char *value)
     char reply[REPLY_TEXT];
     settings_t after = e->settings;
     if (value != NULL && !set(&after, name, value)) {
-        snprintf(reply, sizeof reply, "# refused: %.8s is one of ", name);
+        snprintf(reply, sizeof reply, "# refused 4: %.8s is one of ", name);
         expect(e, reply);
         return;
     }
@@ -126,31 +178,76 @@ static void expect_setting(expected_t *e, const char *name, const char *value)
     expect(e, reply);
 }
 
+static void expect_lines(expected_t *e, const char *first, unsigned lines)
+{
+    expect(e, first);
+    e->lines_after[e->count - 1] = lines - 1;
+}
+
+/* A saved baud rate may be another than the one in force. */
+static void take_settings(expected_t *e, settings_t taken)
+{
+    e->baud_changed = true;
+    e->settings = taken;
+}
+
+static bool expect_verb(expected_t *e, const char *line)
+{
+    if (strcmp(line, "help") == 0) {
+        expect_lines(e, "# filter: ", SETTINGS + 1);
+    } else if (strcmp(line, "status") == 0) {
+        expect_lines(e, "# state ", 7);
+    } else if (strcmp(line, "settings") == 0) {
+        unsigned parameters = filter_any_descriptor((filter_kind_t)e->settings.filter)->parameter_count;
+        expect_lines(e, "# filter ", SETTINGS + FUZZ_VECTORS + parameters);
+    } else if (strcmp(line, "stop") == 0) {
+        e->sampling = false;
+        expect(e, "# stopped");
+    } else if (strcmp(line, "go") == 0) {
+        e->sampling = true;
+        expect(e, "# going");
+    } else if (strcmp(line, "save") == 0) {
+        e->has_saved = e->has_saved || !e->sampling;
+        e->saved = e->sampling ? e->saved : e->settings;
+        expect(e, e->sampling ? "# refused 6: type stop first" : "# saved");
+    } else if (strcmp(line, "load") == 0) {
+        take_settings(e, e->has_saved ? e->saved : defaults());
+        expect(e, e->has_saved ? "# settings: as saved" : "# settings: defaults, none saved");
+    } else if (strcmp(line, "defaults") == 0) {
+        take_settings(e, defaults());
+        expect(e, "# settings: defaults");
+    } else {
+        return false;
+    }
+    return true;
+}
+
 /* A line without leading and trailing blanks, in lower case. */
 static void expect_line(expected_t *e, char *line)
 {
-    static const char *const names[] = { "filter", "rate", "range", "every", "baud", "mode" };
-    static const char *const verbs[][2] = {
-        { "help", "# filter: " }, { "status", "# state " }, { "stop", "# stopped" }, { "go", "# going" }
+    static const char *const names[SETTINGS] = {
+        "filter", "rate", "range", "every", "baud", "mode", "address", "axes"
     };
-    for (size_t i = 0; i < 4; i++) {
-        if (strcmp(line, verbs[i][0]) == 0) {
-            expect(e, verbs[i][1]);
-            return;
-        }
+    if (expect_verb(e, line)) {
+        return;
     }
     char *value = strchr(line, ' ');
     if (value != NULL) {
         *value++ = '\0';
         value += strspn(value, " ");
     }
-    for (size_t i = 0; i < 6; i++) {
+    for (size_t i = 0; i < SETTINGS; i++) {
         if (strcmp(line, names[i]) == 0) {
             expect_setting(e, names[i], value);
             return;
         }
     }
-    expect(e, "# unknown command (type help)");
+    char reply[REPLY_TEXT];
+    if (expected_vector(&e->settings, line, value, reply) || expected_parameter(&e->settings, line, value, reply)) {
+        expect(e, reply);
+        return;
+    }
+    expect(e, "# refused 1: unknown command (type help)");
 }
 
 static void end_line(expected_t *e)
@@ -162,9 +259,9 @@ static void end_line(expected_t *e)
     }
     e->line[e->length] = '\0';
     if (too_long) {
-        expect(e, "# refused: line too long");
+        expect(e, "# refused 2: line too long");
     } else if (e->garbage) {
-        expect(e, "# refused: characters that no command has");
+        expect(e, "# refused 3: characters that no command has");
     } else if (e->length != 0) {
         expect_line(e, e->line);
     }
@@ -182,157 +279,4 @@ void expected_byte(expected_t *e, uint8_t byte)
         FUZZ_CHECK(e->length < LINE_TYPED_MAX - 1, "a longer line than this target holds");
         e->line[e->length++] = (char)(byte >= 'A' && byte <= 'Z' ? byte + 32 : byte);
     }
-}
-
-/* Columns written as printf would, in their ranges, time going on. */
-static bool csv_row(said_t *s, const char *line)
-{
-    unsigned t_us;
-    unsigned flags;
-    int v[8];
-    if (sscanf(line, "%u,%d,%d,%d,%d,%d,%d,%d,%d,%u", &t_us, &v[0], &v[1], &v[2], &v[3], &v[4], &v[5], &v[6], &v[7],
-               &flags) != 10) {
-        return false;
-    }
-    char again[128];
-    snprintf(again, sizeof again, "%u,%d,%d,%d,%d,%d,%d,%d,%d,%u", t_us, v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7],
-             flags);
-    FUZZ_CHECK(strcmp(again, line) == 0 && strlen(line) <= 66, "a row not as printf writes it: %s", line);
-    for (int i = 0; i < 3; i++) {
-        FUZZ_CHECK(v[i] >= -4096 && v[i] <= 4095 && abs(v[3 + i]) <= 18000, "a value outside its range: %s", line);
-    }
-    FUZZ_CHECK(v[6] >= -17999 && v[6] <= 18000 && abs(v[7]) <= 9000, "an angle outside its range: %s", line);
-    FUZZ_CHECK((flags & ~(unsigned)ROW_FLAGS) == 0, "flags: %s", line);
-    FUZZ_CHECK(!s->has_row || (int32_t)(t_us - s->row_us) > 0, "time stands or goes back: %s after %u", line,
-               (unsigned)s->row_us);
-    s->has_row = true;
-    s->row_us = t_us;
-    return true;
-}
-
-/* `label` and a number with two decimals up to `limit`; returns what follows, NULL when it is not so. */
-static const char *degrees(const char *at, const char *label, double limit)
-{
-    if (at == NULL || strncmp(at, label, strlen(label)) != 0) {
-        return NULL;
-    }
-    at += strlen(label);
-    const char *digits = at + (*at == '-');
-    size_t whole = strspn(digits, "0123456789");
-    if (whole < 1 || whole > 3 || digits[whole] != '.' || strspn(digits + whole + 1, "0123456789") != 2) {
-        return NULL;
-    }
-    double value = strtod(at, NULL);
-    return value >= -limit && value <= limit ? digits + whole + 3 : NULL;
-}
-
-static bool plot_row(const char *line)
-{
-    const char *at = degrees(line, "roll_raw:", 180.0);
-    at = degrees(at, ",roll:", 180.0);
-    at = degrees(at, ",pitch_raw:", 90.0);
-    at = degrees(at, ",pitch:", 90.0);
-    return at != NULL && (strcmp(at, ",gated:0") == 0 || strcmp(at, ",gated:1") == 0);
-}
-
-bool said_line(said_t *s, const char *line)
-{
-    if (csv_row(s, line) || plot_row(line)) {
-        return false;
-    }
-    if (*line == '\0') {
-        FUZZ_CHECK(s->banner_lines == 0, "an empty line after the banner's first");
-        return false;
-    }
-    FUZZ_CHECK(strcmp(line, header) == 0 || strncmp(line, "# ", 2) == 0, "neither row nor reply: '%s'", line);
-    FUZZ_CHECK(strlen(line) < 120, "a reply of %zu bytes: %s", strlen(line), line);
-    for (const char *c = line; *c != '\0'; c++) {
-        FUZZ_CHECK(*c >= ' ' && *c <= '~', "byte 0x%02X in a reply", (unsigned)(uint8_t)*c);
-    }
-    FUZZ_CHECK(s->faults_expected || strncmp(line, "# fault ", 8) != 0, "a fault is told: %s", line);
-    s->banner_lines++;
-    return true;
-}
-
-void said_reply(said_t *s, const char *line)
-{
-    FUZZ_CHECK(s->count < REPLIES_MAX, "more replies than this target holds");
-    if (strncmp(line, "# fault ", 8) != 0) {
-        snprintf(s->reply[s->count++], REPLY_TEXT, "%.79s", line);
-    }
-}
-
-static bool begins(const char *line, const char *words)
-{
-    return strncmp(line, words, strlen(words)) == 0;
-}
-
-/* Lines of a reply after its first: those that must follow, and whether one more may. */
-static unsigned lines_after(const char *first, const char **optional)
-{
-    *optional = NULL;
-    if (begins(first, "# rate ") || begins(first, "# baud ") || begins(first, "# filter ")) {
-        *optional = "# every ";
-    } else if (begins(first, "# mode csv")) {
-        *optional = header;
-    }
-    return begins(first, "# filter: ") ? 6 : (begins(first, "# state ") ? 6 : 0);
-}
-
-/* Whether reply line i, if there is one, begins so. */
-static bool reply_begins(const said_t *s, unsigned i, const char *words)
-{
-    return i < s->count && begins(s->reply[i], words);
-}
-
-/*
- * From reply line i and expectation j on. A second line of `rate`, `baud` and `filter` comes only where line or time
- * force another decimation, and looks like the reply to `every`: both readings are tried, the longer first.
- */
-static bool matches(const said_t *s, unsigned i, const expected_t *e, unsigned j)
-{
-    for (; j < e->count; j++) {
-        const char *optional;
-        if (!reply_begins(s, i, e->reply[j])) {
-            return false;
-        }
-        i += 1 + lines_after(s->reply[i], &optional);
-        if (optional == NULL || !reply_begins(s, i, optional)) {
-            continue;
-        }
-        bool as_own_reply = j + 1 < e->count && begins(s->reply[i], e->reply[j + 1]);
-        if (!as_own_reply) {
-            i++;
-        } else if (matches(s, i + 1, e, j + 1)) {
-            return true;
-        }
-    }
-    return i == s->count;
-}
-
-void check_replies(const said_t *s, const expected_t *e)
-{
-    if (matches(s, 0, e, 0)) {
-        return;
-    }
-    for (unsigned j = 0; j < e->count; j++) {
-        fprintf(stderr, "expected: %s\n", e->reply[j]);
-    }
-    for (unsigned i = 0; i < s->count; i++) {
-        fprintf(stderr, "got: %s\n", s->reply[i]);
-    }
-    fuzz_fail(__FILE__, __LINE__, "replies are not those expected");
-}
-
-unsigned count_replies(const said_t *s)
-{
-    unsigned count = 0;
-    for (unsigned i = 0; i < s->count; count++) {
-        const char *optional;
-        i += 1 + lines_after(s->reply[i], &optional);
-        while (optional != NULL && i < s->count && begins(s->reply[i], optional)) {
-            i++;
-        }
-    }
-    return count;
 }

@@ -10,6 +10,7 @@
 #include "coast.h"
 #include "filter_any.h"
 #include "pipeline.h"
+#include "settings.h"
 #include "silence.h"
 #include "stream.h"
 
@@ -183,7 +184,9 @@ int64_t libtilt_replay(const libtilt_stream_t *in, int kind, uint16_t rate_dhz, 
                         .row_per_tick = feed.mode == FEED_ROW_PER_TICK };
     silence_end();
     coast_wait(0);
+    settings_defaults();
     pipeline_reset();
+    pipeline_calibrate(&settings.calibration);
     pipeline_start((uint8_t)kind, rate_dhz, range_g);
     pipeline_finish();
     run(&replay, &feed);

@@ -207,8 +207,8 @@ class TestBoard(unittest.TestCase):
             until(lambda: b"# filter kf" in watched.lines())
             self.assertEqual(watched.lines().lstrip(), (BANNER + HEADER + rows(0, 200) + b"# filter kf\n").lstrip())
             self.assertEqual(watched.got("sent"), ["filter kf"])
-            for wrong in ("", "x" * 33, "a\nb", "gr\u00fcn"):
-                with self.assertRaisesRegex(TiltError, "1 to 32 characters"):
+            for wrong in ("", "x" * 41, "a\nb", "gr\u00fcn"):
+                with self.assertRaisesRegex(TiltError, "1 to 40 characters"):
                     watched.board.send(wrong)
 
     def test_unplugged_is_told_and_waited_for(self):

@@ -75,7 +75,7 @@ class TestServed(Case):
     def test_refused_filter_leaves_what_is_in_force_marked(self):
         talk = Talk()
         talk.reply_before = talk.reply
-        talk.reply = lambda command: b"# refused 5: kf takes 12450 of the 11050 cycles that a sample at 800 Hz leaves\n# filter adaptive\n" \
+        talk.reply = lambda command: b"# refused 5: kf takes 12600 of the 11950 cycles that a sample at 800 Hz leaves\n# filter adaptive\n" \
             if command == "filter kf" else talk.reply_before(command)
         with watched(talk) as (server, _):
             page = self.opened(server.address)

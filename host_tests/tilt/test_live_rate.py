@@ -17,7 +17,7 @@ from live_support import Talk, watched  # noqa: E402
 
 RATE_HZ, SECONDS, FIRST_PICTURE_MS = 400, 20, 2000
 COUNT = RATE_HZ * SECONDS
-SIMRUN, FIRMWARE, STREAM = (pathlib.Path(name) for name in ("build/sim/simrun", "build/uno/firmware.elf", "sim/streams/tilt-400hz.csv"))
+SIMRUN, FIRMWARE, STREAM = (pathlib.Path(name) for name in ("build/sim/simrun", "build/uno/robust/firmware.elf", "sim/streams/tilt-400hz.csv"))
 
 
 def left_out():
@@ -51,7 +51,7 @@ class TestRate(unittest.TestCase):
         self.assertEqual((figures[1]["rows"], figures[1]["lost"]), (COUNT - len(missing), len(missing)))
         self.assertGreater(len(missing), 100)
 
-    @unittest.skipUnless(SIMRUN.exists() and FIRMWARE.exists(), "no simrun or firmware built: make build/sim/simrun build/uno/firmware.elf")
+    @unittest.skipUnless(SIMRUN.exists() and FIRMWARE.exists(), "no simrun or firmware built: make build/sim/simrun build/uno/robust/firmware.elf")
     def test_the_firmware_in_the_simulator(self):
         """From the start of the command to the picture, over simrun's pseudo terminal; the filter of the real firmware is switched."""
         with contextlib.ExitStack() as stack:
@@ -68,8 +68,8 @@ class TestRate(unittest.TestCase):
             took_s = time.monotonic() - began
             page.until("tiltLive.figures().rate > 390", 15)
             before = page.figures()
-            page.value("document.querySelector('input[value=sprf]').click()")
-            page.until("tiltLive.figures().filter === 'sprf'")
+            page.value("document.querySelector('input[value=kf]').click()")
+            page.until("tiltLive.figures().filter === 'kf'")
             page.until(f"tiltLive.figures().rows > {before['rows'] + 2 * RATE_HZ}")
             after = page.figures()
         print(f"simrun: picture and filters {took_s:.2f} s after the command was started, {after['rate']:.1f} rows/s")

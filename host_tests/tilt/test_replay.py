@@ -16,6 +16,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
+import images  # noqa: E402
 from tilt import cli, errors, native, stream  # noqa: E402
 from tilt.commands import replay as command  # noqa: E402
 
@@ -121,11 +122,12 @@ class EqualsFirmware(Case):
             self.assert_same(sent, rows[:length], name)
             self.assertGreater(int(((rows["flags"] & CLIPPED) != 0).sum()), 4)  # a shock of 20 ms at least each 3 s
 
-    @unittest.skipUnless(SIMRUN.exists() and pathlib.Path("build/uno/firmware.elf").exists(), "the simulator is not built: make system_images")
+    @unittest.skipUnless(SIMRUN.exists() and all(pathlib.Path(image).exists() for image in images.SET_IMAGES),
+                         "the simulator is not built: make system_images")
     def test_the_chip(self):
         for stem, name in (("outliers-15pct", "adaptive"), ("bad-reads", "sprf"), ("clipping", "kf"), ("through-roll-180", "synth")):
             out = self.path / "chip.csv"
-            subprocess.run([SIMRUN, "--fw", "build/uno/firmware.elf", "--in", f"sim/streams/{stem}.csv", "--out", out, "--filter", name], check=True,
+            subprocess.run([SIMRUN, "--fw", images.image_with(name), "--in", f"sim/streams/{stem}.csv", "--out", out, "--filter", name], check=True,
                            capture_output=True)
             sent = read_rows(out)
             rows = native.replay(stream.read(f"sim/streams/{stem}.csv"), [name], 1000)[name]

@@ -250,9 +250,10 @@ def image_with(name):
 def commands(configuration, rate_hz):
     """(lines to type, what they do not do)."""
     lines = [f"filter {configuration.name}"]
-    told = [f"the firmware has no command that sets {' or '.join(n for n in configuration.fields if n != 'rate_dhz')}: `filter "
-            f"{configuration.name}` runs it with the values of {configuration.name}_defaults; put the initialiser where your program calls "
-            f"{configuration.name}_init", f"{configuration.name} is {image_with(configuration.name)}"]
+    told = [f"these lines leave {' and '.join(n for n in configuration.fields if n != 'rate_dhz')} alone: `filter {configuration.name}` runs "
+            f"it with the values of {configuration.name}_defaults (`settings` lists the parameters that the board takes, with their units); in "
+            f"a program of your own put the initialiser where it calls {configuration.name}_init",
+            f"{configuration.name} is {image_with(configuration.name)}"]
     if rate_hz in FIRMWARE_RATES_HZ:
         lines.insert(0, f"rate {rate_hz:g}")
     else:

@@ -16,7 +16,7 @@ GATHER_S = 0.004  # fewer and longer pieces: 400 bytes at 1000000 baud, a tenth 
 BAUD_REPLY = re.compile(rb"^# baud (\d+)\r?$", re.M)  # the board's last line at the old rate
 TEXT = re.compile(rb"[ -~\r\n]{8,}$")  # by chance, bytes read at a wrong rate may be a shorter one
 UNREADABLE_S = 1.5  # of bytes, none of which makes a line of text
-LONGEST_COMMAND = 32
+LONGEST_COMMAND = 40
 
 
 def identity(device):

@@ -4,6 +4,7 @@ import functools
 import mmap
 import os
 import pathlib
+import re
 import subprocess
 from dataclasses import dataclass
 
@@ -221,6 +222,17 @@ def _in_child(work):
 
 
 # --- one axis ---------------------------------------------------------------------------------------------------------
+
+
+def flashed_by(name):
+    """The command that writes the first image with a filter to a board (mk/images.mk)."""
+    text = (ROOT / "mk/images.mk").read_text(encoding="utf-8")
+    names = re.search(r"^FILTER_SETS *:= *(.*)$", text, re.M).group(1).split()
+    holds = dict(re.findall(r"^FILTERS_(\w+) *:= *(.*)$", text, re.M))
+    holding = [each for each in names if name in holds[each].split()]
+    if not holding:
+        return f"make flash FILTERS={name}"
+    return "make flash" if holding[0] == names[0] else f"make flash FILTERS={holding[0]}"
 
 
 def axis(name, rate_dhz, z_lsb, state, values=None, r_lsb2=None, noisy_axis=False):

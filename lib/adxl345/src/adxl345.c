@@ -25,8 +25,7 @@ enum { DRAIN_LIMIT_MS = 100, BACK_OFF_MAX_MS = 25, RESTS = 40 };
 adxl345_driver_t driver;
 
 /*
- * What a poll does finds the driver through a pointer; what is called from elsewhere too, and small, at its fixed
- * address.
+ * What touches much of the driver finds it through a pointer, what touches little at its fixed address.
  */
 static inline adxl345_driver_t *here(void)
 {
@@ -62,7 +61,7 @@ bool driver_deadline_passed(void)
 }
 
 /* A fault that was there is not mended, but it is not asked for any more. */
-static void stopped(void)
+static HAL_APART void stopped(void)
 {
     driver.fault = ADXL345_FAULT_NONE;
     driver.after_fault = false;
@@ -71,21 +70,22 @@ static void stopped(void)
 
 void driver_fail(adxl345_fault_t fault)
 {
+    adxl345_driver_t *d = here();
     burst_set_mode(BURST_IGNORE);
-    if (driver.stop_wanted) {
+    if (d->stop_wanted) {
         stopped();
-        if (driver.rests != 0) {
-            driver.rests--;
+        if (d->rests != 0) {
+            d->rests--;
             driver_enter(STEP_REST_LATER, BACK_OFF_MAX_MS);
         }
         return;
     }
-    driver.fault = (uint8_t)fault;
-    driver.after_fault = true;
-    driver_enter(STEP_BACK_OFF, driver.back_off_ms);
-    driver.back_off_ms = (uint8_t)(driver.back_off_ms * 2u);
-    if (driver.back_off_ms > BACK_OFF_MAX_MS) {
-        driver.back_off_ms = BACK_OFF_MAX_MS;
+    d->fault = (uint8_t)fault;
+    d->after_fault = true;
+    driver_enter(STEP_BACK_OFF, d->back_off_ms);
+    d->back_off_ms = (uint8_t)(d->back_off_ms * 2u);
+    if (d->back_off_ms > BACK_OFF_MAX_MS) {
+        d->back_off_ms = BACK_OFF_MAX_MS;
     }
 }
 
@@ -108,7 +108,7 @@ static void begin_access(step_t step)
 }
 
 /* The one that was found last: who answers at the other address may be another device. */
-static void rest_sensor(void)
+static HAL_APART void rest_sensor(void)
 {
     driver.address = driver.known;
     begin_access(STEP_STANDBY);
@@ -117,11 +117,17 @@ static void rest_sensor(void)
 /* What was measured of a sensor that has to be found again still holds, unless its rate is another one now. */
 void driver_probe(void)
 {
-    if (driver.renewed) {
-        driver.renewed = false;
-        period_start(driver.nominal_us);
+    adxl345_driver_t *d = here();
+    if (d->renewed) {
+        d->renewed = false;
+        period_start(d->nominal_us);
     }
-    driver.alternate_tried = false;
+    uint8_t only = d->config.address;
+    d->alternate_tried = only != 0;
+    d->found = ADXL345_FAULT_NO_SENSOR;
+    if (only != 0) {
+        d->address = only;
+    }
     begin_access(STEP_PROBE);
 }
 
@@ -151,12 +157,13 @@ static bool quiesce(void)
 
 void adxl345_start(const adxl345_config_t *config)
 {
+    adxl345_driver_t *d = here();
     bool quiescing = quiesce();
-    driver.config = *config;
-    driver.nominal_us = table_period_us(config->rate_dhz);
-    driver.stop_wanted = false;
-    driver.renewed = true;
-    driver.back_off_ms = BACK_OFF_MIN_MS;
+    d->config = *config;
+    d->nominal_us = table_period_us(config->rate_dhz);
+    d->stop_wanted = false;
+    d->renewed = true;
+    d->back_off_ms = BACK_OFF_MIN_MS;
     if (!quiescing) {
         driver_probe();
     }
@@ -191,7 +198,7 @@ static bool issue(adxl345_driver_t *d)
     }
 }
 
-static void count_failure(i2c_bus_state_t state)
+static HAL_APART void count_failure(i2c_bus_state_t state)
 {
     uint16_t *counter = &driver.counters.bus_errors;
     if (state == I2C_BUS_LOST) {
@@ -203,12 +210,12 @@ static void count_failure(i2c_bus_state_t state)
 }
 
 /*
- * No sensor at this address. That is told when the other one has none either: by the name of the device that did
- * answer if there is one, and with its address.
+ * No sensor at this address. That is told when the other one, if it may be asked, has none either: by the name of the
+ * device that did answer if there is one, and with its address.
  */
-static void not_here(adxl345_driver_t *d, adxl345_fault_t fault)
+static HAL_APART void not_here(adxl345_driver_t *d, adxl345_fault_t fault)
 {
-    if (!d->alternate_tried || fault == ADXL345_FAULT_NO_SENSOR) {
+    if (d->config.address == 0 && (!d->alternate_tried || fault == ADXL345_FAULT_NO_SENSOR)) {
         d->address = d->address == ADXL345_ADDRESS_LOW ? ADXL345_ADDRESS_HIGH : ADXL345_ADDRESS_LOW;
     }
     if (d->alternate_tried) {
@@ -353,7 +360,7 @@ static void drain_step(adxl345_driver_t *d)
     driver_probe();
 }
 
-HAL_APART void adxl345_poll(uint32_t now_us)
+void adxl345_poll(uint32_t now_us)
 {
     adxl345_driver_t *d = here();
     d->now_us = now_us;

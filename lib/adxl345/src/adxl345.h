@@ -27,6 +27,7 @@ typedef struct {
     uint16_t rate_dhz; /* output data rate in 0.1 Hz: 125, 250, 500, 1000, 2000, 4000, 8000 */
     uint8_t range_g;   /* 2, 4, 8, 16; always full resolution */
     bool self_test;    /* the sensor's electrostatic force acts on all axes: readings are shifted (p. 22) */
+    uint8_t address;   /* 7 bits: 0x53 or 0x1D, no other is asked; 0: both */
 } adxl345_config_t;
 
 /* What is wrong, in the order in which the driver finds out. Numbers are part of the protocol (docs/protocol.md). */
@@ -69,8 +70,11 @@ void adxl345_stop(void);
 /* Advances the state machine by at most one step. Call after every wake-up; never waits. */
 void adxl345_poll(uint32_t now_us);
 
-/* Oldest sample out of the queue; false when it is empty. Frees its slot, so a waiting FIFO entry can be read. */
-bool adxl345_take(adxl345_sample_t *out);
+/*
+ * Oldest sample out of the queue; NULL when it is empty. Frees its slot, so a waiting FIFO entry can be read. What is
+ * pointed at stays until the next adxl345_poll, _start or _stop.
+ */
+const adxl345_sample_t *adxl345_take(void);
 
 /* Samples waiting in the queue. */
 uint8_t adxl345_queued(void);

@@ -26,6 +26,8 @@ enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1 };
 
 #define SENSOR_DEPTH 33ul /* samples that the sensor can hold (p. 27) */
 
+_Static_assert((int)READING_BYTES == (int)I2C_BUS_RX_MAX, "a reading fits");
+
 static struct burst burst;
 
 /*
@@ -101,20 +103,20 @@ void burst_init(void)
 
 void burst_set_mode(burst_mode_t new_mode)
 {
+    struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
-    if (burst.mode == BURST_IGNORE) {
-        burst.edge_waiting = 0;
-        burst.failures = 0;
-        burst.last_known = false;
+    if (b->mode == BURST_IGNORE) {
+        b->edge_waiting = 0;
+        b->failures = 0;
+        b->last_known = false;
     }
     if (new_mode == BURST_READ) { /* what each burst transfers, until main uses the bus again; none runs now */
-        burst.found_empty = false;
-        burst.bus.tx[0] = ADXL345_INT_SOURCE;
-        burst.bus.tx_length = 1;
-        burst.bus.rx_length = READING_BYTES;
-        burst.bus.rx = burst.reading;
+        b->found_empty = false;
+        b->bus.tx[0] = ADXL345_INT_SOURCE;
+        b->bus.tx_length = 1;
+        b->bus.rx_length = READING_BYTES;
     }
-    burst.mode = (uint8_t)new_mode;
+    b->mode = (uint8_t)new_mode;
     hal_irq_restore(state);
 }
 
@@ -146,7 +148,6 @@ static bool begin_register(uint8_t reg, uint8_t value, uint8_t tx_length, uint8_
         b->bus.tx[1] = value;
         b->bus.tx_length = tx_length;
         b->bus.rx_length = rx_length;
-        b->bus.rx = &b->register_value;
         i2c_bus_begin(&b->bus);
     }
     hal_irq_restore(state);
@@ -158,7 +159,7 @@ bool burst_write_register(uint8_t reg, uint8_t value)
     return begin_register(reg, value, 2, 0);
 }
 
-bool burst_read_register(uint8_t reg)
+HAL_APART bool burst_read_register(uint8_t reg)
 {
     return begin_register(reg, 0, 1, 1);
 }
@@ -170,7 +171,7 @@ i2c_bus_state_t burst_bus_state(void)
 
 uint8_t burst_register_value(void)
 {
-    return burst.register_value;
+    return burst.bus.rx[0];
 }
 
 /*
@@ -235,8 +236,8 @@ static void keep_edge(struct burst *b)
  */
 static HAL_APART void restamp(struct burst *b)
 {
-    uint8_t behind = b->reading[READING_FIFO_STATUS];
-    bool overrun = (b->reading[READING_SOURCE] & ADXL345_INT_OVERRUN) != 0;
+    uint8_t behind = b->bus.rx[READING_FIFO_STATUS];
+    bool overrun = (b->bus.rx[READING_SOURCE] & ADXL345_INT_OVERRUN) != 0;
     uint32_t step_us = period_us();
     uint32_t age_us = behind * step_us + (step_us >> 1);
     /* before the last one: a bit of the count was wrong */
@@ -252,12 +253,12 @@ static reading_t judge(struct burst *b)
     burst_entry_t *entry = &b->queue[b->head];
     HAL_POINTER(entry); /* else its address is computed anew at each use */
     b->failures = 0;
-    reading_t verdict = integrity_judge(b->reading, entry->sample.lsb, b->newest_lsb);
+    reading_t verdict = integrity_judge(b->bus.rx, entry->sample.lsb, b->newest_lsb);
     b->found_empty = verdict == READING_EMPTY;
     if (verdict != READING_GOOD) {
         return verdict;
     }
-    if (b->reading[READING_FIFO_STATUS] >= 2u) {
+    if (b->bus.rx[READING_FIFO_STATUS] >= 2u) {
         restamp(b);
     }
     b->newest_lsb = entry->sample.lsb;
@@ -283,7 +284,7 @@ static HAL_APART reading_t judge_ended(void)
         keep_edge(b);
         verdict = READING_FAILED;
     }
-    bool had_sample = i2c_bus_received(&b->bus, READING_DATA) && (b->reading[READING_SOURCE] & ADXL345_INT_DATA_READY);
+    bool had_sample = i2c_bus_received(&b->bus, READING_DATA) && (b->bus.rx[READING_SOURCE] & ADXL345_INT_DATA_READY);
     if (verdict == READING_GOOD || had_sample) {
         b->last_us = b->reading_us;
         b->last_known = true;
@@ -315,10 +316,10 @@ bool burst_found_empty(void)
 
 bool burst_left_more(void)
 {
-    return burst.reading[READING_FIFO_STATUS] != 0;
+    return burst.bus.rx[READING_FIFO_STATUS] != 0;
 }
 
-uint32_t burst_begun_us(void)
+HAL_APART uint32_t burst_begun_us(void)
 {
     hal_irq_state_t state = hal_irq_save();
     uint32_t t_us = burst.begun_us;

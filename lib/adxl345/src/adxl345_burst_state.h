@@ -5,7 +5,7 @@
 #include "adxl345_burst.h"
 
 struct burst {
-    i2c_bus_t bus;
+    i2c_bus_t bus; /* rx: the reading of a burst, by integrity's places; a register's value is its first byte */
     const int16_t *newest_lsb; /* of the last good one: taken or not, it is still there */
     volatile uint8_t head;
     volatile uint8_t tail;
@@ -15,15 +15,13 @@ struct burst {
     volatile uint32_t edge_us;
     volatile uint32_t begun_us; /* when the newest burst was put on the bus, */
     volatile uint8_t by_edge;   /* by the edge of its own sample */
-    uint8_t reading[READING_BYTES];
-    uint32_t reading_us; /* stamp of the sample that is read */
+    uint32_t reading_us;        /* stamp of the sample that is read */
     bool reading_exact;
     uint8_t failures;
     uint8_t failed_state; /* i2c_bus_state_t in which the newest of them ended */
     uint32_t last_us;     /* stamp of the newest sample that left the sensor, delivered or cut */
     bool last_known;      /* last_us belongs to this run of the sensor */
     bool found_empty;     /* the newest burst met no sample */
-    uint8_t register_value;
     burst_entry_t queue[ADXL345_QUEUE_LENGTH];
 };
 

@@ -53,7 +53,7 @@ void period_sample(uint32_t t_us, bool exact)
     p->measured_from_us = t_us;
 }
 
-uint32_t period_us(void)
+HAL_APART uint32_t period_us(void)
 {
     return period.us_q8 >> 8;
 }

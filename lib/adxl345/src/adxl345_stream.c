@@ -73,7 +73,7 @@ void stream_start(adxl345_driver_t *d)
     driver_enter(STEP_STREAM, 1);
 }
 
-bool stream_without_edges(void)
+HAL_APART bool stream_without_edges(void)
 {
     return driver.fault == ADXL345_FAULT_INT1_SILENT || integrity_int1_stuck();
 }

@@ -2,6 +2,7 @@
 #include "adxl345_table.h"
 
 #include "flash.h"
+#include "hal_pointer.h"
 
 typedef struct {
     uint8_t reg;
@@ -48,7 +49,7 @@ static uint8_t range_code(uint8_t range_g)
     return code;
 }
 
-uint8_t table_format(const adxl345_config_t *config)
+HAL_APART uint8_t table_format(const adxl345_config_t *config)
 {
     uint8_t force = config->self_test ? ADXL345_FORMAT_SELF_TEST : 0;
     return (uint8_t)(ADXL345_FORMAT_FULL_RES | force | range_code(config->range_g));

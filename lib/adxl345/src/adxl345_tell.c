@@ -5,12 +5,13 @@
 #include "adxl345_period.h"
 #include "adxl345_watch.h"
 #include "hal_drdy.h"
+#include "hal_pointer.h"
 
-bool adxl345_take(adxl345_sample_t *out)
+const adxl345_sample_t *adxl345_take(void)
 {
     const burst_entry_t *entry = burst_take();
     if (entry == NULL) {
-        return false;
+        return NULL;
     }
     if (!entry->exact) {
         driver_count(&driver.counters.samples_drained);
@@ -19,8 +20,7 @@ bool adxl345_take(adxl345_sample_t *out)
         driver.marks = ADXL345_MARK_STUCK;
         driver_count(&driver.counters.samples_stuck);
     }
-    *out = entry->sample;
-    return true;
+    return &entry->sample;
 }
 
 uint8_t adxl345_marks(void)
@@ -30,7 +30,7 @@ uint8_t adxl345_marks(void)
     return marks;
 }
 
-uint8_t adxl345_queued(void)
+HAL_APART uint8_t adxl345_queued(void)
 {
     return burst_queued();
 }
@@ -95,7 +95,7 @@ bool adxl345_interrupted(void)
     return driver.after_fault;
 }
 
-uint32_t adxl345_deadline_us(void)
+HAL_APART uint32_t adxl345_deadline_us(void)
 {
     return driver.deadline_us;
 }

@@ -1,5 +1,6 @@
 /*
- * One I2C transfer at a time: write `tx`, then (if rx_length) a repeated START and a read into `rx`.
+ * One I2C transfer at a time: write `tx`, then (if rx_length, up to I2C_BUS_RX_MAX) a repeated START and a read into
+ * `rx`, which lies in the bus itself: the handler knows its place.
  * Each command has one status that says it went well; any other ends the transfer, however good it would be at another
  * moment: so no byte is stored that was not asked for, and no transfer ends well that did not do all of its steps.
  * The steps run in the I2C interrupt; everything is inline so that the handler that includes this saves few registers.
@@ -16,6 +17,7 @@
 #include "hal_sleep.h"
 
 #define I2C_BUS_TX_MAX 2
+#define I2C_BUS_RX_MAX 10
 
 typedef enum {
     I2C_BUS_IDLE, /* none yet */
@@ -35,8 +37,8 @@ typedef struct {
     uint8_t rx_length;
     uint8_t index;    /* of the byte to send, or to receive, next */
     uint8_t expected; /* HAL_I2C_*: the command given last went well; kept when the transfer ends */
-    uint8_t *rx;      /* stays with the caller until the state leaves BUSY */
     uint8_t tx[I2C_BUS_TX_MAX];
+    uint8_t rx[I2C_BUS_RX_MAX]; /* stays as it is from the end of a transfer to the next read */
 } i2c_bus_t;
 
 /* True when a transfer can begin: none under way and the last STOP is out (interrupts off, or in an interrupt). */

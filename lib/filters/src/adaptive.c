@@ -3,7 +3,7 @@
 #include "filter_common.h"
 
 /* Estimate within its bound, looked for in the high word: 4608 LSB and a fraction count as 4608. */
-FX_INLINE void limit_x(adaptive_t *f, int32_t x_lsb_q16)
+FX_NOINLINE void limit_x(adaptive_t *f, int32_t x_lsb_q16)
 {
     uint16_t whole_lsb = (uint16_t)((uint32_t)x_lsb_q16 >> 16);
     if ((uint16_t)(whole_lsb + FILTER_X_MAX_LSB) >= 2U * FILTER_X_MAX_LSB) {
@@ -36,12 +36,12 @@ FX_INLINE void remember(adaptive_t *f, int16_t z_lsb)
 }
 
 /* A mean moved towards a new term by a part of what they differ; exact. */
-FX_INLINE uint32_t averaged(uint32_t mean_uq24, uint16_t term_uq8, uint16_t from_uq8, uint16_t weight_uq16)
+FX_NOINLINE uint32_t averaged(uint32_t mean_uq24, uint16_t term_uq8, uint16_t from_uq8, uint16_t weight_uq16)
 {
     if (term_uq8 < from_uq8) {
-        return mean_uq24 - fx_mul_u16((uint16_t)(from_uq8 - term_uq8), weight_uq16);
+        return mean_uq24 - fx_product_u16((uint16_t)(from_uq8 - term_uq8), weight_uq16);
     }
-    return mean_uq24 + fx_mul_u16((uint16_t)(term_uq8 - from_uq8), weight_uq16);
+    return mean_uq24 + fx_product_u16((uint16_t)(term_uq8 - from_uq8), weight_uq16);
 }
 
 /* The weight halved when as many terms have come as it averages over. */
@@ -106,7 +106,7 @@ FX_NOINLINE void identify(adaptive_t *f, int16_t z_lsb)
     }
     f->third_lsb_uq24 = mean;
     if (!f->guarded) {
-        f->scatter_lsb_uq24 = fx_mul_u16((uint16_t)(mean >> 16), SIGMA_OF_THIRD_UQ16);
+        f->scatter_lsb_uq24 = fx_product_u16((uint16_t)(mean >> 16), SIGMA_OF_THIRD_UQ16);
     }
     count_term(f);
 }
@@ -219,9 +219,9 @@ FX_INLINE void average_innovation(adaptive_t *f, uint32_t taken)
     int16_t limited = (int16_t)size_lsb_uq8((taken > gate) ? gate : taken);
     int16_t mean = mean_lsb_q8(f);
     if (limited < mean) {
-        f->mean_lsb_q24 -= (int32_t)fx_mul_u16((uint16_t)(mean - limited), f->share_uq16);
+        f->mean_lsb_q24 -= (int32_t)fx_product_u16((uint16_t)(mean - limited), f->share_uq16);
     } else {
-        f->mean_lsb_q24 += (int32_t)fx_mul_u16((uint16_t)((uint16_t)limited - (uint16_t)mean), f->share_uq16);
+        f->mean_lsb_q24 += (int32_t)fx_product_u16((uint16_t)((uint16_t)limited - (uint16_t)mean), f->share_uq16);
     }
 }
 
@@ -365,7 +365,7 @@ FX_INLINE void step(adaptive_t *f, int16_t z_lsb)
  */
 int32_t adaptive_update(adaptive_t *f, int16_t z_lsb)
 {
-    int16_t z = filter_clamp_z(z_lsb);
+    int16_t z = filter_limited_z(z_lsb);
     if (f->collected < FILTER_WARM_UP_SAMPLES) {
         collect(f, z);
     } else {

@@ -50,7 +50,10 @@ typedef struct {
     uint32_t rate_max_lsb_s; /* limit of the estimated rate, LSB/s: 10..1000000, at most 127 LSB per sample of it */
 } adaptive_config_t;
 
-/* What each sample needs lies in the first 64 bytes, which an AVR reaches without computing an address. */
+/*
+ * The first 64 bytes an AVR reaches without computing an address: behind them lies what is parameters and read in one
+ * or two places.
+ */
 typedef struct {
     int32_t x_lsb_q16;         /* estimate, |x| <= FILTER_X_MAX_LSB */
     int32_t rate_lsb_q24;      /* per sample, |rate| <= rate_max_lsb_q24; towards `below` */
@@ -58,7 +61,6 @@ typedef struct {
     uint32_t k_uq32;           /* 1 - fading factor, of the last update */
     uint32_t scatter_lsb_uq24; /* sigma of the innovations for k = 0: 0.1..90 */
     uint32_t third_lsb_uq24;   /* half of the mean |third difference|: 1.774 sigma of a sample */
-    int32_t rate_max_lsb_q24;
     union {
         struct {
             uint32_t size_lsb_uq16; /* of the last innovation, <= 8704 LSB; 0 after a coast */
@@ -67,38 +69,45 @@ typedef struct {
         } run;
         int16_t start_lsb[FILTER_WARM_UP_SAMPLES]; /* ascending */
     } u;
-    int16_t history_lsb[3];  /* samples, newest first */
-    uint16_t gate_sigma_q8;  /* in sigmas of the innovation */
-    uint16_t manoeuvre_uq16; /* mean innovation, in sigmas of one, that shortens the memory */
-    uint16_t slow_uq16;      /* k of the slowest and of the shortest memory */
-    uint16_t fast_uq16;
-    uint16_t share_uq16;  /* of a new innovation in their mean */
-    uint16_t weight_uq16; /* of a new term in the identification: one over the number of terms it averages over */
-    uint8_t filled;       /* samples of history without a gap, <= 3 */
-    uint8_t third;        /* 1: of the next sample the third difference is a term, 0: the innovation */
-    uint8_t by_turns;     /* 1: the two by turns */
-    uint8_t collected;    /* samples of the start, <= FILTER_WARM_UP_SAMPLES */
-    uint8_t flags;
-    uint8_t verdict;  /* of the guard on the last sample */
-    bool guarded;     /* a gate was configured */
-    bool identify;    /* noise identified on line */
-    bool below;       /* the run is below the estimate */
-    uint16_t run;     /* samples beyond the gate on one side, up to the last */
-    uint16_t confirm; /* samples until a jump is believed */
-    uint16_t jump_lsb_uq8;
+    int16_t history_lsb[3];   /* samples, newest first */
+    uint16_t weight_uq16;     /* of a new term in the identification: one over the number of terms it averages over */
     uint16_t terms;           /* until the weight is halved */
     uint16_t stage;           /* terms that a weight is for, half of the next */
     uint16_t last_uq16;       /* the weight at last */
     uint16_t largest_lsb_uq8; /* of the terms on end that lie below half of the mean */
-    uint8_t small;            /* their number, while the start is doubted */
+    uint16_t run;             /* samples beyond the gate on one side, up to the last */
+    uint8_t small;            /* terms on end that lie below half of the mean, while the start is doubted */
+    uint8_t filled;           /* samples of history without a gap, <= 3 */
+    uint8_t third;            /* 1: of the next sample the third difference is a term, 0: the innovation */
+    uint8_t by_turns;         /* 1: the two by turns */
+    uint8_t collected;        /* samples of the start, <= FILTER_WARM_UP_SAMPLES */
+    uint8_t flags;
+    uint8_t verdict;         /* of the guard on the last sample */
+    bool guarded;            /* a gate was configured */
+    bool identify;           /* noise identified on line */
+    bool below;              /* the run is below the estimate */
+    uint16_t gate_sigma_q8;  /* in sigmas of the innovation */
+    uint16_t manoeuvre_uq16; /* mean innovation, in sigmas of one, that shortens the memory */
+    uint16_t slow_uq16;      /* k of the slowest and of the shortest memory */
+    uint16_t fast_uq16;
+    uint16_t share_uq16;   /* of a new innovation in their mean */
+    uint16_t confirm;      /* samples until a jump is believed */
+    uint16_t jump_lsb_uq8; /* beyond the gate, what motion does not explain */
+    int32_t rate_max_lsb_q24;
 } adaptive_t;
 
 /* Descriptor in program memory. */
 extern const filter_descriptor_t adaptive_descriptor;
 
-enum { adaptive_worst_cycles = 1370 }; /* of adaptive_update, as in filter.h */
+enum { adaptive_worst_cycles = 1410 }; /* of adaptive_update, as in filter.h */
 
 void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz);
+static inline bool adaptive_together(const adaptive_config_t *config)
+{
+    (void)config; /* each by itself */
+    return true;
+}
+
 bool adaptive_init(adaptive_t *f, const adaptive_config_t *config);
 void adaptive_configure(adaptive_t *f, const adaptive_config_t *config);
 void adaptive_set_noise(adaptive_t *f, uint32_t r_lsb2_q8);

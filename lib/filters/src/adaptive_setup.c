@@ -102,7 +102,7 @@ static void set_limits(adaptive_t *f, const adaptive_config_t *config)
     }
 }
 
-void adaptive_configure(adaptive_t *f, const adaptive_config_t *config)
+FX_ONCE void adaptive_configure(adaptive_t *f, const adaptive_config_t *config)
 {
     filter_zero(f, sizeof *f);
     f->flags = FILTER_WARMING_UP;
@@ -132,7 +132,7 @@ void adaptive_set_noise(adaptive_t *f, uint32_t r_lsb2_q8)
     }
     uint16_t sigma_q10 = fx_isqrt32(filter_limited_r_lsb2_q8(r_lsb2_q8) << 12);
     sigma_q10 = (sigma_q10 < 110U) ? 110U : sigma_q10; /* as the least R has: the proof knows no roots */
-    f->third_lsb_uq24 = fx_mul_u16(sigma_q10, THIRD_OF_SIGMA_Q8) << 6; /* within what identify keeps */
+    f->third_lsb_uq24 = fx_product_u16(sigma_q10, THIRD_OF_SIGMA_Q8) << 6; /* within what identify keeps */
     f->scatter_lsb_uq24 = (uint32_t)sigma_q10 << 14;
 }
 
@@ -159,7 +159,7 @@ bool adaptive_reset_step(adaptive_t *f, int16_t z0_lsb, uint8_t step)
 
 FX_ONCE void adaptive_reset(adaptive_t *f, int16_t z0_lsb)
 {
-    int16_t z0 = filter_clamp_z(z0_lsb);
+    int16_t z0 = filter_limited_z(z0_lsb);
     f->x_lsb_q16 = (int32_t)z0 * 65536;
     f->k_uq32 = (uint32_t)f->slow_uq16 << 16;
     forget(f);
@@ -191,7 +191,7 @@ void adaptive_restart(adaptive_t *f)
 uint32_t adaptive_r_lsb2_q8(const adaptive_t *f)
 {
     uint16_t sigma_uq8 = fx_high_u16((uint16_t)(f->third_lsb_uq24 >> 16), SIGMA_OF_THIRD_UQ16);
-    return filter_limited_r_lsb2_q8(fx_mul_u16(sigma_uq8, sigma_uq8) >> 8);
+    return filter_limited_r_lsb2_q8(fx_product_u16(sigma_uq8, sigma_uq8) >> 8);
 }
 
 /* R times the noise gain of the fading memory with this k, k (10 - 14 k + 5 k^2) / (2 - k)^3. */
@@ -227,7 +227,7 @@ void adaptive_probe(const adaptive_t *f, filter_probe_t *out)
     out->gate_lsb2_q8 = UINT32_MAX;
     if (f->guarded && running && f->u.run.gate_lsb_uq16 != 0U) {
         uint16_t gate_uq4 = (uint16_t)(f->u.run.gate_lsb_uq16 >> 12); /* <= 4000 LSB */
-        out->gate_lsb2_q8 = fx_mul_u16(gate_uq4, gate_uq4);
+        out->gate_lsb2_q8 = fx_product_u16(gate_uq4, gate_uq4);
     }
     out->gain_uq16 = running ? gain_uq16(f) : 0U;
     out->flags = f->flags;

@@ -4,6 +4,8 @@
  *   void     F_defaults(F_config_t *config, uint16_t rate_dhz);   the shipped values at that output data rate
  *   bool     F_init(F_t *f, const F_config_t *config);            false: a parameter is outside its legal range, f
  *            untouched
+ *   bool     F_together(const F_config_t *config);                parameters within the ranges of the descriptor, and a
+ *            legal rate, are what F_init takes: no gap in a range, no condition over several
  *   void     F_configure(F_t *f, const F_config_t *config);       the same for what is known to be legal, as the
  *            defaults are at a rate of FILTER_RATE_MIN_DHZ to FILTER_RATE_MAX_DHZ
  *   void     F_set_noise(F_t *f, uint32_t r_lsb2_q8);             measurement variance R changed (estimated on line)

@@ -4,6 +4,8 @@
  */
 #include "filter_any.h"
 
+#include "filter_parameter.h"
+
 const filter_descriptor_t *filter_any_descriptor(filter_kind_t kind)
 {
     switch (kind) {
@@ -96,18 +98,28 @@ bool filter_any_init(filter_any_t *f, filter_kind_t kind, const filter_any_confi
     return true;
 }
 
-FX_ONCE void filter_any_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz)
+bool filter_any_together(filter_kind_t kind, const filter_any_config_t *config)
 {
     switch (kind) {
-#define START(F)                             \
-    case FILTER_KIND_##F: {                  \
-        F##_config_t config;                 \
-        F##_defaults(&config, rate_dhz);     \
-        F##_configure(&f->state.F, &config); \
-        break;                               \
+#define TOGETHER(F)       \
+    case FILTER_KIND_##F: \
+        return F##_together(&config->F);
+        FILTER_LINKED(TOGETHER)
+#undef TOGETHER
+    default:
+        return false;
     }
-        FILTER_LINKED(START)
-#undef START
+}
+
+FX_ONCE void filter_any_configure(filter_any_t *f, filter_kind_t kind, const filter_any_config_t *config)
+{
+    switch (kind) {
+#define CONFIGURE(F)                            \
+    case FILTER_KIND_##F:                       \
+        F##_configure(&f->state.F, &config->F); \
+        break;
+        FILTER_LINKED(CONFIGURE)
+#undef CONFIGURE
     default:
         return;
     }
@@ -264,31 +276,6 @@ void filter_any_probe(const filter_any_t *f, filter_probe_t *out)
     }
 }
 
-/* A field of the configuration, little-endian on PC and chip, its sign extended. */
-static uint32_t field_of(const filter_any_config_t *config, const filter_parameter_t *parameter)
-{
-    const uint8_t *bytes = (const uint8_t *)config + fx_flash_u8(&parameter->offset);
-    uint8_t size = fx_flash_u8(&parameter->size);
-    bool negative = fx_flash_u8(&parameter->is_signed) != 0U && (bytes[size - 1U] & 0x80U) != 0U;
-    uint32_t value = negative ? UINT32_MAX : 0U;
-    while (size != 0U) {
-        size--;
-        value = (value << 8) | bytes[size];
-    }
-    return value;
-}
-
-static bool in_range(const filter_any_config_t *config, const filter_parameter_t *parameter)
-{
-    uint32_t value = field_of(config, parameter);
-    uint32_t min = fx_flash_u32((const uint32_t *)&parameter->min);
-    uint32_t max = fx_flash_u32((const uint32_t *)&parameter->max);
-    if (value == 0U && fx_flash_u8(&parameter->zero_means_off) != 0U) {
-        return true;
-    }
-    return value - min <= max - min; /* from the lower end: right for signed and unsigned ranges */
-}
-
 uint8_t filter_any_refused(filter_kind_t kind, const filter_any_config_t *config)
 {
     const filter_descriptor_t *descriptor = filter_any_descriptor(kind);
@@ -302,7 +289,7 @@ uint8_t filter_any_refused(filter_kind_t kind, const filter_any_config_t *config
     const filter_parameter_t *parameters = (const filter_parameter_t *)fx_flash_pointer(&descriptor->parameters);
     uint8_t count = fx_flash_u8(&descriptor->parameter_count);
     for (uint8_t i = 0; i < count; i++) {
-        if (!in_range(config, &parameters[i])) {
+        if (!filter_parameter_in_range(&parameters[i], filter_parameter_get(config, &parameters[i]))) {
             return i;
         }
     }

@@ -54,8 +54,12 @@ filter_kind_t filter_any_find(const char *name);
 void filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16_t rate_dhz);
 bool filter_any_init(filter_any_t *f, filter_kind_t kind, const filter_any_config_t *config);
 
-/* F_configure with the defaults of this rate, a legal one: the code that looks at parameters is not linked then. */
-void filter_any_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz);
+/*
+ * F_together and F_configure, for a program that has judged each parameter by its descriptor (filter_parameter.h): the
+ * code of F_init that does so is not linked then.
+ */
+bool filter_any_together(filter_kind_t kind, const filter_any_config_t *config);
+void filter_any_configure(filter_any_t *f, filter_kind_t kind, const filter_any_config_t *config);
 
 void filter_any_set_noise(filter_any_t *f, uint32_t r_lsb2_q8);
 void filter_any_reset(filter_any_t *f, int16_t z0_lsb);

@@ -9,6 +9,11 @@ bool filter_common_legal(uint16_t rate_dhz, uint32_t r_lsb2_q8)
            filter_limited_r_lsb2_q8(r_lsb2_q8) == r_lsb2_q8;
 }
 
+FX_ONCE int16_t filter_limited_z(int16_t z_lsb)
+{
+    return filter_clamp_z(z_lsb);
+}
+
 FX_ONCE void filter_zero(void *state, size_t size)
 {
     uint8_t *at = (uint8_t *)state;

@@ -11,6 +11,9 @@
 extern "C" {
 #endif
 
+/* filter_clamp_z as a function: 20 bytes less for each and 8 cycles more. */
+int16_t filter_limited_z(int16_t z_lsb);
+
 /* All of a state to 0, gaps too. */
 void filter_zero(void *state, size_t size);
 

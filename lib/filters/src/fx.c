@@ -34,7 +34,7 @@ uint16_t fx_isqrt32(uint32_t v)
 
 uint16_t fx_high_u16(uint16_t a, uint16_t b)
 {
-    return (uint16_t)(fx_mul_u16(a, b) >> 16);
+    return (uint16_t)(fx_product_u16(a, b) >> 16);
 }
 
 uint32_t fx_times_uq16(uint32_t a, uint16_t b_uq16)
@@ -89,7 +89,7 @@ fx_scaled_t fx_scaled(uint32_t v)
 
 fx_scaled_t fx_scaled_mul(fx_scaled_t a, fx_scaled_t b)
 {
-    return normalised(fx_mul_u16(a.mantissa, b.mantissa), (int8_t)(a.exponent + b.exponent));
+    return normalised(fx_product_u16(a.mantissa, b.mantissa), (int8_t)(a.exponent + b.exponent));
 }
 
 fx_scaled_t fx_scaled_div(fx_scaled_t a, fx_scaled_t b)
@@ -104,12 +104,14 @@ uint32_t fx_scaled_fixed(fx_scaled_t a, uint8_t fraction_bits)
     if (shift > 16) {
         return UINT32_MAX;
     }
-    if (shift >= 0) {
-        return (uint32_t)a.mantissa << shift;
+    if (shift < -16) {
+        return 0; /* below a half */
     }
-    if (shift < -17) {
-        return 0;
+    uint32_t v = (uint32_t)a.mantissa << 16;
+    uint8_t last = 0; /* of the places left out: rounds */
+    for (uint8_t places = (uint8_t)(16 - shift); places != 0U; places--) {
+        last = (uint8_t)v & 1U;
+        v >>= 1;
     }
-    uint32_t half = (uint32_t)1U << (uint8_t)(-shift - 1);
-    return ((uint32_t)a.mantissa + half) >> (uint8_t)(-shift);
+    return v + last;
 }

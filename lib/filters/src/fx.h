@@ -356,6 +356,15 @@ FX_ONCE uint32_t fx_times_uq16(uint32_t a, uint16_t b_uq16);
 /* fx_shift_right as a function. */
 FX_ONCE uint32_t fx_shifted_right(uint32_t v, uint8_t places);
 
+/*
+ * a x b, exact: fx_mul_u16 as a call of the compiler's library, 24 bytes less for each and a dozen cycles more. Written
+ * as a product, because the compiler knows which few registers its library takes.
+ */
+FX_INLINE uint32_t fx_product_u16(uint16_t a, uint16_t b)
+{
+    return (uint32_t)a * b;
+}
+
 /* fx_reciprocal_leading_uq16 as a function; the low byte does not matter. */
 FX_ONCE uint16_t fx_inverse_uq16(uint32_t m_uq31);
 

@@ -27,6 +27,12 @@ extern const filter_descriptor_t kf_descriptor;
 enum { kf_worst_cycles = 800 }; /* of kf_update, as in filter.h */
 
 void kf_defaults(kf_config_t *config, uint16_t rate_dhz);
+static inline bool kf_together(const kf_config_t *config)
+{
+    (void)config; /* each by itself */
+    return true;
+}
+
 bool kf_init(kf_t *f, const kf_config_t *config);
 void kf_configure(kf_t *f, const kf_config_t *config);
 void kf_set_noise(kf_t *f, uint32_t r_lsb2_q8);

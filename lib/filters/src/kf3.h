@@ -53,6 +53,12 @@ extern const filter_descriptor_t kf3_descriptor;
 enum { kf3_worst_cycles = 2350 }; /* of kf3_update, as in filter.h */
 
 void kf3_defaults(kf3_config_t *config, uint16_t rate_dhz);
+static inline bool kf3_together(const kf3_config_t *config)
+{
+    (void)config; /* each by itself */
+    return true;
+}
+
 bool kf3_init(kf3_t *f, const kf3_config_t *config);
 void kf3_configure(kf3_t *f, const kf3_config_t *config);
 void kf3_set_noise(kf3_t *f, uint32_t r_lsb2_q8);

@@ -41,6 +41,12 @@ extern const filter_descriptor_t lrf_descriptor;
 enum { lrf_worst_cycles = 800 }; /* of lrf_update, as in filter.h */
 
 void lrf_defaults(lrf_config_t *config, uint16_t rate_dhz);
+static inline bool lrf_together(const lrf_config_t *config)
+{
+    (void)config; /* each by itself */
+    return true;
+}
+
 bool lrf_init(lrf_t *f, const lrf_config_t *config);
 void lrf_configure(lrf_t *f, const lrf_config_t *config);
 void lrf_set_noise(lrf_t *f, uint32_t r_lsb2_q8);

@@ -1,7 +1,7 @@
 /* Winsorised variance of the smaller of two second differences; see noise.h. */
 #include "noise.h"
 
-#include "filter.h"
+#include "filter_common.h"
 #include "fx.h"
 
 /*
@@ -26,7 +26,7 @@
 #define MEAN_MAX_LSB2_Q16 43690667U
 
 /* 1.5 times a variance in Q16, as Q8. */
-static uint32_t r_of(uint32_t mean_lsb2_q16)
+FX_NOINLINE uint32_t r_of(uint32_t mean_lsb2_q16)
 {
     return (mean_lsb2_q16 + (mean_lsb2_q16 >> 1) + 128U) >> 8;
 }
@@ -35,15 +35,11 @@ void noise_init(noise_t *n, uint16_t rate_dhz, bool noisy_axis)
 {
     /* 0.02 LSB^2 / Hz in Q16 per 0.1 Hz: 131.07; times 1.7 */
     uint16_t each_q16 = noisy_axis ? 223U : 131U;
+    filter_zero(n, sizeof *n);
     n->floor_lsb2_q16 = (uint32_t)rate_dhz * each_q16;
     n->mean_lsb2_q16 = n->floor_lsb2_q16;
     n->r_lsb2_q8 = r_of(n->floor_lsb2_q16);
-    for (uint8_t i = 0; i < HISTORY; i++) {
-        n->history_lsb[i] = 0;
-    }
     n->spaced = rate_dhz >= SPACED_MIN_DHZ;
-    n->filled = 0;
-    n->terms = 0;
 }
 
 void noise_gap(noise_t *n)
@@ -82,7 +78,7 @@ static uint8_t smaller_bend_lsb(const noise_t *n, int16_t z_lsb)
 static uint32_t term_lsb2_q16(const noise_t *n, uint8_t bend)
 {
     bool opening = n->terms < OPENING_TERMS;
-    uint32_t term = fx_mul_u16((uint16_t)((uint16_t)bend * bend), opening ? UNBIAS_OPENING_UQ16 : UNBIAS_UQ16);
+    uint32_t term = fx_product_u16((uint16_t)((uint16_t)bend * bend), opening ? UNBIAS_OPENING_UQ16 : UNBIAS_UQ16);
     uint32_t limit = n->mean_lsb2_q16 + n->mean_lsb2_q16;
     limit += opening ? limit + (limit >> 2) : n->mean_lsb2_q16;
     return (term < limit) ? term : limit;
@@ -94,12 +90,11 @@ static int32_t share(int32_t difference, uint8_t terms)
     if (terms == UINT8_MAX) {
         return (difference + 128) >> 8;
     }
-    uint8_t shift = 1;
-    for (; terms > 3U; terms >>= 1) {
-        shift++;
+    /* one place at a time, the last one rounds: the same as half of the window added before, in less code */
+    for (uint8_t left = terms; left > 3U; left >>= 1) {
+        difference >>= 1;
     }
-    int32_t half = (int32_t)((uint32_t)1U << (uint8_t)(shift - 1U));
-    return (difference + half) >> shift;
+    return (difference + 1) >> 1;
 }
 
 /* Mean one term on. Its floor keeps the limit of the next term open, its ceiling is the largest R. */
@@ -116,30 +111,39 @@ static void average(noise_t *n, uint32_t term_q16)
     }
 }
 
-static void remember(noise_t *n, int16_t z_lsb)
+/* R in force follows the estimate when that has left it by an eighth. */
+static bool follow(noise_t *n)
 {
-    for (uint8_t i = HISTORY - 1U; i > 0U; i--) {
-        n->history_lsb[i] = n->history_lsb[i - 1U];
-    }
-    n->history_lsb[0] = z_lsb;
-}
-
-bool noise_update(noise_t *n, int16_t z_lsb)
-{
-    int16_t z = filter_clamp_z(z_lsb);
-    if (n->filled < HISTORY) {
-        remember(n, z);
-        n->filled++;
-        return false;
-    }
-    average(n, term_lsb2_q16(n, smaller_bend_lsb(n, z)));
-    remember(n, z);
     uint32_t r_q8 = r_of(n->mean_lsb2_q16);
     if (fx_abs32((int32_t)r_q8 - (int32_t)n->r_lsb2_q8) <= n->r_lsb2_q8 >> 3) {
         return false;
     }
     n->r_lsb2_q8 = r_q8;
     return true;
+}
+
+/* By pointers: indices would be unrolled, 60 bytes more. */
+static void remember(noise_t *n, int16_t z_lsb)
+{
+    int16_t *at = &n->history_lsb[HISTORY - 1U];
+    for (; at != n->history_lsb; at--) {
+        at[0] = at[-1];
+    }
+    at[0] = z_lsb;
+}
+
+bool noise_update(noise_t *n, int16_t z_lsb)
+{
+    int16_t z = filter_limited_z(z_lsb);
+    bool changed = false;
+    if (n->filled < HISTORY) {
+        n->filled++;
+    } else {
+        average(n, term_lsb2_q16(n, smaller_bend_lsb(n, z)));
+        changed = follow(n);
+    }
+    remember(n, z);
+    return changed;
 }
 
 uint32_t noise_r_lsb2_q8(const noise_t *n)

@@ -1,10 +1,15 @@
 /* Consistency re-acquisition: see reacquire.h. */
 #include "reacquire.h"
 
+FX_ONCE bool reacquire_steps_legal(uint16_t samples)
+{
+    return samples == 0U || samples == 3U || samples == 5U || samples == 9U;
+}
+
 bool reacquire_legal(uint16_t samples, uint32_t rate_max_lsb_s)
 {
-    return (samples == 0U || samples == 3U || samples == 5U || samples == 9U) &&
-           rate_max_lsb_s >= REACQUIRE_RATE_MAX_MIN_LSB_S && rate_max_lsb_s <= REACQUIRE_RATE_MAX_MAX_LSB_S;
+    return reacquire_steps_legal(samples) && rate_max_lsb_s >= REACQUIRE_RATE_MAX_MIN_LSB_S &&
+           rate_max_lsb_s <= REACQUIRE_RATE_MAX_MAX_LSB_S;
 }
 
 void reacquire_init(reacquire_t *a, uint16_t samples)

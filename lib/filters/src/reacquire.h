@@ -33,6 +33,9 @@ typedef struct {
     uint16_t agree_lsb;   /* raw samples of one run differ by at most this */
 } reacquire_t;
 
+/* True when the length of a run is one that a slope can be fitted over without a division. */
+bool reacquire_steps_legal(uint16_t samples);
+
 /* True when the length of a run and the limit of the rate are legal. */
 FX_ONCE bool reacquire_legal(uint16_t samples, uint32_t rate_max_lsb_s);
 

@@ -23,6 +23,12 @@ extern const filter_descriptor_t shrf_descriptor;
 enum { shrf_worst_cycles = 3450 }; /* of shrf_update, as in filter.h */
 
 void shrf_defaults(shrf_config_t *config, uint16_t rate_dhz);
+static inline bool shrf_together(const shrf_config_t *config)
+{
+    (void)config; /* each by itself */
+    return true;
+}
+
 bool shrf_init(shrf_t *f, const shrf_config_t *config);
 void shrf_configure(shrf_t *f, const shrf_config_t *config);
 void shrf_set_noise(shrf_t *f, uint32_t r_lsb2_q8);

@@ -53,6 +53,11 @@ void soft_configure(soft_t *f, const soft_config_t *config)
     soft_set_noise(f, config->r_lsb2_q8);
 }
 
+bool soft_together(const soft_config_t *config)
+{
+    return reacquire_steps_legal(config->reacquire_samples);
+}
+
 bool soft_init(soft_t *f, const soft_config_t *config)
 {
     if (!two_state_legal(config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3) ||

@@ -42,6 +42,7 @@ extern const filter_descriptor_t soft_descriptor;
 enum { soft_worst_cycles = 1300 }; /* of soft_update, as in filter.h */
 
 void soft_defaults(soft_config_t *config, uint16_t rate_dhz);
+bool soft_together(const soft_config_t *config);
 bool soft_init(soft_t *f, const soft_config_t *config);
 void soft_configure(soft_t *f, const soft_config_t *config);
 void soft_set_noise(soft_t *f, uint32_t r_lsb2_q8);

@@ -36,6 +36,11 @@ void sprf_configure(sprf_t *f, const sprf_config_t *config)
     sprf_set_noise(f, config->r_lsb2_q8);
 }
 
+bool sprf_together(const sprf_config_t *config)
+{
+    return reacquire_steps_legal(config->reacquire_samples);
+}
+
 bool sprf_init(sprf_t *f, const sprf_config_t *config)
 {
     if (!two_state_legal(config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3) ||
@@ -61,7 +66,7 @@ void sprf_reset(sprf_t *f, int16_t z0_lsb)
 
 bool sprf_reset_step(sprf_t *f, int16_t z0_lsb, uint8_t step)
 {
-    reacquire_reset(&f->again, filter_clamp_z(z0_lsb));
+    reacquire_reset(&f->again, filter_limited_z(z0_lsb));
     return two_state_reset_step(&f->core, z0_lsb, step);
 }
 
@@ -87,7 +92,7 @@ FX_INLINE void forget_rate(sprf_t *f)
  */
 int32_t sprf_update(sprf_t *f, int16_t z_lsb)
 {
-    int16_t z = filter_clamp_z(z_lsb);
+    int16_t z = filter_limited_z(z_lsb);
     if (two_state_warming_up(&f->core)) {
         two_state_warm_up(&f->core, z);
     } else if (two_state_step(&f->core, z, true)) {

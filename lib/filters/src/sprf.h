@@ -40,6 +40,7 @@ extern const filter_descriptor_t sprf_descriptor;
 enum { sprf_worst_cycles = 1000 }; /* of sprf_update, as in filter.h */
 
 void sprf_defaults(sprf_config_t *config, uint16_t rate_dhz);
+bool sprf_together(const sprf_config_t *config);
 bool sprf_init(sprf_t *f, const sprf_config_t *config);
 void sprf_configure(sprf_t *f, const sprf_config_t *config);
 void sprf_set_noise(sprf_t *f, uint32_t r_lsb2_q8);

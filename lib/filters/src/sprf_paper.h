@@ -36,6 +36,12 @@ extern const filter_descriptor_t sprf_paper_descriptor;
 enum { sprf_paper_worst_cycles = 2150 }; /* of sprf_paper_update, as in filter.h */
 
 void sprf_paper_defaults(sprf_paper_config_t *config, uint16_t rate_dhz);
+static inline bool sprf_paper_together(const sprf_paper_config_t *config)
+{
+    (void)config; /* each by itself */
+    return true;
+}
+
 bool sprf_paper_init(sprf_paper_t *f, const sprf_paper_config_t *config);
 void sprf_paper_configure(sprf_paper_t *f, const sprf_paper_config_t *config);
 void sprf_paper_set_noise(sprf_paper_t *f, uint32_t r_lsb2_q8);

@@ -86,11 +86,16 @@ void synth_configure(synth_t *f, const synth_config_t *config)
     synth_set_noise(f, config->r_lsb2_q8);
 }
 
+bool synth_together(const synth_config_t *config)
+{
+    return stable(config->b0_uq16, config->a1_q16);
+}
+
 FX_ONCE bool synth_init(synth_t *f, const synth_config_t *config)
 {
     bool legal = filter_common_legal(config->rate_dhz, config->r_lsb2_q8) && config->b0_uq16 >= SYNTH_B0_MIN_UQ16 &&
                  config->a1_q16 >= -SYNTH_A1_MAX_Q16 && config->a1_q16 <= SYNTH_A1_MAX_Q16;
-    if (!legal || !stable(config->b0_uq16, config->a1_q16)) {
+    if (!legal || !synth_together(config)) {
         return false;
     }
     synth_configure(f, config);

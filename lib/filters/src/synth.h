@@ -57,6 +57,7 @@ void synth_paper(synth_config_t *config, uint16_t rate_dhz);
  */
 uint32_t synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16);
 
+bool synth_together(const synth_config_t *config);
 bool synth_init(synth_t *f, const synth_config_t *config);
 void synth_configure(synth_t *f, const synth_config_t *config);
 void synth_set_noise(synth_t *f, uint32_t r_lsb2_q8);

@@ -48,6 +48,12 @@ enum { synth_opt_worst_cycles = 500 }; /* of synth_opt_update, as in filter.h */
  */
 void synth_opt_defaults(synth_opt_config_t *config, uint16_t rate_dhz);
 
+static inline bool synth_opt_together(const synth_opt_config_t *config)
+{
+    (void)config; /* each by itself */
+    return true;
+}
+
 bool synth_opt_init(synth_opt_t *f, const synth_opt_config_t *config);
 void synth_opt_configure(synth_opt_t *f, const synth_opt_config_t *config);
 void synth_opt_set_noise(synth_opt_t *f, uint32_t r_lsb2_q8);

@@ -110,6 +110,11 @@ void synth_plus_configure(synth_plus_t *f, const synth_plus_config_t *config)
     synth_plus_set_noise(f, config->r_lsb2_q8);
 }
 
+bool synth_plus_together(const synth_plus_config_t *config)
+{
+    return plus_stable(config);
+}
+
 FX_ONCE bool synth_plus_init(synth_plus_t *f, const synth_plus_config_t *config)
 {
     if (!filter_common_legal(config->rate_dhz, config->r_lsb2_q8) || config->b0_uq16 < SYNTH_B0_MIN_UQ16 ||

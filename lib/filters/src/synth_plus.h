@@ -75,6 +75,7 @@ void synth_plus_defaults(synth_plus_config_t *config, uint16_t rate_dhz);
  */
 uint32_t synth_plus_noise_gain_uq16(const synth_plus_config_t *config);
 
+bool synth_plus_together(const synth_plus_config_t *config);
 bool synth_plus_init(synth_plus_t *f, const synth_plus_config_t *config);
 void synth_plus_configure(synth_plus_t *f, const synth_plus_config_t *config);
 void synth_plus_set_noise(synth_plus_t *f, uint32_t r_lsb2_q8);

@@ -125,7 +125,7 @@ void two_state_settle(two_state_t *s)
 
 bool two_state_reset_step(two_state_t *s, int16_t z0_lsb, uint8_t step)
 {
-    int16_t z0 = filter_clamp_z(z0_lsb);
+    int16_t z0 = filter_limited_z(z0_lsb);
     if (step == 0U) {
         s->flags = 0;
         two_state_start(s, (int32_t)z0 * 65536);
@@ -139,7 +139,7 @@ int16_t two_state_reset(two_state_t *s, int16_t z0_lsb)
 {
     (void)two_state_reset_step(s, z0_lsb, 0);
     two_state_settle(s);
-    return filter_clamp_z(z0_lsb);
+    return filter_limited_z(z0_lsb);
 }
 
 void two_state_warm_up(two_state_t *s, int16_t z_lsb)

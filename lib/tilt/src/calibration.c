@@ -63,12 +63,24 @@ FX_NOINLINE int16_t quotient_q14(int32_t a, uint16_t b)
     return (int16_t)((calibration_over(a, b) + 2) >> 2);
 }
 
+/* What the offsets make of all axes, by the whole matrix. */
+static void prepare_bias(calibration_applied_t *applied, const calibration_t *c)
+{
+    int32_t away_q8[3];
+    for (uint8_t i = 0; i < 3U; i++) {
+        away_q8[i] = (int32_t)c->offset_lsb_q4[i] * -16;
+    }
+    for (uint8_t i = 0; i < 3U; i++) {
+        applied->bias_lsb_q14[i] = row_times(HALF_Q14, away_q8, &applied->matrix_q14[3U * i]);
+    }
+}
+
 /*
  * The rotation of the mounting is s_i (w_i w_j / (1 + z) - d_ij) with w = u + (0, 0, 1), s = (-1, -1, 1), d_ij = 1 for
  * i = j, else 0: the matrix of calibration.h, all elements by one rule. Upside down it is that of (x, -y, -z), with the
  * columns of y and z turned round.
  */
-static void prepare_matrix(int16_t matrix_q14[9], const calibration_t *c)
+FX_ONCE void calibration_prepare_column(calibration_applied_t *applied, const calibration_t *c, uint8_t ours)
 {
     uint16_t length_q14 = fx_isqrt32(length_square_q28(c->level_q14));
     bool down = c->level_q14[2] < 0;
@@ -78,31 +90,26 @@ static void prepare_matrix(int16_t matrix_q14[9], const calibration_t *c)
         w_q14[i] = quotient_q14((down && i != 0U) ? -level_q14 : level_q14, length_q14);
     }
     w_q14[2] += CALIBRATION_ONE_Q14;
-    for (uint8_t ours = 0; ours < 3U; ours++) {
-        uint8_t theirs = calibration_named(c->axes[ours]);
-        int16_t share_q14 = quotient_q14(w_q14[ours], (uint16_t)w_q14[2]);
-        bool reversed = (c->axes[ours] < 0) != (down && ours != 0U);
-        for (uint8_t i = 0; i < 3U; i++) {
-            int32_t m_q14 = ((w_q14[i] * share_q14 + 8192) >> 14) - (i == ours ? CALIBRATION_ONE_Q14 : 0);
-            m_q14 = (reversed == (i == 2U)) ? -m_q14 : m_q14;
-            matrix_q14[3U * i + theirs] = quotient_q14(m_q14, c->scale_lsb_per_g_uq6[theirs]);
-        }
+    uint8_t theirs = calibration_named(c->axes[ours]);
+    int16_t share_q14 = quotient_q14(w_q14[ours], (uint16_t)w_q14[2]);
+    bool reversed = (c->axes[ours] < 0) != (down && ours != 0U);
+    for (uint8_t i = 0; i < 3U; i++) {
+        int32_t m_q14 = ((w_q14[i] * share_q14 + 8192) >> 14) - (i == ours ? CALIBRATION_ONE_Q14 : 0);
+        m_q14 = (reversed == (i == 2U)) ? -m_q14 : m_q14;
+        applied->matrix_q14[3U * i + theirs] = quotient_q14(m_q14, c->scale_lsb_per_g_uq6[theirs]);
+    }
+    if (ours == 2U) {
+        prepare_bias(applied, c);
     }
 }
 
 FX_ONCE calibration_verdict_t calibration_prepare(calibration_applied_t *applied, const calibration_t *c)
 {
     calibration_verdict_t verdict = calibration_check(c);
-    if (verdict.why != (uint8_t)CALIBRATION_GOOD) {
-        return verdict;
-    }
-    prepare_matrix(applied->matrix_q14, c);
-    int32_t away_q8[3];
-    for (uint8_t i = 0; i < 3U; i++) {
-        away_q8[i] = (int32_t)c->offset_lsb_q4[i] * -16;
-    }
-    for (uint8_t i = 0; i < 3U; i++) {
-        applied->bias_lsb_q14[i] = row_times(HALF_Q14, away_q8, &applied->matrix_q14[3U * i]);
+    if (verdict.why == (uint8_t)CALIBRATION_GOOD) {
+        for (uint8_t ours = 0; ours < 3U; ours++) {
+            calibration_prepare_column(applied, c, ours);
+        }
     }
     return verdict;
 }

@@ -66,7 +66,7 @@ typedef struct {
 calibration_verdict_t calibration_check(const calibration_t *c);
 
 /*
- * To the form for use; what is not legal is refused, and nothing written. Divides 15 times: for a change of settings.
+ * To the form for use; what is not legal is refused, and nothing written.
  *
  * The mounting's rotation takes the direction u = (x, y, z) of level, |u| = 1, to (0, 0, 1). It is the tau matrix
  * (3.34) of the square-root navigation thesis (paper 003) with z in the place of its first axis,
@@ -85,6 +85,12 @@ calibration_verdict_t calibration_check(const calibration_t *c);
  * rad = 0.022 degree of (0, 0, 1); found 0.015 (derived in host_tests/test_calibration_reference.c).
  */
 calibration_verdict_t calibration_prepare(calibration_applied_t *applied, const calibration_t *c);
+
+/*
+ * A third of that, for a loop that must not wait: what our axis x, y, z (0 to 2, in this order) has of a calibration
+ * that is legal. Ready behind the last of the three, of no use before. Divides 7 times.
+ */
+void calibration_prepare_column(calibration_applied_t *applied, const calibration_t *c, uint8_t ours);
 
 /*
  * LSB in Q8 to 1/256 g in Q8. a and out must not overlap. Any int32 is safe; meant for |a| <= 4,608 LSB.
@@ -123,10 +129,30 @@ calibration_verdict_t calibration_single(calibration_t *c, const int16_t mean_ls
  * Offsets and scales from the means at rest in all six positions (x, y, z of position 0, x, y, z of position 1, ...),
  * each up to 20 degrees from its axis in any direction. Refused, and *c unchanged, with the reason. residual_mg: the
  * largest | |a| - 1 g | of the six, when not refused. Six readings determine six numbers, so it tells whether the
- * solution fits, not how good the readings were. About NN ms on the chip.
+ * solution fits, not how good the readings were.
  */
 calibration_verdict_t calibration_six(calibration_t *c, const int16_t mean_lsb_q4[3 * CALIBRATION_POSITIONS],
                                       uint16_t *residual_mg);
+
+/* The same in pieces of two divisions and a root, for a loop that must not wait. Inside it: not for reading. */
+typedef struct {
+    calibration_t found;
+    uint16_t known_q14[CALIBRATION_POSITIONS];
+    uint16_t off_q14;
+    uint8_t where;
+    uint8_t round;
+    uint8_t piece;
+    calibration_verdict_t verdict;
+} calibration_six_t;
+
+/* With the axes and the level of this calibration, which stays as it is. */
+void calibration_six_start(calibration_six_t *six, const calibration_t *c);
+
+/* One piece; the means are the same each time. False: it was the last one, and calibration_six_end follows. */
+bool calibration_six_step(calibration_six_t *six, const int16_t mean_lsb_q4[3 * CALIBRATION_POSITIONS]);
+
+/* As calibration_six ends. */
+calibration_verdict_t calibration_six_end(const calibration_six_t *six, calibration_t *c, uint16_t *residual_mg);
 
 #ifdef __cplusplus
 }

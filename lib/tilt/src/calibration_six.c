@@ -51,40 +51,70 @@ static bool draw_line(calibration_t *c, means_t means, uint8_t axis, const uint1
     return true;
 }
 
-FX_ONCE calibration_verdict_t calibration_six(calibration_t *c, const int16_t mean_lsb_q4[3 * CALIBRATION_POSITIONS],
+FX_ONCE void calibration_six_start(calibration_six_t *six, const calibration_t *c)
+{
+    six->found = *c;
+    for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
+        six->known_q14[position] = CALIBRATION_ONE_Q14;
+    }
+    six->round = 0;
+    six->piece = 0;
+}
+
+/* What a position's component is by the offsets and scales of this round. */
+static bool improve(calibration_six_t *six, means_t means, uint8_t position)
+{
+    uint16_t better_q14 = component_q14(&six->found, means, position);
+    int16_t change_q14 = (int16_t)(better_q14 - six->known_q14[position]);
+    uint16_t size_q14 = (uint16_t)(change_q14 < 0 ? -change_q14 : change_q14);
+    if (size_q14 > six->off_q14) {
+        six->off_q14 = size_q14;
+        six->where = position;
+    }
+    six->known_q14[position] = better_q14;
+    return better_q14 != 0U;
+}
+
+/* Three lines, then six components, round after round. */
+FX_ONCE bool calibration_six_step(calibration_six_t *six, const int16_t means[3 * CALIBRATION_POSITIONS])
+{
+    uint8_t piece = six->piece++;
+    if (piece < 3U) {
+        six->off_q14 = 0;
+        six->verdict = calibration_verdict(CALIBRATION_SCALE, piece);
+        return draw_line(&six->found, means, piece, &six->known_q14[2U * piece]);
+    }
+    uint8_t position = (uint8_t)(piece - 3U);
+    six->verdict = calibration_verdict(CALIBRATION_TILTED, position);
+    if (!improve(six, means, position)) {
+        return false;
+    }
+    if (position != CALIBRATION_POSITIONS - 1U) {
+        return true;
+    }
+    six->piece = 0;
+    six->verdict.why = (uint8_t)CALIBRATION_GOOD;
+    return six->round++ != ROUNDS;
+}
+
+FX_ONCE calibration_verdict_t calibration_six_end(const calibration_six_t *six, calibration_t *c, uint16_t *residual_mg)
+{
+    if (six->verdict.why != (uint8_t)CALIBRATION_GOOD) {
+        return six->verdict;
+    }
+    *residual_mg = (uint16_t)(((uint32_t)six->off_q14 * 125U + 1024U) >> 11);
+    if (six->off_q14 > RESIDUAL_MAX_Q14) {
+        return calibration_verdict(CALIBRATION_RESIDUAL, six->where);
+    }
+    return calibration_commit(c, &six->found);
+}
+
+FX_ONCE calibration_verdict_t calibration_six(calibration_t *c, const int16_t means[3 * CALIBRATION_POSITIONS],
                                               uint16_t *residual_mg)
 {
-    calibration_t found = *c;
-    uint16_t known_q14[CALIBRATION_POSITIONS];
-    for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
-        known_q14[position] = CALIBRATION_ONE_Q14;
+    calibration_six_t six;
+    calibration_six_start(&six, c);
+    while (calibration_six_step(&six, means)) {
     }
-    uint16_t off_q14 = 0;
-    uint8_t where = 0;
-    for (uint8_t round = 0; round <= ROUNDS; round++) {
-        for (uint8_t axis = 0; axis < 3U; axis++) {
-            if (!draw_line(&found, mean_lsb_q4, axis, &known_q14[2U * axis])) {
-                return calibration_verdict(CALIBRATION_SCALE, axis);
-            }
-        }
-        off_q14 = 0;
-        for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
-            uint16_t better_q14 = component_q14(&found, mean_lsb_q4, position);
-            if (better_q14 == 0U) {
-                return calibration_verdict(CALIBRATION_TILTED, position);
-            }
-            int16_t change_q14 = (int16_t)(better_q14 - known_q14[position]);
-            uint16_t size_q14 = (uint16_t)(change_q14 < 0 ? -change_q14 : change_q14);
-            if (size_q14 > off_q14) {
-                off_q14 = size_q14;
-                where = position;
-            }
-            known_q14[position] = better_q14;
-        }
-    }
-    *residual_mg = (uint16_t)(((uint32_t)off_q14 * 125U + 1024U) >> 11);
-    if (off_q14 > RESIDUAL_MAX_Q14) {
-        return calibration_verdict(CALIBRATION_RESIDUAL, where);
-    }
-    return calibration_commit(c, &found);
+    return calibration_six_end(&six, c, residual_mg);
 }

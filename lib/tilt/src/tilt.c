@@ -17,7 +17,7 @@
 #include "fx.h"
 
 /* Product of two fractions in UQ0.16, rounded down. A macro: a function would be called, 90 cycles more in all. */
-#define PRODUCT_UQ16(a_uq16, b_uq16) ((uint16_t)(fx_mul_u16(a_uq16, b_uq16) >> 16))
+#define PRODUCT_UQ16(a_uq16, b_uq16) ((uint16_t)(fx_product_u16(a_uq16, b_uq16) >> 16))
 
 #define RIGHT_ANGLE_CDEG 9000U
 #define HALF_TURN_CDEG 18000U

@@ -80,7 +80,7 @@ def ranked(tables, numbers, losses, rate_hz):
 
 def judgement(stream, tables, rate_dhz):
     """The whole answer, as --json prints it."""
-    from tilt import judge
+    from tilt import judge, native
     from tilt.errors import TiltError
 
     facts, found, sigma_lsb = facts_of(stream, tables, rate_dhz)
@@ -92,7 +92,8 @@ def judgement(stream, tables, rate_dhz):
     same = [row["filter"] for row in filters if not row["told_from_best"]]
     answer = {"stream": stream.path, "rate_hz": rate_dhz / 10, "seconds": stream.seconds, "rows_judged": count,
               "criterion": "angle from the truth" if stream.has_truth else "innovations", **facts, "filters": filters,
-              "best": filters[0]["filter"], "same_as_best": same[1:], "enough": count >= judge.BATCHES * judge.BATCH_MIN}
+              "best": filters[0]["filter"], "flash": native.flashed_by(filters[0]["filter"]), "same_as_best": same[1:],
+              "enough": count >= judge.BATCHES * judge.BATCH_MIN}
     return answer | {"why": why(answer)}
 
 
@@ -154,4 +155,4 @@ def run(args):
     if args.json:
         print(json.dumps(answer, indent=1))
     else:
-        print("\n".join(table(answer) + answer["why"]))
+        print("\n".join(table(answer) + answer["why"] + [f"flash: {answer['flash']}"]))

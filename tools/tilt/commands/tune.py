@@ -73,7 +73,7 @@ def board_factor(board, r_lsb2):
 
 def for_the_board(samples, every, name, q, sigma_lsb):
     """Commands, and what they are worth beside the values that the filter ships with."""
-    from tilt import model
+    from tilt import model, native
 
     values, found = {"q": q}, {}
     if "gate" in every:
@@ -83,7 +83,8 @@ def for_the_board(samples, every, name, q, sigma_lsb):
     away, tuned, shipped = model.compared(samples, name, values, {}, sigma_lsb)
     worse = away.told and away.mean > 0.0
     commands = [f"filter {name}"] + [f"{key} {every[key].text(value)}" for key, value in values.items() if not worse]
-    return found | {"board_q": q, "commands": commands, "better_percent": 100.0 * (1.0 - (tuned / shipped) ** 0.5), "better_told": away.told}
+    return found | {"board_q": q, "commands": commands, "flash": native.flashed_by(name),
+                    "better_percent": 100.0 * (1.0 - (tuned / shipped) ** 0.5), "better_told": away.told}
 
 
 def lines(answer):
@@ -121,7 +122,7 @@ def verdict(answer):
         said.append(f"over the whole recording it predicts {answer['better_percent']:.1f} % better than with {shipped}")
     else:
         said.append(f"over the whole recording, rest included, it predicts {-answer['better_percent']:.1f} % worse than with {shipped}: keep them")
-    return said + ["", *answer["commands"]]
+    return said + [f"flash: {answer['flash']}", "", *answer["commands"]]
 
 
 def run(args):

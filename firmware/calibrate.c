@@ -1,0 +1,73 @@
+/* The means of cal6, and what becomes of a calibration that is found. */
+#include "calibrate.h"
+
+#include "replies.h"
+#include "settings.h"
+
+calibrate_told_t calibrate_told;
+
+static int16_t means_lsb_q4[3 * CALIBRATION_POSITIONS]; /* x, y, z of each position in turn */
+static uint8_t known;                                   /* a bit for each position */
+
+void calibrate_start(void)
+{
+    known = 0;
+    calibrate_told.left = CALIBRATION_POSITIONS;
+    calibrate_told.position = CALIBRATION_POSITIONS;
+}
+
+/* One more position; UNCHANGED, BEGUN when it was the last, and so on. */
+static measure_outcome_t add_position(const int16_t mean_lsb_q4[3])
+{
+    uint8_t position = calibration_position(mean_lsb_q4);
+    if (position == calibrate_told.position) {
+        return MEASURE_UNCHANGED;
+    }
+    calibrate_told.position = position;
+    uint8_t bit = (uint8_t)(1u << position);
+    if (known & bit) {
+        return MEASURE_REPEATED;
+    }
+    known |= bit;
+    calibrate_told.left--;
+    for (uint8_t axis = 0; axis < 3; axis++) {
+        means_lsb_q4[3u * position + axis] = mean_lsb_q4[axis];
+    }
+    return calibrate_told.left == 0 ? MEASURE_BEGUN : MEASURE_POSITION;
+}
+
+/* What was found is in force, or refused. */
+static measure_outcome_t outcome_of(const calibration_t *found)
+{
+    if (calibrate_told.verdict.why != CALIBRATION_GOOD) {
+        return MEASURE_WRONG;
+    }
+    (void)settings_calibrate(found); /* it is legal */
+    return MEASURE_DONE;
+}
+
+measure_outcome_t calibrate_take(uint8_t kind, const int16_t mean_lsb_q4[3])
+{
+    if (CALIBRATE_SIX && kind == REPLY_CAL6) {
+        return add_position(mean_lsb_q4);
+    }
+    calibration_t wanted = settings.calibration;
+    calibrate_told.verdict = kind == REPLY_TARE ? calibration_tare(&wanted, mean_lsb_q4)
+                                                : calibration_single(&wanted, mean_lsb_q4);
+    return outcome_of(&wanted);
+}
+
+void calibrate_start_six(calibration_six_t *six)
+{
+    calibration_six_start(six, &settings.calibration);
+}
+
+measure_outcome_t calibrate_step(calibration_six_t *six)
+{
+    if (calibration_six_step(six, means_lsb_q4)) {
+        return MEASURE_BEGUN;
+    }
+    calibration_t wanted = settings.calibration;
+    calibrate_told.verdict = calibration_six_end(six, &wanted, &calibrate_told.residual_mg);
+    return outcome_of(&wanted);
+}
