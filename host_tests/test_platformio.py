@@ -94,6 +94,14 @@ def uno_holds_the_filters_of_the_firmware_of_make():
 
 
 @test
+def uno_is_built_with_the_flags_that_make_it_small():
+    small = re.search(r"^AVR_SMALL +:= ((?:.*\\\n)*.*)", pathlib.Path("Makefile").read_text(encoding="utf-8"), re.M).group(1)
+    ours = set(small.replace("\\\n", " ").split()) - {"-Os", "-flto"}  # these two the platform gives
+    said = pathlib.Path("platformio.ini").read_text(encoding="utf-8").split("[env:uno]")[1].split("[env:native]")[0].split()
+    assert len(ours) > 10 and ours <= set(said), ours - set(said)
+
+
+@test
 def uno_runs_as_the_firmware_of_make():
     image = built("uno", "firmware.elf")
     for name, fw in (("pio-uno", image), ("make-uno", FW)):
