@@ -14,7 +14,7 @@ from system_support import run_all, test
 OUT = pathlib.Path("build/images-test")
 IMAGES = pathlib.Path("mk/images.mk").read_text(encoding="utf-8")
 SETS = {name: names.split() for name, names in re.findall(r"^FILTERS_([a-z]+) *:= *(.*)$", IMAGES, re.M)}
-FLAG = re.compile(r"-DFILTER_LIST\(X\)=((?:X\(\w+\) ?)+)")
+FLAG = re.compile(r"-DFILTER_LIST\(X\)= ?((?:X\(\w+\) ?)+)")
 # FILTERS, what the sentence names
 BAD = (("kff", "there is no filter kff;"), ("kf kff", "there is no filter kff;"), ("KF", "there is no filter KF;"),
        ("kf,sprf", "there is no filter kf,sprf;"), ("kf sprf kf", "named twice: kf"), ("sprf kf kf sprf", "named twice: kf sprf"),
