@@ -251,6 +251,29 @@ static void test_six_positions_refused_with_the_reason(void)
     }
 }
 
+/* The one position that lies 15 degrees off changes by 1 - cos(15 degrees) = 34 mg in the first round: ended there, it is refused. */
+static void test_six_positions_that_have_not_settled_are_refused(void)
+{
+    static const int16_t tilted[18] = { 4096, 0, 0, -4096, 0, 0, 0, 4096, 0, 0, -3956, 1060, 0, 0, 4096, 0, 0, -4096 };
+    calibration_plain(&c, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6);
+    const calibration_t before = c;
+    calibration_six_t solver;
+    calibration_six_start(&solver, &c);
+    for (int piece = 0; piece < 9; piece++) {
+        TEST_ASSERT_TRUE(calibration_six_step(&solver, tilted));
+    }
+    uint16_t residual_mg = 0;
+    calibration_verdict_t verdict = calibration_six_end(&solver, &c, &residual_mg);
+    TEST_ASSERT_EQUAL_UINT8(CALIBRATION_RESIDUAL, verdict.why);
+    TEST_ASSERT_EQUAL_UINT8(3, verdict.where);
+    TEST_ASSERT_UINT_WITHIN(1, 34, residual_mg);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &c, sizeof before);
+    while (calibration_six_step(&solver, tilted)) {
+    }
+    TEST_ASSERT_EQUAL_UINT8(CALIBRATION_GOOD, calibration_six_end(&solver, &c, &residual_mg).why);
+    TEST_ASSERT_EQUAL_UINT(0, residual_mg);
+}
+
 /* Whatever is read: a verdict, legal numbers if it is good, the old ones if not. */
 static void test_six_positions_of_anything(void)
 {
@@ -317,6 +340,7 @@ int main(void)
     RUN_TEST(test_six_positions_reach_0_3_degree);
     RUN_TEST(test_six_positions_against_a_solver);
     RUN_TEST(test_six_positions_refused_with_the_reason);
+    RUN_TEST(test_six_positions_that_have_not_settled_are_refused);
     RUN_TEST(test_six_positions_of_anything);
     RUN_TEST(test_tare_of_any_mounting);
     return UNITY_END();
