@@ -105,7 +105,7 @@ TYPED = [
       for name in ("adaptive", "sprf", "synth")),
     *(typed(f"vibration, {name}", "buserr", stream="sim/streams/vibration.csv", filter_name=name, gated_rows=3 * GATED_ROWS)
       for name in ("sprf", "synth")),
-    # a byte every 160 cycles, and its handler takes 66 of them: the one exception to 1 ms of main loop, 1.4 ms
+    # a byte every 160 cycles, and its handler takes 66 of them
     typed("flood at 1000000 baud", "rxflood:200", "baud 1000000", begin_ms=900),
     # behind one another; the fourth start in a row by the watchdog is with safe settings
     typed("starve again", ("starve:2000", "@450 starve:2000", "@900 starve:2000", "@1350 starve:2000"), "status", begin_ms=3300, resets=4,
