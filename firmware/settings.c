@@ -22,7 +22,7 @@ void settings_defaults(void)
     settings_take_filter(0); /* the first of the image's */
     settings.mode = MODE_CSV;
     settings.address = 0;
-    calibration_plain(&settings.calibration, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6);
+    calibration_plain(&settings.calibration, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
     settings_follow();
 }
 

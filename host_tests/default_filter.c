@@ -26,7 +26,7 @@ static const double cut_hz[] = { 5.0, 2.5, 10.0 };
 enum { SMOOTHED = sizeof cut_hz / sizeof cut_hz[0], OWN = SMOOTHED, REFERENCES };
 
 #define RAW CONTENDERS /* a contender that does nothing */
-static const double lsb_per_g = 256.0;
+static const double lsb_per_g[] = { 265.0, 265.0, 256.0 }; /* of the streams */
 static const double bad_for_s = 0.5;
 
 typedef struct {
@@ -54,9 +54,9 @@ static double true_lsb(const stream_row_t *row, int axis)
     double roll = row->truth_cdeg[0] * 1.74532925199432958e-4;
     double pitch = row->truth_cdeg[1] * 1.74532925199432958e-4;
     if (axis == 0) {
-        return -lsb_per_g * sin(pitch);
+        return -lsb_per_g[axis] * sin(pitch);
     }
-    return lsb_per_g * cos(pitch) * (axis == 1 ? sin(roll) : cos(roll));
+    return lsb_per_g[axis] * cos(pitch) * (axis == 1 ? sin(roll) : cos(roll));
 }
 
 /* Every row's reference, then that of the groups. */

@@ -54,18 +54,18 @@ static void test_first_five_rows_warm_up(void)
     }
 }
 
-/* (31, -53, 248) LSB: 121, -207, 969 mg; roll atan2(-53, 248) = -12.06, pitch atan2(-31, 253.6) = -6.97 degrees. */
+/* (31, -53, 248) LSB over 265, 265, 256: 117, -200, 969 mg; roll atan2(-200, 969) = -11.66, pitch atan2(-117, 989) = -6.74 degrees. */
 static void test_values_of_a_resting_board(void)
 {
     stream_t still = board_constant_stream(200, 100.0, 31, -53, 248);
     board_start(&still, 0.0, 0);
     board_run_ms(500);
     const board_row_t *row = &board.rows[20];
-    TEST_ASSERT_EQUAL_INT(121, row->mg[0]);
-    TEST_ASSERT_EQUAL_INT(-207, row->mg[1]);
+    TEST_ASSERT_EQUAL_INT(117, row->mg[0]);
+    TEST_ASSERT_EQUAL_INT(-200, row->mg[1]);
     TEST_ASSERT_EQUAL_INT(969, row->mg[2]);
-    TEST_ASSERT_INT_WITHIN(6, -1206, row->roll_cdeg);
-    TEST_ASSERT_INT_WITHIN(6, -697, row->pitch_cdeg);
+    TEST_ASSERT_INT_WITHIN(6, -1166, row->roll_cdeg);
+    TEST_ASSERT_INT_WITHIN(6, -674, row->pitch_cdeg);
     TEST_ASSERT_EQUAL_UINT(ROW_STUCK, row->flags);
     stream_free(&still);
 }

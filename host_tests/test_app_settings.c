@@ -277,7 +277,7 @@ static void test_calibration_reaches_the_rows(void)
     TEST_ASSERT_INT_WITHIN(1, 215, board.rows[board.row_count - 1].mg[0]);
     type("defaults");
     board_run_ms(300);
-    TEST_ASSERT_INT_WITHIN(1, 121, board.rows[board.row_count - 1].mg[0]);
+    TEST_ASSERT_INT_WITHIN(1, 117, board.rows[board.row_count - 1].mg[0]);
 }
 
 /* What tare makes of a part that reads more than 1 g is told, and can be typed again: 264 / 256 = 1.03125. */

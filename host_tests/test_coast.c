@@ -80,7 +80,7 @@ static void sample(void)
     adxl345_sample_t s = {
         .t_us = world.t_us,
         .lsb = { (int16_t)lround(sigma * random_normal(&world.random)),
-                 (int16_t)lround(256.0 * sin(world.roll_deg * DEGREES) + sigma * random_normal(&world.random)),
+                 (int16_t)lround(265.0 * sin(world.roll_deg * DEGREES) + sigma * random_normal(&world.random)),
                  (int16_t)lround(256.0 * cos(world.roll_deg * DEGREES) + 1.3 * sigma * random_normal(&world.random)) }
     };
     while (missing_by(s.t_us, true)) {

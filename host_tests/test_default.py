@@ -215,7 +215,7 @@ def still_stream(rows=600, roll=0.0, pitch=0.0):
     """Reads 4 LSB too much on x and 3 on z, to the nearest whole ones."""
     path = OUT / f"still-{rows}-{roll:g}.csv"
     OUT.mkdir(parents=True, exist_ok=True)
-    x, y, z = (make_streams.round_half_up(lsb) for lsb in make_streams.gravity_lsb(roll, pitch))
+    x, y, z = (make_streams.round_half_up(lsb) for lsb in make_streams.to_lsb(make_streams.gravity_g(roll, pitch)))
     lines = [f"{10000 * i},{x + 4},{y},{z + 3},{100 * roll:.0f},{100 * pitch:.0f}" for i in range(rows)]
     path.write_text("\n".join([make_streams.HEADER, *lines]) + "\n", encoding="ascii")
     return path
@@ -230,7 +230,7 @@ def a_constant_stream_is_off_by_what_it_is_off():
         rows = score.read_rows(text)
         names = list(rows["rest:x:0", 100]["none"][0])
         assert names[-2:] == ["median5_kf", "raw"] and "sprf" in names and len(names) >= 9
-        gravity = make_streams.gravity_lsb(roll, pitch)
+        gravity = make_streams.to_lsb(make_streams.gravity_g(roll, pitch))
         off = [make_streams.round_half_up(lsb) + more - lsb for lsb, more in zip(gravity, (4, 0, 3))]
         expected = 500 * sum(lsb * lsb for lsb in off)
         for name in names:

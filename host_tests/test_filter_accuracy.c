@@ -81,11 +81,19 @@ static void step_axis(axis_t *a, int16_t z, bool estimate, bool warm)
     }
 }
 
+/* The streams' parts read 265, 265, 256 LSB per g. */
+static const double of_z[3] = { 256.0 / 265.0, 256.0 / 265.0, 1.0 };
+
+static double roll_deg(double y_lsb, double z_lsb)
+{
+    return DEGREES * atan2(of_z[1] * y_lsb, of_z[2] * z_lsb);
+}
+
 static double roll_fixed(const axis_t axes[3], filter_kind_t kind)
 {
     int32_t q8[3];
     for (int i = 0; i < 3; i++) {
-        q8[i] = (axes[i].f[kind].state.kf.core.x_lsb_q16 + 128) >> 8;
+        q8[i] = (int32_t)lrint(of_z[i] * axes[i].f[kind].state.kf.core.x_lsb_q16 / 256.0);
     }
     tilt_t tilt = { 0, 0, false };
     tilt_angles(&tilt, q8[0], q8[1], q8[2]);
@@ -116,11 +124,11 @@ static score_t run(const char *path, double r_lsb2)
             continue;
         }
         double truth = s.rows[k].truth_cdeg[0] / 100.0;
-        add_square(&sum.raw, DEGREES * atan2(s.rows[k].lsb[1], s.rows[k].lsb[2]), truth);
+        add_square(&sum.raw, roll_deg(s.rows[k].lsb[1], s.rows[k].lsb[2]), truth);
         add_square(&sum.kf, roll_fixed(axes, FILTER_KIND_kf), truth);
         add_square(&sum.sprf, roll_fixed(axes, FILTER_KIND_sprf), truth);
-        add_square(&sum.kf_double, DEGREES * atan2(axes[1].kf.x[0], axes[2].kf.x[0]), truth);
-        add_square(&sum.sprf_double, DEGREES * atan2(axes[1].sprf.x[0], axes[2].sprf.x[0]), truth);
+        add_square(&sum.kf_double, roll_deg(axes[1].kf.x[0], axes[2].kf.x[0]), truth);
+        add_square(&sum.sprf_double, roll_deg(axes[1].sprf.x[0], axes[2].sprf.x[0]), truth);
     }
     double n = (double)(s.count - FIRST_ROW);
     stream_free(&s);

@@ -41,12 +41,13 @@ class Case(unittest.TestCase):
 
 
 def reading(i):
-    """A vector whose triple differs from row to row: roll sweeps 0..360 degrees, |a| about 256 LSB."""
+    """A vector of about 1 g whose triple differs from row to row: roll sweeps 0..360 degrees."""
     turn = 2.0 * math.pi * i / 400.0
-    return round(20.0 * math.sin(7.0 * turn)), round(256.0 * math.sin(turn)), round(256.0 * math.cos(turn))
+    return round(20.0 * math.sin(7.0 * turn)), round(265.0 * math.sin(turn)), round(256.0 * math.cos(turn))
 
 
 def angles_cdeg(x, y, z):
+    x, y, z = x / 265.0, y / 265.0, z / 256.0
     return 100.0 * math.degrees(math.atan2(y, z)), 100.0 * math.degrees(math.atan2(-x, math.hypot(y, z)))
 
 

@@ -12,11 +12,12 @@
 
 #define FOLDER "sim/streams/"
 #define GENERATOR "python3 tools/make_streams.py"
-#define LSB_PER_G 256.0
 #define RAD_PER_CDEG (3.14159265358979323846 / 18000.0)
 #define Z_NOISE_RATIO 1.3
-#define ROUNDING_LSB 0.55 /* half a reading, and 0.005 degree of truth in 256 LSB */
+#define ROUNDING_LSB 0.55 /* half a reading, and 0.005 degree of truth in 265 LSB */
 #define ROUNDING_VARIANCE (1.0 / 12.0)
+
+static const double lsb_per_g[3] = { 265.0, 265.0, 256.0 };
 
 static stream_t stream;
 
@@ -43,7 +44,7 @@ static double gravity_lsb(const stream_row_t *row, int axis)
     double roll = row->truth_cdeg[0] * RAD_PER_CDEG;
     double pitch = row->truth_cdeg[1] * RAD_PER_CDEG;
     const double g[3] = { -sin(pitch), cos(pitch) * sin(roll), cos(pitch) * cos(roll) };
-    return LSB_PER_G * g[axis];
+    return lsb_per_g[axis] * g[axis];
 }
 
 static double deviation_lsb(const stream_row_t *row, int axis)
@@ -381,7 +382,7 @@ static void test_sideways_force_is_half_a_g_on_y_for_3_s(void)
         }
     }
     TEST_ASSERT_EQUAL_UINT(280, n);
-    TEST_ASSERT_DOUBLE_WITHIN(0.5, 128.0, sum / n);
+    TEST_ASSERT_DOUBLE_WITHIN(0.5, 0.5 * lsb_per_g[1], sum / n);
 }
 
 static void test_gaps_and_jitter_are_within_their_limits(void)

@@ -151,7 +151,7 @@ def walk_forces(samples, _rng):
         strike = 0.6 * math.exp(-since_s / 0.04) * math.sin(2.0 * math.pi * 15.0 * since_s)
         up = 0.25 * math.sin(4.0 * math.pi * t) + 0.12 * math.sin(8.0 * math.pi * t + 1.0) + strike
         aside = 0.1 * math.sin(2.0 * math.pi * t)
-        make_streams.add_force(sample, (0.3 * strike + 0.1 * math.sin(4.0 * math.pi * t + 2.0), aside, up), make_streams.LSB_PER_G)
+        make_streams.add_force(sample, (0.3 * strike + 0.1 * math.sin(4.0 * math.pi * t + 2.0), aside, up), 1.0)
 
 
 def swaying(t):

@@ -4,11 +4,12 @@
     python3 tools/make_streams.py            writes sim/streams/*.csv and their README.md
     python3 tools/make_streams.py --check    compares with what would be written; exit 1 names each that differs
 
-Model: an ADXL345 in full resolution (256 LSB/g) that turns about its own centre, so it feels gravity and what a
-scenario adds, with white Gaussian noise per axis, rounded to integers and clamped to the 13-bit rails:
+Model: an ADXL345 in full resolution, typical at 3.3 V (x and y 265, z 256 LSB/g: data sheet Rev. E, p. 33), that turns
+about its own centre, so it feels gravity and what a scenario adds, with white Gaussian noise per axis, rounded to
+integers and clamped to the 13-bit rails. With g = 1:
 
-    x = -g sin(pitch)    y = g cos(pitch) sin(roll)    z = g cos(pitch) cos(roll)
-    roll = atan2(y, z)   pitch = atan2(-x, |(y, z)|)
+    x = -265 sin(pitch)    y = 265 cos(pitch) sin(roll)    z = 256 cos(pitch) cos(roll)
+    roll = atan2(y, z)     pitch = atan2(-x, |(y, z)|)     of the same in g
 
 The truth columns are the angles of the noise-free attitude, whatever else shakes the sensor. Standard library only;
 noise is Box-Muller on random.Random(seed).random(), whose sequence Python promises to keep.
@@ -21,7 +22,7 @@ import sys
 from dataclasses import dataclass, field
 from typing import Callable
 
-LSB_PER_G = 256.0
+LSB_PER_G = (265.0, 265.0, 256.0)
 RAIL_LOW_LSB, RAIL_HIGH_LSB = -4096, 4095
 Z_NOISE_RATIO = 1.3  # z is the noisier axis (data sheet Rev. E, p. 4: 1.1 to 0.75 LSB typical)
 MAX_FILE_BYTES = 300_000
@@ -38,7 +39,7 @@ class Sample:
     t_us: int
     roll_deg: float
     pitch_deg: float
-    force_lsb: list
+    force_g: list
     noise_lsb: list
     lsb: list = field(default_factory=list)
 
@@ -73,18 +74,22 @@ def round_half_up(value):
     return math.floor(value + 0.5)
 
 
-def gravity_lsb(roll_deg, pitch_deg):
-    """What the sensor reads at rest at this attitude; pitch beyond 90 degrees is simply turned on."""
+def gravity_g(roll_deg, pitch_deg):
+    """What the sensor feels at rest at this attitude; pitch beyond 90 degrees is simply turned on."""
     roll, pitch = math.radians(roll_deg), math.radians(pitch_deg)
     x = -math.sin(pitch)
     y = math.cos(pitch) * math.sin(roll)
     z = math.cos(pitch) * math.cos(roll)
-    return [LSB_PER_G * x, LSB_PER_G * y, LSB_PER_G * z]
+    return [x, y, z]
+
+
+def to_lsb(force_g):
+    return [f * lsb_per_g for f, lsb_per_g in zip(force_g, LSB_PER_G)]
 
 
 def truth_cdeg(roll_deg, pitch_deg):
     """Roll in -17999..18000 and pitch in -9000..9000 as the firmware defines them, from an attitude turned at will."""
-    x, y, z = gravity_lsb(roll_deg, pitch_deg)
+    x, y, z = gravity_g(roll_deg, pitch_deg)
     roll = round_half_up(100.0 * math.degrees(math.atan2(y, z)))
     pitch = round_half_up(100.0 * math.degrees(math.atan2(-x, math.hypot(y, z))))
     return (18000 if roll == -18000 else roll), pitch
@@ -151,8 +156,8 @@ def random_direction(rng):
     return [v / length for v in vector]
 
 
-def add_force(sample, direction, size_lsb):
-    sample.force_lsb = [f + size_lsb * d for f, d in zip(sample.force_lsb, direction)]
+def add_force(sample, direction, size_g):
+    sample.force_g = [f + size_g * d for f, d in zip(sample.force_g, direction)]
 
 
 def outliers(samples, rng):
@@ -162,17 +167,17 @@ def outliers(samples, rng):
 
 
 def vibration_bursts(samples, rng):
-    """Sine bursts of 20..150 ms every 0.3..1.5 s: 30..500 LSB (log-uniform), 20..45 Hz, any direction and phase."""
+    """Sine bursts of 20..150 ms every 0.3..1.5 s: 30..500 / 256 g (log-uniform), 20..45 Hz, any direction and phase."""
     end_us = samples[-1].t_us
     begin_us = 2_000_000
     while begin_us < end_us:
         length_us = rng.uniform(20e3, 150e3)
-        size_lsb = 30.0 * (500.0 / 30.0) ** rng.random()
+        size_g = 30.0 / 256.0 * (500.0 / 30.0) ** rng.random()
         turn_per_us = 2.0 * math.pi * rng.uniform(20.0, 45.0) * 1e-6
         phase, direction = rng.uniform(0.0, 2.0 * math.pi), random_direction(rng)
         for sample in samples:
             if begin_us <= sample.t_us < begin_us + length_us:
-                add_force(sample, direction, size_lsb * math.sin(turn_per_us * (sample.t_us - begin_us) + phase))
+                add_force(sample, direction, size_g * math.sin(turn_per_us * (sample.t_us - begin_us) + phase))
         begin_us += length_us + rng.uniform(0.3e6, 1.5e6)
 
 
@@ -181,12 +186,12 @@ def shocks(samples, rng):
     end_us = samples[-1].t_us
     begin_us = 2_000_000
     while begin_us < end_us:
-        length_us, size_lsb = rng.uniform(20e3, 50e3), LSB_PER_G * rng.uniform(20.0, 30.0)
+        length_us, size_g = rng.uniform(20e3, 50e3), rng.uniform(20.0, 30.0)
         direction = [0.2 * gaussian(rng) for _ in range(3)]
         direction[rng.randrange(3)] = rng.choice((-1.0, 1.0))
         for sample in samples:
             if begin_us <= sample.t_us < begin_us + length_us:
-                add_force(sample, direction, size_lsb * math.sin(math.pi * (sample.t_us - begin_us) / length_us))
+                add_force(sample, direction, size_g * math.sin(math.pi * (sample.t_us - begin_us) / length_us))
         begin_us += rng.uniform(1e6, 3e6)
 
 
@@ -196,16 +201,16 @@ def drops(samples, _rng):
         for begin_us in (6_000_000, 16_000_000):
             since_us = sample.t_us - begin_us
             if 0 <= since_us < 1_000_000:
-                sample.force_lsb = [0.0, 0.0, 0.0]
+                sample.force_g = [0.0, 0.0, 0.0]
             elif 1_000_000 <= since_us < 1_060_000:
-                sample.force_lsb = [6.0 * f for f in sample.force_lsb]
+                sample.force_g = [6.0 * f for f in sample.force_g]
 
 
 def sideways(samples, _rng):
     """0.5 g along the board's y axis for 3 s (from 8 s), with 0.2 s to rise and to fall."""
     rise = [(0.0, 0.0), (8.0, 0.0), (8.2, 1.0), (11.0, 1.0), (11.2, 0.0)]
     for sample in samples:
-        add_force(sample, (0.0, 1.0, 0.0), 0.5 * LSB_PER_G * through(rise, sample.t_us * 1e-6))
+        add_force(sample, (0.0, 1.0, 0.0), 0.5 * through(rise, sample.t_us * 1e-6))
 
 
 # --- what goes wrong on the bus (after rounding) ----------------------------------------------------------------------
@@ -302,13 +307,13 @@ def make_samples(scenario, rng):
             t_us += rng.randint(-scenario.jitter_us, scenario.jitter_us)
         roll, pitch = scenario.attitude(t_us * 1e-6)
         noise_lsb = [sigma * gaussian(rng) for sigma in scenario.noise_lsb]
-        samples.append(Sample(t_us, roll, pitch, gravity_lsb(roll, pitch), noise_lsb))
+        samples.append(Sample(t_us, roll, pitch, gravity_g(roll, pitch), noise_lsb))
     return samples
 
 
 def quantise(sample):
     sample.lsb = [min(max(round_half_up(f + n), RAIL_LOW_LSB), RAIL_HIGH_LSB)
-                  for f, n in zip(sample.force_lsb, sample.noise_lsb)]
+                  for f, n in zip(to_lsb(sample.force_g), sample.noise_lsb)]
 
 
 def make_stream(scenario):
@@ -321,7 +326,7 @@ def make_stream(scenario):
     samples = scenario.misread(samples, rng)
     lines = [f"# {scenario.name}: {scenario.what}",
              f"# truth: {scenario.truth}",
-             f"# noise rms before rounding (LSB): {noise_text(scenario)}; 256 LSB/g, {scenario.rate_hz} Hz",
+             f"# noise rms before rounding (LSB): {noise_text(scenario)}; x, y 265, z 256 LSB/g, {scenario.rate_hz} Hz",
              f"# made by: {COMMAND} (seed {scenario.seed}); do not edit",
              HEADER]
     for s in samples:
@@ -338,8 +343,8 @@ def make_readme(rows_of):
     lines = ["# Shipped streams", "",
              f"Made by `{COMMAND}` (fixed seeds; `--check` compares). Columns",
              f"`{HEADER}`: time in microseconds, readings",
-             "in LSB of 256 per g (13 bit, -4096..4095), true roll and pitch in 0.01 degree. Lines beginning with `#`",
-             "say what a file is. Noise is white and Gaussian, given as rms in LSB before rounding, which adds 1/12 to",
+             "in LSB (13 bit, -4096..4095; 265 per g on x and y, 256 on z, as is typical at 3.3 V: data sheet Rev. E, p. 33),",
+             "true roll and pitch in 0.01 degree. Lines beginning with `#` say what a file is. Noise is white and Gaussian, given as rms in LSB before rounding, which adds 1/12 to",
              "the variance; where two numbers stand the second is z's, 1.3 times that of x and y. Real sensors differ:",
              "their noise is coloured and their outliers are not Gaussian.", "",
              "| file | s | Hz | rows | noise x y, z | seed | what | truth |", "|---|---|---|---|---|---|---|---|"]

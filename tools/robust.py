@@ -107,7 +107,7 @@ def shake_table(page, names):
         pairs = [[score[streams[hz, rate].name, name]["roll"] for rate in SHAKE_RATES_HZ] for name in [RAW, *names]]
         rows.append((f"{hz} Hz", [" / ".join(f"{value:.2f}" for value in pair) for pair in pairs]))
     page.table("shake", "The same vibration at 100 / 400 Hz", ["vibration", RAW, *(f"`{name}`" for name in names)], rows,
-               "Roll error in degrees rms at an output data rate of 100 Hz / of 400 Hz. Bursts of 1 s, 100 LSB (0.39 g) in a random direction, on "
+               "Roll error in degrees rms at an output data rate of 100 Hz / of 400 Hz. Bursts of 1 s, 0.39 g in a random direction, on "
                "a slow tilt; equal noise density. Samples are taken at an instant: what the sensor's own low pass (half the rate) keeps away "
                "is not modelled.")
 

@@ -16,7 +16,7 @@ MADE = pathlib.Path("build/robust")  # streams made for one table only
 RANGE_G = 16
 ROW_COLUMNS = 10
 FLAG_GATED, FLAG_COASTED, FLAG_REACQUIRED, FLAG_WARMING_UP = 1, 2, 4, 128
-MG_PER_LSB = 1000.0 / 256.0
+MG_PER_LSB = 1000.0 / np.array(make_streams.LSB_PER_G)
 # roll grows undefined towards pitch 90: noise of the y axis counts 1 / cos(pitch) times, here 5.8 times at most
 PITCH_LIMIT_CDEG = 8000
 AXES = "xyz"
@@ -24,7 +24,7 @@ AXES = "xyz"
 # The same shaking felt at two output data rates: bursts of 1 s, 1 s apart, each with its own phase and direction.
 SHAKE_HZ = (30, 70, 100, 130, 200, 400)
 SHAKE_RATES_HZ = (100, 400)
-SHAKE_LSB, SHAKE_SECONDS, SHAKE_SEED = 100.0, 21.0, 400
+SHAKE_G, SHAKE_SECONDS, SHAKE_SEED = 100.0 / 256.0, 21.0, 400
 
 
 @dataclass
@@ -103,9 +103,10 @@ def replay(stream, name, changes=()):
 
 def unfiltered(stream, flags):
     """The raw readings as if a filter had passed them; flags: of any run, for its warm-up."""
-    x, y, z = stream.lsb.T.astype(float)
+    mg = stream.lsb * MG_PER_LSB
+    x, y, z = mg.T
     angles = np.degrees([np.arctan2(y, z), np.arctan2(-x, np.hypot(y, z))]).T * 100.0
-    return Run(angles, stream.lsb * MG_PER_LSB, flags & FLAG_WARMING_UP)
+    return Run(angles, mg, flags & FLAG_WARMING_UP)
 
 
 def true_mg(stream):
@@ -150,7 +151,7 @@ def shake(samples, frequency_hz):
         for sample in samples:
             t_s = sample.t_us * 1e-6
             if begin_s <= t_s < begin_s + 1.0:
-                make_streams.add_force(sample, direction, SHAKE_LSB * np.sin(2.0 * np.pi * frequency_hz * t_s + phase))
+                make_streams.add_force(sample, direction, SHAKE_G * np.sin(2.0 * np.pi * frequency_hz * t_s + phase))
 
 
 def shaken(frequency_hz, rate_hz):

@@ -43,8 +43,8 @@ class TestParser(Case):
         self.assertEqual((found["count"], found["broken"], found["lost"]), (1, 0, 0))
         one = found["rows"][0]
         self.assertEqual((one["lsb"], one["mg"], one["roll"], one["pitch"], one["flags"]), ([-5, 1, 259], [-20, 4, 1012], 0.22, -1.1, 129))
-        self.assertAlmostEqual(one["rawRoll"], math.degrees(math.atan2(1, 259)), 9)
-        self.assertAlmostEqual(one["rawPitch"], math.degrees(math.atan2(5, math.hypot(1, 259))), 9)
+        self.assertAlmostEqual(one["rawRoll"], math.degrees(math.atan2(1 / 265, 259 / 256)), 9)
+        self.assertAlmostEqual(one["rawPitch"], math.degrees(math.atan2(5 / 265, math.hypot(1 / 265, 259 / 256))), 9)
 
     def test_pieces_and_line_ends_make_no_difference(self):
         text = (BANNER + HEADER + rows(0, 5)).decode()

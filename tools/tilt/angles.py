@@ -2,17 +2,18 @@
 import numpy as np
 
 ANGLES = ("roll", "pitch")
+LSB_PER_G = np.array([265.0, 265.0, 256.0])  # typical at 3.3 V, data sheet p. 33; also the firmware's until it is told others
 
 
 def of_readings(x, y, z):
-    """(roll, pitch) of readings in any unit."""
+    """(roll, pitch) of accelerations in any unit."""
     x, y, z = (np.asarray(axis, float) for axis in (x, y, z))
     return np.degrees(np.arctan2(y, z)), np.degrees(np.arctan2(-x, np.hypot(y, z)))
 
 
 def raw_angles_deg(lsb):
-    """{"roll", "pitch"} of readings (rows, 3)."""
-    return dict(zip(ANGLES, of_readings(*np.asarray(lsb, float).T)))
+    """{"roll", "pitch"} of readings (rows, 3) in LSB of a typical part."""
+    return dict(zip(ANGLES, of_readings(*(np.asarray(lsb, float) / LSB_PER_G).T)))
 
 
 def wrapped_deg(difference):

@@ -5,18 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from tilt import protocol, spectrum, stream
-from tilt.angles import ANGLES, raw_angles_deg
+from tilt.angles import ANGLES, LSB_PER_G, raw_angles_deg
 from tilt.errors import TiltError
 
 AXES = ("x", "y", "z")
-LSB_PER_G = 256.0
 FILTERED = {"roll": "roll_cdeg", "pitch": "pitch_cdeg", "x": "x_mg", "y": "y_mg", "z": "z_mg"}
 GAP_STEPS, GAP_US = 3.5, 250_000  # a line is not drawn over more of both: in a long silence the board sends a row each 100 ms
 
 
 @dataclass
 class Pictured:
-    """raw, filtered, truth: {quantity: series} in degrees (roll, pitch) and mg (x, y, z; raw at 256 LSB/g); filtered and truth may lack any."""
+    """raw, filtered, truth: {quantity: series} in degrees (roll, pitch) and mg (x, y, z; raw at the sensitivity of a typical part); filtered and truth may lack any."""
     name: str
     t_s: np.ndarray
     raw: dict
@@ -81,7 +80,7 @@ def of_filter(name, whole, t_s, part, end):
     lsb, missing = whole.lsb[part], whole.missing[part]
     filtered = {kind: whole.columns[column + end][part] / (100.0 if kind in ANGLES else 1.0) for kind, column in FILTERED.items()
                 if column + end in whole.columns}
-    raw = raw_angles_deg(lsb) | {axis: lsb[:, i] * (1000.0 / LSB_PER_G) for i, axis in enumerate(AXES)}
+    raw = raw_angles_deg(lsb) | {axis: lsb[:, i] * (1000.0 / LSB_PER_G[i]) for i, axis in enumerate(AXES)}
     truth = {"roll": whole.roll_true_cdeg[part] / 100.0, "pitch": whole.pitch_true_cdeg[part] / 100.0} if whole.has_truth else {}
     flags = whole.columns.get("flags" + end, whole.flags)[part] if end else whole.flags[part]
     shown = Pictured(name + (f": {end[1:]}" if end else ""), t_s[part], raw, filtered, truth, lsb, flags, missing, begins[part], whole.rate_hz)
