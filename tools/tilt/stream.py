@@ -34,7 +34,7 @@ class Stream:
     """One recording; all arrays have one element for each row.
 
     t_us: int64, unwrapped, from 0; a segment begins one median step after the end of the one before.
-    lsb: int16 (rows, 3), x y z, 256 to the g. flags: uint16, 0 without such a column. missing: no sample (flag 2 or 16).
+    lsb: int16 (rows, 3), x y z, about 256 to the g. flags: uint16, 0 without such a column. missing: no sample (flag 2 or 16).
     roll_true_cdeg, pitch_true_cdeg: int16, or None. line: of the file, from 1. segments: slices of rows, one for each header that has rows.
     step_us: the median step within segments, 0 with one row. start_us: the file's first time. columns: int64, those asked for by name.
     """
