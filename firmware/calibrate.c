@@ -16,11 +16,33 @@ void calibrate_start(void)
     calibrate_told.position = CALIBRATION_POSITIONS;
 }
 
+static uint16_t size_of(int16_t mean_lsb_q4)
+{
+    return (uint16_t)(mean_lsb_q4 < 0 ? -mean_lsb_q4 : mean_lsb_q4);
+}
+
+/*
+ * Nearly as far from a second axis as from this one: 41 degrees off by an exact part. At 20 degrees the worst part that
+ * is legal (10 % of gain, 40 LSB) has 136 LSB across and 176 along.
+ */
+static bool oblique(const int16_t mean_lsb_q4[3], uint8_t position)
+{
+    uint8_t along = position >> 1;
+    uint16_t limit_q4 = size_of(mean_lsb_q4[along]);
+    limit_q4 = (uint16_t)(limit_q4 - (limit_q4 >> 3));
+    for (uint8_t axis = 0; axis < 3; axis++) {
+        if (axis != along && size_of(mean_lsb_q4[axis]) > limit_q4) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* One more position; UNCHANGED, BEGUN when it was the last, and so on. */
 static measure_outcome_t add_position(const int16_t mean_lsb_q4[3])
 {
     uint8_t position = calibration_position(mean_lsb_q4);
-    if (position == calibrate_told.position) {
+    if (position == calibrate_told.position || oblique(mean_lsb_q4, position)) {
         return MEASURE_UNCHANGED;
     }
     calibrate_told.position = position;

@@ -54,7 +54,7 @@ static void test_first_five_rows_warm_up(void)
     }
 }
 
-/* (31, -53, 248) LSB over 265, 265, 256: 117, -200, 969 mg; roll atan2(-200, 969) = -11.66, pitch atan2(-117, 989) = -6.74 degrees. */
+/* (31, -53, 248) LSB: 117, -200, 969 mg; roll atan2(-200, 969) = -11.66, pitch atan2(-117, 989) = -6.74 degrees. */
 static void test_values_of_a_resting_board(void)
 {
     stream_t still = board_constant_stream(200, 100.0, 31, -53, 248);

@@ -209,6 +209,19 @@ static void test_a_position_laid_again_is_refused(void)
     TEST_ASSERT_EQUAL_size_t(note + 4, board.note_count);
 }
 
+/* Held in between, 43 degrees off the axis that is nearest: no position, and no line until it lies straight. */
+static void test_an_oblique_rest_is_no_position(void)
+{
+    static const attitude_t lays[] = {
+        { { 0, 0, 1 } }, { { 0.7314, 0, 0.682 } }, { { 0, 0.682, -0.7314 } }, { { 1, 0, 0 } }
+    };
+    start_lays(lays, 4, adxl345_part_typical);
+    size_t note = typed("cal6", 27500.0);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: +z up, 5 to go", note));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: +x up, 4 to go", note));
+    TEST_ASSERT_EQUAL_size_t(note + 3, board.note_count);
+}
+
 /* x or y is 35 degrees off in its position: refused by name, and nothing changes. */
 static void test_a_position_too_far_off_is_refused(void)
 {
@@ -343,6 +356,7 @@ int main(void)
     RUN_TEST(test_cal6_of_any_part);
     RUN_TEST(test_rows_after_cal6);
     RUN_TEST(test_a_position_laid_again_is_refused);
+    RUN_TEST(test_an_oblique_rest_is_no_position);
     RUN_TEST(test_a_position_too_far_off_is_refused);
     RUN_TEST(test_a_part_beyond_the_limits_is_refused);
     RUN_TEST(test_cal6_stops);

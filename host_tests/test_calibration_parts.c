@@ -251,7 +251,7 @@ static void test_six_positions_refused_with_the_reason(void)
     }
 }
 
-/* The one position that lies 15 degrees off changes by 1 - cos(15 degrees) = 34 mg in the first round: ended there, it is refused. */
+/* One position 15 degrees off changes by 1 - cos(15 degrees) = 34 mg in the first round: ended there, it is refused. */
 static void test_six_positions_that_have_not_settled_are_refused(void)
 {
     static const int16_t tilted[18] = { 4096, 0, 0, -4096, 0, 0, 0, 4096, 0, 0, -3956, 1060, 0, 0, 4096, 0, 0, -4096 };

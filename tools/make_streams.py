@@ -4,15 +4,14 @@
     python3 tools/make_streams.py            writes sim/streams/*.csv and their README.md
     python3 tools/make_streams.py --check    compares with what would be written; exit 1 names each that differs
 
-Model: an ADXL345 in full resolution, typical at 3.3 V (x and y 265, z 256 LSB/g: data sheet Rev. E, p. 33), that turns
-about its own centre, so it feels gravity and what a scenario adds, with white Gaussian noise per axis, rounded to
-integers and clamped to the 13-bit rails. With g = 1:
+Model: an ADXL345 in full resolution that turns about its own centre, so it feels gravity and what a scenario adds:
 
-    x = -265 sin(pitch)    y = 265 cos(pitch) sin(roll)    z = 256 cos(pitch) cos(roll)
-    roll = atan2(y, z)     pitch = atan2(-x, |(y, z)|)     of the same in g
+    x = -sin(pitch)    y = cos(pitch) sin(roll)    z = cos(pitch) cos(roll)    in g
+    roll = atan2(y, z)   pitch = atan2(-x, |(y, z)|)
 
-The truth columns are the angles of the noise-free attitude, whatever else shakes the sensor. Standard library only;
-noise is Box-Muller on random.Random(seed).random(), whose sequence Python promises to keep.
+Read with the sensitivities typical at 3.3 V (data sheet Rev. E, p. 33), white Gaussian noise per axis, rounded to
+integers and clamped to the 13-bit rails. The truth columns are the angles of the noise-free attitude, whatever else
+shakes the sensor. Noise is Box-Muller on random.Random(seed).random(), whose sequence Python promises to keep.
 """
 import argparse
 import math
@@ -77,14 +76,11 @@ def round_half_up(value):
 def gravity_g(roll_deg, pitch_deg):
     """What the sensor feels at rest at this attitude; pitch beyond 90 degrees is simply turned on."""
     roll, pitch = math.radians(roll_deg), math.radians(pitch_deg)
-    x = -math.sin(pitch)
-    y = math.cos(pitch) * math.sin(roll)
-    z = math.cos(pitch) * math.cos(roll)
-    return [x, y, z]
+    return [-math.sin(pitch), math.cos(pitch) * math.sin(roll), math.cos(pitch) * math.cos(roll)]
 
 
 def to_lsb(force_g):
-    return [f * lsb_per_g for f, lsb_per_g in zip(force_g, LSB_PER_G)]
+    return [f * lsb for f, lsb in zip(force_g, LSB_PER_G)]
 
 
 def truth_cdeg(roll_deg, pitch_deg):
@@ -312,8 +308,8 @@ def make_samples(scenario, rng):
 
 
 def quantise(sample):
-    sample.lsb = [min(max(round_half_up(f + n), RAIL_LOW_LSB), RAIL_HIGH_LSB)
-                  for f, n in zip(to_lsb(sample.force_g), sample.noise_lsb)]
+    analog = [f + n for f, n in zip(to_lsb(sample.force_g), sample.noise_lsb)]
+    sample.lsb = [min(max(round_half_up(value), RAIL_LOW_LSB), RAIL_HIGH_LSB) for value in analog]
 
 
 def make_stream(scenario):
@@ -343,10 +339,9 @@ def make_readme(rows_of):
     lines = ["# Shipped streams", "",
              f"Made by `{COMMAND}` (fixed seeds; `--check` compares). Columns",
              f"`{HEADER}`: time in microseconds, readings",
-             "in LSB (13 bit, -4096..4095; 265 per g on x and y, 256 on z, as is typical at 3.3 V: data sheet Rev. E, p. 33),",
-             "true roll and pitch in 0.01 degree. Lines beginning with `#` say what a file is. Noise is white and Gaussian, given as rms in LSB before rounding, which adds 1/12 to",
-             "the variance; where two numbers stand the second is z's, 1.3 times that of x and y. Real sensors differ:",
-             "their noise is coloured and their outliers are not Gaussian.", "",
+             "in LSB (13 bit; 265 per g on x and y, 256 on z: typical at 3.3 V, data sheet Rev. E, p. 33), true roll and pitch in",
+             "0.01 degree. Lines beginning with `#` say what a file is. Noise is white and Gaussian, rms in LSB before rounding, which adds",
+             "1/12 to the variance; a second number is z's. Real sensors differ: coloured noise, outliers that are not Gaussian.", "",
              "| file | s | Hz | rows | noise x y, z | seed | what | truth |", "|---|---|---|---|---|---|---|---|"]
     for s in SCENARIOS:
         levels = ", ".join(f"{sigma:g}" for sigma in sorted(set(s.noise_lsb)))

@@ -65,7 +65,8 @@ Stream read(const std::string &name)
         }
         times_us.push_back(std::stod(cells[0]));
         stream.samples.push_back(
-            { y_to_z * std::stod(cells[2]), std::stod(cells[3]), 0.01 * std::stod(cells[4]), 0.01 * std::stod(cells[5]) });
+            { y_to_z * std::stod(cells[2]), std::stod(cells[3]), 0.01 * std::stod(cells[4]),
+              0.01 * std::stod(cells[5]) });
     }
     if (times_us.size() < 2) {
         throw std::runtime_error(path + ": no samples");

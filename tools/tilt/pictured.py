@@ -15,7 +15,7 @@ GAP_STEPS, GAP_US = 3.5, 250_000  # a line is not drawn over more of both: in a 
 
 @dataclass
 class Pictured:
-    """raw, filtered, truth: {quantity: series} in degrees (roll, pitch) and mg (x, y, z; raw at the sensitivity of a typical part); filtered and truth may lack any."""
+    """raw, filtered, truth: {quantity: series} in degrees (roll, pitch) and mg (x, y, z; raw of a typical part); filtered and truth may lack any."""
     name: str
     t_s: np.ndarray
     raw: dict
