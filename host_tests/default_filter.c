@@ -25,7 +25,7 @@
 static const double cut_hz[] = { 5.0, 2.5, 10.0 };
 enum { SMOOTHED = sizeof cut_hz / sizeof cut_hz[0], OWN = SMOOTHED, REFERENCES };
 
-#define RAW CONTENDERS /* a contender that does nothing */
+#define RAW CONTENDERS                                     /* a contender that does nothing */
 static const double lsb_per_g[] = { 265.0, 265.0, 256.0 }; /* of the streams */
 static const double bad_for_s = 0.5;
 

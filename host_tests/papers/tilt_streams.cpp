@@ -17,9 +17,9 @@ namespace
 {
 const double degree = std::acos(-1.0) / 180.0;
 const double lsb_per_degree = 256.0 *
-                              degree; // near level, 256 LSB/g: so that a filter's q and R mean the same for both
+                              degree;    // near level, 256 LSB/g: so that a filter's q and R mean the same for both
 constexpr double y_to_z = 256.0 / 265.0; // the streams' sensitivities, LSB/g
-constexpr double noise_lsb = 2.0;     // of the streams' x and y at 100 Hz; z has 1.3 times that
+constexpr double noise_lsb = 2.0;        // of the streams' x and y at 100 Hz; z has 1.3 times that
 constexpr double z_ratio = 1.3;
 
 struct Sample {
@@ -64,9 +64,8 @@ Stream read(const std::string &name)
             throw std::runtime_error(path + ":" + std::to_string(number) + ": wanted six fields, with the true angles");
         }
         times_us.push_back(std::stod(cells[0]));
-        stream.samples.push_back(
-            { y_to_z * std::stod(cells[2]), std::stod(cells[3]), 0.01 * std::stod(cells[4]),
-              0.01 * std::stod(cells[5]) });
+        stream.samples.push_back({ y_to_z * std::stod(cells[2]), std::stod(cells[3]), 0.01 * std::stod(cells[4]),
+                                   0.01 * std::stod(cells[5]) });
     }
     if (times_us.size() < 2) {
         throw std::runtime_error(path + ": no samples");
