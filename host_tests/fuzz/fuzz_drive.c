@@ -32,6 +32,7 @@ static size_t corpus_count;
 static current_t *current;
 static const char *work;
 static unsigned long executions;
+static unsigned long long bytes_run;
 static unsigned reached;
 
 extern char __executable_start[];
@@ -77,6 +78,7 @@ static bool run_current(void)
     free(copy);
     alarm(0);
     executions++;
+    bytes_run += current->size;
     bool fresh = false;
     for (size_t i = 0; i < MAP_SIZE; i++) {
         uint8_t class = hits[i] == 0 ? 0 : class_of(hits[i]);
@@ -190,8 +192,8 @@ static void fuzz(double seconds, size_t length_max)
             write_current();
         }
     }
-    printf("%lu inputs, %u edges, %zu of the corpus count, %zu new\n", executions, reached, given,
-           corpus_count - given);
+    printf("%lu inputs, %llu bytes, %u edges, %zu of the corpus count, %zu new\n", executions, bytes_run, reached,
+           given, corpus_count - given);
 }
 
 static void share_current(void)
