@@ -96,7 +96,6 @@ void app_start(void)
     hal_strap_init();
     hal_led_init();
     hal_time_init();
-    hal_drdy_enable();
     adxl345_init();
     if (!HAL_RAM_CLEARED) {
         forget();
@@ -114,6 +113,7 @@ void app_start(void)
     pipeline_calibrate(&settings.calibration);
     hal_uart_init(settings.baud);
     health_pause_filtering(hal_time_us() + APP_HOLD_LIMIT_US);
+    hal_drdy_enable(); /* last, so that an edge does not wait for the settings */
     hal_irq_enable();
     l->next_service_us = hal_time_us();
     l->next_second_us = l->next_service_us + 1000000ul;

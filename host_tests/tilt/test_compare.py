@@ -66,7 +66,7 @@ class Truth(unittest.TestCase):
             true = getattr(given, f"{angle}_true_cdeg").astype(float)
             total = [((own - right + 18000) % 36000 - 18000) ** 2 for own, right, use in zip(rows[f"{angle}_cdeg"], true, late) if use]
             self.assertAlmostEqual(found[key], 0.01 * math.sqrt(sum(total) / len(total)), delta=1e-9)
-        self.assertAlmostEqual(found["roll_rms_deg"], 2.37, delta=0.005)  # README.md, by tools/plot_run.py from the simulator
+        self.assertAlmostEqual(found["roll_rms_deg"], 2.31, delta=0.005)  # README.md, by tools/plot_run.py from the simulator
 
     def test_across_180_degrees(self):
         found = by_name(answer_of("through-roll-180"))

@@ -291,7 +291,7 @@ class Page(Case):
         np.testing.assert_array_equal(self.numbers(found["t"], "<u4"), known.t_us // 100)
         np.testing.assert_array_equal(self.numbers(found["flags"], "<u2"), known.flags)
         np.testing.assert_array_equal(self.numbers(found["series"]["filtered"]["roll"], "<i2"), known.columns["roll_cdeg"])
-        raw = np.degrees(np.arctan2(known.lsb[:, 1].astype(float), known.lsb[:, 2]))
+        raw = np.degrees(np.arctan2(known.lsb[:, 1] / 265.0, known.lsb[:, 2] / 256.0))
         np.testing.assert_allclose(self.numbers(found["series"]["raw"]["roll"], "<i2"), 100.0 * raw, atol=0.51)
         self.assertEqual((found["gated"], found["rows"], found["kept"]), (2, 300, 300))
 
