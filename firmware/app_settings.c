@@ -16,11 +16,9 @@ app_answer_t app_set_filter(uint8_t filter_kind)
     if (!settings_fit(filter_kind, settings.rate_dhz)) {
         return APP_TOO_SLOW;
     }
-    if (settings.filter != filter_kind) {
-        settings_take_filter(filter_kind);
-        settings_follow();
-        app.changes |= CHANGE_FILTER;
-    }
+    settings_take_filter(filter_kind);
+    settings_follow();
+    app.changes |= CHANGE_FILTER;
     return APP_DONE;
 }
 

@@ -144,7 +144,7 @@ enum say {
     X(STATUS, "state " V_THEN_STATE) \
     X(FILTER_NOW, "filter " V_FILTER V_MORE_IF_FORCED) \
     X(RATE_NOW, "rate " V_RATE " Hz, I2C at " V_BUS_KHZ " kHz" V_MORE_IF_FORCED) \
-    X(RANGE_NOW, "range " V_RANGE " g, 256 LSB per g") \
+    X(RANGE_NOW, "range " V_RANGE " g") \
     X(EVERY_NOW, "every " V_EVERY V_THEN_WHY) \
     X(BAUD_NOW, "baud " V_BAUD V_MORE_IF_FORCED) \
     X(MODE_NOW, "mode " V_THEN_MODE) \
@@ -238,7 +238,7 @@ enum say {
     X(KEPT_EMPTY, "defaults, none saved") \
     X(KEPT_OTHER_VERSION, "defaults, the saved ones are of another version") \
     X(KEPT_GOOD, "as saved") \
-    X(KEPT_OLDER, "as saved before: the newest are damaged") \
+    X(KEPT_OLDER, "as saved; the other copy is damaged") \
     X(KEPT_NO_FILTER, "as saved, but for the filter") \
     X(KEPT_UNREAD, "defaults, the saved ones are left alone") \
     X(NOT_SAVED, "refused 7: the EEPROM does not keep a byte") \

@@ -11,7 +11,7 @@ typedef enum {
     KEPT_EMPTY,         /* defaults: nothing was saved */
     KEPT_OTHER_VERSION, /* defaults: saved by firmware that saves other things */
     KEPT_GOOD,          /* as saved last */
-    KEPT_OLDER,         /* as saved before: the last save is damaged or was cut short */
+    KEPT_OLDER,         /* one copy is damaged: the other's set, which may be the older */
     KEPT_NO_FILTER,     /* as saved, but this image does not hold the filter: its first, with shipped parameters */
     KEPT_UNREAD         /* defaults: asked for by D4 or after resets again and again */
 } kept_t;

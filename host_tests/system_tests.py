@@ -371,7 +371,7 @@ def over_long_and_garbage_serial_input_costs_no_row():
 def lines_typed_behind_a_change_of_baud_are_obeyed():
     """One text, so that simrun goes on typing while the line still drains at the old speed."""
     _, notes, _, _ = simrun("typed-ahead", STREAMS / "rest-2lsb.csv", "--cmd", "500:baud 500000\nevery 3\nrange 4", "--max-ms", "1500")
-    assert notes[-3:] == ["# baud 500000", "# every 3", "# range 4 g, 256 LSB per g"], notes
+    assert notes[-3:] == ["# baud 500000", "# every 3", "# range 4 g"], notes
 
 
 # --- the trace ----------------------------------------------------------------------------

@@ -95,7 +95,7 @@ static void test_settings_show_and_set(void)
                  { "rate 50", "# rate 50 Hz, I2C at 363.6 kHz" },
                  { "rate 12.5", "# rate 12.5 Hz, I2C at 363.6 kHz" },
                  { "rate 100", "# rate 100 Hz, I2C at 363.6 kHz" },
-                 { "range 4", "# range 4 g, 256 LSB per g" },
+                 { "range 4", "# range 4 g" },
                  { "every 3", "# every 3" },
                  { "every", "# every 3" },
                  { "mode", "# mode csv" },

@@ -46,7 +46,7 @@ static void test_lines_behind_a_change_of_baud_are_obeyed(void)
     TEST_ASSERT_EQUAL_size_t(before + 3, board.note_count);
     TEST_ASSERT_EQUAL_STRING("# baud 500000", board.notes[before]);
     TEST_ASSERT_EQUAL_STRING("# every 3", board.notes[before + 1]);
-    TEST_ASSERT_EQUAL_STRING("# range 4 g, 256 LSB per g", board.notes[before + 2]);
+    TEST_ASSERT_EQUAL_STRING("# range 4 g", board.notes[before + 2]);
     TEST_ASSERT_EQUAL_UINT(4, settings.range_g);
 }
 

@@ -104,11 +104,12 @@ static double roughness(size_t from)
 /* A Kalman filter's gain follows q / R. R as set, not as estimated: 1000 for a noise of 2 LSB smooths far more. */
 static void test_parameters_reach_the_filter(void)
 {
-    static const char *const typed[] = { "filter kf", "r 1000", "r 0.1", "q 1" };
-    double rough[4];
+    static const char *const typed[] = { "filter kf", "r 1000", "r 0.1", "q 1", "filter kf" };
+    double rough[5];
     stream = board_noisy_stream(2000, 100.0, 2.0, 7);
     board_start(&stream, 0.0, 0);
-    for (size_t i = 0; i < 4; i++) {
+    type("offset 5 0 0");
+    for (size_t i = 0; i < 5; i++) {
         type(typed[i]);
         board_run_ms(500);
         size_t from = board.row_count;
@@ -118,6 +119,8 @@ static void test_parameters_reach_the_filter(void)
     TEST_ASSERT_TRUE(rough[1] < rough[0] / 4.0);
     TEST_ASSERT_TRUE(rough[2] > rough[0] * 2.0);
     TEST_ASSERT_TRUE(rough[3] < rough[2] / 4.0);
+    TEST_ASSERT_DOUBLE_WITHIN(0.3 * rough[0], rough[0], rough[4]); /* as shipped again, and the calibration as it was */
+    TEST_ASSERT_EQUAL_INT(5 * 16, settings.calibration.offset_lsb_q4[0]);
 }
 
 /* No parameter of one filter is taken for one of another while the pipeline changes. */

@@ -56,7 +56,7 @@ static part_t random_part(double gain, double offset)
 {
     part_t part;
     for (int i = 0; i < 3; i++) {
-        part.scale[i] = 256.0 * (1.0 + gain * (2.0 * random_uniform(&noise_source) - 1.0));
+        part.scale[i] = (i < 2 ? 265.0 : 256.0) * (1.0 + gain * (2.0 * random_uniform(&noise_source) - 1.0));
         part.offset[i] = offset * (2.0 * random_uniform(&noise_source) - 1.0);
     }
     return part;

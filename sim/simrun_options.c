@@ -76,7 +76,7 @@ static const char help_text[] =
     "simrun --fw ELF --in CSV --out CSV [options]: runs the UNO's firmware on a recorded stream\n"
     "\n"
     "  --fw ELF           firmware for the ATmega328P, 16 MHz\n"
-    "  --in CSV           stream: t_us,x,y,z or t_us,x_lsb,y_lsb,z_lsb (256 LSB/g)\n"
+    "  --in CSV           stream: t_us,x,y,z or t_us,x_lsb,y_lsb,z_lsb (as it reads)\n"
     "  --out CSV          every byte the firmware's UART sends\n"
     "  --loop             begin the stream again at its end (needs --max-ms)\n"
     "  --max-ms N         end after N ms of simulated time\n"

@@ -140,7 +140,7 @@ static bool set(settings_t *s, const char *name, const char *value)
     double v = 0.0;
     if (strcmp(name, "filter") == 0) {
         uint8_t filter = (uint8_t)filter_any_find(value);
-        s->own = filter == s->filter ? s->own : 0;
+        s->own = 0;
         s->filter = filter;
         return filter < FILTER_KIND_COUNT;
     }

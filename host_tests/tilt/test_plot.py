@@ -293,6 +293,9 @@ class Page(Case):
         np.testing.assert_array_equal(self.numbers(found["series"]["filtered"]["roll"], "<i2"), known.columns["roll_cdeg"])
         raw = np.degrees(np.arctan2(known.lsb[:, 1] / 265.0, known.lsb[:, 2] / 256.0))
         np.testing.assert_allclose(self.numbers(found["series"]["raw"]["roll"], "<i2"), 100.0 * raw, atol=0.51)
+        shown = pictured.load(path)[0]
+        for axis, lsb_per_g in enumerate((265.0, 265.0, 256.0)):
+            np.testing.assert_allclose(shown.raw["xyz"[axis]], 1000.0 / lsb_per_g * known.lsb[:, axis])
         self.assertEqual((found["gated"], found["rows"], found["kept"]), (2, 300, 300))
 
     def test_a_long_recording_is_thinned_to_its_extremes_and_no_gate_hit_is_lost(self):

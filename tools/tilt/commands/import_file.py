@@ -1,4 +1,4 @@
-"""Recordings in the formats that people use (docs/import.md), to our stream CSV: t_us and x, y, z in LSB of 256 per g.
+"""Recordings in the formats that people use (docs/import.md), to our stream CSV: t_us and x, y, z in LSB.
 
 The unit is found by the whole numbers that an ADXL345 gives, and told; what is no recording of one is refused with the reason.
 """

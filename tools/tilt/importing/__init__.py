@@ -1,4 +1,4 @@
-"""Recordings of an ADXL345 in the formats that people use, read into our stream: t_us and x, y, z in LSB of 256 per g.
+"""Recordings of an ADXL345 in the formats that people use, read into our stream: t_us and x, y, z in LSB.
 
     source   bytes of a file: refuses what is no recording, cuts text into blocks of lines
     forms    what stands around the numbers of a line: a clock, a keyword, Python's b'...', NAME = VALUE
