@@ -6,11 +6,12 @@
 """
 import argparse
 import pathlib
-import random
 import shutil
 import subprocess
 import sys
 import time
+
+from sampled import by_commit
 
 TREE = pathlib.Path("build/mutants")
 UNBROKEN_LIMIT_S = 300
@@ -141,10 +142,7 @@ def try_one(mutant, limit_s):
 
 def chosen(sample, words):
     mutants = [m for m in load() if not words or any(w in m[0] for w in words)]
-    if sample and sample < len(mutants):
-        head = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True).stdout.strip()
-        print(f"mutants: {sample} of {len(mutants)}, chosen by commit {head[:8]}")
-        mutants = random.Random(head).sample(mutants, sample)
+    mutants = by_commit(mutants, sample, "mutants", "breakages")
     if not mutants:
         sys.exit(f"mutants: no name contains any of: {' '.join(words)}")
     return mutants

@@ -9,12 +9,13 @@ import concurrent.futures
 import os
 import pathlib
 import queue
-import random
 import re
 import shutil
 import subprocess
 import sys
 import time
+
+from sampled import by_commit
 
 LIST = pathlib.Path("host_tests/planted.txt")
 COPIES = pathlib.Path("build/planted")
@@ -177,10 +178,7 @@ def main():
     for check in unplanted(faults) if not words else []:
         print(f"check-{check}: no fault is planted for it in {LIST}")
         bad += 1
-    if sample and int(sample) < len(faults):
-        head = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True).stdout.strip()
-        print(f"planted: {sample} of {len(faults)} faults, chosen by commit {head[:8] or 'none'}")
-        faults = random.Random(head).sample(faults, int(sample))
+    faults = by_commit(faults, int(sample or 0), "planted", "faults")
     with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
         for fault, results in zip(faults, pool.map(lambda f: try_one(copies, f), faults)):
             for text, found in results:

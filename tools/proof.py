@@ -15,13 +15,14 @@ import concurrent.futures
 import csv
 import os
 import pathlib
-import random
 import re
 import shutil
 import signal
 import subprocess
 import sys
 import time
+
+from sampled import by_commit
 
 HERE = pathlib.Path("host_tests/proof")
 OUT = pathlib.Path("build/proof")
@@ -232,10 +233,7 @@ def sampled(plants):
         return plants
     if not wanted.isdigit() or int(wanted) == 0:
         fail(f"BREAKAGES={wanted}: not a number of breakages")
-    head = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
-    some = random.Random(head).sample(plants, min(int(wanted), len(plants)))
-    print(f"proof: {len(some)} of {len(plants)} breakages, chosen by commit {head[:8]}")
-    return some
+    return by_commit(plants, int(wanted), "proof", "breakages")
 
 
 def main():
