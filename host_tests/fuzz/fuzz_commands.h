@@ -19,6 +19,7 @@ enum { EXPECTED_MAX = 256, REPLIES_MAX = 1024, REPLY_TEXT = 80, LINE_TYPED_MAX =
 typedef struct {
     settings_t settings, saved;
     bool has_saved;
+    bool measures; /* a command that answers when the board has lain still */
     bool sampling;
     bool baud_changed;
     unsigned line_ends; /* blank lines are not answered, unless a byte was lost in one */
