@@ -12,8 +12,6 @@ WITH_DEADLINE = ("int0", "twi", "timer1_compa", "usart_rx")
 
 def longest_wait_of_twi(baud, flood):
     """Cycles: all others once, and a byte out each time the line has sent one; a byte in too, or a single one without a flood."""
-    if baud == 115200:
-        return LATENCY_CYCLES
     per_byte = BYTE_OUT_CYCLES + flood * BYTE_IN_CYCLES
     once = ONCE_CYCLES + (not flood) * BYTE_IN_CYCLES
     wait, longer = 0, once
