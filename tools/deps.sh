@@ -151,7 +151,7 @@ collect() {
             sim) need_simulator; need_plots ;;
             bench) need_simulator; need python3 has python3 ;;
             test) need_simulator; need_plots; need_unity ;;
-            papers) need_host_compiler; need g++ has g++; need python3 has python3; need libeigen3-dev has_header eigen3/Eigen/Core eigen3 ;;
+            papers) need_host_compiler; need_plots; need g++ has g++; need python3 has python3; need libeigen3-dev has_header eigen3/Eigen/Core eigen3 ;;
             check) need_simulator; need_unity; need_lizard; need python3 has python3
                 need g++ has g++; need libeigen3-dev has_header eigen3/Eigen/Core eigen3
                 need clang-tidy has clang-tidy

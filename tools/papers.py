@@ -19,12 +19,14 @@ import page
 from papers_judge import BANDED, VERDICT_RUNS, Fault, judge, read_expected
 from papers_page import write_page
 
-# programs and accepted bands of each paper
-PAPERS = {paper: (tuple(pathlib.Path("build/papers", program) for program in programs), pathlib.Path(f"host_tests/papers/expected_{paper}.csv"))
-          for paper, programs in (("000", ("paper000",)), ("001", ("paper001",)), ("002", ("paper002", "operations002")))}
+# programs and accepted bands of each paper; a folder is a program in Python
+PAPERS = {paper: (tuple(map(pathlib.Path, programs)), pathlib.Path(f"host_tests/papers/expected_{paper}.csv"))
+          for paper, programs in (("000", ("build/papers/paper000",)), ("001", ("build/papers/paper001",)),
+                                  ("002", ("build/papers/paper002", "build/papers/operations002")), ("004", ("tools/variable_structure",)))}
+PYTHON = pathlib.Path("build/venv/bin/python")  # which has numpy
 # runs that the programs make of --runs 10000, and what each shipped filter must have a band for
-FULL_RUNS = {"000": 4000, "001": 2000, "002": VERDICT_RUNS}
-WANTED = {"000": ("mse_2_5",), "001": ("sigma_stationary",), "002": BANDED}
+FULL_RUNS = {"000": 4000, "001": 2000, "002": VERDICT_RUNS, "004": 500}
+WANTED = {"000": ("mse_2_5",), "001": ("sigma_stationary",), "002": BANDED, "004": ()}
 JSON = pathlib.Path("build/papers.json")
 PAGE_RUNS, PAGE_SEED = 10000, 2024
 WORKERS = 2
@@ -63,9 +65,13 @@ def number(text):
     return float(text) if text else None
 
 
+def command_of(program):
+    return [str(PYTHON), str(program)] if program.is_dir() else [str(program)]
+
+
 def run_one(program, experiment, options, bar):
     """Rows (dictionaries) that an experiment prints."""
-    command = [str(program), experiment, "--runs", str(options.runs), "--seed", str(options.seed)]
+    command = [*command_of(program), experiment, "--runs", str(options.runs), "--seed", str(options.seed)]
     rows, started = [], time.monotonic()
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         for line in process.stdout:
@@ -94,7 +100,7 @@ def experiments_of(programs):
     """{experiment: (program, relative work)}."""
     found = {}
     for program in programs:
-        done = subprocess.run([str(program), "--list"], capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run([*command_of(program), "--list"], capture_output=True, text=True, timeout=60, check=False)
         if done.returncode != 0:
             raise Fault(f"{program} --list gave status {done.returncode}: {done.stderr.strip()}")
         for name, work in (line.split("\t") for line in done.stdout.splitlines()):

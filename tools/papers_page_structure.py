@@ -1,0 +1,28 @@
+"""The tables of docs/papers.md for paper 004, written by make papers between its markers."""
+from papers_page import grid, verdicts
+from papers_page_synthesis import text_of
+
+FLIGHTS = (("windows_stuck_at_zero", "Frozen output is zero: the window's own data choose"),
+           ("windows_frozen_at_last", "Frozen output is the last value: the window's own data choose"),
+           ("next_window_stuck_at_zero", "Frozen output is zero: the window before chooses"),
+           ("next_window_frozen_at_last", "Frozen output is the last value: the window before chooses"),
+           ("windows_lasting", "Troubles of five windows: the window's own data choose"),
+           ("next_window_lasting", "Troubles of five windows: the window before chooses"))
+COLUMNS = (("rms of dV in m/s, median", "rms_median"), ("95 % of the runs", "rms_p95"), ("rms of the tilt in rad", "rms_tilt_median"),
+           ("best sensor chosen", "best_sensor"), ("within twice the best", "within_2x"), ("frozen sensor taken, if there is one", "frozen_taken"))
+
+
+def tables_004(rows):
+    """(heading, lines)."""
+    yield "Beside the paper", verdicts(rows)
+    yield "The channel of the inertial system: (9) to (12)", grid(rows, [
+        (metric, "observability", [metric]) for metric in ("sum_a2_1", "sum_a2_2", "sum_a2_3", "condition")])
+    yield "Trends: the 20 s after 40 s of estimates", grid(rows, [
+        ("rms error in m/s, median", "trends", ["error_median"]), ("mean square", "trends", ["mse"]), ("chosen by self-organisation", "trends", ["picked"])],
+        intervals=True)
+    for experiment, title in FLIGHTS:
+        yield title, grid(rows, [(column, experiment, [metric]) for column, metric in COLUMNS], intervals=True)
+
+
+def page_text_004(rows, options):
+    return text_of(f"{options.runs // 20:,} flights of each kind, seed {options.seed}.", tables_004(rows))
