@@ -7,8 +7,8 @@ import numpy as np
 from .filter import DRIVE, START_VARIANCE
 from .observability import ins_channel
 from .rules import HISTORY_S
-from .scenario import (BIAS_M_S, BIASED, CHANCES, DEGRADED, DEGRADED_TIMES, FLIGHT_S, FROZEN, NOMINAL_M_S, PROCESS, SENSORS, SOUND, SOUND_WINDOWS, START,
-                       WINDOW_S)
+from .scenario import (BIAS_M_S, BIASED, CHANCES, DEGRADED, DEGRADED_TIMES, FLIGHT_S, FROZEN, NOMINAL_M_S, PROCESS, SENSORS, SOUND,
+                       SOUND_WINDOWS, START, WINDOW_S)
 from .structure import SETTLED_S
 
 TRUE, ESTIMATE = slice(0, 3), slice(3, 6)
