@@ -118,6 +118,40 @@ def operations_are_those_of_the_equations():
     within(11, value(rows, "operations", "kf", "fixed", "additions"), 13, "kf, additions")
 
 
+def faults_of_004(rows):
+    return papers_judge.judge(rows, papers_judge.read_expected(papers.PAPERS["004"][1]), True, papers.FULL_RUNS["004"], papers.WANTED["004"])
+
+
+@test
+def a_program_in_python_is_one_of_them():
+    programs = papers.PAPERS["004"][0]
+    known = papers.experiments_of(programs)
+    assert len(known) >= 8 and all(program == programs[0] for program, _ in known.values()), known
+    rows = rows_of("windows_stuck_at_zero", 1600, programs[0]) + rows_of("observability", 1, programs[0])
+    assert faults_of_004(copy.deepcopy(rows)) == []
+    # twins: the degree of observability alone with the acceptor's numbers, and a fixed sensor with more noise than the second moments allow
+    for name, metric, change in (("degree_only", "rms_median", 0.5), ("gate_then_degree", "rms_median", 4.0), ("fixed_1", "mse", 1.6),
+                                 ("channel", "sum_a2_2", 1.001), ("trend_acceptor", "best_sensor", 0.7)):
+        changed = copy.deepcopy(rows)
+        row = next(r for r in changed if (r["filter"], r["metric"]) == (name, metric))
+        row["value"] *= change
+        assert any(fault.startswith(papers_judge.name_of(row)) for fault in faults_of_004(changed)), papers_judge.name_of(row)
+    # one sentence of it reaches the user
+    try:
+        rows_of("nothing", 1, programs[0])
+    except papers.Fault as fault:
+        assert str(fault) == "nothing: variable_structure: 'nothing': no such experiment (--list tells them)", fault
+    else:
+        raise AssertionError("an experiment called nothing was run")
+
+
+@test
+def paper_004_runs_alone_and_leaves_the_page_alone():
+    before = papers_page.DOCUMENT.read_bytes()
+    done = subprocess.run([sys.executable, "tools/papers.py", "--paper", "004", "--runs", "1000"], capture_output=True, text=True, timeout=240)
+    assert done.returncode == 0 and "page left alone" in done.stdout and papers_page.DOCUMENT.read_bytes() == before, done
+
+
 @test
 def a_seed_gives_the_same_numbers_again():
     assert rows_of("bursts", 20) == rows_of("bursts", 20)

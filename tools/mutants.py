@@ -86,6 +86,7 @@ JUDGES = {
     "design_refusals": (["help"], WITH_PACKAGES, "host_tests/test_design_refusals.py"),
     "variable_structure": (["help"], WITH_PACKAGES, "host_tests/test_variable_structure.py"),
     "variable_structure flight": (["help"], WITH_PACKAGES, "host_tests/test_variable_structure_flight.py"),
+    "variable_structure page": (["help"], WITH_PACKAGES, "host_tests/test_variable_structure_page.py"),
     "synthesised": (["build/host/roll_replay"], WITH_PACKAGES, "host_tests/test_synthesised.py"),
     "plotter": (["system_images"], PYTHON, "host_tests/test_plotter.py"),
     "arduino": (["arduino_images"], PYTHON, "host_tests/test_arduino.py"),
