@@ -50,19 +50,21 @@ def evidence(measured, model=1.0, variance=0.01):
 
 @test
 def each_rule_takes_what_it_should():
-    # sensor 1 stuck at zero, 2 sound, 3 off by 3 m/s; then 1 noisy but near, 2 far, 3 the nearest to D = 1
+    # sensor 1 stuck at zero, 2 sound, 3 off by 3 m/s
     taken = {name: np.flatnonzero(rule(evidence([0.0, 1.1, 4.0]))[0]).tolist() for name, rule in RULES.items()}
     assert taken == {"fixed_1": [0], "fixed_2": [1], "fixed_3": [2], "fuse": [0, 1, 2], "degree_only": [0], "trend_acceptor": [1],
                      "gate_then_degree": [1], "normalised_innovation": [1], "oracle": [1]}, taken
     # no sensor is believed: coast, where the oracle has to take one
     assert not RULES["normalised_innovation"](evidence([9.0, -9.0, 9.0])).any()
     assert RULES["oracle"](evidence([9.0, -9.5, 9.5]))[0].tolist() == [1, 0, 0]
-    # within the gate of 4 times the least mean square it is the nearest to D = 1, not the least miss
-    both = evidence([1.15, 0.9, 5.0])
-    assert RULES["trend_acceptor"](both)[0].tolist() == [0, 1, 0] and RULES["gate_then_degree"](both)[0].tolist() == [0, 1, 0]
-    # D is 1 / 0.81 = 1.23 and 1 / 1.21 = 0.83: nearest by ratio is the second
+    # within the gate it is the D nearest to 1 by ratio, 1 / 1.1^2 before 1 / 0.9^2, and not what (25) is least for: 1 / 0.91^2 is nearer than
+    # 1 / 1.105^2, whose miss of 0.105 is the less by its own energy
     assert RULES["gate_then_degree"](evidence([0.9, 1.1, 5.0]))[0].tolist() == [0, 1, 0]
-    # the quietest that passes: 0.5 m/s is beyond 2 sigma of sensor 1, not of sensor 2
+    apart = evidence([0.91, 1.105, 5.0])
+    assert RULES["trend_acceptor"](apart)[0].tolist() == [0, 1, 0] and RULES["gate_then_degree"](apart)[0].tolist() == [1, 0, 0]
+    # of the state's energy but of the other sign, D is 1: only the gate keeps it out
+    assert RULES["gate_then_degree"](evidence([-1.0, 0.9, 5.0]))[0].tolist() == [0, 1, 0]
+    # the quietest that passes: 0.25 (m/s)^2 is more than 4 x (0.15^2 + 0.01), less than 4 x (0.25^2 + 0.01)
     assert RULES["normalised_innovation"](evidence([1.5, 1.5, 1.5]))[0].tolist() == [0, 0, 1]
 
 
