@@ -137,12 +137,18 @@ def a_program_in_python_is_one_of_them():
         row["value"] *= change
         assert any(fault.startswith(papers_judge.name_of(row)) for fault in faults_of_004(changed)), papers_judge.name_of(row)
     # one sentence of it reaches the user
-    try:
-        rows_of("nothing", 1, programs[0])
-    except papers.Fault as fault:
-        assert str(fault) == "nothing: variable_structure: 'nothing': no such experiment (--list tells them)", fault
-    else:
-        raise AssertionError("an experiment called nothing was run")
+    kept, away = papers.PYTHON, pathlib.Path("build/none/python")
+    for python, sentence in ((kept, "nothing: variable_structure: 'nothing': no such experiment (--list tells them)"),
+                             (away, f"{programs[0]}: needs {away}, which is not there: sh tools/deps.sh papers")):
+        papers.PYTHON = python
+        try:
+            rows_of("nothing", 1, programs[0])
+        except papers.Fault as fault:
+            assert str(fault) == sentence, fault
+        else:
+            raise AssertionError("an experiment called nothing was run")
+        finally:
+            papers.PYTHON = kept
 
 
 @test

@@ -66,7 +66,11 @@ def number(text):
 
 
 def command_of(program):
-    return [str(PYTHON), str(program)] if program.is_dir() else [str(program)]
+    if not program.is_dir():
+        return [str(program)]
+    if not PYTHON.exists():
+        raise Fault(f"{program}: needs {PYTHON}, which is not there: sh tools/deps.sh papers")
+    return [str(PYTHON), str(program)]
 
 
 def run_one(program, experiment, options, bar):
