@@ -3,7 +3,9 @@
  *
  *   void hal_time_init(void)          start the timer (main, once)
  *   uint32_t hal_time_us(void)        now (any context)
- *   uint32_t hal_time_us_isr(void)    the same, cheaper, with interrupts already off
+ *   uint16_t hal_time_count_isr(void)                                  the timer now, with interrupts off (a handler)
+ *   void hal_time_stamp_isr(volatile uint32_t *t_us, uint16_t count)   *t_us = the time of that count, up to 32 ms ago;
+ *                                     in few registers, because a handler saves each that it uses
  *   void hal_wake_at(uint32_t t_us)   wake main at this moment (main); one alarm, a later call moves it. For moments
  *                                     more than 32.7 ms ahead main is also woken each 32.768 ms before, and the same
  *                                     after a moment that is past: so look at the clock, not at having been woken. At

@@ -1,4 +1,4 @@
-"""No pass of the main loop is longer than 1 ms, and no interrupt with a deadline waits longer than 15.3 us; part of system_tests.py."""
+"""No pass of the main loop is longer than 1 ms, and no interrupt with a deadline waits longer than 15 us; part of system_tests.py."""
 import pathlib
 import sys
 

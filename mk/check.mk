@@ -11,7 +11,7 @@ $(CHK)/avr/%.o: %.c Makefile mk/check.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(filter-out -flto -Werror,$(AVR_FLAGS)) -fstack-usage -MMD -MP -c $< -o $@ 2> $@.log || { cat $@.log >&2; exit 1; }
 
-CHECKS := compile tidy int16 cppcheck includes format lengths symbols memory frames painted size seam deviations breakages texts
+CHECKS := compile tidy int16 cppcheck includes format lengths symbols memory frames painted waits size seam deviations breakages texts
 
 ## check: every rule of the tree, and a planted fault for each that must be found (8 minutes; PLANTED=20: a sample of them)
 check:
@@ -59,6 +59,9 @@ check-frames: check-objects
 
 check-painted: check-objects $(SET_IMAGES) $(S)/simrun
 	@python3 tools/check_stack.py painted $(SET_IMAGES)
+
+check-waits: check-objects $(SET_IMAGES)
+	@python3 tools/check_waits.py $(SET_IMAGES)
 
 check-size: $(SET_IMAGES)
 	@for image in $^; do sh tools/size.sh $$image || exit 1; done

@@ -55,10 +55,17 @@ void hal_wake_at(uint32_t t_us)
     hal_irq_restore(state);
 }
 
+/* Interrupts off. A late tick only makes the difference longer: right for 32 ms. */
+static inline uint32_t now_us(void)
+{
+    uint16_t since = (uint16_t)(TCNT1 - hal_tick_count);
+    return hal_tick_us + (since >> 1);
+}
+
 uint32_t hal_time_us(void)
 {
     hal_irq_state_t state = hal_irq_save();
-    uint32_t now = hal_time_us_isr();
+    uint32_t now = now_us();
     hal_irq_restore(state);
     return now;
 }

@@ -106,22 +106,28 @@ void hal_time_init(void)
     tick_at = host_now + (uint64_t)HAL_TICK_US * CYCLES_PER_US;
 }
 
-uint32_t hal_time_us_isr(void)
+uint32_t hal_time_us(void)
 {
     return (uint32_t)(host_config.time_start_us + host_now / CYCLES_PER_US);
 }
 
-uint32_t hal_time_us(void)
+uint16_t hal_time_count_isr(void)
 {
-    return hal_time_us_isr();
+    return (uint16_t)hal_time_us();
+}
+
+void hal_time_stamp_isr(volatile uint32_t *t_us, uint16_t count)
+{
+    uint32_t now_us = hal_time_us();
+    *t_us = now_us - (uint16_t)(now_us - count);
 }
 
 void hal_wake_at(uint32_t t_us)
 {
-    uint32_t ahead_us = (t_us - hal_time_us_isr()) % ALARM_RANGE_US;
+    uint32_t ahead_us = (t_us - hal_time_us()) % ALARM_RANGE_US;
     uint64_t begun_at = host_now - host_now % CYCLES_PER_US; /* the microsecond that runs */
     alarm_at = begun_at + (uint64_t)(ahead_us == 0 ? ALARM_RANGE_US : ahead_us) * CYCLES_PER_US;
-    if ((hal_time_us_isr() - t_us) % ALARM_RANGE_US < HAL_WAKE_LATE_US) {
+    if ((hal_time_us() - t_us) % ALARM_RANGE_US < HAL_WAKE_LATE_US) {
         hal_wake();
     }
 }

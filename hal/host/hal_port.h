@@ -37,7 +37,8 @@ bool hal_i2c_stop_pending(void);
 extern uint32_t hal_host_cpu_hz;
 void hal_time_init(void);
 uint32_t hal_time_us(void);
-uint32_t hal_time_us_isr(void);
+uint16_t hal_time_count_isr(void);
+void hal_time_stamp_isr(volatile uint32_t *t_us, uint16_t count);
 void hal_wake_at(uint32_t t_us);
 uint8_t hal_time_lap(void);
 

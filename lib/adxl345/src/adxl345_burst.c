@@ -46,15 +46,9 @@ HAL_IRQ_INLINE bool queue_has_room(void)
     return (uint8_t)((uint8_t)(burst.head + 1u) & QUEUE_MASK) != burst.tail;
 }
 
-HAL_IRQ_INLINE bool can_begin(void)
+/* Interrupts off, or the bus made busy; begun_us is the caller's. */
+HAL_IRQ_INLINE void begin_burst(bool by_edge)
 {
-    return burst.mode == BURST_READ && !burst.on_bus && i2c_bus_free(&burst.bus) && queue_has_room();
-}
-
-/* Interrupts off, or the bus made busy. */
-HAL_IRQ_INLINE void begin_burst(uint32_t now_us, bool by_edge)
-{
-    burst.begun_us = now_us;
     burst.by_edge = by_edge;
     burst.on_bus = 1;
     i2c_bus_begin(&burst.bus);
@@ -66,20 +60,38 @@ HAL_DRDY_ISR()
     if (!hal_drdy_high()) {
         return;
     }
-    uint32_t now_us = hal_time_us_isr();
-    if (can_begin()) {
+    uint16_t now = hal_time_count_isr();
+    volatile uint32_t *stamp_us = &burst.edge_us;
+    if (burst.mode == BURST_READ && !burst.on_bus && I2C_BUS_FREE(&burst.bus) && queue_has_room()) {
         burst.edge_waiting = 0;
-        begin_burst(now_us, true);
-        return;
+        begin_burst(true);
+        stamp_us = &burst.begun_us;
+    } else {
+        burst.edge_waiting = 1;
+        hal_wake();
     }
-    burst.edge_us = now_us;
-    burst.edge_waiting = 1;
-    hal_wake();
+    hal_time_stamp_isr(stamp_us, now);
 }
 
 HAL_I2C_ISR()
 {
     i2c_bus_step(&burst.bus);
+}
+
+/*
+ * The bus for main, made busy: no edge starts a burst from now on. Interrupts are off for so little because the clock
+ * may wait for this, for the handler before it and for data-ready after it.
+ */
+static bool claim(struct burst *b)
+{
+    hal_irq_state_t state = hal_irq_save();
+    if (b->on_bus || !I2C_BUS_FREE(&b->bus)) { /* what main has not judged keeps its state */
+        hal_irq_restore(state);
+        return false;
+    }
+    b->bus.state = I2C_BUS_BUSY;
+    hal_irq_restore(state);
+    return true;
 }
 
 void burst_init(void)
@@ -104,9 +116,7 @@ void burst_init(void)
 void burst_set_mode(burst_mode_t new_mode)
 {
     struct burst *b = base();
-    hal_irq_state_t state = hal_irq_save();
     if (b->mode == BURST_IGNORE) {
-        b->edge_waiting = 0;
         b->failures = 0;
         b->last_known = false;
     }
@@ -115,6 +125,10 @@ void burst_set_mode(burst_mode_t new_mode)
         b->bus.tx[0] = ADXL345_INT_SOURCE;
         b->bus.tx_length = 1;
         b->bus.rx_length = READING_BYTES;
+    }
+    hal_irq_state_t state = hal_irq_save();
+    if (b->mode == BURST_IGNORE) {
+        b->edge_waiting = 0;
     }
     b->mode = (uint8_t)new_mode;
     hal_irq_restore(state);
@@ -129,10 +143,10 @@ uint8_t burst_take_bus(uint8_t address, bool fast)
     b->bus.state = I2C_BUS_BUSY; /* so that no edge starts a burst while the bus is being cleared, with interrupts on */
     hal_irq_restore(state);
     uint8_t lines = hal_i2c_clear();
-    state = hal_irq_save();
     hal_i2c_enable(fast);
-    b->bus.state = was == I2C_BUS_BUSY ? (uint8_t)I2C_BUS_TIMEOUT : was;
     b->bus.address = (uint8_t)(address * 2U);
+    state = hal_irq_save(); /* written before: from now on an edge may start a burst */
+    b->bus.state = was == I2C_BUS_BUSY ? (uint8_t)I2C_BUS_TIMEOUT : was;
     hal_irq_restore(state);
     (void)burst_judge();
     return lines;
@@ -141,8 +155,7 @@ uint8_t burst_take_bus(uint8_t address, bool fast)
 static bool begin_register(uint8_t reg, uint8_t value, uint8_t tx_length, uint8_t rx_length)
 {
     struct burst *b = base();
-    hal_irq_state_t state = hal_irq_save();
-    bool free = !b->on_bus && i2c_bus_free(&b->bus); /* what main has not judged keeps its state */
+    bool free = claim(b);
     if (free) {
         b->bus.tx[0] = reg;
         b->bus.tx[1] = value;
@@ -150,7 +163,6 @@ static bool begin_register(uint8_t reg, uint8_t value, uint8_t tx_length, uint8_
         b->bus.rx_length = rx_length;
         i2c_bus_begin(&b->bus);
     }
-    hal_irq_restore(state);
     return free;
 }
 
@@ -189,26 +201,23 @@ static uint32_t waiting_since_us(struct burst *b, uint32_t now_us, bool is_new)
     return plausible ? t_us : now_us;
 }
 
-/* The bus is made busy first, so that no edge starts a burst and the rest needs no critical section. */
 bool burst_read(bool is_new)
 {
     struct burst *b = base();
+    if (b->mode != BURST_READ || !queue_has_room() || !claim(b)) {
+        return false;
+    }
     hal_irq_state_t state = hal_irq_save();
-    bool start = can_begin();
     bool exact = b->edge_waiting != 0;
     uint32_t t_us = b->edge_us;
-    if (start) {
-        b->bus.state = I2C_BUS_BUSY;
-        b->edge_waiting = 0;
-    }
+    b->edge_waiting = 0;
     hal_irq_restore(state);
-    if (start) {
-        uint32_t now_us = hal_time_us();
-        b->reading_us = exact ? t_us : waiting_since_us(b, now_us, is_new);
-        b->reading_exact = exact;
-        begin_burst(now_us, false);
-    }
-    return start;
+    uint32_t now_us = hal_time_us();
+    b->reading_us = exact ? t_us : waiting_since_us(b, now_us, is_new);
+    b->reading_exact = exact;
+    b->begun_us = now_us;
+    begin_burst(false);
+    return true;
 }
 
 bool burst_drain(bool is_new)
