@@ -10,8 +10,8 @@
 #include "calibration.h"
 #include "pipeline.h"
 #include "settings.h"
-#include "support_board.h"
 #include "support_random.h"
+#include "support_talk.h"
 #include "unity.h"
 
 enum { HZ = 100, LIES_S = 6, TURNS_S = 1, LAY_ROWS = (LIES_S + TURNS_S) * HZ };
@@ -71,14 +71,6 @@ static void start_lays(const attitude_t *lays, size_t count, adxl345_part_t part
     hal_host_sensor.part = part;
     memcpy(hal_host_sensor.part.self_test_lsb, adxl345_part_typical.self_test_lsb, sizeof part.self_test_lsb);
     board_run_ms(300);
-}
-
-static size_t typed(const char *command, double ms)
-{
-    size_t before = board.note_count;
-    board_type(command);
-    board_run_ms(ms);
-    return before;
 }
 
 /* Lays in this order (indices of ups), each tilted by up to so many degrees. */
@@ -165,7 +157,7 @@ static void test_cal6_of_any_part(void)
         adxl345_part_t part = any_part();
         const char *order = orders[i % 6];
         start_order(order, 15.0, part);
-        size_t note = typed("cal6", (double)strlen(order) * 7000.0 - 400.0);
+        size_t note = talk_typed("cal6", (double)strlen(order) * 7000.0 - 400.0);
         TEST_ASSERT_EQUAL_STRING("# cal6: hold still", board.notes[note]);
         for (int left = 5; left > 0; left--) {
             char told[40];
@@ -189,7 +181,7 @@ static void test_rows_after_cal6(void)
 {
     adxl345_part_t part = { { 1.1, 0.9, 1.05 }, { 40, -40, 25 }, { 0, 0, 0 } };
     start_order("012345", 0.0, part);
-    (void)typed("cal6", 41500.0);
+    (void)talk_typed("cal6", 41500.0);
     const board_row_t *row = &board.rows[board.row_count - 1];
     TEST_ASSERT_INT_WITHIN(5, 0, row->mg[0]);
     TEST_ASSERT_INT_WITHIN(5, 0, row->mg[1]);
@@ -202,7 +194,7 @@ static void test_rows_after_cal6(void)
 static void test_a_position_laid_again_is_refused(void)
 {
     start_order("4044", 5.0, adxl345_part_typical);
-    size_t note = typed("cal6", 27500.0);
+    size_t note = talk_typed("cal6", 27500.0);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: +z up, 5 to go", note));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: +x up, 4 to go", note));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: +z up again: another, please", note));
@@ -216,7 +208,7 @@ static void test_an_oblique_rest_is_no_position(void)
         { { 0, 0, 1 } }, { { 0.7314, 0, 0.682 } }, { { 0, 0.682, -0.7314 } }, { { 1, 0, 0 } }
     };
     start_lays(lays, 4, adxl345_part_typical);
-    size_t note = typed("cal6", 27500.0);
+    size_t note = talk_typed("cal6", 27500.0);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: +z up, 5 to go", note));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: +x up, 4 to go", note));
     TEST_ASSERT_EQUAL_size_t(note + 3, board.note_count);
@@ -230,7 +222,7 @@ static void test_a_position_too_far_off_is_refused(void)
     lays[2] = (attitude_t){ { 0.5736, 0.8192, 0 } };
     start_lays(lays, 6, adxl345_part_typical);
     calibration_t before = settings.calibration;
-    size_t note = typed("cal6", 41700.0);
+    size_t note = talk_typed("cal6", 41700.0);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# refused 11: +y was not up, but 20 degrees off or more", note));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("residual", note));
     TEST_ASSERT_EQUAL_MEMORY(&before, &settings.calibration, sizeof before);
@@ -247,7 +239,7 @@ static void test_a_part_beyond_the_limits_is_refused(void)
     for (size_t i = 0; i < 2; i++) {
         start_order("012345", 2.0, parts[i].part);
         calibration_t before = settings.calibration;
-        size_t note = typed("cal6", 41700.0);
+        size_t note = talk_typed("cal6", 41700.0);
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with(parts[i].told, note));
         TEST_ASSERT_EQUAL_MEMORY(&before, &settings.calibration, sizeof before);
         stream_free(&stream);
@@ -259,18 +251,18 @@ static void test_cal6_stops(void)
 {
     start_order("0444", 5.0, adxl345_part_typical);
     calibration_t before = settings.calibration;
-    size_t note = typed("cal6", 6000.0);
+    size_t note = talk_typed("cal6", 6000.0);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", 5 to go", note));
-    size_t stopped = typed("cal6 stop", 2000.0);
+    size_t stopped = talk_typed("cal6 stop", 2000.0);
     TEST_ASSERT_EQUAL_STRING("# cal6: stopped", board.notes[stopped]);
     TEST_ASSERT_EQUAL_size_t(stopped + 1, board.note_count);
     TEST_ASSERT_EQUAL_MEMORY(&before, &settings.calibration, sizeof before);
-    note = typed("cal6", 5500.0);
+    note = talk_typed("cal6", 5500.0);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: +z up, 5 to go", note));
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("unknown command", typed("cal6 go", 100.0)));
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# refused 10", typed("tare", 100.0)));
-    (void)typed("cal6 stop", 100.0);
-    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("refused", typed("tare", 100.0)));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("unknown command", talk_typed("cal6 go", 100.0)));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# refused 10", talk_typed("tare", 100.0)));
+    (void)talk_typed("cal6 stop", 100.0);
+    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("refused", talk_typed("tare", 100.0)));
 }
 
 /* Another rate, or the sensor gone, ends it; nothing of it is left. */
@@ -278,7 +270,7 @@ static void test_cal6_ends_with_the_sensor(void)
 {
     start_order("0123", 5.0, adxl345_part_typical);
     calibration_t before = settings.calibration;
-    size_t note = typed("cal6", 13000.0);
+    size_t note = talk_typed("cal6", 13000.0);
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(100);
     adxl345_model_power(&hal_host_sensor, true);
@@ -300,7 +292,7 @@ static void test_tare_levels_any_mounting(void)
             lay = tilted(ups[i % 6], 80.0);
         }
         start_lays(&lay, 1, adxl345_part_typical);
-        size_t note = typed("tare", 3300.0);
+        size_t note = talk_typed("tare", 3300.0);
         TEST_ASSERT_EQUAL_STRING("# tare: hold still", board.notes[note]);
         TEST_ASSERT_EQUAL_STRING_LEN("# level ", board.notes[note + 1], 8);
         TEST_ASSERT_EQUAL_size_t(note + 2, board.note_count);
@@ -319,12 +311,12 @@ static void test_tare_of_what_is_no_rest_is_refused(void)
     start_lays(turning, 2, adxl345_part_typical);
     calibration_t before = settings.calibration;
     board_run_ms(5000.0);
-    size_t note = typed("tare", 3000.0);
+    size_t note = talk_typed("tare", 3000.0);
     TEST_ASSERT_EQUAL_STRING("# refused 8: moving", board.notes[note + 1]);
     TEST_ASSERT_EQUAL_MEMORY(&before, &settings.calibration, sizeof before);
     stream_free(&stream);
     start_lays(&pulled, 1, adxl345_part_typical);
-    note = typed("tare", 3000.0);
+    note = talk_typed("tare", 3000.0);
     TEST_ASSERT_EQUAL_STRING("# refused 11: not 1 g", board.notes[note + 1]);
     TEST_ASSERT_EQUAL_MEMORY(&before, &settings.calibration, sizeof before);
 }
@@ -341,7 +333,7 @@ static void test_cal_finds_offsets(void)
             hal_host_sensor.part.offset_lsb[axis] = offsets[axis];
         }
         board_run_ms(100);
-        size_t note = typed("cal", 3000.0);
+        size_t note = talk_typed("cal", 3000.0);
         TEST_ASSERT_EQUAL_STRING_LEN("# offset ", board.notes[note + 1], 9);
         for (int axis = 0; axis < 3; axis++) {
             TEST_ASSERT_INT_WITHIN(8, 16 * offsets[axis], settings.calibration.offset_lsb_q4[axis]);

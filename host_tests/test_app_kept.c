@@ -7,76 +7,43 @@
 #include "pipeline_state.h"
 #include "settings.h"
 #include "settings_kept.h"
-#include "support_board.h"
+#include "support_talk.h"
 #include "unity.h"
 
 void setUp(void) {}
 
 void tearDown(void) {}
 
-static void type(const char *line)
-{
-    board_type(line);
-    board_run_ms(400); /* a save takes 0.3 s */
-}
-
-/* The reply to a line, which must be the only one. */
-static const char *answer(const char *line)
-{
-    size_t before = board.note_count;
-    type(line);
-    TEST_ASSERT_EQUAL_size_t_MESSAGE(before + 1, board.note_count, line);
-    return board.notes[before];
-}
-
 /* The mode may be another one: the header follows. */
 static void assert_loaded(const char *line, const char *words)
 {
     size_t before = board.note_count;
-    type(line);
+    talk_type(line);
     TEST_ASSERT_EQUAL_size_t_MESSAGE(before + 2, board.note_count, line);
     TEST_ASSERT_EQUAL_STRING(words, board.notes[before]);
     TEST_ASSERT_EQUAL_INT(0, strncmp(board.notes[before + 1], "t_us,", 5));
 }
 
-static void start(void)
-{
-    board_start_resting();
-    board_run_ms(300);
-}
-
-/* Power comes back over the same EEPROM. */
-static void power_cycle(bool strap)
-{
-    uint8_t kept[1024];
-    memcpy(kept, hal_host_eeprom(), sizeof kept);
-    hal_host_reset_mcu(HAL_RESET_POWER_ON);
-    hal_host_faults.strap_low = strap;
-    TEST_ASSERT_EQUAL_MEMORY(kept, hal_host_eeprom(), sizeof kept);
-    app_start();
-    board_run_ms(1000);
-}
-
 static void save_some(void)
 {
-    type("filter sprf");
-    type("gate 4.5");
-    type("rate 50");
-    type("range 4");
-    type("every 3");
-    type("stop");
-    TEST_ASSERT_EQUAL_STRING("# saved", answer("save"));
+    talk_type("filter sprf");
+    talk_type("gate 4.5");
+    talk_type("rate 50");
+    talk_type("range 4");
+    talk_type("every 3");
+    talk_type("stop");
+    TEST_ASSERT_EQUAL_STRING("# saved", talk_answer("save"));
 }
 
 static void test_saved_settings_survive_power(void)
 {
-    start();
+    talk_start();
     save_some();
-    power_cycle(false);
+    talk_power_cycle(false);
     TEST_ASSERT_EQUAL_UINT(KEPT_GOOD, settings_kept);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: as saved", 0));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# filter sprf, rate 50 Hz, range 4 g, every 3, baud 115200", 0));
-    TEST_ASSERT_EQUAL_STRING("# gate 4.5 sigma: 1 to 16, 0: off", answer("gate"));
+    TEST_ASSERT_EQUAL_STRING("# gate 4.5 sigma: 1 to 16, 0: off", talk_answer("gate"));
     TEST_ASSERT_EQUAL_UINT(4 * 256 + 128, pipeline.axes[1].filter.state.sprf.gate_sigma_q8);
 }
 
@@ -84,82 +51,82 @@ static void test_saved_settings_survive_power(void)
 static void test_nothing_is_saved_while_sampling(void)
 {
     uint8_t before[1024];
-    start();
+    talk_start();
     memcpy(before, hal_host_eeprom(), sizeof before);
-    TEST_ASSERT_EQUAL_STRING("# refused 6: type stop first", answer("save"));
-    type("rate 50");
-    type("defaults");
-    type("load");
+    TEST_ASSERT_EQUAL_STRING("# refused 6: type stop first", talk_answer("save"));
+    talk_type("rate 50");
+    talk_type("defaults");
+    talk_type("load");
     board_run_ms(1000);
     TEST_ASSERT_EQUAL_MEMORY(before, hal_host_eeprom(), sizeof before);
-    type("stop");
-    type("go");
-    TEST_ASSERT_EQUAL_STRING("# refused 6: type stop first", answer("save"));
+    talk_type("stop");
+    talk_type("go");
+    TEST_ASSERT_EQUAL_STRING("# refused 6: type stop first", talk_answer("save"));
     TEST_ASSERT_EQUAL_UINT32(2, counters[COUNT_REFUSED]);
 }
 
 /* Settings do not change under a save: what is typed meanwhile waits, and then counts. */
 static void test_commands_wait_for_the_save(void)
 {
-    start();
-    type("stop");
+    talk_start();
+    talk_type("stop");
     size_t before = board.note_count;
     hal_host_type("save\nrate 200\ngo\n");
     board_run_ms(1500);
     TEST_ASSERT_EQUAL_STRING("# saved", board.notes[before]);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# rate 200 Hz", before));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# going", before));
-    power_cycle(false);
+    talk_power_cycle(false);
     TEST_ASSERT_EQUAL_UINT(1000, settings.rate_dhz);
 }
 
 static void test_load_and_defaults(void)
 {
-    start();
+    talk_start();
     assert_loaded("load", "# settings: defaults, none saved");
     save_some();
-    type("rate 400");
-    type("filter kf");
+    talk_type("rate 400");
+    talk_type("filter kf");
     assert_loaded("load", "# settings: as saved");
-    TEST_ASSERT_EQUAL_STRING("# rate 50 Hz, I2C at 363.6 kHz", answer("rate"));
-    TEST_ASSERT_EQUAL_STRING("# gate 4.5 sigma: 1 to 16, 0: off", answer("gate"));
+    TEST_ASSERT_EQUAL_STRING("# rate 50 Hz, I2C at 363.6 kHz", talk_answer("rate"));
+    TEST_ASSERT_EQUAL_STRING("# gate 4.5 sigma: 1 to 16, 0: off", talk_answer("gate"));
     assert_loaded("defaults", "# settings: defaults");
-    TEST_ASSERT_EQUAL_STRING("# rate 100 Hz, I2C at 363.6 kHz", answer("rate"));
-    TEST_ASSERT_EQUAL_STRING("# filter adaptive", answer("filter"));
-    type("go");
+    TEST_ASSERT_EQUAL_STRING("# rate 100 Hz, I2C at 363.6 kHz", talk_answer("rate"));
+    TEST_ASSERT_EQUAL_STRING("# filter adaptive", talk_answer("filter"));
+    talk_type("go");
     size_t rows = board.row_count;
     board_run_ms(1000);
     TEST_ASSERT_INT_WITHIN(3, 100, (int)(board.row_count - rows));
-    power_cycle(false); /* defaults were not saved */
+    talk_power_cycle(false); /* defaults were not saved */
     TEST_ASSERT_EQUAL_UINT(500, settings.rate_dhz);
 }
 
 /* A saved baud rate that the PC does not speak is no trap. */
 static void test_the_strap_brings_the_default_baud_back(void)
 {
-    start();
-    type("stop");
-    type("baud 1000000");
+    talk_start();
+    talk_type("stop");
+    talk_type("baud 1000000");
     board_run_ms(500);
-    type("save");
-    power_cycle(false);
+    talk_type("save");
+    talk_power_cycle(false);
     TEST_ASSERT_EQUAL_UINT32(1000000, hal_host_baud());
-    power_cycle(true);
+    talk_power_cycle(true);
     TEST_ASSERT_EQUAL_UINT32(115200, hal_host_baud());
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: defaults, the saved ones are left alone", 0));
-    power_cycle(false); /* and it is still there */
+    talk_power_cycle(false); /* and it is still there */
     TEST_ASSERT_EQUAL_UINT32(1000000, hal_host_baud());
-    power_cycle(true);
-    type("stop");
-    TEST_ASSERT_EQUAL_STRING("# saved", answer("save"));
-    power_cycle(false);
+    talk_power_cycle(true);
+    talk_type("stop");
+    TEST_ASSERT_EQUAL_STRING("# saved", talk_answer("save"));
+    talk_power_cycle(false);
     TEST_ASSERT_EQUAL_UINT32(115200, hal_host_baud());
 }
 
 /* A watchdog that bites again and again may bite because of what was saved. */
 static void test_resets_again_and_again_leave_saved_settings_alone(void)
 {
-    start();
+    talk_start();
     save_some();
     for (int i = 0; i < 3; i++) {
         hal_host_reset_mcu(HAL_RESET_WATCHDOG);
@@ -179,17 +146,17 @@ static void test_a_filter_that_the_image_does_not_hold(void)
             TEST_ASSERT_NOT_EQUAL_UINT8(settings_filter_mark(a), settings_filter_mark(b));
         }
     }
-    start();
-    type("rate 50");
-    type("gate 2"); /* adaptive has none: refused */
-    type("guard 2");
-    type("stop");
+    talk_start();
+    talk_type("rate 50");
+    talk_type("gate 2"); /* adaptive has none: refused */
+    talk_type("guard 2");
+    talk_type("stop");
     settings.filter_mark = (uint8_t)~settings.filter_mark;
     for (uint8_t kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         TEST_ASSERT_NOT_EQUAL_UINT8(settings_filter_mark(kind), settings.filter_mark);
     }
-    type("save");
-    power_cycle(false);
+    talk_type("save");
+    talk_power_cycle(false);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: as saved, but for the filter", 0));
     TEST_ASSERT_EQUAL_UINT(500, settings.rate_dhz);
     TEST_ASSERT_EQUAL_UINT(0, settings.filter);

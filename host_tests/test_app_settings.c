@@ -1,14 +1,11 @@
 /* The settings as a person meets them: parameters of the filter, the listing, address, axes, calibration, numbers. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "app.h"
-#include "hal_watchdog.h"
 #include "number.h"
 #include "pipeline_state.h"
 #include "settings.h"
-#include "support_board.h"
+#include "support_talk.h"
 #include "unity.h"
 
 static stream_t stream;
@@ -18,39 +15,6 @@ void setUp(void) {}
 void tearDown(void)
 {
     stream_free(&stream);
-}
-
-static void type(const char *line)
-{
-    board_type(line);
-    board_run_ms(400); /* a save takes 0.3 s */
-}
-
-/* The reply to a line, which must be the only one. */
-static const char *answer(const char *line)
-{
-    size_t before = board.note_count;
-    type(line);
-    TEST_ASSERT_EQUAL_size_t_MESSAGE(before + 1, board.note_count, line);
-    return board.notes[before];
-}
-
-static void start(void)
-{
-    board_start_resting();
-    board_run_ms(300);
-}
-
-/* Power comes back over the same EEPROM. */
-static void power_cycle(bool strap)
-{
-    uint8_t kept[1024];
-    memcpy(kept, hal_host_eeprom(), sizeof kept);
-    hal_host_reset_mcu(HAL_RESET_POWER_ON);
-    hal_host_faults.strap_low = strap;
-    TEST_ASSERT_EQUAL_MEMORY(kept, hal_host_eeprom(), sizeof kept);
-    app_start();
-    board_run_ms(1000);
 }
 
 /* R at 100 Hz: 1.5 x 0.02 x 100 = 3 LSB^2. */
@@ -84,9 +48,9 @@ static void test_parameters_are_shown_set_and_refused(void)
                  { "gate", "# refused 1: unknown command (type help)" },
                  { "filter sprf", "# filter sprf" },
                  { "gate", "# gate 3 sigma: 1 to 16, 0: off" } }; /* another filter: as shipped again */
-    start();
+    talk_start();
     for (size_t i = 0; i < sizeof talk / sizeof talk[0]; i++) {
-        TEST_ASSERT_EQUAL_STRING_MESSAGE(talk[i].answer, answer(talk[i].typed), talk[i].typed);
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(talk[i].answer, talk_answer(talk[i].typed), talk[i].typed);
     }
 }
 
@@ -108,9 +72,9 @@ static void test_parameters_reach_the_filter(void)
     double rough[5];
     stream = board_noisy_stream(2000, 100.0, 2.0, 7);
     board_start(&stream, 0.0, 0);
-    type("offset 5 0 0");
+    talk_type("offset 5 0 0");
     for (size_t i = 0; i < 5; i++) {
-        type(typed[i]);
+        talk_type(typed[i]);
         board_run_ms(500);
         size_t from = board.row_count;
         board_run_ms(3000);
@@ -126,7 +90,7 @@ static void test_parameters_reach_the_filter(void)
 /* No parameter of one filter is taken for one of another while the pipeline changes. */
 static void test_changes_in_quick_succession(void)
 {
-    start();
+    talk_start();
     size_t before = board.note_count;
     hal_host_type("filter sprf\ngate 2\nfilter kf\nr 7\nfilter adaptive\nslow 500\nfilter sprf\n");
     board_run_ms(1500);
@@ -143,12 +107,12 @@ static void test_changes_in_quick_succession(void)
 static void test_the_listing_can_be_typed_again(void)
 {
     char listed[40][BOARD_NOTE_LENGTH];
-    start();
-    type("filter sprf");
-    type("gate 3.37");
-    type("r 2.71");
+    talk_start();
+    talk_type("filter sprf");
+    talk_type("gate 3.37");
+    talk_type("r 2.71");
     size_t before = board.note_count;
-    type("settings");
+    talk_type("settings");
     size_t lines = board.note_count - before;
     TEST_ASSERT_EQUAL_size_t(8 + 3 + 5, lines);
     for (size_t i = 0; i < lines; i++) {
@@ -163,11 +127,11 @@ static void test_the_listing_can_be_typed_again(void)
             *unit = '\0';
         }
         size_t reply = board.note_count; /* `mode csv` sends the header too */
-        type(line);
+        talk_type(line);
         TEST_ASSERT_EQUAL_STRING_LEN(listed[i], board.notes[reply], strcspn(listed[i], ":,"));
     }
     before = board.note_count;
-    type("settings");
+    talk_type("settings");
     for (size_t i = 0; i < lines; i++) {
         TEST_ASSERT_EQUAL_STRING(listed[i], board.notes[before + i]);
     }
@@ -176,25 +140,25 @@ static void test_the_listing_can_be_typed_again(void)
 /* The virtual sensor is at 0x53. */
 static void test_address(void)
 {
-    start();
-    TEST_ASSERT_EQUAL_STRING("# address auto", answer("address"));
-    TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1d", answer("address 54"));
-    TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1d", answer("address 0x53"));
+    talk_start();
+    TEST_ASSERT_EQUAL_STRING("# address auto", talk_answer("address"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1d", talk_answer("address 54"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1d", talk_answer("address 0x53"));
     size_t before = board.note_count;
-    type("address 1D");
+    talk_type("address 1D");
     board_run_ms(1000);
     TEST_ASSERT_EQUAL_STRING("# address 1D", board.notes[before]);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1: ", before)); /* it is not looked for elsewhere */
-    type("address 53");
+    talk_type("address 53");
     board_run_ms(500);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("sensor at 0x53", before));
-    type("address 1d");
+    talk_type("address 1d");
     board_run_ms(500);
-    type("address auto");
+    talk_type("address auto");
     size_t rows = board.row_count;
     board_run_ms(2000);
     TEST_ASSERT_TRUE(board.row_count > rows + 100);
-    type("address 53");
+    talk_type("address 53");
     rows = board.row_count;
     board_run_ms(1000);
     TEST_ASSERT_INT_WITHIN(10, 100, (int)(board.row_count - rows));
@@ -230,7 +194,7 @@ static void test_axes(void)
 {
     static const char letters[] = "xyzXYZ";
     int taken = 0;
-    start();
+    talk_start();
     for (int i = 0; i < 216; i++) {
         char name[3] = { letters[i / 36], letters[i / 6 % 6], letters[i % 6] };
         bool legal = is_axes(name[0], name[1], name[2]);
@@ -238,9 +202,9 @@ static void test_axes(void)
         taken += legal;
     }
     TEST_ASSERT_EQUAL_INT(24, taken);
-    TEST_ASSERT_EQUAL_STRING("# refused 4: axes is one of 24 like xyz or -yxz", answer("axes xy"));
-    TEST_ASSERT_EQUAL_STRING("# refused 4: axes is one of 24 like xyz or -yxz", answer("axes xyzx"));
-    TEST_ASSERT_EQUAL_STRING("# refused 4: axes is one of 24 like xyz or -yxz", answer("axes x-"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: axes is one of 24 like xyz or -yxz", talk_answer("axes xy"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: axes is one of 24 like xyz or -yxz", talk_answer("axes xyzx"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: axes is one of 24 like xyz or -yxz", talk_answer("axes x-"));
 }
 
 /* The resting board reads (31, -53, 248): by hand what offsets, scales and axes make of it. */
@@ -249,36 +213,39 @@ static void test_calibration_reaches_the_rows(void)
     stream = board_constant_stream(200, 100.0, 31, -53, 248);
     board_start(&stream, 0.0, 0);
     board_run_ms(500);
-    type("offset 11 -3.5 -8");
-    type("scale 265 230 256");
+    talk_type("offset 11 -3.5 -8");
+    talk_type("scale 265 230 256");
     const board_row_t *row = &board.rows[board.row_count - 1];
     TEST_ASSERT_EQUAL_INT(31, row->lsb[0]);
     TEST_ASSERT_INT_WITHIN(1, 75, row->mg[0]);   /* 20 / 265 */
     TEST_ASSERT_INT_WITHIN(1, -215, row->mg[1]); /* -49.5 / 230 */
     TEST_ASSERT_INT_WITHIN(1, 1000, row->mg[2]); /* 256 / 256 */
-    type("axes -yxz");
+    talk_type("axes -yxz");
     row = &board.rows[board.row_count - 1];
     TEST_ASSERT_INT_WITHIN(1, 215, row->mg[0]);
     TEST_ASSERT_INT_WITHIN(1, 75, row->mg[1]);
     TEST_ASSERT_INT_WITHIN(3, 429, row->roll_cdeg); /* atan2(0.0755, 1) */
-    type("level 0 0 -1");                           /* upside down: turned about x */
+    talk_type("level 0 0 -1");                      /* upside down: turned about x */
     row = &board.rows[board.row_count - 1];
     TEST_ASSERT_INT_WITHIN(1, 215, row->mg[0]);
     TEST_ASSERT_INT_WITHIN(1, -75, row->mg[1]);
     TEST_ASSERT_INT_WITHIN(1, -1000, row->mg[2]);
-    TEST_ASSERT_EQUAL_STRING("# refused 4: illegal value; offset 11 -3.5 -8 LSB: -80 to 80", answer("offset 1 2"));
-    TEST_ASSERT_EQUAL_STRING("# refused 4: illegal value; offset 11 -3.5 -8 LSB: -80 to 80", answer("offset 1 2 3 4"));
-    TEST_ASSERT_EQUAL_STRING("# refused 4: illegal value; offset 11 -3.5 -8 LSB: -80 to 80", answer("offset 1 2 80.1"));
-    TEST_ASSERT_EQUAL_STRING("# refused 4: illegal value; level 0 0 -1: -1.1499 to 1.1499", answer("level 0 0.1 0"));
-    type("stop");
-    type("save");
-    power_cycle(false);
-    TEST_ASSERT_EQUAL_STRING("# offset 11 -3.5 -8 LSB: -80 to 80", answer("offset"));
-    TEST_ASSERT_EQUAL_STRING("# scale 265 230 256 LSB/g: 200 to 330", answer("scale"));
-    type("go");
+    TEST_ASSERT_EQUAL_STRING("# refused 4: illegal value; offset 11 -3.5 -8 LSB: -80 to 80", talk_answer("offset 1 2"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: illegal value; offset 11 -3.5 -8 LSB: -80 to 80",
+                             talk_answer("offset 1 2 3 4"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: illegal value; offset 11 -3.5 -8 LSB: -80 to 80",
+                             talk_answer("offset 1 2 80.1"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: illegal value; level 0 0 -1: -1.1499 to 1.1499",
+                             talk_answer("level 0 0.1 0"));
+    talk_type("stop");
+    talk_type("save");
+    talk_power_cycle(false);
+    TEST_ASSERT_EQUAL_STRING("# offset 11 -3.5 -8 LSB: -80 to 80", talk_answer("offset"));
+    TEST_ASSERT_EQUAL_STRING("# scale 265 230 256 LSB/g: 200 to 330", talk_answer("scale"));
+    talk_type("go");
     board_run_ms(300);
     TEST_ASSERT_INT_WITHIN(1, 215, board.rows[board.row_count - 1].mg[0]);
-    type("defaults");
+    talk_type("defaults");
     board_run_ms(300);
     TEST_ASSERT_INT_WITHIN(1, 117, board.rows[board.row_count - 1].mg[0]);
 }
@@ -296,18 +263,19 @@ static void test_a_level_of_more_than_1_g_can_be_typed_again(void)
     board_run_ms(4000);
     TEST_ASSERT_EQUAL_INT16(16896, settings.calibration.level_q14[2]); /* 264 / 256 */
     TEST_ASSERT_EQUAL_STRING("# level 0 0 1.0312: -1.1499 to 1.1499", board_last_note());
-    TEST_ASSERT_EQUAL_STRING("# level 0 0 1.0311: -1.1499 to 1.1499", answer("level 0 0 1.0312")); /* 16895 / 16384 */
+    TEST_ASSERT_EQUAL_STRING("# level 0 0 1.0311: -1.1499 to 1.1499",
+                             talk_answer("level 0 0 1.0312")); /* 16895 / 16384 */
 }
 
 /* b0 0.05 is stable beside the b1 of 800 Hz (-0.0407), not beside that of 400 Hz (-0.0780): the sum is negative. */
 static void test_a_rate_at_which_the_parameters_do_not_go_together(void)
 {
-    start();
-    type("filter synth_plus");
-    type("rate 800");
-    TEST_ASSERT_EQUAL_STRING_LEN("# b0 0.05", answer("b0 0.05"), 9);
-    type("rate 400");
-    TEST_ASSERT_EQUAL_STRING_LEN("# b0 0.0814", answer("b0"), 11); /* 5339 / 65536, as shipped */
+    talk_start();
+    talk_type("filter synth_plus");
+    talk_type("rate 800");
+    TEST_ASSERT_EQUAL_STRING_LEN("# b0 0.05", talk_answer("b0 0.05"), 9);
+    talk_type("rate 400");
+    TEST_ASSERT_EQUAL_STRING_LEN("# b0 0.0814", talk_answer("b0"), 11); /* 5339 / 65536, as shipped */
     board_run_ms(3000);
     const board_row_t *row = &board.rows[board.row_count - 1];
     for (int axis = 0; axis < 3; axis++) {
