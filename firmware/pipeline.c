@@ -228,7 +228,7 @@ bool pipeline_work(void)
             return false;
         }
         calibration_prepare_column(&pipeline.applied, pipeline.calibration, pipeline.columns++);
-    } else if (pipeline.work == WORK_CHANGE) {
+    } else if (pipeline.work >= WORK_REPLACE) {
         change_step();
     } else {
         axis_steps();
@@ -238,7 +238,7 @@ bool pipeline_work(void)
 
 bool pipeline_changing(void)
 {
-    return pipeline.work == WORK_CHANGE || pipeline.columns != AXES;
+    return pipeline.work >= WORK_REPLACE || pipeline.columns != AXES;
 }
 
 void pipeline_finish(void)
@@ -259,6 +259,7 @@ void pipeline_sample(const adxl345_sample_t *sample)
     }
     pipeline.work = WORK_SAMPLE;
     pipeline.axis = 0;
+    replace_axis();
 }
 
 FX_ONCE void pipeline_flag(uint16_t flags)

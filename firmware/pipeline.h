@@ -48,8 +48,8 @@ void pipeline_calibrate(const calibration_t *calibration);
 void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 
 /*
- * Change filter, rate or range while running: the new filters start from the old output; noise goes on unless the rate
- * changed.
+ * Change filter, rate or range while running: the new filters start from the old output, one axis ahead of each of the
+ * next three samples, so that no row waits for all. With another rate all at once, and the noise begins anew.
  */
 void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 
@@ -68,7 +68,7 @@ void pipeline_retime(uint32_t period_us);
  */
 bool pipeline_work(void);
 
-/* A change is under way, or a calibration is taken up. */
+/* Filters are changed, or a calibration is taken up, and no sample is waited for. */
 bool pipeline_changing(void);
 
 /* All that is left to do, for a program without a main loop. */

@@ -6,13 +6,35 @@
 
 enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_retime; 1 degree */
 
+FX_NOINLINE void begin_work(work_t work, uint8_t axis)
+{
+    pipeline.work = (uint8_t)work;
+    pipeline.axis = axis;
+    pipeline.step = 0;
+    pass.limit = PASS_CHANGING_US / HAL_LAP_US;
+}
+
+/*
+ * Filters that go on from an output are changed one with each sample, so that a row waits for one of them: a Kalman
+ * filter takes 6 ms to settle. Else, and where the noise is not known either, all at once: no sample comes meanwhile.
+ */
 static void change(bool new_noise)
 {
     pipeline.new_noise = new_noise;
-    pipeline.work = WORK_CHANGE;
-    pipeline.axis = 0;
-    pipeline.step = 0;
-    pass.limit = PASS_CHANGING_US / HAL_LAP_US;
+    pipeline.to_replace = 0;
+    if (pipeline.has_sample && !new_noise) {
+        pipeline.to_replace = AXES;
+    } else {
+        begin_work(WORK_CHANGE, 0);
+    }
+}
+
+FX_ONCE void replace_axis(void)
+{
+    if (pipeline.to_replace != 0) {
+        pipeline.new_noise = false;
+        begin_work(WORK_REPLACE, --pipeline.to_replace);
+    }
 }
 
 /* keep: the filters go on from the old output, the noise estimates too unless the rate is new. */
@@ -82,10 +104,15 @@ FX_ONCE void change_step(void)
         return;
     }
     pipeline.step = 0;
-    if (++pipeline.axis == AXES) {
+    if (pipeline.work == WORK_REPLACE) {
+        pipeline.work = WORK_SAMPLE;
+        pipeline.axis = 0;
+    } else if (++pipeline.axis == AXES) {
         pipeline.work = WORK_NONE;
-        pass.limit = PASS_US / HAL_LAP_US;
+    } else {
+        return;
     }
+    pass.limit = PASS_US / HAL_LAP_US;
 }
 
 void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)

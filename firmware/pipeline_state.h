@@ -16,10 +16,11 @@ enum { AXES = 3, WARM_ROWS = 5 };
 
 typedef enum {
     WORK_NONE,
-    WORK_SAMPLE, /* through the filter of each axis */
-    WORK_RENEW,  /* amid a sample: its axis gets a filter that begins anew */
-    WORK_COAST,  /* the filter of each axis predicts */
-    WORK_CHANGE  /* each axis gets its new filter */
+    WORK_SAMPLE,  /* through the filter of each axis */
+    WORK_RENEW,   /* amid a sample: its axis gets a filter that begins anew */
+    WORK_COAST,   /* the filter of each axis predicts */
+    WORK_REPLACE, /* ahead of a sample: one axis gets its new filter */
+    WORK_CHANGE   /* each axis gets its new filter */
 } work_t;
 
 typedef struct {
@@ -48,9 +49,10 @@ typedef struct {
     uint16_t kept_flags; /* of the samples before the one under way */
     uint8_t passed;      /* times 25 ms, between the newest two steps of a silence */
     uint8_t warm_rows;
-    uint8_t work; /* work_t */
-    uint8_t axis; /* that the work goes on with */
-    uint8_t step; /* of the change on that axis */
+    uint8_t work;       /* work_t */
+    uint8_t axis;       /* that the work goes on with */
+    uint8_t step;       /* of the change on that axis */
+    uint8_t to_replace; /* axes whose filters change, each ahead of a sample */
     uint8_t new_kind;
     bool new_noise;
     bool clipped;  /* the reading of this axis */
@@ -78,6 +80,9 @@ uint32_t axis_r_lsb2_q8(const axis_t *axis);
 
 /* One piece of giving the axis its new filter: initialised, told its R, settled. True: it is done. */
 bool change_axis(void);
+
+/* Ahead of a sample's work: that of giving one axis its new filter, where one is to have it. */
+void replace_axis(void);
 
 /* One piece of WORK_CHANGE. */
 void change_step(void);

@@ -86,6 +86,19 @@ for set_image in SET_IMAGES:
 
 
 @test
+def a_row_waits_for_one_axis_of_a_change_of_filter():
+    """10 ms and what a line may take are 18, as in the fault campaign; all three axes ahead of one sample would make it 24 to 29."""
+    for phase in range(10):
+        name = f"change-{phase}"
+        _, notes, _, stats = simrun(name, STREAMS / "rest-2lsb.csv", "--filter", "sprf", "--max-ms", 2000, "--cmd", f"{980 + phase}:filter kf",
+                                    "--cmd", f"{1480 + phase}:filter sprf", "--fault", "800ms:nack",  # the gap is that behind it
+                                    fw=image_with("sprf"), judge=False)
+        assert stats["rows_wrong"] == stats["lost"] == 0 and stats["rows_calm_gap_ms"] > 10, stats
+        assert "# filter kf" in notes and "# filter sprf" in notes, notes
+        within(f"{name}: ms from row to row", stats["rows_calm_gap_ms"], 18)
+
+
+@test
 def no_pass_longer_than_1_ms_in_any_stream():
     for stream in sorted(STREAMS.glob("*.csv")):
         for rate, baud in ((12.5, 115200), (100, 115200), (400, 1000000), (800, 1000000)):

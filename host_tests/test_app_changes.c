@@ -8,7 +8,7 @@
 
 #include "app.h"
 #include "counters.h"
-#include "pipeline.h"
+#include "pipeline_state.h"
 #include "settings.h"
 #include "support_board.h"
 #include "unity.h"
@@ -136,9 +136,30 @@ static void test_old_samples_are_filtered_as_before_a_change_of_range(void)
     TEST_ASSERT_TRUE_MESSAGE(old_on_the_way > 0, "no phase met a sample of the old range");
 }
 
+/* One axis ahead of each of the next three samples, 10 ms apart, so that no row waits for all of them. */
+static void test_a_change_of_filter_goes_axis_by_axis(void)
+{
+    board_start_resting();
+    board_run_ms(500);
+    uint8_t old = pipeline.axes[0].filter.kind;
+    board_type("filter kf");
+    int changed = 0;
+    for (int ms = 0; ms < 40; ms++) {
+        board_run_ms(1);
+        int now = 0;
+        for (size_t axis = 0; axis < AXES; axis++) {
+            now += pipeline.axes[axis].filter.kind != old;
+        }
+        TEST_ASSERT_TRUE(now == changed || now == changed + 1);
+        changed = now;
+    }
+    TEST_ASSERT_EQUAL_INT(AXES, changed);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_change_of_filter_goes_axis_by_axis);
     RUN_TEST(test_alternating_faults_are_told_once_each);
     RUN_TEST(test_counters_stay_at_their_greatest_value);
     RUN_TEST(test_uptime_counts_seconds);

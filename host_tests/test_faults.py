@@ -62,7 +62,8 @@ def a_pair_has_the_longer_limit_and_is_judged_from_the_later_end():
 def below_100_hz_three_periods_are_granted_and_above_none():
     rated = {kind.name: kind for kind in faults_runs.rated()}
     assert {name.partition(",")[0] for name in rated} == set(faults_runs.OF)
-    for name, limit in (("sda, 12.5 Hz", 290), ("sda, 400 Hz", 50), ("sda, 800 Hz", 50), ("power, 12.5 Hz", 390), ("power, 800 Hz", 150)):
+    for name, limit in (("sda, 12.5 Hz", 290), ("sda, 400 Hz", 50), ("sda, 800 Hz", 50), ("power, 12.5 Hz", 390), ("power, 800 Hz", 150),
+                        ("flip 2, 12.5 Hz", 290), ("double, 12.5 Hz", 290), ("mixed, 12.5 Hz", 530), ("mixed, 400 Hz", 50)):
         kind = rated[name]
         assert kind.limit_ms == limit and f"{kind.rate:g} Hz" in name and kind.what == faults_runs.OF[kind.base].what, kind
         whens = [float(when[:-2]) for when in faults_runs.moments(kind, 8, 1)]

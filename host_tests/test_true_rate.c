@@ -9,7 +9,7 @@
 #include "coast.h"
 #include "counters.h"
 #include "filter_any.h"
-#include "pipeline.h"
+#include "pipeline_state.h"
 #include "settings.h"
 #include "support_board.h"
 #include "unity.h"
@@ -60,9 +60,9 @@ static void sample(int16_t y_lsb)
 static bool look(uint32_t period_us)
 {
     pipeline_retime(period_us);
-    bool changing = pipeline_changing();
+    bool handed_over = pipeline.to_replace != 0;
     pipeline_finish();
-    return changing;
+    return handed_over;
 }
 
 static bool second(uint32_t period_us, int16_t from_lsb, int16_t step_lsb)

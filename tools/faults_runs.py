@@ -51,6 +51,7 @@ class Kind:
     gated_rows: int = GATED_ROWS  # that a filter may refuse, one after another
     command: Command = None  # that is carried out while the fault comes
     once: bool = False  # of such a kind: it strikes a single transfer
+    taken: bool = False  # it gives a value near those before it, which a filter takes; then it refuses true ones until it begins anew
 
     def stops(self):
         return self.command is not None and not self.command.rate
@@ -78,7 +79,7 @@ KINDS = [
     Kind("overrun", ("overrun:3:150",), 100, BUS_MS, rate=400), Kind("starve", ("starve:2000",), 250, RESET_MS, resets=1),
     once("reset", resets=1, limit_ms=RESET_MS), once("mcupower", resets=1, limit_ms=RESET_MS), once("brownout", resets=1, limit_ms=RESET_MS),
     once("flip 1", "flip:1", **UNSEEN), once("flip 2", "flip:2", **UNSEEN),
-    once("noise", "noise:60", **UNSEEN), once("double", "double:z", **UNSEEN), once("mixed", **UNSEEN),
+    once("noise", "noise:60", **UNSEEN), once("double", "double:z", **UNSEEN), once("mixed", taken=True, **UNSEEN),
 ]
 
 
@@ -98,8 +99,7 @@ TYPED = [
           "mode x", "status", "help", said_ms=110),  # the help is 1.1 kB
     typed("typed: stop", "power:50", "stop", "status", "go", "stop", "go", "stop", "stop", "range 2", "go", every_ms=11),
     typed("typed: plot", "sda:60", "mode plot", "status", "mode csv", every_ms=400, filter_name="sprf"),
-    typed("typed: kf", "frozen:200", "filter kf", "filter sprf", every_ms=300, filter_name="sprf",
-          said_ms=16),  # a filter begins anew in pieces: the row of that sample comes later
+    typed("typed: kf", "frozen:200", "filter kf", "filter sprf", every_ms=300, filter_name="sprf"),
     typed("upside down", "nack", stream="sim/streams/through-roll-180.csv"), typed("upright", "nackdata", stream="sim/streams/through-pitch-90.csv"),
     # what these streams do to one axis, the filter sees on the others at another time
     *(typed(f"outliers, {name}", "nack", stream="sim/streams/steps-outliers.csv", filter_name=name, gated_rows=3 * GATED_ROWS)
@@ -125,13 +125,13 @@ def longer(name, lasts_ms):
 # what counts tries or doubles a time from try to try shows only here
 LONG = [longer(name, ms) for name in ("unplug", "power", "sda", "scl", "devid", "noint", "inthigh") for ms in (3000, 10000)]
 LONG += [longer("frozen", ms) for ms in (1500, 10000)]
-# the same at other rates; below 100 Hz the first good row may take three periods more, behind a value that nobody can see the five
-# samples more that a filter refuses before it begins anew from them
+# the same at other rates; below 100 Hz the first good row may take three periods more, behind a value that a filter took those of the
+# samples that it refuses and the one from which it begins anew
 OTHER_RATES = (12.5, 400, 800)
 
 
 def at_rate(kind, rate):
-    longer = (3000.0 if kind.detectable else 8000.0) / rate if rate < 100 else 0
+    longer = 1000 * (GATED_ROWS + 1 if kind.taken else 3) / rate if rate < 100 else 0
     return dataclasses.replace(kind, name=f"{kind.name}, {rate:g} Hz", base=kind.name, rate=rate, limit_ms=kind.limit_ms + longer)
 
 
