@@ -1,0 +1,300 @@
+/*
+ * The queue. A measurement of epoch e that is used at time t = e + age compares with the state then. To first order in
+ * the age the errors were dr(e) = dr - age dv and dv(e) = dv - age f x mu, which gives the rows of H. What is computed
+ * for the epoch is fixed when it is taken in; a correction x made later changes it by h x, with the row h of that time,
+ * which is taken off the innovations that wait. So the scalars of an epoch may be used one after another, at later and
+ * later times: in exact numbers, without noise in between and to first order in the age they give what all at once
+ * give, because each scalar still measures the same error at the epoch.
+ */
+#include "nav_jobs.h"
+#include "nav_align.h"
+#include "nav_ins.h"
+#include "nav_noise.h"
+#include "nav_past.h"
+#include "nav_time.h"
+#include "nav_ud.h"
+
+enum { VELOCITY = 0, POSITION = 3, DOWN = 6, FIELD = 7, ROW_AGAIN = 3 };
+
+/* First scalar of each sensor, and the end. */
+static uint8_t scalar_of(uint8_t sensor)
+{
+    return (sensor == NAV_GPS) ? VELOCITY : (uint8_t)((sensor == NAV_DOWN) ? DOWN : FIELD);
+}
+
+static uint8_t sensor_of(uint8_t scalar)
+{
+    return (uint8_t)((scalar < DOWN) ? NAV_GPS : ((scalar == DOWN) ? NAV_DOWN : NAV_FIELD));
+}
+
+static uint16_t bit(uint8_t i)
+{
+    return (uint16_t)((uint16_t)1U << i);
+}
+
+/* The bits of a sensor's scalars. */
+static uint16_t bits_of(uint8_t sensor)
+{
+    return (sensor == NAV_GPS) ? 0x3FU : ((sensor == NAV_DOWN) ? 0x40U : 0x180U);
+}
+
+void nav_jobs_forget(nav_queue_t *queue)
+{
+    queue->waits = 0;
+    queue->arrived = 0;
+    queue->seen = 0;
+    queue->in_a_row = 0;
+}
+
+nav_answer_t nav_jobs_may(const nav_t *nav, nav_sensor_t sensor, uint32_t t_us, uint32_t late_us)
+{
+    const nav_queue_t *queue = &nav->queue;
+    int32_t age = nav_time_from(t_us, nav->t_us);
+    if (!nav->started || age < -(int32_t)NAV_BRIDGE_US) {
+        return NAV_GAP;
+    }
+    if (age > (int32_t)late_us || !nav_past_reaches(&nav->past, t_us)) {
+        return NAV_LATE;
+    }
+    /* a last epoch that seems to be far ahead is one of half the clock's round ago */
+    int32_t back = nav_time_from(t_us, queue->t_us[sensor]);
+    if ((queue->seen & bit(sensor)) != 0U && back >= 0 && back <= (int32_t)(NAV_LATE_US + NAV_BRIDGE_US)) {
+        return NAV_BACKWARDS;
+    }
+    return ((queue->waits & bits_of(sensor)) != 0U) ? NAV_QUEUE_FULL : NAV_TAKEN;
+}
+
+void nav_jobs_put(nav_t *nav, nav_sensor_t sensor, uint32_t t_us, const nav_real_t *values)
+{
+    nav_queue_t *queue = &nav->queue;
+    uint8_t first = scalar_of(sensor);
+    uint8_t count = (sensor == NAV_GPS) ? 6 : (uint8_t)((sensor == NAV_DOWN) ? 1 : 2);
+    for (uint8_t i = 0; i < count; i++) {
+        queue->value[first + i] = values[i];
+    }
+    if (sensor == NAV_FIELD) {
+        queue->third = values[2];
+    }
+    queue->t_us[sensor] = t_us;
+    queue->waits |= bits_of(sensor);
+    queue->arrived |= (uint8_t)bit(sensor);
+    queue->seen |= (uint8_t)bit(sensor);
+}
+
+/* A fixed direction seen from the body that has turned for `age` seconds since: m - age w x m. */
+static void turn_on(nav_real_t out[3], const nav_t *nav, const nav_real_t m[3], nav_real_t age)
+{
+    nav_real_t angle[3];
+    for (uint8_t i = 0; i < 3U; i++) {
+        angle[i] = age * (nav->rate_rps[i] - nav->state.gyro_drift_rps[i]);
+    }
+    out[0] = m[0] - (angle[1] * m[2] - angle[2] * m[1]);
+    out[1] = m[1] - (angle[2] * m[0] - angle[0] * m[2]);
+    out[2] = m[2] - (angle[0] * m[1] - angle[1] * m[0]);
+}
+
+static void take_field(nav_t *nav)
+{
+    nav_queue_t *queue = &nav->queue;
+    const nav_real_t came[3] = { queue->value[FIELD], queue->value[FIELD + 1], queue->third };
+    nav_real_t turned[3];
+    nav_real_t dcm[9];
+    turn_on(turned, nav, came, nav_seconds(queue->t_us[NAV_FIELD], nav->t_us));
+    nav_ins_dcm(dcm, nav->state.quaternion);
+    nav_align_innovation(queue->value + FIELD, nav->tau, dcm, turned);
+}
+
+/* Measured less computed at the epoch. */
+static void take_motion(nav_t *nav, uint8_t sensor)
+{
+    nav_queue_t *queue = &nav->queue;
+    nav_real_t motion[6];
+    nav_past_at(&nav->past, motion, queue->t_us[sensor], &nav->state, nav->t_us);
+    if (sensor == NAV_DOWN) {
+        queue->value[DOWN] -= motion[2];
+        return;
+    }
+    for (uint8_t i = 0; i < 3U; i++) {
+        queue->value[VELOCITY + i] -= motion[3U + i];
+        queue->value[POSITION + i] -= motion[i];
+    }
+}
+
+/* Makes innovations of what has arrived and is not ahead of the state; false: nothing. */
+static bool take_in(nav_t *nav)
+{
+    bool taken = false;
+    for (uint8_t sensor = NAV_GPS; sensor <= NAV_FIELD; sensor++) {
+        bool here = (nav->queue.arrived & bit(sensor)) != 0U;
+        if (!here || nav_time_from(nav->queue.t_us[sensor], nav->t_us) < 0) {
+            continue;
+        }
+        nav->queue.arrived &= (uint8_t)~bit(sensor);
+        taken = true;
+        if (sensor == NAV_FIELD) {
+            take_field(nav);
+        } else {
+            take_motion(nav, sensor);
+        }
+    }
+    return taken;
+}
+
+/* dv_k(e) = dv_k - age (f x mu)_k */
+static void velocity_row(nav_row_t *row, uint8_t k, const nav_real_t force[3], nav_real_t age)
+{
+    uint8_t next = (uint8_t)((k + 1U) % 3U);
+    uint8_t last = (uint8_t)((k + 2U) % 3U);
+    uint8_t low = (next < last) ? 0 : 1;
+    row->main = (uint8_t)(NAV_V0 + k);
+    row->count = 2;
+    row->index[low] = (uint8_t)(NAV_M0 + next);
+    row->more[low] = age * force[last];
+    row->index[1U - low] = (uint8_t)(NAV_M0 + last);
+    row->more[1U - low] = -age * force[next];
+}
+
+static void position_row(nav_row_t *row, uint8_t k, nav_real_t age)
+{
+    row->main = (uint8_t)(NAV_R0 + k);
+    row->count = 1;
+    row->index[0] = (uint8_t)(NAV_V0 + k);
+    row->more[0] = -age;
+}
+
+static void field_row(nav_row_t *row, const nav_real_t tau[3])
+{
+    row->main = NAV_STATES;
+    row->count = 3;
+    for (uint8_t i = 0; i < 3U; i++) {
+        row->index[i] = (uint8_t)(NAV_M0 + i);
+        row->more[i] = tau[i];
+    }
+}
+
+/* The row of a scalar now. */
+static void row_of(nav_row_t *row, const nav_t *nav, uint8_t scalar)
+{
+    nav_real_t age = nav_seconds(nav->queue.t_us[sensor_of(scalar)], nav->t_us);
+    if (scalar >= FIELD) {
+        field_row(row, nav->tau[scalar - FIELD]);
+    } else if (scalar >= POSITION) {
+        position_row(row, (scalar == DOWN) ? 2 : (uint8_t)(scalar - POSITION), age);
+    } else {
+        velocity_row(row, scalar, nav->force_ned_mps2, age);
+    }
+}
+
+static nav_real_t variance_of(const nav_t *nav, uint8_t scalar)
+{
+    return nav->variance[(scalar < POSITION) ? 0 : ((scalar < DOWN) ? 1 : ((scalar == DOWN) ? 2 : 3))];
+}
+
+/* Scalars whose epoch has been taken in. */
+static uint16_t ready(const nav_queue_t *queue)
+{
+    uint16_t scalars = queue->waits;
+    for (uint8_t sensor = NAV_GPS; sensor <= NAV_FIELD; sensor++) {
+        if ((queue->arrived & bit(sensor)) != 0U) {
+            scalars &= (uint16_t)~bits_of(sensor);
+        }
+    }
+    return scalars;
+}
+
+/*
+ * Refused: the innovation's square is beyond the gate. After five epochs of it the covariance is what is wrong. The
+ * innovation is likeliest when its variance is its square, so that much is added where the scalar measures; then it
+ * passes any gate of 1 or more, and takes nearly all the gain.
+ */
+static bool refuse(nav_t *nav, uint8_t scalar, const nav_row_t *row, nav_real_t square)
+{
+    nav_queue_t *queue = &nav->queue;
+    if (nav->counts.answer[NAV_GATED] < UINT16_MAX) {
+        nav->counts.answer[NAV_GATED]++;
+    }
+    queue->refused[scalar]++;
+    if (queue->refused[scalar] < NAV_REFUSALS) {
+        return false;
+    }
+    queue->refused[scalar] = 0;
+    nav_real_t along[NAV_STATES];
+    if (scalar < FIELD) {
+        nav_ud_noise(nav->ud, row->main, square);
+        return true;
+    }
+    for (uint8_t i = 0; i < NAV_STATES; i++) {
+        along[i] = 0;
+    }
+    for (uint8_t i = 0; i < 3U; i++) {
+        along[NAV_M0 + i] = row->more[i];
+    }
+    nav_ud_spread(nav->ud, along, NAV_M0 + 2, square);
+    return true;
+}
+
+/* Closed loop: the state at once, and what waits. */
+static void correct(nav_t *nav, const nav_real_t x[NAV_STATES])
+{
+    uint16_t scalars = ready(&nav->queue);
+    nav_ins_correct(&nav->state, x);
+    nav_past_correct(&nav->past, x);
+    for (uint8_t i = 0; i < NAV_SCALARS; i++) {
+        if ((scalars & bit(i)) != 0U) {
+            nav_row_t row;
+            row_of(&row, nav, i);
+            nav->queue.value[i] -= nav_row_times(&row, x);
+        }
+    }
+}
+
+static void use_scalar(nav_t *nav, uint8_t scalar)
+{
+    nav_queue_t *queue = &nav->queue;
+    nav_real_t innovation = queue->value[scalar];
+    nav_real_t square = innovation * innovation;
+    nav_row_t row;
+    nav_ud_scalar_t update;
+    row_of(&row, nav, scalar);
+    nav_ud_look(&update, nav->ud, &row, variance_of(nav, scalar));
+    bool beyond = nav->gate_squared > 0 && square > nav->gate_squared * update.variance;
+    if (beyond && refuse(nav, scalar, &row, square)) {
+        return; /* it waits on, and passes next time */
+    }
+    queue->waits &= (uint16_t)~bit(scalar);
+    if (beyond) {
+        return;
+    }
+    queue->refused[scalar] = 0;
+    nav_ud_update(nav->ud, &update, variance_of(nav, scalar));
+    for (uint8_t i = 0; i < NAV_STATES; i++) {
+        update.gain[i] *= innovation;
+    }
+    correct(nav, update.gain);
+}
+
+static bool use_first(nav_t *nav)
+{
+    uint16_t scalars = ready(&nav->queue);
+    for (uint8_t i = 0; i < NAV_SCALARS; i++) {
+        if ((scalars & bit(i)) != 0U) {
+            use_scalar(nav, i);
+            return true;
+        }
+    }
+    return false;
+}
+
+void nav_jobs_run(nav_t *nav)
+{
+    bool noise_first = nav->noise.owed != 0U || nav->queue.in_a_row >= ROW_AGAIN;
+    if (take_in(nav) || (!noise_first && use_first(nav))) {
+        if (nav->queue.in_a_row < UINT8_MAX) {
+            nav->queue.in_a_row++;
+        }
+        return;
+    }
+    nav->queue.in_a_row = 0;
+    nav_ins_unit(nav->state.quaternion);
+    nav_noise_job(&nav->noise, nav->ud, nav->t_us);
+}

@@ -1,0 +1,77 @@
+/*
+ * Covariance of the navigation errors as P = U D U', U unit upper triangular, D diagonal.
+ *
+ * State order [dr, dv, mu, dc] makes Phi block upper triangular, so Phi U is upper triangular again with the same ones:
+ * carrying P on costs no factorisation (papers 003 (3.24)-(3.26) do one). Process noise is added by Agee and Turner's
+ * rank-one update, a measurement by Bierman's. D never turns negative: each D comes out of products, quotients and
+ * sums of numbers that are not negative.
+ *
+ * Packed by columns: U[i][j] at j (j + 1) / 2 + i, and D[j] in the place of U[j][j].
+ */
+#ifndef NAV_UD_H
+#define NAV_UD_H
+
+#include "nav.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    NAV_R0 = 0, /* position */
+    NAV_V0 = 3, /* velocity */
+    NAV_M0 = 6, /* attitude */
+    NAV_C0 = 9, /* drift */
+    NAV_ROW_MORE = 3
+};
+
+/* A row of H, at most four elements: 1 at `main` (or none: NAV_STATES), and `count` more, indices ascending. */
+typedef struct {
+    nav_real_t more[NAV_ROW_MORE];
+    uint8_t index[NAV_ROW_MORE];
+    uint8_t count;
+    uint8_t main;
+} nav_row_t;
+
+/* What a scalar update stands on. */
+typedef struct {
+    nav_real_t f[NAV_STATES];    /* h U */
+    nav_real_t gain[NAV_STATES]; /* D U' h', and K behind nav_ud_update */
+    nav_real_t variance;         /* of the innovation */
+    uint8_t first;               /* f is 0 before it */
+} nav_ud_scalar_t;
+
+/* P = diag(sigma^2): position, velocity, attitude, drift. */
+void nav_ud_start(nav_real_t ud[NAV_PACKED], const nav_real_t sigma[4]);
+
+/*
+ * P <- Phi P Phi', Phi of (3.41) with F^2 dt^2 / 2: step_s seconds, specific force in NED, body to NED (row-major; not
+ * looked at with 9 states).
+ */
+void nav_ud_phi(nav_real_t ud[NAV_PACKED], nav_real_t step_s, const nav_real_t force_mps2[3], const nav_real_t dcm[9]);
+
+/* P <- P + variance e_k e_k'. variance >= 0. */
+void nav_ud_noise(nav_real_t ud[NAV_PACKED], uint8_t k, nav_real_t variance);
+
+/* P <- P + variance a a', a[k + 1] and on being 0. a is used up. */
+void nav_ud_spread(nav_real_t ud[NAV_PACKED], nav_real_t a[NAV_STATES], uint8_t k, nav_real_t variance);
+
+/* What a scalar of this row and measured variance (> 0) would do; P is left alone. */
+void nav_ud_look(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], const nav_row_t *row, nav_real_t variance);
+
+/* Does it: P <- P - K S K', S the variance of the innovation. scalar->gain becomes K. `variance` as in nav_ud_look. */
+void nav_ud_update(nav_real_t ud[NAV_PACKED], nav_ud_scalar_t *scalar, nav_real_t variance);
+
+/* h x */
+nav_real_t nav_row_times(const nav_row_t *row, const nav_real_t x[NAV_STATES]);
+
+/* All of D >= 0. */
+bool nav_ud_positive(const nav_real_t ud[NAV_PACKED]);
+
+/* Diagonal of P. */
+void nav_ud_variances(const nav_real_t ud[NAV_PACKED], nav_real_t variance[NAV_STATES]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
