@@ -8,6 +8,7 @@
 #include "nav_root.h"
 #include "nav_time.h"
 #include "nav_ud.h"
+#include "nav_vector.h"
 
 #define RATE_MAX_RPS NAV_R(40.0)
 #define FORCE_MAX_MPS2 NAV_R(400.0)
@@ -51,31 +52,43 @@ static bool within(nav_real_t value, nav_real_t low, nav_real_t high)
     return value >= low && value <= high;
 }
 
-static bool start_is_legal(const nav_config_t *c)
+/* The numbers of a configuration, by their limits. */
+typedef struct {
+    nav_real_t sigma[4], walk[4], measured[4];
+} noises_t;
+
+static void noises_of(noises_t *out, const nav_config_t *c)
 {
-    return judged(c->start.quaternion, 4, NAV_R(2.0)) == NAV_TAKEN &&
-           judged(c->start.velocity_mps, 3, VELOCITY_MAX_MPS) == NAV_TAKEN &&
-           judged(c->start.position_m, 3, POSITION_MAX_M) == NAV_TAKEN &&
-           judged(c->start.gyro_drift_rps, 3, NAV_R(1.0)) == NAV_TAKEN && within(c->start_position_m, 0, NAV_R(1e5)) &&
-           within(c->start_velocity_mps, 0, NAV_R(1e3)) && within(c->start_attitude_rad, 0, 1) &&
-           within(c->start_drift_rps, 0, 1);
+    *out = (noises_t){ { c->start_position_m, c->start_velocity_mps, c->start_attitude_rad, c->start_drift_rps },
+                       { c->walk_position_m, c->walk_velocity_mps, c->walk_attitude_rad, c->walk_drift_rps },
+                       { c->sigma_gps_velocity_mps, c->sigma_gps_position_m, c->sigma_down_m, c->sigma_field } };
 }
 
-static bool noises_are_legal(const nav_config_t *c)
+static bool noises_are_legal(const noises_t *noises)
 {
-    return within(c->walk_position_m, 0, 1) && within(c->walk_velocity_mps, 0, 1) &&
-           within(c->walk_attitude_rad, 0, 1) && within(c->walk_drift_rps, 0, 1) &&
-           within(c->sigma_field, NAV_R(1e-4), 1) && within(c->sigma_gps_velocity_mps, NAV_R(1e-3), NAV_R(1e3)) &&
-           within(c->sigma_gps_position_m, NAV_R(1e-3), NAV_R(1e5)) &&
-           within(c->sigma_down_m, NAV_R(1e-3), NAV_R(1e5)) && within(c->gravity_mps2, 1, NAV_R(25.0)) &&
-           (within(c->gate, 1, NAV_R(100.0)) || within(c->gate, 0, 0)) && c->period_us >= 1000U &&
+    for (uint8_t i = 0; i < 4U; i++) {
+        if (!within(noises->sigma[i], 0, NAV_R(1e5)) || !within(noises->walk[i], 0, 1) ||
+            !within(noises->measured[i], NAV_R(1e-4), NAV_R(1e5))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool rest_is_legal(const nav_config_t *c)
+{
+    const nav_state_t *start = &c->start;
+    return (judged(start->quaternion, 4, 2) | judged(start->velocity_mps, 3, VELOCITY_MAX_MPS) |
+            judged(start->position_m, 3, POSITION_MAX_M) | judged(start->gyro_drift_rps, 3, 1) |
+            judged(c->field, 3, FIELD_MAX)) == NAV_TAKEN &&
+           within(c->gravity_mps2, 1, 25) && (c->gate == 0 || within(c->gate, 1, 100)) && c->period_us >= 1000U &&
            c->period_us <= 100000U;
 }
 
 static bool unit_quaternion(nav_real_t q[4])
 {
-    nav_real_t length = nav_root(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (!within(length, HALF, NAV_R(2.0))) {
+    nav_real_t length = nav_root(q[0] * q[0] + nav_dot(q + 1, q + 1));
+    if (!within(length, HALF, 2)) {
         return false;
     }
     for (uint8_t i = 0; i < 4U; i++) {
@@ -84,49 +97,29 @@ static bool unit_quaternion(nav_real_t q[4])
     return true;
 }
 
-static void start_filter(nav_t *nav, const nav_config_t *c)
+static void start_filter(nav_t *nav, const noises_t *noises, uint32_t period_us)
 {
-    const nav_real_t sigma[4] = { c->start_position_m, c->start_velocity_mps, c->start_attitude_rad,
-                                  c->start_drift_rps };
-    const nav_real_t walk[4] = { c->walk_position_m, c->walk_velocity_mps, c->walk_attitude_rad, c->walk_drift_rps };
-    const nav_real_t measured[4] = { c->sigma_gps_velocity_mps, c->sigma_gps_position_m, c->sigma_down_m,
-                                     c->sigma_field };
-    nav_ud_start(nav->ud, sigma);
-    nav_noise_start(&nav->noise, walk, c->period_us);
+    nav_ud_start(nav->ud, noises->sigma);
+    nav_noise_start(&nav->noise, noises->walk, period_us);
     for (uint8_t i = 0; i < 4U; i++) {
-        nav->variance[i] = measured[i] * measured[i];
+        nav->variance[i] = noises->measured[i] * noises->measured[i];
     }
 }
 
 bool nav_init(nav_t *nav, const nav_config_t *config)
 {
-    if (!start_is_legal(config) || !noises_are_legal(config) || judged(config->field, 3, FIELD_MAX) != NAV_TAKEN ||
-        !nav_align_tau(nav->tau, config->field)) {
-        return false;
-    }
+    noises_t noises;
+    noises_of(&noises, config);
+    *nav = (nav_t){ 0 };
     nav->state = config->start;
-    if (!unit_quaternion(nav->state.quaternion)) {
+    if (!noises_are_legal(&noises) || !rest_is_legal(config) || !nav_align_tau(nav->tau, config->field) ||
+        !unit_quaternion(nav->state.quaternion)) {
         return false;
     }
-    start_filter(nav, config);
+    start_filter(nav, &noises, config->period_us);
     nav->gravity_mps2 = config->gravity_mps2;
     nav->gate_squared = config->gate * config->gate;
     nav->period_us = config->period_us;
-    nav->t_us = 0;
-    nav->started = false;
-    nav->steps_back = 0;
-    for (uint8_t i = 0; i < 3U; i++) {
-        nav->rate_rps[i] = 0;
-        nav->force_mps2[i] = 0;
-        nav->force_ned_mps2[i] = 0;
-    }
-    for (uint8_t i = 0; i < NAV_SCALARS; i++) {
-        nav->queue.refused[i] = 0;
-    }
-    for (uint8_t i = 0; i < NAV_ANSWERS; i++) {
-        nav->counts.answer[i] = 0;
-    }
-    nav_jobs_forget(&nav->queue);
     return true;
 }
 
@@ -316,7 +309,7 @@ static bool finite_all(const nav_real_t *values, uint8_t count)
 bool nav_healthy(const nav_t *nav)
 {
     const nav_real_t *q = nav->state.quaternion;
-    nav_real_t square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    nav_real_t square = q[0] * q[0] + nav_dot(q + 1, q + 1);
     return within(square, NAV_R(0.999), NAV_R(1.001)) && finite_all(nav->state.velocity_mps, 3) &&
            finite_all(nav->state.position_m, 3) && finite_all(nav->state.gyro_drift_rps, 3) &&
            finite_all(nav->ud, NAV_PACKED) && nav_ud_positive(nav->ud);

@@ -60,20 +60,20 @@ typedef struct {
     nav_state_t start;
     nav_real_t field[3];         /* direction of the Earth's field in NED; any length from 1e-10 to 1e6, of any unit */
     nav_real_t gravity_mps2;     /* 1..25 */
-    nav_real_t start_position_m; /* 1 sigma of each component of the start: 0 (known exactly)..1e5 m */
-    nav_real_t start_velocity_mps;     /* 0..1e3 m/s */
-    nav_real_t start_attitude_rad;     /* 0..1 rad */
-    nav_real_t start_drift_rps;        /* 0..1 rad/s; of no use with 9 states */
-    nav_real_t walk_position_m;        /* 1 sigma of what each IMU period adds to each component: 0 (nothing)..1 */
-    nav_real_t walk_velocity_mps;      /* 0..1 */
-    nav_real_t walk_attitude_rad;      /* 0..1 */
-    nav_real_t walk_drift_rps;         /* 0..1; of no use with 9 states */
-    nav_real_t sigma_field;            /* 1 sigma of each component of the field's direction: 1e-4..1 */
-    nav_real_t sigma_gps_velocity_mps; /* 1e-3..1e3 */
-    nav_real_t sigma_gps_position_m;   /* 1e-3..1e5 */
-    nav_real_t sigma_down_m;           /* 1e-3..1e5 */
-    nav_real_t gate;                   /* refuse |innovation| > gate x its sigma: 1..100; 0: no gate */
-    uint32_t period_us;                /* of the IMU: 1000..100000 */
+    nav_real_t start_position_m; /* 1 sigma of each component of the start: 0 (known exactly)..1e5 */
+    nav_real_t start_velocity_mps;
+    nav_real_t start_attitude_rad; /* small angles: what is beyond 0.3 is believed less than it should be */
+    nav_real_t start_drift_rps;    /* of no use with 9 states */
+    nav_real_t walk_position_m;    /* 1 sigma of what each IMU period adds to each component: 0 (nothing)..1 */
+    nav_real_t walk_velocity_mps;
+    nav_real_t walk_attitude_rad;
+    nav_real_t walk_drift_rps; /* of no use with 9 states */
+    nav_real_t sigma_field;    /* 1 sigma of each component of the field's direction: 1e-4..1e5, as the next */
+    nav_real_t sigma_gps_velocity_mps;
+    nav_real_t sigma_gps_position_m;
+    nav_real_t sigma_down_m;
+    nav_real_t gate;    /* refuse |innovation| > gate x its sigma: 1..100; 0: no gate */
+    uint32_t period_us; /* of the IMU: 1000..100000 */
 } nav_config_t;
 
 typedef enum {
@@ -98,7 +98,7 @@ typedef struct {
    what would have been computed then with all that is known now. */
 typedef struct {
     uint32_t t_us[NAV_PAST];
-    nav_real_t motion[NAV_PAST][6]; /* position, velocity */
+    nav_real_t motion[NAV_PAST][6]; /* velocity, position */
     nav_real_t corrections[6];      /* sums */
     uint8_t newest, held;
 } nav_past_t;
@@ -140,7 +140,7 @@ typedef struct {
     bool started;
 } nav_t;
 
-/* False, and *nav of no use: a field of *config is outside its range or not finite. About 12,000 cycles. */
+/* False, and *nav of no use: a field of *config is outside its range or not finite. */
 bool nav_init(nav_t *nav, const nav_config_t *config);
 
 /*

@@ -1,13 +1,14 @@
 /* Alignment by the Earth's field (paper 003, 3.3.3). */
 #include "nav_align.h"
 #include "nav_root.h"
+#include "nav_vector.h"
 
 #define SHORTEST_SQUARED NAV_R(1e-20)
 #define LONGEST_SQUARED NAV_R(1e12)
 
 bool nav_align_unit(nav_real_t v[3])
 {
-    nav_real_t square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    nav_real_t square = nav_dot(v, v);
     if (!(square >= SHORTEST_SQUARED && square <= LONGEST_SQUARED)) {
         return false;
     }
@@ -29,22 +30,16 @@ bool nav_align_tau(nav_real_t tau[2][3], const nav_real_t field[3])
         m[i] = south ? -m[i] : m[i];
     }
     nav_real_t share = 1 / (1 + m[0]);
-    nav_real_t cross = -share * m[1] * m[2];
-    tau[0][0] = -m[1];
-    tau[0][1] = 1 - share * m[1] * m[1];
-    tau[0][2] = cross;
-    tau[1][0] = -m[2];
-    tau[1][1] = cross;
-    tau[1][2] = 1 - share * m[2] * m[2];
+    for (uint8_t i = 0; i < 2U; i++) {
+        tau[i][0] = -m[1U + i];
+        for (uint8_t j = 0; j < 2U; j++) {
+            tau[i][1U + j] = (nav_real_t)((i == j) ? 1 : 0) - share * m[1U + i] * m[1U + j];
+        }
+    }
     for (uint8_t i = 0; i < 3U; i++) {
         tau[1][i] = south ? -tau[1][i] : tau[1][i];
     }
     return true;
-}
-
-static nav_real_t dot(const nav_real_t a[3], const nav_real_t b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 void nav_align_innovation(nav_real_t innovation[2], const nav_real_t tau[2][3], const nav_real_t dcm[9],
@@ -52,8 +47,8 @@ void nav_align_innovation(nav_real_t innovation[2], const nav_real_t tau[2][3], 
 {
     nav_real_t ned[3];
     for (uint8_t i = 0; i < 3U; i++) {
-        ned[i] = dot(dcm + 3U * i, direction);
+        ned[i] = nav_dot(dcm + 3U * i, direction);
     }
-    innovation[0] = -dot(tau[1], ned);
-    innovation[1] = dot(tau[0], ned);
+    innovation[0] = -nav_dot(tau[1], ned);
+    innovation[1] = nav_dot(tau[0], ned);
 }

@@ -1,64 +1,47 @@
 /* Strapdown INS in NED (paper 003, 3.3.4: no Earth rotation, no curvature). */
 #include "nav_ins.h"
 #include "nav_ud.h"
+#include "nav_vector.h"
 
 #define HALF NAV_R(0.5)
 #define THREE_HALVES NAV_R(1.5)
 #define SIXTH NAV_R(0.16666666666666667)
 
+/* (w^2 - v.v) I + 2 v v' + 2 w [v x], and w^2 + v.v = 1. */
 void nav_ins_dcm(nav_real_t dcm[9], const nav_real_t quaternion[4])
 {
-    nav_real_t w = quaternion[0];
-    nav_real_t x = quaternion[1];
-    nav_real_t y = quaternion[2];
-    nav_real_t z = quaternion[3];
-    nav_real_t x2 = x + x;
-    nav_real_t y2 = y + y;
-    nav_real_t z2 = z + z;
-    nav_real_t xx = x * x2;
-    nav_real_t yy = y * y2;
-    nav_real_t zz = z * z2;
-    nav_real_t xy = x * y2;
-    nav_real_t xz = x * z2;
-    nav_real_t yz = y * z2;
-    nav_real_t wx = w * x2;
-    nav_real_t wy = w * y2;
-    nav_real_t wz = w * z2;
-    dcm[0] = 1 - (yy + zz);
-    dcm[1] = xy - wz;
-    dcm[2] = xz + wy;
-    dcm[3] = xy + wz;
-    dcm[4] = 1 - (xx + zz);
-    dcm[5] = yz - wx;
-    dcm[6] = xz - wy;
-    dcm[7] = yz + wx;
-    dcm[8] = 1 - (xx + yy);
-}
-
-/* quaternion <- quaternion (w, v) */
-static void turn(nav_real_t quaternion[4], nav_real_t w, const nav_real_t v[3])
-{
-    nav_real_t a = quaternion[0];
-    nav_real_t b = quaternion[1];
-    nav_real_t c = quaternion[2];
-    nav_real_t d = quaternion[3];
-    quaternion[0] = w * a - v[0] * b - v[1] * c - v[2] * d;
-    quaternion[1] = w * b + v[0] * a + v[2] * c - v[1] * d;
-    quaternion[2] = w * c + v[1] * a - v[2] * b + v[0] * d;
-    quaternion[3] = w * d + v[2] * a + v[1] * b - v[0] * c;
-}
-
-/* force, turned by half the rotation: f + half x f, in NED. */
-static void mean_force(nav_real_t out[3], const nav_real_t dcm[9], const nav_real_t half[3], const nav_real_t force[3])
-{
-    nav_real_t f[3];
-    f[0] = force[0] + (half[1] * force[2] - half[2] * force[1]);
-    f[1] = force[1] + (half[2] * force[0] - half[0] * force[2]);
-    f[2] = force[2] + (half[0] * force[1] - half[1] * force[0]);
+    nav_real_t twice[3];
+    nav_real_t square[3];
+    const nav_real_t *v = quaternion + 1;
     for (uint8_t i = 0; i < 3U; i++) {
-        const nav_real_t *row = dcm + 3U * i;
-        out[i] = row[0] * f[0] + row[1] * f[1] + row[2] * f[2];
+        twice[i] = v[i] + v[i];
+        square[i] = v[i] * twice[i];
     }
+    uint8_t next = 1;
+    uint8_t last = 2;
+    for (uint8_t i = 0; i < 3U; i++) {
+        nav_real_t both = v[i] * twice[next];
+        nav_real_t turned = quaternion[0] * twice[last];
+        dcm[4U * i] = 1 - (square[next] + square[last]);
+        dcm[3U * i + next] = both - turned;
+        dcm[3U * next + i] = both + turned;
+        next = last;
+        last = i;
+    }
+}
+
+/* q <- q (w, v), or (w, v) q when the turn is about the frame behind it. */
+static void turn(nav_real_t quaternion[4], nav_real_t w, const nav_real_t v[3], bool in_body)
+{
+    nav_real_t *vector = quaternion + 1;
+    nav_real_t scalar = quaternion[0];
+    const nav_real_t old[3] = { vector[0], vector[1], vector[2] };
+    quaternion[0] = w * scalar - nav_dot(v, old);
+    for (uint8_t i = 0; i < 3U; i++) {
+        vector[i] = w * old[i];
+    }
+    nav_add_scaled(vector, scalar, v);
+    nav_add_cross(vector, in_body ? old : v, in_body ? v : old);
 }
 
 void nav_ins_step(nav_state_t *state, nav_real_t force_ned_mps2[3], const nav_real_t dcm[9],
@@ -67,12 +50,15 @@ void nav_ins_step(nav_state_t *state, nav_real_t force_ned_mps2[3], const nav_re
 {
     nav_real_t half_step = HALF * step_s;
     nav_real_t half[3];
+    nav_real_t force[3];
     for (uint8_t i = 0; i < 3U; i++) {
         half[i] = rate_rps[i] * half_step;
+        force[i] = force_mps2[i];
     }
-    mean_force(force_ned_mps2, dcm, half, force_mps2);
+    nav_add_cross(force, half, force_mps2);
     for (uint8_t i = 0; i < 3U; i++) {
-        nav_real_t acceleration = force_ned_mps2[i];
+        nav_real_t acceleration = nav_dot(dcm + 3U * i, force);
+        force_ned_mps2[i] = acceleration;
         if (i == 2U) {
             acceleration += gravity_mps2;
         }
@@ -81,35 +67,21 @@ void nav_ins_step(nav_state_t *state, nav_real_t force_ned_mps2[3], const nav_re
         state->position_m[i] += half_step * (before + behind);
         state->velocity_mps[i] = behind;
     }
-    nav_real_t square = half[0] * half[0] + half[1] * half[1] + half[2] * half[2];
+    nav_real_t square = nav_dot(half, half);
     nav_real_t sine = 1 - SIXTH * square;
     for (uint8_t i = 0; i < 3U; i++) {
         half[i] *= sine;
     }
-    turn(state->quaternion, 1 - HALF * square, half);
+    turn(state->quaternion, 1 - HALF * square, half, true);
 }
 
 void nav_ins_unit(nav_real_t quaternion[4])
 {
-    nav_real_t square = quaternion[0] * quaternion[0] + quaternion[1] * quaternion[1] + quaternion[2] * quaternion[2] +
-                        quaternion[3] * quaternion[3];
+    nav_real_t square = quaternion[0] * quaternion[0] + nav_dot(quaternion + 1, quaternion + 1);
     nav_real_t factor = THREE_HALVES - HALF * square;
     for (uint8_t i = 0; i < 4U; i++) {
         quaternion[i] *= factor;
     }
-}
-
-/* quaternion <- (1, v) quaternion */
-static void turn_before(nav_real_t quaternion[4], const nav_real_t v[3])
-{
-    nav_real_t a = quaternion[0];
-    nav_real_t b = quaternion[1];
-    nav_real_t c = quaternion[2];
-    nav_real_t d = quaternion[3];
-    quaternion[0] = a - v[0] * b - v[1] * c - v[2] * d;
-    quaternion[1] = b + v[0] * a + v[1] * d - v[2] * c;
-    quaternion[2] = c + v[1] * a + v[2] * b - v[0] * d;
-    quaternion[3] = d + v[2] * a + v[0] * c - v[1] * b;
 }
 
 void nav_ins_correct(nav_state_t *state, const nav_real_t x[NAV_STATES])
@@ -123,6 +95,6 @@ void nav_ins_correct(nav_state_t *state, const nav_real_t x[NAV_STATES])
         state->gyro_drift_rps[i] += x[NAV_C0 + i];
 #endif
     }
-    turn_before(state->quaternion, half);
+    turn(state->quaternion, 1, half, false);
     nav_ins_unit(state->quaternion);
 }

@@ -13,6 +13,7 @@
 #include "nav_past.h"
 #include "nav_time.h"
 #include "nav_ud.h"
+#include "nav_vector.h"
 
 enum { VELOCITY = 0, POSITION = 3, DOWN = 6, FIELD = 7, ROW_AGAIN = 3 };
 
@@ -81,25 +82,19 @@ void nav_jobs_put(nav_t *nav, nav_sensor_t sensor, uint32_t t_us, const nav_real
     queue->seen |= (uint8_t)bit(sensor);
 }
 
-/* A fixed direction seen from the body that has turned for `age` seconds since: m - age w x m. */
-static void turn_on(nav_real_t out[3], const nav_t *nav, const nav_real_t m[3], nav_real_t age)
-{
-    nav_real_t angle[3];
-    for (uint8_t i = 0; i < 3U; i++) {
-        angle[i] = age * (nav->rate_rps[i] - nav->state.gyro_drift_rps[i]);
-    }
-    out[0] = m[0] - (angle[1] * m[2] - angle[2] * m[1]);
-    out[1] = m[1] - (angle[2] * m[0] - angle[0] * m[2]);
-    out[2] = m[2] - (angle[0] * m[1] - angle[1] * m[0]);
-}
-
+/* A fixed direction, which the body has turned on from for the time since: m + m x (w age). */
 static void take_field(nav_t *nav)
 {
     nav_queue_t *queue = &nav->queue;
     const nav_real_t came[3] = { queue->value[FIELD], queue->value[FIELD + 1], queue->third };
-    nav_real_t turned[3];
+    nav_real_t turned[3] = { came[0], came[1], came[2] };
+    nav_real_t age = nav_seconds(queue->t_us[NAV_FIELD], nav->t_us);
+    nav_real_t angle[3];
+    for (uint8_t i = 0; i < 3U; i++) {
+        angle[i] = age * (nav->rate_rps[i] - nav->state.gyro_drift_rps[i]);
+    }
+    nav_add_cross(turned, came, angle);
     nav_real_t dcm[9];
-    turn_on(turned, nav, came, nav_seconds(queue->t_us[NAV_FIELD], nav->t_us));
     nav_ins_dcm(dcm, nav->state.quaternion);
     nav_align_innovation(queue->value + FIELD, nav->tau, dcm, turned);
 }
@@ -111,12 +106,11 @@ static void take_motion(nav_t *nav, uint8_t sensor)
     nav_real_t motion[6];
     nav_past_at(&nav->past, motion, queue->t_us[sensor], &nav->state, nav->t_us);
     if (sensor == NAV_DOWN) {
-        queue->value[DOWN] -= motion[2];
+        queue->value[DOWN] -= motion[POSITION + 2];
         return;
     }
-    for (uint8_t i = 0; i < 3U; i++) {
-        queue->value[VELOCITY + i] -= motion[3U + i];
-        queue->value[POSITION + i] -= motion[i];
+    for (uint8_t i = 0; i < DOWN; i++) {
+        queue->value[i] -= motion[i];
     }
 }
 

@@ -5,17 +5,18 @@
 
 #define APART_US 19000
 
-static nav_real_t motion_of(const nav_state_t *state, uint8_t i)
+static void motion_of(nav_real_t motion[6], const nav_past_t *past, const nav_state_t *state)
 {
-    return (i < 3U) ? state->position_m[i] : state->velocity_mps[i - 3U];
+    for (uint8_t i = 0; i < 3U; i++) {
+        motion[i] = state->velocity_mps[i] - past->corrections[i];
+        motion[3U + i] = state->position_m[i] - past->corrections[3U + i];
+    }
 }
 
 static void put(nav_past_t *past, const nav_state_t *state, uint32_t t_us)
 {
     past->t_us[past->newest] = t_us;
-    for (uint8_t i = 0; i < 6U; i++) {
-        past->motion[past->newest][i] = motion_of(state, i) - past->corrections[i];
-    }
+    motion_of(past->motion[past->newest], past, state);
 }
 
 void nav_past_restart(nav_past_t *past, const nav_state_t *state, uint32_t t_us)
@@ -43,8 +44,8 @@ void nav_past_keep(nav_past_t *past, const nav_state_t *state, uint32_t t_us)
 void nav_past_correct(nav_past_t *past, const nav_real_t x[NAV_STATES])
 {
     for (uint8_t i = 0; i < 3U; i++) {
-        past->corrections[i] += x[NAV_R0 + i];
-        past->corrections[3U + i] += x[NAV_V0 + i];
+        past->corrections[i] += x[NAV_V0 + i];
+        past->corrections[3U + i] += x[NAV_R0 + i];
     }
 }
 
@@ -62,20 +63,22 @@ bool nav_past_reaches(const nav_past_t *past, uint32_t t_us)
 void nav_past_at(const nav_past_t *past, nav_real_t motion[6], uint32_t epoch_us, const nav_state_t *now,
                  uint32_t now_us)
 {
-    uint8_t back = 0;
-    while (back + 1U < past->held && nav_time_from(past->t_us[place(past, back)], epoch_us) < 0) {
-        back++;
+    uint32_t behind_us = now_us;
+    uint8_t at = past->newest;
+    motion_of(motion, past, now);
+    for (uint8_t back = 1; back < past->held && nav_time_from(past->t_us[at], epoch_us) < 0; back++) {
+        behind_us = past->t_us[at];
+        for (uint8_t i = 0; i < 6U; i++) {
+            motion[i] = past->motion[at][i];
+        }
+        at = place(past, back);
     }
-    uint8_t before = place(past, back);
-    uint32_t behind_us = (back == 0U) ? now_us : past->t_us[place(past, (uint8_t)(back - 1U))];
     nav_real_t share = 0;
-    if (behind_us != past->t_us[before]) {
-        share = nav_seconds(past->t_us[before], epoch_us) / nav_seconds(past->t_us[before], behind_us);
+    if (behind_us != past->t_us[at]) {
+        share = nav_seconds(epoch_us, behind_us) / nav_seconds(past->t_us[at], behind_us);
     }
     for (uint8_t i = 0; i < 6U; i++) {
-        nav_real_t begin = past->motion[before][i];
-        nav_real_t end = (back == 0U) ? motion_of(now, i) - past->corrections[i]
-                                      : past->motion[place(past, (uint8_t)(back - 1U))][i];
-        motion[i] = begin + share * (end - begin) + past->corrections[i];
+        motion[i] += share * (past->motion[at][i] - motion[i]);
+        motion[i] += past->corrections[i];
     }
 }

@@ -21,7 +21,7 @@ void nav_past_correct(nav_past_t *past, const nav_real_t x[NAV_STATES]);
 bool nav_past_reaches(const nav_past_t *past, uint32_t t_us);
 
 /*
- * Position and velocity at epoch_us <= now_us, between two that are kept (or the last and the present state): linear,
+ * Velocity and position at epoch_us <= now_us, between two that are kept (or the last and the present state): linear,
  * so that a position errs by |acceleration| gap^2 / 8, 0.5 mm at 10 m/s^2 and 20 ms. Corrections made since the epoch
  * are in it as they were made; that those of the velocity would have moved the position meanwhile, by correction x
  * time, is left out.
