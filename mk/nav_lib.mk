@@ -21,3 +21,16 @@ endef
 $(foreach variant,$(NAV_VARIANTS),$(eval $(call nav_variant,$(variant))))
 
 $(NAV_TESTS): $(NAV_VARIANTS:%=$(H)/nav/%.o) $(H)/host_tests/nav_flights.o
+
+# lib/nav alone in the simulated chip: cycles of each slot, flash, stack, and every bit beside the PC's (build/host/nav_chip_12 ELF SECONDS)
+NAV_CHIP_DEPS := host_tests/avr/nav_slots.c host_tests/avr/nav_box.h $(wildcard lib/nav/src/*) Makefile mk/nav_lib.mk
+$(U)/nav_slots_%.elf: $(NAV_CHIP_DEPS)
+	@mkdir -p $(@D)
+	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p $(AVR_SMALL) -ffp-contract=off -ffunction-sections $(WARNINGS) -DNAV_STATES=$* -Ilib/nav/src -Wl,--gc-sections \
+	    host_tests/avr/nav_slots.c $(wildcard lib/nav/src/*.c) -lm -o $@
+
+$(H)/nav_chip_%: host_tests/nav_chip.c host_tests/support_flight.c host_tests/support_random.c host_tests/support_flight.h $(NAV_CHIP_DEPS)
+	@mkdir -p $(@D)
+	@$(HOST_CC) -std=gnu11 -O2 -g -ffp-contract=off $(WARNINGS) -DNAV_STATES=$* -Ilib/nav/src -Ihost_tests -Ihost_tests/avr \
+	    $$(pkg-config --cflags simavr | sed 's/-I/-isystem /g') -isystem /usr/include/simavr $(filter host_tests/%.c lib/nav/src/%.c,$(filter-out host_tests/avr/%,$^)) \
+	    $$(pkg-config --libs simavr) -lelf -lm -o $@
