@@ -48,22 +48,23 @@ typedef struct {
     double tau[6];
 } flown_t;
 
-/* x += K (z - h x) with the row that has `main`, or three elements in the attitude. */
+/* x += K (z - h x), h being 1 at `main`, or three elements in the attitude. */
 static void scalar_at_once(flown_t *f, int main, const double *more, double z, double sigma, double *x)
 {
-    int n = f->plan->variant->states;
-    nav_test_row_t row = { (main < 0) ? n : main, (main < 0) ? 3 : 0, { 6, 7, 8 }, { 0, 0, 0 } };
+    nav_test_row_t row = { { 0 } };
     double gain[12];
     double left = z;
-    if (main >= 0) {
-        left -= x[main];
+    for (int i = 0; i < 3 && main < 0; i++) {
+        row.h[6 + i] = more[i];
     }
-    for (int i = 0; i < row.count; i++) {
-        row.more[i] = more[i];
-        left -= more[i] * x[6 + i];
+    if (main >= 0) {
+        row.h[main] = 1.0;
+    }
+    for (int i = 0; i < f->plan->variant->states; i++) {
+        left -= row.h[i] * x[i];
     }
     f->plan->variant->ud_scalar(&f->memory, &row, sigma * sigma, gain);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < f->plan->variant->states; i++) {
         x[i] += gain[i] * left;
     }
 }

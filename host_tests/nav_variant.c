@@ -172,11 +172,14 @@ static double ud_scalar(nav_memory_t *nav, const nav_test_row_t *row, double var
 {
     nav_row_t r;
     nav_ud_scalar_t scalar;
-    r.main = (uint8_t)row->main;
-    r.count = (uint8_t)row->count;
-    for (int i = 0; i < row->count; i++) {
-        r.index[i] = (uint8_t)row->index[i];
-        r.more[i] = (nav_real_t)row->more[i];
+    r.first = NAV_STATES;
+    r.end = 0;
+    for (int i = 0; i < NAV_STATES; i++) {
+        r.h[i] = (nav_real_t)row->h[i];
+        if (row->h[i] != 0.0) {
+            r.first = (r.end == 0U) ? (uint8_t)i : r.first;
+            r.end = (uint8_t)(i + 1);
+        }
     }
     nav_ud_look(&scalar, nav_of(nav)->ud, &r, (nav_real_t)variance);
     nav_ud_update(nav_of(nav)->ud, &scalar, (nav_real_t)variance);

@@ -39,10 +39,9 @@ typedef struct {
     double memory[512];
 } nav_memory_t;
 
-/* A row of H: 1 at main (or none: as many as there are states), and more. */
+/* A row of H. */
 typedef struct {
-    int main, count, index[3];
-    double more[3];
+    double h[12];
 } nav_test_row_t;
 
 typedef struct {

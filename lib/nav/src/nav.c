@@ -10,6 +10,8 @@
 #include "nav_ud.h"
 #include "nav_vector.h"
 
+#include <stddef.h>
+
 #define RATE_MAX_RPS NAV_R(40.0)
 #define FORCE_MAX_MPS2 NAV_R(400.0)
 #define VELOCITY_MAX_MPS NAV_R(1e3)
@@ -52,37 +54,29 @@ static bool within(nav_real_t value, nav_real_t low, nav_real_t high)
     return value >= low && value <= high;
 }
 
-/* The numbers of a configuration, by their limits. */
-typedef struct {
-    nav_real_t sigma[4], walk[4], measured[4];
-} noises_t;
+/* The numbers of a configuration that follow one another: start's sigmas, walks, sensors' sigmas. */
+enum { STARTS = 0, WALKS = 4, SENSORS = 8, NUMBERS = 12 };
+_Static_assert(offsetof(nav_config_t, gate) - offsetof(nav_config_t, start_position_m) == NUMBERS * sizeof(nav_real_t),
+               "nothing stands between the first sigma and the gate");
 
-static void noises_of(noises_t *out, const nav_config_t *c)
+static const nav_real_t *numbers_of(const nav_config_t *c)
 {
-    *out = (noises_t){ { c->start_position_m, c->start_velocity_mps, c->start_attitude_rad, c->start_drift_rps },
-                       { c->walk_position_m, c->walk_velocity_mps, c->walk_attitude_rad, c->walk_drift_rps },
-                       { c->sigma_gps_velocity_mps, c->sigma_gps_position_m, c->sigma_down_m, c->sigma_field } };
+    return (const nav_real_t *)(const void *)((const char *)c + offsetof(nav_config_t, start_position_m));
 }
 
-static bool noises_are_legal(const noises_t *noises)
+static bool is_legal(const nav_config_t *c)
 {
-    for (uint8_t i = 0; i < 4U; i++) {
-        if (!within(noises->sigma[i], 0, NAV_R(1e5)) || !within(noises->walk[i], 0, 1) ||
-            !within(noises->measured[i], NAV_R(1e-4), NAV_R(1e5))) {
+    const nav_real_t *numbers = numbers_of(c);
+    const nav_state_t *start = &c->start;
+    for (uint8_t i = 0; i < NUMBERS; i++) {
+        if (!within(numbers[i], (i < SENSORS) ? 0 : NAV_R(1e-4), NAV_R(1e5))) {
             return false;
         }
     }
-    return true;
-}
-
-static bool rest_is_legal(const nav_config_t *c)
-{
-    const nav_state_t *start = &c->start;
-    return (judged(start->quaternion, 4, 2) | judged(start->velocity_mps, 3, VELOCITY_MAX_MPS) |
-            judged(start->position_m, 3, POSITION_MAX_M) | judged(start->gyro_drift_rps, 3, 1) |
-            judged(c->field, 3, FIELD_MAX)) == NAV_TAKEN &&
-           within(c->gravity_mps2, 1, 25) && (c->gate == 0 || within(c->gate, 1, 100)) && c->period_us >= 1000U &&
-           c->period_us <= 100000U;
+    return (judged(start->velocity_mps, 3, VELOCITY_MAX_MPS) | judged(start->position_m, 3, POSITION_MAX_M) |
+            judged(start->gyro_drift_rps, 3, 1)) == NAV_TAKEN &&
+           within(c->gravity_mps2, 1, 25) && within(c->gate, 0, 100) && !(c->gate > 0 && c->gate < 1) &&
+           c->period_us >= 1000U && c->period_us <= 100000U;
 }
 
 static bool unit_quaternion(nav_real_t q[4])
@@ -97,26 +91,19 @@ static bool unit_quaternion(nav_real_t q[4])
     return true;
 }
 
-static void start_filter(nav_t *nav, const noises_t *noises, uint32_t period_us)
-{
-    nav_ud_start(nav->ud, noises->sigma);
-    nav_noise_start(&nav->noise, noises->walk, period_us);
-    for (uint8_t i = 0; i < 4U; i++) {
-        nav->variance[i] = noises->measured[i] * noises->measured[i];
-    }
-}
-
 bool nav_init(nav_t *nav, const nav_config_t *config)
 {
-    noises_t noises;
-    noises_of(&noises, config);
+    const nav_real_t *numbers = numbers_of(config);
     *nav = (nav_t){ 0 };
     nav->state = config->start;
-    if (!noises_are_legal(&noises) || !rest_is_legal(config) || !nav_align_tau(nav->tau, config->field) ||
-        !unit_quaternion(nav->state.quaternion)) {
+    if (!is_legal(config) || !nav_align_tau(nav->tau, config->field) || !unit_quaternion(nav->state.quaternion)) {
         return false;
     }
-    start_filter(nav, &noises, config->period_us);
+    nav_ud_start(nav->ud, numbers + STARTS);
+    nav_noise_start(&nav->noise, numbers + WALKS, config->period_us);
+    for (uint8_t i = 0; i < 4U; i++) {
+        nav->variance[i] = numbers[SENSORS + i] * numbers[SENSORS + i];
+    }
     nav->gravity_mps2 = config->gravity_mps2;
     nav->gate_squared = config->gate * config->gate;
     nav->period_us = config->period_us;
@@ -132,33 +119,32 @@ static void begin_at(nav_t *nav, uint32_t t_us)
     nav_noise_restart(&nav->noise, t_us);
 }
 
+/* This record is the last from now on; rate and force: its own, or the mean with the one before. */
+static void read_record(nav_t *nav, nav_real_t rate[3], nav_real_t force[3], bool bridged)
+{
+    for (uint8_t i = 0; i < 3U; i++) {
+        nav_real_t now = rate[i];
+        nav_real_t pushed = force[i];
+        if (bridged) {
+            rate[i] = HALF * (nav->rate_rps[i] + now);
+            force[i] = HALF * (nav->force_mps2[i] + pushed);
+        }
+        nav->rate_rps[i] = now;
+        nav->force_mps2[i] = pushed;
+    }
+}
+
 /* Strapdown and covariance to t_us with mean rate and force. */
-static void advance(nav_t *nav, uint32_t t_us, const nav_real_t rate_rps[3], const nav_real_t force_mps2[3])
+static void advance(nav_t *nav, uint32_t t_us, nav_real_t rate[3], const nav_real_t force[3])
 {
     nav_real_t step = nav_seconds(nav->t_us, t_us);
     nav_real_t dcm[9];
-    nav_real_t rate[3];
-    for (uint8_t i = 0; i < 3U; i++) {
-        rate[i] = rate_rps[i] - nav->state.gyro_drift_rps[i];
-    }
+    nav_add_scaled(rate, -1, nav->state.gyro_drift_rps);
     nav_ins_dcm(dcm, nav->state.quaternion);
-    nav_ins_step(&nav->state, nav->force_ned_mps2, dcm, rate, force_mps2, nav->gravity_mps2, step);
+    nav_ins_step(&nav->state, nav->force_ned_mps2, dcm, rate, force, nav->gravity_mps2, step);
     nav_ud_phi(nav->ud, step, nav->force_ned_mps2, dcm);
     nav->t_us = t_us;
     nav_past_keep(&nav->past, &nav->state, t_us);
-}
-
-/* Records are missing: the mean of the last and this one stands for all of them. */
-static void bridge(nav_t *nav, uint32_t t_us, const nav_real_t rate_rps[3], const nav_real_t force_mps2[3])
-{
-    nav_real_t rate[3];
-    nav_real_t force[3];
-    for (uint8_t i = 0; i < 3U; i++) {
-        rate[i] = HALF * (nav->rate_rps[i] + rate_rps[i]);
-        force[i] = HALF * (nav->force_mps2[i] + force_mps2[i]);
-    }
-    advance(nav, t_us, rate, force);
-    nav_ins_unit(nav->state.quaternion);
 }
 
 /* Nothing is known of the time before: on with the velocity, and the covariance owes what it may hold. */
@@ -166,19 +152,9 @@ static void leap(nav_t *nav, uint32_t t_us, uint32_t gap_us)
 {
     nav_real_t gap = (nav_real_t)gap_us * NAV_R(1e-6);
     gap = (gap < GAP_MAX_S) ? gap : GAP_MAX_S;
-    for (uint8_t i = 0; i < 3U; i++) {
-        nav->state.position_m[i] += gap * nav->state.velocity_mps[i];
-    }
+    nav_add_scaled(nav->state.position_m, gap, nav->state.velocity_mps);
     nav_noise_owe(&nav->noise, gap);
     begin_at(nav, t_us);
-}
-
-static void remember(nav_t *nav, const nav_real_t rate_rps[3], const nav_real_t force_mps2[3])
-{
-    for (uint8_t i = 0; i < 3U; i++) {
-        nav->rate_rps[i] = rate_rps[i];
-        nav->force_mps2[i] = force_mps2[i];
-    }
 }
 
 /* Longest step that is bridged. */
@@ -199,66 +175,71 @@ static nav_answer_t step_back(nav_t *nav, uint32_t t_us)
     return NAV_GAP;
 }
 
-static nav_answer_t step_to(nav_t *nav, uint32_t t_us, const nav_real_t rate_rps[3], const nav_real_t force_mps2[3])
+static nav_answer_t step_to(nav_t *nav, uint32_t t_us, nav_real_t rate[3], nav_real_t force[3])
 {
     uint32_t step_us = t_us - nav->t_us;
     if (nav_time_from(nav->t_us, t_us) <= 0) {
         return step_back(nav, t_us);
     }
-    if (step_us > bridged_us(nav)) {
+    bool lost = step_us > bridged_us(nav);
+    bool bridged = !lost && step_us > nav->period_us + nav->period_us / 2U;
+    read_record(nav, rate, force, bridged);
+    if (lost) {
         leap(nav, t_us, step_us);
         return NAV_GAP;
     }
-    if (step_us > nav->period_us + nav->period_us / 2U) {
-        bridge(nav, t_us, rate_rps, force_mps2);
-    } else {
-        advance(nav, t_us, rate_rps, force_mps2);
+    advance(nav, t_us, rate, force);
+    if (bridged) {
+        nav_ins_unit(nav->state.quaternion);
     }
     return NAV_TAKEN;
 }
 
 nav_answer_t nav_imu(nav_t *nav, uint32_t t_us, const nav_real_t rate_rps[3], const nav_real_t force_mps2[3])
 {
-    nav_answer_t answer = worse(judged(rate_rps, 3, RATE_MAX_RPS), judged(force_mps2, 3, FORCE_MAX_MPS2));
-    if (answer != NAV_TAKEN) {
-        return counted(nav, answer);
+    nav_real_t rate[3] = { rate_rps[0], rate_rps[1], rate_rps[2] };
+    nav_real_t force[3] = { force_mps2[0], force_mps2[1], force_mps2[2] };
+    nav_answer_t answer = worse(judged(rate, 3, RATE_MAX_RPS), judged(force, 3, FORCE_MAX_MPS2));
+    if (answer == NAV_TAKEN) {
+        if (!nav->started) {
+            begin_at(nav, t_us - nav->period_us);
+        }
+        answer = step_to(nav, t_us, rate, force);
+        if (answer != NAV_BACKWARDS) {
+            nav->steps_back = 0;
+            nav_jobs_run(nav);
+        }
     }
-    if (!nav->started) {
-        begin_at(nav, t_us - nav->period_us);
+    return counted(nav, answer);
+}
+
+/* Values that were judged, into the queue if their time fits. */
+static nav_answer_t queued(nav_t *nav, nav_answer_t answer, nav_sensor_t sensor, uint32_t t_us,
+                           const nav_real_t *values)
+{
+    if (answer == NAV_TAKEN) {
+        answer = nav_jobs_may(nav, sensor, t_us);
     }
-    answer = step_to(nav, t_us, rate_rps, force_mps2);
-    if (answer != NAV_BACKWARDS) {
-        nav->steps_back = 0;
-        remember(nav, rate_rps, force_mps2);
-        nav_jobs_run(nav);
+    if (answer == NAV_TAKEN) {
+        nav_jobs_put(nav, sensor, t_us, values);
     }
     return counted(nav, answer);
 }
 
 nav_answer_t nav_gps(nav_t *nav, uint32_t t_us, const nav_real_t velocity_mps[3], const nav_real_t position_m[3])
 {
-    nav_answer_t answer = worse(judged(velocity_mps, 3, VELOCITY_MAX_MPS), judged(position_m, 3, POSITION_MAX_M));
-    if (answer == NAV_TAKEN) {
-        answer = nav_jobs_may(nav, NAV_GPS, t_us, NAV_LATE_US);
+    nav_real_t values[6];
+    for (uint8_t i = 0; i < 3U; i++) {
+        values[i] = velocity_mps[i];
+        values[3U + i] = position_m[i];
     }
-    if (answer == NAV_TAKEN) {
-        const nav_real_t values[6] = { velocity_mps[0], velocity_mps[1], velocity_mps[2],
-                                       position_m[0],   position_m[1],   position_m[2] };
-        nav_jobs_put(nav, NAV_GPS, t_us, values);
-    }
-    return counted(nav, answer);
+    nav_answer_t answer = worse(judged(values, 3, VELOCITY_MAX_MPS), judged(values + 3, 3, POSITION_MAX_M));
+    return queued(nav, answer, NAV_GPS, t_us, values);
 }
 
 nav_answer_t nav_down(nav_t *nav, uint32_t t_us, nav_real_t down_m)
 {
-    nav_answer_t answer = judged(&down_m, 1, POSITION_MAX_M);
-    if (answer == NAV_TAKEN) {
-        answer = nav_jobs_may(nav, NAV_DOWN, t_us, NAV_LATE_US);
-    }
-    if (answer == NAV_TAKEN) {
-        nav_jobs_put(nav, NAV_DOWN, t_us, &down_m);
-    }
-    return counted(nav, answer);
+    return queued(nav, judged(&down_m, 1, POSITION_MAX_M), NAV_DOWN, t_us, &down_m);
 }
 
 nav_answer_t nav_field(nav_t *nav, uint32_t t_us, const nav_real_t field_body[3])
@@ -268,13 +249,7 @@ nav_answer_t nav_field(nav_t *nav, uint32_t t_us, const nav_real_t field_body[3]
     if (answer == NAV_TAKEN && !nav_align_unit(direction)) {
         answer = NAV_NO_LENGTH;
     }
-    if (answer == NAV_TAKEN) {
-        answer = nav_jobs_may(nav, NAV_FIELD, t_us, NAV_FIELD_LATE_US);
-    }
-    if (answer == NAV_TAKEN) {
-        nav_jobs_put(nav, NAV_FIELD, t_us, direction);
-    }
-    return counted(nav, answer);
+    return queued(nav, answer, NAV_FIELD, t_us, direction);
 }
 
 const nav_state_t *nav_state(const nav_t *nav)

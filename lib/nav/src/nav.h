@@ -105,8 +105,7 @@ typedef struct {
 
 /* What waits: values as they came, then innovations. One epoch per sensor. */
 typedef struct {
-    nav_real_t value[NAV_SCALARS];
-    nav_real_t third; /* of the field's three components, until it is taken in */
+    nav_real_t value[NAV_SCALARS + 1]; /* and the field's third component, until it is taken in */
     uint32_t t_us[3]; /* epochs of GPS, altimeter, magnetometer: of those that wait, and the last of each */
     uint16_t waits;   /* a bit per scalar */
     uint8_t arrived;  /* a bit per sensor whose values are still as they came */
@@ -129,7 +128,7 @@ typedef struct {
     nav_real_t rate_rps[3], force_mps2[3]; /* last record */
     nav_real_t force_ned_mps2[3];
     nav_real_t tau[2][3];   /* rows 2 and 3 of (3.34) */
-    nav_real_t variance[4]; /* of velocity, position, down, field as measured */
+    nav_real_t variance[4]; /* of field, velocity, position, down as measured */
     nav_real_t gravity_mps2, gate_squared;
     uint32_t t_us, period_us;
     nav_past_t past;

@@ -5,6 +5,7 @@
 
 #define SHORTEST_SQUARED NAV_R(1e-20)
 #define LONGEST_SQUARED NAV_R(1e12)
+#define SOUTHERNMOST NAV_R(-0.5)
 
 bool nav_align_unit(nav_real_t v[3])
 {
@@ -22,22 +23,16 @@ bool nav_align_unit(nav_real_t v[3])
 bool nav_align_tau(nav_real_t tau[2][3], const nav_real_t field[3])
 {
     nav_real_t m[3] = { field[0], field[1], field[2] };
-    if (!nav_align_unit(m)) {
+    if (!nav_align_unit(m) || m[0] < SOUTHERNMOST) {
         return false;
-    }
-    bool south = m[0] < 0;
-    for (uint8_t i = 0; i < 3U; i++) {
-        m[i] = south ? -m[i] : m[i];
     }
     nav_real_t share = 1 / (1 + m[0]);
     for (uint8_t i = 0; i < 2U; i++) {
+        nav_real_t part = share * m[1U + i];
         tau[i][0] = -m[1U + i];
         for (uint8_t j = 0; j < 2U; j++) {
-            tau[i][1U + j] = (nav_real_t)((i == j) ? 1 : 0) - share * m[1U + i] * m[1U + j];
+            tau[i][1U + j] = (nav_real_t)((i == j) ? 1 : 0) - part * m[1U + j];
         }
-    }
-    for (uint8_t i = 0; i < 3U; i++) {
-        tau[1][i] = south ? -tau[1][i] : tau[1][i];
     }
     return true;
 }

@@ -10,10 +10,9 @@ extern "C" {
 
 /*
  * Rows 2 and 3 of tau for a field in NED: with row 1, the field's direction, an orthogonal matrix that turns it to
- * (1, 0, 0). The field is normalised, so p of (3.34) is 1 (for any other p the printed 1 + mag1 must be p + mag1). For
- * a field that points south (mag1 < 0) tau is made of the opposite direction, and row 3 turned round, because 1 + mag1
- * goes to 0 there.
- * False: |field| is outside 1e-10..1e6.
+ * (1, 0, 0). The field is normalised, so p of (3.34) is 1 (for any other p the printed 1 + mag1 must be p + mag1).
+ * False: |field| is outside 1e-10..1e6, or it points south more than down (mag1 < -0.5: nowhere on Earth, and 1 + mag1
+ * goes to 0 there).
  */
 bool nav_align_tau(nav_real_t tau[2][3], const nav_real_t field[3]);
 

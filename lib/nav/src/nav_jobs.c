@@ -17,26 +17,25 @@
 
 enum { VELOCITY = 0, POSITION = 3, DOWN = 6, FIELD = 7, ROW_AGAIN = 3 };
 
-/* First scalar of each sensor, and the end. */
-static uint8_t scalar_of(uint8_t sensor)
-{
-    return (sensor == NAV_GPS) ? VELOCITY : (uint8_t)((sensor == NAV_DOWN) ? DOWN : FIELD);
-}
-
-static uint8_t sensor_of(uint8_t scalar)
-{
-    return (uint8_t)((scalar < DOWN) ? NAV_GPS : ((scalar == DOWN) ? NAV_DOWN : NAV_FIELD));
-}
-
 static uint16_t bit(uint8_t i)
 {
     return (uint16_t)((uint16_t)1U << i);
 }
 
+static uint8_t first_of(uint8_t sensor)
+{
+    return (sensor == NAV_GPS) ? VELOCITY : (uint8_t)(DOWN - NAV_DOWN + sensor);
+}
+
+static uint8_t sensor_of(uint8_t scalar)
+{
+    return (scalar < DOWN) ? NAV_GPS : (uint8_t)((scalar == DOWN) ? NAV_DOWN : NAV_FIELD);
+}
+
 /* The bits of a sensor's scalars. */
 static uint16_t bits_of(uint8_t sensor)
 {
-    return (sensor == NAV_GPS) ? 0x3FU : ((sensor == NAV_DOWN) ? 0x40U : 0x180U);
+    return (sensor == NAV_GPS) ? 0x3FU : (uint16_t)((sensor == NAV_DOWN) ? 0x40U : 0x180U);
 }
 
 void nav_jobs_forget(nav_queue_t *queue)
@@ -47,14 +46,15 @@ void nav_jobs_forget(nav_queue_t *queue)
     queue->in_a_row = 0;
 }
 
-nav_answer_t nav_jobs_may(const nav_t *nav, nav_sensor_t sensor, uint32_t t_us, uint32_t late_us)
+nav_answer_t nav_jobs_may(const nav_t *nav, nav_sensor_t sensor, uint32_t t_us)
 {
     const nav_queue_t *queue = &nav->queue;
     int32_t age = nav_time_from(t_us, nav->t_us);
     if (!nav->started || age < -(int32_t)NAV_BRIDGE_US) {
         return NAV_GAP;
     }
-    if (age > (int32_t)late_us || !nav_past_reaches(&nav->past, t_us)) {
+    if (age > ((sensor == NAV_FIELD) ? (int32_t)NAV_FIELD_LATE_US : (int32_t)NAV_LATE_US) ||
+        !nav_past_reaches(&nav->past, t_us)) {
         return NAV_LATE;
     }
     /* a last epoch that seems to be far ahead is one of half the clock's round ago */
@@ -68,13 +68,10 @@ nav_answer_t nav_jobs_may(const nav_t *nav, nav_sensor_t sensor, uint32_t t_us, 
 void nav_jobs_put(nav_t *nav, nav_sensor_t sensor, uint32_t t_us, const nav_real_t *values)
 {
     nav_queue_t *queue = &nav->queue;
-    uint8_t first = scalar_of(sensor);
-    uint8_t count = (sensor == NAV_GPS) ? 6 : (uint8_t)((sensor == NAV_DOWN) ? 1 : 2);
+    uint8_t first = first_of(sensor);
+    uint8_t count = (sensor == NAV_GPS) ? DOWN : (uint8_t)((sensor == NAV_DOWN) ? 1 : 3);
     for (uint8_t i = 0; i < count; i++) {
         queue->value[first + i] = values[i];
-    }
-    if (sensor == NAV_FIELD) {
-        queue->third = values[2];
     }
     queue->t_us[sensor] = t_us;
     queue->waits |= bits_of(sensor);
@@ -86,11 +83,13 @@ void nav_jobs_put(nav_t *nav, nav_sensor_t sensor, uint32_t t_us, const nav_real
 static void take_field(nav_t *nav)
 {
     nav_queue_t *queue = &nav->queue;
-    const nav_real_t came[3] = { queue->value[FIELD], queue->value[FIELD + 1], queue->third };
-    nav_real_t turned[3] = { came[0], came[1], came[2] };
+    nav_real_t came[3];
+    nav_real_t turned[3];
     nav_real_t age = nav_seconds(queue->t_us[NAV_FIELD], nav->t_us);
     nav_real_t angle[3];
     for (uint8_t i = 0; i < 3U; i++) {
+        came[i] = queue->value[FIELD + i];
+        turned[i] = came[i];
         angle[i] = age * (nav->rate_rps[i] - nav->state.gyro_drift_rps[i]);
     }
     nav_add_cross(turned, came, angle);
@@ -134,54 +133,42 @@ static bool take_in(nav_t *nav)
     return taken;
 }
 
-/* dv_k(e) = dv_k - age (f x mu)_k */
-static void velocity_row(nav_row_t *row, uint8_t k, const nav_real_t force[3], nav_real_t age)
+/* dv(e) = dv - age f x mu; dr(e) = dr - age dv. */
+static void motion_row(nav_row_t *row, uint8_t scalar, const nav_real_t force[3], nav_real_t age)
 {
-    uint8_t next = (uint8_t)((k + 1U) % 3U);
-    uint8_t last = (uint8_t)((k + 2U) % 3U);
-    uint8_t low = (next < last) ? 0 : 1;
-    row->main = (uint8_t)(NAV_V0 + k);
-    row->count = 2;
-    row->index[low] = (uint8_t)(NAV_M0 + next);
-    row->more[low] = age * force[last];
-    row->index[1U - low] = (uint8_t)(NAV_M0 + last);
-    row->more[1U - low] = -age * force[next];
-}
-
-static void position_row(nav_row_t *row, uint8_t k, nav_real_t age)
-{
-    row->main = (uint8_t)(NAV_R0 + k);
-    row->count = 1;
-    row->index[0] = (uint8_t)(NAV_V0 + k);
-    row->more[0] = -age;
-}
-
-static void field_row(nav_row_t *row, const nav_real_t tau[3])
-{
-    row->main = NAV_STATES;
-    row->count = 3;
-    for (uint8_t i = 0; i < 3U; i++) {
-        row->index[i] = (uint8_t)(NAV_M0 + i);
-        row->more[i] = tau[i];
+    uint8_t k = (scalar == DOWN) ? 2 : (uint8_t)(scalar % 3U);
+    if (scalar >= POSITION) {
+        row->first = (uint8_t)(NAV_R0 + k);
+        row->end = (uint8_t)(k + (uint8_t)(NAV_V0 + 1));
+        row->h[NAV_V0 + k] = -age;
+    } else {
+        nav_real_t unit[3] = { 0, 0, 0 };
+        unit[k] = age;
+        row->first = (uint8_t)(NAV_V0 + k);
+        row->end = NAV_C0;
+        nav_add_cross(row->h + NAV_M0, force, unit); /* e_k . (f x mu) = -(f x e_k) . mu */
     }
+    row->h[row->first] = 1;
 }
 
 /* The row of a scalar now. */
 static void row_of(nav_row_t *row, const nav_t *nav, uint8_t scalar)
 {
-    nav_real_t age = nav_seconds(nav->queue.t_us[sensor_of(scalar)], nav->t_us);
-    if (scalar >= FIELD) {
-        field_row(row, nav->tau[scalar - FIELD]);
-    } else if (scalar >= POSITION) {
-        position_row(row, (scalar == DOWN) ? 2 : (uint8_t)(scalar - POSITION), age);
-    } else {
-        velocity_row(row, scalar, nav->force_ned_mps2, age);
+    for (uint8_t i = 0; i < NAV_STATES; i++) {
+        row->h[i] = 0;
     }
+    if (scalar < FIELD) {
+        motion_row(row, scalar, nav->force_ned_mps2, nav_seconds(nav->queue.t_us[sensor_of(scalar)], nav->t_us));
+        return;
+    }
+    row->first = NAV_M0;
+    row->end = NAV_C0;
+    nav_add_scaled(row->h + NAV_M0, 1, nav->tau[scalar - FIELD]);
 }
 
 static nav_real_t variance_of(const nav_t *nav, uint8_t scalar)
 {
-    return nav->variance[(scalar < POSITION) ? 0 : ((scalar < DOWN) ? 1 : ((scalar == DOWN) ? 2 : 3))];
+    return nav->variance[(scalar < DOWN) ? 1U + scalar / 3U : ((scalar == DOWN) ? 3U : 0U)];
 }
 
 /* Scalars whose epoch has been taken in. */
@@ -201,7 +188,7 @@ static uint16_t ready(const nav_queue_t *queue)
  * innovation is likeliest when its variance is its square, so that much is added where the scalar measures; then it
  * passes any gate of 1 or more, and takes nearly all the gain.
  */
-static bool refuse(nav_t *nav, uint8_t scalar, const nav_row_t *row, nav_real_t square)
+static bool refuse(nav_t *nav, uint8_t scalar, nav_row_t *row, nav_real_t square)
 {
     nav_queue_t *queue = &nav->queue;
     if (nav->counts.answer[NAV_GATED] < UINT16_MAX) {
@@ -212,18 +199,11 @@ static bool refuse(nav_t *nav, uint8_t scalar, const nav_row_t *row, nav_real_t 
         return false;
     }
     queue->refused[scalar] = 0;
-    nav_real_t along[NAV_STATES];
     if (scalar < FIELD) {
-        nav_ud_noise(nav->ud, row->main, square);
-        return true;
+        nav_ud_noise(nav->ud, row->first, square);
+    } else {
+        nav_ud_spread(nav->ud, row->h, NAV_C0 - 1, square); /* the row's length is 1 */
     }
-    for (uint8_t i = 0; i < NAV_STATES; i++) {
-        along[i] = 0;
-    }
-    for (uint8_t i = 0; i < 3U; i++) {
-        along[NAV_M0 + i] = row->more[i];
-    }
-    nav_ud_spread(nav->ud, along, NAV_M0 + 2, square);
     return true;
 }
 

@@ -10,8 +10,8 @@ extern "C" {
 
 typedef enum { NAV_GPS, NAV_DOWN, NAV_FIELD } nav_sensor_t;
 
-/* Whether an epoch of this sensor may come now: NAV_TAKEN, or why not. late_us: how old it may be. */
-nav_answer_t nav_jobs_may(const nav_t *nav, nav_sensor_t sensor, uint32_t t_us, uint32_t late_us);
+/* Whether an epoch of this sensor may come now: NAV_TAKEN, or why not. */
+nav_answer_t nav_jobs_may(const nav_t *nav, nav_sensor_t sensor, uint32_t t_us);
 
 /* Puts its values down (6, 1 or 3). */
 void nav_jobs_put(nav_t *nav, nav_sensor_t sensor, uint32_t t_us, const nav_real_t *values);

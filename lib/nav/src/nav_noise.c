@@ -42,16 +42,13 @@ static uint8_t block_of(uint8_t job)
     return (uint8_t)((job + 2U) / 3U);
 }
 
-static nav_real_t owed_variance(const nav_noise_t *noise, uint8_t job)
+static nav_real_t owed_variance(const nav_noise_t *noise, uint8_t block)
 {
-    nav_real_t sigma = noise->gap_s;
-    if (block_of(job) == 0U) {
-        sigma = HALF * ACCELERATED_MPS2 * noise->gap_s * noise->gap_s;
-    } else if (block_of(job) == 1U) {
-        sigma *= ACCELERATED_MPS2;
-    } else {
-        sigma *= TURNED_RPS;
-        sigma = (sigma < TURNED_MOST_RAD) ? sigma : TURNED_MOST_RAD;
+    nav_real_t sigma = noise->gap_s * ((block < 2U) ? ACCELERATED_MPS2 : TURNED_RPS);
+    if (block == 0U) {
+        sigma *= HALF * noise->gap_s;
+    } else if (block == 2U && sigma > TURNED_MOST_RAD) {
+        sigma = TURNED_MOST_RAD;
     }
     return sigma * sigma;
 }
@@ -71,7 +68,7 @@ static uint8_t whose_turn(nav_noise_t *noise)
     }
     for (uint8_t tried = 0; tried < NAV_NOISES; tried++) {
         uint8_t job = noise->next;
-        noise->next = (uint8_t)((job + 1U) % NAV_NOISES);
+        noise->next = (uint8_t)((job + 1U < NAV_NOISES) ? job + 1U : 0U);
         if (noise->rate_us[block_of(job)] > 0) {
             return job;
         }
@@ -88,7 +85,7 @@ void nav_noise_job(nav_noise_t *noise, nav_real_t ud[NAV_PACKED], uint32_t t_us)
     nav_real_t variance = noise->rate_us[block_of(job)] * (nav_real_t)(t_us - noise->t_us[job]);
     noise->t_us[job] = t_us;
     if (owes(noise, job)) {
-        variance += owed_variance(noise, job);
+        variance += owed_variance(noise, block_of(job));
         noise->owed &= (uint16_t) ~(uint16_t)((uint16_t)1U << job);
     }
     uint8_t last = (uint8_t)(job + 2U);

@@ -34,7 +34,7 @@ void nav_past_keep(nav_past_t *past, const nav_state_t *state, uint32_t t_us)
     if (nav_time_from(past->t_us[past->newest], t_us) < APART_US) {
         return;
     }
-    past->newest = (uint8_t)((past->newest + 1U) % NAV_PAST);
+    past->newest = (uint8_t)((past->newest + 1U < NAV_PAST) ? past->newest + 1U : 0U);
     if (past->held < NAV_PAST) {
         past->held++;
     }
@@ -52,7 +52,7 @@ void nav_past_correct(nav_past_t *past, const nav_real_t x[NAV_STATES])
 /* The one kept `back` places before the newest. */
 static uint8_t place(const nav_past_t *past, uint8_t back)
 {
-    return (uint8_t)((past->newest + NAV_PAST - back) % NAV_PAST);
+    return (uint8_t)((past->newest >= back) ? past->newest - back : past->newest + NAV_PAST - back);
 }
 
 bool nav_past_reaches(const nav_past_t *past, uint32_t t_us)

@@ -21,16 +21,13 @@ enum {
     NAV_R0 = 0, /* position */
     NAV_V0 = 3, /* velocity */
     NAV_M0 = 6, /* attitude */
-    NAV_C0 = 9, /* drift */
-    NAV_ROW_MORE = 3
+    NAV_C0 = 9  /* drift */
 };
 
-/* A row of H, at most four elements: 1 at `main` (or none: NAV_STATES), and `count` more, indices ascending. */
+/* A row of H: elements first .. end - 1, the others are 0 and not looked at. */
 typedef struct {
-    nav_real_t more[NAV_ROW_MORE];
-    uint8_t index[NAV_ROW_MORE];
-    uint8_t count;
-    uint8_t main;
+    nav_real_t h[NAV_STATES];
+    uint8_t first, end;
 } nav_row_t;
 
 /* What a scalar update stands on. */
