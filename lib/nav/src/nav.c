@@ -139,7 +139,9 @@ static void advance(nav_t *nav, uint32_t t_us, nav_real_t rate[3], const nav_rea
 {
     nav_real_t step = nav_seconds(nav->t_us, t_us);
     nav_real_t dcm[9];
-    nav_add_scaled(rate, -1, nav->state.gyro_drift_rps);
+    for (uint8_t i = 0; i < 3U; i++) {
+        rate[i] -= nav->state.gyro_drift_rps[i];
+    }
     nav_ins_dcm(dcm, nav->state.quaternion);
     nav_ins_step(&nav->state, nav->force_ned_mps2, dcm, rate, force, nav->gravity_mps2, step);
     nav_ud_phi(nav->ud, step, nav->force_ned_mps2, dcm);
@@ -285,7 +287,7 @@ bool nav_healthy(const nav_t *nav)
 {
     const nav_real_t *q = nav->state.quaternion;
     nav_real_t square = q[0] * q[0] + nav_dot(q + 1, q + 1);
-    return within(square, NAV_R(0.999), NAV_R(1.001)) && finite_all(nav->state.velocity_mps, 3) &&
+    return within(square, NAV_R(0.99), NAV_R(1.01)) && finite_all(nav->state.velocity_mps, 3) &&
            finite_all(nav->state.position_m, 3) && finite_all(nav->state.gyro_drift_rps, 3) &&
            finite_all(nav->ud, NAV_PACKED) && nav_ud_positive(nav->ud);
 }

@@ -184,7 +184,7 @@ const nav_counts_t *nav_counts(const nav_t *nav);
 /* Scalar updates that wait, 0..9. */
 uint8_t nav_queued(const nav_t *nav);
 
-/* All of D finite and not negative, ||quaternion|^2 - 1| <= 1e-3, the state finite. */
+/* All of D finite and not negative, ||quaternion|^2 - 1| <= 0.01, the state finite. */
 bool nav_healthy(const nav_t *nav);
 
 #ifdef __cplusplus

@@ -23,7 +23,7 @@ void nav_ud_start(nav_real_t ud[NAV_PACKED], const nav_real_t sigma[4])
 /* What Phi works with, once per step. */
 typedef struct {
     nav_real_t step, half_step;
-    nav_real_t force[3]; /* x step / 2 */
+    nav_real_t force[3], half_force[3]; /* x step, x step / 2 */
     const nav_real_t *dcm;
 } phi_t;
 
@@ -37,40 +37,43 @@ static void carry_velocity_column(nav_real_t *u, uint8_t j, nav_real_t step)
     u[NAV_R0 + diagonal] += step;
 }
 
+#if NAV_STATES > 9
 /* mu += step A c, c ending with the 1 on the diagonal; twice: mu before + mu behind. */
 static void carry_attitude(nav_real_t *u, uint8_t j, nav_real_t twice[3], const phi_t *phi)
 {
+    uint8_t diagonal = (uint8_t)(j - NAV_C0);
+    const nav_real_t *a = phi->dcm;
     for (uint8_t i = 0; i < 3U; i++) {
-        uint8_t at = (uint8_t)(NAV_M0 + i);
-        nav_real_t mu = (at < j) ? u[at] : (nav_real_t)((at == j) ? 1 : 0);
-        twice[i] = mu + mu;
-#if NAV_STATES > 9
-        if (j >= NAV_C0) {
-            const nav_real_t *a = phi->dcm + 3U * i;
-            uint8_t diagonal = (uint8_t)(j - NAV_C0);
-            nav_real_t sum = a[diagonal];
-            for (uint8_t k = 0; k < diagonal; k++) {
-                sum += a[k] * u[NAV_C0 + k];
-            }
-            u[at] = mu + phi->step * sum;
-            twice[i] = mu + u[at];
+        nav_real_t sum = a[diagonal];
+        for (uint8_t k = 0; k < diagonal; k++) {
+            sum += a[k] * u[NAV_C0 + k];
         }
-#else
-        (void)phi;
-#endif
+        nav_real_t before = u[NAV_M0 + i];
+        u[NAV_M0 + i] = before + phi->step * sum;
+        twice[i] = before + u[NAV_M0 + i];
+        a += 3;
     }
 }
+#endif
 
 /* A column of attitude or drift: v += f x (mu before + mu behind) step / 2, r += (v before + v behind) step / 2. */
 static void carry_column(nav_real_t *u, uint8_t j, const phi_t *phi)
 {
     nav_real_t both[3];
-    nav_real_t twice[3];
+    nav_real_t mu[3];
+    const nav_real_t *force = phi->force;
     for (uint8_t i = 0; i < 3U; i++) {
+        uint8_t at = (uint8_t)(NAV_M0 + i);
         both[i] = u[NAV_V0 + i];
+        mu[i] = (at < j) ? u[at] : (nav_real_t)((at == j) ? 1 : 0);
     }
-    carry_attitude(u, j, twice, phi);
-    nav_add_cross(u + NAV_V0, phi->force, twice);
+#if NAV_STATES > 9
+    if (j >= NAV_C0) {
+        carry_attitude(u, j, mu, phi);
+        force = phi->half_force;
+    }
+#endif
+    nav_add_cross(u + NAV_V0, force, mu);
     for (uint8_t i = 0; i < 3U; i++) {
         both[i] += u[NAV_V0 + i];
     }
@@ -83,7 +86,8 @@ void nav_ud_phi(nav_real_t ud[NAV_PACKED], nav_real_t step_s, const nav_real_t f
     phi.step = step_s;
     phi.half_step = HALF * step_s;
     for (uint8_t i = 0; i < 3U; i++) {
-        phi.force[i] = force_mps2[i] * phi.half_step;
+        phi.force[i] = force_mps2[i] * step_s;
+        phi.half_force[i] = force_mps2[i] * phi.half_step;
     }
     phi.dcm = dcm;
     for (uint8_t j = NAV_V0; j < NAV_STATES; j++) {
