@@ -7,6 +7,8 @@
 
 #define TWO_PI 6.283185307179586
 
+const nav_variant_t *const nav_all[NAV_ALL] = { &n9f, &n12f, &n9d, &n12d };
+
 static const double start_sigma[4] = { 57.3, 1.2, 0.02, 1e-3 };
 static const double walk[4] = { 0.005e-4, 1e-4, 0.3e-4, 0.0 };
 static const double measured[4] = { 0.1, 5.0, 1.0, 0.0349 };
@@ -188,7 +190,7 @@ void nav_fly(nav_flight_t *flight, const nav_plan_t *plan)
         flight_sample(&sample, k, plan->drift, &random);
         slot(&f, k, &sample, flight);
         flight->least_d = fmin(flight->least_d, plan->variant->least_d(&f.memory));
-        if ((k + 1) % FLIGHT_RATE == 0) {
+        if (k % FLIGHT_RATE == plan->note_at) {
             note(&flight->second[k / FLIGHT_RATE], &f, (k + 1) * FLIGHT_STEP);
         }
     }

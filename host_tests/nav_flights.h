@@ -16,10 +16,11 @@ typedef struct {
     double gate;
     uint32_t seed;
     uint32_t start_us; /* time of the start */
-    int seconds;       /* up to FLIGHT_SECONDS */
+    int note_at; /* slot of each second, 0..99, behind which errors and variances are noted; 99: at the full second */
+    int seconds; /* up to FLIGHT_SECONDS */
 } nav_plan_t;
 
-/* True less computed at a full second. */
+/* True less computed, once a second. */
 typedef struct {
     double euler[3]; /* rad: roll, pitch, heading */
     double velocity[3], position[3], drift[3];
@@ -27,7 +28,7 @@ typedef struct {
 } nav_second_t;
 
 typedef struct {
-    nav_second_t second[FLIGHT_SECONDS]; /* [i]: i + 1 s */
+    nav_second_t second[FLIGHT_SECONDS]; /* [i]: of the second that ends at i + 1 s */
     double least_d;
     int deepest_queue;
     unsigned count[ANSWERS];
