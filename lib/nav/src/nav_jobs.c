@@ -186,9 +186,10 @@ static uint16_t ready(const nav_queue_t *queue)
 /*
  * Refused: the innovation's square is beyond the gate. After five epochs of it the covariance is what is wrong. The
  * innovation is likeliest when its variance is its square, so that much is added where the scalar measures; then it
- * passes any gate of 1 or more, and takes nearly all the gain.
+ * passes any gate of 1 or more, and takes nearly all the gain. A field says nothing of the turn about itself, so what it
+ * adds goes the way of P h', to the angles that are least known: to the heading, when GPS keeps the others.
  */
-static bool refuse(nav_t *nav, uint8_t scalar, nav_row_t *row, nav_real_t square)
+static bool refuse(nav_t *nav, uint8_t scalar, const nav_ud_scalar_t *update, nav_real_t square)
 {
     nav_queue_t *queue = &nav->queue;
     if (nav->counts.answer[NAV_GATED] < UINT16_MAX) {
@@ -199,10 +200,13 @@ static bool refuse(nav_t *nav, uint8_t scalar, nav_row_t *row, nav_real_t square
         return false;
     }
     queue->refused[scalar] = 0;
+    nav_real_t known = update->variance - variance_of(nav, scalar); /* h P h' */
     if (scalar < FIELD) {
-        nav_ud_noise(nav->ud, row->first, square);
-    } else {
-        nav_ud_spread(nav->ud, row->h, NAV_C0 - 1, square); /* the row's length is 1 */
+        nav_ud_noise(nav->ud, update->first, square);
+    } else if (known > 0) {
+        nav_real_t along[NAV_STATES];
+        nav_ud_reach(along, nav->ud, update, NAV_M0, NAV_C0);
+        nav_ud_spread(nav->ud, along, NAV_C0 - 1, square / (known * known));
     }
     return true;
 }
@@ -232,7 +236,7 @@ static void use_scalar(nav_t *nav, uint8_t scalar)
     row_of(&row, nav, scalar);
     nav_ud_look(&update, nav->ud, &row, variance_of(nav, scalar));
     bool beyond = nav->gate_squared > 0 && square > nav->gate_squared * update.variance;
-    if (beyond && refuse(nav, scalar, &row, square)) {
+    if (beyond && refuse(nav, scalar, &update, square)) {
         return; /* it waits on, and passes next time */
     }
     queue->waits &= (uint16_t)~bit(scalar);
@@ -247,10 +251,11 @@ static void use_scalar(nav_t *nav, uint8_t scalar)
     correct(nav, update.gain);
 }
 
-static bool use_first(nav_t *nav)
+/* The last sensor first: the field comes most often, and must not wait until the next is there. */
+static bool use_one(nav_t *nav)
 {
     uint16_t scalars = ready(&nav->queue);
-    for (uint8_t i = 0; i < NAV_SCALARS; i++) {
+    for (uint8_t i = NAV_SCALARS; i-- > 0U;) {
         if ((scalars & bit(i)) != 0U) {
             use_scalar(nav, i);
             return true;
@@ -262,7 +267,7 @@ static bool use_first(nav_t *nav)
 void nav_jobs_run(nav_t *nav)
 {
     bool noise_first = nav->noise.owed != 0U || nav->queue.in_a_row >= ROW_AGAIN;
-    if (take_in(nav) || (!noise_first && use_first(nav))) {
+    if (take_in(nav) || (!noise_first && use_one(nav))) {
         if (nav->queue.in_a_row < UINT8_MAX) {
             nav->queue.in_a_row++;
         }

@@ -20,7 +20,7 @@ void nav_jobs_put(nav_t *nav, nav_sensor_t sensor, uint32_t t_us, const nav_real
 void nav_jobs_forget(nav_queue_t *queue);
 
 /*
- * One job: epochs that have arrived are taken in; or the first scalar that waits is used; or noise is added. After three
+ * One job: epochs that have arrived are taken in; or one scalar that waits is used; or noise is added. After three
  * others in a row it is noise, so that no rate of measurements keeps the covariance from growing.
  */
 void nav_jobs_run(nav_t *nav);

@@ -167,6 +167,20 @@ void nav_ud_look(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], const
     scalar->variance = variance;
 }
 
+void nav_ud_reach(nav_real_t out[NAV_STATES], const nav_real_t ud[NAV_PACKED], const nav_ud_scalar_t *scalar,
+                  uint8_t first, uint8_t end)
+{
+    for (uint8_t i = 0; i < end; i++) {
+        out[i] = 0;
+        if (i < first) {
+            continue;
+        }
+        for (uint8_t j = (i > scalar->first) ? i : scalar->first; j < NAV_STATES; j++) {
+            out[i] += (j == i) ? scalar->gain[j] : ud[column(j) + i] * scalar->gain[j];
+        }
+    }
+}
+
 /* Bierman, column by column: alpha is the variance of the innovation as far as the columns up to here make it. */
 void nav_ud_update(nav_real_t ud[NAV_PACKED], nav_ud_scalar_t *scalar, nav_real_t variance)
 {

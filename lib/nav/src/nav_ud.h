@@ -56,6 +56,10 @@ void nav_ud_spread(nav_real_t ud[NAV_PACKED], nav_real_t a[NAV_STATES], uint8_t 
 /* What a scalar of this row and measured variance (> 0) would do; P is left alone. */
 void nav_ud_look(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], const nav_row_t *row, nav_real_t variance);
 
+/* P h' in rows first .. end - 1, and 0 before, from what was looked at. */
+void nav_ud_reach(nav_real_t out[NAV_STATES], const nav_real_t ud[NAV_PACKED], const nav_ud_scalar_t *scalar,
+                  uint8_t first, uint8_t end);
+
 /* Does it: P <- P - K S K', S the variance of the innovation. scalar->gain becomes K. `variance` as in nav_ud_look. */
 void nav_ud_update(nav_real_t ud[NAV_PACKED], nav_ud_scalar_t *scalar, nav_real_t variance);
 
