@@ -21,6 +21,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Bytes of the rings, powers of two up to 256, of which one stays free: an image may want others. */
+#ifndef HAL_UART_RX_SIZE
+#define HAL_UART_RX_SIZE 64
+#endif
+#ifndef HAL_UART_TX_SIZE
+#define HAL_UART_TX_SIZE 256
+#endif
+
 #include "hal_port.h"
 
 #endif

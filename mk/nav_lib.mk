@@ -6,7 +6,7 @@ NAV_OF_n9f   := -DNAV_STATES=9
 NAV_OF_n9d   := -DNAV_STATES=9 -DNAV_DOUBLE
 NAV_OF_n12f  := -DNAV_STATES=12
 NAV_OF_n12d  := -DNAV_STATES=12 -DNAV_DOUBLE
-NAV_TESTS    := $(patsubst host_tests/%.c,$(H)/%,$(wildcard host_tests/test_nav*.c))
+NAV_TESTS    := $(patsubst host_tests/%.c,$(H)/%,$(filter-out host_tests/test_nav_link.c,$(wildcard host_tests/test_nav*.c)))
 NAV_FLAGS    := -O2 -ffp-contract=off -Ilib/nav/src
 
 define nav_variant

@@ -51,7 +51,7 @@ typedef struct {
 } typed_line_t;
 
 typedef struct {
-    const char *fw, *in, *out, *served, *altered, *eeprom, *stats, *profile, *vcd, *bootloader, *filter, *span;
+    const char *fw, *in, *frames, *out, *served, *altered, *eeprom, *stats, *profile, *vcd, *bootloader, *filter, *span;
     bool loop, pty, blank, judge, strap;
     double ppm, max_ms; /* max_ms 0: none */
     adxl345_part_t part;
@@ -168,6 +168,16 @@ void uart_stall(uint64_t until); /* the transmitter holds each byte until this c
 uint64_t uart_last_tx(void);     /* cycle of the last byte sent, 0: none */
 uint64_t uart_bytes(void);
 uint32_t uart_rx_overruns(void);
+
+/* --- a PC that speaks in frames (--frames, simrun_frames.c) --- */
+/* Reads the file; exits with EXIT_INPUT and the place on a bad one. Nothing to do without --frames. */
+void frames_start(void);
+bool frames_take(uint8_t byte); /* from the board; true: the end of a record, there may be something to send now */
+/* False: nothing now; look again at this cycle, or behind the next record when it is NEVER. */
+bool frames_next_byte(uint8_t *byte, uint64_t *look_again);
+uint64_t frames_over_at(void); /* cycle at which the last frame was answered, NEVER before */
+bool frames_silent(void);      /* the board owes an answer for too long */
+void frames_print(FILE *json);
 
 /* --- pseudo terminal (--pty) --- */
 void pty_open(void);

@@ -233,20 +233,32 @@ void machine_start(void)
     resets_start();
 }
 
+/* When what there was to do was done: the stream or the frames are over; NEVER before. */
+static uint64_t done_at(void)
+{
+    uint64_t now = mcu->cycle;
+    if (options.frames != NULL) {
+        if (frames_silent()) {
+            machine_fail(EXIT_STALLED, "the board has not answered a frame for 2 s");
+        }
+        return frames_over_at();
+    }
+    uint64_t over = sensor_over_at();
+    if (over == NEVER && max_cycle == NEVER && !interactive &&
+        now >= sensor_last_tick() + (uint64_t)STALLED_MS * CYCLES_PER_MS) {
+        machine_fail(EXIT_STALLED, "the firmware has not used the sensor for 20 s (see --max-ms)");
+    }
+    return over;
+}
+
 static bool ended(void)
 {
     uint64_t now = mcu->cycle;
+    uint64_t over = done_at();
     if (failure != EXIT_OK || now >= max_cycle || asked_to_end) {
         return true;
     }
-    uint64_t over = sensor_over_at();
-    if (over == NEVER) {
-        if (max_cycle == NEVER && !interactive && now >= sensor_last_tick() + (uint64_t)STALLED_MS * CYCLES_PER_MS) {
-            machine_fail(EXIT_STALLED, "the firmware has not used the sensor for 20 s (see --max-ms)");
-        }
-        return false;
-    }
-    if (now < over + (uint64_t)END_MS * CYCLES_PER_MS) {
+    if (over == NEVER || now < over + (uint64_t)END_MS * CYCLES_PER_MS) {
         return false;
     }
     return now >= uart_last_tx() + (uint64_t)SILENCE_MS * CYCLES_PER_MS ||
@@ -271,6 +283,27 @@ static uint64_t next_timer(void)
     return first == NULL ? NEVER : first->when;
 }
 
+static unsigned opcode_at(uint32_t pc)
+{
+    return mcu->flash[pc] | (unsigned)mcu->flash[pc + 1] << 8;
+}
+
+/*
+ * simavr serves what was pending at SEI one instruction later than the processor does. In a loop of SEI, SLEEP, CLI it
+ * would never: a SLEEP that finds something pending falls through.
+ */
+static void serve_interrupts(void)
+{
+    enum { OPCODE_SLEEP = 0x9588, OPCODE_CLI = 0x94F8 };
+    if (mcu->interrupt_state == 0) {
+        return;
+    }
+    avr_service_interrupts(mcu);
+    if (mcu->interrupt_state > 0 && opcode_at(last_pc) == OPCODE_SLEEP && opcode_at(mcu->pc) == OPCODE_CLI) {
+        avr_service_interrupts(mcu);
+    }
+}
+
 /*
  * A few instructions, as avr_run does them, but without asking every timer after each: four times as fast, same cycles
  * (a timer set meanwhile makes simavr end the chunk in time). True when more than the program counter may have changed.
@@ -291,9 +324,7 @@ static bool step(uint64_t chunk)
     }
     if (mcu->state == cpu_Running) {
         avr_cycle_timer_process(mcu);
-        if (mcu->interrupt_state != 0) {
-            avr_service_interrupts(mcu);
-        }
+        serve_interrupts();
         if (next_timer() <= mcu->cycle) { /* the entry took time: simavr drops a compare it sees 9 cycles late */
             avr_cycle_timer_process(mcu);
         }

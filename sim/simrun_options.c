@@ -11,6 +11,7 @@ options_t options = { .seed = 1 };
 enum option_code {
     OPTION_FW = 256,
     OPTION_IN,
+    OPTION_FRAMES,
     OPTION_OUT,
     OPTION_SERVED,
     OPTION_ALTERED,
@@ -41,6 +42,7 @@ enum option_code {
 
 static const struct option known[] = { { "fw", required_argument, NULL, OPTION_FW },
                                        { "in", required_argument, NULL, OPTION_IN },
+                                       { "frames", required_argument, NULL, OPTION_FRAMES },
                                        { "out", required_argument, NULL, OPTION_OUT },
                                        { "served", required_argument, NULL, OPTION_SERVED },
                                        { "altered", required_argument, NULL, OPTION_ALTERED },
@@ -77,6 +79,10 @@ static const char help_text[] =
     "\n"
     "  --fw ELF           firmware for the ATmega328P, 16 MHz\n"
     "  --in CSV           stream: t_us,x,y,z or t_us,x_lsb,y_lsb,z_lsb (as it reads)\n"
+    "  --frames FILE      instead of --in, for the navigation image: 'DUE_US HEX' a frame, sent when it is due and "
+    "when "
+    "the\n"
+    "                     board has room for it (docs/protocol.md, Navigation image)\n"
     "  --out CSV          every byte the firmware's UART sends\n"
     "  --loop             begin the stream again at its end (needs --max-ms)\n"
     "  --max-ms N         end after N ms of simulated time\n"
@@ -247,7 +253,7 @@ static bool take_file(int code, const char *argument)
         { OPTION_EEPROM, &options.eeprom },   { OPTION_STATS, &options.stats },
         { OPTION_VCD, &options.vcd },         { OPTION_PROFILE, &options.profile },
         { OPTION_SPAN, &options.span },       { OPTION_BOOTLOADER, &options.bootloader },
-        { OPTION_ALTERED, &options.altered },
+        { OPTION_ALTERED, &options.altered }, { OPTION_FRAMES, &options.frames },
     };
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         if (files[i].code == code) {
@@ -329,12 +335,21 @@ static void take(int code, const char *name, const char *argument)
     }
 }
 
+/* One of the two ways in which something comes to the firmware, and where what it says goes. */
+static void check_files(void)
+{
+    if (options.fw == NULL || options.out == NULL || (options.in == NULL && options.frames == NULL)) {
+        refuse("--fw, --in (or --frames) and --out are needed");
+    }
+    if (options.frames != NULL && (options.in != NULL || options.pty)) {
+        refuse("--frames goes with neither --in nor --pty");
+    }
+}
+
 /* What is wrong only in combination. */
 static void check_together(void)
 {
-    if (options.fw == NULL || options.in == NULL || options.out == NULL) {
-        refuse("--fw, --in and --out are needed");
-    }
+    check_files();
     if (options.blank && options.bootloader == NULL) {
         refuse("--blank leaves nothing to run: give --bootloader");
     }

@@ -92,7 +92,7 @@ static void on_latched(void *owner, const int16_t lsb[3])
 
 void sensor_start(void)
 {
-    if (!stream_load(&stream, options.in)) {
+    if (options.in != NULL && !stream_load(&stream, options.in)) {
         fprintf(stderr, "simrun: %s\n", stream.error);
         exit(EXIT_INPUT);
     }

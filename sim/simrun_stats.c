@@ -192,6 +192,7 @@ static void write_samples(FILE *file)
             (unsigned)sensor.overruns);
     sensor_print(file);
     fprintf(file, "  \"samples_altered\": %u,\n", (unsigned)alter_count());
+    frames_print(file);
     rows_print(file);
     flow_print(file);
     eeprom_print(file);

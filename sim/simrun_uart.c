@@ -41,6 +41,7 @@ static size_t unanswered; /* bytes typed since the last reply */
 static bool waits_for_reply, waits_for_baud;
 static uint64_t reply_deadline;
 static uint64_t next_byte_at = NEVER;
+static uint64_t line_free_at; /* the last byte of a frame is over */
 static uint32_t rx_overruns;
 static bool flooded;
 static uint64_t stalled_until;
@@ -144,6 +145,15 @@ static void set_byte_time(void)
     uart->cycles_per_byte = byte_cycles() + (held < STALL_MAX_CYCLES ? held : STALL_MAX_CYCLES);
 }
 
+/* A record of the board's is what the next frame may have waited for. */
+static void on_frame_byte(uint8_t byte)
+{
+    if (frames_take(byte)) {
+        next_byte_at = line_free_at > mcu->cycle ? line_free_at : mcu->cycle;
+        machine_reschedule();
+    }
+}
+
 static void on_output(avr_irq_t *irq, uint32_t value, void *param)
 {
     (void)irq;
@@ -159,6 +169,10 @@ static void on_output(avr_irq_t *irq, uint32_t value, void *param)
     vcd_change(VCD_TX, byte);
     if (options.pty) {
         pty_send(byte);
+    }
+    if (options.frames != NULL) {
+        on_frame_byte(byte);
+        return;
     }
     if (byte == '\n') {
         on_line();
@@ -197,6 +211,7 @@ void uart_start(void)
         pty_open();
         next_byte_at = 0;
     }
+    frames_start();
 }
 
 void uart_finish(void)
@@ -284,12 +299,26 @@ void uart_stall(uint64_t until)
     set_byte_time();
 }
 
+static void step_frames(void)
+{
+    uint8_t byte;
+    if (frames_next_byte(&byte, &next_byte_at)) {
+        line_free_at = mcu->cycle + byte_cycles();
+        next_byte_at = line_free_at;
+        receive(byte);
+    }
+}
+
 void uart_step(void)
 {
     uint8_t byte;
     if (flooded) {
         next_byte_at = mcu->cycle + byte_cycles();
         receive((uint8_t)machine_random());
+        return;
+    }
+    if (options.frames != NULL) {
+        step_frames();
         return;
     }
     bool any = banner_seen && next_typed_byte(&byte);

@@ -9,8 +9,8 @@ import shlex
 
 from check_support import Stop, chosen, files, main, parallel, report, run
 
-LIBRARIES = ["lib/filters/src", "lib/tilt/src", "lib/adxl345/src"]
-PORTABLE = ["hal", "firmware", *LIBRARIES]
+LIBRARIES = ["lib/filters/src", "lib/tilt/src", "lib/adxl345/src", "lib/nav/src"]
+PORTABLE = ["hal", "firmware", "firmware/nav", *LIBRARIES]
 # which compiler takes what; a folder below one of these goes with it, the longest name decides
 FOLDERS_OF = {
     "firmware": ("host", "avr"),

@@ -21,6 +21,7 @@ def headers(*folders):
 
 HAL = headers("hal") | {"hal_port.h"}
 FILTERS, TILT, ADXL = headers("lib/filters/src"), headers("lib/tilt/src"), headers("lib/adxl345/src")
+NAV, NAV_IMAGE = headers("lib/nav/src"), headers("firmware/nav")
 FIRMWARE, SIM = headers("firmware"), headers("sim")
 MODEL = {"adxl345_model.h", "stream.h"}
 
@@ -30,10 +31,12 @@ RULES = {
     "lib/filters/examples": (STANDARD | FILTERS | {"Arduino.h", "Wire.h", "SPI.h"}, None),
     "lib/tilt/src": (STANDARD | TILT | {"fx.h", "fx_dot.h"}, None),
     "lib/adxl345/src": (STANDARD | ADXL | HAL, None),
+    "lib/nav/src": (STANDARD | NAV | {"math.h"}, None),
     "hal": (STANDARD | {"hal_port.h"}, None),
     "hal/avr": (STANDARD | HAL | headers("hal/avr"), AVR_LIBC),
     "hal/host": (LIBC | HAL | MODEL | headers("hal/host"), None),
     "firmware": (STANDARD | FIRMWARE | FILTERS | TILT | ADXL | HAL, None),
+    "firmware/nav": (STANDARD | NAV_IMAGE | NAV | HAL, None),
     "sim": (LIBC | SIM | {"adxl345_registers.h"}, SIMAVR),
 }
 # everything but hal/avr: here what must not be included; AVR headers where the code is for the chip

@@ -1,21 +1,22 @@
 #!/bin/sh
-# size.sh ELF: flash and RAM of an image beside the budgets of tools/budgets.txt; over budget it names the largest symbols with their
-# files and fails (only with the compiler the budgets are for).
+# size.sh ELF [IMAGE]: flash and RAM of an image beside the budgets of tools/budgets.txt; over budget it names the largest symbols with their
+# files and fails (only with the compiler the budgets are for). The budgets of IMAGE are named IMAGE_flash_bytes and so on.
 set -eu
 elf=$1
+image=${2:+${2}_}
 budget() {
     limit=$(awk -v name="$1" '$1 == name { print $2 }' tools/budgets.txt)
     [ -n "$limit" ] || { echo "size: tools/budgets.txt has no budget $1" >&2; exit 2; }
     echo "$limit"
 }
-flash_budget=$(budget flash_bytes)
-ram_budget=$(budget ram_static_bytes)
-data_budget=$(budget data_bytes)
+flash_budget=$(budget "${image}flash_bytes")
+ram_budget=$(budget "${image}ram_static_bytes")
+data_budget=$(budget "${image}data_bytes")
 # largest TYPES: the eight largest symbols of these types of avr-nm, bytes, name and file
 largest() {
     for at in $(avr-nm -S --size-sort "$elf" | awk -v types="$1" 'index(types, $3) { print $2 ":" $4 }' | tail -n 8); do
         name=${at#*:}
-        source=$(grep -lE "\b${name%%.*}\b" firmware/*.c lib/*/src/*.c hal/avr/*.c | tr '\n' ' ')
+        source=$(grep -lE "\b${name%%.*}\b" firmware/*.c firmware/*/*.c lib/*/src/*.c hal/avr/*.c | tr '\n' ' ')
         echo "    $((0x${at%%:*})) bytes: $name in ${source:-the libraries of the compiler}" >&2
     done
 }

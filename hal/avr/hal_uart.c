@@ -5,7 +5,7 @@
 #include "hal_ring.h"
 #include "hal_sleep.h"
 
-enum { TX_SIZE = 256, RX_SIZE = 64, TX_MASK = TX_SIZE - 1, RX_MASK = RX_SIZE - 1 };
+enum { TX_SIZE = HAL_UART_TX_SIZE, RX_SIZE = HAL_UART_RX_SIZE, TX_MASK = TX_SIZE - 1, RX_MASK = RX_SIZE - 1 };
 
 static uint8_t tx_buffer[TX_SIZE];
 static uint8_t rx_buffer[RX_SIZE];
@@ -14,6 +14,13 @@ static hal_ring_t rx;
 static volatile uint8_t rx_lost;
 static bool rx_gap;
 static bool line_used;
+
+/* A ring of 256 bytes wraps as its index does. */
+#if HAL_UART_TX_SIZE == 256
+#define WRAP_TAIL
+#else
+#define WRAP_TAIL "andi r30, %[mask]\n\t"
+#endif
 
 /*
  * UDR0 = tx_buffer[tx.tail++]; switch this interrupt off with the last byte. By hand, because it runs for every byte
@@ -34,8 +41,7 @@ ISR(USART_UDRE_vect, ISR_NAKED)
         "ld r24, Z\n\t"
         "sts %[udr], r24\n\t"
         "lds r30, %[tail]\n\t"
-        "inc r30\n\t"
-        "sts %[tail], r30\n\t"
+        "inc r30\n\t" WRAP_TAIL "sts %[tail], r30\n\t"
         "lds r24, %[head]\n\t"
         "cpse r24, r30\n\t"
         "rjmp 1f\n\t"
@@ -50,7 +56,7 @@ ISR(USART_UDRE_vect, ISR_NAKED)
         "reti"
         :
         : [tail] "i"(&tx.tail), [head] "i"(&tx.head), [buffer] "i"(tx_buffer), [udr] "i"(_SFR_MEM_ADDR(UDR0)),
-          [ucsrb] "i"(_SFR_MEM_ADDR(UCSR0B)), [off] "n"(0xFF & ~_BV(UDRIE0)));
+          [ucsrb] "i"(_SFR_MEM_ADDR(UCSR0B)), [off] "n"(0xFF & ~_BV(UDRIE0)), [mask] "n"(TX_MASK));
 }
 
 /*
@@ -163,9 +169,10 @@ bool hal_uart_tx_write(const char *line, uint8_t length)
     if (hal_uart_tx_room() < length) {
         return false;
     }
-    uint8_t at = tx.staged; /* wraps as the ring does */
+    uint8_t at = tx.staged;
     while (length-- != 0) {
-        tx_buffer[at++] = (uint8_t)*line++;
+        tx_buffer[at] = (uint8_t)*line++;
+        at = (uint8_t)((uint8_t)(at + 1u) & TX_MASK);
     }
     tx.staged = at;
     hal_uart_tx_commit();

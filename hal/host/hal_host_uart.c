@@ -8,7 +8,13 @@
 #include "hal_ring.h"
 #include "hal_sleep.h"
 
-enum { TX_SIZE = 256, RX_SIZE = 64, TX_MASK = TX_SIZE - 1, RX_MASK = RX_SIZE - 1, TYPED_MAX = 8192 };
+enum {
+    TX_SIZE = HAL_UART_TX_SIZE,
+    RX_SIZE = HAL_UART_RX_SIZE,
+    TX_MASK = TX_SIZE - 1,
+    RX_MASK = RX_SIZE - 1,
+    TYPED_MAX = 8192
+};
 
 static uint8_t tx_buffer[TX_SIZE];
 static uint8_t rx_buffer[RX_SIZE];

@@ -85,8 +85,11 @@ class Port:
             raise Gone(str(why)) from why
 
     def send(self, text):
+        self.send_bytes(text.encode("ascii", "replace") + b"\n")
+
+    def send_bytes(self, data):
         try:
-            self.serial.write(text.encode("ascii", "replace") + b"\n")
+            self.serial.write(data)
             self.serial.flush()
         except (serial.SerialException, OSError) as why:
             raise Gone(str(why)) from why

@@ -1,0 +1,218 @@
+#!/usr/bin/env python3
+"""The navigation image in the simulated UNO: bit for bit what the PC computes, in time, within its RAM, and whatever comes down the line.
+
+    test_nav_image.py [--seconds N]     length of the flights that are compared (default 20; make navcheck: 500, with the load and RAM judged)
+
+Run from the repository root with build/venv/bin/python; the images are built by make.
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, "tools")
+sys.path.insert(0, "host_tests/tilt")
+from tilt.navigation import boards, exchange, flight, frames, judge  # noqa: E402
+
+SECONDS, EVERY = 20.0, 10
+BUDGETS = dict(line.split()[:2] for line in pathlib.Path("tools/budgets.txt").read_text(encoding="utf-8").splitlines() if line and line[0] != "#")
+FOR_COMPILER = subprocess.run(["avr-gcc", "-dumpversion"], capture_output=True, text=True, check=False).stdout.strip() == "5.4.0"
+SLOT_US = 10_000
+LOAD_LIMIT = 0.60
+
+
+def flown(seconds, **wishes):
+    """A flight with an outage in it, whatever its length."""
+    return flight.simulated(flight.Wish(seconds=seconds, without=((0.32 * seconds, 0.8 * seconds),), **wishes))
+
+
+def simulated(sent, states):
+    return boards.simulated(sent, states)
+
+
+def raw(sent, image, *options, expect=0):
+    """Bytes that an image says to these frames, and the statistics."""
+    with tempfile.TemporaryDirectory() as folder:
+        place = pathlib.Path(folder)
+        (place / "frames").write_text("".join(f"{record.due_us} {record.data.hex()}\n" for record in sent), encoding="ascii")
+        done = subprocess.run(["build/sim/simrun", "--fw", image, "--frames", place / "frames", "--out", place / "out", "--stats", place / "stats",
+                               *options], capture_output=True, text=True, check=False)
+        assert done.returncode == expect, done.stderr
+        return (place / "out").read_bytes(), json.loads((place / "stats").read_text(encoding="utf-8"))
+
+
+class Equal(unittest.TestCase):
+    def compare(self, states):
+        made = flown(SECONDS, late_us=120_000)
+        sent = exchange.records(made, {}, every=EVERY)
+        chip, pc = simulated(sent, states), boards.on_pc(sent, states)
+        self.assertEqual(len(chip.outcome.answers), len(sent))
+        self.assertEqual(len(chip.outcome.states), int(SECONDS * 100) // EVERY)
+        for own, other in zip(chip.outcome.states, pc.outcome.states):
+            self.assertEqual(np.float32(own.numbers).tobytes(), np.float32(other.numbers).tobytes(), f"at {own.t_us} us")
+        self.assertEqual(chip.outcome.variances, pc.outcome.variances)
+        self.assertEqual([(a.code, a.waiting) for a in chip.outcome.answers], [(a.code, a.waiting) for a in pc.outcome.answers])
+        self.assertEqual(chip.outcome.counts, pc.outcome.counts)
+        self.assertTrue(chip.outcome.healthy)
+        return chip.stats
+
+    def judge(self, stats, states):
+        print(f"    {states} states, {SECONDS:g} s: load {100 * stats['cpu_load']:.1f} %, latest frame {stats['frames_latest_us']:.0f} us, longest pass "
+              f"{stats['pass_max_cycles']} cycles, RAM with stack {stats['ram_used_bytes']}, flash {stats['flash_bytes']}")
+        self.assertEqual(stats["uart_rx_overruns"], 0)
+        if FOR_COMPILER:
+            self.assertLessEqual(stats["cpu_load"], LOAD_LIMIT)
+            self.assertLess(stats["frames_latest_us"], SLOT_US)
+            self.assertLessEqual(stats["pass_max_cycles"], 16 * SLOT_US)
+            self.assertLessEqual(stats["ram_used_bytes"], int(BUDGETS["nav_ram_and_stack_bytes"]))
+            self.assertLessEqual(stats["flash_bytes"], int(BUDGETS["nav_flash_bytes"]))
+
+    def test_12_states_are_those_of_the_pc_bit_for_bit(self):
+        self.judge(self.compare(12), 12)
+
+    def test_9_states_are_those_of_the_pc_bit_for_bit(self):
+        self.judge(self.compare(9), 9)
+
+
+class Line(unittest.TestCase):
+    """What comes down the line: at full speed, damaged, interrupted."""
+
+    def test_nothing_is_lost_at_full_speed(self):
+        """Everything is due at once: the board's own window sets the pace."""
+        sent = [exchange.Sent(0, record.data, record.kind, record.row) for record in exchange.records(flown(3.0), {})]
+        out, stats = raw(sent, boards.image(12))
+        found = exchange.Outcome()
+        found.take(frames.Reader().feed(out))
+        self.assertEqual(len(found.answers), len(sent))
+        self.assertEqual({answer.code for answer in found.answers} - {0}, set())
+        self.assertEqual(stats["uart_rx_overruns"], 0)
+        self.assertEqual(found.counts["records missing"], 0)
+        self.assertGreater(stats["cpu_load"], 0.95)  # it was the board that was busy
+
+    def test_damaged_frames_are_told_and_the_flight_goes_on(self):
+        sent, random = exchange.records(flown(8.0), {}), np.random.default_rng(5)
+        spoilt, damaged = [], 0
+        for number, record in enumerate(sent):
+            data = bytearray(record.data)
+            if number > 10 and record.kind == "imu" and random.random() < 0.05:
+                data[random.integers(len(data) - 1)] ^= 1 << random.integers(1, 8) if len(data) else 0
+                damaged += bytes(data) != record.data
+            spoilt.append(exchange.Sent(record.due_us, bytes(data), record.kind, record.row))
+        out = raw_answers(spoilt)
+        self.assertGreater(damaged, 20)
+        self.assertGreaterEqual(out.counts["broken frame"], damaged - out.counts["records missing"])
+        self.assertLessEqual(out.counts["records missing"], damaged)
+        self.assertGreaterEqual(out.counts["records missing"], damaged - 2)  # a zero in a frame makes two of it, and both are broken
+        self.assertTrue(out.healthy)
+
+    def test_a_record_a_second_time_is_refused(self):
+        sent = exchange.records(flown(2.0), {})
+        place = next(number for number, record in enumerate(sent) if record.kind == "imu") + 20
+        out = raw_answers(sent[:place] + [sent[place - 1]] + sent[place:])
+        self.assertEqual(out.counts["out of order"], 1)
+        self.assertEqual(out.counts["time went backwards"], 0)
+
+    def test_a_reset_in_flight_greets_anew_and_asks_for_a_start(self):
+        sent = exchange.records(flown(3.0), {})
+        out, _ = raw(sent, boards.image(12), "--fault", "1500ms:reset", "--expect-resets", "1", "--max-ms", "4000")
+        found = exchange.Outcome()
+        found.take(frames.Reader().feed(out))
+        self.assertEqual([hello.reset_cause for hello in found.hellos], [0, 1])
+        later = [answer.code for answer in found.answers[200:]]
+        self.assertTrue(later and set(later) <= {frames.LINK_FIRST + 4, frames.LINK_FIRST, frames.LINK_FIRST + 3, 0}, set(later))
+
+
+def raw_answers(sent):
+    out, _ = raw(sent, boards.image(12))
+    found = exchange.Outcome()
+    found.take(frames.Reader().feed(out))
+    return found
+
+
+class BadInput(unittest.TestCase):
+    """Through the whole chain on the PC: refused or gated, counted, the filter recovers."""
+
+    def fly(self, spoil, seconds=60.0, states=12):
+        made = flight.simulated(flight.Wish(seconds=seconds, without=()))
+        spoil(made)
+        sent = exchange.records(made, {}, every=1)
+        run = boards.on_pc(sent, states)
+        self.assertEqual(len(run.outcome.answers), len(sent))
+        self.assertTrue(run.outcome.healthy)
+        found = judge.errors(made, run.outcome)
+        last = found.t_s > seconds - 10.0
+        self.assertLess(np.abs(found.euler_deg[last]).max(), 3.0)
+        self.assertLess(np.linalg.norm(found.position_m[last], axis=1).max(), 12.0)
+        return run.outcome.counts, found
+
+    @staticmethod
+    def change(made, kind, place, values=None, t_us=None):
+        row = [number for number, entry in enumerate(made.rows) if entry[0] == kind][place]
+        made.rows[row] = (kind, made.rows[row][1] if t_us is None else t_us, made.rows[row][2] if values is None else values)
+
+    def test_not_finite(self):
+        def spoil(made):
+            self.change(made, "imu", 1000, (np.nan, 0, 0, 0, 0, 0))
+            self.change(made, "gps", 20, (0, 0, 0, np.inf, 0, 0))
+            self.change(made, "field", 100, (0, -np.inf, 0))
+            self.change(made, "down", 10, (np.nan,))
+        counts, _ = self.fly(spoil)
+        self.assertEqual(counts["not finite"], 4)
+
+    def test_field_without_length(self):
+        counts, _ = self.fly(lambda made: self.change(made, "field", 100, (0.0, 0.0, 0.0)))
+        self.assertEqual(counts["no length"], 1)
+
+    def test_gps_jump_of_a_kilometre_does_not_move_the_state(self):
+        def spoil(made):
+            values = [entry for entry in made.rows if entry[0] == "gps"][30][2]
+            self.change(made, "gps", 30, (*values[:3], values[3] + 1000.0, *values[4:]))
+        counts, found = self.fly(spoil)
+        self.assertEqual(counts["gated"], 1)
+        after = (found.t_s > 31.0) & (found.t_s < 36.0)
+        self.assertLess(np.linalg.norm(found.position_m[after], axis=1).max(), 12.0)
+
+    def test_time_going_backwards(self):
+        def spoil(made):
+            for kind, place in (("imu", 2000), ("gps", 20), ("down", 20), ("field", 200)):
+                self.change(made, kind, place, t_us=5_000)
+        counts, _ = self.fly(spoil)
+        self.assertEqual(counts["time went backwards"] + counts["too late"], 4)
+
+    def test_out_of_range(self):
+        def spoil(made):
+            self.change(made, "imu", 1500, (41.0, 0, 0, 0, 0, -9.81))
+            self.change(made, "imu", 1600, (0.0, 0, 0, 0, 401.0, 0))
+            self.change(made, "gps", 25, (0, 0, 0, 2e6, 0, 0))
+        counts, _ = self.fly(spoil)
+        self.assertEqual(counts["out of range"], 3)
+
+    def test_imu_records_that_never_came_are_bridged(self):
+        def spoil(made):
+            imu = [number for number, entry in enumerate(made.rows) if entry[0] == "imu"]
+            for number in reversed(imu[2000:2008]):
+                del made.rows[number]
+        counts, _ = self.fly(spoil)
+        self.assertEqual(counts["gap"], 0)
+
+    def test_a_second_without_imu_is_a_gap(self):
+        def spoil(made):
+            made.rows = [entry for entry in made.rows if not 20_000_000 < entry[1] <= 21_000_000]
+        counts, _ = self.fly(spoil)
+        self.assertGreaterEqual(counts["gap"], 1)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--seconds", type=float, default=SECONDS)
+    args, rest = parser.parse_known_args()
+    SECONDS = args.seconds
+    sys.argv = [sys.argv[0], *rest]
+    from unity_line import main
+    main()

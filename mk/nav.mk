@@ -1,0 +1,61 @@
+# The navigation image: a filter of its own on the same HAL, and the same code as a program of the PC.
+STATES     ?= 12
+NAVIMG_SRC    := $(wildcard firmware/nav/*.c) $(wildcard lib/nav/src/*.c) $(wildcard hal/avr/*.c)
+NAVIMG_INC    := -Ihal -Ifirmware/nav -Ilib/nav/src
+# its records are long and its answers short
+NAV_RINGS  := -DHAL_UART_RX_SIZE=128 -DHAL_UART_TX_SIZE=128
+# what leaves flash and stack as small as the budgets want: frames of functions that are no larger when put into one another
+NAV_SMALL  := $(filter-out -flto-partition=one,$(AVR_SMALL)) -fno-tree-pta --param=large-stack-frame=64 --param=large-stack-frame-growth=50
+NAVIMG_FLAGS   = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(NAV_SMALL) -gdwarf-2 -ffunction-sections -fdata-sections \
+              $(WARNINGS) $(NAVIMG_INC) -Ihal/avr $(NAV_RINGS)
+nav_image   = $(U)/nav$(filter-out 12,$(1))/firmware.elf
+
+# NAV_IMAGE(folder, states)
+define NAV_IMAGE
+$(U)/$(1)/%.o: %.c Makefile mk/nav.mk
+	@mkdir -p $$(@D)
+	@$$(AVR_CC) $$(NAVIMG_FLAGS) -DNAV_STATES=$(2) -MMD -MP -c $$< -o $$@
+
+$(U)/$(1)/firmware.elf: $(NAVIMG_SRC:%.c=$(U)/$(1)/%.o)
+	@$$(AVR_CC) -mmcu=atmega328p -gdwarf-2 $$(NAV_SMALL) -Wl,--gc-sections $$^ -lm -o $$@
+
+$(U)/$(1)/firmware.hex: $(U)/$(1)/firmware.elf
+	@avr-objcopy -O ihex -R .eeprom $$< $$@
+
+# one of the two ways in which the PC computes as the chip does; the other is that each constant has an f
+$(H)/nav_replay_$(2): host_tests/nav_replay.c $(filter-out hal/avr/%,$(NAVIMG_SRC)) $(wildcard hal/*.h hal/host/*.h firmware/nav/*.h lib/nav/src/*.h) Makefile mk/nav.mk
+	@mkdir -p $$(@D)
+	@$$(HOST_CC) -std=c11 -O2 -g -ffp-contract=off -D_POSIX_C_SOURCE=200809L -DNAV_STATES=$(2) $$(NAV_RINGS) $$(WARNINGS) $$(NAVIMG_INC) -Ihal/host \
+	    $$(filter-out firmware/nav/main.c,$$(filter %.c,$$^)) -lm -o $$@
+endef
+$(eval $(call NAV_IMAGE,nav,12))
+$(eval $(call NAV_IMAGE,nav9,9))
+
+NAVIMG_HOST := $(filter-out firmware/nav/main.c hal/avr/%,$(NAVIMG_SRC))
+# with a line of its own in place of the host's HAL
+$(H)/test_nav_link: host_tests/test_nav_link.c host_tests/nav_line.c $(NAVIMG_HOST) host_tests/support_random.c $(H)/unity.o host_tests/nav_line.h $(wildcard hal/*.h firmware/nav/*.h lib/nav/src/*.h)
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(HOST_FLAGS) $(NAV_RINGS) $(NAVIMG_INC) $(WARNINGS) $(SANITIZE) $(filter %.c %.o,$^) -lm -o $@
+
+## nav: the navigation image (paper 003) in build/uno/nav (STATES=12 or 9; docs/navigation.md)
+nav:
+	@sh tools/deps.sh firmware
+	@$(MAKE) $(dir $(call nav_image,$(STATES)))firmware.hex
+	@sh tools/size.sh $(call nav_image,$(STATES)) nav
+
+## navflash: write it to an UNO (PORT=/dev/ttyACM0 STATES=12); make flash brings the tilt firmware back
+navflash:
+	@sh tools/deps.sh flash
+	@$(MAKE) $(dir $(call nav_image,$(STATES)))firmware.hex
+	avrdude -p atmega328p -c arduino -P $(PORT) -b 115200 -D -U flash:w:$(dir $(call nav_image,$(STATES)))firmware.hex:i
+
+# what its tests run
+NAV_TESTED := $(U)/nav/firmware.elf $(U)/nav9/firmware.elf $(H)/nav_replay_12 $(H)/nav_replay_9
+
+## navcheck: 500 s of flight in the simulated UNO, 12 and 9 states, bit for bit beside the PC, with load, slots and RAM (10 minutes)
+navcheck:
+	@sh tools/deps.sh tilt
+	@$(MAKE) $(NAV_TESTED) $(S)/simrun
+	@$(PY) host_tests/test_nav_image.py --seconds 500 Equal
+
+.PHONY: nav navflash navcheck

@@ -1,0 +1,141 @@
+"""Runs a flight through the navigation filter on an UNO, in its simulator or on the PC, and draws the errors with their sigmas.
+
+STREAM is a flight (docs/navigation.md has its columns; `tilt flight` simulates one); without it the 500 s of paper 003 are simulated. The image
+comes from `make nav`, and onto a board by `make navflash`. The simulator takes about as long as the flight, --board pc a second; a board takes each
+record when it is due (--fast: as soon as it has room).
+
+Status: 0 all records were taken or refused with a reason, 1 something was lost, or the filter's covariance is not healthy, 2 a file, an option or the
+board cannot be used.
+"""
+import time
+
+from tilt.errors import TiltError
+
+NAME = "nav"
+SUMMARY = "run a flight through the navigation filter (paper 003)"
+TOLD_REFUSALS = 10
+
+
+def arguments(parser):
+    parser.add_argument("stream", metavar="STREAM", nargs="?", help="flight (default: 500 s simulated)")
+    parser.add_argument("--board", default="sim", metavar="sim|pc|PORT", help="where the filter runs (default sim: the simulated UNO)")
+    parser.add_argument("--states", type=int, choices=(9, 12), default=12, help="12 with the gyros' drift, or 9 (default 12)")
+    parser.add_argument("--every", type=int, default=10, metavar="N", help="ask for the state after each Nth IMU record (default 10)")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=N[,N...]", help="a setting of the filter, over the file's")
+    parser.add_argument("--fast", action="store_true", help="at a port: do not wait until records are due")
+    parser.add_argument("-o", "--output", metavar="OUT.csv", help="states to write")
+    parser.add_argument("--plot", metavar="FILE.png", help="picture to write (default: build/nav.png where the truth is known)")
+
+
+def flight_of(args):
+    from tilt.navigation import flight
+    from tilt.progress import bar
+
+    if args.stream is None:
+        return flight.simulated(flight.Wish())
+    with bar("reading", "B") as told:
+        return flight.read(args.stream, told)
+
+
+def ran(args, sent):
+    from tilt.navigation import boards
+    from tilt.progress import bar
+
+    with bar("filtering", "record") as told:
+        if args.board == "sim":
+            return boards.simulated(sent, args.states, told)
+        if args.board == "pc":
+            return boards.on_pc(sent, args.states, told)
+        return boards.at_port(args.board, sent, args.states, args.fast, told)
+
+
+def write(path, outcome):
+    names = "q_w,q_x,q_y,q_z,v_n_mps,v_e_mps,v_d_mps,r_n_m,r_e_m,r_d_m,drift_x_rps,drift_y_rps,drift_z_rps"
+    try:
+        with open(path, "w", encoding="utf-8") as file:
+            print(f"t_us,{names}", file=file)
+            for state in outcome.states:
+                print(state.t_us, *(f"{number:.9g}" for number in state.numbers), sep=",", file=file)
+    except OSError as why:
+        raise TiltError(f"{path}: {why.strerror}") from why
+    print(f"{path}: {len(outcome.states)} states written")
+
+
+def tell_refusals(args, flight, sent, outcome):
+    """What was not simply taken, each with its place in the file; then the counts that are not nil."""
+    from tilt.navigation import exchange, frames
+
+    refused = exchange.refusals(sent, outcome)
+    for record, answer in refused[:TOLD_REFUSALS]:
+        where = args.stream or "simulated flight"
+        if record.row is not None and flight.lines:
+            where += f":{flight.lines[record.row]}"
+        print(f"{where}: {record.kind}: {frames.answer_text(answer.code)}")
+    if len(refused) > TOLD_REFUSALS:
+        print(f"... and {len(refused) - TOLD_REFUSALS} more")
+    told = ", ".join(f"{name} {count}" for name, count in outcome.counts.items() if count and name != "taken")
+    print(f"board's counts: {told or 'nothing refused'}")
+
+
+def tell_stats(stats):
+    if stats:
+        print(f"simulated UNO: load {100 * stats['cpu_load']:.1f} %, longest pass {stats['pass_max_cycles'] / 16000:.2f} ms, latest frame "
+              f"{stats['frames_latest_us'] / 1000:.2f} ms, RAM with stack {stats['ram_used_bytes']} B, flash {stats['flash_bytes']} B")
+
+
+def whole(sent, outcome):
+    """Whether every record was answered, and no answer damaged."""
+    if len(outcome.answers) != len(sent) or outcome.damaged or not outcome.counts:
+        print(f"lost: {len(sent)} records sent, {len(outcome.answers)} answered, {outcome.damaged} damaged records from the board")
+        return False
+    return True
+
+
+def check_start(sent, outcome):
+    """TiltError when the flight never began: all that follows is refused then."""
+    from tilt.navigation import frames
+
+    for record, answer in zip(sent, outcome.answers):
+        if record.kind == "start" and answer.code != 0:
+            raise TiltError(f"{frames.answer_text(answer.code)}: a setting is outside its range or not finite (docs/navigation.md, --set)")
+
+
+def show(args, flight, outcome):
+    from tilt.navigation import judge
+
+    found = judge.errors(flight, outcome)
+    if found is None or not len(found.t_s):
+        if args.plot:
+            raise TiltError(f"--plot draws errors: {args.stream} has no truth at the times of the states")
+        return
+    print("\n".join(judge.table(flight, found)))
+    from tilt.navigation import boards, picture
+
+    path = args.plot or boards.ROOT / "build/nav.png"
+    what = {"sim": "in the simulated UNO", "pc": "on the PC"}.get(args.board, f"on the board at {args.board}")
+    picture.draw(path, f"{args.states} states {what}, {flight.seconds:.0f} s", flight, found, outcome)
+    print(f"{path}: written")
+
+
+def run(args):
+    from tilt.navigation import exchange, settings
+
+    if args.every < 1:
+        raise TiltError(f"--every is at least 1, not {args.every}")
+    chosen = dict(settings.of_option(text) for text in args.set)
+    flight = flight_of(args)
+    began = time.perf_counter()
+    sent = exchange.records(flight, chosen, args.every)
+    done = ran(args, sent)
+    took = time.perf_counter() - began
+    print(f"{flight.seconds:.1f} s of flight in {took:.1f} s: {len(sent)} records, {len(done.outcome.states)} states")
+    check_start(sent, done.outcome)
+    tell_stats(done.stats)
+    tell_refusals(args, flight, sent, done.outcome)
+    complete = whole(sent, done.outcome)
+    if args.output:
+        write(args.output, done.outcome)
+    show(args, flight, done.outcome)
+    if not done.outcome.healthy:
+        print("the filter's covariance or state is not healthy")
+    return 0 if complete and done.outcome.healthy else 1
