@@ -17,7 +17,7 @@ VENV = "build/venv/bin/python"
 SUM = re.compile(r"^(\d+) Tests (\d+) Failures (\d+) Ignored", re.M)
 PLAIN = ["test_flash", "test_resets", "test_fault_page", "test_bench", "test_papers", "test_papers_synthesis", "test_schedule", "test_pages",
          "test_default", "test_images", "test_run_tests", "test_faults", "test_arduino", "test_plotter", "test_compile_commands"]
-WITH_NUMPY = ["test_plot_run", "test_robust", "test_design", "test_design_command", "test_design_refusals", "test_synthesised",
+WITH_NUMPY = ["test_nav_image", "test_plot_run", "test_robust", "test_design", "test_design_command", "test_design_refusals", "test_synthesised",
               "test_variable_structure", "test_variable_structure_flight", "test_variable_structure_page"]
 TILT = sorted(pathlib.Path("host_tests/tilt").glob("test_*.py"))
 FIRST = ["system_tests", "bitexact", "test_design_command", "test_design", "test_design_refusals", "chip_filter_sequence_2", "chip_filter_sequence_1",

@@ -221,7 +221,8 @@ class Command(unittest.TestCase):
 
     def test_nav_refuses_settings_that_are_none(self):
         for words, told in ((("--set", "gate"), "--set wants NAME=NUMBER"), (("--set", "gates=1"), "there is no setting"),
-                            (("--set", "field=1"), "field has 3 numbers"), (("--every", 0), "--every is at least 1"), (("no-such.csv",), "No such file")):
+                            (("--set", "field=1"), "field has 3 numbers"), (("--every", 0), "--every is at least 1"),
+                            (("no-such.csv",), "No such file")):
             status, said = run("nav", "--board", "pc", *words)
             self.assertEqual(status, 2, said)
             self.assertIn(told, said)
