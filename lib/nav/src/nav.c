@@ -184,16 +184,12 @@ static nav_answer_t step_to(nav_t *nav, uint32_t t_us, nav_real_t rate[3], nav_r
         return step_back(nav, t_us);
     }
     bool lost = step_us > bridged_us(nav);
-    bool bridged = !lost && step_us > nav->period_us + nav->period_us / 2U;
-    read_record(nav, rate, force, bridged);
+    read_record(nav, rate, force, !lost && step_us > nav->period_us + nav->period_us / 2U);
     if (lost) {
         leap(nav, t_us, step_us);
         return NAV_GAP;
     }
     advance(nav, t_us, rate, force);
-    if (bridged) {
-        nav_ins_unit(nav->state.quaternion);
-    }
     return NAV_TAKEN;
 }
 

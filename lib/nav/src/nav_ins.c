@@ -1,11 +1,15 @@
 /* Strapdown INS in NED (paper 003, 3.3.4: no Earth rotation, no curvature). */
 #include "nav_ins.h"
+#include "nav_root.h"
 #include "nav_ud.h"
 #include "nav_vector.h"
 
 #define HALF NAV_R(0.5)
 #define THREE_HALVES NAV_R(1.5)
 #define SIXTH NAV_R(0.16666666666666667)
+#define NEAR_LOW NAV_R(0.99) /* a Newton step leaves 4e-5 of this and less */
+#define NEAR_HIGH NAV_R(1.01)
+#define TURN_LARGE NAV_R(0.01) /* half the angle, squared: the length is off by its square / 12 */
 
 /* (w^2 - v.v) I + 2 v v' + 2 w [v x], and w^2 + v.v = 1. */
 void nav_ins_dcm(nav_real_t dcm[9], const nav_real_t quaternion[4])
@@ -44,6 +48,18 @@ static void turn(nav_real_t quaternion[4], nav_real_t w, const nav_real_t v[3], 
     nav_add_cross(vector, in_body ? old : v, in_body ? v : old);
 }
 
+void nav_ins_unit(nav_real_t quaternion[4])
+{
+    nav_real_t square = quaternion[0] * quaternion[0] + nav_dot(quaternion + 1, quaternion + 1);
+    nav_real_t factor = THREE_HALVES - HALF * square;
+    if (!(square > NEAR_LOW && square < NEAR_HIGH)) {
+        factor = 1 / nav_root(square);
+    }
+    for (uint8_t i = 0; i < 4U; i++) {
+        quaternion[i] *= factor;
+    }
+}
+
 void nav_ins_step(nav_state_t *state, nav_real_t force_ned_mps2[3], const nav_real_t dcm[9],
                   const nav_real_t rate_rps[3], const nav_real_t force_mps2[3], nav_real_t gravity_mps2,
                   nav_real_t step_s)
@@ -73,14 +89,8 @@ void nav_ins_step(nav_state_t *state, nav_real_t force_ned_mps2[3], const nav_re
         half[i] *= sine;
     }
     turn(state->quaternion, 1 - HALF * square, half, true);
-}
-
-void nav_ins_unit(nav_real_t quaternion[4])
-{
-    nav_real_t square = quaternion[0] * quaternion[0] + nav_dot(quaternion + 1, quaternion + 1);
-    nav_real_t factor = THREE_HALVES - HALF * square;
-    for (uint8_t i = 0; i < 4U; i++) {
-        quaternion[i] *= factor;
+    if (square > TURN_LARGE) {
+        nav_ins_unit(state->quaternion);
     }
 }
 

@@ -20,7 +20,7 @@ void nav_ins_step(nav_state_t *state, nav_real_t force_ned_mps2[3], const nav_re
                   const nav_real_t rate_rps[3], const nav_real_t force_mps2[3], nav_real_t gravity_mps2,
                   nav_real_t step_s);
 
-/* One Newton step to length 1: from 1 + e to 1 - 3 e^2 / 2. */
+/* To length 1: near it (1 % of the square) by one Newton step, from 1 + e to 1 - 3 e^2 / 2; else by the root. */
 void nav_ins_unit(nav_real_t quaternion[4]);
 
 /* Closed loop: r, v += x, C <- (I - [mu x]) C, drift += x (12 states). x in the order of the error state. */

@@ -274,7 +274,7 @@ void nav_jobs_run(nav_t *nav)
         return;
     }
     nav->queue.in_a_row = 0;
-    if (nav->noise.next == 0U) { /* once a round: a step at 40 rad/s and 10 ms takes 7e-5 off the length */
+    if (nav->noise.next == 0U) { /* once a round: steps of 0.2 rad take 8e-6 off the length */
         nav_ins_unit(nav->state.quaternion);
     }
     nav_noise_job(&nav->noise, nav->ud, nav->t_us);
