@@ -170,18 +170,17 @@ static void ud_spread(nav_memory_t *nav, const double *a, int k, double variance
 
 static double ud_scalar(nav_memory_t *nav, const nav_test_row_t *row, double variance, double *gain)
 {
-    nav_row_t r;
     nav_ud_scalar_t scalar;
-    r.first = NAV_STATES;
-    r.end = 0;
+    scalar.first = NAV_STATES;
+    scalar.end = 0;
     for (int i = 0; i < NAV_STATES; i++) {
-        r.h[i] = (nav_real_t)row->h[i];
+        scalar.f[i] = (nav_real_t)row->h[i];
         if (row->h[i] != 0.0) {
-            r.first = (r.end == 0U) ? (uint8_t)i : r.first;
-            r.end = (uint8_t)(i + 1);
+            scalar.first = (scalar.end == 0U) ? (uint8_t)i : scalar.first;
+            scalar.end = (uint8_t)(i + 1);
         }
     }
-    nav_ud_look(&scalar, nav_of(nav)->ud, &r, (nav_real_t)variance);
+    nav_ud_look(&scalar, nav_of(nav)->ud, (nav_real_t)variance);
     nav_ud_update(nav_of(nav)->ud, &scalar, (nav_real_t)variance);
     to_double(gain, scalar.gain, NAV_STATES);
     return (double)scalar.variance;

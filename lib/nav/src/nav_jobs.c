@@ -134,28 +134,28 @@ static bool take_in(nav_t *nav)
 }
 
 /* dv(e) = dv - age f x mu; dr(e) = dr - age dv. */
-static void motion_row(nav_row_t *row, uint8_t scalar, const nav_real_t force[3], nav_real_t age)
+static void motion_row(nav_ud_scalar_t *row, uint8_t scalar, const nav_real_t force[3], nav_real_t age)
 {
     uint8_t k = (scalar == DOWN) ? 2 : (uint8_t)(scalar % 3U);
     if (scalar >= POSITION) {
         row->first = (uint8_t)(NAV_R0 + k);
         row->end = (uint8_t)(k + (uint8_t)(NAV_V0 + 1));
-        row->h[NAV_V0 + k] = -age;
+        row->f[NAV_V0 + k] = -age;
     } else {
         nav_real_t unit[3] = { 0, 0, 0 };
         unit[k] = age;
         row->first = (uint8_t)(NAV_V0 + k);
         row->end = NAV_C0;
-        nav_add_cross(row->h + NAV_M0, force, unit); /* e_k . (f x mu) = -(f x e_k) . mu */
+        nav_add_cross(row->f + NAV_M0, force, unit); /* e_k . (f x mu) = -(f x e_k) . mu */
     }
-    row->h[row->first] = 1;
+    row->f[row->first] = 1;
 }
 
 /* The row of a scalar now. */
-static void row_of(nav_row_t *row, const nav_t *nav, uint8_t scalar)
+static void row_of(nav_ud_scalar_t *row, const nav_t *nav, uint8_t scalar)
 {
     for (uint8_t i = 0; i < NAV_STATES; i++) {
-        row->h[i] = 0;
+        row->f[i] = 0;
     }
     if (scalar < FIELD) {
         motion_row(row, scalar, nav->force_ned_mps2, nav_seconds(nav->queue.t_us[sensor_of(scalar)], nav->t_us));
@@ -163,7 +163,7 @@ static void row_of(nav_row_t *row, const nav_t *nav, uint8_t scalar)
     }
     row->first = NAV_M0;
     row->end = NAV_C0;
-    nav_add_scaled(row->h + NAV_M0, 1, nav->tau[scalar - FIELD]);
+    nav_add_scaled(row->f + NAV_M0, 1, nav->tau[scalar - FIELD]);
 }
 
 static nav_real_t variance_of(const nav_t *nav, uint8_t scalar)
@@ -189,7 +189,7 @@ static uint16_t ready(const nav_queue_t *queue)
  * passes any gate of 1 or more, and takes nearly all the gain. A field says nothing of the turn about itself, so what it
  * adds goes the way of P h', to the angles that are least known: to the heading, when GPS keeps the others.
  */
-static bool refuse(nav_t *nav, uint8_t scalar, const nav_ud_scalar_t *update, nav_real_t square)
+static bool refuse(nav_t *nav, uint8_t scalar, nav_ud_scalar_t *update, nav_real_t square)
 {
     nav_queue_t *queue = &nav->queue;
     if (nav->counts.answer[NAV_GATED] < UINT16_MAX) {
@@ -204,24 +204,22 @@ static bool refuse(nav_t *nav, uint8_t scalar, const nav_ud_scalar_t *update, na
     if (scalar < FIELD) {
         nav_ud_noise(nav->ud, update->first, square);
     } else if (known > 0) {
-        nav_real_t along[NAV_STATES];
-        nav_ud_reach(along, nav->ud, update, NAV_M0, NAV_C0);
-        nav_ud_spread(nav->ud, along, NAV_C0 - 1, square / (known * known));
+        nav_ud_reach(update, nav->ud, NAV_M0, NAV_C0);
+        nav_ud_spread(nav->ud, update->f, NAV_C0 - 1, square / (known * known));
     }
     return true;
 }
 
-/* Closed loop: the state at once, and what waits. */
-static void correct(nav_t *nav, const nav_real_t x[NAV_STATES])
+/* Closed loop, by x in the place of the gain: the state at once, and what waits. */
+static void correct(nav_t *nav, nav_ud_scalar_t *update)
 {
     uint16_t scalars = ready(&nav->queue);
-    nav_ins_correct(&nav->state, x);
-    nav_past_correct(&nav->past, x);
+    nav_ins_correct(&nav->state, update->gain);
+    nav_past_correct(&nav->past, update->gain);
     for (uint8_t i = 0; i < NAV_SCALARS; i++) {
         if ((scalars & bit(i)) != 0U) {
-            nav_row_t row;
-            row_of(&row, nav, i);
-            nav->queue.value[i] -= nav_row_times(&row, x);
+            row_of(update, nav, i);
+            nav->queue.value[i] -= nav_ud_times(update);
         }
     }
 }
@@ -231,10 +229,9 @@ static void use_scalar(nav_t *nav, uint8_t scalar)
     nav_queue_t *queue = &nav->queue;
     nav_real_t innovation = queue->value[scalar];
     nav_real_t square = innovation * innovation;
-    nav_row_t row;
     nav_ud_scalar_t update;
-    row_of(&row, nav, scalar);
-    nav_ud_look(&update, nav->ud, &row, variance_of(nav, scalar));
+    row_of(&update, nav, scalar);
+    nav_ud_look(&update, nav->ud, variance_of(nav, scalar));
     bool beyond = nav->gate_squared > 0 && square > nav->gate_squared * update.variance;
     if (beyond && refuse(nav, scalar, &update, square)) {
         return; /* it waits on, and passes next time */
@@ -248,7 +245,7 @@ static void use_scalar(nav_t *nav, uint8_t scalar)
     for (uint8_t i = 0; i < NAV_STATES; i++) {
         update.gain[i] *= innovation;
     }
-    correct(nav, update.gain);
+    correct(nav, &update);
 }
 
 /* The last sensor first: the field comes most often, and must not wait until the next is there. */

@@ -137,27 +137,16 @@ void nav_ud_noise(nav_real_t ud[NAV_PACKED], uint8_t k, nav_real_t variance)
     nav_ud_spread(ud, a, k, variance);
 }
 
-/* The sum of h u over the rows before j and before the end. */
-static nav_real_t row_times(const nav_row_t *row, const nav_real_t *u, uint8_t j)
+/* From the last column to the first, so that h is there until its last use. */
+void nav_ud_look(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], nav_real_t variance)
 {
-    nav_real_t sum = 0;
-    uint8_t end = (j < row->end) ? j : row->end;
-    for (uint8_t i = row->first; i < end; i++) {
-        if (row->h[i] != 0) {
-            sum += row->h[i] * u[i];
-        }
-    }
-    return sum;
-}
-
-void nav_ud_look(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], const nav_row_t *row, nav_real_t variance)
-{
-    scalar->first = row->first;
-    for (uint8_t j = row->first; j < NAV_STATES; j++) {
+    for (uint8_t j = NAV_STATES; j-- > scalar->first;) {
         const nav_real_t *u = ud + column(j);
-        nav_real_t f = row_times(row, u, j);
-        if (j < row->end) {
-            f += row->h[j];
+        nav_real_t f = scalar->f[j];
+        for (uint8_t i = scalar->first; i < j && i < scalar->end; i++) {
+            if (scalar->f[i] != 0) {
+                f += scalar->f[i] * u[i];
+            }
         }
         nav_real_t v = u[j] * f;
         scalar->f[j] = f;
@@ -167,17 +156,14 @@ void nav_ud_look(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], const
     scalar->variance = variance;
 }
 
-void nav_ud_reach(nav_real_t out[NAV_STATES], const nav_real_t ud[NAV_PACKED], const nav_ud_scalar_t *scalar,
-                  uint8_t first, uint8_t end)
+void nav_ud_reach(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], uint8_t begin, uint8_t end)
 {
     for (uint8_t i = 0; i < end; i++) {
-        out[i] = 0;
-        if (i < first) {
-            continue;
+        nav_real_t sum = 0;
+        for (uint8_t j = (i > scalar->first) ? i : scalar->first; i >= begin && j < NAV_STATES; j++) {
+            sum += (j == i) ? scalar->gain[j] : ud[column(j) + i] * scalar->gain[j];
         }
-        for (uint8_t j = (i > scalar->first) ? i : scalar->first; j < NAV_STATES; j++) {
-            out[i] += (j == i) ? scalar->gain[j] : ud[column(j) + i] * scalar->gain[j];
-        }
+        scalar->f[i] = sum;
     }
 }
 
@@ -210,9 +196,13 @@ void nav_ud_update(nav_real_t ud[NAV_PACKED], nav_ud_scalar_t *scalar, nav_real_
     }
 }
 
-nav_real_t nav_row_times(const nav_row_t *row, const nav_real_t x[NAV_STATES])
+nav_real_t nav_ud_times(const nav_ud_scalar_t *scalar)
 {
-    return row_times(row, x, NAV_STATES);
+    nav_real_t sum = 0;
+    for (uint8_t i = scalar->first; i < scalar->end; i++) {
+        sum += scalar->f[i] * scalar->gain[i];
+    }
+    return sum;
 }
 
 void nav_ud_variances(const nav_real_t ud[NAV_PACKED], nav_real_t variance[NAV_STATES])

@@ -24,18 +24,12 @@ enum {
     NAV_C0 = 9  /* drift */
 };
 
-/* A row of H: elements first .. end - 1, the others are 0 and not looked at. */
+/* A scalar update. One array after another serves twice: the stack is what the AVR has least of. */
 typedef struct {
-    nav_real_t h[NAV_STATES];
-    uint8_t first, end;
-} nav_row_t;
-
-/* What a scalar update stands on. */
-typedef struct {
-    nav_real_t f[NAV_STATES];    /* h U */
-    nav_real_t gain[NAV_STATES]; /* D U' h', and K behind nav_ud_update */
+    nav_real_t f[NAV_STATES];    /* the row h of H, 0 outside first .. end - 1; h U behind nav_ud_look */
+    nav_real_t gain[NAV_STATES]; /* D U' h' behind nav_ud_look, K behind nav_ud_update */
     nav_real_t variance;         /* of the innovation */
-    uint8_t first;               /* f is 0 before it */
+    uint8_t first, end;
 } nav_ud_scalar_t;
 
 /* P = diag(sigma^2): position, velocity, attitude, drift. */
@@ -53,18 +47,17 @@ void nav_ud_noise(nav_real_t ud[NAV_PACKED], uint8_t k, nav_real_t variance);
 /* P <- P + variance a a', a[k + 1] and on being 0. a is used up. */
 void nav_ud_spread(nav_real_t ud[NAV_PACKED], nav_real_t a[NAV_STATES], uint8_t k, nav_real_t variance);
 
-/* What a scalar of this row and measured variance (> 0) would do; P is left alone. */
-void nav_ud_look(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], const nav_row_t *row, nav_real_t variance);
+/* What this row with this measured variance (> 0) would do; P is left alone. */
+void nav_ud_look(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], nav_real_t variance);
 
-/* P h' in rows first .. end - 1, and 0 before, from what was looked at. */
-void nav_ud_reach(nav_real_t out[NAV_STATES], const nav_real_t ud[NAV_PACKED], const nav_ud_scalar_t *scalar,
-                  uint8_t first, uint8_t end);
+/* P h' in rows begin .. end - 1 and 0 before, from what was looked at, in the place of f. */
+void nav_ud_reach(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], uint8_t begin, uint8_t end);
 
 /* Does it: P <- P - K S K', S the variance of the innovation. scalar->gain becomes K. `variance` as in nav_ud_look. */
 void nav_ud_update(nav_real_t ud[NAV_PACKED], nav_ud_scalar_t *scalar, nav_real_t variance);
 
-/* h x */
-nav_real_t nav_row_times(const nav_row_t *row, const nav_real_t x[NAV_STATES]);
+/* h x, x being in the place of the gain. */
+nav_real_t nav_ud_times(const nav_ud_scalar_t *scalar);
 
 /* All of D >= 0. */
 bool nav_ud_positive(const nav_real_t ud[NAV_PACKED]);
