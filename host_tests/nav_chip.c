@@ -1,8 +1,8 @@
 /*
- * nav_chip ELF SECONDS: the flight of paper 003 through lib/nav in the simulated chip, 100 Hz IMU, 10 Hz field, 1 Hz GPS
- * and altimeter, drift of the gyro on; beside it the same records through the same code on the PC. Prints per call: how
- * often, cycles mean and most; the mean load; the stack; slots by their job; and how many states differ in any bit.
- * Status 1: they differ, or the chip went wrong.
+ * nav_chip ELF SECONDS: the flight of paper 003 through lib/nav in the simulated chip, 100 Hz IMU, 10 Hz field, 1 Hz
+ * GPS and altimeter, drift of the gyro on; beside it the same records through the same code on the PC. Prints per
+ * call: how often, cycles mean and most; the mean load; the stack; slots by their job; and how many states differ in
+ * any bit. Status 1: they differ, or the chip went wrong.
  */
 #include "nav_box.h"
 #include "support_flight.h"

@@ -1,7 +1,7 @@
 /*
  * Double references (Eigen) of lib/nav's covariance, written from the matrix equations of paper 003 in its own order of
- * states, [mu, dv, dr, dc]: its square root by QR (3.20)-(3.26), the conventional form (3.9)-(3.11), and Joseph's. Plain
- * C interface.
+ * states, [mu, dv, dr, dc]: its square root by QR (3.20)-(3.26), the conventional form (3.9)-(3.11), and Joseph's.
+ * Plain C interface.
  */
 #ifndef REFERENCE_NAV_H
 #define REFERENCE_NAV_H

@@ -290,85 +290,6 @@ static void noise_in_turns_costs_four_thousandths_at_most(void)
     }
 }
 
-static bool is_identity(const double *m, double tolerance)
-{
-    for (int i = 0; i < 9; i++) {
-        if (fabs(m[i] - ((i % 4 == 0) ? 1.0 : 0.0)) > tolerance) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static void square(double out[9], const double t[9])
-{
-    for (int i = 0; i < 9; i++) {
-        out[i] = 0.0;
-        for (int k = 0; k < 3; k++) {
-            out[i] += t[3 * (i / 3) + k] * t[3 * (i % 3) + k];
-        }
-    }
-}
-
-/* The field of the paper's place, nT; its numbers from the notes. */
-static void tau_is_orthogonal_and_turns_the_field_to_the_first_axis(void)
-{
-    const double nanotesla[3] = { 17818.0, 1951.0, 41847.0 };
-    const double want[9] = { .391395644,  .042856263,  .919224015,  -.042856263, .998679988,
-                             -.028312944, -.919224015, -.028312944, .392715656 };
-    double length = sqrt(17818.0 * 17818.0 + 1951.0 * 1951.0 + 41847.0 * 41847.0);
-    const double u[3] = { nanotesla[0] / length, nanotesla[1] / length, nanotesla[2] / length };
-    double tau[9];
-    double product[9];
-    reference_nav_tau(tau, u, false);
-    for (int i = 0; i < 9; i++) {
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, want[i], tau[i]);
-    }
-    square(product, tau);
-    TEST_ASSERT_TRUE(is_identity(product, 1e-15));
-    for (int i = 0; i < 3; i++) {
-        TEST_ASSERT_DOUBLE_WITHIN(1e-15, i == 0, tau[3 * i] * u[0] + tau[3 * i + 1] * u[1] + tau[3 * i + 2] * u[2]);
-    }
-    TEST_ASSERT_DOUBLE_WITHIN(5e-4, 66.813,
-                              asin(u[2]) * 57.29577951308232); /* inclination and declination as printed */
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 6.248, atan2(u[1], u[0]) * 57.29577951308232);
-    for (int v = 0; v < NAV_ALL; v++) {
-        double rows[6];
-        TEST_ASSERT_TRUE(nav_all[v]->tau(rows, nanotesla));
-        for (int i = 0; i < 6; i++) {
-            TEST_ASSERT_DOUBLE_WITHIN(nav_all[v]->in_double ? 1e-9 : 1e-7, want[3 + i], rows[i]);
-        }
-    }
-}
-
-static void tau_of_directions_that_have_none_is_refused(void)
-{
-    const double none[4][3] = { { 0, 0, 0 }, { -1, 0, 0 }, { NAN, 0, 1 }, { 1e20, 0, 0 } };
-    double rows[6];
-    for (int v = 0; v < NAV_ALL; v++) {
-        for (int i = 0; i < 4; i++) {
-            TEST_ASSERT_FALSE(nav_all[v]->tau(rows, none[i]));
-        }
-    }
-}
-
-/* (3.34) with another length: tau tau' = p^2 I needs p + mag1 in the denominator. */
-static void printed_tau_is_orthogonal_for_unit_length_only(void)
-{
-    const double mag[3] = { 0.7828, 0.0858, 1.8384 };
-    double tau[9];
-    double product[9];
-    double squared = mag[0] * mag[0] + mag[1] * mag[1] + mag[2] * mag[2];
-    for (int printed = 0; printed < 2; printed++) {
-        reference_nav_tau(tau, mag, printed != 0);
-        square(product, tau);
-        for (int i = 0; i < 9; i++) {
-            product[i] /= squared;
-        }
-        TEST_ASSERT_EQUAL(printed == 0, is_identity(product, 1e-14));
-    }
-}
-
 /* (3.5) forgets the position at every step: its sigma at 399 s without GPS would be a step's, not 226 m. */
 static void printed_phi_forgets_the_position(void)
 {
@@ -393,9 +314,6 @@ int main(void)
     RUN_TEST(ours_in_double_is_the_thesis_form);
     RUN_TEST(ours_in_float_is_right_to_two_thousandths);
     RUN_TEST(noise_in_turns_costs_four_thousandths_at_most);
-    RUN_TEST(tau_is_orthogonal_and_turns_the_field_to_the_first_axis);
-    RUN_TEST(tau_of_directions_that_have_none_is_refused);
-    RUN_TEST(printed_tau_is_orthogonal_for_unit_length_only);
     RUN_TEST(printed_phi_forgets_the_position);
     RUN_TEST(printed_rows_do_not_see_the_position);
     return UNITY_END();

@@ -30,9 +30,10 @@ static void fly_both(const nav_variant_t *v)
 }
 
 /*
- * The gain K of a scalar is off by twice what the sigmas are, 8e-3, where they are off by 4e-3. An error K sqrt(R) x 8e-3
- * at each epoch, forgotten with 1 - K, adds up to 8e-3 sqrt(K R / 2), and P = K R: 6e-3 sigma rms, four times that at
- * most in 150 epochs of 12 states. What is of second order in the age is g mu (0.15 s)^2 / 2 = 1e-4 m here.
+ * The gain K of a scalar is off by twice what the sigmas are, 8e-3, where they are off by 4e-3. An error of
+ * K sqrt(R) x 8e-3 at each epoch, forgotten with 1 - K, adds up to 8e-3 sqrt(K R / 2), and P = K R: 6e-3 sigma rms,
+ * four times that at most in 150 epochs of 12 states. What is of second order in the age is g mu (0.15 s)^2 / 2 = 1e-4
+ * m here.
  */
 static void spread_scalars_give_what_all_at_once_give(void)
 {
@@ -87,7 +88,7 @@ static void nine_scalars_wait_and_are_used_in_thirteen_slots(void)
     TEST_ASSERT_EQUAL(0, n12f.queued(&m));
 }
 
-/* Exact records up to 1 s, then an exact GPS epoch `age_us` ago, said to be of `said_us` ago; error of the position behind it. */
+/* Exact records for 1 s, then an exact GPS epoch `age_us` ago, said to be of `said_us` ago; error of the position. */
 static double error_after(const nav_variant_t *v, uint32_t age_us, uint32_t said_us)
 {
     static nav_memory_t m;
@@ -251,8 +252,8 @@ static void gps_jump_is_gated_and_a_new_place_is_found(void)
 }
 
 /*
- * Heading 0.3 rad off, known to 0.02: the field, good to 0.01, is refused (0.39 x sin 0.3 = 0.116 against 5 x 0.0128), five
- * times, then believed. Without that the heading would stay.
+ * Heading 0.3 rad off, known to 0.02: the field, good to 0.01, is refused (0.39 x sin 0.3 = 0.116 against 5 x 0.0128),
+ * five times, then believed. Without that the heading would stay.
  */
 static void field_that_the_gate_refuses_is_believed_in_the_end(void)
 {

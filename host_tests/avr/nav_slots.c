@@ -1,6 +1,6 @@
 /*
- * lib/nav alone on the chip, for host_tests/nav_chip.c: it puts records into `box` when GPIOR2 asks, GPIOR0 tells when a call begins
- * and ends.
+ * lib/nav alone on the chip, for host_tests/nav_chip.c: it puts records into `box` when GPIOR2 asks, GPIOR0 tells when
+ * a call begins and ends.
  */
 #include "nav_box.h"
 

@@ -34,16 +34,17 @@ extern "C" {
 #error "NAV_STATES is 9 or 12"
 #endif
 
+#define NAV_LATE_US 150000UL      /* oldest epoch of GPS and altimeter that is taken */
+#define NAV_FIELD_LATE_US 50000UL /* and of the magnetometer: turned on by the last rate, to first order */
+#define NAV_BRIDGE_US 100000UL    /* missing IMU records are bridged in one step up to here */
+
 enum {
-    NAV_PACKED = NAV_STATES * (NAV_STATES + 1) / 2,
-    NAV_SCALARS = 9,                   /* of one epoch of each sensor: velocity, position, down, field (two) */
-    NAV_NOISES = 1 + (NAV_STATES - 3), /* jobs of process noise: position at once, then one per state */
-    NAV_PAST = 10,                     /* positions and velocities kept for late epochs, 19 ms apart at least */
-    NAV_LATE_US = 150000,              /* oldest epoch of GPS and altimeter that is taken */
-    NAV_FIELD_LATE_US = 50000,         /* and of the magnetometer: turned on by the last rate, to first order */
-    NAV_BRIDGE_US = 100000,            /* missing IMU records are bridged in one step up to here */
-    NAV_REFUSALS = 5,                  /* epochs in a row that the gate may refuse a scalar */
-    NAV_STEPS_BACK = 10                /* IMU records in a row that go back in time until the clock is believed */
+    NAV_PACKED = (NAV_STATES == 9) ? 45 : 78, /* elements of a triangle */
+    NAV_SCALARS = 9,                          /* of one epoch of each sensor: velocity, position, down, field (two) */
+    NAV_NOISES = 1 + (NAV_STATES - 3),        /* jobs of process noise: position at once, then one per state */
+    NAV_PAST = 10,                            /* positions and velocities kept for late epochs, 19 ms apart or more */
+    NAV_REFUSALS = 5,                         /* epochs in a row that the gate may refuse a scalar */
+    NAV_STEPS_BACK = 10                       /* IMU records in a row that go back until the clock is believed */
 };
 
 typedef struct {
@@ -150,20 +151,20 @@ bool nav_init(nav_t *nav, const nav_config_t *config);
  * and this record. What a straight line between them does not have is lost: a turn at rate w whose direction changes
  * within the step T errs by up to w T / 2, and coning by w^2 T^2 / 12.
  * NAV_GAP, longer: time starts anew, position goes on with the velocity for 10 s at most, what waited is forgotten, and
- * the covariance grows by what T seconds (10 at most) may hold: 0.5 rad/s without being seen (0.5 rad at most), 5 m/s^2,
- * 2.5 m/s^2 x T^2; in the next seven slots, before anything else. Ten records in a row that go back in time are a
- * clock that began anew, which counts as a gap of one second.
+ * the covariance grows by what T seconds (10 at most) may hold, unseen: a turn at 0.5 rad/s (0.5 rad at most), 5 m/s^2
+ * and what they make of the position; in the next seven slots, before anything else. Ten records in a row that go back
+ * in time are a clock that began anew, which counts as a gap of one second.
  *
  * NAV_TAKEN, NAV_GAP; or refused and nothing changed: NAV_BACKWARDS, NAV_NOT_FINITE, NAV_OUT_OF_RANGE.
  */
 nav_answer_t nav_imu(nav_t *nav, uint32_t t_us, const nav_real_t rate_rps[3], const nav_real_t force_mps2[3]);
 
 /*
- * Velocity (m/s, NED) and position (m, NED) at the epoch t_us, which may be 150 ms before the last IMU record, and after
- * it by as much as nav_imu bridges: then it waits. State and its errors are carried to the epoch: computed values by
- * linear interpolation of the past (3.3.5), rows of H to first order in the age (nav_jobs.c).
- * NAV_TAKEN: six scalars wait. NAV_LATE, NAV_GAP, NAV_BACKWARDS, NAV_QUEUE_FULL, NAV_NOT_FINITE, NAV_OUT_OF_RANGE.
- * A scalar that the gate refused in five epochs in a row is believed: its variance grows until it fits.
+ * Velocity (m/s, NED) and position (m, NED) at the epoch t_us, which may be 150 ms before the last IMU record, and 100
+ * ms after it: then it waits. State and its errors are carried to the epoch: computed values by linear interpolation
+ * of the past (3.3.5), rows of H to first order in the age (nav_jobs.c). NAV_TAKEN: six scalars wait. NAV_LATE,
+ * NAV_GAP, NAV_BACKWARDS, NAV_QUEUE_FULL, NAV_NOT_FINITE, NAV_OUT_OF_RANGE. A scalar that the gate refused in five
+ * epochs in a row is believed: its variance grows until it fits.
  */
 nav_answer_t nav_gps(nav_t *nav, uint32_t t_us, const nav_real_t velocity_mps[3], const nav_real_t position_m[3]);
 

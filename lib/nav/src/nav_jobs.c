@@ -186,8 +186,8 @@ static uint16_t ready(const nav_queue_t *queue)
 /*
  * Refused: the innovation's square is beyond the gate. After five epochs of it the covariance is what is wrong. The
  * innovation is likeliest when its variance is its square, so that much is added where the scalar measures; then it
- * passes any gate of 1 or more, and takes nearly all the gain. A field says nothing of the turn about itself, so what it
- * adds goes the way of P h', to the angles that are least known: to the heading, when GPS keeps the others.
+ * passes any gate of 1 or more, and takes nearly all the gain. A field says nothing of the turn about itself, so what
+ * it adds goes the way of P h', to the angles that are least known: to the heading, when GPS keeps the others.
  */
 static bool refuse(nav_t *nav, uint8_t scalar, nav_ud_scalar_t *update, nav_real_t square)
 {
