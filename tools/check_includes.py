@@ -31,7 +31,7 @@ RULES = {
     "lib/filters/examples": (STANDARD | FILTERS | {"Arduino.h", "Wire.h", "SPI.h"}, None),
     "lib/tilt/src": (STANDARD | TILT | {"fx.h", "fx_dot.h"}, None),
     "lib/adxl345/src": (STANDARD | ADXL | HAL, None),
-    "lib/nav/src": (STANDARD | NAV, None),
+    "lib/nav/src": (STANDARD | NAV | {"math.h"}, None),
     "hal": (STANDARD | {"hal_port.h"}, None),
     "hal/avr": (STANDARD | HAL | headers("hal/avr"), AVR_LIBC),
     "hal/host": (LIBC | HAL | MODEL | headers("hal/host"), None),

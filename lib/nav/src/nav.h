@@ -148,8 +148,8 @@ bool nav_init(nav_t *nav, const nav_config_t *config);
  * Carries everything on to t_us, then does one job: the longest slot.
  *
  * Missing records, up to 100 ms (or two periods, if longer): one step over the whole interval with the mean of the last
- * and this record. What a straight line between them does not have is lost: a turn at rate w whose direction changes
- * within the step T errs by up to w T / 2, and coning by w^2 T^2 / 12.
+ * and this record. That is the trapezium's rule: over a step of T an angle errs by |rate''| T^3 / 12, by |last x this|
+ * T^2 / 12 where the axis turns, and the noise of two records stands for that of all.
  * NAV_GAP, longer: time starts anew, position goes on with the velocity for 10 s at most, what waited is forgotten, and
  * the covariance grows by what T seconds (10 at most) may hold, unseen: a turn at 0.5 rad/s (0.5 rad at most), 5 m/s^2
  * and what they make of the position; in the next seven slots, before anything else. Ten records in a row that go back
@@ -177,7 +177,7 @@ nav_answer_t nav_field(nav_t *nav, uint32_t t_us, const nav_real_t field_body[3]
 /* At the time of the last IMU record; valid as long as *nav. */
 const nav_state_t *nav_state(const nav_t *nav);
 
-/* Diagonal of P: m^2, (m/s)^2, rad^2, (rad/s)^2. About 35,000 cycles with 12 states. */
+/* Diagonal of P: m^2, (m/s)^2, rad^2, (rad/s)^2. With 12 states 66 x three float operations: not for every slot. */
 void nav_variances(const nav_t *nav, nav_real_t variance[NAV_STATES]);
 
 const nav_counts_t *nav_counts(const nav_t *nav);
