@@ -165,7 +165,7 @@ uint8_t nav_line_answer(void)
 void nav_line_put(uint8_t type, const void *body, size_t length)
 {
     uint8_t record[256] = { type, nav_line_sequence++ };
-    uint8_t frame[300];
+    uint8_t frame[300] = { 0 };
     if (length != 0) {
         memcpy(&record[NAV_LINE_HEAD], body, length);
     }

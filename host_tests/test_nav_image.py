@@ -63,8 +63,8 @@ class Equal(unittest.TestCase):
         return chip.stats
 
     def judge(self, stats, states):
-        print(f"    {states} states, {SECONDS:g} s: load {100 * stats['cpu_load']:.1f} %, latest frame {stats['frames_latest_us']:.0f} us, longest pass "
-              f"{stats['pass_max_cycles']} cycles, RAM with stack {stats['ram_used_bytes']}, flash {stats['flash_bytes']}")
+        print(f"    {states} states, {SECONDS:g} s: load {100 * stats['cpu_load']:.1f} %, latest frame {stats['frames_latest_us']:.0f} us, longest "
+              f"pass {stats['pass_max_cycles']} cycles, RAM with stack {stats['ram_used_bytes']}, flash {stats['flash_bytes']}")
         self.assertEqual(stats["uart_rx_overruns"], 0)
         if FOR_COMPILER:
             self.assertLessEqual(stats["cpu_load"], LOAD_LIMIT)

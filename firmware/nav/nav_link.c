@@ -14,7 +14,7 @@ enum {
     REAL = 4,        /* bytes of a real */
     PARAMETERS = 30, /* reals of nav_config_t */
     PARAMETERS_AT_ONCE = 6,
-    ALL_PARAMETERS = (1 << PARAMETERS / PARAMETERS_AT_ONCE) - 1,
+    ALL_PARAMETERS = 0x1F, /* a bit for each of the five groups */
     STATE_REALS = 13,
     STATE_BYTES = 1 + TIME + STATE_REALS * REAL,
     VARIANCES_BYTES = 2 + NAV_STATES * REAL,
@@ -69,11 +69,6 @@ static void copy(void *to, const void *from, uint8_t length)
     }
 }
 
-static void get_reals(nav_real_t *to, const uint8_t *from, uint8_t count)
-{
-    copy(to, from, (uint8_t)((uint16_t)count * (uint16_t)REAL));
-}
-
 static uint16_t one_more(uint16_t count)
 {
     return count == UINT16_MAX ? count : (uint16_t)(count + 1u);
@@ -109,7 +104,7 @@ HAL_APART static void send_variances(void)
 
 HAL_APART static void send_counts(void)
 {
-    uint8_t frame[1 + 2 * (NAV_ANSWERS + LINK_ANSWERS + 1) + FRAME_OVERHEAD];
+    uint8_t frame[1 + sizeof(uint16_t[NAV_ANSWERS + LINK_ANSWERS + 1]) + FRAME_OVERHEAD];
     uint8_t *record = &frame[1];
     const nav_counts_t *counts = nav_counts(&filter.nav);
     record[0] = ANSWER_COUNTS;
@@ -134,7 +129,7 @@ static uint8_t on_parameters(const uint8_t *body)
         started = false;
         parameters = 0;
     }
-    copy((uint8_t *)&filter.config + first * REAL, &body[1], PARAMETERS_AT_ONCE * REAL);
+    copy((nav_real_t *)&filter.config + first, &body[1], sizeof(nav_real_t[PARAMETERS_AT_ONCE]));
     parameters = (uint8_t)(parameters | 1u << (first / PARAMETERS_AT_ONCE));
     return NAV_TAKEN;
 }
@@ -159,7 +154,7 @@ HAL_APART static uint8_t on_imu(const uint8_t *body)
 {
     nav_real_t measured[6];
     uint32_t t_us = get_u32(body);
-    get_reals(measured, &body[TIME], 6);
+    copy(measured, &body[TIME], sizeof measured);
     uint8_t answer = (uint8_t)nav_imu(&filter.nav, t_us, measured, &measured[3]);
     if (body[TIME + 6 * REAL] == 1u) {
         send_state(t_us);
@@ -170,21 +165,21 @@ HAL_APART static uint8_t on_imu(const uint8_t *body)
 HAL_APART static uint8_t on_gps(const uint8_t *body)
 {
     nav_real_t measured[6];
-    get_reals(measured, &body[TIME], 6);
+    copy(measured, &body[TIME], sizeof measured);
     return (uint8_t)nav_gps(&filter.nav, get_u32(body), measured, &measured[3]);
 }
 
 static uint8_t on_down(const uint8_t *body)
 {
     nav_real_t down_m;
-    get_reals(&down_m, &body[TIME], 1);
+    copy(&down_m, &body[TIME], sizeof down_m);
     return (uint8_t)nav_down(&filter.nav, get_u32(body), down_m);
 }
 
 static uint8_t on_field(const uint8_t *body)
 {
     nav_real_t field[3];
-    get_reals(field, &body[TIME], 3);
+    copy(field, &body[TIME], sizeof field);
     return (uint8_t)nav_field(&filter.nav, get_u32(body), field);
 }
 

@@ -1,6 +1,6 @@
 /*
- * Records between a PC and the navigation filter, over frames (nav_frame.h). Each record of the PC is answered once, in its
- * order, by an answer that says how many bytes have been taken: the PC keeps no more than LINK_WINDOW under way, so
+ * Records between a PC and the navigation filter, over frames (nav_frame.h). Each record of the PC is answered once, in
+ * its order, by an answer that says how many bytes have been taken: the PC keeps no more than LINK_WINDOW under way, so
  * that nothing is lost at any rate. docs/protocol.md, "Navigation image", has the tables. Numbers are little-endian,
  * reals IEEE 754 single precision.
  */

@@ -143,7 +143,8 @@ class Command(unittest.TestCase):
             (place / "flight.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
             said = io.StringIO()
             with contextlib.redirect_stdout(said):
-                status = cli.main(["nav", str(place / "flight.csv"), "--board", "pc", "-o", str(place / "states.csv"), "--plot", str(place / "f.png")])
+                status = cli.main(["nav", str(place / "flight.csv"), "--board", "pc", "-o", str(place / "states.csv"),
+                                   "--plot", str(place / "f.png")])
             self.assertEqual(status, 0, said.getvalue())
             self.assertIn(f"flight.csv:{number + 1}: field: no length", said.getvalue())
             self.assertIn("board's counts: no length 1", said.getvalue())
