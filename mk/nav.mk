@@ -52,10 +52,11 @@ navflash:
 # what its tests run
 NAV_TESTED := $(U)/nav/firmware.elf $(U)/nav9/firmware.elf $(H)/nav_replay_12 $(H)/nav_replay_9
 
-## navcheck: 500 s of flight in the simulated UNO, 12 and 9 states, bit for bit beside the PC, with load, slots and RAM (10 minutes)
+NAV_SECONDS ?= 500
+## navcheck: 500 s of flight in the simulated UNO, 12 and 9 states, bit for bit beside the PC, with load, slots and RAM (10 minutes; NAV_SECONDS=)
 navcheck:
 	@sh tools/deps.sh tilt
 	@$(MAKE) $(NAV_TESTED) $(S)/simrun
-	@$(PY) host_tests/test_nav_image.py --seconds 500 Equal
+	@$(PY) host_tests/test_nav_image.py --seconds $(NAV_SECONDS) Equal
 
 .PHONY: nav navflash navcheck
