@@ -138,6 +138,18 @@ static void exact_records_are_followed(void)
     }
 }
 
+/* From rest with 10 m/s^2 upwards for 0.1 s: 1 m/s and 0.05 m. */
+static void step_goes_with_the_mean_velocity(void)
+{
+    nav_values_t s = { { 1, 0, 0, 0 }, { 0 }, { 0 }, { 0 } };
+    double ned[3];
+    const double still[3] = { 0, 0, 0 };
+    const double force[3] = { 0, 0, -FLIGHT_GRAVITY - 10.0 };
+    n12d.step(&s, ned, still, force, FLIGHT_GRAVITY, 0.1);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-14, -1.0, s.velocity[2]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, -0.05, s.position[2]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -145,6 +157,7 @@ int main(void)
     RUN_TEST(tau_of_directions_that_have_none_is_refused);
     RUN_TEST(printed_tau_is_orthogonal_for_unit_length_only);
     RUN_TEST(step_turns_by_the_rotation_vector);
+    RUN_TEST(step_goes_with_the_mean_velocity);
     RUN_TEST(exact_records_are_followed);
     return UNITY_END();
 }
