@@ -17,7 +17,8 @@ import compile_commands  # noqa: E402
 
 DATABASE = OUT / "compile_commands.json"
 # what is built for which side; the longest name decides. A test is built for one at least.
-SIDES = {"firmware": {"PC", "chip"}, "firmware/main.c": {"chip"}, "firmware/nav/main.c": {"chip"}, "lib": {"PC", "chip"}, "hal/avr": {"chip"}, "hal/host": {"PC"}, "sim": {"PC"}}
+SIDES = {"firmware": {"PC", "chip"}, "firmware/main.c": {"chip"}, "firmware/nav/main.c": {"chip"}, "lib": {"PC", "chip"},
+         "hal/avr": {"chip"}, "hal/host": {"PC"}, "sim": {"PC"}}
 
 
 @functools.cache
