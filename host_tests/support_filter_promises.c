@@ -21,6 +21,7 @@ int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
     case FILTER_KIND_af:
     case FILTER_KIND_kf3:
     case FILTER_KIND_adaptive:
+    case FILTER_KIND_auto:
         return 0;
     case FILTER_KIND_synth_plus:
         return 4096;
@@ -67,6 +68,8 @@ uint16_t recovery_samples(filter_kind_t kind)
         return 40;
     case FILTER_KIND_synth_opt:
         return 14;
+    case FILTER_KIND_auto:
+        return 60;
     case FILTER_KIND_sprf_paper:
         return 443;
     case FILTER_KIND_shrf:

@@ -174,6 +174,7 @@ bool has_joint_condition(filter_kind_t kind)
     case FILTER_KIND_af:
     case FILTER_KIND_kf3:
     case FILTER_KIND_adaptive:
+    case FILTER_KIND_auto:
         return false;
     case FILTER_KIND_COUNT:
         break;

@@ -81,14 +81,14 @@ static void predict(const chain_t *chain, double a, score_t *score)
     double w1 = probe.gain_uq16 / 65536.0;
     double gain = noise_gain_of(w1);
     if (chain->filter.kind == FILTER_KIND_synth) {
-        const synth_t *synth = &chain->filter.state.synth;
+        const synth_t *synth = &chain->filter.state.of_synth;
         gain = synth_noise_gain_uq16(synth->b0_uq16, synth->a1_negative ? -synth->a1_uq16 : synth->a1_uq16) / 65536.0;
     }
     if (chain->filter.kind == FILTER_KIND_synth_opt) {
         gain = 2.0 / 3.0; /* of (a1, b0) = (0, 2/3), where its schedule ends */
     }
     if (chain->filter.kind == FILTER_KIND_kf3) {
-        const kf3_t *f = &chain->filter.state.kf3;
+        const kf3_t *f = &chain->filter.state.of_kf3;
         gain = kf3_noise_gain_of(w1, f->core.u.p.p12_uq28 / 268435456.0,
                                  f->p13_uq28 / 268435456.0 / (f->fine ? 16.0 : 1.0));
     }

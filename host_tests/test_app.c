@@ -130,7 +130,7 @@ static void test_refusals_name_the_legal_values(void)
                  { "every 1.5", "# refused 4: every is one of 1 to 10000" },
                  { "baud 12345", "# refused 4: baud is one of 9600 19200 38400 57600 115200 250000 500000 1000000" },
                  { "filter median", "# refused 4: filter is one of adaptive kf sprf synth lrf soft sprf_paper shrf pbf "
-                                    "af synth_opt synth_plus kf3" },
+                                    "af synth_opt synth_plus kf3 auto" },
                  { "mode xml", "# refused 4: mode is one of csv plot" },
                  { "hello", "# refused 1: unknown command (type help)" },
                  { "stop now", "# refused 1: unknown command (type help)" } };

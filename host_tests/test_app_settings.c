@@ -98,7 +98,7 @@ static void test_changes_in_quick_succession(void)
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("refused", before));
     for (int axis = 0; axis < AXES; axis++) {
         TEST_ASSERT_EQUAL_UINT(FILTER_KIND_sprf, pipeline.axes[axis].filter.kind);
-        TEST_ASSERT_EQUAL_UINT(3 * 256, pipeline.axes[axis].filter.state.sprf.gate_sigma_q8);
+        TEST_ASSERT_EQUAL_UINT(3 * 256, pipeline.axes[axis].filter.state.of_sprf.gate_sigma_q8);
     }
     TEST_ASSERT_EQUAL_UINT(0, settings.own);
 }

@@ -93,7 +93,7 @@ static double roll_fixed(const axis_t axes[3], filter_kind_t kind)
 {
     int32_t q8[3];
     for (int i = 0; i < 3; i++) {
-        q8[i] = (int32_t)lrint(of_z[i] * axes[i].f[kind].state.kf.core.x_lsb_q16 / 256.0);
+        q8[i] = (int32_t)lrint(of_z[i] * axes[i].f[kind].state.of_kf.core.x_lsb_q16 / 256.0);
     }
     tilt_t tilt = { 0, 0, false };
     tilt_angles(&tilt, q8[0], q8[1], q8[2]);

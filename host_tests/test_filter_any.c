@@ -183,20 +183,20 @@ static void test_a_refusal_tells_rate_and_combinations_apart(void)
 {
     filter_any_config_t config;
     filter_any_defaults(FILTER_KIND_soft, &config, 1000);
-    config.soft.gate_sigma_q8 = 0;
-    config.soft.reacquire_samples = 4;
+    config.of_soft.gate_sigma_q8 = 0;
+    config.of_soft.reacquire_samples = 4;
     filter_any_t f;
     TEST_ASSERT_FALSE(filter_any_init(&f, FILTER_KIND_soft, &config));
     TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_any_refused(FILTER_KIND_soft, &config));
-    config.soft.soft_sigma_q8 = 1;
-    config.soft.q_lsb2_s3 = 0;
+    config.of_soft.soft_sigma_q8 = 1;
+    config.of_soft.q_lsb2_s3 = 0;
     TEST_ASSERT_EQUAL_UINT8(1, filter_any_refused(FILTER_KIND_soft, &config));
-    config.soft.rate_dhz = FILTER_RATE_MIN_DHZ - 1U;
+    config.of_soft.rate_dhz = FILTER_RATE_MIN_DHZ - 1U;
     TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_RATE, filter_any_refused(FILTER_KIND_soft, &config));
     TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_KIND, filter_any_refused(FILTER_KIND_COUNT, &config));
     filter_any_defaults(FILTER_KIND_synth, &config, 1000);
-    config.synth.b0_uq16 = 6554;
-    config.synth.a1_q16 = -65000; /* outside the stability region */
+    config.of_synth.b0_uq16 = 6554;
+    config.of_synth.a1_q16 = -65000; /* outside the stability region */
     TEST_ASSERT_FALSE(filter_any_init(&f, FILTER_KIND_synth, &config));
     TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_any_refused(FILTER_KIND_synth, &config));
 }

@@ -207,10 +207,10 @@ static void test_restart_keeps_what_was_learnt_of_the_noise(void)
         int16_t sum = (int16_t)((v & 15U) + ((v >> 8) & 15U) + ((v >> 16) & 15U) + ((v >> 24) & 15U));
         (void)filter_any_update(&f, (int16_t)(sum / 3)); /* sigma 4.6 x 2 / 3 */
     }
-    uint32_t r_lsb2_q8 = adaptive_r_lsb2_q8(&f.state.adaptive);
+    uint32_t r_lsb2_q8 = adaptive_r_lsb2_q8(&f.state.of_adaptive);
     TEST_ASSERT_TRUE(r_lsb2_q8 > 5U * 256U);
     filter_any_restart(&f);
-    TEST_ASSERT_EQUAL_UINT32(r_lsb2_q8, adaptive_r_lsb2_q8(&f.state.adaptive));
+    TEST_ASSERT_EQUAL_UINT32(r_lsb2_q8, adaptive_r_lsb2_q8(&f.state.of_adaptive));
 }
 
 /* How often a filter at rest restarted while the sensor stood at its rail. */
@@ -238,7 +238,8 @@ static uint16_t restarts_at_the_rail(filter_any_t *f, uint8_t kind, bool held)
 static bool restarts(uint8_t kind)
 {
     return kind == (uint8_t)FILTER_KIND_adaptive || kind == (uint8_t)FILTER_KIND_sprf ||
-           kind == (uint8_t)FILTER_KIND_soft || kind == (uint8_t)FILTER_KIND_sprf_paper;
+           kind == (uint8_t)FILTER_KIND_soft || kind == (uint8_t)FILTER_KIND_sprf_paper ||
+           kind == (uint8_t)FILTER_KIND_auto;
 }
 
 static void test_held_samples_restart_no_filter(void)

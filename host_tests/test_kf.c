@@ -99,7 +99,7 @@ static void begins_within_its_bounds(void)
                         random32(&random), random32(&random));
         for (uint8_t step = 0; step < 4U; step++) {
             int32_t x = (step == 0U) ? f.core.x_lsb_q16 : kf_update(&f, (int16_t)random32(&random));
-            filter_any_t any = { .kind = FILTER_KIND_kf, .state.kf = f };
+            filter_any_t any = { .kind = FILTER_KIND_kf, .state.of_kf = f };
             filter_probe_t probe;
             kf_probe(&f, &probe);
             TEST_ASSERT_NULL(broken_bound(&any, &probe, x));

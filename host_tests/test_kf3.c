@@ -222,8 +222,8 @@ static void reset_is_as_if_read_for_ever(void)
 /* One corner of the legal parameters: any samples, gaps and R; every bound holds, and after them it settles. */
 static void assert_corner(uint16_t rate_dhz, uint32_t r_lsb2_q8, uint32_t q_lsb2_s5, uint32_t *random)
 {
-    filter_any_t any = { .kind = FILTER_KIND_kf3, .state.kf3 = made(rate_dhz, r_lsb2_q8, q_lsb2_s5) };
-    kf3_t *f = &any.state.kf3;
+    filter_any_t any = { .kind = FILTER_KIND_kf3, .state.of_kf3 = made(rate_dhz, r_lsb2_q8, q_lsb2_s5) };
+    kf3_t *f = &any.state.of_kf3;
     filter_probe_t probe;
     for (uint16_t k = 0; k < ON_PC_OR_CHIP(5000, 300); k++) {
         uint32_t what = random32_below(random, 64);

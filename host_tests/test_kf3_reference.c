@@ -296,7 +296,7 @@ static void covariance_stays_one_for_ever(void)
         filter_any_t any;
         uint32_t refused = 0;
         TEST_ASSERT_TRUE(init_random(&any, FILTER_KIND_kf3, &random, &refused));
-        kf3_t *f = &any.state.kf3;
+        kf3_t *f = &any.state.of_kf3;
         for (int k = 0; k < 2000; k++) {
             uint32_t what = random32_below(&random, 400);
             if (what == 0U) {

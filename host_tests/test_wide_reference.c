@@ -34,7 +34,7 @@ enum { PAIRS = sizeof pairs / sizeof pairs[0] };
 
 static two_state_wide_t *core_of(filter_any_t *f)
 {
-    return (f->kind == (uint8_t)FILTER_KIND_sprf_paper) ? &f->state.sprf_paper.core : &f->state.pbf.core;
+    return (f->kind == (uint8_t)FILTER_KIND_sprf_paper) ? &f->state.of_sprf_paper.core : &f->state.of_pbf.core;
 }
 
 /* Table 1's ratios in counts of 0.02 degree: R = 16 LSB^2 and q22 = 8.7e-5 at 405 Hz, rate per sample. */
@@ -42,8 +42,8 @@ static void make(const pair_t *pair, filter_any_t *f, robust_reference_t *r)
 {
     filter_any_config_t config;
     filter_any_defaults(pair->kind, &config, 4050);
-    config.pbf.r_lsb2_q8 = (uint32_t)R_LSB2 * 256U;
-    config.pbf.q_lsb2_s3 = 92000;
+    config.of_pbf.r_lsb2_q8 = (uint32_t)R_LSB2 * 256U;
+    config.of_pbf.q_lsb2_s3 = 92000;
     TEST_ASSERT_TRUE(filter_any_init(f, pair->kind, &config));
     two_state_wide_t *core = core_of(f);
     two_state_wide_begin(core, 0, 0, 109U << 16, 0, 1U << 20);

@@ -2,7 +2,7 @@
 
 # the chip's flash holds about nine filters: the tests that go over the list run in two images, which link these
 CHIP_ALL    := $(shell sed -n 's/^    X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter_list.h)
-CHIP_SECOND := $(filter adaptive synth_opt synth_plus kf3,$(CHIP_ALL))
+CHIP_SECOND := $(filter adaptive synth_opt synth_plus kf3 auto,$(CHIP_ALL))
 CHIP_FIRST  := $(filter-out $(CHIP_SECOND),$(CHIP_ALL))
 linked_flag  = '-DFILTER_LINKED(X)=$(foreach f,$(1),X($(f)))'
 UNITY_1     := test_filters test_filter_gaps test_fx test_kf test_lrf test_soft test_sprf test_synth test_two_state_wide test_sprf_paper \

@@ -2,7 +2,7 @@
 
 # Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter_list.h; the firmware starts with
 # the first. The first set is what is built and flashed when nothing is said; together they hold every filter.
-FILTER_SETS          := everyday robust soft mixture published synthesised schedule linear acceleration
+FILTER_SETS          := everyday robust soft mixture published synthesised schedule linear acceleration auto
 FILTERS_everyday     := adaptive
 FILTERS_robust       := sprf kf
 FILTERS_soft         := soft
@@ -12,6 +12,7 @@ FILTERS_synthesised  := synth synth_plus
 FILTERS_schedule     := synth_opt
 FILTERS_linear       := lrf kf
 FILTERS_acceleration := kf3
+FILTERS_auto         := auto
 FILTERS              := $(firstword $(FILTER_SETS))
 
 # images with one of these have no room for cal6; the calibration that another image saves is theirs too

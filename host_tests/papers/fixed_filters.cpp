@@ -105,7 +105,7 @@ void begin_table1(filter_any_t &f)
     switch (f.kind) {
 #define BEGIN(F)                   \
     case FILTER_KIND_##F:          \
-        begin_state(f.state.F, 0); \
+        begin_state(f.state.of_##F, 0); \
         break;
         FILTER_LIST(BEGIN)
 #undef BEGIN

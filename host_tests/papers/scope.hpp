@@ -10,7 +10,7 @@ namespace papers
 {
 inline bool of_paper_002(const std::string &name)
 {
-    constexpr std::array<const char *, 5> others{ "synth", "synth_opt", "synth_plus", "adaptive", "kf3" };
+    constexpr std::array<const char *, 6> others{ "synth", "synth_opt", "synth_plus", "adaptive", "kf3", "auto" };
     return std::find(others.begin(), others.end(), name) == others.end();
 }
 } // namespace papers

@@ -64,7 +64,8 @@ enum filter_flag {
     FILTER_COASTED = 0x02,    /* no sample: the output is a prediction */
     FILTER_REACQUIRED = 0x04, /* the filter restarted on consistent refused samples */
     FILTER_SATURATED = 0x08,  /* a state was clamped to its bound */
-    FILTER_WARMING_UP = 0x10  /* fewer than FILTER_WARM_UP_SAMPLES since init */
+    FILTER_WARMING_UP = 0x10, /* fewer than FILTER_WARM_UP_SAMPLES since init */
+    FILTER_SWITCHED = 0x20    /* a filter made of several has chosen another of them (`auto`) */
 };
 
 /* A sample limited to the range that the bounds of all filters assume. */

@@ -71,7 +71,7 @@ void filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16
     switch (kind) {
 #define DEFAULTS(F)                         \
     case FILTER_KIND_##F:                   \
-        F##_defaults(&config->F, rate_dhz); \
+        F##_defaults(&config->of_##F, rate_dhz); \
         break;
         FILTER_LINKED(DEFAULTS)
 #undef DEFAULTS
@@ -85,7 +85,7 @@ bool filter_any_init(filter_any_t *f, filter_kind_t kind, const filter_any_confi
     switch (kind) {
 #define INIT(F)                                   \
     case FILTER_KIND_##F:                         \
-        if (!F##_init(&f->state.F, &config->F)) { \
+        if (!F##_init(&f->state.of_##F, &config->of_##F)) { \
             return false;                         \
         }                                         \
         break;
@@ -103,7 +103,7 @@ bool filter_any_together(filter_kind_t kind, const filter_any_config_t *config)
     switch (kind) {
 #define TOGETHER(F)       \
     case FILTER_KIND_##F: \
-        return F##_together(&config->F);
+        return F##_together(&config->of_##F);
         FILTER_LINKED(TOGETHER)
 #undef TOGETHER
     default:
@@ -116,7 +116,7 @@ FX_ONCE void filter_any_configure(filter_any_t *f, filter_kind_t kind, const fil
     switch (kind) {
 #define CONFIGURE(F)                            \
     case FILTER_KIND_##F:                       \
-        F##_configure(&f->state.F, &config->F); \
+        F##_configure(&f->state.of_##F, &config->of_##F); \
         break;
         FILTER_LINKED(CONFIGURE)
 #undef CONFIGURE
@@ -131,7 +131,7 @@ void filter_any_set_noise(filter_any_t *f, uint32_t r_lsb2_q8)
     switch (f->kind) {
 #define SET_NOISE(F)                           \
     case FILTER_KIND_##F:                      \
-        F##_set_noise(&f->state.F, r_lsb2_q8); \
+        F##_set_noise(&f->state.of_##F, r_lsb2_q8); \
         break;
         FILTER_LINKED(SET_NOISE)
 #undef SET_NOISE
@@ -145,7 +145,7 @@ void filter_any_reset(filter_any_t *f, int16_t z0_lsb)
     switch (f->kind) {
 #define RESET(F)                        \
     case FILTER_KIND_##F:               \
-        F##_reset(&f->state.F, z0_lsb); \
+        F##_reset(&f->state.of_##F, z0_lsb); \
         break;
         FILTER_LINKED(RESET)
 #undef RESET
@@ -159,7 +159,7 @@ bool filter_any_reset_step(filter_any_t *f, int16_t z0_lsb, uint8_t step)
     switch (f->kind) {
 #define RESET_STEP(F)     \
     case FILTER_KIND_##F: \
-        return F##_reset_step(&f->state.F, z0_lsb, step);
+        return F##_reset_step(&f->state.of_##F, z0_lsb, step);
         FILTER_LINKED(RESET_STEP)
 #undef RESET_STEP
     default:
@@ -172,7 +172,7 @@ int32_t filter_any_update(filter_any_t *f, int16_t z_lsb)
     switch (f->kind) {
 #define UPDATE(F)         \
     case FILTER_KIND_##F: \
-        return F##_update(&f->state.F, z_lsb);
+        return F##_update(&f->state.of_##F, z_lsb);
         FILTER_LINKED(UPDATE)
 #undef UPDATE
     default:
@@ -185,7 +185,7 @@ int32_t filter_any_coast(filter_any_t *f)
     switch (f->kind) {
 #define COAST(F)          \
     case FILTER_KIND_##F: \
-        return F##_coast(&f->state.F);
+        return F##_coast(&f->state.of_##F);
         FILTER_LINKED(COAST)
 #undef COAST
     default:
@@ -198,7 +198,7 @@ void filter_any_gap(filter_any_t *f)
     switch (f->kind) {
 #define GAP(F)                \
     case FILTER_KIND_##F:     \
-        F##_gap(&f->state.F); \
+        F##_gap(&f->state.of_##F); \
         break;
         FILTER_LINKED(GAP)
 #undef GAP
@@ -212,7 +212,7 @@ void filter_any_damp(filter_any_t *f)
     switch (f->kind) {
 #define DAMP(F)                \
     case FILTER_KIND_##F:      \
-        F##_damp(&f->state.F); \
+        F##_damp(&f->state.of_##F); \
         break;
         FILTER_LINKED(DAMP)
 #undef DAMP
@@ -226,7 +226,7 @@ void filter_any_hold(filter_any_t *f)
     switch (f->kind) {
 #define HOLD(F)                \
     case FILTER_KIND_##F:      \
-        F##_hold(&f->state.F); \
+        F##_hold(&f->state.of_##F); \
         break;
         FILTER_LINKED(HOLD)
 #undef HOLD
@@ -240,7 +240,7 @@ void filter_any_restart(filter_any_t *f)
     switch (f->kind) {
 #define RESTART(F)                \
     case FILTER_KIND_##F:         \
-        F##_restart(&f->state.F); \
+        F##_restart(&f->state.of_##F); \
         break;
         FILTER_LINKED(RESTART)
 #undef RESTART
@@ -254,7 +254,7 @@ FX_ONCE uint8_t filter_any_flags(const filter_any_t *f)
     switch (f->kind) {
 #define FLAGS(F)          \
     case FILTER_KIND_##F: \
-        return F##_flags(&f->state.F);
+        return F##_flags(&f->state.of_##F);
         FILTER_LINKED(FLAGS)
 #undef FLAGS
     default:
@@ -267,7 +267,7 @@ void filter_any_probe(const filter_any_t *f, filter_probe_t *out)
     switch (f->kind) {
 #define PROBE(F)                     \
     case FILTER_KIND_##F:            \
-        F##_probe(&f->state.F, out); \
+        F##_probe(&f->state.of_##F, out); \
         break;
         FILTER_LINKED(PROBE)
 #undef PROBE

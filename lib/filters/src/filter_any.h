@@ -21,7 +21,7 @@ typedef enum {
 
 typedef union {
     uint16_t rate_dhz; /* every configuration begins with it */
-#define FILTER_MEMBER(F) F##_config_t F;
+#define FILTER_MEMBER(F) F##_config_t of_##F; /* of_: one filter is called as a word of C */
     FILTER_LIST(FILTER_MEMBER)
 #undef FILTER_MEMBER
 } filter_any_config_t;
@@ -29,7 +29,7 @@ typedef union {
 typedef struct {
     uint8_t kind; /* filter_kind_t */
     union {
-#define FILTER_MEMBER(F) F##_t F;
+#define FILTER_MEMBER(F) F##_t of_##F;
         FILTER_LIST(FILTER_MEMBER)
 #undef FILTER_MEMBER
     } state;

@@ -7,6 +7,7 @@
 
 #include "adaptive.h"
 #include "af.h"
+#include "auto.h"
 #include "kf.h"
 #include "kf3.h"
 #include "lrf.h"
@@ -33,7 +34,8 @@
     X(af)              \
     X(synth_opt)       \
     X(synth_plus)      \
-    X(kf3)
+    X(kf3)             \
+    X(auto)
 #endif
 
 /* Those that filter_any.c links: fewer where a program over the whole list has no room for all (tests on the chip). */
