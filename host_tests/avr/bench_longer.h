@@ -17,6 +17,7 @@ NO_LONGER(kf3)
 NO_LONGER(lrf)
 NO_LONGER(sprf)
 NO_LONGER(sprf_paper)
+NO_LONGER(auto)
 
 /* From R = 16 LSB^2 on such a soft gate takes the coarse format. */
 static inline void lengthen_soft(soft_config_t *config)

@@ -10,7 +10,7 @@
 #endif
 
 #if BENCH_PART == 1
-#define BENCH_LIST(X) X(kf) X(sprf) X(synth) X(lrf)
+#define BENCH_LIST(X) X(kf) X(sprf) X(synth) X(lrf) X(auto)
 #elif BENCH_PART == 2
 #define BENCH_LIST(X) X(soft) X(sprf_paper) X(shrf) X(pbf) X(af)
 #elif BENCH_PART == 3

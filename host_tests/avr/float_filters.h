@@ -114,6 +114,18 @@ typedef struct {
     bool identify, below, third;
 } float_adaptive_t;
 
+typedef struct {
+    float x, v, k, score; /* LSB, LSB per sample, 2 / memory, LSB^2 */
+    int8_t refused;
+} float_auto_member_t;
+
+typedef struct {
+    float_auto_member_t members[AUTO_MEMBERS];
+    float final_k[AUTO_MEMBERS];
+    float gate, sigma, rate_max; /* sigmas (0: none), LSB, LSB per sample */
+    uint8_t chosen;
+} float_auto_t;
+
 void float_kf_start(float_kf_t *f, const kf_config_t *config, float x0_lsb);
 void float_kf_set_noise(float_kf_t *f, float r_lsb2);
 float float_kf_update(float_kf_t *f, int16_t z_lsb);
@@ -178,6 +190,11 @@ void float_adaptive_start(float_adaptive_t *f, const adaptive_config_t *config, 
 void float_adaptive_set_noise(float_adaptive_t *f, float r_lsb2);
 float float_adaptive_update(float_adaptive_t *f, int16_t z_lsb);
 float float_adaptive_coast(float_adaptive_t *f);
+
+void float_auto_start(float_auto_t *f, const auto_config_t *config, float x0_lsb);
+void float_auto_set_noise(float_auto_t *f, float r_lsb2);
+float float_auto_update(float_auto_t *f, int16_t z_lsb);
+float float_auto_coast(float_auto_t *f);
 
 /* What the three with two states of the channel share. */
 void float_mixture_start(float_mixture_t *f, const mixture_config_t *config, float x0_lsb);

@@ -188,98 +188,100 @@ FX_NOINLINE int32_t estimate(const auto_t *f)
     return (f->collected == 0U) ? 0 : filter_warm_up_median_q16(f->u.start_lsb, f->collected);
 }
 
-/* v within its limit; the flag tells. */
-FX_NOINLINE int32_t limited(auto_t *f, int32_t v, uint32_t limit)
+/* One sample on; x within its bound by the high word: 4608 LSB and a fraction count as 4608. */
+FX_INLINE void predict(auto_t *f, auto_member_t *m)
 {
-    if (fx_abs32(v) > limit) {
+    int32_t x = m->x_lsb_q16 + m->rate_lsb_q16;
+    uint16_t whole_lsb = (uint16_t)((uint32_t)x >> 16);
+    if ((uint16_t)(whole_lsb + FILTER_X_MAX_LSB) >= 2U * FILTER_X_MAX_LSB) {
+        x = (x < 0) ? -X_MAX_LSB_Q16 : X_MAX_LSB_Q16;
         f->flags |= FILTER_SATURATED;
-        return (v < 0) ? -(int32_t)limit : (int32_t)limit;
     }
-    return v;
+    m->x_lsb_q16 = x;
 }
 
-/* One sample on. */
-FX_NOINLINE void predict(auto_t *f, auto_member_t *m)
-{
-    m->x_lsb_q16 = limited(f, m->x_lsb_q16 + m->rate_lsb_q16, (uint32_t)X_MAX_LSB_Q16);
-}
-
-/*
- * Beyond the gate. True: the sample is not used; false, with FILTER_REACQUIRED where it is the last of a run: it is.
- */
-FX_NOINLINE bool refuses(auto_t *f, uint8_t i, uint32_t size_lsb_uq8, bool below)
-{
-    auto_member_t *m = &f->u.members[i];
-    uint32_t gate_lsb_uq8 = f->gate_lsb_uq8;
-    if (i == (uint8_t)AUTO_SLOW) {
-        gate_lsb_uq8 += gate_lsb_uq8;
-    }
-    bool open = m->k_uq16 > K_OPEN_UQ16 && m->k_uq16 > f->final_k_uq16[i];
-    if (size_lsb_uq8 <= gate_lsb_uq8 || open) {
-        m->refused = 0;
-        return false;
-    }
-    if (below) {
-        m->refused = (int8_t)((m->refused < 0) ? m->refused - 1 : -1);
-    } else {
-        m->refused = (int8_t)((m->refused > 0) ? m->refused + 1 : 1);
-    }
-    return true;
-}
-
-/* The member's gains, its memory half a sample longer, its state moved by the innovation. Returns the gain. */
-FX_NOINLINE uint16_t correct(auto_t *f, uint8_t i, uint32_t size_lsb_uq8, bool below)
-{
-    auto_member_t *m = &f->u.members[i];
-    uint16_t k = m->k_uq16;
-    uint32_t square_uq32 = fx_mul_u16(k, k);
-    uint16_t square_uq16 = (uint16_t)(square_uq32 >> 16);
-    uint16_t gain_uq16 = (uint16_t)(k + (uint16_t)(k - square_uq16)); /* <= 0.84 */
-    uint16_t final_k = f->final_k_uq16[i];
-    if (k > final_k) {
-        k = (uint16_t)(k - (square_uq16 >> 2) - 1U);
-        m->k_uq16 = (k > final_k) ? k : final_k;
-    }
-    int32_t x_step = (int32_t)fx_mul24_uq16(size_lsb_uq8, gain_uq16);
-    int32_t rate_step = (int32_t)fx_mul24_uq24(size_lsb_uq8, square_uq32 >> 8);
-    m->x_lsb_q16 += below ? -x_step : x_step;
-    m->rate_lsb_q16 = limited(f, m->rate_lsb_q16 + (below ? -rate_step : rate_step), f->rate_max_lsb_q16);
-    return gain_uq16;
-}
-
-static void restart_at(auto_member_t *m, int16_t z_lsb)
-{
-    m->x_lsb_q16 = (int32_t)z_lsb * 65536;
-    m->rate_lsb_q16 = 0;
-    m->k_uq16 = K_MAX_UQ16;
-    m->refused = 0;
-}
-
+/* What the update of one member told. */
 typedef struct {
     int32_t innovation_lsb_q16;
     uint16_t gain_uq16;
     uint8_t flags;
 } answer_t;
 
+/* A sample beyond the gate: one more on its side; the last of a run restarts the member at it. Returns the flag. */
+FX_NOINLINE uint8_t refused(auto_member_t *m, bool below, int16_t z_lsb)
+{
+    int8_t run = m->refused;
+    if (below) {
+        run = (int8_t)((run < 0) ? run - 1 : -1);
+    } else {
+        run = (int8_t)((run > 0) ? run + 1 : 1);
+    }
+    m->refused = run;
+    if (run < AUTO_RESTART_SAMPLES && run > -AUTO_RESTART_SAMPLES) {
+        return FILTER_GATED;
+    }
+    m->x_lsb_q16 = (int32_t)z_lsb * 65536;
+    m->rate_lsb_q16 = 0;
+    m->k_uq16 = K_MAX_UQ16;
+    m->refused = 0;
+    return FILTER_REACQUIRED;
+}
+
+/* The member's gains, its memory half a sample longer, its state moved by the innovation. Returns the gain. */
+FX_INLINE uint16_t correct(auto_t *f, auto_member_t *m, uint16_t final_k, uint32_t size_lsb_uq8, bool below)
+{
+    uint16_t k = m->k_uq16;
+    uint32_t square_uq32 = fx_mul_u16(k, k);
+    uint16_t square_uq16 = (uint16_t)(square_uq32 >> 16);
+    uint16_t gain_uq16 = (uint16_t)(k + (uint16_t)(k - square_uq16)); /* <= 0.84 */
+    if (k > final_k) {
+        k = (uint16_t)(k - (square_uq16 >> 2) - 1U);
+        m->k_uq16 = (k > final_k) ? k : final_k;
+    }
+    FX_FENCE();
+    int32_t x_step = (int32_t)fx_mul24_uq16(size_lsb_uq8, gain_uq16);
+    m->x_lsb_q16 += below ? -x_step : x_step;
+    FX_FENCE();
+    int32_t rate_step = (int32_t)fx_mul24_uq24(size_lsb_uq8, square_uq32 >> 8);
+    int32_t rate = m->rate_lsb_q16 + (below ? -rate_step : rate_step);
+    if (fx_abs32(rate) > f->rate_max_lsb_q16) {
+        rate = (rate < 0) ? -(int32_t)f->rate_max_lsb_q16 : (int32_t)f->rate_max_lsb_q16;
+        f->flags |= FILTER_SATURATED;
+    }
+    m->rate_lsb_q16 = rate;
+    return gain_uq16;
+}
+
 /* One member one sample on: its score by the innovation, then its state. */
-static answer_t step(auto_t *f, uint8_t i, int16_t z_lsb)
+FX_NOINLINE void step(auto_t *f, uint8_t i, int16_t z_lsb, answer_t *a)
 {
     auto_member_t *m = &f->u.members[i];
+    uint16_t final_k = f->final_k_uq16[i];
     predict(f, m);
-    answer_t a = { (int32_t)z_lsb * 65536 - m->x_lsb_q16, 0, 0 };
-    bool below = a.innovation_lsb_q16 < 0;
-    uint32_t size_lsb_uq8 = fx_abs32(a.innovation_lsb_q16) >> 8;
-    uint16_t bounded = (size_lsb_uq8 < f->eight_sigmas_lsb_uq8) ? (uint16_t)size_lsb_uq8 : f->eight_sigmas_lsb_uq8;
-    m->score_lsb2_uq8 += (fx_mul_u16(bounded, bounded) >> 8) - (m->score_lsb2_uq8 >> 3);
-    if (!refuses(f, i, size_lsb_uq8, below)) {
-        a.gain_uq16 = correct(f, i, size_lsb_uq8, below);
-    } else if (m->refused >= AUTO_RESTART_SAMPLES || m->refused <= -AUTO_RESTART_SAMPLES) {
-        restart_at(m, z_lsb);
-        a.flags = FILTER_REACQUIRED;
-    } else {
-        a.flags = FILTER_GATED;
+    int32_t innovation = (int32_t)z_lsb * 65536 - m->x_lsb_q16;
+    a->innovation_lsb_q16 = innovation;
+    bool below = innovation < 0;
+    uint32_t size_lsb_uq8 = fx_abs32(innovation) >> 8;
+    FX_FENCE();
+    uint16_t bounded = f->eight_sigmas_lsb_uq8;
+    if (size_lsb_uq8 < bounded) {
+        bounded = (uint16_t)size_lsb_uq8;
     }
-    return a;
+    m->score_lsb2_uq8 += (fx_mul_u16(bounded, bounded) >> 8) - (m->score_lsb2_uq8 >> 3);
+    FX_FENCE();
+    uint32_t gate_lsb_uq8 = f->gate_lsb_uq8;
+    if (i == (uint8_t)AUTO_SLOW) {
+        gate_lsb_uq8 += gate_lsb_uq8;
+    }
+    bool open = m->k_uq16 > K_OPEN_UQ16 && m->k_uq16 > final_k;
+    if (size_lsb_uq8 > gate_lsb_uq8 && !open) {
+        a->flags = refused(m, below, z_lsb);
+        a->gain_uq16 = 0;
+        return;
+    }
+    m->refused = 0;
+    a->flags = 0;
+    a->gain_uq16 = correct(f, m, final_k, size_lsb_uq8, below);
 }
 
 /* The member with the least score, if it lies a thirty-second below that of the one in force. */
@@ -310,7 +312,7 @@ int32_t auto_update(auto_t *f, int16_t z_lsb)
     answer_t answers[AUTO_MEMBERS];
     f->flags = 0;
     for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
-        answers[i] = step(f, i, z);
+        step(f, i, z, &answers[i]);
     }
     choose(f);
     f->shown = f->chosen;

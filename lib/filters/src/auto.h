@@ -27,11 +27,11 @@ extern "C" {
 #endif
 
 typedef struct {
-    uint16_t rate_dhz;       /* output data rate, 0.1 Hz: 50..40000 */
-    uint16_t gate_sigma_q8;  /* gate in sigmas of a sample: 1..16 (256..4096), the slow member's is twice it; 0: none */
-    uint32_t r_lsb2_q8;      /* measurement variance R, LSB^2: 0.01..1000 (3..256000); 0 is refused */
-    uint16_t slow_ms;        /* memories: 1..60000; each limited to 3.3..512 samples, not refused; in any order */
-    uint16_t middle_ms;      /* of the member that also predicts what is missing */
+    uint16_t rate_dhz;      /* output data rate, 0.1 Hz: 50..40000 */
+    uint16_t gate_sigma_q8; /* gate in sigmas of a sample: 1..16 (256..4096), the slow member's is twice it; 0: none */
+    uint32_t r_lsb2_q8;     /* measurement variance R, LSB^2: 0.01..1000 (3..256000); 0 is refused */
+    uint16_t slow_ms;       /* memories: 1..60000; each limited to 3.3..512 samples, not refused; in any order */
+    uint16_t middle_ms;     /* of the member that also predicts what is missing */
     uint16_t fast_ms;
     uint32_t rate_max_lsb_s; /* limit of the estimated rates, LSB/s: 10..1000000; 0 is refused */
 } auto_config_t;
@@ -42,11 +42,11 @@ enum auto_member { AUTO_SLOW, AUTO_MIDDLE, AUTO_FAST, AUTO_MEMBERS };
 enum { AUTO_RESTART_SAMPLES = 5 };
 
 typedef struct {
-    int32_t x_lsb_q16;        /* |x| <= FILTER_X_MAX_LSB */
-    int32_t rate_lsb_q16;     /* per sample, |rate| <= rate_max_lsb_q16 */
-    uint32_t score_lsb2_uq8;  /* eight times the mean of the bounded squares, <= 8 x 64 R */
-    uint16_t k_uq16;          /* 2 / memory in force: falls to that of the configuration */
-    int8_t refused;           /* on end and on one side: samples above, or minus the samples below */
+    int32_t x_lsb_q16;       /* |x| <= FILTER_X_MAX_LSB */
+    int32_t rate_lsb_q16;    /* per sample, |rate| <= rate_max_lsb_q16 */
+    uint32_t score_lsb2_uq8; /* eight times the mean of the bounded squares, <= 8 x 64 R */
+    uint16_t k_uq16;         /* 2 / memory in force: falls to that of the configuration */
+    int8_t refused;          /* on end and on one side: samples above, or minus the samples below */
 } auto_member_t;
 
 typedef struct {
@@ -72,7 +72,7 @@ typedef struct {
 /* Descriptor in program memory. */
 extern const filter_descriptor_t auto_descriptor;
 
-enum { auto_worst_cycles = 2500 }; /* of auto_update, as in filter.h */
+enum { auto_worst_cycles = 2750 }; /* of auto_update, as in filter.h */
 
 void auto_defaults(auto_config_t *config, uint16_t rate_dhz);
 static inline bool auto_together(const auto_config_t *config)

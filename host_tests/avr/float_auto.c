@@ -1,0 +1,93 @@
+/* Three fading memories and the choice among them as auto.h describes it, in float. */
+#include "float_filters.h"
+
+#include <math.h>
+
+static float limited(float v, float min, float max)
+{
+    return (v < min) ? min : (v > max) ? max : v;
+}
+
+void float_auto_start(float_auto_t *f, const auto_config_t *config, float x0_lsb)
+{
+    float rate_hz = (float)config->rate_dhz / 10.0f;
+    f->final_k[AUTO_SLOW] = limited(2000.0f / ((float)config->slow_ms * rate_hz), 2.0f / 512.0f, 0.6f);
+    f->final_k[AUTO_MIDDLE] = limited(2000.0f / ((float)config->middle_ms * rate_hz), 2.0f / 512.0f, 0.6f);
+    f->final_k[AUTO_FAST] = limited(2000.0f / ((float)config->fast_ms * rate_hz), 2.0f / 512.0f, 0.6f);
+    f->gate = (float)config->gate_sigma_q8 / 256.0f;
+    f->rate_max = limited((float)config->rate_max_lsb_s / rate_hz, 0.0f, 4608.0f);
+    f->chosen = AUTO_MIDDLE;
+    for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
+        f->members[i] = (float_auto_member_t){ x0_lsb, 0.0f, 0.5f, 0.0f, 0 };
+    }
+    float_auto_set_noise(f, (float)config->r_lsb2_q8 / 256.0f);
+}
+
+void float_auto_set_noise(float_auto_t *f, float r_lsb2)
+{
+    f->sigma = (float)sqrtf(r_lsb2);
+}
+
+/* True: the sample is beyond the gate and not to be used. */
+static bool refuses(float_auto_t *f, uint8_t i, float u, float z)
+{
+    float_auto_member_t *m = &f->members[i];
+    float gate = f->gate * f->sigma * ((i == AUTO_SLOW) ? 2.0f : 1.0f);
+    if (f->gate == 0.0f || (float)fabsf(u) <= gate || (m->k > 0.25f && m->k > f->final_k[i])) {
+        m->refused = 0;
+        return false;
+    }
+    if (u < 0.0f) {
+        m->refused = (int8_t)((m->refused < 0) ? m->refused - 1 : -1);
+    } else {
+        m->refused = (int8_t)((m->refused > 0) ? m->refused + 1 : 1);
+    }
+    if (m->refused >= AUTO_RESTART_SAMPLES || m->refused <= -AUTO_RESTART_SAMPLES) {
+        m->x = z;
+        m->v = 0.0f;
+        m->k = 0.6f;
+        m->refused = 0;
+    }
+    return true;
+}
+
+static void step(float_auto_t *f, uint8_t i, float z)
+{
+    float_auto_member_t *m = &f->members[i];
+    m->x = limited(m->x + m->v, -4608.0f, 4608.0f);
+    float u = z - m->x;
+    float bounded = limited(u, -8.0f * f->sigma, 8.0f * f->sigma);
+    m->score += (bounded * bounded - m->score) / 8.0f;
+    if (refuses(f, i, u, z)) {
+        return;
+    }
+    float square = m->k * m->k;
+    m->x += (2.0f * m->k - square) * u;
+    m->v = limited(m->v + square * u, -f->rate_max, f->rate_max);
+    if (m->k > f->final_k[i]) {
+        m->k = limited(m->k - square / 4.0f, f->final_k[i], 0.6f);
+    }
+}
+
+float float_auto_update(float_auto_t *f, int16_t z_lsb)
+{
+    uint8_t best = 0;
+    for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
+        step(f, i, limited((float)z_lsb, -4096.0f, 4095.0f));
+        if (f->members[i].score < f->members[best].score) {
+            best = i;
+        }
+    }
+    if (f->members[best].score < f->members[f->chosen].score * (31.0f / 32.0f)) {
+        f->chosen = best;
+    }
+    return f->members[f->chosen].x;
+}
+
+float float_auto_coast(float_auto_t *f)
+{
+    for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
+        f->members[i].x = limited(f->members[i].x + f->members[i].v, -4608.0f, 4608.0f);
+    }
+    return f->members[AUTO_MIDDLE].x;
+}
