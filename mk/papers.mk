@@ -3,7 +3,7 @@ P := $(B)/papers
 PAPERS_MAIN := $(wildcard host_tests/papers/paper0*.cpp)
 PAPERS_CPP := $(filter-out $(PAPERS_MAIN),$(wildcard host_tests/papers/*.cpp)) \
               $(addprefix host_tests/reference_,robust.cpp synthesis.cpp)
-PAPERS_C   := $(wildcard lib/filters/src/*.c) host_tests/support_filters.c host_tests/support_filter_bounds.c host_tests/support_filter_promises.c host_tests/support_random.c
+PAPERS_C   := $(wildcard lib/filters/src/*.c) host_tests/support_filters.c host_tests/support_filter_bounds.c host_tests/support_filter_promises.c host_tests/support_random.c host_tests/support_tilt_phases.c
 PAPERS_OBJ := $(PAPERS_CPP:%.cpp=$(P)/%.o) $(PAPERS_C:%.c=$(P)/%.o)
 RUNS ?= 10000
 
@@ -50,7 +50,7 @@ $(P)/operations/family.o: $(OPERATIONS)/family.cpp $(wildcard lib/filters/src/*.
 $(P)/products000: $(addprefix $(P)/operations/,family.o synth.o synth_opt.o synth_plus.o synth_common.o filter_common.o fx.o)
 	@$(HOST_CXX) $^ -lm -o $@
 
-PAPERS := $(P)/paper000 $(P)/paper001 $(P)/paper002 $(P)/operations002 $(P)/products000
+PAPERS := $(P)/paper000 $(P)/paper001 $(P)/paper002 $(P)/paper004_board $(P)/operations002 $(P)/products000
 paper_programs: $(PAPERS)
 
 ## papers: the experiments of the papers, double and fixed point, beside the printed numbers, into docs/papers.md (2 minutes; RUNS=2000: judged, but page and JSON are left alone)

@@ -1,0 +1,164 @@
+/* auto: gate and restart of the members, the choice by the bounded scores, gaps. */
+#include "auto.h"
+#include "unity.h"
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+/* R = 16 LSB^2, sigma 4 LSB; 100 Hz: memories of 50, 20 and 8 samples; gates of 24 LSB, the slow one 48. */
+#define SIGMA_LSB 4
+#define R_LSB2_Q8 (SIGMA_LSB * SIGMA_LSB * 256)
+#define GATE_LSB 24
+
+static auto_t made_at_rest(int16_t z_lsb)
+{
+    auto_t f;
+    auto_config_t config;
+    auto_defaults(&config, 1000);
+    config.r_lsb2_q8 = R_LSB2_Q8;
+    TEST_ASSERT_TRUE(auto_init(&f, &config));
+    auto_reset(&f, z_lsb);
+    return f;
+}
+
+/* At rest without noise: four on end beyond every gate move nothing, the fifth restarts, and it stays where they are. */
+static void test_four_outliers_move_nothing_and_the_fifth_restarts(void)
+{
+    for (int16_t side = -1; side <= 1; side = (int16_t)(side + 2)) {
+        auto_t f = made_at_rest(100);
+        int16_t away = (int16_t)(100 + side * (2 * GATE_LSB + 1));
+        for (int n = 0; n < 4; n++) {
+            TEST_ASSERT_EQUAL_INT32(100L * 65536, auto_update(&f, away));
+            TEST_ASSERT_EQUAL_HEX8(FILTER_GATED, auto_flags(&f));
+        }
+        TEST_ASSERT_EQUAL_INT32(away * 65536L, auto_update(&f, away));
+        TEST_ASSERT_EQUAL_HEX8(FILTER_REACQUIRED, auto_flags(&f));
+        TEST_ASSERT_EQUAL_INT32(away * 65536L, auto_update(&f, away));
+    }
+}
+
+/* By turns to either side no run becomes long. */
+static void test_refused_to_either_side_never_restart(void)
+{
+    auto_t f = made_at_rest(0);
+    for (int n = 0; n < 400; n++) {
+        int side = (n / 4 % 2 == 0) ? 1 : -1;
+        TEST_ASSERT_EQUAL_INT32(0, auto_update(&f, (int16_t)(side * 500)));
+        TEST_ASSERT_EQUAL_HEX8(FILTER_GATED, auto_flags(&f));
+    }
+}
+
+/* Six sigmas, the slow member twelve: at it a sample is used, a count beyond it is not. */
+static void test_the_slow_member_has_twice_the_gate(void)
+{
+    for (int16_t z = GATE_LSB; z <= 2 * GATE_LSB + 1; z++) {
+        auto_t f = made_at_rest(0);
+        (void)auto_update(&f, z);
+        TEST_ASSERT_EQUAL_INT(z > 2 * GATE_LSB, f.u.members[AUTO_SLOW].refused);
+        TEST_ASSERT_EQUAL_INT(z > GATE_LSB, f.u.members[AUTO_MIDDLE].refused);
+        TEST_ASSERT_EQUAL_INT(z > GATE_LSB, f.u.members[AUTO_FAST].refused);
+    }
+}
+
+/* Without a gate all are used, up to the rails. */
+static void test_without_a_gate_nothing_is_refused(void)
+{
+    auto_t f;
+    auto_config_t config;
+    auto_defaults(&config, 1000);
+    config.gate_sigma_q8 = 0;
+    TEST_ASSERT_TRUE(auto_init(&f, &config));
+    auto_reset(&f, -4096);
+    (void)auto_update(&f, 4095);
+    TEST_ASSERT_EQUAL_HEX8(0, auto_flags(&f) & FILTER_GATED);
+    TEST_ASSERT_TRUE(f.gain_uq16 != 0);
+}
+
+static void set_scores(auto_t *f, uint32_t slow, uint32_t middle, uint32_t fast)
+{
+    f->u.members[AUTO_SLOW].score_lsb2_uq8 = slow;
+    f->u.members[AUTO_MIDDLE].score_lsb2_uq8 = middle;
+    f->u.members[AUTO_FAST].score_lsb2_uq8 = fast;
+}
+
+/* Samples on the prediction take an eighth off every score, which leaves their order. */
+static void test_the_least_score_is_chosen_beyond_the_hysteresis(void)
+{
+    static const struct {
+        uint32_t slow, middle, fast;
+        uint8_t before, after;
+    } cases[] = { { 32000, 31500, 40000, AUTO_SLOW, AUTO_SLOW },     { 32000, 30900, 40000, AUTO_SLOW, AUTO_MIDDLE },
+                  { 32000, 30900, 20000, AUTO_SLOW, AUTO_FAST },     { 10000, 30900, 20000, AUTO_FAST, AUTO_SLOW },
+                  { 31500, 32000, 31500, AUTO_MIDDLE, AUTO_MIDDLE }, { 0, 0, 0, AUTO_FAST, AUTO_FAST } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        auto_t f = made_at_rest(7);
+        f.chosen = cases[i].before;
+        set_scores(&f, cases[i].slow, cases[i].middle, cases[i].fast);
+        (void)auto_update(&f, 7);
+        TEST_ASSERT_EQUAL_UINT8(cases[i].after, f.chosen);
+        TEST_ASSERT_EQUAL_UINT8(cases[i].after, f.shown);
+        bool told = (auto_flags(&f) & FILTER_SWITCHED) != 0;
+        TEST_ASSERT_EQUAL_INT(cases[i].before != cases[i].after, told);
+    }
+}
+
+/* Mean of eight: a score goes (7/8)^n of its way to the square of the innovation, held to 64 R. */
+static void test_a_score_is_the_bounded_mean_over_eight_samples(void)
+{
+    auto_t f = made_at_rest(0);
+    /* eight times the mean of 1024 LSB^2 each: 1024, 1920, 2704, 3390 */
+    static const uint16_t expected_lsb2[] = { 1024, 1920, 2704, 3390 };
+    for (uint8_t n = 0; n < 4U; n++) { /* all refused: the innovation stays */
+        (void)auto_update(&f, 4000);
+        for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
+            TEST_ASSERT_UINT32_WITHIN(4, expected_lsb2[n] * 256UL, f.u.members[i].score_lsb2_uq8);
+        }
+    }
+    f = made_at_rest(0);
+    (void)auto_update(&f, 20);
+    TEST_ASSERT_EQUAL_UINT32(400L * 256, f.u.members[AUTO_FAST].score_lsb2_uq8);
+}
+
+/* What all members meet alike does not decide: whatever its size, one outlier changes no choice. */
+static void test_one_outlier_changes_no_choice(void)
+{
+    for (int16_t size = 100; size <= 4000; size = (int16_t)(size + 100)) {
+        auto_t f = made_at_rest(0);
+        f.chosen = AUTO_MIDDLE;
+        set_scores(&f, 30000, 20000, 30000);
+        (void)auto_update(&f, size);
+        TEST_ASSERT_EQUAL_UINT8(AUTO_MIDDLE, f.chosen);
+        TEST_ASSERT_EQUAL_HEX8(FILTER_GATED, auto_flags(&f));
+    }
+}
+
+static void test_the_middle_member_predicts_what_is_missing(void)
+{
+    auto_t f = made_at_rest(0);
+    for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
+        f.u.members[i].x_lsb_q16 = (i + 1) * 65536L;
+        f.u.members[i].rate_lsb_q16 = (i + 1) * 32768L;
+    }
+    TEST_ASSERT_EQUAL_INT32(2 * 65536L + 2 * 32768L, auto_coast(&f));
+    TEST_ASSERT_EQUAL_HEX8(FILTER_COASTED, auto_flags(&f));
+    for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
+        TEST_ASSERT_EQUAL_INT32((i + 1) * 98304L, f.u.members[i].x_lsb_q16);
+    }
+    (void)auto_update(&f, 1);
+    TEST_ASSERT_EQUAL_UINT8(f.chosen, f.shown);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_four_outliers_move_nothing_and_the_fifth_restarts);
+    RUN_TEST(test_refused_to_either_side_never_restart);
+    RUN_TEST(test_the_slow_member_has_twice_the_gate);
+    RUN_TEST(test_without_a_gate_nothing_is_refused);
+    RUN_TEST(test_the_least_score_is_chosen_beyond_the_hysteresis);
+    RUN_TEST(test_a_score_is_the_bounded_mean_over_eight_samples);
+    RUN_TEST(test_one_outlier_changes_no_choice);
+    RUN_TEST(test_the_middle_member_predicts_what_is_missing);
+    return UNITY_END();
+}
