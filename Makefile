@@ -92,7 +92,7 @@ HOST_CC    := gcc
 HOST_CXX   := g++
 SANITIZE   := -fsanitize=address,undefined -fno-sanitize-recover=all
 HOST_INC   := $(INCLUDES) -Ihal/host -Isim -Ihost_tests -isystem $(UNITY_DIR)
-HOST_FLAGS := -std=c11 -O1 -g -D_POSIX_C_SOURCE=200809L -DHANG_TEST=1 -DUNITY_INCLUDE_DOUBLE $(HOST_INC)
+HOST_FLAGS := -std=c11 -O1 -g -D_POSIX_C_SOURCE=200809L -DHANG_TEST=1 -DSUPERVISOR=1 -DUNITY_INCLUDE_DOUBLE $(HOST_INC)
 HOST_SRC   := $(filter-out firmware/main.c,$(APP_SRC)) $(LIB_SRC) $(wildcard hal/host/*.c) sim/adxl345_model.c sim/stream.c
 HOST_OBJ   := $(patsubst %.c,$(H)/%.o,$(HOST_SRC) $(wildcard host_tests/support_*.c))
 REF_OBJ    := $(patsubst %.cpp,$(H)/%.o,$(wildcard host_tests/reference_*.cpp))

@@ -10,6 +10,7 @@
 #include "pass.h"
 #include "pipeline_state.h"
 #include "silence.h"
+#include "supervisor.h"
 
 enum { AWAY_SAMPLES = 2 };  /* on end, away from what was held: no bad reading */
 enum { HUNG_SAMPLES = 16 }; /* with ROW_STUCK, on end: a filter has learned from them */
@@ -26,6 +27,9 @@ void pipeline_reset(void)
     pipeline.tilt = (tilt_t){ 0, 0, false };
     pipeline.raw_tilt = pipeline.tilt;
     pipeline.flags = 0;
+#if SUPERVISOR
+    supervisor_reset();
+#endif
 }
 
 FX_ONCE void pipeline_coast(uint32_t t_us)
@@ -112,6 +116,9 @@ static void update_axis(axis_t *axis)
     uint8_t flags = filter_any_flags(&axis->filter);
     uint8_t same = flags & (FILTER_GATED | FILTER_REACQUIRED);
     pipeline_flag((uint16_t)((flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same));
+    if (SUPERVISOR && (flags & FILTER_SWITCHED) != 0) {
+        pipeline_flag(ROW_SWITCHED);
+    }
     if (pipeline.clipped) {
         filter_any_hold(&axis->filter);
     }
@@ -165,6 +172,9 @@ static void find_accelerations(void)
     for (uint8_t axis = 0; axis < AXES; axis++) {
         estimates_q8[axis] = pipeline.axes[axis].estimate_q8;
     }
+#if SUPERVISOR
+    supervisor_complete(estimates_q8);
+#endif
     calibration_apply(&pipeline.applied, estimates_q8, pipeline.a_q8);
 }
 
@@ -254,6 +264,9 @@ void pipeline_sample(const adxl345_sample_t *sample)
     silence_end();
     pipeline.last_us = sample->t_us;
     pipeline.has_sample = true;
+#if SUPERVISOR
+    supervisor_look(sample->lsb);
+#endif
     for (uint8_t axis = 0; axis < AXES; axis++) {
         pipeline.axes[axis].lsb = sample->lsb[axis];
     }

@@ -23,7 +23,9 @@ enum row_flag {
     ROW_WARMING_UP = 128,
     ROW_DROPPED = 256,
     ROW_NOT_GRAVITY = 512,
-    ROW_ROLL_UNDEFINED = 1024
+    ROW_ROLL_UNDEFINED = 1024,
+    ROW_SWITCHED = 2048, /* `auto` has chosen another member on an axis */
+    ROW_LEFT_OUT = 4096  /* the angles are without one axis, which is known bad */
 };
 
 typedef struct {

@@ -18,6 +18,7 @@
 #include "sensor_watch.h"
 #include "settings.h"
 #include "settings_kept.h"
+#include "supervisor.h"
 #include "text.h"
 
 _Static_assert(TEXT_KEPT_UNREAD - TEXT_KEPT_DAMAGED == KEPT_UNREAD - KEPT_DAMAGED, "words for what was kept");
@@ -189,6 +190,11 @@ static void say_value(uint8_t what)
         break;
     case SAY_SET_ADDRESS:
         say_set_address();
+        break;
+    case SAY_CHOICES:
+#if SUPERVISOR
+        supervisor_say();
+#endif
         break;
     case SAY_POSITION:
         text_char((said.axis & 1u) != 0 ? '-' : '+');

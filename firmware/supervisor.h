@@ -1,0 +1,35 @@
+/*
+ * What goes with the filter `auto`: the choices of its banks told, and an axis that is known bad left out of the angles,
+ * which then come from the other two and |a| = 1 g (tilt_partial.h). Main only.
+ *
+ * An axis is bad when it has stood at the rail of its range for 16 samples or repeated a reading for 128 while another
+ * axis changes; the sensor's noise repeats one of 0.35 LSB rms that often once in 10^9. Two bad axes leave too little:
+ * none is left out then. The sign of the missing component is that of the last estimate before its readings began to
+ * repeat.
+ *
+ * In images with `auto` only (mk/images.mk), and while it is in force.
+ */
+#ifndef SUPERVISOR_H
+#define SUPERVISOR_H
+
+#include <stdint.h>
+
+#ifndef SUPERVISOR
+#define SUPERVISOR 0
+#endif
+
+enum { SUPERVISOR_RAIL_SAMPLES = 16, SUPERVISOR_REPEATED_SAMPLES = 128 };
+
+/* No axis is left out, nothing is known of their readings. */
+void supervisor_reset(void);
+
+/* The readings of a sample, before they take the place of those in the pipeline. */
+void supervisor_look(const int16_t lsb[3]);
+
+/* In the place of the bad axis' estimate (LSB in Q8) what the others leave of 1 g. Flags the row. */
+void supervisor_complete(int32_t estimates_q8[3]);
+
+/* "x slow y fast z fast", and of an axis left out "without z sigma cdeg 93", for `status`; nothing of other filters. */
+void supervisor_say(void);
+
+#endif
