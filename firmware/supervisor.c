@@ -14,7 +14,7 @@ static struct {
     uint8_t negative;       /* a bit per axis: its last estimate while its readings changed */
     uint8_t left_out;       /* AXES: none */
     uint16_t missing_q6;    /* component of it */
-} supervisor = { { 0 }, 0, AXES, 0 };
+} supervisor;
 
 static bool in_force(void)
 {
