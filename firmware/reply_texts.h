@@ -54,10 +54,10 @@
 #define V_RESIDUAL "\x89"
 #define V_TO_GO "\x8A"
 #define V_PARAMETER_RANGE "\x8B"
-#define V_CHOICES "\x8C"
-#define V_THEN_KEPT "\x8D"
-#define V_THEN_LIMITS "\x8E"
-#define V_THEN_VERDICT "\x8F"
+#define V_THEN_KEPT "\x8C"
+#define V_THEN_LIMITS "\x8D"
+#define V_THEN_VERDICT "\x8E"
+#define V_THEN_CHOICES "\x8F"
 
 enum say {
     SAY_COUNT = 1, /* numbers: the next of the counters of the firmware, then of the driver */
@@ -103,10 +103,10 @@ enum say {
     SAY_RESIDUAL,
     SAY_TO_GO, /* how many positions are not known yet */
     SAY_PARAMETER_RANGE,
-    SAY_CHOICES,      /* of the supervisor, where it is in force */
     SAY_THEN_KEPT,    /* goes on in another text: what the settings began as */
     SAY_THEN_LIMITS,  /* ... the limits of the self-test */
     SAY_THEN_VERDICT, /* ... what they say of the line's axis */
+    SAY_THEN_CHOICES, /* goes on with those of the supervisor, where it is in force */
 };
 
 /* The commands, a name for each reply_kind_t from REPLY_HELP on, in its order: as typed. */
@@ -235,7 +235,8 @@ enum say {
     X(STATE_STREAMING, "streaming" V_THEN_REST) \
     X(STATE_QUIESCING, "starting" V_THEN_REST) \
     X(STATE_FAULTY, "fault" V_THEN_REST) \
-    X(STATE_REST, ", fault " V_FAULT ", rate " V_RATE " Hz, measured " V_MEASURED " Hz, uptime s " V_COUNT V_CHOICES V_MORE) \
+    X(STATE_REST, ", fault " V_FAULT ", rate " V_RATE " Hz, measured " V_MEASURED " Hz, uptime s " V_COUNT \
+      V_THEN_CHOICES V_MORE) \
     X(KEPT_DAMAGED, "defaults, the saved ones are damaged") \
     X(KEPT_EMPTY, "defaults, none saved") \
     X(KEPT_OTHER_VERSION, "defaults, the saved ones are of another version") \

@@ -191,11 +191,6 @@ static void say_value(uint8_t what)
     case SAY_SET_ADDRESS:
         say_set_address();
         break;
-    case SAY_CHOICES:
-#if SUPERVISOR
-        supervisor_say();
-#endif
-        break;
     case SAY_POSITION:
         text_char((said.axis & 1u) != 0 ? '-' : '+');
         text_char((char)('x' + (said.axis >> 1)));
@@ -270,7 +265,11 @@ FX_ONCE void say_byte(uint8_t c)
         text_char((char)c);
     } else if (c < SAY_MORE || (c >= SAY_PARAMETER && c < SAY_THEN_KEPT)) {
         say_value(c);
-    } else {
+    } else if (c != SAY_THEN_CHOICES) {
         say_on(c);
+    } else {
+#if SUPERVISOR
+        supervisor_say();
+#endif
     }
 }

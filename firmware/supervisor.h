@@ -1,6 +1,6 @@
 /*
- * What goes with the filter `auto`: the choices of its banks told, and an axis that is known bad left out of the angles,
- * which then come from the other two and |a| = 1 g (tilt_partial.h). Main only.
+ * What goes with the filter `auto`: the choices of its banks told, and an axis that is known bad left out of the
+ * angles, which then come from the other two and |a| = 1 g (tilt_partial.h). Main only.
  *
  * An axis is bad when it has stood at the rail of its range for 16 samples or repeated a reading for 128 while another
  * axis changes; the sensor's noise repeats one of 0.35 LSB rms that often once in 10^9. Two bad axes leave too little:

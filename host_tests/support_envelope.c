@@ -39,14 +39,9 @@ filter_facts_t filter_facts(filter_kind_t kind)
         return (filter_facts_t){ MIXTURE_SUM, 1.0, 800.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_MIXTURE };
     case FILTER_KIND_shrf:
         return (filter_facts_t){ 0.0, 1.0, 1200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_WAITS };
-    case FILTER_KIND_adaptive:
-    case FILTER_KIND_auto:
-    case FILTER_KIND_sprf_paper:
+    default: /* adaptive, auto, sprf_paper */
         return (filter_facts_t){ 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_NONE };
-    case FILTER_KIND_COUNT:
-        break;
     }
-    return (filter_facts_t){ 0.0, 0.0, 0.0, 0, ENVELOPE_NONE };
 }
 
 double noise_gain_of(double w1)

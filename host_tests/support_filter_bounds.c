@@ -322,62 +322,45 @@ static const char *broken_auto(const auto_t *f, int32_t x_lsb_q16)
     if (f->chosen >= (uint8_t)AUTO_MEMBERS || f->shown >= (uint8_t)AUTO_MEMBERS) {
         return "member";
     }
-    if (f->rate_max_lsb_q16 > (uint32_t)FILTER_X_MAX_LSB << 16) {
-        return "rate's limit";
-    }
-    if (fx_abs32(f->innovation_lsb_q16) > (uint32_t)8704 << 16 || f->r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8 ||
-        f->r_lsb2_q8 > FILTER_R_MAX_LSB2_Q8) {
-        return "innovation or r";
-    }
-    if (f->collected > FILTER_WARM_UP_SAMPLES) {
-        return "collected";
+    if (f->rate_max_lsb_q16 > (uint32_t)FILTER_X_MAX_LSB << 16 || fx_abs32(f->innovation_lsb_q16) > (uint32_t)8704
+                                                                                                        << 16) {
+        return "innovation or rate's limit";
     }
     if (f->collected < FILTER_WARM_UP_SAMPLES) {
         return NULL;
     }
-    if ((f->flags & FILTER_WARMING_UP) == 0U && x_lsb_q16 != f->u.members[f->shown].x_lsb_q16) {
-        return "x returned";
+    const char *broken = NULL;
+    for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS && broken == NULL; i++) {
+        broken = broken_auto_member(f, &f->u.members[i]);
     }
-    for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
-        const char *broken = broken_auto_member(f, &f->u.members[i]);
-        if (broken != NULL) {
-            return broken;
-        }
-    }
-    return NULL;
+    bool warming_up = (f->flags & FILTER_WARMING_UP) != 0U;
+    return (!warming_up && x_lsb_q16 != f->u.members[f->shown].x_lsb_q16) ? "x returned" : broken;
 }
 
+static const char *broken_shrf(const shrf_t *f, int32_t x_lsb_q16)
+{
+    return broken_mixture(f, false, x_lsb_q16);
+}
+
+static const char *broken_pbf(const pbf_t *f, int32_t x_lsb_q16)
+{
+    return broken_mixture(f, false, x_lsb_q16);
+}
+
+static const char *broken_af(const af_t *f, int32_t x_lsb_q16)
+{
+    return broken_mixture(f, true, x_lsb_q16);
+}
+
+/* A filter without a function does not compile. */
 static const char *broken_state(const filter_any_t *f, int32_t x_lsb_q16)
 {
     switch ((filter_kind_t)f->kind) {
-    case FILTER_KIND_kf:
-        return broken_kf(&f->state.of_kf, x_lsb_q16);
-    case FILTER_KIND_sprf:
-        return broken_sprf(&f->state.of_sprf, x_lsb_q16);
-    case FILTER_KIND_synth:
-        return broken_synth(&f->state.of_synth, x_lsb_q16);
-    case FILTER_KIND_synth_opt:
-        return broken_synth_opt(&f->state.of_synth_opt, x_lsb_q16);
-    case FILTER_KIND_synth_plus:
-        return broken_synth_plus(&f->state.of_synth_plus, x_lsb_q16);
-    case FILTER_KIND_lrf:
-        return broken_lrf(&f->state.of_lrf, x_lsb_q16);
-    case FILTER_KIND_soft:
-        return broken_soft(&f->state.of_soft, x_lsb_q16);
-    case FILTER_KIND_sprf_paper:
-        return broken_sprf_paper(&f->state.of_sprf_paper, x_lsb_q16);
-    case FILTER_KIND_shrf:
-        return broken_mixture(&f->state.of_shrf, false, x_lsb_q16);
-    case FILTER_KIND_pbf:
-        return broken_mixture(&f->state.of_pbf, false, x_lsb_q16);
-    case FILTER_KIND_af:
-        return broken_mixture(&f->state.of_af, true, x_lsb_q16);
-    case FILTER_KIND_kf3:
-        return broken_kf3(&f->state.of_kf3, x_lsb_q16);
-    case FILTER_KIND_adaptive:
-        return broken_adaptive(&f->state.of_adaptive, x_lsb_q16);
-    case FILTER_KIND_auto:
-        return broken_auto(&f->state.of_auto, x_lsb_q16);
+#define BROKEN(F)         \
+    case FILTER_KIND_##F: \
+        return broken_##F(&f->state.of_##F, x_lsb_q16);
+        FILTER_LIST(BROKEN)
+#undef BROKEN
     case FILTER_KIND_COUNT:
         break;
     }

@@ -8,27 +8,7 @@
  */
 int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
 {
-    switch (kind) {
-    case FILTER_KIND_kf:
-    case FILTER_KIND_sprf:
-    case FILTER_KIND_synth:
-    case FILTER_KIND_synth_opt:
-    case FILTER_KIND_lrf:
-    case FILTER_KIND_soft:
-    case FILTER_KIND_sprf_paper:
-    case FILTER_KIND_shrf:
-    case FILTER_KIND_pbf:
-    case FILTER_KIND_af:
-    case FILTER_KIND_kf3:
-    case FILTER_KIND_adaptive:
-    case FILTER_KIND_auto:
-        return 0;
-    case FILTER_KIND_synth_plus:
-        return 4096;
-    case FILTER_KIND_COUNT:
-        break;
-    }
-    return -1;
+    return (kind == FILTER_KIND_synth_plus) ? 4096 : 0;
 }
 
 /*
@@ -54,31 +34,32 @@ int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
  * kf3 comes back as far wrong, and its error obeys the recursion of its P: computed in double for each n, with P held
  * where its range ends, the slowest is below 1/4 LSB from sample 90 on.
  */
+enum recovery_of {
+    RECOVERY_kf = 43,
+    RECOVERY_sprf = 43,
+    RECOVERY_soft = 43,
+    RECOVERY_lrf = 114,
+    RECOVERY_synth = 40,
+    RECOVERY_synth_plus = 40,
+    RECOVERY_synth_opt = 14,
+    RECOVERY_sprf_paper = 443,
+    RECOVERY_shrf = 150,
+    RECOVERY_pbf = 150,
+    RECOVERY_af = 150,
+    RECOVERY_kf3 = 90,
+    RECOVERY_adaptive = 90,
+    RECOVERY_auto = 60
+};
+
+/* A filter without an entry does not compile. */
 uint16_t recovery_samples(filter_kind_t kind)
 {
     switch (kind) {
-    case FILTER_KIND_kf:
-    case FILTER_KIND_sprf:
-    case FILTER_KIND_soft:
-        return 43;
-    case FILTER_KIND_lrf:
-        return 114;
-    case FILTER_KIND_synth:
-    case FILTER_KIND_synth_plus:
-        return 40;
-    case FILTER_KIND_synth_opt:
-        return 14;
-    case FILTER_KIND_auto:
-        return 60;
-    case FILTER_KIND_sprf_paper:
-        return 443;
-    case FILTER_KIND_shrf:
-    case FILTER_KIND_pbf:
-    case FILTER_KIND_af:
-        return 150;
-    case FILTER_KIND_kf3:
-    case FILTER_KIND_adaptive:
-        return 90;
+#define RECOVERY(F)       \
+    case FILTER_KIND_##F: \
+        return RECOVERY_##F;
+        FILTER_LIST(RECOVERY)
+#undef RECOVERY
     case FILTER_KIND_COUNT:
         break;
     }

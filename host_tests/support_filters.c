@@ -150,36 +150,12 @@ bool init_random(filter_any_t *f, filter_kind_t kind, uint32_t *random, uint32_t
     return false;
 }
 
-/* --- facts about single filters: a filter without an entry does not compile (-Wswitch) --- */
+/* --- facts about single filters; more, of which a filter without an entry does not compile, beside this file --- */
 
 bool has_joint_condition(filter_kind_t kind)
 {
-    switch (kind) {
-    case FILTER_KIND_kf:
-        return false;
-    case FILTER_KIND_sprf:
-        return true; /* reacquire: of 3..9 only 3, 5 and 9, whose slope is a shift */
-    case FILTER_KIND_synth:
-        return true; /* the stability region of a1 and b0 */
-    case FILTER_KIND_synth_plus:
-        return true; /* that of its four coefficients */
-    case FILTER_KIND_synth_opt:
-    case FILTER_KIND_lrf:
-        return false;
-    case FILTER_KIND_soft:
-        return true; /* reacquire, as sprf */
-    case FILTER_KIND_sprf_paper:
-    case FILTER_KIND_shrf:
-    case FILTER_KIND_pbf:
-    case FILTER_KIND_af:
-    case FILTER_KIND_kf3:
-    case FILTER_KIND_adaptive:
-    case FILTER_KIND_auto:
-        return false;
-    case FILTER_KIND_COUNT:
-        break;
-    }
-    return false;
+    return kind == FILTER_KIND_sprf || kind == FILTER_KIND_soft ||      /* reacquire: of 3..9 only 3, 5, 9: a shift */
+           kind == FILTER_KIND_synth || kind == FILTER_KIND_synth_plus; /* the stability region */
 }
 
 bool gated_means_unused(filter_kind_t kind)

@@ -22,7 +22,7 @@ static auto_t made_at_rest(int16_t z_lsb)
     return f;
 }
 
-/* At rest without noise: four on end beyond every gate move nothing, the fifth restarts, and it stays where they are. */
+/* At rest without noise: four on end beyond every gate move nothing, the fifth restarts, and it stays there. */
 static void test_four_outliers_move_nothing_and_the_fifth_restarts(void)
 {
     for (int16_t side = -1; side <= 1; side = (int16_t)(side + 2)) {

@@ -39,7 +39,7 @@ static void test_streams_are_as_described(void)
     }
     /* a quarter and 15 of 120 that are not missing already */
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.25 + 0.75 * 15.0 / 120.0, missing / each);
-    /* not hit: 0.88 times no run over it, 1 - 0.05 (1, 3/4, 1/2, 1/4 of the runs reach the 1st to 4th); |n| > 1/4 of 20 */
+    /* not hit: 0.88 times no run over it, 1 - 0.05 (1, 3/4, 1/2, 1/4 of the runs reach the 1st to 4th) */
     double hit = 1.0 - 0.88 * 0.95 * (1.0 - 0.0375) * (1.0 - 0.025) * (1.0 - 0.0125);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, hit * 0.8028, wide / each); /* P(|N(0, 20.02)| > 5) = 0.8028 */
     TEST_ASSERT_DOUBLE_WITHIN(0.01, TILT_SIGMA_DEG, sqrt(squares[PHASE_STILL] / counts[PHASE_STILL]));

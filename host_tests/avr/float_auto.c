@@ -14,11 +14,12 @@ void float_auto_start(float_auto_t *f, const auto_config_t *config, float x0_lsb
     f->final_k[AUTO_SLOW] = limited(2000.0f / ((float)config->slow_ms * rate_hz), 2.0f / 512.0f, 0.6f);
     f->final_k[AUTO_MIDDLE] = limited(2000.0f / ((float)config->middle_ms * rate_hz), 2.0f / 512.0f, 0.6f);
     f->final_k[AUTO_FAST] = limited(2000.0f / ((float)config->fast_ms * rate_hz), 2.0f / 512.0f, 0.6f);
-    f->gate = (float)config->gate_sigma_q8 / 256.0f;
+    float gate = (config->gate_sigma_q8 != 0u) ? (float)config->gate_sigma_q8 / 256.0f : 1e6f;
     f->rate_max = limited((float)config->rate_max_lsb_s / rate_hz, 0.0f, 4608.0f);
     f->chosen = AUTO_MIDDLE;
     for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
         f->members[i] = (float_auto_member_t){ x0_lsb, 0.0f, 0.5f, 0.0f, 0 };
+        f->gate[i] = (i == AUTO_SLOW) ? 2.0f * gate : gate;
     }
     float_auto_set_noise(f, (float)config->r_lsb2_q8 / 256.0f);
 }
@@ -32,16 +33,12 @@ void float_auto_set_noise(float_auto_t *f, float r_lsb2)
 static bool refuses(float_auto_t *f, uint8_t i, float u, float z)
 {
     float_auto_member_t *m = &f->members[i];
-    float gate = f->gate * f->sigma * ((i == AUTO_SLOW) ? 2.0f : 1.0f);
-    if (f->gate == 0.0f || (float)fabsf(u) <= gate || (m->k > 0.25f && m->k > f->final_k[i])) {
+    if ((float)fabsf(u) <= f->gate[i] * f->sigma || (m->k > 0.25f && m->k > f->final_k[i])) {
         m->refused = 0;
         return false;
     }
-    if (u < 0.0f) {
-        m->refused = (int8_t)((m->refused < 0) ? m->refused - 1 : -1);
-    } else {
-        m->refused = (int8_t)((m->refused > 0) ? m->refused + 1 : 1);
-    }
+    int8_t side = (u < 0.0f) ? -1 : 1;
+    m->refused = (int8_t)((m->refused * side > 0) ? m->refused + side : side);
     if (m->refused >= AUTO_RESTART_SAMPLES || m->refused <= -AUTO_RESTART_SAMPLES) {
         m->x = z;
         m->v = 0.0f;

@@ -122,7 +122,8 @@ typedef struct {
 typedef struct {
     float_auto_member_t members[AUTO_MEMBERS];
     float final_k[AUTO_MEMBERS];
-    float gate, sigma, rate_max; /* sigmas (0: none), LSB, LSB per sample */
+    float gate[AUTO_MEMBERS];
+    float sigma, rate_max; /* LSB, LSB per sample */
     uint8_t chosen;
 } float_auto_t;
 

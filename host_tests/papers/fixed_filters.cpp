@@ -103,8 +103,8 @@ template <class State> void begin_state(State &, long)
 void begin_table1(filter_any_t &f)
 {
     switch (f.kind) {
-#define BEGIN(F)                   \
-    case FILTER_KIND_##F:          \
+#define BEGIN(F)                        \
+    case FILTER_KIND_##F:               \
         begin_state(f.state.of_##F, 0); \
         break;
         FILTER_LIST(BEGIN)

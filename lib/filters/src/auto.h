@@ -13,9 +13,9 @@
  * member with the least score is chosen, for this sample already, when it lies a thirty-second below that of the one
  * in force; FILTER_SWITCHED tells. Missing samples leave the scores alone.
  *
- * Through missing samples each member goes on by its rate, and the estimate is that of the middle one: its rate is quiet
- * enough for a gap at rest and quick enough for one in motion (auto_gap: stopped where it may be noise). Functions:
- * filter.h.
+ * Through missing samples each member goes on by its rate, and the estimate is that of the middle one: its rate is
+ * quiet enough for a gap at rest and quick enough for one in motion (auto_gap: stopped where it may be noise).
+ * Functions: filter.h.
  */
 #ifndef AUTO_H
 #define AUTO_H

@@ -69,8 +69,8 @@ filter_kind_t filter_any_find(const char *name)
 void filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16_t rate_dhz)
 {
     switch (kind) {
-#define DEFAULTS(F)                         \
-    case FILTER_KIND_##F:                   \
+#define DEFAULTS(F)                              \
+    case FILTER_KIND_##F:                        \
         F##_defaults(&config->of_##F, rate_dhz); \
         break;
         FILTER_LINKED(DEFAULTS)
@@ -83,11 +83,11 @@ void filter_any_defaults(filter_kind_t kind, filter_any_config_t *config, uint16
 bool filter_any_init(filter_any_t *f, filter_kind_t kind, const filter_any_config_t *config)
 {
     switch (kind) {
-#define INIT(F)                                   \
-    case FILTER_KIND_##F:                         \
+#define INIT(F)                                             \
+    case FILTER_KIND_##F:                                   \
         if (!F##_init(&f->state.of_##F, &config->of_##F)) { \
-            return false;                         \
-        }                                         \
+            return false;                                   \
+        }                                                   \
         break;
         FILTER_LINKED(INIT)
 #undef INIT
@@ -114,8 +114,8 @@ bool filter_any_together(filter_kind_t kind, const filter_any_config_t *config)
 FX_ONCE void filter_any_configure(filter_any_t *f, filter_kind_t kind, const filter_any_config_t *config)
 {
     switch (kind) {
-#define CONFIGURE(F)                            \
-    case FILTER_KIND_##F:                       \
+#define CONFIGURE(F)                                      \
+    case FILTER_KIND_##F:                                 \
         F##_configure(&f->state.of_##F, &config->of_##F); \
         break;
         FILTER_LINKED(CONFIGURE)
@@ -129,8 +129,8 @@ FX_ONCE void filter_any_configure(filter_any_t *f, filter_kind_t kind, const fil
 void filter_any_set_noise(filter_any_t *f, uint32_t r_lsb2_q8)
 {
     switch (f->kind) {
-#define SET_NOISE(F)                           \
-    case FILTER_KIND_##F:                      \
+#define SET_NOISE(F)                                \
+    case FILTER_KIND_##F:                           \
         F##_set_noise(&f->state.of_##F, r_lsb2_q8); \
         break;
         FILTER_LINKED(SET_NOISE)
@@ -143,8 +143,8 @@ void filter_any_set_noise(filter_any_t *f, uint32_t r_lsb2_q8)
 void filter_any_reset(filter_any_t *f, int16_t z0_lsb)
 {
     switch (f->kind) {
-#define RESET(F)                        \
-    case FILTER_KIND_##F:               \
+#define RESET(F)                             \
+    case FILTER_KIND_##F:                    \
         F##_reset(&f->state.of_##F, z0_lsb); \
         break;
         FILTER_LINKED(RESET)
@@ -196,8 +196,8 @@ int32_t filter_any_coast(filter_any_t *f)
 void filter_any_gap(filter_any_t *f)
 {
     switch (f->kind) {
-#define GAP(F)                \
-    case FILTER_KIND_##F:     \
+#define GAP(F)                     \
+    case FILTER_KIND_##F:          \
         F##_gap(&f->state.of_##F); \
         break;
         FILTER_LINKED(GAP)
@@ -210,8 +210,8 @@ void filter_any_gap(filter_any_t *f)
 void filter_any_damp(filter_any_t *f)
 {
     switch (f->kind) {
-#define DAMP(F)                \
-    case FILTER_KIND_##F:      \
+#define DAMP(F)                     \
+    case FILTER_KIND_##F:           \
         F##_damp(&f->state.of_##F); \
         break;
         FILTER_LINKED(DAMP)
@@ -224,8 +224,8 @@ void filter_any_damp(filter_any_t *f)
 void filter_any_hold(filter_any_t *f)
 {
     switch (f->kind) {
-#define HOLD(F)                \
-    case FILTER_KIND_##F:      \
+#define HOLD(F)                     \
+    case FILTER_KIND_##F:           \
         F##_hold(&f->state.of_##F); \
         break;
         FILTER_LINKED(HOLD)
@@ -238,8 +238,8 @@ void filter_any_hold(filter_any_t *f)
 void filter_any_restart(filter_any_t *f)
 {
     switch (f->kind) {
-#define RESTART(F)                \
-    case FILTER_KIND_##F:         \
+#define RESTART(F)                     \
+    case FILTER_KIND_##F:              \
         F##_restart(&f->state.of_##F); \
         break;
         FILTER_LINKED(RESTART)
@@ -265,8 +265,8 @@ FX_ONCE uint8_t filter_any_flags(const filter_any_t *f)
 void filter_any_probe(const filter_any_t *f, filter_probe_t *out)
 {
     switch (f->kind) {
-#define PROBE(F)                     \
-    case FILTER_KIND_##F:            \
+#define PROBE(F)                          \
+    case FILTER_KIND_##F:                 \
         F##_probe(&f->state.of_##F, out); \
         break;
         FILTER_LINKED(PROBE)

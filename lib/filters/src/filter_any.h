@@ -20,7 +20,7 @@ typedef enum {
 } filter_kind_t;
 
 typedef union {
-    uint16_t rate_dhz; /* every configuration begins with it */
+    uint16_t rate_dhz;                        /* every configuration begins with it */
 #define FILTER_MEMBER(F) F##_config_t of_##F; /* of_: one filter is called as a word of C */
     FILTER_LIST(FILTER_MEMBER)
 #undef FILTER_MEMBER
