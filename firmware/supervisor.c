@@ -134,7 +134,7 @@ static void say_axis(uint8_t axis)
 
 void supervisor_say(void)
 {
-    static const char names[AUTO_MEMBERS][8] FLASH = { " slow ", " middle", " fast " };
+    static const char names[AUTO_MEMBERS][8] FLASH = { " slow", " middle", " fast" };
     if (!in_force()) {
         return;
     }

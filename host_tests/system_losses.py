@@ -74,6 +74,10 @@ def make_loss_test(filter_name, rate, baud, every, load_limit, ppm):
 TESTS.append(make_loss_test("adaptive", 100, 115200, 1, 0.11, 777))
 TESTS.append(make_loss_test("adaptive", 400, 500000, 1, 0.42, -777))
 TESTS.append(make_loss_test("adaptive", 800, 500000, 4, 0.56, 777))
+# above adaptive: three times 1,320 cycles of the filters (docs/benchmarks.md) and 600 of the supervisor
+TESTS.append(make_loss_test("auto", 100, 115200, 1, 0.14, 777))
+TESTS.append(make_loss_test("auto", 400, 500000, 1, 0.535, -777))
+TESTS.append(make_loss_test("auto", 800, 500000, 4, 0.79, 777))
 TESTS.append(make_loss_test("sprf", 100, 115200, 1, 0.10, -777))
 TESTS.append(make_loss_test("sprf", 400, 500000, 1, 0.40, 777))
 TESTS.append(make_loss_test("sprf", 800, 500000, 4, 0.50, -777))

@@ -2,10 +2,10 @@
 
 # the chip's flash holds about nine filters: the tests that go over the list run in two images, which link these
 CHIP_ALL    := $(shell sed -n 's/^    X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter_list.h)
-CHIP_SECOND := $(filter adaptive synth_opt synth_plus kf3 auto,$(CHIP_ALL))
+CHIP_SECOND := $(filter adaptive synth_plus kf3 auto,$(CHIP_ALL))
 CHIP_FIRST  := $(filter-out $(CHIP_SECOND),$(CHIP_ALL))
 linked_flag  = '-DFILTER_LINKED(X)=$(foreach f,$(1),X($(f)))'
-UNITY_1     := test_filters test_filter_gaps test_fx test_kf test_lrf test_soft test_sprf test_synth test_two_state_wide test_sprf_paper \
+UNITY_1     := test_filters test_filter_gaps test_fx test_kf test_lrf test_soft test_sprf test_synth test_synth_opt test_two_state_wide test_sprf_paper \
                test_shrf test_pbf test_af test_noise test_tilt test_calibration
 UNITY_2     := test_filters_2 test_filter_gaps_2 $(filter $(patsubst host_tests/%.c,%,$(wildcard host_tests/test_*.c)),$(CHIP_SECOND:%=test_%))
 CHIP_TESTS  := $(patsubst %,$(U)/tests/%.elf,$(UNITY_1) $(UNITY_2) filter_sequence_1 filter_sequence_2)
