@@ -110,7 +110,7 @@ static void test_a_score_is_the_bounded_mean_over_eight_samples(void)
     /* eight times the mean of 1024 LSB^2 each: 1024, 1920, 2704, 3390 */
     static const uint16_t expected_lsb2[] = { 1024, 1920, 2704, 3390 };
     for (uint8_t n = 0; n < 4U; n++) { /* all refused: the innovation stays */
-        (void)auto_update(&f, 4000);
+        (void)auto_update(&f, (n % 2U == 0U) ? 200 : 4000);
         for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
             TEST_ASSERT_UINT32_WITHIN(4, expected_lsb2[n] * 256UL, f.u.members[i].score_lsb2_uq8);
         }
@@ -142,6 +142,10 @@ static void test_the_middle_member_predicts_what_is_missing(void)
     }
     TEST_ASSERT_EQUAL_INT32(2 * 65536L + 2 * 32768L, auto_coast(&f));
     TEST_ASSERT_EQUAL_HEX8(FILTER_COASTED, auto_flags(&f));
+    filter_probe_t probe;
+    auto_probe(&f, &probe);
+    TEST_ASSERT_EQUAL_INT32(2 * 65536L + 2 * 32768L, probe.x_lsb_q16);
+    TEST_ASSERT_EQUAL_INT32(2 * 32768L, probe.rate_lsb_q16);
     for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
         TEST_ASSERT_EQUAL_INT32((i + 1) * 98304L, f.u.members[i].x_lsb_q16);
     }
