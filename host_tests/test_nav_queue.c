@@ -143,8 +143,8 @@ static void late_epoch_between_two_records_is_interpolated(void)
 }
 
 /*
- * The epoch 123.5 ms ago tells the velocity by its way in 0.8765 s: the row's age makes it exact. Without, the way would
- * be that of 1 s, the velocity 12 % less, and the position 0.14 m off behind 1.15 s.
+ * The epoch 123.5 ms ago tells the velocity by its way in 0.8765 s: the row's age makes it exact. Without it the way
+ * would be that of 1 s, the velocity 12 % less, and the position 0.14 m off behind 1.15 s.
  */
 static void age_of_a_position_is_in_its_row(void)
 {
