@@ -66,7 +66,7 @@ static void twelve_states_find_the_drift(void)
     }
 }
 
-/* The field at 1 Hz: the median of flights without number is 1.6 to 1.7 (notes: 1.55 of 20, spread 0.7 to 2.7). */
+/* The field at 1 Hz, printed: "< 2 degrees". Notes: 1.55 of 20 flights, P95 2.7; other seeds give other medians. */
 static void twelve_states_with_a_slow_field(void)
 {
     flown_t m;

@@ -59,7 +59,7 @@ typedef struct {
     /* One IMU period before the first record. |quaternion| 0.5..2 (normalised), |velocity| <= 1e3 m/s,
        |position| <= 1e6 m, |drift| <= 1 rad/s. */
     nav_state_t start;
-    nav_real_t field[3];         /* direction of the Earth's field in NED; any length from 1e-10 to 1e6, of any unit */
+    nav_real_t field[3];         /* Earth's field, NED; length 1e-10..1e6 of any unit, north > -length / 2 */
     nav_real_t gravity_mps2;     /* 1..25 */
     nav_real_t start_position_m; /* 1 sigma of each component of the start: 0 (known exactly)..1e5 */
     nav_real_t start_velocity_mps;
