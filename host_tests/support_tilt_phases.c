@@ -129,7 +129,7 @@ double tilt_rms_of_all(const tilt_errors_t *e)
 
 static void count_error(tilt_errors_t *e, const tilt_run_t *run, int i, double x_deg)
 {
-    if (i >= TILT_SETTLING) {
+    if (i >= TILT_SETTLING && i < TILT_RUN_SAMPLES) {
         double error = x_deg - run->truth_deg[i];
         e->squares[run->phase[i]] += error * error;
         e->counts[run->phase[i]] += 1.0;
@@ -143,7 +143,7 @@ static double degrees(int32_t x_lsb_q16)
 
 static void count_bank(tilt_bank_t *bank, const auto_t *f, const tilt_run_t *run, int i)
 {
-    if (i < TILT_SETTLING) {
+    if (i < TILT_SETTLING || i >= TILT_RUN_SAMPLES) {
         return;
     }
     for (uint8_t m = 0; m < AUTO_MEMBERS; m++) {
