@@ -22,7 +22,7 @@ from papers_page import write_page
 # programs and accepted bands of each paper; a folder is a program in Python
 PAPERS = {paper: (tuple(map(pathlib.Path, programs)), pathlib.Path(f"host_tests/papers/expected_{paper}.csv"))
           for paper, programs in (("000", ("build/papers/paper000",)), ("001", ("build/papers/paper001",)),
-                                  ("002", ("build/papers/paper002", "build/papers/operations002")), ("004", ("tools/variable_structure",)))}
+                                  ("002", ("build/papers/paper002", "build/papers/operations002")), ("004", ("tools/variable_structure", "build/papers/paper004_board")))}
 PYTHON = pathlib.Path("build/venv/bin/python")  # which has numpy
 # runs that the programs make of --runs 10000, and what each shipped filter must have a band for
 FULL_RUNS = {"000": 4000, "001": 2000, "002": VERDICT_RUNS, "004": 500}

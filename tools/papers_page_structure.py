@@ -11,6 +11,7 @@ FLIGHTS = (("windows_stuck_at_zero", "Frozen output is zero: the window's own da
 COLUMNS = (("rms of dV in m/s, median", "rms_median"), ("95 % of the runs", "rms_p95"), ("mean square", "mse"), ("exact", "exact_mse"),
            ("rms of the tilt in rad", "rms_tilt_median"),
            ("best sensor chosen", "best_sensor"), ("within twice the best", "within_2x"), ("frozen sensor taken, if there is one", "frozen_taken"))
+PHASES = ("still", "ramp", "sine", "vibration", "drop", "burst", "acceleration", "mixed")
 
 
 def tables_004(rows):
@@ -23,6 +24,11 @@ def tables_004(rows):
                                                           ("exact", "exact_mse"), ("chosen by self-organisation", "picked"))], intervals=True)
     for experiment, title in FLIGHTS:
         yield title, grid(rows, [(column, experiment, [metric]) for column, metric in COLUMNS], intervals=True)
+    yield "On the board: tilt streams of sixteen phases, rms in degrees", grid(rows, [
+        ("all", "board_phases", ["rmse"]), *((phase, "board_phases", [f"rmse_{phase}"]) for phase in PHASES)])
+    yield "On the board: `auto` over filters tuned on other runs", grid(rows, [
+        (f"over {name.replace('_', ' ')}", "board_phases", [f"over_{name}"])
+        for name in ("sprf_fixed", "sprf_guarded_double", "pbf_fixed", "pbf_double")], intervals=True)
 
 
 def page_text_004(rows, options):
