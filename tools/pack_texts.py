@@ -138,7 +138,7 @@ static const uint8_t packed_texts[] FLASH = {{
 
 
 def main():
-    if len(sys.argv) != 2:
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         sys.exit("usage: pack_texts.py OUT")
     pathlib.Path(sys.argv[1]).write_text(header(texts()), encoding="utf-8")
 
