@@ -16,9 +16,11 @@ static struct {
     uint16_t missing_q6;    /* component of it */
 } supervisor;
 
+/* On all axes: a change of filter begins with the last and ends with the first. */
 static bool in_force(void)
 {
-    return pipeline.axes[0].filter.kind == (uint8_t)FILTER_KIND_auto;
+    return pipeline.axes[0].filter.kind == (uint8_t)FILTER_KIND_auto &&
+           pipeline.axes[AXES - 1].filter.kind == (uint8_t)FILTER_KIND_auto;
 }
 
 void supervisor_reset(void)

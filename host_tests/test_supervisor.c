@@ -2,7 +2,7 @@
  * The whole firmware with the filter `auto` on a board that rolls while an axis is stuck or at its rail: the angle from
  * the axes that remain, flagged and told; with another filter, and with two bad axes, none is left out.
  */
-#include "pipeline.h"
+#include "pipeline_state.h"
 #include "supervisor.h"
 #include "support_board.h"
 #include "support_random.h"
@@ -209,6 +209,29 @@ static void test_changes_of_the_choice_are_flagged(void)
     stream_free(&stream);
 }
 
+/* While the axes change to another filter, the last one first, there is no choice of each to tell. */
+static void test_no_choices_are_told_of_a_filter_that_is_leaving(void)
+{
+    stream_t stream = rolling_stream(0, HEALTHY);
+    board_start(&stream, 0.0, 0);
+    board_run_ms(100);
+    board_type("filter auto");
+    board_run_ms(1000);
+    board_type("filter kf");
+    for (int ms = 0; ms < 40 && pipeline.axes[AXES - 1].filter.kind != (uint8_t)FILTER_KIND_kf; ms++) {
+        board_run_ms(1);
+    }
+    TEST_ASSERT_EQUAL_UINT8(FILTER_KIND_auto, pipeline.axes[0].filter.kind);
+    size_t first = board.note_count;
+    board_type("status");
+    board_run_ms(3);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_KIND_auto, pipeline.axes[0].filter.kind);
+    board_run_ms(100);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# state streaming", first));
+    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("chosen", first));
+    stream_free(&stream);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -219,5 +242,6 @@ int main(void)
     RUN_TEST(test_two_bad_axes_are_too_many);
     RUN_TEST(test_status_tells_choices_and_the_axis_left_out);
     RUN_TEST(test_changes_of_the_choice_are_flagged);
+    RUN_TEST(test_no_choices_are_told_of_a_filter_that_is_leaving);
     return UNITY_END();
 }
