@@ -93,11 +93,12 @@ static judged_t judge(double from, double to)
 
 /*
  * The noise of 1.5 LSB over the missing component, halved by the slow member at least: five sigmas of 0.25 degree / cos
- * 60 or / sin 15, and 1 degree for what a motion of 12 degree/s and 6 degree/s^2 leaves of lag.
+ * 60, / sin 15 or, of pitch, / sin 10, and 1 degree for what a motion of 12 degree/s and 6 degree/s^2 leaves of lag.
  */
 static double bound_deg(uint8_t bad)
 {
-    double component = (bad == 1) ? sin(15.0 / DEG_PER_RAD) : cos(60.0 / DEG_PER_RAD);
+    const double least_deg[3] = { 10.0, 15.0, 30.0 };
+    double component = sin(least_deg[bad] / DEG_PER_RAD);
     double sigma_deg = 1.5 / 256.0 * DEG_PER_RAD / 2.0;
     return 5.0 * sigma_deg / component / cos(10.0 / DEG_PER_RAD) + 1.0;
 }
@@ -115,8 +116,17 @@ static void assert_left_out(uint8_t bad, fault_t fault)
     TEST_ASSERT_EQUAL_UINT(during.rows, during.left_out);
     TEST_ASSERT_EQUAL_UINT(0, after.left_out);
     TEST_ASSERT_TRUE(before.worst_deg < 1.5 && after.worst_deg < 1.5);
-    TEST_ASSERT_TRUE(during.worst_deg < bound_deg(bad));
+    TEST_ASSERT_TRUE(before.worst_pitch_deg < 1.5 && after.worst_pitch_deg < 1.5);
+    TEST_ASSERT_TRUE(during.worst_deg < (bad == 0 ? 1.5 : bound_deg(bad)));
+    TEST_ASSERT_TRUE(during.worst_pitch_deg < (bad == 0 ? bound_deg(bad) : 1.5));
     stream_free(&stream);
+}
+
+static void test_a_bad_x_is_left_out(void)
+{
+    assert_left_out(0, FROZEN);
+    assert_left_out(0, AT_ZERO);
+    assert_left_out(0, AT_RAIL);
 }
 
 static void test_a_bad_z_is_left_out(void)
@@ -236,6 +246,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_healthy_board_leaves_none_out);
+    RUN_TEST(test_a_bad_x_is_left_out);
     RUN_TEST(test_a_bad_z_is_left_out);
     RUN_TEST(test_a_bad_y_is_left_out);
     RUN_TEST(test_another_filter_leaves_none_out);
