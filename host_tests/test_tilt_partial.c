@@ -149,6 +149,35 @@ static void test_the_sigma_told(void)
     TEST_ASSERT_EQUAL_UINT16(0, tilt_partial_sigma_cdeg(0, 16384));
 }
 
+/*
+ * The bound of tilt_missing_q6, where all three parts are cut by most of a unit: the square of the result is too large
+ * by less than 2 (x + y + z) + 3 <= 2 sqrt(3) 16384 + 3, and its root is cut.
+ */
+static void test_the_missing_component_is_within_its_bound(void)
+{
+    test_random_t random;
+    random_seed(&random, SEED);
+    for (int n = 0; n < 200000; n++) {
+        double missing = pow(10.0, -3.0 + 3.0 * n / 200000.0);
+        double a[3];
+        double square = 0.0;
+        for (int axis = 0; axis < 3; axis++) {
+            a[axis] = 1.0 + 0.2 * random_normal(&random);
+            square += a[axis] * a[axis];
+        }
+        int32_t q8[3];
+        double known_q16 = 0.0;
+        for (int axis = 0; axis < 3; axis++) {
+            q8[axis] = (int32_t)(a[axis] * sqrt((1.0 - missing * missing) / square) * G_Q8) | 3;
+            known_q16 += (double)q8[axis] * q8[axis];
+        }
+        double exact_q6 = sqrt(fmax(0.0, G_Q8 * G_Q8 - known_q16)) / 4.0;
+        uint16_t result = tilt_missing_q6(q8[0], q8[1], q8[2]);
+        TEST_ASSERT_TRUE(exact_q6 - 1.0 < result);
+        TEST_ASSERT_TRUE(result == 0U || fabs(result - exact_q6) <= 56760.0 / result + 1.0);
+    }
+}
+
 /* Beyond 1 g nothing is missing; no size of an input overflows. */
 static void test_more_than_gravity_leaves_nothing(void)
 {
@@ -167,6 +196,7 @@ int main(void)
     RUN_TEST(test_the_sign_is_that_of_the_last_good_sample);
     RUN_TEST(test_sigmas_of_the_table);
     RUN_TEST(test_the_sigma_told);
+    RUN_TEST(test_the_missing_component_is_within_its_bound);
     RUN_TEST(test_more_than_gravity_leaves_nothing);
     return UNITY_END();
 }

@@ -21,8 +21,8 @@ extern "C" {
 
 /*
  * Size of the component that makes (x, y, z) 1 g, at right angles to it: 1/256 g in Q6, 0..16384; 0 where they are 1 g
- * or more already. Inputs 1/256 g in Q8, any int32; cut to Q6. Error <= 23170 / result + 1 units. Any context; 900
- * cycles; no float, no division.
+ * or more already. Inputs 1/256 g in Q8, any int32; cut to Q6, so that the square is too large by 2 (x + y + z) + 3 at
+ * most: error <= 56760 / result + 1 units. Any context; no float, no division.
  */
 uint16_t tilt_missing_q6(int32_t x_q8, int32_t y_q8, int32_t z_q8);
 
