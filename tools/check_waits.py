@@ -18,10 +18,11 @@ CYCLES = {**dict.fromkeys("push pop lds sts ld ldd st std adiw sbiw mul muls mul
 SKIPS = {"cpse", "sbrc", "sbrs", "sbic", "sbis"}
 RESPONSE = latency.RESPONSE_CYCLES
 TWCR, SREG_IO, SREG_MEMORY = "0x00BC", "0x3f", "0x5F"
-# simrun knows no handler but these; run before interrupts are on, or never
+# simrun knows no handler but these
 HANDLERS = {"__vector_1": ("data-ready", latency.DATA_READY_CYCLES), "__vector_11": ("clock", latency.CLOCK_CYCLES),
             "__vector_12": ("alarm", latency.ALARM_CYCLES), "__vector_18": ("byte in", latency.BYTE_DAMAGED_CYCLES),
             "__vector_19": ("byte out", latency.BYTE_OUT_CYCLES), "__vector_24": ("I2C", latency.I2C_CYCLES)}
+# run before interrupts are on, or never
 NO_SECTIONS = {"hal_watchdog_early", "_exit"}
 
 
@@ -40,8 +41,9 @@ class Code:
             if found:
                 address, size, operation, operands = int(found.group(1), 16), len(found.group(2).split()), found.group(3), found.group(4).strip()
                 self.at[address] = (operation, operands, size, self.target(address, operation, operands), function)
-        if not set(HANDLERS) <= set(self.entry):
-            raise Stop(f"{elf}: no handler {', '.join(sorted(set(HANDLERS) - set(self.entry)))}")
+        found = {name for name in self.entry if re.fullmatch(r"__vector_\d+", name)}
+        if found != set(HANDLERS):
+            raise Stop(f"{elf}: handlers missing or not reckoned with: {', '.join(sorted(found ^ set(HANDLERS)))}")
 
     @staticmethod
     def target(address, operation, operands):
