@@ -2,8 +2,9 @@
  * What goes with the filter `auto`: the choices of its banks told, and an axis that is known bad left out of the
  * angles, which then come from the other two and |a| = 1 g (tilt_partial.h). Main only.
  *
- * An axis is bad when it has stood at the rail of its range for 16 samples or repeated a reading for 128 while another
- * axis changes; the sensor's noise repeats one of 0.35 LSB rms that often once in 10^9. Two bad axes leave too little:
+ * An axis is bad when it has stood at the rail of its range for 16 samples or repeated a reading for 250 while another
+ * axis changes: a centred axis of 0.265 LSB rms, the data sheet's 0.75 at 100 Hz taken to 12.5 Hz, did so once in ten
+ * days of it. Two bad axes leave too little:
  * none is left out then. The sign of the missing component is that of the last estimate before its readings began to
  * repeat.
  *
@@ -18,7 +19,7 @@
 #define SUPERVISOR 0
 #endif
 
-enum { SUPERVISOR_RAIL_SAMPLES = 16, SUPERVISOR_REPEATED_SAMPLES = 128 };
+enum { SUPERVISOR_RAIL_SAMPLES = 16, SUPERVISOR_REPEATED_SAMPLES = 250 };
 
 /* No axis is left out, nothing is known of their readings. */
 void supervisor_reset(void);

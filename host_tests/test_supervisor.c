@@ -176,7 +176,7 @@ static void test_two_bad_axes_are_too_many(void)
     stream_free(&stream);
 }
 
-/* `status` names the members, and the axis with the sigma of the direction: 1.5 LSB's R, the slow member, 1 / cos. */
+/* `status` names the members, and the axis with the sigma of the direction: noise and 10 LSB of the part, 1 / cos. */
 static void test_status_tells_choices_and_the_axis_left_out(void)
 {
     stream_t stream = rolling_stream(2, FROZEN);
@@ -189,7 +189,7 @@ static void test_status_tells_choices_and_the_axis_left_out(void)
     board_run_ms(100);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", chosen x ", first));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("without", first));
-    board_run_ms(5500);
+    board_run_ms(6500);
     first = board.note_count;
     board_type("status");
     board_run_ms(100);
@@ -197,8 +197,8 @@ static void test_status_tells_choices_and_the_axis_left_out(void)
     TEST_ASSERT_NOT_NULL(told);
     double sigma_cdeg = strtod(told + strlen(", without z sigma cdeg "), NULL);
     /* R is 1.5 x 2.25 LSB^2; variance gains of the members 0.05 to 0.4; the component 0.6 to 0.95 of 1 g */
-    TEST_ASSERT_TRUE(sigma_cdeg > sqrt(0.05 * 2.0) / 256.0 / 0.95 * DEG_PER_RAD * 100.0);
-    TEST_ASSERT_TRUE(sigma_cdeg < sqrt(0.40 * 5.0) / 256.0 / 0.45 * DEG_PER_RAD * 100.0);
+    TEST_ASSERT_TRUE(sigma_cdeg > sqrt(0.05 * 2.0 + 100.0) / 256.0 / 0.95 * DEG_PER_RAD * 100.0);
+    TEST_ASSERT_TRUE(sigma_cdeg < sqrt(0.40 * 5.0 + 100.0) / 256.0 / 0.45 * DEG_PER_RAD * 100.0);
     stream_free(&stream);
 }
 
