@@ -200,6 +200,18 @@ static void test_the_state_is_that_of_the_filter(void)
     TEST_ASSERT_FLOAT_WITHIN(1e-4F, 100.0F, state[8]);
 }
 
+/* A refused record leaves the state where it was, and its time with it. */
+static void test_the_state_has_the_time_of_the_last_record_taken(void)
+{
+    uint32_t t_us;
+    TEST_ASSERT_EQUAL(NAV_TAKEN, start_flight());
+    TEST_ASSERT_EQUAL(NAV_TAKEN, put_imu(10000, 0, false));
+    TEST_ASSERT_EQUAL(NAV_NOT_FINITE, put_imu(5000000, NAN, true));
+    TEST_ASSERT_EQUAL_CHAR(ANSWER_STATE, nav_line_said[0].bytes[0]);
+    memcpy(&t_us, &nav_line_said[0].bytes[1], 4);
+    TEST_ASSERT_EQUAL_UINT32(10000, t_us);
+}
+
 static void test_every_length_but_the_right_one_is_refused(void)
 {
     static const struct {
@@ -311,6 +323,7 @@ int main(void)
     RUN_TEST(test_nothing_is_believed_before_the_start);
     RUN_TEST(test_a_start_wants_each_parameter_in_its_range);
     RUN_TEST(test_the_state_is_that_of_the_filter);
+    RUN_TEST(test_the_state_has_the_time_of_the_last_record_taken);
     RUN_TEST(test_every_length_but_the_right_one_is_refused);
     RUN_TEST(test_order_damage_and_loss_are_counted);
     RUN_TEST(test_a_greeting_on_demand_begins_the_order_anew);

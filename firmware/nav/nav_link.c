@@ -157,7 +157,7 @@ HAL_APART static uint8_t on_imu(const uint8_t *body)
     copy(measured, &body[TIME], sizeof measured);
     uint8_t answer = (uint8_t)nav_imu(&filter.nav, t_us, measured, &measured[3]);
     if (body[TIME + 6 * REAL] == 1u) {
-        send_state(t_us);
+        send_state(filter.nav.t_us); /* a refused record's time is not the state's */
     }
     return answer;
 }
