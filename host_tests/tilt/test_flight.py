@@ -127,7 +127,8 @@ class File(unittest.TestCase):
                 ("imu,-1,0,0,0,0,0,0\n", "F:1: t_us is a whole number"), ("imu,4294967296,0,0,0,0,0,0\n", "F:1: t_us is a whole number"),
                 (imu + "down,5,high\n", "F:2: 'high' is no number"), ("set,gates,1\n", "F:1: there is no setting 'gates'"),
                 ("set,field,1,2\n", "F:1: field has 3 numbers, not 2"), ("set\n", "F:1: set wants a name"),
-                ("set,period_us,0.5\n", "F:1: period_us is a whole number")):
+                ("imu,\u00b2,0,0,0,0,0,0\n", "F:1: t_us is a whole number"), (f"imu,{'9' * 5000},0,0,0,0,0,0\n", "F:1: t_us is a whole number"),
+                *((f"set,period_us,{text}\n", "F:1: period_us is a whole number") for text in ("0.5", "nan", "inf", "-1", "1e12"))):
             self.assertIn(told, refused(text) or "taken", text)
 
     def test_what_a_sensor_says_is_for_the_filter_to_refuse(self):
@@ -214,7 +215,8 @@ class Judge(unittest.TestCase):
 class Command(unittest.TestCase):
     def test_flight_refuses_what_makes_no_sense(self):
         for words, told in ((("--seconds", 1), "--seconds is from 2 to 4000"), (("--gps-late", -1), "--gps-late is from 0"),
-                            (("--without-gps", "10-20"), "wants A:B"), (("--seed", -1), "not negative")):
+                            (("--without-gps", "10-20"), "wants A:B"), (("--without-gps", "1..2:3"), "wants A:B"),
+                            (("--without-gps", "8:3"), "ends before it begins"), (("--seed", -1), "not negative")):
             status, said = run("flight", "/tmp/never-written.csv", *words)
             self.assertEqual(status, 2)
             self.assertIn(told, said)

@@ -25,9 +25,14 @@ def arguments(parser):
 def intervals_of(text):
     if text == "-":
         return ()
-    if not re.fullmatch(r"[\d.]+:[\d.]+(,[\d.]+:[\d.]+)*", text):
+    number = r"\d+(\.\d*)?"
+    if not re.fullmatch(rf"{number}:{number}(,{number}:{number})*", text):
         raise TiltError(f"--without-gps wants A:B[,A:B...] in seconds or -, not '{text}'")
-    return tuple(tuple(float(edge) for edge in piece.split(":")) for piece in text.split(","))
+    found = tuple(tuple(float(edge) for edge in piece.split(":")) for piece in text.split(","))
+    for begin, end in found:
+        if end <= begin:
+            raise TiltError(f"--without-gps: {begin:g}:{end:g} ends before it begins")
+    return found
 
 
 def wish_of(args):

@@ -12,6 +12,7 @@ The file is lines of comma-separated values; lines that begin with '#' are skipp
 
 Numbers may be nan or inf: what a sensor says is for the filter to refuse.
 """
+import re
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -69,7 +70,7 @@ def _take_row(flight, words, path, line):
         raise at(path, line, f"'{kind[:20]}' is no kind of row; there are set {' '.join(WIDTHS)}")
     if len(words) != 2 + WIDTHS[kind]:
         raise at(path, line, f"{kind} has {2 + WIDTHS[kind]} fields, here are {len(words)}")
-    if not words[1].strip().isdigit() or int(words[1]) > T_US_MAX:
+    if not re.fullmatch(r"[0-9]{1,10}", words[1].strip()) or int(words[1]) > T_US_MAX:
         raise at(path, line, f"t_us is a whole number from 0 to {T_US_MAX}, not '{words[1][:20]}'")
     t_us, values = int(words[1]), tuple(_number(word, path, line) for word in words[2:])
     if kind == "start":

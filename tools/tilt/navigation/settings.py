@@ -11,6 +11,8 @@ DEFAULTS = {
     "gate": 5.0, "period_us": 10000,
 }
 
+PERIOD_US_MAX = 0xFFFFFFFF  # what a record has room for; the filter wants less
+
 
 def width(name):
     """How many numbers the field has."""
@@ -25,8 +27,8 @@ def field_of(name, values):
     if len(values) != width(name):
         raise TiltError(f"{name} has {width(name)} numbers, not {len(values)}")
     if name == "period_us":
-        if values[0] != int(values[0]):
-            raise TiltError(f"period_us is a whole number, not {values[0]}")
+        if not 0 <= values[0] <= PERIOD_US_MAX or values[0] % 1 != 0:
+            raise TiltError(f"period_us is a whole number from 0 to {PERIOD_US_MAX}, not {values[0]:g}")
         return int(values[0])
     return tuple(values) if width(name) > 1 else values[0]
 
