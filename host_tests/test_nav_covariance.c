@@ -2,19 +2,18 @@
  * The covariance of paper 003 without closed loop: the square root of the thesis, the conventional form, Joseph's, and
  * lib/nav's U D U' in double and float, over the flight of 3.4 linearised about the truth.
  */
-#include "nav_flights.h"
+#include "nav_histories.h"
 #include "reference_nav.h"
 #include "unity.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 void setUp(void) {}
 
 void tearDown(void) {}
 
-enum { STEPS = 50000, ROWS = 5 };
+enum { ROWS = 5 };
 
 /*
  * The notes, A.3: sigmas with the printed q, field, GPS and altimeter at 1 Hz, GPS not in 160..400 s. Each as its
@@ -92,120 +91,15 @@ static const struct {
         { 29673, -9 } } },
 };
 
-static const double sigma_ours[4] = { 57.3, 1.2, 0.02, 1e-3 };
-static const double sigma_theirs[4] = { 0.02, 1.2, 57.3, 1e-3 };
-static const double walk_ours[4] = { 0.005e-4, 1e-4, 0.3e-4, 0.0 };
-static const double walk_theirs[4] = { 0.3e-4, 1e-4, 0.005e-4, 0.0 };
-static const double measured[4] = { 0.0349, 0.1, 5.0, 1.0 }; /* field, velocity, position, down */
+static nav_history_t root[2], other, ours;
 
-typedef struct {
-    double sigma[FLIGHT_SECONDS][12];
-    double least_d;
-} history_t;
-
-/* Force in NED and attitude in the middle of step k. */
-static void linearised(int k, double force[3], double dcm[9])
-{
-    flight_truth_t truth;
-    flight_truth(&truth, (k + 0.5) * FLIGHT_STEP);
-    flight_dcm(dcm, truth.quaternion);
-    for (int i = 0; i < 3; i++) {
-        force[i] = truth.acceleration[i] - ((i == 2) ? FLIGHT_GRAVITY : 0.0);
-    }
-}
-
-static void roots_of(double *sigma, const double *variance, int states)
-{
-    for (int i = 0; i < states; i++) {
-        sigma[i] = sqrt(variance[i]);
-    }
-}
-
-static void run_reference(history_t *h, int form, int states, int printed)
-{
-    reference_nav_t f;
-    const double nothing[9] = { 0 };
-    double x[12];
-    reference_nav_start(&f, form, states, sigma_theirs, flight_field, printed);
-    for (int k = 0; k < STEPS; k++) {
-        double force[3];
-        double dcm[9];
-        linearised(k, force, dcm);
-        reference_nav_time(&f, FLIGHT_STEP, force, dcm, walk_theirs);
-        if ((k + 1) % FLIGHT_RATE == 0) {
-            double variance[12];
-            reference_nav_measure(&f, true, nav_flight_has_gps((k + 1) * FLIGHT_STEP), true, nothing, measured, x);
-            reference_nav_variances(&f, variance);
-            roots_of(h->sigma[k / FLIGHT_RATE], variance, states);
-        }
-    }
-}
-
-static void scalar(const nav_variant_t *v, nav_memory_t *m, int main, const double *mu, double sigma)
-{
-    nav_test_row_t row = { { 0 } };
-    double gain[12];
-    if (main >= 0) {
-        row.h[main] = 1.0;
-    } else {
-        memcpy(row.h + 6, mu, 3 * sizeof *mu);
-    }
-    v->ud_scalar(m, &row, sigma * sigma, gain);
-}
-
-static void measure(const nav_variant_t *v, nav_memory_t *m, const double tau[9], bool gps)
-{
-    scalar(v, m, -1, tau + 3, measured[0]);
-    scalar(v, m, -1, tau + 6, measured[0]);
-    for (int i = 0; gps && i < 3; i++) {
-        scalar(v, m, 3 + i, NULL, measured[1]);
-    }
-    for (int i = 0; gps && i < 3; i++) {
-        scalar(v, m, i, NULL, measured[2]);
-    }
-    scalar(v, m, 2, NULL, measured[3]);
-}
-
-/* jobs: noise as lib/nav adds it, one state per step; else all at every step. */
-static void run_ours(history_t *h, const nav_variant_t *v, bool jobs)
-{
-    static nav_memory_t m;
-    double tau[9];
-    memset(&m, 0, sizeof m);
-    reference_nav_tau(tau, flight_field, false);
-    v->ud_start(&m, sigma_ours);
-    v->noise_start(&m, walk_ours, 10000);
-    h->least_d = INFINITY;
-    for (int k = 0; k < STEPS; k++) {
-        double force[3];
-        double dcm[9];
-        linearised(k, force, dcm);
-        v->ud_phi(&m, FLIGHT_STEP, force, dcm);
-        for (int i = 0; i < v->states && !jobs; i++) {
-            v->ud_noise(&m, i, walk_ours[i / 3] * walk_ours[i / 3]);
-        }
-        if (jobs) {
-            v->noise_job(&m, 10000U * (uint32_t)(k + 1));
-        }
-        if ((k + 1) % FLIGHT_RATE == 0) {
-            double variance[12];
-            measure(v, &m, tau, nav_flight_has_gps((k + 1) * FLIGHT_STEP));
-            v->variances(&m, variance);
-            roots_of(h->sigma[k / FLIGHT_RATE], variance, v->states);
-            h->least_d = fmin(h->least_d, v->least_d(&m));
-        }
-    }
-}
-
-static history_t root[2], other, ours;
-
-static history_t *root_of(int states)
+static nav_history_t *root_of(int states)
 {
     return &root[states == 12];
 }
 
 /* Within half a unit of the last printed digit. */
-static void is_as_noted(const history_t *h, int states, const char *form)
+static void is_as_noted(const nav_history_t *h, int states, const char *form)
 {
     for (int n = 0; n < ROWS; n++) {
         for (int i = 0; i < states && noted[n].states == states; i++) {
@@ -220,21 +114,10 @@ static void is_as_noted(const history_t *h, int states, const char *form)
     }
 }
 
-static double apart(const history_t *a, const history_t *b, int states)
-{
-    double worst = 0.0;
-    for (int t = 0; t < FLIGHT_SECONDS; t++) {
-        for (int i = 0; i < states; i++) {
-            worst = fmax(worst, fabs(a->sigma[t][i] / b->sigma[t][i] - 1.0));
-        }
-    }
-    return worst;
-}
-
 static void thesis_form_gives_the_table_of_the_notes(void)
 {
     for (int states = 9; states <= 12; states += 3) {
-        run_reference(root_of(states), REFERENCE_NAV_ROOT, states, 0);
+        nav_history_of_reference(root_of(states), REFERENCE_NAV_ROOT, states, 0);
         is_as_noted(root_of(states), states, "square root");
     }
 }
@@ -243,9 +126,9 @@ static void covariance_forms_agree(void)
 {
     for (int states = 9; states <= 12; states += 3) {
         for (int form = REFERENCE_NAV_CONVENTIONAL; form < REFERENCE_NAV_FORMS; form++) {
-            run_reference(&other, form, states, 0);
+            nav_history_of_reference(&other, form, states, 0);
             is_as_noted(&other, states, "conventional or Joseph");
-            double off = apart(&other, root_of(states), states);
+            double off = nav_histories_apart(&other, root_of(states), states);
             printf("%d states, form %d against the square root: %.1e\n", states, form, off);
             TEST_ASSERT_TRUE(off < 1e-6);
         }
@@ -256,9 +139,9 @@ static void ours_in_double_is_the_thesis_form(void)
 {
     const nav_variant_t *const both[2] = { &n9d, &n12d };
     for (int i = 0; i < 2; i++) {
-        run_ours(&ours, both[i], false);
+        nav_history_of_ours(&ours, both[i], false);
         is_as_noted(&ours, both[i]->states, "U D U'");
-        double off = apart(&ours, root_of(both[i]->states), both[i]->states);
+        double off = nav_histories_apart(&ours, root_of(both[i]->states), both[i]->states);
         printf("%s against the square root: %.1e\n", both[i]->name, off);
         TEST_ASSERT_TRUE(off < 1e-6);
         TEST_ASSERT_TRUE(ours.least_d > 0.0);
@@ -269,8 +152,8 @@ static void ours_in_float_is_right_to_two_thousandths(void)
 {
     const nav_variant_t *const both[2] = { &n9f, &n12f };
     for (int i = 0; i < 2; i++) {
-        run_ours(&ours, both[i], false);
-        double off = apart(&ours, root_of(both[i]->states), both[i]->states);
+        nav_history_of_ours(&ours, both[i], false);
+        double off = nav_histories_apart(&ours, root_of(both[i]->states), both[i]->states);
         printf("%s against the square root: %.1e\n", both[i]->name, off);
         TEST_ASSERT_TRUE(off < 2e-3);
         TEST_ASSERT_TRUE(ours.least_d > 0.0);
@@ -282,8 +165,8 @@ static void noise_in_turns_costs_four_thousandths_at_most(void)
 {
     for (int i = 0; i < NAV_ALL; i++) {
         const nav_variant_t *v = nav_all[i];
-        run_ours(&ours, v, true);
-        double off = apart(&ours, root_of(v->states), v->states);
+        nav_history_of_ours(&ours, v, true);
+        double off = nav_histories_apart(&ours, root_of(v->states), v->states);
         printf("%s, noise of one state per step: %.1e\n", v->name, off);
         TEST_ASSERT_TRUE(off < 4e-3);
         TEST_ASSERT_TRUE(off > 1e-4);
@@ -293,7 +176,7 @@ static void noise_in_turns_costs_four_thousandths_at_most(void)
 /* (3.5) forgets the position at every step: its sigma at 399 s without GPS would be a step's, not 226 m. */
 static void printed_phi_forgets_the_position(void)
 {
-    run_reference(&other, REFERENCE_NAV_ROOT, 9, PRINTED_PHI);
+    nav_history_of_reference(&other, REFERENCE_NAV_ROOT, 9, PRINTED_PHI);
     TEST_ASSERT_TRUE(other.sigma[398][0] < 0.1);
     TEST_ASSERT_TRUE(root[0].sigma[398][0] > 226.0);
 }
@@ -301,7 +184,7 @@ static void printed_phi_forgets_the_position(void)
 /* (3.32) does not measure the position, which then is never better than velocity and time make it. */
 static void printed_rows_do_not_see_the_position(void)
 {
-    run_reference(&other, REFERENCE_NAV_ROOT, 9, PRINTED_ROWS);
+    nav_history_of_reference(&other, REFERENCE_NAV_ROOT, 9, PRINTED_ROWS);
     TEST_ASSERT_TRUE(other.sigma[159][0] > 50.0);
     TEST_ASSERT_TRUE(root[0].sigma[159][0] < 0.71);
 }

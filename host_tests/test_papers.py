@@ -159,6 +159,24 @@ def paper_004_runs_alone_and_leaves_the_page_alone():
 
 
 @test
+def paper_003_has_rows_in_float():
+    (program,), bands = papers.PAPERS["003"]
+    rows = rows_of("tau", 1, program) + rows_of("closed_loop", 1000, program)
+    judged = lambda of: papers_judge.judge(of, papers_judge.read_expected(bands), True, papers.FULL_RUNS["003"], papers.WANTED["003"])
+    assert judged(copy.deepcopy(rows)) == [] and {row["arithmetic"] for row in rows} == {"double", "float"}
+    # twins: an element of tau wrong by 1e-6 in float, a heading ten times worse
+    for name, metric, change in (("lib_nav", "tau_22", 1 + 1e-6), ("12_states_drift(q1:10_hz)", "heading_without_gps", 10.0)):
+        changed = copy.deepcopy(rows)
+        row = next(r for r in changed if (r["filter"], r["arithmetic"], r["metric"]) == (name, "float", metric))
+        row.update(value=row["value"] * change)
+        assert any(fault.startswith(papers_judge.name_of(row)) for fault in judged(changed)), papers_judge.name_of(row)
+    # a rule of both is of double and fixed point
+    both = {**rule(filter="lib_nav", experiment="tau", metric="tau_22"), "arithmetic": "both"}
+    assert [papers_judge.fits(made(filter="lib_nav", experiment="tau", metric="tau_22", arithmetic=a), both)
+            for a in papers_judge.ARITHMETICS] == [True, False, True]
+
+
+@test
 def a_seed_gives_the_same_numbers_again():
     assert rows_of("bursts", 20) == rows_of("bursts", 20)
 
@@ -209,6 +227,7 @@ def a_verdict_must_fit_its_number():
     assert papers_judge.judge_row(made(value=41.0, ci_lo=39.0, ci_hi=43.0), reproduced) == []
     assert papers_judge.agrees(made(metric="m_of_50", value=41.0, ci_lo=20.0, ci_hi=60.0), (30, 40)) is False
     assert papers_judge.published_range("~30") == (27, 33) and papers_judge.published_range("2-2.5") == (2, 2.5)
+    assert papers_judge.published_range("< 2") == (-float("inf"), 2) and papers_judge.published_range("< two") is None
     low, high = papers_judge.published_range("0.1 +-5 %")
     assert abs(low - 0.095) < 1e-12 and abs(high - 0.105) < 1e-12 and papers_judge.published_range("best") is None
 

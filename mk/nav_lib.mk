@@ -9,18 +9,20 @@ NAV_OF_n12d  := -DNAV_STATES=12 -DNAV_DOUBLE
 NAV_TESTS    := $(patsubst host_tests/%.c,$(H)/%,$(filter-out host_tests/test_nav_link.c,$(wildcard host_tests/test_nav*.c)))
 NAV_FLAGS    := -O2 -ffp-contract=off -Ilib/nav/src
 
+# a variant, in a folder, with flags
 define nav_variant
-$(H)/nav/$(1)/%.o: %.c Makefile mk/nav_lib.mk
+$(2)/nav/$(1)/%.o: %.c Makefile mk/nav_lib.mk
 	@mkdir -p $$(@D)
-	@$(HOST_CC) $(HOST_FLAGS) $(NAV_FLAGS) $(NAV_OF_$(1)) -DNAV_VARIANT=$(1) $(WARNINGS) $(SANITIZE) -MMD -MP -c $$< -o $$@
+	@$(HOST_CC) $(HOST_FLAGS) $(NAV_FLAGS) $(NAV_OF_$(1)) -DNAV_VARIANT=$(1) $(WARNINGS) $(3) -MMD -MP -c $$< -o $$@
 
-$(H)/nav/$(1).o: $(NAV_SRC:%.c=$(H)/nav/$(1)/%.o)
+$(2)/nav/$(1).o: $(NAV_SRC:%.c=$(2)/nav/$(1)/%.o)
 	@ld -r $$^ -o $$@.all
 	@objcopy --keep-global-symbol=$(1) $$@.all $$@
 endef
-$(foreach variant,$(NAV_VARIANTS),$(eval $(call nav_variant,$(variant))))
+$(foreach variant,$(NAV_VARIANTS),$(eval $(call nav_variant,$(variant),$(H),$(SANITIZE))))
 
 $(NAV_TESTS): $(NAV_VARIANTS:%=$(H)/nav/%.o) $(H)/host_tests/nav_flights.o
+$(H)/test_nav_covariance: $(addprefix $(H)/host_tests/,nav_histories.o reference_nav.o)
 
 # lib/nav alone in the simulated chip: cycles of each slot, flash, stack, and every bit beside the PC's (build/host/nav_chip_12 ELF SECONDS)
 NAV_CHIP_DEPS := host_tests/avr/nav_slots.c host_tests/avr/nav_box.h $(wildcard lib/nav/src/*) Makefile mk/nav_lib.mk

@@ -18,6 +18,13 @@ $(P)/%.o: %.c Makefile mk/papers.mk
 $(P)/paper%: $(P)/host_tests/papers/paper%.o $(PAPERS_OBJ)
 	@$(HOST_CXX) $^ -lm -o $@
 
+# paper 003 asks lib/nav, not the filters
+NAV_PAPER := $(patsubst %.cpp,$(P)/%.o,$(wildcard host_tests/papers/navigation/*.cpp)) $(addprefix $(P)/host_tests/papers/,program.o report.o statistics.o model.o) \
+             $(addprefix $(P)/host_tests/,reference_nav.o nav_flights.o nav_histories.o support_flight.o support_random.o) $(NAV_VARIANTS:%=$(P)/nav/%.o)
+$(foreach variant,$(NAV_VARIANTS),$(eval $(call nav_variant,$(variant),$(P))))
+$(P)/paper003: $(P)/host_tests/papers/paper003.o $(NAV_PAPER)
+	@$(HOST_CXX) $^ -lm -o $@
+
 # paper 002's filters once more, as C++ with integers that count: what does not compile with them is named by the compiler
 OPERATIONS := host_tests/papers/operations
 LISTED     := $(shell sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter_list.h)
@@ -50,7 +57,7 @@ $(P)/operations/family.o: $(OPERATIONS)/family.cpp $(wildcard lib/filters/src/*.
 $(P)/products000: $(addprefix $(P)/operations/,family.o synth.o synth_opt.o synth_plus.o synth_common.o filter_common.o fx.o)
 	@$(HOST_CXX) $^ -lm -o $@
 
-PAPERS := $(P)/paper000 $(P)/paper001 $(P)/paper002 $(P)/paper004_board $(P)/operations002 $(P)/products000
+PAPERS := $(P)/paper000 $(P)/paper001 $(P)/paper002 $(P)/paper003 $(P)/paper004_board $(P)/operations002 $(P)/products000
 paper_programs: $(PAPERS)
 
 ## papers: the experiments of the papers, double and fixed point, beside the printed numbers, into docs/papers.md (2 minutes; RUNS=2000: judged, but page and JSON are left alone)

@@ -13,11 +13,14 @@ import re
 from papers_bands import BOUND_RULES, Fault, Rows, band_of, faulty_cells, limit_of, too_wide, verdict_by
 
 FIELDS = ["experiment", "filter", "arithmetic", "metric", "low", "high", "published", "verdict", "reason"]
+ARITHMETICS = ("double", "float", "fixed")
+BOTH = ("double", "fixed")
 VERDICTS = ("", "reproduced", "not reproduced", "refuted", "not comparable")
 
 
 def read_expected(path):
-    """Rows of FIELDS; experiment and filter are patterns (several words: any of them), arithmetic is double, fixed or both; a bound that
+    """Rows of FIELDS; experiment and filter are patterns (several words: any of them), arithmetic is double, float, fixed or both, which is double
+    and fixed; a bound that
     is empty does not bind."""
     rows = []
     with open(path, encoding="utf-8", newline="") as file:
@@ -28,7 +31,7 @@ def read_expected(path):
         if len(cells) != len(FIELDS):
             raise Fault(f"{path}:{number}: {len(cells)} fields, wanted {','.join(FIELDS)}")
         row = dict(zip(FIELDS, cells), line=f"{path}:{number}", matched=0)
-        if (row["verdict"] not in VERDICTS and not BOUND_RULES.match(row["verdict"])) or row["arithmetic"] not in ("double", "fixed", "both"):
+        if (row["verdict"] not in VERDICTS and not BOUND_RULES.match(row["verdict"])) or row["arithmetic"] not in (*ARITHMETICS, "both"):
             raise Fault(f"{path}:{number}: verdict '{row['verdict']}' or arithmetic '{row['arithmetic']}' is unknown")
         if bool(row["published"]) != bool(row["verdict"]) or (row["verdict"] and not row["reason"]):
             raise Fault(f"{path}:{number}: what is published has a verdict and a reason, and nothing else has a verdict")
@@ -44,7 +47,8 @@ def read_expected(path):
 
 
 def published_range(text):
-    """(low, high) of "30-40", of "~30" (10 % to either side) of a number with its tolerance "0.0867 +-5 %" and of a whole number; None for words."""
+    """(low, high) of "30-40", of "~30" (10 % to either side) of a number with its tolerance "0.0867 +-5 %", of "< 2" and of a whole
+    number; None for words."""
     found = re.match(r"(\d+(?:\.\d+)?)-(\d+(?:\.\d+)?)$", text)
     if found:
         return float(found.group(1)), float(found.group(2))
@@ -55,6 +59,9 @@ def published_range(text):
     if found:
         middle, part = float(found.group(1)), float(found.group(2)) / 100
         return middle * (1 - part), middle * (1 + part)
+    found = re.match(r"< (\d+(?:\.\d+)?)$", text)
+    if found:
+        return -math.inf, float(found.group(1))
     found = re.match(r"(\d+)$", text)
     return (float(found.group(1)),) * 2 if found else None
 
@@ -63,10 +70,14 @@ def name_of(row):
     return f"{row['experiment']}, {row['filter']} ({row['arithmetic']}), {row['metric']}"
 
 
+def arithmetics_of(rule):
+    return BOTH if rule["arithmetic"] == "both" else (rule["arithmetic"],)
+
+
 def fits(row, rule):
     return (any(fnmatch.fnmatchcase(row["experiment"], p) for p in rule["experiment"].split()) and
             any(fnmatch.fnmatchcase(row["filter"], p) for p in rule["filter"].split()) and
-            rule["arithmetic"] in ("both", row["arithmetic"]) and row["metric"] == rule["metric"])
+            row["arithmetic"] in arithmetics_of(rule) and row["metric"] == rule["metric"])
 
 
 VERDICT_RUNS = 10000
@@ -129,7 +140,7 @@ def judge(rows, expected, partial=False, full_runs=VERDICT_RUNS, wanted=BANDED):
     faults, claims, of_run = [], {}, Rows(rows)
     fixed = {row["filter"] for row in rows if row["arithmetic"] == "fixed" and "(" not in row["filter"]}  # with brackets: of one tuning
     for rule in expected:
-        matched = {"double": set(), "fixed": set()}
+        matched = {arithmetic: set() for arithmetic in ARITHMETICS}
         for row in rows:
             if fits(row, rule):
                 target = row
@@ -148,7 +159,7 @@ def judge(rows, expected, partial=False, full_runs=VERDICT_RUNS, wanted=BANDED):
         if partial:
             continue
         for name in rule["filter"].split():
-            for arithmetic in ("double", "fixed") if rule["arithmetic"] == "both" else (rule["arithmetic"],):
+            for arithmetic in arithmetics_of(rule):
                 if not any(fnmatch.fnmatchcase(f, name) for f in matched[arithmetic]):
                     faults.append(f"{rule['line']}: no number for {rule['experiment']}, {name} ({arithmetic}), {rule['metric']}")
     if not partial:

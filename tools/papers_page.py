@@ -153,12 +153,13 @@ def between(text, paper):
 
 
 def write_page(paper, rows, options):
-    """The part of a paper, by the function that makes its text (papers_page_synthesis.py has those of 000 and 001, papers_page_structure.py that
-    of 004)."""
-    import papers_page_structure  # noqa: E402, which import this module
+    """The part of a paper, by the function that makes its text (papers_page_synthesis.py has those of 000 and 001, papers_page_navigation.py that
+    of 003, papers_page_structure.py that of 004)."""
+    import papers_page_navigation  # noqa: E402, which import this module
+    import papers_page_structure  # noqa: E402
     import papers_page_synthesis  # noqa: E402
     make = {"000": papers_page_synthesis.page_text_000, "001": papers_page_synthesis.page_text_001, "002": page_text,
-            "004": papers_page_structure.page_text_004}[paper]
+            "003": papers_page_navigation.page_text_003, "004": papers_page_structure.page_text_004}[paper]
     begin, end = markers(paper)
     before, _, after = between(DOCUMENT.read_text(encoding="utf-8"), paper)
     part = make(rows, options)

@@ -24,7 +24,14 @@ void print(const std::string &experiment, const std::string &filter, Arithmetic 
 
 const char *text(Arithmetic arithmetic)
 {
-    return arithmetic == Arithmetic::in_double ? "double" : "fixed";
+    switch (arithmetic) {
+    case Arithmetic::in_double:
+        return "double";
+    case Arithmetic::in_float:
+        return "float";
+    default:
+        return "fixed";
+    }
 }
 
 void row(const std::string &experiment, const std::string &filter, Arithmetic arithmetic, const std::string &metric,

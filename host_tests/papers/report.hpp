@@ -10,7 +10,7 @@
 
 namespace papers
 {
-enum class Arithmetic { in_double, fixed };
+enum class Arithmetic { in_double, in_float, fixed };
 
 const char *text(Arithmetic arithmetic);
 

@@ -1,0 +1,31 @@
+// Paper 003: the experiments of its INS/GNSS filter, by the references in Eigen and by lib/nav in double and float.
+#ifndef PAPERS_NAVIGATION_H
+#define PAPERS_NAVIGATION_H
+
+#include "../report.hpp"
+
+extern "C" {
+#include "nav_histories.h"
+}
+
+namespace papers::navigation
+{
+// The arithmetic that a variant of lib/nav calculates in.
+inline Arithmetic arithmetic_of(const nav_variant_t &variant)
+{
+    return variant.in_double ? Arithmetic::in_double : Arithmetic::in_float;
+}
+
+// Dip, declination, tau (3.34) of the Earth's field in nT.
+void tau(const Options &options);
+
+// Sigmas without closed loop at 160, 399 and 500 s of the flight of 3.4, by five forms.
+void covariance(const Options &options);
+
+// Errors in closed loop, one flight for 500 runs, without GPS in 160..400 s: lib/nav in float with its queue, the field
+// at 1 and 10 Hz; and in double without queue, the field at 100 Hz.
+void closed_loop(const Options &options);
+void closed_loop_100_hz(const Options &options);
+} // namespace papers::navigation
+
+#endif
