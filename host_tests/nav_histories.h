@@ -1,4 +1,4 @@
-/* Sigmas of paper 003: its covariance along the flight of 3.4, linearised about the truth, by references and lib/nav. */
+/* Sigmas of paper 003: covariance along the flight of 3.4, linearised about the truth, by references and lib/nav. */
 #ifndef NAV_HISTORIES_H
 #define NAV_HISTORIES_H
 
