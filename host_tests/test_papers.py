@@ -161,7 +161,7 @@ def paper_004_runs_alone_and_leaves_the_page_alone():
 @test
 def paper_003_has_rows_in_float():
     (program,), bands = papers.PAPERS["003"]
-    rows = rows_of("tau", 1, program) + rows_of("closed_loop", 1000, program)
+    rows = rows_of("tau", 1, program) + rows_of("closed_loop", 2000, program)
     judged = lambda of: papers_judge.judge(of, papers_judge.read_expected(bands), True, papers.FULL_RUNS["003"], papers.WANTED["003"])
     assert judged(copy.deepcopy(rows)) == [] and {row["arithmetic"] for row in rows} == {"double", "float"}
     # twins: an element of tau wrong by 1e-6 in float, a heading ten times worse

@@ -12,7 +12,8 @@ namespace papers::navigation
 {
 namespace
 {
-constexpr int runs_of_a_flight = 500;
+constexpr int runs_of_a_flight = 200; // so that the median of few still has an interval
+constexpr int most_flights = 20;
 constexpr double degree = 57.29577951308232;
 constexpr int lost = 160; // s: GPS is there up to here and again from 400 s on
 constexpr int back = 399;
@@ -95,7 +96,7 @@ nav_plan_t plan_of(const Case &which)
 
 void fly(const char *experiment, const Case &which, const Options &options, Progress &progress)
 {
-    const int flights = std::max(1, options.runs / runs_of_a_flight);
+    const int flights = std::clamp(options.runs / runs_of_a_flight, 1, most_flights);
     const auto flight = std::make_unique<nav_flight_t>();
     std::array<std::vector<double>, metrics.size()> values;
     nav_plan_t plan = plan_of(which);
