@@ -8,6 +8,8 @@
 
 #include "simrun.h"
 
+#define DUE_MAX_US 1e12
+
 enum { FRAME_BYTES_MAX = 256, ANSWER_MAX = 254, LINE_CHARACTERS = 16 + 2 * FRAME_BYTES_MAX + 8, SILENT_MS = 2000 };
 
 /* of the board's records: the greeting with its window, the answer with the bytes it has taken */
@@ -84,7 +86,7 @@ static void take_line(const char *text, unsigned line)
 {
     char *at;
     frame_t frame = { .due_us = strtod(text, &at), .at = byte_count };
-    if (at == text || *at != ' ' || !(frame.due_us >= 0.0)) {
+    if (at == text || *at != ' ' || !(frame.due_us >= 0.0 && frame.due_us <= DUE_MAX_US)) {
         refuse(line, "a frame is 'DUE_US HEX'");
     }
     if (frame_count != 0 && frame.due_us < frames[frame_count - 1].due_us) {
@@ -155,7 +157,7 @@ static void on_record(void)
             sent = taken;
         }
         answered++;
-        if (answered == frame_count) {
+        if (next_frame == frame_count && taken == sent) { /* a damaged frame may have had two answers */
             over_at = mcu->cycle;
             stats_streaming_ends();
         }

@@ -212,6 +212,20 @@ class Judge(unittest.TestCase):
         self.assertEqual([row[0] for row in judge.intervals(made, 60.0)], ["GPS", "no GPS", "GPS"])
 
 
+    def test_the_clock_may_wrap_in_flight(self):
+        made = flight.simulated(flight.Wish(seconds=20.0, without=((8.0, 14.0),)))
+        late = flight.simulated(flight.Wish(seconds=20.0, without=((8.0, 14.0),)))
+        shift = (1 << 32) - 9_000_000
+        late.rows = [(kind, (t_us + shift) % (1 << 32), values) for kind, t_us, values in late.rows]
+        late.truth_t_us = [(t_us + shift) % (1 << 32) for t_us in late.truth_t_us]
+        self.assertAlmostEqual(late.seconds, made.seconds)
+        np.testing.assert_allclose(late.gps_gaps(), np.array(made.gps_gaps()) + shift * 1e-6)
+        outcome = exchange.Outcome(states=[frames.State(t_us, (*true, 0, 0, 0)) for t_us, true in zip(late.truth_t_us, late.truth)])
+        found = judge.errors(late, outcome)
+        self.assertEqual(len(found.t_s), len(late.truth))
+        np.testing.assert_allclose(found.t_s[-1] - found.t_s[0], 19.9)
+
+
 class Command(unittest.TestCase):
     def test_flight_refuses_what_makes_no_sense(self):
         for words, told in ((("--seconds", 1), "--seconds is from 2 to 4000"), (("--gps-late", -1), "--gps-late is from 0"),
@@ -220,6 +234,14 @@ class Command(unittest.TestCase):
             status, said = run("flight", "/tmp/never-written.csv", *words)
             self.assertEqual(status, 2)
             self.assertIn(told, said)
+
+    def test_nav_refuses_before_the_flight_what_it_could_not_write_behind_it(self):
+        for words, told in ((("-o", "/no/such/x.csv"), "no folder /no/such"), (("--plot", "/no/such/x.png"), "no folder"),
+                            (("--plot", "x.txt"), "ends in none of")):
+            status, said = run("nav", "--board", "pc", *words)
+            self.assertEqual(status, 2)
+            self.assertIn(told, said)
+            self.assertNotIn("of flight in", said)
 
     def test_nav_refuses_settings_that_are_none(self):
         for words, told in ((("--set", "gate"), "--set wants NAME=NUMBER"), (("--set", "gates=1"), "there is no setting"),

@@ -7,7 +7,8 @@
 /* Where column j begins. */
 static uint8_t column(uint8_t j)
 {
-    return (uint8_t)((uint8_t)(j * (uint8_t)(j + 1U)) / 2U);
+    uint8_t next = (uint8_t)(j + 1U);
+    return (uint8_t)((uint16_t)((uint16_t)j * (uint16_t)next) / 2U);
 }
 
 void nav_ud_start(nav_real_t ud[NAV_PACKED], const nav_real_t sigma[4])

@@ -14,6 +14,7 @@ from tilt.errors import TiltError
 NAME = "nav"
 SUMMARY = "run a flight through the navigation filter (paper 003)"
 TOLD_REFUSALS = 10
+PICTURES = (".png", ".svg", ".pdf")
 
 
 def arguments(parser):
@@ -100,6 +101,19 @@ def check_start(sent, outcome):
             raise TiltError(f"{frames.answer_text(answer.code)}: a setting is outside its range or not finite (docs/navigation.md, --set)")
 
 
+def check_files(args, flight):
+    """TiltError before the flight for what could not be written behind it."""
+    import pathlib
+
+    for path in filter(None, (args.output, args.plot)):
+        if not pathlib.Path(path).parent.is_dir():
+            raise TiltError(f"{path}: no folder {pathlib.Path(path).parent}")
+    if args.plot and pathlib.Path(args.plot).suffix.lower() not in PICTURES:
+        raise TiltError(f"--plot: {args.plot} ends in none of {' '.join(PICTURES)}")
+    if args.plot and not flight.truth:
+        raise TiltError(f"--plot draws errors: {args.stream} has no truth")
+
+
 def show(args, flight, outcome):
     from tilt.navigation import judge
 
@@ -124,6 +138,7 @@ def run(args):
         raise TiltError(f"--every is at least 1, not {args.every}")
     chosen = dict(settings.of_option(text) for text in args.set)
     flight = flight_of(args)
+    check_files(args, flight)
     began = time.perf_counter()
     sent = exchange.records(flight, chosen, args.every)
     done = ran(args, sent)
@@ -133,9 +148,9 @@ def run(args):
     tell_stats(done.stats)
     tell_refusals(args, flight, sent, done.outcome)
     complete = whole(sent, done.outcome)
+    show(args, flight, done.outcome)
     if args.output:
         write(args.output, done.outcome)
-    show(args, flight, done.outcome)
     if not done.outcome.healthy:
         print("the filter's covariance or state is not healthy")
     return 0 if complete and done.outcome.healthy else 1

@@ -21,7 +21,7 @@ from tilt.errors import TiltError, at
 from tilt.navigation import rotation, settings
 
 WIDTHS = {"start": 10, "imu": 6, "field": 3, "gps": 6, "down": 1, "truth": 10}
-T_US_MAX = 0xFFFFFFFF
+T_US_MAX, CLOCK_US = 0xFFFFFFFF, 1 << 32
 
 
 @dataclass
@@ -33,16 +33,28 @@ class Flight:
     truth_t_us: list = field(default_factory=list)
     truth: list = field(default_factory=list)
 
+    def unwrapped_us(self, times_us):
+        """Times of the 32-bit clock, in order but for single ones, as whole numbers that go on behind its wrap; from the first imu's on."""
+        last, found = next((t_us for kind, t_us, _ in self.rows if kind == "imu"), 0), []
+        for t_us in times_us:
+            found.append(last + (t_us - last + CLOCK_US // 2) % CLOCK_US - CLOCK_US // 2)
+            last = max(last, found[-1])
+        return found
+
+    def seconds_of(self, wanted):
+        """Times of the rows of this kind."""
+        times = self.unwrapped_us([t_us for _, t_us, _ in self.rows])
+        return [t_us * 1e-6 for t_us, (kind, _, _) in zip(times, self.rows) if kind == wanted]
+
     @property
     def seconds(self):
-        times = [t_us for kind, t_us, _ in self.rows if kind == "imu"]
-        return (times[-1] - times[0]) * 1e-6 if times else 0.0
+        imu = self.seconds_of("imu")
+        return imu[-1] - imu[0] if imu else 0.0
 
     def gps_gaps(self, longer_than_s=2.5):
         """[(from s, to s)] without GPS."""
-        times = [t_us * 1e-6 for kind, t_us, _ in self.rows if kind == "gps"]
-        imu = [t_us * 1e-6 for kind, t_us, _ in self.rows if kind == "imu"]
-        edges = [imu[0], *times, imu[-1]] if imu else []
+        imu = self.seconds_of("imu")
+        edges = [imu[0], *self.seconds_of("gps"), imu[-1]] if imu else []
         return [(a, b) for a, b in zip(edges, edges[1:]) if b - a > longer_than_s]
 
 

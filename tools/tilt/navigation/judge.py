@@ -22,8 +22,8 @@ def errors(flight, outcome):
     """True minus computed where both are known; None without truth."""
     if not flight.truth:
         return None
-    truth_t_us = np.array(flight.truth_t_us)
-    state_t_us = np.array([state.t_us for state in outcome.states])
+    truth_t_us = np.array(flight.unwrapped_us(flight.truth_t_us))
+    state_t_us = np.array(flight.unwrapped_us([state.t_us for state in outcome.states]))
     _, at_truth, at_state = np.intersect1d(truth_t_us, state_t_us, return_indices=True)
     true, computed = np.array(flight.truth)[at_truth], outcome.numbers[at_state]
     turned = rotation.euler(true[:, :4]) - rotation.euler(rotation.normalised(computed[:, :4]))
