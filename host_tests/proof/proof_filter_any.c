@@ -51,6 +51,15 @@
 #undef parameters
 #undef legal
 #undef forget
+#define parameters parameters_auto
+#define legal legal_auto
+#define memory_ms memory_ms_auto
+#define variance_lsb2_q8 variance_lsb2_q8_auto
+#include "auto_setup.c"
+#undef parameters
+#undef legal
+#undef memory_ms
+#undef variance_lsb2_q8
 #define parameters parameters_kf3
 #define limited limited_kf3
 #define correct correct_kf3

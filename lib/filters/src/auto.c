@@ -17,16 +17,30 @@ static int32_t warm_up(auto_t *f, int16_t z_lsb)
     return median_q16;
 }
 
-/* One sample on; x within its bound by the high word: 4608 LSB and a fraction count as 4608. */
-FX_INLINE void predict(auto_t *f, auto_member_t *m)
+/* x within its bound by the high word: 4608 LSB and a fraction count as 4608. */
+FX_INLINE int32_t within_x(auto_t *f, int32_t x_lsb_q16)
 {
-    int32_t x = m->x_lsb_q16 + m->rate_lsb_q16;
-    uint16_t whole_lsb = (uint16_t)((uint32_t)x >> 16);
+    uint16_t whole_lsb = (uint16_t)((uint32_t)x_lsb_q16 >> 16);
     if ((uint16_t)(whole_lsb + FILTER_X_MAX_LSB) >= 2U * FILTER_X_MAX_LSB) {
-        x = (x < 0) ? -AUTO_X_MAX_LSB_Q16 : AUTO_X_MAX_LSB_Q16;
+        x_lsb_q16 = (x_lsb_q16 < 0) ? -AUTO_X_MAX_LSB_Q16 : AUTO_X_MAX_LSB_Q16;
         f->flags |= FILTER_SATURATED;
     }
-    m->x_lsb_q16 = x;
+    return x_lsb_q16;
+}
+
+FX_INLINE int32_t within_rate(auto_t *f, int32_t rate_lsb_q16)
+{
+    if (fx_abs32(rate_lsb_q16) > f->rate_max_lsb_q16) {
+        rate_lsb_q16 = (rate_lsb_q16 < 0) ? -(int32_t)f->rate_max_lsb_q16 : (int32_t)f->rate_max_lsb_q16;
+        f->flags |= FILTER_SATURATED;
+    }
+    return rate_lsb_q16;
+}
+
+/* One sample on. */
+FX_INLINE void predict(auto_t *f, auto_member_t *m)
+{
+    m->x_lsb_q16 = within_x(f, m->x_lsb_q16 + m->rate_lsb_q16);
 }
 
 /* What the update of one member told. */
@@ -72,12 +86,7 @@ FX_INLINE uint16_t correct(auto_t *f, auto_member_t *m, uint16_t final_k, uint32
     m->x_lsb_q16 += below ? -x_step : x_step;
     FX_FENCE();
     int32_t rate_step = (int32_t)fx_mul24_uq24(size_lsb_uq8, square_uq32 >> 8);
-    int32_t rate = m->rate_lsb_q16 + (below ? -rate_step : rate_step);
-    if (fx_abs32(rate) > f->rate_max_lsb_q16) {
-        rate = (rate < 0) ? -(int32_t)f->rate_max_lsb_q16 : (int32_t)f->rate_max_lsb_q16;
-        f->flags |= FILTER_SATURATED;
-    }
-    m->rate_lsb_q16 = rate;
+    m->rate_lsb_q16 = within_rate(f, m->rate_lsb_q16 + (below ? -rate_step : rate_step));
     return gain_uq16;
 }
 
@@ -96,7 +105,8 @@ FX_NOINLINE void step(auto_t *f, uint8_t i, int16_t z_lsb, answer_t *a)
     if (size_lsb_uq8 < bounded) {
         bounded = (uint16_t)size_lsb_uq8;
     }
-    m->score_lsb2_uq8 += (fx_mul_u16(bounded, bounded) >> 8) - (m->score_lsb2_uq8 >> 3);
+    uint32_t square_lsb2_uq8 = fx_mul_u16(bounded, bounded) >> 8;
+    m->score_lsb2_uq8 = m->score_lsb2_uq8 - (m->score_lsb2_uq8 >> 3) + square_lsb2_uq8;
     FX_FENCE();
     uint32_t gate_lsb_uq8 = f->gate_lsb_uq8;
     if (i == (uint8_t)AUTO_SLOW) {
