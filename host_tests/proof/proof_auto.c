@@ -31,7 +31,9 @@ void auto_hold(auto_t *f);
 
 /*@ requires TOLD(f) && NOISE(f) && RUNNING(f);
     requires i < 3 && SAMPLE(z_lsb);
-    assigns f->u.members[i], f->flags, *a \from *f, i, z_lsb;
+    assigns f->u.members[i], f->flags \from *f, i, z_lsb;
+    assigns a->innovation_lsb_q16, a->gain_uq16, a->flags \from f->u.members[i].x_lsb_q16, f->gate_lsb_uq8, z_lsb;
+    ensures \initialized(&a->innovation_lsb_q16) && \initialized(&a->gain_uq16) && \initialized(&a->flags);
     ensures MEMBER(&f->u.members[i]);
     ensures -U_END <= a->innovation_lsb_q16 <= U_END;
     ensures a->gain_uq16 <= GAIN_END;
