@@ -7,16 +7,16 @@
 
 #include "auto.h"
 
-#define X_MAX_Q16 301989888    /* 4608 LSB */
-#define Z_LEAST_Q16 268435456  /* 4096 LSB, below 0 */
-#define Z_MOST_Q16 268369920   /* 4095 LSB */
-#define U_END 570425344        /* 8704 LSB */
-#define GATE_END 0x7FFFFFFF    /* none */
+#define X_MAX_Q16 301989888   /* 4608 LSB */
+#define Z_LEAST_Q16 268435456 /* 4096 LSB, below 0 */
+#define Z_MOST_Q16 268369920  /* 4095 LSB */
+#define U_END 570425344       /* 8704 LSB */
+#define GATE_END 0x7FFFFFFF   /* none */
 #define K_LEAST 256
 #define K_END 39322
-#define GAIN_END 56000         /* 0.854: of 0.84 what intervals of k keep */
-#define SQUARE_END 16776704    /* the square of any eight sigmas of 16 bits */
-#define SCORE_END 134213639    /* 8 SQUARE_END + 7, below 2^27 */
+#define GAIN_END 63019      /* 0.96: of 0.84 what the widest interval of k keeps */
+#define SQUARE_END 16776704 /* the square of any eight sigmas of 16 bits */
+#define SCORE_END 134213639 /* 8 SQUARE_END + 7, below 2^27 */
 
 #define WITHIN_X(x) (-X_MAX_Q16 <= (x) <= X_MAX_Q16)
 #define SAMPLE(z) (-4096 <= (z) <= 4095)
@@ -24,8 +24,8 @@
 #define MEMBER(m) (MOTION(m) && (m)->score_lsb2_uq8 <= SCORE_END && -5 < (m)->refused < 5)
 #define FINAL_K(k) (K_LEAST <= (k) <= K_END)
 #define NOISE(f) (3 <= (f)->r_lsb2_q8 <= 256000 && (f)->gate_lsb_uq8 <= GATE_END)
-#define TOLD(f)                                                                                              \
-    ((f)->rate_max_lsb_q16 <= X_MAX_Q16 && (f)->gate_sigma_q8 <= 4096 && FINAL_K((f)->final_k_uq16[0]) &&    \
+#define TOLD(f)                                                                                           \
+    ((f)->rate_max_lsb_q16 <= X_MAX_Q16 && (f)->gate_sigma_q8 <= 4096 && FINAL_K((f)->final_k_uq16[0]) && \
      FINAL_K((f)->final_k_uq16[1]) && FINAL_K((f)->final_k_uq16[2]) && (f)->chosen < 3 && (f)->shown < 3)
 #define RUNNING(f) \
     ((f)->collected == 5 && MEMBER(&(f)->u.members[0]) && MEMBER(&(f)->u.members[1]) && MEMBER(&(f)->u.members[2]))

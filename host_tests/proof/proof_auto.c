@@ -117,11 +117,11 @@ void proof_refused(void)
     }
 }
 
-/* k in ranges, x in ranges of 512 LSB with every innovation towards a sample that one of the range can have. */
+/* k in ranges, x in ranges of 256 LSB with every innovation towards a sample that one of the range can have. */
 static void any_correction(uint16_t from_k, uint16_t to_k)
 {
-    for (int32_t x = -X_MAX_Q16; x < X_MAX_Q16; x += 512L * 65536L) {
-        int32_t to_x = x + 512L * 65536L;
+    for (int32_t x = -X_MAX_Q16; x < X_MAX_Q16; x += 256L * 65536L) {
+        int32_t to_x = x + 256L * 65536L;
         auto_t f;
         any_run(&f);
         auto_member_t *m = &f.u.members[1];
@@ -145,12 +145,10 @@ void proof_correct_member(void)
     for (uint16_t k = K_LEAST; k < 16384U; k *= 2U) {
         any_correction(k, (uint16_t)(2U * k - 1U));
     }
-    uint16_t to = 16383;
-    while (to < K_END) {
-        uint16_t from = (uint16_t)(to + 1U);
-        to = (from + from / 64U < K_END) ? (uint16_t)(from + from / 64U) : K_END;
-        any_correction(from, to);
-    }
+    any_correction(16384, 20479);
+    any_correction(20480, 25599);
+    any_correction(25600, 31999);
+    any_correction(32000, K_END);
 }
 
 /*
