@@ -53,12 +53,12 @@
 #undef forget
 #define parameters parameters_auto
 #define legal legal_auto
-#define memory_ms memory_ms_auto
+#define k_of k_of_auto
 #define variance_lsb2_q8 variance_lsb2_q8_auto
 #include "auto_setup.c"
 #undef parameters
 #undef legal
-#undef memory_ms
+#undef k_of
 #undef variance_lsb2_q8
 #define parameters parameters_kf3
 #define limited limited_kf3
