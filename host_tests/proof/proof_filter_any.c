@@ -76,11 +76,13 @@
 #undef moved
 #undef less
 
+#include "filter_parameter.c"
+
 #include "filter_any.c"
 
 /*
  * Any bytes of a configuration of any filter, and an unknown one. What is told is a parameter of the descriptor, or one
- * of filter_refusal. Options: -eva-split-return-function in_range:full,filter_any_refused:full
+ * of filter_refusal. Options: -eva-split-return-function filter_parameter_in_range:full,filter_any_refused:full
  */
 void proof_filter_any_refused(void)
 {
