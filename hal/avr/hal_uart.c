@@ -171,8 +171,8 @@ bool hal_uart_tx_write(const char *line, uint8_t length)
     }
     uint8_t at = tx.staged;
     while (length-- != 0) {
-        tx_buffer[at] = (uint8_t)*line++;
-        at = (uint8_t)((uint8_t)(at + 1u) & TX_MASK);
+        tx_buffer[at++] = (uint8_t)*line++;
+        at = (uint8_t)(at & TX_MASK);
     }
     tx.staged = at;
     hal_uart_tx_commit();

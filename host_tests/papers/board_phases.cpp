@@ -219,7 +219,9 @@ Interval root(const Interval &v)
 
 void phases(const Options &options)
 {
-    const auto part = [&options](int full) { return std::max(2, std::min(full, full * options.runs / 10000)); };
+    const auto part = [&options](int full) {
+        return options.runs >= 1000 ? full : std::max(2, full * options.runs / 10000);
+    };
     const Runs training = make(options.seed * 1000U, part(training_runs));
     const Runs fresh = make(options.seed * 1000U + 500U, part(fresh_runs));
     const int runs = static_cast<int>(fresh.size());
