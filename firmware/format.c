@@ -91,16 +91,14 @@ char *format_hundredths(char *at, int16_t value)
         *at++ = '-';
         rest = (uint16_t)(0u - rest);
     }
-    uint16_t whole = 0;
-    while (rest >= 1000u) {
-        rest = (uint16_t)(rest - 1000u);
-        whole = (uint16_t)(whole + 10u);
+    if (rest < 100u) {
+        *at++ = '0';
+        *at++ = '.';
+        return two_digits(at, (uint8_t)rest, true);
     }
-    while (rest >= 100u) {
-        rest = (uint16_t)(rest - 100u);
-        whole++;
-    }
-    at = format_u16(at, whole);
-    *at++ = '.';
-    return two_digits(at, (uint8_t)rest, true);
+    at = format_u16(at, rest);
+    at[0] = at[-1];
+    at[-1] = at[-2];
+    at[-2] = '.';
+    return at + 1;
 }

@@ -294,7 +294,6 @@ void pipeline_row(row_t *row)
     row->t_us = pipeline.last_us;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         row->lsb[axis] = pipeline.axes[axis].lsb;
-        row->mg[axis] = to_mg(pipeline.a_q8[axis]);
     }
     tilt_angles(&pipeline.tilt, pipeline.a_q8[0], pipeline.a_q8[1], pipeline.a_q8[2]);
     row->roll_cdeg = pipeline.tilt.roll_cdeg;
@@ -302,6 +301,13 @@ void pipeline_row(row_t *row)
     row->flags = pipeline.flags;
     row->flags |= pipeline.tilt.roll_undefined ? ROW_ROLL_UNDEFINED : 0u;
     row->flags |= pipeline.warm_rows != 0 ? ROW_WARMING_UP : 0u;
+}
+
+void pipeline_mg(int16_t mg[3])
+{
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        mg[axis] = to_mg(pipeline.a_q8[axis]);
+    }
 }
 
 void pipeline_row_done(void)

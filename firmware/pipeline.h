@@ -31,7 +31,6 @@ enum row_flag {
 typedef struct {
     uint32_t t_us;
     int16_t lsb[3]; /* as read; in a coasted row the last sample */
-    int16_t mg[3];  /* filtered */
     int16_t roll_cdeg;
     int16_t pitch_cdeg;
     uint16_t flags;
@@ -100,6 +99,9 @@ void pipeline_row(row_t *row);
 
 /* The row went out: start collecting flags anew and count a warm-up row. */
 void pipeline_row_done(void);
+
+/* Filtered accelerations of the row, mg; apart from the row, because the plotter's rows do without. */
+void pipeline_mg(int16_t mg[3]);
 
 /* Roll and pitch of the newest raw sample, for the plotter. */
 void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg);

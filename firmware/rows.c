@@ -27,6 +27,8 @@ void rows_enable(bool now_enabled)
 
 static char *write_csv(char *at, const row_t *row)
 {
+    int16_t mg[3];
+    pipeline_mg(mg);
     at = format_u32(at, row->t_us);
     for (uint8_t axis = 0; axis < 3; axis++) {
         *at++ = ',';
@@ -34,7 +36,7 @@ static char *write_csv(char *at, const row_t *row)
     }
     for (uint8_t axis = 0; axis < 3; axis++) {
         *at++ = ',';
-        at = format_i16(at, row->mg[axis]);
+        at = format_i16(at, mg[axis]);
     }
     *at++ = ',';
     at = format_i16(at, row->roll_cdeg);
