@@ -94,6 +94,7 @@ FX_INLINE uint16_t correct(auto_t *f, auto_member_t *m, uint16_t final_k, uint32
 FX_NOINLINE void step(auto_t *f, uint8_t i, int16_t z_lsb, answer_t *a)
 {
     auto_member_t *m = &f->u.members[i];
+    FX_FENCE_OF(m); /* else computed from i at each use */
     uint16_t final_k = f->final_k_uq16[i];
     predict(f, m);
     int32_t innovation = (int32_t)z_lsb * 65536 - m->x_lsb_q16;

@@ -72,7 +72,7 @@ typedef struct {
 /* Descriptor in program memory. */
 extern const filter_descriptor_t auto_descriptor;
 
-enum { auto_worst_cycles = 2750 }; /* of auto_update, as in filter.h */
+enum { auto_worst_cycles = 2450 }; /* of auto_update, as in filter.h */
 
 void auto_defaults(auto_config_t *config, uint16_t rate_dhz);
 static inline bool auto_together(const auto_config_t *config)
