@@ -15,33 +15,37 @@
 #define GATE_SIGMA 3.0
 #define S_MAX_PER_R 9.0
 
+#define FACTS_kf TWO_STATE_SUM, 1.0, LINEAR_FORGETS, 0, ENVELOPE_LINEAR
+#define FACTS_lrf TWO_STATE_SUM, 60.85, LINEAR_FORGETS, 0, ENVELOPE_LINEAR
+/* poles at 0.83666: e^-10 after 56 samples */
+#define FACTS_synth SYNTH_SUM, 1.0, 0.0, 56, ENVELOPE_FIXED_GAIN
+#define FACTS_kf3 THREE_STATE_SUM, 1.0, LINEAR_FORGETS, 0, ENVELOPE_FIXED_GAIN
+/* 0.57735 */
+#define FACTS_synth_opt SYNTH_OPT_SUM, 1.0, 0.0, 19, ENVELOPE_FIXED_GAIN
+/* kf's gains at the least R, fixed */
+#define FACTS_synth_plus TWO_STATE_SUM, 1.0, LINEAR_FORGETS, 0, ENVELOPE_FIXED_GAIN
+#define FACTS_sprf 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_STANDS
+#define FACTS_soft 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_REACQUIRES
+#define FACTS_pbf MIXTURE_SUM, 1.0, 800.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_MIXTURE
+#define FACTS_af MIXTURE_SUM, 1.0, 800.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_MIXTURE
+#define FACTS_shrf 0.0, 1.0, 1200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_WAITS
+#define FACTS_adaptive 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_NONE
+#define FACTS_auto 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_NONE
+#define FACTS_sprf_paper 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_NONE
+
+/* A filter without its facts does not compile. */
 filter_facts_t filter_facts(filter_kind_t kind)
 {
     switch (kind) {
-    case FILTER_KIND_kf:
-        return (filter_facts_t){ TWO_STATE_SUM, 1.0, LINEAR_FORGETS, 0, ENVELOPE_LINEAR };
-    case FILTER_KIND_lrf:
-        return (filter_facts_t){ TWO_STATE_SUM, 60.85, LINEAR_FORGETS, 0, ENVELOPE_LINEAR };
-    case FILTER_KIND_synth: /* poles at 0.83666: e^-10 after 56 samples */
-        return (filter_facts_t){ SYNTH_SUM, 1.0, 0.0, 56, ENVELOPE_FIXED_GAIN };
-    case FILTER_KIND_kf3:
-        return (filter_facts_t){ THREE_STATE_SUM, 1.0, LINEAR_FORGETS, 0, ENVELOPE_FIXED_GAIN };
-    case FILTER_KIND_synth_opt: /* 0.57735 */
-        return (filter_facts_t){ SYNTH_OPT_SUM, 1.0, 0.0, 19, ENVELOPE_FIXED_GAIN };
-    case FILTER_KIND_synth_plus: /* kf's gains at the least R, fixed */
-        return (filter_facts_t){ TWO_STATE_SUM, 1.0, LINEAR_FORGETS, 0, ENVELOPE_FIXED_GAIN };
-    case FILTER_KIND_sprf:
-        return (filter_facts_t){ 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_STANDS };
-    case FILTER_KIND_soft:
-        return (filter_facts_t){ 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_REACQUIRES };
-    case FILTER_KIND_pbf:
-    case FILTER_KIND_af:
-        return (filter_facts_t){ MIXTURE_SUM, 1.0, 800.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_MIXTURE };
-    case FILTER_KIND_shrf:
-        return (filter_facts_t){ 0.0, 1.0, 1200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_WAITS };
-    default: /* adaptive, auto, sprf_paper */
-        return (filter_facts_t){ 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_NONE };
+#define FACTS(F)          \
+    case FILTER_KIND_##F: \
+        return (filter_facts_t){ FACTS_##F };
+        FILTER_LIST(FACTS)
+#undef FACTS
+    case FILTER_KIND_COUNT:
+        break;
     }
+    return (filter_facts_t){ 0.0, 0.0, 0.0, 0, ENVELOPE_NONE };
 }
 
 double noise_gain_of(double w1)

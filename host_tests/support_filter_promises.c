@@ -1,17 +1,19 @@
-/* What each filter of the list promises besides the bounds of its state: symmetry, recovery. */
+/* What each filter of the list promises besides the bounds of its state: symmetry, recovery, what its flags mean. */
 #include "support_filters.h"
 
-/*
- * The cores and synth compute magnitudes and round them alike for both signs: exact. synth_plus rounds what rho takes
- * off half up, so that a mirrored step may differ by 2^-16 LSB, and later estimates by the sum of the response to that:
- * 2^-4 LSB allows a sum of 4096.
- */
-int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
-{
-    return (kind == FILTER_KIND_synth_plus) ? 4096 : 0;
-}
+typedef struct {
+    int32_t mirror_lsb_q16;  /* mirror_tolerance_lsb_q16 */
+    uint16_t recovery;       /* recovery_samples */
+    bool joint;              /* has_joint_condition */
+    bool gated_means_unused; /* the functions of the same name */
+    bool starts_with_median;
+} promise_t;
 
 /*
+ * Symmetry: the cores, synth and auto compute magnitudes and round them alike for both signs: exact. synth_plus rounds
+ * what rho takes off half up, so that a mirrored step may differ by 2^-16 LSB, and later estimates by the sum of the
+ * response to that: 2^-4 LSB allows a sum of 4096.
+ *
  * Motion that stops at the start of a gap of n <= 200 samples at 2 LSB per sample: the filter comes back E = 2 n LSB
  * and 2 LSB per sample wrong. From there the error e obeys e' = (I - K H) A e and V = e^T P^-1 e falls by the largest
  * eigenvalue of P'^-1 (I - K H) A P A^T (I - K H)^T at each update, because P' exceeds that product by the noise
@@ -32,36 +34,63 @@ int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
  * and are faster: 100 + 43, rounded up.
  *
  * kf3 comes back as far wrong, and its error obeys the recursion of its P: computed in double for each n, with P held
- * where its range ends, the slowest is below 1/4 LSB from sample 90 on.
+ * where its range ends, the slowest is below 1/4 LSB from sample 90 on. auto: its
+ * three members with gates, restarts and scores in double, for each n: 10 at most (n = 5).
+ *
+ * Joint conditions: reacquire of sprf and soft, of 3..9 only 3, 5 and 9, whose slope is a shift; the stability regions
+ * of synth (a1 and b0) and of synth_plus (its four coefficients).
  */
-enum recovery_of {
-    RECOVERY_kf = 43,
-    RECOVERY_sprf = 43,
-    RECOVERY_soft = 43,
-    RECOVERY_lrf = 114,
-    RECOVERY_synth = 40,
-    RECOVERY_synth_plus = 40,
-    RECOVERY_synth_opt = 14,
-    RECOVERY_sprf_paper = 443,
-    RECOVERY_shrf = 150,
-    RECOVERY_pbf = 150,
-    RECOVERY_af = 150,
-    RECOVERY_kf3 = 90,
-    RECOVERY_adaptive = 90,
-    RECOVERY_auto = 60
-};
+#define PROMISE_kf 0, 43, false, true, true
+#define PROMISE_sprf 0, 43, true, true, true
+#define PROMISE_soft 0, 43, true, false, true
+#define PROMISE_lrf 0, 114, false, true, true
+#define PROMISE_synth 0, 40, true, true, true
+#define PROMISE_synth_plus 4096, 40, true, true, true
+#define PROMISE_synth_opt 0, 14, false, true, true
+#define PROMISE_sprf_paper 0, 443, false, true, false
+#define PROMISE_shrf 0, 150, false, false, true
+#define PROMISE_pbf 0, 150, false, false, true
+#define PROMISE_af 0, 150, false, false, true
+#define PROMISE_kf3 0, 90, false, true, true
+#define PROMISE_adaptive 0, 90, false, false, true
+#define PROMISE_auto 0, 10, false, true, true
 
-/* A filter without an entry does not compile. */
-uint16_t recovery_samples(filter_kind_t kind)
+/* A filter without a promise does not compile. */
+static promise_t promise_of(filter_kind_t kind)
 {
     switch (kind) {
-#define RECOVERY(F)       \
+#define PROMISE(F)        \
     case FILTER_KIND_##F: \
-        return RECOVERY_##F;
-        FILTER_LIST(RECOVERY)
-#undef RECOVERY
+        return (promise_t){ PROMISE_##F };
+        FILTER_LIST(PROMISE)
+#undef PROMISE
     case FILTER_KIND_COUNT:
         break;
     }
-    return 0;
+    return (promise_t){ 0 };
+}
+
+int32_t mirror_tolerance_lsb_q16(filter_kind_t kind)
+{
+    return promise_of(kind).mirror_lsb_q16;
+}
+
+uint16_t recovery_samples(filter_kind_t kind)
+{
+    return promise_of(kind).recovery;
+}
+
+bool has_joint_condition(filter_kind_t kind)
+{
+    return promise_of(kind).joint;
+}
+
+bool gated_means_unused(filter_kind_t kind)
+{
+    return promise_of(kind).gated_means_unused;
+}
+
+bool starts_with_median(filter_kind_t kind)
+{
+    return promise_of(kind).starts_with_median;
 }

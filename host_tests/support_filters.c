@@ -149,22 +149,3 @@ bool init_random(filter_any_t *f, filter_kind_t kind, uint32_t *random, uint32_t
     }
     return false;
 }
-
-/* --- facts about single filters; more, of which a filter without an entry does not compile, beside this file --- */
-
-bool has_joint_condition(filter_kind_t kind)
-{
-    return kind == FILTER_KIND_sprf || kind == FILTER_KIND_soft ||      /* reacquire: of 3..9 only 3, 5, 9: a shift */
-           kind == FILTER_KIND_synth || kind == FILTER_KIND_synth_plus; /* the stability region */
-}
-
-bool gated_means_unused(filter_kind_t kind)
-{
-    return kind != FILTER_KIND_soft && kind != FILTER_KIND_shrf && kind != FILTER_KIND_pbf && kind != FILTER_KIND_af &&
-           kind != FILTER_KIND_adaptive;
-}
-
-bool starts_with_median(filter_kind_t kind)
-{
-    return kind != FILTER_KIND_sprf_paper;
-}
