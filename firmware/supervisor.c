@@ -23,6 +23,7 @@ static bool in_force(void)
            pipeline.axes[AXES - 1].filter.kind == (uint8_t)FILTER_KIND_auto;
 }
 
+/* The signs stay: of an axis that is stuck since before, its last is the best guess. */
 void supervisor_reset(void)
 {
     for (uint8_t axis = 0; axis < AXES; axis++) {

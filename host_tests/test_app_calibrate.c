@@ -50,9 +50,6 @@ static attitude_t tilted(attitude_t a, double degrees)
     return a;
 }
 
-/*
- * A rest that begins while the board still turns is found out at its end, so that it can take two of 2.56 s.
- */
 /* Each of the attitudes for LIES_S, then turned to the next one for TURNS_S; noise of 1 LSB. */
 static void start_lays(const attitude_t *lays, size_t count, adxl345_part_t part)
 {

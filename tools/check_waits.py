@@ -97,11 +97,26 @@ class Code:
     def returns(self, address):
         return self.at[address][0] == "reti"
 
+    def loaded(self, address, register, value):
+        """The last instruction before it, in its function and with no call between, that writes a register loads this constant."""
+        function = self.at[address][4]
+        for before in range(address - 2, address - 60, -2):
+            operation, operands = self.at.get(before, ("", ""))[:2]
+            if before not in self.at:
+                continue  # the second word of an instruction
+            if self.at[before][4] != function or operation in ("call", "rcall"):
+                return False
+            first = operands.partition(",")[0]
+            pair = operation in ("movw", "adiw", "sbiw") and first == "r30"
+            if first == register or pair or "Z+" in operands or "-Z" in operands:
+                return (operation, operands) == ("ldi", f"{register}, {value}")
+        return False
+
     def restores(self, address):
         """Writes SREG, or switches interrupts on; the compiler has its address in Z at times."""
         operation, operands = self.at[address][:2]
-        near = [self.at[a][:2] for a in range(address - 60, address) if a in self.at and self.at[a][4] == self.at[address][4]]
-        by_pointer = operation == "st" and operands.startswith("Z,") and any(o == "ldi" and w == f"r30, {SREG_MEMORY}" for o, w in near)
+        by_pointer = operation == "st" and operands.startswith("Z,") and self.loaded(address, "r30", SREG_MEMORY) \
+            and self.loaded(address, "r31", "0x00")
         return operation in ("sei", "reti") or (operation == "out" and operands.startswith(SREG_IO)) or by_pointer
 
     def handler(self, name, shuns=lambda address: False):
