@@ -1,26 +1,10 @@
 /* auto: gate and restart of the members, the choice by the bounded scores, gaps. */
-#include "auto.h"
+#include "support_auto.h"
 #include "unity.h"
 
 void setUp(void) {}
 
 void tearDown(void) {}
-
-/* R = 16 LSB^2, sigma 4 LSB; 100 Hz: memories of 50, 20 and 8 samples; gates of 24 LSB, the slow one 48. */
-#define SIGMA_LSB 4
-#define R_LSB2_Q8 (SIGMA_LSB * SIGMA_LSB * 256)
-#define GATE_LSB 24
-
-static auto_t made_at_rest(int16_t z_lsb)
-{
-    auto_t f;
-    auto_config_t config;
-    auto_defaults(&config, 1000);
-    config.r_lsb2_q8 = R_LSB2_Q8;
-    TEST_ASSERT_TRUE(auto_init(&f, &config));
-    auto_reset(&f, z_lsb);
-    return f;
-}
 
 /* At rest without noise: four on end beyond every gate move nothing, the fifth restarts, and it stays there. */
 static void test_four_outliers_move_nothing_and_the_fifth_restarts(void)

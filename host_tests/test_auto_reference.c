@@ -1,5 +1,5 @@
 /* auto: its members against the linear filter in double, what follows from its equations. */
-#include "auto.h"
+#include "support_auto.h"
 #include "support_random.h"
 #include "unity.h"
 
@@ -10,22 +10,6 @@
 void setUp(void) {}
 
 void tearDown(void) {}
-
-/* R = 16 LSB^2, sigma 4 LSB; 100 Hz: memories of 50, 20 and 8 samples; gates of 24 LSB, the slow one 48. */
-#define SIGMA_LSB 4
-#define R_LSB2_Q8 (SIGMA_LSB * SIGMA_LSB * 256)
-#define GATE_LSB 24
-
-static auto_t made_at_rest(int16_t z_lsb)
-{
-    auto_t f;
-    auto_config_t config;
-    auto_defaults(&config, 1000);
-    config.r_lsb2_q8 = R_LSB2_Q8;
-    TEST_ASSERT_TRUE(auto_init(&f, &config));
-    auto_reset(&f, z_lsb);
-    return f;
-}
 
 static const double memories[AUTO_MEMBERS] = { 50.0, 20.0, 8.0 };
 

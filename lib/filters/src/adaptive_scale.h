@@ -13,8 +13,7 @@
 /* 127 LSB per sample: with the bound of x, all that 32 bits hold. */
 #define RATE_LIMIT_LSB_Q24 ((int32_t)127 * 16777216)
 
-/* k = 0.6, a memory of 3.3 samples: beyond it the filter nearly follows the raw samples. k = 2 / 4096. */
-#define K_MAX_UQ16 39322U
+/* k = 2 / 4096 */
 #define K_MIN_UQ16 32U
 /* The median of five samples is worth a memory of about four. */
 #define K_START_UQ32 0x80000000U

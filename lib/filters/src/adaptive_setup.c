@@ -44,16 +44,6 @@ void adaptive_defaults(adaptive_config_t *config, uint16_t rate_dhz)
     config->rate_max_lsb_s = 800;
 }
 
-/* k = 2 / memory, UQ0.16, limited. */
-FX_NOINLINE uint16_t k_of(uint16_t memory_ms, uint16_t rate_dhz)
-{
-    uint32_t k = 1310720000U / ((uint32_t)memory_ms * rate_dhz);
-    if (k > K_MAX_UQ16) {
-        return K_MAX_UQ16;
-    }
-    return (k < K_MIN_UQ16) ? K_MIN_UQ16 : (uint16_t)k;
-}
-
 static bool legal_times(const adaptive_config_t *config)
 {
     return config->slow_ms >= SLOW_MIN_MS && config->slow_ms <= MEMORY_MAX_MS && config->fast_ms != 0U &&
@@ -73,8 +63,8 @@ static bool legal(const adaptive_config_t *config)
 /* Shares and thresholds that follow from the shortest memory. */
 static void set_memory(adaptive_t *f, const adaptive_config_t *config)
 {
-    f->slow_uq16 = k_of(config->slow_ms, config->rate_dhz);
-    f->fast_uq16 = k_of(config->fast_ms, config->rate_dhz);
+    f->slow_uq16 = filter_memory_k_uq16(config->slow_ms, config->rate_dhz, K_MIN_UQ16);
+    f->fast_uq16 = filter_memory_k_uq16(config->fast_ms, config->rate_dhz, K_MIN_UQ16);
     if (f->fast_uq16 < f->slow_uq16) {
         f->fast_uq16 = f->slow_uq16;
     }

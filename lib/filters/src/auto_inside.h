@@ -12,7 +12,7 @@
 #define AUTO_X_MAX_LSB_Q16 ((int32_t)FILTER_X_MAX_LSB * 65536)
 
 /* k = 0.6, a memory of 3.3 samples, also behind a restart; k = 2 / 512: beyond it a rate would round to a standstill */
-#define AUTO_K_MAX_UQ16 39322U
+#define AUTO_K_MAX_UQ16 FILTER_K_MAX_UQ16
 #define AUTO_K_MIN_UQ16 256U
 /* The median of five samples is worth a memory of about four. */
 #define AUTO_K_START_UQ16 32768U

@@ -41,16 +41,6 @@ void auto_defaults(auto_config_t *config, uint16_t rate_dhz)
     config->rate_max_lsb_s = 800;
 }
 
-/* k = 2 / memory, limited. */
-FX_NOINLINE uint16_t k_of(uint16_t ms, uint16_t rate_dhz)
-{
-    uint32_t k = 1310720000U / ((uint32_t)ms * rate_dhz);
-    if (k > AUTO_K_MAX_UQ16) {
-        return AUTO_K_MAX_UQ16;
-    }
-    return (k < AUTO_K_MIN_UQ16) ? AUTO_K_MIN_UQ16 : (uint16_t)k;
-}
-
 /*
  * 1/8 of two sigmas of the rate for noise of sigma 1: with t = k / (2 - k) the rate's variance is 2 t^3, so it is
  * sqrt(t) t / sqrt(8).
@@ -65,9 +55,9 @@ static uint16_t still_of(uint16_t k_uq16)
 FX_ONCE void auto_configure(auto_t *f, const auto_config_t *config)
 {
     filter_zero(f, sizeof *f);
-    f->final_k_uq16[AUTO_SLOW] = k_of(config->slow_ms, config->rate_dhz);
-    f->final_k_uq16[AUTO_MIDDLE] = k_of(config->middle_ms, config->rate_dhz);
-    f->final_k_uq16[AUTO_FAST] = k_of(config->fast_ms, config->rate_dhz);
+    f->final_k_uq16[AUTO_SLOW] = filter_memory_k_uq16(config->slow_ms, config->rate_dhz, AUTO_K_MIN_UQ16);
+    f->final_k_uq16[AUTO_MIDDLE] = filter_memory_k_uq16(config->middle_ms, config->rate_dhz, AUTO_K_MIN_UQ16);
+    f->final_k_uq16[AUTO_FAST] = filter_memory_k_uq16(config->fast_ms, config->rate_dhz, AUTO_K_MIN_UQ16);
     f->still_uq16 = still_of(f->final_k_uq16[AUTO_MIDDLE]);
     f->gate_sigma_q8 = config->gate_sigma_q8;
     fx_scaled_t per_sample = fx_scaled_div(fx_scaled(config->rate_max_lsb_s * 10U), fx_scaled(config->rate_dhz));

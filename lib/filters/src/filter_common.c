@@ -29,6 +29,15 @@ FX_ONCE uint32_t filter_default_r_lsb2_q8(uint16_t rate_dhz)
     return (r < FILTER_R_MIN_LSB2_Q8) ? FILTER_R_MIN_LSB2_Q8 : r; /* <= 30720 */
 }
 
+FX_ONCE uint16_t filter_memory_k_uq16(uint16_t memory_ms, uint16_t rate_dhz, uint16_t k_min_uq16)
+{
+    uint32_t k_uq16 = 1310720000U / ((uint32_t)memory_ms * rate_dhz);
+    if (k_uq16 > FILTER_K_MAX_UQ16) {
+        return FILTER_K_MAX_UQ16;
+    }
+    return (k_uq16 < k_min_uq16) ? k_min_uq16 : (uint16_t)k_uq16;
+}
+
 FX_ONCE uint32_t filter_limited_r_lsb2_q8(uint32_t r_lsb2_q8)
 {
     if (r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8) {

@@ -29,6 +29,13 @@ uint32_t filter_default_r_lsb2_q8(uint16_t rate_dhz);
 /* R limited to its legal range. */
 uint32_t filter_limited_r_lsb2_q8(uint32_t r_lsb2_q8);
 
+/*
+ * k = 2 / memory in samples, UQ0.16 rounded down, of a fading memory of memory_ms (1..60000) at a rate (50..40000):
+ * k_min_uq16 to FILTER_K_MAX_UQ16, 0.6: with a memory below 3.3 samples a filter nearly follows the raw samples.
+ */
+#define FILTER_K_MAX_UQ16 39322U
+uint16_t filter_memory_k_uq16(uint16_t memory_ms, uint16_t rate_dhz, uint16_t k_min_uq16);
+
 /* Median of `count` ascending samples, LSB in Q16: the mean of the middle two when count is even; count >= 1. */
 int32_t filter_warm_up_median_q16(const int16_t *ascending_lsb, uint8_t count);
 

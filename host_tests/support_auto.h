@@ -1,0 +1,24 @@
+/* The filter auto as its tests have it. */
+#ifndef SUPPORT_AUTO_H
+#define SUPPORT_AUTO_H
+
+#include "auto.h"
+#include "unity.h"
+
+/* R = 16 LSB^2, sigma 4 LSB; 100 Hz: memories of 50, 20 and 8 samples; gates of 24 LSB, the slow one 48. */
+#define SIGMA_LSB 4
+#define R_LSB2_Q8 (SIGMA_LSB * SIGMA_LSB * 256)
+#define GATE_LSB 24
+
+static inline auto_t made_at_rest(int16_t z_lsb)
+{
+    auto_t f;
+    auto_config_t config;
+    auto_defaults(&config, 1000);
+    config.r_lsb2_q8 = R_LSB2_Q8;
+    TEST_ASSERT_TRUE(auto_init(&f, &config));
+    auto_reset(&f, z_lsb);
+    return f;
+}
+
+#endif
