@@ -25,10 +25,8 @@ void rows_enable(bool now_enabled)
     since_row = 0;
 }
 
-static char *write_csv(char *at, const row_t *row)
+static char *write_csv(char *at, const row_t *row, const int16_t mg[3])
 {
-    int16_t mg[3];
-    pipeline_mg(mg);
     at = format_u32(at, row->t_us);
     for (uint8_t axis = 0; axis < 3; axis++) {
         *at++ = ',';
@@ -72,7 +70,14 @@ static char *write_plot(char *at, const row_t *row)
 static void write(const row_t *row)
 {
     char line[ROW_MAX];
-    char *end = settings.mode == MODE_PLOT ? write_plot(line, row) : write_csv(line, row);
+    char *end;
+    if (settings.mode == MODE_PLOT) {
+        end = write_plot(line, row);
+    } else {
+        int16_t mg[3];
+        pipeline_mg(mg);
+        end = write_csv(line, row, mg);
+    }
     *end++ = '\n';
     if (!hal_uart_tx_write(line, (uint8_t)(end - line))) {
         count(COUNT_DROPPED);

@@ -25,16 +25,6 @@
 /* The row as the firmware composes it; what of it is not used the linker drops. */
 #include "../../firmware/rows.c"
 
-/* In the pipeline's place. */
-static int16_t row_mg[3];
-
-void pipeline_mg(int16_t mg[3])
-{
-    for (uint8_t axis = 0; axis < 3; axis++) {
-        mg[axis] = row_mg[axis];
-    }
-}
-
 #include "bench_longer.h"
 #include "bench_measure.h"
 #include "bench_out.h"
@@ -164,10 +154,11 @@ static void NOINLINE update_float_angles(void)
 }
 
 static row_t row;
+static int16_t row_mg[3];
 static char line[ROW_MAX];
 static void NOINLINE update_format_row(void)
 {
-    char *end = write_csv(line, &row);
+    char *end = write_csv(line, &row, row_mg);
     sink = *end;
 }
 #endif

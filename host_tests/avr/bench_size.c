@@ -12,12 +12,6 @@
 
 #include "../../firmware/rows.c"
 
-/* In the pipeline's place: the row is filled by what calls it. */
-void pipeline_mg(int16_t mg[3])
-{
-    mg[0] = mg[1] = mg[2] = 0;
-}
-
 /* -D'PARTS=(PART(kf) | PART(noise))' */
 enum {
 #define PART_OF(F) PART_##F, PART_float_##F,
@@ -91,14 +85,16 @@ static void use_format_row(void)
 {
     char line[ROW_MAX];
     row_t row;
+    int16_t mg[3];
     row.t_us = (uint32_t)out;
     row.flags = (uint16_t)in;
     for (uint8_t axis = 0; axis < 3; axis++) {
         row.lsb[axis] = in;
+        mg[axis] = in;
     }
     row.roll_cdeg = in;
     row.pitch_cdeg = in;
-    out = *write_csv(line, &row);
+    out = *write_csv(line, &row, mg);
 }
 
 int main(void)
