@@ -42,6 +42,7 @@ class Kind:
     rate: int = 100
     detectable: bool = True
     typed: tuple = ()  # MS:TEXT, commands that come meanwhile
+    more_ms: int = 0  # that its run takes longer
     stream: str = None  # where it is not that of the rate
     base: str = ""  # of one at another rate: the kind's name at its own
     filter_name: str = "adaptive"  # where the campaign has it in one only; None: nobody asks for one
@@ -100,6 +101,16 @@ TYPED = [
     typed("typed: stop", "power:50", "stop", "status", "go", "stop", "go", "stop", "stop", "range 2", "go", every_ms=11),
     typed("typed: plot", "sda:60", "mode plot", "status", "mode csv", every_ms=400, filter_name="sprf"),
     typed("typed: kf", "frozen:200", "filter kf", "filter sprf", every_ms=300, filter_name="sprf"),
+    typed("typed: what is settled", "noint:300", "settings", "offset 10 -10 3.5", "scale 260 260 250", "level 0 0.1 0.99", "axes -yxz", "address 53",
+          "settings", "offset 99 0 0", "scale 1 1 1", "level 9 9 9", "axes xxy", "address 12", "offset 1", "save", "status", "defaults", "settings",
+          every_ms=120, more_ms=1000, said_ms=110),  # the settings are 1.1 kB
+    # 0.3 s for each save that finds every byte another; 100 ms for a start
+    typed("typed: what is kept", "unplug:100", "stop", "every 2", "offset 5 5 5", "save", "load", "defaults", "load", "save", "go", every_ms=400,
+          more_ms=3000, row_ms=20, said_ms=1700),
+    typed("typed: measures", "nackdata", "odr", "noise", "tare", "settings", every_ms=2900, more_ms=8500, said_ms=110),
+    typed("typed: what the sensor's force adds", "sda:40", "selftest", "odr", every_ms=2900, more_ms=3000, said_ms=1500),
+    typed("typed: calibrations", "torn", "cal6", "noise", "cal6 stop", "cal", "go", every_ms=2900, more_ms=11600,
+          said_ms=20),  # two lines ahead of a row
     typed("upside down", "nack", stream="sim/streams/through-roll-180.csv"), typed("upright", "nackdata", stream="sim/streams/through-pitch-90.csv"),
     # what these streams do to one axis, the filter sees on the others at another time
     *(typed(f"outliers, {name}", "nack", stream="sim/streams/steps-outliers.csv", filter_name=name, gated_rows=3 * GATED_ROWS)
@@ -294,6 +305,7 @@ def attempt(firmware, filter_name, kinds, whens, profile=None):
     """One run, judged. One that dies is a failure of its own: the others go on."""
     options = options_of(kinds, whens)
     max_ms = RUN_MS + (1500 if sum(kind.resets for kind in kinds) > 1 else 0) + sum(kind.lasts_ms for kind in kinds if kind in LONG)
+    max_ms += sum(kind.more_ms for kind in kinds)
     command = " ".join(map(str, options))
     try:
         done = simulate(firmware, filter_name, *options, rate=max(kind.rate for kind in kinds), profile=profile, max_ms=max_ms)
