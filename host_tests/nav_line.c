@@ -198,6 +198,8 @@ void nav_line_forget(void)
 {
     to_count = 0;
     to_next = 0;
+    from_count = 0;
+    from_read = 0;
 }
 
 const uint8_t *nav_line_sent(size_t *count)

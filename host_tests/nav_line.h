@@ -25,7 +25,7 @@ extern uint8_t nav_line_sequence; /* of the next record */
 /* An empty line; the board starts and greets. */
 void nav_line_begin(void);
 
-/* The bytes are typed and not taken yet; what was typed before and is taken may be forgotten. */
+/* The bytes are typed and not taken yet; what was typed before and is taken may be forgotten, with the answers. */
 void nav_line_type(const uint8_t *bytes, size_t length);
 void nav_line_put(uint8_t type, const void *body, size_t length);
 void nav_line_forget(void);

@@ -281,9 +281,9 @@ static void correct(nav_values_t *values, const double *x)
     state_out(values, &s);
 }
 
-static void set_position(nav_memory_t *nav, const double position[3])
+static void set_state(nav_memory_t *nav, const nav_values_t *values)
 {
-    to_real(nav_of(nav)->state.position_m, position, 3);
+    state_in(&nav_of(nav)->state, values);
 }
 
 static void break_covariance(nav_memory_t *nav, int k, double d)
@@ -320,6 +320,6 @@ const nav_variant_t NAV_VARIANT = {
     .dcm = dcm,
     .step = step,
     .correct = correct,
-    .set_position = set_position,
+    .set_state = set_state,
     .break_covariance = break_covariance,
 };

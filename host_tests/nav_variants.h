@@ -75,7 +75,7 @@ typedef struct {
     void (*step)(nav_values_t *state, double force_ned[3], const double rate[3], const double force[3], double gravity,
                  double step_s);
     void (*correct)(nav_values_t *state, const double *x);
-    void (*set_position)(nav_memory_t *nav, const double position[3]);
+    void (*set_state)(nav_memory_t *nav, const nav_values_t *state);
     void (*break_covariance)(nav_memory_t *nav, int k, double d); /* puts D[k] in */
 } nav_variant_t;
 

@@ -137,6 +137,27 @@ static void test_the_middle_member_predicts_what_is_missing(void)
     TEST_ASSERT_EQUAL_UINT8(f.chosen, f.shown);
 }
 
+static void assert_default_memory(uint16_t rate_dhz, uint32_t samples, uint32_t least_ms, uint16_t ms)
+{
+    uint32_t wanted_ms = samples * 10000U / ((rate_dhz == 0U) ? 1U : rate_dhz);
+    wanted_ms = (wanted_ms < least_ms) ? least_ms : wanted_ms;
+    TEST_ASSERT_EQUAL_UINT32((wanted_ms < 60000U) ? wanted_ms : 60000U, ms);
+}
+
+/* 28, 11 and 5 samples, at least 500, 200 and 80 ms; within the range, not wrapped, at a rate that init refuses too. */
+static void test_default_memories_are_in_range_at_every_rate(void)
+{
+    for (uint32_t rate_dhz = 0; rate_dhz <= FILTER_RATE_MAX_DHZ; rate_dhz++) {
+        auto_t f;
+        auto_config_t config;
+        auto_defaults(&config, (uint16_t)rate_dhz);
+        assert_default_memory((uint16_t)rate_dhz, 28, 500, config.slow_ms);
+        assert_default_memory((uint16_t)rate_dhz, 11, 200, config.middle_ms);
+        assert_default_memory((uint16_t)rate_dhz, 5, 80, config.fast_ms);
+        TEST_ASSERT_EQUAL(rate_dhz >= FILTER_RATE_MIN_DHZ, auto_init(&f, &config));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -148,5 +169,6 @@ int main(void)
     RUN_TEST(test_a_score_is_the_bounded_mean_over_eight_samples);
     RUN_TEST(test_one_outlier_changes_no_choice);
     RUN_TEST(test_the_middle_member_predicts_what_is_missing);
+    RUN_TEST(test_default_memories_are_in_range_at_every_rate);
     return UNITY_END();
 }

@@ -233,8 +233,22 @@ static void test_every_length_but_the_right_one_is_refused(void)
             TEST_ASSERT_EQUAL(LINK_UNKNOWN, nav_line_ask((uint8_t)type, body, 4));
         }
     }
+    uint8_t frame[8];
+    const uint8_t alone = RECORD_COUNTS; /* a type without a number */
+    nav_line_type(frame, nav_line_frame(&alone, 1, frame));
+    nav_line_run();
+    TEST_ASSERT_EQUAL(LINK_LENGTH, nav_line_answer());
+    TEST_ASSERT_EQUAL_HEX8_ARRAY("k\0C", nav_line_said[0].bytes, 3);
     nav_line_forget();
 }
+
+/* places among the counts */
+enum {
+    BROKEN = NAV_ANSWERS,
+    UNKNOWN,
+    ORDER = NAV_ANSWERS + LINK_ORDER - LINK_BROKEN,
+    MISSING = NAV_ANSWERS + LINK_ANSWERS_END - LINK_BROKEN
+};
 
 static unsigned count_at(size_t place)
 {
@@ -243,11 +257,6 @@ static unsigned count_at(size_t place)
 
 static void test_order_damage_and_loss_are_counted(void)
 {
-    enum {
-        BROKEN = NAV_ANSWERS,
-        ORDER = NAV_ANSWERS + LINK_ORDER - LINK_BROKEN,
-        MISSING = NAV_ANSWERS + LINK_ANSWERS_END - LINK_BROKEN
-    };
     TEST_ASSERT_EQUAL(NAV_TAKEN, start_flight());
     TEST_ASSERT_EQUAL(NAV_TAKEN, put_imu(10000, 0, false));
     nav_line_sequence--;
@@ -275,6 +284,26 @@ static void test_order_damage_and_loss_are_counted(void)
     TEST_ASSERT_EQUAL(3, count_at(MISSING));
 }
 
+/* Counts that are full stay full: 65535, of records of no type and of numbers that never came. */
+static void test_counts_stay_at_their_end(void)
+{
+    TEST_ASSERT_EQUAL(NAV_TAKEN, start_flight());
+    for (long round = 0; round < 65535L + 10L; round++) {
+        nav_line_put('?', NULL, 0);
+        nav_line_run();
+        nav_line_forget();
+    }
+    for (int jump = 0; jump < 65535 / 127 + 2; jump++) { /* 127 never came, as often as makes more than 65535 */
+        nav_line_sequence = (uint8_t)(nav_line_sequence + 127);
+        nav_line_put(RECORD_COUNTS, NULL, 0);
+        nav_line_run();
+        nav_line_forget();
+    }
+    TEST_ASSERT_EQUAL(2, nav_line_said_count);
+    TEST_ASSERT_EQUAL(65535U, count_at(UNKNOWN));
+    TEST_ASSERT_EQUAL(65535U, count_at(MISSING));
+}
+
 static void test_a_greeting_on_demand_begins_the_order_anew(void)
 {
     TEST_ASSERT_EQUAL(NAV_TAKEN, start_flight());
@@ -297,6 +326,41 @@ static void test_waits_for_room_to_answer(void)
     nav_line_room++;
     nav_line_run();
     TEST_ASSERT_EQUAL(2, nav_line_said_count);
+}
+
+static uint8_t put_reals(uint8_t type, uint32_t t_us, const float *values, size_t count)
+{
+    uint8_t body[28];
+    memcpy(body, &t_us, 4);
+    memcpy(&body[4], values, 4 * count);
+    return nav_line_ask(type, body, 4 + 4 * count);
+}
+
+/* A filter of the same parameters, spoken to without a line: what it answers and counts is what the line must say. */
+static void test_each_sensor_reaches_the_filter(void)
+{
+    static nav_t direct;
+    static const float velocity_position[6] = { 6.5F, 0.25F, -0.125F, 3, 95, -2 };
+    static const float down = -1.5F;
+    static const float field[3] = { 17000, 2500, 42000 };
+    nav_config_t config = { .period_us = 10000 };
+    memcpy(&config, parameter, sizeof parameter);
+    TEST_ASSERT_TRUE(nav_init(&direct, &config));
+    TEST_ASSERT_EQUAL(NAV_TAKEN, start_flight());
+    for (uint32_t t_us = 10000; t_us <= 400000; t_us += 10000) {
+        const float rate[3] = { 0.25F, 0, 0 };
+        const float force[3] = { 0, 0, -9.81F };
+        TEST_ASSERT_EQUAL(nav_imu(&direct, t_us, rate, force), put_imu(t_us, rate[0], true));
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(nav_state(&direct), &nav_line_said[0].bytes[5], sizeof(nav_state_t));
+        if (t_us % 200000 == 10000) {
+            TEST_ASSERT_EQUAL(nav_gps(&direct, t_us - 1000, velocity_position, &velocity_position[3]),
+                              put_reals(RECORD_GPS, t_us - 1000, velocity_position, 6));
+            TEST_ASSERT_EQUAL(nav_down(&direct, t_us - 2000, down), put_reals(RECORD_DOWN, t_us - 2000, &down, 1));
+            TEST_ASSERT_EQUAL(nav_field(&direct, t_us, field), put_reals(RECORD_FIELD, t_us, field, 3));
+            TEST_ASSERT_EQUAL(9, nav_queued(&direct));
+            TEST_ASSERT_EQUAL(9, nav_line_said[0].bytes[4]);
+        }
+    }
 }
 
 static void test_variances_begin_as_told(void)
@@ -326,8 +390,10 @@ int main(void)
     RUN_TEST(test_the_state_has_the_time_of_the_last_record_taken);
     RUN_TEST(test_every_length_but_the_right_one_is_refused);
     RUN_TEST(test_order_damage_and_loss_are_counted);
+    RUN_TEST(test_counts_stay_at_their_end);
     RUN_TEST(test_a_greeting_on_demand_begins_the_order_anew);
     RUN_TEST(test_waits_for_room_to_answer);
+    RUN_TEST(test_each_sensor_reaches_the_filter);
     RUN_TEST(test_variances_begin_as_told);
     return UNITY_END();
 }

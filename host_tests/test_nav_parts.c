@@ -150,6 +150,65 @@ static void step_goes_with_the_mean_velocity(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, -0.05, s.position[2]);
 }
 
+static bool near(double want, double is, bool in_double)
+{
+    return fabs(is - want) <= (in_double ? 1e-12 : 1e-5) * fabs(want);
+}
+
+/* Behind a round of all jobs at one time each variance has grown by its walk's square per period, by nothing else. */
+static void noise_adds_each_walk_to_its_own_states(void)
+{
+    for (int v = 0; v < NAV_ALL; v++) {
+        const nav_variant_t *n = nav_all[v];
+        for (int walks = 0; walks < 16; walks++) { /* a bit per walk that is not 0 */
+            static const double one[4] = { 1, 1, 1, 1 };
+            nav_memory_t m;
+            double walk[4];
+            double p[144];
+            for (int i = 0; i < 4; i++) {
+                walk[i] = (walks >> i & 1) ? 0.1 * (i + 1) : 0.0;
+            }
+            memset(&m, 0, sizeof m);
+            n->ud_start(&m, one);
+            n->noise_start(&m, walk, 10000);
+            for (uint32_t job = 0; job < 100U; job++) {
+                n->noise_job(&m, (job < 80U) ? 10000U * job : 1000000U);
+            }
+            n->covariance(&m, p);
+            for (int i = 0; i < n->states * n->states; i++) {
+                int state = i / n->states;
+                double want = 1.0 + 100.0 * walk[state / 3] * walk[state / 3];
+                TEST_ASSERT_TRUE((i % n->states == state) ? near(want, p[i], n->in_double) : p[i] == 0.0);
+            }
+        }
+    }
+}
+
+/* From nothing known to vary: P = c a a', the definition, and what has variance 0 keeps it. */
+static void spread_from_zero_is_the_outer_product(void)
+{
+    static const double none[4] = { 0, 0, 0, 0 };
+    for (int v = 0; v < NAV_ALL; v++) {
+        const nav_variant_t *n = nav_all[v];
+        for (int k = 0; k < n->states; k++) {
+            const double along[12] = { 0.5, -2, 3, 0.25, 1.5, -1, 2, -0.75, 1, 4, -3, 1.25 };
+            nav_memory_t m;
+            double p[144];
+            memset(&m, 0, sizeof m);
+            n->ud_start(&m, none);
+            n->ud_spread(&m, along, k, 0.0);
+            n->ud_spread(&m, along, k, 2.0);
+            n->covariance(&m, p);
+            for (int i = 0; i < n->states * n->states; i++) {
+                int row = i / n->states;
+                int other = i % n->states;
+                double want = (row <= k && other <= k) ? 2.0 * along[row] * along[other] : 0.0;
+                TEST_ASSERT_TRUE(near(want, p[i], n->in_double));
+            }
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -159,5 +218,7 @@ int main(void)
     RUN_TEST(step_turns_by_the_rotation_vector);
     RUN_TEST(step_goes_with_the_mean_velocity);
     RUN_TEST(exact_records_are_followed);
+    RUN_TEST(noise_adds_each_walk_to_its_own_states);
+    RUN_TEST(spread_from_zero_is_the_outer_product);
     return UNITY_END();
 }

@@ -207,6 +207,48 @@ static void epochs_are_taken_from_150_ms_ago_to_100_ms_ahead(void)
     TEST_ASSERT_EQUAL(ANSWER_BACKWARDS, n12f.gps(&r.m, r.t_us - 130000U, nowhere, nowhere)); /* the same once more */
 }
 
+/*
+ * An epoch of the very time of the record that it waited for, which is also the newest that is remembered (20 ms
+ * apart): 10 m east, and a position of 57.3 m against a GPS of 5 m goes there but for 5^2 / 57.3^2 = 0.8 %.
+ */
+static void epoch_ahead_is_used_at_its_own_time(void)
+{
+    static const double aside[3] = { 0, 10.0, 0 };
+    for (int i = 0; i < NAV_ALL; i++) {
+        running_t r;
+        nav_values_t state;
+        begin(&r, nav_all[i], 0.0);
+        r.setting.period_us = 20000;
+        TEST_ASSERT_TRUE(nav_all[i]->init(&r.m, &r.setting));
+        for (uint32_t t_us = 20000; t_us <= 500000U; t_us += 20000U) {
+            TEST_ASSERT_EQUAL(ANSWER_TAKEN, nav_all[i]->imu(&r.m, t_us, no_rate, weight));
+            if (t_us == 100000U) {
+                TEST_ASSERT_EQUAL(ANSWER_TAKEN, nav_all[i]->gps(&r.m, 120000, nowhere, aside));
+            }
+        }
+        nav_all[i]->state(&r.m, &state);
+        TEST_ASSERT_DOUBLE_WITHIN(0.05, 10.0 * (1.0 - 25.0 / (57.3 * 57.3 + 25.0)), state.position[1]);
+    }
+}
+
+/* An altimeter that was silent for more than half the clock's round, 36 minutes, is heard again at once. */
+static void sensor_silent_for_half_the_clock_is_taken(void)
+{
+    for (uint32_t minutes = 30; minutes <= 70; minutes += 5) {
+        running_t r;
+        begin(&r, &n9f, 0.0);
+        r.setting.period_us = 100000;
+        TEST_ASSERT_TRUE(n9f.init(&r.m, &r.setting));
+        for (uint32_t k = 1; k <= 600U * minutes; k++) {
+            TEST_ASSERT_EQUAL(ANSWER_TAKEN, n9f.imu(&r.m, 100000U * k, no_rate, weight));
+            if (k == 1U) {
+                TEST_ASSERT_EQUAL(ANSWER_TAKEN, n9f.down(&r.m, 100000U, 0.0));
+            }
+        }
+        TEST_ASSERT_EQUAL(ANSWER_TAKEN, n9f.down(&r.m, 60000000U * minutes, 0.0));
+    }
+}
+
 /* 150 ms ago the past must still be there when it is taken in one slot later, whatever the period. */
 static void past_reaches_back_at_every_period(void)
 {
@@ -302,6 +344,8 @@ int main(void)
     RUN_TEST(late_epoch_between_two_records_is_interpolated);
     RUN_TEST(age_of_a_position_is_in_its_row);
     RUN_TEST(epochs_are_taken_from_150_ms_ago_to_100_ms_ahead);
+    RUN_TEST(epoch_ahead_is_used_at_its_own_time);
+    RUN_TEST(sensor_silent_for_half_the_clock_is_taken);
     RUN_TEST(past_reaches_back_at_every_period);
     RUN_TEST(gps_jump_is_gated_and_a_new_place_is_found);
     RUN_TEST(field_that_the_gate_refuses_is_believed_in_the_end);

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #define SEED 3300
 
@@ -112,10 +113,89 @@ static void unhealthy_is_seen(void)
     }
 }
 
+/* And a state that is none: of an attitude whose square is 1 % off, of a value that is no number. */
+static void unhealthy_state_is_seen(void)
+{
+    for (int i = 0; i < NAV_ALL; i++) {
+        const nav_variant_t *v = nav_all[i];
+        nav_memory_t m;
+        nav_values_t s;
+        double *const values[3] = { s.velocity, s.position, s.drift };
+        begin(&m, v);
+        v->state(&m, &s);
+        for (int k = 0; k < 9; k++) {
+            double *at = &values[k / 3][k % 3];
+            double was = *at;
+            *at = (k % 2 == 0) ? NAN : INFINITY;
+            v->set_state(&m, &s);
+            TEST_ASSERT_FALSE(v->healthy(&m));
+            *at = was;
+        }
+        for (int k = 0; k < 4; k++) {
+            static const double first[4] = { 0.9949, 0.9951, 1.0049, 1.0051 }; /* squares: .9898 .9902 1.0098 1.0102 */
+            const double turned[4] = { first[k], 0, 0, 0 };
+            memcpy(s.quaternion, turned, sizeof turned);
+            v->set_state(&m, &s);
+            TEST_ASSERT_EQUAL(k == 1 || k == 2, v->healthy(&m));
+        }
+    }
+}
+
+/* A count that is full stays full, so that it never looks small again. */
+static void counts_stay_at_their_end(void)
+{
+    nav_memory_t m;
+    begin(&m, &n9f);
+    for (long k = 0; k < 65535L + 10L; k++) {
+        TEST_ASSERT_EQUAL(ANSWER_NOT_FINITE, n9f.down(&m, 0, NAN));
+        TEST_ASSERT_EQUAL((k < 65535L) ? k + 1L : 65535L, n9f.count(&m, ANSWER_NOT_FINITE));
+    }
+}
+
+/*
+ * An attitude that is known exactly (sigma 0, no walk) stays as it is, whatever the field says: nothing is added to a
+ * variance of 0, however often the gate refuses. The field is turned by 90 degrees about east. The count of what the
+ * gate refused stays at its end too.
+ */
+static void attitude_known_exactly_is_believed_against_any_field(void)
+{
+    static const double rate[3] = { 0, 0, 0 };
+    static const double force[3] = { 0, 0, -FLIGHT_GRAVITY };
+    const double field[3] = { -flight_field[2], flight_field[1], flight_field[0] };
+    nav_memory_t m;
+    nav_setting_t setting;
+    nav_values_t state;
+    double p[81];
+    const double level[4] = { 1, 0, 0, 0 };
+    nav_flight_setting(&setting, 1.0);
+    memcpy(setting.start.quaternion, level, sizeof level);
+    setting.gate = 5.0;
+    setting.sigma[2] = 0.0;
+    setting.walk[2] = 0.0;
+    TEST_ASSERT_TRUE(n9f.init(&m, &setting));
+    uint32_t left = 100; /* slots behind the one that fills the count */
+    for (uint32_t slot = 1; slot < 400000U && left != 0U; slot++) {
+        n9f.imu(&m, 10000U * slot, rate, force);
+        n9f.field(&m, 10000U * slot, field);
+        left -= (n9f.count(&m, ANSWER_GATED) == 65535U) ? 1U : 0U;
+    }
+    TEST_ASSERT_EQUAL(0, left);
+    n9f.state(&m, &state);
+    n9f.covariance(&m, p);
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_TRUE(state.quaternion[1 + i] == 0.0);
+        TEST_ASSERT_TRUE(p[(6 + i) * 9 + 6 + i] == 0.0);
+    }
+    TEST_ASSERT_TRUE(n9f.healthy(&m));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(hundred_thousand_wild_records_leave_it_healthy);
     RUN_TEST(unhealthy_is_seen);
+    RUN_TEST(unhealthy_state_is_seen);
+    RUN_TEST(counts_stay_at_their_end);
+    RUN_TEST(attitude_known_exactly_is_believed_against_any_field);
     return UNITY_END();
 }

@@ -202,6 +202,43 @@ static void test_status_tells_choices_and_the_axis_left_out(void)
     stream_free(&stream);
 }
 
+static double sigma_told_cdeg(void)
+{
+    size_t first = board.note_count;
+    board_type("status");
+    board_run_ms(100);
+    const char *told = strstr(board.notes[first], " sigma cdeg ");
+    TEST_ASSERT_NOT_NULL(told);
+    return strtod(told + strlen(" sigma cdeg "), NULL);
+}
+
+/*
+ * The noisier of the axes that remain, whichever comes first: x still and y rolling, and the other way round. With an R
+ * of 1000 LSB^2 the members' gains make the difference, and not the 10 LSB of the part.
+ */
+static void test_the_sigma_told_is_that_of_the_noisier_axis(void)
+{
+    double told_cdeg[2];
+    for (int swapped = 0; swapped < 2; swapped++) {
+        stream_t stream = rolling_stream(2, FROZEN);
+        for (int i = 0; i < SAMPLES && swapped != 0; i++) {
+            int16_t x = stream.rows[i].lsb[0];
+            stream.rows[i].lsb[0] = stream.rows[i].lsb[1];
+            stream.rows[i].lsb[1] = x;
+        }
+        board_start(&stream, 0.0, 0);
+        board_run_ms(100);
+        board_type("filter auto");
+        board_run_ms(100);
+        board_type("r 1000");
+        board_run_ms(11400);
+        told_cdeg[swapped] = sigma_told_cdeg();
+        stream_free(&stream);
+    }
+    TEST_ASSERT_TRUE(told_cdeg[0] > 0.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, told_cdeg[0], told_cdeg[1]);
+}
+
 /* A change of the choice is flagged: rarely at rest, and never with another filter. */
 static void test_changes_of_the_choice_are_flagged(void)
 {
@@ -252,6 +289,7 @@ int main(void)
     RUN_TEST(test_another_filter_leaves_none_out);
     RUN_TEST(test_two_bad_axes_are_too_many);
     RUN_TEST(test_status_tells_choices_and_the_axis_left_out);
+    RUN_TEST(test_the_sigma_told_is_that_of_the_noisier_axis);
     RUN_TEST(test_changes_of_the_choice_are_flagged);
     RUN_TEST(test_no_choices_are_told_of_a_filter_that_is_leaving);
     return UNITY_END();

@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
-"""Coverage: of lib on the PC (gcov, from the Unity tests) and of the unmodified AVR binary (simrun's profiles, system tests; the lines
-that the fault campaign reaches are counted here too, for tools/faults.py).
+"""Coverage: of lib, the supervision and the navigation image's link on the PC (gcov, from the Unity tests), and of the unmodified AVR
+binary (simrun's profiles, system tests; the lines that the fault campaign reaches are counted here too, for tools/faults.py).
 
     coverage.py judge GCOVR.json ELF FOLDER     tables, uncovered lines, build/coverage.json; 1 when below a target
-    coverage.py twins GCOVR.json ELF FOLDER     one line of lib not executed, one run of the chip alone: must be below
+    coverage.py twins GCOVR.json ELF FOLDER     a line of lib and one of lib/nav not executed, a file of lib/nav left out, one run of the
+                                                chip alone: must be below
     coverage.py check ELF PROFILE SOURCE        the tool itself: lines marked `ran` and `not reached` in a small program
 
 A line of the binary is executable when at least one instruction is attributed to it (.debug_line: with inlining and
 link-time optimisation the innermost source line), and executed when one of those instructions was, in whichever copy. A
 loaded constant alone is no evidence, because the compiler moves it out of the branch that it belongs to. What stays: equal
 ends of two branches are merged and then count for the line whose instructions were kept.
+
+lib/nav is compiled in variants (mk/nav_lib_coverage.mk): a line or branch is executed when it was in one of them.
 """
 import collections
 import json
@@ -20,12 +23,12 @@ import sys
 
 ROOT = pathlib.Path.cwd()
 EXCLUSIONS = pathlib.Path("host_tests/coverage_exclusions.txt")
-# two calls, which link-time optimisation takes in line: the instructions may carry the lines of what is called alone
-CALLS_ONLY = {"firmware/main.c"}
-# not in the image that is traced, but in that of `auto`; on the PC test_supervisor runs it
-ELSEWHERE = {"firmware/supervisor.c"}
-# lib/nav is built in four variants for its own tests (mk/nav_lib.mk), not into these programs
-ELSEWHERE |= {str(path) for path in pathlib.Path("lib/nav/src").glob("*.c")}
+# two calls, which link-time optimisation takes in line: the instructions may carry the lines of what is called alone; of the
+# navigation image's, no program of the PC holds main()
+CALLS_ONLY = {"firmware/main.c", "firmware/nav/main.c"}
+# not in the image that is traced, but in that of `auto`: judged on the PC alone
+NOT_TRACED = {"firmware/supervisor.c"}
+NAVIGATION = ("lib/nav/", "firmware/nav/")
 HOST_LINES, HOST_BRANCHES, AVR_LINES = 100.0, 95.0, 95.0
 CAMPAIGN_LINES, WATCHING_BRANCHES = 95.0, 100.0
 PLACES = ("host", "host-branch", "avr", "campaign")
@@ -200,11 +203,20 @@ def total(rows, key):
     return sum(row[key] for row in rows)
 
 
-def complete(rows, pattern, source):
+def left_out(rows, pattern):
     """A file that the data leave out would count as covered."""
-    missing = {str(path) for path in pathlib.Path(".").glob(pattern)} - {row["file"] for row in rows} - CALLS_ONLY - ELSEWHERE
+    return {str(path) for path in pathlib.Path(".").glob(pattern)} - {row["file"] for row in rows} - CALLS_ONLY
+
+
+def complete(rows, pattern, source, exempt=frozenset()):
+    missing = left_out(rows, pattern) - exempt
     if missing:
         fail(f"{source} says nothing of {' '.join(sorted(missing))}")
+
+
+def complete_on_avr(rows, source):
+    complete(rows, "firmware/*.c", source, NOT_TRACED)
+    complete(rows, "hal/avr/*.c", source)
 
 
 def judge_one(what, value, target):
@@ -221,17 +233,21 @@ def judge(report, elf, folder):
     host, host_missed, half = host_rows(report, excluder)
     avr, avr_missed = avr_rows(elf, executed(profiles), excluder)
     ours = [row for row in avr if not row["file"].startswith("lib/")]
-    watching = [row for row in host if row["file"].startswith(("lib/adxl345/", "firmware/"))]
-    complete(host, "lib/*/src/*.c", report)
-    complete(ours, "firmware/*.c", elf)
-    complete(ours, "hal/avr/*.c", elf)
-    print("lib on the PC, unit tests:")
+    flying = [row for row in host if row["file"].startswith(NAVIGATION)]
+    watching = [row for row in host if row["file"].startswith(("lib/adxl345/", "firmware/")) and row not in flying]
+    for pattern in ("lib/*/src/*.c", "firmware/nav/*.c", *NOT_TRACED):
+        complete(host, pattern, report)
+    complete_on_avr(ours, elf)
+    print("lib, supervision and the navigation image's link on the PC, unit tests:")
     table(host, [("lines", "lines_executed", "lines"), ("branches", "branches_taken", "branches")])
-    print(f"the AVR binary, {len(profiles)} runs of the system tests:")
+    print(f"the AVR binary, {len(profiles)} runs of the system tests (not in it, judged on the PC alone: "
+          f"{' '.join(sorted(NOT_TRACED))}, {NAVIGATION[1]}):")
     table(avr, [("lines", "lines_executed", "lines"), ("instructions", "instructions_executed", "instructions")])
     print("\n".join(["uncovered:"] + host_missed + half + avr_missed + excluder.stale(*PLACES[:3])))
     results = [judge_one("lib lines on the PC", percent(total(host, "lines_executed"), total(host, "lines")), HOST_LINES),
                judge_one("lib branches on the PC", percent(total(host, "branches_taken"), total(host, "branches")), HOST_BRANCHES),
+               judge_one("branches of lib/nav and firmware/nav on the PC",
+                         percent(total(flying, "branches_taken"), total(flying, "branches")), HOST_BRANCHES),
                judge_one("branches of bus master, driver and supervision on the PC",
                          percent(total(watching, "branches_taken"), total(watching, "branches")), WATCHING_BRANCHES),
                judge_one("firmware and hal lines on the AVR binary", percent(total(ours, "lines_executed"), total(ours, "lines")),
@@ -247,16 +263,14 @@ def campaign_lines(elf, ran):
     """(lines that ran, lines, those that did not) of the whole binary, by the addresses that a campaign executed."""
     excluder = Excluder(exclusions())
     rows, missed = avr_rows(elf, ran, excluder, "-", "campaign")
-    complete(rows, "hal/avr/*.c", elf)
-    complete(rows, "firmware/*.c", elf)
+    complete_on_avr(rows, elf)
     return total(rows, "lines_executed"), total(rows, "lines"), missed + excluder.stale("campaign")
 
 
-def twins(report, elf, folder):
-    """The judge must see what is missing: the same data with a line of lib not executed, and with a single run."""
-    nothing = Excluder([])
+def spoilt_is_seen(report, part):
+    """The same data with one line of the longest file of a part of the tree not executed."""
     host = host_lines(report)
-    file = max(host, key=lambda name: len(host[name]))
+    file = max((name for name in host if name.startswith(part)), key=lambda name: len(host[name]))
     spoilt = json.loads(pathlib.Path(report).read_text(encoding="utf-8"))
     lines = next(f for f in spoilt["files"] if f["file"] == file)["lines"]
     row = next(r for r in lines if r["count"] > 0 and not r.get("gcovr/noncode"))
@@ -264,13 +278,24 @@ def twins(report, elf, folder):
         same["count"] = 0
     path = pathlib.Path("build/coverage/spoilt.json")
     path.write_text(json.dumps(spoilt), encoding="utf-8")
-    rows, missed, _ = host_rows(path, nothing)
-    lib_seen = f"{file}:{row['line_number']}: not executed by the unit tests" in missed and total(rows, "lines_executed") < total(rows, "lines")
+    rows, missed, _ = host_rows(path, Excluder([]))
+    executed_now = sum(r["lines_executed"] for r in rows if r["file"] == file)
+    seen = f"{file}:{row['line_number']}: not executed by the unit tests" in missed and executed_now < len(host[file])
+    print(f"twins: a line of {file} not executed: {'seen' if seen else 'NOT SEEN'}")
+    return seen
+
+
+def twins(report, elf, folder):
+    """The judge must see what is missing: a line, a file, all runs of the chip but one."""
+    seen = [spoilt_is_seen(report, part) for part in ("lib/", *NAVIGATION)]
+    rows = [row for row in host_rows(report, Excluder([]))[0] if row["file"] != "lib/nav/src/nav_ud.c"]
+    seen.append(left_out(rows, "lib/*/src/*.c") == {"lib/nav/src/nav_ud.c"})
+    print(f"twins: lib/nav/src/nav_ud.c not in the data: {'seen' if seen[-1] else 'NOT SEEN'}")
     one = sorted(pathlib.Path(folder).glob("*.csv"))[:1]
-    ours = [r for r in avr_rows(elf, executed(one), nothing)[0] if not r["file"].startswith("lib/")]
+    ours = [r for r in avr_rows(elf, executed(one), Excluder([]))[0] if not r["file"].startswith("lib/")]
     share = percent(total(ours, "lines_executed"), total(ours, "lines"))
-    print(f"twins: a line of {file} not executed: {'seen' if lib_seen else 'NOT SEEN'}; one run alone: {share:.1f} % of the AVR lines")
-    return 0 if lib_seen and share < AVR_LINES else 1
+    print(f"twins: one run alone: {share:.1f} % of the AVR lines")
+    return 0 if all(seen) and share < AVR_LINES else 1
 
 
 def check(elf, profile, source):
