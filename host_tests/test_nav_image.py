@@ -187,6 +187,30 @@ class BadInput(unittest.TestCase):
         counts, _ = self.fly(spoil)
         self.assertEqual(counts["time went backwards"] + counts["too late"], 4)
 
+    def test_a_stamp_that_leaps_ahead_does_not_move_the_state(self):
+        """As much as one record that is missing; a leap of 10 s was 66 m."""
+        plain = self.fly(lambda made: None)[1]
+        counts, found = self.fly(lambda made: self.change(made, "imu", 3000, t_us=1_030_010_000))
+        self.assertEqual((counts["out of range"], counts["gap"], counts["time went backwards"]), (1, 0, 0))
+        self.assertLess(self.farthest(plain, found), 0.1)
+
+    def test_two_stamps_that_go_on_from_one_another_are_a_gap(self):
+        """The twin: what the above measures sees a leap."""
+        plain = self.fly(lambda made: None)[1]
+
+        def spoil(made):
+            for number in range(2):
+                self.change(made, "imu", 3000 + number, t_us=1_030_010_000 + 10_000 * number)
+        counts, found = self.fly(spoil)
+        self.assertGreaterEqual(counts["gap"], 1)
+        self.assertGreater(self.farthest(plain, found), 40.0)
+
+    @staticmethod
+    def farthest(plain, found):
+        """Largest difference of the position error between two flights at the times that both have a state of."""
+        of_plain = dict(zip(np.round(plain.t_s * 100), plain.position_m))
+        return max(np.linalg.norm(position - of_plain[t]) for t, position in zip(np.round(found.t_s * 100), found.position_m) if t in of_plain)
+
     def test_out_of_range(self):
         def spoil(made):
             self.change(made, "imu", 1500, (41.0, 0, 0, 0, 0, -9.81))
