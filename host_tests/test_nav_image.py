@@ -6,6 +6,7 @@
 Run from the repository root with build/venv/bin/python; the images are built by make.
 """
 import argparse
+import dataclasses
 import json
 import pathlib
 import subprocess
@@ -85,7 +86,7 @@ class Line(unittest.TestCase):
 
     def test_nothing_is_lost_at_full_speed(self):
         """Everything is due at once: the board's own window sets the pace."""
-        sent = [exchange.Sent(0, record.data, record.kind, record.row) for record in exchange.records(flown(3.0), {})]
+        sent = [dataclasses.replace(record, due_us=0) for record in exchange.records(flown(3.0), {})]
         out, stats = raw(sent, boards.image(12))
         found = exchange.Outcome()
         found.take(frames.Reader().feed(out))
@@ -103,7 +104,7 @@ class Line(unittest.TestCase):
             if number > 10 and record.kind == "imu" and random.random() < 0.05:
                 data[random.integers(len(data) - 1)] ^= 1 << random.integers(1, 8) if len(data) else 0
                 damaged += bytes(data) != record.data
-            spoilt.append(exchange.Sent(record.due_us, bytes(data), record.kind, record.row))
+            spoilt.append(dataclasses.replace(record, data=bytes(data)))
         out = raw_answers(spoilt)
         self.assertGreater(damaged, 20)
         self.assertGreaterEqual(out.counts["broken frame"], damaged - out.counts["records missing"])

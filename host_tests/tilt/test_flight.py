@@ -194,6 +194,55 @@ class Frames(unittest.TestCase):
         self.assertEqual(places, sorted(places))
 
 
+class Pairs(unittest.TestCase):
+    """Answers find their records by number and type, whatever the line lost."""
+    SENT = exchange.records(flight.simulated(flight.Wish(seconds=8.0)), {})
+
+    def answers(self, lost=(), refused=(), broken=()):
+        """The board's, with these records lost, refused as out of range, and a broken frame told before these."""
+        for place, record in enumerate(self.SENT):
+            if place in broken:
+                yield frames.Answer(0, "", 32, 0, 0)
+            if place not in lost:
+                yield frames.Answer(record.sequence, chr(frames.record_of(record.data[:-1])[0]), 6 if place in refused else 0, 0, 0)
+
+    def refusals(self, **line):
+        found = exchange.refusals(self.SENT, exchange.Outcome(answers=list(self.answers(**line))))
+        return [(record and self.SENT.index(record), frames.answer_text(answer.code)) for record, answer in found]
+
+    def test_a_lost_frame_shifts_none(self):
+        self.assertGreater(len(self.SENT), 800)
+        self.assertEqual(self.refusals(refused=(300, 700)), [(300, "out of range"), (700, "out of range")])
+        self.assertEqual(self.refusals(lost=(20, 299, *range(400, 500)), refused=(300, 700)), [(300, "out of range"), (700, "out of range")])
+
+    def test_a_lost_zero_byte_makes_one_broken_frame_of_two(self):
+        self.assertEqual(self.refusals(lost=(50, 51), broken=(51,), refused=(60,)), [(None, "broken frame"), (60, "out of range")])
+
+    def test_a_second_answer_to_one_record_is_that_record_s(self):
+        once = list(self.answers())
+        again = exchange.Outcome(answers=[*once[:501], frames.Answer(once[500].sequence, once[500].kind, 35, 0, 0), *once[501:]])
+        self.assertEqual([(record, answer.code) for record, answer in exchange.refusals(self.SENT, again)], [(self.SENT[500], 35)])
+        self.assertTrue(all(record for record, _ in exchange.answered(self.SENT, again.answers)))
+
+    def test_an_answer_of_another_type_is_no_record_s(self):
+        pairs = exchange.answered(self.SENT, [frames.Answer(300 & 0xFF, "V", 0, 0, 0), frames.Answer(0, "?", 33, 0, 0)])
+        self.assertEqual([record for record, _ in pairs], [None, None])
+
+    def test_start_that_was_lost_is_told_apart_from_one_that_is_refused(self):
+        def check(*codes):
+            answers = [frames.Answer(number, "PPPPPS"[number], code, 0, 0) for number, code in enumerate(codes) if code is not None]
+            later = [frames.Answer(record.sequence, "I", 36 if any(code != 0 for code in codes) else 0, 0, 0) for record in self.SENT[6:9]]
+            exchange.check_start(self.SENT, exchange.Outcome(answers=answers + later))
+
+        check(0, 0, 0, 0, 0, 0)
+        with self.assertRaisesRegex(TiltError, "start refused: a setting is outside its range"):
+            check(0, 0, 0, 0, 0, 37)
+        with self.assertRaisesRegex(TiltError, "of the 6 frames of its start the board has answered 5; .* lost on the line"):
+            check(0, 0, None, 0, 0, 37)
+        with self.assertRaisesRegex(TiltError, "of the 6 frames of its start the board has answered 5; .* lost on the line"):
+            check(0, 0, 0, 0, 0, None)
+
+
 class Judge(unittest.TestCase):
     def test_errors_are_true_minus_computed_at_common_times(self):
         made = flight.simulated(flight.Wish(seconds=60.0, without=((50.0, 55.0),)))

@@ -2,6 +2,7 @@
 """Tests of `tilt nav` at a serial port: a pseudo terminal behind which the navigation image runs natively (build/host/nav_replay_12, made here when
 it is missing). Run from the repository root with build/venv/bin/python."""
 import contextlib
+import dataclasses
 import io
 import os
 import pathlib
@@ -129,6 +130,43 @@ class Port(unittest.TestCase):
             status = cli.main(["nav", "--board", "/dev/no-such-port"])
         self.assertEqual(status, 2)
         self.assertIn("/dev/no-such-port", said.getvalue())
+
+
+class Losses(unittest.TestCase):
+    """The image's own answers where the line lost what was sent: each names its record."""
+
+    @classmethod
+    def setUpClass(cls):
+        boards.made(boards.native(12))
+
+    def refused(self, lose):
+        """Rows whose refusal is told; the third field is one without length."""
+        made = flight.simulated(flight.Wish(seconds=3.0))
+        fields = [row for row, entry in enumerate(made.rows) if entry[0] == "field"]
+        made.rows[fields[2]] = ("field", made.rows[fields[2]][1], (0.0, 0.0, 0.0))
+        records = exchange.records(made, {})
+        bad = next(number for number, record in enumerate(records) if record.row == fields[2])
+        data = lose(records, bad)
+        outcome = boards.on_pc([dataclasses.replace(record, data=data.get(number, record.data)) for number, record in enumerate(records)], 12).outcome
+        told = exchange.refusals(records, outcome)
+        self.assertIn((fields[2], "no length"), [(record and record.row, frames.answer_text(answer.code)) for record, answer in told])
+        return [record for record, _ in told if record is None or record.row != fields[2]], outcome
+
+    def test_lost_frame(self):
+        others, outcome = self.refused(lambda records, bad: {bad - 3: b""})
+        self.assertEqual(others, [])
+        self.assertEqual(outcome.counts["records missing"], 1)
+
+    def test_lost_zero_byte(self):
+        others, outcome = self.refused(lambda records, bad: {bad - 3: records[bad - 3].data[:-1]})
+        self.assertEqual(others, [None])
+        self.assertEqual(outcome.counts["broken frame"], 1)
+
+    def test_lost_parameters(self):
+        records = sent()
+        lost = [dataclasses.replace(record, data=b"") if number == 2 else record for number, record in enumerate(records)]
+        with self.assertRaisesRegex(TiltError, "the board has answered 5; the others were lost on the line"):
+            exchange.check_start(records, boards.on_pc(lost, 12).outcome)
 
 
 class Command(unittest.TestCase):

@@ -69,9 +69,9 @@ def tell_refusals(args, flight, sent, outcome):
     refused = exchange.refusals(sent, outcome)
     for record, answer in refused[:TOLD_REFUSALS]:
         where = args.stream or "simulated flight"
-        if record.row is not None and flight.lines:
+        if record is not None and record.row is not None and flight.lines:
             where += f":{flight.lines[record.row]}"
-        print(f"{where}: {record.kind}: {frames.answer_text(answer.code)}")
+        print(f"{where}: {record.kind if record else 'on the line'}: {frames.answer_text(answer.code)}")
     if len(refused) > TOLD_REFUSALS:
         print(f"... and {len(refused) - TOLD_REFUSALS} more")
     told = ", ".join(f"{name} {count}" for name, count in outcome.counts.items() if count and name != "taken")
@@ -90,15 +90,6 @@ def whole(sent, outcome):
         print(f"lost: {len(sent)} records sent, {len(outcome.answers)} answered, {outcome.damaged} damaged records from the board")
         return False
     return True
-
-
-def check_start(sent, outcome):
-    """TiltError when the flight never began: all that follows is refused then."""
-    from tilt.navigation import frames
-
-    for record, answer in zip(sent, outcome.answers):
-        if record.kind == "start" and answer.code != 0:
-            raise TiltError(f"{frames.answer_text(answer.code)}: a setting is outside its range or not finite (docs/navigation.md, --set)")
 
 
 def check_files(args, flight):
@@ -144,7 +135,7 @@ def run(args):
     done = ran(args, sent)
     took = time.perf_counter() - began
     print(f"{flight.seconds:.1f} s of flight in {took:.1f} s: {len(sent)} records, {len(done.outcome.states)} states")
-    check_start(sent, done.outcome)
+    exchange.check_start(sent, done.outcome)
     tell_stats(done.stats)
     tell_refusals(args, flight, sent, done.outcome)
     complete = whole(sent, done.outcome)

@@ -1,20 +1,29 @@
 """A flight as records for the filter, and what came back, put together again."""
 from dataclasses import dataclass, field
+from itertools import chain
 
 import numpy as np
 
+from tilt.errors import TiltError
 from tilt.navigation import frames, settings
 
 VARIANCES_EVERY_US = 1_000_000
+NEAR = 128  # half of the sequence numbers
 
 
 @dataclass(frozen=True)
 class Sent:
-    """One record: when it is due, its bytes as a frame, its kind, and which row of the flight it is (None: none)."""
+    """One record: when it is due, its bytes as a frame, its kind, the sequence number in it, and which row of the flight it is (None: none)."""
     due_us: int
     data: bytes
     kind: str
+    sequence: int
     row: int = None
+
+    @property
+    def types(self):
+        """What an answer to it calls it."""
+        return "PS" if self.kind == "start" else frames.TYPES[self.kind]
 
 
 def records(flight, chosen, every=10):
@@ -24,7 +33,7 @@ def records(flight, chosen, every=10):
 
     def add(record, kind, row=None):
         nonlocal sequence
-        out.append(Sent(due, frames.frame(record), kind, row))
+        out.append(Sent(due, frames.frame(record), kind, sequence & 0xFF, row))
         sequence += 1
 
     for record in frames.start_records(0, {**settings.DEFAULTS, **flight.settings, **chosen}):
@@ -84,6 +93,34 @@ class Outcome:
         return t_s, np.sqrt(np.maximum(np.array([numbers for _, numbers in self.variances], float), 0.0))
 
 
+def _place_of(answer, sent, at):
+    """Of the record that is answered: the next with this number and type, or the last of before; None: none was sent. Numbers come again after 256."""
+    near = chain(range(at, min(at + NEAR, len(sent))), range(at - 1, max(at - NEAR, 0) - 1, -1))
+    return next((place for place in near if sent[place].sequence == answer.sequence and answer.kind in sent[place].types), None)
+
+
+def answered(sent, answers):
+    """[(record, answer)] of all answers, in order: the record whose number and type the answer says, None where that is none of those sent."""
+    pairs, at = [], 0
+    for answer in answers:
+        place = _place_of(answer, sent, at) if answer.kind else None
+        pairs.append((None if place is None else sent[place], answer))
+        at = at if place is None else max(at, place + 1)
+    return pairs
+
+
 def refusals(sent, outcome):
-    """[(record, answer)] of what was not simply taken, in order; records and answers go together one to one."""
-    return [(record, answer) for record, answer in zip(sent, outcome.answers) if answer.code != 0]
+    """[(record, answer)] of what was not simply taken, in order; the record is None where the board could not read which it was."""
+    return [(record, answer) for record, answer in answered(sent, outcome.answers) if answer.code != 0]
+
+
+def check_start(sent, outcome):
+    """TiltError when the flight never began: all that follows is refused then."""
+    start = [record for record in sent if record.kind == "start"]
+    pairs = answered(sent, outcome.answers)
+    heard = {record.sequence: answer.code for record, answer in pairs if record is not None and record.kind == "start"}
+    if len(heard) < len(start) and (any(heard.values()) or any(frames.answer_text(answer.code) == "not started" for answer in outcome.answers)):
+        raise TiltError(f"the flight never began: of the {len(start)} frames of its start the board has answered {len(heard)}; the others were "
+                        "lost on the line")
+    for code in filter(None, heard.values()):
+        raise TiltError(f"{frames.answer_text(code)}: a setting is outside its range or not finite (docs/navigation.md, --set)")
