@@ -138,6 +138,31 @@ def raw_answers(sent):
     return found
 
 
+class FramesFile(unittest.TestCase):
+    """What simrun --frames refuses, by file and line, in place of waiting for an answer that cannot come."""
+
+    def run_of(self, *lines):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "frames"
+            path.write_text("".join(f"{line}\n" for line in lines), encoding="ascii")
+            done = subprocess.run(["build/sim/simrun", "--fw", boards.image(12), "--frames", path, "--out", path.with_name("out")],
+                                  capture_output=True, text=True, check=False, timeout=60)
+            return done.returncode, done.stderr.replace(str(path), "F")
+
+    def test_refusals_name_the_line(self):
+        good = f"0 {frames.frame(frames.bare_record(0, 'hello')).hex()}"
+        for bad, told in (("0 " + "01" * 128, "a frame has 1 to 127 bytes"), ("0 " + "01" * 300, "a frame has 1 to 127 bytes"),
+                          ("0 00", "an empty frame"), ("0 000000", "an empty frame"), ("0 0", "a frame is bytes of two hexadecimal digits"),
+                          ("0 ", "no bytes"), ("x 01", "a frame is 'DUE_US HEX'"), ("0 " + "01" * 1000, "the line is too long")):
+            status, said = self.run_of("# a comment", good, bad)
+            self.assertNotEqual(status, 0)
+            self.assertIn(f"simrun: F:3: {told}", said)
+
+    def test_the_longest_frame_is_sent(self):
+        """The twin: as much as the window holds is taken, and answered as broken."""
+        self.assertEqual(self.run_of("0 " + "7f" * 126 + "00")[0], 0)
+
+
 class BadInput(unittest.TestCase):
     """Through the whole chain on the PC: refused or gated, counted, the filter recovers."""
 
