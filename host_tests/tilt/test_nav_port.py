@@ -7,10 +7,12 @@ import io
 import os
 import pathlib
 import pty
+import re
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 import tty
 import unittest
 from unittest import mock
@@ -97,7 +99,6 @@ class Port(unittest.TestCase):
         self.assertEqual(own.overrun, 0)
 
     def test_records_go_when_they_are_due(self):
-        import time
         with board() as own:
             began = time.monotonic()
             boards.at_port(own.name, sent(2.0), 12)
@@ -189,6 +190,21 @@ class Command(unittest.TestCase):
             rows = (place / "states.csv").read_text(encoding="utf-8").splitlines()
             self.assertEqual(len(rows), 1 + 120)
             self.assertEqual((place / "f.png").read_bytes()[:4], b"\x89PNG")
+
+    def test_the_seconds_told_are_those_of_the_flight_and_not_of_building(self):
+        made = boards.made
+
+        def slowly(*targets):
+            time.sleep(3.0)
+            made(*targets)
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(boards, "made", slowly):
+            path, said = pathlib.Path(folder) / "flight.csv", io.StringIO()
+            flight.write(path, flight.simulated(flight.Wish(seconds=5.0)))
+            began = time.monotonic()
+            with contextlib.redirect_stdout(said):
+                cli.main(["nav", str(path), "--board", "pc", "--plot", str(path.with_suffix(".png"))])
+            self.assertGreater(time.monotonic() - began, 3.0)
+            self.assertLess(float(re.search(r"s of flight in ([\d.]+) s", said.getvalue())[1]), 2.0)
 
     def test_a_start_that_the_filter_refuses_is_said(self):
         said = io.StringIO()

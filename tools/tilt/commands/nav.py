@@ -7,8 +7,6 @@ record when it is due (--fast: as soon as it has room).
 Status: 0 all records were taken or refused with a reason, 1 something was lost, or the filter's covariance is not healthy, 2 a file, an option or the
 board cannot be used.
 """
-import time
-
 from tilt.errors import TiltError
 
 NAME = "nav"
@@ -130,11 +128,9 @@ def run(args):
     chosen = dict(settings.of_option(text) for text in args.set)
     flight = flight_of(args)
     check_files(args, flight)
-    began = time.perf_counter()
     sent = exchange.records(flight, chosen, args.every)
     done = ran(args, sent)
-    took = time.perf_counter() - began
-    print(f"{flight.seconds:.1f} s of flight in {took:.1f} s: {len(sent)} records, {len(done.outcome.states)} states")
+    print(f"{flight.seconds:.1f} s of flight in {done.took_s:.1f} s: {len(sent)} records, {len(done.outcome.states)} states")
     exchange.check_start(sent, done.outcome)
     tell_stats(done.stats)
     tell_refusals(args, flight, sent, done.outcome)
