@@ -12,7 +12,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
-from tilt import cli  # noqa: E402
+from tilt import cli, numbers  # noqa: E402
 from tilt.errors import TiltError  # noqa: E402
 from tilt.navigation import exchange, flight, frames, judge, rotation, settings  # noqa: E402
 
@@ -280,9 +280,30 @@ class Command(unittest.TestCase):
         for words, told in ((("--seconds", 1), "--seconds is from 2 to 4000"), (("--gps-late", -1), "--gps-late is from 0"),
                             (("--without-gps", "10-20"), "wants A:B"), (("--without-gps", "1..2:3"), "wants A:B"),
                             (("--without-gps", "8:3"), "ends before it begins"), (("--seed", -1), "not negative")):
-            status, said = run("flight", "/tmp/never-written.csv", *words)
+            with tempfile.TemporaryDirectory() as folder:
+                status, said = run("flight", pathlib.Path(folder) / "never-written.csv", *words)
+                self.assertEqual(list(pathlib.Path(folder).iterdir()), [])
             self.assertEqual(status, 2)
             self.assertIn(told, said)
+
+    def test_numbers_are_written_plainly(self):
+        """1_0 and digits of other scripts are numbers to Python, and slips here."""
+        for text in ("1_0", "\u0661", "0x10", "", "1e", "1 0", "--1", "1,0,0"):
+            for words in (("flight", "x.csv", f"--seconds={text}"), ("flight", "x.csv", f"--seed={text}"), ("flight", "x.csv", f"--gps-late={text}"),
+                          ("nav", "--board", "pc", f"--every={text}"), ("nav", "--board", "pc", f"--states={text}")):
+                with self.assertRaises(SystemExit) as ended, contextlib.redirect_stderr(io.StringIO()) as said:
+                    cli.main(list(words))
+                self.assertEqual(ended.exception.code, 2)
+                self.assertRegex(said.getvalue(), rf"argument --\S+: '{text}' is no (whole )?number")
+            self.assertEqual(run("nav", "--board", "pc", "--set", f"field={text},1,{text}")[0], 2)
+        self.assertIn("--set wants NAME=NUMBER", run("nav", "--board", "pc", "--set", "gate=1_0")[1])
+        self.assertIn("wants A:B", run("flight", "x.csv", "--without-gps", "1:\u0663")[1])
+        self.assertIn("F:1: '1_0' is no number", refused("set,gate,1_0\n"))
+        self.assertIn("F:1: '0_1' is no number", refused("imu,10000,0,0,0_1,0,0,0\n"))
+        self.assertIn("F:1: t_us is a whole number", refused("imu,1_0,0,0,0,0,0,0\n"))
+        for text, value in (("1", 1.0), ("-.5", -0.5), ("+1.", 1.0), ("1E-3", 1e-3), (" 2 ", 2.0), ("-INF", -np.inf)):
+            self.assertEqual(numbers.real(text), value)
+        self.assertTrue(np.isnan(numbers.real("nan")))
 
     def test_nav_refuses_before_the_flight_what_it_could_not_write_behind_it(self):
         for words, told in ((("-o", "/no/such/x.csv"), "no folder /no/such"), (("--plot", "/no/such/x.png"), "no folder"),

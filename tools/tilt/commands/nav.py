@@ -8,6 +8,7 @@ Status: 0 all records were taken or refused with a reason, 1 something was lost,
 board cannot be used.
 """
 from tilt.errors import TiltError
+from tilt.numbers import whole_option
 
 NAME = "nav"
 SUMMARY = "run a flight through the navigation filter (paper 003)"
@@ -18,8 +19,8 @@ PICTURES = (".png", ".svg", ".pdf")
 def arguments(parser):
     parser.add_argument("stream", metavar="STREAM", nargs="?", help="flight (default: 500 s simulated)")
     parser.add_argument("--board", default="sim", metavar="sim|pc|PORT", help="where the filter runs (default sim: the simulated UNO)")
-    parser.add_argument("--states", type=int, choices=(9, 12), default=12, help="12 with the gyros' drift, or 9 (default 12)")
-    parser.add_argument("--every", type=int, default=10, metavar="N", help="ask for the state after each Nth IMU record (default 10)")
+    parser.add_argument("--states", type=whole_option, choices=(9, 12), default=12, help="12 with the gyros' drift, or 9 (default 12)")
+    parser.add_argument("--every", type=whole_option, default=10, metavar="N", help="ask for the state after each Nth IMU record (default 10)")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=N[,N...]", help="a setting of the filter, over the file's")
     parser.add_argument("--fast", action="store_true", help="at a port: do not wait until records are due")
     parser.add_argument("-o", "--output", metavar="OUT.csv", help="states to write")

@@ -19,6 +19,7 @@ import numpy as np
 
 from tilt.errors import TiltError, at
 from tilt.navigation import rotation, settings
+from tilt.numbers import real
 
 WIDTHS = {"start": 10, "imu": 6, "field": 3, "gps": 6, "down": 1, "truth": 10}
 T_US_MAX, CLOCK_US = 0xFFFFFFFF, 1 << 32
@@ -63,9 +64,9 @@ class Flight:
 
 def _number(text, path, line):
     try:
-        return float(text)
-    except ValueError:
-        raise at(path, line, f"'{text}' is no number") from None
+        return real(text)
+    except ValueError as why:
+        raise at(path, line, str(why)) from None
 
 
 def _take_setting(flight, words, path, line):
