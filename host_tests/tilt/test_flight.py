@@ -194,6 +194,34 @@ class Frames(unittest.TestCase):
         self.assertEqual(places, sorted(places))
 
 
+class Due(unittest.TestCase):
+    """When records are sent."""
+
+    def dues(self, change=lambda t_us: t_us, seconds=4.0, slower=1):
+        made = flight.simulated(flight.Wish(seconds=seconds))
+        made.rows = [(kind, change(t_us * slower) % (1 << 32), values) for kind, t_us, values in made.rows]
+        return np.array([record.due_us for record in exchange.records(made, {}) if record.kind == "imu"])
+
+    def test_by_the_imu_s_times_over_the_wrap_of_the_clock(self):
+        wanted = np.arange(400) * 10_000
+        np.testing.assert_array_equal(self.dues(), wanted)
+        np.testing.assert_array_equal(self.dues(lambda t_us: t_us + (1 << 32) - 2_000_000), wanted)
+
+    def test_behind_half_a_round_of_the_clock(self):
+        np.testing.assert_array_equal(self.dues(slower=1000), np.arange(400) * 10_000_000)
+
+    def test_one_time_that_leaps_is_not_waited_for(self):
+        for wrong in (1_000_000_000, 5_000, (1 << 32) - 1_000_000_000):
+            for place in (10_000, 20_000, 2_000_000, 3_990_000, 4_000_000):
+                dues = self.dues(lambda t_us, place=place, wrong=wrong: wrong if t_us == place else t_us)
+                self.assertLessEqual(np.abs(dues - np.arange(400) * 10_000).max(), 20_000, (wrong, place))
+
+    def test_a_flight_of_one_record(self):
+        for steps in (1, 2):
+            made = flight.Flight(rows=[("imu", 10_000 * step, (0.0,) * 6) for step in range(steps)])
+            self.assertEqual([record.due_us for record in exchange.records(made, {}) if record.kind == "imu"], [0, 10_000][:steps])
+
+
 class Pairs(unittest.TestCase):
     """Answers find their records by number and type, whatever the line lost."""
     SENT = exchange.records(flight.simulated(flight.Wish(seconds=8.0)), {})

@@ -5,7 +5,7 @@ from itertools import chain
 import numpy as np
 
 from tilt.errors import TiltError
-from tilt.navigation import frames, settings
+from tilt.navigation import frames
 
 VARIANCES_EVERY_US = 1_000_000
 NEAR = 128  # half of the sequence numbers
@@ -26,22 +26,33 @@ class Sent:
         return "PS" if self.kind == "start" else frames.TYPES[self.kind]
 
 
+def due_of(flight):
+    """Microseconds from the first imu row on at which each imu row is due. A single time that leaps is for the filter to refuse: the line waits for
+    the middle one of each three."""
+    times = np.array(flight.unwrapped_us([t_us for kind, t_us, _ in flight.rows if kind == "imu"]), np.int64)
+    if len(times) < 3:
+        return np.maximum.accumulate(times - times[:1])
+    step = int(np.median(np.diff(times)))
+    middle = np.median([[times[0], *times[:-2], times[-1]], [times[1] - step, *times[1:-1], times[-2] + step],
+                        [times[2] - 2 * step, *times[2:], times[-3] + 2 * step]], axis=0).astype(np.int64)
+    return np.maximum.accumulate(middle - middle[0])
+
+
 def records(flight, chosen, every=10):
     """All frames of a flight: start, rows, each `every`-th imu with the state after it, variances once a second, counts at the end."""
-    out, sequence, imu, first, due = [], 0, 0, None, 0
-    next_variances = None
+    out, sequence, imu, due = [], 0, 0, 0
+    next_variances, dues = None, iter(due_of(flight).tolist())
 
     def add(record, kind, row=None):
         nonlocal sequence
         out.append(Sent(due, frames.frame(record), kind, sequence & 0xFF, row))
         sequence += 1
 
-    for record in frames.start_records(0, {**settings.DEFAULTS, **flight.settings, **chosen}):
+    for record in frames.start_records(0, flight.settings_with(chosen)):
         add(record, "start")
     for row, (kind, t_us, values) in enumerate(flight.rows):
         if kind == "imu":
-            first = t_us if first is None else first
-            due = max(due, (t_us - first) & 0xFFFFFFFF if (t_us - first) & 0xFFFFFFFF < 1 << 31 else due)
+            due = next(dues)
             imu += 1
         add(frames.row_record(sequence, kind, t_us, values, kind == "imu" and imu % every == 0), kind, row)
         next_variances = due + VARIANCES_EVERY_US if next_variances is None else next_variances
@@ -94,7 +105,7 @@ class Outcome:
 
 
 def _place_of(answer, sent, at):
-    """Of the record that is answered: the next with this number and type, or the last of before; None: none was sent. Numbers come again after 256."""
+    """Of the record that is answered: the next with this number and type, or the last of before; None: none was sent. Numbers come again."""
     near = chain(range(at, min(at + NEAR, len(sent))), range(at - 1, max(at - NEAR, 0) - 1, -1))
     return next((place for place in near if sent[place].sequence == answer.sequence and answer.kind in sent[place].types), None)
 

@@ -34,6 +34,10 @@ class Flight:
     truth_t_us: list = field(default_factory=list)
     truth: list = field(default_factory=list)
 
+    def settings_with(self, chosen=()):
+        """All that the filter is started with: the defaults, what the flight sets, what was chosen beside it."""
+        return {**settings.DEFAULTS, **self.settings, **dict(chosen)}
+
     def unwrapped_us(self, times_us):
         """Times of the 32-bit clock, in order but for single ones, as whole numbers that go on behind its wrap; from the first imu's on."""
         last, found = next((t_us for kind, t_us, _ in self.rows if kind == "imu"), 0), []
@@ -132,7 +136,7 @@ def write(path, flight, comment=""):
             for name, value in flight.settings.items():
                 if name not in ("quaternion", "velocity_mps", "position_m"):
                     file.write(f"set,{name},{_text(value if isinstance(value, tuple) else (value,))}\n")
-            begin = {**settings.DEFAULTS, **flight.settings}
+            begin = flight.settings_with()
             file.write(f"start,0,{_text((*begin['quaternion'], *begin['velocity_mps'], *begin['position_m']))}\n")
             truth = iter(zip(flight.truth_t_us, flight.truth))
             known = next(truth, None)
