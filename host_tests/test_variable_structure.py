@@ -247,7 +247,8 @@ def bad_words_are_named():
 def help_is_a_usage_with_every_option():
     for words in (["--help"], ["-h"], ["trends", "--help"]):
         text = printed(*words)
-        assert text.startswith("usage: python tools/variable_structure") and all(word in text for word in ("--list", "--runs", "--seed", "--help")), text
+        assert text.startswith("usage: python tools/variable_structure"), text
+        assert all(word in text for word in ("--list", "--runs", "--seed", "--help")), text
 
 
 @test
@@ -259,6 +260,15 @@ def it_runs_as_a_module_and_as_a_folder():
             return done.returncode, done.stdout, done.stderr
         assert said("--help") == (0, program.USAGE, "")
         assert said("--hurry") == (2, "", "variable_structure: --hurry: unknown option; the experiment stands first (--help)\n")
+
+
+@test
+def a_package_that_is_missing_is_named_with_what_installs_it():
+    for folder, packages in (("variable_structure", "papers"), ("design", "design")):
+        done = subprocess.run([sys.executable, "-B", "-S", f"tools/{folder}", "--help"], capture_output=True, text=True, check=False)
+        assert done.returncode == 1 and not done.stdout, done
+        installs = f"sh tools/deps.sh {packages}, then build/venv/bin/python tools/{folder}\n"
+        assert done.stderr.startswith(f"{folder}: ") and done.stderr.endswith(installs), done
 
 
 if __name__ == "__main__":
