@@ -1,5 +1,5 @@
 /* lib/nav record by record: what it refuses and what it survives. */
-#include "nav_flights.h"
+#include "nav_running.h"
 #include "unity.h"
 
 #include <math.h>
@@ -10,73 +10,6 @@
 void setUp(void) {}
 
 void tearDown(void) {}
-
-static const double no_rate[3] = { 0, 0, 0 };
-static const double weight[3] = { 0, 0, -FLIGHT_GRAVITY };
-static const double nowhere[3] = { 0, 0, 0 };
-
-typedef struct {
-    const nav_variant_t *v;
-    nav_memory_t m;
-    nav_setting_t setting;
-    uint32_t t_us;
-} running_t;
-
-static void rest_setting(nav_setting_t *s)
-{
-    const double level[4] = { 1, 0, 0, 0 };
-    nav_flight_setting(s, 1.0);
-    memcpy(s->start.quaternion, level, sizeof level);
-    memset(s->start.velocity, 0, sizeof s->start.velocity);
-    memset(s->start.position, 0, sizeof s->start.position);
-    s->gate = 5.0;
-}
-
-static void begin(running_t *r, const nav_variant_t *v, uint32_t t_us)
-{
-    memset(&r->m, 0, sizeof r->m);
-    r->v = v;
-    rest_setting(&r->setting);
-    TEST_ASSERT_TRUE(v->init(&r->m, &r->setting));
-    r->t_us = t_us;
-}
-
-static int record(running_t *r)
-{
-    r->t_us += 10000U;
-    return r->v->imu(&r->m, r->t_us, no_rate, weight);
-}
-
-/* At rest with all sensors for some seconds. */
-static void rest(running_t *r, int seconds)
-{
-    for (int k = 0; k < 100 * seconds; k++) {
-        TEST_ASSERT_EQUAL(ANSWER_TAKEN, record(r));
-        if (k % 10 == 0) {
-            TEST_ASSERT_EQUAL(ANSWER_TAKEN, r->v->field(&r->m, r->t_us, flight_field));
-        }
-        if (k % 100 == 0) {
-            TEST_ASSERT_EQUAL(ANSWER_TAKEN, r->v->gps(&r->m, r->t_us, nowhere, nowhere));
-            TEST_ASSERT_EQUAL(ANSWER_TAKEN, r->v->down(&r->m, r->t_us, 0.0));
-        }
-    }
-}
-
-/* Within 5 sigma of what a still body at the origin is, and healthy. */
-static void is_at_rest(const running_t *r)
-{
-    nav_values_t s;
-    double variance[12];
-    r->v->state(&r->m, &s);
-    r->v->variances(&r->m, variance);
-    for (int i = 0; i < 3; i++) {
-        TEST_ASSERT_DOUBLE_WITHIN(5.0 * sqrt(variance[i]), 0.0, s.position[i]);
-        TEST_ASSERT_DOUBLE_WITHIN(5.0 * sqrt(variance[3 + i]), 0.0, s.velocity[i]);
-        TEST_ASSERT_DOUBLE_WITHIN(5.0 * sqrt(variance[6 + i]), 0.0, 2.0 * s.quaternion[1 + i]);
-    }
-    TEST_ASSERT_TRUE(variance[0] < 25.0 && variance[3] < 0.01);
-    TEST_ASSERT_TRUE(r->v->healthy(&r->m));
-}
 
 /* What one sensor's record, with one value in place of the good one, is answered; nothing may change but a count. */
 static int answer_with(running_t *r, int sensor, int place, double value)
@@ -124,10 +57,10 @@ static void values_out_of_range_or_not_finite_are_refused(void)
     } limits[] = { { 0, 0, 40.0 }, { 0, 4, 400.0 }, { 1, 1, 1e3 }, { 1, 5, 1e6 }, { 2, 0, 1e6 }, { 3, 2, 1e6 } };
     for (int v = 0; v < NAV_ALL; v++) {
         running_t r;
-        begin(&r, nav_all[v], 0);
-        rest(&r, 5);
+        still_begin(&r, nav_all[v], 0);
+        still_seconds(&r, 5);
         for (int k = 0; k < 20; k++) { /* nothing waits */
-            record(&r);
+            still_record(&r);
         }
         for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
             is_refused(&r, limits[i].sensor, limits[i].place, 1.001 * limits[i].limit, ANSWER_OUT_OF_RANGE);
@@ -137,8 +70,8 @@ static void values_out_of_range_or_not_finite_are_refused(void)
             is_refused(&r, limits[i].sensor, limits[i].place, -INFINITY, ANSWER_NOT_FINITE);
         }
         is_refused(&r, 3, 0, 0.0, ANSWER_NO_LENGTH);
-        rest(&r, 20);
-        is_at_rest(&r);
+        still_seconds(&r, 20);
+        still_is_seen(&r);
     }
 }
 
@@ -148,73 +81,10 @@ static void limits_themselves_are_legal(void)
     running_t r;
     const double fast[3] = { 40.0, -40.0, 40.0 };
     const double hard[3] = { 400.0, -400.0, 400.0 };
-    begin(&r, &n12f, 0);
-    rest(&r, 1);
+    still_begin(&r, &n12f, 0);
+    still_seconds(&r, 1);
     TEST_ASSERT_EQUAL(ANSWER_TAKEN, r.v->imu(&r.m, r.t_us + 10000U, fast, hard));
     TEST_ASSERT_TRUE(r.v->healthy(&r.m));
-}
-
-static void time_that_goes_back_is_refused(void)
-{
-    running_t r;
-    begin(&r, &n12f, 0);
-    rest(&r, 3);
-    nav_values_t before;
-    nav_values_t behind;
-    r.v->state(&r.m, &before);
-    TEST_ASSERT_EQUAL(ANSWER_BACKWARDS, r.v->imu(&r.m, r.t_us, no_rate, weight));
-    TEST_ASSERT_EQUAL(ANSWER_BACKWARDS, r.v->imu(&r.m, r.t_us - 10000U, no_rate, weight));
-    r.v->state(&r.m, &behind);
-    TEST_ASSERT_EQUAL_MEMORY(&before, &behind, sizeof before);
-    TEST_ASSERT_EQUAL(2, r.v->count(&r.m, ANSWER_BACKWARDS));
-    rest(&r, 20);
-    is_at_rest(&r);
-}
-
-/* A sender that began anew: nine records are refused, the tenth is believed, and it goes on. */
-static void clock_that_began_anew_is_believed(void)
-{
-    running_t r;
-    begin(&r, &n12f, 1000000000U);
-    rest(&r, 10);
-    r.t_us = 0;
-    for (int i = 1; i <= 10; i++) {
-        TEST_ASSERT_EQUAL((i < 10) ? ANSWER_BACKWARDS : ANSWER_GAP, record(&r));
-    }
-    rest(&r, 20);
-    is_at_rest(&r);
-}
-
-/* Missing records, 2 to 10 periods: bridged. Longer: a gap, that owes its uncertainty. */
-static void missing_records_are_bridged_and_gaps_are_survived(void)
-{
-    for (int v = 0; v < NAV_ALL; v++) {
-        running_t r;
-        begin(&r, nav_all[v], 4294000000U); /* the clock wraps within a second */
-        rest(&r, 20);
-        for (uint32_t missing = 1; missing < 10; missing++) {
-            r.t_us += 10000U * missing;
-            TEST_ASSERT_EQUAL(ANSWER_TAKEN, record(&r));
-        }
-        is_at_rest(&r);
-        for (uint32_t gap_us = 100000; gap_us < 2000000000U; gap_us *= 11U) {
-            double before[12];
-            double behind[12];
-            r.v->variances(&r.m, before);
-            r.t_us += gap_us;
-            TEST_ASSERT_EQUAL(ANSWER_GAP, record(&r));
-            for (int i = 0; i < 7; i++) {
-                TEST_ASSERT_EQUAL(ANSWER_TAKEN, record(&r));
-            }
-            r.v->variances(&r.m, behind);
-            double gap = fmin(1e-6 * gap_us, 10.0);
-            TEST_ASSERT_TRUE(behind[0] > before[0] + 0.99 * 6.25 * gap * gap * gap * gap);
-            TEST_ASSERT_TRUE(behind[4] > before[4] + 0.99 * 25.0 * gap * gap);
-            TEST_ASSERT_TRUE(behind[8] > before[8] + 0.99 * fmin(0.25, 0.25 * gap * gap));
-            rest(&r, 20);
-            is_at_rest(&r);
-        }
-    }
 }
 
 /* One record with NaN is one that is missing. */
@@ -260,7 +130,7 @@ static void configurations_that_are_not_legal_are_refused(void)
 {
     nav_setting_t good;
     nav_memory_t m;
-    rest_setting(&good);
+    still_setting(&good);
     const struct {
         double *value;
         double bad[3];
@@ -302,9 +172,6 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(values_out_of_range_or_not_finite_are_refused);
     RUN_TEST(limits_themselves_are_legal);
-    RUN_TEST(time_that_goes_back_is_refused);
-    RUN_TEST(clock_that_began_anew_is_believed);
-    RUN_TEST(missing_records_are_bridged_and_gaps_are_survived);
     RUN_TEST(flight_with_bad_records_ends_where_the_good_one_does);
     RUN_TEST(configurations_that_are_not_legal_are_refused);
     return UNITY_END();

@@ -6,6 +6,7 @@
 Run from the repository root with build/venv/bin/python; the images are built by make.
 """
 import argparse
+import dataclasses
 import json
 import pathlib
 import subprocess
@@ -85,7 +86,7 @@ class Line(unittest.TestCase):
 
     def test_nothing_is_lost_at_full_speed(self):
         """Everything is due at once: the board's own window sets the pace."""
-        sent = [exchange.Sent(0, record.data, record.kind, record.row) for record in exchange.records(flown(3.0), {})]
+        sent = [dataclasses.replace(record, due_us=0) for record in exchange.records(flown(3.0), {})]
         out, stats = raw(sent, boards.image(12))
         found = exchange.Outcome()
         found.take(frames.Reader().feed(out))
@@ -103,7 +104,7 @@ class Line(unittest.TestCase):
             if number > 10 and record.kind == "imu" and random.random() < 0.05:
                 data[random.integers(len(data) - 1)] ^= 1 << random.integers(1, 8) if len(data) else 0
                 damaged += bytes(data) != record.data
-            spoilt.append(exchange.Sent(record.due_us, bytes(data), record.kind, record.row))
+            spoilt.append(dataclasses.replace(record, data=bytes(data)))
         out = raw_answers(spoilt)
         self.assertGreater(damaged, 20)
         self.assertGreaterEqual(out.counts["broken frame"], damaged - out.counts["records missing"])
@@ -135,6 +136,31 @@ def raw_answers(sent):
     found = exchange.Outcome()
     found.take(frames.Reader().feed(out))
     return found
+
+
+class FramesFile(unittest.TestCase):
+    """What simrun --frames refuses, by file and line, in place of waiting for an answer that cannot come."""
+
+    def run_of(self, *lines):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "frames"
+            path.write_text("".join(f"{line}\n" for line in lines), encoding="ascii")
+            done = subprocess.run(["build/sim/simrun", "--fw", boards.image(12), "--frames", path, "--out", path.with_name("out")],
+                                  capture_output=True, text=True, check=False, timeout=60)
+            return done.returncode, done.stderr.replace(str(path), "F")
+
+    def test_refusals_name_the_line(self):
+        good = f"0 {frames.frame(frames.bare_record(0, 'hello')).hex()}"
+        for bad, told in (("0 " + "01" * 128, "a frame has 1 to 127 bytes"), ("0 " + "01" * 300, "a frame has 1 to 127 bytes"),
+                          ("0 00", "an empty frame"), ("0 000000", "an empty frame"), ("0 0", "a frame is bytes of two hexadecimal digits"),
+                          ("0 ", "no bytes"), ("x 01", "a frame is 'DUE_US HEX'"), ("0 " + "01" * 1000, "the line is too long")):
+            status, said = self.run_of("# a comment", good, bad)
+            self.assertNotEqual(status, 0)
+            self.assertIn(f"simrun: F:3: {told}", said)
+
+    def test_the_longest_frame_is_sent(self):
+        """The twin: as much as the window holds is taken, and answered as broken."""
+        self.assertEqual(self.run_of("0 " + "7f" * 126 + "00")[0], 0)
 
 
 class BadInput(unittest.TestCase):
@@ -186,6 +212,30 @@ class BadInput(unittest.TestCase):
                 self.change(made, kind, place, t_us=5_000)
         counts, _ = self.fly(spoil)
         self.assertEqual(counts["time went backwards"] + counts["too late"], 4)
+
+    def test_a_stamp_that_leaps_ahead_does_not_move_the_state(self):
+        """As much as one record that is missing; a leap of 10 s was 66 m."""
+        plain = self.fly(lambda made: None)[1]
+        counts, found = self.fly(lambda made: self.change(made, "imu", 3000, t_us=1_030_010_000))
+        self.assertEqual((counts["out of range"], counts["gap"], counts["time went backwards"]), (1, 0, 0))
+        self.assertLess(self.farthest(plain, found), 0.1)
+
+    def test_two_stamps_that_go_on_from_one_another_are_a_gap(self):
+        """The twin: what the above measures sees a leap."""
+        plain = self.fly(lambda made: None)[1]
+
+        def spoil(made):
+            for number in range(2):
+                self.change(made, "imu", 3000 + number, t_us=1_030_010_000 + 10_000 * number)
+        counts, found = self.fly(spoil)
+        self.assertGreaterEqual(counts["gap"], 1)
+        self.assertGreater(self.farthest(plain, found), 40.0)
+
+    @staticmethod
+    def farthest(plain, found):
+        """Largest difference of the position error between two flights at the times that both have a state of."""
+        of_plain = dict(zip(np.round(plain.t_s * 100), plain.position_m))
+        return max(np.linalg.norm(position - of_plain[t]) for t, position in zip(np.round(found.t_s * 100), found.position_m) if t in of_plain)
 
     def test_out_of_range(self):
         def spoil(made):

@@ -1,6 +1,8 @@
 """tools/variable_structure, the reference of paper 004: each equation against what was worked out by hand, each erratum with the printed form as the
 twin that must fail; intervals and command line. The flight and its rules: test_variable_structure_flight.py."""
 import io
+import os
+import subprocess
 import sys
 
 from system_support import needs, run_all, test
@@ -233,11 +235,40 @@ def the_program_prints_the_same_again_for_a_seed():
 @test
 def bad_words_are_named():
     refused(lambda: scenario.fly(1, 1, "half"), "zero or last, not 'half'")
-    for words, sentence in ((["nothing"], "'nothing': no such experiment"), ([], "'': no such experiment"),
+    for words, sentence in ((["nothing"], "'nothing': no such experiment"), ([], "names no experiment"),
+                            (["--nothing"], "--nothing: unknown option; the experiment stands first"), (["--list", "x"], "x: --list stands alone"),
                             (["trends", "--runs", "0"], "--runs: takes a whole number from 1"),
                             (["trends", "--seed"], "--seed: takes a whole number"),
                             (["trends", "--runs", "1e3"], "--runs: takes"), (["trends", "--hurry", "1"], "--hurry: unknown option")):
         refused(lambda: program.run(words, io.StringIO()), sentence)
+
+
+@test
+def help_is_a_usage_with_every_option():
+    for words in (["--help"], ["-h"], ["trends", "--help"]):
+        text = printed(*words)
+        assert text.startswith("usage: python tools/variable_structure"), text
+        assert all(word in text for word in ("--list", "--runs", "--seed", "--help")), text
+
+
+@test
+def it_runs_as_a_module_and_as_a_folder():
+    for words in (["-m", "variable_structure"], ["tools/variable_structure"]):
+        def said(*more):
+            done = subprocess.run([sys.executable, "-B", *words, *more], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": "tools"},
+                                  check=False)
+            return done.returncode, done.stdout, done.stderr
+        assert said("--help") == (0, program.USAGE, "")
+        assert said("--hurry") == (2, "", "variable_structure: --hurry: unknown option; the experiment stands first (--help)\n")
+
+
+@test
+def a_package_that_is_missing_is_named_with_what_installs_it():
+    for folder, packages in (("variable_structure", "papers"), ("design", "design")):
+        done = subprocess.run([sys.executable, "-B", "-S", f"tools/{folder}", "--help"], capture_output=True, text=True, check=False)
+        assert done.returncode == 1 and not done.stdout, done
+        installs = f"sh tools/deps.sh {packages}, then build/venv/bin/python tools/{folder}\n"
+        assert done.stderr.startswith(f"{folder}: ") and done.stderr.endswith(installs), done
 
 
 if __name__ == "__main__":

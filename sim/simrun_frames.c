@@ -10,7 +10,12 @@
 
 #define DUE_MAX_US 1e12
 
-enum { FRAME_BYTES_MAX = 256, ANSWER_MAX = 254, LINE_CHARACTERS = 16 + 2 * FRAME_BYTES_MAX + 8, SILENT_MS = 2000 };
+enum {
+    FRAME_BYTES_MAX = 127, /* the board's window: a longer one would wait for ever */
+    ANSWER_MAX = 254,
+    LINE_CHARACTERS = 1024,
+    SILENT_MS = 2000
+};
 
 /* of the board's records: the greeting with its window, the answer with the bytes it has taken */
 enum { HELLO = 'h', HELLO_WINDOW = 3, ANSWER = 'k', ANSWER_TAKEN = 5, NUMBER_BYTES = 2 };
@@ -67,16 +72,24 @@ static int digit(char character)
 static unsigned take_bytes(const char *at, unsigned line)
 {
     unsigned length = 0;
+    bool any = false;
     for (; !isspace((unsigned char)*at) && *at != '\0'; at += 2) {
         int high = digit(at[0]);
         int low = high < 0 ? -1 : digit(at[1]);
-        if (low < 0 || length == FRAME_BYTES_MAX) {
-            refuse(line, "a frame has 1 to 256 bytes of two hexadecimal digits");
+        if (low < 0) {
+            refuse(line, "a frame is bytes of two hexadecimal digits each");
+        }
+        if (length == FRAME_BYTES_MAX) {
+            refuse(line, "a frame has 1 to 127 bytes: the board has no room for more");
         }
         bytes[byte_count + length++] = (uint8_t)(high * 16 + low);
+        any = any || high + low != 0;
     }
     if (length == 0) {
         refuse(line, "no bytes");
+    }
+    if (!any) {
+        refuse(line, "an empty frame: the board does not answer zero bytes alone");
     }
     return length;
 }

@@ -91,6 +91,7 @@ JUDGES = {
     "plotter": (["system_images"], PYTHON, "host_tests/test_plotter.py"),
     "arduino": (["arduino_images"], PYTHON, "host_tests/test_arduino.py"),
     "compile_commands": (["compile_commands"], PYTHON, "host_tests/test_compile_commands.py"),
+    "nav_image": (["build/sim/simrun", "build/uno/nav/firmware.elf", "build/host/nav_replay_12"], WITH_PACKAGES, "host_tests/test_nav_image.py"),
     "schedule": (["help"], PYTHON, "host_tests/test_schedule.py"),
 }
 

@@ -12,7 +12,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
-from tilt import cli  # noqa: E402
+from tilt import cli, numbers  # noqa: E402
 from tilt.errors import TiltError  # noqa: E402
 from tilt.navigation import exchange, flight, frames, judge, rotation, settings  # noqa: E402
 
@@ -194,6 +194,83 @@ class Frames(unittest.TestCase):
         self.assertEqual(places, sorted(places))
 
 
+class Due(unittest.TestCase):
+    """When records are sent."""
+
+    def dues(self, change=lambda t_us: t_us, seconds=4.0, slower=1):
+        made = flight.simulated(flight.Wish(seconds=seconds))
+        made.rows = [(kind, change(t_us * slower) % (1 << 32), values) for kind, t_us, values in made.rows]
+        return np.array([record.due_us for record in exchange.records(made, {}) if record.kind == "imu"])
+
+    def test_by_the_imu_s_times_over_the_wrap_of_the_clock(self):
+        wanted = np.arange(400) * 10_000
+        np.testing.assert_array_equal(self.dues(), wanted)
+        np.testing.assert_array_equal(self.dues(lambda t_us: t_us + (1 << 32) - 2_000_000), wanted)
+
+    def test_behind_half_a_round_of_the_clock(self):
+        np.testing.assert_array_equal(self.dues(slower=1000), np.arange(400) * 10_000_000)
+
+    def test_one_time_that_leaps_is_not_waited_for(self):
+        for wrong in (1_000_000_000, 5_000, (1 << 32) - 1_000_000_000):
+            for place in (10_000, 20_000, 2_000_000, 3_990_000, 4_000_000):
+                dues = self.dues(lambda t_us, place=place, wrong=wrong: wrong if t_us == place else t_us)
+                self.assertLessEqual(np.abs(dues - np.arange(400) * 10_000).max(), 20_000, (wrong, place))
+
+    def test_a_flight_of_one_record(self):
+        for steps in (1, 2):
+            made = flight.Flight(rows=[("imu", 10_000 * step, (0.0,) * 6) for step in range(steps)])
+            self.assertEqual([record.due_us for record in exchange.records(made, {}) if record.kind == "imu"], [0, 10_000][:steps])
+
+
+class Pairs(unittest.TestCase):
+    """Answers find their records by number and type, whatever the line lost."""
+    SENT = exchange.records(flight.simulated(flight.Wish(seconds=8.0)), {})
+
+    def answers(self, lost=(), refused=(), broken=()):
+        """The board's, with these records lost, refused as out of range, and a broken frame told before these."""
+        for place, record in enumerate(self.SENT):
+            if place in broken:
+                yield frames.Answer(0, "", 32, 0, 0)
+            if place not in lost:
+                yield frames.Answer(record.sequence, chr(frames.record_of(record.data[:-1])[0]), 6 if place in refused else 0, 0, 0)
+
+    def refusals(self, **line):
+        found = exchange.refusals(self.SENT, exchange.Outcome(answers=list(self.answers(**line))))
+        return [(record and self.SENT.index(record), frames.answer_text(answer.code)) for record, answer in found]
+
+    def test_a_lost_frame_shifts_none(self):
+        self.assertGreater(len(self.SENT), 800)
+        self.assertEqual(self.refusals(refused=(300, 700)), [(300, "out of range"), (700, "out of range")])
+        self.assertEqual(self.refusals(lost=(20, 299, *range(400, 500)), refused=(300, 700)), [(300, "out of range"), (700, "out of range")])
+
+    def test_a_lost_zero_byte_makes_one_broken_frame_of_two(self):
+        self.assertEqual(self.refusals(lost=(50, 51), broken=(51,), refused=(60,)), [(None, "broken frame"), (60, "out of range")])
+
+    def test_a_second_answer_to_one_record_is_that_record_s(self):
+        once = list(self.answers())
+        again = exchange.Outcome(answers=[*once[:501], frames.Answer(once[500].sequence, once[500].kind, 35, 0, 0), *once[501:]])
+        self.assertEqual([(record, answer.code) for record, answer in exchange.refusals(self.SENT, again)], [(self.SENT[500], 35)])
+        self.assertTrue(all(record for record, _ in exchange.answered(self.SENT, again.answers)))
+
+    def test_an_answer_of_another_type_is_no_record_s(self):
+        pairs = exchange.answered(self.SENT, [frames.Answer(300 & 0xFF, "V", 0, 0, 0), frames.Answer(0, "?", 33, 0, 0)])
+        self.assertEqual([record for record, _ in pairs], [None, None])
+
+    def test_start_that_was_lost_is_told_apart_from_one_that_is_refused(self):
+        def check(*codes):
+            answers = [frames.Answer(number, "PPPPPS"[number], code, 0, 0) for number, code in enumerate(codes) if code is not None]
+            later = [frames.Answer(record.sequence, "I", 36 if any(code != 0 for code in codes) else 0, 0, 0) for record in self.SENT[6:9]]
+            exchange.check_start(self.SENT, exchange.Outcome(answers=answers + later))
+
+        check(0, 0, 0, 0, 0, 0)
+        with self.assertRaisesRegex(TiltError, "start refused: a setting is outside its range"):
+            check(0, 0, 0, 0, 0, 37)
+        with self.assertRaisesRegex(TiltError, "of the 6 frames of its start the board has answered 5; .* lost on the line"):
+            check(0, 0, None, 0, 0, 37)
+        with self.assertRaisesRegex(TiltError, "of the 6 frames of its start the board has answered 5; .* lost on the line"):
+            check(0, 0, 0, 0, 0, None)
+
+
 class Judge(unittest.TestCase):
     def test_errors_are_true_minus_computed_at_common_times(self):
         made = flight.simulated(flight.Wish(seconds=60.0, without=((50.0, 55.0),)))
@@ -231,9 +308,30 @@ class Command(unittest.TestCase):
         for words, told in ((("--seconds", 1), "--seconds is from 2 to 4000"), (("--gps-late", -1), "--gps-late is from 0"),
                             (("--without-gps", "10-20"), "wants A:B"), (("--without-gps", "1..2:3"), "wants A:B"),
                             (("--without-gps", "8:3"), "ends before it begins"), (("--seed", -1), "not negative")):
-            status, said = run("flight", "/tmp/never-written.csv", *words)
+            with tempfile.TemporaryDirectory() as folder:
+                status, said = run("flight", pathlib.Path(folder) / "never-written.csv", *words)
+                self.assertEqual(list(pathlib.Path(folder).iterdir()), [])
             self.assertEqual(status, 2)
             self.assertIn(told, said)
+
+    def test_numbers_are_written_plainly(self):
+        """1_0 and digits of other scripts are numbers to Python, and slips here."""
+        for text in ("1_0", "\u0661", "0x10", "", "1e", "1 0", "--1", "1,0,0"):
+            for words in (("flight", "x.csv", f"--seconds={text}"), ("flight", "x.csv", f"--seed={text}"), ("flight", "x.csv", f"--gps-late={text}"),
+                          ("nav", "--board", "pc", f"--every={text}"), ("nav", "--board", "pc", f"--states={text}")):
+                with self.assertRaises(SystemExit) as ended, contextlib.redirect_stderr(io.StringIO()) as said:
+                    cli.main(list(words))
+                self.assertEqual(ended.exception.code, 2)
+                self.assertRegex(said.getvalue(), rf"argument --\S+: '{text}' is no (whole )?number")
+            self.assertEqual(run("nav", "--board", "pc", "--set", f"field={text},1,{text}")[0], 2)
+        self.assertIn("--set wants NAME=NUMBER", run("nav", "--board", "pc", "--set", "gate=1_0")[1])
+        self.assertIn("wants A:B", run("flight", "x.csv", "--without-gps", "1:\u0663")[1])
+        self.assertIn("F:1: '1_0' is no number", refused("set,gate,1_0\n"))
+        self.assertIn("F:1: '0_1' is no number", refused("imu,10000,0,0,0_1,0,0,0\n"))
+        self.assertIn("F:1: t_us is a whole number", refused("imu,1_0,0,0,0,0,0,0\n"))
+        for text, value in (("1", 1.0), ("-.5", -0.5), ("+1.", 1.0), ("1E-3", 1e-3), (" 2 ", 2.0), ("-INF", -np.inf)):
+            self.assertEqual(numbers.real(text), value)
+        self.assertTrue(np.isnan(numbers.real("nan")))
 
     def test_nav_refuses_before_the_flight_what_it_could_not_write_behind_it(self):
         for words, told in ((("-o", "/no/such/x.csv"), "no folder /no/such"), (("--plot", "/no/such/x.png"), "no folder"),

@@ -2,14 +2,17 @@
 """Tests of `tilt nav` at a serial port: a pseudo terminal behind which the navigation image runs natively (build/host/nav_replay_12, made here when
 it is missing). Run from the repository root with build/venv/bin/python."""
 import contextlib
+import dataclasses
 import io
 import os
 import pathlib
 import pty
+import re
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 import tty
 import unittest
 from unittest import mock
@@ -96,7 +99,6 @@ class Port(unittest.TestCase):
         self.assertEqual(own.overrun, 0)
 
     def test_records_go_when_they_are_due(self):
-        import time
         with board() as own:
             began = time.monotonic()
             boards.at_port(own.name, sent(2.0), 12)
@@ -131,6 +133,43 @@ class Port(unittest.TestCase):
         self.assertIn("/dev/no-such-port", said.getvalue())
 
 
+class Losses(unittest.TestCase):
+    """The image's own answers where the line lost what was sent: each names its record."""
+
+    @classmethod
+    def setUpClass(cls):
+        boards.made(boards.native(12))
+
+    def refused(self, lose):
+        """Rows whose refusal is told; the third field is one without length."""
+        made = flight.simulated(flight.Wish(seconds=3.0))
+        fields = [row for row, entry in enumerate(made.rows) if entry[0] == "field"]
+        made.rows[fields[2]] = ("field", made.rows[fields[2]][1], (0.0, 0.0, 0.0))
+        records = exchange.records(made, {})
+        bad = next(number for number, record in enumerate(records) if record.row == fields[2])
+        data = lose(records, bad)
+        outcome = boards.on_pc([dataclasses.replace(record, data=data.get(number, record.data)) for number, record in enumerate(records)], 12).outcome
+        told = exchange.refusals(records, outcome)
+        self.assertIn((fields[2], "no length"), [(record and record.row, frames.answer_text(answer.code)) for record, answer in told])
+        return [record for record, _ in told if record is None or record.row != fields[2]], outcome
+
+    def test_lost_frame(self):
+        others, outcome = self.refused(lambda records, bad: {bad - 3: b""})
+        self.assertEqual(others, [])
+        self.assertEqual(outcome.counts["records missing"], 1)
+
+    def test_lost_zero_byte(self):
+        others, outcome = self.refused(lambda records, bad: {bad - 3: records[bad - 3].data[:-1]})
+        self.assertEqual(others, [None])
+        self.assertEqual(outcome.counts["broken frame"], 1)
+
+    def test_lost_parameters(self):
+        records = sent()
+        lost = [dataclasses.replace(record, data=b"") if number == 2 else record for number, record in enumerate(records)]
+        with self.assertRaisesRegex(TiltError, "the board has answered 5; the others were lost on the line"):
+            exchange.check_start(records, boards.on_pc(lost, 12).outcome)
+
+
 class Command(unittest.TestCase):
     def test_writes_states_and_picture_and_names_what_was_refused(self):
         made = flight.simulated(flight.Wish(seconds=12.0, without=((4.0, 9.0),)))
@@ -151,6 +190,21 @@ class Command(unittest.TestCase):
             rows = (place / "states.csv").read_text(encoding="utf-8").splitlines()
             self.assertEqual(len(rows), 1 + 120)
             self.assertEqual((place / "f.png").read_bytes()[:4], b"\x89PNG")
+
+    def test_the_seconds_told_are_those_of_the_flight_and_not_of_building(self):
+        made = boards.made
+
+        def slowly(*targets):
+            time.sleep(3.0)
+            made(*targets)
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(boards, "made", slowly):
+            path, said = pathlib.Path(folder) / "flight.csv", io.StringIO()
+            flight.write(path, flight.simulated(flight.Wish(seconds=5.0)))
+            began = time.monotonic()
+            with contextlib.redirect_stdout(said):
+                cli.main(["nav", str(path), "--board", "pc", "--plot", str(path.with_suffix(".png"))])
+            self.assertGreater(time.monotonic() - began, 3.0)
+            self.assertLess(float(re.search(r"s of flight in ([\d.]+) s", said.getvalue())[1]), 2.0)
 
     def test_a_start_that_the_filter_refuses_is_said(self):
         said = io.StringIO()

@@ -7,6 +7,17 @@ from .intervals import Interval
 DEFAULT_RUNS, DEFAULT_SEED = 10000, 2024
 MOST = 10_000_000
 NAME = "variable_structure"
+HELP = ("-h", "--help")
+USAGE = f"""usage: python tools/{NAME} --list | EXPERIMENT [--runs N] [--seed N]
+
+The experiments of paper 004 (docs/variable-structure.md), as rows that tools/papers.py reads.
+
+  --list      names of the experiments, and how much work each is
+  EXPERIMENT  one of them: rows of filter, metric, value, low and high of its interval, number it was made of
+  --runs N    how many runs, 1 to {MOST} (default {DEFAULT_RUNS})
+  --seed N    of the noise, 1 to {MOST} (default {DEFAULT_SEED})
+  -h, --help  this text
+"""
 
 
 class Refused(Exception):
@@ -51,10 +62,19 @@ class Progress:
 
 def run(arguments, out):
     word = arguments[0] if arguments else ""
+    if any(help_word in arguments for help_word in HELP):
+        out.write(USAGE)
+        return
+    if not word:
+        raise Refused("names no experiment (--list tells them, --help the options)")
     if word == "--list":
+        if len(arguments) > 1:
+            raise Refused(f"{arguments[1]}: --list stands alone")
         for name, (work, _) in EXPERIMENTS.items():
             out.write(f"{name}\t{work:g}\n")
         return
+    if word.startswith("-"):
+        raise Refused(f"{word}: unknown option; the experiment stands first (--help)")
     if word not in EXPERIMENTS:
         raise Refused(f"'{word}': no such experiment (--list tells them)")
     runs, seed = options_of(arguments[1:])

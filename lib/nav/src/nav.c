@@ -19,6 +19,7 @@
 #define FIELD_MAX NAV_R(1e6)
 #define GAP_MAX_S NAV_R(10.0)  /* beyond, what a gap may hold is said by the gate's re-acquisition */
 #define CLOCK_GAP_US 1000000UL /* what a clock that began anew counts for */
+#define ONLY_ONE 0x80U /* in strays: of all times only the first record's was taken, and it may be the wrong one */
 #define HALF NAV_R(0.5)
 
 /* NAV_TAKEN when all lie within +-limit. */
@@ -113,7 +114,6 @@ bool nav_init(nav_t *nav, const nav_config_t *config)
 static void begin_at(nav_t *nav, uint32_t t_us)
 {
     nav->t_us = t_us;
-    nav->started = true;
     nav_jobs_forget(&nav->queue);
     nav_past_restart(&nav->past, &nav->state, t_us);
     nav_noise_restart(&nav->noise, t_us);
@@ -166,29 +166,38 @@ static uint32_t bridged_us(const nav_t *nav)
     return (periods > NAV_BRIDGE_US) ? periods : NAV_BRIDGE_US;
 }
 
-/* Back in time: refused, until so many in a row say that the clock began anew. */
-static nav_answer_t step_back(nav_t *nav, uint32_t t_us)
+/*
+ * A time that does not go on from the last may be one wrong stamp, and to believe it would move the position by seconds
+ * of flight. A gap is what the next record goes on from; what goes back may be late records, some in a row.
+ */
+static nav_answer_t stray(nav_t *nav, uint32_t t_us, uint32_t step_us)
 {
-    nav->steps_back++;
-    if (nav->steps_back < NAV_STEPS_BACK) {
-        return NAV_BACKWARDS;
+    bool unconfirmed_start = (nav->strays & ONLY_ONE) != 0U;
+    uint8_t before = nav->strays & (uint8_t)~ONLY_ONE;
+    bool ahead = (int32_t)step_us > 0;
+    bool confirmed = ahead && before != 0U && t_us - nav->stray_us - 1U < bridged_us(nav);
+    nav->stray_us = t_us;
+    nav->strays++;
+    if (!confirmed && before < NAV_STRAYS - 1) {
+        return ahead ? NAV_OUT_OF_RANGE : NAV_BACKWARDS;
     }
-    leap(nav, t_us, CLOCK_GAP_US);
+    if (unconfirmed_start) {
+        step_us = NAV_BRIDGE_US;
+    } else if (!ahead) {
+        step_us = CLOCK_GAP_US;
+    }
+    leap(nav, t_us, step_us);
     return NAV_GAP;
 }
 
 static nav_answer_t step_to(nav_t *nav, uint32_t t_us, nav_real_t rate[3], nav_real_t force[3])
 {
     uint32_t step_us = t_us - nav->t_us;
-    if (nav_time_from(nav->t_us, t_us) <= 0) {
-        return step_back(nav, t_us);
+    if (step_us - 1U >= bridged_us(nav)) {
+        return stray(nav, t_us, step_us);
     }
-    bool lost = step_us > bridged_us(nav);
-    read_record(nav, rate, force, !lost && step_us > nav->period_us + nav->period_us / 2U);
-    if (lost) {
-        leap(nav, t_us, step_us);
-        return NAV_GAP;
-    }
+    bool leapt = nav->stray_us == nav->t_us; /* the last record that was read is of before */
+    read_record(nav, rate, force, !leapt && step_us > nav->period_us + nav->period_us / 2U);
     advance(nav, t_us, rate, force);
     return NAV_TAKEN;
 }
@@ -199,12 +208,14 @@ nav_answer_t nav_imu(nav_t *nav, uint32_t t_us, const nav_real_t rate_rps[3], co
     nav_real_t force[3] = { force_mps2[0], force_mps2[1], force_mps2[2] };
     nav_answer_t answer = worse(judged(rate, 3, RATE_MAX_RPS), judged(force, 3, FORCE_MAX_MPS2));
     if (answer == NAV_TAKEN) {
-        if (!nav->started) {
+        uint8_t strays = 0;
+        if (nav_past_empty(&nav->past)) {
             begin_at(nav, t_us - nav->period_us);
+            strays = ONLY_ONE;
         }
         answer = step_to(nav, t_us, rate, force);
-        if (answer != NAV_BACKWARDS) {
-            nav->steps_back = 0;
+        if (answer == NAV_TAKEN || answer == NAV_GAP) {
+            nav->strays = strays;
             nav_jobs_run(nav);
         }
     }

@@ -44,7 +44,7 @@ enum {
     NAV_NOISES = 1 + (NAV_STATES - 3),        /* jobs of process noise: position at once, then one per state */
     NAV_PAST = 10,                            /* positions and velocities kept for late epochs, 19 ms apart or more */
     NAV_REFUSALS = 5,                         /* epochs in a row that the gate may refuse a scalar */
-    NAV_STEPS_BACK = 10                       /* IMU records in a row that go back until the clock is believed */
+    NAV_STRAYS = 10                           /* IMU records in a row whose times go back until they are believed */
 };
 
 typedef struct {
@@ -84,7 +84,8 @@ typedef enum {
     NAV_LATE,         /* its epoch is older than what is remembered */
     NAV_NOT_FINITE,   /* NaN or infinite */
     NAV_NO_LENGTH,    /* a field without direction */
-    NAV_OUT_OF_RANGE, /* |rate| > 40 rad/s, |force| > 400 m/s^2, |velocity| > 1e3 m/s, |position| or |field| > 1e6 */
+    NAV_OUT_OF_RANGE, /* |rate| > 40 rad/s, |force| > 400 m/s^2, |velocity| > 1e3 m/s, |position| or |field| > 1e6; an
+                         IMU time that leaps ahead */
     NAV_QUEUE_FULL,   /* scalars of this sensor's last epoch still wait */
     NAV_GAP,          /* IMU: the time before it is lost; other sensors: no IMU record near this epoch yet */
     NAV_ANSWERS
@@ -136,8 +137,8 @@ typedef struct {
     nav_queue_t queue;
     nav_noise_t noise;
     nav_counts_t counts;
-    uint8_t steps_back;
-    bool started;
+    uint32_t stray_us; /* the last IMU time that did not go on, while strays are not 0 */
+    uint8_t strays;    /* in a row; and a bit of nav.c */
 } nav_t;
 
 /* False, and *nav of no use: a field of *config is outside its range or not finite. */
@@ -150,12 +151,14 @@ bool nav_init(nav_t *nav, const nav_config_t *config);
  * Missing records, up to 100 ms (or two periods, if longer): one step over the whole interval with the mean of the last
  * and this record. That is the trapezium's rule: over a step of T an angle errs by |rate''| T^3 / 12, by |last x this|
  * T^2 / 12 where the axis turns, and the noise of two records stands for that of all.
- * NAV_GAP, longer: time starts anew, position goes on with the velocity for 10 s at most, what waited is forgotten, and
+ * A time further ahead is refused, NAV_OUT_OF_RANGE, until the next record goes on from it: one stamp may be wrong.
+ * NAV_GAP, then: time starts anew, position goes on with the velocity for 10 s at most, what waited is forgotten, and
  * the covariance grows by what T seconds (10 at most) may hold, unseen: a turn at 0.5 rad/s (0.5 rad at most), 5 m/s^2
  * and what they make of the position; in the next seven slots, before anything else. Ten records in a row that go back
- * in time are a clock that began anew, which counts as a gap of one second.
+ * in time are a clock that began anew, which counts as a gap of one second; ten that leap ahead, each by more than is
+ * bridged, are a gap too. Where only the first record's time stands against them, it is the wrong one: a gap of 100 ms.
  *
- * NAV_TAKEN, NAV_GAP; or refused and nothing changed: NAV_BACKWARDS, NAV_NOT_FINITE, NAV_OUT_OF_RANGE.
+ * NAV_TAKEN, NAV_GAP; or refused and no state changed: NAV_BACKWARDS, NAV_NOT_FINITE, NAV_OUT_OF_RANGE.
  */
 nav_answer_t nav_imu(nav_t *nav, uint32_t t_us, const nav_real_t rate_rps[3], const nav_real_t force_mps2[3]);
 

@@ -50,7 +50,7 @@ nav_answer_t nav_jobs_may(const nav_t *nav, nav_sensor_t sensor, uint32_t t_us)
 {
     const nav_queue_t *queue = &nav->queue;
     int32_t age = nav_time_from(t_us, nav->t_us);
-    if (!nav->started || age < -(int32_t)NAV_BRIDGE_US) {
+    if (nav_past_empty(&nav->past) || age < -(int32_t)NAV_BRIDGE_US) {
         return NAV_GAP;
     }
     if (age > ((sensor == NAV_FIELD) ? (int32_t)NAV_FIELD_LATE_US : (int32_t)NAV_LATE_US) ||

@@ -14,6 +14,12 @@ void nav_past_restart(nav_past_t *past, const nav_state_t *state, uint32_t t_us)
 /* Keeps the state at t_us, if the last that was kept is 19 ms old: ten of them reach back 150 ms and one step more. */
 void nav_past_keep(nav_past_t *past, const nav_state_t *state, uint32_t t_us);
 
+/* Nothing was kept since nav_init: no IMU record has been taken. */
+static inline bool nav_past_empty(const nav_past_t *past)
+{
+    return past->held == 0U;
+}
+
 /* A correction was made: x in the order of the error state. */
 void nav_past_correct(nav_past_t *past, const nav_real_t x[NAV_STATES]);
 

@@ -8,6 +8,7 @@ Status: 0 written, 2 an option or the file cannot be used.
 import re
 
 from tilt.errors import TiltError
+from tilt.numbers import real_option, whole_option
 
 NAME = "flight"
 SUMMARY = "simulate a flight for `tilt nav`"
@@ -15,17 +16,17 @@ SUMMARY = "simulate a flight for `tilt nav`"
 
 def arguments(parser):
     parser.add_argument("output", metavar="OUT.csv", help="to write")
-    parser.add_argument("--seconds", type=float, default=500.0, metavar="N", help="length, 2 to 4000 (default 500)")
-    parser.add_argument("--seed", type=int, default=7, metavar="N", help="of the noise (default 7)")
+    parser.add_argument("--seconds", type=real_option, default=500.0, metavar="N", help="length, 2 to 4000 (default 500)")
+    parser.add_argument("--seed", type=whole_option, default=7, metavar="N", help="of the noise (default 7)")
     parser.add_argument("--without-gps", default="160:400", metavar="A:B[,A:B...]", help="seconds without GPS (default 160:400; - for none)")
     parser.add_argument("--no-drift", action="store_true", help="gyros without drift (default: 7.5, -8.5, 5 e-4 rad/s)")
-    parser.add_argument("--gps-late", type=float, default=0.0, metavar="MS", help="time that a GPS epoch is under way, 0 to 1000 (default 0)")
+    parser.add_argument("--gps-late", type=real_option, default=0.0, metavar="MS", help="time that a GPS epoch is under way, 0 to 1000 (default 0)")
 
 
 def intervals_of(text):
     if text == "-":
         return ()
-    number = r"\d+(\.\d*)?"
+    number = r"[0-9]+(\.[0-9]*)?"
     if not re.fullmatch(rf"{number}:{number}(,{number}:{number})*", text):
         raise TiltError(f"--without-gps wants A:B[,A:B...] in seconds or -, not '{text}'")
     found = tuple(tuple(float(edge) for edge in piece.split(":")) for piece in text.split(","))

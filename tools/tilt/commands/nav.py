@@ -7,9 +7,8 @@ record when it is due (--fast: as soon as it has room).
 Status: 0 all records were taken or refused with a reason, 1 something was lost, or the filter's covariance is not healthy, 2 a file, an option or the
 board cannot be used.
 """
-import time
-
 from tilt.errors import TiltError
+from tilt.numbers import whole_option
 
 NAME = "nav"
 SUMMARY = "run a flight through the navigation filter (paper 003)"
@@ -20,8 +19,8 @@ PICTURES = (".png", ".svg", ".pdf")
 def arguments(parser):
     parser.add_argument("stream", metavar="STREAM", nargs="?", help="flight (default: 500 s simulated)")
     parser.add_argument("--board", default="sim", metavar="sim|pc|PORT", help="where the filter runs (default sim: the simulated UNO)")
-    parser.add_argument("--states", type=int, choices=(9, 12), default=12, help="12 with the gyros' drift, or 9 (default 12)")
-    parser.add_argument("--every", type=int, default=10, metavar="N", help="ask for the state after each Nth IMU record (default 10)")
+    parser.add_argument("--states", type=whole_option, choices=(9, 12), default=12, help="12 with the gyros' drift, or 9 (default 12)")
+    parser.add_argument("--every", type=whole_option, default=10, metavar="N", help="ask for the state after each Nth IMU record (default 10)")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=N[,N...]", help="a setting of the filter, over the file's")
     parser.add_argument("--fast", action="store_true", help="at a port: do not wait until records are due")
     parser.add_argument("-o", "--output", metavar="OUT.csv", help="states to write")
@@ -69,9 +68,9 @@ def tell_refusals(args, flight, sent, outcome):
     refused = exchange.refusals(sent, outcome)
     for record, answer in refused[:TOLD_REFUSALS]:
         where = args.stream or "simulated flight"
-        if record.row is not None and flight.lines:
+        if record is not None and record.row is not None and flight.lines:
             where += f":{flight.lines[record.row]}"
-        print(f"{where}: {record.kind}: {frames.answer_text(answer.code)}")
+        print(f"{where}: {record.kind if record else 'on the line'}: {frames.answer_text(answer.code)}")
     if len(refused) > TOLD_REFUSALS:
         print(f"... and {len(refused) - TOLD_REFUSALS} more")
     told = ", ".join(f"{name} {count}" for name, count in outcome.counts.items() if count and name != "taken")
@@ -90,15 +89,6 @@ def whole(sent, outcome):
         print(f"lost: {len(sent)} records sent, {len(outcome.answers)} answered, {outcome.damaged} damaged records from the board")
         return False
     return True
-
-
-def check_start(sent, outcome):
-    """TiltError when the flight never began: all that follows is refused then."""
-    from tilt.navigation import frames
-
-    for record, answer in zip(sent, outcome.answers):
-        if record.kind == "start" and answer.code != 0:
-            raise TiltError(f"{frames.answer_text(answer.code)}: a setting is outside its range or not finite (docs/navigation.md, --set)")
 
 
 def check_files(args, flight):
@@ -139,12 +129,10 @@ def run(args):
     chosen = dict(settings.of_option(text) for text in args.set)
     flight = flight_of(args)
     check_files(args, flight)
-    began = time.perf_counter()
     sent = exchange.records(flight, chosen, args.every)
     done = ran(args, sent)
-    took = time.perf_counter() - began
-    print(f"{flight.seconds:.1f} s of flight in {took:.1f} s: {len(sent)} records, {len(done.outcome.states)} states")
-    check_start(sent, done.outcome)
+    print(f"{flight.seconds:.1f} s of flight in {done.took_s:.1f} s: {len(sent)} records, {len(done.outcome.states)} states")
+    exchange.check_start(sent, done.outcome)
     tell_stats(done.stats)
     tell_refusals(args, flight, sent, done.outcome)
     complete = whole(sent, done.outcome)

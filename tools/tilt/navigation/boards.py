@@ -20,8 +20,9 @@ MAKE_FIRST = "sh tools/deps.sh sim installs what is missing"
 
 @dataclass
 class Run:
-    """The outcome and, of the simulator, its statistics."""
+    """The outcome, how long the flight itself took (what is built for it left out) and, of the simulator, its statistics."""
     outcome: Outcome
+    took_s: float
     stats: dict = None
 
 
@@ -50,6 +51,7 @@ def _decoded(data, outcome):
 def simulated(sent, states, told=lambda done, whole: None):
     """Through simrun: records come when they are due, as from sensors in flight."""
     made(image(states), "build/sim/simrun")
+    began = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         place = pathlib.Path(folder)
         with open(place / "frames", "w", encoding="ascii") as file:
@@ -63,7 +65,8 @@ def simulated(sent, states, told=lambda done, whole: None):
             words = said.read().strip().splitlines()
         if process.returncode != 0:
             raise TiltError(f"the simulator ended with status {process.returncode}: {words[-1] if words else 'no word why'}")
-        return Run(_decoded((place / "out").read_bytes(), Outcome()), json.loads((place / "stats").read_text(encoding="utf-8")))
+        took_s = time.perf_counter() - began
+        return Run(_decoded((place / "out").read_bytes(), Outcome()), took_s, json.loads((place / "stats").read_text(encoding="utf-8")))
 
 
 def _watched(process, out, sent, told):
@@ -83,11 +86,13 @@ def _watched(process, out, sent, told):
 def on_pc(sent, states, told=lambda done, whole: None):
     """The same C code built for the PC."""
     made(native(states))
+    began = time.perf_counter()
     done = subprocess.run([ROOT / native(states)], input=b"".join(record.data for record in sent), capture_output=True, check=False)
     if done.returncode != 0:
         raise TiltError(f"{native(states)} ended with status {done.returncode}: {done.stderr.decode(errors='replace').strip()}")
+    took_s = time.perf_counter() - began
     told(len(sent), len(sent))
-    return Run(_decoded(done.stdout, Outcome()))
+    return Run(_decoded(done.stdout, Outcome()), took_s)
 
 
 class Line:
@@ -183,7 +188,7 @@ def at_port(name, sent, states, fast=False, told=lambda done, whole: None):
                 told(number, len(sent))
                 if line.port.serial.in_waiting:
                     line.listen()
-        return Run(line.finish(len(sent)))
+        return Run(line.finish(len(sent)), time.monotonic() - began)
     except Gone as why:
         raise TiltError(f"{name}: the port is gone after {len(line.outcome.answers)} records: {why}") from why
     finally:

@@ -1,38 +1,58 @@
 """A flight as records for the filter, and what came back, put together again."""
 from dataclasses import dataclass, field
+from itertools import chain
 
 import numpy as np
 
-from tilt.navigation import frames, settings
+from tilt.errors import TiltError
+from tilt.navigation import frames
 
 VARIANCES_EVERY_US = 1_000_000
+NEAR = 128  # half of the sequence numbers
 
 
 @dataclass(frozen=True)
 class Sent:
-    """One record: when it is due, its bytes as a frame, its kind, and which row of the flight it is (None: none)."""
+    """One record: when it is due, its bytes as a frame, its kind, the sequence number in it, and which row of the flight it is (None: none)."""
     due_us: int
     data: bytes
     kind: str
+    sequence: int
     row: int = None
+
+    @property
+    def types(self):
+        """What an answer to it calls it."""
+        return "PS" if self.kind == "start" else frames.TYPES[self.kind]
+
+
+def due_of(flight):
+    """Microseconds from the first imu row on at which each imu row is due. A single time that leaps is for the filter to refuse: the line waits for
+    the middle one of each three."""
+    times = np.array(flight.unwrapped_us([t_us for kind, t_us, _ in flight.rows if kind == "imu"]), np.int64)
+    if len(times) < 3:
+        return np.maximum.accumulate(times - times[:1])
+    step = int(np.median(np.diff(times)))
+    middle = np.median([[times[0], *times[:-2], times[-1]], [times[1] - step, *times[1:-1], times[-2] + step],
+                        [times[2] - 2 * step, *times[2:], times[-3] + 2 * step]], axis=0).astype(np.int64)
+    return np.maximum.accumulate(middle - middle[0])
 
 
 def records(flight, chosen, every=10):
     """All frames of a flight: start, rows, each `every`-th imu with the state after it, variances once a second, counts at the end."""
-    out, sequence, imu, first, due = [], 0, 0, None, 0
-    next_variances = None
+    out, sequence, imu, due = [], 0, 0, 0
+    next_variances, dues = None, iter(due_of(flight).tolist())
 
     def add(record, kind, row=None):
         nonlocal sequence
-        out.append(Sent(due, frames.frame(record), kind, row))
+        out.append(Sent(due, frames.frame(record), kind, sequence & 0xFF, row))
         sequence += 1
 
-    for record in frames.start_records(0, {**settings.DEFAULTS, **flight.settings, **chosen}):
+    for record in frames.start_records(0, flight.settings_with(chosen)):
         add(record, "start")
     for row, (kind, t_us, values) in enumerate(flight.rows):
         if kind == "imu":
-            first = t_us if first is None else first
-            due = max(due, (t_us - first) & 0xFFFFFFFF if (t_us - first) & 0xFFFFFFFF < 1 << 31 else due)
+            due = next(dues)
             imu += 1
         add(frames.row_record(sequence, kind, t_us, values, kind == "imu" and imu % every == 0), kind, row)
         next_variances = due + VARIANCES_EVERY_US if next_variances is None else next_variances
@@ -84,6 +104,34 @@ class Outcome:
         return t_s, np.sqrt(np.maximum(np.array([numbers for _, numbers in self.variances], float), 0.0))
 
 
+def _place_of(answer, sent, at):
+    """Of the record that is answered: the next with this number and type, or the last of before; None: none was sent. Numbers come again."""
+    near = chain(range(at, min(at + NEAR, len(sent))), range(at - 1, max(at - NEAR, 0) - 1, -1))
+    return next((place for place in near if sent[place].sequence == answer.sequence and answer.kind in sent[place].types), None)
+
+
+def answered(sent, answers):
+    """[(record, answer)] of all answers, in order: the record whose number and type the answer says, None where that is none of those sent."""
+    pairs, at = [], 0
+    for answer in answers:
+        place = _place_of(answer, sent, at) if answer.kind else None
+        pairs.append((None if place is None else sent[place], answer))
+        at = at if place is None else max(at, place + 1)
+    return pairs
+
+
 def refusals(sent, outcome):
-    """[(record, answer)] of what was not simply taken, in order; records and answers go together one to one."""
-    return [(record, answer) for record, answer in zip(sent, outcome.answers) if answer.code != 0]
+    """[(record, answer)] of what was not simply taken, in order; the record is None where the board could not read which it was."""
+    return [(record, answer) for record, answer in answered(sent, outcome.answers) if answer.code != 0]
+
+
+def check_start(sent, outcome):
+    """TiltError when the flight never began: all that follows is refused then."""
+    start = [record for record in sent if record.kind == "start"]
+    pairs = answered(sent, outcome.answers)
+    heard = {record.sequence: answer.code for record, answer in pairs if record is not None and record.kind == "start"}
+    if len(heard) < len(start) and (any(heard.values()) or any(frames.answer_text(answer.code) == "not started" for answer in outcome.answers)):
+        raise TiltError(f"the flight never began: of the {len(start)} frames of its start the board has answered {len(heard)}; the others were "
+                        "lost on the line")
+    for code in filter(None, heard.values()):
+        raise TiltError(f"{frames.answer_text(code)}: a setting is outside its range or not finite (docs/navigation.md, --set)")

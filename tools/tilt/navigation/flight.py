@@ -19,6 +19,7 @@ import numpy as np
 
 from tilt.errors import TiltError, at
 from tilt.navigation import rotation, settings
+from tilt.numbers import real
 
 WIDTHS = {"start": 10, "imu": 6, "field": 3, "gps": 6, "down": 1, "truth": 10}
 T_US_MAX, CLOCK_US = 0xFFFFFFFF, 1 << 32
@@ -32,6 +33,10 @@ class Flight:
     lines: list = field(default_factory=list)
     truth_t_us: list = field(default_factory=list)
     truth: list = field(default_factory=list)
+
+    def settings_with(self, chosen=()):
+        """All that the filter is started with: the defaults, what the flight sets, what was chosen beside it."""
+        return {**settings.DEFAULTS, **self.settings, **dict(chosen)}
 
     def unwrapped_us(self, times_us):
         """Times of the 32-bit clock, in order but for single ones, as whole numbers that go on behind its wrap; from the first imu's on."""
@@ -63,9 +68,9 @@ class Flight:
 
 def _number(text, path, line):
     try:
-        return float(text)
-    except ValueError:
-        raise at(path, line, f"'{text}' is no number") from None
+        return real(text)
+    except ValueError as why:
+        raise at(path, line, str(why)) from None
 
 
 def _take_setting(flight, words, path, line):
@@ -131,7 +136,7 @@ def write(path, flight, comment=""):
             for name, value in flight.settings.items():
                 if name not in ("quaternion", "velocity_mps", "position_m"):
                     file.write(f"set,{name},{_text(value if isinstance(value, tuple) else (value,))}\n")
-            begin = {**settings.DEFAULTS, **flight.settings}
+            begin = flight.settings_with()
             file.write(f"start,0,{_text((*begin['quaternion'], *begin['velocity_mps'], *begin['position_m']))}\n")
             truth = iter(zip(flight.truth_t_us, flight.truth))
             known = next(truth, None)

@@ -1,5 +1,6 @@
 """What the filter is started with: the fields of nav_config_t (lib/nav/src/nav.h), in its order."""
 from tilt.errors import TiltError
+from tilt.numbers import real
 
 # the thesis' simulation (section 3.4), with twice its process noise: its own is half of what its sensors have (docs/navigation.md)
 DEFAULTS = {
@@ -37,7 +38,7 @@ def of_option(text):
     """(name, value) of NAME=NUMBER[,NUMBER...]."""
     name, equals, numbers = text.partition("=")
     try:
-        values = [float(number) for number in numbers.split(",")] if equals else None
+        values = [real(number) for number in numbers.split(",")] if equals else None
     except ValueError:
         values = None
     if values is None:
