@@ -5,6 +5,7 @@ import re
 import faults
 import faults_commands
 import faults_judge
+import faults_kinds
 import faults_runs
 from faults_judge import Ending
 from faults_judged import ALL, result
@@ -34,14 +35,14 @@ def every_command_meets_every_fault_of_bus_sensor_and_int1():
     for name, base in kinds:
         kind = ALL[f"command {name}: {base}"]
         assert not ended(kind.name), (kind, ended(kind.name))
-        assert kind.what == faults_runs.OF[base].what and kind.resets == 0 and faults.group_of((kind,)) == "command", kind
+        assert kind.what == faults_kinds.OF[base].what and kind.resets == 0 and faults.group_of((kind,)) == "command", kind
         assert kind.typed[:-2] == kind.command.typed and name.split(" and ")[0] in " ".join(kind.typed), kind
     for name, limit in (("rate 50: sda", 110), ("rate 400: sda", 50), ("range 8: power", 150), ("stop and go: sda", 80)):
         assert ALL["command " + name].limit_ms == limit, ALL["command " + name]
     # 40 ms and the limit to the first good row, at the greater one of the old and the new rate
     for name, most in (("rate 50: sda", 15), ("rate 400: sda", 36), ("range 8: sda", 9)):
         assert faults_judge.lost_most((ALL["command " + name],)) == most, faults_judge.lost_most((ALL["command " + name],))
-    assert all(faults.wanted(["command"], kind) and not faults.wanted(["command"], faults_runs.OF[kind.base]) for kind in faults_commands.KINDS)
+    assert all(faults.wanted(["command"], kind) and not faults.wanted(["command"], faults_kinds.OF[kind.base]) for kind in faults_commands.KINDS)
 
 
 @test

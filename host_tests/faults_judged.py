@@ -1,6 +1,7 @@
 """The fault campaign's judge, run by run and of a whole campaign, and how campaign and soak end; part of test_faults.py."""
 import argparse
 import contextlib
+import dataclasses
 import io
 import os
 import pathlib
@@ -13,11 +14,12 @@ import time
 import faults
 import faults_commands
 import faults_judge
+import faults_kinds
 import faults_runs
 import soak
 from system_support import FW, test
 
-ALL = {kind.name: kind for kind in faults_runs.KINDS + faults_runs.LONG + faults_runs.rated() + faults_runs.TYPED + faults_commands.KINDS}
+ALL = {kind.name: kind for kind in faults_kinds.KINDS + faults_kinds.LONG + faults_kinds.rated() + faults_kinds.TYPED + faults_commands.KINDS}
 
 
 def result(*names, **said):
@@ -46,7 +48,7 @@ def resets_are_those_asked_for_and_no_fewer():
             assert result(name, resets=resets).failures() == [f"{resets} resets instead of {due}"], name
     assert result("reset", "brownout", resets=1).failures() == ["1 resets instead of 2"]
     # a reset ends the starvation that it comes into, and the watchdog does not bark
-    starve, reset = faults_runs.OF["starve"], faults_runs.OF["reset"]
+    starve, reset = faults_kinds.OF["starve"], faults_kinds.OF["reset"]
     for kinds, whens, due in (((starve, reset), ("1000ms", "1050ms"), 1), ((starve, reset), ("1050ms", "1000ms"), 2),
                               ((reset, starve), ("1050ms", "1000ms"), 1), ((reset, starve), ("1000ms", "1050ms"), 2)):
         assert faults_judge.resets_due(kinds, whens) == due, (kinds, whens)
@@ -70,9 +72,9 @@ def the_stream_has_to_go_on_after_the_first_good_row():
 
 @test
 def simrun_says_how_long_no_row_came_and_when_the_last_good_one_did():
-    sda = faults_runs.OF["sda"]
+    sda = faults_kinds.OF["sda"]
     for typed, words in ((("1800:stop", "1900:go"), "without a sample's row when all was over"), (("2400:stop",), "last good row")):
-        done = faults_runs.attempt(FW, "adaptive", (faults_runs.dataclasses.replace(sda, typed=typed),), ("1000ms",))
+        done = faults_runs.attempt(FW, "adaptive", (dataclasses.replace(sda, typed=typed),), ("1000ms",))
         assert len(done.failures()) == 1 and words in done.failures()[0], done
     assert 190 < done.since_good_ms < 215 and done.calm_gap_ms < 11, done
     # the gap that the fault itself makes is no calm: 40 ms of it, and the way back
@@ -103,11 +105,11 @@ def what_is_lost_is_not_judged_where_nobody_knows():
 
 @test
 def a_whole_campaign_has_every_required_kind_at_50_phases_and_every_pair_at_5():
-    kinds = faults_runs.KINDS
+    kinds = faults_kinds.KINDS
     rows = [{"group": "single", "fault": kind.name, "phases": 50} for kind in kinds]
     rows += [{"group": "pair", "fault": f"{a.name} + {b.name}", "phases": 5} for n, a in enumerate(kinds) for b in kinds[n + 1:]]
     assert faults_judge.shortfalls(rows, kinds) == []
-    assert {name for names in faults_judge.REQUIRED.values() for name in names} <= set(faults_runs.OF) and len(faults_judge.REQUIRED) == 23
+    assert {name for names in faults_judge.REQUIRED.values() for name in names} <= set(faults_kinds.OF) and len(faults_judge.REQUIRED) == 23
     few = [row | {"phases": row["phases"] - (row["fault"] in ("torn", "sda + scl"))} for row in rows]
     assert faults_judge.shortfalls(few, kinds) == ["torn: 49 phases were judged of at least 50", "sda + scl: 4 phases were judged of at least 5"]
     # runs whose fault never came, or that died, are no judged phases
@@ -124,11 +126,11 @@ def a_whole_campaign_has_every_required_kind_at_50_phases_and_every_pair_at_5():
 
 @test
 def a_run_that_dies_is_a_failure_with_its_command():
-    done = faults_runs.attempt("build/no.elf", "adaptive", (faults_runs.OF["arb"],), ("1000ms",))
+    done = faults_runs.attempt("build/no.elf", "adaptive", (faults_kinds.OF["arb"],), ("1000ms",))
     assert len(done.failures()) == 1 and "build/no.elf" in done.failures()[0] and done.command == "--fault 1000ms:arb --expect-resets 0", done
     assert not done.injected and not done.recovered
     stats = faults_runs.simulate(FW, "adaptive", "--fault", "1000ms:arb")[2]
-    arb = (faults_runs.OF["arb"],)
+    arb = (faults_kinds.OF["arb"],)
     assert faults_runs.judged("adaptive", arb, ("1000ms",), 2600, "", 0, "", stats).failures() == []
     assert faults_runs.judged("adaptive", arb, ("1000ms",), 9000, "", 0, "", stats).failures() == ["ended after 2600 of 9000 ms"]
     back = faults_runs.judged("adaptive", arb, ("1000ms",), 2600, "", 0, "", stats | {"t_us_steps_back": 2})
@@ -164,7 +166,7 @@ def a_campaign_that_is_ended_tells_what_it_has_seen():
             time.sleep(0.3)
         return result("sda", when=whens[0], wrong=int(number == 1001), command=f"--fault {number}")
 
-    runs = [((faults_runs.OF["sda"],), (f"{1000 + n}ms",), "kf") for n in range(40)]
+    runs = [((faults_kinds.OF["sda"],), (f"{1000 + n}ms",), "kf") for n in range(40)]
     status, said = told_by(runs, attempt)
     lines = said.splitlines()
     assert status == 1 and lines[-1] == "2 passed, 1 failed" and "faults: ended by a signal after 3 of 40 runs" in lines, said
@@ -176,16 +178,16 @@ def what_a_whole_campaign_lacks_is_a_failure():
     def attempt(firmware, name, kinds, whens, profile):
         return result(*(kind.name for kind in kinds), when=whens[0], injected=whens[0] != "1001ms")
 
-    runs = [((kind,), (f"{1000 + n}ms",), "kf") for kind in faults_runs.KINDS for n in range(50)]
-    runs += [((kind,), (f"{1010 + n}ms",), "kf") for kind in faults_runs.LONG for n in range(8)]
-    runs += [(pair, (f"{1000 + n}ms",) * 2, "kf") for pair in faults.itertools.combinations(faults_runs.KINDS, 2) for n in (0, 2, 3, 4, 5)]
+    runs = [((kind,), (f"{1000 + n}ms",), "kf") for kind in faults_kinds.KINDS for n in range(50)]
+    runs += [((kind,), (f"{1010 + n}ms",), "kf") for kind in faults_kinds.LONG for n in range(8)]
+    runs += [(pair, (f"{1000 + n}ms",) * 2, "kf") for pair in faults.itertools.combinations(faults_kinds.KINDS, 2) for n in (0, 2, 3, 4, 5)]
     runs += [((kind,), (f"{1002 + n}ms",), "adaptive") for kind in faults_commands.KINDS for n in range(5 if kind.name == "command stop: scl" else 6)]
     kept, faults.lines_that_ran = faults.lines_that_ran, lambda options, profile: {"fault": "lines", "good": True}
     try:
         status, said = told_by(runs, attempt, words=[])
     finally:
         faults.lines_that_ran = kept
-    kinds = len(faults_runs.KINDS)
+    kinds = len(faults_kinds.KINDS)
     assert status == 1 and said.endswith(f"{len(runs) - kinds + 1} passed, {kinds + 1} failed\n"), said[-300:]
     assert "faults: torn: 49 phases were judged of at least 50" in said and "faults: command stop: scl: 5 phases were" in said, said[-900:]
     # more than one in ten that never came

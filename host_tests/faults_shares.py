@@ -4,6 +4,7 @@ import pathlib
 
 import faults
 import faults_judge
+import faults_kinds
 import faults_runs
 import soak
 from faults_judged import ALL, result
@@ -12,23 +13,23 @@ from system_support import FW, test
 
 @test
 def long_faults_have_the_limits_of_the_short_ones():
-    ms = {name: [round(kind.lasts_ms) for kind in faults_runs.LONG if kind.name.partition(",")[0] == name] for name in faults_runs.OF}
+    ms = {name: [round(kind.lasts_ms) for kind in faults_kinds.LONG if kind.name.partition(",")[0] == name] for name in faults_kinds.OF}
     assert {name: long for name, long in ms.items() if long} == dict.fromkeys(
         ("unplug", "power", "sda", "scl", "devid", "noint", "inthigh"), [3000, 10000]) | {"frozen": [1500, 10000]}
-    for kind in faults_runs.LONG:
-        short = faults_runs.OF[kind.name.partition(",")[0]]
+    for kind in faults_kinds.LONG:
+        short = faults_kinds.OF[kind.name.partition(",")[0]]
         assert (kind.limit_ms, kind.resets, kind.rate) == (short.limit_ms, 0, 100) and kind.what[-1].endswith(f":{kind.lasts_ms}"), kind
-    assert faults_runs.OF["devid"].what[0] == "power:20" == next(k for k in faults_runs.LONG if k.name == "devid, 3 s").what[0]
+    assert faults_kinds.OF["devid"].what[0] == "power:20" == next(k for k in faults_kinds.LONG if k.name == "devid, 3 s").what[0]
     runs = faults.planned(argparse.Namespace(fw=FW, words=["sda, 3", "noint, 10"], seed=1, pairs=5, sample=0))
-    assert [faults.group_of(kinds) for kinds, _, _ in runs if kinds[0] in faults_runs.LONG] == ["long"] * 16, runs
-    rows = [{"group": "long", "fault": kind.name, "phases": 8 - (kind.name == "sda, 3 s")} for kind in faults_runs.LONG]
-    said = [words for words in faults_judge.shortfalls(rows, [], faults_runs.LONG) if "phases" in words]
+    assert [faults.group_of(kinds) for kinds, _, _ in runs if kinds[0] in faults_kinds.LONG] == ["long"] * 16, runs
+    rows = [{"group": "long", "fault": kind.name, "phases": 8 - (kind.name == "sda, 3 s")} for kind in faults_kinds.LONG]
+    said = [words for words in faults_judge.shortfalls(rows, [], faults_kinds.LONG) if "phases" in words]
     assert said == ["sda, 3 s: 7 phases were judged of at least 8"], said
 
 
 @test
 def a_long_fault_is_seen_to_its_end():
-    sda = next(kind for kind in faults_runs.LONG if kind.name == "sda, 3 s")
+    sda = next(kind for kind in faults_kinds.LONG if kind.name == "sda, 3 s")
     done = faults_runs.attempt(FW, "adaptive", (sda,), ("1003ms",))
     assert done.injected and done.recovered and not done.failures() and 295 < done.lost < 310, done
 
@@ -50,7 +51,7 @@ def with_made_up(**functions):
 
 @test
 def of_large_changes_99_percent_are_flagged_and_100_are_the_least():
-    kind = faults_runs.OF["noise"]
+    kind = faults_kinds.OF["noise"]
     for large, flagged, good in ((1000, 990, True), (1000, 989, False), (100, 99, True), (100, 98, False), (99, 99, False), (0, 0, False)):
         row = with_made_up(flagged_share=(large, flagged))(faults.share_flagged, FW, kind, "at rest", faults.REST, 2.0, 1)
         assert row["good"] is good and (row["changes_of_8_sigma"], row["flagged"]) == (large, flagged), row
@@ -87,7 +88,7 @@ def every_fault_that_nobody_can_see_has_a_share_but_what_is_never_large():
     asked = [call[3].name for call in calls if call[1] is faults.share_flagged]
     assert asked == [name for name in ("flip 1", "flip 2", "noise", "double") for _ in range(2)], asked
     # a sample whose rest is of the one before: what it changes is noise, and one sample's motion
-    large, _ = faults_runs.flagged_share(FW, faults_runs.OF["mixed"], faults.MOVING, 2.6, 60)
+    large, _ = faults_runs.flagged_share(FW, faults_kinds.OF["mixed"], faults.MOVING, 2.6, 60)
     assert large < 5, large
 
 
@@ -104,7 +105,7 @@ def samples_lost_are_those_of_the_fault_and_of_its_limit():
 @test
 def interrupts_keep_their_deadline_in_every_run_but_starved_ones():
     short = {"isr_int0_worst_latency": 240, "isr_timer1_compa_worst_latency": 240, "isr_usart_rx_worst_latency": 240, "isr_twi_worst_latency": 240}
-    sda, frozen = faults_runs.OF["sda"], faults_runs.OF["frozen"]
+    sda, frozen = faults_kinds.OF["sda"], faults_kinds.OF["frozen"]
     assert not result("sda", waits=faults_runs.waits_of((sda,), short)).failures()
     for name in ("int0", "timer1_compa", "usart_rx"):
         late = faults_runs.waits_of((sda, frozen), short | {f"isr_{name}_worst_latency": 241})
@@ -142,7 +143,7 @@ def a_full_disk_is_one_sentence_and_leaves_what_was_there():
         raise AssertionError("read")
     except faults_runs.Fault as problem:
         assert "breaks off: is the disk full?" in str(problem), problem
-        broken_off = faults_runs.attempt(FW, "adaptive", (faults_runs.OF["sda"],), ("1000ms",)).failures()
+        broken_off = faults_runs.attempt(FW, "adaptive", (faults_kinds.OF["sda"],), ("1000ms",)).failures()
         assert len(broken_off) == 1 and "is the disk full?" in broken_off[0], broken_off
     finally:
         faults_runs.called = kept

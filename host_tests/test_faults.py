@@ -8,6 +8,7 @@ import sys
 
 sys.path.insert(0, "tools")
 import faults  # noqa: E402
+import faults_kinds  # noqa: E402
 import faults_runs  # noqa: E402
 import soak  # noqa: E402
 import faults_commanded  # noqa: E402, F401
@@ -18,7 +19,7 @@ from system_support import FW, run_all, test  # noqa: E402
 
 @test
 def a_run_in_which_all_went_well_fails_nothing():
-    for kind in faults_runs.KINDS:
+    for kind in faults_kinds.KINDS:
         assert result(kind.name).failures() == []
 
 
@@ -60,12 +61,12 @@ def a_pair_has_the_longer_limit_and_is_judged_from_the_later_end():
 
 @test
 def below_100_hz_three_periods_are_granted_and_above_none():
-    rated = {kind.name: kind for kind in faults_runs.rated()}
-    assert {name.partition(",")[0] for name in rated} == set(faults_runs.OF)
+    rated = {kind.name: kind for kind in faults_kinds.rated()}
+    assert {name.partition(",")[0] for name in rated} == set(faults_kinds.OF)
     for name, limit in (("sda, 12.5 Hz", 290), ("sda, 400 Hz", 50), ("sda, 800 Hz", 50), ("power, 12.5 Hz", 390), ("power, 800 Hz", 150),
                         ("flip 2, 12.5 Hz", 290), ("double, 12.5 Hz", 290), ("mixed, 12.5 Hz", 530), ("mixed, 400 Hz", 50)):
         kind = rated[name]
-        assert kind.limit_ms == limit and f"{kind.rate:g} Hz" in name and kind.what == faults_runs.OF[kind.base].what, kind
+        assert kind.limit_ms == limit and f"{kind.rate:g} Hz" in name and kind.what == faults_kinds.OF[kind.base].what, kind
         whens = [float(when[:-2]) for when in faults_runs.moments(kind, 8, 1)]
         assert whens == sorted(set(whens)) and 1000 <= whens[0] < whens[-1] < 1000 + 2000 / kind.rate, whens
     done = faults_runs.attempt(FW, "adaptive", (rated["nack, 800 Hz"],), ("1000.4ms",))
@@ -75,26 +76,26 @@ def below_100_hz_three_periods_are_granted_and_above_none():
 @test
 def words_choose_kinds_and_pairs():
     def names(*words):
-        kinds = [kind.name for kind in faults_runs.KINDS if faults.wanted(words, kind)]
-        return kinds, [(a.name, b.name) for a in faults_runs.KINDS for b in faults_runs.KINDS if faults.wanted(words, a, b)]
+        kinds = [kind.name for kind in faults_kinds.KINDS if faults.wanted(words, kind)]
+        return kinds, [(a.name, b.name) for a in faults_kinds.KINDS for b in faults_kinds.KINDS if faults.wanted(words, a, b)]
 
     assert names("sd", "odr") == (["sda", "odr fast", "odr slow"], [])
     assert names("sda+noint") == ([], [("sda", "noint"), ("noint", "sda")])
-    assert len(names()[0]) == len(faults_runs.KINDS) and len(names()[1]) == len(faults_runs.KINDS) ** 2
+    assert len(names()[0]) == len(faults_kinds.KINDS) and len(names()[1]) == len(faults_kinds.KINDS) ** 2
 
 
 @test
 def a_kind_of_several_faults_has_each_at_its_time():
-    kind = next(kind for kind in faults_runs.TYPED if kind.name == "starve again")
+    kind = next(kind for kind in faults_kinds.TYPED if kind.name == "starve again")
     assert kind.faults("1000.5ms")[:2] == ["1000.5ms:starve:2000", "1450.500ms:starve:2000"]
-    assert faults_runs.OF["devid"].faults("xfer:3.4") == ["xfer:3.4:power:20", "xfer:3.4:devid:0:200"]
+    assert faults_kinds.OF["devid"].faults("xfer:3.4") == ["xfer:3.4:power:20", "xfer:3.4:devid:0:200"]
     done = faults_runs.attempt(FW, "adaptive", (kind,), ("1003ms",))
     assert done.injected and not done.failures() and done.resets == done.resets_due == 4, done
 
 
 @test
 def what_is_typed_in_a_run_is_answered():
-    kind = next(kind for kind in faults_runs.TYPED if kind.name == "typed: words")
+    kind = next(kind for kind in faults_kinds.TYPED if kind.name == "typed: words")
     done = faults_runs.attempt(FW, "adaptive", (kind,), ("1000ms",))
     said = (faults_runs.folder() / "out.csv").read_text(encoding="ascii")
     assert done.recovered and not done.failures(), done
@@ -113,7 +114,7 @@ def lines_that_no_run_reached_are_missed():
 
 @test
 def phases_are_every_byte_every_stage_and_the_whole_period():
-    whens = faults_runs.phases(FW, faults_runs.OF["arb"], "kf", 50)
+    whens = faults_runs.phases(FW, faults_kinds.OF["arb"], "kf", 50)
     bytes_of = [tuple(map(int, w[5:].split("."))) for w in whens if w.startswith("xfer:")]
     assert len(set(whens)) == len(whens) >= 50, len(whens)
     assert len({transfer for transfer, _ in bytes_of}) == 1 and [byte for _, byte in bytes_of] == list(range(1, len(bytes_of) + 1)), bytes_of
@@ -126,20 +127,20 @@ def phases_are_every_byte_every_stage_and_the_whole_period():
 
 @test
 def every_fault_of_a_plan_comes_and_a_run_is_judged_by_the_model():
-    whens = faults_runs.phases(FW, faults_runs.OF["flip 1"], "kf", 50)
+    whens = faults_runs.phases(FW, faults_kinds.OF["flip 1"], "kf", 50)
     for when in (whens[5], next(w for w in whens if w.startswith("pc:__vector_1#")), whens[-1]):
-        done = faults_runs.attempt(FW, "kf", (faults_runs.OF["flip 1"],), (when,))
+        done = faults_runs.attempt(FW, "kf", (faults_kinds.OF["flip 1"],), (when,))
         assert done.injected and done.recovered and not done.failures() and done.lost == 0, done
     # the byte of x: it is altered, so the judge that looks at the model alone finds the row wrong
-    done = faults_runs.attempt(FW, "kf", (faults_runs.OF["flip 1"],), (whens[5],))
+    done = faults_runs.attempt(FW, "kf", (faults_kinds.OF["flip 1"],), (whens[5],))
     assert done.wrong == done.altered == 1, done
-    done = faults_runs.attempt(FW, "kf", (faults_runs.OF["reset"],), ("1000ms",))
+    done = faults_runs.attempt(FW, "kf", (faults_kinds.OF["reset"],), ("1000ms",))
     assert done.recovered and done.resets == done.resets_due == 1 and 20 < done.ms_to_good < 600, done
 
 
 @test
 def all_pairs_are_planned_and_the_same_for_the_same_seed():
-    count = len(faults_runs.KINDS)
+    count = len(faults_kinds.KINDS)
     pairs = list(faults_runs.seeded_pairs(5, 3))
     assert len(pairs) == 5 * count * (count - 1) // 2 and len({frozenset(k.name for k in kinds) for kinds, _ in pairs}) == len(pairs) // 5
     assert all(len(set(whens)) == 2 and all(1000 <= float(w[:-2]) <= 1100 for w in whens) for _, whens in pairs)
@@ -150,9 +151,9 @@ def all_pairs_are_planned_and_the_same_for_the_same_seed():
 def every_kind_that_simrun_has_is_in_the_campaign():
     table = pathlib.Path("sim/simrun_faults_parse.c").read_text(encoding="utf-8")
     known = set(re.findall(r'\{ (?:\.name = )?"(\w+)"', table))
-    used = {what.partition(":")[0] for kind in faults_runs.KINDS for what in kind.what}
+    used = {what.partition(":")[0] for kind in faults_kinds.KINDS for what in kind.what}
     assert len(known) > 25 and known - used == {"plug", "poke"} and used <= known, known ^ used
-    undetectable = {kind.what[0].partition(":")[0] for kind in faults_runs.KINDS if not kind.detectable}
+    undetectable = {kind.what[0].partition(":")[0] for kind in faults_kinds.KINDS if not kind.detectable}
     assert undetectable == {"flip", "noise", "double", "mixed"}, undetectable
 
 

@@ -27,8 +27,9 @@ import faults_commands
 import faults_judge
 import faults_runs
 import images
-from faults_runs import (KINDS, LONG, MOVING, NO_LIMIT, OF, OTHER_RATES, REST, TYPED, Fault, SIMRUN, attempt, flagged_share, moments, need, phases,
-                         rated, roll_differences, seeded_pairs, simulate, write_whole)
+from faults_judge import NO_LIMIT
+from faults_kinds import KINDS, LONG, MOVING, OF, OTHER_RATES, REST, TYPED, rated
+from faults_runs import Fault, SIMRUN, attempt, flagged_share, moments, need, phases, roll_differences, seeded_pairs, simulate, write_whole
 
 PAGE = pathlib.Path("docs/faults-campaign.md")
 RESULTS = pathlib.Path("build/faults.json")

@@ -2,8 +2,9 @@
 import dataclasses
 import random
 
-from faults_judge import LAST_MS, Command
-from faults_runs import BEGIN_MS, NO_LIMIT, OF, RUN_MS, simulate
+from faults_judge import LAST_MS, NO_LIMIT, Command
+from faults_kinds import BEGIN_MS, OF, RUN_MS
+from faults_runs import simulate
 
 BEFORE_MS, CHANGE_MS = 1, 8  # a change is over 7 ms after its command
 GO_MS = 30  # from `stop` to `go`

@@ -19,7 +19,8 @@ import time
 
 import images
 from faults_judge import NO_LIMIT, PASS_CYCLES
-from faults_runs import BUS_MS, KINDS, REST, RESET_MS, SIMRUN, STATUS_WORDS, need, write_whole
+from faults_kinds import BUS_MS, KINDS, REST, RESET_MS
+from faults_runs import SIMRUN, STATUS_WORDS, need, write_whole
 
 FILTERS = ("adaptive", "kf")
 RATE_HZ, START_MS = 100, 1000  # until rows come, and filters have warmed up
