@@ -48,15 +48,19 @@ $(C)/probe.prof: $(C)/probe.elf $(S)/simrun
 	    test $$? -eq 8 || { cat $(C)/probe.log; exit 1; }
 
 # A profile slows the simulator down, hence the factor for the tests of its speed, and the minutes in which nothing is lost are left
-# out: they run next to no line that the others do not. Always anew.
-$(C)/runs: system_images
+# out: they run next to no line that the others do not. Always anew; two halves side by side.
+COVERAGE_RUNS := $(C)/runs/equal $(C)/runs/rest
+$(C)/runs/equal: RUNS_OF := chip_equals
+$(C)/runs/rest: RUNS_OF := -chip_equals -nothing_lost
+$(COVERAGE_RUNS): system_images
 	@rm -rf $@ && mkdir -p $@
-	@PROFILES=$@ SPEED_FACTOR=0.05 python3 host_tests/system_tests.py -nothing_lost > $(C)/system.log 2>&1 || { grep ':FAIL' $(C)/system.log; exit 1; }
+	@PROFILES=$@ SPEED_FACTOR=0.05 python3 host_tests/system_tests.py $(RUNS_OF) > $(C)/system_$(@F).log 2>&1 || \
+	    { grep ':FAIL' $(C)/system_$(@F).log; exit 1; }
 
 ## coverage: lines and branches of lib by the unit tests, lines of the AVR binary by the system tests (6 minutes)
 coverage:
 	@sh tools/deps.sh coverage
-	@$(MAKE) -j2 $(C)/runs $(C)/host.json $(C)/probe.prof
+	@$(MAKE) -j2 $(COVERAGE_RUNS) $(C)/host.json $(C)/probe.prof
 	@python3 tools/coverage.py check $(C)/probe.elf $(C)/probe.prof host_tests/avr/coverage_probe.c
 	@python3 tools/coverage.py twins $(C)/host.json $(U)/firmware.elf $(C)/runs
 	@python3 tools/coverage.py judge $(C)/host.json $(U)/firmware.elf $(C)/runs
@@ -65,6 +69,6 @@ clean: clean_coverage
 clean_coverage:
 	@rm -rf $(C)
 
-.PHONY: coverage clean_coverage $(C)/runs
+.PHONY: coverage clean_coverage $(COVERAGE_RUNS)
 
 -include $(shell find $(C) -name '*.d' 2>/dev/null)

@@ -226,7 +226,7 @@ def judge_one(what, value, target):
 
 
 def judge(report, elf, folder):
-    profiles = sorted(pathlib.Path(folder).glob("*.csv"))
+    profiles = sorted(pathlib.Path(folder).glob("*/*.csv"))
     if not profiles:
         fail(f"{folder} holds no profiles: did the system tests run?")
     excluder = Excluder(exclusions())
@@ -291,7 +291,7 @@ def twins(report, elf, folder):
     rows = [row for row in host_rows(report, Excluder([]))[0] if row["file"] != "lib/nav/src/nav_ud.c"]
     seen.append(left_out(rows, "lib/*/src/*.c") == {"lib/nav/src/nav_ud.c"})
     print(f"twins: lib/nav/src/nav_ud.c not in the data: {'seen' if seen[-1] else 'NOT SEEN'}")
-    one = sorted(pathlib.Path(folder).glob("*.csv"))[:1]
+    one = sorted(pathlib.Path(folder).glob("*/*.csv"))[:1]
     ours = [r for r in avr_rows(elf, executed(one), Excluder([]))[0] if not r["file"].startswith("lib/")]
     share = percent(total(ours, "lines_executed"), total(ours, "lines"))
     print(f"twins: one run alone: {share:.1f} % of the AVR lines")
