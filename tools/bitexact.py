@@ -128,7 +128,8 @@ def sources(chip, lib):
     includes = ["hal", "hal/avr" if chip else "hal/host", "firmware", f"{lib}/filters/src", f"{lib}/tilt/src", f"{lib}/adxl345/src",
                 "host_tests", HERE]
     files = sorted(pathlib.Path(HERE).glob("vectors*.c"))
-    files += [f"{HERE}/crc32.c", f"{HERE}/output.c", f"{HERE}/output_{'chip' if chip else 'pc'}.c", "host_tests/support_filters.c"]
+    files += [f"{HERE}/crc32.c", f"{HERE}/output.c", f"{HERE}/output_{'chip' if chip else 'pc'}.c"]
+    files += ["host_tests/support_filters.c", "host_tests/support_filter_promises.c"]
     files += FIRMWARE + sorted(pathlib.Path(lib).glob("filters/src/*.c")) + [f"{lib}/tilt/src/tilt.c", f"{lib}/tilt/src/calibration.c"]
     return [f"-I{folder}" for folder in includes] + [str(file) for file in files]
 
