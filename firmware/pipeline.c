@@ -282,11 +282,15 @@ FX_ONCE void pipeline_flag(uint16_t flags)
 
 /*
  * 1/256 g in Q8 to mg: x 1000 / 256, rounded half up. Limited to 32 g, so that the product fits 32 bits and mg 16: 18 g
- * on all axes of a weak part can come to 41 g on one of a carrier that lies across.
+ * on all axes of a weak part can come to 41 g on one of a carrier that lies across. By the high word, which is cheap.
  */
 static int16_t to_mg(int32_t value_q8)
 {
-    return (int16_t)((fx_clamp(value_q8, 0x1FFFFF) * 1000 + 32768) >> 16);
+    uint16_t above_least = (uint16_t)(((uint32_t)value_q8 >> 16) + 0x20U);
+    if (above_least >= 0x40U) {
+        return value_q8 < 0 ? -32000 : 32000;
+    }
+    return (int16_t)((value_q8 * 1000 + 32768) >> 16);
 }
 
 void pipeline_row(row_t *row)
