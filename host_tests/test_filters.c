@@ -1,6 +1,6 @@
 /*
  * Generic properties, over the list of filters: what every filter of lib/filters promises, whatever its rule. Runs on
- * the PC and on the chip. Facts about single filters live in support_filters.c.
+ * the PC and on the chip. Facts about single filters live in support_filter_promises.c.
  */
 #include "support_filters.h"
 #include "unity.h"

@@ -3,5 +3,6 @@
 #include "tilt.h"
 #include "unity.h"
 
+#include "../../support_filter_promises.c"
 #include "../../support_filters.c"
 #include "../../test_tilt.c"
