@@ -46,7 +46,9 @@ static inline uint8_t fx_normalise(uint32_t *v);
 */
 static fx_scaled_t rounded(uint32_t v, int8_t exponent);
 
-/*@ assigns \result \from v; */
+/*@ assigns \result \from v;
+    ensures v <= 0x10000000 ==> \result <= 0x4000;
+*/
 uint16_t fx_isqrt32(uint32_t v);
 
 /*

@@ -55,10 +55,12 @@ void proof_rounded(void)
     }
 }
 
-/* Options: -eva-slevel 40 */
+/* Options: -eva-slevel 1 -eva-min-loop-unroll 16 */
 void proof_fx_isqrt32(void)
 {
-    (void)fx_isqrt32(ANY_U32(0, UINT32_MAX));
+    (void)fx_isqrt32(ANY_U32(0, 0xFFFFFFFU));
+    (void)fx_isqrt32(0x10000000U);
+    (void)fx_isqrt32(ANY_U32(0x10000001U, UINT32_MAX));
 }
 
 static fx_scaled_t any_scaled(void)
