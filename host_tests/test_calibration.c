@@ -157,6 +157,26 @@ static void test_what_is_not_legal_is_refused_and_nothing_written(void)
     TEST_ASSERT_EQUAL_MEMORY(&before, &applied, sizeof before);
 }
 
+/* Sums beyond 16 bits, which is what an int has on the chip. */
+static void test_numbers_at_the_ends_of_16_bits_are_refused(void)
+{
+    static const int16_t ends[] = { INT16_MIN, -31489, 31488, INT16_MAX };
+    for (uint8_t i = 0; i < 4; i++) {
+        setUp();
+        c.offset_lsb_q4[1] = ends[i];
+        TEST_ASSERT_EQUAL_UINT8(CALIBRATION_OFFSET, calibration_check(&c).why);
+    }
+    /* the most that a rest can show, the farthest legal offset: 2,107 LSB apart */
+    setUp();
+    c.offset_lsb_q4[2] = -CALIBRATION_OFFSET_MAX_LSB_Q4;
+    const int16_t far[3] = { 0, 0, 32440 };
+    TEST_ASSERT_EQUAL_UINT8(CALIBRATION_NO_GRAVITY, calibration_tare(&c, far).why);
+    /* 58,000 apart is 7,536 of 16 bits, as 235 LSB per g are */
+    const int16_t means[18] = { -30000, 0, 0, 28000, 0, 0, 0, 4096, 0, 0, -4096, 0, 0, 0, 4096, 0, 0, -4096 };
+    uint16_t residual_mg;
+    TEST_ASSERT_NOT_EQUAL(CALIBRATION_GOOD, calibration_six(&c, means, &residual_mg).why);
+}
+
 /* 0.85 g = 13926.4, 1.15 g = 18841.6 of Q14. */
 static void test_level_is_gravity(void)
 {
@@ -236,6 +256,7 @@ int main(void)
     RUN_TEST(test_mountings_that_are_exact);
     RUN_TEST(test_any_reading_is_safe);
     RUN_TEST(test_what_is_not_legal_is_refused_and_nothing_written);
+    RUN_TEST(test_numbers_at_the_ends_of_16_bits_are_refused);
     RUN_TEST(test_level_is_gravity);
     RUN_TEST(test_single_takes_the_offsets_from_the_nearest_position);
     RUN_TEST(test_single_refuses_what_is_no_offset_and_keeps_the_old);

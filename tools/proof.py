@@ -38,8 +38,8 @@ PROVED = {"Valid", "Considered valid"}
 ENTRY = re.compile(r"(?:/\*((?:(?!\*/).)*)\*/\s*)?^void proof_(\w+)\(void\)", re.S | re.M)
 
 # of filter_any.c: switches over the functions proved, and the look for a name, no arithmetic
-SWITCH = re.compile(r"filter_any_(init|start|set_noise|reset|reset_step|update|coast|gap|damp|hold|restart|flags|probe|name|find|worst_cycles)"
-                    r"|same_text")
+SWITCH = re.compile(r"filter_any_(init|configure|start|set_noise|reset|reset_step|update|coast|gap|damp|hold|restart|flags|probe)"
+                    r"|filter_any_(name|find|worst_cycles)|same_text")
 
 
 def fail(text):

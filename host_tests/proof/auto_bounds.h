@@ -11,6 +11,7 @@
 #define Z_LEAST_Q16 268435456 /* 4096 LSB, below 0 */
 #define Z_MOST_Q16 268369920  /* 4095 LSB */
 #define U_END 570425344       /* 8704 LSB */
+#define TURNED_END 517734400  /* 7900 LSB: 4608 + 0.36 x 8704, and what intervals add */
 #define GATE_END 0x7FFFFFFF   /* none */
 #define K_LEAST 256
 #define K_END 39322
@@ -39,7 +40,7 @@
 */
 static inline int32_t within_x(auto_t *f, int32_t x_lsb_q16);
 
-/*@ requires -3 * X_MAX_Q16 <= rate_lsb_q16 <= 3 * X_MAX_Q16 && f->rate_max_lsb_q16 <= X_MAX_Q16;
+/*@ requires -TURNED_END <= rate_lsb_q16 <= TURNED_END && f->rate_max_lsb_q16 <= X_MAX_Q16;
     assigns f->flags, \result \from f->flags, f->rate_max_lsb_q16, rate_lsb_q16;
     ensures WITHIN_X(\result);
 */

@@ -100,10 +100,10 @@ void proof_within_rate(void)
 {
     auto_t f;
     any_run(&f);
-    (void)within_rate(&f, ANY_S32(-3L * X_MAX_Q16, -X_MAX_Q16 - 1L));
+    (void)within_rate(&f, ANY_S32(-TURNED_END, -X_MAX_Q16 - 1L));
     (void)within_rate(&f, ANY_S32(-X_MAX_Q16, -1));
     (void)within_rate(&f, ANY_S32(0, X_MAX_Q16));
-    (void)within_rate(&f, ANY_S32(X_MAX_Q16 + 1L, 3L * X_MAX_Q16));
+    (void)within_rate(&f, ANY_S32(X_MAX_Q16 + 1L, TURNED_END));
 }
 
 /* Run by run, so that what is counted and what is tested stay one. */

@@ -101,3 +101,44 @@ void proof_filter_any_refused(void)
         }
     }
 }
+
+/* Any bytes of a configuration of any filter; of synth_plus, which adds its parameters, any within their ranges. */
+void proof_filter_any_together(void)
+{
+    //@ loop unroll 16;
+    for (uint8_t kind = 0; kind <= (uint8_t)FILTER_KIND_COUNT; kind++) {
+        filter_any_config_t config;
+        //@ loop unroll 64;
+        for (uint8_t i = 0; i < sizeof config; i++) {
+            ((uint8_t *)&config)[i] = ANY_U8(0, UINT8_MAX);
+        }
+        if (kind == (uint8_t)FILTER_KIND_synth_plus) {
+            config.of_synth_plus.k = ANY_U16(0, K_MAX);
+            config.of_synth_plus.b0_uq16 = ANY_U16(SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16);
+            config.of_synth_plus.b1_q16 = ANY_S32(-SYNTH_A1_MAX_Q16, SYNTH_A1_MAX_Q16);
+            config.of_synth_plus.b2_q16 = ANY_S32(-SYNTH_A1_MAX_Q16, SYNTH_A1_MAX_Q16);
+        }
+        bool taken = filter_any_together((filter_kind_t)kind, &config);
+        //@ check unknown: kind < FILTER_KIND_COUNT || taken == 0;
+    }
+}
+
+/* Every parameter of every filter: its ends come back as they were put in, any value stays within the configuration. */
+void proof_filter_parameter_set(void)
+{
+    //@ loop unroll 16;
+    for (uint8_t kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++) {
+        const filter_descriptor_t *descriptor = filter_any_descriptor((filter_kind_t)kind);
+        //@ loop unroll 16;
+        for (uint8_t i = 0; i < descriptor->parameter_count; i++) {
+            const filter_parameter_t *parameter = &descriptor->parameters[i];
+            filter_any_config_t config;
+            filter_parameter_set(&config, parameter, (uint32_t)parameter->min);
+            uint32_t least = filter_parameter_get(&config, parameter);
+            filter_parameter_set(&config, parameter, (uint32_t)parameter->max);
+            uint32_t most = filter_parameter_get(&config, parameter);
+            //@ check kept: least == (uint32_t)parameter->min && most == (uint32_t)parameter->max;
+            filter_parameter_set(&config, parameter, ANY_U32(0, UINT32_MAX));
+        }
+    }
+}

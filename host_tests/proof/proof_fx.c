@@ -55,10 +55,17 @@ void proof_rounded(void)
     }
 }
 
-/* Options: -eva-slevel 40 */
+/* Options: -eva-slevel 1 -eva-min-loop-unroll 16 */
 void proof_fx_isqrt32(void)
 {
-    (void)fx_isqrt32(ANY_U32(0, UINT32_MAX));
+    (void)fx_isqrt32(ANY_U32(0, SQUARE(27UL) - 1U));
+    //@ loop unroll 5;
+    for (uint32_t k = 27; k < 32U; k++) {
+        (void)fx_isqrt32(ANY_U32(SQUARE(k), SQUARE(k + 1U) - 1U));
+    }
+    (void)fx_isqrt32(0x10000000U);
+    (void)fx_isqrt32(ANY_U32(0x10000001U, 0x3FFFFFFFU));
+    (void)fx_isqrt32(ANY_U32(0x40000000U, UINT32_MAX));
 }
 
 static fx_scaled_t any_scaled(void)

@@ -34,7 +34,7 @@ FX_ONCE calibration_verdict_t calibration_check(const calibration_t *c)
 {
     uint8_t seen = 0;
     for (uint8_t i = 0; i < 3U; i++) {
-        uint16_t offset = (uint16_t)(c->offset_lsb_q4[i] + CALIBRATION_OFFSET_MAX_LSB_Q4);
+        uint16_t offset = (uint16_t)((uint16_t)c->offset_lsb_q4[i] + CALIBRATION_OFFSET_MAX_LSB_Q4);
         if (offset > 2U * CALIBRATION_OFFSET_MAX_LSB_Q4) {
             return calibration_verdict(CALIBRATION_OFFSET, i);
         }

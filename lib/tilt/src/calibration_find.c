@@ -5,7 +5,7 @@
 
 FX_ONCE int16_t calibration_gravity_q14(const calibration_t *c, uint8_t axis, int16_t lsb_q4)
 {
-    int16_t off_q4 = (int16_t)(lsb_q4 - c->offset_lsb_q4[axis]);
+    int16_t off_q4 = (int16_t)((uint16_t)lsb_q4 - (uint16_t)c->offset_lsb_q4[axis]);
     return (int16_t)fx_clamp(calibration_over(off_q4, c->scale_lsb_per_g_uq6[axis]), INT16_MAX);
 }
 

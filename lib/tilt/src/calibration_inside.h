@@ -16,14 +16,17 @@ extern "C" {
 #define CALIBRATION_LEVEL_MAX_Q28 ((uint32_t)355005890UL)
 
 /*
- * a x 2^16 / b, rounded half away from zero; |a| < 2^16, b > 0. All divisions of the calibration, for the formats are
+ * a x 2^16 / b, rounded half away from zero; |a| < 2^16, b > 1. All divisions of the calibration, for the formats are
  * chosen so: LSB in Q4 over LSB/g in UQ9.6 gives g in Q14, LSB in Q4 over g in Q14 gives LSB/g in UQ9.6.
  */
 int32_t calibration_over(int32_t a, uint16_t b);
 
 uint32_t calibration_square(int16_t a);
 
-/* A reading of one of the sensor's axes, Q4, in g, Q14, limited to 2 g. |reading| <= 1,900 LSB as a rest has it. */
+/*
+ * A reading of one of the sensor's axes, Q4, in g, Q14, limited to 2 g. What a rest has 2,048 LSB or more from a legal
+ * offset is 2 g too, of the other sign.
+ */
 int16_t calibration_gravity_q14(const calibration_t *c, uint8_t axis, int16_t lsb_q4);
 
 /* The sensor's axis, 0..2, that an entry of `axes` names. */

@@ -40,14 +40,14 @@ static uint16_t component_q14(const calibration_t *c, means_t means, uint8_t pos
 static bool draw_line(calibration_t *c, means_t means, uint8_t axis, const uint16_t component_q14[2])
 {
     int16_t upper_q4 = means[7U * axis];
-    uint16_t apart_q4 = (uint16_t)(upper_q4 - means[7U * axis + 3U]);
-    if ((uint16_t)(apart_q4 - APART_MIN_Q4) > APART_MAX_Q4 - APART_MIN_Q4) {
+    uint16_t apart_q4 = (uint16_t)((uint16_t)upper_q4 - (uint16_t)means[7U * axis + 3U]);
+    if (apart_q4 < APART_MIN_Q4 || apart_q4 > APART_MAX_Q4) {
         return false;
     }
     uint16_t scale_uq6 = (uint16_t)calibration_over(apart_q4, (uint16_t)(component_q14[0] + component_q14[1]));
     c->scale_lsb_per_g_uq6[axis] = scale_uq6;
     uint16_t rise_q5 = fx_high_u16((uint16_t)(scale_uq6 << 1), component_q14[0]); /* scale < 2^15 */
-    c->offset_lsb_q4[axis] = (int16_t)(upper_q4 - (int16_t)((rise_q5 + 1U) >> 1));
+    c->offset_lsb_q4[axis] = (int16_t)((uint16_t)upper_q4 - ((rise_q5 + 1U) >> 1));
     return true;
 }
 
@@ -57,6 +57,7 @@ FX_ONCE void calibration_six_start(calibration_six_t *six, const calibration_t *
     for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
         six->known_q14[position] = CALIBRATION_ONE_Q14;
     }
+    six->where = 0;
     six->round = 0;
     six->piece = 0;
 }
@@ -65,7 +66,7 @@ FX_ONCE void calibration_six_start(calibration_six_t *six, const calibration_t *
 static bool improve(calibration_six_t *six, means_t means, uint8_t position)
 {
     uint16_t better_q14 = component_q14(&six->found, means, position);
-    int16_t change_q14 = (int16_t)(better_q14 - six->known_q14[position]);
+    int16_t change_q14 = (int16_t)((int16_t)better_q14 - (int16_t)six->known_q14[position]);
     uint16_t size_q14 = (uint16_t)(change_q14 < 0 ? -change_q14 : change_q14);
     if (size_q14 > six->off_q14) {
         six->off_q14 = size_q14;

@@ -20,20 +20,21 @@ FX_ONCE bool rest_add(rest_t *rest, const int16_t lsb[3])
         int16_t value = *lsb++;
         if (before == 0) {
             axis->first_lsb = value;
-            if ((uint16_t)(value + REST_LIMIT_LSB) > 2U * REST_LIMIT_LSB) {
+            if ((uint16_t)((uint16_t)value + REST_LIMIT_LSB) > 2U * REST_LIMIT_LSB) {
                 rest->moved = true;
             }
         }
-        int16_t off = (int16_t)(value - axis->first_lsb);
+        uint16_t off = (uint16_t)((uint16_t)value - (uint16_t)axis->first_lsb);
         int8_t near = (int8_t)off;
-        if ((uint16_t)(off + 128) > 255U) {
+        if ((uint16_t)(off + 128U) > 255U) {
             rest->moved = true;
         }
         axis->sum_lsb = (int16_t)(axis->sum_lsb + near);
         if (before == HALF - 1U) {
             axis->half_lsb = axis->sum_lsb;
         }
-        axis->squares_lsb2 += (uint32_t)((int32_t)near * near);
+        uint16_t square_lsb2 = (uint16_t)(near * near);
+        axis->squares_lsb2 += square_lsb2;
     }
     return rest->moved || rest->samples == 0;
 }
@@ -53,7 +54,7 @@ FX_ONCE bool rest_still(const rest_t *rest, uint16_t rate_dhz)
 {
     bool still = !rest->moved;
     for (const rest_axis_t *axis = rest->axes; axis != rest->axes + AXES; axis++) {
-        uint16_t drift_lsb = (uint16_t)(axis->sum_lsb - axis->half_lsb - axis->half_lsb);
+        uint16_t drift_lsb = (uint16_t)((uint16_t)axis->sum_lsb - 2U * (uint16_t)axis->half_lsb);
         uint16_t variance_lsb2 = (uint16_t)(rest_variance_lsb2_q8(axis) >> 8);
         if ((uint16_t)(drift_lsb + DRIFT_LSB) > 2U * DRIFT_LSB ||
             variance_lsb2 >= rate_dhz >> 3) { /* 0.2 x 62.5 / 100 */
