@@ -33,7 +33,7 @@ FX_ONCE bool rest_add(rest_t *rest, const int16_t lsb[3])
         if (before == HALF - 1U) {
             axis->half_lsb = axis->sum_lsb;
         }
-        uint16_t square_lsb2 = (uint16_t)(near * near);
+        uint16_t square_lsb2 = (uint16_t)((int32_t)near * near);
         axis->squares_lsb2 += square_lsb2;
     }
     return rest->moved || rest->samples == 0;
