@@ -210,7 +210,7 @@ static void collected(void)
     }
     for (uint8_t axis = 0; axis < AXES; axis++) {
         int16_t *result = &measure.result_lsb_q4[axis];
-        *result = (int16_t)(rest_mean_lsb_q4(&measure.rest.axes[axis]) - *result);
+        *result = (int16_t)((uint16_t)rest_mean_lsb_q4(&measure.rest.axes[axis]) - (uint16_t)*result);
     }
     if (measure.step == STEP_PLAIN) {
         collect(STEP_FORCED);
