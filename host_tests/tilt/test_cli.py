@@ -51,6 +51,16 @@ class Test(unittest.TestCase):
             self.assertEqual(status, 2)
             self.assertIn("usage: tilt", err)
 
+    def test_what_python_alone_takes_for_a_number_is_none(self):
+        options = (("replay", "--rate"), ("replay", "--range"), ("plot", "--from"), ("plot", "--to"), ("record", "--seconds"),
+                   ("record", "--baud"), ("live", "--baud"), ("live", "--port-http"), ("import", "--rate"), ("import", "--sensor"))
+        for name, option in options:
+            for slip in ("1_0", "\u0661\u0660", "8x"):
+                status, _, err = run(name, "file", option, slip)
+                self.assertEqual(status, 2, (name, option, slip))
+                self.assertIn(f"argument {option}", err)
+                self.assertIn(slip, err)
+
     def test_what_a_command_raises_is_one_line(self):
         with mock.patch.object(cli, "modules", lambda: job(errors.at("my.csv", 7, "3 fields"))):
             self.assertEqual(run("job"), (2, "", "tilt job: my.csv:7: 3 fields\n"))

@@ -9,6 +9,7 @@ import re
 import sys
 
 from tilt.errors import TiltError
+from tilt.numbers import real
 
 NAME = "import"
 SUMMARY = "recordings of many formats to a stream"
@@ -17,7 +18,7 @@ SUFFIX = ".stream.csv"
 
 def rate(text):
     try:
-        value = float(text)
+        value = real(text)
     except ValueError:
         value = math.nan
     if not 0.01 <= value <= 10000.0:
@@ -26,7 +27,7 @@ def rate(text):
 
 
 def sensor(text):
-    if not text.isdigit() or int(text) < 1:
+    if not (text.isascii() and text.isdigit()) or int(text) < 1:
         raise argparse.ArgumentTypeError(f"'{text}': sensors are counted from 1")
     return int(text)
 

@@ -14,6 +14,7 @@ import threading
 import webbrowser
 
 from tilt import protocol
+from tilt.numbers import whole_option
 
 NAME = "live"
 SUMMARY = "show a board in the browser"
@@ -21,10 +22,10 @@ SUMMARY = "show a board in the browser"
 
 def arguments(parser):
     parser.add_argument("port", metavar="PORT", help="/dev/ttyACM0, /dev/serial/by-id/..., COM3, or simrun's pseudo terminal")
-    parser.add_argument("--baud", type=int, default=protocol.BAUD_AT_START, metavar="N", help="of the line when it is opened (default "
+    parser.add_argument("--baud", type=whole_option, default=protocol.BAUD_AT_START, metavar="N", help="of the line when it is opened (default "
                         f"{protocol.BAUD_AT_START}); `baud N`, typed in the page, is followed")
     parser.add_argument("--no-reset", action="store_true", help="do not reset the board: join what runs")
-    parser.add_argument("--port-http", type=int, default=0, metavar="N", help="TCP port of the page (default: a free one)")
+    parser.add_argument("--port-http", type=whole_option, default=0, metavar="N", help="TCP port of the page (default: a free one)")
     parser.add_argument("--no-browser", action="store_true", help="only print the address")
     parser.add_argument("--record", metavar="FILE", help="write what comes to a new file, as it comes (as `tilt record` does)")
 

@@ -8,6 +8,7 @@ import pathlib
 import sys
 
 from tilt.errors import TiltError
+from tilt.numbers import real_option
 
 NAME = "plot"
 SUMMARY = "draw recordings: raw against filtered, flags, spectrum"
@@ -21,8 +22,8 @@ def arguments(parser):
     parser.add_argument("files", nargs="+", metavar="FILE", help="recordings or streams")
     parser.add_argument("-o", "--output", metavar="OUT", help="OUT.png, OUT.svg or OUT.html (default: the first FILE with .png, here)")
     parser.add_argument("--columns", metavar="LIST", default=",".join(USUAL), help=f"of {' '.join(KINDS)}, with commas (default: %(default)s)")
-    parser.add_argument("--from", dest="from_s", type=float, metavar="S", help="begin at S seconds from the start of each file")
-    parser.add_argument("--to", dest="to_s", type=float, metavar="S", help="end at S seconds")
+    parser.add_argument("--from", dest="from_s", type=real_option, metavar="S", help="begin at S seconds from the start of each file")
+    parser.add_argument("--to", dest="to_s", type=real_option, metavar="S", help="end at S seconds")
     parser.add_argument("--stack", action="store_true", help="files one below the other")
     parser.add_argument("--title", help="headline (default: the files' names)")
 

@@ -16,6 +16,7 @@ import time
 
 from tilt import protocol
 from tilt.errors import TiltError
+from tilt.numbers import real_option, whole_option
 from tilt.port import Gone, Port
 from tilt.recorder import Recorder
 
@@ -38,8 +39,9 @@ def arguments(parser):
     parser.add_argument("port", metavar="PORT", help="/dev/ttyACM0, /dev/serial/by-id/..., COM3, or simrun's pseudo terminal")
     parser.add_argument("-o", "--output", metavar="FILE", help="to write (default: tilt-DATE-TIME.csv here)")
     parser.add_argument("--force", action="store_true", help="overwrite FILE")
-    parser.add_argument("--seconds", type=float, metavar="N", help="end after N seconds by the board's clock (the PC's while nothing comes)")
-    parser.add_argument("--baud", type=int, default=protocol.BAUD_AT_START, metavar="N", help=f"of the line (default {protocol.BAUD_AT_START})")
+    parser.add_argument("--seconds", type=real_option, metavar="N", help="end after N seconds by the board's clock (the PC's while nothing comes)")
+    parser.add_argument("--baud", type=whole_option, default=protocol.BAUD_AT_START, metavar="N",
+                        help=f"of the line (default {protocol.BAUD_AT_START})")
     parser.add_argument("--send", action="append", default=[], metavar="COMMAND", help="type this when the board is there, as 'filter sprf'; "
                         "again after each reset; may be given more than once; `baud N` is followed")
     parser.add_argument("--no-reset", action="store_true", help="do not reset the board: join what runs (on Linux the very first opening after "

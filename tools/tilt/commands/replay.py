@@ -9,6 +9,7 @@ import sys
 import time
 
 from tilt.errors import TiltError
+from tilt.numbers import real_option, whole_option
 
 NAME = "replay"
 SUMMARY = "run a recording through the shipped filters, many at once"
@@ -19,13 +20,14 @@ def stream_arguments(parser):
     """What replay, compare and tune have in common."""
     parser.add_argument("stream", metavar="STREAM", help="recording (docs/protocol.md, Streams)")
     parser.add_argument("--filter", metavar="A,B,C", help="names of filters (default: all)")
-    parser.add_argument("--rate", metavar="HZ", type=float,
+    parser.add_argument("--rate", metavar="HZ", type=real_option,
                         help="output data rate of the sensor (default: that of the firmware's nearest to the recording)")
 
 
 def arguments(parser):
     stream_arguments(parser)
-    parser.add_argument("--range", metavar="G", type=int, choices=(2, 4, 8, 16), default=16, help="range of the sensor: 2 4 8 16 (default 16)")
+    parser.add_argument("--range", metavar="G", type=whole_option, choices=(2, 4, 8, 16), default=16,
+                        help="range of the sensor: 2 4 8 16 (default 16)")
     parser.add_argument("-o", "--output", metavar="OUT.csv", help="rows, - for standard output")
 
 
