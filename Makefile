@@ -161,7 +161,7 @@ test:
 	@sh tools/deps.sh design || echo "test: test_design will be skipped"
 	@sh tools/deps.sh tilt || echo "test: the tests of tilt will be skipped"
 	@sh tools/deps.sh live || echo "test: the tests of the page of tilt live will be skipped"
-	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt system_images paper_programs $(SEQUENCES) $(CHIP_TESTS) $(FLASHTEST_IMAGES) $(ARDUINO_IMAGES) $(NAV_TESTED)
+	@python3 tools/progress.py $(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt system_images paper_programs $(SEQUENCES) $(CHIP_TESTS) $(FLASHTEST_IMAGES) $(ARDUINO_IMAGES) $(NAV_TESTED)
 	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" CHIP_SECOND="$(CHIP_SECOND)" python3 tools/run_tests.py $(TESTS)
 
 # what the tests of the whole firmware run
