@@ -21,7 +21,8 @@ sys.path.insert(0, str(ROOT / "tools"))
 import run_tests  # noqa: E402
 
 LIVE = ["test_flash", "test_resets", "test_plotter", "test_progress", "test_run_tests", "test_faults", "tilt_live", "tilt_live_direct",
-        "tilt_live_page", "tilt_live_parser", "tilt_live_rate", "tilt_nav_port", "tilt_plot", "tilt_record", "system_tests:simulator"]
+        "tilt_live_page", "tilt_live_parser", "tilt_live_rate", "tilt_nav_port", "tilt_plot", "tilt_record",
+        "tilt_record_timing", "system_tests:simulator"]
 DIE_WITH_PARENT = 1  # prctl's PR_SET_PDEATHSIG
 
 
@@ -49,7 +50,8 @@ def arguments():
     parser.add_argument("--load", type=int, default=8, metavar="N", help="busy loops (default 8)")
     parser.add_argument("--rounds", type=int, default=10, metavar="N", help="of all tests (default 10)")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="tests at a time (default 2, as make test)")
-    parser.add_argument("tests", nargs="*", metavar="TEST", help=f"as run_tests.py names them, with :WORD those whose name has it (default: {' '.join(LIVE)})")
+    parser.add_argument("tests", nargs="*", metavar="TEST",
+                        help=f"as run_tests.py names them, with :WORD those whose name has it (default: {' '.join(LIVE)})")
     options = parser.parse_args()
     if options.load < 0 or options.rounds < 1 or options.jobs < 1:
         parser.error("--load wants 0 or more, --rounds and --jobs 1 or more")

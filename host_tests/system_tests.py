@@ -15,7 +15,8 @@ import system_passes  # noqa: F401
 import system_settings  # noqa: F401
 import system_store  # noqa: F401
 import system_support
-from system_support import FW, OUT, SET_IMAGES, SIMRUN, STREAMS, TESTS, image_with, processor_s, read_output, run, run_all, simrun, test, triplets, within
+from system_support import (FW, OUT, SET_IMAGES, SIMRUN, STREAMS, TESTS, image_with, processor_s, read_output, run, run_all, simrun, test,
+                            triplets, within)
 
 
 # --- chip equals PC ---------------------------------------------------------------------------------------------------

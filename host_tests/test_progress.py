@@ -83,7 +83,8 @@ def a_dry_run_stays_one():
 def a_terminal_has_one_line_that_an_error_overwrites():
     ready("false")
     master, slave = pty.openpty()
-    done = subprocess.run([sys.executable, TOOL, "make", "all"], cwd=FOLDER, stdout=slave, stderr=subprocess.PIPE, text=True, timeout=600, check=False)
+    done = subprocess.run([sys.executable, TOOL, "make", "all"], cwd=FOLDER, stdout=slave, stderr=subprocess.PIPE, text=True, timeout=600,
+                          check=False)
     os.close(slave)
     shown = os.read(master, 1 << 16).decode()
     os.close(master)

@@ -1,7 +1,7 @@
 /*
- * A pseudo terminal in place of the USB serial port: for a terminal program, a plotter or avrdude. Simulated time keeps to real time
- * and never runs ahead of it: where the PC has no processor for the simulator, or the reader none for what is in the terminal,
- * simulated time waits. So what happens does not depend on how busy the PC is.
+ * A pseudo terminal in place of the USB serial port: for a terminal program, a plotter or avrdude. Simulated time keeps
+ * to real time and never runs ahead of it: where the PC has no processor for the simulator, or the reader none for what
+ * is in the terminal, simulated time waits. So what happens does not depend on how busy the PC is.
  */
 #define _GNU_SOURCE /* posix_openpt */
 
@@ -15,7 +15,10 @@
 
 #include "simrun.h"
 
-enum { READER_LOOK_MS = 50, DEBT_MS = 20 }; /* a debt of real time beyond that is not made up: boot loaders count time */
+enum {
+    READER_LOOK_MS = 50,
+    DEBT_MS = 20
+}; /* a debt of real time beyond that is not made up: boot loaders count time */
 
 static int master = -1;
 static bool opened; /* somebody holds the other end */

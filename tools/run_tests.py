@@ -28,8 +28,8 @@ SHOW_S = 30      # on a log, between two lines that say what runs
 SLOWEST = 10
 # what a test is taken to need that has never run here, in seconds of a processor
 UNKNOWN_S = {"system_tests": 100, "bitexact": 60, "test_design_command": 50, "test_design": 40, "python": 10, "chip": 5, "program": 1}
-PLAIN = ["test_flash", "test_progress", "test_resets", "test_fault_page", "test_bench", "test_papers", "test_papers_synthesis", "test_schedule", "test_pages",
-         "test_default", "test_images", "test_run_tests", "test_faults", "test_arduino", "test_plotter", "test_compile_commands"]
+PLAIN = ["test_flash", "test_progress", "test_resets", "test_fault_page", "test_bench", "test_papers", "test_papers_synthesis", "test_schedule",
+         "test_pages", "test_default", "test_images", "test_run_tests", "test_faults", "test_arduino", "test_plotter", "test_compile_commands"]
 WITH_NUMPY = ["test_nav_image", "test_plot_run", "test_robust", "test_design", "test_design_command", "test_design_refusals", "test_synthesised",
               "test_variable_structure", "test_variable_structure_flight", "test_variable_structure_page"]
 TILT = sorted(pathlib.Path("host_tests/tilt").glob("test_*.py"))
