@@ -163,6 +163,7 @@ def run_all():
             traceback.print_exc()
         times[name] = processor_s() - before_s
     slowest = sorted(times, key=times.get, reverse=True)[:8]
-    print(f"\nprocessor time {sum(times.values()):.0f} s, of which " + ", ".join(f"{name} {times[name]:.1f}" for name in slowest if times[name] > 0.1))
+    shown = ", ".join(f"{name} {times[name]:.1f}" for name in slowest if times[name] > 0.1)
+    print(f"\nprocessor time {sum(times.values()):.0f} s{', of which ' if shown else ''}{shown}")
     print(f"{count} Tests {failed} Failures {skipped} Ignored")
     return 1 if failed or count == 0 else 0
