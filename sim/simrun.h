@@ -92,6 +92,7 @@ void machine_reschedule(void);
 /* First cause wins; ends the run. `reason` stays valid. */
 void machine_fail(exit_status_t status, const char *reason);
 double machine_ms(void);
+bool machine_asked_to_end(void);          /* by SIGINT or SIGTERM */
 uint32_t machine_random(void);            /* xorshift32 from --seed */
 bool machine_in_boot_loader(uint32_t pc); /* byte address; false without --bootloader */
 
@@ -183,7 +184,7 @@ void frames_print(FILE *json);
 void pty_open(void);
 void pty_send(uint8_t byte);
 bool pty_receive(uint8_t *byte);
-void pty_pace(void); /* sleep until real time has caught up */
+void pty_pace(void); /* sleep until real time has caught up; where it is far ahead, let it go */
 
 /* --- EEPROM (--eeprom) --- */
 void eeprom_start(void);

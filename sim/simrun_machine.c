@@ -163,6 +163,11 @@ static void on_signal(int number)
     asked_to_end = 1;
 }
 
+bool machine_asked_to_end(void)
+{
+    return asked_to_end != 0;
+}
+
 static void load_program(void)
 {
     elf_firmware_t program;

@@ -166,9 +166,11 @@ class Line:
 
     def finish(self, wanted):
         heard = time.monotonic()
-        while len(self.outcome.answers) < wanted and time.monotonic() < heard + SILENT_S:
+        while len(self.outcome.answers) < wanted:
             if self.listen():
                 heard = time.monotonic()
+            elif time.monotonic() > heard + SILENT_S:
+                break
         self.outcome.damaged = self.reader.damaged
         return self.outcome
 
