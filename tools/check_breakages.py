@@ -90,7 +90,7 @@ def main():
     faults += [fault for fault in map(misplaced, planted) if fault]
     lines = sum(path.read_text(encoding="utf-8").count("\n") for path in (breakages.LIST, PLANTED))
     if len(named) > MOST or lines > MOST_LINES:
-        faults.append(f"{breakages.LIST}: {len(named)} breakages in {lines} lines of lists, at most {MOST} and {MOST_LINES}: make mutants has operators")
+        faults.append(f"{breakages.LIST}: {len(named)} breakages, {lines} lines of lists, at most {MOST} and {MOST_LINES}: see make mutants")
     print("\n".join(faults), end="\n" if faults else "")
     print(f"breakages: {len(named)} named, {len(planted)} planted, {lines} lines, {len(faults) or 'no'} findings")
     return 1 if faults else 0
