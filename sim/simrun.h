@@ -52,7 +52,7 @@ typedef struct {
 
 typedef struct {
     const char *fw, *in, *frames, *out, *served, *altered, *eeprom, *stats, *profile, *vcd, *bootloader, *filter, *span;
-    bool loop, pty, blank, judge, strap;
+    bool loop, pty, blank, judge, strap, alt_address;
     double ppm, max_ms; /* max_ms 0: none */
     adxl345_part_t part;
     unsigned expect_resets, gdb_port;
