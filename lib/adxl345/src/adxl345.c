@@ -271,11 +271,24 @@ static void read_back(adxl345_driver_t *d)
     driver_enter(d->row < TABLE_ROWS ? STEP_READ_BACK : STEP_MEASURE, TRANSFER_LIMIT_MS);
 }
 
+/*
+ * A device that is none answers. The words for it come later, when another address may be asked or another device
+ * answers there: the first that was found is kept until the fault is over.
+ */
+static void found_foreign(adxl345_driver_t *d, uint8_t id)
+{
+    if (d->fault != ADXL345_FAULT_WRONG_ID && d->found != ADXL345_FAULT_WRONG_ID) {
+        d->foreign_address = d->address;
+        d->foreign_id = id;
+    }
+    not_here(d, ADXL345_FAULT_WRONG_ID);
+}
+
 static void probed(adxl345_driver_t *d)
 {
-    d->device_id = burst_register_value();
-    if (d->device_id != ADXL345_DEVID_VALUE) {
-        not_here(d, ADXL345_FAULT_WRONG_ID);
+    uint8_t id = burst_register_value();
+    if (id != ADXL345_DEVID_VALUE) {
+        found_foreign(d, id);
         return;
     }
     d->known = d->address;
