@@ -210,12 +210,12 @@ static HAL_APART void count_failure(i2c_bus_state_t state)
 }
 
 /*
- * No sensor at this address. That is told when the other one, if it may be asked, has none either: by the name of the
- * device that did answer if there is one, and with its address.
+ * No sensor at this address. That is a fault when the other one, if it may be asked, has none either: by the name of the
+ * device that did answer if there is one.
  */
 static HAL_APART void not_here(adxl345_driver_t *d, adxl345_fault_t fault)
 {
-    if (d->config.address == 0 && (!d->alternate_tried || fault == ADXL345_FAULT_NO_SENSOR)) {
+    if (d->config.address == 0) {
         d->address = d->address == ADXL345_ADDRESS_LOW ? ADXL345_ADDRESS_HIGH : ADXL345_ADDRESS_LOW;
     }
     if (d->alternate_tried) {
