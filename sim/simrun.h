@@ -12,6 +12,7 @@
 #include <stdio.h>
 
 #include "adxl345_model.h"
+#include "avr_uart.h"
 #include "sim_avr.h"
 #include "simrun_judge.h"
 #include "stream.h"
@@ -168,6 +169,11 @@ void uart_stall(uint64_t until); /* the transmitter holds each byte until this c
 uint64_t uart_last_tx(void);     /* cycle of the last byte sent, 0: none */
 uint64_t uart_bytes(void);
 uint32_t uart_rx_overruns(void);
+uint64_t uart_frame_cycles(void); /* that the transmitter takes for a byte that begins now */
+
+/* --- the transmitter of the UART --- */
+void transmitter_start(avr_uart_t *of, void (*on_byte)(uint8_t byte)); /* on_byte: as its start bit goes out */
+void transmitter_reset(void);
 
 /* --- a PC that speaks in frames (--frames, simrun_frames.c) --- */
 /* Reads the file; exits with EXIT_INPUT and the place on a bad one. Nothing to do without --frames. */
