@@ -7,6 +7,7 @@ import resource
 import sys
 
 import system_gaps  # noqa: F401  (its tests join the list)
+import system_hal  # noqa: F401
 import system_injections  # noqa: F401
 import system_injections_more  # noqa: F401
 import system_losses  # noqa: F401
