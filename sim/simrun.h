@@ -39,7 +39,8 @@ typedef enum {
     EXIT_RESETS = 7,   /* number of resets is not --expect-resets */
     EXIT_STOPPED = 8,  /* the firmware slept with interrupts off */
     EXIT_STALLED = 9,  /* no --max-ms, and the sensor was not used for 20 s: the stream would never end */
-    EXIT_WRONG = 10    /* --judge, and a row is wrong, stale or stamped before the one ahead of it */
+    EXIT_WRONG = 10,   /* --judge, and a row is wrong, stale or stamped before the one ahead of it */
+    EXIT_RULE = 11     /* a rule of the data sheet is broken that simavr does not hold */
 } exit_status_t;
 
 /* --- options --- */
@@ -244,6 +245,12 @@ void rows_print(FILE *json);
 /* --- good rows go on (simrun_flow.c) --- */
 void flow_on_row(const row_t *row); /* before the faults hear of the row */
 void flow_print(FILE *json);
+
+/* --- rules of the data sheet (simrun_rules.c) --- */
+void rules_start(void); /* when every other part has its registers */
+void rules_on_reset(void);
+void rules_on_step(uint32_t from); /* a step that began there may have ended with SLEEP, or with interrupts on */
+void rules_print(FILE *json);
 
 /* --- statistics --- */
 extern uint64_t stats_slept;       /* cycles asleep */

@@ -173,7 +173,8 @@ static const char help_text[] =
     "Exit status: 0 ran to the end; 1 simrun failed, or a signal ended it; 2 usage or input; 3 crash;\n"
     "4 illegal opcode; 5 stack overrun; 6 UART overrun; 7 unexpected number of resets;\n"
     "8 firmware slept with interrupts off;\n"
-    "9 without --max-ms: the firmware did not use the sensor for 20 s; 10 --judge: a row is not right.\n";
+    "9 without --max-ms: the firmware did not use the sensor for 20 s; 10 --judge: a row is not right;\n"
+    "11 a rule of the data sheet is broken that simavr does not hold (the words say which).\n";
 
 static void refuse(const char *format, ...) __attribute__((format(printf, 1, 2), noreturn));
 static void refuse(const char *format, ...)
