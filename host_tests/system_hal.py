@@ -85,3 +85,12 @@ def led_on_d13_flashes_as_often_as_the_fault_says():
         late = 1 if fault == "0ms:frozen" else 0  # ten readings are needed: the first flash is over by then
         assert 3 * flashes - late <= stats["led_flashes"] <= 3 * flashes, (fault, stats["led_flashes"])
     assert simrun("led", STREAMS / "rest-2lsb.csv", "--max-ms", "3000")[3]["led_flashes"] == 0
+
+
+@test
+def start_waits_for_a_stop_that_is_held_back():
+    """SCL is held low around the end of a burst, so that its STOP waits, and until after the next sample is ready."""
+    _, _, served, _ = simrun("stop", STREAMS / "rest-2lsb.csv", "--max-ms", "560")
+    ready_us = next(int(sample["t_us"]) for sample in served if int(sample["t_us"]) > 500000)
+    for late_us in range(376, 402, 2):
+        simrun("stop", STREAMS / "rest-2lsb.csv", "--fault", f"{(ready_us + late_us) / 1000:.3f}ms:scl:12", "--max-ms", "560")
