@@ -204,8 +204,11 @@ static void say_value(uint8_t what)
     case SAY_OFF:
         number_write((uint32_t)measure_number_q8(what, said.axis), 8, true);
         break;
-    case SAY_DEVICE_ID:
-        text_hex8(adxl345_device_id());
+    case SAY_FOREIGN_ADDRESS:
+        text_hex8(adxl345_foreign_address());
+        break;
+    case SAY_FOREIGN_ID:
+        text_hex8(adxl345_foreign_id());
         break;
     default:
         text_u32(number(what));
@@ -261,9 +264,9 @@ static void say_on(uint8_t what)
 
 FX_ONCE void say_byte(uint8_t c)
 {
-    if (c >= ' ' && c < SAY_PARAMETER) {
+    if (c >= ' ' && c < SAY_FOREIGN_ADDRESS) {
         text_char((char)c);
-    } else if (c < SAY_MORE || (c >= SAY_PARAMETER && c < SAY_THEN_KEPT)) {
+    } else if (c < SAY_MORE || (c >= SAY_FOREIGN_ADDRESS && c < SAY_THEN_KEPT)) {
         say_value(c);
     } else if (c != SAY_THEN_CHOICES) {
         say_on(c);

@@ -8,6 +8,7 @@ import sys
 from unittest import mock
 
 import system_gaps  # noqa: F401  (its tests join the list)
+import system_hal  # noqa: F401
 import system_injections  # noqa: F401
 import system_injections_more  # noqa: F401
 import system_losses  # noqa: F401
@@ -15,6 +16,7 @@ import system_passes  # noqa: F401
 import system_settings  # noqa: F401
 import system_store  # noqa: F401
 import system_support
+import system_words  # noqa: F401
 from system_support import (FW, OUT, SET_IMAGES, SIMRUN, STREAMS, TESTS, image_with, processor_s, read_output, run, run_all, simrun, test,
                             triplets, within)
 
@@ -348,7 +350,8 @@ def refused_settings_end_the_run():
 
 
 MISBEHAVIOURS = {1: (3, "jump out of the program"), 2: (3, "access beyond RAM"), 3: (4, "illegal opcode"), 4: (5, "stack overrun"),
-                 5: (6, "UART overrun"), 6: (7, "watchdog reset nobody expects"), 7: (8, "sleep with interrupts off")}
+                 5: (6, "UART overrun"), 6: (7, "watchdog reset nobody expects"), 7: (8, "sleep with interrupts off"),
+                 8: (11, "START ahead of a STOP")}
 
 
 @test

@@ -42,11 +42,18 @@ int main(void)
         UDR0 = i;
     }
 #elif CASE == 6
+    MCUSR = 0;
     wdt_enable(WDTO_15MS);
 #elif CASE == 7
     cli();
     sleep_enable();
     sleep_cpu();
+#elif CASE == 8
+    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTA);
+    while (!(TWCR & _BV(TWINT))) {
+    }
+    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTO);
+    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTA);
 #endif
     for (;;) {
     }

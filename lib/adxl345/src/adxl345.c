@@ -210,12 +210,12 @@ static HAL_APART void count_failure(i2c_bus_state_t state)
 }
 
 /*
- * No sensor at this address. That is told when the other one, if it may be asked, has none either: by the name of the
- * device that did answer if there is one, and with its address.
+ * No sensor at this address. That is a fault when the other one, if it may be asked, has none either: by the name of the
+ * device that did answer if there is one.
  */
 static HAL_APART void not_here(adxl345_driver_t *d, adxl345_fault_t fault)
 {
-    if (d->config.address == 0 && (!d->alternate_tried || fault == ADXL345_FAULT_NO_SENSOR)) {
+    if (d->config.address == 0) {
         d->address = d->address == ADXL345_ADDRESS_LOW ? ADXL345_ADDRESS_HIGH : ADXL345_ADDRESS_LOW;
     }
     if (d->alternate_tried) {
@@ -271,11 +271,24 @@ static void read_back(adxl345_driver_t *d)
     driver_enter(d->row < TABLE_ROWS ? STEP_READ_BACK : STEP_MEASURE, TRANSFER_LIMIT_MS);
 }
 
+/*
+ * A device that is none answers. The words for it come later, when another address may be asked or another device
+ * answers there: the first that was found is kept until the fault is over.
+ */
+static void found_foreign(adxl345_driver_t *d, uint8_t id)
+{
+    if (d->fault != ADXL345_FAULT_WRONG_ID && d->found != ADXL345_FAULT_WRONG_ID) {
+        d->foreign_address = d->address;
+        d->foreign_id = id;
+    }
+    not_here(d, ADXL345_FAULT_WRONG_ID);
+}
+
 static void probed(adxl345_driver_t *d)
 {
-    d->device_id = burst_register_value();
-    if (d->device_id != ADXL345_DEVID_VALUE) {
-        not_here(d, ADXL345_FAULT_WRONG_ID);
+    uint8_t id = burst_register_value();
+    if (id != ADXL345_DEVID_VALUE) {
+        found_foreign(d, id);
         return;
     }
     d->known = d->address;

@@ -102,12 +102,17 @@ HAL_APART uint32_t adxl345_deadline_us(void)
 
 uint8_t adxl345_address(void)
 {
-    return driver.address;
+    return driver.known;
 }
 
-uint8_t adxl345_device_id(void)
+uint8_t adxl345_foreign_address(void)
 {
-    return driver.device_id;
+    return driver.foreign_address;
+}
+
+uint8_t adxl345_foreign_id(void)
+{
+    return driver.foreign_id;
 }
 
 uint32_t adxl345_period_us(void)
