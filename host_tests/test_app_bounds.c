@@ -174,6 +174,27 @@ static void test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range
     TEST_ASSERT_TRUE_MESSAGE(waited > 3, "no sample of the old range met the new one");
 }
 
+/* `every 50` counts from the header on, whatever was counted before a reset: the first row is that of the 50th sample. */
+static void test_the_first_row_after_a_header_is_a_whole_every_later(void)
+{
+    for (double before_ms = 200.0; before_ms <= 500.0; before_ms += 100.0) {
+        talk_start();
+        talk_type("every 50");
+        talk_type("stop");
+        talk_type("save");
+        talk_type("go");
+        board_run_ms(before_ms);
+        size_t rows = board.row_count;
+        talk_power_cycle(false);
+        size_t header = board.note_count;
+        while (strncmp(board.notes[--header], "t_us,", 5) != 0) {
+        }
+        TEST_ASSERT_TRUE(board.row_count > rows);
+        double after_ms = board.rows[rows].at_ms - board.note_ms[header];
+        TEST_ASSERT_DOUBLE_WITHIN(20.0, 500.0, after_ms); /* the banner is printed while the first samples wait */
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -183,5 +204,6 @@ int main(void)
     RUN_TEST(test_a_run_of_ten_seconds_counts_as_lasting);
     RUN_TEST(test_a_row_tells_up_to_32_g);
     RUN_TEST(test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range);
+    RUN_TEST(test_the_first_row_after_a_header_is_a_whole_every_later);
     return UNITY_END();
 }
