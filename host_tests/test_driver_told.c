@@ -274,12 +274,26 @@ static void test_an_edge_while_stopped_is_nobodys(void)
     TEST_ASSERT_FALSE(burst_running());
     hal_host_faults.int1_high = false;
     rig_run_ms(200);
-    hal_host_faults.int1_cut =
-        true; /* the first sample is read by the clock, which looks after 20 ms and two periods */
-    rig.limit_us = 50000;
+    hal_host_faults.int1_cut = true; /* the first sample is read by the clock, with others that tell its age */
+    rig.limit_us = 10000 / 2 + 1000;
     size_t before = rig.taken_count;
     adxl345_start(&at_100_hz);
     run_until_taken(before + 1);
+}
+
+/* The sensor paused and is asked why; the sample that comes just then has the time of its edge. */
+static void test_an_edge_while_the_sensor_is_asked_is_kept(void)
+{
+    stream_for_ms(300);
+    hal_host_sensor.reg[ADXL345_POWER_CTL] = 0;
+    rig_until_source_asked();
+    hal_host_faults.int1_cut = false;
+    hal_host_sensor.reg[ADXL345_POWER_CTL] = ADXL345_POWER_MEASURE;
+    size_t before = rig.taken_count;
+    rig.limit_us = 20;
+    TEST_ASSERT_TRUE(adxl345_model_tick(&hal_host_sensor, rig.stream.rows[3000].lsb));
+    run_until_taken(before + 1);
+    TEST_ASSERT_EQUAL_INT(3000, rig.last_x);
 }
 
 /*
@@ -319,6 +333,7 @@ int main(void)
     RUN_TEST(test_stuck_samples_are_marked_and_counted);
     RUN_TEST(test_doubled_samples_are_two_sensors);
     RUN_TEST(test_an_edge_while_stopped_is_nobodys);
+    RUN_TEST(test_an_edge_while_the_sensor_is_asked_is_kept);
     RUN_TEST(test_a_silent_sensor_is_asked_after_two_periods);
     return UNITY_END();
 }
