@@ -147,8 +147,7 @@ def verdicts():
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         hosts = [Host(settings, variant, tree) for variant in ("ubsan", "asan")]
         for host in hosts:
-            host.compile_all(pool, settings.tests)
-            host.link_product()
+            host.compile(pool)
         reach = Reach(hosts[0], ["lib/tiny.c"])
         reach.measure(pool, settings.tests, lambda _: None)
         judge = Judge(hosts, lambda m: reach.tests_of(m.file, m.line(PRODUCT), set(), []), {})

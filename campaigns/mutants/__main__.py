@@ -13,14 +13,13 @@ import random
 import subprocess
 import sys
 import time
-from collections import Counter
 
 from host import Host, Settings
 from judge import Judge, Worker
 from operators import mutants_of
-from reach import Reach
-from results import Results, accepted, folder_of, source_hash, table, write_accepted, write_json
-from shop import Stop, copy_tree, digest, tree_files
+from order import Listed, Reached, write_judges
+from results import Results, accepted, below_goal, folder_of, goals, table, write_accepted, write_json
+from shop import Stop, alone, copy_tree, digest, tree_files
 
 WORKERS = 2
 # files that no mutant is made of, each with its reason
@@ -39,15 +38,18 @@ def options_of(arguments):
     parser.add_argument("--sample", type=int, default=0, help="so many, drawn by the tree's hash")
     parser.add_argument("--seed", default="", help="draw by these words instead")
     parser.add_argument("--seconds", type=float, default=0, help="stop after so long; the next run goes on")
+    parser.add_argument("--patience", type=float, default=0, help="without tests that take longer, in seconds (0: all)")
     parser.add_argument("--accept", action="store_true", help="write the survivors to accepted.txt")
     return parser.parse_args(arguments)
 
 
-def sources(only):
-    found = [name for name in tree_files() if name.startswith(("lib/", "firmware/", "hal/")) and name.endswith((".c", ".h"))
-             and name.startswith(only) and name not in LEFT_OUT and "/examples/" not in name and not name.startswith(OTHER_PROGRAMS)]
+def sources(options):
+    """The files that mutants are made of; a sample's are in the folders whose whole measurement is known."""
+    folders = tuple(f"{folder}/" for folder in goals()) if options.sample else ("lib/", "firmware/", "hal/")
+    found = [name for name in tree_files() if name.startswith(folders) and name.endswith((".c", ".h"))
+             and name.startswith(options.only) and name not in LEFT_OUT and "/examples/" not in name and not name.startswith(OTHER_PROGRAMS)]
     if not found:
-        raise Stop(f"no source of lib, firmware or hal begins with {only}")
+        raise Stop(f"no source in {', '.join(folders)} begins with {options.only}")
     return found
 
 
@@ -57,61 +59,36 @@ def tree_hash():
     return done.stdout.strip()[:12] or digest(*(pathlib.Path(n).read_bytes() for n in tree_files()))
 
 
-def drawn(mutants, options):
-    if not options.sample or options.sample >= len(mutants):
+def chosen(mutants, known, options):
+    """All; or a sample of those that a test is known to notice."""
+    if not options.sample:
         return mutants
-    seed = options.seed or tree_hash()
-    say(f"{options.sample} of {len(mutants)}, drawn by {seed}")
-    return random.Random(seed).sample(mutants, options.sample)
+    seed, noticed = options.seed or tree_hash(), [m for m in mutants if m.key not in known]
+    say(f"{options.sample} of {len(noticed)} in {', '.join(goals())}, drawn by {seed}")
+    return random.Random(seed).sample(noticed, min(options.sample, len(noticed)))
 
 
 class Campaign:
     def __init__(self, options):
         self.options, self.began = options, time.monotonic()
-        self.texts = {name: pathlib.Path(name).read_text(encoding="utf-8") for name in sources(options.only)}
-        self.hashes = {name: source_hash(text) for name, text in self.texts.items()}
-        self.mutants = drawn([m for name, text in self.texts.items() for m in mutants_of(name, text)], options)
-        self.results = Results(digest(*(f"{n} {source_hash(pathlib.Path(n).read_bytes())}" for n in tree_files() if n.endswith((".c", ".h", ".cpp", ".hpp")))))
-        self.kills = Counter()
+        self.texts = {name: pathlib.Path(name).read_text(encoding="utf-8") for name in sources(options)}
+        self.hashes = {name: digest(text) for name, text in self.texts.items()}
         self.accepted = accepted()
+        self.mutants = chosen([m for name, text in self.texts.items() for m in mutants_of(name, text)], self.accepted, options)
+        code = [n for n in tree_files() if n.endswith((".c", ".h", ".cpp", ".hpp"))]
+        self.results = Results(digest(options.patience, *(pathlib.Path(n).read_bytes() for n in code)))
 
     def prepare(self, pool):
         self.workers = queue.SimpleQueue()
-        trees = [copy_tree(number) for number in range(WORKERS)]
-        for number, tree in enumerate(trees):
-            self.workers.put(Worker(number, tree))
+        for number in range(WORKERS):
+            self.workers.put(Worker(number, copy_tree(number)))
         settings = Settings()
-        self.tests = [t for t in settings.tests if not t.startswith("test_nav") and t != "test_simrun_judge"]
-        hosts = [Host(settings, variant, trees[0]) for variant in ("ubsan", "asan")]
-        say(f"building {len(settings.product)} sources and {len(self.tests)} tests, twice")
-        for host in hosts:
-            host.compile_all(pool, self.tests)
-            host.link_product()
-            list(pool.map(host.link_test, self.tests))
-        self.host = hosts[0]
-        files = {m.file for m in self.mutants}
-        units = [s for s in settings.product if s in files or files & set(self.host.objects.deps(s))]
-        self.reach = Reach(self.host, units)
-        self.reach.measure(pool, self.tests, say)
-        limits = {("ubsan", test): seconds for test, seconds in self.reach.seconds.items()}
-        self.judge = Judge(hosts, self.order, limits)
-        self.spans = {}
-
-    def order(self, mutant):
-        """The tests that reach it: cheap ones first, and those that killed others of this file."""
-        text = self.texts[mutant.file]
-        includers = [s for s in self.reach.files if mutant.file in self.host.objects.deps(s)] if mutant.file.endswith(".h") else []
-        tests = self.reach.tests_of(mutant.file, mutant.line(text), self.span(mutant), includers)
-        return sorted(tests, key=lambda t: self.reach.seconds[t] / (1 + self.kills[mutant.file, t]))
-
-    def span(self, mutant):
-        """The lines of all mutants of the same function."""
-        key = mutant.file, mutant.owner
-        if not self.spans:
-            for name, text in self.texts.items():
-                for other in mutants_of(name, text):
-                    self.spans.setdefault((name, other.owner), set()).add(other.line(text))
-        return self.spans[key]
+        tests = [t for t in settings.tests if not t.startswith("test_nav") and t != "test_simrun_judge"]
+        hosts = [Host(settings, variant, copy_tree("clean")) for variant in ("ubsan", "asan")]
+        say(f"building {len(settings.product)} sources of the PC's programs")
+        hosts[0].compile(pool)
+        self.order = Listed(tests) if self.options.sample else Reached(hosts[0], tests, self.mutants, self.texts, self.options.patience, pool, say)
+        self.judge = Judge(hosts, self.order.tests, self.order.limits)
 
     def one(self, mutant):
         kept = self.results.get(mutant, self.hashes[mutant.file])
@@ -124,12 +101,11 @@ class Campaign:
             verdict, by = self.judge.verdict(mutant, worker)
         finally:
             self.workers.put(worker)
-        if by:
-            self.kills[mutant.file, by] += 1
+        self.order.learn(mutant, by)
         return self.results.put(mutant, self.hashes[mutant.file], mutant.line(self.texts[mutant.file]), verdict, by, time.monotonic() - began)
 
     def run(self):
-        rows, told = [], 0
+        rows, told = [], time.monotonic()
         with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
             self.prepare(pool)
             try:
@@ -158,16 +134,22 @@ class Campaign:
             say(f"{len(self.mutants) - len(rows)} left: make mutants goes on with them")
         if self.options.accept:
             write_accepted(rows)
+            write_judges(rows)
             say(f"{len(survived)} survivors written to campaigns/mutants/accepted.txt")
             new = []
-        print(f"{len(killed) + len(survived) - len(new)} passed, {len(new)} failed")
-        return 1 if new else 0
+        low = [] if self.options.sample or len(rows) < len(self.mutants) else below_goal(rows)
+        for text in low:
+            say(text)
+        print(f"{len(killed) + len(survived) - len(new)} passed, {len(new) + len(low)} failed")
+        return 1 if new or low else 0
 
 
 def main():
     try:
-        campaign = Campaign(options_of(sys.argv[1:]))
-        return campaign.report(campaign.run())
+        options = options_of(sys.argv[1:])
+        with alone():
+            campaign = Campaign(options)
+            return campaign.report(campaign.run())
     except Stop as why:
         print(f"mutants: {why}", file=sys.stderr)
         return 2

@@ -42,19 +42,22 @@ class Host:
         self.objects = Compiler(variant, self.command, tree)
         self.doubles = Compiler("reference", self.command, tree)  # the same in each variant: a minute of Eigen
         self.library, self.archiving = None, threading.Lock()
+        self.programs, self.linking = {}, {}
 
     def command(self, source):
         if source.endswith(".cpp"):
-            return [*self.settings.cxx, "-std=c++17", "-O2", "-w", "-fPIC", "-Ihost_tests", *(f for f in self.settings.flags if f.startswith(("-I", "-D", "-isystem")) or "/" in f),
-                    "-isystem", "/usr/include/eigen3", "-fsanitize=undefined", "-fno-sanitize-recover=all"]
+            includes = [flag for flag in self.settings.flags if not flag.startswith("-std")]
+            return [*self.settings.cxx, "-std=c++17", "-O2", "-w", "-fPIC", *includes, "-isystem", "/usr/include/eigen3"]
         return [*self.settings.compiler, *self.settings.flags, *PLAIN, *self.flags]
 
     def test_source(self, test):
         return f"host_tests/{test}.c"
 
-    def compile_all(self, pool, tests):
+    def compile(self, pool, tests=()):
+        """The product's library, and what the tests are linked from."""
         sources = [*self.settings.product, *self.settings.supports, self.settings.unity, *map(self.test_source, tests)]
         list(pool.map(self.objects.object, sources))
+        self.link_product()
 
     def linked(self, command, target):
         status, said = run(command, self.tree)
@@ -62,10 +65,15 @@ class Host:
             raise Stop(f"{target.name} does not link: {[line for line in said.splitlines() if 'undefined' in line or 'error' in line][:1] or said[-200:]}")
 
     def link_product(self):
-        objects = [self.objects.object(source) for source in self.settings.product]
-        self.library = self.folder / "libproduct.so"
-        if not self.library.exists() or self.library.stat().st_mtime_ns <= max(o.stat().st_mtime_ns for o in objects):
-            self.linked([*self.settings.cxx, "-shared", *self.link_flags(), *objects, "-lm", "-o", self.library], self.library)
+        """Once, when the first test is linked: the second variant is built for a survivor of the first only."""
+        with self.archiving:
+            if self.library:
+                return
+            objects = [self.objects.object(source) for source in self.settings.product]
+            library = self.folder / "libproduct.so"
+            if not library.exists() or library.stat().st_mtime_ns <= max(o.stat().st_mtime_ns for o in objects):
+                self.linked([*self.settings.cxx, "-shared", *self.link_flags(), *objects, "-lm", "-o", library], library)
+            self.library = library
 
     def link_flags(self):
         return ["-fsanitize=address,undefined"] if self.variant == "asan" else ["-fsanitize=undefined"]
@@ -86,10 +94,18 @@ class Host:
                 self.linked(["ar", "rcs", archive, *found], archive)
         return [archive]
 
-    def link_test(self, test, target=None, instead=None):
-        """The program of a test; `instead`: objects of a mutant in place of unbroken ones, by source."""
-        instead = instead or {}
-        target = target or self.folder / f"{test}.exe"
+    def program(self, test):
+        """The test's program, linked when it is first asked for."""
+        with self.objects.guard:
+            lock = self.linking.setdefault(test, threading.Lock())
+        with lock:
+            if test not in self.programs:
+                self.programs[test] = self.link_test(test, self.folder / f"{test}.exe", {})
+        return self.programs[test]
+
+    def link_test(self, test, target, instead):
+        """`instead`: objects of a mutant in place of unbroken ones, by source."""
+        self.link_product()
         sources = [self.test_source(test), *self.settings.supports, self.settings.unity]
         objects = [instead.get(source, self.objects.object(source)) for source in sources]
         inputs = [*objects, *self.references(test), self.library]
@@ -112,5 +128,5 @@ class Host:
     def run_test(self, test, tree, library=None, limit_s=600, program=None, **environment):
         """(passes, seconds)"""
         began = time.monotonic()
-        status, _ = run([program or self.link_test(test)], tree, limit_s, **self.preload(library), **environment)
+        status, _ = run([program or self.program(test)], tree, limit_s, **self.preload(library), **environment)
         return status == 0, time.monotonic() - began

@@ -7,6 +7,7 @@ from collections import Counter
 from shop import ROOT, digest
 
 ACCEPTED = pathlib.Path("campaigns/mutants/accepted.txt")
+GOALS = pathlib.Path("campaigns/mutants/goals.txt")
 HEAD = """# Mutants that no test notices, written by `make mutants`: file:function, operator, what became what, which of its kind in the
 # function. CI fails on a survivor that is not here. A line leaves the list when a test kills its mutant.
 """
@@ -78,5 +79,16 @@ def write_json(rows):
     pathlib.Path("build/mutants.json").write_text(json.dumps(sorted(rows, key=lambda r: (r["file"], r["line"])), indent=0), encoding="utf-8")
 
 
-def source_hash(text):
-    return digest(text)
+def goals():
+    """folder -> least share of its mutants that tests must notice, in per cent; 0 where it is only measured."""
+    rows = [line.split() for line in GOALS.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
+    return {row[0]: float(row[1]) for row in rows}
+
+
+def below_goal(rows):
+    found = []
+    for folder, goal in goals().items():
+        judged = [row["verdict"] for row in rows if folder_of(row["file"]) == folder and row["verdict"] in ("killed", "survived")]
+        if judged and 100 * judged.count("killed") < goal * len(judged):
+            found.append(f"{folder}: {judged.count('killed')} of {len(judged)} killed, below the goal of {goal:g} %")
+    return found

@@ -1,4 +1,5 @@
 """The workshop under build/mutants: a copy of the tree for each worker, what is compiled from it, and one way to run a program."""
+import fcntl
 import hashlib
 import json
 import os
@@ -13,6 +14,17 @@ COPIED = ("lib", "firmware", "hal", "sim", "host_tests", "tools", "mk", "Makefil
 
 class Stop(Exception):
     """What ends the campaign: cause, place and remedy in one line."""
+
+
+def alone():
+    """Two campaigns would break each other's copies: the lock is held as long as what this returns is open."""
+    ROOT.mkdir(parents=True, exist_ok=True)
+    lock = (ROOT / "lock").open("w", encoding="utf-8")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        raise Stop(f"another campaign works in {ROOT}: wait until it ends, or end it") from None
+    return lock
 
 
 def digest(*parts):
