@@ -1,0 +1,132 @@
+"""The programs of the PC that judge: each test is linked once against the product as a shared library, and a mutant is a small library
+that is loaded before it, so that a mutant costs one object and one link whatever number of tests judge it.
+"""
+import os
+import pathlib
+import shlex
+import threading
+import time
+
+from shop import ROOT, Compiler, Stop, digest, run
+
+PLAIN = ["-w", "-O1", "-fPIC"]
+# a breach of C's rules ends the program as it does in make test, by a trap: no library to start, nothing to print
+VARIANTS = {"ubsan": ["-fsanitize=undefined", "-fsanitize-undefined-trap-on-error"],
+            "asan": ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]}
+HANG_TIMES, HANG_MIN_S = 10, 3
+
+
+class Settings:
+    """What make tells: compiler, flags and sources of the PC's programs."""
+
+    def __init__(self, environment=os.environ):
+        def words(name):
+            if name not in environment:
+                raise Stop(f"${name} is not set: run it by make mutants")
+            return shlex.split(environment[name])
+        self.compiler, self.cxx = words("HOST_CC"), words("HOST_CXX")
+        self.flags = [f for f in words("HOST_FLAGS") if f != "-g" and not f.startswith("-O")]
+        self.product, self.tests = words("HOST_SRC"), [pathlib.Path(t).name for t in words("TESTS")]
+        self.supports = sorted(str(p) for p in pathlib.Path("host_tests").glob("support_*.c"))
+        self.references = sorted(str(p) for p in pathlib.Path("host_tests").glob("reference_*.cpp"))
+        self.unity = f"{environment.get('UNITY_DIR', 'build/unity')}/unity.c"
+
+
+class Host:
+    """The judging programs of one variant."""
+
+    def __init__(self, settings, variant, tree):
+        self.settings, self.variant, self.tree = settings, variant, tree
+        self.flags = VARIANTS[variant]
+        self.folder = ROOT / variant
+        self.objects = Compiler(variant, self.command, tree)
+        self.doubles = Compiler("reference", self.command, tree)  # the same in each variant: a minute of Eigen
+        self.library, self.archiving = None, threading.Lock()
+        self.programs, self.linking = {}, {}
+
+    def command(self, source):
+        if source.endswith(".cpp"):
+            includes = [flag for flag in self.settings.flags if not flag.startswith("-std")]
+            return [*self.settings.cxx, "-std=c++17", "-O2", "-w", "-fPIC", *includes, "-isystem", "/usr/include/eigen3"]
+        return [*self.settings.compiler, *self.settings.flags, *PLAIN, *self.flags]
+
+    def test_source(self, test):
+        return f"host_tests/{test}.c"
+
+    def compile(self, pool, tests=()):
+        """The product's library, and what the tests are linked from."""
+        sources = [*self.settings.product, *self.settings.supports, self.settings.unity, *map(self.test_source, tests)]
+        list(pool.map(self.objects.object, sources))
+        self.link_product()
+
+    def linked(self, command, target):
+        status, said = run(command, self.tree)
+        if status != 0:
+            raise Stop(f"{target.name} does not link: {[line for line in said.splitlines() if 'undefined' in line or 'error' in line][:1] or said[-200:]}")
+
+    def link_product(self):
+        """Once, when the first test is linked: the second variant is built for a survivor of the first only."""
+        with self.archiving:
+            if self.library:
+                return
+            objects = [self.objects.object(source) for source in self.settings.product]
+            library = self.folder / "libproduct.so"
+            if not library.exists() or library.stat().st_mtime_ns <= max(o.stat().st_mtime_ns for o in objects):
+                self.linked([*self.settings.cxx, "-shared", *self.link_flags(), *objects, "-lm", "-o", library], library)
+            self.library = library
+
+    def link_flags(self):
+        return ["-fsanitize=address,undefined"] if self.variant == "asan" else ["-fsanitize=undefined"]
+
+    def references(self, test):
+        """The double references that a test asks for: those that make test built, if they are at hand, else compiled here."""
+        if not any(name.startswith("host_tests/reference_") for name in self.objects.deps(self.test_source(test))):
+            return []
+        found = []
+        for source in self.settings.references:
+            built = pathlib.Path("build/host", source).with_suffix(".o")
+            newest = max(p.stat().st_mtime for p in [pathlib.Path(source), *pathlib.Path("host_tests").glob("reference_*.h*")])
+            found.append(built.resolve() if built.exists() and built.stat().st_mtime > newest else self.doubles.object(source))
+        archive = self.folder / "libreference.a"
+        with self.archiving:
+            if not archive.exists() or archive.stat().st_mtime_ns < max(o.stat().st_mtime_ns for o in found):
+                archive.unlink(missing_ok=True)
+                self.linked(["ar", "rcs", archive, *found], archive)
+        return [archive]
+
+    def program(self, test):
+        """The test's program, linked when it is first asked for."""
+        with self.objects.guard:
+            lock = self.linking.setdefault(test, threading.Lock())
+        with lock:
+            if test not in self.programs:
+                self.programs[test] = self.link_test(test, self.folder / f"{test}.exe", {})
+        return self.programs[test]
+
+    def link_test(self, test, target, instead):
+        """`instead`: objects of a mutant in place of unbroken ones, by source."""
+        self.link_product()
+        sources = [self.test_source(test), *self.settings.supports, self.settings.unity]
+        objects = [instead.get(source, self.objects.object(source)) for source in sources]
+        inputs = [*objects, *self.references(test), self.library]
+        if instead or not target.exists() or target.stat().st_mtime_ns <= max(p.stat().st_mtime_ns for p in inputs):
+            self.linked([*self.settings.cxx, *self.link_flags(), *inputs, f"-Wl,-rpath,{self.folder}", "-lm", "-o", target], target)
+        return target
+
+    def preload(self, library):
+        first = [self.runtime()] if self.variant == "asan" else []
+        return {"LD_PRELOAD": " ".join([*first, str(library)])} if library else {}
+
+    def runtime(self):
+        return run([*self.settings.compiler, "-print-file-name=libasan.so"], self.tree)[1].strip()
+
+    def signature(self, test):
+        """Changes when anything changes that a run of the unbroken test depends on."""
+        sources = [*self.settings.product, *self.settings.supports, self.test_source(test)]
+        return digest(self.variant, *(sorted(self.objects.deps(source).items()) for source in sources))
+
+    def run_test(self, test, tree, library=None, limit_s=600, program=None, **environment):
+        """(passes, seconds)"""
+        began = time.monotonic()
+        status, _ = run([program or self.program(test)], tree, limit_s, **self.preload(library), **environment)
+        return status == 0, time.monotonic() - began

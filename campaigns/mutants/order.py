@@ -1,0 +1,66 @@
+"""Which tests judge a mutant, and in which order."""
+import pathlib
+from collections import Counter
+
+from operators import mutants_of
+from reach import Reach
+
+JUDGES = pathlib.Path("campaigns/mutants/judges.txt")
+HEAD = "# The tests that notice most of a file's mutants, by `make mutants ACCEPT=1`: a sample asks these first.\n"
+KEPT = 12  # names a file
+
+
+class Reached:
+    """Those that reach the mutant's line: cheap ones first, and those that noticed others of its file."""
+
+    def __init__(self, host, tests, mutants, texts, patience_s, pool, say):
+        files = {m.file for m in mutants}
+        units = [s for s in host.settings.product if s in files or files & set(host.objects.deps(s))]
+        self.host, self.texts, self.patience_s, self.kills = host, texts, patience_s or float("inf"), Counter()
+        self.reach = Reach(host, units)
+        self.reach.measure(pool, tests, say)
+        self.limits = {(host.variant, test): seconds for test, seconds in self.reach.seconds.items()}
+        self.spans = {}
+        for name in files:
+            for mutant in mutants_of(name, texts[name]):
+                self.spans.setdefault((name, mutant.owner), set()).add(mutant.line(texts[name]))
+
+    def tests(self, mutant):
+        line, span = mutant.line(self.texts[mutant.file]), self.spans[mutant.file, mutant.owner]
+        includers = [s for s in self.reach.files if mutant.file in self.host.objects.deps(s)] if mutant.file.endswith(".h") else []
+        found = [t for t in self.reach.tests_of(mutant.file, line, span, includers) if self.reach.seconds[t] <= self.patience_s]
+        return sorted(found, key=lambda test: self.reach.seconds[test] / (1 + self.kills[mutant.file, test]))
+
+    def learn(self, mutant, by):
+        if by:
+            self.kills[mutant.file, by] += 1
+
+
+class Listed:
+    """Without a measurement: those that noticed most in the file's last whole campaign, then all others."""
+
+    def __init__(self, tests):
+        self.all, self.limits, self.first = tests, {}, {}
+        if JUDGES.exists():
+            for line in JUDGES.read_text(encoding="utf-8").splitlines():
+                if line and not line.startswith("#"):
+                    file, names = line.split(": ", 1)
+                    self.first[file] = [name for name in names.split() if name in tests]
+
+    def tests(self, mutant):
+        first = self.first.get(mutant.file, [])
+        rest = [test for test in self.all if test not in first]
+        return first + sorted(rest, key=lambda test: test.endswith("_reference"))  # these need Eigen's minute of compiling
+
+    def learn(self, mutant, by):
+        pass
+
+
+def write_judges(rows):
+    kills = {}
+    for row in rows:
+        if row["by"]:
+            kills.setdefault(row["file"], Counter())[row["by"]] += 1
+    known = dict(line.split(": ", 1) for line in JUDGES.read_text(encoding="utf-8").splitlines() if ": " in line and line[0] != "#") if JUDGES.exists() else {}
+    known |= {file: " ".join(name for name, _ in count.most_common(KEPT)) for file, count in kills.items()}
+    JUDGES.write_text(HEAD + "".join(f"{file}: {known[file]}\n" for file in sorted(known) if pathlib.Path(file).exists()), encoding="utf-8")

@@ -1,0 +1,94 @@
+"""What is known of each mutant: kept while it lasts, so that a campaign goes on where it stopped; the accepted survivors; the tables."""
+import json
+import pathlib
+import threading
+from collections import Counter
+
+from shop import ROOT, digest
+
+ACCEPTED = pathlib.Path("campaigns/mutants/accepted.txt")
+GOALS = pathlib.Path("campaigns/mutants/goals.txt")
+HEAD = """# Mutants that no test notices, written by `make mutants`: file:function, operator, what became what, which of its kind in the
+# function. CI fails on a survivor that is not here. A line leaves the list when a test kills its mutant.
+"""
+
+
+class Results:
+    """Lines of build/mutants/results.jsonl. A kill holds while the mutant's file is the same, a survival while no source or test changes."""
+
+    def __init__(self, everything):
+        self.path, self.everything, self.guard = ROOT / "results.jsonl", everything, threading.Lock()
+        self.known = {}
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        if self.path.exists():
+            for line in self.path.read_text(encoding="utf-8").splitlines():
+                try:
+                    row = json.loads(line)
+                except ValueError:  # the last line of a killed run
+                    continue
+                self.known[row["key"]] = row
+
+    def get(self, mutant, source_hash):
+        row = self.known.get(mutant.key)
+        if row is None or row["source"] != source_hash or (row["verdict"] == "survived" and row["all"] != self.everything):
+            return None
+        return row
+
+    def put(self, mutant, source_hash, line, verdict, by, seconds):
+        row = {"key": mutant.key, "file": mutant.file, "function": mutant.owner, "operator": mutant.operator, "line": line, "verdict": verdict,
+               "by": by, "seconds": round(seconds, 2), "source": source_hash, "all": self.everything}
+        with self.guard:
+            self.known[mutant.key] = row
+            with self.path.open("a", encoding="utf-8") as out:
+                out.write(json.dumps(row) + "\n")
+        return row
+
+
+def accepted():
+    if not ACCEPTED.exists():
+        return set()
+    return {line for line in ACCEPTED.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")}
+
+
+def write_accepted(rows):
+    """The survivors of what was measured replace those of the same files."""
+    files = {row["file"] for row in rows}
+    kept = {key for key in accepted() if key.split(":", 1)[0] not in files and pathlib.Path(key.split(":", 1)[0]).exists()}
+    kept |= {row["key"] for row in rows if row["verdict"] == "survived"}
+    ACCEPTED.write_text(HEAD + "".join(f"{key}\n" for key in sorted(kept)), encoding="utf-8")
+
+
+def folder_of(file):
+    parts = pathlib.Path(file).parts
+    return "/".join(parts[:2]) if parts[0] in ("lib", "hal") and len(parts) > 2 or parts[:2] == ("firmware", "nav") else parts[0]
+
+
+def table(rows, of, title):
+    counts = {}
+    for row in rows:
+        counts.setdefault(of(row), Counter())[row["verdict"]] += 1
+    lines = [f"{title:<40}{'mutants':>8}{'dropped':>8}{'judged':>8}{'killed':>8}{'survived':>9}{'rate':>8}"]
+    for name, count in sorted(counts.items()):
+        dropped, judged = count["uncompiled"] + count["same"], count["killed"] + count["survived"]
+        rate = f"{100 * count['killed'] / judged:.1f} %" if judged else "-"
+        lines.append(f"{name:<40}{sum(count.values()):>8}{dropped:>8}{judged:>8}{count['killed']:>8}{count['survived']:>9}{rate:>8}")
+    return "\n".join(lines)
+
+
+def write_json(rows):
+    pathlib.Path("build/mutants.json").write_text(json.dumps(sorted(rows, key=lambda r: (r["file"], r["line"])), indent=0), encoding="utf-8")
+
+
+def goals():
+    """folder -> least share of its mutants that tests must notice, in per cent; 0 where it is only measured."""
+    rows = [line.split() for line in GOALS.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
+    return {row[0]: float(row[1]) for row in rows}
+
+
+def below_goal(rows):
+    found = []
+    for folder, goal in goals().items():
+        judged = [row["verdict"] for row in rows if folder_of(row["file"]) == folder and row["verdict"] in ("killed", "survived")]
+        if judged and 100 * judged.count("killed") < goal * len(judged):
+            found.append(f"{folder}: {judged.count('killed')} of {len(judged)} killed, below the goal of {goal:g} %")
+    return found
