@@ -42,10 +42,12 @@ def line_that_is_idle_too_early_is_found():
     assert "a byte was written to the UART before it was ready" in said, said
 
 
-TIMER, SLEEP, EEPROM = "a 16-bit register of Timer1 is used with interrupts on", "SLEEP does not follow the SEI", "an EEPROM byte is written with interrupts on"
+TIMER, SLEEP = "a 16-bit register of Timer1 is used with interrupts on", "SLEEP does not follow the SEI"
+EEPROM = "an EEPROM byte is written with interrupts on"
 RULES = (
     ("hal_probe", "hal/avr/hal_sleep.c", "        cli();\n", "", SLEEP),
-    ("hal_probe", "hal/avr/hal_sleep.c", "        sei();\n        sleep_cpu", "        sei();\n        __asm__ volatile(\"nop\");\n        sleep_cpu", SLEEP),
+    ("hal_probe", "hal/avr/hal_sleep.c", "        sei();\n        sleep_cpu", "        sei();\n        __builtin_avr_nop();\n        sleep_cpu",
+     SLEEP),
     ("hal_probe", "hal/avr/hal_time.c", "hal_irq_save();\n    uint32_t now", "SREG;\n    uint32_t now", TIMER),
     ("hal_probe", "hal/avr/hal_time.c", "hal_irq_save(); /* the timer", "SREG; /* the timer", TIMER),
     ("hal_probe", "hal/avr/hal_port.h", "hal_irq_save();\n    EECR", "SREG;\n    EECR", EEPROM),
