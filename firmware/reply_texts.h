@@ -82,16 +82,16 @@ enum say {
     SAY_FILTERS, /* the image's */
     SAY_ADDRESS, /* of the sensor */
     SAY_FOREIGN_ID,
-    SAY_MORE,             /* another line follows */
-    SAY_MORE_IF_FORCED,   /* it follows if another `every` is in force than was asked for */
-    SAY_THEN_CAUSE,       /* goes on in another text: one for each cause of a reset */
-    SAY_THEN_SAFE,        /* in a text on safe settings, if they are in force */
-    SAY_THEN_LEGAL,       /* ... setting */
-    SAY_THEN_FAULT,       /* ... fault code */
-    SAY_THEN_STATE,       /* ... phase of the driver */
-    SAY_THEN_WHY,         /* why this `every` is in force, if it was not asked for */
-    SAY_THEN_MODE,        /* ... output mode */
-    SAY_THEN_REST,        /* the rest of the line of the state */
+    SAY_MORE,                   /* another line follows */
+    SAY_MORE_IF_FORCED,         /* it follows if another `every` is in force than was asked for */
+    SAY_THEN_CAUSE,             /* goes on in another text: one for each cause of a reset */
+    SAY_THEN_SAFE,              /* in a text on safe settings, if they are in force */
+    SAY_THEN_LEGAL,             /* ... setting */
+    SAY_THEN_FAULT,             /* ... fault code */
+    SAY_THEN_STATE,             /* ... phase of the driver */
+    SAY_THEN_WHY,               /* why this `every` is in force, if it was not asked for */
+    SAY_THEN_MODE,              /* ... output mode */
+    SAY_THEN_REST,              /* the rest of the line of the state */
     SAY_FOREIGN_ADDRESS = 0x7F, /* of a device that is no ADXL345; SAY_FOREIGN_ID is what it reads as DEVID */
     SAY_PARAMETER,              /* of the filter: name, value, unit */
     SAY_SET_ADDRESS,

@@ -42,10 +42,12 @@ def line_that_is_idle_too_early_is_found():
     assert "a byte was written to the UART before it was ready" in said, said
 
 
-TIMER, SLEEP, EEPROM = "a 16-bit register of Timer1 is used with interrupts on", "SLEEP does not follow the SEI", "an EEPROM byte is written with interrupts on"
+TIMER, SLEEP = "a 16-bit register of Timer1 is used with interrupts on", "SLEEP does not follow the SEI"
+EEPROM = "an EEPROM byte is written with interrupts on"
 RULES = (
     ("hal_probe", "hal/avr/hal_sleep.c", "        cli();\n", "", SLEEP),
-    ("hal_probe", "hal/avr/hal_sleep.c", "        sei();\n        sleep_cpu", "        sei();\n        __asm__ volatile(\"nop\");\n        sleep_cpu", SLEEP),
+    ("hal_probe", "hal/avr/hal_sleep.c", "        sei();\n        sleep_cpu", "        sei();\n        __builtin_avr_nop();\n        sleep_cpu",
+     SLEEP),
     ("hal_probe", "hal/avr/hal_time.c", "hal_irq_save();\n    uint32_t now", "SREG;\n    uint32_t now", TIMER),
     ("hal_probe", "hal/avr/hal_time.c", "hal_irq_save(); /* the timer", "SREG; /* the timer", TIMER),
     ("hal_probe", "hal/avr/hal_port.h", "hal_irq_save();\n    EECR", "SREG;\n    EECR", EEPROM),
@@ -94,3 +96,17 @@ def start_waits_for_a_stop_that_is_held_back():
     ready_us = next(int(sample["t_us"]) for sample in served if int(sample["t_us"]) > 500000)
     for late_us in range(376, 402, 2):
         simrun("stop", STREAMS / "rest-2lsb.csv", "--fault", f"{(ready_us + late_us) / 1000:.3f}ms:scl:12", "--max-ms", "560")
+
+
+@test
+def line_with_a_damaged_or_lost_byte_is_refused_and_the_next_is_not():
+    """`every 1000` without its first 0 would be obeyed as `every 100`: each byte of the line, without a stop bit or after a lost one."""
+    line = "every 1000"
+    for lost in (0, 1):
+        for at in range(len(line)):
+            # ten bits of 8.5 us; the line is typed from 400 ms on
+            _, notes, _, _ = simrun("spoilt", STREAMS / "rest-2lsb.csv", "--cmd", f"400:{line}", "--cmd", "450:every 2", "--cmd", "500:status",
+                                    "--fault", f"{399.96 + 0.085 * at:.3f}ms:rxspoil:{lost}", "--max-ms", "600")
+            assert "# refused 3: characters that no command has" in notes and "# every 2" in notes, (lost, at, notes)
+            assert not any(note.startswith("# every 100") for note in notes), (lost, at, notes)
+            assert any("serial bytes lost 1, lines refused 1" in note for note in notes), (lost, at, notes)

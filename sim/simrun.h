@@ -167,6 +167,7 @@ void uart_reset(void); /* after a reset of the MCU */
 uint64_t uart_next(void);
 void uart_step(void);
 void uart_flood(bool on);        /* random bytes without a pause, instead of what is to be typed */
+void uart_spoil(bool lost);      /* the next byte received has FE0, or DOR0 */
 void uart_stall(uint64_t until); /* the transmitter holds each byte until this cycle; 0: no more */
 uint64_t uart_last_tx(void);     /* cycle of the last byte sent, 0: none */
 uint64_t uart_bytes(void);

@@ -166,7 +166,7 @@ void rules_on_reset(void)
     look_at_led();
 }
 
-/* 10.1, 7.7: a SEI lets one more instruction pass. Where another one stands between it and SLEEP, a wake-up can be lost. */
+/* 7.7: a SEI lets one more instruction pass. Where another one stands between it and SLEEP, a wake-up can be lost. */
 void rules_on_step(uint32_t from)
 {
     if (mcu->state == cpu_Sleeping && interrupts_on()) {

@@ -44,6 +44,7 @@ static uint64_t line_free_at; /* the last byte of a frame is over */
 static uint32_t rx_overruns;
 static bool flooded;
 static uint64_t stalled_until;
+static enum { SPOILT_NOTHING, SPOILT_STOP, SPOILT_LOST } spoilt; /* of the next byte received */
 
 /* A row of csv mode: ten whole numbers; t_us, x_lsb, y_lsb, z_lsb first and flags last. */
 static bool parse_row(row_t *row)
@@ -216,6 +217,11 @@ void uart_reset(void)
     transmitter_reset();
 }
 
+void uart_spoil(bool lost)
+{
+    spoilt = lost ? SPOILT_LOST : SPOILT_STOP;
+}
+
 static void receive(uint8_t byte)
 {
     unsigned waiting = (unsigned)(uart->input.write - uart->input.read) &
@@ -226,7 +232,11 @@ static void receive(uint8_t byte)
         return;
     }
     vcd_change(VCD_RX, byte);
-    avr_raise_irq(uart_input, byte);
+    avr_raise_irq(uart_input, spoilt == SPOILT_STOP ? byte | (uint32_t)UART_INPUT_FE : byte);
+    if (spoilt == SPOILT_LOST) {
+        avr_regbit_set(mcu, uart->dor);
+    }
+    spoilt = SPOILT_NOTHING;
 }
 
 static void end_typed_line(void)

@@ -29,8 +29,9 @@ static bool line_used;
 enum { SENDS_LAST = _BV(U2X0) | _BV(TXC0) };
 
 /*
- * UDR0 = tx_buffer[tx.tail++]; with the last byte switch this interrupt off, clear TXC0. By hand, because it runs for every byte
- * sent: the compiler's entry and exit would cost 12 of 53 cycles more, 0.3 % of the processor at 100 rows a second.
+ * UDR0 = tx_buffer[tx.tail++]; with the last byte switch this interrupt off, clear TXC0. By hand, because it runs for
+ * every byte sent: the compiler's entry and exit would cost 12 of 53 cycles more, 0.3 % of the processor at 100 rows a
+ * second.
  */
 ISR(USART_UDRE_vect, ISR_NAKED)
 {

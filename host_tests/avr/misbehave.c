@@ -23,6 +23,17 @@ static uint8_t __attribute__((noinline)) deeper(uint8_t n)
 }
 #endif
 
+#if CASE == 8
+static void __attribute__((constructor)) start_ahead_of_a_stop(void) /* ahead of main too */
+{
+    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTA);
+    for (volatile uint8_t wait = 0; wait != 255; wait++) {
+    }
+    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTO);
+    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTA);
+}
+#endif
+
 int main(void)
 {
 #if CASE == 1
@@ -48,12 +59,6 @@ int main(void)
     cli();
     sleep_enable();
     sleep_cpu();
-#elif CASE == 8
-    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTA);
-    while (!(TWCR & _BV(TWINT))) {
-    }
-    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTO);
-    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTA);
 #endif
     for (;;) {
     }

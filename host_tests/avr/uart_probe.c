@@ -1,6 +1,6 @@
 /*
- * Runs on the ATmega328P (simavr): a byte is sent, another after a time in which the first frame ends, and the divider is
- * changed as soon as the line says that it is idle. simrun ends the run if a byte is still on its way then.
+ * Runs on the ATmega328P (simavr): a byte is sent, another after a time in which the first frame ends, and the divider
+ * is changed as soon as the line says that it is idle. simrun ends the run if a byte is still on its way then.
  */
 #include <avr/sleep.h>
 #include <util/delay_basic.h>

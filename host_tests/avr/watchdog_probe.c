@@ -1,6 +1,6 @@
 /*
- * Runs on the ATmega328P (simavr): starts as a firmware that takes its time, says why, and hangs until the watchdog bites;
- * ends at its third start.
+ * Runs on the ATmega328P (simavr): starts as a firmware that takes its time, says why, and hangs until the watchdog
+ * bites; ends at its third start.
  */
 #include <avr/sleep.h>
 #include <util/delay.h>

@@ -7,6 +7,13 @@
 #include "hal_drdy.h"
 #include "hal_pointer.h"
 
+void driver_count(uint16_t *counter)
+{
+    if (*counter != UINT16_MAX) {
+        (*counter)++;
+    }
+}
+
 const adxl345_sample_t *adxl345_take(void)
 {
     const burst_entry_t *entry = burst_take();
