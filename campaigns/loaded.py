@@ -20,7 +20,7 @@ os.chdir(ROOT)
 sys.path.insert(0, str(ROOT / "tools"))
 import run_tests  # noqa: E402
 
-LIVE = ["test_flash", "test_resets", "test_plotter", "test_progress", "test_run_tests", "test_faults", "tilt_live", "tilt_live_direct",
+LIVE = ["test_resets", "test_flash", "test_plotter", "test_progress", "test_run_tests", "test_faults", "tilt_live", "tilt_live_direct",
         "tilt_live_page", "tilt_live_parser", "tilt_live_rate", "tilt_nav_port", "tilt_plot", "tilt_record",
         "tilt_record_timing", "system_tests:simulator"]
 DIE_WITH_PARENT = 1  # prctl's PR_SET_PDEATHSIG
@@ -66,9 +66,8 @@ def command_of(test):
     return [*runs[name], *([word] if word else [])]
 
 
-def one_round(number, commands, jobs):
-    """(passed, failed) tests."""
-    good = bad = 0
+def one_round(number, commands, jobs, total):
+    """Adds passed and failed tests to the total as programs end, for a campaign may be ended within a round."""
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         names = {pool.submit(run_tests.run, f"loaded-{test.replace(':', '-')}", command): test for test, command in commands.items()}
         for job in concurrent.futures.as_completed(names):
@@ -76,8 +75,9 @@ def one_round(number, commands, jobs):
             (tests, failures, ignored), line, why = run_tests.judged(result)
             print(f"round {number}: {names[job]:<24}{line:<42}{result.took_s:>4.0f} s", flush=True)
             print("".join(f"    {text}\n" for text in why), end="", flush=True)
-            good, bad = good + tests - failures - ignored, bad + failures
-    return good, bad
+            total["passed"] += tests - failures - ignored
+            total["failed"] += failures
+            total["programs"] += 1
 
 
 def main():
@@ -85,18 +85,18 @@ def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     commands = {test: command_of(test) for test in options.tests or LIVE}
     run_tests.OUT.mkdir(parents=True, exist_ok=True)
-    passed = failed = rounds = 0
+    total = {"passed": 0, "failed": 0, "programs": 0}
     began = time.monotonic()
     try:
         with load(options.load):
             for number in range(1, options.rounds + 1):
-                good, bad = one_round(number, commands, options.jobs)
-                passed, failed, rounds = passed + good, failed + bad, number
+                one_round(number, commands, options.jobs, total)
     finally:
         run_tests.RUNNING.end()
-        print(f"loaded: {rounds} rounds of {len(commands)} programs under a load of {options.load} in {time.monotonic() - began:.0f} s")
-        print(f"{passed} passed, {failed} failed", flush=True)
-    sys.exit(failed != 0)
+        rounds = total["programs"] / len(commands)
+        print(f"loaded: {rounds:.4g} rounds of {len(commands)} programs under a load of {options.load} in {time.monotonic() - began:.0f} s")
+        print(f"{total['passed']} passed, {total['failed']} failed", flush=True)
+    sys.exit(total["failed"] != 0)
 
 
 if __name__ == "__main__":

@@ -34,27 +34,29 @@ def board(name, *options):
         process = subprocess.Popen([str(c) for c in command], stderr=log)
     try:
         yield wait_for_port(f"{base}.log", process), base, process
+    except AssertionError as problem:
+        raise AssertionError(f"{problem}\nsimrun: {pathlib.Path(f'{base}.log').read_text(encoding='utf-8')}") from problem
     finally:
         if process.poll() is None:
             process.send_signal(signal.SIGTERM)
         process.wait(timeout=PATIENCE_S)
 
 
-def wait_for(what, found, process, log):
-    """What found() gives, once that is something; simrun's own words where it does not come."""
+def wait_for(what, found, process):
+    """What found() gives, once that is something."""
     deadline = time.monotonic() + PATIENCE_S
     while time.monotonic() < deadline and process.poll() is None:
         value = found()
         if value:
             return value
         time.sleep(0.02)
-    raise AssertionError(f"{what} did not come; simrun: {pathlib.Path(log).read_text(encoding='utf-8')}")
+    raise AssertionError(f"{what} did not come")
 
 
 def wait_for_port(log, process):
     def port():
         return re.search(r"UART on (\S+)", pathlib.Path(log).read_text(encoding="utf-8"))
-    return wait_for("the name of the port", port, process, log)[1]
+    return wait_for("the name of the port", port, process)[1]
 
 
 def output(base):
@@ -67,7 +69,7 @@ def wait_for_rows(count, base, process, behind=0):
     def there():
         _, banner, rows = output(base)[behind:].rpartition(b"# tilt-uno")
         return banner and len(re.findall(rb"^\d+,.*\n", rows, re.M)) >= count
-    wait_for(f"{count} rows", there, process, f"{base}.log")
+    wait_for(f"{count} rows", there, process)
 
 
 def avrdude(port, operation, image):
@@ -130,6 +132,16 @@ def boot_loader_fits_its_section():
     assert min(a for a, _ in data) == BOOT_START and max(e for _, e in data) == FLASH_END, data
     ordered = sorted(data)
     assert all(end <= start for (_, end), (start, _) in zip(ordered, ordered[1:])), "the records overlap"
+
+
+@test
+def nothing_runs_until_the_port_of_an_empty_board_is_opened():
+    """However long make takes before avrdude opens it: the boot loader would leave for the empty flash."""
+    need_tools()
+    with board("unopened") as (_, base, process):
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=PATIENCE_S) == 0
+        assert "simrun: 0.0 ms, " in pathlib.Path(f"{base}.log").read_text(encoding="utf-8")
 
 
 @test

@@ -169,7 +169,7 @@ static const char help_text[] =
     "  --gdb PORT         wait for avr-gdb before the first instruction\n"
     "  --pty              connect the UART to a pseudo terminal, in real time; with --bootloader opening it resets the "
     "MCU,\n"
-    "                     as DTR resets an UNO (not counted)\n"
+    "                     as DTR resets an UNO (not counted), and with --blank nothing runs until then\n"
     "\n"
     "The run ends 20 ms after the stream, when the UART has been silent for 30 ms (2 s at most); with --pty or --gdb "
     "Ctrl-C\n"

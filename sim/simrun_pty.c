@@ -22,6 +22,7 @@ enum {
 
 static int master = -1;
 static bool opened; /* somebody holds the other end */
+static bool ever_opened;
 static struct timespec began;
 static double forgiven_ms; /* of real time, in which simulated time waited */
 
@@ -63,6 +64,7 @@ static void look_for_user(void)
         resets_port_opened();
     }
     opened = now;
+    ever_opened = ever_opened || now;
 }
 
 /* False: nobody holds the other end any more, or the run is to end. */
@@ -86,9 +88,22 @@ void pty_send(uint8_t byte)
     }
 }
 
+/* A boot loader that nobody talks to would soon leave for a flash that is empty. */
+static void wait_for_first_user(void)
+{
+    struct timespec pause = { .tv_nsec = READER_LOOK_MS * 1000000L };
+    while (!ever_opened && !machine_asked_to_end()) {
+        nanosleep(&pause, NULL);
+        look_for_user();
+    }
+}
+
 bool pty_receive(uint8_t *byte)
 {
     look_for_user();
+    if (options.blank) {
+        wait_for_first_user();
+    }
     return opened && read(master, byte, 1) == 1;
 }
 
