@@ -1,7 +1,7 @@
 /*
  * The arc tangent's polynomial is the minimax one, its coefficients rounded to whole units of 1/800 degree: an error of
- * one unit in any of them shows in the mean over ratios near 1, far below the bounds of test_tilt_reference.c. And the
- * ends of the fixed-point steps about it.
+ * one unit in any of them shows in the mean over ratios near 1, far below the bounds of test_tilt_reference.c. And pitch
+ * where its legs are scaled most: near the poles, and for numbers of any size.
  */
 #include <math.h>
 
@@ -69,10 +69,53 @@ static void test_the_coefficients_are_rounded_to_whole_units(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.25, 0.38, sum / RATIOS);
 }
 
+static void check_point(int32_t x, int32_t y, int32_t z)
+{
+    const double pitch_bound_deg = 0.0289; /* test_tilt_reference.c */
+    tilt_t tilt = { .roll_cdeg = 12345 };
+    tilt_angles(&tilt, x, y, z);
+    double yz = hypot(y, z);
+    TEST_ASSERT_DOUBLE_WITHIN(pitch_bound_deg, atan2(-(double)x, yz) * 57.295779513082320877, tilt.pitch_cdeg / 100.0);
+    TEST_ASSERT_EQUAL(tilt.roll_undefined, tilt.roll_cdeg == 12345);
+    if (fabs(yz - TILT_ROLL_MIN_Q8) > 1.0) { /* a unit of Q8 is cut */
+        TEST_ASSERT_EQUAL(yz < TILT_ROLL_MIN_Q8, tilt.roll_undefined);
+    }
+}
+
+/* x is 0.25 g or more and nearly all of it: y and z are scaled up to 15 bits, and their length back. */
+static void test_pitch_near_the_poles(void)
+{
+    static const int32_t far_q8[] = { 16384, -16384, 65536, -1179648 };
+    for (size_t i = 0; i < 4; i++) {
+        for (int32_t y = 0; y < 1600; y += 1 + y / 7) {
+            for (int32_t z = 0; z < 1600; z += 1 + z / 7) {
+                check_point(far_q8[i], y, -z);
+                check_point(far_q8[i], -y, z);
+            }
+        }
+    }
+}
+
+/* The same direction at any size: both legs, and x with them, are shifted down by what does not fit. */
+static void test_pitch_of_any_size(void)
+{
+    for (int bits = 14; bits <= 30; bits++) {
+        for (int32_t part = 8; part <= 16; part++) {
+            int32_t one = (int32_t)((INT64_C(1) << bits) * part / 16);
+            check_point(one, one, one / 3);
+            check_point(-one, one / 5, -one);
+            check_point(one / 2, one / 9, one / 7);
+            check_point(one, one / 50, one / 1000);
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_coefficients_are_those_of_the_best_polynomial);
     RUN_TEST(test_the_coefficients_are_rounded_to_whole_units);
+    RUN_TEST(test_pitch_near_the_poles);
+    RUN_TEST(test_pitch_of_any_size);
     return UNITY_END();
 }
