@@ -85,6 +85,28 @@ static void test_products_of_the_mounting_are_rounded_not_cut(void)
     }
 }
 
+/*
+ * Without a mounting an element is 256 / scale: rounded to 2^-16, then half up to 2^-14, 1/8 and 1/2 unit of Q14. The
+ * bias of an offset of 16 LSB is that of the element, and half a unit of Q8.
+ */
+static void test_elements_are_rounded_to_five_eighths_of_a_unit(void)
+{
+    for (uint16_t scale_uq6 = CALIBRATION_SCALE_MIN_UQ6; scale_uq6 <= CALIBRATION_SCALE_MAX_UQ6; scale_uq6++) {
+        calibration_applied_t applied;
+        setUp();
+        for (uint8_t axis = 0; axis < 3; axis++) {
+            c.scale_lsb_per_g_uq6[axis] = scale_uq6;
+            c.offset_lsb_q4[axis] = -256;
+        }
+        TEST_ASSERT_EQUAL_UINT8(CALIBRATION_GOOD, calibration_prepare(&applied, &c).why);
+        for (uint8_t axis = 0; axis < 3; axis++) {
+            int16_t element_q14 = applied.matrix_q14[4U * axis];
+            TEST_ASSERT_DOUBLE_WITHIN(0.625, 16384.0 * 16384.0 / scale_uq6, element_q14);
+            TEST_ASSERT_EQUAL_INT32(16 * element_q14 + 32, applied.bias_lsb_q14[axis]);
+        }
+    }
+}
+
 /* Reading less offset over scale, in Q14, to 2 g either way; LSB in Q4. */
 static void test_a_reading_in_g(void)
 {
@@ -124,6 +146,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_division_is_rounded_half_away_from_zero);
     RUN_TEST(test_products_of_the_mounting_are_rounded_not_cut);
+    RUN_TEST(test_elements_are_rounded_to_five_eighths_of_a_unit);
     RUN_TEST(test_a_reading_in_g);
     RUN_TEST(test_one_g_of_a_single_rest_is_rounded);
     return UNITY_END();
