@@ -149,7 +149,7 @@ def verdicts():
         for host in hosts:
             host.compile(pool)
         reach = Reach(hosts[0], ["lib/tiny.c"])
-        reach.measure(pool, settings.tests, lambda _: None)
+        reach.measure(pool, settings.tests, 60, lambda _: None)
         judge = Judge(hosts, lambda m: reach.tests_of(m.file, m.line(PRODUCT), set(), []), {})
         worker = Worker(0, tree)
         return {m.key.split(":")[1]: judge.verdict(m, worker) for m in mutants()}

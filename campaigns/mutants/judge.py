@@ -65,8 +65,7 @@ class Judge:
         supports = {source: target for source, target in changed.items() if source not in host.settings.product}
         library = worker.out / "mutant.so"
         if product:
-            status, said = run([*host.settings.cxx, "-shared", *host.link_flags(), *product, "-o", library], worker.tree)
-            if status != 0:
+            if run(["ld", "-shared", *product, "-o", library], worker.tree)[0] != 0:
                 return "uncompiled", ""
         by = self.tests(host, mutant, worker, library if product else None, supports)
         return ("killed", by) if by else ("survived", "")
@@ -100,7 +99,7 @@ class Judge:
             raise Same
 
     def limit_of(self, host, test):
-        """Ten times what the unbroken test takes: a loaded machine shall not pass for a hang."""
+        """Ten times what the unbroken test takes: of the processor's time."""
         key = host.variant, test
         with self.guard:
             lock = self.checked.setdefault(key, threading.Lock())

@@ -18,7 +18,7 @@ class Reached:
         units = [s for s in host.settings.product if s in files or files & set(host.objects.deps(s))]
         self.host, self.texts, self.patience_s, self.kills = host, texts, patience_s or float("inf"), Counter()
         self.reach = Reach(host, units)
-        self.reach.measure(pool, tests, say)
+        self.reach.measure(pool, tests, self.patience_s, say)
         self.limits = {(host.variant, test): seconds for test, seconds in self.reach.seconds.items()}
         self.spans = {}
         for name in files:
@@ -28,7 +28,7 @@ class Reached:
     def tests(self, mutant):
         line, span = mutant.line(self.texts[mutant.file]), self.spans[mutant.file, mutant.owner]
         includers = [s for s in self.reach.files if mutant.file in self.host.objects.deps(s)] if mutant.file.endswith(".h") else []
-        found = [t for t in self.reach.tests_of(mutant.file, line, span, includers) if self.reach.seconds[t] <= self.patience_s]
+        found = self.reach.tests_of(mutant.file, line, span, includers)
         return sorted(found, key=lambda test: self.reach.seconds[test] / (1 + self.kills[mutant.file, test]))
 
     def learn(self, mutant, by):

@@ -2,6 +2,7 @@
 import fcntl
 import hashlib
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -75,6 +76,23 @@ def run(command, cwd, limit_s=300, **environment):
         return program.returncode, said.decode("utf-8", "replace")
 
 
+def timed(command, cwd, limit_s, **environment):
+    """(status, seconds of the processor): what it prints is thrown away. The limit is of the processor's time, so a loaded machine makes
+    no hang; a program that sleeps is ended after twenty times as long.
+    """
+    words = ["prlimit", f"--cpu={math.ceil(limit_s)}", "--core=0", "env", *(f"{name}={value}" for name, value in environment.items()), *map(str, command)]
+    program = subprocess.Popen(words, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL, start_new_session=True)
+    asleep = threading.Timer(60 + 20 * limit_s, program.kill)
+    asleep.start()
+    try:
+        _, status, usage = os.wait4(program.pid, 0)
+    finally:
+        asleep.cancel()
+    program.returncode = os.waitstatus_to_exitcode(status)  # or Popen would wait for it once more
+    return program.returncode, usage.ru_utime + usage.ru_stime
+
+
 class Compiler:
     """Objects of unbroken sources, kept as long as nothing that they include changes."""
 
@@ -123,5 +141,5 @@ class Compiler:
 
     def broken(self, tree, source, target):
         """Compiles the source in a worker's tree: the object's bytes, None where it does not compile."""
-        status, _ = run([*self.command(source), "-c", source, "-o", target], tree)
+        status, _ = run([*self.command(source), "-c", source, "-o", target], tree, CCACHE_DISABLE="1")  # nobody compiles it twice
         return target.read_bytes() if status == 0 else None
