@@ -150,7 +150,7 @@ def verdicts():
             host.compile(pool)
         reach = Reach(hosts[0], ["lib/tiny.c"])
         reach.measure(pool, settings.tests, 60, lambda _: None)
-        judge = Judge(hosts, lambda m: reach.tests_of(m.file, m.line(PRODUCT), set(), []), {})
+        judge = Judge(hosts, lambda m, _: reach.tests_of(m.file, m.line(PRODUCT), set(), []), {})
         worker = Worker(0, tree)
         return {m.key.split(":")[1]: judge.verdict(m, worker) for m in mutants()}
 
@@ -176,7 +176,7 @@ def what_does_not_compile_is_dropped():
     from judge import Judge, Worker
     from operators import Mutant
     settings = Settings({"HOST_CC": "gcc", "HOST_CXX": "g++", "HOST_FLAGS": "-std=c11 -Ilib", "HOST_SRC": "lib/tiny.c", "TESTS": "test_tiny", "UNITY_DIR": "."})
-    judge = Judge([Host(settings, "ubsan", pathlib.Path.cwd())], lambda m: [], {})
+    judge = Judge([Host(settings, "ubsan", pathlib.Path.cwd())], lambda m, _: [], {})
     at = PRODUCT.index("unsigned sum")
     assert judge.verdict(Mutant("lib/tiny.c", "tiny_sum", "statement", "", 1, ((at, at + 8, ""),)), Worker(0, pathlib.Path.cwd())) == ("uncompiled", "")
 

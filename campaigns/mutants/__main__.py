@@ -14,18 +14,20 @@ import subprocess
 import sys
 import time
 
+from chip import ONLY_CHIP, Chip
 from host import Host, Settings
 from judge import Judge, Worker
+from nav import Link, Variants
 from operators import mutants_of
-from order import Listed, Reached, write_judges
+from order import Cheapest, Listed, Reached, write_judges
 from results import Results, accepted, below_goal, folder_of, goals, table, write_accepted, write_json
 from shop import Stop, alone, copy_tree, digest, tree_files
 
 WORKERS = 2
 # files that no mutant is made of, each with its reason
-LEFT_OUT = {"firmware/reply_packed.h": "written by tools/pack_texts.py, which make check runs"}
-# their programs are not built here yet
-OTHER_PROGRAMS = ("lib/nav/", "firmware/nav/", "hal/avr/", "lib/filters/src/fx_avr.h", "firmware/main.c")
+LEFT_OUT = {"firmware/reply_packed.h": "written by tools/pack_texts.py, which make check runs",
+            "firmware/nav/main.c": "20 lines that only the navigation image runs, whose test takes minutes"}
+NAV = ("lib/nav/", "firmware/nav/")
 
 
 def say(text):
@@ -47,7 +49,7 @@ def sources(options):
     """The files that mutants are made of; a sample's are in the folders whose whole measurement is known."""
     folders = tuple(f"{folder}/" for folder in goals()) if options.sample else ("lib/", "firmware/", "hal/")
     found = [name for name in tree_files() if name.startswith(folders) and name.endswith((".c", ".h"))
-             and name.startswith(options.only) and name not in LEFT_OUT and "/examples/" not in name and not name.startswith(OTHER_PROGRAMS)]
+             and name.startswith(options.only) and name not in LEFT_OUT and "/examples/" not in name]
     if not found:
         raise Stop(f"no source in {', '.join(folders)} begins with {options.only}")
     return found
@@ -83,12 +85,23 @@ class Campaign:
         for number in range(WORKERS):
             self.workers.put(Worker(number, copy_tree(number)))
         settings = Settings()
-        tests = [t for t in settings.tests if not t.startswith("test_nav") and t != "test_simrun_judge"]
         hosts = [Host(settings, variant, copy_tree("clean")) for variant in ("ubsan", "asan")]
         say(f"building {len(settings.product)} sources of the PC's programs")
         hosts[0].compile(pool)
-        self.order = Listed(tests) if self.options.sample else Reached(hosts[0], tests, self.mutants, self.texts, self.options.patience, pool, say)
-        self.judge = Judge(hosts, self.order.tests, self.order.limits)
+        self.order = Listed(settings.tests) if self.options.sample else Reached(
+            hosts[0], self.mutants, self.texts, self.options.patience, pool, say)
+        self.judge, self.chip = Judge(hosts, self.order.tests, self.order.limits), Chip(hosts[0].tree)
+        self.cheapest, link = Cheapest(), Link(settings, hosts[0].tree)
+        self.nav = Judge([Variants(settings, hosts[0].tree, hosts[0]), link], self.cheapest.tests, self.cheapest.limits)
+        self.nav_link = Judge([link], self.cheapest.tests, self.cheapest.limits)
+
+    def judge_of(self, file):
+        """(judge, who learns from it)"""
+        if file.startswith(ONLY_CHIP):
+            return self.chip, self.cheapest
+        if file.startswith(NAV):
+            return self.nav if file.startswith("lib/") else self.nav_link, self.cheapest
+        return self.judge, self.order
 
     def one(self, mutant):
         kept = self.results.get(mutant, self.hashes[mutant.file])
@@ -97,11 +110,12 @@ class Campaign:
         if self.options.seconds and time.monotonic() - self.began > self.options.seconds:
             return None
         worker, began = self.workers.get(), time.monotonic()
+        judge, learner = self.judge_of(mutant.file)
         try:
-            verdict, by = self.judge.verdict(mutant, worker)
+            verdict, by = judge.verdict(mutant, worker)
         finally:
             self.workers.put(worker)
-        self.order.learn(mutant, by)
+        learner.learn(mutant, by)
         return self.results.put(mutant, self.hashes[mutant.file], mutant.line(self.texts[mutant.file]), verdict, by, time.monotonic() - began)
 
     def run(self):

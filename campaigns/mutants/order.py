@@ -13,23 +13,37 @@ KEPT = 12  # names a file
 class Reached:
     """Those that reach the mutant's line: cheap ones first, and those that noticed others of its file."""
 
-    def __init__(self, host, tests, mutants, texts, patience_s, pool, say):
+    def __init__(self, host, mutants, texts, patience_s, pool, say):
         files = {m.file for m in mutants}
-        units = [s for s in host.settings.product if s in files or files & set(host.objects.deps(s))]
+        units = [s for s in host.product if s in files or files & set(host.objects.deps(s))]
         self.host, self.texts, self.patience_s, self.kills = host, texts, patience_s or float("inf"), Counter()
         self.reach = Reach(host, units)
-        self.reach.measure(pool, tests, self.patience_s, say)
+        self.reach.measure(pool, host.tests, self.patience_s, say)
         self.limits = {(host.variant, test): seconds for test, seconds in self.reach.seconds.items()}
         self.spans = {}
         for name in files:
             for mutant in mutants_of(name, texts[name]):
                 self.spans.setdefault((name, mutant.owner), set()).add(mutant.line(texts[name]))
 
-    def tests(self, mutant):
+    def tests(self, mutant, _host):
         line, span = mutant.line(self.texts[mutant.file]), self.spans[mutant.file, mutant.owner]
         includers = [s for s in self.reach.files if mutant.file in self.host.objects.deps(s)] if mutant.file.endswith(".h") else []
         found = self.reach.tests_of(mutant.file, line, span, includers)
         return sorted(found, key=lambda test: self.reach.seconds[test] / (1 + self.kills[mutant.file, test]))
+
+    def learn(self, mutant, by):
+        if by:
+            self.kills[mutant.file, by] += 1
+
+
+class Cheapest:
+    """All of a host's few tests, by what they took."""
+
+    def __init__(self):
+        self.limits, self.kills = {}, Counter()
+
+    def tests(self, mutant, host):
+        return sorted(host.tests, key=lambda test: self.limits.get((host.variant, test), 0) / (1 + self.kills[mutant.file, test]))
 
     def learn(self, mutant, by):
         if by:
@@ -47,7 +61,7 @@ class Listed:
                     file, names = line.split(": ", 1)
                     self.first[file] = [name for name in names.split() if name in tests]
 
-    def tests(self, mutant):
+    def tests(self, mutant, _host):
         first = self.first.get(mutant.file, [])
         rest = [test for test in self.all if test not in first]
         return first + sorted(rest, key=lambda test: test.endswith("_reference"))  # these need Eigen's minute of compiling

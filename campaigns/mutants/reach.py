@@ -53,7 +53,7 @@ class Reach:
         folder = FOLDER / f"run-{test}"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
-        passes, seconds = self.host.run_test(test, self.host.tree, self.library, GCOV_PREFIX=str(folder), GCOV_PREFIX_STRIP="99")
+        passes, seconds = self.host.run_test(test, self.host.tree, [self.library], GCOV_PREFIX=str(folder), GCOV_PREFIX_STRIP="99")
         if not passes:
             raise Stop(f"{test} fails or hangs on the unbroken code: make t T={test.removeprefix('test_')}")
         files = {}

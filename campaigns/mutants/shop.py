@@ -93,12 +93,20 @@ def timed(command, cwd, limit_s, **environment):
     return program.returncode, usage.ru_utime + usage.ru_stime
 
 
+def plain(source):
+    """`n9f:lib/nav/src/nav.c` is that file in one of its variants."""
+    return source.rsplit(":", 1)[-1]
+
+
 class Compiler:
     """Objects of unbroken sources, kept as long as nothing that they include changes."""
 
     def __init__(self, name, command, tree):
         self.folder, self.command, self.tree = ROOT / name, command, tree
         self.guard, self.locks, self.known, self.hashes = threading.Lock(), {}, {}, {}
+
+    def named(self, name, command):
+        return Compiler(name, command, self.tree)
 
     def path(self, source):
         return self.folder / (source.replace("/", "__") + ".o")
@@ -127,7 +135,7 @@ class Compiler:
                 return kept["deps"]
         target.parent.mkdir(parents=True, exist_ok=True)
         depends = target.with_suffix(".d")
-        status, said = run([*command, "-MMD", "-MF", depends, "-c", source, "-o", target], self.tree)
+        status, said = run([*command, "-MMD", "-MF", depends, "-c", plain(source), "-o", target], self.tree)
         if status != 0:
             raise Stop(f"{source} does not compile as it stands: {said.strip().splitlines()[0] if said.strip() else status}")
         names = depends.read_text(encoding="utf-8").replace("\\\n", " ").split(":", 1)[1].split()
@@ -141,5 +149,5 @@ class Compiler:
 
     def broken(self, tree, source, target):
         """Compiles the source in a worker's tree: the object's bytes, None where it does not compile."""
-        status, _ = run([*self.command(source), "-c", source, "-o", target], tree, CCACHE_DISABLE="1")  # nobody compiles it twice
+        status, _ = run([*self.command(source), "-c", plain(source), "-o", target], tree, CCACHE_DISABLE="1")  # nobody compiles it twice
         return target.read_bytes() if status == 0 else None
