@@ -62,9 +62,9 @@ def tree_hash():
 
 
 def chosen(mutants, known, options):
-    """All; or a sample of those that a test is known to notice."""
+    """All, in an order drawn by lot so that a campaign cut short is a fair sample; or a sample of those that a test is known to notice."""
     if not options.sample:
-        return mutants
+        return random.Random(0).sample(mutants, len(mutants))
     seed, noticed = options.seed or tree_hash(), [m for m in mutants if m.key not in known]
     say(f"{options.sample} of {len(noticed)} in {', '.join(goals())}, drawn by {seed}")
     return random.Random(seed).sample(noticed, min(options.sample, len(noticed)))
@@ -91,7 +91,7 @@ class Campaign:
         self.order = Listed(settings.tests) if self.options.sample else Reached(
             hosts[0], self.mutants, self.texts, self.options.patience, pool, say)
         self.judge, self.chip = Judge(hosts, self.order.tests, self.order.limits), Chip(hosts[0].tree)
-        self.cheapest, link = Cheapest(), Link(settings, hosts[0].tree)
+        self.cheapest, link = Cheapest(self.options.patience), Link(settings, hosts[0].tree)
         self.nav = Judge([Variants(settings, hosts[0].tree, hosts[0]), link], self.cheapest.tests, self.cheapest.limits)
         self.nav_link = Judge([link], self.cheapest.tests, self.cheapest.limits)
 

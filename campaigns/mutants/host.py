@@ -90,7 +90,8 @@ class Host:
 
     def references(self, test):
         """The double references that a test asks for: those that make test built, if they are at hand, else compiled here."""
-        if not any(name.startswith("host_tests/reference_") for name in self.objects.deps(self.test_source(test))):
+        sources = [self.test_source(test), *self.supports]
+        if not any(name.startswith("host_tests/reference_") for source in sources for name in self.objects.deps(source)):
             return []
         found = []
         for source in self.settings.references:

@@ -39,11 +39,13 @@ class Reached:
 class Cheapest:
     """All of a host's few tests, by what they took."""
 
-    def __init__(self):
-        self.limits, self.kills = {}, Counter()
+    def __init__(self, patience_s):
+        self.limits, self.kills, self.patience_s = {}, Counter(), patience_s or float("inf")
 
     def tests(self, mutant, host):
-        return sorted(host.tests, key=lambda test: self.limits.get((host.variant, test), 0) / (1 + self.kills[mutant.file, test]))
+        seconds = {test: self.limits.get((host.variant, test), 0) for test in host.tests}
+        found = [test for test in host.tests if seconds[test] <= self.patience_s]
+        return sorted(found, key=lambda test: seconds[test] / (1 + self.kills[mutant.file, test]))
 
     def learn(self, mutant, by):
         if by:
