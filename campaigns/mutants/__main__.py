@@ -119,7 +119,7 @@ class Campaign:
         return self.results.put(mutant, self.hashes[mutant.file], mutant.line(self.texts[mutant.file]), verdict, by, time.monotonic() - began)
 
     def run(self):
-        rows, told = [], time.monotonic()
+        rows, shown = [], time.monotonic()
         with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
             self.prepare(pool)
             try:
@@ -127,8 +127,8 @@ class Campaign:
                     rows += [row] if row else []
                     if row and row["verdict"] == "survived" and row["key"] not in self.accepted:
                         print(f"survived: {row['key']} (line {row['line']})", flush=True)
-                    if time.monotonic() - told > 15:
-                        told = time.monotonic()
+                    if time.monotonic() - shown > 15:
+                        shown = time.monotonic()
                         say(f"{number} of {len(self.mutants)}, {sum(r['verdict'] == 'killed' for r in rows)} killed")
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)

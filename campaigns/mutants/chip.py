@@ -9,11 +9,15 @@ from judge import Same
 from shop import ROOT, Stop, run
 
 # program, then words that choose its tests
-PROGRAMS = {"hal_probe": ("eeprom_is_written",), "store_probe": ("store_keeps_a_set",), "fx_twins": ("assembler_primitives_equal_their_c_twins",),
-            "firmware": ("unplugged_and_plugged_again", "brown_out_keeps_the_ram", "external_reset", "slave_hung_in_a_byte_is_clocked", "main_loop_starved",
-                         "over_long_and_garbage", "lines_typed_behind_a_change_of_baud", "line_held_low", "output_is_a_valid_stream", "two_runs_are_identical",
-                         "silent_int1", "no_sensor_is_told", "a_board_locked_out"),
-            "hang/firmware": ("hung_loop_is_reset", "hung_filtering_is_reset")}
+PROGRAMS = {
+    "hal_probe": ("eeprom_is_written",),
+    "store_probe": ("store_keeps_a_set",),
+    "fx_twins": ("assembler_primitives_equal_their_c_twins",),
+    "firmware": ("unplugged_and_plugged_again", "brown_out_keeps_the_ram", "external_reset", "slave_hung_in_a_byte_is_clocked",
+                 "main_loop_starved", "over_long_and_garbage", "lines_typed_behind_a_change_of_baud", "line_held_low",
+                 "output_is_a_valid_stream", "two_runs_are_identical", "silent_int1", "no_sensor_is_told", "a_board_locked_out"),
+    "hang/firmware": ("hung_loop_is_reset", "hung_filtering_is_reset"),
+}
 ONLY_CHIP = ("hal/avr/", "lib/filters/src/fx_avr.h", "firmware/main.c")
 HANG_TIMES, HANG_MIN_S = 10, 60
 

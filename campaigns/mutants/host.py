@@ -26,7 +26,9 @@ class Settings:
             return shlex.split(environment[name])
         self.compiler, self.cxx = words("HOST_CC"), words("HOST_CXX")
         self.flags = [f for f in words("HOST_FLAGS") if f != "-g" and not f.startswith("-O")]
-        self.product, self.tests = words("HOST_SRC"), [name for name in (pathlib.Path(t).name for t in words("TESTS")) if not name.startswith("test_nav") and name not in NOT_OF_THE_PRODUCT]
+        self.product = words("HOST_SRC")
+        names = (pathlib.Path(test).name for test in words("TESTS"))
+        self.tests = [name for name in names if not name.startswith("test_nav") and name not in NOT_OF_THE_PRODUCT]
         self.supports = sorted(str(p) for p in pathlib.Path("host_tests").glob("support_*.c"))
         self.references = sorted(str(p) for p in pathlib.Path("host_tests").glob("reference_*.cpp"))
         self.unity = f"{environment.get('UNITY_DIR', 'build/unity')}/unity.c"
@@ -67,7 +69,8 @@ class Host:
     def linked(self, command, target):
         status, said = run(command, self.tree)
         if status != 0:
-            raise Stop(f"{target.name} does not link: {[line for line in said.splitlines() if 'undefined' in line or 'error' in line][:1] or said[-200:]}")
+            why = [line for line in said.splitlines() if "undefined" in line or "error" in line][:1]
+            raise Stop(f"{target.name} does not link: {''.join(why) or said[-200:]}")
 
     def link_product(self):
         """Once, when the first test is linked: the second variant is built for a survivor of the first only."""

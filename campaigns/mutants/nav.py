@@ -1,7 +1,7 @@
 """The programs that judge the navigation filter: lib/nav in its four variants, each a library of its own, and the image's link."""
+import os
 import pathlib
 import shlex
-import os
 
 from host import Host
 from shop import plain, run
@@ -46,8 +46,8 @@ class Variants(Host):
             if changed and not objects.keys() & changed.keys():
                 continue
             target = out / f"lib{word}.so"
-            command = ["ld", "-shared", "-Bsymbolic", "-soname", f"lib{word}.so", *{**objects, **{s: o for s, o in changed.items() if s in objects}}.values(), "-o", target]
-            if run(command, self.tree)[0] != 0:
+            objects |= {source: changed[source] for source in objects.keys() & changed.keys()}
+            if run(["ld", "-shared", "-Bsymbolic", "-soname", target.name, *objects.values(), "-o", target], self.tree)[0] != 0:
                 return None
             found.append(target)
         return found

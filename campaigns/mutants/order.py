@@ -10,6 +10,14 @@ HEAD = "# The tests that notice most of a file's mutants, by `make mutants ACCEP
 KEPT = 12  # names a file
 
 
+def listed():
+    """file -> tests"""
+    if not JUDGES.exists():
+        return {}
+    rows = [line.split(": ", 1) for line in JUDGES.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
+    return {file: names.split() for file, names in rows}
+
+
 class Reached:
     """Those that reach the mutant's line: cheap ones first, and those that noticed others of its file."""
 
@@ -56,12 +64,8 @@ class Listed:
     """Without a measurement: those that noticed most in the file's last whole campaign, then all others."""
 
     def __init__(self, tests):
-        self.all, self.limits, self.first = tests, {}, {}
-        if JUDGES.exists():
-            for line in JUDGES.read_text(encoding="utf-8").splitlines():
-                if line and not line.startswith("#"):
-                    file, names = line.split(": ", 1)
-                    self.first[file] = [name for name in names.split() if name in tests]
+        self.all, self.limits = tests, {}
+        self.first = {file: [name for name in names if name in tests] for file, names in listed().items()}
 
     def tests(self, mutant, _host):
         first = self.first.get(mutant.file, [])
@@ -77,6 +81,6 @@ def write_judges(rows):
     for row in rows:
         if row["by"]:
             kills.setdefault(row["file"], Counter())[row["by"]] += 1
-    known = dict(line.split(": ", 1) for line in JUDGES.read_text(encoding="utf-8").splitlines() if ": " in line and line[0] != "#") if JUDGES.exists() else {}
+    known = {file: " ".join(names) for file, names in listed().items()}
     known |= {file: " ".join(name for name, _ in count.most_common(KEPT)) for file, count in kills.items()}
     JUDGES.write_text(HEAD + "".join(f"{file}: {known[file]}\n" for file in sorted(known) if pathlib.Path(file).exists()), encoding="utf-8")

@@ -80,7 +80,8 @@ def timed(command, cwd, limit_s, **environment):
     """(status, seconds of the processor): what it prints is thrown away. The limit is of the processor's time, so a loaded machine makes
     no hang; a program that sleeps is ended after twenty times as long.
     """
-    words = ["prlimit", f"--cpu={math.ceil(limit_s)}", "--core=0", "env", *(f"{name}={value}" for name, value in environment.items()), *map(str, command)]
+    settings = [f"{name}={value}" for name, value in environment.items()]  # for the program alone: some name what is loaded before it
+    words = ["prlimit", f"--cpu={math.ceil(limit_s)}", "--core=0", "env", *settings, *map(str, command)]
     program = subprocess.Popen(words, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                stderr=subprocess.DEVNULL, start_new_session=True)
     asleep = threading.Timer(60 + 20 * limit_s, program.kill)
