@@ -211,6 +211,20 @@ static void test_an_oblique_rest_is_no_position(void)
     TEST_ASSERT_EQUAL_size_t(note + 3, board.note_count);
 }
 
+/* Up to 40 degrees off it is a position, and is told: 39, across either of the other axes, of an exact part. */
+static void test_a_rest_39_degrees_off_is_a_position(void)
+{
+    static const attitude_t lays[] = {
+        { { 0, 0, 1 } }, { { 0.7771, 0, 0.6293 } }, { { 0, 0.6293, -0.7771 } }, { { 0, -0.7771, -0.6293 } }
+    };
+    start_lays(lays, 4, adxl345_part_typical);
+    size_t note = talk_typed("cal6", 27500.0);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: +z up, 5 to go", note));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: +x up, 4 to go", note));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: -z up, 3 to go", note));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: -y up, 2 to go", note));
+}
+
 /* x or y is 35 degrees off in its position: refused by name, and nothing changes. */
 static void test_a_position_too_far_off_is_refused(void)
 {
@@ -346,6 +360,7 @@ int main(void)
     RUN_TEST(test_rows_after_cal6);
     RUN_TEST(test_a_position_laid_again_is_refused);
     RUN_TEST(test_an_oblique_rest_is_no_position);
+    RUN_TEST(test_a_rest_39_degrees_off_is_a_position);
     RUN_TEST(test_a_position_too_far_off_is_refused);
     RUN_TEST(test_a_part_beyond_the_limits_is_refused);
     RUN_TEST(test_cal6_stops);

@@ -49,6 +49,25 @@ static void test_a_first_sample_older_than_the_newest_row_is_dropped(void)
     TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LOST]);
 }
 
+/* A sample that comes after its row is late, not lost: what is missing after it is counted from it, jitter or not. */
+static void test_after_a_late_sample_only_the_missing_ones_are_lost(void)
+{
+    for (uint32_t missing = 0; missing <= 4; missing++) {
+        for (int32_t early_us = -4000; early_us <= 4000; early_us += 2000) {
+            setUp();
+            TEST_ASSERT_TRUE(sample_at(START_US));
+            TEST_ASSERT_TRUE(row_by(START_US + PERIOD_US + PERIOD_US / 2));
+            TEST_ASSERT_FALSE(sample_at(START_US + PERIOD_US));
+            TEST_ASSERT_EQUAL_UINT32(1, counters[COUNT_LATE]);
+            uint32_t next_us = START_US + (missing + 2u) * PERIOD_US - (uint32_t)early_us;
+            while (row_by(next_us)) {
+            }
+            TEST_ASSERT_TRUE(sample_at(next_us));
+            TEST_ASSERT_EQUAL_UINT32(missing, counters[COUNT_LOST]);
+        }
+    }
+}
+
 /* More than half of what the clock of the samples counts, which wraps meanwhile. */
 static void test_samples_lost_in_a_long_outage_are_counted(void)
 {
@@ -73,6 +92,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_first_sample_older_than_the_newest_row_is_dropped);
+    RUN_TEST(test_after_a_late_sample_only_the_missing_ones_are_lost);
     RUN_TEST(test_samples_lost_in_a_long_outage_are_counted);
     return UNITY_END();
 }

@@ -242,6 +242,30 @@ static void test_a_sample_is_coming_while_int1_is_high(void)
     TEST_ASSERT_FALSE(adxl345_sample_coming());
 }
 
+/* Main leaves them: seven of the eight slots fill one by one, in order, and what comes then waits in the sensor. */
+static void test_the_queue_holds_seven_samples(void)
+{
+    enum { SLOTS = 8 };
+    stream_for_ms(205);
+    rig_until_pause();
+    rig.leaves = true;
+    size_t before = rig.latched_count;
+    for (unsigned waiting = 1; waiting < SLOTS + 5; waiting++) {
+        while (rig.latched_count < before + waiting && hal_host_now_ms() < 400) {
+            rig_pass();
+        }
+        rig_run_ms(1);
+        TEST_ASSERT_EQUAL_size_t(before + waiting, rig.latched_count);
+        unsigned queued = waiting < SLOTS ? waiting : SLOTS - 1;
+        TEST_ASSERT_EQUAL_UINT8(queued, adxl345_queued());
+        TEST_ASSERT_EQUAL_UINT8(waiting - queued, hal_host_sensor.fifo_count);
+    }
+    rig.leaves = false;
+    rig_run_ms(PERIOD_MS);
+    TEST_ASSERT_EQUAL_UINT8(0, adxl345_queued());
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(6 * PERIOD_MS));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -253,5 +277,6 @@ int main(void)
     RUN_TEST(test_int1_that_rises_while_the_sensor_says_it_has_none);
     RUN_TEST(test_stop_while_every_read_fails);
     RUN_TEST(test_a_sample_is_coming_while_int1_is_high);
+    RUN_TEST(test_the_queue_holds_seven_samples);
     return UNITY_END();
 }

@@ -77,6 +77,25 @@ static void test_int1_stuck_high(void)
     }
 }
 
+/* D2 is free again: the 32nd good reading that leaves INT1 low ends the fault, none before. */
+static void test_int1_is_trusted_again_after_32_good_readings(void)
+{
+    stream_for_ms(300);
+    rig.limit_us = 500;
+    hal_host_faults.int1_high = true;
+    rig_run_ms(100);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
+    hal_host_faults.int1_high = false;
+    rig_until_pause();
+    size_t before = rig.taken_count;
+    for (unsigned passes = 0; rig.taken_count < before + 40 && passes < 20000; passes++) {
+        rig_pass();
+        TEST_ASSERT_EQUAL(rig.taken_count < before + 32 ? ADXL345_FAULT_INT1_STUCK : ADXL345_FAULT_NONE,
+                          adxl345_fault());
+    }
+    TEST_ASSERT_EQUAL_size_t(before + 40, rig.taken_count);
+}
+
 /* The clock of the sensor is 9 % slower or faster than was measured: the times keep up with the samples. */
 static void test_times_follow_while_int1_is_stuck(void)
 {
@@ -265,6 +284,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_int1_stuck_high);
+    RUN_TEST(test_int1_is_trusted_again_after_32_good_readings);
     RUN_TEST(test_times_follow_while_int1_is_stuck);
     RUN_TEST(test_times_of_a_slow_sensor_follow_while_int1_is_stuck);
     RUN_TEST(test_an_int1_that_was_stuck_once_moves_no_later_stamp);

@@ -152,6 +152,58 @@ static void test_three_failed_bursts_are_a_fault(void)
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
 
+/*
+ * A sensor that never has a sample: the first may come 20 ms late, by which the turn-on time is over at 1.1 ms and a
+ * period (data sheet p. 5), and is a fault three periods and 3 ms after that. It is asked every half millisecond to the
+ * end.
+ */
+static void test_a_first_sample_that_does_not_come_is_a_fault(void)
+{
+    static const uint16_t rates_dhz[] = { 8000, 4000, 2000, 1000, 500, 250, 125 };
+    for (size_t i = 0; i < 7; i++) {
+        adxl345_config_t config = { rates_dhz[i], 16, false, 0 };
+        double period_ms = 10000.0 / rates_dhz[i];
+        const hal_host_config_t without_samples = { 0 };
+        hal_host_begin(&without_samples, NULL, false);
+        rig_reset();
+        adxl345_start(&config);
+        RUN_UNTIL(hal_host_sensor.reg[ADXL345_POWER_CTL] == ADXL345_POWER_MEASURE, 20);
+        double begun_ms = hal_host_now_ms();
+        RUN_UNTIL(adxl345_fault() != ADXL345_FAULT_NONE, 300);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_DATA, adxl345_fault());
+        double took_ms = hal_host_now_ms() - begun_ms;
+        double due_ms = 20.0 + 3.0 * period_ms + 3.0;
+        TEST_ASSERT_TRUE(took_ms >= due_ms && took_ms <= due_ms + 1.5);
+    }
+}
+
+/*
+ * A stop that does not reach the sensor is tried again for a second, 40 times 25 ms apart and the time of the transfers,
+ * under a millisecond each; then no more.
+ */
+static void test_a_stop_is_tried_again_for_a_second(void)
+{
+    adxl345_start(&at_100_hz);
+    rig_run_ms(300);
+    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_stop();
+    unsigned tries = 0;
+    double begun_ms = hal_host_now_ms();
+    double last_ms = begun_ms;
+    adxl345_counters_t counters;
+    adxl345_counters(&counters);
+    for (uint16_t before = counters.nacks; hal_host_now_ms() < begun_ms + 1500.0; before = counters.nacks) {
+        pass();
+        adxl345_counters(&counters);
+        bool is_try = counters.nacks != before && hal_host_now_ms() - last_ms > 20.0;
+        tries += is_try;
+        last_ms = counters.nacks != before ? hal_host_now_ms() : last_ms;
+    }
+    TEST_ASSERT_EQUAL_UINT(40, tries);
+    TEST_ASSERT_TRUE(last_ms - begun_ms >= 1000.0 && last_ms - begun_ms <= 1000.0 + 41 * 1.0);
+    TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
+}
+
 /* INT1 comes back while the sensor is being asked why it is silent: no fault, and what its FIFO holds is delivered. */
 static void test_int1_that_rises_while_the_sensor_is_asked_is_no_fault(void)
 {
@@ -308,6 +360,8 @@ int main(void)
     RUN_TEST(test_a_good_sample_resets_the_pace);
     RUN_TEST(test_a_hung_burst_is_given_up);
     RUN_TEST(test_three_failed_bursts_are_a_fault);
+    RUN_TEST(test_a_first_sample_that_does_not_come_is_a_fault);
+    RUN_TEST(test_a_stop_is_tried_again_for_a_second);
     RUN_TEST(test_int1_that_rises_while_the_sensor_is_asked_is_no_fault);
     RUN_TEST(test_stop_with_a_stuck_bus_stops);
     RUN_TEST(test_start_and_stop_while_quiescing);

@@ -168,6 +168,28 @@ static void test_the_tenth_equal_reading_is_stuck(void)
     }
 }
 
+/* A sensor that was stuck, and is another now: its own ten readings count, whether they are as before or not. */
+static void test_a_sensor_that_may_be_another_has_ten_readings_of_its_own(void)
+{
+    for (unsigned differs = 0; differs < 2; differs++) {
+        uint8_t reading[READING_BYTES] = { 0x80, 0x0B, 1, 0, 2, 0, 3, 0, PATTERN, 0 };
+        int16_t lsb[2][3] = { { 0 }, { 0 } };
+        integrity_forget();
+        start(16, false);
+        for (unsigned i = 1; i <= 30; i++) {
+            (void)integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]);
+        }
+        TEST_ASSERT_TRUE(integrity_stuck());
+        integrity_forget();
+        start(16, false);
+        reading[READING_DATA] = (uint8_t)(reading[READING_DATA] + differs);
+        for (unsigned i = 1; i <= 12; i++) {
+            TEST_ASSERT_EQUAL(READING_GOOD, integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]));
+            TEST_ASSERT_EQUAL(i >= 10, integrity_stuck());
+        }
+    }
+}
+
 /* The chance of a code for a true value that lies offset_lsb beside it. */
 static double code_chance(double sigma_lsb, double offset_lsb)
 {
@@ -244,6 +266,7 @@ int main(void)
     RUN_TEST(test_ones_on_all_axes_are_nobody);
     RUN_TEST(test_counters_saturate);
     RUN_TEST(test_the_tenth_equal_reading_is_stuck);
+    RUN_TEST(test_a_sensor_that_may_be_another_has_ten_readings_of_its_own);
     RUN_TEST(test_the_bound_of_a_false_alarm);
     RUN_TEST(test_noise_is_never_stuck);
     return UNITY_END();

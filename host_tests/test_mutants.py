@@ -194,7 +194,7 @@ def reported(verdicts_of, accepted_keys, **options):
     spec.loader.exec_module(campaign)
     pathlib.Path("build").mkdir(exist_ok=True)
     pathlib.Path("campaigns/mutants").mkdir(parents=True, exist_ok=True)
-    pathlib.Path("campaigns/mutants/goals.txt").write_text("# folder, goal\nlib/tiny 50\n", encoding="utf-8")
+    pathlib.Path("campaigns/mutants/goals.txt").write_text("# folder, goal, rate\nlib/tiny 50 -\n", encoding="utf-8")
     one = object.__new__(campaign.Campaign)
     one.options = campaign.options_of([])
     vars(one.options).update(options)
@@ -221,6 +221,7 @@ def an_accepted_one_that_is_killed_is_named_and_leaves_the_list():
     assert status == 0 and "killed now, so it can leave the list: lib/tiny/a.c:a" in text, text
     lines = [x for x in pathlib.Path("campaigns/mutants/accepted.txt").read_text(encoding="utf-8").splitlines() if x[0] != "#"]
     assert lines == ["lib/tiny/a.c:b"], lines
+    assert pathlib.Path("campaigns/mutants/goals.txt").read_text(encoding="utf-8").split("\n")[-2].split() == ["lib/tiny", "50", "50.0"]
 
 
 @test

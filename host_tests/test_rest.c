@@ -138,7 +138,10 @@ static bool still_with(int axis, int size, uint16_t rate_dhz)
     return rest_still(&rest, rate_dhz);
 }
 
-/* Below 62.5 x 0.02 x rate: 125 LSB^2 at 100 Hz (11^2 = 121, 12^2 = 144), 1,000 at 800 Hz (31^2 = 961, 32^2 = 1024). */
+/*
+ * Below 62.5 x 0.02 x rate: 125 LSB^2 at 100 Hz (11^2 = 121, 12^2 = 144), 1,000 at 800 Hz (31^2 = 961, 32^2 = 1024). The
+ * limit itself is too much: 25 LSB^2 at 20 Hz, 100 LSB^2 at 80 Hz.
+ */
 static void test_the_limits_of_the_variance(void)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -146,6 +149,9 @@ static void test_the_limits_of_the_variance(void)
         TEST_ASSERT_FALSE(still_with(axis, 12, HZ_100));
         TEST_ASSERT_TRUE(still_with(axis, 31, HZ_800));
         TEST_ASSERT_FALSE(still_with(axis, 32, HZ_800));
+        TEST_ASSERT_FALSE(still_with(axis, 5, 200));
+        TEST_ASSERT_TRUE(still_with(axis, 5, 208));
+        TEST_ASSERT_FALSE(still_with(axis, 10, 800));
     }
 }
 
@@ -170,6 +176,21 @@ static void test_a_small_drift_shows(void)
                 (void)rest_add(&rest, lsb);
             }
             TEST_ASSERT_EQUAL(rise < 4, rest_still(&rest, HZ_100));
+        }
+    }
+}
+
+/* Means of halves are 2 LSB apart when the sums of their 128 readings are 256 apart: one reading by 1 LSB decides. */
+static void test_the_limit_of_the_drift_to_one_lsb_of_one_reading(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        for (int apart = 250; apart <= 270; apart++) {
+            rest_start(&rest);
+            for (int k = 0; k < N; k++) {
+                int in_half = k - N / 2;
+                (void)add(0, in_half < 0 ? 0 : sign * (apart / (N / 2) + (in_half < apart % (N / 2))), 256);
+            }
+            TEST_ASSERT_EQUAL(apart <= 256, rest_still(&rest, HZ_800));
         }
     }
 }
@@ -223,6 +244,7 @@ int main(void)
     RUN_TEST(test_any_reading_is_safe);
     RUN_TEST(test_the_limits_of_the_variance);
     RUN_TEST(test_a_small_drift_shows);
+    RUN_TEST(test_the_limit_of_the_drift_to_one_lsb_of_one_reading);
     RUN_TEST(test_desk_and_airframe_are_still_and_slow_turning_is_not);
     return UNITY_END();
 }

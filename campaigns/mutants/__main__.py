@@ -20,7 +20,7 @@ from judge import Judge, Worker
 from nav import Link, Variants
 from operators import mutants_of
 from order import Cheapest, Listed, Reached, write_judges
-from results import Results, accepted, below_goal, folder_of, goals, table, write_accepted, write_json
+from results import Results, accepted, below_goal, folder_of, measured, table, write_accepted, write_goals, write_json
 from shop import Stop, alone, copy_tree, digest, tree_files
 
 WORKERS = 2
@@ -47,8 +47,11 @@ def options_of(arguments):
 
 def sources(options):
     """The files that mutants are made of; a sample's are in the folders whose whole measurement is known."""
-    folders = tuple(f"{folder}/" for folder in goals()) if options.sample else ("lib/", "firmware/", "hal/")
-    found = [name for name in tree_files() if name.startswith(folders) and name.endswith((".c", ".h"))
+    folders = measured() if options.sample else ["lib, firmware, hal"]
+    if not folders:
+        raise Stop("no folder in campaigns/mutants/goals.txt was measured whole, so no sample can be judged: make mutants ONLY=folder ACCEPT=1")
+    begin = ("lib/", "firmware/", "hal/")
+    found = [name for name in tree_files() if name.startswith(begin) and (not options.sample or folder_of(name) in folders) and name.endswith((".c", ".h"))
              and name.startswith(options.only) and name not in LEFT_OUT and "/examples/" not in name]
     if not found:
         raise Stop(f"no source in {', '.join(folders)} begins with {options.only}")
@@ -66,7 +69,7 @@ def chosen(mutants, known, options):
     if not options.sample:
         return random.Random(0).sample(mutants, len(mutants))
     seed, noticed = options.seed or tree_hash(), [m for m in mutants if m.key not in known]
-    say(f"{options.sample} of {len(noticed)} in {', '.join(goals())}, drawn by {seed}")
+    say(f"{options.sample} of {len(noticed)} in {', '.join(measured())}, drawn by {seed}")
     return random.Random(seed).sample(noticed, min(options.sample, len(noticed)))
 
 
@@ -149,6 +152,8 @@ class Campaign:
         if self.options.accept:
             write_accepted(rows)
             write_judges(rows)
+            if len(rows) == len(self.mutants):
+                write_goals(rows, self.options.only)
             say(f"{len(survived)} survivors written to campaigns/mutants/accepted.txt")
             new = []
         low = [] if self.options.sample or len(rows) < len(self.mutants) else below_goal(rows)

@@ -12,7 +12,7 @@ extern "C" {
 
 /* 1 g in Q14, and the least and the most that a level vector may be long, 0.85 and 1.15 g, squared in Q28. */
 #define CALIBRATION_ONE_Q14 16384
-#define CALIBRATION_LEVEL_MIN_Q28 ((uint32_t)193944618UL)
+#define CALIBRATION_LEVEL_MIN_Q28 ((uint32_t)193944617UL)
 #define CALIBRATION_LEVEL_MAX_Q28 ((uint32_t)355005890UL)
 
 /*

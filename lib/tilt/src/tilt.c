@@ -191,7 +191,7 @@ static uint16_t magnitude_q6(int32_t a_q8)
 
 bool tilt_gravity_plausible(int32_t x_q8, int32_t y_q8, int32_t z_q8)
 {
-    const uint32_t lowest_q12 = 193944618UL;  /* (0.85 g * 256 LSB/g * 64)^2 = 13926.4^2 */
+    const uint32_t lowest_q12 = 193944617UL;  /* (0.85 g * 256 LSB/g * 64)^2 = 13926.4^2 */
     const uint32_t highest_q12 = 355005890UL; /* (1.15 g * 256 LSB/g * 64)^2 = 18841.6^2 */
     uint16_t x = magnitude_q6(x_q8);
     uint16_t y = magnitude_q6(y_q8);
