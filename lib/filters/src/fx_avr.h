@@ -130,7 +130,10 @@ FX_INLINE int32_t fx_scale_uq16(int32_t v, uint16_t b_uq16)
     return v;
 }
 
-/* Byte by byte from memory through one register: no registers to save. */
+/*
+ * Byte by byte from memory through one register: no registers to save. Memory is clobbered as a whole, because an operand
+ * for it would take a second of the two pointers that -mstrict-X leaves.
+ */
 FX_INLINE int32_t fx_plus(int32_t v, const int32_t *array, uint8_t index)
 {
     __asm__("ldd __tmp_reg__,%a[p]+%[o]\n\tadd %A[v],__tmp_reg__\n\t"
@@ -138,7 +141,8 @@ FX_INLINE int32_t fx_plus(int32_t v, const int32_t *array, uint8_t index)
             "ldd __tmp_reg__,%a[p]+%[o]+2\n\tadc %C[v],__tmp_reg__\n\t"
             "ldd __tmp_reg__,%a[p]+%[o]+3\n\tadc %D[v],__tmp_reg__"
             : [v] "+&r"(v)
-            : [p] "b"(array), [o] "i"(4U * index), "m"(array[index]));
+            : [p] "b"(array), [o] "i"(4U * index)
+            : "memory");
     return v;
 }
 
@@ -149,7 +153,8 @@ FX_INLINE int32_t fx_minus(int32_t v, const int32_t *array, uint8_t index)
             "ldd __tmp_reg__,%a[p]+%[o]+2\n\tsbc %C[v],__tmp_reg__\n\t"
             "ldd __tmp_reg__,%a[p]+%[o]+3\n\tsbc %D[v],__tmp_reg__"
             : [v] "+&r"(v)
-            : [p] "b"(array), [o] "i"(4U * index), "m"(array[index]));
+            : [p] "b"(array), [o] "i"(4U * index)
+            : "memory");
     return v;
 }
 
