@@ -15,6 +15,7 @@ import time
 
 sys.path.insert(0, "tools")
 import anchors  # noqa: E402
+import test_table  # noqa: E402
 from sampled import by_commit  # noqa: E402
 
 LIST = pathlib.Path("campaigns/breakages.txt")
@@ -24,19 +25,8 @@ UNBROKEN_LIMIT_S = 300
 # a judge hangs when it takes so many times as long as on the unbroken code: a loaded machine shall not pass for a catch
 HANG_TIMES, HANG_MIN_S = 10, 30
 
-# kind of judge (a host test is named by itself): what make builds for it, its program; the words after the kind choose among its tests
-PYTHON, WITH_PACKAGES = "python3", "build/venv/bin/python"
-JUDGES = {
-    "system": (["system_images"], PYTHON, "host_tests/system_tests.py"),
-    "fault_page": (["help"], PYTHON, "host_tests/test_fault_page.py"),
-    "resets": (["system_images"], PYTHON, "host_tests/test_resets.py"),
-    "faults": (["system_images"], PYTHON, "tools/faults.py"),
-    "robust": (["build/host/pipeline_replay"], WITH_PACKAGES, "host_tests/test_robust.py"),
-    "images": (["help"], PYTHON, "host_tests/test_images.py"),
-    "plotter": (["system_images"], PYTHON, "host_tests/test_plotter.py"),
-    "arduino": (["arduino_images"], PYTHON, "host_tests/test_arduino.py"),
-    "schedule": (["help"], PYTHON, "host_tests/test_schedule.py"),
-}
+# a judge that is no test of tools/test_table.py: what make builds for it, its program
+CAMPAIGN = test_table.Test(["system_images"], ["python3", "tools/faults.py"])
 
 COMPLETE = ".complete"  # a copy that was not cut short
 BUILT = ("host", "sim", "uno")  # folders of build that the first copy begins with
@@ -73,31 +63,29 @@ def prepare():
     (TREE / COMPLETE).touch()
 
 
-def program_of(judge):
-    """(targets of make, command) of a judge as the list names it."""
-    kind, *words = judge.split()
-    if kind in JUDGES:
-        targets, *command = JUDGES[kind]
-        return targets, command + words
-    return [f"build/host/{judge}"], [f"build/host/{judge}"]
+def test_of(kind):
+    """The test that a judge names, or None."""
+    tests = test_table.table()
+    return CAMPAIGN if kind == "campaign" else tests.get(test_table.full_name(kind, tests))
 
 
 def known(judge):
     """Whether there is such a judge."""
     kind = judge.split()[0]
-    return kind in JUDGES or kind in ELSEWHERE or pathlib.Path(f"host_tests/{judge}.c").is_file()
+    return kind in ELSEWHERE or test_of(kind) is not None
 
 
 def judged(judge, limit_s):
     """Builds and runs the judge: (None when it passes, else the first line that says what failed; seconds of the run)."""
-    targets, command = program_of(judge)
-    built = subprocess.run(["make", "-j2", *targets], cwd=TREE, capture_output=True, text=True, timeout=600, check=False)
+    kind, *words = judge.split()
+    test = test_of(kind)
+    built = subprocess.run(["make", "-j2", *test.targets], cwd=TREE, capture_output=True, text=True, timeout=600, check=False)
     if built.returncode != 0:
         said = [line for line in built.stderr.splitlines() if "rror" in line]
         return f"does not build: {said[0] if said else '?'}", 0
     began = time.monotonic()
     try:
-        done = subprocess.run(command, cwd=TREE, capture_output=True, text=True, timeout=limit_s, errors="replace", check=False)
+        done = subprocess.run([*test.command, *words], cwd=TREE, capture_output=True, text=True, timeout=limit_s, errors="replace", check=False)
     except subprocess.TimeoutExpired:
         return f"hangs: no end within {limit_s:.0f} s", limit_s
     took_s = time.monotonic() - began

@@ -36,7 +36,7 @@ def unknown(entry, entries):
     for judge in entry.judges:
         kind, *words = judge.split()
         if not breakages.known(judge):
-            yield f"{breakages.LIST}: '{entry.name}': there is no judge {kind}: no host_tests/{kind}.c, nor one of JUDGES in campaigns/breakages.py"
+            yield f"{breakages.LIST}: '{entry.name}': there is no judge {kind}: it is no test of tools/test_table.py"
         elif kind == "proof" and not set(words) <= set(entries):
             yield f"{breakages.LIST}: '{entry.name}': the proof has no entry {' '.join(sorted(set(words) - set(entries)))}"
         elif kind == "fuzz" and not set(words) <= set(fuzz.TARGETS):

@@ -5,6 +5,7 @@ the PC, `make t T=NAME` one; campaigns/breakages.py takes its judges from here.
     test_table.py t NAME [WORD...]    builds and runs one; the words go to its program (system_tests takes parts of names)
 """
 import difflib
+import functools
 import os
 import pathlib
 import subprocess
@@ -59,6 +60,7 @@ def on_chip(images):
     return found
 
 
+@functools.cache
 def table():
     """name -> Test. $CHIP_TESTS, $WARNINGS, $AVR_SMALL and $CHIP_SECOND come from the Makefile (TEST_ENV)."""
     tests = units()
@@ -73,11 +75,16 @@ def table():
     return tests
 
 
+def full_name(name, tests):
+    """`sprf` is test_sprf; None if there is none."""
+    return next((full for full in (name, f"test_{name}") if full in tests), None)
+
+
 def found(name, tests):
-    """The full name: `sprf` is test_sprf."""
-    for full in (name, f"test_{name}"):
-        if full in tests:
-            return full
+    """The full name, or the end of the program with names that are near."""
+    full = full_name(name, tests)
+    if full:
+        return full
     short = {each.removeprefix("test_"): each for each in tests}
     near = [each for each in short if name and name in each] + difflib.get_close_matches(name, short, NEAR, 0.5)
     near = list(dict.fromkeys(near))[:NEAR]
