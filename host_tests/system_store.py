@@ -26,7 +26,9 @@ def eeprom_is_written_on_the_chip_and_kept_in_the_file():
     assert said["ticks"] == "00000001", "3.4 ms are less than one tick of 8 ms"
     assert image.read_bytes() == bytes([0xFF] * 1023 + [0xA5])
     late_us = [int(value, 2) for name, value in lines if name == "late"]
-    assert len(late_us) == 7 and max(late_us) <= 20, f"main wakes {late_us} us behind its alarm"
+    assert len(late_us) == 7 and max(late_us) <= 20, f"main wakes {late_us} us after its alarm"
+    slept_us = [int(value, 2) for name, value in lines if name == "slept"]
+    assert len(slept_us) == 3 and max(slept_us) <= 40, f"main sleeps {slept_us} us although its alarm has passed"
 
 
 def probe(image, *faults, seed=1):

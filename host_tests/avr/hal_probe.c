@@ -1,7 +1,7 @@
 /*
  * Runs on the ATmega328P (simavr): the parts of the HAL that the firmware does not use yet, each answered with a line
  * on the UART. Reads EEPROM byte 1023, writes its complement, waits for the write by sleeping, reads it back; sets the
- * alarm and says how late main woke; then sleeps with interrupts off.
+ * alarm and says how late main woke, also where it had passed already; then sleeps with interrupts off.
  */
 #include <avr/interrupt.h>
 #include <avr/sleep.h>
@@ -43,6 +43,19 @@ static void say_alarm(uint16_t ahead_us)
     say(FLASH_TEXT("late"), late_us > UINT8_MAX ? UINT8_MAX : (uint8_t)late_us);
 }
 
+/* How long main sleeps at an alarm that passed so long ago, in us, saturating: hal_wake_at wakes it at once (hal_time.h). */
+static void say_passed(uint16_t ago_us)
+{
+    while (!hal_uart_tx_idle()) {
+    }
+    uint32_t begun_us = hal_time_us();
+    hal_wake_at(begun_us - ago_us);
+    hal_sleep_until_wake();
+    uint32_t slept_us = hal_time_us() - begun_us;
+    say(FLASH_TEXT("slept"), slept_us > UINT8_MAX ? UINT8_MAX : (uint8_t)slept_us);
+}
+
+static const uint16_t passed_us[] FLASH = { 0, 100, 900 };
 static const uint16_t alarms_us[] FLASH = { 300, 3000, 5000, 10000, 25000, 32766, 40000 };
 
 int main(void)
@@ -62,6 +75,9 @@ int main(void)
     say(FLASH_TEXT("after"), hal_eeprom_read(LAST_BYTE));
     for (uint8_t i = 0; i < sizeof alarms_us / sizeof alarms_us[0]; i++) {
         say_alarm(flash_u16(&alarms_us[i]));
+    }
+    for (uint8_t i = 0; i < sizeof passed_us / sizeof passed_us[0]; i++) {
+        say_passed(flash_u16(&passed_us[i]));
     }
     while (!hal_uart_tx_idle()) {
         hal_sleep_until_wake();
