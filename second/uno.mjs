@@ -46,8 +46,6 @@ export class Uno {
     this.portD.setPin(4, true); // D7: no pull-ups; nothing is wired to D4
     this.slept = 0;
     this.asleep = false;
-    this.handlers = 0; // interrupt handlers begun and not ended
-    this.starved = false; // the main loop gets no time, interrupts do
     this.typed = [];
     this.listen();
     if (!stock.includes('usart')) this.repairUsart();
@@ -129,7 +127,6 @@ export class Uno {
     cpu.data[SREG] &= ~I;
     cpu.cycles += 4;
     cpu.pc = interrupt.address;
-    this.handlers++;
     if (!interrupt.constant) cpu.clearInterrupt(interrupt);
   }
 
@@ -174,15 +171,9 @@ export class Uno {
     const { avrInstruction } = avr;
     if (this.asleep) this.wakeFor(until);
     while (cpu.cycles < until && !this.reset && !this.asleep) {
-      if (this.starved && this.handlers === 0 && cpu.data[SREG] & I) {
-        this.sleep(until);
-        if (!this.asleep) this.interrupt();
-        continue;
-      }
       const opcode = program[cpu.pc];
       avrInstruction(cpu);
       if (opcode === SLEEP) this.fallAsleep(until);
-      else if (opcode === RETI) this.handlers--;
       if (cpu.nextClockEvent !== null && cpu.nextClockEvent.cycles <= cpu.cycles) this.events();
       if (this.typed.length) this.sendTyped();
       // D13, 7.7: the instruction after SEI or RETI is executed before a pending interrupt
