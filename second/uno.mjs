@@ -7,8 +7,8 @@ export const CPU_HZ = 16e6;
 export const MCUSR = { powerOn: 1, external: 2, brownOut: 4, watchdog: 8 };
 
 const SLEEP = 0x9588, SEI = 0x9478, RETI = 0x9518;
-const SREG = 95, I = 0x80, SMCR = 0x53, SE = 1, MCUSR_ADDRESS = 0x54, UCSR0A = 0xc0, UDR0 = 0xc6, EIFR = 0x3c, EIMSK = 0x3d, EICRA = 0x69;
-const RXC = 0x80, UDRE = 0x20;
+const SREG = 95, I = 0x80, SMCR = 0x53, SE = 1, MCUSR_ADDRESS = 0x54, UCSR0A = 0xc0, UCSR0B = 0xc1, UDR0 = 0xc6, EIFR = 0x3c, EIMSK = 0x3d, EICRA = 0x69;
+const RXC = 0x80, UDRE = 0x20, RXEN = 0x10;
 const RAM = 0x100;
 
 function loadHex(text) {
@@ -61,7 +61,20 @@ export class Uno {
       cpu.data[UCSR0A] |= kept;
       return done;
     };
+    this.keepReceived();
     this.bufferTransmitter();
+  }
+
+  // D14, 20.11.2: RXC0 is "set when there are unread data in the receive buffer"; avr8js clears it by a write of UCSR0B while RXEN0 stays set
+  keepReceived() {
+    const { cpu, usart } = this;
+    const write = cpu.writeHooks[UCSR0B];
+    cpu.writeHooks[UCSR0B] = (value, old, address, mask) => {
+      const unread = cpu.data[UCSR0A] & RXC;
+      const done = write(value, old, address, mask);
+      if (unread && value & RXEN) cpu.setInterruptFlag(usart.RXC);
+      return done;
+    };
   }
 
   // D6, 20.6.3: a byte moves on into the shift register, "and UDRE0 says that the buffer is ready for new data" while that one is sent
@@ -97,7 +110,6 @@ export class Uno {
       this.lineCycles.push(this.cpu.cycles);
       this.line = '';
     };
-    this.usart.onRxComplete = () => { this.byteArrived = true; };
   }
 
   // D9, 13.2.3: INTF0 is set by the edge, whether INT0 is enabled or not
