@@ -30,7 +30,8 @@ SECOND_PLANTED += $(X)/planted/firmware/$(1)/firmware.hex
 endef
 
 # simrun with one source changed
-SECOND_SIM_CC = $(HOST_CC) -std=gnu11 -O2 $(WARNINGS) -Isim -Ilib/adxl345/src $$(pkg-config --cflags simavr | sed 's/-I/-isystem /g') -isystem /usr/include/simavr
+SECOND_SIM_CC = $(HOST_CC) -std=gnu11 -O2 $(WARNINGS) -Isim -Ilib/adxl345/src \
+                $$(pkg-config --cflags simavr | sed 's/-I/-isystem /g') -isystem /usr/include/simavr
 SECOND_SIM_OBJ := $(SIMRUN_SRC:%.c=$(X)/%.o)
 $(X)/sim/%.o: sim/%.c $(wildcard sim/*.h)
 	@mkdir -p $(@D)
@@ -54,11 +55,11 @@ $(eval $(call PLANT_SIMRUN,rate_of_3100_hz,sim/adxl345_model.c,s/return 3200\.0/
 
 second_built: $(SECOND_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay $(SECOND_PLANTED)
 
-## second: the images under avr8js with a sensor of their own, against simrun and the PC, into build/second.json (PART=ci: a part by turns)
+## second: the images under avr8js with a sensor of their own, against simrun and the PC, into build/second.json (PART=ci: a part by turns; ONLY=rows,planted)
 second:
 	@sh tools/deps.sh bench
 	@if sh tools/deps.sh second; then $(MAKE) -j2 second_built && \
-	    PART=$(PART) COUNT=$(shell git rev-list --count HEAD 2>/dev/null || echo 0) node second/run.mjs $(FILTER_SETS); \
+	    PART=$(PART) ONLY=$(ONLY) COUNT=$(shell git rev-list --count HEAD 2>/dev/null || echo 0) node second/run.mjs $(FILTER_SETS); \
 	else echo "skipped: 1 (make second: node, npm or avr8js is missing and could not be installed, as said above)"; echo "0 passed, 0 failed"; fi
 
 .PHONY: second second_built

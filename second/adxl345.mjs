@@ -39,7 +39,8 @@ export const AS_BUILT = {
 export class Adxl345 {
   // clock: {now() in cycles, after(cycles, f)}; feed(now): [x, y, z] in LSB of 3.9 mg, or null while the sensor has no sample;
   // onInt1(level); selfTest: the shift in LSB (1.77 and 1.47 times the middle of Table 1's limits, for 3.3 V)
-  constructor({ clock, feed, onInt1 = () => {}, address = 0x53, identity = 0xe5, selfTest = [522, -522, 698], clockPpm = 0, reading = {}, broken = {} }) {
+  constructor({ clock, feed, onInt1 = () => {}, address = 0x53, identity = 0xe5, selfTest = [522, -522, 698], clockPpm = 0,
+    reading = {}, broken = {} }) {
     Object.assign(this, { clock, feed, onInt1, address, identity, selfTest, clockPpm, broken });
     this.reading = { ...AS_BUILT, ...reading };
     this.served = []; // [cycle, [x, y, z]] of every sample measured

@@ -51,6 +51,10 @@ export function stampSpread(rows, times) {
   return rows.length ? high - low : 0;
 }
 
+// Begin and end of a fault are noted by a pass of the main loop, which comes with Timer1's tick of 8.192 ms when nothing else wakes it:
+// two runs whose clocks are microseconds apart may note each a tick apart.
+export const PASSES_MS = 2 * 8.192 + 1;
+
 // Words against words. Two clocks microseconds apart measure a rate to 0.02 %, and `toleranceMs` is granted to how long a fault was.
 export function compareWords(mine, other, toleranceMs = 0) {
   const near = [[/after (\d+) ms/, toleranceMs], [/measured ([\d.]+) Hz/, 0.2]];

@@ -1,6 +1,6 @@
 // One fault, in both simulators at the same time: the same words, the same counters, and the same rows.
 import { Board, rowsOf, notesOf } from './board.mjs';
-import { compareRows, compareWords } from './compare.mjs';
+import { PASSES_MS, compareRows, compareWords } from './compare.mjs';
 import { OUT, simrun } from './programs.mjs';
 import { feedOf, writePiece } from './streams.mjs';
 import { MCUSR } from './uno.mjs';
@@ -40,9 +40,6 @@ export const FAULTS = {
 };
 
 const MS = 3000, STOP_MS = 2500;
-// An end of a fault is noted by a pass of the main loop, and in silence the passes come with Timer1's tick, 131.072 ms / 16: two runs
-// whose clocks are microseconds apart may note it a tick apart.
-const PASS_MS = 9;
 
 const fasterScript = (rate) => (rate === 100 ? [] : [[200, 'stop'], [300, 'baud 500000'], [400, `rate ${rate}`], [500, 'go']]);
 
@@ -71,7 +68,7 @@ export function run(job) {
   fault.here(board, at);
   board.run(MS);
   const rows = compareRows(rowsOf(board.output), rowsOf(first.lines));
-  const words = compareWords(notesOf(board.output), notesOf(first.lines), PASS_MS);
+  const words = compareWords(notesOf(board.output), notesOf(first.lines), PASSES_MS);
   return { rows: rows.rows, different: rows.different, t_us_low: rows.t_us_low, t_us_high: rows.t_us_high,
     why: words ? `words differ: ${words}` : rows.different ? `rows differ: ${rows.first}` : null };
 }

@@ -77,7 +77,8 @@ function stamps(late, limit) {
 function judge(board, event, { stampsMs, mayFault }) {
   const rows = rowsOf(board.output).filter((row) => row[0] > WARM_MS * 1000 && !(row[9] & NOT_A_SAMPLE));
   const faults = notesOf(board.output).filter((note) => note.startsWith('# fault'));
-  if (mayFault !== null && rows.length === 0 && faults.some((f) => f.startsWith(`# fault ${mayFault}:`))) return { rows: 0, different: 0, fault: mayFault, why: null };
+  const refused = mayFault !== null && rows.length === 0 && faults.some((f) => f.startsWith(`# fault ${mayFault}:`));
+  if (refused) return { rows: 0, different: 0, fault: mayFault, why: null };
   const { wrong, twice, late } = compare(rows, board.sensor.served);
   const limit = event === 'nothing' ? STAMP_US : SILENT_US;
   const { worst, stretches } = stamps(late, limit);

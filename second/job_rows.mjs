@@ -1,7 +1,7 @@
 // One run: an image, a filter, a rate, a piece of a stream. The same samples and typed lines in avr8js, in simrun and on the PC.
 import { writeFileSync } from 'node:fs';
 import { Board, rowsOf, notesOf } from './board.mjs';
-import { compareRows, compareWords, thinned, beforeFault, stampSpread } from './compare.mjs';
+import { PASSES_MS, compareRows, compareWords, thinned, beforeFault, stampSpread } from './compare.mjs';
 import { OUT, simrun, pipeline, native } from './programs.mjs';
 import { feedOf, readCsv, writePiece } from './streams.mjs';
 
@@ -37,7 +37,8 @@ function compareWithPc(chip, pc, every) {
   const defined = pc.findIndex((row) => !held(row));
   const early = defined < 0 ? pc.length : defined;
   const unknown = pc.map((row, i) => i < early || (every > 1 && (held(row) || (i < chip.length && held(chip[i])))));
-  const known = (row, i) => (unknown[i] ? [...row.slice(0, 7), 0, row[8], row[9] & ~(FLAG_DISOWNED | FLAG_ROLL_UNDEFINED)] : [...row.slice(0, 9), row[9] & ~FLAG_DISOWNED]);
+  const known = (row, i) => [...row.slice(0, 7), unknown[i] ? 0 : row[7], row[8],
+    row[9] & ~FLAG_DISOWNED & ~(unknown[i] ? FLAG_ROLL_UNDEFINED : 0)];
   return compareRows(chip.map(known), pc.map(known));
 }
 
@@ -69,7 +70,7 @@ export function run(job) {
   const measured = board.sensor.served.map(([at]) => at / 16).filter((t) => t >= GO_MS * 1000);
   const spread = gaps ? 0 : Math.round(stampSpread(afterGo(rows), measured.filter((_, i) => i % force.every === force.every - 1)));
   const sim = compareRows(rows, simRows);
-  const words = compareWords(notes, notesOf(first.lines), gaps ? 1000 / job.rate : 0);
+  const words = compareWords(notes, notesOf(first.lines), gaps ? PASSES_MS : 0);
   const missing = Math.max(0, Math.abs(rows.length - simRows.length) - ROWS_AT_THE_END);
   return { rows: sim.rows, different: sim.different, pc_rows: pc.rows, pc_different: pc.different, every: force.every, rate_in_force: force.rate,
     t_us_low: sim.t_us_low, t_us_high: sim.t_us_high, stamp_spread_us: spread, why: judged({ sim, pc, words, missing, spread }) };
@@ -88,7 +89,7 @@ export function runWhole(job) {
   const pc = compareRows(rows.slice(0, count), rowsOf(pcLines).slice(0, count));
   const sim = compareRows(rows, rowsOf(first.lines));
   const missing = Math.max(0, Math.abs(rows.length - rowsOf(first.lines).length) - ROWS_AT_THE_END);
-  const words = compareWords(notesOf(board.output), notesOf(first.lines), job.stream.includes('gaps') ? 10 : 0);
+  const words = compareWords(notesOf(board.output), notesOf(first.lines), job.stream.includes('gaps') ? PASSES_MS : 0);
   return { rows: sim.rows, different: sim.different, pc_rows: pc.rows, pc_different: pc.different, t_us_low: sim.t_us_low, t_us_high: sim.t_us_high,
     why: judged({ sim, pc, words, missing, spread: 0 }) };
 }

@@ -20,7 +20,7 @@ export function imagesOf(sets) {
   return sets.map((set) => { const image = imageOf(set, sets[0]); return { set, image, filters: filtersOf(image) }; });
 }
 
-// Every filter of every image, each over every stream at every rate; the filters begin at different rows, so that together they see the whole of it
+// Every filter of every image over every stream at every rate; the filters begin at different rows, together they see the whole of it
 function rowJobs(images) {
   const pairs = images.flatMap(({ image, filters }) => filters.map((filter) => ({ image, filter })));
   return pairs.flatMap((pair, p) => streamNames().flatMap((stream, s) => RATES.map((rate, r) => {
@@ -33,14 +33,16 @@ function rowJobs(images) {
 const wholeJobs = (image) => streamNames().filter((s) => s !== 'tilt-400hz').map((stream) => (
   { check: 'whole-stream', kind: 'whole', image, rate: 100, stream, ms: Math.round(readCsv(`${STREAMS}/${stream}.csv`).at(-1)[0] / 1000) }));
 
-const faultJobs = (image) => Object.keys(FAULTS).map((fault) => ({ check: 'fault', kind: 'fault', image, fault, rate: FAULTS[fault].rate ?? 100 }));
+const faultJobs = (image) => Object.keys(FAULTS).map((fault) => (
+  { check: 'fault', kind: 'fault', image, fault, rate: FAULTS[fault].rate ?? 100 }));
 const sessionJobs = (image) => Object.keys(SESSIONS).map((session) => ({ check: 'session', kind: 'session', image, session, rate: 100 }));
 
 const readingJobs = (image) => Object.keys(READINGS).flatMap((reading, r) => Object.keys(EVENTS).flatMap((event, e) => [100, 400].map((rate, k) => (
   { check: 'reading', kind: 'reading', image, reading, event, rate, turn: r + e + k }))));
 
 const identityJobs = (images, phases) => images.flatMap(({ image }) => ADDRESSES.map((address) => (
-  { check: 'fault-2-words', kind: 'identity', image, address, typedMs: Array.from({ length: phases }, (_, k) => k * PHASES_UNTIL_MS / phases) })));
+  { check: 'fault-2-words', kind: 'identity', image, address,
+    typedMs: Array.from({ length: phases }, (_, k) => k * PHASES_UNTIL_MS / phases) })));
 
 const toldJobs = (image) => ADDRESSES.flatMap((address) => TOLD_FAULTS.map((fault) => ({ check: 'fault-words', kind: 'told', image, address, fault })));
 
@@ -49,10 +51,12 @@ const stockJobs = (images) => images.map(({ image }) => ({ check: 'stock-usart',
 // CI: one of so many turns, another one with each commit
 const CI_SHARE = { rows: 6, reading: 4 };
 
-export function planOf(images, part, turn = 0) {
+// only: names of checks, with commas between them
+export function planOf(images, part, turn = 0, only = '') {
   const shipped = images[0].image;
   const all = [...rowJobs(images), ...wholeJobs(shipped), ...faultJobs(shipped), ...sessionJobs(shipped), ...readingJobs(shipped),
     ...toldJobs(shipped), ...stockJobs(images), ...identityJobs(images, part === 'ci' ? PHASES_CI : PHASES)];
-  if (part !== 'ci') return all;
-  return all.filter((job) => job.check !== 'whole-stream' && (!CI_SHARE[job.check] || (job.turn + turn) % CI_SHARE[job.check] === 0));
+  const wanted = only ? all.filter((job) => only.split(',').includes(job.check)) : all;
+  if (part !== 'ci') return wanted;
+  return wanted.filter((job) => job.check !== 'whole-stream' && (!CI_SHARE[job.check] || (job.turn + turn) % CI_SHARE[job.check] === 0));
 }

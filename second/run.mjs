@@ -1,4 +1,5 @@
-// node second/run.mjs SET...: the plan, the planted faults, the sum, and build/second.json. PART=ci: a part; COUNT: which one.
+// node second/run.mjs SET...: the plan, the planted faults, the sum, and build/second.json. PART=ci: a part, COUNT says which;
+// ONLY=rows,planted: these checks.
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { planOf, imagesOf } from './plan.mjs';
 import { plantedJobs, judgePlanted } from './planted.mjs';
@@ -10,7 +11,8 @@ const named = ({ check, image, filter, rate, stream, fault, session, reading, ev
 
 const FIELDS = ['check', 'image', 'filter', 'rate', 'stream', 'offset', 'fault', 'session', 'reading', 'event', 'address', 'planted'];
 
-const recorded = (job, result) => ({ ...Object.fromEntries(FIELDS.filter((f) => job[f] !== undefined).map((f) => [f, job[f]])), passed: result.why === null, ...result });
+const recorded = (job, result) => ({
+  ...Object.fromEntries(FIELDS.filter((f) => job[f] !== undefined).map((f) => [f, job[f]])), passed: result.why === null, ...result });
 
 function tell(checks) {
   console.log('check            runs  failed    rows  different  PC rows  different  processor s');
@@ -35,8 +37,9 @@ function add(checks, check, result) {
 async function main() {
   mkdirSync('build/second', { recursive: true });
   const images = imagesOf(process.argv.slice(2));
-  const jobs = planOf(images, process.env.PART, Number(process.env.COUNT ?? 0));
-  const planted = plantedJobs(images[0].image);
+  const { PART, COUNT = 0, ONLY } = process.env;
+  const jobs = planOf(images, PART, Number(COUNT), ONLY);
+  const planted = ONLY && !ONLY.split(',').includes('planted') ? [] : plantedJobs(images[0].image);
   const records = [], checks = new Map(), failures = [], plantedResults = [];
   console.log(`second: ${jobs.length} runs, ${planted.length} with planted faults, two at a time`);
   let ended = 0;

@@ -7,7 +7,8 @@ export const CPU_HZ = 16e6;
 export const MCUSR = { powerOn: 1, external: 2, brownOut: 4, watchdog: 8 };
 
 const SLEEP = 0x9588, SEI = 0x9478, RETI = 0x9518;
-const SREG = 95, I = 0x80, SMCR = 0x53, SE = 1, MCUSR_ADDRESS = 0x54, UCSR0A = 0xc0, UCSR0B = 0xc1, UDR0 = 0xc6, EIFR = 0x3c, EIMSK = 0x3d, EICRA = 0x69;
+const SREG = 95, I = 0x80;
+const SMCR = 0x53, SE = 1, MCUSR_ADDRESS = 0x54, UCSR0A = 0xc0, UCSR0B = 0xc1, UDR0 = 0xc6, EIFR = 0x3c, EIMSK = 0x3d, EICRA = 0x69;
 const RXC = 0x80, UDRE = 0x20, RXEN = 0x10;
 const RAM = 0x100;
 
