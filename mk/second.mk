@@ -59,7 +59,7 @@ second_built: $(SECOND_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_repl
 second:
 	@sh tools/deps.sh bench
 	@if sh tools/deps.sh second; then $(MAKE) -j2 second_built && \
-	    PART=$(PART) ONLY=$(ONLY) COUNT=$(shell git rev-list --count HEAD 2>/dev/null || echo 0) node second/run.mjs $(FILTER_SETS); \
+	    PART=$(PART) ONLY=$(ONLY) PLANTED="$(SECOND_PLANTED)" COUNT=$(shell git rev-list --count HEAD 2>/dev/null || echo 0) node second/run.mjs $(FILTER_SETS); \
 	else echo "skipped: 1 (make second: node, npm or avr8js is missing and could not be installed, as said above)"; echo "0 passed, 0 failed"; fi
 
 .PHONY: second second_built

@@ -1,8 +1,6 @@
 // Faults planted in the firmware, in this sensor and in the first simulator's: the comparison must find each. What is built for them
 // stands in mk/second.mk.
-import { readdirSync, existsSync } from 'node:fs';
-
-const PLANTED = 'build/second/planted';
+import { basename, dirname } from 'node:path';
 
 // in our own sensor
 const SENSOR = {
@@ -23,14 +21,18 @@ const LOOKS = [
   (more) => ({ kind: 'session', session: 'selftest_pass', ...more }),
 ];
 
-const built = (kind) => (existsSync(`${PLANTED}/${kind}`) ? readdirSync(`${PLANTED}/${kind}`).sort() : []);
+// .../firmware/NAME/firmware.hex and .../simrun/NAME/simrun
+const nameOf = (path) => basename(dirname(path));
 
-export function plantedJobs(image) {
+// built: what make has built with a planted fault
+export function plantedJobs(image, built) {
+  const images = built.filter((path) => path.endsWith('.hex')), simruns = built.filter((path) => path.endsWith('/simrun'));
+  if (!images.length || !simruns.length) throw new Error('no image or no simrun with a planted fault: run it by make second, which builds them');
   const of = (planted, more) => ({ check: 'planted', kind: 'planted', planted, looks: LOOKS.map((look) => look({ image, ...more })) });
   return [
     ...Object.entries(SENSOR).map(([name, sensor]) => of(`second: ${name}`, { sensor })),
-    ...built('firmware').map((name) => of(`firmware: ${name}`, { image: `${PLANTED}/firmware/${name}/firmware.hex` })),
-    ...built('simrun').map((name) => of(`simrun: ${name}`, { simrun: `${PLANTED}/simrun/${name}/simrun` })),
+    ...images.map((path) => of(`firmware: ${nameOf(path)}`, { image: path })),
+    ...simruns.map((path) => of(`simrun: ${nameOf(path)}`, { simrun: path })),
   ];
 }
 
