@@ -91,5 +91,5 @@ export function runWhole(job) {
   const missing = Math.max(0, Math.abs(rows.length - rowsOf(first.lines).length) - ROWS_AT_THE_END);
   const words = compareWords(notesOf(board.output), notesOf(first.lines), job.stream.includes('gaps') ? PASSES_MS : 0);
   return { rows: sim.rows, different: sim.different, pc_rows: pc.rows, pc_different: pc.different, t_us_low: sim.t_us_low, t_us_high: sim.t_us_high,
-    why: judged({ sim, pc, words, missing, spread: 0 }) };
+    cpu_load: Math.round(board.load * 1e4) / 1e4, why: judged({ sim, pc, words, missing, spread: 0 }) };
 }

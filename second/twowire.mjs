@@ -13,11 +13,10 @@ export class TwoWire {
     this.once = []; // what happens once, in order: nack, nackdata, arbitration, buserror
     this.held = { sda: false, scl: false }; // by a short to ground
     this.hungClocks = 0; // the slave holds SDA low until it has seen so many clocks
-    this.sdaReleasedFor = 0; // bytes that are read as ones
     this.epoch = 0; // a TWI that was switched off has no transfer under way
     this.busLost = false;
     this.waiting = null; // a START for a free bus, a byte for a free SCL
-    this.log = null;
+    this.log = null; // an array: what passes on the bus, for people
     this.level = { sda: true, scl: true };
     portC.setPin(SDA, true);
     portC.setPin(SCL, true);
@@ -105,8 +104,7 @@ export class TwoWire {
   }
 
   byteRead() {
-    const sent = this.unplugged ? 0xff : this.sensor.read();
-    const byte = this.sdaReleasedFor > 0 ? (this.sdaReleasedFor--, 0xff) : sent;
+    const byte = this.unplugged ? 0xff : this.sensor.read();
     this.note(`<${byte.toString(16)}`);
     this.twi.completeRead(byte);
   }

@@ -47,6 +47,8 @@ export class Uno {
     this.portD.setPin(4, true); // D7: no pull-ups; nothing is wired to D4
     this.slept = 0;
     this.asleep = false;
+    this.handlers = 0; // interrupt handlers begun and not ended
+    this.starved = false;
     this.typed = [];
     this.listen();
     if (!stock.includes('usart')) this.repairUsart();
@@ -140,6 +142,7 @@ export class Uno {
     cpu.data[SREG] &= ~I;
     cpu.cycles += 4;
     cpu.pc = interrupt.address;
+    this.handlers++;
     if (!interrupt.constant) cpu.clearInterrupt(interrupt);
   }
 
@@ -173,6 +176,12 @@ export class Uno {
     this.sleep(until);
   }
 
+  // the main loop gets no time, as if what it calls never came back; interrupts go on. In the end it is awake.
+  starve(on) {
+    this.starved = on;
+    if (!on) this.asleep = false;
+  }
+
   wakeFor(until) {
     this.sleep(until);
     if (!this.asleep) this.interrupt();
@@ -184,9 +193,15 @@ export class Uno {
     const { avrInstruction } = avr;
     if (this.asleep) this.wakeFor(until);
     while (cpu.cycles < until && !this.reset && !this.asleep) {
+      if (this.starved && this.handlers === 0 && cpu.data[SREG] & I) {
+        this.sleep(until);
+        if (!this.asleep) this.interrupt();
+        continue;
+      }
       const opcode = program[cpu.pc];
       avrInstruction(cpu);
       if (opcode === SLEEP) this.fallAsleep(until);
+      else if (opcode === RETI) this.handlers--;
       if (cpu.nextClockEvent !== null && cpu.nextClockEvent.cycles <= cpu.cycles) this.events();
       if (this.typed.length) this.sendTyped();
       // D13, 7.7: the instruction after SEI or RETI is executed before a pending interrupt
