@@ -25,6 +25,7 @@ help:
 ## deps: install what any target needs (says what, before it does)
 deps:
 	@sh tools/deps.sh sim test check flash tilt
+	@sh tools/deps.sh second || echo "deps: make second will be skipped"
 
 .PHONY: help deps
 

@@ -1,8 +1,8 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
-# Groups: firmware sim test check flash flashtest arduino bench piocheck papers design tilt live fuzz coverage proof. Packages come by
+# Groups: firmware sim test check flash flashtest arduino bench piocheck papers design tilt live fuzz coverage proof second. Packages come by
 # apt-get, numpy and matplotlib (check: lizard, design: scipy, tilt: tools/pyproject.toml) by pip into build/venv, Unity by tools/get_unity.sh into build/unity
-# (UNITY_DIR=folder: use that one). Uses sudo only when not root.
+# (UNITY_DIR=folder: use that one), avr8js by npm into build/second. Uses sudo only when not root.
 set -eu
 
 cd "$(dirname "$0")/.."
@@ -15,6 +15,7 @@ want_scipy=no
 want_tilt=no
 want_unity=no
 want_pio=no
+want_avr8js=no
 pio_requirements='platformio==6.2.0 scons==4.11.1' # the versions that tools/pio_standins.py stands in for
 pio_venv=build/venv-pio
 
@@ -167,8 +168,9 @@ collect() {
             arduino) need_simulator; need g++ has g++; need python3 has python3; need arduino-core-avr has_arduino_core ;;
             fuzz) need_host_compiler; need python3 has python3; need binutils has objcopy ;;
             coverage) need_simulator; need_plots; need_unity; need gcovr has gcovr ;;
+            second) want_avr8js=yes; need nodejs has node; need npm has npm ;;
             proof) need python3 has python3; need frama-c-base has frama-c ;;
-            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage or proof" ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof or second" ;;
         esac
     done
     missing=${missing# }
@@ -274,6 +276,20 @@ install_pio() {
     echo "$pio_requirements" > "$pio_venv/requirements.installed"
 }
 
+# what the lock file names, and nothing older
+has_avr8js() {
+    [ -d build/second/node_modules/avr8js ] && cmp -s second/package-lock.json build/second/package-lock.installed
+}
+
+install_avr8js() {
+    echo "deps: installing with npm into build/second: avr8js"
+    mkdir -p build/second
+    cp second/package.json second/package-lock.json build/second/
+    (cd build/second && npm ci --ignore-scripts --no-audit --no-fund) > "$log" 2>&1 ||
+        fail "cannot install avr8js ($(grep -i 'npm err' "$log" | head -n 1)): check the network and npm's registry; log in $log"
+    cp second/package-lock.json build/second/package-lock.installed
+}
+
 install_unity() {
     if [ -n "${UNITY_DIR:-}" ]; then
         [ -f "$UNITY_DIR/unity.c" ] && [ -f "$UNITY_DIR/unity.h" ] && [ -f "$UNITY_DIR/unity_internals.h" ] ||
@@ -284,7 +300,7 @@ install_unity() {
     tools/get_unity.sh build/unity
 }
 
-[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof)"
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof, second)"
 collect "$@"
 mkdir -p build
 if [ -n "$missing" ]; then
@@ -309,4 +325,7 @@ if [ $want_lizard = yes ] && ! has_lizard; then
 fi
 if [ $want_unity = yes ]; then
     install_unity
+fi
+if [ $want_avr8js = yes ] && ! has_avr8js; then
+    install_avr8js
 fi

@@ -1,0 +1,65 @@
+# The firmware's images under avr8js (npm), with an ADXL345 written from the data sheet: second/README.md.
+
+X := $(B)/second
+SECOND_IMAGES := $(SET_IMAGES:.elf=.hex)
+
+$(U)/%/firmware.hex: $(U)/%/firmware.elf
+	@avr-objcopy -O ihex -R .eeprom $< $@
+
+# Faults planted for it. PLANT(name, source, sed's command): the source with one change, in a folder of its own; sed must find its place.
+define PLANT
+$(X)/planted/$(1)/$(notdir $(2)): $(2) mk/second.mk
+	@mkdir -p $$(@D)
+	@sed '$(3)' $$< > $$@
+	@! cmp -s $$< $$@ || { echo "second: planted fault $(1): its place in $(2) is gone" >&2; rm $$@; exit 1; }
+endef
+
+# the shipped image with one source changed
+define PLANT_FIRMWARE
+$(call PLANT,firmware/$(1),$(2),$(3))
+$(X)/planted/firmware/$(1)/plant.o: IMAGE_FILTERS = $(CHOSEN_FILTERS)
+$(X)/planted/firmware/$(1)/plant.o: $(X)/planted/firmware/$(1)/$(notdir $(2))
+	@$$(AVR_CC) $$(AVR_FLAGS) -I$(dir $(2)) -c $$< -o $$@
+
+$(X)/planted/firmware/$(1)/firmware.elf: $(X)/planted/firmware/$(1)/plant.o $(AVR_OBJ)
+	@$$(AVR_CC) $$(AVR_LINK) $$(filter-out $(U)/$(2:.c=.o) $(U)/filters.txt,$$^) -o $$@
+
+$(X)/planted/firmware/$(1)/firmware.hex: $(X)/planted/firmware/$(1)/firmware.elf
+	@avr-objcopy -O ihex -R .eeprom $$< $$@
+SECOND_PLANTED += $(X)/planted/firmware/$(1)/firmware.hex
+endef
+
+# simrun with one source changed
+SECOND_SIM_CC = $(HOST_CC) -std=gnu11 -O2 $(WARNINGS) -Isim -Ilib/adxl345/src \
+                $$(pkg-config --cflags simavr | sed 's/-I/-isystem /g') -isystem /usr/include/simavr
+SECOND_SIM_OBJ := $(SIMRUN_SRC:%.c=$(X)/%.o)
+$(X)/sim/%.o: sim/%.c $(wildcard sim/*.h)
+	@mkdir -p $(@D)
+	@$(SECOND_SIM_CC) -c $< -o $@
+
+define PLANT_SIMRUN
+$(call PLANT,simrun/$(1),$(2),$(3))
+$(X)/planted/simrun/$(1)/simrun: $(X)/planted/simrun/$(1)/$(notdir $(2)) $(SECOND_SIM_OBJ)
+	@$$(SECOND_SIM_CC) $$(filter-out $(X)/$(2:.c=.o),$$^) $$$$(pkg-config --libs simavr) -lsimavrparts -lelf -lm -lpthread -lutil -o $$@
+SECOND_PLANTED += $(X)/planted/simrun/$(1)/simrun
+endef
+
+$(eval $(call PLANT_FIRMWARE,bytes_swapped,lib/adxl345/src/adxl345_integrity.c,s/(low | (uint16_t)((uint16_t)high << 8))/(high | (uint16_t)((uint16_t)low << 8))/))
+$(eval $(call PLANT_FIRMWARE,ten_bits,lib/adxl345/src/adxl345_table.c,s/ADXL345_FORMAT_FULL_RES | force/force/))
+$(eval $(call PLANT_FIRMWARE,guard_of_2_75_sigma,lib/filters/src/adaptive_setup.c,s/? 768U : 1152U/? 704U : 1056U/))
+$(eval $(call PLANT_FIRMWARE,clock_a_thousandth_slow,hal/avr/hal_time.c,s/hal_tick_us += HAL_TICK_US;/hal_tick_us += HAL_TICK_US - 8;/))
+$(eval $(call PLANT_SIMRUN,bytes_alike,sim/adxl345_model.c,s/2 \* axis\] = (uint8_t)word;/2 * axis] = (uint8_t)(word >> 8);/))
+$(eval $(call PLANT_SIMRUN,fifo_of_30,sim/adxl345_model.c,s/ADXL345_MODEL_FIFO_DEPTH/(ADXL345_MODEL_FIFO_DEPTH - 3)/))
+$(eval $(call PLANT_SIMRUN,never_pops,sim/adxl345_model.c,s/(uint8_t)(m->fifo_count - 1)/m->fifo_count/))
+$(eval $(call PLANT_SIMRUN,rate_of_3100_hz,sim/adxl345_model.c,s/return 3200\.0/return 3100.0/))
+
+second_built: $(SECOND_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay $(SECOND_PLANTED)
+
+## second: the images under avr8js with a sensor of their own, against simrun and the PC, into build/second.json (PART=ci: a part by turns; ONLY=rows,planted)
+second:
+	@sh tools/deps.sh bench
+	@if sh tools/deps.sh second; then $(MAKE) -j2 second_built && \
+	    PART=$(PART) ONLY=$(ONLY) PLANTED="$(SECOND_PLANTED)" COUNT=$(shell git rev-list --count HEAD 2>/dev/null || echo 0) node second/run.mjs $(FILTER_SETS); \
+	else echo "skipped: 1 (make second: node, npm or avr8js is missing and could not be installed, as said above)"; echo "0 passed, 0 failed"; fi
+
+.PHONY: second second_built

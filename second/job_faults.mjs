@@ -1,0 +1,78 @@
+// One fault, in both simulators at the same time: the same words, the same counters, and the same rows.
+import { Board, rowsOf, notesOf } from './board.mjs';
+import { PASSES_MS, compareRows, compareWords } from './compare.mjs';
+import { OUT, simrun } from './programs.mjs';
+import { feedOf, writePiece } from './streams.mjs';
+import { MCUSR } from './uno.mjs';
+
+// the bus is free, and no try of the firmware falls within microseconds of the fault's end in any of these runs
+const AT_MS = 1001.5, BEHIND_SAMPLE = { 100: 0.5, 400: 0.8, 800: 0.8 };
+
+const lasting = (ms, begin, end) => (board, at) => board.at(at, begin).at(at + ms, end);
+const unplugged = (ms) => lasting(ms, (b) => { b.wires.unplugged = true; }, (b) => { b.wires.unplugged = false; });
+const held = (wire, ms) => lasting(ms, (b) => b.wires.hold(wire, true), (b) => b.wires.hold(wire, false));
+const cut = (ms) => lasting(ms, (b) => b.cutInt1(true), (b) => b.cutInt1(false));
+const noPower = (ms) => lasting(ms, (b) => b.sensor.powerOff(), (b) => b.sensor.powerOn());
+const starved = (ms) => lasting(ms, (b) => b.uno.starve(true), (b) => b.uno.starve(false));
+const once = (kind) => (board, at) => board.at(at, (b) => b.wires.once.push(kind));
+
+// name: [what simrun calls it, the same here, when, rate, ms of the run, tolerance of a fault's length in ms]
+export const FAULTS = {
+  absent: { sim: ['0ms:unplug'], here: (b) => { b.wires.unplugged = true; }, at: 0 },
+  unplugged_500_ms: { sim: [':unplug:500'], here: unplugged(500) },
+  unplugged_20_ms: { sim: [':unplug:20'], here: unplugged(20) },
+  sda_low_300_ms: { sim: [':sda:300'], here: held('sda', 300) },
+  sda_low_30_ms: { sim: [':sda:30'], here: held('sda', 30) },
+  scl_low_300_ms: { sim: [':scl:300'], here: held('scl', 300) },
+  slave_hangs_in_a_byte: { sim: [':hang:5'], here: (b, at) => b.at(at, () => b.wires.hang(5)) },
+  power_lost_5_ms: { sim: [':power:5'], here: noPower(5) },
+  power_lost_300_ms: { sim: [':power:300'], here: noPower(300) },
+  address_refused_once: { sim: [':nack'], here: once('nack') },
+  data_refused_once: { sim: [':nackdata'], here: once('nackdata') },
+  arbitration_lost_once: { sim: [':arb'], here: once('arbitration') },
+  bus_error_once: { sim: [':buserr'], here: once('buserror') },
+  int1_cut_25_ms: { sim: [':noint:25'], here: cut(25) },
+  int1_cut_500_ms: { sim: [':noint:500'], here: cut(500) },
+  int1_cut_60_ms_800_hz: { sim: [':noint:60'], here: cut(60), rate: 800 },
+  unplugged_100_ms_400_hz: { sim: [':unplug:100'], here: unplugged(100), rate: 400 },
+  sda_low_100_ms_400_hz: { sim: [':sda:100'], here: held('sda', 100), rate: 400 },
+  starved_20_ms_800_hz: { sim: [':starve:20'], here: starved(20), rate: 800 },
+  starved_60_ms_800_hz: { sim: [':starve:60'], here: starved(60), rate: 800 }, // the sensor's FIFO overflows
+  starved_200_ms_100_hz: { sim: [':starve:200'], here: starved(200) },
+  reset_button: { sim: [':reset'], here: (b, at) => b.at(at, () => b.reset(MCUSR.external)), options: ['--expect-resets', 1] },
+  nothing: { sim: [], here: () => {} },
+};
+
+const MS = 3000, STOP_MS = 2500;
+
+const fasterScript = (rate) => (rate === 100 ? [] : [[200, 'stop'], [300, 'baud 500000'], [400, `rate ${rate}`], [500, 'go']]);
+
+// so much of a sample period behind the last sample before `ms`
+function behindSample(served, ms, rate, share) {
+  const last = served.map((s) => s[0]).filter((t) => t < ms * 1000).at(-1) ?? ms * 1000;
+  return (last + share * 1e6 / rate) / 1000;
+}
+
+export function run(job) {
+  const fault = FAULTS[job.fault];
+  const rate = fault.rate ?? 100;
+  const base = `${OUT}/run-${process.pid}`;
+  writePiece(`${base}.csv`, 'rest-2lsb', { rate, offset: 0, count: MS / 1000 * rate + 100 });
+  const ask = { elf: job.image.replace('.hex', '.elf'), stream: `${base}.csv`, simrun: job.simrun };
+  const before = simrun(base, { ...ask, ms: AT_MS, script: fasterScript(rate) });
+  const at = fault.at ?? behindSample(before.served, AT_MS, rate, BEHIND_SAMPLE[rate]);
+  ask.faults = fault.sim.map((f) => (f[0] === ':' ? `${at}ms${f}` : f));
+  ask.options = fault.options;
+  const { served } = simrun(base, { ...ask, ms: STOP_MS, script: fasterScript(rate) });
+  // the counters are asked for when nothing counts any more
+  const script = [...fasterScript(rate), [behindSample(served, STOP_MS, rate, 0.4), 'stop'], [MS - 300, 'status']];
+  const first = simrun(base, { ...ask, ms: MS, script });
+  const board = new Board({ image: job.image, feed: feedOf(first.served, 0.4e6 / rate), sensor: job.sensor });
+  for (const [when, line] of script) board.type(when, line);
+  fault.here(board, at);
+  board.run(MS);
+  const rows = compareRows(rowsOf(board.output), rowsOf(first.lines));
+  const words = compareWords(notesOf(board.output), notesOf(first.lines), PASSES_MS);
+  return { rows: rows.rows, different: rows.different, t_us_low: rows.t_us_low, t_us_high: rows.t_us_high,
+    why: words ? `words differ: ${words}` : rows.different ? `rows differ: ${rows.first}` : null };
+}

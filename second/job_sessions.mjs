@@ -1,0 +1,61 @@
+// A person at the board: what is typed, and that both simulators' boards answer alike.
+import { readFileSync, rmSync } from 'node:fs';
+import { Board, rowsOf, notesOf } from './board.mjs';
+import { compareRows, compareWords } from './compare.mjs';
+import { OUT, simrun } from './programs.mjs';
+import { feedOf } from './streams.mjs';
+import { MCUSR } from './uno.mjs';
+
+const STREAM = 'sim/streams/rest-2lsb.csv';
+// what a session says must hold these words, so that two boards that do nothing do not pass
+const selfTest = (x, y, z, says) => (
+  { part: `selftest=${x},${y},${z}`, selfTest: [x, y, z], script: [[505, 'selftest']], ms: 3500, says });
+
+export const SESSIONS = {
+  calibrate_tare_save_reset: {
+    script: [[505, 'cal'], [4505, 'tare'], [8505, 'stop'], [8805, 'rate 200'], [8905, 'save'], [9505, 'go'],
+      [12005, 'offset'], [12105, 'level'], [12205, 'settings']],
+    resetAt: 10501.5, ms: 13000, says: [/^# offset /, /^# level /, /^# saved/, /^# settings: as saved/, /rate 200 Hz/],
+  },
+  // the limits for 3.3 V (docs/protocol.md): x 88.5 to 955.8, y the same downwards, z 110.25 to 1286.25 LSB
+  selftest_pass: selfTest(522, -522, 698, [/x .*: pass/, /y .*: pass/, /z .*: pass/]),
+  selftest_low: selfTest(60, -60, 100, [/x .*: FAIL/, /y .*: FAIL/, /z .*: FAIL/]),
+  selftest_high: selfTest(1000, -522, 698, [/x .*: high/, /y .*: pass/, /z .*: pass/]),
+  selftest_reversed: selfTest(-522, 522, -698, [/x .*: FAIL/, /y .*: FAIL/, /z .*: FAIL/]),
+  noise_and_odr: { ppm: 20000, script: [[1505, 'odr'], [2005, 'noise']], ms: 6000, says: [/^# odr 102\.0\d Hz/, /^# noise x /] },
+  slow_sensor: { ppm: -40000, script: [[1505, 'odr']], ms: 3000, says: [/^# odr 96\.0\d Hz/] },
+  typing: {
+    script: [[505, 'help'], [3505, 'foo'], [3605, 'filter nosuch'], [3705, 'rate 13'], [3805, 'range 4'], [4205, 'axes -yxz'],
+      [4305, 'every 3'], [4605, 'baud 250000'], [5005, 'mode plot'], [5505, 'mode csv']],
+    ms: 6500, says: [/^# refused 1: /, /^# refused 4: filter /, /^# range 4 g/, /^# every 3/, /^# baud 250000/, /^roll_raw:/],
+  },
+};
+
+export function run(job) {
+  const session = SESSIONS[job.session];
+  const base = `${OUT}/run-${process.pid}`;
+  rmSync(`${base}.eeprom`, { force: true }); // of the session before
+  const options = ['--eeprom', `${base}.eeprom`, '--ppm', session.ppm ?? 0, '--loop'];
+  if (session.part) options.push('--part', session.part);
+  if (session.resetAt) options.push('--expect-resets', 1);
+  const faults = session.resetAt ? [`${session.resetAt}ms:reset`] : [];
+  const elf = job.image.replace('.hex', '.elf');
+  const first = simrun(base, { elf, stream: STREAM, ms: session.ms, script: session.script, faults, options, simrun: job.simrun });
+  const sensor = { selfTest: session.selfTest, clockPpm: session.ppm ?? 0, ...job.sensor };
+  const board = new Board({ image: job.image, feed: feedOf(first.served, 1000), sensor });
+  for (const [at, line] of session.script) board.type(at, line);
+  if (session.resetAt) board.at(session.resetAt, () => board.reset(MCUSR.external));
+  board.run(session.ms);
+  return judge(session, board, first, readFileSync(`${base}.eeprom`));
+}
+
+function judge(session, board, first, simCells) {
+  const notes = notesOf(board.output);
+  const rows = compareRows(rowsOf(board.output), rowsOf(first.lines));
+  const words = compareWords(notes, notesOf(first.lines));
+  const unsaid = session.says.find((pattern) => !notes.some((note) => pattern.test(note)));
+  const cells = Buffer.compare(Buffer.from(board.uno.eepromCells.memory), simCells) !== 0;
+  const why = words ? `words differ: ${words}` : rows.different ? `rows differ: ${rows.first}` :
+    unsaid ? `nobody said ${unsaid}` : cells ? 'the EEPROMs differ' : null;
+  return { rows: rows.rows, different: rows.different, why };
+}
