@@ -41,7 +41,7 @@ static void test_every_other_byte_in_a_line_is_refused_as_such(void)
     }
 }
 
-/* The clock of microseconds wraps after 71.6 minutes: 72 are not told as half a minute. */
+/* The clock of microseconds wraps after 71.6 minutes: 72 are not reported as half a minute. */
 static void test_an_outage_longer_than_the_wrap_of_the_clock(void)
 {
     talk_start();
@@ -51,10 +51,10 @@ static void test_an_outage_longer_than_the_wrap_of_the_clock(void)
     board_run_ms(minutes_ms);
     adxl345_model_power(&hal_host_sensor, true);
     board_run_ms(500);
-    double told_ms = 0.0;
-    TEST_ASSERT_EQUAL_INT(1, sscanf(board_last_note(), "# fault 1 over: samples again after %lf ms", &told_ms));
+    double reported_ms = 0.0;
+    TEST_ASSERT_EQUAL_INT(1, sscanf(board_last_note(), "# fault 1 over: samples again after %lf ms", &reported_ms));
     TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms > minutes_ms);
-    TEST_ASSERT_DOUBLE_WITHIN(1100.0, minutes_ms, told_ms); /* whole seconds, and the way back */
+    TEST_ASSERT_DOUBLE_WITHIN(1100.0, minutes_ms, reported_ms); /* whole seconds, and the way back */
 }
 
 /* Whether the LED is lit at a time, by the pattern of fault 1: two flashes of 65.5 ms in 1,049 ms. */
@@ -131,8 +131,8 @@ static int z_mg_of(int16_t lsb)
     return row->mg[2];
 }
 
-/* A row tells up to 32 g, which is 3,695 LSB there; what is more is told as 32 g, to the rail of 4,095 LSB, 35.5 g. */
-static void test_a_row_tells_up_to_32_g(void)
+/* A row shows up to 32 g, which is 3,695 LSB there; what is more is shown as 32 g, to the rail of 4,095 LSB, 35.5 g. */
+static void test_a_row_shows_up_to_32_g(void)
 {
     for (int lsb = 3600; lsb <= 4094; lsb += 19) {
         double exact_mg = fmin(32000.0, 1000.0 * lsb * 1.7320508 / 200.0);
@@ -202,7 +202,7 @@ int main(void)
     RUN_TEST(test_an_outage_longer_than_the_wrap_of_the_clock);
     RUN_TEST(test_a_service_without_time_is_late_by_20_ms_at_most);
     RUN_TEST(test_a_run_of_ten_seconds_counts_as_lasting);
-    RUN_TEST(test_a_row_tells_up_to_32_g);
+    RUN_TEST(test_a_row_shows_up_to_32_g);
     RUN_TEST(test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range);
     RUN_TEST(test_the_first_row_after_a_header_is_a_whole_every_later);
     return UNITY_END();

@@ -89,7 +89,7 @@ static void test_one_jump_in_sixteen_is_the_limit(void)
     }
 }
 
-/* Eight jumps reach 128 and are told; with a single calm sample among them they are one short, and the ninth is told. */
+/* Eight jumps reach 128 and are reported; with a single calm sample among them they are one short, and the ninth is reported. */
 static void test_eight_jumps_with_a_calm_sample_are_one_short(void)
 {
     for (unsigned before = 1; before < 8; before++) {

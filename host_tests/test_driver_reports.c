@@ -1,5 +1,5 @@
 /*
- * What the driver tells of itself and does to the bus: phases, marks and counters one by one, how fast the bus is, what
+ * What the driver reports of itself and does to the bus: phases, marks and counters one by one, how fast the bus is, what
  * is written and read when the sensor is configured, what a loss of the sensor leaves known.
  */
 #include "adxl345.h"
@@ -274,7 +274,7 @@ static void test_an_edge_while_stopped_is_nobodys(void)
     TEST_ASSERT_FALSE(burst_running());
     hal_host_faults.int1_high = false;
     rig_run_ms(200);
-    hal_host_faults.int1_cut = true; /* the first sample is read by the clock, with others that tell its age */
+    hal_host_faults.int1_cut = true; /* the first sample is read by the clock, with others that give its age */
     rig.limit_us = 10000 / 2 + 1000;
     size_t before = rig.taken_count;
     adxl345_start(&at_100_hz);
