@@ -1,6 +1,6 @@
 /*
- * Numbers that a person meets, just inside and just beyond their bounds: characters of a line, an outage longer than the
- * clock's wrap, how late the service may be, when a run counts as lasting, the largest acceleration of a row.
+ * Numbers that a person meets, just inside and just beyond their bounds: characters of a line, an outage longer than
+ * the clock's wrap, how late the service may be, when a run counts as lasting, the largest acceleration of a row.
  */
 #include <math.h>
 #include <stdio.h>
@@ -65,8 +65,8 @@ static bool lit_at(uint32_t t_us)
 }
 
 /*
- * Passes that never have time for the service (4 ms apart) hold it up by 20 ms at most: what it shows is what was due at
- * some moment of the last 24 ms.
+ * Passes that never have time for the service (4 ms apart) hold it up by 20 ms at most: what it shows is what was due
+ * at some moment of the last 24 ms.
  */
 static void test_a_service_without_time_is_late_by_20_ms_at_most(void)
 {
@@ -108,7 +108,9 @@ static uint16_t rate_after_three_resets(double run_ms)
     return settings.rate_dhz;
 }
 
-/* What hangs three times, each within 10 s of its start, gets the lowest rate; a run of more than that was a good one. */
+/*
+ * What hangs three times, each within 10 s of its start, gets the lowest rate; a run of more than that was a good one.
+ */
 static void test_a_run_of_ten_seconds_counts_as_lasting(void)
 {
     TEST_ASSERT_EQUAL_UINT16(125, rate_after_three_resets(9700.0));
@@ -174,7 +176,9 @@ static void test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range
     TEST_ASSERT_TRUE_MESSAGE(waited > 3, "no sample of the old range met the new one");
 }
 
-/* `every 50` counts from the header on, whatever was counted before a reset: the first row is that of the 50th sample. */
+/*
+ * `every 50` counts from the header on, whatever was counted before a reset: the first row is that of the 50th sample.
+ */
 static void test_the_first_row_after_a_header_is_a_whole_every_later(void)
 {
     for (double before_ms = 200.0; before_ms <= 500.0; before_ms += 100.0) {

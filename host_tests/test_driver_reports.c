@@ -1,6 +1,6 @@
 /*
- * What the driver reports of itself and does to the bus: phases, marks and counters one by one, how fast the bus is, what
- * is written and read when the sensor is configured, what a loss of the sensor leaves known.
+ * What the driver reports of itself and does to the bus: phases, marks and counters one by one, how fast the bus is,
+ * what is written and read when the sensor is configured, what a loss of the sensor leaves known.
  */
 #include "adxl345.h"
 #include "adxl345_burst.h"
@@ -83,7 +83,9 @@ static void test_the_bus_is_fast_at_800_hz_alone(void)
     }
 }
 
-/* DEVID is read, 11 registers are written, the last 8 read back: 9 bytes come, and none is written while it measures. */
+/*
+ * DEVID is read, 11 registers are written, the last 8 read back: 9 bytes come, and none is written while it measures.
+ */
 static void test_what_the_bus_carries_to_configure(void)
 {
     adxl345_start(&at_100_hz);

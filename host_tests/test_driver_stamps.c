@@ -1,6 +1,6 @@
 /*
- * The times of samples that are read late, where a bound decides: how long the sensor can hold one, how late an edge may
- * be, what a cut or an empty reading proves of the sample that follows.
+ * The times of samples that are read late, where a bound decides: how long the sensor can hold one, how late an edge
+ * may be, what a cut or an empty reading proves of the sample that follows.
  */
 #include "adxl345.h"
 #include "adxl345_burst.h"
@@ -124,8 +124,8 @@ static void test_an_edge_counts_more_than_a_nominal_period(void)
 }
 
 /*
- * INT1 comes back to a sensor that holds so many samples: its edge is late for the oldest, by more than two periods from
- * three on. What follows it gives its age, but for the half period that the newest may be old, and the burst.
+ * INT1 comes back to a sensor that holds so many samples: its edge is late for the oldest, by more than two periods
+ * from three on. What follows it gives its age, but for the half period that the newest may be old, and the burst.
  */
 static void test_the_edge_of_int1_that_comes_back_is_not_the_samples(void)
 {

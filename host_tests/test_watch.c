@@ -72,7 +72,9 @@ static void test_share_of_doubled_readings(void)
     }
 }
 
-/* A jump raises the score by 16 and another sample lowers it by 1: one in sixteen grows by 1, one in seventeen never. */
+/*
+ * A jump raises the score by 16 and another sample lowers it by 1: one in sixteen grows by 1, one in seventeen never.
+ */
 static void test_one_jump_in_sixteen_is_the_limit(void)
 {
     for (unsigned calm = 15; calm <= 16; calm++) {
@@ -89,7 +91,10 @@ static void test_one_jump_in_sixteen_is_the_limit(void)
     }
 }
 
-/* Eight jumps reach 128 and are reported; with a single calm sample among them they are one short, and the ninth is reported. */
+/*
+ * Eight jumps reach 128 and are reported; with a single calm sample among them they are one short, and the ninth is
+ * reported.
+ */
 static void test_eight_jumps_with_a_calm_sample_are_one_short(void)
 {
     for (unsigned before = 1; before < 8; before++) {
