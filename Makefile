@@ -34,10 +34,13 @@ AVR_CC      := avr-gcc
 # what makes the smallest image with avr-gcc 5.4.0 (and no table of a switch in RAM); the filters keep their speed
 AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -maccumulate-args -fshort-enums -fno-inline-small-functions \
                -fno-tree-dominator-opts -fno-tree-switch-conversion -fno-forward-propagate \
-               -fno-tree-loop-ivcanon -fno-tree-copy-prop -fno-move-loop-invariants -frename-registers -fno-jump-tables
-AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -gdwarf-2 -ffunction-sections -fdata-sections $(WARNINGS) \
+               -fno-tree-loop-ivcanon -fno-tree-copy-prop -fno-move-loop-invariants -frename-registers -fno-jump-tables -mstrict-X
+# lines, which change a few bytes, and no variables, which would change 50 of code through link-time optimisation: every program below,
+# flashed, tested, profiled or traced, is the same bits
+AVR_DEBUG   := -gdwarf-2 -g1
+AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr $(FILTER_FLAG)
-AVR_LINK    := -mmcu=atmega328p -gdwarf-2 $(AVR_SMALL) -Wl,--gc-sections
+AVR_LINK    := -mmcu=atmega328p $(AVR_DEBUG) $(AVR_SMALL) -Wl,--gc-sections
 AVR_SRC     := $(APP_SRC) $(LIB_SRC) $(wildcard hal/avr/*.c)
 AVR_OBJ     := $(AVR_SRC:%.c=$(U)/%.o)
 include mk/images.mk
@@ -86,52 +89,8 @@ monitor:
 
 .PHONY: firmware size flash monitor
 
-# --- the PC ----------------------------------------------------------------------------------------------------------
-H := $(B)/host
-HOST_CC    := gcc
-HOST_CXX   := g++
-SANITIZE   := -fsanitize=address,undefined -fno-sanitize-recover=all
-HOST_INC   := $(INCLUDES) -Ihal/host -Isim -Ihost_tests -isystem $(UNITY_DIR)
-HOST_FLAGS := -std=c11 -O1 -g -D_POSIX_C_SOURCE=200809L -DHANG_TEST=1 -DSUPERVISOR=1 -DUNITY_INCLUDE_DOUBLE $(HOST_INC)
-HOST_SRC   := $(filter-out firmware/main.c,$(APP_SRC)) $(LIB_SRC) $(wildcard hal/host/*.c) sim/adxl345_model.c sim/stream.c
-HOST_OBJ   := $(patsubst %.c,$(H)/%.o,$(HOST_SRC) $(wildcard host_tests/support_*.c))
-REF_OBJ    := $(patsubst %.cpp,$(H)/%.o,$(wildcard host_tests/reference_*.cpp))
-TESTS      := $(patsubst host_tests/%.c,$(H)/%,$(wildcard host_tests/test_*.c))
-
-$(H)/%.o: %.c Makefile
-	@mkdir -p $(@D)
-	@$(HOST_CC) $(HOST_FLAGS) $(WARNINGS) $(SANITIZE) -MMD -MP -c $< -o $@
-
-# the references: Eigen asserts its own bounds, and test_adaptive_reference would take a minute more with the address sanitizer
-$(H)/%.o: %.cpp Makefile
-	@mkdir -p $(@D)
-	@$(HOST_CXX) -std=c++17 -O2 -g -Wall -Wextra -Werror -Ihost_tests $(HOST_INC) -isystem /usr/include/eigen3 -fsanitize=undefined -fno-sanitize-recover=all -MMD -MP -c $< -o $@
-
-$(H)/unity.o: $(UNITY_DIR)/unity.c
-	@mkdir -p $(@D)
-	@$(HOST_CC) -std=c11 -O1 -g -DUNITY_INCLUDE_DOUBLE -DUNITY_USE_FLUSH_STDOUT $(SANITIZE) -c $< -o $@
-
-# an archive, so that a test holds only the references it asks: with them all it takes 55 MB
-$(H)/libreference.a: $(REF_OBJ)
-	@rm -f $@
-	@ar rcs $@ $^
-
-$(H)/test_%: $(H)/host_tests/test_%.o $(HOST_OBJ) $(H)/unity.o $(H)/libreference.a
-	@$(HOST_CXX) $(SANITIZE) $^ -lm -o $@
-
-# the replay is optimised and without sanitizers: it is a tool as well
-$(H)/native_replay: host_tests/native_replay.c $(HOST_SRC) $(wildcard */*.h lib/*/src/*.h hal/*/*.h)
-	@mkdir -p $(@D)
-	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) host_tests/native_replay.c $(HOST_SRC) -lm -o $@
-
-$(H)/pipeline_replay: host_tests/pipeline_replay.c $(HOST_SRC) $(wildcard */*.h lib/*/src/*.h hal/*/*.h)
-	@mkdir -p $(@D)
-	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) -Wl,--wrap=parameters_start,--wrap=noise_r_lsb2_q8 \
-	    host_tests/pipeline_replay.c $(HOST_SRC) -lm -o $@
-
-$(H)/exhaustive_isqrt: host_tests/exhaustive_isqrt.c lib/tilt/src/tilt.c lib/filters/src/fx.c $(wildcard lib/*/src/*.h)
-	@mkdir -p $(@D)
-	@$(HOST_CC) $(HOST_FLAGS) -O3 -flto $(WARNINGS) $(filter %.c,$^) -o $@
+# --- the PC ---------------------------------------------------------------------------------------------------------------
+include mk/host.mk
 
 # --- the simulator ---------------------------------------------------------------------------------------------------
 S := $(B)/sim
@@ -153,6 +112,9 @@ sim:
 	@$(MAKE) $(call image_with,$(FILTER)) $(S)/simrun
 	@sh tools/sim.sh "$(call image_with,$(FILTER))" "$(STREAM)" "$(FILTER)" "$(RATE)" "$(OUT)"
 
+# what the programs that run tests have to know of this build
+TEST_ENV = CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" CHIP_SECOND="$(CHIP_SECOND)"
+
 ## test: unit tests on the PC, then the firmware in the simulator against the PC
 test:
 	@sh tools/deps.sh test
@@ -161,8 +123,19 @@ test:
 	@sh tools/deps.sh design || echo "test: test_design will be skipped"
 	@sh tools/deps.sh tilt || echo "test: the tests of tilt will be skipped"
 	@sh tools/deps.sh live || echo "test: the tests of the page of tilt live will be skipped"
-	@$(MAKE) -j2 --no-print-directory $(TESTS) $(H)/exhaustive_isqrt system_images paper_programs $(SEQUENCES) $(CHIP_TESTS) $(FLASHTEST_IMAGES) $(ARDUINO_IMAGES) $(NAV_TESTED)
-	@CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" CHIP_SECOND="$(CHIP_SECOND)" python3 tools/run_tests.py $(TESTS)
+	@python3 tools/progress.py $(MAKE) -j2 --no-print-directory $$($(TEST_ENV) python3 tools/test_table.py targets)
+	@$(TEST_ENV) python3 tools/run_tests.py
+
+## t: build and run one test (T=sprf; T="system_tests equals": some of its tests; T=list: all names)
+t:
+	@sh tools/deps.sh test
+	@$(TEST_ENV) python3 tools/test_table.py t $(T)
+
+## quick: all unit tests on the PC (1 minute once built)
+quick:
+	@sh tools/deps.sh test
+	@python3 tools/progress.py $(MAKE) -j2 --no-print-directory $$(python3 tools/test_table.py targets quick)
+	@$(TEST_ENV) python3 tools/run_tests.py quick
 
 # what the tests of the whole firmware run
 system_images: $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay
@@ -172,11 +145,11 @@ clean:
 	@rm -rf $(U) $(H) $(S) $(CHK) $(B)/planted $(B)/*.json
 
 # one file per further target
-include $(sort $(filter-out mk/images.mk,$(wildcard mk/*.mk)))
+include $(sort $(filter-out mk/images.mk mk/host.mk,$(wildcard mk/*.mk)))
 
 # keep the test objects: no other .SECONDARY may name targets, or only those would be kept
 .SECONDARY:
 
-.PHONY: sim test system_images clean
+.PHONY: sim test t quick system_images clean
 
 -include $(shell find $(U) $(H) -name '*.d' 2>/dev/null)

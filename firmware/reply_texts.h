@@ -1,5 +1,5 @@
 /*
- * All the words that the firmware says in answer to something. reply_lines.c speaks them: a byte below ' ' or from 0x80
+ * All the words that the firmware says in answer to something. reply_lines.c speaks them: a byte below ' ' or from 0x7F
  * on is one of enum say. Each line gets "# " in front. Main only.
  */
 #ifndef REPLY_TEXTS_H
@@ -31,7 +31,7 @@
 #define V_BUS_KHZ "\x12"
 #define V_FILTERS "\x13"
 #define V_ADDRESS "\x14"
-#define V_DEVICE_ID "\x15"
+#define V_FOREIGN_ID "\x15"
 #define V_MORE "\x16"
 #define V_MORE_IF_FORCED "\x17"
 #define V_THEN_CAUSE "\x18"
@@ -42,6 +42,7 @@
 #define V_THEN_WHY "\x1D"
 #define V_THEN_MODE "\x1E"
 #define V_THEN_REST "\x1F"
+#define V_FOREIGN_ADDRESS "\x7F"
 #define V_PARAMETER "\x80"
 #define V_SET_ADDRESS "\x81"
 #define V_AXES "\x82"
@@ -79,19 +80,20 @@ enum say {
     SAY_RATE,
     SAY_BUS_KHZ,
     SAY_FILTERS, /* the image's */
-    SAY_ADDRESS, /* of the sensor, and what it reads as DEVID */
-    SAY_DEVICE_ID,
-    SAY_MORE,             /* another line follows */
-    SAY_MORE_IF_FORCED,   /* it follows if another `every` is in force than was asked for */
-    SAY_THEN_CAUSE,       /* goes on in another text: one for each cause of a reset */
-    SAY_THEN_SAFE,        /* in a text on safe settings, if they are in force */
-    SAY_THEN_LEGAL,       /* ... setting */
-    SAY_THEN_FAULT,       /* ... fault code */
-    SAY_THEN_STATE,       /* ... phase of the driver */
-    SAY_THEN_WHY,         /* why this `every` is in force, if it was not asked for */
-    SAY_THEN_MODE,        /* ... output mode */
-    SAY_THEN_REST,        /* the rest of the line of the state */
-    SAY_PARAMETER = 0x80, /* of the filter: name, value, unit */
+    SAY_ADDRESS, /* of the sensor */
+    SAY_FOREIGN_ID,
+    SAY_MORE,                   /* another line follows */
+    SAY_MORE_IF_FORCED,         /* it follows if another `every` is in force than was asked for */
+    SAY_THEN_CAUSE,             /* goes on in another text: one for each cause of a reset */
+    SAY_THEN_SAFE,              /* in a text on safe settings, if they are in force */
+    SAY_THEN_LEGAL,             /* ... setting */
+    SAY_THEN_FAULT,             /* ... fault code */
+    SAY_THEN_STATE,             /* ... phase of the driver */
+    SAY_THEN_WHY,               /* why this `every` is in force, if it was not asked for */
+    SAY_THEN_MODE,              /* ... output mode */
+    SAY_THEN_REST,              /* the rest of the line of the state */
+    SAY_FOREIGN_ADDRESS = 0x7F, /* of a device that is no ADXL345; SAY_FOREIGN_ID is what it reads as DEVID */
+    SAY_PARAMETER,              /* of the filter: name, value, unit */
     SAY_SET_ADDRESS,
     SAY_AXES,
     SAY_AXIS,  /* of measurements: the axis of the line */
@@ -246,7 +248,7 @@ enum say {
     X(KEPT_UNREAD, "defaults, the saved ones are left alone") \
     X(NOT_SAVED, "refused 7: the EEPROM does not keep a byte") \
     X(NO_SENSOR, "no sensor answers at 0x53 or 0x1D: check power, SDA to A4, SCL to A5, CS to 3.3 V") \
-    X(WRONG_ID, "the device at 0x" V_ADDRESS " is no ADXL345: DEVID reads 0x" V_DEVICE_ID ", not 0xE5") \
+    X(WRONG_ID, "the device at 0x" V_FOREIGN_ADDRESS " is no ADXL345: DEVID reads 0x" V_FOREIGN_ID ", not 0xE5") \
     X(BUS_FAULT, "I2C bus stuck or disturbed: check SDA, SCL, pull-ups, GND") \
     X(READ_BACK, "a register does not keep its value: check supply, bus") \
     X(INT1_SILENT, "the sensor has data, but INT1 does not rise: check INT1 to D2") \

@@ -153,6 +153,20 @@ static void say_set_address(void)
     }
 }
 
+static uint8_t hexadecimal(uint8_t what)
+{
+    switch (what) {
+    case SAY_OUTAGE_ADDRESS:
+        return sensor_watch_outage.address;
+    case SAY_FOREIGN_ADDRESS:
+        return adxl345_foreign_address();
+    case SAY_FOREIGN_ID:
+        return adxl345_foreign_id();
+    default:
+        return adxl345_address();
+    }
+}
+
 /* What stands for a value. */
 static void say_value(uint8_t what)
 {
@@ -176,10 +190,10 @@ static void say_value(uint8_t what)
         say_filters();
         break;
     case SAY_ADDRESS:
-        text_hex8(adxl345_address());
-        break;
     case SAY_OUTAGE_ADDRESS:
-        text_hex8(sensor_watch_outage.address);
+    case SAY_FOREIGN_ADDRESS:
+    case SAY_FOREIGN_ID:
+        text_hex8(hexadecimal(what));
         break;
     case SAY_PARAMETER:
     case SAY_PARAMETER_RANGE:
@@ -203,9 +217,6 @@ static void say_value(uint8_t what)
     case SAY_R:
     case SAY_OFF:
         number_write((uint32_t)measure_number_q8(what, said.axis), 8, true);
-        break;
-    case SAY_DEVICE_ID:
-        text_hex8(adxl345_device_id());
         break;
     default:
         text_u32(number(what));
@@ -261,9 +272,9 @@ static void say_on(uint8_t what)
 
 FX_ONCE void say_byte(uint8_t c)
 {
-    if (c >= ' ' && c < SAY_PARAMETER) {
+    if (c >= ' ' && c < SAY_FOREIGN_ADDRESS) {
         text_char((char)c);
-    } else if (c < SAY_MORE || (c >= SAY_PARAMETER && c < SAY_THEN_KEPT)) {
+    } else if (c < SAY_MORE || (c >= SAY_FOREIGN_ADDRESS && c < SAY_THEN_KEPT)) {
         say_value(c);
     } else if (c != SAY_THEN_CHOICES) {
         say_on(c);

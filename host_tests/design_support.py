@@ -1,6 +1,7 @@
 """What the tests of tools/design share: the command, brute force, and the compiled library."""
 import contextlib
 import ctypes
+import functools
 import importlib
 import io
 import json
@@ -9,7 +10,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, "tools")
-OUT = pathlib.Path("build/design_tests")
+OUT = pathlib.Path("build/design_tests") / pathlib.Path(sys.argv[0]).stem  # programs that run at the same time do not write the same files
 BASE = ["--rate", "100", "--sigma", "2", "--no-pictures"]
 
 
@@ -78,16 +79,22 @@ def field_of(p):
     return "q_lsb2_s5" if p.name == b"q" and p.unit == b"LSB2/s5" else FIELDS.get(p.name.decode())
 
 
+@functools.cache
+def compiled_library():
+    """lib/filters as a shared library."""
+    OUT.mkdir(parents=True, exist_ok=True)
+    sources = sorted(str(p) for p in pathlib.Path("lib/filters/src").glob("*.c"))
+    built = OUT / "libfilters.so"
+    subprocess.run(["gcc", "-std=c11", "-O1", "-shared", "-fPIC", "-Ilib/filters/src", *sources, "-o", str(built)], check=True)
+    return built.resolve()
+
+
 class Library:
     """lib/filters compiled for the PC, through filter_any."""
 
     def __init__(self):
-        OUT.mkdir(parents=True, exist_ok=True)
-        sources = sorted(str(p) for p in pathlib.Path("lib/filters/src").glob("*.c"))
         self.names = {path.stem for path in pathlib.Path("lib/filters/src").glob("*.c")}
-        built = OUT / "libfilters.so"
-        subprocess.run(["gcc", "-std=c11", "-O1", "-shared", "-fPIC", "-Ilib/filters/src", *sources, "-o", str(built)], check=True)
-        self.c = ctypes.CDLL(str(built.resolve()))
+        self.c = ctypes.CDLL(str(compiled_library()))
         self.c.filter_any_descriptor.restype = ctypes.POINTER(Descriptor)
         self.c.filter_any_init.restype = ctypes.c_bool
         self.c.synth_noise_gain_uq16.restype = ctypes.c_uint32
@@ -128,7 +135,8 @@ def compiles_and_runs(initialiser, name):
     source, program = OUT / f"emitted_{name}.c", OUT / f"emitted_{name}"
     source.write_text(f'#include "{name}.h"\n{initialiser}\n'
                       f'int main(void) {{ {name}_t f; return {name}_init(&f, &config) ? 0 : 1; }}\n', encoding="utf-8")
-    sources = sorted(str(p) for p in pathlib.Path("lib/filters/src").glob("*.c"))
-    command = ["gcc", "-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-Ilib/filters/src", str(source), *sources, "-o", str(program)]
+    library = compiled_library()
+    command = ["gcc", "-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-Ilib/filters/src", str(source), str(library),
+               f"-Wl,-rpath,{library.parent}", "-o", str(program)]
     subprocess.run(command, check=True, capture_output=True)
     return subprocess.run([str(program)]).returncode == 0

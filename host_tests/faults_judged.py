@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from unittest import mock
 
 import faults
 import faults_commands
@@ -17,9 +18,17 @@ import faults_judge
 import faults_kinds
 import faults_runs
 import soak
-from system_support import FW, test
+from system_support import FW, OUT, test
 
+PATIENCE_S = 300  # only reached when something is broken, however busy the machine
 ALL = {kind.name: kind for kind in faults_kinds.KINDS + faults_kinds.LONG + faults_kinds.rated() + faults_kinds.TYPED + faults_commands.KINDS}
+
+
+def until(true):
+    end = time.monotonic() + PATIENCE_S
+    while not true():
+        assert time.monotonic() < end, f"what was waited for did not come within {PATIENCE_S} s"
+        time.sleep(0.01)
 
 
 def result(*names, **said):
@@ -144,7 +153,7 @@ def told_by(runs, attempt, **options):
     wanted = {"jobs": 1, "seed": 1, "words": ["sda"], "sample": 0, "fw": FW, "no_page": True} | options
     said = io.StringIO()
     try:
-        faults.planned, faults.attempt, faults.RESULTS = lambda options: runs, attempt, pathlib.Path("build/system/faults.json")
+        faults.planned, faults.attempt, faults.RESULTS = lambda options: runs, attempt, OUT / "faults.json"
         faults.shares = lambda options, extra: None
         signal.signal(signal.SIGTERM, faults.ended_by_signal)
         with contextlib.redirect_stdout(said):
@@ -158,16 +167,23 @@ def told_by(runs, attempt, **options):
 
 @test
 def a_campaign_that_is_ended_tells_what_it_has_seen():
+    taken, carried_out = [], faults.carried_out
+
+    def watched(options, runs, profile, results):
+        taken.append(results)
+        carried_out(options, runs, profile, results)
+
     def attempt(firmware, name, kinds, whens, profile):
         number = int(whens[0][:-2])
         if number == 1003:
-            time.sleep(0.5)  # what is done by then has been taken
+            until(lambda: len(taken[0]) == 3)
             os.kill(os.getpid(), signal.SIGTERM)
-            time.sleep(0.3)
+            until(lambda: signal.getsignal(signal.SIGTERM) == signal.SIG_IGN)  # which is how the campaign takes it
         return result("sda", when=whens[0], wrong=int(number == 1001), command=f"--fault {number}")
 
     runs = [((faults_kinds.OF["sda"],), (f"{1000 + n}ms",), "kf") for n in range(40)]
-    status, said = told_by(runs, attempt)
+    with mock.patch.object(faults, "carried_out", watched):
+        status, said = told_by(runs, attempt)
     lines = said.splitlines()
     assert status == 1 and lines[-1] == "2 passed, 1 failed" and "faults: ended by a signal after 3 of 40 runs" in lines, said
     assert "    1001ms kf: 1 wrong rows    [--fault 1001]" in lines, said
@@ -195,19 +211,53 @@ def what_a_whole_campaign_lacks_is_a_failure():
     assert status == 1 and said.endswith("1 passed, 1 failed\n") and "1 of 2 faults never came" in said, said
 
 
-def program(*words, timeout_s=None):
-    """(exit status, stdout, stderr) of one of the two programs, ended as make would be from outside."""
-    before = ["timeout", str(timeout_s)] if timeout_s else []
-    done = subprocess.run([*before, sys.executable, *map(str, words)], capture_output=True, text=True, timeout=120)
+def program(*words):
+    """(exit status, stdout, stderr) of one of the two programs."""
+    done = subprocess.run([sys.executable, *map(str, words)], capture_output=True, text=True, timeout=PATIENCE_S)
     return done.returncode, done.stdout, done.stderr
+
+
+def program_ended(words, far_enough):
+    """The same, ended as `timeout` does from outside, by a signal to it and then to its group, once far_enough(process, what it has said)."""
+    OUT.mkdir(parents=True, exist_ok=True)
+    with open(OUT / "ended.log", "w+", encoding="utf-8") as said, open(OUT / "ended.err", "w+", encoding="utf-8") as errors:
+        process = subprocess.Popen([sys.executable, *map(str, words)], stdout=said, stderr=errors, start_new_session=True)
+        try:
+            until(lambda: process.poll() is not None or far_enough(process, pathlib.Path(said.name).read_text(encoding="utf-8")))
+            process.terminate()
+            os.killpg(process.pid, signal.SIGTERM)
+            process.wait(PATIENCE_S)
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+        said.seek(0)
+        errors.seek(0)
+        return process.returncode, said.read(), errors.read()
+
+
+def processor_times_s(parent):
+    """Of each process that this one has begun."""
+    times = []
+    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            words = stat.read_text(encoding="utf-8").rpartition(")")[2].split()
+            times += [(int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")] if int(words[1]) == parent else []
+    return times
 
 
 @test
 def both_programs_end_well_when_they_run_out_of_time():
-    # a loaded machine may not come further than to the plan of the campaign
-    for words, least in ((("tools/faults.py", "--no-page", "sda"), 0), (("tools/soak.py", "--hours", 20), 2)):
-        status, said, errors = program(*words, timeout_s=6)
-        assert status == 124 and "Traceback" not in errors and "ended by a signal" in said, (words, said[-500:], errors)
+    def planned(process, said):
+        return "faults: " in said and " runs, seed " in said
+
+    def simulating(process, said):
+        times = processor_times_s(process.pid)
+        return len(times) == 2 and min(times) >= 0.5
+
+    for words, far_enough, least in ((("tools/faults.py", "--no-page", "sda"), planned, 0), (("tools/soak.py", "--hours", 20), simulating, 2)):
+        status, said, errors = program_ended(words, far_enough)
+        assert status == 1 and "Traceback" not in errors and "ended by a signal" in said, (words, status, said[-500:], errors)
         passed, failed = re.fullmatch(r"(\d+) passed, (\d+) failed", said.splitlines()[-1]).groups()
         assert int(passed) >= least and failed == "0", said[-500:]
 

@@ -8,7 +8,7 @@ import faults_kinds
 import faults_runs
 import soak
 from faults_judged import ALL, result
-from system_support import FW, test
+from system_support import FW, OUT, test
 
 
 @test
@@ -124,7 +124,7 @@ def interrupts_keep_their_deadline_in_every_run_but_starved_ones():
 
 @test
 def a_full_disk_is_one_sentence_and_leaves_what_was_there():
-    path = pathlib.Path("build/system/whole.json")
+    path = OUT / "whole.json"
     path.parent.mkdir(parents=True, exist_ok=True)
     faults_runs.write_whole(path, "before")
     try:

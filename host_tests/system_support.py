@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import subprocess
 import sys
 import traceback
@@ -14,8 +15,9 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
 import images  # noqa: E402
 from images import FW, SET_IMAGES  # noqa: E402
+from unity_report import failure, reason_of  # noqa: E402
 
-OUT = pathlib.Path("build/system")
+OUT = pathlib.Path("build/system") / pathlib.Path(sys.argv[0]).stem  # programs that run at the same time do not write the same files
 SIMRUN = "build/sim/simrun"
 STREAMS = pathlib.Path("sim/streams")
 # images whose clock does not start at 0
@@ -129,6 +131,12 @@ def assert_nothing_lost(rows, served, every=1, from_us=0, end_us=None):
         assert row[1:4] == lsb, f"row {row} shows {row[1:4]}, the sensor latched {lsb}"
 
 
+def processor_s():
+    """Of this process and of those that it has run."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(each.ru_utime + each.ru_stime for each in used)
+
+
 def run_all():
     """All tests, or those whose name contains one of the words of the command line, without those that contain a word after a minus."""
     OUT.mkdir(parents=True, exist_ok=True)
@@ -136,20 +144,26 @@ def run_all():
     without = [word[1:] for word in sys.argv[1:] if word.startswith("-")]
     file = pathlib.Path(sys.argv[0]).name
     failed = skipped = count = 0
+    times = {}
     for function in TESTS:
         name = function.__name__
         if only and not any(word in name for word in only) or any(word in name for word in without):
             continue
         count += 1
+        before_s = processor_s()
         try:
             function()
             print(f"{file}:{name}:PASS", flush=True)
         except Skip as reason:
             skipped += 1
             print(f"{file}:{name}:IGNORE: {reason}", flush=True)
-        except Exception as problem:  # every failure is one line here and a trace in the log
+        except Exception as problem:  # a reason here and a trace in the log
             failed += 1
-            print(f"{file}:{name}:FAIL: {str(problem)[:300]}", flush=True)
+            print(failure(file, name, reason_of(problem)), flush=True)
             traceback.print_exc()
-    print(f"\n{count} Tests {failed} Failures {skipped} Ignored")
+        times[name] = processor_s() - before_s
+    slowest = sorted(times, key=times.get, reverse=True)[:8]
+    shown = ", ".join(f"{name} {times[name]:.1f}" for name in slowest if times[name] > 0.1)
+    print(f"\nprocessor time {sum(times.values()):.0f} s{', of which ' if shown else ''}{shown}")
+    print(f"{count} Tests {failed} Failures {skipped} Ignored")
     return 1 if failed or count == 0 else 0

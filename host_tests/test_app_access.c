@@ -202,8 +202,8 @@ static void test_a_neighbour_at_the_other_address_does_not_keep_the_sensor_out(v
         hal_host_sensor.address = neighbour; /* it alone answers */
         board_run_ms(500);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_WRONG_ID, adxl345_fault());
-        TEST_ASSERT_EQUAL_HEX8(neighbour, adxl345_address());
-        TEST_ASSERT_EQUAL_HEX8(NEIGHBOUR_ID, adxl345_device_id());
+        TEST_ASSERT_EQUAL_HEX8(neighbour, adxl345_foreign_address());
+        TEST_ASSERT_EQUAL_HEX8(NEIGHBOUR_ID, adxl345_foreign_id());
         hal_host_sensor.address = addresses[i];
         board_run_ms(150);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());

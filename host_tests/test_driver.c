@@ -136,7 +136,8 @@ static void test_wrong_identity_is_named(void)
     adxl345_start(&at_100_hz);
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_WRONG_ID, adxl345_fault());
-    TEST_ASSERT_EQUAL_HEX8(0x00, adxl345_device_id());
+    TEST_ASSERT_EQUAL_HEX8(0x00, adxl345_foreign_id());
+    TEST_ASSERT_EQUAL_HEX8(0x53, adxl345_foreign_address());
 }
 
 static void test_register_that_does_not_keep_its_value_is_named(void)

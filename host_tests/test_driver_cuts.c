@@ -5,6 +5,7 @@
  */
 #include "adxl345.h"
 #include "adxl345_burst.h"
+#include "adxl345_driver.h"
 #include "adxl345_registers.h"
 #include "hal_drdy.h"
 #include "hal_host.h"
@@ -302,13 +303,13 @@ static bool sensor_away;
 /* The bus is taken before each look for the sensor: whoever is at that address answers it. */
 static void whoever_is_there(void)
 {
-    bool away = sensor_away && adxl345_address() != neighbour;
-    hal_host_sensor.address = away ? 0x2A : adxl345_address();
+    bool away = sensor_away && driver.address != neighbour;
+    hal_host_sensor.address = away ? 0x2A : driver.address;
 }
 
 static uint8_t neighbour_id(uint8_t reg, uint8_t byte)
 {
-    return adxl345_address() == neighbour && reg == ADXL345_DEVID ? NEIGHBOUR_ID : byte;
+    return driver.address == neighbour && reg == ADXL345_DEVID ? NEIGHBOUR_ID : byte;
 }
 
 /* Another device answers at the other address, always: the sensor is found, lost, and found again. */
@@ -328,8 +329,8 @@ static void test_a_neighbour_does_not_keep_the_sensor_out(void)
             hal_host_sensor.address = 0x2A;
             rig_run_ms(100);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_WRONG_ID, adxl345_fault());
-            TEST_ASSERT_EQUAL_HEX8(neighbour, adxl345_address());
-            TEST_ASSERT_EQUAL_HEX8(NEIGHBOUR_ID, adxl345_device_id());
+            TEST_ASSERT_EQUAL_HEX8(neighbour, adxl345_foreign_address());
+            TEST_ASSERT_EQUAL_HEX8(NEIGHBOUR_ID, adxl345_foreign_id());
         }
     }
 }

@@ -7,11 +7,10 @@ from system_support import run_all, test
 
 PAGE = pathlib.Path("docs/faults.md")
 INCLUDES = ["-Ifirmware", "-Ihal", "-Ihal/host"]
-SHARED = 0x80
 
 
 def texts():
-    """name -> words of firmware/reply_texts.h, shared words put in, a value as .. and what only steers left out."""
+    """name -> words of firmware/reply_texts.h, a byte of enum say as .. ."""
     source = '#include "reply_texts.h"\n#define SHOWN(name, words) @name words\nREPLY_TEXTS(SHOWN)\n'
     done = subprocess.run(["gcc", "-E", "-P", *INCLUDES, "-xc", "-"], input=source, capture_output=True, text=True, check=True)
     raw = {}
@@ -19,9 +18,7 @@ def texts():
         name, rest = re.match(r"(\w+)(.*)", entry, re.S).groups()
         words = "".join(re.findall(r'"((?:[^"\\]|\\.)*)"', rest))
         raw[name] = re.sub(r"\\x([0-9A-Fa-f]{2})", lambda code: chr(int(code[1], 16)), words)
-    order = list(raw.values())
-    plain = {name: "".join(order[ord(c) - SHARED] if ord(c) >= SHARED else c for c in words) for name, words in raw.items()}
-    return {name: re.sub("[\x01-\x1f]", "..", words) for name, words in plain.items()}
+    return {name: re.sub("[\x01-\x1f\x7f-\x8f]", "..", words) for name, words in raw.items()}
 
 
 def codes():

@@ -14,7 +14,7 @@ import soak  # noqa: E402
 import faults_commanded  # noqa: E402, F401
 from faults_judged import result  # noqa: E402
 import faults_shares  # noqa: E402,F401
-from system_support import FW, run_all, test  # noqa: E402
+from system_support import FW, OUT, run_all, test  # noqa: E402
 
 
 @test
@@ -175,7 +175,7 @@ def soak_stats(**said):
 
 @test
 def soak_finds_what_went_wrong():
-    path = pathlib.Path("build/system/soak.json")
+    path = OUT / "soak.json"
     many = soak.faults_of(600, 1.8e6, 1)
     # every kind twice: its time and its limit until the first good row, and the start
     gone_ms = 1000 + 2 * sum(len(kind.what) * (kind.lasts_ms + (kind.limit_ms if kind.name != "clip" else 50)) for kind in soak.ASKED)

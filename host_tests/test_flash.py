@@ -14,6 +14,7 @@ BOOT = pathlib.Path("build/uno/optiboot.hex")
 HEX = pathlib.Path("build/uno/firmware.hex")
 STREAM = STREAMS / "rest-2lsb.csv"
 BOOT_START, FLASH_END = 0x7E00, 0x8000
+PATIENCE_S = 300  # only reached when something is broken, however busy the machine
 
 
 def need_tools():
@@ -25,7 +26,7 @@ def need_tools():
 
 @contextlib.contextmanager
 def board(name, *options):
-    """A simulated UNO with the boot loader and an empty flash, in real time; gives its serial port and the files of the run."""
+    """A simulated UNO with the boot loader and an empty flash; gives its serial port and the files of the run."""
     base = OUT / name
     command = [SIMRUN, "--fw", FW, "--blank", "--bootloader", BOOT, "--in", STREAM, "--loop", "--out", f"{base}.csv", "--served",
                f"{base}.served.csv", "--pty", *options]
@@ -33,25 +34,51 @@ def board(name, *options):
         process = subprocess.Popen([str(c) for c in command], stderr=log)
     try:
         yield wait_for_port(f"{base}.log", process), base, process
+    except AssertionError as problem:
+        raise AssertionError(f"{problem}\nsimrun: {pathlib.Path(f'{base}.log').read_text(encoding='utf-8')}") from problem
     finally:
         if process.poll() is None:
             process.send_signal(signal.SIGTERM)
-        process.wait(timeout=10)
+        process.wait(timeout=PATIENCE_S)
+
+
+def wait_for(what, found, process):
+    """What found() gives, once that is something."""
+    deadline = time.monotonic() + PATIENCE_S
+    while time.monotonic() < deadline and process.poll() is None:
+        value = found()
+        if value:
+            return value
+        time.sleep(0.02)
+    raise AssertionError(f"{what} did not come")
 
 
 def wait_for_port(log, process):
-    deadline = time.monotonic() + 10
-    while time.monotonic() < deadline:
-        found = re.search(r"UART on (\S+)", pathlib.Path(log).read_text(encoding="utf-8"))
-        if found:
-            return found[1]
-        assert process.poll() is None, pathlib.Path(log).read_text(encoding="utf-8")
-        time.sleep(0.02)
-    raise AssertionError("simrun names no port")
+    def port():
+        return re.search(r"UART on (\S+)", pathlib.Path(log).read_text(encoding="utf-8"))
+    return wait_for("the name of the port", port, process)[1]
+
+
+def output(base):
+    path = pathlib.Path(f"{base}.csv")
+    return path.read_bytes() if path.exists() else b""
+
+
+def wait_for_rows(count, base, process, behind=0):
+    """Until the firmware, since its last start, has sent so many; that start is further than `behind` in its output."""
+    def there():
+        _, banner, rows = output(base)[behind:].rpartition(b"# tilt-uno")
+        return banner and len(re.findall(rb"^\d+,.*\n", rows, re.M)) >= count
+    wait_for(f"{count} rows", there, process)
 
 
 def avrdude(port, operation, image):
     return run("avrdude", "-p", "atmega328p", "-c", "arduino", "-P", port, "-b", "115200", "-D", "-U", f"flash:{operation}:{image}:i", expect=None)
+
+
+def said(done):
+    """Why a program was not what the test wants, in its own words: avrdude tells on stderr."""
+    return f"{done.args[0]} gave status {done.returncode}:\n{done.stdout}{done.stderr}"
 
 
 def records(path):
@@ -108,21 +135,30 @@ def boot_loader_fits_its_section():
 
 
 @test
+def nothing_runs_until_the_port_of_an_empty_board_is_opened():
+    """However long make takes before avrdude opens it: the boot loader would leave for the empty flash."""
+    need_tools()
+    with board("unopened") as (_, base, process):
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=PATIENCE_S) == 0
+        assert "simrun: 0.0 ms, " in pathlib.Path(f"{base}.log").read_text(encoding="utf-8")
+
+
+@test
 def make_flash_writes_verifies_and_the_firmware_streams():
     need_tools()
-    with board("flash", "--max-ms", "25000") as (port, base, process):
+    with board("flash", "--max-ms", "1000000") as (port, base, process):
         done = run("make", "flash", f"PORT={port}", expect=None)
-        told = done.stdout + done.stderr
         size = sum(len(data) for _, kind, data in records(HEX) if kind == 0)
-        assert done.returncode == 0 and f"{size} bytes of flash verified" in told, told
-        time.sleep(1.0)  # the firmware runs, so that the next opening of the port has something to interrupt
+        assert done.returncode == 0 and f"{size} bytes of flash verified" in done.stdout + done.stderr, said(done)
+        wait_for_rows(1, base, process)  # the firmware runs, so that the next opening of the port has something to interrupt
         wrong = avrdude(port, "v", with_a_bit_turned(HEX, OUT / "turned.hex"))
-        assert wrong.returncode != 0 and "0x1234" in wrong.stderr, wrong.stderr
+        assert wrong.returncode != 0 and "0x1234" in wrong.stderr, said(wrong)
         right = avrdude(port, "v", HEX)
-        assert right.returncode == 0, right.stderr
-        time.sleep(2.0)
+        assert right.returncode == 0, said(right)
+        wait_for_rows(101, base, process, len(output(base)))  # of an earlier start no more than 93 rows are in simrun's buffer of 4 KB
         process.send_signal(signal.SIGINT)
-        status = process.wait(timeout=10)
+        status = process.wait(timeout=PATIENCE_S)
     assert status == 0, pathlib.Path(f"{base}.log").read_text(encoding="utf-8")
     rows, notes = streamed(base)
     assert len(rows) > 100, f"{len(rows)} rows"

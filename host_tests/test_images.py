@@ -26,7 +26,7 @@ def listed(*flags):
     """FILTER_LIST as the preprocessor has it."""
     source = '#include "filter_list.h"\n#define NAME(name) name\nlist: FILTER_LIST(NAME)\n'
     command = ["gcc", "-E", "-P", "-Ilib/filters/src", *flags, "-xc", "-"]
-    done = subprocess.run(command, input=source, capture_output=True, text=True, timeout=60, check=True)
+    done = subprocess.run(command, input=source, capture_output=True, text=True, timeout=600, check=True)
     return done.stdout.split("list:")[1].split()
 
 
@@ -35,7 +35,7 @@ EVERY = listed()
 
 def make(*words, dry=False):
     command = ["make", "--no-print-directory", f"U={OUT}", *(["-n", "-B"] if dry else []), *words]
-    return subprocess.run(command, capture_output=True, text=True, timeout=300)
+    return subprocess.run(command, capture_output=True, text=True, timeout=600)
 
 
 def chosen_by_make(filters):
@@ -72,7 +72,7 @@ def each_filter_can_be_chosen_alone():
     target = OUT / "alone" / "filters.txt"
     for name in EVERY:
         target.unlink(missing_ok=True)
-        done = subprocess.run(["sh", "tools/filters_txt.sh", str(target), name], capture_output=True, text=True, timeout=60)
+        done = subprocess.run(["sh", "tools/filters_txt.sh", str(target), name], capture_output=True, text=True, timeout=600)
         assert done.returncode == 0 and not done.stdout + done.stderr and target.read_text(encoding="ascii") == name + "\n", (name, done)
 
 
@@ -84,7 +84,7 @@ def what_is_chosen_already_is_left_alone():
         if before is not None:
             subprocess.run(["touch", "-d", "2001-01-01", str(target)], check=True)
             before = target.stat().st_mtime_ns
-        subprocess.run(["sh", "tools/filters_txt.sh", str(target), *words], check=True, timeout=60)
+        subprocess.run(["sh", "tools/filters_txt.sh", str(target), *words], check=True, timeout=600)
         assert (target.stat().st_mtime_ns != before) == anew and target.read_text(encoding="ascii").split() == words, words
 
 
@@ -93,7 +93,7 @@ def what_cannot_be_chosen_is_refused_in_one_sentence():
     target = OUT / "bad" / "filters.txt"
     for filters, sentence in BAD:
         target.unlink(missing_ok=True)
-        done = subprocess.run(["sh", "tools/filters_txt.sh", str(target), *filters.split()], capture_output=True, text=True, timeout=60)
+        done = subprocess.run(["sh", "tools/filters_txt.sh", str(target), *filters.split()], capture_output=True, text=True, timeout=600)
         assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1, (filters, done)
         assert done.stderr.startswith("FILTERS") and sentence in done.stderr.strip() + ";" and not target.exists(), (filters, done.stderr)
         if "twice" not in sentence:
@@ -117,7 +117,7 @@ def the_image_with_a_filter_holds_it():
         done = make("--eval", show, "show", f"FILTERS={choice}")
         assert done.returncode == 0 and dict(line.split() for line in done.stdout.splitlines()) == wanted, (choice, done.stdout, done.stderr)
         for image, names in holds.items():
-            subprocess.run(["sh", "tools/filters_txt.sh", str(pathlib.Path(image).with_name("filters.txt")), *names], check=True, timeout=60)
+            subprocess.run(["sh", "tools/filters_txt.sh", str(pathlib.Path(image).with_name("filters.txt")), *names], check=True, timeout=600)
         system_support.SET_IMAGES = list(holds)
         try:
             assert {name: system_support.image_with(name) for name in EVERY} == wanted, choice

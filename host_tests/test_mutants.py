@@ -3,6 +3,9 @@
 survives, one that hangs or breaks C's rules is killed, one of the same code or that does not compile is dropped, nothing stays broken."""
 import collections
 import concurrent.futures
+import contextlib
+import importlib.util
+import io
 import os
 import pathlib
 import sys
@@ -109,7 +112,8 @@ def changes(operator):
 def each_operator_makes_its_mutants_and_no_others():
     assert changes("relational") == {"tiny_sum": ["< -> <=", "< -> >"], "tiny_inside": ["<= -> <", "<= -> >", ">= -> <", ">= -> >"],
                                      "tiny_equal": ["!= -> ==", "!= -> >"]}, changes("relational")
-    assert changes("arithmetic") == {"tiny_sum": ["* -> +", "++ -> --", "+= -> -="], "tiny_low": ["++ -> --"], "tiny_unseen": ["+ -> -"]}, changes("arithmetic")
+    assert changes("arithmetic") == {"tiny_sum": ["* -> +", "++ -> --", "+= -> -="], "tiny_low": ["++ -> --"],
+                                     "tiny_unseen": ["+ -> -"]}, changes("arithmetic")
     assert changes("logical") == {"tiny_inside": ["&& -> ||"], "tiny_low": ["& -> |"]}, changes("logical")
     assert changes("negated") == {"tiny_sum": ["for -> !"], "tiny_inside": ["if -> !"], "tiny_equal": ["? -> !"]}, changes("negated")
     assert changes("statement") == {"tiny_sum": ["sum+= -> ;"], "tiny_low": ["tiny_calls++ -> ;"]}, changes("statement")
@@ -149,8 +153,8 @@ def verdicts():
         for host in hosts:
             host.compile(pool)
         reach = Reach(hosts[0], ["lib/tiny.c"])
-        reach.measure(pool, settings.tests, lambda _: None)
-        judge = Judge(hosts, lambda m: reach.tests_of(m.file, m.line(PRODUCT), set(), []), {})
+        reach.measure(pool, settings.tests, 60, lambda _: None)
+        judge = Judge(hosts, lambda m, _: reach.tests_of(m.file, m.line(PRODUCT), set(), []), {})
         worker = Worker(0, tree)
         return {m.key.split(":")[1]: judge.verdict(m, worker) for m in mutants()}
 
@@ -175,10 +179,55 @@ def what_does_not_compile_is_dropped():
     from host import Host, Settings
     from judge import Judge, Worker
     from operators import Mutant
-    settings = Settings({"HOST_CC": "gcc", "HOST_CXX": "g++", "HOST_FLAGS": "-std=c11 -Ilib", "HOST_SRC": "lib/tiny.c", "TESTS": "test_tiny", "UNITY_DIR": "."})
-    judge = Judge([Host(settings, "ubsan", pathlib.Path.cwd())], lambda m: [], {})
+    settings = Settings({"HOST_CC": "gcc", "HOST_CXX": "g++", "HOST_FLAGS": "-std=c11 -Ilib", "HOST_SRC": "lib/tiny.c",
+                         "TESTS": "test_tiny", "UNITY_DIR": "."})
+    judge = Judge([Host(settings, "ubsan", pathlib.Path.cwd())], lambda m, _: [], {})
     at = PRODUCT.index("unsigned sum")
-    assert judge.verdict(Mutant("lib/tiny.c", "tiny_sum", "statement", "", 1, ((at, at + 8, ""),)), Worker(0, pathlib.Path.cwd())) == ("uncompiled", "")
+    mutant = Mutant("lib/tiny.c", "tiny_sum", "statement", "", 1, ((at, at + 8, ""),))
+    assert judge.verdict(mutant, Worker(0, pathlib.Path.cwd())) == ("uncompiled", "")
+
+
+def reported(verdicts_of, accepted_keys, **options):
+    """(exit status, what a campaign with these results prints)"""
+    spec = importlib.util.spec_from_file_location("campaign", HERE.parent / "campaigns/mutants/__main__.py")
+    campaign = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(campaign)
+    pathlib.Path("build").mkdir(exist_ok=True)
+    pathlib.Path("campaigns/mutants").mkdir(parents=True, exist_ok=True)
+    pathlib.Path("campaigns/mutants/goals.txt").write_text("# folder, goal, rate\nlib/tiny 50 -\n", encoding="utf-8")
+    one = object.__new__(campaign.Campaign)
+    one.options = campaign.options_of([])
+    vars(one.options).update(options)
+    one.accepted, one.mutants = set(accepted_keys), list(verdicts_of)
+    rows = [{"key": f"lib/tiny/a.c:{key}", "file": "lib/tiny/a.c", "line": 1, "verdict": verdict, "by": "test_tiny" if verdict == "killed" else ""}
+            for key, verdict in verdicts_of.items()]
+    out = io.StringIO()
+    with contextlib.redirect_stdout(out):
+        status = one.report(rows)
+    return status, out.getvalue()
+
+
+@test
+def a_new_survivor_fails_and_an_accepted_one_does_not():
+    status, text = reported({"a": "killed", "b": "survived"}, [])
+    assert status == 1 and text.endswith("1 passed, 1 failed\n"), text
+    status, text = reported({"a": "killed", "b": "survived"}, ["lib/tiny/a.c:b"])
+    assert status == 0 and text.endswith("2 passed, 0 failed\n") and "50.0 %" in text, text
+
+
+@test
+def an_accepted_one_that_is_killed_is_named_and_leaves_the_list():
+    status, text = reported({"a": "killed", "b": "survived"}, ["lib/tiny/a.c:a"], accept=True)
+    assert status == 0 and "killed now, so it can leave the list: lib/tiny/a.c:a" in text, text
+    lines = [x for x in pathlib.Path("campaigns/mutants/accepted.txt").read_text(encoding="utf-8").splitlines() if x[0] != "#"]
+    assert lines == ["lib/tiny/a.c:b"], lines
+    assert pathlib.Path("campaigns/mutants/goals.txt").read_text(encoding="utf-8").split("\n")[-2].split() == ["lib/tiny", "50", "50.0"]
+
+
+@test
+def a_folder_below_its_goal_fails():
+    status, text = reported({"a": "killed", "b": "survived", "c": "survived"}, ["lib/tiny/a.c:b", "lib/tiny/a.c:c"])
+    assert status == 1 and "lib/tiny: 1 of 3 killed, below the goal of 50 %" in text, text
 
 
 def main():

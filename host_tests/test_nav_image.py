@@ -146,7 +146,7 @@ class FramesFile(unittest.TestCase):
             path = pathlib.Path(folder) / "frames"
             path.write_text("".join(f"{line}\n" for line in lines), encoding="ascii")
             done = subprocess.run(["build/sim/simrun", "--fw", boards.image(12), "--frames", path, "--out", path.with_name("out")],
-                                  capture_output=True, text=True, check=False, timeout=60)
+                                  capture_output=True, text=True, check=False, timeout=600)
             return done.returncode, done.stderr.replace(str(path), "F")
 
     def test_refusals_name_the_line(self):

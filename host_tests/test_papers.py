@@ -104,7 +104,7 @@ def what_has_no_chance_in_it_is_as_on_the_page():
 def fewer_runs_and_other_seeds_leave_the_page_alone():
     before = papers_page.DOCUMENT.read_bytes()
     for words in (["--runs", "20"], ["--runs", "20", "--seed", "7"]):
-        done = subprocess.run([sys.executable, "tools/papers.py", *words], capture_output=True, text=True, timeout=120)
+        done = subprocess.run([sys.executable, "tools/papers.py", *words], capture_output=True, text=True, timeout=600)
         assert "page left alone" in done.stdout and papers_page.DOCUMENT.read_bytes() == before, done
 
 
@@ -155,7 +155,7 @@ def a_program_in_python_is_one_of_them():
 @test
 def paper_004_runs_alone_and_leaves_the_page_alone():
     before = papers_page.DOCUMENT.read_bytes()
-    done = subprocess.run([sys.executable, "tools/papers.py", "--paper", "004", "--runs", "1000"], capture_output=True, text=True, timeout=240)
+    done = subprocess.run([sys.executable, "tools/papers.py", "--paper", "004", "--runs", "1000"], capture_output=True, text=True, timeout=600)
     assert done.returncode == 0 and "page left alone" in done.stdout and papers_page.DOCUMENT.read_bytes() == before, done
 
 
@@ -298,9 +298,9 @@ def progress_tells_the_time_left_on_a_terminal_only():
 def bad_words_give_one_sentence():
     for words, sentence in ((["nothing"], "'nothing': no such experiment"), (["bursts", "--runs", "0"], "--runs: takes a whole number"),
                             (["bursts", "--runs"], "--runs: takes a whole number"), (["bursts", "--hurry", "1"], "--hurry: unknown option")):
-        done = subprocess.run([str(PROGRAM), *words], capture_output=True, text=True, timeout=60)
+        done = subprocess.run([str(PROGRAM), *words], capture_output=True, text=True, timeout=600)
         assert done.returncode == 2 and sentence in done.stderr and done.stderr.count("\n") == 1, done
-    done = subprocess.run([sys.executable, "tools/papers.py", "--only", "nothing"], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "tools/papers.py", "--only", "nothing"], capture_output=True, text=True, timeout=600)
     assert done.returncode == 2 and "no experiment's name contains nothing" in done.stderr, done
 
 

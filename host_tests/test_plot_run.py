@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, "tools")
+sys.path[:0] = ["tools", "host_tests/tilt"]
 import plot_run  # noqa: E402
 
 HEADER = ",".join(plot_run.RUN_COLUMNS)
@@ -213,12 +213,6 @@ class BadInput(Case):
         self.assertIn("bad.json:2:", err)
 
 
-def main():
-    program = unittest.main(exit=False, verbosity=1)
-    result = program.result
-    print(f"{result.testsRun} Tests {len(result.failures) + len(result.errors)} Failures {len(result.skipped)} Ignored")
-    return 0 if result.wasSuccessful() else 1
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    from unity_line import main
+    main()

@@ -101,7 +101,7 @@ def classes_are_the_nearest_and_cost_little():
 @test
 def what_is_emitted_is_what_was_made():
     def said(*words):
-        return subprocess.run([sys.executable, TOOL, *words], capture_output=True, text=True, timeout=60, check=True).stdout
+        return subprocess.run([sys.executable, TOOL, *words], capture_output=True, text=True, timeout=600, check=True).stdout
     text = said("--p0-over-r", "8.33", "--variant", "u")
     assert "-0.333333" in text and "limit -0.166667, b0 0.846154" in text, text
     tables = said("--p0-over-r", "5", "--emit", "c", "--steps", "3")
@@ -116,7 +116,7 @@ def bad_words_give_one_sentence():
                             (["--p0-over-r", "inf"], "P0/R is inf"), (["--p0-over-r", "five"], "'five' is no number"),
                             (["--p0-over-r", "5", "--steps", "0"], "the number of steps is '0', but must be 1..1000"),
                             ([], "--p0-over-r is missing")):
-        done = subprocess.run([sys.executable, TOOL, *words], capture_output=True, text=True, timeout=60)
+        done = subprocess.run([sys.executable, TOOL, *words], capture_output=True, text=True, timeout=600)
         assert done.returncode == 2 and sentence in done.stderr, done
 
 

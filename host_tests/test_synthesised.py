@@ -103,7 +103,7 @@ def the_text_on_adaptive_holds_what_its_tables_hold():
 def the_example_is_what_the_synthesiser_says():
     block = TEXT[TEXT.index("$ make design ARGS="):].split("```")[0].splitlines()
     words = re.search(r'ARGS="([^"]*)"', block[0])[1].split()
-    done = subprocess.run([sys.executable, "tools/design", *words, "--out", "build/synthesised-design"], capture_output=True, text=True, timeout=300)
+    done = subprocess.run([sys.executable, "tools/design", *words, "--out", "build/synthesised-design"], capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
     said = done.stdout.splitlines()
     assert len(block) > 15

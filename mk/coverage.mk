@@ -54,7 +54,7 @@ $(C)/runs/equal: RUNS_OF := chip_equals
 $(C)/runs/rest: RUNS_OF := -chip_equals -nothing_lost
 $(COVERAGE_RUNS): system_images
 	@rm -rf $@ && mkdir -p $@
-	@PROFILES=$@ SPEED_FACTOR=0.05 python3 host_tests/system_tests.py $(RUNS_OF) > $(C)/system_$(@F).log 2>&1 || \
+	@PROFILES=$@ python3 host_tests/system_tests.py $(RUNS_OF) > $(C)/system_$(@F).log 2>&1 || \
 	    { grep ':FAIL' $(C)/system_$(@F).log; exit 1; }
 
 ## coverage: lines and branches of lib by the unit tests, lines of the AVR binary by the system tests (6 minutes)

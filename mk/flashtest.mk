@@ -19,7 +19,9 @@ FLASHTEST_IMAGES := $(U)/firmware.hex $(if $(wildcard $(OPTIBOOT_DIR)/optiboot.c
 ## flashtest: write the firmware with avrdude through the UNO's boot loader into the simulated UNO and see it stream (10 s)
 flashtest:
 	@sh tools/deps.sh flashtest
-	@$(MAKE) $(FLASHTEST_IMAGES) $(S)/simrun
+	@$(MAKE) flashtest_images
 	@python3 host_tests/test_flash.py
 
-.PHONY: flashtest
+flashtest_images: $(FLASHTEST_IMAGES) $(S)/simrun
+
+.PHONY: flashtest flashtest_images

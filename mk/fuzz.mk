@@ -35,12 +35,14 @@ $(FZ)/support_filter%.o: host_tests/support_filter%.c Makefile mk/fuzz.mk
 $(FUZZ_BIN): $(FZ)/fuzz_%: $(FZ)/fuzz_%.o $(FUZZ_LINKED) $(FZ)/app.o
 	@$(HOST_CC) $(SANITIZE) $^ -lm -o $@
 
-# the same with one source broken, for each bug of planted.txt: NAME:TARGET:SOURCE
-FUZZ_PLANTS  := $(shell awk '/^=== / { name = $$2 ":" $$3; getline; print name ":" $$0 }' host_tests/fuzz/planted.txt)
+# the same with one source broken, for each breakage that a fuzz target judges: NAME:TARGET:SOURCE (asked only when they are built)
+ifneq ($(findstring fuzz,$(MAKECMDGOALS)),)
+FUZZ_PLANTS  := $(shell python3 tools/fuzz.py plants)
+endif
 FUZZ_PLANTED := $(foreach p,$(FUZZ_PLANTS),$(FZ)/planted/$(firstword $(subst :, ,$(p))))
 
 define FUZZ_PLANT
-$(FZ)/planted/$(1).c: $(3) host_tests/fuzz/planted.txt tools/fuzz.py
+$(FZ)/planted/$(1).c: $(3) campaigns/breakages.txt host_tests/planted.txt tools/anchors.py tools/fuzz.py
 	@mkdir -p $$(@D)
 	@python3 tools/fuzz.py plant $(1) $$@
 

@@ -6,7 +6,7 @@ NAVIMG_INC    := -Ihal -Ifirmware/nav -Ilib/nav/src
 NAV_RINGS  := -DHAL_UART_RX_SIZE=128 -DHAL_UART_TX_SIZE=128
 # what leaves flash and stack as small as the budgets want: frames of functions that are no larger when put into one another
 NAV_SMALL  := $(filter-out -flto-partition=one,$(AVR_SMALL)) -fno-tree-pta --param=large-stack-frame=64 --param=large-stack-frame-growth=50
-NAVIMG_FLAGS   = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(NAV_SMALL) -gdwarf-2 -ffunction-sections -fdata-sections \
+NAVIMG_FLAGS   = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(NAV_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections \
               $(WARNINGS) $(NAVIMG_INC) -Ihal/avr $(NAV_RINGS)
 nav_image   = $(U)/nav$(filter-out 12,$(1))/firmware.elf
 
@@ -17,7 +17,7 @@ $(U)/$(1)/%.o: %.c Makefile mk/nav.mk
 	@$$(AVR_CC) $$(NAVIMG_FLAGS) -DNAV_STATES=$(2) -MMD -MP -c $$< -o $$@
 
 $(U)/$(1)/firmware.elf: $(NAVIMG_SRC:%.c=$(U)/$(1)/%.o)
-	@$$(AVR_CC) -mmcu=atmega328p -gdwarf-2 $$(NAV_SMALL) -Wl,--gc-sections $$^ -lm -o $$@
+	@$$(AVR_CC) -mmcu=atmega328p $$(AVR_DEBUG) $$(NAV_SMALL) -Wl,--gc-sections $$^ -lm -o $$@
 
 $(U)/$(1)/firmware.hex: $(U)/$(1)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $$< $$@
@@ -56,7 +56,9 @@ NAV_SECONDS ?= 500
 ## navcheck: 500 s of flight in the simulated UNO, 12 and 9 states, bit for bit beside the PC, with load, slots and RAM (10 minutes; NAV_SECONDS=)
 navcheck:
 	@sh tools/deps.sh tilt
-	@$(MAKE) $(NAV_TESTED) $(S)/simrun
+	@$(MAKE) nav_images $(S)/simrun
 	@$(PY) host_tests/test_nav_image.py --seconds $(NAV_SECONDS) Equal
 
-.PHONY: nav navflash navcheck
+nav_images: $(NAV_TESTED)
+
+.PHONY: nav nav_images navflash navcheck

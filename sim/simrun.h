@@ -12,6 +12,7 @@
 #include <stdio.h>
 
 #include "adxl345_model.h"
+#include "avr_uart.h"
 #include "sim_avr.h"
 #include "simrun_judge.h"
 #include "stream.h"
@@ -38,7 +39,8 @@ typedef enum {
     EXIT_RESETS = 7,   /* number of resets is not --expect-resets */
     EXIT_STOPPED = 8,  /* the firmware slept with interrupts off */
     EXIT_STALLED = 9,  /* no --max-ms, and the sensor was not used for 20 s: the stream would never end */
-    EXIT_WRONG = 10    /* --judge, and a row is wrong, stale or stamped before the one ahead of it */
+    EXIT_WRONG = 10,   /* --judge, and a row is wrong, stale or stamped before the one ahead of it */
+    EXIT_RULE = 11     /* a rule of the data sheet is broken that simavr does not hold */
 } exit_status_t;
 
 /* --- options --- */
@@ -52,7 +54,7 @@ typedef struct {
 
 typedef struct {
     const char *fw, *in, *frames, *out, *served, *altered, *eeprom, *stats, *profile, *vcd, *bootloader, *filter, *span;
-    bool loop, pty, blank, judge, strap;
+    bool loop, pty, blank, judge, strap, alt_address;
     double ppm, max_ms; /* max_ms 0: none */
     adxl345_part_t part;
     unsigned expect_resets, gdb_port;
@@ -92,6 +94,7 @@ void machine_reschedule(void);
 /* First cause wins; ends the run. `reason` stays valid. */
 void machine_fail(exit_status_t status, const char *reason);
 double machine_ms(void);
+bool machine_asked_to_end(void);          /* by SIGINT or SIGTERM */
 uint32_t machine_random(void);            /* xorshift32 from --seed */
 bool machine_in_boot_loader(uint32_t pc); /* byte address; false without --bootloader */
 
@@ -164,10 +167,16 @@ void uart_reset(void); /* after a reset of the MCU */
 uint64_t uart_next(void);
 void uart_step(void);
 void uart_flood(bool on);        /* random bytes without a pause, instead of what is to be typed */
+void uart_spoil(bool lost);      /* the next byte received has FE0, or DOR0 */
 void uart_stall(uint64_t until); /* the transmitter holds each byte until this cycle; 0: no more */
 uint64_t uart_last_tx(void);     /* cycle of the last byte sent, 0: none */
 uint64_t uart_bytes(void);
 uint32_t uart_rx_overruns(void);
+uint64_t uart_frame_cycles(void); /* that the transmitter takes for a byte that begins now */
+
+/* --- the transmitter of the UART --- */
+void transmitter_start(avr_uart_t *of, void (*on_byte)(uint8_t byte)); /* on_byte: as its start bit goes out */
+void transmitter_reset(void);
 
 /* --- a PC that speaks in frames (--frames, simrun_frames.c) --- */
 /* Reads the file; exits with EXIT_INPUT and the place on a bad one. Nothing to do without --frames. */
@@ -183,7 +192,7 @@ void frames_print(FILE *json);
 void pty_open(void);
 void pty_send(uint8_t byte);
 bool pty_receive(uint8_t *byte);
-void pty_pace(void); /* sleep until real time has caught up */
+void pty_pace(void); /* sleep until real time has caught up; where it is far ahead, let it go */
 
 /* --- EEPROM (--eeprom) --- */
 void eeprom_start(void);
@@ -238,6 +247,12 @@ void rows_print(FILE *json);
 /* --- good rows go on (simrun_flow.c) --- */
 void flow_on_row(const row_t *row); /* before the faults hear of the row */
 void flow_print(FILE *json);
+
+/* --- rules of the data sheet (simrun_rules.c) --- */
+void rules_start(void); /* when every other part has its registers */
+void rules_on_reset(void);
+void rules_on_step(uint32_t from); /* a step that began there may have ended with SLEEP, or with interrupts on */
+void rules_print(FILE *json);
 
 /* --- statistics --- */
 extern uint64_t stats_slept;       /* cycles asleep */

@@ -228,6 +228,9 @@ void alter_begin(const fault_t *fault)
     case KIND_TXSTALL:
         uart_stall(fault->ends);
         break;
+    case KIND_RXSPOIL:
+        uart_spoil(fault->parameter == 1);
+        break;
     default:
         uart_flood(true);
         break;
@@ -267,6 +270,8 @@ void alter_end(const fault_t *fault)
         break;
     case KIND_CLIP:
         clipped_axis = NO_AXIS;
+        break;
+    case KIND_RXSPOIL:
         break;
     case KIND_TXSTALL:
         uart_stall(0);

@@ -38,6 +38,7 @@ typedef enum {
     KIND_GLITCH,
     KIND_CLIP,
     KIND_TXSTALL,
+    KIND_RXSPOIL,
     KIND_COUNT
 } kind_t;
 

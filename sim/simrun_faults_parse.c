@@ -40,6 +40,7 @@ const kind_properties_t fault_kinds[KIND_COUNT] = {
     [KIND_GLITCH] = { .name = "glitch", .detectable = true },
     [KIND_CLIP] = { "clip", true, false, true, true, 0, 2, 2 },
     [KIND_TXSTALL] = { .name = "txstall", .lasts = true, .detectable = true },
+    [KIND_RXSPOIL] = { "rxspoil", false, false, true, false, 0, 0, 1 },
 };
 
 static void refuse(const char *text, const char *reason) __attribute__((noreturn));

@@ -163,6 +163,11 @@ static void on_signal(int number)
     asked_to_end = 1;
 }
 
+bool machine_asked_to_end(void)
+{
+    return asked_to_end != 0;
+}
+
 static void load_program(void)
 {
     elf_firmware_t program;
@@ -230,6 +235,7 @@ void machine_start(void)
     if (faults_watch_pc || span_wanted || options.profile != NULL) {
         chunk_cycles = 0;
     }
+    rules_start();
     resets_start();
 }
 
@@ -319,6 +325,7 @@ static bool step(uint64_t chunk)
     uint64_t left = first > mcu->cycle ? first - mcu->cycle : 0;
     mcu->run_cycle_count = left < chunk ? left : chunk;
     mcu->pc = avr_run_one(mcu);
+    rules_on_step(last_pc);
     if (next_timer() > mcu->cycle && mcu->interrupt_state == 0 && mcu->state == cpu_Running) {
         return false;
     }

@@ -23,6 +23,7 @@ enum option_code {
     OPTION_BOOTLOADER,
     OPTION_BLANK,
     OPTION_STRAP,
+    OPTION_ALT_ADDRESS,
     OPTION_LOOP,
     OPTION_PTY,
     OPTION_PPM,
@@ -54,6 +55,7 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "bootloader", required_argument, NULL, OPTION_BOOTLOADER },
                                        { "blank", no_argument, NULL, OPTION_BLANK },
                                        { "strap", no_argument, NULL, OPTION_STRAP },
+                                       { "alt-address", no_argument, NULL, OPTION_ALT_ADDRESS },
                                        { "loop", no_argument, NULL, OPTION_LOOP },
                                        { "pty", no_argument, NULL, OPTION_PTY },
                                        { "ppm", required_argument, NULL, OPTION_PPM },
@@ -108,6 +110,7 @@ static const char help_text[] =
     "                     rows_twice, t_us_steps_back in --stats, and on stderr\n"
     "  --clock-start US   what the firmware's clock reads when Timer1 begins to count (0)\n"
     "  --strap            D4 is at ground: the firmware starts with default settings\n"
+    "  --alt-address      ALT ADDRESS of the sensor is high: it answers at 0x1D, not at 0x53\n"
     "  --fault WHEN:KIND[:PARAM][:MS]\n"
     "    WHEN   12.3ms | xfer:N.K (byte K of I2C transfer N, the address is byte 1) | pc:SYMBOL[#N] (Nth time it is "
     "reached)\n"
@@ -141,6 +144,10 @@ static const char help_text[] =
     "           odr[:PPM[:MS]]               error of the sensor's clock (50000), instead of --ppm\n"
     "           rxflood[:MS] txstall[:MS]    random bytes to the UART without a pause; the UART's transmitter stands "
     "still\n"
+    "           rxspoil[:LOST]               once: the next byte typed has no stop bit (0), or comes after one that "
+    "found "
+    "no\n"
+    "                                        room in the receiver (1)\n"
     "           * altered inside a well-formed transfer, behind the sensor: --served stays true, and no firmware can "
     "see "
     "every\n"
@@ -162,7 +169,7 @@ static const char help_text[] =
     "  --gdb PORT         wait for avr-gdb before the first instruction\n"
     "  --pty              connect the UART to a pseudo terminal, in real time; with --bootloader opening it resets the "
     "MCU,\n"
-    "                     as DTR resets an UNO (not counted)\n"
+    "                     as DTR resets an UNO (not counted), and with --blank nothing runs until then\n"
     "\n"
     "The run ends 20 ms after the stream, when the UART has been silent for 30 ms (2 s at most); with --pty or --gdb "
     "Ctrl-C\n"
@@ -170,7 +177,8 @@ static const char help_text[] =
     "Exit status: 0 ran to the end; 1 simrun failed, or a signal ended it; 2 usage or input; 3 crash;\n"
     "4 illegal opcode; 5 stack overrun; 6 UART overrun; 7 unexpected number of resets;\n"
     "8 firmware slept with interrupts off;\n"
-    "9 without --max-ms: the firmware did not use the sensor for 20 s; 10 --judge: a row is not right.\n";
+    "9 without --max-ms: the firmware did not use the sensor for 20 s; 10 --judge: a row is not right;\n"
+    "11 a rule of the data sheet is broken that simavr does not hold (the words say which).\n";
 
 static void refuse(const char *format, ...) __attribute__((format(printf, 1, 2), noreturn));
 static void refuse(const char *format, ...)
@@ -304,6 +312,9 @@ static void take(int code, const char *name, const char *argument)
         break;
     case OPTION_STRAP:
         options.strap = true;
+        break;
+    case OPTION_ALT_ADDRESS:
+        options.alt_address = true;
         break;
     case OPTION_JUDGE:
         options.judge = true;

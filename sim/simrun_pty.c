@@ -1,4 +1,8 @@
-/* A pseudo terminal in place of the USB serial port, in real time: for a terminal program, a plotter or avrdude. */
+/*
+ * A pseudo terminal in place of the USB serial port: for a terminal program, a plotter or avrdude. Simulated time keeps
+ * to real time and never runs ahead of it: where the PC has no processor for the simulator, or the reader none for what
+ * is in the terminal, simulated time waits. So what happens does not depend on how busy the PC is.
+ */
 #define _GNU_SOURCE /* posix_openpt */
 
 #include <errno.h>
@@ -11,9 +15,16 @@
 
 #include "simrun.h"
 
+enum {
+    READER_LOOK_MS = 50,
+    DEBT_MS = 20
+}; /* a debt of real time beyond that is not made up: boot loaders count time */
+
 static int master = -1;
 static bool opened; /* somebody holds the other end */
+static bool ever_opened;
 static struct timespec began;
+static double forgiven_ms; /* of real time, in which simulated time waited */
 
 /* Bytes as they are, no echo; what else the one at the other end has set stays. */
 static bool make_raw(int terminal)
@@ -53,20 +64,46 @@ static void look_for_user(void)
         resets_port_opened();
     }
     opened = now;
+    ever_opened = ever_opened || now;
 }
 
-/* What nobody reads is lost, as on a board without a PC. */
+/* False: nobody holds the other end any more, or the run is to end. */
+static bool wait_for_reader(void)
+{
+    struct pollfd end = { .fd = master, .events = POLLOUT };
+    return poll(&end, 1, READER_LOOK_MS) >= 0 && (end.revents & POLLHUP) == 0 && !machine_asked_to_end();
+}
+
+/* Without anybody at the other end it is lost, as on a board without a PC. */
 void pty_send(uint8_t byte)
 {
-    ssize_t sent = opened ? write(master, &byte, 1) : 1;
-    if (sent < 0 && errno != EAGAIN && errno != EIO) {
-        perror("simrun: pseudo terminal");
+    while (opened && write(master, &byte, 1) < 0) {
+        if (errno == EAGAIN && wait_for_reader()) {
+            continue;
+        }
+        if (errno != EAGAIN && errno != EIO && errno != EINTR) {
+            perror("simrun: pseudo terminal");
+        }
+        break;
+    }
+}
+
+/* A boot loader that nobody talks to would soon leave for a flash that is empty. */
+static void wait_for_first_user(void)
+{
+    struct timespec pause = { .tv_nsec = READER_LOOK_MS * 1000000L };
+    while (!ever_opened && !machine_asked_to_end()) {
+        nanosleep(&pause, NULL);
+        look_for_user();
     }
 }
 
 bool pty_receive(uint8_t *byte)
 {
     look_for_user();
+    if (options.blank) {
+        wait_for_first_user();
+    }
     return opened && read(master, byte, 1) == 1;
 }
 
@@ -75,7 +112,10 @@ void pty_pace(void)
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     double real_ms = (double)(now.tv_sec - began.tv_sec) * 1e3 + (double)(now.tv_nsec - began.tv_nsec) * 1e-6;
-    double ahead_ms = machine_ms() - real_ms;
+    double ahead_ms = machine_ms() + forgiven_ms - real_ms;
+    if (ahead_ms < -DEBT_MS) {
+        forgiven_ms -= ahead_ms + DEBT_MS;
+    }
     if (ahead_ms > 1.0) {
         struct timespec pause = { .tv_sec = (time_t)(ahead_ms / 1e3) };
         pause.tv_nsec = (long)((ahead_ms - (double)pause.tv_sec * 1e3) * 1e6);

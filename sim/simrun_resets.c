@@ -53,6 +53,7 @@ static void set_up_again(bool power_lost)
     span_reset();
     pass_reset();
     faults_on_reset();
+    rules_on_reset();
     eeprom_reset(power_lost);
     forget_strap();
     sensor_show_pin();

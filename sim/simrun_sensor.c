@@ -104,6 +104,9 @@ void sensor_start(void)
     pin_d2 = avr_io_getirq(mcu, AVR_IOCTL_IOPORT_GETIRQ('D'), PIN_D2);
     adxl345_model_init(&sensor);
     sensor.part = options.part;
+    if (options.alt_address) {
+        sensor.address = ADXL345_ADDRESS_HIGH;
+    }
     clock_error_ppm = options.ppm;
     sensor.pin_changed = on_pin;
     sensor.latched = on_latched;

@@ -196,6 +196,8 @@ static void write_samples(FILE *file)
     rows_print(file);
     flow_print(file);
     eeprom_print(file);
+    rules_print(file);
+    fprintf(file, "  \"uart_baud\": %.0f,\n", 1e6 * CYCLES_PER_US * 10.0 / (double)uart_frame_cycles());
     fprintf(file, "  \"uart_bytes\": %llu,\n  \"uart_rx_overruns\": %u,\n", (unsigned long long)uart_bytes(),
             (unsigned)uart_rx_overruns());
     fprintf(file, "  \"i2c_transfers\": %u,\n  \"i2c_bytes\": %llu,\n", (unsigned)twi.transfer,

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "avr_uart.h"
 #include "sim_io.h"
 #include "simrun.h"
 
@@ -45,6 +44,7 @@ static uint64_t line_free_at; /* the last byte of a frame is over */
 static uint32_t rx_overruns;
 static bool flooded;
 static uint64_t stalled_until;
+static enum { SPOILT_NOTHING, SPOILT_STOP, SPOILT_LOST } spoilt; /* of the next byte received */
 
 /* A row of csv mode: ten whole numbers; t_us, x_lsb, y_lsb, z_lsb first and flags last. */
 static bool parse_row(row_t *row)
@@ -138,11 +138,10 @@ static uint64_t byte_cycles(void)
     return (uint64_t)divider * oversampling * BITS_PER_BYTE;
 }
 
-/* For the bytes that the transmitter takes from now on. */
-static void set_byte_time(void)
+uint64_t uart_frame_cycles(void)
 {
     uint64_t held = stalled_until > mcu->cycle ? stalled_until - mcu->cycle : 0;
-    uart->cycles_per_byte = byte_cycles() + (held < STALL_MAX_CYCLES ? held : STALL_MAX_CYCLES);
+    return byte_cycles() + (held < STALL_MAX_CYCLES ? held : STALL_MAX_CYCLES);
 }
 
 /* A record of the board's is what the next frame may have waited for. */
@@ -154,15 +153,8 @@ static void on_frame_byte(uint8_t byte)
     }
 }
 
-static void on_output(avr_irq_t *irq, uint32_t value, void *param)
+static void on_output(uint8_t byte)
 {
-    (void)irq;
-    (void)param;
-    uint8_t byte = (uint8_t)value;
-    set_byte_time(); /* a stall ends when it ends, whenever this byte begins */
-    if (uart->tx_cnt >= 2) {
-        machine_fail(EXIT_UART, "a byte was written to the UART before it was ready");
-    }
     fputc(byte, out_file);
     byte_count++;
     last_tx = mcu->cycle;
@@ -187,7 +179,7 @@ static void on_baud(avr_t *avr, avr_io_addr_t address, uint8_t value, void *para
     (void)address;
     (void)value;
     (void)param;
-    set_byte_time();
+    uart->cycles_per_byte = byte_cycles(); /* of what is received */
     if (waits_for_baud) {
         waits_for_baud = false;
         on_reply();
@@ -205,7 +197,7 @@ void uart_start(void)
         }
     }
     uart_input = avr_io_getirq(mcu, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT);
-    avr_irq_register_notify(avr_io_getirq(mcu, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_output, NULL);
+    transmitter_start(uart, on_output);
     avr_register_io_write(mcu, REG_UBRR0L, on_baud, NULL);
     if (options.pty) {
         pty_open();
@@ -222,6 +214,12 @@ void uart_finish(void)
 void uart_reset(void)
 {
     line_length = 0;
+    transmitter_reset();
+}
+
+void uart_spoil(bool lost)
+{
+    spoilt = lost ? SPOILT_LOST : SPOILT_STOP;
 }
 
 static void receive(uint8_t byte)
@@ -234,7 +232,11 @@ static void receive(uint8_t byte)
         return;
     }
     vcd_change(VCD_RX, byte);
-    avr_raise_irq(uart_input, byte);
+    avr_raise_irq(uart_input, spoilt == SPOILT_STOP ? byte | (uint32_t)UART_INPUT_FE : byte);
+    if (spoilt == SPOILT_LOST) {
+        avr_regbit_set(mcu, uart->dor);
+    }
+    spoilt = SPOILT_NOTHING;
 }
 
 static void end_typed_line(void)
@@ -296,7 +298,6 @@ void uart_flood(bool on)
 void uart_stall(uint64_t until)
 {
     stalled_until = until;
-    set_byte_time();
 }
 
 static void step_frames(void)

@@ -57,7 +57,7 @@ def linked(names):
 def call(command):
     """Runs a command; what cannot be run is a Failure as well."""
     try:
-        return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300)
+        return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=600)
     except FileNotFoundError:
         raise Failure(f"{command[0]} is not there (make bitexact builds or installs what is needed)") from None
     except subprocess.TimeoutExpired:

@@ -5,7 +5,9 @@
 """
 import os
 import pathlib
+import re
 import shlex
+import sys
 
 from check_support import Stop, chosen, files, main, parallel, report, run
 
@@ -98,9 +100,19 @@ def compiled(job):
     return None if done.returncode == 0 else f"{command[0]} {path}:\n{done.stdout.rstrip()}"
 
 
+def named_alone():
+    """The headers named, if no file includes one of them: then nothing else need be compiled."""
+    named = [pathlib.Path(a) for a in sys.argv[1:]]
+    if not named or any(path.suffix not in (".h", ".hpp") for path in named):
+        return set()
+    included = re.compile("|".join(rf'#\s*include "(?:\S*/)?{re.escape(path.name)}"' for path in named))
+    users = (path for path in files(".c", ".h", ".cpp", ".hpp", ".ino") if included.search(path.read_text(encoding="utf-8", errors="replace")))
+    return set() if any(users) else set(named)
+
+
 def check():
     everything = list(jobs())
-    wanted = set(chosen({path for path, _ in everything}))
+    wanted = named_alone() or set(chosen({path for path, _ in everything}))
     todo = [job for job in everything if job[0] in wanted]
     findings = [f for f in parallel(compiled, todo) if f]
     count = {name: sum(1 for _, c in todo if c[0] == name) for name in ("gcc", "g++", "avr-gcc", "avr-g++")}

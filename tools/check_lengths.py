@@ -24,7 +24,7 @@ def of_c():
 
 
 def all_files():
-    return of_c() + sorted(pathlib.Path("tools").rglob("*.py")) + files(".py", folders=["host_tests"])
+    return of_c() + sorted(pathlib.Path("tools").rglob("*.py")) + files(".py", folders=["host_tests", "campaigns"])
 
 
 def measured(path):

@@ -2,6 +2,7 @@
 """Fuzzing: runs the targets, keeps what made one fail, and shows that each finds the bugs planted for it.
 
     fuzz.py run SECONDS SEED      all of it (make fuzz); SECONDS are shared by the targets
+    fuzz.py plants                the bugs planted, as NAME:TARGET:SOURCE
     fuzz.py plant NAME FILE       writes the source with that planted bug to FILE
 """
 import hashlib
@@ -13,8 +14,11 @@ import subprocess
 import sys
 import time
 
+import anchors
+
 BUILD = pathlib.Path("build/fuzz")
 SOURCES = pathlib.Path("host_tests/fuzz")
+LISTS = (pathlib.Path("campaigns/breakages.txt"), pathlib.Path("host_tests/planted.txt"))
 TARGETS = ("commands", "stream", "driver", "filters")
 PLANTED_SECONDS = 60  # at most; found within some seconds as a rule
 REDUCE_SECONDS = 10
@@ -22,23 +26,29 @@ FOUND = (1, -signal.SIGABRT)  # a sanitizer's complaint, a broken property; not 
 
 
 def planted():
-    """The list of planted.txt: blocks of `name target`, file, then the old and the new text."""
-    for block in (SOURCES / "planted.txt").read_text(encoding="ascii").split("\n=== ")[1:]:
-        head, old, new = block.rstrip("\n").split("\n---\n")
-        title, file = head.split("\n")
-        name, target = title.split(" ")
-        yield name, target, file, old, new
+    """[(name as a file, target, breakage)] of the lists' judge `fuzz`."""
+    return [(re.sub(r"\W+", "-", entry.name), judge.split()[1], entry) for path in LISTS for entry in anchors.load(path)
+            for judge in entry.judges if judge.split()[0] == "fuzz"]
+
+
+def plants():
+    """NAME:TARGET:SOURCE of each, for mk/fuzz.mk."""
+    for name, target, entry in planted():
+        print(f"{name}:{target}:{anchors.broken(entry, source_text())[0]}")
+
+
+def source_text():
+    """The product's sources and the stream reader's, which has a fuzz target too."""
+    return {**anchors.product_text(), "sim/stream.c": pathlib.Path("sim/stream.c").read_text(encoding="utf-8")}
 
 
 def plant(name, path):
-    for found, _, file, old, new in planted():
+    for found, _, entry in planted():
         if found == name:
-            text = pathlib.Path(file).read_text(encoding="utf-8")
-            if text.count(old) != 1:
-                sys.exit(f"fuzz: planted.txt: {name}: its text is {text.count(old)} times in {file}, not once")
-            pathlib.Path(path).write_text(f'#line 1 "{file}"\n' + text.replace(old, new), encoding="utf-8")
+            file, text = anchors.broken(entry, source_text())
+            pathlib.Path(path).write_text(f'#line 1 "{file}"\n' + text, encoding="utf-8")
             return
-    sys.exit(f"fuzz: planted.txt has no {name}")
+    sys.exit(f"fuzz: no breakage of {' and '.join(map(str, LISTS))} is called {name}")
 
 
 def last_input(work):
@@ -175,8 +185,14 @@ def main():
     if len(sys.argv) == 4 and sys.argv[1] == "plant":
         plant(sys.argv[2], sys.argv[3])
         return 0
+    if sys.argv[1:] == ["plants"]:
+        plants()
+        return 0
     sys.exit(__doc__)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except anchors.Lost as why:
+        sys.exit(f"fuzz: {why}")

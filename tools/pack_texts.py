@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 
-PAIR_FIRST, PAIRS_MAX = 0x90, 0x70  # bytes 0x01..0x1F and 0x80..0x8F stand for values (enum say)
+PAIR_FIRST, PAIRS_MAX = 0x90, 0x70  # bytes 0x01..0x1F and 0x7F..0x8F stand for values (enum say)
 STEP = 8                            # texts between two whose start is kept; the firmware counts ends from there
 COLUMNS = 110
 

@@ -105,7 +105,7 @@ def experiments_of(programs):
     """{experiment: (program, relative work)}."""
     found = {}
     for program in programs:
-        done = subprocess.run([*command_of(program), "--list"], capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run([*command_of(program), "--list"], capture_output=True, text=True, timeout=600, check=False)
         if done.returncode != 0:
             raise Fault(f"{program} --list gave status {done.returncode}: {done.stderr.strip()}")
         for name, work in (line.split("\t") for line in done.stdout.splitlines()):

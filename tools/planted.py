@@ -15,6 +15,7 @@ import subprocess
 import sys
 import time
 
+import anchors
 from sampled import by_commit
 
 LIST = pathlib.Path("host_tests/planted.txt")
@@ -24,48 +25,26 @@ KILLED = {124, 137}  # what timeout gives
 LIMIT_S = 600  # by the wall, on a machine that others may load: only a check that hangs takes that long
 # these look at one file when it is named; the others look at the whole
 TAKES_FILE = {"compile", "tidy", "int16", "cppcheck", "format", "lengths"}
-FOLDERS = ["firmware", "lib", "hal", "sim", "host_tests", "mk", "tools", "docs"]
+FOLDERS = ["firmware", "lib", "hal", "sim", "host_tests", "mk", "tools", "campaigns", "docs"]
 FILES = ["Makefile", ".clang-tidy", ".clang-format", "platformio.ini", "sim/streams/outliers-15pct.csv", "build/uno/firmware.elf",
          "build/uno/filters.txt", "build/sim/simrun"]
 BUILT = ["build/check/avr", "build/uno/firmware", "build/uno/hal", "build/uno/lib"]
 
 
-def load(text):
-    """Blocks of name, file, a line `CHECK: words` for each check that must find it, then the old and the new text. The words are a
-    regular expression that the finding's line has beside the file. `blind` lists checks known not to see it."""
-    return [fault_of(block) for block in text.split("\n=== ")[1:]]
-
-
-def fault_of(block):
-    parts = block.rstrip("\n").split("\n---\n")
-    name, *head = parts[0].split("\n")
-    if len(parts) != 3 or len(head) < 2:
-        raise SystemExit(f"planted: {LIST}: '{name}': a block is name, file, lines CHECK: WORDS, perhaps 'blind: CHECKS', ---, old, ---, new")
-    fault = {"name": name, "file": head[0], "checks": {}, "blind": [], "old": parts[1], "new": grown(parts[2])}
-    for line in head[1:]:
-        check, _, words = line.partition(": ")
-        if not words.strip() or not re.fullmatch(r"[a-z0-9]+", check):
-            raise SystemExit(f"planted: {LIST}: '{name}': '{line}' does not state what the finding must say: CHECK: WORDS")
-        if check == "blind":
-            fault["blind"] = words.split()
-        else:
-            fault["checks"][check] = words
-    return fault
-
-
-def grown(text):
-    """A line `@repeat N: words` stands for N lines, {} being the number."""
-    lines = []
-    for line in text.split("\n"):
-        found = re.match(r"@repeat (\d+): (.*)", line)
-        lines += [found.group(2).replace("{}", str(i)) for i in range(int(found.group(1)))] if found else [line]
-    return "\n".join(lines)
+def load(path):
+    """The list's entries, without those that make fuzz plants. Each check must say what the finding is, or what it does not see."""
+    faults = [entry for entry in anchors.load(path) if entry.judges[0].split()[0] != "fuzz"]
+    for fault in faults:
+        mute = [check for check in fault.judges if check not in fault.says and check not in fault.silent]
+        if mute:
+            raise SystemExit(f"planted: {path}: '{fault.name}': nothing states what the finding must be: {mute[0]} says: WORDS")
+    return faults
 
 
 def unplanted(faults):
     """Checks of mk/check.mk for which no fault is planted."""
     line = re.search(r"^CHECKS := (.*)$", pathlib.Path("mk/check.mk").read_text(encoding="utf-8"), re.M)
-    return [c for c in line.group(1).split() if not any(c in f["checks"] for f in faults)]
+    return [c for c in line.group(1).split() if not any(c in f.says for f in faults)]
 
 
 def newer(source, target):
@@ -104,54 +83,63 @@ def run_check(copy, check, file):
 
 
 def judged(check, fault, status, output):
-    """(text, good) of what a check says of a fault: it counts when a line names the file and has the words that are stated."""
-    file, words = fault["file"], fault["checks"][check]
+    """(text, good) of what a check says of a fault: each finding that is stated must be in a line that names the file, none that is
+    excluded."""
+    file = file_of(fault)
     named = [line.strip() for line in output.splitlines() if file in line and not line.startswith("make")]
-    found = [line for line in named if re.search(words, line)]
+    missing = [words for words in fault.says.get(check, []) if not any(re.search(words, line) for line in named)]
+    seen = [line for words in fault.silent.get(check, []) for line in named if re.search(words, line)]
     if status is None:
         return f"check-{check} gives no answer within {LIMIT_S} s", False
+    if seen:
+        return f"check-{check} says what the list excludes: state it as a finding: {seen[0][:300]}", False
+    if check not in fault.says:
+        return f"check-{check} does not see it, as the list says", True
     if status == 0:
         return f"NOT FOUND by check-{check}: {output.strip()[-200:]}", False
     if not named:
         return f"check-{check} fails without naming {file}: {output.strip()[-300:]}", False
-    if not found:
-        return f"check-{check} fails, but says nothing of {file} with '{words}': {named[0][:300]}", False
-    return f"found by check-{check}: {found[0][:150]}", True
+    if missing:
+        return f"check-{check} fails, but says nothing of {file} with '{missing[0]}': {named[0][:300]}", False
+    return f"found by check-{check}: {next(line for line in named if re.search(fault.says[check][0], line))[:150]}", True
+
+
+def file_of(fault):
+    return fault.place.partition(":")[0]
 
 
 def verdicts(copy, fault):
     """(text, good) of each check of a fault that stands in the copy."""
-    for check in fault["checks"]:
-        yield judged(check, fault, *run_check(copy, check, fault["file"]))
-    for check in fault["blind"]:
-        status, output = run_check(copy, check, fault["file"])
-        if status is None:
-            yield f"check-{check} gives no answer within {LIMIT_S} s", False
-        elif status != 0:
-            yield f"check-{check}, which is `blind`, complains: make it one of the checks: {output.strip()[-300:]}", False
+    for check in fault.judges:
+        yield judged(check, fault, *run_check(copy, check, file_of(fault)))
+
+
+def planted_text(fault, whole):
+    """The file with the fault; Lost when it has no place."""
+    if fault.new and whole is not None:
+        raise anchors.Lost(f"{file_of(fault)} exists, and there is no text to replace in it")
+    return fault.new or anchors.broken(fault, {file_of(fault): whole.decode() if whole else ""})[1]
 
 
 def try_one(copies, fault):
     copy = copies.get()
-    path = copy / fault["file"]
+    path = copy / file_of(fault)
     whole = path.read_bytes() if path.exists() else None
-    text = whole.decode() if whole else ""
     try:
-        if fault["old"] and text.count(fault["old"]) != 1:
-            return [(f"the text to replace stands {text.count(fault['old'])} times in {fault['file']}", False)]
-        if not fault["old"] and whole is not None:
-            return [(f"{fault['file']} exists, and there is no text to replace in it", False)]
+        text = planted_text(fault, whole)
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text.replace(fault["old"], fault["new"]) if fault["old"] else fault["new"] + "\n", encoding="utf-8")
+        path.write_text(text, encoding="utf-8")
         return list(verdicts(copy, fault))
+    except anchors.Lost as why:
+        return [(str(why), False)]
     finally:
         restore(copy, fault, whole)
         copies.put(copy)
 
 
 def restore(copy, fault, whole):
-    """As it was; what was built from the fault is older than the file again, so it is built anew."""
-    path = copy / fault["file"]
+    """As it was; what was built from the fault is older than the file again, so it is built again."""
+    path = copy / file_of(fault)
     if whole is None:
         path.unlink(missing_ok=True)
     else:
@@ -162,7 +150,7 @@ def restore(copy, fault, whole):
 
 def main():
     words = sys.argv[1:]
-    faults = [f for f in load(LIST.read_text(encoding="utf-8")) if not words or any(w in f["name"] for w in words)]
+    faults = [f for f in load(LIST) if not words or any(w in f.name for w in words)]
     sample = os.environ.get("PLANTED", "")
     if sample and not (sample.isdecimal() and int(sample) > 0):
         print(f"planted: PLANTED={sample} is no number of faults")
@@ -183,7 +171,7 @@ def main():
         for fault, results in zip(faults, pool.map(lambda f: try_one(copies, f), faults)):
             for text, found in results:
                 good, bad = good + found, bad + (not found)
-                print(f"{fault['name']}: {text}", flush=True)
+                print(f"{fault.name}: {text}", flush=True)
     print(f"planted faults: {good} passed, {bad} failed ({time.monotonic() - began:.0f} s)")
     return 1 if bad else 0
 

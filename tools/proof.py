@@ -22,9 +22,11 @@ import subprocess
 import sys
 import time
 
+import anchors
 from sampled import by_commit
 
 HERE = pathlib.Path("host_tests/proof")
+BREAKAGES = pathlib.Path("campaigns/breakages.txt")
 OUT = pathlib.Path("build/proof")
 SOURCES = ["lib/filters/src", "lib/tilt/src", "host_tests/proof"]
 FUNCTIONS = ["init", "set_noise", "reset", "update", "coast", "gap"]
@@ -152,25 +154,22 @@ def sourced_functions():
 
 
 def load_plants():
-    plants = []
-    for block in (HERE / "plants.txt").read_text(encoding="utf-8").split("\n=== ")[1:]:
-        head, old, new = block.rstrip("\n").split("\n---\n")
-        name, file, judges = head.split("\n")
-        plants.append((name, file, judges.split(), old, new))
-    return plants
+    """[(breakage, entries that judge it)] of the list's judge `proof`."""
+    return [(entry, judge.split()[1:]) for entry in anchors.load(BREAKAGES) for judge in entry.judges if judge.split()[0] == "proof"]
 
 
 def try_plant(number, plant, entries):
     """What finds the breakage, or None."""
-    name, file, judges, old, new = plant
-    whole = pathlib.Path(file).read_text(encoding="utf-8")
-    if whole.count(old) != 1:
-        return None, f"the text to break stands {whole.count(old)} times in {file}, not once"
+    breakage, judges = plant
+    try:
+        file, text = anchors.broken(breakage)
+    except anchors.Lost as why:
+        return None, str(why)
     overlay = OUT / f"plant{number}"
     shutil.rmtree(overlay, ignore_errors=True)
     for source in SOURCES:
         shutil.copytree(source, overlay / source)
-    (overlay / file).write_text(whole.replace(old, new), encoding="utf-8")
+    (overlay / file).write_text(text, encoding="utf-8")
     for entry in judges:
         annotate(entries[entry][0], overlay, overlay)
         findings = judge(entry, entries[entry], overlay)[0]
@@ -216,10 +215,10 @@ def chosen(patterns, entries):
         expressions = [re.compile(pattern) for pattern in patterns or [""]]
     except re.error as error:
         fail(f"'{' '.join(patterns)}' is no regular expression: {error}")
-    plants = [p for p in load_plants() if any(e.search(p[0]) for e in expressions)]
-    judges = {name for plant in plants for name in plant[2]}
+    plants = [p for p in load_plants() if any(e.search(p[0].name) for e in expressions)]
+    judges = {name for plant in plants for name in plant[1]}
     if not judges <= set(entries):
-        fail(f"plants.txt names entries that do not exist: {' '.join(sorted(judges - set(entries)))}")
+        fail(f"{BREAKAGES} names entries that do not exist: {' '.join(sorted(judges - set(entries)))}")
     wanted = [name for name in entries if name in judges or any(e.search(name) for e in expressions)]
     if not wanted:
         fail(f"no entry and no breakage has a name that matches: {' '.join(patterns)}")
@@ -248,11 +247,11 @@ def main():
         broken, met, reached = run_entries(pool, entries, wanted)
         failed, passed = len(broken), len(wanted) - len(broken)
         jobs = [(p, pool.submit(try_plant, i, p, entries)) for i, p in enumerate(plants)]
-        for (name, _, judged_by, _, _), job in jobs:
+        for (breakage, judged_by), job in jobs:
             finding, reason = job.result()
             if broken & set(judged_by):
                 finding, reason = None, "its judge fails on the unbroken code"
-            print(f"breakage {'found' if finding else 'MISSED'}: {name}: {finding or reason}")
+            print(f"breakage {'found' if finding else 'MISSED'}: {breakage.name}: {finding or reason}")
             passed, failed = passed + bool(finding), failed + (not finding)
     for gap in [] if patterns else gaps(entries, met, reached):
         print(gap)

@@ -49,7 +49,7 @@ class Run:
 def output_of(command):
     command = [str(c) for c in command]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     except FileNotFoundError as missing:
         raise Fault(f"{command[0]} is not built: make robust builds it") from missing
     if done.returncode != 0:

@@ -1,104 +1,240 @@
 #!/usr/bin/env python3
-"""run_tests.py TEST...: runs each Unity program, the images of $CHIP_TESTS in the simulator, the comparisons and the tests of the tools,
-two at a time and the longest first; tells of each as it ends, with what failed or was skipped, and at last the sum. $LEAVE_OUT: names of
-tests that are not run and said to be left out (for .ci/run, which runs them by turns).
+"""run_tests.py [quick]: runs all tests of tools/test_table.py, or the unit tests of the PC, two at a time, those that took longest the last time
+first. Prints each as it ends, with what failed or was skipped and why; at the end where
+the time went, all that failed once more, and the sum. $LEAVE_OUT: names of tests that are not run and listed as left out (for .ci/run,
+which runs them by turns). The log of each is build/host/NAME.log, the times of the last run build/host/times.json.
 """
 import concurrent.futures
+import json
 import os
 import pathlib
 import re
 import signal
 import subprocess
 import sys
+import threading
 import time
+from dataclasses import dataclass
+
+import test_table
+from unity_report import MORE
 
 OUT = pathlib.Path("build/host")
-VENV = "build/venv/bin/python"
+TIMES = "times.json"
 SUM = re.compile(r"^(\d+) Tests (\d+) Failures (\d+) Ignored", re.M)
-PLAIN = ["test_flash", "test_resets", "test_fault_page", "test_bench", "test_papers", "test_papers_synthesis", "test_schedule", "test_pages",
-         "test_default", "test_images", "test_run_tests", "test_faults", "test_arduino", "test_plotter", "test_compile_commands"]
-WITH_NUMPY = ["test_nav_image", "test_plot_run", "test_robust", "test_design", "test_design_command", "test_design_refusals", "test_synthesised",
-              "test_variable_structure", "test_variable_structure_flight", "test_variable_structure_page"]
-TILT = sorted(pathlib.Path("host_tests/tilt").glob("test_*.py"))
-FIRST = ["system_tests", "bitexact", "test_design_command", "test_design", "test_design_refusals", "chip_filter_sequence_2", "chip_filter_sequence_1",
-         "test_synth_opt_reference", "test_flash"]  # begun before the others: what takes long begins early
-running = set()  # programs, to be ended with this one
+SANITIZER = re.compile(r"runtime error: |^==\d+==ERROR: |^SUMMARY: ")
+LAST_WORDS = 12  # lines of a program that ended without a report
+SHOW_S = 30      # on a log, between two lines that say what runs
+SLOWEST = 10
+# what a test is taken to need that has never run here, in seconds of a processor
+UNKNOWN_S = {"system_tests": 100, "bitexact": 60, "test_design_command": 50, "test_design": 40, "python": 10, "chip": 5, "program": 1}
 
 
-def commands(tests):
-    """name -> command"""
-    runs = {pathlib.Path(test).name: [test] for test in tests}
-    runs["filter_sequence"] = [OUT / "filter_sequence"]
-    for image in os.environ.get("CHIP_TESTS", "").split():
-        runs[f"chip_{pathlib.Path(image).stem}"] = ["python3", "host_tests/chip_test.py", image]
-    runs["bitexact"] = ["python3", "tools/bitexact.py"]
-    runs["exhaustive_isqrt"] = [OUT / "exhaustive_isqrt"]
-    runs |= {name: ["python3", f"host_tests/{name}.py"] for name in PLAIN}
-    runs |= {name: [VENV, f"host_tests/{name}.py"] for name in WITH_NUMPY}
-    runs |= {f"tilt_{path.stem.removeprefix('test_')}": [VENV, path] for path in TILT}
-    runs["system_tests"] = ["python3", "host_tests/system_tests.py"]
-    return runs
+@dataclass
+class Result:
+    """One program's end."""
+    status: int
+    said: str
+    took_s: float = 0.0  # by the clock
+    cpu_s: float = 0.0   # of a processor, its own programs counted in
+
+
+# --- order ------------------------------------------------------------------------------------------------------------
+
+def times_of_last_run():
+    """name -> {"took_s", "cpu_s"}; none of what cannot be read."""
+    try:
+        return json.loads((OUT / TIMES).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+
+
+def guess_s(name, command):
+    kind = "chip" if name.startswith("chip_") else "python" if len(command) > 1 else "program"
+    return UNKNOWN_S.get(name, UNKNOWN_S[kind])
+
+
+def longest_first(runs, times):
+    return sorted(runs, key=lambda name: -times.get(name, {}).get("took_s", guess_s(name, runs[name])))
+
+
+# --- one program ------------------------------------------------------------------------------------------------------
+
+class Running:
+    """What runs now, to be shown, and to be ended with this program."""
+
+    def __init__(self):
+        self.lock, self.programs, self.begun = threading.Lock(), {}, {}
+
+    def add(self, name, program):
+        with self.lock:
+            self.programs[name], self.begun[name] = program, time.monotonic()
+
+    def remove(self, name):
+        with self.lock:
+            del self.programs[name], self.begun[name]
+
+    def words(self):
+        with self.lock:
+            return ", ".join(f"{name} ({time.monotonic() - begun:.0f} s)" for name, begun in self.begun.items())
+
+    def end(self):
+        with self.lock:
+            for program in self.programs.values():
+                program.terminate()
+
+
+RUNNING = Running()
 
 
 def run(name, command):
-    """(status, what it said, seconds)"""
+    """The program's Result; its words are in a log too."""
     began = time.monotonic()
+    log = OUT / f"{name}.log"
     try:
-        with subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as program:
-            running.add(program)
-            said = program.communicate()[0].decode("utf-8", "replace")
-            status = program.returncode
-        running.discard(program)
+        with open(log, "wb") as file, subprocess.Popen([str(word) for word in command], stdout=file, stderr=subprocess.STDOUT) as program:
+            RUNNING.add(name, program)
+            try:
+                _, status, usage = os.wait4(program.pid, 0)
+            finally:
+                RUNNING.remove(name)
+            program.returncode = os.waitstatus_to_exitcode(status)
+        said = log.read_text(encoding="utf-8", errors="replace")
+        return Result(program.returncode, said, time.monotonic() - began, usage.ru_utime + usage.ru_stime)
     except OSError as why:
-        status, said = 127, f"{command[0]}: {why.strerror}\n"
-    (OUT / f"{name}.log").write_text(said, encoding="utf-8")
-    return status, said, time.monotonic() - began
+        log.write_text(f"{command[0]}: {why.strerror}\n", encoding="utf-8")
+        return Result(127, f"{command[0]}: {why.strerror}\n")
 
 
-def tell(name, status, said, seconds):
-    """Prints the result; returns (tests, failures, ignored), a crash as one failure more."""
-    sums = SUM.findall(said)
-    line = f"{sums[-1][0]} Tests {sums[-1][1]} Failures {sums[-1][2]} Ignored" if sums else f"crashed (status {status})"
-    print(f"{name:<28}{line:<42}{seconds:>4.0f} s")
+# --- what it said -----------------------------------------------------------------------------------------------------
+
+def reasons(said, word):
+    """The lines of a report with this word, each with the further lines of its reason."""
+    found, inside = [], False
     for text in said.splitlines():
-        if ":FAIL" in text or ":IGNORE" in text:
-            print(f"    {text}")
+        inside = word in text or inside and text.startswith(MORE)
+        if inside:
+            found.append(text)
+    return found
+
+
+def last_words(said):
+    """What a program that did not end well said last, and what a sanitizer had to say before."""
+    lines = [line for line in said.splitlines() if line.strip()]
+    early = [line for line in lines[:-LAST_WORDS] if SANITIZER.search(line)]
+    return [*early, *lines[-LAST_WORDS:]] or ["it printed nothing"]
+
+
+def judged(result):
+    """((tests, failures, ignored), one line, reasons of failure): a program without a report, without a test or with a bad end is a failure."""
+    sums = SUM.findall(result.said)
+    line = f"{sums[-1][0]} Tests {sums[-1][1]} Failures {sums[-1][2]} Ignored" if sums else f"crashed (status {result.status})"
     tests, failures, ignored = (int(part) for part in sums[-1]) if sums else (0, 0, 0)
-    if not sums or (failures == 0 and status != 0):
-        print(f"    ended with status {status}")
-        for text in said.splitlines()[-12:]:
-            print(f"    {text}")
+    why = reasons(result.said, ":FAIL")
+    if failures and not why:
+        why = ["no reason given; its last words:", *last_words(result.said)]
+    if tests == 0 or (failures == 0 and result.status != 0):
+        why += ["it ran no test"] if sums and tests == 0 else []
+        why += [f"ended with status {result.status}; its last words:", *last_words(result.said)]
         tests, failures = tests + 1, failures + 1
-    sys.stdout.flush()
-    return tests, failures, ignored
+    return (tests, failures, ignored), line, why
 
 
-def main():
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    runs = commands(sys.argv[1:])
+class Report:
+    """What is printed, and the sum."""
+
+    def __init__(self, count):
+        self.count, self.ended, self.total, self.failed, self.times = count, 0, [0, 0, 0], [], {}
+        self.live, self.shown = sys.stdout.isatty(), time.monotonic()
+
+    def say(self, text):
+        print(("\r\x1b[K" if self.live else "") + text, flush=True)
+
+    def add(self, name, result):
+        counts, line, why = judged(result)
+        self.ended += 1
+        self.total = [a + b for a, b in zip(self.total, counts)]
+        self.times[name] = {"took_s": round(result.took_s, 2), "cpu_s": round(result.cpu_s, 2)}
+        self.say(f"test {self.ended} of {self.count}: {name:<28}{line:<42}{result.took_s:>4.0f} s")
+        for text in [*why, *reasons(result.said, ":IGNORE")]:
+            self.say(f"    {text}")
+        if why:
+            self.failed.append((name, why))
+
+    def still(self, words):
+        """What runs: on a terminal in a line of its own, on a log now and then."""
+        if self.live:
+            sys.stdout.write(f"\r\x1b[Ktest {self.ended} of {self.count} done; running: {words}"[:150])
+            sys.stdout.flush()
+        elif time.monotonic() - self.shown > SHOW_S:
+            self.shown = time.monotonic()
+            self.say(f"running: {words}")
+
+    def end(self):
+        """The slowest, the failures again, skipped, and the line that counts."""
+        cpu_s = sum(each["cpu_s"] for each in self.times.values())
+        slowest = sorted(self.times, key=lambda name: -self.times[name]["cpu_s"])[:SLOWEST]
+        self.say(f"processor time {cpu_s:.0f} s, of which " + ", ".join(f"{name} {self.times[name]['cpu_s']:.0f}" for name in slowest))
+        if self.failed:
+            self.say("failed:")
+        for name, why in self.failed:
+            self.say(f"  {name} (all it said: {OUT / name}.log)")
+            for text in why:
+                self.say(f"    {text}")
+        tests, failures, ignored = self.total
+        self.say(f"skipped: {ignored} (each with its reason above)")
+        self.say(f"{tests - failures - ignored} passed, {failures} failed")
+        return failures
+
+
+# --- all --------------------------------------------------------------------------------------------------------------
+
+def without_those_left_out(runs):
     left_out = os.environ.get("LEAVE_OUT", "").split()
     unknown = [name for name in left_out if name not in runs]
     if unknown:
         sys.exit(f"run_tests: LEAVE_OUT names what is no test: {' '.join(unknown)}")
     for name in left_out:
-        del runs[name]
         print(f"{name:<28}left out")
-    order = [name for name in FIRST if name in runs] + [name for name in runs if name not in FIRST]
-    total = [0, 0, 0]
+    return {name: command for name, command in runs.items() if name not in left_out}
+
+
+def carried_out(runs, order, report):
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         jobs = {pool.submit(run, name, runs[name]): name for name in order}
+        waiting = set(jobs)
         try:
-            for job in concurrent.futures.as_completed(jobs):
-                total = [a + b for a, b in zip(total, tell(jobs[job], *job.result()))]
+            while waiting:
+                done, waiting = concurrent.futures.wait(waiting, 1.0, concurrent.futures.FIRST_COMPLETED)
+                for job in done:
+                    report.add(jobs[job], job.result())
+                report.still(RUNNING.words())
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
-            for program in set(running):
-                program.terminate()
+            RUNNING.end()
             raise
-    tests, failures, ignored = total
-    print(f"skipped: {ignored} (each with its reason above)")
-    print(f"{tests - failures - ignored} passed, {failures} failed")
-    sys.exit(failures != 0)
+
+
+def chosen(words):
+    """name -> command of all tests, or of the unit tests."""
+    if words not in ([], ["quick"]):
+        sys.exit("usage: run_tests.py [quick]")
+    tests = test_table.units() if words else test_table.table()
+    return {name: test.command for name, test in tests.items()}
+
+
+def main():
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    runs = without_those_left_out(chosen(sys.argv[1:]))
+    times = times_of_last_run()
+    order = longest_first(runs, times)
+    print(f"run_tests: {len(order)} test programs, two at a time", flush=True)
+    report = Report(len(order))
+    try:
+        carried_out(runs, order, report)
+    finally:
+        (OUT / TIMES).write_text(json.dumps(times | report.times, indent=0), encoding="utf-8")
+    sys.exit(report.end() != 0)
 
 
 if __name__ == "__main__":

@@ -41,7 +41,7 @@ SHIFT_SIGMA, SHIFT_RUNS, SEED = 20.0, 2000, 2024
 
 def output_of(command, given=None):
     try:
-        done = subprocess.run([str(c) for c in command], input=given, capture_output=True, text=True, timeout=300)
+        done = subprocess.run([str(c) for c in command], input=given, capture_output=True, text=True, timeout=600)
     except FileNotFoundError as missing:
         raise Fault(f"{command[0]} is not built: make synthesised builds it") from missing
     if done.returncode != 0:

@@ -14,18 +14,20 @@ import subprocess
 import sys
 import time
 
+from chip import ONLY_CHIP, Chip
 from host import Host, Settings
 from judge import Judge, Worker
+from nav import Link, Variants
 from operators import mutants_of
-from order import Listed, Reached, write_judges
-from results import Results, accepted, below_goal, folder_of, goals, table, write_accepted, write_json
+from order import Cheapest, Listed, Reached, write_judges
+from results import Results, accepted, below_goal, folder_of, measured, table, write_accepted, write_goals, write_json
 from shop import Stop, alone, copy_tree, digest, tree_files
 
 WORKERS = 2
 # files that no mutant is made of, each with its reason
-LEFT_OUT = {"firmware/reply_packed.h": "written by tools/pack_texts.py, which make check runs"}
-# their programs are not built here yet
-OTHER_PROGRAMS = ("lib/nav/", "firmware/nav/", "hal/avr/", "lib/filters/src/fx_avr.h", "firmware/main.c")
+LEFT_OUT = {"firmware/reply_packed.h": "written by tools/pack_texts.py, which make check runs",
+            "firmware/nav/main.c": "20 lines that only the navigation image runs, whose test takes minutes"}
+NAV = ("lib/nav/", "firmware/nav/")
 
 
 def say(text):
@@ -45,9 +47,12 @@ def options_of(arguments):
 
 def sources(options):
     """The files that mutants are made of; a sample's are in the folders whose whole measurement is known."""
-    folders = tuple(f"{folder}/" for folder in goals()) if options.sample else ("lib/", "firmware/", "hal/")
-    found = [name for name in tree_files() if name.startswith(folders) and name.endswith((".c", ".h"))
-             and name.startswith(options.only) and name not in LEFT_OUT and "/examples/" not in name and not name.startswith(OTHER_PROGRAMS)]
+    folders = measured() if options.sample else ["lib, firmware, hal"]
+    if not folders:
+        raise Stop("no folder in campaigns/mutants/goals.txt was measured whole, so no sample can be judged: make mutants ONLY=folder ACCEPT=1")
+    begin = ("lib/", "firmware/", "hal/")
+    found = [name for name in tree_files() if name.startswith(begin) and (not options.sample or folder_of(name) in folders) and name.endswith((".c", ".h"))
+             and name.startswith(options.only) and name not in LEFT_OUT and "/examples/" not in name]
     if not found:
         raise Stop(f"no source in {', '.join(folders)} begins with {options.only}")
     return found
@@ -60,11 +65,11 @@ def tree_hash():
 
 
 def chosen(mutants, known, options):
-    """All; or a sample of those that a test is known to notice."""
+    """All, in an order drawn by lot so that a campaign cut short is a fair sample; or a sample of those that a test is known to notice."""
     if not options.sample:
-        return mutants
+        return random.Random(0).sample(mutants, len(mutants))
     seed, noticed = options.seed or tree_hash(), [m for m in mutants if m.key not in known]
-    say(f"{options.sample} of {len(noticed)} in {', '.join(goals())}, drawn by {seed}")
+    say(f"{options.sample} of {len(noticed)} in {', '.join(measured())}, drawn by {seed}")
     return random.Random(seed).sample(noticed, min(options.sample, len(noticed)))
 
 
@@ -83,12 +88,23 @@ class Campaign:
         for number in range(WORKERS):
             self.workers.put(Worker(number, copy_tree(number)))
         settings = Settings()
-        tests = [t for t in settings.tests if not t.startswith("test_nav") and t != "test_simrun_judge"]
         hosts = [Host(settings, variant, copy_tree("clean")) for variant in ("ubsan", "asan")]
         say(f"building {len(settings.product)} sources of the PC's programs")
         hosts[0].compile(pool)
-        self.order = Listed(tests) if self.options.sample else Reached(hosts[0], tests, self.mutants, self.texts, self.options.patience, pool, say)
-        self.judge = Judge(hosts, self.order.tests, self.order.limits)
+        self.order = Listed(settings.tests) if self.options.sample else Reached(
+            hosts[0], self.mutants, self.texts, self.options.patience, pool, say)
+        self.judge, self.chip = Judge(hosts, self.order.tests, self.order.limits), Chip(hosts[0].tree)
+        self.cheapest, link = Cheapest(self.options.patience), Link(settings, hosts[0].tree)
+        self.nav = Judge([Variants(settings, hosts[0].tree, hosts[0]), link], self.cheapest.tests, self.cheapest.limits)
+        self.nav_link = Judge([link], self.cheapest.tests, self.cheapest.limits)
+
+    def judge_of(self, file):
+        """(judge, who learns from it)"""
+        if file.startswith(ONLY_CHIP):
+            return self.chip, self.cheapest
+        if file.startswith(NAV):
+            return self.nav if file.startswith("lib/") else self.nav_link, self.cheapest
+        return self.judge, self.order
 
     def one(self, mutant):
         kept = self.results.get(mutant, self.hashes[mutant.file])
@@ -97,15 +113,16 @@ class Campaign:
         if self.options.seconds and time.monotonic() - self.began > self.options.seconds:
             return None
         worker, began = self.workers.get(), time.monotonic()
+        judge, learner = self.judge_of(mutant.file)
         try:
-            verdict, by = self.judge.verdict(mutant, worker)
+            verdict, by = judge.verdict(mutant, worker)
         finally:
             self.workers.put(worker)
-        self.order.learn(mutant, by)
+        learner.learn(mutant, by)
         return self.results.put(mutant, self.hashes[mutant.file], mutant.line(self.texts[mutant.file]), verdict, by, time.monotonic() - began)
 
     def run(self):
-        rows, told = [], time.monotonic()
+        rows, shown = [], time.monotonic()
         with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
             self.prepare(pool)
             try:
@@ -113,8 +130,8 @@ class Campaign:
                     rows += [row] if row else []
                     if row and row["verdict"] == "survived" and row["key"] not in self.accepted:
                         print(f"survived: {row['key']} (line {row['line']})", flush=True)
-                    if time.monotonic() - told > 15:
-                        told = time.monotonic()
+                    if time.monotonic() - shown > 15:
+                        shown = time.monotonic()
                         say(f"{number} of {len(self.mutants)}, {sum(r['verdict'] == 'killed' for r in rows)} killed")
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
@@ -135,6 +152,8 @@ class Campaign:
         if self.options.accept:
             write_accepted(rows)
             write_judges(rows)
+            if len(rows) == len(self.mutants):
+                write_goals(rows, self.options.only)
             say(f"{len(survived)} survivors written to campaigns/mutants/accepted.txt")
             new = []
         low = [] if self.options.sample or len(rows) < len(self.mutants) else below_goal(rows)

@@ -5,14 +5,14 @@ import os
 import pathlib
 import shlex
 import threading
-import time
 
-from shop import ROOT, Compiler, Stop, digest, run
+from shop import ROOT, Compiler, Stop, digest, run, timed
 
 PLAIN = ["-w", "-O1", "-fPIC"]
 # a breach of C's rules ends the program as it does in make test, by a trap: no library to start, nothing to print
 VARIANTS = {"ubsan": ["-fsanitize=undefined", "-fsanitize-undefined-trap-on-error"],
             "asan": ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]}
+NOT_OF_THE_PRODUCT = {"test_simrun_judge"}  # of the simulator
 HANG_TIMES, HANG_MIN_S = 10, 3
 
 
@@ -26,7 +26,9 @@ class Settings:
             return shlex.split(environment[name])
         self.compiler, self.cxx = words("HOST_CC"), words("HOST_CXX")
         self.flags = [f for f in words("HOST_FLAGS") if f != "-g" and not f.startswith("-O")]
-        self.product, self.tests = words("HOST_SRC"), [pathlib.Path(t).name for t in words("TESTS")]
+        self.product = words("HOST_SRC")
+        names = (pathlib.Path(test).name for test in words("TESTS"))
+        self.tests = [name for name in names if not name.startswith("test_nav") and name not in NOT_OF_THE_PRODUCT]
         self.supports = sorted(str(p) for p in pathlib.Path("host_tests").glob("support_*.c"))
         self.references = sorted(str(p) for p in pathlib.Path("host_tests").glob("reference_*.cpp"))
         self.unity = f"{environment.get('UNITY_DIR', 'build/unity')}/unity.c"
@@ -37,6 +39,7 @@ class Host:
 
     def __init__(self, settings, variant, tree):
         self.settings, self.variant, self.tree = settings, variant, tree
+        self.product, self.supports, self.tests = settings.product, settings.supports, settings.tests
         self.flags = VARIANTS[variant]
         self.folder = ROOT / variant
         self.objects = Compiler(variant, self.command, tree)
@@ -50,37 +53,48 @@ class Host:
             return [*self.settings.cxx, "-std=c++17", "-O2", "-w", "-fPIC", *includes, "-isystem", "/usr/include/eigen3"]
         return [*self.settings.compiler, *self.settings.flags, *PLAIN, *self.flags]
 
+    def plain_command(self, source):
+        """As the optimiser sees it, without checks of C's rules."""
+        return [*(flag for flag in self.command(source) if flag not in self.flags), "-O2"]
+
     def test_source(self, test):
         return f"host_tests/{test}.c"
 
     def compile(self, pool, tests=()):
         """The product's library, and what the tests are linked from."""
-        sources = [*self.settings.product, *self.settings.supports, self.settings.unity, *map(self.test_source, tests)]
+        sources = [*self.product, *self.supports, self.settings.unity, *map(self.test_source, tests)]
         list(pool.map(self.objects.object, sources))
         self.link_product()
 
     def linked(self, command, target):
         status, said = run(command, self.tree)
         if status != 0:
-            raise Stop(f"{target.name} does not link: {[line for line in said.splitlines() if 'undefined' in line or 'error' in line][:1] or said[-200:]}")
+            why = [line for line in said.splitlines() if "undefined" in line or "error" in line][:1]
+            raise Stop(f"{target.name} does not link: {''.join(why) or said[-200:]}")
 
     def link_product(self):
         """Once, when the first test is linked: the second variant is built for a survivor of the first only."""
         with self.archiving:
             if self.library:
                 return
-            objects = [self.objects.object(source) for source in self.settings.product]
+            objects = [self.objects.object(source) for source in self.product]
             library = self.folder / "libproduct.so"
             if not library.exists() or library.stat().st_mtime_ns <= max(o.stat().st_mtime_ns for o in objects):
                 self.linked([*self.settings.cxx, "-shared", *self.link_flags(), *objects, "-lm", "-o", library], library)
-            self.library = library
+            self.library = [library]
+
+    def mutant_library(self, changed, out):
+        """A library of a mutant's objects, by source, that goes before the product's; None where it does not link."""
+        target = out / "mutant.so"
+        return [target] if run(["ld", "-shared", *changed.values(), "-o", target], self.tree)[0] == 0 else None
 
     def link_flags(self):
         return ["-fsanitize=address,undefined"] if self.variant == "asan" else ["-fsanitize=undefined"]
 
     def references(self, test):
         """The double references that a test asks for: those that make test built, if they are at hand, else compiled here."""
-        if not any(name.startswith("host_tests/reference_") for name in self.objects.deps(self.test_source(test))):
+        sources = [self.test_source(test), *self.supports]
+        if not any(name.startswith("host_tests/reference_") for source in sources for name in self.objects.deps(source)):
             return []
         found = []
         for source in self.settings.references:
@@ -106,27 +120,26 @@ class Host:
     def link_test(self, test, target, instead):
         """`instead`: objects of a mutant in place of unbroken ones, by source."""
         self.link_product()
-        sources = [self.test_source(test), *self.settings.supports, self.settings.unity]
+        sources = [self.test_source(test), *self.supports, self.settings.unity]
         objects = [instead.get(source, self.objects.object(source)) for source in sources]
-        inputs = [*objects, *self.references(test), self.library]
+        inputs = [*objects, *self.references(test), *self.library]
         if instead or not target.exists() or target.stat().st_mtime_ns <= max(p.stat().st_mtime_ns for p in inputs):
             self.linked([*self.settings.cxx, *self.link_flags(), *inputs, f"-Wl,-rpath,{self.folder}", "-lm", "-o", target], target)
         return target
 
-    def preload(self, library):
+    def preload(self, libraries):
         first = [self.runtime()] if self.variant == "asan" else []
-        return {"LD_PRELOAD": " ".join([*first, str(library)])} if library else {}
+        return {"LD_PRELOAD": " ".join(map(str, [*first, *libraries]))} if libraries else {}
 
     def runtime(self):
         return run([*self.settings.compiler, "-print-file-name=libasan.so"], self.tree)[1].strip()
 
     def signature(self, test):
         """Changes when anything changes that a run of the unbroken test depends on."""
-        sources = [*self.settings.product, *self.settings.supports, self.test_source(test)]
+        sources = [*self.product, *self.supports, self.test_source(test)]
         return digest(self.variant, *(sorted(self.objects.deps(source).items()) for source in sources))
 
-    def run_test(self, test, tree, library=None, limit_s=600, program=None, **environment):
-        """(passes, seconds)"""
-        began = time.monotonic()
-        status, _ = run([program or self.program(test)], tree, limit_s, **self.preload(library), **environment)
-        return status == 0, time.monotonic() - began
+    def run_test(self, test, tree, libraries=(), limit_s=600, program=None, **environment):
+        """(passes, seconds of the processor)"""
+        status, seconds = timed([program or self.program(test)], tree, limit_s, **self.preload(libraries), **environment)
+        return status == 0, seconds

@@ -2,8 +2,8 @@
 import shutil
 import threading
 
-from host import HANG_MIN_S, HANG_TIMES, PLAIN
-from shop import ROOT, Stop, run
+from host import HANG_MIN_S, HANG_TIMES
+from shop import ROOT, Stop, plain, run
 
 DOUBTFUL = 5  # after so many tests that notice nothing it is asked whether there is anything to notice
 
@@ -22,17 +22,17 @@ class Same(Exception):
 
 
 class Judge:
-    """order(mutant) -> tests, cheapest first, that are to judge it."""
+    """order(mutant, host) -> tests, cheapest first, that are to judge it; hosts: the first that notices it ends it."""
 
     def __init__(self, hosts, order, limits):
-        self.first, self.hosts, self.order, self.limits = hosts[0], hosts, order, limits
+        self.hosts, self.order, self.limits = hosts, order, limits
         self.guard = threading.Lock()
         self.checked = {}  # (variant, test) -> lock of its unbroken run
         self.plain = {}  # source -> its unbroken object as the optimiser makes it
 
     def units(self, host, file):
-        sources = [*host.settings.product, *host.settings.supports]
-        return [s for s in sources if s == file or (file.endswith(".h") and file in host.objects.deps(s))]
+        sources = [*host.product, *host.supports]
+        return [s for s in sources if plain(s) == file or (file.endswith(".h") and file in host.objects.deps(s))]
 
     def verdict(self, mutant, worker):
         """(verdict, by)"""
@@ -41,7 +41,7 @@ class Judge:
         path.write_text(mutant.apply(whole), encoding="utf-8")
         try:
             for host in self.hosts:
-                verdict, by = self.on(host, mutant, worker)
+                verdict, by = self.on(host, mutant, worker, host is self.hosts[0])
                 if verdict != "survived":
                     return verdict, by
             return "survived", ""
@@ -50,7 +50,7 @@ class Judge:
         finally:
             path.write_text(whole, encoding="utf-8")
 
-    def on(self, host, mutant, worker):
+    def on(self, host, mutant, worker, first):
         changed = {}
         for source in self.units(host, mutant.file):
             target = worker.out / f"{source.replace('/', '__')}.o"
@@ -61,20 +61,18 @@ class Judge:
                 changed[source] = target
         if not changed:
             return "same", ""
-        product = [target for source, target in changed.items() if source in host.settings.product]
-        supports = {source: target for source, target in changed.items() if source not in host.settings.product}
-        library = worker.out / "mutant.so"
-        if product:
-            status, said = run([*host.settings.cxx, "-shared", *host.link_flags(), *product, "-o", library], worker.tree)
-            if status != 0:
-                return "uncompiled", ""
-        by = self.tests(host, mutant, worker, library if product else None, supports)
+        product = {source: target for source, target in changed.items() if source in host.product}
+        supports = {source: target for source, target in changed.items() if source not in host.product}
+        libraries = host.mutant_library(product, worker.out) if product else ()
+        if libraries is None:
+            return "uncompiled", ""
+        by = self.tests(host, mutant, worker, libraries, supports, first)
         return ("killed", by) if by else ("survived", "")
 
-    def tests(self, host, mutant, worker, library, supports):
+    def tests(self, host, mutant, worker, libraries, supports, first):
         """The first test that fails."""
-        tests = self.order(mutant)
-        if host is not self.first:  # a bad access shows in whichever test makes it, and what else they judge is judged
+        tests = self.order(mutant, host)
+        if host.variant == "asan":  # a bad access shows in whichever test makes it, and what else they judge is judged
             tests = tests[:DOUBTFUL]
         for number, test in enumerate(tests, 1):
             limit_s = self.limit_of(host, test)
@@ -87,20 +85,20 @@ class Judge:
                     return test
             if instead:
                 program = host.link_test(test, worker.out / "test.exe", instead)
-            if not host.run_test(test, worker.tree, library, limit_s, program)[0]:
+            if not host.run_test(test, worker.tree, libraries, limit_s, program)[0]:
                 return test
-            if host is self.first and number == DOUBTFUL < len(tests):
-                self.doubt(mutant, worker)
-        if host is self.first and len(tests) <= DOUBTFUL:
-            self.doubt(mutant, worker)
+            if first and number == DOUBTFUL < len(tests):
+                self.doubt(host, mutant, worker)
+        if first and len(tests) <= DOUBTFUL:
+            self.doubt(host, mutant, worker)
         return None
 
-    def doubt(self, mutant, worker):
-        if self.same_optimised(mutant, worker):
+    def doubt(self, host, mutant, worker):
+        if self.same_optimised(host, mutant, worker):
             raise Same
 
     def limit_of(self, host, test):
-        """Ten times what the unbroken test takes: a loaded machine shall not pass for a hang."""
+        """Ten times what the unbroken test takes: of the processor's time."""
         key = host.variant, test
         with self.guard:
             lock = self.checked.setdefault(key, threading.Lock())
@@ -112,17 +110,16 @@ class Judge:
                 self.limits[key] = seconds
         return max(HANG_MIN_S, HANG_TIMES * self.limits[key])
 
-    def same_optimised(self, mutant, worker):
+    def same_optimised(self, host, mutant, worker):
         """Whether the optimiser, without the checks of C's rules, sees no difference: what only moves such a check is no mutant."""
-        settings = self.first.settings
-        for source in self.units(self.first, mutant.file):
-            command = [*settings.compiler, *settings.flags, *PLAIN, "-O2", "-c", source, "-o"]
+        for source in self.units(host, mutant.file):
+            command = [*host.plain_command(source), "-c", plain(source), "-o"]
             target = worker.out / "optimised.o"
             with self.guard:
                 if source not in self.plain:
-                    whole = self.first.folder / f"optimised-{source.replace('/', '__')}.o"
-                    run([*command, whole], self.first.tree)
+                    whole = host.folder / f"optimised-{source.replace('/', '__')}.o"
+                    run([*command, whole], host.tree)
                     self.plain[source] = whole.read_bytes()
-            if run([*command, target], worker.tree)[0] != 0 or target.read_bytes() != self.plain[source]:
+            if run([*command, target], worker.tree, CCACHE_DISABLE="1")[0] != 0 or target.read_bytes() != self.plain[source]:
                 return False
         return True

@@ -119,14 +119,13 @@ def own_declarations(tokens):
             name = function_name(tokens[start:at])
             if tokens[start].text == "extern" and tokens[start + 1].kind == "string":  # extern "C" {
                 start = at = at + 1
-                continue
-            if name is None:
+            elif name is None:
                 name_inside(tokens[start:end + 1], tokens[start:end + 1])
                 at = end + 1
-                continue
-            for token in tokens[at:end + 1]:
-                token.owner, token.body = name, True
-            start = at = end + 1
+            else:
+                for token in tokens[at:end + 1]:
+                    token.owner, token.body = name, True
+                start = at = end + 1
         elif text == "}":
             start = at = at + 1
         else:

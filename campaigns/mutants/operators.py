@@ -52,7 +52,8 @@ def changed_constants(text):
     if "u" in suffix.lower():
         wanted.pop(-1, None)
     width = len(digits) - 2
-    return [f"{v:#0{width + 2}x}{suffix}" if digits[1:2] in ("x", "X") and v >= 0 else f"({v}{suffix})" if v < 0 else f"{v}{suffix}" for v in wanted]
+    written = {v: f"{v:#0{width + 2}x}" if digits[1:2] in ("x", "X") else f"{v}" for v in wanted}
+    return [f"{written[v]}{suffix}" if v >= 0 else f"({v}{suffix})" for v in wanted]
 
 
 class Finder:
@@ -116,7 +117,8 @@ class Finder:
                     return
                 begin, end = parts[0] + 1, parts[1]
         if end > begin:
-            self.add(tokens[i].owner, "negated", f"{text} -> !", ((tokens[begin].at, tokens[begin].at, "!("), (tokens[end - 1].end, tokens[end - 1].end, ")")))
+            first, last = tokens[begin].at, tokens[end - 1].end
+            self.add(tokens[i].owner, "negated", f"{text} -> !", ((first, first, "!("), (last, last, ")")))
 
     def ends_condition_backward(self, j):
         return self.tokens[j].text in ("(", "[", "{", "}", ",", ";", ":", "?", "return") or self.tokens[j].text in ASSIGNMENTS - {"++", "--"}
@@ -164,7 +166,8 @@ class Finder:
         assigned = next((t.text for t in flat if t.text in ASSIGNMENTS), "")
         calls = first.kind == "word" and any(t.text == "(" for t in flat) or first.text == "("
         if assigned or calls:
-            self.add(first.owner, "statement", f"{first.text if not assigned else self.target(i, assigned)} -> ;", ((first.at, tokens[end - 1].end, ""),))
+            name = self.target(i, assigned) if assigned else first.text
+            self.add(first.owner, "statement", f"{name} -> ;", ((first.at, tokens[end - 1].end, ""),))
 
     def target(self, i, assigned):
         words = []

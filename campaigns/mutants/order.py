@@ -10,26 +10,50 @@ HEAD = "# The tests that notice most of a file's mutants, by `make mutants ACCEP
 KEPT = 12  # names a file
 
 
+def listed():
+    """file -> tests"""
+    if not JUDGES.exists():
+        return {}
+    rows = [line.split(": ", 1) for line in JUDGES.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
+    return {file: names.split() for file, names in rows}
+
+
 class Reached:
     """Those that reach the mutant's line: cheap ones first, and those that noticed others of its file."""
 
-    def __init__(self, host, tests, mutants, texts, patience_s, pool, say):
+    def __init__(self, host, mutants, texts, patience_s, pool, say):
         files = {m.file for m in mutants}
-        units = [s for s in host.settings.product if s in files or files & set(host.objects.deps(s))]
+        units = [s for s in host.product if s in files or files & set(host.objects.deps(s))]
         self.host, self.texts, self.patience_s, self.kills = host, texts, patience_s or float("inf"), Counter()
         self.reach = Reach(host, units)
-        self.reach.measure(pool, tests, say)
+        self.reach.measure(pool, host.tests, self.patience_s, say)
         self.limits = {(host.variant, test): seconds for test, seconds in self.reach.seconds.items()}
         self.spans = {}
         for name in files:
             for mutant in mutants_of(name, texts[name]):
                 self.spans.setdefault((name, mutant.owner), set()).add(mutant.line(texts[name]))
 
-    def tests(self, mutant):
+    def tests(self, mutant, _host):
         line, span = mutant.line(self.texts[mutant.file]), self.spans[mutant.file, mutant.owner]
         includers = [s for s in self.reach.files if mutant.file in self.host.objects.deps(s)] if mutant.file.endswith(".h") else []
-        found = [t for t in self.reach.tests_of(mutant.file, line, span, includers) if self.reach.seconds[t] <= self.patience_s]
+        found = self.reach.tests_of(mutant.file, line, span, includers)
         return sorted(found, key=lambda test: self.reach.seconds[test] / (1 + self.kills[mutant.file, test]))
+
+    def learn(self, mutant, by):
+        if by:
+            self.kills[mutant.file, by] += 1
+
+
+class Cheapest:
+    """All of a host's few tests, by what they took."""
+
+    def __init__(self, patience_s):
+        self.limits, self.kills, self.patience_s = {}, Counter(), patience_s or float("inf")
+
+    def tests(self, mutant, host):
+        seconds = {test: self.limits.get((host.variant, test), 0) for test in host.tests}
+        found = [test for test in host.tests if seconds[test] <= self.patience_s]
+        return sorted(found, key=lambda test: seconds[test] / (1 + self.kills[mutant.file, test]))
 
     def learn(self, mutant, by):
         if by:
@@ -40,14 +64,10 @@ class Listed:
     """Without a measurement: those that noticed most in the file's last whole campaign, then all others."""
 
     def __init__(self, tests):
-        self.all, self.limits, self.first = tests, {}, {}
-        if JUDGES.exists():
-            for line in JUDGES.read_text(encoding="utf-8").splitlines():
-                if line and not line.startswith("#"):
-                    file, names = line.split(": ", 1)
-                    self.first[file] = [name for name in names.split() if name in tests]
+        self.all, self.limits = tests, {}
+        self.first = {file: [name for name in names if name in tests] for file, names in listed().items()}
 
-    def tests(self, mutant):
+    def tests(self, mutant, _host):
         first = self.first.get(mutant.file, [])
         rest = [test for test in self.all if test not in first]
         return first + sorted(rest, key=lambda test: test.endswith("_reference"))  # these need Eigen's minute of compiling
@@ -61,6 +81,6 @@ def write_judges(rows):
     for row in rows:
         if row["by"]:
             kills.setdefault(row["file"], Counter())[row["by"]] += 1
-    known = dict(line.split(": ", 1) for line in JUDGES.read_text(encoding="utf-8").splitlines() if ": " in line and line[0] != "#") if JUDGES.exists() else {}
+    known = {file: " ".join(names) for file, names in listed().items()}
     known |= {file: " ".join(name for name, _ in count.most_common(KEPT)) for file, count in kills.items()}
     JUDGES.write_text(HEAD + "".join(f"{file}: {known[file]}\n" for file in sorted(known) if pathlib.Path(file).exists()), encoding="utf-8")

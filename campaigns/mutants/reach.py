@@ -18,9 +18,11 @@ class Reach:
         self.lines, self.seconds = {}, {}  # test -> file -> lines that it runs; test -> seconds
         self.known = {}  # file -> lines that can run
 
-    def measure(self, pool, tests, say):
+    def measure(self, pool, tests, patience_s, say):
+        """Tests that took longer than patience_s when they last ran are left out."""
         if not self.files:
             return
+        tests = [test for test in tests if self.last_s(test) <= patience_s]
         objects = list(pool.map(self.objects.object, self.files))
         self.library = FOLDER / "libreach.so"
         self.host.linked([*self.host.settings.cxx, "-shared", "--coverage", *objects, "-lm", "-o", self.library], self.library)
@@ -32,6 +34,11 @@ class Reach:
                 self.known.setdefault(file, set()).update(all_lines)
             if number % 10 == 0 or number == len(tests):
                 say(f"reach: {number} of {len(tests)} tests")
+
+    @staticmethod
+    def last_s(test):
+        kept = [json.loads(path.read_text(encoding="utf-8"))["seconds"] for path in FOLDER.glob(f"{test}-*.json")]
+        return min(kept, default=0)
 
     def of_test(self, test):
         kept = FOLDER / f"{test}-{digest(self.host.signature(test), self.files)}.json"
@@ -46,7 +53,7 @@ class Reach:
         folder = FOLDER / f"run-{test}"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
-        passes, seconds = self.host.run_test(test, self.host.tree, self.library, GCOV_PREFIX=str(folder), GCOV_PREFIX_STRIP="99")
+        passes, seconds = self.host.run_test(test, self.host.tree, [self.library], GCOV_PREFIX=str(folder), GCOV_PREFIX_STRIP="99")
         if not passes:
             raise Stop(f"{test} fails or hangs on the unbroken code: make t T={test.removeprefix('test_')}")
         files = {}

@@ -13,6 +13,12 @@ HEAD = """# Mutants that no test notices, written by `make mutants`: file:functi
 """
 
 
+GOALS_HEAD = """# Folders, the least kill rate of each (0: only measured), and its rate at the last whole measurement (`make mutants ONLY=folder
+# ACCEPT=1` writes it): a sample is drawn from measured folders alone, because only their accepted survivors are all known.
+# folder            goal %  rate %
+"""
+
+
 class Results:
     """Lines of build/mutants/results.jsonl. A kill holds while the mutant's file is the same, a survival while no source or test changes."""
 
@@ -80,15 +86,40 @@ def write_json(rows):
 
 
 def goals():
-    """folder -> least share of its mutants that tests must notice, in per cent; 0 where it is only measured."""
+    """folder -> (least share of its mutants that tests must notice, share at its last whole measurement or None), in per cent."""
     rows = [line.split() for line in GOALS.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
-    return {row[0]: float(row[1]) for row in rows}
+    return {row[0]: (float(row[1]), None if row[2] == "-" else float(row[2])) for row in rows}
+
+
+def measured():
+    """The folders that a sample may be drawn from: of others the accepted survivors are not all known."""
+    return [folder for folder, (_, rate) in goals().items() if rate is not None]
+
+
+def rates(rows):
+    """folder -> (killed, judged)"""
+    found = {}
+    for row in rows:
+        if row["verdict"] in ("killed", "survived"):
+            killed, judged = found.get(folder_of(row["file"]), (0, 0))
+            found[folder_of(row["file"])] = killed + (row["verdict"] == "killed"), judged + 1
+    return found
 
 
 def below_goal(rows):
     found = []
-    for folder, goal in goals().items():
-        judged = [row["verdict"] for row in rows if folder_of(row["file"]) == folder and row["verdict"] in ("killed", "survived")]
-        if judged and 100 * judged.count("killed") < goal * len(judged):
-            found.append(f"{folder}: {judged.count('killed')} of {len(judged)} killed, below the goal of {goal:g} %")
+    for folder, (killed, judged) in rates(rows).items():
+        goal = goals().get(folder, (0, None))[0]
+        if 100 * killed < goal * judged:
+            found.append(f"{folder}: {killed} of {judged} killed, below the goal of {goal:g} %")
     return found
+
+
+def write_goals(rows, only):
+    """The rates of the folders that were measured whole, beside their goals."""
+    table_ = goals()
+    for folder, (killed, judged) in rates(rows).items():
+        if folder.startswith(only.rstrip("/")):
+            table_[folder] = table_.get(folder, (0.0, None))[0], 100 * killed / judged
+    lines = [f"{folder:<20}{goal:>6g}{'-' if rate is None else f'{rate:.1f}':>8}\n" for folder, (goal, rate) in sorted(table_.items())]
+    GOALS.write_text(GOALS_HEAD + "".join(lines), encoding="utf-8")

@@ -2,6 +2,7 @@
 import fcntl
 import hashlib
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -75,12 +76,38 @@ def run(command, cwd, limit_s=300, **environment):
         return program.returncode, said.decode("utf-8", "replace")
 
 
+def timed(command, cwd, limit_s, **environment):
+    """(status, seconds of the processor): what it prints is thrown away. The limit is of the processor's time, so a loaded machine makes
+    no hang; a program that sleeps is ended after twenty times as long.
+    """
+    settings = [f"{name}={value}" for name, value in environment.items()]  # for the program alone: some name what is loaded before it
+    words = ["prlimit", f"--cpu={math.ceil(limit_s)}", "--core=0", "env", *settings, *map(str, command)]
+    program = subprocess.Popen(words, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL, start_new_session=True)
+    asleep = threading.Timer(60 + 20 * limit_s, program.kill)
+    asleep.start()
+    try:
+        _, status, usage = os.wait4(program.pid, 0)
+    finally:
+        asleep.cancel()
+    program.returncode = os.waitstatus_to_exitcode(status)  # or Popen would wait for it once more
+    return program.returncode, usage.ru_utime + usage.ru_stime
+
+
+def plain(source):
+    """`n9f:lib/nav/src/nav.c` is that file in one of its variants."""
+    return source.rsplit(":", 1)[-1]
+
+
 class Compiler:
     """Objects of unbroken sources, kept as long as nothing that they include changes."""
 
     def __init__(self, name, command, tree):
         self.folder, self.command, self.tree = ROOT / name, command, tree
         self.guard, self.locks, self.known, self.hashes = threading.Lock(), {}, {}, {}
+
+    def named(self, name, command):
+        return Compiler(name, command, self.tree)
 
     def path(self, source):
         return self.folder / (source.replace("/", "__") + ".o")
@@ -109,7 +136,7 @@ class Compiler:
                 return kept["deps"]
         target.parent.mkdir(parents=True, exist_ok=True)
         depends = target.with_suffix(".d")
-        status, said = run([*command, "-MMD", "-MF", depends, "-c", source, "-o", target], self.tree)
+        status, said = run([*command, "-MMD", "-MF", depends, "-c", plain(source), "-o", target], self.tree)
         if status != 0:
             raise Stop(f"{source} does not compile as it stands: {said.strip().splitlines()[0] if said.strip() else status}")
         names = depends.read_text(encoding="utf-8").replace("\\\n", " ").split(":", 1)[1].split()
@@ -123,5 +150,5 @@ class Compiler:
 
     def broken(self, tree, source, target):
         """Compiles the source in a worker's tree: the object's bytes, None where it does not compile."""
-        status, _ = run([*self.command(source), "-c", source, "-o", target], tree)
+        status, _ = run([*self.command(source), "-c", plain(source), "-o", target], tree, CCACHE_DISABLE="1")  # nobody compiles it twice
         return target.read_bytes() if status == 0 else None

@@ -23,6 +23,17 @@ static uint8_t __attribute__((noinline)) deeper(uint8_t n)
 }
 #endif
 
+#if CASE == 8
+static void __attribute__((constructor)) start_ahead_of_a_stop(void) /* ahead of main too */
+{
+    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTA);
+    for (volatile uint8_t wait = 0; wait != 255; wait++) {
+    }
+    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTO);
+    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTA);
+}
+#endif
+
 int main(void)
 {
 #if CASE == 1
@@ -42,6 +53,7 @@ int main(void)
         UDR0 = i;
     }
 #elif CASE == 6
+    MCUSR = 0;
     wdt_enable(WDTO_15MS);
 #elif CASE == 7
     cli();

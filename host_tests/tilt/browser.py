@@ -12,7 +12,8 @@ import time
 
 PROGRAM = next((path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome", "chrome")) if path), None)
 ABSENT = None if PROGRAM else "no Chromium here: sh tools/deps.sh live"
-ANSWER_S = 30.0
+ANSWER_S = 120.0  # only reached when something is broken, however busy the machine
+LAST_WORDS = 12  # lines of the browser that a failure shows
 
 
 class Failed(Exception):
@@ -32,10 +33,11 @@ class Browser:
 
     def __init__(self, *options):
         self.folder = tempfile.mkdtemp(prefix="tilt-browser-")
+        self._words = open(os.path.join(self.folder, "words.log"), "w+", encoding="utf-8", errors="replace")  # pylint: disable=consider-using-with
         ours, theirs = os.pipe(), os.pipe()
         words = [PROGRAM, "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking", "--hide-scrollbars",
                  "--disable-dev-shm-usage", f"--user-data-dir={self.folder}", "--remote-debugging-pipe", "--window-size=1280,900", *options]
-        self._program = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, close_fds=False,
+        self._program = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=self._words, stderr=self._words, close_fds=False,
                                          start_new_session=True, preexec_fn=lambda: descriptors(ours[0], theirs[1]))
         os.close(ours[0])
         os.close(theirs[1])
@@ -54,7 +56,14 @@ class Browser:
         except ProcessLookupError:
             pass
         self._program.wait()
+        self._words.close()
         shutil.rmtree(self.folder, ignore_errors=True)
+
+    def words(self):
+        """What the browser itself has said last, as one text of lines."""
+        self._words.flush()
+        self._words.seek(0)
+        return "\n".join(self._words.read().splitlines()[-LAST_WORDS:])
 
     def call(self, method, session=None, **params):
         self._number += 1
@@ -73,10 +82,10 @@ class Browser:
 
     def _take(self, left_s, method):
         if left_s <= 0 or not select.select([self._read], [], [], left_s)[0]:
-            raise Failed(f"{method}: no answer within {ANSWER_S:.0f} s")
+            raise Failed(f"{method}: no answer within {ANSWER_S:.0f} s\n{self.words()}")
         data = os.read(self._read, 1 << 16)
         if not data:
-            raise Failed(f"{method}: the browser has ended")
+            raise Failed(f"{method}: the browser has ended\n{self.words()}")
         *whole, self._rest = (self._rest + data).split(b"\0")
         for text in whole:
             message = json.loads(text)
@@ -91,6 +100,7 @@ class Browser:
         page = Page(self, self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"], target)
         page.call("Page.enable")
         page.call("Runtime.enable")
+        page.call("Log.enable")
         page.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=False)
         if before:
             page.call("Page.addScriptToEvaluateOnNewDocument", source=before)
@@ -115,7 +125,7 @@ class Page:
             raise Failed(f"{expression}: {details.get('exception', {}).get('description', details['text'])}")
         return answer["result"].get("value")
 
-    def until(self, expression, seconds=10.0):
+    def until(self, expression, seconds=ANSWER_S):
         """Waits for an expression to be true; its value. Failed with the page's figures when it does not become so."""
         end = time.monotonic() + seconds
         while True:
@@ -124,11 +134,27 @@ class Page:
                 return value
             if time.monotonic() > end:
                 figures = self.value("typeof tiltLive === 'undefined' ? 'no page' : JSON.stringify(tiltLive.figures())")
-                raise Failed(f"not within {seconds} s: {expression}; {figures}")
+                raise Failed(f"not within {seconds} s: {expression}; {figures}\n{self.console()}")
             time.sleep(0.05)
 
     def figures(self):
         return self.value("tiltLive.figures()")
+
+    def console(self):
+        """What the page threw, logged or was refused, a line each."""
+        lines = []
+        for message in self._browser.messages:
+            params = message["params"]
+            if message.get("sessionId") != self._session:
+                continue
+            if message["method"] == "Runtime.exceptionThrown":
+                details = params["exceptionDetails"]
+                lines.append(f"thrown: {details.get('exception', {}).get('description', details['text'])}")
+            elif message["method"] == "Runtime.consoleAPICalled":
+                lines.append(f"console: {' '.join(str(each.get('value', each.get('description'))) for each in params['args'])}")
+            elif message["method"] == "Log.entryAdded":
+                lines.append(f"log: {params['entry']['text']} {params['entry'].get('url', '')}")
+        return "\n".join(lines[-LAST_WORDS:])
 
     def errors(self):
         """What the page threw, or was refused by its own content policy."""

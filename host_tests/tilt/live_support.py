@@ -18,10 +18,12 @@ PAGE_FILE = serving.PAGE.resolve().as_uri()
 
 
 class Talk:
-    """A script for FakeBoard: banner, header, then `count` rows (None: no end) at rate_hz in real time, those of `left_out` not sent; answers
-    `filter`, `help` and what is in `answers`. say(text) puts a line among the rows. `sent`: rows on the line so far; `over`: all are."""
+    """A script for FakeBoard: banner, header, then `count` rows (None: no end) at rate_hz by their own times, `faster` times that by the
+    clock, those of `left_out` not sent; answers `filter` and `help`. say(text) puts a line among the rows. After the first `first` rows
+    it waits for `go_on`. `sent`: rows on the line so far; `over`: all are."""
 
-    def __init__(self, rate_hz=100, count=None, left_out=frozenset(), flags=lambda number: 0):
+    def __init__(self, rate_hz=100, count=None, left_out=frozenset(), flags=lambda number: 0, faster=1, first=None):
+        self.faster, self.first, self.go_on = faster, first, threading.Event()
         self.rate_hz, self.count, self.left_out, self.flags = rate_hz, count, left_out, flags
         self.sent, self.said, self.filter, self.over = 0, [], "adaptive", threading.Event()
         self.commands = []
@@ -33,7 +35,9 @@ class Talk:
         board.send(BANNER + b"# filter adaptive, rate 100 Hz, range 16 g, every 1, baud 115200\n# settings: as saved\n" + HEADER)
         began, number = time.monotonic(), 0
         while True:
-            due = min(int((time.monotonic() - began) * self.rate_hz), self.count if self.count is not None else 1 << 60)
+            held = self.first is not None and not self.go_on.is_set()
+            due = int((time.monotonic() - began) * self.rate_hz * self.faster)
+            due = min(due, *(each for each in (self.count, self.first if held else None) if each is not None), 1 << 60)
             chosen = [each for each in range(number, due) if each not in self.left_out]
             board.send(b"".join(row(each, round(1e6 / self.rate_hz), self.flags(each)) for each in chosen))
             number, self.sent = due, self.sent + len(chosen)
@@ -89,5 +93,5 @@ class Case(unittest.TestCase):
         page = self.browser.open(address, before, size)
         self.addCleanup(self.browser.call, "Target.closeTarget", targetId=page.target)
         page.until("true")
-        self.addCleanup(lambda: self.assertEqual(page.errors(), []))
+        self.addCleanup(lambda: self.assertEqual(page.errors(), [], page.console()))
         return page

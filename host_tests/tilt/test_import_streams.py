@@ -119,7 +119,7 @@ class Firmware(Case):
     def simulated(self, stream):
         """(what the firmware sent, served readings) at 100 Hz."""
         out, served = self.place / "fw.csv", self.place / "served.csv"
-        subprocess.run([SIMRUN, "--fw", FIRMWARE, "--in", stream, "--out", out, "--served", served], check=True, capture_output=True, timeout=60)
+        subprocess.run([SIMRUN, "--fw", FIRMWARE, "--in", stream, "--out", out, "--served", served], check=True, capture_output=True, timeout=600)
         return out, stream_rows(served)
 
     def test_import_simulate_import(self):

@@ -26,7 +26,7 @@ from tilt.board import Board  # noqa: E402
 from tilt.errors import TiltError  # noqa: E402
 from tilt.feed import Feed, Lines  # noqa: E402
 from tilt.port import Port  # noqa: E402
-from fake_board import BANNER, HEADER, FakeBoard, row, rows, until  # noqa: E402
+from fake_board import BANNER, DEADLINE_S, HEADER, FakeBoard, row, rows, until  # noqa: E402
 
 
 class Watched:
@@ -51,6 +51,11 @@ class Watched:
 
     def states(self):
         return [json.loads(text) for text in self.got("state")]
+
+    def baud(self):
+        """None while nothing is known of the port."""
+        states = self.states()
+        return states[-1]["baud"] if states else None
 
 
 class TestFeed(unittest.TestCase):
@@ -100,7 +105,7 @@ class TestServer(unittest.TestCase):
         self.typed.append(text)
 
     def ask(self, method, path, body=None, **headers):
-        link = http.client.HTTPConnection("127.0.0.1", self.server.server_port, timeout=10)
+        link = http.client.HTTPConnection("127.0.0.1", self.server.server_port, timeout=DEADLINE_S)
         self.addCleanup(link.close)
         link.request(method, path, body, {name.replace("_", "-"): value for name, value in headers.items()})
         return link.getresponse()
@@ -155,7 +160,7 @@ class TestServer(unittest.TestCase):
         headers = {} if number is None else {"Last_Event_ID": str(number)}
         answer = self.ask("GET", f"/events?token={self.server.token}", **headers)
         self.assertEqual((answer.status, answer.headers["Content-Type"]), (200, "text/event-stream"))
-        found, end = [], time.monotonic() + 10
+        found, end = [], time.monotonic() + DEADLINE_S
         while len(found) < count:
             self.assertLess(time.monotonic(), end, found)
             fields = dict(line.decode().rstrip("\n").split(": ", 1) for line in iter(answer.readline, b"\n") if b": " in line)
@@ -246,11 +251,11 @@ class TestBoard(unittest.TestCase):
             board.heard(b"baud 500000\n")
             board.send(b"# baud 500000\n")
             board.speed = termios.B500000
-            until(lambda: self.watched.states()[-1]["baud"] == 500000)
+            until(lambda: self.watched.baud() == 500000)
             board.send(row(5)[3:] + rows(6, 40))
             until(lambda: rows(39, 40) in self.watched.lines())
             board.speed = termios.B115200  # it was reset
-            while self.watched.states()[-1]["baud"] != 115200:
+            while self.watched.baud() != 115200:
                 board.send(rows(0, 5))
                 time.sleep(0.02)
             board.send(b"\n" + BANNER + HEADER + rows(0, 3))
@@ -266,12 +271,12 @@ class TestBoard(unittest.TestCase):
 
     def test_rate_that_the_board_has_saved_is_found(self):
         def script(board):
-            while self.watched.states()[-1]["baud"] != 9600:
+            while self.watched.baud() != 9600:
                 board.send(rows(0, 5))
                 time.sleep(0.01)
             board.send(b"\n" + HEADER + rows(0, 3))
 
-        with FakeBoard(self.folder, script, termios.B9600) as fake, mock.patch.object(board_module, "UNREADABLE_S", 0.05):
+        with FakeBoard(self.folder, script, termios.B9600) as fake, mock.patch.object(board_module, "UNREADABLE_S", 0.2):
             self.watched = Watched(fake.name)
             with self.watched as watched:
                 until(lambda: watched.lines().endswith(HEADER + rows(0, 3)))
@@ -320,7 +325,7 @@ class TestCommand(unittest.TestCase):
                 fake.send(BANNER + HEADER + rows(0, 300) + row(300)[:9])
                 until(lambda: path.exists() and rows(299, 300) in path.read_bytes())
                 program.send_signal(number)
-                _, said = program.communicate(timeout=10)
+                _, said = program.communicate(timeout=DEADLINE_S)
                 self.assertEqual(program.returncode, 0, said)
             self.assertIn("300 rows", said)
             recorded = stream.read(str(path))
@@ -334,7 +339,7 @@ class TestCommand(unittest.TestCase):
                             ([self.folder / "no_port", "--record", self.folder / "new.csv"], "no_port: No such file"),
                             ([self.folder / "no_port", "--record", self.folder / "no" / "new.csv"], "no folder")):
             program = self.live(*words)
-            self.assertIn(said, program.communicate(timeout=10)[1])
+            self.assertIn(said, program.communicate(timeout=DEADLINE_S)[1])
             self.assertEqual(program.returncode, 2)
         self.assertEqual(there.read_text(encoding="ascii"), "mine")
         self.assertFalse((self.folder / "new.csv").exists())

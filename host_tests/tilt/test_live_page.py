@@ -48,7 +48,7 @@ class TestServed(Case):
                 page.until(f"tiltLive.figures().lamps[{name!r}].lit")
                 self.assertEqual({each for each, lamp in page.figures()["lamps"].items() if lamp["lit"]}, {name})
                 talk.flags = lambda number: 0
-                page.until(f"!tiltLive.figures().lamps[{name!r}].lit")
+                page.until(f"!tiltLive.figures().lamps[{name!r}].lit && tiltLive.figures().lamps[{name!r}].count >= {len(sent)}")
                 self.assertEqual(page.figures()["lamps"][name]["count"], len(sent))
 
     def test_by_the_keyboard_alone(self):
@@ -105,8 +105,8 @@ class TestServed(Case):
             shown = "document.getElementById('pitch').toDataURL()"
             first = page.value(shown)
             page.until(f"{shown} !== {json.dumps(first)}")
-            page.value("document.getElementById('pause').click()")
-            page.value("new Promise((done) => setTimeout(done, 200))")  # what was to be drawn is
+            paused_ms = page.value("document.getElementById('pause').click(), performance.now()")
+            page.until(f"tiltLive.app.drawnMs > {paused_ms}")
             still, rows_then = page.value(f"[{shown}, tiltLive.figures().rows]")
             page.until(f"tiltLive.figures().rows > {rows_then + 30}")
             self.assertEqual(page.value(shown), still)

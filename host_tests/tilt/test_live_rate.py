@@ -1,5 +1,6 @@
-"""The numbers of `tilt live`, measured in a headless Chromium at once: a picture within 2 s of connecting; 400 rows a second for 20 s without
-a loss; its twin, where a board leaves rows out, has exactly those counted; the firmware itself in simrun. Run from the repository root."""
+"""The page of `tilt live` in a headless Chromium: a picture of the first rows that come; 20 s of 400 rows a second, faster than a board sends
+them, without a loss; its twin, where a board leaves rows out, has exactly those counted; the firmware itself in simrun, none of whose rows is
+lost. What the clock says of it is in desk_live.py. Run from the repository root."""
 import contextlib
 import os
 import pathlib
@@ -7,16 +8,18 @@ import random
 import re
 import subprocess
 import sys
-import time
 import unittest
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
 from browser import ABSENT, Browser  # noqa: E402
+from fake_board import DEADLINE_S  # noqa: E402
 from live_support import Talk, watched  # noqa: E402
 
-RATE_HZ, SECONDS, FIRST_PICTURE_MS = 400, 20, 2000
+RATE_HZ, SECONDS = 400, 20
 COUNT = RATE_HZ * SECONDS
+FASTER = 8  # than a board: the rows' times are its own
+FEW = RATE_HZ // 4  # rows of which there must be a picture
 SIMRUN, FIRMWARE, STREAM = (pathlib.Path(name) for name in ("build/sim/simrun", "build/uno/robust/firmware.elf", "sim/streams/tilt-400hz.csv"))
 
 
@@ -31,21 +34,20 @@ def left_out():
 class TestRate(unittest.TestCase):
     def test_nothing_is_lost_and_what_is_left_out_is_counted(self):
         missing = left_out()
-        whole, twin = Talk(RATE_HZ, COUNT), Talk(RATE_HZ, COUNT, missing)
+        whole, twin = Talk(RATE_HZ, COUNT, faster=FASTER, first=FEW), Talk(RATE_HZ, COUNT, missing, faster=FASTER, first=FEW)
         with Browser() as browser, watched(whole) as (server, _), watched(twin) as (twin_server, _):
             pages = [browser.open(each.address) for each in (server, twin_server)]
             for page in pages:
                 page.until("tiltLive.figures().firstPictureMs")
             for talk in (whole, twin):
-                self.assertTrue(talk.over.wait(SECONDS + 20))
-            for page, count in zip(pages, (COUNT, COUNT - len(missing))):
-                page.until(f"tiltLive.figures().rows >= {count}")
-            time.sleep(0.3)  # none too many
+                talk.go_on.set()  # the picture came of the first rows alone
+                self.assertTrue(talk.over.wait(DEADLINE_S))
+                talk.say("# all sent")
+            for page in pages:
+                page.until("document.getElementById('log').innerText.includes('# all sent')")  # and with it all rows, none too many
             figures = [page.figures() for page in pages]
-        print("first picture after", [round(each["firstPictureMs"]) for each in figures], "ms of the page; rows", [each["rows"] for each in figures],
-              "lost", [each["lost"] for each in figures])
+        print("rows", [each["rows"] for each in figures], "lost", [each["lost"] for each in figures])
         for each in figures:
-            self.assertLessEqual(each["firstPictureMs"], FIRST_PICTURE_MS)  # from the begin of the page's loading
             self.assertEqual((each["broken"], each["restarts"]), (0, 0))
         self.assertEqual((figures[0]["rows"], figures[0]["lost"]), (COUNT, 0))
         self.assertEqual((figures[1]["rows"], figures[1]["lost"]), (COUNT - len(missing), len(missing)))
@@ -53,30 +55,25 @@ class TestRate(unittest.TestCase):
 
     @unittest.skipUnless(SIMRUN.exists() and FIRMWARE.exists(), "no simrun or firmware built: make build/sim/simrun build/uno/robust/firmware.elf")
     def test_the_firmware_in_the_simulator(self):
-        """From the start of the command to the picture, over simrun's pseudo terminal; the filter of the real firmware is switched."""
+        """Over simrun's pseudo terminal, where simulated time waits for a reader that is late; the filter of the real firmware is switched."""
         with contextlib.ExitStack() as stack:
-            sim = stack.enter_context(program([SIMRUN, "--fw", FIRMWARE, "--in", STREAM, "--out", os.devnull, "--pty", "--loop", "--max-ms", 60000,
+            sim = stack.enter_context(program([SIMRUN, "--fw", FIRMWARE, "--in", STREAM, "--out", os.devnull, "--pty", "--loop", "--max-ms", 6000000,
                                                "--baud", 500000, "--rate", RATE_HZ], stderr=subprocess.PIPE))
             port = re.search(r"/dev/\S+", sim.stderr.readline()).group()
             browser = stack.enter_context(Browser())
-            browser.call("Target.getTargets")
-            began = time.monotonic()
             live = stack.enter_context(program([sys.executable, "-m", "tilt", "live", port, "--no-browser", "--baud", 500000],
                                                 stdout=subprocess.PIPE))
             page = browser.open(live.stdout.readline().strip())
             page.until("tiltLive.figures().firstPictureMs && tiltLive.figures().filters.length")
-            took_s = time.monotonic() - began
-            page.until("tiltLive.figures().rate > 390", 15)
+            page.until("tiltLive.figures().rate > 390")
             before = page.figures()
             page.value("document.querySelector('input[value=kf]').click()")
             page.until("tiltLive.figures().filter === 'kf'")
             page.until(f"tiltLive.figures().rows > {before['rows'] + 2 * RATE_HZ}")
             after = page.figures()
-        print(f"simrun: picture and filters {took_s:.2f} s after the command was started, {after['rate']:.1f} rows/s")
-        self.assertLessEqual(before["firstPictureMs"], FIRST_PICTURE_MS)
+        print(f"simrun: {after['rows']} rows, {after['rate']:.1f} rows/s")
         self.assertEqual(after["filters"], FIRMWARE.with_name("filters.txt").read_text(encoding="ascii").split())
-        # simrun does not wait for a reader that a loaded machine keeps from running, as a board would not: its terminal holds 0.15 s
-        self.assertLessEqual(after["lost"] + after["broken"] - before["lost"] - before["broken"], 2 * RATE_HZ // 100)
+        self.assertEqual((after["lost"], after["broken"]), (before["lost"], before["broken"]))
 
 
 @contextlib.contextmanager

@@ -333,8 +333,10 @@ requestAnimationFrame(() => { new Plot(drawings[0][0], 0, 100).marks(DATA.files[
 </script></body>"""
         page.write_text(page.read_text().replace("</body>", script))
         command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=3000", f"--user-data-dir={self.folder}/user"]
-        done = subprocess.run([*command, "--dump-dom", f"file://{page}"], capture_output=True, text=True, timeout=60, check=False)
-        body = re.search(r"<body([^>]*)>", done.stdout).group(1)
+        done = subprocess.run([*command, "--dump-dom", f"file://{page}"], capture_output=True, text=True, timeout=600, check=False)
+        body = re.search(r"<body([^>]*)>", done.stdout)
+        self.assertIsNotNone(body, done.stderr)
+        body = body.group(1)
         # 3.59 s in ticks of 0.1 ms; 0.6 of it about the middle; a quarter of that earlier; 3 later, as far as it goes; all; a tenth about 1 s
         self.assertIn('data-spans="0 35900; 7180 28720; 1795 23335; 14360 35900; 0 35900; 9000 12590"', body)
         self.assertRegex(body, r'data-readout="1\.000 s   roll raw 90\.00, filtered 20\.00   flags: gated"')

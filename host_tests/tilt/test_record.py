@@ -6,7 +6,6 @@ import io
 import os
 import pathlib
 import signal
-import subprocess
 import sys
 import tempfile
 import termios
@@ -47,6 +46,24 @@ class Case(unittest.TestCase):
     def stream_of(self, text):
         self.file.write_text(text)
         return stream.read(self.file)
+
+    def run_tilt(self, script, *words, speed=None, **constants):
+        """(status, stdout, stderr, board)"""
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.ExitStack() as stack:
+            for name, value in ({"RETRY_S": 0.01, "STRANGE_S": 0.1, "LISTEN_S": 0.3} | constants).items():
+                stack.enter_context(mock.patch.object(record, name, value))
+            board = stack.enter_context(FakeBoard(self.folder, script, speed))
+            stack.enter_context(contextlib.redirect_stdout(out))
+            stack.enter_context(contextlib.redirect_stderr(err))
+            status = cli.main(["record", board.name, *(words or ("-o", str(self.file)))])
+        return status, out.getvalue(), err.getvalue(), board
+
+    def for_seconds(self, seconds):
+        return "-o", str(self.file), "--seconds", str(seconds)
+
+    def written(self, text):
+        until(lambda: self.file.exists() and text in self.file.read_bytes())
 
 
 class Lines(Case):
@@ -175,21 +192,6 @@ class Missing(unittest.TestCase):
 class Command(Case):
     """With a board; the times to wait are shortened, none is asserted."""
 
-    def run_tilt(self, script, *words, speed=None, **constants):
-        """(status, stdout, stderr, board)"""
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.ExitStack() as stack:
-            for name, value in ({"RETRY_S": 0.01, "STRANGE_S": 0.1, "LISTEN_S": 0.3} | constants).items():
-                stack.enter_context(mock.patch.object(record, name, value))
-            board = stack.enter_context(FakeBoard(self.folder, script, speed))
-            stack.enter_context(contextlib.redirect_stdout(out))
-            stack.enter_context(contextlib.redirect_stderr(err))
-            status = cli.main(["record", board.name, *(words or ("-o", str(self.file)))])
-        return status, out.getvalue(), err.getvalue(), board
-
-    def for_seconds(self, seconds):
-        return "-o", str(self.file), "--seconds", str(seconds)
-
     def test_so_many_seconds_by_the_boards_clock(self):
         def script(board):
             board.send(BANNER + HEADER + rows(0, 400))
@@ -208,9 +210,6 @@ class Command(Case):
         self.assertIn("4 rows dropped by the board", out)
         place = int(out.split("kept as # lines: ")[1].split("\n")[0].rsplit(":", 1)[1])
         self.assertIn("garbage", self.file.read_text().splitlines()[place - 1])
-
-    def written(self, text):
-        until(lambda: self.file.exists() and text in self.file.read_bytes())
 
     def end_by(self, number):
         def script(board):
@@ -260,37 +259,6 @@ class Command(Case):
             board.send(rows(0, 150))
         status, _, _, _ = self.run_tilt(script, *self.for_seconds(1.9), "--send", "filter sprf", "--send", "every 2")
         self.assertEqual(status, 1)  # the reset
-
-    def test_another_baud_rate_typed_is_followed(self):
-        def script(board):
-            board.send(BANNER + HEADER + rows(0, 50))
-            board.heard(b"baud 500000\n")
-            board.send(b"# baud 500000\n")
-            board.speed = termios.B500000
-            until(lambda: termios.tcgetattr(board.slave)[4] == termios.B500000)
-            board.send(row(51)[3:] + rows(52, 250))
-        status, out, err, _ = self.run_tilt(script, *self.for_seconds(2.4), "--send", "baud 500000", speed=termios.B115200)
-        self.assertEqual(status, 0, out + err)
-        self.assertIn(row(52).decode(), self.file.read_text())
-
-    def test_a_command_waits_for_the_answer_to_the_one_before(self):
-        """`rate 400` at the old speed would be noise to a board that has changed to the new one; an unanswered command holds none up."""
-        typed = []
-
-        def script(board):
-            board.send(BANNER + HEADER + rows(0, 50))
-            board.heard(b"baud 500000\n")
-            board.send(rows(50, 60))
-            typed.append(board.typed)
-            board.send(b"# baud 500000\n")
-            board.speed = termios.B500000
-            board.heard(b"rate 400\n")
-            typed.append(termios.tcgetattr(board.slave)[4])
-            board.heard(b"every 1\n")
-            board.send(rows(60, 250))
-        status, out, err, _ = self.run_tilt(script, *self.for_seconds(2.4), "--send", "baud 500000", "--send", "rate 400", "--send", "every 1",
-                                            speed=termios.B115200, ANSWER_S=0.1)
-        self.assertEqual((status, typed), (0, [b"baud 500000\n", termios.B500000]), out + err)
 
     def test_a_wrong_baud_rate_is_told_with_the_right_one(self):
         def script(board):
@@ -347,31 +315,6 @@ class Command(Case):
             with contextlib.redirect_stderr(io.StringIO()) as err:
                 self.assertEqual(cli.main(["record", "nowhere", *words]), 2)
             self.assertIn(words[0], err.getvalue())
-
-
-class Simulated(Case):
-    """The firmware itself, in the simulator, on its pseudo terminal."""
-
-    SIMRUN, FIRMWARE, STREAM = "build/sim/simrun", "build/uno/firmware.elf", "sim/streams/tilt-fast.csv"
-
-    @unittest.skipUnless(os.path.exists(SIMRUN) and os.path.exists(FIRMWARE), "no simulator or firmware: make system_images")
-    def test_the_firmwares_rows(self):
-        """A second of them, equal to what left the simulated UART."""
-        command = [self.SIMRUN, "--fw", self.FIRMWARE, "--in", self.STREAM, "--out", str(self.folder / "all.csv"), "--pty", "--loop"]
-        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as board:
-            try:
-                name = next(line for line in board.stderr if "UART on" in line).split()[-1]
-                with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()):
-                    status = cli.main(["record", name, "-o", str(self.file), "--seconds", "1", "--send", "every 1"])
-            finally:
-                board.terminate()
-                board.stderr.read()
-        self.assertEqual(status, 0, out.getvalue())
-        sent = (self.folder / "all.csv").read_text().splitlines()
-        rows = [line for line in self.file.read_text().splitlines() if line[0].isdigit()]
-        first = sent.index(rows[0])
-        self.assertGreaterEqual(len(rows), 100)
-        self.assertEqual([line for line in sent[first:] if line[:1].isdigit()][:len(rows)], rows)
 
 
 if __name__ == "__main__":

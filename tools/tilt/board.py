@@ -2,14 +2,13 @@
 import json
 import re
 import threading
-import time
 
 from serial.tools import list_ports
 
 from tilt import protocol
 from tilt.errors import TiltError
 from tilt.feed import Lines
-from tilt.port import Gone
+from tilt.port import Gone, Unreadable
 
 AGAIN_S = 0.5
 GATHER_S = 0.004  # fewer and longer pieces: 400 bytes at 1000000 baud, a tenth of what a terminal holds
@@ -40,7 +39,7 @@ class Board:
         self.port, self.feed, self.recorder, self.failed = port, feed, recorder, None
         self._first_baud, self._identity = port.baud, None
         self._connected, self._writing, self._ending = False, threading.Lock(), threading.Event()
-        self._lines, self._readable, self._to_try = Lines(), 0.0, self._all_bauds()
+        self._lines, self._unreadable, self._to_try = Lines(), Unreadable(), self._all_bauds()
         self._thread = threading.Thread(target=self._run, name="board", daemon=True)
 
     def start(self):
@@ -105,20 +104,21 @@ class Board:
             whole = self._lines.cut(data)
             if whole:
                 self.feed.put("lines", whole)
-            self._follow_baud(whole)
+            self._follow_baud(whole, len(data))
             self._ending.wait(GATHER_S)
 
     def _begin(self):
         """As when the port has just been opened: a piece of a line may come first."""
-        self._lines, self._readable = Lines(), time.monotonic()
+        self._lines, self._unreadable = Lines(), Unreadable()
 
-    def _follow_baud(self, whole):
-        told, now = BAUD_REPLY.findall(whole), time.monotonic()
-        if TEXT.match(whole):
-            self._readable, self._to_try = now, self._all_bauds()
+    def _follow_baud(self, whole, count):
+        told, readable = BAUD_REPLY.findall(whole), TEXT.match(whole) is not None
+        lasts_s = self._unreadable.lasts_s(count, readable)
+        if readable:
+            self._to_try = self._all_bauds()
         if told:
             self._change_baud(int(told[-1]))
-        elif now - self._readable > UNREADABLE_S:
+        elif lasts_s > UNREADABLE_S:
             self._to_try = self._to_try or self._all_bauds()
             self._change_baud(self._to_try.pop(0))
 

@@ -16,6 +16,24 @@ class Gone(Exception):
     """The port is not there any more."""
 
 
+class Unreadable:
+    """Bytes in a row of which nothing can be read: at a wrong rate. Neither silence nor a piece of a line is that, however late the rest comes."""
+
+    LEAST_BYTES = 256  # more than three rows
+
+    def __init__(self):
+        self.since, self.count = None, 0
+
+    def lasts_s(self, count, understood):
+        """For how long by now, these newest bytes counted in; 0 while they are too few to tell."""
+        if understood:
+            self.since, self.count = None, 0
+        elif count:
+            self.since = self.since if self.count else time.monotonic()
+            self.count += count
+        return time.monotonic() - self.since if self.count >= self.LEAST_BYTES else 0.0
+
+
 class Port:
     """open() or TiltError; then read(), send(text), baud. Any of these raises Gone when the plug has been pulled."""
 

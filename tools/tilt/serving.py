@@ -4,6 +4,7 @@ Other sites that the browser shows must neither read nor type: each request carr
 the #, which is never sent by itself), the Host must be this server's (a name that somebody points at 127.0.0.1 is refused), and nothing
 allows another origin.
 """
+import contextlib
 import http.server
 import json
 import pathlib
@@ -116,20 +117,22 @@ class Handler(http.server.BaseHTTPRequestHandler):
         self.send_response(200)
         self._headers({"Content-Type": "text/event-stream", "Connection": "close"})
         self.close_connection = True
-        try:
+        with self.server.stream():
             self.wfile.write(b"retry: 500\n\n")
-            while not self.server.ending.is_set():
-                number = self._pass_on(number)
+            over = False
+            while not over:
+                over = self.server.ending.is_set()
+                number, ended = self._pass_on(number)
+                over = over or ended
                 time.sleep(BATCH_S)
-        except OSError:
-            pass  # the page was closed
 
     def _pass_on(self, number):
+        """(number of the newest entry that the page has, the end was among them)"""
         entries, missed = self.server.feed.after(number, ALIVE_S)
         if missed:
             self.wfile.write(event(entries[-1][0] if entries else number, "missed", missed))
         self.wfile.write(events_of(entries) or b": alive\n\n")
-        return entries[-1][0] if entries else number
+        return entries[-1][0] if entries else number, any(kind == "ended" for _, kind, _ in entries)
 
 
 class Server(http.server.ThreadingHTTPServer):
@@ -142,6 +145,7 @@ class Server(http.server.ThreadingHTTPServer):
         self.feed, self.board = feed, board
         self.token = secrets.token_urlsafe(18)
         self.ending = threading.Event()
+        self.streams, self.streams_changed = 0, threading.Condition()
         self.page = PAGE.read_bytes()
         try:
             super().__init__((ADDRESS, port), Handler)
@@ -151,11 +155,25 @@ class Server(http.server.ThreadingHTTPServer):
         self._thread = threading.Thread(target=self.serve_forever, args=(0.05,), name="pages", daemon=True)
         self._thread.start()
 
+    @contextlib.contextmanager
+    def stream(self):
+        """Round the events for one page, which may be closed at any time."""
+        with self.streams_changed:
+            self.streams += 1
+        try:
+            with contextlib.suppress(OSError):
+                yield
+        finally:
+            with self.streams_changed:
+                self.streams -= 1
+                self.streams_changed.notify_all()
+
     def close(self):
-        """Tells the pages and ends."""
+        """Tells the pages, which get all that came before, and ends."""
         self.feed.put("ended", "")
-        time.sleep(2 * BATCH_S + 0.01)
         self.ending.set()
+        with self.streams_changed:
+            self.streams_changed.wait_for(lambda: self.streams == 0, ALIVE_S)
         self.shutdown()
         self.server_close()
 

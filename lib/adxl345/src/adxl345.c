@@ -34,13 +34,6 @@ static inline adxl345_driver_t *here(void)
     return d;
 }
 
-void driver_count(uint16_t *counter)
-{
-    if (*counter != UINT16_MAX) {
-        (*counter)++;
-    }
-}
-
 void driver_set_limit(uint8_t limit_ms)
 {
     driver.deadline_us = driver.now_us + (uint32_t)limit_ms * 1000u;
@@ -210,12 +203,12 @@ static HAL_APART void count_failure(i2c_bus_state_t state)
 }
 
 /*
- * No sensor at this address. That is told when the other one, if it may be asked, has none either: by the name of the
- * device that did answer if there is one, and with its address.
+ * No sensor at this address. That is a fault when the other one, if it may be asked, has none either: by the name of
+ * the device that did answer if there is one.
  */
 static HAL_APART void not_here(adxl345_driver_t *d, adxl345_fault_t fault)
 {
-    if (d->config.address == 0 && (!d->alternate_tried || fault == ADXL345_FAULT_NO_SENSOR)) {
+    if (d->config.address == 0) {
         d->address = d->address == ADXL345_ADDRESS_LOW ? ADXL345_ADDRESS_HIGH : ADXL345_ADDRESS_LOW;
     }
     if (d->alternate_tried) {
@@ -271,10 +264,15 @@ static void read_back(adxl345_driver_t *d)
     driver_enter(d->row < TABLE_ROWS ? STEP_READ_BACK : STEP_MEASURE, TRANSFER_LIMIT_MS);
 }
 
+/* What is said of a device that is none comes later: the first one is kept until the fault is over. */
 static void probed(adxl345_driver_t *d)
 {
-    d->device_id = burst_register_value();
-    if (d->device_id != ADXL345_DEVID_VALUE) {
+    uint8_t id = burst_register_value();
+    if (id != ADXL345_DEVID_VALUE) {
+        if (d->fault != ADXL345_FAULT_WRONG_ID && d->found != ADXL345_FAULT_WRONG_ID) {
+            d->foreign_address = d->address;
+            d->foreign_id = id;
+        }
         not_here(d, ADXL345_FAULT_WRONG_ID);
         return;
     }

@@ -105,9 +105,12 @@ bool adxl345_interrupted(void);
  */
 uint32_t adxl345_deadline_us(void);
 
-/* 7-bit address that answered last (0x53 before any did), and the DEVID read there. */
+/* 7-bit address at which an ADXL345 was found last; 0x53 before any was. */
 uint8_t adxl345_address(void);
-uint8_t adxl345_device_id(void);
+
+/* The device that ADXL345_FAULT_WRONG_ID is about, as it was when that was found: its address, and its DEVID. */
+uint8_t adxl345_foreign_address(void);
+uint8_t adxl345_foreign_id(void);
 
 /* Measured time between samples, us (nominal until measured), by the board's clock. */
 uint32_t adxl345_period_us(void);

@@ -40,10 +40,11 @@ typedef struct {
     uint32_t nominal_us; /* between samples, for the configured rate */
     uint8_t back_off_ms;
     uint8_t step;
-    uint8_t row; /* of settings */
-    uint8_t address;
-    uint8_t known; /* the address at which the sensor was found last */
-    uint8_t device_id;
+    uint8_t row;             /* of settings */
+    uint8_t address;         /* that is asked now */
+    uint8_t known;           /* the address at which the sensor was found last */
+    uint8_t foreign_address; /* of the device that ADXL345_FAULT_WRONG_ID is about, and what it reads as DEVID */
+    uint8_t foreign_id;
     uint8_t fault;
     uint8_t seen_good;
     uint8_t marks; /* of the samples taken since adxl345_marks */

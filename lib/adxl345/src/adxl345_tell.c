@@ -7,6 +7,13 @@
 #include "hal_drdy.h"
 #include "hal_pointer.h"
 
+void driver_count(uint16_t *counter)
+{
+    if (*counter != UINT16_MAX) {
+        (*counter)++;
+    }
+}
+
 const adxl345_sample_t *adxl345_take(void)
 {
     const burst_entry_t *entry = burst_take();
@@ -102,12 +109,17 @@ HAL_APART uint32_t adxl345_deadline_us(void)
 
 uint8_t adxl345_address(void)
 {
-    return driver.address;
+    return driver.known;
 }
 
-uint8_t adxl345_device_id(void)
+uint8_t adxl345_foreign_address(void)
 {
-    return driver.device_id;
+    return driver.foreign_address;
+}
+
+uint8_t adxl345_foreign_id(void)
+{
+    return driver.foreign_id;
 }
 
 uint32_t adxl345_period_us(void)

@@ -17,7 +17,7 @@ import time
 from tilt import protocol
 from tilt.errors import TiltError
 from tilt.numbers import real_option, whole_option
-from tilt.port import Gone, Port
+from tilt.port import Gone, Port, Unreadable
 from tilt.recorder import Recorder
 
 NAME = "record"
@@ -26,12 +26,13 @@ SILENT_S = 6.0        # the boot loader takes 2 s, the banner at 9600 baud 0.4 s
 STRANGE_BYTES, STRANGE_S = 200, 2.0  # of which no line is ours: the port is not what it should be
 PRINTABLE_SHARE = 0.95
 SEND_AFTER_S, SEND_SILENT_S = 1.0, 3.0  # where no header has come: it may be in plotter mode; it may have been stopped
-ANSWER_S = 1.0        # the next command waits for the answer to the one before: the board holds 64 bytes, and `baud` changes the line
+ANSWER_S = 1.0        # the next command waits for the answer to the one before: the board holds 64 bytes
+BAUD_ANSWER_S = 10.0  # and for that to `baud` longer: what is typed into the change of the line is lost
 LISTEN_S = 0.6        # at each baud rate, when looking for the right one
 BACK_AFTER_S = 1.5    # without a line that can be read, to the baud rate at start
 RETRY_S = 0.2
 SHOW_S = 0.5
-GRACE_S = 1.0         # by the PC's clock, over --seconds by the board's
+QUIET_S = 1.0         # without a row, --seconds counts by the PC's clock
 BAUD_SET = re.compile(r"# baud (\d+)\Z")
 
 
@@ -113,12 +114,15 @@ class Session:
 
     def __init__(self, args, port, recorder, screen):
         self.args, self.port, self.recorder, self.screen = args, port, recorder, screen
-        self.ends, self.first_row, self.strange, self.answered = False, None, b"", False
+        self.ends, self.first_row, self.last_row, self.strange, self.answered = False, None, None, b"", False
         self.opened()
 
     def opened(self):
-        self.since = self.heard = time.monotonic()
-        self.sent, self.to_send = None, []
+        self.since, self.unreadable = time.monotonic(), Unreadable()
+        self.begin_commands()
+
+    def begin_commands(self):
+        self.sent, self.to_send, self.typed, self.last_typed, self.changed = None, [], 0.0, "", None
 
     def run(self):
         while not self.over():
@@ -133,7 +137,9 @@ class Session:
     def over(self):
         if self.ends or self.args.seconds is None or self.first_row is None:
             return self.ends
-        return self.recorder.counts.span_us >= self.args.seconds * 1e6 or time.monotonic() - self.first_row > self.args.seconds + GRACE_S
+        now = time.monotonic()
+        return (self.recorder.counts.span_us >= self.args.seconds * 1e6 or
+                now - self.first_row > self.args.seconds and now - self.last_row > QUIET_S)
 
     def said(self, text):
         """A '#' line of the board."""
@@ -142,25 +148,32 @@ class Session:
         if baud:
             self.port.baud = int(baud.group(1))
             self.recorder.join()
+            self.changed, self.typed, self.last_typed = self.recorder.understood, time.monotonic(), ""  # a stopped board says no more
+        elif self.last_typed and text.startswith((f"# {self.last_typed}", "# refused")):
+            self.answered = True
         if text.startswith(protocol.BANNER):
-            self.sent, self.to_send = None, []
-        self.answered = True
+            self.begin_commands()
 
     def take(self, data):
-        now, before, self.answered = time.monotonic(), self.recorder.understood, False
+        now, before, rows, self.answered = time.monotonic(), self.recorder.understood, self.recorder.counts.rows, False
         self.recorder.feed(data)
+        if self.changed is not None and self.recorder.understood > self.changed:
+            self.changed, self.answered = None, True  # only a line at the new speed says that the board has it too
         if self.answered:
             self.send_next()
-        if self.recorder.understood > before:
-            self.heard = now
-        if self.first_row is None and self.recorder.counts.rows:
-            self.first_row = now
+        if self.recorder.counts.rows > rows:
+            self.first_row, self.last_row = self.first_row or now, now
         if not self.recorder.ours:
             self.strange += data
             self.judge_strange(now - (self.sent or self.since))
-        elif data and now - self.heard > BACK_AFTER_S and self.port.baud != self.args.baud:
+        else:
+            self.judge_unreadable(self.unreadable.lasts_s(len(data), self.recorder.understood > before))
+
+    def judge_unreadable(self, lasts_s):
+        """Back to the first baud rate."""
+        if lasts_s > BACK_AFTER_S and self.port.baud != self.args.baud:
             self.screen.say(f"tilt record: nothing to read at {self.port.baud} baud: back to {self.args.baud}")
-            self.port.baud, self.heard = self.args.baud, now
+            self.port.baud, self.unreadable = self.args.baud, Unreadable()
 
     def judge_strange(self, waited_s):
         """TiltError when what comes is not this firmware's, or nothing comes."""
@@ -176,13 +189,14 @@ class Session:
         if self.sent is None and ready:
             self.sent, self.to_send = time.monotonic(), list(self.args.send)
             self.send_next()
-        elif self.to_send and time.monotonic() - self.typed > ANSWER_S:
+        elif self.to_send and time.monotonic() - self.typed > (BAUD_ANSWER_S if self.last_typed == "baud" else ANSWER_S):
             self.send_next()
 
     def send_next(self):
         if self.to_send:
-            self.typed = time.monotonic()
-            self.port.send(self.to_send.pop(0))
+            command = self.to_send.pop(0)
+            self.typed, self.last_typed = time.monotonic(), command.partition(" ")[0]
+            self.port.send(command)
 
     def wait_for_port(self):
         """False: not to be waited for, or ended meanwhile."""

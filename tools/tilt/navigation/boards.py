@@ -1,4 +1,5 @@
 """Where the filter runs: in the simulated UNO, natively on the PC, or on a board at a serial port. Each takes frames and gives an Outcome."""
+import contextlib
 import json
 import pathlib
 import subprocess
@@ -73,7 +74,8 @@ def _watched(process, out, sent, told):
     """Progress by the answers that are in the file."""
     reader, done, at = frames.Reader(), 0, 0
     while process.poll() is None:
-        time.sleep(LOOK_S)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(LOOK_S)
         if out.exists():
             with open(out, "rb") as file:
                 file.seek(at)
@@ -166,9 +168,11 @@ class Line:
 
     def finish(self, wanted):
         heard = time.monotonic()
-        while len(self.outcome.answers) < wanted and time.monotonic() < heard + SILENT_S:
+        while len(self.outcome.answers) < wanted:
             if self.listen():
                 heard = time.monotonic()
+            elif time.monotonic() > heard + SILENT_S:
+                break
         self.outcome.damaged = self.reader.damaged
         return self.outcome
 

@@ -1,0 +1,89 @@
+"""The words of every fault line, whole, from every image, with the sensor at either address; part of system_tests.py."""
+import re
+
+from system_support import OUT, SET_IMAGES, STREAMS, simrun, test
+
+REST = STREAMS / "rest-2lsb.csv"
+ADDRESSES = (("0x53", ()), ("0x1D", ("--alt-address",)))
+
+# docs/faults.md; what raises it, one after the other
+FAULTS = (
+    (4, "a register does not keep its value: check supply, bus", ["xfer:18.4:flip:1"]),
+    (8, "SDA held low: check SDA to A4, pull-ups, GND", ["500ms:sda:60"]),
+    (7, "SCL held low: check SCL to A5, pull-ups, GND", ["700ms:scl:60"]),
+    (1, "no sensor answers at 0x53 or 0x1D: check power, SDA to A4, SCL to A5, CS to 3.3 V", ["900ms:unplug:60"]),
+    (6, "the sensor stopped measuring: power lost?", ["1100ms:power:5"]),
+    (5, "the sensor has data, but INT1 does not rise: check INT1 to D2", ["1300ms:noint:100"]),
+    (9, "INT1 is high without data: check INT1 to D2", ["1500.3ms:inthigh:100"]),
+    (10, "the values do not change: check supply, bus", ["2300ms:frozen:250"]),
+    (2, "the device at {address} is no ADXL345: DEVID reads 0xE6, not 0xE5", ["2800ms:devid:230:300", "2800ms:power:5"]),
+    (12, "values jump to their double: check for two sensors at {address}", [f"{3300 + 40 * i}ms:double:z" for i in range(20)]),
+)
+END_MS = 8000
+# those that each sample raises again
+ALWAYS = (
+    (3, "I2C bus stuck or disturbed: check SDA, SCL, pull-ups, GND", ["p:1:buserr"]),
+    (11, "readings are torn: check SDA, SCL, supply, pull-ups, GND", ["p:1:torn"]),
+)
+ALWAYS_MS = 400
+
+
+def told_of(faults, address, options, image, max_ms):
+    """(lines that a fault began, each once: a sensor that is another one after a power cycle is 6, then 2; lines that say it is over)"""
+    injected = [word for _, _, whens in faults for when in whens for word in ("--fault", when)]
+    _, notes, _, _ = simrun("words", REST, *options, *injected, "--max-ms", max_ms, fw=image, judge=False)
+    told = [note for note in notes[:-1] if note.startswith("# fault")]  # the end cuts the last line
+    begun = list(dict.fromkeys(note for note in told if " over: " not in note))
+    wanted = [f"# fault {code}: {words.format(address=address)}" for code, words, _ in faults]
+    assert begun == wanted, f"{image}: {begun}"
+    return [note for note in told if " over: " in note]
+
+
+def assert_over(lines, code, address):
+    good = rf"# fault {code} over: samples again after \d+ ms, \d+ lost, sensor at {address}"
+    found = [line for line in lines if line.startswith(f"# fault {code} over")]
+    assert found and all(re.fullmatch(good, line) for line in found), (code, lines)
+
+
+def check_words(image, address, options):
+    over = told_of(FAULTS, address, options, image, END_MS)
+    for code, _, _ in FAULTS[1:]:  # the first is over before the header
+        assert_over(over, code, address)
+    for fault in ALWAYS:
+        assert_over(told_of([fault], address, options, image, ALWAYS_MS), fault[0], address)
+
+
+@test
+def words_of_each_fault_are_whole_in_each_image_with_the_sensor_at_either_address():
+    for image in SET_IMAGES:
+        for address, options in ADDRESSES:
+            check_words(image, address, options)
+
+
+# Of a device that is none, at the start: the MCU is reset again and again, and a `status` typed so many ms later.
+PHASES, STEP_MS, EVERY_MS = 25, 2.4, 66
+
+
+def check_phases(image, address, options, first_ms):
+    arguments = ["--fault", "0ms:devid:230"]
+    for phase in range(PHASES):
+        at_ms = EVERY_MS * (phase + 1)
+        arguments += ["--fault", f"{at_ms}ms:reset", "--cmd", f"{at_ms + first_ms + STEP_MS * phase:.1f}:status"]
+    path = OUT / "steady.csv"
+    path.write_text("t_us,x,y,z\n0,0,0,256\n10000,0,0,256\n", encoding="ascii")
+    _, notes, _, stats = simrun("named", path, "--loop", *options, *arguments, "--expect-resets", PHASES, "--max-ms", EVERY_MS * (PHASES + 1),
+                                fw=image, judge=False)
+    told = [note for note in notes if note.startswith("# fault")]
+    wanted = f"# fault 2: the device at {address} is no ADXL345: DEVID reads 0xE6, not 0xE5"
+    wrong = [note for note in told if note != wanted]
+    # a line may be cut by the next reset
+    assert not [note for note in wrong if not wanted.startswith(note)], f"{image}: {wrong[0]} ({len(wrong)} of {len(told)})"
+    assert len(told) - len(wrong) >= PHASES - 2, f"{image}: {len(told)} lines, {len(wrong)} of them cut"
+
+
+@test
+def fault_2_names_the_device_that_was_found_whenever_its_line_comes():
+    """50 phases an image, 25 for each address, between them."""
+    for image in SET_IMAGES:
+        for number, (address, options) in enumerate(ADDRESSES):
+            check_phases(image, address, options, number * STEP_MS / 2)

@@ -1,0 +1,72 @@
+# The PC: the product and the tests' helpers as one archive a folder, with the sanitizers for tests and optimised for tools. Which archives
+# and references a test needs follows from what it includes (tools/test_parts.py), so no test waits for what it does not use.
+H := $(B)/host
+HOST_CC    := gcc
+HOST_CXX   := g++
+SANITIZE   := -fsanitize=address,undefined -fno-sanitize-recover=all
+HOST_INC   := $(INCLUDES) -Ihal/host -Isim -Ihost_tests -isystem $(UNITY_DIR)
+HOST_FLAGS := -std=c11 -O1 -g -D_POSIX_C_SOURCE=200809L -DHANG_TEST=1 -DSUPERVISOR=1 -DUNITY_INCLUDE_DOUBLE $(HOST_INC)
+MODEL_SRC  := sim/adxl345_model.c sim/stream.c
+HOST_SRC   := $(filter-out firmware/main.c,$(APP_SRC)) $(LIB_SRC) $(wildcard hal/host/*.c) $(MODEL_SRC)
+SUPPORT_SRC := $(wildcard host_tests/support_*.c)
+TESTS      := $(patsubst host_tests/%.c,$(H)/%,$(wildcard host_tests/test_*.c))
+
+$(H)/%.o: %.c Makefile mk/host.mk
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(HOST_FLAGS) $(WARNINGS) $(SANITIZE) -MMD -MP -c $< -o $@
+
+# what is a tool as well is optimised and without sanitizers
+$(H)/o2/%.o: %.c Makefile mk/host.mk
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) -MMD -MP -c $< -o $@
+
+# The references. Nearly all of their time goes into Eigen's templates: half the debug information and -O1 halve it, and Eigen still asserts its
+# own bounds; with the address sanitizer test_adaptive_reference would take a minute more.
+$(H)/%.o: %.cpp Makefile mk/host.mk
+	@mkdir -p $(@D)
+	@$(HOST_CXX) -std=c++17 -O1 -g1 -Wall -Wextra -Werror $(HOST_INC) -isystem /usr/include/eigen3 -fsanitize=undefined -fno-sanitize-recover=all -MMD -MP -c $< -o $@
+
+$(H)/unity.o: $(UNITY_DIR)/unity.c
+	@mkdir -p $(@D)
+	@$(HOST_CC) -std=c11 -O1 -g -DUNITY_INCLUDE_DOUBLE -DUNITY_USE_FLUSH_STDOUT $(SANITIZE) -c $< -o $@
+
+# ARCHIVE(folder of objects, name, sources)
+define ARCHIVE
+$(1)/lib$(2).a: $(3:%.c=$(1)/%.o)
+	@rm -f $$@
+	@ar rcs $$@ $$^
+endef
+ARCHIVED := filters tilt adxl345 firmware hal model support
+SRC_filters  := $(wildcard lib/filters/src/*.c)
+SRC_tilt     := $(wildcard lib/tilt/src/*.c)
+SRC_adxl345  := $(wildcard lib/adxl345/src/*.c)
+SRC_firmware := $(filter-out firmware/main.c,$(APP_SRC))
+SRC_hal      := $(wildcard hal/host/*.c)
+SRC_model    := $(MODEL_SRC)
+SRC_support  := $(SUPPORT_SRC)
+$(foreach folder,$(H) $(H)/o2,$(foreach a,$(ARCHIVED),$(eval $(call ARCHIVE,$(folder),$(a),$(SRC_$(a))))))
+ARCHIVES_O2 := $(ARCHIVED:%=$(H)/o2/lib%.a)
+linked       = $(filter %.o,$(1)) -Wl,--start-group $(filter %.a,$(1)) -Wl,--end-group
+
+$(H)/test_%: $(H)/host_tests/test_%.o $(H)/unity.o $(H)/libsupport.a
+	@$(HOST_CXX) $(SANITIZE) $(call linked,$^) -lm -o $@
+
+# one line a test: build/host/test_NAME: its archives and further objects
+$(H)/parts.mk: tools/test_parts.py $(wildcard host_tests/*.c host_tests/*.h host_tests/*.cpp host_tests/*.hpp) mk/host.mk
+	@mkdir -p $(@D)
+	@python3 tools/test_parts.py $(H) > $@
+include $(H)/parts.mk
+
+OPTIMISED := $(addprefix $(H)/,native_replay recordings default_filter)
+$(OPTIMISED): $(H)/%: $(H)/o2/host_tests/%.o $(ARCHIVES_O2)
+	@$(HOST_CC) $(call linked,$^) -lm -o $@
+
+$(H)/roll_replay: $(H)/o2/host_tests/roll_replay.o $(H)/o2/libfilters.a
+	@$(HOST_CC) $^ -lm -o $@
+
+$(H)/pipeline_replay: $(H)/o2/host_tests/pipeline_replay.o $(ARCHIVES_O2)
+	@$(HOST_CC) -Wl,--wrap=parameters_start,--wrap=noise_r_lsb2_q8 $(call linked,$^) -lm -o $@
+
+$(H)/exhaustive_isqrt: host_tests/exhaustive_isqrt.c lib/tilt/src/tilt.c lib/filters/src/fx.c $(wildcard lib/*/src/*.h)
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(HOST_FLAGS) -O3 -flto $(WARNINGS) $(filter %.c,$^) -o $@

@@ -1,0 +1,189 @@
+/*
+ * Rules of the ATmega328P's data sheet that a program may break for years before it shows: simavr does as if each were
+ * kept. The first one broken ends the run with status 11 and its words. Boot loaders are let be.
+ */
+#include "simrun.h"
+
+enum {
+    REG_DDRB = 0x24,
+    REG_PORTB = 0x25,
+    REG_EECR = 0x3F,
+    BIT_EEPE = 0x02,
+    BIT_EEMPE = 0x04,
+    EEMPE_CYCLES = 4,
+    REG_MCUSR = 0x54,
+    BIT_WDRF = 0x08,
+    REG_WDTCSR = 0x60,
+    REG_TIMSK1 = 0x6F,
+    REG_TCNT1L = 0x84,
+    REG_OCR1BH = 0x8B,
+    REG_TWCR = 0xBC,
+    BIT_TWSTO = 0x10,
+    BIT_TWSTA = 0x20,
+    LED = 1 << 5,
+    OPCODE_SLEEP = 0x9588,
+    JUST_OPENED = -2, /* simavr's interrupt_state */
+    WATCHED_MAX = 16
+};
+
+/* Its shortest period, 2048 cycles of 128 kHz less a tenth. */
+#define WATCHDOG_SHORTEST (14ull * CYCLES_PER_MS)
+
+typedef struct {
+    void (*check)(uint8_t value);
+    avr_io_write_t write;
+    avr_io_read_t read;
+    void *param;
+} watched_t;
+
+static watched_t watched[WATCHED_MAX];
+static size_t watched_count;
+static uint64_t eempe_at;
+static uint64_t watchdog_bites = NEVER;
+static uint32_t opened_at; /* the instruction that follows the one that let interrupts in */
+static bool led_lit;
+static uint32_t led_flashes;
+
+static void broken(const char *words)
+{
+    if (!machine_in_boot_loader(mcu->pc)) {
+        machine_fail(EXIT_RULE, words);
+    }
+}
+
+static bool interrupts_on(void)
+{
+    return mcu->sreg[S_I] != 0;
+}
+
+/* 16.3: the high bytes of Timer1's registers go through one byte that all share, handlers as well. */
+static void check_timer(uint8_t value)
+{
+    (void)value;
+    if (interrupts_on() && mcu->data[REG_TIMSK1] != 0) {
+        broken("a 16-bit register of Timer1 is used with interrupts on: a handler's use of another spoils it");
+    }
+}
+
+/* 8.6.3: EEPE counts within four cycles of EEMPE, which an interrupt between them would exceed. */
+static void check_eeprom(uint8_t value)
+{
+    if ((value & BIT_EEPE) != 0 && (mcu->data[REG_EECR] & BIT_EEPE) == 0) {
+        if (interrupts_on()) {
+            broken("an EEPROM byte is written with interrupts on: one between EEMPE and EEPE loses the write");
+        } else if (mcu->cycle > eempe_at + EEMPE_CYCLES) {
+            broken("EEPE is set more than four cycles after EEMPE: the write is lost");
+        }
+    }
+    if (value & BIT_EEMPE) {
+        eempe_at = mcu->cycle;
+    }
+}
+
+/* 11.9.2: while WDRF stands in MCUSR the watchdog cannot be switched off. */
+static void check_watchdog(uint8_t value)
+{
+    (void)value;
+    if ((mcu->data[REG_MCUSR] & BIT_WDRF) == 0) {
+        watchdog_bites = NEVER;
+    }
+}
+
+/* 22.9.2: TWSTO falls when the STOP is on the bus. */
+static void check_two_wire(uint8_t value)
+{
+    if ((mcu->data[REG_TWCR] & BIT_TWSTO) != 0 && (value & BIT_TWSTA) != 0) {
+        broken("a START is asked for while a STOP is on its way");
+    }
+}
+
+static void look_at_led(void)
+{
+    bool lit = (mcu->data[REG_DDRB] & mcu->data[REG_PORTB] & LED) != 0;
+    led_flashes += lit && !led_lit ? 1u : 0u;
+    led_lit = lit;
+}
+
+static void on_write(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    watched_t *of = param;
+    if (of->check != NULL) {
+        of->check(value);
+    }
+    if (of->write != NULL) {
+        of->write(avr, address, value, of->param);
+    } else {
+        avr->data[address] = value;
+    }
+    if (of->check == NULL) {
+        look_at_led();
+    }
+}
+
+static uint8_t on_read(avr_t *avr, avr_io_addr_t address, void *param)
+{
+    watched_t *of = param;
+    of->check(0);
+    return of->read != NULL ? of->read(avr, address, of->param) : avr->data[address];
+}
+
+static void watch_writes(avr_io_addr_t address, void (*check)(uint8_t value))
+{
+    watched_t *of = &watched[watched_count++];
+    avr_io_addr_t io = AVR_DATA_TO_IO(address);
+    *of = (watched_t){ .check = check, .write = mcu->io[io].w.c, .param = mcu->io[io].w.param };
+    mcu->io[io].w.c = on_write;
+    mcu->io[io].w.param = of;
+}
+
+static void watch_reads(avr_io_addr_t address, void (*check)(uint8_t value))
+{
+    watched_t *of = &watched[watched_count++];
+    avr_io_addr_t io = AVR_DATA_TO_IO(address);
+    *of = (watched_t){ .check = check, .read = mcu->io[io].r.c, .param = mcu->io[io].r.param };
+    mcu->io[io].r.c = on_read;
+    mcu->io[io].r.param = of;
+}
+
+void rules_start(void)
+{
+    for (avr_io_addr_t address = REG_TCNT1L; address <= REG_OCR1BH; address++) {
+        watch_writes(address, check_timer);
+    }
+    watch_reads(REG_TCNT1L, check_timer);
+    watch_writes(REG_EECR, check_eeprom);
+    watch_writes(REG_WDTCSR, check_watchdog);
+    watch_writes(REG_TWCR, check_two_wire);
+    watch_writes(REG_DDRB, NULL);
+    watch_writes(REG_PORTB, NULL);
+}
+
+void rules_on_reset(void)
+{
+    bool by_watchdog = (mcu->data[REG_MCUSR] & BIT_WDRF) != 0;
+    watchdog_bites = by_watchdog ? mcu->cycle + WATCHDOG_SHORTEST : NEVER;
+    eempe_at = 0;
+    look_at_led();
+}
+
+/* 7.7: a SEI lets one more instruction pass. Where another one stands between it and SLEEP, a wake-up can be lost. */
+void rules_on_step(uint32_t from)
+{
+    if (mcu->state == cpu_Sleeping && interrupts_on()) {
+        bool alone = (mcu->flash[from] | (unsigned)mcu->flash[from + 1] << 8) == OPCODE_SLEEP && from == opened_at;
+        if (!alone) {
+            broken("SLEEP does not follow the SEI that lets interrupts in: a wake-up before it is lost");
+        }
+    }
+    if (mcu->interrupt_state == JUST_OPENED) {
+        opened_at = mcu->pc;
+    }
+    if (mcu->cycle >= watchdog_bites) {
+        broken("the watchdog is on with its shortest period since it bit: it will bite again");
+    }
+}
+
+void rules_print(FILE *json)
+{
+    fprintf(json, "  \"led_flashes\": %u,\n", (unsigned)led_flashes);
+}

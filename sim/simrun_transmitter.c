@@ -1,0 +1,117 @@
+/*
+ * The USART's transmitter as the data sheet has it (ATmega328P, 20.7): a shift register and one buffer before it. UDRE0
+ * is low while the buffer is taken; TXC0 rises when a frame ends and none follows it at once, and stays until a one is
+ * written to it; a divider that changes within a frame spoils it. simavr's knows the buffer only, raises TXC0 with each
+ * byte, and changes the divider at any time.
+ */
+#include "avr_uart.h"
+#include "simrun.h"
+
+enum { REG_UCSR0B = 0xC1, REG_UDR0 = 0xC6, BIT_TXEN = 0x08, LOAD_CYCLES = 2 };
+
+static avr_uart_t *uart;
+static void (*take)(uint8_t byte);
+static avr_io_write_t core_control;
+static void *core_param;
+static uint64_t frame_ends = NEVER; /* of the byte in the shift register */
+static bool waits;                  /* a byte, in the buffer */
+static uint8_t waiting;
+
+static avr_cycle_count_t on_frame_end(avr_t *avr, avr_cycle_count_t when, void *param);
+
+static avr_cycle_count_t on_empty(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    (void)when;
+    (void)param;
+    if (!waits) {
+        avr_raise_interrupt(avr, &uart->udrc);
+    }
+    return 0;
+}
+
+/* It is of the kind that the interrupt itself does not clear. */
+static void buffer_taken(void)
+{
+    avr_clear_interrupt(mcu, &uart->udrc);
+    avr_regbit_clear(mcu, uart->udrc.raised);
+}
+
+static void begin_frame(uint8_t byte, uint64_t now)
+{
+    take(byte);
+    frame_ends = now + uart_frame_cycles();
+    avr_cycle_timer_register(mcu, frame_ends - mcu->cycle, on_frame_end, NULL);
+    avr_cycle_timer_register(mcu, LOAD_CYCLES, on_empty, NULL);
+}
+
+static avr_cycle_count_t on_frame_end(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    (void)param;
+    frame_ends = NEVER;
+    if (waits) {
+        waits = false;
+        begin_frame(waiting, when);
+    } else {
+        avr_raise_interrupt(avr, &uart->txc);
+    }
+    return 0;
+}
+
+static void on_data(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    (void)address;
+    (void)param;
+    if (!(avr->data[REG_UCSR0B] & BIT_TXEN)) {
+        return;
+    }
+    if (waits) {
+        machine_fail(EXIT_UART, "a byte was written to the UART before it was ready");
+    } else {
+        buffer_taken();
+        if (frame_ends == NEVER) {
+            begin_frame(value, avr->cycle);
+        } else {
+            waits = true;
+            waiting = value;
+        }
+    }
+}
+
+/* simavr takes UDRE0 for high when UDRIE0 is set while it sends nothing itself. */
+static void on_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    (void)param;
+    core_control(avr, address, value, core_param);
+    if (waits) {
+        buffer_taken();
+    }
+}
+
+static void on_divider(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    (void)avr;
+    (void)address;
+    (void)value;
+    (void)param;
+    if (frame_ends != NEVER) {
+        machine_fail(EXIT_UART, "the UART's divider was changed while a byte was on its way");
+    }
+}
+
+void transmitter_start(avr_uart_t *of, void (*on_byte)(uint8_t byte))
+{
+    enum { REG_UBRR0L = 0xC4 };
+    uart = of;
+    take = on_byte;
+    mcu->io[AVR_DATA_TO_IO(REG_UDR0)].w.c = on_data;
+    core_control = mcu->io[AVR_DATA_TO_IO(REG_UCSR0B)].w.c;
+    core_param = mcu->io[AVR_DATA_TO_IO(REG_UCSR0B)].w.param;
+    mcu->io[AVR_DATA_TO_IO(REG_UCSR0B)].w.c = on_control;
+    avr_register_io_write(mcu, REG_UBRR0L, on_divider, NULL);
+}
+
+void transmitter_reset(void)
+{
+    frame_ends = NEVER;
+    waits = false;
+}
