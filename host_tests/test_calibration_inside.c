@@ -177,6 +177,23 @@ static void test_six_positions_take_six_rounds_after_the_first(void)
     TEST_ASSERT_EQUAL_UINT(9 * (1 + 6), pieces);
 }
 
+/* What the last round changed, in Q14, is the residual in mg, rounded; from 161 units on, 9.8 mg, they do not fit. */
+static void test_the_residual_is_what_the_last_round_changed(void)
+{
+    for (uint16_t off_q14 = 0; off_q14 < 400; off_q14++) {
+        calibration_six_t six;
+        uint16_t residual_mg = 999;
+        calibration_six_start(&six, &c);
+        six.verdict = calibration_verdict(CALIBRATION_GOOD, 0);
+        six.where = 3;
+        six.off_q14 = off_q14;
+        calibration_verdict_t verdict = calibration_six_end(&six, &c, &residual_mg);
+        TEST_ASSERT_EQUAL_UINT8(off_q14 <= 160 ? CALIBRATION_GOOD : CALIBRATION_RESIDUAL, verdict.why);
+        TEST_ASSERT_EQUAL_UINT8(off_q14 <= 160 ? 0 : 3, verdict.where);
+        TEST_ASSERT_EQUAL_UINT16((uint16_t)floor(off_q14 * 1000.0 / 16384.0 + 0.5), residual_mg);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -187,5 +204,6 @@ int main(void)
     RUN_TEST(test_one_g_of_a_single_rest_is_rounded);
     RUN_TEST(test_a_position_of_six_may_be_up_to_30_degrees_off);
     RUN_TEST(test_six_positions_take_six_rounds_after_the_first);
+    RUN_TEST(test_the_residual_is_what_the_last_round_changed);
     return UNITY_END();
 }
