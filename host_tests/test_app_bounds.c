@@ -1,6 +1,6 @@
 /*
- * Numbers that a person meets, just inside and just beyond their bounds: characters of a line, an outage longer than the
- * clock's wrap, how late the service may be, when a run counts as lasting, the largest acceleration of a row.
+ * Numbers that a person meets, just inside and just beyond their bounds: characters of a line, an outage longer than
+ * the clock's wrap, how late the service may be, when a run counts as lasting, the largest acceleration of a row.
  */
 #include <math.h>
 #include <stdio.h>
@@ -41,7 +41,7 @@ static void test_every_other_byte_in_a_line_is_refused_as_such(void)
     }
 }
 
-/* The clock of microseconds wraps after 71.6 minutes: 72 are not told as half a minute. */
+/* The clock of microseconds wraps after 71.6 minutes: 72 are not reported as half a minute. */
 static void test_an_outage_longer_than_the_wrap_of_the_clock(void)
 {
     talk_start();
@@ -51,10 +51,10 @@ static void test_an_outage_longer_than_the_wrap_of_the_clock(void)
     board_run_ms(minutes_ms);
     adxl345_model_power(&hal_host_sensor, true);
     board_run_ms(500);
-    double told_ms = 0.0;
-    TEST_ASSERT_EQUAL_INT(1, sscanf(board_last_note(), "# fault 1 over: samples again after %lf ms", &told_ms));
+    double reported_ms = 0.0;
+    TEST_ASSERT_EQUAL_INT(1, sscanf(board_last_note(), "# fault 1 over: samples again after %lf ms", &reported_ms));
     TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms > minutes_ms);
-    TEST_ASSERT_DOUBLE_WITHIN(1100.0, minutes_ms, told_ms); /* whole seconds, and the way back */
+    TEST_ASSERT_DOUBLE_WITHIN(1100.0, minutes_ms, reported_ms); /* whole seconds, and the way back */
 }
 
 /* Whether the LED is lit at a time, by the pattern of fault 1: two flashes of 65.5 ms in 1,049 ms. */
@@ -65,8 +65,8 @@ static bool lit_at(uint32_t t_us)
 }
 
 /*
- * Passes that never have time for the service (4 ms apart) hold it up by 20 ms at most: what it shows is what was due at
- * some moment of the last 24 ms.
+ * Passes that never have time for the service (4 ms apart) hold it up by 20 ms at most: what it shows is what was due
+ * at some moment of the last 24 ms.
  */
 static void test_a_service_without_time_is_late_by_20_ms_at_most(void)
 {
@@ -108,7 +108,9 @@ static uint16_t rate_after_three_resets(double run_ms)
     return settings.rate_dhz;
 }
 
-/* What hangs three times, each within 10 s of its start, gets the lowest rate; a run of more than that was a good one. */
+/*
+ * What hangs three times, each within 10 s of its start, gets the lowest rate; a run of more than that was a good one.
+ */
 static void test_a_run_of_ten_seconds_counts_as_lasting(void)
 {
     TEST_ASSERT_EQUAL_UINT16(125, rate_after_three_resets(9700.0));
@@ -131,8 +133,8 @@ static int z_mg_of(int16_t lsb)
     return row->mg[2];
 }
 
-/* A row tells up to 32 g, which is 3,695 LSB there; what is more is told as 32 g, to the rail of 4,095 LSB, 35.5 g. */
-static void test_a_row_tells_up_to_32_g(void)
+/* A row shows up to 32 g, which is 3,695 LSB there; what is more is shown as 32 g, to the rail of 4,095 LSB, 35.5 g. */
+static void test_a_row_shows_up_to_32_g(void)
 {
     for (int lsb = 3600; lsb <= 4094; lsb += 19) {
         double exact_mg = fmin(32000.0, 1000.0 * lsb * 1.7320508 / 200.0);
@@ -174,7 +176,9 @@ static void test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range
     TEST_ASSERT_TRUE_MESSAGE(waited > 3, "no sample of the old range met the new one");
 }
 
-/* `every 50` counts from the header on, whatever was counted before a reset: the first row is that of the 50th sample. */
+/*
+ * `every 50` counts from the header on, whatever was counted before a reset: the first row is that of the 50th sample.
+ */
 static void test_the_first_row_after_a_header_is_a_whole_every_later(void)
 {
     for (double before_ms = 200.0; before_ms <= 500.0; before_ms += 100.0) {
@@ -202,7 +206,7 @@ int main(void)
     RUN_TEST(test_an_outage_longer_than_the_wrap_of_the_clock);
     RUN_TEST(test_a_service_without_time_is_late_by_20_ms_at_most);
     RUN_TEST(test_a_run_of_ten_seconds_counts_as_lasting);
-    RUN_TEST(test_a_row_tells_up_to_32_g);
+    RUN_TEST(test_a_row_shows_up_to_32_g);
     RUN_TEST(test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range);
     RUN_TEST(test_the_first_row_after_a_header_is_a_whole_every_later);
     return UNITY_END();

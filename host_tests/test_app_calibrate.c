@@ -211,7 +211,7 @@ static void test_an_oblique_rest_is_no_position(void)
     TEST_ASSERT_EQUAL_size_t(note + 3, board.note_count);
 }
 
-/* Up to 40 degrees off it is a position, and is told: 39, across either of the other axes, of an exact part. */
+/* Up to 40 degrees off it is a position, and is reported: 39, across either of the other axes, of an exact part. */
 static void test_a_rest_39_degrees_off_is_a_position(void)
 {
     static const attitude_t lays[] = {

@@ -4,6 +4,7 @@
  */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "calibration.h"
 #include "calibration_inside.h"
@@ -141,6 +142,58 @@ static void test_one_g_of_a_single_rest_is_rounded(void)
     }
 }
 
+static const int16_t exact_means[18] = { 4096, 0, 0, -4096, 0, 0, 0, 4096, 0, 0, -4096, 0, 0, 0, 4096, 0, 0, -4096 };
+
+/* One position of an exact part turned towards the next axis: 30 degrees are too much, whatever the others say. */
+static void test_a_position_of_six_may_be_up_to_30_degrees_off(void)
+{
+    for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
+        for (int half_degrees = 56; half_degrees <= 64; half_degrees++) {
+            double angle = half_degrees / 2.0 / 57.29577951308232;
+            uint8_t axis = position / 2U;
+            int16_t means[18];
+            memcpy(means, exact_means, sizeof means);
+            means[3 * position + axis] = (int16_t)lround(means[3 * position + axis] * cos(angle));
+            means[3 * position + (axis + 1) % 3] = (int16_t)lround(4096.0 * sin(angle) + (half_degrees == 60 ? 2 : 0));
+            setUp();
+            uint16_t residual_mg = 0;
+            calibration_verdict_t verdict = calibration_six(&c, means, &residual_mg);
+            bool tilted = verdict.why == (uint8_t)CALIBRATION_TILTED && verdict.where == position;
+            TEST_ASSERT_EQUAL(half_degrees >= 60, tilted);
+        }
+    }
+}
+
+/* Three lines and six components, once with 1 g for each component and in six rounds more. */
+static void test_six_positions_take_six_rounds_after_the_first(void)
+{
+    calibration_six_t six;
+    calibration_six_start(&six, &c);
+    unsigned pieces = 1;
+    while (calibration_six_step(&six, exact_means)) {
+        pieces++;
+        TEST_ASSERT_TRUE(pieces < 1000);
+    }
+    TEST_ASSERT_EQUAL_UINT(9 * (1 + 6), pieces);
+}
+
+/* What the last round changed, in Q14, is the residual in mg, rounded; from 161 units on, 9.8 mg, they do not fit. */
+static void test_the_residual_is_what_the_last_round_changed(void)
+{
+    for (uint16_t off_q14 = 0; off_q14 < 400; off_q14++) {
+        calibration_six_t six;
+        uint16_t residual_mg = 999;
+        calibration_six_start(&six, &c);
+        six.verdict = calibration_verdict(CALIBRATION_GOOD, 0);
+        six.where = 3;
+        six.off_q14 = off_q14;
+        calibration_verdict_t verdict = calibration_six_end(&six, &c, &residual_mg);
+        TEST_ASSERT_EQUAL_UINT8(off_q14 <= 160 ? CALIBRATION_GOOD : CALIBRATION_RESIDUAL, verdict.why);
+        TEST_ASSERT_EQUAL_UINT8(off_q14 <= 160 ? 0 : 3, verdict.where);
+        TEST_ASSERT_EQUAL_UINT16((uint16_t)floor(off_q14 * 1000.0 / 16384.0 + 0.5), residual_mg);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -149,5 +202,8 @@ int main(void)
     RUN_TEST(test_elements_are_rounded_to_five_eighths_of_a_unit);
     RUN_TEST(test_a_reading_in_g);
     RUN_TEST(test_one_g_of_a_single_rest_is_rounded);
+    RUN_TEST(test_a_position_of_six_may_be_up_to_30_degrees_off);
+    RUN_TEST(test_six_positions_take_six_rounds_after_the_first);
+    RUN_TEST(test_the_residual_is_what_the_last_round_changed);
     return UNITY_END();
 }

@@ -178,8 +178,8 @@ static void test_a_first_sample_that_does_not_come_is_a_fault(void)
 }
 
 /*
- * A stop that does not reach the sensor is tried again for a second, 40 times 25 ms apart and the time of the transfers,
- * under a millisecond each; then no more.
+ * A stop that does not reach the sensor is tried again for a second, 40 times 25 ms apart and the time of the
+ * transfers, under a millisecond each; then no more.
  */
 static void test_a_stop_is_tried_again_for_a_second(void)
 {

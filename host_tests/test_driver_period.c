@@ -1,6 +1,6 @@
 /*
- * The measured period: of sixteen steps in a row between exact stamps, each within an eighth of the nominal one; and the
- * rate that the driver makes of it.
+ * The measured period: of sixteen steps in a row between exact stamps, each within an eighth of the nominal one; and
+ * the rate that the driver makes of it.
  */
 #include "adxl345.h"
 #include "adxl345_period.h"
@@ -62,7 +62,9 @@ static void test_each_sixteen_make_a_mean_of_their_own(void)
     TEST_ASSERT_EQUAL_UINT32(10075u * 256u, period_measured_us_q8());
 }
 
-/* An eighth of the nominal period shorter or longer is a step between two samples; more, but for what is cut, is none. */
+/*
+ * An eighth of the nominal period shorter or longer is a step between two samples; more, but for what is cut, is none.
+ */
 static void test_a_step_is_within_an_eighth_of_the_nominal_one(void)
 {
     for (unsigned r = 0; r < sizeof nominals_us / sizeof nominals_us[0]; r++) {

@@ -1,6 +1,6 @@
 /*
- * The times of samples that are read late, where a bound decides: how long the sensor can hold one, how late an edge may
- * be, what a cut or an empty reading proves of the sample that follows.
+ * The times of samples that are read late, where a bound decides: how long the sensor can hold one, how late an edge
+ * may be, what a cut or an empty reading proves of the sample that follows.
  */
 #include "adxl345.h"
 #include "adxl345_burst.h"
@@ -75,7 +75,7 @@ static uint32_t next_stamp_us(void)
 }
 
 /*
- * The sensor pauses, then has one sample that no edge tells. It is the next after the last one, if it may have waited
+ * The sensor pauses, then has one sample without an edge. It is the next after the last one, if it may have waited
  * for so long: the 33rd after it pushes it out, so 33 periods are the most. Else it is taken to be of now.
  */
 static void test_no_sample_waits_longer_than_the_sensor_is_deep(void)
@@ -101,7 +101,7 @@ static void test_no_sample_waits_longer_than_the_sensor_is_deep(void)
 }
 
 /*
- * The first sample of a sensor whose clock is 4 % fast: its burst is refused, and main comes late, with up to 30 behind
+ * The first sample of a sensor whose clock is 4 % fast: its burst is refused, and main comes late, with up to 30 after
  * it (a FIFO of 32 has filled, and says Overrun). By the nominal period it seems 30 x 4 % + 1/2 = 1.7 periods too
  * late for them: it keeps the time of its edge.
  */
@@ -109,7 +109,7 @@ static void test_an_edge_counts_more_than_a_nominal_period(void)
 {
     for (unsigned held = 1; held < FIFO_FULL; held++) {
         begin(40000.0);
-        rig.limit_us = UINT32_MAX; /* those behind it have the nominal period */
+        rig.limit_us = UINT32_MAX; /* those after it have the nominal period */
         adxl345_start(&at_100_hz);
         rig_run_ms(5); /* configured, and the STOP is out */
         TEST_ASSERT_EQUAL_HEX8(ADXL345_POWER_MEASURE, hal_host_sensor.reg[ADXL345_POWER_CTL]);
@@ -124,8 +124,8 @@ static void test_an_edge_counts_more_than_a_nominal_period(void)
 }
 
 /*
- * INT1 comes back to a sensor that holds so many samples: its edge is late for the oldest, by more than two periods from
- * three on. What is behind it tells its age, but for the half period that the newest may be old, and the burst.
+ * INT1 comes back to a sensor that holds so many samples: its edge is late for the oldest, by more than two periods
+ * from three on. What follows it gives its age, but for the half period that the newest may be old, and the burst.
  */
 static void test_the_edge_of_int1_that_comes_back_is_not_the_samples(void)
 {
@@ -182,7 +182,7 @@ static void test_a_cut_in_the_first_data_byte_gives_no_stamp_away(void)
 
 /*
  * INT1 goes high for nothing at any time between two samples, and stays so: the reading finds the sensor empty. Main
- * is away until the next sample is there, which no edge tells: it came when it was due, not when the sensor was empty.
+ * is away until the next sample is there, which has no edge: it came when it was due, not when the sensor was empty.
  */
 static void test_a_sample_after_an_empty_reading_came_when_it_was_due(void)
 {

@@ -139,8 +139,8 @@ static bool still_with(int axis, int size, uint16_t rate_dhz)
 }
 
 /*
- * Below 62.5 x 0.02 x rate: 125 LSB^2 at 100 Hz (11^2 = 121, 12^2 = 144), 1,000 at 800 Hz (31^2 = 961, 32^2 = 1024). The
- * limit itself is too much: 25 LSB^2 at 20 Hz, 100 LSB^2 at 80 Hz.
+ * Below 62.5 x 0.02 x rate: 125 LSB^2 at 100 Hz (11^2 = 121, 12^2 = 144), 1,000 at 800 Hz (31^2 = 961, 32^2 = 1024).
+ * The limit itself is too much: 25 LSB^2 at 20 Hz, 100 LSB^2 at 80 Hz.
  */
 static void test_the_limits_of_the_variance(void)
 {

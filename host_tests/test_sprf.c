@@ -198,9 +198,13 @@ static void run_with_a_gap_restarts_at_rest(void)
     TEST_ASSERT_EQUAL_INT32(0, f.core.rate_lsb_q16);
 }
 
-/* On 4 LSB per sample, then samples that nothing agrees with: 6 predictions at that rate, then it stands. */
+/*
+ * On 4 LSB per sample, then samples that nothing agrees with: five are refused while the rate is believed, which is what
+ * a restart from five that agree may take, and the sixth prediction is the last at that rate.
+ */
 static void expect_a_stand(int16_t direction)
 {
+    enum { PREDICTIONS = 6 };
     sprf_config_t config = config_100hz();
     sprf_t f = settled(&config, 0);
     for (int16_t k = 1; k <= 400; k++) {
@@ -215,7 +219,7 @@ static void expect_a_stand(int16_t direction)
         x += rate;
         TEST_ASSERT_EQUAL_INT32(x, sprf_update(&f, (k & 1U) != 0U ? 4000 : -4000));
         TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, sprf_flags(&f));
-        if (k > SPRF_RATE_HELD_SAMPLES) {
+        if (k >= PREDICTIONS) {
             rate = 0;
         }
     }

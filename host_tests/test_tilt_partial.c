@@ -144,6 +144,11 @@ static void test_the_sigma_told(void)
         TEST_ASSERT_DOUBLE_WITHIN(1.0 + 0.003 * expected_cdeg, expected_cdeg,
                                   tilt_partial_sigma_cdeg(sigma_q8, missing_q6));
     }
+    for (uint16_t missing_q6 = 1000; missing_q6 <= 65535 / 6; missing_q6++) {
+        uint16_t large_q8 = (uint16_t)(missing_q6 * 6); /* 8,594 cdeg; the factor 1432.394 is a whole number: 2.8e-4 */
+        double exact_cdeg = 100.0 * DEG_PER_RAD / 4.0 * large_q8 / missing_q6;
+        TEST_ASSERT_DOUBLE_WITHIN(1.0 + 2.8e-4 * exact_cdeg, exact_cdeg, tilt_partial_sigma_cdeg(large_q8, missing_q6));
+    }
     TEST_ASSERT_EQUAL_UINT16(9000, tilt_partial_sigma_cdeg(1, 0));
     TEST_ASSERT_EQUAL_UINT16(9000, tilt_partial_sigma_cdeg(65535, 1));
     TEST_ASSERT_EQUAL_UINT16(0, tilt_partial_sigma_cdeg(0, 16384));

@@ -1,7 +1,7 @@
 /*
- * The arc tangent's polynomial is the minimax one, its coefficients rounded to whole units of 1/800 degree: an error of
- * one unit in any of them shows in the mean over ratios near 1, far below the bounds of test_tilt_reference.c. And pitch
- * where its legs are scaled most: near the poles, and for numbers of any size.
+ * The arc tangent's polynomial is the minimax one, its coefficients rounded to whole units of 1/800 degree: an error
+ * of one unit in any of them shows in the mean over ratios near 1, far below the bounds of test_tilt_reference.c. And
+ * pitch where its legs are scaled most: near the poles, and for numbers of any size.
  */
 #include <math.h>
 
@@ -13,8 +13,9 @@
 enum { TERMS = 4 };
 
 /*
- * c of r (c0 - c1 r^2 + c2 r^4 - c3 r^6) for the arc tangent on 0..1 in 1/800 degree, by Remez' exchange in double. That
- * it is the best is seen from its error alone: it has its largest size five times with alternating signs (Chebyshev).
+ * c of r (c0 - c1 r^2 + c2 r^4 - c3 r^6) for the arc tangent on 0..1 in 1/800 degree, by Remez' exchange in double.
+ * That it is the best is seen from its error alone: it has its largest size five times with alternating signs
+ * (Chebyshev).
  */
 static const double minimax[TERMS] = { 45800.58743338, 14721.57618335, 6704.26916951, 1787.01017797 };
 
@@ -97,8 +98,8 @@ static void test_the_coefficients_of_the_length_are_those_of_the_best_polynomial
 
 /*
  * With y = z that fit 15 bits the length is too short, relatively, by half a unit of 46,341 (its polynomial), half a
- * unit of itself, some 28,000, and 0.35 units of 46,341 as equal legs give 65,535: together 3.6e-5. That raises pitch by
- * half of it, 0.83 units of 1/800 degree, beside the 0.38 of the arc tangent. One unit in a coefficient makes 0.5.
+ * unit of itself, some 28,000, and 0.35 units of 46,341 as equal legs give 65,535: together 3.6e-5. That raises pitch
+ * by half of it, 0.83 units of 1/800 degree, beside the 0.38 of the arc tangent. One unit in a coefficient makes 0.5.
  */
 static void test_the_coefficients_of_the_length_are_rounded_to_whole_units(void)
 {

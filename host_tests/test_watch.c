@@ -72,6 +72,43 @@ static void test_share_of_doubled_readings(void)
     }
 }
 
+/*
+ * A jump raises the score by 16 and another sample lowers it by 1: one in sixteen grows by 1, one in seventeen never.
+ */
+static void test_one_jump_in_sixteen_is_the_limit(void)
+{
+    for (unsigned calm = 15; calm <= 16; calm++) {
+        watch_start();
+        unsigned jumps = 0;
+        while (!watch_two_sensors() && jumps < 1000) {
+            jump(2, 250, 500);
+            jumps++;
+            if (!watch_two_sensors()) {
+                rest(calm);
+            }
+        }
+        TEST_ASSERT_EQUAL_UINT(calm == 15 ? 1 + (128 - 16) : 1000, jumps);
+    }
+}
+
+/*
+ * Eight jumps reach 128 and are reported; with a single calm sample among them they are one short, and the ninth is
+ * reported.
+ */
+static void test_eight_jumps_with_a_calm_sample_are_one_short(void)
+{
+    for (unsigned before = 1; before < 8; before++) {
+        watch_start();
+        for (unsigned jumps = 1; jumps <= 9; jumps++) {
+            jump(0, 250, 500);
+            TEST_ASSERT_EQUAL(jumps == 9, watch_two_sensors());
+            if (jumps == before) {
+                rest(1);
+            }
+        }
+    }
+}
+
 static bool suspected_after(int16_t from_lsb, int16_t to_lsb)
 {
     watch_start();
@@ -189,6 +226,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_eighth_jump_is_told_and_quiet_ends_it);
     RUN_TEST(test_share_of_doubled_readings);
+    RUN_TEST(test_one_jump_in_sixteen_is_the_limit);
+    RUN_TEST(test_eight_jumps_with_a_calm_sample_are_one_short);
     RUN_TEST(test_what_a_doubling_is);
     RUN_TEST(test_two_axes_at_once_are_a_movement);
     RUN_TEST(test_outliers_are_no_second_sensor);

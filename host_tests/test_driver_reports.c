@@ -1,6 +1,6 @@
 /*
- * What the driver tells of itself and does to the bus: phases, marks and counters one by one, how fast the bus is, what
- * is written and read when the sensor is configured, what a loss of the sensor leaves known.
+ * What the driver reports of itself and does to the bus: phases, marks and counters one by one, how fast the bus is,
+ * what is written and read when the sensor is configured, what a loss of the sensor leaves known.
  */
 #include "adxl345.h"
 #include "adxl345_burst.h"
@@ -83,10 +83,17 @@ static void test_the_bus_is_fast_at_800_hz_alone(void)
     }
 }
 
-/* DEVID is read, 11 registers are written, the last 8 read back: 9 bytes come, and none is written while it measures. */
+/*
+ * DEVID is read, 11 registers are written, the last 8 read back: 9 bytes come, and none is written while it measures.
+ */
 static void test_what_the_bus_carries_to_configure(void)
 {
     adxl345_start(&at_100_hz);
+    for (unsigned passes = 0; hal_host_sensor.reg[ADXL345_INT_ENABLE] == 0 && passes < 1000; passes++) {
+        rig_pass();
+    }
+    TEST_ASSERT_EQUAL_HEX8(ADXL345_INT_DATA_READY, hal_host_sensor.reg[ADXL345_INT_ENABLE]); /* the last one */
+    TEST_ASSERT_EQUAL_HEX8(0, hal_host_sensor.reg[ADXL345_POWER_CTL]);
     rig_run_ms(5);
     TEST_ASSERT_EQUAL_HEX8(ADXL345_POWER_MEASURE, hal_host_sensor.reg[ADXL345_POWER_CTL]);
     TEST_ASSERT_EQUAL_UINT(1 + 8, bytes_read);
@@ -274,7 +281,7 @@ static void test_an_edge_while_stopped_is_nobodys(void)
     TEST_ASSERT_FALSE(burst_running());
     hal_host_faults.int1_high = false;
     rig_run_ms(200);
-    hal_host_faults.int1_cut = true; /* the first sample is read by the clock, with others that tell its age */
+    hal_host_faults.int1_cut = true; /* the first sample is read by the clock, with others that give its age */
     rig.limit_us = 10000 / 2 + 1000;
     size_t before = rig.taken_count;
     adxl345_start(&at_100_hz);
