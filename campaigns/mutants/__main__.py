@@ -50,9 +50,9 @@ def sources(options):
     folders = measured() if options.sample else ["lib, firmware, hal"]
     if not folders:
         raise Stop("no folder in campaigns/mutants/goals.txt was measured whole, so no sample can be judged: make mutants ONLY=folder ACCEPT=1")
-    begin = ("lib/", "firmware/", "hal/")
-    found = [name for name in tree_files() if name.startswith(begin) and (not options.sample or folder_of(name) in folders) and name.endswith((".c", ".h"))
-             and name.startswith(options.only) and name not in LEFT_OUT and "/examples/" not in name]
+    product = [name for name in tree_files() if name.startswith(("lib/", "firmware/", "hal/")) and name.endswith((".c", ".h"))
+               and name not in LEFT_OUT and "/examples/" not in name]
+    found = [name for name in product if name.startswith(options.only) and (not options.sample or folder_of(name) in folders)]
     if not found:
         raise Stop(f"no source in {', '.join(folders)} begins with {options.only}")
     return found

@@ -45,13 +45,15 @@ class Reached:
 
 
 class Cheapest:
-    """All of a host's few tests, by what they took."""
+    """All of a host's few tests, by what they took; before that is known, those first that noticed most in the last campaign."""
 
     def __init__(self, patience_s):
-        self.limits, self.kills, self.patience_s = {}, Counter(), patience_s or float("inf")
+        self.limits, self.kills, self.patience_s, self.first = {}, Counter(), patience_s or float("inf"), listed()
 
     def tests(self, mutant, host):
-        seconds = {test: self.limits.get((host.variant, test), 0) for test in host.tests}
+        first = self.first.get(mutant.file, [])
+        guess_s = {test: 0 if test in first else 1 for test in host.tests}
+        seconds = {test: self.limits.get((host.variant, test), guess_s[test]) for test in host.tests}
         found = [test for test in host.tests if seconds[test] <= self.patience_s]
         return sorted(found, key=lambda test: seconds[test] / (1 + self.kills[mutant.file, test]))
 
