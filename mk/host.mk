@@ -51,10 +51,10 @@ linked       = $(filter %.o,$(1)) -Wl,--start-group $(filter %.a,$(1)) -Wl,--end
 $(H)/test_%: $(H)/host_tests/test_%.o $(H)/unity.o $(H)/libsupport.a
 	@$(HOST_CXX) $(SANITIZE) $(call linked,$^) -lm -o $@
 
-# one line a test: build/host/test_NAME: its archives and further objects
+# One line a test: build/host/test_NAME: its archives and further objects. Moved there whole: make -nB, which writes it again, may run beside another make.
 $(H)/parts.mk: tools/test_parts.py $(wildcard host_tests/*.c host_tests/*.h host_tests/*.cpp host_tests/*.hpp) mk/host.mk
 	@mkdir -p $(@D)
-	@python3 tools/test_parts.py $(H) > $@
+	@python3 tools/test_parts.py $(H) > $@.$$$$ && mv $@.$$$$ $@
 include $(H)/parts.mk
 
 OPTIMISED := $(addprefix $(H)/,native_replay recordings default_filter)

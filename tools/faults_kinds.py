@@ -80,6 +80,7 @@ TYPED = [
           row_ms=75, said_ms=260),  # every 60 at 800 Hz, and five replies, 250 characters at 9600 baud
     typed("typed: words", "unplug:300", "help", "status", "st\x07atus", "x" * 90, "HELP 3", "go now", "stop", "go", "mode plot", "mode", "mode csv",
           "mode x", "status", "help", said_ms=110),  # the help is 1.1 kB
+    typed("typed: spoilt bytes", ("rxspoil:0", "@50 rxspoil:1", "@100 rxspoil:0"), "help", "status", "rate", "every 1", said_ms=110),
     typed("typed: stop", "power:50", "stop", "status", "go", "stop", "go", "stop", "stop", "range 2", "go", every_ms=11),
     typed("typed: plot", "sda:60", "mode plot", "status", "mode csv", every_ms=400, filter_name="sprf"),
     typed("typed: kf", "frozen:200", "filter kf", "filter sprf", every_ms=300, filter_name="sprf"),
