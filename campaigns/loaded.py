@@ -74,7 +74,8 @@ def one_round(number, commands, jobs, total):
             result = job.result()
             (tests, failures, ignored), line, why = run_tests.judged(result)
             print(f"round {number}: {names[job]:<24}{line:<42}{result.took_s:>4.0f} s", flush=True)
-            print("".join(f"    {text}\n" for text in why), end="", flush=True)
+            print("".join(f"    {text}\n" for text in [*why, *run_tests.reasons(result.said, ":IGNORE")]), end="", flush=True)
+            total["skipped"] += ignored
             total["passed"] += tests - failures - ignored
             total["failed"] += failures
             total["programs"] += 1
@@ -85,7 +86,7 @@ def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     commands = {test: command_of(test) for test in options.tests or LIVE}
     run_tests.OUT.mkdir(parents=True, exist_ok=True)
-    total = {"passed": 0, "failed": 0, "programs": 0}
+    total = {"passed": 0, "failed": 0, "skipped": 0, "programs": 0}
     began = time.monotonic()
     try:
         with load(options.load):
@@ -95,6 +96,7 @@ def main():
         run_tests.RUNNING.end()
         rounds = total["programs"] / len(commands)
         print(f"loaded: {rounds:.4g} rounds of {len(commands)} programs under a load of {options.load} in {time.monotonic() - began:.0f} s")
+        print(f"skipped: {total['skipped']} (each with its reason above: it proves nothing)")
         print(f"{total['passed']} passed, {total['failed']} failed", flush=True)
     sys.exit(total["failed"] != 0)
 

@@ -20,7 +20,6 @@ import system_words  # noqa: F401
 from system_support import (FW, OUT, SET_IMAGES, SIMRUN, STREAMS, TESTS, image_with, processor_s, read_output, run, run_all, simrun, test,
                             triplets, within)
 
-
 # --- chip equals PC ---------------------------------------------------------------------------------------------------
 
 def compare_with_native(stream, filter_name):

@@ -34,7 +34,7 @@ EVERY = listed()
 
 
 def make(*words, dry=False):
-    command = ["make", "--no-print-directory", f"U={OUT}", *(["-n", "-B"] if dry else []), *words]
+    command = ["make", "--no-print-directory", f"U={OUT}", *(["-n"] if dry else []), *words]
     return subprocess.run(command, capture_output=True, text=True, timeout=600)
 
 

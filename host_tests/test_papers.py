@@ -103,8 +103,8 @@ def what_has_no_chance_in_it_is_as_on_the_page():
 @test
 def fewer_runs_and_other_seeds_leave_the_page_alone():
     before = papers_page.DOCUMENT.read_bytes()
-    for words in (["--runs", "20"], ["--runs", "20", "--seed", "7"]):
-        done = subprocess.run([sys.executable, "tools/papers.py", *words], capture_output=True, text=True, timeout=600)
+    for words in (["--runs", "20"], ["--runs", "20", "--seed", "7"]):  # the quickest paper: which one makes no difference
+        done = subprocess.run([sys.executable, "tools/papers.py", "--paper", "001", *words], capture_output=True, text=True, timeout=600)
         assert "page left alone" in done.stdout and papers_page.DOCUMENT.read_bytes() == before, done
 
 

@@ -199,8 +199,8 @@ static void run_with_a_gap_restarts_at_rest(void)
 }
 
 /*
- * On 4 LSB per sample, then samples that nothing agrees with: five are refused while the rate is believed, which is what
- * a restart from five that agree may take, and the sixth prediction is the last at that rate.
+ * On 4 LSB per sample, then samples that nothing agrees with: five are refused while the rate is believed, as many as
+ * a restart from those that agree may take, and the sixth prediction is the last at that rate.
  */
 static void expect_a_stand(int16_t direction)
 {

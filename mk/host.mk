@@ -51,11 +51,14 @@ linked       = $(filter %.o,$(1)) -Wl,--start-group $(filter %.a,$(1)) -Wl,--end
 $(H)/test_%: $(H)/host_tests/test_%.o $(H)/unity.o $(H)/libsupport.a
 	@$(HOST_CXX) $(SANITIZE) $(call linked,$^) -lm -o $@
 
-# One line a test: build/host/test_NAME: its archives and further objects. Moved there whole: make -nB, which writes it again, may run beside another make.
-$(H)/parts.mk: tools/test_parts.py $(wildcard host_tests/*.c host_tests/*.h host_tests/*.cpp host_tests/*.hpp) mk/host.mk
+# One line a test: build/host/test_NAME: its archives and further objects. Moved there whole: make -nB, which writes it again, may run beside another make. Without
+# python3, which make deps installs, what needs no test is built all the same.
+ifneq ($(filter-out help deps clean,$(MAKECMDGOALS)),)
+$(H)/parts.mk: tools/test_parts.py $(wildcard host_tests/*.c host_tests/*.h host_tests/*.cpp host_tests/*.hpp) $(HOST_SRC) $(wildcard */*.h hal/*/*.h lib/*/src/*.h)
 	@mkdir -p $(@D)
-	@python3 tools/test_parts.py $(H) > $@.$$$$ && mv $@.$$$$ $@
-include $(H)/parts.mk
+	@! command -v python3 > /dev/null || { python3 tools/test_parts.py $(H) > $@.$$$$ && mv $@.$$$$ $@; }
+-include $(H)/parts.mk
+endif
 
 OPTIMISED := $(addprefix $(H)/,native_replay recordings default_filter)
 $(OPTIMISED): $(H)/%: $(H)/o2/host_tests/%.o $(ARCHIVES_O2)

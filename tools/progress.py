@@ -13,12 +13,14 @@ import sys
 import time
 
 STEP = re.compile(r"^\S+:\d+: (?:update )?target '([^']+)'")  # the words after it differ from make to make
+ENGLISH = {**{name: value for name, value in os.environ.items() if name != "LANGUAGE"}, "LC_ALL": "C"}  # STEP is what make says in English
 LOG_S, STILL_S, TERMINAL_S = 5.0, 30.0, 0.1
 
 
 def planned(command):
     """(number of steps, the lines of their commands); (0, nothing) where make cannot tell: what is wrong it says when it runs."""
-    done = subprocess.run([*command, "-n", "--trace"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace", check=False)
+    done = subprocess.run([*command, "-n", "--trace"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace",
+                          env=ENGLISH, check=False)
     lines = done.stdout.splitlines()
     return sum(STEP.match(line) is not None for line in lines), set(lines)
 
@@ -89,7 +91,7 @@ def main():
         return subprocess.run(command, check=False).returncode
     count, commands = planned(command)
     progress = Progress(count, sys.stdout)
-    with subprocess.Popen([*command, "--trace"], stdout=subprocess.PIPE) as process:
+    with subprocess.Popen([*command, "--trace"], stdout=subprocess.PIPE, env=ENGLISH) as process:
         for line in lines_of(process.stdout):
             step = STEP.match(line) if line is not None else None
             if line is None:

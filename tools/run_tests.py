@@ -23,6 +23,7 @@ OUT = pathlib.Path("build/host")
 TIMES = "times.json"
 SUM = re.compile(r"^(\d+) Tests (\d+) Failures (\d+) Ignored", re.M)
 SANITIZER = re.compile(r"runtime error: |^==\d+==ERROR: |^SUMMARY: ")
+LIMIT_S = 3600   # by the clock, for one program: only one that hangs takes so long, on any machine
 LAST_WORDS = 12  # lines of a program that ended without a report
 SHOW_S = 30      # on a log, between two lines that say what runs
 SLOWEST = 10
@@ -79,9 +80,10 @@ class Running:
             return ", ".join(f"{name} ({time.monotonic() - begun:.0f} s)" for name, begun in self.begun.items())
 
     def end(self):
+        """Each with the programs that it has started."""
         with self.lock:
             for program in self.programs.values():
-                program.terminate()
+                os.killpg(program.pid, signal.SIGTERM)
 
 
 RUNNING = Running()
@@ -92,14 +94,20 @@ def run(name, command):
     began = time.monotonic()
     log = OUT / f"{name}.log"
     try:
-        with open(log, "wb") as file, subprocess.Popen([str(word) for word in command], stdout=file, stderr=subprocess.STDOUT) as program:
+        with open(log, "wb") as file, subprocess.Popen([str(word) for word in command], stdout=file, stderr=subprocess.STDOUT,
+                                                start_new_session=True) as program:
+            limit = threading.Timer(LIMIT_S, os.killpg, (program.pid, signal.SIGKILL))
+            limit.start()
             RUNNING.add(name, program)
             try:
                 _, status, usage = os.wait4(program.pid, 0)
             finally:
+                limit.cancel()
                 RUNNING.remove(name)
             program.returncode = os.waitstatus_to_exitcode(status)
         said = log.read_text(encoding="utf-8", errors="replace")
+        if time.monotonic() - began >= LIMIT_S:
+            said += f"\nstopped: no end within {LIMIT_S / 60:g} minutes\n"
         return Result(program.returncode, said, time.monotonic() - began, usage.ru_utime + usage.ru_stime)
     except OSError as why:
         log.write_text(f"{command[0]}: {why.strerror}\n", encoding="utf-8")
@@ -232,6 +240,10 @@ def main():
     report = Report(len(order))
     try:
         carried_out(runs, order, report)
+    except BaseException:
+        report.say("run_tests: stopped before its end")
+        report.end()
+        raise
     finally:
         (OUT / TIMES).write_text(json.dumps(times | report.times, indent=0), encoding="utf-8")
     sys.exit(report.end() != 0)

@@ -86,6 +86,8 @@ def found(name, tests):
     full = full_name(name, tests)
     if full:
         return full
+    if f"test_{name.removeprefix('test_')}" in NOT_HERE:
+        sys.exit(f"t: {name} is a part of make {'check' if 'planted' in name else 'piocheck'}")
     short = {each.removeprefix("test_"): each for each in tests}
     near = [each for each in short if name and name in each] + difflib.get_close_matches(name, short, NEAR, 0.5)
     near = list(dict.fromkeys(near))[:NEAR]
@@ -102,6 +104,10 @@ def one(words):
         sys.exit("t: which test? make t T=sprf (make t T=list lists all names)")
     name, *further = words
     test = tests[found(name, tests)]
+    if further and len(test.command) == 1:
+        sys.exit(f"t: {name} runs whole: {' '.join(further)} does not choose among its tests (it does for those in Python)")
+    if test.command[0] == VENV:
+        subprocess.run(["sh", "tools/deps.sh", "design", "tilt"], check=False)
     if test.targets:
         built = subprocess.run(["make", "-s", "-j2", *test.targets], check=False)
         if built.returncode != 0:

@@ -43,7 +43,7 @@ static void say_alarm(uint16_t ahead_us)
     say(FLASH_TEXT("late"), late_us > UINT8_MAX ? UINT8_MAX : (uint8_t)late_us);
 }
 
-/* How long main sleeps at an alarm that passed so long ago, in us, saturating: hal_wake_at wakes it at once (hal_time.h). */
+/* How long main sleeps at an alarm that passed so long ago, in us, saturating: it is woken at once (hal_time.h). */
 static void say_passed(uint16_t ago_us)
 {
     while (!hal_uart_tx_idle()) {

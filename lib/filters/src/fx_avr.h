@@ -131,8 +131,8 @@ FX_INLINE int32_t fx_scale_uq16(int32_t v, uint16_t b_uq16)
 }
 
 /*
- * Byte by byte from memory through one register: no registers to save. Memory is clobbered as a whole, because an operand
- * for it would take a second of the two pointers that -mstrict-X leaves.
+ * Byte by byte from memory through one register: no registers to save. Memory is clobbered as a whole, because an
+ * operand for it would take a second of the two pointers that -mstrict-X leaves.
  */
 FX_INLINE int32_t fx_plus(int32_t v, const int32_t *array, uint8_t index)
 {
