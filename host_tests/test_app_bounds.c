@@ -57,6 +57,29 @@ static void test_an_outage_longer_than_the_wrap_of_the_clock(void)
     TEST_ASSERT_DOUBLE_WITHIN(1100.0, minutes_ms, reported_ms); /* whole seconds, and the way back */
 }
 
+/* What the line says of an outage of so long, ms. */
+static double reported_outage_ms(double outage_ms)
+{
+    talk_start();
+    adxl345_model_power(&hal_host_sensor, false);
+    board_run_ms(outage_ms);
+    adxl345_model_power(&hal_host_sensor, true);
+    board_run_ms(500);
+    double reported_ms = 0.0;
+    TEST_ASSERT_EQUAL_INT(1, sscanf(board_last_note(), "# fault 1 over: samples again after %lf ms", &reported_ms));
+    return reported_ms;
+}
+
+/* docs/faults.md: to the millisecond, beyond a minute in whole seconds; the way back takes less than half a second. */
+static void test_an_outage_beyond_a_minute_is_in_whole_seconds(void)
+{
+    double shorter_ms = reported_outage_ms(59.3e3);
+    TEST_ASSERT_TRUE(shorter_ms >= 59.3e3 && shorter_ms < 59.8e3);
+    double longer_ms = reported_outage_ms(61.7e3);
+    TEST_ASSERT_TRUE(longer_ms >= 61e3 && longer_ms <= 63e3);
+    TEST_ASSERT_TRUE(fmod(longer_ms, 1e3) == 0.0);
+}
+
 /* Whether the LED is lit at a time, by the pattern of fault 1: two flashes of 65.5 ms in 1,049 ms. */
 static bool lit_at(uint32_t t_us)
 {
@@ -204,6 +227,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_every_other_byte_in_a_line_is_refused_as_such);
     RUN_TEST(test_an_outage_longer_than_the_wrap_of_the_clock);
+    RUN_TEST(test_an_outage_beyond_a_minute_is_in_whole_seconds);
     RUN_TEST(test_a_service_without_time_is_late_by_20_ms_at_most);
     RUN_TEST(test_a_run_of_ten_seconds_counts_as_lasting);
     RUN_TEST(test_a_row_shows_up_to_32_g);

@@ -78,10 +78,10 @@ static bool wait_for_reader(void)
 void pty_send(uint8_t byte)
 {
     while (opened && write(master, &byte, 1) < 0) {
-        if (errno == EAGAIN && wait_for_reader()) {
+        if (errno == EINTR || (errno == EAGAIN && wait_for_reader())) {
             continue;
         }
-        if (errno != EAGAIN && errno != EIO && errno != EINTR) {
+        if (errno != EAGAIN && errno != EIO) {
             perror("simrun: pseudo terminal");
         }
         break;

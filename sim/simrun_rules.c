@@ -1,6 +1,7 @@
 /*
- * Rules of the ATmega328P's data sheet that a program may break for years before it shows: simavr does as if each were
- * kept. The first one broken ends the run with status 11 and its words. Boot loaders are let be.
+ * Rules of the ATmega328P's data sheet, and what follows from them, that a program may break for years before it shows:
+ * simavr does as if each were kept. The first one broken ends the run with status 11 and its words. Boot loaders are
+ * not judged.
  */
 #include "simrun.h"
 

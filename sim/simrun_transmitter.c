@@ -1,5 +1,5 @@
 /*
- * The USART's transmitter as the data sheet has it (ATmega328P, 20.7): a shift register and one buffer before it. UDRE0
+ * The USART's transmitter as the data sheet has it (ATmega328P, 20.6): a shift register and one buffer before it. UDRE0
  * is low while the buffer is taken; TXC0 rises when a frame ends and none follows it at once, and stays until a one is
  * written to it; a divider that changes within a frame spoils it. simavr's knows the buffer only, raises TXC0 with each
  * byte, and changes the divider at any time.

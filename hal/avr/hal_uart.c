@@ -23,7 +23,7 @@ static bool line_used;
 #endif
 
 /*
- * TXC0 tells of the last stop bit only if it is cleared after the last byte is in UDR0: a frame that ends before that
+ * TXC0 means the last stop bit only if it is cleared after the last byte is in UDR0: a frame that ends before that
  * sets it. The other bits of UCSR0A that can be written are U2X0 and one that is 0.
  */
 enum { SENDS_LAST = _BV(U2X0) | _BV(TXC0) };
@@ -164,6 +164,7 @@ void hal_uart_tx_commit(void)
     hal_ring_commit(&tx);
     line_used = true;
     hal_irq_state_t state = hal_irq_save();
+    /* before TXC0 is cleared: simulators in which a write of UCSR0A clears UDRE0 would never ask for the first byte */
     if (UCSR0A & _BV(UDRE0)) {
         UDR0 = hal_ring_take(&tx, tx_buffer, TX_MASK);
     }
