@@ -1,6 +1,6 @@
 /*
  * Byte ring for one producer and one consumer, one of them an interrupt: each index has one owner and is one byte, so
- * no critical section is needed. Where main takes a byte for the interrupt, it does so with interrupts off. SIZE is a power of two up to 256; one slot stays free to tell full from empty. The
+ * no critical section is needed. SIZE is a power of two up to 256; one slot stays free to tell full from empty. The
  * producer works on `staged` and publishes it with hal_ring_commit.
  */
 #ifndef HAL_RING_H

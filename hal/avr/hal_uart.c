@@ -164,15 +164,7 @@ void hal_uart_tx_commit(void)
     hal_ring_commit(&tx);
     line_used = true;
     hal_irq_state_t state = hal_irq_save();
-    /* before TXC0 is cleared: simulators in which a write of UCSR0A clears UDRE0 would never ask for the first byte */
-    if (UCSR0A & _BV(UDRE0)) {
-        UDR0 = hal_ring_take(&tx, tx_buffer, TX_MASK);
-    }
-    if (hal_ring_empty(&tx)) {
-        UCSR0A = SENDS_LAST;
-    } else {
-        UCSR0B |= _BV(UDRIE0);
-    }
+    UCSR0B |= _BV(UDRIE0);
     hal_irq_restore(state);
 }
 

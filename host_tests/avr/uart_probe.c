@@ -17,7 +17,7 @@ static void send(char byte)
     hal_uart_tx_commit();
 }
 
-/* One byte goes out at once, or from the handler when the first is still on its way; more of them from the handler. */
+/* The first byte may still be on its way. */
 static void sent_and_changed(uint16_t wait, uint8_t bytes)
 {
     send('a');
