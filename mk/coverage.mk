@@ -2,10 +2,6 @@
 C := $(B)/coverage
 # what watches over the sensor and the stages is judged beside lib, and the navigation image's link (mk/nav_lib_coverage.mk)
 SUPERVISION   := $(wildcard $(addprefix firmware/,sensor_watch.c health.c pipeline.c pipeline_change.c coast.c supervisor.c))
-COVERED       := $(LIB_SRC) $(SUPERVISION)
-COVERAGE_LIB  := $(COVERED:%.c=$(C)/%.o)
-COVERAGE_REST := $(patsubst %.c,$(C)/%.o,$(filter-out $(COVERED),$(HOST_SRC)) $(wildcard host_tests/support_*.c)) \
-                 $(patsubst %.cpp,$(C)/%.o,$(wildcard host_tests/reference_*.cpp)) $(C)/unity.o
 # test_nav_flight, a minute of flights, runs no line of lib/nav that the short ones leave
 COVERAGE_TESTS := $(patsubst host_tests/%.c,$(C)/%,$(filter-out host_tests/test_nav_flight.c,$(wildcard host_tests/test_*.c)))
 
@@ -25,10 +21,9 @@ $(C)/unity.o: $(UNITY_DIR)/unity.c
 	@mkdir -p $(@D)
 	@$(HOST_CC) -std=c11 -O1 -DUNITY_INCLUDE_DOUBLE -c $< -o $@
 
-$(C)/test_%: $(C)/host_tests/test_%.o $(COVERAGE_LIB) $(COVERAGE_REST)
-	@$(HOST_CXX) --coverage $^ -lm -o $@
-
-$(C)/test_simrun_judge: $(C)/sim/simrun_judge.o
+# what each is linked with is in parts.mk, as for make test
+$(C)/test_%: $(C)/host_tests/test_%.o $(C)/unity.o $(C)/libsupport.a
+	@$(HOST_CXX) --coverage $(call linked,$^) -lm -o $@
 
 $(C)/host.json: $(COVERAGE_TESTS)
 	@find $(C) -name '*.gcda' -delete

@@ -44,7 +44,7 @@ SRC_firmware := $(filter-out firmware/main.c,$(APP_SRC))
 SRC_hal      := $(wildcard hal/host/*.c)
 SRC_model    := $(MODEL_SRC)
 SRC_support  := $(SUPPORT_SRC)
-$(foreach folder,$(H) $(H)/o2,$(foreach a,$(ARCHIVED),$(eval $(call ARCHIVE,$(folder),$(a),$(SRC_$(a))))))
+$(foreach folder,$(H) $(H)/o2 $(B)/coverage,$(foreach a,$(ARCHIVED),$(eval $(call ARCHIVE,$(folder),$(a),$(SRC_$(a))))))
 ARCHIVES_O2 := $(ARCHIVED:%=$(H)/o2/lib%.a)
 linked       = $(filter %.o,$(1)) -Wl,--start-group $(filter %.a,$(1)) -Wl,--end-group
 
@@ -53,11 +53,12 @@ $(H)/test_%: $(H)/host_tests/test_%.o $(H)/unity.o $(H)/libsupport.a
 
 # One line a test: build/host/test_NAME: its archives and further objects. Moved there whole: make -nB, which writes it again, may run beside another make. Without
 # python3, which make deps installs, what needs no test is built all the same.
+PARTS := $(H)/parts.mk $(if $(filter coverage $(B)/coverage/%,$(MAKECMDGOALS)),$(B)/coverage/parts.mk)
 ifneq ($(filter-out help deps clean,$(MAKECMDGOALS)),)
-$(H)/parts.mk: tools/test_parts.py $(wildcard host_tests/*.c host_tests/*.h host_tests/*.cpp host_tests/*.hpp) $(HOST_SRC) $(wildcard */*.h hal/*/*.h lib/*/src/*.h)
+$(PARTS): tools/test_parts.py $(wildcard host_tests/*.c host_tests/*.h host_tests/*.cpp host_tests/*.hpp) $(HOST_SRC) $(wildcard */*.h hal/*/*.h lib/*/src/*.h)
 	@mkdir -p $(@D)
-	@! command -v python3 > /dev/null || { python3 tools/test_parts.py $(H) > $@.$$$$ && mv $@.$$$$ $@; }
--include $(H)/parts.mk
+	@! command -v python3 > /dev/null || { python3 tools/test_parts.py $(@D) > $@.$$$$ && mv $@.$$$$ $@; }
+-include $(PARTS)
 endif
 
 OPTIMISED := $(addprefix $(H)/,native_replay recordings default_filter)

@@ -2,8 +2,7 @@
 COVERAGE_NAV := --coverage -O0
 $(foreach variant,$(NAV_VARIANTS),$(eval $(call nav_variant,$(variant),$(C),$(COVERAGE_NAV))))
 COVERAGE_NAV_TESTS := $(filter $(NAV_TESTS:$(H)/%=$(C)/%),$(COVERAGE_TESTS))
-$(COVERAGE_NAV_TESTS): $(NAV_VARIANTS:%=$(C)/nav/%.o) $(C)/host_tests/nav_flights.o
-$(C)/test_nav_covariance: $(C)/host_tests/nav_histories.o
+$(COVERAGE_NAV_TESTS): $(NAV_VARIANTS:%=$(C)/nav/%.o)
 
 # and a fifth time under the navigation image's link, which has a line of its own in place of the host's HAL
 COVERAGE_LINK := $(patsubst %.c,$(C)/nav/link/%.o,$(NAVIMG_HOST) $(addprefix host_tests/,test_nav_link.c nav_line.c support_random.c))
