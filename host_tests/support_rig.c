@@ -102,6 +102,13 @@ void rig_run_ms(double ms)
     }
 }
 
+void rig_stream_ms(const adxl345_config_t *config, double ms)
+{
+    adxl345_start(config);
+    rig_run_ms(ms);
+    TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+}
+
 size_t rig_lost(double ms)
 {
     rig.leaves = false;

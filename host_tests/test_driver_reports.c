@@ -45,9 +45,7 @@ void tearDown(void)
 
 static void stream_for_ms(double ms)
 {
-    adxl345_start(&at_100_hz);
-    rig_run_ms(ms);
-    TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+    rig_stream_ms(&at_100_hz, ms);
     rig_until_pause();
 }
 
