@@ -18,8 +18,8 @@ endef
 define PLANT_FIRMWARE
 $(call PLANT,firmware/$(1),$(2),$(3))
 $(X)/planted/firmware/$(1)/plant.o: IMAGE_FILTERS = $(CHOSEN_FILTERS)
-$(X)/planted/firmware/$(1)/plant.o: $(X)/planted/firmware/$(1)/$(notdir $(2))
-	@$$(AVR_CC) $$(AVR_FLAGS) -I$(dir $(2)) -c $$< -o $$@
+$(X)/planted/firmware/$(1)/plant.o: $(X)/planted/firmware/$(1)/$(notdir $(2)) $(U)/filters.txt Makefile mk/images.mk mk/second.mk
+	@$$(AVR_CC) $$(AVR_FLAGS) -I$(dir $(2)) -MMD -MP -c $$< -o $$@
 
 $(X)/planted/firmware/$(1)/firmware.elf: $(X)/planted/firmware/$(1)/plant.o $(AVR_OBJ)
 	@$$(AVR_CC) $$(AVR_LINK) $$(filter-out $(U)/$(2:.c=.o) $(U)/filters.txt,$$^) -o $$@
@@ -33,13 +33,16 @@ endef
 SECOND_SIM_CC = $(HOST_CC) -std=gnu11 -O2 $(WARNINGS) -Isim -Ilib/adxl345/src \
                 $$(pkg-config --cflags simavr | sed 's/-I/-isystem /g') -isystem /usr/include/simavr
 SECOND_SIM_OBJ := $(SIMRUN_SRC:%.c=$(X)/%.o)
-$(X)/sim/%.o: sim/%.c $(wildcard sim/*.h)
+$(X)/sim/%.o: sim/%.c Makefile mk/host.mk mk/second.mk
 	@mkdir -p $(@D)
-	@$(SECOND_SIM_CC) -c $< -o $@
+	@$(SECOND_SIM_CC) -MMD -MP -c $< -o $@
 
 define PLANT_SIMRUN
 $(call PLANT,simrun/$(1),$(2),$(3))
-$(X)/planted/simrun/$(1)/simrun: $(X)/planted/simrun/$(1)/$(notdir $(2)) $(SECOND_SIM_OBJ)
+$(X)/planted/simrun/$(1)/plant.o: $(X)/planted/simrun/$(1)/$(notdir $(2)) Makefile mk/host.mk mk/second.mk
+	@$$(SECOND_SIM_CC) -MMD -MP -c $$< -o $$@
+
+$(X)/planted/simrun/$(1)/simrun: $(X)/planted/simrun/$(1)/plant.o $(SECOND_SIM_OBJ)
 	@$$(SECOND_SIM_CC) $$(filter-out $(X)/$(2:.c=.o),$$^) $$$$(pkg-config --libs simavr) -lsimavrparts -lelf -lm -lpthread -lutil -o $$@
 SECOND_PLANTED += $(X)/planted/simrun/$(1)/simrun
 endef
@@ -58,8 +61,18 @@ second_built: $(SECOND_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_repl
 ## second: the images under avr8js with a sensor of their own, against simrun and the PC, into build/second.json (PART=ci: a part by turns; ONLY=rows,planted)
 second:
 	@sh tools/deps.sh bench
-	@if sh tools/deps.sh second; then $(MAKE) -j2 second_built && \
-	    PART=$(PART) ONLY=$(ONLY) PLANTED="$(SECOND_PLANTED)" COUNT=$(shell git rev-list --count HEAD 2>/dev/null || echo 0) node second/run.mjs $(FILTER_SETS); \
-	else echo "skipped: 1 (make second: node, npm or avr8js is missing and could not be installed, as said above)"; echo "0 passed, 0 failed"; fi
+	@sh tools/deps.sh second; status=$$?; \
+	if [ $$status -eq 3 ]; then \
+	    echo "skipped: 1 (make second: Node or avr8js is missing or too old and could not be had, as said above)"; echo "0 passed, 0 failed"; \
+	elif [ $$status -ne 0 ]; then echo "0 passed, 1 failed"; exit 1; \
+	else node --test --test-reporter=dot second/test.mjs && $(MAKE) -j2 second_built && \
+	    PART='$(PART)' ONLY='$(ONLY)' PLANTED='$(SECOND_PLANTED)' COUNT=$(shell git rev-list --count HEAD 2>/dev/null || echo 0) node second/run.mjs $(FILTER_SETS); fi
 
-.PHONY: second second_built
+# what npm has fetched stays
+clean: clean_second
+clean_second:
+	@rm -rf $(X)/planted $(X)/sim $(X)/run-*
+
+.PHONY: second second_built clean_second
+
+-include $(shell find $(X)/planted $(X)/sim -name '*.d' 2>/dev/null)

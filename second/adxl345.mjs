@@ -1,5 +1,5 @@
 // An ADXL345 on I2C, written from Analog Devices' data sheet (Rev. D to G, the pages are the same) and from nothing else: what is
-// quoted below is its text. Where it leaves something open, the readings of `readings.mjs` say which answer this part gives.
+// quoted below is its text. Where it leaves something open, the readings of `job_readings.mjs` say which answer this part gives.
 // Not modelled: taps, activity, free fall, sleep and link, SPI, INT2, the trigger of trigger mode (it goes on as stream mode).
 
 const CPU_HZ = 16e6;
@@ -16,7 +16,7 @@ const MEASURE = 0x08, SELF_TEST = 0x80, INT_INVERT = 0x20, FULL_RES = 0x08, JUST
 const BYPASS = 0, FIFO = 1;
 const LEVELS = 32;
 
-// what a part does where the data sheet is open; readings.mjs has the other answers
+// what a part does where the data sheet is open; job_readings.mjs has the other answers
 export const AS_BUILT = {
   capacity: LEVELS + 1, // "a maximum of 33 entries available at any given time because an additional entry is available at the output filter"
   entries: 'all', // FIFO_STATUS: all | without-output (not the one that waits in the data registers) | at-most-32

@@ -4,7 +4,7 @@ const WARM_ROWS = 5; // docs/protocol.md
 
 const same = (a, b) => a.length === b.length && a.every((v, i) => v === b[i]);
 
-// Every column but t_us; `first` is the first difference in words.
+// Every column but t_us, as far as the shorter of the two goes; `missing` rows have no counterpart, `first` is the first difference in words.
 export function compareRows(mine, other) {
   const count = Math.min(mine.length, other.length);
   let different = 0, first = null, low = Infinity, high = -Infinity;
@@ -17,7 +17,7 @@ export function compareRows(mine, other) {
     low = Math.min(low, shift);
     high = Math.max(high, shift);
   }
-  return { rows: count, different, first, t_us_low: low, t_us_high: high };
+  return { rows: count, missing: Math.abs(mine.length - other.length), different, first, t_us_low: low, t_us_high: high };
 }
 
 // What the firmware sends of every `every`-th of these rows: its flags are those of all since the row before; but five rows warm up,
@@ -34,7 +34,7 @@ export function thinned(rows, every) {
   return kept;
 }
 
-// the rows before the first fault: behind it the sensor is configured again, and which sample that meets depends on microseconds
+// the rows before the first fault: after it the sensor is configured again, and which sample that meets depends on microseconds
 export function beforeFault(rows) {
   const end = rows.findIndex((row) => row[9] & FLAG_FAULT);
   return end < 0 ? rows : rows.slice(0, end);

@@ -6,7 +6,7 @@ import { feedOf, writePiece } from './streams.mjs';
 import { MCUSR } from './uno.mjs';
 
 // the bus is free, and no try of the firmware falls within microseconds of the fault's end in any of these runs
-const AT_MS = 1001.5, BEHIND_SAMPLE = { 100: 0.5, 400: 0.8, 800: 0.8 };
+const AT_MS = 1001.5, AFTER_SAMPLE = { 100: 0.5, 400: 0.8, 800: 0.8 };
 
 const lasting = (ms, begin, end) => (board, at) => board.at(at, begin).at(at + ms, end);
 const unplugged = (ms) => lasting(ms, (b) => { b.wires.unplugged = true; }, (b) => { b.wires.unplugged = false; });
@@ -43,12 +43,23 @@ export const FAULTS = {
   nothing: { sim: [], here: () => {} },
 };
 
-const MS = 3000, STOP_MS = 2500;
+const MS = 3000, STOP_MS = 2500, GO_MS = 500, STOPPED_MS = 200;
+const SENT_HZ = { 100: 100, 400: 400, 800: 400 }; // at 500000 baud every second sample of 800 Hz has a row
+const SET_UP_MS = 50; // of a start, and of finding the sensor again after a fault
+const ABSENT_MS = 100; // without a sample there is a row each 100 ms at least (docs/protocol.md, flag 2), in the first second more
 
-const fasterScript = (rate) => (rate === 100 ? [] : [[200, 'stop'], [300, 'baud 500000'], [400, `rate ${rate}`], [500, 'go']]);
+// the rows that must come at least: those of the whole run but for the fault's own time
+export function leastRows({ sim, at }, rate) {
+  if (at === 0) return Math.floor(STOP_MS / ABSENT_MS) - 1;
+  const lasts = Number(sim[0]?.split(':')[2] ?? 0);
+  const sent = rate === 100 ? STOP_MS * 0.1 : STOPPED_MS * 0.1 + (STOP_MS - GO_MS) * SENT_HZ[rate] / 1000;
+  return Math.floor(sent - (lasts + 2 * SET_UP_MS) * SENT_HZ[rate] / 1000);
+}
 
-// so much of a sample period behind the last sample before `ms`
-function behindSample(served, ms, rate, share) {
+const fasterScript = (rate) => (rate === 100 ? [] : [[STOPPED_MS, 'stop'], [300, 'baud 500000'], [400, `rate ${rate}`], [GO_MS, 'go']]);
+
+// so much of a sample period after the last sample before `ms`
+function afterSample(served, ms, rate, share) {
   const last = served.map((s) => s[0]).filter((t) => t < ms * 1000).at(-1) ?? ms * 1000;
   return (last + share * 1e6 / rate) / 1000;
 }
@@ -60,12 +71,12 @@ export function run(job) {
   writePiece(`${base}.csv`, 'rest-2lsb', { rate, offset: 0, count: MS / 1000 * rate + 100 });
   const ask = { elf: job.image.replace('.hex', '.elf'), stream: `${base}.csv`, simrun: job.simrun };
   const before = simrun(base, { ...ask, ms: AT_MS, script: fasterScript(rate) });
-  const at = fault.at ?? behindSample(before.served, AT_MS, rate, BEHIND_SAMPLE[rate]);
+  const at = fault.at ?? afterSample(before.served, AT_MS, rate, AFTER_SAMPLE[rate]);
   ask.faults = fault.sim.map((f) => (f[0] === ':' ? `${at}ms${f}` : f));
   ask.options = fault.options;
   const { served } = simrun(base, { ...ask, ms: STOP_MS, script: fasterScript(rate) });
   // the counters are asked for when nothing counts any more
-  const script = [...fasterScript(rate), [behindSample(served, STOP_MS, rate, 0.4), 'stop'], [MS - 300, 'status']];
+  const script = [...fasterScript(rate), [afterSample(served, STOP_MS, rate, 0.4), 'stop'], [MS - 300, 'status']];
   const first = simrun(base, { ...ask, ms: MS, script });
   const board = new Board({ image: job.image, feed: feedOf(first.served, 0.4e6 / rate), sensor: job.sensor });
   for (const [when, line] of script) board.type(when, line);
@@ -73,6 +84,9 @@ export function run(job) {
   board.run(MS);
   const rows = compareRows(rowsOf(board.output), rowsOf(first.lines));
   const words = compareWords(notesOf(board.output), notesOf(first.lines), PASSES_MS);
-  return { rows: rows.rows, different: rows.different, t_us_low: rows.t_us_low, t_us_high: rows.t_us_high,
-    why: words ? `words differ: ${words}` : rows.different ? `rows differ: ${rows.first}` : null };
+  const least = leastRows(fault, rate);
+  // `stop` was typed half a second before the end: no row is on its way
+  const why = words ? `words differ: ${words}` : rows.different ? `rows differ: ${rows.first}` : rows.missing ? `${rows.missing} rows are missing` :
+    rows.rows < least ? `only ${rows.rows} rows, ${least} are due` : null;
+  return { rows: rows.rows, different: rows.different, t_us_low: rows.t_us_low, t_us_high: rows.t_us_high, why };
 }

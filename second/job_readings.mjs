@@ -38,6 +38,9 @@ const STAMP_US = 50; // about their median, as for any row
 const SILENT_US = 1500; // while INT1 is silent the firmware asks the sensor each 1.2 ms (seen on the bus), and a read takes 0.3 ms
 const EVENT_MS = 1201.5, END_MS = 2200, WARM_MS = 600;
 const NOT_A_SAMPLE = 2 | 16;
+const UNHEARD_MS = { bus_held_30_ms: 30 }; // no sample can be read; a cut INT1 is found out, and then the sensor is asked
+const SET_UP_MS = 50; // until a fault is found, and until the sensor is set up again
+const leastRows = (event, rate) => Math.floor((END_MS - WARM_MS - (UNHEARD_MS[event] ?? 0) - SET_UP_MS) * rate / 1000);
 
 // 61, 59 and 53 have no common factor: no two of 190,747 samples are equal
 const unique = () => { let n = 0; return () => { n++; return [(n % 61) - 30, ((n * 7) % 59) - 29, 256 + (n % 53) - 26]; }; };
@@ -49,7 +52,7 @@ export function run(job) {
   if (job.rate !== 100) board.type(200, 'stop').type(300, 'baud 500000').type(400, `rate ${job.rate}`).type(500, 'go');
   EVENTS[job.event](board, EVENT_MS);
   board.run(END_MS);
-  return judge(board, job.event, { stampsMs, mayFault });
+  return judge(board, job, { stampsMs, mayFault });
 }
 
 function compare(rows, served) {
@@ -74,7 +77,7 @@ function stamps(late, limit) {
   return { worst: Math.round(Math.max(0, ...off)), stretches };
 }
 
-function judge(board, event, { stampsMs, mayFault }) {
+function judge(board, { event, rate }, { stampsMs, mayFault }) {
   const rows = rowsOf(board.output).filter((row) => row[0] > WARM_MS * 1000 && !(row[9] & NOT_A_SAMPLE));
   const faults = notesOf(board.output).filter((note) => note.startsWith('# fault'));
   const refused = mayFault !== null && rows.length === 0 && faults.some((f) => f.startsWith(`# fault ${mayFault}:`));
@@ -82,7 +85,8 @@ function judge(board, event, { stampsMs, mayFault }) {
   const { wrong, twice, late } = compare(rows, board.sensor.served);
   const limit = event === 'nothing' ? STAMP_US : SILENT_US;
   const { worst, stretches } = stamps(late, limit);
-  const why = rows.length < 80 ? `only ${rows.length} rows` : wrong ? `${wrong} wrong rows` : twice ? `${twice} rows twice` :
+  const least = leastRows(event, rate);
+  const why = rows.length < least ? `only ${rows.length} rows, ${least} are due` : wrong ? `${wrong} wrong rows` : twice ? `${twice} rows twice` :
     worst > Math.max(limit, stampsMs * 1000) ? `a stamp is ${worst} us off` : stretches > 1 ? `stamps are off ${stretches} times` : null;
   return { rows: rows.length, different: wrong + twice, worst_stamp_us: worst, stretches, faults: faults.length, why };
 }

@@ -8,9 +8,9 @@ import { feedOf, readCsv, writePiece } from './streams.mjs';
 export const GO_MS = 500;
 const STAMP_SPREAD_US = 100; // of t_us about the sensor's own time: +-50 us, as the first simulator's tests grant
 const FLAG_DISOWNED = 64, FLAG_ROLL_UNDEFINED = 1024;
-// behind a long gap the sensor is configured again, and which of its irregular samples that meets depends on microseconds
+// after a long gap the sensor is configured again, and which of its irregular samples that meets depends on microseconds
 const GAP = [PASSES_MS, 1];
-const ROWS_AT_THE_END = 2; // on their way when the time is over
+export const ROWS_AT_THE_END = 2; // on their way when the time is over
 
 function scriptOf({ filter, rate }) {
   const faster = rate === 100 ? [] : [[300, `baud ${rate === 400 ? 500000 : 1000000}`], [400, `rate ${rate}`]];
@@ -66,14 +66,14 @@ export function run(job) {
   board.run(ms);
   const rows = rowsOf(board.output), notes = notesOf(board.output);
   const simRows = rowsOf(first.lines);
-  const gaps = job.stream.includes('gaps') && job.rate === 100; // the sensor is configured again behind a long one
+  const gaps = job.stream.includes('gaps') && job.rate === 100; // the sensor is configured again after a long one
   const force = inForce(notes, job.filter);
   const pc = compareWithPc(beforeFault(afterGo(rows)), onThePc(base, afterGo(first.served), force), force.every);
   const measured = board.sensor.served.map(([at]) => at / 16).filter((t) => t >= GO_MS * 1000);
   const spread = gaps ? 0 : Math.round(stampSpread(afterGo(rows), measured.filter((_, i) => i % force.every === force.every - 1)));
   const sim = compareRows(rows, simRows);
   const words = compareWords(notes, notesOf(first.lines), ...(gaps ? GAP : []));
-  const missing = Math.max(0, Math.abs(rows.length - simRows.length) - ROWS_AT_THE_END);
+  const missing = Math.max(0, sim.missing - ROWS_AT_THE_END);
   return { rows: sim.rows, different: sim.different, pc_rows: pc.rows, pc_different: pc.different, every: force.every, rate_in_force: force.rate,
     t_us_low: sim.t_us_low, t_us_high: sim.t_us_high, stamp_spread_us: spread, why: judged({ sim, pc, words, missing, spread }) };
 }
@@ -90,7 +90,7 @@ export function runWhole(job) {
   const pcLines = native(base, { stream, ms: job.ms, script: [] });
   const pc = compareRows(rows.slice(0, count), rowsOf(pcLines).slice(0, count));
   const sim = compareRows(rows, rowsOf(first.lines));
-  const missing = Math.max(0, Math.abs(rows.length - rowsOf(first.lines).length) - ROWS_AT_THE_END);
+  const missing = Math.max(0, sim.missing - ROWS_AT_THE_END);
   const words = compareWords(notesOf(board.output), notesOf(first.lines), ...(job.stream.includes('gaps') ? GAP : []));
   return { rows: sim.rows, different: sim.different, pc_rows: pc.rows, pc_different: pc.different, t_us_low: sim.t_us_low, t_us_high: sim.t_us_high,
     cpu_load: Math.round(board.load * 1e4) / 1e4, why: judged({ sim, pc, words, missing, spread: 0 }) };

@@ -25,30 +25,30 @@ function identityAt(job, typedMs) {
 // A device of another identity at one address and nobody at the other; `status` typed at a moment of the start delays the words
 export function runIdentity(job) {
   const wanted = expectedLine(2, [job.address, 0xe6]);
-  const wrong = job.typedMs.map((ms) => [ms, identityAt(job, ms)]).filter(([, told]) => told !== wanted);
-  const why = wrong.length ? `at ${wrong.length} of ${job.typedMs.length} moments: wanted "${wanted}", told "${wrong[0][1]}"` : null;
+  const wrong = job.typedMs.map((ms) => [ms, identityAt(job, ms)]).filter(([, said]) => said !== wanted);
+  const why = wrong.length ? `at ${wrong.length} of ${job.typedMs.length} moments: wanted "${wanted}", said "${wrong[0][1]}"` : null;
   return { rows: 0, different: 0, moments: job.typedMs.length, why };
 }
 
-// fault: what befalls the sensor at this address, the line that it must give, and that its end names the address
-const TOLD = {
+// by the fault's number what befalls the sensor: its line must come, and the line of its end must name the address
+const BEFALLS = {
   1: (b) => b.at(1000, () => { b.wires.unplugged = true; }).at(1500, () => { b.wires.unplugged = false; }),
   5: (b) => b.at(1000, () => b.cutInt1(true)).at(1500, () => b.cutInt1(false)),
   6: (b) => b.at(1000, () => b.sensor.powerOff()).at(1005, () => b.sensor.powerOn()),
   7: (b) => b.at(1000, () => b.wires.hold('scl', true)).at(1500, () => b.wires.hold('scl', false)),
   8: (b) => b.at(1000, () => b.wires.hold('sda', true)).at(1500, () => b.wires.hold('sda', false)),
 };
-export const TOLD_FAULTS = Object.keys(TOLD).map(Number);
+export const WORDED_FAULTS = Object.keys(BEFALLS).map(Number);
 
-export function runTold(job) {
+export function runFaultWords(job) {
   const samples = readCsv('sim/streams/rest-2lsb.csv');
   const board = new Board({ image: job.image, feed: feedOf(samples, Infinity), sensor: { address: job.address, ...job.sensor } });
-  TOLD[job.fault](board);
+  BEFALLS[job.fault](board);
   board.run(2200);
-  const told = notesOf(board.output).filter((note) => note.startsWith('# fault'));
+  const said = notesOf(board.output).filter((note) => note.startsWith('# fault'));
   const wanted = new RegExp(`^# fault ${job.fault} over: samples again after \\d+ ms, \\d+ lost, sensor at ${hex(job.address)}$`);
-  const right = told.length === 2 && told[0] === expectedLine(job.fault, []) && wanted.test(told[1]);
-  return { rows: 0, different: 0, why: right ? null : `wanted fault ${job.fault} and its end at ${hex(job.address)}, told "${told.join(' / ')}"` };
+  const right = said.length === 2 && said[0] === expectedLine(job.fault, []) && wanted.test(said[1]);
+  return { rows: 0, different: 0, why: right ? null : `wanted fault ${job.fault} and its end at ${hex(job.address)}, said "${said.join(' / ')}"` };
 }
 
 // D1: whatever the simulator makes of a write of UCSR0A, the firmware sends its rows

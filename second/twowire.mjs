@@ -83,7 +83,7 @@ export class TwoWire {
         this.note('P');
         sensor.stop();
         twi.completeStop();
-        if (!this.stock) this.cpu.clearInterrupt(twi.TWI); // D4, 22.9.2: "TWINT is not set after a STOP"
+        if (!this.stock) this.cpu.clearInterrupt(twi.TWI); // D4, 22.6 step 7: "TWINT is NOT set after a STOP condition has been sent"
       }),
       connectToSlave: (address, write) => this.after(9, () => this.address(address, write)),
       writeByte: (byte) => this.after(9, () => {

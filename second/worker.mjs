@@ -4,25 +4,18 @@ import * as readings from './job_readings.mjs';
 import * as rows from './job_rows.mjs';
 import * as sessions from './job_sessions.mjs';
 import * as words from './job_words.mjs';
+import { lookThrough } from './planted.mjs';
 
 const KINDS = {
   rows: rows.run, whole: rows.runWhole, fault: faults.run, session: sessions.run, reading: readings.run,
-  identity: words.runIdentity, told: words.runTold, 'stock-usart': words.runStockUsart,
+  identity: words.runIdentity, 'fault-words': words.runFaultWords, 'stock-usart': words.runStockUsart,
 };
 
-// run by run until one notices the planted fault
-function planted(job) {
-  for (const [n, look] of job.looks.entries()) {
-    const { why } = done(look);
-    if (why !== null) return { found: why, looks: n + 1, why: null };
-  }
-  return { found: null, looks: job.looks.length, why: 'not found' };
-}
+const run = (job) => KINDS[job.kind](job);
 
 function done(job) {
-  if (job.kind === 'planted') return planted(job);
   try {
-    return KINDS[job.kind](job);
+    return job.kind === 'planted' ? lookThrough(job.looks, run) : run(job);
   } catch (error) {
     return { why: error.message.split('\n')[0] };
   }

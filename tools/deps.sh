@@ -3,6 +3,7 @@
 # Groups: firmware sim test check flash flashtest arduino bench piocheck papers design tilt live fuzz coverage proof second. Packages come by
 # apt-get, numpy and matplotlib (check: lizard, design: scipy, tilt: tools/pyproject.toml) by pip into build/venv, Unity by tools/get_unity.sh into build/unity
 # (UNITY_DIR=folder: use that one), avr8js by npm into build/second. Uses sudo only when not root.
+# Ends with 1 on failure; with 3 where the group second alone is asked for and Node or avr8js is absent, too old, or npm has no network.
 set -eu
 
 cd "$(dirname "$0")/.."
@@ -18,10 +19,11 @@ want_pio=no
 want_avr8js=no
 pio_requirements='platformio==6.2.0 scons==4.11.1' # the versions that tools/pio_standins.py stands in for
 pio_venv=build/venv-pio
+fail_status=1 # 3 where what is missing is reason to skip, no failure
 
 fail() {
     echo "deps: $1" >&2
-    exit 1
+    exit $fail_status
 }
 
 has() {
@@ -276,17 +278,32 @@ install_pio() {
     echo "$pio_requirements" > "$pio_venv/requirements.installed"
 }
 
+# the oldest Node that will do: second/package.json says what avr8js and our own syntax need
+node_needed() {
+    sed -n 's/.*"node": ">= *\([0-9.]*\)".*/\1/p' second/package.json
+}
+
+has_node_of_age() {
+    printf '%s\n' "$(node_needed)" "$(node --version | sed 's/^v//')" | sort -C -V
+}
+
 # what the lock file names, and nothing older
 has_avr8js() {
     [ -d build/second/node_modules/avr8js ] && cmp -s second/package-lock.json build/second/package-lock.installed
 }
 
+npm_out_of_reach='ENOTFOUND|EAI_AGAIN|ECONNREFUSED|ECONNRESET|ETIMEDOUT|ENETUNREACH|EHOSTUNREACH|ERR_SOCKET_TIMEOUT|E403|E407|E50[0-9]'
+
 install_avr8js() {
     echo "deps: installing with npm into build/second: avr8js"
     mkdir -p build/second
     cp second/package.json second/package-lock.json build/second/
-    (cd build/second && npm ci --ignore-scripts --no-audit --no-fund) > "$log" 2>&1 ||
-        fail "cannot install avr8js ($(grep -i 'npm err' "$log" | head -n 1)): check the network and npm's registry; log in $log"
+    if ! (cd build/second && npm ci --ignore-scripts --no-audit --no-fund) > "$log" 2>&1; then
+        # only a registry out of reach is reason to skip: what npm refuses (EINTEGRITY: not what the lock file names) is a failure
+        grep -Eq 'EINTEGRITY|EUSAGE' "$log" || ! grep -Eq "$npm_out_of_reach" "$log" && fail_status=1
+        fail "cannot install avr8js ($(grep -i 'npm err' "$log" | head -n 1)): check the network and npm's registry, and\
+ second/package-lock.json; log in $log"
+    fi
     cp second/package-lock.json build/second/package-lock.installed
 }
 
@@ -303,6 +320,9 @@ install_unity() {
 [ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof, second)"
 collect "$@"
 mkdir -p build
+if [ "$*" = second ]; then
+    fail_status=3
+fi
 if [ -n "$missing" ]; then
     install_packages
     collect "$@"
@@ -325,6 +345,9 @@ if [ $want_lizard = yes ] && ! has_lizard; then
 fi
 if [ $want_unity = yes ]; then
     install_unity
+fi
+if [ $want_avr8js = yes ] && ! has_node_of_age; then
+    fail "Node $(node --version) is too old, $(node_needed) or later is needed (second/package.json): install a newer nodejs"
 fi
 if [ $want_avr8js = yes ] && ! has_avr8js; then
     install_avr8js
