@@ -76,6 +76,10 @@ int main(void)
              && tiny_low(&seven) == 7U && tiny_calls == 1U && tiny_equal(5U) == 5U && tiny_equal(0U) == 0U && tiny_unseen(1) != 7);
 }
 """
+STARTS = """#include "tiny.h"
+#include <stdlib.h>
+int main(void) { return system("exit 0") != 0 || tiny_sum(0U) != 0U; }
+"""
 FILES = {"lib/tiny.c": PRODUCT, "lib/tiny.h": HEADER, "host_tests/test_tiny.c": JUDGE,
          "host_tests/support_none.c": "unsigned tiny_calls;\n", "unity.c": "extern int nothing;\n"}
 
@@ -172,6 +176,20 @@ def verdicts_are_right():
     assert found["tiny_low critical section -> ; #1"] == same  # empty on the PC
     assert found["tiny_low statement tiny_calls++ -> ; #1"] == killed
     assert pathlib.Path("lib/tiny.c").read_text(encoding="utf-8") == PRODUCT
+
+
+@test
+def what_a_test_starts_loads_no_library_of_the_campaign():
+    from host import Host, Settings
+    tree = pathlib.Path.cwd()
+    (tree / "host_tests/test_starts.c").write_text(STARTS, encoding="utf-8")
+    (tree / "needy.c").write_text("extern unsigned tiny_calls; unsigned *needed = &tiny_calls;\n", encoding="utf-8")
+    settings = Settings({"HOST_CC": "gcc", "HOST_CXX": "g++", "HOST_FLAGS": "-std=c11 -Ilib", "HOST_SRC": "lib/tiny.c",
+                         "TESTS": "test_starts", "UNITY_DIR": "."})
+    settings.supports, settings.references = ["host_tests/support_none.c"], []
+    host = Host(settings, "ubsan", tree)
+    host.linked(["gcc", "-shared", "-fPIC", "needy.c", "-o", tree / "needy.so"], tree / "needy.so")
+    assert host.run_test("test_starts", tree, [tree / "needy.so"])[0]  # without the constructor the shell ends with "undefined symbol"
 
 
 @test
