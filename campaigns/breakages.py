@@ -3,6 +3,7 @@
 
     breakages.py [--sample N] [NAME...]    all of campaigns/breakages.txt, N of them, or those whose name contains a word; a survivor makes
                                            the exit status 1. Which N goes by the commit, so that in time all have their turn.
+    breakages.py --history                 judges nothing: which commits of the product would have had to touch the list
 
 The judges `proof` and `fuzz` are those of make proof and make fuzz, which read the same list.
 """
@@ -11,10 +12,12 @@ import pathlib
 import shutil
 import subprocess
 import sys
-import time
+import tempfile
 
 sys.path.insert(0, "tools")
+sys.path.append("campaigns/mutants")
 import anchors  # noqa: E402
+import shop  # noqa: E402
 import test_table  # noqa: E402
 from sampled import by_commit  # noqa: E402
 
@@ -22,8 +25,10 @@ LIST = pathlib.Path("campaigns/breakages.txt")
 TREE = pathlib.Path("build/breakages")
 ELSEWHERE = ("proof", "fuzz")
 UNBROKEN_LIMIT_S = 300
-# a judge hangs when it takes so many times as long as on the unbroken code: a loaded machine shall not pass for a catch
+BUILD_LIMIT_S = 600
+# a judge hangs when it takes so many times as much of the processor as on the unbroken code: a loaded machine shall not pass for a catch
 HANG_TIMES, HANG_MIN_S = 10, 30
+ENDED = (-9, -24)  # by the limit: SIGKILL, SIGXCPU
 
 # a judge that is no test of tools/test_table.py: what make builds for it, its program
 CAMPAIGN = test_table.Test(["system_images"], ["python3", "tools/faults.py"])
@@ -76,23 +81,22 @@ def known(judge):
 
 
 def judged(judge, limit_s):
-    """Builds and runs the judge: (None when it passes, else the first line that says what failed; seconds of the run)."""
+    """Builds and runs the judge: (None when it passes, else the first line that says what failed; the processor's seconds of the run)."""
     kind, *words = judge.split()
     test = test_of(kind)
-    built = subprocess.run(["make", "-j2", *test.targets], cwd=TREE, capture_output=True, text=True, timeout=600, check=False)
-    if built.returncode != 0:
-        said = [line for line in built.stderr.splitlines() if "rror" in line]
-        return f"does not build: {said[0] if said else '?'}", 0
-    began = time.monotonic()
-    try:
-        done = subprocess.run([*test.command, *words], cwd=TREE, capture_output=True, text=True, timeout=limit_s, errors="replace", check=False)
-    except subprocess.TimeoutExpired:
-        return f"hangs: no end within {limit_s:.0f} s", limit_s
-    took_s = time.monotonic() - began
-    if done.returncode == 0:
+    status, said = shop.run(["make", "-j2", *test.targets], TREE, BUILD_LIMIT_S)
+    if status != 0:
+        wrong = [line for line in said.splitlines() if "rror" in line]
+        return f"does not build: {f'no end within {BUILD_LIMIT_S} s' if status is None else wrong[0] if wrong else '?'}", 0
+    with tempfile.TemporaryFile() as output:
+        status, took_s = shop.timed([*test.command, *words], TREE, limit_s, output)
+        output.seek(0)
+        lines = [line for line in output.read().decode("utf-8", "replace").splitlines() if "FAIL" in line]
+    if status == 0:
         return None, took_s
-    lines = [line for line in done.stdout.splitlines() if "FAIL" in line]
-    return lines[0][:110] if lines else f"status {done.returncode}", took_s
+    if status in ENDED:
+        return f"hangs: no end within {limit_s:.0f} s of the processor", took_s
+    return lines[0][:110] if lines else f"status {status}", took_s
 
 
 def try_one(entry, judge, limit_s):
@@ -126,11 +130,24 @@ def chosen(sample, words):
     return by_commit(pairs, sample, "breakages", "breakages")
 
 
-def main():
-    parser = argparse.ArgumentParser(usage="breakages.py [--sample N] [NAME...]")
-    parser.add_argument("--sample", type=int, default=0)
+def options_of(arguments):
+    parser = argparse.ArgumentParser(usage="breakages.py [--history] [--sample N] [NAME...]")
+    parser.add_argument("--history", action="store_true")
+    parser.add_argument("--sample", default="")
     parser.add_argument("words", nargs="*")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
+    if options.sample and not (options.sample.isdecimal() and int(options.sample)):
+        sys.exit(f"breakages: SAMPLE={options.sample} is no whole number above 0; without SAMPLE all are judged")
+    options.sample = int(options.sample or 0)
+    return options
+
+
+def main():
+    options = options_of(sys.argv[1:])
+    if options.history:
+        import breakages_history
+        breakages_history.show(anchors.load(LIST))
+        return 0
     pairs = chosen(options.sample, options.words)
     prepare()
     limits_s = {}

@@ -1,19 +1,11 @@
-#!/usr/bin/env python3
-"""How many product commits would have had to touch campaigns/breakages.txt, had it always existed as it is today.
+"""How many product commits would have had to touch campaigns/breakages.txt, had it always existed as it is today (breakages.py --history).
 
-    breakages_history.py [LIST]
-
-Of each commit that touches lib, firmware or hal it is asked for which entries the text to break stood exactly once before, and no more
-after it (`lost`; what the commit deletes counts), and for which the definition stood on both sides and the text only after (`new form`:
+Of each commit that touches lib, firmware or hal it is asked for which entries the text to break was there exactly once before, and no more
+after it (`lost`; what the commit deletes counts), and for which the definition was there on both sides and the text only after (`new form`:
 a list of that time would have quoted another text, or the commit wrote the code that the entry is about)."""
-import pathlib
 import subprocess
-import sys
 
-sys.path.insert(0, "tools")
 import anchors
-
-LIST = pathlib.Path("campaigns/breakages.txt")
 
 
 def git(*words, data=None):
@@ -30,15 +22,15 @@ class Blobs:
     """Texts of git, read once, and what is asked of them."""
 
     def __init__(self):
-        self.text, self.standing = {}, {}
+        self.text, self.found = {}, {}
 
     def hits(self, blob, entry):
-        """None if the blob does not define the entry's name, else how often its first text stands there."""
+        """None if the blob does not define the entry's name, else how often its first text is there."""
         if blob not in self.text:
             self.text[blob] = git("cat-file", "blob", blob).decode("utf-8", "replace")
-        if (blob, entry.name) not in self.standing:
-            self.standing[blob, entry.name] = self.look(self.text[blob], entry)
-        return self.standing[blob, entry.name]
+        if (blob, entry.name) not in self.found:
+            self.found[blob, entry.name] = self.look(self.text[blob], entry)
+        return self.found[blob, entry.name]
 
     @staticmethod
     def look(text, entry):
@@ -50,7 +42,7 @@ class Blobs:
         return len(anchors.matches(entry.edits[0][0], text, found)) if found else None
 
 
-def standing(blobs, tree, entry):
+def state(blobs, tree, entry):
     """'once', 'other' or 'absent'"""
     file = entry.place.rpartition(":")[0] or (entry.place if "." in entry.place else "")
     near = [blob for path, blob in tree.items() if not file or path == file or path.endswith("/" + file)]
@@ -58,8 +50,7 @@ def standing(blobs, tree, entry):
     return "absent" if not found else "once" if found == [1] else "other"
 
 
-def main():
-    entries = anchors.load(pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else LIST)
+def show(entries):
     commits = git("log", "--reverse", "--format=%H %h %s", "--", *anchors.PRODUCT).decode().splitlines()
     blobs, before, tree = Blobs(), {entry.name: "absent" for entry in entries}, {}
     touched = {"lost": 0, "new form": 0}
@@ -72,7 +63,7 @@ def main():
         for entry in entries:
             if not any(blobs.hits(blob, entry) is not None for blob in either):
                 continue
-            was, now = before[entry.name], standing(blobs, tree, entry)
+            was, now = before[entry.name], state(blobs, tree, entry)
             before[entry.name] = now
             if was == "once" != now:
                 what["lost"].append(entry.name)
@@ -84,7 +75,3 @@ def main():
                 print(f"{kind}: {title[:60]}: {'; '.join(names)}")
     for kind, count in touched.items():
         print(f"{kind}: {count} of {len(commits)} product commits, {100 * count / len(commits):.1f} %")
-
-
-if __name__ == "__main__":
-    main()

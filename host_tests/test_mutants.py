@@ -8,8 +8,11 @@ import importlib.util
 import io
 import os
 import pathlib
+import queue
+import subprocess
 import sys
 import tempfile
+import types
 
 sys.dont_write_bytecode = True
 HERE = pathlib.Path(__file__).resolve().parent
@@ -75,6 +78,10 @@ int main(void)
     return !(tiny_sum(0U) == 0U && tiny_sum(3U) == 12U && tiny_inside(10) && tiny_inside(-10) && !tiny_inside(11) && !tiny_inside(-11)
              && tiny_low(&seven) == 7U && tiny_calls == 1U && tiny_equal(5U) == 5U && tiny_equal(0U) == 0U && tiny_unseen(1) != 7);
 }
+"""
+STARTS = """#include "tiny.h"
+#include <stdlib.h>
+int main(void) { return system("exit 0") != 0 || tiny_sum(0U) != 0U; }
 """
 FILES = {"lib/tiny.c": PRODUCT, "lib/tiny.h": HEADER, "host_tests/test_tiny.c": JUDGE,
          "host_tests/support_none.c": "unsigned tiny_calls;\n", "unity.c": "extern int nothing;\n"}
@@ -175,6 +182,20 @@ def verdicts_are_right():
 
 
 @test
+def what_a_test_starts_loads_no_library_of_the_campaign():
+    from host import Host, Settings
+    tree = pathlib.Path.cwd()
+    (tree / "host_tests/test_starts.c").write_text(STARTS, encoding="utf-8")
+    (tree / "needy.c").write_text("extern unsigned tiny_calls; unsigned *needed = &tiny_calls;\n", encoding="utf-8")
+    settings = Settings({"HOST_CC": "gcc", "HOST_CXX": "g++", "HOST_FLAGS": "-std=c11 -Ilib", "HOST_SRC": "lib/tiny.c",
+                         "TESTS": "test_starts", "UNITY_DIR": "."})
+    settings.supports, settings.references = ["host_tests/support_none.c"], []
+    host = Host(settings, "ubsan", tree)
+    host.linked(["gcc", "-shared", "-fPIC", "needy.c", "-o", tree / "needy.so"], tree / "needy.so")
+    assert host.run_test("test_starts", tree, [tree / "needy.so"])[0]  # without the constructor the shell ends with "undefined symbol"
+
+
+@test
 def what_does_not_compile_is_dropped():
     from host import Host, Settings
     from judge import Judge, Worker
@@ -187,18 +208,24 @@ def what_does_not_compile_is_dropped():
     assert judge.verdict(mutant, Worker(0, pathlib.Path.cwd())) == ("uncompiled", "")
 
 
-def reported(verdicts_of, accepted_keys, **options):
-    """(exit status, what a campaign with these results prints)"""
+def campaign_module():
     spec = importlib.util.spec_from_file_location("campaign", HERE.parent / "campaigns/mutants/__main__.py")
     campaign = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(campaign)
+    return campaign
+
+
+def reported(verdicts_of, accepted_keys, whole=("lib/tiny",), left=(), **options):
+    """(exit status, what a campaign with these results prints); left: mutants without a verdict."""
+    campaign = campaign_module()
     pathlib.Path("build").mkdir(exist_ok=True)
     pathlib.Path("campaigns/mutants").mkdir(parents=True, exist_ok=True)
     pathlib.Path("campaigns/mutants/goals.txt").write_text("# folder, goal, rate\nlib/tiny 50 -\n", encoding="utf-8")
     one = object.__new__(campaign.Campaign)
     one.options = campaign.options_of([])
     vars(one.options).update(options)
-    one.accepted, one.mutants = set(accepted_keys), list(verdicts_of)
+    one.accepted, one.mutants = set(accepted_keys), [*verdicts_of, *left]
+    one.texts, one.whole = {"lib/tiny/a.c": ""}, set(whole)
     rows = [{"key": f"lib/tiny/a.c:{key}", "file": "lib/tiny/a.c", "line": 1, "verdict": verdict, "by": "test_tiny" if verdict == "killed" else ""}
             for key, verdict in verdicts_of.items()]
     out = io.StringIO()
@@ -228,6 +255,93 @@ def an_accepted_one_that_is_killed_is_named_and_leaves_the_list():
 def a_folder_below_its_goal_fails():
     status, text = reported({"a": "killed", "b": "survived", "c": "survived"}, ["lib/tiny/a.c:b", "lib/tiny/a.c:c"])
     assert status == 1 and "lib/tiny: 1 of 3 killed, below the goal of 50 %" in text, text
+
+
+@test
+def a_campaign_cut_short_accepts_nothing():
+    lists = [pathlib.Path("campaigns/mutants", name) for name in ("accepted.txt", "judges.txt")]
+    for path in lists:
+        path.write_text("lib/tiny/a.c: b\n", encoding="utf-8")
+    status, text = reported({"a": "killed", "b": "survived"}, [], left=["c"], accept=True)
+    assert status == 2 and "nothing is accepted: 1 of 3 mutants have no verdict yet" in text, text
+    assert [path.read_text(encoding="utf-8") for path in lists] == ["lib/tiny/a.c: b\n"] * 2
+    assert "lib/tiny 50 -" in pathlib.Path("campaigns/mutants/goals.txt").read_text(encoding="utf-8")
+
+
+@test
+def a_part_of_a_folder_neither_sets_nor_fails_its_rate():
+    status, text = reported({"a": "survived"}, [], whole=(), accept=True)
+    assert status == 0 and "below the goal" not in text, text
+    assert "lib/tiny 50 -" not in text and pathlib.Path("campaigns/mutants/goals.txt").read_text(encoding="utf-8").split()[-1] == "-"
+    campaign = campaign_module()
+    campaign.product = lambda: ["lib/tiny/a.c", "lib/tiny/b.c", "lib/other/c.c"]
+    assert campaign.whole_folders(["lib/tiny/a.c", "lib/other/c.c"]) == {"lib/other"}
+
+
+@test
+def what_is_known_holds_while_its_judge_is_the_same_and_not_for_a_sample():
+    from results import ROOT, Results
+    (ROOT / "results.jsonl").unlink(missing_ok=True)
+    killed, survived, *_ = mutants()
+    results = Results("all")
+    results.put(killed, "file", 1, "killed", "test_tiny", 0)
+    results.put(survived, "file", 1, "survived", "", 0)
+    results.put(survived, "file", 1, "killed", "test_tiny", 0, keep=False)  # a sample's
+    results = Results("all")
+    assert results.get(killed, "file")["by"] == "test_tiny" and results.get(survived, "file")["verdict"] == "survived"
+    assert results.get(killed, "other") is None and Results("more").get(survived, "file") is None
+    assert Results("more").get(killed, "file")
+    judge = pathlib.Path("host_tests/test_tiny.c")
+    judge.write_text(JUDGE + "\n", encoding="utf-8")
+    try:
+        assert Results("all").get(killed, "file") is None
+    finally:
+        judge.write_text(JUDGE, encoding="utf-8")
+
+
+@test
+def a_sample_is_judged_whatever_is_known():
+    campaign = campaign_module()
+    one = object.__new__(campaign.Campaign)
+    mutant, kept = mutants()[0], []
+    one.options, one.began, one.hashes, one.texts = campaign.options_of(["--sample=1"]), 0, {"lib/tiny.c": "x"}, {"lib/tiny.c": PRODUCT}
+    one.results = campaign.Results("all")
+    one.results.get = lambda *_: {"verdict": "killed"}
+    one.results.put = lambda *words, keep: kept.append((words[3], keep)) or {"verdict": words[3]}
+    one.workers = queue.SimpleQueue()
+    one.workers.put(None)
+    learner = types.SimpleNamespace(learn=lambda *_: None)
+    one.judge_of = lambda _: (types.SimpleNamespace(verdict=lambda *_: ("survived", "")), learner)
+    assert one.one(mutant)["verdict"] == "survived" and kept == [("survived", False)]
+    one.options = campaign.options_of([])
+    assert one.one(mutant)["verdict"] == "killed"
+
+
+@test
+def bad_words_are_refused_in_a_sentence():
+    campaign = campaign_module()
+    for words, said in ((["--sample=-5"], "SAMPLE=-5 is no whole number above 0"), (["--sample=0"], "SAMPLE=0 is no whole number above 0"),
+                        (["--sample=2.5"], "SAMPLE=2.5"), (["--seconds=soon"], "STOP_AFTER=soon is no number of seconds above 0"),
+                        (["--patience=nan"], "PATIENCE=nan"), (["--accept", "--sample=5"], "leave SAMPLE out")):
+        try:
+            campaign.options_of(words)
+        except campaign.Stop as why:
+            assert said in str(why), why
+        else:
+            raise AssertionError(f"{words} is taken")
+    assert campaign.options_of(["--sample=", "--seconds=", "--patience="]).sample == 0
+
+
+@test
+def make_takes_yes_and_no_and_nothing_else():
+    alone = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "ACCEPT", "NAMED", "SAMPLE")}
+    for words, status, said in ((["NAMED=maybe"], 2, "NAMED=maybe is neither yes nor no"), (["ACCEPT=perhaps"], 2, "ACCEPT=perhaps is neither"),
+                                (["NAMED=no"], 0, "campaigns/mutants "), (["NAMED=yes"], 0, "campaigns/breakages.py"),
+                                (["ACCEPT=1"], 0, "--accept")):
+        done = subprocess.run(["make", "-n", "mutants", *words], cwd=HERE.parent, env=alone, capture_output=True, text=True)
+        assert done.returncode == status and said in done.stdout + done.stderr, (words, done)
+    done = subprocess.run(["make", "-n", "mutants", "ACCEPT=0"], cwd=HERE.parent, env=alone, capture_output=True, text=True)
+    assert done.returncode == 0 and "--accept" not in done.stdout, done
 
 
 def main():

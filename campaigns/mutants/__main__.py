@@ -34,15 +34,37 @@ def say(text):
     print(f"mutants: {text}", flush=True)
 
 
+def above_zero(name, kind):
+    """Reads a number of make's line; nothing is 0."""
+    def read(text):
+        try:
+            value = kind(text or 0)
+        except ValueError:
+            value = -1
+        if not (0 < value < float("inf") or not text):
+            raise Stop(f"{name}={text} is no {'whole number' if kind is int else 'number of seconds'} above 0; without {name} "
+                       f"{'all are judged' if kind is int else 'there is no limit'}")
+        return value
+    return read
+
+
 def options_of(arguments):
     parser = argparse.ArgumentParser(prog="mutants", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="prefix of the files' paths")
-    parser.add_argument("--sample", type=int, default=0, help="so many, drawn by the tree's hash")
+    parser.add_argument("--sample", type=above_zero("SAMPLE", int), default=0, help="so many, drawn by the tree's hash")
     parser.add_argument("--seed", default="", help="draw by these words instead")
-    parser.add_argument("--seconds", type=float, default=0, help="stop after so long; the next run goes on")
-    parser.add_argument("--patience", type=float, default=0, help="without tests that take longer, in seconds (0: all)")
+    parser.add_argument("--seconds", type=above_zero("STOP_AFTER", float), default=0, help="stop after so long; the next run goes on")
+    parser.add_argument("--patience", type=above_zero("PATIENCE", float), default=0, help="without tests that take longer, in seconds")
     parser.add_argument("--accept", action="store_true", help="write the survivors to accepted.txt")
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if options.accept and options.sample:
+        raise Stop("ACCEPT=1 wants every mutant of the chosen files, not a sample of them: leave SAMPLE out")
+    return options
+
+
+def product():
+    return [name for name in tree_files() if name.startswith(("lib/", "firmware/", "hal/")) and name.endswith((".c", ".h"))
+            and name not in LEFT_OUT and "/examples/" not in name]
 
 
 def sources(options):
@@ -50,25 +72,30 @@ def sources(options):
     folders = measured() if options.sample else ["lib, firmware, hal"]
     if not folders:
         raise Stop("no folder in campaigns/mutants/goals.txt was measured whole, so no sample can be judged: make mutants ONLY=folder ACCEPT=1")
-    product = [name for name in tree_files() if name.startswith(("lib/", "firmware/", "hal/")) and name.endswith((".c", ".h"))
-               and name not in LEFT_OUT and "/examples/" not in name]
-    found = [name for name in product if name.startswith(options.only) and (not options.sample or folder_of(name) in folders)]
+    found = [name for name in product() if name.startswith(options.only) and (not options.sample or folder_of(name) in folders)]
     if not found:
         raise Stop(f"no source in {', '.join(folders)} begins with {options.only}")
     return found
 
 
-def tree_hash():
-    """Of what git would commit now, where there is git; else of the files."""
+def whole_folders(files):
+    """The folders of which no file that mutants are made of is missing here."""
+    return {folder_of(name) for name in files} - {folder_of(name) for name in product() if name not in files}
+
+
+def head_tree():
+    """The tree of the last commit: a sample is the same as often as it is judged, and another one with the next change."""
     done = subprocess.run(["git", "rev-parse", "HEAD^{tree}"], capture_output=True, text=True)
-    return done.stdout.strip()[:12] or digest(*(pathlib.Path(n).read_bytes() for n in tree_files()))
+    if done.returncode != 0:
+        raise Stop("git knows no commit to draw a sample by: commit first")
+    return done.stdout.strip()[:12]
 
 
 def chosen(mutants, known, options):
     """All, in an order drawn by lot so that a campaign cut short is a fair sample; or a sample of those that a test is known to notice."""
     if not options.sample:
         return random.Random(0).sample(mutants, len(mutants))
-    seed, noticed = options.seed or tree_hash(), [m for m in mutants if m.key not in known]
+    seed, noticed = options.seed or head_tree(), [m for m in mutants if m.key not in known]
     say(f"{options.sample} of {len(noticed)} in {', '.join(measured())}, drawn by {seed}")
     return random.Random(seed).sample(noticed, min(options.sample, len(noticed)))
 
@@ -80,8 +107,9 @@ class Campaign:
         self.hashes = {name: digest(text) for name, text in self.texts.items()}
         self.accepted = accepted()
         self.mutants = chosen([m for name, text in self.texts.items() for m in mutants_of(name, text)], self.accepted, options)
-        code = [n for n in tree_files() if n.endswith((".c", ".h", ".cpp", ".hpp"))]
-        self.results = Results(digest(options.patience, *(pathlib.Path(n).read_bytes() for n in code)))
+        self.whole = whole_folders(self.texts)
+        made_of = [n for n in tree_files() if n.endswith((".c", ".h", ".cpp", ".hpp", ".py", ".mk", "Makefile"))]
+        self.results = Results(digest(options.patience, *(pathlib.Path(n).read_bytes() for n in made_of)))
 
     def prepare(self, pool):
         self.workers = queue.SimpleQueue()
@@ -107,7 +135,8 @@ class Campaign:
         return self.judge, self.order
 
     def one(self, mutant):
-        kept = self.results.get(mutant, self.hashes[mutant.file])
+        # a sample is judged, whatever is known of it, and is no part of the whole campaign
+        kept = None if self.options.sample else self.results.get(mutant, self.hashes[mutant.file])
         if kept:
             return kept
         if self.options.seconds and time.monotonic() - self.began > self.options.seconds:
@@ -119,7 +148,8 @@ class Campaign:
         finally:
             self.workers.put(worker)
         learner.learn(mutant, by)
-        return self.results.put(mutant, self.hashes[mutant.file], mutant.line(self.texts[mutant.file]), verdict, by, time.monotonic() - began)
+        return self.results.put(mutant, self.hashes[mutant.file], mutant.line(self.texts[mutant.file]), verdict, by, time.monotonic() - began,
+                                keep=not self.options.sample)
 
     def run(self):
         rows, shown = [], time.monotonic()
@@ -141,26 +171,32 @@ class Campaign:
     def report(self, rows):
         survived = [row["key"] for row in rows if row["verdict"] == "survived"]
         killed = [row["key"] for row in rows if row["verdict"] == "killed"]
-        write_json(rows)
+        if not self.options.sample:
+            write_json(rows)
         print(table(rows, lambda r: r["file"], "file"))
         print(table(rows, lambda r: folder_of(r["file"]), "folder"))
         new = sorted(set(survived) - self.accepted)
         for key in sorted(self.accepted & set(killed)):
             say(f"killed now, so it can leave the list: {key}")
-        if len(rows) < len(self.mutants):
-            say(f"{len(self.mutants) - len(rows)} left: make mutants goes on with them")
-        if self.options.accept:
-            write_accepted(rows)
-            write_judges(rows)
-            if len(rows) == len(self.mutants):
-                write_goals(rows, self.options.only)
-            say(f"{len(survived)} survivors written to campaigns/mutants/accepted.txt")
+        left = len(self.mutants) - len(rows)
+        if left:
+            say(f"{left} left: make mutants goes on with them")
+        if self.options.accept and left:
+            say(f"nothing is accepted: {left} of {len(self.mutants)} mutants have no verdict yet, so run make mutants ACCEPT=1 again")
+        elif self.options.accept:
+            self.accept(rows)
             new = []
-        low = [] if self.options.sample or len(rows) < len(self.mutants) else below_goal(rows)
+        low = [] if self.options.sample or left else below_goal(rows, self.whole)
         for text in low:
             say(text)
         print(f"{len(killed) + len(survived) - len(new)} passed, {len(new) + len(low)} failed")
-        return 1 if new or low else 0
+        return 2 if self.options.accept and left else 1 if new or low else 0
+
+    def accept(self, rows):
+        write_accepted(rows, self.texts)
+        write_judges(rows)
+        write_goals(rows, self.whole)
+        say(f"{sum(row['verdict'] == 'survived' for row in rows)} survivors written to campaigns/mutants/accepted.txt")
 
 
 def main():

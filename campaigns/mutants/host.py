@@ -14,6 +14,10 @@ VARIANTS = {"ubsan": ["-fsanitize=undefined", "-fsanitize-undefined-trap-on-erro
             "asan": ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]}
 NOT_OF_THE_PRODUCT = {"test_simrun_judge"}  # of the simulator
 HANG_TIMES, HANG_MIN_S = 10, 3
+# linked into each test: what it starts itself (a shell, python) has no symbols for the libraries that are loaded before the test
+ALONE = """int unsetenv(const char *);
+__attribute__((constructor)) static void children_load_nothing(void) { unsetenv("LD_PRELOAD"); }
+"""
 
 
 class Settings:
@@ -108,6 +112,15 @@ class Host:
                 self.linked(["ar", "rcs", archive, *found], archive)
         return [archive]
 
+    def alone(self):
+        """The object of ALONE."""
+        target = self.folder / "alone.o"
+        with self.archiving:
+            if not target.exists():
+                target.with_suffix(".c").write_text(ALONE, encoding="ascii")
+                self.linked([*self.settings.compiler, *PLAIN, "-c", target.with_suffix(".c"), "-o", target], target)
+        return target
+
     def program(self, test):
         """The test's program, linked when it is first asked for."""
         with self.objects.guard:
@@ -122,7 +135,7 @@ class Host:
         self.link_product()
         sources = [self.test_source(test), *self.supports, self.settings.unity]
         objects = [instead.get(source, self.objects.object(source)) for source in sources]
-        inputs = [*objects, *self.references(test), *self.library]
+        inputs = [*objects, self.alone(), *self.references(test), *self.library]
         if instead or not target.exists() or target.stat().st_mtime_ns <= max(p.stat().st_mtime_ns for p in inputs):
             self.linked([*self.settings.cxx, *self.link_flags(), *inputs, f"-Wl,-rpath,{self.folder}", "-lm", "-o", target], target)
         return target

@@ -17,7 +17,7 @@ TOKEN = re.compile(
 DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(\w*)((?:[^\n\\/]|\\.|\\\n|/(?!\*)|/\*.*?\*/)*)", re.M | re.S)
 DEFINE = re.compile(r"[ \t]*(\w+)(\([^)]*\))?")
 TYPES = set("char short int long unsigned signed float double void const volatile struct union enum bool static register".split())
-# what stands in their parentheses is no behaviour
+# what is in their parentheses is no behaviour
 OPAQUE = {"_Static_assert", "static_assert", "__attribute__", "__asm__", "asm", "sizeof", "_Alignof"}
 
 

@@ -40,7 +40,7 @@ class Mutant:
 
 
 def changed_constants(text):
-    """What stands in place of a number or character: one more, one less, twice."""
+    """What is put in place of a number or character: one more, one less, twice."""
     if text.startswith("'"):
         return [f"({text} + 1)", f"({text} - 1)"]
     match = CONSTANT.fullmatch(text)
@@ -177,7 +177,7 @@ class Finder:
         return "".join(words) + assigned
 
     def flat(self, i, end):
-        """The tokens of a statement without what stands in its brackets."""
+        """The tokens of a statement without what is in its brackets."""
         found = []
         while i < end:
             found.append(self.tokens[i])

@@ -1,6 +1,7 @@
 """What is known of each mutant: kept while it lasts, so that a campaign goes on where it stopped; the accepted survivors; the tables."""
 import json
 import pathlib
+import re
 import threading
 from collections import Counter
 
@@ -19,12 +20,23 @@ GOALS_HEAD = """# Folders, the least kill rate of each (0: only measured), and i
 """
 
 
+def source_of(judge):
+    """The file of a judging test: test_rest, or system:WORD with part of the name of a test of the chip; None where there is none."""
+    word = judge.removeprefix("system:")
+    if word == judge:
+        path = pathlib.Path(f"host_tests/{judge}.c")
+        return path if path.is_file() else None
+    named = re.compile(rf"^def \w*{re.escape(word)}", re.MULTILINE)
+    return next((p for p in sorted(pathlib.Path("host_tests").glob("system_*.py")) if named.search(p.read_text(encoding="utf-8"))), None)
+
+
 class Results:
-    """Lines of build/mutants/results.jsonl. A kill holds while the mutant's file is the same, a survival while no source or test changes."""
+    """Lines of build/mutants/results.jsonl. A kill holds while the mutant's file and the test that noticed it are the same, a survival
+    while nothing changes that the product or a test is made of."""
 
     def __init__(self, everything):
         self.path, self.everything, self.guard = ROOT / "results.jsonl", everything, threading.Lock()
-        self.known = {}
+        self.known, self.judges = {}, {}
         self.path.parent.mkdir(parents=True, exist_ok=True)
         if self.path.exists():
             for line in self.path.read_text(encoding="utf-8").splitlines():
@@ -34,15 +46,24 @@ class Results:
                     continue
                 self.known[row["key"]] = row
 
+    def judge_hash(self, judge):
+        if judge not in self.judges:
+            source = source_of(judge)
+            self.judges[judge] = digest(source.read_bytes()) if source else ""
+        return self.judges[judge]
+
     def get(self, mutant, source_hash):
         row = self.known.get(mutant.key)
         if row is None or row["source"] != source_hash or (row["verdict"] == "survived" and row["all"] != self.everything):
             return None
-        return row
+        now = self.judge_hash(row["by"])
+        return row if row.get("judge", now) == now else None  # a row without a hash is believed
 
-    def put(self, mutant, source_hash, line, verdict, by, seconds):
+    def put(self, mutant, source_hash, line, verdict, by, seconds, keep=True):
         row = {"key": mutant.key, "file": mutant.file, "function": mutant.owner, "operator": mutant.operator, "line": line, "verdict": verdict,
-               "by": by, "seconds": round(seconds, 2), "source": source_hash, "all": self.everything}
+               "by": by, "seconds": round(seconds, 2), "source": source_hash, "all": self.everything, "judge": self.judge_hash(by)}
+        if not keep:
+            return row
         with self.guard:
             self.known[mutant.key] = row
             with self.path.open("a", encoding="utf-8") as out:
@@ -56,9 +77,8 @@ def accepted():
     return {line for line in ACCEPTED.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")}
 
 
-def write_accepted(rows):
-    """The survivors of what was measured replace those of the same files."""
-    files = {row["file"] for row in rows}
+def write_accepted(rows, files):
+    """The survivors of these files, of whose mutants all have a verdict, replace those that were known of them."""
     kept = {key for key in accepted() if key.split(":", 1)[0] not in files and pathlib.Path(key.split(":", 1)[0]).exists()}
     kept |= {row["key"] for row in rows if row["verdict"] == "survived"}
     ACCEPTED.write_text(HEAD + "".join(f"{key}\n" for key in sorted(kept)), encoding="utf-8")
@@ -106,20 +126,21 @@ def rates(rows):
     return found
 
 
-def below_goal(rows):
+def below_goal(rows, folders):
+    """Of these folders, which were measured whole."""
     found = []
     for folder, (killed, judged) in rates(rows).items():
         goal = goals().get(folder, (0, None))[0]
-        if 100 * killed < goal * judged:
+        if folder in folders and 100 * killed < goal * judged:
             found.append(f"{folder}: {killed} of {judged} killed, below the goal of {goal:g} %")
     return found
 
 
-def write_goals(rows, only):
-    """The rates of the folders that were measured whole, beside their goals."""
+def write_goals(rows, folders):
+    """The rates of these folders, which were measured whole, beside their goals."""
     table_ = goals()
     for folder, (killed, judged) in rates(rows).items():
-        if folder.startswith(only.rstrip("/")):
+        if folder in folders:
             table_[folder] = table_.get(folder, (0.0, None))[0], 100 * killed / judged
     lines = [f"{folder:<20}{goal:>6g}{'-' if rate is None else f'{rate:.1f}':>8}\n" for folder, (goal, rate) in sorted(table_.items())]
     GOALS.write_text(GOALS_HEAD + "".join(lines), encoding="utf-8")

@@ -76,18 +76,20 @@ def run(command, cwd, limit_s=300, **environment):
         return program.returncode, said.decode("utf-8", "replace")
 
 
-def timed(command, cwd, limit_s, **environment):
-    """(status, seconds of the processor): what it prints is thrown away. The limit is of the processor's time, so a loaded machine makes
-    no hang; a program that sleeps is ended after twenty times as long.
+def timed(command, cwd, limit_s, output=subprocess.DEVNULL, **environment):
+    """(status, seconds of the processor). The limit is of the processor's time, so a loaded machine makes no hang (status -9 or -24); a
+    program that sleeps is ended after twenty times as long, with all that it started.
     """
     settings = [f"{name}={value}" for name, value in environment.items()]  # for the program alone: some name what is loaded before it
     words = ["prlimit", f"--cpu={math.ceil(limit_s)}", "--core=0", "env", *settings, *map(str, command)]
-    program = subprocess.Popen(words, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                               stderr=subprocess.DEVNULL, start_new_session=True)
-    asleep = threading.Timer(60 + 20 * limit_s, program.kill)
+    program = subprocess.Popen(words, cwd=cwd, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.DEVNULL, start_new_session=True)
+    asleep = threading.Timer(60 + 20 * limit_s, os.killpg, (program.pid, 9))
     asleep.start()
     try:
         _, status, usage = os.wait4(program.pid, 0)
+    except BaseException:
+        os.killpg(program.pid, 9)
+        raise
     finally:
         asleep.cancel()
     program.returncode = os.waitstatus_to_exitcode(status)  # or Popen would wait for it once more
