@@ -11,7 +11,7 @@ function output(program, args) {
   try {
     return execFileSync(program, args.map(String), { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'], maxBuffer: 1 << 28 });
   } catch (error) {
-    throw new Error(`${program} ${args.join(' ')}: ${error.status === undefined ? error.message : `status ${error.status}: ${error.stderr.trim()}`}`);
+    throw new Error(`${program} ${args.join(' ')}: ${typeof error.status !== 'number' ? error.message : `status ${error.status}: ${error.stderr.trim()}`}`);
   }
 }
 
