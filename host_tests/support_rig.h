@@ -47,7 +47,7 @@ void rig_pass(void);
 /* Passes for so many virtual milliseconds. */
 void rig_run_ms(double ms);
 
-/* Starts with this configuration and passes for so many milliseconds, at the end of which it streams, or the test fails. */
+/* Starts with this configuration, passes for so many milliseconds; it streams at their end, or the test fails. */
 void rig_stream_ms(const adxl345_config_t *config, double ms);
 
 /* Stops, which must have come about after so many milliseconds; how many of the latched samples did not come out. */
