@@ -113,9 +113,11 @@ def interrupts_keep_their_deadline_in_every_run_but_starved_ones():
     # I2C has no deadline: where bytes are quick, and more so in a flood of them, it waits for all others
     limits = [dict((name, most) for name, _, most in faults_runs.waits_of((kind,), short))["twi"]
               for kind in (sda, ALL["sda, 400 Hz"], ALL["rxflood, 400 Hz"], ALL["typed: settings"], ALL["flood at 1000000 baud"])]
-    # 245 cycles of others, 4 for the response and for an instruction of main behind main's stretch and each of three handlers; a byte out
-    # (52) for each 10 bits' time that begins meanwhile; one byte in (79), in a flood one for each (66) as well; 4 behind each
-    assert limits == [265 + 83 + 56, 265 + 83 + 2 * 56, 265 + 2 * (56 + 70), 265 + 83 + 56, 265 + 8 * (56 + 70)], limits
+    # 245 cycles of others, 4 for the response and for an instruction of main after main's stretch and each of three handlers; a byte out
+    # (55) for each 10 bits' time that begins meanwhile; one byte in (79), in a flood one for each (66) as well; 4 after each. At 1000000 baud
+    # a byte takes 160 cycles: nine of them begin within 265 + 9 * 129 = 1426
+    out, both = 55 + 4, 55 + 4 + 66 + 4
+    assert limits == [265 + 83 + out, 265 + 83 + 2 * out, 265 + 2 * both, 265 + 83 + out, 265 + 9 * both], limits
     for name in ("starve", "overrun", "starve again"):
         assert faults_runs.waits_of((sda, ALL[name]), short) == (), name
     done = faults_runs.attempt(FW, "adaptive", (sda,), ("1003ms",))
