@@ -1,5 +1,6 @@
 // An ADXL345 on I2C, written from Analog Devices' data sheet (Rev. D to G, the pages are the same) and from nothing else: what is
-// quoted below is its text. Where it leaves something open, the readings of `job_readings.mjs` say which answer this part gives.
+// quoted below is its text, partly from memory. Where it leaves something open, the readings of `job_readings.mjs` say which answer
+// this part gives.
 // Not modelled: taps, activity, free fall, sleep and link, SPI, INT2, the trigger of trigger mode (it goes on as stream mode).
 
 const CPU_HZ = 16e6;

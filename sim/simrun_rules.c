@@ -81,7 +81,7 @@ static void check_eeprom(uint8_t value)
     }
 }
 
-/* 11.9.2: while WDRF stands in MCUSR the watchdog cannot be switched off. */
+/* 11.9.2: while WDRF is set in MCUSR the watchdog cannot be switched off. */
 static void check_watchdog(uint8_t value)
 {
     (void)value;
@@ -167,7 +167,7 @@ void rules_on_reset(void)
     look_at_led();
 }
 
-/* 7.7: a SEI lets one more instruction pass. Where another one stands between it and SLEEP, a wake-up can be lost. */
+/* 7.7: a SEI lets one more instruction pass. With another one between it and SLEEP, a wake-up can be lost. */
 void rules_on_step(uint32_t from)
 {
     if (mcu->state == cpu_Sleeping && interrupts_on()) {

@@ -1,4 +1,4 @@
-"""Some of many, drawn anew by each commit, so that in time all have their turn (make mutants NAMED=yes SAMPLE=6, PLANTED=20, BREAKAGES=6)."""
+"""Some of many, others for each commit, so that in time all have their turn (make mutants NAMED=yes SAMPLE=6, PLANTED=20, BREAKAGES=6)."""
 import random
 import subprocess
 
