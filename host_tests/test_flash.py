@@ -72,19 +72,9 @@ def wait_for_rows(count, base, process, behind=0):
     wait_for(f"{count} rows", there, process)
 
 
-def attempted(*command):
-    """As a person would: up to three times where avrdude and the boot loader missed each other at the start, which each opening of the port
-    begins afresh. How fast the PC lets both of them go decides that, not what is tested here."""
-    for _ in range(3):
-        done = run(*command, expect=None)
-        if done.returncode == 0 or not re.search("sync|not responding", done.stderr):
-            break
-        print(f"    missed each other: {said(done)}")
-    return done
-
-
 def avrdude(port, operation, image):
-    return attempted("avrdude", "-p", "atmega328p", "-c", "arduino", "-P", port, "-b", "115200", "-D", "-U", f"flash:{operation}:{image}:i")
+    return run("avrdude", "-p", "atmega328p", "-c", "arduino", "-P", port, "-b", "115200", "-D", "-U", f"flash:{operation}:{image}:i",
+               expect=None)
 
 
 def said(done):
@@ -159,7 +149,7 @@ def nothing_runs_until_the_port_of_an_empty_board_is_opened():
 def make_flash_writes_verifies_and_the_firmware_streams():
     need_tools()
     with board("flash", "--max-ms", "1000000") as (port, base, process):
-        done = attempted("make", "flash", f"PORT={port}")
+        done = run("make", "flash", f"PORT={port}", expect=None)
         size = sum(len(data) for _, kind, data in records(HEX) if kind == 0)
         assert done.returncode == 0 and f"{size} bytes of flash verified" in done.stdout + done.stderr, said(done)
         wait_for_rows(1, base, process)  # the firmware runs, so that the next opening of the port has something to interrupt

@@ -40,7 +40,8 @@ typedef enum {
     EXIT_STOPPED = 8,  /* the firmware slept with interrupts off */
     EXIT_STALLED = 9,  /* no --max-ms, and the sensor was not used for 20 s: the stream would never end */
     EXIT_WRONG = 10,   /* --judge, and a row is wrong, stale or stamped before the one ahead of it */
-    EXIT_RULE = 11     /* a rule of the data sheet is broken that simavr does not hold */
+    EXIT_RULE = 11,    /* a rule of the data sheet is broken that simavr does not hold */
+    EXIT_READER = 12   /* --pty, and who holds the other end does not read */
 } exit_status_t;
 
 /* --- options --- */
@@ -55,7 +56,7 @@ typedef struct {
 typedef struct {
     const char *fw, *in, *frames, *out, *served, *altered, *eeprom, *stats, *profile, *vcd, *bootloader, *filter, *span;
     bool loop, pty, blank, judge, strap, alt_address;
-    double ppm, max_ms; /* max_ms 0: none */
+    double ppm, max_ms, patience_s; /* max_ms 0: none */
     adxl345_part_t part;
     unsigned expect_resets, gdb_port;
     uint32_t seed, clock_start_us;

@@ -38,6 +38,7 @@ enum option_code {
     OPTION_SETTING,
     OPTION_FILTER,
     OPTION_PART,
+    OPTION_PATIENCE,
     OPTION_HELP
 };
 
@@ -60,6 +61,7 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "pty", no_argument, NULL, OPTION_PTY },
                                        { "ppm", required_argument, NULL, OPTION_PPM },
                                        { "max-ms", required_argument, NULL, OPTION_MAX_MS },
+                                       { "patience", required_argument, NULL, OPTION_PATIENCE },
                                        { "expect-resets", required_argument, NULL, OPTION_EXPECT_RESETS },
                                        { "gdb", required_argument, NULL, OPTION_GDB },
                                        { "seed", required_argument, NULL, OPTION_SEED },
@@ -170,6 +172,9 @@ static const char help_text[] =
     "  --pty              connect the UART to a pseudo terminal, in real time; with --bootloader opening it resets the "
     "MCU,\n"
     "                     as DTR resets an UNO (not counted), and with --blank nothing runs until then\n"
+    "                     and the boot loader waits for the first byte (5 s of real time at most)\n"
+    "  --patience S       with --pty: a program that holds the terminal and reads nothing for so long ends the run "
+    "(60)\n"
     "\n"
     "The run ends 20 ms after the stream, when the UART has been silent for 30 ms (2 s at most); with --pty or --gdb "
     "Ctrl-C\n"
@@ -178,7 +183,8 @@ static const char help_text[] =
     "4 illegal opcode; 5 stack overrun; 6 UART overrun; 7 unexpected number of resets;\n"
     "8 firmware slept with interrupts off;\n"
     "9 without --max-ms: the firmware did not use the sensor for 20 s; 10 --judge: a row is not right;\n"
-    "11 a rule of the data sheet is broken that simavr does not hold (the words say which).\n";
+    "11 a rule of the data sheet is broken that simavr does not hold (the words say which);\n"
+    "12 with --pty: a program held the terminal and read nothing for the time of --patience.\n";
 
 static void refuse(const char *format, ...) __attribute__((format(printf, 1, 2), noreturn));
 static void refuse(const char *format, ...)
@@ -281,6 +287,9 @@ static bool take_number(int code, const char *name, const char *argument)
     case OPTION_MAX_MS:
         options.max_ms = number(name, argument, 0.001, 1e9);
         return true;
+    case OPTION_PATIENCE:
+        options.patience_s = number(name, argument, 0.01, 1e6);
+        return true;
     case OPTION_EXPECT_RESETS:
         options.expect_resets = (unsigned)number(name, argument, 0.0, 1e6);
         return true;
@@ -374,6 +383,7 @@ void options_parse(int argc, char **argv)
     int index = 0;
     int code;
     options.part = adxl345_part_typical;
+    options.patience_s = 60.0;
     while ((code = getopt_long(argc, argv, "", known, &index)) != -1) {
         take(code, known[index].name, optarg);
     }

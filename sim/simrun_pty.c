@@ -1,7 +1,9 @@
 /*
  * A pseudo terminal in place of the USB serial port: for a terminal program, a plotter or avrdude. Simulated time keeps
  * to real time and never runs ahead of it: where the PC has no processor for the simulator, or the reader none for what
- * is in the terminal, simulated time waits. So what happens does not depend on how busy the PC is.
+ * is in the terminal, simulated time waits. So what happens does not depend on how busy the PC is. A boot loader with an
+ * empty flash (--blank) counts the time in which nothing comes and then leaves, while avrdude counts real time: there
+ * simulated time also waits for avrdude.
  */
 #define _GNU_SOURCE /* posix_openpt */
 
@@ -17,14 +19,21 @@
 
 enum {
     READER_LOOK_MS = 50,
-    DEBT_MS = 20
-}; /* a debt of real time beyond that is not made up: boot loaders count time */
+    DEBT_MS = 20,          /* a debt of real time beyond that is not made up: boot loaders count time */
+    BOOT_QUIET_MS = 500,   /* of simulated time: Optiboot listens after 375 ms, and leaves when nothing comes for 1 s */
+    BOOT_PATIENCE_MS = 5000 /* of real time: avrdude sends its first byte after 0.6 s */
+};
+
+/* An opening with --blank: until the boot loader listens, while bytes come, and when it has been left. */
+typedef enum { BOOT_OVER, BOOT_STARTS, BOOT_TALKS } boot_t;
 
 static int master = -1;
+static boot_t boot;
+static uint64_t boot_quiet_at; /* cycle from which on simulated time waits for a byte */
 static bool opened; /* somebody holds the other end */
 static bool ever_opened;
 static struct timespec began;
-static double forgiven_ms; /* of real time, in which simulated time waited */
+static double forgiven_ms; /* of real time, in which simulated time waited; less what it was let run ahead */
 
 /* Bytes as they are, no echo; what else the one at the other end has set stays. */
 static bool make_raw(int terminal)
@@ -52,6 +61,19 @@ void pty_open(void)
     clock_gettime(CLOCK_MONOTONIC, &began);
 }
 
+static double real_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)(now.tv_sec - began.tv_sec) * 1e3 + (double)(now.tv_nsec - began.tv_nsec) * 1e-6;
+}
+
+static void boot_enter(boot_t state)
+{
+    boot = state;
+    boot_quiet_at = mcu->cycle + (uint64_t)BOOT_QUIET_MS * CYCLES_PER_MS;
+}
+
 /* The settings of a terminal go with its last user, so each new one gets it raw. */
 static void look_for_user(void)
 {
@@ -62,29 +84,54 @@ static void look_for_user(void)
             perror("simrun: pseudo terminal");
         }
         resets_port_opened();
+        boot_enter(options.blank ? BOOT_STARTS : BOOT_OVER);
     }
     opened = now;
     ever_opened = ever_opened || now;
 }
 
-/* False: nobody holds the other end any more, or the run is to end. */
-static bool wait_for_reader(void)
+/* For `event` at the other end, a short time. False: nobody holds it any more, or the run is to end. */
+static bool wait_for(short event, bool *came)
 {
-    struct pollfd end = { .fd = master, .events = POLLOUT };
-    return poll(&end, 1, READER_LOOK_MS) >= 0 && (end.revents & POLLHUP) == 0 && !machine_asked_to_end();
+    struct pollfd end = { .fd = master, .events = event };
+    bool well = poll(&end, 1, READER_LOOK_MS) >= 0 && (end.revents & POLLHUP) == 0 && !machine_asked_to_end();
+    *came = well && (end.revents & event) != 0;
+    return well;
+}
+
+/* False: nobody holds the other end any more, the run is to end, or the one who holds it does not read. */
+static bool wait_for_reader(double until_ms)
+{
+    bool reads;
+    if (!wait_for(POLLOUT, &reads)) {
+        return false;
+    }
+    if (!reads && real_ms() >= until_ms) {
+        static char reason[128];
+        snprintf(reason, sizeof reason, "a program holds the pseudo terminal but has read nothing for %g s (see --patience)",
+                 options.patience_s);
+        machine_fail(EXIT_READER, reason);
+        return false;
+    }
+    return true;
 }
 
 /* Without anybody at the other end it is lost, as on a board without a PC. */
 void pty_send(uint8_t byte)
 {
+    double until_ms = 0.0;
     while (opened && write(master, &byte, 1) < 0) {
-        if (errno == EINTR || (errno == EAGAIN && wait_for_reader())) {
-            continue;
+        if (errno == EAGAIN) {
+            until_ms = until_ms > 0.0 ? until_ms : real_ms() + options.patience_s * 1e3;
+            if (!wait_for_reader(until_ms)) {
+                break;
+            }
+        } else if (errno != EINTR) {
+            if (errno != EIO) {
+                perror("simrun: pseudo terminal");
+            }
+            break;
         }
-        if (errno != EAGAIN && errno != EIO) {
-            perror("simrun: pseudo terminal");
-        }
-        break;
     }
 }
 
@@ -98,21 +145,44 @@ static void wait_for_first_user(void)
     }
 }
 
+/* Simulated time stands still until a byte comes, unless the boot loader has been left or nobody sends any. */
+static void wait_for_byte(void)
+{
+    double until_ms = real_ms() + BOOT_PATIENCE_MS;
+    bool came = false;
+    while (machine_in_boot_loader(mcu->pc) && !came && wait_for(POLLIN, &came) && real_ms() < until_ms) {
+    }
+    if (!came) {
+        boot_enter(BOOT_OVER);
+    }
+}
+
 bool pty_receive(uint8_t *byte)
 {
     look_for_user();
     if (options.blank) {
         wait_for_first_user();
     }
-    return opened && read(master, byte, 1) == 1;
+    if (!opened || (boot == BOOT_STARTS && mcu->cycle < boot_quiet_at)) {
+        return false;
+    }
+    if (boot != BOOT_OVER && mcu->cycle >= boot_quiet_at) {
+        wait_for_byte();
+    }
+    bool any = read(master, byte, 1) == 1;
+    if (any && boot != BOOT_OVER) {
+        boot_enter(BOOT_TALKS);
+    }
+    return any;
 }
 
 void pty_pace(void)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    double real_ms = (double)(now.tv_sec - began.tv_sec) * 1e3 + (double)(now.tv_nsec - began.tv_nsec) * 1e-6;
-    double ahead_ms = machine_ms() + forgiven_ms - real_ms;
+    double ahead_ms = machine_ms() + forgiven_ms - real_ms();
+    if (boot == BOOT_STARTS) { /* avrdude has begun to count: as fast as the PC can */
+        forgiven_ms -= ahead_ms;
+        return;
+    }
     if (ahead_ms < -DEBT_MS) {
         forgiven_ms -= ahead_ms + DEBT_MS;
     }
