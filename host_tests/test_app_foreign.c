@@ -87,6 +87,53 @@ static void test_the_device_stays_named_while_the_other_address_is_asked(void)
     }
 }
 
+/* Whoever is asked answers, for so long. */
+static void both_answer_for_ms(unsigned ms)
+{
+    for (unsigned step = 0; step < 10 * ms; step++) {
+        hal_host_sensor.address = driver.address;
+        board_run_ms(0.1);
+    }
+}
+
+static void the_device_is(uint8_t address)
+{
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_WRONG_ID, adxl345_fault());
+    TEST_ASSERT_EQUAL_HEX8(address, adxl345_foreign_address());
+    TEST_ASSERT_EQUAL_HEX8(id_at(address), adxl345_foreign_id());
+}
+
+/* Also while the fault lasts and a second one, that is asked before it, begins to answer. */
+static void test_the_device_stays_named_when_another_one_answers_too(void)
+{
+    for (size_t a = 0; a < sizeof addresses; a++) {
+        board_start_with_rx(&stream, on_rx);
+        hal_host_sensor.address = addresses[a];
+        board_run_ms(20);
+        the_device_is(addresses[a]);
+        both_answer_for_ms(100);
+        the_device_is(addresses[a]);
+    }
+}
+
+/* Who asks for one address is told of the device that is there; both addresses again, it is still named. */
+static void test_the_device_at_the_address_asked_for_is_named(void)
+{
+    static const char *const asked[] = { "address 53", "address 1D" };
+    for (size_t a = 0; a < sizeof addresses; a++) {
+        board_start_with_rx(&stream, on_rx);
+        hal_host_sensor.address = addresses[1 - a];
+        board_run_ms(20);
+        the_device_is(addresses[1 - a]);
+        board_type(asked[a]);
+        both_answer_for_ms(100);
+        the_device_is(addresses[a]);
+        board_type("address auto");
+        both_answer_for_ms(100);
+        the_device_is(addresses[a]);
+    }
+}
+
 /* Whoever is asked answers, and is none: the line names the first of both with its own DEVID. */
 static void test_fault_2_names_one_of_two_devices_with_its_own_identity(void)
 {
@@ -109,7 +156,8 @@ static void test_fault_2_names_the_device_after_the_sensor_was_found(void)
     board_start_with_rx(&stream, on_rx);
     hal_host_sensor.address = ADXL345_ADDRESS_HIGH;
     board_type("status");
-    while (adxl345_fault() != ADXL345_FAULT_WRONG_ID) {
+    for (unsigned step = 0; adxl345_fault() != ADXL345_FAULT_WRONG_ID; step++) {
+        TEST_ASSERT_TRUE_MESSAGE(step < 1000, "no fault within 100 ms");
         board_run_ms(0.1);
     }
     real = ADXL345_ADDRESS_LOW;
@@ -128,6 +176,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_fault_2_names_the_device_that_was_found_at_every_phase);
     RUN_TEST(test_the_device_stays_named_while_the_other_address_is_asked);
+    RUN_TEST(test_the_device_stays_named_when_another_one_answers_too);
+    RUN_TEST(test_the_device_at_the_address_asked_for_is_named);
     RUN_TEST(test_fault_2_names_one_of_two_devices_with_its_own_identity);
     RUN_TEST(test_fault_2_names_the_device_after_the_sensor_was_found);
     return UNITY_END();

@@ -264,12 +264,16 @@ static void read_back(adxl345_driver_t *d)
     driver_enter(d->row < TABLE_ROWS ? STEP_READ_BACK : STEP_MEASURE, TRANSFER_LIMIT_MS);
 }
 
-/* What is said of a device that is none comes later: the first one is kept until the fault is over. */
+/*
+ * What is said of a device that is none comes later: the first one is kept until the fault is over, unless one address
+ * alone is to be asked.
+ */
 static void probed(adxl345_driver_t *d)
 {
     uint8_t id = burst_register_value();
     if (id != ADXL345_DEVID_VALUE) {
-        if (d->fault != ADXL345_FAULT_WRONG_ID && d->found != ADXL345_FAULT_WRONG_ID) {
+        bool known = d->fault == ADXL345_FAULT_WRONG_ID || d->found == ADXL345_FAULT_WRONG_ID;
+        if (!known || d->config.address != 0) {
             d->foreign_address = d->address;
             d->foreign_id = id;
         }
