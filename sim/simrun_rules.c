@@ -15,6 +15,10 @@ enum {
     REG_MCUSR = 0x54,
     BIT_WDRF = 0x08,
     REG_WDTCSR = 0x60,
+    BIT_WDE = 0x08,
+    BIT_WDCE = 0x10,
+    BITS_WDP = 0x27,
+    WDCE_CYCLES = 4,
     REG_TIMSK1 = 0x6F,
     REG_TCNT1L = 0x84,
     REG_OCR1BH = 0x8B,
@@ -41,6 +45,7 @@ static watched_t watched[WATCHED_MAX];
 static size_t watched_count;
 static uint64_t eempe_at;
 static uint64_t watchdog_bites = NEVER;
+static uint64_t wdce_until; /* WDTCSR takes WDE and its period up to this cycle */
 static uint32_t opened_at; /* the instruction that follows the one that let interrupts in */
 static bool led_lit;
 static uint32_t led_flashes;
@@ -81,11 +86,18 @@ static void check_eeprom(uint8_t value)
     }
 }
 
-/* 11.9.2: while WDRF is set in MCUSR the watchdog cannot be switched off. */
+/*
+ * 11.8: the watchdog goes off, or has another period, by a write within four cycles of the one that sets WDCE and WDE;
+ * 11.9.2: while WDRF is set in MCUSR it stays on all the same.
+ */
 static void check_watchdog(uint8_t value)
 {
-    (void)value;
-    if ((mcu->data[REG_MCUSR] & BIT_WDRF) == 0) {
+    if ((value & BIT_WDCE) != 0) {
+        wdce_until = (value & BIT_WDE) != 0 ? mcu->cycle + WDCE_CYCLES : 0;
+        return;
+    }
+    bool off = (value & BIT_WDE) == 0 && (mcu->data[REG_MCUSR] & BIT_WDRF) == 0;
+    if (mcu->cycle <= wdce_until && (off || (value & BITS_WDP) != 0)) {
         watchdog_bites = NEVER;
     }
 }
@@ -164,6 +176,7 @@ void rules_on_reset(void)
     bool by_watchdog = (mcu->data[REG_MCUSR] & BIT_WDRF) != 0;
     watchdog_bites = by_watchdog ? mcu->cycle + WATCHDOG_SHORTEST : NEVER;
     eempe_at = 0;
+    wdce_until = 0;
     look_at_led();
 }
 
