@@ -272,8 +272,7 @@ static void probed(adxl345_driver_t *d)
 {
     uint8_t id = burst_register_value();
     if (id != ADXL345_DEVID_VALUE) {
-        bool known = d->fault == ADXL345_FAULT_WRONG_ID || d->found == ADXL345_FAULT_WRONG_ID;
-        if (!known || d->config.address != 0) {
+        if (d->config.address != 0 || (d->fault != ADXL345_FAULT_WRONG_ID && d->found != ADXL345_FAULT_WRONG_ID)) {
             d->foreign_address = d->address;
             d->foreign_id = id;
         }

@@ -24,17 +24,6 @@ static HAL_APART int32_t silent_for_us(void)
     return (int32_t)(driver.now_us - burst_met_sample_us());
 }
 
-/* A sample waits: INT1 that is low has failed to tell, one that is stuck tells nothing. */
-static void read_by_clock(adxl345_driver_t *d)
-{
-    if (!hal_drdy_high()) {
-        d->fault = ADXL345_FAULT_INT1_SILENT;
-        d->timed = TIMED_WANTED;
-    } else if (integrity_int1_stuck()) {
-        d->timed = TIMED_WANTED;
-    }
-}
-
 /*
  * INT1 may have risen just now, unless it is always high. Ones of a sensor that is gone show in the bits of functions
  * that are off. A sensor that has none ready may still come: that is a fault after three periods.
@@ -51,8 +40,9 @@ void stream_source_asked(adxl345_driver_t *d)
     burst_set_mode(BURST_READ);
     driver_enter(STEP_STREAM, 1);
     d->was_empty = d->was_empty || !has_data;
-    if (has_data) {
-        read_by_clock(d);
+    if (has_data && !hal_drdy_high()) { /* while it is high, the sample is read because it is */
+        d->fault = ADXL345_FAULT_INT1_SILENT;
+        d->timed = TIMED_WANTED;
     }
 }
 
