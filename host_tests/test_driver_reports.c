@@ -200,24 +200,72 @@ static void test_drained_samples_are_counted_one_by_one(void)
     }
 }
 
-/* Each counter has its place, the driver's first, then those of the readings. */
-static void test_counters_by_their_places(void)
+static uint8_t torn_left;
+
+/* FIFO_CTL loses a bit in so many readings. */
+static uint8_t on_rx_torn(uint8_t reg, uint8_t byte)
 {
-    stream_for_ms(300);
+    bool tear = reg == ADXL345_FIFO_CTL && torn_left != 0;
+    torn_left = (uint8_t)(torn_left - tear);
+    return tear ? (uint8_t)(byte ^ 1u) : byte;
+}
+
+/* The next event of the bus has this status; so many times, with good samples in between. */
+static void fail_bursts(uint8_t status, unsigned times)
+{
+    for (; times != 0; times--) {
+        hal_host_faults.next_status = status;
+        hal_host_faults.status_skip = 0;
+        rig_run_ms(50);
+        TEST_ASSERT_TRUE(hal_host_faults.next_status < 0);
+    }
+}
+
+/* What each counter counts, each a different number of times. */
+static void count_everything(void)
+{
+    rig_begin(100.0, (hal_host_config_t){ .on_rx = on_rx_torn });
+    rig.limit_us = UINT32_MAX;
+    for (size_t i = 20; i < 40; i++) {
+        rig.stream.rows[i].lsb[0] = 20;
+    }
+    stream_for_ms(600); /* the tenth to the twentieth of twenty equal ones are stuck: 11 */
+    fail_bursts(HAL_I2C_ARBITRATION_LOST, 4);
+    fail_bursts(HAL_I2C_BUS_ERROR, 5);
+    for (unsigned times = 0; times < 6; times++) {
+        rig_until_pause();
+        hal_host_faults.hang_clocks = 9;
+        rig_run_ms(50);
+    }
+    torn_left = 2;
+    rig_run_ms(100);
+    rig_away(40000); /* 800 ms: the FIFO fills up */
+    rig_run_ms(100);
     adxl345_model_power(&hal_host_sensor, false);
     rig_run_ms(60);
     adxl345_model_power(&hal_host_sensor, true);
+    rig_run_ms(100);
     hal_host_faults.int1_high = true;
-    rig.limit_us = UINT32_MAX;
     rig_run_ms(500);
+}
+
+/* Each counter has its place, the driver's first, then those of the readings: no two of the ten are equal, none is 0. */
+static void test_counters_by_their_places(void)
+{
+    count_everything();
     adxl345_readings_t readings;
     adxl345_readings(&readings);
     const adxl345_counters_t own = counters();
     const uint16_t expected[] = { own.samples_drained,   own.samples_stuck, own.restarts, own.nacks,
                                   own.arbitrations_lost, own.bus_errors,    own.timeouts, readings.failed,
                                   readings.empty,        readings.overruns };
-    TEST_ASSERT_TRUE(own.restarts != 0 && own.nacks != 0 && readings.empty != 0 && own.nacks != readings.empty);
+    TEST_ASSERT_TRUE(own.samples_stuck == 11 && own.arbitrations_lost == 4 && own.bus_errors == 5);
+    TEST_ASSERT_TRUE(own.timeouts == 6 && readings.failed == 2);
     for (uint8_t at = 0; at < sizeof expected / sizeof expected[0]; at++) {
+        TEST_ASSERT_NOT_EQUAL_UINT16(0, expected[at]);
+        for (uint8_t other = 0; other < at; other++) {
+            TEST_ASSERT_NOT_EQUAL_UINT16(expected[other], expected[at]);
+        }
         TEST_ASSERT_EQUAL_UINT16(expected[at], adxl345_count(at));
     }
 }
