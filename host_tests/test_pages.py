@@ -92,7 +92,7 @@ def no_page_has_a_title_twice():
     try:
         page.Page(pathlib.Path("docs/any.md"), "<!--b-->", "<!--e-->").filled("<!--b--><!--e-->", lines, {})
     except page.Fault as fault:
-        assert str(fault) == "docs/any.md: the title 'Roll' stands 2 times between the markers", fault
+        assert str(fault) == "docs/any.md: the title 'Roll' occurs 2 times between the markers", fault
     else:
         raise AssertionError("a title twice was taken")
 

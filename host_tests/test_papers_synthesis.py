@@ -292,7 +292,7 @@ def parts_of_the_page_are_found_by_their_markers():
     try:
         papers_page.no_title_twice("a page", ["### Roll", "| 1 |", "### Roll", "| 2 |"])
     except papers.page.Fault as fault:
-        assert "a page: the title 'Roll' stands 2 times" in str(fault)
+        assert "a page: the title 'Roll' occurs 2 times" in str(fault)
     else:
         raise AssertionError("a title twice was taken")
     assert len({marker for paper in papers.PAPERS for marker in papers_page.markers(paper)}) == 2 * len(papers.PAPERS) == 10

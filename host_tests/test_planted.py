@@ -118,9 +118,9 @@ def breakage_is_found_by_its_tokens_in_its_definition_alone():
 
 @test
 def breakage_that_stands_twice_or_not_at_all_is_lost():
-    for place, edit, why in (("f", "b => c", "stands 3 times"), ("f", "a < => a >", "stands 0 times"), ("f", "f(1) =>", "stands 0 times"),
+    for place, edit, why in (("f", "b => c", "occurs 3 times"), ("f", "a < => a >", "occurs 0 times"), ("f", "f(1) =>", "occurs 0 times"),
                              ("f3", "a => b", "f3 is defined in 0 files"), ("b.c:f", "a => b", "there is no file b.c"),
-                             ("f", "g(...; => k(", "stands 0 times")):
+                             ("f", "g(...; => k(", "occurs 0 times")):
         try:
             broken(place, edit)
         except anchors.Lost as lost:

@@ -8,7 +8,7 @@ A list holds paragraphs of three lines or more, `#` begins a comment:
 
 PLACE is FILE:DEFINITION, FILE or DEFINITION: a path or its end, and the name of a function, macro, table or enumerator. The file may be
 left out where one file of lib, firmware and hal alone defines the name, so that a file may move. OLD is compared token by token (white
-space and comments count for nothing) and must stand exactly once in the definition, or in the file; `...` in it stands for any tokens
+space and comments count for nothing) and must occur exactly once in the definition, or in the file; `...` in it stands for any tokens
 of a piece of a statement, and a `...` in NEW for the same ones. NEW may be empty. Several lines OLD => NEW are done one after another.
 Instead of them lines `| TEXT` make a new file (`| TEXT [N]`: N such lines, {} being the number)."""
 import dataclasses
@@ -155,12 +155,12 @@ def matches(old, text, found):
 
 
 def broken(entry, texts=None):
-    """(path, its broken text); Lost when a text to break does not stand exactly once."""
+    """(path, its broken text); Lost when a text to break does not occur exactly once."""
     path, text, found = spans(entry.place, product_text() if texts is None else texts)
     for old, new in entry.edits:
         hits = matches(old, text, found)
         if len(hits) != 1:
-            raise Lost(f"`{old}` stands {len(hits)} times in {entry.place.rpartition(':')[2]} of {path}, not once")
+            raise Lost(f"`{old}` occurs {len(hits)} times in {entry.place.rpartition(':')[2]} of {path}, not once")
         begin, end, pieces = hits[0]
         for piece in pieces if "..." in new else []:
             new = new.replace("...", piece, 1)

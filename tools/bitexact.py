@@ -240,7 +240,7 @@ def plant(name, file, text, broken):
     shutil.copytree("lib", lib, copy_function=shutil.copy)
     whole = (lib / file).read_text(encoding="utf-8")
     if whole.count(text) != 1:
-        raise Failure(f"the text to break stands {whole.count(text)} times in lib/{file}: bring TWINS in tools/bitexact.py up to date")
+        raise Failure(f"the text to break occurs {whole.count(text)} times in lib/{file}: bring TWINS in tools/bitexact.py up to date")
     (lib / file).write_text(whole.replace(text, broken), encoding="utf-8")
     return str(lib)
 
