@@ -1,13 +1,16 @@
 /*
  * Byte ring for one producer and one consumer, one of them an interrupt: each index has one owner and is one byte, so
  * no critical section is needed. SIZE is a power of two up to 256; one slot stays free to tell full from empty. The
- * producer works on `staged` and publishes it with hal_ring_commit.
+ * producer works on `staged` and publishes it with hal_ring_commit. A byte is in the buffer before its index says so, and
+ * out of it before its slot is free: HAL_RING_FENCE keeps the compiler from putting one behind the other.
  */
 #ifndef HAL_RING_H
 #define HAL_RING_H
 
 #include <stdbool.h>
 #include <stdint.h>
+
+#define HAL_RING_FENCE() __asm__ volatile("" ::: "memory")
 
 typedef struct {
     volatile uint8_t head; /* producer: first free slot as the consumer sees it */
@@ -35,6 +38,7 @@ static inline void hal_ring_stage(hal_ring_t *r, uint8_t *buffer, uint8_t mask, 
 
 static inline void hal_ring_commit(hal_ring_t *r)
 {
+    HAL_RING_FENCE();
     r->head = r->staged;
 }
 
@@ -47,7 +51,9 @@ static inline void hal_ring_discard(hal_ring_t *r)
 static inline uint8_t hal_ring_take(hal_ring_t *r, const uint8_t *buffer, uint8_t mask)
 {
     uint8_t at = r->tail;
+    HAL_RING_FENCE();
     uint8_t byte = buffer[at];
+    HAL_RING_FENCE();
     r->tail = (uint8_t)((uint8_t)(at + 1u) & mask);
     return byte;
 }

@@ -1,5 +1,6 @@
 """The hal of the ATmega328P by the data sheet's rules, which simrun holds in each run; part of system_tests.py."""
 import pathlib
+import re
 
 from system_support import OUT, SIMRUN, STREAMS, run, simrun, test
 
@@ -114,3 +115,23 @@ def line_with_a_damaged_or_lost_byte_is_refused_and_the_next_is_not():
             assert "# refused 3: characters that no command has" in notes and "# every 2" in notes, (lost, at, notes)
             assert not any(note.startswith("# every 100") for note in notes), (lost, at, notes)
             assert any("serial bytes lost 1, lines refused 1" in note for note in notes), (lost, at, notes)
+
+
+def bytes_put_in(header):
+    """Those that the code of ring_probe.c puts into its slot, with this text as hal_ring.h."""
+    folder = OUT / "ring"
+    folder.mkdir(exist_ok=True)
+    (folder / "hal_ring.h").write_text(header, encoding="utf-8")
+    run("avr-gcc", "-std=gnu11", "-mmcu=atmega328p", "-Os", "-S", f"-I{folder}", "host_tests/avr/ring_probe.c", "-o", folder / "ring_probe.s")
+    code = (folder / "ring_probe.s").read_text(encoding="ascii")
+    return [int(value) & 0xFF for value in re.findall(r"\tldi r\d+,lo8\((-?\d+)\)\n", code)]
+
+
+@test
+def byte_of_a_ring_is_there_before_its_index_says_so():
+    """An interrupt may look at every commit: no store from before it is put off, or dropped for a later one."""
+    header = pathlib.Path("hal/hal_ring.h").read_text(encoding="utf-8")
+    fence = '__asm__ volatile("" ::: "memory")'
+    assert header.count(fence) == 1
+    assert bytes_put_in(header) == [0x55, 0xAA]
+    assert bytes_put_in(header.replace(fence, "(void)0")) == [0xAA]
