@@ -1,8 +1,8 @@
 /*
  * Byte ring for one producer and one consumer, one of them an interrupt: each index has one owner and is one byte, so
  * no critical section is needed. SIZE is a power of two up to 256; one slot stays free to tell full from empty. The
- * producer works on `staged` and publishes it with hal_ring_commit. A byte is in the buffer before its index says so, and
- * out of it before its slot is free: HAL_RING_FENCE keeps the compiler from putting one behind the other.
+ * producer works on `staged` and publishes it with hal_ring_commit. A byte is in the buffer before its index says
+ * so, and out of it before its slot is free: HAL_RING_FENCE keeps the compiler from putting one behind the other.
  */
 #ifndef HAL_RING_H
 #define HAL_RING_H

@@ -164,7 +164,7 @@ static void test_a_position_of_six_may_be_up_to_30_degrees_off(void)
     }
 }
 
-/* A round is a line of each axis and a component of each position: one with 1 g for each, then six (docs/protocol.md). */
+/* A round is a line of each axis, a component of each position: one with 1 g for each, then six (docs/protocol.md). */
 static void test_six_positions_take_six_rounds_after_the_first(void)
 {
     enum { AXES = 3, ROUNDS = 6, PIECES = (AXES + CALIBRATION_POSITIONS) * (1 + ROUNDS) };

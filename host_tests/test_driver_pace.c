@@ -102,8 +102,8 @@ static void test_a_good_sample_resets_the_pace(void)
 }
 
 /*
- * A burst that hangs is given up after 3 ms, long before two periods of silence are up, and read again at once: 119 bits
- * of 2.75 us. Each end is seen up to one pass of main, 20 us, late.
+ * A burst that hangs is given up after 3 ms, long before two periods of silence are up, and read again at once: 119
+ * bits of 2.75 us. Each end is seen up to one pass of main, 20 us, late.
  */
 static void test_a_hung_burst_is_given_up(void)
 {

@@ -249,7 +249,7 @@ static void count_everything(void)
     rig_run_ms(500);
 }
 
-/* Each counter has its place, the driver's first, then those of the readings: no two of the ten are equal, none is 0. */
+/* Each counter has its place, the driver's first, then those of the readings: the ten are not equal and none is 0. */
 static void test_counters_by_their_places(void)
 {
     count_everything();

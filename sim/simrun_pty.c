@@ -1,9 +1,9 @@
 /*
  * A pseudo terminal in place of the USB serial port: for a terminal program, a plotter or avrdude. Simulated time keeps
  * to real time and never runs ahead of it: where the PC has no processor for the simulator, or the reader none for what
- * is in the terminal, simulated time waits. So what happens does not depend on how busy the PC is. A boot loader with an
- * empty flash (--blank) counts the time in which nothing comes and then leaves, while avrdude counts real time: there
- * simulated time also waits for avrdude.
+ * is in the terminal, simulated time waits. So what happens does not depend on how busy the PC is. A boot loader with
+ * an empty flash (--blank) leaves when nothing comes for a while of simulated time, and avrdude counts real time: from
+ * the opening on simulated time runs ahead until the boot loader listens, and waits there for avrdude.
  */
 #define _GNU_SOURCE /* posix_openpt */
 
@@ -19,8 +19,8 @@
 
 enum {
     READER_LOOK_MS = 50,
-    DEBT_MS = 20,          /* a debt of real time beyond that is not made up: boot loaders count time */
-    BOOT_QUIET_MS = 500,   /* of simulated time: Optiboot listens after 375 ms, and leaves when nothing comes for 1 s */
+    DEBT_MS = 20,        /* a debt of real time beyond that is not made up: boot loaders count time */
+    BOOT_QUIET_MS = 500, /* of simulated time: Optiboot listens after 375 ms, and leaves when nothing comes for 1 s */
     BOOT_PATIENCE_MS = 5000 /* of real time: avrdude sends its first byte after 0.6 s */
 };
 
@@ -30,7 +30,7 @@ typedef enum { BOOT_OVER, BOOT_STARTS, BOOT_TALKS } boot_t;
 static int master = -1;
 static boot_t boot;
 static uint64_t boot_quiet_at; /* cycle from which on simulated time waits for a byte */
-static bool opened; /* somebody holds the other end */
+static bool opened;            /* somebody holds the other end */
 static bool ever_opened;
 static struct timespec began;
 static double forgiven_ms; /* of real time, in which simulated time waited; less what it was let run ahead */
@@ -108,7 +108,8 @@ static bool wait_for_reader(double until_ms)
     }
     if (!reads && real_ms() >= until_ms) {
         static char reason[128];
-        snprintf(reason, sizeof reason, "a program holds the pseudo terminal but has read nothing for %g s (see --patience)",
+        snprintf(reason, sizeof reason,
+                 "a program holds the pseudo terminal but has read nothing for %g s (see --patience)",
                  options.patience_s);
         machine_fail(EXIT_READER, reason);
         return false;

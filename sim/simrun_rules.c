@@ -46,7 +46,7 @@ static size_t watched_count;
 static uint64_t eempe_at;
 static uint64_t watchdog_bites = NEVER;
 static uint64_t wdce_until; /* WDTCSR takes WDE and its period up to this cycle */
-static uint32_t opened_at; /* the instruction that follows the one that let interrupts in */
+static uint32_t opened_at;  /* the instruction that follows the one that let interrupts in */
 static bool led_lit;
 static uint32_t led_flashes;
 
