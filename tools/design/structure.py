@@ -69,6 +69,23 @@ def power(b, c):
         c = [c[i] - ratio * c[-1 - i] for i in range(len(c) - 1)]
 
 
+def power_and_margin(b, c):
+    """(power(b, c), the product of 1 - reflection^2), for floating point and b no longer than c, in one recursion."""
+    b, c = [*b, *[0.0] * (len(c) - len(b))], list(c)
+    gain, out, margin = c[0], 0.0, 1.0
+    while len(c) > 1:
+        first, last, carry = c[0], c[-1], b[-1]
+        ratio, carried = last / first, carry / first
+        margin *= 1 - ratio * ratio
+        if not abs(ratio) < 1:
+            return math.inf, margin
+        out += carried * carry
+        turned = c[:0:-1]
+        b = [x - carried * y for x, y in zip(b, turned)]
+        c = [x - ratio * y for x, y in zip(c, turned)]
+    return (out + b[0] / c[0] * b[0]) / gain, margin
+
+
 @dataclass(frozen=True)
 class Filter:
     """One filter of the structure: order of astatism v, a1..ak, b0..bl."""

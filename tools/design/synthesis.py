@@ -5,14 +5,15 @@ separates: the dynamic error is D = (1 + sum a) / e0, and 0 < b0 < 1 is e0 + ...
 however slow the filter is, so the search runs over them and over D, which is where a search over b0..bl would find a thin sliver.
 """
 import dataclasses
+import functools
 import itertools
 import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize
 
-from .structure import Filter, alpha_beta, difference, power, reflections, schur_cohn, total
+from . import simplex
+from .structure import Filter, alpha_beta, difference, power, power_and_margin, product, schur_cohn, total
 
 ORDER_MAX = 10  # v + k + l: beyond, double precision no longer holds the coefficients of a slow filter
 ERROR_MIN, ERROR_MAX = 1e-6, 1e4  # dynamic error per difference of what is asked for: within them every search holds and every response ends
@@ -25,6 +26,9 @@ SOUND = 1e-12  # the product of 1 - reflection^2 below which rounding spoils the
 TRUE = 1e-3  # share by which a noise gain in floating point may differ from the rational one
 HALVINGS = 36
 NOTHING = 1e-7  # a sum of a below this, far under 1/65536, is 0
+EDGES = tuple(math.log(x) for x in (ERROR_MIN, 1e-4, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, ERROR_MAX))  # where the least noise gain is bracketed
+DIFFERENCES = [difference(order) for order in range(ORDER_MAX + 1)]
+KEPT_REQUESTS = 256  # of which the search is remembered
 WALL = 1e5  # what a place outside the region or the circle costs
 BUTTERWORTH = {1: (1.0,), 2: (1.0, math.sqrt(2.0)), 3: (1.0, 2.0, 2.0), 4: (1.0, 2.613, 3.414, 2.613)}
 
@@ -73,13 +77,14 @@ def rounded(value, up=True, digits=4):
     return float(f"{(math.ceil if up else math.floor)(value / unit) * unit:.12g}")
 
 
-def from_memory(v, a, e):
-    """The filter with B / (1 - b0) = sum e_j (1 - z^-1)^j."""
-    b = [0.0]
+def from_memory(e):
+    """b0..bl with B / (1 - b0) = sum e_j (1 - z^-1)^j."""
+    b = [0.0] * len(e)
     for j, factor in enumerate(e):
-        b = total(b, difference(j), factor)
+        for i, coefficient in enumerate(DIFFERENCES[j]):
+            b[i] += factor * coefficient
     b0 = b[0] / (1 + b[0])
-    return Filter(v, tuple(a), (b0, *(x * (1 - b0) for x in b[1:])))
+    return (b0, *[x * (1 - b0) for x in b[1:]])
 
 
 def shape_from(units, region):
@@ -101,11 +106,12 @@ class Search:
         self.region, self.fixed_a = region, fixed_a
         self.slowest = slowest  # the largest pole radius allowed, None: any
         self.free_a = 0 if fixed_a is not None else k
+        self.fixed_shape = product(DIFFERENCES[v], (1, *(fixed_a or ())))  # A(z), where there is no a to choose
         self.known = []  # where earlier searches ended: starts for the next
 
-    def filter_at(self, place, error_max):
-        """The filter at a place of the search: log of D / error_max (at most 0), sum and others of a, scaled e1..el."""
-        a = list(self.fixed_a) if self.fixed_a is not None else shape_from(place[1:1 + self.free_a], self.region)
+    def parameters_at(self, place, error_max):
+        """(a1..ak, b0..bl) at a place of the search: log of D / error_max (at most 0), sum and others of a, scaled e1..el."""
+        a = self.fixed_a if self.fixed_a is not None else shape_from(place[1:1 + self.free_a], self.region)
         shape = max(1 + sum(a), 1e-12)
         e0 = shape / (error_max * math.exp(min(place[0], 0.0)))
         if self.l == 0:
@@ -113,29 +119,31 @@ class Search:
         speed = e0 ** (1 / self.v)
         scaled = place[1 + self.free_a:]
         e = [e0] + [scaled[j - 1] * (speed ** (self.v - j) if j < self.v else 1.0) for j in range(1, self.l + 1)]
-        return from_memory(self.v, a, e)
+        return tuple(a), from_memory(e)
+
+    def filter_at(self, place, error_max):
+        return Filter(self.v, *self.parameters_at(place, error_max))
 
     def cost(self, place, error_max):
-        place = [float(x) for x in place]
         try:
-            f = self.filter_at(place, error_max)
+            a, b = self.parameters_at(place, error_max)
         except (OverflowError, ZeroDivisionError):
             return 10 * WALL
         low, high = self.region.b0
-        if not low <= f.b[0] <= high:
+        if not low <= b[0] <= high:
             return 2 * WALL
-        c = f.characteristic
-        sound = math.prod(1 - ratio * ratio for ratio in reflections(c))
-        if not sound > SOUND or (self.free_a > 1 and self.outside(f)):
+        c = total(b, self.fixed_shape if self.free_a == 0 else product(DIFFERENCES[self.v], (1, *a)), 1 - b[0])
+        noise, sound = power_and_margin(b, c)
+        if not sound > SOUND or (self.free_a > 1 and self.outside(a)):
             return 2 * WALL
         if self.slowest is not None and not schur_cohn([x / self.slowest ** i for i, x in enumerate(c)]):
             return WALL
-        beyond = max(0.0, place[0]) + (abs(place[1] - sum(f.a)) if self.free_a else 0.0)
-        return power(f.b, c) * (1 + beyond)
+        beyond = max(0.0, place[0]) + (abs(place[1] - sum(a)) if self.free_a else 0.0)
+        return noise * (1 + beyond)
 
     @staticmethod
-    def outside(f):
-        return max(abs(np.roots(f.shape))) > 1 + 1e-9
+    def outside(a):
+        return max(abs(np.roots([1, *a]))) > 1 + 1e-9
 
     def starts(self):
         low, high = self.region.a_sum
@@ -160,10 +168,9 @@ class Search:
         starts = self.known[-2:] if quick and self.known else self.known[-2:] + list(self.starts())
         ranked = sorted(starts, key=lambda place: self.cost(place, error_max))
         spreads = (0.05,) if quick else (0.3, 0.02)
-        for found in sorted((self.polished(place, error_max, spreads) for place in ranked[:6]), key=lambda one: one.fun):
-            if found.fun >= WALL:
+        for cost, place in sorted((self.polished(place, error_max, spreads) for place in ranked[:6]), key=lambda one: one[0]):
+            if cost >= WALL:
                 break
-            place = [float(x) for x in found.x]
             f = self.filter_at(place, error_max)
             gain = float(f.exact().noise_gain())
             if abs(gain / power(f.b, f.characteristic) - 1) < TRUE:
@@ -172,13 +179,13 @@ class Search:
         return None
 
     def polished(self, place, error_max, spreads):
+        """(cost, place) of the least around a place."""
         found = None
         for spread in spreads:
-            at = np.asarray(place if found is None else found.x, float)
-            simplex = np.vstack([at, at + np.diag([-spread if i == 0 else spread for i in range(at.size)])])
-            options = {"initial_simplex": simplex, "xatol": 1e-10, "fatol": 1e-15, "maxfev": 250 * at.size}
-            new = minimize(self.cost, at, args=(error_max,), method="Nelder-Mead", options=options)
-            found = new if found is None or new.fun < found.fun else found
+            at = place if found is None else found[1]
+            corners = [at] + [[x + ((-spread if i == 0 else spread) if i == j else 0.0) for j, x in enumerate(at)] for i in range(len(at))]
+            new = simplex.least(lambda tried: self.cost(tried, error_max), corners, 1e-10, 1e-15, 250 * len(at))
+            found = new if found is None or new[0] < found[0] else found
         return found
 
 
@@ -267,6 +274,7 @@ def ordinal(v):
     return {1: "first", 2: "second", 3: "third"}.get(v, f"{v}th")
 
 
+@functools.lru_cache(KEPT_REQUESTS)
 def floor(request):
     """The noise gain below which the structure does not go, whatever the dynamic error: an infimum, found by the search but for alpha-beta and the
     average, where it is 0."""
@@ -283,13 +291,33 @@ def formula_error(request, noise_max):
     return error if error is not None and (request.l > 0 or error <= ERROR_MAX) else None
 
 
-def bracket(search, noise_max):
-    """(logs of two dynamic errors, the noise gain and filter at the larger, which has the noise gain asked for); None when there is none."""
-    edges = [math.log(x) for x in (ERROR_MIN, 1e-4, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, ERROR_MAX)]
-    for low, high in zip(edges, edges[1:]):
-        kept = search.least(math.exp(high))
+class Walk:
+    """The least noise gains of a structure at the edges, from the smallest error on, each searched for when it is first wanted."""
+
+    def __init__(self, request):
+        self.request, self.search = request, request.search()
+        self.found = []  # (what is kept at this edge, where the searches had ended by then)
+
+    def at(self, number):
+        while len(self.found) <= number:
+            kept = self.search.least(math.exp(EDGES[len(self.found) + 1]))
+            self.found.append((kept, tuple(self.search.known)))
+        return self.found[number]
+
+
+walk_of = functools.lru_cache(KEPT_REQUESTS)(Walk)
+
+
+def bracket(request, noise_max):
+    """(logs of two dynamic errors, the noise gain and filter at the larger, which has the noise gain asked for, a search that goes on from there);
+    None when there is none."""
+    walk = walk_of(request)
+    for number, (low, high) in enumerate(itertools.pairwise(EDGES)):
+        kept, known = walk.at(number)
         if kept is not None and kept[0] <= noise_max:
-            return low, high, kept
+            search = request.search()
+            search.known = list(known)
+            return low, high, kept, search
     return None
 
 
@@ -299,7 +327,7 @@ def reachable(request, noise_max):
         request.check()
     except Infeasible:
         return False
-    return formula_error(request, noise_max) is not None or bracket(request.search(), noise_max) is not None
+    return formula_error(request, noise_max) is not None or bracket(request, noise_max) is not None
 
 
 def nearest_noise(request, wanted):
@@ -330,11 +358,10 @@ def least_error(request, noise_max):
     error = formula_error(request, noise_max)
     if error is not None:
         return least_noise(request, error)
-    search = request.search()
-    found = bracket(search, noise_max)
+    found = bracket(request, noise_max)
     if found is None:
         raise Infeasible(below_floor(request, noise_max))
-    low, high, kept = found
+    low, high, kept, search = found
     for _ in range(HALVINGS):  # the least noise gain falls with the error allowed
         middle = 0.5 * (low + high)
         found = search.least(math.exp(middle), quick=True)
