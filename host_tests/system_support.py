@@ -17,7 +17,10 @@ import images  # noqa: E402
 from images import FW, SET_IMAGES  # noqa: E402
 from unity_report import failure, reason_of  # noqa: E402
 
-OUT = pathlib.Path("build/system") / pathlib.Path(sys.argv[0]).stem  # programs that run at the same time do not write the same files
+SHARE = re.compile(r"(\d+)of(\d+)")  # a word of the command line: 2of6 is every sixth test, from the second on
+SHARES = [word for word in sys.argv[1:] if SHARE.fullmatch(word)]
+# programs that run at the same time do not write the same files
+OUT = pathlib.Path("build/system", "-".join([pathlib.Path(sys.argv[0]).stem, *SHARES]))
 SIMRUN = "build/sim/simrun"
 STREAMS = pathlib.Path("sim/streams")
 # images whose clock does not start at 0
@@ -137,18 +140,25 @@ def processor_s():
     return sum(each.ru_utime + each.ru_stime for each in used)
 
 
+def chosen(tests, words):
+    """All tests, or those whose name contains one of the words, without those that contain a word after a minus; of these the share asked for."""
+    shares = [SHARE.fullmatch(word) for word in words]
+    only = [word for word, share in zip(words, shares) if not share and not word.startswith("-")]
+    without = [word[1:] for word in words if word.startswith("-")]
+    found = [each for each in tests if (not only or any(word in each.__name__ for word in only)) and not any(word in each.__name__ for word in without)]
+    for share in filter(None, shares):
+        found = found[int(share[1]) - 1::int(share[2])]
+    return found
+
+
 def run_all():
-    """All tests, or those whose name contains one of the words of the command line, without those that contain a word after a minus."""
+    """The tests that the command line chooses."""
     OUT.mkdir(parents=True, exist_ok=True)
-    only = [word for word in sys.argv[1:] if not word.startswith("-")]
-    without = [word[1:] for word in sys.argv[1:] if word.startswith("-")]
     file = pathlib.Path(sys.argv[0]).name
     failed = skipped = count = 0
     times = {}
-    for function in TESTS:
+    for function in chosen(TESTS, sys.argv[1:]):
         name = function.__name__
-        if only and not any(word in name for word in only) or any(word in name for word in without):
-            continue
         count += 1
         before_s = processor_s()
         try:

@@ -14,6 +14,7 @@ from unittest import mock
 
 sys.path[:0] = ["tools", "host_tests/tilt"]
 import run_tests  # noqa: E402
+import system_support  # noqa: E402
 import test_table  # noqa: E402
 from run_tests import Result  # noqa: E402
 from system_support import run_all, test  # noqa: E402
@@ -114,9 +115,11 @@ def program_that_is_not_there_is_a_failure_that_names_it():
 
 @test
 def what_took_longest_the_last_time_is_begun_first():
-    runs = {"quick": ["q"], "new": ["n"], "chip_new": ["python3", "c"], "long": ["l"], "system_tests": ["python3", "s"]}
+    runs = run_tests.shared({"quick": ["q"], "new": ["n"], "chip_new": ["python3", "c"], "long": ["l"], "system_tests": ["python3", "s"]})
+    parts = [f"system_tests {number}of6" for number in range(1, 7)]
+    assert runs[parts[0]] == ["python3", "s", "1of6"] and len(runs) == 10, runs
     times = {"quick": {"took_s": 0.5}, "long": {"took_s": 70.0}}
-    assert run_tests.longest_first(runs, times) == ["system_tests", "long", "chip_new", "new", "quick"]
+    assert run_tests.longest_first(runs, times) == ["long", *parts, "chip_new", "new", "quick"]
     with tempfile.TemporaryDirectory() as folder, mock.patch.object(run_tests, "OUT", pathlib.Path(folder)):
         assert run_tests.times_of_last_run() == {}
         (pathlib.Path(folder) / run_tests.TIMES).write_text("{", encoding="utf-8")
@@ -239,7 +242,19 @@ def every_test_of_the_tools_is_in_the_list():
     """But those of make check and make piocheck."""
     here = {path.stem for path in pathlib.Path("host_tests").glob("test_*.py")}
     assert here - test_table.NOT_HERE == {pathlib.Path(each.command[1]).stem for each in test_table.SCRIPTS}
-    assert set(run_tests.UNKNOWN_S) <= {"system_tests", "bitexact", "python", "chip", "program"} | here
+    others = {"system_tests", "bitexact", "exhaustive_isqrt"}
+    known = {name for name in run_tests.LONG_S if not name.startswith(("chip_", "tilt_"))}
+    assert known | set(run_tests.SHARES) <= others | here | {path.stem for path in pathlib.Path("host_tests").glob("test_*.c")}
+
+
+@test
+def shares_hold_every_test_once():
+    tests = [mock.Mock(__name__=name) for name in ("ab", "bc", "cd", "de", "abc", "x", "y")]
+    for words in ([], ["b"], ["-b"], ["b", "x", "-c"]):
+        parts = [system_support.chosen(tests, [*words, f"{number}of3"]) for number in (1, 2, 3)]
+        assert sorted(map(id, sum(parts, []))) == sorted(map(id, system_support.chosen(tests, words))), (words, parts)
+        assert max(map(len, parts)) - min(map(len, parts)) <= 1
+    assert [each.__name__ for each in system_support.chosen(tests, ["b", "-c"])] == ["ab"]
 
 
 if __name__ == "__main__":
