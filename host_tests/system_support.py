@@ -145,7 +145,8 @@ def chosen(tests, words):
     shares = [SHARE.fullmatch(word) for word in words]
     only = [word for word, share in zip(words, shares) if not share and not word.startswith("-")]
     without = [word[1:] for word in words if word.startswith("-")]
-    found = [each for each in tests if (not only or any(word in each.__name__ for word in only)) and not any(word in each.__name__ for word in without)]
+    found = [each for each in tests if not only or any(word in each.__name__ for word in only)]
+    found = [each for each in found if not any(word in each.__name__ for word in without)]
     for share in filter(None, shares):
         found = found[int(share[1]) - 1::int(share[2])]
     return found

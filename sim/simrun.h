@@ -85,6 +85,7 @@ extern avr_t *mcu;
 extern adxl345_model_t sensor;
 extern twi_peripheral_t twi;
 extern program_size_t machine_size;
+extern uint64_t machine_steps; /* looks at PC and stack: what the simulator costs, on any machine */
 
 /* Loads the firmware (and boot loader), builds the MCU and attaches everything. Exits with EXIT_INPUT on a bad file. */
 void machine_start(void);
@@ -95,7 +96,6 @@ void machine_reschedule(void);
 /* First cause wins; ends the run. `reason` stays valid. */
 void machine_fail(exit_status_t status, const char *reason);
 double machine_ms(void);
-void machine_print(FILE *json);
 bool machine_asked_to_end(void);          /* by SIGINT or SIGTERM */
 uint32_t machine_random(void);            /* xorshift32 from --seed */
 bool machine_in_boot_loader(uint32_t pc); /* byte address; false without --bootloader */

@@ -38,7 +38,7 @@ static uint64_t max_cycle = NEVER;
 static volatile sig_atomic_t asked_to_end;
 static bool interactive;
 static uint32_t chunk_cycles = CHUNK_CYCLES;
-static uint64_t steps; /* looks at PC and stack: what the simulator costs, on any machine */
+uint64_t machine_steps;
 
 double machine_ms(void)
 {
@@ -359,7 +359,7 @@ static void run(void)
         if (span_wanted && running) {
             span_on_pc(last_pc);
         }
-        steps++;
+        machine_steps++;
         bool eventful = step(stack_low ? 0 : chunk_cycles);
         stack_low = stack_watch(machine_size.end_of_ram);
         if (options.profile != NULL && running) {
@@ -372,11 +372,6 @@ static void run(void)
             break;
         }
     } while (failure == EXIT_OK);
-}
-
-void machine_print(FILE *json)
-{
-    fprintf(json, "  \"simulator_steps\": %llu,\n", (unsigned long long)steps);
 }
 
 exit_status_t machine_run(const char **reason)

@@ -221,7 +221,7 @@ void stats_write(exit_status_t status)
     fprintf(file, "  \"cpu_load\": %.5f,\n", load());
     write_interrupts(file);
     pass_print(file);
-    machine_print(file);
+    fprintf(file, "  \"simulator_steps\": %llu,\n", (unsigned long long)machine_steps);
     unsigned ram = machine_size.end_of_ram - RAM_START;
     fprintf(file, "  \"flash_bytes\": %u,\n  \"ram_static_bytes\": %u,\n", (unsigned)machine_size.flash_bytes, ram);
     fprintf(file, "  \"stack_high_water_bytes\": %u,\n  \"ram_used_bytes\": %u,\n", (unsigned)stack_high_water(),
