@@ -46,11 +46,15 @@ def probe(image, *faults, seed=1):
     return starts, json.loads(stats.read_text(encoding="ascii"))
 
 
+def four_saves(image):
+    """What each of four starts finds on a board that was empty before the first."""
+    image.unlink(missing_ok=True)
+    return [probe(image) for _ in range(4)]
+
+
 @test
 def store_keeps_a_set_over_power_cycles_on_the_chip():
-    image = OUT / "store.bin"
-    image.unlink(missing_ok=True)
-    told = [probe(image) for _ in range(4)]
+    told = four_saves(OUT / "store.bin")
     starts = [starts for starts, _ in told]
     assert starts == [[{"status": "empty", "set": "-", "save": "+", "end": ""}]] + [
         [{"status": "good", "set": str(n), "save": "+", "end": ""}] for n in (1, 2, 3)], starts
@@ -70,7 +74,9 @@ def cut(kept, fault, seed=1):
 @test
 def store_survives_power_cuts_on_the_chip():
     """In every write with one kind of what is left in turn; in the outer ones all kinds, before and after too."""
-    kept = (OUT / "store.bin").read_bytes()
+    image = OUT / "store_kept.bin"
+    four_saves(image)
+    kept = image.read_bytes()
     outer = (1, 2, 25, WRITES - 1, WRITES)
     for n in range(1, WRITES + 1):
         for left in LEFT if n in outer else LEFT[n % 4:n % 4 + 1]:
