@@ -8,12 +8,15 @@ import threading
 
 from shop import ROOT, Compiler, Stop, digest, run, timed
 
-PLAIN = ["-w", "-O1", "-fPIC"]
+# a mutant replaces whole files, so calls within one need not go by the table that lets a library replace them
+PLAIN = ["-w", "-O1", "-fPIC", "-fno-semantic-interposition", "-fno-plt"]
 # a breach of C's rules ends the program as it does in make test, by a trap: no library to start, nothing to print
 VARIANTS = {"ubsan": ["-fsanitize=undefined", "-fsanitize-undefined-trap-on-error"],
             "asan": ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]}
 NOT_OF_THE_PRODUCT = {"test_simrun_judge"}  # of the simulator
-HANG_TIMES, HANG_MIN_S = 10, 3
+HANG_TIMES, HANG_MIN_S = 10, 1
+# Unity's last word on each test function: one that failed has judged the mutant, the others of the program need not run
+FIRST_FAILURE = ["-DUNITY_PRINT_EXEC_TIME()=(Unity.TestFailures?_exit(1):(void)0)", "-includeunistd.h"]
 # linked into each test: what it starts itself (a shell, python) has no symbols for the libraries that are loaded before the test
 ALONE = """int unsetenv(const char *);
 __attribute__((constructor)) static void children_load_nothing(void) { unsetenv("LD_PRELOAD"); }
@@ -55,7 +58,8 @@ class Host:
         if source.endswith(".cpp"):
             includes = [flag for flag in self.settings.flags if not flag.startswith("-std")]
             return [*self.settings.cxx, "-std=c++17", "-O2", "-w", "-fPIC", *includes, "-isystem", "/usr/include/eigen3"]
-        return [*self.settings.compiler, *self.settings.flags, *PLAIN, *self.flags]
+        unity = FIRST_FAILURE if source == self.settings.unity else []
+        return [*self.settings.compiler, *self.settings.flags, *PLAIN, *unity, *self.flags]
 
     def plain_command(self, source):
         """As the optimiser sees it, without checks of C's rules."""

@@ -8,6 +8,7 @@ from reach import Reach
 JUDGES = pathlib.Path("campaigns/mutants/judges.txt")
 HEAD = "# The tests that notice most of a file's mutants, by `make mutants ACCEPT=1`: a sample asks these first.\n"
 KEPT = 12  # names a file
+START_S, REBUILD_S = 0.02, 0.2
 
 
 def listed():
@@ -19,12 +20,13 @@ def listed():
 
 
 class Reached:
-    """Those that reach the mutant's line: cheap ones first, and those that noticed others of its file."""
+    """Those that reach the mutant's line: first what costs least for each mutant of its file that it is likely to notice."""
 
     def __init__(self, host, mutants, texts, patience_s, pool, say):
         files = {m.file for m in mutants}
         units = [s for s in host.product if s in files or files & set(host.objects.deps(s))]
         self.host, self.texts, self.patience_s, self.kills = host, texts, patience_s or float("inf"), Counter()
+        self.asked = Counter()
         self.reach = Reach(host, units)
         self.reach.measure(pool, host.tests, self.patience_s, say)
         self.limits = {(host.variant, test): seconds for test, seconds in self.reach.seconds.items()}
@@ -37,11 +39,22 @@ class Reached:
         line, span = mutant.line(self.texts[mutant.file]), self.spans[mutant.file, mutant.owner]
         includers = [s for s in self.reach.files if mutant.file in self.host.objects.deps(s)] if mutant.file.endswith(".h") else []
         found = self.reach.tests_of(mutant.file, line, span, includers)
-        return sorted(found, key=lambda test: self.reach.seconds[test] / (1 + self.kills[mutant.file, test]))
+        return sorted(found, key=lambda test: self.cost_s(mutant, test) / self.likely(mutant.file, test))
+
+    def cost_s(self, mutant, test):
+        """A test that includes the mutant's header is compiled and linked for it."""
+        rebuilt = mutant.file.endswith(".h") and mutant.file in self.host.objects.deps(self.host.test_source(test))
+        return self.reach.seconds[test] + START_S + (REBUILD_S if rebuilt else 0)
+
+    def likely(self, file, test):
+        return (1 + self.kills[file, test]) / (2 + self.asked[file, test])
 
     def learn(self, mutant, by):
-        if by:
-            self.kills[mutant.file, by] += 1
+        for test in self.tests(mutant, self.host):
+            self.asked[mutant.file, test] += 1
+            if test == by:
+                self.kills[mutant.file, by] += 1
+                return
 
 
 class Cheapest:
