@@ -1,7 +1,7 @@
 """Mutants by operators: each is one small change of the product that some test must notice.
 
     make mutants                    all (hours; goes on where it stopped)
-    make mutants ONLY=lib/tilt      those of files whose path begins so
+    make mutants ONLY=lib/tilt      those of a folder in goals.txt, or of files whose path begins so (ONLY=firmware/ is with firmware/nav)
     make mutants SAMPLE=25          so many of the folders in goals.txt, drawn by the tree's hash: fails on a survivor that is not accepted
 """
 import argparse
@@ -20,7 +20,7 @@ from judge import Judge, Worker
 from nav import Link, Variants
 from operators import mutants_of
 from order import Cheapest, Listed, Reached, write_judges
-from results import Results, accepted, below_goal, folder_of, measured, table, write_accepted, write_goals, write_json
+from results import Results, accepted, below_goal, folder_of, goals, measured, table, write_accepted, write_goals, write_json
 from shop import Stop, alone, copy_tree, digest, tree_files
 
 WORKERS = 2
@@ -50,7 +50,7 @@ def above_zero(name, kind):
 
 def options_of(arguments):
     parser = argparse.ArgumentParser(prog="mutants", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", default="", help="prefix of the files' paths")
+    parser.add_argument("--only", default="", help="a folder in goals.txt, or a prefix of the files' paths")
     parser.add_argument("--sample", type=above_zero("SAMPLE", int), default=0, help="so many, drawn by the tree's hash")
     parser.add_argument("--seed", default="", help="draw by these words instead")
     parser.add_argument("--seconds", type=above_zero("STOP_AFTER", float), default=0, help="stop after so long; the next run goes on")
@@ -72,7 +72,8 @@ def sources(options):
     folders = measured() if options.sample else ["lib, firmware, hal"]
     if not folders:
         raise Stop("no folder in campaigns/mutants/goals.txt was measured whole, so no sample can be judged: make mutants ONLY=folder ACCEPT=1")
-    found = [name for name in product() if name.startswith(options.only) and (not options.sample or folder_of(name) in folders)]
+    wanted = (lambda name: folder_of(name) == options.only) if options.only in goals() else lambda name: name.startswith(options.only)
+    found = [name for name in product() if wanted(name) and (not options.sample or folder_of(name) in folders)]
     if not found:
         raise Stop(f"no source in {', '.join(folders)} begins with {options.only}")
     return found
