@@ -103,6 +103,23 @@ static void test_a_sign_bit_that_disagrees_is_no_reading(void)
     }
 }
 
+/* One past the upper rail, while the other axes are at the lower one and set no bit beside it. */
+static void test_a_value_beyond_the_range_is_no_reading(void)
+{
+    for (uint8_t code = 0; code < 4; code++) {
+        uint8_t range_g = (uint8_t)(2u << code);
+        int16_t rail = (int16_t)(range_g * 256);
+        start(range_g, false);
+        format = (uint8_t)(0x08 + code);
+        for (unsigned axis = 0; axis < 3; axis++) {
+            int16_t lsb[3] = { (int16_t)-rail, (int16_t)-rail, (int16_t)-rail };
+            TEST_ASSERT_EQUAL(READING_GOOD, judged(lsb, 0, 0));
+            lsb[axis] = rail;
+            TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, 0, 0));
+        }
+    }
+}
+
 static void test_every_single_flip_of_pattern_and_status(void)
 {
     static const int16_t lsb[] = { 1, -2, 256 };
@@ -148,6 +165,51 @@ static void test_counters_saturate(void)
     TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, readings.failed);
     TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, readings.empty);
     TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, readings.overruns);
+}
+
+/* Flag 64 of the row after a reading that failed, and of no other (docs/protocol.md). */
+static void test_a_failed_reading_is_marked_once(void)
+{
+    static const int16_t lsb[] = { 1, -2, 256 };
+    integrity_init();
+    start(16, false);
+    format = 0x0B;
+    TEST_ASSERT_EQUAL(READING_GOOD, judged(lsb, 0, 0));
+    TEST_ASSERT_EQUAL_HEX8(0, integrity_marks());
+    TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_CTL, 1));
+    TEST_ASSERT_EQUAL_HEX8(64, integrity_marks());
+    TEST_ASSERT_EQUAL_HEX8(0, integrity_marks());
+    TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_CTL, 1));
+    integrity_init();
+    TEST_ASSERT_EQUAL_HEX8(0, integrity_marks());
+}
+
+/* However many follow the third, they are torn: none of them says that the configuration is lost. */
+static void test_torn_readings_stay_torn(void)
+{
+    static const int16_t lsb[] = { 1, -2, 256 };
+    integrity_init();
+    start(16, false);
+    format = 0x0B;
+    for (unsigned i = 1; i <= 300; i++) {
+        TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_CTL, 1));
+        TEST_ASSERT_EQUAL(i >= 3 ? ADXL345_FAULT_TORN : ADXL345_FAULT_NONE, integrity_fault());
+    }
+}
+
+/* INT1 is called stuck by three bursts in a row that met no sample, of which those before integrity_forget are none. */
+static void test_the_third_empty_reading_is_of_an_int1_that_is_stuck(void)
+{
+    static const int16_t lsb[] = { 1, -2, 256 };
+    start(16, false);
+    format = 0x0B;
+    for (unsigned times = 0; times < 2; times++) {
+        integrity_forget();
+        for (unsigned i = 1; i <= 300; i++) {
+            TEST_ASSERT_EQUAL(READING_EMPTY, judged(lsb, READING_SOURCE, 0x80));
+            TEST_ASSERT_EQUAL(i >= 3, integrity_int1_stuck());
+        }
+    }
 }
 
 /* The tenth equal triplet in a row and all that follow it, until one differs in one axis. */
@@ -262,9 +324,13 @@ int main(void)
     RUN_TEST(test_no_shift_keeps_the_pattern);
     RUN_TEST(test_a_reading_with_the_other_self_test_bit_is_no_reading);
     RUN_TEST(test_a_sign_bit_that_disagrees_is_no_reading);
+    RUN_TEST(test_a_value_beyond_the_range_is_no_reading);
     RUN_TEST(test_every_single_flip_of_pattern_and_status);
     RUN_TEST(test_ones_on_all_axes_are_nobody);
     RUN_TEST(test_counters_saturate);
+    RUN_TEST(test_a_failed_reading_is_marked_once);
+    RUN_TEST(test_torn_readings_stay_torn);
+    RUN_TEST(test_the_third_empty_reading_is_of_an_int1_that_is_stuck);
     RUN_TEST(test_the_tenth_equal_reading_is_stuck);
     RUN_TEST(test_a_sensor_that_may_be_another_has_ten_readings_of_its_own);
     RUN_TEST(test_the_bound_of_a_false_alarm);
