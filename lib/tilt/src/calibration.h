@@ -128,8 +128,8 @@ calibration_verdict_t calibration_single(calibration_t *c, const int16_t mean_ls
 /*
  * Offsets and scales from the means at rest in all six positions (x, y, z of position 0, x, y, z of position 1, ...),
  * each up to 20 degrees from its axis in any direction. Refused, and *c unchanged, with the reason. residual_mg: the
- * largest | |a| - 1 g | of the six, when not refused; above 10 mg they do not fit each other. Six readings determine
- * six numbers, so it tells whether the solution fits, not how good the readings were.
+ * largest | |a| - 1 g | of the six, when not refused; above 160/16384 g (9.8 mg) they do not fit each other. Six
+ * readings determine six numbers, so it tells whether the solution fits, not how good the readings were.
  */
 calibration_verdict_t calibration_six(calibration_t *c, const int16_t mean_lsb_q4[3 * CALIBRATION_POSITIONS],
                                       uint16_t *residual_mg);

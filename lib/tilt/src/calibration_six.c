@@ -13,7 +13,7 @@
 #define ONE_Q28 (1UL << 28)
 #define ACROSS_MAX_Q28 (ONE_Q28 / 4U) /* sin(30 degrees)^2: what is 20 degrees off stays below in every round */
 
-enum { ROUNDS = 6, RESIDUAL_MAX_Q14 = 163 /* 10 mg */ };
+enum { ROUNDS = 6, RESIDUAL_MAX_Q14 = 160 };
 
 /*
  * Two readings of an axis, Q4, are 6,014 to 10,560 apart for legal scales and 20 degrees. Others cannot become legal,
