@@ -97,7 +97,7 @@ include mk/host.mk
 S := $(B)/sim
 SIMRUN_SRC := $(wildcard sim/simrun*.c) $(wildcard sim/twi_*.c) sim/adxl345_model.c sim/stream.c
 # libsimavr as an archive, where there is one: no detour at its calls takes a tenth of the time away, and changes no row
-SIMAVR_LINK := $(if $(wildcard /usr/lib/*/libsimavr.a),-l:libsimavr.a -l:libsimavrparts.a,$$(pkg-config --libs simavr) -lsimavrparts)
+SIMAVR_LINK := $(if $(wildcard /usr/lib/*/libsimavr.a),-l:libsimavr.a,$$(pkg-config --libs simavr))
 $(S)/simrun: $(SIMRUN_SRC) $(wildcard sim/*.h)
 	@mkdir -p $(@D)
 	@$(HOST_CC) -std=gnu11 -O2 -flto -g $(WARNINGS) -Isim -Ilib/adxl345/src $$(pkg-config --cflags simavr | sed 's/-I/-isystem /g') \

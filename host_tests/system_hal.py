@@ -2,7 +2,6 @@
 import pathlib
 import re
 
-import system_pty  # noqa: F401  (its tests join the list)
 from system_support import OUT, SIMRUN, STREAMS, run, simrun, test
 
 HAL = [f"hal/avr/hal_{name}.c" for name in ("uart", "time", "sleep", "watchdog", "i2c")]

@@ -8,7 +8,7 @@ import subprocess
 import termios
 import time
 
-from system_support import FW, OUT, SIMRUN, STREAMS, test
+from system_support import FW, OUT, SIMRUN, STREAMS, run, test
 
 STREAM = STREAMS / "rest-2lsb.csv"
 FAST = ["--rate", "400", "--baud", "500000"]  # fills the terminal, 12 KB, in half a second
@@ -55,3 +55,9 @@ def who_reads_late_is_waited_for():
     sent = (OUT / "late-read.csv").read_bytes()
     assert status == 0, (status, said)
     assert len(came) > 20000 and came in sent, (len(came), len(sent))
+
+
+@test
+def patience_is_for_a_terminal():
+    done = run(SIMRUN, "--fw", FW, "--in", STREAM, "--out", OUT / "x.csv", "--patience", "5", expect=2)
+    assert "--patience is for a terminal: give --pty" in done.stderr, done.stderr

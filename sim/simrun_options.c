@@ -8,6 +8,8 @@
 
 options_t options = { .seed = 1 };
 
+#define PATIENCE_S 60.0
+
 enum option_code {
     OPTION_FW = 256,
     OPTION_IN,
@@ -373,6 +375,9 @@ static void check_together(void)
     if (options.blank && options.bootloader == NULL) {
         refuse("--blank leaves nothing to run: give --bootloader");
     }
+    if (options.patience_s > 0.0 && !options.pty) {
+        refuse("--patience is for a terminal: give --pty");
+    }
     if (options.loop && options.max_ms <= 0.0 && options.gdb_port == 0 && !options.pty) {
         refuse("--loop never ends: give --max-ms");
     }
@@ -383,7 +388,6 @@ void options_parse(int argc, char **argv)
     int index = 0;
     int code;
     options.part = adxl345_part_typical;
-    options.patience_s = 60.0;
     while ((code = getopt_long(argc, argv, "", known, &index)) != -1) {
         take(code, known[index].name, optarg);
     }
@@ -391,4 +395,5 @@ void options_parse(int argc, char **argv)
         refuse("'%s' is no option", argv[optind]);
     }
     check_together();
+    options.patience_s = options.patience_s > 0.0 ? options.patience_s : PATIENCE_S;
 }

@@ -85,6 +85,8 @@ static void look_for_user(void)
         }
         resets_port_opened();
         boot_enter(options.blank ? BOOT_STARTS : BOOT_OVER);
+    } else if (!now) {
+        boot = BOOT_OVER; /* nobody is left to wait for, or to run ahead for */
     }
     opened = now;
     ever_opened = ever_opened || now;
@@ -94,7 +96,8 @@ static void look_for_user(void)
 static bool wait_for(short event, bool *came)
 {
     struct pollfd end = { .fd = master, .events = event };
-    bool well = poll(&end, 1, READER_LOOK_MS) >= 0 && (end.revents & POLLHUP) == 0 && !machine_asked_to_end();
+    bool looked = poll(&end, 1, READER_LOOK_MS) >= 0 || errno == EINTR; /* a signal is no hanging up */
+    bool well = looked && (end.revents & POLLHUP) == 0 && !machine_asked_to_end();
     *came = well && (end.revents & event) != 0;
     return well;
 }
