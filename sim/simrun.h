@@ -96,6 +96,8 @@ void machine_reschedule(void);
 /* First cause wins; ends the run. `reason` stays valid. */
 void machine_fail(exit_status_t status, const char *reason);
 double machine_ms(void);
+enum { OPCODE_SLEEP = 0x9588 };
+unsigned machine_opcode_at(uint32_t pc);  /* byte address */
 bool machine_asked_to_end(void);          /* by SIGINT or SIGTERM */
 uint32_t machine_random(void);            /* xorshift32 from --seed */
 bool machine_in_boot_loader(uint32_t pc); /* byte address; false without --bootloader */

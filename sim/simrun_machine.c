@@ -290,7 +290,7 @@ static uint64_t next_timer(void)
     return first == NULL ? NEVER : first->when;
 }
 
-static unsigned opcode_at(uint32_t pc)
+unsigned machine_opcode_at(uint32_t pc)
 {
     return mcu->flash[pc] | (unsigned)mcu->flash[pc + 1] << 8;
 }
@@ -301,12 +301,13 @@ static unsigned opcode_at(uint32_t pc)
  */
 static void serve_interrupts(void)
 {
-    enum { OPCODE_SLEEP = 0x9588, OPCODE_CLI = 0x94F8 };
+    enum { OPCODE_CLI = 0x94F8 };
     if (mcu->interrupt_state == 0) {
         return;
     }
     avr_service_interrupts(mcu);
-    if (mcu->interrupt_state > 0 && opcode_at(last_pc) == OPCODE_SLEEP && opcode_at(mcu->pc) == OPCODE_CLI) {
+    if (mcu->interrupt_state > 0 && machine_opcode_at(last_pc) == OPCODE_SLEEP &&
+        machine_opcode_at(mcu->pc) == OPCODE_CLI) {
         avr_service_interrupts(mcu);
     }
 }

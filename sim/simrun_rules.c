@@ -26,7 +26,6 @@ enum {
     BIT_TWSTO = 0x10,
     BIT_TWSTA = 0x20,
     LED = 1 << 5,
-    OPCODE_SLEEP = 0x9588,
     JUST_OPENED = -2, /* simavr's interrupt_state */
     WATCHED_MAX = 16
 };
@@ -184,7 +183,7 @@ void rules_on_reset(void)
 void rules_on_step(uint32_t from)
 {
     if (mcu->state == cpu_Sleeping && interrupts_on()) {
-        bool alone = (mcu->flash[from] | (unsigned)mcu->flash[from + 1] << 8) == OPCODE_SLEEP && from == opened_at;
+        bool alone = machine_opcode_at(from) == OPCODE_SLEEP && from == opened_at;
         if (!alone) {
             broken("SLEEP does not follow the SEI that lets interrupts in: a wake-up before it is lost");
         }

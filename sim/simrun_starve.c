@@ -6,9 +6,15 @@
 
 static avr_run_t run_before;
 
+/* Between SEI and SLEEP nothing comes: it falls asleep, and starves when it is woken. */
+static bool falls_asleep(const avr_t *avr)
+{
+    return machine_opcode_at(avr->pc) == OPCODE_SLEEP;
+}
+
 static void run_handlers_only(avr_t *avr)
 {
-    if (avr->state == cpu_Running && !stats_in_interrupt() && avr->sreg[S_I]) {
+    if (avr->state == cpu_Running && !stats_in_interrupt() && avr->sreg[S_I] && !falls_asleep(avr)) {
         avr->state = cpu_Sleeping;
     }
     run_before(avr);
