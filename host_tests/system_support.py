@@ -143,6 +143,9 @@ def processor_s():
 def chosen(tests, words):
     """All tests, or those whose name contains one of the words, without those that contain a word after a minus; of these the share asked for."""
     shares = [SHARE.fullmatch(word) for word in words]
+    wrong = [share[0] for share in shares if share and not 1 <= int(share[1]) <= int(share[2])]
+    if wrong:
+        sys.exit(f"{wrong[0]} is no share: the first of three is 1of3, the last 3of3")
     only = [word for word, share in zip(words, shares) if not share and not word.startswith("-")]
     without = [word[1:] for word in words if word.startswith("-")]
     found = [each for each in tests if not only or any(word in each.__name__ for word in only)]

@@ -255,6 +255,13 @@ def shares_hold_every_test_once():
         assert sorted(map(id, sum(parts, []))) == sorted(map(id, system_support.chosen(tests, words))), (words, parts)
         assert max(map(len, parts)) - min(map(len, parts)) <= 1
     assert [each.__name__ for each in system_support.chosen(tests, ["b", "-c"])] == ["ab"]
+    for word in ("0of6", "7of6", "1of0"):
+        try:
+            system_support.chosen(tests, [word])
+        except SystemExit as end:
+            assert f"{word} is no share" in str(end), end
+        else:
+            raise AssertionError(f"{word} was taken")
 
 
 if __name__ == "__main__":
