@@ -41,7 +41,7 @@ AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -maccumula
 AVR_DEBUG   := -gdwarf-2 -g1
 AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr $(FILTER_FLAG)
-AVR_LINK    := -mmcu=atmega328p $(AVR_DEBUG) $(AVR_SMALL) -Wl,--gc-sections
+AVR_LINK    := -mmcu=atmega328p $(AVR_DEBUG) $(AVR_SMALL) -Wl,--gc-sections -Wl,--defsym=__TEXT_REGION_LENGTH__=32768
 AVR_SRC     := $(APP_SRC) $(LIB_SRC) $(wildcard hal/avr/*.c)
 AVR_OBJ     := $(AVR_SRC:%.c=$(U)/%.o)
 include mk/images.mk
