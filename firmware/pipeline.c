@@ -12,14 +12,13 @@
 #include "silence.h"
 #include "supervisor.h"
 
-enum { AWAY_SAMPLES = 2 };  /* on end, away from what was held: no bad reading */
 enum { HUNG_SAMPLES = 16 }; /* with ROW_STUCK, on end: a filter has learned from them */
 
 pipeline_t pipeline;
 
-FX_NOINLINE void keep_estimate(axis_t *axis, int32_t x_lsb_q16)
+FX_NOINLINE void keep_estimate(axis_t *axis)
 {
-    axis->estimate_q8 = (x_lsb_q16 + 128) >> 8;
+    axis->estimate_q8 = (axis->path.filter.x_lsb_q16 + 128) >> 8;
 }
 
 void pipeline_reset(void)
@@ -43,12 +42,8 @@ FX_ONCE void pipeline_coast(uint32_t t_us)
 
 static void coast_axis(axis_t *axis)
 {
-    bool holds = silence_holds();
-    if (!holds) {
-        keep_estimate(axis, filter_missing(&axis->filter));
-        noise_gap(&axis->noise);
-    }
-    axis->away = holds && pipeline.has_sample;
+    tilt_axis_missing(&axis->path);
+    keep_estimate(axis);
 }
 
 uint32_t pipeline_newest_us(void)
@@ -56,82 +51,38 @@ uint32_t pipeline_newest_us(void)
     return pipeline.last_us;
 }
 
-uint32_t axis_r_lsb2_q8(const axis_t *axis)
+/* A hung sensor answers again: the noise that its filter has learned was that of one that hung. */
+static bool has_hung(const axis_t *axis)
 {
-    uint32_t set_lsb2_q8 = parameters_r_lsb2_q8();
-    return set_lsb2_q8 != 0 ? set_lsb2_q8 : noise_r_lsb2_q8(&axis->noise);
+    return pipeline.stuck == HUNG_SAMPLES && !(pipeline.flags & ROW_STUCK) && axis->path.away == 0;
 }
 
-/* Within 2.8 sigmas of the estimate, by the R of the noise, which is 3.5 of a healthy sensor's. */
-static bool near_estimate(const axis_t *axis)
-{
-    int16_t off_lsb = (int16_t)(axis->lsb - estimate_lsb(axis));
-    uint16_t size_lsb = (uint16_t)(off_lsb < 0 ? -off_lsb : off_lsb);
-    return fx_mul_u16(size_lsb, size_lsb) <= noise_r_lsb2_q8(&axis->noise) >> 5;
-}
-
-/*
- * Amid a sample, the filter of its axis begins anew. From the estimate, where the noise that it has learned was that of
- * a sensor that hung: none, so that it would refuse what comes now. Else on the sample, with the noise as it is known.
- */
-static void renew(bool from_estimate)
+/* During a sample, the filter of its axis restarts from the estimate and knows nothing of the noise. */
+static void renew(void)
 {
     pipeline.work = WORK_RENEW;
     pipeline.step = 0;
-    pipeline.new_noise = from_estimate;
-    pipeline.has_sample = from_estimate;
+    pipeline.new_noise = true;
     pass.limit = PASS_CHANGING_US / HAL_LAP_US;
-}
-
-/*
- * After a hold. True: the filter takes the sample; near the estimate it goes on from what was held. A single one away
- * from it may be a bad reading: with the second on end that is not at the rail the filter begins anew, with the noise
- * as it is known. That is work of its own, amid the sample's.
- */
-static bool rejoins(axis_t *axis)
-{
-    if (!near_estimate(axis)) {
-        if (pipeline.clipped || axis->away++ < AWAY_SAMPLES) {
-            pipeline_flag(ROW_GATED);
-            return false;
-        }
-        pipeline_flag(ROW_REACQUIRED);
-        renew(false);
-    }
-    axis->away = 0;
-    return true;
 }
 
 _Static_assert((int)FILTER_GATED == (int)ROW_GATED && (int)FILTER_REACQUIRED == (int)ROW_REACQUIRED, "same bits");
 
 static void update_axis(axis_t *axis)
 {
-    keep_estimate(axis, filter_update(&axis->filter, axis->lsb));
-    uint8_t flags = axis->filter.flags;
-    uint8_t same = flags & (FILTER_GATED | FILTER_REACQUIRED);
-    pipeline_flag((uint16_t)((flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same));
+    uint8_t flags = tilt_axis_update(&axis->path, axis->lsb, pipeline.rail_high_lsb, !pipeline.own_r);
+    keep_estimate(axis);
+    uint16_t row_flags = flags & (FILTER_GATED | FILTER_REACQUIRED);
+    if (flags & FILTER_WARMING_UP) {
+        row_flags |= ROW_WARMING_UP;
+    }
+    if (flags & TILT_AXIS_CLIPPED) {
+        row_flags |= ROW_CLIPPED;
+    }
     if (SUPERVISOR && (flags & FILTER_SWITCHED) != 0) {
-        pipeline_flag(ROW_SWITCHED);
+        row_flags |= ROW_SWITCHED;
     }
-}
-
-/* What comes before the filter of an axis; false: it does not take the sample, or begins anew before it does. */
-static bool prepare_axis(axis_t *axis)
-{
-    int16_t lsb = axis->lsb;
-    bool clipped = lsb >= pipeline.rail_high_lsb || lsb <= (int16_t)(-pipeline.rail_high_lsb - 1);
-    pipeline.clipped = clipped;
-    if (clipped) {
-        pipeline_flag(ROW_CLIPPED);
-    }
-    if (pipeline.stuck == HUNG_SAMPLES && !(pipeline.flags & ROW_STUCK) && axis->away == 0) {
-        renew(true);
-        return false;
-    }
-    if (!clipped && noise_update(&axis->noise, lsb)) {
-        filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
-    }
-    return axis->away == 0 || (rejoins(axis) && pipeline.work != WORK_RENEW);
+    pipeline_flag(row_flags);
 }
 
 static void count_sample(void)
@@ -188,7 +139,6 @@ static bool renewed(void)
         return false;
     }
     pipeline.work = WORK_SAMPLE;
-    pipeline.has_sample = true;
     pass.limit = PASS_US / HAL_LAP_US;
     return true;
 }
@@ -199,10 +149,13 @@ static void axis_step(void)
     axis_t *axis = axis_now();
     if (pipeline.work == WORK_COAST) {
         coast_axis(axis);
-    } else if (pipeline.work == WORK_SAMPLE ? prepare_axis(axis) : renewed()) {
-        update_axis(axis);
-    } else if (pipeline.work == WORK_RENEW) {
+    } else if (pipeline.work == WORK_SAMPLE && has_hung(axis)) {
+        renew();
         return;
+    } else if (pipeline.work == WORK_RENEW && !renewed()) {
+        return;
+    } else {
+        update_axis(axis);
     }
     if (++pipeline.axis == AXES) {
         find_accelerations();

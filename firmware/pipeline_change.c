@@ -74,6 +74,14 @@ FX_ONCE void pipeline_retime(uint32_t period_us)
     }
 }
 
+/* R that its filter is to have: the user's, else the estimated one; LSB^2 Q8. */
+static uint32_t r_lsb2_q8(const axis_t *axis)
+{
+    uint32_t set_lsb2_q8 = parameters_r_lsb2_q8();
+    pipeline.own_r = set_lsb2_q8 != 0;
+    return pipeline.own_r ? set_lsb2_q8 : noise_r_lsb2_q8(&axis->path.noise);
+}
+
 /* Initialised, then told its R, then settled where there is an output to go on from. True: that axis is done. */
 FX_ONCE bool change_axis(void)
 {
@@ -82,20 +90,20 @@ FX_ONCE bool change_axis(void)
     uint8_t step = pipeline.step++;
     if (step == STEP_INIT) {
         if (pipeline.new_noise) {
-            noise_init(&axis->noise, pipeline.rate_dhz, pipeline.axis == 2);
+            noise_init(&axis->path.noise, pipeline.rate_dhz, pipeline.axis == 2);
         }
-        parameters_start(&axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
+        parameters_start(&axis->path.filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
         return false;
     }
     if (step == STEP_NOISE) {
-        filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
+        filter_set_noise(&axis->path.filter, r_lsb2_q8(axis));
         if (pipeline.has_sample) {
             return false;
         }
-        axis->away = 0;
+        axis->path.away = 0;
         return true;
     }
-    return !filter_reset_step(&axis->filter, estimate_lsb(axis), (uint8_t)(step - STEP_RESET));
+    return !filter_reset_step(&axis->path.filter, estimate_lsb(axis), (uint8_t)(step - STEP_RESET));
 }
 
 FX_ONCE void change_step(void)

@@ -6,11 +6,10 @@
 #include <stdint.h>
 
 #include "calibration.h"
-#include "filter.h"
 #include "fx.h"
-#include "noise.h"
 #include "pipeline.h"
 #include "tilt.h"
+#include "tilt_axis.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
 
@@ -27,9 +26,7 @@ typedef struct {
     int32_t estimate_q8;
     uint16_t looked_lsb_q2; /* the estimate a second ago */
     int16_t lsb;
-    uint8_t away; /* after a hold: 1, and 1 more for each sample that lies away from what was held; else 0 */
-    noise_t noise;
-    filter_t filter;
+    tilt_axis_t path;
 } axis_t;
 
 typedef struct {
@@ -54,7 +51,7 @@ typedef struct {
     uint8_t to_replace; /* axes whose filters change, each ahead of a sample */
     uint8_t new_kind;
     bool new_noise;
-    bool clipped;  /* the reading of this axis */
+    bool own_r;    /* R is the user's, not estimated */
     uint8_t stuck; /* samples with ROW_STUCK on end before this one, up to HUNG_SAMPLES of pipeline.c */
     bool has_sample;
 } pipeline_t;
@@ -73,9 +70,6 @@ static inline int16_t estimate_lsb(const axis_t *axis)
 {
     return (int16_t)((axis->estimate_q8 + 128) >> 8);
 }
-
-/* Measurement variance R that its filter is to have: the user's, else the estimated one; LSB^2 Q8. */
-uint32_t axis_r_lsb2_q8(const axis_t *axis);
 
 /* One piece of giving the axis its new filter: initialised, told its R, settled. True: it is done. */
 bool change_axis(void);

@@ -3,9 +3,6 @@
 
 #include <string.h>
 
-/* As in silence.c and pipeline.c. */
-enum { QUARTER_DHZ = 400, HOLD_QUARTERS = 4, AWAY_SAMPLES = 2 };
-
 const char *median_init(median_t *m, unsigned window)
 {
     if (window % 2U == 0U) {
@@ -38,11 +35,11 @@ int16_t median_update(median_t *m, int16_t z_lsb)
 bool chain_begin(chain_t *chain, filter_kind_t kind, uint16_t rate_dhz, uint8_t range_g, int axis)
 {
     memset(chain, 0, sizeof *chain);
-    noise_init(&chain->noise, rate_dhz, axis == 2);
-    if (!init_default(&chain->filter, kind, rate_dhz)) {
+    noise_init(&chain->path.noise, rate_dhz, axis == 2);
+    if (!init_default(&chain->path.filter, kind, rate_dhz)) {
         return false;
     }
-    filter_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
+    filter_set_noise(&chain->path.filter, noise_r_lsb2_q8(&chain->path.noise));
     chain->rate_dhz = rate_dhz;
     chain->period_us = 10000000U / rate_dhz;
     chain->rail_high_lsb = (int16_t)(range_g * 256 - 1);
@@ -56,30 +53,28 @@ static void coast_over_gap(chain_t *chain, uint64_t t_us)
         return;
     }
     for (; t_us - chain->last_us >= chain->period_us + (chain->period_us >> 1); chain->last_us += chain->period_us) {
-        chain->x_lsb_q16 = filter_missing(&chain->filter);
-        if (chain->filter.quarters >= HOLD_QUARTERS) {
-            chain->away = 1;
+        tilt_axis_missing(&chain->path);
+        chain->x_lsb_q16 = chain->path.filter.x_lsb_q16;
+        if (chain->path.away != 0) {
             return;
         }
         chain->coasts++;
-        noise_gap(&chain->noise);
     }
 }
 
-/* After a hold: pipeline.c, rejoins. */
-static bool rejoins(chain_t *chain, int16_t lsb)
+/* tilt_axis_update with the median of the samples in place of the sample, where there is one. */
+static uint8_t take_median(chain_t *chain, int16_t lsb)
 {
-    int16_t off_lsb = (int16_t)(lsb - ((((chain->x_lsb_q16 + 128) >> 8) + 128) >> 8));
-    if ((uint32_t)(off_lsb * off_lsb) > noise_r_lsb2_q8(&chain->noise) >> 5) {
-        if (chain->clipped || chain->away++ < AWAY_SAMPLES) {
-            return false;
-        }
-        (void)init_default(&chain->filter, kind_of(&chain->filter), chain->rate_dhz);
-        filter_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
-        chain->begun = true;
+    int16_t z_lsb = median_update(&chain->median, lsb);
+    if (chain->clipped && chain->path.away != 0) {
+        return FILTER_GATED;
     }
-    chain->away = 0;
-    return true;
+    uint8_t flags = chain->clipped ? 0 : tilt_axis_hear(&chain->path, lsb, true);
+    if (flags == FILTER_GATED) {
+        return flags;
+    }
+    (void)filter_update(&chain->path.filter, z_lsb);
+    return flags;
 }
 
 int32_t chain_sample(chain_t *chain, uint64_t t_us, int16_t lsb)
@@ -87,20 +82,17 @@ int32_t chain_sample(chain_t *chain, uint64_t t_us, int16_t lsb)
     coast_over_gap(chain, t_us);
     chain->last_us = t_us;
     chain->has_sample = true;
-    chain->begun = false;
-    chain->clipped = lsb >= chain->rail_high_lsb || lsb <= -chain->rail_high_lsb - 1;
-    if (!chain->clipped && noise_update(&chain->noise, lsb)) {
-        filter_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
-    }
-    int16_t z_lsb = chain->median.window == 0U ? lsb : median_update(&chain->median, lsb);
-    chain->waits = chain->away != 0 && !rejoins(chain, lsb);
-    if (!chain->waits) {
-        chain->x_lsb_q16 = filter_update(&chain->filter, z_lsb);
-    }
+    bool held = chain->path.away != 0;
+    chain->clipped = tilt_axis_at_rail(lsb, chain->rail_high_lsb);
+    uint8_t flags = chain->median.window != 0U ? take_median(chain, lsb)
+                                               : tilt_axis_update(&chain->path, lsb, chain->rail_high_lsb, true);
+    chain->waits = chain->path.away != 0;
+    chain->begun = held && (flags & FILTER_REACQUIRED) != 0;
+    chain->x_lsb_q16 = chain->path.filter.x_lsb_q16;
     return chain->x_lsb_q16;
 }
 
 double chain_r_lsb2(const chain_t *chain)
 {
-    return noise_r_lsb2_q8(&chain->noise) / 256.0;
+    return noise_r_lsb2_q8(&chain->path.noise) / 256.0;
 }

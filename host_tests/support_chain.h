@@ -1,12 +1,12 @@
 /*
- * One axis of the firmware's sample path (firmware/pipeline.c: noise estimate, coasting over gaps, clipping, filter) as
- * a value, so that many can run. A test holds it to be pipeline.c bit for bit. PC only.
+ * One axis of the firmware's sample path (tilt_axis.h) behind a clock of missing samples, as a value, so that many can
+ * run; a running median before the filter at will. A test holds it to be pipeline.c bit for bit. PC only.
  */
 #ifndef SUPPORT_CHAIN_H
 #define SUPPORT_CHAIN_H
 
 #include "filter_list.h"
-#include "noise.h"
+#include "tilt_axis.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -28,20 +28,18 @@ const char *median_init(median_t *m, unsigned window);
 int16_t median_update(median_t *m, int16_t z_lsb);
 
 typedef struct {
-    filter_t filter;
-    noise_t noise;
+    tilt_axis_t path;
     median_t median; /* window 0: the filter gets the samples as they are */
     uint64_t last_us;
     uint32_t period_us;
     uint32_t coasts; /* predictions before the last sample */
     uint16_t rate_dhz;
-    uint32_t away;     /* after a hold: 1, and 1 more for each sample away from what was held */
     int32_t x_lsb_q16;
     int16_t rail_high_lsb;
     bool has_sample;
     bool clipped; /* the last sample */
     bool waits;   /* the last sample was not for the filter: away from what was held */
-    bool begun;   /* the filter began anew with it */
+    bool begun;   /* the filter restarted with it */
 } chain_t;
 
 /* A cold start with the filter's defaults; axis 2 is the noisier z. False: the rate is illegal. */

@@ -36,7 +36,7 @@ static bool run_clean(study_t *study, size_t contender, int axis)
     for (size_t i = 0; i < study->clean->count; i++) {
         x_lsb_q16[i] = chain_sample(&chain, study->clean->rows[i].t_us, study->clean->rows[i].lsb[axis]);
         if (contender == FILTER_KIND_sprf) {
-            study->reacquired += (chain.filter.flags & FILTER_REACQUIRED) != 0U;
+            study->reacquired += (chain.path.filter.flags & FILTER_REACQUIRED) != 0U;
         }
     }
     return true;
@@ -78,19 +78,19 @@ void study_end(study_t *study)
 static void predict(const chain_t *chain, double a, score_t *score)
 {
     filter_probe_t probe;
-    filter_probe(&chain->filter, &probe);
+    filter_probe(&chain->path.filter, &probe);
     double w1 = probe.gain_uq16 / 65536.0;
     double gain = noise_gain_of(w1);
-    if (chain->filter.law == &filter_law_synth) {
-        const filter_synth_t *synth = &chain->filter.own.synth;
+    if (chain->path.filter.law == &filter_law_synth) {
+        const filter_synth_t *synth = &chain->path.filter.own.synth;
         int32_t a1_uq16 = synth->a1_uq16;
         gain = filter_synth_noise_gain_uq16(synth->b0_uq16, synth->a1_negative ? -a1_uq16 : a1_uq16) / 65536.0;
     }
-    if (chain->filter.law == &filter_law_synth_opt) {
+    if (chain->path.filter.law == &filter_law_synth_opt) {
         gain = 2.0 / 3.0; /* of (a1, b0) = (0, 2/3), where its schedule ends */
     }
-    if (chain->filter.law == &filter_law_kf3) {
-        const filter_kf3_t *f = &chain->filter.own.kf3;
+    if (chain->path.filter.law == &filter_law_kf3) {
+        const filter_kf3_t *f = &chain->path.filter.own.kf3;
         gain = kf3_noise_gain_of(w1, f->p.p12 / 268435456.0, f->p13_uq28 / 268435456.0 / (f->fine ? 16.0 : 1.0));
     }
     double s_lsb2 = chain_r_lsb2(chain) / (1.0 - w1);

@@ -59,7 +59,7 @@ static size_t samples_by_rate(const run_t *run)
 static double share_used(run_t *run, double x_lsb)
 {
     uint16_t rate_dhz = run->survey->rate_dhz;
-    size_t window = band_window(kind_of(&run->chain.filter), rate_dhz, run->r_max_lsb2);
+    size_t window = band_window(kind_of(&run->chain.path.filter), rate_dhz, run->r_max_lsb2);
     band_add(&run->band, run->z_lsb, window);
     double spread_lsb = band_spread_lsb(&run->band);
     double distance_lsb = fabs(x_lsb - band_median_lsb(&run->band));
@@ -153,8 +153,8 @@ static void one_sample(run_t *run, uint64_t t_us, int16_t lsb)
         return;
     }
     filter_probe_t probe;
-    filter_probe(&run->chain.filter, &probe);
-    const char *broken = broken_bound(&run->chain.filter, &probe, x_lsb_q16);
+    filter_probe(&run->chain.path.filter, &probe);
+    const char *broken = broken_bound(&run->chain.path.filter, &probe, x_lsb_q16);
     if (broken != NULL) {
         run->counts->first_broken = run->counts->bounds_broken++ == 0 ? broken : run->counts->first_broken;
     }

@@ -98,8 +98,8 @@ static void test_changes_in_quick_succession(void)
     TEST_ASSERT_EQUAL_size_t(before + 7, board.note_count);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("refused", before));
     for (int axis = 0; axis < AXES; axis++) {
-        TEST_ASSERT_EQUAL_PTR(&filter_law_sprf, pipeline.axes[axis].filter.law);
-        TEST_ASSERT_EQUAL_UINT(3 * 256, pipeline.axes[axis].filter.own.kalman.of.gated.gate_sigma_q8);
+        TEST_ASSERT_EQUAL_PTR(&filter_law_sprf, pipeline.axes[axis].path.filter.law);
+        TEST_ASSERT_EQUAL_UINT(3 * 256, pipeline.axes[axis].path.filter.own.kalman.of.gated.gate_sigma_q8);
     }
     TEST_ASSERT_EQUAL_UINT(0, settings.own);
 }

@@ -118,17 +118,18 @@ static uint8_t quarters_passed(filter_t *f, bool first)
 int32_t filter_missing(filter_t *f)
 {
     bool first = (f->flags & FILTER_COASTED) == 0U;
+    uint8_t passed = quarters_passed(f, first);
     f->broken = true;
     f->flags = FILTER_COASTED;
+    f->quarters = (uint8_t)(f->quarters + passed);
+    if (f->quarters >= HOLD_QUARTERS) {
+        f->quarters = HOLD_QUARTERS;
+    }
     if (f->collected != FILTER_RUNNING) {
         f->flags = FILTER_COASTED | FILTER_WARMING_UP;
         return f->x_lsb_q16;
     }
-    uint8_t passed = quarters_passed(f, first);
-    f->quarters = (uint8_t)(f->quarters + passed);
-    if (f->quarters >= HOLD_QUARTERS) {
-        f->quarters = HOLD_QUARTERS;
-    } else {
+    if (f->quarters != HOLD_QUARTERS) {
         if (first) {
             tracker_fade(f, true);
         }

@@ -21,10 +21,12 @@ static filter_answer_t begin_axis(tilt_filter_t *t, uint8_t axis, const filter_l
         config = *wanted;
         config.rate_dhz = t->rate_dhz;
     }
-    filter_answer_t answer = filter_init(&t->filters[axis], law, &config);
+    tilt_axis_t *a = &t->axes[axis];
+    filter_answer_t answer = filter_init(&a->filter, law, &config);
     if (answer == FILTER_ACCEPTED) {
-        noise_init(&t->noise[axis], t->rate_dhz, axis == 2U);
-        filter_set_noise(&t->filters[axis], noise_r_lsb2_q8(&t->noise[axis]));
+        a->away = 0;
+        noise_init(&a->noise, t->rate_dhz, axis == 2U);
+        filter_set_noise(&a->filter, noise_r_lsb2_q8(&a->noise));
     }
     return answer;
 }
@@ -77,19 +79,9 @@ static int16_t shifted(const tilt_filter_t *t, int16_t reading)
     return (int16_t)(((int32_t)reading + half) >> t->shift);
 }
 
-static void update_axis(tilt_filter_t *t, uint8_t axis, int16_t z_lsb)
+static void update_axis(tilt_filter_t *t, uint8_t axis, int16_t reading)
 {
-    filter_t *f = &t->filters[axis];
-    if (z_lsb >= t->rail_high_lsb || z_lsb <= (int16_t)(-t->rail_high_lsb - 1)) {
-        t->flags |= TILT_FILTER_CLIPPED;
-        noise_gap(&t->noise[axis]);
-        (void)filter_missing(f);
-        return;
-    }
-    if (noise_update(&t->noise[axis], z_lsb)) {
-        filter_set_noise(f, noise_r_lsb2_q8(&t->noise[axis]));
-    }
-    (void)filter_update(f, z_lsb);
+    t->flags |= tilt_axis_update(&t->axes[axis], shifted(t, reading), t->rail_high_lsb, true);
 }
 
 /* Accelerations and angles from the filters' estimates with their fraction. */
@@ -97,31 +89,30 @@ static void find_angles(tilt_filter_t *t)
 {
     int32_t estimates_q8[TILT_FILTER_AXES];
     for (uint8_t axis = 0; axis < (uint8_t)TILT_FILTER_AXES; axis++) {
-        t->flags |= t->filters[axis].flags;
-        estimates_q8[axis] = (t->filters[axis].x_lsb_q16 + 128) >> 8;
+        estimates_q8[axis] = (t->axes[axis].filter.x_lsb_q16 + 128) >> 8;
     }
     calibration_apply(&t->calibration, estimates_q8, t->a_q8);
     tilt_angles(&t->angles, t->a_q8[0], t->a_q8[1], t->a_q8[2]);
-    if (!tilt_gravity_plausible(t->a_q8[0], t->a_q8[1], t->a_q8[2])) {
-        t->flags |= TILT_FILTER_NOT_GRAVITY;
-    }
 }
 
 void tilt_filter_update(tilt_filter_t *t, int16_t x, int16_t y, int16_t z)
 {
     t->flags = 0;
-    update_axis(t, 0, shifted(t, x));
-    update_axis(t, 1, shifted(t, y));
-    update_axis(t, 2, shifted(t, z));
+    update_axis(t, 0, x);
+    update_axis(t, 1, y);
+    update_axis(t, 2, z);
     find_angles(t);
+    if (!tilt_gravity_plausible(t->a_q8[0], t->a_q8[1], t->a_q8[2])) {
+        t->flags |= TILT_FILTER_NOT_GRAVITY;
+    }
 }
 
 void tilt_filter_missing(tilt_filter_t *t)
 {
     t->flags = 0;
     for (uint8_t axis = 0; axis < (uint8_t)TILT_FILTER_AXES; axis++) {
-        noise_gap(&t->noise[axis]);
-        (void)filter_missing(&t->filters[axis]);
+        tilt_axis_missing(&t->axes[axis]);
+        t->flags |= t->axes[axis].filter.flags;
     }
     find_angles(t);
 }

@@ -16,9 +16,8 @@
 #define TILT_FILTER_H
 
 #include "calibration.h"
-#include "filter.h"
-#include "noise.h"
 #include "tilt.h"
+#include "tilt_axis.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -28,8 +27,8 @@ enum { TILT_FILTER_AXES = 3 };
 
 /* Beside the FILTER_* of filter.h, the OR over the axes. */
 enum tilt_filter_flag {
-    TILT_FILTER_CLIPPED = 0x40,    /* an axis is at the rail of its range: its sample is taken for missing */
-    TILT_FILTER_NOT_GRAVITY = 0x80 /* |a| is outside 0.85..1.15 g: the board accelerates, tilt is not to be trusted */
+    TILT_FILTER_CLIPPED = TILT_AXIS_CLIPPED, /* an axis is at the rail of its range */
+    TILT_FILTER_NOT_GRAVITY = 0x80           /* |a| is outside 0.85..1.15 g: the board accelerates, tilt is not to be trusted */
 };
 
 typedef struct {
@@ -40,8 +39,7 @@ typedef struct {
     int16_t rail_high_lsb;          /* readings from here on, and below its negative, are at the rail */
     uint16_t rate_dhz;
     calibration_applied_t calibration;
-    noise_t noise[TILT_FILTER_AXES];
-    filter_t filters[TILT_FILTER_AXES];
+    tilt_axis_t axes[TILT_FILTER_AXES];
 } tilt_filter_t;
 
 /* With `adaptive` and the ADXL345 at 3.3 V; rate_hz: output data rate, 5..4000. */
