@@ -128,4 +128,4 @@ const filter_law_t filter_law_adaptive FX_FLASH = { .name = "adaptive",
                                                     .set_noise = adaptive_set_noise,
                                                     .start = adaptive_start,
                                                     .step = adaptive_step,
-                                                    LAW_REPORT(adaptive_report) };
+                                                    .report = LAW_REPORT(adaptive_report) };

@@ -299,4 +299,4 @@ const filter_law_t filter_law_auto FX_FLASH = { .name = "auto",
                                                 .start = start,
                                                 .step = step,
                                                 .fade = fade,
-                                                LAW_REPORT(report) };
+                                                .report = LAW_REPORT(report) };

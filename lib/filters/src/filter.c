@@ -150,6 +150,7 @@ void filter_restart(filter_t *f)
     f->flags = FILTER_WARMING_UP;
 }
 
+#ifndef FILTER_WITHOUT_PROBE
 void filter_probe(const filter_t *f, filter_probe_t *out)
 {
     out->x_lsb_q16 = f->x_lsb_q16;
@@ -163,3 +164,4 @@ void filter_probe(const filter_t *f, filter_probe_t *out)
     out->flags = f->flags;
     LAW_OF(f, report)(f, out);
 }
+#endif

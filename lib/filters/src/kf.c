@@ -54,7 +54,7 @@ const filter_law_t filter_law_kf FX_FLASH = { .name = "kf",
                                               .set_noise = kalman_set_variance,
                                               .start = kalman_start,
                                               .step = step,
-                                              LAW_REPORT(kalman_report) };
+                                              .report = LAW_REPORT(kalman_report) };
 
 const filter_law_t filter_law_lrf FX_FLASH = { .name = "lrf",
                                                .parameter_count = 4,
@@ -65,4 +65,4 @@ const filter_law_t filter_law_lrf FX_FLASH = { .name = "lrf",
                                                .set_noise = lrf_set_noise,
                                                .start = kalman_start,
                                                .step = step,
-                                               LAW_REPORT(kalman_report) };
+                                               .report = LAW_REPORT(kalman_report) };

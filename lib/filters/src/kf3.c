@@ -257,4 +257,4 @@ const filter_law_t filter_law_kf3 FX_FLASH = { .name = "kf3",
                                                .start = start,
                                                .step = step,
                                                .fade = fade,
-                                               LAW_REPORT(report) };
+                                               .report = LAW_REPORT(report) };

@@ -236,7 +236,7 @@ const filter_law_t filter_law_pbf FX_FLASH = { .name = "pbf",
                                                .set_noise = wide_set_noise,
                                                .start = start,
                                                .step = step,
-                                               LAW_REPORT(wide_report) };
+                                               .report = LAW_REPORT(wide_report) };
 
 const filter_law_t filter_law_shrf FX_FLASH = { .name = "shrf",
                                                 .parameter_count = 4,
@@ -247,7 +247,7 @@ const filter_law_t filter_law_shrf FX_FLASH = { .name = "shrf",
                                                 .set_noise = wide_set_noise,
                                                 .start = start,
                                                 .step = shortened_step,
-                                                LAW_REPORT(wide_report) };
+                                                .report = LAW_REPORT(wide_report) };
 
 const filter_law_t filter_law_af FX_FLASH = { .name = "af",
                                               .parameter_count = 4,
@@ -259,4 +259,4 @@ const filter_law_t filter_law_af FX_FLASH = { .name = "af",
                                               .set_noise = wide_set_noise,
                                               .start = start,
                                               .step = step,
-                                              LAW_REPORT(wide_report) };
+                                              .report = LAW_REPORT(wide_report) };

@@ -235,4 +235,4 @@ const filter_law_t filter_law_soft FX_FLASH = { .name = "soft",
                                                 .set_noise = set_noise,
                                                 .start = kalman_start,
                                                 .step = step,
-                                                LAW_REPORT(report) };
+                                                .report = LAW_REPORT(report) };

@@ -74,4 +74,4 @@ const filter_law_t filter_law_sprf FX_FLASH = { .name = "sprf",
                                                 .set_noise = set_noise,
                                                 .start = kalman_start,
                                                 .step = step,
-                                                LAW_REPORT(kalman_report) };
+                                                .report = LAW_REPORT(kalman_report) };

@@ -48,4 +48,4 @@ const filter_law_t filter_law_sprf_paper FX_FLASH = { .name = "sprf_paper",
                                                       .set_noise = wide_set_noise,
                                                       .start = wide_start,
                                                       .step = step,
-                                                      LAW_REPORT(wide_report) };
+                                                      .report = LAW_REPORT(wide_report) };

@@ -137,4 +137,4 @@ const filter_law_t filter_law_synth FX_FLASH = { .name = "synth",
                                                  .start = synth_start,
                                                  .step = step,
                                                  .fade = synth_fade,
-                                                 LAW_REPORT(report) };
+                                                 .report = LAW_REPORT(report) };

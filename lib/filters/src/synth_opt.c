@@ -131,4 +131,4 @@ const filter_law_t filter_law_synth_opt FX_FLASH = { .name = "synth_opt",
                                                      .start = synth_start,
                                                      .step = step,
                                                      .fade = synth_fade,
-                                                     LAW_REPORT(report) };
+                                                     .report = LAW_REPORT(report) };

@@ -294,4 +294,4 @@ const filter_law_t filter_law_synth_plus FX_FLASH = { .name = "synth_plus",
                                                       .start = synth_start,
                                                       .step = step,
                                                       .fade = fade,
-                                                      LAW_REPORT(report) };
+                                                      .report = LAW_REPORT(report) };

@@ -51,9 +51,9 @@ struct filter_law {
  * laws, by -DFILTER_WITHOUT_PROBE; filter_probe is not there then.
  */
 #ifdef FILTER_WITHOUT_PROBE
-#define LAW_REPORT(function)
+#define LAW_REPORT(function) (true ? NULL : (function))
 #else
-#define LAW_REPORT(function) .report = (function),
+#define LAW_REPORT(function) (function)
 #endif
 
 /* A function of the law in force. */
