@@ -6,7 +6,7 @@
 #include "app.h"
 #include "calibrate.h"
 #include "counters.h"
-#include "filter_any.h"
+#include "filter_list.h"
 #include "flash.h"
 #include "fx.h"
 #include "hal_sleep.h"
@@ -50,7 +50,7 @@ FX_NOINLINE void refuse_combination(uint8_t filter, uint16_t rate_dhz)
 
 static bool set_filter(const char *value)
 {
-    filter_kind_t kind = filter_any_find(value);
+    filter_kind_t kind = filter_find(value);
     if (kind == FILTER_KIND_COUNT) {
         return false;
     }

@@ -2,40 +2,34 @@
 #include "parameters.h"
 
 #include "calibration.h"
-#include "filter_parameter.h"
 #include "fx.h"
 #include "settings.h"
 #include "text.h"
 
 /* The ranges of calibration_check, which has the last word: a level is up to 1.15 g long. */
-static const filter_parameter_t vectors[] FX_FLASH = {
-    { "offset", "LSB", offsetof(calibration_t, offset_lsb_q4), 2, 4, 0, 1, -CALIBRATION_OFFSET_MAX_LSB_Q4,
-      CALIBRATION_OFFSET_MAX_LSB_Q4 },
-    { "scale", "LSB/g", offsetof(calibration_t, scale_lsb_per_g_uq6), 2, 6, 0, 0, CALIBRATION_SCALE_MIN_UQ6,
-      CALIBRATION_SCALE_MAX_UQ6 },
-    { "level", "", offsetof(calibration_t, level_q14), 2, 14, 0, 1, -18841, 18841 },
+enum { OFFSET, SCALE, LEVEL, VECTORS };
+static const filter_parameter_t vectors[VECTORS] FX_FLASH = {
+    [OFFSET] = { "offset", "LSB", 4, 0, -CALIBRATION_OFFSET_MAX_LSB_Q4, CALIBRATION_OFFSET_MAX_LSB_Q4, 0 },
+    [SCALE] = { "scale", "LSB/g", 6, 0, CALIBRATION_SCALE_MIN_UQ6, CALIBRATION_SCALE_MAX_UQ6, 0 },
+    [LEVEL] = { "level", "", 14, 0, -18841, 18841, 0 },
 };
 
-enum { VECTORS = sizeof vectors / sizeof vectors[0] };
+_Static_assert(CALIBRATION_SCALE_MAX_UQ6 <= INT16_MAX, "a vector's numbers are of 16 bits with sign");
+_Static_assert((int)FILTER_PARAMETERS_MAX <= (int)SETTINGS_PARAMETERS_MAX, "the settings hold a filter's parameters");
 
-static const filter_descriptor_t *descriptor(void)
+static const filter_law_t *law_in_force(void)
 {
-    return filter_any_descriptor((filter_kind_t)settings.filter);
+    return filter_listed((filter_kind_t)settings.filter);
 }
 
 uint8_t parameters_count(void)
 {
-    return (uint8_t)(VECTORS + fx_flash_u8(&descriptor()->parameter_count));
-}
-
-static const filter_parameter_t *of_filter(uint8_t which)
-{
-    return (const filter_parameter_t *)fx_flash_pointer(&descriptor()->parameters) + which;
+    return (uint8_t)(VECTORS + filter_parameter_count(law_in_force()));
 }
 
 const filter_parameter_t *parameters_at(uint8_t which)
 {
-    return which < VECTORS ? &vectors[which] : of_filter((uint8_t)(which - VECTORS));
+    return which < VECTORS ? &vectors[which] : filter_parameter(law_in_force(), (uint8_t)(which - VECTORS));
 }
 
 uint8_t parameters_numbers(uint8_t which)
@@ -56,82 +50,86 @@ uint8_t parameters_find(const char *name)
 }
 
 /* A filter's configuration at a rate; as the user wants it, if it is the one in force. */
-static void configuration(filter_any_config_t *config, filter_kind_t kind, uint16_t rate_dhz)
+static filter_config_t configuration(filter_kind_t kind, uint16_t rate_dhz)
 {
-    filter_any_defaults(kind, config, rate_dhz);
+    const filter_law_t *law = filter_listed(kind);
+    filter_config_t config = filter_defaults(law, rate_dhz);
     uint8_t own = (uint8_t)kind == settings.filter ? settings.own : 0;
-    for (uint8_t which = 0; own != 0; which++, own >>= 1) {
+    for (uint8_t which = 0; which < FILTER_PARAMETERS_MAX; which++, own >>= 1) {
         if (own & 1u) {
-            filter_parameter_set(config, of_filter(which), settings.parameters[which]);
+            config.value[which] = (int32_t)settings.parameters[which];
         }
     }
-    if (!filter_any_together(kind, config)) { /* the user's were set beside those of another rate */
-        filter_any_defaults(kind, config, rate_dhz);
+    if (filter_judge(law, &config) == FILTER_ACCEPTED) {
+        return config;
     }
+    return filter_defaults(law, rate_dhz); /* the user's were set beside those of another rate */
 }
 
-/* The number of a vector in its calibration: its fields are of 16 bits. */
-static void *place_in(calibration_t *calibration, uint8_t number)
+static filter_config_t configuration_in_force(void)
 {
-    return (uint8_t *)calibration + 2u * number;
+    return configuration((filter_kind_t)settings.filter, settings.rate_dhz);
+}
+
+static int16_t *vector_in(calibration_t *calibration, uint8_t which)
+{
+    switch (which) {
+    case OFFSET:
+        return calibration->offset_lsb_q4;
+    case SCALE:
+        return (int16_t *)calibration->scale_lsb_per_g_uq6;
+    default:
+        return calibration->level_q14;
+    }
 }
 
 uint32_t parameters_value(uint8_t which, uint8_t number)
 {
-    const filter_parameter_t *parameter = parameters_at(which);
     if (which < VECTORS) {
-        return filter_parameter_get(place_in(&settings.calibration, number), parameter);
+        return (uint32_t)(int32_t)vector_in(&settings.calibration, which)[number];
     }
-    filter_any_config_t config;
-    configuration(&config, (filter_kind_t)settings.filter, settings.rate_dhz);
-    return filter_parameter_get(&config, parameter);
+    return (uint32_t)configuration_in_force().value[which - VECTORS];
 }
 
-static bool set_vector(const filter_parameter_t *parameter, const uint32_t values[PARAMETERS_AXES])
+static bool set_vector(uint8_t which, const uint32_t values[PARAMETERS_AXES])
 {
     calibration_t wanted = settings.calibration;
+    int16_t *vector = vector_in(&wanted, which);
     for (uint8_t number = 0; number < PARAMETERS_AXES; number++) {
-        filter_parameter_set(place_in(&wanted, number), parameter, values[number]);
+        if (!filter_in_range(&vectors[which], (int32_t)values[number])) {
+            return false;
+        }
+        vector[number] = (int16_t)values[number];
     }
     return settings_calibrate(&wanted);
 }
 
-static bool set_parameter(uint8_t which, uint32_t value)
+bool parameters_set(uint8_t which, const uint32_t values[PARAMETERS_AXES])
 {
-    filter_any_config_t config;
-    configuration(&config, (filter_kind_t)settings.filter, settings.rate_dhz);
-    filter_parameter_set(&config, of_filter(which), value);
-    if (!filter_any_together((filter_kind_t)settings.filter, &config)) {
+    if (which < VECTORS) {
+        return set_vector(which, values);
+    }
+    which = (uint8_t)(which - VECTORS);
+    filter_config_t config = configuration_in_force();
+    config.value[which] = (int32_t)values[0];
+    if (filter_judge(law_in_force(), &config) != FILTER_ACCEPTED) {
         return false;
     }
-    settings.parameters[which] = value;
+    settings.parameters[which] = values[0];
     settings.own = (uint8_t)(settings.own | 1u << which);
     return true;
 }
 
-bool parameters_set(uint8_t which, const uint32_t values[PARAMETERS_AXES])
+void parameters_start(filter_t *f, filter_kind_t kind, uint16_t rate_dhz)
 {
-    const filter_parameter_t *parameter = parameters_at(which);
-    for (uint8_t number = parameters_numbers(which); number != 0;) {
-        number--;
-        if (!filter_parameter_in_range(parameter, values[number])) {
-            return false;
-        }
-    }
-    return which < VECTORS ? set_vector(parameter, values) : set_parameter((uint8_t)(which - VECTORS), values[0]);
-}
-
-void parameters_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz)
-{
-    filter_any_config_t config;
-    configuration(&config, kind, rate_dhz);
-    filter_any_configure(f, kind, &config);
+    filter_config_t config = configuration(kind, rate_dhz);
+    (void)filter_init(f, filter_listed(kind), &config); /* judged there */
 }
 
 uint32_t parameters_r_lsb2_q8(void)
 {
     for (uint8_t which = 0, own = settings.own; own != 0; which++, own >>= 1) {
-        const char *name = of_filter(which)->name;
+        const char *name = filter_parameter(law_in_force(), which)->name;
         if ((own & 1u) && flash_char(name) == 'r' && flash_char(name + 1) == '\0') {
             return settings.parameters[which];
         }

@@ -1,7 +1,7 @@
 /*
  * Settings that are numbers with a descriptor (filter_parameter_t): first the vectors of the calibration, three numbers
  * each, then the parameters of the filter in force. These have the shipped values of the output data rate, but for
- * those that the user has set (settings.own). Values as stored (filter_parameter.h). Main only.
+ * those that the user has set (settings.own). Values as stored (filter.h). Main only.
  */
 #ifndef PARAMETERS_H
 #define PARAMETERS_H
@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "filter_any.h"
+#include "filter_list.h"
 
 enum { PARAMETERS_NONE = 0xFF, PARAMETERS_AXES = 3 };
 
@@ -35,7 +35,7 @@ uint32_t parameters_value(uint8_t which, uint8_t number);
 bool parameters_set(uint8_t which, const uint32_t values[PARAMETERS_AXES]);
 
 /* Begins a filter of this kind with them, legal ones, at the output data rate that the sensor has, 0.1 Hz. */
-void parameters_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz);
+void parameters_start(filter_t *f, filter_kind_t kind, uint16_t rate_dhz);
 
 /* The measurement variance R that the user has set, LSB^2 Q8; 0: none, the estimated one counts. */
 uint32_t parameters_r_lsb2_q8(void);

@@ -34,7 +34,7 @@ void pipeline_reset(void)
 
 FX_ONCE void pipeline_coast(uint32_t t_us)
 {
-    pipeline.passed = silence_step(pipeline.rate_dhz);
+    silence_step(pipeline.true_dhz);
     pipeline.last_us = t_us;
     pipeline_flag(silence_samples() == SILENCE_FAULT_FROM ? ROW_COASTED | ROW_FAULT : ROW_COASTED);
     pipeline.work = WORK_COAST;
@@ -45,13 +45,7 @@ static void coast_axis(axis_t *axis)
 {
     bool holds = silence_holds();
     if (!holds) {
-        if (silence_samples() == 1u) {
-            filter_any_gap(&axis->filter);
-        }
-        for (uint8_t left = pipeline.passed; left != 0; left--) {
-            filter_any_damp(&axis->filter);
-        }
-        keep_estimate(axis, filter_any_coast(&axis->filter));
+        keep_estimate(axis, filter_missing(&axis->filter));
         noise_gap(&axis->noise);
     }
     axis->away = holds && pipeline.has_sample;
@@ -112,15 +106,12 @@ _Static_assert((int)FILTER_GATED == (int)ROW_GATED && (int)FILTER_REACQUIRED == 
 
 static void update_axis(axis_t *axis)
 {
-    keep_estimate(axis, filter_any_update(&axis->filter, axis->lsb));
-    uint8_t flags = filter_any_flags(&axis->filter);
+    keep_estimate(axis, filter_update(&axis->filter, axis->lsb));
+    uint8_t flags = axis->filter.flags;
     uint8_t same = flags & (FILTER_GATED | FILTER_REACQUIRED);
     pipeline_flag((uint16_t)((flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same));
     if (SUPERVISOR && (flags & FILTER_SWITCHED) != 0) {
         pipeline_flag(ROW_SWITCHED);
-    }
-    if (pipeline.clipped) {
-        filter_any_hold(&axis->filter);
     }
 }
 
@@ -132,14 +123,13 @@ static bool prepare_axis(axis_t *axis)
     pipeline.clipped = clipped;
     if (clipped) {
         pipeline_flag(ROW_CLIPPED);
-        filter_any_hold(&axis->filter);
     }
     if (pipeline.stuck == HUNG_SAMPLES && !(pipeline.flags & ROW_STUCK) && axis->away == 0) {
         renew(true);
         return false;
     }
     if (!clipped && noise_update(&axis->noise, lsb)) {
-        filter_any_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
+        filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
     }
     return axis->away == 0 || (rejoins(axis) && pipeline.work != WORK_RENEW);
 }

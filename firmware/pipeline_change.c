@@ -88,14 +88,14 @@ FX_ONCE bool change_axis(void)
         return false;
     }
     if (step == STEP_NOISE) {
-        filter_any_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
+        filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
         if (pipeline.has_sample) {
             return false;
         }
         axis->away = 0;
         return true;
     }
-    return !filter_any_reset_step(&axis->filter, estimate_lsb(axis), (uint8_t)(step - STEP_RESET));
+    return !filter_reset_step(&axis->filter, estimate_lsb(axis), (uint8_t)(step - STEP_RESET));
 }
 
 FX_ONCE void change_step(void)

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "calibration.h"
-#include "filter_any.h"
+#include "filter.h"
 #include "fx.h"
 #include "noise.h"
 #include "pipeline.h"
@@ -29,7 +29,7 @@ typedef struct {
     int16_t lsb;
     uint8_t away; /* after a hold: 1, and 1 more for each sample that lies away from what was held; else 0 */
     noise_t noise;
-    filter_any_t filter;
+    filter_t filter;
 } axis_t;
 
 typedef struct {
@@ -47,7 +47,6 @@ typedef struct {
     uint8_t calls_off;
     uint16_t flags;
     uint16_t kept_flags; /* of the samples before the one under way */
-    uint8_t passed;      /* times 25 ms, between the newest two steps of a silence */
     uint8_t warm_rows;
     uint8_t work;       /* work_t */
     uint8_t axis;       /* that the work goes on with */

@@ -5,7 +5,7 @@
 #include "app.h"
 #include "calibrate.h"
 #include "counters.h"
-#include "filter_any.h"
+#include "filter_list.h"
 #include "flash.h"
 #include "fx.h"
 #include "hal_uart.h"
@@ -34,7 +34,7 @@ static void say_filters(void)
         if (kind != 0) {
             text_char(' ');
         }
-        text_words(filter_any_name((filter_kind_t)kind));
+        text_words(filter_listed_name((filter_kind_t)kind));
     }
 }
 
@@ -110,12 +110,11 @@ static void say_parameter(uint8_t what)
 {
     const filter_parameter_t *parameter = parameters_at(said.subject);
     uint8_t bits = fx_flash_u8(&parameter->fraction_bits);
-    bool is_signed = fx_flash_u8(&parameter->is_signed) != 0;
     if (what == SAY_PARAMETER) {
         text_words(parameter->name);
         for (uint8_t i = 0; i < parameters_numbers(said.subject); i++) {
             text_char(' ');
-            number_write(parameters_value(said.subject, i), bits, is_signed);
+            number_write(parameters_value(said.subject, i), bits);
         }
         if (flash_char(parameter->unit) != '\0') {
             text_char(' ');
@@ -124,9 +123,9 @@ static void say_parameter(uint8_t what)
         return;
     }
     text_words(FLASH_TEXT(": "));
-    number_write(fx_flash_u32((const uint32_t *)&parameter->min), bits, is_signed);
+    number_write(fx_flash_u32((const uint32_t *)&parameter->min), bits);
     text_words(FLASH_TEXT(" to "));
-    number_write(fx_flash_u32((const uint32_t *)&parameter->max), bits, is_signed);
+    number_write(fx_flash_u32((const uint32_t *)&parameter->max), bits);
     if (fx_flash_u8(&parameter->zero_means_off) != 0) {
         text_words(FLASH_TEXT(", 0: off"));
     }
@@ -175,7 +174,7 @@ static void say_value(uint8_t what)
         text_words(reply_command_name(said.subject));
         break;
     case SAY_FILTER:
-        text_words(filter_any_name((filter_kind_t)said.filter));
+        text_words(filter_listed_name((filter_kind_t)said.filter));
         break;
     case SAY_RATE:
         text_tenths(said.rate_dhz);
@@ -216,7 +215,7 @@ static void say_value(uint8_t what)
     case SAY_RMS:
     case SAY_R:
     case SAY_OFF:
-        number_write((uint32_t)measure_number_q8(what, said.axis), 8, true);
+        number_write((uint32_t)measure_number_q8(what, said.axis), 8);
         break;
     default:
         text_u32(number(what));

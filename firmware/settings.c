@@ -1,7 +1,7 @@
 /* Defaults and the arithmetic of what the line carries and the processor has time for. */
 #include "settings.h"
 
-#include "filter_any.h"
+#include "filter_list.h"
 #include "flash.h"
 #include "fx.h"
 #include "hal_time.h"
@@ -28,7 +28,7 @@ void settings_defaults(void)
 
 uint8_t settings_filter_mark(uint8_t filter)
 {
-    const char *name = filter_any_name((filter_kind_t)filter);
+    const char *name = filter_listed_name((filter_kind_t)filter);
     uint8_t mark = 0;
     for (char c = flash_char(name); c != '\0'; c = flash_char(name)) {
         mark = (uint8_t)(mark * 2u + (uint8_t)c);
@@ -74,7 +74,7 @@ FX_ONCE bool settings_doubled(uint16_t lowest, uint16_t highest, uint16_t value)
 
 FX_ONCE uint16_t settings_filter_cycles(uint8_t filter)
 {
-    return (uint16_t)(AXES * filter_any_worst_cycles((filter_kind_t)filter));
+    return (uint16_t)(AXES * filter_worst_cycles(filter_listed((filter_kind_t)filter)));
 }
 
 FX_ONCE uint32_t settings_left_cycles(uint16_t rate_dhz)

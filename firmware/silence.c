@@ -15,8 +15,8 @@ void silence_end(void)
     silence.quarters = 0;
 }
 
-/* Step n of a prediction is made with what is in force in its middle, (n - 1/2) / rate after the last sample. */
-uint8_t silence_step(uint16_t rate_dhz)
+/* Step n is judged in its middle, (n - 1/2) / rate after the last sample, as the filters do (filter_missing). */
+void silence_step(uint16_t rate_dhz)
 {
     uint8_t passed = 0;
     silence.part_dhz = (uint16_t)(silence.part_dhz + QUARTER_DHZ);
@@ -31,7 +31,6 @@ uint8_t silence_step(uint16_t rate_dhz)
     if (silence.quarters > LONG_QUARTERS) {
         silence.quarters = LONG_QUARTERS;
     }
-    return passed;
 }
 
 uint8_t silence_samples(void)

@@ -19,8 +19,8 @@ static struct {
 /* On all axes: a change of filter begins with the last and ends with the first. */
 static bool in_force(void)
 {
-    return pipeline.axes[0].filter.kind == (uint8_t)FILTER_KIND_auto &&
-           pipeline.axes[AXES - 1].filter.kind == (uint8_t)FILTER_KIND_auto;
+    return pipeline.axes[0].filter.law == &filter_law_auto &&
+           pipeline.axes[AXES - 1].filter.law == &filter_law_auto;
 }
 
 /* The signs stay: of an axis that is stuck since before, its last is the best guess. */
@@ -125,7 +125,7 @@ static uint16_t remaining_sigma_q8(void)
     uint32_t p_lsb2_q8 = 0;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         filter_probe_t probe;
-        filter_any_probe(&pipeline.axes[axis].filter, &probe);
+        filter_probe(&pipeline.axes[axis].filter, &probe);
         if (axis != supervisor.left_out && probe.p_lsb2_q8 > p_lsb2_q8) {
             p_lsb2_q8 = probe.p_lsb2_q8;
         }
@@ -148,7 +148,7 @@ void supervisor_say(void)
     for (uint8_t axis = 0; axis < AXES; axis++) {
         text_char(' ');
         say_axis(axis);
-        text_words(names[pipeline.axes[axis].filter.state.of_auto.chosen]);
+        text_words(names[pipeline.axes[axis].filter.own.bank.chosen]);
     }
     if (supervisor.left_out != AXES) {
         text_words(FLASH_TEXT(", without "));

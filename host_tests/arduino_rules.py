@@ -18,7 +18,8 @@ KEYWORDS = ("KEYWORD1", "KEYWORD2", "KEYWORD3", "LITERAL1", "LITERAL2")
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)
 FUNCTION = re.compile(r"^(?:static inline )?(?!typedef|static|extern|#|return)[\w ]+[ *](\w+)\([^;{]*\)(?:;|\n\{)", re.M)
 TYPE = re.compile(r"^\}\s*(\w+);|^typedef \w+ (\w+);", re.M)
-LITERAL = re.compile(r"^\s+(FILTER_[A-Z_]+)\s*(?:=|,)|^enum \{ (\w+_worst_cycles) ", re.M)
+LITERAL = re.compile(r"^\s+(FILTER_[A-Z_]+)\s*(?:=|,)|\b(filter_law_\w+)[,;]"
+                     r"|(?<=[{ ])([A-Z]\w*_(?:UQ|Q|LSB|MS|SAMPLES|K|VARIANT_U|IDENTIFY)[A-Z0-9_]*)(?=,| \})", re.M)
 
 
 def findings(folder):

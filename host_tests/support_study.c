@@ -1,6 +1,7 @@
 /* What the faults of support_faults.h do to the filters. */
 #include "support_envelope.h"
 #include "support_faults.h"
+#include "synth.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,17 +11,17 @@
 
 const char *contender_name(size_t contender)
 {
-    return contender == MEDIAN_KF ? "median5_kf" : filter_any_name((filter_kind_t)contender);
+    return contender == MEDIAN_KF ? "median5_kf" : filter_listed_name((filter_kind_t)contender);
 }
 
-static filter_kind_t kind_of(size_t contender)
+static filter_kind_t kind_used_by(size_t contender)
 {
     return contender == MEDIAN_KF ? FILTER_KIND_kf : (filter_kind_t)contender;
 }
 
 bool contender_begin(chain_t *chain, size_t contender, uint16_t rate_dhz, uint8_t range_g, int axis)
 {
-    bool good = chain_begin(chain, kind_of(contender), rate_dhz, range_g, axis);
+    bool good = chain_begin(chain, kind_used_by(contender), rate_dhz, range_g, axis);
     return good && (contender != MEDIAN_KF || median_init(&chain->median, MEDIAN_WINDOW) == NULL);
 }
 
@@ -35,7 +36,7 @@ static bool run_clean(study_t *study, size_t contender, int axis)
     for (size_t i = 0; i < study->clean->count; i++) {
         x_lsb_q16[i] = chain_sample(&chain, study->clean->rows[i].t_us, study->clean->rows[i].lsb[axis]);
         if (contender == FILTER_KIND_sprf) {
-            study->reacquired += (filter_any_flags(&chain.filter) & FILTER_REACQUIRED) != 0U;
+            study->reacquired += (chain.filter.flags & FILTER_REACQUIRED) != 0U;
         }
     }
     return true;
@@ -77,20 +78,20 @@ void study_end(study_t *study)
 static void predict(const chain_t *chain, double a, score_t *score)
 {
     filter_probe_t probe;
-    filter_any_probe(&chain->filter, &probe);
+    filter_probe(&chain->filter, &probe);
     double w1 = probe.gain_uq16 / 65536.0;
     double gain = noise_gain_of(w1);
-    if (chain->filter.kind == FILTER_KIND_synth) {
-        const synth_t *synth = &chain->filter.state.of_synth;
-        gain = synth_noise_gain_uq16(synth->b0_uq16, synth->a1_negative ? -synth->a1_uq16 : synth->a1_uq16) / 65536.0;
+    if (chain->filter.law == &filter_law_synth) {
+        const filter_synth_t *synth = &chain->filter.own.synth;
+        int32_t a1_uq16 = synth->a1_uq16;
+        gain = filter_synth_noise_gain_uq16(synth->b0_uq16, synth->a1_negative ? -a1_uq16 : a1_uq16) / 65536.0;
     }
-    if (chain->filter.kind == FILTER_KIND_synth_opt) {
+    if (chain->filter.law == &filter_law_synth_opt) {
         gain = 2.0 / 3.0; /* of (a1, b0) = (0, 2/3), where its schedule ends */
     }
-    if (chain->filter.kind == FILTER_KIND_kf3) {
-        const kf3_t *f = &chain->filter.state.of_kf3;
-        gain = kf3_noise_gain_of(w1, f->core.u.p.p12_uq28 / 268435456.0,
-                                 f->p13_uq28 / 268435456.0 / (f->fine ? 16.0 : 1.0));
+    if (chain->filter.law == &filter_law_kf3) {
+        const filter_kf3_t *f = &chain->filter.own.kf3;
+        gain = kf3_noise_gain_of(w1, f->p.p12 / 268435456.0, f->p13_uq28 / 268435456.0 / (f->fine ? 16.0 : 1.0));
     }
     double s_lsb2 = chain_r_lsb2(chain) / (1.0 - w1);
     score->predicted += gain * a * a;

@@ -32,7 +32,7 @@ row_counts_t survey_rows(const stream_t *stream, uint8_t range_g)
 /* The state of one run. */
 typedef struct {
     const survey_t *survey;
-    filter_facts_t facts;
+    envelope_facts_t facts;
     chain_t chain;
     band_t band;
     band_t second; /* the last second */
@@ -59,7 +59,7 @@ static size_t samples_by_rate(const run_t *run)
 static double share_used(run_t *run, double x_lsb)
 {
     uint16_t rate_dhz = run->survey->rate_dhz;
-    size_t window = band_window((filter_kind_t)run->chain.filter.kind, rate_dhz, run->r_max_lsb2);
+    size_t window = band_window(kind_of(&run->chain.filter), rate_dhz, run->r_max_lsb2);
     band_add(&run->band, run->z_lsb, window);
     double spread_lsb = band_spread_lsb(&run->band);
     double distance_lsb = fabs(x_lsb - band_median_lsb(&run->band));
@@ -153,7 +153,7 @@ static void one_sample(run_t *run, uint64_t t_us, int16_t lsb)
         return;
     }
     filter_probe_t probe;
-    filter_any_probe(&run->chain.filter, &probe);
+    filter_probe(&run->chain.filter, &probe);
     const char *broken = broken_bound(&run->chain.filter, &probe, x_lsb_q16);
     if (broken != NULL) {
         run->counts->first_broken = run->counts->bounds_broken++ == 0 ? broken : run->counts->first_broken;
@@ -178,7 +178,7 @@ bool survey_axis(const stream_t *stream, const survey_t *survey, filter_kind_t k
     memset(&run, 0, sizeof run);
     memset(counts, 0, sizeof *counts);
     run.survey = survey;
-    run.facts = filter_facts(kind);
+    run.facts = law_facts(kind).envelope;
     run.counts = counts;
     run.z_lsb = malloc(stream->count * sizeof *run.z_lsb);
     bool good = run.z_lsb != NULL && chain_begin(&run.chain, kind, survey->rate_dhz, survey->range_g, axis);

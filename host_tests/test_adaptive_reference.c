@@ -1,7 +1,7 @@
 /* adaptive against its double twin step by step, against the float filter it grew from, and in theory. */
 #include "adaptive.h"
 #include "reference_adaptive.h"
-#include "support_filters.h"
+#include "support_laws.h"
 #include "support_roll.h"
 #include "unity.h"
 
@@ -19,27 +19,28 @@ void setUp(void)
 
 void tearDown(void) {}
 
-static reference_adaptive_value_t value_of(const adaptive_t *f)
+static reference_adaptive_value_t value_of(const filter_t *f)
 {
-    double towards = f->below ? -1.0 : 1.0;
+    const filter_adaptive_t *a = &f->own.adaptive;
+    double towards = f->negative ? -1.0 : 1.0; /* the mean innovation's sign goes by the last one */
     return (reference_adaptive_value_t){
-        f->x_lsb_q16 / 65536.0,   towards * f->rate_lsb_q24 / 16777216.0, towards * f->mean_lsb_q24 / 16777216.0,
-        f->k_uq32 / 4294967296.0, f->scatter_lsb_uq24 / 16777216.0,       f->third_lsb_uq24 / 16777216.0
+        f->x_lsb_q16 / 65536.0,   f->rate_lsb / 16777216.0,         towards * a->mean_lsb_q24 / 16777216.0,
+        a->k_uq32 / 4294967296.0, a->scatter_lsb_uq24 / 16777216.0, a->third_lsb_uq24 / 16777216.0
     };
 }
 
-static reference_adaptive_t twin_of(const adaptive_t *f)
+static reference_adaptive_t twin_of(const filter_t *f)
 {
-    reference_adaptive_t r = { .sigmas = f->gate_sigma_q8 / 256.0,
-                               .manoeuvre = f->manoeuvre_uq16 / 65536.0,
-                               .slow = f->slow_uq16 / 65536.0,
-                               .fast = f->fast_uq16 / 65536.0,
-                               .share = f->share_uq16 / 65536.0,
-                               .rate_max = f->rate_max_lsb_q24 / 16777216.0,
-                               .last_weight = f->last_uq16 / 65536.0,
-                               .confirm = f->confirm,
-                               .guarded = f->guarded,
-                               .identify = f->identify };
+    reference_adaptive_t r = { .sigmas = f->own.adaptive.gate_sigma_q8 / 256.0,
+                               .manoeuvre = f->own.adaptive.manoeuvre_uq16 / 65536.0,
+                               .slow = f->own.adaptive.slow_uq16 / 65536.0,
+                               .fast = f->own.adaptive.fast_uq16 / 65536.0,
+                               .share = f->own.adaptive.share_uq16 / 65536.0,
+                               .rate_max = f->rate_max_lsb / 16777216.0,
+                               .last_weight = f->own.adaptive.last_uq16 / 65536.0,
+                               .confirm = f->own.adaptive.confirm,
+                               .guarded = f->own.adaptive.guarded,
+                               .identify = f->own.adaptive.identify };
     reference_adaptive_begin(&r);
     return r;
 }
@@ -52,7 +53,7 @@ static void assert_within(double bound, double expected, double got, const char 
     TEST_ASSERT_TRUE_MESSAGE(fabs(got - expected) <= bound + 1e-9, what);
 }
 
-static void assert_step(const adaptive_t *f, const reference_adaptive_t *r, const reference_adaptive_value_t *bound)
+static void assert_step(const filter_t *f, const reference_adaptive_t *r, const reference_adaptive_value_t *bound)
 {
     reference_adaptive_value_t got = value_of(f);
     assert_within(bound->x, r->now.x, got.x, "x");
@@ -62,7 +63,7 @@ static void assert_step(const adaptive_t *f, const reference_adaptive_t *r, cons
     assert_within(bound->scatter, r->now.scatter, got.scatter, "scatter");
     assert_within(bound->third, r->now.third, got.third, "third difference");
     if (r->warming == 0) {
-        TEST_ASSERT_EQUAL_INT(r->verdict, f->verdict);
+        TEST_ASSERT_EQUAL_INT(r->verdict, f->own.adaptive.verdict);
     }
 }
 
@@ -113,47 +114,64 @@ typedef struct {
 } case_t;
 
 /* A decision that the bound leaves open tells the twin what was decided. */
-static void tell(reference_adaptive_t *r, const adaptive_t *f)
+static void tell(reference_adaptive_t *r, const filter_t *f)
 {
-    r->verdict = (reference_verdict_t)f->verdict;
-    r->run = f->run;
-    r->side = f->below ? -1 : 1;
-    r->small = f->small;
-    r->largest = f->largest_lsb_uq8 / 256.0;
+    r->verdict = (reference_verdict_t)f->own.adaptive.verdict;
+    r->run = f->own.adaptive.run;
+    r->side = f->negative ? -1 : 1;
+    r->small = f->own.adaptive.small;
+    r->largest = f->own.adaptive.largest_lsb_uq8 / 256.0;
+}
+
+/* Over the start: what of the noise of a sample is rounded, and whether no decision hung on less than that. */
+typedef struct {
+    double bound;
+    bool clear;
+} start_third_t;
+
+/* One sample of the start into both: the filter learns with the last of them what the twin learns with each. */
+static void start_step(filter_t *f, reference_adaptive_t *r, int16_t z, start_third_t *third)
+{
+    reference_adaptive_value_t bound;
+    (void)filter_update(f, z);
+    third->clear = reference_adaptive_step(r, fmin(4095.0, fmax(-4096.0, z)), &bound) && third->clear;
+    third->bound += bound.third;
 }
 
 /* Decisions that the bound leaves open are counted. */
 static void run_case(const case_t *c, int verdicts[5])
 {
-    adaptive_config_t config;
-    adaptive_t f;
-    adaptive_defaults(&config, c->rate_dhz);
-    config.guard_sigma_q8 = c->guard_q8;
-    config.identify = c->identify;
-    config.r_lsb2_q8 = (uint32_t)lrint(fmin(256000.0, c->sigma * c->sigma * 256.0));
-    TEST_ASSERT_TRUE(adaptive_init(&f, &config));
+    filter_t f;
+    filter_config_t config = filter_defaults(&filter_law_adaptive, c->rate_dhz);
+    config.value[ADAPTIVE_GUARD_SIGMA_Q8] = c->guard_q8;
+    config.value[ADAPTIVE_IDENTIFY] = c->identify;
+    config.value[ADAPTIVE_R_LSB2_Q8] = (int32_t)lrint(fmin(256000.0, c->sigma * c->sigma * 256.0));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
     reference_adaptive_t r = twin_of(&f);
     signal_t signal = { c->sigma, 0.0, c->outliers, 0, c->wild };
     int open = 0;
-    for (int k = 0; k < SAMPLES; k++) {
+    start_third_t third = { 0.0, true };
+    r.now = value_of(&f);
+    for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
+        start_step(&f, &r, next_sample(&signal, k, 7000.0 / c->rate_dhz), &third);
+    }
+    assert_within(third.bound, r.now.third, value_of(&f).third, "third difference of the start");
+    tell(&r, &f);
+    for (int k = FILTER_WARM_UP_SAMPLES; k < SAMPLES; k++) {
         r.now = value_of(&f);
         if (k > 100 && random32_below(&random_state, 200) == 0) {
-            (void)adaptive_coast(&f);
+            (void)coast(&f);
             reference_adaptive_coast(&r);
             assert_within(1.0 / 65536.0, r.now.x, f.x_lsb_q16 / 65536.0, "coasted x");
             continue;
         }
-        bool warming = r.warming > 0;
         int16_t z = next_sample(&signal, k, 7000.0 / c->rate_dhz);
         reference_adaptive_value_t bound;
-        (void)adaptive_update(&f, z);
+        (void)filter_update(&f, z);
         bool clear = reference_adaptive_step(&r, fmin(4095.0, fmax(-4096.0, z)), &bound);
-        if (warming) {
-            assert_within(bound.third, r.now.third, value_of(&f).third, "third difference of the start");
-            tell(&r, &f);
-        } else if (clear) {
+        if (clear) {
             assert_step(&f, &r, &bound);
-            verdicts[f.verdict]++;
+            verdicts[f.own.adaptive.verdict]++;
         } else {
             open++;
             tell(&r, &f);
@@ -191,22 +209,31 @@ static void a_start_with_a_bad_read_is_that_of_the_reference(void)
 {
     int restarts = 0;
     for (int start = 0; start < 2000; start++) {
-        adaptive_config_t config;
-        adaptive_t f;
-        adaptive_defaults(&config, 100);
-        config.guard_sigma_q8 = (start % 2 == 0) ? config.guard_sigma_q8 : 0;
-        TEST_ASSERT_TRUE(adaptive_init(&f, &config));
+        filter_t f;
+        filter_config_t config = filter_defaults(&filter_law_adaptive, 100);
+        config.value[ADAPTIVE_GUARD_SIGMA_Q8] = (start % 2 == 0) ? config.value[ADAPTIVE_GUARD_SIGMA_Q8] : 0;
+        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
         reference_adaptive_t r = twin_of(&f);
         int bad = start % 13;
+        start_third_t third = { 0.0, true };
+        r.now = value_of(&f);
         for (int k = 0; k < 60; k++) {
             int16_t z = (k == bad) ? 4095 : (int16_t)lrint(200.0 + 5.0 * noise_of_one());
-            reference_adaptive_value_t bound;
-            r.now = value_of(&f);
-            (void)adaptive_update(&f, z);
-            bool clear = reference_adaptive_step(&r, z, &bound);
-            if (clear) {
-                assert_within(bound.third, r.now.third, value_of(&f).third, "third difference");
-                TEST_ASSERT_EQUAL_INT(r.small, f.small);
+            if (k < FILTER_WARM_UP_SAMPLES) {
+                start_step(&f, &r, z, &third);
+            } else {
+                reference_adaptive_value_t bound;
+                r.now = value_of(&f);
+                (void)filter_update(&f, z);
+                third.clear = reference_adaptive_step(&r, z, &bound);
+                third.bound = bound.third;
+            }
+            if (k < FILTER_WARM_UP_SAMPLES - 1) {
+                continue;
+            }
+            if (third.clear) {
+                assert_within(third.bound, r.now.third, value_of(&f).third, "third difference");
+                TEST_ASSERT_EQUAL_INT(r.small, f.own.adaptive.small);
             }
             tell(&r, &f);
         }
@@ -221,19 +248,18 @@ static void parameters_are_those_of_the_equations(void)
 {
     static const uint16_t rates_dhz[] = { 100, 250, 500, 1000, 4000, 8000 };
     for (int i = 0; i < 6; i++) {
-        adaptive_config_t config;
-        adaptive_t f;
-        adaptive_defaults(&config, rates_dhz[i]);
-        TEST_ASSERT_TRUE(adaptive_init(&f, &config));
-        double fast = fmin(0.6, 20000.0 / ((double)config.fast_ms * rates_dhz[i]));
-        double slow = 20000.0 / ((double)config.slow_ms * rates_dhz[i]);
+        filter_t f;
+        filter_config_t config = filter_defaults(&filter_law_adaptive, rates_dhz[i]);
+        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+        double fast = fmin(0.6, 20000.0 / ((double)config.value[ADAPTIVE_FAST_MS] * rates_dhz[i]));
+        double slow = 20000.0 / ((double)config.value[ADAPTIVE_SLOW_MS] * rates_dhz[i]);
         double share = 0.4 * fast;
         double ratio = share / (2.0 - share);
-        assert_within(2e-5, fast, f.fast_uq16 / 65536.0, "fast");
-        assert_within(2e-5, slow, f.slow_uq16 / 65536.0, "slow");
-        assert_within(4e-5, share, f.share_uq16 / 65536.0, "share");
+        assert_within(2e-5, fast, f.own.adaptive.fast_uq16 / 65536.0, "fast");
+        assert_within(2e-5, slow, f.own.adaptive.slow_uq16 / 65536.0, "slow");
+        assert_within(4e-5, share, f.own.adaptive.share_uq16 / 65536.0, "share");
         double error = 2.15 * (6e-5 / sqrt(ratio)) + 0.002 * sqrt(ratio);
-        assert_within(error, 2.15 * sqrt(ratio), f.manoeuvre_uq16 / 65536.0, "threshold");
+        assert_within(error, 2.15 * sqrt(ratio), f.own.adaptive.manoeuvre_uq16 / 65536.0, "threshold");
     }
 }
 
@@ -263,19 +289,18 @@ static void fading_memory_has_its_closed_forms(void)
 /* The probe's variance is R times that noise gain, at every memory. */
 static void variance_of_the_probe_is_the_closed_form(void)
 {
-    adaptive_config_t config;
-    adaptive_t f;
-    adaptive_defaults(&config, 1000);
-    config.identify = 0;
-    config.r_lsb2_q8 = 100u * 256u;
-    TEST_ASSERT_TRUE(adaptive_init(&f, &config));
+    filter_t f;
+    filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
+    config.value[ADAPTIVE_IDENTIFY] = 0;
+    config.value[ADAPTIVE_R_LSB2_Q8] = 100u * 256u;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
     for (int k = 0; k < 100; k++) {
-        (void)adaptive_update(&f, 0);
+        (void)filter_update(&f, 0);
         filter_probe_t probe;
-        adaptive_probe(&f, &probe);
+        filter_probe(&f, &probe);
         if (k >= FILTER_WARM_UP_SAMPLES) {
             double r = adaptive_r_lsb2_q8(&f) / 256.0;
-            double expected = r * reference_fading_noise_gain(f.k_uq32 / 4294967296.0);
+            double expected = r * reference_fading_noise_gain(f.own.adaptive.k_uq32 / 4294967296.0);
             TEST_ASSERT_DOUBLE_WITHIN(0.002 * expected + 1.0 / 256.0, expected, probe.p_lsb2_q8 / 256.0);
         }
     }
@@ -284,22 +309,21 @@ static void variance_of_the_probe_is_the_closed_form(void)
 /* Float, and adaptive without its guard, over the same samples. */
 static void both_mean_squares(roll_profile_t profile, bool identify, roll_windows_t *in_float, roll_windows_t *fixed)
 {
-    adaptive_config_t config;
-    adaptive_defaults(&config, 100);
-    config.guard_sigma_q8 = 0;
-    config.identify = identify ? 1u : 0u;
-    config.r_lsb2_q8 = (uint32_t)lrint(ROLL_R_DEG2 * ROLL_LSB_PER_DEGREE * ROLL_LSB_PER_DEGREE * 256.0);
+    filter_config_t config = filter_defaults(&filter_law_adaptive, 100);
+    config.value[ADAPTIVE_GUARD_SIGMA_Q8] = 0;
+    config.value[ADAPTIVE_IDENTIFY] = identify ? 1 : 0;
+    config.value[ADAPTIVE_R_LSB2_Q8] = (int32_t)lrint(ROLL_R_DEG2 * ROLL_LSB_PER_DEGREE * ROLL_LSB_PER_DEGREE * 256.0);
     roll_windows_t sums[2] = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0 } };
     for (int run = 0; run < RUNS; run++) {
         reference_fading_t r = { 0.0, 0.0, 0.0, 0.0, 0 };
-        adaptive_t f;
-        TEST_ASSERT_TRUE(adaptive_init(&f, &config));
+        filter_t f;
+        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
         for (int k = 0; k < ROLL_SAMPLES; k++) {
             double truth = roll_truth_deg(profile, 0.1 * k);
             int16_t z = roll_measured_lsb(&random_state, truth, 0.0);
             double x = reference_fading_step(&r, ROLL_R_DEG2, (double)z / ROLL_LSB_PER_DEGREE);
             roll_count(&sums[0], k, x - truth);
-            roll_count(&sums[1], k, adaptive_update(&f, z) / 65536.0 / ROLL_LSB_PER_DEGREE - truth);
+            roll_count(&sums[1], k, filter_update(&f, z) / 65536.0 / ROLL_LSB_PER_DEGREE - truth);
         }
     }
     *in_float = roll_mean(&sums[0], RUNS);

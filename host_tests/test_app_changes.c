@@ -141,14 +141,14 @@ static void test_a_change_of_filter_goes_axis_by_axis(void)
 {
     board_start_resting();
     board_run_ms(500);
-    uint8_t old = pipeline.axes[0].filter.kind;
+    const filter_law_t *old = pipeline.axes[0].filter.law;
     board_type("filter kf");
     int changed = 0;
     for (int ms = 0; ms < 40; ms++) {
         board_run_ms(1);
         int now = 0;
         for (size_t axis = 0; axis < AXES; axis++) {
-            now += pipeline.axes[axis].filter.kind != old;
+            now += pipeline.axes[axis].filter.law != old;
         }
         TEST_ASSERT_TRUE(now == changed || now == changed + 1);
         changed = now;

@@ -3,6 +3,7 @@
 
 #include "app.h"
 #include "counters.h"
+#include "filter_list.h"
 #include "hal_watchdog.h"
 #include "pipeline_state.h"
 #include "settings.h"
@@ -44,7 +45,7 @@ static void test_saved_settings_survive_power(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: as saved", 0));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# filter sprf, rate 50 Hz, range 4 g, every 3, baud 115200", 0));
     TEST_ASSERT_EQUAL_STRING("# gate 4.5 sigma: 1 to 16, 0: off", talk_answer("gate"));
-    TEST_ASSERT_EQUAL_UINT(4 * 256 + 128, pipeline.axes[1].filter.state.of_sprf.gate_sigma_q8);
+    TEST_ASSERT_EQUAL_UINT(4 * 256 + 128, pipeline.axes[1].filter.own.kalman.of.gated.gate_sigma_q8);
 }
 
 /* EEPROM writes are for a sensor that stands still: not one while rows go out, whatever is typed. */

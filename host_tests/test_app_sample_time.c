@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "filter_any.h"
+#include "filter_list.h"
 #include "hang_test.h"
 #include "pipeline.h"
 #include "settings.h"
@@ -83,14 +83,14 @@ static void test_every_filter_fits_every_rate_of_this_board_but_af_800_hz(void)
     for (uint8_t filter = 0; filter < FILTER_KIND_COUNT; filter++) {
         for (uint16_t rate_dhz = 125; rate_dhz <= 8000; rate_dhz = (uint16_t)(rate_dhz * 2u)) {
             bool fits = filter != FILTER_KIND_af || rate_dhz != 8000;
-            const char *name = filter_any_name((filter_kind_t)filter);
+            const char *name = filter_listed_name((filter_kind_t)filter);
             TEST_ASSERT_EQUAL_MESSAGE(fits, settings_fit(filter, rate_dhz), name);
         }
     }
-    TEST_ASSERT_EQUAL_UINT16(3u * filter_any_worst_cycles(FILTER_KIND_af), settings_filter_cycles(FILTER_KIND_af));
+    TEST_ASSERT_EQUAL_UINT16(3u * filter_worst_cycles(&filter_law_af), settings_filter_cycles(FILTER_KIND_af));
     TEST_ASSERT_EQUAL_UINT32(20000u - SETTINGS_REST_CYCLES, settings_left_cycles(8000));
     TEST_ASSERT_EQUAL_UINT32(1280000u - SETTINGS_REST_CYCLES, settings_left_cycles(125));
-    hal_host_cpu_hz = (SETTINGS_REST_CYCLES + 3u * af_worst_cycles) * 800u;
+    hal_host_cpu_hz = (SETTINGS_REST_CYCLES + 3u * filter_worst_cycles(&filter_law_af)) * 800u;
     TEST_ASSERT_FALSE(settings_fit(FILTER_KIND_af, 8000)); /* nothing would be left for a row */
     hal_host_cpu_hz += 800u;
     TEST_ASSERT_TRUE(settings_fit(FILTER_KIND_af, 8000));
@@ -101,12 +101,12 @@ static void test_every_follows_what_the_filter_leaves_time_for(void)
 {
     static const struct {
         const char *name;
-        uint16_t cycles;
-    } filters[] = { { "sprf", sprf_worst_cycles },
-                    { "soft", soft_worst_cycles },
-                    { "sprf_paper", sprf_paper_worst_cycles },
-                    { "pbf", pbf_worst_cycles },
-                    { "shrf", shrf_worst_cycles } };
+        filter_kind_t kind;
+    } filters[] = { { "sprf", FILTER_KIND_sprf },
+                    { "soft", FILTER_KIND_soft },
+                    { "sprf_paper", FILTER_KIND_sprf_paper },
+                    { "pbf", FILTER_KIND_pbf },
+                    { "shrf", FILTER_KIND_shrf } };
     board_start_resting();
     board_run_ms(200);
     board_type("baud 1000000");
@@ -114,7 +114,7 @@ static void test_every_follows_what_the_filter_leaves_time_for(void)
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
     for (size_t i = 0; i < sizeof filters / sizeof filters[0]; i++) {
         char typed[32], answer[96];
-        unsigned over = 20000u - SETTINGS_REST_CYCLES - 3u * filters[i].cycles;
+        unsigned over = 20000u - SETTINGS_REST_CYCLES - 3u * filter_worst_cycles(filter_listed(filters[i].kind));
         unsigned every = 1;
         while (every * over < SETTINGS_ROW_CYCLES) {
             every++;

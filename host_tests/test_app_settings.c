@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "filter_list.h"
 #include "number.h"
 #include "pipeline_state.h"
 #include "settings.h"
@@ -97,8 +98,8 @@ static void test_changes_in_quick_succession(void)
     TEST_ASSERT_EQUAL_size_t(before + 7, board.note_count);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("refused", before));
     for (int axis = 0; axis < AXES; axis++) {
-        TEST_ASSERT_EQUAL_UINT(FILTER_KIND_sprf, pipeline.axes[axis].filter.kind);
-        TEST_ASSERT_EQUAL_UINT(3 * 256, pipeline.axes[axis].filter.state.of_sprf.gate_sigma_q8);
+        TEST_ASSERT_EQUAL_PTR(&filter_law_sprf, pipeline.axes[axis].filter.law);
+        TEST_ASSERT_EQUAL_UINT(3 * 256, pipeline.axes[axis].filter.own.kalman.of.gated.gate_sigma_q8);
     }
     TEST_ASSERT_EQUAL_UINT(0, settings.own);
 }

@@ -38,13 +38,13 @@ BROKEN = [
     ("library.properties", "version=0.1.0", "version=0.1.1", "library.json: version is '0.1.0', in library.properties '0.1.1'"),
     ("library.properties", "category=Data Processing", "category=Filters", "library.properties:7: category may not be 'Filters'"),
     ("library.properties", "url=https://tilt-uno.example/", "url=", "library.properties:9: url may not be ''"),
-    ("library.properties", "noise.h", "noises.h", "library.properties:11: includes may not be 'kf.h,sprf.h,noises.h'"),
+    ("library.properties", "noise.h", "noises.h", "library.properties:11: includes may not be 'filter.h,noises.h'"),
     ("library.properties", "architectures=*\n", "", "library.properties: no field architectures"),
-    ("library.json", '"sprf.h", ', '"spr.h", ', "library.json: there is no header spr.h"),
+    ("library.json", '"filter_list.h", ', '"filter_lists.h", ', "library.json: there is no header filter_lists.h"),
     ("library.json", '"license"', '"license', "library.json: Expecting ':' delimiter: line 6"),
-    ("keywords.txt", "kf_update\tKEYWORD2", "kf_update KEYWORD2", "is no word, tab and one of"),
-    ("keywords.txt", "kf_update\t", "kf_updates\t", "no header declares kf_updates as KEYWORD2"),
-    ("keywords.txt", "kf_t\tKEYWORD1", "kf_t\tKEYWORD2", "no header declares kf_t as KEYWORD2"),
+    ("keywords.txt", "filter_update\tKEYWORD2", "filter_update KEYWORD2", "is no word, tab and one of"),
+    ("keywords.txt", "filter_update\t", "filter_updates\t", "no header declares filter_updates as KEYWORD2"),
+    ("keywords.txt", "filter_t\tKEYWORD1", "filter_t\tKEYWORD2", "no header declares filter_t as KEYWORD2"),
     ("keywords.txt", "noise_t\tKEYWORD1\n", "", "keywords.txt: noise_t is missing"),
 ]
 
@@ -67,7 +67,7 @@ def a_folder_that_is_no_library_is_found():
     with tempfile.TemporaryDirectory() as folder:
         copy = pathlib.Path(shutil.copytree(LIBRARY, pathlib.Path(folder, "my filters")))
         (copy / "examples/outliers/outliers.ino").rename(copy / "examples/outliers/other.ino")
-        (copy / "src/link.h").symlink_to("kf.h")
+        (copy / "src/link.h").symlink_to("filter.h")
         (copy / "LICENSE").unlink()
         said = arduino_rules.layout_findings(copy)
         expected = ("my filters: no name for", "link.h: not in a library", "LICENSE: is not there", "outliers: no sketch outliers.ino")
@@ -102,29 +102,31 @@ def every_function_has_c_linkage():
         assert done.returncode != 0 and "undefined reference to `noise_update" in done.stderr, done.stderr
 
 
+class Config(ctypes.Structure):
+    _fields_ = [("rate_dhz", ctypes.c_uint16), ("value", ctypes.c_int32 * 7)]
+
+
 class Native:
     """A filter and its noise estimate by the shared library on the PC."""
     code = None
 
     def __init__(self, name, noisy_axis=False):
         Native.code = Native.code or ctypes.CDLL(str(BUILT / "libfilters.so"))
-        self.name, self.state, self.noise = name, ctypes.create_string_buffer(512), ctypes.create_string_buffer(64)
-        config = ctypes.create_string_buffer(128)
-        self.call("defaults", config, RATE_DHZ)
-        assert self.call("init", self.state, config)
+        self.code.filter_defaults.restype = Config
+        self.state, self.noise = ctypes.create_string_buffer(512), ctypes.create_string_buffer(64)
+        law = ctypes.addressof(ctypes.c_char.in_dll(self.code, f"filter_law_{name}"))
+        config = self.code.filter_defaults(ctypes.c_void_p(law), RATE_DHZ)
+        assert self.code.filter_init(self.state, ctypes.c_void_p(law), ctypes.byref(config)) == 0
         self.code.noise_init(self.noise, RATE_DHZ, noisy_axis)
-
-    def call(self, verb, *words):
-        return getattr(self.code, f"{self.name}_{verb}")(*words)
 
     def update(self, lsb):
         self.code.noise_update.restype = ctypes.c_bool
         if self.code.noise_update(self.noise, lsb):
-            self.call("set_noise", self.state, self.code.noise_r_lsb2_q8(self.noise))
-        return self.call("update", self.state, lsb) / 65536
+            self.code.filter_set_noise(self.state, self.code.noise_r_lsb2_q8(self.noise))
+        return self.code.filter_update(self.state, lsb) / 65536
 
     def restart(self):
-        self.call("restart", self.state)
+        self.code.filter_restart(self.state)
         self.code.noise_gap(self.noise)
 
 

@@ -8,10 +8,10 @@
 
 #include "coast.h"
 #include "counters.h"
-#include "filter_any.h"
 #include "pipeline.h"
 #include "settings.h"
 #include "silence.h"
+#include "support_filters.h"
 #include "support_random.h"
 #include "unity.h"
 
@@ -122,17 +122,16 @@ static void gap(unsigned missing)
 static const char *about(uint8_t kind, unsigned missing)
 {
     static char text[80];
-    snprintf(text, sizeof text, "%s, %u Hz, %u missing", filter_any_name((filter_kind_t)kind), world.rate_dhz / 10u,
+    snprintf(text, sizeof text, "%s, %u Hz, %u missing", filter_listed_name((filter_kind_t)kind), world.rate_dhz / 10u,
              missing);
     return text;
 }
 
 #define FOR_EACH_FILTER(kind) for (uint8_t kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++)
 
-/* These have no rate but the difference of two estimates: at rest 314 and 589 degrees a second at 800 Hz. */
 static bool rate_is_a_difference(uint8_t kind)
 {
-    return kind == (uint8_t)FILTER_KIND_synth || kind == (uint8_t)FILTER_KIND_synth_opt;
+    return law_facts((filter_kind_t)kind).rate_is_a_difference;
 }
 
 /* At rest. Those whose rate is a difference jump as far from any row to the next: a gap must not add to it. */

@@ -119,7 +119,7 @@ def the_emitted_configuration_runs_as_told():
         assert made["filter"] == "synth" and compiles_and_runs(made["initialiser"], "synth"), made
         stored = configuration.synth_filter(made["fields"]["b0_uq16"], made["fields"]["a1_q16"])
         assert runs_as_told("synth", made["fields"], stored) >= 1
-        told = LIBRARY.c.synth_noise_gain_uq16(made["fields"]["b0_uq16"], made["fields"]["a1_q16"]) / 65536
+        told = LIBRARY.c.filter_synth_noise_gain_uq16(made["fields"]["b0_uq16"], made["fields"]["a1_q16"]) / 65536
         assert abs(told / made["noise_gain"] - 1) < 2 ** -11, (told, made)
         assert made["noise_gain"] == float(stored.noise_gain())
 

@@ -1,9 +1,10 @@
 /* Roll over the shipped streams: fixed point against double, robust against not, filtered against raw. */
-#include "filter_any.h"
+#include "filter_list.h"
 #include "noise.h"
 #include "reference_filters.h"
 #include "stream.h"
 #include "tilt.h"
+#include "tracker.h"
 #include "unity.h"
 
 #include <math.h>
@@ -22,7 +23,7 @@ typedef struct {
 } score_t;
 
 typedef struct {
-    filter_any_t f[FILTER_KIND_COUNT];
+    filter_t f[FILTER_KIND_COUNT];
     reference_filter_t kf, sprf;
     noise_t noise;
 } axis_t;
@@ -55,15 +56,14 @@ static void start_axis(axis_t *a, const stream_t *s, int axis, double r_lsb2)
     uint16_t rate_dhz = (uint16_t)lrint(s->rate_hz * 10.0);
     noise_init(&a->noise, rate_dhz, axis == 2);
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-        filter_any_config_t config;
-        filter_any_defaults((filter_kind_t)kind, &config, rate_dhz);
-        TEST_ASSERT_TRUE(filter_any_init(&a->f[kind], (filter_kind_t)kind, &config));
+        filter_config_t config = filter_defaults(filter_listed((filter_kind_t)kind), rate_dhz);
+        TEST_ASSERT_TRUE(filter_init(&a->f[kind], filter_listed((filter_kind_t)kind), &config) == FILTER_ACCEPTED);
         uint32_t r_q8 = r_lsb2 > 0.0 ? (uint32_t)lrint(r_lsb2 * 256.0) : noise_r_lsb2_q8(&a->noise);
-        filter_any_set_noise(&a->f[kind], r_q8);
+        filter_set_noise(&a->f[kind], r_q8);
     }
     double r = r_lsb2 > 0.0 ? r_lsb2 : 1.0;
-    reference_library(&a->kf, s->rate_hz, r, TWO_STATE_Q_DEFAULT_LSB2_S3, 0.0, 0, 0.0, median5(s, axis));
-    reference_library(&a->sprf, s->rate_hz, r, TWO_STATE_Q_DEFAULT_LSB2_S3, 3.0, 5, 800.0, median5(s, axis));
+    reference_library(&a->kf, s->rate_hz, r, filter_parameter_q.standard, 0.0, 0, 0.0, median5(s, axis));
+    reference_library(&a->sprf, s->rate_hz, r, filter_parameter_q.standard, 3.0, 5, 800.0, median5(s, axis));
 }
 
 static void step_axis(axis_t *a, int16_t z, bool estimate, bool warm)
@@ -71,9 +71,9 @@ static void step_axis(axis_t *a, int16_t z, bool estimate, bool warm)
     bool changed = noise_update(&a->noise, z);
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         if (estimate && changed) {
-            filter_any_set_noise(&a->f[kind], noise_r_lsb2_q8(&a->noise));
+            filter_set_noise(&a->f[kind], noise_r_lsb2_q8(&a->noise));
         }
-        (void)filter_any_update(&a->f[kind], z);
+        (void)filter_update(&a->f[kind], z);
     }
     if (warm) {
         reference_step(&a->kf, z);
@@ -93,7 +93,7 @@ static double roll_fixed(const axis_t axes[3], filter_kind_t kind)
 {
     int32_t q8[3];
     for (int i = 0; i < 3; i++) {
-        q8[i] = (int32_t)lrint(of_z[i] * axes[i].f[kind].state.of_kf.core.x_lsb_q16 / 256.0);
+        q8[i] = (int32_t)lrint(of_z[i] * axes[i].f[kind].x_lsb_q16 / 256.0);
     }
     tilt_t tilt = { 0, 0, false };
     tilt_angles(&tilt, q8[0], q8[1], q8[2]);

@@ -1,8 +1,8 @@
 /* Guards inside the filters that ordinary samples hardly reach: the borrow of P22, the hysteresis of R's estimate. */
 #include <stdlib.h>
 
+#include "kalman.h"
 #include "noise.h"
-#include "two_state.h"
 #include "unity.h"
 
 #define ONE_UQ28 0x10000000u
@@ -11,13 +11,12 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-static void start(two_state_t *s, uint32_t p11, uint32_t p12, uint32_t p22)
+static void start(filter_t *f, uint32_t p11, uint32_t p12, uint32_t p22)
 {
-    two_state_init(s, 1000, 768, 10000, 0);
-    two_state_start(s, 0);
-    s->u.p.p11_uq28 = p11;
-    s->u.p.p12_uq28 = p12;
-    s->u.p.p22_uq28 = p22;
+    filter_config_t config = filter_defaults(&filter_law_kf, 1000);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_kf, &config));
+    filter_reset(f, 0);
+    f->own.kalman.p = (filter_covariance_t){ p11, p12, p22 };
 }
 
 /*
@@ -26,11 +25,12 @@ static void start(two_state_t *s, uint32_t p11, uint32_t p12, uint32_t p22)
  */
 static void test_p22_does_not_wrap_below_zero(void)
 {
-    two_state_t s;
-    start(&s, 0, ONE_UQ28, ONE_UQ28 / 2);
-    TEST_ASSERT_TRUE(s.q22_uq28 < ONE_UQ28 / 10);
-    TEST_ASSERT_TRUE(two_state_step(&s, 10, true));
-    TEST_ASSERT_EQUAL_HEX32(0, s.u.p.p22_uq28);
+    filter_t f;
+    start(&f, 0, ONE_UQ28, ONE_UQ28 / 2);
+    TEST_ASSERT_TRUE(f.own.kalman.q22_uq28 < ONE_UQ28 / 10);
+    (void)filter_update(&f, 10);
+    TEST_ASSERT_NOT_EQUAL_UINT16(0, f.gain_uq16);
+    TEST_ASSERT_EQUAL_HEX32(0, f.own.kalman.p.p22);
 }
 
 /*
@@ -39,12 +39,13 @@ static void test_p22_does_not_wrap_below_zero(void)
  */
 static void test_p22_that_stays_positive_is_kept(void)
 {
-    two_state_t s;
-    start(&s, 0, ONE_UQ28, ONE_UQ28);
+    filter_t f;
+    start(&f, 0, ONE_UQ28, ONE_UQ28);
     /* predicted: P12 = 2, P11 = 3, P22 = 1 + q; P12^2 / (P11 + 1) = 1: with q left over, in UQ4.28 */
-    double expected = (double)s.q22_uq28 / ONE_UQ28;
-    TEST_ASSERT_TRUE(two_state_step(&s, 10, true));
-    TEST_ASSERT_DOUBLE_WITHIN(4.0 * 1.5 / 65536.0, expected, (double)s.u.p.p22_uq28 / ONE_UQ28);
+    double expected = (double)f.own.kalman.q22_uq28 / ONE_UQ28;
+    (void)filter_update(&f, 10);
+    TEST_ASSERT_NOT_EQUAL_UINT16(0, f.gain_uq16);
+    TEST_ASSERT_DOUBLE_WITHIN(4.0 * 1.5 / 65536.0, expected, (double)f.own.kalman.p.p22 / ONE_UQ28);
 }
 
 /* R = 1.5 times the mean, Q16 to Q8. */

@@ -1,5 +1,6 @@
-/* The pieces of mixture.h against libm: posterior, log odds, and the distance of two_state_wide.h. */
+/* The pieces of mixture.h against libm: posterior, log odds, and the distance of wide.h. */
 #include "mixture.h"
+#include "support_laws.h"
 #include "unity.h"
 
 #include <math.h>
@@ -60,17 +61,19 @@ static void log_odds_are_the_logarithm(void)
 /* r^2 / (R S) for innovations, R and P11 of all sizes. */
 static void distance_is_the_squared_innovation_in_variances(void)
 {
-    static const uint32_t r_q8[] = { 3, 100, 256, 768, 4096, 40000, 256000 };
+    static const int32_t r_q8[] = { 3, 100, 256, 768, 4096, 40000, 256000 };
     double worst = 0.0;
     for (size_t i = 0; i < sizeof r_q8 / sizeof r_q8[0]; i++) {
-        two_state_wide_t s;
-        two_state_wide_init(&s, 1000, r_q8[i], 10000);
+        filter_config_t config = filter_defaults(&filter_law_pbf, 1000);
+        filter_t f;
+        config.value[MIXTURE_R_LSB2_Q8] = r_q8[i];
+        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_pbf, &config));
         for (uint32_t p11 = 0; p11 < 0x7F000000U; p11 += p11 / 4U + 977U) {
             for (int16_t z = 1; z < 4095; z = (int16_t)(z + z / 7 + 1)) {
-                two_state_wide_begin(&s, 0, 0, p11, 0, 0);
-                (void)two_state_wide_predict(&s, z);
+                wide_from(&f, 0, 0, (filter_covariance_t){ p11, 0, 0 });
+                (void)wide_predict(&f, z);
                 double exact = z * (double)z / (r_q8[i] / 256.0) / (p11 / 65536.0 + 1.0);
-                double got = two_state_wide_distance_uq8(&s) / 256.0;
+                double got = wide_distance_uq8(&f) / 256.0;
                 if (exact >= 255.9) {
                     TEST_ASSERT_TRUE(got >= 255.8);
                 } else {

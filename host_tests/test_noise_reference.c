@@ -1,6 +1,5 @@
 /* Noise estimator: its constants from their integral, its level, its robustness, and healthy samples at rest. */
 #include "noise.h"
-#include "sprf.h"
 #include "stream.h"
 #include "support_filters.h"
 #include "unity.h"
@@ -149,12 +148,12 @@ static bool check_rest(const rest_t *rest)
     }
     for (int axis = 0; axis < 3; axis++) {
         noise_t n;
-        sprf_config_t config;
-        sprf_t f;
+        filter_config_t config;
+        filter_t f;
         noise_init(&n, rest->rate_dhz, axis == 2);
-        sprf_defaults(&config, rest->rate_dhz);
-        TEST_ASSERT_TRUE(sprf_init(&f, &config));
-        sprf_set_noise(&f, noise_r_lsb2_q8(&n));
+        config = filter_defaults(&filter_law_sprf, rest->rate_dhz);
+        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf, &config));
+        filter_set_noise(&f, noise_r_lsb2_q8(&n));
         int count = 0;
         int refused = 0;
         for (size_t i = 0; i < stream.count; i++) {
@@ -163,13 +162,13 @@ static bool check_rest(const rest_t *rest)
                 continue;
             }
             if (noise_update(&n, stream.rows[i].lsb[axis])) {
-                sprf_set_noise(&f, noise_r_lsb2_q8(&n));
+                filter_set_noise(&f, noise_r_lsb2_q8(&n));
             }
-            (void)sprf_update(&f, stream.rows[i].lsb[axis]);
+            (void)filter_update(&f, stream.rows[i].lsb[axis]);
             count++;
-            refused += (sprf_flags(&f) & FILTER_GATED) != 0;
+            refused += (f.flags & FILTER_GATED) != 0;
             if (count > 2 * rest->rate_dhz / 10) {
-                TEST_ASSERT_EQUAL_UINT8_MESSAGE(0, sprf_flags(&f) & FILTER_REACQUIRED, rest->path);
+                TEST_ASSERT_EQUAL_UINT8_MESSAGE(0, f.flags & FILTER_REACQUIRED, rest->path);
             }
         }
         TEST_ASSERT_TRUE_MESSAGE(count > 100, rest->path);

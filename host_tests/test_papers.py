@@ -110,7 +110,7 @@ def fewer_runs_and_other_seeds_leave_the_page_alone():
 
 @test
 def operations_are_those_of_the_equations():
-    # two_state.h: products P11 -> w1 r, w2 = P12 g, w2 P12, w2 r; one reciprocal. sprf adds r^2 and gate^2 R S
+    # kalman.h: products P11 -> w1 r, w2 = P12 g, w2 P12, w2 r; one reciprocal. sprf adds r^2 and gate^2 R S
     rows = rows_of("operations", 1, OPERATIONS)
     for name, products in (("kf", 4), ("sprf", 6)):
         assert value(rows, "operations", name, "fixed", "multiplications") == products, name

@@ -1,5 +1,5 @@
 /* The calibration's place in the sample path: what it changes of a row, what it leaves, when it counts. */
-#include "filter_any.h"
+#include "filter_list.h"
 #include "pipeline.h"
 #include "unity.h"
 

@@ -41,14 +41,14 @@ static bool is_robust(size_t contender)
     if (contender == MEDIAN_KF) {
         return true;
     }
-    envelope_rule_t rule = filter_facts((filter_kind_t)contender).rule;
+    envelope_rule_t rule = law_facts((filter_kind_t)contender).envelope.rule;
     return rule == ENVELOPE_REACQUIRES || rule == ENVELOPE_STANDS || rule == ENVELOPE_MIXTURE || rule == ENVELOPE_WAITS;
 }
 
 static bool is_linear(size_t contender)
 {
     return contender != MEDIAN_KF && !is_robust(contender) &&
-           filter_facts((filter_kind_t)contender).rule != ENVELOPE_NONE;
+           law_facts((filter_kind_t)contender).envelope.rule != ENVELOPE_NONE;
 }
 
 /* Scores of all contenders over the seeds. */
@@ -146,7 +146,7 @@ static void check_survival(const char *name, const stream_t *clean, uint16_t rat
                 axis_counts_t c;
                 TEST_ASSERT_TRUE(survey_axis(&faulty.stream, &survey, (filter_kind_t)kind, axis, &c));
                 snprintf(text, sizeof text, "%s: %s: %s %c: bounds %zu, median %zu, hull %zu", name, fault_name(fault),
-                         filter_any_name((filter_kind_t)kind), "xyz"[axis], c.bounds_broken, c.envelope_broken,
+                         filter_listed_name((filter_kind_t)kind), "xyz"[axis], c.bounds_broken, c.envelope_broken,
                          c.hull_broken);
                 TEST_ASSERT_EQUAL_size_t_MESSAGE(0, c.bounds_broken + c.envelope_broken + c.hull_broken, text);
             }

@@ -58,10 +58,10 @@ static void gain_sums_are_as_stated(void)
         worst = fmax(worst, answer_sum(w1, w1 * w1 / (2.0 - w1), &square));
         TEST_ASSERT_DOUBLE_WITHIN(1e-9 + 1e-6 * square, square, noise_gain_of(w1));
     }
-    TEST_ASSERT_TRUE(worst <= filter_facts(FILTER_KIND_kf).gain_sum && worst > 1.43);
+    TEST_ASSERT_TRUE(worst <= law_facts(FILTER_KIND_kf).envelope.gain_sum && worst > 1.43);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, noise_gain_of(0.0));
-    TEST_ASSERT_DOUBLE_WITHIN(5e-4, filter_facts(FILTER_KIND_synth).gain_sum, straight_line_sum(0.3));
-    TEST_ASSERT_DOUBLE_WITHIN(1.5e-3, filter_facts(FILTER_KIND_synth_opt).gain_sum, straight_line_sum(2.0 / 3.0));
+    TEST_ASSERT_DOUBLE_WITHIN(5e-4, law_facts(FILTER_KIND_synth).envelope.gain_sum, straight_line_sum(0.3));
+    TEST_ASSERT_DOUBLE_WITHIN(1.5e-3, law_facts(FILTER_KIND_synth_opt).envelope.gain_sum, straight_line_sum(2.0 / 3.0));
 }
 
 /* kf3's sums, from the gains that its recursion settles at; per doubling of q33, and its time constant. */
@@ -88,7 +88,7 @@ static void kf3_sums_are_as_stated(void)
         double samples = -1.0 / log(reference_kf3_radius(&f));
         TEST_ASSERT_TRUE(samples <= 2.0 / pow(2.0, exponent / 6.0));
     }
-    double stated = filter_facts(FILTER_KIND_kf3).gain_sum;
+    double stated = law_facts(FILTER_KIND_kf3).envelope.gain_sum;
     TEST_ASSERT_TRUE(worst <= stated && worst > stated - 0.002);
     /* 100 Hz, R = 3: q33 = 3e5 x 1e-10 / 3 = 1e-5 */
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2.0 / pow(1e-5, 1.0 / 6.0), kf3_time_constant_samples(1000, 3.0));
@@ -141,7 +141,7 @@ static void the_rate_of_a_mixture_carries_it_as_far_as_stated(void)
         rate_answers(steady_gain(q22 / 400.0), &carried_slow, &driven);
         worst = fmax(worst, driven_fast * carried_slow);
     }
-    double stated = filter_facts(FILTER_KIND_pbf).gain_sum - filter_facts(FILTER_KIND_kf).gain_sum;
+    double stated = law_facts(FILTER_KIND_pbf).envelope.gain_sum - law_facts(FILTER_KIND_kf).envelope.gain_sum;
     printf("rate of a mixture: %.3f, stated %.3f\n", worst, stated);
     TEST_ASSERT_TRUE(worst <= stated && worst > 0.95 * stated);
 }
@@ -149,7 +149,7 @@ static void the_rate_of_a_mixture_carries_it_as_far_as_stated(void)
 /* The paper's system: T = 0.0247 s and Q = 0.0009 against R = 0.0064 make q22 = Q T^2 / R = 8.58e-5. */
 static void a_time_constant_of_the_paper_has_14_7_samples(void)
 {
-    double r_lsb2 = TWO_STATE_Q_DEFAULT_LSB2_S3 * 1e-6 / 8.58e-5; /* the same q22 at 100 Hz */
+    double r_lsb2 = filter_parameter_q.standard * 1e-6 / 8.58e-5; /* the same q22 at 100 Hz */
     TEST_ASSERT_DOUBLE_WITHIN(0.05, 14.7, time_constant_samples(1000, r_lsb2));
     TEST_ASSERT_EQUAL_size_t(200, band_window(FILTER_KIND_sprf, 1000, r_lsb2));
 }

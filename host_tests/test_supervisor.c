@@ -2,6 +2,7 @@
  * The whole firmware with the filter `auto` on a board that rolls while an axis is stuck or at its rail: the angle from
  * the axes that remain, flagged and told; with another filter, and with two bad axes, none is left out.
  */
+#include "filter_list.h"
 #include "pipeline_state.h"
 #include "supervisor.h"
 #include "support_board.h"
@@ -265,14 +266,14 @@ static void test_no_choices_are_told_of_a_filter_that_is_leaving(void)
     board_type("filter auto");
     board_run_ms(1000);
     board_type("filter kf");
-    for (int ms = 0; ms < 40 && pipeline.axes[AXES - 1].filter.kind != (uint8_t)FILTER_KIND_kf; ms++) {
+    for (int ms = 0; ms < 40 && pipeline.axes[AXES - 1].filter.law != &filter_law_kf; ms++) {
         board_run_ms(1);
     }
-    TEST_ASSERT_EQUAL_UINT8(FILTER_KIND_auto, pipeline.axes[0].filter.kind);
+    TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline.axes[0].filter.law);
     size_t first = board.note_count;
     board_type("status");
     board_run_ms(3);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_KIND_auto, pipeline.axes[0].filter.kind);
+    TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline.axes[0].filter.law);
     board_run_ms(100);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# state streaming", first));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("chosen", first));

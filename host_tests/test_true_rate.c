@@ -8,7 +8,7 @@
 #include "app.h"
 #include "coast.h"
 #include "counters.h"
-#include "filter_any.h"
+#include "filter_list.h"
 #include "pipeline_state.h"
 #include "settings.h"
 #include "support_board.h"
@@ -149,8 +149,8 @@ static void test_no_row_shows_it(void)
         (void)second(10500, 60, 0);
         for (int k = 0; k < 20; k++) {
             sample(60);
-            TEST_ASSERT_EQUAL_HEX16_MESSAGE(0, row.flags, filter_any_name((filter_kind_t)kind));
-            TEST_ASSERT_INT_WITHIN_MESSAGE(12, before_cdeg, row.roll_cdeg, filter_any_name((filter_kind_t)kind));
+            TEST_ASSERT_EQUAL_HEX16_MESSAGE(0, row.flags, filter_listed_name((filter_kind_t)kind));
+            TEST_ASSERT_INT_WITHIN_MESSAGE(12, before_cdeg, row.roll_cdeg, filter_listed_name((filter_kind_t)kind));
         }
     }
 }

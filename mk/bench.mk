@@ -35,7 +35,7 @@ $(U)/bench_sample.elf: $(BENCH_SAMPLE_OBJ)
 # the firmware without its filters, whose clock starts at ten digits: what is left is the rest of a sample's way, and rows
 BENCH_REST_OBJ := $(AVR_SRC:%.c=$(U)/bench_rest/%.o) $(U)/bench_rest/host_tests/avr/bench_rest.o
 $(U)/bench_rest/%.o: IMAGE_FILTERS = synth
-$(U)/bench_rest/firmware/pipeline.o: AVR_FLAGS += -Dfilter_any_update=bench_no_filter
+$(U)/bench_rest/firmware/pipeline.o: AVR_FLAGS += -Dfilter_update=bench_no_filter
 $(U)/bench_rest/%.o: %.c Makefile mk/bench.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -DHAL_TIME_START_US=4200000000ul -MMD -MP -c $< -o $@

@@ -21,7 +21,7 @@ WITHOUT_CAL6   := soft shrf auto
 CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))
 IMAGE_FILTERS   = $(FILTERS_everyday)
 FILTER_FLAG     = '-DFILTER_LIST(X)=$(foreach f,$(IMAGE_FILTERS),X($(f)))' $(if $(filter $(WITHOUT_CAL6),$(IMAGE_FILTERS)),-DCALIBRATE_SIX=0) \
-                  $(if $(filter auto,$(IMAGE_FILTERS)),-DSUPERVISOR=1)
+                  $(if $(filter auto,$(IMAGE_FILTERS)),-DSUPERVISOR=1,-DFILTER_WITHOUT_PROBE)
 
 # the image that holds a filter: the chosen one if it does, else the first set's that does
 image_with = $(or $(firstword $(if $(filter $(1),$(CHOSEN_FILTERS)),$(U)/firmware.elf) \

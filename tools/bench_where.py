@@ -5,15 +5,15 @@ import csv
 MARKERS = ("<!-- where, written by make bench: begin -->", "<!-- where, written by make bench: end -->")
 FILTER = "af"
 STREAM = "outliers-15pct"
-ENTRY = "mixture_update"  # called once per axis and sample
+ENTRY = "mixed"  # called once per axis and sample
 # what of the profile is the filter's, and what the page says of it
 FUNCTIONS = {
-    "mixture_update": "evidence, probability and learning (what is in line of it)",
+    "mixed": "evidence, probability and learning (what is in line of it)",
     "log2_uq9": "logarithms, by a table",
     "mixture_log_odds_q9": "",
-    "two_state_wide_predict": "prediction of x and P, S",
-    "two_state_wide_distance_uq8": "r^2 / (R S)",
-    "two_state_wide_update": "gains, x and P",
+    "wide_predict": "prediction of x and P, S",
+    "wide_distance_uq8": "r^2 / (R S)",
+    "wide_correct": "gains, x and P",
     "give_back": "",
     "step_by": "",
     "bend_lsb": "",

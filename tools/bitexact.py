@@ -129,7 +129,7 @@ def sources(chip, lib):
                 "host_tests", HERE]
     files = sorted(pathlib.Path(HERE).glob("vectors*.c"))
     files += [f"{HERE}/crc32.c", f"{HERE}/output.c", f"{HERE}/output_{'chip' if chip else 'pc'}.c"]
-    files += ["host_tests/support_filters.c", "host_tests/support_filter_promises.c"]
+    files += ["host_tests/support_filters.c", "host_tests/support_filter_facts.c"]
     files += FIRMWARE + sorted(pathlib.Path(lib).glob("filters/src/*.c")) + [f"{lib}/tilt/src/tilt.c", f"{lib}/tilt/src/calibration.c"]
     return [f"-I{folder}" for folder in includes] + [str(file) for file in files]
 

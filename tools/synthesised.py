@@ -17,6 +17,7 @@ try:
     from design.synthesis import by_formula, error_by_formula
 except ImportError as missing:
     sys.exit(f"synthesised: {missing.name} is missing: run make synthesised, which installs it")
+import laws
 from page import Fault, Page, run_as_program
 
 DOCUMENT = pathlib.Path("docs/synthesised-filters.md")
@@ -210,10 +211,10 @@ def adaptive_tables(values, grid):
 
 
 def declared(values):
-    """The worst case of each filter's update as its header declares it, which make bench holds it to."""
+    """The worst case of each filter's update as its law declares it."""
+    cycles = laws.worst_cycles()
     for name in ("synth", "synth_opt", "synth_plus", "adaptive", "kf3"):
-        text = pathlib.Path(f"lib/filters/src/{name}.h").read_text(encoding="utf-8")
-        values[f"cycles {name}"] = f"{int(re.search(rf'{name}_worst_cycles = ([0-9]+)', text)[1]):,}"
+        values[f"cycles {name}"] = f"{cycles[name]:,}"
 
 
 def pictures_of(grid):

@@ -19,6 +19,7 @@
 
 #include "filter_list.h"
 #include "float_filters.h"
+#include "tracker.h"
 #include "noise.h"
 #include "tilt.h"
 
@@ -70,34 +71,44 @@ typedef struct {
     void (*float_update)(void);
 } subject_t;
 
+/* R stands at another place in each law's parameters. */
+static void put_r(const filter_law_t *law, filter_config_t *config)
+{
+    for (uint8_t i = 0; i < filter_parameter_count(law); i++) {
+        if (filter_parameter(law, i) == &filter_parameter_r) {
+            config->value[i] = (int32_t)r_lsb2_q8;
+        }
+    }
+}
+
 #define SUBJECT(F)                                                          \
-    static F##_config_t config_##F;                                         \
-    static F##_t state_##F;                                                 \
+    static filter_config_t config_##F;                                         \
+    static filter_t state_##F;                                                 \
     static float_##F##_t float_##F;                                         \
     static void begin_##F(uint16_t rate_dhz)                                \
     {                                                                       \
-        F##_defaults(&config_##F, rate_dhz);                                \
+        config_##F = filter_defaults(&filter_law_##F, rate_dhz);                                \
         if (longer) {                                                       \
             lengthen_##F(&config_##F);                                      \
         }                                                                   \
-        config_##F.r_lsb2_q8 = r_lsb2_q8;                                   \
-        (void)F##_init(&state_##F, &config_##F);                            \
+        put_r(&filter_law_##F, &config_##F);                                   \
+        (void)filter_init(&state_##F, &filter_law_##F, &config_##F);                            \
     }                                                                       \
     static void NOINLINE set_noise_##F(void)                                \
     {                                                                       \
-        F##_set_noise(&state_##F, r_lsb2_q8);                               \
+        filter_set_noise(&state_##F, r_lsb2_q8);                               \
     }                                                                       \
     static void NOINLINE coast_##F(void)                                    \
     {                                                                       \
-        sink = F##_coast(&state_##F);                                       \
+        sink = filter_missing(&state_##F);                                       \
     }                                                                       \
     static void NOINLINE update_##F(void)                                   \
     {                                                                       \
-        sink = F##_update(&state_##F, z_lsb);                               \
+        sink = filter_update(&state_##F, z_lsb);                               \
     }                                                                       \
     static bool warming_up_##F(void)                                        \
     {                                                                       \
-        return (F##_flags(&state_##F) & FILTER_WARMING_UP) != 0;            \
+        return (state_##F.flags & FILTER_WARMING_UP) != 0;            \
     }                                                                       \
     static void float_start_##F(void)                                       \
     {                                                                       \

@@ -35,20 +35,19 @@ static volatile float float_out;
 #define USE(F)                                         \
     static void use_##F(void)                          \
     {                                                  \
-        static F##_t state;                            \
-        F##_config_t config;                           \
-        F##_defaults(&config, (uint16_t)in);           \
-        (void)F##_init(&state, &config);               \
-        F##_set_noise(&state, (uint32_t)out);          \
-        F##_reset(&state, in);                         \
-        out = F##_update(&state, in);                  \
-        out = F##_coast(&state);                       \
-        out = F##_flags(&state);                       \
+        static filter_t state;                         \
+        filter_config_t config = filter_defaults(&filter_law_##F, (uint16_t)in); \
+        (void)filter_init(&state, &filter_law_##F, &config); \
+        filter_set_noise(&state, (uint32_t)out);          \
+        filter_reset(&state, in);                         \
+        out = filter_update(&state, in);                  \
+        out = filter_missing(&state);                       \
+        out = state.flags;                       \
     }                                                  \
     static void use_float_##F(void)                    \
     {                                                  \
         static float_##F##_t state;                    \
-        F##_config_t config = { 0 };                   \
+        filter_config_t config = { 0 };                   \
         config.rate_dhz = (uint16_t)in;                \
         float_##F##_start(&state, &config, float_out); \
         float_##F##_set_noise(&state, float_out);      \

@@ -8,23 +8,23 @@ static float limited(float v, float min, float max)
     return (v < min) ? min : (v > max) ? max : v;
 }
 
-void float_adaptive_start(float_adaptive_t *f, const adaptive_config_t *config, float x0_lsb)
+void float_adaptive_start(float_adaptive_t *f, const filter_config_t *config, float x0_lsb)
 {
     float rate_hz = (float)config->rate_dhz / 10.0f;
-    f->guard = (float)config->guard_sigma_q8 / 256.0f;
-    f->identify = config->identify != 0u;
-    f->slow = limited(2000.0f / ((float)config->slow_ms * rate_hz), 0.0005f, 0.6f);
-    f->fast = limited(2000.0f / ((float)config->fast_ms * rate_hz), f->slow, 0.6f);
+    f->guard = (float)config->value[ADAPTIVE_GUARD_SIGMA_Q8] / 256.0f;
+    f->identify = config->value[ADAPTIVE_IDENTIFY] != 0u;
+    f->slow = limited(2000.0f / ((float)config->value[ADAPTIVE_SLOW_MS] * rate_hz), 0.0005f, 0.6f);
+    f->fast = limited(2000.0f / ((float)config->value[ADAPTIVE_FAST_MS] * rate_hz), f->slow, 0.6f);
     f->share = 0.4f * f->fast;
     f->manoeuvre = 2.15f * (float)sqrtf(f->share / (2.0f - f->share));
-    f->rate_max = limited((float)config->rate_max_lsb_s / rate_hz, 0.0f, 127.0f);
-    f->confirm = limited((float)config->confirm_ms * rate_hz / 1000.0f, 3.0f, 65535.0f);
+    f->rate_max = limited((float)config->value[ADAPTIVE_RATE_MAX_LSB_S] / rate_hz, 0.0f, 127.0f);
+    f->confirm = limited((float)config->value[ADAPTIVE_CONFIRM_MS] * rate_hz / 1000.0f, 3.0f, 65535.0f);
     f->window = 64;
     for (float samples = rate_hz * 10.0f; samples >= 2560.0f && f->window < 1024u; samples /= 2.0f) {
         f->window *= 2u;
     }
     f->terms = 0;
-    float_adaptive_set_noise(f, (float)config->r_lsb2_q8 / 256.0f);
+    float_adaptive_set_noise(f, (float)config->value[ADAPTIVE_R_LSB2_Q8] / 256.0f);
     f->terms = 1; /* one in the start */
     f->x = x0_lsb;
     f->v = 0.0f;

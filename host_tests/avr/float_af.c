@@ -1,7 +1,7 @@
 /* The adaptive filter of paper 002, with the mean of the learnt probability in place of its grid, in float. */
 #include "float_filters.h"
 
-void float_af_start(float_af_t *f, const af_config_t *config, float x0_lsb)
+void float_af_start(float_af_t *f, const filter_config_t *config, float x0_lsb)
 {
     float_mixture_start(f, config, x0_lsb);
     f->count = 2.0f;

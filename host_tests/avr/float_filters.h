@@ -2,7 +2,7 @@
  * The yardstick of the benchmark: each filter of the list as one writes it with float from the textbook, and the
  * angles. Test only; never linked into the firmware. For a filter F of the list there are float_F_t and
  *
- *   void  float_F_start(float_F_t *f, const F_config_t *config, float x0_lsb);   runs from x0, as F after its warm-up
+ *   void  float_F_start(float_F_t *f, const filter_config_t *config, float x0_lsb);   runs from x0, as F after its warm-up
  *   void  float_F_set_noise(float_F_t *f, float r_lsb2);
  *   float float_F_update(float_F_t *f, int16_t z_lsb);
  *   float float_F_coast(float_F_t *f);
@@ -17,7 +17,7 @@
 
 #include "filter_list.h"
 
-/* Variance of the rate at the start, (200 LSB/s)^2: the same as in two_state.c. */
+/* Variance of the rate at the start, (200 LSB/s)^2: the same as in kalman.c. */
 #define FLOAT_START_RATE_VARIANCE_LSB2_S2 40000.0f
 
 typedef struct {
@@ -127,78 +127,78 @@ typedef struct {
     uint8_t chosen;
 } float_auto_t;
 
-void float_kf_start(float_kf_t *f, const kf_config_t *config, float x0_lsb);
+void float_kf_start(float_kf_t *f, const filter_config_t *config, float x0_lsb);
 void float_kf_set_noise(float_kf_t *f, float r_lsb2);
 float float_kf_update(float_kf_t *f, int16_t z_lsb);
 float float_kf_coast(float_kf_t *f);
 
-void float_kf3_start(float_kf3_t *f, const kf3_config_t *config, float x0_lsb);
+void float_kf3_start(float_kf3_t *f, const filter_config_t *config, float x0_lsb);
 void float_kf3_set_noise(float_kf3_t *f, float r_lsb2);
 float float_kf3_update(float_kf3_t *f, int16_t z_lsb);
 float float_kf3_coast(float_kf3_t *f);
 
-void float_lrf_start(float_lrf_t *f, const lrf_config_t *config, float x0_lsb);
+void float_lrf_start(float_lrf_t *f, const filter_config_t *config, float x0_lsb);
 void float_lrf_set_noise(float_lrf_t *f, float r_lsb2);
 float float_lrf_update(float_lrf_t *f, int16_t z_lsb);
 float float_lrf_coast(float_lrf_t *f);
 
-void float_soft_start(float_soft_t *f, const soft_config_t *config, float x0_lsb);
+void float_soft_start(float_soft_t *f, const filter_config_t *config, float x0_lsb);
 void float_soft_set_noise(float_soft_t *f, float r_lsb2);
 float float_soft_update(float_soft_t *f, int16_t z_lsb);
 float float_soft_coast(float_soft_t *f);
 
-void float_sprf_start(float_sprf_t *f, const sprf_config_t *config, float x0_lsb);
+void float_sprf_start(float_sprf_t *f, const filter_config_t *config, float x0_lsb);
 void float_sprf_set_noise(float_sprf_t *f, float r_lsb2);
 float float_sprf_update(float_sprf_t *f, int16_t z_lsb);
 float float_sprf_coast(float_sprf_t *f);
 
-void float_synth_start(float_synth_t *f, const synth_config_t *config, float x0_lsb);
+void float_synth_start(float_synth_t *f, const filter_config_t *config, float x0_lsb);
 void float_synth_set_noise(float_synth_t *f, float r_lsb2);
 float float_synth_update(float_synth_t *f, int16_t z_lsb);
 float float_synth_coast(float_synth_t *f);
 
-void float_synth_opt_start(float_synth_opt_t *f, const synth_opt_config_t *config, float x0_lsb);
+void float_synth_opt_start(float_synth_opt_t *f, const filter_config_t *config, float x0_lsb);
 void float_synth_opt_set_noise(float_synth_opt_t *f, float r_lsb2);
 float float_synth_opt_update(float_synth_opt_t *f, int16_t z_lsb);
 float float_synth_opt_coast(float_synth_opt_t *f);
 
-void float_synth_plus_start(float_synth_plus_t *f, const synth_plus_config_t *config, float x0_lsb);
+void float_synth_plus_start(float_synth_plus_t *f, const filter_config_t *config, float x0_lsb);
 void float_synth_plus_set_noise(float_synth_plus_t *f, float r_lsb2);
 float float_synth_plus_update(float_synth_plus_t *f, int16_t z_lsb);
 float float_synth_plus_coast(float_synth_plus_t *f);
 
-void float_sprf_paper_start(float_sprf_paper_t *f, const sprf_paper_config_t *config, float x0_lsb);
+void float_sprf_paper_start(float_sprf_paper_t *f, const filter_config_t *config, float x0_lsb);
 void float_sprf_paper_set_noise(float_sprf_paper_t *f, float r_lsb2);
 float float_sprf_paper_update(float_sprf_paper_t *f, int16_t z_lsb);
 float float_sprf_paper_coast(float_sprf_paper_t *f);
 
-void float_shrf_start(float_shrf_t *f, const shrf_config_t *config, float x0_lsb);
+void float_shrf_start(float_shrf_t *f, const filter_config_t *config, float x0_lsb);
 void float_shrf_set_noise(float_shrf_t *f, float r_lsb2);
 float float_shrf_update(float_shrf_t *f, int16_t z_lsb);
 float float_shrf_coast(float_shrf_t *f);
 
-void float_pbf_start(float_pbf_t *f, const pbf_config_t *config, float x0_lsb);
+void float_pbf_start(float_pbf_t *f, const filter_config_t *config, float x0_lsb);
 void float_pbf_set_noise(float_pbf_t *f, float r_lsb2);
 float float_pbf_update(float_pbf_t *f, int16_t z_lsb);
 float float_pbf_coast(float_pbf_t *f);
 
-void float_af_start(float_af_t *f, const af_config_t *config, float x0_lsb);
+void float_af_start(float_af_t *f, const filter_config_t *config, float x0_lsb);
 void float_af_set_noise(float_af_t *f, float r_lsb2);
 float float_af_update(float_af_t *f, int16_t z_lsb);
 float float_af_coast(float_af_t *f);
 
-void float_adaptive_start(float_adaptive_t *f, const adaptive_config_t *config, float x0_lsb);
+void float_adaptive_start(float_adaptive_t *f, const filter_config_t *config, float x0_lsb);
 void float_adaptive_set_noise(float_adaptive_t *f, float r_lsb2);
 float float_adaptive_update(float_adaptive_t *f, int16_t z_lsb);
 float float_adaptive_coast(float_adaptive_t *f);
 
-void float_auto_start(float_auto_t *f, const auto_config_t *config, float x0_lsb);
+void float_auto_start(float_auto_t *f, const filter_config_t *config, float x0_lsb);
 void float_auto_set_noise(float_auto_t *f, float r_lsb2);
 float float_auto_update(float_auto_t *f, int16_t z_lsb);
 float float_auto_coast(float_auto_t *f);
 
 /* What the three with two states of the channel share. */
-void float_mixture_start(float_mixture_t *f, const mixture_config_t *config, float x0_lsb);
+void float_mixture_start(float_mixture_t *f, const filter_config_t *config, float x0_lsb);
 float float_mixture_coast(float_mixture_t *f);
 
 /* Prediction; the probability that the sample is normal, and the gains of the two cases. */

@@ -1,7 +1,7 @@
 /* The pseudo-Bayesian filter of paper 002, in float. */
 #include "float_filters.h"
 
-void float_pbf_start(float_pbf_t *f, const pbf_config_t *config, float x0_lsb)
+void float_pbf_start(float_pbf_t *f, const filter_config_t *config, float x0_lsb)
 {
     float_mixture_start(f, config, x0_lsb);
 }

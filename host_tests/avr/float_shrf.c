@@ -1,7 +1,7 @@
 /* The structurally shortened robust filter of paper 002, in float. */
 #include "float_filters.h"
 
-void float_shrf_start(float_shrf_t *f, const shrf_config_t *config, float x0_lsb)
+void float_shrf_start(float_shrf_t *f, const filter_config_t *config, float x0_lsb)
 {
     float_mixture_start(f, config, x0_lsb);
 }

@@ -4,10 +4,10 @@
  */
 #include "float_filters.h"
 
-void float_synth_start(float_synth_t *f, const synth_config_t *config, float x0_lsb)
+void float_synth_start(float_synth_t *f, const filter_config_t *config, float x0_lsb)
 {
-    f->a1 = (float)config->a1_q16 / 65536.0f;
-    f->b0 = (float)config->b0_uq16 / 65536.0f;
+    f->a1 = (float)config->value[SYNTH_A1_Q16] / 65536.0f;
+    f->b0 = (float)config->value[SYNTH_B0_UQ16] / 65536.0f;
 #ifdef FLOAT_SYNTH_KEPT
     f->c1 = 2.0f - f->a1;
     f->c2 = 1.0f - 2.0f * f->a1;

@@ -1,13 +1,13 @@
 /* The synthesised filter with a memory of innovations, as its equation says, in float. */
 #include "float_filters.h"
 
-void float_synth_plus_start(float_synth_plus_t *f, const synth_plus_config_t *config, float x0_lsb)
+void float_synth_plus_start(float_synth_plus_t *f, const filter_config_t *config, float x0_lsb)
 {
-    float rest = (config->k < 8U) ? 1.0f / (float)(1UL << config->k) : 0.0f;
+    float rest = (config->value[SYNTH_PLUS_K] < 8U) ? 1.0f / (float)(1UL << config->value[SYNTH_PLUS_K]) : 0.0f;
     f->a1 = rest - 1.0f;
-    f->b0 = (float)config->b0_uq16 / 65536.0f;
-    f->b1 = (float)config->b1_q16 / 65536.0f;
-    f->b2 = (float)config->b2_q16 / 65536.0f;
+    f->b0 = (float)config->value[SYNTH_PLUS_B0_UQ16] / 65536.0f;
+    f->b1 = (float)config->value[SYNTH_PLUS_B1_Q16] / 65536.0f;
+    f->b2 = (float)config->value[SYNTH_PLUS_B2_Q16] / 65536.0f;
     f->x1 = x0_lsb;
     f->x2 = x0_lsb;
     f->x3 = x0_lsb;

@@ -66,13 +66,13 @@ constexpr std::array<Identified, 5> identified{ { { "rest_10_hz", nullptr, 10.0,
                                                   { "rest_100_hz", nullptr, 100.0, 0.0 } } };
 
 // Identified R by the true one after 10 s of one run.
-double identified_ratio(const Identified &what, const adaptive_config_t &config, std::uint64_t seed)
+double identified_ratio(const Identified &what, const filter_config_t &config, std::uint64_t seed)
 {
     constexpr double lsb_per_degree = 16.0;
     test_random_t random;
     random_seed(&random, seed);
-    adaptive_t f;
-    if (!adaptive_init(&f, &config)) {
+    filter_t f;
+    if (filter_init(&f, &filter_law_adaptive, &config) != FILTER_ACCEPTED) {
         throw std::runtime_error("adaptive: refuses its defaults");
     }
     const int count = static_cast<int>(std::lround(identified_after_s * what.rate_hz));
@@ -80,7 +80,7 @@ double identified_ratio(const Identified &what, const adaptive_config_t &config,
         const double noise = std::sqrt(r_deg2) * random_normal(&random);
         const double bad = random_uniform(&random) < 0.01 ? what.outlier_deg : 0.0;
         const double truth = (what.turn == nullptr) ? 0.0 : profile(what.turn).truth_deg(k);
-        (void)adaptive_update(&f, as_sample((truth + noise + bad) * lsb_per_degree));
+        (void)filter_update(&f, as_sample((truth + noise + bad) * lsb_per_degree));
     }
     return adaptive_r_lsb2_q8(&f) / (256.0 * r_deg2 * lsb_per_degree * lsb_per_degree);
 }
@@ -99,8 +99,8 @@ Interval relative_deviation(const std::vector<double> &values, const Interval &m
 
 void identified_rows(const Identified &what, const Options &options)
 {
-    adaptive_config_t config;
-    adaptive_defaults(&config, static_cast<std::uint16_t>(std::lround(10.0 * what.rate_hz)));
+    filter_config_t config = filter_defaults(&filter_law_adaptive,
+                                             static_cast<std::uint16_t>(std::lround(10.0 * what.rate_hz)));
     std::vector<double> ratios;
     for (int run = 0; run < runs_of(options); run++) {
         ratios.push_back(identified_ratio(what, config, run_seed(options.seed, static_cast<std::uint64_t>(run))));

@@ -18,7 +18,7 @@ void noise_gap(noise_t *n);
 /*@ requires BOUND(n); ensures BOUND(n); */
 bool noise_update(noise_t *n, int16_t z_lsb);
 
-#include "filter_common.c"
+#include "tracker.c"
 #include "noise.c"
 
 static void any_noise(noise_t *n)

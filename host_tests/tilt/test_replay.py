@@ -298,7 +298,7 @@ class Library(unittest.TestCase):
 
     def test_parameters_are_those_of_the_descriptors(self):
         q, gate = (native.parameters("sprf", 1000)[name] for name in ("q", "gate"))
-        self.assertEqual((q.unit, q.low, q.high, q.default, q.step), ("LSB2/s3", 1, 1e9, 10000, 1))  # two_state.h
+        self.assertEqual((q.unit, q.low, q.high, q.default, q.step), ("LSB2/s3", 1, 1e9, 10000, 1))  # parameters.c
         self.assertEqual((gate.unit, gate.low, gate.high, gate.default, gate.text(3.5), gate.text(2.999)), ("sigma", 1, 16, 3, "3.5", "3"))
         self.assertEqual((q.text(1234.4), q.text(0)), ("1234", "1"))
 

@@ -25,7 +25,7 @@ ROUNDING = 1.0 / 12.0        # variance that whole numbers add
 
 
 def motion(rng, q, samples=PART_SAMPLES):
-    """x += v, v += w with the variance q T^3, as two_state.h has it."""
+    """x += v, v += w with the variance q T^3, as kalman.h has it."""
     rate = np.concatenate(([0.0], np.cumsum(rng.normal(0, math.sqrt(q * T_S ** 3), samples - 1))))
     return np.concatenate(([0.0], np.cumsum(rate[:-1])))
 

@@ -34,13 +34,13 @@ class Unfit(Exception):
 @dataclass
 class Configuration:
     name: str  # of the filter in the library
-    fields: dict  # field of NAME_config_t: stored value
+    fields: dict  # rate_dhz and, by the end of NAME_... in filter.h, parameters: stored value
     filter: Filter  # what the stored values are, exact
     notes: list = field(default_factory=list)
 
     def initialiser(self):
-        values = ", ".join(f".{name} = {value}{'U' if value > 32767 else ''}" for name, value in self.fields.items())
-        return f"static const {self.name}_config_t config = {{ {values} }};"
+        values = ", ".join(f"[{self.name.upper()}_{name.upper()}] = {value}" for name, value in self.fields.items() if name != "rate_dhz")
+        return f"static const filter_config_t config = {{ .rate_dhz = {self.fields['rate_dhz']}, .value = {{ {values} }} }};"
 
 
 def common_fields(rate_hz, sigma_lsb):
@@ -57,7 +57,7 @@ def common_fields(rate_hz, sigma_lsb):
 
 
 def synth_legal(b0_uq16, a1_q16):
-    """What synth_init asks of b0 and a1, in integers: 1 + 2 a1 (1 - b0) > 0."""
+    """What synth asks of b0 and a1, in integers: 1 + 2 a1 (1 - b0) > 0."""
     if not (B0[0] <= b0_uq16 <= B0[1] and A1[0] <= a1_q16 <= A1[1]):
         return False
     return a1_q16 >= 0 or -a1_q16 * (ONE - b0_uq16) < 2 ** 31
@@ -115,7 +115,7 @@ def plus_filter(k, b, v=2):
 
 
 def plus_legal(k, b0_uq16, b1_q16, b2_q16):
-    """What synth_plus_init asks of its coefficients."""
+    """What synth_plus asks of its coefficients."""
     if not (0 <= k <= PLUS_K_MAX and B0[0] <= b0_uq16 <= B0[1] and all(A1[0] <= b <= A1[1] for b in (b1_q16, b2_q16))):
         return False
     return plus_filter(k, (b0_uq16, b1_q16, b2_q16)).stable()
@@ -156,7 +156,7 @@ def stored_opt(f, common):
     period_s, r = 10 / common["rate_dhz"], common["r_lsb2_q8"]
     start = min(max(round(256 * (2 * START_RATE_LSB_S * period_s) ** 2 + 0.29 * r), 3), P0_Q8_MAX)
     stored = synth_filter(*((43691, 0), (55454, -10923))[variant])
-    notes = [f"P0 for an axis that starts at {START_RATE_LSB_S} LSB/s, as synth_opt_defaults; `schedule` shows the gains of the start"]
+    notes = [f"P0 for an axis that starts at {START_RATE_LSB_S} LSB/s, as shipped; `schedule` shows the gains of the start"]
     return Configuration("synth_opt", {"rate_dhz": common["rate_dhz"], "variant_u": variant, "p0_lsb2_q8": start, "r_lsb2_q8": r}, stored, notes)
 
 
@@ -251,8 +251,8 @@ def commands(configuration, rate_hz):
     """(lines to type, what they do not do)."""
     lines = [f"filter {configuration.name}"]
     told = [f"these lines leave {' and '.join(n for n in configuration.fields if n != 'rate_dhz')} alone: `filter {configuration.name}` runs "
-            f"it with the values of {configuration.name}_defaults (`settings` lists the parameters that the board takes, with their units); in "
-            f"a program of your own put the initialiser where it calls {configuration.name}_init",
+            f"it with the values of filter_defaults (`settings` lists the parameters that the board takes, with their units); in "
+            f"a program of your own give the initialiser to filter_init with filter_law_{configuration.name}",
             f"{configuration.name} is {image_with(configuration.name)}"]
     if rate_hz in FIRMWARE_RATES_HZ:
         lines.insert(0, f"rate {rate_hz:g}")

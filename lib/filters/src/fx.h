@@ -63,6 +63,7 @@ static inline const void *fx_flash_pointer(const void *p)
 {
     return pgm_read_ptr(p);
 }
+#define FX_FLASH_FUNCTION(place) ((__typeof__(*(place)))(uintptr_t)pgm_read_word(place))
 #else
 #define FX_FLASH
 static inline uint8_t fx_flash_u8(const uint8_t *p)
@@ -81,6 +82,7 @@ static inline const void *fx_flash_pointer(const void *p)
 {
     return *(const void *const *)p;
 }
+#define FX_FLASH_FUNCTION(place) (*(place))
 #endif
 
 /* |v|; INT32_MIN gives 2^31. */

@@ -1,8 +1,8 @@
 /* Winsorised variance of the smaller of two second differences; see noise.h. */
 #include "noise.h"
 
-#include "filter_common.h"
 #include "fx.h"
+#include "tracker.h"
 
 /*
  * With a, b independent standard normal and m = min(a^2, b^2), the factor w solves w = E min(m, c w): a second
@@ -35,7 +35,7 @@ void noise_init(noise_t *n, uint16_t rate_dhz, bool noisy_axis)
 {
     /* 0.02 LSB^2 / Hz in Q16 per 0.1 Hz: 131.07; times 1.7 */
     uint16_t each_q16 = noisy_axis ? 223U : 131U;
-    filter_zero(n, sizeof *n);
+    tracker_clear(n, sizeof *n);
     n->floor_lsb2_q16 = (uint32_t)rate_dhz * each_q16;
     n->mean_lsb2_q16 = n->floor_lsb2_q16;
     n->r_lsb2_q8 = r_of(n->floor_lsb2_q16);
@@ -134,7 +134,7 @@ static void remember(noise_t *n, int16_t z_lsb)
 
 bool noise_update(noise_t *n, int16_t z_lsb)
 {
-    int16_t z = filter_limited_z(z_lsb);
+    int16_t z = tracker_limited_z(z_lsb);
     bool changed = false;
     if (n->filled < HISTORY) {
         n->filled++;

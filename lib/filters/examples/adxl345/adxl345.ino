@@ -5,8 +5,8 @@
  * SDA to A4, SCL to A5 (through a level shifter: the sensor is a 3.3 V part), CS to 3.3 V, SDO to GND.
  */
 #include <Wire.h>
+#include <filter.h>
 #include <noise.h>
-#include <sprf.h>
 
 static const uint8_t ADXL345 = 0x53;
 static const uint8_t DEVID = 0x00, BW_RATE = 0x2C, POWER_CTL = 0x2D;
@@ -15,7 +15,7 @@ static const uint8_t DATA_READY = 0x80;
 static const uint16_t RATE_DHZ = 1000;  // 100 Hz
 static const char NAMES[] = "xyz";
 
-static sprf_t filters[3];
+static filter_t filters[3];
 static noise_t noises[3];
 static bool configured = false;
 static uint32_t heard_ms;
@@ -85,9 +85,9 @@ static bool sample_waits()
 static int32_t filtered(uint8_t axis, int16_t lsb)
 {
     if (noise_update(&noises[axis], lsb)) {
-        sprf_set_noise(&filters[axis], noise_r_lsb2_q8(&noises[axis]));
+        filter_set_noise(&filters[axis], noise_r_lsb2_q8(&noises[axis]));
     }
-    return sprf_update(&filters[axis], lsb);
+    return filter_update(&filters[axis], lsb);
 }
 
 static void print_sample(const uint8_t bytes[6])
@@ -109,10 +109,9 @@ static void print_sample(const uint8_t bytes[6])
 void setup()
 {
     Serial.begin(115200);
-    sprf_config_t config;
-    sprf_defaults(&config, RATE_DHZ);
+    filter_config_t config = filter_defaults(&filter_law_sprf, RATE_DHZ);
     for (uint8_t axis = 0; axis < 3; axis++) {
-        sprf_init(&filters[axis], &config);
+        filter_init(&filters[axis], &filter_law_sprf, &config);
         noise_init(&noises[axis], RATE_DHZ, axis == 2);
     }
 }
@@ -131,7 +130,7 @@ void loop()
         print_sample(bytes);
     } else if (millis() - heard_ms >= 50) {  // five samples are missing: the sensor may have lost its supply
         for (uint8_t axis = 0; axis < 3; axis++) {
-            sprf_restart(&filters[axis]);
+            filter_restart(&filters[axis]);
             noise_gap(&noises[axis]);
         }
         configured = false;

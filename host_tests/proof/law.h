@@ -1,0 +1,280 @@
+/*
+ * What holds of a filter before and after every call, any state of it, and the proofs that are the same for every law:
+ * of each of a law's functions, for any legal configuration and any state. The tracker takes the laws by contracts that
+ * say this (proof_tracker.c).
+ *
+ * A file that includes this defines FORCE(f), what holds of the law's own state while the filter runs, KEPT(f), what
+ * holds of it always, and any_own(f, kind), any values of both, in KINDS parts that are tried one by one; where those
+ * are more than FORCE, what an admit shall take of them, in parts for each `||`, is ADMITTED(f).
+ */
+#ifndef LAW_H
+#define LAW_H
+
+#include "eva.h"
+#include "fx_contracts.h"
+#include "tracker.h"
+
+#define X_MAX_Q16 301989888 /* 4608 LSB */
+#define SIZE_END 570425344  /* 8704 LSB */
+#ifndef RATE_END
+#define RATE_END X_MAX_Q16
+#endif
+
+#define SAMPLE(z) (-4096 <= (z) <= 4095)
+#define SAMPLE_Q16(x) (-268435456 <= (x) <= 268369920)
+#define WITHIN(v, end) (-(end) <= (v) <= (end))
+#define FLAG(v) ((v) == 0 || (v) == 1)
+#define TRACKED(f)                                                                                            \
+    (WITHIN((f)->x_lsb_q16, X_MAX_Q16) && WITHIN((f)->rate_lsb, RATE_END) && (f)->size_lsb_uq16 <= SIZE_END && \
+     (f)->rate_max_lsb <= RATE_END && SAMPLE((f)->previous_lsb) && 50 <= (f)->rate_dhz <= 40000)
+
+/* So many samples of the start are there. */
+#define SEEN(f, n) \
+    ((f)->collected <= (n) || (SAMPLE((f)->own.start.seen_lsb[n]) && SAMPLE((f)->own.start.ascending_lsb[n])))
+#define STARTING(f)                                                                                             \
+    ((f)->collected < 5 && (f)->rate_lsb == 0 && SEEN(f, 0) && SEEN(f, 1) && SEEN(f, 2) && SEEN(f, 3))
+
+/*
+ * The estimate behind its clamp, by the cells that a law's own bound needs: a correction moves x towards a sample, and
+ * what intervals add to that is a cell's width.
+ */
+#define CELL(v, width, k) ((width) * (k) <= (v) < (width) * ((k) + 1))
+#define EIGHT(v, width, k)                                                                                        \
+    (CELL(v, width, k) || CELL(v, width, (k) + 1) || CELL(v, width, (k) + 2) || CELL(v, width, (k) + 3) ||        \
+     CELL(v, width, (k) + 4) || CELL(v, width, (k) + 5) || CELL(v, width, (k) + 6) || CELL(v, width, (k) + 7))
+#define WIDE_CELLS(v)                                                                                    \
+    (EIGHT(v, 33554432, -8) || EIGHT(v, 33554432, 0) || CELL(v, 33554432, -9) || CELL(v, 33554432, 8) || \
+     (v) == X_MAX_Q16)
+#define NARROW_CELLS(v)                                                                                          \
+    (EIGHT(v, 16777216, -16) || EIGHT(v, 16777216, -8) || EIGHT(v, 16777216, 0) || EIGHT(v, 16777216, 8) ||      \
+     CELL(v, 16777216, -18) || CELL(v, 16777216, -17) || CELL(v, 16777216, 16) || CELL(v, 16777216, 17) ||       \
+     (v) == X_MAX_Q16)
+#ifndef X_CELLS
+#define X_CELLS(v) WITHIN(v, X_MAX_Q16)
+#endif
+
+/* 32256 LSB: what synth brings; X_MAX and a rate with a bend. */
+/*@ requires WITHIN(x_lsb_q16, 2113929216);
+    assigns f->flags, \result \from f->flags, x_lsb_q16;
+    ensures X_CELLS(\result);
+*/
+static inline int32_t tracker_bounded(filter_t *f, int32_t x_lsb_q16);
+
+/*@ assigns \result \from r_lsb2_q8;
+    ensures 3 <= \result <= 256000;
+*/
+uint32_t tracker_limited_r(uint32_t r_lsb2_q8);
+
+#include "fx.c"
+#include "parameters.c"
+#include "tracker.c"
+
+/* Any values of what the tracker holds, of a filter that runs. */
+static void any_tracked(filter_t *f, const filter_law_t *law)
+{
+    f->law = law;
+    f->x_lsb_q16 = ANY_S32(-X_MAX_Q16, X_MAX_Q16);
+    f->flags = ANY_U8(0, UINT8_MAX);
+    f->collected = FILTER_RUNNING;
+    f->rate_lsb = ANY_S32(-RATE_END, RATE_END);
+    f->size_lsb_uq16 = ANY_U32(0, SIZE_END);
+    f->rate_max_lsb = ANY_U32(0, RATE_END);
+    f->gain_uq16 = ANY_U16(0, UINT16_MAX);
+    f->previous_lsb = ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB);
+    f->negative = ANY_BOOL();
+    f->broken = ANY_BOOL();
+    f->quarters = ANY_U8(0, 4);
+    f->quarter_dhz = ANY_U16(0, 39999);
+    f->rate_dhz = ANY_U16(50, 40000);
+}
+
+/* So many samples of the start, and anything in the place of the others. */
+static void any_samples(filter_t *f, uint8_t collected)
+{
+    for (uint8_t i = 0; i < FILTER_WARM_UP_SAMPLES; i++) {
+        f->own.start.seen_lsb[i] = (i < collected) ? ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB) : ANY_Z();
+        f->own.start.ascending_lsb[i] = (i < collected) ? ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB) : ANY_Z();
+    }
+    f->collected = collected;
+    f->rate_lsb = 0;
+    f->size_lsb_uq16 = 0;
+    f->gain_uq16 = 0;
+}
+
+#ifdef FORCE
+
+static void any_own(filter_t *f, uint8_t kind);
+#ifndef ADMITTED
+#define ADMITTED FORCE
+#endif
+
+/* Of filter.c, the rest of which would bring names that the laws have too. */
+void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8)
+{
+    LAW_OF(f, set_noise)(f, tracker_limited_r(r_lsb2_q8));
+}
+
+static void any_running(filter_t *f, const filter_law_t *law, uint8_t kind)
+{
+    any_tracked(f, law);
+    any_own(f, kind);
+}
+
+static void any_starting(filter_t *f, const filter_law_t *law, uint8_t kind, uint8_t collected)
+{
+    any_running(f, law, kind);
+    any_samples(f, collected);
+    f->x_lsb_q16 = ANY_S32(FILTER_Z_MIN_LSB * 65536L, FILTER_Z_MAX_LSB * 65536L);
+}
+
+#define EACH_KIND(kind) for (uint8_t kind = 0; kind < (KINDS); kind++)
+
+/* The values of a legal configuration: each within its range or, where that is legal, 0; at first without it. */
+static void any_config(filter_config_t *config, const filter_law_t *law, bool off)
+{
+    config->rate_dhz = ANY_U16(FILTER_RATE_MIN_DHZ, FILTER_RATE_MAX_DHZ);
+    //@ loop unroll 8;
+    for (uint8_t i = 0; i < FILTER_PARAMETERS_MAX; i++) {
+        config->value[i] = 0;
+        if (i < law->parameter_count) {
+            const filter_parameter_t *p = law->parameters[i];
+            if (p->zero_means_off == 0U || !off) {
+                config->value[i] = ANY_S32(p->min, p->max);
+            }
+        }
+    }
+}
+
+static void set_up_with(const filter_law_t *law, const filter_config_t *config)
+{
+    filter_t f;
+    tracker_clear(&f, sizeof f);
+    f.law = law;
+    f.rate_dhz = config->rate_dhz;
+    if (law->together == NULL || law->together(config)) {
+        law->set_up(&f, config);
+        //@ check tracked: TRACKED(&f);
+        //@ check kept: KEPT(&f);
+    }
+}
+
+#ifndef CONFIGURATIONS
+#define CONFIGURATIONS 1
+static void narrow_config(filter_config_t *config, uint16_t number)
+{
+    (void)config;
+    (void)number;
+}
+#else
+static void narrow_config(filter_config_t *config, uint16_t number);
+#endif
+
+static void prove_set_up(const filter_law_t *law)
+{
+    filter_config_t config;
+    for (uint16_t number = 0; number < CONFIGURATIONS; number++) {
+        any_config(&config, law, true);
+        narrow_config(&config, number);
+        set_up_with(law, &config);
+        any_config(&config, law, false);
+        narrow_config(&config, number);
+        set_up_with(law, &config);
+    }
+}
+
+static void prove_defaults(const filter_law_t *law)
+{
+    filter_config_t config = filter_defaults(law, ANY_U16(FILTER_RATE_MIN_DHZ, FILTER_RATE_MAX_DHZ));
+    //@ check config.rate_dhz >= 50;
+}
+
+static void prove_set_noise(const filter_law_t *law)
+{
+    EACH_KIND(kind)
+    {
+        filter_t f;
+        any_running(&f, law, kind);
+        //@ admit ADMITTED(&f);
+        law->set_noise(&f, ANY_U32(FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8));
+        //@ check running: TRACKED(&f) && KEPT(&f) && f.collected == 5;
+        //@ check force: FORCE(&f);
+        any_starting(&f, law, kind, 4);
+        f.collected = ANY_U8(0, 4);
+        law->set_noise(&f, ANY_U32(FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8));
+        //@ check starting: TRACKED(&f) && KEPT(&f) && STARTING(&f);
+    }
+}
+
+/* Behind five samples, or the first alone where the law begins with it; settled, behind anything. */
+static void prove_start(const filter_law_t *law)
+{
+    EACH_KIND(kind)
+    {
+        filter_t f;
+        for (uint8_t settled = 0; settled < 2U; settled++) {
+            any_starting(&f, law, kind, (settled != 0U) ? 0 : ((law->traits & LAW_FIRST_SAMPLE) != 0U) ? 1 : 5);
+            f.collected = FILTER_RUNNING;
+            law->start(&f, settled != 0U);
+            //@ check running: TRACKED(&f) && KEPT(&f) && f.collected == 5;
+            //@ check force: FORCE(&f);
+        }
+    }
+}
+
+static void prove_step(const filter_law_t *law)
+{
+    EACH_KIND(kind)
+    {
+        for (uint8_t what = STEP_MISSING; what <= (uint8_t)STEP_SETTLE; what++) {
+            filter_t f;
+            any_running(&f, law, kind);
+            //@ admit ADMITTED(&f);
+            law->step(&f, (what == (uint8_t)STEP_MISSING) ? 0 : ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB), what);
+            //@ check running: TRACKED(&f) && KEPT(&f) && f.collected == 5;
+            //@ check force: FORCE(&f);
+        }
+    }
+}
+
+/* What the tracker halves and what the law does of it. */
+static void prove_fade(const filter_law_t *law)
+{
+    EACH_KIND(kind)
+    {
+        filter_t f;
+        any_running(&f, law, kind);
+        //@ admit ADMITTED(&f);
+        tracker_fade(&f, true);
+        //@ check first: TRACKED(&f) && KEPT(&f) && f.collected == 5;
+        //@ check first_force: FORCE(&f);
+        any_running(&f, law, kind);
+        //@ admit ADMITTED(&f);
+        tracker_damp(&f);
+        //@ check later: TRACKED(&f) && KEPT(&f) && f.collected == 5;
+        //@ check later_force: FORCE(&f);
+    }
+}
+
+static void prove_report(const filter_law_t *law)
+{
+    EACH_KIND(kind)
+    {
+        filter_t f;
+        filter_probe_t probe = { 0 };
+        any_running(&f, law, kind);
+        //@ admit ADMITTED(&f);
+        law->report(&f, &probe);
+        any_starting(&f, law, kind, 4);
+        f.collected = ANY_U8(0, 4);
+        law->report(&f, &probe);
+    }
+}
+
+#define PROVE(function, name)                   \
+    void proof_##name##_##function(void)        \
+    {                                           \
+        prove_##function(&filter_law_##name);   \
+    }
+
+#endif
+#endif

@@ -1,0 +1,199 @@
+/* The list of laws: names, numbers, descriptors, and what init says of a configuration that it refuses. */
+#include <string.h>
+
+#include "support_filters.h"
+#include "support_random.h"
+#include "unity.h"
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+static test_random_t random_source;
+
+/* A value of a parameter: at and around the ends of its range, in it, anywhere, 0. */
+static int32_t some_value(const filter_parameter_t *p, unsigned which)
+{
+    uint32_t span = (uint32_t)p->max - (uint32_t)p->min;
+    uint32_t inside = (uint32_t)p->min +
+                      (span == UINT32_MAX ? random_u32(&random_source) : random_u32(&random_source) % (span + 1u));
+    const uint32_t values[] = { (uint32_t)p->min,
+                                (uint32_t)p->max,
+                                (uint32_t)p->min - 1u,
+                                (uint32_t)p->max + 1u,
+                                0,
+                                random_u32(&random_source),
+                                inside,
+                                inside,
+                                inside,
+                                inside };
+    return (int32_t)values[which % (sizeof values / sizeof values[0])];
+}
+
+/* What init takes is what the ranges of the descriptor and `together` take, and it says which of them does not. */
+static void test_ranges_and_together_are_what_init_asks(void)
+{
+    unsigned taken = 0;
+    unsigned refused = 0;
+    random_seed(&random_source, 11);
+    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        const filter_law_t *law = filter_listed((filter_kind_t)kind);
+        for (int i = 0; i < 20000; i++) {
+            filter_t f;
+            filter_config_t config = filter_defaults(law, 1000);
+            filter_answer_t wanted = FILTER_ACCEPTED;
+            for (uint8_t p = 0; p < filter_parameter_count(law); p++) {
+                const filter_parameter_t *parameter = filter_parameter(law, p);
+                config.value[p] = some_value(parameter, random_u32(&random_source));
+                TEST_ASSERT_EQUAL(parameter_legal(parameter, config.value[p]),
+                                  filter_in_range(parameter, config.value[p]));
+                if (wanted == FILTER_ACCEPTED && !parameter_legal(parameter, config.value[p])) {
+                    wanted = (filter_answer_t)(FILTER_REFUSED_FIRST + p);
+                }
+            }
+            if (wanted == FILTER_ACCEPTED && law->together != NULL && !law->together(&config)) {
+                wanted = FILTER_REFUSED_TOGETHER;
+            }
+            TEST_ASSERT_EQUAL_UINT8_MESSAGE(wanted, filter_judge(law, &config), filter_name(law));
+            TEST_ASSERT_EQUAL_UINT8_MESSAGE(wanted, filter_init(&f, law, &config), filter_name(law));
+            taken += wanted == FILTER_ACCEPTED;
+            refused += wanted != FILTER_ACCEPTED;
+        }
+    }
+    TEST_ASSERT_TRUE(taken > 10000 && refused > 10000);
+}
+
+static void test_defaults_are_legal_at_each_rate(void)
+{
+    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        for (uint32_t rate_dhz = FILTER_RATE_MIN_DHZ; rate_dhz <= FILTER_RATE_MAX_DHZ; rate_dhz++) {
+            filter_t f;
+            TEST_ASSERT_TRUE(init_default(&f, (filter_kind_t)kind, (uint16_t)rate_dhz));
+        }
+    }
+}
+
+static void test_name_and_descriptor_agree(void)
+{
+    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        const filter_law_t *law = filter_listed((filter_kind_t)kind);
+        TEST_ASSERT_NOT_NULL(law);
+        TEST_ASSERT_EQUAL_STRING(filter_name(law), filter_listed_name((filter_kind_t)kind));
+        TEST_ASSERT_EQUAL_INT(kind, filter_find(filter_name(law)));
+        TEST_ASSERT_LESS_OR_EQUAL_UINT8(FILTER_PARAMETERS_MAX, filter_parameter_count(law));
+    }
+}
+
+/* Configurations that init refuses, and the parameter that is told. */
+static void assert_refused_for(filter_kind_t kind, const char *name, int32_t value)
+{
+    filter_t f;
+    const filter_law_t *law = filter_listed(kind);
+    filter_config_t config = filter_defaults(law, 1000);
+    for (uint8_t i = 0; i < parameter_count(kind); i++) {
+        if (strcmp(parameter_at(kind, i).name, name) == 0) {
+            config.value[i] = value;
+            TEST_ASSERT_EQUAL_UINT8_MESSAGE(FILTER_REFUSED_FIRST + i, filter_init(&f, law, &config), name);
+            return;
+        }
+    }
+    TEST_FAIL_MESSAGE(name);
+}
+
+static void test_a_refusal_names_the_parameter(void)
+{
+    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        assert_refused_for((filter_kind_t)kind, "r", 0);
+        assert_refused_for((filter_kind_t)kind, "r", FILTER_R_MAX_LSB2_Q8 + 1);
+    }
+    static const filter_kind_t two_state[] = { FILTER_KIND_kf, FILTER_KIND_lrf, FILTER_KIND_soft, FILTER_KIND_sprf,
+                                               FILTER_KIND_kf3 };
+    for (int i = 0; i < 5; i++) {
+        assert_refused_for(two_state[i], "q", 0);
+        assert_refused_for(two_state[i], "q", 1000000001);
+    }
+    assert_refused_for(FILTER_KIND_sprf, "gate", 255); /* below 1 sigma */
+    assert_refused_for(FILTER_KIND_soft, "gate", 255);
+    assert_refused_for(FILTER_KIND_soft, "softgate", 255);
+    assert_refused_for(FILTER_KIND_soft, "softgate", 4097);
+    assert_refused_for(FILTER_KIND_soft, "reacquire", 10);
+    assert_refused_for(FILTER_KIND_soft, "ratemax", 0);
+    assert_refused_for(FILTER_KIND_lrf, "clean", 0); /* a probability of 0; 1 is not among 16 bits */
+    assert_refused_for(FILTER_KIND_lrf, "ratio", 255);
+    assert_refused_for(FILTER_KIND_synth, "a1", -65536);
+    assert_refused_for(FILTER_KIND_synth, "a1", 65536);
+    static const filter_kind_t mixtures[] = { FILTER_KIND_shrf, FILTER_KIND_pbf, FILTER_KIND_af };
+    for (int i = 0; i < 3; i++) {
+        assert_refused_for(mixtures[i], "q", 0);
+        assert_refused_for(mixtures[i], "clean", 0);
+        assert_refused_for(mixtures[i], "clean", 32767);
+        assert_refused_for(mixtures[i], "clean", 65535);
+        assert_refused_for(mixtures[i], "ratio", 511);
+    }
+    assert_refused_for(FILTER_KIND_sprf_paper, "gate", 255);
+    assert_refused_for(FILTER_KIND_sprf_paper, "gate", 0); /* a gate that cannot be switched off */
+}
+
+/* The first of several, the rate before all; off is no reason; an even run of samples lies within 3..9. */
+static void test_a_refusal_tells_rate_and_combinations_apart(void)
+{
+    filter_config_t config = filter_defaults(&filter_law_soft, 1000);
+    config.value[SOFT_GATE_SIGMA_Q8] = 0;
+    config.value[SOFT_REACQUIRE_SAMPLES] = 4;
+    filter_t f;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_init(&f, &filter_law_soft, &config));
+    config.value[SOFT_SOFT_SIGMA_Q8] = 1;
+    config.value[SOFT_Q_LSB2_S3] = 0;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_FIRST + SOFT_Q_LSB2_S3, filter_init(&f, &filter_law_soft, &config));
+    config.rate_dhz = FILTER_RATE_MIN_DHZ - 1U;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_RATE, filter_init(&f, &filter_law_soft, &config));
+    config = filter_defaults(&filter_law_synth, 1000);
+    config.value[SYNTH_B0_UQ16] = 6554;
+    config.value[SYNTH_A1_Q16] = -65000; /* outside the stability region */
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_init(&f, &filter_law_synth, &config));
+}
+
+/* A filter that has seen motion, noise and outliers. */
+static void run_in(filter_t *f, filter_kind_t kind, uint32_t *random)
+{
+    uint32_t refused = 0;
+    memset(f, 0, sizeof *f);
+    TEST_ASSERT_TRUE(init_random(f, kind, random, &refused));
+    for (int16_t k = 0; k < 60; k++) {
+        int16_t outlier = (int16_t)(random32_below(random, 8) == 0U ? random32_below(random, 4000) : 0U);
+        (void)filter_update(f, (int16_t)(k * 3 + (int16_t)random32_below(random, 9) + outlier));
+    }
+}
+
+/* Every byte of the state: run_in has cleared those between its fields. */
+static void test_reset_in_steps_is_reset(void)
+{
+    uint32_t random = 20261122;
+    for (uint8_t kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        for (int turn = 0; turn < 200; turn++) {
+            filter_t whole;
+            run_in(&whole, (filter_kind_t)kind, &random);
+            filter_t parts = whole;
+            int16_t z0 = (int16_t)((int)random32_below(&random, 9000) - 4500);
+            filter_reset(&whole, z0);
+            uint8_t step = 0;
+            while (filter_reset_step(&parts, z0, step)) {
+                step++;
+                TEST_ASSERT_LESS_OR_EQUAL_UINT8(64, step);
+            }
+            TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&whole, &parts, sizeof whole, filter_listed_name((filter_kind_t)kind));
+        }
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_defaults_are_legal_at_each_rate);
+    RUN_TEST(test_ranges_and_together_are_what_init_asks);
+    RUN_TEST(test_name_and_descriptor_agree);
+    RUN_TEST(test_reset_in_steps_is_reset);
+    RUN_TEST(test_a_refusal_names_the_parameter);
+    RUN_TEST(test_a_refusal_tells_rate_and_combinations_apart);
+    return UNITY_END();
+}
