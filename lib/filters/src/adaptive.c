@@ -99,7 +99,7 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 static void start(filter_t *f, bool settled)
 {
     filter_adaptive_t *a = &f->own.adaptive;
-    tracker_clear(a, FILTER_START_BYTES);
+    tracker_clear(a, offsetof(filter_adaptive_t, scatter_lsb_uq24));
     f->negative = false;
     f->broken = false;
     a->k_uq32 = settled ? (uint32_t)a->slow_uq16 << 16 : ADAPTIVE_K_START_UQ32;

@@ -193,7 +193,6 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     int32_t memory_q16 = s->memory_lsb_q16;
     bool steady = s->count == SYNTH_STEADY;
     if (!steady) {
-        synth_take_line(f);
         if (what != STEP_MISSING) {
             start_step(f, z_lsb);
             return;
@@ -290,7 +289,7 @@ const filter_law_t filter_law_synth_plus FX_FLASH = { .name = "synth_plus",
                                                       .standard = standard,
                                                       .together = together,
                                                       .set_up = set_up,
-                                                      .set_noise = synth_take_noise_and_spread,
+                                                      .set_noise = synth_take_noise,
                                                       .start = synth_start,
                                                       .step = step,
                                                       .fade = fade,
