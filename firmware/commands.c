@@ -367,7 +367,7 @@ bool commands_pass(void)
         if (!complete) {
             take_byte(byte);
         }
-        if (!(complete ? pass_early() : pass_in_time())) {
+        if (!pass_in_time()) {
             hal_wake();
             break;
         }

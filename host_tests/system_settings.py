@@ -7,7 +7,7 @@ from system_support import FW, OUT, STREAMS, TESTS, assert_nothing_lost, image_w
 
 REST = STREAMS / "rest-2lsb.csv"
 LEFT = ("ff", "old", "new", "random")
-PASS_CYCLES = 16000
+PASS_CYCLES = 64000
 DEGREE = math.pi / 180
 
 # Three sets, no value of one in another: a mixture is none of them. The first lies in the copy that the third is saved to.
