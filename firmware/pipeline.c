@@ -39,14 +39,21 @@ FX_ONCE void pipeline_coast(uint32_t t_us)
     pipeline.work = WORK_COAST;
 }
 
+static void flag_warming(const axis_t *axis)
+{
+    if (axis->filter.flags & FILTER_WARMING_UP) {
+        pipeline_flag(ROW_WARMING_UP);
+    }
+}
+
 static void coast_axis(axis_t *axis)
 {
-    bool holds = silence_holds();
-    if (!holds) {
-        keep_estimate(axis, filter_missing(&axis->filter));
-        noise_gap(&axis->noise);
+    keep_estimate(axis, filter_missing(&axis->filter));
+    noise_gap(&axis->noise);
+    flag_warming(axis);
+    if (axis->filter.quarters == FILTER_HOLD_MS / 25) {
+        axis->away = 1;
     }
-    axis->away = holds && pipeline.has_sample;
 }
 
 uint32_t pipeline_newest_us(void)
@@ -81,7 +88,7 @@ static bool rejoins(axis_t *axis, bool clipped)
             return false;
         }
         pipeline_flag(ROW_REACQUIRED);
-        begin_axis(axis, false);
+        filter_restart(&axis->filter);
     }
     axis->away = 0;
     return true;
@@ -93,8 +100,8 @@ static void update_axis(axis_t *axis)
 {
     keep_estimate(axis, filter_update(&axis->filter, axis->lsb));
     uint8_t flags = axis->filter.flags;
-    uint8_t same = flags & (FILTER_GATED | FILTER_REACQUIRED);
-    pipeline_flag((uint16_t)((flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same));
+    pipeline_flag(flags & (FILTER_GATED | FILTER_REACQUIRED));
+    flag_warming(axis);
     if (SUPERVISOR && (flags & FILTER_SWITCHED) != 0) {
         pipeline_flag(ROW_SWITCHED);
     }
