@@ -45,11 +45,6 @@ class Failure(Exception):
     """Something that stops the comparison, in one sentence."""
 
 
-def filter_names():
-    text = pathlib.Path("lib/filters/src/filter_list.h").read_text(encoding="utf-8")
-    return re.findall(r"^    X\((\w+)\)", text, re.M)
-
-
 def linked(names):
     return "-DFILTER_LINKED(X)=" + " ".join(f"X({name})" for name in names)
 
@@ -79,7 +74,7 @@ class Build:
         parts = {"": []}
         if self.chip:
             second = os.environ["CHIP_SECOND"].split()
-            first = [name for name in filter_names() if name not in second]
+            first = [name for name in laws.names() if name not in second]
             parts = {"first": ["-DVECTORS_FILTERS=1", linked(first)], "second": ["-DVECTORS_FILTERS=1", linked(second)],
                      "rest": ["-DVECTORS_FILTERS=0", linked(ROWS)]}
         return [self.compile_part(part, flags, packed) for part, flags in parts.items()]
@@ -226,7 +221,7 @@ def differences(pair, tables):
 def missing_paths(answers):
     """Filters of the list and public functions of fx.h without a path."""
     have = {path for path, _ in answers}
-    wanted = set(filter_names())
+    wanted = set(laws.names())
     text = pathlib.Path("lib/filters/src/fx.h").read_text(encoding="utf-8")
     wanted |= set(re.findall(r"^(?:static inline|FX_INLINE|FX_ONCE) [\w *]*?(fx_(?!flash_)\w+)\(", text, re.M))
     assert len(wanted) > 20, "the list of functions in fx.h was not found"
