@@ -16,6 +16,8 @@ import shutil
 import subprocess
 import sys
 
+import laws
+
 OUT = pathlib.Path("build/bitexact")
 HERE = "host_tests/bitexact"
 SIMRUN = "build/sim/simrun"
@@ -124,7 +126,7 @@ def sources(chip, lib):
                 "host_tests", HERE]
     files = sorted(pathlib.Path(HERE).glob("vectors*.c"))
     files += [f"{HERE}/crc32.c", f"{HERE}/output.c", f"{HERE}/output_{'chip' if chip else 'pc'}.c"]
-    files += ["host_tests/support_filters.c", "host_tests/support_filter_facts.c"]
+    files += [path for name in ("random32", "filter*", "law_*") for path in sorted(pathlib.Path("host_tests").glob(f"support_{name}.c"))]
     files += FIRMWARE + sorted(pathlib.Path(lib).glob("filters/src/*.c")) + [f"{lib}/tilt/src/tilt.c", f"{lib}/tilt/src/calibration.c"]
     return [f"-I{folder}" for folder in includes] + [str(file) for file in files]
 
