@@ -223,7 +223,8 @@ static void fade(filter_t *f, bool first)
 /* v x factor / 2^16, |factor| <= 65535. */
 FX_NOINLINE int32_t times(int32_t v, int32_t factor_q16)
 {
-    return fx_scale_uq16((factor_q16 < 0) ? -v : v, (uint16_t)fx_abs32(factor_q16));
+    int32_t product = (int32_t)fx_times_uq16(fx_abs32(v), (uint16_t)fx_abs32(factor_q16));
+    return ((v < 0) != (factor_q16 < 0)) ? -product : product;
 }
 
 /* Q7.25 from Q16. */
