@@ -16,9 +16,14 @@ enum { HUNG_SAMPLES = 16 }; /* with ROW_STUCK, on end: a filter has learned from
 
 pipeline_t pipeline;
 
-FX_NOINLINE void keep_estimate(axis_t *axis, int32_t x_lsb_q16)
+FX_ONCE int32_t estimate_q8(const axis_t *axis)
 {
-    axis->estimate_q8 = (x_lsb_q16 + 128) >> 8;
+    return (axis->filter.x_lsb_q16 + 128) >> 8;
+}
+
+FX_ONCE int16_t estimate_lsb(const axis_t *axis)
+{
+    return (int16_t)((estimate_q8(axis) + 128) >> 8);
 }
 
 void pipeline_reset(void)
@@ -43,7 +48,7 @@ static void coast_axis(axis_t *axis)
 {
     bool holds = silence_holds();
     if (!holds) {
-        keep_estimate(axis, filter_missing(&axis->filter));
+        (void)filter_missing(&axis->filter);
         noise_gap(&axis->noise);
     }
     axis->away = holds && pipeline.has_sample;
@@ -91,7 +96,7 @@ _Static_assert((int)FILTER_GATED == (int)ROW_GATED && (int)FILTER_REACQUIRED == 
 
 static void update_axis(axis_t *axis)
 {
-    keep_estimate(axis, filter_update(&axis->filter, axis->lsb));
+    (void)filter_update(&axis->filter, axis->lsb);
     uint8_t flags = axis->filter.flags;
     uint8_t same = flags & (FILTER_GATED | FILTER_REACQUIRED);
     pipeline_flag((uint16_t)((flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same));
@@ -131,7 +136,9 @@ static void count_sample(void)
 
 void pipeline_calibrate(const calibration_t *calibration)
 {
+#if SUPERVISOR
     pipeline.calibration = calibration;
+#endif
     (void)calibration_prepare(&pipeline.applied, calibration);
 }
 
@@ -140,7 +147,7 @@ static void find_accelerations(void)
 {
     int32_t estimates_q8[AXES];
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        estimates_q8[axis] = pipeline.axes[axis].estimate_q8;
+        estimates_q8[axis] = estimate_q8(&pipeline.axes[axis]);
     }
 #if SUPERVISOR
     supervisor_complete(estimates_q8);

@@ -37,7 +37,7 @@ FX_ONCE void pipeline_retime(uint32_t period_us)
 {
     bool still = true;
     for (axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
-        uint16_t now_lsb_q2 = (uint16_t)(axis->estimate_q8 >> 6);
+        uint16_t now_lsb_q2 = (uint16_t)(estimate_q8(axis) >> 6);
         still = (uint16_t)(now_lsb_q2 - axis->looked_lsb_q2 + STILL_LSB_Q2) <= 2u * STILL_LSB_Q2 && still;
         axis->looked_lsb_q2 = now_lsb_q2;
     }
@@ -55,10 +55,11 @@ FX_ONCE void pipeline_retime(uint32_t period_us)
 
 FX_ONCE void begin_axis(axis_t *axis, bool keep)
 {
+    int16_t from_lsb = estimate_lsb(axis);
     parameters_start(&axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
     filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
     if (keep) {
-        filter_reset(&axis->filter, estimate_lsb(axis));
+        filter_reset(&axis->filter, from_lsb);
     } else {
         axis->away = 0;
     }

@@ -10,6 +10,7 @@
 #include "fx.h"
 #include "noise.h"
 #include "pipeline.h"
+#include "supervisor.h"
 #include "tilt.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
@@ -18,7 +19,6 @@ enum { AXES = 3, WARM_ROWS = 5 };
 typedef enum { WORK_NONE, WORK_SAMPLE, WORK_COAST } work_t;
 
 typedef struct {
-    int32_t estimate_q8;
     uint16_t looked_lsb_q2; /* the estimate a second ago */
     int16_t lsb;
     uint8_t away; /* after a hold: 1, and 1 more for each sample that lies away from what was held; else 0 */
@@ -30,7 +30,9 @@ typedef struct {
     axis_t axes[AXES];
     int32_t a_q8[AXES]; /* the estimates in the axes of the carrier, 1/256 g */
     calibration_applied_t applied;
+#if SUPERVISOR
     const calibration_t *calibration; /* that is applied */
+#endif
     tilt_t tilt;
     tilt_t raw_tilt;
     uint32_t last_us;
@@ -52,10 +54,9 @@ typedef struct {
 
 extern pipeline_t pipeline;
 
-static inline int16_t estimate_lsb(const axis_t *axis)
-{
-    return (int16_t)((axis->estimate_q8 + 128) >> 8);
-}
+/* Estimate, LSB in Q8, rounded half up; and in whole LSB. */
+int32_t estimate_q8(const axis_t *axis);
+int16_t estimate_lsb(const axis_t *axis);
 
 /* Measurement variance R that its filter is to have: the user's, else the estimated one; LSB^2 Q8. */
 uint32_t axis_r_lsb2_q8(const axis_t *axis);
