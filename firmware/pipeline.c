@@ -78,14 +78,14 @@ static bool near_estimate(const axis_t *axis)
  * from it may be a bad reading: with the second in a row that is not at the rail the filter restarts, with the noise as
  * it is known.
  */
-static bool rejoins(axis_t *axis, bool clipped)
+static bool rejoins(axis_t *axis, uint8_t *flags)
 {
     if (!near_estimate(axis)) {
-        if (clipped || axis->away++ < AWAY_SAMPLES) {
-            pipeline_flag(ROW_GATED);
+        if ((*flags & ROW_CLIPPED) != 0 || axis->away++ < AWAY_SAMPLES) {
+            *flags |= ROW_GATED;
             return false;
         }
-        pipeline_flag(ROW_REACQUIRED);
+        *flags |= ROW_REACQUIRED;
         begin_axis(axis, false);
     }
     axis->away = 0;
@@ -94,34 +94,35 @@ static bool rejoins(axis_t *axis, bool clipped)
 
 _Static_assert((int)FILTER_GATED == (int)ROW_GATED && (int)FILTER_REACQUIRED == (int)ROW_REACQUIRED, "same bits");
 
-static void update_axis(axis_t *axis)
+static uint8_t update_axis(axis_t *axis)
 {
     (void)filter_update(&axis->filter, axis->lsb);
     uint8_t flags = axis->filter.flags;
-    uint8_t same = flags & (FILTER_GATED | FILTER_REACQUIRED);
-    pipeline_flag((uint16_t)((flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same));
     if (SUPERVISOR && (flags & FILTER_SWITCHED) != 0) {
         pipeline_flag(ROW_SWITCHED);
     }
+    uint8_t same = flags & (FILTER_GATED | FILTER_REACQUIRED);
+    return (flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same;
 }
 
-static void sample_axis(axis_t *axis)
+/* Returns those flags of the row that a byte holds. */
+static uint8_t sample_axis(axis_t *axis)
 {
+    uint8_t flags = 0;
     int16_t lsb = axis->lsb;
-    bool clipped = lsb >= pipeline.rail_high_lsb || lsb <= (int16_t)(-pipeline.rail_high_lsb - 1);
-    if (clipped) {
-        pipeline_flag(ROW_CLIPPED);
+    if (lsb >= pipeline.rail_high_lsb || lsb <= (int16_t)(-pipeline.rail_high_lsb - 1)) {
+        flags = ROW_CLIPPED;
     } else if (noise_update(&axis->noise, lsb)) {
         filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
     }
-    if (axis->away == 0 || rejoins(axis, clipped)) {
-        update_axis(axis);
+    if (axis->away == 0 || rejoins(axis, &flags)) {
+        flags |= update_axis(axis);
     }
+    return flags;
 }
 
-static void count_sample(void)
+static void count_sample(uint8_t flags)
 {
-    uint8_t flags = (uint8_t)pipeline.flags;
     count(COUNT_SAMPLES);
     if (flags & ROW_GATED) {
         count(COUNT_GATED);
@@ -155,14 +156,14 @@ static void find_accelerations(void)
     calibration_apply(&pipeline.applied, estimates_q8, pipeline.a_q8);
 }
 
-static void end_sample(void)
+static void end_sample(uint8_t flags)
 {
     if (!tilt_gravity_plausible(pipeline.a_q8[0], pipeline.a_q8[1], pipeline.a_q8[2])) {
         pipeline_flag(ROW_NOT_GRAVITY);
     }
-    count_sample();
+    pipeline_flag(flags);
+    count_sample(flags);
     pipeline.has_sample = true;
-    pipeline_flag(pipeline.kept_flags);
 }
 
 /*
@@ -171,7 +172,7 @@ static void end_sample(void)
  */
 static bool hung(void)
 {
-    bool stuck = (pipeline.flags & ROW_STUCK) != 0;
+    bool stuck = pipeline.is_stuck;
     bool back = pipeline.stuck == HUNG_SAMPLES && !stuck;
     if (!stuck) {
         pipeline.stuck = 0;
@@ -185,16 +186,17 @@ static bool hung(void)
 FX_NOINLINE void filter_axes(void)
 {
     bool sample = pipeline.work == WORK_SAMPLE;
+    uint8_t flags = 0;
     for (axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
         if (sample) {
-            sample_axis(axis);
+            flags |= sample_axis(axis);
         } else {
             coast_axis(axis);
         }
     }
     find_accelerations();
     if (sample) {
-        end_sample();
+        end_sample(flags);
     }
     pipeline.work = WORK_NONE;
 }
@@ -223,8 +225,7 @@ void pipeline_finish(void)
 
 void pipeline_sample(const adxl345_sample_t *sample)
 {
-    pipeline.kept_flags = pipeline.flags;
-    pipeline.flags = 0;
+    pipeline.is_stuck = false;
     silence_end();
     pipeline.last_us = sample->t_us;
 #if SUPERVISOR
@@ -240,6 +241,9 @@ void pipeline_sample(const adxl345_sample_t *sample)
 FX_ONCE void pipeline_flag(uint16_t flags)
 {
     pipeline.flags |= flags;
+    if (flags & ROW_STUCK) {
+        pipeline.is_stuck = true;
+    }
 }
 
 /*

@@ -41,13 +41,13 @@ typedef struct {
     uint16_t true_dhz; /* that the filters have */
     uint8_t calls_off;
     uint16_t flags;
-    uint16_t kept_flags; /* of the samples before the one under way */
     uint8_t warm_rows;
     uint8_t work;     /* work_t */
     uint8_t to_begin; /* so many axes, the first ones, are to get a new filter */
     bool cold;        /* all of them before the next sample, and a new noise estimate; else one with each sample */
     bool turn;        /* one with this sample */
     uint8_t new_kind;
+    bool is_stuck; /* the newest sample has ROW_STUCK */
     uint8_t stuck; /* samples with ROW_STUCK in a row before this one, up to HUNG_SAMPLES of pipeline.c */
     bool has_sample;
 } pipeline_t;
