@@ -39,7 +39,7 @@ void pipeline_reset(void)
 FX_ONCE void pipeline_coast(uint32_t t_us)
 {
     silence_step(pipeline.true_dhz);
-    pipeline.last_us = t_us;
+    pipeline.newest.t_us = t_us;
     pipeline_flag(silence_samples() == SILENCE_FAULT_FROM ? ROW_COASTED | ROW_FAULT : ROW_COASTED);
     pipeline.work = WORK_COAST;
 }
@@ -56,7 +56,7 @@ static void coast_axis(axis_t *axis)
 
 uint32_t pipeline_newest_us(void)
 {
-    return pipeline.last_us;
+    return pipeline.newest.t_us;
 }
 
 uint32_t axis_r_lsb2_q8(const axis_t *axis)
@@ -66,9 +66,9 @@ uint32_t axis_r_lsb2_q8(const axis_t *axis)
 }
 
 /* Within 2.8 sigmas of the estimate, by the R of the noise, which is 3.5 of a healthy sensor's. */
-static bool near_estimate(const axis_t *axis)
+static bool near_estimate(const axis_t *axis, int16_t lsb)
 {
-    int16_t off_lsb = (int16_t)(axis->lsb - estimate_lsb(axis));
+    int16_t off_lsb = (int16_t)(lsb - estimate_lsb(axis));
     uint16_t size_lsb = (uint16_t)(off_lsb < 0 ? -off_lsb : off_lsb);
     return fx_mul_u16(size_lsb, size_lsb) <= noise_r_lsb2_q8(&axis->noise) >> 5;
 }
@@ -78,9 +78,9 @@ static bool near_estimate(const axis_t *axis)
  * from it may be a bad reading: with the second in a row that is not at the rail the filter restarts, with the noise as
  * it is known.
  */
-static bool rejoins(axis_t *axis, uint8_t *flags)
+static bool rejoins(axis_t *axis, int16_t lsb, uint8_t *flags)
 {
-    if (!near_estimate(axis)) {
+    if (!near_estimate(axis, lsb)) {
         if ((*flags & ROW_CLIPPED) != 0 || axis->away++ < AWAY_SAMPLES) {
             *flags |= ROW_GATED;
             return false;
@@ -94,9 +94,9 @@ static bool rejoins(axis_t *axis, uint8_t *flags)
 
 _Static_assert((int)FILTER_GATED == (int)ROW_GATED && (int)FILTER_REACQUIRED == (int)ROW_REACQUIRED, "same bits");
 
-static uint8_t update_axis(axis_t *axis)
+static uint8_t update_axis(axis_t *axis, int16_t lsb)
 {
-    (void)filter_update(&axis->filter, axis->lsb);
+    (void)filter_update(&axis->filter, lsb);
     uint8_t flags = axis->filter.flags;
     if (SUPERVISOR && (flags & FILTER_SWITCHED) != 0) {
         pipeline_flag(ROW_SWITCHED);
@@ -106,17 +106,16 @@ static uint8_t update_axis(axis_t *axis)
 }
 
 /* Returns those flags of the row that a byte holds. */
-static uint8_t sample_axis(axis_t *axis)
+static uint8_t sample_axis(axis_t *axis, int16_t lsb)
 {
     uint8_t flags = 0;
-    int16_t lsb = axis->lsb;
     if (lsb >= pipeline.rail_high_lsb || lsb <= (int16_t)(-pipeline.rail_high_lsb - 1)) {
         flags = ROW_CLIPPED;
     } else if (noise_update(&axis->noise, lsb)) {
         filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
     }
-    if (axis->away == 0 || rejoins(axis, &flags)) {
-        flags |= update_axis(axis);
+    if (axis->away == 0 || rejoins(axis, lsb, &flags)) {
+        flags |= update_axis(axis, lsb);
     }
     return flags;
 }
@@ -187,9 +186,10 @@ FX_NOINLINE void filter_axes(void)
 {
     bool sample = pipeline.work == WORK_SAMPLE;
     uint8_t flags = 0;
+    const int16_t *lsb = pipeline.newest.lsb;
     for (axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
         if (sample) {
-            flags |= sample_axis(axis);
+            flags |= sample_axis(axis, *lsb++);
         } else {
             coast_axis(axis);
         }
@@ -227,13 +227,10 @@ void pipeline_sample(const adxl345_sample_t *sample)
 {
     pipeline.is_stuck = false;
     silence_end();
-    pipeline.last_us = sample->t_us;
 #if SUPERVISOR
     supervisor_look(sample->lsb);
 #endif
-    for (uint8_t axis = 0; axis < AXES; axis++) {
-        pipeline.axes[axis].lsb = sample->lsb[axis];
-    }
+    pipeline.newest = *sample;
     pipeline.work = WORK_SAMPLE;
     pipeline.turn = true;
 }
@@ -261,9 +258,9 @@ static int16_t to_mg(int32_t value_q8)
 
 void pipeline_row(row_t *row)
 {
-    row->t_us = pipeline.last_us;
+    row->t_us = pipeline.newest.t_us;
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        row->lsb[axis] = pipeline.axes[axis].lsb;
+        row->lsb[axis] = pipeline.newest.lsb[axis];
     }
     tilt_angles(&pipeline.tilt, pipeline.a_q8[0], pipeline.a_q8[1], pipeline.a_q8[2]);
     row->roll_cdeg = pipeline.tilt.roll_cdeg;
@@ -293,7 +290,7 @@ void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg)
     int32_t readings_q8[AXES];
     int32_t a_q8[AXES];
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        readings_q8[axis] = (int32_t)pipeline.axes[axis].lsb * 256;
+        readings_q8[axis] = (int32_t)pipeline.newest.lsb[axis] * 256;
     }
     calibration_apply(&pipeline.applied, readings_q8, a_q8);
     tilt_angles(&pipeline.raw_tilt, a_q8[0], a_q8[1], a_q8[2]);

@@ -20,7 +20,6 @@ typedef enum { WORK_NONE, WORK_SAMPLE, WORK_COAST } work_t;
 
 typedef struct {
     uint16_t looked_lsb_q2; /* the estimate a second ago */
-    int16_t lsb;
     uint8_t away; /* after a hold: 1, and 1 more for each sample that lies away from what was held; else 0 */
     noise_t noise;
     filter_t filter;
@@ -33,9 +32,9 @@ typedef struct {
 #if SUPERVISOR
     const calibration_t *calibration; /* that is applied */
 #endif
+    adxl345_sample_t newest; /* or the time of the one that is missing, and the last readings */
     tilt_t tilt;
     tilt_t raw_tilt;
-    uint32_t last_us;
     int16_t rail_high_lsb;
     uint16_t rate_dhz; /* nominal */
     uint16_t true_dhz; /* that the filters have */
