@@ -36,7 +36,6 @@
 #include "silence.h"
 #include "store.h"
 
-#define SERVICE_US 4000ul
 #define OVERDUE_US 20000ul /* twice HAL_TICK_US and more: passes cut for lack of time hold the service up */
 
 /*
@@ -112,7 +111,7 @@ void app_start(void)
     }
     pipeline_calibrate(&settings.calibration);
     hal_uart_init(settings.baud);
-    health_pause_filtering(hal_time_us() + APP_HOLD_LIMIT_US);
+    health_pause_filtering(APP_HOLD_PASSES);
     hal_drdy_enable(); /* last, so that an edge does not wait for the settings */
     hal_irq_enable();
     l->next_service_us = hal_time_us();
@@ -271,7 +270,7 @@ static bool stage_piece(void)
     default:
         return filter_samples();
     }
-    health_resume_filtering();
+    health_pause_filtering(0);
     app.stage = STAGE_RUNNING;
     hal_wake(); /* what was typed meanwhile goes before the samples */
     return false;
@@ -281,7 +280,7 @@ static bool stage_piece(void)
 static void service(uint32_t now_us)
 {
     struct loop *l = here();
-    l->next_service_us = now_us + SERVICE_US;
+    l->next_service_us = now_us + APP_SERVICE_US;
     count_seconds(now_us);
     if (app.stage == STAGE_RUNNING) {
         sensor_watch_pass(now_us);

@@ -2,7 +2,6 @@
 #include "adxl345.h"
 #include "app.h"
 #include "app_state.h"
-#include "hal_time.h"
 #include "health.h"
 #include "measure.h"
 #include "parameters.h"
@@ -94,7 +93,7 @@ bool app_set_parameter(uint8_t which, const uint32_t values[PARAMETERS_AXES])
 static void change_baud(void)
 {
     app.stage = STAGE_BAUD;
-    health_pause_filtering(hal_time_us() + APP_HOLD_LIMIT_US);
+    health_pause_filtering(APP_HOLD_PASSES);
 }
 
 app_answer_t app_set_baud(uint32_t baud)
