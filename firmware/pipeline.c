@@ -157,7 +157,7 @@ static void find_accelerations(void)
 
 static void end_sample(uint8_t flags)
 {
-    if (!tilt_gravity_plausible(pipeline.a_q8[0], pipeline.a_q8[1], pipeline.a_q8[2])) {
+    if (!tilt_gravity_plausible(pipeline.a_q8)) {
         pipeline_flag(ROW_NOT_GRAVITY);
     }
     pipeline_flag(flags);
@@ -262,7 +262,7 @@ void pipeline_row(row_t *row)
     for (uint8_t axis = 0; axis < AXES; axis++) {
         row->lsb[axis] = pipeline.newest.lsb[axis];
     }
-    tilt_angles(&pipeline.tilt, pipeline.a_q8[0], pipeline.a_q8[1], pipeline.a_q8[2]);
+    tilt_angles(&pipeline.tilt, pipeline.a_q8);
     row->roll_cdeg = pipeline.tilt.roll_cdeg;
     row->pitch_cdeg = pipeline.tilt.pitch_cdeg;
     row->flags = pipeline.flags;
@@ -293,7 +293,7 @@ void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg)
         readings_q8[axis] = (int32_t)pipeline.newest.lsb[axis] * 256;
     }
     calibration_apply(&pipeline.applied, readings_q8, a_q8);
-    tilt_angles(&pipeline.raw_tilt, a_q8[0], a_q8[1], a_q8[2]);
+    tilt_angles(&pipeline.raw_tilt, a_q8);
     *roll_cdeg = pipeline.raw_tilt.roll_cdeg;
     *pitch_cdeg = pipeline.raw_tilt.pitch_cdeg;
 }

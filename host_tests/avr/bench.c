@@ -19,9 +19,9 @@
 
 #include "filter_list.h"
 #include "float_filters.h"
-#include "tracker.h"
 #include "noise.h"
 #include "tilt.h"
+#include "tracker.h"
 
 /* The row as the firmware composes it; what of it is not used the linker drops. */
 #include "../../firmware/rows.c"
@@ -82,33 +82,33 @@ static void put_r(const filter_law_t *law, filter_config_t *config)
 }
 
 #define SUBJECT(F)                                                          \
-    static filter_config_t config_##F;                                         \
-    static filter_t state_##F;                                                 \
+    static filter_config_t config_##F;                                      \
+    static filter_t state_##F;                                              \
     static float_##F##_t float_##F;                                         \
     static void begin_##F(uint16_t rate_dhz)                                \
     {                                                                       \
-        config_##F = filter_defaults(&filter_law_##F, rate_dhz);                                \
+        config_##F = filter_defaults(&filter_law_##F, rate_dhz);            \
         if (longer) {                                                       \
             lengthen_##F(&config_##F);                                      \
         }                                                                   \
-        put_r(&filter_law_##F, &config_##F);                                   \
-        (void)filter_init(&state_##F, &filter_law_##F, &config_##F);                            \
+        put_r(&filter_law_##F, &config_##F);                                \
+        (void)filter_init(&state_##F, &filter_law_##F, &config_##F);        \
     }                                                                       \
     static void NOINLINE set_noise_##F(void)                                \
     {                                                                       \
-        filter_set_noise(&state_##F, r_lsb2_q8);                               \
+        filter_set_noise(&state_##F, r_lsb2_q8);                            \
     }                                                                       \
     static void NOINLINE coast_##F(void)                                    \
     {                                                                       \
-        sink = filter_missing(&state_##F);                                       \
+        sink = filter_missing(&state_##F);                                  \
     }                                                                       \
     static void NOINLINE update_##F(void)                                   \
     {                                                                       \
-        sink = filter_update(&state_##F, z_lsb);                               \
+        sink = filter_update(&state_##F, z_lsb);                            \
     }                                                                       \
     static bool warming_up_##F(void)                                        \
     {                                                                       \
-        return (state_##F.flags & FILTER_WARMING_UP) != 0;            \
+        return (state_##F.flags & FILTER_WARMING_UP) != 0;                  \
     }                                                                       \
     static void float_start_##F(void)                                       \
     {                                                                       \
@@ -153,7 +153,7 @@ static tilt_t tilt;
 static int32_t a_q8[3];
 static void NOINLINE update_angles(void)
 {
-    tilt_angles(&tilt, a_q8[0], a_q8[1], a_q8[2]);
+    tilt_angles(&tilt, a_q8);
 }
 
 static float float_a[3];

@@ -101,8 +101,8 @@ static void find_angles(tilt_filter_t *t)
         estimates_q8[axis] = (t->filters[axis].x_lsb_q16 + 128) >> 8;
     }
     calibration_apply(&t->calibration, estimates_q8, t->a_q8);
-    tilt_angles(&t->angles, t->a_q8[0], t->a_q8[1], t->a_q8[2]);
-    if (!tilt_gravity_plausible(t->a_q8[0], t->a_q8[1], t->a_q8[2])) {
+    tilt_angles(&t->angles, t->a_q8);
+    if (!tilt_gravity_plausible(t->a_q8)) {
         t->flags |= TILT_FILTER_NOT_GRAVITY;
     }
 }
