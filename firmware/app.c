@@ -235,9 +235,6 @@ static bool filter_samples(void)
         return true;
     }
     if (loop.row_due) {
-        if (replies_speaking()) {
-            return false;
-        }
         write_row();
         return true;
     }

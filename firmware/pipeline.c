@@ -46,12 +46,14 @@ FX_ONCE void pipeline_coast(uint32_t t_us)
 
 static void coast_axis(axis_t *axis)
 {
-    bool holds = silence_holds();
-    if (!holds) {
-        (void)filter_missing(&axis->filter);
-        noise_gap(&axis->noise);
+    (void)filter_missing(&axis->filter);
+    noise_gap(&axis->noise);
+    if (axis->filter.flags & FILTER_WARMING_UP) {
+        pipeline_flag(ROW_WARMING_UP);
     }
-    axis->away = holds && pipeline.has_sample;
+    if (axis->filter.quarters == FILTER_HOLD_MS / 25) {
+        axis->away = 1;
+    }
 }
 
 uint32_t pipeline_newest_us(void)
@@ -86,7 +88,7 @@ static bool rejoins(axis_t *axis, int16_t lsb, uint8_t *flags)
             return false;
         }
         *flags |= ROW_REACQUIRED;
-        begin_axis(axis, false);
+        filter_restart(&axis->filter);
     }
     axis->away = 0;
     return true;

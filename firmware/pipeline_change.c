@@ -53,12 +53,13 @@ FX_ONCE void pipeline_retime(uint32_t period_us)
     }
 }
 
-FX_ONCE void begin_axis(axis_t *axis, bool keep)
+/* The filter goes on from the old one's estimate, where there is one, or warms up. */
+FX_NOINLINE void begin_axis(axis_t *axis)
 {
     int16_t from_lsb = estimate_lsb(axis);
     parameters_start(&axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
     filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
-    if (keep) {
+    if (pipeline.has_sample) {
         filter_reset(&axis->filter, from_lsb);
     } else {
         axis->away = 0;
@@ -78,7 +79,7 @@ FX_ONCE bool begin_next(void)
     if (pipeline.cold) {
         noise_init(&axis->noise, pipeline.rate_dhz, left == 2);
     }
-    begin_axis(axis, pipeline.has_sample);
+    begin_axis(axis);
     return true;
 }
 

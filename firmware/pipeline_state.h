@@ -63,9 +63,6 @@ uint32_t axis_r_lsb2_q8(const axis_t *axis);
 /* Every axis is to get a new filter. */
 void begin_all(bool cold);
 
-/* Gives the axis a new filter: it goes on from the estimate (keep), or warms up. */
-void begin_axis(axis_t *axis, bool keep);
-
 /* Gives one axis its new filter, where one is to have it now; false: none. */
 bool begin_next(void);
 

@@ -11,7 +11,7 @@ sys.path.insert(0, "tools")
 import papers  # noqa: E402
 import papers_judge  # noqa: E402
 import papers_page  # noqa: E402
-from check_support import filter_names  # noqa: E402
+import laws  # noqa: E402
 from system_support import run_all, test  # noqa: E402
 
 (PROGRAM, OPERATIONS), EXPECTED = papers.PAPERS["002"]
@@ -46,7 +46,7 @@ def k_ef_of_a_few_runs_is_where_it_belongs():
         within(30, value(rows, "shipped_start", name, "double", "k_ef_steady"), 46, name)
     within(1.8, value(rows, "shipped_start", "lrf", "double", "k_ef_steady"), 2.4, "lrf")
     fixed = {r["filter"] for r in rows if r["arithmetic"] == "fixed"}
-    assert fixed == set(filter_names()) - {"synth", "synth_opt", "synth_plus", "adaptive", "kf3", "auto"}, fixed
+    assert fixed == set(laws.names()) - {"synth", "synth_opt", "synth_plus", "adaptive", "kf3", "auto"}, fixed
     within(30, value(rows, "shipped_start", "sprf", "fixed", "k_ef_steady"), 46, "sprf, fixed")
     within(0.97, value(rows, "shipped_start", "sprf", "fixed", "k_ef_steady_by_double"), 1.03, "sprf, fixed by double")
 

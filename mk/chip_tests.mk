@@ -10,11 +10,11 @@ UNITY_1     := test_filters test_filter_gaps test_fx test_kf test_lrf test_soft 
 UNITY_2     := test_filters_2 test_filter_gaps_2 $(filter $(patsubst host_tests/%.c,%,$(wildcard host_tests/test_*.c)),$(CHIP_SECOND:%=test_%))
 CHIP_TESTS  := $(patsubst %,$(U)/tests/%.elf,$(UNITY_1) $(UNITY_2) filter_sequence_1 filter_sequence_2)
 BITEXACT    := host_tests/bitexact
-SEQUENCE    := $(addprefix $(BITEXACT)/,sequence_main.c filter_sequence.c crc32.c output.c) host_tests/support_filters.c host_tests/support_filter_bounds.c host_tests/support_filter_facts.c
+SEQUENCE    := $(addprefix $(BITEXACT)/,sequence_main.c filter_sequence.c crc32.c output.c) $(LAW_SUPPORT)
 FILTER_SRC  := $(wildcard lib/filters/src/*.c lib/tilt/src/*.c)
 CHIP_FLAGS  := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihost_tests -I$(BITEXACT) -isystem $(UNITY_DIR)
-CHIP_COMMON := $(FILTER_SRC) host_tests/support_filters.c host_tests/support_filter_bounds.c host_tests/support_filter_facts.c $(BITEXACT)/output.c $(BITEXACT)/output_chip.c
+CHIP_COMMON := $(FILTER_SRC) $(LAW_SUPPORT) $(BITEXACT)/output.c $(BITEXACT)/output_chip.c
 ANY_FILTER  := lib/filters/src/filter_list
 CHIP_OBJ    := $(patsubst %.c,$(U)/tests/%.o,$(filter-out $(ANY_FILTER).c,$(CHIP_COMMON))) $(U)/tests/host_tests/avr/unity_chip.o $(U)/tests/unity.o
 UNITY_CHIP  := -include host_tests/avr/unity_chip.h

@@ -16,6 +16,8 @@ import shutil
 import subprocess
 import sys
 
+import laws
+
 OUT = pathlib.Path("build/bitexact")
 HERE = "host_tests/bitexact"
 SIMRUN = "build/sim/simrun"
@@ -43,11 +45,6 @@ ROWS = ["kf", "sprf", "synth", "adaptive"]  # whose rows vectors_text.c compares
 
 class Failure(Exception):
     """Something that stops the comparison, in one sentence."""
-
-
-def filter_names():
-    text = pathlib.Path("lib/filters/src/filter_list.h").read_text(encoding="utf-8")
-    return re.findall(r"^    X\((\w+)\)", text, re.M)
 
 
 def linked(names):
@@ -79,7 +76,7 @@ class Build:
         parts = {"": []}
         if self.chip:
             second = os.environ["CHIP_SECOND"].split()
-            first = [name for name in filter_names() if name not in second]
+            first = [name for name in laws.names() if name not in second]
             parts = {"first": ["-DVECTORS_FILTERS=1", linked(first)], "second": ["-DVECTORS_FILTERS=1", linked(second)],
                      "rest": ["-DVECTORS_FILTERS=0", linked(ROWS)]}
         return [self.compile_part(part, flags, packed) for part, flags in parts.items()]
@@ -129,7 +126,7 @@ def sources(chip, lib):
                 "host_tests", HERE]
     files = sorted(pathlib.Path(HERE).glob("vectors*.c"))
     files += [f"{HERE}/crc32.c", f"{HERE}/output.c", f"{HERE}/output_{'chip' if chip else 'pc'}.c"]
-    files += ["host_tests/support_filters.c", "host_tests/support_filter_facts.c"]
+    files += [path for name in ("random32", "filter*", "law_*") for path in sorted(pathlib.Path("host_tests").glob(f"support_{name}.c"))]
     files += FIRMWARE + sorted(pathlib.Path(lib).glob("filters/src/*.c")) + [f"{lib}/tilt/src/tilt.c", f"{lib}/tilt/src/calibration.c"]
     return [f"-I{folder}" for folder in includes] + [str(file) for file in files]
 
@@ -226,7 +223,7 @@ def differences(pair, tables):
 def missing_paths(answers):
     """Filters of the list and public functions of fx.h without a path."""
     have = {path for path, _ in answers}
-    wanted = set(filter_names())
+    wanted = set(laws.names())
     text = pathlib.Path("lib/filters/src/fx.h").read_text(encoding="utf-8")
     wanted |= set(re.findall(r"^(?:static inline|FX_INLINE|FX_ONCE) [\w *]*?(fx_(?!flash_)\w+)\(", text, re.M))
     assert len(wanted) > 20, "the list of functions in fx.h was not found"

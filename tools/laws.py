@@ -1,11 +1,55 @@
-"""What the descriptors of the filter library's laws declare."""
+"""What the filter library's descriptors, and the yardsticks beside them, declare of each law: the names stand there alone."""
+import functools
 import pathlib
 import re
+from typing import NamedTuple
 
-DESCRIPTOR = re.compile(r'^const filter_law_t .*?\.name = "(\w+)".*?\.worst_cycles = (\d+)', re.M | re.S)
+LIST = pathlib.Path("lib/filters/src/filter_list.h")
+DESCRIPTOR = re.compile(r"^const filter_law_t filter_law_(\w+)(.*?)\};", re.M | re.S)
+LIMITS = re.compile(r"\bbench: worst (\d+) cycles; float / ours ([\d.]+); rms ([\d.]+) LSB")
+
+
+class Law(NamedTuple):
+    """Of a descriptor: the worst case of an update in cycles, which make bench holds; traits of tracker.h without their LAW_."""
+    worst_cycles: int
+    traits: frozenset
+
+
+class Limits(NamedTuple):
+    """Of make bench: worst cycles, how many times fewer than float, difference from float in LSB rms."""
+    worst: int
+    ratio: float
+    rms: float
+
+
+@functools.cache
+def names():
+    """The list's, in its order: the first is what the firmware starts with."""
+    found = re.findall(r"X\((\w+)\)", LIST.read_text(encoding="utf-8").split("#define FILTER_LIST(X)")[-1])
+    if not found:
+        raise ValueError(f"{LIST}: no X(name) after #define FILTER_LIST(X)")
+    return tuple(found)
+
+
+@functools.cache
+def laws():
+    """{name: Law} of all descriptors."""
+    text = "".join(path.read_text(encoding="utf-8") for path in sorted(LIST.parent.glob("*.c")))
+    return {name: Law(int(re.search(r"\.worst_cycles = (\d+)", body)[1]), frozenset(re.findall(r"\bLAW_([A-Z_]+)\b(?!\()", body)))
+            for name, body in DESCRIPTOR.findall(text)}
 
 
 def worst_cycles():
-    """{name: worst case of an update in cycles}, which make bench holds each to."""
-    files = sorted(pathlib.Path("lib/filters/src").glob("*.c"))
-    return {name: int(cycles) for file in files for name, cycles in DESCRIPTOR.findall(file.read_text(encoding="utf-8"))}
+    """{name: worst case of an update in cycles}."""
+    return {name: law.worst_cycles for name, law in laws().items()}
+
+
+def yardstick(name):
+    return pathlib.Path(f"host_tests/avr/float_{name}.c")
+
+
+def limits(name):
+    """None: the yardstick has no line of limits."""
+    path = yardstick(name)
+    found = LIMITS.search(path.read_text(encoding="utf-8")) if path.is_file() else None
+    return Limits(int(found[1]), float(found[2]), float(found[3])) if found else None

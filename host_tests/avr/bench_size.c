@@ -46,13 +46,12 @@ static volatile float float_out;
     }                                                                            \
     static void use_float_##F(void)                                              \
     {                                                                            \
-        static float_##F##_t state;                                              \
         filter_config_t config = { 0 };                                          \
         config.rate_dhz = (uint16_t)in;                                          \
-        float_##F##_start(&state, &config, float_out);                           \
-        float_##F##_set_noise(&state, float_out);                                \
-        float_out = float_##F##_update(&state, in);                              \
-        float_out = float_##F##_coast(&state);                                   \
+        float_##F##_start(&float_##F, &config, float_out);                       \
+        float_##F##_set_noise(&float_##F, float_out);                            \
+        float_out = float_##F##_update(&float_##F, in);                          \
+        float_out = float_##F##_coast(&float_##F);                               \
     }
 FILTER_LIST(USE)
 
