@@ -16,23 +16,6 @@ FX_ONCE void begin_all(bool cold)
     pipeline.to_begin = AXES;
 }
 
-/* keep: the filters go on from the old output, the noise estimates too unless the rate is new. */
-static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool keep)
-{
-    bool cold = !keep || rate_dhz != pipeline.rate_dhz;
-    if (cold) {
-        pipeline.true_dhz = rate_dhz;
-        pipeline.calls_off = 0;
-    }
-    pipeline.new_kind = filter_kind;
-    pipeline.rate_dhz = rate_dhz;
-    pipeline.has_sample = keep;
-    pipeline.stuck = keep ? pipeline.stuck : 0;
-    pipeline.warm_rows = WARM_ROWS;
-    pipeline.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
-    begin_all(cold);
-}
-
 FX_ONCE void pipeline_retime(uint32_t period_us)
 {
     bool still = true;
@@ -83,12 +66,24 @@ FX_ONCE bool begin_next(void)
     return true;
 }
 
-void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)
-{
-    begin(filter_kind, rate_dhz, range_g, false);
-}
-
+/* The filters go on from the old output, where there is one, the noise estimates too unless the rate is new. */
 void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)
 {
-    begin(filter_kind, rate_dhz, range_g, pipeline.has_sample);
+    bool cold = !pipeline.has_sample || rate_dhz != pipeline.rate_dhz;
+    if (cold) {
+        pipeline.true_dhz = rate_dhz;
+        pipeline.calls_off = 0;
+    }
+    pipeline.new_kind = filter_kind;
+    pipeline.rate_dhz = rate_dhz;
+    pipeline.warm_rows = WARM_ROWS;
+    pipeline.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
+    begin_all(cold);
+}
+
+void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)
+{
+    pipeline.has_sample = false;
+    pipeline.stuck = 0;
+    pipeline_change(filter_kind, rate_dhz, range_g);
 }
