@@ -6,21 +6,20 @@
 #include "reply_lines.h"
 #include "reply_packed.h"
 
-#define NAME_ROOM(name) sizeof(name) > NAME_BYTES ||
-#define NAME_BYTES 9
+static const char names[] FLASH = REPLY_NAMES;
 
-static const char names[][NAME_BYTES] FLASH = {
-#define NAME(name) name,
-    REPLY_NAMES(NAME)
-#undef NAME
-};
-_Static_assert(!(REPLY_NAMES(NAME_ROOM) 0), "a name with its end fits");
-_Static_assert(sizeof names / sizeof names[0] == REPLY_LISTING - REPLY_HELP + 1, "a name for each command");
 _Static_assert(PACKED_PAIR_FIRST == SAY_PAIR, "the codes of pairs follow those of values");
 
 flash_text_t reply_command_name(uint8_t kind)
 {
-    return names[kind - REPLY_HELP];
+    flash_text_t name = names;
+    while (kind != REPLY_HELP) {
+        if (flash_char(name) == '\0') {
+            kind--;
+        }
+        name++;
+    }
+    return name;
 }
 
 const uint8_t *reply_text(uint8_t text)

@@ -52,8 +52,6 @@ static uint32_t number(uint8_t what)
     switch (what) {
     case SAY_COUNT:
         return next_count();
-    case SAY_FAULT:
-        return (uint32_t)adxl345_fault();
     case SAY_SERIAL_LOST:
         return hal_uart_rx_lost();
     case SAY_CYCLES:
@@ -107,8 +105,7 @@ static void say_note(void)
         say(TEXT_RATE_NOTE);
     }
     if (said.subject == SETTING_EVERY && settings_every_in_force() != settings.every) {
-        bool carried = settings_every_in_force() == settings_smallest_every(settings.baud, settings.rate_dhz);
-        say(carried ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES);
+        say(settings.line_is_slower ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES);
     }
 }
 
@@ -118,6 +115,13 @@ static void say_verbs(void)
         text_words(reply_command_name(kind));
         text_words(FLASH_TEXT(", ") + (kind == REPLY_LISTING));
     }
+}
+
+/* The address, or what is wrong with the sensor. */
+static void say_sensor(void)
+{
+    said.subject = (uint8_t)adxl345_fault();
+    say(said.subject == ADXL345_FAULT_NONE ? TEXT_SENSOR : TEXT_FAULT_BEGIN);
 }
 
 /* A text that is one of several. */
@@ -133,9 +137,11 @@ static uint8_t text_chosen(uint8_t what)
     case SAY_KEPT:
         return (uint8_t)(TEXT_KEPT_DAMAGED + settings_kept);
     case SAY_LIMITS:
-        return said.axis == 2 ? TEXT_LIMITS_Z : TEXT_LIMITS_XY;
+        return said.subject == 2 ? TEXT_LIMITS_Z : TEXT_LIMITS_XY;
     case SAY_VERDICT:
-        return (uint8_t)(TEXT_FAIL - VERDICT_FAIL + measure_verdict(said.axis));
+        return (uint8_t)(TEXT_FAIL - VERDICT_FAIL + measure_verdict(said.subject));
+    case SAY_LISTED:
+        return TEXT_LISTED;
     default:
         return (uint8_t)(TEXT_NO_SENSOR - ADXL345_FAULT_NO_SENSOR + said.subject);
     }
@@ -166,6 +172,16 @@ static void say_value(uint8_t what)
     case SAY_VERBS:
         say_verbs();
         break;
+    case SAY_EVERY:
+        said.subject = SETTING_EVERY;
+        say(TEXT_SETTING);
+        break;
+    case SAY_SENSOR:
+        say_sensor();
+        break;
+    case SAY_HEADER:
+        say(TEXT_HEADER);
+        break;
     case SAY_RATE:
         text_tenths(settings.rate_dhz);
         break;
@@ -176,11 +192,11 @@ static void say_value(uint8_t what)
         text_tenths(settings.rate_dhz == 8000 ? 4000 : 3636);
         break;
     case SAY_POSITION:
-        text_char((said.axis & 1u) != 0 ? '-' : '+');
-        text_char((char)('x' + (said.axis >> 1)));
+        text_char((said.subject & 1u) != 0 ? '-' : '+');
+        text_char((char)('x' + (said.subject >> 1)));
         break;
     case SAY_AXIS:
-        text_char((char)('x' + said.axis));
+        text_char((char)('x' + said.subject));
         break;
     case SAY_CHOICES:
 #if SUPERVISOR
@@ -193,14 +209,14 @@ static void say_value(uint8_t what)
         } else if (what <= SAY_LAST_HEXADECIMAL) {
             text_hex8(hexadecimal(what));
         } else if (what <= SAY_LAST_Q8) {
-            number_write((uint32_t)measure_number_q8(what, said.axis), 8);
+            number_write((uint32_t)measure_number_q8(what, said.subject), 8);
         } else {
             say(text_chosen(what));
         }
     }
 }
 
-static void say_byte(uint8_t code)
+void say_byte(uint8_t code)
 {
     while (code >= SAY_PAIR) {
         uint8_t first = reply_pair(code, 0);

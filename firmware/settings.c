@@ -8,6 +8,7 @@
 #include "pipeline.h"
 
 settings_t settings;
+settings_cycles_t settings_cycles;
 
 enum { AXES = 3 };
 
@@ -52,20 +53,12 @@ bool settings_calibrate(const calibration_t *calibration)
     return true;
 }
 
-FX_ONCE uint16_t settings_filter_cycles(uint8_t filter)
-{
-    return (uint16_t)(AXES * filter_worst_cycles(filter_listed((filter_kind_t)filter)));
-}
-
-FX_ONCE uint32_t settings_left_cycles(uint16_t rate_dhz)
+bool settings_fit(uint8_t filter, uint16_t rate_dhz)
 {
     uint32_t period = HAL_CPU_HZ * 10u / rate_dhz;
-    return period > SETTINGS_REST_CYCLES ? period - SETTINGS_REST_CYCLES : 0;
-}
-
-FX_ONCE bool settings_fit(uint8_t filter, uint16_t rate_dhz)
-{
-    return settings_filter_cycles(filter) < settings_left_cycles(rate_dhz);
+    settings_cycles.takes = (uint16_t)(AXES * filter_worst_cycles(filter_listed((filter_kind_t)filter)));
+    settings_cycles.left = period > SETTINGS_REST_CYCLES ? period - SETTINGS_REST_CYCLES : 0;
+    return settings_cycles.takes < settings_cycles.left;
 }
 
 /* Rounded up; wanted is at least 1. */
@@ -82,10 +75,11 @@ FX_ONCE uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
 
 FX_ONCE void settings_follow(void)
 {
-    uint32_t over = settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter);
+    (void)settings_fit(settings.filter, settings.rate_dhz); /* it does */
     uint16_t carried = settings_smallest_every(settings.baud, settings.rate_dhz);
-    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, over);
-    settings.every_smallest = carried > computed ? carried : computed;
+    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, settings_cycles.left - settings_cycles.takes);
+    settings.line_is_slower = carried >= computed;
+    settings.every_smallest = settings.line_is_slower ? carried : computed;
 }
 
 FX_ONCE uint16_t settings_every_in_force(void)

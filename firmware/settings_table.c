@@ -20,7 +20,7 @@ enum { WORDS, LIST, NUMBER, VECTOR, SIGNED_AXES };
 typedef struct {
     filter_parameter_t facts;
     uint8_t place; /* in settings_t */
-    uint8_t size;  /* of a number there, bytes: 1, 2 with sign, or 4 */
+    uint8_t size;  /* of a number there, bytes */
     uint8_t kind;
     uint8_t starts;
 } row_t;
@@ -85,14 +85,12 @@ typedef struct {
     uint8_t starts;
 } setting_t;
 
-settings_cycles_t settings_cycles;
-
 static const filter_law_t *law_in_force(void)
 {
     return filter_listed((filter_kind_t)settings.filter);
 }
 
-FX_NOINLINE void look(setting_t *s, uint8_t which)
+static void look(setting_t *s, uint8_t which)
 {
     s->which = which;
     if (which < SETTING_PARAMETERS) {
@@ -152,17 +150,18 @@ uint8_t setting_named(const char *name)
     return which;
 }
 
-FX_NOINLINE uint8_t numbers(const setting_t *s)
+static uint8_t numbers(const setting_t *s)
 {
     return s->kind == VECTOR ? AXES : 1;
 }
 
-FX_NOINLINE uint8_t *place_of(const setting_t *s, uint8_t number)
+static uint8_t *place_of(const setting_t *s, uint8_t number)
 {
     return (uint8_t *)&settings + s->place + (uint8_t)(number * s->size);
 }
 
-FX_NOINLINE uint32_t value_of(const setting_t *s, uint8_t number)
+/* Little-endian on PC and chip, as settings.h wants it; all numbers have a sign. */
+static uint32_t value_of(const setting_t *s, uint8_t number)
 {
     if (s->which >= SETTING_PARAMETERS) {
         return parameters_value((uint8_t)(s->which - SETTING_PARAMETERS));
@@ -170,25 +169,25 @@ FX_NOINLINE uint32_t value_of(const setting_t *s, uint8_t number)
     if (s->which == SETTING_EVERY) {
         return settings_every_in_force();
     }
-    const uint8_t *at = place_of(s, number);
-    switch (s->size) {
-    case 1:
-        return *at;
-    case 2:
-        return (uint32_t)(int32_t)(int16_t)((uint16_t)at[1] << 8 | at[0]);
-    default:
-        return settings.baud;
+    const uint8_t *at = place_of(s, number) + s->size;
+    uint32_t value = (uint32_t)(int32_t)(int8_t)*--at;
+    for (uint8_t left = s->size; --left != 0;) {
+        value = value << 8 | *--at;
+    }
+    return value;
+}
+
+FX_NOINLINE void put(const setting_t *s, uint8_t number, uint32_t value)
+{
+    uint8_t *at = place_of(s, number);
+    for (uint8_t left = s->size; left != 0; left--) {
+        *at++ = (uint8_t)value;
+        value >>= 8;
     }
 }
 
-/* Little-endian on PC and chip, as settings.h wants it. */
-FX_NOINLINE void put(const setting_t *s, uint8_t number, uint32_t value)
-{
-    memcpy(place_of(s, number), &value, s->size);
-}
-
 /* Of a list, as stored. */
-FX_NOINLINE uint32_t choice(const setting_t *s, uint8_t i)
+static uint32_t choice(const setting_t *s, uint8_t i)
 {
     uint16_t value = flash_u16(&choices[first(s) + i]);
     return s->which == SETTING_BAUD ? (uint32_t)value * BAUD_UNIT : value;
@@ -199,7 +198,7 @@ FX_NOINLINE flash_text_t word(const setting_t *s, uint8_t i)
     return s->which == SETTING_FILTER ? filter_listed_name((filter_kind_t)i) : words[first(s) - MODE + i];
 }
 
-FX_NOINLINE bool take_word(const setting_t *s, const char *text)
+static bool take_word(const setting_t *s, const char *text)
 {
     uint8_t i = length(s);
     do {
@@ -249,10 +248,11 @@ FX_NOINLINE bool take_numbers(const setting_t *s, const char *text)
 }
 
 /* Each of x, y, z once, with a sign where it is reversed, and no mirror image: that is no way to mount a board. */
-FX_NOINLINE bool take_axes(const char *text)
+static bool take_axes(const char *text)
 {
-    bool mirrored = false;
-    int8_t before = 0;
+    enum { XYZ = 0x123, YZX = 0x231, ZXY = 0x312 };
+    uint16_t order = 0;
+    bool mirrored = true;
     for (uint8_t i = 0; i < AXES; i++) {
         bool reversed = *text == '-';
         text += reversed;
@@ -260,12 +260,12 @@ FX_NOINLINE bool take_axes(const char *text)
         if (axis < 1 || axis > AXES) {
             return false;
         }
-        bool backward = i == 1u && axis != before % AXES + 1;
-        mirrored ^= reversed ^ backward;
-        before = axis;
+        order = (uint16_t)(order << 4 | (uint8_t)axis);
+        mirrored ^= reversed;
         settings.calibration.axes[i] = (int8_t)(reversed ? -axis : axis);
     }
-    return !mirrored && *text == '\0';
+    bool turned = order == XYZ || order == YZX || order == ZXY;
+    return turned == mirrored && *text == '\0';
 }
 
 static bool take(const setting_t *s, const char *text)
@@ -281,7 +281,7 @@ static bool take(const setting_t *s, const char *text)
 }
 
 /* All settings with the new one among them. */
-FX_NOINLINE setting_answer_t judge(const setting_t *s)
+static setting_answer_t judge(const setting_t *s)
 {
     if (s->which == SETTING_FILTER) {
         settings_take_filter(settings.filter);
@@ -291,8 +291,6 @@ FX_NOINLINE setting_answer_t judge(const setting_t *s)
         return parameters_legal() ? SETTING_TAKEN : SETTING_ILLEGAL;
     }
     if (!settings_fit(settings.filter, settings.rate_dhz)) {
-        settings_cycles.takes = settings_filter_cycles(settings.filter);
-        settings_cycles.left = (uint16_t)settings_left_cycles(settings.rate_dhz); /* less than that */
         return SETTING_TOO_SLOW;
     }
     return calibration_check(&settings.calibration).why == CALIBRATION_GOOD ? SETTING_TAKEN : SETTING_ILLEGAL;
@@ -311,7 +309,7 @@ setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
     return answer;
 }
 
-FX_NOINLINE void write_axes(void)
+static void write_axes(void)
 {
     for (uint8_t i = 0; i < AXES; i++) {
         int8_t axis = settings.calibration.axes[i];
@@ -323,7 +321,7 @@ FX_NOINLINE void write_axes(void)
     }
 }
 
-FX_NOINLINE void write_value(const setting_t *s, uint32_t value)
+static void write_value(const setting_t *s, uint32_t value)
 {
     uint8_t i = 0;
     if (s->kind == SIGNED_AXES) {
