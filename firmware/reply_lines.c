@@ -19,6 +19,8 @@ _Static_assert(TEXT_FAULT_END - TEXT_BANNER == (int)REPLY_FAULT_END, "a text for
 _Static_assert(TEXT_REPEATED - TEXT_HOLD_STILL == MEASURE_REPEATED - MEASURE_BEGUN, "words for each outcome");
 _Static_assert(TEXT_NO_GRAVITY - TEXT_TILTED == CALIBRATION_NO_GRAVITY - CALIBRATION_TILTED, "words for each verdict");
 
+enum { TEXTS_DEPTH = 3 }; /* a line, FAULT_BEGIN in it and a fault's words in that; LIMITS and VERDICT; EVERY and its note */
+
 static const uint8_t *at; /* where the reply goes on */
 static uint8_t again;     /* how often the line comes again */
 
@@ -115,19 +117,32 @@ static bool goes_on(uint8_t code)
 static bool write_line(void)
 {
     const uint8_t *line = at;
+    const uint8_t *outer[TEXTS_DEPTH];
+    uint8_t seconds[REPLY_PAIRS_DEPTH];
+    uint8_t texts = 0;
+    uint8_t pairs = 0;
     for (;;) {
-        uint8_t code = flash_u8(at++);
-        if (code == SAY_AGAIN) {
-            if (again != 0) {
-                again--;
-                said.subject++;
-                at = line;
-                return true;
-            }
-        } else if (code == 0 || (code >= SAY_LINE && code < SAY_PAIR)) {
+        uint8_t code = pairs != 0 ? seconds[--pairs] : flash_u8(at++);
+        while (code >= SAY_PAIR) {
+            seconds[pairs++] = reply_pair(code, 1);
+            code = reply_pair(code, 0);
+        }
+        if (code == SAY_AGAIN && again != 0) {
+            again--;
+            said.subject++;
+            at = line;
+            return true;
+        }
+        if (code == 0 && texts != 0) {
+            at = outer[--texts];
+        } else if (code == 0 || (code >= SAY_LINE && code < SAY_AGAIN)) {
             return goes_on(code);
-        } else {
-            say_byte(code);
+        } else if (code != SAY_AGAIN) {
+            uint8_t text = say(code);
+            if (text != TEXT_NONE) {
+                outer[texts++] = at;
+                at = reply_text(text);
+            }
         }
     }
 }

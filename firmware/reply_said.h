@@ -12,10 +12,7 @@ typedef struct {
 
 extern said_t said;
 
-/* Writes a text (enum reply_text), with the values in it. */
-void say(uint8_t text);
-
-/* Writes a byte of a text: itself, a pair, or what stands in its place. */
-void say_byte(uint8_t code);
+/* Writes a byte of a text, or what stands in its place; the text (enum reply_text) in which that goes on, or TEXT_NONE. */
+uint8_t say(uint8_t code);
 
 #endif

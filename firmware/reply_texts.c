@@ -5,21 +5,16 @@
 #include "replies.h"
 #include "reply_lines.h"
 #include "reply_packed.h"
+#include "text.h"
 
 static const char names[] FLASH = REPLY_NAMES;
 
+_Static_assert((int)PACKED_DEPTH <= (int)REPLY_PAIRS_DEPTH, "room for the pairs in a pair");
 _Static_assert(PACKED_PAIR_FIRST == SAY_PAIR, "the codes of pairs follow those of values");
 
 flash_text_t reply_command_name(uint8_t kind)
 {
-    flash_text_t name = names;
-    while (kind != REPLY_HELP) {
-        if (flash_char(name) == '\0') {
-            kind--;
-        }
-        name++;
-    }
-    return name;
+    return text_nth(names, (uint8_t)(kind - REPLY_HELP));
 }
 
 const uint8_t *reply_text(uint8_t text)

@@ -29,36 +29,39 @@
 #define V_RMS "\x10"
 #define V_R "\x11"
 #define V_OFF "\x12"
-#define V_CAUSE "\x13"
-#define V_SAFE "\x14"
-#define V_STATE "\x15"
-#define V_KEPT "\x16"
-#define V_LIMITS "\x17"
-#define V_VERDICT "\x18"
-#define V_LISTED "\x19"
-#define V_FAULT_WORDS "\x1A"
-#define V_NAME "\x1B"
-#define V_SETTING_NAME "\x1C"
-#define V_SETTING "\x1D"
-#define V_LEGAL "\x1E"
-#define V_SETTING_NOTE "\x1F"
-#define V_EVERY "\x7B"
-#define V_SETTINGS "\x7C"
-#define V_VERBS "\x7D"
-#define V_RATE "\x7E"
-#define V_MEASURED "\x7F"
-#define V_BUS_KHZ "\x80"
-#define V_POSITION "\x81"
-#define V_AXIS "\x82"
-#define V_CHOICES "\x83"
-#define V_SENSOR "\x84"
-#define V_HEADER "\x85"
-#define V_LINE "\x86"
-#define V_LINE_IF_FORCED "\x87"
-#define V_LINE_IF_CSV "\x88"
-#define V_AGAIN "\x89"
+#define V_NAME "\x13"
+#define V_SETTING_NAME "\x14"
+#define V_SETTING "\x15"
+#define V_LEGAL "\x16"
+#define V_SETTINGS "\x17"
+#define V_VERBS "\x18"
+#define V_RATE "\x19"
+#define V_MEASURED "\x1A"
+#define V_BUS_KHZ "\x1B"
+#define V_POSITION "\x1C"
+#define V_AXIS "\x1D"
+#define V_CHOICES "\x1E"
+#define V_CAUSE "\x7B"
+#define V_SAFE "\x7C"
+#define V_STATE "\x7D"
+#define V_KEPT "\x7E"
+#define V_LIMITS "\x7F"
+#define V_VERDICT "\x80"
+#define V_LISTED "\x81"
+#define V_FAULT_WORDS "\x82"
+#define V_SETTING_NOTE "\x83"
+#define V_EVERY "\x84"
+#define V_SENSOR "\x85"
+#define V_HEADER "\x86"
+#define V_LINE "\x87"
+#define V_LINE_IF_FORCED "\x88"
+#define V_LINE_IF_CSV "\x89"
+#define V_AGAIN "\x8A"
 
-/* From SAY_ABOVE on above the characters that texts have; from SAY_ALONE on in texts of lines only, and not packed with others. */
+/*
+ * From SAY_ALONE on, above the characters that texts have, not packed with others: what goes on in
+ * another text, and from SAY_LINE on what ends a line, in texts of lines only.
+ */
 enum say {
     SAY_COUNT = 1, /* numbers: the next of the counters of the firmware, then of the driver */
     SAY_SERIAL_LOST,
@@ -81,22 +84,10 @@ enum say {
     SAY_R,
     SAY_OFF, /* how far the measured rate is from the nominal one, % */
     SAY_LAST_Q8 = SAY_OFF,
-    SAY_CAUSE, /* another text: for each cause of a reset */
-    SAY_SAFE, /* on safe settings, if they are in force */
-    SAY_STATE, /* phase of the driver */
-    SAY_KEPT, /* what the settings began as */
-    SAY_LIMITS, /* of the self-test */
-    SAY_VERDICT, /* on the line's axis */
-    SAY_LISTED, /* the setting, its value, and what is legal */
-    SAY_FAULT_WORDS,
-    SAY_LAST_TEXT = SAY_FAULT_WORDS,
     SAY_NAME, /* of the command that the line is about */
     SAY_SETTING_NAME, /* of the setting that the line is about */
     SAY_SETTING, /* its name, value and unit */
     SAY_LEGAL, /* its legal values */
-    SAY_SETTING_NOTE, /* what is to be said of its value */
-    SAY_ABOVE = 0x7B,
-    SAY_EVERY = SAY_ABOVE, /* the line of that setting */
     SAY_SETTINGS, /* those of the banner */
     SAY_VERBS, /* all commands */
     SAY_RATE, /* Hz, nominal and measured */
@@ -105,8 +96,18 @@ enum say {
     SAY_POSITION, /* of cal6: which of the sensor's axes points up */
     SAY_AXIS, /* of measurements */
     SAY_CHOICES, /* those of the supervisor, where it is in force */
-    SAY_ALONE,
-    SAY_SENSOR = SAY_ALONE, /* at the start of a line: its address, or what is wrong with it; waits until that is known */
+    SAY_ALONE = 0x7B,
+    SAY_CAUSE = SAY_ALONE, /* texts: of a reset */
+    SAY_SAFE, /* on safe settings, if they are in force */
+    SAY_STATE, /* phase of the driver */
+    SAY_KEPT, /* what the settings began as */
+    SAY_LIMITS, /* of the self-test */
+    SAY_VERDICT, /* on the line's axis */
+    SAY_LISTED, /* the setting, its value, and what is legal */
+    SAY_FAULT_WORDS,
+    SAY_SETTING_NOTE, /* what is to be said of a setting behind its value */
+    SAY_EVERY, /* that setting, after another */
+    SAY_SENSOR, /* at the start of a line: its address, or what is wrong with it; waits until that is known */
     SAY_HEADER, /* at the start of a line, without "# ": the names of the columns */
     SAY_LINE, /* here the line ends and another follows */
     SAY_LINE_IF_FORCED, /* ... if another `every` is in force than was asked for; else this was the last */
@@ -228,13 +229,16 @@ enum say {
 /* clang-format on */
 
 #define REPLY_TEXT_ID(name, words) TEXT_##name,
-enum reply_text { REPLY_TEXTS(REPLY_TEXT_ID) TEXT_NONE, TEXT_NOTHING = TEXT_WRONG_AXES };
+enum reply_text { REPLY_TEXTS(REPLY_TEXT_ID) TEXT_NONE };
 #undef REPLY_TEXT_ID
+
+/* So many second bytes of pairs wait at most while the first one is a pair again. */
+enum { REPLY_PAIRS_DEPTH = 16 };
 
 /* The bytes of a text, packed, in program memory; 0 ends them. */
 const uint8_t *reply_text(uint8_t text);
 
-/* The first or the second byte that stands behind a code from SAY_PAIR on: such a code again, or a byte of the text. */
+/* What stands behind a code from SAY_PAIR on, the first byte or the second: such a code again, or a byte of the text. */
 uint8_t reply_pair(uint8_t code, uint8_t half);
 
 #endif

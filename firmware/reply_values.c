@@ -98,17 +98,6 @@ static void say_settings(void)
     }
 }
 
-/* What is to be said of a setting behind its value. */
-static void say_note(void)
-{
-    if (said.subject == SETTING_RATE) {
-        say(TEXT_RATE_NOTE);
-    }
-    if (said.subject == SETTING_EVERY && settings_every_in_force() != settings.every) {
-        say(settings.line_is_slower ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES);
-    }
-}
-
 static void say_verbs(void)
 {
     for (uint8_t kind = REPLY_HELP; kind <= REPLY_LISTING; kind++) {
@@ -117,11 +106,16 @@ static void say_verbs(void)
     }
 }
 
-/* The address, or what is wrong with the sensor. */
-static void say_sensor(void)
+/* What is to be said of a setting behind its value. */
+static uint8_t note(void)
 {
-    said.subject = (uint8_t)adxl345_fault();
-    say(said.subject == ADXL345_FAULT_NONE ? TEXT_SENSOR : TEXT_FAULT_BEGIN);
+    if (said.subject == SETTING_RATE) {
+        return TEXT_RATE_NOTE;
+    }
+    if (said.subject == SETTING_EVERY && settings_every_in_force() != settings.every) {
+        return settings.line_is_slower ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES;
+    }
+    return TEXT_NONE;
 }
 
 /* A text that is one of several. */
@@ -131,7 +125,7 @@ static uint8_t text_chosen(uint8_t what)
     case SAY_CAUSE:
         return (uint8_t)(TEXT_POWER_ON + hal_reset_cause());
     case SAY_SAFE:
-        return app_is_safe() ? TEXT_SAFE : TEXT_NOTHING;
+        return app_is_safe() ? TEXT_SAFE : TEXT_NONE;
     case SAY_STATE:
         return (uint8_t)(TEXT_STATE_STOPPED + adxl345_phase());
     case SAY_KEPT:
@@ -142,13 +136,23 @@ static uint8_t text_chosen(uint8_t what)
         return (uint8_t)(TEXT_FAIL - VERDICT_FAIL + measure_verdict(said.subject));
     case SAY_LISTED:
         return TEXT_LISTED;
+    case SAY_SETTING_NOTE:
+        return note();
+    case SAY_EVERY:
+        said.subject = SETTING_EVERY;
+        return TEXT_SETTING;
+    case SAY_SENSOR:
+        said.subject = (uint8_t)adxl345_fault();
+        return said.subject == ADXL345_FAULT_NONE ? TEXT_SENSOR : TEXT_FAULT_BEGIN;
+    case SAY_HEADER:
+        return TEXT_HEADER;
     default:
         return (uint8_t)(TEXT_NO_SENSOR - ADXL345_FAULT_NO_SENSOR + said.subject);
     }
 }
 
-/* What stands for a value. */
-static void say_value(uint8_t what)
+/* What is neither a text nor one of many numbers. */
+static void say_other(uint8_t what)
 {
     switch (what) {
     case SAY_NAME:
@@ -163,24 +167,11 @@ static void say_value(uint8_t what)
     case SAY_LEGAL:
         setting_write_legal(said.subject);
         break;
-    case SAY_SETTING_NOTE:
-        say_note();
-        break;
     case SAY_SETTINGS:
         say_settings();
         break;
     case SAY_VERBS:
         say_verbs();
-        break;
-    case SAY_EVERY:
-        said.subject = SETTING_EVERY;
-        say(TEXT_SETTING);
-        break;
-    case SAY_SENSOR:
-        say_sensor();
-        break;
-    case SAY_HEADER:
-        say(TEXT_HEADER);
         break;
     case SAY_RATE:
         text_tenths(settings.rate_dhz);
@@ -198,43 +189,29 @@ static void say_value(uint8_t what)
     case SAY_AXIS:
         text_char((char)('x' + said.subject));
         break;
-    case SAY_CHOICES:
+    default:
 #if SUPERVISOR
         supervisor_say();
 #endif
         break;
-    default:
-        if (what <= SAY_LAST_NUMBER) {
-            text_u32(number(what));
-        } else if (what <= SAY_LAST_HEXADECIMAL) {
-            text_hex8(hexadecimal(what));
-        } else if (what <= SAY_LAST_Q8) {
-            number_write((uint32_t)measure_number_q8(what, said.subject), 8);
-        } else {
-            say(text_chosen(what));
-        }
     }
 }
 
-void say_byte(uint8_t code)
+uint8_t say(uint8_t code)
 {
-    while (code >= SAY_PAIR) {
-        uint8_t first = reply_pair(code, 0);
-        say_byte(first);
-        code = reply_pair(code, 1);
+    if (code >= SAY_ALONE) {
+        return text_chosen(code);
     }
-    if (code >= ' ' && code < SAY_ABOVE) {
+    if (code >= ' ') {
         text_char((char)code);
+    } else if (code <= SAY_LAST_NUMBER) {
+        text_u32(number(code));
+    } else if (code <= SAY_LAST_HEXADECIMAL) {
+        text_hex8(hexadecimal(code));
+    } else if (code <= SAY_LAST_Q8) {
+        number_write((uint32_t)measure_number_q8(code, said.subject), 8);
     } else {
-        say_value(code);
+        say_other(code);
     }
-}
-
-void say(uint8_t text)
-{
-    const uint8_t *at = reply_text(text);
-    for (uint8_t code = flash_u8(at); code != 0; code = flash_u8(at)) {
-        say_byte(code);
-        at++;
-    }
+    return TEXT_NONE;
 }
