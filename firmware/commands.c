@@ -7,6 +7,7 @@
 #include "calibrate.h"
 #include "counters.h"
 #include "flash.h"
+#include "fx.h"
 #include "hal_sleep.h"
 #include "hal_uart.h"
 #include "measure.h"
@@ -130,7 +131,7 @@ static void run_command(uint8_t kind, const char *value)
     }
 }
 
-static void run_line(void)
+FX_NOINLINE void run_line(void)
 {
     const char *value = split_value();
     uint8_t which = setting_named(line);

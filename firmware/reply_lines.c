@@ -100,48 +100,45 @@ static bool begin_line(bool very_first)
     return true;
 }
 
-/* The line ends here: another one follows. */
+/* What ends a line; true: another follows. */
 static bool goes_on(uint8_t code)
 {
-    switch (code) {
-    case SAY_LINE_IF_FORCED:
+    if (code == SAY_LINE_IF_FORCED) {
         return settings_every_in_force() != settings.every;
-    case SAY_LINE_IF_CSV:
-        return settings.mode == MODE_CSV;
-    default:
-        return code != 0;
     }
+    return code == SAY_LINE || (code == SAY_LINE_IF_CSV && settings.mode == MODE_CSV);
 }
 
 /* The rest of the line; false: it was the last. */
 static bool write_line(void)
 {
-    const uint8_t *line = at;
+    const uint8_t *from = at;
     const uint8_t *outer[TEXTS_DEPTH];
     uint8_t seconds[REPLY_PAIRS_DEPTH];
     uint8_t texts = 0;
     uint8_t pairs = 0;
     for (;;) {
-        uint8_t code = pairs != 0 ? seconds[--pairs] : flash_u8(at++);
+        uint8_t code = pairs != 0 ? seconds[--pairs] : flash_u8(from++);
         while (code >= SAY_PAIR) {
             seconds[pairs++] = reply_pair(code, 1);
             code = reply_pair(code, 0);
         }
-        if (code == SAY_AGAIN && again != 0) {
-            again--;
-            said.subject++;
-            at = line;
-            return true;
-        }
         if (code == 0 && texts != 0) {
-            at = outer[--texts];
-        } else if (code == 0 || (code >= SAY_LINE && code < SAY_AGAIN)) {
+            from = outer[--texts];
+        } else if (code == SAY_AGAIN) {
+            if (again != 0) {
+                again--;
+                said.subject++;
+                return true;
+            }
+        } else if (code == 0 || code >= SAY_LINE) {
+            at = from;
             return goes_on(code);
-        } else if (code != SAY_AGAIN) {
+        } else {
             uint8_t text = say(code);
             if (text != TEXT_NONE) {
-                outer[texts++] = at;
-                at = reply_text(text);
+                outer[texts++] = from;
+                from = reply_text(text);
             }
         }
     }

@@ -53,12 +53,26 @@ bool settings_calibrate(const calibration_t *calibration)
     return true;
 }
 
-bool settings_fit(uint8_t filter, uint16_t rate_dhz)
+FX_ONCE uint16_t settings_filter_cycles(uint8_t filter)
+{
+    return (uint16_t)(AXES * filter_worst_cycles(filter_listed((filter_kind_t)filter)));
+}
+
+FX_ONCE uint32_t settings_left_cycles(uint16_t rate_dhz)
 {
     uint32_t period = HAL_CPU_HZ * 10u / rate_dhz;
-    settings_cycles.takes = (uint16_t)(AXES * filter_worst_cycles(filter_listed((filter_kind_t)filter)));
-    settings_cycles.left = period > SETTINGS_REST_CYCLES ? period - SETTINGS_REST_CYCLES : 0;
-    return settings_cycles.takes < settings_cycles.left;
+    return period > SETTINGS_REST_CYCLES ? period - SETTINGS_REST_CYCLES : 0;
+}
+
+bool settings_fit(uint8_t filter, uint16_t rate_dhz)
+{
+    uint16_t takes = settings_filter_cycles(filter);
+    uint32_t left = settings_left_cycles(rate_dhz);
+    if (takes < left) {
+        return true;
+    }
+    settings_cycles = (settings_cycles_t){ takes, (uint16_t)left };
+    return false;
 }
 
 /* Rounded up; wanted is at least 1. */
@@ -68,16 +82,15 @@ FX_NOINLINE uint16_t quotient(uint32_t wanted, uint32_t each)
 }
 
 /* Ten bits a byte: baud bytes in ten seconds; rate_dhz samples in ten seconds. */
-FX_ONCE uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
+uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
 {
     return quotient((uint32_t)rate_dhz * SETTINGS_ROW_MAX, baud);
 }
 
-FX_ONCE void settings_follow(void)
+void settings_follow(void)
 {
-    (void)settings_fit(settings.filter, settings.rate_dhz); /* it does */
     uint16_t carried = settings_smallest_every(settings.baud, settings.rate_dhz);
-    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, settings_cycles.left - settings_cycles.takes);
+    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter));
     settings.line_is_slower = carried >= computed;
     settings.every_smallest = settings.line_is_slower ? carried : computed;
 }

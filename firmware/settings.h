@@ -66,17 +66,19 @@ void settings_take_filter(uint8_t filter);
 /* A calibration takes effect and is in the settings; false: it is not legal, nothing changes. */
 bool settings_calibrate(const calibration_t *calibration);
 
-/* What three axes of a filter take at most of a sample's cycles, and what an output data rate leaves for them. */
+/* Cycles that three axes of a filter take at most, and those that this output data rate leaves for them. */
+uint16_t settings_filter_cycles(uint8_t filter);
+uint32_t settings_left_cycles(uint16_t rate_dhz);
+
+/* The rule: the first is less than the second. What it leaves over is for rows. */
+bool settings_fit(uint8_t filter, uint16_t rate_dhz);
+
+/* Both, of the last that did not fit. */
 typedef struct {
     uint16_t takes;
-    uint32_t left;
+    uint16_t left;
 } settings_cycles_t;
-
-/* Those of the last that was asked for. */
 extern settings_cycles_t settings_cycles;
-
-/* The rule: it takes less than is left. What it leaves over is for rows. */
-bool settings_fit(uint8_t filter, uint16_t rate_dhz);
 
 /* To be called when baud, rate or filter has changed. */
 void settings_follow(void);

@@ -86,7 +86,6 @@ typedef struct {
     format_t format;
     uint8_t which;
     bool zero_is_off;
-    flash_text_t name, unit;
     int32_t least, most;
 } setting_t;
 
@@ -103,21 +102,24 @@ static void look_at_row(setting_t *s, uint8_t which)
     for (uint8_t i = 0; i < sizeof s->format; i++) {
         to[i] = flash_u8(from + i);
     }
-    s->name = text_nth(names, which);
-    s->unit = text_nth(units, which);
     s->least = (int16_t)flash_u16((const uint16_t *)&row->least);
     s->most = (int16_t)flash_u16((const uint16_t *)&row->most);
     s->zero_is_off = false;
 }
 
+/* The descriptor of a setting that is the filter's, in program memory. */
+static const filter_parameter_t *parameter_of(uint8_t which)
+{
+    return filter_parameter(law_in_force(), (uint8_t)(which - SETTING_PARAMETERS));
+}
+
 static void look_at_parameter(setting_t *s, uint8_t which)
 {
-    const filter_parameter_t *parameter = filter_parameter(law_in_force(), which);
-    uint8_t place = (uint8_t)(offsetof(settings_t, parameters) + which * sizeof settings.parameters[0]);
+    const filter_parameter_t *parameter = parameter_of(which);
+    uint8_t place = (uint8_t)(offsetof(settings_t, parameters) +
+                              (uint8_t)(which - SETTING_PARAMETERS) * sizeof settings.parameters[0]);
     s->format = (format_t){ place, sizeof settings.parameters[0], NUMBER, flash_u8(&parameter->fraction_bits),
                             STARTS_FILTER };
-    s->name = parameter->name;
-    s->unit = parameter->unit;
     s->least = (int32_t)flash_u32((const uint32_t *)&parameter->min);
     s->most = (int32_t)flash_u32((const uint32_t *)&parameter->max);
     s->zero_is_off = flash_u8(&parameter->zero_means_off) != 0;
@@ -129,7 +131,7 @@ static void look(setting_t *s, uint8_t which)
     if (which < SETTING_PARAMETERS) {
         look_at_row(s, which);
     } else {
-        look_at_parameter(s, (uint8_t)(which - SETTING_PARAMETERS));
+        look_at_parameter(s, which);
     }
 }
 
@@ -140,9 +142,7 @@ uint8_t settings_count(void)
 
 flash_text_t setting_name(uint8_t which)
 {
-    setting_t s;
-    look(&s, which);
-    return s.name;
+    return which < SETTING_PARAMETERS ? text_nth(names, which) : parameter_of(which)->name;
 }
 
 uint8_t setting_named(const char *name)
@@ -364,14 +364,15 @@ void setting_write(uint8_t which)
 {
     setting_t s;
     look(&s, which);
-    text_words(s.name);
+    text_words(setting_name(which));
     for (uint8_t i = 0; i < numbers(&s); i++) {
         text_char(' ');
         write_value(&s, value_of(&s, i));
     }
-    if (flash_char(s.unit) != '\0') {
+    flash_text_t unit = which < SETTING_PARAMETERS ? text_nth(units, which) : parameter_of(which)->unit;
+    if (flash_char(unit) != '\0') {
         text_char(' ');
-        text_words(s.unit);
+        text_words(unit);
     }
 }
 
