@@ -59,7 +59,9 @@ setting_answer_t app_set(uint8_t which, const char *text)
 {
     uint8_t starts;
     setting_answer_t answer = setting_set(which, text, &starts);
-    follow(starts);
+    if (answer == SETTING_TAKEN) {
+        follow(starts);
+    }
     return answer;
 }
 
