@@ -152,28 +152,18 @@ uint8_t burst_take_bus(uint8_t address, bool fast)
     return lines;
 }
 
-static bool begin_register(uint8_t reg, uint8_t value, uint8_t tx_length, uint8_t rx_length)
+HAL_APART bool burst_access(uint8_t reg, uint8_t value, bool read)
 {
     struct burst *b = base();
     bool free = claim(b);
     if (free) {
         b->bus.tx[0] = reg;
         b->bus.tx[1] = value;
-        b->bus.tx_length = tx_length;
-        b->bus.rx_length = rx_length;
+        b->bus.tx_length = read ? 1 : 2;
+        b->bus.rx_length = read ? 1 : 0;
         i2c_bus_begin(&b->bus);
     }
     return free;
-}
-
-bool burst_write_register(uint8_t reg, uint8_t value)
-{
-    return begin_register(reg, value, 2, 0);
-}
-
-HAL_APART bool burst_read_register(uint8_t reg)
-{
-    return begin_register(reg, 0, 1, 1);
 }
 
 i2c_bus_state_t burst_bus_state(void)
@@ -197,8 +187,10 @@ static uint32_t waiting_since_us(struct burst *b, uint32_t now_us, bool is_new)
     if (b->found_empty && hal_time_reached(b->begun_us, t_us)) {
         t_us = b->begun_us;
     }
-    bool plausible = !is_new && b->last_known && now_us - t_us <= SENSOR_DEPTH * step_us;
-    return plausible ? t_us : now_us;
+    if (is_new || !b->last_known || now_us - t_us > SENSOR_DEPTH * step_us) {
+        t_us = now_us;
+    }
+    return t_us;
 }
 
 bool burst_read(bool is_new)
@@ -218,11 +210,6 @@ bool burst_read(bool is_new)
     b->begun_us = now_us;
     begin_burst(false);
     return true;
-}
-
-bool burst_drain(bool is_new)
-{
-    return hal_drdy_high() && burst_read(is_new);
 }
 
 /* One cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */
@@ -245,14 +232,13 @@ static void keep_edge(struct burst *b)
  */
 static HAL_APART void restamp(struct burst *b)
 {
-    uint8_t behind = b->bus.rx[READING_FIFO_STATUS];
-    bool overrun = (b->bus.rx[READING_SOURCE] & ADXL345_INT_OVERRUN) != 0;
     uint32_t step_us = period_us();
-    uint32_t age_us = behind * step_us + (step_us >> 1);
-    /* before the last one: a bit of the count was wrong */
-    bool after_last = !b->last_known || !hal_time_reached(b->last_us, b->begun_us - age_us);
-    if (after_last && (overrun || b->begun_us - b->reading_us + 2u * step_us < age_us)) {
-        b->reading_us = b->begun_us - age_us;
+    uint32_t t_us = b->begun_us - (step_us >> 1) - b->bus.rx[READING_FIFO_STATUS] * step_us;
+    if (b->last_known && hal_time_reached(b->last_us, t_us)) {
+        return; /* a bit of the count was wrong */
+    }
+    if ((b->bus.rx[READING_SOURCE] & ADXL345_INT_OVERRUN) || !hal_time_reached(t_us + 2u * step_us, b->reading_us)) {
+        b->reading_us = t_us;
         b->reading_exact = false;
     }
 }
@@ -313,11 +299,6 @@ bool burst_running(void)
     return burst.on_bus != 0;
 }
 
-bool burst_bus_taken(void)
-{
-    return burst.on_bus != 0 || hal_i2c_stop_pending();
-}
-
 bool burst_found_empty(void)
 {
     return burst.found_empty;
@@ -338,9 +319,7 @@ HAL_APART uint32_t burst_begun_us(void)
 
 void burst_expect(uint32_t t_us)
 {
-    hal_irq_state_t state = hal_irq_save();
     burst.begun_us = t_us;
-    hal_irq_restore(state);
     burst.last_us = t_us;
 }
 
@@ -383,12 +362,11 @@ const burst_entry_t *burst_take(void)
 {
     struct burst *b = base();
     uint8_t at = b->tail;
-    if (at == b->head) {
-        return NULL;
-    }
     const burst_entry_t *entry = &b->queue[at];
+    HAL_POINTER(entry); /* else its address is computed anew at each use */
+    const burst_entry_t *before = at != 0 ? entry - 1 : &b->queue[QUEUE_MASK];
     b->tail = (uint8_t)((uint8_t)(at + 1u) & QUEUE_MASK);
-    watch_sample(entry->sample.lsb, b->queue[(uint8_t)(at - 1u) & QUEUE_MASK].sample.lsb);
+    watch_sample(entry->sample.lsb, before->sample.lsb);
     period_sample(entry->sample.t_us, entry->exact);
     return entry;
 }

@@ -15,7 +15,6 @@
 enum { RUN_LIMIT = 3, RUN_RESET, RUN_EMPTY = RUN_LIMIT + 32 };
 
 static struct integrity {
-    adxl345_readings_t counters;
     uint8_t equal_run; /* good readings that were as the one before them */
     bool has_last;
     uint8_t range_g;
@@ -23,7 +22,6 @@ static struct integrity {
     uint8_t good;
     uint8_t bad_run;
     uint8_t empty_run;
-    bool failed;
 } integrity;
 
 /* Known by its address in a register, an access to it is half as long. */
@@ -32,13 +30,6 @@ static inline struct integrity *here(void)
     struct integrity *i = &integrity;
     HAL_POINTER(i);
     return i;
-}
-
-void integrity_init(void)
-{
-    integrity.counters = (adxl345_readings_t){ 0, 0, 0 };
-    integrity.failed = false;
-    integrity_forget();
 }
 
 void integrity_forget(void)
@@ -101,15 +92,15 @@ static HAL_APART reading_t discard(reading_t why)
         if (i->empty_run == RUN_LIMIT) {
             i->empty_run = RUN_EMPTY;
         }
-        driver_count(&i->counters.empty);
+        driver_count(COUNTER_EMPTY);
         return why;
     }
-    i->failed = true;
+    driver.marks |= ADXL345_MARK_INTEGRITY;
     lengthen(&i->bad_run);
     if (why == READING_RESET) {
         i->bad_run = RUN_RESET;
     }
-    driver_count(&i->counters.failed);
+    driver_count(COUNTER_FAILED);
     return why;
 }
 
@@ -130,7 +121,7 @@ static void accept(uint8_t source, bool repeated)
         i->empty_run = integrity_int1_stuck() ? (uint8_t)(i->empty_run - 1u) : 0;
     }
     if (source & ADXL345_INT_OVERRUN) {
-        driver_count(&i->counters.overruns);
+        driver_count(COUNTER_OVERRUNS);
     }
 }
 
@@ -187,16 +178,4 @@ bool integrity_int1_stuck(void)
 bool integrity_stuck(void)
 {
     return integrity.equal_run == ADXL345_STUCK_REPEATS;
-}
-
-uint8_t integrity_marks(void)
-{
-    uint8_t marks = integrity.failed ? ADXL345_MARK_INTEGRITY : 0;
-    integrity.failed = false;
-    return marks;
-}
-
-const adxl345_readings_t *integrity_counters(void)
-{
-    return &integrity.counters;
 }
