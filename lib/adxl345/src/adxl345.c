@@ -20,7 +20,7 @@
 #include "hal_time.h"
 
 /* A sensor that was not reached by a stop is looked for so many times more, for a second. */
-enum { DRAIN_LIMIT_MS = 100, BACK_OFF_MAX_MS = 25, RESTS = 40 };
+enum { RESTS = 40 };
 
 adxl345_driver_t driver;
 
@@ -34,17 +34,17 @@ static inline adxl345_driver_t *here(void)
     return d;
 }
 
-void driver_set_limit(uint8_t limit_ms)
+void driver_set_limit(uint8_t limit)
 {
-    driver.deadline_us = driver.now_us + (uint32_t)limit_ms * 1000u;
+    driver.deadline_us = driver.now_us + (uint32_t)limit * LIMIT_US;
 }
 
-void driver_enter(step_t step, uint8_t limit_ms)
+void driver_enter(step_t step, uint8_t limit)
 {
     driver.step = (uint8_t)step;
     driver.issued = false;
     driver.tries = 0;
-    driver_set_limit(limit_ms);
+    driver_set_limit(limit);
     hal_wake();
 }
 
@@ -74,16 +74,16 @@ void driver_fail(adxl345_fault_t fault)
         stopped();
         if (d->rests != 0) {
             d->rests--;
-            driver_enter(STEP_REST_LATER, BACK_OFF_MAX_MS);
+            driver_enter(STEP_REST_LATER, BACK_OFF_MAX);
         }
         return;
     }
     d->fault = (uint8_t)fault;
     d->after_fault = true;
-    driver_enter(STEP_BACK_OFF, d->back_off_ms);
-    d->back_off_ms = (uint8_t)(d->back_off_ms * 2u);
-    if (d->back_off_ms > BACK_OFF_MAX_MS) {
-        d->back_off_ms = BACK_OFF_MAX_MS;
+    driver_enter(STEP_BACK_OFF, d->back_off);
+    d->back_off = (uint8_t)(d->back_off * 2u);
+    if (d->back_off > BACK_OFF_MAX) {
+        d->back_off = BACK_OFF_MAX;
     }
 }
 
@@ -101,7 +101,7 @@ bool driver_take_bus(void)
 static void begin_access(step_t step)
 {
     burst_set_mode(BURST_IGNORE);
-    driver_enter(step, TRANSFER_LIMIT_MS);
+    driver_enter(step, TRANSFER_LIMIT);
     (void)driver_take_bus();
 }
 
@@ -149,7 +149,7 @@ static bool quiesce(void)
     driver.now_us = hal_time_us();
     if (driver.step == STEP_STREAM || driver.step == STEP_ASK_SOURCE) {
         burst_set_mode(BURST_STAMP);
-        driver_enter(STEP_QUIET_STANDBY, TRANSFER_LIMIT_MS);
+        driver_enter(STEP_QUIET_STANDBY, TRANSFER_LIMIT);
     }
     return driver.step == STEP_QUIET_STANDBY || driver.step == STEP_QUIET_DRAIN;
 }
@@ -162,7 +162,7 @@ void adxl345_start(const adxl345_config_t *config)
     d->half_us = table_half_period_us(config->rate_dhz);
     d->stop_wanted = false;
     d->renewed = true;
-    d->back_off_ms = BACK_OFF_MIN_MS;
+    d->back_off = BACK_OFF_MIN;
     if (!quiescing) {
         driver_probe();
     }
@@ -232,7 +232,7 @@ static void access_failed(adxl345_driver_t *d, i2c_bus_state_t state)
     if (d->tries == TRIES) {
         driver_give_up(d, state);
     } else {
-        driver_set_limit(TRANSFER_LIMIT_MS);
+        driver_set_limit(TRANSFER_LIMIT);
         hal_wake();
     }
 }
@@ -272,7 +272,7 @@ static void configured(adxl345_driver_t *d)
     } else if (step == (STEP_MEASURE | STEP_READS)) {
         step = STEP_MEASURE;
     }
-    driver_enter((step_t)step, TRANSFER_LIMIT_MS);
+    driver_enter((step_t)step, TRANSFER_LIMIT);
 }
 
 /* The step's register access ended well. */
@@ -290,7 +290,7 @@ static void advance(adxl345_driver_t *d)
         break;
     case STEP_QUIET_STANDBY:
         burst_set_mode(BURST_READ);
-        driver_enter(STEP_QUIET_DRAIN, DRAIN_LIMIT_MS);
+        driver_enter(STEP_QUIET_DRAIN, DRAIN_LIMIT);
         break;
     default:
         configured(d);
@@ -308,7 +308,7 @@ static void access_step(adxl345_driver_t *d)
         table_row_t row = row_of(d);
         if (burst_access(row.reg, row.value, (d->step & STEP_READS) != 0)) {
             d->issued = true;
-            driver_set_limit(TRANSFER_LIMIT_MS);
+            driver_set_limit(TRANSFER_LIMIT);
             return;
         }
         hal_wake(); /* the end of a STOP tells nobody */

@@ -47,11 +47,11 @@ HAL_IRQ_INLINE bool queue_has_room(void)
 }
 
 /* Interrupts off, or the bus made busy; begun_us is the caller's. */
-HAL_IRQ_INLINE void begin_burst(bool by_edge)
+HAL_IRQ_INLINE void begin_burst(struct burst *b, bool by_edge)
 {
-    burst.by_edge = by_edge;
-    burst.on_bus = 1;
-    i2c_bus_begin(&burst.bus);
+    b->by_edge = by_edge;
+    b->on_bus = 1;
+    i2c_bus_begin(&b->bus);
 }
 
 /* An edge whose level is gone again is noise: data-ready stays high until the data are read (p. 20). */
@@ -64,7 +64,7 @@ HAL_DRDY_ISR()
     volatile uint32_t *stamp_us = &burst.edge_us;
     if (burst.mode == BURST_READ && !burst.on_bus && I2C_BUS_FREE(&burst.bus) && queue_has_room()) {
         burst.edge_waiting = 0;
-        begin_burst(true);
+        begin_burst(&burst, true);
         stamp_us = &burst.begun_us;
     } else {
         burst.edge_waiting = 1;
@@ -205,10 +205,13 @@ bool burst_read(bool is_new)
     b->edge_waiting = 0;
     hal_irq_restore(state);
     uint32_t now_us = hal_time_us();
-    b->reading_us = exact ? t_us : waiting_since_us(b, now_us, is_new);
+    if (!exact) {
+        t_us = waiting_since_us(b, now_us, is_new);
+    }
+    b->reading_us = t_us;
     b->reading_exact = exact;
     b->begun_us = now_us;
-    begin_burst(false);
+    begin_burst(b, false);
     return true;
 }
 
@@ -216,9 +219,7 @@ bool burst_read(bool is_new)
 static void keep_edge(struct burst *b)
 {
     b->failed_state = b->bus.state;
-    if (b->failures != UINT8_MAX) {
-        b->failures++;
-    }
+    b->failures++;
     if (b->reading_exact && !i2c_bus_asked(&b->bus, READING_DATA)) {
         b->edge_us = b->reading_us;
         b->edge_waiting = 1;
@@ -279,8 +280,8 @@ static HAL_APART reading_t judge_ended(void)
         keep_edge(b);
         verdict = READING_FAILED;
     }
-    bool had_sample = i2c_bus_received(&b->bus, READING_DATA) && (b->bus.rx[READING_SOURCE] & ADXL345_INT_DATA_READY);
-    if (verdict == READING_GOOD || had_sample) {
+    if (verdict == READING_GOOD ||
+        (i2c_bus_received(&b->bus, READING_DATA) && (b->bus.rx[READING_SOURCE] & ADXL345_INT_DATA_READY))) {
         b->last_us = b->reading_us;
         b->last_known = true;
     }
@@ -319,8 +320,9 @@ HAL_APART uint32_t burst_begun_us(void)
 
 void burst_expect(uint32_t t_us)
 {
-    burst.begun_us = t_us;
-    burst.last_us = t_us;
+    struct burst *b = base();
+    b->begun_us = t_us;
+    b->last_us = t_us;
 }
 
 uint32_t burst_met_sample_us(void)

@@ -9,8 +9,9 @@
 #include "adxl345_table.h"
 #include "i2c_bus.h"
 
-/* A register access takes under 0.2 ms, a burst under 0.4 ms. */
-enum { TRANSFER_LIMIT_MS = 3, BACK_OFF_MIN_MS = 5 };
+/* Limits of time in half milliseconds, which a byte holds. A register access takes under 0.2 ms, a burst under 0.4 ms. */
+#define LIMIT_US 500u
+enum { LOOK_LIMIT = 1, RETURN_LIMIT = 2, TRANSFER_LIMIT = 6, BACK_OFF_MIN = 10, BACK_OFF_MAX = 50, DRAIN_LIMIT = 200 };
 
 /* Failed transfers of one kind that are a fault: a single one may be noise. */
 enum { TRIES = 3 };
@@ -44,7 +45,7 @@ typedef struct {
     uint32_t now_us; /* of the poll or call that runs */
     uint32_t deadline_us;
     uint16_t half_us; /* half the nominal time between samples, for the configured rate */
-    uint8_t back_off_ms;
+    uint8_t back_off; /* limit */
     uint8_t step; /* step_t */
     uint8_t address;         /* that is asked now */
     uint8_t known;           /* the address at which the sensor was found last */
@@ -67,11 +68,11 @@ typedef struct {
 
 extern adxl345_driver_t driver;
 
-/* The step that runs from now on, with a deadline in limit_ms; main passes again at once. */
-void driver_enter(step_t step, uint8_t limit_ms);
+/* The step that runs from now on, with a deadline after this limit; main passes again at once. */
+void driver_enter(step_t step, uint8_t limit);
 
 /* Another deadline for the step that runs, counted from the poll's time. */
-void driver_set_limit(uint8_t limit_ms);
+void driver_set_limit(uint8_t limit);
 
 /* The poll's time is t_us or later; that of the step's deadline. */
 bool driver_reached(uint32_t t_us);

@@ -40,12 +40,13 @@ void integrity_forget(void)
 
 void integrity_start(const adxl345_config_t *config)
 {
-    integrity.range_g = config->range_g;
-    integrity.format = table_format(config);
-    integrity.has_last = false;
-    integrity.bad_run = 0;
-    if (!integrity_stuck()) {
-        integrity.equal_run = 0;
+    struct integrity *i = here();
+    i->range_g = config->range_g;
+    i->format = table_format(config);
+    i->has_last = false;
+    i->bad_run = 0;
+    if (i->equal_run != ADXL345_STUCK_REPEATS) {
+        i->equal_run = 0;
     }
 }
 

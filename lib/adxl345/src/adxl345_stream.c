@@ -15,8 +15,6 @@
 
 #define MARGIN_US 3000u
 #define TURN_ON_MS 20u /* p. 5: period + 1.1 ms, with room for a slow start */
-#define TRANSFER_LIMIT_US (TRANSFER_LIMIT_MS * 1000ul)
-#define LOOK_US 500ul /* behind the moment when a sample was due, and again and again while none comes */
 
 /* So many halves of the nominal time between samples. */
 static HAL_APART uint32_t halves_us(uint8_t count)
@@ -49,7 +47,7 @@ void stream_source_asked(adxl345_driver_t *d)
         d->timed = TIMED_WANTED;
     }
     burst_set_mode(BURST_READ);
-    driver_enter(STEP_STREAM, 1);
+    driver_enter(STEP_STREAM, RETURN_LIMIT);
 }
 
 void stream_start(adxl345_driver_t *d)
@@ -66,7 +64,7 @@ void stream_start(adxl345_driver_t *d)
     d->seen_good = integrity_good();
     burst_expect(d->now_us + TURN_ON_MS * 1000ul);
     burst_set_mode(BURST_READ); /* last: an edge may come with it */
-    driver_enter(STEP_STREAM, 1);
+    driver_enter(STEP_STREAM, RETURN_LIMIT);
 }
 
 HAL_APART bool stream_without_edges(void)
@@ -89,8 +87,8 @@ static void sample_arrived(adxl345_driver_t *d)
     d->was_empty = false;
     d->after_fault = false;
     d->first_sample_seen = true;
-    d->back_off_ms = BACK_OFF_MIN_MS;
-    d->deadline_us = d->now_us + (uint32_t)d->half_us * 2u + LOOK_US;
+    d->back_off = BACK_OFF_MIN;
+    d->deadline_us = d->now_us + (uint32_t)d->half_us * 2u + LIMIT_US;
     if (d->timed == TIMED_READ) {
         d->deadline_us = burst_begun_us() + patience_us();
         d->timed = burst_left_more() ? TIMED_WANTED : TIMED_NONE;
@@ -108,15 +106,15 @@ static void sample_arrived(adxl345_driver_t *d)
 static HAL_APART void look_for_sample(adxl345_driver_t *d)
 {
     if (burst_running() || hal_i2c_stop_pending()) {
-        d->deadline_us = burst_begun_us() + TRANSFER_LIMIT_US;
+        d->deadline_us = burst_begun_us() + TRANSFER_LIMIT * LIMIT_US;
         if (driver_deadline_passed() && driver_transfer_failed(I2C_BUS_TIMEOUT)) {
-            driver_enter(STEP_STREAM, 1);
+            driver_enter(STEP_STREAM, RETURN_LIMIT);
         }
     } else if (burst_queue_full() || (hal_drdy_high() && !burst_found_empty()) || !silent_for(patience_us())) {
-        d->deadline_us = d->now_us + LOOK_US; /* main was late, or it is early */
+        driver_set_limit(LOOK_LIMIT); /* main was late, or it is early */
     } else {
         burst_set_mode(BURST_STAMP);
-        driver_enter(STEP_ASK_SOURCE, TRANSFER_LIMIT_MS);
+        driver_enter(STEP_ASK_SOURCE, TRANSFER_LIMIT);
     }
 }
 
@@ -145,7 +143,7 @@ static void fetch(adxl345_driver_t *d)
         if (by_clock) {
             d->timed = TIMED_READ;
         }
-        driver_set_limit(TRANSFER_LIMIT_MS);
+        driver_set_limit(TRANSFER_LIMIT);
     } else if (hal_i2c_stop_pending()) {
         hal_wake(); /* the end of a STOP tells nobody */
     }
