@@ -96,11 +96,11 @@ static bool claim(struct burst *b)
 
 void burst_init(void)
 {
-    struct burst *b = base();
-    b->newest_lsb = b->queue[QUEUE_MASK].sample.lsb;
+    burst.newest_lsb = burst.queue[QUEUE_MASK].sample.lsb;
     if (HAL_RAM_CLEARED) {
         return;
     }
+    struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
     b->head = 0;
     b->tail = 0;
@@ -121,7 +121,7 @@ void burst_set_mode(burst_mode_t new_mode)
         b->last_known = false;
     }
     if (new_mode == BURST_READ) { /* what each burst transfers, until main uses the bus again; none runs now */
-        b->found_empty = false;
+        b->verdict = READING_NONE;
         b->bus.tx[0] = ADXL345_INT_SOURCE;
         b->bus.tx_length = 1;
         b->bus.rx_length = READING_BYTES;
@@ -184,7 +184,7 @@ static uint32_t waiting_since_us(struct burst *b, uint32_t now_us, bool is_new)
 {
     uint32_t step_us = period_us();
     uint32_t t_us = b->last_us + step_us;
-    if (b->found_empty && hal_time_reached(b->begun_us, t_us)) {
+    if (b->verdict == READING_EMPTY && hal_time_reached(b->begun_us, t_us)) {
         t_us = b->begun_us;
     }
     if (is_new || !b->last_known || now_us - t_us > SENSOR_DEPTH * step_us) {
@@ -216,11 +216,11 @@ bool burst_read(bool is_new)
 }
 
 /* One cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */
-static void keep_edge(struct burst *b)
+static inline void keep_edge(struct burst *b, uint8_t asked)
 {
     b->failed_state = b->bus.state;
     b->failures++;
-    if (b->reading_exact && !i2c_bus_asked(&b->bus, READING_DATA)) {
+    if (b->reading_exact && asked <= READING_DATA) {
         b->edge_us = b->reading_us;
         b->edge_waiting = 1;
     }
@@ -250,7 +250,7 @@ static reading_t judge(struct burst *b)
     HAL_POINTER(entry); /* else its address is computed anew at each use */
     b->failures = 0;
     reading_t verdict = integrity_judge(b->bus.rx, entry->sample.lsb, b->newest_lsb);
-    b->found_empty = verdict == READING_EMPTY;
+    b->verdict = (uint8_t)verdict;
     if (verdict != READING_GOOD) {
         return verdict;
     }
@@ -269,7 +269,8 @@ static reading_t judge(struct burst *b)
 static HAL_APART reading_t judge_ended(void)
 {
     struct burst *b = base();
-    reading_t verdict = READING_NONE;
+    uint8_t asked = READING_BYTES;
+    reading_t verdict = READING_FAILED;
     if (b->by_edge) {
         b->reading_us = b->begun_us;
         b->reading_exact = true;
@@ -277,11 +278,10 @@ static HAL_APART reading_t judge_ended(void)
     if (b->bus.state == I2C_BUS_OK) {
         verdict = judge(b);
     } else {
-        keep_edge(b);
-        verdict = READING_FAILED;
+        asked = i2c_bus_asked(&b->bus);
+        keep_edge(b, asked);
     }
-    if (verdict == READING_GOOD ||
-        (i2c_bus_received(&b->bus, READING_DATA) && (b->bus.rx[READING_SOURCE] & ADXL345_INT_DATA_READY))) {
+    if (verdict == READING_GOOD || (asked > READING_DATA + 1u && (b->bus.rx[READING_SOURCE] & ADXL345_INT_DATA_READY))) {
         b->last_us = b->reading_us;
         b->last_known = true;
     }
@@ -302,7 +302,7 @@ bool burst_running(void)
 
 bool burst_found_empty(void)
 {
-    return burst.found_empty;
+    return burst.verdict == READING_EMPTY;
 }
 
 bool burst_left_more(void)
@@ -327,7 +327,7 @@ void burst_expect(uint32_t t_us)
 
 uint32_t burst_met_sample_us(void)
 {
-    return burst.found_empty ? burst.last_us : burst_begun_us();
+    return burst.verdict == READING_EMPTY ? burst.last_us : burst_begun_us();
 }
 
 i2c_bus_state_t burst_failed_state(void)
@@ -365,7 +365,7 @@ const burst_entry_t *burst_take(void)
     struct burst *b = base();
     uint8_t at = b->tail;
     const burst_entry_t *entry = &b->queue[at];
-    HAL_POINTER(entry); /* else its address is computed anew at each use */
+    HAL_POINTER(entry);
     const burst_entry_t *before = at != 0 ? entry - 1 : &b->queue[QUEUE_MASK];
     b->tail = (uint8_t)((uint8_t)(at + 1u) & QUEUE_MASK);
     watch_sample(entry->sample.lsb, before->sample.lsb);

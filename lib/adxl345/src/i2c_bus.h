@@ -56,16 +56,13 @@ HAL_IRQ_INLINE void i2c_bus_begin(i2c_bus_t *bus)
     hal_i2c_start();
 }
 
-/* The transfer that runs or ended last came so far that byte `at` (0: the first) was asked of the device. */
-static inline bool i2c_bus_asked(const i2c_bus_t *bus, uint8_t at)
+/*
+ * Bytes that the transfer which runs or ended last has asked the device for. All but the last of them came in, and that
+ * one too where the transfer is good.
+ */
+static inline uint8_t i2c_bus_asked(const i2c_bus_t *bus)
 {
-    return bus->expected >= HAL_I2C_RECEIVED_ACK && bus->index >= at;
-}
-
-/* The same, and it came in and was not the last one (so a good transfer with another byte after it: true). */
-static inline bool i2c_bus_received(const i2c_bus_t *bus, uint8_t at)
-{
-    return bus->expected >= HAL_I2C_RECEIVED_ACK && bus->index > at;
+    return bus->expected >= HAL_I2C_RECEIVED_ACK ? (uint8_t)(bus->index + 1u) : 0;
 }
 
 static inline void i2c_bus_finish(i2c_bus_t *bus, i2c_bus_state_t state)
