@@ -53,3 +53,17 @@ def limits(name):
     path = yardstick(name)
     found = LIMITS.search(path.read_text(encoding="utf-8")) if path.is_file() else None
     return Limits(int(found[1]), float(found[2]), float(found[3])) if found else None
+
+
+def first(wanted):
+    """Of the list the first law that is so."""
+    return next(name for name in names() if wanted(name, laws()[name].traits))
+
+
+# What programs take that need a filter and no particular one: what an image starts with; a Kalman filter without a gate and one with it;
+# those with the fewest and the most cycles; a long name of several words.
+DEFAULT = names()[0]
+PLAIN = first(lambda name, traits: "COVARIANCE" in traits and "GATED" not in traits)
+ROBUST = first(lambda name, traits: {"COVARIANCE", "GATED"} <= traits)
+LIGHT, SLOWEST = (choice(names(), key=worst_cycles().get) for choice in (min, max))
+LONG = max(names(), key=len)
