@@ -236,9 +236,6 @@ static bool filter_samples(void)
         return true;
     }
     if (loop.row_due) {
-        if (replies_speaking()) {
-            return false;
-        }
         write_row();
         return true;
     }
@@ -298,38 +295,23 @@ static void set_alarm(void)
     hal_wake_at(row_first ? coast_due_us() : t_us);
 }
 
-/* Where something is left to do that waits for no interrupt. */
-static void wake_if_work_left(void)
-{
-    struct loop *l = here();
-    if (l->row_due || app.changes != 0 || pipeline_changing() || adxl345_queued() != 0 || coast_due(l->pass_us) ||
-        !replies_empty()) {
-        hal_wake();
-    }
-}
-
-/* Commands, samples, replies, while the pass has time; out of time, another pass follows if there is a reason. */
+/* Commands, samples, replies, while the pass has time; out of time, another pass follows. */
 static void serve(void)
 {
-    if (!pass_in_time()) {
-        hal_wake();
-        return;
+    if (pass_in_time() && !(commands_pass() && !pass_in_time())) {
+        do {
+            if (!stage_piece() && !replies_pass()) {
+                return;
+            }
+        } while (pass_in_time());
     }
-    if (commands_pass() && !pass_in_time()) {
-        return;
-    }
-    while (stage_piece() || replies_pass()) {
-        if (!pass_in_time()) {
-            wake_if_work_left();
-            break;
-        }
-    }
+    hal_wake();
 }
 
 /* The service comes last, unless it is overdue. */
 void app_pass(void)
 {
-    pass.began = hal_time_lap();
+    pass_begin();
     uint32_t now_us = hal_time_us();
     loop.pass_us = now_us;
     if (!HANGS(HEALTH_SAMPLING)) {

@@ -25,7 +25,7 @@ typedef enum {
     STEP_FORCED   /* with it */
 } step_t;
 
-static struct {
+static struct measure {
     union {
         rest_t rest;
         calibration_six_t six; /* in STEP_SOLVE */

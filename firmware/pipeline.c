@@ -7,7 +7,6 @@
 #include "counters.h"
 #include "fx.h"
 #include "parameters.h"
-#include "pass.h"
 #include "pipeline_state.h"
 #include "silence.h"
 #include "supervisor.h"
@@ -38,17 +37,23 @@ FX_ONCE void pipeline_coast(uint32_t t_us)
     pipeline.last_us = t_us;
     pipeline_flag(silence_samples() == SILENCE_FAULT_FROM ? ROW_COASTED | ROW_FAULT : ROW_COASTED);
     pipeline.work = WORK_COAST;
-    pipeline.axis = 0;
+}
+
+static void flag_warming(const axis_t *axis)
+{
+    if (axis->filter.flags & FILTER_WARMING_UP) {
+        pipeline_flag(ROW_WARMING_UP);
+    }
 }
 
 static void coast_axis(axis_t *axis)
 {
-    bool holds = silence_holds();
-    if (!holds) {
-        keep_estimate(axis, filter_missing(&axis->filter));
-        noise_gap(&axis->noise);
+    keep_estimate(axis, filter_missing(&axis->filter));
+    noise_gap(&axis->noise);
+    flag_warming(axis);
+    if (axis->filter.quarters == FILTER_HOLD_MS / 25) {
+        axis->away = 1;
     }
-    axis->away = holds && pipeline.has_sample;
 }
 
 uint32_t pipeline_newest_us(void)
@@ -71,32 +76,19 @@ static bool near_estimate(const axis_t *axis)
 }
 
 /*
- * Amid a sample, the filter of its axis begins anew. From the estimate, where the noise that it has learned was that of
- * a sensor that hung: none, so that it would refuse what comes now. Else on the sample, with the noise as it is known.
- */
-static void renew(bool from_estimate)
-{
-    pipeline.work = WORK_RENEW;
-    pipeline.step = 0;
-    pipeline.new_noise = from_estimate;
-    pipeline.has_sample = from_estimate;
-    pass.limit = PASS_CHANGING_US / HAL_LAP_US;
-}
-
-/*
  * After a hold. True: the filter takes the sample; near the estimate it goes on from what was held. A single one away
- * from it may be a bad reading: with the second on end that is not at the rail the filter begins anew, with the noise
- * as it is known. That is work of its own, amid the sample's.
+ * from it may be a bad reading: with the second in a row that is not at the rail the filter restarts, with the noise as
+ * it is known.
  */
-static bool rejoins(axis_t *axis)
+static bool rejoins(axis_t *axis, bool clipped)
 {
     if (!near_estimate(axis)) {
-        if (pipeline.clipped || axis->away++ < AWAY_SAMPLES) {
+        if (clipped || axis->away++ < AWAY_SAMPLES) {
             pipeline_flag(ROW_GATED);
             return false;
         }
         pipeline_flag(ROW_REACQUIRED);
-        renew(false);
+        filter_restart(&axis->filter);
     }
     axis->away = 0;
     return true;
@@ -108,30 +100,25 @@ static void update_axis(axis_t *axis)
 {
     keep_estimate(axis, filter_update(&axis->filter, axis->lsb));
     uint8_t flags = axis->filter.flags;
-    uint8_t same = flags & (FILTER_GATED | FILTER_REACQUIRED);
-    pipeline_flag((uint16_t)((flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same));
+    pipeline_flag(flags & (FILTER_GATED | FILTER_REACQUIRED));
+    flag_warming(axis);
     if (SUPERVISOR && (flags & FILTER_SWITCHED) != 0) {
         pipeline_flag(ROW_SWITCHED);
     }
 }
 
-/* What comes before the filter of an axis; false: it does not take the sample, or begins anew before it does. */
-static bool prepare_axis(axis_t *axis)
+static void sample_axis(axis_t *axis)
 {
     int16_t lsb = axis->lsb;
     bool clipped = lsb >= pipeline.rail_high_lsb || lsb <= (int16_t)(-pipeline.rail_high_lsb - 1);
-    pipeline.clipped = clipped;
     if (clipped) {
         pipeline_flag(ROW_CLIPPED);
-    }
-    if (pipeline.stuck == HUNG_SAMPLES && !(pipeline.flags & ROW_STUCK) && axis->away == 0) {
-        renew(true);
-        return false;
-    }
-    if (!clipped && noise_update(&axis->noise, lsb)) {
+    } else if (noise_update(&axis->noise, lsb)) {
         filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
     }
-    return axis->away == 0 || (rejoins(axis) && pipeline.work != WORK_RENEW);
+    if (axis->away == 0 || rejoins(axis, clipped)) {
+        update_axis(axis);
+    }
 }
 
 static void count_sample(void)
@@ -152,7 +139,7 @@ static void count_sample(void)
 void pipeline_calibrate(const calibration_t *calibration)
 {
     pipeline.calibration = calibration;
-    pipeline.columns = 0;
+    (void)calibration_prepare(&pipeline.applied, calibration);
 }
 
 /* Once for the sample, or the missing one, because it is dear: the row takes what the check of gravity took. */
@@ -174,71 +161,58 @@ static void end_sample(void)
         pipeline_flag(ROW_NOT_GRAVITY);
     }
     count_sample();
-    if ((pipeline.flags & ROW_STUCK) == 0) {
+    pipeline.has_sample = true;
+    pipeline_flag(pipeline.kept_flags);
+}
+
+/*
+ * Counts what a sensor that hangs repeats. True: it has come back, and what the filters have learned of the noise was
+ * that of readings without any, so that they would refuse what comes now.
+ */
+static bool hung(void)
+{
+    bool stuck = (pipeline.flags & ROW_STUCK) != 0;
+    bool back = pipeline.stuck == HUNG_SAMPLES && !stuck;
+    if (!stuck) {
         pipeline.stuck = 0;
     } else if (pipeline.stuck != HUNG_SAMPLES) {
         pipeline.stuck++;
     }
-    pipeline_flag(pipeline.kept_flags);
-}
-
-static bool renewed(void)
-{
-    if (!change_axis()) {
-        return false;
-    }
-    pipeline.work = WORK_SAMPLE;
-    pipeline.has_sample = true;
-    pass.limit = PASS_US / HAL_LAP_US;
-    return true;
-}
-
-/* One axis of a sample, or of one that is missing; a part of it while its filter begins anew. */
-static void axis_step(void)
-{
-    axis_t *axis = axis_now();
-    if (pipeline.work == WORK_COAST) {
-        coast_axis(axis);
-    } else if (pipeline.work == WORK_SAMPLE ? prepare_axis(axis) : renewed()) {
-        update_axis(axis);
-    } else if (pipeline.work == WORK_RENEW) {
-        return;
-    }
-    if (++pipeline.axis == AXES) {
-        find_accelerations();
-        if (pipeline.work == WORK_SAMPLE) {
-            end_sample();
-        }
-        pipeline.work = WORK_NONE;
-    }
+    return back;
 }
 
 /* Apart: it needs every register, and most calls of pipeline_work find nothing to do. */
-FX_NOINLINE void axis_steps(void)
+FX_NOINLINE void filter_axes(void)
 {
-    do {
-        axis_step();
-    } while (pipeline.work != WORK_NONE && pass_in_time());
+    bool sample = pipeline.work == WORK_SAMPLE;
+    for (axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
+        if (sample) {
+            sample_axis(axis);
+        } else {
+            coast_axis(axis);
+        }
+    }
+    find_accelerations();
+    if (sample) {
+        end_sample();
+    }
+    pipeline.work = WORK_NONE;
 }
 
 bool pipeline_work(void)
 {
+    if (begin_next()) {
+        return true;
+    }
     if (pipeline.work == WORK_NONE) {
-        if (pipeline.columns == AXES) {
-            return false;
-        }
-        calibration_prepare_column(&pipeline.applied, pipeline.calibration, pipeline.columns++);
-    } else if (pipeline.work >= WORK_REPLACE) {
-        change_step();
+        return false;
+    }
+    if (pipeline.work == WORK_SAMPLE && hung()) {
+        begin_all(true);
     } else {
-        axis_steps();
+        filter_axes();
     }
     return true;
-}
-
-bool pipeline_changing(void)
-{
-    return pipeline.work >= WORK_REPLACE || pipeline.columns != AXES;
 }
 
 void pipeline_finish(void)
@@ -253,7 +227,6 @@ void pipeline_sample(const adxl345_sample_t *sample)
     pipeline.flags = 0;
     silence_end();
     pipeline.last_us = sample->t_us;
-    pipeline.has_sample = true;
 #if SUPERVISOR
     supervisor_look(sample->lsb);
 #endif
@@ -261,8 +234,7 @@ void pipeline_sample(const adxl345_sample_t *sample)
         pipeline.axes[axis].lsb = sample->lsb[axis];
     }
     pipeline.work = WORK_SAMPLE;
-    pipeline.axis = 0;
-    replace_axis();
+    pipeline.turn = true;
 }
 
 FX_ONCE void pipeline_flag(uint16_t flags)

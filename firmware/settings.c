@@ -11,8 +11,6 @@ settings_t settings;
 
 enum { AXES = 3 };
 
-static const uint32_t bauds[] FLASH = { 9600, 19200, 38400, 57600, 115200, 250000, 500000, 1000000 };
-
 void settings_defaults(void)
 {
     settings.baud = SETTINGS_BAUD_DEFAULT;
@@ -52,24 +50,6 @@ bool settings_calibrate(const calibration_t *calibration)
     settings.calibration = *calibration;
     pipeline_calibrate(&settings.calibration);
     return true;
-}
-
-bool settings_baud_valid(uint32_t baud)
-{
-    for (uint8_t i = 0; i < sizeof bauds / sizeof bauds[0]; i++) {
-        if (flash_u32(&bauds[i]) == baud) {
-            return true;
-        }
-    }
-    return false;
-}
-
-FX_ONCE bool settings_doubled(uint16_t lowest, uint16_t highest, uint16_t value)
-{
-    while (lowest < value && lowest < highest) {
-        lowest = (uint16_t)(lowest << 1);
-    }
-    return lowest == value;
 }
 
 FX_ONCE uint16_t settings_filter_cycles(uint8_t filter)

@@ -65,7 +65,7 @@ void text_tenths(uint16_t value)
 bool text_equal(const char *ram, flash_text_t words)
 {
     char c = flash_char(words);
-    while (c != '\0' && *ram == c) {
+    while (c != '\0' && (*ram == c || *ram == c + ('a' - 'A'))) {
         ram++;
         words++;
         c = flash_char(words);

@@ -105,14 +105,12 @@ const char *broken_mixture(const filter_t *f)
 }
 
 /*
- * synth.h: v and v' are x1 - x2 and x2 - x3 of estimates within the bound, and behind damping between them; the line of
- * the start lies ahead of the median until the first step.
+ * synth.h: v and v' are x1 - x2 and x2 - x3 of estimates within the bound, and after damping between them.
  */
 static const char *broken_running_estimates(const filter_t *f)
 {
     const filter_synth_t *s = &f->own.synth;
-    int32_t newest = f->x_lsb_q16 + s->ahead_lsb_q16;
-    if (fx_abs32(newest) > X_MAX_Q16 || fx_abs32(newest - f->rate_lsb) > X_MAX_Q16 + 1U) {
+    if (fx_abs32(f->x_lsb_q16 - f->rate_lsb) > X_MAX_Q16 + 1U) {
         return "older x";
     }
     if (fx_abs32(s->rate_before_lsb_q16) > 2U * X_MAX_Q16) {
@@ -128,12 +126,6 @@ const char *broken_estimates(const filter_t *f)
         return "r";
     }
     return running(f) ? broken_running_estimates(f) : NULL;
-}
-
-/* The start's line within its spread. */
-bool spread_broken(const filter_t *f)
-{
-    return f->own.synth.spread_lsb <= 0 || f->own.synth.spread_lsb > 365;
 }
 
 /* tracker.h, filter.h: what all laws have. */

@@ -5,23 +5,23 @@
 static const char *broken_adaptive_memory(const filter_t *f)
 {
     const filter_adaptive_t *a = &f->own.adaptive;
-    if (a->slow_uq16 < K_MIN_UQ16 || a->fast_uq16 < a->slow_uq16 || a->fast_uq16 > TRACKER_K_MAX_UQ16) {
+    if (a->slow_uq16 < ADAPTIVE_K_MIN_UQ16 || a->fast_uq16 < a->slow_uq16 || a->fast_uq16 > TRACKER_K_MAX_UQ16) {
         return "memory";
     }
-    if (running(f) && (a->k_uq32 >> 16 > TRACKER_K_MAX_UQ16 || a->filled > 3U)) {
+    if (running(f) && a->k_uq32 >> 16 > TRACKER_K_MAX_UQ16) {
         return "memory in force";
     }
-    return (a->weight_uq16 < a->last_uq16 || a->confirm < 3U) ? "counts" : NULL;
+    return (a->confirm < ADAPTIVE_CONFIRM_LEAST || a->learnt > ADAPTIVE_OPENING_TERMS) ? "counts" : NULL;
 }
 
 /*
- * adaptive.h, adaptive.c: noise within the legal R, memory between 3.3 and 4096 samples, a gate of 16 sigma of 90 LSB
- * times 1.6; mean and gate lie where the samples of the start were.
+ * adaptive.c: the sigma is that of the R it was told (at most 31.7 LSB) or between 0.1 and 90 LSB, memory between 3.3
+ * and 4096 samples, a gate of 16 sigma of 90 LSB times 1.6; mean and gate lie where the samples of the start were.
  */
 const char *broken_adaptive(const filter_t *f)
 {
     const filter_adaptive_t *a = &f->own.adaptive;
-    if (a->third_lsb_uq24 < 2990500U || a->scatter_lsb_uq24 > 1509949440U) {
+    if (a->scatter_lsb_uq24 < ADAPTIVE_SCATTER_MIN_UQ24 || a->scatter_lsb_uq24 > ADAPTIVE_SCATTER_MAX_UQ24) {
         return "noise";
     }
     if (running(f) && a->gate_lsb_uq16 > (uint32_t)2305 << 16) {

@@ -43,12 +43,11 @@ bool running(const filter_t *f);
 /* Flags of a gate, which a law without one never sets. */
 bool gate_shows(const filter_t *f);
 
-/* Families of laws: kalman.h; its runs of refused samples; wide.h; mixture.h; synth.h, and the line of its start. */
+/* Families of laws: kalman.h; its runs of refused samples; wide.h; mixture.h; synth.h. */
 const char *broken_core(const filter_t *f, uint32_t r_max_lsb2_q8);
 const char *broken_run(const filter_t *f);
 const char *broken_wide(const filter_t *f);
 const char *broken_mixture(const filter_t *f);
 const char *broken_estimates(const filter_t *f);
-bool spread_broken(const filter_t *f);
 
 #endif

@@ -11,9 +11,6 @@
 /* synth.c: gains as configured. */
 const char *broken_synth(const filter_t *f)
 {
-    if (spread_broken(f)) {
-        return "spread";
-    }
     return (f->own.synth.b0_uq16 < SYNTH_B0_MIN_UQ16) ? "configuration" : broken_estimates(f);
 }
 

@@ -13,9 +13,6 @@
 const char *broken_synth_plus(const filter_t *f)
 {
     const filter_synth_t *s = &f->own.synth;
-    if (spread_broken(f)) {
-        return "spread";
-    }
     if (s->b0_uq16 < SYNTH_B0_MIN_UQ16 || s->of.plus.k > 8U) {
         return "configuration";
     }

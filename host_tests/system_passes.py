@@ -1,4 +1,4 @@
-"""No pass of the main loop is longer than 1 ms, and no interrupt with a deadline waits longer than 15 us; part of system_tests.py."""
+"""No pass of the main loop is longer than 4 ms, and no interrupt with a deadline waits longer than 15 us; part of system_tests.py."""
 import pathlib
 import sys
 
@@ -7,7 +7,7 @@ from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
 import latency  # noqa: E402
 from system_support import SET_IMAGES, STREAMS, TESTS, image_with, simrun, test, within  # noqa: E402
 
-PASS_CYCLES = 16000
+PASS_CYCLES = 64000
 COMMANDS = ("status", "help", "filter {0}", "range 8", "filter", "filter {1}", "range 16", "every 3", "every 1", "stop", "go", "mode plot",
             "nonsense", "filter {0}", "mode csv", "rate 50", "rate {2}", "filter {1}", "status")
 # with what each is answered by, begun anywhere: settings, calibration and measurements, each told of, in this order
@@ -52,7 +52,7 @@ def make_disturbed_test(image, rate, baud, flood):
     def check():
         for filter_name in filters_of(image):
             disturbed_run(image, filter_name, rate, baud, flood)
-    check.__name__ = f"no_pass_longer_than_1_ms_{pathlib.Path(image).parent.name}_{rate}_hz"
+    check.__name__ = f"no_pass_longer_than_4_ms_{pathlib.Path(image).parent.name}_{rate}_hz"
     return check
 
 
@@ -76,7 +76,7 @@ def settings_run(image, rate, baud):
 def make_settings_test(image, rate, baud):
     def check():
         settings_run(image, rate, baud)
-    check.__name__ = f"no_pass_longer_than_1_ms_in_settings_{pathlib.Path(image).parent.name}_{rate}_hz"
+    check.__name__ = f"no_pass_longer_than_4_ms_in_settings_{pathlib.Path(image).parent.name}_{rate}_hz"
     return check
 
 
@@ -100,7 +100,7 @@ def a_row_waits_for_one_axis_of_a_change_of_filter():
 
 
 @test
-def no_pass_longer_than_1_ms_in_any_stream():
+def no_pass_longer_than_4_ms_in_any_stream():
     for stream in sorted(STREAMS.glob("*.csv")):
         for rate, baud in ((12.5, 115200), (100, 115200), (400, 1000000), (800, 1000000)):
             name = f"passes-{stream.stem}-{rate}"

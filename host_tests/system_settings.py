@@ -8,7 +8,7 @@ from laws import DEFAULT, LIGHT, ROBUST  # noqa: E402
 
 REST = STREAMS / "rest-2lsb.csv"
 LEFT = ("ff", "old", "new", "random")
-PASS_CYCLES = 16000
+PASS_CYCLES = 64000
 DEGREE = math.pi / 180
 
 # Three sets, no value of one in another: a mixture is none of them. The first lies in the copy that the third is saved to.
@@ -134,9 +134,9 @@ def settings_survive_a_power_cut_in_every_write_of_a_save():
             if found == 2:
                 assert n == writes and words == "as saved", (kind, words)
             elif n == 1 and (".before" in kind or ":old" in kind or ":random" in kind):
-                assert words in ("as saved", "as saved; the other copy is damaged"), (kind, words)
+                assert words in ("as saved", "as saved, other copy damaged"), (kind, words)
             else:
-                assert words == ("as saved; the other copy is damaged" if n < writes or ":random" not in kind else words), (kind, words)
+                assert words == ("as saved, other copy damaged" if n < writes or ":random" not in kind else words), (kind, words)
     assert cut(kept, f"eeprom:{writes}.after:mcupower") == (2, "as saved")
     assert cut(kept, "eeprom:1.before:mcupower") == (1, "as saved")
     print(f"    {writes} writes, {cuts} cuts: {new} times the new set, {before} times told that a copy is damaged")
@@ -175,11 +175,11 @@ def a_board_locked_out_by_its_settings_comes_back_with_the_strap():
     kept = image.read_bytes()
     notes, _, rows, locked = started("settings-locked", image, *typed(("settings",), 700), fw=FW, max_ms=2500)
     assert told_as(notes) == "as saved" and f"# filter {DEFAULT}, rate 100 Hz, range 16 g, every 8, baud 9600" in notes, notes
-    assert "# address 1D: auto 53 1d" in notes and any("no sensor answers" in note for note in notes), notes
+    assert "# address 1D: auto 53 1D" in notes and any("no sensor" in note for note in notes), notes
     assert all(row[9] & (2 | 16) for row in rows), "rows without a sensor"
     assert locked["uart_bytes"] <= 2.5 * 960, "the line itself is at 9600 baud"
     notes, _, rows, free = started("settings-strap", image, "--strap", *typed(("address",), 700), fw=FW, max_ms=2500)
-    assert told_as(notes) == "defaults, the saved ones are left alone", notes
+    assert told_as(notes) == "defaults, saved ones not read", notes
     assert f"# filter {DEFAULT}, rate 100 Hz, range 16 g, every 1, baud 115200" in notes and "# address auto" in notes, notes
     assert len(rows) > 230 and not any(row[9] & (2 | 16) for row in rows), len(rows)
     assert free["uart_bytes"] > 4 * 2.5 * 960, "the line itself is at 115200 baud"
@@ -197,7 +197,7 @@ def saved_settings_of_another_image_lose_only_the_filter():
     image.unlink(missing_ok=True)
     saved(image, SETS[1], image_with(ROBUST))
     notes, _, _, _ = started("settings-other", image, *typed(("settings",), 400), fw=FW, max_ms=900)
-    assert told_as(notes) == "as saved, but for the filter", notes
+    assert told_as(notes) == "as saved, but another filter", notes
     listing = listed(notes)
     assert has_set([line for line in SETS[1] if "gate" not in line], listing), listing
     assert listing[0] == f"# filter {DEFAULT}: {DEFAULT}" and any(line.startswith("# guard 4.5 sigma") for line in notes), notes

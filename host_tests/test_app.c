@@ -168,7 +168,7 @@ static void test_garbage_and_long_lines_are_refused_whole(void)
     TEST_ASSERT_EQUAL_STRING("# refused 2: line too long", board.notes[before]);
     board_type("ra\x01te 400");
     board_run_ms(100);
-    TEST_ASSERT_EQUAL_STRING("# refused 3: characters that no command has", board.notes[before + 1]);
+    TEST_ASSERT_EQUAL_STRING("# refused 3: illegal characters", board.notes[before + 1]);
     TEST_ASSERT_EQUAL_UINT(1000, settings.rate_dhz);
     board_type("status");
     board_run_ms(300);
@@ -219,7 +219,7 @@ static void test_every_follows_what_the_line_carries(void)
     size_t before = board.note_count;
     board_type("rate 400");
     board_run_ms(200);
-    TEST_ASSERT_EQUAL_STRING("# every 3: the smallest that 115200 baud carries at 400 Hz", board.notes[before + 1]);
+    TEST_ASSERT_EQUAL_STRING("# every 3: the least that this baud rate allows", board.notes[before + 1]);
 }
 
 static void test_800_hz_says_its_bus_speed(void)
@@ -360,7 +360,7 @@ static void test_a_line_with_a_lost_byte_is_refused(void)
     board_run_ms(100);
     hal_host_faults.corrupt_rx_every = 0;
     TEST_ASSERT_EQUAL_UINT(1, settings.every);
-    TEST_ASSERT_EQUAL_STRING("# refused 3: characters that no command has", board_last_note());
+    TEST_ASSERT_EQUAL_STRING("# refused 3: illegal characters", board_last_note());
 }
 
 /* The slowest line with the widest plot rows still answers and still obeys. */

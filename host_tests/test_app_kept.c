@@ -114,7 +114,7 @@ static void test_the_strap_brings_the_default_baud_back(void)
     TEST_ASSERT_EQUAL_UINT32(1000000, hal_host_baud());
     talk_power_cycle(true);
     TEST_ASSERT_EQUAL_UINT32(115200, hal_host_baud());
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: defaults, the saved ones are left alone", 0));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: defaults, saved ones not read", 0));
     talk_power_cycle(false); /* and it is still there */
     TEST_ASSERT_EQUAL_UINT32(1000000, hal_host_baud());
     talk_power_cycle(true);
@@ -158,7 +158,7 @@ static void test_a_filter_that_the_image_does_not_hold(void)
     }
     talk_type("save");
     talk_power_cycle(false);
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: as saved, but for the filter", 0));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: as saved, but another filter", 0));
     TEST_ASSERT_EQUAL_UINT(500, settings.rate_dhz);
     TEST_ASSERT_EQUAL_UINT(0, settings.filter);
     TEST_ASSERT_EQUAL_UINT(0, settings.own);

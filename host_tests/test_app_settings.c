@@ -143,8 +143,8 @@ static void test_address(void)
 {
     talk_start();
     TEST_ASSERT_EQUAL_STRING("# address auto", talk_answer("address"));
-    TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1d", talk_answer("address 54"));
-    TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1d", talk_answer("address 0x53"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1D", talk_answer("address 54"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1D", talk_answer("address 0x53"));
     size_t before = board.note_count;
     talk_type("address 1D");
     board_run_ms(1000);
@@ -152,7 +152,7 @@ static void test_address(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1: ", before)); /* it is not looked for elsewhere */
     talk_type("address 53");
     board_run_ms(500);
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("sensor at 0x53", before));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("lost, sensor at 0x53", before));
     talk_type("address 1d");
     board_run_ms(500);
     talk_type("address auto");

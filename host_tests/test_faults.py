@@ -100,7 +100,7 @@ def what_is_typed_in_a_run_is_answered():
     done = faults_runs.attempt(FW, DEFAULT, (kind,), ("1000ms",))
     said = (faults_runs.folder() / "out.csv").read_text(encoding="ascii")
     assert done.recovered and not done.failures(), done
-    for words in ("# state ", "no command has", "line too long", "unknown command", "# stopped", "# going", "roll_raw:", "mode is one of"):
+    for words in ("# state ", "illegal characters", "line too long", "unknown command", "# stopped", "# going", "roll_raw:", "mode is one of"):
         assert words in said, words
 
 

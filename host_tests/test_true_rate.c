@@ -60,7 +60,7 @@ static void sample(int16_t y_lsb)
 static bool look(uint32_t period_us)
 {
     pipeline_retime(period_us);
-    bool handed_over = pipeline.to_replace != 0;
+    bool handed_over = pipeline.to_begin != 0;
     pipeline_finish();
     return handed_over;
 }
@@ -200,11 +200,11 @@ static double handed_over_at_s(double ppm)
     stream_t stream = board_noisy_stream(2000, 100.0, 0.7, 61006);
     board_start(&stream, ppm, 0);
     board_run_ms(1000);
-    hal_host_faults.lap_step = 5; /* passes of a few pieces: a change is seen under way */
+    hal_host_faults.lap_step = 1; /* passes of a few pieces: a change is seen under way */
     double at_s = 0.0;
     while (hal_host_now_ms() < 20000.0) {
         app_pass();
-        if (pipeline_changing() && at_s == 0.0) {
+        if (pipeline.to_begin != 0 && at_s == 0.0) {
             at_s = hal_host_now_ms() / 1000.0;
         }
     }

@@ -2,7 +2,7 @@
 """pack_texts.py OUT: the texts of firmware/reply_texts.h, packed for program memory, as a header (firmware/reply_packed.h).
 
 Byte pair encoding: the commonest pair of neighbours gets a byte of its own, again and again, until a pair saves no more than the two bytes
-that it takes in the list of pairs. reply_lines.c unpacks them with a stack of PACKED_DEPTH bytes.
+that it takes in the list of pairs. reply_values.c unpacks them, PACKED_DEPTH calls deep.
 """
 import collections
 import pathlib
@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 
-PAIR_FIRST, PAIRS_MAX = 0x90, 0x70  # bytes 0x01..0x1F and 0x7F..0x8F stand for values (enum say)
+PAIR_FIRST, PAIRS_MAX = 0x87, 0x79  # smaller bytes are characters, or stand for values (enum say)
 STEP = 8                            # texts between two whose start is kept; the firmware counts ends from there
 COLUMNS = 110
 

@@ -273,7 +273,7 @@ static void end_line(expected_t *e)
     if (too_long) {
         expect(e, "# refused 2: line too long");
     } else if (e->garbage) {
-        expect(e, "# refused 3: characters that no command has");
+        expect(e, "# refused 3: illegal characters");
     } else if (e->length != 0) {
         expect_line(e, e->line);
     }

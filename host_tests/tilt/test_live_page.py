@@ -30,10 +30,10 @@ class TestServed(Case):
     def lights(self, page, talk):
         fault = "document.getElementById('fault')"
         self.assertEqual(page.value(f"[{fault}.className, {fault}.textContent]"), ["card fault", "no fault told"])
-        talk.say("# fault 8: SDA held low: check SDA to A4, pull-ups, GND")
+        talk.say("# fault 8: SDA held low: check SDA, SCL, pull-ups, GND")
         page.until(f"{fault}.classList.contains('lit')")
-        self.assertEqual(page.value(f"{fault}.textContent"), "fault 8: SDA held low: check SDA to A4, pull-ups, GND")
-        talk.say("# fault 8 over: samples again after 1234 ms, 123 lost, sensor at 0x53")
+        self.assertEqual(page.value(f"{fault}.textContent"), "fault 8: SDA held low: check SDA, SCL, pull-ups, GND")
+        talk.say("# fault 8 over: after 1234 ms, 123 lost, sensor at 0x53")
         page.until(f"!{fault}.classList.contains('lit')")
         for line in ("# fault 8: SDA held low", "fault 8 over"):
             self.assertIn(line, page.value("document.getElementById('log').innerText"))

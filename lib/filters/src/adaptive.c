@@ -16,19 +16,14 @@
  * further beyond the gate than motion explains (an eighth of `ratemax`) is believed after `confirm` of samples on the
  * same side.
  *
- * Noise, with `identify` on (1): sigma of a sample from third differences, which see neither position, rate nor
- * acceleration (it feeds the unguarded filter and the probe), and the scatter of the innovations about their mean (it
- * feeds the guard, because motion that the line does not follow widens it); by turns, a sample each, and each limited
- * to 2.5 times what it is expected to be (3.1 for the differences' mean). R as configured or told by set_noise before
- * the first difference is what both start from, later calls change nothing: a pipeline that estimates an R of its own
- * may go on telling it, and need not. The differences' mean is their first one, unlimited for four; until the
- * sixteenth, six in a row below its half put the largest of them in its place: what one bad read at the start leaves.
- * Below a sigma of 0.5 LSB most differences are 0 and R comes out too small. Off (0): both are the square root of that
- * R, always.
+ * Noise, with `identify` on (1): the scatter of the innovations about their mean, of every second sample, each limited
+ * to 2.5 times what it is expected to be. Motion that the line does not follow widens it, and so the gate. It starts from the R that was
+ * configured or told last before the first sample after the start; later calls of filter_set_noise change nothing: a
+ * pipeline that estimates an R of its own may go on telling it, and need not. Off (0): the square root of that R, always.
  *
  * FILTER_GATED tells that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be
- * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the
- * identified noise and forgets rate, mean innovation and history; the memory is the slowest.
+ * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the identified noise and
+ * forgets rate and mean innovation; the memory is the slowest.
  *
  * Parameters guard, r, identify, slow, fast, confirm, ratemax (at most 127 LSB per sample of it).
  *
@@ -36,13 +31,78 @@
  *   rate     Q7.24, <= 127 LSB per sample
  *   k        UQ0.32, its upper 16 bits as the gain
  *   sizes    of the innovation, what is taken of it and its gate in UQ16, towards its side: no sign is to be watched
+ *   means    of innovations (Q7.24, towards the side of the last one) and of their scatter (UQ8.24): a term is rounded
+ *            to 2^-8 LSB, the mean moves by the exact product of what they differ and the weight
  */
 #include "adaptive.h"
 
-/* The mean innovation towards the last one, rounded down. */
-FX_INLINE int16_t mean_lsb_q8(const filter_adaptive_t *a)
+static const filter_parameter_t guard FX_FLASH = { "guard", "sigma", 8, 1, 256, 4096, 1152 };
+static const filter_parameter_t identify FX_FLASH = { "identify", "", 0, 0, 0, 1, 1 };
+static const filter_parameter_t slow FX_FLASH = { "slow", "ms", 0, 0, 10, 60000, 500 };
+static const filter_parameter_t fast FX_FLASH = { "fast", "ms", 0, 0, 1, 60000, 0 };
+static const filter_parameter_t confirm FX_FLASH = { "confirm", "ms", 0, 0, 0, 10000, 120 };
+static const filter_parameter_t *const parameters[] FX_FLASH = {
+    &guard, &filter_parameter_r, &identify, &slow, &fast, &confirm, &filter_parameter_ratemax
+};
+
+/*
+ * One rule for all rates. Shortest memory: 80 ms, a quick turn of the hand, and two samples, without which no line is
+ * known. Slowest: half a second and at least 20 samples. The gate is 3 sigma below 20 Hz, where a motion is a few samples
+ * long and outliers among them cost most, and 4.5 from there on: more than what hands do between samples.
+ */
+static void standard(filter_config_t *config)
 {
-    return (int16_t)(a->mean_lsb_q24 >> 16);
+    uint16_t rate_dhz = config->rate_dhz;
+    if (rate_dhz < 200U) {
+        config->value[ADAPTIVE_GUARD_SIGMA_Q8] = 768;
+    }
+    if (rate_dhz < 400U) {
+        config->value[ADAPTIVE_SLOW_MS] = (int32_t)(200000U / rate_dhz);
+    }
+    config->value[ADAPTIVE_FAST_MS] = (int32_t)(80U + 20000U / rate_dhz);
+}
+
+/* Shares and thresholds that follow from the shortest memory. */
+static void set_memory(filter_adaptive_t *a, const filter_config_t *config)
+{
+    a->slow_uq16 = tracker_memory_k_uq16((uint16_t)config->value[ADAPTIVE_SLOW_MS], config->rate_dhz,
+                                         ADAPTIVE_K_MIN_UQ16);
+    a->fast_uq16 = tracker_memory_k_uq16((uint16_t)config->value[ADAPTIVE_FAST_MS], config->rate_dhz, a->slow_uq16);
+    a->share_uq16 = fx_high_u16(a->fast_uq16, 26214); /* 0.4 */
+    /* sigma of the mean, sqrt(share / (2 - share)), times 2.15 */
+    uint32_t ratio_uq32 = ((uint32_t)a->share_uq16 << 15) / (0x20000U - a->share_uq16) << 17;
+    a->manoeuvre_uq16 = (uint16_t)((275U * (uint32_t)fx_isqrt32(ratio_uq32)) >> 7); /* <= 0.8 */
+}
+
+static void set_up(filter_t *f, const filter_config_t *config)
+{
+    filter_adaptive_t *a = &f->own.adaptive;
+    a->guarded = config->value[ADAPTIVE_GUARD_SIGMA_Q8] != 0;
+    a->gate_sigma_q8 = a->guarded ? (uint16_t)config->value[ADAPTIVE_GUARD_SIGMA_Q8] : ADAPTIVE_UNGUARDED_SIGMA_Q8;
+    a->identify = config->value[ADAPTIVE_IDENTIFY] != 0;
+    set_memory(a, config);
+    uint32_t confirm_samples = (uint32_t)config->value[ADAPTIVE_CONFIRM_MS] * config->rate_dhz / 10000U; /* <= 40000 */
+    a->confirm = (confirm_samples < ADAPTIVE_CONFIRM_LEAST) ? ADAPTIVE_CONFIRM_LEAST : (uint16_t)confirm_samples;
+    tracker_limit_rate(f, (uint32_t)config->value[ADAPTIVE_RATE_MAX_LSB_S], 24);
+    filter_set_noise(f, (uint32_t)config->value[ADAPTIVE_R_LSB2_Q8]);
+}
+
+static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
+{
+    filter_adaptive_t *a = &f->own.adaptive;
+    if (a->learnt == 0U) {
+        uint32_t sigma_q10 = fx_isqrt32(r_lsb2_q8 << 12); /* 110..32382 */
+        a->scatter_lsb_uq24 = sigma_q10 << 14;
+    }
+}
+
+static void start(filter_t *f, bool settled)
+{
+    filter_adaptive_t *a = &f->own.adaptive;
+    tracker_clear(a, offsetof(filter_adaptive_t, scatter_lsb_uq24));
+    f->negative = false;
+    f->broken = false;
+    a->k_uq32 = settled ? (uint32_t)a->slow_uq16 << 16 : ADAPTIVE_K_START_UQ32;
 }
 
 /* The rate of one sample, rounded down towards the side of the last innovation. */
@@ -51,84 +111,94 @@ FX_INLINE int32_t rate_lsb_q16(const filter_t *f)
     return f->negative ? -(-f->rate_lsb >> 8) : f->rate_lsb >> 8;
 }
 
-/* What the sample before was off, towards the side of this one, carried on with the rate; 0: there is none. */
-static int32_t before_lsb_q16(const filter_t *f)
+/* A size in 8.8 bits, limited to 128 LSB. */
+FX_INLINE int16_t size_lsb_q8(uint32_t size_lsb_uq16)
 {
-    if (f->own.adaptive.filled == 0U) {
+    return (int16_t)((size_lsb_uq16 >= 0x800000U) ? 0x7FFF : (int16_t)(uint16_t)(size_lsb_uq16 >> 8));
+}
+
+/* A mean moved by a part of what a new term differs from what was expected of it; exact. */
+FX_INLINE uint32_t averaged(uint32_t mean_uq24, uint16_t expected_uq8, uint16_t term_uq8, uint16_t weight_uq16)
+{
+    if (term_uq8 < expected_uq8) {
+        return mean_uq24 - fx_product_u16((uint16_t)(expected_uq8 - term_uq8), weight_uq16);
+    }
+    return mean_uq24 + fx_product_u16((uint16_t)(term_uq8 - expected_uq8), weight_uq16);
+}
+
+/* What is taken of an innovation, as far as the gate, in their mean; signed: numbers keep their order when the top bit is turned over. */
+FX_INLINE void average_innovation(filter_adaptive_t *a, uint32_t taken)
+{
+    uint16_t term = (uint16_t)size_lsb_q8((taken > a->gate_lsb_uq16) ? a->gate_lsb_uq16 : taken);
+    uint32_t mean = (uint32_t)a->mean_lsb_q24 ^ 0x80000000U;
+    mean = averaged(mean, (uint16_t)(mean >> 16), term ^ 0x8000U, a->share_uq16);
+    a->mean_lsb_q24 = (int32_t)(mean ^ 0x80000000U);
+}
+
+/*
+ * What the sample before was off, towards the side of this one, carried on with the rate, and no more than this one is
+ * off; 0 where a sample was missing between them.
+ */
+static uint32_t agreed_lsb_uq16(const filter_t *f)
+{
+    if (f->broken) {
         return 0;
     }
     int32_t before = (int32_t)f->previous_lsb * 65536 - (f->x_lsb_q16 - rate_lsb_q16(f));
-    return f->negative ? -before : before;
+    if (f->negative) {
+        before = -before;
+    }
+    if (before < 0) {
+        return 0;
+    }
+    return ((uint32_t)before > f->size_lsb_uq16) ? f->size_lsb_uq16 : (uint32_t)before;
 }
 
 /* Counts a sample beyond the gate, and judges what is taken of its innovation. */
 FX_NOINLINE uint32_t judge(filter_t *f)
 {
     filter_adaptive_t *a = &f->own.adaptive;
-    uint16_t run = (a->verdict == (uint8_t)WITHIN_GATE) ? 0U : a->run;
+    uint16_t run = (a->verdict == (uint8_t)ADAPTIVE_WITHIN) ? 0U : a->run;
     run++;
     if (run != 0U) {
         a->run = run;
     }
+    uint32_t agreed = agreed_lsb_uq16(f);
     uint32_t size = f->size_lsb_uq16;
-    int32_t before = before_lsb_q16(f);
-    uint32_t agreed = (before < 0) ? 0U : (uint32_t)before;
-    if (agreed > size) {
-        agreed = size;
-    }
-    FX_FENCE();
     uint32_t gate = a->gate_lsb_uq16;
     if (agreed > gate) {
         uint16_t jump_lsb_uq8 = (uint16_t)(f->rate_max_lsb >> 19); /* beyond the gate, what motion does not explain */
         bool large = size - gate > (uint32_t)jump_lsb_uq8 << 8;
         if (!large || a->run >= a->confirm) {
-            a->verdict = large ? JUMP : MOTION;
+            a->verdict = large ? ADAPTIVE_JUMP : ADAPTIVE_MOTION;
             return agreed;
         }
         agreed = gate;
     }
     f->flags |= FILTER_GATED;
-    a->verdict = OUTLIER;
     uint32_t twice = gate + gate;
-    if (size < twice) {
-        twice -= size;
-        if (twice > agreed) {
-            return twice;
-        }
+    uint32_t left = (size < twice) ? twice - size : 0U;
+    if (left > agreed) {
+        agreed = left;
     }
-    if (agreed == 0U) {
-        a->verdict = UNUSED;
-    }
+    a->verdict = (agreed == 0U) ? ADAPTIVE_UNUSED : ADAPTIVE_OUTLIER;
     return agreed;
 }
 
-/* Innovations in their mean, each limited to the gate. */
-FX_INLINE void average_innovation(filter_adaptive_t *a, uint32_t taken)
-{
-    uint32_t gate = a->gate_lsb_uq16;
-    int16_t limited = (int16_t)adaptive_size_lsb_uq8((taken > gate) ? gate : taken);
-    int16_t mean = mean_lsb_q8(a);
-    if (limited < mean) {
-        a->mean_lsb_q24 -= (int32_t)fx_product_u16((uint16_t)(mean - limited), a->share_uq16);
-    } else {
-        a->mean_lsb_q24 += (int32_t)fx_product_u16((uint16_t)((uint16_t)limited - (uint16_t)mean), a->share_uq16);
-    }
-}
-
 /* Memory after this sample. */
-FX_INLINE void adapt(filter_adaptive_t *a, uint16_t spread_uq8)
+FX_NOINLINE void adapt(filter_adaptive_t *a, uint16_t spread_uq8)
 {
-    int16_t mean = mean_lsb_q8(a);
+    int16_t mean = (int16_t)(a->mean_lsb_q24 >> 16);
     uint16_t mean_uq8 = (mean < 0) ? (uint16_t)(0U - (uint16_t)mean) : (uint16_t)mean;
     uint16_t threshold_uq8 = (uint16_t)(fx_mul_u16(spread_uq8, a->manoeuvre_uq16) >> 16);
     uint16_t k = (uint16_t)(a->k_uq32 >> 16);
-    if (a->verdict >= (uint8_t)MOTION || mean_uq8 > threshold_uq8) {
+    if (a->verdict >= (uint8_t)ADAPTIVE_MOTION || mean_uq8 > threshold_uq8) {
         if (k < a->fast_uq16) {
             a->k_uq32 = (uint32_t)a->fast_uq16 << 16;
         }
     } else if (mean_uq8 <= (uint16_t)(threshold_uq8 - (threshold_uq8 >> 2))) {
         k >>= 1;
-        uint32_t less = a->k_uq32 - fx_mul_u16(k, k); /* k^2 / 4 */
+        uint32_t less = a->k_uq32 - fx_product_u16(k, k); /* k^2 / 4 */
         if ((uint16_t)(less >> 16) < a->slow_uq16) {
             less = (uint32_t)a->slow_uq16 << 16;
         }
@@ -152,15 +222,22 @@ FX_NOINLINE uint32_t coarse_turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
     return (kw >= (uint32_t)127 << 16) ? (uint32_t)127 << 24 : kw << 8;
 }
 
-/* What of the magnitude that is taken x moves by: 2 w - k w with w = k taken; the rate turns by k w. */
-FX_INLINE uint32_t gained(filter_t *f, uint32_t taken)
+/* Of the magnitude that is taken x moves by 2 w - k w with w = k taken; the rate turns by k w. */
+FX_NOINLINE void follow(filter_t *f, uint32_t taken)
 {
-    uint16_t k = (uint16_t)(f->own.adaptive.k_uq32 >> 16);
-    uint32_t w = fx_mul24_uq16(taken >> 8, k);
-    uint32_t kw = (w >= 0x800000U) ? coarse_turn_lsb_uq24(w, k) : fx_mul24_uq16(w, k);
-    FX_FENCE();
-    turn(f, (int32_t)kw);
-    return w + w - (kw >> 8);
+    if (f->own.adaptive.verdict == (uint8_t)ADAPTIVE_JUMP) {
+        f->flags |= FILTER_REACQUIRED;
+        f->rate_lsb = 0;
+    } else {
+        uint16_t k = (uint16_t)(f->own.adaptive.k_uq32 >> 16);
+        uint32_t w = fx_mul24_uq16(taken >> 8, k);
+        uint32_t kw = (w >= 0x800000U) ? coarse_turn_lsb_uq24(w, k) : fx_mul24_uq16(w, k);
+        FX_FENCE();
+        turn(f, (int32_t)kw);
+        taken = w + w - (kw >> 8);
+    }
+    tracker_move(f, (int32_t)taken);
+    f->x_lsb_q16 = tracker_bounded(f, f->x_lsb_q16); /* the rate's limit may leave x a step beyond the sample */
 }
 
 /* Innovation and gate; returns the sigma of the innovation, LSB. An innovation of 0 keeps to its side. */
@@ -182,45 +259,94 @@ FX_NOINLINE uint16_t meet(filter_t *f, int16_t z_lsb)
     return spread_uq8;
 }
 
-/* Estimate and memory moved by a part of the innovation. */
-FX_NOINLINE void follow(filter_t *f, uint32_t taken, uint16_t spread_uq8)
+/*
+ * Scatter of the innovations from 1.375 |u - mean|, limited to 2.5 times what is expected of it: sqrt(pi / 2) = 1.253
+ * makes a mean size a sigma, and a tenth more keeps false alarms rarer than known noise would.
+ */
+FX_NOINLINE void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spread_uq8)
 {
-    filter_adaptive_t *a = &f->own.adaptive;
-    average_innovation(a, taken);
-    FX_FENCE();
-    adapt(a, spread_uq8);
-    FX_FENCE();
-    if (a->verdict == (uint8_t)JUMP) {
-        f->flags |= FILTER_REACQUIRED;
-        f->rate_lsb = 0;
-    } else {
-        taken = gained(f, taken);
+    int16_t mean = (int16_t)(a->mean_lsb_q24 >> 16);
+    int16_t size = size_lsb_q8(size_lsb_uq16);
+    uint16_t term = (mean > size) ? (uint16_t)(mean - size) : (uint16_t)((uint16_t)size - (uint16_t)mean);
+    if (term > 47662U) {
+        term = 47662U; /* 1.375 times this fits */
     }
-    tracker_move(f, (int32_t)taken);
-    f->x_lsb_q16 = tracker_bounded(f, f->x_lsb_q16); /* the rate's limit may leave x a step beyond the sample */
+    term = (uint16_t)(term + (term >> 2) + (term >> 3));
+    if (spread_uq8 < 26214U) { /* else the limit is beyond all terms */
+        uint16_t limit = (uint16_t)(2U * spread_uq8 + (spread_uq8 >> 1));
+        term = (term < limit) ? term : limit;
+    }
+    uint16_t weight = ADAPTIVE_WEIGHT_UQ16;
+    if (a->learnt < ADAPTIVE_OPENING_TERMS) {
+        a->learnt++;
+        weight = ADAPTIVE_OPENING_UQ16;
+    }
+    uint32_t scatter = averaged(a->scatter_lsb_uq24, spread_uq8, term, weight);
+    if (scatter < ADAPTIVE_SCATTER_MIN_UQ24) {
+        scatter = ADAPTIVE_SCATTER_MIN_UQ24;
+    }
+    a->scatter_lsb_uq24 = (scatter > ADAPTIVE_SCATTER_MAX_UQ24) ? ADAPTIVE_SCATTER_MAX_UQ24 : scatter;
 }
 
-void adaptive_step(filter_t *f, int16_t z_lsb, uint8_t what)
+static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     filter_adaptive_t *a = &f->own.adaptive;
-    if (f->broken) { /* nothing agrees with the next sample, and no difference is taken across the gap */
-        f->broken = false;
-        a->filled = 0;
-    }
     f->x_lsb_q16 = tracker_bounded(f, f->x_lsb_q16 + rate_lsb_q16(f));
     if (what == STEP_MISSING) {
         return;
     }
     uint16_t spread_uq8 = meet(f, z_lsb);
     uint32_t taken = f->size_lsb_uq16;
-    if (a->guarded && taken > a->gate_lsb_uq16) {
+    if (taken > a->gate_lsb_uq16 && a->guarded) {
         taken = judge(f);
     } else {
-        a->verdict = WITHIN_GATE;
+        a->verdict = ADAPTIVE_WITHIN;
     }
-    follow(f, taken, spread_uq8);
-    if (a->third == 0U && a->identify) {
-        adaptive_disperse(a, f->size_lsb_uq16, spread_uq8);
+    f->broken = false;
+    average_innovation(a, taken);
+    adapt(a, spread_uq8);
+    follow(f, taken);
+    a->turn ^= a->identify;
+    if (a->turn) {
+        disperse(a, f->size_lsb_uq16, spread_uq8);
     }
-    adaptive_learn(f, z_lsb);
 }
+
+/* Of the last update; 0 when nothing was taken. */
+static uint16_t gain_uq16(const filter_t *f)
+{
+    if ((f->flags & FILTER_COASTED) != 0U || f->own.adaptive.verdict == (uint8_t)ADAPTIVE_UNUSED) {
+        return 0;
+    }
+    uint16_t k = (uint16_t)(f->own.adaptive.k_uq32 >> 16);
+    return (uint16_t)(2U * k - fx_high_u16(k, k));
+}
+
+/* The variance is that of the memory for samples that scatter as the innovations do. */
+static void report(const filter_t *f, filter_probe_t *out)
+{
+    const filter_adaptive_t *a = &f->own.adaptive;
+    uint16_t sigma_uq8 = (uint16_t)(a->scatter_lsb_uq24 >> 16);
+    out->p_lsb2_q8 = fx_product_u16(sigma_uq8, sigma_uq8) >> 8;
+    if (f->collected != FILTER_RUNNING) {
+        return;
+    }
+    out->p_lsb2_q8 = tracker_fading_variance(out->p_lsb2_q8, (uint16_t)(a->k_uq32 >> 16));
+    out->gain_uq16 = gain_uq16(f);
+    if (a->guarded && a->gate_lsb_uq16 != 0U) {
+        uint16_t gate_uq4 = (uint16_t)(a->gate_lsb_uq16 >> 12); /* <= 4000 LSB */
+        out->gate_lsb2_q8 = fx_product_u16(gate_uq4, gate_uq4);
+    }
+}
+
+const filter_law_t filter_law_adaptive FX_FLASH = { .name = "adaptive",
+                                                    .parameter_count = 7,
+                                                    .traits = LAW_FINE_RATE | LAW_GATED,
+                                                    .worst_cycles = 1410,
+                                                    .parameters = parameters,
+                                                    .standard = standard,
+                                                    .set_up = set_up,
+                                                    .set_noise = set_noise,
+                                                    .start = start,
+                                                    .step = step,
+                                                    .report = LAW_REPORT(report) };

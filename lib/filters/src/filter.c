@@ -69,7 +69,6 @@ FX_NOINLINE void collect(filter_t *f, int16_t z_lsb)
 {
     uint8_t count = f->collected;
     int16_t *at = &f->own.start.ascending_lsb[count];
-    f->own.start.seen_lsb[count] = z_lsb;
     for (; at != f->own.start.ascending_lsb && at[-1] > z_lsb; at--) {
         at[0] = at[-1];
     }

@@ -23,9 +23,8 @@ typedef struct filter_law filter_law_t;
  */
 typedef struct {
     int16_t ascending_lsb[5]; /* the samples seen, by size */
-    int16_t seen_lsb[5];      /* and in the order of time */
 } filter_start_t;
-#define FILTER_START_BYTES 20
+#define FILTER_START_BYTES 10
 
 /* Covariance of position and rate over R, see kalman.h; wide.h has another format of the same elements. */
 typedef struct {
@@ -86,12 +85,9 @@ typedef struct {
 typedef struct {
     int32_t rate_before_lsb_q16; /* of the step before */
     int32_t memory_lsb_q16;      /* synth_plus: of the next prediction */
-    int32_t ahead_lsb_q16;       /* the line's end less the median of the start, until the first step */
     uint8_t count;               /* samples since the start, SYNTH_STEADY: gains are the steady ones */
-    uint8_t unused[7];
+    uint8_t unused;
     uint32_t r_lsb2_q8; /* measurement variance in force */
-    int16_t
-        spread_lsb; /* a start sample further from the median counts as lying this far from it; 0: no line is fitted */
     uint16_t b0_uq16; /* steady gain */
     uint16_t a1_uq16; /* magnitude of the steady extrapolation; 0: a straight line */
     bool a1_negative;
@@ -112,33 +108,25 @@ typedef struct {
     } of;
 } filter_synth_t;
 
-/* adaptive: see adaptive.h. */
+/* adaptive: see adaptive.c. */
 typedef struct {
     int32_t mean_lsb_q24;      /* of the innovations, each limited to the gate and 128 LSB; towards the last one */
     uint32_t k_uq32;           /* 1 - fading factor, of the last update */
     uint32_t gate_lsb_uq16;    /* of the last step */
-    int16_t history_lsb[2];    /* the samples before the newest */
     uint16_t run;              /* samples beyond the gate on one side, up to the last */
-    uint8_t filled;            /* samples without a gap, the newest too, <= 3 */
     uint8_t verdict;           /* of the guard on the last sample */
+    uint8_t unused;
     uint32_t scatter_lsb_uq24; /* sigma of the innovations for k = 0: 0.1..90 */
     uint16_t gate_sigma_q8;    /* in sigmas of the innovation */
     bool guarded;              /* a gate was configured */
     bool identify;             /* noise identified on line */
-    uint8_t third;             /* 1: of the next sample the third difference is a term, 0: the innovation */
-    uint8_t by_turns;          /* 1: the two by turns */
+    uint8_t learnt;            /* terms that the scatter was learnt from, as far as its opening */
+    bool turn;                 /* the last sample was a term of the scatter */
     uint16_t share_uq16;       /* of a new innovation in their mean */
     uint16_t manoeuvre_uq16;   /* mean innovation, in sigmas of one, that shortens the memory */
     uint16_t fast_uq16;        /* k of the shortest and of the slowest memory */
     uint16_t slow_uq16;
-    uint16_t confirm;         /* samples until a jump is believed */
-    uint32_t third_lsb_uq24;  /* half of the mean |third difference|: 1.774 sigma of a sample */
-    uint16_t weight_uq16;     /* of a new term in the identification: one over the number of terms it averages over */
-    uint16_t terms;           /* until the weight is halved */
-    uint16_t stage;           /* terms that a weight is for, half of the next */
-    uint16_t last_uq16;       /* the weight at last */
-    uint16_t largest_lsb_uq8; /* of the terms in a row that lie below half of the mean */
-    uint8_t small;            /* terms in a row that lie below half of the mean, while the start is doubted */
+    uint16_t confirm; /* samples until a jump is believed */
 } filter_adaptive_t;
 
 /* kf3: see kf3.h. */

@@ -143,12 +143,6 @@ static inline uint32_t fx_mul24_uq24_c(uint32_t a_q8, uint32_t b_uq24)
            (low >> 16) + ((low >> 15) & 1U);
 }
 
-/* v x b_uq16 rounded half away from zero, any v: the format of v is kept. */
-static inline int32_t fx_scale_uq16_c(int32_t v, uint16_t b_uq16)
-{
-    return (v < 0) ? -(int32_t)fx_mul_uq16_c(0U - (uint32_t)v, b_uq16) : (int32_t)fx_mul_uq16_c((uint32_t)v, b_uq16);
-}
-
 /* v + array[index], which must fit 32 bits; the index a constant 0..15. */
 static inline int32_t fx_plus_c(int32_t v, const int32_t *array, uint8_t index)
 {
@@ -252,10 +246,6 @@ static inline uint32_t fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
 static inline uint32_t fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
 {
     return fx_mul24_uq24_c(a_q8, b_uq24);
-}
-static inline int32_t fx_scale_uq16(int32_t v, uint16_t b_uq16)
-{
-    return fx_scale_uq16_c(v, b_uq16);
 }
 static inline int32_t fx_plus(int32_t v, const int32_t *array, uint8_t index)
 {

@@ -48,9 +48,8 @@ extern "C" {
 /* Places of the parameters that every Kalman law begins with. */
 enum { KALMAN_R, KALMAN_Q };
 
-/* Period in s, q T^3 and the start variance of the rate, LSB^2 per sample^2, at an output data rate. Divides. */
-FX_ONCE fx_scaled_t kalman_scales(uint16_t rate_dhz, uint32_t q_lsb2_s3, fx_scaled_t *drive_lsb2,
-                                  fx_scaled_t *start_lsb2);
+/* q T^3 and the start variance of the rate, LSB^2 per sample^2, of a configuration. Divides. */
+FX_ONCE void kalman_scales(const filter_config_t *config, fx_scaled_t *drive_lsb2, fx_scaled_t *start_lsb2);
 
 /* A variance over R in UQ4.28, within min_uq28..KALMAN_Q22_MAX_UQ28. Divides. */
 FX_ONCE uint32_t kalman_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28);

@@ -40,8 +40,8 @@ static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_paramet
 static void set_up(filter_t *f, const filter_config_t *config)
 {
     filter_kf3_t *k = &f->own.kf3;
-    fx_scaled_t period_s = kalman_scales(config->rate_dhz, (uint32_t)config->value[KALMAN_Q], &k->drive_lsb2,
-                                         &k->start_lsb2);
+    fx_scaled_t period_s = fx_scaled_div(fx_scaled(10), fx_scaled(config->rate_dhz));
+    kalman_scales(config, &k->drive_lsb2, &k->start_lsb2);
     k->fine = config->rate_dhz >= FINE_FROM_DHZ;
     k->drive_lsb2 = fx_scaled_mul(k->drive_lsb2, fx_scaled_mul(period_s, period_s)); /* q T^5 */
     if (k->fine) {

@@ -96,7 +96,6 @@ static void set_up(filter_t *f, const filter_config_t *config)
 /* In the start the gain is that of a line, and the prediction the straight line alone. False: it is over. */
 FX_NOINLINE bool starting(filter_t *f, uint8_t what)
 {
-    synth_take_line(f);
     if (what != STEP_MISSING) {
         f->gain_uq16 = synth_next_gain_uq16(f);
         if (f->own.synth.count == SYNTH_STEADY) {
@@ -133,7 +132,7 @@ const filter_law_t filter_law_synth FX_FLASH = { .name = "synth",
                                                  .parameters = parameters,
                                                  .together = together,
                                                  .set_up = set_up,
-                                                 .set_noise = synth_take_noise_and_spread,
+                                                 .set_noise = synth_take_noise,
                                                  .start = synth_start,
                                                  .step = step,
                                                  .fade = synth_fade,

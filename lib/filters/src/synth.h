@@ -15,25 +15,18 @@
 extern "C" {
 #endif
 
-/* `count` of a filter whose gains are the steady ones, and where the gains of the start begin and end. */
+/* `count` of a filter whose gains are the steady ones, and where those of the start begin and end. */
 enum { SYNTH_STEADY = 255, SYNTH_FIRST_GAIN = FILTER_WARM_UP_SAMPLES, SYNTH_END_GAIN = 63 };
 
 /* A lower gain than 0.01 would need more than 16 bits of it: the lag goes with 1 / b0. */
 #define SYNTH_B0_MIN_UQ16 656
 #define SYNTH_B0_MAX_UQ16 65535
 
-/* Noise for the report and, where a line is fitted, for the spread of the start samples about their median. */
+/* Noise for the report and for what of the rate is believed when samples are missing. */
 void synth_take_noise(filter_t *f, uint32_t r_lsb2_q8);
-void synth_take_noise_and_spread(filter_t *f, uint32_t r_lsb2_q8);
 
-/*
- * On the line of least squares through the start samples, each limited to the median -+ spread; or, without a spread, at
- * the median; settled: at rest with the steady gains.
- */
+/* At the median of the start; settled: at rest with the steady gains. */
 void synth_start(filter_t *f, bool settled);
-
-/* To be called ahead of a step while the gains are not the steady ones: the first begins at the end of the line. */
-FX_ONCE void synth_take_line(filter_t *f);
 
 /*
  * The gain for this sample, at least b0: (4 n - 2) / (n (n + 1)) of a least-squares line through n samples in the start,

@@ -6,7 +6,7 @@
 void wide_set_up(filter_t *f, const filter_config_t *config)
 {
     filter_wide_t *w = &f->own.wide;
-    (void)kalman_scales(config->rate_dhz, (uint32_t)config->value[KALMAN_Q], &w->drive_lsb2, &w->start_lsb2);
+    kalman_scales(config, &w->drive_lsb2, &w->start_lsb2);
     f->rate_max_lsb = (uint32_t)TRACKER_X_MAX_LSB_Q16;
     filter_set_noise(f, (uint32_t)config->value[KALMAN_R]);
 }
