@@ -43,8 +43,9 @@ def files_by_filter():
     places = [path for place in map(pathlib.Path, PLACES) for path in ([place] if place.is_file() else sorted(place.rglob("*")))]
     for path in places:
         if path.is_file() and path.suffix not in NO_CODE and not str(path).startswith(DATA):
-            for name in named(set(re.findall(r"\w+", code(path)))) - named([re.sub(r"\W", "_", path.stem)]):
-                found[name].append(str(path))
+            for name in named(set(re.findall(r"\w+", code(path)))):
+                if not re.search(rf"(?:^|[-_]){name}\d*(?:[-_]|$)", path.stem):
+                    found[name].append(str(path))
     return found
 
 
