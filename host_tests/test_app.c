@@ -37,7 +37,8 @@ static void test_banner_then_header_then_rows(void)
     board_run_ms(1000);
     TEST_ASSERT_EQUAL_STRING_LEN("# tilt-uno ", board.notes[0], 11);
     TEST_ASSERT_EQUAL_STRING("# reset: power on", board.notes[1]);
-    TEST_ASSERT_EQUAL_STRING(by_role("# filter {default}, rate 100 Hz, range 16 g, every 1, baud 115200"), board.notes[2]);
+    TEST_ASSERT_EQUAL_STRING(by_role("# filter {default}, rate 100 Hz, range 16 g, every 1, baud 115200"),
+                             board.notes[2]);
     TEST_ASSERT_EQUAL_STRING("# settings: defaults, none saved", board.notes[3]);
     TEST_ASSERT_EQUAL_STRING("# sensor: ADXL345 at 0x53, I2C at 363.6 kHz", board.notes[5]);
     TEST_ASSERT_EQUAL_STRING("t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags", board.notes[6]);
@@ -143,21 +144,6 @@ static void test_refusals_name_the_legal_values(void)
         TEST_ASSERT_EQUAL_size_t(before + 1, board.note_count);
     }
     assert_every_latched_sample_has_its_row(1);
-}
-
-static void test_an_unknown_filter_is_refused_with_the_list(void)
-{
-    char answer[200] = "# refused 4: filter is one of";
-    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-        (void)strcat(strcat(answer, " "), filter_listed_name((filter_kind_t)kind));
-    }
-    board_start_resting();
-    board_run_ms(200);
-    size_t before = board.note_count;
-    board_type("filter median");
-    board_run_ms(100);
-    TEST_ASSERT_EQUAL_STRING(answer, board.notes[before]);
-    TEST_ASSERT_EQUAL_size_t(before + 1, board.note_count);
 }
 
 static void test_line_ends_and_blank_lines(void)
@@ -441,7 +427,6 @@ int main(void)
     RUN_TEST(test_clock_wrap_is_seamless);
     RUN_TEST(test_settings_show_and_set);
     RUN_TEST(test_refusals_name_the_legal_values);
-    RUN_TEST(test_an_unknown_filter_is_refused_with_the_list);
     RUN_TEST(test_line_ends_and_blank_lines);
     RUN_TEST(test_garbage_and_long_lines_are_refused_whole);
     RUN_TEST(test_flood_of_garbage_costs_no_row);

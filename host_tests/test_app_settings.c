@@ -56,6 +56,16 @@ static void test_parameters_are_shown_set_and_refused(void)
     }
 }
 
+static void test_an_unknown_filter_is_refused_with_the_list(void)
+{
+    char answer[200] = "# refused 4: filter is one of";
+    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        (void)strcat(strcat(answer, " "), filter_listed_name((filter_kind_t)kind));
+    }
+    talk_start();
+    TEST_ASSERT_EQUAL_STRING(answer, talk_answer("filter median"));
+}
+
 /* Mean square of the x column's steps from row to row, mg^2. */
 static double roughness(size_t from)
 {
@@ -328,6 +338,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_parameters_are_shown_set_and_refused);
+    RUN_TEST(test_an_unknown_filter_is_refused_with_the_list);
     RUN_TEST(test_parameters_reach_the_filter);
     RUN_TEST(test_changes_in_quick_succession);
     RUN_TEST(test_the_listing_can_be_typed_again);
