@@ -227,11 +227,11 @@ double reference_fading_step(reference_fading_t *f, double r, double z)
     return f->x;
 }
 
-double reference_adaptive_scatter(double k, double share)
+double reference_adaptive_scatter(double k, double share, double bad)
 {
     double settled = 1.0; // by what the innovations deviate
     for (int i = 0; i < 100; i++) {
-        settled = 1.375 * limited_mean(2.5 * settled / 1.375);
+        settled = (1.0 - bad) * 1.375 * limited_mean(2.5 * settled / 1.375) + bad * 2.5 * settled;
     }
     return settled * apart(k, share) / (1.0 + k);
 }

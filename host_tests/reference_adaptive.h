@@ -49,9 +49,9 @@ double reference_fading_step(reference_fading_t *f, double r, double z);
 /*
  * At rest, with the memory's k, in white noise of sigma 1: what the scatter settles at. The innovations less their mean
  * are Gaussian, their variance by the Lyapunov equation; the scatter is where the limited terms have the mean that is
- * expected of them.
+ * expected of them. bad: share of samples far beyond their limit, of which nothing is taken.
  */
-double reference_adaptive_scatter(double k, double share);
+double reference_adaptive_scatter(double k, double share, double bad);
 
 /* Fading memory with k: noise gain of the estimate and of the prediction, by the Lyapunov equation. */
 double reference_fading_noise_gain(double k);

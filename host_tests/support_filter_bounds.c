@@ -269,7 +269,7 @@ static const char *broken_adaptive_memory(const filter_t *f)
     if (a->slow_uq16 < ADAPTIVE_K_MIN_UQ16 || a->fast_uq16 < a->slow_uq16 || a->fast_uq16 > TRACKER_K_MAX_UQ16) {
         return "memory";
     }
-    if (running(f) && a->k_uq32 >> 16 > TRACKER_K_MAX_UQ16 && a->k_uq32 != ADAPTIVE_K_START_UQ32) {
+    if (running(f) && a->k_uq32 >> 16 > TRACKER_K_MAX_UQ16) {
         return "memory in force";
     }
     return (a->confirm < ADAPTIVE_CONFIRM_LEAST || a->learnt > ADAPTIVE_OPENING_TERMS) ? "counts" : NULL;
@@ -282,7 +282,7 @@ static const char *broken_adaptive_memory(const filter_t *f)
 static const char *broken_adaptive(const filter_t *f)
 {
     const filter_adaptive_t *a = &f->own.adaptive;
-    if (a->scatter_lsb_uq24 < ADAPTIVE_SCATTER_MIN_UQ24 || a->scatter_lsb_uq24 > 0x7EFFFFFFU) {
+    if (a->scatter_lsb_uq24 < ADAPTIVE_SCATTER_MIN_UQ24 || a->scatter_lsb_uq24 > ADAPTIVE_SCATTER_MAX_UQ24) {
         return "noise";
     }
     if (running(f) && a->gate_lsb_uq16 > (uint32_t)2305 << 16) {
