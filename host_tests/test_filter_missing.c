@@ -184,7 +184,7 @@ static void test_restart_is_as_begun_just_now(void)
     }
 }
 
-/* R of 9 LSB^2 learnt from noise of 3 LSB; a restart that lost it would tell the configured 3. */
+/* A sigma of 3 LSB learnt from noise; a restart that lost it would have the configured 1.7, the root of R = 3. */
 static void test_restart_keeps_what_was_learnt_of_the_noise(void)
 {
     filter_t f;
@@ -194,10 +194,10 @@ static void test_restart_keeps_what_was_learnt_of_the_noise(void)
         int16_t sum = (int16_t)((v & 15U) + ((v >> 8) & 15U) + ((v >> 16) & 15U) + ((v >> 24) & 15U));
         (void)filter_update(&f, (int16_t)(sum / 3)); /* sigma 4.6 x 2 / 3 */
     }
-    uint32_t r_lsb2_q8 = adaptive_r_lsb2_q8(&f);
-    TEST_ASSERT_TRUE(r_lsb2_q8 > 5U * 256U);
+    uint32_t scatter_lsb_uq24 = f.own.adaptive.scatter_lsb_uq24;
+    TEST_ASSERT_TRUE(scatter_lsb_uq24 > 37520000UL); /* sqrt(5) LSB */
     filter_restart(&f);
-    TEST_ASSERT_EQUAL_UINT32(r_lsb2_q8, adaptive_r_lsb2_q8(&f));
+    TEST_ASSERT_EQUAL_UINT32(scatter_lsb_uq24, f.own.adaptive.scatter_lsb_uq24);
 }
 
 /* How often a filter at rest restarted while the sensor stood at its rail. */
