@@ -105,13 +105,12 @@ typedef struct {
     float x, v; /* LSB, LSB per sample */
     float mean; /* of the innovations */
     float k;
-    float sigma, scatter; /* LSB */
+    float scatter; /* LSB */
     float guard, slow, fast, share, manoeuvre, rate_max, confirm;
     float run;
-    float z[3];
-    uint16_t terms, window;
-    uint8_t filled;
-    bool identify, below, third;
+    float previous;
+    uint8_t terms; /* of the scatter, as far as its opening */
+    bool broken, identify, below, term;
 } float_adaptive_t;
 
 typedef struct {
