@@ -162,6 +162,19 @@ static const char *broken_state(const filter_t *f, filter_kind_t kind)
     return "kind";
 }
 
+/* What the probe tells of the state. */
+static const char *broken_probe(const filter_t *f, const filter_probe_t *probe, bool gated_means_unused)
+{
+    if (probe->x_lsb_q16 != f->x_lsb_q16 || probe->flags != f->flags) {
+        return "probe";
+    }
+    if ((probe->flags & FILTER_WARMING_UP) != 0U && probe->rate_lsb_q16 != 0) {
+        return "rate while warming up";
+    }
+    uint8_t unused = gated_means_unused ? FILTER_GATED | FILTER_COASTED : FILTER_COASTED;
+    return ((probe->flags & unused) != 0U && probe->gain_uq16 != 0U) ? "gain" : NULL;
+}
+
 const char *broken_bound(const filter_t *f, const filter_probe_t *probe, int32_t x_lsb_q16)
 {
     filter_kind_t kind = kind_of(f);
@@ -172,18 +185,8 @@ const char *broken_bound(const filter_t *f, const filter_probe_t *probe, int32_t
     if (x_lsb_q16 != f->x_lsb_q16) {
         return "x returned";
     }
-    bool warming_up = (probe->flags & FILTER_WARMING_UP) != 0U;
-    if (probe->x_lsb_q16 != x_lsb_q16 || probe->flags != f->flags) {
-        return "probe";
-    }
-    if (warming_up && probe->rate_lsb_q16 != 0) {
-        return "rate while warming up";
-    }
-    uint8_t unused = facts.gated_means_unused ? FILTER_GATED | FILTER_COASTED : FILTER_COASTED;
-    if ((probe->flags & unused) != 0U && probe->gain_uq16 != 0U) {
-        return "gain";
-    }
     bool fine = (fx_flash_u8(&f->law->traits) & LAW_FINE_RATE) != 0U;
-    const char *broken = broken_tracker(f, fine, facts.synthesised);
+    const char *broken = broken_probe(f, probe, facts.gated_means_unused);
+    broken = (broken != NULL) ? broken : broken_tracker(f, fine, facts.synthesised);
     return (broken != NULL) ? broken : broken_state(f, kind);
 }

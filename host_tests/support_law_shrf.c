@@ -1,8 +1,8 @@
 /*
  * shrf: its bounds, and what no descriptor tells (support_law_facts.h).
  *
- * It takes a sample surely when b t / 2 <= ln(0.85 / 0.15) + ln(S_N / S) / 2: with t <= V <= 1600 / n (sprf_paper's bound)
- * and b = 399 / (P11 + 400), P11 = n^3 / 900, from n = 100 on; and 43 more, rounded up.
+ * It takes a sample surely when b t / 2 <= ln(0.85 / 0.15) + ln(S_N / S) / 2: with t <= V <= 1600 / n (sprf_paper's
+ * bound) and b = 399 / (P11 + 400), P11 = n^3 / 900, from n = 100 on; and 43 more, rounded up.
  */
 #include "support_law_facts.h"
 

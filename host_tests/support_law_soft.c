@@ -1,8 +1,8 @@
 /*
  * soft: its bounds, and what no descriptor tells (support_law_facts.h).
  *
- * It takes kf's path within its soft gate and is restarted beyond its gate, as sprf; in between it updates with a larger
- * R, by which V falls as well (the recursion in double is back after 16). Joint condition: reacquire as sprf.
+ * It takes kf's path within its soft gate and is restarted beyond its gate, as sprf; in between it updates with a
+ * larger R, by which V falls as well (the recursion in double is back after 16). Joint condition: reacquire as sprf.
  */
 #include "support_law_facts.h"
 

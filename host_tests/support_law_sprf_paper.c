@@ -1,9 +1,9 @@
 /*
  * sprf_paper: its bounds, and what no descriptor tells (support_law_facts.h).
  *
- * Where samples are refused V falls too, because P grows meanwhile: n samples after the motion's end, refused or coasted,
- * it is at most 16 / (q T^3 n) LSB^-2 (4 LSB^2 e and P of n steps of the model), 1600 / n here. It takes all from V = 4
- * on, n = 400, and 43 more.
+ * Where samples are refused V falls too, because P grows meanwhile: n samples after the motion's end, refused or
+ * coasted, it is at most 16 / (q T^3 n) LSB^-2 (4 LSB^2 e and P of n steps of the model), 1600 / n here. It takes all
+ * from V = 4 on, n = 400, and 43 more.
  */
 #include "support_law_facts.h"
 

@@ -2,8 +2,8 @@
  * synth: its bounds, and what no descriptor tells (support_law_facts.h).
  *
  * At (0, 0.3) the error obeys e = 0.7 (2 e1 - e2) from 2 n and 2 n - 2 LSB: |e| <= 400.1 x 0.83666^k, and below 1/4 LSB
- * from k = 40 on for every gap n <= 200. Poles at 0.83666: e^-10 after 56 samples. Joint condition: the stability region
- * of a1 and b0.
+ * from k = 40 on for every gap n <= 200. Poles at 0.83666: e^-10 after 56 samples. Joint condition: the stability
+ * region of a1 and b0.
  */
 #include "support_law_facts.h"
 #include "synth.h"

@@ -2,8 +2,8 @@
  * synth_plus: its bounds, and what no descriptor tells (support_law_facts.h).
  *
  * With its alpha-beta of 0.289 and 0.0487 (0.843) the error is below 1/4 LSB after 40, the recursion run in double over
- * every gap. It rounds what rho takes off half up, so that a mirrored step may differ by 2^-16 LSB, and later estimates by
- * the sum of the response to that: 2^-4 LSB allows a sum of 4096. Envelope: kf's gains at the least R, fixed. Joint
+ * every gap. It rounds what rho takes off half up, so that a mirrored step may differ by 2^-16 LSB, and later estimates
+ * by the sum of the response to that: 2^-4 LSB allows a sum of 4096. Envelope: kf's gains at the least R, fixed. Joint
  * condition: the stability region of its four coefficients.
  */
 #include "support_law_facts.h"

@@ -18,6 +18,8 @@ import system_support
 import system_words  # noqa: F401
 from system_support import (FW, OUT, SET_IMAGES, SIMRUN, STREAMS, TESTS, image_with, read_output, run, run_all, simrun, test,
                             triplets, within)
+import laws  # noqa: E402
+from laws import DEFAULT, LIGHT, PLAIN, ROBUST  # noqa: E402
 
 # --- chip equals PC ---------------------------------------------------------------------------------------------------
 
@@ -48,14 +50,14 @@ def make_equality_test(stream, filter_name):
 
 for path in sorted(STREAMS.glob("*.csv")):
     if "400hz" not in path.stem:
-        for filter_kind in ("adaptive", "kf", "sprf", "synth"):
+        for filter_kind in (DEFAULT, PLAIN, ROBUST, LIGHT):
             TESTS.append(make_equality_test(path, filter_kind))
-for filter_kind in ("soft", "lrf", "sprf_paper", "shrf", "pbf", "af", "kf3"):
+for filter_kind in laws.names()[4:]:
     for stream in ("outliers-15pct", "gaps-jitter", "steps-outliers"):
         TESTS.append(make_equality_test(STREAMS / f"{stream}.csv", filter_kind))
 
 
-def compare_pipeline(name, rate, baud, every_ok, filter_name="adaptive"):
+def compare_pipeline(name, rate, baud, every_ok, filter_name=DEFAULT):
     """At other rates the cold start after `go` is the anchor: from it on the PC recomputes every column."""
     rows, notes, _, _ = simrun(name, STREAMS / "tilt-400hz.csv", "--cmd", "200:stop", "--cmd", f"300:baud {baud}", "--cmd",
                                f"400:rate {rate}", "--cmd", "500:go", "--max-ms", "6000", "--loop", "--filter", filter_name)
@@ -79,7 +81,7 @@ def pipeline_of_chip_equals_pc_at_400_hz():
 
 @test
 def pipeline_of_chip_equals_pc_at_800_hz():
-    compare_pipeline("pipeline-800", 800, 1000000, lambda notes: "# rate 800 Hz, I2C at 400 kHz" in notes, "synth")
+    compare_pipeline("pipeline-800", 800, 1000000, lambda notes: "# rate 800 Hz, I2C at 400 kHz" in notes, LIGHT)
 
 
 @test
@@ -132,7 +134,7 @@ def make_change_test(command, fw=FW):
     return check
 
 
-TESTS.append(make_change_test("filter kf", image_with("sprf")))
+TESTS.append(make_change_test(f"filter {PLAIN}", image_with(ROBUST)))
 for typed in ("rate 50", "range 8"):
     TESTS.append(make_change_test(typed))
 

@@ -2,6 +2,7 @@
 #include "adaptive.h"
 #include "reference_adaptive.h"
 #include "support_laws.h"
+#include "support_random.h"
 #include "support_roll.h"
 #include "unity.h"
 
@@ -25,10 +26,11 @@ static reference_adaptive_value_t value_of(const filter_t *f)
     double towards = f->negative ? -1.0 : 1.0; /* the mean innovation's sign goes by the last one */
     return (reference_adaptive_value_t){
         f->x_lsb_q16 / 65536.0,   f->rate_lsb / 16777216.0,         towards * a->mean_lsb_q24 / 16777216.0,
-        a->k_uq32 / 4294967296.0, a->scatter_lsb_uq24 / 16777216.0, a->third_lsb_uq24 / 16777216.0
+        a->k_uq32 / 4294967296.0, a->scatter_lsb_uq24 / 16777216.0
     };
 }
 
+/* Of a filter behind its start. */
 static reference_adaptive_t twin_of(const filter_t *f)
 {
     reference_adaptive_t r = { .sigmas = f->own.adaptive.gate_sigma_q8 / 256.0,
@@ -37,11 +39,10 @@ static reference_adaptive_t twin_of(const filter_t *f)
                                .fast = f->own.adaptive.fast_uq16 / 65536.0,
                                .share = f->own.adaptive.share_uq16 / 65536.0,
                                .rate_max = f->rate_max_lsb / 16777216.0,
-                               .last_weight = f->own.adaptive.last_uq16 / 65536.0,
                                .confirm = f->own.adaptive.confirm,
                                .guarded = f->own.adaptive.guarded,
                                .identify = f->own.adaptive.identify };
-    reference_adaptive_begin(&r);
+    reference_adaptive_begin(&r, f->previous_lsb);
     return r;
 }
 
@@ -61,10 +62,7 @@ static void assert_step(const filter_t *f, const reference_adaptive_t *r, const 
     assert_within(bound->mean, r->now.mean, got.mean, "mean innovation");
     assert_within(bound->k, r->now.k, got.k, "k");
     assert_within(bound->scatter, r->now.scatter, got.scatter, "scatter");
-    assert_within(bound->third, r->now.third, got.third, "third difference");
-    if (r->warming == 0) {
-        TEST_ASSERT_EQUAL_INT(r->verdict, f->own.adaptive.verdict);
-    }
+    TEST_ASSERT_EQUAL_INT(r->verdict, f->own.adaptive.verdict);
 }
 
 /* At rest, and every 80 samples 20 of a turn there or back; bad reads, bursts to 20, jumps that stay; or anything. */
@@ -119,23 +117,20 @@ static void tell(reference_adaptive_t *r, const filter_t *f)
     r->verdict = (reference_verdict_t)f->own.adaptive.verdict;
     r->run = f->own.adaptive.run;
     r->side = f->negative ? -1 : 1;
-    r->small = f->own.adaptive.small;
-    r->largest = f->own.adaptive.largest_lsb_uq8 / 256.0;
 }
 
-/* Over the start: what of the noise of a sample is rounded, and whether no decision hung on less than that. */
-typedef struct {
-    double bound;
-    bool clear;
-} start_third_t;
-
-/* One sample of the start into both: the filter learns with the last of them what the twin learns with each. */
-static void start_step(filter_t *f, reference_adaptive_t *r, int16_t z, start_third_t *third)
+/* One sample into both. False: a decision hangs on less than is rounded, nothing was compared. */
+static bool compare_step(filter_t *f, reference_adaptive_t *r, int16_t z)
 {
     reference_adaptive_value_t bound;
+    r->now = value_of(f);
     (void)filter_update(f, z);
-    third->clear = reference_adaptive_step(r, fmin(4095.0, fmax(-4096.0, z)), &bound) && third->clear;
-    third->bound += bound.third;
+    if (!reference_adaptive_step(r, fmin(4095.0, fmax(-4096.0, z)), &bound)) {
+        tell(r, f);
+        return false;
+    }
+    assert_step(f, r, &bound);
+    return true;
 }
 
 /* Decisions that the bound leaves open are counted. */
@@ -147,34 +142,22 @@ static void run_case(const case_t *c, int verdicts[5])
     config.value[ADAPTIVE_IDENTIFY] = c->identify;
     config.value[ADAPTIVE_R_LSB2_Q8] = (int32_t)lrint(fmin(256000.0, c->sigma * c->sigma * 256.0));
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
-    reference_adaptive_t r = twin_of(&f);
     signal_t signal = { c->sigma, 0.0, c->outliers, 0, c->wild };
-    int open = 0;
-    start_third_t third = { 0.0, true };
-    r.now = value_of(&f);
     for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        start_step(&f, &r, next_sample(&signal, k, 7000.0 / c->rate_dhz), &third);
+        (void)filter_update(&f, next_sample(&signal, k, 7000.0 / c->rate_dhz));
     }
-    assert_within(third.bound, r.now.third, value_of(&f).third, "third difference of the start");
-    tell(&r, &f);
+    reference_adaptive_t r = twin_of(&f);
+    int open = 0;
     for (int k = FILTER_WARM_UP_SAMPLES; k < SAMPLES; k++) {
-        r.now = value_of(&f);
         if (k > 100 && random32_below(&random_state, 200) == 0) {
+            r.now = value_of(&f);
             (void)coast(&f);
             reference_adaptive_coast(&r);
             assert_within(1.0 / 65536.0, r.now.x, f.x_lsb_q16 / 65536.0, "coasted x");
-            continue;
-        }
-        int16_t z = next_sample(&signal, k, 7000.0 / c->rate_dhz);
-        reference_adaptive_value_t bound;
-        (void)filter_update(&f, z);
-        bool clear = reference_adaptive_step(&r, fmin(4095.0, fmax(-4096.0, z)), &bound);
-        if (clear) {
-            assert_step(&f, &r, &bound);
+        } else if (compare_step(&f, &r, next_sample(&signal, k, 7000.0 / c->rate_dhz))) {
             verdicts[f.own.adaptive.verdict]++;
         } else {
             open++;
-            tell(&r, &f);
         }
     }
     printf("%s: %d of %d steps hang on less than is rounded\n", c->name, open, SAMPLES);
@@ -204,43 +187,31 @@ static void every_step_is_that_of_the_reference(void)
     }
 }
 
-/* Starts with a bad read among the first samples, guarded or not: the noise of a sample, term by term. */
+/*
+ * Starts with a bad read among the first samples, guarded or not: the scatter's opening, term by term. The R that they
+ * begin with is 80 times too small.
+ */
 static void a_start_with_a_bad_read_is_that_of_the_reference(void)
 {
-    int restarts = 0;
+    int compared = 0;
     for (int start = 0; start < 2000; start++) {
         filter_t f;
         filter_config_t config = filter_defaults(&filter_law_adaptive, 100);
         config.value[ADAPTIVE_GUARD_SIGMA_Q8] = (start % 2 == 0) ? config.value[ADAPTIVE_GUARD_SIGMA_Q8] : 0;
         TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
-        reference_adaptive_t r = twin_of(&f);
-        int bad = start % 13;
-        start_third_t third = { 0.0, true };
-        r.now = value_of(&f);
+        reference_adaptive_t r;
         for (int k = 0; k < 60; k++) {
-            int16_t z = (k == bad) ? 4095 : (int16_t)lrint(200.0 + 5.0 * noise_of_one());
+            int16_t z = (k == start % 13) ? 4095 : (int16_t)lrint(200.0 + 5.0 * noise_of_one());
             if (k < FILTER_WARM_UP_SAMPLES) {
-                start_step(&f, &r, z, &third);
-            } else {
-                reference_adaptive_value_t bound;
-                r.now = value_of(&f);
                 (void)filter_update(&f, z);
-                third.clear = reference_adaptive_step(&r, z, &bound);
-                third.bound = bound.third;
+                r = twin_of(&f);
+            } else {
+                compared += compare_step(&f, &r, z);
             }
-            if (k < FILTER_WARM_UP_SAMPLES - 1) {
-                continue;
-            }
-            if (third.clear) {
-                assert_within(third.bound, r.now.third, value_of(&f).third, "third difference");
-                TEST_ASSERT_EQUAL_INT(r.small, f.own.adaptive.small);
-            }
-            tell(&r, &f);
         }
-        restarts += r.restarts;
     }
-    printf("the mean of the first terms was given up %d times in 2000 starts\n", restarts);
-    TEST_ASSERT_TRUE(restarts > 400);
+    printf("%d of 110000 steps behind a start with a bad read compared\n", compared);
+    TEST_ASSERT_TRUE(compared > 110000 - 110000 / 20);
 }
 
 /* k = 2 / memory, share 0.4 k, threshold 2.15 sqrt(share / (2 - share)); its root is taken of 15 bits. */
@@ -286,23 +257,80 @@ static void fading_memory_has_its_closed_forms(void)
     }
 }
 
-/* The probe's variance is R times that noise gain, at every memory. */
+/* Mean of the scatter over the noise's sigma at rest; memories in ms at 100 Hz, bad: share of samples 60 sigmas off. */
+static double settled_scatter(int32_t slow_ms, int32_t fast_ms, double bad, filter_t *f)
+{
+    const double sigma = 20.0;
+    const int from = 2000;
+    filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
+    config.value[ADAPTIVE_GUARD_SIGMA_Q8] = (bad > 0.0) ? 8 * 256 : 0;
+    config.value[ADAPTIVE_SLOW_MS] = slow_ms;
+    config.value[ADAPTIVE_FAST_MS] = fast_ms;
+    config.value[ADAPTIVE_RATE_MAX_LSB_S] = 12700; /* six sigmas a sample: out of the way */
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_adaptive, &config));
+    test_random_t random;
+    random_seed(&random, SEED);
+    double sum = 0.0;
+    for (int k = 0; k < from + 10 * SAMPLES; k++) {
+        double off = (random_uniform(&random) < bad) ? 60.0 : 0.0;
+        (void)filter_update(f, as_sample(sigma * (off + random_normal(&random))));
+        sum += (k < from) ? 0.0 : f->own.adaptive.scatter_lsb_uq24 / 16777216.0 / sigma;
+    }
+    return sum / (10.0 * SAMPLES);
+}
+
+/*
+ * With a memory that is held: the fixed point, but for 0.7 %, which the scatter's own fluctuation takes (0.15 sigma: half
+ * of its variance times the curvature 0.55 over 1 - slope, 0.87), and 0.8 % for chance (three standard errors). With one
+ * that changes it lies between those of the slowest and the shortest.
+ */
+static void the_scatter_settles_where_its_terms_say(void)
+{
+    static const int32_t memories_ms[] = { 33, 100, 200, 500 };
+    filter_t f;
+    for (int i = 0; i < 8; i++) {
+        double bad = (i < 4) ? 0.0 : 0.01;
+        double got = settled_scatter(memories_ms[i % 4], memories_ms[i % 4], bad, &f);
+        double expected = reference_adaptive_scatter(f.own.adaptive.slow_uq16 / 65536.0,
+                                                     f.own.adaptive.share_uq16 / 65536.0, bad);
+        printf("memory %d ms, %.0f %% bad: %.4f sigma, %.4f expected\n", (int)memories_ms[i % 4], 100.0 * bad, got,
+               expected);
+        assert_within(0.008 * expected, 0.993 * expected, got, "settled scatter");
+    }
+    double got = settled_scatter(500, 100, 0.0, &f);
+    double share = f.own.adaptive.share_uq16 / 65536.0;
+    double slowest = reference_adaptive_scatter(f.own.adaptive.slow_uq16 / 65536.0, share, 0.0);
+    double shortest = reference_adaptive_scatter(f.own.adaptive.fast_uq16 / 65536.0, share, 0.0);
+    printf("memories of 100 to 500 ms: %.4f sigma, %.4f to %.4f expected\n", got, shortest, slowest);
+    TEST_ASSERT_TRUE(got >= 0.985 * shortest);
+    TEST_ASSERT_TRUE(got <= 1.001 * slowest);
+}
+
+static void assert_probed_variance(const filter_t *f, double r_lsb2)
+{
+    filter_probe_t probe;
+    filter_probe(f, &probe);
+    double expected = r_lsb2 * reference_fading_noise_gain(f->own.adaptive.k_uq32 / 4294967296.0);
+    TEST_ASSERT_DOUBLE_WITHIN(0.002 * expected + 1.0 / 256.0, expected, probe.p_lsb2_q8 / 256.0);
+}
+
+/* The probe's variance is R times that noise gain, at every memory; identified, R is the scatter's square (8.8 bits). */
 static void variance_of_the_probe_is_the_closed_form(void)
 {
-    filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
-    config.value[ADAPTIVE_IDENTIFY] = 0;
-    config.value[ADAPTIVE_R_LSB2_Q8] = 100u * 256u;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
-    for (int k = 0; k < 100; k++) {
-        (void)filter_update(&f, 0);
-        filter_probe_t probe;
-        filter_probe(&f, &probe);
-        if (k >= FILTER_WARM_UP_SAMPLES) {
-            double r = adaptive_r_lsb2_q8(&f) / 256.0;
-            double expected = r * reference_fading_noise_gain(f.own.adaptive.k_uq32 / 4294967296.0);
-            TEST_ASSERT_DOUBLE_WITHIN(0.002 * expected + 1.0 / 256.0, expected, probe.p_lsb2_q8 / 256.0);
+    for (int identify = 0; identify < 2; identify++) {
+        filter_t f;
+        filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
+        config.value[ADAPTIVE_IDENTIFY] = identify;
+        config.value[ADAPTIVE_R_LSB2_Q8] = 100u * 256u;
+        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+        for (int k = 0; k < 100; k++) {
+            (void)filter_update(&f, (identify != 0) ? (int16_t)lrint(20.0 * noise_of_one()) : 0);
+            if (k >= FILTER_WARM_UP_SAMPLES) {
+                double sigma = floor(f.own.adaptive.scatter_lsb_uq24 / 65536.0) / 256.0;
+                assert_probed_variance(&f, (identify != 0) ? sigma * sigma : 100.0);
+            }
         }
+        TEST_ASSERT_EQUAL_INT(identify, f.own.adaptive.scatter_lsb_uq24 > 12UL << 24);
     }
 }
 
@@ -364,6 +392,7 @@ int main(void)
     RUN_TEST(a_start_with_a_bad_read_is_that_of_the_reference);
     RUN_TEST(parameters_are_those_of_the_equations);
     RUN_TEST(fading_memory_has_its_closed_forms);
+    RUN_TEST(the_scatter_settles_where_its_terms_say);
     RUN_TEST(variance_of_the_probe_is_the_closed_form);
     RUN_TEST(unguarded_reaches_the_float_filter);
     return UNITY_END();

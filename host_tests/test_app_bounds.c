@@ -35,8 +35,7 @@ static void test_every_other_byte_in_a_line_is_refused_as_such(void)
         }
         char typed[8] = { 'u', 'p', 't', (char)byte, 'x', 0 };
         bool is_character = byte >= 32 && byte <= 126;
-        TEST_ASSERT_EQUAL_MESSAGE(!is_character,
-                                  strcmp("# refused 3: illegal characters", talk_answer(typed)) == 0,
+        TEST_ASSERT_EQUAL_MESSAGE(!is_character, strcmp("# refused 3: illegal characters", talk_answer(typed)) == 0,
                                   "the words of the refusal");
     }
 }
@@ -148,7 +147,7 @@ static int z_mg_of(int16_t lsb)
     board_run_ms(300);
     talk_type("scale 200 200 200");
     talk_type("level 0.5774 0.5774 0.5774");
-    talk_type("filter kf");
+    talk_type("filter {plain}");
     board_run_ms(1000);
     const board_row_t *row = &board.rows[board.row_count - 1];
     TEST_ASSERT_EQUAL_INT(lsb, row->lsb[0]);

@@ -142,7 +142,7 @@ static void test_a_change_of_filter_goes_axis_by_axis(void)
     board_start_resting();
     board_run_ms(500);
     const filter_law_t *old = pipeline.axes[0].filter.law;
-    board_type("filter kf");
+    board_type("filter {plain}");
     int changed = 0;
     for (int ms = 0; ms < 40; ms++) {
         board_run_ms(1);

@@ -43,8 +43,7 @@ static uint8_t on_rx(uint8_t reg, uint8_t byte)
 static void the_line_is(uint8_t address)
 {
     char words[BOARD_NOTE_LENGTH];
-    snprintf(words, sizeof words, "# fault 2: no ADXL345 at 0x%02X: DEVID 0x%02X, not 0xE5",
-             address, id_at(address));
+    snprintf(words, sizeof words, "# fault 2: no ADXL345 at 0x%02X: DEVID 0x%02X, not 0xE5", address, id_at(address));
     TEST_ASSERT_EQUAL_size_t_MESSAGE(1, board_notes_with("# fault", 0), words);
     size_t at = 0;
     while (board_notes_with("# fault", at + 1) != 0) {

@@ -236,10 +236,10 @@ static void test_commands_in_the_middle(void)
     static const struct {
         const char *command;
         bool ends_it;
-    } talk[] = { { "rate 200", true },   { "rate 12.5", true }, { "range 2", true },      { "go", true },
-                 { "filter kf", false }, { "every 2", false },  { "status", false },      { "mode csv", false },
-                 { "rate", false },      { "rate 60", false },  { "baud 250000", false }, { "odr", false },
-                 { "defaults", true },   { "help", false },     { "mode plot", false } };
+    } talk[] = { { "rate 200", true },        { "rate 12.5", true }, { "range 2", true },      { "go", true },
+                 { "filter {plain}", false }, { "every 2", false },  { "status", false },      { "mode csv", false },
+                 { "rate", false },           { "rate 60", false },  { "baud 250000", false }, { "odr", false },
+                 { "defaults", true },        { "help", false },     { "mode plot", false } };
     for (size_t i = 0; i < sizeof talk / sizeof talk[0]; i++) {
         for (double at_ms = 20.0; at_ms < 1300.0; at_ms += 311.0) {
             talk_start_noisy(&stream, 100.0, 0.0);

@@ -7,6 +7,7 @@ import sys
 from system_support import OUT, SIMRUN, STREAMS, image_with, run, run_all, test
 
 sys.path.insert(0, "tools")
+from laws import ROBUST  # noqa: E402
 spec = importlib.util.spec_from_file_location("bench", pathlib.Path("tools/bench.py"))
 bench = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(bench)
@@ -86,7 +87,8 @@ def a_worst_case_over_its_limit_is_named():
 def a_declared_worst_case_is_held_from_both_sides():
     declared = {"one": 800, "angles": 1480}
     assert bench.declared_faults(declared, rows()) == []
-    for changes, words in (({"worst": 801}, ("one", "801", "800", "more than declared")), ({"worst_small": 801}, ("one", "801", "more than declared")),
+    for changes, words in (({"worst": 801}, ("one", "801", "800", "more than declared")),
+                           ({"worst_small": 801}, ("one", "801", "more than declared")),
                            ({"worst": 720, "worst_small": 727}, ("one", "727", "800", "10% too much"))):
         found = bench.declared_faults(declared, changed("one", **changes))
         assert len(found) == 1 and all(word in found[0] for word in words), found
@@ -214,7 +216,7 @@ def the_committed_page_has_every_filter():
 
 def symbol(function):
     """Its name in the firmware: link-time optimisation appends to that of a static one which it moves between its parts."""
-    names = [line.split()[-1] for line in run("avr-nm", image_with("sprf")).stdout.splitlines()]
+    names = [line.split()[-1] for line in run("avr-nm", image_with(ROBUST)).stdout.splitlines()]
     return next(name for name in names if name.split(".")[0] == function)
 
 
@@ -222,8 +224,8 @@ def symbol(function):
 def spans_leave_the_interrupts_out():
     """From a step's entry to its gate: a clamp, a sign and the growth of P make less than 40 cycles of difference, an interrupt more."""
     spans = OUT / "spans.csv"
-    command = (SIMRUN, "--fw", image_with("sprf"), "--in", STREAMS / "rest-2lsb.csv", "--out", OUT / "x.csv", "--max-ms", "3000",
-               "--filter", "sprf", "--span")
+    command = (SIMRUN, "--fw", image_with(ROBUST), "--in", STREAMS / "rest-2lsb.csv", "--out", OUT / "x.csv", "--max-ms", "3000",
+               "--filter", ROBUST, "--span")
     run(*command, f"{symbol('kalman_step')}:{symbol('within_gate')}:{spans}")
     lines = spans.read_text(encoding="ascii").splitlines()
     cycles = [int(line.split(",")[1]) for line in lines[1:]]
@@ -257,7 +259,7 @@ def the_readmes_tell_the_numbers_of_the_page():
 @test
 def a_span_of_an_unknown_function_is_refused():
     for names, what in (("nowhere:main:x.csv", "no function nowhere"), ("main:nowhere:x.csv", "no function nowhere"), ("main", "FROM:TO:CSV")):
-        done = run(SIMRUN, "--fw", image_with("sprf"), "--in", STREAMS / "rest-2lsb.csv", "--out", OUT / "x.csv", "--span", names, expect=2)
+        done = run(SIMRUN, "--fw", image_with(ROBUST), "--in", STREAMS / "rest-2lsb.csv", "--out", OUT / "x.csv", "--span", names, expect=2)
         assert what in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
 
 

@@ -1,9 +1,12 @@
-/* Guards that ordinary samples hardly reach: the borrow of P22, the hysteresis of R's estimate, the range of a sample. */
+/*
+ * Guards that ordinary samples hardly reach: the borrow of P22, the hysteresis of R's estimate, the range of a sample.
+ */
 #include <stdlib.h>
 
 #include "kalman.h"
 #include "noise.h"
 #include "support_filters.h"
+#include "support_roles.h"
 #include "unity.h"
 
 #define ONE_UQ28 0x10000000u
@@ -14,8 +17,8 @@ void tearDown(void) {}
 
 static void start(filter_t *f, uint32_t p11, uint32_t p12, uint32_t p22)
 {
-    filter_config_t config = filter_defaults(&filter_law_kf, 1000);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_kf, &config));
+    filter_config_t config = filter_defaults(filter_listed(plain_kind()), 1000);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, filter_listed(plain_kind()), &config));
     filter_reset(f, 0);
     f->own.kalman.p = (filter_covariance_t){ p11, p12, p22 };
 }

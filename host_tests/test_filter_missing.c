@@ -10,7 +10,7 @@
 
 #define SEED 60006UL
 
-enum { RAMP_LSB = 3, SETTLING = 400, RAIL_LSB = 4095, CLIPPED = 1500 };
+enum { RAMP_LSB = 3, SETTLING = 400, RAIL_LSB = 4095, CLIPPED = 1500, NO_RESTART = 60 };
 
 static uint32_t random_state;
 
@@ -184,7 +184,7 @@ static void test_restart_is_as_begun_just_now(void)
     }
 }
 
-/* R of 9 LSB^2 learnt from noise of 3 LSB; a restart that lost it would tell the configured 3. */
+/* A sigma of 3 LSB learnt from noise; a restart that lost it would have the configured 1.7, the root of R = 3. */
 static void test_restart_keeps_what_was_learnt_of_the_noise(void)
 {
     filter_t f;
@@ -194,10 +194,10 @@ static void test_restart_keeps_what_was_learnt_of_the_noise(void)
         int16_t sum = (int16_t)((v & 15U) + ((v >> 8) & 15U) + ((v >> 16) & 15U) + ((v >> 24) & 15U));
         (void)filter_update(&f, (int16_t)(sum / 3)); /* sigma 4.6 x 2 / 3 */
     }
-    uint32_t r_lsb2_q8 = adaptive_r_lsb2_q8(&f);
-    TEST_ASSERT_TRUE(r_lsb2_q8 > 5U * 256U);
+    uint32_t scatter_lsb_uq24 = f.own.adaptive.scatter_lsb_uq24;
+    TEST_ASSERT_TRUE(scatter_lsb_uq24 > 37520000UL); /* sqrt(5) LSB */
     filter_restart(&f);
-    TEST_ASSERT_EQUAL_UINT32(r_lsb2_q8, adaptive_r_lsb2_q8(&f));
+    TEST_ASSERT_EQUAL_UINT32(scatter_lsb_uq24, f.own.adaptive.scatter_lsb_uq24);
 }
 
 /* How often a filter at rest restarted while the sensor stood at its rail. */
@@ -247,6 +247,43 @@ static void test_a_filter_restarts_behind_the_rail(void)
     }
 }
 
+/* Samples far away until a filter at rest restarts on one: refused ones, then missing ones, then more. */
+static unsigned samples_to_restart(uint8_t kind, unsigned refused, unsigned missing)
+{
+    filter_t f;
+    make(&f, kind);
+    filter_reset(&f, 0);
+    for (unsigned k = 0; k < refused; k++) {
+        (void)filter_update(&f, RAIL_LSB - 111);
+    }
+    for (unsigned k = 0; k < missing; k++) {
+        (void)filter_missing(&f);
+    }
+    unsigned count = 0;
+    do {
+        (void)filter_update(&f, RAIL_LSB - 111);
+        count++;
+    } while ((f.flags & FILTER_REACQUIRED) == 0U && count < NO_RESTART);
+    return count;
+}
+
+/* Missing ones in the run that restarts a filter, as those at the rail are, are worth nothing, however many they are. */
+static void test_missing_samples_do_not_count_in_a_run(void)
+{
+    unsigned restarting = 0;
+    FOR_EACH_KIND(kind)
+    {
+        unsigned whole = samples_to_restart(kind, 0, 0);
+        restarting += whole < NO_RESTART;
+        for (unsigned refused = 0; refused < 4U && whole < NO_RESTART; refused++) {
+            for (unsigned missing = 1; missing < 4U; missing++) {
+                TEST_ASSERT_EQUAL_UINT(whole - refused, samples_to_restart(kind, refused, missing));
+            }
+        }
+    }
+    TEST_ASSERT_TRUE(restarting > 0U);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -259,5 +296,6 @@ int main(void)
     RUN_TEST(test_restart_keeps_what_was_learnt_of_the_noise);
     RUN_TEST(test_samples_told_as_missing_restart_no_filter);
     RUN_TEST(test_a_filter_restarts_behind_the_rail);
+    RUN_TEST(test_missing_samples_do_not_count_in_a_run);
     return UNITY_END();
 }

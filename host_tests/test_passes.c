@@ -71,7 +71,7 @@ static void test_samples_and_replies_in_pieces(void)
 /* The filters go on from the same output; which sample meets the new ones first is the same at 100 Hz. */
 static void test_changes_in_pieces(void)
 {
-    static const char *const lines[] = { "filter sprf", "filter kf", "filter synth", "filter adaptive" };
+    static const char *const lines[] = { "filter {robust}", "filter {plain}", "filter {light}", "filter {default}" };
     run(0, lines, 4);
     quick = board;
     run(SLOW, lines, 4);

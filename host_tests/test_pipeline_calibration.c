@@ -1,6 +1,7 @@
 /* The calibration's place in the sample path: what it changes of a row, what it leaves, when it counts. */
 #include "filter_list.h"
 #include "pipeline.h"
+#include "support_roles.h"
 #include "unity.h"
 
 enum { SAMPLES = 200, RANGE_G = 16 };
@@ -13,7 +14,7 @@ void setUp(void)
     calibration_plain(&c, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6);
     pipeline_calibrate(&c);
     pipeline_reset();
-    pipeline_start(FILTER_KIND_kf, 1000, RANGE_G);
+    pipeline_start(plain_kind(), 1000, RANGE_G);
     pipeline_finish();
 }
 

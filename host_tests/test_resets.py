@@ -5,6 +5,7 @@ import pathlib
 import re
 
 from system_support import STREAMS, Skip, run_all, simrun, test
+from laws import DEFAULT  # noqa: E402
 
 STREAM = STREAMS / "rest-2lsb.csv"
 BOOT = pathlib.Path("build/uno/optiboot.hex")
@@ -79,7 +80,7 @@ def watchdog_resets_twice_and_says_so_each_time(loader):
     causes, rows, notes, stats = reset_run(f"dog-twice-{loader}", loader, f"2000ms:{HANG_NOW}", f"2600ms:{HANG_NOW}", resets=2)
     assert causes[1:] == [CAUSES[HANG_NOW]] * 2, causes
     assert_streaming(rows, notes, stats)
-    assert "# filter adaptive, rate 100 Hz, range 16 g, every 1, baud 115200" == [n for n in notes if n.startswith("# filter")][-1], notes
+    assert f"# filter {DEFAULT}, rate 100 Hz, range 16 g, every 1, baud 115200" == [n for n in notes if n.startswith("# filter")][-1], notes
 
 
 @both_ways

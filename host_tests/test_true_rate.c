@@ -12,6 +12,7 @@
 #include "pipeline_state.h"
 #include "settings.h"
 #include "support_board.h"
+#include "support_roles.h"
 #include "unity.h"
 
 #define FOR_EACH_FILTER(kind) for (uint8_t kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++)
@@ -158,7 +159,7 @@ static void test_no_row_shows_it(void)
 /* Longer steps of time let the rate wander more from one to the next: a plain Kalman filter follows a step faster. */
 static int16_t answer_to_a_step(uint32_t period_us)
 {
-    begin((uint8_t)FILTER_KIND_kf);
+    begin((uint8_t)plain_kind());
     for (int k = 0; k < 8; k++) {
         (void)second(period_us, 60, 0);
     }

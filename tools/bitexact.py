@@ -33,14 +33,14 @@ SANITIZE = "-O1 -fsanitize=address,undefined -fno-sanitize-recover=all"
 TWINS = [
     ("one rounding bit dropped", "filters/src/fx.h",
      "return fx_mul_u16_c((uint16_t)(a >> 16), b_uq16) + (low >> 16) + ((low >> 15) & 1U);",
-     "return fx_mul_u16_c((uint16_t)(a >> 16), b_uq16) + (low >> 16);", "gcc -O2", {"fx_mul_uq16", "kf"}),
+     "return fx_mul_u16_c((uint16_t)(a >> 16), b_uq16) + (low >> 16);", "gcc -O2", {"fx_mul_uq16", laws.PLAIN}),
     ("product in 16-bit int", "tilt/src/tilt.c",
      "uint32_t sum_q12 = (uint32_t)x * x + (uint32_t)y * y;",
      "uint32_t sum_q12 = (uint32_t)(x * x) + (uint32_t)y * y;", "avr-gcc -Os", {"tilt_gravity_plausible"}),
 ]
 
 
-ROWS = ["kf", "sprf", "synth", "adaptive"]  # whose rows vectors_text.c compares
+ROWS = laws.names()[:4]  # whose rows vectors_text.c compares
 
 
 class Failure(Exception):
@@ -269,7 +269,7 @@ def judge_twin(report, twin, reference, answers, by_name):
         report.tell(f"planted {name} is found", str(problem))
         return
     explained = any(re.match(r"answer \d+: ", line) for line in lines)
-    in_states = "kf" not in wanted or any(re.match(r"state byte \d+: ", line) for line in lines)
+    in_states = laws.PLAIN not in wanted or any(re.match(r"state byte \d+: ", line) for line in lines)
     if wanted <= set(found) and explained and in_states:
         report.tell(f"planted {name} is found in {', '.join(found[:5])}", None, lines)
     else:

@@ -1,7 +1,11 @@
-"""What the filter library's descriptors, and the yardsticks beside them, declare of each law: the names stand there alone."""
+"""What the filter library's descriptors, and the yardsticks beside them, declare of each law: the names stand there alone.
+
+    laws.py kalman      names of the filters of paper 002, for make
+"""
 import functools
 import pathlib
 import re
+import sys
 from typing import NamedTuple
 
 LIST = pathlib.Path("lib/filters/src/filter_list.h")
@@ -39,6 +43,13 @@ def laws():
             for name, body in DESCRIPTOR.findall(text)}
 
 
+def kalman():
+    """Those of paper 002: Kalman filters of a position whose rate is driven by white acceleration of the power density q."""
+    files = [path.read_text(encoding="utf-8") for path in sorted(LIST.parent.glob("*.c"))]
+    having = {name for text in files if "&filter_parameter_q" in text for name, _ in DESCRIPTOR.findall(text)}
+    return [name for name in names() if name in having]
+
+
 def worst_cycles():
     """{name: worst case of an update in cycles}."""
     return {name: law.worst_cycles for name, law in laws().items()}
@@ -53,3 +64,21 @@ def limits(name):
     path = yardstick(name)
     found = LIMITS.search(path.read_text(encoding="utf-8")) if path.is_file() else None
     return Limits(int(found[1]), float(found[2]), float(found[3])) if found else None
+
+
+def first(wanted):
+    """Of the list the first law that is so."""
+    return next(name for name in names() if wanted(name, laws()[name].traits))
+
+
+# What programs take that need a filter and no particular one: what an image starts with; a Kalman filter without a gate and one with it;
+# those with the fewest and the most cycles; a long name of several words.
+DEFAULT = names()[0]
+PLAIN = first(lambda name, traits: "COVARIANCE" in traits and "GATED" not in traits)
+ROBUST = first(lambda name, traits: {"COVARIANCE", "GATED"} <= traits)
+LIGHT, SLOWEST = (choice(names(), key=worst_cycles().get) for choice in (min, max))
+LONG = max(names(), key=len)
+
+
+if __name__ == "__main__" and sys.argv[1:] == ["kalman"]:
+    print(*kalman())

@@ -1,7 +1,7 @@
 /*
- * Runs on the ATmega328P (simavr): cycles of each filter of its part of the list (BENCH_LIST, mk/bench.mk) beside its float
- * yardstick, and in the first part (BENCH_THE_REST) of the noise estimate, the angles and the formatting of a row, call included, over streams
- * that look for the longest path. On the UART (1 Mbaud), for tools/bench.py:
+ * Runs on the ATmega328P (simavr): cycles of each filter of its part of the list (BENCH_LIST, mk/bench.mk) beside its
+ * float yardstick, and in the first part (BENCH_THE_REST) of the noise estimate, the angles and the formatting of a
+ * row, call included, over streams that look for the longest path. On the UART (1 Mbaud), for tools/bench.py:
  *
  *   =NAME REGIME RATE    a section: then 8 hexadecimal digits per call, cycles of ours and of the float one (0: none)
  *   +stack NAME BYTES    deepest stack of a call seen in the section, return address included; another for float_NAME
@@ -125,10 +125,8 @@ static bool warms_up(void)
     }
 BENCH_LIST(SUBJECT)
 
-#define SUBJECT_ROW(F)                                                                                                   \
-    {                                                                                                                    \
-        &filter_law_##F, lengthen_##F, float_start_##F, float_set_noise_##F, float_coast_step_##F, float_update_step_##F \
-    },
+#define SUBJECT_FLOAT(F) float_start_##F, float_set_noise_##F, float_coast_step_##F, float_update_step_##F
+#define SUBJECT_ROW(F) { &filter_law_##F, lengthen_##F, SUBJECT_FLOAT(F) },
 static const subject_t subjects[] = { BENCH_LIST(SUBJECT_ROW) };
 
 #ifdef BENCH_THE_REST
