@@ -45,7 +45,6 @@ void proof_calibration_square(void)
     (void)calibration_square(ANY_S16(0, 32767));
 }
 
-/* Uses: calibration_square */
 void proof_length_square_q28(void)
 {
     const int16_t v_q14[3] = { ANY_Z(), ANY_Z(), ANY_Z() };
@@ -86,7 +85,7 @@ void proof_row_times(void)
     (void)row_times(ANY_S32(S32_MIN, INT32_MAX), a_q8, row_q14);
 }
 
-/* Uses: row_times. Options: -no-warn-signed-downcast */
+/* Options: -no-warn-signed-downcast */
 void proof_calibration_apply(void)
 {
     calibration_applied_t applied;
@@ -102,7 +101,6 @@ void proof_calibration_apply(void)
     calibration_apply(&applied, a_q8, out_q8);
 }
 
-/* Uses: row_times */
 void proof_prepare_bias(void)
 {
     calibration_applied_t applied;
@@ -125,7 +123,6 @@ void proof_quotient_q14(void)
     }
 }
 
-/* Uses: quotient_q14, prepare_bias, fx_isqrt32, calibration_square */
 void proof_calibration_prepare_column(void)
 {
     for (uint8_t ours = 0; ours < 3U; ours++) {
@@ -136,7 +133,6 @@ void proof_calibration_prepare_column(void)
     }
 }
 
-/* Uses: calibration_check, calibration_prepare_column */
 void proof_calibration_prepare(void)
 {
     calibration_t c;
@@ -156,7 +152,6 @@ void proof_calibration_gravity_q14(void)
     }
 }
 
-/* Uses: calibration_check */
 void proof_calibration_commit(void)
 {
     calibration_t c;
@@ -166,7 +161,6 @@ void proof_calibration_commit(void)
     (void)calibration_commit(&c, &found);
 }
 
-/* Uses: calibration_gravity_q14, calibration_commit */
 void proof_calibration_tare(void)
 {
     calibration_t c;
@@ -189,8 +183,8 @@ void proof_calibration_position(void)
 }
 
 /*
- * Sign by sign: 1 g is taken off the side on which the mean lies.
- * Uses: calibration_commit. Options: -eva-split-return-function calibration_position:full
+ * Sign by sign: 1 g is taken off the side on which the mean lies. Options: -eva-split-return-function
+ * calibration_position:full
  */
 void proof_calibration_single(void)
 {

@@ -6,7 +6,7 @@
 
 #include "calibration.c"
 
-/* One thing out of its range, whatever the rest: refused. Uses: length_square_q28 */
+/* One thing out of its range, whatever the rest: refused. */
 void proof_calibration_check(void)
 {
     calibration_t c;

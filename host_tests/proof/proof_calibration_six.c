@@ -38,7 +38,6 @@ static void any_six(calibration_six_t *six)
     six->verdict.where = ANY_U8(0, 5);
 }
 
-/* Uses: calibration_gravity_q14, calibration_square, fx_isqrt32 */
 void proof_component_q14(void)
 {
     int16_t means[18];
@@ -66,7 +65,6 @@ void proof_draw_line(void)
     }
 }
 
-/* Uses: component_q14 */
 void proof_improve(void)
 {
     int16_t means[18];
@@ -79,7 +77,7 @@ void proof_improve(void)
     }
 }
 
-/* Piece by piece, round by round. Uses: draw_line, improve */
+/* Piece by piece, round by round. */
 void proof_calibration_six_step(void)
 {
     int16_t means[18];
@@ -95,7 +93,6 @@ void proof_calibration_six_step(void)
     }
 }
 
-/* Uses: calibration_commit */
 void proof_calibration_six_end(void)
 {
     calibration_six_t six;
@@ -107,7 +104,7 @@ void proof_calibration_six_end(void)
     //@ check residual: residual_mg <= 1000;
 }
 
-/* From any legal calibration. Uses: calibration_six_step, calibration_commit */
+/* From any legal calibration. */
 void proof_calibration_six(void)
 {
     int16_t means[18];

@@ -74,7 +74,6 @@ static fx_scaled_t any_scaled(void)
     return v;
 }
 
-/* Uses: fx_normalise, rounded */
 void proof_fx_scaled(void)
 {
     (void)fx_scaled(ANY_U32(0, UINT32_MAX));

@@ -7,24 +7,11 @@
 
 static void any_own(filter_t *f, uint8_t kind)
 {
-    any_synth(f, kind);
+    any_synth(f, kind, 1, 365);
 }
 
-/* Uses: fx_isqrt32 */
-PROVE(set_up, synth)
-/* Options: -no-warn-signed-downcast */
-PROVE(defaults, synth)
-/* Uses: fx_isqrt32 */
-PROVE(set_noise, synth)
-/* Uses: fit_line */
-PROVE(start, synth)
-/* Uses: tracker_bounded. Options: -eva-split-return-function synth_next_gain_uq16:full */
-PROVE(step, synth)
-PROVE(fade, synth)
-/* Uses: fx_normalise, rounded */
-PROVE(report, synth)
 
-/* Uses: fx_normalise, rounded. Any gain and extrapolation within its range, stable or not. */
+/* Any gain and extrapolation within its range, stable or not. */
 void proof_filter_synth_noise_gain_uq16(void)
 {
     (void)filter_synth_noise_gain_uq16(ANY_U16(656, UINT16_MAX), ANY_S32(-65535, 65535));
@@ -37,3 +24,5 @@ void proof_fit_line(void)
     f.own.synth.spread_lsb = ANY_S16(1, 365);
     (void)fit_line(&f);
 }
+
+PROVE_LAW(synth)
