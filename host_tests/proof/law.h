@@ -78,10 +78,9 @@ static inline int32_t tracker_bounded(filter_t *f, int32_t x_lsb_q16);
 */
 static inline void tracker_meet(filter_t *f, int16_t z_lsb);
 
-/* A change of up to twice the bound of the format. */
-/*@ requires WITHIN(f->rate_lsb, X_MAX_Q16) && f->rate_max_lsb <= X_MAX_Q16 && 0 <= step_lsb <= 2 * X_MAX_Q16;
+/*@ requires WITHIN(f->rate_lsb, 3 * X_MAX_Q16) && f->rate_max_lsb <= X_MAX_Q16 && 0 <= step_lsb <= 2 * X_MAX_Q16;
     assigns f->rate_lsb, f->flags \from f->rate_lsb, f->rate_max_lsb, f->negative, f->flags, step_lsb;
-    ensures WITHIN(f->rate_lsb, X_MAX_Q16);
+    ensures sum: WITHIN(f->rate_lsb, X_MAX_Q16);
 */
 static inline void tracker_turn(filter_t *f, int32_t step_lsb);
 

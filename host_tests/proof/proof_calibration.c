@@ -112,7 +112,7 @@ void proof_prepare_bias(void)
     prepare_bias(&applied, &c);
 }
 
-/* Divisors in ranges, with every dividend that one of the range can have. */
+/* Divisors in ranges, with every dividend that one of the range can have. Whole: calibration_over */
 void proof_quotient_q14(void)
 {
     for (uint32_t b = 12800; b <= UINT16_MAX; b += 512U) {

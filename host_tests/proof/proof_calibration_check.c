@@ -36,7 +36,7 @@ void proof_calibration_check(void)
     }
 }
 
-/* Each axis has to be named once. A level too short or too long, in whichever component, is refused. */
+/* Each axis has to be named once. A level too short or too long, in whichever component, is refused. Whole: calibration_check */
 void proof_calibration_named(void)
 {
     calibration_t c;

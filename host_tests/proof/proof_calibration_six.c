@@ -51,7 +51,7 @@ void proof_component_q14(void)
 
 /*
  * What lies too far apart to be told from what lies near wraps into an offset that is not legal: its reading would have
- * to be beyond 1,900 LSB. Options: -no-warn-signed-downcast
+ * to be beyond 1,900 LSB. Whole: calibration_over. Options: -no-warn-signed-downcast
  */
 void proof_draw_line(void)
 {

@@ -3,13 +3,6 @@
 #define X_CELLS(v) WIDE_CELLS(v) && NARROW_CELLS(v)
 #include "law.h"
 
-/* By parts, so that what is found of the size is known of v, too. */
-/*@ assigns \result \from v;
-    ensures (-X_MAX_Q16 <= v <= X_MAX_Q16 && \result <= X_MAX_Q16) ||
-            (v > X_MAX_Q16 && \result > X_MAX_Q16) || (v < -X_MAX_Q16 && \result > X_MAX_Q16);
-*/
-static inline uint32_t fx_abs32(int32_t v);
-
 /* By powers of 2 of the rate: so many 25 ms pass within a period. */
 #define PACE_OF(f, from) ((from) <= (f)->rate_dhz < 2 * (from) && (f)->quarter_dhz < 2 * (from))
 #define PACE(f)                                                                                                      \
@@ -159,21 +152,28 @@ void proof_tracker_meet(void)
     tracker_meet(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
 }
 
-void proof_fx_abs32(void)
+static void turn_from(int32_t low, int32_t high)
 {
-    (void)fx_abs32(ANY_S32(S32_MIN, -X_MAX_Q16 - 1L));
-    (void)fx_abs32(ANY_S32(-X_MAX_Q16, -1));
-    (void)fx_abs32(ANY_S32(0, X_MAX_Q16));
-    (void)fx_abs32(ANY_S32(X_MAX_Q16 + 1L, INT32_MAX));
+    filter_t f;
+    any_tracked(&f, NULL);
+    f.rate_lsb = ANY_S32(low, high);
+    f.rate_max_lsb = ANY_U32(0, X_MAX_Q16);
+    tracker_turn(&f, 0);
+    //@ check WITHIN(f.rate_lsb, X_MAX_Q16);
 }
 
+/* Any change; then any sum, as the rate of a change of 0. */
 void proof_tracker_turn(void)
 {
     filter_t f;
     any_tracked(&f, NULL);
-    f.rate_lsb = ANY_S32(-X_MAX_Q16, X_MAX_Q16);
+    f.rate_lsb = ANY_S32(-3L * X_MAX_Q16, 3L * X_MAX_Q16);
     f.rate_max_lsb = ANY_U32(0, X_MAX_Q16);
     tracker_turn(&f, ANY_S32(0, 2L * X_MAX_Q16));
+    turn_from(-3L * X_MAX_Q16, -X_MAX_Q16 - 1L);
+    turn_from(-X_MAX_Q16, -1);
+    turn_from(0, X_MAX_Q16);
+    turn_from(X_MAX_Q16 + 1L, 3L * X_MAX_Q16);
 }
 
 /* A signed word of program memory is read as an unsigned one. Options: -no-warn-signed-downcast */
