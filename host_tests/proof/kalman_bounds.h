@@ -5,7 +5,7 @@
 #ifndef KALMAN_BOUNDS_H
 #define KALMAN_BOUNDS_H
 
-#define X_CELLS WIDE_CELLS
+#define CELLS
 #include "eva.h"
 #include "kalman.h"
 

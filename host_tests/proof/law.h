@@ -30,39 +30,17 @@
 
 /* So many samples of the start are there. */
 #define SEEN(f, n) \
-    ((f)->collected <= (n) || (SAMPLE((f)->own.start.seen_lsb[n]) && SAMPLE((f)->own.start.ascending_lsb[n])))
+    ((f)->collected <= (n) || SAMPLE((f)->own.start.ascending_lsb[n]))
 #define STARTING(f)                                                                                             \
     ((f)->collected < 5 && (f)->rate_lsb == 0 && SEEN(f, 0) && SEEN(f, 1) && SEEN(f, 2) && SEEN(f, 3))
 
 /*
- * The estimate behind its clamp, by the cells that a law's own bound needs: a correction moves x towards a sample, and
- * what intervals add to that is a cell's width.
+ * Where a law says CELLS the estimate behind its clamp is known by cells of 512 LSB, and the innovation with it as one
+ * towards a sample from -4096 to 4095 LSB: a correction moves x towards it, and what intervals add is a cell's width.
  */
-#define CELL(v, width, k) ((width) * (k) <= (v) < (width) * ((k) + 1))
-#define EIGHT(v, width, k)                                                                                        \
-    (CELL(v, width, k) || CELL(v, width, (k) + 1) || CELL(v, width, (k) + 2) || CELL(v, width, (k) + 3) ||        \
-     CELL(v, width, (k) + 4) || CELL(v, width, (k) + 5) || CELL(v, width, (k) + 6) || CELL(v, width, (k) + 7))
-#define WIDE_CELLS(v)                                                                                    \
-    (EIGHT(v, 33554432, -8) || EIGHT(v, 33554432, 0) || CELL(v, 33554432, -9) || CELL(v, 33554432, 8) || \
-     (v) == X_MAX_Q16)
-#define NARROW_CELLS(v)                                                                                          \
-    (EIGHT(v, 16777216, -16) || EIGHT(v, 16777216, -8) || EIGHT(v, 16777216, 0) || EIGHT(v, 16777216, 8) ||      \
-     CELL(v, 16777216, -18) || CELL(v, 16777216, -17) || CELL(v, 16777216, 16) || CELL(v, 16777216, 17) ||       \
-     (v) == X_MAX_Q16)
-#ifndef X_CELLS
-#define X_CELLS(v) WITHIN(v, X_MAX_Q16)
-#endif
-
-/*@ assigns f->flags, \result \from f->flags, x_lsb_q16;
-    ensures X_CELLS(\result);
-*/
-static inline int32_t tracker_bounded(filter_t *f, int32_t x_lsb_q16);
-
-/* x in a cell of 512 LSB, and the innovation towards a sample from -4096 to 4095 LSB. */
-#define BACK(f, k) \
-    (CELL((f)->x_lsb_q16, 33554432, k) && (f)->negative == 1 && (f)->size_lsb_uq16 < (512 * (k) + 4608) * 65536)
-#define FORTH(f, k) \
-    (CELL((f)->x_lsb_q16, 33554432, k) && (f)->negative == 0 && (f)->size_lsb_uq16 <= (4095 - 512 * (k)) * 65536)
+#define CELL(v, k) (33554432 * (k) <= (v) < 33554432 * ((k) + 1))
+#define BACK(f, k) (CELL((f)->x_lsb_q16, k) && (f)->negative == 1 && (f)->size_lsb_uq16 < (512 * (k) + 4608) * 65536)
+#define FORTH(f, k) (CELL((f)->x_lsb_q16, k) && (f)->negative == 0 && (f)->size_lsb_uq16 <= (4095 - 512 * (k)) * 65536)
 #define REACH(f)                                                                                                    \
     (BACK(f, -8) || BACK(f, -7) || BACK(f, -6) || BACK(f, -5) || BACK(f, -4) || BACK(f, -3) || BACK(f, -2) ||       \
      BACK(f, -1) || BACK(f, 0) || BACK(f, 1) || BACK(f, 2) || BACK(f, 3) || BACK(f, 4) || BACK(f, 5) ||             \
@@ -70,11 +48,26 @@ static inline int32_t tracker_bounded(filter_t *f, int32_t x_lsb_q16);
      FORTH(f, -9) || FORTH(f, -8) || FORTH(f, -7) || FORTH(f, -6) || FORTH(f, -5) || FORTH(f, -4) || FORTH(f, -3) || \
      FORTH(f, -2) || FORTH(f, -1) || FORTH(f, 0) || FORTH(f, 1) || FORTH(f, 2) || FORTH(f, 3) || FORTH(f, 4) ||     \
      FORTH(f, 5) || FORTH(f, 6) || FORTH(f, 7))
+#ifdef CELLS
+#define BOUNDED(v)                                                                                                   \
+    (CELL(v, -9) || CELL(v, -8) || CELL(v, -7) || CELL(v, -6) || CELL(v, -5) || CELL(v, -4) || CELL(v, -3) ||        \
+     CELL(v, -2) || CELL(v, -1) || CELL(v, 0) || CELL(v, 1) || CELL(v, 2) || CELL(v, 3) || CELL(v, 4) || CELL(v, 5) || \
+     CELL(v, 6) || CELL(v, 7) || CELL(v, 8) || (v) == X_MAX_Q16)
+#define MET REACH
+#else
+#define BOUNDED(v) WITHIN(v, X_MAX_Q16)
+#define MET(f) FLAG((f)->negative)
+#endif
+
+/*@ assigns f->flags, \result \from f->flags, x_lsb_q16;
+    ensures BOUNDED(\result) && WITHIN(\result, X_MAX_Q16);
+*/
+static inline int32_t tracker_bounded(filter_t *f, int32_t x_lsb_q16);
 
 /*@ requires WITHIN(f->x_lsb_q16, X_MAX_Q16) && SAMPLE(z_lsb);
     assigns f->size_lsb_uq16, f->negative \from f->x_lsb_q16, z_lsb;
     ensures f->size_lsb_uq16 <= SIZE_END && FLAG(f->negative);
-    ensures reach: REACH(f);
+    ensures reach: MET(f);
 */
 static inline void tracker_meet(filter_t *f, int16_t z_lsb);
 
@@ -122,7 +115,6 @@ static void any_tracked(filter_t *f, const filter_law_t *law)
 static void any_samples(filter_t *f, uint8_t collected)
 {
     for (uint8_t i = 0; i < FILTER_WARM_UP_SAMPLES; i++) {
-        f->own.start.seen_lsb[i] = (i < collected) ? ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB) : ANY_Z();
         f->own.start.ascending_lsb[i] = (i < collected) ? ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB) : ANY_Z();
     }
     f->collected = collected;

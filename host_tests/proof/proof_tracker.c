@@ -1,6 +1,6 @@
 /* The tracker, once for every law: any state, any law that keeps what law.h says, any order of calls. */
 #define RATE_END 2147483647
-#define X_CELLS(v) WIDE_CELLS(v) && NARROW_CELLS(v)
+#define CELLS
 #include "law.h"
 
 /* By powers of 2 of the rate: so many 25 ms pass within a period. */
