@@ -123,13 +123,17 @@ void proof_quotient_q14(void)
     }
 }
 
-void proof_calibration_prepare_column(void)
+void proof_prepare_column(void)
 {
     for (uint8_t ours = 0; ours < 3U; ours++) {
         calibration_applied_t applied;
         calibration_t c;
         any_legal(&c);
-        calibration_prepare_column(&applied, &c, ours);
+        for (uint8_t i = 0; i < 9U; i++) {
+            applied.matrix_q14[i] = ANY_Z();
+        }
+        const int32_t w_q14[3] = { ANY_Z(), ANY_Z(), ANY_S32(-16384, 49151) };
+        prepare_column(&applied, &c, w_q14, ours);
     }
 }
 

@@ -1,4 +1,4 @@
-/* Six rests: any means that rests can have, from any legal calibration, piece by piece in any legal state. */
+/* Six rests: any means that rests can have, from any legal calibration, round by round in any legal state. */
 #include "calibration_bounds.h"
 
 #include "fx.c"
@@ -72,24 +72,20 @@ void proof_improve(void)
     any_means(means);
     for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
         any_six(&six);
-        six.piece = ANY_U8(0, 8);
         (void)improve(&six, means, position);
     }
 }
 
-/* Piece by piece, round by round. */
+/* Round by round. */
 void proof_calibration_six_step(void)
 {
     int16_t means[18];
     calibration_six_t six;
     any_means(means);
-    for (uint8_t piece = 0; piece < 9U; piece++) {
-        for (uint8_t round = 0; round <= ROUNDS; round++) {
-            any_six(&six);
-            six.piece = piece;
-            six.round = round;
-            (void)calibration_six_step(&six, means);
-        }
+    for (uint8_t round = 0; round <= ROUNDS; round++) {
+        any_six(&six);
+        six.round = round;
+        (void)calibration_six_step(&six, means);
     }
 }
 
@@ -117,6 +113,6 @@ void proof_calibration_six(void)
     }
     calibration_six_t six;
     calibration_six_start(&six, &c);
-    //@ check started: GOING_ON(&six) && six.piece == 0 && six.where < 6;
+    //@ check started: GOING_ON(&six) && six.where < 6;
     (void)calibration_six(&c, means, &residual_mg);
 }
