@@ -64,13 +64,11 @@ void proof_fraction_uq16(void)
     (void)fraction_uq16(ANY_U16(0, 0x7FFF), ANY_U16(0x4000, 0x7FFF));
 }
 
-/* Uses: scale_to_15_bits, fraction_uq16 */
 void proof_tilt_atan2_cdeg(void)
 {
     (void)tilt_atan2_cdeg(ANY_S32(S32_MIN, INT32_MAX), ANY_S32(S32_MIN, INT32_MAX));
 }
 
-/* Uses: scale_to_15_bits, fraction_uq16 */
 void proof_tilt_angles(void)
 {
     tilt_t tilt;
@@ -79,7 +77,6 @@ void proof_tilt_angles(void)
                                           ANY_S32(S32_MIN, INT32_MAX) });
 }
 
-/* Uses: fx_isqrt32 */
 void proof_tilt_isqrt32(void)
 {
     (void)tilt_isqrt32(ANY_U32(0, UINT32_MAX));
