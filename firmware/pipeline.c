@@ -10,6 +10,7 @@
 #include "pipeline_state.h"
 #include "silence.h"
 #include "supervisor.h"
+#include "tilt_axis.h"
 
 enum { AWAY_SAMPLES = 2 };  /* on end, away from what was held: no bad reading */
 enum { HUNG_SAMPLES = 16 }; /* with ROW_STUCK, on end: a filter has learned from them */
@@ -77,13 +78,12 @@ static bool near_estimate(const axis_t *axis, int16_t lsb)
 
 /*
  * After a hold. True: the filter takes the sample; near the estimate it goes on from what was held. A single one away
- * from it may be a bad reading: with the second in a row that is not at the rail the filter restarts, with the noise as
- * it is known.
+ * from it may be a bad reading: with the second in a row the filter restarts, with the noise as it is known.
  */
 static bool rejoins(axis_t *axis, int16_t lsb, uint8_t *flags)
 {
     if (!near_estimate(axis, lsb)) {
-        if ((*flags & ROW_CLIPPED) != 0 || axis->away++ < AWAY_SAMPLES) {
+        if (axis->away++ < AWAY_SAMPLES) {
             *flags |= ROW_GATED;
             return false;
         }
@@ -107,13 +107,18 @@ static uint8_t update_axis(axis_t *axis, int16_t lsb)
     return (flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same;
 }
 
-/* Returns those flags of the row that a byte holds. */
+/*
+ * Returns those flags of the row that a byte holds. A sample at the rail of its range says no more than that it is
+ * outside: it is missing.
+ */
 static uint8_t sample_axis(axis_t *axis, int16_t lsb)
 {
     uint8_t flags = 0;
-    if (lsb >= pipeline.rail_high_lsb || lsb <= (int16_t)(-pipeline.rail_high_lsb - 1)) {
-        flags = ROW_CLIPPED;
-    } else if (noise_update(&axis->noise, lsb)) {
+    if (tilt_at_rail(lsb, pipeline.rail_high_lsb)) {
+        coast_axis(axis);
+        return ROW_CLIPPED;
+    }
+    if (noise_update(&axis->noise, lsb)) {
         filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
     }
     if (axis->away == 0 || rejoins(axis, lsb, &flags)) {
