@@ -106,13 +106,14 @@ static void start(filter_t *f, bool settled)
 }
 
 /* The rate of one sample, rounded down towards the side of the last innovation. */
-FX_INLINE int32_t rate_lsb_q16(const filter_t *f)
+static int32_t rate_lsb_q16(const filter_t *f)
 {
-    return f->negative ? -(-f->rate_lsb >> 8) : f->rate_lsb >> 8;
+    int32_t rate = f->rate_lsb >> 8;
+    return (f->negative && (uint8_t)(uint32_t)f->rate_lsb != 0U) ? rate + 1 : rate;
 }
 
 /* A size in 8.8 bits, limited to 128 LSB. */
-FX_INLINE int16_t size_lsb_q8(uint32_t size_lsb_uq16)
+FX_NOINLINE int16_t size_lsb_q8(uint32_t size_lsb_uq16)
 {
     return (int16_t)((size_lsb_uq16 >= 0x800000U) ? 0x7FFF : (int16_t)(uint16_t)(size_lsb_uq16 >> 8));
 }
@@ -139,12 +140,12 @@ FX_INLINE void average_innovation(filter_adaptive_t *a, uint32_t taken)
  * What the sample before was off, towards the side of this one, carried on with the rate, and no more than this one is
  * off; 0 where a sample was missing between them.
  */
-static uint32_t agreed_lsb_uq16(const filter_t *f)
+static uint32_t agreed_lsb_uq16(const filter_t *f, int32_t x1_lsb_q16)
 {
     if (f->broken) {
         return 0;
     }
-    int32_t before = (int32_t)f->previous_lsb * 65536 - (f->x_lsb_q16 - rate_lsb_q16(f));
+    int32_t before = (int32_t)f->previous_lsb * 65536 - x1_lsb_q16;
     if (f->negative) {
         before = -before;
     }
@@ -155,7 +156,7 @@ static uint32_t agreed_lsb_uq16(const filter_t *f)
 }
 
 /* Counts a sample beyond the gate, and judges what is taken of its innovation. */
-static uint32_t judge(filter_t *f)
+static uint32_t judge(filter_t *f, int32_t x1_lsb_q16)
 {
     filter_adaptive_t *a = &f->own.adaptive;
     uint16_t run = (a->verdict == (uint8_t)ADAPTIVE_WITHIN) ? 0U : a->run;
@@ -163,7 +164,7 @@ static uint32_t judge(filter_t *f)
     if (run != 0U) {
         a->run = run;
     }
-    uint32_t agreed = agreed_lsb_uq16(f);
+    uint32_t agreed = agreed_lsb_uq16(f, x1_lsb_q16);
     uint32_t size = f->size_lsb_uq16;
     uint32_t gate = a->gate_lsb_uq16;
     if (agreed > gate) {
@@ -289,14 +290,15 @@ static void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spre
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     filter_adaptive_t *a = &f->own.adaptive;
-    f->x_lsb_q16 = tracker_bounded(f, f->x_lsb_q16 + rate_lsb_q16(f));
+    int32_t x1_lsb_q16 = f->x_lsb_q16;
+    f->x_lsb_q16 = tracker_bounded(f, x1_lsb_q16 + rate_lsb_q16(f));
     if (what == STEP_MISSING) {
         return;
     }
     uint16_t spread_uq8 = meet(f, z_lsb);
     uint32_t taken = f->size_lsb_uq16;
     if (taken > a->gate_lsb_uq16 && a->guarded) {
-        taken = judge(f);
+        taken = judge(f, x1_lsb_q16);
     } else {
         a->verdict = ADAPTIVE_WITHIN;
     }
