@@ -90,7 +90,8 @@ uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
 void settings_follow(void)
 {
     uint16_t carried = settings_smallest_every(settings.baud, settings.rate_dhz);
-    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter));
+    uint16_t computed = quotient(SETTINGS_ROW_CYCLES,
+                                 settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter));
     settings.line_is_slower = carried >= computed;
     settings.every_smallest = settings.line_is_slower ? carried : computed;
 }

@@ -18,8 +18,30 @@ enum { WORDS, LIST, NUMBER, VECTOR, SIGNED_AXES };
 
 /* Values of the lists: filters, modes, addresses, rates in 0.1 Hz, ranges, and baud rates in hundreds. */
 #define KIND(F) FILTER_KIND_##F,
-static const uint16_t choices[] FLASH = { FILTER_LIST(KIND) MODE_CSV, MODE_PLOT, 0, 0x53, 0x1D, 125, 250, 500, 1000,
-                                          2000, 4000, 8000, 2, 4, 8, 16, 96, 192, 384, 576, 1152, 2500, 5000, 10000 };
+static const uint16_t choices[] FLASH = { FILTER_LIST(KIND) MODE_CSV,
+                                          MODE_PLOT,
+                                          0,
+                                          0x53,
+                                          0x1D,
+                                          125,
+                                          250,
+                                          500,
+                                          1000,
+                                          2000,
+                                          4000,
+                                          8000,
+                                          2,
+                                          4,
+                                          8,
+                                          16,
+                                          96,
+                                          192,
+                                          384,
+                                          576,
+                                          1152,
+                                          2500,
+                                          5000,
+                                          10000 };
 enum {
     MODE = FILTER_KIND_COUNT,
     ADDRESS = MODE + 2,
@@ -36,8 +58,8 @@ static const char words[][5] FLASH = { "csv", "plot", "auto", "53", "1D" };
 enum { OFFSET_MAX = CALIBRATION_OFFSET_MAX_LSB_Q4, LEVEL_MAX_Q14 = 18841 }; /* 1.15 g */
 
 /*
- * Name, unit, place in settings_t, bytes of a number there, kind, fraction bits, what a change starts, and the range; of
- * a list where it begins in `choices` and how long it is. calibration_check has the last word on vectors.
+ * Name, unit, place in settings_t, bytes of a number there, kind, fraction bits, what a change starts, and the range;
+ * of a list where it begins in `choices` and how long it is. calibration_check has the last word on vectors.
  */
 /* clang-format off */
 #define SETTINGS(X) \
@@ -177,7 +199,7 @@ static uint32_t value_of(const setting_t *s, uint8_t number)
         return settings_every_in_force();
     }
     const uint8_t *at = place_of(s, number) + s->format.size;
-    uint32_t value = (uint32_t)(int32_t)(int8_t)*--at;
+    uint32_t value = (uint32_t)(int32_t)(int8_t) * --at;
     for (uint8_t left = s->format.size; --left != 0;) {
         value = value << 8 | *--at;
     }
