@@ -53,7 +53,7 @@ enum {
 };
 
 /* As typed, but for capitals. */
-static const char words[][5] FLASH = { "csv", "plot", "auto", "53", "1D" };
+static const char words[] FLASH = "csv\0plot\0auto\0" "53\0" "1D";
 
 enum { OFFSET_MAX = CALIBRATION_OFFSET_MAX_LSB_Q4, LEVEL_MAX_Q14 = 18841 }; /* 1.15 g */
 
@@ -224,7 +224,7 @@ static uint32_t choice(const setting_t *s, uint8_t i)
 
 FX_NOINLINE flash_text_t word(const setting_t *s, uint8_t i)
 {
-    return s->which == SETTING_FILTER ? filter_listed_name((filter_kind_t)i) : words[s->least - MODE + i];
+    return s->which == SETTING_FILTER ? filter_listed_name((filter_kind_t)i) : text_nth(words, (uint8_t)(s->least - MODE + i));
 }
 
 static bool take_word(const setting_t *s, const char *text)
