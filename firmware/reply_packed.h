@@ -11,7 +11,7 @@
 
 #define PACKED_PAIR_FIRST 0x8Bu
 #define PACKED_DEPTH 13
-#define PACKED_STEP 8u
+#define PACKED_STEP 16u
 
 /* clang-format off */
 static const uint8_t packed_pairs[] FLASH = {
@@ -30,7 +30,7 @@ static const uint8_t packed_pairs[] FLASH = {
 
 /* Where every PACKED_STEP-th text begins. */
 static const uint16_t packed_starts[] FLASH = {
-    0, 293, 380, 505, 652, 726, 817, 908, 966, 1082, 1209,
+    0, 380, 652, 817, 966, 1209,
 };
 
 static const uint8_t packed_texts[] FLASH = {

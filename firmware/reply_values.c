@@ -91,18 +91,20 @@ static uint8_t hexadecimal(uint8_t what)
 static void say_settings(void)
 {
     for (uint8_t which = SETTING_FILTER; which <= SETTING_BAUD; which++) {
-        setting_write(which);
-        if (which != SETTING_BAUD) {
+        if (which != SETTING_FILTER) {
             text_words(FLASH_TEXT(", "));
         }
+        setting_write(which);
     }
 }
 
 static void say_verbs(void)
 {
     for (uint8_t kind = REPLY_HELP; kind <= REPLY_LISTING; kind++) {
+        if (kind != REPLY_HELP) {
+            text_words(FLASH_TEXT(", "));
+        }
         text_words(reply_command_name(kind));
-        text_words(FLASH_TEXT(", ") + (kind == REPLY_LISTING));
     }
 }
 
