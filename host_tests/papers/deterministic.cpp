@@ -12,8 +12,8 @@ void covariance(const Options & /*options*/)
 {
     robust_reference_t plain;
     robust_reference_t linear;
-    robust_reference_table1(&plain, ROBUST_KF);
-    robust_reference_table1(&linear, ROBUST_LRF);
+    robust_reference_table1(&plain, plain_name.c_str());
+    robust_reference_table1(&linear, linear_name.c_str());
     double p[4];
     double plain_gain[2];
     double linear_gain[2];
