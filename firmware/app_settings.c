@@ -2,7 +2,6 @@
 #include "adxl345.h"
 #include "app.h"
 #include "app_state.h"
-#include "hal_time.h"
 #include "health.h"
 #include "measure.h"
 #include "pipeline.h"
@@ -35,7 +34,7 @@ static void change_sensor(void)
 static void change_baud(void)
 {
     app.stage = STAGE_BAUD;
-    health_pause_filtering(hal_time_us() + APP_HOLD_LIMIT_US);
+    health_pause_filtering(APP_HOLD_PASSES);
 }
 
 /* settings_table.h says what a change starts; what follows by arithmetic costs two divisions. */
@@ -60,7 +59,9 @@ setting_answer_t app_set(uint8_t which, const char *text)
 {
     uint8_t starts;
     setting_answer_t answer = setting_set(which, text, &starts);
-    follow(starts);
+    if (answer == SETTING_TAKEN) {
+        follow(starts);
+    }
     return answer;
 }
 

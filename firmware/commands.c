@@ -7,6 +7,7 @@
 #include "calibrate.h"
 #include "counters.h"
 #include "flash.h"
+#include "fx.h"
 #include "hal_sleep.h"
 #include "hal_uart.h"
 #include "measure.h"
@@ -18,21 +19,19 @@
 
 static char line[COMMANDS_LINE_MAX + 1u];
 static uint8_t length;
-static bool too_long;
-static bool garbage;
+static uint8_t wrong; /* with the line: REPLY_TOO_LONG, REPLY_GARBAGE, or 0 */
 
 void commands_start(void)
 {
     length = 0;
-    too_long = false;
-    garbage = false;
+    wrong = 0;
     line[0] = '\0';
 }
 
-static void refuse(reply_kind_t kind, uint8_t argument)
+static void refuse(uint8_t kind, uint8_t argument)
 {
     count(COUNT_REFUSED);
-    (void)replies_add(kind, argument);
+    (void)replies_add((reply_kind_t)kind, argument);
 }
 
 static void set(uint8_t which, const char *value)
@@ -132,7 +131,7 @@ static void run_command(uint8_t kind, const char *value)
     }
 }
 
-static void run_line(void)
+FX_NOINLINE void run_line(void)
 {
     const char *value = split_value();
     uint8_t which = setting_named(line);
@@ -151,24 +150,21 @@ static void end_line(void)
         length--;
     }
     line[length] = '\0';
-    if (too_long) {
-        refuse(REPLY_TOO_LONG, 0);
-    } else if (garbage) {
-        refuse(REPLY_GARBAGE, 0);
+    if (wrong != 0) {
+        refuse(wrong, 0);
     } else if (length != 0) {
         run_line();
     }
     length = 0;
-    too_long = false;
-    garbage = false;
+    wrong = 0;
 }
 
 static void take_byte(uint8_t byte)
 {
     if (byte < ' ' || byte > '~') {
-        garbage = true;
+        wrong = wrong != 0 ? wrong : REPLY_GARBAGE;
     } else if (length == COMMANDS_LINE_MAX) {
-        too_long = true;
+        wrong = REPLY_TOO_LONG;
     } else if (length != 0 || byte != ' ') {
         bool upper = byte >= 'A' && byte <= 'Z';
         line[length++] = (char)(upper ? byte + ('a' - 'A') : byte);

@@ -14,21 +14,21 @@ static const filter_law_t *law_in_force(void)
  * What the user wants of the filter in force, what is shipped of another. False: the filter does not take that, as where
  * it was set beside what another rate has; then all are as shipped.
  */
-FX_NOINLINE bool configure(filter_config_t *config, filter_kind_t kind, uint16_t rate_dhz)
+static bool configure(filter_config_t *config, filter_kind_t kind, uint16_t rate_dhz)
 {
     const filter_law_t *law = filter_listed(kind);
-    *config = filter_defaults(law, rate_dhz);
     uint8_t own = (uint8_t)kind == settings.filter ? settings.own : 0;
-    for (uint8_t which = 0; own != 0; which++, own >>= 1) {
-        if (own & 1u) {
-            config->value[which] = (int32_t)settings.parameters[which];
+    for (bool legal = true;; legal = false) {
+        *config = filter_defaults(law, rate_dhz);
+        for (uint8_t which = 0; own != 0; which++, own >>= 1) {
+            if (own & 1u) {
+                config->value[which] = (int32_t)settings.parameters[which];
+            }
+        }
+        if (!legal || filter_judge(law, config) == FILTER_ACCEPTED) {
+            return legal;
         }
     }
-    if (filter_judge(law, config) == FILTER_ACCEPTED) {
-        return true;
-    }
-    *config = filter_defaults(law, rate_dhz);
-    return false;
 }
 
 bool parameters_legal(void)

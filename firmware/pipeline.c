@@ -10,15 +10,21 @@
 #include "pipeline_state.h"
 #include "silence.h"
 #include "supervisor.h"
+#include "tilt_axis.h"
 
 enum { AWAY_SAMPLES = 2 };  /* on end, away from what was held: no bad reading */
 enum { HUNG_SAMPLES = 16 }; /* with ROW_STUCK, on end: a filter has learned from them */
 
 pipeline_t pipeline;
 
-FX_NOINLINE void keep_estimate(axis_t *axis, int32_t x_lsb_q16)
+FX_ONCE int32_t estimate_q8(const axis_t *axis)
 {
-    axis->estimate_q8 = (x_lsb_q16 + 128) >> 8;
+    return (axis->filter.x_lsb_q16 + 128) >> 8;
+}
+
+FX_ONCE int16_t estimate_lsb(const axis_t *axis)
+{
+    return (int16_t)((estimate_q8(axis) + 128) >> 8);
 }
 
 void pipeline_reset(void)
@@ -34,23 +40,18 @@ void pipeline_reset(void)
 FX_ONCE void pipeline_coast(uint32_t t_us)
 {
     silence_step(pipeline.true_dhz);
-    pipeline.last_us = t_us;
+    pipeline.newest.t_us = t_us;
     pipeline_flag(silence_samples() == SILENCE_FAULT_FROM ? ROW_COASTED | ROW_FAULT : ROW_COASTED);
     pipeline.work = WORK_COAST;
 }
 
-static void flag_warming(const axis_t *axis)
+static void coast_axis(axis_t *axis)
 {
+    (void)filter_missing(&axis->filter);
+    noise_gap(&axis->noise);
     if (axis->filter.flags & FILTER_WARMING_UP) {
         pipeline_flag(ROW_WARMING_UP);
     }
-}
-
-static void coast_axis(axis_t *axis)
-{
-    keep_estimate(axis, filter_missing(&axis->filter));
-    noise_gap(&axis->noise);
-    flag_warming(axis);
     if (axis->filter.quarters == FILTER_HOLD_MS / 25) {
         axis->away = 1;
     }
@@ -58,7 +59,7 @@ static void coast_axis(axis_t *axis)
 
 uint32_t pipeline_newest_us(void)
 {
-    return pipeline.last_us;
+    return pipeline.newest.t_us;
 }
 
 uint32_t axis_r_lsb2_q8(const axis_t *axis)
@@ -68,26 +69,25 @@ uint32_t axis_r_lsb2_q8(const axis_t *axis)
 }
 
 /* Within 2.8 sigmas of the estimate, by the R of the noise, which is 3.5 of a healthy sensor's. */
-static bool near_estimate(const axis_t *axis)
+static bool near_estimate(const axis_t *axis, int16_t lsb)
 {
-    int16_t off_lsb = (int16_t)(axis->lsb - estimate_lsb(axis));
+    int16_t off_lsb = (int16_t)(lsb - estimate_lsb(axis));
     uint16_t size_lsb = (uint16_t)(off_lsb < 0 ? -off_lsb : off_lsb);
     return fx_mul_u16(size_lsb, size_lsb) <= noise_r_lsb2_q8(&axis->noise) >> 5;
 }
 
 /*
  * After a hold. True: the filter takes the sample; near the estimate it goes on from what was held. A single one away
- * from it may be a bad reading: with the second in a row that is not at the rail the filter restarts, with the noise as
- * it is known.
+ * from it may be a bad reading: with the second in a row the filter restarts, with the noise as it is known.
  */
-static bool rejoins(axis_t *axis, bool clipped)
+static bool rejoins(axis_t *axis, int16_t lsb, uint8_t *flags)
 {
-    if (!near_estimate(axis)) {
-        if (clipped || axis->away++ < AWAY_SAMPLES) {
-            pipeline_flag(ROW_GATED);
+    if (!near_estimate(axis, lsb)) {
+        if (axis->away++ < AWAY_SAMPLES) {
+            *flags |= ROW_GATED;
             return false;
         }
-        pipeline_flag(ROW_REACQUIRED);
+        *flags |= ROW_REACQUIRED;
         filter_restart(&axis->filter);
     }
     axis->away = 0;
@@ -96,34 +96,39 @@ static bool rejoins(axis_t *axis, bool clipped)
 
 _Static_assert((int)FILTER_GATED == (int)ROW_GATED && (int)FILTER_REACQUIRED == (int)ROW_REACQUIRED, "same bits");
 
-static void update_axis(axis_t *axis)
+static uint8_t update_axis(axis_t *axis, int16_t lsb)
 {
-    keep_estimate(axis, filter_update(&axis->filter, axis->lsb));
+    (void)filter_update(&axis->filter, lsb);
     uint8_t flags = axis->filter.flags;
-    pipeline_flag(flags & (FILTER_GATED | FILTER_REACQUIRED));
-    flag_warming(axis);
     if (SUPERVISOR && (flags & FILTER_SWITCHED) != 0) {
         pipeline_flag(ROW_SWITCHED);
     }
+    uint8_t same = flags & (FILTER_GATED | FILTER_REACQUIRED);
+    return (flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same;
 }
 
-static void sample_axis(axis_t *axis)
+/*
+ * Returns those flags of the row that a byte holds. A sample at the rail of its range says no more than that it is
+ * outside: it is missing.
+ */
+static uint8_t sample_axis(axis_t *axis, int16_t lsb)
 {
-    int16_t lsb = axis->lsb;
-    bool clipped = lsb >= pipeline.rail_high_lsb || lsb <= (int16_t)(-pipeline.rail_high_lsb - 1);
-    if (clipped) {
-        pipeline_flag(ROW_CLIPPED);
-    } else if (noise_update(&axis->noise, lsb)) {
+    uint8_t flags = 0;
+    if (tilt_at_rail(lsb, pipeline.rail_high_lsb)) {
+        coast_axis(axis);
+        return ROW_CLIPPED;
+    }
+    if (noise_update(&axis->noise, lsb)) {
         filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
     }
-    if (axis->away == 0 || rejoins(axis, clipped)) {
-        update_axis(axis);
+    if (axis->away == 0 || rejoins(axis, lsb, &flags)) {
+        flags |= update_axis(axis, lsb);
     }
+    return flags;
 }
 
-static void count_sample(void)
+static void count_sample(uint8_t flags)
 {
-    uint8_t flags = (uint8_t)pipeline.flags;
     count(COUNT_SAMPLES);
     if (flags & ROW_GATED) {
         count(COUNT_GATED);
@@ -138,7 +143,9 @@ static void count_sample(void)
 
 void pipeline_calibrate(const calibration_t *calibration)
 {
+#if SUPERVISOR
     pipeline.calibration = calibration;
+#endif
     (void)calibration_prepare(&pipeline.applied, calibration);
 }
 
@@ -147,7 +154,7 @@ static void find_accelerations(void)
 {
     int32_t estimates_q8[AXES];
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        estimates_q8[axis] = pipeline.axes[axis].estimate_q8;
+        estimates_q8[axis] = estimate_q8(&pipeline.axes[axis]);
     }
 #if SUPERVISOR
     supervisor_complete(estimates_q8);
@@ -155,14 +162,14 @@ static void find_accelerations(void)
     calibration_apply(&pipeline.applied, estimates_q8, pipeline.a_q8);
 }
 
-static void end_sample(void)
+static void end_sample(uint8_t flags)
 {
-    if (!tilt_gravity_plausible(pipeline.a_q8[0], pipeline.a_q8[1], pipeline.a_q8[2])) {
+    if (!tilt_gravity_plausible(pipeline.a_q8)) {
         pipeline_flag(ROW_NOT_GRAVITY);
     }
-    count_sample();
+    pipeline_flag(flags);
+    count_sample(flags);
     pipeline.has_sample = true;
-    pipeline_flag(pipeline.kept_flags);
 }
 
 /*
@@ -171,7 +178,7 @@ static void end_sample(void)
  */
 static bool hung(void)
 {
-    bool stuck = (pipeline.flags & ROW_STUCK) != 0;
+    bool stuck = pipeline.is_stuck;
     bool back = pipeline.stuck == HUNG_SAMPLES && !stuck;
     if (!stuck) {
         pipeline.stuck = 0;
@@ -185,16 +192,18 @@ static bool hung(void)
 FX_NOINLINE void filter_axes(void)
 {
     bool sample = pipeline.work == WORK_SAMPLE;
+    uint8_t flags = 0;
+    const int16_t *lsb = pipeline.newest.lsb;
     for (axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
         if (sample) {
-            sample_axis(axis);
+            flags |= sample_axis(axis, *lsb++);
         } else {
             coast_axis(axis);
         }
     }
     find_accelerations();
     if (sample) {
-        end_sample();
+        end_sample(flags);
     }
     pipeline.work = WORK_NONE;
 }
@@ -223,16 +232,12 @@ void pipeline_finish(void)
 
 void pipeline_sample(const adxl345_sample_t *sample)
 {
-    pipeline.kept_flags = pipeline.flags;
-    pipeline.flags = 0;
+    pipeline.is_stuck = false;
     silence_end();
-    pipeline.last_us = sample->t_us;
 #if SUPERVISOR
     supervisor_look(sample->lsb);
 #endif
-    for (uint8_t axis = 0; axis < AXES; axis++) {
-        pipeline.axes[axis].lsb = sample->lsb[axis];
-    }
+    pipeline.newest = *sample;
     pipeline.work = WORK_SAMPLE;
     pipeline.turn = true;
 }
@@ -240,6 +245,9 @@ void pipeline_sample(const adxl345_sample_t *sample)
 FX_ONCE void pipeline_flag(uint16_t flags)
 {
     pipeline.flags |= flags;
+    if (flags & ROW_STUCK) {
+        pipeline.is_stuck = true;
+    }
 }
 
 /*
@@ -257,11 +265,11 @@ static int16_t to_mg(int32_t value_q8)
 
 void pipeline_row(row_t *row)
 {
-    row->t_us = pipeline.last_us;
+    row->t_us = pipeline.newest.t_us;
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        row->lsb[axis] = pipeline.axes[axis].lsb;
+        row->lsb[axis] = pipeline.newest.lsb[axis];
     }
-    tilt_angles(&pipeline.tilt, pipeline.a_q8[0], pipeline.a_q8[1], pipeline.a_q8[2]);
+    tilt_angles(&pipeline.tilt, pipeline.a_q8);
     row->roll_cdeg = pipeline.tilt.roll_cdeg;
     row->pitch_cdeg = pipeline.tilt.pitch_cdeg;
     row->flags = pipeline.flags;
@@ -289,10 +297,10 @@ void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg)
     int32_t readings_q8[AXES];
     int32_t a_q8[AXES];
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        readings_q8[axis] = (int32_t)pipeline.axes[axis].lsb * 256;
+        readings_q8[axis] = (int32_t)pipeline.newest.lsb[axis] * 256;
     }
     calibration_apply(&pipeline.applied, readings_q8, a_q8);
-    tilt_angles(&pipeline.raw_tilt, a_q8[0], a_q8[1], a_q8[2]);
+    tilt_angles(&pipeline.raw_tilt, a_q8);
     *roll_cdeg = pipeline.raw_tilt.roll_cdeg;
     *pitch_cdeg = pipeline.raw_tilt.pitch_cdeg;
 }

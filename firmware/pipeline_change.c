@@ -16,28 +16,11 @@ FX_ONCE void begin_all(bool cold)
     pipeline.to_begin = AXES;
 }
 
-/* keep: the filters go on from the old output, the noise estimates too unless the rate is new. */
-static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool keep)
-{
-    bool cold = !keep || rate_dhz != pipeline.rate_dhz;
-    if (cold) {
-        pipeline.true_dhz = rate_dhz;
-        pipeline.calls_off = 0;
-    }
-    pipeline.new_kind = filter_kind;
-    pipeline.rate_dhz = rate_dhz;
-    pipeline.has_sample = keep;
-    pipeline.stuck = keep ? pipeline.stuck : 0;
-    pipeline.warm_rows = WARM_ROWS;
-    pipeline.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
-    begin_all(cold);
-}
-
 FX_ONCE void pipeline_retime(uint32_t period_us)
 {
     bool still = true;
     for (axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
-        uint16_t now_lsb_q2 = (uint16_t)(axis->estimate_q8 >> 6);
+        uint16_t now_lsb_q2 = (uint16_t)(estimate_q8(axis) >> 6);
         still = (uint16_t)(now_lsb_q2 - axis->looked_lsb_q2 + STILL_LSB_Q2) <= 2u * STILL_LSB_Q2 && still;
         axis->looked_lsb_q2 = now_lsb_q2;
     }
@@ -53,12 +36,14 @@ FX_ONCE void pipeline_retime(uint32_t period_us)
     }
 }
 
-FX_ONCE void begin_axis(axis_t *axis, bool keep)
+/* The filter goes on from the old one's estimate, where there is one, or warms up. */
+FX_NOINLINE void begin_axis(axis_t *axis)
 {
+    int16_t from_lsb = estimate_lsb(axis);
     parameters_start(&axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
     filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
-    if (keep) {
-        filter_reset(&axis->filter, estimate_lsb(axis));
+    if (pipeline.has_sample) {
+        filter_reset(&axis->filter, from_lsb);
     } else {
         axis->away = 0;
     }
@@ -77,16 +62,28 @@ FX_ONCE bool begin_next(void)
     if (pipeline.cold) {
         noise_init(&axis->noise, pipeline.rate_dhz, left == 2);
     }
-    begin_axis(axis, pipeline.has_sample);
+    begin_axis(axis);
     return true;
+}
+
+/* The filters go on from the old output, where there is one, the noise estimates too unless the rate is new. */
+void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)
+{
+    bool cold = !pipeline.has_sample || rate_dhz != pipeline.rate_dhz;
+    if (cold) {
+        pipeline.true_dhz = rate_dhz;
+        pipeline.calls_off = 0;
+    }
+    pipeline.new_kind = filter_kind;
+    pipeline.rate_dhz = rate_dhz;
+    pipeline.warm_rows = WARM_ROWS;
+    pipeline.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
+    begin_all(cold);
 }
 
 void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)
 {
-    begin(filter_kind, rate_dhz, range_g, false);
-}
-
-void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)
-{
-    begin(filter_kind, rate_dhz, range_g, pipeline.has_sample);
+    pipeline.has_sample = false;
+    pipeline.stuck = 0;
+    pipeline_change(filter_kind, rate_dhz, range_g);
 }

@@ -14,12 +14,12 @@ typedef struct {
 
 static reply_t queue[QUEUE_LENGTH];
 static uint8_t count;
-static uint8_t line;
+static bool begun; /* the first of them: a line of it is out */
 
 void replies_start(void)
 {
     count = 0;
-    line = 0;
+    begun = false;
 }
 
 bool replies_room(void)
@@ -58,13 +58,12 @@ bool replies_pass(void)
     if (count == 0 || !text_open((uint8_t)(TEXT_LINE_MAX + SETTINGS_ROW_MAX))) {
         return false;
     }
-    reply_progress_t progress = reply_line(queue[0].kind, queue[0].argument, line);
+    reply_progress_t progress = reply_line(queue[0].kind, queue[0].argument, !begun);
     if (progress == REPLY_WAITS) {
         return false;
     }
-    line++;
-    if (progress == REPLY_ENDED) {
-        line = 0;
+    begun = progress == REPLY_GOES_ON;
+    if (!begun) {
         count--;
         for (uint8_t i = 0; i < count; i++) {
             queue[i] = queue[i + 1u];

@@ -2,6 +2,7 @@
 #ifndef REPLY_LINES_H
 #define REPLY_LINES_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "flash.h"
@@ -12,8 +13,8 @@ typedef enum {
     REPLY_ENDED    /* the last one is out */
 } reply_progress_t;
 
-/* Writes a line of a reply (reply_kind_t), counted from 0. Room for TEXT_LINE_MAX has been checked. */
-reply_progress_t reply_line(uint8_t kind, uint8_t argument, uint8_t line);
+/* Writes the first line of a reply (reply_kind_t), or its next one. Room for TEXT_LINE_MAX has been checked. */
+reply_progress_t reply_line(uint8_t kind, uint8_t argument, bool first);
 
 /* The word that asks for a reply (REPLY_HELP to REPLY_LISTING), as it is typed. */
 flash_text_t reply_command_name(uint8_t kind);

@@ -2,20 +2,17 @@
 #ifndef REPLY_SAID_H
 #define REPLY_SAID_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 /* What a line is about. */
 typedef struct {
-    uint8_t subject;      /* the reply's argument; a setting; the command of a measurement */
-    uint8_t axis;         /* of this line of a measurement, or the position */
+    uint8_t subject;      /* a setting, a fault, a command, an axis or a position */
     uint8_t counters_out; /* how many `status` has written */
-    bool more;            /* another line follows */
 } said_t;
 
 extern said_t said;
 
-/* Writes a text (enum reply_text), with the values in it. */
-void say(uint8_t text);
+/* Writes a byte of a text, or what stands in its place; the text (enum reply_text) in which that goes on, or TEXT_NONE. */
+uint8_t say(uint8_t code);
 
 #endif

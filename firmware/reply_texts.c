@@ -5,22 +5,16 @@
 #include "replies.h"
 #include "reply_lines.h"
 #include "reply_packed.h"
+#include "text.h"
 
-#define NAME_ROOM(name) sizeof(name) > NAME_BYTES ||
-#define NAME_BYTES 9
+static const char names[] FLASH = REPLY_NAMES;
 
-static const char names[][NAME_BYTES] FLASH = {
-#define NAME(name) name,
-    REPLY_NAMES(NAME)
-#undef NAME
-};
-_Static_assert(!(REPLY_NAMES(NAME_ROOM) 0), "a name with its end fits");
-_Static_assert(sizeof names / sizeof names[0] == REPLY_LISTING - REPLY_HELP + 1, "a name for each command");
+_Static_assert((int)PACKED_DEPTH <= (int)REPLY_PAIRS_DEPTH, "room for the pairs in a pair");
 _Static_assert(PACKED_PAIR_FIRST == SAY_PAIR, "the codes of pairs follow those of values");
 
 flash_text_t reply_command_name(uint8_t kind)
 {
-    return names[kind - REPLY_HELP];
+    return text_nth(names, (uint8_t)(kind - REPLY_HELP));
 }
 
 const uint8_t *reply_text(uint8_t text)

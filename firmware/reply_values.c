@@ -52,8 +52,6 @@ static uint32_t number(uint8_t what)
     switch (what) {
     case SAY_COUNT:
         return next_count();
-    case SAY_FAULT:
-        return (uint32_t)adxl345_fault();
     case SAY_SERIAL_LOST:
         return hal_uart_rx_lost();
     case SAY_CYCLES:
@@ -100,24 +98,24 @@ static void say_settings(void)
     }
 }
 
-/* What is to be said of a setting behind its value. */
-static void say_note(void)
-{
-    if (said.subject == SETTING_RATE) {
-        say(TEXT_RATE_NOTE);
-    }
-    if (said.subject == SETTING_EVERY && settings_every_in_force() != settings.every) {
-        bool carried = settings_every_in_force() == settings_smallest_every(settings.baud, settings.rate_dhz);
-        say(carried ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES);
-    }
-}
-
 static void say_verbs(void)
 {
     for (uint8_t kind = REPLY_HELP; kind <= REPLY_LISTING; kind++) {
         text_words(reply_command_name(kind));
         text_words(FLASH_TEXT(", ") + (kind == REPLY_LISTING));
     }
+}
+
+/* What is to be said of a setting behind its value. */
+static uint8_t note(void)
+{
+    if (said.subject == SETTING_RATE) {
+        return TEXT_RATE_NOTE;
+    }
+    if (said.subject == SETTING_EVERY && settings_every_in_force() != settings.every) {
+        return settings.line_is_slower ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES;
+    }
+    return TEXT_NONE;
 }
 
 /* A text that is one of several. */
@@ -127,22 +125,34 @@ static uint8_t text_chosen(uint8_t what)
     case SAY_CAUSE:
         return (uint8_t)(TEXT_POWER_ON + hal_reset_cause());
     case SAY_SAFE:
-        return app_is_safe() ? TEXT_SAFE : TEXT_NOTHING;
+        return app_is_safe() ? TEXT_SAFE : TEXT_NONE;
     case SAY_STATE:
         return (uint8_t)(TEXT_STATE_STOPPED + adxl345_phase());
     case SAY_KEPT:
         return (uint8_t)(TEXT_KEPT_DAMAGED + settings_kept);
     case SAY_LIMITS:
-        return said.axis == 2 ? TEXT_LIMITS_Z : TEXT_LIMITS_XY;
+        return said.subject == 2 ? TEXT_LIMITS_Z : TEXT_LIMITS_XY;
     case SAY_VERDICT:
-        return (uint8_t)(TEXT_FAIL - VERDICT_FAIL + measure_verdict(said.axis));
+        return (uint8_t)(TEXT_FAIL - VERDICT_FAIL + measure_verdict(said.subject));
+    case SAY_LISTED:
+        return TEXT_LISTED;
+    case SAY_SETTING_NOTE:
+        return note();
+    case SAY_EVERY:
+        said.subject = SETTING_EVERY;
+        return TEXT_SETTING;
+    case SAY_SENSOR:
+        said.subject = (uint8_t)adxl345_fault();
+        return said.subject == ADXL345_FAULT_NONE ? TEXT_SENSOR : TEXT_FAULT_BEGIN;
+    case SAY_HEADER:
+        return TEXT_HEADER;
     default:
         return (uint8_t)(TEXT_NO_SENSOR - ADXL345_FAULT_NO_SENSOR + said.subject);
     }
 }
 
-/* What stands for a value. */
-static void say_value(uint8_t what)
+/* What is neither a text nor one of many numbers. */
+static void say_other(uint8_t what)
 {
     switch (what) {
     case SAY_NAME:
@@ -156,9 +166,6 @@ static void say_value(uint8_t what)
         break;
     case SAY_LEGAL:
         setting_write_legal(said.subject);
-        break;
-    case SAY_SETTING_NOTE:
-        say_note();
         break;
     case SAY_SETTINGS:
         say_settings();
@@ -176,49 +183,35 @@ static void say_value(uint8_t what)
         text_tenths(settings.rate_dhz == 8000 ? 4000 : 3636);
         break;
     case SAY_POSITION:
-        text_char((said.axis & 1u) != 0 ? '-' : '+');
-        text_char((char)('x' + (said.axis >> 1)));
+        text_char((said.subject & 1u) != 0 ? '-' : '+');
+        text_char((char)('x' + (said.subject >> 1)));
         break;
     case SAY_AXIS:
-        text_char((char)('x' + said.axis));
+        text_char((char)('x' + said.subject));
         break;
-    case SAY_CHOICES:
+    default:
 #if SUPERVISOR
         supervisor_say();
 #endif
         break;
-    default:
-        if (what <= SAY_LAST_NUMBER) {
-            text_u32(number(what));
-        } else if (what <= SAY_LAST_HEXADECIMAL) {
-            text_hex8(hexadecimal(what));
-        } else if (what <= SAY_LAST_Q8) {
-            number_write((uint32_t)measure_number_q8(what, said.axis), 8);
-        } else {
-            say(text_chosen(what));
-        }
     }
 }
 
-static void say_byte(uint8_t code)
+uint8_t say(uint8_t code)
 {
-    while (code >= SAY_PAIR) {
-        uint8_t first = reply_pair(code, 0);
-        say_byte(first);
-        code = reply_pair(code, 1);
+    if (code >= SAY_ALONE) {
+        return text_chosen(code);
     }
-    if (code >= ' ' && code < SAY_ABOVE) {
+    if (code >= ' ') {
         text_char((char)code);
+    } else if (code <= SAY_LAST_NUMBER) {
+        text_u32(number(code));
+    } else if (code <= SAY_LAST_HEXADECIMAL) {
+        text_hex8(hexadecimal(code));
+    } else if (code <= SAY_LAST_Q8) {
+        number_write((uint32_t)measure_number_q8(code, said.subject), 8);
     } else {
-        say_value(code);
+        say_other(code);
     }
-}
-
-void say(uint8_t text)
-{
-    const uint8_t *at = reply_text(text);
-    for (uint8_t code = flash_u8(at); code != 0; code = flash_u8(at)) {
-        say_byte(code);
-        at++;
-    }
+    return TEXT_NONE;
 }

@@ -8,6 +8,7 @@
 #include "pipeline.h"
 
 settings_t settings;
+settings_cycles_t settings_cycles;
 
 enum { AXES = 3 };
 
@@ -63,9 +64,15 @@ FX_ONCE uint32_t settings_left_cycles(uint16_t rate_dhz)
     return period > SETTINGS_REST_CYCLES ? period - SETTINGS_REST_CYCLES : 0;
 }
 
-FX_ONCE bool settings_fit(uint8_t filter, uint16_t rate_dhz)
+bool settings_fit(uint8_t filter, uint16_t rate_dhz)
 {
-    return settings_filter_cycles(filter) < settings_left_cycles(rate_dhz);
+    uint16_t takes = settings_filter_cycles(filter);
+    uint32_t left = settings_left_cycles(rate_dhz);
+    if (takes < left) {
+        return true;
+    }
+    settings_cycles = (settings_cycles_t){ takes, (uint16_t)left };
+    return false;
 }
 
 /* Rounded up; wanted is at least 1. */
@@ -75,17 +82,17 @@ FX_NOINLINE uint16_t quotient(uint32_t wanted, uint32_t each)
 }
 
 /* Ten bits a byte: baud bytes in ten seconds; rate_dhz samples in ten seconds. */
-FX_ONCE uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
+uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
 {
     return quotient((uint32_t)rate_dhz * SETTINGS_ROW_MAX, baud);
 }
 
-FX_ONCE void settings_follow(void)
+void settings_follow(void)
 {
-    uint32_t over = settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter);
     uint16_t carried = settings_smallest_every(settings.baud, settings.rate_dhz);
-    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, over);
-    settings.every_smallest = carried > computed ? carried : computed;
+    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter));
+    settings.line_is_slower = carried >= computed;
+    settings.every_smallest = settings.line_is_slower ? carried : computed;
 }
 
 FX_ONCE uint16_t settings_every_in_force(void)

@@ -32,6 +32,7 @@ typedef struct {
     /* not kept */
     uint8_t filter;          /* filter_kind_t */
     uint16_t every_smallest; /* follows from baud, rate and filter: settings_follow */
+    bool line_is_slower;     /* than the processor: it decides that */
 } settings_t;
 
 #define SETTINGS_BAUD_DEFAULT 115200ul
@@ -71,6 +72,13 @@ uint32_t settings_left_cycles(uint16_t rate_dhz);
 
 /* The rule: the first is less than the second. What it leaves over is for rows. */
 bool settings_fit(uint8_t filter, uint16_t rate_dhz);
+
+/* Both, of the last that did not fit. */
+typedef struct {
+    uint16_t takes;
+    uint16_t left;
+} settings_cycles_t;
+extern settings_cycles_t settings_cycles;
 
 /* To be called when baud, rate or filter has changed. */
 void settings_follow(void);

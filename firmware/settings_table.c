@@ -16,15 +16,6 @@ enum { AXES = 3 };
 /* One of a list, as words or as numbers; numbers in a range, one or three; or axes. */
 enum { WORDS, LIST, NUMBER, VECTOR, SIGNED_AXES };
 
-/* As a filter's parameter has them; of a list `min` says where it begins in `choices`, and `max` how long it is. */
-typedef struct {
-    filter_parameter_t facts;
-    uint8_t place; /* in settings_t */
-    uint8_t size;  /* of a number there, bytes: 1, 2 with sign, or 4 */
-    uint8_t kind;
-    uint8_t starts;
-} row_t;
-
 /* Values of the lists: filters, modes, addresses, rates in 0.1 Hz, ranges, and baud rates in hundreds. */
 #define KIND(F) FILTER_KIND_##F,
 static const uint16_t choices[] FLASH = { FILTER_LIST(KIND) MODE_CSV, MODE_PLOT, 0, 0x53, 0x1D, 125, 250, 500, 1000,
@@ -42,90 +33,106 @@ enum {
 /* As typed, but for capitals. */
 static const char words[][5] FLASH = { "csv", "plot", "auto", "53", "1D" };
 
-#define OF(member) offsetof(settings_t, member)
-enum { LEVEL_MAX_Q14 = 18841 }; /* 1.15 g; calibration_check has the last word on how long a level is */
+enum { OFFSET_MAX = CALIBRATION_OFFSET_MAX_LSB_Q4, LEVEL_MAX_Q14 = 18841 }; /* 1.15 g */
 
-static const row_t rows[SETTING_PARAMETERS] FLASH = {
-    { { "filter", "", 0, 0, 0, FILTER_KIND_COUNT, 0 }, OF(filter), 1, WORDS, STARTS_FILTER },
-    { { "rate", "Hz", 6, 0, RATE, RANGE - RATE, 0 }, OF(rate_dhz), 2, LIST, STARTS_SENSOR },
-    { { "range", "g", 0, 0, RANGE, BAUD - RANGE, 0 }, OF(range_g), 1, LIST, STARTS_SENSOR },
-    { { "every", "", 0, 0, 1, SETTINGS_EVERY_MAX, 0 }, OF(every), 2, NUMBER, 0 },
-    { { "baud", "", 0, 0, BAUD, LISTED - BAUD, 0 }, OF(baud), 4, LIST, STARTS_LINE },
-    { { "mode", "", 0, 0, MODE, ADDRESS - MODE, 0 }, OF(mode), 1, WORDS, 0 },
-    { { "address", "", 0, 0, ADDRESS, RATE - ADDRESS, 0 }, OF(address), 1, WORDS, STARTS_SENSOR },
-    { { "axes", "", 0, 0, 0, 0, 0 }, OF(calibration.axes), 1, SIGNED_AXES, STARTS_CALIBRATION },
-    { { "offset", "LSB", 4, 0, -CALIBRATION_OFFSET_MAX_LSB_Q4, CALIBRATION_OFFSET_MAX_LSB_Q4, 0 },
-      OF(calibration.offset_lsb_q4),
-      2,
-      VECTOR,
-      STARTS_CALIBRATION },
-    { { "scale", "LSB/g", 6, 0, CALIBRATION_SCALE_MIN_UQ6, CALIBRATION_SCALE_MAX_UQ6, 0 },
-      OF(calibration.scale_lsb_per_g_uq6),
-      2,
-      VECTOR,
-      STARTS_CALIBRATION },
-    { { "level", "", 14, 0, -LEVEL_MAX_Q14, LEVEL_MAX_Q14, 0 },
-      OF(calibration.level_q14),
-      2,
-      VECTOR,
-      STARTS_CALIBRATION },
-};
+/*
+ * Name, unit, place in settings_t, bytes of a number there, kind, fraction bits, what a change starts, and the range; of
+ * a list where it begins in `choices` and how long it is. calibration_check has the last word on vectors.
+ */
+/* clang-format off */
+#define SETTINGS(X) \
+    X("filter", "", filter, 1, WORDS, 0, STARTS_FILTER, 0, FILTER_KIND_COUNT) \
+    X("rate", "Hz", rate_dhz, 2, LIST, 6, STARTS_SENSOR, RATE, RANGE - RATE) \
+    X("range", "g", range_g, 1, LIST, 0, STARTS_SENSOR, RANGE, BAUD - RANGE) \
+    X("every", "", every, 2, NUMBER, 0, 0, 1, SETTINGS_EVERY_MAX) \
+    X("baud", "", baud, 4, LIST, 0, STARTS_LINE, BAUD, LISTED - BAUD) \
+    X("mode", "", mode, 1, WORDS, 0, 0, MODE, ADDRESS - MODE) \
+    X("address", "", address, 1, WORDS, 0, STARTS_SENSOR, ADDRESS, RATE - ADDRESS) \
+    X("axes", "", calibration.axes, 1, SIGNED_AXES, 0, STARTS_CALIBRATION, 0, 0) \
+    X("offset", "LSB", calibration.offset_lsb_q4, 2, VECTOR, 4, STARTS_CALIBRATION, -OFFSET_MAX, OFFSET_MAX) \
+    X("scale", "LSB/g", calibration.scale_lsb_per_g_uq6, 2, VECTOR, 6, STARTS_CALIBRATION, CALIBRATION_SCALE_MIN_UQ6, \
+      CALIBRATION_SCALE_MAX_UQ6) \
+    X("level", "", calibration.level_q14, 2, VECTOR, 14, STARTS_CALIBRATION, -LEVEL_MAX_Q14, LEVEL_MAX_Q14)
+/* clang-format on */
 
-_Static_assert((int)FILTER_PARAMETERS_MAX <= (int)SETTINGS_PARAMETERS_MAX, "the settings hold a filter's parameters");
-_Static_assert(CALIBRATION_SCALE_MAX_UQ6 <= INT16_MAX, "two bytes are read with sign");
-_Static_assert(OF(calibration) + sizeof(calibration_t) <= UINT8_MAX, "a place has a byte");
-
-/* A setting that is looked at: its row, or the descriptor of the filter's parameter. */
 typedef struct {
-    const filter_parameter_t *facts; /* in program memory */
-    uint8_t which;
     uint8_t place;
     uint8_t size;
     uint8_t kind;
+    uint8_t fraction_bits;
     uint8_t starts;
-} setting_t;
+} format_t;
 
-settings_cycles_t settings_cycles;
+typedef struct {
+    format_t format;
+    int16_t least, most;
+} row_t;
+
+#define NAME(name, ...) name "\0"
+#define UNIT(name, unit, ...) unit "\0"
+#define ROW(name, unit, member, size, kind, bits, starts, least, most) \
+    { { offsetof(settings_t, member), size, kind, bits, starts }, least, most },
+static const char names[] FLASH = SETTINGS(NAME);
+static const char units[] FLASH = SETTINGS(UNIT);
+static const row_t rows[] FLASH = { SETTINGS(ROW) };
+
+_Static_assert(sizeof rows / sizeof rows[0] == SETTING_PARAMETERS, "a row for each setting");
+_Static_assert((int)FILTER_PARAMETERS_MAX <= (int)SETTINGS_PARAMETERS_MAX, "the settings hold a filter's parameters");
+_Static_assert(CALIBRATION_SCALE_MAX_UQ6 <= INT16_MAX, "two bytes are read with sign");
+_Static_assert(offsetof(settings_t, calibration) + sizeof(calibration_t) <= UINT8_MAX, "a place has a byte");
+
+/* A setting that is looked at: its row, or the descriptor of the filter's parameter. */
+typedef struct {
+    format_t format;
+    uint8_t which;
+    bool zero_is_off;
+    int32_t least, most;
+} setting_t;
 
 static const filter_law_t *law_in_force(void)
 {
     return filter_listed((filter_kind_t)settings.filter);
 }
 
-FX_NOINLINE void look(setting_t *s, uint8_t which)
+static void look_at_row(setting_t *s, uint8_t which)
+{
+    const row_t *row = &rows[which];
+    const uint8_t *from = (const uint8_t *)row;
+    uint8_t *to = (uint8_t *)&s->format;
+    for (uint8_t i = 0; i < sizeof s->format; i++) {
+        to[i] = flash_u8(from + i);
+    }
+    s->least = (int16_t)flash_u16((const uint16_t *)&row->least);
+    s->most = (int16_t)flash_u16((const uint16_t *)&row->most);
+    s->zero_is_off = false;
+}
+
+/* The descriptor of a setting that is the filter's, in program memory. */
+static const filter_parameter_t *parameter_of(uint8_t which)
+{
+    return filter_parameter(law_in_force(), (uint8_t)(which - SETTING_PARAMETERS));
+}
+
+static void look_at_parameter(setting_t *s, uint8_t which)
+{
+    const filter_parameter_t *parameter = parameter_of(which);
+    uint8_t place = (uint8_t)(offsetof(settings_t, parameters) +
+                              (uint8_t)(which - SETTING_PARAMETERS) * sizeof settings.parameters[0]);
+    s->format = (format_t){ place, sizeof settings.parameters[0], NUMBER, flash_u8(&parameter->fraction_bits),
+                            STARTS_FILTER };
+    s->least = (int32_t)flash_u32((const uint32_t *)&parameter->min);
+    s->most = (int32_t)flash_u32((const uint32_t *)&parameter->max);
+    s->zero_is_off = flash_u8(&parameter->zero_means_off) != 0;
+}
+
+static void look(setting_t *s, uint8_t which)
 {
     s->which = which;
     if (which < SETTING_PARAMETERS) {
-        const row_t *row = &rows[which];
-        s->facts = &row->facts;
-        s->place = flash_u8(&row->place);
-        s->size = flash_u8(&row->size);
-        s->kind = flash_u8(&row->kind);
-        s->starts = flash_u8(&row->starts);
+        look_at_row(s, which);
     } else {
-        which = (uint8_t)(which - SETTING_PARAMETERS);
-        s->facts = filter_parameter(law_in_force(), which);
-        s->place = (uint8_t)(OF(parameters) + which * sizeof settings.parameters[0]);
-        s->size = sizeof settings.parameters[0];
-        s->kind = NUMBER;
-        s->starts = STARTS_FILTER;
+        look_at_parameter(s, which);
     }
-}
-
-static uint8_t fraction_bits(const setting_t *s)
-{
-    return flash_u8(&s->facts->fraction_bits);
-}
-
-/* Of a list, where it begins and how long it is. */
-static uint8_t first(const setting_t *s)
-{
-    return (uint8_t)flash_u32((const uint32_t *)&s->facts->min);
-}
-
-static uint8_t length(const setting_t *s)
-{
-    return (uint8_t)flash_u32((const uint32_t *)&s->facts->max);
 }
 
 uint8_t settings_count(void)
@@ -135,9 +142,7 @@ uint8_t settings_count(void)
 
 flash_text_t setting_name(uint8_t which)
 {
-    setting_t s;
-    look(&s, which);
-    return s.facts->name;
+    return which < SETTING_PARAMETERS ? text_nth(names, which) : parameter_of(which)->name;
 }
 
 uint8_t setting_named(const char *name)
@@ -152,17 +157,18 @@ uint8_t setting_named(const char *name)
     return which;
 }
 
-FX_NOINLINE uint8_t numbers(const setting_t *s)
+static uint8_t numbers(const setting_t *s)
 {
-    return s->kind == VECTOR ? AXES : 1;
+    return s->format.kind == VECTOR ? AXES : 1;
 }
 
-FX_NOINLINE uint8_t *place_of(const setting_t *s, uint8_t number)
+static uint8_t *place_of(const setting_t *s, uint8_t number)
 {
-    return (uint8_t *)&settings + s->place + (uint8_t)(number * s->size);
+    return (uint8_t *)&settings + s->format.place + (uint8_t)(number * s->format.size);
 }
 
-FX_NOINLINE uint32_t value_of(const setting_t *s, uint8_t number)
+/* Little-endian on PC and chip, as settings.h wants it; all numbers have a sign. */
+static uint32_t value_of(const setting_t *s, uint8_t number)
 {
     if (s->which >= SETTING_PARAMETERS) {
         return parameters_value((uint8_t)(s->which - SETTING_PARAMETERS));
@@ -170,38 +176,38 @@ FX_NOINLINE uint32_t value_of(const setting_t *s, uint8_t number)
     if (s->which == SETTING_EVERY) {
         return settings_every_in_force();
     }
-    const uint8_t *at = place_of(s, number);
-    switch (s->size) {
-    case 1:
-        return *at;
-    case 2:
-        return (uint32_t)(int32_t)(int16_t)((uint16_t)at[1] << 8 | at[0]);
-    default:
-        return settings.baud;
+    const uint8_t *at = place_of(s, number) + s->format.size;
+    uint32_t value = (uint32_t)(int32_t)(int8_t)*--at;
+    for (uint8_t left = s->format.size; --left != 0;) {
+        value = value << 8 | *--at;
+    }
+    return value;
+}
+
+FX_NOINLINE void put(const setting_t *s, uint8_t number, uint32_t value)
+{
+    uint8_t *at = place_of(s, number);
+    for (uint8_t left = s->format.size; left != 0; left--) {
+        *at++ = (uint8_t)value;
+        value >>= 8;
     }
 }
 
-/* Little-endian on PC and chip, as settings.h wants it. */
-FX_NOINLINE void put(const setting_t *s, uint8_t number, uint32_t value)
-{
-    memcpy(place_of(s, number), &value, s->size);
-}
-
 /* Of a list, as stored. */
-FX_NOINLINE uint32_t choice(const setting_t *s, uint8_t i)
+static uint32_t choice(const setting_t *s, uint8_t i)
 {
-    uint16_t value = flash_u16(&choices[first(s) + i]);
+    uint16_t value = flash_u16(&choices[s->least + i]);
     return s->which == SETTING_BAUD ? (uint32_t)value * BAUD_UNIT : value;
 }
 
 FX_NOINLINE flash_text_t word(const setting_t *s, uint8_t i)
 {
-    return s->which == SETTING_FILTER ? filter_listed_name((filter_kind_t)i) : words[first(s) - MODE + i];
+    return s->which == SETTING_FILTER ? filter_listed_name((filter_kind_t)i) : words[s->least - MODE + i];
 }
 
-FX_NOINLINE bool take_word(const setting_t *s, const char *text)
+static bool take_word(const setting_t *s, const char *text)
 {
-    uint8_t i = length(s);
+    uint8_t i = (uint8_t)s->most;
     do {
         if (i == 0) {
             return false;
@@ -214,10 +220,10 @@ FX_NOINLINE bool take_word(const setting_t *s, const char *text)
 
 static bool is_legal(const setting_t *s, uint32_t value)
 {
-    if (s->kind != LIST) {
-        return filter_in_range(s->facts, (int32_t)value);
+    if (s->format.kind != LIST) {
+        return ((int32_t)value >= s->least && (int32_t)value <= s->most) || (value == 0 && s->zero_is_off);
     }
-    uint8_t i = length(s);
+    uint8_t i = (uint8_t)s->most;
     while (i != 0) {
         i--;
         if (choice(s, i) == value) {
@@ -239,7 +245,7 @@ FX_NOINLINE bool take_numbers(const setting_t *s, const char *text)
 {
     for (uint8_t i = 0; i < numbers(s); i++) {
         uint32_t value;
-        if (!number_parse(&text, fraction_bits(s), &value) || (s->which == SETTING_RATE && !to_tenths(&value)) ||
+        if (!number_parse(&text, s->format.fraction_bits, &value) || (s->which == SETTING_RATE && !to_tenths(&value)) ||
             !is_legal(s, value)) {
             return false;
         }
@@ -249,10 +255,11 @@ FX_NOINLINE bool take_numbers(const setting_t *s, const char *text)
 }
 
 /* Each of x, y, z once, with a sign where it is reversed, and no mirror image: that is no way to mount a board. */
-FX_NOINLINE bool take_axes(const char *text)
+static bool take_axes(const char *text)
 {
-    bool mirrored = false;
-    int8_t before = 0;
+    enum { XYZ = 0x123, YZX = 0x231, ZXY = 0x312 };
+    uint16_t order = 0;
+    bool mirrored = true;
     for (uint8_t i = 0; i < AXES; i++) {
         bool reversed = *text == '-';
         text += reversed;
@@ -260,17 +267,17 @@ FX_NOINLINE bool take_axes(const char *text)
         if (axis < 1 || axis > AXES) {
             return false;
         }
-        bool backward = i == 1u && axis != before % AXES + 1;
-        mirrored ^= reversed ^ backward;
-        before = axis;
+        order = (uint16_t)(order << 4 | (uint8_t)axis);
+        mirrored ^= reversed;
         settings.calibration.axes[i] = (int8_t)(reversed ? -axis : axis);
     }
-    return !mirrored && *text == '\0';
+    bool turned = order == XYZ || order == YZX || order == ZXY;
+    return turned == mirrored && *text == '\0';
 }
 
 static bool take(const setting_t *s, const char *text)
 {
-    switch (s->kind) {
+    switch (s->format.kind) {
     case WORDS:
         return take_word(s, text);
     case SIGNED_AXES:
@@ -280,38 +287,51 @@ static bool take(const setting_t *s, const char *text)
     }
 }
 
-/* All settings with the new one among them. */
-FX_NOINLINE setting_answer_t judge(const setting_t *s)
+/* Whether the filter takes the user's parameters with this one among them. */
+static setting_answer_t judge_parameter(uint8_t which)
 {
-    if (s->which == SETTING_FILTER) {
-        settings_take_filter(settings.filter);
+    uint8_t own = settings.own;
+    settings.own = (uint8_t)(own | 1u << which);
+    if (parameters_legal()) {
+        return SETTING_TAKEN;
     }
+    settings.own = own;
+    return SETTING_ILLEGAL;
+}
+
+/* All settings with the new one among them. */
+static setting_answer_t judge(const setting_t *s)
+{
     if (s->which >= SETTING_PARAMETERS) {
-        settings.own = (uint8_t)(settings.own | 1u << (s->which - SETTING_PARAMETERS));
-        return parameters_legal() ? SETTING_TAKEN : SETTING_ILLEGAL;
+        return judge_parameter((uint8_t)(s->which - SETTING_PARAMETERS));
     }
     if (!settings_fit(settings.filter, settings.rate_dhz)) {
-        settings_cycles.takes = settings_filter_cycles(settings.filter);
-        settings_cycles.left = (uint16_t)settings_left_cycles(settings.rate_dhz); /* less than that */
         return SETTING_TOO_SLOW;
+    }
+    if (s->which == SETTING_FILTER) {
+        settings_take_filter(settings.filter);
     }
     return calibration_check(&settings.calibration).why == CALIBRATION_GOOD ? SETTING_TAKEN : SETTING_ILLEGAL;
 }
 
+/* A filter that is in force already starts with what is shipped again. */
 setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
 {
-    settings_t before = settings;
+    uint8_t before[AXES * sizeof(int16_t)];
     setting_t s;
     look(&s, which);
+    uint8_t *place = place_of(&s, 0);
+    uint8_t bytes = s.format.kind >= VECTOR ? (uint8_t)(AXES * s.format.size) : s.format.size;
+    memcpy(before, place, bytes);
     setting_answer_t answer = take(&s, text) ? judge(&s) : SETTING_ILLEGAL;
+    *starts = which == SETTING_FILTER || memcmp(before, place, bytes) != 0 ? s.format.starts : 0;
     if (answer != SETTING_TAKEN) {
-        settings = before;
+        memcpy(place, before, bytes);
     }
-    *starts = memcmp(&before, &settings, sizeof before) != 0 ? s.starts : 0;
     return answer;
 }
 
-FX_NOINLINE void write_axes(void)
+static void write_axes(void)
 {
     for (uint8_t i = 0; i < AXES; i++) {
         int8_t axis = settings.calibration.axes[i];
@@ -323,12 +343,12 @@ FX_NOINLINE void write_axes(void)
     }
 }
 
-FX_NOINLINE void write_value(const setting_t *s, uint32_t value)
+static void write_value(const setting_t *s, uint32_t value)
 {
     uint8_t i = 0;
-    if (s->kind == SIGNED_AXES) {
+    if (s->format.kind == SIGNED_AXES) {
         write_axes();
-    } else if (s->kind == WORDS) {
+    } else if (s->format.kind == WORDS) {
         while (choice(s, i) != value) {
             i++;
         }
@@ -336,7 +356,7 @@ FX_NOINLINE void write_value(const setting_t *s, uint32_t value)
     } else if (s->which == SETTING_RATE) {
         text_tenths((uint16_t)value);
     } else {
-        number_write(value, fraction_bits(s));
+        number_write(value, s->format.fraction_bits);
     }
 }
 
@@ -344,23 +364,24 @@ void setting_write(uint8_t which)
 {
     setting_t s;
     look(&s, which);
-    text_words(s.facts->name);
+    text_words(setting_name(which));
     for (uint8_t i = 0; i < numbers(&s); i++) {
         text_char(' ');
         write_value(&s, value_of(&s, i));
     }
-    if (flash_char(s.facts->unit) != '\0') {
+    flash_text_t unit = which < SETTING_PARAMETERS ? text_nth(units, which) : parameter_of(which)->unit;
+    if (flash_char(unit) != '\0') {
         text_char(' ');
-        text_words(s.facts->unit);
+        text_words(unit);
     }
 }
 
 static void write_range(const setting_t *s)
 {
-    number_write(flash_u32((const uint32_t *)&s->facts->min), fraction_bits(s));
+    number_write((uint32_t)s->least, s->format.fraction_bits);
     text_words(FLASH_TEXT(" to "));
-    number_write(flash_u32((const uint32_t *)&s->facts->max), fraction_bits(s));
-    if (flash_u8(&s->facts->zero_means_off) != 0) {
+    number_write((uint32_t)s->most, s->format.fraction_bits);
+    if (s->zero_is_off) {
         text_words(FLASH_TEXT(", 0: off"));
     }
 }
@@ -369,12 +390,12 @@ void setting_write_legal(uint8_t which)
 {
     setting_t s;
     look(&s, which);
-    if (s.kind == SIGNED_AXES) {
+    if (s.format.kind == SIGNED_AXES) {
         text_words(FLASH_TEXT("24 like xyz or -yxz"));
-    } else if (s.kind > LIST) {
+    } else if (s.format.kind > LIST) {
         write_range(&s);
     } else {
-        for (uint8_t i = 0; i < length(&s); i++) {
+        for (uint8_t i = 0; i < s.most; i++) {
             if (i != 0) {
                 text_char(' ');
             }

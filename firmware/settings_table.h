@@ -32,13 +32,6 @@ enum { STARTS_FILTER = 1, STARTS_SENSOR = 2, STARTS_LINE = 4, STARTS_CALIBRATION
 
 typedef enum { SETTING_ILLEGAL, SETTING_TAKEN, SETTING_TOO_SLOW } setting_answer_t;
 
-/* Of the last filter or rate that was too slow: what a sample would take, and what it may. */
-typedef struct {
-    uint16_t takes;
-    uint16_t left;
-} settings_cycles_t;
-extern settings_cycles_t settings_cycles;
-
 /* How many there are, with the filter in force. */
 uint8_t settings_count(void);
 

@@ -62,6 +62,16 @@ void text_tenths(uint16_t value)
     }
 }
 
+flash_text_t text_nth(flash_text_t texts, uint8_t after)
+{
+    while (after != 0) {
+        if (flash_char(texts++) == '\0') {
+            after--;
+        }
+    }
+    return texts;
+}
+
 bool text_equal(const char *ram, flash_text_t words)
 {
     char c = flash_char(words);

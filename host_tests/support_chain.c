@@ -49,20 +49,29 @@ bool chain_begin(chain_t *chain, filter_kind_t kind, uint16_t rate_dhz, uint8_t 
     return true;
 }
 
+/* False: the filter holds. */
+static bool miss(chain_t *chain)
+{
+    chain->x_lsb_q16 = filter_missing(&chain->filter);
+    noise_gap(&chain->noise);
+    if (chain->filter.quarters >= HOLD_QUARTERS) {
+        chain->away = 1;
+        return false;
+    }
+    chain->coasts++;
+    return true;
+}
+
 static void coast_over_gap(chain_t *chain, uint64_t t_us)
 {
-    chain->coasts = 0;
+    chain->coasts = chain->clipped ? chain->coasts : 0;
     if (!chain->has_sample) {
         return;
     }
     for (; t_us - chain->last_us >= chain->period_us + (chain->period_us >> 1); chain->last_us += chain->period_us) {
-        chain->x_lsb_q16 = filter_missing(&chain->filter);
-        if (chain->filter.quarters >= HOLD_QUARTERS) {
-            chain->away = 1;
+        if (!miss(chain)) {
             return;
         }
-        chain->coasts++;
-        noise_gap(&chain->noise);
     }
 }
 
@@ -71,7 +80,7 @@ static bool rejoins(chain_t *chain, int16_t lsb)
 {
     int16_t off_lsb = (int16_t)(lsb - ((((chain->x_lsb_q16 + 128) >> 8) + 128) >> 8));
     if ((uint32_t)(off_lsb * off_lsb) > noise_r_lsb2_q8(&chain->noise) >> 5) {
-        if (chain->clipped || chain->away++ < AWAY_SAMPLES) {
+        if (chain->away++ < AWAY_SAMPLES) {
             return false;
         }
         filter_restart(&chain->filter);
@@ -88,7 +97,12 @@ int32_t chain_sample(chain_t *chain, uint64_t t_us, int16_t lsb)
     chain->has_sample = true;
     chain->begun = false;
     chain->clipped = lsb >= chain->rail_high_lsb || lsb <= -chain->rail_high_lsb - 1;
-    if (!chain->clipped && noise_update(&chain->noise, lsb)) {
+    if (chain->clipped) {
+        (void)miss(chain);
+        chain->waits = true;
+        return chain->x_lsb_q16;
+    }
+    if (noise_update(&chain->noise, lsb)) {
         filter_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
     }
     int16_t z_lsb = chain->median.window == 0U ? lsb : median_update(&chain->median, lsb);

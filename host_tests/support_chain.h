@@ -33,7 +33,7 @@ typedef struct {
     median_t median; /* window 0: the filter gets the samples as they are */
     uint64_t last_us;
     uint32_t period_us;
-    uint32_t coasts; /* predictions before the last sample */
+    uint32_t coasts; /* predictions before the last sample that was used */
     uint16_t rate_dhz;
     uint32_t away; /* after a hold: 1, and 1 more for each sample away from what was held */
     int32_t x_lsb_q16;

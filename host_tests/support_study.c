@@ -73,7 +73,8 @@ void study_end(study_t *study)
  * A read that is wrong by a. Linear filters follow it by A^2 sum h^2. A filter that does not may follow a read that is
  * within its gate of three sigma, where the good one was too: |A| <= 6 sqrt(S). Else it loses at most the good read,
  * 3 sqrt(S) off, and takes no more than a soft gate of two sigma of the bad one: 2 sqrt(S) off, the good one in part
- * likewise: 16 S covers both. S from kf's gain, w1 = 1 - R / S, which all two-state filters have in the steady state.
+ * likewise: 16 S covers both. One at the rail of the range is missing for all. S from kf's gain, w1 = 1 - R / S, which
+ * all two-state filters have in the steady state.
  */
 static void predict(const chain_t *chain, double a, score_t *score)
 {
@@ -94,7 +95,7 @@ static void predict(const chain_t *chain, double a, score_t *score)
         gain = kf3_noise_gain_of(w1, f->p.p12 / 268435456.0, f->p13_uq28 / 268435456.0 / (f->fine ? 16.0 : 1.0));
     }
     double s_lsb2 = chain_r_lsb2(chain) / (1.0 - w1);
-    score->predicted += gain * a * a;
+    score->predicted += chain->clipped ? 0.0 : gain * a * a;
     score->allowed += gain * (a * a <= 36.0 * s_lsb2 ? a * a : 16.0 * s_lsb2);
 }
 

@@ -101,10 +101,6 @@ static void measure_outside(run_t *run, double x_lsb)
 
 static void judge_hull(run_t *run, int16_t lsb, double x_lsb)
 {
-    if (run->chain.clipped) { /* on a reading at the rail no filter restarts */
-        run->hull.filled = 0;
-        return;
-    }
     hull_add(&run->hull, lsb, chain_r_lsb2(&run->chain), run->chain.coasts);
     double left_lsb;
     bool has_hull = run->facts.rule == ENVELOPE_REACQUIRES || run->facts.rule == ENVELOPE_STANDS;
@@ -150,6 +146,7 @@ static void one_sample(run_t *run, uint64_t t_us, int16_t lsb)
     int32_t x_lsb_q16 = chain_sample(&run->chain, t_us, lsb);
     run->begun = run->begun || run->chain.begun;
     if (run->chain.waits) {
+        run->hull.filled = run->chain.clipped ? 0 : run->hull.filled; /* on a reading at the rail no filter restarts */
         return;
     }
     filter_probe_t probe;

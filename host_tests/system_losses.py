@@ -106,7 +106,7 @@ def forced_every(filter_name, rate):
     """The `every` that the firmware sets when it is asked for every row at 1,000,000 baud."""
     _, notes, _, stats = simrun("forced", STREAMS / "rest-2lsb.csv", "--filter", filter_name, "--rate", rate, "--baud", 1000000, "--every", 1,
                                 "--max-ms", 1500, fw=image_with(filter_name))
-    forced = [re.fullmatch(r"# every (\d+)(: the least that this filter allows)?", note) for note in notes]
+    forced = [re.fullmatch(r"# every (\d+)(: the least for this filter)?", note) for note in notes]
     every = int([f for f in forced if f][-1].group(1))
     assert f"# filter {filter_name}" in notes and f"# rate {rate} Hz, I2C at {400 if rate == 800 else 363.6} kHz" in notes, notes
     return every
@@ -139,7 +139,7 @@ def a_filter_too_slow_for_the_rate_is_refused_and_samples_go_on():
                                     f"1500:filter {SLOWEST}", "--cmd", "1600:filter", "--loop", "--max-ms", 3000, fw=tight)
     assert notes.count(reply) == 1 and notes[notes.index(reply) + 1] == f"# filter {fits}", notes
     # 18,750 - 8,050 - 10,500 cycles a sample are left for rows of 10,450
-    assert "# every 53: the least that this filter allows" in notes, notes
+    assert "# every 53: the least for this filter" in notes, notes
     assert_nothing_lost(rows, served, 53, from_us=1000000, end_us=2900000)
     assert not any(r[9] & (128 | 256) for r in rows if r[0] > 1400000)
     rows, notes, served, _ = simrun("tight-rate", STREAMS / "rest-2lsb.csv", "--filter", SLOWEST, "--cmd", "1500:rate 800", "--cmd", "1600:rate",

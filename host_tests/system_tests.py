@@ -242,7 +242,7 @@ def silent_int1_is_told():
     for rate, lasts_ms in [(rate, ms) for rate in (12.5, 100, 400, 800) for ms in (1500, 270)]:
         rows, notes, _, stats = fault_run(f"fault-noint-{rate}", f"1000ms:noint:{lasts_ms}", options=("--rate", str(rate), "--baud", "500000"))
         begins, ends = [n for n in notes if "fault 5" in n]
-        assert begins == "# fault 5: the sensor has data, but INT1 stays low: check INT1 to D2", notes
+        assert begins == "# fault 5: INT1 stays low: check INT1 to D2", notes
         assert ends.startswith("# fault 5 over: after "), notes
         assert stats["resets"] == 0 and stats["rows_wrong"] == 0
         came = [r for r in rows if 1_400_000 <= r[0] < 2_400_000 and not r[9] & (2 | 16)]
@@ -295,7 +295,7 @@ def hung_loop_is_reset_and_told():
 def hung_filtering_is_reset_within_300_ms():
     rows, notes, _, stats = simrun("hang-filtering", STREAMS / "rest-2lsb.csv", "--max-ms", "3000", "--fault",
                                 "1000ms:poke:hang_stages=2", "--expect-resets", "1", fw="build/uno/hang/firmware.elf")
-    assert any("stage mask 2 " in n for n in notes), notes
+    assert any(n.endswith("stage mask 2") for n in notes), notes
     assert stats["resets"] == 1 and 1200 < 3000 - rows[-1][0] / 1000 <= 1310, rows[-1]
 
 
@@ -304,7 +304,7 @@ def hung_sampling_is_reset_within_300_ms():
     # INT1 is back when the reset has come and the sensor has no sample yet: one that waited would be stamped with the edge
     rows, notes, _, stats = simrun("hang-sampling", STREAMS / "rest-2lsb.csv", "--max-ms", "3000", "--fault", "1000ms:noint:270",
                                    "--fault", "1000ms:poke:hang_stages=1", "--expect-resets", "1", fw="build/uno/hang/firmware.elf")
-    assert any("stage mask 1 " in n for n in notes), notes
+    assert any(n.endswith("stage mask 1") for n in notes), notes
     assert stats["resets"] == 1 and 1200 < 3000 - rows[-1][0] / 1000 <= 1310, rows[-1]
 
 

@@ -219,7 +219,7 @@ static void test_every_follows_what_the_line_carries(void)
     size_t before = board.note_count;
     board_type("rate 400");
     board_run_ms(200);
-    TEST_ASSERT_EQUAL_STRING("# every 3: the least that this baud rate allows", board.notes[before + 1]);
+    TEST_ASSERT_EQUAL_STRING("# every 3: the least for this baud rate", board.notes[before + 1]);
 }
 
 static void test_800_hz_says_its_bus_speed(void)

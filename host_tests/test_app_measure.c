@@ -281,7 +281,7 @@ static void test_one_at_a_time(void)
     board_type("noise");
     board_type("selftest");
     board_run_ms(200.0);
-    TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# refused 10: one measurement at a time", note));
+    TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# refused 10: busy measuring", note));
     board_run_ms(SELFTEST_MS);
     talk_assert_told_once(note, "selftest");
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("noise", note));

@@ -139,7 +139,7 @@ static void test_every_follows_what_the_filter_leaves_time_for(void)
         }
         size_t before = board.note_count;
         snprintf(typed, sizeof typed, "filter %s", filter_listed_name((filter_kind_t)kind));
-        snprintf(answer, sizeof answer, "# every %u: the least that this filter allows", every);
+        snprintf(answer, sizeof answer, "# every %u: the least for this filter", every);
         board_type(typed);
         board_run_ms(150);
         TEST_ASSERT_EQUAL_UINT16(every, settings_every_in_force());

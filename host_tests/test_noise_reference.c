@@ -3,6 +3,7 @@
  * healthy samples at rest.
  */
 #include "noise.h"
+#include "reference_noise.h"
 #include "stream.h"
 #include "support_filters.h"
 #include "support_roles.h"
@@ -145,69 +146,20 @@ typedef struct {
     double bad;
 } roll_case_t;
 
-static double roll_lsb(const roll_case_t *c, int k)
-{
-    return ROLL_LSB_PER_DEGREE * roll_truth_deg(c->profile, 10.0 * k / c->rate_dhz);
-}
-
 static double roll_variance(void)
 {
     return ROLL_R_DEG2 * ROLL_LSB_PER_DEGREE * ROLL_LSB_PER_DEGREE + 1.0 / 12.0;
 }
 
-/* P(X^2 > t) of a second difference in its sigmas, X normal about d, or spoilt by a bad read among its three samples. */
-static double beyond(double t, double d, double bad)
+/* After 10 s. */
+static reference_noise_estimate_t expected_of(const roll_case_t *c)
 {
-    double spoilt = 1.0 - pow(1.0 - bad, 3.0);
-    double tail = 0.5 * (erfc((sqrt(t) - d) / sqrt(2.0)) + erfc((sqrt(t) + d) / sqrt(2.0)));
-    return spoilt + (1.0 - spoilt) * tail;
-}
-
-/* Mean of the term behind sample k, in variances, where m is the estimate: E min(X^2, Y^2, c w m) / w. */
-static double expected_term(const roll_case_t *c, int k, double m, double limit)
-{
-    const int steps = 400;
-    const double w = (limit < 4.0 ? 65536.0 / 40913.0 : 65536.0 / 33719.0) / 6.0; /* they solve their equation: above */
-    int apart = c->rate_dhz >= 700 ? 2 : 1;
-    int other = apart == 2 ? 1 : 3;
-    double d[2];
-    for (int i = 0; i < 2; i++) {
-        int at = k - i * other;
-        double bend = roll_lsb(c, at) - 2.0 * roll_lsb(c, at - apart) + roll_lsb(c, at - 2 * apart);
-        d[i] = bend / sqrt(6.0 * roll_variance());
+    static double truth_lsb[1001];
+    for (int k = 0; k <= c->rate_dhz; k++) {
+        truth_lsb[k] = ROLL_LSB_PER_DEGREE * roll_truth_deg(c->profile, 10.0 * k / c->rate_dhz);
     }
-    double sum = 0.0;
-    for (int i = 0; i < steps; i++) {
-        double t = limit * w * m * (i + 0.5) / steps;
-        sum += beyond(t, d[0], c->bad) * beyond(t, d[1], c->bad);
-    }
-    return sum * limit * m / steps;
-}
-
-/*
- * After 10 s, in variances: what the estimate were if each term were what is expected of it, from the floor and with the
- * weights that noise.h tells; the last of these; how much of an error the next terms make again; and by how much a
- * fluctuation (a variance of 1) lowers the estimate, because the limited mean is concave: half of its second derivative
- * over 1 - the first.
- */
-typedef struct {
-    double estimate, weight, again, bent;
-} expected_t;
-
-static expected_t expected_of(const roll_case_t *c)
-{
-    const double h = 0.05;
-    expected_t e = { .estimate = 0.002 * c->rate_dhz / roll_variance() };
-    for (int n = 0; n + 5 <= c->rate_dhz; n++) {
-        e.weight = (n < 4) ? 0.5 : (n < 255) ? exp2(-floor(log2(n))) : 1.0 / 256.0;
-        e.estimate += e.weight * (expected_term(c, n + 5, e.estimate, n < 64 ? 4.5 : 3.0) - e.estimate);
-    }
-    double more = expected_term(c, c->rate_dhz, e.estimate + h, 3.0);
-    double less = expected_term(c, c->rate_dhz, e.estimate - h, 3.0);
-    double here = expected_term(c, c->rate_dhz, e.estimate, 3.0);
-    e.again = (more - less) / (2.0 * h);
-    e.bent = 0.5 * (2.0 * here - more - less) / (h * h) / (1.0 - e.again);
-    return e;
+    reference_noise_t of = { truth_lsb, c->rate_dhz + 1, c->rate_dhz, roll_variance(), c->bad };
+    return reference_noise_estimate(&of);
 }
 
 /* Estimate after 10 s in variances; the R in force lies within an eighth of 1.5 times it. */
@@ -248,7 +200,7 @@ static void rolls_have_the_noise_that_the_terms_say(void)
             squares += m * m / ROLL_RUNS;
         }
         double variance = squares - sum * sum;
-        expected_t e = expected_of(&cases[i]);
+        reference_noise_estimate_t e = expected_of(&cases[i]);
         double expected = e.estimate - e.bent * variance;
         printf("%s: %.4f variances, sd %.4f; %.4f expected, %.4f of it without fluctuation\n", cases[i].name, sum,
                sqrt(variance), expected, e.estimate);

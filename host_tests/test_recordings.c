@@ -71,7 +71,8 @@ static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t
         pipeline_row_done();
         for (int axis = 0; axis < 3; axis++) {
             (void)chain_sample(&chain[axis], in->t_us, in->lsb[axis]);
-            uint8_t own = chain[axis].waits ? FILTER_GATED : chain[axis].filter.flags;
+            uint8_t refused = chain[axis].clipped ? 0 : FILTER_GATED;
+            uint8_t own = chain[axis].waits ? refused : chain[axis].filter.flags;
             flags |= (own & FILTER_GATED) != 0U ? ROW_GATED : 0U;
             flags |= (own & FILTER_REACQUIRED) != 0U || chain[axis].begun ? ROW_REACQUIRED : 0U;
             flags |= chain[axis].clipped ? ROW_CLIPPED : 0U;

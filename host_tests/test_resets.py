@@ -14,7 +14,7 @@ HANG_NOW = "poke:hang_stages=0x80"
 # a power-on, an external reset and what comes out of a watchdog reset have these to get to the first row without a flag, in ms
 POWER_LIMIT, WATCHDOG_LIMIT, WATCHDOG_PERIOD, LOADER_WAITS = 150, 600, 250, 1400
 CAUSES = {"mcupower": "power on", "reset": "reset button or serial port opened", "brownout": "supply dropped",
-          HANG_NOW: "watchdog, stage mask 7 (1 sampling, 2 filtering, 4 output)"}
+          HANG_NOW: "watchdog, stage mask 7"}
 # RAM outlives a short dip of the supply, and the boot loader clears MCUSR: only the button is left to be told
 CAUSES_LOADER = {**CAUSES, "brownout": CAUSES["reset"]}
 

@@ -2,7 +2,7 @@
 P := $(B)/papers
 PAPERS_MAIN := $(wildcard host_tests/papers/paper0*.cpp)
 PAPERS_CPP := $(filter-out $(PAPERS_MAIN),$(wildcard host_tests/papers/*.cpp)) \
-              $(addprefix host_tests/reference_,robust.cpp synthesis.cpp)
+              $(addprefix host_tests/reference_,noise.cpp robust.cpp synthesis.cpp)
 PAPERS_C   := $(wildcard lib/filters/src/*.c) $(LAW_SUPPORT) host_tests/support_random.c host_tests/support_tilt_phases.c
 PAPERS_OBJ := $(PAPERS_CPP:%.cpp=$(P)/%.o) $(PAPERS_C:%.c=$(P)/%.o)
 RUNS ?= 10000

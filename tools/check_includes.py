@@ -30,7 +30,7 @@ MODEL = {"adxl345_model.h", "stream.h"}
 # folder -> (names allowed, pattern of further names allowed); a folder below goes with the longest name
 RULES = {
     "lib/filters/src": (STANDARD | FILTERS, None),
-    "lib/filters/examples": (STANDARD | FILTERS | {"Arduino.h", "Wire.h", "SPI.h"}, None),
+    "lib/filters/examples": (STANDARD | FILTERS | TILT | {"Arduino.h", "Wire.h", "SPI.h"}, None),
     "lib/tilt/src": (STANDARD | TILT | FILTERS - INSIDE, None),
     "lib/adxl345/src": (STANDARD | ADXL | HAL, None),
     "lib/nav/src": (STANDARD | NAV | {"math.h"}, None),

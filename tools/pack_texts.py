@@ -2,7 +2,7 @@
 """pack_texts.py OUT: the texts of firmware/reply_texts.h, packed for program memory, as a header (firmware/reply_packed.h).
 
 Byte pair encoding: the commonest pair of neighbours gets a byte of its own, again and again, until a pair saves no more than the two bytes
-that it takes in the list of pairs. reply_values.c unpacks them, PACKED_DEPTH calls deep.
+that it takes in the list of pairs. reply_lines.c unpacks them with a stack of PACKED_DEPTH bytes.
 """
 import collections
 import pathlib
@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 
-PAIR_FIRST, PAIRS_MAX = 0x87, 0x79  # smaller bytes are characters, or stand for values (enum say)
+ALONE, PAIR_FIRST, PAIRS_MAX = 0x7B, 0x8B, 0x75  # smaller bytes are characters, or stand for values; from ALONE on (enum say) in no pair
 STEP = 8                            # texts between two whose start is kept; the firmware counts ends from there
 COLUMNS = 110
 
@@ -37,6 +37,8 @@ def occurrences(rows):
     for row in rows:
         before = None
         for pair in zip(row, row[1:]):
+            if any(ALONE <= code < PAIR_FIRST for code in pair):
+                continue
             if pair == before and pair[0] == pair[1]:
                 before = None
                 continue

@@ -140,7 +140,7 @@ static tilt_t tilt;
 static int32_t a_q8[3];
 static void NOINLINE update_angles(void)
 {
-    tilt_angles(&tilt, a_q8[0], a_q8[1], a_q8[2]);
+    tilt_angles(&tilt, a_q8);
 }
 
 static float float_a[3];

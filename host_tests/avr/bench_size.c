@@ -67,7 +67,7 @@ static void use_noise(void)
 static void use_angles(void)
 {
     static tilt_t state;
-    tilt_angles(&state, out, out, out);
+    tilt_angles(&state, (const int32_t[]){ out, out, out });
     out = state.roll_cdeg + state.pitch_cdeg;
 }
 

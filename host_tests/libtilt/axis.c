@@ -67,6 +67,7 @@ static void take(axis_t *a, int16_t z_lsb, bool at_rail)
     a->missing = 0;
     if (at_rail) {
         (void)filter_missing(&a->filter);
+        noise_gap(&a->noise);
         return;
     }
     if (a->fixed_r_lsb2_q8 == 0 && noise_update(&a->noise, z_lsb)) {

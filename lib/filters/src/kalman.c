@@ -84,13 +84,10 @@ FX_INLINE void grow(filter_kalman_t *k)
 {
     uint8_t high = (uint8_t)((uint8_t)(k->p.p11 >> 24) | (uint8_t)(k->p.p12 >> 24) | (uint8_t)(k->p.p22 >> 24));
     if ((high & 0xE0U) == 0U) {
-        FX_FENCE();
         uint32_t p12 = k->p.p12;
         uint32_t sum = p12 + k->p.p22;
         k->p.p12 = sum;
-        FX_FENCE();
         k->p.p11 += p12 + sum;
-        FX_FENCE();
         k->p.p22 += k->q22_uq28;
     }
 }
@@ -118,14 +115,12 @@ FX_INLINE void correct(filter_t *f)
     f->gain_uq16 = w1_uq16;
     k->p.p11 = fx_shift12(w1_uq16);
     tracker_move(f, (int32_t)fx_mul24_uq16(f->size_lsb_uq16 >> 8, w1_uq16));
-    FX_FENCE();
     uint32_t p12 = k->p.p12;
     uint32_t w2_uq28 = fx_mul_uq16(p12, g);
     k->p.p12 = w2_uq28;
     uint32_t w2_uq24 = fx_sixteenth(w2_uq28); /* < 1 because P12 <= P11 after a prediction */
     int32_t p22_q28 = (int32_t)k->p.p22 - (int32_t)fx_mul_uq24(p12, w2_uq24); /* < 3 less < 4: fits */
     k->p.p22 = (p22_q28 < 0) ? 0U : (uint32_t)p22_q28;
-    FX_FENCE();
     tracker_turn(f, (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, w2_uq24));
 }
 
@@ -133,7 +128,6 @@ bool kalman_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     tracker_predict(f);
     tracker_meet(f, z_lsb);
-    FX_FENCE();
     grow(&f->own.kalman);
     if (what == STEP_MISSING) {
         return false;

@@ -40,13 +40,18 @@ uint16_t synth_next_gain_uq16(filter_t *f)
 
 void synth_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    int32_t x1 = f->x_lsb_q16;
-    tracker_predict(f);
+    int32_t before = f->x_lsb_q16;
+    int32_t x = tracker_bounded(f, before + f->rate_lsb);
     if (what != STEP_MISSING) {
-        tracker_meet(f, z_lsb);
-        tracker_move(f, (int32_t)fx_mul_uq16(f->size_lsb_uq16, f->gain_uq16));
+        int32_t innovation = (int32_t)z_lsb * 65536 - x;
+        uint32_t size = fx_abs32(innovation);
+        f->negative = innovation < 0;
+        f->size_lsb_uq16 = size;
+        int32_t step = (int32_t)fx_mul_uq16(size, f->gain_uq16);
+        x = f->negative ? x - step : x + step;
     }
-    f->rate_lsb = f->x_lsb_q16 - x1;
+    f->x_lsb_q16 = x;
+    f->rate_lsb = x - before;
 }
 
 void synth_bend_by(filter_t *f, uint16_t a1_uq16)
@@ -59,6 +64,23 @@ void synth_bend_by(filter_t *f, uint16_t a1_uq16)
         f->rate_lsb += part;
     } else {
         f->rate_lsb -= part;
+    }
+}
+
+/* Apart, so that the straight line has no registers to save. */
+FX_NOINLINE void bent_step(filter_t *f, int16_t z_lsb, uint8_t what)
+{
+    synth_bend_by(f, f->own.synth.a1_uq16);
+    synth_step(f, z_lsb, what);
+}
+
+void synth_steady_step(filter_t *f, int16_t z_lsb, uint8_t what)
+{
+    f->gain_uq16 = f->own.synth.b0_uq16;
+    if (f->own.synth.a1_uq16 == 0U) {
+        synth_step(f, z_lsb, what);
+    } else {
+        bent_step(f, z_lsb, what);
     }
 }
 

@@ -35,11 +35,11 @@ static bool near_estimate(const tilt_axis_t *a, int16_t lsb)
 }
 
 /* A sample after a hold, which the filter is not to have as long as a->away is not 0. */
-static uint16_t rejoin(tilt_axis_t *a, int16_t lsb, bool clipped)
+static uint16_t rejoin(tilt_axis_t *a, int16_t lsb)
 {
     uint16_t flags = 0;
     if (!near_estimate(a, lsb)) {
-        if (clipped || a->away++ < (uint8_t)AWAY_SAMPLES) {
+        if (a->away++ < (uint8_t)AWAY_SAMPLES) {
             return TILT_GATED;
         }
         filter_restart(&a->filter);
@@ -49,15 +49,27 @@ static uint16_t rejoin(tilt_axis_t *a, int16_t lsb, bool clipped)
     return flags;
 }
 
+static void miss(tilt_axis_t *a)
+{
+    noise_gap(&a->noise);
+    (void)filter_missing(&a->filter);
+    if (a->filter.quarters == (uint8_t)HOLD_QUARTERS) {
+        a->away = 1;
+    }
+}
+
 uint16_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bool own_r)
 {
-    bool clipped = tilt_at_rail(lsb, rail_high_lsb);
-    uint16_t flags = clipped ? TILT_CLIPPED : 0U;
-    if (!clipped && noise_update(&a->noise, lsb) && !own_r) {
+    uint16_t flags = 0;
+    if (tilt_at_rail(lsb, rail_high_lsb)) {
+        miss(a);
+        return TILT_CLIPPED | flags_of(&a->filter);
+    }
+    if (noise_update(&a->noise, lsb) && !own_r) {
         filter_set_noise(&a->filter, noise_r_lsb2_q8(&a->noise));
     }
     if (a->away != 0U) {
-        flags |= rejoin(a, lsb, clipped);
+        flags = rejoin(a, lsb);
     }
     if (a->away == 0U) {
         (void)filter_update(&a->filter, lsb);
@@ -68,10 +80,6 @@ uint16_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bo
 
 uint16_t tilt_axis_missing(tilt_axis_t *a)
 {
-    noise_gap(&a->noise);
-    (void)filter_missing(&a->filter);
-    if (a->filter.quarters == (uint8_t)HOLD_QUARTERS) {
-        a->away = 1;
-    }
+    miss(a);
     return TILT_COASTED | flags_of(&a->filter);
 }

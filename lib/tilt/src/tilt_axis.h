@@ -20,7 +20,7 @@ enum tilt_flag {
     TILT_GATED = 1,             /* an axis refused its sample, or took a part of it */
     TILT_COASTED = 2,           /* a prediction, no sample */
     TILT_REACQUIRED = 4,        /* an axis restarted where samples agree with each other, not with it */
-    TILT_CLIPPED = 8,           /* an axis is at the rail of its range */
+    TILT_CLIPPED = 8,           /* an axis is at the rail of its range: its sample is missing */
     TILT_WARMING_UP = 128,      /* an axis collects the samples of its start */
     TILT_NOT_GRAVITY = 512,     /* filtered |a| is outside 0.85..1.15 g: the tilt is not to be trusted */
     TILT_ROLL_UNDEFINED = 1024, /* x points up or down: the last roll is held */
@@ -46,7 +46,8 @@ void tilt_axis_begin(tilt_axis_t *a, uint16_t rate_dhz, bool noisy_axis);
  * One sample. own_r: R is the caller's, not the estimated one. The estimate is in a->filter; answers what is true of
  * the sample on this axis.
  *
- * After a hold (100 ms without a sample) the filter goes on from what it held when the sample lies near it. A single
+ * A sample at the rail of its range says no more than that it is outside: it is missing. After a hold (100 ms without a
+ * sample) the filter goes on from what it held when the sample lies near it. A single
  * one away from it may be a bad reading; with the second in a row the filter restarts, knowing the noise as before.
  */
 uint16_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bool own_r);

@@ -95,7 +95,7 @@ static void find_angles(tilt_filter_t *t)
         estimates_q8[axis] = (t->axes[axis].filter.x_lsb_q16 + 128) >> 8;
     }
     calibration_apply(&t->calibration, estimates_q8, t->a_q8);
-    tilt_angles(&t->angles, t->a_q8[0], t->a_q8[1], t->a_q8[2]);
+    tilt_angles(&t->angles, t->a_q8);
     if (t->angles.roll_undefined) {
         t->flags |= TILT_ROLL_UNDEFINED;
     }
@@ -113,7 +113,7 @@ void tilt_filter_update(tilt_filter_t *t, int16_t ax, int16_t ay, int16_t az)
     update_axis(t, 1, ay);
     update_axis(t, 2, az);
     find_angles(t);
-    if (!tilt_gravity_plausible(t->a_q8[0], t->a_q8[1], t->a_q8[2])) {
+    if (!tilt_gravity_plausible(t->a_q8)) {
         t->flags |= TILT_NOT_GRAVITY;
     }
 }

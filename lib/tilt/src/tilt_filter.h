@@ -10,7 +10,7 @@
  * Angles and flags are those of this project's firmware, bit for bit. Readings are those of the ADXL345 in full
  * resolution, 13 bit: -4096..4095 LSB of 1/256 g; see tilt_filter_sensor for others. A reading at the end of its range
  * or beyond is flagged TILT_CLIPPED. Axes as on the ADXL345: roll = atan2(y, z), pitch = atan2(-x, sqrt(y^2 + z^2)).
- * Plain data, about 430 bytes on an AVR; one caller at a time, from main or from an interrupt.
+ * Plain data, 400 bytes on an AVR; one caller at a time, from main or from an interrupt.
  */
 #ifndef TILT_FILTER_H
 #define TILT_FILTER_H
@@ -48,8 +48,8 @@ filter_answer_t tilt_filter_use(tilt_filter_t *t, const filter_law_t *law, const
 bool tilt_filter_begin_with(tilt_filter_t *t, uint16_t rate_hz, const filter_law_t *law);
 
 /*
- * With the law `adaptive` and an ADXL345 at 3.3 V. rate_hz: samples per second; outside 5..4000 the answer is false, and
- * the nearest legal rate is used.
+ * With the law `adaptive` and an ADXL345 at 3.3 V. rate_hz: samples per second; outside 5..4000 the answer is false,
+ * and the nearest legal rate is used.
  */
 static inline bool tilt_filter_begin(tilt_filter_t *t, uint16_t rate_hz)
 {
@@ -57,10 +57,10 @@ static inline bool tilt_filter_begin(tilt_filter_t *t, uint16_t rate_hz)
 }
 
 /*
- * A sensor whose readings have so many bits, at most 16, and so many LSB per g on x and y, and on z. Readings are shifted
- * right, with rounding, until they have 13 bits and 330 LSB per g at most; legal when 200 LSB per g and 8 bits are left.
- * False: not legal, and nothing is changed. Examples: ADXL345 in its 2 g range 10, 265, 256; MPU-6050 in its 2 g range
- * 16, 16384, 16384. R is that of an ADXL345 at least.
+ * A sensor whose readings have so many bits, at most 16, and so many LSB per g on x and y, and on z. Readings are
+ * shifted right, with rounding, until they have 13 bits and 330 LSB per g at most; legal when 200 LSB per g and 8 bits
+ * are left. False: not legal, and nothing is changed. Examples: ADXL345 in its 2 g range 10, 265, 256; MPU-6050 in its
+ * 2 g range 16, 16384, 16384. R is that of an ADXL345 at least.
  */
 bool tilt_filter_sensor(tilt_filter_t *t, uint8_t bits, uint16_t xy_lsb_per_g, uint16_t z_lsb_per_g);
 

@@ -1,24 +1,21 @@
 /*
- * An ADXL345 at 100 Hz, raw and filtered, in LSB (256 per g), for the serial plotter at 115200 baud. Outliers are
- * refused, a reading that fails is made again, and behind a bus that hung or a sensor that lost its supply the sketch
- * goes on.
+ * Roll and pitch from an ADXL345 at 100 Hz, in degrees, for the serial plotter at 115200 baud. Outliers are refused, a
+ * reading that fails is made again, and after a bus that hung or a sensor that lost its supply the sketch goes on.
  * SDA to A4, SCL to A5 (through a level shifter: the sensor is a 3.3 V part), CS to 3.3 V, SDO to GND.
  */
 #include <Wire.h>
-#include <filter.h>
-#include <noise.h>
+#include <tilt_filter.h>
 
 static const uint8_t ADXL345 = 0x53;
 static const uint8_t DEVID = 0x00, BW_RATE = 0x2C, POWER_CTL = 0x2D;
 static const uint8_t INT_SOURCE = 0x30, DATA_FORMAT = 0x31, DATA = 0x32;
 static const uint8_t DATA_READY = 0x80;
-static const uint16_t RATE_DHZ = 1000;  // 100 Hz
-static const char NAMES[] = "xyz";
+static const uint8_t RATE_HZ = 100, PERIOD_MS = 1000 / RATE_HZ;
 
-static filter_t filters[3];
-static noise_t noises[3];
+static tilt_filter_t tilt;
 static bool configured = false;
-static uint32_t heard_ms;
+static uint8_t missing = 0;
+static uint32_t due_ms;  // then the next sample is missing
 
 static bool write_register(uint8_t reg, uint8_t value)
 {
@@ -82,38 +79,49 @@ static bool sample_waits()
     return read_registers(INT_SOURCE, &source, 1) && (source & DATA_READY) != 0;
 }
 
-static int32_t filtered(uint8_t axis, int16_t lsb)
+static void print_number(const char *name, int16_t value)
 {
-    if (noise_update(&noises[axis], lsb)) {
-        filter_set_noise(&filters[axis], noise_r_lsb2_q8(&noises[axis]));
-    }
-    return filter_update(&filters[axis], lsb);
+    Serial.print(name);
+    Serial.print(value);
 }
 
-static void print_sample(const uint8_t bytes[6])
+static void print_degrees(const char *name, int16_t cdeg)
 {
+    Serial.print(name);
+    Serial.print(cdeg / 100.0);
+}
+
+static void take_sample(const uint8_t bytes[6])
+{
+    int16_t lsb[3];
     for (uint8_t axis = 0; axis < 3; axis++) {
-        int16_t lsb = (int16_t)(bytes[2 * axis] | (uint16_t)bytes[2 * axis + 1] << 8);
-        Serial.print(axis == 0 ? "" : ",");
-        Serial.print(NAMES[axis]);
-        Serial.print("_raw:");
-        Serial.print(lsb);
-        Serial.print(',');
-        Serial.print(NAMES[axis]);
-        Serial.print(':');
-        Serial.print(filtered(axis, lsb) / 65536.0);
+        lsb[axis] = (int16_t)(bytes[2 * axis] | (uint16_t)bytes[2 * axis + 1] << 8);
     }
+    tilt_filter_update(&tilt, lsb[0], lsb[1], lsb[2]);
+    print_number("x:", lsb[0]);
+    print_number(",y:", lsb[1]);
+    print_number(",z:", lsb[2]);
+    print_degrees(",roll:", tilt.angles.roll_cdeg);
+    print_degrees(",pitch:", tilt.angles.pitch_cdeg);
+    print_number(",flags:", tilt.flags);
     Serial.println();
+}
+
+// The filter predicts for 100 ms, then it holds; after five samples the sensor may have lost its supply.
+static void miss_sample()
+{
+    tilt_filter_missing(&tilt);
+    if (++missing == 5) {
+        missing = 0;
+        configured = false;
+    }
 }
 
 void setup()
 {
     Serial.begin(115200);
-    filter_config_t config = filter_defaults(&filter_law_sprf, RATE_DHZ);
-    for (uint8_t axis = 0; axis < 3; axis++) {
-        filter_init(&filters[axis], &filter_law_sprf, &config);
-        noise_init(&noises[axis], RATE_DHZ, axis == 2);
-    }
+    tilt_filter_begin(&tilt, RATE_HZ);
+    due_ms = millis();
 }
 
 void loop()
@@ -121,18 +129,14 @@ void loop()
     if (!configured) {
         start_bus();
         configured = configure();
-        heard_ms = millis();
-        return;
     }
     uint8_t bytes[6];
-    if (sample_waits() && read_registers(DATA, bytes, sizeof bytes)) {
-        heard_ms = millis();
-        print_sample(bytes);
-    } else if (millis() - heard_ms >= 50) {  // five samples are missing: the sensor may have lost its supply
-        for (uint8_t axis = 0; axis < 3; axis++) {
-            filter_restart(&filters[axis]);
-            noise_gap(&noises[axis]);
-        }
-        configured = false;
+    if (configured && sample_waits() && read_registers(DATA, bytes, sizeof bytes)) {
+        due_ms = millis() + PERIOD_MS + PERIOD_MS / 2;
+        missing = 0;
+        take_sample(bytes);
+    } else if ((int32_t)(millis() - due_ms) >= 0) {
+        due_ms += PERIOD_MS;
+        miss_sample();
     }
 }
