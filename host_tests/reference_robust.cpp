@@ -4,11 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <iterator>
 #include <vector>
 
 namespace
 {
 using namespace reference;
+
+enum Kind {
+    ROBUST_KF,
+    ROBUST_LRF,         // linear: (40)
+    ROBUST_SPRF,        // binary gate: (34), r^2 <= gate^2 Xi1; reacquire != 0 makes it SpRF+
+    ROBUST_SOFT,        // not in the paper: W = P H' / max(Xi1, r^2 / soft^2)
+    ROBUST_SHRF,        // structurally shortened: (25), (29)
+    ROBUST_PBF,         // pseudo-Bayesian: (8), (12), (13), one merged Gaussian per step
+    ROBUST_AF_GRID,     // adaptive: (14)..(19), distribution of q1 on 50 points
+    ROBUST_AF,          // adaptive: q1 <- q1 + (p - q1) / (n + 1) instead of the grid
+    ROBUST_CLAIRVOYANT, // told which samples are outliers: the bound
+};
+const char *const kind_names[] = { "kf", "lrf", "sprf", "soft", "shrf", "pbf", "af_grid", "af", "clairvoyant" };
 
 struct Estimate {
     Vector s;
@@ -266,8 +281,14 @@ double start_median(robust_reference_t &f, double z)
 }
 } // namespace
 
-void robust_reference_table1(robust_reference_t *f, robust_kind_t kind)
+bool robust_reference_table1(robust_reference_t *f, const char *name)
 {
+    const auto found = std::find_if(std::begin(kind_names), std::end(kind_names),
+                                    [name](const char *each) { return std::strcmp(each, name) == 0; });
+    if (found == std::end(kind_names)) {
+        return false;
+    }
+    const int kind = static_cast<int>(found - std::begin(kind_names));
     *f = robust_reference_t{};
     f->kind = kind;
     f->period_s = 0.0247;
@@ -287,6 +308,7 @@ void robust_reference_table1(robust_reference_t *f, robust_kind_t kind)
         f->q_mean = 0.5;
         f->q_count = 2.0;
     }
+    return true;
 }
 
 const char *robust_reference_refused(const robust_reference_t *f)

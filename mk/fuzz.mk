@@ -42,7 +42,7 @@ endif
 FUZZ_PLANTED := $(foreach p,$(FUZZ_PLANTS),$(FZ)/planted/$(firstword $(subst :, ,$(p))))
 
 define FUZZ_PLANT
-$(FZ)/planted/$(1).c: $(3) campaigns/breakages.txt host_tests/planted.txt tools/anchors.py tools/fuzz.py
+$(FZ)/planted/$(1).c: $(3) $(wildcard campaigns/breakages*.txt) host_tests/planted.txt tools/anchors.py tools/fuzz.py
 	@mkdir -p $$(@D)
 	@python3 tools/fuzz.py plant $(1) $$@
 

@@ -36,7 +36,7 @@ double table1_value(const std::string &filter, const std::string &parameter, dou
         return rate_max_deg_s / lsb_deg * period_s / t_s;
     }
     if (parameter == "clean") {
-        return filter == "af" ? 0.5 : clean; // af learns it: (15) begins with all values alike
+        return law_facts(filter_find(filter.c_str())).learns ? 0.5 : clean; // (15) begins with all values alike
     }
     if (parameter == "ratio") {
         return ratio;
