@@ -208,7 +208,8 @@ static void narrow_config(filter_config_t *config, uint16_t number);
 static void prove_set_up(const filter_law_t *law)
 {
     filter_config_t config = filter_defaults(law, ANY_U16(FILTER_RATE_MIN_DHZ, FILTER_RATE_MAX_DHZ));
-    //@ check config.rate_dhz >= 50;
+    filter_answer_t shipped = filter_judge(law, &config);
+    //@ check shipped == FILTER_ACCEPTED;
     bool optional = any_is_optional(law);
     for (uint8_t off = 0; off <= (uint8_t)optional; off++) {
         any_config(&config, law, off != 0U);
