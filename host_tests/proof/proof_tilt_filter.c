@@ -32,15 +32,15 @@ filter_config_t filter_defaults(const filter_law_t *law, uint16_t rate_dhz);
 
 #define ROLL(angle) (-17999 <= (angle) <= 18000)
 /*@ requires ROLL(out->roll_cdeg);
-    assigns out->roll_cdeg, out->pitch_cdeg, out->roll_undefined \from out->roll_cdeg, x_q8, y_q8, z_q8;
+    assigns out->roll_cdeg, out->pitch_cdeg, out->roll_undefined \from out->roll_cdeg, a_q8[0..2];
     ensures ROLL(out->roll_cdeg) && -9000 <= out->pitch_cdeg <= 9000;
     ensures out->roll_undefined == 0 || out->roll_undefined == 1;
 */
-void tilt_angles(tilt_t *out, int32_t x_q8, int32_t y_q8, int32_t z_q8);
-/*@ assigns \result \from x_q8, y_q8, z_q8;
+void tilt_angles(tilt_t *out, const int32_t a_q8[3]);
+/*@ assigns \result \from a_q8[0..2];
     ensures \result == 0 || \result == 1;
 */
-bool tilt_gravity_plausible(int32_t x_q8, int32_t y_q8, int32_t z_q8);
+bool tilt_gravity_plausible(const int32_t a_q8[3]);
 
 #define SAMPLE(z) (-4096 <= (z) <= 4095)
 #define NOISE(n)                                                                                         \
@@ -80,6 +80,7 @@ static void any_facade(tilt_filter_t *t)
 {
     t->angles.roll_cdeg = ANY_S16(-17999, 18000);
     t->angles.pitch_cdeg = ANY_S16(-9000, 9000);
+    t->angles.roll_undefined = ANY_BOOL();
     t->rate_dhz = ANY_U16(50, 40000);
     t->rail_high_lsb = ANY_S16(127, 4095);
     t->shift = ANY_U8(0, 15);
@@ -94,6 +95,7 @@ static void any_facade(tilt_filter_t *t)
 
 static const filter_law_t any_law;
 
+/* Options: -eva-split-return-function tilt_at_rail:full */
 void proof_tilt_axis(void)
 {
     for (uint8_t away = 0; away <= 3U; away++) {
@@ -137,6 +139,7 @@ void proof_tilt_filter_sensor(void)
     }
 }
 
+/* Options: -eva-split-return-function tilt_at_rail:full */
 void proof_tilt_filter_update(void)
 {
     for (uint8_t shift = 0; shift <= 15U; shift++) {
