@@ -39,10 +39,7 @@ typedef struct {
 /* Once at start-up: angles level. */
 void pipeline_reset(void);
 
-/*
- * What turns readings into accelerations, legal (calibration.h) and to be left where it lies: pipeline_work takes it up
- * between two samples.
- */
+/* What turns readings into accelerations from now on, legal (calibration.h) and to be left where it lies. */
 void pipeline_calibrate(const calibration_t *calibration);
 
 /* Begin anew: filters collect a robust start, noise estimates start at their floor. */
@@ -63,22 +60,19 @@ void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 void pipeline_retime(uint32_t period_us);
 
 /*
- * Goes on with what pipeline_start, _change, _retime, _coast or _sample have begun, as long as there is time in the
- * pass (pass.h), but with one piece at least; false: nothing was left to do. So the main loop can look after other
- * things meanwhile. Nothing else is to be begun before, but a change takes the place of a change.
+ * One piece of what pipeline_start, _change, _retime, _coast or _sample have begun: the filter of an axis changed, up to
+ * 4 ms, or a sample; false: nothing was left to do. So the main loop can look after other things meanwhile. Nothing else
+ * is to be begun before, but a change takes the place of a change.
  */
 bool pipeline_work(void);
-
-/* Filters are changed, or a calibration is taken up, and no sample is waited for. */
-bool pipeline_changing(void);
 
 /* All that is left to do, for a program without a main loop. */
 void pipeline_finish(void);
 
 /*
- * One sample to filters and noise estimates, which pipeline_work takes axis by axis. After a hold the filters go on
- * from the estimate that was held when the sample agrees with it, and begin anew with the second on end that does not,
- * each axis for itself.
+ * One sample, which pipeline_work takes to filters and noise estimates. After a hold the filters go on from the estimate
+ * that was held when the sample agrees with it, and restart with the second in a row that does not, each axis for
+ * itself.
  */
 void pipeline_sample(const adxl345_sample_t *sample);
 

@@ -36,7 +36,7 @@ void supervisor_look(const int16_t lsb[3])
 {
     for (uint8_t axis = 0; axis < AXES; axis++) {
         uint8_t *repeated = &supervisor.repeated[axis];
-        if (lsb[axis] != pipeline.axes[axis].lsb) {
+        if (lsb[axis] != pipeline.newest.lsb[axis]) {
             *repeated = 0;
         } else if (*repeated != UINT8_MAX) {
             (*repeated)++;
@@ -46,7 +46,7 @@ void supervisor_look(const int16_t lsb[3])
 
 static bool is_bad(uint8_t axis)
 {
-    int16_t lsb = pipeline.axes[axis].lsb;
+    int16_t lsb = pipeline.newest.lsb[axis];
     bool at_rail = lsb >= pipeline.rail_high_lsb || lsb <= (int16_t)(-pipeline.rail_high_lsb - 1);
     uint8_t limit = at_rail ? SUPERVISOR_RAIL_SAMPLES : SUPERVISOR_REPEATED_SAMPLES;
     return supervisor.repeated[axis] >= limit;

@@ -74,8 +74,7 @@ static bool rejoins(chain_t *chain, int16_t lsb)
         if (chain->clipped || chain->away++ < AWAY_SAMPLES) {
             return false;
         }
-        (void)init_default(&chain->filter, kind_of(&chain->filter), chain->rate_dhz);
-        filter_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
+        filter_restart(&chain->filter);
         chain->begun = true;
     }
     chain->away = 0;

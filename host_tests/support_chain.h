@@ -35,7 +35,7 @@ typedef struct {
     uint32_t period_us;
     uint32_t coasts; /* predictions before the last sample */
     uint16_t rate_dhz;
-    uint32_t away;     /* after a hold: 1, and 1 more for each sample away from what was held */
+    uint32_t away; /* after a hold: 1, and 1 more for each sample away from what was held */
     int32_t x_lsb_q16;
     int16_t rail_high_lsb;
     bool has_sample;

@@ -4,21 +4,6 @@
 /* Draws until a joint condition is met: a region that fills a tenth of the box is missed by one in 10^11. */
 #define DRAWS_MAX 250U
 
-uint32_t random32(uint32_t *state)
-{
-    uint32_t v = *state;
-    v ^= v << 13;
-    v ^= v >> 17;
-    v ^= v << 5;
-    *state = v;
-    return v;
-}
-
-uint32_t random32_below(uint32_t *state, uint32_t end)
-{
-    return random32(state) % end;
-}
-
 uint8_t linked_kind(uint8_t kind)
 {
     while (kind < (uint8_t)FILTER_KIND_COUNT && filter_listed((filter_kind_t)kind) == NULL) {

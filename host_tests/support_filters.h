@@ -96,25 +96,31 @@ typedef struct {
 } envelope_facts_t;
 #endif
 
-/* What no descriptor tells of a law: support_filter_facts.c has a row for each. */
+/* What no descriptor tells of a law: support_law_NAME.c has them. */
 typedef struct {
-    int32_t mirror_lsb_q16;     /* largest difference between the answers to a sequence and to its mirror image */
-    uint16_t recovery_samples;  /* after which a filter that predicted is back, with default parameters at 100 Hz */
-    bool joint_condition;       /* init may refuse a configuration whose parameters are each in range */
-    bool gated_means_unused;    /* a sample flagged FILTER_GATED is not used at all; else it may count a little */
-    bool starts_with_median;    /* with the running median of filter.h; else with the first sample ("as published") */
-    bool restarts;              /* begins anew on samples that stay away */
-    bool learns;                /* its noise, or the share of outliers: a restart keeps that */
-    bool rate_is_a_difference;  /* of two estimates: at rest 314 and 589 degrees a second at 800 Hz */
-    bool switches;              /* FILTER_SWITCHED may be set */
-    bool synthesised;           /* its rate is the last step, without a limit of its own */
+    int32_t mirror_lsb_q16;    /* largest difference between the answers to a sequence and to its mirror image */
+    uint16_t recovery_samples; /* after which a filter that predicted is back, with default parameters at 100 Hz */
+    bool joint_condition;      /* init may refuse a configuration whose parameters are each in range */
+    bool gated_means_unused;   /* a sample flagged FILTER_GATED is not used at all; else it may count a little */
+    bool starts_with_median;   /* with the running median of filter.h; else with the first sample ("as published") */
+    bool restarts;             /* begins anew on samples that stay away */
+    bool learns;               /* its noise, or the share of outliers: a restart keeps that */
+    bool rate_is_a_difference; /* of two estimates: at rest 314 and 589 degrees a second at 800 Hz */
+    bool switches;             /* FILTER_SWITCHED may be set */
+    bool synthesised;          /* its rate is the last step, without a limit of its own */
 #ifndef __AVR__
     envelope_facts_t envelope;
 #endif
 } law_facts_t;
 law_facts_t law_facts(filter_kind_t kind);
 
-#define FOR_EACH_KIND_WITH_MEDIAN(kind) \
-    FOR_EACH_KIND(kind) if (law_facts((filter_kind_t)(kind)).starts_with_median)
+/* Of each law, in its support_law_NAME.c: the facts; NULL, or what of its own state is outside its bounds. */
+#define LAW_SUPPORT(F)               \
+    law_facts_t law_facts_##F(void); \
+    const char *broken_##F(const filter_t *f);
+FILTER_LIST(LAW_SUPPORT)
+#undef LAW_SUPPORT
+
+#define FOR_EACH_KIND_WITH_MEDIAN(kind) FOR_EACH_KIND(kind) if (law_facts((filter_kind_t)(kind)).starts_with_median)
 
 #endif

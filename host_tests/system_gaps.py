@@ -1,5 +1,6 @@
 """Samples missing from a stream: the chip's rows in their places are those of the native build."""
 from system_support import OUT, STREAMS, TESTS, image_with, read_output, run, simrun
+from laws import DEFAULT, LIGHT, PLAIN  # noqa: E402
 
 
 def thinned(stream):
@@ -36,7 +37,7 @@ def make_thinned_test(filter_name):
     return check
 
 
-for filter_kind in ("adaptive", "kf", "synth"):
+for filter_kind in (DEFAULT, PLAIN, LIGHT):
     TESTS.append(make_thinned_test(filter_kind))
 
 

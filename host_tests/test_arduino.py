@@ -11,6 +11,7 @@ import tempfile
 
 import arduino_rules
 from system_support import SIMRUN, STREAMS, Skip, run, run_all, test
+from laws import PLAIN, ROBUST  # noqa: E402
 
 LIBRARY = pathlib.Path("lib/filters")
 BUILT = pathlib.Path("build/arduino")
@@ -145,18 +146,18 @@ def sketch_run(name, *options):
 @test
 def the_sketch_without_a_sensor_prints_what_the_filters_say():
     lines, _ = sketch_run("outliers", "--max-ms", 2000)
-    assert len(lines) > 165 and all(list(line) == ["raw", "kf", "sprf"] for line in lines)
-    natives = {name: Native(name) for name in ("kf", "sprf")}
+    assert len(lines) > 165 and all(list(line) == ["raw", PLAIN, ROBUST] for line in lines)
+    natives = {name: Native(name) for name in (PLAIN, ROBUST)}
     off = [abs(line[name] - native.update(int(line["raw"]))) for line in lines for name, native in natives.items()]
     assert max(off) <= PRINTED, max(off)
     # every seventh sample is ruined by up to 300: kf goes along and sprf does not
     worst = {name: max(abs(line[name] + 100) for line in lines[50:165]) for name in natives}
-    assert worst["kf"] > 40 > 12 > worst["sprf"], worst
+    assert worst[PLAIN] > 40 > 12 > worst[ROBUST], worst
 
 
 def told_and_native(lines):
     """The greatest distance of what the sensor's sketch prints from what the filters say of the same readings."""
-    natives = {axis: Native("sprf", axis == "z") for axis in "xyz"}
+    natives = {axis: Native(ROBUST, axis == "z") for axis in "xyz"}
     return max(abs(line[axis] - native.update(int(line[f"{axis}_raw"]))) for line in lines for axis, native in natives.items())
 
 

@@ -337,31 +337,6 @@ static void sample_of_y(int16_t y_lsb)
     take_row();
 }
 
-/* Samples that are not clipped until a filter begins anew on one, behind some that are. */
-static unsigned samples_to_begin_anew(uint8_t kind, unsigned clipped)
-{
-    random_seed(&world.random, SEED);
-    begin(kind, 1000, 0.0);
-    samples(300);
-    for (unsigned k = 1; k < clipped + 60u; k++) {
-        sample_of_y(k <= clipped ? 4095 : 4090);
-        if (k > clipped && (world.row.flags & ROW_REACQUIRED)) {
-            return k - clipped;
-        }
-    }
-    return 0;
-}
-
-/* Three in the run that restarts a filter are worth no more than one. */
-static void test_clipped_samples_do_not_count_in_a_run(void)
-{
-    FOR_EACH_FILTER(kind)
-    {
-        TEST_ASSERT_EQUAL_UINT(samples_to_begin_anew(kind, 1), samples_to_begin_anew(kind, 3));
-    }
-    TEST_ASSERT_TRUE(samples_to_begin_anew((uint8_t)FILTER_KIND_sprf, 3) != 0);
-}
-
 /* 30 seconds at the rail of 16 g, with a hold in the midst: the rows say so, and no filter begins anew on one. */
 static void test_no_filter_begins_anew_at_the_rail(void)
 {
@@ -392,7 +367,6 @@ int main(void)
     RUN_TEST(test_a_sample_behind_a_long_gap_is_not_kept_waiting);
     RUN_TEST(test_samples_older_than_the_newest_row_are_dropped);
     RUN_TEST(test_a_bad_reading_behind_a_hold_begins_nothing);
-    RUN_TEST(test_clipped_samples_do_not_count_in_a_run);
     RUN_TEST(test_no_filter_begins_anew_at_the_rail);
     return UNITY_END();
 }

@@ -96,7 +96,7 @@ static double roll_fixed(const axis_t axes[3], filter_kind_t kind)
         q8[i] = (int32_t)lrint(of_z[i] * axes[i].f[kind].x_lsb_q16 / 256.0);
     }
     tilt_t tilt = { 0, 0, false };
-    tilt_angles(&tilt, q8[0], q8[1], q8[2]);
+    tilt_angles(&tilt, q8);
     return tilt.roll_cdeg / 100.0;
 }
 

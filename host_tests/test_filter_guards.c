@@ -1,8 +1,12 @@
-/* Guards inside the filters that ordinary samples hardly reach: the borrow of P22, the hysteresis of R's estimate. */
+/*
+ * Guards that ordinary samples hardly reach: the borrow of P22, the hysteresis of R's estimate, the range of a sample.
+ */
 #include <stdlib.h>
 
 #include "kalman.h"
 #include "noise.h"
+#include "support_filters.h"
+#include "support_roles.h"
 #include "unity.h"
 
 #define ONE_UQ28 0x10000000u
@@ -13,8 +17,8 @@ void tearDown(void) {}
 
 static void start(filter_t *f, uint32_t p11, uint32_t p12, uint32_t p22)
 {
-    filter_config_t config = filter_defaults(&filter_law_kf, 1000);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_kf, &config));
+    filter_config_t config = filter_defaults(filter_listed(plain_kind()), 1000);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, filter_listed(plain_kind()), &config));
     filter_reset(f, 0);
     f->own.kalman.p = (filter_covariance_t){ p11, p12, p22 };
 }
@@ -86,11 +90,59 @@ static void test_r_follows_with_a_hysteresis_of_an_eighth(void)
     TEST_ASSERT_TRUE(kept_though_different > 100);
 }
 
+/* While warming up and when running, a sample outside -4096..4095 is the nearest one inside, and flagged. */
+static void assert_clamped(uint8_t kind, uint8_t before, int16_t z_lsb, int16_t nearest_lsb)
+{
+    filter_t f;
+    TEST_ASSERT_TRUE(init_default(&f, (filter_kind_t)kind, 1000));
+    for (uint8_t i = 0; i < before; i++) {
+        (void)filter_update(&f, (int16_t)(nearest_lsb - nearest_lsb / 100));
+    }
+    filter_t of_nearest = f;
+    (void)filter_update(&of_nearest, nearest_lsb);
+    (void)filter_update(&f, z_lsb);
+    TEST_ASSERT_BITS_HIGH(FILTER_SATURATED, f.flags);
+    TEST_ASSERT_EQUAL_HEX8(of_nearest.flags | FILTER_SATURATED, f.flags);
+    f.flags = of_nearest.flags;
+    TEST_ASSERT_EQUAL_MEMORY(&of_nearest, &f, sizeof f);
+}
+
+static void test_a_sample_outside_the_range_is_clamped_and_flagged(void)
+{
+    FOR_EACH_KIND(kind)
+    {
+        for (uint8_t before = 0; before < 20U; before = (uint8_t)(before + 3U)) {
+            assert_clamped(kind, before, 4096, 4095);
+            assert_clamped(kind, before, INT16_MAX, 4095);
+            assert_clamped(kind, before, -4097, -4096);
+            assert_clamped(kind, before, INT16_MIN, -4096);
+        }
+    }
+}
+
+static void test_a_sample_at_the_end_of_the_range_is_not_flagged(void)
+{
+    static const int16_t ends[] = { 4095, -4096 };
+    FOR_EACH_KIND(kind)
+    {
+        for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+            filter_t f;
+            TEST_ASSERT_TRUE(init_default(&f, (filter_kind_t)kind, 1000));
+            for (uint8_t k = 0; k < 20U; k++) {
+                (void)filter_update(&f, ends[i]);
+                TEST_ASSERT_BITS_LOW(FILTER_SATURATED, f.flags);
+            }
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_p22_does_not_wrap_below_zero);
     RUN_TEST(test_p22_that_stays_positive_is_kept);
     RUN_TEST(test_r_follows_with_a_hysteresis_of_an_eighth);
+    RUN_TEST(test_a_sample_outside_the_range_is_clamped_and_flagged);
+    RUN_TEST(test_a_sample_at_the_end_of_the_range_is_not_flagged);
     return UNITY_END();
 }

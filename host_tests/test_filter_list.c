@@ -3,6 +3,7 @@
 
 #include "support_filters.h"
 #include "support_random.h"
+#include "support_roles.h"
 #include "unity.h"
 
 void setUp(void) {}
@@ -100,57 +101,77 @@ static void assert_refused_for(filter_kind_t kind, const char *name, int32_t val
     TEST_FAIL_MESSAGE(name);
 }
 
+/* What no filter that has the parameter takes, and how many have it at least. */
+typedef struct {
+    const char *name;
+    int32_t value;
+    unsigned by;
+    uint8_t trait; /* only filters with it */
+} illegal_t;
+
+static const illegal_t illegal[] = {
+    { "q", 0, 9, 0 },
+    { "q", 1000000001, 9, 0 },
+    { "gate", 255, 4, 0 },              /* below 1 sigma */
+    { "gate", 0, 1, LAW_FIRST_SAMPLE }, /* as published: it cannot be switched off */
+    { "softgate", 255, 1, 0 },
+    { "softgate", 4097, 1, 0 },
+    { "reacquire", 10, 2, 0 },
+    { "ratemax", 0, 4, 0 },
+    { "clean", 0, 4, 0 }, /* a probability of 0 */
+    { "clean", 32767, 3, LAW_GATED },
+    { "clean", 65535, 3, LAW_GATED },
+    { "ratio", 255, 4, 0 },
+    { "ratio", 511, 3, LAW_GATED },
+    { "a1", -65536, 1, 0 },
+    { "a1", 65536, 1, 0 },
+};
+
+static unsigned refused_by_all(const illegal_t *row)
+{
+    unsigned count = 0;
+    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        bool meant = (filter_listed((filter_kind_t)kind)->traits & row->trait) == row->trait;
+        if (meant && parameter_named((filter_kind_t)kind, row->name) != FILTER_PARAMETERS_MAX) {
+            assert_refused_for((filter_kind_t)kind, row->name, row->value);
+            count++;
+        }
+    }
+    return count;
+}
+
 static void test_a_refusal_names_the_parameter(void)
 {
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         assert_refused_for((filter_kind_t)kind, "r", 0);
         assert_refused_for((filter_kind_t)kind, "r", FILTER_R_MAX_LSB2_Q8 + 1);
     }
-    static const filter_kind_t two_state[] = { FILTER_KIND_kf, FILTER_KIND_lrf, FILTER_KIND_soft, FILTER_KIND_sprf,
-                                               FILTER_KIND_kf3 };
-    for (int i = 0; i < 5; i++) {
-        assert_refused_for(two_state[i], "q", 0);
-        assert_refused_for(two_state[i], "q", 1000000001);
+    for (size_t i = 0; i < sizeof illegal / sizeof illegal[0]; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(refused_by_all(&illegal[i]) >= illegal[i].by, illegal[i].name);
     }
-    assert_refused_for(FILTER_KIND_sprf, "gate", 255); /* below 1 sigma */
-    assert_refused_for(FILTER_KIND_soft, "gate", 255);
-    assert_refused_for(FILTER_KIND_soft, "softgate", 255);
-    assert_refused_for(FILTER_KIND_soft, "softgate", 4097);
-    assert_refused_for(FILTER_KIND_soft, "reacquire", 10);
-    assert_refused_for(FILTER_KIND_soft, "ratemax", 0);
-    assert_refused_for(FILTER_KIND_lrf, "clean", 0); /* a probability of 0; 1 is not among 16 bits */
-    assert_refused_for(FILTER_KIND_lrf, "ratio", 255);
-    assert_refused_for(FILTER_KIND_synth, "a1", -65536);
-    assert_refused_for(FILTER_KIND_synth, "a1", 65536);
-    static const filter_kind_t mixtures[] = { FILTER_KIND_shrf, FILTER_KIND_pbf, FILTER_KIND_af };
-    for (int i = 0; i < 3; i++) {
-        assert_refused_for(mixtures[i], "q", 0);
-        assert_refused_for(mixtures[i], "clean", 0);
-        assert_refused_for(mixtures[i], "clean", 32767);
-        assert_refused_for(mixtures[i], "clean", 65535);
-        assert_refused_for(mixtures[i], "ratio", 511);
-    }
-    assert_refused_for(FILTER_KIND_sprf_paper, "gate", 255);
-    assert_refused_for(FILTER_KIND_sprf_paper, "gate", 0); /* a gate that cannot be switched off */
 }
 
 /* The first of several, the rate before all; off is no reason; an even run of samples lies within 3..9. */
 static void test_a_refusal_tells_rate_and_combinations_apart(void)
 {
-    filter_config_t config = filter_defaults(&filter_law_soft, 1000);
-    config.value[SOFT_GATE_SIGMA_Q8] = 0;
-    config.value[SOFT_REACQUIRE_SAMPLES] = 4;
+    const filter_law_t *robust = filter_listed(robust_kind());
+    const filter_law_t *light = filter_listed(light_kind());
+    uint8_t q = parameter_named(robust_kind(), "q");
+    uint8_t gate = parameter_named(robust_kind(), "gate");
+    filter_config_t config = filter_defaults(robust, 1000);
+    config.value[gate] = 0;
+    config.value[parameter_named(robust_kind(), "reacquire")] = 4;
     filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_init(&f, &filter_law_soft, &config));
-    config.value[SOFT_SOFT_SIGMA_Q8] = 1;
-    config.value[SOFT_Q_LSB2_S3] = 0;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_FIRST + SOFT_Q_LSB2_S3, filter_init(&f, &filter_law_soft, &config));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_init(&f, robust, &config));
+    config.value[gate] = 1;
+    config.value[q] = 0;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_FIRST + q, filter_init(&f, robust, &config));
     config.rate_dhz = FILTER_RATE_MIN_DHZ - 1U;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_RATE, filter_init(&f, &filter_law_soft, &config));
-    config = filter_defaults(&filter_law_synth, 1000);
-    config.value[SYNTH_B0_UQ16] = 6554;
-    config.value[SYNTH_A1_Q16] = -65000; /* outside the stability region */
-    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_init(&f, &filter_law_synth, &config));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_RATE, filter_init(&f, robust, &config));
+    config = filter_defaults(light, 1000);
+    config.value[parameter_named(light_kind(), "b0")] = 6554;
+    config.value[parameter_named(light_kind(), "a1")] = -65000; /* outside the stability region */
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_init(&f, light, &config));
 }
 
 /* A filter that has seen motion, noise and outliers. */

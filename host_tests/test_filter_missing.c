@@ -10,7 +10,7 @@
 
 #define SEED 60006UL
 
-enum { RAMP_LSB = 3, SETTLING = 400, RAIL_LSB = 4095, CLIPPED = 1500 };
+enum { RAMP_LSB = 3, SETTLING = 400, RAIL_LSB = 4095, CLIPPED = 1500, NO_RESTART = 60 };
 
 static uint32_t random_state;
 
@@ -247,6 +247,43 @@ static void test_a_filter_restarts_behind_the_rail(void)
     }
 }
 
+/* Samples far away until a filter at rest restarts on one: refused ones, then missing ones, then more. */
+static unsigned samples_to_restart(uint8_t kind, unsigned refused, unsigned missing)
+{
+    filter_t f;
+    make(&f, kind);
+    filter_reset(&f, 0);
+    for (unsigned k = 0; k < refused; k++) {
+        (void)filter_update(&f, RAIL_LSB - 111);
+    }
+    for (unsigned k = 0; k < missing; k++) {
+        (void)filter_missing(&f);
+    }
+    unsigned count = 0;
+    do {
+        (void)filter_update(&f, RAIL_LSB - 111);
+        count++;
+    } while ((f.flags & FILTER_REACQUIRED) == 0U && count < NO_RESTART);
+    return count;
+}
+
+/* Missing ones in the run that restarts a filter, as those at the rail are, are worth nothing, however many they are. */
+static void test_missing_samples_do_not_count_in_a_run(void)
+{
+    unsigned restarting = 0;
+    FOR_EACH_KIND(kind)
+    {
+        unsigned whole = samples_to_restart(kind, 0, 0);
+        restarting += whole < NO_RESTART;
+        for (unsigned refused = 0; refused < 4U && whole < NO_RESTART; refused++) {
+            for (unsigned missing = 1; missing < 4U; missing++) {
+                TEST_ASSERT_EQUAL_UINT(whole - refused, samples_to_restart(kind, refused, missing));
+            }
+        }
+    }
+    TEST_ASSERT_TRUE(restarting > 0U);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -259,5 +296,6 @@ int main(void)
     RUN_TEST(test_restart_keeps_what_was_learnt_of_the_noise);
     RUN_TEST(test_samples_told_as_missing_restart_no_filter);
     RUN_TEST(test_a_filter_restarts_behind_the_rail);
+    RUN_TEST(test_missing_samples_do_not_count_in_a_run);
     return UNITY_END();
 }

@@ -1,6 +1,6 @@
 /*
  * Generic properties, over the list of filters: what every filter of lib/filters promises, whatever its rule. Runs on
- * the PC and on the chip. Facts about single laws live in support_filter_facts.c.
+ * the PC and on the chip. Facts about single laws live in support_law_NAME.c.
  */
 #include "support_filters.h"
 #include "unity.h"
@@ -128,8 +128,9 @@ static void parameters_are_taken_within_their_range_only(void)
         for (uint8_t i = 0; i < parameter_count((filter_kind_t)kind); i++) {
             filter_parameter_t p = parameter_at((filter_kind_t)kind, i);
             TEST_ASSERT_FALSE_MESSAGE(parameter_legal(&p, p.max + 1), p.name);
-            const int32_t values[] = { p.min,     p.max,     p.min - 1, p.max + 1, p.min - 2, p.max + 2, p.min / 2, p.max * 2,
-                                       INT32_MIN, INT32_MAX, 0x8000,    0x7FFF,    0,         1,         -1 };
+            const int32_t values[] = { p.min,     p.max,     p.min - 1, p.max + 1, p.min - 2,
+                                       p.max + 2, p.min / 2, p.max * 2, INT32_MIN, INT32_MAX,
+                                       0x8000,    0x7FFF,    0,         1,         -1 };
             for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) {
                 try_value(kind, i, values[v]);
             }

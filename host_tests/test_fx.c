@@ -49,26 +49,6 @@ static void products_equal_exact_arithmetic(void)
     }
 }
 
-/* Half away from zero is the same for v and -v. */
-static void signed_product_equals_exact_arithmetic(void)
-{
-    for (uint16_t i = 0; i < ON_PC_OR_CHIP(600, 60); i++) {
-        for (uint16_t j = 0; j < ON_PC_OR_CHIP(600, 60); j++) {
-            uint32_t magnitude = operand(i);
-            uint16_t b = (uint16_t)operand(j);
-            if (magnitude <= 0x80000000U) {
-                int32_t negative = (int32_t) - (int64_t)magnitude;
-                int32_t product = (int32_t) - (int64_t)half_up((uint64_t)magnitude * b, 16);
-                TEST_ASSERT_EQUAL_INT32(product, fx_scale_uq16(negative, b));
-            }
-            if (magnitude < 0x80000000U) {
-                int32_t product = (int32_t)half_up((uint64_t)magnitude * b, 16);
-                TEST_ASSERT_EQUAL_INT32(product, fx_scale_uq16((int32_t)magnitude, b));
-            }
-        }
-    }
-}
-
 static void sums_with_an_element_equal_exact_arithmetic(void)
 {
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
@@ -230,7 +210,6 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(products_equal_exact_arithmetic);
-    RUN_TEST(signed_product_equals_exact_arithmetic);
     RUN_TEST(sums_with_an_element_equal_exact_arithmetic);
     RUN_TEST(shifts_equal_exact_arithmetic);
     RUN_TEST(without_a_part_equals_exact_arithmetic);

@@ -6,6 +6,7 @@
 #include "reference_noise.h"
 #include "stream.h"
 #include "support_filters.h"
+#include "support_roles.h"
 #include "support_roll.h"
 #include "unity.h"
 
@@ -228,8 +229,8 @@ static bool check_rest(const rest_t *rest)
         filter_config_t config;
         filter_t f;
         noise_init(&n, rest->rate_dhz, axis == 2);
-        config = filter_defaults(&filter_law_sprf, rest->rate_dhz);
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf, &config));
+        config = filter_defaults(filter_listed(robust_kind()), rest->rate_dhz);
+        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, filter_listed(robust_kind()), &config));
         filter_set_noise(&f, noise_r_lsb2_q8(&n));
         int count = 0;
         int refused = 0;

@@ -13,7 +13,7 @@ import papers_bands  # noqa: E402
 import papers_judge  # noqa: E402
 import papers_page  # noqa: E402
 import papers_page_synthesis as synthesis  # noqa: E402
-from check_support import filter_names  # noqa: E402
+import laws  # noqa: E402
 from system_support import run_all, test  # noqa: E402
 
 RUNS = 1000  # 400 and 200 of these papers
@@ -114,7 +114,7 @@ def every_shipped_filter_has_its_rows():
         rows = rows_of(paper, experiment)
         for name in where:
             fixed = {r["filter"] for r in rows if r["experiment"] == name and r["arithmetic"] == "fixed"}
-            assert set(filter_names()) <= fixed, set(filter_names()) - fixed
+            assert set(laws.names()) <= fixed, set(laws.names()) - fixed
     # told the same R and process noise, fixed point does what the double Kalman filter does
     rows = rows_of("000", "all_filters")
     for turn in synthesis.TURNS:

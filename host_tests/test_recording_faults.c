@@ -9,6 +9,7 @@
 #include "support_faults.h"
 #include "support_random.h"
 #include "support_recordings.h"
+#include "support_roles.h"
 #include "support_shipped.h"
 #include "support_survey.h"
 #include "unity.h"
@@ -66,8 +67,8 @@ static void score_all(const study_t *study, fault_t fault, score_t score[CONTEND
 
 static void check_scores(const char *name, const score_t score[CONTENDERS])
 {
-    double followed = rms(score[FILTER_KIND_kf].own, score[FILTER_KIND_kf].count);
-    double allowed = rms(score[FILTER_KIND_kf].allowed, score[FILTER_KIND_kf].count);
+    double followed = rms(score[plain_kind()].own, score[plain_kind()].count);
+    double allowed = rms(score[plain_kind()].allowed, score[plain_kind()].count);
     TEST_ASSERT_TRUE_MESSAGE(followed > 0.0 && allowed <= ALLOWED_SHARE_MAX * followed, name);
     for (size_t contender = 0; contender < CONTENDERS; contender++) {
         double own = rms(score[contender].own, score[contender].count);
@@ -337,7 +338,7 @@ static void without_a_fault_nothing_differs(void)
         study_score(&study, &faulty, contender, &score);
         TEST_ASSERT_EQUAL_DOUBLE(0.0, score.own);
         TEST_ASSERT_EQUAL_size_t(3U * (6000U - FILTER_WARM_UP_SAMPLES), score.count);
-        TEST_ASSERT_TRUE(contender == FILTER_KIND_kf || score.kf > 0.0);
+        TEST_ASSERT_TRUE(contender == plain_kind() || score.kf > 0.0);
     }
     study_end(&study);
     faulty_free(&faulty);

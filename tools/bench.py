@@ -18,18 +18,11 @@ DOCUMENT = pathlib.Path("docs/benchmarks.md")
 BEGIN, END = "<!-- written by make bench: begin -->", "<!-- written by make bench: end -->"
 COMPILER = "5.4.0"  # the limits are for Debian's avr-gcc; elsewhere the numbers are only reported
 
-WORST_LIMIT = {"kf": 800, "kf3": 2500, "sprf": 1000, "synth": 500, "synth_opt": 500, "synth_plus": 700, "lrf": 800, "soft": 1300,
-               "sprf_paper": 2150, "shrf": 3500, "pbf": 5000, "af": 5000, "adaptive": 1500, "auto": 2500, "angles": 1500}
-RATIO_LIMIT = 4.0
+# of what is no filter: those of a filter stand beside its yardstick (tools/laws.py)
+ANGLES = laws.Limits(worst=1500, ratio=4.0, rms=0.029)  # degrees: the bound that lib/tilt derives
 KEPT = "float_synth_kept"  # a row of its own: what the float version takes when it keeps the coefficients made from a1
-# The filters with the wide covariance keep to their cycles and save flash before more: their products are calls.
-RATIO_LIMITS = {"synth": 3.5, "sprf_paper": 2.5, "shrf": 3.5, "pbf": 3.5, "af": 3.0}
 SAMPLES_MIN = 5000
 REGRESSION = 0.02
-# The yardstick must do the same job. LSB: a twentieth of the stream's noise of 4.6 LSB. Degrees: the bound that lib/tilt derives.
-RMS_LIMIT = {"angles": 0.029, "synth_plus": 1.25,  # synth_plus at 800 Hz: the float version does not see the line that ours starts with
-             "auto": 0.6}  # where two scores are near, rounding decides which estimate is shown, and for how long: an eighth of the noise
-RMS_LIMIT_FILTER = 0.25
 # At 12.5 Hz P grows so fast that single decisions at the gate's threshold fall differently, and each shows for some samples.
 RMS_FROM_DHZ = 250
 
@@ -171,26 +164,30 @@ def measure_sizes(flags, sources, filters):
 
 # --- table and judgement ---
 
+def limits_of(name):
+    """What the filter, or the angles, are held to; no row for a filter without the line beside its yardstick."""
+    return ANGLES if name == "angles" else laws.limits(name)
+
+
 def limit_faults(filters, rows, rms):
     """What is over a limit, one sentence each."""
     faults = []
     for name in [*filters, "angles"]:
-        row, yardstick = rows[name], rows.get(f"float_{name}")
-        if name not in WORST_LIMIT:
-            faults.append(f"{name}: no limit of its cycles in tools/bench.py (WORST_LIMIT)")
-        else:
-            faults += [f"{name}: worst case {row[kind]} cycles ({where}), limit {WORST_LIMIT[name]}"
-                       for kind, where in (("worst", row["where"]), ("worst_small", "the firmware's flags")) if row[kind] > WORST_LIMIT[name]]
+        row, yardstick, limits = rows[name], rows.get(f"float_{name}"), limits_of(name)
+        if limits is None:
+            faults.append(f"{name}: no limits beside its yardstick ({laws.yardstick(name)}: bench: worst ...)")
+            continue
+        faults += [f"{name}: worst case {row[kind]} cycles ({where}), limit {limits.worst}"
+                   for kind, where in (("worst", row["where"]), ("worst_small", "the firmware's flags")) if row[kind] > limits.worst]
         if row["samples"] < SAMPLES_MIN:
             faults.append(f"{name}: {row['samples']} samples, at least {SAMPLES_MIN} are wanted")
         if yardstick is None:
             faults.append(f"{name}: no float version was measured")
             continue
         for kind in ("median", "worst_both"):
-            wanted = RATIO_LIMITS.get(name, RATIO_LIMIT)
-            if yardstick[kind] < wanted * row[kind]:
+            if yardstick[kind] < limits.ratio * row[kind]:
                 faults.append(f"{name}: {kind.split('_')[0]} {row[kind]} cycles, float {yardstick[kind]}: "
-                              f"{yardstick[kind] / row[kind]:.2f} times fewer, wanted {wanted:g}")
+                              f"{yardstick[kind] / row[kind]:.2f} times fewer, wanted {limits.ratio:g}")
     return faults + agreement_faults(filters, rms)
 
 
@@ -209,14 +206,14 @@ def declared_faults(declared, rows):
 def agreement_faults(filters, rms):
     faults = []
     for name in [*filters, "angles"]:
-        limit = RMS_LIMIT.get(name, RMS_LIMIT_FILTER)
+        limits = limits_of(name)
         compared = [(value, regime, rate) for n, regime, rate, value in rms
                     if n == name and (name == "angles" or (regime == "typical" and rate >= RMS_FROM_DHZ))]
         if not compared:
             faults.append(f"{name}: not compared with its float version")
         for value, regime, rate in compared:
-            if value > limit:
-                faults.append(f"{name}: differs from its float version by {value:g} rms ({regime} {rate / 10:g} Hz), limit {limit:g}")
+            if limits is not None and value > limits.rms:
+                faults.append(f"{name}: differs from its float version by {value:g} rms ({regime} {rate / 10:g} Hz), limit {limits.rms:g}")
     return faults
 
 
@@ -303,7 +300,7 @@ def collect(flags, sources, parts):
     rows[KEPT], stack[KEPT] = summarise(kept)["float_synth"], kept_stack["float_synth"]
     missed = [f for f in filters if f not in rows or f not in rows_small]
     if missed:
-        raise Fault(f"{missed[0]}: in no image of the benchmark (BENCH_LIST in host_tests/avr/bench_part.h)")
+        raise Fault(f"{missed[0]}: in no image of the benchmark (BENCH_LIST in mk/bench.mk)")
     alone, shared = measure_sizes(flags, sources, filters)
     rows["sample_total"], stack["sample_total"] = measure_sample()
     rows_small["sample_total"] = rows["sample_total"]

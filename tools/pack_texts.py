@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 
-PAIR_FIRST, PAIRS_MAX = 0x90, 0x70  # bytes 0x01..0x1F and 0x7F..0x8F stand for values (enum say)
+ALONE, PAIR_FIRST, PAIRS_MAX = 0x7B, 0x8B, 0x75  # smaller bytes are characters, or stand for values; from ALONE on (enum say) in no pair
 STEP = 8                            # texts between two whose start is kept; the firmware counts ends from there
 COLUMNS = 110
 
@@ -37,6 +37,8 @@ def occurrences(rows):
     for row in rows:
         before = None
         for pair in zip(row, row[1:]):
+            if any(ALONE <= code < PAIR_FIRST for code in pair):
+                continue
             if pair == before and pair[0] == pair[1]:
                 before = None
                 continue

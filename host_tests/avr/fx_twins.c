@@ -82,7 +82,6 @@ TWIN(mul_uq16, fx_mul_uq16(a, (uint16_t)b), fx_mul_uq16_c(a, (uint16_t)b))
 TWIN(mul_uq24, fx_mul_uq24(a, b & 0xFFFFFFUL), fx_mul_uq24_c(a, b & 0xFFFFFFUL))
 TWIN(mul24_uq16, fx_mul24_uq16(a & 0xFFFFFFUL, (uint16_t)b), fx_mul24_uq16_c(a & 0xFFFFFFUL, (uint16_t)b))
 TWIN(mul24_uq24, fx_mul24_uq24(a & 0xFFFFFFUL, b & 0xFFFFFFUL), fx_mul24_uq24_c(a & 0xFFFFFFUL, b & 0xFFFFFFUL))
-TWIN(scale_uq16, fx_scale_uq16((int32_t)a, (uint16_t)b), fx_scale_uq16_c((int32_t)a, (uint16_t)b))
 TWIN(plus, fx_plus((int32_t)a / 2, addends((int32_t)b / 2), 1), fx_plus_c((int32_t)a / 2, addends((int32_t)b / 2), 1))
 TWIN(minus, fx_minus((int32_t)a / 2, addends((int32_t)b / 2), 2),
      fx_minus_c((int32_t)a / 2, addends((int32_t)b / 2), 2))
@@ -146,7 +145,6 @@ int main(void)
     RUN(mul_uq24);
     RUN(mul24_uq16);
     RUN(mul24_uq24);
-    RUN(scale_uq16);
     RUN(plus);
     RUN(minus);
     RUN(sixteenth);

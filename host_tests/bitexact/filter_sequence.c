@@ -42,8 +42,7 @@ static uint8_t take_digit(uint32_t *number, uint8_t base)
 /* Corner number i: rate, then every parameter at its lower end, its upper end, or off. False: there are no more. */
 static bool corner_config(filter_kind_t kind, uint32_t i, filter_config_t *config)
 {
-    *config = filter_defaults(filter_listed(kind),
-                              take_digit(&i, 2) == 0U ? FILTER_RATE_MIN_DHZ : FILTER_RATE_MAX_DHZ);
+    *config = filter_defaults(filter_listed(kind), take_digit(&i, 2) == 0U ? FILTER_RATE_MIN_DHZ : FILTER_RATE_MAX_DHZ);
     for (uint8_t n = 0; n < parameter_count(kind); n++) {
         filter_parameter_t parameter = parameter_at(kind, n);
         uint8_t digit = take_digit(&i, parameter.zero_means_off != 0U ? 3 : 2);

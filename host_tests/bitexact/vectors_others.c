@@ -64,7 +64,7 @@ static void angles_item(bool any)
     int32_t x = any ? any_i32() : acceleration_q8();
     int32_t y = any ? any_i32() : acceleration_q8();
     int32_t z = any ? any_i32() : acceleration_q8();
-    tilt_angles(&tilt, x, y, z);
+    tilt_angles(&tilt, (const int32_t[]){ x, y, z });
     vectors_output((uint16_t)tilt.roll_cdeg, 2);
     vectors_output((uint16_t)tilt.pitch_cdeg, 2);
     vectors_output(tilt.roll_undefined, 1);
@@ -76,7 +76,7 @@ static void gravity_item(bool any)
     int32_t x = any ? any_i32() : acceleration_q8();
     int32_t y = any ? any_i32() : acceleration_q8();
     int32_t z = any ? any_i32() : acceleration_q8();
-    vectors_output(tilt_gravity_plausible(x, y, z), 1);
+    vectors_output(tilt_gravity_plausible((const int32_t[]){ x, y, z }), 1);
 }
 
 void other_path_item(uint8_t which, uint16_t index)

@@ -66,7 +66,6 @@ static uint32_t normalised_c(uint32_t v)
     X(fx_mul24_uq16, fx_mul24_uq16(A24, B16))                                          \
     X(fx_mul24_uq24, fx_mul24_uq24(A24, B24))                                          \
     X(fx_mul_uq24, fx_mul_uq24(a, B24))                                                \
-    X(fx_scale_uq16, (uint32_t)fx_scale_uq16((int32_t)a, B16))                         \
     X(fx_plus, (uint32_t)fx_plus(HALF(a), two(b), 0))                                  \
     X(fx_minus, (uint32_t)fx_minus(HALF(a), two(b), 1))                                \
     X(fx_shift12, fx_shift12(A16))                                                     \
@@ -78,7 +77,6 @@ static uint32_t normalised_c(uint32_t v)
     X(fx_mul24_uq16_c, fx_mul24_uq16_c(A24, B16))                                      \
     X(fx_mul24_uq24_c, fx_mul24_uq24_c(A24, B24))                                      \
     X(fx_mul_uq24_c, fx_mul_uq24_c(a, B24))                                            \
-    X(fx_scale_uq16_c, (uint32_t)fx_scale_uq16_c((int32_t)a, B16))                     \
     X(fx_plus_c, (uint32_t)fx_plus_c(HALF(a), two(b), 0))                              \
     X(fx_minus_c, (uint32_t)fx_minus_c(HALF(a), two(b), 1))                            \
     X(fx_shift12_c, fx_shift12_c(A16))                                                 \

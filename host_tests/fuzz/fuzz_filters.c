@@ -1,6 +1,6 @@
 /*
  * Any legal configuration of any filter, any sequence of calls. Holds what filter.h promises of every filter, and of
- * each filter the bounds that its own header states: broken_bound of support_filter_bounds.c, where a filter of the list that
+ * each filter the bounds that its own header states: broken_bound of support_filters.h, where a filter of the list that
  * has no bounds does not compile.
  *
  * Input: kind, rate, a byte per parameter (its place in the legal range) and then calls, an operation byte each.

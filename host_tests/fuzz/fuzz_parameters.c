@@ -1,6 +1,6 @@
 /*
- * Calibration and parameters of the filters once more, for judging: by their descriptors and filter_init, sharing nothing
- * with firmware/.
+ * Calibration and parameters of the filters once more, for judging: by their descriptors and filter_init, sharing
+ * nothing with firmware/.
  */
 #include <stdio.h>
 #include <string.h>

@@ -18,6 +18,11 @@ const char *libtilt_filter_name(int kind)
     return filter_listed_name((filter_kind_t)kind);
 }
 
+int libtilt_filter_cycles(int kind)
+{
+    return filter_worst_cycles(filter_listed((filter_kind_t)kind));
+}
+
 bool libtilt_parameter(int kind, int index, uint16_t rate_dhz, libtilt_parameter_t *out)
 {
     const filter_law_t *law = filter_listed((filter_kind_t)kind);

@@ -5,7 +5,7 @@
 #ifndef KALMAN_BOUNDS_H
 #define KALMAN_BOUNDS_H
 
-#define X_CELLS WIDE_CELLS
+#define CELLS
 #include "eva.h"
 #include "kalman.h"
 
@@ -76,19 +76,6 @@ static inline void grow(filter_kalman_t *k);
     ensures \result == 1 || FARTHER(f);
 */
 static bool within_gate(filter_t *f);
-
-/* x in a cell of 512 LSB, and the innovation towards a sample from -4096 to 4095 LSB. */
-#define BACK(f, k) \
-    (CELL((f)->x_lsb_q16, 33554432, k) && (f)->negative == 1 && (f)->size_lsb_uq16 < (512 * (k) + 4608) * 65536)
-#define FORTH(f, k) \
-    (CELL((f)->x_lsb_q16, 33554432, k) && (f)->negative == 0 && (f)->size_lsb_uq16 <= (4095 - 512 * (k)) * 65536)
-#define REACH(f)                                                                                                    \
-    (BACK(f, -8) || BACK(f, -7) || BACK(f, -6) || BACK(f, -5) || BACK(f, -4) || BACK(f, -3) || BACK(f, -2) ||       \
-     BACK(f, -1) || BACK(f, 0) || BACK(f, 1) || BACK(f, 2) || BACK(f, 3) || BACK(f, 4) || BACK(f, 5) ||             \
-     BACK(f, 6) || BACK(f, 7) || BACK(f, 8) || ((f)->x_lsb_q16 == X_MAX_Q16 && (f)->negative == 1) ||               \
-     FORTH(f, -9) || FORTH(f, -8) || FORTH(f, -7) || FORTH(f, -6) || FORTH(f, -5) || FORTH(f, -4) || FORTH(f, -3) || \
-     FORTH(f, -2) || FORTH(f, -1) || FORTH(f, 0) || FORTH(f, 1) || FORTH(f, 2) || FORTH(f, 3) || FORTH(f, 4) ||     \
-     FORTH(f, 5) || FORTH(f, 6) || FORTH(f, 7))
 
 #define KALMAN_STATE                                                                                              \
     f->x_lsb_q16, f->rate_lsb, f->own.kalman.p.p11, f->own.kalman.p.p12, f->own.kalman.p.p22, f->size_lsb_uq16,    \

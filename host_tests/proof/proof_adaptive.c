@@ -194,7 +194,6 @@ void proof_doubted(void)
     }
 }
 
-/* Uses: averaged, doubted */
 void proof_adaptive_identify(void)
 {
     filter_t f;
@@ -207,7 +206,6 @@ void proof_adaptive_identify(void)
     }
 }
 
-/* Uses: averaged */
 void proof_adaptive_disperse(void)
 {
     filter_t f;
@@ -282,10 +280,7 @@ static void any_gained(uint32_t from_k, uint32_t to_k)
     }
 }
 
-/*
- * Uses: turn.
- * k and what is taken in ranges narrow enough for 2 w to exceed k w wherever in them they are.
- */
+/* k and what is taken in ranges narrow enough for 2 w to exceed k w wherever in them they are. */
 void proof_gained(void)
 {
     any_gained(0, 0);
@@ -298,15 +293,4 @@ void proof_gained(void)
     any_gained(32000, 39322);
 }
 
-/* Uses: fx_normalise, rounded, fx_isqrt32 */
-PROVE(set_up, adaptive)
-/* Options: -no-warn-signed-downcast */
-PROVE(defaults, adaptive)
-/* Uses: fx_isqrt32 */
-PROVE(set_noise, adaptive)
-PROVE(start, adaptive)
-/* Uses: tracker_bounded, judge, average_innovation, adapt, gained, adaptive_disperse, adaptive_identify */
-PROVE(step, adaptive)
-PROVE(fade, adaptive)
-/* Uses: fx_normalise, rounded */
-PROVE(report, adaptive)
+PROVE_LAW(adaptive)

@@ -136,7 +136,6 @@ static void any_correction(uint16_t from_k, uint16_t to_k)
     }
 }
 
-/* Uses: within_rate */
 void proof_correct_member(void)
 {
     for (uint16_t k = K_LEAST; k < 16384U; k *= 2U) {
@@ -148,10 +147,7 @@ void proof_correct_member(void)
     any_correction(32000, K_END);
 }
 
-/*
- * Uses: tracker_bounded, refused, correct_member.
- * The score in ranges, so narrow towards its end that what is forgotten of all of a range makes room for the square.
- */
+/* The score in ranges, so narrow towards its end that what is forgotten of all of a range makes room for the square. */
 void proof_step_member(void)
 {
     uint32_t to = 0;
@@ -186,16 +182,4 @@ void proof_choose(void)
     }
 }
 
-/* Uses: fx_normalise, rounded, fx_isqrt32 */
-PROVE(set_up, auto)
-/* Options: -no-warn-signed-downcast */
-PROVE(defaults, auto)
-/* Uses: fx_isqrt32 */
-PROVE(set_noise, auto)
-PROVE(start, auto)
-/* Uses: tracker_bounded, step_member, choose */
-PROVE(step, auto)
-/* Uses: fx_isqrt32 */
-PROVE(fade, auto)
-/* Uses: fx_normalise, rounded */
-PROVE(report, auto)
+PROVE_LAW(auto)

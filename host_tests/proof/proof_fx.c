@@ -9,7 +9,7 @@ static void reciprocal_in(uint32_t from, uint32_t to)
     (void)fx_reciprocal_uq16(ANY_U32(from, to));
 }
 
-/* One call for each interval of the table and each number of halvings: together all of 1 <= s < 16. */
+/* One call for each interval of the table and each number of halvings: together all of 1 <= s < 16. Whole: fx_inverse_m_uq16 */
 void proof_fx_reciprocal_uq16(void)
 {
     uint32_t from = 0x10000000U;
@@ -74,7 +74,6 @@ static fx_scaled_t any_scaled(void)
     return v;
 }
 
-/* Uses: fx_normalise, rounded */
 void proof_fx_scaled(void)
 {
     (void)fx_scaled(ANY_U32(0, UINT32_MAX));

@@ -72,7 +72,6 @@ void proof_within_gate(void)
     (void)within_gate(&f);
 }
 
-/* Uses: fx_reciprocal_uq16, tracker_bounded, grow, within_gate */
 void proof_kalman_step(void)
 {
     filter_t f;
@@ -92,7 +91,6 @@ void proof_kalman_refused(void)
     }
 }
 
-/* Uses: fx_normalise, rounded */
 void proof_kalman_set_variance(void)
 {
     filter_t f;
@@ -101,7 +99,6 @@ void proof_kalman_set_variance(void)
     kalman_set_variance(&f, ANY_U32(R_END + 1, R_ANY));
 }
 
-/* Uses: fx_normalise, rounded, fx_isqrt32 */
 void proof_kalman_set_gate(void)
 {
     filter_t f;
@@ -117,7 +114,7 @@ static void any_noise(filter_t *f, uint32_t r_lsb2_q8)
     kalman_set_gate(f, ANY_U16(0, 4096));
 }
 
-/* Uses: fx_normalise, rounded, kalman_set_variance, kalman_set_gate. Without a limit of the rate, and with one. */
+/* Without a limit of the rate, and with one. */
 void proof_kalman_set_up(void)
 {
     static const filter_law_t law = { .set_noise = any_noise };

@@ -12,7 +12,7 @@
      SCALED((f)->own.kf3.drive_lsb2) && SCALED((f)->own.kf3.start_lsb2))
 #define FORCE(f) (P_BOUND(f) && ACCELERATION(f))
 #define KINDS 1
-#define CONFIGURATIONS 2
+#define CONFIGURATIONS(law) 2
 #include "kalman_bounds.h"
 
 /* kalman.c and wide.c have functions of these names. */
@@ -127,7 +127,6 @@ void proof_grow_covariance(void)
     (void)grow_covariance(&f.own.kf3);
 }
 
-/* Uses: limited_kf3, grow_covariance */
 void proof_predict(void)
 {
     filter_t f;
@@ -136,7 +135,7 @@ void proof_predict(void)
     predict(&f);
 }
 
-/* Uses: fx_normalise, fx_inverse_m_uq16, limited_kf3. Options: -eva-split-return-function fx_leading:full */
+/* Options: -eva-split-return-function fx_leading:full */
 void proof_correct_kf3(void)
 {
     filter_t f;
@@ -145,15 +144,4 @@ void proof_correct_kf3(void)
     correct(&f);
 }
 
-/* Uses: fx_normalise, rounded */
-PROVE(set_up, kf3)
-/* Options: -no-warn-signed-downcast */
-PROVE(defaults, kf3)
-/* Uses: fx_normalise, rounded */
-PROVE(set_noise, kf3)
-/* Uses: fx_normalise, rounded */
-PROVE(start, kf3)
-/* Uses: predict, correct_kf3 */
-PROVE(step, kf3)
-PROVE(fade, kf3)
-PROVE(report, kf3)
+PROVE_LAW(kf3)

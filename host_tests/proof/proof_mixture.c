@@ -6,7 +6,7 @@
     (-LOG_ODDS_MAX <= (m).log_odds_q9 <= LOG_ODDS_MAX && 32768 <= (m).clean_uq16 <= 65470 && \
      (m).learnt_from <= 1024 && 0x4000 <= (m).learnt_uq24 <= 0xFFC000)
 #define KEPT(f) (WIDE_PARAMETERS(f) && LEARNT(MIXED(f)) && 0x20000 <= MIXED(f).span_uq16 <= SPAN_END)
-#define CONFIGURATIONS 13
+#define CONFIGURATIONS(law) 13
 #include "wide_bounds.h"
 
 #include "mixture.h"
@@ -76,7 +76,7 @@ void proof_log2_uq9(void)
     }
 }
 
-/* Uses: fx_normalise, log2_uq9. Options: -eva-split-return-function fx_leading:full */
+/* Options: -eva-split-return-function fx_leading:full */
 void proof_mixture_log_odds_q9(void)
 {
     (void)mixture_log_odds_q9(ANY_U32(0x4000, 0xFFC000));
@@ -95,7 +95,7 @@ void proof_mixture_posterior(void)
     }
 }
 
-/* Uses: fx_normalise, fx_inverse_m_uq16, mixture_log_odds_q9. Options: -eva-split-return-function fx_leading:full */
+/* Options: -eva-split-return-function fx_leading:full */
 void proof_learn(void)
 {
     filter_t f;
@@ -105,10 +105,7 @@ void proof_learn(void)
     learn(&f.own.mixture, posterior);
 }
 
-/*
- * Uses: wide_distance_uq8, log2_uq9, mixture_posterior, fx_normalise, fx_inverse_m_uq16. By places of S and of N^2 - 1.
- * Options: -eva-split-return-function fx_leading:full
- */
+/* By places of S and of N^2 - 1. Options: -eva-split-return-function fx_leading:full */
 void proof_weigh(void)
 {
     for (uint32_t power = 0x20000; power <= 0x20000000U; power *= 2U) {
@@ -122,38 +119,6 @@ void proof_weigh(void)
     }
 }
 
-/* Uses: fx_normalise, rounded, wide_set_noise, mixture_log_odds_q9 */
-PROVE(set_up, pbf)
-/* Options: -no-warn-signed-downcast */
-PROVE(defaults, pbf)
-/* Uses: wide_set_noise */
-PROVE(set_noise, pbf)
-/* Uses: fx_normalise, rounded, mixture_log_odds_q9 */
-PROVE(start, pbf)
-/* Uses: wide_predict, wide_correct, weigh, learn */
-PROVE(step, pbf)
-PROVE(fade, pbf)
-
-/* Uses: fx_normalise, rounded, wide_set_noise, mixture_log_odds_q9 */
-PROVE(set_up, shrf)
-/* Options: -no-warn-signed-downcast */
-PROVE(defaults, shrf)
-/* Uses: wide_set_noise */
-PROVE(set_noise, shrf)
-/* Uses: fx_normalise, rounded, mixture_log_odds_q9 */
-PROVE(start, shrf)
-/* Uses: wide_predict, wide_correct, weigh, learn */
-PROVE(step, shrf)
-PROVE(fade, shrf)
-
-/* Uses: fx_normalise, rounded, wide_set_noise, mixture_log_odds_q9 */
-PROVE(set_up, af)
-/* Options: -no-warn-signed-downcast */
-PROVE(defaults, af)
-/* Uses: wide_set_noise */
-PROVE(set_noise, af)
-/* Uses: fx_normalise, rounded, mixture_log_odds_q9 */
-PROVE(start, af)
-/* Uses: wide_predict, wide_correct, weigh, learn */
-PROVE(step, af)
-PROVE(fade, af)
+PROVE_LAW(pbf)
+PROVE_LAW(shrf)
+PROVE_LAW(af)

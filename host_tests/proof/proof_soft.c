@@ -47,7 +47,7 @@ static void weight_in(uint8_t bit, bool coarse, uint16_t gate_end_uq4)
     (void)weight_uq20(&f);
 }
 
-/* Uses: fx_inverse_m_uq16. By powers of two of the size, fine and coarse. */
+/* By powers of two of the size, fine and coarse. */
 void proof_weight_uq20(void)
 {
     static const uint16_t gate_end_uq4[] = { 0, 15, 255, 4095 };
@@ -65,7 +65,7 @@ void proof_limited_uq24(void)
     (void)limited_uq24(ANY_U32(0x1000000, UINT32_MAX));
 }
 
-/* Uses: weight_uq20, limited_uq24. By cells of the estimate. Options: -eva-split-return-function kalman_refused:full */
+/* By cells of the estimate. Whole: kalman_refused. Options: -eva-split-return-function kalman_refused:full */
 void proof_take_part(void)
 {
     EACH_KIND(kind)
@@ -78,14 +78,4 @@ void proof_take_part(void)
     }
 }
 
-/* Uses: fx_normalise, rounded, kalman_set_up */
-PROVE(set_up, soft)
-/* Options: -no-warn-signed-downcast */
-PROVE(defaults, soft)
-/* Uses: kalman_set_variance, kalman_set_gate */
-PROVE(set_noise, soft)
-PROVE(start, soft)
-/* Uses: kalman_step, take_part */
-PROVE(step, soft)
-PROVE(fade, soft)
-PROVE(report, soft)
+PROVE_LAW(soft)

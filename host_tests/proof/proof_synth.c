@@ -7,33 +7,16 @@
 
 static void any_own(filter_t *f, uint8_t kind)
 {
-    any_synth(f, kind);
+    (void)kind;
+    any_synth(f);
 }
 
-/* Uses: fx_isqrt32 */
-PROVE(set_up, synth)
-/* Options: -no-warn-signed-downcast */
-PROVE(defaults, synth)
-/* Uses: fx_isqrt32 */
-PROVE(set_noise, synth)
-/* Uses: fit_line */
-PROVE(start, synth)
-/* Uses: tracker_bounded. Options: -eva-split-return-function synth_next_gain_uq16:full */
-PROVE(step, synth)
-PROVE(fade, synth)
-/* Uses: fx_normalise, rounded */
-PROVE(report, synth)
 
-/* Uses: fx_normalise, rounded. Any gain and extrapolation within its range, stable or not. */
+/* Any gain and extrapolation within its range, stable or not. */
 void proof_filter_synth_noise_gain_uq16(void)
 {
     (void)filter_synth_noise_gain_uq16(ANY_U16(656, UINT16_MAX), ANY_S32(-65535, 65535));
 }
 
-void proof_fit_line(void)
-{
-    filter_t f;
-    any_starting(&f, &filter_law_synth, 0, 5);
-    f.own.synth.spread_lsb = ANY_S16(1, 365);
-    (void)fit_line(&f);
-}
+/* So many counts are kept apart. Options: -eva-ilevel 64 */
+PROVE_LAW(synth)

@@ -1,6 +1,6 @@
 /* The tracker, once for every law: any state, any law that keeps what law.h says, any order of calls. */
 #define RATE_END 2147483647
-#define X_CELLS(v) WIDE_CELLS(v) && NARROW_CELLS(v)
+#define CELLS
 #include "law.h"
 
 /* By powers of 2 of the rate: so many 25 ms pass within a period. */
@@ -135,10 +135,54 @@ void proof_tracker_bounded(void)
 {
     filter_t f;
     f.flags = ANY_U8(0, UINT8_MAX);
-    for (int16_t cell = -126; cell < 126; cell++) {
+    for (int16_t cell = -128; cell < 128; cell++) {
         (void)tracker_bounded(&f, ANY_S32(16777216L * cell, 16777216L * cell + 16777215L));
     }
-    (void)tracker_bounded(&f, 2113929216);
+}
+
+void proof_tracker_meet(void)
+{
+    filter_t f;
+    for (int32_t cell = -9; cell <= 8; cell++) {
+        f.x_lsb_q16 = ANY_S32(33554432L * cell, 33554432L * cell + 33554431L);
+        //@ admit WITHIN(f.x_lsb_q16, X_MAX_Q16);
+        tracker_meet(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
+    }
+    f.x_lsb_q16 = X_MAX_Q16;
+    tracker_meet(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
+}
+
+static void turn_from(int32_t low, int32_t high)
+{
+    filter_t f;
+    any_tracked(&f, NULL);
+    f.rate_lsb = ANY_S32(low, high);
+    f.rate_max_lsb = ANY_U32(0, X_MAX_Q16);
+    tracker_turn(&f, 0);
+    //@ check WITHIN(f.rate_lsb, X_MAX_Q16);
+}
+
+/* Any change; then any sum, as the rate of a change of 0. */
+void proof_tracker_turn(void)
+{
+    filter_t f;
+    any_tracked(&f, NULL);
+    f.rate_lsb = ANY_S32(-3L * X_MAX_Q16, 3L * X_MAX_Q16);
+    f.rate_max_lsb = ANY_U32(0, X_MAX_Q16);
+    tracker_turn(&f, ANY_S32(0, 2L * X_MAX_Q16));
+    turn_from(-3L * X_MAX_Q16, -X_MAX_Q16 - 1L);
+    turn_from(-X_MAX_Q16, -1);
+    turn_from(0, X_MAX_Q16);
+    turn_from(X_MAX_Q16 + 1L, 3L * X_MAX_Q16);
+}
+
+/* A signed word of program memory is read as an unsigned one. Options: -no-warn-signed-downcast */
+void proof_flash_i32(void)
+{
+    int32_t word = ANY_S32(S32_MIN, -1);
+    (void)flash_i32(&word);
+    word = ANY_S32(0, INT32_MAX);
+    (void)flash_i32(&word);
 }
 
 void proof_tracker_limited_r(void)
@@ -152,6 +196,7 @@ void proof_tracker_limited_z(void)
     //@ check SAMPLE(z_lsb);
 }
 
+/* Whole: tracker_limited_r */
 void proof_tracker_default_r_lsb2_q8(void)
 {
     uint32_t r_lsb2_q8 = tracker_default_r_lsb2_q8(ANY_U16(0, 40000));
@@ -167,10 +212,7 @@ void proof_tracker_median_q16(void)
     }
 }
 
-/*
- * Any configuration of any descriptor: legal or refused. A signed word of program memory is read as an unsigned one.
- * Options: -eva-split-return-function filter_judge:full -no-warn-signed-downcast
- */
+/* Any configuration of any descriptor: legal or refused. Options: -eva-split-return-function filter_judge:full */
 void proof_filter_init(void)
 {
     for (uint8_t traits = 0; traits < 2U; traits++) {
@@ -196,7 +238,7 @@ void proof_filter_init(void)
     (void)filter_worst_cycles(&any);
 }
 
-/* A value below or above its range is told by its number. Options: -no-warn-signed-downcast */
+/* A value below or above its range is told by its number. */
 void proof_filter_judge(void)
 {
     any_law(0);
@@ -226,7 +268,6 @@ void proof_filter_judge(void)
     //@ check second: negative == FILTER_REFUSED_FIRST + 1 && small == FILTER_REFUSED_FIRST + 1;
 }
 
-/* Uses: tracker_limited_r */
 void proof_filter_set_noise(void)
 {
     filter_t f;
@@ -254,7 +295,7 @@ void proof_filter_reset_step(void)
     }
 }
 
-/* Uses: filter_reset_step. Options: -eva-split-return-function filter_reset_step:full */
+/* Options: -eva-split-return-function filter_reset_step:full */
 void proof_filter_reset(void)
 {
     filter_t f;
@@ -266,7 +307,6 @@ void proof_filter_reset(void)
     }
 }
 
-/* Uses: tracker_median_q16 */
 void proof_filter_update(void)
 {
     filter_t f;
@@ -329,7 +369,7 @@ void proof_filter_probe(void)
     }
 }
 
-/* The prediction that tests call, and the rest of the verbs. Uses: fx_normalise, rounded */
+/* The prediction that tests call, and the rest of the verbs. */
 void proof_tracker_rest(void)
 {
     filter_t f;

@@ -30,7 +30,7 @@ void proof_give_back(void)
     give_back(&p, ANY_U32(0, UINT32_MAX), ANY_U16(0, UINT16_MAX), false);
 }
 
-/* Uses: fx_normalise. Options: -eva-split-return-function fx_leading:full */
+/* Options: -eva-split-return-function fx_leading:full */
 void proof_left_of_p22(void)
 {
     filter_t f;
@@ -38,7 +38,7 @@ void proof_left_of_p22(void)
     (void)left_of_p22(&f.own.wide, ANY_U32(0, 0xFFFFFF));
 }
 
-/* Uses: give_back, left_of_p22. By which elements are above the end of growth. */
+/* By which elements are above the end of growth. */
 void proof_correct_covariance(void)
 {
     for (uint8_t i = 0; i < 8; i++) {
@@ -52,10 +52,7 @@ void proof_correct_covariance(void)
     }
 }
 
-/*
- * Uses: fx_normalise, tracker_bounded, grow_wide, fx_inverse_m_uq16.
- * Options: -eva-split-return-function fx_leading:full
- */
+/* Options: -eva-split-return-function fx_leading:full */
 void proof_wide_predict(void)
 {
     filter_t f;
@@ -63,7 +60,7 @@ void proof_wide_predict(void)
     (void)wide_predict(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
 }
 
-/* Uses: fx_normalise. Options: -eva-split-return-function fx_leading:full */
+/* Options: -eva-split-return-function fx_leading:full */
 void proof_wide_distance_uq8(void)
 {
     for (uint8_t places = 0; places < 16; places++) {
@@ -73,7 +70,7 @@ void proof_wide_distance_uq8(void)
     }
 }
 
-/* Uses: correct_covariance. By places of S and cells of the estimate. */
+/* By places of S and cells of the estimate. */
 void proof_wide_correct(void)
 {
     for (uint8_t places = 0; places < 16; places++) {
@@ -84,7 +81,6 @@ void proof_wide_correct(void)
     }
 }
 
-/* Uses: fx_normalise, rounded */
 void proof_wide_set_noise(void)
 {
     filter_t f;
@@ -92,7 +88,7 @@ void proof_wide_set_noise(void)
     wide_set_noise(&f, ANY_U32(3, R_END));
 }
 
-/* Uses: fx_normalise, rounded. By places of S. */
+/* By places of S. */
 void proof_wide_report(void)
 {
     filter_probe_t probe;

@@ -1,50 +1,34 @@
-/* What holds of the synthesised laws before and after every call, and states within it; see law.h. */
+/*
+ * What holds of the synthesised laws before and after every call, and states within it; see law.h. LAST_COUNT: the last
+ * of the counts while the gains are those of the start.
+ */
 #ifndef SYNTH_BOUNDS_H
 #define SYNTH_BOUNDS_H
 
-#define RATE_END 603979776 /* 9216 LSB: the difference of two estimates */
-#define LINE_Q16 14417920  /* 220 LSB per sample: the steepest line of the start */
+#define RATE_END 603979776    /* 9216 LSB: the difference of two estimates */
 #define MEMORY_Q16 1207959552 /* 18432 LSB */
-#define X_CELLS NARROW_CELLS
+#define CELLS
 
-#define SYNTH_KEPT(f) (3 <= (f)->own.synth.r_lsb2_q8 <= 256000 && (f)->own.synth.spread_lsb <= 365 && (f)->own.synth.spread_lsb >= 0)
+#define SYNTH_KEPT(f) (3 <= (f)->own.synth.r_lsb2_q8 <= 256000)
 #define COUNT(f) (5 <= (f)->own.synth.count <= LAST_COUNT || (f)->own.synth.count == 255)
-/* The line ends within 512 LSB of the median. */
-#define LINE(f) (SAMPLE_Q16((f)->x_lsb_q16) && WITHIN((f)->own.synth.ahead_lsb_q16, 33554432))
-#define AHEAD(f)                                                                                              \
-    (LINE(f) && (f)->own.synth.count == 5 && WITHIN((f)->rate_lsb, LINE_Q16) && (f)->own.synth.memory_lsb_q16 == 0)
-#define FORCE(f)                                                                                                 \
-    (COUNT(f) && WITHIN((f)->own.synth.rate_before_lsb_q16, RATE_END) &&                                          \
-     WITHIN((f)->own.synth.memory_lsb_q16, MEMORY_Q16) && ((f)->own.synth.ahead_lsb_q16 == 0 || AHEAD(f)))
-#define ADMITTED(f) COUNT(f)
-#define KINDS 3
+#define FORCE(f)                                                                                                  \
+    (COUNT(f) && WITHIN((f)->own.synth.rate_before_lsb_q16, RATE_END) && WITHIN((f)->own.synth.memory_lsb_q16, MEMORY_Q16))
+#define ADMITTED COUNT
+#ifndef KINDS
+#define KINDS 1
+#endif
 #include "law.h"
 #include "synth.h"
 
-/*@ requires 1 <= f->own.synth.spread_lsb <= 365;
-    assigns f->rate_lsb, \result \from f->own;
-    ensures line: WITHIN(f->rate_lsb, LINE_Q16) && WITHIN(\result, 33554432);
-*/
-static int32_t fit_line(filter_t *f);
-
 #include "synth_common.c"
 
-static void any_synth(filter_t *f, uint8_t kind)
+static void any_synth(filter_t *f)
 {
     filter_synth_t *s = &f->own.synth;
     s->rate_before_lsb_q16 = ANY_S32(-RATE_END, RATE_END);
     s->memory_lsb_q16 = ANY_S32(-MEMORY_Q16, MEMORY_Q16);
-    s->ahead_lsb_q16 = 0;
-    s->count = (kind == 0U) ? ANY_U8(SYNTH_FIRST_GAIN, LAST_COUNT) : SYNTH_STEADY;
-    if (kind == 2U) { /* at the median of the start, the line ahead */
-        f->rate_lsb = ANY_S32(-LINE_Q16, LINE_Q16);
-        f->x_lsb_q16 = ANY_S32(FILTER_Z_MIN_LSB * 65536L, FILTER_Z_MAX_LSB * 65536L);
-        s->ahead_lsb_q16 = ANY_S32(-33554432, 33554432);
-        s->memory_lsb_q16 = 0;
-        s->count = SYNTH_FIRST_GAIN;
-    }
+    s->count = ANY_U8(SYNTH_FIRST_GAIN, SYNTH_STEADY);
     s->r_lsb2_q8 = ANY_U32(3, 256000);
-    s->spread_lsb = ANY_S16(0, 365);
     s->a1_uq16 = ANY_U16(0, UINT16_MAX);
     s->a1_negative = ANY_BOOL();
     s->b0_uq16 = ANY_U16(SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16);

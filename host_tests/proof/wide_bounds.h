@@ -89,6 +89,12 @@ void wide_correct(filter_t *f, uint16_t loss_uq16, uint32_t back_uq16);
 */
 void wide_set_noise(filter_t *f, uint32_t r_lsb2_q8);
 
+/*@ requires WIDE_PARAMETERS(f);
+    requires places: f->collected != 5 || f->own.wide.variance == 0 || S_PLACES(f);
+    assigns out->p_lsb2_q8, out->gate_lsb2_q8 \from f->own, f->collected;
+*/
+void wide_report(const filter_t *f, filter_probe_t *out);
+
 /* kalman.c has one of that name. */
 #define grow grow_wide
 #include "wide.c"

@@ -1,6 +1,6 @@
 /*
- * Bytes of a filter's state as the AVR lays it, without gaps: the tracker's and those of the law's own. Worked out apart,
- * where the integers are plain ones.
+ * Bytes of a filter's state as the AVR lays it, without gaps: the tracker's and those of the law's own. Worked out
+ * apart, where the integers are plain ones.
  */
 #ifndef STATE_BYTES_H
 #define STATE_BYTES_H

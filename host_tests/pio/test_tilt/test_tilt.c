@@ -3,6 +3,5 @@
 #include "tilt.h"
 #include "unity.h"
 
-#include "../../support_filter_facts.c"
-#include "../../support_filters.c"
+#include "../../support_random32.c"
 #include "../../test_tilt.c"

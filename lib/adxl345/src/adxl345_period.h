@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Begins with the nominal one, 1250..80000 us. */
-void period_start(uint32_t nominal_us);
+/* Begins with the nominal one, of which half is 625..40000 us. */
+void period_start(uint16_t half_us);
 
 /* The stamp of the next sample, us; exact: the sample was read as it became ready. */
 void period_sample(uint32_t t_us, bool exact);

@@ -1,4 +1,6 @@
 /* What the driver tells of itself: samples, phase, fault, times, counters. */
+#include <string.h>
+
 #include "adxl345_burst.h"
 #include "adxl345_driver.h"
 #include "adxl345_integrity.h"
@@ -7,32 +9,41 @@
 #include "hal_drdy.h"
 #include "hal_pointer.h"
 
-void driver_count(uint16_t *counter)
+static uint16_t counters[COUNTERS];
+
+void driver_count(counter_t counter)
 {
-    if (*counter != UINT16_MAX) {
-        (*counter)++;
+    uint16_t *count = &counters[counter];
+    HAL_POINTER(count); /* else its address is computed twice */
+    if (*count != UINT16_MAX) {
+        (*count)++;
     }
+}
+
+void driver_forget_counters(void)
+{
+    memset(counters, 0, sizeof counters);
 }
 
 const adxl345_sample_t *adxl345_take(void)
 {
-    const burst_entry_t *entry = burst_take();
-    if (entry == NULL) {
+    if (burst_queued() == 0) {
         return NULL;
     }
+    const burst_entry_t *entry = burst_take();
     if (!entry->exact) {
-        driver_count(&driver.counters.samples_drained);
+        driver_count(COUNTER_DRAINED);
     }
     if (entry->stuck) {
-        driver.marks = ADXL345_MARK_STUCK;
-        driver_count(&driver.counters.samples_stuck);
+        driver.marks |= ADXL345_MARK_STUCK;
+        driver_count(COUNTER_STUCK);
     }
     return &entry->sample;
 }
 
 uint8_t adxl345_marks(void)
 {
-    uint8_t marks = (uint8_t)(driver.marks | integrity_marks());
+    uint8_t marks = driver.marks;
     driver.marks = 0;
     return marks;
 }
@@ -45,7 +56,7 @@ HAL_APART uint8_t adxl345_queued(void)
 /* Bursts bring samples, or the sensor is being asked why they do not. */
 static bool streams(void)
 {
-    return driver.step == STEP_STREAM || driver.step == STEP_ASK_SOURCE;
+    return driver.step / STEP_PHASE(1) == ADXL345_STREAMING;
 }
 
 bool adxl345_oldest_us(uint32_t *t_us)
@@ -65,22 +76,8 @@ uint32_t adxl345_lateness_us(void)
 
 adxl345_phase_t adxl345_phase(void)
 {
-    if (streams()) {
-        return driver.first_sample_seen ? ADXL345_STREAMING : ADXL345_STARTING;
-    }
-    switch (driver.step) {
-    case STEP_OFF:
-    case STEP_REST_LATER:
-        return ADXL345_STOPPED;
-    case STEP_BACK_OFF:
-        return ADXL345_FAULTY;
-    case STEP_QUIET_STANDBY:
-    case STEP_QUIET_DRAIN:
-    case STEP_STANDBY:
-        return ADXL345_QUIESCING;
-    default:
-        return ADXL345_STARTING;
-    }
+    uint8_t phase = driver.step / STEP_PHASE(1);
+    return phase == ADXL345_STREAMING && !driver.first_sample_seen ? ADXL345_STARTING : (adxl345_phase_t)phase;
 }
 
 adxl345_fault_t adxl345_fault(void)
@@ -139,18 +136,15 @@ uint32_t adxl345_rate_chz(void)
 
 void adxl345_counters(adxl345_counters_t *out)
 {
-    *out = driver.counters;
+    memcpy(out, counters, sizeof *out);
 }
 
 void adxl345_readings(adxl345_readings_t *out)
 {
-    *out = *integrity_counters();
+    memcpy(out, &counters[COUNTER_FAILED], sizeof *out);
 }
 
 uint16_t adxl345_count(uint8_t at)
 {
-    enum { OWN = sizeof driver.counters / sizeof(uint16_t) };
-    const uint16_t *own = (const uint16_t *)&driver.counters;
-    const uint16_t *readings = (const uint16_t *)integrity_counters();
-    return at < OWN ? own[at] : readings[at - OWN];
+    return counters[at];
 }

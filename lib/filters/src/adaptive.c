@@ -99,7 +99,7 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 static void start(filter_t *f, bool settled)
 {
     filter_adaptive_t *a = &f->own.adaptive;
-    tracker_clear(a, FILTER_START_BYTES);
+    tracker_clear(a, offsetof(filter_adaptive_t, scatter_lsb_uq24));
     f->negative = false;
     f->broken = false;
     a->k_uq32 = settled ? (uint32_t)a->slow_uq16 << 16 : ADAPTIVE_K_START_UQ32;
@@ -155,7 +155,7 @@ static uint32_t agreed_lsb_uq16(const filter_t *f)
 }
 
 /* Counts a sample beyond the gate, and judges what is taken of its innovation. */
-FX_NOINLINE uint32_t judge(filter_t *f)
+static uint32_t judge(filter_t *f)
 {
     filter_adaptive_t *a = &f->own.adaptive;
     uint16_t run = (a->verdict == (uint8_t)ADAPTIVE_WITHIN) ? 0U : a->run;
@@ -186,7 +186,7 @@ FX_NOINLINE uint32_t judge(filter_t *f)
 }
 
 /* Memory after this sample. */
-FX_NOINLINE void adapt(filter_adaptive_t *a, uint16_t spread_uq8)
+static void adapt(filter_adaptive_t *a, uint16_t spread_uq8)
 {
     int16_t mean = (int16_t)(a->mean_lsb_q24 >> 16);
     uint16_t mean_uq8 = (mean < 0) ? (uint16_t)(0U - (uint16_t)mean) : (uint16_t)mean;
@@ -216,14 +216,14 @@ FX_INLINE void turn(filter_t *f, int32_t by_lsb_q24)
 }
 
 /* k w of a w of 128 LSB and more. */
-FX_NOINLINE uint32_t coarse_turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
+static uint32_t coarse_turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
 {
     uint32_t kw = fx_times_uq16(w_lsb_uq16, k_uq16);
     return (kw >= (uint32_t)127 << 16) ? (uint32_t)127 << 24 : kw << 8;
 }
 
 /* Of the magnitude that is taken x moves by 2 w - k w with w = k taken; the rate turns by k w. */
-FX_NOINLINE void follow(filter_t *f, uint32_t taken)
+static void follow(filter_t *f, uint32_t taken)
 {
     if (f->own.adaptive.verdict == (uint8_t)ADAPTIVE_JUMP) {
         f->flags |= FILTER_REACQUIRED;
@@ -232,7 +232,6 @@ FX_NOINLINE void follow(filter_t *f, uint32_t taken)
         uint16_t k = (uint16_t)(f->own.adaptive.k_uq32 >> 16);
         uint32_t w = fx_mul24_uq16(taken >> 8, k);
         uint32_t kw = (w >= 0x800000U) ? coarse_turn_lsb_uq24(w, k) : fx_mul24_uq16(w, k);
-        FX_FENCE();
         turn(f, (int32_t)kw);
         taken = w + w - (kw >> 8);
     }
@@ -241,7 +240,7 @@ FX_NOINLINE void follow(filter_t *f, uint32_t taken)
 }
 
 /* Innovation and gate; returns the sigma of the innovation, LSB. An innovation of 0 keeps to its side. */
-FX_NOINLINE uint16_t meet(filter_t *f, int16_t z_lsb)
+static uint16_t meet(filter_t *f, int16_t z_lsb)
 {
     filter_adaptive_t *a = &f->own.adaptive;
     bool before = f->negative;
@@ -252,7 +251,6 @@ FX_NOINLINE uint16_t meet(filter_t *f, int16_t z_lsb)
         a->run = 0;
         a->mean_lsb_q24 = -a->mean_lsb_q24;
     }
-    FX_FENCE();
     uint16_t spread_uq8 = (uint16_t)(a->scatter_lsb_uq24 >> 16);
     spread_uq8 = (uint16_t)(spread_uq8 + (uint16_t)(fx_mul_u16(spread_uq8, (uint16_t)(a->k_uq32 >> 16)) >> 16));
     a->gate_lsb_uq16 = fx_mul_u16(spread_uq8, a->gate_sigma_q8);
@@ -263,7 +261,7 @@ FX_NOINLINE uint16_t meet(filter_t *f, int16_t z_lsb)
  * Scatter of the innovations from 1.375 |u - mean|, limited to 2.5 times what is expected of it: sqrt(pi / 2) = 1.253
  * makes a mean size a sigma, and a tenth more keeps false alarms rarer than known noise would.
  */
-FX_NOINLINE void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spread_uq8)
+static void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spread_uq8)
 {
     int16_t mean = (int16_t)(a->mean_lsb_q24 >> 16);
     int16_t size = size_lsb_q8(size_lsb_uq16);

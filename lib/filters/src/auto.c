@@ -118,7 +118,7 @@ typedef struct {
 } answer_t;
 
 /* A sample beyond the gate: one more on its side; the last of a run restarts the member at it. Returns the flag. */
-FX_NOINLINE uint8_t refused(filter_member_t *m, bool below, int16_t z_lsb)
+static uint8_t refused(filter_member_t *m, bool below, int16_t z_lsb)
 {
     int8_t run = m->refused;
     if (below) {
@@ -148,17 +148,15 @@ FX_INLINE uint16_t correct(filter_t *f, filter_member_t *m, uint16_t final_k, ui
         k = (uint16_t)(k - (square_uq16 >> 2) - 1U);
         m->k_uq16 = (k > final_k) ? k : final_k;
     }
-    FX_FENCE();
     int32_t x_step = (int32_t)fx_mul24_uq16(size_lsb_uq8, gain_uq16);
     m->x_lsb_q16 += below ? -x_step : x_step;
-    FX_FENCE();
     int32_t rate_step = (int32_t)fx_mul24_uq24(size_lsb_uq8, square_uq32 >> 8);
     m->rate_lsb_q16 = within_rate(f, m->rate_lsb_q16 + (below ? -rate_step : rate_step));
     return gain_uq16;
 }
 
 /* One member one sample on: its score by the innovation, then its state. */
-FX_NOINLINE void step_member(filter_t *f, uint8_t i, int16_t z_lsb, uint32_t gate_lsb_uq8, answer_t *a)
+static void step_member(filter_t *f, uint8_t i, int16_t z_lsb, uint32_t gate_lsb_uq8, answer_t *a)
 {
     filter_auto_t *b = &f->own.bank;
     filter_member_t *m = &b->members[i];
@@ -169,14 +167,12 @@ FX_NOINLINE void step_member(filter_t *f, uint8_t i, int16_t z_lsb, uint32_t gat
     a->innovation_lsb_q16 = innovation;
     bool below = innovation < 0;
     uint32_t size_lsb_uq8 = fx_abs32(innovation) >> 8;
-    FX_FENCE();
     uint16_t bounded = b->eight_sigmas_lsb_uq8;
     if (size_lsb_uq8 < bounded) {
         bounded = (uint16_t)size_lsb_uq8;
     }
     uint32_t square_lsb2_uq8 = fx_mul_u16(bounded, bounded) >> 8;
     m->score_lsb2_uq8 = m->score_lsb2_uq8 - (m->score_lsb2_uq8 >> 3) + square_lsb2_uq8;
-    FX_FENCE();
     if (i == (uint8_t)AUTO_SLOW) {
         gate_lsb_uq8 += gate_lsb_uq8;
     }

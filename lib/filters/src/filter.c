@@ -65,11 +65,10 @@ void filter_reset(filter_t *f, int16_t z0_lsb)
 }
 
 /* One sample of the start: the running median of what was seen, or as published the first sample. */
-FX_NOINLINE void collect(filter_t *f, int16_t z_lsb)
+static void collect(filter_t *f, int16_t z_lsb)
 {
     uint8_t count = f->collected;
     int16_t *at = &f->own.start.ascending_lsb[count];
-    f->own.start.seen_lsb[count] = z_lsb;
     for (; at != f->own.start.ascending_lsb && at[-1] > z_lsb; at--) {
         at[0] = at[-1];
     }

@@ -3,7 +3,7 @@
 
 #include "fx.h"
 
-FX_ONCE const filter_law_t *filter_listed(filter_kind_t kind)
+const filter_law_t *filter_listed(filter_kind_t kind)
 {
     switch (kind) {
 #define LISTED(F)         \
@@ -23,7 +23,7 @@ static const char names[FILTER_KIND_COUNT][12] FX_FLASH = {
 #undef NAME
 };
 
-FX_ONCE const char *filter_listed_name(filter_kind_t kind)
+const char *filter_listed_name(filter_kind_t kind)
 {
     return names[kind];
 }

@@ -23,9 +23,8 @@ typedef struct filter_law filter_law_t;
  */
 typedef struct {
     int16_t ascending_lsb[5]; /* the samples seen, by size */
-    int16_t seen_lsb[5];      /* and in the order of time */
 } filter_start_t;
-#define FILTER_START_BYTES 20
+#define FILTER_START_BYTES 10
 
 /* Covariance of position and rate over R, see kalman.h; wide.h has another format of the same elements. */
 typedef struct {
@@ -86,12 +85,9 @@ typedef struct {
 typedef struct {
     int32_t rate_before_lsb_q16; /* of the step before */
     int32_t memory_lsb_q16;      /* synth_plus: of the next prediction */
-    int32_t ahead_lsb_q16;       /* the line's end less the median of the start, until the first step */
     uint8_t count;               /* samples since the start, SYNTH_STEADY: gains are the steady ones */
-    uint8_t unused[7];
+    uint8_t unused;
     uint32_t r_lsb2_q8; /* measurement variance in force */
-    int16_t
-        spread_lsb; /* a start sample further from the median counts as lying this far from it; 0: no line is fitted */
     uint16_t b0_uq16; /* steady gain */
     uint16_t a1_uq16; /* magnitude of the steady extrapolation; 0: a straight line */
     bool a1_negative;
@@ -119,7 +115,7 @@ typedef struct {
     uint32_t gate_lsb_uq16;    /* of the last step */
     uint16_t run;              /* samples beyond the gate on one side, up to the last */
     uint8_t verdict;           /* of the guard on the last sample */
-    uint8_t unused[5];
+    uint8_t unused;
     uint32_t scatter_lsb_uq24; /* sigma of the innovations for k = 0: 0.1..90 */
     uint16_t gate_sigma_q8;    /* in sigmas of the innovation */
     bool guarded;              /* a gate was configured */

@@ -4,13 +4,12 @@
 /* Spread of the rate of a sensor picked up at any moment: 200 LSB/s, 45 degree/s around level. */
 #define START_RATE_VARIANCE_LSB2_S2 40000U
 
-fx_scaled_t kalman_scales(uint16_t rate_dhz, uint32_t q_lsb2_s3, fx_scaled_t *drive_lsb2, fx_scaled_t *start_lsb2)
+void kalman_scales(const filter_config_t *config, fx_scaled_t *drive_lsb2, fx_scaled_t *start_lsb2)
 {
-    fx_scaled_t period_s = fx_scaled_div(fx_scaled(10), fx_scaled(rate_dhz));
+    fx_scaled_t period_s = fx_scaled_div(fx_scaled(10), fx_scaled(config->rate_dhz));
     fx_scaled_t period2 = fx_scaled_mul(period_s, period_s);
-    *drive_lsb2 = fx_scaled_mul(fx_scaled(q_lsb2_s3), fx_scaled_mul(period2, period_s));
+    *drive_lsb2 = fx_scaled_mul(fx_scaled((uint32_t)config->value[KALMAN_Q]), fx_scaled_mul(period2, period_s));
     *start_lsb2 = fx_scaled_mul(fx_scaled(START_RATE_VARIANCE_LSB2_S2), period2);
-    return period_s;
 }
 
 uint32_t kalman_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28)
@@ -32,15 +31,8 @@ fx_scaled_t kalman_scaled_r(uint32_t r_lsb2_q8)
 void kalman_set_up(filter_t *f, const filter_config_t *config, uint32_t rate_max_lsb_s)
 {
     filter_kalman_t *k = &f->own.kalman;
-    fx_scaled_t period_s = kalman_scales(config->rate_dhz, (uint32_t)config->value[KALMAN_Q], &k->drive_lsb2,
-                                         &k->start_lsb2);
-    f->rate_max_lsb = (uint32_t)TRACKER_X_MAX_LSB_Q16;
-    if (rate_max_lsb_s != 0U) {
-        uint32_t limit = fx_scaled_fixed(fx_scaled_mul(fx_scaled(rate_max_lsb_s), period_s), 16);
-        if (limit < f->rate_max_lsb) {
-            f->rate_max_lsb = limit;
-        }
-    }
+    kalman_scales(config, &k->drive_lsb2, &k->start_lsb2);
+    tracker_limit_rate(f, rate_max_lsb_s, 16);
     filter_set_noise(f, (uint32_t)config->value[KALMAN_R]);
 }
 
@@ -92,13 +84,10 @@ FX_INLINE void grow(filter_kalman_t *k)
 {
     uint8_t high = (uint8_t)((uint8_t)(k->p.p11 >> 24) | (uint8_t)(k->p.p12 >> 24) | (uint8_t)(k->p.p22 >> 24));
     if ((high & 0xE0U) == 0U) {
-        FX_FENCE();
         uint32_t p12 = k->p.p12;
         uint32_t sum = p12 + k->p.p22;
         k->p.p12 = sum;
-        FX_FENCE();
         k->p.p11 += p12 + sum;
-        FX_FENCE();
         k->p.p22 += k->q22_uq28;
     }
 }
@@ -126,14 +115,12 @@ FX_INLINE void correct(filter_t *f)
     f->gain_uq16 = w1_uq16;
     k->p.p11 = fx_shift12(w1_uq16);
     tracker_move(f, (int32_t)fx_mul24_uq16(f->size_lsb_uq16 >> 8, w1_uq16));
-    FX_FENCE();
     uint32_t p12 = k->p.p12;
     uint32_t w2_uq28 = fx_mul_uq16(p12, g);
     k->p.p12 = w2_uq28;
     uint32_t w2_uq24 = fx_sixteenth(w2_uq28); /* < 1 because P12 <= P11 after a prediction */
     int32_t p22_q28 = (int32_t)k->p.p22 - (int32_t)fx_mul_uq24(p12, w2_uq24); /* < 3 less < 4: fits */
     k->p.p22 = (p22_q28 < 0) ? 0U : (uint32_t)p22_q28;
-    FX_FENCE();
     tracker_turn(f, (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, w2_uq24));
 }
 
@@ -141,7 +128,6 @@ bool kalman_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     tracker_predict(f);
     tracker_meet(f, z_lsb);
-    FX_FENCE();
     grow(&f->own.kalman);
     if (what == STEP_MISSING) {
         return false;
@@ -161,17 +147,17 @@ FX_NOINLINE void restart(filter_t *f, int16_t z_lsb)
     f->x_lsb_q16 = (int32_t)z_lsb * 65536;
     f->rate_lsb = 0;
     if (!f->broken) {
-        int32_t slope = (int32_t)(z_lsb - k->first_lsb) * 32768; /* over 2 samples; the factor holds 15 halvings */
-        uint32_t p12 = KALMAN_ONE_UQ28 / 2U;
-        uint32_t p22 = KALMAN_ONE_UQ28 / 2U; /* 2/4 */
-        for (uint8_t steps = k->steps; steps > 2U; steps >>= 1) {
+        int32_t slope = (int32_t)(z_lsb - k->first_lsb) * 65536; /* over one sample */
+        uint16_t p12_uq12 = 0x1000;
+        uint16_t p22_uq12 = 0x2000;
+        for (uint8_t steps = k->steps; steps > 1U; steps >>= 1) {
             slope >>= 1;
-            p12 >>= 1;
-            p22 >>= 2;
+            p12_uq12 >>= 1;
+            p22_uq12 >>= 2;
         }
         f->rate_lsb = fx_clamp(slope, (int32_t)f->rate_max_lsb);
-        k->p.p12 = p12;
-        k->p.p22 = p22 + k->q22_uq28;
+        k->p.p12 = (uint32_t)p12_uq12 << 16;
+        k->p.p22 = ((uint32_t)p22_uq12 << 16) + k->q22_uq28;
     }
     tracker_nothing(f);
     f->flags = FILTER_REACQUIRED;

@@ -48,24 +48,23 @@ extern "C" {
 /* Places of the parameters that every Kalman law begins with. */
 enum { KALMAN_R, KALMAN_Q };
 
-/* Period in s, q T^3 and the start variance of the rate, LSB^2 per sample^2, at an output data rate. Divides. */
-FX_ONCE fx_scaled_t kalman_scales(uint16_t rate_dhz, uint32_t q_lsb2_s3, fx_scaled_t *drive_lsb2,
-                                  fx_scaled_t *start_lsb2);
+/* q T^3 and the start variance of the rate, LSB^2 per sample^2, of a configuration. Divides. */
+void kalman_scales(const filter_config_t *config, fx_scaled_t *drive_lsb2, fx_scaled_t *start_lsb2);
 
 /* A variance over R in UQ4.28, within min_uq28..KALMAN_Q22_MAX_UQ28. Divides. */
-FX_ONCE uint32_t kalman_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28);
+uint32_t kalman_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28);
 
 /* r_lsb2_q8 as a number that spans decades, LSB^2. */
-FX_ONCE fx_scaled_t kalman_scaled_r(uint32_t r_lsb2_q8);
+fx_scaled_t kalman_scaled_r(uint32_t r_lsb2_q8);
 
 /* Drive, limit of the rate and noise of a Kalman law; rate_max 0: the bound of the format. Divides. */
-FX_ONCE void kalman_set_up(filter_t *f, const filter_config_t *config, uint32_t rate_max_lsb_s);
+void kalman_set_up(filter_t *f, const filter_config_t *config, uint32_t rate_max_lsb_s);
 
 /* R for the samples to come, 2..2^24 - 1. The estimate stays, P / R is re-scaled by time. Divides. */
-FX_ONCE void kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8);
+void kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8);
 
 /* Gate of so many sigmas (<= 16) with the R in force, and how far two samples of one run may lie apart. */
-FX_ONCE void kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8);
+void kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8);
 
 /* P11 = R, rate as uncertain as at the start. */
 void kalman_start(filter_t *f, bool settled);
@@ -76,7 +75,7 @@ void kalman_start(filter_t *f, bool settled);
  * prediction and the sample, hence within its bound. True: the sample was used; false: it lies beyond the gate, u^2 >
  * gate^2 R (P11 + 1), or is missing.
  */
-FX_ONCE bool kalman_step(filter_t *f, int16_t z_lsb, uint8_t what);
+bool kalman_step(filter_t *f, int16_t z_lsb, uint8_t what);
 
 /*
  * Consistency re-acquisition: refused samples that agree among themselves are no outliers but where the signal is now.
@@ -84,10 +83,10 @@ FX_ONCE bool kalman_step(filter_t *f, int16_t z_lsb, uint8_t what);
  * the slope from the first to the last. A sample that is not refused ends the run; a missing one makes the slope unknown.
  * True: this sample was the last of a run.
  */
-FX_ONCE bool kalman_refused(filter_t *f, int16_t z_lsb);
+bool kalman_refused(filter_t *f, int16_t z_lsb);
 
 /* A number of samples over which a slope can be fitted without a division: 3, 5, 9; 0: never. */
-FX_ONCE bool kalman_run_legal(int32_t samples);
+bool kalman_run_legal(int32_t samples);
 
 /* Variance and gate of the probe. */
 void kalman_report(const filter_t *f, filter_probe_t *out);

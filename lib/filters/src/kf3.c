@@ -40,8 +40,8 @@ static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_paramet
 static void set_up(filter_t *f, const filter_config_t *config)
 {
     filter_kf3_t *k = &f->own.kf3;
-    fx_scaled_t period_s = kalman_scales(config->rate_dhz, (uint32_t)config->value[KALMAN_Q], &k->drive_lsb2,
-                                         &k->start_lsb2);
+    fx_scaled_t period_s = fx_scaled_div(fx_scaled(10), fx_scaled(config->rate_dhz));
+    kalman_scales(config, &k->drive_lsb2, &k->start_lsb2);
     k->fine = config->rate_dhz >= FINE_FROM_DHZ;
     k->drive_lsb2 = fx_scaled_mul(k->drive_lsb2, fx_scaled_mul(period_s, period_s)); /* q T^5 */
     if (k->fine) {
@@ -78,7 +78,7 @@ static void start(filter_t *f, bool settled)
 }
 
 /* A state limited to the bound of the format; flagged. */
-FX_NOINLINE int32_t limited(filter_t *f, int32_t v_q16)
+static int32_t limited(filter_t *f, int32_t v_q16)
 {
     if (fx_abs32(v_q16) > (uint32_t)TRACKER_X_MAX_LSB_Q16) {
         f->flags |= FILTER_SATURATED;
@@ -88,7 +88,7 @@ FX_NOINLINE int32_t limited(filter_t *f, int32_t v_q16)
 }
 
 /* In the unit of the acceleration to that of the rate. */
-FX_NOINLINE uint32_t to_rate(const filter_kf3_t *k, uint32_t v)
+static uint32_t to_rate(const filter_kf3_t *k, uint32_t v)
 {
     return k->fine ? fx_sixteenth(v) : v;
 }
@@ -116,27 +116,21 @@ static bool grow_covariance(filter_kf3_t *k)
     }
     uint32_t p33 = k->p33_uq28 + k->q33_uq28;
     k->p33_uq28 = p33;
-    FX_FENCE();
     uint32_t twice_p23 = k->p23_uq28;
     uint32_t p23 = twice_p23 + to_rate(k, p33);
     k->p23_uq28 = p23;
     twice_p23 += p23;
-    FX_FENCE();
     k->p.p22 += to_rate(k, twice_p23);
-    FX_FENCE();
     uint32_t p12 = k->p.p12 + to_rate(k, k->p13_uq28);
-    FX_FENCE();
     k->p13_uq28 += k->p23_uq28;
-    FX_FENCE();
     uint32_t sum = p12 + k->p.p22;
     k->p.p12 = sum;
-    FX_FENCE();
     k->p.p11 += p12 + sum;
     return true;
 }
 
 /* State and P one sample on. What has run to the bound of the format stands still there. */
-FX_NOINLINE void predict(filter_t *f)
+static void predict(filter_t *f)
 {
     filter_kf3_t *k = &f->own.kf3;
     uint8_t flags = f->flags;
@@ -157,27 +151,27 @@ FX_NOINLINE void predict(filter_t *f)
 }
 
 /* An element of P less a gain times the column's element, at least 0. */
-FX_NOINLINE uint32_t less(uint32_t p_uq28, uint32_t column_uq28, uint32_t gain_uq24)
+static uint32_t less(uint32_t p_uq28, uint32_t column_uq28, uint32_t gain_uq24)
 {
     int32_t left_q28 = (int32_t)p_uq28 - (int32_t)fx_mul_uq24(column_uq28, gain_uq24); /* < 5 less < 7: fits */
     return (left_q28 < 0) ? 0U : (uint32_t)left_q28;
 }
 
 /* A state and its gain times the innovation: by the magnitude, so that rounding is the same for both signs. */
-FX_NOINLINE int32_t moved(const filter_t *f, int32_t v_q16, uint32_t gain_uq24)
+static int32_t moved(const filter_t *f, int32_t v_q16, uint32_t gain_uq24)
 {
     int32_t step = (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, gain_uq24); /* < 8704 LSB */
     return f->negative ? v_q16 - step : v_q16 + step;
 }
 
 /* A gain UQ4.28 as UQ0.24, below 1: only right after a gap or a start is it more. */
-FX_NOINLINE uint32_t below_one_uq24(uint32_t gain_uq28)
+static uint32_t below_one_uq24(uint32_t gain_uq28)
 {
     uint32_t gain_uq24 = fx_sixteenth(gain_uq28);
     return (gain_uq24 > 0xFFFFFFU) ? 0xFFFFFFU : gain_uq24;
 }
 
-FX_NOINLINE void to_sixteenth(uint32_t *p)
+static void to_sixteenth(uint32_t *p)
 {
     *p = fx_shifted_right(*p, 4);
 }

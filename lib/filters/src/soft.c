@@ -124,7 +124,6 @@ FX_INLINE uint32_t weight_uq20(const filter_t *f)
         } while ((size & 0x800000U) == 0U);
     }
     uint16_t inverse = fx_inverse_m_uq16((uint8_t)(size >> 16) & 0x7FU, (uint16_t)size);
-    FX_FENCE();
     uint32_t weight = fx_mul_u16(f->own.kalman.gate_lsb2_uq4, fx_mul16_uq16(inverse, inverse));
     if (f->own.kalman.coarse) {
         b = (uint8_t)(b - 4U);
@@ -160,7 +159,6 @@ FX_INLINE uint16_t weight_uq16(uint32_t m_uq20)
 FX_INLINE void update_x(filter_t *f, uint32_t w1_uq24)
 {
     tracker_move(f, part_of_innovation(f, w1_uq24) + 1);
-    FX_FENCE();
     f->own.kalman.p.p11 = fx_mul24_uq16(f->own.kalman.p.p11 >> 8, (uint16_t)~f->gain_uq16);
 }
 
@@ -170,12 +168,10 @@ FX_INLINE void update_rate(filter_t *f, uint32_t m_uq20)
     filter_covariance_t *p = &f->own.kalman.p;
     uint32_t p12_uq20 = p->p12 >> 8;
     p->p12 = fx_mul24_uq16(p12_uq20, (uint16_t)~f->gain_uq16);
-    FX_FENCE();
     uint32_t w2_uq24 = limited_uq24(fx_mul24_uq24(p12_uq20, m_uq20));
     uint16_t w2_uq16 = (uint16_t)(w2_uq24 >> 8);
     int32_t p22_q28 = (int32_t)p->p22 - (int32_t)fx_mul24_uq16(p12_uq20, w2_uq16); /* < 3 less < 4: fits */
     p->p22 = (p22_q28 < 0) ? 0U : (uint32_t)p22_q28;
-    FX_FENCE();
     tracker_turn(f, part_of_innovation(f, w2_uq24));
 }
 
@@ -183,14 +179,12 @@ FX_INLINE void update_rate(filter_t *f, uint32_t m_uq20)
  * A sample beyond the soft gate. Its share S / S_eff = S m = m + w1 tells whether it lies beyond the gate: u^2 > gate^2 S
  * where S m < (softgate / gate)^2.
  */
-FX_NOINLINE void take_part(filter_t *f, int16_t z_lsb)
+static void take_part(filter_t *f, int16_t z_lsb)
 {
     filter_kalman_t *k = &f->own.kalman;
     uint32_t m_uq20 = weight_uq20(f);
-    FX_FENCE();
     uint32_t w1_uq24 = limited_uq24(fx_mul24_uq24(k->p.p11 >> 8, m_uq20));
     f->gain_uq16 = (uint16_t)(w1_uq24 >> 8);
-    FX_FENCE();
     uint16_t weight = weight_uq16(m_uq20);
     uint16_t share_uq16 = (uint16_t)(weight + f->gain_uq16);
     if (share_uq16 >= weight && share_uq16 < k->of.gated.share_uq16) { /* rounding may carry a share of 1 past it */
@@ -201,9 +195,7 @@ FX_NOINLINE void take_part(filter_t *f, int16_t z_lsb)
     } else {
         k->run = 0;
     }
-    FX_FENCE();
     update_x(f, w1_uq24);
-    FX_FENCE();
     update_rate(f, m_uq20);
 }
 

@@ -93,26 +93,28 @@ static void set_up(filter_t *f, const filter_config_t *config)
     filter_set_noise(f, (uint32_t)config->value[SYNTH_R_LSB2_Q8]);
 }
 
-/* In the start the gain is that of a line, and the prediction the straight line alone. False: it is over. */
-FX_NOINLINE bool starting(filter_t *f, uint8_t what)
+/* In the start the gain is that of a line, and the prediction the straight line alone. */
+FX_NOINLINE void start_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    synth_take_line(f);
+    filter_synth_t *s = &f->own.synth;
     if (what != STEP_MISSING) {
         f->gain_uq16 = synth_next_gain_uq16(f);
-        if (f->own.synth.count == SYNTH_STEADY) {
-            return false;
-        }
     }
-    f->own.synth.rate_before_lsb_q16 = f->rate_lsb;
-    return true;
+    if (s->count == SYNTH_STEADY) {
+        synth_steady_step(f, z_lsb, what);
+    } else {
+        s->rate_before_lsb_q16 = f->rate_lsb;
+        synth_step(f, z_lsb, what);
+    }
 }
 
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    if (f->own.synth.count == SYNTH_STEADY || !starting(f, what)) {
-        synth_steady(f);
+    if (f->own.synth.count == SYNTH_STEADY) {
+        synth_steady_step(f, z_lsb, what);
+    } else {
+        start_step(f, z_lsb, what);
     }
-    synth_step(f, z_lsb, what);
 }
 
 /* The variance is that of one sample until the gain is steady, then R times the noise gain, limited to 32 bits. */
@@ -133,7 +135,7 @@ const filter_law_t filter_law_synth FX_FLASH = { .name = "synth",
                                                  .parameters = parameters,
                                                  .together = together,
                                                  .set_up = set_up,
-                                                 .set_noise = synth_take_noise_and_spread,
+                                                 .set_noise = synth_take_noise,
                                                  .start = synth_start,
                                                  .step = step,
                                                  .fade = synth_fade,

@@ -15,49 +15,36 @@
 extern "C" {
 #endif
 
-/* `count` of a filter whose gains are the steady ones, and where the gains of the start begin and end. */
+/* `count` of a filter whose gains are the steady ones, and where those of the start begin and end. */
 enum { SYNTH_STEADY = 255, SYNTH_FIRST_GAIN = FILTER_WARM_UP_SAMPLES, SYNTH_END_GAIN = 63 };
 
 /* A lower gain than 0.01 would need more than 16 bits of it: the lag goes with 1 / b0. */
 #define SYNTH_B0_MIN_UQ16 656
 #define SYNTH_B0_MAX_UQ16 65535
 
-/* Noise for the report and, where a line is fitted, for the spread of the start samples about their median. */
+/* Noise for the report and for what of the rate is believed when samples are missing. */
 void synth_take_noise(filter_t *f, uint32_t r_lsb2_q8);
-void synth_take_noise_and_spread(filter_t *f, uint32_t r_lsb2_q8);
 
-/*
- * On the line of least squares through the start samples, each limited to the median -+ spread; or, without a spread, at
- * the median; settled: at rest with the steady gains.
- */
+/* At the median of the start; settled: at rest with the steady gains. */
 void synth_start(filter_t *f, bool settled);
-
-/* To be called ahead of a step while the gains are not the steady ones: the first begins at the end of the line. */
-FX_ONCE void synth_take_line(filter_t *f);
 
 /*
  * The gain for this sample, at least b0: (4 n - 2) / (n (n + 1)) of a least-squares line through n samples in the start,
  * which ends with the first of them that is not above b0 or with sample SYNTH_END_GAIN.
  */
-FX_ONCE uint16_t synth_next_gain_uq16(filter_t *f);
+uint16_t synth_next_gain_uq16(filter_t *f);
 
 /* v - a1 (v - v') in place of v, for an a1 of this magnitude. */
-FX_ONCE void synth_bend_by(filter_t *f, uint16_t a1_uq16);
-
-/* The steady gain and extrapolation. */
-FX_INLINE void synth_steady(filter_t *f)
-{
-    f->gain_uq16 = f->own.synth.b0_uq16;
-    if (f->own.synth.a1_uq16 != 0U) {
-        synth_bend_by(f, f->own.synth.a1_uq16);
-    }
-}
+void synth_bend_by(filter_t *f, uint16_t a1_uq16);
 
 /*
  * One step: prediction by v, to which the law has added what bends it, |addend| <= 18432 LSB (with |2 x1 - x2| <= 13824
  * the sum stays below 2^31 in Q16), then the correction with f->gain_uq16, without a sample none.
  */
-FX_ONCE void synth_step(filter_t *f, int16_t z_lsb, uint8_t what);
+void synth_step(filter_t *f, int16_t z_lsb, uint8_t what);
+
+/* One step with the steady gain and extrapolation. */
+void synth_steady_step(filter_t *f, int16_t z_lsb, uint8_t what);
 
 /*
  * The rate is the difference of two estimates, the noise of which is 0.3 to 0.7 sigmas of a sample: unless it is more
@@ -66,7 +53,7 @@ FX_ONCE void synth_step(filter_t *f, int16_t z_lsb, uint8_t what);
 void synth_fade(filter_t *f, bool first);
 
 /* The last two steps halved. */
-FX_ONCE void synth_damp(filter_t *f);
+void synth_damp(filter_t *f);
 
 /* Noise gains in the steady state, see synth.c and synth_plus.c; for the tools too. Divide. */
 uint32_t filter_synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16);

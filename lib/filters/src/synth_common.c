@@ -1,11 +1,6 @@
 /* The step and the start of the synthesised laws: see synth.h. */
 #include "synth.h"
 
-/* Two samples' motion at this rate may carry a start sample from the median: as sprf's ratemax. */
-#define MOTION_LSB_S 800U
-/* With this the line through the start samples ends within the bound of the format, see fit_line. */
-#define SPREAD_MAX_LSB 365
-
 /*
  * Gains of a least-squares line through n samples, (4 n - 2) / (n (n + 1)), n = 6..63, UQ0.16: what the constant gain
  * is raised to after the start. Behind the last one the estimate's variance is within a few per cent of the steady one.
@@ -22,59 +17,11 @@ void synth_take_noise(filter_t *f, uint32_t r_lsb2_q8)
     f->own.synth.r_lsb2_q8 = r_lsb2_q8;
 }
 
-void synth_take_noise_and_spread(filter_t *f, uint32_t r_lsb2_q8)
-{
-    uint16_t noise_lsb = (uint16_t)((fx_isqrt32(36U * r_lsb2_q8) >> 4) + 1U); /* 6 sigma, rounded up: <= 190 */
-    uint16_t motion_lsb = (uint16_t)(20U * MOTION_LSB_S / f->rate_dhz);       /* two samples; <= 320 */
-    uint16_t spread_lsb = (uint16_t)(noise_lsb + motion_lsb);
-    f->own.synth.spread_lsb = (spread_lsb > SPREAD_MAX_LSB) ? SPREAD_MAX_LSB : (int16_t)spread_lsb;
-    synth_take_noise(f, r_lsb2_q8);
-}
-
-/*
- * The line of least squares through the start samples, each limited to the median -+ spread, so that an outlier among
- * them costs no more than a large error of measurement. With d the deviations from the median: mean in the middle of the
- * line, slope (-2, -1, 0, 1, 2) d / 10. The line ends within 7/5 x 365 < 512 LSB of the median, hence within the bound.
- * 65536 / 5 is rounded: 2 in 10^5 of the deviation. Returns its end less the median.
- */
-static int32_t fit_line(filter_t *f)
-{
-    const int16_t *seen_lsb = f->own.start.seen_lsb;
-    int16_t median_lsb = f->own.start.ascending_lsb[FILTER_WARM_UP_SAMPLES / 2];
-    int16_t spread_lsb = f->own.synth.spread_lsb;
-    int16_t sum = 0;
-    int16_t above = 0; /* sums of what has come so far: the slope is their sum less twice what all have */
-    for (uint8_t left = FILTER_WARM_UP_SAMPLES; left != 0U; left--) {
-        int16_t off_lsb = (int16_t)(*seen_lsb++ - median_lsb);
-        if (off_lsb > spread_lsb) {
-            off_lsb = spread_lsb;
-        } else if (off_lsb < -spread_lsb) {
-            off_lsb = (int16_t)-spread_lsb;
-        }
-        above = (int16_t)(above + sum);
-        sum = (int16_t)(sum + off_lsb);
-    }
-    f->rate_lsb = (int32_t)(int16_t)(2 * sum - above) * 6554;
-    return (int32_t)sum * 13107 + 2 * f->rate_lsb;
-}
-
 void synth_start(filter_t *f, bool settled)
 {
-    filter_synth_t *s = &f->own.synth;
-    int32_t ahead_lsb_q16 = 0;
-    if (!settled && s->spread_lsb != 0) {
-        ahead_lsb_q16 = fit_line(f);
-    }
-    s->ahead_lsb_q16 = ahead_lsb_q16; /* the estimate of the last start sample is still the median */
-    s->rate_before_lsb_q16 = f->rate_lsb;
-    s->memory_lsb_q16 = 0;
-    s->count = settled ? (uint8_t)SYNTH_STEADY : (uint8_t)SYNTH_FIRST_GAIN;
-}
-
-void synth_take_line(filter_t *f)
-{
-    f->x_lsb_q16 += f->own.synth.ahead_lsb_q16;
-    f->own.synth.ahead_lsb_q16 = 0;
+    f->own.synth.rate_before_lsb_q16 = 0;
+    f->own.synth.memory_lsb_q16 = 0;
+    f->own.synth.count = settled ? (uint8_t)SYNTH_STEADY : (uint8_t)SYNTH_FIRST_GAIN;
 }
 
 uint16_t synth_next_gain_uq16(filter_t *f)
@@ -93,31 +40,47 @@ uint16_t synth_next_gain_uq16(filter_t *f)
 
 void synth_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    int32_t x1 = f->x_lsb_q16;
-    int32_t x = tracker_bounded(f, x1 + f->rate_lsb);
+    int32_t before = f->x_lsb_q16;
+    int32_t x = tracker_bounded(f, before + f->rate_lsb);
     if (what != STEP_MISSING) {
         int32_t innovation = (int32_t)z_lsb * 65536 - x;
+        uint32_t size = fx_abs32(innovation);
         f->negative = innovation < 0;
-        f->size_lsb_uq16 = fx_abs32(innovation);
-        x += fx_scale_uq16(innovation, f->gain_uq16);
+        f->size_lsb_uq16 = size;
+        int32_t step = (int32_t)fx_mul_uq16(size, f->gain_uq16);
+        x = f->negative ? x - step : x + step;
     }
     f->x_lsb_q16 = x;
-    f->rate_lsb = x - x1;
+    f->rate_lsb = x - before;
 }
 
 void synth_bend_by(filter_t *f, uint16_t a1_uq16)
 {
     filter_synth_t *s = &f->own.synth;
     int32_t bend = f->rate_lsb - s->rate_before_lsb_q16; /* x1 - 2 x2 + x3 < 18432 LSB */
-    FX_FENCE();
     s->rate_before_lsb_q16 = f->rate_lsb;
-    FX_FENCE();
-    bend = fx_scale_uq16(bend, a1_uq16);
-    FX_FENCE();
-    if (s->a1_negative) {
-        f->rate_lsb += bend;
+    int32_t part = (int32_t)fx_times_uq16(fx_abs32(bend), a1_uq16);
+    if ((bend < 0) != s->a1_negative) {
+        f->rate_lsb += part;
     } else {
-        f->rate_lsb -= bend;
+        f->rate_lsb -= part;
+    }
+}
+
+/* Apart, so that the straight line has no registers to save. */
+FX_NOINLINE void bent_step(filter_t *f, int16_t z_lsb, uint8_t what)
+{
+    synth_bend_by(f, f->own.synth.a1_uq16);
+    synth_step(f, z_lsb, what);
+}
+
+void synth_steady_step(filter_t *f, int16_t z_lsb, uint8_t what)
+{
+    f->gain_uq16 = f->own.synth.b0_uq16;
+    if (f->own.synth.a1_uq16 == 0U) {
+        synth_step(f, z_lsb, what);
+    } else {
+        bent_step(f, z_lsb, what);
     }
 }
 

@@ -76,7 +76,7 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 }
 
 /* A step of the schedule, with its place in the tables: of the class, then of all. It waits for missing samples. */
-FX_NOINLINE void scheduled(filter_t *f, uint8_t what)
+FX_NOINLINE void scheduled_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     filter_synth_t *s = &f->own.synth;
     uint8_t steps = (uint8_t)(s->count - (uint8_t)SYNTH_FIRST_GAIN);
@@ -92,16 +92,16 @@ FX_NOINLINE void scheduled(filter_t *f, uint8_t what)
     if (what != STEP_MISSING) {
         s->count = (steps < (uint8_t)(SYNTH_OPT_STEPS - 1)) ? (uint8_t)(s->count + 1U) : (uint8_t)SYNTH_STEADY;
     }
+    synth_step(f, z_lsb, what);
 }
 
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     if (f->own.synth.count == SYNTH_STEADY) {
-        synth_steady(f);
+        synth_steady_step(f, z_lsb, what);
     } else {
-        scheduled(f, what);
+        scheduled_step(f, z_lsb, what);
     }
-    synth_step(f, z_lsb, what);
 }
 
 /*

@@ -84,7 +84,7 @@ static void standard(filter_config_t *config)
 }
 
 /* A call of its own for the products that run rarely. */
-FX_NOINLINE uint32_t product_u16(uint16_t a, uint16_t b)
+static uint32_t product_u16(uint16_t a, uint16_t b)
 {
     return fx_mul_u16(a, b);
 }
@@ -134,7 +134,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
 }
 
 /* The last innovation x a tap: by magnitudes, so that rounding is the same for both signs. */
-FX_NOINLINE int32_t tapped(const filter_t *f, bool negative, uint16_t tap_uq16)
+FX_INLINE int32_t tapped(const filter_t *f, bool negative, uint16_t tap_uq16)
 {
     int32_t tapped_q16 = (int32_t)fx_mul_uq16(f->size_lsb_uq16, tap_uq16);
     return (f->negative != negative) ? -tapped_q16 : tapped_q16;
@@ -193,7 +193,6 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     int32_t memory_q16 = s->memory_lsb_q16;
     bool steady = s->count == SYNTH_STEADY;
     if (!steady) {
-        synth_take_line(f);
         if (what != STEP_MISSING) {
             start_step(f, z_lsb);
             return;
@@ -222,9 +221,10 @@ static void fade(filter_t *f, bool first)
 }
 
 /* v x factor / 2^16, |factor| <= 65535. */
-FX_NOINLINE int32_t times(int32_t v, int32_t factor_q16)
+static int32_t times(int32_t v, int32_t factor_q16)
 {
-    return fx_scale_uq16((factor_q16 < 0) ? -v : v, (uint16_t)fx_abs32(factor_q16));
+    int32_t product = (int32_t)fx_times_uq16(fx_abs32(v), (uint16_t)fx_abs32(factor_q16));
+    return ((v < 0) != (factor_q16 < 0)) ? -product : product;
 }
 
 /* Q7.25 from Q16. */
@@ -290,7 +290,7 @@ const filter_law_t filter_law_synth_plus FX_FLASH = { .name = "synth_plus",
                                                       .standard = standard,
                                                       .together = together,
                                                       .set_up = set_up,
-                                                      .set_noise = synth_take_noise_and_spread,
+                                                      .set_noise = synth_take_noise,
                                                       .start = synth_start,
                                                       .step = step,
                                                       .fade = fade,

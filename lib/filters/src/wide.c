@@ -6,7 +6,7 @@
 void wide_set_up(filter_t *f, const filter_config_t *config)
 {
     filter_wide_t *w = &f->own.wide;
-    (void)kalman_scales(config->rate_dhz, (uint32_t)config->value[KALMAN_Q], &w->drive_lsb2, &w->start_lsb2);
+    kalman_scales(config, &w->drive_lsb2, &w->start_lsb2);
     f->rate_max_lsb = (uint32_t)TRACKER_X_MAX_LSB_Q16;
     filter_set_noise(f, (uint32_t)config->value[KALMAN_R]);
 }
@@ -53,7 +53,6 @@ bool wide_predict(filter_t *f, int16_t z_lsb)
     filter_wide_t *w = &f->own.wide;
     tracker_predict(f);
     tracker_meet(f, z_lsb);
-    FX_FENCE();
     bool grows = grow(w);
     w->variance = fx_leading(w->p.p11 + ONE_UQ16);
     w->inverse_uq16 = fx_inverse_uq16(w->variance);
@@ -86,7 +85,7 @@ static uint32_t limited(uint32_t p)
  * An element of P: what Kalman's update leaves of it, and a fraction of what that takes away; or, to grow, what was
  * there and eight times that fraction more.
  */
-FX_NOINLINE void give_back(uint32_t *p, uint32_t left, uint16_t fraction_uq16, bool grows)
+static void give_back(uint32_t *p, uint32_t left, uint16_t fraction_uq16, bool grows)
 {
     uint32_t before = *p;
     uint32_t taken = (before > left) ? before - left : 0U; /* not below 0 for rounding */
@@ -130,7 +129,7 @@ static void correct_covariance(filter_wide_t *w, uint16_t w1_uq16, uint32_t w2_u
 }
 
 /* A gain times the innovation's magnitude, so that rounding is the same for both signs; < 8704 LSB. */
-FX_NOINLINE int32_t step_by(const filter_t *f, uint32_t gain_uq24)
+static int32_t step_by(const filter_t *f, uint32_t gain_uq24)
 {
     return (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, gain_uq24);
 }

@@ -43,7 +43,7 @@ extern "C" {
 #define WIDE_BACK_MAX_UQ16 0x7FFFFU
 
 /* Drive and noise of the parameters r and q. Divides. */
-FX_ONCE void wide_set_up(filter_t *f, const filter_config_t *config);
+void wide_set_up(filter_t *f, const filter_config_t *config);
 void wide_set_noise(filter_t *f, uint32_t r_lsb2_q8);
 
 /* P11 = R, rate as uncertain as at the start. Divides. */
@@ -53,20 +53,20 @@ void wide_start(filter_t *f, bool settled);
  * First half of a step: x and P predicted, innovation of the sample, S and 1/S. True when P could grow, false at the end
  * of its range.
  */
-FX_ONCE bool wide_predict(filter_t *f, int16_t z_lsb);
+bool wide_predict(filter_t *f, int16_t z_lsb);
 
 /* u^2 / (R S) of the step begun: the squared innovation in variances, UQ8.8, saturated; error <= 3e-4 of it + 1/256. */
-FX_ONCE uint16_t wide_distance_uq8(const filter_t *f);
+uint16_t wide_distance_uq8(const filter_t *f);
 
 /* Second half: gains, x, rate and P. loss and back: see above; loss 65535 is the largest below 1, for more: wide_refuse. */
-FX_ONCE void wide_correct(filter_t *f, uint16_t loss_uq16, uint32_t back_uq16);
+void wide_correct(filter_t *f, uint16_t loss_uq16, uint32_t back_uq16);
 
 /*
  * Second half for a sample that a rule does not use: flag set. But where P could not grow (what wide_predict said) the
  * sample is taken, FILTER_REACQUIRED: in exact arithmetic P would have grown until it is, and here the filter would
  * refuse for ever.
  */
-FX_ONCE void wide_refuse(filter_t *f, bool grows);
+void wide_refuse(filter_t *f, bool grows);
 
 /* Variance and gate of the probe; the gate is the limit of wide_distance_uq8, 0: none. */
 void wide_report(const filter_t *f, filter_probe_t *out);

@@ -1,95 +1,90 @@
 /* From readings to roll and pitch: see tilt_filter.h. */
 #include "tilt_filter.h"
 
-#include <stddef.h>
+enum { BITS_MIN = 8, FILTER_BITS = 13, BITS_MAX = 16 };
 
-enum { SENSOR_BITS = 13 };
+calibration_verdict_t tilt_filter_calibrate(tilt_filter_t *t, const calibration_t *calibration)
+{
+    return calibration_prepare(&t->calibration, calibration);
+}
 
-static void apply_scale(tilt_filter_t *t, uint16_t xy_uq6, uint16_t z_uq6)
+/* False: not legal, and nothing is changed. */
+static bool set_scale(tilt_filter_t *t, uint16_t xy_uq6, uint16_t z_uq6)
 {
     calibration_t plain;
     calibration_plain(&plain, xy_uq6, z_uq6);
-    (void)calibration_prepare(&t->calibration, &plain);
+    return tilt_filter_calibrate(t, &plain).why == (uint8_t)CALIBRATION_GOOD;
 }
 
-/* The law's shipped values, or the caller's, at the facade's rate and with the R in force. */
-static filter_answer_t begin_axis(tilt_filter_t *t, uint8_t axis, const filter_law_t *law,
-                                  const filter_config_t *wanted)
+static int16_t highest_of(uint8_t bits)
 {
-    filter_config_t config = filter_defaults(law, t->rate_dhz);
-    if (wanted != NULL) {
-        config = *wanted;
-        config.rate_dhz = t->rate_dhz;
-    }
-    filter_answer_t answer = filter_init(&t->filters[axis], law, &config);
-    if (answer == FILTER_ACCEPTED) {
-        noise_init(&t->noise[axis], t->rate_dhz, axis == 2U);
-        filter_set_noise(&t->filters[axis], noise_r_lsb2_q8(&t->noise[axis]));
-    }
-    return answer;
-}
-
-filter_answer_t tilt_filter_use(tilt_filter_t *t, const filter_law_t *law, const filter_config_t *config)
-{
-    filter_answer_t answer = FILTER_ACCEPTED;
-    for (uint8_t axis = 0; axis < (uint8_t)TILT_FILTER_AXES && answer == FILTER_ACCEPTED; axis++) {
-        answer = begin_axis(t, axis, law, config);
-    }
-    return answer;
-}
-
-void tilt_filter_begin(tilt_filter_t *t, uint16_t rate_hz)
-{
-    t->angles = (tilt_t){ 0, 0, false };
-    t->flags = FILTER_WARMING_UP;
-    t->shift = 0;
-    t->rail_high_lsb = FILTER_Z_MAX_LSB;
-    t->rate_dhz = (uint16_t)(rate_hz * 10U);
-    apply_scale(t, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
-    (void)tilt_filter_use(t, &filter_law_adaptive, NULL);
+    return (int16_t)((1U << (bits - 1U)) - 1U);
 }
 
 bool tilt_filter_sensor(tilt_filter_t *t, uint8_t bits, uint16_t xy_lsb_per_g, uint16_t z_lsb_per_g)
 {
-    if (bits < 8U || bits > 16U) {
-        return false;
+    uint32_t xy_uq6 = (uint32_t)xy_lsb_per_g << 6;
+    uint32_t z_uq6 = (uint32_t)z_lsb_per_g << 6;
+    uint8_t shift = 0;
+    while (bits > (uint8_t)FILTER_BITS || xy_uq6 > CALIBRATION_SCALE_MAX_UQ6 || z_uq6 > CALIBRATION_SCALE_MAX_UQ6) {
+        xy_uq6 >>= 1;
+        z_uq6 >>= 1;
+        bits--;
+        shift++;
     }
-    uint8_t shift = (uint8_t)((bits > (uint8_t)SENSOR_BITS) ? bits - (uint8_t)SENSOR_BITS : 0);
-    uint32_t xy_uq6 = ((uint32_t)xy_lsb_per_g << 6) >> shift;
-    uint32_t z_uq6 = ((uint32_t)z_lsb_per_g << 6) >> shift;
-    if (xy_uq6 < CALIBRATION_SCALE_MIN_UQ6 || xy_uq6 > CALIBRATION_SCALE_MAX_UQ6 || z_uq6 < CALIBRATION_SCALE_MIN_UQ6 ||
-        z_uq6 > CALIBRATION_SCALE_MAX_UQ6) {
+    /* few enough bits to begin with, enough left */
+    if (bits + shift > BITS_MAX || bits < (uint8_t)BITS_MIN || !set_scale(t, (uint16_t)xy_uq6, (uint16_t)z_uq6)) {
         return false;
     }
     t->shift = shift;
-    t->rail_high_lsb = (int16_t)((1L << ((bits > (uint8_t)SENSOR_BITS) ? SENSOR_BITS - 1 : bits - 1)) - 1L);
-    apply_scale(t, (uint16_t)xy_uq6, (uint16_t)z_uq6);
+    t->rail_high_lsb = highest_of(bits);
     return true;
 }
 
-/* A reading in the 13 bit that the filters take, rounded. */
+filter_answer_t tilt_filter_use(tilt_filter_t *t, const filter_law_t *law, const filter_config_t *config)
+{
+    filter_config_t wanted = (config != NULL) ? *config : filter_defaults(law, t->rate_dhz);
+    wanted.rate_dhz = t->rate_dhz;
+    for (uint8_t axis = 0; axis < (uint8_t)TILT_FILTER_AXES; axis++) {
+        tilt_axis_t *a = &t->axes[axis];
+        filter_answer_t answer = filter_init(&a->filter, law, &wanted);
+        if (answer != FILTER_ACCEPTED) {
+            return answer; /* of the first axis: the same for all */
+        }
+        tilt_axis_begin(a, t->rate_dhz, axis == 2U);
+    }
+    t->flags = TILT_WARMING_UP;
+    return FILTER_ACCEPTED;
+}
+
+bool tilt_filter_begin_with(tilt_filter_t *t, uint16_t rate_hz, const filter_law_t *law)
+{
+    bool legal = true;
+    if (rate_hz < (uint16_t)TILT_FILTER_RATE_MIN_HZ) {
+        rate_hz = TILT_FILTER_RATE_MIN_HZ;
+        legal = false;
+    } else if (rate_hz > (uint16_t)TILT_FILTER_RATE_MAX_HZ) {
+        rate_hz = TILT_FILTER_RATE_MAX_HZ;
+        legal = false;
+    }
+    t->rate_dhz = (uint16_t)(rate_hz * 10U);
+    t->angles.roll_cdeg = 0;
+    t->angles.pitch_cdeg = 0;
+    t->angles.roll_undefined = false;
+    t->shift = 0;
+    t->rail_high_lsb = highest_of(FILTER_BITS);
+    (void)set_scale(t, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
+    (void)tilt_filter_use(t, law, NULL); /* shipped values are legal at every rate */
+    return legal;
+}
+
+/* A reading in the 13 bit that the filters take, rounded half up. */
 static int16_t shifted(const tilt_filter_t *t, int16_t reading)
 {
     if (t->shift == 0U) {
         return reading;
     }
-    int32_t half = (int32_t)1 << (t->shift - 1U);
-    return (int16_t)(((int32_t)reading + half) >> t->shift);
-}
-
-static void update_axis(tilt_filter_t *t, uint8_t axis, int16_t z_lsb)
-{
-    filter_t *f = &t->filters[axis];
-    if (z_lsb >= t->rail_high_lsb || z_lsb <= (int16_t)(-t->rail_high_lsb - 1)) {
-        t->flags |= TILT_FILTER_CLIPPED;
-        noise_gap(&t->noise[axis]);
-        (void)filter_missing(f);
-        return;
-    }
-    if (noise_update(&t->noise[axis], z_lsb)) {
-        filter_set_noise(f, noise_r_lsb2_q8(&t->noise[axis]));
-    }
-    (void)filter_update(f, z_lsb);
+    return (int16_t)((((int32_t)reading >> (t->shift - 1U)) + 1) >> 1);
 }
 
 /* Accelerations and angles from the filters' estimates with their fraction. */
@@ -97,31 +92,37 @@ static void find_angles(tilt_filter_t *t)
 {
     int32_t estimates_q8[TILT_FILTER_AXES];
     for (uint8_t axis = 0; axis < (uint8_t)TILT_FILTER_AXES; axis++) {
-        t->flags |= t->filters[axis].flags;
-        estimates_q8[axis] = (t->filters[axis].x_lsb_q16 + 128) >> 8;
+        estimates_q8[axis] = (t->axes[axis].filter.x_lsb_q16 + 128) >> 8;
     }
     calibration_apply(&t->calibration, estimates_q8, t->a_q8);
-    tilt_angles(&t->angles, t->a_q8[0], t->a_q8[1], t->a_q8[2]);
-    if (!tilt_gravity_plausible(t->a_q8[0], t->a_q8[1], t->a_q8[2])) {
-        t->flags |= TILT_FILTER_NOT_GRAVITY;
+    tilt_angles(&t->angles, t->a_q8);
+    if (t->angles.roll_undefined) {
+        t->flags |= TILT_ROLL_UNDEFINED;
     }
 }
 
-void tilt_filter_update(tilt_filter_t *t, int16_t x, int16_t y, int16_t z)
+static void update_axis(tilt_filter_t *t, uint8_t axis, int16_t reading)
+{
+    t->flags |= tilt_axis_update(&t->axes[axis], shifted(t, reading), t->rail_high_lsb, false);
+}
+
+void tilt_filter_update(tilt_filter_t *t, int16_t ax, int16_t ay, int16_t az)
 {
     t->flags = 0;
-    update_axis(t, 0, shifted(t, x));
-    update_axis(t, 1, shifted(t, y));
-    update_axis(t, 2, shifted(t, z));
+    update_axis(t, 0, ax);
+    update_axis(t, 1, ay);
+    update_axis(t, 2, az);
     find_angles(t);
+    if (!tilt_gravity_plausible(t->a_q8)) {
+        t->flags |= TILT_NOT_GRAVITY;
+    }
 }
 
 void tilt_filter_missing(tilt_filter_t *t)
 {
     t->flags = 0;
     for (uint8_t axis = 0; axis < (uint8_t)TILT_FILTER_AXES; axis++) {
-        noise_gap(&t->noise[axis]);
-        (void)filter_missing(&t->filters[axis]);
+        t->flags |= tilt_axis_missing(&t->axes[axis]);
     }
     find_angles(t);
 }
