@@ -191,7 +191,7 @@ static void adapt(filter_adaptive_t *a, uint16_t spread_uq8)
 {
     int16_t mean = (int16_t)(a->mean_lsb_q24 >> 16);
     uint16_t mean_uq8 = (mean < 0) ? (uint16_t)(0U - (uint16_t)mean) : (uint16_t)mean;
-    uint16_t threshold_uq8 = (uint16_t)(fx_mul_u16(spread_uq8, a->manoeuvre_uq16) >> 16);
+    uint16_t threshold_uq8 = fx_high_u16(spread_uq8, a->manoeuvre_uq16);
     uint16_t k = (uint16_t)(a->k_uq32 >> 16);
     if (a->verdict >= (uint8_t)ADAPTIVE_MOTION || mean_uq8 > threshold_uq8) {
         if (k < a->fast_uq16) {
@@ -216,9 +216,12 @@ FX_INLINE void turn(filter_t *f, int32_t by_lsb_q24)
     f->rate_lsb = f->negative ? -rate : rate;
 }
 
-/* k w of a w of 128 LSB and more. */
-static uint32_t coarse_turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
+/* k w, at most 127 LSB: from a w of 128 LSB on to 2^-16. */
+static uint32_t turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
 {
+    if (w_lsb_uq16 < 0x800000U) {
+        return fx_times_uq16(w_lsb_uq16 << 8, k_uq16);
+    }
     uint32_t kw = fx_times_uq16(w_lsb_uq16, k_uq16);
     return (kw >= (uint32_t)127 << 16) ? (uint32_t)127 << 24 : kw << 8;
 }
@@ -231,8 +234,8 @@ static void follow(filter_t *f, uint32_t taken)
         f->rate_lsb = 0;
     } else {
         uint16_t k = (uint16_t)(f->own.adaptive.k_uq32 >> 16);
-        uint32_t w = fx_mul24_uq16(taken >> 8, k);
-        uint32_t kw = (w >= 0x800000U) ? coarse_turn_lsb_uq24(w, k) : fx_mul24_uq16(w, k);
+        uint32_t w = fx_times_uq16(taken, k);
+        uint32_t kw = turn_lsb_uq24(w, k);
         turn(f, (int32_t)kw);
         taken = w + w - (kw >> 8);
     }
@@ -253,8 +256,8 @@ static uint16_t meet(filter_t *f, int16_t z_lsb)
         a->mean_lsb_q24 = -a->mean_lsb_q24;
     }
     uint16_t spread_uq8 = (uint16_t)(a->scatter_lsb_uq24 >> 16);
-    spread_uq8 = (uint16_t)(spread_uq8 + (uint16_t)(fx_mul_u16(spread_uq8, (uint16_t)(a->k_uq32 >> 16)) >> 16));
-    a->gate_lsb_uq16 = fx_mul_u16(spread_uq8, a->gate_sigma_q8);
+    spread_uq8 = (uint16_t)(spread_uq8 + fx_high_u16(spread_uq8, (uint16_t)(a->k_uq32 >> 16)));
+    a->gate_lsb_uq16 = fx_product_u16(spread_uq8, a->gate_sigma_q8);
     return spread_uq8;
 }
 
