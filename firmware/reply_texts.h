@@ -47,16 +47,18 @@
 #define V_KEPT "\x7E"
 #define V_LIMITS "\x7F"
 #define V_VERDICT "\x80"
-#define V_LISTED "\x81"
-#define V_FAULT_WORDS "\x82"
-#define V_SETTING_NOTE "\x83"
-#define V_EVERY "\x84"
-#define V_SENSOR "\x85"
+#define V_FAULT_WORDS "\x81"
+#define V_SETTING_NOTE "\x82"
+#define V_EVERY "\x83"
+#define V_SENSOR "\x84"
+#define V_LISTED "\x85"
 #define V_HEADER "\x86"
-#define V_LINE "\x87"
-#define V_LINE_IF_FORCED "\x88"
-#define V_LINE_IF_CSV "\x89"
-#define V_AGAIN "\x8A"
+#define V_BUS "\x87"
+#define V_CHECK_BUS "\x88"
+#define V_LINE "\x89"
+#define V_LINE_IF_FORCED "\x8A"
+#define V_LINE_IF_CSV "\x8B"
+#define V_AGAIN "\x8C"
 
 /*
  * From SAY_ALONE on, above the characters that texts have, not packed with others: what goes on in
@@ -103,12 +105,14 @@ enum say {
     SAY_KEPT,              /* what the settings began as */
     SAY_LIMITS,            /* of the self-test */
     SAY_VERDICT,           /* on the line's axis */
-    SAY_LISTED,            /* the setting, its value, and what is legal */
     SAY_FAULT_WORDS,
-    SAY_SETTING_NOTE,   /* what is to be said of a setting behind its value */
-    SAY_EVERY,          /* that setting, after another */
-    SAY_SENSOR,         /* at the start of a line: its address, or what is wrong with it; waits until that is known */
-    SAY_HEADER,         /* at the start of a line, without "# ": the names of the columns */
+    SAY_SETTING_NOTE, /* what is to be said of a setting behind its value */
+    SAY_EVERY,        /* that setting, after another */
+    SAY_SENSOR,       /* at the start of a line: its address, or what is wrong with it; waits until that is known */
+    SAY_LISTED,       /* from here to CHECK_BUS each in the text of this name */
+    SAY_HEADER,       /* at the start of a line, without "# " */
+    SAY_BUS,
+    SAY_CHECK_BUS,
     SAY_LINE,           /* here the line ends and another follows */
     SAY_LINE_IF_FORCED, /* ... if another `every` is in force than was asked for; else this was the last */
     SAY_LINE_IF_CSV,    /* ... if that is the mode */
@@ -168,13 +172,14 @@ enum say {
     X(FAULT_BEGIN, "fault " V_SUBJECT ": " V_FAULT_WORDS) \
     X(FAULT_END, "fault " V_SUBJECT " over: after " V_OUTAGE_MS " ms, " V_OUTAGE_LOST \
       " lost, sensor at 0x" V_OUTAGE_ADDRESS) \
-    X(SENSOR, "sensor: ADXL345 at 0x" V_ADDRESS ", I2C at " V_BUS_KHZ " kHz") \
-    X(HEADER, "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags") \
-    X(RATE_NOTE, ", I2C at " V_BUS_KHZ " kHz") \
+    X(SENSOR, "sensor: ADXL345 at 0x" V_ADDRESS V_BUS) \
     X(ILLEGAL_NUMBER, "refused 4: illegal value; " V_SETTING ": " V_LEGAL) \
-    X(LISTED, V_SETTING V_SETTING_NOTE ": " V_LEGAL) \
     X(ROWS_SETTING, V_SETTING V_SETTING_NOTE V_LINE_IF_FORCED V_EVERY) \
     X(MODE_SET, V_SETTING V_LINE_IF_CSV V_HEADER) \
+    X(LISTED, V_SETTING V_SETTING_NOTE ": " V_LEGAL) \
+    X(HEADER, "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags") \
+    X(BUS, ", I2C at " V_BUS_KHZ " kHz") \
+    X(CHECK_BUS, ": check SDA, SCL, pull-ups, GND") \
     X(ODR_UNKNOWN, "odr: not measured yet") \
     X(LIMITS_XY, "88.5 to 955.8: " V_VERDICT) \
     X(LIMITS_Z, "110.25 to 1286.25: " V_VERDICT) \
@@ -215,15 +220,15 @@ enum say {
     X(NOT_SAVED, "refused 7: EEPROM failed") \
     X(NO_SENSOR, "no sensor at 0x53 or 0x1D: check power, SDA to A4, SCL to A5, CS to 3.3 V") \
     X(WRONG_ID, "no ADXL345 at 0x" V_FOREIGN_ADDRESS ": DEVID 0x" V_FOREIGN_ID ", not 0xE5") \
-    X(BUS_FAULT, "I2C bus disturbed: check SDA, SCL, pull-ups, GND") \
+    X(BUS_FAULT, "I2C bus disturbed" V_CHECK_BUS) \
     X(READ_BACK, "a register lost its value: check supply, bus") \
     X(INT1_SILENT, "INT1 stays low: check INT1 to D2") \
     X(NO_DATA, "the sensor stopped: check supply") \
-    X(SCL_LOW, "SCL held low: check SDA, SCL, pull-ups, GND") \
-    X(SDA_LOW, "SDA held low: check SDA, SCL, pull-ups, GND") \
+    X(SCL_LOW, "SCL held low" V_CHECK_BUS) \
+    X(SDA_LOW, "SDA held low" V_CHECK_BUS) \
     X(INT1_STUCK, "INT1 stays high: check INT1 to D2") \
     X(STUCK, "values do not change: check supply, bus") \
-    X(TORN, "torn readings: check SDA, SCL, pull-ups, GND") \
+    X(TORN, "torn readings" V_CHECK_BUS) \
     X(TWO_SENSORS, "values double: two sensors at 0x" V_ADDRESS)
 /* clang-format on */
 
