@@ -61,8 +61,8 @@
 #define V_AGAIN "\x8C"
 
 /*
- * From SAY_ALONE on, above the characters that texts have, not packed with others: what goes on in
- * another text, and from SAY_LINE on what ends a line, in texts of lines only.
+ * From SAY_ALONE on, above the characters that texts have, not packed with others: what goes on in another text, and
+ * from SAY_LINE on what ends a line, in texts of lines only.
  */
 enum say {
     SAY_COUNT = 1, /* numbers: the next of the counters of the firmware, then of the driver */
