@@ -16,6 +16,7 @@ PLACES = ["Makefile", "platformio.ini", "mk", "tools", "checks", "campaigns", "s
 # pages, and what programs recorded, drew or read as data
 NO_CODE = {".md", ".csv", ".png", ".svg", ".json", ".hex", ".pyc"}
 DATA = "host_tests/fuzz/corpus"
+WRITTEN = {"lib/filters/keywords.txt"}  # by host_tests/arduino_rules.py, of the headers
 QUOTED = r'"(?:\\.|[^"\\\n])*"' + r"|'(?:\\.|[^'\\\n])*'"
 # what is no comment stands in the group
 C_CODE = re.compile(rf"({QUOTED})|/\*.*?\*/|//[^\n]*", re.S)
@@ -42,7 +43,7 @@ def files_by_filter():
     found = {name: [] for name in laws.names()}
     places = [path for place in map(pathlib.Path, PLACES) for path in ([place] if place.is_file() else sorted(place.rglob("*")))]
     for path in places:
-        if path.is_file() and path.suffix not in NO_CODE and not str(path).startswith(DATA):
+        if path.is_file() and path.suffix not in NO_CODE and not str(path).startswith(DATA) and str(path) not in WRITTEN:
             for name in named(set(re.findall(r"\w+", code(path)))):
                 if not re.search(rf"(?:^|[-_]){name}\d*(?:[-_]|$)", path.stem):
                     found[name].append(str(path))
