@@ -26,8 +26,7 @@ void app_pass(void);
 setting_answer_t app_set(uint8_t which, const char *text);
 
 /* All settings as saved (settings_kept.h), or as shipped; they take effect like each by itself. */
-void app_load(void);
-void app_defaults(void);
+void app_restore(bool saved);
 
 /* Begins to save all settings; false while sampling. Until it is over (store_busy) no command is taken. */
 bool app_save(void);
@@ -38,9 +37,8 @@ bool app_save(void);
  */
 void app_configure(bool anew);
 
-/* Sampling off (sensor in standby) and on. */
-void app_stop(void);
-void app_go(void);
+/* Sampling on and off (sensor in standby). */
+void app_sample(bool wanted);
 
 /* False while the banner goes out and while the line drains before its rate changes: bytes wait in the receive ring. */
 bool app_takes_commands(void);

@@ -65,23 +65,15 @@ setting_answer_t app_set(uint8_t which, const char *text)
     return answer;
 }
 
-static void follow_all(uint32_t old_baud)
+void app_restore(bool saved)
 {
+    uint32_t old_baud = settings.baud;
+    if (saved) {
+        settings_load();
+    } else {
+        settings_defaults();
+    }
     follow(STARTS_FILTER | STARTS_SENSOR | STARTS_CALIBRATION | (settings.baud != old_baud ? STARTS_LINE : 0));
-}
-
-void app_load(void)
-{
-    uint32_t old_baud = settings.baud;
-    settings_load();
-    follow_all(old_baud);
-}
-
-void app_defaults(void)
-{
-    uint32_t old_baud = settings.baud;
-    settings_defaults();
-    follow_all(old_baud);
 }
 
 bool app_save(void)
@@ -89,17 +81,14 @@ bool app_save(void)
     return !app.sampling && store_save_begin();
 }
 
-void app_stop(void)
+void app_sample(bool wanted)
 {
-    app.sampling = false;
+    app.sampling = wanted;
     measure_abort();
-    adxl345_stop();
-}
-
-void app_go(void)
-{
-    app.sampling = true;
-    measure_abort();
-    app.changes |= CHANGE_COLD;
-    app_start_sensor();
+    if (wanted) {
+        app.changes |= CHANGE_COLD;
+        app_start_sensor();
+    } else {
+        adxl345_stop();
+    }
 }

@@ -28,24 +28,27 @@ void commands_start(void)
     line[0] = '\0';
 }
 
-static void refuse(uint8_t kind, uint8_t argument)
+_Static_assert(REPLY_SETTING + SETTING_ILLEGAL == (int)REPLY_ILLEGAL, "answers in the order of their replies");
+_Static_assert(REPLY_SETTING + SETTING_TOO_SLOW == (int)REPLY_TOO_SLOW, "the same");
+
+static void answer(uint8_t kind, uint8_t argument)
 {
-    count(COUNT_REFUSED);
+    if (kind >= REPLY_ILLEGAL && kind <= REPLY_NO_ROOM) {
+        count(COUNT_REFUSED);
+    }
     (void)replies_add((reply_kind_t)kind, argument);
 }
 
-static void set(uint8_t which, const char *value)
+static void run_setting(uint8_t which, const char *value)
 {
-    switch (app_set(which, value)) {
-    case SETTING_TAKEN:
-        (void)replies_add(REPLY_SETTING, which | REPLY_CHANGED);
-        break;
-    case SETTING_TOO_SLOW:
-        refuse(REPLY_TOO_SLOW, which);
-        break;
-    default:
-        refuse(REPLY_ILLEGAL, which);
+    setting_answer_t taken = SETTING_TAKEN;
+    if (value != 0) {
+        taken = app_set(which, value);
+        if (taken == SETTING_TAKEN) {
+            which |= REPLY_CHANGED;
+        }
     }
+    answer((uint8_t)(REPLY_SETTING + taken), which);
 }
 
 /* The reply kind of a command's name; REPLY_BANNER when it is none. */
@@ -77,27 +80,19 @@ static char *split_value(void)
     return at;
 }
 
-/* False: it was refused. */
-static bool run_verb(uint8_t verb)
+/* The reply: that of the verb, or why it is refused. */
+static uint8_t run_verb(uint8_t verb)
 {
     switch (verb) {
     case REPLY_STOPPED:
-        app_stop();
-        break;
     case REPLY_GOING:
-        app_go();
+        app_sample(verb == REPLY_GOING);
         break;
     case REPLY_SAVED:
-        if (!app_save()) {
-            refuse(REPLY_STREAMING, 0);
-            return false;
-        }
-        break;
+        return app_save() ? verb : REPLY_STREAMING;
     case REPLY_LOADED:
-        app_load();
-        break;
     case REPLY_DEFAULTS:
-        app_defaults();
+        app_restore(verb == REPLY_LOADED);
         break;
     case REPLY_NOISE:
     case REPLY_SELFTEST:
@@ -105,42 +100,33 @@ static bool run_verb(uint8_t verb)
     case REPLY_CAL:
     case REPLY_CAL6:
         if (!CALIBRATE_SIX && verb == REPLY_CAL6) {
-            refuse(REPLY_NO_ROOM, 0);
-            return false;
+            return REPLY_NO_ROOM;
         }
-        if (!measure_start(verb)) {
-            refuse(REPLY_BUSY, 0);
-            return false;
-        }
-        break;
+        return measure_start(verb) ? verb : REPLY_BUSY;
     default:
         break;
     }
-    return true;
+    return verb;
 }
 
 static void run_command(uint8_t kind, const char *value)
 {
     if (kind == REPLY_CAL6 && value != 0 && text_equal(value, FLASH_TEXT("stop"))) {
         measure_stop();
-        (void)replies_add(REPLY_CAL6, MEASURE_STOPPED);
-    } else if (kind == REPLY_BANNER || value != 0) {
-        refuse(REPLY_UNKNOWN, 0);
-    } else if (run_verb(kind)) {
-        (void)replies_add((reply_kind_t)kind, MEASURE_BEGUN);
+        answer(REPLY_CAL6, MEASURE_STOPPED);
+    } else {
+        answer(kind == REPLY_BANNER || value != 0 ? REPLY_UNKNOWN : run_verb(kind), MEASURE_BEGUN);
     }
 }
 
-FX_NOINLINE void run_line(void)
+static void run_line(void)
 {
     const char *value = split_value();
     uint8_t which = setting_named(line);
     if (which == SETTING_NONE) {
         run_command(command_named(line), value);
-    } else if (value != 0) {
-        set(which, value);
     } else {
-        (void)replies_add(REPLY_SETTING, which);
+        run_setting(which, value);
     }
 }
 
@@ -151,7 +137,7 @@ static void end_line(void)
     }
     line[length] = '\0';
     if (wrong != 0) {
-        refuse(wrong, 0);
+        answer(wrong, 0);
     } else if (length != 0) {
         run_line();
     }

@@ -10,8 +10,8 @@
 void commands_start(void);
 
 /*
- * Takes received bytes while the pass has time, one at least, and runs at most one complete line, only while there is room for its reply. True: it has run
- * one.
+ * Takes received bytes while the pass has time, one at least; runs at most one complete line, and only while there is
+ * room for its reply. True: it has run one.
  */
 bool commands_pass(void);
 

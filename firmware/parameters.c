@@ -11,8 +11,8 @@ static const filter_law_t *law_in_force(void)
 }
 
 /*
- * What the user wants of the filter in force, what is shipped of another. False: the filter does not take that, as where
- * it was set beside what another rate has; then all are as shipped.
+ * What the user wants of the filter in force, what is shipped of another. False: the filter does not take that, as
+ * where it was set beside what another rate has; then all are as shipped.
  */
 static bool configure(filter_config_t *config, filter_kind_t kind, uint16_t rate_dhz)
 {

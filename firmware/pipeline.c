@@ -10,22 +10,15 @@
 #include "pipeline_state.h"
 #include "silence.h"
 #include "supervisor.h"
-#include "tilt_axis.h"
 
-enum { AWAY_SAMPLES = 2 };  /* on end, away from what was held: no bad reading */
 enum { HUNG_SAMPLES = 16 }; /* with ROW_STUCK, on end: a filter has learned from them */
 
+_Static_assert((int)TILT_GATED == (int)ROW_GATED && (int)TILT_COASTED == (int)ROW_COASTED &&
+                   (int)TILT_REACQUIRED == (int)ROW_REACQUIRED && (int)TILT_CLIPPED == (int)ROW_CLIPPED &&
+                   (int)TILT_WARMING_UP == (int)ROW_WARMING_UP,
+               "same bits");
+
 pipeline_t pipeline;
-
-FX_ONCE int32_t estimate_q8(const axis_t *axis)
-{
-    return (axis->filter.x_lsb_q16 + 128) >> 8;
-}
-
-FX_ONCE int16_t estimate_lsb(const axis_t *axis)
-{
-    return (int16_t)((estimate_q8(axis) + 128) >> 8);
-}
 
 void pipeline_reset(void)
 {
@@ -45,86 +38,15 @@ FX_ONCE void pipeline_coast(uint32_t t_us)
     pipeline.work = WORK_COAST;
 }
 
-static void coast_axis(axis_t *axis)
-{
-    (void)filter_missing(&axis->filter);
-    noise_gap(&axis->noise);
-    if (axis->filter.flags & FILTER_WARMING_UP) {
-        pipeline_flag(ROW_WARMING_UP);
-    }
-    if (axis->filter.quarters == FILTER_HOLD_MS / 25) {
-        axis->away = 1;
-    }
-}
-
 uint32_t pipeline_newest_us(void)
 {
     return pipeline.newest.t_us;
 }
 
-uint32_t axis_r_lsb2_q8(const axis_t *axis)
+uint32_t axis_r_lsb2_q8(const tilt_axis_t *axis)
 {
     uint32_t set_lsb2_q8 = parameters_r_lsb2_q8();
     return set_lsb2_q8 != 0 ? set_lsb2_q8 : noise_r_lsb2_q8(&axis->noise);
-}
-
-/* Within 2.8 sigmas of the estimate, by the R of the noise, which is 3.5 of a healthy sensor's. */
-static bool near_estimate(const axis_t *axis, int16_t lsb)
-{
-    int16_t off_lsb = (int16_t)(lsb - estimate_lsb(axis));
-    uint16_t size_lsb = (uint16_t)(off_lsb < 0 ? -off_lsb : off_lsb);
-    return fx_mul_u16(size_lsb, size_lsb) <= noise_r_lsb2_q8(&axis->noise) >> 5;
-}
-
-/*
- * After a hold. True: the filter takes the sample; near the estimate it goes on from what was held. A single one away
- * from it may be a bad reading: with the second in a row the filter restarts, with the noise as it is known.
- */
-static bool rejoins(axis_t *axis, int16_t lsb, uint8_t *flags)
-{
-    if (!near_estimate(axis, lsb)) {
-        if (axis->away++ < AWAY_SAMPLES) {
-            *flags |= ROW_GATED;
-            return false;
-        }
-        *flags |= ROW_REACQUIRED;
-        filter_restart(&axis->filter);
-    }
-    axis->away = 0;
-    return true;
-}
-
-_Static_assert((int)FILTER_GATED == (int)ROW_GATED && (int)FILTER_REACQUIRED == (int)ROW_REACQUIRED, "same bits");
-
-static uint8_t update_axis(axis_t *axis, int16_t lsb)
-{
-    (void)filter_update(&axis->filter, lsb);
-    uint8_t flags = axis->filter.flags;
-    if (SUPERVISOR && (flags & FILTER_SWITCHED) != 0) {
-        pipeline_flag(ROW_SWITCHED);
-    }
-    uint8_t same = flags & (FILTER_GATED | FILTER_REACQUIRED);
-    return (flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same;
-}
-
-/*
- * Returns those flags of the row that a byte holds. A sample at the rail of its range says no more than that it is
- * outside: it is missing.
- */
-static uint8_t sample_axis(axis_t *axis, int16_t lsb)
-{
-    uint8_t flags = 0;
-    if (tilt_at_rail(lsb, pipeline.rail_high_lsb)) {
-        coast_axis(axis);
-        return ROW_CLIPPED;
-    }
-    if (noise_update(&axis->noise, lsb)) {
-        filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
-    }
-    if (axis->away == 0 || rejoins(axis, lsb, &flags)) {
-        flags |= update_axis(axis, lsb);
-    }
-    return flags;
 }
 
 static void count_sample(uint8_t flags)
@@ -154,7 +76,7 @@ static void find_accelerations(void)
 {
     int32_t estimates_q8[AXES];
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        estimates_q8[axis] = estimate_q8(&pipeline.axes[axis]);
+        estimates_q8[axis] = tilt_axis_estimate_q8(&pipeline.axes[axis]);
     }
 #if SUPERVISOR
     supervisor_complete(estimates_q8);
@@ -167,7 +89,6 @@ static void end_sample(uint8_t flags)
     if (!tilt_gravity_plausible(pipeline.a_q8)) {
         pipeline_flag(ROW_NOT_GRAVITY);
     }
-    pipeline_flag(flags);
     count_sample(flags);
     pipeline.has_sample = true;
 }
@@ -192,15 +113,20 @@ static bool hung(void)
 FX_NOINLINE void filter_axes(void)
 {
     bool sample = pipeline.work == WORK_SAMPLE;
+    bool own_r = parameters_r_lsb2_q8() != 0;
     uint8_t flags = 0;
     const int16_t *lsb = pipeline.newest.lsb;
-    for (axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
-        if (sample) {
-            flags |= sample_axis(axis, *lsb++);
-        } else {
-            coast_axis(axis);
+    for (tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
+        if (!sample) {
+            flags |= tilt_axis_missing(axis);
+            continue;
+        }
+        flags |= tilt_axis_update(axis, *lsb++, pipeline.rail_high_lsb, own_r);
+        if (SUPERVISOR && (axis->filter.flags & FILTER_SWITCHED) != 0) {
+            pipeline_flag(ROW_SWITCHED);
         }
     }
+    pipeline_flag(flags);
     find_accelerations();
     if (sample) {
         end_sample(flags);
@@ -269,6 +195,7 @@ void pipeline_row(row_t *row)
     for (uint8_t axis = 0; axis < AXES; axis++) {
         row->lsb[axis] = pipeline.newest.lsb[axis];
     }
+    pipeline_mg(row->mg);
     tilt_angles(&pipeline.tilt, pipeline.a_q8);
     row->roll_cdeg = pipeline.tilt.roll_cdeg;
     row->pitch_cdeg = pipeline.tilt.pitch_cdeg;

@@ -28,11 +28,19 @@ enum row_flag {
     ROW_LEFT_OUT = 4096  /* the angles are without one axis, which is known bad */
 };
 
+enum { ROW_COLUMNS = 8 };
+
 typedef struct {
     uint32_t t_us;
-    int16_t lsb[3]; /* as read; in a coasted row the last sample */
-    int16_t roll_cdeg;
-    int16_t pitch_cdeg;
+    union {
+        struct {
+            int16_t lsb[3]; /* as read; in a coasted row the last sample */
+            int16_t mg[3];  /* filtered accelerations */
+            int16_t roll_cdeg;
+            int16_t pitch_cdeg;
+        };
+        int16_t columns[ROW_COLUMNS]; /* the same, in the order of the csv rows */
+    };
     uint16_t flags;
 } row_t;
 
@@ -94,7 +102,7 @@ void pipeline_row(row_t *row);
 /* The row went out: start collecting flags anew and count a warm-up row. */
 void pipeline_row_done(void);
 
-/* Filtered accelerations of the row, mg; apart from the row, because the plotter's rows do without. */
+/* Filtered accelerations of the row, mg. */
 void pipeline_mg(int16_t mg[3]);
 
 /* Roll and pitch of the newest raw sample, for the plotter. */

@@ -19,10 +19,10 @@ FX_ONCE void begin_all(bool cold)
 FX_ONCE void pipeline_retime(uint32_t period_us)
 {
     bool still = true;
-    for (axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
-        uint16_t now_lsb_q2 = (uint16_t)(estimate_q8(axis) >> 6);
-        still = (uint16_t)(now_lsb_q2 - axis->looked_lsb_q2 + STILL_LSB_Q2) <= 2u * STILL_LSB_Q2 && still;
-        axis->looked_lsb_q2 = now_lsb_q2;
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        uint16_t now_lsb_q2 = (uint16_t)(tilt_axis_estimate_q8(&pipeline.axes[axis]) >> 6);
+        still = (uint16_t)(now_lsb_q2 - pipeline.looked_lsb_q2[axis] + STILL_LSB_Q2) <= 2u * STILL_LSB_Q2 && still;
+        pipeline.looked_lsb_q2[axis] = now_lsb_q2;
     }
     uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
     uint16_t near_dhz = (pipeline.true_dhz >> 7) + 1u;
@@ -37,9 +37,9 @@ FX_ONCE void pipeline_retime(uint32_t period_us)
 }
 
 /* The filter goes on from the old one's estimate, where there is one, or warms up. */
-FX_NOINLINE void begin_axis(axis_t *axis)
+FX_NOINLINE void begin_axis(tilt_axis_t *axis)
 {
-    int16_t from_lsb = estimate_lsb(axis);
+    int16_t from_lsb = tilt_axis_estimate_lsb(axis);
     parameters_start(&axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
     filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
     if (pipeline.has_sample) {
@@ -58,7 +58,7 @@ FX_ONCE bool begin_next(void)
     left--;
     pipeline.to_begin = left;
     pipeline.turn = false;
-    axis_t *axis = &pipeline.axes[left];
+    tilt_axis_t *axis = &pipeline.axes[left];
     if (pipeline.cold) {
         noise_init(&axis->noise, pipeline.rate_dhz, left == 2);
     }

@@ -6,12 +6,11 @@
 #include <stdint.h>
 
 #include "calibration.h"
-#include "filter.h"
 #include "fx.h"
-#include "noise.h"
 #include "pipeline.h"
 #include "supervisor.h"
 #include "tilt.h"
+#include "tilt_axis.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
 
@@ -19,15 +18,9 @@ enum { AXES = 3, WARM_ROWS = 5 };
 typedef enum { WORK_NONE, WORK_SAMPLE, WORK_COAST } work_t;
 
 typedef struct {
-    uint16_t looked_lsb_q2; /* the estimate a second ago */
-    uint8_t away; /* after a hold: 1, and 1 more for each sample that lies away from what was held; else 0 */
-    noise_t noise;
-    filter_t filter;
-} axis_t;
-
-typedef struct {
-    axis_t axes[AXES];
-    int32_t a_q8[AXES]; /* the estimates in the axes of the carrier, 1/256 g */
+    tilt_axis_t axes[AXES];
+    uint16_t looked_lsb_q2[AXES]; /* the estimates a second ago */
+    int32_t a_q8[AXES];           /* the estimates in the axes of the carrier, 1/256 g */
     calibration_applied_t applied;
 #if SUPERVISOR
     const calibration_t *calibration; /* that is applied */
@@ -53,12 +46,8 @@ typedef struct {
 
 extern pipeline_t pipeline;
 
-/* Estimate, LSB in Q8, rounded half up; and in whole LSB. */
-int32_t estimate_q8(const axis_t *axis);
-int16_t estimate_lsb(const axis_t *axis);
-
 /* Measurement variance R that its filter is to have: the user's, else the estimated one; LSB^2 Q8. */
-uint32_t axis_r_lsb2_q8(const axis_t *axis);
+uint32_t axis_r_lsb2_q8(const tilt_axis_t *axis);
 
 /* Every axis is to get a new filter. */
 void begin_all(bool cold);

@@ -23,12 +23,12 @@ typedef enum {
     REPLY_TARE,
     REPLY_CAL,
     REPLY_CAL6,
-    REPLY_LISTING,     /* all settings, with what is legal; the last of the commands' names */
-    REPLY_SETTING,     /* argument: which of settings_table.h, with REPLY_CHANGED after it was set */
-    REPLY_ILLEGAL,     /* argument: which of settings_table.h */
-    REPLY_TOO_SLOW,    /* settings_cycles */
-    REPLY_UNKNOWN,     /* no such command */
-    REPLY_TOO_LONG,    /* a line that is too long, or has characters that no command has */
+    REPLY_LISTING,  /* all settings, with what is legal; the last of the commands' names */
+    REPLY_SETTING,  /* argument: which of settings_table.h, with REPLY_CHANGED after it was set */
+    REPLY_ILLEGAL,  /* argument: which of settings_table.h */
+    REPLY_TOO_SLOW, /* settings_cycles */
+    REPLY_UNKNOWN,  /* no such command */
+    REPLY_TOO_LONG, /* a line that is too long, or has characters that no command has */
     REPLY_GARBAGE,
     REPLY_STREAMING,   /* not while sampling */
     REPLY_BUSY,        /* one measurement at a time */

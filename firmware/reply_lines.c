@@ -19,7 +19,9 @@ _Static_assert(TEXT_FAULT_END - TEXT_BANNER == (int)REPLY_FAULT_END, "a text for
 _Static_assert(TEXT_REPEATED - TEXT_HOLD_STILL == MEASURE_REPEATED - MEASURE_BEGUN, "words for each outcome");
 _Static_assert(TEXT_NO_GRAVITY - TEXT_TILTED == CALIBRATION_NO_GRAVITY - CALIBRATION_TILTED, "words for each verdict");
 
-enum { TEXTS_DEPTH = 3 }; /* a line, FAULT_BEGIN in it and a fault's words in that; LIMITS and VERDICT; EVERY and its note */
+enum {
+    TEXTS_DEPTH = 3
+}; /* a line, FAULT_BEGIN in it and a fault's words in that; LIMITS and VERDICT; EVERY and its note */
 
 static const uint8_t *at; /* where the reply goes on */
 static uint8_t again;     /* how often the line comes again */
@@ -109,37 +111,57 @@ static bool goes_on(uint8_t code)
     return code == SAY_LINE || (code == SAY_LINE_IF_CSV && settings.mode == MODE_CSV);
 }
 
+/* Texts that are being unpacked. */
+typedef struct {
+    const uint8_t *from;
+    const uint8_t *outer[TEXTS_DEPTH]; /* where those go on in which a text stands */
+    uint8_t seconds[REPLY_PAIRS_DEPTH];
+    uint8_t texts;
+    uint8_t pairs;
+} unpacking_t;
+
+static void open_text(unpacking_t *u, uint8_t text)
+{
+    if (text != TEXT_NONE) {
+        u->outer[u->texts++] = u->from;
+        u->from = reply_text(text);
+    }
+}
+
+/* The next byte of the line; 0: there is none. */
+static uint8_t next_code(unpacking_t *u)
+{
+    while (u->pairs == 0 && u->texts != 0 && flash_u8(u->from) == 0) {
+        u->from = u->outer[--u->texts];
+    }
+    uint8_t code = u->pairs != 0 ? u->seconds[--u->pairs] : flash_u8(u->from++);
+    while (code >= SAY_PAIR) {
+        u->seconds[u->pairs++] = reply_pair(code, 1);
+        code = reply_pair(code, 0);
+    }
+    return code;
+}
+
 /* The rest of the line; false: it was the last. */
 static bool write_line(void)
 {
-    const uint8_t *from = at;
-    const uint8_t *outer[TEXTS_DEPTH];
-    uint8_t seconds[REPLY_PAIRS_DEPTH];
-    uint8_t texts = 0;
-    uint8_t pairs = 0;
+    unpacking_t u;
+    u.from = at;
+    u.texts = 0;
+    u.pairs = 0;
     for (;;) {
-        uint8_t code = pairs != 0 ? seconds[--pairs] : flash_u8(from++);
-        while (code >= SAY_PAIR) {
-            seconds[pairs++] = reply_pair(code, 1);
-            code = reply_pair(code, 0);
-        }
-        if (code == 0 && texts != 0) {
-            from = outer[--texts];
-        } else if (code == SAY_AGAIN) {
+        uint8_t code = next_code(&u);
+        if (code == SAY_AGAIN) {
             if (again != 0) {
                 again--;
                 said.subject++;
                 return true;
             }
         } else if (code == 0 || code >= SAY_LINE) {
-            at = from;
+            at = u.from;
             return goes_on(code);
         } else {
-            uint8_t text = say(code);
-            if (text != TEXT_NONE) {
-                outer[texts++] = from;
-                from = reply_text(text);
-            }
+            open_text(&u, say(code));
         }
     }
 }

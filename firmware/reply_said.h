@@ -1,4 +1,4 @@
-/* Between reply_lines.c, which chooses the text of a line, and reply_values.c, which writes it with the values in it. */
+/* Between reply_lines.c, which takes the texts of a line apart, and reply_values.c, which writes what is in them. */
 #ifndef REPLY_SAID_H
 #define REPLY_SAID_H
 
@@ -12,7 +12,7 @@ typedef struct {
 
 extern said_t said;
 
-/* Writes a byte of a text, or what stands in its place; the text (enum reply_text) in which that goes on, or TEXT_NONE. */
+/* Writes a byte of a text, or what stands in its place; returns the text in which that goes on, or TEXT_NONE. */
 uint8_t say(uint8_t code);
 
 #endif

@@ -47,16 +47,18 @@
 #define V_KEPT "\x7E"
 #define V_LIMITS "\x7F"
 #define V_VERDICT "\x80"
-#define V_LISTED "\x81"
-#define V_FAULT_WORDS "\x82"
-#define V_SETTING_NOTE "\x83"
-#define V_EVERY "\x84"
-#define V_SENSOR "\x85"
+#define V_FAULT_WORDS "\x81"
+#define V_SETTING_NOTE "\x82"
+#define V_EVERY "\x83"
+#define V_SENSOR "\x84"
+#define V_LISTED "\x85"
 #define V_HEADER "\x86"
-#define V_LINE "\x87"
-#define V_LINE_IF_FORCED "\x88"
-#define V_LINE_IF_CSV "\x89"
-#define V_AGAIN "\x8A"
+#define V_BUS "\x87"
+#define V_CHECK_BUS "\x88"
+#define V_LINE "\x89"
+#define V_LINE_IF_FORCED "\x8A"
+#define V_LINE_IF_CSV "\x8B"
+#define V_AGAIN "\x8C"
 
 /*
  * From SAY_ALONE on, above the characters that texts have, not packed with others: what goes on in
@@ -67,15 +69,15 @@ enum say {
     SAY_SERIAL_LOST,
     SAY_CYCLES, /* that the filter would take, and that are left for it */
     SAY_LEFT,
-    SAY_RESIDUAL, /* of cal6, mg */
-    SAY_TO_GO, /* how many positions are not known yet */
-    SAY_RUN_NOTE, /* what the run before the reset left */
+    SAY_RESIDUAL,  /* of cal6, mg */
+    SAY_TO_GO,     /* how many positions are not known yet */
+    SAY_RUN_NOTE,  /* what the run before the reset left */
     SAY_OUTAGE_MS, /* how long the last fault was, and how many samples are missing of its time */
     SAY_OUTAGE_LOST,
     SAY_SUBJECT, /* what the line is about: a fault's code */
     SAY_LAST_NUMBER = SAY_SUBJECT,
-    SAY_ADDRESS, /* hexadecimal: of the sensor */
-    SAY_OUTAGE_ADDRESS, /* where the sensor was when the last fault was over */
+    SAY_ADDRESS,         /* hexadecimal: of the sensor */
+    SAY_OUTAGE_ADDRESS,  /* where the sensor was when the last fault was over */
     SAY_FOREIGN_ADDRESS, /* of a device that is no ADXL345, and what it reads as DEVID */
     SAY_FOREIGN_ID,
     SAY_LAST_HEXADECIMAL = SAY_FOREIGN_ID,
@@ -84,41 +86,42 @@ enum say {
     SAY_R,
     SAY_OFF, /* how far the measured rate is from the nominal one, % */
     SAY_LAST_Q8 = SAY_OFF,
-    SAY_NAME, /* of the command that the line is about */
+    SAY_NAME,         /* of the command that the line is about */
     SAY_SETTING_NAME, /* of the setting that the line is about */
-    SAY_SETTING, /* its name, value and unit */
-    SAY_LEGAL, /* its legal values */
-    SAY_SETTINGS, /* those of the banner */
-    SAY_VERBS, /* all commands */
-    SAY_RATE, /* Hz, nominal and measured */
+    SAY_SETTING,      /* its name, value and unit */
+    SAY_LEGAL,        /* its legal values */
+    SAY_SETTINGS,     /* those of the banner */
+    SAY_VERBS,        /* all commands */
+    SAY_RATE,         /* Hz, nominal and measured */
     SAY_MEASURED,
     SAY_BUS_KHZ,
     SAY_POSITION, /* of cal6: which of the sensor's axes points up */
-    SAY_AXIS, /* of measurements */
-    SAY_CHOICES, /* those of the supervisor, where it is in force */
+    SAY_AXIS,     /* of measurements */
+    SAY_CHOICES,  /* those of the supervisor, where it is in force */
     SAY_ALONE = 0x7B,
     SAY_CAUSE = SAY_ALONE, /* texts: of a reset */
-    SAY_SAFE, /* on safe settings, if they are in force */
-    SAY_STATE, /* phase of the driver */
-    SAY_KEPT, /* what the settings began as */
-    SAY_LIMITS, /* of the self-test */
-    SAY_VERDICT, /* on the line's axis */
-    SAY_LISTED, /* the setting, its value, and what is legal */
+    SAY_SAFE,              /* on safe settings, if they are in force */
+    SAY_STATE,             /* phase of the driver */
+    SAY_KEPT,              /* what the settings began as */
+    SAY_LIMITS,            /* of the self-test */
+    SAY_VERDICT,           /* on the line's axis */
     SAY_FAULT_WORDS,
     SAY_SETTING_NOTE, /* what is to be said of a setting behind its value */
-    SAY_EVERY, /* that setting, after another */
-    SAY_SENSOR, /* at the start of a line: its address, or what is wrong with it; waits until that is known */
-    SAY_HEADER, /* at the start of a line, without "# ": the names of the columns */
-    SAY_LINE, /* here the line ends and another follows */
+    SAY_EVERY,        /* that setting, after another */
+    SAY_SENSOR,       /* at the start of a line: its address, or what is wrong with it; waits until that is known */
+    SAY_LISTED,       /* from here to CHECK_BUS each in the text of this name */
+    SAY_HEADER,       /* at the start of a line, without "# " */
+    SAY_BUS,
+    SAY_CHECK_BUS,
+    SAY_LINE,           /* here the line ends and another follows */
     SAY_LINE_IF_FORCED, /* ... if another `every` is in force than was asked for; else this was the last */
-    SAY_LINE_IF_CSV, /* ... if that is the mode */
-    SAY_AGAIN, /* the line comes again for the next subject, as often as wanted */
-    SAY_PAIR /* pairs of packed texts from here on */
+    SAY_LINE_IF_CSV,    /* ... if that is the mode */
+    SAY_AGAIN,          /* the line comes again for the next subject, as often as wanted */
+    SAY_PAIR            /* pairs of packed texts from here on */
 };
 
 /* The commands as typed, one for each reply_kind_t from REPLY_HELP on, in its order. */
-#define REPLY_NAMES \
-    "help\0status\0stop\0go\0save\0load\0defaults\0odr\0noise\0selftest\0tare\0cal\0cal6\0settings"
+#define REPLY_NAMES "help\0status\0stop\0go\0save\0load\0defaults\0odr\0noise\0selftest\0tare\0cal\0cal6\0settings"
 
 /*
  * One text for each reply_kind_t, in its order; then the others, those that belong together in their order. They are
@@ -136,8 +139,8 @@ enum say {
       V_HEADER) \
     X(HELP, V_SETTING_NAME ": " V_LEGAL V_AGAIN V_LINE \
       V_VERBS "; NAME VALUE sets") \
-    X(STATUS, "state " V_STATE ", fault " V_SUBJECT ", rate " V_RATE " Hz, measured " V_MEASURED " Hz, uptime s " V_COUNT \
-      V_CHOICES V_LINE \
+    X(STATUS, "state " V_STATE ", fault " V_SUBJECT ", rate " V_RATE " Hz, measured " V_MEASURED " Hz, uptime s " \
+      V_COUNT V_CHOICES V_LINE \
       "samples " V_COUNT ", gated " V_COUNT ", reacquired " V_COUNT ", clipped " V_COUNT V_LINE \
       "rows " V_COUNT ", dropped " V_COUNT ", serial bytes lost " V_SERIAL_LOST ", lines refused " V_COUNT V_LINE \
       "lost " V_COUNT ", late " V_COUNT ", drained " V_COUNT ", stuck " V_COUNT ", restarts " V_COUNT V_LINE \
@@ -169,13 +172,14 @@ enum say {
     X(FAULT_BEGIN, "fault " V_SUBJECT ": " V_FAULT_WORDS) \
     X(FAULT_END, "fault " V_SUBJECT " over: after " V_OUTAGE_MS " ms, " V_OUTAGE_LOST \
       " lost, sensor at 0x" V_OUTAGE_ADDRESS) \
-    X(SENSOR, "sensor: ADXL345 at 0x" V_ADDRESS ", I2C at " V_BUS_KHZ " kHz") \
-    X(HEADER, "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags") \
-    X(RATE_NOTE, ", I2C at " V_BUS_KHZ " kHz") \
+    X(SENSOR, "sensor: ADXL345 at 0x" V_ADDRESS V_BUS) \
     X(ILLEGAL_NUMBER, "refused 4: illegal value; " V_SETTING ": " V_LEGAL) \
-    X(LISTED, V_SETTING V_SETTING_NOTE ": " V_LEGAL) \
     X(ROWS_SETTING, V_SETTING V_SETTING_NOTE V_LINE_IF_FORCED V_EVERY) \
     X(MODE_SET, V_SETTING V_LINE_IF_CSV V_HEADER) \
+    X(LISTED, V_SETTING V_SETTING_NOTE ": " V_LEGAL) \
+    X(HEADER, "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags") \
+    X(BUS, ", I2C at " V_BUS_KHZ " kHz") \
+    X(CHECK_BUS, ": check SDA, SCL, pull-ups, GND") \
     X(ODR_UNKNOWN, "odr: not measured yet") \
     X(LIMITS_XY, "88.5 to 955.8: " V_VERDICT) \
     X(LIMITS_Z, "110.25 to 1286.25: " V_VERDICT) \
@@ -216,15 +220,15 @@ enum say {
     X(NOT_SAVED, "refused 7: EEPROM failed") \
     X(NO_SENSOR, "no sensor at 0x53 or 0x1D: check power, SDA to A4, SCL to A5, CS to 3.3 V") \
     X(WRONG_ID, "no ADXL345 at 0x" V_FOREIGN_ADDRESS ": DEVID 0x" V_FOREIGN_ID ", not 0xE5") \
-    X(BUS_FAULT, "I2C bus disturbed: check SDA, SCL, pull-ups, GND") \
+    X(BUS_FAULT, "I2C bus disturbed" V_CHECK_BUS) \
     X(READ_BACK, "a register lost its value: check supply, bus") \
     X(INT1_SILENT, "INT1 stays low: check INT1 to D2") \
     X(NO_DATA, "the sensor stopped: check supply") \
-    X(SCL_LOW, "SCL held low: check SDA, SCL, pull-ups, GND") \
-    X(SDA_LOW, "SDA held low: check SDA, SCL, pull-ups, GND") \
+    X(SCL_LOW, "SCL held low" V_CHECK_BUS) \
+    X(SDA_LOW, "SDA held low" V_CHECK_BUS) \
     X(INT1_STUCK, "INT1 stays high: check INT1 to D2") \
     X(STUCK, "values do not change: check supply, bus") \
-    X(TORN, "torn readings: check SDA, SCL, pull-ups, GND") \
+    X(TORN, "torn readings" V_CHECK_BUS) \
     X(TWO_SENSORS, "values double: two sensors at 0x" V_ADDRESS)
 /* clang-format on */
 
@@ -238,7 +242,7 @@ enum { REPLY_PAIRS_DEPTH = 16 };
 /* The bytes of a text, packed, in program memory; 0 ends them. */
 const uint8_t *reply_text(uint8_t text);
 
-/* What stands behind a code from SAY_PAIR on, the first byte or the second: such a code again, or a byte of the text. */
+/* What a code from SAY_PAIR on stands for, the first byte or the second: such a code again, or a byte of the text. */
 uint8_t reply_pair(uint8_t code, uint8_t half);
 
 #endif

@@ -25,6 +25,8 @@ _Static_assert(TEXT_TWO_SENSORS - TEXT_NO_SENSOR == ADXL345_FAULT_TWO_SENSORS - 
 _Static_assert(TEXT_WATCHDOG - TEXT_POWER_ON == HAL_RESET_WATCHDOG, "words for each cause");
 _Static_assert(TEXT_STATE_FAULTY - TEXT_STATE_STOPPED == ADXL345_FAULTY, "words for each phase");
 
+_Static_assert(TEXT_CHECK_BUS - TEXT_LISTED == SAY_CHECK_BUS - SAY_LISTED, "a text for each");
+
 said_t said;
 
 /* value / 100, with both decimals. */
@@ -91,18 +93,20 @@ static uint8_t hexadecimal(uint8_t what)
 static void say_settings(void)
 {
     for (uint8_t which = SETTING_FILTER; which <= SETTING_BAUD; which++) {
-        setting_write(which);
-        if (which != SETTING_BAUD) {
+        if (which != SETTING_FILTER) {
             text_words(FLASH_TEXT(", "));
         }
+        setting_write(which);
     }
 }
 
 static void say_verbs(void)
 {
     for (uint8_t kind = REPLY_HELP; kind <= REPLY_LISTING; kind++) {
+        if (kind != REPLY_HELP) {
+            text_words(FLASH_TEXT(", "));
+        }
         text_words(reply_command_name(kind));
-        text_words(FLASH_TEXT(", ") + (kind == REPLY_LISTING));
     }
 }
 
@@ -110,7 +114,7 @@ static void say_verbs(void)
 static uint8_t note(void)
 {
     if (said.subject == SETTING_RATE) {
-        return TEXT_RATE_NOTE;
+        return TEXT_BUS;
     }
     if (said.subject == SETTING_EVERY && settings_every_in_force() != settings.every) {
         return settings.line_is_slower ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES;
@@ -134,8 +138,6 @@ static uint8_t text_chosen(uint8_t what)
         return said.subject == 2 ? TEXT_LIMITS_Z : TEXT_LIMITS_XY;
     case SAY_VERDICT:
         return (uint8_t)(TEXT_FAIL - VERDICT_FAIL + measure_verdict(said.subject));
-    case SAY_LISTED:
-        return TEXT_LISTED;
     case SAY_SETTING_NOTE:
         return note();
     case SAY_EVERY:
@@ -144,10 +146,10 @@ static uint8_t text_chosen(uint8_t what)
     case SAY_SENSOR:
         said.subject = (uint8_t)adxl345_fault();
         return said.subject == ADXL345_FAULT_NONE ? TEXT_SENSOR : TEXT_FAULT_BEGIN;
-    case SAY_HEADER:
-        return TEXT_HEADER;
-    default:
+    case SAY_FAULT_WORDS:
         return (uint8_t)(TEXT_NO_SENSOR - ADXL345_FAULT_NO_SENSOR + said.subject);
+    default:
+        return (uint8_t)(TEXT_LISTED - SAY_LISTED + what);
     }
 }
 

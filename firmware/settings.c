@@ -6,6 +6,7 @@
 #include "fx.h"
 #include "hal_time.h"
 #include "pipeline.h"
+#include "settings_words.h"
 
 settings_t settings;
 settings_cycles_t settings_cycles;
@@ -27,7 +28,7 @@ void settings_defaults(void)
 
 uint8_t settings_filter_mark(uint8_t filter)
 {
-    const char *name = filter_listed_name((filter_kind_t)filter);
+    flash_text_t name = settings_word(filter);
     uint8_t mark = 0;
     for (char c = flash_char(name); c != '\0'; c = flash_char(name)) {
         mark = (uint8_t)(mark * 2u + (uint8_t)c);
@@ -90,7 +91,8 @@ uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
 void settings_follow(void)
 {
     uint16_t carried = settings_smallest_every(settings.baud, settings.rate_dhz);
-    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter));
+    uint16_t computed = quotient(SETTINGS_ROW_CYCLES,
+                                 settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter));
     settings.line_is_slower = carried >= computed;
     settings.every_smallest = settings.line_is_slower ? carried : computed;
 }

@@ -30,7 +30,7 @@ enum {
 /* What a change starts, as bits. */
 enum { STARTS_FILTER = 1, STARTS_SENSOR = 2, STARTS_LINE = 4, STARTS_CALIBRATION = 8 };
 
-typedef enum { SETTING_ILLEGAL, SETTING_TAKEN, SETTING_TOO_SLOW } setting_answer_t;
+typedef enum { SETTING_TAKEN, SETTING_ILLEGAL, SETTING_TOO_SLOW } setting_answer_t;
 
 /* How many there are, with the filter in force. */
 uint8_t settings_count(void);

@@ -47,7 +47,7 @@ void supervisor_look(const int16_t lsb[3])
 static bool is_bad(uint8_t axis)
 {
     int16_t lsb = pipeline.newest.lsb[axis];
-    bool at_rail = lsb >= pipeline.rail_high_lsb || lsb <= (int16_t)(-pipeline.rail_high_lsb - 1);
+    bool at_rail = tilt_at_rail(lsb, pipeline.rail_high_lsb);
     uint8_t limit = at_rail ? SUPERVISOR_RAIL_SAMPLES : SUPERVISOR_REPEATED_SAMPLES;
     return supervisor.repeated[axis] >= limit;
 }

@@ -19,8 +19,10 @@ def texts():
         name, rest = re.match(r"(\w+)(.*)", entry, re.S).groups()
         words = "".join(re.findall(r'"((?:[^"\\]|\\.)*)"', rest))
         raw[name] = re.sub(r"\\x([0-9A-Fa-f]{2})", lambda code: chr(int(code[1], 16)), words)
-    line = chr(int(re.search(r'V_LINE "\\x(\w\w)"', TEXTS.read_text(encoding="utf-8"))[1], 16))
-    return {name: re.sub("[\x01-\x1f\x7b-\x8f]", "..", words.replace(line, "\n")) for name, words in raw.items()}
+    header = TEXTS.read_text(encoding="utf-8")
+    line, check_bus = (chr(int(re.search(rf'V_{name} "\\x(\w\w)"', header)[1], 16)) for name in ("LINE", "CHECK_BUS"))
+    raw = {name: words.replace(check_bus, raw["CHECK_BUS"]).split(line) for name, words in raw.items()}
+    return {name: "\n".join(re.sub("[\x01-\x1f\x7b-\x8f]", "..", words) for words in lines) for name, lines in raw.items()}
 
 
 def codes():

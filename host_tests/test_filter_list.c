@@ -174,46 +174,12 @@ static void test_a_refusal_tells_rate_and_combinations_apart(void)
     TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_init(&f, light, &config));
 }
 
-/* A filter that has seen motion, noise and outliers. */
-static void run_in(filter_t *f, filter_kind_t kind, uint32_t *random)
-{
-    uint32_t refused = 0;
-    memset(f, 0, sizeof *f);
-    TEST_ASSERT_TRUE(init_random(f, kind, random, &refused));
-    for (int16_t k = 0; k < 60; k++) {
-        int16_t outlier = (int16_t)(random32_below(random, 8) == 0U ? random32_below(random, 4000) : 0U);
-        (void)filter_update(f, (int16_t)(k * 3 + (int16_t)random32_below(random, 9) + outlier));
-    }
-}
-
-/* Every byte of the state: run_in has cleared those between its fields. */
-static void test_reset_in_steps_is_reset(void)
-{
-    uint32_t random = 20261122;
-    for (uint8_t kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-        for (int turn = 0; turn < 200; turn++) {
-            filter_t whole;
-            run_in(&whole, (filter_kind_t)kind, &random);
-            filter_t parts = whole;
-            int16_t z0 = (int16_t)((int)random32_below(&random, 9000) - 4500);
-            filter_reset(&whole, z0);
-            uint8_t step = 0;
-            while (filter_reset_step(&parts, z0, step)) {
-                step++;
-                TEST_ASSERT_LESS_OR_EQUAL_UINT8(64, step);
-            }
-            TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&whole, &parts, sizeof whole, filter_listed_name((filter_kind_t)kind));
-        }
-    }
-}
-
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_defaults_are_legal_at_each_rate);
     RUN_TEST(test_ranges_and_together_are_what_init_asks);
     RUN_TEST(test_name_and_descriptor_agree);
-    RUN_TEST(test_reset_in_steps_is_reset);
     RUN_TEST(test_a_refusal_names_the_parameter);
     RUN_TEST(test_a_refusal_tells_rate_and_combinations_apart);
     return UNITY_END();

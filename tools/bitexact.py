@@ -127,7 +127,8 @@ def sources(chip, lib):
     files = sorted(pathlib.Path(HERE).glob("vectors*.c"))
     files += [f"{HERE}/crc32.c", f"{HERE}/output.c", f"{HERE}/output_{'chip' if chip else 'pc'}.c"]
     files += [path for name in ("random32", "filter*", "law_*") for path in sorted(pathlib.Path("host_tests").glob(f"support_{name}.c"))]
-    files += FIRMWARE + sorted(pathlib.Path(lib).glob("filters/src/*.c")) + [f"{lib}/tilt/src/tilt.c", f"{lib}/tilt/src/calibration.c"]
+    files += FIRMWARE + sorted(pathlib.Path(lib).glob("filters/src/*.c"))
+    files += [f"{lib}/tilt/src/{name}.c" for name in ("tilt", "tilt_axis", "calibration")]
     return [f"-I{folder}" for folder in includes] + [str(file) for file in files]
 
 

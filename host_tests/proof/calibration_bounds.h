@@ -70,6 +70,11 @@ static void prepare_bias(calibration_applied_t *applied, const calibration_t *c)
 */
 static void prepare_column(calibration_applied_t *applied, const calibration_t *c, const int32_t w_q14[3], uint8_t ours);
 
+/*@ assigns out_q8[0..2] \from *applied, a_q8[0..2];
+    ensures \initialized(&out_q8[0..2]);
+*/
+void calibration_apply(const calibration_applied_t *applied, const int32_t a_q8[3], int32_t out_q8[3]);
+
 /*@ requires axis < 3 && -MEAN_END <= lsb_q4 <= MEAN_END;
     requires 12000 <= c->scale_lsb_per_g_uq6[axis] <= SCALE_END;
     assigns \result \from c->offset_lsb_q4[axis], c->scale_lsb_per_g_uq6[axis], lsb_q4;

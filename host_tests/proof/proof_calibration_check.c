@@ -36,7 +36,10 @@ void proof_calibration_check(void)
     }
 }
 
-/* Each axis has to be named once. A level too short or too long, in whichever component, is refused. Whole: calibration_check, length_square_q28 */
+/*
+ * Each axis has to be named once. A level too short or too long, in whichever component, is refused.
+ * Whole: calibration_check, length_square_q28, calibration_square
+ */
 void proof_calibration_named(void)
 {
     calibration_t c;

@@ -58,7 +58,14 @@ void proof_rounded(void)
 /* Options: -eva-slevel 1 -eva-min-loop-unroll 16 */
 void proof_fx_isqrt32(void)
 {
-    (void)fx_isqrt32(ANY_U32(0, SQUARE(27UL) - 1U));
+    (void)fx_isqrt32(ANY_U32(0, 12287));
+    (void)fx_isqrt32(ANY_U32(12288, 12543)); /* 112^2 less 1 */
+    (void)fx_isqrt32(ANY_U32(12544, 16383));
+    //@ loop unroll 8;
+    for (uint32_t from = 16384; from < 0x4000000U; from *= 4U) {
+        (void)fx_isqrt32(ANY_U32(from, 4U * from - 1U));
+    }
+    (void)fx_isqrt32(ANY_U32(0x4000000U, SQUARE(27UL) - 1U));
     //@ loop unroll 5;
     for (uint32_t k = 27; k < 32U; k++) {
         (void)fx_isqrt32(ANY_U32(SQUARE(k), SQUARE(k + 1U) - 1U));

@@ -64,13 +64,6 @@ int32_t tracker_median_q16(const int16_t *ascending_lsb, uint8_t count);
 filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_config_t *config);
 /*@ requires BOUND(f); ensures BOUND(f); */
 void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8);
-/*@ requires BOUND(f) && (step == 0 || f->collected == 5);
-    assigns LAW_STATE, f->collected, f->previous_lsb, \result \from z0_lsb, step, LAW_SEES;
-    ensures BOUND(f);
-    ensures f->collected == 5;
-    ensures \result == 0 || (\result == 1 && step < 64);
-*/
-bool filter_reset_step(filter_t *f, int16_t z0_lsb, uint8_t step);
 /*@ requires BOUND(f); ensures BOUND(f); */
 void filter_reset(filter_t *f, int16_t z0_lsb);
 /*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN(\result, X_MAX_Q16); */
@@ -279,7 +272,7 @@ void proof_filter_set_noise(void)
     }
 }
 
-void proof_filter_reset_step(void)
+void proof_filter_reset(void)
 {
     filter_t f;
     for (uint8_t settles = 0; settles < 2U; settles++) {
@@ -287,23 +280,8 @@ void proof_filter_reset_step(void)
         EACH_START(collected)
         {
             any_filter(&f, collected, 1024);
-            (void)filter_reset_step(&f, ANY_Z(), 0);
+            filter_reset(&f, ANY_Z());
         }
-        any_filter(&f, FILTER_RUNNING, 1024);
-        (void)filter_reset_step(&f, ANY_Z(), ANY_U8(1, 63));
-        (void)filter_reset_step(&f, ANY_Z(), ANY_U8(64, UINT8_MAX));
-    }
-}
-
-/* Options: -eva-split-return-function filter_reset_step:full */
-void proof_filter_reset(void)
-{
-    filter_t f;
-    any_law(0);
-    EACH_START(collected)
-    {
-        any_filter(&f, collected, 1024);
-        filter_reset(&f, ANY_Z());
     }
 }
 

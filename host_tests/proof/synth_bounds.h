@@ -8,6 +8,7 @@
 #define RATE_END 603979776    /* 9216 LSB: the difference of two estimates */
 #define MEMORY_Q16 1207959552 /* 18432 LSB */
 #define CELLS
+#define Z_CELL 512
 
 #define SYNTH_KEPT(f) (3 <= (f)->own.synth.r_lsb2_q8 <= 256000)
 #define COUNT(f) (5 <= (f)->own.synth.count <= LAST_COUNT || (f)->own.synth.count == 255)

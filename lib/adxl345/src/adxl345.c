@@ -147,9 +147,10 @@ void adxl345_init(void)
 static bool quiesce(void)
 {
     driver.now_us = hal_time_us();
-    if (driver.step == STEP_STREAM || driver.step == STEP_ASK_SOURCE) {
+    if (driver_streams()) {
         burst_set_mode(BURST_STAMP);
         driver_enter(STEP_QUIET_STANDBY, TRANSFER_LIMIT);
+        return true;
     }
     return driver.step == STEP_QUIET_STANDBY || driver.step == STEP_QUIET_DRAIN;
 }
@@ -206,7 +207,10 @@ static HAL_APART void not_here(adxl345_driver_t *d, adxl345_fault_t fault)
             return;
         }
     }
-    driver_fail(fault == ADXL345_FAULT_NO_SENSOR && found != ADXL345_FAULT_NONE ? (adxl345_fault_t)found : fault);
+    if (fault == ADXL345_FAULT_NO_SENSOR && found != ADXL345_FAULT_NONE) {
+        fault = (adxl345_fault_t)found;
+    }
+    driver_fail(fault);
 }
 
 void driver_give_up(adxl345_driver_t *d, i2c_bus_state_t state)

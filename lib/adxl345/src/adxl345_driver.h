@@ -68,6 +68,12 @@ typedef struct {
 
 extern adxl345_driver_t driver;
 
+/* Bursts bring samples, or the sensor is being asked why they do not. */
+static inline bool driver_streams(void)
+{
+    return driver.step / STEP_PHASE(1) == ADXL345_STREAMING;
+}
+
 /* The step that runs from now on, with a deadline after this limit; main passes again at once. */
 void driver_enter(step_t step, uint8_t limit);
 

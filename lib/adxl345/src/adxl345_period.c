@@ -59,7 +59,12 @@ HAL_APART uint32_t period_us(void)
     return period.us_q8 >> 8;
 }
 
-uint32_t period_measured_us_q8(void)
+uint32_t period_us_q8(void)
 {
-    return period.measured ? period.us_q8 : 0;
+    return period.us_q8;
+}
+
+bool period_measured(void)
+{
+    return period.measured;
 }

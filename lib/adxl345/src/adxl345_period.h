@@ -17,7 +17,8 @@ void period_sample(uint32_t t_us, bool exact);
 /* The nominal one until it was measured. */
 uint32_t period_us(void);
 
-/* The measured one in 1/256 us; 0 until it was measured. */
-uint32_t period_measured_us_q8(void);
+/* The same in 1/256 us, and whether it was measured. */
+uint32_t period_us_q8(void);
+bool period_measured(void);
 
 #endif

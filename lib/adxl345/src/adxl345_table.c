@@ -55,7 +55,11 @@ HAL_APART uint8_t table_format(const adxl345_config_t *config)
 
 uint16_t table_half_period_us(uint16_t rate_dhz)
 {
-    return (uint16_t)(40000u >> (rate_code(rate_dhz) - RATE_CODE_12_5_HZ));
+    uint16_t half_us = 40000;
+    for (uint16_t at = 125; at < rate_dhz; at = (uint16_t)(at * 2u)) {
+        half_us >>= 1;
+    }
+    return half_us;
 }
 
 bool adxl345_config_valid(const adxl345_config_t *config)

@@ -53,12 +53,6 @@ HAL_APART uint8_t adxl345_queued(void)
     return burst_queued();
 }
 
-/* Bursts bring samples, or the sensor is being asked why they do not. */
-static bool streams(void)
-{
-    return driver.step / STEP_PHASE(1) == ADXL345_STREAMING;
-}
-
 bool adxl345_oldest_us(uint32_t *t_us)
 {
     return burst_oldest_us(t_us);
@@ -66,7 +60,7 @@ bool adxl345_oldest_us(uint32_t *t_us)
 
 bool adxl345_sample_coming(void)
 {
-    return streams() && !burst_found_empty() && (burst_running() || hal_drdy_high());
+    return driver_streams() && !burst_found_empty() && (burst_running() || hal_drdy_high());
 }
 
 uint32_t adxl345_lateness_us(void)
@@ -82,7 +76,7 @@ adxl345_phase_t adxl345_phase(void)
 
 adxl345_fault_t adxl345_fault(void)
 {
-    if (driver.fault != ADXL345_FAULT_NONE || !streams()) {
+    if (driver.fault != ADXL345_FAULT_NONE || !driver_streams()) {
         return (adxl345_fault_t)driver.fault;
     }
     if (integrity_int1_stuck()) {
@@ -127,10 +121,10 @@ uint32_t adxl345_period_us(void)
 /* 1e8 us x 256 over the period, both by 8 that 32 bits are enough; that rounds by 1.3e-5 at 800 Hz, less below. */
 uint32_t adxl345_rate_chz(void)
 {
-    uint32_t eighth_us_q8 = (period_measured_us_q8() + 4u) >> 3;
-    if (eighth_us_q8 == 0) {
+    if (!period_measured()) {
         return 0;
     }
+    uint32_t eighth_us_q8 = (period_us_q8() + 4u) >> 3;
     return (UINT32_C(3200000000) + (eighth_us_q8 >> 1)) / eighth_us_q8;
 }
 

@@ -106,13 +106,14 @@ static void start(filter_t *f, bool settled)
 }
 
 /* The rate of one sample, rounded down towards the side of the last innovation. */
-FX_INLINE int32_t rate_lsb_q16(const filter_t *f)
+static int32_t rate_lsb_q16(const filter_t *f)
 {
-    return f->negative ? -(-f->rate_lsb >> 8) : f->rate_lsb >> 8;
+    int32_t rate = f->rate_lsb >> 8;
+    return (f->negative && (uint8_t)(uint32_t)f->rate_lsb != 0U) ? rate + 1 : rate;
 }
 
 /* A size in 8.8 bits, limited to 128 LSB. */
-FX_INLINE int16_t size_lsb_q8(uint32_t size_lsb_uq16)
+FX_NOINLINE int16_t size_lsb_q8(uint32_t size_lsb_uq16)
 {
     return (int16_t)((size_lsb_uq16 >= 0x800000U) ? 0x7FFF : (int16_t)(uint16_t)(size_lsb_uq16 >> 8));
 }
@@ -139,12 +140,12 @@ FX_INLINE void average_innovation(filter_adaptive_t *a, uint32_t taken)
  * What the sample before was off, towards the side of this one, carried on with the rate, and no more than this one is
  * off; 0 where a sample was missing between them.
  */
-static uint32_t agreed_lsb_uq16(const filter_t *f)
+static uint32_t agreed_lsb_uq16(const filter_t *f, int32_t x1_lsb_q16)
 {
     if (f->broken) {
         return 0;
     }
-    int32_t before = (int32_t)f->previous_lsb * 65536 - (f->x_lsb_q16 - rate_lsb_q16(f));
+    int32_t before = (int32_t)f->previous_lsb * 65536 - x1_lsb_q16;
     if (f->negative) {
         before = -before;
     }
@@ -155,7 +156,7 @@ static uint32_t agreed_lsb_uq16(const filter_t *f)
 }
 
 /* Counts a sample beyond the gate, and judges what is taken of its innovation. */
-static uint32_t judge(filter_t *f)
+static uint32_t judge(filter_t *f, int32_t x1_lsb_q16)
 {
     filter_adaptive_t *a = &f->own.adaptive;
     uint16_t run = (a->verdict == (uint8_t)ADAPTIVE_WITHIN) ? 0U : a->run;
@@ -163,7 +164,7 @@ static uint32_t judge(filter_t *f)
     if (run != 0U) {
         a->run = run;
     }
-    uint32_t agreed = agreed_lsb_uq16(f);
+    uint32_t agreed = agreed_lsb_uq16(f, x1_lsb_q16);
     uint32_t size = f->size_lsb_uq16;
     uint32_t gate = a->gate_lsb_uq16;
     if (agreed > gate) {
@@ -190,7 +191,7 @@ static void adapt(filter_adaptive_t *a, uint16_t spread_uq8)
 {
     int16_t mean = (int16_t)(a->mean_lsb_q24 >> 16);
     uint16_t mean_uq8 = (mean < 0) ? (uint16_t)(0U - (uint16_t)mean) : (uint16_t)mean;
-    uint16_t threshold_uq8 = (uint16_t)(fx_mul_u16(spread_uq8, a->manoeuvre_uq16) >> 16);
+    uint16_t threshold_uq8 = fx_high_u16(spread_uq8, a->manoeuvre_uq16);
     uint16_t k = (uint16_t)(a->k_uq32 >> 16);
     if (a->verdict >= (uint8_t)ADAPTIVE_MOTION || mean_uq8 > threshold_uq8) {
         if (k < a->fast_uq16) {
@@ -215,9 +216,12 @@ FX_INLINE void turn(filter_t *f, int32_t by_lsb_q24)
     f->rate_lsb = f->negative ? -rate : rate;
 }
 
-/* k w of a w of 128 LSB and more. */
-static uint32_t coarse_turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
+/* k w, at most 127 LSB: from a w of 128 LSB on to 2^-16. */
+static uint32_t turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
 {
+    if (w_lsb_uq16 < 0x800000U) {
+        return fx_times_uq16(w_lsb_uq16 << 8, k_uq16);
+    }
     uint32_t kw = fx_times_uq16(w_lsb_uq16, k_uq16);
     return (kw >= (uint32_t)127 << 16) ? (uint32_t)127 << 24 : kw << 8;
 }
@@ -230,8 +234,8 @@ static void follow(filter_t *f, uint32_t taken)
         f->rate_lsb = 0;
     } else {
         uint16_t k = (uint16_t)(f->own.adaptive.k_uq32 >> 16);
-        uint32_t w = fx_mul24_uq16(taken >> 8, k);
-        uint32_t kw = (w >= 0x800000U) ? coarse_turn_lsb_uq24(w, k) : fx_mul24_uq16(w, k);
+        uint32_t w = fx_times_uq16(taken, k);
+        uint32_t kw = turn_lsb_uq24(w, k);
         turn(f, (int32_t)kw);
         taken = w + w - (kw >> 8);
     }
@@ -252,8 +256,8 @@ static uint16_t meet(filter_t *f, int16_t z_lsb)
         a->mean_lsb_q24 = -a->mean_lsb_q24;
     }
     uint16_t spread_uq8 = (uint16_t)(a->scatter_lsb_uq24 >> 16);
-    spread_uq8 = (uint16_t)(spread_uq8 + (uint16_t)(fx_mul_u16(spread_uq8, (uint16_t)(a->k_uq32 >> 16)) >> 16));
-    a->gate_lsb_uq16 = fx_mul_u16(spread_uq8, a->gate_sigma_q8);
+    spread_uq8 = (uint16_t)(spread_uq8 + fx_high_u16(spread_uq8, (uint16_t)(a->k_uq32 >> 16)));
+    a->gate_lsb_uq16 = fx_product_u16(spread_uq8, a->gate_sigma_q8);
     return spread_uq8;
 }
 
@@ -289,14 +293,15 @@ static void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spre
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     filter_adaptive_t *a = &f->own.adaptive;
-    f->x_lsb_q16 = tracker_bounded(f, f->x_lsb_q16 + rate_lsb_q16(f));
+    int32_t x1_lsb_q16 = f->x_lsb_q16;
+    f->x_lsb_q16 = tracker_bounded(f, x1_lsb_q16 + rate_lsb_q16(f));
     if (what == STEP_MISSING) {
         return;
     }
     uint16_t spread_uq8 = meet(f, z_lsb);
     uint32_t taken = f->size_lsb_uq16;
     if (taken > a->gate_lsb_uq16 && a->guarded) {
-        taken = judge(f);
+        taken = judge(f, x1_lsb_q16);
     } else {
         a->verdict = ADAPTIVE_WITHIN;
     }

@@ -40,28 +40,19 @@ static void start(filter_t *f, bool settled)
     LAW_OF(f, start)(f, settled);
 }
 
-bool filter_reset_step(filter_t *f, int16_t z0_lsb, uint8_t step)
-{
-    int16_t z0 = tracker_limited_z(z0_lsb);
-    f->previous_lsb = z0;
-    f->flags = 0;
-    if (step != 0U) {
-        LAW_OF(f, step)(f, z0, STEP_SETTLE);
-        return step < SETTLE_STEPS;
-    }
-    filter_restart(f);
-    f->flags = 0;
-    f->x_lsb_q16 = (int32_t)z0 * 65536;
-    start(f, true);
-    return (traits(f) & LAW_SETTLES) != 0U;
-}
-
 void filter_reset(filter_t *f, int16_t z0_lsb)
 {
-    uint8_t step = 0;
-    while (filter_reset_step(f, z0_lsb, step)) {
-        step++;
+    int16_t z0 = tracker_limited_z(z0_lsb);
+    filter_restart(f);
+    f->previous_lsb = z0;
+    f->x_lsb_q16 = (int32_t)z0 * 65536;
+    start(f, true);
+    if ((traits(f) & LAW_SETTLES) != 0U) {
+        for (uint8_t step = SETTLE_STEPS; step != 0U; step--) {
+            LAW_OF(f, step)(f, z0, STEP_SETTLE);
+        }
     }
+    f->flags = 0;
 }
 
 /* One sample of the start: the running median of what was seen, or as published the first sample. */

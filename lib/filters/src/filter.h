@@ -169,12 +169,8 @@ filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_c
  */
 void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8);
 
-/*
- * Running as if z0 had been read for ever; no warm-up. Up to 64 updates long; filter_reset_step does the same in parts
- * that take no longer than an update: step 0, 1, 2 ... until it is false; no other call in between.
- */
+/* Running as if z0 had been read for ever; no warm-up. As long as 64 updates. */
 void filter_reset(filter_t *f, int16_t z0_lsb);
-bool filter_reset_step(filter_t *f, int16_t z0_lsb, uint8_t step);
 
 /*
  * One sample in, estimate (LSB, Q16) out: any int16, any history; cannot fail. A sample beyond FILTER_Z_MIN..MAX is

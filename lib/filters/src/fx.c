@@ -92,7 +92,7 @@ fx_scaled_t fx_scaled_mul(fx_scaled_t a, fx_scaled_t b)
     return normalised(fx_product_u16(a.mantissa, b.mantissa), (int8_t)(a.exponent + b.exponent));
 }
 
-fx_scaled_t fx_scaled_div(fx_scaled_t a, fx_scaled_t b)
+FX_ONCE fx_scaled_t fx_scaled_div(fx_scaled_t a, fx_scaled_t b)
 {
     uint32_t quotient = ((uint32_t)a.mantissa << 16) / b.mantissa; /* 2^15 < quotient < 2^17 */
     return normalised(quotient, (int8_t)(a.exponent - b.exponent - 16));

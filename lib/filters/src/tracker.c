@@ -9,7 +9,7 @@ void tracker_clear(void *state, size_t size)
     }
 }
 
-int16_t tracker_limited_z(int16_t z_lsb)
+FX_ONCE int16_t tracker_limited_z(int16_t z_lsb)
 {
     if (z_lsb > FILTER_Z_MAX_LSB) {
         return FILTER_Z_MAX_LSB;
@@ -41,7 +41,7 @@ int32_t tracker_median_q16(const int16_t *ascending_lsb, uint8_t count)
     return ((int32_t)(int16_t)(low + high) * 65536) >> 1; /* even before the halving: exact */
 }
 
-uint32_t tracker_limited_r(uint32_t r_lsb2_q8)
+FX_ONCE uint32_t tracker_limited_r(uint32_t r_lsb2_q8)
 {
     if (r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8) {
         return FILTER_R_MIN_LSB2_Q8;
@@ -74,7 +74,7 @@ void tracker_damp(filter_t *f)
     tracker_fade(f, false);
 }
 
-uint16_t tracker_memory_k_uq16(uint16_t memory_ms, uint16_t rate_dhz, uint16_t k_min_uq16)
+FX_ONCE uint16_t tracker_memory_k_uq16(uint16_t memory_ms, uint16_t rate_dhz, uint16_t k_min_uq16)
 {
     uint32_t k_uq16 = 1310720000U / ((uint32_t)memory_ms * rate_dhz);
     if (k_uq16 > TRACKER_K_MAX_UQ16) {

@@ -13,31 +13,36 @@ void tilt_axis_begin(tilt_axis_t *a, uint16_t rate_dhz, bool noisy_axis)
     filter_set_noise(&a->filter, noise_r_lsb2_q8(&a->noise));
 }
 
-static uint16_t flags_of(const filter_t *f)
+FX_ONCE int32_t tilt_axis_estimate_q8(const tilt_axis_t *a)
 {
-    uint16_t flags = f->flags & (FILTER_GATED | FILTER_REACQUIRED);
-    if ((f->flags & FILTER_WARMING_UP) != 0U) {
-        flags |= TILT_WARMING_UP;
-    }
-    if ((f->flags & FILTER_SWITCHED) != 0U) {
-        flags |= TILT_SWITCHED;
-    }
-    return flags;
+    return (a->filter.x_lsb_q16 + 128) >> 8;
+}
+
+FX_ONCE int16_t tilt_axis_estimate_lsb(const tilt_axis_t *a)
+{
+    return (int16_t)((tilt_axis_estimate_q8(a) + 128) >> 8);
+}
+
+_Static_assert((int)TILT_GATED == (int)FILTER_GATED && (int)TILT_REACQUIRED == (int)FILTER_REACQUIRED, "same bits");
+
+static uint8_t flags_of(const filter_t *f)
+{
+    uint8_t flags = f->flags & (FILTER_GATED | FILTER_REACQUIRED);
+    return (uint8_t)(((f->flags & FILTER_WARMING_UP) != 0U) ? flags | TILT_WARMING_UP : flags);
 }
 
 /* Within 2.8 sigmas of the estimate, by the R of the noise, which is 3.5 of a healthy sensor's. */
 static bool near_estimate(const tilt_axis_t *a, int16_t lsb)
 {
-    int32_t estimate_lsb_q8 = (a->filter.x_lsb_q16 + 128) >> 8;
-    int16_t off_lsb = (int16_t)(lsb - (int16_t)((estimate_lsb_q8 + 128) >> 8));
+    int16_t off_lsb = (int16_t)(lsb - tilt_axis_estimate_lsb(a));
     uint16_t size_lsb = (uint16_t)((off_lsb < 0) ? -off_lsb : off_lsb);
     return fx_mul_u16(size_lsb, size_lsb) <= noise_r_lsb2_q8(&a->noise) >> 5;
 }
 
 /* A sample after a hold, which the filter is not to have as long as a->away is not 0. */
-static uint16_t rejoin(tilt_axis_t *a, int16_t lsb)
+static uint8_t rejoin(tilt_axis_t *a, int16_t lsb)
 {
-    uint16_t flags = 0;
+    uint8_t flags = 0;
     if (!near_estimate(a, lsb)) {
         if (a->away++ < (uint8_t)AWAY_SAMPLES) {
             return TILT_GATED;
@@ -49,7 +54,7 @@ static uint16_t rejoin(tilt_axis_t *a, int16_t lsb)
     return flags;
 }
 
-static void miss(tilt_axis_t *a)
+FX_NOINLINE void miss(tilt_axis_t *a)
 {
     noise_gap(&a->noise);
     (void)filter_missing(&a->filter);
@@ -58,12 +63,12 @@ static void miss(tilt_axis_t *a)
     }
 }
 
-uint16_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bool own_r)
+uint8_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bool own_r)
 {
-    uint16_t flags = 0;
+    uint8_t flags = 0;
     if (tilt_at_rail(lsb, rail_high_lsb)) {
         miss(a);
-        return TILT_CLIPPED | flags_of(&a->filter);
+        return (uint8_t)(TILT_CLIPPED | flags_of(&a->filter));
     }
     if (noise_update(&a->noise, lsb) && !own_r) {
         filter_set_noise(&a->filter, noise_r_lsb2_q8(&a->noise));
@@ -78,8 +83,8 @@ uint16_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bo
     return flags;
 }
 
-uint16_t tilt_axis_missing(tilt_axis_t *a)
+uint8_t tilt_axis_missing(tilt_axis_t *a)
 {
     miss(a);
-    return TILT_COASTED | flags_of(&a->filter);
+    return (uint8_t)(TILT_COASTED | flags_of(&a->filter));
 }

@@ -1,6 +1,6 @@
 /*
  * One axis of the way from readings to tilt: noise estimate, filter, and what becomes of missing samples and of those
- * that come after a gap. tilt_filter.h has three of them; the firmware's sample path follows the same rules.
+ * that come after a gap. tilt_filter.h has three of them, and so has the firmware's sample path.
  */
 #ifndef TILT_AXIS_H
 #define TILT_AXIS_H
@@ -28,9 +28,9 @@ enum tilt_flag {
 };
 
 typedef struct {
-    filter_t filter;
-    noise_t noise;
     uint8_t away; /* after a hold: 1, and 1 more for each sample away from what was held; else 0 */
+    noise_t noise;
+    filter_t filter;
 } tilt_axis_t;
 
 /* Highest reading of a range; it and the lowest, its complement, are the rails. */
@@ -38,6 +38,10 @@ static inline bool tilt_at_rail(int16_t lsb, int16_t rail_high_lsb)
 {
     return lsb >= rail_high_lsb || lsb <= (int16_t)(-rail_high_lsb - 1);
 }
+
+/* Estimate in LSB, with 8 fraction bits and whole, rounded half up. */
+int32_t tilt_axis_estimate_q8(const tilt_axis_t *a);
+int16_t tilt_axis_estimate_lsb(const tilt_axis_t *a);
 
 /* A filter that was initialised becomes that of the axis, with the noise of a sensor at rest; noisy_axis: z. */
 void tilt_axis_begin(tilt_axis_t *a, uint16_t rate_dhz, bool noisy_axis);
@@ -47,13 +51,13 @@ void tilt_axis_begin(tilt_axis_t *a, uint16_t rate_dhz, bool noisy_axis);
  * the sample on this axis.
  *
  * A sample at the rail of its range says no more than that it is outside: it is missing. After a hold (100 ms without a
- * sample) the filter goes on from what it held when the sample lies near it. A single
- * one away from it may be a bad reading; with the second in a row the filter restarts, knowing the noise as before.
+ * sample) the filter goes on from what it held when the sample lies near it. A single one away from it may be a bad
+ * reading; with the second in a row the filter restarts, knowing the noise as before.
  */
-uint16_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bool own_r);
+uint8_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bool own_r);
 
 /* No sample: the filter predicts, and holds after 100 ms. */
-uint16_t tilt_axis_missing(tilt_axis_t *a);
+uint8_t tilt_axis_missing(tilt_axis_t *a);
 
 #ifdef __cplusplus
 }

@@ -92,7 +92,7 @@ static void find_angles(tilt_filter_t *t)
 {
     int32_t estimates_q8[TILT_FILTER_AXES];
     for (uint8_t axis = 0; axis < (uint8_t)TILT_FILTER_AXES; axis++) {
-        estimates_q8[axis] = (t->axes[axis].filter.x_lsb_q16 + 128) >> 8;
+        estimates_q8[axis] = tilt_axis_estimate_q8(&t->axes[axis]);
     }
     calibration_apply(&t->calibration, estimates_q8, t->a_q8);
     tilt_angles(&t->angles, t->a_q8);
@@ -103,7 +103,11 @@ static void find_angles(tilt_filter_t *t)
 
 static void update_axis(tilt_filter_t *t, uint8_t axis, int16_t reading)
 {
-    t->flags |= tilt_axis_update(&t->axes[axis], shifted(t, reading), t->rail_high_lsb, false);
+    tilt_axis_t *a = &t->axes[axis];
+    t->flags |= tilt_axis_update(a, shifted(t, reading), t->rail_high_lsb, false);
+    if ((a->filter.flags & FILTER_SWITCHED) != 0U) {
+        t->flags |= TILT_SWITCHED;
+    }
 }
 
 void tilt_filter_update(tilt_filter_t *t, int16_t ax, int16_t ay, int16_t az)
