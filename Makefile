@@ -105,7 +105,7 @@ $(S)/simrun: $(SIMRUN_SRC) $(wildcard sim/*.h)
 	@echo "built $@"
 
 STREAM ?= sim/streams/outliers-15pct.csv
-FILTER ?= adaptive
+FILTER ?= $(firstword $(FILTERS_everyday))
 RATE   ?= 100
 OUT    ?= $(S)/$(basename $(notdir $(STREAM))).$(FILTER).out.csv
 

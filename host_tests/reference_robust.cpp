@@ -255,7 +255,7 @@ void step_gated(robust_reference_t &f, const Estimate &e, double z)
     }
     double s = xi(f, e.p, 1.0);
     if (f.kind == ROBUST_SOFT) {
-        s = std::max(s, f.innovation * f.innovation / (f.soft_sigma * f.soft_sigma));
+        s = std::max(s, f.innovation * f.innovation / (f.softgate_sigma * f.softgate_sigma));
     }
     const Vector w = observed_column(e.p) / s;
     const Matrix keep = keeping(w);
@@ -297,7 +297,7 @@ bool robust_reference_table1(robust_reference_t *f, const char *name)
     f->clean = f->q_mean = 0.85;
     f->ratio = 20.0;
     f->gate_sigma = 3.0;
-    f->soft_sigma = 2.0;
+    f->softgate_sigma = 2.0;
     f->p22_start = 0.04;
     f->x[0] = f->second_x[0] = 2.8;
     f->x[1] = f->second_x[1] = 0.008;
@@ -322,7 +322,7 @@ const char *robust_reference_refused(const robust_reference_t *f)
         { "clean", f->clean > 0.0 && f->clean < 1.0 },
         { "ratio", f->ratio > 1.0 },
         { "gate", f->gate_sigma >= 1.0 },
-        { "softgate", f->soft_sigma >= 1.0 },
+        { "softgate", f->softgate_sigma >= 1.0 },
         { "median", f->median_window == 0 || (f->median_window % 2 == 1 && f->median_window <= ROBUST_MEDIAN_MAX) },
     };
     for (const auto &rule : rules) {

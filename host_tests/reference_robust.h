@@ -37,16 +37,16 @@ typedef struct {
     robust_reading_t reading;
     double period_s;
     double r;
-    double q[4];       /* process noise per sample, row-major */
-    double clean;      /* q1, in (0, 1) */
-    double ratio;      /* N > 1 */
-    double gate_sigma; /* of sprf and of what counts as refused in soft; >= 1 */
-    double soft_sigma; /* >= 1 */
-    int reacquire;     /* sprf, soft: consistent refused samples that restart; 0: never */
-    double agree;      /* they differ from one to the next by at most this */
-    double rate_max;   /* of the estimate; 0: no limit */
-    int median_window; /* odd: the estimate starts as the median of so many samples; 0: from x and p as given */
-    double p22_start;  /* of the rate, after a median start */
+    double q[4];           /* process noise per sample, row-major */
+    double clean;          /* q1, in (0, 1) */
+    double ratio;          /* N > 1 */
+    double gate_sigma;     /* of sprf and of what counts as refused in soft; >= 1 */
+    double softgate_sigma; /* >= 1 */
+    int reacquire;         /* sprf, soft: consistent refused samples that restart; 0: never */
+    double agree;          /* they differ from one to the next by at most this */
+    double rate_max;       /* of the estimate; 0: no limit */
+    int median_window;     /* odd: the estimate starts as the median of so many samples; 0: from x and p as given */
+    double p22_start;      /* of the rate, after a median start */
 
     double x[2];
     double p[4];

@@ -13,6 +13,7 @@
 #include "silence.h"
 #include "support_filters.h"
 #include "support_random.h"
+#include "support_roles.h"
 #include "unity.h"
 
 #define DEGREES (3.14159265358979323846 / 180.0)
@@ -177,7 +178,9 @@ static void assert_rejoins(uint8_t kind, uint16_t rate_dhz, unsigned missing)
             TEST_ASSERT_LESS_OR_EQUAL_INT_MESSAGE(300, error_cdeg, about(kind, missing));
         }
     }
-    unsigned own = kind == (uint8_t)FILTER_KIND_sprf_paper ? 2u : 0u; /* its gate of 2 sigma refuses 1 in 20 anyway */
+    unsigned own = (filter_listed((filter_kind_t)kind)->traits & LAW_FIRST_SAMPLE) != 0
+                       ? 2u
+                       : 0u; /* as published: a gate of 2 sigma refuses 1 in 20 anyway */
     TEST_ASSERT_LESS_OR_EQUAL_UINT_MESSAGE((held ? 1u : 0u) + own, gated, about(kind, missing));
 }
 
@@ -322,7 +325,7 @@ static void test_a_bad_reading_behind_a_hold_begins_nothing(void)
         TEST_ASSERT_EQUAL_INT(held_cdeg, world.row.roll_cdeg);
         world.roll_deg = ROLL_CDEG / 100.0;
         samples(1);
-        if (kind == (uint8_t)FILTER_KIND_adaptive) { /* what others hold may be off by the noise of their rate */
+        if (kind == (uint8_t)DEFAULT_KIND) { /* what others hold may be off by the noise of their rate */
             TEST_ASSERT_EQUAL_HEX16(0, world.row.flags & (ROW_REACQUIRED | ROW_WARMING_UP));
         }
     }

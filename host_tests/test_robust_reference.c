@@ -160,7 +160,7 @@ static void limits_of_the_filters_are_the_kf(void)
     TEST_ASSERT_TRUE(difference_after(&kf, &other, 60) < 1e-12);
     robust_reference_table1(&kf, "kf");
     robust_reference_table1(&other, "soft");
-    other.soft_sigma = 1e6;
+    other.softgate_sigma = 1e6;
     TEST_ASSERT_TRUE(difference_after(&kf, &other, 60) < 1e-12);
     robust_reference_table1(&kf, "kf");
     robust_reference_table1(&other, "pbf");
@@ -209,7 +209,7 @@ static void parameters_outside_their_range_are_named(void)
     f.gate_sigma = 0.99;
     assert_refused("gate", &f);
     f = good;
-    f.soft_sigma = 0.5;
+    f.softgate_sigma = 0.5;
     assert_refused("softgate", &f);
     f = good;
     f.median_window = 4;

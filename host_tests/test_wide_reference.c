@@ -80,7 +80,7 @@ static void steady_gains_are_kalmans(void)
     for (int i = 0; i < 54; i++) {
         filter_t f;
         filter_config_t config = filter_defaults(pairs[0].law, rates[i % 9]);
-        config.value[SPRF_PAPER_R_LSB2_Q8] = (int32_t)lrint(256.0 * r_lsb2[i / 9]);
+        config.value[KALMAN_R] = (int32_t)lrint(256.0 * r_lsb2[i / 9]);
         TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, pairs[0].law, &config));
         for (int k = 0; k < 6000; k++) {
             (void)filter_update(&f, 100);

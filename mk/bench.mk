@@ -19,10 +19,10 @@ $(BENCH_PARTS:%=$(U)/bench_%.elf): $(U)/bench_%.elf: $(BENCH_DEPS)
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(BENCH_COMMON) $(call bench_part,$*) -Os $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
 
-# another yardstick for synth, in the same program
+# another yardstick for the lightest, in the same program
 $(U)/bench_kept.elf: $(BENCH_DEPS)
 	@mkdir -p $(@D)
-	@$(AVR_CC) $(BENCH_COMMON) $(call bench_part,1) -DFLOAT_SYNTH_KEPT -Os $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
+	@$(AVR_CC) $(BENCH_COMMON) $(call bench_part,1) -DFLOAT_KEPT -Os $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
 
 # the firmware with two places around a sample's way that the simulator can time
 $(U)/bench_sample/firmware/app.o: AVR_FLAGS += -Dpipeline_sample=bench_sample_begins -Dhealth_sample_filtered=bench_sample_ends
@@ -36,7 +36,7 @@ $(U)/bench_sample.elf: $(BENCH_SAMPLE_OBJ)
 
 # the firmware without its filters, whose clock starts at ten digits: what is left is the rest of a sample's way, and rows
 BENCH_REST_OBJ := $(AVR_SRC:%.c=$(U)/bench_rest/%.o) $(U)/bench_rest/host_tests/avr/bench_rest.o
-$(U)/bench_rest/%.o: IMAGE_FILTERS = synth
+$(U)/bench_rest/%.o: IMAGE_FILTERS = $(shell python3 tools/laws.py light)
 $(U)/bench_rest/firmware/pipeline.o: AVR_FLAGS += -Dfilter_update=bench_no_filter
 $(U)/bench_rest/%.o: %.c Makefile mk/bench.mk
 	@mkdir -p $(@D)

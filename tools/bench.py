@@ -20,7 +20,7 @@ COMPILER = "5.4.0"  # the limits are for Debian's avr-gcc; elsewhere the numbers
 
 # of what is no filter: those of a filter stand beside its yardstick (tools/laws.py)
 ANGLES = laws.Limits(worst=1500, ratio=4.0, rms=0.029)  # degrees: the bound that lib/tilt derives
-KEPT = "float_synth_kept"  # a row of its own: what the float version takes when it keeps the coefficients made from a1
+KEPT = f"float_{laws.LIGHT}_kept"  # a row of its own: what the float version takes when it keeps the coefficients made from a1
 SAMPLES_MIN = 5000
 REGRESSION = 0.02
 # At 12.5 Hz P grows so fast that single decisions at the gate's threshold fall differently, and each shows for some samples.
@@ -222,7 +222,7 @@ def table(rows):
     head = ["name", "min", *COLUMNS[:2], "worst seen in", *COLUMNS[2:4], "of it shared", *COLUMNS[4:], "float / ours, median", "worst"]
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
     for name, row in rows.items():
-        yardstick, ours = (row, rows["synth"]) if name == KEPT else (rows.get(f"float_{name}"), row)
+        yardstick, ours = (row, rows[laws.LIGHT]) if name == KEPT else (rows.get(f"float_{name}"), row)
         ratios = [f"{yardstick[k] / ours[k]:.1f}" if yardstick else "" for k in ("median", "worst_both")]
         cells = [f"`{name}`", row["min"], row["median"], row["worst"], row["where"], row.get("worst_small", ""), row.get("flash", ""),
                  row.get("shared", ""), row.get("ram", ""), row.get("stack", ""), *ratios]
@@ -297,7 +297,7 @@ def collect(flags, sources, parts):
     small, _, _ = together(results[len(parts):])
     kept, kept_stack, _ = kept
     rows, rows_small = summarise(sections), summarise(small)
-    rows[KEPT], stack[KEPT] = summarise(kept)["float_synth"], kept_stack["float_synth"]
+    rows[KEPT], stack[KEPT] = summarise(kept)[f"float_{laws.LIGHT}"], kept_stack[f"float_{laws.LIGHT}"]
     missed = [f for f in filters if f not in rows or f not in rows_small]
     if missed:
         raise Fault(f"{missed[0]}: in no image of the benchmark (BENCH_LIST in mk/bench.mk)")

@@ -4,6 +4,7 @@ import json
 import pathlib
 import statistics
 import subprocess
+from laws import LIGHT
 
 SIMRUN = "build/sim/simrun"
 OUT = pathlib.Path("build/uno")
@@ -15,7 +16,7 @@ SAMPLE_RUNS = (("outliers-15pct", ()), ("gaps-jitter", ()), ("clipping", ()), ("
 # a difference of two runs is taken (the banner and the commands are in both)
 REST_STREAMS = ("outliers-15pct", "vibration", "bad-reads")
 ROW_RUNS = (("outliers-15pct", "plot"), ("widest", "plot"), ("widest", "csv"))
-REST_OPTIONS = ("--loop", "--rate", "800", "--baud", "1000000", "--filter", "synth")  # one that leaves time for every row
+REST_OPTIONS = ("--loop", "--rate", "800", "--baud", "1000000", "--filter", LIGHT)  # one that leaves time for every row
 REST_FROM_MS, REST_TO_MS = 2500, 6500
 CPU_HZ = 16000000
 # An estimate of R leaves the last by an eighth at most so often: a term counts three times the mean at most, in a window of 256.

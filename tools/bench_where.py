@@ -2,8 +2,10 @@
 import collections
 import csv
 
+from laws import SLOWEST
+
 MARKERS = ("<!-- where, written by make bench: begin -->", "<!-- where, written by make bench: end -->")
-FILTER = "af"
+FILTER = SLOWEST
 STREAM = "outliers-15pct"
 ENTRY = "mixed"  # called once per axis and sample
 # what of the profile is the filter's, and what the page says of it

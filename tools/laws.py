@@ -1,6 +1,6 @@
 """What the filter library's descriptors, and the yardsticks beside them, declare of each law: the names stand there alone.
 
-    laws.py kalman      names of the filters of paper 002, for make
+    laws.py kalman|light      names of the filters of paper 002, or of the lightest, for make
 """
 import functools
 import pathlib
@@ -80,5 +80,5 @@ LIGHT, SLOWEST = (choice(names(), key=worst_cycles().get) for choice in (min, ma
 LONG = max(names(), key=len)
 
 
-if __name__ == "__main__" and sys.argv[1:] == ["kalman"]:
-    print(*kalman())
+if __name__ == "__main__":
+    print(*{"kalman": kalman(), "light": [LIGHT]}[sys.argv[1]])
