@@ -54,7 +54,7 @@ bool tilt_gravity_plausible(const int32_t a_q8[3]);
       \from a->filter.x_lsb_q16, a->filter.flags, a->filter.quarters, a->noise, a->away, lsb, rail_high_lsb, own_r;
     ensures AXIS(a);
 */
-uint16_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bool own_r);
+uint8_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bool own_r);
 
 #include "fx.c"
 
