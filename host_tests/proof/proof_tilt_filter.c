@@ -131,6 +131,8 @@ void proof_tilt_filter_begin_with(void)
     (void)tilt_filter_begin_with(&t, ANY_U16(0, UINT16_MAX), &any_law);
     //@ check rate: 50 <= t.rate_dhz <= 40000;
     //@ check facade: FACADE(&t);
+    (void)tilt_filter_begin(&t, ANY_U16(0, UINT16_MAX));
+    //@ check adaptive: FACADE(&t);
     any_facade(&t);
     filter_config_t config;
     config.rate_dhz = ANY_U16(0, UINT16_MAX);
