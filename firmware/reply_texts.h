@@ -168,7 +168,6 @@ enum say {
     X(GARBAGE, "refused 3: illegal characters") \
     X(STREAMING, "refused 6: type stop first") \
     X(BUSY, "refused 10: busy measuring") \
-    X(NO_ROOM, "refused 12: not in this image") \
     X(FAULT_BEGIN, "fault " V_SUBJECT ": " V_FAULT_WORDS) \
     X(FAULT_END, "fault " V_SUBJECT " over: after " V_OUTAGE_MS " ms, " V_OUTAGE_LOST \
       " lost, sensor at 0x" V_OUTAGE_ADDRESS) \
