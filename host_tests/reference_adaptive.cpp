@@ -168,7 +168,8 @@ double apart(double k, double share)
 // E min(|X|, limit), X standard normal.
 double limited_mean(double limit)
 {
-    return std::sqrt(2.0 / EIGEN_PI) * (1.0 - std::exp(-0.5 * limit * limit)) + limit * std::erfc(limit / std::sqrt(2.0));
+    return std::sqrt(2.0 / EIGEN_PI) * (1.0 - std::exp(-0.5 * limit * limit)) +
+           limit * std::erfc(limit / std::sqrt(2.0));
 }
 } // namespace
 
@@ -238,7 +239,8 @@ double reference_adaptive_scatter(double k, double share, double bad, bool guard
     double settled = 1.0; // by what the innovations deviate
     for (int i = 0; i < 200; i++) {
         const double limit = 2.5 * settled / 1.375;
-        const double again = guarded ? 0.0 : 1.5 * settled * std::erfc(limit / std::sqrt(2.0)); // limited ones weigh twice
+        const double again = guarded ? 0.0
+                                     : 1.5 * settled * std::erfc(limit / std::sqrt(2.0)); // limited ones weigh twice
         settled = (1.0 - bad) * (1.375 * limited_mean(limit) + again) + bad * 2.5 * settled;
     }
     return settled * apart(k, share) / (1.0 + k);
