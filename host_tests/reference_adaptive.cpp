@@ -115,15 +115,21 @@ void follow(reference_adaptive_t &f, const Step &s, reference_adaptive_value_t &
     f.now.x = std::clamp(f.now.x, -x_max, x_max);
 }
 
-// Scatter of the innovations: an eighth of the first seven terms, then a sixteenth.
-double disperse(reference_adaptive_t &f, const Step &s)
+// Scatter of the innovations: an eighth of the first seven terms, then a sixteenth, unguarded half of it below the limit.
+double disperse(reference_adaptive_t &f, Step &s)
 {
     const double apart = std::fabs(std::min(s.size.v, size_max) - f.side * f.now.mean);
     const double term = std::min({ 1.375 * apart, 2.5 * s.spread.v, 256.0 });
-    const double error = std::max(1.375 * (3.0 * q8 + s.mean.e) + 2.0 * q8, 2.5 * s.spread.e + q8);
-    const double weight = (f.terms++ < 7) ? 0.125 : 0.0625;
+    const double of_term = 1.375 * (3.0 * q8 + s.mean.e) + 2.0 * q8;
+    const double of_limit = 2.5 * s.spread.e + q8;
+    double weight = 0.0625;
+    if (f.terms++ < 7) {
+        weight = 0.125;
+    } else if (!f.guarded && !s.above(1.375 * apart, 2.5 * s.spread.v, of_term + of_limit)) {
+        weight = 0.03125;
+    }
     f.now.scatter = std::clamp(f.now.scatter + weight * (term - s.spread.v), 26.0 * q8, 90.0);
-    return weight * (error + s.spread.e) + q24;
+    return weight * (std::max(of_term, of_limit) + s.spread.e) + q24;
 }
 
 Eigen::Matrix2d loop(double k)
@@ -162,7 +168,8 @@ double apart(double k, double share)
 // E min(|X|, limit), X standard normal.
 double limited_mean(double limit)
 {
-    return std::sqrt(2.0 / EIGEN_PI) * (1.0 - std::exp(-0.5 * limit * limit)) + limit * std::erfc(limit / std::sqrt(2.0));
+    return std::sqrt(2.0 / EIGEN_PI) * (1.0 - std::exp(-0.5 * limit * limit)) +
+           limit * std::erfc(limit / std::sqrt(2.0));
 }
 } // namespace
 
@@ -227,11 +234,14 @@ double reference_fading_step(reference_fading_t *f, double r, double z)
     return f->x;
 }
 
-double reference_adaptive_scatter(double k, double share, double bad)
+double reference_adaptive_scatter(double k, double share, double bad, bool guarded)
 {
     double settled = 1.0; // by what the innovations deviate
-    for (int i = 0; i < 100; i++) {
-        settled = (1.0 - bad) * 1.375 * limited_mean(2.5 * settled / 1.375) + bad * 2.5 * settled;
+    for (int i = 0; i < 200; i++) {
+        const double limit = 2.5 * settled / 1.375;
+        const double again = guarded ? 0.0
+                                     : 1.5 * settled * std::erfc(limit / std::sqrt(2.0)); // limited ones weigh twice
+        settled = (1.0 - bad) * (1.375 * limited_mean(limit) + again) + bad * 2.5 * settled;
     }
     return settled * apart(k, share) / (1.0 + k);
 }

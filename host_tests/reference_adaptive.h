@@ -51,7 +51,7 @@ double reference_fading_step(reference_fading_t *f, double r, double z);
  * are Gaussian, their variance by the Lyapunov equation; the scatter is where the limited terms have the mean that is
  * expected of them. bad: share of samples far beyond their limit, of which nothing is taken.
  */
-double reference_adaptive_scatter(double k, double share, double bad);
+double reference_adaptive_scatter(double k, double share, double bad, bool guarded);
 
 /* Fading memory with k: noise gain of the estimate and of the prediction, by the Lyapunov equation. */
 double reference_fading_noise_gain(double k);

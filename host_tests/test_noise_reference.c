@@ -185,9 +185,9 @@ static double roll_estimate(const roll_case_t *c, uint32_t *random)
 static void rolls_have_the_noise_that_the_terms_say(void)
 {
     static const roll_case_t cases[] = {
-        { "rest, 10 Hz", STILL, 100, 0.0 },           { "cos60, 10 Hz", COS60, 100, 0.0 },
-        { "sine30, 10 Hz", SINE30, 100, 0.0 },        { "rest, 10 Hz, 1 % bad", STILL, 100, 0.01 },
-        { "rest, 100 Hz", STILL, 1000, 0.0 },         { "rest, 100 Hz, 1 % bad", STILL, 1000, 0.01 },
+        { "rest, 10 Hz", STILL, 100, 0.0 },      { "cos60, 10 Hz", COS60, 100, 0.0 },
+        { "sine30, 10 Hz", SINE30, 100, 0.0 },   { "rest, 10 Hz, 1 % bad", STILL, 100, 0.01 },
+        { "rest, 100 Hz", STILL, 1000, 0.0 },    { "rest, 100 Hz, 1 % bad", STILL, 1000, 0.01 },
         { "sine30, 100 Hz", SINE30, 1000, 0.0 },
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -63,9 +63,9 @@ void float_adaptive_set_noise(float_adaptive_t *f, float r_lsb2)
 
 static void disperse(float_adaptive_t *f, float innovation, float spread)
 {
-    float window = (f->terms < 7u) ? 8.0f : 16.0f;
     float term = 1.375f * (float)fabsf(innovation - f->mean);
     float limit = 2.5f * spread;
+    float window = (f->terms < 7u) ? 8.0f : (f->guard > 0.0f || term > limit) ? 16.0f : 32.0f;
     f->scatter += ((term < limit ? term : limit) - spread) / window;
     f->scatter = limited(f->scatter, 0.1f, 90.0f);
     f->terms = (f->terms < 7u) ? (uint8_t)(f->terms + 1u) : 7u;
@@ -117,7 +117,7 @@ static void step(float_adaptive_t *f, float z)
 {
     float before = f->broken ? 0.0f : f->previous - f->x;
     float spread = f->scatter * (1.0f + f->k);
-    float gate = (f->guard > 0.0f ? f->guard : 4.0f) * spread;
+    float gate = (f->guard > 0.0f ? f->guard : 4.5f) * spread;
     f->x += f->v;
     float innovation = z - f->x;
     float sign = (innovation < 0.0f) ? -1.0f : 1.0f;

@@ -274,11 +274,14 @@ static void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spre
         term = 47662U; /* 1.375 times this fits */
     }
     term = (uint16_t)(term + (term >> 2) + (term >> 3));
+    uint16_t weight = a->guarded ? ADAPTIVE_WEIGHT_UQ16 : ADAPTIVE_UNGUARDED_WEIGHT_UQ16;
     if (spread_uq8 < 26214U) { /* else the limit is beyond all terms */
         uint16_t limit = (uint16_t)(2U * spread_uq8 + (spread_uq8 >> 1));
-        term = (term < limit) ? term : limit;
+        if (term > limit) {
+            term = limit;
+            weight = ADAPTIVE_WEIGHT_UQ16;
+        }
     }
-    uint16_t weight = ADAPTIVE_WEIGHT_UQ16;
     if (a->learnt < ADAPTIVE_OPENING_TERMS) {
         a->learnt++;
         weight = ADAPTIVE_OPENING_UQ16;

@@ -17,13 +17,17 @@ extern "C" {
 #define ADAPTIVE_SCATTER_MIN_UQ24 0x1A0000U
 #define ADAPTIVE_SCATTER_MAX_UQ24 0x5A000000U
 
-/* The unguarded filter limits the innovations in their mean to four sigmas, as the guarded one to its gate. */
-#define ADAPTIVE_UNGUARDED_SIGMA_Q8 1024U
+/* The unguarded filter limits the innovations in their mean to 4.5 sigmas, as the guarded one to its gate. */
+#define ADAPTIVE_UNGUARDED_SIGMA_Q8 1152U
 
-/* Of a term in the scatter, which every second sample gives: 1/8 of the first seven, then 1/16. */
+/*
+ * Of a term in the scatter, which every second sample gives: 1/8 of the first seven, then 1/16. Unguarded, 1/32 of one
+ * below its limit: a steadier scale of the mean innovation, that grows as fast where it is too small.
+ */
 #define ADAPTIVE_OPENING_TERMS 7U
 #define ADAPTIVE_OPENING_UQ16 8192U
 #define ADAPTIVE_WEIGHT_UQ16 4096U
+#define ADAPTIVE_UNGUARDED_WEIGHT_UQ16 2048U
 
 /* Fewest samples in a row on one side that make a jump believed. */
 #define ADAPTIVE_CONFIRM_LEAST 3U
