@@ -152,11 +152,10 @@ static void NOINLINE update_float_angles(void)
 }
 
 static row_t row;
-static int16_t row_mg[3];
 static char line[ROW_MAX];
 static void NOINLINE update_format_row(void)
 {
-    char *end = write_csv(line, &row, row_mg);
+    char *end = write_csv(line, &row);
     sink = *end;
 }
 #endif
@@ -341,7 +340,7 @@ static void run_format_row(const char *regime, bool widest, uint16_t count)
         row.t_us = widest ? 3999999999ul : random_bits();
         for (uint8_t axis = 0; axis < 3; axis++) {
             row.lsb[axis] = widest ? nines(4096) : uniform(10);
-            row_mg[axis] = widest ? nines(18000) : uniform(12);
+            row.mg[axis] = widest ? nines(18000) : uniform(12);
         }
         row.roll_cdeg = widest ? nines(18000) : uniform(15);
         row.pitch_cdeg = widest ? nines(9000) : uniform(13);

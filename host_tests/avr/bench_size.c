@@ -83,16 +83,15 @@ static void use_format_row(void)
 {
     char line[ROW_MAX];
     row_t row;
-    int16_t mg[3];
     row.t_us = (uint32_t)out;
     row.flags = (uint16_t)in;
     for (uint8_t axis = 0; axis < 3; axis++) {
         row.lsb[axis] = in;
-        mg[axis] = in;
+        row.mg[axis] = in;
     }
     row.roll_cdeg = in;
     row.pitch_cdeg = in;
-    out = *write_csv(line, &row, mg);
+    out = *write_csv(line, &row);
 }
 
 int main(void)
