@@ -21,7 +21,7 @@ RATE_HZ, SECONDS = 400, 20
 COUNT = RATE_HZ * SECONDS
 FASTER = 8  # than a board: the rows' times are its own
 FEW = RATE_HZ // 4  # rows of which there must be a picture
-SIMRUN, FIRMWARE, STREAM = (pathlib.Path(name) for name in ("build/sim/simrun", "build/uno/robust/firmware.elf", "sim/streams/tilt-400hz.csv"))
+SIMRUN, FIRMWARE, STREAM = (pathlib.Path(name) for name in ("build/sim/simrun", "build/uno/firmware.elf", "sim/streams/tilt-400hz.csv"))
 
 
 def left_out():
@@ -54,7 +54,7 @@ class TestRate(unittest.TestCase):
         self.assertEqual((figures[1]["rows"], figures[1]["lost"]), (COUNT - len(missing), len(missing)))
         self.assertGreater(len(missing), 100)
 
-    @unittest.skipUnless(SIMRUN.exists() and FIRMWARE.exists(), "no simrun or firmware built: make build/sim/simrun build/uno/robust/firmware.elf")
+    @unittest.skipUnless(SIMRUN.exists() and FIRMWARE.exists(), "no simrun or firmware built: make build/sim/simrun build/uno/firmware.elf")
     def test_the_firmware_in_the_simulator(self):
         """Over simrun's pseudo terminal, where simulated time waits for a reader that is late; the filter of the real firmware is switched."""
         with contextlib.ExitStack() as stack:
