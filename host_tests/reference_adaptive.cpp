@@ -162,7 +162,8 @@ double apart(double k, double share)
 // E min(|X|, limit), X standard normal.
 double limited_mean(double limit)
 {
-    return std::sqrt(2.0 / EIGEN_PI) * (1.0 - std::exp(-0.5 * limit * limit)) + limit * std::erfc(limit / std::sqrt(2.0));
+    return std::sqrt(2.0 / EIGEN_PI) * (1.0 - std::exp(-0.5 * limit * limit)) +
+           limit * std::erfc(limit / std::sqrt(2.0));
 }
 } // namespace
 

@@ -143,7 +143,8 @@ static void assert_one_bad_read_is_borne(bool guarded, double sigma_lsb)
             most = fmax(most, fmax(mean, median));
         }
     }
-    printf("one bad read among the first 13, sigma %.0f LSB, %s: the scatter's square is %.2f to %.2f of R after 60 samples\n",
+    printf("one bad read among the first 13, sigma %.0f LSB, %s: the scatter's square is %.2f to %.2f of R after 60 "
+           "samples\n",
            sigma_lsb, guarded ? "guarded" : "unguarded", least, most);
     TEST_ASSERT_TRUE(least >= 1.0 / 3.0);
     TEST_ASSERT_TRUE(most <= 3.0);

@@ -1,6 +1,6 @@
 /*
- * Noise estimator: its constants from their integral, its level, its robustness, what it makes of paper 000's rolls, and
- * healthy samples at rest.
+ * Noise estimator: its constants from their integral, its level, its robustness, what it makes of paper 000's rolls,
+ * and healthy samples at rest.
  */
 #include "noise.h"
 #include "reference_noise.h"
@@ -178,16 +178,16 @@ static double roll_estimate(const roll_case_t *c, uint32_t *random)
 }
 
 /*
- * 1 % for what is left out, the third order of the fluctuation (a third of the second, 3.5 % at most), and three standard
- * errors. The variance of an exponential mean of terms, each with a relative deviation of 1.2 and correlated with its
- * neighbours as in level_is_one_and_a_half_variances.
+ * 1 % for what is left out, the third order of the fluctuation (a third of the second, 3.5 % at most), and three
+ * standard errors. The variance of an exponential mean of terms, each with a relative deviation of 1.2 and correlated
+ * with its neighbours as in level_is_one_and_a_half_variances.
  */
 static void rolls_have_the_noise_that_the_terms_say(void)
 {
     static const roll_case_t cases[] = {
-        { "rest, 10 Hz", STILL, 100, 0.0 },           { "cos60, 10 Hz", COS60, 100, 0.0 },
-        { "sine30, 10 Hz", SINE30, 100, 0.0 },        { "rest, 10 Hz, 1 % bad", STILL, 100, 0.01 },
-        { "rest, 100 Hz", STILL, 1000, 0.0 },         { "rest, 100 Hz, 1 % bad", STILL, 1000, 0.01 },
+        { "rest, 10 Hz", STILL, 100, 0.0 },      { "cos60, 10 Hz", COS60, 100, 0.0 },
+        { "sine30, 10 Hz", SINE30, 100, 0.0 },   { "rest, 10 Hz, 1 % bad", STILL, 100, 0.01 },
+        { "rest, 100 Hz", STILL, 1000, 0.0 },    { "rest, 100 Hz, 1 % bad", STILL, 1000, 0.01 },
         { "sine30, 100 Hz", SINE30, 1000, 0.0 },
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

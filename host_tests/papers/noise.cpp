@@ -92,8 +92,7 @@ void case_rows(const Case &what, const Options &options)
     row(experiment, "noise", Arithmetic::fixed, "exact_r_by_true", expected, 1);
     row(experiment, "noise", Arithmetic::fixed, "exact_r_one_run_sd", most, 1);
     row(experiment, "noise", Arithmetic::fixed, "r_by_true", mean, runs_of(options));
-    row(experiment, "noise", Arithmetic::fixed, "r_one_run_sd", relative_deviation(ratios, mean, sd),
-        runs_of(options));
+    row(experiment, "noise", Arithmetic::fixed, "r_one_run_sd", relative_deviation(ratios, mean, sd), runs_of(options));
 }
 } // namespace
 
