@@ -72,7 +72,7 @@ static measure_outcome_t outcome_of(calibration_verdict_t verdict)
 
 measure_outcome_t calibrate_take(uint8_t kind, const int16_t mean_lsb_q4[3])
 {
-    if (CALIBRATE_SIX && kind == REPLY_CAL6) {
+    if (kind == REPLY_CAL6) {
         return add_position(mean_lsb_q4);
     }
     return outcome_of(kind == REPLY_TARE ? calibration_tare(&settings.calibration, mean_lsb_q4)

@@ -33,7 +33,7 @@ _Static_assert(REPLY_SETTING + SETTING_TOO_SLOW == (int)REPLY_TOO_SLOW, "the sam
 
 static void answer(uint8_t kind, uint8_t argument)
 {
-    if (kind >= REPLY_ILLEGAL && kind <= REPLY_NO_ROOM) {
+    if (kind >= REPLY_ILLEGAL && kind <= REPLY_BUSY) {
         count(COUNT_REFUSED);
     }
     (void)replies_add((reply_kind_t)kind, argument);
@@ -99,9 +99,6 @@ static uint8_t run_verb(uint8_t verb)
     case REPLY_TARE:
     case REPLY_CAL:
     case REPLY_CAL6:
-        if (!CALIBRATE_SIX && verb == REPLY_CAL6) {
-            return REPLY_NO_ROOM;
-        }
         return measure_start(verb) ? verb : REPLY_BUSY;
     default:
         break;

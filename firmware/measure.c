@@ -165,7 +165,7 @@ static void solve(void)
 void measure_pass(void)
 {
     struct measure *m = here();
-    if (CALIBRATE_SIX && m->step == STEP_SOLVE) {
+    if (m->step == STEP_SOLVE) {
         solve();
     }
     if (m->step >= STEP_COLLECT && failed()) {
@@ -204,7 +204,7 @@ static void calibrate(void)
     }
     if (outcome == MEASURE_UNCHANGED) {
         collect(STEP_COLLECT);
-    } else if (CALIBRATE_SIX && outcome == MEASURE_BEGUN) {
+    } else if (outcome == MEASURE_BEGUN) {
         m->takes = false;
         m->step = STEP_SOLVE;
         calibrate_start_six(&m->six);

@@ -32,7 +32,6 @@ typedef enum {
     REPLY_GARBAGE,
     REPLY_STREAMING,   /* not while sampling */
     REPLY_BUSY,        /* one measurement at a time */
-    REPLY_NO_ROOM,     /* an image without it */
     REPLY_FAULT_BEGIN, /* argument: adxl345_fault_t */
     REPLY_FAULT_END
 } reply_kind_t;

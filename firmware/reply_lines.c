@@ -19,9 +19,8 @@ _Static_assert(TEXT_FAULT_END - TEXT_BANNER == (int)REPLY_FAULT_END, "a text for
 _Static_assert(TEXT_REPEATED - TEXT_HOLD_STILL == MEASURE_REPEATED - MEASURE_BEGUN, "words for each outcome");
 _Static_assert(TEXT_NO_GRAVITY - TEXT_TILTED == CALIBRATION_NO_GRAVITY - CALIBRATION_TILTED, "words for each verdict");
 
-enum {
-    TEXTS_DEPTH = 3
-}; /* a line, FAULT_BEGIN in it and a fault's words in that; LIMITS and VERDICT; EVERY and its note */
+/* Texts that go on behind another: the banner, FAULT_BEGIN in it, the fault's words in that, which end in CHECK_BUS. */
+enum { TEXTS_DEPTH = 3 };
 
 static const uint8_t *at; /* where the reply goes on */
 static uint8_t again;     /* how often the line comes again */

@@ -61,8 +61,8 @@
 #define V_AGAIN "\x8C"
 
 /*
- * From SAY_ALONE on, above the characters that texts have, not packed with others: what goes on in
- * another text, and from SAY_LINE on what ends a line, in texts of lines only.
+ * From SAY_ALONE on, above the characters that texts have, not packed with others: what goes on in another text, and
+ * from SAY_LINE on what ends a line, in texts of lines only.
  */
 enum say {
     SAY_COUNT = 1, /* numbers: the next of the counters of the firmware, then of the driver */
@@ -168,7 +168,6 @@ enum say {
     X(GARBAGE, "refused 3: illegal characters") \
     X(STREAMING, "refused 6: type stop first") \
     X(BUSY, "refused 10: busy measuring") \
-    X(NO_ROOM, "refused 12: not in this image") \
     X(FAULT_BEGIN, "fault " V_SUBJECT ": " V_FAULT_WORDS) \
     X(FAULT_END, "fault " V_SUBJECT " over: after " V_OUTAGE_MS " ms, " V_OUTAGE_LOST \
       " lost, sensor at 0x" V_OUTAGE_ADDRESS) \

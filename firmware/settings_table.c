@@ -20,7 +20,8 @@ static const uint16_t choices[] FLASH = {
     2, 4, 8, 16,                                  /* range */
     96, 192, 384, 576, 1152, 2500, 5000, 10000    /* baud, in hundreds */
 };
-enum { RATE = WORDS_END, RANGE = RATE + 7, BAUD = RANGE + 4, LISTED = sizeof choices / sizeof *choices, BAUD_UNIT = 100 };
+enum { RATE = WORDS_END, RANGE = RATE + 7, BAUD = RANGE + 4, BAUD_UNIT = 100 };
+enum { LISTED = sizeof choices / sizeof choices[0] };
 enum { OFFSET_MAX = CALIBRATION_OFFSET_MAX_LSB_Q4, LEVEL_MAX_Q14 = 18841 }; /* 1.15 g */
 
 /*

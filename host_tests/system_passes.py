@@ -63,10 +63,7 @@ def settings_run(image, rate, baud):
     _, notes, _, stats = simrun(name, STREAMS / "outliers-15pct.csv", "--filter", filters_of(image)[0], "--rate", rate, "--baud", baud, "--loop",
                                 "--max-ms", 9000, *options, fw=image, judge=False)
     begins = 0
-    without_cal6 = any(note.startswith("# refused 12") for note in notes)
     for text, answer in SETTING_COMMANDS:
-        if without_cal6:  # nothing runs that keeps tare from beginning
-            answer = {"cal6": "# refused 12", "tare": "# tare: hold still"}.get(text, answer)
         found = [i for i, note in enumerate(notes) if i >= begins and note.startswith(answer)]
         assert found, f"{text}: no {answer} from note {begins} on: {notes}"
         begins = found[0]

@@ -267,7 +267,7 @@ def the_page_tells_of_adaptive_and_of_noise_as_measured():
     assert [line for line in curve if "as shipped" in line][0].startswith("| `adaptive(guard=3)` | 3 sigma, as shipped | "), curve
     assert len(curve) == 8 + 3 and len(noise) == 6 + 3, noise
     for line, experiment in zip(noise[2:], ("noise_rest_10_hz", "noise_cos60_10_hz")):
-        mean, exact, most = (value(rows, experiment, "noise", "fixed", metric) for metric in ("r_by_true", "exact_r_by_true", "exact_r_one_run_sd"))
+        mean, exact, most = (value(rows, experiment, "noise(x)", "fixed", metric) for metric in ("r_by_true", "exact_r_by_true", "exact_r_one_run_sd"))
         assert f"| {synthesis.shown(mean)} [" in line and f"| {synthesis.shown(exact)} |" in line and f"(<= {synthesis.shown(most)}) |" in line, line
     # the twin: another gate as shipped is the one that is marked
     next(r for r in rows if r["metric"] == "guard_sigma")["value"] = 4.0
@@ -277,7 +277,7 @@ def the_page_tells_of_adaptive_and_of_noise_as_measured():
     headings = [heading for heading, _ in synthesis.tables_000(rows) if heading.startswith(("adaptive: ", "noise: "))]
     assert len(headings) == 3 and all(part.count(f"### {heading}\n") == 1 for heading in headings), headings
     # the page's number of runs; a limit that theory gives
-    assert re.search(r"^\| `noise` \| rest 10 hz \| 0\.8\d+ \[.* \| 0\.921 \| .* \(<= 0\.361\) \|$", part, re.M), headings
+    assert re.search(r"^\| `noise\(x\)` \| rest 10 hz \| 0\.8\d+ \[.* \| 0\.921 \| .* \(<= 0\.361\) \|$", part, re.M), headings
 
 
 @test

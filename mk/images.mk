@@ -2,25 +2,18 @@
 
 # Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter_list.h; the firmware starts with
 # the first. The first set is what is built and flashed when nothing is said; together they hold every filter.
-FILTER_SETS          := everyday robust soft mixture published synthesised schedule linear acceleration auto
-FILTERS_everyday     := adaptive
-FILTERS_robust       := sprf kf
-FILTERS_soft         := soft
+FILTER_SETS          := everyday synthesised soft mixture published auto
+FILTERS_everyday     := adaptive sprf kf
+FILTERS_synthesised  := synth synth_opt synth_plus
+FILTERS_soft         := soft lrf
 FILTERS_mixture      := shrf pbf af
-FILTERS_published    := sprf_paper
-FILTERS_synthesised  := synth synth_plus
-FILTERS_schedule     := synth_opt
-FILTERS_linear       := lrf kf
-FILTERS_acceleration := kf3
+FILTERS_published    := sprf_paper kf3
 FILTERS_auto         := auto
 FILTERS              := $(firstword $(FILTER_SETS))
 
-# images with one of these have no room for cal6; the calibration that another image saves is theirs too
-WITHOUT_CAL6   := soft shrf auto
-
 CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))
 IMAGE_FILTERS   = $(FILTERS_everyday)
-FILTER_FLAG     = '-DFILTER_LIST(X)=$(foreach f,$(IMAGE_FILTERS),X($(f)))' $(if $(filter $(WITHOUT_CAL6),$(IMAGE_FILTERS)),-DCALIBRATE_SIX=0) \
+FILTER_FLAG     = '-DFILTER_LIST(X)=$(foreach f,$(IMAGE_FILTERS),X($(f)))' \
                   $(if $(filter auto,$(IMAGE_FILTERS)),-DSUPERVISOR=1,-DFILTER_WITHOUT_PROBE)
 
 # the image that holds a filter: the chosen one if it does, else the first set's that does

@@ -68,8 +68,8 @@ def identified_table(rows):
     """R as noise.c has it after 10 s by 1.5 times the variance: mean and deviation of a run, each with what theory says."""
     lines = []
     for experiment in dict.fromkeys(row["experiment"] for row in of(rows, "noise_*")):
-        exact, mean, deviation = (pick(rows, experiment, "noise", "fixed", metric) for metric in ("exact_r_by_true", "r_by_true", "r_one_run_sd"))
-        lines.append(["`noise`", experiment[len("noise_"):].replace("_", " "), with_interval(mean), shown(exact["value"]), limited(deviation)])
+        exact, mean, deviation = (pick(rows, experiment, "noise(x)", "fixed", metric) for metric in ("exact_r_by_true", "r_by_true", "r_one_run_sd"))
+        lines.append(["`noise(x)`", experiment[len("noise_"):].replace("_", " "), with_interval(mean), shown(exact["value"]), limited(deviation)])
     return table(["estimator", "case", "mean by the wanted one [95 %]", "theory, without fluctuation", "deviation of one run, relative"], lines)
 
 

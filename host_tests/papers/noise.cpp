@@ -89,10 +89,11 @@ void case_rows(const Case &what, const Options &options)
     // terms of a relative deviation of 1.2, correlated with their neighbours: a sample serves in six
     const double most = std::sqrt(6.0 * 1.2 * 1.2 * e.weight / (2.0 * (1.0 - e.again)) + 1.0 / 192.0);
     const std::string experiment = std::string("noise_") + what.name;
-    row(experiment, "noise", Arithmetic::fixed, "exact_r_by_true", expected, 1);
-    row(experiment, "noise", Arithmetic::fixed, "exact_r_one_run_sd", most, 1);
-    row(experiment, "noise", Arithmetic::fixed, "r_by_true", mean, runs_of(options));
-    row(experiment, "noise", Arithmetic::fixed, "r_one_run_sd", relative_deviation(ratios, mean, sd), runs_of(options));
+    row(experiment, "noise(x)", Arithmetic::fixed, "exact_r_by_true", expected, 1);
+    row(experiment, "noise(x)", Arithmetic::fixed, "exact_r_one_run_sd", most, 1);
+    row(experiment, "noise(x)", Arithmetic::fixed, "r_by_true", mean, runs_of(options));
+    row(experiment, "noise(x)", Arithmetic::fixed, "r_one_run_sd", relative_deviation(ratios, mean, sd),
+        runs_of(options));
 }
 } // namespace
 

@@ -73,7 +73,7 @@ static inline void grow(filter_kalman_t *k);
     assigns f->own.kalman.limit_lsb2, \result \from f->size_lsb_uq16, f->own.kalman.p, f->own.kalman.coarse,
             f->own.kalman.gate_lsb2_uq4;
     ensures FLAG(\result);
-    ensures \result == 1 || FARTHER(f);
+    ensures \result == 1 || (\result == 0 && FARTHER(f));
 */
 static bool within_gate(filter_t *f);
 

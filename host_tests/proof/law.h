@@ -214,6 +214,7 @@ static void prove_set_up(const filter_law_t *law)
     bool optional = any_is_optional(law);
     for (uint8_t off = 0; off <= (uint8_t)optional; off++) {
         any_config(&config, law, off != 0U);
+        //@ loop unroll 8000;
         for (uint16_t number = 0; number < CONFIGURATIONS(law); number++) {
             narrow_config(&config, number);
             set_up_with(law, &config);

@@ -54,7 +54,7 @@ bool tilt_gravity_plausible(const int32_t a_q8[3]);
       \from a->filter.x_lsb_q16, a->filter.flags, a->filter.quarters, a->noise, a->away, lsb, rail_high_lsb, own_r;
     ensures AXIS(a);
 */
-uint16_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bool own_r);
+uint8_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bool own_r);
 
 #include "fx.c"
 
@@ -131,6 +131,8 @@ void proof_tilt_filter_begin_with(void)
     (void)tilt_filter_begin_with(&t, ANY_U16(0, UINT16_MAX), &any_law);
     //@ check rate: 50 <= t.rate_dhz <= 40000;
     //@ check facade: FACADE(&t);
+    (void)tilt_filter_begin(&t, ANY_U16(0, UINT16_MAX));
+    //@ check adaptive: FACADE(&t);
     any_facade(&t);
     filter_config_t config;
     config.rate_dhz = ANY_U16(0, UINT16_MAX);

@@ -50,7 +50,7 @@ void driver_enter(step_t step, uint8_t limit)
 
 HAL_APART bool driver_reached(uint32_t t_us)
 {
-    return (int32_t)(t_us - driver.now_us) <= 0; /* as hal_time_reached, whose answer as a value takes twice the instructions */
+    return (int32_t)(t_us - driver.now_us) <= 0; /* hal_time_reached as a value takes 24 B more */
 }
 
 HAL_APART bool driver_deadline_passed(void)

@@ -281,7 +281,8 @@ static HAL_APART reading_t judge_ended(void)
         asked = i2c_bus_asked(&b->bus);
         keep_edge(b, asked);
     }
-    if (verdict == READING_GOOD || (asked > READING_DATA + 1u && (b->bus.rx[READING_SOURCE] & ADXL345_INT_DATA_READY))) {
+    if (verdict == READING_GOOD ||
+        (asked > READING_DATA + 1u && (b->bus.rx[READING_SOURCE] & ADXL345_INT_DATA_READY))) {
         b->last_us = b->reading_us;
         b->last_known = true;
     }

@@ -9,7 +9,7 @@
 #include "adxl345_table.h"
 #include "i2c_bus.h"
 
-/* Limits of time in half milliseconds, which a byte holds. A register access takes under 0.2 ms, a burst under 0.4 ms. */
+/* Limits of time in half milliseconds: a byte holds them. A register access takes under 0.2 ms, a burst under 0.4. */
 #define LIMIT_US 500u
 enum { LOOK_LIMIT = 1, RETURN_LIMIT = 2, TRANSFER_LIMIT = 6, BACK_OFF_MIN = 10, BACK_OFF_MAX = 50, DRAIN_LIMIT = 200 };
 
@@ -30,7 +30,7 @@ typedef enum {
     STEP_READ_BACK = STEP_PHASE(ADXL345_STARTING) | STEP_READS | TABLE_READ_BACK, /* here too */
     STEP_MEASURE = STEP_PHASE(ADXL345_STARTING) | TABLE_MEASURE,
     STEP_STREAM = STEP_PHASE(ADXL345_STREAMING),
-    STEP_ASK_SOURCE = STEP_PHASE(ADXL345_STREAMING) | STEP_READS | TABLE_SOURCE, /* no data in time: has the sensor some? */
+    STEP_ASK_SOURCE = STEP_PHASE(ADXL345_STREAMING) | STEP_READS | TABLE_SOURCE, /* no data in time: has it some? */
     STEP_QUIET_STANDBY = STEP_PHASE(ADXL345_QUIESCING) | TABLE_WRITTEN,
     STEP_STANDBY = STEP_PHASE(ADXL345_QUIESCING) | TABLE_STANDBY, /* a stop while no samples come */
     STEP_QUIET_DRAIN,
@@ -44,9 +44,9 @@ typedef struct {
     adxl345_config_t config;
     uint32_t now_us; /* of the poll or call that runs */
     uint32_t deadline_us;
-    uint16_t half_us; /* half the nominal time between samples, for the configured rate */
-    uint8_t back_off; /* limit */
-    uint8_t step; /* step_t */
+    uint16_t half_us;        /* half the nominal time between samples, for the configured rate */
+    uint8_t back_off;        /* limit */
+    uint8_t step;            /* step_t */
     uint8_t address;         /* that is asked now */
     uint8_t known;           /* the address at which the sensor was found last */
     uint8_t foreign_address; /* of the device that ADXL345_FAULT_WRONG_ID is about, and what it reads as DEVID */

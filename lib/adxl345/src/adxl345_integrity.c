@@ -130,25 +130,31 @@ static void accept(uint8_t source, bool repeated)
 }
 
 /*
- * INT_SOURCE has the bit of its watermark after power-on (p. 26), so that bits which a low SDA makes zeros do not pass
- * for a lost configuration. FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). A
- * sample that comes between the byte of INT_SOURCE and the data is read too; it differs from the last, which an empty
- * sensor shows again.
+ * A reading with other registers than were written. INT_SOURCE has the bit of its watermark after power-on (p. 26), so
+ * that bits which a low SDA makes zeros do not pass for a lost configuration.
+ */
+static reading_t discard_foreign(const uint8_t reading[READING_BYTES])
+{
+    if (reading[READING_FIFO_CTL] == ADXL345_FIFO_BYPASS && reading[READING_FORMAT] == 0 &&
+        (reading[READING_SOURCE] & ADXL345_INT_WATERMARK)) {
+        return discard(READING_RESET);
+    }
+    return discard(READING_BAD);
+}
+
+/*
+ * FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). A sample that comes between
+ * the byte of INT_SOURCE and the data is read too; it differs from the last, which an empty sensor shows again.
  */
 reading_t integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3])
 {
-    uint8_t source = reading[READING_SOURCE];
-    uint8_t fifo_ctl = reading[READING_FIFO_CTL];
-    uint8_t format = reading[READING_FORMAT];
-    if (fifo_ctl != TABLE_FIFO_CTL || format != integrity.format) {
-        if (fifo_ctl == ADXL345_FIFO_BYPASS && format == 0 && (source & ADXL345_INT_WATERMARK)) {
-            return discard(READING_RESET);
-        }
-        return discard(READING_BAD);
+    if (reading[READING_FIFO_CTL] != TABLE_FIFO_CTL || reading[READING_FORMAT] != integrity.format) {
+        return discard_foreign(reading);
     }
     if (reading[READING_FIFO_STATUS] > SENSOR_DEPTH || !plausible(&reading[READING_DATA], lsb)) {
         return discard(READING_BAD);
     }
+    uint8_t source = reading[READING_SOURCE];
     bool repeated = integrity.has_last && same(lsb, last_lsb);
     if (!(source & ADXL345_INT_DATA_READY) && (repeated || !integrity.has_last)) {
         return discard(READING_EMPTY);

@@ -1,5 +1,5 @@
 /*
- * Inside the driver: the one constant table of the registers that it asks, writes in standby, and reads back. Main only.
+ * Inside the driver: the one constant table of registers that it asks, writes in standby and reads back. Main only.
  */
 #ifndef ADXL345_TABLE_H
 #define ADXL345_TABLE_H
@@ -10,8 +10,10 @@
 /* What FIFO_CTL holds while measuring, in every mode of the driver: no reset leaves a Samples field of 10 behind. */
 #define TABLE_FIFO_CTL (ADXL345_FIFO_STREAM | 0x0Au)
 
-/* Rows of the table. Those that configure the sensor come before TABLE_MEASURE, and from TABLE_READ_BACK on each
- * register holds what its row says. */
+/*
+ * Rows of the table. Those that configure the sensor come before TABLE_MEASURE, and from TABLE_READ_BACK on each
+ * register holds what its row says.
+ */
 enum {
     TABLE_DEVID,
     TABLE_WRITTEN,

@@ -1,6 +1,4 @@
 /* What the driver tells of itself: samples, phase, fault, times, counters. */
-#include <string.h>
-
 #include "adxl345_burst.h"
 #include "adxl345_driver.h"
 #include "adxl345_integrity.h"
@@ -22,7 +20,9 @@ void driver_count(counter_t counter)
 
 void driver_forget_counters(void)
 {
-    memset(counters, 0, sizeof counters);
+    for (uint8_t at = 0; at < COUNTERS; at++) {
+        counters[at] = 0;
+    }
 }
 
 const adxl345_sample_t *adxl345_take(void)
@@ -130,12 +130,14 @@ uint32_t adxl345_rate_chz(void)
 
 void adxl345_counters(adxl345_counters_t *out)
 {
-    memcpy(out, counters, sizeof *out);
+    *out = (adxl345_counters_t){ counters[COUNTER_DRAINED], counters[COUNTER_STUCK], counters[COUNTER_RESTARTS],
+                                 counters[COUNTER_NACKS],   counters[COUNTER_LOST],  counters[COUNTER_BUS_ERRORS],
+                                 counters[COUNTER_TIMEOUTS] };
 }
 
 void adxl345_readings(adxl345_readings_t *out)
 {
-    memcpy(out, &counters[COUNTER_FAILED], sizeof *out);
+    *out = (adxl345_readings_t){ counters[COUNTER_FAILED], counters[COUNTER_EMPTY], counters[COUNTER_OVERRUNS] };
 }
 
 uint16_t adxl345_count(uint8_t at)

@@ -72,11 +72,30 @@ FX_NOINLINE void fresh(filter_kalman_t *k)
     k->run = 0;
 }
 
+/* A square root in UQ2.14, at most 1. */
+FX_NOINLINE uint16_t root_uq14(uint32_t square_uq28)
+{
+    uint16_t root = fx_isqrt32(square_uq28);
+    return (root > 0x4000U) ? 0x4000U : root;
+}
+
+/* For small q P settles at P12 = sqrt q, P11 = sqrt(2 P12), P22 = P11 P12. */
+void kalman_near(filter_covariance_t *p, uint32_t q22_uq28)
+{
+    uint16_t p12_uq14 = root_uq14(q22_uq28);
+    uint16_t p11_uq14 = root_uq14((uint32_t)p12_uq14 << 15);
+    p->p11 = (uint32_t)p11_uq14 << 14;
+    p->p12 = (uint32_t)p12_uq14 << 14;
+    p->p22 = fx_product_u16(p11_uq14, p12_uq14);
+}
+
 void kalman_start(filter_t *f, bool settled)
 {
-    (void)settled;
     f->own.kalman.refused = 0;
     fresh(&f->own.kalman);
+    if (settled) {
+        kalman_near(&f->own.kalman.p, f->own.kalman.q22_uq28);
+    }
 }
 
 /* P / R one sample on, while all its elements are below 2. */

@@ -69,6 +69,9 @@ void kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8);
 /* P11 = R, rate as uncertain as at the start. */
 void kalman_start(filter_t *f, bool settled);
 
+/* P near where it settles, UQ4.28. */
+void kalman_near(filter_covariance_t *p, uint32_t q22_uq28);
+
 /*
  * One step: prediction of x and P, innovation, and unless the gate refuses it Kalman's update by the innovation's
  * magnitude, so that rounding is the same for both signs. A step of x is at most |u|, < 2^30, and x stays between the

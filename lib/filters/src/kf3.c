@@ -61,11 +61,44 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
     }
 }
 
+/* The third root of sqrt q, at most 511/1024: UQ0.10. */
+static uint16_t sixth_root_uq10(const filter_kf3_t *k)
+{
+    uint32_t root_uq14 = fx_isqrt32(k->q33_uq28);
+    uint32_t cube_uq30 = k->fine ? root_uq14 << 12 : root_uq14 << 16;
+    uint16_t w = 0;
+    for (uint16_t bit = 256; bit != 0U; bit >>= 1) {
+        uint32_t next = (uint32_t)w | bit;
+        if (next * next * next <= cube_uq30) {
+            w = (uint16_t)next;
+        }
+    }
+    return w;
+}
+
+/* Near where P settles: for small q at 2w, 2w^2, w^3; 3w^3, 2w^4; 2w^5 with w = q^(1/6). */
+static void start_near(filter_kf3_t *k)
+{
+    uint32_t w = sixth_root_uq10(k);
+    uint32_t w3_uq28 = (w * w * w) >> 2;
+    uint32_t w4_uq28 = ((w3_uq28 >> 4) * w) >> 6;
+    k->p.p11 = w << 19;
+    k->p.p12 = (w * w) << 9;
+    k->p13_uq28 = w3_uq28;
+    k->p.p22 = 3U * w3_uq28;
+    k->p23_uq28 = 2U * w4_uq28;
+    k->p33_uq28 = (((w4_uq28 >> 4) * w) >> 6) * 2U;
+    if (k->fine) {
+        k->p13_uq28 <<= 4;
+        k->p23_uq28 <<= 4;
+        k->p33_uq28 <<= 8;
+    }
+}
+
 /* Acceleration unknown; rate and acceleration no more uncertain than that P stays below 1 from the first update on. */
 static void start(filter_t *f, bool settled)
 {
     filter_kf3_t *k = &f->own.kf3;
-    (void)settled;
     uint32_t p22 = kalman_per_r_uq28(k->start_lsb2, kalman_scaled_r(k->r_lsb2_q8), k->q33_uq28);
     p22 = (p22 < P22_START_MAX_UQ28) ? p22 : P22_START_MAX_UQ28;
     k->p.p11 = KALMAN_ONE_UQ28;
@@ -75,6 +108,9 @@ static void start(filter_t *f, bool settled)
     k->p13_uq28 = 0;
     k->p23_uq28 = 0;
     k->p33_uq28 = fx_sixteenth(p22);
+    if (settled) {
+        start_near(k);
+    }
 }
 
 /* A state limited to the bound of the format; flagged. */

@@ -23,10 +23,14 @@ void wide_set_noise(filter_t *f, uint32_t r_lsb2_q8)
 void wide_start(filter_t *f, bool settled)
 {
     filter_wide_t *w = &f->own.wide;
-    (void)settled;
     w->p.p11 = ONE_UQ16;
     w->p.p12 = 0;
     w->p.p22 = kalman_per_r_uq28(w->start_lsb2, kalman_scaled_r(w->r_lsb2_q8), w->q22_uq28);
+    if (settled) {
+        kalman_near(&w->p, w->q22_uq28);
+        w->p.p11 >>= 12;
+        w->p.p12 >>= 4;
+    }
     w->variance = 0;
 }
 

@@ -79,6 +79,18 @@ static bool sample_waits()
     return read_registers(INT_SOURCE, &source, 1) && (source & DATA_READY) != 0;
 }
 
+// In full resolution the upper bits repeat the sign: a reading of more than 13 bits was cut short by a fault of the bus.
+static bool read_sample(int16_t lsb[3])
+{
+    uint8_t bytes[6];
+    bool whole = read_registers(DATA, bytes, sizeof bytes);
+    for (uint8_t axis = 0; whole && axis < 3; axis++) {
+        lsb[axis] = (int16_t)(bytes[2 * axis] | (uint16_t)bytes[2 * axis + 1] << 8);
+        whole = lsb[axis] >= -4096 && lsb[axis] <= 4095;
+    }
+    return whole;
+}
+
 static void print_number(const char *name, int16_t value)
 {
     Serial.print(name);
@@ -91,12 +103,8 @@ static void print_degrees(const char *name, int16_t cdeg)
     Serial.print(cdeg / 100.0);
 }
 
-static void take_sample(const uint8_t bytes[6])
+static void take_sample(const int16_t lsb[3])
 {
-    int16_t lsb[3];
-    for (uint8_t axis = 0; axis < 3; axis++) {
-        lsb[axis] = (int16_t)(bytes[2 * axis] | (uint16_t)bytes[2 * axis + 1] << 8);
-    }
     tilt_filter_update(&tilt, lsb[0], lsb[1], lsb[2]);
     print_number("x:", lsb[0]);
     print_number(",y:", lsb[1]);
@@ -130,11 +138,11 @@ void loop()
         start_bus();
         configured = configure();
     }
-    uint8_t bytes[6];
-    if (configured && sample_waits() && read_registers(DATA, bytes, sizeof bytes)) {
+    int16_t lsb[3];
+    if (configured && sample_waits() && read_sample(lsb)) {
         due_ms = millis() + PERIOD_MS + PERIOD_MS / 2;
         missing = 0;
-        take_sample(bytes);
+        take_sample(lsb);
     } else if ((int32_t)(millis() - due_ms) >= 0) {
         due_ms += PERIOD_MS;
         miss_sample();
