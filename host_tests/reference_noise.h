@@ -1,4 +1,6 @@
-/* The noise estimator of lib/filters in theory: what its limited terms have as their mean, and what that makes of it. */
+/*
+ * The noise estimator of lib/filters in theory: what its limited terms have as their mean, and what that makes of it.
+ */
 #ifndef REFERENCE_NOISE_H
 #define REFERENCE_NOISE_H
 
@@ -17,10 +19,10 @@ typedef struct {
 } reference_noise_t;
 
 /*
- * In variances: what the estimate were if each term were what is expected of it, from the floor and with the weights that
- * noise.h tells; the last of these; how much of an error the next terms make again; and by how much a fluctuation (a
- * variance of 1) lowers the estimate, because the limited mean is concave: half of its second derivative over 1 - the
- * first.
+ * In variances: what the estimate were if each term were what is expected of it, from the floor and with the weights
+ * that noise.h tells; the last of these; how much of an error the next terms make again; and by how much a fluctuation
+ * (a variance of 1) lowers the estimate, because the limited mean is concave: half of its second derivative over 1 -
+ * the first.
  */
 typedef struct {
     double estimate, weight, again, bent;

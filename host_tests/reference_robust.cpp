@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <vector>
 
 namespace
@@ -288,9 +287,8 @@ bool robust_reference_table1(robust_reference_t *f, const char *name)
     if (found == std::end(kind_names)) {
         return false;
     }
-    const int kind = static_cast<int>(found - std::begin(kind_names));
     *f = robust_reference_t{};
-    f->kind = kind;
+    f->kind = static_cast<int>(found - std::begin(kind_names));
     f->period_s = 0.0247;
     f->r = 0.0064;
     f->q[3] = 0.0009;
@@ -304,7 +302,7 @@ bool robust_reference_table1(robust_reference_t *f, const char *name)
     f->p[0] = f->second_p[0] = 0.7;
     f->p[3] = f->second_p[3] = 0.04;
     std::fill_n(f->weight, ROBUST_GRID, 1.0 / ROBUST_GRID);
-    if (kind == ROBUST_AF) {
+    if (f->kind == ROBUST_AF) {
         f->q_mean = 0.5;
         f->q_count = 2.0;
     }

@@ -23,9 +23,10 @@ void tearDown(void) {}
 static reference_adaptive_value_t value_of(const filter_t *f)
 {
     const filter_adaptive_t *a = &f->own.adaptive;
-    double towards = (f->negative ? -1.0 : 1.0) / 16777216.0; /* the mean innovation's sign goes by the last one */
-    return (reference_adaptive_value_t){ f->x_lsb_q16 / 65536.0, f->rate_lsb / 16777216.0, towards * a->mean_lsb_q24,
-                                         a->k_uq32 / 4294967296.0, a->scatter_lsb_uq24 / 16777216.0 };
+    double towards = f->negative ? -1.0 : 1.0; /* the mean innovation's sign goes by the last one */
+    return (reference_adaptive_value_t){ f->x_lsb_q16 / 65536.0, f->rate_lsb / 16777216.0,
+                                         towards * a->mean_lsb_q24 / 16777216.0, a->k_uq32 / 4294967296.0,
+                                         a->scatter_lsb_uq24 / 16777216.0 };
 }
 
 /* Of a filter behind its start. */
@@ -276,10 +277,9 @@ static double settled_scatter(int32_t slow_ms, int32_t fast_ms, double bad, int3
 }
 
 /*
- * With a memory that is held: the fixed point, 0.8 % for chance (three standard errors). Guarded, by 8 sigmas, the scatter's
- * own fluctuation takes 0.7 % (0.15 sigma: half of its variance times the curvature 0.55 over 1 - slope, 0.87); unguarded
- * the terms at their limit, which weigh twice, make up for it (the curvature is 0.17 upwards). With a memory that changes
- * it lies between those of the slowest and the shortest.
+ * With a memory that is held: the fixed point, but for 0.7 %, which the scatter's own fluctuation takes (0.15 sigma:
+ * half of its variance times the curvature 0.55 over 1 - slope, 0.87), and 0.8 % for chance (three standard errors).
+ * With one that changes it lies between those of the slowest and the shortest.
  */
 static void the_scatter_settles_where_its_terms_say(void)
 {
@@ -315,7 +315,9 @@ static void assert_probed_variance(const filter_t *f, double r_lsb2)
     TEST_ASSERT_DOUBLE_WITHIN(0.002 * expected + 1.0 / 256.0, expected, probe.p_lsb2_q8 / 256.0);
 }
 
-/* The probe's variance is R times that noise gain, at every memory; identified, R is the scatter's square (8.8 bits). */
+/*
+ * The probe's variance is R times that noise gain, at every memory; identified, R is the scatter's square (8.8 bits).
+ */
 static void variance_of_the_probe_is_the_closed_form(void)
 {
     for (int identify = 0; identify < 2; identify++) {

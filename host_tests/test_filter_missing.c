@@ -267,7 +267,9 @@ static unsigned samples_to_restart(uint8_t kind, unsigned refused, unsigned miss
     return count;
 }
 
-/* Missing ones in the run that restarts a filter, as those at the rail are, are worth nothing, however many they are. */
+/*
+ * Missing ones in the run that restarts a filter, as those at the rail are, are worth nothing, however many they are.
+ */
 static void test_missing_samples_do_not_count_in_a_run(void)
 {
     unsigned restarting = 0;

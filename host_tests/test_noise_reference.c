@@ -1,6 +1,6 @@
 /*
- * Noise estimator: its constants from their integral, its level, its robustness, what it makes of paper 000's rolls, and
- * healthy samples at rest.
+ * Noise estimator: its constants from their integral, its level, its robustness, what it makes of paper 000's rolls,
+ * and healthy samples at rest.
  */
 #include "noise.h"
 #include "reference_noise.h"
@@ -178,9 +178,9 @@ static double roll_estimate(const roll_case_t *c, uint32_t *random)
 }
 
 /*
- * 1 % for what is left out, the third order of the fluctuation (a third of the second, 3.5 % at most), and three standard
- * errors. The variance of an exponential mean of terms, each with a relative deviation of 1.2 and correlated with its
- * neighbours as in level_is_one_and_a_half_variances.
+ * 1 % for what is left out, the third order of the fluctuation (a third of the second, 3.5 % at most), and three
+ * standard errors. The variance of an exponential mean of terms, each with a relative deviation of 1.2 and correlated
+ * with its neighbours as in level_is_one_and_a_half_variances.
  */
 static void rolls_have_the_noise_that_the_terms_say(void)
 {

@@ -6,10 +6,9 @@
 
 #include <math.h>
 
-#define SEED 7101
 #define PI 3.14159265358979323846
 #define STRETCH 0.9413
-#define STEPS 12
+enum { SEED = 7101, STEPS = 12 };
 
 void setUp(void) {}
 

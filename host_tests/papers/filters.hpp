@@ -69,7 +69,8 @@ struct PrintedCost {
 };
 std::vector<PrintedCost> printed_costs();
 
-// Kalman's filter, which is the standard; with one R for both kinds of samples; with a gate as published; and with ours.
+// Kalman's filter, which is the standard; with one R for both kinds of samples; with a gate as published; and with
+// ours.
 extern const std::string plain_name, linear_name, published_name, gated_name;
 // The one that the paper compares the simpler ones with.
 extern const std::string merged_name;
