@@ -34,11 +34,13 @@
 #ifndef R_MOST
 #define R_MOST R_END
 #endif
+/* A run of three samples or more, or none. */
+#define STEPS(v) ((v) == 0 || 2 <= (v) <= 8)
 #define PARAMETERS(f)                                                                                  \
     (16 <= (f)->own.kalman.q22_uq28 <= ONE && 16 <= (f)->own.kalman.p22_start_uq28 <= ONE &&           \
      R_LEAST <= (f)->own.kalman.r_lsb2_q8 <= R_MOST && SCALED((f)->own.kalman.drive_lsb2) &&           \
      SCALED((f)->own.kalman.start_lsb2) && FLAG((f)->own.kalman.gated) && FLAG((f)->own.kalman.coarse) && \
-     (f)->own.kalman.steps <= 8)
+     STEPS((f)->own.kalman.steps))
 /* run never passes 8: a run of `steps` samples restarts with the next, or with steps 0 stays at 1. */
 #define RUN(f) ((f)->own.kalman.run == 0 || (SAMPLE((f)->own.kalman.first_lsb) && 1 <= (f)->own.kalman.run <= 8))
 #define RUNNING_KALMAN(f) (COVARIANCE(f) && RUN(f) && (f)->own.kalman.refused <= 5)
@@ -127,7 +129,7 @@ void kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8);
 /* With what any Kalman law's set_noise does (proof_kalman.c). */
 /*@ requires 50 <= config->rate_dhz <= 40000 && 3 <= config->value[0] <= R_END && 1 <= config->value[1] <= 1000000000;
     requires rate_max_lsb_s <= 1000000;
-    requires f->own.kalman.steps <= 8 && FLAG(f->own.kalman.gated) && FLAG(f->own.kalman.coarse);
+    requires STEPS(f->own.kalman.steps) && FLAG(f->own.kalman.gated) && FLAG(f->own.kalman.coarse);
     assigns f->rate_max_lsb, f->own.kalman.drive_lsb2, f->own.kalman.start_lsb2, f->own.kalman.r_lsb2_q8,
             f->own.kalman.q22_uq28, f->own.kalman.p22_start_uq28, f->own.kalman.gated, f->own.kalman.coarse,
             f->own.kalman.gate_lsb2_uq4, f->own.kalman.agree_lsb \from *config, rate_max_lsb_s, f->own;
@@ -159,7 +161,7 @@ static void any_kalman(filter_t *f, uint8_t kind)
     k->drive_lsb2.exponent = ANY_S8(SCALED_LEAST, 25);
     k->start_lsb2.mantissa = ANY_U16(0x8000, UINT16_MAX);
     k->start_lsb2.exponent = ANY_S8(SCALED_LEAST, 25);
-    k->steps = ANY_U8(0, 8);
+    k->steps = ANY_BOOL() ? 0 : ANY_U8(2, 8);
 }
 
 #endif
