@@ -39,13 +39,13 @@ static inline void average_innovation(filter_adaptive_t *a, uint32_t taken);
 */
 static void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spread_uq8);
 
-/*@ requires TRACKED(f) && RUNNING(&f->own.adaptive) && FLAG(f->negative);
+/*@ requires TRACKED(f) && RUNNING(&f->own.adaptive) && FLAG(f->negative) && WITHIN(x1_lsb_q16, X_MAX_Q16);
     assigns f->flags, f->own.adaptive.verdict, f->own.adaptive.run, \result \from f->x_lsb_q16, f->rate_lsb, f->flags,
-            f->own, f->size_lsb_uq16, f->negative, f->rate_max_lsb, f->previous_lsb;
+            f->own, f->size_lsb_uq16, f->negative, f->rate_max_lsb, f->previous_lsb, x1_lsb_q16;
     ensures \result <= SIZE_END;
     ensures f->own.adaptive.verdict <= 4;
 */
-static uint32_t judge(filter_t *f);
+static uint32_t judge(filter_t *f, int32_t x1_lsb_q16);
 
 /*@ requires MEMORY(a) && TOLD(a);
     requires spread_uq8 <= SPREAD_END;
@@ -141,7 +141,7 @@ void proof_judge(void)
     filter_t f;
     any_running(&f, &filter_law_adaptive, 0);
     f.flags = 0;
-    (void)judge(&f);
+    (void)judge(&f, ANY_S32(-X_MAX_Q16, X_MAX_Q16));
 }
 
 /* k by ranges of 1 to 4: what is taken is less than its sixth. */

@@ -62,9 +62,11 @@ void proof_fx_isqrt32(void)
     (void)fx_isqrt32(ANY_U32(12288, 12543)); /* 112^2 less 1 */
     (void)fx_isqrt32(ANY_U32(12544, 16383));
     //@ loop unroll 8;
-    for (uint32_t from = 16384; from < 0x4000000U; from *= 4U) {
+    for (uint32_t from = 16384; from < 0x1000000U; from *= 4U) {
         (void)fx_isqrt32(ANY_U32(from, 4U * from - 1U));
     }
+    (void)fx_isqrt32(ANY_U32(0x1000000U, 0x2000000U));
+    (void)fx_isqrt32(ANY_U32(0x2000001U, 0x3FFFFFFU));
     (void)fx_isqrt32(ANY_U32(0x4000000U, SQUARE(27UL) - 1U));
     //@ loop unroll 5;
     for (uint32_t k = 27; k < 32U; k++) {

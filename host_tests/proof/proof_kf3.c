@@ -7,11 +7,12 @@
      (k).p23_uq28 < 3 * ONE && (k).p33_uq28 < 2 * ONE)
 #define P_BOUND(f) P_OF((f)->own.kf3)
 #define ACCELERATION(f) WITHIN((f)->own.kf3.acceleration_q16, X_MAX_Q16)
+#define DRIVE(k) (16 <= (k).q33_uq28 <= 0x2000000 || ((k).fine == 0 && 16 <= (k).q33_uq28 <= ONE))
 #define KEPT(f)                                                                                               \
-    (16 <= (f)->own.kf3.q33_uq28 <= ONE && 3 <= (f)->own.kf3.r_lsb2_q8 <= R_END && FLAG((f)->own.kf3.fine) && \
+    (DRIVE((f)->own.kf3) && 3 <= (f)->own.kf3.r_lsb2_q8 <= R_END && FLAG((f)->own.kf3.fine) && \
      SCALED((f)->own.kf3.drive_lsb2) && SCALED((f)->own.kf3.start_lsb2))
 #define FORCE(f) (P_BOUND(f) && ACCELERATION(f))
-#define KINDS 1
+#define KINDS 2 /* coarse and fine */
 #define CONFIGURATIONS(law) 2
 #include "kalman_bounds.h"
 
@@ -62,7 +63,6 @@ static void correct(filter_t *f);
 static void any_own(filter_t *f, uint8_t kind)
 {
     filter_kf3_t *k = &f->own.kf3;
-    (void)kind;
     k->p.p11 = ANY_U32(0, 13UL * ONE - 1U);
     k->p.p12 = ANY_U32(0, P12_END - 1U);
     k->p.p22 = ANY_U32(0, 5UL * ONE - 1U);
@@ -70,13 +70,13 @@ static void any_own(filter_t *f, uint8_t kind)
     k->p23_uq28 = ANY_U32(0, 3UL * ONE - 1U);
     k->p33_uq28 = ANY_U32(0, 2UL * ONE - 1U);
     k->acceleration_q16 = ANY_S32(-X_MAX_Q16, X_MAX_Q16);
-    k->q33_uq28 = ANY_U32(16, ONE);
+    k->q33_uq28 = ANY_U32(16, (kind == 0U) ? ONE : 0x2000000);
     k->r_lsb2_q8 = ANY_U32(3, R_END);
     k->drive_lsb2.mantissa = ANY_U16(0x8000, UINT16_MAX);
     k->drive_lsb2.exponent = ANY_S8(SCALED_LEAST, 25);
     k->start_lsb2.mantissa = ANY_U16(0x8000, UINT16_MAX);
     k->start_lsb2.exponent = ANY_S8(SCALED_LEAST, 25);
-    k->fine = ANY_BOOL();
+    k->fine = kind != 0U;
 }
 
 /* Coarse and fine. */
@@ -144,4 +144,5 @@ void proof_correct_kf3(void)
     correct(&f);
 }
 
+/* Root by root. Options: -eva-split-return-function sixth_root_uq10:full */
 PROVE_LAW(kf3)
