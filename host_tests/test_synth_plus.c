@@ -148,8 +148,9 @@ static void without_memory_it_is_synth(void)
 }
 
 /*
- * On a ramp of s LSB a sample the start lags by 60 s / (n (n + 1)) (test_synth.c), until it ends with the
- * own gains. What is left then dies away with the poles: nothing of it at sample 150.
+ * On a ramp of s LSB a sample the start is a line of least squares through all samples, the first five of them at their
+ * median, so (3 - k) s off: its end lags by the sum of (6 k - 2 n - 2) (3 - k) s / (n (n + 1)) = 60 s / (n (n + 1)). What is
+ * left where the own gains take over dies away with the poles: nothing of it at sample 150.
  */
 static void start_on_a_ramp_finds_its_slope(void)
 {
@@ -157,9 +158,9 @@ static void start_on_a_ramp_finds_its_slope(void)
     filter_config_t config = filter_defaults(&filter_law_synth_plus, 1000);
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
     for (int16_t n = 1; n <= 200; n++) {
-        int32_t off = filter_update(&f, (int16_t)(3 * n)) - 3L * n * 65536;
+        int32_t off = filter_update(&f, (int16_t)(3 * n)) - (int32_t)3 * n * 65536;
         if (n == FILTER_WARM_UP_SAMPLES + 1) {
-            TEST_ASSERT_INT32_WITHIN(90, -60L * 3 * 65536 / (6 * 7), off); /* 10 s + 60, as there */
+            TEST_ASSERT_INT32_WITHIN(90, -(int32_t)60 * 3 * 65536 / (6 * 7), off); /* 10 s + 60, as there */
         }
         TEST_ASSERT_TRUE(n < 150 || (off <= 48 && off >= -48));
     }
