@@ -65,6 +65,17 @@ static void standard(filter_config_t *config)
     config->value[AUTO_FAST_MS] = memory_ms(config->rate_dhz, 5, 80);
 }
 
+/*
+ * 1/8 of two sigmas of the rate for noise of sigma 1: with t = k / (2 - k) the rate's variance is 2 t^3, so it is
+ * sqrt(t) t / sqrt(8).
+ */
+static uint16_t still_of(uint16_t k_uq16)
+{
+    uint32_t t_uq16 = ((uint32_t)k_uq16 << 15) / (0x20000U - k_uq16) << 1; /* <= 3/7 */
+    uint16_t root_uq16 = fx_isqrt32(t_uq16 << 16);
+    return fx_high_u16(fx_high_u16(root_uq16, (uint16_t)t_uq16), 23170);
+}
+
 static void set_up(filter_t *f, const filter_config_t *config)
 {
     filter_auto_t *b = &f->own.bank;
@@ -72,6 +83,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
         b->final_k_uq16[i] = tracker_memory_k_uq16((uint16_t)config->value[AUTO_SLOW_MS + i], config->rate_dhz,
                                                    K_MIN_UQ16);
     }
+    b->still_uq16 = still_of(b->final_k_uq16[AUTO_MIDDLE]);
     b->gate_sigma_q8 = (uint16_t)config->value[AUTO_GATE_SIGMA_Q8];
     tracker_limit_rate(f, (uint32_t)config->value[AUTO_RATE_MAX_LSB_S], 16);
     filter_set_noise(f, (uint32_t)config->value[AUTO_R_LSB2_Q8]);
@@ -242,17 +254,6 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     show(f, b->chosen);
 }
 
-/*
- * 1/8 of two sigmas of the rate for noise of sigma 1: with t = k / (2 - k) the rate's variance is 2 t^3, so it is
- * sqrt(t) t / sqrt(8).
- */
-static uint16_t still_of(uint16_t k_uq16)
-{
-    uint32_t t_uq16 = ((uint32_t)k_uq16 << 15) / (0x20000U - k_uq16) << 1; /* <= 3/7 */
-    uint16_t root_uq16 = fx_isqrt32(t_uq16 << 16);
-    return fx_high_u16(fx_high_u16(root_uq16, (uint16_t)t_uq16), 23170);
-}
-
 /* The middle member's rate is believed into a gap from two sigmas of it on, four times that while its memory grows. */
 static void fade(filter_t *f, bool first)
 {
@@ -264,9 +265,8 @@ static void fade(filter_t *f, bool first)
         }
         return;
     }
-    uint16_t final_k_uq16 = b->final_k_uq16[AUTO_MIDDLE];
-    uint32_t still_lsb_q16 = fx_product_u16(b->eight_sigmas_lsb_uq8, still_of(final_k_uq16)) >> 8;
-    if (m->k_uq16 > final_k_uq16) {
+    uint32_t still_lsb_q16 = fx_product_u16(b->eight_sigmas_lsb_uq8, b->still_uq16) >> 8;
+    if (m->k_uq16 > b->final_k_uq16[AUTO_MIDDLE]) {
         still_lsb_q16 <<= 2;
     }
     if (fx_abs32(m->rate_lsb_q16) <= still_lsb_q16) {

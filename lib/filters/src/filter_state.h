@@ -69,6 +69,7 @@ typedef struct {
     fx_scaled_t per_r;      /* 1 / R, 1/LSB^2 */
     fx_scaled_t drive_lsb2; /* q T^3 */
     fx_scaled_t start_lsb2; /* variance of the rate per sample at the start */
+    uint32_t p22_start_uq28;
 } filter_wide_t;
 
 /* pbf, shrf, af: see mixture.h. */
@@ -158,6 +159,7 @@ typedef struct {
     uint8_t chosen;                /* member by the scores */
     uint8_t shown;                 /* member whose estimate is shown: the chosen one, through a gap the middle one */
     uint16_t eight_sigmas_lsb_uq8; /* the bound of an innovation in the score */
+    uint16_t still_uq16;           /* of it, below which the middle member's rate is noise */
     uint16_t final_k_uq16[AUTO_MEMBERS];
     uint16_t gate_sigma_q8; /* as configured */
 } filter_auto_t;

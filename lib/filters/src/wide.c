@@ -18,6 +18,7 @@ void wide_set_noise(filter_t *f, uint32_t r_lsb2_q8)
     w->r_lsb2_q8 = r_lsb2_q8;
     w->per_r = fx_scaled_div(fx_scaled(1), r_lsb2);
     w->q22_uq28 = kalman_per_r_uq28(w->drive_lsb2, r_lsb2, KALMAN_Q22_MIN_UQ28);
+    w->p22_start_uq28 = kalman_per_r_uq28(w->start_lsb2, r_lsb2, w->q22_uq28);
 }
 
 void wide_start(filter_t *f, bool settled)
@@ -25,7 +26,7 @@ void wide_start(filter_t *f, bool settled)
     filter_wide_t *w = &f->own.wide;
     w->p.p11 = ONE_UQ16;
     w->p.p12 = 0;
-    w->p.p22 = kalman_per_r_uq28(w->start_lsb2, kalman_scaled_r(w->r_lsb2_q8), w->q22_uq28);
+    w->p.p22 = w->p22_start_uq28;
     if (settled) {
         kalman_near(&w->p, w->q22_uq28);
         w->p.p11 >>= 12;
