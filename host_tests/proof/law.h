@@ -74,7 +74,7 @@ static inline void tracker_meet(filter_t *f, int16_t z_lsb);
 
 /*@ requires WITHIN(f->rate_lsb, 3 * X_MAX_Q16) && f->rate_max_lsb <= X_MAX_Q16 && 0 <= step_lsb <= 2 * X_MAX_Q16;
     assigns f->rate_lsb, f->flags \from f->rate_lsb, f->rate_max_lsb, f->negative, f->flags, step_lsb;
-    ensures sum: WITHIN(f->rate_lsb, X_MAX_Q16);
+    ensures WITHIN(f->rate_lsb, X_MAX_Q16);
 */
 static inline void tracker_turn(filter_t *f, int32_t step_lsb);
 
