@@ -15,4 +15,5 @@ static void any_own(filter_t *f, uint8_t kind)
     f->own.synth.of.scheduled.variant_u = ANY_BOOL();
 }
 
+/* The least default of P0 is made of that of R. Whole: tracker_limited_r */
 PROVE_LAW(synth_opt)

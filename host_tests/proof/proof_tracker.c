@@ -152,16 +152,19 @@ static void turn_from(int32_t low, int32_t high)
     f.rate_lsb = ANY_S32(low, high);
     f.rate_max_lsb = ANY_U32(0, X_MAX_Q16);
     tracker_turn(&f, 0);
-    //@ check WITHIN(f.rate_lsb, X_MAX_Q16);
 }
 
-/* Any change; then any sum, as the rate of a change of 0. */
+/* Any sum, as the rate of a change of 0, on which alone the result depends; and the sums that come nearest to 32 bits. */
 void proof_tracker_turn(void)
 {
     filter_t f;
     any_tracked(&f, NULL);
-    f.rate_lsb = ANY_S32(-3L * X_MAX_Q16, 3L * X_MAX_Q16);
     f.rate_max_lsb = ANY_U32(0, X_MAX_Q16);
+    f.negative = false;
+    f.rate_lsb = ANY_S32(X_MAX_Q16 + 1L, 3L * X_MAX_Q16);
+    tracker_turn(&f, ANY_S32(0, 2L * X_MAX_Q16));
+    f.negative = true;
+    f.rate_lsb = ANY_S32(-3L * X_MAX_Q16, -X_MAX_Q16 - 1L);
     tracker_turn(&f, ANY_S32(0, 2L * X_MAX_Q16));
     turn_from(-3L * X_MAX_Q16, -X_MAX_Q16 - 1L);
     turn_from(-X_MAX_Q16, -1);
