@@ -49,18 +49,6 @@ static void products_equal_exact_arithmetic(void)
     }
 }
 
-static void sums_with_an_element_equal_exact_arithmetic(void)
-{
-    for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
-        int64_t v = (int32_t)operand(i) / 2;
-        int32_t array[3] = { (int32_t)operand((uint16_t)(i + 1U)) / 2, (int32_t)~operand((uint16_t)(i + 2U)) / 2, 77 };
-        TEST_ASSERT_EQUAL_INT32((int32_t)(v + array[0]), fx_plus((int32_t)v, array, 0));
-        TEST_ASSERT_EQUAL_INT32((int32_t)(v + array[1]), fx_plus((int32_t)v, array, 1));
-        TEST_ASSERT_EQUAL_INT32((int32_t)(v - array[0]), fx_minus((int32_t)v, array, 0));
-        TEST_ASSERT_EQUAL_INT32((int32_t)(v - array[1]), fx_minus((int32_t)v, array, 1));
-    }
-}
-
 static void shifts_equal_exact_arithmetic(void)
 {
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
@@ -210,7 +198,6 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(products_equal_exact_arithmetic);
-    RUN_TEST(sums_with_an_element_equal_exact_arithmetic);
     RUN_TEST(shifts_equal_exact_arithmetic);
     RUN_TEST(without_a_part_equals_exact_arithmetic);
     RUN_TEST(leading_bits_by_definition);

@@ -26,14 +26,6 @@ static fx_scaled_t scaled_of(uint32_t v)
 /* The halves of any two numbers have a sum and a difference. */
 #define HALF(v) ((int32_t)(v) / 2)
 
-static const int32_t *two(uint32_t v)
-{
-    static int32_t array[2];
-    array[0] = HALF(v);
-    array[1] = HALF(~v);
-    return array;
-}
-
 /* The number shifted, with the places in its low bits: both are the same in every build or the result is another. */
 static uint32_t normalised(uint32_t v)
 {
@@ -66,8 +58,6 @@ static uint32_t normalised_c(uint32_t v)
     X(fx_mul24_uq16, fx_mul24_uq16(A24, B16))                                          \
     X(fx_mul24_uq24, fx_mul24_uq24(A24, B24))                                          \
     X(fx_mul_uq24, fx_mul_uq24(a, B24))                                                \
-    X(fx_plus, (uint32_t)fx_plus(HALF(a), two(b), 0))                                  \
-    X(fx_minus, (uint32_t)fx_minus(HALF(a), two(b), 1))                                \
     X(fx_shift12, fx_shift12(A16))                                                     \
     X(fx_eightfold, fx_eightfold(a))                                                   \
     X(fx_sixteenth, fx_sixteenth(a))                                                   \
@@ -77,8 +67,6 @@ static uint32_t normalised_c(uint32_t v)
     X(fx_mul24_uq16_c, fx_mul24_uq16_c(A24, B16))                                      \
     X(fx_mul24_uq24_c, fx_mul24_uq24_c(A24, B24))                                      \
     X(fx_mul_uq24_c, fx_mul_uq24_c(a, B24))                                            \
-    X(fx_plus_c, (uint32_t)fx_plus_c(HALF(a), two(b), 0))                              \
-    X(fx_minus_c, (uint32_t)fx_minus_c(HALF(a), two(b), 1))                            \
     X(fx_shift12_c, fx_shift12_c(A16))                                                 \
     X(fx_eightfold_c, fx_eightfold_c(a))                                               \
     X(fx_sixteenth_c, fx_sixteenth_c(a))                                               \

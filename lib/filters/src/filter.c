@@ -75,7 +75,7 @@ static void collect(filter_t *f, int16_t z_lsb)
 int32_t filter_update(filter_t *f, int16_t z_lsb)
 {
     uint8_t flags = 0;
-    if ((uint16_t)(z_lsb - FILTER_Z_MIN_LSB) > (uint16_t)(FILTER_Z_MAX_LSB - FILTER_Z_MIN_LSB)) {
+    if ((uint16_t)((uint16_t)z_lsb - (uint16_t)FILTER_Z_MIN_LSB) > (uint16_t)(FILTER_Z_MAX_LSB - FILTER_Z_MIN_LSB)) {
         z_lsb = tracker_limited_z(z_lsb);
         flags = FILTER_SATURATED;
     }

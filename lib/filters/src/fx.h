@@ -143,18 +143,6 @@ static inline uint32_t fx_mul24_uq24_c(uint32_t a_q8, uint32_t b_uq24)
            (low >> 16) + ((low >> 15) & 1U);
 }
 
-/* v + array[index], which must fit 32 bits; the index a constant 0..15. */
-static inline int32_t fx_plus_c(int32_t v, const int32_t *array, uint8_t index)
-{
-    return v + array[index];
-}
-
-/* v - array[index], which must fit 32 bits; the index a constant 0..15. */
-static inline int32_t fx_minus_c(int32_t v, const int32_t *array, uint8_t index)
-{
-    return v - array[index];
-}
-
 /* v x 2^12, exact. */
 static inline uint32_t fx_shift12_c(uint16_t v)
 {
@@ -246,14 +234,6 @@ static inline uint32_t fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
 static inline uint32_t fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
 {
     return fx_mul24_uq24_c(a_q8, b_uq24);
-}
-static inline int32_t fx_plus(int32_t v, const int32_t *array, uint8_t index)
-{
-    return fx_plus_c(v, array, index);
-}
-static inline int32_t fx_minus(int32_t v, const int32_t *array, uint8_t index)
-{
-    return fx_minus_c(v, array, index);
 }
 static inline uint32_t fx_shift12(uint16_t v)
 {

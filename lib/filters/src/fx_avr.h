@@ -103,34 +103,6 @@ FX_INLINE uint32_t fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
     return product;
 }
 
-/*
- * Byte by byte from memory through one register: no registers to save. Memory is clobbered as a whole, because an
- * operand for it would take a second of the two pointers that -mstrict-X leaves.
- */
-FX_INLINE int32_t fx_plus(int32_t v, const int32_t *array, uint8_t index)
-{
-    __asm__("ldd __tmp_reg__,%a[p]+%[o]\n\tadd %A[v],__tmp_reg__\n\t"
-            "ldd __tmp_reg__,%a[p]+%[o]+1\n\tadc %B[v],__tmp_reg__\n\t"
-            "ldd __tmp_reg__,%a[p]+%[o]+2\n\tadc %C[v],__tmp_reg__\n\t"
-            "ldd __tmp_reg__,%a[p]+%[o]+3\n\tadc %D[v],__tmp_reg__"
-            : [v] "+&r"(v)
-            : [p] "b"(array), [o] "i"(4U * index)
-            : "memory");
-    return v;
-}
-
-FX_INLINE int32_t fx_minus(int32_t v, const int32_t *array, uint8_t index)
-{
-    __asm__("ldd __tmp_reg__,%a[p]+%[o]\n\tsub %A[v],__tmp_reg__\n\t"
-            "ldd __tmp_reg__,%a[p]+%[o]+1\n\tsbc %B[v],__tmp_reg__\n\t"
-            "ldd __tmp_reg__,%a[p]+%[o]+2\n\tsbc %C[v],__tmp_reg__\n\t"
-            "ldd __tmp_reg__,%a[p]+%[o]+3\n\tsbc %D[v],__tmp_reg__"
-            : [v] "+&r"(v)
-            : [p] "b"(array), [o] "i"(4U * index)
-            : "memory");
-    return v;
-}
-
 FX_INLINE uint32_t fx_shift12(uint16_t v)
 {
     uint32_t shifted;
