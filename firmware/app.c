@@ -36,7 +36,6 @@
 #include "silence.h"
 #include "store.h"
 
-
 /*
  * What hung so often in a row, each time within SETTLED_S of its start, hangs again: it gets the lowest rate, at which
  * the processor has most time for everything else. Saved settings are
@@ -50,8 +49,8 @@ static struct loop {
     uint32_t pass_us; /* time at the beginning of the pass */
     uint32_t next_second_us;
     uint16_t next_service_us; /* its low half: it is never 32 ms away */
-    bool row_due;      /* for the sample that the pipeline has, or had last */
-    bool look_at_rate; /* each second, where a pass has time for it */
+    bool row_due;             /* for the sample that the pipeline has, or had last */
+    bool look_at_rate;        /* each second, where a pass has time for it */
 } loop;
 
 /* Known by its address in a register, an access to it is half as long. */

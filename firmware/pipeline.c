@@ -46,7 +46,7 @@ uint32_t pipeline_newest_us(void)
 uint32_t axis_r_lsb2_q8(const tilt_axis_t *axis)
 {
     uint32_t set_lsb2_q8 = parameters_r_lsb2_q8();
-    return set_lsb2_q8 != 0 ? set_lsb2_q8 : noise_r_lsb2_q8(&axis->noise);
+    return set_lsb2_q8 != 0 ? set_lsb2_q8 : filter_noise_r_lsb2_q8(&axis->noise);
 }
 
 static void count_sample(uint8_t flags)

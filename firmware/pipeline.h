@@ -68,9 +68,10 @@ void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 void pipeline_retime(uint32_t period_us);
 
 /*
- * One piece of what pipeline_start, _change, _retime, _coast or _sample have begun: the filter of an axis changed, up to
- * 4 ms, or a sample; false: nothing was left to do. So the main loop can look after other things meanwhile. Nothing else
- * is to be begun before, but a change takes the place of a change.
+ * One piece of what pipeline_start, _change, _retime, _coast or _sample have begun: the filter of an axis changed, up
+ * to
+ * 4 ms, or a sample; false: nothing was left to do. So the main loop can look after other things meanwhile. Nothing
+ * else is to be begun before, but a change takes the place of a change.
  */
 bool pipeline_work(void);
 
@@ -78,9 +79,9 @@ bool pipeline_work(void);
 void pipeline_finish(void);
 
 /*
- * One sample, which pipeline_work takes to filters and noise estimates. After a hold the filters go on from the estimate
- * that was held when the sample agrees with it, and restart with the second in a row that does not, each axis for
- * itself.
+ * One sample, which pipeline_work takes to filters and noise estimates. After a hold the filters go on from the
+ * estimate that was held when the sample agrees with it, and restart with the second in a row that does not, each axis
+ * for itself.
  */
 void pipeline_sample(const adxl345_sample_t *sample);
 

@@ -60,7 +60,7 @@ FX_ONCE bool begin_next(void)
     pipeline.turn = false;
     tilt_axis_t *axis = &pipeline.axes[left];
     if (pipeline.cold) {
-        noise_init(&axis->noise, pipeline.rate_dhz, left == 2);
+        filter_noise_init(&axis->noise, pipeline.rate_dhz, left == 2);
     }
     begin_axis(axis);
     return true;

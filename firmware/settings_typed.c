@@ -1,6 +1,4 @@
 /* What is typed to values and back; see settings_table.h. Values are stored as settings.h and filter.h say. */
-#include <string.h>
-
 #include "fx.h"
 #include "number.h"
 #include "parameters.h"
@@ -162,6 +160,17 @@ static setting_answer_t judge(const setting_t *s)
     return calibration_check(&settings.calibration).why == CALIBRATION_GOOD ? SETTING_TAKEN : SETTING_ILLEGAL;
 }
 
+/* Bytes to where they are kept; true: they differ from those that were there. */
+static bool keep(uint8_t *to, const uint8_t *from, uint8_t bytes)
+{
+    bool differ = false;
+    for (; bytes != 0; bytes--, to++, from++) {
+        differ = differ || *to != *from;
+        *to = *from;
+    }
+    return differ;
+}
+
 /* A filter that is in force already starts with what is shipped again. */
 setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
 {
@@ -170,12 +179,10 @@ setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
     setting_look(&s, which);
     uint8_t *place = place_of(&s, 0);
     uint8_t bytes = s.format.kind >= VECTOR ? (uint8_t)(AXES * s.format.size) : s.format.size;
-    memcpy(before, place, bytes);
+    (void)keep(before, place, bytes);
     setting_answer_t answer = take(&s, text) ? judge(&s) : SETTING_ILLEGAL;
-    *starts = which == SETTING_FILTER || memcmp(before, place, bytes) != 0 ? s.format.starts : 0;
-    if (answer != SETTING_TAKEN) {
-        memcpy(place, before, bytes);
-    }
+    bool changed = answer == SETTING_TAKEN ? keep(before, place, bytes) : keep(place, before, bytes);
+    *starts = which == SETTING_FILTER || changed ? s.format.starts : 0;
     return answer;
 }
 

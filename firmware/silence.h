@@ -1,7 +1,7 @@
 /*
- * How long no sample has come, in missing samples and in 25 ms, up to a second: rows and the way back depend on it. Each
- * filter counts the same for itself (filter_missing). Counted, not measured, so that the chip counts as the PC does. Main
- * only.
+ * How long no sample has come, in missing samples and in 25 ms, up to a second: rows and the way back depend on it.
+ * Each filter counts the same for itself (filter_missing). Counted, not measured, so that the chip counts as the PC
+ * does. Main only.
  */
 #ifndef SILENCE_H
 #define SILENCE_H

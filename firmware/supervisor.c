@@ -19,8 +19,7 @@ static struct {
 /* On all axes: a change of filter begins with the last and ends with the first. */
 static bool in_force(void)
 {
-    return pipeline.axes[0].filter.law == &filter_law_auto &&
-           pipeline.axes[AXES - 1].filter.law == &filter_law_auto;
+    return pipeline.axes[0].filter.law == &filter_law_auto && pipeline.axes[AXES - 1].filter.law == &filter_law_auto;
 }
 
 /* The signs stay: of an axis that is stuck since before, its last is the best guess. */
@@ -130,7 +129,7 @@ static uint16_t remaining_sigma_q8(void)
             p_lsb2_q8 = probe.p_lsb2_q8;
         }
     }
-    return fx_isqrt32((p_lsb2_q8 << 8) + (PART_ERROR_LSB * PART_ERROR_LSB << 16)); /* <= 1100 LSB^2 in Q16 */
+    return filter_fx_isqrt32((p_lsb2_q8 << 8) + (PART_ERROR_LSB * PART_ERROR_LSB << 16)); /* <= 1100 LSB^2 in Q16 */
 }
 
 static void say_axis(uint8_t axis)

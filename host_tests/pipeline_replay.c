@@ -9,7 +9,7 @@
  * CSV: a stream as in docs/protocol.md, whose rows come at the rate given; its times are counted from its first row.
  * SKIP: data rows before the cold start. NAME is a parameter of the filter as its descriptor names it, VALUE in its
  * unit; R=VALUE multiplies what the noise estimate says. The program is linked with --wrap for parameters_start and
- * noise_r_lsb2_q8, so that the sample path meets these in place of the shipped values and is itself unchanged.
+ * filter_noise_r_lsb2_q8, so that the sample path meets these in place of the shipped values and is itself unchanged.
  */
 #include <math.h>
 #include <stdarg.h>

@@ -115,7 +115,8 @@ void follow(reference_adaptive_t &f, const Step &s, reference_adaptive_value_t &
     f.now.x = std::clamp(f.now.x, -x_max, x_max);
 }
 
-// Scatter of the innovations: an eighth of the first seven terms, then a sixteenth, unguarded half of it below the limit.
+// Scatter of the innovations: an eighth of the first seven terms, then a sixteenth, unguarded half of it below the
+// limit.
 double disperse(reference_adaptive_t &f, Step &s)
 {
     const double apart = std::fabs(std::min(s.size.v, size_max) - f.side * f.now.mean);

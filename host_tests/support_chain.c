@@ -38,11 +38,11 @@ int16_t median_update(median_t *m, int16_t z_lsb)
 bool chain_begin(chain_t *chain, filter_kind_t kind, uint16_t rate_dhz, uint8_t range_g, int axis)
 {
     memset(chain, 0, sizeof *chain);
-    noise_init(&chain->noise, rate_dhz, axis == 2);
+    filter_noise_init(&chain->noise, rate_dhz, axis == 2);
     if (!init_default(&chain->filter, kind, rate_dhz)) {
         return false;
     }
-    filter_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
+    filter_set_noise(&chain->filter, filter_noise_r_lsb2_q8(&chain->noise));
     chain->rate_dhz = rate_dhz;
     chain->period_us = 10000000U / rate_dhz;
     chain->rail_high_lsb = (int16_t)(range_g * 256 - 1);
@@ -53,7 +53,7 @@ bool chain_begin(chain_t *chain, filter_kind_t kind, uint16_t rate_dhz, uint8_t 
 static bool miss(chain_t *chain)
 {
     chain->x_lsb_q16 = filter_missing(&chain->filter);
-    noise_gap(&chain->noise);
+    filter_noise_gap(&chain->noise);
     if (chain->filter.quarters >= HOLD_QUARTERS) {
         chain->away = 1;
         return false;
@@ -79,7 +79,7 @@ static void coast_over_gap(chain_t *chain, uint64_t t_us)
 static bool rejoins(chain_t *chain, int16_t lsb)
 {
     int16_t off_lsb = (int16_t)(lsb - ((((chain->x_lsb_q16 + 128) >> 8) + 128) >> 8));
-    if ((uint32_t)(off_lsb * off_lsb) > noise_r_lsb2_q8(&chain->noise) >> 5) {
+    if ((uint32_t)(off_lsb * off_lsb) > filter_noise_r_lsb2_q8(&chain->noise) >> 5) {
         if (chain->away++ < AWAY_SAMPLES) {
             return false;
         }
@@ -102,8 +102,8 @@ int32_t chain_sample(chain_t *chain, uint64_t t_us, int16_t lsb)
         chain->waits = true;
         return chain->x_lsb_q16;
     }
-    if (noise_update(&chain->noise, lsb)) {
-        filter_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
+    if (filter_noise_update(&chain->noise, lsb)) {
+        filter_set_noise(&chain->filter, filter_noise_r_lsb2_q8(&chain->noise));
     }
     int16_t z_lsb = chain->median.window == 0U ? lsb : median_update(&chain->median, lsb);
     chain->waits = chain->away != 0 && !rejoins(chain, lsb);
@@ -115,5 +115,5 @@ int32_t chain_sample(chain_t *chain, uint64_t t_us, int16_t lsb)
 
 double chain_r_lsb2(const chain_t *chain)
 {
-    return noise_r_lsb2_q8(&chain->noise) / 256.0;
+    return filter_noise_r_lsb2_q8(&chain->noise) / 256.0;
 }

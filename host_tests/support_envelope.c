@@ -62,7 +62,7 @@ size_t band_window(filter_kind_t kind, uint16_t rate_dhz, double r_lsb2)
 
 static uint32_t level_of(int16_t z_lsb)
 {
-    return (uint32_t)(tracker_limited_z(z_lsb) - FILTER_Z_MIN_LSB);
+    return (uint32_t)(filter_tracker_limited_z(z_lsb) - FILTER_Z_MIN_LSB);
 }
 
 void band_clear(band_t *b)
@@ -138,7 +138,7 @@ void hull_add(hull_t *h, int16_t z_lsb, double r_lsb2, uint32_t coasts)
         h->r_lsb2[i] = h->r_lsb2[i - 1];
         h->coasts[i] = h->coasts[i - 1];
     }
-    h->z_lsb[0] = tracker_limited_z(z_lsb);
+    h->z_lsb[0] = filter_tracker_limited_z(z_lsb);
     h->r_lsb2[0] = r_lsb2;
     h->coasts[0] = coasts;
     h->filled += h->filled < HULL_SAMPLES;

@@ -37,7 +37,7 @@ static inline int32_t coast_only(filter_t *f)
     f->broken = true;
     f->flags = FILTER_COASTED;
     LAW_OF(f, step)(f, 0, STEP_MISSING);
-    tracker_nothing(f);
+    filter_tracker_nothing(f);
     return f->x_lsb_q16;
 }
 

@@ -162,7 +162,7 @@ void tilt_judge(const filter_t *begun, const tilt_run_t *run, tilt_errors_t *err
         int32_t x;
         if (run->missing[i]) {
             if ((i == 0 || !run->missing[i - 1]) && f.collected == FILTER_RUNNING) {
-                tracker_fade(&f, true);
+                filter_tracker_fade(&f, true);
             }
             x = coast(&f);
         } else {

@@ -10,14 +10,12 @@
 #include <stdio.h>
 
 enum { SAMPLES = 20000, RUNS = 3000, SEED = 9417 };
-
 static uint32_t random_state;
 
 void setUp(void)
 {
     random_state = SEED;
 }
-
 void tearDown(void) {}
 
 static reference_adaptive_value_t value_of(const filter_t *f)

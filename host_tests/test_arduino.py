@@ -45,8 +45,8 @@ BROKEN = [
     ("library.properties", "architectures=*\n", "", "library.properties: no field architectures"),
     ("library.json", '"filter_list.h", ', '"filter_lists.h", ', "library.json: there is no header filter_lists.h"),
     ("library.json", '"license"', '"license', "library.json: Expecting ':' delimiter: line 6"),
-    ("keywords.txt", "noise_update\tKEYWORD2", "noise_update KEYWORD2", "is no word, tab and one of"),
-    ("keywords.txt", "noise_update\t", "noise_updates\t", "no header declares noise_updates as KEYWORD2"),
+    ("keywords.txt", "filter_noise_update\tKEYWORD2", "filter_noise_update KEYWORD2", "is no word, tab and one of"),
+    ("keywords.txt", "filter_noise_update\t", "noise_updates\t", "no header declares noise_updates as KEYWORD2"),
     ("keywords.txt", "noise_t\tKEYWORD1", "noise_t\tKEYWORD2", "no header declares noise_t as KEYWORD2"),
     ("keywords.txt", "noise_t\tKEYWORD1\n", "", "keywords.txt: noise_t is missing"),
 ]
@@ -129,7 +129,7 @@ def every_function_has_c_linkage():
         text = header.read_text(encoding="utf-8").replace('extern "C" {', 'extern "C++" {', 1)
         header.write_text(text, encoding="utf-8")
         done = linked_as_cpp(copy)
-        assert done.returncode != 0 and "undefined reference to `noise_update" in done.stderr, done.stderr
+        assert done.returncode != 0 and "undefined reference to `filter_noise_update" in done.stderr, done.stderr
 
 
 def library():
@@ -146,16 +146,16 @@ class Native:
     def __init__(self, name):
         self.code = library()
         self.code.filter_defaults.restype = Config
-        self.code.noise_update.restype = ctypes.c_bool
+        self.code.filter_noise_update.restype = ctypes.c_bool
         self.state, self.noise = ctypes.create_string_buffer(512), ctypes.create_string_buffer(64)
         law = ctypes.addressof(ctypes.c_char.in_dll(self.code, f"filter_law_{name}"))
         config = self.code.filter_defaults(ctypes.c_void_p(law), RATE_DHZ)
         assert self.code.filter_init(self.state, ctypes.c_void_p(law), ctypes.byref(config)) == 0
-        self.code.noise_init(self.noise, RATE_DHZ, False)
+        self.code.filter_noise_init(self.noise, RATE_DHZ, False)
 
     def update(self, lsb):
-        if self.code.noise_update(self.noise, lsb):
-            self.code.filter_set_noise(self.state, self.code.noise_r_lsb2_q8(self.noise))
+        if self.code.filter_noise_update(self.noise, lsb):
+            self.code.filter_set_noise(self.state, self.code.filter_noise_r_lsb2_q8(self.noise))
         return self.code.filter_update(self.state, lsb) / 65536
 
 

@@ -121,17 +121,17 @@ static void test_a_gap_stops_a_rate_within_two_of_its_sigmas(void)
         int32_t within = (int32_t)(side * two_sigmas_lsb * 0.99 * 65536.0);
         int32_t beyond = (int32_t)(side * two_sigmas_lsb * 1.01 * 65536.0);
         m->rate_lsb_q16 = beyond;
-        tracker_fade(&f, true);
+        filter_tracker_fade(&f, true);
         TEST_ASSERT_EQUAL_INT32(beyond, m->rate_lsb_q16);
         m->rate_lsb_q16 = within;
-        tracker_fade(&f, true);
+        filter_tracker_fade(&f, true);
         TEST_ASSERT_EQUAL_INT32(0, m->rate_lsb_q16);
         m->k_uq16++; /* growing: four times that */
         m->rate_lsb_q16 = 3 * beyond;
-        tracker_fade(&f, true);
+        filter_tracker_fade(&f, true);
         TEST_ASSERT_EQUAL_INT32(0, m->rate_lsb_q16);
         m->rate_lsb_q16 = 4 * beyond;
-        tracker_fade(&f, true);
+        filter_tracker_fade(&f, true);
         TEST_ASSERT_EQUAL_INT32(4 * beyond, m->rate_lsb_q16);
         m->k_uq16--;
     }

@@ -177,14 +177,14 @@ def a_number_two_per_cent_up_is_named_with_old_and_new():
 @test
 def cycles_go_to_the_function_that_the_profile_names():
     profile = OUT / "where.csv"
-    others = [name for name in bench.bench_where.FUNCTIONS if name not in ("mixed", "fx_high_u16", "bend_lsb", "give_back")]
-    lines = ["pc,count,cycles,symbol", "0x10,5,50,mixed+0x0", "0x12,5,25,mixed+0x2", "0x20,9,90,fx_high_u16+0x0",
+    others = [name for name in bench.bench_where.FUNCTIONS if name not in ("mixed", "filter_fx_high_u16", "bend_lsb", "give_back")]
+    lines = ["pc,count,cycles,symbol", "0x10,5,50,mixed+0x0", "0x12,5,25,mixed+0x2", "0x20,9,90,filter_fx_high_u16+0x0",
              "0x30,5,20,bend_lsb.lto_priv.69+0x0", "0x32,5,30,give_back.lto_priv.7+0x0", "0x40,1,999,main+0x0",
              *(f"0x50,0,0,{name}+0x0" for name in others)]
     profile.write_text("\n".join(lines) + "\n", encoding="ascii")
     found = dict(bench.bench_where.parts(*bench.bench_where.read_profile(profile)))
     assert sum(found.values()) == (50 + 25 + 90 + 20 + 30) / 5 and found["products"] == 90 / 5 and found["gains, x and P"] == 50 / 5, found
-    for gone in ("mixed", "bend_lsb", "fx_leading"):
+    for gone in ("mixed", "bend_lsb", "filter_fx_leading"):
         profile.write_text("\n".join(line for line in lines if f",{gone}" not in line) + "\n", encoding="ascii")
         try:
             bench.bench_where.parts(*bench.bench_where.read_profile(profile))
@@ -226,7 +226,7 @@ def spans_leave_the_interrupts_out():
     spans = OUT / "spans.csv"
     command = (SIMRUN, "--fw", image_with(ROBUST), "--in", STREAMS / "rest-2lsb.csv", "--out", OUT / "x.csv", "--max-ms", "3000",
                "--filter", ROBUST, "--span")
-    run(*command, f"{symbol('kalman_step')}:{symbol('within_gate')}:{spans}")
+    run(*command, f"{symbol('filter_kalman_step')}:{symbol('within_gate')}:{spans}")
     lines = spans.read_text(encoding="ascii").splitlines()
     cycles = [int(line.split(",")[1]) for line in lines[1:]]
     assert lines[0] == "at_us,cycles,stack_bytes" and len(cycles) > 500, len(cycles)

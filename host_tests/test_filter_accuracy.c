@@ -54,11 +54,11 @@ static double median5(const stream_t *s, int axis)
 static void start_axis(axis_t *a, const stream_t *s, int axis, double r_lsb2)
 {
     uint16_t rate_dhz = (uint16_t)lrint(s->rate_hz * 10.0);
-    noise_init(&a->noise, rate_dhz, axis == 2);
+    filter_noise_init(&a->noise, rate_dhz, axis == 2);
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         filter_config_t config = filter_defaults(filter_listed((filter_kind_t)kind), rate_dhz);
         TEST_ASSERT_TRUE(filter_init(&a->f[kind], filter_listed((filter_kind_t)kind), &config) == FILTER_ACCEPTED);
-        uint32_t r_q8 = r_lsb2 > 0.0 ? (uint32_t)lrint(r_lsb2 * 256.0) : noise_r_lsb2_q8(&a->noise);
+        uint32_t r_q8 = r_lsb2 > 0.0 ? (uint32_t)lrint(r_lsb2 * 256.0) : filter_noise_r_lsb2_q8(&a->noise);
         filter_set_noise(&a->f[kind], r_q8);
     }
     double r = r_lsb2 > 0.0 ? r_lsb2 : 1.0;
@@ -68,10 +68,10 @@ static void start_axis(axis_t *a, const stream_t *s, int axis, double r_lsb2)
 
 static void step_axis(axis_t *a, int16_t z, bool estimate, bool warm)
 {
-    bool changed = noise_update(&a->noise, z);
+    bool changed = filter_noise_update(&a->noise, z);
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         if (estimate && changed) {
-            filter_set_noise(&a->f[kind], noise_r_lsb2_q8(&a->noise));
+            filter_set_noise(&a->f[kind], filter_noise_r_lsb2_q8(&a->noise));
         }
         (void)filter_update(&a->f[kind], z);
     }

@@ -65,16 +65,16 @@ static double wanted_r(const noise_t *n)
 static void test_r_follows_with_a_hysteresis_of_an_eighth(void)
 {
     noise_t n;
-    noise_init(&n, 1000, false);
+    filter_noise_init(&n, 1000, false);
     unsigned passed_on = 0;
     unsigned kept_though_different = 0;
     uint32_t random = 1;
     for (int i = 0; i < 20000; i++) {
         random = random * 1664525u + 1013904223u;
         int amplitude = 2 + (i / 1000) % 7 * 6;
-        double before = noise_r_lsb2_q8(&n);
-        bool changed = noise_update(&n, (int16_t)((int)(random >> 16) % (2 * amplitude + 1) - amplitude));
-        double after = noise_r_lsb2_q8(&n);
+        double before = filter_noise_r_lsb2_q8(&n);
+        bool changed = filter_noise_update(&n, (int16_t)((int)(random >> 16) % (2 * amplitude + 1) - amplitude));
+        double after = filter_noise_r_lsb2_q8(&n);
         double distance = wanted_r(&n) > before ? wanted_r(&n) - before : before - wanted_r(&n);
         if (changed) {
             TEST_ASSERT_TRUE(distance > before / 8.0 - 1.5); /* R and its eighth are whole numbers */

@@ -57,7 +57,7 @@ static void assert_damped(uint8_t kind, int16_t slope_lsb)
     for (int32_t part = 2; part <= 16; part *= 2) {
         int32_t x = probed(&f).x_lsb_q16;
         uint8_t flags = f.flags;
-        tracker_damp(&f);
+        filter_tracker_damp(&f);
         TEST_ASSERT_EQUAL_INT32(x, probed(&f).x_lsb_q16);
         TEST_ASSERT_EQUAL_UINT8(flags, f.flags);
         for (uint8_t k = 0; k < 3; k++) {
@@ -89,7 +89,7 @@ static void test_damp_of_synth_bends_nothing(void)
         (void)filter_update(&f, (int16_t)(k * RAMP_LSB));
     }
     int32_t x = coast_only(&f);
-    tracker_damp(&f);
+    filter_tracker_damp(&f);
     TEST_ASSERT_INT32_WITHIN(65536 / 64, RAMP_LSB * 65536L / 2, coast_only(&f) - x);
 }
 
@@ -102,7 +102,7 @@ static void test_a_gap_stops_only_a_rate_that_may_be_noise(void)
             filter_t f;
             settle_on_ramp(&f, kind, slope_lsb);
             filter_t told = f;
-            tracker_fade(&told, true);
+            filter_tracker_fade(&told, true);
             TEST_ASSERT_EQUAL_INT32(probed(&f).x_lsb_q16, probed(&told).x_lsb_q16);
             if (law_facts((filter_kind_t)kind).rate_is_a_difference && slope_lsb == 5) {
                 TEST_ASSERT_EQUAL_INT32(probed(&f).x_lsb_q16, coast_only(&told));
@@ -126,7 +126,7 @@ static void test_damp_leaves_less_gain_behind_a_gap(void)
         filter_t plain = damped;
         for (uint8_t k = 1; k <= 10U; k++) {
             if (k == 3U || k == 6U || k == 8U) { /* each 25 ms of 100 Hz */
-                tracker_damp(&damped);
+                filter_tracker_damp(&damped);
             }
             (void)coast_only(&damped);
             (void)coast_only(&plain);

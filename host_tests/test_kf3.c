@@ -140,7 +140,7 @@ static void damp_halves_what_moves_and_its_covariance(void)
         (void)filter_update(&f, (int16_t)(k * k));
     }
     filter_t damped = f;
-    tracker_damp(&damped);
+    filter_tracker_damp(&damped);
     TEST_ASSERT_EQUAL_INT32(f.rate_lsb >> 1, damped.rate_lsb);
     TEST_ASSERT_EQUAL_INT32(f.own.kf3.acceleration_q16 >> 1, damped.own.kf3.acceleration_q16);
     TEST_ASSERT_EQUAL_UINT32(f.own.kf3.p.p11, damped.own.kf3.p.p11);

@@ -138,7 +138,7 @@ static void start_both(filter_t *f, reference_kf3_t *r, const filter_config_t *c
 /*
  * What one step adds to the error of P / R: g errs by 1.75 counts of 2^-16 (1.5 of the table, 1 of the shift, which
  * halves the former), P12 and P13 times that; gains are rounded to 2^-25, products and the halves of predict_covariance
- * (four when fine) to 2^-29; q33 by 16 roundings of 2^-14 on its way through fx_scaled, and by half a count.
+ * (four when fine) to 2^-29; q33 by 16 roundings of 2^-14 on its way through filter_fx_scaled, and by half a count.
  */
 static void error_of_a_step(const reference_kf3_t *r, const double p12, const double p13, double *each)
 {

@@ -54,16 +54,16 @@ static void constants_solve_their_equation(void)
 static double estimate(uint16_t rate_dhz, double sigma, double outliers, int samples, double amplitude, uint64_t seed)
 {
     noise_t n;
-    noise_init(&n, rate_dhz, false);
+    filter_noise_init(&n, rate_dhz, false);
     test_random_t random;
     random_seed(&random, seed);
     for (int k = 0; k < samples; k++) {
         double s = random_uniform(&random) < outliers ? 20.0 * sigma : sigma;
         double t = k / (rate_dhz / 10.0);
         double motion = amplitude * sin(3.14159265 * t);
-        (void)noise_update(&n, as_sample(motion + s * random_normal(&random)));
+        (void)filter_noise_update(&n, as_sample(motion + s * random_normal(&random)));
     }
-    return noise_r_lsb2_q8(&n) / 256.0;
+    return filter_noise_r_lsb2_q8(&n) / 256.0;
 }
 
 /*
@@ -166,13 +166,13 @@ static reference_noise_estimate_t expected_of(const roll_case_t *c)
 static double roll_estimate(const roll_case_t *c, uint32_t *random)
 {
     noise_t n;
-    noise_init(&n, c->rate_dhz, false);
+    filter_noise_init(&n, c->rate_dhz, false);
     for (int k = 0; k <= c->rate_dhz; k++) {
         double bad_deg = roll_uniform(random) < c->bad ? 20.0 : 0.0;
         double truth_deg = roll_truth_deg(c->profile, 10.0 * k / c->rate_dhz);
-        (void)noise_update(&n, roll_measured_lsb(random, truth_deg + bad_deg, 0.0));
+        (void)filter_noise_update(&n, roll_measured_lsb(random, truth_deg + bad_deg, 0.0));
     }
-    double r = noise_r_lsb2_q8(&n) / 256.0;
+    double r = filter_noise_r_lsb2_q8(&n) / 256.0;
     TEST_ASSERT_DOUBLE_WITHIN(r / 8.0 + 1.0 / 128.0, r, 1.5 * n.mean_lsb2_q16 / 65536.0);
     return n.mean_lsb2_q16 / 65536.0 / roll_variance();
 }
@@ -228,10 +228,10 @@ static bool check_rest(const rest_t *rest)
         noise_t n;
         filter_config_t config;
         filter_t f;
-        noise_init(&n, rest->rate_dhz, axis == 2);
+        filter_noise_init(&n, rest->rate_dhz, axis == 2);
         config = filter_defaults(filter_listed(robust_kind()), rest->rate_dhz);
         TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, filter_listed(robust_kind()), &config));
-        filter_set_noise(&f, noise_r_lsb2_q8(&n));
+        filter_set_noise(&f, filter_noise_r_lsb2_q8(&n));
         int count = 0;
         int refused = 0;
         for (size_t i = 0; i < stream.count; i++) {
@@ -239,8 +239,8 @@ static bool check_rest(const rest_t *rest)
             if (t < rest->from_s || t >= rest->to_s || i % rest->every != 0) {
                 continue;
             }
-            if (noise_update(&n, stream.rows[i].lsb[axis])) {
-                filter_set_noise(&f, noise_r_lsb2_q8(&n));
+            if (filter_noise_update(&n, stream.rows[i].lsb[axis])) {
+                filter_set_noise(&f, filter_noise_r_lsb2_q8(&n));
             }
             (void)filter_update(&f, stream.rows[i].lsb[axis]);
             count++;

@@ -267,7 +267,8 @@ def the_page_tells_of_adaptive_and_of_noise_as_measured():
     assert [line for line in curve if "as shipped" in line][0].startswith("| `adaptive(guard=3)` | 3 sigma, as shipped | "), curve
     assert len(curve) == 8 + 3 and len(noise) == 6 + 3, noise
     for line, experiment in zip(noise[2:], ("noise_rest_10_hz", "noise_cos60_10_hz")):
-        mean, exact, most = (value(rows, experiment, "noise(x)", "fixed", metric) for metric in ("r_by_true", "exact_r_by_true", "exact_r_one_run_sd"))
+        metrics = ("r_by_true", "exact_r_by_true", "exact_r_one_run_sd")
+        mean, exact, most = (value(rows, experiment, "noise(x)", "fixed", metric) for metric in metrics)
         assert f"| {synthesis.shown(mean)} [" in line and f"| {synthesis.shown(exact)} |" in line and f"(<= {synthesis.shown(most)}) |" in line, line
     # the twin: another gate as shipped is the one that is marked
     next(r for r in rows if r["metric"] == "guard_sigma")["value"] = 4.0

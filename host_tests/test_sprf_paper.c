@@ -40,7 +40,7 @@ static void samples_within_the_limit_are_taken(void)
     /* S = P11 + 1 = 1 / (1 - w1): gate^2 R S = 4 x 16 x 256 / (1 - w1) in Q8 */
     uint32_t expected_q8 = (uint32_t)(4UL * 16UL * 256UL * 65536ULL / (65536UL - probe.gain_uq16));
     TEST_ASSERT_UINT32_WITHIN(expected_q8 / 1000U, expected_q8, probe.gate_lsb2_q8);
-    int16_t limit = (int16_t)(fx_isqrt32(probe.gate_lsb2_q8) >> 4);
+    int16_t limit = (int16_t)(filter_fx_isqrt32(probe.gate_lsb2_q8) >> 4);
     filter_t inside = f;
     filter_t outside = f;
     (void)filter_update(&inside, limit);

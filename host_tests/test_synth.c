@@ -59,10 +59,11 @@ static void border_of_the_region_is_outside(void)
 }
 
 /*
- * A ramp of s LSB a sample: the median is two samples behind, and at rest, so the last two estimates are -2 s and -s off.
- * From there the errors are e(n) = (1 - b0(n)) (2 e(n - 1) - e(n - 2)) with the gains of the start, 1 - b0(n) = (n - 1) (n -
- * 2) / (n (n + 1)). A gain is off by 2^-17 of an innovation, and these sum to less than 10 s; each product is rounded by
- * half a count: 10 s + 60 counts.
+ * A ramp of s LSB a sample: the median is two samples behind, and at rest, so the last two estimates are -2 s and -s
+ * off. From there the errors are e(n) = (1 - b0(n)) (2 e(n - 1) - e(n - 2)) with the gains of the start, 1 - b0(n) = (n
+ * - 1) (n -
+ * 2) / (n (n + 1)). A gain is off by 2^-17 of an innovation, and these sum to less than 10 s; each product is rounded
+ * by half a count: 10 s + 60 counts.
  */
 static void start_on_a_ramp_catches_up(void)
 {

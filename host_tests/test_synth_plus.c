@@ -149,8 +149,8 @@ static void without_memory_it_is_synth(void)
 
 /*
  * On a ramp of s LSB a sample the start is a line of least squares through all samples, the first five of them at their
- * median, so (3 - k) s off: its end lags by the sum of (6 k - 2 n - 2) (3 - k) s / (n (n + 1)) = 60 s / (n (n + 1)). What is
- * left where the own gains take over dies away with the poles: nothing of it at sample 150.
+ * median, so (3 - k) s off: its end lags by the sum of (6 k - 2 n - 2) (3 - k) s / (n (n + 1)) = 60 s / (n (n + 1)).
+ * What is left where the own gains take over dies away with the poles: nothing of it at sample 150.
  */
 static void start_on_a_ramp_finds_its_slope(void)
 {

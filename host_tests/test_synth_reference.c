@@ -144,8 +144,8 @@ static void variance_has_a_floor_of_half_r(void)
 /*
  * Each product is rounded by at most 2^-17 LSB; that of a1 passes the update with 1 - b0. An error of the estimate
  * returns with the impulse response g of the loop, so |x - reference| <= (1 + (1 - b0)) 2^-17 sum |g|. The gains of the
- * start are off by 2^-17 of innovations that are below 60 LSB and sum to less than 400 LSB here: 0.003 LSB, times the largest
- * |g| <= 3 of these filters.
+ * start are off by 2^-17 of innovations that are below 60 LSB and sum to less than 400 LSB here: 0.003 LSB, times the
+ * largest |g| <= 3 of these filters.
  */
 static void estimate_equals_the_reference(void)
 {
@@ -279,8 +279,9 @@ static void reference_start_has_the_errors_of_the_notes(void)
 }
 
 /*
- * The library's own start, the median of five samples and then the same gains: at rest the median has the variance 0.2868 R
- * (order statistics of five normals), and in the mean over 6..20 it must not be worse than the start of notes 2.2.
+ * The library's own start, the median of five samples and then the same gains: at rest the median has the variance
+ * 0.2868 R (order statistics of five normals), and in the mean over 6..20 it must not be worse than the start of notes
+ * 2.2.
  */
 static void median_start_is_no_worse_than_the_notes_start_at_rest(void)
 {

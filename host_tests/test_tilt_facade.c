@@ -3,6 +3,7 @@
 #include "stream.h"
 #include "support_random.h"
 #include "support_recordings.h"
+#include "support_roles.h"
 #include "tilt_filter.h"
 #include "unity.h"
 
@@ -168,15 +169,16 @@ static void test_an_illegal_rate_gives_the_nearest(void)
 
 static void test_an_illegal_parameter_is_named_and_changes_nothing(void)
 {
-    filter_config_t config = filter_defaults(&filter_law_sprf, 500); /* the rate stays the facade's */
-    config.value[SPRF_GATE_SIGMA_Q8] = 1024;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, tilt_filter_use(&tilt, &filter_law_sprf, &config));
+    const filter_law_t *robust = filter_listed(robust_kind());
+    uint8_t gate = parameter_named(robust_kind(), "gate");
+    filter_config_t config = filter_defaults(robust, 500); /* the rate stays the facade's */
+    config.value[gate] = 1024;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, tilt_filter_use(&tilt, robust, &config));
     TEST_ASSERT_EQUAL_UINT(1024, tilt.axes[2].filter.own.kalman.of.gated.gate_sigma_q8);
     TEST_ASSERT_EQUAL_UINT(1000, tilt.axes[2].filter.rate_dhz);
     tilt_filter_t before = tilt;
-    config.value[SPRF_GATE_SIGMA_Q8] = 5000;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_FIRST + SPRF_GATE_SIGMA_Q8,
-                            tilt_filter_use(&tilt, &filter_law_sprf, &config));
+    config.value[gate] = 5000;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_FIRST + gate, tilt_filter_use(&tilt, robust, &config));
     TEST_ASSERT_EQUAL_MEMORY(&before, &tilt, sizeof tilt);
 }
 

@@ -55,7 +55,7 @@ static void begin_is_limited_to_the_formats(void)
 static void prediction_by_hand(void)
 {
     wide_from(&core, 10 * 65536L, 3 * 65536L, (filter_covariance_t){ ONE_UQ16, ONE_UQ24 / 2, ONE_UQ28 / 4 });
-    TEST_ASSERT_TRUE(wide_predict(&core, 20));
+    TEST_ASSERT_TRUE(filter_wide_predict(&core, 20));
     TEST_ASSERT_EQUAL_INT32(13 * 65536L, core.x_lsb_q16);
     TEST_ASSERT_EQUAL_UINT32(9 * ONE_UQ16 / 4, core.own.wide.p.p11);
     TEST_ASSERT_EQUAL_UINT32(3 * ONE_UQ24 / 4, core.own.wide.p.p12);
@@ -63,14 +63,14 @@ static void prediction_by_hand(void)
     /* q22 = 10000 x 0.01^3 = 0.01 with 16-bit mantissas */
     TEST_ASSERT_UINT32_WITHIN(ONE_UQ28 / 100 / 8192, ONE_UQ28 / 100, core.own.wide.q22_uq28);
     /* r^2 / (R S) = 49 / 3.25 */
-    TEST_ASSERT_UINT16_WITHIN(2, 3860, wide_distance_uq8(&core));
+    TEST_ASSERT_UINT16_WITHIN(2, 3860, filter_wide_distance_uq8(&core));
 }
 
 /* Predicted P = (3, 1; 1, 1) less q22: S = 4, w1 = 3/4, w2 = 1/4, what the update takes: (9/4, 3/4, 1/4); r = 100. */
 static void begin_by_hand(void)
 {
     wide_from(&core, 0, 0, (filter_covariance_t){ 2 * ONE_UQ16, 0, ONE_UQ28 });
-    TEST_ASSERT_TRUE(wide_predict(&core, 100));
+    TEST_ASSERT_TRUE(filter_wide_predict(&core, 100));
     core.own.wide.p.p22 = ONE_UQ28;
     TEST_ASSERT_EQUAL_UINT32(3 * ONE_UQ16, core.own.wide.p.p11);
     TEST_ASSERT_EQUAL_UINT32(ONE_UQ24, core.own.wide.p.p12);
@@ -87,7 +87,7 @@ static void assert_covariance(uint32_t p11_uq16, uint32_t p12_uq16, uint32_t p22
 static void kalman_update_by_hand(void)
 {
     begin_by_hand();
-    wide_correct(&core, 0, 0);
+    filter_wide_correct(&core, 0, 0);
     TEST_ASSERT_INT32_WITHIN(200, 75 * 65536L, core.x_lsb_q16);
     TEST_ASSERT_INT32_WITHIN(200, 25 * 65536L, core.rate_lsb);
     TEST_ASSERT_UINT16_WITHIN(2, 3 * ONE_UQ16 / 4, core.gain_uq16);
@@ -98,7 +98,7 @@ static void kalman_update_by_hand(void)
 static void loss_and_back_by_hand(void)
 {
     begin_by_hand();
-    wide_correct(&core, 0x8000, 0x8000);
+    filter_wide_correct(&core, 0x8000, 0x8000);
     TEST_ASSERT_INT32_WITHIN(200, 75 * 32768L, core.x_lsb_q16);
     TEST_ASSERT_INT32_WITHIN(200, 25 * 32768L, core.rate_lsb);
     assert_covariance(15 * ONE_UQ16 / 8, 5 * ONE_UQ16 / 8, 7 * ONE_UQ16 / 8);
@@ -108,11 +108,11 @@ static void loss_and_back_by_hand(void)
 static void covariance_grows_by_hand(void)
 {
     begin_by_hand();
-    wide_correct(&core, 0xFFFF, ONE_UQ16);
+    filter_wide_correct(&core, 0xFFFF, ONE_UQ16);
     assert_covariance(3 * ONE_UQ16, ONE_UQ16, ONE_UQ16);
     begin_by_hand();
     core.own.wide.p.p22 = 3 * ONE_UQ28 / 4;
-    wide_correct(&core, 0xFFFF, 3 * ONE_UQ16);
+    filter_wide_correct(&core, 0xFFFF, 3 * ONE_UQ16);
     assert_covariance(15 * ONE_UQ16 / 2, 5 * ONE_UQ16 / 2, 5 * ONE_UQ16 / 4);
 }
 
@@ -120,13 +120,13 @@ static void covariance_grows_by_hand(void)
 static void growth_ends_in_range(void)
 {
     wide_from(&core, 0, 0, (filter_covariance_t){ WIDE_GROWTH_END, 0, 0 });
-    TEST_ASSERT_TRUE(wide_predict(&core, 100));
+    TEST_ASSERT_TRUE(filter_wide_predict(&core, 100));
     uint32_t before = core.own.wide.p.p11;
-    wide_correct(&core, 0xFFFF, WIDE_BACK_MAX_UQ16);
+    filter_wide_correct(&core, 0xFFFF, WIDE_BACK_MAX_UQ16);
     TEST_ASSERT_EQUAL_HEX32(before, core.own.wide.p.p11);
     wide_from(&core, 0, 0, (filter_covariance_t){ WIDE_GROWTH_END - 1U, 0, 0 });
-    TEST_ASSERT_TRUE(wide_predict(&core, 100));
-    wide_correct(&core, 0xFFFF, WIDE_BACK_MAX_UQ16);
+    TEST_ASSERT_TRUE(filter_wide_predict(&core, 100));
+    filter_wide_correct(&core, 0xFFFF, WIDE_BACK_MAX_UQ16);
     TEST_ASSERT_UINT32_WITHIN(0x100000U, WIDE_P_END, core.own.wide.p.p11);
     TEST_ASSERT_TRUE(core.own.wide.p.p11 <= WIDE_P_END);
 }
@@ -140,13 +140,13 @@ static void range_is_at_least_1100(void)
         make(256, q_lsb2_s3[i]); /* q22 = 0.001 .. 1 */
         run_from(&core, 0, 0);
         uint16_t k = 0;
-        while (wide_predict(&core, 0) && k < steps[i]) {
+        while (filter_wide_predict(&core, 0) && k < steps[i]) {
             k++;
         }
         TEST_ASSERT_TRUE(k < steps[i]);
         TEST_ASSERT_TRUE(core.own.wide.p.p11 >= 1100 * ONE_UQ16);
         uint32_t p11 = core.own.wide.p.p11;
-        TEST_ASSERT_FALSE(wide_predict(&core, 0));
+        TEST_ASSERT_FALSE(filter_wide_predict(&core, 0));
         TEST_ASSERT_EQUAL_UINT32(p11, core.own.wide.p.p11);
         TEST_ASSERT_TRUE(core.own.wide.p.p22 <= WIDE_P_END + ONE_UQ28);
     }
@@ -156,14 +156,14 @@ static void range_is_at_least_1100(void)
 static void refused_sample_is_taken_at_the_end_of_the_range(void)
 {
     wide_from(&core, 0, 0, (filter_covariance_t){ 1000 * ONE_UQ16, 0, 0 });
-    bool grows = wide_predict(&core, 4000);
-    wide_refuse(&core, grows);
+    bool grows = filter_wide_predict(&core, 4000);
+    filter_wide_refuse(&core, grows);
     TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, core.flags);
     TEST_ASSERT_EQUAL_INT32(0, core.x_lsb_q16);
     TEST_ASSERT_EQUAL_UINT16(0, core.gain_uq16);
     wide_from(&core, 0, 0, (filter_covariance_t){ WIDE_P_END, 0, 0 });
-    grows = wide_predict(&core, 4000);
-    wide_refuse(&core, grows);
+    grows = filter_wide_predict(&core, 4000);
+    filter_wide_refuse(&core, grows);
     TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, core.flags);
     TEST_ASSERT_INT32_WITHIN(16000, 4000 * 65536L, core.x_lsb_q16);
 }
@@ -173,29 +173,29 @@ static void distance_saturates(void)
 {
     make(FILTER_R_MIN_LSB2_Q8, 10000);
     wide_from(&core, -4608 * 65536L, 0, (filter_covariance_t){ 0, 0, 0 });
-    (void)wide_predict(&core, 4095);
-    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, wide_distance_uq8(&core));
+    (void)filter_wide_predict(&core, 4095);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, filter_wide_distance_uq8(&core));
     make(FILTER_R_MAX_LSB2_Q8, 10000);
     wide_from(&core, 256, 0, (filter_covariance_t){ WIDE_P_END, 0, 0 });
-    (void)wide_predict(&core, 0);
-    TEST_ASSERT_EQUAL_UINT16(0, wide_distance_uq8(&core));
+    (void)filter_wide_predict(&core, 0);
+    TEST_ASSERT_EQUAL_UINT16(0, filter_wide_distance_uq8(&core));
     wide_from(&core, 0, 0, (filter_covariance_t){ 0, 0, 0 });
-    (void)wide_predict(&core, 316); /* 99,856 / 1,000 */
-    TEST_ASSERT_UINT16_WITHIN(10, 25563, wide_distance_uq8(&core));
+    (void)filter_wide_predict(&core, 316); /* 99,856 / 1,000 */
+    TEST_ASSERT_UINT16_WITHIN(10, 25563, filter_wide_distance_uq8(&core));
 }
 
 /* Fast motion ends at both bounds. */
 static void states_saturate(void)
 {
     wide_from(&core, 4600 * 65536L, 4600 * 65536L, (filter_covariance_t){ ONE_UQ16, 0, 0 });
-    (void)wide_predict(&core, 0);
+    (void)filter_wide_predict(&core, 0);
     TEST_ASSERT_EQUAL_INT32((int32_t)FILTER_X_MAX_LSB * 65536, core.x_lsb_q16);
     TEST_ASSERT_EQUAL_UINT8(FILTER_SATURATED, core.flags);
     wide_from(&core, 0, -4600 * 65536L, (filter_covariance_t){ 2 * ONE_UQ16, 0, ONE_UQ28 });
-    (void)wide_predict(&core, -4096);
+    (void)filter_wide_predict(&core, -4096);
     core.size_lsb_uq16 = (uint32_t)4000 << 16;
     core.negative = true;
-    wide_correct(&core, 0, 0);
+    filter_wide_correct(&core, 0, 0);
     TEST_ASSERT_EQUAL_INT32((int32_t)FILTER_X_MAX_LSB * -65536, core.rate_lsb);
     TEST_ASSERT_EQUAL_UINT8(FILTER_SATURATED, core.flags);
 }

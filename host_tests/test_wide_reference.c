@@ -35,7 +35,7 @@ static void find_pairs(void)
 {
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         const filter_law_t *law = filter_listed((filter_kind_t)kind);
-        if (law->set_noise == wide_set_noise) {
+        if (law->set_noise == filter_wide_set_noise) {
             pair_t *pair = &pairs[pair_count++];
             bool waits = law_facts((filter_kind_t)kind).envelope.rule == ENVELOPE_WAITS;
             *pair = (pair_t){ .law = law,

@@ -17,9 +17,9 @@ FORBIDDEN = {
     "heap": r"malloc|free|calloc|realloc|alloca|__brkval",
     "printf": r"\w*(printf|scanf)\w*|puts|fputs|puts_P|dtostrf|dtostre|strto[dl]\w*|ltoa|itoa|ultoa|utoa|__\w*toa_ncheck",
 }
-DIVISION = re.compile(r"__u?divmod[qhps]+i4(_\w+)?|__(u?div|u?mod)[qhs]i3|fx_scaled_div|\w*divide")
+DIVISION = re.compile(r"__u?divmod[qhps]+i4(_\w+)?|__(u?div|u?mod)[qhs]i3|filter_fx_scaled_div|\w*divide")
 # what runs per sample: the tracker with all that laws do there, the noise estimate and the angles
-STEADY = ["filter_update", "filter_missing", "filter_restart", "noise_update", "tilt_angles"]
+STEADY = ["filter_update", "filter_missing", "filter_restart", "filter_noise_update", "tilt_angles"]
 
 
 def kind_of(name):

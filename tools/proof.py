@@ -284,7 +284,7 @@ def main():
     entries = load_entries()
     wanted, plants = chosen(patterns, entries)
     plants = sampled(plants)
-    wanted.sort(key=lambda name: name != "kalman_step" and not name.startswith("law_"))  # the longest first
+    wanted.sort(key=lambda name: name != "filter_kalman_step" and not name.startswith("law_"))  # the longest first
     with concurrent.futures.ThreadPoolExecutor(max_workers=2) as pool:
         broken, met, reached = run_entries(pool, entries, wanted)
         failed, passed = len(broken), len(wanted) - len(broken)

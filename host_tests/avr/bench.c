@@ -133,7 +133,7 @@ static const subject_t subjects[] = { BENCH_LIST(SUBJECT_ROW) };
 static noise_t noise;
 static void NOINLINE update_noise(void)
 {
-    sink = noise_update(&noise, z_lsb);
+    sink = filter_noise_update(&noise, z_lsb);
 }
 
 static tilt_t tilt;
@@ -266,7 +266,7 @@ static void run_noise(void)
     for (uint8_t r = 0; r < sizeof regimes / sizeof regimes[0]; r++) {
         for (uint8_t i = 0; i < sizeof rates_dhz / sizeof rates_dhz[0]; i++) {
             put_section(name, regimes[r].name, pgm_read_word(&rates_dhz[i]));
-            noise_init(&noise, pgm_read_word(&rates_dhz[i]), (i & 1u) != 0);
+            filter_noise_init(&noise, pgm_read_word(&rates_dhz[i]), (i & 1u) != 0);
             for (sample_number = 0; sample_number < regimes[r].count; sample_number++) {
                 regimes[r].sample();
                 put_hex((uint16_t)(timed(update_noise) - overhead));

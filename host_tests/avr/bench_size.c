@@ -58,10 +58,10 @@ FILTER_LIST(USE)
 static void use_noise(void)
 {
     static noise_t state;
-    noise_init(&state, (uint16_t)in, in > 0);
-    out = noise_update(&state, in);
-    noise_gap(&state);
-    out = (int32_t)noise_r_lsb2_q8(&state);
+    filter_noise_init(&state, (uint16_t)in, in > 0);
+    out = filter_noise_update(&state, in);
+    filter_noise_gap(&state);
+    out = (int32_t)filter_noise_r_lsb2_q8(&state);
 }
 
 static void use_angles(void)

@@ -29,15 +29,15 @@ static void noise_item(uint16_t index)
 {
     uint32_t v = vectors_random();
     if (index % 250U == 0U) {
-        noise_init(&noise, (uint16_t)(50U + (v >> 8) % 39951U), (v & 1U) != 0U);
+        filter_noise_init(&noise, (uint16_t)(50U + (v >> 8) % 39951U), (v & 1U) != 0U);
     } else if ((v & 0x3FU) == 0U) {
-        noise_gap(&noise);
+        filter_noise_gap(&noise);
     }
     int16_t z = (int16_t)((int32_t)(vectors_random() >> 16) - 32768);
     z = (int16_t)(z / (int16_t)(1 << ((index >> 5) & 14U)));
     vectors_input((uint16_t)z);
-    vectors_output(noise_update(&noise, z), 1);
-    vectors_output(noise_r_lsb2_q8(&noise), 4);
+    vectors_output(filter_noise_update(&noise, z), 1);
+    vectors_output(filter_noise_r_lsb2_q8(&noise), 4);
     vectors_state(&noise, sizeof noise);
 }
 

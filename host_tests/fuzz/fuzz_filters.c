@@ -87,7 +87,7 @@ static int32_t call(filter_t *f, uint8_t operation, int16_t z, uint32_t r, int32
         return x;
     case 7:
         filter_reset(f, z);
-        return (int32_t)tracker_limited_z(z) * 65536;
+        return (int32_t)filter_tracker_limited_z(z) * 65536;
     default:
         return filter_update(f, z);
     }
@@ -118,8 +118,8 @@ static int32_t call_both(filter_t *f, filter_t *twin, fuzz_input_t *in, int32_t 
 /* The estimate of R beside the filter, as the firmware runs it. */
 static void noise_too(noise_t *n, int16_t z)
 {
-    bool changed = noise_update(n, z);
-    uint32_t r = noise_r_lsb2_q8(n);
+    bool changed = filter_noise_update(n, z);
+    uint32_t r = filter_noise_r_lsb2_q8(n);
     FUZZ_CHECK(r >= FILTER_R_MIN_LSB2_Q8 && r <= FILTER_R_MAX_LSB2_Q8, "R %lu, changed %d", (unsigned long)r, changed);
     FUZZ_CHECK(n->mean_lsb2_q16 >= n->floor_lsb2_q16, "mean %lu below its floor", (unsigned long)n->mean_lsb2_q16);
 }
@@ -133,7 +133,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     int32_t x = 0;
     check(&f, x);
     noise_t noise;
-    noise_init(&noise, (uint16_t)within(125, 8000, fuzz_u8(&in)), size % 2 != 0);
+    filter_noise_init(&noise, (uint16_t)within(125, 8000, fuzz_u8(&in)), size % 2 != 0);
     filter_t twin = f;
     for (unsigned calls = 0; fuzz_more(&in); calls++) {
         if (calls % 16 == 15) {

@@ -55,7 +55,7 @@ static void miss(axis_t *a)
 {
     if (a->missing++ < a->hold) {
         (void)filter_missing(&a->filter);
-        noise_gap(&a->noise);
+        filter_noise_gap(&a->noise);
     } else {
         filter_restart(&a->filter);
     }
@@ -67,11 +67,11 @@ static void take(axis_t *a, int16_t z_lsb, bool at_rail)
     a->missing = 0;
     if (at_rail) {
         (void)filter_missing(&a->filter);
-        noise_gap(&a->noise);
+        filter_noise_gap(&a->noise);
         return;
     }
-    if (a->fixed_r_lsb2_q8 == 0 && noise_update(&a->noise, z_lsb)) {
-        a->r_lsb2_q8 = noise_r_lsb2_q8(&a->noise);
+    if (a->fixed_r_lsb2_q8 == 0 && filter_noise_update(&a->noise, z_lsb)) {
+        a->r_lsb2_q8 = filter_noise_r_lsb2_q8(&a->noise);
         filter_set_noise(&a->filter, a->r_lsb2_q8);
     }
     (void)filter_update(&a->filter, z_lsb);
@@ -108,8 +108,8 @@ int libtilt_axis(int kind, uint16_t rate_dhz, const int64_t *values, const uint8
     if (answer != FILTER_ACCEPTED) {
         return answer;
     }
-    noise_init(&axis.noise, rate_dhz, noisy_axis);
-    axis.r_lsb2_q8 = r_lsb2_q8 != 0 ? r_lsb2_q8 : noise_r_lsb2_q8(&axis.noise);
+    filter_noise_init(&axis.noise, rate_dhz, noisy_axis);
+    axis.r_lsb2_q8 = r_lsb2_q8 != 0 ? r_lsb2_q8 : filter_noise_r_lsb2_q8(&axis.noise);
     filter_set_noise(&axis.filter, axis.r_lsb2_q8);
     for (int64_t i = 0; i < count; i++) {
         if (state[i] == MISSING) {

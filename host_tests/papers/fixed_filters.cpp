@@ -83,10 +83,10 @@ void begin_table1(filter_t &f)
     };
     constexpr double p11_deg2 = 0.7;
     constexpr double p22_deg2 = 0.04 * period_s * period_s;
-    if (f.law->start == kalman_start) {
+    if (f.law->start == filter_kalman_start) {
         const std::uint32_t r = f.own.kalman.r_lsb2_q8;
         kalman_from(&f, x_q16, rate_q16, { fixed(per_r(p11_deg2, r), 28), 0, fixed(per_r(p22_deg2, r), 28) });
-    } else if (f.law->report == wide_report) {
+    } else if (f.law->report == filter_wide_report) {
         const std::uint32_t r = f.own.wide.r_lsb2_q8;
         wide_from(&f, x_q16, rate_q16, { fixed(per_r(p11_deg2, r), 16), 0, fixed(per_r(p22_deg2, r), 28) });
     } else {

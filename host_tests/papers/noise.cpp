@@ -51,13 +51,13 @@ double identified_ratio(const Case &what, const std::vector<double> &truth, std:
     test_random_t random;
     random_seed(&random, seed);
     noise_t n;
-    noise_init(&n, static_cast<std::uint16_t>(10 * what.rate_hz), false);
+    filter_noise_init(&n, static_cast<std::uint16_t>(10 * what.rate_hz), false);
     for (const double lsb : truth) {
         const double noise = std::sqrt(r_deg2) * random_normal(&random);
         const double off = random_uniform(&random) < what.bad ? 20.0 : 0.0;
-        (void)noise_update(&n, as_sample(lsb + (noise + off) * lsb_per_degree));
+        (void)filter_noise_update(&n, as_sample(lsb + (noise + off) * lsb_per_degree));
     }
-    return noise_r_lsb2_q8(&n) / (256.0 * 1.5 * variance_lsb2());
+    return filter_noise_r_lsb2_q8(&n) / (256.0 * 1.5 * variance_lsb2());
 }
 
 // Standard deviation by the mean, with the 95 % interval that the fourth moment gives it.

@@ -10,7 +10,7 @@
 #define MEAN_END 32440    /* rest_mean_lsb_q4 */
 #define LEVEL_END 18841   /* 1.15 g */
 #define SCALE_END 25126   /* 10600 over the least two components */
-#define KNOWN_LEAST 13824 /* sqrt(3/4) as fx_isqrt32 tells it */
+#define KNOWN_LEAST 13824 /* sqrt(3/4) as filter_fx_isqrt32 tells it */
 
 #define BETWEEN(v, low, high) ((low) <= (v) <= (high))
 #define OF_ALL(v, low, high) (BETWEEN((v)[0], low, high) && BETWEEN((v)[1], low, high) && BETWEEN((v)[2], low, high))
@@ -68,7 +68,8 @@ static void prepare_bias(calibration_applied_t *applied, const calibration_t *c)
     requires BETWEEN(w_q14[0], -32768, 32767) && BETWEEN(w_q14[1], -32768, 32767) && BETWEEN(w_q14[2], -16384, 49151);
     assigns applied->matrix_q14[0..8] \from applied->matrix_q14[0..8], *c, w_q14[0..2], ours;
 */
-static void prepare_column(calibration_applied_t *applied, const calibration_t *c, const int32_t w_q14[3], uint8_t ours);
+static void prepare_column(calibration_applied_t *applied, const calibration_t *c, const int32_t w_q14[3],
+                           uint8_t ours);
 
 /*@ assigns out_q8[0..2] \from *applied, a_q8[0..2];
     ensures \initialized(&out_q8[0..2]);

@@ -19,7 +19,7 @@
 #define SMALL(q) ((q).p11 < 2 * ONE && (q).p12 < 2 * ONE && (q).p22 < 2 * ONE)
 #define ROOM(q) ((q).p11 < 8 * ONE && (q).p22 < 3 * ONE)
 #define HALF(q, h) (ROOM(q) && ONE / 2 * (h) <= (q).p12 < ONE / 2 * ((h) + 1) && (q).p11 >= ONE / 4 * (2 * (h)-1))
-#define HELD(q)                                                                                              \
+#define HELD(q) \
     ((ROOM(q) && (q).p12 < ONE) || HALF(q, 2) || HALF(q, 3) || HALF(q, 4) || HALF(q, 5) || HALF(q, 6) || HALF(q, 7))
 #define WIDTH(q) (ROOM(q) && (q).p12 < 4 * ONE)
 #define COVARIANCE(f) (SMALL((f)->own.kalman.p) || HELD((f)->own.kalman.p))
@@ -36,9 +36,9 @@
 #endif
 /* A run of three samples or more, or none. */
 #define STEPS(v) ((v) == 0 || 2 <= (v) <= 8)
-#define PARAMETERS(f)                                                                                  \
-    (16 <= (f)->own.kalman.q22_uq28 <= ONE && 16 <= (f)->own.kalman.p22_start_uq28 <= ONE &&           \
-     R_LEAST <= (f)->own.kalman.r_lsb2_q8 <= R_MOST && SCALED((f)->own.kalman.drive_lsb2) &&           \
+#define PARAMETERS(f)                                                                                     \
+    (16 <= (f)->own.kalman.q22_uq28 <= ONE && 16 <= (f)->own.kalman.p22_start_uq28 <= ONE &&              \
+     R_LEAST <= (f)->own.kalman.r_lsb2_q8 <= R_MOST && SCALED((f)->own.kalman.drive_lsb2) &&              \
      SCALED((f)->own.kalman.start_lsb2) && FLAG((f)->own.kalman.gated) && FLAG((f)->own.kalman.coarse) && \
      STEPS((f)->own.kalman.steps))
 /* run never passes 8: a run of `steps` samples restarts with the next, or with steps 0 stays at 1. */
@@ -64,12 +64,12 @@ static inline void grow(filter_kalman_t *k);
  * What a gate of gate_lsb2_uq4 leaves outside: size^2 > 4096 gate, where P11 + 1 is at least 1; sizes by four (when
  * coarse, 16 times as large). So that gate / size^2, of which soft's weight is made, is known to a factor of 16.
  */
-#define FAR(f, k, from, to, gate)                                                                      \
+#define FAR(f, k, from, to, gate)                                                                                     \
     ((f)->own.kalman.coarse == (k) && 256 * (from) <= (f)->size_lsb_uq16 && (f)->size_lsb_uq16 <= 256 * (to) + 255 && \
      (f)->own.kalman.gate_lsb2_uq4 < (gate))
-#define FARTHER(f)                                                                                               \
+#define FARTHER(f)                                                                                                \
     (FAR(f, 0, 1, 63, 1) || FAR(f, 0, 64, 255, 16) || FAR(f, 0, 256, 1023, 256) || FAR(f, 0, 1024, 4095, 4096) || \
-     FAR(f, 0, 4096, 8704 * 256, 65536) || FAR(f, 1, 16, 1023, 1) || FAR(f, 1, 1024, 4095, 16) ||             \
+     FAR(f, 0, 4096, 8704 * 256, 65536) || FAR(f, 1, 16, 1023, 1) || FAR(f, 1, 1024, 4095, 16) ||                 \
      FAR(f, 1, 4096, 16383, 256) || FAR(f, 1, 16384, 65535, 4096) || FAR(f, 1, 65536, 8704 * 256, 65536))
 /*@ requires f->size_lsb_uq16 <= SIZE_END && f->own.kalman.p.p11 < 8 * ONE && FLAG(f->own.kalman.coarse);
     assigns f->own.kalman.limit_lsb2, \result \from f->size_lsb_uq16, f->own.kalman.p, f->own.kalman.coarse,
@@ -79,8 +79,8 @@ static inline void grow(filter_kalman_t *k);
 */
 static bool within_gate(filter_t *f);
 
-#define KALMAN_STATE                                                                                              \
-    f->x_lsb_q16, f->rate_lsb, f->own.kalman.p.p11, f->own.kalman.p.p12, f->own.kalman.p.p22, f->size_lsb_uq16,    \
+#define KALMAN_STATE                                                                                            \
+    f->x_lsb_q16, f->rate_lsb, f->own.kalman.p.p11, f->own.kalman.p.p12, f->own.kalman.p.p22, f->size_lsb_uq16, \
         f->own.kalman.limit_lsb2, f->gain_uq16, f->flags
 #define KALMAN_SEES f->x_lsb_q16, f->rate_lsb, f->own, f->rate_max_lsb, f->flags, f->previous_lsb, z_lsb
 /*@ requires SAMPLE(z_lsb);
@@ -91,7 +91,7 @@ static bool within_gate(filter_t *f);
     ensures FLAG(\result) && FLAG(f->negative);
     ensures HELD(f->own.kalman.p);
 */
-bool kalman_step(filter_t *f, int16_t z_lsb, uint8_t what);
+bool filter_kalman_step(filter_t *f, int16_t z_lsb, uint8_t what);
 
 /* Of P: soft, of which more is not known here, says WIDTH. */
 #ifndef REFUSED_WITH
@@ -107,7 +107,7 @@ bool kalman_step(filter_t *f, int16_t z_lsb, uint8_t what);
     ensures REFUSED_LEAVES(f->own.kalman.p);
     ensures FLAG(\result);
 */
-bool kalman_refused(filter_t *f, int16_t z_lsb);
+bool filter_kalman_refused(filter_t *f, int16_t z_lsb);
 
 /*@ requires SCALED(f->own.kalman.drive_lsb2) && SCALED(f->own.kalman.start_lsb2);
     requires R_LEAST <= r_lsb2_q8 <= R_ANY;
@@ -117,14 +117,14 @@ bool kalman_refused(filter_t *f, int16_t z_lsb);
     ensures R_LEAST <= f->own.kalman.r_lsb2_q8 <= R_ANY;
     ensures r_lsb2_q8 <= R_END ==> f->own.kalman.r_lsb2_q8 <= R_END;
 */
-void kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8);
+void filter_kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8);
 
 /*@ requires gate_sigma_q8 <= 4096 && R_LEAST <= f->own.kalman.r_lsb2_q8 <= R_END && f->rate_max_lsb <= X_MAX_Q16;
     assigns f->own.kalman.gated, f->own.kalman.coarse, f->own.kalman.gate_lsb2_uq4, f->own.kalman.agree_lsb \from
             gate_sigma_q8, f->own.kalman.r_lsb2_q8, f->rate_max_lsb;
     ensures FLAG(f->own.kalman.gated) && FLAG(f->own.kalman.coarse);
 */
-void kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8);
+void filter_kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8);
 
 /* With what any Kalman law's set_noise does (proof_kalman.c). */
 /*@ requires 50 <= config->rate_dhz <= 40000 && 3 <= config->value[0] <= R_END && 1 <= config->value[1] <= 1000000000;
@@ -135,7 +135,7 @@ void kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8);
             f->own.kalman.gate_lsb2_uq4, f->own.kalman.agree_lsb \from *config, rate_max_lsb_s, f->own;
     ensures PARAMETERS(f) && f->rate_max_lsb <= X_MAX_Q16;
 */
-void kalman_set_up(filter_t *f, const filter_config_t *config, uint32_t rate_max_lsb_s);
+void filter_kalman_set_up(filter_t *f, const filter_config_t *config, uint32_t rate_max_lsb_s);
 
 #include "kalman.c"
 

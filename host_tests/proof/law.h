@@ -24,15 +24,13 @@
 #define SAMPLE_Q16(x) (-268435456 <= (x) <= 268369920)
 #define WITHIN(v, end) (-(end) <= (v) <= (end))
 #define FLAG(v) ((v) == 0 || (v) == 1)
-#define TRACKED(f)                                                                                            \
+#define TRACKED(f)                                                                                             \
     (WITHIN((f)->x_lsb_q16, X_MAX_Q16) && WITHIN((f)->rate_lsb, RATE_END) && (f)->size_lsb_uq16 <= SIZE_END && \
      (f)->rate_max_lsb <= RATE_END && SAMPLE((f)->previous_lsb) && 50 <= (f)->rate_dhz <= 40000)
 
 /* So many samples of the start are there. */
-#define SEEN(f, n) \
-    ((f)->collected <= (n) || SAMPLE((f)->own.start.ascending_lsb[n]))
-#define STARTING(f)                                                                                             \
-    ((f)->collected < 5 && (f)->rate_lsb == 0 && SEEN(f, 0) && SEEN(f, 1) && SEEN(f, 2) && SEEN(f, 3))
+#define SEEN(f, n) ((f)->collected <= (n) || SAMPLE((f)->own.start.ascending_lsb[n]))
+#define STARTING(f) ((f)->collected < 5 && (f)->rate_lsb == 0 && SEEN(f, 0) && SEEN(f, 1) && SEEN(f, 2) && SEEN(f, 3))
 
 /*
  * Where a law says CELLS the estimate behind its clamp is known by cells of 512 LSB, and the innovation with it as one
@@ -41,16 +39,16 @@
 #define CELL(v, k) (33554432 * (k) <= (v) < 33554432 * ((k) + 1))
 #define BACK(f, k) (CELL((f)->x_lsb_q16, k) && (f)->negative == 1 && (f)->size_lsb_uq16 < (512 * (k) + 4608) * 65536)
 #define FORTH(f, k) (CELL((f)->x_lsb_q16, k) && (f)->negative == 0 && (f)->size_lsb_uq16 <= (4095 - 512 * (k)) * 65536)
-#define REACH(f)                                                                                                    \
-    (BACK(f, -8) || BACK(f, -7) || BACK(f, -6) || BACK(f, -5) || BACK(f, -4) || BACK(f, -3) || BACK(f, -2) ||       \
-     BACK(f, -1) || BACK(f, 0) || BACK(f, 1) || BACK(f, 2) || BACK(f, 3) || BACK(f, 4) || BACK(f, 5) ||             \
-     BACK(f, 6) || BACK(f, 7) || BACK(f, 8) || ((f)->x_lsb_q16 == X_MAX_Q16 && (f)->negative == 1) ||               \
-     FORTH(f, -9) || FORTH(f, -8) || FORTH(f, -7) || FORTH(f, -6) || FORTH(f, -5) || FORTH(f, -4) || FORTH(f, -3) || \
-     FORTH(f, -2) || FORTH(f, -1) || FORTH(f, 0) || FORTH(f, 1) || FORTH(f, 2) || FORTH(f, 3) || FORTH(f, 4) ||     \
-     FORTH(f, 5) || FORTH(f, 6) || FORTH(f, 7))
+#define REACH(f)                                                                                                      \
+    (BACK(f, -8) || BACK(f, -7) || BACK(f, -6) || BACK(f, -5) || BACK(f, -4) || BACK(f, -3) || BACK(f, -2) ||         \
+     BACK(f, -1) || BACK(f, 0) || BACK(f, 1) || BACK(f, 2) || BACK(f, 3) || BACK(f, 4) || BACK(f, 5) || BACK(f, 6) || \
+     BACK(f, 7) || BACK(f, 8) || ((f)->x_lsb_q16 == X_MAX_Q16 && (f)->negative == 1) || FORTH(f, -9) ||               \
+     FORTH(f, -8) || FORTH(f, -7) || FORTH(f, -6) || FORTH(f, -5) || FORTH(f, -4) || FORTH(f, -3) || FORTH(f, -2) ||  \
+     FORTH(f, -1) || FORTH(f, 0) || FORTH(f, 1) || FORTH(f, 2) || FORTH(f, 3) || FORTH(f, 4) || FORTH(f, 5) ||        \
+     FORTH(f, 6) || FORTH(f, 7))
 #ifdef CELLS
-#define BOUNDED(v)                                                                                                   \
-    (CELL(v, -9) || CELL(v, -8) || CELL(v, -7) || CELL(v, -6) || CELL(v, -5) || CELL(v, -4) || CELL(v, -3) ||        \
+#define BOUNDED(v)                                                                                                     \
+    (CELL(v, -9) || CELL(v, -8) || CELL(v, -7) || CELL(v, -6) || CELL(v, -5) || CELL(v, -4) || CELL(v, -3) ||          \
      CELL(v, -2) || CELL(v, -1) || CELL(v, 0) || CELL(v, 1) || CELL(v, 2) || CELL(v, 3) || CELL(v, 4) || CELL(v, 5) || \
      CELL(v, 6) || CELL(v, 7) || CELL(v, 8) || (v) == X_MAX_Q16)
 #define MET REACH
@@ -87,7 +85,7 @@ static int32_t flash_i32(const int32_t *p);
 /*@ assigns \result \from r_lsb2_q8;
     ensures 3 <= \result <= 256000;
 */
-uint32_t tracker_limited_r(uint32_t r_lsb2_q8);
+uint32_t filter_tracker_limited_r(uint32_t r_lsb2_q8);
 
 #include "fx.c"
 #include "parameters.c"
@@ -138,7 +136,7 @@ static void any_own(filter_t *f, uint8_t kind);
 /* Of filter.c, the rest of which would bring names that the laws have too. */
 void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
-    LAW_OF(f, set_noise)(f, tracker_limited_r(r_lsb2_q8));
+    LAW_OF(f, set_noise)(f, filter_tracker_limited_r(r_lsb2_q8));
 }
 
 static void any_running(filter_t *f, const filter_law_t *law, uint8_t kind)
@@ -210,7 +208,8 @@ static void prove_set_up(const filter_law_t *law)
 {
     filter_config_t config;
     for (uint32_t from = 32; from <= 32768U; from *= 2U) { /* shipped values, each in its range */
-        config = filter_defaults(law, ANY_U16((from < 50U) ? 50U : (uint16_t)from, (from < 32768U) ? (uint16_t)(2U * from - 1U) : 40000U));
+        config = filter_defaults(
+            law, ANY_U16((from < 50U) ? 50U : (uint16_t)from, (from < 32768U) ? (uint16_t)(2U * from - 1U) : 40000U));
         filter_answer_t shipped = filter_judge(law, &config);
         //@ check shipped == FILTER_ACCEPTED || shipped == FILTER_REFUSED_TOGETHER;
     }
@@ -288,12 +287,12 @@ static void prove_fade(const filter_law_t *law)
         filter_t f;
         any_running(&f, law, kind);
         //@ admit ADMITTED(&f);
-        tracker_fade(&f, true);
+        filter_tracker_fade(&f, true);
         //@ check first: TRACKED(&f) && KEPT(&f) && f.collected == 5;
         //@ check first_force: FORCE(&f);
         any_running(&f, law, kind);
         //@ admit ADMITTED(&f);
-        tracker_damp(&f);
+        filter_tracker_damp(&f);
         //@ check later: TRACKED(&f) && KEPT(&f) && f.collected == 5;
         //@ check later_force: FORCE(&f);
     }
@@ -324,10 +323,10 @@ static void prove_law(const filter_law_t *law)
     prove_report(law);
 }
 
-#define PROVE_LAW(name)                  \
-    void proof_law_##name(void)          \
-    {                                    \
-        prove_law(&filter_law_##name);   \
+#define PROVE_LAW(name)                \
+    void proof_law_##name(void)        \
+    {                                  \
+        prove_law(&filter_law_##name); \
     }
 
 #endif

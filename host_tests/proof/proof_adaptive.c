@@ -5,8 +5,8 @@
 #define K_END 2577072127    /* 39322 and a fraction */
 #define SPREAD_END 36864    /* 90 LSB times 1.6 */
 
-#define TOLD(a)                                                                                                  \
-    (256 <= (a)->gate_sigma_q8 <= 4096 && 32 <= (a)->slow_uq16 <= 39322 && 32 <= (a)->fast_uq16 <= 39322 &&      \
+#define TOLD(a)                                                                                             \
+    (256 <= (a)->gate_sigma_q8 <= 4096 && 32 <= (a)->slow_uq16 <= 39322 && 32 <= (a)->fast_uq16 <= 39322 && \
      (a)->share_uq16 <= 15728 && (a)->confirm >= 3 && FLAG((a)->guarded) && FLAG((a)->identify) && FLAG((a)->turn))
 #define MEMORY(a) (WITHIN((a)->mean_lsb_q24, MEAN_END) && (a)->k_uq32 <= K_END)
 #define SCATTER(v) (0x1A0000 <= (v) <= 0x5A000000)
@@ -16,12 +16,15 @@
 #define FORCE(f) (RUNNING(&(f)->own.adaptive) && FLAG((f)->negative))
 #define KINDS 1
 #define CONFIGURATIONS(law) 10
-#include "law.h"
 #include "adaptive.h"
+#include "law.h"
 
-/* The mean of innovations, its top bit turned over, and terms of at least 0; or the scatter and what is expected of it. */
+/*
+ * The mean of innovations, its top bit turned over, and terms of at least 0; or the scatter and what is expected of it.
+ */
 /*@ requires part: (expected_uq8 == mean_uq24 / 65536 && 1 <= mean_uq24 && 32768 <= term_uq8 && weight_uq16 <= 15728) ||
-                   (mean_uq24 / 65536 <= expected_uq8 <= mean_uq24 / 32768 && SCATTER(mean_uq24) && weight_uq16 <= 8192);
+                   (mean_uq24 / 65536 <= expected_uq8 <= mean_uq24 / 32768 && SCATTER(mean_uq24) &&
+                    weight_uq16 <= 8192);
     assigns \result \from mean_uq24, expected_uq8, term_uq8, weight_uq16;
     ensures \result >= 1;
 */
@@ -116,7 +119,8 @@ void proof_averaged(void)
     }
     for (uint16_t from = 26; from <= 23040U; from = (uint16_t)(2U * from)) {
         (void)averaged(ANY_U32((uint32_t)from << 16, (from < 11520U) ? ((uint32_t)from << 17) - 1U : 0x5A000000U),
-                       ANY_U16(from, (from < 16384U) ? 4U * from : UINT16_MAX), ANY_U16(0, UINT16_MAX), ANY_U16(0, 8192));
+                       ANY_U16(from, (from < 16384U) ? 4U * from : UINT16_MAX), ANY_U16(0, UINT16_MAX),
+                       ANY_U16(0, 8192));
     }
 }
 

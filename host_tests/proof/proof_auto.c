@@ -10,16 +10,16 @@
 #define SQUARE_END 16776704 /* the square of any eight sigmas of 16 bits */
 #define SCORE_END 134213639 /* 8 SQUARE_END + 7, below 2^27 */
 
-
-#define MOTION(m) (WITHIN((m)->x_lsb_q16, X_MAX_Q16) && WITHIN((m)->rate_lsb_q16, X_MAX_Q16) && K_LEAST <= (m)->k_uq16 <= K_END)
+#define MOTION(m) \
+    (WITHIN((m)->x_lsb_q16, X_MAX_Q16) && WITHIN((m)->rate_lsb_q16, X_MAX_Q16) && K_LEAST <= (m)->k_uq16 <= K_END)
 #define MEMBER(m) (MOTION(m) && (m)->score_lsb2_uq8 <= SCORE_END && -5 < (m)->refused < 5)
 #define FINAL_K(k) (K_LEAST <= (k) <= K_END)
-#define KEPT(f)                                                                                          \
-    ((f)->own.bank.gate_sigma_q8 <= 4096 && FINAL_K((f)->own.bank.final_k_uq16[0]) &&                    \
+#define KEPT(f)                                                                       \
+    ((f)->own.bank.gate_sigma_q8 <= 4096 && FINAL_K((f)->own.bank.final_k_uq16[0]) && \
      FINAL_K((f)->own.bank.final_k_uq16[1]) && FINAL_K((f)->own.bank.final_k_uq16[2]))
-#define FORCE(f)                                                                                         \
-    (MEMBER(&(f)->own.bank.members[0]) && MEMBER(&(f)->own.bank.members[1]) &&                           \
-     MEMBER(&(f)->own.bank.members[2]) && (f)->own.bank.chosen < 3 && (f)->own.bank.shown < 3)
+#define FORCE(f)                                                                                                    \
+    (MEMBER(&(f)->own.bank.members[0]) && MEMBER(&(f)->own.bank.members[1]) && MEMBER(&(f)->own.bank.members[2]) && \
+     (f)->own.bank.chosen < 3 && (f)->own.bank.shown < 3)
 #define KINDS 1
 #include "law.h"
 
@@ -45,7 +45,8 @@ static uint8_t refused(filter_member_t *m, bool below, int16_t z_lsb);
     requires size_lsb_uq8 <= U_END / 256;
     requires reach: (below != 0 ==> m->x_lsb_q16 - 256 * size_lsb_uq8 >= -Z_LEAST_Q16) &&
                     (below == 0 ==> m->x_lsb_q16 + 256 * size_lsb_uq8 <= Z_MOST_Q16);
-    assigns m->x_lsb_q16, m->rate_lsb_q16, m->k_uq16, f->flags, \result \from *m, f->rate_max_lsb, f->flags, final_k, size_lsb_uq8, below;
+    assigns m->x_lsb_q16, m->rate_lsb_q16, m->k_uq16, f->flags, \result \from *m, f->rate_max_lsb,
+            f->flags, final_k, size_lsb_uq8, below;
     ensures MOTION(m);
     ensures \result <= GAIN_END;
 */
@@ -176,7 +177,8 @@ void proof_choose(void)
         for (uint32_t from = 1; from <= SCORE_END; from *= 2U) {
             any_running(&f, &filter_law_auto, 0);
             f.own.bank.chosen = chosen;
-            f.own.bank.members[chosen].score_lsb2_uq8 = ANY_U32(from, (2U * from <= SCORE_END) ? 2U * from - 1U : SCORE_END);
+            f.own.bank.members[chosen].score_lsb2_uq8 = ANY_U32(from,
+                                                                (2U * from <= SCORE_END) ? 2U * from - 1U : SCORE_END);
             choose(&f);
         }
     }

@@ -77,7 +77,7 @@ void proof_kalman_step(void)
     filter_t f;
     any_running(&f, NULL, 1);
     //@ admit COVARIANCE(&f);
-    (void)kalman_step(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB), ANY_U8(0, 2));
+    (void)filter_kalman_step(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB), ANY_U8(0, 2));
 }
 
 void proof_kalman_refused(void)
@@ -87,7 +87,7 @@ void proof_kalman_refused(void)
         filter_t f;
         any_running(&f, NULL, kind);
         //@ admit HELD(f.own.kalman.p);
-        (void)kalman_refused(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
+        (void)filter_kalman_refused(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
     }
 }
 
@@ -95,8 +95,8 @@ void proof_kalman_set_variance(void)
 {
     filter_t f;
     any_running(&f, NULL, 0);
-    kalman_set_variance(&f, ANY_U32(R_LEAST, R_END));
-    kalman_set_variance(&f, ANY_U32(R_END + 1, R_ANY));
+    filter_kalman_set_variance(&f, ANY_U32(R_LEAST, R_END));
+    filter_kalman_set_variance(&f, ANY_U32(R_END + 1, R_ANY));
 }
 
 void proof_kalman_set_gate(void)
@@ -104,14 +104,14 @@ void proof_kalman_set_gate(void)
     filter_t f;
     any_running(&f, NULL, 0);
     f.own.kalman.r_lsb2_q8 = ANY_U32(R_LEAST, R_END);
-    kalman_set_gate(&f, ANY_U16(0, 4096));
+    filter_kalman_set_gate(&f, ANY_U16(0, 4096));
 }
 
 /* As the laws' own, with any gate. */
 static void any_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
-    kalman_set_variance(f, r_lsb2_q8);
-    kalman_set_gate(f, ANY_U16(0, 4096));
+    filter_kalman_set_variance(f, r_lsb2_q8);
+    filter_kalman_set_gate(f, ANY_U16(0, 4096));
 }
 
 /* Without a limit of the rate, and with one. */
@@ -122,6 +122,6 @@ void proof_kalman_set_up(void)
         filter_t f;
         any_running(&f, &law, 0);
         filter_config_t config = { ANY_U16(50, 40000), { ANY_S32(3, R_END), ANY_S32(1, 1000000000) } };
-        kalman_set_up(&f, &config, (limited != 0U) ? ANY_U32(1, 1000000) : 0);
+        filter_kalman_set_up(&f, &config, (limited != 0U) ? ANY_U32(1, 1000000) : 0);
     }
 }

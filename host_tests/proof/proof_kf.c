@@ -1,7 +1,8 @@
 /* kf and lrf: see law.h. */
 #define FACTOR_MIN 65536
 #define FACTOR_MAX 67108864 /* 1024 */
-#define KEPT(f) (PARAMETERS(f) && ((f)->law != &filter_law_lrf || FACTOR_MIN <= (f)->own.kalman.of.factor_uq16 <= FACTOR_MAX))
+#define KEPT(f) \
+    (PARAMETERS(f) && ((f)->law != &filter_law_lrf || FACTOR_MIN <= (f)->own.kalman.of.factor_uq16 <= FACTOR_MAX))
 #define R_MOST R_ANY
 #define CONFIGURATIONS(law) ((law)->parameter_count == 2U ? 1U : 7937U)
 #include "kalman_bounds.h"

@@ -2,13 +2,13 @@
 
 /* After a prediction from P11 < 4 and all else below 1; held ones and those after an update lie within too. */
 #define P12_END 1879048192UL /* 7 */
-#define P_OF(k)                                                                                               \
-    ((k).p.p11 < 13 * ONE && (k).p.p12 < P12_END && (k).p.p22 < 5 * ONE && (k).p13_uq28 < 4 * ONE &&          \
+#define P_OF(k)                                                                                      \
+    ((k).p.p11 < 13 * ONE && (k).p.p12 < P12_END && (k).p.p22 < 5 * ONE && (k).p13_uq28 < 4 * ONE && \
      (k).p23_uq28 < 3 * ONE && (k).p33_uq28 < 2 * ONE)
 #define P_BOUND(f) P_OF((f)->own.kf3)
 #define ACCELERATION(f) WITHIN((f)->own.kf3.acceleration_q16, X_MAX_Q16)
 #define DRIVE(k) (16 <= (k).q33_uq28 <= 0x2000000 || ((k).fine == 0 && 16 <= (k).q33_uq28 <= ONE))
-#define KEPT(f)                                                                                               \
+#define KEPT(f)                                                                                \
     (DRIVE((f)->own.kf3) && 3 <= (f)->own.kf3.r_lsb2_q8 <= R_END && FLAG((f)->own.kf3.fine) && \
      SCALED((f)->own.kf3.drive_lsb2) && SCALED((f)->own.kf3.start_lsb2))
 #define FORCE(f) (P_BOUND(f) && ACCELERATION(f))
@@ -42,7 +42,8 @@ static bool grow_covariance(filter_kf3_t *k);
 /*@ requires KEPT(f) && TRACKED(f) && ACCELERATION(f) && f->collected == 5;
     requires P_BOUND(f);
     assigns f->own.kf3.p, f->own.kf3.p13_uq28, f->own.kf3.p23_uq28, f->own.kf3.p33_uq28, f->x_lsb_q16, f->rate_lsb,
-            f->own.kf3.acceleration_q16, f->flags \from f->own, f->x_lsb_q16, f->rate_lsb, f->flags, f->size_lsb_uq16, f->negative;
+            f->own.kf3.acceleration_q16, f->flags \from f->own, f->x_lsb_q16, f->rate_lsb, f->flags,
+            f->size_lsb_uq16, f->negative;
     ensures P_BOUND(f);
     ensures TRACKED(f) && ACCELERATION(f);
 */
@@ -52,7 +53,8 @@ static void predict(filter_t *f);
     requires P_BOUND(f);
     requires reach: f->collected == 5 && REACH(f);
     assigns f->own.kf3.p, f->own.kf3.p13_uq28, f->own.kf3.p23_uq28, f->own.kf3.p33_uq28, f->x_lsb_q16, f->rate_lsb,
-            f->own.kf3.acceleration_q16, f->flags, f->gain_uq16 \from f->own, f->x_lsb_q16, f->rate_lsb, f->flags, f->size_lsb_uq16, f->negative;
+            f->own.kf3.acceleration_q16, f->flags, f->gain_uq16 \from f->own, f->x_lsb_q16, f->rate_lsb,
+            f->flags, f->size_lsb_uq16, f->negative;
     ensures P_BOUND(f);
     ensures TRACKED(f) && ACCELERATION(f);
 */
@@ -135,7 +137,7 @@ void proof_predict(void)
     predict(&f);
 }
 
-/* Options: -eva-split-return-function fx_leading:full */
+/* Options: -eva-split-return-function filter_fx_leading:full */
 void proof_correct_kf3(void)
 {
     filter_t f;

@@ -1,8 +1,8 @@
-/* pbf, shrf, af: one law with three presets; see law.h. Their report is wide_report. */
+/* pbf, shrf, af: one law with three presets; see law.h. Their report is filter_wide_report. */
 #define LOG_ODDS_MAX 11424
 #define SPAN_END 655294464
 #define MIXED(f) (f)->own.mixture
-#define LEARNT(m)                                                                              \
+#define LEARNT(m)                                                                            \
     (-LOG_ODDS_MAX <= (m).log_odds_q9 <= LOG_ODDS_MAX && 32768 <= (m).clean_uq16 <= 65470 && \
      (m).learnt_from <= 1024 && 0x4000 <= (m).learnt_uq24 <= 0xFFC000)
 #define KEPT(f) (WIDE_PARAMETERS(f) && LEARNT(MIXED(f)) && 0x20000 <= MIXED(f).span_uq16 <= SPAN_END)
@@ -21,14 +21,14 @@ static uint16_t log2_uq9(fx_leading_t v);
     assigns \result \from q_uq24;
     ensures -LOG_ODDS_MAX <= \result <= LOG_ODDS_MAX;
 */
-int16_t mixture_log_odds_q9(uint32_t q_uq24);
+int16_t filter_mixture_log_odds_q9(uint32_t q_uq24);
 
 /*@ requires -32767 <= log_odds_q9;
     assigns \result \from log_odds_q9;
     ensures \result.rest_uq24 <= 0x800000;
     ensures \result.outlier == 0 || \result.outlier == 1;
 */
-mixture_posterior_t mixture_posterior(int16_t log_odds_q9);
+mixture_posterior_t filter_mixture_posterior(int16_t log_odds_q9);
 
 /*@ requires LEARNT(*m) && 1 <= m->learnt_from;
     requires posterior.rest_uq24 <= 0x800000;
@@ -76,10 +76,10 @@ void proof_log2_uq9(void)
     }
 }
 
-/* Options: -eva-split-return-function fx_leading:full */
+/* Options: -eva-split-return-function filter_fx_leading:full */
 void proof_mixture_log_odds_q9(void)
 {
-    (void)mixture_log_odds_q9(ANY_U32(0x4000, 0xFFC000));
+    (void)filter_mixture_log_odds_q9(ANY_U32(0x4000, 0xFFC000));
 }
 
 /* By intervals of the table. */
@@ -87,15 +87,15 @@ void proof_mixture_posterior(void)
 {
     for (int16_t from = 0; from <= 32512; from += 256) {
         int16_t to = (int16_t)(from + 255);
-        (void)mixture_posterior(ANY_S16(from, to));
-        (void)mixture_posterior(ANY_S16((int16_t)-to, (int16_t)((from == 0) ? -1 : -from)));
+        (void)filter_mixture_posterior(ANY_S16(from, to));
+        (void)filter_mixture_posterior(ANY_S16((int16_t)-to, (int16_t)((from == 0) ? -1 : -from)));
         if (from == 32512) {
             return;
         }
     }
 }
 
-/* Options: -eva-split-return-function fx_leading:full */
+/* Options: -eva-split-return-function filter_fx_leading:full */
 void proof_learn(void)
 {
     filter_t f;
@@ -105,7 +105,7 @@ void proof_learn(void)
     learn(&f.own.mixture, posterior);
 }
 
-/* By places of S and of N^2 - 1. Options: -eva-split-return-function fx_leading:full */
+/* By places of S and of N^2 - 1. Options: -eva-split-return-function filter_fx_leading:full */
 void proof_weigh(void)
 {
     for (uint32_t power = 0x20000; power <= 0x20000000U; power *= 2U) {

@@ -65,7 +65,10 @@ void proof_limited_uq24(void)
     (void)limited_uq24(ANY_U32(0x1000000, UINT32_MAX));
 }
 
-/* By cells of the estimate. Whole: kalman_refused. Options: -eva-split-return-function kalman_refused:full */
+/*
+ * By cells of the estimate. Whole: filter_kalman_refused. Options: -eva-split-return-function
+ * filter_kalman_refused:full
+ */
 void proof_take_part(void)
 {
     EACH_KIND(kind)

@@ -1,4 +1,4 @@
-/* sprf_paper: see law.h; its report is wide_report. */
+/* sprf_paper: see law.h; its report is filter_wide_report. */
 #define KEPT WIDE_PARAMETERS
 #include "wide_bounds.h"
 

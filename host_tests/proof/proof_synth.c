@@ -11,7 +11,6 @@ static void any_own(filter_t *f, uint8_t kind)
     any_synth(f);
 }
 
-
 /* Any gain and extrapolation within its range, stable or not. */
 void proof_filter_synth_noise_gain_uq16(void)
 {

@@ -1,7 +1,9 @@
 /* synth_opt: see law.h and synth_bounds.h. */
 #define LAST_COUNT 16
 #define KINDS 13 /* count by count: the schedule's place is made of it */
-#define KEPT(f) (SYNTH_KEPT(f) && (f)->own.synth.of.scheduled.ratio_class <= 5 && 3 <= (f)->own.synth.of.scheduled.p0_lsb2_q8 <= 25600000)
+#define KEPT(f)                                                       \
+    (SYNTH_KEPT(f) && (f)->own.synth.of.scheduled.ratio_class <= 5 && \
+     3 <= (f)->own.synth.of.scheduled.p0_lsb2_q8 <= 25600000)
 #include "synth_bounds.h"
 
 #include "synth_opt.c"
@@ -15,5 +17,5 @@ static void any_own(filter_t *f, uint8_t kind)
     f->own.synth.of.scheduled.variant_u = ANY_BOOL();
 }
 
-/* The least default of P0 is made of that of R. Whole: tracker_limited_r */
+/* The least default of P0 is made of that of R. Whole: filter_tracker_limited_r */
 PROVE_LAW(synth_opt)

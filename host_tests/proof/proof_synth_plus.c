@@ -1,7 +1,9 @@
 /* synth_plus: see law.h and synth_bounds.h. */
 #define LAST_COUNT 31
 #define CONFIGURATIONS(law) 9
-#define KEPT(f) (SYNTH_KEPT(f) && 656 <= (f)->own.synth.b0_uq16 && (f)->own.synth.of.plus.k <= 8 && (f)->own.synth.of.plus.rest_uq8 <= 128)
+#define KEPT(f)                                                                         \
+    (SYNTH_KEPT(f) && 656 <= (f)->own.synth.b0_uq16 && (f)->own.synth.of.plus.k <= 8 && \
+     (f)->own.synth.of.plus.rest_uq8 <= 128)
 #include "synth_bounds.h"
 
 #include "synth_plus.c"
@@ -23,7 +25,6 @@ static void narrow_config(filter_config_t *config, uint16_t number)
 {
     config->value[SYNTH_PLUS_K] = (int32_t)number;
 }
-
 
 /* Any coefficients within their ranges, stable or not. */
 void proof_filter_synth_plus_noise_gain_uq16(void)

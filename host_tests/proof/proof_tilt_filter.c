@@ -44,10 +44,13 @@ bool tilt_gravity_plausible(const int32_t a_q8[3]);
 
 #define SAMPLE(z) (-4096 <= (z) <= 4095)
 #define NOISE(n)                                                                                         \
-    ((n)->floor_lsb2_q16 <= 65535 * 223 && (n)->mean_lsb2_q16 <= 43690667 && (n)->r_lsb2_q8 <= 256000 && (n)->filled <= 5)
+    ((n)->floor_lsb2_q16 <= 65535 * 223 && (n)->mean_lsb2_q16 <= 43690667 && (n)->r_lsb2_q8 <= 256000 && \
+     (n)->filled <= 5)
 #define AXIS(a) (ESTIMATE(&(a)->filter) && NOISE(&(a)->noise) && (a)->away <= 3)
 #define HIGHEST(lsb) (127 <= (lsb) <= 4095)
-#define FACADE(t) (AXIS(&(t)->axes[0]) && AXIS(&(t)->axes[1]) && AXIS(&(t)->axes[2]) && ROLL((t)->angles.roll_cdeg) && (t)->shift <= 15 && HIGHEST((t)->rail_high_lsb))
+#define FACADE(t)                                                                                        \
+    (AXIS(&(t)->axes[0]) && AXIS(&(t)->axes[1]) && AXIS(&(t)->axes[2]) && ROLL((t)->angles.roll_cdeg) && \
+     (t)->shift <= 15 && HIGHEST((t)->rail_high_lsb))
 
 /*@ requires AXIS(a) && HIGHEST(rail_high_lsb);
     assigns a->filter.x_lsb_q16, a->filter.flags, a->filter.quarters, a->filter.own, a->noise, a->away, \result

@@ -5,10 +5,10 @@
 
 /* By powers of 2 of the rate: so many 25 ms pass within a period. */
 #define PACE_OF(f, from) ((from) <= (f)->rate_dhz < 2 * (from) && (f)->quarter_dhz < 2 * (from))
-#define PACE(f)                                                                                                      \
+#define PACE(f)                                                                                                       \
     (PACE_OF(f, 32) || PACE_OF(f, 64) || PACE_OF(f, 128) || PACE_OF(f, 256) || PACE_OF(f, 512) || PACE_OF(f, 1024) || \
      PACE_OF(f, 2048) || PACE_OF(f, 4096) || PACE_OF(f, 8192) || PACE_OF(f, 16384) || PACE_OF(f, 32768))
-#define BOUND(f)                                                                                                     \
+#define BOUND(f)                                                                                \
     (TRACKED(f) && (f)->quarters <= 4 && FLAG((f)->negative) && FLAG((f)->broken) && PACE(f) && \
      (STARTING(f) || (f)->collected == 5))
 
@@ -58,7 +58,7 @@ static bool law_together(const filter_config_t *config);
     assigns \result \from ascending_lsb[0 .. 4], count;
     ensures SAMPLE_Q16(\result);
 */
-int32_t tracker_median_q16(const int16_t *ascending_lsb, uint8_t count);
+int32_t filter_tracker_median_q16(const int16_t *ascending_lsb, uint8_t count);
 
 /*@ ensures \result == 0 ==> BOUND(f); */
 filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_config_t *config);
@@ -154,7 +154,9 @@ static void turn_from(int32_t low, int32_t high)
     tracker_turn(&f, 0);
 }
 
-/* Any sum, as the rate of a change of 0, on which alone the result depends; and the sums that come nearest to 32 bits. */
+/*
+ * Any sum, as the rate of a change of 0, on which alone the result depends; and the sums that come nearest to 32 bits.
+ */
 void proof_tracker_turn(void)
 {
     filter_t f;
@@ -183,19 +185,19 @@ void proof_flash_i32(void)
 
 void proof_tracker_limited_r(void)
 {
-    (void)tracker_limited_r(ANY_U32(0, UINT32_MAX));
+    (void)filter_tracker_limited_r(ANY_U32(0, UINT32_MAX));
 }
 
 void proof_tracker_limited_z(void)
 {
-    int16_t z_lsb = tracker_limited_z(ANY_Z());
+    int16_t z_lsb = filter_tracker_limited_z(ANY_Z());
     //@ check SAMPLE(z_lsb);
 }
 
-/* Whole: tracker_limited_r */
+/* Whole: filter_tracker_limited_r */
 void proof_tracker_default_r_lsb2_q8(void)
 {
-    uint32_t r_lsb2_q8 = tracker_default_r_lsb2_q8(ANY_U16(0, 40000));
+    uint32_t r_lsb2_q8 = filter_tracker_default_r_lsb2_q8(ANY_U16(0, 40000));
     //@ check 3 <= r_lsb2_q8 <= 30720;
 }
 
@@ -204,7 +206,7 @@ void proof_tracker_median_q16(void)
     filter_t f;
     any_samples(&f, 5);
     for (uint8_t count = 1; count <= FILTER_WARM_UP_SAMPLES; count++) {
-        (void)tracker_median_q16(f.own.start.ascending_lsb, count);
+        (void)filter_tracker_median_q16(f.own.start.ascending_lsb, count);
     }
 }
 
@@ -215,7 +217,9 @@ void proof_filter_init(void)
         EACH_RATE(dhz)
         {
             any_law(traits);
-            filter_config_t config = { ANY_U16((uint16_t)((dhz == 32U) ? 50U : dhz), (uint16_t)((dhz < 32768U) ? 2U * dhz - 1U : 40000U)), { 0 } };
+            filter_config_t config = { ANY_U16((uint16_t)((dhz == 32U) ? 50U : dhz),
+                                               (uint16_t)((dhz < 32768U) ? 2U * dhz - 1U : 40000U)),
+                                       { 0 } };
             config.value[0] = ANY_S32(S32_MIN, INT32_MAX);
             config.value[1] = ANY_S32(S32_MIN, INT32_MAX);
             filter_t f;
@@ -356,13 +360,13 @@ void proof_tracker_rest(void)
     filter_t f;
     any_law(0);
     any_tracked(&f, &any);
-    tracker_limit_rate(&f, ANY_U32(0, 1000000), 16);
+    filter_tracker_limit_rate(&f, ANY_U32(0, 1000000), 16);
     //@ check whole: f.rate_max_lsb <= X_MAX_Q16;
-    tracker_limit_rate(&f, ANY_U32(0, 1000000), 24);
+    filter_tracker_limit_rate(&f, ANY_U32(0, 1000000), 24);
     //@ check fine: f.rate_max_lsb <= 2130706432;
-    uint16_t k = tracker_memory_k_uq16(ANY_U16(1, 60000), ANY_U16(50, 40000), 32);
+    uint16_t k = filter_tracker_memory_k_uq16(ANY_U16(1, 60000), ANY_U16(50, 40000), 32);
     //@ check least: 32 <= k <= 39322;
-    k = tracker_memory_k_uq16(ANY_U16(1, 60000), ANY_U16(50, 40000), 256);
+    k = filter_tracker_memory_k_uq16(ANY_U16(1, 60000), ANY_U16(50, 40000), 256);
     //@ check shortest: 256 <= k <= 39322;
-    (void)tracker_fading_variance(ANY_U32(3, 256000), ANY_U16(0, 39322));
+    (void)filter_tracker_fading_variance(ANY_U32(3, 256000), ANY_U16(0, 39322));
 }

@@ -30,7 +30,7 @@ void proof_give_back(void)
     give_back(&p, ANY_U32(0, UINT32_MAX), ANY_U16(0, UINT16_MAX), false);
 }
 
-/* Options: -eva-split-return-function fx_leading:full */
+/* Options: -eva-split-return-function filter_fx_leading:full */
 void proof_left_of_p22(void)
 {
     filter_t f;
@@ -52,21 +52,21 @@ void proof_correct_covariance(void)
     }
 }
 
-/* Options: -eva-split-return-function fx_leading:full */
+/* Options: -eva-split-return-function filter_fx_leading:full */
 void proof_wide_predict(void)
 {
     filter_t f;
     any_running(&f, NULL, 0);
-    (void)wide_predict(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
+    (void)filter_wide_predict(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
 }
 
-/* Options: -eva-split-return-function fx_leading:full */
+/* Options: -eva-split-return-function filter_fx_leading:full */
 void proof_wide_distance_uq8(void)
 {
     for (uint8_t places = 0; places < 16; places++) {
         filter_t f;
         any_update(&f, places);
-        (void)wide_distance_uq8(&f);
+        (void)filter_wide_distance_uq8(&f);
     }
 }
 
@@ -77,7 +77,7 @@ void proof_wide_correct(void)
         filter_t f;
         any_update(&f, places);
         //@ admit REACH(&f);
-        wide_correct(&f, ANY_U16(0, UINT16_MAX), ANY_U32(0, 0x7FFFF));
+        filter_wide_correct(&f, ANY_U16(0, UINT16_MAX), ANY_U32(0, 0x7FFFF));
     }
 }
 
@@ -85,7 +85,7 @@ void proof_wide_set_noise(void)
 {
     filter_t f;
     any_running(&f, NULL, 0);
-    wide_set_noise(&f, ANY_U32(3, R_END));
+    filter_wide_set_noise(&f, ANY_U32(3, R_END));
 }
 
 /* By places of S. */
@@ -95,12 +95,12 @@ void proof_wide_report(void)
     for (uint8_t places = 0; places < 16; places++) {
         filter_t f;
         any_update(&f, places);
-        wide_report(&f, &probe);
+        filter_wide_report(&f, &probe);
     }
     filter_t f;
     any_update(&f, 0);
     f.own.wide.variance = 0;
-    wide_report(&f, &probe);
+    filter_wide_report(&f, &probe);
     any_starting(&f, NULL, 0, 4);
-    wide_report(&f, &probe);
+    filter_wide_report(&f, &probe);
 }

@@ -12,8 +12,9 @@
 
 #define SYNTH_KEPT(f) (3 <= (f)->own.synth.r_lsb2_q8 <= 256000)
 #define COUNT(f) (5 <= (f)->own.synth.count <= LAST_COUNT || (f)->own.synth.count == 255)
-#define FORCE(f)                                                                                                  \
-    (COUNT(f) && WITHIN((f)->own.synth.rate_before_lsb_q16, RATE_END) && WITHIN((f)->own.synth.memory_lsb_q16, MEMORY_Q16))
+#define FORCE(f)                                                         \
+    (COUNT(f) && WITHIN((f)->own.synth.rate_before_lsb_q16, RATE_END) && \
+     WITHIN((f)->own.synth.memory_lsb_q16, MEMORY_Q16))
 #define ADMITTED COUNT
 #ifndef KINDS
 #define KINDS 1

@@ -1,6 +1,6 @@
 /*
- * The bounds of wide.h in ACSL and the contracts of its parts, proved by proof_wide.c. Clauses with a name are relations
- * that intervals do not keep; deliberate.txt says why they hold.
+ * The bounds of wide.h in ACSL and the contracts of its parts, proved by proof_wide.c. Clauses with a name are
+ * relations that intervals do not keep; deliberate.txt says why they hold.
  */
 #ifndef WIDE_BOUNDS_H
 #define WIDE_BOUNDS_H
@@ -10,10 +10,10 @@
 #define P12_END 2298478592
 #define P22_END 2415919104
 #define WIDE_P(f) ((f)->own.wide.p.p11 < P11_END && (f)->own.wide.p.p12 < P12_END && (f)->own.wide.p.p22 < P22_END)
-#define WIDE_PARAMETERS(f)                                                                            \
-    (16 <= (f)->own.wide.q22_uq28 <= ONE && 3 <= (f)->own.wide.r_lsb2_q8 <= R_END &&                  \
-     SCALED((f)->own.wide.drive_lsb2) && SCALED((f)->own.wide.start_lsb2) &&                          \
-     (f)->own.wide.per_r.mantissa >= 0x8000 && -28 <= (f)->own.wide.per_r.exponent <= -6)
+#define WIDE_PARAMETERS(f)                                                                                             \
+    (16 <= (f)->own.wide.q22_uq28 <= ONE && 3 <= (f)->own.wide.r_lsb2_q8 <= R_END &&                                   \
+     SCALED((f)->own.wide.drive_lsb2) && SCALED((f)->own.wide.start_lsb2) && (f)->own.wide.per_r.mantissa >= 0x8000 && \
+     -28 <= (f)->own.wide.per_r.exponent <= -6)
 /* Places of S, and its inverse. */
 #define S_PLACES(f) ((f)->own.wide.variance % 256 <= 15)
 #define S_KNOWN(f) ((f)->own.wide.inverse_uq16 >= 0x8000 && (f)->own.wide.variance >= 0x80000000)
@@ -62,13 +62,13 @@ static void correct_covariance(filter_wide_t *w, uint16_t w1_uq16, uint32_t w2_u
     ensures reach: f->collected == 5 && REACH(f);
     ensures FLAG(\result);
 */
-bool wide_predict(filter_t *f, int16_t z_lsb);
+bool filter_wide_predict(filter_t *f, int16_t z_lsb);
 
 /*@ requires TRACKED(f) && WIDE_PARAMETERS(f) && f->own.wide.inverse_uq16 >= 0x8000;
     requires places: S_PLACES(f);
     assigns \result \from f->size_lsb_uq16, f->own;
 */
-uint16_t wide_distance_uq8(const filter_t *f);
+uint16_t filter_wide_distance_uq8(const filter_t *f);
 
 /*@ requires TRACKED(f) && WIDE_PARAMETERS(f) && f->collected == 5 && back_uq16 <= 0x7FFFF;
     requires WIDE_P(f);
@@ -80,20 +80,20 @@ uint16_t wide_distance_uq8(const filter_t *f);
     ensures TRACKED(f);
     ensures WIDE_P(f);
 */
-void wide_correct(filter_t *f, uint16_t loss_uq16, uint32_t back_uq16);
+void filter_wide_correct(filter_t *f, uint16_t loss_uq16, uint32_t back_uq16);
 
 /*@ requires SCALED(f->own.wide.drive_lsb2) && 3 <= r_lsb2_q8 <= R_END;
     assigns f->own.wide.r_lsb2_q8, f->own.wide.per_r, f->own.wide.q22_uq28 \from f->own.wide.drive_lsb2, r_lsb2_q8;
     ensures 16 <= f->own.wide.q22_uq28 <= ONE && 3 <= f->own.wide.r_lsb2_q8 <= R_END;
     ensures f->own.wide.per_r.mantissa >= 0x8000 && -28 <= f->own.wide.per_r.exponent <= -6;
 */
-void wide_set_noise(filter_t *f, uint32_t r_lsb2_q8);
+void filter_wide_set_noise(filter_t *f, uint32_t r_lsb2_q8);
 
 /*@ requires WIDE_PARAMETERS(f);
     requires places: f->collected != 5 || f->own.wide.variance == 0 || S_PLACES(f);
     assigns out->p_lsb2_q8, out->gate_lsb2_q8 \from f->own, f->collected;
 */
-void wide_report(const filter_t *f, filter_probe_t *out);
+void filter_wide_report(const filter_t *f, filter_probe_t *out);
 
 /* kalman.c has one of that name. */
 #define grow grow_wide

@@ -22,7 +22,7 @@ void predict(filter_t &f)
 {
     f.broken = true;
     LAW_OF(&f, step)(&f, 0, STEP_MISSING);
-    tracker_nothing(&f);
+    filter_tracker_nothing(&f);
 }
 
 // Of the filter's updates and predictions.

@@ -55,7 +55,7 @@ Cost cost(filter_kind_t kind)
 // By what begins it.
 own_state own_of(const filter_law_t *law)
 {
-    return law->start == kalman_start ? OWN_KALMAN : law->start == wide_start ? OWN_WIDE : OWN_MIXTURE;
+    return law->start == filter_kalman_start ? OWN_KALMAN : law->start == filter_wide_start ? OWN_WIDE : OWN_MIXTURE;
 }
 
 void row(const std::string &name, const char *metric, double value)

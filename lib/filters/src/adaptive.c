@@ -17,9 +17,10 @@
  * same side.
  *
  * Noise, with `identify` on (1): the scatter of the innovations about their mean, of every second sample, each limited
- * to 2.5 times what it is expected to be. Motion that the line does not follow widens it, and so the gate. It starts from the R that was
- * configured or told last before the first sample after the start; later calls of filter_set_noise change nothing: a
- * pipeline that estimates an R of its own may go on telling it, and need not. Off (0): the square root of that R, always.
+ * to 2.5 times what it is expected to be. Motion that the line does not follow widens it, and so the gate. It starts
+ * from the R that was configured or told last before the first sample after the start; later calls of filter_set_noise
+ * change nothing: a pipeline that estimates an R of its own may go on telling it, and need not. Off (0): the square
+ * root of that R, always.
  *
  * FILTER_GATED tells that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be
  * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the identified noise and
@@ -47,8 +48,8 @@ static const filter_parameter_t *const parameters[] FX_FLASH = {
 
 /*
  * One rule for all rates. Shortest memory: 80 ms, a quick turn of the hand, and two samples, without which no line is
- * known. Slowest: half a second and at least 20 samples. The gate is 3 sigma below 20 Hz, where a motion is a few samples
- * long and outliers among them cost most, and 4.5 from there on: more than what hands do between samples.
+ * known. Slowest: half a second and at least 20 samples. The gate is 3 sigma below 20 Hz, where a motion is a few
+ * samples long and outliers among them cost most, and 4.5 from there on: more than what hands do between samples.
  */
 static void standard(filter_config_t *config)
 {
@@ -65,13 +66,14 @@ static void standard(filter_config_t *config)
 /* Shares and thresholds that follow from the shortest memory. */
 static void set_memory(filter_adaptive_t *a, const filter_config_t *config)
 {
-    a->slow_uq16 = tracker_memory_k_uq16((uint16_t)config->value[ADAPTIVE_SLOW_MS], config->rate_dhz,
-                                         ADAPTIVE_K_MIN_UQ16);
-    a->fast_uq16 = tracker_memory_k_uq16((uint16_t)config->value[ADAPTIVE_FAST_MS], config->rate_dhz, a->slow_uq16);
-    a->share_uq16 = fx_high_u16(a->fast_uq16, 26214); /* 0.4 */
+    a->slow_uq16 = filter_tracker_memory_k_uq16((uint16_t)config->value[ADAPTIVE_SLOW_MS], config->rate_dhz,
+                                                ADAPTIVE_K_MIN_UQ16);
+    a->fast_uq16 = filter_tracker_memory_k_uq16((uint16_t)config->value[ADAPTIVE_FAST_MS], config->rate_dhz,
+                                                a->slow_uq16);
+    a->share_uq16 = filter_fx_high_u16(a->fast_uq16, 26214); /* 0.4 */
     /* sigma of the mean, sqrt(share / (2 - share)), times 2.15 */
     uint32_t ratio_uq32 = ((uint32_t)a->share_uq16 << 15) / (0x20000U - a->share_uq16) << 17;
-    a->manoeuvre_uq16 = (uint16_t)((275U * (uint32_t)fx_isqrt32(ratio_uq32)) >> 7); /* <= 0.8 */
+    a->manoeuvre_uq16 = (uint16_t)((275U * (uint32_t)filter_fx_isqrt32(ratio_uq32)) >> 7); /* <= 0.8 */
 }
 
 static void set_up(filter_t *f, const filter_config_t *config)
@@ -83,7 +85,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
     set_memory(a, config);
     uint32_t confirm_samples = (uint32_t)config->value[ADAPTIVE_CONFIRM_MS] * config->rate_dhz / 10000U; /* <= 40000 */
     a->confirm = (confirm_samples < ADAPTIVE_CONFIRM_LEAST) ? ADAPTIVE_CONFIRM_LEAST : (uint16_t)confirm_samples;
-    tracker_limit_rate(f, (uint32_t)config->value[ADAPTIVE_RATE_MAX_LSB_S], 24);
+    filter_tracker_limit_rate(f, (uint32_t)config->value[ADAPTIVE_RATE_MAX_LSB_S], 24);
     filter_set_noise(f, (uint32_t)config->value[ADAPTIVE_R_LSB2_Q8]);
 }
 
@@ -91,7 +93,7 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
     filter_adaptive_t *a = &f->own.adaptive;
     if (a->learnt == 0U) {
-        uint32_t sigma_q10 = fx_isqrt32(r_lsb2_q8 << 12); /* 110..32382 */
+        uint32_t sigma_q10 = filter_fx_isqrt32(r_lsb2_q8 << 12); /* 110..32382 */
         a->scatter_lsb_uq24 = sigma_q10 << 14;
     }
 }
@@ -99,7 +101,7 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 static void start(filter_t *f, bool settled)
 {
     filter_adaptive_t *a = &f->own.adaptive;
-    tracker_clear(a, offsetof(filter_adaptive_t, scatter_lsb_uq24));
+    filter_tracker_clear(a, offsetof(filter_adaptive_t, scatter_lsb_uq24));
     f->negative = false;
     f->broken = false;
     a->k_uq32 = settled ? (uint32_t)a->slow_uq16 << 16 : ADAPTIVE_K_START_UQ32;
@@ -127,7 +129,10 @@ FX_INLINE uint32_t averaged(uint32_t mean_uq24, uint16_t expected_uq8, uint16_t 
     return mean_uq24 + fx_product_u16((uint16_t)(term_uq8 - expected_uq8), weight_uq16);
 }
 
-/* What is taken of an innovation, as far as the gate, in their mean; signed: numbers keep their order when the top bit is turned over. */
+/*
+ * What is taken of an innovation, as far as the gate, in their mean; signed: numbers keep their order when the top bit
+ * is turned over.
+ */
 FX_INLINE void average_innovation(filter_adaptive_t *a, uint32_t taken)
 {
     uint16_t term = (uint16_t)size_lsb_q8((taken > a->gate_lsb_uq16) ? a->gate_lsb_uq16 : taken);
@@ -191,7 +196,7 @@ static void adapt(filter_adaptive_t *a, uint16_t spread_uq8)
 {
     int16_t mean = (int16_t)(a->mean_lsb_q24 >> 16);
     uint16_t mean_uq8 = (mean < 0) ? (uint16_t)(0U - (uint16_t)mean) : (uint16_t)mean;
-    uint16_t threshold_uq8 = fx_high_u16(spread_uq8, a->manoeuvre_uq16);
+    uint16_t threshold_uq8 = filter_fx_high_u16(spread_uq8, a->manoeuvre_uq16);
     uint16_t k = (uint16_t)(a->k_uq32 >> 16);
     if (a->verdict >= (uint8_t)ADAPTIVE_MOTION || mean_uq8 > threshold_uq8) {
         if (k < a->fast_uq16) {
@@ -220,9 +225,9 @@ FX_INLINE void turn(filter_t *f, int32_t by_lsb_q24)
 static uint32_t turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
 {
     if (w_lsb_uq16 < 0x800000U) {
-        return fx_times_uq16(w_lsb_uq16 << 8, k_uq16);
+        return filter_fx_times_uq16(w_lsb_uq16 << 8, k_uq16);
     }
-    uint32_t kw = fx_times_uq16(w_lsb_uq16, k_uq16);
+    uint32_t kw = filter_fx_times_uq16(w_lsb_uq16, k_uq16);
     return (kw >= (uint32_t)127 << 16) ? (uint32_t)127 << 24 : kw << 8;
 }
 
@@ -234,7 +239,7 @@ static void follow(filter_t *f, uint32_t taken)
         f->rate_lsb = 0;
     } else {
         uint16_t k = (uint16_t)(f->own.adaptive.k_uq32 >> 16);
-        uint32_t w = fx_times_uq16(taken, k);
+        uint32_t w = filter_fx_times_uq16(taken, k);
         uint32_t kw = turn_lsb_uq24(w, k);
         turn(f, (int32_t)kw);
         taken = w + w - (kw >> 8);
@@ -256,7 +261,7 @@ static uint16_t meet(filter_t *f, int16_t z_lsb)
         a->mean_lsb_q24 = -a->mean_lsb_q24;
     }
     uint16_t spread_uq8 = (uint16_t)(a->scatter_lsb_uq24 >> 16);
-    spread_uq8 = (uint16_t)(spread_uq8 + fx_high_u16(spread_uq8, (uint16_t)(a->k_uq32 >> 16)));
+    spread_uq8 = (uint16_t)(spread_uq8 + filter_fx_high_u16(spread_uq8, (uint16_t)(a->k_uq32 >> 16)));
     a->gate_lsb_uq16 = fx_product_u16(spread_uq8, a->gate_sigma_q8);
     return spread_uq8;
 }
@@ -325,7 +330,7 @@ static uint16_t gain_uq16(const filter_t *f)
         return 0;
     }
     uint16_t k = (uint16_t)(f->own.adaptive.k_uq32 >> 16);
-    return (uint16_t)(2U * k - fx_high_u16(k, k));
+    return (uint16_t)(2U * k - filter_fx_high_u16(k, k));
 }
 
 /* The variance is that of the memory for samples that scatter as the innovations do. */
@@ -337,7 +342,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     if (f->collected != FILTER_RUNNING) {
         return;
     }
-    out->p_lsb2_q8 = tracker_fading_variance(out->p_lsb2_q8, (uint16_t)(a->k_uq32 >> 16));
+    out->p_lsb2_q8 = filter_tracker_fading_variance(out->p_lsb2_q8, (uint16_t)(a->k_uq32 >> 16));
     out->gain_uq16 = gain_uq16(f);
     if (a->guarded && a->gate_lsb_uq16 != 0U) {
         uint16_t gate_uq4 = (uint16_t)(a->gate_lsb_uq16 >> 12); /* <= 4000 LSB */

@@ -15,8 +15,8 @@
  *
  * Through missing samples each member goes on by its rate, and the estimate is that of the middle one: its rate is
  * quiet enough for a gap at rest and quick enough for one in motion (fade: stopped where it may be noise).
- * Parameters gate (in sigmas of a sample; 0: none), r, slow, middle, fast (memories, each limited to 3.3..512 samples, in
- * any order), ratemax.
+ * Parameters gate (in sigmas of a sample; 0: none), r, slow, middle, fast (memories, each limited to 3.3..512 samples,
+ * in any order), ratemax.
  *
  * Scaling:
  *   x, rate  Q15.16; |x| <= 4608 LSB by a clamp after the prediction (the update moves x towards a sample within 4096),
@@ -72,27 +72,27 @@ static void standard(filter_config_t *config)
 static uint16_t still_of(uint16_t k_uq16)
 {
     uint32_t t_uq16 = ((uint32_t)k_uq16 << 15) / (0x20000U - k_uq16) << 1; /* <= 3/7 */
-    uint16_t root_uq16 = fx_isqrt32(t_uq16 << 16);
-    return fx_high_u16(fx_high_u16(root_uq16, (uint16_t)t_uq16), 23170);
+    uint16_t root_uq16 = filter_fx_isqrt32(t_uq16 << 16);
+    return filter_fx_high_u16(filter_fx_high_u16(root_uq16, (uint16_t)t_uq16), 23170);
 }
 
 static void set_up(filter_t *f, const filter_config_t *config)
 {
     filter_auto_t *b = &f->own.bank;
     for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
-        b->final_k_uq16[i] = tracker_memory_k_uq16((uint16_t)config->value[AUTO_SLOW_MS + i], config->rate_dhz,
-                                                   K_MIN_UQ16);
+        b->final_k_uq16[i] = filter_tracker_memory_k_uq16((uint16_t)config->value[AUTO_SLOW_MS + i], config->rate_dhz,
+                                                          K_MIN_UQ16);
     }
     b->still_uq16 = still_of(b->final_k_uq16[AUTO_MIDDLE]);
     b->gate_sigma_q8 = (uint16_t)config->value[AUTO_GATE_SIGMA_Q8];
-    tracker_limit_rate(f, (uint32_t)config->value[AUTO_RATE_MAX_LSB_S], 16);
+    filter_tracker_limit_rate(f, (uint32_t)config->value[AUTO_RATE_MAX_LSB_S], 16);
     filter_set_noise(f, (uint32_t)config->value[AUTO_R_LSB2_Q8]);
 }
 
 /* Scores are kept: they are LSB^2, and forgotten after some eight samples anyway. */
 static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
-    f->own.bank.eight_sigmas_lsb_uq8 = fx_isqrt32(r_lsb2_q8 << 14); /* <= 64763 */
+    f->own.bank.eight_sigmas_lsb_uq8 = filter_fx_isqrt32(r_lsb2_q8 << 14); /* <= 64763 */
 }
 
 /* All members at rest, with the memory of the start or their own: at rest the slow one predicts best. */
@@ -280,7 +280,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     uint16_t sigmas = b->eight_sigmas_lsb_uq8;
     out->p_lsb2_q8 = (fx_product_u16(sigmas, sigmas) + 0x3FFFU) >> 14;
     if (f->collected == FILTER_RUNNING) {
-        out->p_lsb2_q8 = tracker_fading_variance(out->p_lsb2_q8, b->members[b->shown].k_uq16);
+        out->p_lsb2_q8 = filter_tracker_fading_variance(out->p_lsb2_q8, b->members[b->shown].k_uq16);
     }
 }
 

@@ -3,7 +3,7 @@
 
 #include "tracker.h"
 
-/* From kalman_near a covariance comes so close to where it settles that no gain is off by more than 1.1 %. */
+/* From filter_kalman_near a covariance comes so close to where it settles that no gain is off by more than 1.1 %. */
 #define SETTLE_STEPS 16U
 
 /* 25 ms are 1/400 of the rate in 0.1 Hz. */
@@ -14,7 +14,7 @@ filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_c
 {
     filter_answer_t answer = filter_judge(law, config);
     if (answer == FILTER_ACCEPTED) {
-        tracker_clear(f, sizeof *f);
+        filter_tracker_clear(f, sizeof *f);
         f->law = law;
         f->rate_dhz = config->rate_dhz;
         LAW_OF(f, set_up)(f, config);
@@ -25,7 +25,7 @@ filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_c
 
 void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
-    LAW_OF(f, set_noise)(f, tracker_limited_r(r_lsb2_q8));
+    LAW_OF(f, set_noise)(f, filter_tracker_limited_r(r_lsb2_q8));
 }
 
 static uint8_t traits(const filter_t *f)
@@ -42,7 +42,7 @@ static void start(filter_t *f, bool settled)
 
 void filter_reset(filter_t *f, int16_t z0_lsb)
 {
-    int16_t z0 = tracker_limited_z(z0_lsb);
+    int16_t z0 = filter_tracker_limited_z(z0_lsb);
     filter_restart(f);
     f->previous_lsb = z0;
     f->x_lsb_q16 = (int32_t)z0 * 65536;
@@ -65,7 +65,7 @@ static void collect(filter_t *f, int16_t z_lsb)
     }
     *at = z_lsb;
     f->collected = ++count;
-    f->x_lsb_q16 = tracker_median_q16(f->own.start.ascending_lsb, count);
+    f->x_lsb_q16 = filter_tracker_median_q16(f->own.start.ascending_lsb, count);
     f->flags |= FILTER_WARMING_UP;
     if (count == FILTER_RUNNING || (traits(f) & LAW_FIRST_SAMPLE) != 0U) {
         start(f, false);
@@ -76,7 +76,7 @@ int32_t filter_update(filter_t *f, int16_t z_lsb)
 {
     uint8_t flags = 0;
     if ((uint16_t)((uint16_t)z_lsb - (uint16_t)FILTER_Z_MIN_LSB) > (uint16_t)(FILTER_Z_MAX_LSB - FILTER_Z_MIN_LSB)) {
-        z_lsb = tracker_limited_z(z_lsb);
+        z_lsb = filter_tracker_limited_z(z_lsb);
         flags = FILTER_SATURATED;
     }
     f->flags = flags;
@@ -91,8 +91,8 @@ int32_t filter_update(filter_t *f, int16_t z_lsb)
 }
 
 /*
- * Times 25 ms since the prediction before: step n is made with the rate that is in force in its middle, (n - 1/2) periods
- * after the last sample.
+ * Times 25 ms since the prediction before: step n is made with the rate that is in force in its middle, (n - 1/2)
+ * periods after the last sample.
  */
 static uint8_t quarters_passed(filter_t *f, bool first)
 {
@@ -120,21 +120,21 @@ int32_t filter_missing(filter_t *f)
         f->quarters = HOLD_QUARTERS;
     } else {
         if (first) {
-            tracker_fade(f, true);
+            filter_tracker_fade(f, true);
         }
         for (; passed != 0U; passed--) {
-            tracker_damp(f);
+            filter_tracker_damp(f);
         }
         LAW_OF(f, step)(f, 0, STEP_MISSING);
     }
-    tracker_nothing(f);
+    filter_tracker_nothing(f);
     return f->x_lsb_q16;
 }
 
 void filter_restart(filter_t *f)
 {
     f->rate_lsb = 0;
-    tracker_nothing(f);
+    filter_tracker_nothing(f);
     f->collected = 0;
     f->broken = false;
     f->flags = FILTER_WARMING_UP;

@@ -6,8 +6,8 @@
  *            x += w1 t, v += w2 t      the law answers (w1, w2, t) to u
  *
  * The tracker (filter.c) has all that the filters share: start, prediction, bounds, missing samples, reset, restart. A
- * law is one constant descriptor in program memory: parameters, facts, and the functions that answer. Only the laws that
- * a program names are linked.
+ * law is one constant descriptor in program memory: parameters, facts, and the functions that answer. Only the laws
+ * that a program names are linked.
  *
  *   filter_config_t config = filter_defaults(&filter_law_sprf, 1000);
  *   filter_t f;
@@ -189,7 +189,9 @@ int32_t filter_update(filter_t *f, int16_t z_lsb);
  */
 int32_t filter_missing(filter_t *f);
 
-/* Warming up again; parameters and what was learnt of the noise stay. The estimate is the old one until the next call. */
+/*
+ * Warming up again; parameters and what was learnt of the noise stay. The estimate is the old one until the next call.
+ */
 void filter_restart(filter_t *f);
 
 /* Gain, variance, innovation and gate of the last update. Divides. */

@@ -89,8 +89,8 @@ typedef struct {
     uint8_t count;               /* samples since the start, SYNTH_STEADY: gains are the steady ones */
     uint8_t unused;
     uint32_t r_lsb2_q8; /* measurement variance in force */
-    uint16_t b0_uq16; /* steady gain */
-    uint16_t a1_uq16; /* magnitude of the steady extrapolation; 0: a straight line */
+    uint16_t b0_uq16;   /* steady gain */
+    uint16_t a1_uq16;   /* magnitude of the steady extrapolation; 0: a straight line */
     bool a1_negative;
     union {
         struct {
@@ -111,11 +111,11 @@ typedef struct {
 
 /* adaptive: see adaptive.c. */
 typedef struct {
-    int32_t mean_lsb_q24;      /* of the innovations, each limited to the gate and 128 LSB; towards the last one */
-    uint32_t k_uq32;           /* 1 - fading factor, of the last update */
-    uint32_t gate_lsb_uq16;    /* of the last step */
-    uint16_t run;              /* samples beyond the gate on one side, up to the last */
-    uint8_t verdict;           /* of the guard on the last sample */
+    int32_t mean_lsb_q24;   /* of the innovations, each limited to the gate and 128 LSB; towards the last one */
+    uint32_t k_uq32;        /* 1 - fading factor, of the last update */
+    uint32_t gate_lsb_uq16; /* of the last step */
+    uint16_t run;           /* samples beyond the gate on one side, up to the last */
+    uint8_t verdict;        /* of the guard on the last sample */
     uint8_t unused;
     uint32_t scatter_lsb_uq24; /* sigma of the innovations for k = 0: 0.1..90 */
     uint16_t gate_sigma_q8;    /* in sigmas of the innovation */
@@ -141,6 +141,7 @@ typedef struct {
     uint32_t r_lsb2_q8;
     fx_scaled_t drive_lsb2; /* q T^5, 256 times as much when fine */
     fx_scaled_t start_lsb2;
+    uint32_t p22_start_uq28;
     bool fine; /* the acceleration is counted in sixteenths */
 } filter_kf3_t;
 

@@ -4,62 +4,64 @@
 /* Spread of the rate of a sensor picked up at any moment: 200 LSB/s, 45 degree/s around level. */
 #define START_RATE_VARIANCE_LSB2_S2 40000U
 
-void kalman_scales(const filter_config_t *config, fx_scaled_t *drive_lsb2, fx_scaled_t *start_lsb2)
+void filter_kalman_scales(const filter_config_t *config, fx_scaled_t *drive_lsb2, fx_scaled_t *start_lsb2)
 {
-    fx_scaled_t period_s = fx_scaled_div(fx_scaled(10), fx_scaled(config->rate_dhz));
-    fx_scaled_t period2 = fx_scaled_mul(period_s, period_s);
-    *drive_lsb2 = fx_scaled_mul(fx_scaled((uint32_t)config->value[KALMAN_Q]), fx_scaled_mul(period2, period_s));
-    *start_lsb2 = fx_scaled_mul(fx_scaled(START_RATE_VARIANCE_LSB2_S2), period2);
+    fx_scaled_t period_s = filter_fx_scaled_div(filter_fx_scaled(10), filter_fx_scaled(config->rate_dhz));
+    fx_scaled_t period2 = filter_fx_scaled_mul(period_s, period_s);
+    *drive_lsb2 = filter_fx_scaled_mul(filter_fx_scaled((uint32_t)config->value[KALMAN_Q]),
+                                       filter_fx_scaled_mul(period2, period_s));
+    *start_lsb2 = filter_fx_scaled_mul(filter_fx_scaled(START_RATE_VARIANCE_LSB2_S2), period2);
 }
 
-uint32_t kalman_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28)
+uint32_t filter_kalman_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28)
 {
-    uint32_t quotient = fx_scaled_fixed(fx_scaled_div(lsb2, r_lsb2), 28);
+    uint32_t quotient = filter_fx_scaled_fixed(filter_fx_scaled_div(lsb2, r_lsb2), 28);
     if (quotient < min_uq28) {
         return min_uq28;
     }
     return (quotient > KALMAN_Q22_MAX_UQ28) ? KALMAN_Q22_MAX_UQ28 : quotient;
 }
 
-fx_scaled_t kalman_scaled_r(uint32_t r_lsb2_q8)
+fx_scaled_t filter_kalman_scaled_r(uint32_t r_lsb2_q8)
 {
-    fx_scaled_t r_lsb2 = fx_scaled(r_lsb2_q8);
+    fx_scaled_t r_lsb2 = filter_fx_scaled(r_lsb2_q8);
     r_lsb2.exponent = (int8_t)(r_lsb2.exponent - 8);
     return r_lsb2;
 }
 
-void kalman_set_up(filter_t *f, const filter_config_t *config, uint32_t rate_max_lsb_s)
+void filter_kalman_set_up(filter_t *f, const filter_config_t *config, uint32_t rate_max_lsb_s)
 {
     filter_kalman_t *k = &f->own.kalman;
-    kalman_scales(config, &k->drive_lsb2, &k->start_lsb2);
-    tracker_limit_rate(f, rate_max_lsb_s, 16);
+    filter_kalman_scales(config, &k->drive_lsb2, &k->start_lsb2);
+    filter_tracker_limit_rate(f, rate_max_lsb_s, 16);
     filter_set_noise(f, (uint32_t)config->value[KALMAN_R]);
 }
 
-void kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8)
+void filter_kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8)
 {
     filter_kalman_t *k = &f->own.kalman;
-    fx_scaled_t r_lsb2 = kalman_scaled_r(r_lsb2_q8);
+    fx_scaled_t r_lsb2 = filter_kalman_scaled_r(r_lsb2_q8);
     k->r_lsb2_q8 = r_lsb2_q8;
-    k->q22_uq28 = kalman_per_r_uq28(k->drive_lsb2, r_lsb2, KALMAN_Q22_MIN_UQ28);
-    k->p22_start_uq28 = kalman_per_r_uq28(k->start_lsb2, r_lsb2, k->q22_uq28);
+    k->q22_uq28 = filter_kalman_per_r_uq28(k->drive_lsb2, r_lsb2, KALMAN_Q22_MIN_UQ28);
+    k->p22_start_uq28 = filter_kalman_per_r_uq28(k->start_lsb2, r_lsb2, k->q22_uq28);
 }
 
 /* The agreement is 3 sqrt(2 R) and a period at ratemax: < 135 + 4609 LSB. */
-void kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8)
+void filter_kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8)
 {
     filter_kalman_t *k = &f->own.kalman;
-    fx_scaled_t gate_sigma = fx_scaled(gate_sigma_q8);
-    fx_scaled_t gate = fx_scaled_mul(fx_scaled_mul(gate_sigma, gate_sigma), fx_scaled(k->r_lsb2_q8));
+    fx_scaled_t gate_sigma = filter_fx_scaled(gate_sigma_q8);
+    fx_scaled_t gate = filter_fx_scaled_mul(filter_fx_scaled_mul(gate_sigma, gate_sigma),
+                                            filter_fx_scaled(k->r_lsb2_q8));
     gate.exponent = (int8_t)(gate.exponent - 24); /* Q8 three times */
-    uint32_t gate_uq4 = fx_scaled_fixed(gate, 4);
+    uint32_t gate_uq4 = filter_fx_scaled_fixed(gate, 4);
     k->coarse = gate_uq4 > 0xFFFFU;
     if (k->coarse) {
         gate_uq4 >>= 8;
     }
     k->gated = gate_sigma_q8 != 0U;
     k->gate_lsb2_uq4 = (gate_uq4 == 0U) ? 1U : (uint16_t)gate_uq4;
-    k->agree_lsb = (uint16_t)((fx_isqrt32(18U * k->r_lsb2_q8) + (f->rate_max_lsb >> 12)) >> 4);
+    k->agree_lsb = (uint16_t)((filter_fx_isqrt32(18U * k->r_lsb2_q8) + (f->rate_max_lsb >> 12)) >> 4);
 }
 
 /* What the law forgets with its run of refused samples and its last gate. */
@@ -75,12 +77,12 @@ FX_NOINLINE void fresh(filter_kalman_t *k)
 /* A square root in UQ2.14, at most 1. */
 FX_NOINLINE uint16_t root_uq14(uint32_t square_uq28)
 {
-    uint16_t root = fx_isqrt32(square_uq28);
+    uint16_t root = filter_fx_isqrt32(square_uq28);
     return (root > 0x4000U) ? 0x4000U : root;
 }
 
 /* For small q P settles at P12 = sqrt q, P11 = sqrt(2 P12), P22 = P11 P12. */
-void kalman_near(filter_covariance_t *p, uint32_t q22_uq28)
+void filter_kalman_near(filter_covariance_t *p, uint32_t q22_uq28)
 {
     uint16_t p12_uq14 = root_uq14(q22_uq28);
     uint16_t p11_uq14 = root_uq14((uint32_t)p12_uq14 << 15);
@@ -89,12 +91,12 @@ void kalman_near(filter_covariance_t *p, uint32_t q22_uq28)
     p->p22 = fx_product_u16(p11_uq14, p12_uq14);
 }
 
-void kalman_start(filter_t *f, bool settled)
+void filter_kalman_start(filter_t *f, bool settled)
 {
     f->own.kalman.refused = 0;
     fresh(&f->own.kalman);
     if (settled) {
-        kalman_near(&f->own.kalman.p, f->own.kalman.q22_uq28);
+        filter_kalman_near(&f->own.kalman.p, f->own.kalman.q22_uq28);
     }
 }
 
@@ -143,7 +145,7 @@ FX_INLINE void correct(filter_t *f)
     tracker_turn(f, (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, w2_uq24));
 }
 
-bool kalman_step(filter_t *f, int16_t z_lsb, uint8_t what)
+bool filter_kalman_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     tracker_predict(f);
     tracker_meet(f, z_lsb);
@@ -178,11 +180,11 @@ FX_NOINLINE void restart(filter_t *f, int16_t z_lsb)
         k->p.p12 = (uint32_t)p12_uq12 << 16;
         k->p.p22 = ((uint32_t)p22_uq12 << 16) + k->q22_uq28;
     }
-    tracker_nothing(f);
+    filter_tracker_nothing(f);
     f->flags = FILTER_REACQUIRED;
 }
 
-bool kalman_refused(filter_t *f, int16_t z_lsb)
+bool filter_kalman_refused(filter_t *f, int16_t z_lsb)
 {
     filter_kalman_t *k = &f->own.kalman;
     int16_t step = (int16_t)(z_lsb - f->previous_lsb);
@@ -201,12 +203,12 @@ bool kalman_refused(filter_t *f, int16_t z_lsb)
     return false;
 }
 
-bool kalman_run_legal(int32_t samples)
+bool filter_kalman_run_legal(int32_t samples)
 {
     return samples == 0 || samples == 3 || samples == 5 || samples == 9;
 }
 
-void kalman_report(const filter_t *f, filter_probe_t *out)
+void filter_kalman_report(const filter_t *f, filter_probe_t *out)
 {
     const filter_kalman_t *k = &f->own.kalman;
     /* while warming up P is not there yet: the variance of one sample */

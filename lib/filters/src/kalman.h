@@ -11,8 +11,8 @@
  *
  * P / R (UQ4.28) is predicted only while all elements are below 2: then P11 < 8, P12 < 4, P22 < 3 afterwards, S = P11 +
  * 1 fits UQ4.28, and P, kept as a whole when it may not grow, stays a covariance. Updates never raise an element. The
- * bound that holds before and after every call (make proof): all elements below 2, or P11 < 8, P12 < 4, P22 < 3 and P12 <
- * max(1, P11 + 3/4). The last is needed: with P12 = 3.9, P11 = 0 nothing is predicted, w2 is 3.9, and the step of the
+ * bound that holds before and after every call (make proof): all elements below 2, or P11 < 8, P12 < 4, P22 < 3 and P12
+ * < max(1, P11 + 3/4). The last is needed: with P12 = 3.9, P11 = 0 nothing is predicted, w2 is 3.9, and the step of the
  * rate overflows. P12 <= P11, true after each prediction, implies it.
  *
  * Scaling:
@@ -49,28 +49,28 @@ extern "C" {
 enum { KALMAN_R, KALMAN_Q };
 
 /* q T^3 and the start variance of the rate, LSB^2 per sample^2, of a configuration. Divides. */
-void kalman_scales(const filter_config_t *config, fx_scaled_t *drive_lsb2, fx_scaled_t *start_lsb2);
+void filter_kalman_scales(const filter_config_t *config, fx_scaled_t *drive_lsb2, fx_scaled_t *start_lsb2);
 
 /* A variance over R in UQ4.28, within min_uq28..KALMAN_Q22_MAX_UQ28. Divides. */
-uint32_t kalman_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28);
+uint32_t filter_kalman_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28);
 
 /* r_lsb2_q8 as a number that spans decades, LSB^2. */
-fx_scaled_t kalman_scaled_r(uint32_t r_lsb2_q8);
+fx_scaled_t filter_kalman_scaled_r(uint32_t r_lsb2_q8);
 
 /* Drive, limit of the rate and noise of a Kalman law; rate_max 0: the bound of the format. Divides. */
-void kalman_set_up(filter_t *f, const filter_config_t *config, uint32_t rate_max_lsb_s);
+void filter_kalman_set_up(filter_t *f, const filter_config_t *config, uint32_t rate_max_lsb_s);
 
 /* R for the samples to come, 2..2^24 - 1. The estimate stays, P / R is re-scaled by time. Divides. */
-void kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8);
+void filter_kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8);
 
 /* Gate of so many sigmas (<= 16) with the R in force, and how far two samples of one run may lie apart. */
-void kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8);
+void filter_kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8);
 
 /* P11 = R, rate as uncertain as at the start. */
-void kalman_start(filter_t *f, bool settled);
+void filter_kalman_start(filter_t *f, bool settled);
 
 /* P near where it settles, UQ4.28. */
-void kalman_near(filter_covariance_t *p, uint32_t q22_uq28);
+void filter_kalman_near(filter_covariance_t *p, uint32_t q22_uq28);
 
 /*
  * One step: prediction of x and P, innovation, and unless the gate refuses it Kalman's update by the innovation's
@@ -78,21 +78,21 @@ void kalman_near(filter_covariance_t *p, uint32_t q22_uq28);
  * prediction and the sample, hence within its bound. True: the sample was used; false: it lies beyond the gate, u^2 >
  * gate^2 R (P11 + 1), or is missing.
  */
-bool kalman_step(filter_t *f, int16_t z_lsb, uint8_t what);
+bool filter_kalman_step(filter_t *f, int16_t z_lsb, uint8_t what);
 
 /*
  * Consistency re-acquisition: refused samples that agree among themselves are no outliers but where the signal is now.
- * L refused raw samples in a row, each within `agree` of the sample before it, restart the filter at the last of them, on
- * the slope from the first to the last. A sample that is not refused ends the run; a missing one makes the slope unknown.
- * True: this sample was the last of a run.
+ * L refused raw samples in a row, each within `agree` of the sample before it, restart the filter at the last of them,
+ * on the slope from the first to the last. A sample that is not refused ends the run; a missing one makes the slope
+ * unknown. True: this sample was the last of a run.
  */
-bool kalman_refused(filter_t *f, int16_t z_lsb);
+bool filter_kalman_refused(filter_t *f, int16_t z_lsb);
 
 /* A number of samples over which a slope can be fitted without a division: 3, 5, 9; 0: never. */
-bool kalman_run_legal(int32_t samples);
+bool filter_kalman_run_legal(int32_t samples);
 
 /* Variance and gate of the probe. */
-void kalman_report(const filter_t *f, filter_probe_t *out);
+void filter_kalman_report(const filter_t *f, filter_probe_t *out);
 
 #ifdef __cplusplus
 }

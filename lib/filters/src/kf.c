@@ -19,12 +19,12 @@ static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_paramet
 
 static void kf_set_up(filter_t *f, const filter_config_t *config)
 {
-    kalman_set_up(f, config, 0);
+    filter_kalman_set_up(f, config, 0);
 }
 
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    (void)kalman_step(f, z_lsb, what);
+    (void)filter_kalman_step(f, z_lsb, what);
 }
 
 /* The factor is rounded to 2^-16. */
@@ -33,16 +33,17 @@ static void lrf_set_up(filter_t *f, const filter_config_t *config)
     uint16_t ratio_uq8 = (uint16_t)config->value[LRF_RATIO_UQ8];
     uint32_t square_uq16 = fx_mul_u16(ratio_uq8, ratio_uq8);
     f->own.kalman.of.factor_uq16 = square_uq16 -
-                                   fx_times_uq16(square_uq16 - 65536U, (uint16_t)config->value[LRF_CLEAN_UQ16]);
-    kalman_set_up(f, config, 0);
+                                   filter_fx_times_uq16(square_uq16 - 65536U, (uint16_t)config->value[LRF_CLEAN_UQ16]);
+    filter_kalman_set_up(f, config, 0);
 }
 
 static void lrf_set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
-    fx_scaled_t product = fx_scaled_mul(fx_scaled(r_lsb2_q8), fx_scaled(f->own.kalman.of.factor_uq16));
+    fx_scaled_t product = filter_fx_scaled_mul(filter_fx_scaled(r_lsb2_q8),
+                                               filter_fx_scaled(f->own.kalman.of.factor_uq16));
     product.exponent = (int8_t)(product.exponent - 16);
-    uint32_t r_mixed_lsb2_q8 = fx_scaled_fixed(product, 0);
-    kalman_set_variance(f, (r_mixed_lsb2_q8 > LRF_R_MAX_LSB2_Q8) ? LRF_R_MAX_LSB2_Q8 : r_mixed_lsb2_q8);
+    uint32_t r_mixed_lsb2_q8 = filter_fx_scaled_fixed(product, 0);
+    filter_kalman_set_variance(f, (r_mixed_lsb2_q8 > LRF_R_MAX_LSB2_Q8) ? LRF_R_MAX_LSB2_Q8 : r_mixed_lsb2_q8);
 }
 
 const filter_law_t filter_law_kf FX_FLASH = { .name = "kf",
@@ -51,10 +52,10 @@ const filter_law_t filter_law_kf FX_FLASH = { .name = "kf",
                                               .worst_cycles = 800,
                                               .parameters = parameters,
                                               .set_up = kf_set_up,
-                                              .set_noise = kalman_set_variance,
-                                              .start = kalman_start,
+                                              .set_noise = filter_kalman_set_variance,
+                                              .start = filter_kalman_start,
                                               .step = step,
-                                              .report = LAW_REPORT(kalman_report) };
+                                              .report = LAW_REPORT(filter_kalman_report) };
 
 const filter_law_t filter_law_lrf FX_FLASH = { .name = "lrf",
                                                .parameter_count = 4,
@@ -63,6 +64,6 @@ const filter_law_t filter_law_lrf FX_FLASH = { .name = "lrf",
                                                .parameters = parameters,
                                                .set_up = lrf_set_up,
                                                .set_noise = lrf_set_noise,
-                                               .start = kalman_start,
+                                               .start = filter_kalman_start,
                                                .step = step,
-                                               .report = LAW_REPORT(kalman_report) };
+                                               .report = LAW_REPORT(filter_kalman_report) };

@@ -26,8 +26,8 @@
 
 /*
  * From this rate on the acceleration is counted in sixteenths of an LSB per sample^2, because the drive falls with the
- * fifth power of the rate. q33 is limited to 2^-24..1 below this rate (gain 0.118..0.871) and to 2^-32..2^-11 from it on
- * (gain 0.048..0.430).
+ * fifth power of the rate. q33 is limited to 2^-24..1 below this rate (gain 0.118..0.871) and to 2^-32..2^-11 from it
+ * on (gain 0.048..0.430).
  */
 #define FINE_FROM_DHZ 1000U
 /* Largest drive when fine: with more P33, counted 256 times, would not settle below 1. */
@@ -40,10 +40,10 @@ static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_paramet
 static void set_up(filter_t *f, const filter_config_t *config)
 {
     filter_kf3_t *k = &f->own.kf3;
-    fx_scaled_t period_s = fx_scaled_div(fx_scaled(10), fx_scaled(config->rate_dhz));
-    kalman_scales(config, &k->drive_lsb2, &k->start_lsb2);
+    fx_scaled_t period_s = filter_fx_scaled_div(filter_fx_scaled(10), filter_fx_scaled(config->rate_dhz));
+    filter_kalman_scales(config, &k->drive_lsb2, &k->start_lsb2);
     k->fine = config->rate_dhz >= FINE_FROM_DHZ;
-    k->drive_lsb2 = fx_scaled_mul(k->drive_lsb2, fx_scaled_mul(period_s, period_s)); /* q T^5 */
+    k->drive_lsb2 = filter_fx_scaled_mul(k->drive_lsb2, filter_fx_scaled_mul(period_s, period_s)); /* q T^5 */
     if (k->fine) {
         k->drive_lsb2.exponent = (int8_t)(k->drive_lsb2.exponent + 8);
     }
@@ -55,16 +55,19 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
     filter_kf3_t *k = &f->own.kf3;
     k->r_lsb2_q8 = r_lsb2_q8;
-    k->q33_uq28 = kalman_per_r_uq28(k->drive_lsb2, kalman_scaled_r(r_lsb2_q8), KALMAN_Q22_MIN_UQ28);
+    fx_scaled_t r_lsb2 = filter_kalman_scaled_r(r_lsb2_q8);
+    k->q33_uq28 = filter_kalman_per_r_uq28(k->drive_lsb2, r_lsb2, KALMAN_Q22_MIN_UQ28);
     if (k->fine && k->q33_uq28 > Q33_MAX_FINE_UQ28) {
         k->q33_uq28 = Q33_MAX_FINE_UQ28;
     }
+    uint32_t p22 = filter_kalman_per_r_uq28(k->start_lsb2, r_lsb2, k->q33_uq28);
+    k->p22_start_uq28 = (p22 < P22_START_MAX_UQ28) ? p22 : P22_START_MAX_UQ28;
 }
 
 /* The third root of sqrt q, at most 511/1024: UQ0.10. */
 static uint16_t sixth_root_uq10(const filter_kf3_t *k)
 {
-    uint32_t root_uq14 = fx_isqrt32(k->q33_uq28);
+    uint32_t root_uq14 = filter_fx_isqrt32(k->q33_uq28);
     uint32_t cube_uq30 = k->fine ? root_uq14 << 12 : root_uq14 << 16;
     uint16_t w = 0;
     for (uint16_t bit = 256; bit != 0U; bit >>= 1) {
@@ -99,8 +102,7 @@ static void start_near(filter_kf3_t *k)
 static void start(filter_t *f, bool settled)
 {
     filter_kf3_t *k = &f->own.kf3;
-    uint32_t p22 = kalman_per_r_uq28(k->start_lsb2, kalman_scaled_r(k->r_lsb2_q8), k->q33_uq28);
-    p22 = (p22 < P22_START_MAX_UQ28) ? p22 : P22_START_MAX_UQ28;
+    uint32_t p22 = k->p22_start_uq28;
     k->p.p11 = KALMAN_ONE_UQ28;
     k->p.p12 = 0;
     k->p.p22 = p22;
@@ -209,7 +211,7 @@ static uint32_t below_one_uq24(uint32_t gain_uq28)
 
 static void to_sixteenth(uint32_t *p)
 {
-    *p = fx_shifted_right(*p, 4);
+    *p = filter_fx_shifted_right(*p, 4);
 }
 
 /* What is no longer below 1 brings all of P down: a sixteenth of a covariance is one, and can be predicted. */
@@ -228,21 +230,22 @@ static void keep_predictable(filter_kf3_t *k)
 static void correct(filter_t *f)
 {
     filter_kf3_t *k = &f->own.kf3;
-    fx_leading_t variance = fx_leading(k->p.p11 + KALMAN_ONE_UQ28); /* 1 <= S < 14: places 3..0 */
-    uint16_t g_uq16 = (uint16_t)fx_shifted_right(fx_inverse_uq16(variance), (uint8_t)(3U - fx_places(variance)));
+    fx_leading_t variance = filter_fx_leading(k->p.p11 + KALMAN_ONE_UQ28); /* 1 <= S < 14: places 3..0 */
+    uint16_t g_uq16 = (uint16_t)filter_fx_shifted_right(filter_fx_inverse_uq16(variance),
+                                                        (uint8_t)(3U - fx_places(variance)));
     uint16_t w1_uq16 = (uint16_t)(0U - g_uq16);
     f->gain_uq16 = w1_uq16;
     k->p.p11 = fx_shift12(w1_uq16);
     f->x_lsb_q16 = moved(f, f->x_lsb_q16, (uint32_t)w1_uq16 << 8); /* towards the sample: within its bound */
     uint32_t p12 = k->p.p12;
-    uint32_t w2_uq28 = fx_times_uq16(p12, g_uq16);
+    uint32_t w2_uq28 = filter_fx_times_uq16(p12, g_uq16);
     k->p.p12 = w2_uq28;
     uint32_t gain_uq24 = below_one_uq24(w2_uq28);
     k->p.p22 = less(k->p.p22, p12, gain_uq24);
     uint32_t p13 = k->p13_uq28;
     k->p23_uq28 = less(k->p23_uq28, p13, gain_uq24);
     f->rate_lsb = limited(f, moved(f, f->rate_lsb, gain_uq24));
-    uint32_t w3_uq28 = fx_times_uq16(p13, g_uq16);
+    uint32_t w3_uq28 = filter_fx_times_uq16(p13, g_uq16);
     k->p13_uq28 = w3_uq28;
     gain_uq24 = below_one_uq24(w3_uq28);
     k->p33_uq28 = less(k->p33_uq28, p13, gain_uq24);

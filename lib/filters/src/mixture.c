@@ -10,10 +10,10 @@
  *
  * with loss and back of wide.h. af learns q: q += (p - q) / n, n = 3, 4 .. 1024; reset forgets it, restart does not.
  * Nothing is refused for ever: an outlier moves the estimate of pbf a little, and P by as much as the sample is
- * surprising; where P is at the end of its range (32,768 R) and the sample is still an outlier beyond doubt shrf restarts
- * from it (FILTER_REACQUIRED). FILTER_GATED means that the sample is more likely an outlier than not; its gain is small,
- * with shrf perhaps 0. Parameters r, q, ratio (N), clean (q: at least one half, or a sample on the prediction would count
- * as an outlier; what af begins with).
+ * surprising; where P is at the end of its range (32,768 R) and the sample is still an outlier beyond doubt shrf
+ * restarts from it (FILTER_REACQUIRED). FILTER_GATED means that the sample is more likely an outlier than not; its gain
+ * is small, with shrf perhaps 0. Parameters r, q, ratio (N), clean (q: at least one half, or a sample on the prediction
+ * would count as an outlier; what af begins with).
  */
 #include "mixture.h"
 
@@ -57,21 +57,21 @@ static uint16_t log2_uq9(fx_leading_t v)
     return (uint16_t)(whole_uq9 + linear_uq9 + ((uint16_t)(bow_uq16 + 64U) >> 7));
 }
 
-int16_t mixture_log_odds_q9(uint32_t q_uq24)
+int16_t filter_mixture_log_odds_q9(uint32_t q_uq24)
 {
-    uint16_t normal = log2_uq9(fx_leading(q_uq24));
-    uint16_t outlier = log2_uq9(fx_leading(ONE_UQ24 - q_uq24));
+    uint16_t normal = log2_uq9(filter_fx_leading(q_uq24));
+    uint16_t outlier = log2_uq9(filter_fx_leading(ONE_UQ24 - q_uq24));
     if (normal >= outlier) {
         uint16_t above_uq9 = (uint16_t)(normal - outlier);
         /*@ assert above_uq9 <= 16480; */ /* for make proof: the larger less the smaller, in the bound of both */
-        return (int16_t)fx_high_u16(above_uq9, LN2_UQ16);
+        return (int16_t)filter_fx_high_u16(above_uq9, LN2_UQ16);
     }
     uint16_t below_uq9 = (uint16_t)(outlier - normal);
     /*@ assert below_uq9 <= 16480; */
-    return (int16_t)(0 - (int16_t)fx_high_u16(below_uq9, LN2_UQ16));
+    return (int16_t)(0 - (int16_t)filter_fx_high_u16(below_uq9, LN2_UQ16));
 }
 
-mixture_posterior_t mixture_posterior(int16_t log_odds_q9)
+mixture_posterior_t filter_mixture_posterior(int16_t log_odds_q9)
 {
     mixture_posterior_t posterior = { 0, log_odds_q9 < 0 };
     uint16_t size_uq9 = (uint16_t)((log_odds_q9 < 0) ? 0 - log_odds_q9 : log_odds_q9);
@@ -79,7 +79,7 @@ mixture_posterior_t mixture_posterior(int16_t log_odds_q9)
         const uint32_t *node = &rest_nodes_uq24[size_uq9 >> 8];
         uint32_t left = fx_flash_u32(node);
         uint16_t right_uq16 = (uint16_t)(size_uq9 << 8);
-        posterior.rest_uq24 = left - fx_times_uq16(left - fx_flash_u32(node + 1), right_uq16);
+        posterior.rest_uq24 = left - filter_fx_times_uq16(left - fx_flash_u32(node + 1), right_uq16);
     }
     return posterior;
 }
@@ -88,7 +88,7 @@ mixture_posterior_t mixture_posterior(int16_t log_odds_q9)
 static void forget(filter_mixture_t *m)
 {
     m->learnt_uq24 = (uint32_t)m->clean_uq16 << 8;
-    m->log_odds_q9 = mixture_log_odds_q9(m->learnt_uq24);
+    m->log_odds_q9 = filter_mixture_log_odds_q9(m->learnt_uq24);
     if (m->learnt_from != 0U) {
         m->learnt_from = LEARNT_FROM_START;
     }
@@ -101,7 +101,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
     m->span_uq16 = fx_mul_u16(ratio_uq8, ratio_uq8) - ONE_UQ16;
     m->clean_uq16 = (uint16_t)config->value[MIXTURE_CLEAN_UQ16];
     forget(m);
-    wide_set_up(f, config);
+    filter_wide_set_up(f, config);
 }
 
 static void af_set_up(filter_t *f, const filter_config_t *config)
@@ -121,7 +121,7 @@ static void start(filter_t *f, bool settled)
     if (settled) {
         forget(&f->own.mixture);
     }
-    wide_start(f, settled);
+    filter_wide_start(f, settled);
 }
 
 /* p into the mean of those before: q += (p - q) / n. */
@@ -130,12 +130,12 @@ static void learn(filter_mixture_t *m, mixture_posterior_t posterior)
     if (m->learnt_from < LEARNT_FROM_MAX) {
         m->learnt_from++;
     }
-    fx_leading_t n = fx_leading(m->learnt_from); /* 1..2 x 2^(31 - places) */
+    fx_leading_t n = filter_fx_leading(m->learnt_from); /* 1..2 x 2^(31 - places) */
     uint32_t p = posterior.outlier ? posterior.rest_uq24 : ONE_UQ24 - posterior.rest_uq24;
     uint32_t q = m->learnt_uq24;
     bool rises = p >= q;
-    uint32_t part = fx_shifted_right(fx_times_uq16(rises ? p - q : q - p, fx_inverse_uq16(n)),
-                                     (uint8_t)(31U - fx_places(n)));
+    uint32_t part = filter_fx_shifted_right(filter_fx_times_uq16(rises ? p - q : q - p, filter_fx_inverse_uq16(n)),
+                                            (uint8_t)(31U - fx_places(n)));
     q = rises ? q + part : q - part; /* a mean of p and q: within 0..1 */
     if (q < MIXTURE_LEARNT_MARGIN_UQ24) {
         q = MIXTURE_LEARNT_MARGIN_UQ24;
@@ -143,7 +143,7 @@ static void learn(filter_mixture_t *m, mixture_posterior_t posterior)
         q = ONE_UQ24 - MIXTURE_LEARNT_MARGIN_UQ24;
     }
     m->learnt_uq24 = q;
-    m->log_odds_q9 = mixture_log_odds_q9(q);
+    m->log_odds_q9 = filter_mixture_log_odds_q9(q);
 }
 
 /* What a sample's distance says about it. */
@@ -158,19 +158,20 @@ static evidence_t weigh(const filter_t *f)
 {
     const filter_mixture_t *m = &f->own.mixture;
     evidence_t e;
-    fx_leading_t span = fx_leading(m->span_uq16);
-    fx_leading_t outlier = fx_leading(m->core.p.p11 + ONE_UQ16 + m->span_uq16); /* S_N < 33,033 + 10,000 */
+    fx_leading_t span = filter_fx_leading(m->span_uq16);
+    fx_leading_t outlier = filter_fx_leading(m->core.p.p11 + ONE_UQ16 + m->span_uq16); /* S_N < 33,033 + 10,000 */
     /* (N^2 - 1) / S_N < 1: its leading bits are at most those of S_N, and the quotient of mantissas less than 2 */
-    uint16_t share_uq15 = fx_high_u16(fx_mantissa(span), fx_inverse_uq16(outlier));
-    uint32_t share_uq16 = fx_shifted_right((uint32_t)share_uq15 << 1, (uint8_t)(fx_places(span) - fx_places(outlier)));
+    uint16_t share_uq15 = filter_fx_high_u16(fx_mantissa(span), filter_fx_inverse_uq16(outlier));
+    uint32_t share_uq16 = filter_fx_shifted_right((uint32_t)share_uq15 << 1,
+                                                  (uint8_t)(fx_places(span) - fx_places(outlier)));
     e.b_uq16 = (share_uq16 > UINT16_MAX) ? UINT16_MAX : (uint16_t)share_uq16;
-    e.t_uq8 = wide_distance_uq8(f);
-    e.tb_uq8 = fx_high_u16(e.t_uq8, e.b_uq16);
+    e.t_uq8 = filter_wide_distance_uq8(f);
+    e.tb_uq8 = filter_fx_high_u16(e.t_uq8, e.b_uq16);
     /* half of tb in Q9 has the number of tb in Q8 */
     uint16_t half_uq9 = (e.tb_uq8 > 0x4000U) ? 0x4000U : e.tb_uq8;
-    uint16_t spread_uq9 = fx_high_u16((uint16_t)(log2_uq9(outlier) - log2_uq9(m->core.variance)), HALF_LN2_UQ16);
+    uint16_t spread_uq9 = filter_fx_high_u16((uint16_t)(log2_uq9(outlier) - log2_uq9(m->core.variance)), HALF_LN2_UQ16);
     /*@ assert spread_uq9 <= 5712; */ /* for make proof: S <= S_N, log2 in UQ.9 < 16480 */
-    e.p = mixture_posterior((int16_t)(m->log_odds_q9 + (int16_t)spread_uq9 - (int16_t)half_uq9));
+    e.p = filter_mixture_posterior((int16_t)(m->log_odds_q9 + (int16_t)spread_uq9 - (int16_t)half_uq9));
     return e;
 }
 
@@ -190,18 +191,18 @@ static bool apply(filter_t *f, const evidence_t *e, bool shortened)
     uint16_t t_uq8 = e->t_uq8;
     if (!shortened) {
         t_uq8 = e->tb_uq8;
-        loss_uq16 = (certain && e->p.outlier) ? e->b_uq16 : fx_high_u16(e->b_uq16, loss_uq16);
+        loss_uq16 = (certain && e->p.outlier) ? e->b_uq16 : filter_fx_high_u16(e->b_uq16, loss_uq16);
     }
-    uint32_t back_uq16 = fx_times_uq16(fx_times_uq16(p_uq24, t_uq8), loss_uq16) + loss_uq16;
-    wide_correct(f, loss_uq16, (back_uq16 > WIDE_BACK_MAX_UQ16) ? WIDE_BACK_MAX_UQ16 : back_uq16);
+    uint32_t back_uq16 = filter_fx_times_uq16(filter_fx_times_uq16(p_uq24, t_uq8), loss_uq16) + loss_uq16;
+    filter_wide_correct(f, loss_uq16, (back_uq16 > WIDE_BACK_MAX_UQ16) ? WIDE_BACK_MAX_UQ16 : back_uq16);
     return true;
 }
 
 static void mixed(filter_t *f, int16_t z_lsb, uint8_t what, bool shortened)
 {
-    bool grows = wide_predict(f, z_lsb);
+    bool grows = filter_wide_predict(f, z_lsb);
     if (what == STEP_SETTLE) {
-        wide_correct(f, 0, 0);
+        filter_wide_correct(f, 0, 0);
     }
     if (what != STEP_SAMPLE) {
         return;
@@ -211,7 +212,7 @@ static void mixed(filter_t *f, int16_t z_lsb, uint8_t what, bool shortened)
         learn(&f->own.mixture, e.p);
     }
     if (!apply(f, &e, shortened)) {
-        wide_refuse(f, grows);
+        filter_wide_refuse(f, grows);
     } else if (e.p.outlier) {
         f->flags |= FILTER_GATED;
     }
@@ -233,10 +234,10 @@ const filter_law_t filter_law_pbf FX_FLASH = { .name = "pbf",
                                                .worst_cycles = 3500,
                                                .parameters = parameters,
                                                .set_up = set_up,
-                                               .set_noise = wide_set_noise,
+                                               .set_noise = filter_wide_set_noise,
                                                .start = start,
                                                .step = step,
-                                               .report = LAW_REPORT(wide_report) };
+                                               .report = LAW_REPORT(filter_wide_report) };
 
 const filter_law_t filter_law_shrf FX_FLASH = { .name = "shrf",
                                                 .parameter_count = 4,
@@ -244,10 +245,10 @@ const filter_law_t filter_law_shrf FX_FLASH = { .name = "shrf",
                                                 .worst_cycles = 3450,
                                                 .parameters = parameters,
                                                 .set_up = set_up,
-                                                .set_noise = wide_set_noise,
+                                                .set_noise = filter_wide_set_noise,
                                                 .start = start,
                                                 .step = shortened_step,
-                                                .report = LAW_REPORT(wide_report) };
+                                                .report = LAW_REPORT(filter_wide_report) };
 
 const filter_law_t filter_law_af FX_FLASH = { .name = "af",
                                               .parameter_count = 4,
@@ -256,7 +257,7 @@ const filter_law_t filter_law_af FX_FLASH = { .name = "af",
                                               .parameters = parameters,
                                               .standard = af_standard,
                                               .set_up = af_set_up,
-                                              .set_noise = wide_set_noise,
+                                              .set_noise = filter_wide_set_noise,
                                               .start = start,
                                               .step = step,
-                                              .report = LAW_REPORT(wide_report) };
+                                              .report = LAW_REPORT(filter_wide_report) };

@@ -25,10 +25,10 @@ typedef struct {
  * p for L: |error| <= 0.0016 in p, and 2 % and 2^-24 of min(p, 1 - p). Table of 25 nodes 0.5 apart, straight lines
  * between, placed so that the chords' error is centred.
  */
-mixture_posterior_t mixture_posterior(int16_t log_odds_q9);
+mixture_posterior_t filter_mixture_posterior(int16_t log_odds_q9);
 
 /* ln(q / (1 - q)) for 2^-14 <= q <= 1 - 2^-14: |error| <= 0.006. */
-int16_t mixture_log_odds_q9(uint32_t q_uq24);
+int16_t filter_mixture_log_odds_q9(uint32_t q_uq24);
 
 #ifdef __cplusplus
 }

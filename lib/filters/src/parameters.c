@@ -3,7 +3,8 @@
 
 /*
  * Shared parameters. r: R of one sample. q: power density of the white acceleration; the trade-off is tabled in the
- * README of the library. gate: in sigmas of the innovation. reacquire: refused samples in a row that restart a filter; of
+ * README of the library. gate: in sigmas of the innovation. reacquire: refused samples in a row that restart a filter;
+ * of
  * 3, 5 and 9 the slope is a shift. ratemax: with R it says how far two samples of such a run may lie apart.
  */
 const filter_parameter_t filter_parameter_r FX_FLASH = { "r", "LSB2", 8, 0, FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8,
@@ -34,9 +35,9 @@ uint16_t filter_worst_cycles(const filter_law_t *law)
     return fx_flash_u16(&law->worst_cycles);
 }
 
-uint32_t tracker_default_r_lsb2_q8(uint16_t rate_dhz)
+uint32_t filter_tracker_default_r_lsb2_q8(uint16_t rate_dhz)
 {
-    return tracker_limited_r(((uint32_t)rate_dhz * 768U + 500U) / 1000U); /* 0.003 per 0.1 Hz, Q8 */
+    return filter_tracker_limited_r(((uint32_t)rate_dhz * 768U + 500U) / 1000U); /* 0.003 per 0.1 Hz, Q8 */
 }
 
 static int32_t flash_i32(const int32_t *p)
@@ -50,7 +51,7 @@ filter_config_t filter_defaults(const filter_law_t *law, uint16_t rate_dhz)
     for (uint8_t i = filter_parameter_count(law); i != 0U;) {
         i--;
         const filter_parameter_t *parameter = filter_parameter(law, i);
-        config.value[i] = (parameter == &filter_parameter_r) ? (int32_t)tracker_default_r_lsb2_q8(rate_dhz)
+        config.value[i] = (parameter == &filter_parameter_r) ? (int32_t)filter_tracker_default_r_lsb2_q8(rate_dhz)
                                                              : flash_i32(&parameter->standard);
     }
     void (*standard)(filter_config_t *) = FX_FLASH_FUNCTION(&law->standard);

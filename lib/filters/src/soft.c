@@ -6,9 +6,9 @@
  * never zero, so it cannot be locked out even without re-acquisition. Samples beyond `gate` sigmas that agree among
  * themselves re-acquire as in sprf. Parameters r, q, softgate, gate, reacquire, ratemax; softgate 0: kf, gate 0: none.
  *
- * FILTER_GATED means that the sample lies beyond the gate (as far out as sprf with that gate would refuse it) and beyond
- * softgate: it was taken in part only, so unlike in sprf the gain is not 0. gate_lsb2_q8 of the probe is the limit of the
- * squared innovation above which the weight falls, softgate^2 S.
+ * FILTER_GATED means that the sample lies beyond the gate (as far out as sprf with that gate would refuse it) and
+ * beyond softgate: it was taken in part only, so unlike in sprf the gain is not 0. gate_lsb2_q8 of the probe is the
+ * limit of the squared innovation above which the weight falls, softgate^2 S.
  *
  * Scaling: within the soft gate as kalman.h. Beyond it
  *   m        UQ0.20, of u rounded down to 2^-8 LSB and gate_lsb2_uq4 (softgate^2 R, 1/16 LSB^2), within 2^-18
@@ -30,7 +30,7 @@ static const filter_parameter_t *const parameters[] FX_FLASH = {
 
 static bool together(const filter_config_t *config)
 {
-    return kalman_run_legal(config->value[SOFT_REACQUIRE_SAMPLES]);
+    return filter_kalman_run_legal(config->value[SOFT_REACQUIRE_SAMPLES]);
 }
 
 /*
@@ -42,8 +42,9 @@ static uint16_t flagged_share_uq16(int32_t soft_sigma_q8, int32_t gate_sigma_q8)
     if (gate_sigma_q8 == 0) {
         return 0;
     }
-    fx_scaled_t ratio = fx_scaled_div(fx_scaled((uint32_t)soft_sigma_q8), fx_scaled((uint32_t)gate_sigma_q8));
-    uint32_t share = fx_scaled_fixed(fx_scaled_mul(ratio, ratio), 16);
+    fx_scaled_t ratio = filter_fx_scaled_div(filter_fx_scaled((uint32_t)soft_sigma_q8),
+                                             filter_fx_scaled((uint32_t)gate_sigma_q8));
+    uint32_t share = filter_fx_scaled_fixed(filter_fx_scaled_mul(ratio, ratio), 16);
     return (share > 0xFFFFU) ? 0xFFFFU : (uint16_t)share;
 }
 
@@ -54,13 +55,13 @@ static void set_up(filter_t *f, const filter_config_t *config)
     f->own.kalman.of.gated.share_uq16 = flagged_share_uq16(config->value[SOFT_SOFT_SIGMA_Q8],
                                                            config->value[SOFT_GATE_SIGMA_Q8]);
     f->own.kalman.steps = (uint8_t)((samples == 0) ? 0 : samples - 1);
-    kalman_set_up(f, config, (uint32_t)config->value[SOFT_RATE_MAX_LSB_S]);
+    filter_kalman_set_up(f, config, (uint32_t)config->value[SOFT_RATE_MAX_LSB_S]);
 }
 
 static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
-    kalman_set_variance(f, r_lsb2_q8);
-    kalman_set_gate(f, f->own.kalman.of.gated.gate_sigma_q8);
+    filter_kalman_set_variance(f, r_lsb2_q8);
+    filter_kalman_set_gate(f, f->own.kalman.of.gated.gate_sigma_q8);
 }
 
 /* One place in line each: told two the compiler makes a loop of them on AVR. */
@@ -176,8 +177,8 @@ FX_INLINE void update_rate(filter_t *f, uint32_t m_uq20)
 }
 
 /*
- * A sample beyond the soft gate. Its share S / S_eff = S m = m + w1 tells whether it lies beyond the gate: u^2 > gate^2 S
- * where S m < (softgate / gate)^2.
+ * A sample beyond the soft gate. Its share S / S_eff = S m = m + w1 tells whether it lies beyond the gate: u^2 > gate^2
+ * S where S m < (softgate / gate)^2.
  */
 static void take_part(filter_t *f, int16_t z_lsb)
 {
@@ -189,7 +190,7 @@ static void take_part(filter_t *f, int16_t z_lsb)
     uint16_t share_uq16 = (uint16_t)(weight + f->gain_uq16);
     if (share_uq16 >= weight && share_uq16 < k->of.gated.share_uq16) { /* rounding may carry a share of 1 past it */
         f->flags |= FILTER_GATED;
-        if (kalman_refused(f, z_lsb)) {
+        if (filter_kalman_refused(f, z_lsb)) {
             return;
         }
     } else {
@@ -201,7 +202,7 @@ static void take_part(filter_t *f, int16_t z_lsb)
 
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    if (kalman_step(f, z_lsb, what)) {
+    if (filter_kalman_step(f, z_lsb, what)) {
         f->own.kalman.run = 0;
     } else if (what != STEP_MISSING) {
         take_part(f, z_lsb);
@@ -211,7 +212,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 /* A gain too small for its 16 bits is reported as 2^-16: only refused samples have none, and soft refuses none. */
 static void report(const filter_t *f, filter_probe_t *out)
 {
-    kalman_report(f, out);
+    filter_kalman_report(f, out);
     if (out->gain_uq16 == 0U && (out->flags & FILTER_GATED) != 0U) {
         out->gain_uq16 = 1;
     }
@@ -225,6 +226,6 @@ const filter_law_t filter_law_soft FX_FLASH = { .name = "soft",
                                                 .together = together,
                                                 .set_up = set_up,
                                                 .set_noise = set_noise,
-                                                .start = kalman_start,
+                                                .start = filter_kalman_start,
                                                 .step = step,
                                                 .report = LAW_REPORT(report) };

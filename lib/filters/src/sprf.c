@@ -18,7 +18,7 @@ static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_paramet
 
 static bool together(const filter_config_t *config)
 {
-    return kalman_run_legal(config->value[SPRF_REACQUIRE_SAMPLES]);
+    return filter_kalman_run_legal(config->value[SPRF_REACQUIRE_SAMPLES]);
 }
 
 static void set_up(filter_t *f, const filter_config_t *config)
@@ -26,13 +26,13 @@ static void set_up(filter_t *f, const filter_config_t *config)
     int32_t samples = config->value[SPRF_REACQUIRE_SAMPLES];
     f->own.kalman.of.gated.gate_sigma_q8 = (uint16_t)config->value[SPRF_GATE_SIGMA_Q8];
     f->own.kalman.steps = (uint8_t)((samples == 0) ? 0 : samples - 1);
-    kalman_set_up(f, config, (uint32_t)config->value[SPRF_RATE_MAX_LSB_S]);
+    filter_kalman_set_up(f, config, (uint32_t)config->value[SPRF_RATE_MAX_LSB_S]);
 }
 
 static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
-    kalman_set_variance(f, r_lsb2_q8);
-    kalman_set_gate(f, f->own.kalman.of.gated.gate_sigma_q8);
+    filter_kalman_set_variance(f, r_lsb2_q8);
+    filter_kalman_set_gate(f, f->own.kalman.of.gated.gate_sigma_q8);
 }
 
 /*
@@ -54,13 +54,13 @@ static void forget_rate(filter_t *f)
 
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    if (kalman_step(f, z_lsb, what)) {
+    if (filter_kalman_step(f, z_lsb, what)) {
         f->own.kalman.run = 0;
     } else if (what != STEP_MISSING) {
         f->flags |= FILTER_GATED;
         f->gain_uq16 = 0;
         forget_rate(f);
-        (void)kalman_refused(f, z_lsb);
+        (void)filter_kalman_refused(f, z_lsb);
     }
 }
 
@@ -72,6 +72,6 @@ const filter_law_t filter_law_sprf FX_FLASH = { .name = "sprf",
                                                 .together = together,
                                                 .set_up = set_up,
                                                 .set_noise = set_noise,
-                                                .start = kalman_start,
+                                                .start = filter_kalman_start,
                                                 .step = step,
-                                                .report = LAW_REPORT(kalman_report) };
+                                                .report = LAW_REPORT(filter_kalman_report) };

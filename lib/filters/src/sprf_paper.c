@@ -1,13 +1,14 @@
 /*
- * sprf_paper: the binary-gated filter of paper 002, (34), as published: it LOCKS OUT. Here to be compared with; use sprf.
+ * sprf_paper: the binary-gated filter of paper 002, (34), as published: it LOCKS OUT. Here to be compared with; use
+ * sprf.
  *
  * A sample further from the prediction than gate x sigma (of the innovation; 2 as published, with Xi read as an RMS) is
- * refused: predict only. Nothing else: no re-acquisition, no robust start. The first sample is taken whatever it is (x =
- * z, P11 = R: what an update from P(0) without bound leaves), so an outlier there makes every good sample after it an
+ * refused: predict only. Nothing else: no re-acquisition, no robust start. The first sample is taken whatever it is (x
+ * = z, P11 = R: what an update from P(0) without bound leaves), so an outlier there makes every good sample after it an
  * outlier, and so does a step, until P has grown to it: a step of n sigma waits for P11 = n^2 / 4 R. Only at the end of
  * P's range (32,768 R, 362 sigma; from rest after 273 samples at 100 Hz with the defaults, 1,034 with the paper's R and
- * q) the next sample is taken (FILTER_REACQUIRED), because P can grow no further. Parameters r, q, gate (which cannot be
- * switched off). Equations and scaling: wide.h.
+ * q) the next sample is taken (FILTER_REACQUIRED), because P can grow no further. Parameters r, q, gate (which cannot
+ * be switched off). Equations and scaling: wide.h.
  */
 #include "wide.h"
 
@@ -22,19 +23,19 @@ static void set_up(filter_t *f, const filter_config_t *config)
     uint16_t sigma_q8 = (uint16_t)config->value[SPRF_PAPER_GATE_SIGMA_Q8];
     uint32_t gate2_uq8 = fx_mul_u16(sigma_q8, sigma_q8) >> 8;
     f->own.wide.gate2_uq8 = (gate2_uq8 >= UINT16_MAX) ? UINT16_MAX - 1U : (uint16_t)gate2_uq8;
-    wide_set_up(f, config);
+    filter_wide_set_up(f, config);
 }
 
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    bool grows = wide_predict(f, z_lsb);
+    bool grows = filter_wide_predict(f, z_lsb);
     if (what == STEP_MISSING) {
         return;
     }
-    if (wide_distance_uq8(f) <= f->own.wide.gate2_uq8) {
-        wide_correct(f, 0, 0);
+    if (filter_wide_distance_uq8(f) <= f->own.wide.gate2_uq8) {
+        filter_wide_correct(f, 0, 0);
     } else {
-        wide_refuse(f, grows);
+        filter_wide_refuse(f, grows);
     }
 }
 
@@ -45,7 +46,7 @@ const filter_law_t filter_law_sprf_paper FX_FLASH = { .name = "sprf_paper",
                                                       .worst_cycles = 2150,
                                                       .parameters = parameters,
                                                       .set_up = set_up,
-                                                      .set_noise = wide_set_noise,
-                                                      .start = wide_start,
+                                                      .set_noise = filter_wide_set_noise,
+                                                      .start = filter_wide_start,
                                                       .step = step,
-                                                      .report = LAW_REPORT(wide_report) };
+                                                      .report = LAW_REPORT(filter_wide_report) };

@@ -72,11 +72,11 @@ uint32_t filter_synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16)
     int32_t above_q16 = 0x20000 - (int32_t)b0_uq16 - (negative ? -2 * product_q16 : 2 * product_q16);
     uint32_t left = (a1_q16 < 0) ? 0x40000000U - memory : 0x40000000U + memory; /* (1 + 2 ac) / 2, UQ1.31 */
     uint32_t right = (a1_q16 < 0) ? margin + memory : margin - memory;          /* (4 - 3 b0 - 4 ac) / 4 */
-    fx_scaled_t above = fx_scaled((above_q16 > 0) ? (uint32_t)above_q16 : 1U);
+    fx_scaled_t above = filter_fx_scaled((above_q16 > 0) ? (uint32_t)above_q16 : 1U);
     above.exponent = (int8_t)(above.exponent - 16 - 3);
-    fx_scaled_t below = fx_scaled_mul(fx_scaled(left), fx_scaled(right));
+    fx_scaled_t below = filter_fx_scaled_mul(filter_fx_scaled(left), filter_fx_scaled(right));
     below.exponent = (int8_t)(below.exponent - 62);
-    return fx_scaled_fixed(fx_scaled_div(above, below), 16);
+    return filter_fx_scaled_fixed(filter_fx_scaled_div(above, below), 16);
 }
 
 static bool together(const filter_config_t *config)
@@ -98,20 +98,20 @@ FX_NOINLINE void start_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     filter_synth_t *s = &f->own.synth;
     if (what != STEP_MISSING) {
-        f->gain_uq16 = synth_next_gain_uq16(f);
+        f->gain_uq16 = filter_synth_next_gain_uq16(f);
     }
     if (s->count == SYNTH_STEADY) {
-        synth_steady_step(f, z_lsb, what);
+        filter_synth_steady_step(f, z_lsb, what);
     } else {
         s->rate_before_lsb_q16 = f->rate_lsb;
-        synth_step(f, z_lsb, what);
+        filter_synth_step(f, z_lsb, what);
     }
 }
 
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     if (f->own.synth.count == SYNTH_STEADY) {
-        synth_steady_step(f, z_lsb, what);
+        filter_synth_steady_step(f, z_lsb, what);
     } else {
         start_step(f, z_lsb, what);
     }
@@ -125,7 +125,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     if (f->collected == FILTER_RUNNING && s->count == SYNTH_STEADY) {
         int32_t a1_q16 = (int32_t)s->a1_uq16;
         a1_q16 = s->a1_negative ? -a1_q16 : a1_q16;
-        out->p_lsb2_q8 = synth_variance_lsb2_q8(f, filter_synth_noise_gain_uq16(s->b0_uq16, a1_q16));
+        out->p_lsb2_q8 = filter_synth_variance_lsb2_q8(f, filter_synth_noise_gain_uq16(s->b0_uq16, a1_q16));
     }
 }
 
@@ -135,8 +135,8 @@ const filter_law_t filter_law_synth FX_FLASH = { .name = "synth",
                                                  .parameters = parameters,
                                                  .together = together,
                                                  .set_up = set_up,
-                                                 .set_noise = synth_take_noise,
-                                                 .start = synth_start,
+                                                 .set_noise = filter_synth_take_noise,
+                                                 .start = filter_synth_start,
                                                  .step = step,
-                                                 .fade = synth_fade,
+                                                 .fade = filter_synth_fade,
                                                  .report = LAW_REPORT(report) };

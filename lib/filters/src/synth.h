@@ -23,44 +23,44 @@ enum { SYNTH_STEADY = 255, SYNTH_FIRST_GAIN = FILTER_WARM_UP_SAMPLES, SYNTH_END_
 #define SYNTH_B0_MAX_UQ16 65535
 
 /* Noise for the report and for what of the rate is believed when samples are missing. */
-void synth_take_noise(filter_t *f, uint32_t r_lsb2_q8);
+void filter_synth_take_noise(filter_t *f, uint32_t r_lsb2_q8);
 
 /* At the median of the start; settled: at rest with the steady gains. */
-void synth_start(filter_t *f, bool settled);
+void filter_synth_start(filter_t *f, bool settled);
 
 /*
- * The gain for this sample, at least b0: (4 n - 2) / (n (n + 1)) of a least-squares line through n samples in the start,
- * which ends with the first of them that is not above b0 or with sample SYNTH_END_GAIN.
+ * The gain for this sample, at least b0: (4 n - 2) / (n (n + 1)) of a least-squares line through n samples in the
+ * start, which ends with the first of them that is not above b0 or with sample SYNTH_END_GAIN.
  */
-uint16_t synth_next_gain_uq16(filter_t *f);
+uint16_t filter_synth_next_gain_uq16(filter_t *f);
 
 /* v - a1 (v - v') in place of v, for an a1 of this magnitude. */
-void synth_bend_by(filter_t *f, uint16_t a1_uq16);
+void filter_synth_bend_by(filter_t *f, uint16_t a1_uq16);
 
 /*
  * One step: prediction by v, to which the law has added what bends it, |addend| <= 18432 LSB (with |2 x1 - x2| <= 13824
  * the sum stays below 2^31 in Q16), then the correction with f->gain_uq16, without a sample none.
  */
-void synth_step(filter_t *f, int16_t z_lsb, uint8_t what);
+void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what);
 
 /* One step with the steady gain and extrapolation. */
-void synth_steady_step(filter_t *f, int16_t z_lsb, uint8_t what);
+void filter_synth_steady_step(filter_t *f, int16_t z_lsb, uint8_t what);
 
 /*
  * The rate is the difference of two estimates, the noise of which is 0.3 to 0.7 sigmas of a sample: unless it is more
  * than three it is not believed when samples begin to be missing, nor is the curvature.
  */
-void synth_fade(filter_t *f, bool first);
+void filter_synth_fade(filter_t *f, bool first);
 
 /* The last two steps halved. */
-void synth_damp(filter_t *f);
+void filter_synth_damp(filter_t *f);
 
 /* Noise gains in the steady state, see synth.c and synth_plus.c; for the tools too. Divide. */
 uint32_t filter_synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16);
 uint32_t filter_synth_plus_noise_gain_uq16(const filter_config_t *config);
 
 /* Variance R x noise_gain, saturated. Divides. */
-uint32_t synth_variance_lsb2_q8(const filter_t *f, uint32_t noise_gain_uq16);
+uint32_t filter_synth_variance_lsb2_q8(const filter_t *f, uint32_t noise_gain_uq16);
 
 #ifdef __cplusplus
 }

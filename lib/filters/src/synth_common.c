@@ -12,19 +12,19 @@ static const uint16_t start_gains_uq16[SYNTH_END_GAIN - SYNTH_FIRST_GAIN] FX_FLA
     4992,  4899,  4809,  4722,  4639,  4558,  4480,  4405,  4332,  4262,  4193,  4127,  4063,
 };
 
-void synth_take_noise(filter_t *f, uint32_t r_lsb2_q8)
+void filter_synth_take_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
     f->own.synth.r_lsb2_q8 = r_lsb2_q8;
 }
 
-void synth_start(filter_t *f, bool settled)
+void filter_synth_start(filter_t *f, bool settled)
 {
     f->own.synth.rate_before_lsb_q16 = 0;
     f->own.synth.memory_lsb_q16 = 0;
     f->own.synth.count = settled ? (uint8_t)SYNTH_STEADY : (uint8_t)SYNTH_FIRST_GAIN;
 }
 
-uint16_t synth_next_gain_uq16(filter_t *f)
+uint16_t filter_synth_next_gain_uq16(filter_t *f)
 {
     filter_synth_t *s = &f->own.synth;
     if (s->count < (uint8_t)SYNTH_END_GAIN) {
@@ -38,7 +38,7 @@ uint16_t synth_next_gain_uq16(filter_t *f)
     return s->b0_uq16;
 }
 
-void synth_step(filter_t *f, int16_t z_lsb, uint8_t what)
+void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     int32_t before = f->x_lsb_q16;
     int32_t x = tracker_bounded(f, before + f->rate_lsb);
@@ -54,12 +54,12 @@ void synth_step(filter_t *f, int16_t z_lsb, uint8_t what)
     f->rate_lsb = x - before;
 }
 
-void synth_bend_by(filter_t *f, uint16_t a1_uq16)
+void filter_synth_bend_by(filter_t *f, uint16_t a1_uq16)
 {
     filter_synth_t *s = &f->own.synth;
     int32_t bend = f->rate_lsb - s->rate_before_lsb_q16; /* x1 - 2 x2 + x3 < 18432 LSB */
     s->rate_before_lsb_q16 = f->rate_lsb;
-    int32_t part = (int32_t)fx_times_uq16(fx_abs32(bend), a1_uq16);
+    int32_t part = (int32_t)filter_fx_times_uq16(fx_abs32(bend), a1_uq16);
     if ((bend < 0) != s->a1_negative) {
         f->rate_lsb += part;
     } else {
@@ -70,21 +70,21 @@ void synth_bend_by(filter_t *f, uint16_t a1_uq16)
 /* Apart, so that the straight line has no registers to save. */
 FX_NOINLINE void bent_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    synth_bend_by(f, f->own.synth.a1_uq16);
-    synth_step(f, z_lsb, what);
+    filter_synth_bend_by(f, f->own.synth.a1_uq16);
+    filter_synth_step(f, z_lsb, what);
 }
 
-void synth_steady_step(filter_t *f, int16_t z_lsb, uint8_t what)
+void filter_synth_steady_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     f->gain_uq16 = f->own.synth.b0_uq16;
     if (f->own.synth.a1_uq16 == 0U) {
-        synth_step(f, z_lsb, what);
+        filter_synth_step(f, z_lsb, what);
     } else {
         bent_step(f, z_lsb, what);
     }
 }
 
-void synth_damp(filter_t *f)
+void filter_synth_damp(filter_t *f)
 {
     f->own.synth.rate_before_lsb_q16 >>= 1;
 }
@@ -97,19 +97,19 @@ static bool rate_counts(const filter_t *f)
     return (size_lsb_uq8 >> 16) != 0U || fx_product_u16(size, size) > (9U * f->own.synth.r_lsb2_q8) << 8;
 }
 
-void synth_fade(filter_t *f, bool first)
+void filter_synth_fade(filter_t *f, bool first)
 {
     if (!first) {
-        synth_damp(f);
+        filter_synth_damp(f);
     } else if (!rate_counts(f)) {
         f->rate_lsb = 0;
         f->own.synth.rate_before_lsb_q16 = 0;
     }
 }
 
-uint32_t synth_variance_lsb2_q8(const filter_t *f, uint32_t noise_gain_uq16)
+uint32_t filter_synth_variance_lsb2_q8(const filter_t *f, uint32_t noise_gain_uq16)
 {
-    fx_scaled_t p = fx_scaled_mul(fx_scaled(noise_gain_uq16), fx_scaled(f->own.synth.r_lsb2_q8));
+    fx_scaled_t p = filter_fx_scaled_mul(filter_fx_scaled(noise_gain_uq16), filter_fx_scaled(f->own.synth.r_lsb2_q8));
     p.exponent = (int8_t)(p.exponent - 16);
-    return fx_scaled_fixed(p, 0);
+    return filter_fx_scaled_fixed(p, 0);
 }

@@ -11,9 +11,9 @@
  *   U      a1 by the paper's (21), Pe as if the errors were uncorrelated, the closest working relative of (20):
  *          ends at (-1/6, 11/13); its own P = 11/13 R there, true are 0.8059 R
  *
- * both with a1 in [-1/3, 0] and b0 in [1/2, 1), where any switching is stable. The steady gains do not depend on R: R on
- * line changes the start only. Not robust: every outlier passes with the gain b0. Parameters u (0: exact, 1: variant U),
- * p0, r (for start and probe).
+ * both with a1 in [-1/3, 0] and b0 in [1/2, 1), where any switching is stable. The steady gains do not depend on R: R
+ * on line changes the start only. Not robust: every outlier passes with the gain b0. Parameters u (0: exact, 1: variant
+ * U), p0, r (for start and probe).
  *
  * Scaling:
  *   a1, b0   UQ0.16 magnitudes of the table, within 2^-17 of the schedule's for its class of P0 / R. With the class's
@@ -62,7 +62,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
  */
 static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
-    synth_take_noise(f, r_lsb2_q8);
+    filter_synth_take_noise(f, r_lsb2_q8);
     if (f->collected < FILTER_WARM_UP_SAMPLES) {
         uint32_t border_lsb2_q8 = r_lsb2_q8 << 1; /* at most 2^1 x 4^4 x 256000 < 2^32 below */
         uint8_t ratio_class = 0;
@@ -87,26 +87,26 @@ FX_NOINLINE void scheduled_step(filter_t *f, int16_t z_lsb, uint8_t what)
     bool variant_u = s->of.scheduled.variant_u;
     f->gain_uq16 = fx_flash_u16(variant_u ? &u_b0_uq16[at] : &exact_b0_uq16[at]);
     if (variant_u) {
-        synth_bend_by(f, fx_flash_u16(&u_a1_uq16[at]));
+        filter_synth_bend_by(f, fx_flash_u16(&u_a1_uq16[at]));
     }
     if (what != STEP_MISSING) {
         s->count = (steps < (uint8_t)(SYNTH_OPT_STEPS - 1)) ? (uint8_t)(s->count + 1U) : (uint8_t)SYNTH_STEADY;
     }
-    synth_step(f, z_lsb, what);
+    filter_synth_step(f, z_lsb, what);
 }
 
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     if (f->own.synth.count == SYNTH_STEADY) {
-        synth_steady_step(f, z_lsb, what);
+        filter_synth_steady_step(f, z_lsb, what);
     } else {
         scheduled_step(f, z_lsb, what);
     }
 }
 
 /*
- * The variance is that of one sample while warming up, then what the schedule takes it for, R b0 (more than the true one
- * where b0 was clamped), and behind it the noise gain of the limit.
+ * The variance is that of one sample while warming up, then what the schedule takes it for, R b0 (more than the true
+ * one where b0 was clamped), and behind it the noise gain of the limit.
  */
 static void report(const filter_t *f, filter_probe_t *out)
 {
@@ -117,7 +117,7 @@ static void report(const filter_t *f, filter_probe_t *out)
         if (s->count != SYNTH_STEADY && f->gain_uq16 != 0U) {
             noise_gain_uq16 = f->gain_uq16;
         }
-        out->p_lsb2_q8 = synth_variance_lsb2_q8(f, noise_gain_uq16);
+        out->p_lsb2_q8 = filter_synth_variance_lsb2_q8(f, noise_gain_uq16);
     }
 }
 
@@ -128,7 +128,7 @@ const filter_law_t filter_law_synth_opt FX_FLASH = { .name = "synth_opt",
                                                      .standard = standard,
                                                      .set_up = set_up,
                                                      .set_noise = set_noise,
-                                                     .start = synth_start,
+                                                     .start = filter_synth_start,
                                                      .step = step,
-                                                     .fade = synth_fade,
+                                                     .fade = filter_synth_fade,
                                                      .report = LAW_REPORT(report) };

@@ -19,7 +19,8 @@
  * between two of these is followed with the taps made for the nearer one (test_synth_plus_reference.c tells what that
  * costs). Not robust: every outlier passes with the gain b0.
  *
- * Parameters k (rho = 1 - 2^-k; 8: 1), b0, b1, b2, r (for start and probe). Together the four must be stable: D has its zeros inside the unit circle, which is (Jury's test of the third order)
+ * Parameters k (rho = 1 - 2^-k; 8: 1), b0, b1, b2, r (for start and probe). Together the four must be stable: D has its
+ * zeros inside the unit circle, which is (Jury's test of the third order)
  *
  *   b0 + b1 + b2 > 0,   b0 - b1 + b2 + 4 (1 - b0) (1 + rho) > 0,   b0 - b2 > (1 - b0) rho (2 b0 + b1)
  *
@@ -52,8 +53,8 @@ static const filter_parameter_t *const parameters[] FX_FLASH = { &k_parameter, &
 
 /*
  * - b1 of the alpha-beta form of a least-squares line through n samples, (4 n - 8) / (n (n + 1)), n = 6..31, UQ0.16.
- * With the gains of synth_next_gain_uq16 the start is that line. A slower filter goes on with its own from there: they
- * are at most 0.13 apart.
+ * With the gains of filter_synth_next_gain_uq16 the start is that line. A slower filter goes on with its own from
+ * there: they are at most 0.13 apart.
  */
 enum { LINE_END = 31 };
 static const uint16_t line_memory_uq16[(uint8_t)LINE_END - (uint8_t)SYNTH_FIRST_GAIN] FX_FLASH = {
@@ -164,15 +165,15 @@ static void remember(filter_t *f)
 }
 
 /*
- * A sample of the start, with the gain and the b1 of the line and no other memory. The one that ends it has the own gain
- * and b1.
+ * A sample of the start, with the gain and the b1 of the line and no other memory. The one that ends it has the own
+ * gain and b1.
  */
 static void start_step(filter_t *f, int16_t z_lsb)
 {
     filter_synth_t *s = &f->own.synth;
     uint16_t b1_uq16 = s->of.plus.b1_uq16;
     bool negative = s->of.plus.b1_negative;
-    f->gain_uq16 = synth_next_gain_uq16(f);
+    f->gain_uq16 = filter_synth_next_gain_uq16(f);
     if (s->count > (uint8_t)LINE_END) {
         s->count = SYNTH_STEADY;
         f->gain_uq16 = s->b0_uq16;
@@ -182,7 +183,7 @@ static void start_step(filter_t *f, int16_t z_lsb)
         negative = true;
     }
     f->rate_lsb += s->memory_lsb_q16;
-    synth_step(f, z_lsb, STEP_SAMPLE);
+    filter_synth_step(f, z_lsb, STEP_SAMPLE);
     s->memory_lsb_q16 = tapped(f, negative, b1_uq16);
 }
 
@@ -200,13 +201,13 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     }
     s->memory_lsb_q16 = steady ? older_q16(f) : 0;
     if (what == STEP_MISSING) {
-        tracker_nothing(f);
+        filter_tracker_nothing(f);
     } else {
         f->gain_uq16 = s->b0_uq16;
     }
     s->rate_before_lsb_q16 = f->rate_lsb;
     f->rate_lsb += memory_q16;
-    synth_step(f, z_lsb, what);
+    filter_synth_step(f, z_lsb, what);
     if (steady) {
         remember(f);
     }
@@ -215,7 +216,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 static void fade(filter_t *f, bool first)
 {
     if (!first) {
-        synth_damp(f);
+        filter_synth_damp(f);
         f->own.synth.memory_lsb_q16 >>= 1;
     }
 }
@@ -223,7 +224,7 @@ static void fade(filter_t *f, bool first)
 /* v x factor / 2^16, |factor| <= 65535. */
 static int32_t times(int32_t v, int32_t factor_q16)
 {
-    int32_t product = (int32_t)fx_times_uq16(fx_abs32(v), (uint16_t)fx_abs32(factor_q16));
+    int32_t product = (int32_t)filter_fx_times_uq16(fx_abs32(v), (uint16_t)fx_abs32(factor_q16));
     return ((v < 0) != (factor_q16 < 0)) ? -product : product;
 }
 
@@ -258,12 +259,12 @@ uint32_t filter_synth_plus_noise_gain_uq16(const filter_config_t *config)
     n -= times(by_m, m);
     int32_t left = q25(b0 - b1 + b2 + 4 * (ONE_Q16 - b0)) + (int32_t)(memory >> 7) * 4;
     int32_t right = q25(b0 - b2) - times(q25(2 * b0 + b1), m);
-    fx_scaled_t above = fx_scaled((n > 0) ? (uint32_t)n : 1U);
-    fx_scaled_t below = fx_scaled_mul(fx_scaled((left > 0) ? (uint32_t)left : 1U),
-                                      fx_scaled((right > 0) ? (uint32_t)right : 1U));
-    fx_scaled_t gain = fx_scaled_div(above, below);
+    fx_scaled_t above = filter_fx_scaled((n > 0) ? (uint32_t)n : 1U);
+    fx_scaled_t below = filter_fx_scaled_mul(filter_fx_scaled((left > 0) ? (uint32_t)left : 1U),
+                                             filter_fx_scaled((right > 0) ? (uint32_t)right : 1U));
+    fx_scaled_t gain = filter_fx_scaled_div(above, below);
     gain.exponent = (int8_t)(gain.exponent + 25);
-    return fx_scaled_fixed(gain, 16);
+    return filter_fx_scaled_fixed(gain, 16);
 }
 
 /* The variance is that of one sample until the gains are steady, then R times the noise gain, limited to 32 bits. */
@@ -279,7 +280,7 @@ static void report(const filter_t *f, filter_probe_t *out)
                                                                  : (int32_t)s->of.plus.b1_uq16;
         config.value[SYNTH_PLUS_B2_Q16] = s->of.plus.b2_negative ? -(int32_t)s->of.plus.b2_uq16
                                                                  : (int32_t)s->of.plus.b2_uq16;
-        out->p_lsb2_q8 = synth_variance_lsb2_q8(f, filter_synth_plus_noise_gain_uq16(&config));
+        out->p_lsb2_q8 = filter_synth_variance_lsb2_q8(f, filter_synth_plus_noise_gain_uq16(&config));
     }
 }
 
@@ -290,8 +291,8 @@ const filter_law_t filter_law_synth_plus FX_FLASH = { .name = "synth_plus",
                                                       .standard = standard,
                                                       .together = together,
                                                       .set_up = set_up,
-                                                      .set_noise = synth_take_noise,
-                                                      .start = synth_start,
+                                                      .set_noise = filter_synth_take_noise,
+                                                      .start = filter_synth_start,
                                                       .step = step,
                                                       .fade = fade,
                                                       .report = LAW_REPORT(report) };

@@ -1,6 +1,6 @@
 /*
- * Inside the library: the tracker's verbs that laws are written with, and the descriptor that a law is. The functions of
- * filter.h are in filter.c; what a law shares with others of its kind is in kalman.h, wide.h, synth.h.
+ * Inside the library: the tracker's verbs that laws are written with, and the descriptor that a law is. The functions
+ * of filter.h are in filter.c; what a law shares with others of its kind is in kalman.h, wide.h, synth.h.
  */
 #ifndef TRACKER_H
 #define TRACKER_H
@@ -60,16 +60,16 @@ struct filter_law {
 #define LAW_OF(f, function) FX_FLASH_FUNCTION(&(f)->law->function)
 
 /* All of a state to 0, gaps too. */
-void tracker_clear(void *state, size_t size);
+void filter_tracker_clear(void *state, size_t size);
 
 /* A sample limited to the range that the bounds of all laws assume. */
-int16_t tracker_limited_z(int16_t z_lsb);
+int16_t filter_tracker_limited_z(int16_t z_lsb);
 
 /*
  * R to start from at an output data rate: 1.5 x 0.02 x rate LSB^2 (0.14 LSB per root Hz, measured on real boards),
  * limited.
  */
-uint32_t tracker_default_r_lsb2_q8(uint16_t rate_dhz);
+uint32_t filter_tracker_default_r_lsb2_q8(uint16_t rate_dhz);
 
 /* x within its bound by the high word: 4608 LSB and a fraction count as 4608. Flagged. */
 FX_INLINE int32_t tracker_bounded(filter_t *f, int32_t x_lsb_q16)
@@ -102,13 +102,13 @@ FX_INLINE void tracker_meet(filter_t *f, int16_t z_lsb)
 }
 
 /* Of a step without a sample. */
-void tracker_nothing(filter_t *f);
+void filter_tracker_nothing(filter_t *f);
 
 /* What the law does of its own when samples begin to be missing (first), or the rate was halved. */
-void tracker_fade(filter_t *f, bool first);
+void filter_tracker_fade(filter_t *f, bool first);
 
 /* The rate halved: of a motion that was not seen for a while only a part is likely to go on. */
-void tracker_damp(filter_t *f);
+void filter_tracker_damp(filter_t *f);
 
 /* x moved by so much in the direction of the innovation. */
 FX_INLINE void tracker_move(filter_t *f, int32_t step_lsb_q16)
@@ -120,7 +120,9 @@ FX_INLINE void tracker_move(filter_t *f, int32_t step_lsb_q16)
     }
 }
 
-/* The rate moved by so much in the direction of the innovation, within its limit (flagged). No overflow: see each law. */
+/*
+ * The rate moved by so much in the direction of the innovation, within its limit (flagged). No overflow: see each law.
+ */
 FX_INLINE void tracker_turn(filter_t *f, int32_t step_lsb)
 {
     int32_t rate = f->rate_lsb;
@@ -137,26 +139,26 @@ FX_INLINE void tracker_turn(filter_t *f, int32_t step_lsb)
 }
 
 /* The limit of the rate in so many fraction bits, made of ratemax (LSB/s); 0: the bound of the format. Divides. */
-void tracker_limit_rate(filter_t *f, uint32_t rate_max_lsb_s, uint8_t fraction_bits);
+void filter_tracker_limit_rate(filter_t *f, uint32_t rate_max_lsb_s, uint8_t fraction_bits);
 
 /* Median of `count` ascending samples, LSB in Q16: the mean of the middle two when count is even; count >= 1. */
-int32_t tracker_median_q16(const int16_t *ascending_lsb, uint8_t count);
+int32_t filter_tracker_median_q16(const int16_t *ascending_lsb, uint8_t count);
 
 /* R limited to its legal range. */
-uint32_t tracker_limited_r(uint32_t r_lsb2_q8);
+uint32_t filter_tracker_limited_r(uint32_t r_lsb2_q8);
 
 /* An element of a covariance halved. */
-void tracker_halve(uint32_t *p);
+void filter_tracker_halve(uint32_t *p);
 
 /*
  * k = 2 / memory in samples, UQ0.16 rounded down, of a fading memory of memory_ms (1..60000) at a rate (50..40000):
  * k_min_uq16 to TRACKER_K_MAX_UQ16, 0.6: with a memory below 3.3 samples a filter nearly follows the raw samples.
  */
 #define TRACKER_K_MAX_UQ16 39322U
-uint16_t tracker_memory_k_uq16(uint16_t memory_ms, uint16_t rate_dhz, uint16_t k_min_uq16);
+uint16_t filter_tracker_memory_k_uq16(uint16_t memory_ms, uint16_t rate_dhz, uint16_t k_min_uq16);
 
 /* Variance of a fading memory with this k for samples of variance R: R k (10 - 14 k + 5 k^2) / (2 - k)^3. Divides. */
-uint32_t tracker_fading_variance(uint32_t r_lsb2_q8, uint16_t k_uq16);
+uint32_t filter_tracker_fading_variance(uint32_t r_lsb2_q8, uint16_t k_uq16);
 
 /* Parameters that several laws have. */
 extern const filter_parameter_t filter_parameter_r, filter_parameter_q, filter_parameter_gate,

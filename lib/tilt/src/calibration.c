@@ -98,7 +98,7 @@ FX_ONCE calibration_verdict_t calibration_prepare(calibration_applied_t *applied
     if (verdict.why != (uint8_t)CALIBRATION_GOOD) {
         return verdict;
     }
-    uint16_t length_q14 = fx_isqrt32(length_square_q28(c->level_q14));
+    uint16_t length_q14 = filter_fx_isqrt32(length_square_q28(c->level_q14));
     bool down = c->level_q14[2] < 0;
     int32_t w_q14[3];
     for (uint8_t i = 0; i < 3U; i++) {

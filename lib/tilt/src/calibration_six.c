@@ -33,7 +33,7 @@ static uint16_t component_q14(const calibration_t *c, means_t means, uint8_t pos
             across_q28 += calibration_square(calibration_gravity_q14(c, axis, means[3U * position + axis]));
         }
     }
-    return across_q28 > ACROSS_MAX_Q28 ? 0U : fx_isqrt32(ONE_Q28 - across_q28);
+    return across_q28 > ACROSS_MAX_Q28 ? 0U : filter_fx_isqrt32(ONE_Q28 - across_q28);
 }
 
 /* Line through the two readings of an axis, where its components are plus and -minus; false: it is no scale. */
@@ -46,7 +46,7 @@ static bool draw_line(calibration_t *c, means_t means, uint8_t axis, const uint1
     }
     uint16_t scale_uq6 = (uint16_t)calibration_over(apart_q4, (uint16_t)(component_q14[0] + component_q14[1]));
     c->scale_lsb_per_g_uq6[axis] = scale_uq6;
-    uint16_t rise_q5 = fx_high_u16((uint16_t)(scale_uq6 << 1), component_q14[0]); /* scale < 2^15 */
+    uint16_t rise_q5 = filter_fx_high_u16((uint16_t)(scale_uq6 << 1), component_q14[0]); /* scale < 2^15 */
     c->offset_lsb_q4[axis] = (int16_t)((uint16_t)upper_q4 - ((rise_q5 + 1U) >> 1));
     return true;
 }

@@ -182,7 +182,7 @@ void tilt_angles(tilt_t *out, const int32_t a_q8[3])
 
 uint16_t tilt_isqrt32(uint32_t v)
 {
-    return fx_isqrt32(v);
+    return filter_fx_isqrt32(v);
 }
 
 /* An acceleration in 1/64 LSB, rounded down; 2^15 for all that is larger, beyond any plausible one. */

@@ -9,8 +9,8 @@ enum { HOLD_QUARTERS = FILTER_HOLD_MS / 25 };
 void tilt_axis_begin(tilt_axis_t *a, uint16_t rate_dhz, bool noisy_axis)
 {
     a->away = 0;
-    noise_init(&a->noise, rate_dhz, noisy_axis);
-    filter_set_noise(&a->filter, noise_r_lsb2_q8(&a->noise));
+    filter_noise_init(&a->noise, rate_dhz, noisy_axis);
+    filter_set_noise(&a->filter, filter_noise_r_lsb2_q8(&a->noise));
 }
 
 FX_ONCE int32_t tilt_axis_estimate_q8(const tilt_axis_t *a)
@@ -36,7 +36,7 @@ static bool near_estimate(const tilt_axis_t *a, int16_t lsb)
 {
     int16_t off_lsb = (int16_t)(lsb - tilt_axis_estimate_lsb(a));
     uint16_t size_lsb = (uint16_t)((off_lsb < 0) ? -off_lsb : off_lsb);
-    return fx_mul_u16(size_lsb, size_lsb) <= noise_r_lsb2_q8(&a->noise) >> 5;
+    return fx_mul_u16(size_lsb, size_lsb) <= filter_noise_r_lsb2_q8(&a->noise) >> 5;
 }
 
 /* A sample after a hold, which the filter is not to have as long as a->away is not 0. */
@@ -56,7 +56,7 @@ static uint8_t rejoin(tilt_axis_t *a, int16_t lsb)
 
 FX_NOINLINE void miss(tilt_axis_t *a)
 {
-    noise_gap(&a->noise);
+    filter_noise_gap(&a->noise);
     (void)filter_missing(&a->filter);
     if (a->filter.quarters == (uint8_t)HOLD_QUARTERS) {
         a->away = 1;
@@ -70,8 +70,8 @@ uint8_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, boo
         miss(a);
         return (uint8_t)(TILT_CLIPPED | flags_of(&a->filter));
     }
-    if (noise_update(&a->noise, lsb) && !own_r) {
-        filter_set_noise(&a->filter, noise_r_lsb2_q8(&a->noise));
+    if (filter_noise_update(&a->noise, lsb) && !own_r) {
+        filter_set_noise(&a->filter, filter_noise_r_lsb2_q8(&a->noise));
     }
     if (a->away != 0U) {
         flags = rejoin(a, lsb);

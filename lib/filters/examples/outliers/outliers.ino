@@ -20,7 +20,7 @@ void setup()
     filter_init(&plain, &filter_law_kf, &config);
     config = filter_defaults(&filter_law_sprf, RATE_DHZ);
     filter_init(&robust, &filter_law_sprf, &config);
-    noise_init(&noise, RATE_DHZ, false);
+    filter_noise_init(&noise, RATE_DHZ, false);
 }
 
 void loop()
@@ -32,9 +32,9 @@ void loop()
     if (random(7) == 0) {
         z += random(-300, 301);
     }
-    if (noise_update(&noise, z)) {
-        filter_set_noise(&plain, noise_r_lsb2_q8(&noise));
-        filter_set_noise(&robust, noise_r_lsb2_q8(&noise));
+    if (filter_noise_update(&noise, z)) {
+        filter_set_noise(&plain, filter_noise_r_lsb2_q8(&noise));
+        filter_set_noise(&robust, filter_noise_r_lsb2_q8(&noise));
     }
     Serial.print("raw:");
     Serial.print(z);

@@ -79,7 +79,7 @@ static bool sample_waits()
     return read_registers(INT_SOURCE, &source, 1) && (source & DATA_READY) != 0;
 }
 
-// In full resolution the upper bits repeat the sign: a reading of more than 13 bits was cut short by a fault of the bus.
+// In full resolution the upper bits repeat the sign: a reading of more than 13 bits was cut short by a bus fault.
 static bool read_sample(int16_t lsb[3])
 {
     uint8_t bytes[6];
