@@ -38,8 +38,8 @@ static size_t change_count;
 static double r_factor = 1.0;
 
 void __wrap_parameters_start(filter_t *f, filter_kind_t kind, uint16_t rate_dhz);
-uint32_t __real_noise_r_lsb2_q8(const noise_t *n);
-uint32_t __wrap_noise_r_lsb2_q8(const noise_t *n);
+uint32_t __real_filter_noise_r_lsb2_q8(const noise_t *n);
+uint32_t __wrap_filter_noise_r_lsb2_q8(const noise_t *n);
 
 static void fail(const char *format, ...)
 {
@@ -97,9 +97,9 @@ void __wrap_parameters_start(filter_t *f, filter_kind_t kind, uint16_t rate_dhz)
     (void)start_changed(f, kind, &config, rate_dhz); /* check_configuration has asked */
 }
 
-uint32_t __wrap_noise_r_lsb2_q8(const noise_t *n)
+uint32_t __wrap_filter_noise_r_lsb2_q8(const noise_t *n)
 {
-    double r_lsb2_q8 = round(r_factor * __real_noise_r_lsb2_q8(n));
+    double r_lsb2_q8 = round(r_factor * __real_filter_noise_r_lsb2_q8(n));
     return (uint32_t)fmin(fmax(r_lsb2_q8, FILTER_R_MIN_LSB2_Q8), FILTER_R_MAX_LSB2_Q8);
 }
 
