@@ -168,7 +168,7 @@ def a_sample_takes_all_kinds_alike():
 
 def soak_stats(**said):
     stats = {"rows": 180000, "rows_judged": 170000, "rows_wrong": 0, "rows_stale": 0, "rows_twice": 0, "t_us_steps_back": 0, "resets": 8,
-             "sim_ms": 1.8e6, "pass_max_cycles": 16000, "rows_gap_ms": 300.0, "rows_last_good_ms": 1.8e6 - 9.0}
+             "sim_ms": 1.8e6, "pass_max_cycles": 64000, "rows_gap_ms": 300.0, "rows_last_good_ms": 1.8e6 - 9.0}
     for n, (fault, _) in enumerate(soak.faults_of(600, 1.8e6, 1), 1):
         stats |= {f"fault_{n}": fault, f"fault_{n}_injected": 1, f"fault_{n}_recovered": 1, f"fault_{n}_worst_recovery_ms": 30.0}
     return stats | said
@@ -192,7 +192,7 @@ def soak_finds_what_went_wrong():
                                 ({"fault_3_worst_recovery_ms": 1010.0, "rows_gap_ms": 1010.0, "rows_last_good_ms": 1.8e6 - 1010.0}, 7, []),
                                 ({"rows_gap_ms": 1011.0}, 7, ["1011 ms without a sample's row"]),
                                 ({"rows_last_good_ms": 1.8e6 - 1011}, 7, ["last good row 1011 ms before the end"]),
-                                ({"rows_last_good_ms": None}, 7, ["no good row"]), ({"pass_max_cycles": 16001}, 7, ["a pass of 16001 cycles"]),
+                                ({"rows_last_good_ms": None}, 7, ["no good row"]), ({"pass_max_cycles": 64001}, 7, ["a pass of 64001 cycles"]),
                                 ({"sim_ms": 1.7e6, "rows_last_good_ms": 1.7e6}, 0, ["ended after 1700000 of 1800000 ms"]),
                                 ({"resets": 6}, 7, ["2 resets asked for did not come"]),
                                 ({}, 3, ["crash: what it said"])):
