@@ -71,8 +71,8 @@ void number_write(uint32_t value, uint8_t fraction_bits)
     if (rest != 0) {
         text_char('.');
     }
-    for (uint16_t unit = 1000; rest != 0; unit /= 10u) {
-        text_char((char)('0' + (uint8_t)(rest / unit)));
-        rest %= unit;
+    while (rest != 0) {
+        text_char((char)('0' + (uint8_t)(rest / 1000u)));
+        rest = (uint16_t)(rest % 1000u * 10u);
     }
 }

@@ -88,8 +88,9 @@ static const filter_parameter_t *parameter_of(uint8_t which)
 static void look_at_parameter(setting_t *s, uint8_t which)
 {
     const filter_parameter_t *parameter = parameter_of(which);
+    enum { EACH = sizeof settings.parameters[0] };
     uint8_t place = (uint8_t)(offsetof(settings_t, parameters) +
-                              (uint8_t)(which - SETTING_PARAMETERS) * sizeof settings.parameters[0]);
+                              (uint16_t)(uint8_t)(which - SETTING_PARAMETERS) * EACH);
     s->format = (format_t){ place, sizeof settings.parameters[0], NUMBER, flash_u8(&parameter->fraction_bits),
                             STARTS_FILTER };
     s->least = (int32_t)flash_u32((const uint32_t *)&parameter->min);

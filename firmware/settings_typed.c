@@ -17,7 +17,8 @@ static uint8_t numbers(const setting_t *s)
 
 static uint8_t *place_of(const setting_t *s, uint8_t number)
 {
-    return (uint8_t *)&settings + s->format.place + (uint8_t)(number * s->format.size);
+    uint8_t size = s->format.size;
+    return (uint8_t *)&settings + s->format.place + (uint8_t)((uint16_t)number * size);
 }
 
 /* Little-endian on PC and chip, as settings.h wants it; all numbers have a sign. */
@@ -174,11 +175,14 @@ static bool keep(uint8_t *to, const uint8_t *from, uint8_t bytes)
 /* A filter that is in force already starts with what is shipped again. */
 setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
 {
-    uint8_t before[AXES * sizeof(int16_t)];
+    static uint8_t before[AXES * sizeof(int16_t)];
     setting_t s;
     setting_look(&s, which);
     uint8_t *place = place_of(&s, 0);
-    uint8_t bytes = s.format.kind >= VECTOR ? (uint8_t)(AXES * s.format.size) : s.format.size;
+    uint8_t bytes = s.format.size;
+    if (s.format.kind >= VECTOR) {
+        bytes = (uint8_t)((uint16_t)bytes * AXES);
+    }
     (void)keep(before, place, bytes);
     setting_answer_t answer = take(&s, text) ? judge(&s) : SETTING_ILLEGAL;
     bool changed = answer == SETTING_TAKEN ? keep(before, place, bytes) : keep(place, before, bytes);

@@ -40,7 +40,7 @@ uint8_t parameter_count(filter_kind_t kind)
 
 filter_parameter_t parameter_at(filter_kind_t kind, uint8_t index)
 {
-    filter_parameter_t parameter;
+    filter_parameter_t parameter = { 0 };
     const uint8_t *from = (const uint8_t *)filter_parameter(filter_listed(kind), index);
     uint8_t *to = (uint8_t *)&parameter;
     for (uint8_t i = 0; i < sizeof parameter; i++) {

@@ -106,7 +106,7 @@ static void sample_arrived(adxl345_driver_t *d)
 static HAL_APART void look_for_sample(adxl345_driver_t *d)
 {
     if (burst_running() || hal_i2c_stop_pending()) {
-        d->deadline_us = burst_begun_us() + TRANSFER_LIMIT * LIMIT_US;
+        d->deadline_us = burst_begun_us() + (uint32_t)TRANSFER_LIMIT * LIMIT_US;
         if (driver_deadline_passed() && driver_transfer_failed(I2C_BUS_TIMEOUT)) {
             driver_enter(STEP_STREAM, RETURN_LIMIT);
         }

@@ -60,7 +60,7 @@ static void standard(filter_config_t *config)
     if (rate_dhz < 400U) {
         config->value[ADAPTIVE_SLOW_MS] = (int32_t)(200000U / rate_dhz);
     }
-    config->value[ADAPTIVE_FAST_MS] = (int32_t)(80U + 20000U / rate_dhz);
+    config->value[ADAPTIVE_FAST_MS] = (int32_t)80 + (int32_t)(20000U / rate_dhz);
 }
 
 /* Shares and thresholds that follow from the shortest memory. */
@@ -165,9 +165,8 @@ static uint32_t judge(filter_t *f, int32_t x1_lsb_q16)
 {
     filter_adaptive_t *a = &f->own.adaptive;
     uint16_t run = (a->verdict == (uint8_t)ADAPTIVE_WITHIN) ? 0U : a->run;
-    run++;
-    if (run != 0U) {
-        a->run = run;
+    if (run != UINT16_MAX) {
+        a->run = (uint16_t)(run + 1U);
     }
     uint32_t agreed = agreed_lsb_uq16(f, x1_lsb_q16);
     uint32_t size = f->size_lsb_uq16;

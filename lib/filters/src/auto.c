@@ -43,9 +43,9 @@
 
 static const filter_parameter_t gate FX_FLASH = { "gate", "sigma", 8, 1, 256, 4096, 1536 };
 static const filter_parameter_t slow FX_FLASH = { "slow", "ms", 0, 0, 1, 60000, 0 };
-static const filter_parameter_t middle FX_FLASH = { "middle", "ms", 0, 0, 1, 60000, 0 };
+static const filter_parameter_t middling FX_FLASH = { "middle", "ms", 0, 0, 1, 60000, 0 };
 static const filter_parameter_t fast FX_FLASH = { "fast", "ms", 0, 0, 1, 60000, 0 };
-static const filter_parameter_t *const parameters[] FX_FLASH = { &gate, &filter_parameter_r,      &slow, &middle,
+static const filter_parameter_t *const parameters[] FX_FLASH = { &gate, &filter_parameter_r,      &slow, &middling,
                                                                  &fast, &filter_parameter_ratemax };
 
 /* So many samples in ms, at least so many ms. */

@@ -198,8 +198,8 @@ static uint32_t less(uint32_t p_uq28, uint32_t column_uq28, uint32_t gain_uq24)
 /* A state and its gain times the innovation: by the magnitude, so that rounding is the same for both signs. */
 static int32_t moved(const filter_t *f, int32_t v_q16, uint32_t gain_uq24)
 {
-    int32_t step = (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, gain_uq24); /* < 8704 LSB */
-    return f->negative ? v_q16 - step : v_q16 + step;
+    int32_t part_q16 = (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, gain_uq24); /* < 8704 LSB */
+    return f->negative ? v_q16 - part_q16 : v_q16 + part_q16;
 }
 
 /* A gain UQ4.28 as UQ0.24, below 1: only right after a gap or a start is it more. */

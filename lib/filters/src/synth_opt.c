@@ -26,7 +26,7 @@
 #include "synth_opt_table.h"
 
 /* Place of the gains behind the schedule. */
-enum { LIMIT = SYNTH_OPT_COMMON + SYNTH_OPT_STEPS };
+enum { LIMIT = (int)SYNTH_OPT_COMMON + (int)SYNTH_OPT_STEPS };
 
 /* 11/13 in the limit of variant U, where its errors are taken as uncorrelated; with the closed loop's it is this. */
 #define U_NOISE_GAIN_UQ16 52818U
@@ -82,7 +82,7 @@ FX_NOINLINE void scheduled_step(filter_t *f, int16_t z_lsb, uint8_t what)
     uint8_t steps = (uint8_t)(s->count - (uint8_t)SYNTH_FIRST_GAIN);
     uint8_t at = (uint8_t)(steps + (uint8_t)SYNTH_OPT_COMMON);
     if (steps < (uint8_t)SYNTH_OPT_OWN_STEPS) {
-        at = (uint8_t)((uint8_t)(s->of.scheduled.ratio_class * SYNTH_OPT_OWN_STEPS) + steps);
+        at = (uint8_t)((uint8_t)((uint16_t)s->of.scheduled.ratio_class * SYNTH_OPT_OWN_STEPS) + steps);
     }
     bool variant_u = s->of.scheduled.variant_u;
     f->gain_uq16 = fx_flash_u16(variant_u ? &u_b0_uq16[at] : &exact_b0_uq16[at]);

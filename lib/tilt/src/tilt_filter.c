@@ -79,7 +79,7 @@ bool tilt_filter_begin_with(tilt_filter_t *t, uint16_t rate_hz, const filter_law
 }
 
 /* A reading in the 13 bit that the filters take, rounded half up. */
-static int16_t shifted(const tilt_filter_t *t, int16_t reading)
+static int16_t in_13_bits(const tilt_filter_t *t, int16_t reading)
 {
     if (t->shift == 0U) {
         return reading;
@@ -104,7 +104,7 @@ static void find_angles(tilt_filter_t *t)
 static void update_axis(tilt_filter_t *t, uint8_t axis, int16_t reading)
 {
     tilt_axis_t *a = &t->axes[axis];
-    t->flags |= tilt_axis_update(a, shifted(t, reading), t->rail_high_lsb, false);
+    t->flags |= tilt_axis_update(a, in_13_bits(t, reading), t->rail_high_lsb, false);
     if ((a->filter.flags & FILTER_SWITCHED) != 0U) {
         t->flags |= TILT_SWITCHED;
     }
