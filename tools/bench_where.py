@@ -10,18 +10,16 @@ STREAM = "outliers-15pct"
 ENTRY = "mixed"  # called once per axis and sample
 # what of the profile is the filter's, and what the page says of it
 FUNCTIONS = {
-    "mixed": "evidence, probability and learning (what is in line of it)",
+    "mixed": "prediction, evidence, probability and learning (what is in line of it)",
     "log2_uq9": "logarithms, by a table",
     "filter_mixture_log_odds_q9": "",
-    "filter_wide_predict": "prediction of x and P, S",
-    "filter_wide_distance_uq8": "r^2 / (R S)",
     "filter_wide_correct": "gains, x and P",
     "give_back": "",
     "step_by": "",
     "bend_lsb": "",
     "filter_fx_times_uq16": "products",
-    "filter_fx_high_u16": "",
     "__umulhisi3": "",
+    "__muluhisi3": "",
     "filter_fx_inverse_uq16": "reciprocals, by a table",
     "filter_fx_leading": "leading bits and shifts",
     "filter_fx_shifted_right": "",
