@@ -103,7 +103,7 @@ static void NOINLINE update(void)
 
 static bool warms_up(void)
 {
-    return (state.flags & FILTER_WARMING_UP) != 0;
+    return state.collected != FILTER_RUNNING;
 }
 
 /* Compiled alone, as by make check: every filter. */

@@ -59,7 +59,7 @@ void proof_rounded(void)
 }
 
 /* Options: -eva-slevel 1 -eva-min-loop-unroll 16 */
-void proof_fx_isqrt32(void)
+void proof_filter_fx_isqrt32(void)
 {
     (void)filter_fx_isqrt32(ANY_U32(0, 12287));
     (void)filter_fx_isqrt32(ANY_U32(12288, 12543)); /* 112^2 less 1 */
@@ -86,7 +86,7 @@ static fx_scaled_t any_scaled(void)
     return v;
 }
 
-void proof_fx_scaled(void)
+void proof_filter_fx_scaled(void)
 {
     (void)filter_fx_scaled(ANY_U32(0, UINT32_MAX));
     (void)filter_fx_scaled_mul(any_scaled(), any_scaled());

@@ -72,7 +72,7 @@ void proof_within_gate(void)
     (void)within_gate(&f);
 }
 
-void proof_kalman_step(void)
+void proof_filter_kalman_step(void)
 {
     filter_t f;
     any_running(&f, NULL, 1);
@@ -80,7 +80,7 @@ void proof_kalman_step(void)
     (void)filter_kalman_step(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB), ANY_U8(0, 2));
 }
 
-void proof_kalman_refused(void)
+void proof_filter_kalman_refused(void)
 {
     EACH_KIND(kind)
     {
@@ -91,7 +91,7 @@ void proof_kalman_refused(void)
     }
 }
 
-void proof_kalman_set_variance(void)
+void proof_filter_kalman_set_variance(void)
 {
     filter_t f;
     any_running(&f, NULL, 0);
@@ -99,7 +99,7 @@ void proof_kalman_set_variance(void)
     filter_kalman_set_variance(&f, ANY_U32(R_END + 1, R_ANY));
 }
 
-void proof_kalman_set_gate(void)
+void proof_filter_kalman_set_gate(void)
 {
     filter_t f;
     any_running(&f, NULL, 0);
@@ -115,7 +115,7 @@ static void any_noise(filter_t *f, uint32_t r_lsb2_q8)
 }
 
 /* Without a limit of the rate, and with one. */
-void proof_kalman_set_up(void)
+void proof_filter_kalman_set_up(void)
 {
     static const filter_law_t law = { .set_noise = any_noise };
     for (uint8_t limited = 0; limited < 2U; limited++) {

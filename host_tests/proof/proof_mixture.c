@@ -77,13 +77,13 @@ void proof_log2_uq9(void)
 }
 
 /* Options: -eva-split-return-function filter_fx_leading:full */
-void proof_mixture_log_odds_q9(void)
+void proof_filter_mixture_log_odds_q9(void)
 {
     (void)filter_mixture_log_odds_q9(ANY_U32(0x4000, 0xFFC000));
 }
 
 /* By intervals of the table. */
-void proof_mixture_posterior(void)
+void proof_filter_mixture_posterior(void)
 {
     for (int16_t from = 0; from <= 32512; from += 256) {
         int16_t to = (int16_t)(from + 255);

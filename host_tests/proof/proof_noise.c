@@ -34,21 +34,21 @@ static void any_noise(noise_t *n)
     n->terms = ANY_U8(0, UINT8_MAX);
 }
 
-void proof_noise_init(void)
+void proof_filter_noise_init(void)
 {
     noise_t n;
     filter_noise_init(&n, ANY_U16(0, UINT16_MAX), ANY_BOOL());
     (void)filter_noise_r_lsb2_q8(&n);
 }
 
-void proof_noise_gap(void)
+void proof_filter_noise_gap(void)
 {
     noise_t n;
     any_noise(&n);
     filter_noise_gap(&n);
 }
 
-void proof_noise_update(void)
+void proof_filter_noise_update(void)
 {
     noise_t n;
     any_noise(&n);

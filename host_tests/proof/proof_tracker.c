@@ -183,25 +183,25 @@ void proof_flash_i32(void)
     (void)flash_i32(&word);
 }
 
-void proof_tracker_limited_r(void)
+void proof_filter_tracker_limited_r(void)
 {
     (void)filter_tracker_limited_r(ANY_U32(0, UINT32_MAX));
 }
 
-void proof_tracker_limited_z(void)
+void proof_filter_tracker_limited_z(void)
 {
     int16_t z_lsb = filter_tracker_limited_z(ANY_Z());
     //@ check SAMPLE(z_lsb);
 }
 
 /* Whole: filter_tracker_limited_r */
-void proof_tracker_default_r_lsb2_q8(void)
+void proof_filter_tracker_default_r_lsb2_q8(void)
 {
     uint32_t r_lsb2_q8 = filter_tracker_default_r_lsb2_q8(ANY_U16(0, 40000));
     //@ check 3 <= r_lsb2_q8 <= 30720;
 }
 
-void proof_tracker_median_q16(void)
+void proof_filter_tracker_median_q16(void)
 {
     filter_t f;
     any_samples(&f, 5);

@@ -53,7 +53,7 @@ void proof_correct_covariance(void)
 }
 
 /* Options: -eva-split-return-function filter_fx_leading:full */
-void proof_wide_predict(void)
+void proof_filter_wide_predict(void)
 {
     filter_t f;
     any_running(&f, NULL, 0);
@@ -61,7 +61,7 @@ void proof_wide_predict(void)
 }
 
 /* Options: -eva-split-return-function filter_fx_leading:full */
-void proof_wide_distance_uq8(void)
+void proof_filter_wide_distance_uq8(void)
 {
     for (uint8_t places = 0; places < 16; places++) {
         filter_t f;
@@ -71,7 +71,7 @@ void proof_wide_distance_uq8(void)
 }
 
 /* By places of S and cells of the estimate. */
-void proof_wide_correct(void)
+void proof_filter_wide_correct(void)
 {
     for (uint8_t places = 0; places < 16; places++) {
         filter_t f;
@@ -81,7 +81,7 @@ void proof_wide_correct(void)
     }
 }
 
-void proof_wide_set_noise(void)
+void proof_filter_wide_set_noise(void)
 {
     filter_t f;
     any_running(&f, NULL, 0);
@@ -89,7 +89,7 @@ void proof_wide_set_noise(void)
 }
 
 /* By places of S. */
-void proof_wide_report(void)
+void proof_filter_wide_report(void)
 {
     filter_probe_t probe;
     for (uint8_t places = 0; places < 16; places++) {

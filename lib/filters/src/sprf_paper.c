@@ -43,7 +43,7 @@ const filter_law_t filter_law_sprf_paper FX_FLASH = { .name = "sprf_paper",
                                                       .parameter_count = 3,
                                                       .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_FIRST_SAMPLE |
                                                                 LAW_GATED,
-                                                      .worst_cycles = 2150,
+                                                      .worst_cycles = 2250,
                                                       .parameters = parameters,
                                                       .set_up = set_up,
                                                       .set_noise = filter_wide_set_noise,

@@ -123,7 +123,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 
 const filter_law_t filter_law_synth_opt FX_FLASH = { .name = "synth_opt",
                                                      .parameter_count = 3,
-                                                     .worst_cycles = 500,
+                                                     .worst_cycles = 650,
                                                      .parameters = parameters,
                                                      .standard = standard,
                                                      .set_up = set_up,
