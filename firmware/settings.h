@@ -50,8 +50,8 @@ typedef struct {
  * in the sensor's FIFO and the driver's queue, 39 samples together, and is caught up with what a sample leaves over.
  * At 800 Hz the two leave 1,500 cycles, 500 for each axis, to a filter of which every row goes out: synth's 500.
  */
-#define SETTINGS_REST_CYCLES 8200u
-#define SETTINGS_ROW_CYCLES 10450u
+#define SETTINGS_REST_CYCLES 8300u
+#define SETTINGS_ROW_CYCLES 10400u
 
 extern settings_t settings;
 

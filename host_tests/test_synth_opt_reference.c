@@ -279,8 +279,7 @@ static void fixed_point_switches_as_the_reference(void)
         uint16_t a1_uq16 = (uint16_t)(21845.0 * uniform(&random));
         f.gain_uq16 = (uint16_t)(32768.0 + 32767.0 * uniform(&random));
         int16_t z = random_normal(&random) > 0.0 ? 150 : -150;
-        filter_synth_bend_by(&f, a1_uq16);
-        filter_synth_step(&f, z, STEP_SAMPLE);
+        filter_synth_bent_step(&f, z, STEP_SAMPLE, a1_uq16);
         double got = f.x_lsb_q16 / 65536.0;
         double wanted = reference_opt_filter(x, -a1_uq16 / 65536.0, f.gain_uq16 / 65536.0, z);
         TEST_ASSERT_TRUE(fabs(got - wanted) < switching_bound() * 1.5 / 131072.0);

@@ -78,7 +78,7 @@ static inline void tracker_turn(filter_t *f, int32_t step_lsb);
 
 /*@ requires \valid_read(p);
     assigns \result \from *p;
-    ensures \result == *p;
+    ensures same: \result == *p;
 */
 static int32_t flash_i32(const int32_t *p);
 

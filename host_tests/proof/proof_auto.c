@@ -92,6 +92,7 @@ static void any_own(filter_t *f, uint8_t kind)
     b->shown = ANY_U8(0, 2);
     b->eight_sigmas_lsb_uq8 = ANY_U16(0, UINT16_MAX);
     b->gate_sigma_q8 = ANY_U16(0, 4096);
+    b->still_uq16 = ANY_U16(0, UINT16_MAX);
 }
 
 void proof_within_rate(void)

@@ -10,7 +10,7 @@
 #define DRIVE(k) (16 <= (k).q33_uq28 <= 0x2000000 || ((k).fine == 0 && 16 <= (k).q33_uq28 <= ONE))
 #define KEPT(f)                                                                                \
     (DRIVE((f)->own.kf3) && 3 <= (f)->own.kf3.r_lsb2_q8 <= R_END && FLAG((f)->own.kf3.fine) && \
-     SCALED((f)->own.kf3.drive_lsb2) && SCALED((f)->own.kf3.start_lsb2))
+     (f)->own.kf3.p22_start_uq28 <= 0x8000000 && SCALED((f)->own.kf3.drive_lsb2) && SCALED((f)->own.kf3.start_lsb2))
 #define FORCE(f) (P_BOUND(f) && ACCELERATION(f))
 #define KINDS 2 /* coarse and fine */
 #define CONFIGURATIONS(law) 2
@@ -73,6 +73,7 @@ static void any_own(filter_t *f, uint8_t kind)
     k->p33_uq28 = ANY_U32(0, 2UL * ONE - 1U);
     k->acceleration_q16 = ANY_S32(-X_MAX_Q16, X_MAX_Q16);
     k->q33_uq28 = ANY_U32(16, (kind == 0U) ? ONE : 0x2000000);
+    k->p22_start_uq28 = ANY_U32(0, P22_START_MAX_UQ28);
     k->r_lsb2_q8 = ANY_U32(3, R_END);
     k->drive_lsb2.mantissa = ANY_U16(0x8000, UINT16_MAX);
     k->drive_lsb2.exponent = ANY_S8(SCALED_LEAST, 25);

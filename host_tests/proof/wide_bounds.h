@@ -10,10 +10,10 @@
 #define P12_END 2298478592
 #define P22_END 2415919104
 #define WIDE_P(f) ((f)->own.wide.p.p11 < P11_END && (f)->own.wide.p.p12 < P12_END && (f)->own.wide.p.p22 < P22_END)
-#define WIDE_PARAMETERS(f)                                                                                             \
-    (16 <= (f)->own.wide.q22_uq28 <= ONE && 3 <= (f)->own.wide.r_lsb2_q8 <= R_END &&                                   \
-     SCALED((f)->own.wide.drive_lsb2) && SCALED((f)->own.wide.start_lsb2) && (f)->own.wide.per_r.mantissa >= 0x8000 && \
-     -28 <= (f)->own.wide.per_r.exponent <= -6)
+#define WIDE_PARAMETERS(f)                                                                                            \
+    (16 <= (f)->own.wide.q22_uq28 <= ONE && 16 <= (f)->own.wide.p22_start_uq28 <= ONE &&                              \
+     3 <= (f)->own.wide.r_lsb2_q8 <= R_END && SCALED((f)->own.wide.drive_lsb2) && SCALED((f)->own.wide.start_lsb2) && \
+     (f)->own.wide.per_r.mantissa >= 0x8000 && -28 <= (f)->own.wide.per_r.exponent <= -6)
 /* Places of S, and its inverse. */
 #define S_PLACES(f) ((f)->own.wide.variance % 256 <= 15)
 #define S_KNOWN(f) ((f)->own.wide.inverse_uq16 >= 0x8000 && (f)->own.wide.variance >= 0x80000000)
@@ -82,8 +82,10 @@ uint16_t filter_wide_distance_uq8(const filter_t *f);
 */
 void filter_wide_correct(filter_t *f, uint16_t loss_uq16, uint32_t back_uq16);
 
-/*@ requires SCALED(f->own.wide.drive_lsb2) && 3 <= r_lsb2_q8 <= R_END;
-    assigns f->own.wide.r_lsb2_q8, f->own.wide.per_r, f->own.wide.q22_uq28 \from f->own.wide.drive_lsb2, r_lsb2_q8;
+/*@ requires SCALED(f->own.wide.drive_lsb2) && SCALED(f->own.wide.start_lsb2) && 3 <= r_lsb2_q8 <= R_END;
+    assigns f->own.wide.r_lsb2_q8, f->own.wide.per_r, f->own.wide.q22_uq28, f->own.wide.p22_start_uq28 \from
+            f->own.wide.drive_lsb2, f->own.wide.start_lsb2, r_lsb2_q8;
+    ensures 16 <= f->own.wide.p22_start_uq28 <= ONE;
     ensures 16 <= f->own.wide.q22_uq28 <= ONE && 3 <= f->own.wide.r_lsb2_q8 <= R_END;
     ensures f->own.wide.per_r.mantissa >= 0x8000 && -28 <= f->own.wide.per_r.exponent <= -6;
 */
@@ -111,6 +113,7 @@ static void any_wide(filter_t *f)
     w->inverse_uq16 = ANY_U16(0, UINT16_MAX);
     w->gate2_uq8 = ANY_U16(0, UINT16_MAX);
     w->q22_uq28 = ANY_U32(16, ONE);
+    w->p22_start_uq28 = ANY_U32(16, ONE);
     w->r_lsb2_q8 = ANY_U32(3, R_END);
     w->per_r.mantissa = ANY_U16(0x8000, UINT16_MAX);
     w->per_r.exponent = ANY_S8(-28, -6);

@@ -94,10 +94,10 @@ static void set_up(filter_t *f, const filter_config_t *config)
 }
 
 /* In the start the gain is that of a line, and the prediction the straight line alone. */
-FX_NOINLINE void start_step(filter_t *f, int16_t z_lsb, uint8_t what)
+static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     filter_synth_t *s = &f->own.synth;
-    if (what != STEP_MISSING) {
+    if (s->count != SYNTH_STEADY && what != STEP_MISSING) {
         f->gain_uq16 = filter_synth_next_gain_uq16(f);
     }
     if (s->count == SYNTH_STEADY) {
@@ -105,15 +105,6 @@ FX_NOINLINE void start_step(filter_t *f, int16_t z_lsb, uint8_t what)
     } else {
         s->rate_before_lsb_q16 = f->rate_lsb;
         filter_synth_step(f, z_lsb, what);
-    }
-}
-
-static void step(filter_t *f, int16_t z_lsb, uint8_t what)
-{
-    if (f->own.synth.count == SYNTH_STEADY) {
-        filter_synth_steady_step(f, z_lsb, what);
-    } else {
-        start_step(f, z_lsb, what);
     }
 }
 
@@ -131,7 +122,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 
 const filter_law_t filter_law_synth FX_FLASH = { .name = "synth",
                                                  .parameter_count = 3,
-                                                 .worst_cycles = 650,
+                                                 .worst_cycles = 620,
                                                  .parameters = parameters,
                                                  .together = together,
                                                  .set_up = set_up,

@@ -34,14 +34,14 @@ void filter_synth_start(filter_t *f, bool settled);
  */
 uint16_t filter_synth_next_gain_uq16(filter_t *f);
 
-/* v - a1 (v - v') in place of v, for an a1 of this magnitude. */
-void filter_synth_bend_by(filter_t *f, uint16_t a1_uq16);
-
 /*
  * One step: prediction by v, to which the law has added what bends it, |addend| <= 18432 LSB (with |2 x1 - x2| <= 13824
  * the sum stays below 2^31 in Q16), then the correction with f->gain_uq16, without a sample none.
  */
 void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what);
+
+/* The same with v - a1 (v - v') in place of v, for an a1 of this magnitude. */
+void filter_synth_bent_step(filter_t *f, int16_t z_lsb, uint8_t what, uint16_t a1_uq16);
 
 /* One step with the steady gain and extrapolation. */
 void filter_synth_steady_step(filter_t *f, int16_t z_lsb, uint8_t what);

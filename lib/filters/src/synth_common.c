@@ -54,33 +54,25 @@ void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what)
     f->rate_lsb = x - before;
 }
 
-void filter_synth_bend_by(filter_t *f, uint16_t a1_uq16)
+void filter_synth_bent_step(filter_t *f, int16_t z_lsb, uint8_t what, uint16_t a1_uq16)
 {
     filter_synth_t *s = &f->own.synth;
-    int32_t bend = f->rate_lsb - s->rate_before_lsb_q16; /* x1 - 2 x2 + x3 < 18432 LSB */
-    s->rate_before_lsb_q16 = f->rate_lsb;
+    int32_t rate = f->rate_lsb;
+    int32_t bend = rate - s->rate_before_lsb_q16; /* x1 - 2 x2 + x3 < 18432 LSB */
+    s->rate_before_lsb_q16 = rate;
     int32_t part = (int32_t)filter_fx_times_uq16(fx_abs32(bend), a1_uq16);
-    if ((bend < 0) != s->a1_negative) {
-        f->rate_lsb += part;
-    } else {
-        f->rate_lsb -= part;
-    }
-}
-
-/* Apart, so that the straight line has no registers to save. */
-FX_NOINLINE void bent_step(filter_t *f, int16_t z_lsb, uint8_t what)
-{
-    filter_synth_bend_by(f, f->own.synth.a1_uq16);
+    f->rate_lsb = ((bend < 0) != s->a1_negative) ? rate + part : rate - part;
     filter_synth_step(f, z_lsb, what);
 }
 
 void filter_synth_steady_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
+    uint16_t a1_uq16 = f->own.synth.a1_uq16;
     f->gain_uq16 = f->own.synth.b0_uq16;
-    if (f->own.synth.a1_uq16 == 0U) {
+    if (a1_uq16 == 0U) {
         filter_synth_step(f, z_lsb, what);
     } else {
-        bent_step(f, z_lsb, what);
+        filter_synth_bent_step(f, z_lsb, what, a1_uq16);
     }
 }
 

@@ -86,13 +86,14 @@ FX_NOINLINE void scheduled_step(filter_t *f, int16_t z_lsb, uint8_t what)
     }
     bool variant_u = s->of.scheduled.variant_u;
     f->gain_uq16 = fx_flash_u16(variant_u ? &u_b0_uq16[at] : &exact_b0_uq16[at]);
-    if (variant_u) {
-        filter_synth_bend_by(f, fx_flash_u16(&u_a1_uq16[at]));
-    }
     if (what != STEP_MISSING) {
         s->count = (steps < (uint8_t)(SYNTH_OPT_STEPS - 1)) ? (uint8_t)(s->count + 1U) : (uint8_t)SYNTH_STEADY;
     }
-    filter_synth_step(f, z_lsb, what);
+    if (variant_u) {
+        filter_synth_bent_step(f, z_lsb, what, fx_flash_u16(&u_a1_uq16[at]));
+    } else {
+        filter_synth_step(f, z_lsb, what);
+    }
 }
 
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
@@ -123,7 +124,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 
 const filter_law_t filter_law_synth_opt FX_FLASH = { .name = "synth_opt",
                                                      .parameter_count = 3,
-                                                     .worst_cycles = 650,
+                                                     .worst_cycles = 620,
                                                      .parameters = parameters,
                                                      .standard = standard,
                                                      .set_up = set_up,
