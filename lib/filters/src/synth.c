@@ -30,7 +30,7 @@ static const filter_parameter_t *const parameters[] FX_FLASH = { &a1, &b0, &filt
 /* |a1| (1 - b0), UQ0.32, exact. */
 static uint32_t memory_uq32(uint16_t b0_uq16, uint16_t a1_uq16)
 {
-    return fx_mul_u16(a1_uq16, (uint16_t)(0U - b0_uq16));
+    return fx_product_u16(a1_uq16, (uint16_t)(0U - b0_uq16));
 }
 
 /* (4 - 3 b0) / 4, UQ0.32, exact. */
