@@ -87,6 +87,11 @@ static void forget(void)
     app.changes = 0;
 }
 
+static void start_pipeline(void)
+{
+    pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
+}
+
 void app_start(void)
 {
     struct loop *l = here();
@@ -117,7 +122,7 @@ void app_start(void)
     l->next_second_us = now_us + 1000000ul;
     app.sampling = true;
     coast_wait(now_us);
-    pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
+    start_pipeline();
     (void)replies_add(REPLY_BANNER, 0);
     app_start_sensor();
 }
@@ -156,7 +161,7 @@ static bool follow_settings(void)
         coast_wait(loop.pass_us);
     }
     if (now & CHANGE_COLD) {
-        pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
+        start_pipeline();
     } else if (now & (CHANGE_FILTER | CHANGE_CONFIG)) {
         pipeline_change(settings.filter, settings.rate_dhz, settings.range_g);
     }

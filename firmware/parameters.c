@@ -1,7 +1,6 @@
 /* Shipped parameters with the user's on top; see parameters.h. */
 #include "parameters.h"
 
-#include "flash.h"
 #include "fx.h"
 #include "settings.h"
 
@@ -54,8 +53,7 @@ void parameters_start(filter_t *f, filter_kind_t kind, uint16_t rate_dhz)
 uint32_t parameters_r_lsb2_q8(void)
 {
     for (uint8_t which = 0, own = settings.own; own != 0; which++, own >>= 1) {
-        const char *name = filter_parameter(law_in_force(), which)->name;
-        if ((own & 1u) && flash_char(name) == 'r' && flash_char(name + 1) == '\0') {
+        if ((own & 1u) && filter_parameter(law_in_force(), which) == &filter_parameter_r) {
             return settings.parameters[which];
         }
     }

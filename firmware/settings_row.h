@@ -5,8 +5,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "flash.h"
-
 /* One of a list, as words or as numbers; numbers in a range, one or three; or axes. */
 enum { WORDS, LIST, NUMBER, VECTOR, SIGNED_AXES };
 
@@ -30,8 +28,5 @@ void setting_look(setting_t *s, uint8_t which);
 
 /* Of a list, as stored. */
 uint32_t setting_choice(const setting_t *s, uint8_t i);
-
-/* In program memory; empty where there is none. */
-flash_text_t setting_unit(uint8_t which);
 
 #endif

@@ -48,12 +48,10 @@ typedef struct {
     int16_t least, most;
 } row_t;
 
-#define NAME(name, ...) name "\0"
-#define UNIT(name, unit, ...) unit "\0"
+#define WORDS_OF(name, unit, ...) name "\0" unit "\0"
 #define ROW(name, unit, member, size, kind, bits, starts, least, most) \
     { { offsetof(settings_t, member), size, kind, bits, starts }, least, most },
-static const char names[] FLASH = SETTINGS(NAME);
-static const char units[] FLASH = SETTINGS(UNIT);
+static const char words[] FLASH = SETTINGS(WORDS_OF); /* as a parameter has them: the unit behind the name */
 static const row_t rows[] FLASH = { SETTINGS(ROW) };
 
 _Static_assert(sizeof rows / sizeof rows[0] == SETTING_PARAMETERS, "a row for each setting");
@@ -115,12 +113,8 @@ uint8_t settings_count(void)
 
 flash_text_t setting_name(uint8_t which)
 {
-    return which < SETTING_PARAMETERS ? text_nth(names, which) : parameter_of(which)->name;
-}
-
-flash_text_t setting_unit(uint8_t which)
-{
-    return which < SETTING_PARAMETERS ? text_nth(units, which) : parameter_of(which)->unit;
+    return which < SETTING_PARAMETERS ? text_nth(words, (uint8_t)(2u * which))
+                                      : filter_parameter_words(parameter_of(which));
 }
 
 uint8_t setting_named(const char *name)

@@ -223,12 +223,13 @@ void setting_write(uint8_t which)
 {
     setting_t s;
     setting_look(&s, which);
-    text_words(setting_name(which));
+    flash_text_t name = setting_name(which);
+    text_words(name);
     for (uint8_t i = 0; i < numbers(&s); i++) {
         text_char(' ');
         write_value(&s, value_of(&s, i));
     }
-    flash_text_t unit = setting_unit(which);
+    flash_text_t unit = text_nth(name, 1);
     if (flash_char(unit) != '\0') {
         text_char(' ');
         text_words(unit);

@@ -3,12 +3,14 @@
 
 #include "text.h"
 
-#define NAME(F) #F "\0"
-static const char words[] FLASH = FILTER_LIST(NAME) "csv\0plot\0auto\0"
-                                                    "53\0"
-                                                    "1D";
+static const char words[] FLASH = "csv\0plot\0auto\0"
+                                  "53\0"
+                                  "1D";
 
 flash_text_t settings_word(uint8_t place)
 {
-    return text_nth(words, place);
+    if (place < WORD_MODE) {
+        return filter_name(filter_listed((filter_kind_t)place));
+    }
+    return text_nth(words, (uint8_t)(place - WORD_MODE));
 }

@@ -56,11 +56,11 @@ static void fail(const char *format, ...)
 static int32_t stored(const filter_parameter_t *parameter, double value)
 {
     if (parameter->fraction_bits == 0 && value != floor(value)) {
-        fail("%s=%g: a whole number was expected", parameter->name, value);
+        fail("%s=%g: a whole number was expected", parameter->words, value);
     }
     double scaled = round(ldexp(value, parameter->fraction_bits));
     if (!(scaled >= (parameter->min < 0 ? INT32_MIN : 0) && scaled <= INT32_MAX)) {
-        fail("%s=%g does not fit into its field", parameter->name, value);
+        fail("%s=%g does not fit into its field", parameter->words, value);
     }
     return (int32_t)scaled;
 }
@@ -73,7 +73,7 @@ static void apply(const change_t *change, filter_kind_t kind, filter_config_t *c
     }
     for (uint8_t i = 0; i < filter_parameter_count(law); i++) {
         const filter_parameter_t *parameter = filter_parameter(law, i);
-        if (strcmp(parameter->name, change->name) == 0) {
+        if (strcmp(parameter->words, change->name) == 0) {
             config->value[i] = stored(parameter, change->value);
             return;
         }
@@ -168,7 +168,7 @@ static void check_configuration(filter_kind_t kind, uint16_t rate_dhz)
         const filter_law_t *law = filter_listed(kind);
         filter_answer_t answer = filter_judge(law, &config);
         fail("%s refuses its configuration: %s", filter_name(law),
-             answer >= FILTER_REFUSED_FIRST ? filter_parameter(law, (uint8_t)(answer - FILTER_REFUSED_FIRST))->name
+             answer >= FILTER_REFUSED_FIRST ? filter_parameter(law, (uint8_t)(answer - FILTER_REFUSED_FIRST))->words
                                             : refused_together());
     }
 }

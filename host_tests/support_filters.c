@@ -49,6 +49,19 @@ filter_parameter_t parameter_at(filter_kind_t kind, uint8_t index)
     return parameter;
 }
 
+const char *parameter_name(filter_kind_t kind, uint8_t index)
+{
+    static char name[16];
+    const char *from = filter_parameter_words(filter_parameter(filter_listed(kind), index));
+    for (uint8_t i = 0; i < sizeof name - 1U; i++) {
+        name[i] = (char)fx_flash_u8((const uint8_t *)from + i);
+        if (name[i] == '\0') {
+            break;
+        }
+    }
+    return name;
+}
+
 bool parameter_legal(const filter_parameter_t *parameter, int32_t value)
 {
     return (value >= parameter->min && value <= parameter->max) || (value == 0 && parameter->zero_means_off != 0U);

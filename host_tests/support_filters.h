@@ -53,6 +53,7 @@ filter_kind_t kind_of(const filter_t *f);
 /* Parameters of a filter, copied out of program memory. */
 uint8_t parameter_count(filter_kind_t kind);
 filter_parameter_t parameter_at(filter_kind_t kind, uint8_t index);
+const char *parameter_name(filter_kind_t kind, uint8_t index); /* until the next one is asked for */
 
 /* Within the range of the descriptor, or off. */
 bool parameter_legal(const filter_parameter_t *parameter, int32_t value);

@@ -53,7 +53,7 @@ uint8_t parameter_named(filter_kind_t kind, const char *name)
 {
     const filter_law_t *law = filter_listed(kind);
     for (uint8_t i = 0; i < filter_parameter_count(law); i++) {
-        if (strcmp(filter_parameter(law, i)->name, name) == 0) {
+        if (strcmp(filter_parameter(law, i)->words, name) == 0) {
             return i;
         }
     }

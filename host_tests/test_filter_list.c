@@ -92,7 +92,7 @@ static void assert_refused_for(filter_kind_t kind, const char *name, int32_t val
     const filter_law_t *law = filter_listed(kind);
     filter_config_t config = filter_defaults(law, 1000);
     for (uint8_t i = 0; i < parameter_count(kind); i++) {
-        if (strcmp(parameter_at(kind, i).name, name) == 0) {
+        if (strcmp(parameter_name(kind, i), name) == 0) {
             config.value[i] = value;
             TEST_ASSERT_EQUAL_UINT8_MESSAGE(FILTER_REFUSED_FIRST + i, filter_init(&f, law, &config), name);
             return;

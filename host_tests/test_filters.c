@@ -115,7 +115,8 @@ static void try_value(uint8_t kind, uint8_t index, int32_t value)
         assert_refused(kind, &config, (filter_answer_t)(FILTER_REFUSED_FIRST + index));
     } else if (!law_facts((filter_kind_t)kind).joint_condition) {
         filter_t f;
-        TEST_ASSERT_EQUAL_UINT8_MESSAGE(FILTER_ACCEPTED, filter_init(&f, law, &config), parameter.name);
+        TEST_ASSERT_EQUAL_UINT8_MESSAGE(FILTER_ACCEPTED, filter_init(&f, law, &config),
+                                        parameter_name((filter_kind_t)kind, index));
     }
 }
 
@@ -127,7 +128,7 @@ static void parameters_are_taken_within_their_range_only(void)
         TEST_ASSERT_TRUE(parameter_count((filter_kind_t)kind) > 0U);
         for (uint8_t i = 0; i < parameter_count((filter_kind_t)kind); i++) {
             filter_parameter_t p = parameter_at((filter_kind_t)kind, i);
-            TEST_ASSERT_FALSE_MESSAGE(parameter_legal(&p, p.max + 1), p.name);
+            TEST_ASSERT_FALSE_MESSAGE(parameter_legal(&p, p.max + 1), parameter_name((filter_kind_t)kind, i));
             const int32_t values[] = { p.min,     p.max,     p.min - 1, p.max + 1, p.min - 2,
                                        p.max + 2, p.min / 2, p.max * 2, INT32_MIN, INT32_MAX,
                                        0x8000,    0x7FFF,    0,         1,         -1 };

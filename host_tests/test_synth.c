@@ -128,10 +128,10 @@ static void descriptor_tells_the_binary_points(void)
     TEST_ASSERT_EQUAL_UINT8(3, parameter_count(FILTER_KIND_synth));
     const filter_parameter_t parameter[3] = { parameter_at(FILTER_KIND_synth, 0), parameter_at(FILTER_KIND_synth, 1),
                                               parameter_at(FILTER_KIND_synth, 2) };
-    TEST_ASSERT_EQUAL_STRING("a1", parameter[0].name);
+    TEST_ASSERT_EQUAL_STRING("a1", parameter_name(FILTER_KIND_synth, 0));
     TEST_ASSERT_INT32_WITHIN(5, -3 * (int32_t)(1UL << parameter[0].fraction_bits), 10 * config.value[SYNTH_A1_Q16]);
-    TEST_ASSERT_EQUAL_STRING("b0", parameter[1].name);
-    TEST_ASSERT_EQUAL_STRING("r", parameter[2].name);
+    TEST_ASSERT_EQUAL_STRING("b0", parameter_name(FILTER_KIND_synth, 1));
+    TEST_ASSERT_EQUAL_STRING("r", parameter_name(FILTER_KIND_synth, 2));
     TEST_ASSERT_TRUE(parameter[0].min < 0 && parameter[1].min > 0 && parameter[2].min > 0);
     TEST_ASSERT_INT32_WITHIN(5, (int32_t)(1UL << parameter[1].fraction_bits),
                              10 * (int32_t)config.value[SYNTH_B0_UQ16]);

@@ -31,8 +31,8 @@ $(U)/%.o: %.c Makefile mk/images.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
 
-$(U)/firmware.elf: $(AVR_OBJ)
-	@$(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $^ -o $@
+$(U)/firmware.elf: $(AVR_OBJ) hal/avr/uno.ld
+	@$(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $(AVR_OBJ) -o $@
 	@echo "built $@"
 
 # IMAGE(name, filters, further flags): build/uno/NAME/firmware.elf, and filters.txt, which says what it holds
@@ -45,7 +45,7 @@ $(U)/$(1)/%.o: %.c Makefile mk/images.mk
 $(U)/$(1)/filters.txt: Makefile mk/images.mk
 	@sh tools/filters_txt.sh $$@ $$(IMAGE_FILTERS)
 
-$(U)/$(1)/firmware.elf: $(AVR_SRC:%.c=$(U)/$(1)/%.o) | $(U)/$(1)/filters.txt
+$(U)/$(1)/firmware.elf: $(AVR_SRC:%.c=$(U)/$(1)/%.o) hal/avr/uno.ld | $(U)/$(1)/filters.txt
 	@$$(AVR_CC) $$(AVR_LINK) $$(filter %.o,$$^) -o $$@
 endef
 
@@ -67,8 +67,8 @@ $(U)/plain/%.o: %.c Makefile mk/images.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
 
-$(U)/plain/firmware.elf: $(PLAIN_OBJ)
-	@$(AVR_CC) $(AVR_LINK) $^ -o $@
+$(U)/plain/firmware.elf: $(PLAIN_OBJ) hal/avr/uno.ld
+	@$(AVR_CC) $(AVR_LINK) $(PLAIN_OBJ) -o $@
 
 SET_IMAGES      := $(U)/firmware.elf $(patsubst %,$(U)/%/firmware.elf,$(filter-out everyday,$(FILTER_SETS)))
 FIRMWARE_IMAGES := $(SET_IMAGES) $(patsubst %,$(U)/%/firmware.elf,hang wrap late tight plain)

@@ -13,7 +13,7 @@ static const filter_parameter_t *named(const settings_t *s, const char *name, un
     const filter_law_t *law = filter_listed((filter_kind_t)s->filter);
     for (*which = 0; *which < filter_parameter_count(law); ++*which) {
         const filter_parameter_t *parameter = filter_parameter(law, (uint8_t)*which);
-        if (strcmp(parameter->name, name) == 0) {
+        if (strcmp(parameter->words, name) == 0) {
             return parameter;
         }
     }

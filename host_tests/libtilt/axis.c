@@ -1,6 +1,7 @@
 /* One filter on one axis, with any parameters: what a choice of parameters or of a filter is judged by. */
 #include "libtilt.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "filter_list.h"
@@ -36,8 +37,8 @@ bool libtilt_parameter(int kind, int index, uint16_t rate_dhz, libtilt_parameter
                                   .value = config.value[index],
                                   .fraction_bits = p->fraction_bits,
                                   .zero_means_off = p->zero_means_off };
-    memcpy(out->name, p->name, sizeof p->name);
-    memcpy(out->unit, p->unit, sizeof p->unit);
+    (void)snprintf(out->name, sizeof out->name, "%s", p->words);
+    (void)snprintf(out->unit, sizeof out->unit, "%s", p->words + strlen(p->words) + 1);
     return true;
 }
 

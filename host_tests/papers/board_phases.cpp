@@ -52,11 +52,11 @@ filter_t begun(const std::string &name, const std::vector<Parameter> &parameters
     filter_config_t config = filter_defaults(filter_listed(kind), TILT_RATE_DHZ);
     for (std::uint8_t i = 0; i < parameter_count(kind); i++) {
         const filter_parameter_t entry = parameter_at(kind, i);
-        if (std::string(entry.name) == "r") {
+        if (std::string(entry.words) == "r") {
             config.value[i] = TILT_R_LSB2_Q8;
         }
         for (std::size_t k = 0; k < values.size(); k++) {
-            if (parameters[k].name == entry.name) {
+            if (parameters[k].name == entry.words) {
                 config.value[i] = static_cast<std::int32_t>(std::lround(std::ldexp(values[k], entry.fraction_bits)));
             }
         }

@@ -26,7 +26,7 @@ filter_t initialised(const std::string &name, const Shipping &shipping)
                                              static_cast<std::uint16_t>(std::lround(10.0 * shipping.rate_hz)));
     for (std::uint8_t i = 0; i < parameter_count(kind); i++) {
         const filter_parameter_t parameter = parameter_at(kind, i);
-        const auto found = wanted.find(parameter.name);
+        const auto found = wanted.find(parameter.words);
         if (found != wanted.end()) {
             config.value[i] = static_cast<std::int32_t>(
                 std::llround(std::ldexp(found->second, parameter.fraction_bits)));

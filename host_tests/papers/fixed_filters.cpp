@@ -51,7 +51,7 @@ filter_t initialised(filter_kind_t kind, const std::string &name, const Settings
     filter_config_t config = filter_defaults(filter_listed(kind), rate_dhz);
     for (std::uint8_t i = 0; i < parameter_count(kind); i++) {
         const filter_parameter_t parameter = parameter_at(kind, i);
-        const double value = table1_value(name, parameter.name, 10.0 / rate_dhz, settings);
+        const double value = table1_value(name, parameter.words, 10.0 / rate_dhz, settings);
         if (value != 0.0) {
             config.value[i] = static_cast<std::int32_t>(std::lround(std::ldexp(value, parameter.fraction_bits)));
         }

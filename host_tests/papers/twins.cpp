@@ -68,7 +68,7 @@ double parameter_of(const std::string &name, const std::string &parameter, const
                                              static_cast<std::uint16_t>(std::lround(10.0 * shipping.rate_hz)));
     for (std::uint8_t i = 0; i < parameter_count(kind); i++) {
         const filter_parameter_t entry = parameter_at(kind, i);
-        if (parameter == entry.name) {
+        if (parameter == entry.words) {
             return std::ldexp(static_cast<double>(config.value[i]), -entry.fraction_bits);
         }
     }

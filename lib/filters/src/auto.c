@@ -41,10 +41,14 @@
 /* Refused samples in a row and on one side that restart a member. */
 #define RESTART_SAMPLES 5
 
-static const filter_parameter_t gate FX_FLASH = { "gate", "sigma", 8, 1, 256, 4096, 1536 };
-static const filter_parameter_t slow FX_FLASH = { "slow", "ms", 0, 0, 1, 60000, 0 };
-static const filter_parameter_t middling FX_FLASH = { "middle", "ms", 0, 0, 1, 60000, 0 };
-static const filter_parameter_t fast FX_FLASH = { "fast", "ms", 0, 0, 1, 60000, 0 };
+static const char gate_words[] FX_FLASH = "gate\0sigma";
+static const filter_parameter_t gate FX_FLASH = { gate_words, 8, 1, 256, 4096, 1536 };
+static const char slow_words[] FX_FLASH = "slow\0ms";
+static const filter_parameter_t slow FX_FLASH = { slow_words, 0, 0, 1, 60000, 0 };
+static const char middling_words[] FX_FLASH = "middle\0ms";
+static const filter_parameter_t middling FX_FLASH = { middling_words, 0, 0, 1, 60000, 0 };
+static const char fast_words[] FX_FLASH = "fast\0ms";
+static const filter_parameter_t fast FX_FLASH = { fast_words, 0, 0, 1, 60000, 0 };
 static const filter_parameter_t *const parameters[] FX_FLASH = { &gate, &filter_parameter_r,      &slow, &middling,
                                                                  &fast, &filter_parameter_ratemax };
 

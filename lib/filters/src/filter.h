@@ -71,8 +71,7 @@ typedef struct {
 
 /* One parameter of a law as a person sees it; lives in program memory (FX_FLASH in fx.h). */
 typedef struct {
-    char name[10];          /* as typed in a command, e.g. "gate" */
-    char unit[8];           /* e.g. "sigma", "LSB2", "LSB2/s3" */
+    const char *words;      /* in program memory: the name as typed, "gate", its end, the unit: "sigma", "LSB2", "" */
     uint8_t fraction_bits;  /* binary point of the stored value */
     uint8_t zero_means_off; /* 1: 0 is legal and switches the feature off although below min */
     int32_t min, max;       /* legal range of the stored value; a law may refuse combinations within it */
@@ -201,7 +200,12 @@ void filter_probe(const filter_t *f, filter_probe_t *out);
 const char *filter_name(const filter_law_t *law); /* in program memory, as typed in `filter NAME` */
 uint8_t filter_parameter_count(const filter_law_t *law);
 const filter_parameter_t *filter_parameter(const filter_law_t *law, uint8_t index); /* in program memory */
+/* Its name; behind the name's end follows the unit. Both in program memory. */
+const char *filter_parameter_words(const filter_parameter_t *parameter);
 uint16_t filter_worst_cycles(const filter_law_t *law); /* of filter_update on an ATmega328P, at most */
+
+/* The parameter that is the measurement variance R: what laws that have it need not be told is estimated. */
+extern const filter_parameter_t filter_parameter_r;
 
 /* The value is 0 where that switches the feature off, or within min..max. */
 bool filter_in_range(const filter_parameter_t *parameter, int32_t value);

@@ -3,17 +3,18 @@
 
 #include "fx.h"
 
+static const filter_law_t *const laws[FILTER_KIND_COUNT] FX_FLASH = {
+#define LISTED(F) [FILTER_KIND_##F] = &filter_law_##F,
+    FILTER_LINKED(LISTED)
+#undef LISTED
+};
+
 const filter_law_t *filter_listed(filter_kind_t kind)
 {
-    switch (kind) {
-#define LISTED(F)         \
-    case FILTER_KIND_##F: \
-        return &filter_law_##F;
-        FILTER_LINKED(LISTED)
-#undef LISTED
-    default:
+    if (kind >= FILTER_KIND_COUNT) {
         return NULL;
     }
+    return (const filter_law_t *)fx_flash_pointer(&laws[kind]);
 }
 
 /* Apart from the descriptors: also of those that are not linked. */

@@ -34,7 +34,8 @@
 #define Q33_MAX_FINE_UQ28 0x2000000U
 #define P22_START_MAX_UQ28 0x8000000U
 
-static const filter_parameter_t q FX_FLASH = { "q", "LSB2/s5", 0, 0, 1, 1000000000, 300000 };
+static const char q_words[] FX_FLASH = "q\0LSB2/s5";
+static const filter_parameter_t q FX_FLASH = { q_words, 0, 0, 1, 1000000000, 300000 };
 static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &q };
 
 static void set_up(filter_t *f, const filter_config_t *config)

@@ -47,7 +47,7 @@ void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what)
         uint32_t size = fx_abs32(innovation);
         f->negative = innovation < 0;
         f->size_lsb_uq16 = size;
-        int32_t step = (int32_t)fx_mul_uq16(size, f->gain_uq16);
+        int32_t step = (int32_t)filter_fx_times_uq16(size, f->gain_uq16);
         x = f->negative ? x - step : x + step;
     }
     f->x_lsb_q16 = x;

@@ -160,9 +160,9 @@ uint16_t filter_tracker_memory_k_uq16(uint16_t memory_ms, uint16_t rate_dhz, uin
 /* Variance of a fading memory with this k for samples of variance R: R k (10 - 14 k + 5 k^2) / (2 - k)^3. Divides. */
 uint32_t filter_tracker_fading_variance(uint32_t r_lsb2_q8, uint16_t k_uq16);
 
-/* Parameters that several laws have. */
-extern const filter_parameter_t filter_parameter_r, filter_parameter_q, filter_parameter_gate,
-    filter_parameter_reacquire, filter_parameter_ratemax;
+/* Parameters that several laws have, beside filter_parameter_r. */
+extern const filter_parameter_t filter_parameter_q, filter_parameter_gate, filter_parameter_reacquire,
+    filter_parameter_ratemax;
 
 #ifdef __cplusplus
 }

@@ -36,7 +36,7 @@ static bool near_estimate(const tilt_axis_t *a, int16_t lsb)
 {
     int16_t off_lsb = (int16_t)(lsb - tilt_axis_estimate_lsb(a));
     uint16_t size_lsb = (uint16_t)((off_lsb < 0) ? -off_lsb : off_lsb);
-    return fx_mul_u16(size_lsb, size_lsb) <= filter_noise_r_lsb2_q8(&a->noise) >> 5;
+    return fx_product_u16(size_lsb, size_lsb) <= filter_noise_r_lsb2_q8(&a->noise) >> 5;
 }
 
 /* A sample after a hold, which the filter is not to have as long as a->away is not 0. */
