@@ -153,7 +153,7 @@ static void noise_gain_is_that_of_the_reference(void)
 }
 
 /* The defaults are the steady gains of kf at its defaults, within 0.1 % of alpha and 0.4 % of beta, 25 to 800 Hz. */
-static void defaults_are_the_gains_of_kf(void)
+static void defaults_are_steady_gains(void)
 {
     static const uint16_t rates_dhz[] = { 250, 500, 1000, 2000, 4000, 8000 };
     for (int i = 0; i < 6; i++) {
@@ -290,7 +290,7 @@ int main(void)
     RUN_TEST(poles_on_each_other_have_their_radius);
     RUN_TEST(region_is_exactly_the_stable_one);
     RUN_TEST(noise_gain_is_that_of_the_reference);
-    RUN_TEST(defaults_are_the_gains_of_kf);
+    RUN_TEST(defaults_are_steady_gains);
     RUN_TEST(estimate_equals_the_reference);
     RUN_TEST(start_is_the_least_squares_line);
     RUN_TEST(nearest_rho_costs_little);
