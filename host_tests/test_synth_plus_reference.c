@@ -134,7 +134,7 @@ static void noise_gain_is_that_of_the_reference(void)
         reference_taps_t taps = taps_of(&config);
         if (reference_plus_radius(&taps) < 0.99) {
             double expected = reference_plus_noise_gain(&taps);
-            double got = filter_synth_plus_noise_gain_uq16(&config) / 65536.0;
+            double got = filter_synth_taps_noise_gain_uq16(&config) / 65536.0;
             TEST_ASSERT_DOUBLE_WITHIN(expected / 512.0, expected, got);
             compared++;
         }
@@ -148,7 +148,7 @@ static void noise_gain_is_that_of_the_reference(void)
         config.value[SYNTH_PLUS_B1_Q16] = (int32_t)lround(65536.0 * alpha * alpha / (2.0 - alpha)) - i;
         double beta = alpha + config.value[SYNTH_PLUS_B1_Q16] / 65536.0;
         double expected = (2.0 * alpha * alpha + beta * (2.0 - 3.0 * alpha)) / (alpha * (4.0 - 2.0 * alpha - beta));
-        TEST_ASSERT_DOUBLE_WITHIN(expected / 512.0, expected, filter_synth_plus_noise_gain_uq16(&config) / 65536.0);
+        TEST_ASSERT_DOUBLE_WITHIN(expected / 512.0, expected, filter_synth_taps_noise_gain_uq16(&config) / 65536.0);
     }
 }
 
