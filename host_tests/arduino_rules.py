@@ -18,7 +18,7 @@ KEYWORDS = ("KEYWORD1", "KEYWORD2", "KEYWORD3", "LITERAL1", "LITERAL2")
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)
 FUNCTION = re.compile(r"^(?:static inline )?(?!typedef|static|extern|#|return)[\w ]+[ *](\w+)\([^;{]*\)(?:;|\n\{)", re.M)
 TYPE = re.compile(r"^\}\s*(\w+);|^typedef \w+ (\w+);", re.M)
-LITERAL = re.compile(r"^\s+((?:FILTER|TILT)_[A-Z_]+)\s*(?:=|,)|\b(filter_law_\w+)[,;]"
+LITERAL = re.compile(r"^\s+((?:FILTER|TILT)_[A-Z_]+)\s*(?:=|,)"
                      r"|(?<=[{ ])([A-Z]\w*_(?:UQ|Q|LSB|MS|SAMPLES|K|VARIANT_U|IDENTIFY)[A-Z0-9_]*)(?=,|\s*\})", re.M)
 
 
@@ -81,6 +81,7 @@ def public_names(folder):
         text = COMMENT.sub("", (folder / "src" / header).read_text(encoding="utf-8"))
         for pattern, kind in ((FUNCTION, "KEYWORD2"), (TYPE, "KEYWORD1"), (LITERAL, "LITERAL1")):
             names |= {name: kind for match in pattern.finditer(text) for name in match.groups() if name}
+        names |= {f"filter_law_{name}": "LITERAL1" for name in re.findall(r"\bX\((\w+)\)", text)}  # declared by the list FILTER_LAWS
     state = (folder / "src" / "filter_state.h").read_text(encoding="utf-8")  # its other types are inside
     return names | {name: "KEYWORD1" for name in re.findall(r"\b(filter_t|filter_law_t);", COMMENT.sub("", state))}
 

@@ -119,6 +119,12 @@ class Library:
         """{field: (min, max)} of the law's parameters."""
         return {field_of(p): (p.min, p.max) for p in self.parameters(self.law(name))}
 
+    def law_with(self, field):
+        """Name of the only law that has the field."""
+        having = [name for name in self.names if field in self.ranges(name)]
+        assert len(having) == 1, (field, having)
+        return having[0]
+
     def make(self, name, fields):
         """(accepted, state) of filter_init with these stored values on top of the defaults."""
         law, state = self.law(name), ctypes.create_string_buffer(1024)
@@ -139,6 +145,9 @@ class Library:
         probe = Probe()
         self.c.filter_probe(state, ctypes.byref(probe))
         return probe.gain_uq16 / 65536
+
+    def noise_gain(self, b0_uq16, a1_q16):
+        return self.c.filter_synth_noise_gain_uq16(b0_uq16, a1_q16) / 65536
 
 
 def compiles_and_runs(initialiser, name):

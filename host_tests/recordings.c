@@ -147,7 +147,7 @@ static void print_contender(const char *name, fault_t fault, size_t contender)
     double worst[2] = { 0.0 };
     for (unsigned seed = 0; seed < SEEDS; seed++) {
         const score_t *score = &pool[fault].score[seed][contender];
-        double value[3] = { rms(score->own, score->count), rms(score->kf, score->count),
+        double value[3] = { rms(score->own, score->count), rms(score->plain, score->count),
                             rms(score->predicted, score->count) };
         for (int i = 0; i < 3; i++) {
             sum[i] += value[i] / SEEDS;

@@ -17,13 +17,6 @@ double noise_gain_of(double w1)
     return (2.0 * w1 * w1 + 2.0 * w2 - 3.0 * w1 * w2) / (w1 * (4.0 - 2.0 * w1 - w2));
 }
 
-double kf3_noise_gain_of(double w1, double w2, double w3)
-{
-    double beta = w2 + w3 / 2.0;
-    double above = 2.0 * beta * (2.0 * w1 * w1 + 2.0 * beta - 3.0 * w1 * beta) - w1 * w3 * (4.0 - 2.0 * w1 - beta);
-    return above / ((4.0 - 2.0 * w1 - beta) * (2.0 * w1 * beta + w1 * w3 - 2.0 * w3));
-}
-
 double process_noise_per_r(uint16_t rate_dhz, double r_lsb2)
 {
     double period_s = 10.0 / rate_dhz;
@@ -33,14 +26,6 @@ double process_noise_per_r(uint16_t rate_dhz, double r_lsb2)
 double time_constant_samples(uint16_t rate_dhz, double r_lsb2)
 {
     return sqrt(2.0) / pow(process_noise_per_r(rate_dhz, r_lsb2), 0.25);
-}
-
-double kf3_time_constant_samples(uint16_t rate_dhz, double r_lsb2)
-{
-    filter_config_t config = filter_defaults(&filter_law_kf3, rate_dhz);
-    bool fine = rate_dhz >= 1000U;
-    double q33 = config.value[KF3_Q_LSB2_S5] * pow(10.0 / rate_dhz, 5.0) / r_lsb2;
-    return 2.0 / pow(fmin(fine ? 0x1p-11 : 1.0, fmax(fine ? 0x1p-32 : 0x1p-24, q33)), 1.0 / 6.0);
 }
 
 double longest_wait_samples(uint16_t rate_dhz, double r_lsb2)
@@ -54,10 +39,9 @@ size_t band_window(filter_kind_t kind, uint16_t rate_dhz, double r_lsb2)
     if (facts.forgets == 0.0) {
         return facts.forgets_samples;
     }
-    if (kind == FILTER_KIND_kf3) {
-        return (size_t)ceil(facts.forgets * kf3_time_constant_samples(rate_dhz, r_lsb2));
-    }
-    return (size_t)ceil(facts.forgets * time_constant_samples(rate_dhz, r_lsb2 * facts.variance_ratio));
+    double (*samples)(uint16_t, double) = facts.time_constant_samples;
+    samples = (samples != NULL) ? samples : time_constant_samples;
+    return (size_t)ceil(facts.forgets * samples(rate_dhz, r_lsb2 * facts.variance_ratio));
 }
 
 static uint32_t level_of(int16_t z_lsb)

@@ -46,9 +46,6 @@
 /* Gain of white noise, sum h^2, of the two-state filter whose steady gain is w1; it is 3/4 w1 for small gains. */
 double noise_gain_of(double w1);
 
-/* The same of kf3 with the steady gains w1, w2 and w3 of x, v and a, per sample. */
-double kf3_noise_gain_of(double w1, double w2, double w3);
-
 /* q T^3 / R at the default q, limited. */
 double process_noise_per_r(uint16_t rate_dhz, double r_lsb2);
 
@@ -57,9 +54,6 @@ double longest_wait_samples(uint16_t rate_dhz, double r_lsb2);
 
 /* Samples of one time constant of a two-state filter at the default q. */
 double time_constant_samples(uint16_t rate_dhz, double r_lsb2);
-
-/* The same of kf3, at its default q. */
-double kf3_time_constant_samples(uint16_t rate_dhz, double r_lsb2);
 
 /* W for a filter on a sensor of this rate, when R has been this large. */
 size_t band_window(filter_kind_t kind, uint16_t rate_dhz, double r_lsb2);

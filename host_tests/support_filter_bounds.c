@@ -2,7 +2,6 @@
 #include "kalman.h"
 #include "mixture.h"
 #include "support_law_facts.h"
-#include "synth.h"
 #include "wide.h"
 
 #define RATE_MAX_FINE_Q24 ((uint32_t)127 << 24)
@@ -102,30 +101,6 @@ const char *broken_mixture(const filter_t *f)
         return "q";
     }
     return broken_wide(f);
-}
-
-/*
- * synth.h: v and v' are x1 - x2 and x2 - x3 of estimates within the bound, and after damping between them.
- */
-static const char *broken_running_estimates(const filter_t *f)
-{
-    const filter_synth_t *s = &f->own.synth;
-    if (fx_abs32(f->x_lsb_q16 - f->rate_lsb) > X_MAX_Q16 + 1U) {
-        return "older x";
-    }
-    if (fx_abs32(s->rate_before_lsb_q16) > 2U * X_MAX_Q16) {
-        return "oldest x";
-    }
-    bool steady = s->count == (uint8_t)SYNTH_STEADY;
-    return (!steady && (s->count < (uint8_t)SYNTH_FIRST_GAIN || s->count > (uint8_t)SYNTH_END_GAIN)) ? "count" : NULL;
-}
-
-const char *broken_estimates(const filter_t *f)
-{
-    if (r_broken(f->own.synth.r_lsb2_q8, FILTER_R_MAX_LSB2_Q8)) {
-        return "r";
-    }
-    return running(f) ? broken_running_estimates(f) : NULL;
 }
 
 /* tracker.h, filter.h: what all laws have. */

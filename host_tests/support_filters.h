@@ -94,6 +94,8 @@ typedef struct {
     double forgets;        /* W in time constants; 0: forgets_samples */
     unsigned forgets_samples;
     envelope_rule_t rule;
+    double (*noise_gain)(const filter_t *f); /* sum h^2 of its steady state; NULL: a Kalman filter of two states */
+    double (*time_constant_samples)(uint16_t rate_dhz, double r_lsb2); /* NULL: likewise */
 } envelope_facts_t;
 #endif
 

@@ -8,6 +8,39 @@
 #include "support_law_facts.h"
 #include "synth.h"
 
+#ifndef __AVR__
+static double noise_gain(const filter_t *f)
+{
+    const filter_synth_t *s = &f->own.synth;
+    int32_t a1_uq16 = s->a1_uq16;
+    return filter_synth_noise_gain_uq16(s->b0_uq16, s->a1_negative ? -a1_uq16 : a1_uq16) / 65536.0;
+}
+#endif
+
+/*
+ * synth.h: v and v' are x1 - x2 and x2 - x3 of estimates within the bound, and after damping between them.
+ */
+static const char *broken_running_estimates(const filter_t *f)
+{
+    const filter_synth_t *s = &f->own.synth;
+    if (fx_abs32(f->x_lsb_q16 - f->rate_lsb) > X_MAX_Q16 + 1U) {
+        return "older x";
+    }
+    if (fx_abs32(s->rate_before_lsb_q16) > 2U * X_MAX_Q16) {
+        return "oldest x";
+    }
+    bool steady = s->count == (uint8_t)SYNTH_STEADY;
+    return (!steady && (s->count < (uint8_t)SYNTH_FIRST_GAIN || s->count > (uint8_t)SYNTH_END_GAIN)) ? "count" : NULL;
+}
+
+const char *broken_estimates(const filter_t *f)
+{
+    if (r_broken(f->own.synth.r_lsb2_q8, FILTER_R_MAX_LSB2_Q8)) {
+        return "r";
+    }
+    return running(f) ? broken_running_estimates(f) : NULL;
+}
+
 /* synth.c: gains as configured. */
 const char *broken_synth(const filter_t *f)
 {
@@ -16,7 +49,7 @@ const char *broken_synth(const filter_t *f)
 
 law_facts_t law_facts_synth(void)
 {
-    return (law_facts_t){ ENVELOPE(2.277, 1.0, 0.0, 56, ENVELOPE_FIXED_GAIN) USUAL,
+    return (law_facts_t){ ENVELOPE(2.277, 1.0, 0.0, 56, ENVELOPE_FIXED_GAIN, .noise_gain = noise_gain) USUAL,
                           REFUSES,
                           SETTLES_IN(40),
                           .joint_condition = true,

@@ -5,6 +5,7 @@
 #ifndef SUPPORT_LAWS_H
 #define SUPPORT_LAWS_H
 
+#include "kalman.h"
 #include "support_filters.h"
 #include "wide.h"
 
@@ -17,6 +18,14 @@ static inline int32_t coast(filter_t *f)
 static inline uint32_t at_most(uint32_t v, uint32_t limit)
 {
     return (v < limit) ? v : limit;
+}
+
+/* The plain Kalman filter with the R and q of another law's configuration; false: refused. */
+static inline bool init_plain(filter_t *f, const filter_config_t *config)
+{
+    filter_config_t plain = { config->rate_dhz,
+                              { [KF_R_LSB2_Q8] = config->value[KALMAN_R], [KF_Q_LSB2_S3] = config->value[KALMAN_Q] } };
+    return filter_init(f, &filter_law_kf, &plain) == FILTER_ACCEPTED;
 }
 
 /* Running from a position and a rate within their bounds. */

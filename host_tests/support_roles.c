@@ -60,6 +60,15 @@ uint8_t parameter_named(filter_kind_t kind, const char *name)
     return FILTER_PARAMETERS_MAX;
 }
 
+filter_kind_t kind_with(const char *parameter)
+{
+    int kind = 0;
+    while (kind < FILTER_KIND_COUNT && parameter_named((filter_kind_t)kind, parameter) == FILTER_PARAMETERS_MAX) {
+        kind++;
+    }
+    return (filter_kind_t)kind;
+}
+
 static filter_kind_t default_kind(void)
 {
     return DEFAULT_KIND;

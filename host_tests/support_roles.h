@@ -18,6 +18,9 @@ filter_kind_t robust_kind(void);
 filter_kind_t light_kind(void);
 filter_kind_t slowest_kind(void);
 
+/* The first of the list that has a parameter of this name; FILTER_KIND_COUNT: none has. */
+filter_kind_t kind_with(const char *parameter);
+
 /* Place of a parameter in filter_config_t.value; FILTER_PARAMETERS_MAX: the filter has none of this name. */
 uint8_t parameter_named(filter_kind_t kind, const char *name);
 

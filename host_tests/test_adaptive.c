@@ -263,6 +263,23 @@ static void defaults_follow_one_rule(void)
     }
 }
 
+/* A sigma of 3 LSB learnt from noise; a restart that lost it would have the configured 1.7, the root of R = 3. */
+static void restart_keeps_what_was_learnt_of_the_noise(void)
+{
+    filter_t f;
+    filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    for (uint16_t k = 0; k < 2000U; k++) {
+        uint32_t v = random32(&random_state);
+        int16_t sum = (int16_t)((v & 15U) + ((v >> 8) & 15U) + ((v >> 16) & 15U) + ((v >> 24) & 15U));
+        (void)filter_update(&f, (int16_t)(sum / 3)); /* sigma 4.6 x 2 / 3 */
+    }
+    uint32_t scatter_lsb_uq24 = f.own.adaptive.scatter_lsb_uq24;
+    TEST_ASSERT_TRUE(scatter_lsb_uq24 > 37520000UL); /* sqrt(5) LSB */
+    filter_restart(&f);
+    TEST_ASSERT_EQUAL_UINT32(scatter_lsb_uq24, f.own.adaptive.scatter_lsb_uq24);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -279,5 +296,6 @@ int main(void)
     RUN_TEST(reset_keeps_the_noise);
     RUN_TEST(limits_of_the_parameters);
     RUN_TEST(defaults_follow_one_rule);
+    RUN_TEST(restart_keeps_what_was_learnt_of_the_noise);
     return UNITY_END();
 }

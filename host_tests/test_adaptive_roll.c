@@ -240,13 +240,13 @@ static void no_fixed_tuning_has_a_smaller_mean(void)
     double best = 1e9;
     for (int a = 0; a <= 3; a++) {
         for (int b = 2; b <= 19; b++) {
-            fixed_t synth = { -0.1 * a, 0.05 * b, 0.0 };
-            best = fmin(best, mean_of_cells(&synth, adaptive));
+            fixed_t constant = { -0.1 * a, 0.05 * b, 0.0 };
+            best = fmin(best, mean_of_cells(&constant, adaptive));
         }
     }
     for (int step = -8; step <= 2; step++) {
-        fixed_t kf = { 0.0, 0.0, pow(10.0, 0.5 * step) };
-        best = fmin(best, mean_of_cells(&kf, adaptive));
+        fixed_t driven = { 0.0, 0.0, pow(10.0, 0.5 * step) };
+        best = fmin(best, mean_of_cells(&driven, adaptive));
     }
     printf("mean of 12 cells: adaptive %.3f, best fixed tuning %.3f deg^2\n", ours, best);
     TEST_ASSERT_TRUE(ours < best);

@@ -12,7 +12,7 @@ import tempfile
 
 import arduino_rules
 from system_support import SIMRUN, STREAMS, Skip, run, run_all, test
-from laws import PLAIN, ROBUST  # noqa: E402
+from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
 
 LIBRARY = pathlib.Path("build/library/tilt-filters")
 BUILT = pathlib.Path("build/arduino")
@@ -175,7 +175,7 @@ class NativeTilt:
         self.code = library()
         self.code.tilt_filter_begin_with.restype = self.code.tilt_filter_sensor.restype = ctypes.c_bool
         self.state = ctypes.create_string_buffer(2048)
-        law = ctypes.addressof(ctypes.c_char.in_dll(self.code, "filter_law_adaptive"))
+        law = ctypes.addressof(ctypes.c_char.in_dll(self.code, f"filter_law_{DEFAULT}"))
         assert self.code.tilt_filter_begin_with(self.state, RATE_HZ, ctypes.c_void_p(law))
         assert sensor is None or self.code.tilt_filter_sensor(self.state, *sensor)
 

@@ -2,7 +2,6 @@
  * Generic properties, over the list of filters, of samples that are missing: the verbs that filter_missing is made of
  * (tracker.h), and a filter that warms up again.
  */
-#include "adaptive.h"
 #include "support_filters.h"
 #include "unity.h"
 
@@ -75,22 +74,6 @@ static void test_damp_halves_the_rate_and_moves_nothing(void)
         assert_damped(kind, RAMP_LSB);
         assert_damped(kind, -RAMP_LSB);
     }
-}
-
-/* With an extrapolation that sees the curvature, which a damp must not make. */
-static void test_damp_of_synth_bends_nothing(void)
-{
-    filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_synth, 1000);
-    config.value[SYNTH_A1_Q16] = -19661; /* -0.3 */
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth, &config));
-    filter_reset(&f, 0);
-    for (int16_t k = 1; k <= SETTLING; k++) {
-        (void)filter_update(&f, (int16_t)(k * RAMP_LSB));
-    }
-    int32_t x = coast_only(&f);
-    filter_tracker_damp(&f);
-    TEST_ASSERT_INT32_WITHIN(65536 / 64, RAMP_LSB * 65536L / 2, coast_only(&f) - x);
 }
 
 /* R is 3 LSB^2 at 100 Hz, three sigmas 5.2 LSB: a rate of 5 LSB per sample may be noise, one of 6 is none. */
@@ -184,22 +167,6 @@ static void test_restart_is_as_begun_just_now(void)
     }
 }
 
-/* A sigma of 3 LSB learnt from noise; a restart that lost it would have the configured 1.7, the root of R = 3. */
-static void test_restart_keeps_what_was_learnt_of_the_noise(void)
-{
-    filter_t f;
-    make(&f, (uint8_t)FILTER_KIND_adaptive);
-    for (uint16_t k = 0; k < 2000U; k++) {
-        uint32_t v = random32(&random_state);
-        int16_t sum = (int16_t)((v & 15U) + ((v >> 8) & 15U) + ((v >> 16) & 15U) + ((v >> 24) & 15U));
-        (void)filter_update(&f, (int16_t)(sum / 3)); /* sigma 4.6 x 2 / 3 */
-    }
-    uint32_t scatter_lsb_uq24 = f.own.adaptive.scatter_lsb_uq24;
-    TEST_ASSERT_TRUE(scatter_lsb_uq24 > 37520000UL); /* sqrt(5) LSB */
-    filter_restart(&f);
-    TEST_ASSERT_EQUAL_UINT32(scatter_lsb_uq24, f.own.adaptive.scatter_lsb_uq24);
-}
-
 /* How often a filter at rest restarted while the sensor stood at its rail. */
 static uint16_t restarts_at_the_rail(filter_t *f, uint8_t kind, bool missing)
 {
@@ -290,12 +257,10 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_damp_halves_the_rate_and_moves_nothing);
-    RUN_TEST(test_damp_of_synth_bends_nothing);
     RUN_TEST(test_a_gap_stops_only_a_rate_that_may_be_noise);
     RUN_TEST(test_damp_leaves_less_gain_behind_a_gap);
     RUN_TEST(test_a_missing_sample_leaves_a_start_alone);
     RUN_TEST(test_restart_is_as_begun_just_now);
-    RUN_TEST(test_restart_keeps_what_was_learnt_of_the_noise);
     RUN_TEST(test_samples_told_as_missing_restart_no_filter);
     RUN_TEST(test_a_filter_restarts_behind_the_rail);
     RUN_TEST(test_missing_samples_do_not_count_in_a_run);

@@ -17,7 +17,7 @@ IMAGES = pathlib.Path("mk/images.mk").read_text(encoding="utf-8")
 SETS = {name: names.split() for name, names in re.findall(r"^FILTERS_([a-z]+) *:= *(.*)$", IMAGES, re.M)}
 FLAG = re.compile(r"-DFILTER_LIST\(X\)= ?((?:X\(\w+\) ?)+)")
 # FILTERS, what the sentence names
-BAD = (("kff", "there is no filter kff;"), (f"{PLAIN} kff", "there is no filter kff;"), ("KF", "there is no filter KF;"),
+BAD = (("kff", "there is no filter kff;"), (f"{PLAIN} kff", "there is no filter kff;"), (PLAIN.upper(), f"there is no filter {PLAIN.upper()};"),
        (f"{PLAIN},{ROBUST}", f"there is no filter {PLAIN},{ROBUST};"), (f"{PLAIN} {ROBUST} {PLAIN}", f"named twice: {PLAIN}"),
        (f"{ROBUST} {PLAIN} {PLAIN} {ROBUST}", f"named twice: {PLAIN} {ROBUST}"),
        ("", "FILTERS is empty;"), ("  ", "FILTERS is empty;"), (f"everyday {PLAIN}", "there is no filter everyday;"),

@@ -1,5 +1,6 @@
 /* kf3 against Eigen: the double reference against DARE, paper 001 and the notes; fixed point against the reference. */
 #include "reference_kf3.h"
+#include "support_law_kf3.h"
 #include "support_laws.h"
 #include "unity.h"
 
@@ -341,6 +342,36 @@ static void probe_tells_the_variance(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.02, r.x[2] * unit_of(&f), f.own.kf3.acceleration_q16 / 65536.0 * unit_of(&f));
 }
 
+/* The sums of its rule in support_envelope.h, from the gains that its recursion settles at; per doubling of q33, and its time constant. */
+static void kf3_sums_are_as_stated(void)
+{
+    double worst = 0.0;
+    for (int exponent = -32; exponent <= 0; exponent++) {
+        reference_kf3_t f;
+        reference_kf3_settled(&f, ldexp(1.0, exponent));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, reference_kf3_noise_gain(&f),
+                                  kf3_noise_gain_of(f.gain[0], f.gain[1], f.gain[2]));
+        double sum = 0.0;
+        f.q = 0.0;
+        for (int k = 0; k < 3000; k++) {
+            double x_before = f.x[0] + f.x[1] + f.x[2];
+            double r = (k == 0 ? 1.0 : 0.0) - x_before;
+            double v_before = f.x[1] + f.x[2];
+            f.x[0] = x_before + f.gain[0] * r;
+            f.x[1] = v_before + f.gain[1] * r;
+            f.x[2] += f.gain[2] * r;
+            sum += fabs(f.x[0]);
+        }
+        worst = fmax(worst, sum);
+        double samples = -1.0 / log(reference_kf3_radius(&f));
+        TEST_ASSERT_TRUE(samples <= 2.0 / pow(2.0, exponent / 6.0));
+    }
+    double stated = law_facts(FILTER_KIND_kf3).envelope.gain_sum;
+    TEST_ASSERT_TRUE(worst <= stated && worst > stated - 0.002);
+    /* 100 Hz, R = 3: q33 = 3e5 x 1e-10 / 3 = 1e-5 */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2.0 / pow(1e-5, 1.0 / 6.0), kf3_time_constant_samples(1000, 3.0));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -353,5 +384,6 @@ int main(void)
     RUN_TEST(gaps_equal_the_reference);
     RUN_TEST(covariance_stays_one_for_ever);
     RUN_TEST(probe_tells_the_variance);
+    RUN_TEST(kf3_sums_are_as_stated);
     return UNITY_END();
 }

@@ -36,14 +36,17 @@ static void settle(reference_filter_t *f)
 }
 
 /* 2.06 with outliers, 0.1715 without (by Lyapunov, notes section 3), to 1e-3 of what their four-digit parts give. */
-static void variance_ratios_to_kf_are_those_of_the_notes(void)
+static void variance_ratios_are_those_of_the_notes(void)
 {
-    reference_filter_t kf = table_1(1.0);
+    reference_filter_t plain = table_1(1.0);
     reference_filter_t lrf = table_1(FACTOR);
-    settle(&kf);
+    settle(&plain);
     settle(&lrf);
-    const double outliers = reference_lyapunov(&kf, FACTOR * 0.0064) / reference_lyapunov(&lrf, FACTOR * 0.0064);
-    const double clean = reference_lyapunov(&kf, 0.0064) / reference_lyapunov(&lrf, 0.0064);
+    const double outliers = reference_lyapunov(&plain, FACTOR * 0.0064) / reference_lyapunov(&lrf, FACTOR * 0.0064);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-3 * 0.0476, 0.0476, lrf.gain[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 1.852e-2, 1.852e-2, reference_lyapunov(&lrf, FACTOR * 0.0064));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 4.750e-3, 4.750e-3, reference_lyapunov(&lrf, 0.0064));
+    const double clean = reference_lyapunov(&plain, 0.0064) / reference_lyapunov(&lrf, 0.0064);
     printf("LRF: error variance of KF over its own %.4f with outliers, %.5f without\n", outliers, clean);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 2.06, 3.819 / 1.852, outliers);
     TEST_ASSERT_DOUBLE_WITHIN(0.005, 2.06, outliers);
@@ -150,7 +153,7 @@ static void smallest_gain_binds_where_the_header_says(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(variance_ratios_to_kf_are_those_of_the_notes);
+    RUN_TEST(variance_ratios_are_those_of_the_notes);
     RUN_TEST(reference_follows_the_golden_rows);
     RUN_TEST(steady_gains_are_those_of_the_paper);
     RUN_TEST(estimate_equals_the_reference);

@@ -1,6 +1,7 @@
 /* The pieces of mixture.h against libm: posterior, log odds, and the distance of wide.h. */
 #include "mixture.h"
 #include "support_laws.h"
+#include "support_roles.h"
 #include "unity.h"
 
 #include <math.h>
@@ -86,6 +87,58 @@ static void distance_is_the_squared_innovation_in_variances(void)
     TEST_ASSERT_TRUE(worst <= 3e-4);
 }
 
+/* Steady gain for a drive q22 = w1^4 / ((2 - w1)^2 (1 - w1)), by bisection. */
+static double steady_gain(double q22)
+{
+    double low = 0.0;
+    double high = 1.0;
+    for (int i = 0; i < 60; i++) {
+        double w1 = 0.5 * (low + high);
+        *(w1 * w1 * w1 * w1 < q22 * (2.0 - w1) * (2.0 - w1) * (1.0 - w1) ? &low : &high) = w1;
+    }
+    return low;
+}
+
+/* Largest position after a start at rate 1, and sum of the magnitudes of the rate's answer to one sample of 1. */
+static void rate_answers(double w1, double *carried, double *driven)
+{
+    double w2 = w1 * w1 / (2.0 - w1);
+    double x = 0.0;
+    double rate = 1.0;
+    double own_x = 0.0;
+    double own_rate = 0.0;
+    *carried = *driven = 0.0;
+    for (int k = 0; k < 6000; k++) {
+        x += rate;
+        rate -= w2 * x;
+        x -= w1 * x;
+        *carried = fmax(*carried, fabs(x));
+        own_x += own_rate;
+        double r = (k == 0 ? 1.0 : 0.0) - own_x;
+        own_x += w1 * r;
+        own_rate += w2 * r;
+        *driven += fabs(own_rate);
+    }
+}
+
+/* At 400 times the R the drive per R is 1 / 400; both gains at their smallest are the worst. */
+static void the_rate_of_a_mixture_carries_it_as_far_as_stated(void)
+{
+    double worst = 0.0;
+    for (double q22 = 1e-6; q22 < 1.0; q22 *= 2.0) {
+        double carried_slow;
+        double carried;
+        double driven;
+        rate_answers(steady_gain(q22), &carried, &driven);
+        double driven_fast = driven;
+        rate_answers(steady_gain(q22 / 400.0), &carried_slow, &driven);
+        worst = fmax(worst, driven_fast * carried_slow);
+    }
+    double stated = law_facts(FILTER_KIND_pbf).envelope.gain_sum - law_facts(plain_kind()).envelope.gain_sum;
+    printf("rate of a mixture: %.3f, stated %.3f\n", worst, stated);
+    TEST_ASSERT_TRUE(worst <= stated && worst > 0.95 * stated);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -93,5 +146,6 @@ int main(void)
     RUN_TEST(posterior_is_monotone);
     RUN_TEST(log_odds_are_the_logarithm);
     RUN_TEST(distance_is_the_squared_innovation_in_variances);
+    RUN_TEST(the_rate_of_a_mixture_carries_it_as_far_as_stated);
     return UNITY_END();
 }

@@ -278,12 +278,12 @@ def a_bad_list_of_bands_is_named_by_line():
 
 @test
 def the_page_holds_what_was_measured():
-    rows = [made(experiment="clean", filter="sprf", metric="clean_efficiency", value=0.9765, ci_lo=0.97, ci_hi=0.98),
+    rows = [made(experiment="clean", filter=ROBUST, metric="clean_efficiency", value=0.9765, ci_lo=0.97, ci_hi=0.98),
             made(value=float("inf"), experiment="step_clean_5_sigma",
                  metric="reacq_p95"), made(metric="k_ef_steady", value=3.8e-14, experiment="printed"),
             made(published="30-40", verdict="refuted", reason="why")]
     text = papers_page.page_text(copy.deepcopy(rows), Options())
-    for words in ("| `sprf` | double | 0.977", "never", "| 30-40 | **refuted** | why |", "300 runs per experiment", "diverges"):
+    for words in (f"| `{ROBUST}` | double | 0.977", "never", "| 30-40 | **refuted** | why |", "300 runs per experiment", "diverges"):
         assert words in text, f"{words} is not in:\n{text}"
     assert [r["value"] for r in papers.as_json("002", rows)] == [0.9765, None, 3.8e-14, 35.0]
 

@@ -7,6 +7,7 @@
 #include "supervisor.h"
 #include "support_board.h"
 #include "support_random.h"
+#include "support_roles.h"
 #include "unity.h"
 
 #include <math.h>
@@ -158,7 +159,7 @@ static void test_a_healthy_board_leaves_none_out(void)
 static void test_another_filter_leaves_none_out(void)
 {
     stream_t stream = rolling_stream(2, AT_ZERO);
-    run(&stream, "kf");
+    run(&stream, by_role("{plain}"));
     judged_t during = judge(FAULT_FROM + 200.0, FAULT_TO - 1.0);
     TEST_ASSERT_EQUAL_UINT(0, during.left_out);
     TEST_ASSERT_TRUE(during.worst_deg > 20.0);
@@ -250,7 +251,7 @@ static void test_changes_of_the_choice_are_flagged(void)
         changes += (board.rows[i].flags & ROW_SWITCHED) != 0;
     }
     TEST_ASSERT_TRUE(changes > 10 && changes < board.row_count / 2);
-    run(&stream, "kf");
+    run(&stream, by_role("{plain}"));
     for (size_t i = 0; i < board.row_count; i++) {
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & ROW_SWITCHED);
     }
@@ -265,8 +266,8 @@ static void test_no_choices_are_told_of_a_filter_that_is_leaving(void)
     board_run_ms(100);
     board_type("filter auto");
     board_run_ms(1000);
-    board_type("filter kf");
-    for (int ms = 0; ms < 40 && pipeline.axes[AXES - 1].filter.law != &filter_law_kf; ms++) {
+    board_type(by_role("filter {plain}"));
+    for (int ms = 0; ms < 40 && pipeline.axes[AXES - 1].filter.law != filter_listed(plain_kind()); ms++) {
         board_run_ms(1);
     }
     TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline.axes[0].filter.law);

@@ -272,6 +272,22 @@ static void overshoot_beyond_the_format_is_flagged(void)
     TEST_ASSERT_EQUAL_UINT8(FILTER_SATURATED, flags);
 }
 
+/* With an extrapolation that sees the curvature, which a damp must not make. */
+static void damp_bends_nothing(void)
+{
+    filter_t f;
+    filter_config_t config = filter_defaults(&filter_law_synth, 1000);
+    config.value[SYNTH_A1_Q16] = -19661; /* -0.3 */
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth, &config));
+    filter_reset(&f, 0);
+    for (int16_t k = 1; k <= 400; k++) {
+        (void)filter_update(&f, (int16_t)(k * 3));
+    }
+    int32_t x = coast_only(&f);
+    filter_tracker_damp(&f);
+    TEST_ASSERT_INT32_WITHIN(65536 / 64, 3 * 65536L / 2, coast_only(&f) - x);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -289,5 +305,6 @@ int main(void)
     RUN_TEST(coast_before_any_sample_is_zero);
     RUN_TEST(probe_tells_the_variance);
     RUN_TEST(overshoot_beyond_the_format_is_flagged);
+    RUN_TEST(damp_bends_nothing);
     return UNITY_END();
 }

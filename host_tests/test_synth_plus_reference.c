@@ -134,7 +134,7 @@ static void noise_gain_is_that_of_the_reference(void)
         reference_taps_t taps = taps_of(&config);
         if (reference_plus_radius(&taps) < 0.99) {
             double expected = reference_plus_noise_gain(&taps);
-            double got = filter_synth_plus_noise_gain_uq16(&config) / 65536.0;
+            double got = filter_synth_taps_noise_gain_uq16(&config) / 65536.0;
             TEST_ASSERT_DOUBLE_WITHIN(expected / 512.0, expected, got);
             compared++;
         }
@@ -148,12 +148,12 @@ static void noise_gain_is_that_of_the_reference(void)
         config.value[SYNTH_PLUS_B1_Q16] = (int32_t)lround(65536.0 * alpha * alpha / (2.0 - alpha)) - i;
         double beta = alpha + config.value[SYNTH_PLUS_B1_Q16] / 65536.0;
         double expected = (2.0 * alpha * alpha + beta * (2.0 - 3.0 * alpha)) / (alpha * (4.0 - 2.0 * alpha - beta));
-        TEST_ASSERT_DOUBLE_WITHIN(expected / 512.0, expected, filter_synth_plus_noise_gain_uq16(&config) / 65536.0);
+        TEST_ASSERT_DOUBLE_WITHIN(expected / 512.0, expected, filter_synth_taps_noise_gain_uq16(&config) / 65536.0);
     }
 }
 
 /* The defaults are the steady gains of kf at its defaults, within 0.1 % of alpha and 0.4 % of beta, 25 to 800 Hz. */
-static void defaults_are_the_gains_of_kf(void)
+static void defaults_are_steady_gains(void)
 {
     static const uint16_t rates_dhz[] = { 250, 500, 1000, 2000, 4000, 8000 };
     for (int i = 0; i < 6; i++) {
@@ -290,7 +290,7 @@ int main(void)
     RUN_TEST(poles_on_each_other_have_their_radius);
     RUN_TEST(region_is_exactly_the_stable_one);
     RUN_TEST(noise_gain_is_that_of_the_reference);
-    RUN_TEST(defaults_are_the_gains_of_kf);
+    RUN_TEST(defaults_are_steady_gains);
     RUN_TEST(estimate_equals_the_reference);
     RUN_TEST(start_is_the_least_squares_line);
     RUN_TEST(nearest_rho_costs_little);

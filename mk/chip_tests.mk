@@ -1,7 +1,7 @@
 # The portable part of the unit tests, and the long sequence of filter calls, as images for the ATmega328P.
 
 # the chip's flash holds about nine filters: the tests that go over the list run in two images, which link these
-CHIP_ALL    := $(shell sed -n 's/^    X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter_list.h)
+CHIP_ALL    := $(shell sed -n 's/^    X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter.h)
 # the first and the last three are the largest
 CHIP_SECOND := $(firstword $(CHIP_ALL)) $(wordlist $(words $(wordlist 3,99,$(CHIP_ALL))),99,$(CHIP_ALL))
 CHIP_FIRST  := $(filter-out $(CHIP_SECOND),$(CHIP_ALL))
@@ -55,4 +55,4 @@ $(H)/filter_sequence_2: SEQUENCE_OF = $(call linked_flag,$(CHIP_SECOND))
 $(SEQUENCES): $(SEQUENCE) $(BITEXACT)/output_pc.c $(FILTER_SRC) $(wildcard lib/*/src/*.h host_tests/*.h $(BITEXACT)/*.h) \
               Makefile mk/chip_tests.mk
 	@mkdir -p $(@D)
-	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) $(SANITIZE) $(SEQUENCE_OF) -I$(BITEXACT) $(filter %.c,$^) -o $@
+	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) $(SANITIZE) $(SEQUENCE_OF) -I$(BITEXACT) $(filter %.c,$^) -lm -o $@

@@ -1,6 +1,6 @@
 # The images of the firmware: which filters are in them, and those that tests need besides.
 
-# Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter_list.h; the firmware starts with
+# Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter.h; the firmware starts with
 # the first. The first set is what is built and flashed when nothing is said; together they hold every filter.
 FILTER_SETS          := everyday synthesised soft mixture published auto
 FILTERS_everyday     := adaptive sprf kf

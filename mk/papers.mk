@@ -27,7 +27,7 @@ $(P)/paper003: $(P)/host_tests/papers/paper003.o $(NAV_PAPER)
 
 # paper 002's filters once more, as C++ with integers that count: what does not compile with them is named by the compiler
 OPERATIONS := host_tests/papers/operations
-LISTED     := $(shell sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter_list.h)
+LISTED     := $(shell sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter.h)
 NOT_002    := $(filter-out $(shell python3 tools/laws.py kalman),$(LISTED))
 ONLY_002   := -D'FILTER_LIST(X)=$(foreach f,$(filter-out $(NOT_002),$(LISTED)),X($f))'
 COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(filter-out $(NOT_002:%=lib/filters/src/%.c) $(NOT_002:%=lib/filters/src/%_%.c),$(wildcard lib/filters/src/*.c)))

@@ -22,7 +22,7 @@ def headers(*folders):
 HAL = headers("hal") | {"hal_port.h"}
 FILTERS, TILT, ADXL = headers("lib/filters/src"), headers("lib/tilt/src"), headers("lib/adxl345/src")
 # what of lib/filters is for its laws, tests and proof alone
-INSIDE = {"tracker.h", "kalman.h", "wide.h", "mixture.h", "fx_avr.h", "synth_opt_table.h"}
+INSIDE = {"tracker.h", "kalman.h", "wide.h", "mixture.h", "fx_avr.h"} | {path.name for path in pathlib.Path("lib/filters/src").glob("*_table.h")}
 NAV, NAV_IMAGE = headers("lib/nav/src"), headers("firmware/nav")
 FIRMWARE, SIM = headers("firmware"), headers("sim")
 MODEL = {"adxl345_model.h", "stream.h"}

@@ -24,6 +24,8 @@ OTHER_CODE = re.compile(rf'^[ \t]*""".*?"""|({QUOTED})|(?:^|(?<=\s))#[^\n]*', re
 C_LIKE = {".c", ".h", ".cpp", ".hpp", ".ino", ".js", ".mjs", ".html"}
 # `auto` is a word of these languages too: there it counts in quotes
 HAVE_AUTO = {".cpp", ".hpp", ".html"}
+# and a value of the setting address, of the compiler's and of the plotter's options
+NO_FILTER = re.compile(r'address auto|auto 53 1D|-flto=auto|aspect="auto"')
 
 
 def named(words):
@@ -35,7 +37,7 @@ def named(words):
 def code(path):
     text = path.read_text(encoding="utf-8", errors="replace")
     pattern = C_CODE if path.suffix in C_LIKE else OTHER_CODE
-    text = pattern.sub(lambda found: found.group(1) or " ", text)
+    text = NO_FILTER.sub(" ", pattern.sub(lambda found: found.group(1) or " ", text))
     return re.sub(r"""(?<!["'\w])auto(?!["'\w])""", " ", text) if path.suffix in HAVE_AUTO else text
 
 

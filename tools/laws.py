@@ -8,7 +8,7 @@ import re
 import sys
 from typing import NamedTuple
 
-LIST = pathlib.Path("lib/filters/src/filter_list.h")
+LIST = pathlib.Path("lib/filters/src/filter.h")
 DESCRIPTOR = re.compile(r"^const filter_law_t filter_law_(\w+)(.*?)\};", re.M | re.S)
 LIMITS = re.compile(r"\bbench: worst (\d+) cycles; float / ours ([\d.]+); rms ([\d.]+) LSB")
 
@@ -29,9 +29,9 @@ class Limits(NamedTuple):
 @functools.cache
 def names():
     """The list's, in its order: the first is what the firmware starts with."""
-    found = re.findall(r"X\((\w+)\)", LIST.read_text(encoding="utf-8").split("#define FILTER_LIST(X)")[-1])
+    found = re.findall(r"X\((\w+)\)", LIST.read_text(encoding="utf-8").split("#define FILTER_LAWS(X)")[-1])
     if not found:
-        raise ValueError(f"{LIST}: no X(name) after #define FILTER_LIST(X)")
+        raise ValueError(f"{LIST}: no X(name) after #define FILTER_LAWS(X)")
     return tuple(found)
 
 

@@ -207,9 +207,8 @@ def adaptive_tables(values, grid):
 
 def declared(values):
     """The worst case of each filter's update as its law declares it."""
-    cycles = laws.worst_cycles()
-    for name in ("synth", "synth_opt", "synth_plus", "adaptive", "kf3"):
-        values[f"cycles {name}"] = f"{cycles[name]:,}"
+    for name, worst in laws.worst_cycles().items():
+        values[f"cycles {name}"] = f"{worst:,}"
 
 
 def pictures_of(grid):

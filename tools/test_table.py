@@ -101,7 +101,7 @@ def one(words):
         print(" ".join(sorted(name.removeprefix("test_") for name in tests)))
         return 0
     if not words:
-        sys.exit("t: which test? make t T=sprf (make t T=list lists all names)")
+        sys.exit("t: which test? make t T=filters (make t T=list lists all names)")
     name, *further = words
     test = tests[found(name, tests)]
     if further and len(test.command) == 1:

@@ -17,7 +17,7 @@
 #include "kalman_bounds.h"
 
 /* kalman.c and wide.c have functions of these names. */
-#define correct correct_kf3
+#define correct correct_three
 #define limited limited_kf3
 
 /*@ requires -3 * X_MAX_Q16 <= v_q16 <= 3 * X_MAX_Q16;
@@ -139,7 +139,7 @@ void proof_predict(void)
 }
 
 /* Options: -eva-split-return-function filter_fx_leading:full */
-void proof_correct_kf3(void)
+void proof_correct_three(void)
 {
     filter_t f;
     any_running(&f, &filter_law_kf3, 0);

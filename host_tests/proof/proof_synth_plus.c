@@ -27,11 +27,11 @@ static void narrow_config(filter_config_t *config, uint16_t number)
 }
 
 /* Any coefficients within their ranges, stable or not. */
-void proof_filter_synth_plus_noise_gain_uq16(void)
+void proof_filter_synth_taps_noise_gain_uq16(void)
 {
     filter_config_t config = { 0 };
     any_config(&config, &filter_law_synth_plus, false);
-    (void)filter_synth_plus_noise_gain_uq16(&config);
+    (void)filter_synth_taps_noise_gain_uq16(&config);
 }
 
 /* So many counts are kept apart. Options: -eva-ilevel 64 */

@@ -213,10 +213,25 @@ bool filter_in_range(const filter_parameter_t *parameter, int32_t value);
 /* Why filter_init would refuse this configuration. */
 filter_answer_t filter_judge(const filter_law_t *law, const filter_config_t *config);
 
-/* The laws. What each is, with its parameters, equations and bounds, stands in its own header. */
-extern const filter_law_t filter_law_adaptive, filter_law_kf, filter_law_sprf, filter_law_synth, filter_law_lrf,
-    filter_law_soft, filter_law_sprf_paper, filter_law_shrf, filter_law_pbf, filter_law_af, filter_law_synth_opt,
-    filter_law_synth_plus, filter_law_kf3, filter_law_auto;
+/* The laws, filter_law_NAME. What each is, with its parameters, equations and bounds, stands in its own file. */
+#define FILTER_LAWS(X) \
+    X(adaptive)        \
+    X(kf)              \
+    X(sprf)            \
+    X(synth)           \
+    X(lrf)             \
+    X(soft)            \
+    X(sprf_paper)      \
+    X(shrf)            \
+    X(pbf)             \
+    X(af)              \
+    X(synth_opt)       \
+    X(synth_plus)      \
+    X(kf3)             \
+    X(auto)
+#define FILTER_LAW(F) extern const filter_law_t filter_law_##F;
+FILTER_LAWS(FILTER_LAW)
+#undef FILTER_LAW
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
 /*
- * The laws that a program wants by name: X(name). Adding a law adds a word here; the firmware starts with the first. A
+ * The laws that a program wants by name: X(name), by default all of filter.h; the firmware starts with the first. A
  * build that has no room for all says which it wants: -D'FILTER_LIST(X)=X(kf) X(sprf)'.
  */
 #ifndef FILTER_LIST_H
@@ -12,21 +12,7 @@ extern "C" {
 #endif
 
 #ifndef FILTER_LIST
-#define FILTER_LIST(X) \
-    X(adaptive)        \
-    X(kf)              \
-    X(sprf)            \
-    X(synth)           \
-    X(lrf)             \
-    X(soft)            \
-    X(sprf_paper)      \
-    X(shrf)            \
-    X(pbf)             \
-    X(af)              \
-    X(synth_opt)       \
-    X(synth_plus)      \
-    X(kf3)             \
-    X(auto)
+#define FILTER_LIST(X) FILTER_LAWS(X)
 #endif
 
 /* Those that are linked: fewer where a program over the whole list has no room for all (tests on the chip). */

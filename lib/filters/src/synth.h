@@ -57,7 +57,7 @@ void filter_synth_damp(filter_t *f);
 
 /* Noise gains in the steady state, see synth.c and synth_plus.c; for the tools too. Divide. */
 uint32_t filter_synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16);
-uint32_t filter_synth_plus_noise_gain_uq16(const filter_config_t *config);
+uint32_t filter_synth_taps_noise_gain_uq16(const filter_config_t *config);
 
 /* Variance R x noise_gain, saturated. Divides. */
 uint32_t filter_synth_variance_lsb2_q8(const filter_t *f, uint32_t noise_gain_uq16);

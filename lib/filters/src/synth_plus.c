@@ -250,7 +250,7 @@ static int32_t q25(int32_t v_q16)
  *
  * In Q25: |N| < 46 for any coefficients of the format.
  */
-uint32_t filter_synth_plus_noise_gain_uq16(const filter_config_t *config)
+uint32_t filter_synth_taps_noise_gain_uq16(const filter_config_t *config)
 {
     int32_t b0 = config->value[SYNTH_PLUS_B0_UQ16];
     int32_t b1 = config->value[SYNTH_PLUS_B1_Q16];
@@ -284,7 +284,7 @@ static void report(const filter_t *f, filter_probe_t *out)
                                                                  : (int32_t)s->of.plus.b1_uq16;
         config.value[SYNTH_PLUS_B2_Q16] = s->of.plus.b2_negative ? -(int32_t)s->of.plus.b2_uq16
                                                                  : (int32_t)s->of.plus.b2_uq16;
-        out->p_lsb2_q8 = filter_synth_variance_lsb2_q8(f, filter_synth_plus_noise_gain_uq16(&config));
+        out->p_lsb2_q8 = filter_synth_variance_lsb2_q8(f, filter_synth_taps_noise_gain_uq16(&config));
     }
 }
 
