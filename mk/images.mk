@@ -3,9 +3,9 @@
 # Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter.h; the firmware starts with
 # the first. The first set is what is built and flashed when nothing is said; together they hold every filter.
 FILTER_SETS          := everyday synthesised soft mixture published auto
-FILTERS_everyday     := adaptive sprf kf
+FILTERS_everyday     := adaptive sprf synth
 FILTERS_synthesised  := synth synth_opt synth_plus
-FILTERS_soft         := soft lrf
+FILTERS_soft         := soft lrf kf
 FILTERS_mixture      := shrf pbf af
 FILTERS_published    := sprf_paper kf3
 FILTERS_auto         := auto
