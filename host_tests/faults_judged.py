@@ -19,7 +19,7 @@ import faults_kinds
 import faults_runs
 import soak
 from system_support import FW, OUT, test
-from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
+from laws import DEFAULT, LIGHT, ROBUST  # noqa: E402
 
 PATIENCE_S = 300  # only reached when something is broken, however busy the machine
 ALL = {kind.name: kind for kind in faults_kinds.KINDS + faults_kinds.LONG + faults_kinds.rated() + faults_kinds.TYPED + faults_commands.KINDS}
@@ -36,7 +36,7 @@ def result(*names, **said):
     """Of a run in which all went well but what is said."""
     kinds = tuple(ALL[name] for name in names)
     due = sum(kind.resets for kind in kinds)
-    good = {"when": "1000ms", "filter_name": PLAIN, "hang": "", "injected": True, "recovered": True, "ms_to_good": 20.0, "lost": 0,
+    good = {"when": "1000ms", "filter_name": LIGHT, "hang": "", "injected": True, "recovered": True, "ms_to_good": 20.0, "lost": 0,
             "wrong": 0, "steps_back": 0, "altered": 0, "resets": due, "resets_due": due, "pass_cycles": 64000, "waits": (),
             "calm_gap_ms": 10.1, "since_good_ms": 9.9, "command": ""}
     return faults_judge.Result(kinds, **(good | said))
@@ -183,12 +183,12 @@ def a_campaign_that_is_ended_tells_what_it_has_seen():
             until(lambda: signal.getsignal(signal.SIGTERM) == signal.SIG_IGN)  # which is how the campaign takes it
         return result("sda", when=whens[0], wrong=int(number == 1001), command=f"--fault {number}")
 
-    runs = [((faults_kinds.OF["sda"],), (f"{1000 + n}ms",), PLAIN) for n in range(40)]
+    runs = [((faults_kinds.OF["sda"],), (f"{1000 + n}ms",), LIGHT) for n in range(40)]
     with mock.patch.object(faults, "carried_out", watched):
         status, said = told_by(runs, attempt)
     lines = said.splitlines()
     assert status == 1 and lines[-1] == "2 passed, 1 failed" and "faults: ended by a signal after 3 of 40 runs" in lines, said
-    assert f"    1001ms {PLAIN}: 1 wrong rows    [--fault 1001]" in lines, said
+    assert f"    1001ms {LIGHT}: 1 wrong rows    [--fault 1001]" in lines, said
 
 
 @test
@@ -196,9 +196,9 @@ def what_a_whole_campaign_lacks_is_a_failure():
     def attempt(firmware, name, kinds, whens, profile):
         return result(*(kind.name for kind in kinds), when=whens[0], injected=whens[0] != "1001ms")
 
-    runs = [((kind,), (f"{1000 + n}ms",), PLAIN) for kind in faults_kinds.KINDS for n in range(50)]
-    runs += [((kind,), (f"{1010 + n}ms",), PLAIN) for kind in faults_kinds.LONG for n in range(8)]
-    runs += [(pair, (f"{1000 + n}ms",) * 2, PLAIN) for pair in faults.itertools.combinations(faults_kinds.KINDS, 2) for n in (0, 2, 3, 4, 5)]
+    runs = [((kind,), (f"{1000 + n}ms",), LIGHT) for kind in faults_kinds.KINDS for n in range(50)]
+    runs += [((kind,), (f"{1010 + n}ms",), LIGHT) for kind in faults_kinds.LONG for n in range(8)]
+    runs += [(pair, (f"{1000 + n}ms",) * 2, LIGHT) for pair in faults.itertools.combinations(faults_kinds.KINDS, 2) for n in (0, 2, 3, 4, 5)]
     runs += [((kind,), (f"{1002 + n}ms",), DEFAULT) for kind in faults_commands.KINDS for n in range(5 if kind.name == "command stop: scl" else 6)]
     kept, faults.lines_that_ran = faults.lines_that_ran, lambda options, profile: {"fault": "lines", "good": True}
     try:

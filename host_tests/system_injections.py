@@ -4,7 +4,7 @@ import json
 import statistics
 
 from system_support import FW, OUT, SIMRUN, STREAMS, image_with, run, simrun, test, triplets
-from laws import PLAIN  # noqa: E402
+from laws import LIGHT  # noqa: E402
 
 REST = STREAMS / "rest-2lsb.csv"
 LENGTH_MS = 12000
@@ -15,7 +15,7 @@ def injected(name, *faults, judge=False, max_ms=LENGTH_MS, options=()):
     """A run with faults and the filter that gates nothing, so that no flag 1 hides a row from the judge."""
     arguments = [word for fault in faults for word in ("--fault", fault)]
     arguments += ["--altered", OUT / f"inject-{name}.altered.csv"]
-    return simrun(f"inject-{name}", REST, "--filter", PLAIN, "--max-ms", max_ms, *arguments, *options, judge=judge)
+    return simrun(f"inject-{name}", REST, "--filter", LIGHT, "--max-ms", max_ms, *arguments, *options, judge=judge)
 
 
 def altered_at(name):
@@ -109,7 +109,7 @@ def doubled_axis_stops_at_the_rails():
     path = OUT / "rails.csv"
     lines = [f"{i * 10000},{-240 - i % 60},0,{240 + i % 60}\n" for i in range(200)]
     path.write_text("t_us,x,y,z\n" + "".join(lines), encoding="ascii")
-    rows, _, served, _ = simrun("inject-rails", path, "--filter", PLAIN, "--range", "2", "--fault", "p:1:double:x", "--fault", "p:1:double:z",
+    rows, _, served, _ = simrun("inject-rails", path, "--filter", LIGHT, "--range", "2", "--fault", "p:1:double:x", "--fault", "p:1:double:z",
                                 judge=False)
     late = [(row, lsb) for row, lsb in zip(rows, triplets(served)) if row[0] > 200000]
     assert len(late) > 100 and all(row[1:4:2] == [max(2 * x, -512), min(2 * z, 511)] for row, (x, _, z) in late), late[:5]
@@ -214,7 +214,7 @@ def judge_ends_the_run_with_its_status_and_names_the_first_row():
     number, row = wrong[0]
     words = f"1 wrong, 0 stale, 0 twice; 0 steps back in time; first row {number}: t_us {row[0]}, readings {row[1]},{row[2]},{row[3]}, "
     assert words in stats["stderr"]
-    command = [SIMRUN, "--fw", image_with(PLAIN), "--in", REST, "--out", OUT / "judged.csv", "--filter", PLAIN, "--max-ms", "1500", "--judge"]
+    command = [SIMRUN, "--fw", image_with(LIGHT), "--in", REST, "--out", OUT / "judged.csv", "--filter", LIGHT, "--max-ms", "1500", "--judge"]
     assert f"status 10: {stats['rows_judged']} rows judged: {words}" in run(*command, "--fault", IN_Y, expect=10).stderr
     run(*command)
     # a clock that is said to begin elsewhere makes every stamp one second early

@@ -3,7 +3,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, "tools")
-from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
+from laws import DEFAULT, LIGHT, ROBUST  # noqa: E402
 import latency  # noqa: E402
 from system_support import SET_IMAGES, STREAMS, TESTS, image_with, simrun, test, within  # noqa: E402
 
@@ -88,11 +88,11 @@ def a_row_waits_for_one_axis_of_a_change_of_filter():
     """10 ms and what a line may take are 18, as in the fault campaign; all three axes ahead of one sample would make it 24 to 29."""
     for phase in range(10):
         name = f"change-{phase}"
-        _, notes, _, stats = simrun(name, STREAMS / "rest-2lsb.csv", "--filter", ROBUST, "--max-ms", 2000, "--cmd", f"{980 + phase}:filter {PLAIN}",
+        _, notes, _, stats = simrun(name, STREAMS / "rest-2lsb.csv", "--filter", ROBUST, "--max-ms", 2000, "--cmd", f"{980 + phase}:filter {LIGHT}",
                                     "--cmd", f"{1480 + phase}:filter {ROBUST}", "--fault", "800ms:nack",  # the gap is that behind it
                                     fw=image_with(ROBUST), judge=False)
         assert stats["rows_wrong"] == stats["lost"] == 0 and stats["rows_calm_gap_ms"] > 10, stats
-        assert f"# filter {PLAIN}" in notes and f"# filter {ROBUST}" in notes, notes
+        assert f"# filter {LIGHT}" in notes and f"# filter {ROBUST}" in notes, notes
         within(f"{name}: ms from row to row", stats["rows_calm_gap_ms"], 18)
 
 

@@ -134,7 +134,7 @@ def make_change_test(command, fw=FW):
     return check
 
 
-TESTS.append(make_change_test(f"filter {PLAIN}", image_with(ROBUST)))
+TESTS.append(make_change_test(f"filter {LIGHT}", image_with(ROBUST)))
 for typed in ("rate 50", "range 8"):
     TESTS.append(make_change_test(typed))
 

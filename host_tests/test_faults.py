@@ -7,7 +7,7 @@ import re
 import sys
 
 sys.path.insert(0, "tools")
-from laws import DEFAULT, PLAIN  # noqa: E402
+from laws import DEFAULT, LIGHT  # noqa: E402
 import faults  # noqa: E402
 import faults_kinds  # noqa: E402
 import faults_runs  # noqa: E402
@@ -115,7 +115,7 @@ def lines_that_no_run_reached_are_missed():
 
 @test
 def phases_are_every_byte_every_stage_and_the_whole_period():
-    whens = faults_runs.phases(FW, faults_kinds.OF["arb"], PLAIN, 50)
+    whens = faults_runs.phases(FW, faults_kinds.OF["arb"], LIGHT, 50)
     bytes_of = [tuple(map(int, w[5:].split("."))) for w in whens if w.startswith("xfer:")]
     assert len(set(whens)) == len(whens) >= 50, len(whens)
     assert len({transfer for transfer, _ in bytes_of}) == 1 and [byte for _, byte in bytes_of] == list(range(1, len(bytes_of) + 1)), bytes_of
@@ -128,14 +128,14 @@ def phases_are_every_byte_every_stage_and_the_whole_period():
 
 @test
 def every_fault_of_a_plan_comes_and_a_run_is_judged_by_the_model():
-    whens = faults_runs.phases(FW, faults_kinds.OF["flip 1"], PLAIN, 50)
+    whens = faults_runs.phases(FW, faults_kinds.OF["flip 1"], LIGHT, 50)
     for when in (whens[5], next(w for w in whens if w.startswith("pc:__vector_1#")), whens[-1]):
-        done = faults_runs.attempt(FW, PLAIN, (faults_kinds.OF["flip 1"],), (when,))
+        done = faults_runs.attempt(FW, LIGHT, (faults_kinds.OF["flip 1"],), (when,))
         assert done.injected and done.recovered and not done.failures() and done.lost == 0, done
     # the byte of x: it is altered, so the judge that looks at the model alone finds the row wrong
-    done = faults_runs.attempt(FW, PLAIN, (faults_kinds.OF["flip 1"],), (whens[5],))
+    done = faults_runs.attempt(FW, LIGHT, (faults_kinds.OF["flip 1"],), (whens[5],))
     assert done.wrong == done.altered == 1, done
-    done = faults_runs.attempt(FW, PLAIN, (faults_kinds.OF["reset"],), ("1000ms",))
+    done = faults_runs.attempt(FW, LIGHT, (faults_kinds.OF["reset"],), ("1000ms",))
     assert done.recovered and done.resets == done.resets_due == 1 and 20 < done.ms_to_good < 600, done
 
 
@@ -160,7 +160,7 @@ def every_kind_that_simrun_has_is_in_the_campaign():
 
 @test
 def a_sample_takes_all_kinds_alike():
-    runs = [((kind,), (f"{n}ms",), PLAIN) for kind in "abcde" for n in range(40)]
+    runs = [((kind,), (f"{n}ms",), LIGHT) for kind in "abcde" for n in range(40)]
     chosen = faults.take(random.Random(1), runs, 20)
     assert len(chosen) == 20 and all(sum(run[0] == (kind,) for run in chosen) == 4 for kind in "abcde"), chosen
     assert len({run[1] for run in chosen}) > 10 and len(faults.take(random.Random(1), runs, 500)) == 200

@@ -85,7 +85,7 @@ TYPED = [
     typed("typed: spoilt bytes", ("rxspoil:0", "@50 rxspoil:1", "@100 rxspoil:0"), "help", "status", "rate", "every 1", said_ms=110),
     typed("typed: stop", "power:50", "stop", "status", "go", "stop", "go", "stop", "stop", "range 2", "go", every_ms=11),
     typed("typed: plot", "sda:60", "mode plot", "status", "mode csv", every_ms=400, filter_name=ROBUST),
-    typed(f"typed: {PLAIN}", "frozen:200", f"filter {PLAIN}", f"filter {ROBUST}", every_ms=300, filter_name=ROBUST),
+    typed(f"typed: {LIGHT}", "frozen:200", f"filter {LIGHT}", f"filter {ROBUST}", every_ms=300, filter_name=ROBUST),
     typed("typed: what is settled", "noint:300", "settings", "offset 10 -10 3.5", "scale 260 260 250", "level 0 0.1 0.99", "axes -yxz", "address 53",
           "settings", "offset 99 0 0", "scale 1 1 1", "level 9 9 9", "axes xxy", "address 12", "offset 1", "save", "status", "defaults", "settings",
           every_ms=120, more_ms=1000, said_ms=110),  # the settings are 1.1 kB
