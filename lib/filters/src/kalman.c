@@ -142,7 +142,7 @@ FX_INLINE void correct(filter_t *f)
     uint32_t w2_uq28 = fx_mul_uq16(p12, g);
     k->p.p12 = w2_uq28;
     uint32_t w2_uq24 = fx_sixteenth(w2_uq28); /* < 1 because P12 <= P11 after a prediction */
-    int32_t p22_q28 = (int32_t)k->p.p22 - (int32_t)fx_mul_uq24(p12, w2_uq24); /* < 3 less < 4: fits */
+    int32_t p22_q28 = (int32_t)k->p.p22 - (int32_t)fx_mul24_uq24(p12 >> 8, w2_uq24); /* < 3 less < 4: fits */
     k->p.p22 = (p22_q28 < 0) ? 0U : (uint32_t)p22_q28;
     tracker_turn(f, (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, w2_uq24));
 }
