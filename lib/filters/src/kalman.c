@@ -113,18 +113,20 @@ FX_INLINE void grow(filter_kalman_t *k)
     }
 }
 
-/* Innovations of more than 16 bits lie outside any limit. */
+/* Sixteen bits of S and of u do: what does not fit in them lies outside any limit. */
 FX_NOINLINE bool within_gate(filter_t *f)
 {
     filter_kalman_t *k = &f->own.kalman;
-    uint32_t size_lsb_uq8 = f->size_lsb_uq16 >> 8;
-    if (k->coarse) {
-        size_lsb_uq8 = fx_sixteenth(size_lsb_uq8 & ~(uint32_t)15U); /* >> 4, which would be a loop on AVR */
+    uint16_t s_uq12 = (uint16_t)((k->p.p11 + KALMAN_ONE_UQ28) >> 16); /* < 9 */
+    uint32_t limit_lsb2 = fx_mul_u16(s_uq12, k->gate_lsb2_uq4);
+    k->limit_lsb2 = limit_lsb2;
+    uint32_t size_lsb_uq16 = f->size_lsb_uq16;
+    if (k->coarse) { /* UQ24.8: whole LSB do */
+        limit_lsb2 >>= 8;
+        size_lsb_uq16 >>= 8;
     }
-    /* UQ4.28 x UQ12.4 >> 16 = UQ16.16, < 9 x 4096; coarse: UQ24.8 */
-    k->limit_lsb2 = fx_mul_uq16(k->p.p11 + KALMAN_ONE_UQ28, k->gate_lsb2_uq4);
-    uint16_t size = (uint16_t)size_lsb_uq8;
-    return (uint8_t)(size_lsb_uq8 >> 16) == 0U && fx_mul_u16(size, size) <= k->limit_lsb2;
+    uint16_t size = (uint16_t)(size_lsb_uq16 >> 8);
+    return (uint8_t)(size_lsb_uq16 >> 24) == 0U && fx_mul_u16(size, size) <= limit_lsb2;
 }
 
 /* Gains, x, rate and P. */
@@ -140,7 +142,7 @@ FX_INLINE void correct(filter_t *f)
     uint32_t w2_uq28 = fx_mul_uq16(p12, g);
     k->p.p12 = w2_uq28;
     uint32_t w2_uq24 = fx_sixteenth(w2_uq28); /* < 1 because P12 <= P11 after a prediction */
-    int32_t p22_q28 = (int32_t)k->p.p22 - (int32_t)fx_mul_uq24(p12, w2_uq24); /* < 3 less < 4: fits */
+    int32_t p22_q28 = (int32_t)k->p.p22 - (int32_t)fx_mul24_uq24(p12 >> 8, w2_uq24); /* < 3 less < 4: fits */
     k->p.p22 = (p22_q28 < 0) ? 0U : (uint32_t)p22_q28;
     tracker_turn(f, (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, w2_uq24));
 }

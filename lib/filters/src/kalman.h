@@ -17,10 +17,12 @@
  *
  * Scaling:
  *   P / R    UQ4.28; P12 <= P11 after a prediction, so w2 < 1
- *   g, w1    UQ0.16 within 1.5 counts of 1/S; w2 UQ0.24; q22 and P22 rounded to 2^-28 per step
+ *   g, w1    UQ0.16 within 1.5 counts of 1/S; w2 UQ0.24; q22 and P22 rounded to 2^-28 per step, of which w2 P12 with
+ *            P12 rounded down to 2^-20
  *   u        rounded down to 2^-8 LSB in magnitude; x and rate steps rounded half away from zero to 2^-16: an estimate
  *            within 1/256 LSB of a constant input stays where it is
- *   gate     limit of u^2: gate^2 R rounded to 1/16 LSB^2 (16 LSB^2 from 4096 on): 1 % at gate^2 R = 3
+ *   gate     limit of u^2: gate^2 R rounded to 1/16 LSB^2 (16 LSB^2 from 4096 on, with u in whole LSB): 1 % at gate^2 R =
+ *            3; times S rounded down to 2^-12
  */
 #ifndef KALMAN_H
 #define KALMAN_H
