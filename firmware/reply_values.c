@@ -32,11 +32,13 @@ said_t said;
 /* value / 100, with both decimals. */
 static void say_hundredths(uint32_t value)
 {
-    uint8_t cents = (uint8_t)(value % 100u);
     text_u32(value / 100u);
     text_char('.');
-    text_char((char)('0' + cents / 10u));
-    text_char((char)('0' + cents % 10u));
+    uint8_t cents = (uint8_t)(value % 100u);
+    if (cents < 10u) {
+        text_char('0');
+    }
+    text_u32(cents);
 }
 
 /* The counters of the firmware, then those of the driver. */
