@@ -50,11 +50,8 @@ void filter_kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8)
 void filter_kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8)
 {
     filter_kalman_t *k = &f->own.kalman;
-    fx_scaled_t gate_sigma = filter_fx_scaled(gate_sigma_q8);
-    fx_scaled_t gate = filter_fx_scaled_mul(filter_fx_scaled_mul(gate_sigma, gate_sigma),
-                                            filter_fx_scaled(k->r_lsb2_q8));
-    gate.exponent = (int8_t)(gate.exponent - 24); /* Q8 three times */
-    uint32_t gate_uq4 = filter_fx_scaled_fixed(gate, 4);
+    /* gate^2 R; from UQ12.20 the two products in Q8 lead to UQ.4 */
+    uint32_t gate_uq4 = filter_fx_times_uq16(filter_fx_times_uq16(k->r_lsb2_q8 << 12, gate_sigma_q8), gate_sigma_q8);
     k->coarse = gate_uq4 > 0xFFFFU;
     if (k->coarse) {
         gate_uq4 >>= 8;
@@ -171,16 +168,14 @@ FX_NOINLINE void restart(filter_t *f, int16_t z_lsb)
     f->rate_lsb = 0;
     if (!f->broken) {
         int32_t slope = (int32_t)(z_lsb - k->first_lsb) * 65536; /* over one sample */
-        uint16_t p12_uq12 = 0x1000;
-        uint16_t p22_uq12 = 0x2000;
+        uint16_t share_uq12 = 0x1000;                            /* 1 / (L - 1) in the end */
         for (uint8_t steps = k->steps; steps > 1U; steps >>= 1) {
             slope >>= 1;
-            p12_uq12 >>= 1;
-            p22_uq12 >>= 2;
+            share_uq12 >>= 1;
         }
         f->rate_lsb = fx_clamp(slope, (int32_t)f->rate_max_lsb);
-        k->p.p12 = (uint32_t)p12_uq12 << 16;
-        k->p.p22 = ((uint32_t)p22_uq12 << 16) + k->q22_uq28;
+        k->p.p12 = (uint32_t)share_uq12 << 16;
+        k->p.p22 = 32U * fx_product_u16(share_uq12, share_uq12) + k->q22_uq28;
     }
     filter_tracker_nothing(f);
     f->flags = FILTER_REACQUIRED;
