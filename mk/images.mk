@@ -5,7 +5,7 @@
 FILTER_SETS          := everyday synthesised soft mixture published auto
 FILTERS_everyday     := adaptive sprf kf
 FILTERS_synthesised  := synth synth_opt synth_plus
-FILTERS_soft         := soft lrf huber
+FILTERS_soft         := soft lrf
 FILTERS_mixture      := shrf pbf af
 FILTERS_published    := sprf_paper kf3
 FILTERS_auto         := auto

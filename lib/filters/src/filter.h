@@ -109,7 +109,6 @@ enum filter_soft_parameter {
     SOFT_REACQUIRE_SAMPLES,
     SOFT_RATE_MAX_LSB_S
 };
-enum filter_huber_parameter { HUBER_R_LSB2_Q8, HUBER_Q_LSB2_S3, HUBER_SIGMA_Q8, HUBER_RATE_MAX_LSB_S };
 enum filter_sprf_paper_parameter { SPRF_PAPER_R_LSB2_Q8, SPRF_PAPER_Q_LSB2_S3, SPRF_PAPER_GATE_SIGMA_Q8 };
 enum filter_mixture_parameter {
     MIXTURE_R_LSB2_Q8,
@@ -222,7 +221,6 @@ filter_answer_t filter_judge(const filter_law_t *law, const filter_config_t *con
     X(shrf)            \
     X(pbf)             \
     X(af)              \
-    X(huber)           \
     X(synth_opt)       \
     X(synth_plus)      \
     X(kf3)             \
