@@ -87,6 +87,11 @@ static void forget(void)
     app.changes = 0;
 }
 
+static void open_line(void)
+{
+    hal_uart_init(settings.baud);
+}
+
 static void start_pipeline(void)
 {
     pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
@@ -113,7 +118,7 @@ void app_start(void)
         settings_follow();
     }
     pipeline_calibrate(&settings.calibration);
-    hal_uart_init(settings.baud);
+    open_line();
     health_pause_filtering(APP_HOLD_PASSES);
     hal_drdy_enable(); /* last, so that an edge does not wait for the settings */
     hal_irq_enable();
@@ -266,7 +271,7 @@ static bool stage_piece(void)
         if (!replies_empty() || !hal_uart_tx_idle()) {
             return false;
         }
-        hal_uart_init(settings.baud);
+        open_line();
         break;
     default:
         return filter_samples();

@@ -342,7 +342,10 @@ static void probe_tells_the_variance(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.02, r.x[2] * unit_of(&f), f.own.kf3.acceleration_q16 / 65536.0 * unit_of(&f));
 }
 
-/* The sums of its rule in support_envelope.h, from the gains that its recursion settles at; per doubling of q33, and its time constant. */
+/*
+ * The sums of its rule in support_envelope.h, from the gains that its recursion settles at; per doubling of q33, and
+ * its time constant.
+ */
 static void kf3_sums_are_as_stated(void)
 {
     double worst = 0.0;

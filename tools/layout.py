@@ -16,7 +16,7 @@ import sys
 BUILT, OUT = pathlib.Path("build/uno/firmware"), pathlib.Path("hal/avr/uno.ld")
 REACH = 4094  # bytes, from behind a short call
 MOVES = 400_000
-WARM = 2.0  # long calls that a move may cost at first
+WARM = 1.0  # long calls that a move may cost at first
 
 
 def unit_of(section):
