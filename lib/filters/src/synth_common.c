@@ -43,11 +43,9 @@ void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what)
     int32_t before = f->x_lsb_q16;
     int32_t x = tracker_bounded(f, before + f->rate_lsb);
     if (what != STEP_MISSING) {
-        int32_t innovation = (int32_t)z_lsb * 65536 - x;
-        uint32_t size = fx_abs32(innovation);
-        f->negative = innovation < 0;
-        f->size_lsb_uq16 = size;
-        int32_t step = (int32_t)filter_fx_times_uq16(size, f->gain_uq16);
+        f->x_lsb_q16 = x;
+        tracker_meet(f, z_lsb);
+        int32_t step = (int32_t)filter_fx_times_uq16(f->size_lsb_uq16, f->gain_uq16);
         x = f->negative ? x - step : x + step;
     }
     f->x_lsb_q16 = x;
