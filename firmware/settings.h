@@ -51,7 +51,7 @@ typedef struct {
  * At 800 Hz the two leave 1,500 cycles, 500 for each axis, to a filter of which every row goes out: synth's 500.
  */
 #define SETTINGS_REST_CYCLES 8300u
-#define SETTINGS_ROW_CYCLES 10400u
+#define SETTINGS_ROW_CYCLES 10500u
 
 extern settings_t settings;
 

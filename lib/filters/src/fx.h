@@ -85,8 +85,8 @@ static inline const void *fx_flash_pointer(const void *p)
 #define FX_FLASH_FUNCTION(place) (*(place))
 #endif
 
-/* |v|; INT32_MIN gives 2^31. A call, because in line it takes 24 bytes of an 8-bit machine. */
-static __attribute__((noinline, unused)) uint32_t fx_abs32(int32_t v)
+/* |v|; INT32_MIN gives 2^31. */
+static inline uint32_t fx_abs32(int32_t v)
 {
     return (v < 0) ? 0U - (uint32_t)v : (uint32_t)v;
 }

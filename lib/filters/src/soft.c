@@ -221,7 +221,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 const filter_law_t filter_law_soft FX_FLASH = { .name = "soft",
                                                 .parameter_count = 6,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                                .worst_cycles = 1400,
+                                                .worst_cycles = 1350,
                                                 .parameters = parameters,
                                                 .together = together,
                                                 .set_up = set_up,

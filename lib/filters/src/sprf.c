@@ -67,7 +67,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 const filter_law_t filter_law_sprf FX_FLASH = { .name = "sprf",
                                                 .parameter_count = 5,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                                .worst_cycles = 1060,
+                                                .worst_cycles = 1000,
                                                 .parameters = parameters,
                                                 .together = together,
                                                 .set_up = set_up,

@@ -45,7 +45,7 @@ void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what)
     if (what != STEP_MISSING) {
         f->x_lsb_q16 = x;
         tracker_meet(f, z_lsb);
-        int32_t step = (int32_t)filter_fx_times_uq16(f->size_lsb_uq16, f->gain_uq16);
+        int32_t step = (int32_t)fx_mul_uq16(f->size_lsb_uq16, f->gain_uq16);
         x = f->negative ? x - step : x + step;
     }
     f->x_lsb_q16 = x;
