@@ -41,7 +41,8 @@ AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -fshort-en
 AVR_DEBUG   := -gdwarf-2 -g1
 AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr $(FILTER_FLAG)
-# calls of functions that lie within 4 KB take half the bytes: uno.ld has them in an order that makes most of them so (tools/layout.py)
+# calls of functions that lie within 4 KB take half the bytes: functions.ld has an order that makes most of them so (tools/layout.py)
+UNO_LD      := hal/avr/uno.ld hal/avr/functions.ld
 AVR_LINK    := -mmcu=atmega328p $(AVR_DEBUG) $(AVR_SMALL) -ffunction-sections -Wl,--gc-sections -Wl,-T,hal/avr/uno.ld
 AVR_SRC     := $(APP_SRC) $(LIB_SRC) $(wildcard hal/avr/*.c)
 AVR_OBJ     := $(AVR_SRC:%.c=$(U)/%.o)

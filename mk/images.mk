@@ -31,7 +31,7 @@ $(U)/%.o: %.c Makefile mk/images.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
 
-$(U)/firmware.elf: $(AVR_OBJ) hal/avr/uno.ld
+$(U)/firmware.elf: $(AVR_OBJ) $(UNO_LD)
 	@$(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $(AVR_OBJ) -o $@
 	@echo "built $@"
 
@@ -45,7 +45,7 @@ $(U)/$(1)/%.o: %.c Makefile mk/images.mk
 $(U)/$(1)/filters.txt: Makefile mk/images.mk
 	@sh tools/filters_txt.sh $$@ $$(IMAGE_FILTERS)
 
-$(U)/$(1)/firmware.elf: $(AVR_SRC:%.c=$(U)/$(1)/%.o) hal/avr/uno.ld | $(U)/$(1)/filters.txt
+$(U)/$(1)/firmware.elf: $(AVR_SRC:%.c=$(U)/$(1)/%.o) $(UNO_LD) | $(U)/$(1)/filters.txt
 	@$$(AVR_CC) $$(AVR_LINK) $$(filter %.o,$$^) -o $$@
 endef
 
@@ -67,7 +67,7 @@ $(U)/plain/%.o: %.c Makefile mk/images.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
 
-$(U)/plain/firmware.elf: $(PLAIN_OBJ) hal/avr/uno.ld
+$(U)/plain/firmware.elf: $(PLAIN_OBJ) $(UNO_LD)
 	@$(AVR_CC) $(AVR_LINK) $(PLAIN_OBJ) -o $@
 
 SET_IMAGES      := $(U)/firmware.elf $(patsubst %,$(U)/%/firmware.elf,$(filter-out everyday,$(FILTER_SETS)))

@@ -17,7 +17,7 @@ PLACES = ["Makefile", "platformio.ini", "mk", "tools", "checks", "campaigns", "s
 NO_CODE = {".md", ".csv", ".png", ".svg", ".json", ".hex", ".pyc"}
 DATA = "host_tests/fuzz/corpus"
 WRITTEN = {"lib/filters/keywords.txt",  # by host_tests/arduino_rules.py, of the headers
-           "hal/avr/uno.ld"}            # by tools/layout.py, of the image
+           "hal/avr/functions.ld"}      # by tools/layout.py, of the image
 QUOTED = r'"(?:\\.|[^"\\\n])*"' + r"|'(?:\\.|[^'\\\n])*'"
 # what is no comment stands in the group
 C_CODE = re.compile(rf"({QUOTED})|/\*.*?\*/|//[^\n]*", re.S)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""layout.py: the order of the functions in the UNO's flash, of build/uno/firmware.elf and .map, into hal/avr/uno.ld.
+"""layout.py: the order of the functions in the UNO's flash, of build/uno/firmware.elf and .map, into hal/avr/functions.ld.
 
 A call or jump within 4 KB takes two bytes, a further one four, and the compiler's order leaves two thirds of them far. Here the functions are
-moved about (annealing with a fixed seed) until few calls are. hal/avr/uno.ld is the linker's own script for this chip with that order in it;
-functions that it does not name follow behind the others, so it need not be written anew for each change: do it when bytes are short.
+moved about (annealing with a fixed seed) until few calls are. hal/avr/uno.ld takes them in that order; functions that are not in it follow
+behind the others, so it need not be written anew for each change: do it when bytes are short.
 """
 import bisect
 import math
@@ -13,7 +13,7 @@ import re
 import subprocess
 import sys
 
-BUILT, OUT = pathlib.Path("build/uno/firmware"), pathlib.Path("hal/avr/uno.ld")
+BUILT, OUT = pathlib.Path("build/uno/firmware"), pathlib.Path("hal/avr/functions.ld")
 REACH = 4094  # bytes, from behind a short call
 MOVES = 400_000
 WARM = 1.0  # long calls that a move may cost at first
@@ -95,21 +95,12 @@ def anneal(order, sizes, edges):
     return best_order, best
 
 
-def script(order):
-    """The default script with the functions in order before all others."""
-    own = subprocess.run(["avr-ld", "-mavr5", "--verbose"], capture_output=True, text=True, check=True).stdout
-    own = own.split("=" * 50 + "\n")[1]
-    functions = "".join(f"     *({name} {name}.*)\n" for name in order)
-    assert own.count("    *(.text)\n") == 1
-    own = own.replace("    *(.text)\n", f"    /* in the order of tools/layout.py */\n{functions}    *(.text)\n")
-    return f"/* Written by tools/layout.py: the default script of avr-ld, and in .text the functions so that most calls are short. */\n{own}"
-
-
 def main():
     names, sizes, edges = graph(BUILT.with_suffix(".elf"), BUILT.with_suffix(".map"))
     before = long_calls(range(len(names)), sizes, edges)
     order, after = anneal(list(range(len(names))), sizes, edges)
-    OUT.write_text(script([names[unit] for unit in order]), encoding="utf-8")
+    lines = [f"*({names[unit]} {names[unit]}.*)" for unit in order]
+    OUT.write_text("\n".join(["/* Written by tools/layout.py: functions in an order that makes most calls short. */", *lines, ""]), encoding="ascii")
     print(f"{OUT}: {len(names)} functions, {len(edges)} calls between them, {after} of them far, before {before}")
 
 
