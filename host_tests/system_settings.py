@@ -4,7 +4,7 @@ import math
 import random
 
 from system_support import FW, OUT, STREAMS, TESTS, assert_nothing_lost, image_with, simrun, test, within
-from laws import DEFAULT, LIGHT, ROBUST  # noqa: E402
+from laws import DEFAULT, LIGHT, PLAIN, ROBUST  # noqa: E402
 
 REST = STREAMS / "rest-2lsb.csv"
 LEFT = ("ff", "old", "new", "random")
@@ -196,7 +196,7 @@ def saved_settings_of_another_image_lose_only_the_filter():
     image = OUT / "settings-other.bin"
     image.unlink(missing_ok=True)
     lines = [line for line in SETS[1] if "guard" not in line]
-    saved(image, lines, image_with(LIGHT))
+    saved(image, lines, image_with(PLAIN))
     notes, _, _, _ = started("settings-other", image, *typed(("settings",), 400), fw=FW, max_ms=900)
     assert told_as(notes) == "as saved, but another filter", notes
     listing = listed(notes)
