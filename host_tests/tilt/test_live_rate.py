@@ -12,7 +12,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
-from laws import PLAIN  # noqa: E402
+from laws import LIGHT  # noqa: E402
 from browser import ABSENT, Browser  # noqa: E402
 from fake_board import DEADLINE_S  # noqa: E402
 from live_support import Talk, watched  # noqa: E402
@@ -68,8 +68,8 @@ class TestRate(unittest.TestCase):
             page.until("tiltLive.figures().firstPictureMs && tiltLive.figures().filters.length")
             page.until("tiltLive.figures().rate > 390")
             before = page.figures()
-            page.value(f"document.querySelector('input[value={PLAIN}]').click()")
-            page.until(f"tiltLive.figures().filter === '{PLAIN}'")
+            page.value(f"document.querySelector('input[value={LIGHT}]').click()")
+            page.until(f"tiltLive.figures().filter === '{LIGHT}'")
             page.until(f"tiltLive.figures().rows > {before['rows'] + 2 * RATE_HZ}")
             after = page.figures()
         print(f"simrun: {after['rows']} rows, {after['rate']:.1f} rows/s")
