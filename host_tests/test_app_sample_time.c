@@ -18,8 +18,8 @@ void setUp(void)
 void tearDown(void) {}
 
 /*
- * A processor of 15.5 MHz: 19,375 cycles a sample at 800 Hz, 11,075 without the rest of its way. 3 x 4,350 of the slowest
- * filter are too many, 3 x 3,650 of the next are not.
+ * A processor of 15.5 MHz: 19,375 cycles a sample at 800 Hz, 11,075 without the rest of its way. 3 x 4,350 of the
+ * slowest filter are too many, 3 x 3,650 of the next are not.
  */
 static void board_start_with_a_slow_processor(void)
 {

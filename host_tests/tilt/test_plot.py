@@ -333,7 +333,8 @@ requestAnimationFrame(() => { new Plot(drawings[0][0], 0, 100).marks(DATA.files[
   i => DATA.files[0].flags[i] & 1, 2, () => document.body.dataset.crosses++); });
 </script></body>"""
         page.write_text(page.read_text().replace("</body>", script))
-        command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=3000", f"--user-data-dir={self.folder}/user"]
+        command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=3000",
+                   "--run-all-compositor-stages-before-draw", f"--user-data-dir={self.folder}/user"]
         done = subprocess.run([*command, "--dump-dom", f"file://{page}"], capture_output=True, text=True, timeout=600, check=False)
         body = re.search(r"<body([^>]*)>", done.stdout)
         self.assertIsNotNone(body, done.stderr)

@@ -21,8 +21,8 @@
  *            P12 rounded down to 2^-20
  *   u        rounded down to 2^-8 LSB in magnitude; x and rate steps rounded half away from zero to 2^-16: an estimate
  *            within 1/256 LSB of a constant input stays where it is
- *   gate     limit of u^2: gate^2 R rounded to 1/16 LSB^2 (16 LSB^2 from 4096 on, with u in whole LSB): 1 % at gate^2 R =
- *            3; times S rounded down to 2^-12
+ *   gate     limit of u^2: gate^2 R rounded to 1/16 LSB^2 (16 LSB^2 from 4096 on, with u in whole LSB): 1 % at
+ *            gate^2 R = 3; times S rounded down to 2^-12
  */
 #ifndef KALMAN_H
 #define KALMAN_H
