@@ -48,7 +48,7 @@ typedef struct {
  * of the main loop, three noise estimates, and new variances as often as an estimate can leave the last by an eighth.
  * What is longer but rare (five warm-up samples, variances on all axes at once, replies, a change of settings) waits
  * in the sensor's FIFO and the driver's queue, 39 samples together, and is caught up with what a sample leaves over.
- * At 800 Hz the two leave 1,500 cycles, 500 for each axis, to a filter of which every row goes out: synth's 500.
+ * At 800 Hz the two leave 1,200 cycles, 400 for each axis: less than any filter takes, so not every row goes out.
  */
 #define SETTINGS_REST_CYCLES 8300u
 #define SETTINGS_ROW_CYCLES 10500u

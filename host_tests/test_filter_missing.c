@@ -252,6 +252,24 @@ static void test_missing_samples_do_not_count_in_a_run(void)
     }
     TEST_ASSERT_TRUE(restarting > 0U);
 }
+/* However long samples were missing before: a filter that is reset begins its next gap anew. */
+static void test_a_reset_ends_the_hold(void)
+{
+    for (uint8_t kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++) {
+        filter_t held, fresh;
+        make(&held, kind);
+        make(&fresh, kind);
+        filter_reset(&held, 100);
+        for (uint8_t k = 0; k < 30U; k++) {
+            (void)filter_missing(&held);
+        }
+        filter_reset(&held, 100);
+        filter_reset(&fresh, 100);
+        TEST_ASSERT_EQUAL_INT32(filter_missing(&fresh), filter_missing(&held));
+        TEST_ASSERT_EQUAL_UINT8(fresh.quarters, held.quarters);
+        TEST_ASSERT_EQUAL_UINT32(probed(&fresh).p_lsb2_q8, probed(&held).p_lsb2_q8);
+    }
+}
 
 int main(void)
 {
@@ -264,5 +282,6 @@ int main(void)
     RUN_TEST(test_samples_told_as_missing_restart_no_filter);
     RUN_TEST(test_a_filter_restarts_behind_the_rail);
     RUN_TEST(test_missing_samples_do_not_count_in_a_run);
+    RUN_TEST(test_a_reset_ends_the_hold);
     return UNITY_END();
 }

@@ -266,6 +266,17 @@ static void rate_is_held_over_short_runs(void)
     }
 }
 
+/* A run beyond the range of samples: each is clamped and says so, the one that re-acquires too. */
+static void restart_on_a_clamped_sample_is_flagged_so(void)
+{
+    filter_config_t config = config_100hz();
+    filter_t f = settled(&config, 0);
+    for (uint8_t k = 1; k <= 5U; k++) {
+        (void)filter_update(&f, 5000);
+        TEST_ASSERT_EQUAL_UINT8(FILTER_SATURATED | ((k < 5U) ? FILTER_GATED : FILTER_REACQUIRED), f.flags);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -275,6 +286,7 @@ int main(void)
     RUN_TEST(restart_limits_the_rate);
     RUN_TEST(disagreeing_run_never_restarts);
     RUN_TEST(agreement_ends_at_three_sigma_of_a_difference);
+    RUN_TEST(restart_on_a_clamped_sample_is_flagged_so);
     RUN_TEST(reset_forgets_the_run);
     RUN_TEST(run_ends_at_an_accepted_sample);
     RUN_TEST(reacquisition_off_never_restarts);

@@ -136,6 +136,7 @@ void filter_restart(filter_t *f)
     f->rate_lsb = 0;
     filter_tracker_nothing(f);
     f->collected = 0;
+    f->quarters = 0;
     f->broken = false;
     f->flags = FILTER_WARMING_UP;
 }

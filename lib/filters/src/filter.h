@@ -168,7 +168,7 @@ filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_c
  */
 void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8);
 
-/* Running as if z0 had been read for ever; no warm-up. As long as 64 updates. */
+/* Running as if z0 had been read for ever; no warm-up. As long as 16 updates at most. */
 void filter_reset(filter_t *f, int16_t z0_lsb);
 
 /*

@@ -130,7 +130,7 @@ typedef struct {
     uint16_t confirm; /* samples until a jump is believed */
 } filter_adaptive_t;
 
-/* kf3: see kf3.h. */
+/* kf3: see kf3.c. */
 typedef struct {
     filter_covariance_t p; /* UQ4.28 */
     uint32_t p13_uq28;     /* P / R of the acceleration in its unit */
@@ -145,7 +145,7 @@ typedef struct {
     bool fine; /* the acceleration is counted in sixteenths */
 } filter_kf3_t;
 
-/* One of the three of auto: see auto.h. */
+/* One of the three of auto: see auto.c. */
 typedef struct {
     int32_t x_lsb_q16;       /* |x| <= FILTER_X_MAX_LSB */
     int32_t rate_lsb_q16;    /* per sample, |rate| <= rate_max */

@@ -178,7 +178,7 @@ FX_NOINLINE void restart(filter_t *f, int16_t z_lsb)
         k->p.p22 = 32U * fx_product_u16(share_uq12, share_uq12) + k->q22_uq28;
     }
     filter_tracker_nothing(f);
-    f->flags = FILTER_REACQUIRED;
+    f->flags = (uint8_t)((f->flags & FILTER_SATURATED) | FILTER_REACQUIRED);
 }
 
 bool filter_kalman_refused(filter_t *f, int16_t z_lsb)

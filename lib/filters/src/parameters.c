@@ -6,16 +6,17 @@
  * README of the library. gate: in sigmas of the innovation. reacquire: refused samples in a row that restart a filter;
  * of 3, 5 and 9 the slope is a shift. ratemax: with R it says how far two samples of such a run may lie apart.
  */
-static const char r_words[] FX_FLASH = "r\0LSB2";
-const filter_parameter_t filter_parameter_r FX_FLASH = { r_words, 8, 0, FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8, 0 };
-static const char q_words[] FX_FLASH = "q\0LSB2/s3";
-const filter_parameter_t filter_parameter_q FX_FLASH = { q_words, 0, 0, 1, 1000000000, 10000 };
-static const char gate_words[] FX_FLASH = "gate\0sigma";
-const filter_parameter_t filter_parameter_gate FX_FLASH = { gate_words, 8, 1, 256, 4096, 768 };
-static const char reacquire_words[] FX_FLASH = "reacquire\0samples";
-const filter_parameter_t filter_parameter_reacquire FX_FLASH = { reacquire_words, 0, 1, 3, 9, 5 };
-static const char ratemax_words[] FX_FLASH = "ratemax\0LSB/s";
-const filter_parameter_t filter_parameter_ratemax FX_FLASH = { ratemax_words, 0, 0, 10, 1000000, 800 };
+static const char common_r_words[] FX_FLASH = "r\0LSB2";
+const filter_parameter_t filter_parameter_r FX_FLASH = { common_r_words,       8, 0, FILTER_R_MIN_LSB2_Q8,
+                                                         FILTER_R_MAX_LSB2_Q8, 0 };
+static const char common_q_words[] FX_FLASH = "q\0LSB2/s3";
+const filter_parameter_t filter_parameter_q FX_FLASH = { common_q_words, 0, 0, 1, 1000000000, 10000 };
+static const char common_gate_words[] FX_FLASH = "gate\0sigma";
+const filter_parameter_t filter_parameter_gate FX_FLASH = { common_gate_words, 8, 1, 256, 4096, 768 };
+static const char common_reacquire_words[] FX_FLASH = "reacquire\0samples";
+const filter_parameter_t filter_parameter_reacquire FX_FLASH = { common_reacquire_words, 0, 1, 3, 9, 5 };
+static const char common_ratemax_words[] FX_FLASH = "ratemax\0LSB/s";
+const filter_parameter_t filter_parameter_ratemax FX_FLASH = { common_ratemax_words, 0, 0, 10, 1000000, 800 };
 
 const char *filter_name(const filter_law_t *law)
 {

@@ -101,7 +101,7 @@ static uint32_t memory_uq32(const filter_config_t *config)
     return (config->value[SYNTH_PLUS_K] < K_MAX) ? c_uq32 - (c_uq32 >> config->value[SYNTH_PLUS_K]) : c_uq32;
 }
 
-/* The three conditions of synth_plus.h in units of 2^-16, exact. The first and third contain 2 b0 + b1 > 0. */
+/* The three conditions of synth_plus.c in units of 2^-16, exact. The first and third contain 2 b0 + b1 > 0. */
 static bool together(const filter_config_t *config)
 {
     uint32_t memory = memory_uq32(config);
