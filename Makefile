@@ -33,15 +33,17 @@ deps:
 U := $(B)/uno
 AVR_CC      := avr-gcc
 # what makes the smallest image with avr-gcc 5.4.0 (and no table of a switch in RAM); the filters keep their speed
-AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -maccumulate-args -fshort-enums -fno-inline-small-functions \
+AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -fshort-enums -fno-inline-small-functions \
                -fno-tree-dominator-opts -fno-tree-switch-conversion -fno-forward-propagate \
-               -fno-tree-loop-ivcanon -fno-tree-copy-prop -fno-move-loop-invariants -frename-registers -fno-jump-tables -mstrict-X
+               -fno-tree-loop-ivcanon -fno-tree-scev-cprop -fno-tree-copy-prop -fno-move-loop-invariants -frename-registers -fno-jump-tables -mstrict-X -fno-guess-branch-probability -fno-strict-aliasing
 # lines, which change a few bytes, and no variables, which would change 50 of code through link-time optimisation: every program below,
 # flashed, tested, profiled or traced, is the same bits
 AVR_DEBUG   := -gdwarf-2 -g1
 AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr $(FILTER_FLAG)
-AVR_LINK    := -mmcu=atmega328p $(AVR_DEBUG) $(AVR_SMALL) -Wl,--gc-sections
+# calls of functions that lie within 4 KB take half the bytes: functions.ld has an order that makes most of them so (tools/layout.py)
+UNO_LD      := hal/avr/uno.ld hal/avr/functions.ld
+AVR_LINK    := -mmcu=atmega328p $(AVR_DEBUG) $(AVR_SMALL) -ffunction-sections -Wl,--gc-sections -Wl,-T,hal/avr/uno.ld
 AVR_SRC     := $(APP_SRC) $(LIB_SRC) $(wildcard hal/avr/*.c)
 AVR_OBJ     := $(AVR_SRC:%.c=$(U)/%.o)
 include mk/images.mk
@@ -105,7 +107,7 @@ $(S)/simrun: $(SIMRUN_SRC) $(wildcard sim/*.h)
 	@echo "built $@"
 
 STREAM ?= sim/streams/outliers-15pct.csv
-FILTER ?= adaptive
+FILTER ?= $(firstword $(FILTERS_everyday))
 RATE   ?= 100
 OUT    ?= $(S)/$(basename $(notdir $(STREAM))).$(FILTER).out.csv
 

@@ -36,9 +36,6 @@
 #include "silence.h"
 #include "store.h"
 
-#define SERVICE_US 4000ul
-#define OVERDUE_US 20000ul /* twice HAL_TICK_US and more: passes cut for lack of time hold the service up */
-
 /*
  * What hung so often in a row, each time within SETTLED_S of its start, hangs again: it gets the lowest rate, at which
  * the processor has most time for everything else. Saved settings are
@@ -51,9 +48,9 @@ app_state_t app;
 static struct loop {
     uint32_t pass_us; /* time at the beginning of the pass */
     uint32_t next_second_us;
-    uint32_t next_service_us;
-    bool row_due;      /* for the sample that the pipeline has, or had last */
-    bool look_at_rate; /* each second, where a pass has time for it */
+    uint16_t next_service_us; /* its low half: it is never 32 ms away */
+    bool row_due;             /* for the sample that the pipeline has, or had last */
+    bool look_at_rate;        /* each second, where a pass has time for it */
 } loop;
 
 /* Known by its address in a register, an access to it is half as long. */
@@ -90,6 +87,16 @@ static void forget(void)
     app.changes = 0;
 }
 
+static void open_line(void)
+{
+    hal_uart_init(settings.baud);
+}
+
+static void start_pipeline(void)
+{
+    pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
+}
+
 void app_start(void)
 {
     struct loop *l = here();
@@ -111,15 +118,16 @@ void app_start(void)
         settings_follow();
     }
     pipeline_calibrate(&settings.calibration);
-    hal_uart_init(settings.baud);
-    health_pause_filtering(hal_time_us() + APP_HOLD_LIMIT_US);
+    open_line();
+    health_pause_filtering(APP_HOLD_PASSES);
     hal_drdy_enable(); /* last, so that an edge does not wait for the settings */
     hal_irq_enable();
-    l->next_service_us = hal_time_us();
-    l->next_second_us = l->next_service_us + 1000000ul;
+    uint32_t now_us = hal_time_us();
+    l->next_service_us = (uint16_t)now_us;
+    l->next_second_us = now_us + 1000000ul;
     app.sampling = true;
-    coast_wait(l->next_service_us);
-    pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
+    coast_wait(now_us);
+    start_pipeline();
     (void)replies_add(REPLY_BANNER, 0);
     app_start_sensor();
 }
@@ -158,7 +166,7 @@ static bool follow_settings(void)
         coast_wait(loop.pass_us);
     }
     if (now & CHANGE_COLD) {
-        pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
+        start_pipeline();
     } else if (now & (CHANGE_FILTER | CHANGE_CONFIG)) {
         pipeline_change(settings.filter, settings.rate_dhz, settings.range_g);
     }
@@ -236,9 +244,6 @@ static bool filter_samples(void)
         return true;
     }
     if (loop.row_due) {
-        if (replies_speaking()) {
-            return false;
-        }
         write_row();
         return true;
     }
@@ -266,12 +271,12 @@ static bool stage_piece(void)
         if (!replies_empty() || !hal_uart_tx_idle()) {
             return false;
         }
-        hal_uart_init(settings.baud);
+        open_line();
         break;
     default:
         return filter_samples();
     }
-    health_resume_filtering();
+    health_pause_filtering(0);
     app.stage = STAGE_RUNNING;
     hal_wake(); /* what was typed meanwhile goes before the samples */
     return false;
@@ -281,7 +286,7 @@ static bool stage_piece(void)
 static void service(uint32_t now_us)
 {
     struct loop *l = here();
-    l->next_service_us = now_us + SERVICE_US;
+    l->next_service_us = (uint16_t)(now_us + APP_SERVICE_US);
     count_seconds(now_us);
     if (app.stage == STAGE_RUNNING) {
         sensor_watch_pass(now_us);
@@ -298,38 +303,22 @@ static void set_alarm(void)
     hal_wake_at(row_first ? coast_due_us() : t_us);
 }
 
-/* Where something is left to do that waits for no interrupt. */
-static void wake_if_work_left(void)
-{
-    struct loop *l = here();
-    if (l->row_due || app.changes != 0 || pipeline_changing() || adxl345_queued() != 0 || coast_due(l->pass_us) ||
-        !replies_empty()) {
-        hal_wake();
-    }
-}
-
-/* Commands, samples, replies, while the pass has time; out of time, another pass follows if there is a reason. */
+/* Commands, samples, replies, while the pass has time; out of time, another pass follows. */
 static void serve(void)
 {
-    if (!pass_in_time()) {
-        hal_wake();
-        return;
+    if (pass_in_time() && !(commands_pass() && !pass_in_time())) {
+        do {
+            if (!stage_piece() && !replies_pass()) {
+                return;
+            }
+        } while (pass_in_time());
     }
-    if (commands_pass() && !pass_in_time()) {
-        return;
-    }
-    while (stage_piece() || replies_pass()) {
-        if (!pass_in_time()) {
-            wake_if_work_left();
-            break;
-        }
-    }
+    hal_wake();
 }
 
-/* The service comes last, unless it is overdue. */
 void app_pass(void)
 {
-    pass.began = hal_time_lap();
+    pass_begin();
     uint32_t now_us = hal_time_us();
     loop.pass_us = now_us;
     if (!HANGS(HEALTH_SAMPLING)) {
@@ -338,7 +327,7 @@ void app_pass(void)
     }
     while (HANGS(WHOLE_LOOP)) {
     }
-    if (hal_time_reached(now_us, loop.next_service_us + OVERDUE_US)) {
+    if ((int16_t)(uint16_t)((uint16_t)now_us - loop.next_service_us) >= 0) {
         service(now_us);
     }
     measure_pass();
@@ -346,13 +335,6 @@ void app_pass(void)
     if (store_busy()) {
         (void)store_pass();
         hal_wake();
-    }
-    if (hal_time_reached(now_us, loop.next_service_us)) {
-        if (pass_in_time()) {
-            service(now_us);
-        } else {
-            hal_wake();
-        }
     }
     set_alarm();
     hal_sleep_until_wake();

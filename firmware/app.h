@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "settings_table.h"
+
 void app_start(void);
 
 /* The watchdog brought so many resets in a row that this run began at the lowest rate, and it has not lasted yet. */
@@ -17,25 +19,14 @@ bool app_is_safe(void);
 void app_pass(void);
 
 /*
- * Settings. APP_ILLEGAL: nothing changed, not a legal value. Rate, range and filter take effect without losing a
- * sample. A filter that does not fit the sample period (settings_fit) is refused as is a rate that is too fast for the
- * filter.
+ * Takes what was typed for a setting (settings_table.h) and starts what follows from it. Rate, range and filter take
+ * effect without losing a sample. A filter that does not fit the sample period (settings_fit) is refused, as is a rate
+ * that is too fast for the filter.
  */
-typedef enum { APP_ILLEGAL, APP_DONE, APP_TOO_SLOW } app_answer_t;
-app_answer_t app_set_filter(uint8_t filter_kind);
-app_answer_t app_set_rate(uint16_t rate_dhz);
-app_answer_t app_set_range(uint16_t range_g);
-app_answer_t app_set_every(uint16_t every);
-app_answer_t app_set_baud(uint32_t baud);
-void app_set_mode(uint8_t mode);
-void app_set_address(uint8_t address);
-
-/* A number or vector of parameters.h, as stored. False: illegal, nothing changed. */
-bool app_set_parameter(uint8_t which, const uint32_t values[3]);
+setting_answer_t app_set(uint8_t which, const char *text);
 
 /* All settings as saved (settings_kept.h), or as shipped; they take effect like each by itself. */
-void app_load(void);
-void app_defaults(void);
+void app_restore(bool saved);
 
 /* Begins to save all settings; false while sampling. Until it is over (store_busy) no command is taken. */
 bool app_save(void);
@@ -46,9 +37,8 @@ bool app_save(void);
  */
 void app_configure(bool anew);
 
-/* Sampling off (sensor in standby) and on. */
-void app_stop(void);
-void app_go(void);
+/* Sampling on and off (sensor in standby). */
+void app_sample(bool wanted);
 
 /* False while the banner goes out and while the line drains before its rate changes: bytes wait in the receive ring. */
 bool app_takes_commands(void);

@@ -14,8 +14,11 @@ enum { STAGE_BANNER, STAGE_RUNNING, STAGE_BAUD };
  */
 enum { CHANGE_FILTER = 1, CHANGE_CONFIG = 2, CHANGE_COLD = 4, CHANGE_MEASURE = 8 };
 
-/* The banner at 9600 baud takes 0.4 s; the ring at 9600 baud drains in 0.27 s. */
-#define APP_HOLD_LIMIT_US 1000000ul
+/* What a person or the watchdog waits for is looked after so often. */
+#define APP_SERVICE_US 4000u
+
+/* Of the service, 1 s: the banner at 9600 baud takes 0.4 s; the ring at 9600 baud drains in 0.27 s. */
+enum { APP_HOLD_PASSES = 250 };
 
 typedef struct {
     uint8_t stage;

@@ -1,6 +1,7 @@
 /* The means of cal6, and what becomes of a calibration that is found. */
 #include "calibrate.h"
 
+#include "pipeline.h"
 #include "replies.h"
 #include "settings.h"
 
@@ -58,25 +59,24 @@ static measure_outcome_t add_position(const int16_t mean_lsb_q4[3])
     return calibrate_told.left == 0 ? MEASURE_BEGUN : MEASURE_POSITION;
 }
 
-/* What was found is in force, or refused. */
-static measure_outcome_t outcome_of(const calibration_t *found)
+/* What was found is in the settings, or refused. */
+static measure_outcome_t outcome_of(calibration_verdict_t verdict)
 {
-    if (calibrate_told.verdict.why != CALIBRATION_GOOD) {
+    calibrate_told.verdict = verdict;
+    if (verdict.why != CALIBRATION_GOOD) {
         return MEASURE_WRONG;
     }
-    (void)settings_calibrate(found); /* it is legal */
+    pipeline_calibrate(&settings.calibration);
     return MEASURE_DONE;
 }
 
 measure_outcome_t calibrate_take(uint8_t kind, const int16_t mean_lsb_q4[3])
 {
-    if (CALIBRATE_SIX && kind == REPLY_CAL6) {
+    if (kind == REPLY_CAL6) {
         return add_position(mean_lsb_q4);
     }
-    calibration_t wanted = settings.calibration;
-    calibrate_told.verdict = kind == REPLY_TARE ? calibration_tare(&wanted, mean_lsb_q4)
-                                                : calibration_single(&wanted, mean_lsb_q4);
-    return outcome_of(&wanted);
+    return outcome_of(kind == REPLY_TARE ? calibration_tare(&settings.calibration, mean_lsb_q4)
+                                         : calibration_single(&settings.calibration, mean_lsb_q4));
 }
 
 void calibrate_start_six(calibration_six_t *six)
@@ -89,7 +89,5 @@ measure_outcome_t calibrate_step(calibration_six_t *six)
     if (calibration_six_step(six, means_lsb_q4)) {
         return MEASURE_BEGUN;
     }
-    calibration_t wanted = settings.calibration;
-    calibrate_told.verdict = calibration_six_end(six, &wanted, &calibrate_told.residual_mg);
-    return outcome_of(&wanted);
+    return outcome_of(calibration_six_end(six, &settings.calibration, &calibrate_told.residual_mg));
 }

@@ -11,11 +11,6 @@
 #include "calibration.h"
 #include "measure.h"
 
-/* Images whose filters leave no room for `cal6` are built with 0 (mk/images.mk); what another one saves, they use. */
-#ifndef CALIBRATE_SIX
-#define CALIBRATE_SIX 1
-#endif
-
 /* What the lines of the last reply are about. */
 typedef struct {
     calibration_verdict_t verdict; /* with MEASURE_WRONG */

@@ -1,4 +1,4 @@
-/* Line assembly, words and values. What a command does is app.c's. */
+/* Lines and their first words. What a setting takes is settings_table.c's, what a command does app_settings.c's. */
 #include "commands.h"
 
 #include <stdbool.h>
@@ -6,171 +6,52 @@
 #include "app.h"
 #include "calibrate.h"
 #include "counters.h"
-#include "filter_any.h"
 #include "flash.h"
 #include "fx.h"
 #include "hal_sleep.h"
 #include "hal_uart.h"
 #include "measure.h"
-#include "number.h"
-#include "parameters.h"
 #include "pass.h"
 #include "replies.h"
 #include "reply_lines.h"
-#include "settings.h"
+#include "settings_table.h"
 #include "text.h"
 
 static char line[COMMANDS_LINE_MAX + 1u];
 static uint8_t length;
-static bool too_long;
-static bool garbage;
-static bool complete; /* its end has come */
-static bool answered; /* a legal value was refused, with a reply of its own */
+static uint8_t wrong; /* with the line: REPLY_TOO_LONG, REPLY_GARBAGE, or 0 */
 
 void commands_start(void)
 {
     length = 0;
-    too_long = false;
-    garbage = false;
-    complete = false;
+    wrong = 0;
     line[0] = '\0';
 }
 
-static void refuse(reply_kind_t kind, uint8_t argument)
+_Static_assert(REPLY_SETTING + SETTING_ILLEGAL == (int)REPLY_ILLEGAL, "answers in the order of their replies");
+_Static_assert(REPLY_SETTING + SETTING_TOO_SLOW == (int)REPLY_TOO_SLOW, "the same");
+
+static void answer(uint8_t kind, uint8_t argument)
 {
-    count(COUNT_REFUSED);
-    (void)replies_add(kind, argument);
+    if (kind >= REPLY_ILLEGAL && kind <= REPLY_BUSY) {
+        count(COUNT_REFUSED);
+    }
+    (void)replies_add((reply_kind_t)kind, argument);
 }
 
-FX_NOINLINE void refuse_combination(uint8_t filter, uint16_t rate_dhz)
+static void run_setting(uint8_t which, const char *value)
 {
-    refuse(REPLY_TOO_SLOW, reply_combination(filter, rate_dhz));
-    answered = true;
-}
-
-static bool set_filter(const char *value)
-{
-    filter_kind_t kind = filter_any_find(value);
-    if (kind == FILTER_KIND_COUNT) {
-        return false;
-    }
-    if (app_set_filter((uint8_t)kind) == APP_TOO_SLOW) {
-        refuse_combination((uint8_t)kind, settings.rate_dhz);
-    }
-    return true;
-}
-
-static bool set_mode(const char *value)
-{
-    if (text_equal(value, FLASH_TEXT("csv"))) {
-        app_set_mode(MODE_CSV);
-        return true;
-    }
-    if (text_equal(value, FLASH_TEXT("plot"))) {
-        app_set_mode(MODE_PLOT);
-        return true;
-    }
-    return false;
-}
-
-/* All of the text is one number. */
-FX_NOINLINE bool parse(const char *text, uint8_t fraction_bits, uint32_t *value)
-{
-    return number_parse(&text, fraction_bits, value) && *text == '\0';
-}
-
-/* Fraction bits with which each rate is exact, and as many of ten times it that must be 0 then. */
-enum { RATE_BITS = 6, RATE_REST_BITS = 5 };
-
-static app_answer_t set_number(uint8_t setting, uint32_t number)
-{
-    if (setting == REPLY_BAUD) {
-        return app_set_baud(number);
-    }
-    if (number > UINT16_MAX) {
-        return APP_ILLEGAL;
-    }
-    switch (setting) {
-    case REPLY_RATE:
-        return app_set_rate((uint16_t)number);
-    case REPLY_RANGE:
-        return app_set_range((uint16_t)number);
-    default:
-        return app_set_every((uint16_t)number);
-    }
-}
-
-/* As it is told: hexadecimal. */
-static bool set_address(const char *value)
-{
-    uint8_t address;
-    if (text_equal(value, FLASH_TEXT("auto"))) {
-        address = 0;
-    } else if (text_equal(value, FLASH_TEXT("53"))) {
-        address = 0x53;
-    } else if (text_equal(value, FLASH_TEXT("1d"))) {
-        address = 0x1D;
-    } else {
-        return false;
-    }
-    app_set_address(address);
-    return true;
-}
-
-/* Each of x, y, z once, with a sign where it is reversed, and no mirror image: that is no way to mount a board. */
-static bool set_axes(const char *value)
-{
-    calibration_t wanted = settings.calibration;
-    bool mirrored = false;
-    int8_t before = 0;
-    for (uint8_t i = 0; i < 3; i++) {
-        bool reversed = *value == '-';
-        value += reversed;
-        int8_t axis = (int8_t)(*value++ - ('x' - 1));
-        if (axis < 1 || axis > 3) {
-            return false;
+    setting_answer_t taken = SETTING_TAKEN;
+    if (value != 0) {
+        taken = app_set(which, value);
+        if (taken == SETTING_TAKEN) {
+            which |= REPLY_CHANGED;
         }
-        bool backward = i == 1u && axis != before % 3 + 1;
-        mirrored ^= reversed ^ backward;
-        before = axis;
-        wanted.axes[i] = (int8_t)(reversed ? -axis : axis);
     }
-    return !mirrored && *value == '\0' && settings_calibrate(&wanted);
+    answer((uint8_t)(REPLY_SETTING + taken), which);
 }
 
-static bool set(uint8_t setting, const char *value)
-{
-    if (setting == REPLY_AXES) {
-        return set_axes(value);
-    }
-    if (setting == REPLY_ADDRESS) {
-        return set_address(value);
-    }
-    if (setting == REPLY_FILTER) {
-        return set_filter(value);
-    }
-    if (setting == REPLY_MODE) {
-        return set_mode(value);
-    }
-    uint32_t number;
-    if (!parse(value, setting == REPLY_RATE ? RATE_BITS : 0, &number)) {
-        return false;
-    }
-    if (setting == REPLY_RATE) {
-        number *= 10u >> (RATE_BITS - RATE_REST_BITS);
-        if ((uint8_t)number & ((1u << RATE_REST_BITS) - 1u)) {
-            return false;
-        }
-        number >>= RATE_REST_BITS;
-    }
-    app_answer_t answer = set_number(setting, number);
-    if (answer == APP_TOO_SLOW) {
-        refuse_combination(settings.filter, (uint16_t)number);
-    }
-    return answer != APP_ILLEGAL;
-}
-
-/* The reply kind of a command's first word; REPLY_BANNER when it is none. */
+/* The reply kind of a command's name; REPLY_BANNER when it is none. */
 static uint8_t command_named(const char *name)
 {
     uint8_t kind = REPLY_LISTING;
@@ -180,44 +61,8 @@ static uint8_t command_named(const char *name)
     return kind;
 }
 
-/* As many numbers as it has, with blanks between. */
-static bool parse_numbers(const char *text, uint8_t which, uint32_t numbers[PARAMETERS_AXES])
-{
-    uint8_t bits = fx_flash_u8(&parameters_at(which)->fraction_bits);
-    for (uint8_t left = parameters_numbers(which); left != 0; left--) {
-        if (!number_parse(&text, bits, numbers)) {
-            return false;
-        }
-        numbers++;
-    }
-    return *text == '\0';
-}
-
-/* `gate` or `gate 3.5`: false if the filter in force has no such parameter. */
-static bool run_parameter(const char *value)
-{
-    uint8_t which = parameters_find(line);
-    if (which == PARAMETERS_NONE) {
-        return false;
-    }
-    if (value != 0) {
-        uint32_t numbers[PARAMETERS_AXES];
-        if (!parse_numbers(value, which, numbers) || !app_set_parameter(which, numbers)) {
-            refuse(REPLY_ILLEGAL_PARAMETER, which);
-            return true;
-        }
-    }
-    (void)replies_add(REPLY_PARAMETER, which);
-    return true;
-}
-
-static bool is_setting(uint8_t kind)
-{
-    return kind >= REPLY_FILTER && kind < REPLY_SETTINGS_END;
-}
-
 /* The text after the first blanks, NULL when there is none; the name before it is cut off (a blank becomes the end). */
-FX_NOINLINE char *split_value(void)
+static char *split_value(void)
 {
     char *at = line;
     while (*at != '\0' && *at != ' ') {
@@ -235,80 +80,50 @@ FX_NOINLINE char *split_value(void)
     return at;
 }
 
-/* False: it was refused. */
-static bool run_verb(uint8_t verb)
+/* The reply: that of the verb, or why it is refused. */
+static uint8_t run_verb(uint8_t verb)
 {
     switch (verb) {
     case REPLY_STOPPED:
-        app_stop();
-        break;
     case REPLY_GOING:
-        app_go();
+        app_sample(verb == REPLY_GOING);
         break;
     case REPLY_SAVED:
-        if (!app_save()) {
-            refuse(REPLY_STREAMING, 0);
-            return false;
-        }
-        break;
+        return app_save() ? verb : REPLY_STREAMING;
     case REPLY_LOADED:
-        app_load();
-        break;
     case REPLY_DEFAULTS:
-        app_defaults();
+        app_restore(verb == REPLY_LOADED);
         break;
     case REPLY_NOISE:
     case REPLY_SELFTEST:
     case REPLY_TARE:
     case REPLY_CAL:
     case REPLY_CAL6:
-        if (!CALIBRATE_SIX && verb == REPLY_CAL6) {
-            refuse(REPLY_NO_ROOM, 0);
-            return false;
-        }
-        if (!measure_start(verb)) {
-            refuse(REPLY_BUSY, 0);
-            return false;
-        }
-        break;
+        return measure_start(verb) ? verb : REPLY_BUSY;
     default:
         break;
     }
-    return true;
+    return verb;
 }
 
-/* A setting, shown or set, or a verb. */
 static void run_command(uint8_t kind, const char *value)
 {
-    answered = false;
-    if (value != 0) {
-        if (!is_setting(kind)) {
-            refuse(REPLY_UNKNOWN, PROBLEM_COMMAND);
-            return;
-        }
-        if (!set(kind, value)) {
-            refuse(REPLY_REFUSED, kind);
-            return;
-        }
-    } else if (kind >= REPLY_SETTINGS_END && !run_verb(kind)) {
-        return;
-    }
-    if (!answered) {
-        (void)replies_add((reply_kind_t)kind, value != 0);
+    if (kind == REPLY_CAL6 && value != 0 && text_equal(value, FLASH_TEXT("stop"))) {
+        measure_stop();
+        answer(REPLY_CAL6, MEASURE_STOPPED);
+    } else {
+        answer(kind == REPLY_BANNER || value != 0 ? REPLY_UNKNOWN : run_verb(kind), MEASURE_BEGUN);
     }
 }
 
-FX_NOINLINE void run_line(void)
+static void run_line(void)
 {
     const char *value = split_value();
-    uint8_t kind = command_named(line);
-    if (kind == REPLY_CAL6 && value != 0 && text_equal(value, FLASH_TEXT("stop"))) {
-        measure_stop();
-        (void)replies_add(REPLY_CAL6, MEASURE_STOPPED);
-    } else if (kind != REPLY_BANNER) {
-        run_command(kind, value);
-    } else if (!run_parameter(value)) {
-        refuse(REPLY_UNKNOWN, PROBLEM_COMMAND);
+    uint8_t which = setting_named(line);
+    if (which == SETTING_NONE) {
+        run_command(command_named(line), value);
+    } else {
+        run_setting(which, value);
     }
 }
 
@@ -318,56 +133,44 @@ static void end_line(void)
         length--;
     }
     line[length] = '\0';
-    if (too_long) {
-        refuse(REPLY_UNKNOWN, PROBLEM_TOO_LONG);
-    } else if (garbage) {
-        refuse(REPLY_UNKNOWN, PROBLEM_GARBAGE);
+    if (wrong != 0) {
+        answer(wrong, 0);
     } else if (length != 0) {
         run_line();
     }
     length = 0;
-    too_long = false;
-    garbage = false;
+    wrong = 0;
 }
 
 static void take_byte(uint8_t byte)
 {
     if (byte < ' ' || byte > '~') {
-        garbage = true;
+        wrong = wrong != 0 ? wrong : REPLY_GARBAGE;
     } else if (length == COMMANDS_LINE_MAX) {
-        too_long = true;
+        wrong = REPLY_TOO_LONG;
     } else if (length != 0 || byte != ' ') {
         bool upper = byte >= 'A' && byte <= 'Z';
         line[length++] = (char)(upper ? byte + ('a' - 'A') : byte);
     }
 }
 
-/* Not while a line tells of what the next command may change, or a reply waits that tells what parameters there are. */
+/* Not while a reply waits that reports what the next command may change. */
 static bool commands_wanted(void)
 {
-    return replies_room() && !replies_speaking() && !replies_hold(REPLY_LISTING, REPLY_ILLEGAL_PARAMETER) &&
-           app_takes_commands();
+    return replies_room() && !replies_hold(REPLY_LISTING, REPLY_TOO_SLOW) && app_takes_commands();
 }
 
-/* A line is run early in a pass, of which it may take two thirds: behind many bytes it waits for the next one. */
 bool commands_pass(void)
 {
     uint8_t byte;
-    while (commands_wanted()) {
-        if (complete) {
-            complete = false;
+    while (commands_wanted() && hal_uart_rx(&byte)) {
+        if (byte == '\r' || byte == '\n') {
             end_line();
             hal_wake();
             return true;
         }
-        if (!hal_uart_rx(&byte)) {
-            break;
-        }
-        complete = byte == '\r' || byte == '\n';
-        if (!complete) {
-            take_byte(byte);
-        }
-        if (!(complete ? pass_early() : pass_in_time())) {
+        take_byte(byte);
+        if (!pass_in_time()) {
             hal_wake();
             break;
         }

@@ -11,7 +11,7 @@ void commands_start(void);
 
 /*
  * Takes received bytes while the pass has time, one at least; runs at most one complete line, and only while there is
- * room for its replies. True: it has run one.
+ * room for its reply. True: it has run one.
  */
 bool commands_pass(void);
 

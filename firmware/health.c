@@ -18,10 +18,9 @@ volatile uint8_t hang_stages;
 #endif
 
 static struct health {
-    uint32_t pause_until_us;
+    uint8_t pause_passes; /* of health_pass that filtering may still rest */
     uint8_t checked_in;
     uint8_t tx_sent_seen;
-    bool paused;
     bool polled;
 } health;
 
@@ -37,7 +36,7 @@ void health_start(void)
 {
     struct health *h = here();
     h->checked_in = 0;
-    h->paused = false;
+    h->pause_passes = 0;
     h->polled = false;
     h->tx_sent_seen = hal_uart_tx_sent();
     hal_watchdog_start();
@@ -66,25 +65,19 @@ void health_sample_filtered(void)
     health.checked_in |= HEALTH_FILTERING;
 }
 
-void health_pause_filtering(uint32_t until_us)
+void health_pause_filtering(uint8_t passes)
 {
-    struct health *h = here();
-    h->pause_until_us = until_us;
-    h->paused = true;
+    health.pause_passes = passes;
 }
 
-void health_resume_filtering(void)
-{
-    health.paused = false;
-}
-
-static void look_at_filtering(uint32_t now_us)
+static void look_at_filtering(void)
 {
     struct health *h = here();
-    if (h->paused && hal_time_reached(now_us, h->pause_until_us)) {
-        h->paused = false;
+    bool paused = h->pause_passes != 0;
+    if (paused) {
+        h->pause_passes--;
     }
-    if (h->paused || adxl345_queued() == 0) {
+    if (paused || adxl345_queued() == 0) {
         h->checked_in |= HEALTH_FILTERING;
     }
 }
@@ -102,7 +95,7 @@ static void look_at_output(void)
 void health_pass(uint32_t now_us)
 {
     look_at_sampling(now_us);
-    look_at_filtering(now_us);
+    look_at_filtering();
     look_at_output();
     if (health.checked_in == HEALTH_ALL) {
         hal_watchdog_feed();

@@ -1,7 +1,7 @@
 /*
  * The watchdog's one feeding place. Each stage checks in; the dog is fed only when all have since the last time:
  *   sampling   the driver was polled, and is stopped or in a named state whose own deadline has not passed
- *   filtering  the queue got shorter or is empty, or a named pause has not passed its deadline
+ *   filtering  the queue got shorter or is empty, or a named pause is not over
  *   output     the transmit ring moved on, or nothing is due
  * What is still missing is noted, so that a watchdog reset can say which stage hung. Main only.
  */
@@ -18,9 +18,8 @@ void health_start(void);
 void health_driver_polled(void);
 void health_sample_filtered(void);
 
-/* Filtering pauses on purpose until this time at the latest (a change of the baud rate). */
-void health_pause_filtering(uint32_t until_us);
-void health_resume_filtering(void);
+/* Filtering pauses on purpose for so many of the passes below at most (a change of the baud rate); 0: no longer. */
+void health_pause_filtering(uint8_t passes);
 
 /* Once per pass of the main loop. */
 void health_pass(uint32_t now_us);

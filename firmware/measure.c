@@ -4,6 +4,7 @@
 #include "app.h"
 #include "calibrate.h"
 #include "counters.h"
+#include "hal_pointer.h"
 #include "hal_sleep.h"
 #include "replies.h"
 #include "settings.h"
@@ -25,7 +26,7 @@ typedef enum {
     STEP_FORCED   /* with it */
 } step_t;
 
-static struct {
+static struct measure {
     union {
         rest_t rest;
         calibration_six_t six; /* in STEP_SOLVE */
@@ -39,6 +40,14 @@ static struct {
     bool takes; /* samples come as the step wants them */
     bool borrows;
 } measure;
+
+/* Known by its address in a register, an access to it is half as long. */
+static inline struct measure *here(void)
+{
+    struct measure *m = &measure;
+    HAL_POINTER(m);
+    return m;
+}
 
 void measure_reset(void)
 {
@@ -79,12 +88,13 @@ static uint8_t second(void)
 
 static void collect(step_t step)
 {
+    struct measure *m = here();
     if (step != STEP_FORCED) {
         for (uint8_t axis = 0; axis < AXES; axis++) {
-            measure.result_lsb_q4[axis] = 0;
+            m->result_lsb_q4[axis] = 0;
         }
     }
-    rest_start(&measure.rest);
+    rest_start(&m->rest);
     enter(step);
 }
 
@@ -101,10 +111,11 @@ static void end(measure_outcome_t outcome)
 
 void measure_configured(void)
 {
-    measure.borrows = measure.step != STEP_BACK;
-    measure.takes = measure.borrows;
-    if (!measure.borrows) {
-        measure.step = STEP_TELL;
+    struct measure *m = here();
+    m->borrows = m->step != STEP_BACK;
+    m->takes = m->borrows;
+    if (!m->borrows) {
+        m->step = STEP_TELL;
     }
 }
 
@@ -153,17 +164,18 @@ static void solve(void)
 
 void measure_pass(void)
 {
-    if (CALIBRATE_SIX && measure.step == STEP_SOLVE) {
+    struct measure *m = here();
+    if (m->step == STEP_SOLVE) {
         solve();
     }
-    if (measure.step >= STEP_COLLECT && failed()) {
+    if (m->step >= STEP_COLLECT && failed()) {
         measure_abort();
     }
-    if (measure.step == STEP_TELL && replies_add((reply_kind_t)measure.kind, measure.outcome)) {
-        measure.step = STEP_TOLD;
+    if (m->step == STEP_TELL && replies_add((reply_kind_t)m->kind, m->outcome)) {
+        m->step = STEP_TOLD;
     }
-    if (measure.step == STEP_TOLD && replies_empty()) {
-        measure.step = STEP_IDLE;
+    if (m->step == STEP_TOLD && replies_empty()) {
+        m->step = STEP_IDLE;
     }
 }
 
@@ -180,21 +192,22 @@ static void board_moves(void)
 /* A position that could not be told is taken again. */
 static void calibrate(void)
 {
+    struct measure *m = here();
     measure_outcome_t outcome = MEASURE_UNCHANGED;
     if (replies_room()) {
-        outcome = calibrate_take(measure.kind, measure.result_lsb_q4);
+        outcome = calibrate_take(m->kind, m->result_lsb_q4);
     }
     if (outcome == MEASURE_POSITION || outcome == MEASURE_REPEATED) {
         (void)replies_add(REPLY_CAL6, outcome);
-        measure.began_s = second();
+        m->began_s = second();
         outcome = MEASURE_UNCHANGED;
     }
     if (outcome == MEASURE_UNCHANGED) {
         collect(STEP_COLLECT);
-    } else if (CALIBRATE_SIX && outcome == MEASURE_BEGUN) {
-        measure.takes = false;
-        measure.step = STEP_SOLVE;
-        calibrate_start_six(&measure.six);
+    } else if (outcome == MEASURE_BEGUN) {
+        m->takes = false;
+        m->step = STEP_SOLVE;
+        calibrate_start_six(&m->six);
         hal_wake();
     } else {
         end(outcome);
@@ -224,10 +237,11 @@ static void collected(void)
 /* Of 200, 400 and 800 Hz every second, fourth and eighth sample, so that they fill as much time. */
 static void take(const int16_t lsb[3])
 {
-    if (measure.step == STEP_COLLECT) {
-        measure.skip = (uint8_t)(settings.rate_dhz >> 10);
+    struct measure *m = here();
+    if (m->step == STEP_COLLECT) {
+        m->skip = (uint8_t)(settings.rate_dhz >> 10);
     }
-    if (rest_add(&measure.rest, lsb)) {
+    if (rest_add(&m->rest, lsb)) {
         collected();
     }
 }

@@ -59,9 +59,9 @@ bool number_parse(const char **text, uint8_t fraction_bits, uint32_t *value)
     return true;
 }
 
-void number_write(uint32_t value, uint8_t fraction_bits, bool is_signed)
+void number_write(uint32_t value, uint8_t fraction_bits)
 {
-    if (is_signed && (value & 0x80000000u)) {
+    if (value & 0x80000000u) {
         text_char('-');
         value = 0u - value;
     }

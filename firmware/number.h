@@ -16,6 +16,6 @@ bool number_parse(const char **text, uint8_t fraction_bits, uint32_t *value);
  * A value with so many fraction bits (at most 16), cut to four decimals, zeros at the end left out: with up to 12
  * fraction bits number_parse makes the same value of it.
  */
-void number_write(uint32_t value, uint8_t fraction_bits, bool is_signed);
+void number_write(uint32_t value, uint8_t fraction_bits);
 
 #endif

@@ -1,15 +1,16 @@
 #include "pass.h"
 
 #include "fx.h"
+#include "hal_time.h"
 
-pass_t pass;
+static uint8_t began; /* hal_time_lap */
+
+void pass_begin(void)
+{
+    began = hal_time_lap();
+}
 
 FX_ONCE bool pass_in_time(void)
 {
-    return (uint8_t)(hal_time_lap() - pass.began) < pass.limit;
-}
-
-FX_ONCE bool pass_early(void)
-{
-    return (uint8_t)(hal_time_lap() - pass.began) < PASS_EARLY_US / HAL_LAP_US;
+    return (uint8_t)(hal_time_lap() - began) < PASS_US / HAL_LAP_US;
 }

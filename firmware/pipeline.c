@@ -7,20 +7,18 @@
 #include "counters.h"
 #include "fx.h"
 #include "parameters.h"
-#include "pass.h"
 #include "pipeline_state.h"
 #include "silence.h"
 #include "supervisor.h"
 
-enum { AWAY_SAMPLES = 2 };  /* on end, away from what was held: no bad reading */
 enum { HUNG_SAMPLES = 16 }; /* with ROW_STUCK, on end: a filter has learned from them */
 
-pipeline_t pipeline;
+_Static_assert((int)TILT_GATED == (int)ROW_GATED && (int)TILT_COASTED == (int)ROW_COASTED &&
+                   (int)TILT_REACQUIRED == (int)ROW_REACQUIRED && (int)TILT_CLIPPED == (int)ROW_CLIPPED &&
+                   (int)TILT_WARMING_UP == (int)ROW_WARMING_UP,
+               "same bits");
 
-FX_NOINLINE void keep_estimate(axis_t *axis, int32_t x_lsb_q16)
-{
-    axis->estimate_q8 = (x_lsb_q16 + 128) >> 8;
-}
+pipeline_t pipeline;
 
 void pipeline_reset(void)
 {
@@ -34,119 +32,25 @@ void pipeline_reset(void)
 
 FX_ONCE void pipeline_coast(uint32_t t_us)
 {
-    pipeline.passed = silence_step(pipeline.rate_dhz);
-    pipeline.last_us = t_us;
+    silence_step(pipeline.true_dhz);
+    pipeline.newest.t_us = t_us;
     pipeline_flag(silence_samples() == SILENCE_FAULT_FROM ? ROW_COASTED | ROW_FAULT : ROW_COASTED);
     pipeline.work = WORK_COAST;
-    pipeline.axis = 0;
-}
-
-static void coast_axis(axis_t *axis)
-{
-    bool holds = silence_holds();
-    if (!holds) {
-        if (silence_samples() == 1u) {
-            filter_any_gap(&axis->filter);
-        }
-        for (uint8_t left = pipeline.passed; left != 0; left--) {
-            filter_any_damp(&axis->filter);
-        }
-        keep_estimate(axis, filter_any_coast(&axis->filter));
-        noise_gap(&axis->noise);
-    }
-    axis->away = holds && pipeline.has_sample;
 }
 
 uint32_t pipeline_newest_us(void)
 {
-    return pipeline.last_us;
+    return pipeline.newest.t_us;
 }
 
-uint32_t axis_r_lsb2_q8(const axis_t *axis)
+uint32_t axis_r_lsb2_q8(const tilt_axis_t *axis)
 {
     uint32_t set_lsb2_q8 = parameters_r_lsb2_q8();
-    return set_lsb2_q8 != 0 ? set_lsb2_q8 : noise_r_lsb2_q8(&axis->noise);
+    return set_lsb2_q8 != 0 ? set_lsb2_q8 : filter_noise_r_lsb2_q8(&axis->noise);
 }
 
-/* Within 2.8 sigmas of the estimate, by the R of the noise, which is 3.5 of a healthy sensor's. */
-static bool near_estimate(const axis_t *axis)
+static void count_sample(uint8_t flags)
 {
-    int16_t off_lsb = (int16_t)(axis->lsb - estimate_lsb(axis));
-    uint16_t size_lsb = (uint16_t)(off_lsb < 0 ? -off_lsb : off_lsb);
-    return fx_mul_u16(size_lsb, size_lsb) <= noise_r_lsb2_q8(&axis->noise) >> 5;
-}
-
-/*
- * Amid a sample, the filter of its axis begins anew. From the estimate, where the noise that it has learned was that of
- * a sensor that hung: none, so that it would refuse what comes now. Else on the sample, with the noise as it is known.
- */
-static void renew(bool from_estimate)
-{
-    pipeline.work = WORK_RENEW;
-    pipeline.step = 0;
-    pipeline.new_noise = from_estimate;
-    pipeline.has_sample = from_estimate;
-    pass.limit = PASS_CHANGING_US / HAL_LAP_US;
-}
-
-/*
- * After a hold. True: the filter takes the sample; near the estimate it goes on from what was held. A single one away
- * from it may be a bad reading: with the second on end that is not at the rail the filter begins anew, with the noise
- * as it is known. That is work of its own, amid the sample's.
- */
-static bool rejoins(axis_t *axis)
-{
-    if (!near_estimate(axis)) {
-        if (pipeline.clipped || axis->away++ < AWAY_SAMPLES) {
-            pipeline_flag(ROW_GATED);
-            return false;
-        }
-        pipeline_flag(ROW_REACQUIRED);
-        renew(false);
-    }
-    axis->away = 0;
-    return true;
-}
-
-_Static_assert((int)FILTER_GATED == (int)ROW_GATED && (int)FILTER_REACQUIRED == (int)ROW_REACQUIRED, "same bits");
-
-static void update_axis(axis_t *axis)
-{
-    keep_estimate(axis, filter_any_update(&axis->filter, axis->lsb));
-    uint8_t flags = filter_any_flags(&axis->filter);
-    uint8_t same = flags & (FILTER_GATED | FILTER_REACQUIRED);
-    pipeline_flag((uint16_t)((flags & FILTER_WARMING_UP) ? same | ROW_WARMING_UP : same));
-    if (SUPERVISOR && (flags & FILTER_SWITCHED) != 0) {
-        pipeline_flag(ROW_SWITCHED);
-    }
-    if (pipeline.clipped) {
-        filter_any_hold(&axis->filter);
-    }
-}
-
-/* What comes before the filter of an axis; false: it does not take the sample, or begins anew before it does. */
-static bool prepare_axis(axis_t *axis)
-{
-    int16_t lsb = axis->lsb;
-    bool clipped = lsb >= pipeline.rail_high_lsb || lsb <= (int16_t)(-pipeline.rail_high_lsb - 1);
-    pipeline.clipped = clipped;
-    if (clipped) {
-        pipeline_flag(ROW_CLIPPED);
-        filter_any_hold(&axis->filter);
-    }
-    if (pipeline.stuck == HUNG_SAMPLES && !(pipeline.flags & ROW_STUCK) && axis->away == 0) {
-        renew(true);
-        return false;
-    }
-    if (!clipped && noise_update(&axis->noise, lsb)) {
-        filter_any_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
-    }
-    return axis->away == 0 || (rejoins(axis) && pipeline.work != WORK_RENEW);
-}
-
-static void count_sample(void)
-{
-    uint8_t flags = (uint8_t)pipeline.flags;
     count(COUNT_SAMPLES);
     if (flags & ROW_GATED) {
         count(COUNT_GATED);
@@ -161,8 +65,10 @@ static void count_sample(void)
 
 void pipeline_calibrate(const calibration_t *calibration)
 {
+#if SUPERVISOR
     pipeline.calibration = calibration;
-    pipeline.columns = 0;
+#endif
+    (void)calibration_prepare(&pipeline.applied, calibration);
 }
 
 /* Once for the sample, or the missing one, because it is dear: the row takes what the check of gravity took. */
@@ -170,7 +76,7 @@ static void find_accelerations(void)
 {
     int32_t estimates_q8[AXES];
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        estimates_q8[axis] = pipeline.axes[axis].estimate_q8;
+        estimates_q8[axis] = tilt_axis_estimate_q8(&pipeline.axes[axis]);
     }
 #if SUPERVISOR
     supervisor_complete(estimates_q8);
@@ -178,77 +84,70 @@ static void find_accelerations(void)
     calibration_apply(&pipeline.applied, estimates_q8, pipeline.a_q8);
 }
 
-static void end_sample(void)
+static void end_sample(uint8_t flags)
 {
-    if (!tilt_gravity_plausible(pipeline.a_q8[0], pipeline.a_q8[1], pipeline.a_q8[2])) {
+    if (!tilt_gravity_plausible(pipeline.a_q8)) {
         pipeline_flag(ROW_NOT_GRAVITY);
     }
-    count_sample();
-    if ((pipeline.flags & ROW_STUCK) == 0) {
+    count_sample(flags);
+    pipeline.has_sample = true;
+}
+
+/*
+ * Counts what a sensor that hangs repeats. True: it has come back, and what the filters have learned of the noise was
+ * that of readings without any, so that they would refuse what comes now.
+ */
+static bool hung(void)
+{
+    bool stuck = pipeline.is_stuck;
+    bool back = pipeline.stuck == HUNG_SAMPLES && !stuck;
+    if (!stuck) {
         pipeline.stuck = 0;
     } else if (pipeline.stuck != HUNG_SAMPLES) {
         pipeline.stuck++;
     }
-    pipeline_flag(pipeline.kept_flags);
-}
-
-static bool renewed(void)
-{
-    if (!change_axis()) {
-        return false;
-    }
-    pipeline.work = WORK_SAMPLE;
-    pipeline.has_sample = true;
-    pass.limit = PASS_US / HAL_LAP_US;
-    return true;
-}
-
-/* One axis of a sample, or of one that is missing; a part of it while its filter begins anew. */
-static void axis_step(void)
-{
-    axis_t *axis = axis_now();
-    if (pipeline.work == WORK_COAST) {
-        coast_axis(axis);
-    } else if (pipeline.work == WORK_SAMPLE ? prepare_axis(axis) : renewed()) {
-        update_axis(axis);
-    } else if (pipeline.work == WORK_RENEW) {
-        return;
-    }
-    if (++pipeline.axis == AXES) {
-        find_accelerations();
-        if (pipeline.work == WORK_SAMPLE) {
-            end_sample();
-        }
-        pipeline.work = WORK_NONE;
-    }
+    return back;
 }
 
 /* Apart: it needs every register, and most calls of pipeline_work find nothing to do. */
-FX_NOINLINE void axis_steps(void)
+FX_NOINLINE void filter_axes(void)
 {
-    do {
-        axis_step();
-    } while (pipeline.work != WORK_NONE && pass_in_time());
+    bool sample = pipeline.work == WORK_SAMPLE;
+    bool own_r = parameters_r_lsb2_q8() != 0;
+    uint8_t flags = 0;
+    const int16_t *lsb = pipeline.newest.lsb;
+    for (tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
+        if (!sample) {
+            flags |= tilt_axis_missing(axis);
+            continue;
+        }
+        flags |= tilt_axis_update(axis, *lsb++, pipeline.rail_high_lsb, own_r);
+        if (SUPERVISOR && (axis->filter.flags & FILTER_SWITCHED) != 0) {
+            pipeline_flag(ROW_SWITCHED);
+        }
+    }
+    pipeline_flag(flags);
+    find_accelerations();
+    if (sample) {
+        end_sample(flags);
+    }
+    pipeline.work = WORK_NONE;
 }
 
 bool pipeline_work(void)
 {
+    if (begin_next()) {
+        return true;
+    }
     if (pipeline.work == WORK_NONE) {
-        if (pipeline.columns == AXES) {
-            return false;
-        }
-        calibration_prepare_column(&pipeline.applied, pipeline.calibration, pipeline.columns++);
-    } else if (pipeline.work >= WORK_REPLACE) {
-        change_step();
+        return false;
+    }
+    if (pipeline.work == WORK_SAMPLE && hung()) {
+        begin_all(true);
     } else {
-        axis_steps();
+        filter_axes();
     }
     return true;
-}
-
-bool pipeline_changing(void)
-{
-    return pipeline.work >= WORK_REPLACE || pipeline.columns != AXES;
 }
 
 void pipeline_finish(void)
@@ -259,25 +158,22 @@ void pipeline_finish(void)
 
 void pipeline_sample(const adxl345_sample_t *sample)
 {
-    pipeline.kept_flags = pipeline.flags;
-    pipeline.flags = 0;
+    pipeline.is_stuck = false;
     silence_end();
-    pipeline.last_us = sample->t_us;
-    pipeline.has_sample = true;
 #if SUPERVISOR
     supervisor_look(sample->lsb);
 #endif
-    for (uint8_t axis = 0; axis < AXES; axis++) {
-        pipeline.axes[axis].lsb = sample->lsb[axis];
-    }
+    pipeline.newest = *sample;
     pipeline.work = WORK_SAMPLE;
-    pipeline.axis = 0;
-    replace_axis();
+    pipeline.turn = true;
 }
 
 FX_ONCE void pipeline_flag(uint16_t flags)
 {
     pipeline.flags |= flags;
+    if (flags & ROW_STUCK) {
+        pipeline.is_stuck = true;
+    }
 }
 
 /*
@@ -295,11 +191,12 @@ static int16_t to_mg(int32_t value_q8)
 
 void pipeline_row(row_t *row)
 {
-    row->t_us = pipeline.last_us;
+    row->t_us = pipeline.newest.t_us;
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        row->lsb[axis] = pipeline.axes[axis].lsb;
+        row->lsb[axis] = pipeline.newest.lsb[axis];
     }
-    tilt_angles(&pipeline.tilt, pipeline.a_q8[0], pipeline.a_q8[1], pipeline.a_q8[2]);
+    pipeline_mg(row->mg);
+    tilt_angles(&pipeline.tilt, pipeline.a_q8);
     row->roll_cdeg = pipeline.tilt.roll_cdeg;
     row->pitch_cdeg = pipeline.tilt.pitch_cdeg;
     row->flags = pipeline.flags;
@@ -327,10 +224,10 @@ void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg)
     int32_t readings_q8[AXES];
     int32_t a_q8[AXES];
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        readings_q8[axis] = (int32_t)pipeline.axes[axis].lsb * 256;
+        readings_q8[axis] = (int32_t)pipeline.newest.lsb[axis] * 256;
     }
     calibration_apply(&pipeline.applied, readings_q8, a_q8);
-    tilt_angles(&pipeline.raw_tilt, a_q8[0], a_q8[1], a_q8[2]);
+    tilt_angles(&pipeline.raw_tilt, a_q8);
     *roll_cdeg = pipeline.raw_tilt.roll_cdeg;
     *pitch_cdeg = pipeline.raw_tilt.pitch_cdeg;
 }

@@ -28,21 +28,26 @@ enum row_flag {
     ROW_LEFT_OUT = 4096  /* the angles are without one axis, which is known bad */
 };
 
+enum { ROW_COLUMNS = 8 };
+
 typedef struct {
     uint32_t t_us;
-    int16_t lsb[3]; /* as read; in a coasted row the last sample */
-    int16_t roll_cdeg;
-    int16_t pitch_cdeg;
+    union {
+        struct {
+            int16_t lsb[3]; /* as read; in a coasted row the last sample */
+            int16_t mg[3];  /* filtered accelerations */
+            int16_t roll_cdeg;
+            int16_t pitch_cdeg;
+        };
+        int16_t columns[ROW_COLUMNS]; /* the same, in the order of the csv rows */
+    };
     uint16_t flags;
 } row_t;
 
 /* Once at start-up: angles level. */
 void pipeline_reset(void);
 
-/*
- * What turns readings into accelerations, legal (calibration.h) and to be left where it lies: pipeline_work takes it up
- * between two samples.
- */
+/* What turns readings into accelerations from now on, legal (calibration.h) and to be left where it lies. */
 void pipeline_calibrate(const calibration_t *calibration);
 
 /* Begin anew: filters collect a robust start, noise estimates start at their floor. */
@@ -63,22 +68,20 @@ void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 void pipeline_retime(uint32_t period_us);
 
 /*
- * Goes on with what pipeline_start, _change, _retime, _coast or _sample have begun, as long as there is time in the
- * pass (pass.h), but with one piece at least; false: nothing was left to do. So the main loop can look after other
- * things meanwhile. Nothing else is to be begun before, but a change takes the place of a change.
+ * One piece of what pipeline_start, _change, _retime, _coast or _sample have begun: the filter of an axis changed, up
+ * to
+ * 4 ms, or a sample; false: nothing was left to do. So the main loop can look after other things meanwhile. Nothing
+ * else is to be begun before, but a change takes the place of a change.
  */
 bool pipeline_work(void);
-
-/* Filters are changed, or a calibration is taken up, and no sample is waited for. */
-bool pipeline_changing(void);
 
 /* All that is left to do, for a program without a main loop. */
 void pipeline_finish(void);
 
 /*
- * One sample to filters and noise estimates, which pipeline_work takes axis by axis. After a hold the filters go on
- * from the estimate that was held when the sample agrees with it, and begin anew with the second on end that does not,
- * each axis for itself.
+ * One sample, which pipeline_work takes to filters and noise estimates. After a hold the filters go on from the
+ * estimate that was held when the sample agrees with it, and restart with the second in a row that does not, each axis
+ * for itself.
  */
 void pipeline_sample(const adxl345_sample_t *sample);
 
@@ -100,7 +103,7 @@ void pipeline_row(row_t *row);
 /* The row went out: start collecting flags anew and count a warm-up row. */
 void pipeline_row_done(void);
 
-/* Filtered accelerations of the row, mg; apart from the row, because the plotter's rows do without. */
+/* Filtered accelerations of the row, mg. */
 void pipeline_mg(int16_t mg[3]);
 
 /* Roll and pitch of the newest raw sample, for the plotter. */

@@ -1,66 +1,28 @@
 /* The filters of the axes: chosen, begun, changed, told the sensor's true rate. */
 #include "fx.h"
 #include "parameters.h"
-#include "pass.h"
 #include "pipeline_state.h"
 
 enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_retime; 1 degree */
 
-FX_NOINLINE void begin_work(work_t work, uint8_t axis)
-{
-    pipeline.work = (uint8_t)work;
-    pipeline.axis = axis;
-    pipeline.step = 0;
-    pass.limit = PASS_CHANGING_US / HAL_LAP_US;
-}
-
 /*
  * Filters that go on from an output are changed one with each sample, so that a row waits for one of them: a Kalman
- * filter takes 6 ms to settle. Else, and where the noise is not known either, all at once: no sample comes meanwhile.
+ * filter takes 4 ms to settle. Else, and where the noise is not known either, all at once: no sample comes meanwhile.
  */
-static void change(bool new_noise)
+FX_ONCE void begin_all(bool cold)
 {
-    pipeline.new_noise = new_noise;
-    pipeline.to_replace = 0;
-    if (pipeline.has_sample && !new_noise) {
-        pipeline.to_replace = AXES;
-    } else {
-        begin_work(WORK_CHANGE, 0);
-    }
-}
-
-FX_ONCE void replace_axis(void)
-{
-    if (pipeline.to_replace != 0) {
-        pipeline.new_noise = false;
-        begin_work(WORK_REPLACE, --pipeline.to_replace);
-    }
-}
-
-/* keep: the filters go on from the old output, the noise estimates too unless the rate is new. */
-static void begin(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g, bool keep)
-{
-    bool cold = !keep || rate_dhz != pipeline.rate_dhz;
-    if (cold) {
-        pipeline.true_dhz = rate_dhz;
-        pipeline.calls_off = 0;
-    }
-    pipeline.new_kind = filter_kind;
-    pipeline.rate_dhz = rate_dhz;
-    pipeline.has_sample = keep;
-    pipeline.stuck = keep ? pipeline.stuck : 0;
-    pipeline.warm_rows = WARM_ROWS;
-    pipeline.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
-    change(cold);
+    pipeline.cold = cold;
+    pipeline.turn = false;
+    pipeline.to_begin = AXES;
 }
 
 FX_ONCE void pipeline_retime(uint32_t period_us)
 {
     bool still = true;
-    for (axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
-        uint16_t now_lsb_q2 = (uint16_t)(axis->estimate_q8 >> 6);
-        still = (uint16_t)(now_lsb_q2 - axis->looked_lsb_q2 + STILL_LSB_Q2) <= 2u * STILL_LSB_Q2 && still;
-        axis->looked_lsb_q2 = now_lsb_q2;
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        uint16_t now_lsb_q2 = (uint16_t)(tilt_axis_estimate_q8(&pipeline.axes[axis]) >> 6);
+        still = (uint16_t)(now_lsb_q2 - pipeline.looked_lsb_q2[axis] + STILL_LSB_Q2) <= 2u * STILL_LSB_Q2 && still;
+        pipeline.looked_lsb_q2[axis] = now_lsb_q2;
     }
     uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
     uint16_t near_dhz = (pipeline.true_dhz >> 7) + 1u;
@@ -70,57 +32,58 @@ FX_ONCE void pipeline_retime(uint32_t period_us)
         pipeline.calls_off++;
     } else if (still) {
         pipeline.true_dhz = true_dhz;
-        change(false);
+        begin_all(false);
     }
 }
 
-/* Initialised, then told its R, then settled where there is an output to go on from. True: that axis is done. */
-FX_ONCE bool change_axis(void)
+/* The filter goes on from the old one's estimate, where there is one, or warms up. */
+FX_NOINLINE void begin_axis(tilt_axis_t *axis)
 {
-    enum { STEP_INIT, STEP_NOISE, STEP_RESET };
-    axis_t *axis = axis_now();
-    uint8_t step = pipeline.step++;
-    if (step == STEP_INIT) {
-        if (pipeline.new_noise) {
-            noise_init(&axis->noise, pipeline.rate_dhz, pipeline.axis == 2);
-        }
-        parameters_start(&axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
+    int16_t from_lsb = tilt_axis_estimate_lsb(axis);
+    parameters_start(&axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
+    filter_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
+    if (pipeline.has_sample) {
+        filter_reset(&axis->filter, from_lsb);
+    } else {
+        axis->away = 0;
+    }
+}
+
+FX_ONCE bool begin_next(void)
+{
+    uint8_t left = pipeline.to_begin;
+    if (left == 0 || !(pipeline.turn || pipeline.cold || !pipeline.has_sample)) {
         return false;
     }
-    if (step == STEP_NOISE) {
-        filter_any_set_noise(&axis->filter, axis_r_lsb2_q8(axis));
-        if (pipeline.has_sample) {
-            return false;
-        }
-        axis->away = 0;
-        return true;
+    left--;
+    pipeline.to_begin = left;
+    pipeline.turn = false;
+    tilt_axis_t *axis = &pipeline.axes[left];
+    if (pipeline.cold) {
+        filter_noise_init(&axis->noise, pipeline.rate_dhz, left == 2);
     }
-    return !filter_any_reset_step(&axis->filter, estimate_lsb(axis), (uint8_t)(step - STEP_RESET));
+    begin_axis(axis);
+    return true;
 }
 
-FX_ONCE void change_step(void)
+/* The filters go on from the old output, where there is one, the noise estimates too unless the rate is new. */
+void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)
 {
-    if (!change_axis()) {
-        return;
+    bool cold = !pipeline.has_sample || rate_dhz != pipeline.rate_dhz;
+    if (cold) {
+        pipeline.true_dhz = rate_dhz;
+        pipeline.calls_off = 0;
     }
-    pipeline.step = 0;
-    if (pipeline.work == WORK_REPLACE) {
-        pipeline.work = WORK_SAMPLE;
-        pipeline.axis = 0;
-    } else if (++pipeline.axis == AXES) {
-        pipeline.work = WORK_NONE;
-    } else {
-        return;
-    }
-    pass.limit = PASS_US / HAL_LAP_US;
+    pipeline.new_kind = filter_kind;
+    pipeline.rate_dhz = rate_dhz;
+    pipeline.warm_rows = WARM_ROWS;
+    pipeline.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
+    begin_all(cold);
 }
 
 void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)
 {
-    begin(filter_kind, rate_dhz, range_g, false);
-}
-
-void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g)
-{
-    begin(filter_kind, rate_dhz, range_g, pipeline.has_sample);
+    pipeline.has_sample = false;
+    pipeline.stuck = 0;
+    pipeline_change(filter_kind, rate_dhz, range_g);
 }

@@ -14,14 +14,12 @@ typedef struct {
 
 static reply_t queue[QUEUE_LENGTH];
 static uint8_t count;
-static uint8_t line;
-static bool speaking; /* amid a line */
+static bool begun; /* the first of them: a line of it is out */
 
 void replies_start(void)
 {
     count = 0;
-    line = 0;
-    speaking = false;
+    begun = false;
 }
 
 bool replies_room(void)
@@ -55,28 +53,17 @@ bool replies_add(reply_kind_t kind, uint8_t argument)
     return true;
 }
 
-bool replies_speaking(void)
-{
-    return speaking;
-}
-
 bool replies_pass(void)
 {
-    if (!speaking) {
-        if (count == 0 || !text_open((uint8_t)(TEXT_LINE_MAX + SETTINGS_ROW_MAX)) ||
-            !reply_begin_line((reply_kind_t)queue[0].kind, queue[0].argument, line)) {
-            return false;
-        }
-        speaking = true;
+    if (count == 0 || !text_open((uint8_t)(TEXT_LINE_MAX + SETTINGS_ROW_MAX))) {
+        return false;
     }
-    reply_progress_t progress = reply_speak();
-    if (progress == REPLY_SPEAKS) {
-        return true;
+    reply_progress_t progress = reply_line(queue[0].kind, queue[0].argument, !begun);
+    if (progress == REPLY_WAITS) {
+        return false;
     }
-    speaking = false;
-    line++;
-    if (progress == REPLY_ENDED) {
-        line = 0;
+    begun = progress == REPLY_GOES_ON;
+    if (!begun) {
         count--;
         for (uint8_t i = 0; i < count; i++) {
             queue[i] = queue[i + 1u];

@@ -2,46 +2,33 @@
 #include "reply_texts.h"
 
 #include "flash.h"
-#include "fx.h"
+#include "replies.h"
+#include "reply_lines.h"
 #include "reply_packed.h"
+#include "text.h"
 
-#define NAME_ROOM(name) sizeof(name) > NAME_BYTES ||
-#define NAME_BYTES 9
+static const char names[] FLASH = REPLY_NAMES;
 
-static const char names[][NAME_BYTES] FLASH = {
-#define NAME(name) name,
-    REPLY_NAMES(NAME)
-#undef NAME
-};
-_Static_assert(!(REPLY_NAMES(NAME_ROOM) 0), "a name with its end fits");
+_Static_assert((int)PACKED_DEPTH <= (int)REPLY_PAIRS_DEPTH, "room for the pairs in a pair");
+_Static_assert(PACKED_PAIR_FIRST == SAY_PAIR, "the codes of pairs follow those of values");
 
-static const uint8_t *at;
-static uint8_t waiting[PACKED_DEPTH];
-static uint8_t depth;
-
-flash_text_t reply_name(uint8_t command)
+flash_text_t reply_command_name(uint8_t kind)
 {
-    return names[command];
+    return text_nth(names, (uint8_t)(kind - REPLY_HELP));
 }
 
-void reply_text_open(uint8_t id)
+const uint8_t *reply_text(uint8_t text)
 {
-    at = packed_texts + flash_u16(&packed_starts[id / PACKED_STEP]);
-    depth = 0;
-    for (uint8_t ends = id % PACKED_STEP; ends != 0; at++) {
+    const uint8_t *at = packed_texts + flash_u16(&packed_starts[text / PACKED_STEP]);
+    for (uint8_t ends = text % PACKED_STEP; ends != 0; at++) {
         if (flash_u8(at) == 0) {
             ends--;
         }
     }
+    return at;
 }
 
-FX_ONCE uint8_t reply_text_next(void)
+uint8_t reply_pair(uint8_t code, uint8_t half)
 {
-    uint8_t code = depth != 0 ? waiting[--depth] : flash_u8(at++);
-    while (code >= PACKED_PAIR_FIRST) {
-        const uint8_t *pair = packed_pairs + 2u * (uint8_t)(code - PACKED_PAIR_FIRST);
-        waiting[depth++] = flash_u8(pair + 1);
-        code = flash_u8(pair);
-    }
-    return code;
+    return flash_u8(packed_pairs + 2u * (uint8_t)(code - PACKED_PAIR_FIRST) + half);
 }

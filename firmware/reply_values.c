@@ -1,23 +1,22 @@
-/* The values in the texts of replies, and what decides how a line goes on. */
+/* Texts of replies with the values in them. */
 #include "reply_said.h"
 
 #include "adxl345.h"
 #include "app.h"
 #include "calibrate.h"
 #include "counters.h"
-#include "filter_any.h"
 #include "flash.h"
-#include "fx.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
 #include "measure_lines.h"
 #include "number.h"
-#include "parameters.h"
+#include "replies.h"
 #include "reply_lines.h"
 #include "reply_texts.h"
 #include "sensor_watch.h"
 #include "settings.h"
 #include "settings_kept.h"
+#include "settings_table.h"
 #include "supervisor.h"
 #include "text.h"
 
@@ -26,26 +25,20 @@ _Static_assert(TEXT_TWO_SENSORS - TEXT_NO_SENSOR == ADXL345_FAULT_TWO_SENSORS - 
 _Static_assert(TEXT_WATCHDOG - TEXT_POWER_ON == HAL_RESET_WATCHDOG, "words for each cause");
 _Static_assert(TEXT_STATE_FAULTY - TEXT_STATE_STOPPED == ADXL345_FAULTY, "words for each phase");
 
-said_t said;
+_Static_assert(TEXT_CHECK_BUS - TEXT_LISTED == SAY_CHECK_BUS - SAY_LISTED, "a text for each");
 
-static void say_filters(void)
-{
-    for (uint8_t kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-        if (kind != 0) {
-            text_char(' ');
-        }
-        text_words(filter_any_name((filter_kind_t)kind));
-    }
-}
+said_t said;
 
 /* value / 100, with both decimals. */
 static void say_hundredths(uint32_t value)
 {
-    uint8_t cents = (uint8_t)(value % 100u);
     text_u32(value / 100u);
     text_char('.');
-    text_char((char)('0' + cents / 10u));
-    text_char((char)('0' + cents % 10u));
+    uint8_t cents = (uint8_t)(value % 100u);
+    if (cents < 10u) {
+        text_char('0');
+    }
+    text_u32(cents);
 }
 
 /* The counters of the firmware, then those of the driver. */
@@ -58,43 +51,22 @@ static uint32_t next_count(void)
     return adxl345_count((uint8_t)(at - COUNTERS));
 }
 
-static bool every_is_forced(void)
-{
-    return settings_every_in_force() != settings.every;
-}
-
-static void say_why(void)
-{
-    if (every_is_forced()) {
-        bool carried = settings_every_in_force() == settings_smallest_every(settings.baud, settings.rate_dhz);
-        said.next = carried ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES;
-    }
-}
-
 static uint32_t number(uint8_t what)
 {
     switch (what) {
     case SAY_COUNT:
         return next_count();
-    case SAY_FAULT:
-        return (uint32_t)adxl345_fault();
     case SAY_SERIAL_LOST:
         return hal_uart_rx_lost();
     case SAY_CYCLES:
-        return settings_filter_cycles(said.filter);
+        return settings_cycles.takes;
     case SAY_LEFT:
-        return settings_left_cycles(said.rate_dhz);
-    case SAY_RANGE:
-        return settings.range_g;
-    case SAY_EVERY:
-        return settings_every_in_force();
-    case SAY_BAUD:
-        return settings.baud;
+        return settings_cycles.left;
     case SAY_RESIDUAL:
         return calibrate_told.residual_mg;
     case SAY_TO_GO:
         return calibrate_told.left;
-    case SAY_NOTE:
+    case SAY_RUN_NOTE:
         return hal_reset_note();
     case SAY_OUTAGE_MS:
         return sensor_watch_outage.ms;
@@ -102,54 +74,6 @@ static uint32_t number(uint8_t what)
         return sensor_watch_outage.lost;
     default:
         return said.subject;
-    }
-}
-
-/* A parameter: its name, value and unit, or what is legal. */
-static void say_parameter(uint8_t what)
-{
-    const filter_parameter_t *parameter = parameters_at(said.subject);
-    uint8_t bits = fx_flash_u8(&parameter->fraction_bits);
-    bool is_signed = fx_flash_u8(&parameter->is_signed) != 0;
-    if (what == SAY_PARAMETER) {
-        text_words(parameter->name);
-        for (uint8_t i = 0; i < parameters_numbers(said.subject); i++) {
-            text_char(' ');
-            number_write(parameters_value(said.subject, i), bits, is_signed);
-        }
-        if (flash_char(parameter->unit) != '\0') {
-            text_char(' ');
-            text_words(parameter->unit);
-        }
-        return;
-    }
-    text_words(FLASH_TEXT(": "));
-    number_write(fx_flash_u32((const uint32_t *)&parameter->min), bits, is_signed);
-    text_words(FLASH_TEXT(" to "));
-    number_write(fx_flash_u32((const uint32_t *)&parameter->max), bits, is_signed);
-    if (fx_flash_u8(&parameter->zero_means_off) != 0) {
-        text_words(FLASH_TEXT(", 0: off"));
-    }
-}
-
-static void say_axes(void)
-{
-    for (uint8_t i = 0; i < 3; i++) {
-        int8_t axis = settings.calibration.axes[i];
-        if (axis < 0) {
-            text_char('-');
-            axis = (int8_t)-axis;
-        }
-        text_char((char)('x' - 1 + axis));
-    }
-}
-
-static void say_set_address(void)
-{
-    if (settings.address == 0) {
-        text_words(FLASH_TEXT("auto"));
-    } else {
-        text_hex8(settings.address);
     }
 }
 
@@ -167,18 +91,94 @@ static uint8_t hexadecimal(uint8_t what)
     }
 }
 
-/* What stands for a value. */
-static void say_value(uint8_t what)
+/* Those of the banner. */
+static void say_settings(void)
+{
+    for (uint8_t which = SETTING_FILTER; which <= SETTING_BAUD; which++) {
+        if (which != SETTING_FILTER) {
+            text_words(FLASH_TEXT(", "));
+        }
+        setting_write(which);
+    }
+}
+
+static void say_verbs(void)
+{
+    for (uint8_t kind = REPLY_HELP; kind <= REPLY_LISTING; kind++) {
+        if (kind != REPLY_HELP) {
+            text_words(FLASH_TEXT(", "));
+        }
+        text_words(reply_command_name(kind));
+    }
+}
+
+/* What is to be said of a setting behind its value. */
+static uint8_t note(void)
+{
+    if (said.subject == SETTING_RATE) {
+        return TEXT_BUS;
+    }
+    if (said.subject == SETTING_EVERY && settings_every_in_force() != settings.every) {
+        return settings.line_is_slower ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES;
+    }
+    return TEXT_NONE;
+}
+
+/* A text that is one of several. */
+static uint8_t text_chosen(uint8_t what)
+{
+    switch (what) {
+    case SAY_CAUSE:
+        return (uint8_t)(TEXT_POWER_ON + hal_reset_cause());
+    case SAY_SAFE:
+        return app_is_safe() ? TEXT_SAFE : TEXT_NONE;
+    case SAY_STATE:
+        return (uint8_t)(TEXT_STATE_STOPPED + adxl345_phase());
+    case SAY_KEPT:
+        return (uint8_t)(TEXT_KEPT_DAMAGED + settings_kept);
+    case SAY_LIMITS:
+        return said.subject == 2 ? TEXT_LIMITS_Z : TEXT_LIMITS_XY;
+    case SAY_VERDICT:
+        return (uint8_t)(TEXT_FAIL - VERDICT_FAIL + measure_verdict(said.subject));
+    case SAY_SETTING_NOTE:
+        return note();
+    case SAY_EVERY:
+        said.subject = SETTING_EVERY;
+        return TEXT_SETTING;
+    case SAY_SENSOR:
+        said.subject = (uint8_t)adxl345_fault();
+        return said.subject == ADXL345_FAULT_NONE ? TEXT_SENSOR : TEXT_FAULT_BEGIN;
+    case SAY_FAULT_WORDS:
+        return (uint8_t)(TEXT_NO_SENSOR - ADXL345_FAULT_NO_SENSOR + said.subject);
+    default:
+        return (uint8_t)(TEXT_LISTED - SAY_LISTED + what);
+    }
+}
+
+/* What is neither a text nor one of many numbers. */
+static void say_other(uint8_t what)
 {
     switch (what) {
     case SAY_NAME:
         text_words(reply_command_name(said.subject));
         break;
-    case SAY_FILTER:
-        text_words(filter_any_name((filter_kind_t)said.filter));
+    case SAY_SETTING_NAME:
+        text_words(setting_name(said.subject));
+        break;
+    case SAY_SETTING:
+        setting_write(said.subject);
+        break;
+    case SAY_LEGAL:
+        setting_write_legal(said.subject);
+        break;
+    case SAY_SETTINGS:
+        say_settings();
+        break;
+    case SAY_VERBS:
+        say_verbs();
         break;
     case SAY_RATE:
-        text_tenths(said.rate_dhz);
+        text_tenths(settings.rate_dhz);
         break;
     case SAY_MEASURED:
         say_hundredths(adxl345_rate_chz());
@@ -186,101 +186,36 @@ static void say_value(uint8_t what)
     case SAY_BUS_KHZ: /* 800 Hz needs 400, where tLOW is 1.25 us instead of the 1.3 us of both data sheets */
         text_tenths(settings.rate_dhz == 8000 ? 4000 : 3636);
         break;
-    case SAY_FILTERS:
-        say_filters();
-        break;
-    case SAY_ADDRESS:
-    case SAY_OUTAGE_ADDRESS:
-    case SAY_FOREIGN_ADDRESS:
-    case SAY_FOREIGN_ID:
-        text_hex8(hexadecimal(what));
-        break;
-    case SAY_PARAMETER:
-    case SAY_PARAMETER_RANGE:
-        say_parameter(what);
-        break;
-    case SAY_AXES:
-        say_axes();
-        break;
-    case SAY_SET_ADDRESS:
-        say_set_address();
-        break;
     case SAY_POSITION:
-        text_char((said.axis & 1u) != 0 ? '-' : '+');
-        text_char((char)('x' + (said.axis >> 1)));
+        text_char((said.subject & 1u) != 0 ? '-' : '+');
+        text_char((char)('x' + (said.subject >> 1)));
         break;
     case SAY_AXIS:
-        text_char((char)('x' + said.axis));
-        break;
-    case SAY_SHIFT:
-    case SAY_RMS:
-    case SAY_R:
-    case SAY_OFF:
-        number_write((uint32_t)measure_number_q8(what, said.axis), 8, true);
+        text_char((char)('x' + said.subject));
         break;
     default:
-        text_u32(number(what));
-        break;
-    }
-}
-
-/* What decides how the line or the reply goes on. */
-static void say_on(uint8_t what)
-{
-    switch (what) {
-    case SAY_MORE:
-        said.progress = REPLY_GOES_ON;
-        break;
-    case SAY_MORE_IF_FORCED:
-        said.progress = every_is_forced() ? REPLY_GOES_ON : REPLY_ENDED;
-        break;
-    case SAY_THEN_CAUSE:
-        said.next = (uint8_t)(TEXT_POWER_ON + hal_reset_cause());
-        break;
-    case SAY_THEN_SAFE:
-        said.next = app_is_safe() ? TEXT_SAFE : TEXT_NONE;
-        break;
-    case SAY_THEN_LEGAL:
-        said.next = (uint8_t)(TEXT_LEGAL_FILTER - REPLY_FILTER + said.subject);
-        break;
-    case SAY_THEN_FAULT:
-        said.next = (uint8_t)(TEXT_NO_SENSOR - ADXL345_FAULT_NO_SENSOR + said.subject);
-        break;
-    case SAY_THEN_STATE:
-        said.next = (uint8_t)(TEXT_STATE_STOPPED + adxl345_phase());
-        break;
-    case SAY_THEN_WHY:
-        say_why();
-        break;
-    case SAY_THEN_KEPT:
-        said.next = (uint8_t)(TEXT_KEPT_DAMAGED + settings_kept);
-        break;
-    case SAY_THEN_LIMITS:
-        said.next = said.axis == 2 ? TEXT_LIMITS_Z : TEXT_LIMITS_XY;
-        break;
-    case SAY_THEN_VERDICT:
-        said.next = (uint8_t)(TEXT_FAIL - VERDICT_FAIL + measure_verdict(said.axis));
-        break;
-    case SAY_THEN_MODE:
-        said.next = (uint8_t)(TEXT_CSV + settings.mode);
-        break;
-    default:
-        said.next = TEXT_STATE_REST;
-        break;
-    }
-}
-
-FX_ONCE void say_byte(uint8_t c)
-{
-    if (c >= ' ' && c < SAY_FOREIGN_ADDRESS) {
-        text_char((char)c);
-    } else if (c < SAY_MORE || (c >= SAY_FOREIGN_ADDRESS && c < SAY_THEN_KEPT)) {
-        say_value(c);
-    } else if (c != SAY_THEN_CHOICES) {
-        say_on(c);
-    } else {
 #if SUPERVISOR
         supervisor_say();
 #endif
+        break;
     }
+}
+
+uint8_t say(uint8_t code)
+{
+    if (code >= SAY_ALONE) {
+        return text_chosen(code);
+    }
+    if (code >= ' ') {
+        text_char((char)code);
+    } else if (code <= SAY_LAST_NUMBER) {
+        text_u32(number(code));
+    } else if (code <= SAY_LAST_HEXADECIMAL) {
+        text_hex8(hexadecimal(code));
+    } else if (code <= SAY_LAST_Q8) {
+        number_write((uint32_t)measure_number_q8(code, said.subject), 8);
+    } else {
+        say_other(code);
+    }
+    return TEXT_NONE;
 }

@@ -25,21 +25,13 @@ void rows_enable(bool now_enabled)
     since_row = 0;
 }
 
-static char *write_csv(char *at, const row_t *row, const int16_t mg[3])
+static char *write_csv(char *at, const row_t *row)
 {
     at = format_u32(at, row->t_us);
-    for (uint8_t axis = 0; axis < 3; axis++) {
+    for (uint8_t column = 0; column < ROW_COLUMNS; column++) {
         *at++ = ',';
-        at = format_i16(at, row->lsb[axis]);
+        at = format_i16(at, row->columns[column]);
     }
-    for (uint8_t axis = 0; axis < 3; axis++) {
-        *at++ = ',';
-        at = format_i16(at, mg[axis]);
-    }
-    *at++ = ',';
-    at = format_i16(at, row->roll_cdeg);
-    *at++ = ',';
-    at = format_i16(at, row->pitch_cdeg);
     *at++ = ',';
     return format_u16(at, row->flags);
 }
@@ -70,14 +62,7 @@ static char *write_plot(char *at, const row_t *row)
 static void write(const row_t *row)
 {
     char line[ROW_MAX];
-    char *end;
-    if (settings.mode == MODE_PLOT) {
-        end = write_plot(line, row);
-    } else {
-        int16_t mg[3];
-        pipeline_mg(mg);
-        end = write_csv(line, row, mg);
-    }
+    char *end = settings.mode == MODE_PLOT ? write_plot(line, row) : write_csv(line, row);
     *end++ = '\n';
     if (!hal_uart_tx_write(line, (uint8_t)(end - line))) {
         count(COUNT_DROPPED);

@@ -1,17 +1,17 @@
 /* Defaults and the arithmetic of what the line carries and the processor has time for. */
 #include "settings.h"
 
-#include "filter_any.h"
+#include "filter_list.h"
 #include "flash.h"
 #include "fx.h"
 #include "hal_time.h"
 #include "pipeline.h"
+#include "settings_words.h"
 
 settings_t settings;
+settings_cycles_t settings_cycles;
 
 enum { AXES = 3 };
-
-static const uint32_t bauds[] FLASH = { 9600, 19200, 38400, 57600, 115200, 250000, 500000, 1000000 };
 
 void settings_defaults(void)
 {
@@ -28,7 +28,7 @@ void settings_defaults(void)
 
 uint8_t settings_filter_mark(uint8_t filter)
 {
-    const char *name = filter_any_name((filter_kind_t)filter);
+    flash_text_t name = settings_word(filter);
     uint8_t mark = 0;
     for (char c = flash_char(name); c != '\0'; c = flash_char(name)) {
         mark = (uint8_t)(mark * 2u + (uint8_t)c);
@@ -54,27 +54,9 @@ bool settings_calibrate(const calibration_t *calibration)
     return true;
 }
 
-bool settings_baud_valid(uint32_t baud)
-{
-    for (uint8_t i = 0; i < sizeof bauds / sizeof bauds[0]; i++) {
-        if (flash_u32(&bauds[i]) == baud) {
-            return true;
-        }
-    }
-    return false;
-}
-
-FX_ONCE bool settings_doubled(uint16_t lowest, uint16_t highest, uint16_t value)
-{
-    while (lowest < value && lowest < highest) {
-        lowest = (uint16_t)(lowest << 1);
-    }
-    return lowest == value;
-}
-
 FX_ONCE uint16_t settings_filter_cycles(uint8_t filter)
 {
-    return (uint16_t)(AXES * filter_any_worst_cycles((filter_kind_t)filter));
+    return (uint16_t)(AXES * filter_worst_cycles(filter_listed((filter_kind_t)filter)));
 }
 
 FX_ONCE uint32_t settings_left_cycles(uint16_t rate_dhz)
@@ -83,9 +65,15 @@ FX_ONCE uint32_t settings_left_cycles(uint16_t rate_dhz)
     return period > SETTINGS_REST_CYCLES ? period - SETTINGS_REST_CYCLES : 0;
 }
 
-FX_ONCE bool settings_fit(uint8_t filter, uint16_t rate_dhz)
+bool settings_fit(uint8_t filter, uint16_t rate_dhz)
 {
-    return settings_filter_cycles(filter) < settings_left_cycles(rate_dhz);
+    uint16_t takes = settings_filter_cycles(filter);
+    uint32_t left = settings_left_cycles(rate_dhz);
+    if (takes < left) {
+        return true;
+    }
+    settings_cycles = (settings_cycles_t){ takes, (uint16_t)left };
+    return false;
 }
 
 /* Rounded up; wanted is at least 1. */
@@ -95,17 +83,18 @@ FX_NOINLINE uint16_t quotient(uint32_t wanted, uint32_t each)
 }
 
 /* Ten bits a byte: baud bytes in ten seconds; rate_dhz samples in ten seconds. */
-FX_ONCE uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
+uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
 {
     return quotient((uint32_t)rate_dhz * SETTINGS_ROW_MAX, baud);
 }
 
-FX_ONCE void settings_follow(void)
+void settings_follow(void)
 {
-    uint32_t over = settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter);
     uint16_t carried = settings_smallest_every(settings.baud, settings.rate_dhz);
-    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, over);
-    settings.every_smallest = carried > computed ? carried : computed;
+    uint16_t computed = quotient(SETTINGS_ROW_CYCLES,
+                                 settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter));
+    settings.line_is_slower = carried >= computed;
+    settings.every_smallest = settings.line_is_slower ? carried : computed;
 }
 
 FX_ONCE uint16_t settings_every_in_force(void)

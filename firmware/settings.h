@@ -18,7 +18,7 @@ typedef enum { MODE_CSV, MODE_PLOT } output_mode_t;
 /* Little-endian on PC and chip and without gaps, as far as it is kept: its bytes are the image that `save` writes. */
 typedef struct {
     uint32_t parameters[SETTINGS_PARAMETERS_MAX]; /* of the filter, as stored: those of which `own` has a bit */
-    uint32_t baud;                                /* SETTINGS_BAUD_DEFAULT, see settings_baud_valid */
+    uint32_t baud;                                /* legal values of all: settings_table.c */
     uint16_t rate_dhz;                            /* output data rate in 0.1 Hz */
     uint16_t every;                               /* a row for every Nth sample, as asked for: 1..SETTINGS_EVERY_MAX */
     calibration_t calibration;                    /* legal: settings_calibrate */
@@ -32,14 +32,12 @@ typedef struct {
     /* not kept */
     uint8_t filter;          /* filter_kind_t */
     uint16_t every_smallest; /* follows from baud, rate and filter: settings_follow */
+    bool line_is_slower;     /* than the processor: it decides that */
 } settings_t;
 
 #define SETTINGS_BAUD_DEFAULT 115200ul
 #define SETTINGS_EVERY_MAX 10000u
 #define SETTINGS_RATE_MIN_DHZ 125u
-#define SETTINGS_RATE_MAX_DHZ 8000u
-#define SETTINGS_RANGE_MIN_G 2u
-#define SETTINGS_RANGE_MAX_G 16u
 
 /* What the line must carry for a row: at most 67 bytes (csv) or 69 (plot), and some for replies. */
 #define SETTINGS_ROW_MAX 72u
@@ -50,10 +48,10 @@ typedef struct {
  * of the main loop, three noise estimates, and new variances as often as an estimate can leave the last by an eighth.
  * What is longer but rare (five warm-up samples, variances on all axes at once, replies, a change of settings) waits
  * in the sensor's FIFO and the driver's queue, 39 samples together, and is caught up with what a sample leaves over.
- * At 800 Hz the two leave 1,500 cycles, 500 for each axis, to a filter of which every row goes out: synth's 500.
+ * At 800 Hz the two leave 1,200 cycles, 400 for each axis: less than any filter takes, so not every row goes out.
  */
-#define SETTINGS_REST_CYCLES 8050u
-#define SETTINGS_ROW_CYCLES 10450u
+#define SETTINGS_REST_CYCLES 8300u
+#define SETTINGS_ROW_CYCLES 10500u
 
 extern settings_t settings;
 
@@ -64,10 +62,6 @@ uint8_t settings_filter_mark(uint8_t filter);
 
 /* The setting `filter`: with its mark, its parameters as shipped. */
 void settings_take_filter(uint8_t filter);
-bool settings_baud_valid(uint32_t baud);
-
-/* The value is the lowest, or that times two, four, ..., up to the highest. */
-bool settings_doubled(uint16_t lowest, uint16_t highest, uint16_t value);
 
 /* A calibration takes effect and is in the settings; false: it is not legal, nothing changes. */
 bool settings_calibrate(const calibration_t *calibration);
@@ -78,6 +72,13 @@ uint32_t settings_left_cycles(uint16_t rate_dhz);
 
 /* The rule: the first is less than the second. What it leaves over is for rows. */
 bool settings_fit(uint8_t filter, uint16_t rate_dhz);
+
+/* Both, of the last that did not fit. */
+typedef struct {
+    uint16_t takes;
+    uint16_t left;
+} settings_cycles_t;
+extern settings_cycles_t settings_cycles;
 
 /* To be called when baud, rate or filter has changed. */
 void settings_follow(void);

@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-#include "filter_any.h"
+#include "filter_list.h"
 #include "settings.h"
 #include "store.h"
 

@@ -1,6 +1,7 @@
 /*
- * How long no sample has come, in missing samples and in 25 ms, up to a second: what the filters do meanwhile depends
- * on it. Counted, not measured, so that the chip counts as the PC does. Main only.
+ * How long no sample has come, in missing samples and in 25 ms, up to a second: rows and the way back depend on it.
+ * Each filter counts the same for itself (filter_missing). Counted, not measured, so that the chip counts as the PC
+ * does. Main only.
  */
 #ifndef SILENCE_H
 #define SILENCE_H
@@ -13,8 +14,8 @@ enum { SILENCE_FAULT_FROM = 3 };
 /* A sample has come. */
 void silence_end(void);
 
-/* One is missing. Returns how often 25 ms have passed since the step before. */
-uint8_t silence_step(uint16_t rate_dhz);
+/* One is missing, at the rate that the filters have, 0.1 Hz. */
+void silence_step(uint16_t rate_dhz);
 
 /* Samples on end, up to SILENCE_FAULT_FROM. */
 uint8_t silence_samples(void);

@@ -19,8 +19,7 @@ static struct {
 /* On all axes: a change of filter begins with the last and ends with the first. */
 static bool in_force(void)
 {
-    return pipeline.axes[0].filter.kind == (uint8_t)FILTER_KIND_auto &&
-           pipeline.axes[AXES - 1].filter.kind == (uint8_t)FILTER_KIND_auto;
+    return pipeline.axes[0].filter.law == &filter_law_auto && pipeline.axes[AXES - 1].filter.law == &filter_law_auto;
 }
 
 /* The signs stay: of an axis that is stuck since before, its last is the best guess. */
@@ -36,7 +35,7 @@ void supervisor_look(const int16_t lsb[3])
 {
     for (uint8_t axis = 0; axis < AXES; axis++) {
         uint8_t *repeated = &supervisor.repeated[axis];
-        if (lsb[axis] != pipeline.axes[axis].lsb) {
+        if (lsb[axis] != pipeline.newest.lsb[axis]) {
             *repeated = 0;
         } else if (*repeated != UINT8_MAX) {
             (*repeated)++;
@@ -46,8 +45,8 @@ void supervisor_look(const int16_t lsb[3])
 
 static bool is_bad(uint8_t axis)
 {
-    int16_t lsb = pipeline.axes[axis].lsb;
-    bool at_rail = lsb >= pipeline.rail_high_lsb || lsb <= (int16_t)(-pipeline.rail_high_lsb - 1);
+    int16_t lsb = pipeline.newest.lsb[axis];
+    bool at_rail = tilt_at_rail(lsb, pipeline.rail_high_lsb);
     uint8_t limit = at_rail ? SUPERVISOR_RAIL_SAMPLES : SUPERVISOR_REPEATED_SAMPLES;
     return supervisor.repeated[axis] >= limit;
 }
@@ -125,12 +124,12 @@ static uint16_t remaining_sigma_q8(void)
     uint32_t p_lsb2_q8 = 0;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         filter_probe_t probe;
-        filter_any_probe(&pipeline.axes[axis].filter, &probe);
+        filter_probe(&pipeline.axes[axis].filter, &probe);
         if (axis != supervisor.left_out && probe.p_lsb2_q8 > p_lsb2_q8) {
             p_lsb2_q8 = probe.p_lsb2_q8;
         }
     }
-    return fx_isqrt32((p_lsb2_q8 << 8) + (PART_ERROR_LSB * PART_ERROR_LSB << 16)); /* <= 1100 LSB^2 in Q16 */
+    return filter_fx_isqrt32((p_lsb2_q8 << 8) + (PART_ERROR_LSB * PART_ERROR_LSB << 16)); /* <= 1100 LSB^2 in Q16 */
 }
 
 static void say_axis(uint8_t axis)
@@ -148,7 +147,7 @@ void supervisor_say(void)
     for (uint8_t axis = 0; axis < AXES; axis++) {
         text_char(' ');
         say_axis(axis);
-        text_words(names[pipeline.axes[axis].filter.state.of_auto.chosen]);
+        text_words(names[pipeline.axes[axis].filter.own.bank.chosen]);
     }
     if (supervisor.left_out != AXES) {
         text_words(FLASH_TEXT(", without "));

@@ -62,10 +62,20 @@ void text_tenths(uint16_t value)
     }
 }
 
+flash_text_t text_nth(flash_text_t texts, uint8_t after)
+{
+    while (after != 0) {
+        if (flash_char(texts++) == '\0') {
+            after--;
+        }
+    }
+    return texts;
+}
+
 bool text_equal(const char *ram, flash_text_t words)
 {
     char c = flash_char(words);
-    while (c != '\0' && *ram == c) {
+    while (c != '\0' && (*ram == c || *ram == c + ('a' - 'A'))) {
         ram++;
         words++;
         c = flash_char(words);

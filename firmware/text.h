@@ -26,7 +26,10 @@ void text_hex8(uint8_t value);
 /* value / 10, the decimal only when it is not 0: 125 gives 12.5, 1000 gives 100. */
 void text_tenths(uint16_t value);
 
-/* The text in RAM and the words are the same. */
+/* Of texts that follow each other, each with its end, the one after so many. */
+flash_text_t text_nth(flash_text_t texts, uint8_t after);
+
+/* The text in RAM, as typed: without capitals, is that of the words, which may have some. */
 bool text_equal(const char *ram, flash_text_t words);
 
 #endif

@@ -1,7 +1,7 @@
 """What the Arduino library specification (docs.arduino.cc/arduino-cli/library-specification) and PlatformIO's library.json ask of a folder.
 
 findings(folder) -> a sentence for each breach, with file and line. Written from the specification's words; part of test_arduino.py.
-`python3 host_tests/arduino_rules.py lib/filters` writes keywords.txt anew from the headers.
+`python3 host_tests/arduino_rules.py build/library/tilt-filters lib/filters` writes lib/filters/keywords.txt anew from the headers.
 """
 import json
 import pathlib
@@ -18,7 +18,8 @@ KEYWORDS = ("KEYWORD1", "KEYWORD2", "KEYWORD3", "LITERAL1", "LITERAL2")
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)
 FUNCTION = re.compile(r"^(?:static inline )?(?!typedef|static|extern|#|return)[\w ]+[ *](\w+)\([^;{]*\)(?:;|\n\{)", re.M)
 TYPE = re.compile(r"^\}\s*(\w+);|^typedef \w+ (\w+);", re.M)
-LITERAL = re.compile(r"^\s+(FILTER_[A-Z_]+)\s*(?:=|,)|^enum \{ (\w+_worst_cycles) ", re.M)
+LITERAL = re.compile(r"^\s+((?:FILTER|TILT)_[A-Z_]+)\s*(?:=|,)"
+                     r"|(?<=[{ ])([A-Z]\w*_(?:UQ|Q|LSB|MS|SAMPLES|K|VARIANT_U|IDENTIFY)[A-Z0-9_]*)(?=,|\s*\})", re.M)
 
 
 def findings(folder):
@@ -80,7 +81,9 @@ def public_names(folder):
         text = COMMENT.sub("", (folder / "src" / header).read_text(encoding="utf-8"))
         for pattern, kind in ((FUNCTION, "KEYWORD2"), (TYPE, "KEYWORD1"), (LITERAL, "LITERAL1")):
             names |= {name: kind for match in pattern.finditer(text) for name in match.groups() if name}
-    return names
+        names |= {f"filter_law_{name}": "LITERAL1" for name in re.findall(r"\bX\((\w+)\)", text)}  # declared by the list FILTER_LAWS
+    state = (folder / "src" / "filter_state.h").read_text(encoding="utf-8")  # its other types are inside
+    return names | {name: "KEYWORD1" for name in re.findall(r"\b(filter_t|filter_law_t);", COMMENT.sub("", state))}
 
 
 def keywords_findings(folder):
@@ -110,11 +113,11 @@ def layout_findings(folder):
     return said + ([] if sketches else [f"{folder}/examples: no sketch"])
 
 
-def write_keywords(folder):
-    names = public_names(folder)
+def write_keywords(library, folder):
+    names = public_names(library)
     lines = [f"{name}\t{kind}\n" for kind in KEYWORDS for name in names if names[name] == kind]
     (folder / "keywords.txt").write_text("".join(lines), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    write_keywords(pathlib.Path(sys.argv[1]))
+    write_keywords(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]))

@@ -54,13 +54,12 @@ def impulse_sum(f, samples=200_000):
 
 
 class Parameter(ctypes.Structure):
-    _fields_ = [("name", ctypes.c_char * 10), ("unit", ctypes.c_char * 8), ("offset", ctypes.c_uint8),
-                ("size", ctypes.c_uint8), ("fraction_bits", ctypes.c_uint8),
-                ("zero_means_off", ctypes.c_uint8), ("is_signed", ctypes.c_uint8), ("min", ctypes.c_int32), ("max", ctypes.c_int32)]
+    _fields_ = [("name", ctypes.c_char * 10), ("unit", ctypes.c_char * 8), ("fraction_bits", ctypes.c_uint8), ("zero_means_off", ctypes.c_uint8),
+                ("min", ctypes.c_int32), ("max", ctypes.c_int32), ("standard", ctypes.c_int32)]
 
 
-class Descriptor(ctypes.Structure):
-    _fields_ = [("name", ctypes.c_char * 12), ("parameter_count", ctypes.c_uint8), ("parameters", ctypes.POINTER(Parameter))]
+class Config(ctypes.Structure):
+    _fields_ = [("rate_dhz", ctypes.c_uint16), ("value", ctypes.c_int32 * 7)]
 
 
 class Probe(ctypes.Structure):
@@ -69,13 +68,13 @@ class Probe(ctypes.Structure):
                 ("gate_lsb2_q8", ctypes.c_uint32), ("gain_uq16", ctypes.c_uint16), ("flags", ctypes.c_uint8)]
 
 
-# field of NAME_config_t for each parameter's name as typed
+# what the tool calls the value of each parameter's name as typed
 FIELDS = {"a1": "a1_q16", "b0": "b0_uq16", "b1": "b1_q16", "b2": "b2_q16", "r": "r_lsb2_q8", "q": "q_lsb2_s3", "k": "k", "u": "variant_u",
           "p0": "p0_lsb2_q8"}
 
 
 def field_of(p):
-    """The field of NAME_config_t that a parameter stands for, None when it is none of these."""
+    """The tool's field that a parameter stands for, None when it is none of these."""
     return "q_lsb2_s5" if p.name == b"q" and p.unit == b"LSB2/s5" else FIELDS.get(p.name.decode())
 
 
@@ -90,51 +89,72 @@ def compiled_library():
 
 
 class Library:
-    """lib/filters compiled for the PC, through filter_any."""
+    """lib/filters compiled for the PC."""
 
     def __init__(self):
-        self.names = {path.stem for path in pathlib.Path("lib/filters/src").glob("*.c")}
         self.c = ctypes.CDLL(str(compiled_library()))
-        self.c.filter_any_descriptor.restype = ctypes.POINTER(Descriptor)
-        self.c.filter_any_init.restype = ctypes.c_bool
-        self.c.synth_noise_gain_uq16.restype = ctypes.c_uint32
-        self.c.synth_noise_gain_uq16.argtypes = [ctypes.c_uint16, ctypes.c_int32]
+        for function, result, arguments in (
+                ("filter_find", ctypes.c_int, [ctypes.c_char_p]), ("filter_listed_name", ctypes.c_char_p, [ctypes.c_int]),
+                ("filter_listed", ctypes.c_void_p, [ctypes.c_int]), ("filter_name", ctypes.c_char_p, [ctypes.c_void_p]),
+                ("filter_parameter_count", ctypes.c_uint8, [ctypes.c_void_p]),
+                ("filter_parameter", ctypes.POINTER(Parameter), [ctypes.c_void_p, ctypes.c_uint8]),
+                ("filter_defaults", Config, [ctypes.c_void_p, ctypes.c_uint16]),
+                ("filter_init", ctypes.c_uint8, [ctypes.c_char_p, ctypes.c_void_p, ctypes.POINTER(Config)]),
+                ("filter_update", ctypes.c_int32, [ctypes.c_char_p, ctypes.c_int16]),
+                ("filter_probe", None, [ctypes.c_char_p, ctypes.POINTER(Probe)]),
+                ("filter_synth_noise_gain_uq16", ctypes.c_uint32, [ctypes.c_uint16, ctypes.c_int32])):
+            named = getattr(self.c, function)
+            named.restype, named.argtypes = result, arguments
+        self.names = {self.c.filter_listed_name(kind).decode() for kind in range(self.c.filter_find(b"none of them"))}
+
+    def law(self, name):
+        found = self.c.filter_listed(self.c.filter_find(name.encode()))
+        assert self.c.filter_name(found).decode() == name, name
+        return found
+
+    def parameters(self, law):
+        return [self.c.filter_parameter(law, i).contents for i in range(self.c.filter_parameter_count(law))]
 
     def ranges(self, name):
-        """{field: (min, max)} of the descriptor."""
-        found = self.c.filter_any_descriptor(self.c.filter_any_find(name.encode())).contents
-        assert found.name.decode() == name, found.name
-        return {field_of(p): (p.min, p.max) for p in found.parameters[:found.parameter_count]}
+        """{field: (min, max)} of the law's parameters."""
+        return {field_of(p): (p.min, p.max) for p in self.parameters(self.law(name))}
+
+    def law_with(self, field):
+        """Name of the only law that has the field."""
+        having = [name for name in self.names if field in self.ranges(name)]
+        assert len(having) == 1, (field, having)
+        return having[0]
 
     def make(self, name, fields):
-        """(accepted, state) of NAME_init with these stored values on top of the defaults."""
-        kind = self.c.filter_any_find(name.encode())
-        config, state = ctypes.create_string_buffer(256), ctypes.create_string_buffer(1024)
-        self.c.filter_any_defaults(kind, config, ctypes.c_uint16(fields["rate_dhz"]))
-        found = self.c.filter_any_descriptor(kind).contents
+        """(accepted, state) of filter_init with these stored values on top of the defaults."""
+        law, state = self.law(name), ctypes.create_string_buffer(1024)
+        config = self.c.filter_defaults(law, fields["rate_dhz"])
         told = set(fields) - {"rate_dhz"}
-        for p in found.parameters[:found.parameter_count]:
+        for i, p in enumerate(self.parameters(law)):
             field = field_of(p)
             if field in fields:
-                config[p.offset:p.offset + p.size] = (fields[field] & (256 ** p.size - 1)).to_bytes(p.size, "little")
+                config.value[i] = fields[field]
                 told.discard(field)
         assert not told, f"{name} has no {told}"
-        return self.c.filter_any_init(state, kind, config), state
+        return self.c.filter_init(state, law, ctypes.byref(config)) == 0, state
 
     def update(self, state, z):
-        return self.c.filter_any_update(state, ctypes.c_int16(z))
+        return self.c.filter_update(state, z)
 
     def gain(self, state):
         probe = Probe()
-        self.c.filter_any_probe(state, ctypes.byref(probe))
+        self.c.filter_probe(state, ctypes.byref(probe))
         return probe.gain_uq16 / 65536
+
+    def noise_gain(self, b0_uq16, a1_q16):
+        return self.c.filter_synth_noise_gain_uq16(b0_uq16, a1_q16) / 65536
 
 
 def compiles_and_runs(initialiser, name):
-    """True when a program with the emitted line in it compiles without a warning and NAME_init accepts it."""
+    """True when a program with the emitted line in it compiles without a warning and filter_init accepts it."""
     source, program = OUT / f"emitted_{name}.c", OUT / f"emitted_{name}"
-    source.write_text(f'#include "{name}.h"\n{initialiser}\n'
-                      f'int main(void) {{ {name}_t f; return {name}_init(&f, &config) ? 0 : 1; }}\n', encoding="utf-8")
+    source.write_text(f'#include "filter.h"\n{initialiser}\n'
+                      f'int main(void) {{ filter_t f; return filter_init(&f, &filter_law_{name}, &config); }}\n', encoding="utf-8")
     library = compiled_library()
     command = ["gcc", "-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-Ilib/filters/src", str(source), str(library),
                f"-Wl,-rpath,{library.parent}", "-o", str(program)]

@@ -10,6 +10,7 @@ import faults_runs
 from faults_judge import Ending
 from faults_judged import ALL, result
 from system_support import FW, test
+from laws import DEFAULT  # noqa: E402
 
 STREAMS = {"rate 50": (50, 16, 20000), "rate 400": (400, 16, 2500), "range 8": (100, 8, 10000), "stop and go": (100, 16, 10000)}
 
@@ -51,7 +52,7 @@ def each_transfer_of_a_change_has_its_faults_and_the_others_come_and_go_in_it():
         nack, data, hang, sda = (ALL[f"command {name}: {base}"] for base in ("nack", "nackdata", "hang", "sda"))
         whens = faults_commands.phases(FW, nack, 1)
         numbers = [int(when[5:-2]) for when in whens]
-        before = faults_runs.simulate(FW, "adaptive", max_ms=999)[2]["i2c_transfers"]
+        before = faults_runs.simulate(FW, DEFAULT, max_ms=999)[2]["i2c_transfers"]
         # standby, the sensor's name, 11 registers and those that are read back, Measure
         assert all(when.startswith("xfer:") and when.endswith(".1") for when in whens) and 14 < len(whens) < 30, whens
         assert numbers == list(range(before + 1, before + 1 + len(numbers))), numbers
@@ -114,17 +115,17 @@ def one_failed_transfer_is_no_missing_sensor():
 def instead(name, *typed, **more):
     """A run of a kind in which something else is typed than what is judged."""
     kind = dataclasses.replace(ALL[name], typed=(*typed, *faults_commands.STATUS), **more)
-    return faults_runs.attempt(FW, "adaptive", (kind,), ("1100ms",))
+    return faults_runs.attempt(FW, DEFAULT, (kind,), ("1100ms",))
 
 
 @test
 def what_a_run_came_to_is_seen_in_the_sensor_its_rows_and_the_status():
     for name, (hz, range_g, step_us) in STREAMS.items():
-        done = faults_runs.attempt(FW, "adaptive", (ALL[f"command {name}: glitch"],), ("1100ms",))
+        done = faults_runs.attempt(FW, DEFAULT, (ALL[f"command {name}: glitch"],), ("1100ms",))
         end = done.ending
         assert not done.failures() and (end.sensor_hz, end.range_g, end.coasted, len(end.lost)) == (hz, range_g, 0, 2), done
         assert all(abs(step - step_us) < 20 for step in end.steps_us) and end.states[1][:2] == ("streaming", hz), end
-    end = faults_runs.attempt(FW, "adaptive", (ALL["command stop: glitch"],), ("999ms",)).ending
+    end = faults_runs.attempt(FW, DEFAULT, (ALL["command stop: glitch"],), ("999ms",)).ending
     assert (end.sensor_hz, end.rows_since, end.steps_us, end.states[1][0]) == (0, 0, (), "stopped") and -20 < end.measured_since_ms < 10, end
     # the setting not made, a stop that does not last, and one that comes late
     sensor, rows, status = instead("command rate 50: glitch").failures()

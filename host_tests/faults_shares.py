@@ -9,6 +9,7 @@ import faults_runs
 import soak
 from faults_judged import ALL, result
 from system_support import FW, OUT, test
+from laws import DEFAULT  # noqa: E402
 
 
 @test
@@ -30,7 +31,7 @@ def long_faults_have_the_limits_of_the_short_ones():
 @test
 def a_long_fault_is_seen_to_its_end():
     sda = next(kind for kind in faults_kinds.LONG if kind.name == "sda, 3 s")
-    done = faults_runs.attempt(FW, "adaptive", (sda,), ("1003ms",))
+    done = faults_runs.attempt(FW, DEFAULT, (sda,), ("1003ms",))
     assert done.injected and done.recovered and not done.failures() and 295 < done.lost < 310, done
 
 
@@ -120,7 +121,7 @@ def interrupts_keep_their_deadline_in_every_run_but_starved_ones():
     assert limits == [265 + 83 + out, 265 + 83 + 2 * out, 265 + 2 * both, 265 + 83 + out, 265 + 9 * both], limits
     for name in ("starve", "overrun", "starve again"):
         assert faults_runs.waits_of((sda, ALL[name]), short) == (), name
-    done = faults_runs.attempt(FW, "adaptive", (sda,), ("1003ms",))
+    done = faults_runs.attempt(FW, DEFAULT, (sda,), ("1003ms",))
     assert len(done.waits) == 4 and all(0 < cycles <= most for name, cycles, most in done.waits if name != "usart_rx"), done
 
 
@@ -141,11 +142,11 @@ def a_full_disk_is_one_sentence_and_leaves_what_was_there():
 
     kept, faults_runs.called = faults_runs.called, broken
     try:
-        faults_runs.simulate(FW, "adaptive")
+        faults_runs.simulate(FW, DEFAULT)
         raise AssertionError("read")
     except faults_runs.Fault as problem:
         assert "breaks off: is the disk full?" in str(problem), problem
-        broken_off = faults_runs.attempt(FW, "adaptive", (faults_kinds.OF["sda"],), ("1000ms",)).failures()
+        broken_off = faults_runs.attempt(FW, DEFAULT, (faults_kinds.OF["sda"],), ("1000ms",)).failures()
         assert len(broken_off) == 1 and "is the disk full?" in broken_off[0], broken_off
     finally:
         faults_runs.called = kept

@@ -9,7 +9,7 @@
  * CSV: a stream as in docs/protocol.md, whose rows come at the rate given; its times are counted from its first row.
  * SKIP: data rows before the cold start. NAME is a parameter of the filter as its descriptor names it, VALUE in its
  * unit; R=VALUE multiplies what the noise estimate says. The program is linked with --wrap for parameters_start and
- * noise_r_lsb2_q8, so that the sample path meets these in place of the shipped values and is itself unchanged.
+ * filter_noise_r_lsb2_q8, so that the sample path meets these in place of the shipped values and is itself unchanged.
  */
 #include <math.h>
 #include <stdarg.h>
@@ -18,7 +18,7 @@
 #include <string.h>
 
 #include "coast.h"
-#include "filter_any.h"
+#include "filter_list.h"
 #include "noise.h"
 #include "pipeline.h"
 #include "settings.h"
@@ -37,9 +37,9 @@ static change_t changes[CHANGES_MAX];
 static size_t change_count;
 static double r_factor = 1.0;
 
-void __wrap_parameters_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz);
-uint32_t __real_noise_r_lsb2_q8(const noise_t *n);
-uint32_t __wrap_noise_r_lsb2_q8(const noise_t *n);
+void __wrap_parameters_start(filter_t *f, filter_kind_t kind, uint16_t rate_dhz);
+uint32_t __real_filter_noise_r_lsb2_q8(const noise_t *n);
+uint32_t __wrap_filter_noise_r_lsb2_q8(const noise_t *n);
 
 static void fail(const char *format, ...)
 {
@@ -52,56 +52,54 @@ static void fail(const char *format, ...)
     exit(2);
 }
 
-/* The value in the parameter's own format, into its field. */
-static void change_field(const filter_parameter_t *parameter, filter_any_config_t *config, double value)
+/* The value in the parameter's own format. */
+static int32_t stored(const filter_parameter_t *parameter, double value)
 {
     if (parameter->fraction_bits == 0 && value != floor(value)) {
-        fail("%s=%g: a whole number was expected", parameter->name, value);
+        fail("%s=%g: a whole number was expected", parameter->words, value);
     }
     double scaled = round(ldexp(value, parameter->fraction_bits));
-    double most = parameter->size == 2 ? UINT16_MAX : UINT32_MAX;
-    if (!(scaled >= 0.0 && scaled <= most)) {
-        fail("%s=%g does not fit into its field", parameter->name, value);
+    if (!(scaled >= (parameter->min < 0 ? INT32_MIN : 0) && scaled <= INT32_MAX)) {
+        fail("%s=%g does not fit into its field", parameter->words, value);
     }
-    uint32_t wide = (uint32_t)scaled;
-    uint16_t narrow = (uint16_t)wide;
-    memcpy((char *)config + parameter->offset, parameter->size == 2 ? (void *)&narrow : (void *)&wide, parameter->size);
+    return (int32_t)scaled;
 }
 
-static void apply(const change_t *change, filter_kind_t kind, filter_any_config_t *config)
+static void apply(const change_t *change, filter_kind_t kind, filter_config_t *config)
 {
-    const filter_descriptor_t *descriptor = filter_any_descriptor(kind);
+    const filter_law_t *law = filter_listed(kind);
     if (strcmp(change->name, R_FACTOR) == 0) {
         return; /* not of the configuration */
     }
-    for (uint8_t i = 0; i < descriptor->parameter_count; i++) {
-        if (strcmp(descriptor->parameters[i].name, change->name) == 0) {
-            change_field(&descriptor->parameters[i], config, change->value);
+    for (uint8_t i = 0; i < filter_parameter_count(law); i++) {
+        const filter_parameter_t *parameter = filter_parameter(law, i);
+        if (strcmp(parameter->words, change->name) == 0) {
+            config->value[i] = stored(parameter, change->value);
             return;
         }
     }
-    fail("%s has no parameter %s", descriptor->name, change->name);
+    fail("%s has no parameter %s", filter_name(law), change->name);
 }
 
 /* The filter with its changed parameters; false when it refuses them. */
-static bool start_changed(filter_any_t *f, filter_kind_t kind, filter_any_config_t *config, uint16_t rate_dhz)
+static bool start_changed(filter_t *f, filter_kind_t kind, filter_config_t *config, uint16_t rate_dhz)
 {
-    filter_any_defaults(kind, config, rate_dhz);
+    *config = filter_defaults(filter_listed(kind), rate_dhz);
     for (size_t i = 0; i < change_count; i++) {
         apply(&changes[i], kind, config);
     }
-    return filter_any_init(f, kind, config);
+    return filter_init(f, filter_listed(kind), config) == FILTER_ACCEPTED;
 }
 
-void __wrap_parameters_start(filter_any_t *f, filter_kind_t kind, uint16_t rate_dhz)
+void __wrap_parameters_start(filter_t *f, filter_kind_t kind, uint16_t rate_dhz)
 {
-    filter_any_config_t config;
+    filter_config_t config;
     (void)start_changed(f, kind, &config, rate_dhz); /* check_configuration has asked */
 }
 
-uint32_t __wrap_noise_r_lsb2_q8(const noise_t *n)
+uint32_t __wrap_filter_noise_r_lsb2_q8(const noise_t *n)
 {
-    double r_lsb2_q8 = round(r_factor * __real_noise_r_lsb2_q8(n));
+    double r_lsb2_q8 = round(r_factor * __real_filter_noise_r_lsb2_q8(n));
     return (uint32_t)fmin(fmax(r_lsb2_q8, FILTER_R_MIN_LSB2_Q8), FILTER_R_MAX_LSB2_Q8);
 }
 
@@ -164,14 +162,14 @@ static const char *refused_together(void)
 /* The sample path takes what its filter's init says for granted, so it is asked here. */
 static void check_configuration(filter_kind_t kind, uint16_t rate_dhz)
 {
-    filter_any_config_t config;
-    filter_any_t filter;
+    filter_config_t config;
+    filter_t filter;
     if (!start_changed(&filter, kind, &config, rate_dhz)) {
-        const filter_descriptor_t *descriptor = filter_any_descriptor(kind);
-        uint8_t which = filter_any_refused(kind, &config);
-        bool one = which < descriptor->parameter_count;
-        fail("%s refuses its configuration: %s", descriptor->name,
-             one ? descriptor->parameters[which].name : refused_together());
+        const filter_law_t *law = filter_listed(kind);
+        filter_answer_t answer = filter_judge(law, &config);
+        fail("%s refuses its configuration: %s", filter_name(law),
+             answer >= FILTER_REFUSED_FIRST ? filter_parameter(law, (uint8_t)(answer - FILTER_REFUSED_FIRST))->words
+                                            : refused_together());
     }
 }
 
@@ -240,7 +238,7 @@ int main(int argc, char **argv)
 {
     if (argc == 2 && strcmp(argv[1], "--filters") == 0) {
         for (unsigned kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-            puts(filter_any_name((filter_kind_t)kind));
+            puts(filter_listed_name((filter_kind_t)kind));
         }
         return 0;
     }
@@ -248,7 +246,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: pipeline_replay CSV FILTER RATE_DHZ RANGE_G SKIP [NAME=VALUE]... | --filters\n");
         return 2;
     }
-    filter_kind_t kind = filter_any_find(argv[2]);
+    filter_kind_t kind = filter_find(argv[2]);
     if (kind == FILTER_KIND_COUNT) {
         fail("no filter %s", argv[2]);
     }

@@ -22,9 +22,9 @@ static size_t judged;
 static void print_counts(const char *what, const char *name, filter_kind_t kind, int axis, const axis_counts_t *c)
 {
     printf("%s,%s,%s,%c,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%.3f,%zu,%zu,%.1f,%zu,%.1f\n", what, name,
-           filter_any_name(kind), axis_name[axis], c->samples, c->gated, c->reacquired, c->saturated, c->longest_gated,
-           c->bounds_broken, c->envelope_judged, c->envelope_broken, c->envelope_worst, c->hull_judged, c->hull_broken,
-           c->hull_left_lsb, c->outside, c->outside_worst_lsb);
+           filter_listed_name(kind), axis_name[axis], c->samples, c->gated, c->reacquired, c->saturated,
+           c->longest_gated, c->bounds_broken, c->envelope_judged, c->envelope_broken, c->envelope_worst,
+           c->hull_judged, c->hull_broken, c->hull_left_lsb, c->outside, c->outside_worst_lsb);
     broken += c->bounds_broken + c->hull_broken + c->envelope_broken;
     judged += c->envelope_judged;
 }
@@ -35,7 +35,7 @@ static bool every_filter(const char *what, const char *name, const stream_t *str
     for (filter_kind_t kind = (filter_kind_t)0; kind < FILTER_KIND_COUNT; kind++) {
         axis_counts_t counts;
         if (!survey_axis(stream, survey, kind, axis, &counts)) {
-            fprintf(stderr, "recordings: %s: %s refuses %.1f Hz\n", name, filter_any_name(kind),
+            fprintf(stderr, "recordings: %s: %s refuses %.1f Hz\n", name, filter_listed_name(kind),
                     survey->rate_dhz / 10.0);
             return false;
         }
@@ -147,7 +147,7 @@ static void print_contender(const char *name, fault_t fault, size_t contender)
     double worst[2] = { 0.0 };
     for (unsigned seed = 0; seed < SEEDS; seed++) {
         const score_t *score = &pool[fault].score[seed][contender];
-        double value[3] = { rms(score->own, score->count), rms(score->kf, score->count),
+        double value[3] = { rms(score->own, score->count), rms(score->plain, score->count),
                             rms(score->predicted, score->count) };
         for (int i = 0; i < 3; i++) {
             sum[i] += value[i] / SEEDS;

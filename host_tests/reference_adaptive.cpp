@@ -34,7 +34,7 @@ struct Step {
 // Innovation and gate. Of the scatter and of its product with k, 8 bits remain behind the point; k has 16.
 void meet(reference_adaptive_t &f, double z, Step &s)
 {
-    s.before = f.filled > 0 ? f.z[0] - f.now.x : 0.0;
+    s.before = f.broken ? 0.0 : f.before - f.now.x;
     f.now.x = std::clamp(f.now.x + f.now.rate, -x_max, x_max);
     const double u = z - f.now.x;
     const int side = (u == 0.0) ? f.side : (u < 0.0 ? -1 : 1);
@@ -115,61 +115,22 @@ void follow(reference_adaptive_t &f, const Step &s, reference_adaptive_value_t &
     f.now.x = std::clamp(f.now.x, -x_max, x_max);
 }
 
-double weight_of(const reference_adaptive_t &f)
-{
-    if (f.terms == 0) {
-        return 1.0;
-    }
-    return std::max(f.last_weight, std::exp2(-1.0 - std::floor(std::log2(f.terms))));
-}
-
-// Scatter of the innovations.
-double disperse(reference_adaptive_t &f, const Step &s)
+// Scatter of the innovations: an eighth of the first seven terms, then a sixteenth, unguarded half of it below the
+// limit.
+double disperse(reference_adaptive_t &f, Step &s)
 {
     const double apart = std::fabs(std::min(s.size.v, size_max) - f.side * f.now.mean);
     const double term = std::min({ 1.375 * apart, 2.5 * s.spread.v, 256.0 });
-    const double error = std::max(1.375 * (3.0 * q8 + s.mean.e) + 2.0 * q8, 2.5 * s.spread.e + q8);
-    const double weight = std::clamp(weight_of(f), 0.0625, 0.125);
+    const double of_term = 1.375 * (3.0 * q8 + s.mean.e) + 2.0 * q8;
+    const double of_limit = 2.5 * s.spread.e + q8;
+    double weight = 0.0625;
+    if (f.terms++ < 7) {
+        weight = 0.125;
+    } else if (!f.guarded && !s.above(1.375 * apart, 2.5 * s.spread.v, of_term + of_limit)) {
+        weight = 0.03125;
+    }
     f.now.scatter = std::clamp(f.now.scatter + weight * (term - s.spread.v), 26.0 * q8, 90.0);
-    return weight * (error + s.spread.e) + q24;
-}
-
-// Six terms on end below half of the mean, among the first sixteen: the largest of them is the mean. Terms are exact
-// but for a limit that is none of these; of the mean half is known to 9 bits.
-double doubt(reference_adaptive_t &f, double term, double before, double error, Step &s)
-{
-    f.small = s.above(0.5 * before, term, q8) ? f.small + 1 : 0;
-    f.largest = (f.small <= 1) ? term : std::max(f.largest, term);
-    if (f.small < 6) {
-        return error;
-    }
-    f.small = 0;
-    f.restarts++;
-    f.now.third = std::max(46.0 * q8, f.largest);
-    return q8;
-}
-
-// Noise of a sample: half of the mean |third difference|.
-double identify(reference_adaptive_t &f, double z, reference_adaptive_value_t &bound, Step &s)
-{
-    const double difference = z - 3.0 * f.z[0] + 3.0 * f.z[1] - f.z[2];
-    const double weight = weight_of(f);
-    double term = 0.5 * std::min(318.0, std::fabs(difference));
-    if (weight < 0.25) {
-        term = std::min(term, 3.125 * f.now.third);
-    }
-    const double before = f.now.third;
-    f.now.third = std::max(46.0 * q8, before + weight * (term - before));
-    double error = (weight == 1.0) ? 0.0 : weight * 5.2 * q8;
-    if (f.terms > 0 && f.terms < 16) {
-        error = doubt(f, term, before, error, s);
-    }
-    f.terms++;
-    if (!f.guarded) {
-        f.now.scatter = f.now.third * 2.0 / 3.549;
-        bound.scatter = 0.5636 * (error + q8) + 90.0 * q16;
-    }
-    return error;
+    return weight * (std::max(of_term, of_limit) + s.spread.e) + q24;
 }
 
 Eigen::Matrix2d loop(double k)
@@ -178,68 +139,78 @@ Eigen::Matrix2d loop(double k)
     return (Eigen::Matrix2d() << 1.0 - alpha, 1.0 - alpha, -k * k, 1.0 - k * k).finished();
 }
 
-Eigen::Matrix2d covariance(double k)
+// Covariance of a state that begins with f of the one before and the gain times noise of variance 1, for ever.
+template <int N>
+Eigen::Matrix<double, N, N> steady(Eigen::Matrix<double, N, N> f, const Eigen::Matrix<double, N, 1> &gain)
 {
-    const Eigen::Vector2d gain(2.0 * k - k * k, k * k);
-    Eigen::Matrix2d f = loop(k);
-    Eigen::Matrix2d p = gain * gain.transpose();
+    Eigen::Matrix<double, N, N> p = gain * gain.transpose();
     for (int i = 0; i < 60; i++) {
         p = (p + f * p * f.transpose()).eval();
         f = (f * f).eval();
     }
     return p;
 }
+
+Eigen::Matrix2d covariance(double k)
+{
+    return steady<2>(loop(k), Eigen::Vector2d(2.0 * k - k * k, k * k));
+}
+
+// Standard deviation of what an innovation differs from their mean, itself in it: (1 - share) (noise - x - v - mean).
+double apart(double k, double share)
+{
+    Eigen::Matrix3d f = Eigen::Matrix3d::Zero();
+    f.topLeftCorner<2, 2>() = loop(k);
+    f.row(2) << -share, -share, 1.0 - share;
+    const Eigen::Matrix3d p = steady<3>(f, Eigen::Vector3d(2.0 * k - k * k, k * k, share));
+    return (1.0 - share) * std::sqrt(1.0 + p.sum());
+}
+
+// E min(|X|, limit), X standard normal.
+double limited_mean(double limit)
+{
+    return std::sqrt(2.0 / EIGEN_PI) * (1.0 - std::exp(-0.5 * limit * limit)) +
+           limit * std::erfc(limit / std::sqrt(2.0));
+}
 } // namespace
 
-void reference_adaptive_begin(reference_adaptive_t *f)
+void reference_adaptive_begin(reference_adaptive_t *f, double z)
 {
-    f->now = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-    f->filled = f->run = f->terms = f->small = f->restarts = 0;
-    f->largest = 0.0;
+    f->before = z;
+    f->broken = false;
+    f->run = f->samples = f->terms = 0;
     f->side = 1;
-    f->warming = 5;
-    f->third_next = f->identify;
     f->verdict = VERDICT_UNUSED;
 }
 
 bool reference_adaptive_step(reference_adaptive_t *f, double z, reference_adaptive_value_t *bound)
 {
     Step s{};
-    *bound = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-    if (f->warming > 0) {
-        f->warming--;
+    *bound = { 0.0, 0.0, 0.0, 0.0, 0.0 };
+    meet(*f, z, s);
+    if (f->guarded && s.above(s.size.v, s.gate.v, s.gate.e + q16)) {
+        judge(*f, s);
     } else {
-        meet(*f, z, s);
-        if (f->guarded && s.above(s.size.v, s.gate.v, s.gate.e + q16)) {
-            judge(*f, s);
-        } else {
-            s.taken = s.size;
-            f->verdict = VERDICT_WITHIN;
-        }
-        average(*f, s);
-        bound->mean = s.mean.e;
-        bound->k = adapt(*f, s);
-        follow(*f, s, *bound);
-        if (f->identify && !f->third_next) {
-            bound->scatter = disperse(*f, s);
-        }
+        s.taken = s.size;
+        f->verdict = VERDICT_WITHIN;
     }
-    if (f->third_next && f->filled == 3) {
-        bound->third = identify(*f, z, *bound, s);
+    average(*f, s);
+    bound->mean = s.mean.e;
+    bound->k = adapt(*f, s);
+    follow(*f, s, *bound);
+    f->samples++;
+    if (f->identify && f->samples % 2 == 1) {
+        bound->scatter = disperse(*f, s);
     }
-    f->third_next = f->identify && (!f->guarded || !f->third_next);
-    std::rotate(f->z, f->z + 2, f->z + 3);
-    f->z[0] = z;
-    f->filled = std::min(3, f->filled + 1);
+    f->before = z;
+    f->broken = false;
     return s.clear;
 }
 
 void reference_adaptive_coast(reference_adaptive_t *f)
 {
-    f->filled = 0;
-    if (f->warming == 0) {
-        f->now.x = std::clamp(f->now.x + f->now.rate, -x_max, x_max);
-    }
+    f->broken = true;
+    f->now.x = std::clamp(f->now.x + f->now.rate, -x_max, x_max);
 }
 
 double reference_fading_step(reference_fading_t *f, double r, double z)
@@ -262,6 +233,18 @@ double reference_fading_step(reference_fading_t *f, double r, double z)
     f->x = expected + (1.0 - f->theta * f->theta) * u;
     f->v += (1.0 - f->theta) * (1.0 - f->theta) * u;
     return f->x;
+}
+
+double reference_adaptive_scatter(double k, double share, double bad, bool guarded)
+{
+    double settled = 1.0; // by what the innovations deviate
+    for (int i = 0; i < 200; i++) {
+        const double limit = 2.5 * settled / 1.375;
+        const double again = guarded ? 0.0
+                                     : 1.5 * settled * std::erfc(limit / std::sqrt(2.0)); // limited ones weigh twice
+        settled = (1.0 - bad) * (1.375 * limited_mean(limit) + again) + bad * 2.5 * settled;
+    }
+    return settled * apart(k, share) / (1.0 + k);
 }
 
 double reference_fading_noise_gain(double k)

@@ -13,26 +13,24 @@ extern "C" {
 
 /* What has a continuous value, LSB and per sample, signed; or its largest difference. */
 typedef struct {
-    double x, rate, mean, k, scatter, third;
+    double x, rate, mean, k, scatter;
 } reference_adaptive_value_t;
 
 typedef enum { VERDICT_UNUSED, VERDICT_WITHIN, VERDICT_OUTLIER, VERDICT_MOTION, VERDICT_JUMP } reference_verdict_t;
 
 typedef struct {
-    double sigmas, manoeuvre, slow, fast, share, rate_max, last_weight;
+    double sigmas, manoeuvre, slow, fast, share, rate_max;
     int confirm;
     bool guarded, identify;
     reference_adaptive_value_t now;
-    double z[3]; /* newest first */
-    int filled, side, run, terms, warming;
-    int small, restarts; /* terms on end below half of the mean; how often they took its place */
-    double largest;      /* of them */
-    bool third_next;
+    double before; /* the sample before */
+    bool broken;   /* one was missing since */
+    int side, run, samples, terms;
     reference_verdict_t verdict;
 } reference_adaptive_t;
 
-/* Parameters are set by the caller; the rest as before the first sample. */
-void reference_adaptive_begin(reference_adaptive_t *f);
+/* Parameters are set by the caller; the rest as behind the start, whose last sample is z. */
+void reference_adaptive_begin(reference_adaptive_t *f, double z);
 
 /*
  * One sample. bound: how far a fixed-point step from the same state may end from this one. False when a decision hangs
@@ -47,6 +45,13 @@ typedef struct {
     int samples;
 } reference_fading_t;
 double reference_fading_step(reference_fading_t *f, double r, double z);
+
+/*
+ * At rest, with the memory's k, in white noise of sigma 1: what the scatter settles at. The innovations less their mean
+ * are Gaussian, their variance by the Lyapunov equation; the scatter is where the limited terms have the mean that is
+ * expected of them. bad: share of samples far beyond their limit, of which nothing is taken.
+ */
+double reference_adaptive_scatter(double k, double share, double bad, bool guarded);
 
 /* Fading memory with k: noise gain of the estimate and of the prediction, by the Lyapunov equation. */
 double reference_fading_noise_gain(double k);

@@ -4,11 +4,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 namespace
 {
 using namespace reference;
+
+enum Kind {
+    ROBUST_KF,
+    ROBUST_LRF,         // linear: (40)
+    ROBUST_SPRF,        // binary gate: (34), r^2 <= gate^2 Xi1; reacquire != 0 makes it SpRF+
+    ROBUST_SOFT,        // not in the paper: W = P H' / max(Xi1, r^2 / soft^2)
+    ROBUST_SHRF,        // structurally shortened: (25), (29)
+    ROBUST_PBF,         // pseudo-Bayesian: (8), (12), (13), one merged Gaussian per step
+    ROBUST_AF_GRID,     // adaptive: (14)..(19), distribution of q1 on 50 points
+    ROBUST_AF,          // adaptive: q1 <- q1 + (p - q1) / (n + 1) instead of the grid
+    ROBUST_CLAIRVOYANT, // told which samples are outliers: the bound
+};
+const char *const kind_names[] = { "kf", "lrf", "sprf", "soft", "shrf", "pbf", "af_grid", "af", "clairvoyant" };
 
 struct Estimate {
     Vector s;
@@ -240,7 +254,7 @@ void step_gated(robust_reference_t &f, const Estimate &e, double z)
     }
     double s = xi(f, e.p, 1.0);
     if (f.kind == ROBUST_SOFT) {
-        s = std::max(s, f.innovation * f.innovation / (f.soft_sigma * f.soft_sigma));
+        s = std::max(s, f.innovation * f.innovation / (f.softgate_sigma * f.softgate_sigma));
     }
     const Vector w = observed_column(e.p) / s;
     const Matrix keep = keeping(w);
@@ -266,27 +280,33 @@ double start_median(robust_reference_t &f, double z)
 }
 } // namespace
 
-void robust_reference_table1(robust_reference_t *f, robust_kind_t kind)
+bool robust_reference_table1(robust_reference_t *f, const char *name)
 {
+    const auto found = std::find_if(std::begin(kind_names), std::end(kind_names),
+                                    [name](const char *each) { return std::strcmp(each, name) == 0; });
+    if (found == std::end(kind_names)) {
+        return false;
+    }
     *f = robust_reference_t{};
-    f->kind = kind;
+    f->kind = static_cast<int>(found - std::begin(kind_names));
     f->period_s = 0.0247;
     f->r = 0.0064;
     f->q[3] = 0.0009;
     f->clean = f->q_mean = 0.85;
     f->ratio = 20.0;
     f->gate_sigma = 3.0;
-    f->soft_sigma = 2.0;
+    f->softgate_sigma = 2.0;
     f->p22_start = 0.04;
     f->x[0] = f->second_x[0] = 2.8;
     f->x[1] = f->second_x[1] = 0.008;
     f->p[0] = f->second_p[0] = 0.7;
     f->p[3] = f->second_p[3] = 0.04;
     std::fill_n(f->weight, ROBUST_GRID, 1.0 / ROBUST_GRID);
-    if (kind == ROBUST_AF) {
+    if (f->kind == ROBUST_AF) {
         f->q_mean = 0.5;
         f->q_count = 2.0;
     }
+    return true;
 }
 
 const char *robust_reference_refused(const robust_reference_t *f)
@@ -300,7 +320,7 @@ const char *robust_reference_refused(const robust_reference_t *f)
         { "clean", f->clean > 0.0 && f->clean < 1.0 },
         { "ratio", f->ratio > 1.0 },
         { "gate", f->gate_sigma >= 1.0 },
-        { "softgate", f->soft_sigma >= 1.0 },
+        { "softgate", f->softgate_sigma >= 1.0 },
         { "median", f->median_window == 0 || (f->median_window % 2 == 1 && f->median_window <= ROBUST_MEDIAN_MAX) },
     };
     for (const auto &rule : rules) {

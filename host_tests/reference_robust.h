@@ -11,33 +11,20 @@
 extern "C" {
 #endif
 
-typedef enum {
-    ROBUST_KF,
-    ROBUST_LRF,         /* linear: (40) */
-    ROBUST_SPRF,        /* binary gate: (34), r^2 <= gate^2 Xi1; reacquire != 0 makes it SpRF+ */
-    ROBUST_SOFT,        /* not in the paper: W = P H' / max(Xi1, r^2 / soft^2) */
-    ROBUST_SHRF,        /* structurally shortened: (25), (29) */
-    ROBUST_PBF,         /* pseudo-Bayesian: (8), (12), (13), one merged Gaussian per step */
-    ROBUST_AF_GRID,     /* adaptive: (14)..(19), distribution of q1 on 50 points */
-    ROBUST_AF,          /* adaptive: q1 <- q1 + (p - q1) / (n + 1) instead of the grid */
-    ROBUST_CLAIRVOYANT, /* told which samples are outliers: the bound */
-    ROBUST_KIND_COUNT
-} robust_kind_t;
-
 /* Which equation is taken as printed although the errata say otherwise. */
 typedef enum {
     ROBUST_CORRECTED,
-    ROBUST_PRINTED_15,   /* af_grid: the weight from the mean of q1 after the sample */
-    ROBUST_PRINTED_GRID, /* af_grid: q_i = i / 50 */
-    ROBUST_PRINTED_21,   /* pbf: two filters, each on its own prediction, never merged */
-    ROBUST_PRINTED_24,   /* shrf: W1 = P H' R^-1 (I - H P(k/k-1) H') */
-    ROBUST_PRINTED_25,   /* shrf: the transition applied to the prediction */
-    ROBUST_PRINTED_26,   /* pbf: P p W1 H P in place of P - p W1 H P */
-    ROBUST_PRINTED_27,   /* shrf: (29) without its last term */
-    ROBUST_PRINTED_30,   /* shrf: densities about the estimate of the step before */
-    ROBUST_PRINTED_33,   /* sprf: gate |r| <= 2 Xi1 with Xi1 a variance, as (31), (32) have it */
-    ROBUST_PRINTED_34,   /* sprf: P (I - W1 H) */
-    ROBUST_PRINTED_39,   /* lrf: estimate and P of the step before in place of the predicted ones */
+    ROBUST_PRINTED_15,   /* the grid: the weight from the mean of q1 after the sample */
+    ROBUST_PRINTED_GRID, /* the grid: q_i = i / 50 */
+    ROBUST_PRINTED_21,   /* two filters, each on its own prediction, never merged */
+    ROBUST_PRINTED_24,   /* W1 = P H' R^-1 (I - H P(k/k-1) H') */
+    ROBUST_PRINTED_25,   /* the transition applied to the prediction */
+    ROBUST_PRINTED_26,   /* P p W1 H P in place of P - p W1 H P */
+    ROBUST_PRINTED_27,   /* (29) without its last term */
+    ROBUST_PRINTED_30,   /* densities about the estimate of the step before */
+    ROBUST_PRINTED_33,   /* gate |r| <= 2 Xi1 with Xi1 a variance, as (31), (32) have it */
+    ROBUST_PRINTED_34,   /* P (I - W1 H) */
+    ROBUST_PRINTED_39,   /* estimate and P of the step before in place of the predicted ones */
     ROBUST_READING_COUNT
 } robust_reading_t;
 
@@ -46,20 +33,20 @@ typedef enum {
 
 /* x = (position, rate per second), z = position + phi v, v of variance r, phi = 1 with probability clean or ratio. */
 typedef struct {
-    robust_kind_t kind;
+    int kind; /* which of reference_robust.cpp */
     robust_reading_t reading;
     double period_s;
     double r;
-    double q[4];       /* process noise per sample, row-major */
-    double clean;      /* q1, in (0, 1) */
-    double ratio;      /* N > 1 */
-    double gate_sigma; /* of sprf and of what counts as refused in soft; >= 1 */
-    double soft_sigma; /* >= 1 */
-    int reacquire;     /* sprf, soft: consistent refused samples that restart; 0: never */
-    double agree;      /* they differ from one to the next by at most this */
-    double rate_max;   /* of the estimate; 0: no limit */
-    int median_window; /* odd: the estimate starts as the median of so many samples; 0: from x and p as given */
-    double p22_start;  /* of the rate, after a median start */
+    double q[4];           /* process noise per sample, row-major */
+    double clean;          /* q1, in (0, 1) */
+    double ratio;          /* N > 1 */
+    double gate_sigma;     /* of sprf and of what counts as refused in soft; >= 1 */
+    double softgate_sigma; /* >= 1 */
+    int reacquire;         /* sprf, soft: consistent refused samples that restart; 0: never */
+    double agree;          /* they differ from one to the next by at most this */
+    double rate_max;       /* of the estimate; 0: no limit */
+    int median_window;     /* odd: the estimate starts as the median of so many samples; 0: from x and p as given */
+    double p22_start;      /* of the rate, after a median start */
 
     double x[2];
     double p[4];
@@ -83,8 +70,12 @@ typedef struct {
     double second_p[4];
 } robust_reference_t;
 
-/* Table 1, Q on the rate, gate 3 sigma (as published: 2), soft gate 2 sigma, no re-acquisition, no median start. */
-void robust_reference_table1(robust_reference_t *f, robust_kind_t kind);
+/*
+ * A filter by its name in the library, "af_grid" (as published, a distribution on 50 points) or "clairvoyant" (told
+ * which samples are outliers: the bound); false: there is none of this name. Table 1, Q on the rate, gate 3 sigma (as
+ * published: 2), soft gate 2 sigma, no re-acquisition, no median start.
+ */
+bool robust_reference_table1(robust_reference_t *f, const char *name);
 
 /* NULL, or the name of the first parameter outside its legal range: r, q, clean, ratio, gate, softgate, median. */
 const char *robust_reference_refused(const robust_reference_t *f);

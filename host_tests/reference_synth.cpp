@@ -62,20 +62,13 @@ double reference_synth_step(reference_synth_t *f, double z)
     return estimate;
 }
 
-void reference_synth_line(reference_synth_t *f, double a1, double b0, const double *five, double spread)
+void reference_synth_median(reference_synth_t *f, double a1, double b0, const double *five)
 {
     reference_synth_least_squares(f, a1, b0);
     double sorted[5];
     std::copy(five, five + 5, sorted);
     std::sort(sorted, sorted + 5);
-    Eigen::VectorXd values(5);
-    for (int i = 0; i < 5; i++) {
-        values(i) = std::clamp(five[i], sorted[2] - spread, sorted[2] + spread);
-    }
-    const Eigen::Vector2d line = linear::line_end(values);
-    for (int i = 0; i < 3; i++) {
-        f->x[i] = line(0) - i * line(1);
-    }
+    std::fill(f->x, f->x + 3, sorted[2]);
     f->samples = 5;
 }
 

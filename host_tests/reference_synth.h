@@ -28,8 +28,8 @@ void reference_synth_least_squares(reference_synth_t *f, double a1, double b0);
 /* One sample. */
 double reference_synth_step(reference_synth_t *f, double z);
 
-/* The library's start: line of least squares through five samples, solved by QR, each within spread of their median. */
-void reference_synth_line(reference_synth_t *f, double a1, double b0, const double *five, double spread);
+/* The library's start: at the median of five samples. */
+void reference_synth_median(reference_synth_t *f, double a1, double b0, const double *five);
 
 /* Largest magnitude of the closed loop's poles. */
 double reference_synth_radius(double a1, double b0);

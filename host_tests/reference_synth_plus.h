@@ -46,7 +46,7 @@ reference_taps_t reference_singer_taps(double rho, const double k[3]);
 /* Variance of the estimate's error when that filter, made for rho and lambda, follows a process with its own. */
 double reference_singer_error(double rho, const double k[3], double true_rho, double true_lambda);
 
-/* Steady gains of the model of kf, two_state.h: white acceleration drives the rate, q T^3 / R = drive. */
+/* Steady gains of the model of kf, kalman.h: white acceleration drives the rate, q T^3 / R = drive. */
 void reference_white_gains(double drive, double k[2]);
 
 /* End point of the line of least squares through n samples, the newest last (QR). */

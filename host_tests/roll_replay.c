@@ -6,7 +6,7 @@
  * SAMPLES: a whole number of LSB a line; `-` starts all filters anew. ESTIMATES: for each sample a line with the
  * estimates in LSB, in the order of the filters, separated by commas.
  */
-#include "filter_any.h"
+#include "filter_list.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 
 enum { FILTERS_MAX = 8, LINE = 32 };
 
-static filter_any_t filters[FILTERS_MAX];
+static filter_t filters[FILTERS_MAX];
 static filter_kind_t kinds[FILTERS_MAX];
 static int count;
 
@@ -27,12 +27,11 @@ static int refuse(const char *what, const char *text)
 static bool start(uint16_t rate_dhz, uint32_t r_lsb2_q8)
 {
     for (int i = 0; i < count; i++) {
-        filter_any_config_t config;
-        filter_any_defaults(kinds[i], &config, rate_dhz);
-        if (!filter_any_init(&filters[i], kinds[i], &config)) {
+        filter_config_t config = filter_defaults(filter_listed(kinds[i]), rate_dhz);
+        if (filter_init(&filters[i], filter_listed(kinds[i]), &config) != FILTER_ACCEPTED) {
             return false;
         }
-        filter_any_set_noise(&filters[i], r_lsb2_q8);
+        filter_set_noise(&filters[i], r_lsb2_q8);
     }
     return true;
 }
@@ -40,7 +39,7 @@ static bool start(uint16_t rate_dhz, uint32_t r_lsb2_q8)
 static void step(int16_t z_lsb)
 {
     for (int i = 0; i < count; i++) {
-        int32_t x_lsb_q16 = filter_any_update(&filters[i], z_lsb);
+        int32_t x_lsb_q16 = filter_update(&filters[i], z_lsb);
         printf("%s%.4f", i != 0 ? "," : "", x_lsb_q16 / 65536.0);
     }
     putchar('\n');
@@ -78,7 +77,7 @@ int main(int argc, char **argv)
         return refuse("a variance from 0.012 to 1000 LSB^2 was expected", argv[2]);
     }
     for (; count < argc - 3; count++) {
-        kinds[count] = filter_any_find(argv[3 + count]);
+        kinds[count] = filter_find(argv[3 + count]);
         if (kinds[count] == FILTER_KIND_COUNT) {
             return refuse("there is no such filter", argv[3 + count]);
         }

@@ -9,6 +9,7 @@
 #include "app.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
+#include "support_roles.h"
 
 board_t board;
 
@@ -101,15 +102,16 @@ void board_driver_sleep(void)
 
 void board_type(const char *text)
 {
-    hal_host_type(text);
+    hal_host_type(by_role(text));
     hal_host_type("\n");
 }
 
 size_t board_notes_with(const char *text, size_t from)
 {
     size_t count = 0;
+    const char *wanted = by_role(text);
     for (size_t i = from; i < board.note_count; i++) {
-        count += strstr(board.notes[i], text) != NULL;
+        count += strstr(board.notes[i], wanted) != NULL;
     }
     return count;
 }

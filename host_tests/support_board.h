@@ -47,7 +47,7 @@ void board_run_ms(double ms);
 void board_driver_sleep(void);
 
 /* Type a line (the newline is added). */
-void board_type(const char *line);
+void board_type(const char *line); /* with the roles of support_roles.h */
 
 /* Notes that contain the text, from note index `from` on. */
 size_t board_notes_with(const char *text, size_t from);

@@ -1,4 +1,5 @@
 #include "support_chain.h"
+#include "support_filters.h"
 
 #include <string.h>
 
@@ -37,54 +38,40 @@ int16_t median_update(median_t *m, int16_t z_lsb)
 bool chain_begin(chain_t *chain, filter_kind_t kind, uint16_t rate_dhz, uint8_t range_g, int axis)
 {
     memset(chain, 0, sizeof *chain);
-    filter_any_config_t config;
-    filter_any_defaults(kind, &config, rate_dhz);
-    noise_init(&chain->noise, rate_dhz, axis == 2);
-    if (!filter_any_init(&chain->filter, kind, &config)) {
+    filter_noise_init(&chain->noise, rate_dhz, axis == 2);
+    if (!init_default(&chain->filter, kind, rate_dhz)) {
         return false;
     }
-    filter_any_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
+    filter_set_noise(&chain->filter, filter_noise_r_lsb2_q8(&chain->noise));
     chain->rate_dhz = rate_dhz;
     chain->period_us = 10000000U / rate_dhz;
     chain->rail_high_lsb = (int16_t)(range_g * 256 - 1);
     return true;
 }
 
-/* One missing sample: silence.c, silence_step, and pipeline.c, coast_axis. */
-static void coast(chain_t *chain)
+/* False: the filter holds. */
+static bool miss(chain_t *chain)
 {
-    chain->part_dhz += QUARTER_DHZ;
-    if (chain->coasts == 0) {
-        chain->part_dhz = QUARTER_DHZ / 2;
-    }
-    if (chain->coasts == 0) {
-        filter_any_gap(&chain->filter);
-    }
-    for (; chain->part_dhz >= chain->rate_dhz; chain->part_dhz -= chain->rate_dhz) {
-        chain->quarters++;
-        filter_any_damp(&chain->filter);
+    chain->x_lsb_q16 = filter_missing(&chain->filter);
+    filter_noise_gap(&chain->noise);
+    if (chain->filter.quarters >= HOLD_QUARTERS) {
+        chain->away = 1;
+        return false;
     }
     chain->coasts++;
+    return true;
 }
 
 static void coast_over_gap(chain_t *chain, uint64_t t_us)
 {
-    chain->coasts = 0;
-    chain->quarters = 0;
+    chain->coasts = chain->clipped ? chain->coasts : 0;
     if (!chain->has_sample) {
         return;
     }
     for (; t_us - chain->last_us >= chain->period_us + (chain->period_us >> 1); chain->last_us += chain->period_us) {
-        filter_any_t before = chain->filter;
-        coast(chain);
-        if (chain->quarters >= HOLD_QUARTERS) {
-            chain->filter = before;
-            chain->coasts--;
-            chain->away = 1;
+        if (!miss(chain)) {
             return;
         }
-        chain->x_lsb_q16 = filter_any_coast(&chain->filter);
-        noise_gap(&chain->noise);
     }
 }
 
@@ -92,15 +79,11 @@ static void coast_over_gap(chain_t *chain, uint64_t t_us)
 static bool rejoins(chain_t *chain, int16_t lsb)
 {
     int16_t off_lsb = (int16_t)(lsb - ((((chain->x_lsb_q16 + 128) >> 8) + 128) >> 8));
-    if ((uint32_t)(off_lsb * off_lsb) > noise_r_lsb2_q8(&chain->noise) >> 5) {
-        if (chain->clipped || chain->away++ < AWAY_SAMPLES) {
+    if ((uint32_t)(off_lsb * off_lsb) > filter_noise_r_lsb2_q8(&chain->noise) >> 5) {
+        if (chain->away++ < AWAY_SAMPLES) {
             return false;
         }
-        filter_any_config_t config;
-        filter_kind_t kind = (filter_kind_t)chain->filter.kind;
-        filter_any_defaults(kind, &config, chain->rate_dhz);
-        (void)filter_any_init(&chain->filter, kind, &config);
-        filter_any_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
+        filter_restart(&chain->filter);
         chain->begun = true;
     }
     chain->away = 0;
@@ -114,24 +97,23 @@ int32_t chain_sample(chain_t *chain, uint64_t t_us, int16_t lsb)
     chain->has_sample = true;
     chain->begun = false;
     chain->clipped = lsb >= chain->rail_high_lsb || lsb <= -chain->rail_high_lsb - 1;
-    if (!chain->clipped && noise_update(&chain->noise, lsb)) {
-        filter_any_set_noise(&chain->filter, noise_r_lsb2_q8(&chain->noise));
+    if (chain->clipped) {
+        (void)miss(chain);
+        chain->waits = true;
+        return chain->x_lsb_q16;
+    }
+    if (filter_noise_update(&chain->noise, lsb)) {
+        filter_set_noise(&chain->filter, filter_noise_r_lsb2_q8(&chain->noise));
     }
     int16_t z_lsb = chain->median.window == 0U ? lsb : median_update(&chain->median, lsb);
-    if (chain->clipped) {
-        filter_any_hold(&chain->filter);
-    }
     chain->waits = chain->away != 0 && !rejoins(chain, lsb);
     if (!chain->waits) {
-        chain->x_lsb_q16 = filter_any_update(&chain->filter, z_lsb);
-    }
-    if (chain->clipped) {
-        filter_any_hold(&chain->filter);
+        chain->x_lsb_q16 = filter_update(&chain->filter, z_lsb);
     }
     return chain->x_lsb_q16;
 }
 
 double chain_r_lsb2(const chain_t *chain)
 {
-    return noise_r_lsb2_q8(&chain->noise) / 256.0;
+    return filter_noise_r_lsb2_q8(&chain->noise) / 256.0;
 }

@@ -5,7 +5,7 @@
 #ifndef SUPPORT_CHAIN_H
 #define SUPPORT_CHAIN_H
 
-#include "filter_any.h"
+#include "filter_list.h"
 #include "noise.h"
 
 #include <stdbool.h>
@@ -28,16 +28,14 @@ const char *median_init(median_t *m, unsigned window);
 int16_t median_update(median_t *m, int16_t z_lsb);
 
 typedef struct {
-    filter_any_t filter;
+    filter_t filter;
     noise_t noise;
     median_t median; /* window 0: the filter gets the samples as they are */
     uint64_t last_us;
     uint32_t period_us;
-    uint32_t coasts; /* predictions before the last sample */
+    uint32_t coasts; /* predictions before the last sample that was used */
     uint16_t rate_dhz;
-    uint32_t part_dhz; /* of 25 ms, in shares of the rate */
-    uint32_t quarters; /* times 25 ms without a sample, until the estimate holds */
-    uint32_t away;     /* after a hold: 1, and 1 more for each sample away from what was held */
+    uint32_t away; /* after a hold: 1, and 1 more for each sample away from what was held */
     int32_t x_lsb_q16;
     int16_t rail_high_lsb;
     bool has_sample;

@@ -3,50 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-#define TWO_STATE_SUM 1.434
-#define SYNTH_SUM 2.277
-#define THREE_STATE_SUM 1.828
-#define SYNTH_OPT_SUM 1.446
-#define MIXTURE_SUM (1.434 + 1.945)
 #define P11_END 32768.0
-#define LINEAR_FORGETS 10.0
-#define PAPER_TIME_CONSTANT 14.7
-#define Q22_MIN 5.96e-8 /* two_state.c: 16 / 2^28 */
+#define Q22_MIN 5.96e-8 /* kalman.h: 16 / 2^28 */
 #define GATE_SIGMA 3.0
 #define S_MAX_PER_R 9.0
-
-#define FACTS_kf TWO_STATE_SUM, 1.0, LINEAR_FORGETS, 0, ENVELOPE_LINEAR
-#define FACTS_lrf TWO_STATE_SUM, 60.85, LINEAR_FORGETS, 0, ENVELOPE_LINEAR
-/* poles at 0.83666: e^-10 after 56 samples */
-#define FACTS_synth SYNTH_SUM, 1.0, 0.0, 56, ENVELOPE_FIXED_GAIN
-#define FACTS_kf3 THREE_STATE_SUM, 1.0, LINEAR_FORGETS, 0, ENVELOPE_FIXED_GAIN
-/* 0.57735 */
-#define FACTS_synth_opt SYNTH_OPT_SUM, 1.0, 0.0, 19, ENVELOPE_FIXED_GAIN
-/* kf's gains at the least R, fixed */
-#define FACTS_synth_plus TWO_STATE_SUM, 1.0, LINEAR_FORGETS, 0, ENVELOPE_FIXED_GAIN
-#define FACTS_sprf 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_STANDS
-#define FACTS_soft 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_REACQUIRES
-#define FACTS_pbf MIXTURE_SUM, 1.0, 800.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_MIXTURE
-#define FACTS_af MIXTURE_SUM, 1.0, 800.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_MIXTURE
-#define FACTS_shrf 0.0, 1.0, 1200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_WAITS
-#define FACTS_adaptive 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_NONE
-#define FACTS_auto 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_NONE
-#define FACTS_sprf_paper 0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_NONE
-
-/* A filter without its facts does not compile. */
-filter_facts_t filter_facts(filter_kind_t kind)
-{
-    switch (kind) {
-#define FACTS(F)          \
-    case FILTER_KIND_##F: \
-        return (filter_facts_t){ FACTS_##F };
-        FILTER_LIST(FACTS)
-#undef FACTS
-    case FILTER_KIND_COUNT:
-        break;
-    }
-    return (filter_facts_t){ 0.0, 0.0, 0.0, 0, ENVELOPE_NONE };
-}
 
 double noise_gain_of(double w1)
 {
@@ -57,31 +17,15 @@ double noise_gain_of(double w1)
     return (2.0 * w1 * w1 + 2.0 * w2 - 3.0 * w1 * w2) / (w1 * (4.0 - 2.0 * w1 - w2));
 }
 
-double kf3_noise_gain_of(double w1, double w2, double w3)
-{
-    double beta = w2 + w3 / 2.0;
-    double above = 2.0 * beta * (2.0 * w1 * w1 + 2.0 * beta - 3.0 * w1 * beta) - w1 * w3 * (4.0 - 2.0 * w1 - beta);
-    return above / ((4.0 - 2.0 * w1 - beta) * (2.0 * w1 * beta + w1 * w3 - 2.0 * w3));
-}
-
 double process_noise_per_r(uint16_t rate_dhz, double r_lsb2)
 {
     double period_s = 10.0 / rate_dhz;
-    return fmin(1.0, fmax(Q22_MIN, TWO_STATE_Q_DEFAULT_LSB2_S3 * period_s * period_s * period_s / r_lsb2));
+    return fmin(1.0, fmax(Q22_MIN, filter_parameter_q.standard * period_s * period_s * period_s / r_lsb2));
 }
 
 double time_constant_samples(uint16_t rate_dhz, double r_lsb2)
 {
     return sqrt(2.0) / pow(process_noise_per_r(rate_dhz, r_lsb2), 0.25);
-}
-
-double kf3_time_constant_samples(uint16_t rate_dhz, double r_lsb2)
-{
-    kf3_config_t config;
-    kf3_defaults(&config, rate_dhz);
-    bool fine = rate_dhz >= KF3_FINE_FROM_DHZ;
-    double q33 = config.q_lsb2_s5 * pow(10.0 / rate_dhz, 5.0) / r_lsb2;
-    return 2.0 / pow(fmin(fine ? 0x1p-11 : 1.0, fmax(fine ? 0x1p-32 : 0x1p-24, q33)), 1.0 / 6.0);
 }
 
 double longest_wait_samples(uint16_t rate_dhz, double r_lsb2)
@@ -91,19 +35,18 @@ double longest_wait_samples(uint16_t rate_dhz, double r_lsb2)
 
 size_t band_window(filter_kind_t kind, uint16_t rate_dhz, double r_lsb2)
 {
-    filter_facts_t facts = filter_facts(kind);
+    envelope_facts_t facts = law_facts(kind).envelope;
     if (facts.forgets == 0.0) {
         return facts.forgets_samples;
     }
-    if (kind == FILTER_KIND_kf3) {
-        return (size_t)ceil(facts.forgets * kf3_time_constant_samples(rate_dhz, r_lsb2));
-    }
-    return (size_t)ceil(facts.forgets * time_constant_samples(rate_dhz, r_lsb2 * facts.variance_ratio));
+    double (*samples)(uint16_t, double) = facts.time_constant_samples;
+    samples = (samples != NULL) ? samples : time_constant_samples;
+    return (size_t)ceil(facts.forgets * samples(rate_dhz, r_lsb2 * facts.variance_ratio));
 }
 
 static uint32_t level_of(int16_t z_lsb)
 {
-    return (uint32_t)(filter_clamp_z(z_lsb) - FILTER_Z_MIN_LSB);
+    return (uint32_t)(filter_tracker_limited_z(z_lsb) - FILTER_Z_MIN_LSB);
 }
 
 void band_clear(band_t *b)
@@ -179,7 +122,7 @@ void hull_add(hull_t *h, int16_t z_lsb, double r_lsb2, uint32_t coasts)
         h->r_lsb2[i] = h->r_lsb2[i - 1];
         h->coasts[i] = h->coasts[i - 1];
     }
-    h->z_lsb[0] = filter_clamp_z(z_lsb);
+    h->z_lsb[0] = filter_tracker_limited_z(z_lsb);
     h->r_lsb2[0] = r_lsb2;
     h->coasts[0] = coasts;
     h->filled += h->filled < HULL_SAMPLES;
@@ -192,7 +135,7 @@ double gate_reach_lsb(double r_lsb2)
 
 double rate_max_lsb(uint16_t rate_dhz)
 {
-    return REACQUIRE_RATE_MAX_DEFAULT_LSB_S * 10.0 / rate_dhz;
+    return filter_parameter_ratemax.standard * 10.0 / rate_dhz;
 }
 
 bool hull_judge(const hull_t *h, uint16_t rate_dhz, double x_lsb, double *excess_lsb)
@@ -211,7 +154,7 @@ bool hull_judge(const hull_t *h, uint16_t rate_dhz, double x_lsb, double *excess
         largest_step = fmax(largest_step, fabs((double)(h->z_lsb[i] - h->z_lsb[i - 1])));
         steps += h->coasts[i - 1];
     }
-    double agree_lsb = 3.0 * sqrt(2.0 * r_min) + rate_max_lsb(rate_dhz) - 1.0; /* reacquire.c rounds down */
+    double agree_lsb = 3.0 * sqrt(2.0 * r_min) + rate_max_lsb(rate_dhz) - 1.0; /* kalman.c rounds down */
     double bound_lsb = gate_reach_lsb(r_max) + steps * rate_max_lsb(rate_dhz);
     *excess_lsb = bound_lsb - fmax(0.0, fmax(low - x_lsb, x_lsb - high));
     return h->filled == HULL_SAMPLES && largest_step <= agree_lsb;

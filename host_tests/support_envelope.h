@@ -12,19 +12,19 @@
  * along a parabola, so they are judged where none of the W is missing. W is the time to forget: 10 time constants for
  * the linear ones (e^-10 of 8,704 LSB is 0.4 LSB), and for pbf and af the time in which they are to be back after any
  * step, 800 samples in the system of paper 002, where a time constant is 14.7 samples. It is sqrt(2) / q22^(1/4)
- * samples, q22 = q T^3 / R limited as in two_state.c, R the largest so far; of kf3 2 / q33^(1/6) samples, q33 = q T^5 /
+ * samples, q22 = q T^3 / R limited as in kalman.c, R the largest so far; of kf3 2 / q33^(1/6) samples, q33 = q T^5 /
  * R limited as in kf3.c: small gains make a Butterworth filter of third order.
  *
  * Hull, sprf and soft: whenever the last five raw samples agree, none at the rail (steps <= 3 sqrt(2 R) + ratemax, as
- * in reacquire.h), one of them was within the gate or all five were refused and the filter restarted on one of them.
- * Within the gate of 3 sigma is within 9 sqrt(R), because S < 9 R (two_state.h); from there the estimate moves towards
+ * in kalman.h), one of them was within the gate or all five were refused and the filter restarted on one of them.
+ * Within the gate of 3 sigma is within 9 sqrt(R), because S < 9 R (kalman.h); from there the estimate moves towards
  * samples, or by the limited rate per sample missing or refused. So x is no further from the hull of the five than 9
  * sqrt(R) + (4 + missing) ratemax, R the largest among the five.
  *
  * Run, sprf and soft: where the samples do not agree it may go on by its rate, and no faster: with n samples refused or
  * missing since the last that was within the gate or restarted it, and that one among the last W, |x - m| <= D +
  * 9 sqrt(R) + n ratemax, R the largest so far. W is 200 samples in the system of paper 002. Of the refused ones sprf
- * counts 6 at most, however many there were, because the sixth stops its rate (sprf.h); soft takes a part of each,
+ * counts 6 at most, however many there were, because the sixth stops its rate (sprf.c); soft takes a part of each,
  * which makes a new rate.
  *
  * Wait, shrf: it does not use what it takes for an outlier and has no limit of its rate, so it may go anywhere within
@@ -37,36 +37,14 @@
 #define SUPPORT_ENVELOPE_H
 
 #include "support_chain.h"
+#include "support_filters.h"
 
 #define BAND_MARGIN_LSB 1.0
 #define BAND_GAIN_ALLOWANCE 1.1
 #define RATE_HELD_SAMPLES 6U
 
-typedef enum {
-    ENVELOPE_LINEAR,     /* band */
-    ENVELOPE_FIXED_GAIN, /* band, where no sample is missing */
-    ENVELOPE_MIXTURE,    /* band, which holds its rate from one gain to the other */
-    ENVELOPE_REACQUIRES, /* hull and run */
-    ENVELOPE_STANDS,     /* hull and run, of few samples */
-    ENVELOPE_WAITS,      /* wait */
-    ENVELOPE_NONE
-} envelope_rule_t;
-
-/* Facts about a filter that its descriptor does not tell; a filter without an entry does not compile (-Wswitch). */
-typedef struct {
-    double gain_sum;       /* of the band */
-    double variance_ratio; /* of the R that its gain is made for to R */
-    double forgets;        /* W in time constants; 0: forgets_samples */
-    unsigned forgets_samples;
-    envelope_rule_t rule;
-} filter_facts_t;
-filter_facts_t filter_facts(filter_kind_t kind);
-
 /* Gain of white noise, sum h^2, of the two-state filter whose steady gain is w1; it is 3/4 w1 for small gains. */
 double noise_gain_of(double w1);
-
-/* The same of kf3 with the steady gains w1, w2 and w3 of x, v and a, per sample. */
-double kf3_noise_gain_of(double w1, double w2, double w3);
 
 /* q T^3 / R at the default q, limited. */
 double process_noise_per_r(uint16_t rate_dhz, double r_lsb2);
@@ -76,9 +54,6 @@ double longest_wait_samples(uint16_t rate_dhz, double r_lsb2);
 
 /* Samples of one time constant of a two-state filter at the default q. */
 double time_constant_samples(uint16_t rate_dhz, double r_lsb2);
-
-/* The same of kf3, at its default q. */
-double kf3_time_constant_samples(uint16_t rate_dhz, double r_lsb2);
 
 /* W for a filter on a sensor of this rate, when R has been this large. */
 size_t band_window(filter_kind_t kind, uint16_t rate_dhz, double r_lsb2);

@@ -42,7 +42,7 @@ void faulty_free(faulty_t *faulty);
 
 /* The filters of the list, and behind them a median of five before kf (R from the samples before the median). */
 #define CONTENDERS ((size_t)FILTER_KIND_COUNT + 1U)
-#define MEDIAN_KF ((size_t)FILTER_KIND_COUNT)
+#define MEDIAN_PLAIN ((size_t)FILTER_KIND_COUNT)
 const char *contender_name(size_t contender);
 
 /* A cold start, as chain_begin. */
@@ -66,7 +66,7 @@ void study_end(study_t *study);
  * `allowed` is what a filter may leave that does not follow it, see the test of the faults.
  */
 typedef struct {
-    double own, kf;
+    double own, plain;
     double predicted;
     double allowed;
     size_t count;

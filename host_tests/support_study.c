@@ -1,6 +1,7 @@
 /* What the faults of support_faults.h do to the filters. */
 #include "support_envelope.h"
 #include "support_faults.h"
+#include "support_roles.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,18 +11,18 @@
 
 const char *contender_name(size_t contender)
 {
-    return contender == MEDIAN_KF ? "median5_kf" : filter_any_name((filter_kind_t)contender);
+    return contender == MEDIAN_PLAIN ? by_role("median5_{plain}") : filter_listed_name((filter_kind_t)contender);
 }
 
-static filter_kind_t kind_of(size_t contender)
+static filter_kind_t kind_used_by(size_t contender)
 {
-    return contender == MEDIAN_KF ? FILTER_KIND_kf : (filter_kind_t)contender;
+    return contender == MEDIAN_PLAIN ? plain_kind() : (filter_kind_t)contender;
 }
 
 bool contender_begin(chain_t *chain, size_t contender, uint16_t rate_dhz, uint8_t range_g, int axis)
 {
-    bool good = chain_begin(chain, kind_of(contender), rate_dhz, range_g, axis);
-    return good && (contender != MEDIAN_KF || median_init(&chain->median, MEDIAN_WINDOW) == NULL);
+    bool good = chain_begin(chain, kind_used_by(contender), rate_dhz, range_g, axis);
+    return good && (contender != MEDIAN_PLAIN || median_init(&chain->median, MEDIAN_WINDOW) == NULL);
 }
 
 static bool run_clean(study_t *study, size_t contender, int axis)
@@ -34,8 +35,8 @@ static bool run_clean(study_t *study, size_t contender, int axis)
     }
     for (size_t i = 0; i < study->clean->count; i++) {
         x_lsb_q16[i] = chain_sample(&chain, study->clean->rows[i].t_us, study->clean->rows[i].lsb[axis]);
-        if (contender == FILTER_KIND_sprf) {
-            study->reacquired += (filter_any_flags(&chain.filter) & FILTER_REACQUIRED) != 0U;
+        if (contender == robust_kind()) {
+            study->reacquired += (chain.filter.flags & FILTER_REACQUIRED) != 0U;
         }
     }
     return true;
@@ -72,28 +73,18 @@ void study_end(study_t *study)
  * A read that is wrong by a. Linear filters follow it by A^2 sum h^2. A filter that does not may follow a read that is
  * within its gate of three sigma, where the good one was too: |A| <= 6 sqrt(S). Else it loses at most the good read,
  * 3 sqrt(S) off, and takes no more than a soft gate of two sigma of the bad one: 2 sqrt(S) off, the good one in part
- * likewise: 16 S covers both. S from kf's gain, w1 = 1 - R / S, which all two-state filters have in the steady state.
+ * likewise: 16 S covers both. One at the rail of the range is missing for all. S from the gain of a Kalman filter
+ * without a gate, w1 = 1 - R / S, which all two-state filters have in the steady state.
  */
 static void predict(const chain_t *chain, double a, score_t *score)
 {
     filter_probe_t probe;
-    filter_any_probe(&chain->filter, &probe);
+    filter_probe(&chain->filter, &probe);
     double w1 = probe.gain_uq16 / 65536.0;
-    double gain = noise_gain_of(w1);
-    if (chain->filter.kind == FILTER_KIND_synth) {
-        const synth_t *synth = &chain->filter.state.of_synth;
-        gain = synth_noise_gain_uq16(synth->b0_uq16, synth->a1_negative ? -synth->a1_uq16 : synth->a1_uq16) / 65536.0;
-    }
-    if (chain->filter.kind == FILTER_KIND_synth_opt) {
-        gain = 2.0 / 3.0; /* of (a1, b0) = (0, 2/3), where its schedule ends */
-    }
-    if (chain->filter.kind == FILTER_KIND_kf3) {
-        const kf3_t *f = &chain->filter.state.of_kf3;
-        gain = kf3_noise_gain_of(w1, f->core.u.p.p12_uq28 / 268435456.0,
-                                 f->p13_uq28 / 268435456.0 / (f->fine ? 16.0 : 1.0));
-    }
+    double (*own_gain)(const filter_t *) = law_facts(kind_of(&chain->filter)).envelope.noise_gain;
+    double gain = (own_gain != NULL) ? own_gain(&chain->filter) : noise_gain_of(w1);
     double s_lsb2 = chain_r_lsb2(chain) / (1.0 - w1);
-    score->predicted += gain * a * a;
+    score->predicted += chain->clipped ? 0.0 : gain * a * a;
     score->allowed += gain * (a * a <= 36.0 * s_lsb2 ? a * a : 16.0 * s_lsb2);
 }
 
@@ -102,7 +93,7 @@ static void score_axis(const study_t *study, const faulty_t *faulty, size_t cont
     chain_t chain;
     (void)contender_begin(&chain, contender, study->rate_dhz, faulty->range_g, axis); /* study_begin did it before */
     const int32_t *own = study->x_lsb_q16[contender][axis];
-    const int32_t *kf = study->x_lsb_q16[FILTER_KIND_kf][axis];
+    const int32_t *plain = study->x_lsb_q16[plain_kind()][axis];
     for (size_t i = 0; i < faulty->stream.count; i++) {
         const stream_row_t *row = &faulty->stream.rows[i];
         size_t source = faulty->source[i];
@@ -112,9 +103,9 @@ static void score_axis(const study_t *study, const faulty_t *faulty, size_t cont
             continue;
         }
         double own_lsb = ((double)x - own[source]) / 65536.0;
-        double kf_lsb = ((double)x - kf[source]) / 65536.0;
+        double plain_lsb = ((double)x - plain[source]) / 65536.0;
         score->own += own_lsb * own_lsb;
-        score->kf += kf_lsb * kf_lsb;
+        score->plain += plain_lsb * plain_lsb;
         score->count++;
         if (a < 0.0 || a > 0.0) {
             predict(&chain, a, score);

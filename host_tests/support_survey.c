@@ -32,7 +32,7 @@ row_counts_t survey_rows(const stream_t *stream, uint8_t range_g)
 /* The state of one run. */
 typedef struct {
     const survey_t *survey;
-    filter_facts_t facts;
+    envelope_facts_t facts;
     chain_t chain;
     band_t band;
     band_t second; /* the last second */
@@ -59,7 +59,7 @@ static size_t samples_by_rate(const run_t *run)
 static double share_used(run_t *run, double x_lsb)
 {
     uint16_t rate_dhz = run->survey->rate_dhz;
-    size_t window = band_window((filter_kind_t)run->chain.filter.kind, rate_dhz, run->r_max_lsb2);
+    size_t window = band_window(kind_of(&run->chain.filter), rate_dhz, run->r_max_lsb2);
     band_add(&run->band, run->z_lsb, window);
     double spread_lsb = band_spread_lsb(&run->band);
     double distance_lsb = fabs(x_lsb - band_median_lsb(&run->band));
@@ -101,10 +101,6 @@ static void measure_outside(run_t *run, double x_lsb)
 
 static void judge_hull(run_t *run, int16_t lsb, double x_lsb)
 {
-    if (run->chain.clipped) { /* on a reading at the rail no filter restarts */
-        run->hull.filled = 0;
-        return;
-    }
     hull_add(&run->hull, lsb, chain_r_lsb2(&run->chain), run->chain.coasts);
     double left_lsb;
     bool has_hull = run->facts.rule == ENVELOPE_REACQUIRES || run->facts.rule == ENVELOPE_STANDS;
@@ -150,10 +146,11 @@ static void one_sample(run_t *run, uint64_t t_us, int16_t lsb)
     int32_t x_lsb_q16 = chain_sample(&run->chain, t_us, lsb);
     run->begun = run->begun || run->chain.begun;
     if (run->chain.waits) {
+        run->hull.filled = run->chain.clipped ? 0 : run->hull.filled; /* on a reading at the rail no filter restarts */
         return;
     }
     filter_probe_t probe;
-    filter_any_probe(&run->chain.filter, &probe);
+    filter_probe(&run->chain.filter, &probe);
     const char *broken = broken_bound(&run->chain.filter, &probe, x_lsb_q16);
     if (broken != NULL) {
         run->counts->first_broken = run->counts->bounds_broken++ == 0 ? broken : run->counts->first_broken;
@@ -178,7 +175,7 @@ bool survey_axis(const stream_t *stream, const survey_t *survey, filter_kind_t k
     memset(&run, 0, sizeof run);
     memset(counts, 0, sizeof *counts);
     run.survey = survey;
-    run.facts = filter_facts(kind);
+    run.facts = law_facts(kind).envelope;
     run.counts = counts;
     run.z_lsb = malloc(stream->count * sizeof *run.z_lsb);
     bool good = run.z_lsb != NULL && chain_begin(&run.chain, kind, survey->rate_dhz, survey->range_g, axis);

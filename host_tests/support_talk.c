@@ -38,7 +38,7 @@ void talk_assert_told_once(size_t note, const char *of)
     char done[40];
     snprintf(done, sizeof done, "# %s z ", of);
     size_t results = board_notes_with(done, note);
-    size_t cut = board_notes_with("# refused 9: samples lost, or another configuration", note);
+    size_t cut = board_notes_with("# refused 9: samples lost or settings changed", note);
     TEST_ASSERT_EQUAL_size_t_MESSAGE(1, results + cut, of);
     snprintf(done, sizeof done, "# %s x ", of);
     TEST_ASSERT_EQUAL_size_t(results, board_notes_with(done, note));

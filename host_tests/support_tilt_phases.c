@@ -1,5 +1,6 @@
 /* Tilt streams of sixteen phases and the filters judged on them: see support_tilt_phases.h. */
 #include "support_tilt_phases.h"
+#include "support_laws.h"
 #include "support_random.h"
 
 #include <math.h>
@@ -141,35 +142,35 @@ static double degrees(int32_t x_lsb_q16)
     return x_lsb_q16 / 65536.0 / TILT_LSB_PER_DEGREE;
 }
 
-static void count_bank(tilt_bank_t *bank, const auto_t *f, const tilt_run_t *run, int i)
+static void count_bank(tilt_bank_t *bank, const filter_t *f, const tilt_run_t *run, int i)
 {
     if (i < TILT_SETTLING || i >= TILT_RUN_SAMPLES) {
         return;
     }
     for (uint8_t m = 0; m < AUTO_MEMBERS; m++) {
-        count_error(&bank->members[m], run, i, degrees(f->u.members[m].x_lsb_q16));
+        count_error(&bank->members[m], run, i, degrees(f->own.bank.members[m].x_lsb_q16));
     }
-    bank->chosen[f->chosen] += 1.0;
-    bank->phase_chosen[run->phase[i]][f->chosen] += 1.0;
+    bank->chosen[f->own.bank.chosen] += 1.0;
+    bank->phase_chosen[run->phase[i]][f->own.bank.chosen] += 1.0;
     bank->changes += (f->flags & FILTER_SWITCHED) != 0U;
 }
 
-void tilt_judge(const filter_any_t *begun, const tilt_run_t *run, tilt_errors_t *errors, tilt_bank_t *bank)
+void tilt_judge(const filter_t *begun, const tilt_run_t *run, tilt_errors_t *errors, tilt_bank_t *bank)
 {
-    filter_any_t f = *begun;
+    filter_t f = *begun;
     for (int i = 0; i < TILT_RUN_SAMPLES; i++) {
         int32_t x;
         if (run->missing[i]) {
-            if (i == 0 || !run->missing[i - 1]) {
-                filter_any_gap(&f);
+            if ((i == 0 || !run->missing[i - 1]) && f.collected == FILTER_RUNNING) {
+                filter_tracker_fade(&f, true);
             }
-            x = filter_any_coast(&f);
+            x = coast(&f);
         } else {
-            x = filter_any_update(&f, as_sample(run->z_deg[i] * TILT_LSB_PER_DEGREE));
+            x = filter_update(&f, as_sample(run->z_deg[i] * TILT_LSB_PER_DEGREE));
         }
         count_error(errors, run, i, degrees(x));
         if (bank != NULL) {
-            count_bank(bank, &f.state.of_auto, run, i);
+            count_bank(bank, &f, run, i);
         }
     }
 }

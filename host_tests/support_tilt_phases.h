@@ -5,7 +5,7 @@
 #ifndef SUPPORT_TILT_PHASES_H
 #define SUPPORT_TILT_PHASES_H
 
-#include "filter_any.h"
+#include "filter_list.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -67,8 +67,8 @@ typedef struct {
     double changes;
 } tilt_bank_t;
 
-/* A filter of the list over a run, as the pipeline calls it: a gap is told before the first missing sample. */
-void tilt_judge(const filter_any_t *begun, const tilt_run_t *run, tilt_errors_t *errors, tilt_bank_t *bank);
+/* A filter of the list over a run, predicting what is missing, without the damping and the hold of filter_missing. */
+void tilt_judge(const filter_t *begun, const tilt_run_t *run, tilt_errors_t *errors, tilt_bank_t *bank);
 
 /*
  * In double, on the model of the notes, x_e = x + T v, Q = q [T^2/2, T] [T^2/2, T]': the Kalman filter with a gate in

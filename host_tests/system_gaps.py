@@ -1,5 +1,6 @@
-"""Samples missing from a stream: the chip's rows in their places are those of the native build."""
-from system_support import OUT, STREAMS, TESTS, image_with, read_output, run, simrun
+"""Samples missing from a stream, or samples without a row: the chip's rows in their places are those of the native build."""
+from system_support import OUT, STREAMS, TESTS, image_with, read_output, run, simrun, test
+from laws import DEFAULT, LIGHT, PLAIN  # noqa: E402
 
 
 def thinned(stream):
@@ -36,7 +37,7 @@ def make_thinned_test(filter_name):
     return check
 
 
-for filter_kind in ("adaptive", "kf", "synth"):
+for filter_kind in (DEFAULT, PLAIN, LIGHT):
     TESTS.append(make_thinned_test(filter_kind))
 
 
@@ -60,3 +61,30 @@ def make_true_rate_test(ppm):
 
 for clock_ppm in (-50000, 50000):
     TESTS.append(make_true_rate_test(clock_ppm))
+
+
+def after_the_gap(times_us):
+    """Where the samples begin anew after `stop` and `go`."""
+    return next(i for i in range(1, len(times_us)) if times_us[i] - times_us[i - 1] > 150000)
+
+
+@test
+def pipeline_of_chip_equals_pc_at_800_hz():
+    """No filter leaves time for every row there: the PC takes the samples as the sensor served them, and every second one has a row. The
+    first five rows are flagged whatever samples they hold."""
+    rows, notes, served, _ = simrun("pipeline-800", STREAMS / "tilt-400hz.csv", "--cmd", "200:stop", "--cmd", "300:baud 1000000", "--cmd",
+                                    "400:rate 800", "--cmd", "500:go", "--max-ms", "6000", "--loop", "--filter", LIGHT)
+    assert "# rate 800 Hz, I2C at 400 kHz" in notes and "# every 2: the least for this filter" in notes, notes
+    rows = rows[after_the_gap([row[0] for row in rows]):]
+    skip = after_the_gap([int(one["t_us"]) for one in served])
+    whole = OUT / "pipeline-800-served.csv"
+    lines = [",".join(one[name] for name in ("t_us", "x_lsb", "y_lsb", "z_lsb")) for one in served]
+    whole.write_text("\n".join(["t_us,x_lsb,y_lsb,z_lsb", *lines, ""]), encoding="ascii")
+    done = run("build/host/pipeline_replay", whole, LIGHT, 8000, 16, skip)
+    again = [[int(f) for f in line.split(",")] for line in done.stdout.splitlines()]
+    flagged = [[*pc[1:9], pc[9] | (again[i - 1][9] if i else 0)] for i, pc in enumerate(again)]
+    begin = 0 if rows[2][1:] == flagged[4] else 1  # the first row is of the first or of the second sample
+    assert len(rows) > 2000
+    for i, (chip, pc) in enumerate(zip(rows, flagged[begin::2])):
+        pc[8] |= 128 if i < 5 else 0
+        assert chip[1:] == pc, f"row {i}: chip {chip}, PC {pc}"

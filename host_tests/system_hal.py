@@ -113,7 +113,7 @@ def line_with_a_damaged_or_lost_byte_is_refused_and_the_next_is_not():
             # ten bits of 8.5 us; the line is typed from 400 ms on
             _, notes, _, _ = simrun("spoilt", STREAMS / "rest-2lsb.csv", "--cmd", f"400:{line}", "--cmd", "450:every 2", "--cmd", "500:status",
                                     "--fault", f"{399.96 + 0.085 * at:.3f}ms:rxspoil:{lost}", "--max-ms", "600")
-            assert "# refused 3: characters that no command has" in notes and "# every 2" in notes, (lost, at, notes)
+            assert "# refused 3: illegal characters" in notes and "# every 2" in notes, (lost, at, notes)
             assert not any(note.startswith("# every 100") for note in notes), (lost, at, notes)
             assert any("serial bytes lost 1, lines refused 1" in note for note in notes), (lost, at, notes)
 

@@ -126,11 +126,11 @@ def brown_out_keeps_the_ram_and_says_so():
 def function_is_found_without_the_suffix_of_the_compiler():
     names = run("avr-nm", FW).stdout
     assert " tilt_angles\n" in names
-    name = next(word.partition(".")[0] for word in names.split() if word.startswith("keep_estimate."))
+    name = next(word.partition(".")[0] for word in names.split() if word.startswith("calibration_apply."))
     for function in (name, "tilt_angles"):
         stats = injected("suffix", f"pc:{function}#3:odr:1", judge=True, max_ms=400)[3]
         assert stats["fault_1_injected"] == 1, stats
-    for wrong in ("keep_estimat", "keep_estimate.lto", "ilt_angles"):
+    for wrong in ("keep_estimat", "calibration_apply.lto", "ilt_angles"):
         done = run(SIMRUN, "--fw", FW, "--in", REST, "--out", OUT / "x.csv", "--fault", f"pc:{wrong}:glitch", expect=2)
         assert "no such function in the firmware" in done.stderr, done.stderr
 

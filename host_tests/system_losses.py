@@ -2,6 +2,8 @@
 import re
 
 from system_support import FW, OUT, STREAMS, TESTS, assert_nothing_lost, image_with, simrun, test, within
+import images  # noqa: E402
+from laws import DEFAULT, ROBUST, SLOWEST  # noqa: E402
 
 
 def worst_width_stream():
@@ -71,16 +73,16 @@ def make_loss_test(filter_name, rate, baud, every, load_limit, ppm):
     return check
 
 
-TESTS.append(make_loss_test("adaptive", 100, 115200, 1, 0.11, 777))
-TESTS.append(make_loss_test("adaptive", 400, 500000, 1, 0.42, -777))
-TESTS.append(make_loss_test("adaptive", 800, 500000, 4, 0.56, 777))
+TESTS.append(make_loss_test(DEFAULT, 100, 115200, 1, 0.11, 777))
+TESTS.append(make_loss_test(DEFAULT, 400, 500000, 1, 0.42, -777))
+TESTS.append(make_loss_test(DEFAULT, 800, 500000, 4, 0.56, 777))
 # above adaptive: three times 1,320 cycles of the filters (docs/benchmarks.md) and 600 of the supervisor
 TESTS.append(make_loss_test("auto", 100, 115200, 1, 0.14, 777))
 TESTS.append(make_loss_test("auto", 400, 500000, 1, 0.535, -777))
 TESTS.append(make_loss_test("auto", 800, 500000, 4, 0.79, 777))
-TESTS.append(make_loss_test("sprf", 100, 115200, 1, 0.10, -777))
-TESTS.append(make_loss_test("sprf", 400, 500000, 1, 0.40, 777))
-TESTS.append(make_loss_test("sprf", 800, 500000, 4, 0.50, -777))
+TESTS.append(make_loss_test(ROBUST, 100, 115200, 1, 0.10, -777))
+TESTS.append(make_loss_test(ROBUST, 400, 500000, 1, 0.40, 777))
+TESTS.append(make_loss_test(ROBUST, 800, 500000, 4, 0.50, -777))
 
 
 def make_width_test(rate, baud, every):
@@ -97,14 +99,14 @@ def make_width_test(rate, baud, every):
 
 TESTS.append(make_width_test(100, 115200, 1))
 TESTS.append(make_width_test(400, 500000, 1))
-TESTS.append(make_width_test(800, 500000, 7))  # of the filters there none leaves time for more
+TESTS.append(make_width_test(800, 500000, 14))  # of the filters there none leaves time for more
 
 
 def forced_every(filter_name, rate):
     """The `every` that the firmware sets when it is asked for every row at 1,000,000 baud."""
     _, notes, _, stats = simrun("forced", STREAMS / "rest-2lsb.csv", "--filter", filter_name, "--rate", rate, "--baud", 1000000, "--every", 1,
                                 "--max-ms", 1500, fw=image_with(filter_name))
-    forced = [re.fullmatch(rf"# every (\d+)(: the smallest that {filter_name} leaves time for at {rate} Hz)?", note) for note in notes]
+    forced = [re.fullmatch(r"# every (\d+)(: the least for this filter)?", note) for note in notes]
     every = int([f for f in forced if f][-1].group(1))
     assert f"# filter {filter_name}" in notes and f"# rate {rate} Hz, I2C at {400 if rate == 800 else 363.6} kHz" in notes, notes
     return every
@@ -121,23 +123,26 @@ def make_time_test(filter_name, rate):
     return check
 
 
-for slow_filter, its_rate in (("shrf", 800), ("pbf", 800), ("af", 400)):
-    TESTS.append(make_time_test(slow_filter, its_rate))
+# the slowest of them takes more than a sample at 800 Hz leaves for every row
+SLOW = images.HOLDS["mixture"]
+for slow_filter in SLOW:
+    TESTS.append(make_time_test(slow_filter, 400 if slow_filter == SLOWEST else 800))
 
 
 @test
 def a_filter_too_slow_for_the_rate_is_refused_and_samples_go_on():
-    # this image is told of 15 MHz: af takes more than a sample at 800 Hz leaves, pbf does not
+    # this image is told of 15.5 MHz: the slowest takes more than a sample at 800 Hz leaves, the next does not
+    fits = SLOW[-2]
     tight = "build/uno/tight/firmware.elf"
-    reply = "# refused 5: af takes 12600 of the 10700 cycles that a sample at 800 Hz leaves"
-    rows, notes, served, _ = simrun("tight-filter", STREAMS / "rest-2lsb.csv", "--filter", "pbf", "--rate", 800, "--baud", 1000000, "--cmd",
-                                    "1500:filter af", "--cmd", "1600:filter", "--loop", "--max-ms", 3000, fw=tight)
-    assert notes.count(reply) == 1 and notes[notes.index(reply) + 1] == "# filter pbf", notes
-    # 18,750 - 8,050 - 10,500 cycles a sample are left for rows of 10,450
-    assert "# every 53: the smallest that pbf leaves time for at 800 Hz" in notes, notes
-    assert_nothing_lost(rows, served, 53, from_us=1000000, end_us=2900000)
+    reply = "# refused 5: takes 13050 of 11075 cycles a sample"
+    rows, notes, served, _ = simrun("tight-filter", STREAMS / "rest-2lsb.csv", "--filter", fits, "--rate", 800, "--baud", 1000000, "--cmd",
+                                    f"1500:filter {SLOWEST}", "--cmd", "1600:filter", "--loop", "--max-ms", 3000, fw=tight)
+    assert notes.count(reply) == 1 and notes[notes.index(reply) + 1] == f"# filter {fits}", notes
+    # 19,375 - 8,300 - 10,950 cycles a sample are left for rows of 10,500
+    assert "# every 84: the least for this filter" in notes, notes
+    assert_nothing_lost(rows, served, 84, from_us=1000000, end_us=2900000)
     assert not any(r[9] & (128 | 256) for r in rows if r[0] > 1400000)
-    rows, notes, served, _ = simrun("tight-rate", STREAMS / "rest-2lsb.csv", "--filter", "af", "--cmd", "1500:rate 800", "--cmd", "1600:rate",
+    rows, notes, served, _ = simrun("tight-rate", STREAMS / "rest-2lsb.csv", "--filter", SLOWEST, "--cmd", "1500:rate 800", "--cmd", "1600:rate",
                                     "--loop", "--max-ms", 3000, fw=tight)
     assert notes.count(reply) == 1 and notes[notes.index(reply) + 1] == "# rate 100 Hz, I2C at 363.6 kHz", notes
     assert_nothing_lost(rows, served, from_us=1000000, end_us=2900000)

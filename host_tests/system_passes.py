@@ -1,12 +1,13 @@
-"""No pass of the main loop is longer than 1 ms, and no interrupt with a deadline waits longer than 15 us; part of system_tests.py."""
+"""No pass of the main loop is longer than 4 ms, and no interrupt with a deadline waits longer than 15 us; part of system_tests.py."""
 import pathlib
 import sys
 
 sys.path.insert(0, "tools")
+from laws import DEFAULT, LIGHT, ROBUST  # noqa: E402
 import latency  # noqa: E402
 from system_support import SET_IMAGES, STREAMS, TESTS, image_with, simrun, test, within  # noqa: E402
 
-PASS_CYCLES = 16000
+PASS_CYCLES = 64000
 COMMANDS = ("status", "help", "filter {0}", "range 8", "filter", "filter {1}", "range 16", "every 3", "every 1", "stop", "go", "mode plot",
             "nonsense", "filter {0}", "mode csv", "rate 50", "rate {2}", "filter {1}", "status")
 # with what each is answered by, begun anywhere: settings, calibration and measurements, each told of, in this order
@@ -51,7 +52,7 @@ def make_disturbed_test(image, rate, baud, flood):
     def check():
         for filter_name in filters_of(image):
             disturbed_run(image, filter_name, rate, baud, flood)
-    check.__name__ = f"no_pass_longer_than_1_ms_{pathlib.Path(image).parent.name}_{rate}_hz"
+    check.__name__ = f"no_pass_longer_than_4_ms_{pathlib.Path(image).parent.name}_{rate}_hz"
     return check
 
 
@@ -62,10 +63,7 @@ def settings_run(image, rate, baud):
     _, notes, _, stats = simrun(name, STREAMS / "outliers-15pct.csv", "--filter", filters_of(image)[0], "--rate", rate, "--baud", baud, "--loop",
                                 "--max-ms", 9000, *options, fw=image, judge=False)
     begins = 0
-    without_cal6 = any(note.startswith("# refused 12") for note in notes)
     for text, answer in SETTING_COMMANDS:
-        if without_cal6:  # nothing runs that keeps tare from beginning
-            answer = {"cal6": "# refused 12", "tare": "# tare: hold still"}.get(text, answer)
         found = [i for i, note in enumerate(notes) if i >= begins and note.startswith(answer)]
         assert found, f"{text}: no {answer} from note {begins} on: {notes}"
         begins = found[0]
@@ -75,7 +73,7 @@ def settings_run(image, rate, baud):
 def make_settings_test(image, rate, baud):
     def check():
         settings_run(image, rate, baud)
-    check.__name__ = f"no_pass_longer_than_1_ms_in_settings_{pathlib.Path(image).parent.name}_{rate}_hz"
+    check.__name__ = f"no_pass_longer_than_4_ms_in_settings_{pathlib.Path(image).parent.name}_{rate}_hz"
     return check
 
 
@@ -90,18 +88,18 @@ def a_row_waits_for_one_axis_of_a_change_of_filter():
     """10 ms and what a line may take are 18, as in the fault campaign; all three axes ahead of one sample would make it 24 to 29."""
     for phase in range(10):
         name = f"change-{phase}"
-        _, notes, _, stats = simrun(name, STREAMS / "rest-2lsb.csv", "--filter", "sprf", "--max-ms", 2000, "--cmd", f"{980 + phase}:filter kf",
-                                    "--cmd", f"{1480 + phase}:filter sprf", "--fault", "800ms:nack",  # the gap is that behind it
-                                    fw=image_with("sprf"), judge=False)
+        _, notes, _, stats = simrun(name, STREAMS / "rest-2lsb.csv", "--filter", ROBUST, "--max-ms", 2000, "--cmd", f"{980 + phase}:filter {LIGHT}",
+                                    "--cmd", f"{1480 + phase}:filter {ROBUST}", "--fault", "800ms:nack",  # the gap is that behind it
+                                    fw=image_with(ROBUST), judge=False)
         assert stats["rows_wrong"] == stats["lost"] == 0 and stats["rows_calm_gap_ms"] > 10, stats
-        assert "# filter kf" in notes and "# filter sprf" in notes, notes
+        assert f"# filter {LIGHT}" in notes and f"# filter {ROBUST}" in notes, notes
         within(f"{name}: ms from row to row", stats["rows_calm_gap_ms"], 18)
 
 
 @test
-def no_pass_longer_than_1_ms_in_any_stream():
+def no_pass_longer_than_4_ms_in_any_stream():
     for stream in sorted(STREAMS.glob("*.csv")):
         for rate, baud in ((12.5, 115200), (100, 115200), (400, 1000000), (800, 1000000)):
             name = f"passes-{stream.stem}-{rate}"
-            _, _, _, stats = simrun(name, stream, "--rate", rate, "--baud", baud, "--loop", "--max-ms", 5000, fw=image_with("adaptive"), judge=False)
+            _, _, _, stats = simrun(name, stream, "--rate", rate, "--baud", baud, "--loop", "--max-ms", 5000, fw=image_with(DEFAULT), judge=False)
             assert_prompt(name, stats, baud, False)

@@ -40,7 +40,7 @@ static void test_alternating_faults_are_told_once_each(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 2: ", before));
     hal_host_faults.id_wrong = false;
     board_run_ms(300);
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("over: samples again", before));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("over: after", before));
     TEST_ASSERT_EQUAL_size_t(before + 3, board.note_count);
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(300);
@@ -141,14 +141,14 @@ static void test_a_change_of_filter_goes_axis_by_axis(void)
 {
     board_start_resting();
     board_run_ms(500);
-    uint8_t old = pipeline.axes[0].filter.kind;
-    board_type("filter kf");
+    const filter_law_t *old = pipeline.axes[0].filter.law;
+    board_type("filter {plain}");
     int changed = 0;
     for (int ms = 0; ms < 40; ms++) {
         board_run_ms(1);
         int now = 0;
         for (size_t axis = 0; axis < AXES; axis++) {
-            now += pipeline.axes[axis].filter.kind != old;
+            now += pipeline.axes[axis].filter.law != old;
         }
         TEST_ASSERT_TRUE(now == changed || now == changed + 1);
         changed = now;

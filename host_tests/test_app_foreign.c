@@ -1,5 +1,5 @@
 /*
- * Fault 2, "the device at 0x.. is no ADXL345: DEVID reads 0x..": its words come out after the driver has gone on to the
+ * Fault 2, "no ADXL345 at 0x..: DEVID 0x..": its words come out after the driver has gone on to the
  * other address, and name the device that was found.
  */
 #include <stdio.h>
@@ -43,8 +43,7 @@ static uint8_t on_rx(uint8_t reg, uint8_t byte)
 static void the_line_is(uint8_t address)
 {
     char words[BOARD_NOTE_LENGTH];
-    snprintf(words, sizeof words, "# fault 2: the device at 0x%02X is no ADXL345: DEVID reads 0x%02X, not 0xE5",
-             address, id_at(address));
+    snprintf(words, sizeof words, "# fault 2: no ADXL345 at 0x%02X: DEVID 0x%02X, not 0xE5", address, id_at(address));
     TEST_ASSERT_EQUAL_size_t_MESSAGE(1, board_notes_with("# fault", 0), words);
     size_t at = 0;
     while (board_notes_with("# fault", at + 1) != 0) {
@@ -168,7 +167,7 @@ static void test_fault_2_names_the_device_after_the_sensor_was_found(void)
     TEST_ASSERT_EQUAL_HEX8(ADXL345_ADDRESS_HIGH, adxl345_foreign_address());
     TEST_ASSERT_EQUAL_HEX8(HIGH_ID, adxl345_foreign_id());
     board_run_ms(300);
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 2: the device at 0x1D is no ADXL345: DEVID reads 0x42", 0));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 2: no ADXL345 at 0x1D: DEVID 0x42", 0));
 }
 
 int main(void)

@@ -3,10 +3,12 @@
 
 #include "app.h"
 #include "counters.h"
+#include "filter_list.h"
 #include "hal_watchdog.h"
 #include "pipeline_state.h"
 #include "settings.h"
 #include "settings_kept.h"
+#include "support_roles.h"
 #include "support_talk.h"
 #include "unity.h"
 
@@ -26,7 +28,7 @@ static void assert_loaded(const char *line, const char *words)
 
 static void save_some(void)
 {
-    talk_type("filter sprf");
+    talk_type("filter {robust}");
     talk_type("gate 4.5");
     talk_type("rate 50");
     talk_type("range 4");
@@ -42,9 +44,9 @@ static void test_saved_settings_survive_power(void)
     talk_power_cycle(false);
     TEST_ASSERT_EQUAL_UINT(KEPT_GOOD, settings_kept);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: as saved", 0));
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# filter sprf, rate 50 Hz, range 4 g, every 3, baud 115200", 0));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# filter {robust}, rate 50 Hz, range 4 g, every 3, baud 115200", 0));
     TEST_ASSERT_EQUAL_STRING("# gate 4.5 sigma: 1 to 16, 0: off", talk_answer("gate"));
-    TEST_ASSERT_EQUAL_UINT(4 * 256 + 128, pipeline.axes[1].filter.state.of_sprf.gate_sigma_q8);
+    TEST_ASSERT_EQUAL_UINT(4 * 256 + 128, pipeline.axes[1].filter.own.kalman.of.gated.gate_sigma_q8);
 }
 
 /* EEPROM writes are for a sensor that stands still: not one while rows go out, whatever is typed. */
@@ -86,13 +88,13 @@ static void test_load_and_defaults(void)
     assert_loaded("load", "# settings: defaults, none saved");
     save_some();
     talk_type("rate 400");
-    talk_type("filter kf");
+    talk_type("filter {plain}");
     assert_loaded("load", "# settings: as saved");
     TEST_ASSERT_EQUAL_STRING("# rate 50 Hz, I2C at 363.6 kHz", talk_answer("rate"));
     TEST_ASSERT_EQUAL_STRING("# gate 4.5 sigma: 1 to 16, 0: off", talk_answer("gate"));
     assert_loaded("defaults", "# settings: defaults");
     TEST_ASSERT_EQUAL_STRING("# rate 100 Hz, I2C at 363.6 kHz", talk_answer("rate"));
-    TEST_ASSERT_EQUAL_STRING("# filter adaptive", talk_answer("filter"));
+    TEST_ASSERT_EQUAL_STRING(by_role("# filter {default}"), talk_answer("filter"));
     talk_type("go");
     size_t rows = board.row_count;
     board_run_ms(1000);
@@ -113,7 +115,7 @@ static void test_the_strap_brings_the_default_baud_back(void)
     TEST_ASSERT_EQUAL_UINT32(1000000, hal_host_baud());
     talk_power_cycle(true);
     TEST_ASSERT_EQUAL_UINT32(115200, hal_host_baud());
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: defaults, the saved ones are left alone", 0));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: defaults, saved ones not read", 0));
     talk_power_cycle(false); /* and it is still there */
     TEST_ASSERT_EQUAL_UINT32(1000000, hal_host_baud());
     talk_power_cycle(true);
@@ -157,7 +159,7 @@ static void test_a_filter_that_the_image_does_not_hold(void)
     }
     talk_type("save");
     talk_power_cycle(false);
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: as saved, but for the filter", 0));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: as saved, but another filter", 0));
     TEST_ASSERT_EQUAL_UINT(500, settings.rate_dhz);
     TEST_ASSERT_EQUAL_UINT(0, settings.filter);
     TEST_ASSERT_EQUAL_UINT(0, settings.own);

@@ -236,10 +236,10 @@ static void test_commands_in_the_middle(void)
     static const struct {
         const char *command;
         bool ends_it;
-    } talk[] = { { "rate 200", true },   { "rate 12.5", true }, { "range 2", true },      { "go", true },
-                 { "filter kf", false }, { "every 2", false },  { "status", false },      { "mode csv", false },
-                 { "rate", false },      { "rate 60", false },  { "baud 250000", false }, { "odr", false },
-                 { "defaults", true },   { "help", false },     { "mode plot", false } };
+    } talk[] = { { "rate 200", true },        { "rate 12.5", true }, { "range 2", true },      { "go", true },
+                 { "filter {plain}", false }, { "every 2", false },  { "status", false },      { "mode csv", false },
+                 { "rate", false },           { "rate 60", false },  { "baud 250000", false }, { "odr", false },
+                 { "defaults", true },        { "help", false },     { "mode plot", false } };
     for (size_t i = 0; i < sizeof talk / sizeof talk[0]; i++) {
         for (double at_ms = 20.0; at_ms < 1300.0; at_ms += 311.0) {
             talk_start_noisy(&stream, 100.0, 0.0);
@@ -281,7 +281,7 @@ static void test_one_at_a_time(void)
     board_type("noise");
     board_type("selftest");
     board_run_ms(200.0);
-    TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# refused 10: one measurement at a time", note));
+    TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# refused 10: busy measuring", note));
     board_run_ms(SELFTEST_MS);
     talk_assert_told_once(note, "selftest");
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("noise", note));
@@ -294,9 +294,9 @@ static void test_without_samples_there_is_no_measurement(void)
     talk_start_noisy(&stream, 100.0, 0.0);
     (void)talk_typed("stop", 200.0);
     size_t note = talk_typed("noise", 100.0);
-    talk_assert_note("# refused 9: samples lost, or another configuration", note + 1);
+    talk_assert_note("# refused 9: samples lost or settings changed", note + 1);
     note = talk_typed("selftest", 100.0);
-    talk_assert_note("# refused 9: samples lost, or another configuration", note + 1);
+    talk_assert_note("# refused 9: samples lost or settings changed", note + 1);
     TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
     TEST_ASSERT_EQUAL_HEX8(0, hal_host_sensor.reg[ADXL345_POWER_CTL]);
     (void)talk_typed("go", 300.0);
@@ -331,7 +331,7 @@ static void test_no_measurement_lasts_longer_than_two_minutes(void)
     TEST_ASSERT_EQUAL_size_t(note + 1, board.note_count);
     counters[COUNT_SECONDS]++;
     board_run_ms(100.0);
-    talk_assert_note("# refused 9: samples lost, or another configuration", note + 1);
+    talk_assert_note("# refused 9: samples lost or settings changed", note + 1);
 }
 
 int main(void)

@@ -90,8 +90,8 @@ static void test_noise_ends_with_another_rate_and_goes_on_with_another_filter(vo
     static const struct {
         const char *command;
         bool ends_it;
-    } talk[] = { { "rate 50", true },      { "range 4", true },  { "stop", true },        { "go", true },
-                 { "filter sprf", false }, { "every 3", false }, { "baud 250000", false } };
+    } talk[] = { { "rate 50", true },          { "range 4", true },  { "stop", true },        { "go", true },
+                 { "filter {robust}", false }, { "every 3", false }, { "baud 250000", false } };
     for (size_t i = 0; i < sizeof talk / sizeof talk[0]; i++) {
         talk_start_noisy(&stream, 100.0, 0.0);
         size_t note = talk_typed("noise", 500.0);

@@ -22,7 +22,7 @@ typedef struct {
 
 static told_t told_by(size_t note)
 {
-    static const char words[] = "# fault %u over: samples again after %lf ms, %u lost, sensor at 0x%x";
+    static const char words[] = "# fault %u over: after %lf ms, %u lost, sensor at 0x%x";
     told_t told;
     TEST_ASSERT_EQUAL_INT(4, sscanf(board.notes[note], words, &told.code, &told.ms, &told.lost, &told.address));
     return told;

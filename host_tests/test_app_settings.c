@@ -2,9 +2,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "filter_list.h"
 #include "number.h"
 #include "pipeline_state.h"
 #include "settings.h"
+#include "support_roles.h"
 #include "support_talk.h"
 #include "unity.h"
 
@@ -22,7 +24,7 @@ static void test_parameters_are_shown_set_and_refused(void)
 {
     static const struct {
         const char *typed, *answer;
-    } talk[] = { { "filter sprf", "# filter sprf" },
+    } talk[] = { { "filter {robust}", "# filter {robust}" },
                  { "gate", "# gate 3 sigma: 1 to 16, 0: off" },
                  { "gate 3.5", "# gate 3.5 sigma: 1 to 16, 0: off" },
                  { "GATE 16", "# gate 16 sigma: 1 to 16, 0: off" },
@@ -40,18 +42,28 @@ static void test_parameters_are_shown_set_and_refused(void)
                  { "q 1000000000", "# q 1000000000 LSB2/s3: 1 to 1000000000" },
                  { "q 1.5", "# refused 4: illegal value; q 1000000000 LSB2/s3: 1 to 1000000000" },
                  { "a1", "# refused 1: unknown command (type help)" },
-                 { "filter synth", "# filter synth" },
+                 { "filter {light}", "# filter {light}" },
                  { "a1", "# a1 0: -0.9999 to 0.9999" },
                  { "a1 -0.5", "# a1 -0.5: -0.9999 to 0.9999" },
                  { "a1 -0.9999",
                    "# refused 4: illegal value; a1 -0.5: -0.9999 to 0.9999" }, /* unstable with b0 = 0.3 */
                  { "gate", "# refused 1: unknown command (type help)" },
-                 { "filter sprf", "# filter sprf" },
+                 { "filter {robust}", "# filter {robust}" },
                  { "gate", "# gate 3 sigma: 1 to 16, 0: off" } }; /* another filter: as shipped again */
     talk_start();
     for (size_t i = 0; i < sizeof talk / sizeof talk[0]; i++) {
-        TEST_ASSERT_EQUAL_STRING_MESSAGE(talk[i].answer, talk_answer(talk[i].typed), talk[i].typed);
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(by_role(talk[i].answer), talk_answer(talk[i].typed), talk[i].typed);
     }
+}
+
+static void test_an_unknown_filter_is_refused_with_the_list(void)
+{
+    char answer[200] = "# refused 4: filter is one of";
+    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        (void)strcat(strcat(answer, " "), filter_listed_name((filter_kind_t)kind));
+    }
+    talk_start();
+    TEST_ASSERT_EQUAL_STRING(answer, talk_answer("filter median"));
 }
 
 /* Mean square of the x column's steps from row to row, mg^2. */
@@ -68,7 +80,7 @@ static double roughness(size_t from)
 /* A Kalman filter's gain follows q / R. R as set, not as estimated: 1000 for a noise of 2 LSB smooths far more. */
 static void test_parameters_reach_the_filter(void)
 {
-    static const char *const typed[] = { "filter kf", "r 1000", "r 0.1", "q 1", "filter kf" };
+    static const char *const typed[] = { "filter {plain}", "r 1000", "r 0.1", "q 1", "filter {plain}" };
     double rough[5];
     stream = board_noisy_stream(2000, 100.0, 2.0, 7);
     board_start(&stream, 0.0, 0);
@@ -92,13 +104,14 @@ static void test_changes_in_quick_succession(void)
 {
     talk_start();
     size_t before = board.note_count;
-    hal_host_type("filter sprf\ngate 2\nfilter kf\nr 7\nfilter adaptive\nslow 500\nfilter sprf\n");
+    hal_host_type(
+        by_role("filter {robust}\ngate 2\nfilter {plain}\nr 7\nfilter {default}\nslow 500\nfilter {robust}\n"));
     board_run_ms(1500);
     TEST_ASSERT_EQUAL_size_t(before + 7, board.note_count);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("refused", before));
     for (int axis = 0; axis < AXES; axis++) {
-        TEST_ASSERT_EQUAL_UINT(FILTER_KIND_sprf, pipeline.axes[axis].filter.kind);
-        TEST_ASSERT_EQUAL_UINT(3 * 256, pipeline.axes[axis].filter.state.of_sprf.gate_sigma_q8);
+        TEST_ASSERT_EQUAL_PTR(filter_listed(robust_kind()), pipeline.axes[axis].filter.law);
+        TEST_ASSERT_EQUAL_UINT(3 * 256, pipeline.axes[axis].filter.own.kalman.of.gated.gate_sigma_q8);
     }
     TEST_ASSERT_EQUAL_UINT(0, settings.own);
 }
@@ -108,7 +121,7 @@ static void test_the_listing_can_be_typed_again(void)
 {
     char listed[40][BOARD_NOTE_LENGTH];
     talk_start();
-    talk_type("filter sprf");
+    talk_type("filter {robust}");
     talk_type("gate 3.37");
     talk_type("r 2.71");
     size_t before = board.note_count;
@@ -142,8 +155,8 @@ static void test_address(void)
 {
     talk_start();
     TEST_ASSERT_EQUAL_STRING("# address auto", talk_answer("address"));
-    TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1d", talk_answer("address 54"));
-    TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1d", talk_answer("address 0x53"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1D", talk_answer("address 54"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1D", talk_answer("address 0x53"));
     size_t before = board.note_count;
     talk_type("address 1D");
     board_run_ms(1000);
@@ -151,7 +164,7 @@ static void test_address(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1: ", before)); /* it is not looked for elsewhere */
     talk_type("address 53");
     board_run_ms(500);
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("sensor at 0x53", before));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("lost, sensor at 0x53", before));
     talk_type("address 1d");
     board_run_ms(500);
     talk_type("address auto");
@@ -270,8 +283,10 @@ static void test_a_level_of_more_than_1_g_can_be_typed_again(void)
 /* b0 0.05 is stable beside the b1 of 800 Hz (-0.0407), not beside that of 400 Hz (-0.0780): the sum is negative. */
 static void test_a_rate_at_which_the_parameters_do_not_go_together(void)
 {
+    char line[40];
     talk_start();
-    talk_type("filter synth_plus");
+    snprintf(line, sizeof line, "filter %s", filter_listed_name(kind_with("b1")));
+    talk_type(line);
     talk_type("rate 800");
     TEST_ASSERT_EQUAL_STRING_LEN("# b0 0.05", talk_answer("b0 0.05"), 9);
     talk_type("rate 400");
@@ -325,6 +340,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_parameters_are_shown_set_and_refused);
+    RUN_TEST(test_an_unknown_filter_is_refused_with_the_list);
     RUN_TEST(test_parameters_reach_the_filter);
     RUN_TEST(test_changes_in_quick_succession);
     RUN_TEST(test_the_listing_can_be_typed_again);

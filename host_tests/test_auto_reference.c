@@ -1,5 +1,6 @@
 /* auto: its members against the linear filter in double, what follows from its equations. */
 #include "support_auto.h"
+#include "support_laws.h"
 #include "support_random.h"
 #include "unity.h"
 
@@ -15,20 +16,19 @@ static const double memories[AUTO_MEMBERS] = { 50.0, 20.0, 8.0 };
 
 static void test_memories_are_those_of_the_configuration(void)
 {
-    auto_t f = made_at_rest(0);
+    filter_t f = made_at_rest(0);
     for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
-        TEST_ASSERT_DOUBLE_WITHIN(1.0 / 65536.0, 2.0 / memories[i], f.u.members[i].k_uq16 / 65536.0);
+        TEST_ASSERT_DOUBLE_WITHIN(1.0 / 65536.0, 2.0 / memories[i], f.own.bank.members[i].k_uq16 / 65536.0);
     }
-    auto_config_t config;
-    auto_defaults(&config, 40000); /* 4 kHz: 2000 samples are limited to 512 */
-    TEST_ASSERT_TRUE(auto_init(&f, &config));
-    TEST_ASSERT_EQUAL_UINT16(65536 * 2 / 512, f.final_k_uq16[AUTO_SLOW]);
-    config.fast_ms = 1; /* 4 samples: 2 / 4; 3 samples of 3 kHz: 0.6 */
-    TEST_ASSERT_TRUE(auto_init(&f, &config));
-    TEST_ASSERT_EQUAL_UINT16(32768, f.final_k_uq16[AUTO_FAST]);
+    filter_config_t config = filter_defaults(&filter_law_auto, 40000); /* 4 kHz: 2000 samples are limited to 512 */
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_auto, &config));
+    TEST_ASSERT_EQUAL_UINT16(65536 * 2 / 512, f.own.bank.final_k_uq16[AUTO_SLOW]);
+    config.value[AUTO_FAST_MS] = 1; /* 4 samples: 2 / 4; 3 samples of 3 kHz: 0.6 */
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_auto, &config));
+    TEST_ASSERT_EQUAL_UINT16(32768, f.own.bank.final_k_uq16[AUTO_FAST]);
     config.rate_dhz = 30000;
-    TEST_ASSERT_TRUE(auto_init(&f, &config));
-    TEST_ASSERT_EQUAL_UINT16(39321.6 + 0.5, f.final_k_uq16[AUTO_FAST]);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_auto, &config));
+    TEST_ASSERT_EQUAL_UINT16(39321.6 + 0.5, f.own.bank.final_k_uq16[AUTO_FAST]);
 }
 
 typedef struct {
@@ -73,17 +73,17 @@ static void test_members_are_fading_memories(void)
 {
     test_random_t random;
     random_seed(&random, SEED);
-    auto_t f = made_at_rest(0);
+    filter_t f = made_at_rest(0);
     line_t reference[AUTO_MEMBERS] = { { 0.0, 0.0 } };
     for (int n = 0; n < 20000; n++) {
         int16_t z = as_sample(3.0 * sin(n * 0.01) + fmax(-3.5, fmin(3.5, random_normal(&random))) * SIGMA_LSB);
-        int32_t x = auto_update(&f, z);
-        TEST_ASSERT_EQUAL_INT32(f.u.members[f.chosen].x_lsb_q16, x);
+        int32_t x = filter_update(&f, z);
+        TEST_ASSERT_EQUAL_INT32(f.own.bank.members[f.own.bank.chosen].x_lsb_q16, x);
         TEST_ASSERT_EQUAL_HEX8(0, f.flags & (FILTER_GATED | FILTER_REACQUIRED | FILTER_SATURATED));
         for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
-            double k = f.final_k_uq16[i] / 65536.0;
+            double k = f.own.bank.final_k_uq16[i] / 65536.0;
             step_line(&reference[i], k, z);
-            TEST_ASSERT_DOUBLE_WITHIN(member_bound(k), reference[i].x, f.u.members[i].x_lsb_q16 / 65536.0);
+            TEST_ASSERT_DOUBLE_WITHIN(member_bound(k), reference[i].x, f.own.bank.members[i].x_lsb_q16 / 65536.0);
         }
     }
 }
@@ -91,21 +91,21 @@ static void test_members_are_fading_memories(void)
 /* Behind a restart k = 0.6 and then k - k^2 / 4: half a sample of memory more per sample, up to the member's own. */
 static void test_the_memory_grows_by_half_a_sample_per_sample(void)
 {
-    auto_t f = made_at_rest(0);
+    filter_t f = made_at_rest(0);
     for (int n = 0; n < 5; n++) {
-        (void)auto_update(&f, 1000);
+        (void)filter_update(&f, 1000);
     }
     double k = 0.6;
     for (int n = 0; n < 200; n++) {
         for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
             double expected = fmax(k, 2.0 / memories[i]);
-            TEST_ASSERT_DOUBLE_WITHIN(0.02 * expected, expected, f.u.members[i].k_uq16 / 65536.0);
+            TEST_ASSERT_DOUBLE_WITHIN(0.02 * expected, expected, f.own.bank.members[i].k_uq16 / 65536.0);
         }
-        (void)auto_update(&f, 1000);
+        (void)filter_update(&f, 1000);
         k -= k * k / 4.0;
     }
     for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
-        TEST_ASSERT_EQUAL_UINT16(f.final_k_uq16[i], f.u.members[i].k_uq16);
+        TEST_ASSERT_EQUAL_UINT16(f.own.bank.final_k_uq16[i], f.own.bank.members[i].k_uq16);
     }
 }
 
@@ -115,23 +115,23 @@ static void test_a_gap_stops_a_rate_within_two_of_its_sigmas(void)
     double k = 2.0 / memories[AUTO_MIDDLE];
     double t = k / (2.0 - k);
     double two_sigmas_lsb = 2.0 * sqrt(2.0 * t * t * t) * SIGMA_LSB;
-    auto_t f = made_at_rest(0);
-    auto_member_t *m = &f.u.members[AUTO_MIDDLE];
+    filter_t f = made_at_rest(0);
+    filter_member_t *m = &f.own.bank.members[AUTO_MIDDLE];
     for (int side = -1; side <= 1; side += 2) {
         int32_t within = (int32_t)(side * two_sigmas_lsb * 0.99 * 65536.0);
         int32_t beyond = (int32_t)(side * two_sigmas_lsb * 1.01 * 65536.0);
         m->rate_lsb_q16 = beyond;
-        auto_gap(&f);
+        filter_tracker_fade(&f, true);
         TEST_ASSERT_EQUAL_INT32(beyond, m->rate_lsb_q16);
         m->rate_lsb_q16 = within;
-        auto_gap(&f);
+        filter_tracker_fade(&f, true);
         TEST_ASSERT_EQUAL_INT32(0, m->rate_lsb_q16);
         m->k_uq16++; /* growing: four times that */
         m->rate_lsb_q16 = 3 * beyond;
-        auto_gap(&f);
+        filter_tracker_fade(&f, true);
         TEST_ASSERT_EQUAL_INT32(0, m->rate_lsb_q16);
         m->rate_lsb_q16 = 4 * beyond;
-        auto_gap(&f);
+        filter_tracker_fade(&f, true);
         TEST_ASSERT_EQUAL_INT32(4 * beyond, m->rate_lsb_q16);
         m->k_uq16--;
     }
@@ -141,17 +141,17 @@ static void test_a_gap_stops_a_rate_within_two_of_its_sigmas(void)
 static void test_the_variance_told_is_that_of_the_member_shown(void)
 {
     for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
-        auto_t f = made_at_rest(0);
-        f.shown = i;
+        filter_t f = made_at_rest(0);
+        f.own.bank.shown = i;
         line_t s = { 0.0, 0.0 };
-        double k = f.final_k_uq16[i] / 65536.0;
+        double k = f.own.bank.final_k_uq16[i] / 65536.0;
         double sum = 0.0;
         for (int n = 0; n < 5000; n++) {
             step_line(&s, k, (n == 0) ? 1.0 : 0.0);
             sum += s.x * s.x;
         }
         filter_probe_t probe;
-        auto_probe(&f, &probe);
+        filter_probe(&f, &probe);
         TEST_ASSERT_DOUBLE_WITHIN(0.002 * sum * R_LSB2_Q8 + 1.0, sum * R_LSB2_Q8, probe.p_lsb2_q8);
     }
 }

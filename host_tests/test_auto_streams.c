@@ -48,31 +48,30 @@ static void test_streams_are_as_described(void)
                               sqrt(squares[PHASE_VIBRATION] / counts[PHASE_VIBRATION]));
 }
 
-static filter_any_t begun(filter_kind_t kind, const filter_any_config_t *config)
+static filter_t begun(const filter_law_t *law, const filter_config_t *config)
 {
-    filter_any_t f;
-    TEST_ASSERT_TRUE(filter_any_init(&f, kind, config));
+    filter_t f;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, law, config));
     return f;
 }
 
 /* As shipped at 10 Hz; the others with the parameters that board_phases of make papers finds on other runs. */
 static void test_errors_on_the_tilt_streams(void)
 {
-    filter_any_config_t of_auto, of_sprf, of_pbf;
-    auto_defaults(&of_auto.of_auto, TILT_RATE_DHZ);
-    of_auto.of_auto.r_lsb2_q8 = TILT_R_LSB2_Q8;
-    sprf_defaults(&of_sprf.of_sprf, TILT_RATE_DHZ);
-    of_sprf.of_sprf.r_lsb2_q8 = TILT_R_LSB2_Q8;
-    of_sprf.of_sprf.q_lsb2_s3 = 80;
-    of_sprf.of_sprf.gate_sigma_q8 = 7 * 256;
-    pbf_defaults(&of_pbf.of_pbf, TILT_RATE_DHZ);
-    of_pbf.of_pbf.r_lsb2_q8 = TILT_R_LSB2_Q8;
-    of_pbf.of_pbf.q_lsb2_s3 = 700;
-    of_pbf.of_pbf.clean_uq16 = 32768;
-    of_pbf.of_pbf.ratio_uq8 = 10 * 256;
-    const filter_any_t bank = begun(FILTER_KIND_auto, &of_auto);
-    const filter_any_t sprf = begun(FILTER_KIND_sprf, &of_sprf);
-    const filter_any_t pbf = begun(FILTER_KIND_pbf, &of_pbf);
+    filter_config_t of_auto = filter_defaults(&filter_law_auto, TILT_RATE_DHZ);
+    of_auto.value[AUTO_R_LSB2_Q8] = (int32_t)TILT_R_LSB2_Q8;
+    filter_config_t of_sprf = filter_defaults(&filter_law_sprf, TILT_RATE_DHZ);
+    of_sprf.value[SPRF_R_LSB2_Q8] = (int32_t)TILT_R_LSB2_Q8;
+    of_sprf.value[SPRF_Q_LSB2_S3] = 80;
+    of_sprf.value[SPRF_GATE_SIGMA_Q8] = 7 * 256;
+    filter_config_t of_pbf = filter_defaults(&filter_law_pbf, TILT_RATE_DHZ);
+    of_pbf.value[MIXTURE_R_LSB2_Q8] = (int32_t)TILT_R_LSB2_Q8;
+    of_pbf.value[MIXTURE_Q_LSB2_S3] = 700;
+    of_pbf.value[MIXTURE_CLEAN_UQ16] = 32768;
+    of_pbf.value[MIXTURE_RATIO_UQ8] = 10 * 256;
+    const filter_t bank = begun(&filter_law_auto, &of_auto);
+    const filter_t sprf = begun(&filter_law_sprf, &of_sprf);
+    const filter_t pbf = begun(&filter_law_pbf, &of_pbf);
     const tilt_guarded_t guarded = { 30.0, 8.0, 5 };
     const tilt_bayes_t bayes = { 1000.0, 0.15, 30.0 };
     static tilt_errors_t errors[5];
@@ -115,18 +114,17 @@ static void test_a_step_is_acquired_within_fifteen_samples(void)
     random_seed(&random, SEED);
     double sigma_lsb = TILT_SIGMA_DEG * TILT_LSB_PER_DEGREE;
     for (int run = 0; run < 200; run++) {
-        auto_t f;
-        auto_config_t config;
-        auto_defaults(&config, TILT_RATE_DHZ);
-        config.r_lsb2_q8 = TILT_R_LSB2_Q8;
-        TEST_ASSERT_TRUE(auto_init(&f, &config));
+        filter_t f;
+        filter_config_t config = filter_defaults(&filter_law_auto, TILT_RATE_DHZ);
+        config.value[AUTO_R_LSB2_Q8] = TILT_R_LSB2_Q8;
+        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_auto, &config));
         for (int n = 0; n < 200; n++) {
-            (void)auto_update(&f, as_sample(sigma_lsb * random_normal(&random)));
+            (void)filter_update(&f, as_sample(sigma_lsb * random_normal(&random)));
         }
         double step_lsb = 40.0 * TILT_LSB_PER_DEGREE;
         int32_t x = 0;
         for (int n = 0; n < 15; n++) {
-            x = auto_update(&f, as_sample(step_lsb + sigma_lsb * random_normal(&random)));
+            x = filter_update(&f, as_sample(step_lsb + sigma_lsb * random_normal(&random)));
         }
         TEST_ASSERT_DOUBLE_WITHIN(3.0 * sigma_lsb, step_lsb, x / 65536.0);
     }

@@ -9,6 +9,7 @@ import sys
 from system_support import OUT, Skip, run_all, test
 
 sys.path.insert(0, "tools")
+from laws import PLAIN, ROBUST  # noqa: E402
 
 import bitexact  # noqa: E402
 import check_compile  # noqa: E402
@@ -96,10 +97,11 @@ def clang_understands_the_first_command_of_each_file():
 
 @test
 def words_are_those_that_the_shell_would_see():
-    line = ("avr-gcc -std=gnu11 -Os '-DFILTER_LIST(X)=X(kf) X(sprf)' -flto -mrelax -Wl,--gc-sections -I $(echo hal) -MMD -c firmware/rows.c "
+    line = (f"avr-gcc -std=gnu11 -Os '-DFILTER_LIST(X)=X({PLAIN}) X({ROBUST})' -flto -mrelax -Wl,--gc-sections -I $(echo hal) -MMD "
+            "-c firmware/rows.c "
             "-o x.o 2> x.log || true")
     assert list(compile_commands.entries_of(line)) == [
-        ("firmware/rows.c", "avr-gcc", ["-std=gnu11", "-Os", "-DFILTER_LIST(X)=X(kf) X(sprf)", "-I", "hal"])]
+        ("firmware/rows.c", "avr-gcc", ["-std=gnu11", "-Os", f"-DFILTER_LIST(X)=X({PLAIN}) X({ROBUST})", "-I", "hal"])]
     assert list(compile_commands.entries_of("mkdir -p build")) == [] and list(compile_commands.entries_of("")) == []
 
 

@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, "tools")
+from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
 import default_filter
 import default_score as score
 import default_streams as streams
@@ -17,6 +18,7 @@ from page import INLINE
 from system_support import Skip, run_all, test
 
 OUT = pathlib.Path("build/default-test")
+SECOND, THIRD = (name for name in score.NAMED if name not in (PLAIN, ROBUST, DEFAULT))  # of those that the rule compares
 PROGRAM = default_filter.PROGRAM
 
 
@@ -25,7 +27,7 @@ PROGRAM = default_filter.PROGRAM
 
 def planted(ratio, **more):
     """Scores in which the candidate is ratio[i] times the best other in class i."""
-    return {group: {"kf": 3.0, "sprf": 2.0, "soft": 2.0, "pbf": 5.0, "adaptive": 2.0 * r, **more} for group, r in zip(score.CLASSES, ratio)}
+    return {group: {PLAIN: 3.0, ROBUST: 2.0, SECOND: 2.0, THIRD: 5.0, DEFAULT: 2.0 * r, **more} for group, r in zip(score.CLASSES, ratio)}
 
 
 def decided(*ratio, **more):
@@ -36,39 +38,39 @@ def decided(*ratio, **more):
 def the_rule_takes_the_candidate_when_it_may():
     for ratio in ((0.5,) * 6, (1.0,) * 6, (0.9, 0.9, 0.9, 1.05, 1.05, 1.05)):
         found = decided(*ratio)
-        assert found.default == "adaptive" and found.beyond == [], (ratio, found)
+        assert found.default == DEFAULT and found.beyond == [], (ratio, found)
     assert decided(0.9, 0.9, 0.9, 1.05, 1.05, 1.05).best_in == ["rest", "slow tilt", "handling"]
 
 
 @test
 def one_class_beyond_5_per_cent_keeps_the_default_and_is_named():
     found = decided(0.1, 0.1, 0.1, 0.1, 1.051, 0.1)
-    assert found.default == "sprf" and found.beyond == ["vibration"] and "vibration (1.05 times)" in found.why, found
+    assert found.default == ROBUST and found.beyond == ["vibration"] and "vibration (1.05 times)" in found.why, found
     assert decided(1.051, 0.1, 0.1, 0.1, 0.1, 0.1).beyond == ["rest"]
 
 
 @test
 def best_in_fewer_than_half_keeps_the_default():
     found = decided(0.9, 0.9, 1.01, 1.01, 1.01, 1.01)
-    assert found.default == "sprf" and found.beyond == [] and "best in 2 of 6" in found.why, found
+    assert found.default == ROBUST and found.beyond == [] and "best in 2 of 6" in found.why, found
 
 
 @test
 def filters_that_the_rule_does_not_name_do_not_count():
-    assert decided(*(1.0,) * 6, lrf=0.1, raw=0.01).default == "adaptive"
-    found = score.verdict(planted((1.0,) * 6, lrf=0.1), named=("adaptive", "lrf"))
-    assert found.default == "sprf" and abs(found.ratio["rest"] - 20.0) < 1e-9, found
+    assert decided(*(1.0,) * 6, another=0.1, raw=0.01).default == DEFAULT
+    found = score.verdict(planted((1.0,) * 6, another=0.1), named=(DEFAULT, "another"))
+    assert found.default == ROBUST and abs(found.ratio["rest"] - 20.0) < 1e-9, found
 
 
 @test
 def a_missing_class_or_candidate_keeps_the_default():
     scores = planted((0.5,) * 6)
     del scores["walking"]
-    assert score.verdict(scores).default == "sprf" and "walking" in score.verdict(scores).why
+    assert score.verdict(scores).default == ROBUST and "walking" in score.verdict(scores).why
     scores = planted((0.5,) * 6)
-    del scores["bad reads"]["adaptive"]
+    del scores["bad reads"][DEFAULT]
     found = score.verdict(scores)
-    assert found.default == "sprf" and "adaptive is not in the filter list" in found.why, found
+    assert found.default == ROBUST and f"{DEFAULT} is not in the filter list" in found.why, found
 
 
 # --- scores -----------------------------------------------------------------------------------------------------------
@@ -81,19 +83,19 @@ def cell(group, name, rate_hz, rmse, made=False):
 
 @test
 def no_rate_and_no_stream_outweighs_the_others():
-    cells = [cell("rest", "a", 25, {"kf": 1.0}), cell("rest", "b", 25, {"kf": 100.0}), cell("rest", "a", 50, {"kf": 1000.0})]
-    assert abs(score.geometric(cells, "kf") - 100.0) < 1e-9  # of 10 at 25 Hz and 1000 at 50 Hz
-    assert abs(score.pooled_rms(cells, "kf") - math.sqrt((1.0 + 1e4 + 1e6) / 3.0)) < 1e-9
+    cells = [cell("rest", "a", 25, {PLAIN: 1.0}), cell("rest", "b", 25, {PLAIN: 100.0}), cell("rest", "a", 50, {PLAIN: 1000.0})]
+    assert abs(score.geometric(cells, PLAIN) - 100.0) < 1e-9  # of 10 at 25 Hz and 1000 at 50 Hz
+    assert abs(score.pooled_rms(cells, PLAIN) - math.sqrt((1.0 + 1e4 + 1e6) / 3.0)) < 1e-9
 
 
 @test
 def streams_are_drawn_anew_with_all_their_rates():
-    same = [cell("rest", str(i), hz, {"kf": 2.0 + i, "soft": 1.0 + i / 2}) for i in range(9) for hz in (25, 50)]
-    low, high = score.ratio_interval(score.redrawn(same, ["kf", "soft"]), "rest", "kf", "soft")
+    same = [cell("rest", str(i), hz, {PLAIN: 2.0 + i, SECOND: 1.0 + i / 2}) for i in range(9) for hz in (25, 50)]
+    low, high = score.ratio_interval(score.redrawn(same, [PLAIN, SECOND]), "rest", PLAIN, SECOND)
     assert abs(low - 2.0) < 1e-9 and abs(high - 2.0) < 1e-9
     # 1, 2, 3 times, three streams each: ln has a mean of 0.597 and a standard deviation of 0.452, 0.151 for nine; rates go together
-    draws = score.redrawn([cell("rest", str(i), hz, {"kf": 1.0 + i % 3, "soft": 1.0}) for i in range(9) for hz in (25, 50)], ["kf", "soft"])
-    low, high = score.ratio_interval(draws, "rest", "kf", "soft")
+    draws = score.redrawn([cell("rest", str(i), hz, {PLAIN: 1.0 + i % 3, SECOND: 1.0}) for i in range(9) for hz in (25, 50)], [PLAIN, SECOND])
+    low, high = score.ratio_interval(draws, "rest", PLAIN, SECOND)
     assert abs(math.log(low) - (0.597 - 1.96 * 0.151)) < 0.06 and abs(math.log(high) - (0.597 + 1.96 * 0.151)) < 0.06, (low, high)
 
 
@@ -106,23 +108,23 @@ def row(fault, seed, name, whole, after_bad):
 def a_seed_without_a_fault_is_the_run_without_faults():
     source = streams.Source("x", "rest", "")
     job = streams.Job(source, 100, pathlib.Path("x"), 16, 1, True, 60_000, True)  # 4 seeds
-    text = "\n".join([row("none", 0, "kf", (300, 300.0, 0.0), (0, 0.0, 0.0)),
-                      row(score.HEALTHY, 3, "kf", (300, 1500.0, 1200.0), (150, 1350.0, 1200.0)),
-                      row(score.WIRING, 1, "kf", (300, 2700.0, 9.0), (150, 2400.0, 9.0))])
+    text = "\n".join([row("none", 0, PLAIN, (300, 300.0, 0.0), (0, 0.0, 0.0)),
+                      row(score.HEALTHY, 3, PLAIN, (300, 1500.0, 1200.0), (150, 1350.0, 1200.0)),
+                      row(score.WIRING, 1, PLAIN, (300, 2700.0, 9.0), (150, 2400.0, 9.0))])
     assert job.seeds() == 4
     healthy, wiring, contention = score.cells_of([job], score.read_rows(text))
-    assert healthy.group == "rest" and abs(healthy.rmse("kf") - math.sqrt((3 * 300 + 1500) / 1200)) < 1e-9
-    assert abs(healthy.rmse("kf", score.OWN) - 1.0) < 1e-9
-    assert wiring.group == "bad reads" and abs(wiring.rmse("kf") - 4.0) < 1e-9  # half a second after each bad read alone
-    assert contention.group == score.CONTENTION and abs(contention.rmse("kf") - 1.0) < 1e-9
+    assert healthy.group == "rest" and abs(healthy.rmse(PLAIN) - math.sqrt((3 * 300 + 1500) / 1200)) < 1e-9
+    assert abs(healthy.rmse(PLAIN, score.OWN) - 1.0) < 1e-9
+    assert wiring.group == "bad reads" and abs(wiring.rmse(PLAIN) - 4.0) < 1e-9  # half a second after each bad read alone
+    assert contention.group == score.CONTENTION and abs(contention.rmse(PLAIN) - 1.0) < 1e-9
     whole = score.cells_of([job], score.read_rows(text), whole_bad_reads=True)[1]
-    assert abs(whole.rmse("kf") - math.sqrt((3 * 300 + 2700) / 1200)) < 1e-9
+    assert abs(whole.rmse(PLAIN) - math.sqrt((3 * 300 + 2700) / 1200)) < 1e-9
 
 
 @test
 def fixed_wins_are_found():
-    cells = [cell("rest", "a", 25, {"kf": 1.0, "soft": 2.0, "adaptive": 1.5}), cell("rest", "a", 50, {"kf": 1.0, "soft": 2.0, "adaptive": 0.5})]
-    assert score.fixed_wins(cells) == [("rest", 25, "kf", 1.5)]
+    cells = [cell("rest", "a", 25, {PLAIN: 1.0, SECOND: 2.0, DEFAULT: 1.5}), cell("rest", "a", 50, {PLAIN: 1.0, SECOND: 2.0, DEFAULT: 0.5})]
+    assert score.fixed_wins(cells) == [("rest", 25, PLAIN, 1.5)]
 
 
 # --- classes ----------------------------------------------------------------------------------------------------------
@@ -229,7 +231,7 @@ def a_constant_stream_is_off_by_what_it_is_off():
         text = program(f"rest:x:0 {path} 1000 16 1 0 60 truth 0", f"rest:y:0 {path} 500 16 2 0 60 smooth 0").stdout
         rows = score.read_rows(text)
         names = list(rows["rest:x:0", 100]["none"][0])
-        assert names[-2:] == ["median5_kf", "raw"] and "sprf" in names and len(names) >= 9
+        assert names[-2:] == [f"median5_{PLAIN}", "raw"] and ROBUST in names and len(names) >= 9
         gravity = make_streams.to_lsb(make_streams.gravity_g(roll, pitch))
         off = [make_streams.round_half_up(lsb) + more - lsb for lsb, more in zip(gravity, (4, 0, 3))]
         expected = 500 * sum(lsb * lsb for lsb in off)
@@ -288,10 +290,10 @@ def the_text_tells_how_narrow_the_verdict_is():
     text = page_text()
     numbers = default_filter.facts(text)
     readings = [line for line in text.splitlines() if line.startswith("| as decided") or line.startswith("| recordings smoothed at 10 Hz")]
-    assert len(readings) == 2 and all(line.endswith("| `adaptive` |") for line in readings), readings
+    assert len(readings) == 2 and all(line.endswith(f"| `{DEFAULT}` |") for line in readings), readings
     for key, old, new in (("draws that agree", f"the same in {numbers['draws that agree']} of", "the same in 999 of"),
                           ("draws", f"of {numbers['draws']} draws", "of 12 draws"),
-                          ("other readings that differ", readings[1], readings[1].replace("adaptive", "sprf")),
+                          ("other readings that differ", readings[1], readings[1].replace(DEFAULT, ROBUST)),
                           ("other readings", readings[1] + "\n", "")):
         assert f"<!--={key}-->{numbers[key]}<!--.-->" in text, key
         found = default_filter.check(text.replace(old, new))
@@ -350,7 +352,7 @@ def without_recordings_the_page_is_left_alone():
     try:
         assert default_filter.main() == 0 and not default_filter.DOCUMENT.exists()
         rows = json.loads(default_filter.JSON.read_text(encoding="ascii"))
-        assert rows[0]["default"] == "sprf" and rows[0]["recordings"] is False and "no stream of class rest" in rows[0]["why"], rows[0]
+        assert rows[0]["default"] == ROBUST and rows[0]["recordings"] is False and "no stream of class rest" in rows[0]["why"], rows[0]
     finally:
         default_filter.measure, default_filter.JSON, default_filter.DOCUMENT = kept
 

@@ -259,9 +259,9 @@ def no_product_beats_the_bounds():
 
 @test
 def least_noise_of_the_notes():
-    for error, noise_synth, noise_alpha_beta in ((9, 0.5135, 0.2653), (1, 0.600, 0.556), (0.25, 0.75, 0.75), (0.1, 0.8408, 0.8499)):
+    for error, noise_one_gain, noise_alpha_beta in ((9, 0.5135, 0.2653), (1, 0.600, 0.556), (0.25, 0.75, 0.75), (0.1, 0.8408, 0.8499)):
         f, g = synthesis.least_noise(Request(2, 1, 0), error), synthesis.least_noise(Request(2, 0, 1), error)
-        near(f.noise_gain(), noise_synth, 6e-4, f"synth at D = {error}")
+        near(f.noise_gain(), noise_one_gain, 6e-4, f"one gain at D = {error}")
         near(g.noise_gain(), noise_alpha_beta, 6e-4, f"alpha-beta at D = {error}")
         assert f.dynamic_error() <= error * (1 + 1e-9) and g.dynamic_error() <= error * (1 + 1e-9)
         if error >= 0.25:
@@ -269,7 +269,7 @@ def least_noise_of_the_notes():
             near(f.b[0], 1 / (1 + error), 1e-6, "b0")
         root = math.sqrt(error)
         near(g.noise_gain(), (1 + 4 * root) / (1 + 2 * root) ** 2, 1e-12, "alpha-beta's formula")
-        near(synthesis.by_formula(2, 0, error).noise_gain(), (1 + 2 * error) / (1 + 4 * error), 1e-12, "synth's formula")
+        near(synthesis.by_formula(2, 0, error).noise_gain(), (1 + 2 * error) / (1 + 4 * error), 1e-12, "the formula of one gain")
         near(configuration.kalman_for(2, error, None).b[0], 4 / (3 + math.sqrt(1 + 8 * error)), 1e-9, "the Kalman filter's formula")
     near(f.a[0], -0.379, 6e-4, "a1 at D = 0.1")
     near(f.b[0], 0.861, 6e-4, "b0 at D = 0.1")

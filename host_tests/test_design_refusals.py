@@ -225,7 +225,7 @@ def filters_at_the_edges_are_told():
         assert (way is not None) == (error != 0) and (way is None or float(way[1]) >= 1), out
         nearest = re.search(r"^this: none: .*nearest: (.*)$", out, re.M)[1]
         status, out, problem = said(*with_nearest(["--rate", "10", "--sigma", "1", "--no-pictures", *([f"--a={a}"] if a else []), "--b", b], nearest))
-        assert status == 0 and "static const synth_config_t" in out, (a, b, nearest, problem)
+        assert status == 0 and "static const filter_config_t" in out and "[SYNTH_B0_UQ16]" in out, (a, b, nearest, problem)
 
 
 @test

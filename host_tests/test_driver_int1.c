@@ -103,7 +103,7 @@ static void test_times_follow_while_int1_is_stuck(void)
         stream_for_ms(300);
         hal_host_faults.int1_high = true;
         rig.limit_us = 1000; /* a sample that is read before the sensor was found empty is 900 us off */
-        period_start(10000u - (uint32_t)(percent * 100));
+        period_start((uint16_t)(5000 - percent * 50));
         rig_run_ms(3000);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));

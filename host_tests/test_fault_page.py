@@ -6,11 +6,12 @@ import subprocess
 from system_support import run_all, test
 
 PAGE = pathlib.Path("docs/faults.md")
+TEXTS = pathlib.Path("firmware/reply_texts.h")
 INCLUDES = ["-Ifirmware", "-Ihal", "-Ihal/host"]
 
 
 def texts():
-    """name -> words of firmware/reply_texts.h, a byte of enum say as .. ."""
+    """name -> lines of firmware/reply_texts.h, a byte of enum say as .. ."""
     source = '#include "reply_texts.h"\n#define SHOWN(name, words) @name words\nREPLY_TEXTS(SHOWN)\n'
     done = subprocess.run(["gcc", "-E", "-P", *INCLUDES, "-xc", "-"], input=source, capture_output=True, text=True, check=True)
     raw = {}
@@ -18,7 +19,10 @@ def texts():
         name, rest = re.match(r"(\w+)(.*)", entry, re.S).groups()
         words = "".join(re.findall(r'"((?:[^"\\]|\\.)*)"', rest))
         raw[name] = re.sub(r"\\x([0-9A-Fa-f]{2})", lambda code: chr(int(code[1], 16)), words)
-    return {name: re.sub("[\x01-\x1f\x7f-\x8f]", "..", words) for name, words in raw.items()}
+    header = TEXTS.read_text(encoding="utf-8")
+    line, check_bus = (chr(int(re.search(rf'V_{name} "\\x(\w\w)"', header)[1], 16)) for name in ("LINE", "CHECK_BUS"))
+    raw = {name: words.replace(check_bus, raw["CHECK_BUS"]).split(line) for name, words in raw.items()}
+    return {name: "\n".join(re.sub("[\x01-\x1f\x7b-\x8f]", "..", words) for words in lines) for name, lines in raw.items()}
 
 
 def codes():
@@ -63,8 +67,8 @@ def every_counter_and_cause_is_on_the_page():
     said = texts()
     section = page.partition("## Counters\n")[2].partition("\n## ")[0]
     told = {name for cell in re.findall(r"^\| [a-z]* ?\| ([^|]+) \|", section, re.M) for name in cell.split(", ")}
-    for line in ("SAMPLES", "ROWS", "MISSING", "BUS", "READINGS"):
-        for name in re.findall(r"([a-z][a-z ]*) \.\.", said[line]):
+    for line in said["STATUS"].split("\n")[1:-1]:
+        for name in re.findall(r"([a-z][a-z ]*) \.\.", line):
             assert name in told, f"{PAGE}: no counter {name!r} in the table"
     for cause in ("POWER_ON", "EXTERNAL", "BROWN_OUT"):
         assert f"| {said[cause]} |" in page, f"{PAGE}: no cause {said[cause]!r}"

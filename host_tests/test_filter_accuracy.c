@@ -1,9 +1,11 @@
 /* Roll over the shipped streams: fixed point against double, robust against not, filtered against raw. */
-#include "filter_any.h"
+#include "filter_list.h"
 #include "noise.h"
 #include "reference_filters.h"
 #include "stream.h"
+#include "support_roles.h"
 #include "tilt.h"
+#include "tracker.h"
 #include "unity.h"
 
 #include <math.h>
@@ -18,12 +20,12 @@ void tearDown(void) {}
 
 /* RMS errors of roll, degrees. */
 typedef struct {
-    double raw, kf, sprf, kf_double, sprf_double;
+    double raw, plain, robust, plain_double, robust_double;
 } score_t;
 
 typedef struct {
-    filter_any_t f[FILTER_KIND_COUNT];
-    reference_filter_t kf, sprf;
+    filter_t f[FILTER_KIND_COUNT];
+    reference_filter_t plain, robust;
     noise_t noise;
 } axis_t;
 
@@ -53,31 +55,30 @@ static double median5(const stream_t *s, int axis)
 static void start_axis(axis_t *a, const stream_t *s, int axis, double r_lsb2)
 {
     uint16_t rate_dhz = (uint16_t)lrint(s->rate_hz * 10.0);
-    noise_init(&a->noise, rate_dhz, axis == 2);
+    filter_noise_init(&a->noise, rate_dhz, axis == 2);
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-        filter_any_config_t config;
-        filter_any_defaults((filter_kind_t)kind, &config, rate_dhz);
-        TEST_ASSERT_TRUE(filter_any_init(&a->f[kind], (filter_kind_t)kind, &config));
-        uint32_t r_q8 = r_lsb2 > 0.0 ? (uint32_t)lrint(r_lsb2 * 256.0) : noise_r_lsb2_q8(&a->noise);
-        filter_any_set_noise(&a->f[kind], r_q8);
+        filter_config_t config = filter_defaults(filter_listed((filter_kind_t)kind), rate_dhz);
+        TEST_ASSERT_TRUE(filter_init(&a->f[kind], filter_listed((filter_kind_t)kind), &config) == FILTER_ACCEPTED);
+        uint32_t r_q8 = r_lsb2 > 0.0 ? (uint32_t)lrint(r_lsb2 * 256.0) : filter_noise_r_lsb2_q8(&a->noise);
+        filter_set_noise(&a->f[kind], r_q8);
     }
     double r = r_lsb2 > 0.0 ? r_lsb2 : 1.0;
-    reference_library(&a->kf, s->rate_hz, r, TWO_STATE_Q_DEFAULT_LSB2_S3, 0.0, 0, 0.0, median5(s, axis));
-    reference_library(&a->sprf, s->rate_hz, r, TWO_STATE_Q_DEFAULT_LSB2_S3, 3.0, 5, 800.0, median5(s, axis));
+    reference_library(&a->plain, s->rate_hz, r, filter_parameter_q.standard, 0.0, 0, 0.0, median5(s, axis));
+    reference_library(&a->robust, s->rate_hz, r, filter_parameter_q.standard, 3.0, 5, 800.0, median5(s, axis));
 }
 
 static void step_axis(axis_t *a, int16_t z, bool estimate, bool warm)
 {
-    bool changed = noise_update(&a->noise, z);
+    bool changed = filter_noise_update(&a->noise, z);
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         if (estimate && changed) {
-            filter_any_set_noise(&a->f[kind], noise_r_lsb2_q8(&a->noise));
+            filter_set_noise(&a->f[kind], filter_noise_r_lsb2_q8(&a->noise));
         }
-        (void)filter_any_update(&a->f[kind], z);
+        (void)filter_update(&a->f[kind], z);
     }
     if (warm) {
-        reference_step(&a->kf, z);
-        reference_step(&a->sprf, z);
+        reference_step(&a->plain, z);
+        reference_step(&a->robust, z);
     }
 }
 
@@ -93,10 +94,10 @@ static double roll_fixed(const axis_t axes[3], filter_kind_t kind)
 {
     int32_t q8[3];
     for (int i = 0; i < 3; i++) {
-        q8[i] = (int32_t)lrint(of_z[i] * axes[i].f[kind].state.of_kf.core.x_lsb_q16 / 256.0);
+        q8[i] = (int32_t)lrint(of_z[i] * axes[i].f[kind].x_lsb_q16 / 256.0);
     }
     tilt_t tilt = { 0, 0, false };
-    tilt_angles(&tilt, q8[0], q8[1], q8[2]);
+    tilt_angles(&tilt, q8);
     return tilt.roll_cdeg / 100.0;
 }
 
@@ -125,37 +126,40 @@ static score_t run(const char *path, double r_lsb2)
         }
         double truth = s.rows[k].truth_cdeg[0] / 100.0;
         add_square(&sum.raw, roll_deg(s.rows[k].lsb[1], s.rows[k].lsb[2]), truth);
-        add_square(&sum.kf, roll_fixed(axes, FILTER_KIND_kf), truth);
-        add_square(&sum.sprf, roll_fixed(axes, FILTER_KIND_sprf), truth);
-        add_square(&sum.kf_double, roll_deg(axes[1].kf.x[0], axes[2].kf.x[0]), truth);
-        add_square(&sum.sprf_double, roll_deg(axes[1].sprf.x[0], axes[2].sprf.x[0]), truth);
+        add_square(&sum.plain, roll_fixed(axes, plain_kind()), truth);
+        add_square(&sum.robust, roll_fixed(axes, robust_kind()), truth);
+        add_square(&sum.plain_double, roll_deg(axes[1].plain.x[0], axes[2].plain.x[0]), truth);
+        add_square(&sum.robust_double, roll_deg(axes[1].robust.x[0], axes[2].robust.x[0]), truth);
     }
     double n = (double)(s.count - FIRST_ROW);
     stream_free(&s);
-    score_t rms = { sqrt(sum.raw / n), sqrt(sum.kf / n), sqrt(sum.sprf / n), sqrt(sum.kf_double / n),
-                    sqrt(sum.sprf_double / n) };
-    printf("%-34s R %5.2f roll rms deg: raw %.3f kf %.3f sprf %.3f", path, r_lsb2, rms.raw, rms.kf, rms.sprf);
+    score_t rms = { sqrt(sum.raw / n), sqrt(sum.plain / n), sqrt(sum.robust / n), sqrt(sum.plain_double / n),
+                    sqrt(sum.robust_double / n) };
+    printf("%-34s R %5.2f roll rms deg: raw %.3f plain %.3f robust %.3f", path, r_lsb2, rms.raw, rms.plain, rms.robust);
     if (r_lsb2 > 0.0) {
-        printf(" double kf %.3f sprf %.3f", rms.kf_double, rms.sprf_double);
+        printf(" double plain %.3f robust %.3f", rms.plain_double, rms.robust_double);
     }
     printf("\n");
     return rms;
 }
 
-/* Same R, q and rate for both and for their references: R is the generator's 4 LSB rms, 16, plus 1/12 of rounding. */
-static void outliers_cost_sprf_a_quarter_of_kf(void)
+/*
+ * A Kalman filter with a gate beside one without. Same R, q and rate for both and for their references: R is the
+ * generator's 4 LSB rms, 16, plus 1/12 of rounding.
+ */
+static void outliers_cost_the_robust_one_a_quarter_of_the_plain_one(void)
 {
     score_t s = run("sim/streams/outliers-15pct.csv", 16.0 + 1.0 / 12.0);
-    TEST_ASSERT_DOUBLE_WITHIN(0.01 * s.kf_double, s.kf_double, s.kf);
-    TEST_ASSERT_DOUBLE_WITHIN(0.01 * s.sprf_double, s.sprf_double, s.sprf);
-    TEST_ASSERT_TRUE(s.sprf <= 0.25 * s.kf);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01 * s.plain_double, s.plain_double, s.plain);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01 * s.robust_double, s.robust_double, s.robust);
+    TEST_ASSERT_TRUE(s.robust <= 0.25 * s.plain);
 }
 
 /* With R estimated the estimate is about four times too high, and the gate still does its work. */
 static void outliers_with_estimated_noise(void)
 {
     score_t s = run("sim/streams/outliers-15pct.csv", 0.0);
-    TEST_ASSERT_TRUE(s.sprf <= 0.25 * s.kf);
+    TEST_ASSERT_TRUE(s.robust <= 0.25 * s.plain);
 }
 
 static void clean_streams_lose_at_most_five_percent(void)
@@ -167,9 +171,9 @@ static void clean_streams_lose_at_most_five_percent(void)
     };
     for (int i = 0; i < 9; i++) {
         score_t s = run(paths[i], 0.0);
-        TEST_ASSERT_TRUE_MESSAGE(s.sprf <= 1.05 * s.kf, paths[i]);
+        TEST_ASSERT_TRUE_MESSAGE(s.robust <= 1.05 * s.plain, paths[i]);
         if (i < 5) {
-            TEST_ASSERT_TRUE_MESSAGE(s.kf <= 0.5 * s.raw, paths[i]);
+            TEST_ASSERT_TRUE_MESSAGE(s.plain <= 0.5 * s.raw, paths[i]);
         }
     }
 }
@@ -181,15 +185,15 @@ static void fixed_point_equals_double_on_clean_streams(void)
                                          "sim/streams/tilt-fast.csv", "sim/streams/through-roll-180.csv" };
     for (int i = 0; i < 4; i++) {
         score_t s = run(paths[i], 4.0 + 1.0 / 12.0);
-        TEST_ASSERT_DOUBLE_WITHIN(0.01 * s.kf_double, s.kf_double, s.kf);
-        TEST_ASSERT_DOUBLE_WITHIN(0.01 * s.sprf_double, s.sprf_double, s.sprf);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01 * s.plain_double, s.plain_double, s.plain);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01 * s.robust_double, s.robust_double, s.robust);
     }
 }
 
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(outliers_cost_sprf_a_quarter_of_kf);
+    RUN_TEST(outliers_cost_the_robust_one_a_quarter_of_the_plain_one);
     RUN_TEST(outliers_with_estimated_noise);
     RUN_TEST(clean_streams_lose_at_most_five_percent);
     RUN_TEST(fixed_point_equals_double_on_clean_streams);

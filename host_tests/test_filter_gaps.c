@@ -20,11 +20,9 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-static void make(filter_any_t *f, uint8_t kind, uint16_t rate_dhz)
+static void make(filter_t *f, uint8_t kind, uint16_t rate_dhz)
 {
-    filter_any_config_t config;
-    filter_any_defaults((filter_kind_t)kind, &config, rate_dhz);
-    TEST_ASSERT_TRUE(filter_any_init(f, (filter_kind_t)kind, &config));
+    TEST_ASSERT_TRUE(init_default(f, (filter_kind_t)kind, rate_dhz));
 }
 
 /*
@@ -32,17 +30,17 @@ static void make(filter_any_t *f, uint8_t kind, uint16_t rate_dhz)
  * before the gap, LSB per sample; goes_on: during and after it too, and the prediction follows; else all is at rest
  * from the gap's start.
  */
-static void assert_recovery(const filter_any_t *settled, int16_t slope, bool goes_on, uint8_t gap)
+static void assert_recovery(const filter_t *settled, int16_t slope, bool goes_on, uint8_t gap)
 {
-    filter_any_t without = *settled;
-    filter_any_t coasted = *settled;
-    uint16_t recovery = recovery_samples((filter_kind_t)settled->kind);
+    filter_t without = *settled;
+    filter_t coasted = *settled;
+    uint16_t recovery = law_facts(kind_of(settled)).recovery_samples;
     TEST_ASSERT_TRUE(recovery > 0U);
     int16_t z = 0;
     for (uint16_t k = 0; k < (uint16_t)gap + recovery + 30U; k++) {
         z = (int16_t)(z + (goes_on ? slope : 0));
-        int32_t x = filter_any_update(&without, z);
-        int32_t y = (k < gap) ? filter_any_coast(&coasted) : filter_any_update(&coasted, z);
+        int32_t x = filter_update(&without, z);
+        int32_t y = (k < gap) ? coast_only(&coasted) : filter_update(&coasted, z);
         if (k < gap && goes_on) {
             TEST_ASSERT_INT32_WITHIN(DRIFT_LSB_Q16 * (k + 2L), x, y);
         }
@@ -54,11 +52,11 @@ static void assert_recovery(const filter_any_t *settled, int16_t slope, bool goe
 
 static void assert_recovery_from_all_gaps(uint8_t kind, int16_t slope, bool goes_on)
 {
-    filter_any_t f;
+    filter_t f;
     make(&f, kind, 1000);
-    filter_any_reset(&f, (int16_t)(-slope * SETTLING));
+    filter_reset(&f, (int16_t)(-slope * SETTLING));
     for (int16_t k = 1; k <= SETTLING; k++) {
-        (void)filter_any_update(&f, (int16_t)(-slope * (SETTLING - k)));
+        (void)filter_update(&f, (int16_t)(-slope * (SETTLING - k)));
     }
     for (uint8_t gap = 1; gap <= GAP_MAX; gap = (uint8_t)(gap + ON_PC_OR_CHIP(1, 19))) {
         assert_recovery(&f, slope, goes_on, gap);

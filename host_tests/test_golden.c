@@ -13,7 +13,7 @@
 #define GOLDEN "host_tests/golden/filters_100hz.csv"
 #define HEAD_LINES 2
 
-static filter_any_t filters[FILTER_KIND_COUNT];
+static filter_t filters[FILTER_KIND_COUNT];
 
 void setUp(void) {}
 
@@ -37,12 +37,10 @@ static void begin_as_named(char *head)
     {
         const char *column = next_field(&head);
         snprintf(name, sizeof name, GOLDEN ": column %u is not %s: run make golden", kind + 2U,
-                 filter_any_name((filter_kind_t)kind));
+                 filter_listed_name((filter_kind_t)kind));
         TEST_ASSERT_NOT_NULL_MESSAGE(column, name);
-        TEST_ASSERT_EQUAL_STRING_MESSAGE(filter_any_name((filter_kind_t)kind), column, name);
-        filter_any_config_t config;
-        filter_any_defaults((filter_kind_t)kind, &config, 1000);
-        TEST_ASSERT_TRUE(filter_any_init(&filters[kind], (filter_kind_t)kind, &config));
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(filter_listed_name((filter_kind_t)kind), column, name);
+        TEST_ASSERT_TRUE(init_default(&filters[kind], (filter_kind_t)kind, 1000));
     }
     TEST_ASSERT_EQUAL_STRING("", head);
 }
@@ -54,10 +52,10 @@ static void step_as_told(char *line, unsigned number)
     FOR_EACH_KIND(kind)
     {
         const char *wanted = next_field(&line);
-        snprintf(place, sizeof place, GOLDEN ":%u: %s", number, filter_any_name((filter_kind_t)kind));
+        snprintf(place, sizeof place, GOLDEN ":%u: %s", number, filter_listed_name((filter_kind_t)kind));
         TEST_ASSERT_NOT_NULL_MESSAGE(wanted, place);
-        int32_t x = (z == NULL) ? filter_any_coast(&filters[kind])
-                                : filter_any_update(&filters[kind], (int16_t)strtol(z, NULL, 10));
+        int32_t x = (z == NULL) ? coast_only(&filters[kind])
+                                : filter_update(&filters[kind], (int16_t)strtol(z, NULL, 10));
         TEST_ASSERT_EQUAL_INT32_MESSAGE((int32_t)strtol(wanted, NULL, 10), x, place);
     }
 }

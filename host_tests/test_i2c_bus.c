@@ -200,9 +200,7 @@ static void test_transfers_do_their_steps(void)
         begin(t);
         go_well(0, step_count);
         assert_received(transfers[t].rx_length);
-        for (unsigned byte = 0; byte < LONGEST_READ; byte++) {
-            TEST_ASSERT_EQUAL(transfers[t].rx_length > byte + 1, i2c_bus_received(bus, (uint8_t)byte));
-        }
+        TEST_ASSERT_EQUAL_UINT(transfers[t].rx_length, i2c_bus_asked(bus));
     }
 }
 
@@ -235,11 +233,7 @@ static void test_every_wrong_status_at_every_step_ends_the_transfer(void)
                 TEST_ASSERT_EQUAL(outcome(&steps[at], s), bus->state);
                 TEST_ASSERT_EQUAL(s == 0x38 ? RELEASE : STOP, command);
                 assert_received(data_events_before(at));
-                for (unsigned byte = 0; byte < LONGEST_READ; byte++) {
-                    bool asked = data_asked_before(at) && data_events_before(at) >= byte;
-                    TEST_ASSERT_EQUAL(asked, i2c_bus_asked(bus, (uint8_t)byte));
-                    TEST_ASSERT_EQUAL(data_events_before(at) > byte, i2c_bus_received(bus, (uint8_t)byte));
-                }
+                TEST_ASSERT_EQUAL_UINT(data_asked_before(at) ? data_events_before(at) + 1 : 0, i2c_bus_asked(bus));
                 cases++;
             }
         }

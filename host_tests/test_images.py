@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, "tools")
+from laws import DEFAULT, PLAIN, ROBUST, SLOWEST  # noqa: E402
 import default_filter
 import default_score as score
 import system_support
@@ -16,10 +17,11 @@ IMAGES = pathlib.Path("mk/images.mk").read_text(encoding="utf-8")
 SETS = {name: names.split() for name, names in re.findall(r"^FILTERS_([a-z]+) *:= *(.*)$", IMAGES, re.M)}
 FLAG = re.compile(r"-DFILTER_LIST\(X\)= ?((?:X\(\w+\) ?)+)")
 # FILTERS, what the sentence names
-BAD = (("kff", "there is no filter kff;"), ("kf kff", "there is no filter kff;"), ("KF", "there is no filter KF;"),
-       ("kf,sprf", "there is no filter kf,sprf;"), ("kf sprf kf", "named twice: kf"), ("sprf kf kf sprf", "named twice: kf sprf"),
-       ("", "FILTERS is empty;"), ("  ", "FILTERS is empty;"), ("everyday kf", "there is no filter everyday;"),
-       ("kf robust", "there is no filter robust;"), ("everyday robust", "there is no filter everyday;"))
+BAD = (("kff", "there is no filter kff;"), (f"{PLAIN} kff", "there is no filter kff;"), (PLAIN.upper(), f"there is no filter {PLAIN.upper()};"),
+       (f"{PLAIN},{ROBUST}", f"there is no filter {PLAIN},{ROBUST};"), (f"{PLAIN} {ROBUST} {PLAIN}", f"named twice: {PLAIN}"),
+       (f"{ROBUST} {PLAIN} {PLAIN} {ROBUST}", f"named twice: {PLAIN} {ROBUST}"),
+       ("", "FILTERS is empty;"), ("  ", "FILTERS is empty;"), (f"everyday {PLAIN}", "there is no filter everyday;"),
+       (f"{PLAIN} robust", "there is no filter robust;"), ("everyday robust", "there is no filter everyday;"))
 
 
 def listed(*flags):
@@ -61,8 +63,9 @@ def every_filter_is_in_a_set_and_no_set_has_strange_ones():
 @test
 def filters_are_taken_in_the_order_given():
     for words, wanted in (([], SETS[next(iter(SETS))]), *((["FILTERS=" + name], names) for name, names in SETS.items()),
-                          (["FILTERS=lrf"], ["lrf"]), (["FILTERS=sprf kf"], ["sprf", "kf"]), (["FILTERS=kf  sprf "], ["kf", "sprf"]),
-                          (["FILTERS=soft adaptive kf"], ["soft", "adaptive", "kf"])):
+                          ([f"FILTERS={SLOWEST}"], [SLOWEST]), ([f"FILTERS={ROBUST} {PLAIN}"], [ROBUST, PLAIN]),
+                          ([f"FILTERS={PLAIN}  {ROBUST} "], [PLAIN, ROBUST]),
+                          ([f"FILTERS={SLOWEST} {DEFAULT} {PLAIN}"], [SLOWEST, DEFAULT, PLAIN])):
         text, flag = chosen_by_make(words)
         assert text == wanted and flag == wanted, (words, text, flag)
 
@@ -79,7 +82,7 @@ def each_filter_can_be_chosen_alone():
 @test
 def what_is_chosen_already_is_left_alone():
     target = OUT / "kept" / "filters.txt"
-    for words, anew in ((["kf", "sprf"], True), (["kf", "sprf"], False), (["sprf", "kf"], True), (["sprf"], True)):
+    for words, anew in (([PLAIN, ROBUST], True), ([PLAIN, ROBUST], False), ([ROBUST, PLAIN], True), ([ROBUST], True)):
         before = target.stat().st_mtime_ns if target.exists() else None
         if before is not None:
             subprocess.run(["touch", "-d", "2001-01-01", str(target)], check=True)
@@ -111,7 +114,7 @@ def the_image_with_a_filter_holds_it():
     """make's and the tests' own: the chosen image where it does, else the first set's that does."""
     show = f"show: ; @$(foreach f,{' '.join(EVERY)},echo '$(f) $(call image_with,$(f))';)"
     kept = system_support.SET_IMAGES
-    for choice in (*SETS, "sprf kf", "kf3"):
+    for choice in (*SETS, f"{ROBUST} {PLAIN}", SLOWEST):
         holds = {f"{OUT}/firmware.elf": SETS.get(choice, choice.split()), **{f"{OUT}/{name}/firmware.elf": names for name, names in SETS.items()}}
         wanted = {name: next(image for image, names in holds.items() if name in names) for name in EVERY}
         done = make("--eval", show, "show", f"FILTERS={choice}")
@@ -130,7 +133,7 @@ def the_image_with_a_filter_holds_it():
         finally:
             system_support.SET_IMAGES = kept
     done = make("--eval", "show: ; @echo $(call image_with,kff)", "show")
-    assert done.returncode != 0 and "no image holds a filter kff; filters: adaptive" in done.stderr, done.stderr
+    assert done.returncode != 0 and f"no image holds a filter kff; filters: {DEFAULT}" in done.stderr, done.stderr
 
 
 # --- the default ------------------------------------------------------------------------------------------------------

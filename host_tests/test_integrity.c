@@ -154,7 +154,7 @@ static void test_counters_saturate(void)
 {
     static const int16_t lsb[] = { 1, -2, 256 };
     adxl345_readings_t readings;
-    integrity_init();
+    adxl345_init();
     start(16, false);
     for (unsigned i = 0; i < 65536; i++) {
         (void)judged(lsb, READING_FIFO_CTL, 1);
@@ -171,24 +171,24 @@ static void test_counters_saturate(void)
 static void test_a_failed_reading_is_marked_once(void)
 {
     static const int16_t lsb[] = { 1, -2, 256 };
-    integrity_init();
+    adxl345_init();
     start(16, false);
     format = 0x0B;
     TEST_ASSERT_EQUAL(READING_GOOD, judged(lsb, 0, 0));
-    TEST_ASSERT_EQUAL_HEX8(0, integrity_marks());
+    TEST_ASSERT_EQUAL_HEX8(0, adxl345_marks());
     TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_CTL, 1));
-    TEST_ASSERT_EQUAL_HEX8(64, integrity_marks());
-    TEST_ASSERT_EQUAL_HEX8(0, integrity_marks());
+    TEST_ASSERT_EQUAL_HEX8(64, adxl345_marks());
+    TEST_ASSERT_EQUAL_HEX8(0, adxl345_marks());
     TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_CTL, 1));
-    integrity_init();
-    TEST_ASSERT_EQUAL_HEX8(0, integrity_marks());
+    adxl345_init();
+    TEST_ASSERT_EQUAL_HEX8(0, adxl345_marks());
 }
 
 /* However many follow the third, they are torn: none of them says that the configuration is lost. */
 static void test_torn_readings_stay_torn(void)
 {
     static const int16_t lsb[] = { 1, -2, 256 };
-    integrity_init();
+    adxl345_init();
     start(16, false);
     format = 0x0B;
     for (unsigned i = 1; i <= 300; i++) {

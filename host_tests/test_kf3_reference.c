@@ -1,7 +1,7 @@
 /* kf3 against Eigen: the double reference against DARE, paper 001 and the notes; fixed point against the reference. */
-#include "kf3.h"
 #include "reference_kf3.h"
-#include "support_filters.h"
+#include "support_law_kf3.h"
+#include "support_laws.h"
 #include "unity.h"
 
 #include <math.h>
@@ -102,43 +102,44 @@ static void paper_001_is_met_by_both_models(void)
 /* The fixed-point filter makes 0.856 too: 100 Hz would need a drive beyond its range, 50 Hz does not. */
 static void fixed_point_reaches_the_gain_of_paper_001(void)
 {
-    kf3_config_t config = { .rate_dhz = 500, .r_lsb2_q8 = 256, .q_lsb2_s5 = 227042921 }; /* 0.726537 x 50^5 */
-    kf3_t f;
-    TEST_ASSERT_TRUE(kf3_init(&f, &config));
-    kf3_reset(&f, 0);
-    TEST_ASSERT_DOUBLE_WITHIN(0.001, 0.856, f.core.gain_uq16 / 65536.0);
+    filter_config_t config = { 500, { [KF3_R_LSB2_Q8] = 256, [KF3_Q_LSB2_S5] = 227042921 } }; /* 0.726537 x 50^5 */
+    filter_t f;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_kf3, &config));
+    filter_reset(&f, 0);
+    TEST_ASSERT_DOUBLE_WITHIN(0.001, 0.856, f.gain_uq16 / 65536.0);
 }
 
-static double unit_of(const kf3_t *f)
+static double unit_of(const filter_t *f)
 {
-    return f->fine ? 1.0 / 16.0 : 1.0;
+    return f->own.kf3.fine ? 1.0 / 16.0 : 1.0;
 }
 
 /* P / R of the fixed-point filter, row-major. */
-static void covariance_of(const kf3_t *f, double *p)
+static void covariance_of(const filter_t *f, double *p)
 {
-    p[0] = f->core.u.p.p11_uq28 * COUNT_UQ28;
-    p[1] = p[3] = f->core.u.p.p12_uq28 * COUNT_UQ28;
-    p[2] = p[6] = f->p13_uq28 * COUNT_UQ28;
-    p[4] = f->core.u.p.p22_uq28 * COUNT_UQ28;
-    p[5] = p[7] = f->p23_uq28 * COUNT_UQ28;
-    p[8] = f->p33_uq28 * COUNT_UQ28;
+    p[0] = f->own.kf3.p.p11 * COUNT_UQ28;
+    p[1] = p[3] = f->own.kf3.p.p12 * COUNT_UQ28;
+    p[2] = p[6] = f->own.kf3.p13_uq28 * COUNT_UQ28;
+    p[4] = f->own.kf3.p.p22 * COUNT_UQ28;
+    p[5] = p[7] = f->own.kf3.p23_uq28 * COUNT_UQ28;
+    p[8] = f->own.kf3.p33_uq28 * COUNT_UQ28;
 }
 
 /* A filter that has taken five zeros, and its reference from the same start. */
-static void start_both(kf3_t *f, reference_kf3_t *r, const kf3_config_t *config)
+static void start_both(filter_t *f, reference_kf3_t *r, const filter_config_t *config)
 {
-    TEST_ASSERT_TRUE(kf3_init(f, config));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_kf3, config));
     for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)kf3_update(f, 0);
+        (void)filter_update(f, 0);
     }
-    reference_kf3_library(r, config->rate_dhz / 10.0, config->r_lsb2_q8 / 256.0, config->q_lsb2_s5, 0.0);
+    reference_kf3_library(r, config->rate_dhz / 10.0, config->value[KF3_R_LSB2_Q8] / 256.0,
+                          config->value[KF3_Q_LSB2_S5], 0.0);
 }
 
 /*
  * What one step adds to the error of P / R: g errs by 1.75 counts of 2^-16 (1.5 of the table, 1 of the shift, which
  * halves the former), P12 and P13 times that; gains are rounded to 2^-25, products and the halves of predict_covariance
- * (four when fine) to 2^-29; q33 by 16 roundings of 2^-14 on its way through fx_scaled, and by half a count.
+ * (four when fine) to 2^-29; q33 by 16 roundings of 2^-14 on its way through filter_fx_scaled, and by half a count.
  */
 static void error_of_a_step(const reference_kf3_t *r, const double p12, const double p13, double *each)
 {
@@ -175,7 +176,7 @@ static reference_kf3_t settled_like(const reference_kf3_t *start)
 }
 
 /* start_both, with where the reference settles and the bound of the error there. */
-static void start_settled(kf3_t *f, reference_kf3_t *r, const kf3_config_t *config, reference_kf3_t *settled,
+static void start_settled(filter_t *f, reference_kf3_t *r, const filter_config_t *config, reference_kf3_t *settled,
                           double *bound)
 {
     start_both(f, r, config);
@@ -192,16 +193,15 @@ static void gains_equal_the_reference(void)
     double worst = 0.0;
     for (int i = 0; i < RATES; i++) {
         for (uint32_t q = 3000; q <= 300000000; q *= 100) {
-            kf3_config_t config;
-            kf3_defaults(&config, rates[i]);
-            config.q_lsb2_s5 = q;
-            kf3_t f;
+            filter_config_t config = filter_defaults(&filter_law_kf3, rates[i]);
+            config.value[KF3_Q_LSB2_S5] = (int32_t)q;
+            filter_t f;
             reference_kf3_t r;
             reference_kf3_t settled;
             double bound[9];
             start_settled(&f, &r, &config, &settled, bound);
             for (int k = 0; k < 1000; k++) {
-                (void)kf3_update(&f, 0);
+                (void)filter_update(&f, 0);
                 reference_kf3_step(&r, 0.0);
                 double p[9];
                 covariance_of(&f, p);
@@ -226,19 +226,18 @@ static void estimate_equals_the_reference(void)
     random_seed(&random, SEED);
     double worst = 0.0;
     for (int i = 1; i < RATES; i++) {
-        kf3_config_t config;
-        kf3_defaults(&config, rates[i]);
-        kf3_t f;
+        filter_config_t config = filter_defaults(&filter_law_kf3, rates[i]);
+        filter_t f;
         reference_kf3_t r;
         reference_kf3_t settled;
         double bound[9];
         start_settled(&f, &r, &config, &settled, bound);
-        double sigma = sqrt(config.r_lsb2_q8 / 256.0);
+        double sigma = sqrt(config.value[KF3_R_LSB2_Q8] / 256.0);
         double reach = 0.0;
         for (int k = 0; k < 4000; k++) {
             double motion = 200.0 * sin(0.5 * k / (rates[i] / 10.0));
             int16_t z = as_sample(motion + sigma * random_normal(&random));
-            double x = kf3_update(&f, z) / 65536.0;
+            double x = filter_update(&f, z) / 65536.0;
             reference_kf3_step(&r, z);
             reach = fmax(reach, fabs(r.innovation));
             double each[3];
@@ -251,7 +250,7 @@ static void estimate_equals_the_reference(void)
                 worst = fmax(worst, fabs(x - r.x[0]) / sum[0]);
             }
         }
-        printf("%6.1f Hz: q33 %.3g, gain %.4f\n", rates[i] / 10.0, f.core.q22_uq28 * COUNT_UQ28, settled.gain[0]);
+        printf("%6.1f Hz: q33 %.3g, gain %.4f\n", rates[i] / 10.0, f.own.kf3.q33_uq28 * COUNT_UQ28, settled.gain[0]);
     }
     printf("estimates: at most %.2f of their bound\n", worst);
     TEST_ASSERT_TRUE(worst <= 1.0);
@@ -262,9 +261,8 @@ static void gaps_equal_the_reference(void)
 {
     for (int i = 0; i < RATES; i++) {
         for (int gap = 1; gap < 3000; gap = gap * 3 / 2 + 1) {
-            kf3_config_t config;
-            kf3_defaults(&config, rates[i]);
-            kf3_t f;
+            filter_config_t config = filter_defaults(&filter_law_kf3, rates[i]);
+            filter_t f;
             reference_kf3_t r;
             reference_kf3_t settled;
             double bound[9];
@@ -272,11 +270,11 @@ static void gaps_equal_the_reference(void)
             for (int k = 0; k < 200 + 2 * gap + 103; k++) {
                 bool missing = (k >= 200 && k < 200 + gap) || (k >= 203 + gap && k < 203 + 2 * gap);
                 if (missing) {
-                    (void)kf3_coast(&f);
+                    (void)coast(&f);
                     reference_kf3_coast(&r);
                     continue;
                 }
-                (void)kf3_update(&f, 0);
+                (void)filter_update(&f, 0);
                 reference_kf3_step(&r, 0.0);
             }
             /* a decision at the end of the range may fall a sample apart: within 2 % when settled again */
@@ -293,24 +291,23 @@ static void covariance_stays_one_for_ever(void)
     uint32_t random = SEED;
     double least = 0.0;
     for (int run = 0; run < 300; run++) {
-        filter_any_t any;
+        filter_t f;
         uint32_t refused = 0;
-        TEST_ASSERT_TRUE(init_random(&any, FILTER_KIND_kf3, &random, &refused));
-        kf3_t *f = &any.state.of_kf3;
+        TEST_ASSERT_TRUE(init_random(&f, FILTER_KIND_kf3, &random, &refused));
         for (int k = 0; k < 2000; k++) {
             uint32_t what = random32_below(&random, 400);
             if (what == 0U) {
-                kf3_set_noise(f, random32(&random) >> random32_below(&random, 32));
+                filter_set_noise(&f, random32(&random) >> random32_below(&random, 32));
             } else if (what == 1U) {
                 for (uint32_t n = random32_below(&random, 300); n != 0U; n--) {
-                    (void)kf3_coast(f);
+                    (void)coast(&f);
                 }
             } else {
-                (void)kf3_update(f, (int16_t)random32(&random));
+                (void)filter_update(&f, (int16_t)random32(&random));
             }
-            if (!two_state_warming_up(&f->core)) {
+            if (f.collected == FILTER_RUNNING) {
                 double p[9];
-                covariance_of(f, p);
+                covariance_of(&f, p);
                 least = fmin(least, reference_kf3_least_eigenvalue(p));
             }
         }
@@ -323,26 +320,59 @@ static void covariance_stays_one_for_ever(void)
 /* As the filter: x at its own rounding, the variance P11 R. */
 static void probe_tells_the_variance(void)
 {
-    kf3_config_t config = { .rate_dhz = 1000, .r_lsb2_q8 = 16 * 256, .q_lsb2_s5 = 300000 };
-    kf3_t f;
+    filter_config_t config = { 1000, { [KF3_R_LSB2_Q8] = 16 * 256, [KF3_Q_LSB2_S5] = 300000 } };
+    filter_t f;
     reference_kf3_t r;
     start_both(&f, &r, &config);
     for (int k = 0; k < 400; k++) {
-        (void)kf3_update(&f, 10);
+        (void)filter_update(&f, 10);
         reference_kf3_step(&r, 10);
     }
-    (void)kf3_update(&f, 30);
+    (void)filter_update(&f, 30);
     reference_kf3_step(&r, 30);
     double bound[9];
     covariance_bound(&r, bound);
     filter_probe_t probe;
-    kf3_probe(&f, &probe);
+    filter_probe(&f, &probe);
     TEST_ASSERT_DOUBLE_WITHIN(1.0 + 256.0 * 16.0 * bound[0], r.p[0] * 256.0, probe.p_lsb2_q8);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, probe.gate_lsb2_q8);
     TEST_ASSERT_DOUBLE_WITHIN(0.02, r.innovation, probe.innovation_lsb_q16 / 65536.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.02, r.x[0], probe.x_lsb_q16 / 65536.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.02, r.x[1], probe.rate_lsb_q16 / 65536.0);
-    TEST_ASSERT_DOUBLE_WITHIN(0.02, r.x[2] * unit_of(&f), f.acceleration_q16 / 65536.0 * unit_of(&f));
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, r.x[2] * unit_of(&f), f.own.kf3.acceleration_q16 / 65536.0 * unit_of(&f));
+}
+
+/*
+ * The sums of its rule in support_envelope.h, from the gains that its recursion settles at; per doubling of q33, and
+ * its time constant.
+ */
+static void kf3_sums_are_as_stated(void)
+{
+    double worst = 0.0;
+    for (int exponent = -32; exponent <= 0; exponent++) {
+        reference_kf3_t f;
+        reference_kf3_settled(&f, ldexp(1.0, exponent));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, reference_kf3_noise_gain(&f),
+                                  kf3_noise_gain_of(f.gain[0], f.gain[1], f.gain[2]));
+        double sum = 0.0;
+        f.q = 0.0;
+        for (int k = 0; k < 3000; k++) {
+            double x_before = f.x[0] + f.x[1] + f.x[2];
+            double r = (k == 0 ? 1.0 : 0.0) - x_before;
+            double v_before = f.x[1] + f.x[2];
+            f.x[0] = x_before + f.gain[0] * r;
+            f.x[1] = v_before + f.gain[1] * r;
+            f.x[2] += f.gain[2] * r;
+            sum += fabs(f.x[0]);
+        }
+        worst = fmax(worst, sum);
+        double samples = -1.0 / log(reference_kf3_radius(&f));
+        TEST_ASSERT_TRUE(samples <= 2.0 / pow(2.0, exponent / 6.0));
+    }
+    double stated = law_facts(FILTER_KIND_kf3).envelope.gain_sum;
+    TEST_ASSERT_TRUE(worst <= stated && worst > stated - 0.002);
+    /* 100 Hz, R = 3: q33 = 3e5 x 1e-10 / 3 = 1e-5 */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2.0 / pow(1e-5, 1.0 / 6.0), kf3_time_constant_samples(1000, 3.0));
 }
 
 int main(void)
@@ -357,5 +387,6 @@ int main(void)
     RUN_TEST(gaps_equal_the_reference);
     RUN_TEST(covariance_stays_one_for_ever);
     RUN_TEST(probe_tells_the_variance);
+    RUN_TEST(kf3_sums_are_as_stated);
     return UNITY_END();
 }

@@ -1,6 +1,4 @@
 /* lrf against Eigen: the reference against paper 002's numbers, the fixed-point filter against the reference. */
-#include "kf.h"
-#include "lrf.h"
 #include "reference_filters.h"
 #include "support_filters.h"
 #include "unity.h"
@@ -38,14 +36,17 @@ static void settle(reference_filter_t *f)
 }
 
 /* 2.06 with outliers, 0.1715 without (by Lyapunov, notes section 3), to 1e-3 of what their four-digit parts give. */
-static void variance_ratios_to_kf_are_those_of_the_notes(void)
+static void variance_ratios_are_those_of_the_notes(void)
 {
-    reference_filter_t kf = table_1(1.0);
+    reference_filter_t plain = table_1(1.0);
     reference_filter_t lrf = table_1(FACTOR);
-    settle(&kf);
+    settle(&plain);
     settle(&lrf);
-    const double outliers = reference_lyapunov(&kf, FACTOR * 0.0064) / reference_lyapunov(&lrf, FACTOR * 0.0064);
-    const double clean = reference_lyapunov(&kf, 0.0064) / reference_lyapunov(&lrf, 0.0064);
+    const double outliers = reference_lyapunov(&plain, FACTOR * 0.0064) / reference_lyapunov(&lrf, FACTOR * 0.0064);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-3 * 0.0476, 0.0476, lrf.gain[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 1.852e-2, 1.852e-2, reference_lyapunov(&lrf, FACTOR * 0.0064));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 4.750e-3, 4.750e-3, reference_lyapunov(&lrf, 0.0064));
+    const double clean = reference_lyapunov(&plain, 0.0064) / reference_lyapunov(&lrf, 0.0064);
     printf("LRF: error variance of KF over its own %.4f with outliers, %.5f without\n", outliers, clean);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 2.06, 3.819 / 1.852, outliers);
     TEST_ASSERT_DOUBLE_WITHIN(0.005, 2.06, outliers);
@@ -80,12 +81,12 @@ static void reference_follows_the_golden_rows(void)
 }
 
 /* Steady gain w1 of a filter that reads zeros. */
-static double steady_gain(lrf_t *f)
+static double steady_gain(filter_t *f)
 {
     for (int k = 0; k < 5000; k++) {
-        (void)lrf_update(f, 0);
+        (void)filter_update(f, 0);
     }
-    return f->core.gain_uq16 / 65536.0;
+    return f->gain_uq16 / 65536.0;
 }
 
 /*
@@ -96,15 +97,14 @@ static void steady_gains_are_those_of_the_paper(void)
 {
     reference_filter_t reference = table_1(FACTOR);
     settle(&reference);
-    lrf_config_t config;
-    lrf_defaults(&config, 1000);
-    config.r_lsb2_q8 = 100 * 256;
-    config.q_lsb2_s3 = 8579;
-    lrf_t f;
-    TEST_ASSERT_TRUE(lrf_init(&f, &config));
+    filter_config_t config = filter_defaults(&filter_law_lrf, 1000);
+    config.value[LRF_R_LSB2_Q8] = 100 * 256;
+    config.value[LRF_Q_LSB2_S3] = 8579;
+    filter_t f;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
     TEST_ASSERT_DOUBLE_WITHIN(0.005 * reference.gain[0], reference.gain[0], steady_gain(&f));
-    config.ratio_uq8 = 256;
-    TEST_ASSERT_TRUE(lrf_init(&f, &config));
+    config.value[LRF_RATIO_UQ8] = 256;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
     TEST_ASSERT_DOUBLE_WITHIN(0.005 * 0.12730, 0.12730, steady_gain(&f));
 }
 
@@ -114,23 +114,22 @@ static void estimate_equals_the_reference(void)
     test_random_t random;
     random_seed(&random, SEED);
     printf("seed %d\n", SEED);
-    lrf_config_t config;
-    lrf_defaults(&config, 1000);
-    lrf_t f;
+    filter_config_t config = filter_defaults(&filter_law_lrf, 1000);
+    filter_t f;
     reference_filter_t r;
-    TEST_ASSERT_TRUE(lrf_init(&f, &config));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
     for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)lrf_update(&f, 0);
+        (void)filter_update(&f, 0);
     }
-    double sigma = sqrt(config.r_lsb2_q8 / 256.0);
-    reference_library(&r, 100.0, FACTOR * sigma * sigma, config.q_lsb2_s3, 0.0, 0, 0.0, 0.0);
+    double sigma = sqrt(config.value[LRF_R_LSB2_Q8] / 256.0);
+    reference_library(&r, 100.0, FACTOR * sigma * sigma, config.value[LRF_Q_LSB2_S3], 0.0, 0, 0.0, 0.0);
     for (int k = 0; k < 5000; k++) {
         double spread = random_uniform(&random) < 0.15 ? 20.0 * sigma : sigma;
         int16_t z = as_sample(50.0 * sin(0.005 * k) + spread * random_normal(&random));
-        double x = lrf_update(&f, z) / 65536.0;
+        double x = filter_update(&f, z) / 65536.0;
         reference_step(&r, z);
         double w1 = r.gain[0];
-        double error = 1.5 / 65536.0 / w1 + w1 * 0.5 * (8.0 / 16384.0 + 1.0 / f.core.q22_uq28);
+        double error = 1.5 / 65536.0 / w1 + w1 * 0.5 * (8.0 / 16384.0 + 1.0 / f.own.kalman.q22_uq28);
         TEST_ASSERT_DOUBLE_WITHIN(2.0 * (error * 60.0 * sigma / w1 + 1.0 / 256.0), r.x[0], x);
     }
 }
@@ -141,21 +140,20 @@ static void estimate_equals_the_reference(void)
  */
 static void smallest_gain_binds_where_the_header_says(void)
 {
-    lrf_config_t config;
-    lrf_t f;
-    lrf_defaults(&config, 5400);
-    TEST_ASSERT_TRUE(lrf_init(&f, &config));
-    TEST_ASSERT_TRUE(f.core.q22_uq28 > 16U);
-    lrf_defaults(&config, 5600);
-    TEST_ASSERT_TRUE(lrf_init(&f, &config));
-    TEST_ASSERT_EQUAL_UINT32(16, f.core.q22_uq28);
+    filter_t f;
+    filter_config_t config = filter_defaults(&filter_law_lrf, 5400);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
+    TEST_ASSERT_TRUE(f.own.kalman.q22_uq28 > 16U);
+    config = filter_defaults(&filter_law_lrf, 5600);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
+    TEST_ASSERT_EQUAL_UINT32(16, f.own.kalman.q22_uq28);
     TEST_ASSERT_DOUBLE_WITHIN(0.0005, 0.022, steady_gain(&f));
 }
 
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(variance_ratios_to_kf_are_those_of_the_notes);
+    RUN_TEST(variance_ratios_are_those_of_the_notes);
     RUN_TEST(reference_follows_the_golden_rows);
     RUN_TEST(steady_gains_are_those_of_the_paper);
     RUN_TEST(estimate_equals_the_reference);

@@ -19,29 +19,29 @@ static void starts_at_the_floor_and_stays_there_on_silence(void)
     static const uint16_t floors_lsb2_q8[] = { 768, 1306, 6144, 10445 };
     for (uint8_t i = 0; i < 4; i++) {
         noise_t n;
-        noise_init(&n, rates[i / 2], (i & 1) != 0);
+        filter_noise_init(&n, rates[i / 2], (i & 1) != 0);
         for (uint16_t k = 0; k < 1000; k++) {
-            TEST_ASSERT_FALSE(noise_update(&n, 17));
+            TEST_ASSERT_FALSE(filter_noise_update(&n, 17));
         }
-        TEST_ASSERT_UINT32_WITHIN(floors_lsb2_q8[i] / 500U, floors_lsb2_q8[i], noise_r_lsb2_q8(&n));
+        TEST_ASSERT_UINT32_WITHIN(floors_lsb2_q8[i] / 500U, floors_lsb2_q8[i], filter_noise_r_lsb2_q8(&n));
     }
 }
 
 static void gap_forgets_the_differences(void)
 {
     noise_t n;
-    noise_init(&n, 1000, false);
+    filter_noise_init(&n, 1000, false);
     for (uint16_t k = 0; k < 300; k++) {
-        (void)noise_update(&n, 0);
+        (void)filter_noise_update(&n, 0);
         if (k % 20 == 19) {
-            noise_gap(&n);
+            filter_noise_gap(&n);
             for (uint8_t j = 0; j < 5; j++) {
-                TEST_ASSERT_FALSE(noise_update(&n, 4000));
+                TEST_ASSERT_FALSE(filter_noise_update(&n, 4000));
             }
-            noise_gap(&n);
+            filter_noise_gap(&n);
         }
     }
-    TEST_ASSERT_UINT32_WITHIN(2, 3 * 256, noise_r_lsb2_q8(&n));
+    TEST_ASSERT_UINT32_WITHIN(2, 3 * 256, filter_noise_r_lsb2_q8(&n));
 }
 
 static void any_input_keeps_r_legal(void)
@@ -49,13 +49,13 @@ static void any_input_keeps_r_legal(void)
     uint32_t random = SEED;
     for (uint8_t run = 0; run < ON_PC_OR_CHIP(50, 10); run++) {
         noise_t n;
-        noise_init(&n, (uint16_t)(50U + random32_below(&random, 39951)), (run & 1) != 0);
-        uint32_t floor_q8 = noise_r_lsb2_q8(&n);
+        filter_noise_init(&n, (uint16_t)(50U + random32_below(&random, 39951)), (run & 1) != 0);
+        uint32_t floor_q8 = filter_noise_r_lsb2_q8(&n);
         uint8_t fewer_bits = (uint8_t)random32_below(&random, 15);
         for (uint16_t k = 0; k < ON_PC_OR_CHIP(5000, 500); k++) {
             int32_t any = (int32_t)(random32(&random) >> 16) - 32768;
-            (void)noise_update(&n, (int16_t)(any / (1L << fewer_bits)));
-            TEST_ASSERT_TRUE(noise_r_lsb2_q8(&n) >= floor_q8 && noise_r_lsb2_q8(&n) <= 256000U);
+            (void)filter_noise_update(&n, (int16_t)(any / (1L << fewer_bits)));
+            TEST_ASSERT_TRUE(filter_noise_r_lsb2_q8(&n) >= floor_q8 && filter_noise_r_lsb2_q8(&n) <= 256000U);
         }
     }
 }

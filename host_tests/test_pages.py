@@ -7,6 +7,7 @@ import re
 import sys
 
 sys.path.insert(0, "tools")
+from laws import PLAIN, ROBUST  # noqa: E402
 import page
 import proof
 import recordings
@@ -18,10 +19,10 @@ WRITTEN = [path for path in sorted(pathlib.Path("docs").glob("*.md")) if "<!-- w
 COUNTS = "1000,20,1,0,30,0,900,0,0.5,0,0,0.0"
 
 
-def told(status=0, sprf_farthest="12.0"):
+def told(status=0, gated_farthest="12.0"):
     """The rows of host_tests/recordings.c for one recording and two filters."""
     lines = ["stream,walk,100.0,16,100.0,1000,0,0,0,0"]
-    for kind, farthest in (("kf", "3.0"), ("sprf", sprf_farthest)):
+    for kind, farthest in ((PLAIN, "3.0"), (ROBUST, gated_farthest)):
         for axis in "xyz":
             lines.append(f"filter,walk,{kind},{axis},{COUNTS},10,{farthest}")
             lines.append(f"rest,walk,0,{kind},{axis},{COUNTS},0,0.0")
@@ -53,7 +54,7 @@ def own_page():
     kept = recordings.DOCUMENT, recordings.PAGE, recordings.CSV, recordings.PROGRAM, page.KEPT
     recordings.DOCUMENT, recordings.CSV, page.KEPT = OUT.resolve() / "page.md", OUT / "rows.csv", OUT / "kept"
     recordings.PAGE = page.Page(recordings.DOCUMENT, recordings.BEGIN, recordings.END)
-    text = f"At most <!--=farthest sprf-->0<!--.--> LSB.\n{recordings.BEGIN}\n{recordings.END}\n"
+    text = f"At most <!--=farthest {ROBUST}-->0<!--.--> LSB.\n{recordings.BEGIN}\n{recordings.END}\n"
     recordings.DOCUMENT.write_text(text, encoding="utf-8")
     for path in page.KEPT.glob("*"):
         path.unlink()
@@ -76,9 +77,9 @@ def a_changed_number_of_the_text_or_of_a_table_is_found():
     key, number = page.INLINE.findall(text)[0]
     found = recordings.check(text.replace(f"<!--={key}-->{number}<!--.-->", f"<!--={key}-->9{number}<!--.-->", 1))
     assert len(found) == 1 and key in found[0] and f"9{number} on the page" in found[0], found
-    farthest = recordings.facts(text)["farthest sprf"]
+    farthest = recordings.facts(text)[f"farthest {ROBUST}"]
     found = recordings.check(text.replace(f"; {farthest} |", "; 99999 |"))
-    assert any("farthest sprf" in fault and "99999 in this run" in fault for fault in found), found
+    assert any(f"farthest {ROBUST}" in fault and "99999 in this run" in fault for fault in found), found
 
 
 @test
@@ -101,16 +102,16 @@ def no_page_has_a_title_twice():
 def what_does_not_come_out_again_is_named_by_every_run():
     with own_page() as document:
         status, text = run_of()
-        assert status == 1 and "the text's 'farthest sprf': 0 on the page, 12 in this run" in text, text
+        assert status == 1 and f"the text's 'farthest {ROBUST}': 0 on the page, 12 in this run" in text, text
         written = document.read_text(encoding="utf-8")
         document.write_text(written + "\n", encoding="utf-8")  # a page of its own, as if it had been shipped
         assert run_of()[0] == 0
         for _ in range(2):
-            status, text = run_of(sprf_farthest="34.0")
+            status, text = run_of(gated_farthest="34.0")
             assert status == 1 and "0 passed, 1 failed" in text, text
-            for words in ("walk, `sprf`: 1; 12 on the page, 1; 34 in this run", "'farthest sprf': 12 on the page, 34 in this run"):
+            for words in (f"walk, `{ROBUST}`: 1; 12 on the page, 1; 34 in this run", f"'farthest {ROBUST}': 12 on the page, 34 in this run"):
                 assert words in text, text
-        assert "At most <!--=farthest sprf-->34<!--.--> LSB" in document.read_text(encoding="utf-8")
+        assert f"At most <!--=farthest {ROBUST}-->34<!--.--> LSB" in document.read_text(encoding="utf-8")
 
 
 @test

@@ -1,6 +1,6 @@
 /*
- * A main loop that is out of time after each piece of work does the same as one that has time for all: an axis, a row,
- * a reply and a step of a change of settings a pass, each pass followed at once by the next.
+ * A main loop that is out of time after each piece of work does the same as one that has time for all: a sample, a row,
+ * a reply, an axis of a change of filter a pass, each pass followed at once by the next.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "support_board.h"
 #include "unity.h"
 
-enum { SLOW = 15 }; /* counts a look: the second comes too late for a step of a change, the third for all else */
+enum { SLOW = 2 }; /* counts a look: the third comes too late */
 
 static stream_t stream;
 static board_t quick;
@@ -71,7 +71,7 @@ static void test_samples_and_replies_in_pieces(void)
 /* The filters go on from the same output; which sample meets the new ones first is the same at 100 Hz. */
 static void test_changes_in_pieces(void)
 {
-    static const char *const lines[] = { "filter sprf", "filter kf", "filter synth", "filter adaptive" };
+    static const char *const lines[] = { "filter {robust}", "filter {plain}", "filter {light}", "filter {default}" };
     run(0, lines, 4);
     quick = board;
     run(SLOW, lines, 4);

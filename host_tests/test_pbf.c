@@ -1,6 +1,5 @@
 /* pbf in integers, on PC and chip: what an outlier moves, recovery. Against double: test_wide_reference.c. */
-#include "pbf.h"
-#include "support_filters.h"
+#include "support_laws.h"
 #include "unity.h"
 
 void setUp(void) {}
@@ -8,15 +7,14 @@ void setUp(void) {}
 void tearDown(void) {}
 
 /* 100 Hz, R 16 LSB^2: sigma 4 LSB; settled at level. */
-static pbf_t settled(int16_t level)
+static filter_t settled(int16_t level)
 {
-    pbf_config_t config;
-    pbf_t f;
-    pbf_defaults(&config, 1000);
-    config.r_lsb2_q8 = 16U * 256U;
-    TEST_ASSERT_TRUE(pbf_init(&f, &config));
+    filter_t f;
+    filter_config_t config = filter_defaults(&filter_law_pbf, 1000);
+    config.value[MIXTURE_R_LSB2_Q8] = 16U * 256U;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_pbf, &config));
     for (uint16_t k = 0; k < 300; k++) {
-        (void)pbf_update(&f, level);
+        (void)filter_update(&f, level);
     }
     return f;
 }
@@ -24,10 +22,9 @@ static pbf_t settled(int16_t level)
 /* Table 1: 0.85 and 20. */
 static void defaults_are_the_papers(void)
 {
-    pbf_config_t config;
-    pbf_defaults(&config, 1000);
-    TEST_ASSERT_EQUAL_UINT16(55706, config.clean_uq16);
-    TEST_ASSERT_EQUAL_UINT16(20 * 256, config.ratio_uq8);
+    filter_config_t config = filter_defaults(&filter_law_pbf, 1000);
+    TEST_ASSERT_EQUAL_INT32(55706, config.value[MIXTURE_CLEAN_UQ16]);
+    TEST_ASSERT_EQUAL_INT32(20 * 256, config.value[MIXTURE_RATIO_UQ8]);
 }
 
 /*
@@ -36,60 +33,60 @@ static void defaults_are_the_papers(void)
  */
 static void outlier_moves_the_estimate_by_its_small_gain(void)
 {
-    pbf_t f = settled(0);
-    pbf_t predicted = f;
-    (void)pbf_coast(&predicted);
-    uint32_t p11 = predicted.core.u.p.p11_uq16;
+    filter_t f = settled(0);
+    filter_t predicted = f;
+    (void)coast(&predicted);
+    uint32_t p11 = predicted.own.mixture.core.p.p11;
     int32_t step_q16 = (int32_t)((uint64_t)p11 * 4000U * 65536U / (p11 + 400UL * 65536UL));
-    int32_t x = pbf_update(&f, 4000);
+    int32_t x = filter_update(&f, 4000);
     TEST_ASSERT_INT32_WITHIN(step_q16 / 50, step_q16, x);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, pbf_flags(&f));
-    TEST_ASSERT_TRUE(f.core.gain_uq16 != 0U);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, f.flags);
+    TEST_ASSERT_TRUE(f.gain_uq16 != 0U);
 }
 
 /* The posterior decides: at 1 sigma p = 0.98, at 10 p = 0; 1/2 where b t / 2 = ln(0.85 / 0.15) + ln(S_N / S) / 2. */
 static void flag_tells_more_likely_an_outlier_than_not(void)
 {
-    pbf_t f = settled(0);
-    pbf_t near = f;
-    pbf_t far = f;
-    (void)pbf_update(&near, 4);
-    (void)pbf_update(&far, 40);
-    TEST_ASSERT_EQUAL_UINT8(0, pbf_flags(&near));
-    TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, pbf_flags(&far));
-    TEST_ASSERT_TRUE(far.core.gain_uq16 < near.core.gain_uq16 / 50U);
+    filter_t f = settled(0);
+    filter_t near = f;
+    filter_t far = f;
+    (void)filter_update(&near, 4);
+    (void)filter_update(&far, 40);
+    TEST_ASSERT_EQUAL_UINT8(0, near.flags);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, far.flags);
+    TEST_ASSERT_TRUE(far.gain_uq16 < near.gain_uq16 / 50U);
 }
 
 /* P grows where the sample is neither clearly normal nor clearly an outlier: that opens the filter to a step. */
 static void doubt_makes_p_grow(void)
 {
-    pbf_t f = settled(0);
-    pbf_t predicted = f;
-    (void)pbf_coast(&predicted);
-    (void)pbf_update(&f, 15); /* 3.5 sigma of the innovation */
-    TEST_ASSERT_TRUE(f.core.u.p.p11_uq16 > predicted.core.u.p.p11_uq16);
+    filter_t f = settled(0);
+    filter_t predicted = f;
+    (void)coast(&predicted);
+    (void)filter_update(&f, 15); /* 3.5 sigma of the innovation */
+    TEST_ASSERT_TRUE(f.own.mixture.core.p.p11 > predicted.own.mixture.core.p.p11);
 }
 
 static void step_of_100_sigma_is_followed_within_800_samples(void)
 {
-    pbf_t f = settled(0);
+    filter_t f = settled(0);
     uint16_t k = 0;
-    while (f.core.x_lsb_q16 < (int32_t)384 * 65536 && k < 800U) {
-        (void)pbf_update(&f, 400);
+    while (f.x_lsb_q16 < (int32_t)384 * 65536 && k < 800U) {
+        (void)filter_update(&f, 400);
         k++;
     }
     TEST_ASSERT_TRUE(k < 800U);
     for (k = 0; k < 200; k++) {
-        (void)pbf_update(&f, 400);
+        (void)filter_update(&f, 400);
     }
-    TEST_ASSERT_INT32_WITHIN(65536, (int32_t)400 * 65536, f.core.x_lsb_q16);
+    TEST_ASSERT_INT32_WITHIN(65536, (int32_t)400 * 65536, f.x_lsb_q16);
 }
 
 static void every_second_sample_an_outlier_does_not_lead_it_away(void)
 {
-    pbf_t f = settled(0);
+    filter_t f = settled(0);
     for (uint16_t k = 0; k < 400; k++) {
-        int32_t x = pbf_update(&f, (k & 1U) != 0U ? (int16_t)(((k & 2U) != 0U) ? 2000 : -2000) : 0);
+        int32_t x = filter_update(&f, (k & 1U) != 0U ? (int16_t)(((k & 2U) != 0U) ? 2000 : -2000) : 0);
         TEST_ASSERT_INT32_WITHIN((int32_t)16 * 65536, 0, x);
     }
 }

@@ -9,6 +9,7 @@ import shutil
 import subprocess
 
 from system_support import OUT, SIMRUN, STREAMS, FW, Skip, read_output, run, run_all, test
+from laws import PLAIN  # noqa: E402
 
 PIO = pathlib.Path("build/venv-pio/bin/pio").absolute()
 FOLDER = pathlib.Path("build/pio").absolute()
@@ -114,7 +115,7 @@ def uno_runs_as_the_firmware_of_make():
 def native_gives_the_rows_of_make():
     program = built("native", "program")
     for name, binary in (("pio-native", program), ("make-native", "build/host/native_replay")):
-        run(binary, "--in", STREAM, "--out", OUT / f"{name}.csv", "--filter", "kf")
+        run(binary, "--in", STREAM, "--out", OUT / f"{name}.csv", "--filter", PLAIN)
     ours, theirs = (read_output(OUT / f"{name}.csv")[0] for name in ("make-native", "pio-native"))
     assert len(ours) > 1000 and ours == theirs, (len(ours), len(theirs))
 
@@ -133,6 +134,56 @@ def a_source_that_does_not_compile_leaves_no_program():
     done = pio("run", "-e", "native", folder=folder)
     assert "undefined reference" in done.stdout + done.stderr, done.stdout[-600:]
     assert not path.exists()
+
+
+USER_INI = """[env:user]
+platform = native
+lib_deps = file://{}
+"""
+# a file of C++ and one of C, as others' projects have them
+USER_SOURCES = {"main.cpp": """#include <stdio.h>
+#include <tilt_filter.h>
+extern "C" int32_t filtered_plain(void);
+static tilt_filter_t tilt;
+int main()
+{
+    tilt_filter_begin(&tilt, 100);
+    for (int i = 0; i < 200; i++) {
+        tilt_filter_update(&tilt, 0, 212, 154);
+    }
+    printf("%d %d %ld\\n", tilt.angles.roll_cdeg, tilt.flags, (long)filtered_plain());
+}
+""", "number.c": """#include <filter.h>
+int32_t filtered_plain(void);
+int32_t filtered_plain(void)
+{
+    filter_t f;
+    filter_config_t config = filter_defaults(&filter_law_PLAIN, 1000);
+    (void)filter_init(&f, &filter_law_PLAIN, &config);
+    for (int i = 0; i < 200; i++) {
+        (void)filter_update(&f, 77);
+    }
+    return f.x_lsb_q16 >> 16;
+}
+""".replace("PLAIN", PLAIN)}
+
+
+@test
+def a_project_of_its_own_installs_the_library_from_its_zip():
+    folder = FOLDER / "library-user"
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.rmtree(FOLDER / "work" / "libdeps" / "user", ignore_errors=True)
+    (folder / "src").mkdir(parents=True)
+    (folder / "platformio.ini").write_text(USER_INI.format(pathlib.Path("build/library/tilt-filters.zip").absolute()), encoding="utf-8")
+    for name, text in USER_SOURCES.items():
+        (folder / "src" / name).write_text(text, encoding="utf-8")
+    program = FOLDER / "work" / "build" / "user" / "program"
+    program.unlink(missing_ok=True)
+    done = pio("run", "-e", "user", folder=folder)
+    assert program.exists(), f"{done.stdout[-600:]}{done.stderr[-300:]}"
+    # 212 / 265 g and 154 / 256 g: atan2 is 53.06 degrees
+    roll_cdeg, flags, plain = (int(word) for word in run(program).stdout.split())
+    assert abs(roll_cdeg - 5306) <= 3 and flags == 0 and plain == 77, (roll_cdeg, flags, plain)
 
 
 @test

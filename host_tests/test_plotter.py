@@ -12,6 +12,7 @@ import re
 
 import system_support
 from system_support import OUT, SIMRUN, STREAMS, run_all, test
+from laws import PLAIN  # noqa: E402
 
 SERIES = ["roll_raw", "roll", "pitch_raw", "pitch", "gated"]
 ROW = re.compile("^" + ",".join(rf"{name}:-?\d{{1,3}}\.\d\d" for name in SERIES[:-1]) + ",gated:[01]$")
@@ -153,7 +154,8 @@ def nothing_stands_between_the_rows_whatever_fails():
     assert all(line.startswith(("#", "t_us")) or line[0].isdigit() for line in told.splitlines()), told
 
 
-TYPED = ["status", "every 5", "every", "nonsense", "rate 200", "range 4", "help", "filter kf", "every 1", "baud", "mode", "stop", "go", "mode soon",
+TYPED = ["status", "every 5", "every", "nonsense", "rate 200", "range 4", "help", f"filter {PLAIN}",
+         "every 1", "baud", "mode", "stop", "go", "mode soon",
          "rate 100", "status"]
 
 

@@ -9,6 +9,7 @@
 #include "support_faults.h"
 #include "support_random.h"
 #include "support_recordings.h"
+#include "support_roles.h"
 #include "support_shipped.h"
 #include "support_survey.h"
 #include "unity.h"
@@ -38,17 +39,17 @@ void tearDown(void) {}
 
 static bool is_robust(size_t contender)
 {
-    if (contender == MEDIAN_KF) {
+    if (contender == MEDIAN_PLAIN) {
         return true;
     }
-    envelope_rule_t rule = filter_facts((filter_kind_t)contender).rule;
+    envelope_rule_t rule = law_facts((filter_kind_t)contender).envelope.rule;
     return rule == ENVELOPE_REACQUIRES || rule == ENVELOPE_STANDS || rule == ENVELOPE_MIXTURE || rule == ENVELOPE_WAITS;
 }
 
 static bool is_linear(size_t contender)
 {
-    return contender != MEDIAN_KF && !is_robust(contender) &&
-           filter_facts((filter_kind_t)contender).rule != ENVELOPE_NONE;
+    return contender != MEDIAN_PLAIN && !is_robust(contender) &&
+           law_facts((filter_kind_t)contender).envelope.rule != ENVELOPE_NONE;
 }
 
 /* Scores of all contenders over the seeds. */
@@ -66,8 +67,8 @@ static void score_all(const study_t *study, fault_t fault, score_t score[CONTEND
 
 static void check_scores(const char *name, const score_t score[CONTENDERS])
 {
-    double followed = rms(score[FILTER_KIND_kf].own, score[FILTER_KIND_kf].count);
-    double allowed = rms(score[FILTER_KIND_kf].allowed, score[FILTER_KIND_kf].count);
+    double followed = rms(score[plain_kind()].own, score[plain_kind()].count);
+    double allowed = rms(score[plain_kind()].allowed, score[plain_kind()].count);
     TEST_ASSERT_TRUE_MESSAGE(followed > 0.0 && allowed <= ALLOWED_SHARE_MAX * followed, name);
     for (size_t contender = 0; contender < CONTENDERS; contender++) {
         double own = rms(score[contender].own, score[contender].count);
@@ -146,7 +147,7 @@ static void check_survival(const char *name, const stream_t *clean, uint16_t rat
                 axis_counts_t c;
                 TEST_ASSERT_TRUE(survey_axis(&faulty.stream, &survey, (filter_kind_t)kind, axis, &c));
                 snprintf(text, sizeof text, "%s: %s: %s %c: bounds %zu, median %zu, hull %zu", name, fault_name(fault),
-                         filter_any_name((filter_kind_t)kind), "xyz"[axis], c.bounds_broken, c.envelope_broken,
+                         filter_listed_name((filter_kind_t)kind), "xyz"[axis], c.bounds_broken, c.envelope_broken,
                          c.hull_broken);
                 TEST_ASSERT_EQUAL_size_t_MESSAGE(0, c.bounds_broken + c.envelope_broken + c.hull_broken, text);
             }
@@ -337,7 +338,7 @@ static void without_a_fault_nothing_differs(void)
         study_score(&study, &faulty, contender, &score);
         TEST_ASSERT_EQUAL_DOUBLE(0.0, score.own);
         TEST_ASSERT_EQUAL_size_t(3U * (6000U - FILTER_WARM_UP_SAMPLES), score.count);
-        TEST_ASSERT_TRUE(contender == FILTER_KIND_kf || score.kf > 0.0);
+        TEST_ASSERT_TRUE(contender == plain_kind() || score.plain > 0.0);
     }
     study_end(&study);
     faulty_free(&faulty);

@@ -25,7 +25,7 @@ void tearDown(void) {}
 
 static const char *about(const char *name, int kind, int axis, const char *what)
 {
-    snprintf(text, sizeof text, "%s: %s %c: %s", name, filter_any_name((filter_kind_t)kind), "xyz"[axis], what);
+    snprintf(text, sizeof text, "%s: %s %c: %s", name, filter_listed_name((filter_kind_t)kind), "xyz"[axis], what);
     return text;
 }
 
@@ -71,7 +71,8 @@ static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t
         pipeline_row_done();
         for (int axis = 0; axis < 3; axis++) {
             (void)chain_sample(&chain[axis], in->t_us, in->lsb[axis]);
-            uint8_t own = chain[axis].waits ? FILTER_GATED : filter_any_flags(&chain[axis].filter);
+            uint8_t refused = chain[axis].clipped ? 0 : FILTER_GATED;
+            uint8_t own = chain[axis].waits ? refused : chain[axis].filter.flags;
             flags |= (own & FILTER_GATED) != 0U ? ROW_GATED : 0U;
             flags |= (own & FILTER_REACQUIRED) != 0U || chain[axis].begun ? ROW_REACQUIRED : 0U;
             flags |= chain[axis].clipped ? ROW_CLIPPED : 0U;
@@ -179,7 +180,7 @@ static void check_rest(const char *name, const stream_t *rest, uint16_t rate_dhz
             survey_t survey = { rate_dhz, range_g, 0.0, 1e9 };
             axis_counts_t c;
             TEST_ASSERT_TRUE(survey_axis(rest, &survey, (filter_kind_t)kind, axis, &c));
-            if (filter_facts((filter_kind_t)kind).rule == ENVELOPE_NONE) {
+            if (law_facts((filter_kind_t)kind).envelope.rule == ENVELOPE_NONE) {
                 continue;
             }
             size_t limit = (size_t)(REST_GATED_MAX * (double)c.samples);

@@ -5,6 +5,7 @@ import pathlib
 import re
 
 from system_support import STREAMS, Skip, run_all, simrun, test
+from laws import DEFAULT  # noqa: E402
 
 STREAM = STREAMS / "rest-2lsb.csv"
 BOOT = pathlib.Path("build/uno/optiboot.hex")
@@ -13,7 +14,7 @@ HANG_NOW = "poke:hang_stages=0x80"
 # a power-on, an external reset and what comes out of a watchdog reset have these to get to the first row without a flag, in ms
 POWER_LIMIT, WATCHDOG_LIMIT, WATCHDOG_PERIOD, LOADER_WAITS = 150, 600, 250, 1400
 CAUSES = {"mcupower": "power on", "reset": "reset button or serial port opened", "brownout": "supply dropped",
-          HANG_NOW: "watchdog, waiting for stage mask 7 (1 sampling, 2 filtering, 4 output)"}
+          HANG_NOW: "watchdog, stage mask 7"}
 # RAM outlives a short dip of the supply, and the boot loader clears MCUSR: only the button is left to be told
 CAUSES_LOADER = {**CAUSES, "brownout": CAUSES["reset"]}
 
@@ -79,7 +80,7 @@ def watchdog_resets_twice_and_says_so_each_time(loader):
     causes, rows, notes, stats = reset_run(f"dog-twice-{loader}", loader, f"2000ms:{HANG_NOW}", f"2600ms:{HANG_NOW}", resets=2)
     assert causes[1:] == [CAUSES[HANG_NOW]] * 2, causes
     assert_streaming(rows, notes, stats)
-    assert "# filter adaptive, rate 100 Hz, range 16 g, every 1, baud 115200" == [n for n in notes if n.startswith("# filter")][-1], notes
+    assert f"# filter {DEFAULT}, rate 100 Hz, range 16 g, every 1, baud 115200" == [n for n in notes if n.startswith("# filter")][-1], notes
 
 
 @both_ways
@@ -111,7 +112,7 @@ def a_loop_of_watchdog_resets_ends_in_safe_settings(loader):
     hangs = [f"{ms}ms:{HANG_NOW}" for ms in (1800, 2400, 3000)]
     causes, rows, notes, stats = reset_run(f"loop-{loader}", loader, *hangs, f"15000ms:{HANG_NOW}", resets=4, ms=17500)
     dog = CAUSES[HANG_NOW]
-    assert causes[1:] == [dog, dog, dog + ", again and again: safe settings", dog], causes
+    assert causes[1:] == [dog, dog, dog + ", repeatedly: safe settings", dog], causes
     rates = [re.search(r"rate (\S+) Hz", n)[1] for n in notes if n.startswith("# filter")]
     assert rates == ["100", "100", "100", "12.5", "100"], rates
     assert_streaming(rows, notes, stats)

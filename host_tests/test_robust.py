@@ -6,6 +6,7 @@ import re
 import sys
 
 sys.path.insert(0, "tools")
+from laws import PLAIN, ROBUST, names as laws_names  # noqa: E402
 try:
     import numpy as np
     import make_streams
@@ -52,7 +53,7 @@ def the_page_is_what_a_new_run_gives():
 
 @test
 def the_page_has_every_filter_and_every_stream():
-    names = re.findall(r"X\((\w+)\)", pathlib.Path("lib/filters/src/filter_list.h").read_text(encoding="ascii").split("#define", 2)[-1])
+    names = list(laws_names())
     numbers = robust.TEXT.numbers_of(fresh()[2])
     streams = [path.stem for path in pathlib.Path("sim/streams").glob("*.csv")]
     assert len(names) >= 5 and len(streams) >= 18 and names == robust_runs.filters(), names
@@ -88,7 +89,7 @@ def a_row_too_many_and_one_too_few_are_found():
 def a_page_without_its_markers_and_an_unknown_number_are_refused():
     page, _, text = fresh()
     refused(lambda: robust.filled(text.replace(robust.END, ""), page), "markers")
-    refused(lambda: robust.filled("<!--=roll nowhere kf-->1<!--.-->" + text, page), "'roll nowhere kf'")
+    refused(lambda: robust.filled(f"<!--=roll nowhere {PLAIN}-->1<!--.-->" + text, page), f"'roll nowhere {PLAIN}'")
 
 
 @test
@@ -104,7 +105,7 @@ def the_pictures_show_this_run():
 def a_picture_of_other_numbers_is_found():
     pictures = fresh()[1]
     other = copy.deepcopy(pictures[0])
-    other.runs["sprf"].angles_cdeg[2100, 0] += 1
+    other.runs[ROBUST].angles_cdeg[2100, 0] += 1
     other.digest = robust_pictures.digest_of(other)
     found = robust_pictures.stale([other, *pictures[1:]])
     assert len(found) == 1 and str(other.path) in found[0], found
@@ -178,10 +179,10 @@ def replayed(*arguments, expect=0):
 
 @test
 def a_parameter_changes_what_it_names_and_the_shipped_value_nothing():
-    shipped = replayed(STREAM, "sprf", 1000, 16, 0).stdout
-    assert replayed(STREAM, "sprf", 1000, 16, 0, "gate=3", "reacquire=5", "q=10000", "R=1").stdout == shipped
+    shipped = replayed(STREAM, ROBUST, 1000, 16, 0).stdout
+    assert replayed(STREAM, ROBUST, 1000, 16, 0, "gate=3", "reacquire=5", "q=10000", "R=1").stdout == shipped
     for change in ("gate=2", "reacquire=9", "q=1000", "R=4"):
-        assert replayed(STREAM, "sprf", 1000, 16, 0, change).stdout != shipped, change
+        assert replayed(STREAM, ROBUST, 1000, 16, 0, change).stdout != shipped, change
 
 
 def is_named(words, *arguments):
@@ -203,19 +204,19 @@ def a_bad_stream_or_argument_is_named():
         bad.unlink(missing_ok=True)
         if text is not None:
             bad.write_text(text, encoding="ascii")
-        is_named(words, bad, "sprf", 1000, 16, 0)
-    for arguments, words in (((STREAM, "nothing", 1000, 16, 0), "no filter nothing"), ((STREAM, "kf", "1e3", 16, 0), "1e3"),
-                             ((STREAM, "kf", 1001, 16, 0), "1001: 125, 250"), ((STREAM, "kf", 375, 16, 0), "375: 125, 250"),
-                             ((STREAM, "kf", 1000, 3, 0), "3: 2, 4, 8 or 16"), ((STREAM, "kf", 1000, 16, 5100), "no row to filter"),
-                             ((STREAM, "kf", 1000, 16, 0, "gate=3"), "kf has no parameter gate")):
+        is_named(words, bad, ROBUST, 1000, 16, 0)
+    for arguments, words in (((STREAM, "nothing", 1000, 16, 0), "no filter nothing"), ((STREAM, PLAIN, "1e3", 16, 0), "1e3"),
+                             ((STREAM, PLAIN, 1001, 16, 0), "1001: 125, 250"), ((STREAM, PLAIN, 375, 16, 0), "375: 125, 250"),
+                             ((STREAM, PLAIN, 1000, 3, 0), "3: 2, 4, 8 or 16"), ((STREAM, PLAIN, 1000, 16, 5100), "no row to filter"),
+                             ((STREAM, PLAIN, 1000, 16, 0, "gate=3"), f"{PLAIN} has no parameter gate")):
         is_named(words, *arguments)
     for change, words in (("gate=0.5", "refuses its configuration: gate"), ("gate=1x", "NAME=VALUE"), ("R=nan", "R=nan: a factor"),
                           ("R=-1", "R=-1: a factor"), ("R=0", "R=0: a factor"), ("R=inf", "R=inf: a factor"), ("R=1e30", "R=1e+30: a factor"),
                           ("r=4", "the noise estimate sets r: R=FACTOR"), ("reacquire=5.4", "reacquire=5.4: a whole number"),
                           ("reacquire=4", "reacquire: 3, 5, 9 or 0"), ("gate=nan", "gate=nan does not fit")):
-        is_named(words, STREAM, "sprf", 1000, 16, 0, change)
+        is_named(words, STREAM, ROBUST, 1000, 16, 0, change)
     for name in ("gate", "R"):
-        is_named(f"{name} stands twice", STREAM, "sprf", 1000, 16, 0, f"{name}=3", "q=1000", f"{name}=4")
+        is_named(f"{name} stands twice", STREAM, ROBUST, 1000, 16, 0, f"{name}=3", "q=1000", f"{name}=4")
 
 
 @test
@@ -227,8 +228,8 @@ def columns_are_found_by_name_and_missing_rows_are_gaps():
     # the row of a fault holds what the sensor never said
     there = [f"{2 + 14 * (k % 2)},4000,{t},?,4000,4000\n" if k in gone else f"0,{z},{t},?,{y},{x}\n" for k, (t, x, y, z) in enumerate(rows)]
     named.write_text("flags,z,t_us,note,y,x\n" + "".join(there), encoding="ascii")
-    output = replayed(plain, "sprf", 1000, 16, 0).stdout
-    assert replayed(named, "sprf", 1000, 16, 0).stdout == output
+    output = replayed(plain, ROBUST, 1000, 16, 0).stdout
+    assert replayed(named, ROBUST, 1000, 16, 0).stdout == output
     coasted = [int(row.split(",")[0]) // 10000 for row in output.splitlines() if int(row.rsplit(",", 1)[1]) & 2]
     assert coasted == sorted(gone) and len(output.splitlines()) == 300
 

@@ -2,10 +2,7 @@
  * soft in integers, on the PC and on the chip: within the soft gate, beyond it, beyond the gate. Against the double
  * reference: test_soft_reference.c.
  */
-#include "kf.h"
-#include "soft.h"
-#include "sprf.h"
-#include "support_filters.h"
+#include "support_laws.h"
 #include "unity.h"
 
 #define SEED 4712UL
@@ -16,77 +13,74 @@ void setUp(void) {}
 void tearDown(void) {}
 
 /* 100 Hz, R 16 LSB^2: sigma 4, agreement within floor(3 sqrt(32) + 8) = 24 LSB, rate at most 8 LSB per sample. */
-static soft_config_t config_100hz(void)
+static filter_config_t config_100hz(void)
 {
-    soft_config_t config;
-    soft_defaults(&config, 1000);
-    config.r_lsb2_q8 = R_LSB2 * 256U;
+    filter_config_t config = filter_defaults(&filter_law_soft, 1000);
+    config.value[SOFT_R_LSB2_Q8] = R_LSB2 * 256U;
     return config;
 }
 
-static soft_t settled(const soft_config_t *config, int16_t level)
+static filter_t settled(const filter_config_t *config, int16_t level)
 {
-    soft_t f;
-    TEST_ASSERT_TRUE(soft_init(&f, config));
-    soft_reset(&f, level);
+    filter_t f;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, config));
+    filter_reset(&f, level);
     return f;
 }
 
 /* x after one sample at z for a filter at rest at 0. */
-static int32_t step_to(const soft_t *at_zero, int16_t z)
+static int32_t step_to(const filter_t *at_zero, int16_t z)
 {
-    soft_t f = *at_zero;
-    return soft_update(&f, z);
+    filter_t f = *at_zero;
+    return filter_update(&f, z);
 }
 
-static void assert_same_as_kf(const soft_config_t *config, int16_t mask)
+static void assert_same_as_plain(const filter_config_t *config, int16_t mask)
 {
-    kf_config_t kf_config = { config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3 };
-    soft_t f;
-    kf_t k;
-    TEST_ASSERT_TRUE(soft_init(&f, config));
-    TEST_ASSERT_TRUE(kf_init(&k, &kf_config));
+    filter_t f;
+    filter_t k;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, config));
+    TEST_ASSERT_TRUE(init_plain(&k, config));
     uint32_t random = SEED;
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(5000, 1000); i++) {
         int16_t z = (int16_t)((int16_t)(random32(&random) >> 16) & mask);
-        TEST_ASSERT_EQUAL_INT32(kf_update(&k, z), soft_update(&f, z));
-        TEST_ASSERT_EQUAL_UINT16(k.core.gain_uq16, f.core.gain_uq16);
+        TEST_ASSERT_EQUAL_INT32(filter_update(&k, z), filter_update(&f, z));
+        TEST_ASSERT_EQUAL_UINT16(k.gain_uq16, f.gain_uq16);
     }
 }
 
 /* Off: any samples. On: samples of 0 to 7 LSB, which a soft gate of 2 sigma or more, 8 LSB, leaves alone. */
 static void without_or_within_the_soft_gate_it_is_the_kalman_filter(void)
 {
-    soft_config_t config = config_100hz();
-    config.rate_max_lsb_s = 1000000;
-    assert_same_as_kf(&config, 7);
-    config.soft_sigma_q8 = 4096;
-    assert_same_as_kf(&config, 31);
-    config.soft_sigma_q8 = 0;
-    assert_same_as_kf(&config, -1);
+    filter_config_t config = config_100hz();
+    config.value[SOFT_RATE_MAX_LSB_S] = 1000000;
+    assert_same_as_plain(&config, 7);
+    config.value[SOFT_SOFT_SIGMA_Q8] = 4096;
+    assert_same_as_plain(&config, 31);
+    config.value[SOFT_SOFT_SIGMA_Q8] = 0;
+    assert_same_as_plain(&config, -1);
 }
 
 /* Any sample moves the estimate towards it, whatever R, gate and gain: the defect of a weight that rounds to zero. */
 static void no_sample_is_without_effect(void)
 {
-    static const uint32_t r_lsb2_q8[] = { 3, 20, 768, 20000, 256000 };
+    static const int32_t r_lsb2_q8[] = { 3, 20, 768, 20000, 256000 };
     static const uint16_t softs_q8[] = { 256, 512, 4096 };
     static const uint16_t rates_dhz[] = { 125, 1000, 8000 };
     for (uint8_t i = 0; i < 45; i++) {
-        soft_config_t config;
-        soft_defaults(&config, rates_dhz[i % 3U]);
-        config.r_lsb2_q8 = r_lsb2_q8[i / 9U];
-        config.soft_sigma_q8 = softs_q8[i / 3U % 3U];
-        soft_t f = settled(&config, 0);
+        filter_config_t config = filter_defaults(&filter_law_soft, rates_dhz[i % 3U]);
+        config.value[SOFT_R_LSB2_Q8] = r_lsb2_q8[i / 9U];
+        config.value[SOFT_SOFT_SIGMA_Q8] = softs_q8[i / 3U % 3U];
+        filter_t f = settled(&config, 0);
         for (int16_t z = 1; z <= 4095; z = (int16_t)(z + ON_PC_OR_CHIP(1, 300))) {
             TEST_ASSERT_TRUE(step_to(&f, z) > 0);
             TEST_ASSERT_TRUE(step_to(&f, (int16_t)-z) < 0);
         }
-        soft_t high = settled(&config, 4095); /* the largest innovation that rest allows */
+        filter_t high = settled(&config, 4095); /* the largest innovation that rest allows */
         TEST_ASSERT_TRUE(step_to(&high, -4096) < (int32_t)4095 * 65536);
         filter_probe_t probe;
-        (void)soft_update(&high, -4096);
-        soft_probe(&high, &probe);
+        (void)filter_update(&high, -4096);
+        filter_probe(&high, &probe);
         TEST_ASSERT_TRUE(probe.gain_uq16 > 0);
     }
 }
@@ -97,8 +91,8 @@ static void no_sample_is_without_effect(void)
  */
 static void the_step_falls_as_the_sample_gets_further(void)
 {
-    soft_config_t config = config_100hz();
-    soft_t f = settled(&config, 0);
+    filter_config_t config = config_100hz();
+    filter_t f = settled(&config, 0);
     int32_t before = step_to(&f, 10);
     for (int16_t z = 11; z < 4095; z = (int16_t)(z + ON_PC_OR_CHIP(1, 50))) {
         int32_t step = step_to(&f, z);
@@ -113,26 +107,26 @@ static void flag_is_at_the_gate_of_sprf(void)
 {
     static const uint16_t gates_q8[] = { 512, 768, 1536 };
     for (uint8_t i = 0; i < 3; i++) {
-        soft_config_t config = config_100hz();
-        config.r_lsb2_q8 = 400U * 256U;
-        config.gate_sigma_q8 = gates_q8[i];
-        sprf_config_t sprf_config;
-        sprf_defaults(&sprf_config, 1000);
-        sprf_config.r_lsb2_q8 = config.r_lsb2_q8;
-        sprf_config.gate_sigma_q8 = config.gate_sigma_q8;
-        soft_t f = settled(&config, 0);
-        sprf_t g;
-        TEST_ASSERT_TRUE(sprf_init(&g, &sprf_config));
-        sprf_reset(&g, 0);
+        filter_config_t config = config_100hz();
+        config.value[SOFT_R_LSB2_Q8] = 400U * 256U;
+        config.value[SOFT_GATE_SIGMA_Q8] = gates_q8[i];
+        filter_config_t sprf_config = filter_defaults(&filter_law_sprf, 1000);
+        sprf_config.value[SPRF_R_LSB2_Q8] = config.value[SOFT_R_LSB2_Q8];
+        sprf_config.value[SPRF_GATE_SIGMA_Q8] = config.value[SOFT_GATE_SIGMA_Q8];
+        filter_t f = settled(&config, 0);
+        filter_t g;
+        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&g, &filter_law_sprf, &sprf_config));
+        filter_reset(&g, 0);
         for (int16_t z = 1; z < 200; z++) {
-            soft_t soft = f;
-            sprf_t sprf = g;
-            (void)soft_update(&soft, z);
-            (void)sprf_update(&sprf, z);
-            uint32_t limit = sprf.core.coarse ? sprf.core.limit_lsb2 / 256U : sprf.core.limit_lsb2 / 65536U;
+            filter_t soft = f;
+            filter_t sprf = g;
+            (void)filter_update(&soft, z);
+            (void)filter_update(&sprf, z);
+            uint32_t limit = sprf.own.kalman.coarse ? sprf.own.kalman.limit_lsb2 / 256U
+                                                    : sprf.own.kalman.limit_lsb2 / 65536U;
             uint32_t r2 = (uint32_t)((int32_t)z * z);
             if (r2 + limit / 256U < limit || r2 > limit + limit / 256U + 1U) {
-                TEST_ASSERT_EQUAL_UINT8(sprf_flags(&sprf), soft_flags(&soft));
+                TEST_ASSERT_EQUAL_UINT8(sprf.flags, soft.flags);
             }
         }
     }
@@ -141,77 +135,77 @@ static void flag_is_at_the_gate_of_sprf(void)
 /* Between 2 and 3 sigma part of the sample is taken, no flag; beyond 3 the flag; without a gate never a flag. */
 static void taken_in_part_is_flagged_beyond_the_gate_only(void)
 {
-    soft_config_t config = config_100hz();
-    soft_t f = settled(&config, 0);
-    soft_t g = f;
-    (void)soft_update(&f, 10); /* S is 1.1 to 1.4 R: 2 sigma within 8.4..9.5, 3 sigma within 12.5..14.3 */
-    TEST_ASSERT_EQUAL_UINT8(0, soft_flags(&f));
-    (void)soft_update(&g, 15);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, soft_flags(&g));
-    config.gate_sigma_q8 = 0;
-    soft_t h = settled(&config, 0);
+    filter_config_t config = config_100hz();
+    filter_t f = settled(&config, 0);
+    filter_t g = f;
+    (void)filter_update(&f, 10); /* S is 1.1 to 1.4 R: 2 sigma within 8.4..9.5, 3 sigma within 12.5..14.3 */
+    TEST_ASSERT_EQUAL_UINT8(0, f.flags);
+    (void)filter_update(&g, 15);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, g.flags);
+    config.value[SOFT_GATE_SIGMA_Q8] = 0;
+    filter_t h = settled(&config, 0);
     for (int k = 0; k < 20; k++) {
-        (void)soft_update(&h, (int16_t)(1000 + k));
-        TEST_ASSERT_EQUAL_UINT8(0, soft_flags(&h) & (FILTER_GATED | FILTER_REACQUIRED));
+        (void)filter_update(&h, (int16_t)(1000 + k));
+        TEST_ASSERT_EQUAL_UINT8(0, h.flags & (FILTER_GATED | FILTER_REACQUIRED));
     }
 }
 
 /* A gate inside the soft gate flags what lies beyond the latter. */
 static void gate_inside_the_soft_gate_counts_from_the_latter(void)
 {
-    soft_config_t config = config_100hz();
-    config.soft_sigma_q8 = 1024;
-    config.gate_sigma_q8 = 256;
-    soft_t f = settled(&config, 0);
-    soft_t g = f;
-    (void)soft_update(&f, 12);
-    TEST_ASSERT_EQUAL_UINT8(0, soft_flags(&f));
-    (void)soft_update(&g, 25);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, soft_flags(&g));
+    filter_config_t config = config_100hz();
+    config.value[SOFT_SOFT_SIGMA_Q8] = 1024;
+    config.value[SOFT_GATE_SIGMA_Q8] = 256;
+    filter_t f = settled(&config, 0);
+    filter_t g = f;
+    (void)filter_update(&f, 12);
+    TEST_ASSERT_EQUAL_UINT8(0, f.flags);
+    (void)filter_update(&g, 25);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, g.flags);
 }
 
 /* Rule CR by hand, as sprf: five flagged samples on 4 LSB per sample restart at the last with that rate. */
 static void consistent_run_restarts_on_its_slope(void)
 {
-    soft_config_t config = config_100hz();
-    soft_t f = settled(&config, 0);
+    filter_config_t config = config_100hz();
+    filter_t f = settled(&config, 0);
     int16_t z = 500;
     for (uint8_t k = 1; k < 5; k++, z = (int16_t)(z + 4)) {
-        (void)soft_update(&f, z);
-        TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, soft_flags(&f));
+        (void)filter_update(&f, z);
+        TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, f.flags);
     }
-    TEST_ASSERT_EQUAL_INT32((int32_t)z * 65536, soft_update(&f, z));
-    TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, soft_flags(&f));
-    TEST_ASSERT_EQUAL_INT32((int32_t)4 * 65536, f.core.rate_lsb_q16);
-    TEST_ASSERT_EQUAL_UINT32(268435456U, f.core.u.p.p11_uq28);
-    TEST_ASSERT_EQUAL_UINT32(268435456U / 4U, f.core.u.p.p12_uq28);
-    TEST_ASSERT_EQUAL_UINT32(268435456U / 8U + f.core.q22_uq28, f.core.u.p.p22_uq28);
+    TEST_ASSERT_EQUAL_INT32((int32_t)z * 65536, filter_update(&f, z));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, f.flags);
+    TEST_ASSERT_EQUAL_INT32((int32_t)4 * 65536, f.rate_lsb);
+    TEST_ASSERT_EQUAL_UINT32(268435456U, f.own.kalman.p.p11);
+    TEST_ASSERT_EQUAL_UINT32(268435456U / 4U, f.own.kalman.p.p12);
+    TEST_ASSERT_EQUAL_UINT32(268435456U / 8U + f.own.kalman.q22_uq28, f.own.kalman.p.p22);
 }
 
 /* 80 and 4 LSB agree (8000 LSB/s: within 17 + 80), so that only its being taken whole lets 4 end the run. */
 static void run_ends_at_a_sample_within_the_gate(void)
 {
     static const int16_t samples[] = { 80, 80, 80, 4, 80, 80, 80, 80 };
-    soft_config_t config = config_100hz();
-    config.rate_max_lsb_s = 8000;
-    soft_t f = settled(&config, 0);
+    filter_config_t config = config_100hz();
+    config.value[SOFT_RATE_MAX_LSB_S] = 8000;
+    filter_t f = settled(&config, 0);
     for (uint8_t k = 0; k < 8; k++) {
-        (void)soft_update(&f, samples[k]);
-        TEST_ASSERT_EQUAL_UINT8((samples[k] == 80) ? FILTER_GATED : 0, soft_flags(&f));
+        (void)filter_update(&f, samples[k]);
+        TEST_ASSERT_EQUAL_UINT8((samples[k] == 80) ? FILTER_GATED : 0, f.flags);
     }
-    (void)soft_update(&f, 80);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, soft_flags(&f));
+    (void)filter_update(&f, 80);
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, f.flags);
 }
 
 /* The same with a sample between the gates, which is taken in part and not flagged: 13 LSB. */
 static void run_ends_at_a_sample_between_the_gates(void)
 {
-    soft_config_t config = config_100hz();
-    config.rate_max_lsb_s = 8000;
-    soft_t f = settled(&config, 0);
+    filter_config_t config = config_100hz();
+    config.value[SOFT_RATE_MAX_LSB_S] = 8000;
+    filter_t f = settled(&config, 0);
     for (uint8_t k = 0; k < 9; k++) {
-        (void)soft_update(&f, (k == 3U) ? 13 : 80);
-        TEST_ASSERT_EQUAL_UINT8((k == 3U) ? 0 : (k == 8U) ? FILTER_REACQUIRED : FILTER_GATED, soft_flags(&f));
+        (void)filter_update(&f, (k == 3U) ? 13 : 80);
+        TEST_ASSERT_EQUAL_UINT8((k == 3U) ? 0 : (k == 8U) ? FILTER_REACQUIRED : FILTER_GATED, f.flags);
     }
 }
 
@@ -223,15 +217,15 @@ static void run_ends_at_a_sample_between_the_gates(void)
  */
 static void it_is_never_locked_out(void)
 {
-    static const uint32_t r_lsb2_q8[] = { 3, 256, 768, 4096, 256000 };
+    static const int32_t r_lsb2_q8[] = { 3, 256, 768, 4096, 256000 };
     for (uint8_t i = ON_PC_OR_CHIP(0, 3); i < 5U; i++) {
-        soft_config_t config = config_100hz();
-        config.reacquire_samples = 0;
-        config.r_lsb2_q8 = r_lsb2_q8[i];
-        soft_t f = settled(&config, -4096);
+        filter_config_t config = config_100hz();
+        config.value[SOFT_REACQUIRE_SAMPLES] = 0;
+        config.value[SOFT_R_LSB2_Q8] = r_lsb2_q8[i];
+        filter_t f = settled(&config, -4096);
         uint16_t samples = 0;
-        while (f.core.x_lsb_q16 < (int32_t)4090 * 65536 && samples < 4220U) {
-            (void)soft_update(&f, 4095);
+        while (f.x_lsb_q16 < (int32_t)4090 * 65536 && samples < 4220U) {
+            (void)filter_update(&f, 4095);
             samples++;
         }
         TEST_ASSERT_TRUE(samples < 4220U);
@@ -241,33 +235,32 @@ static void it_is_never_locked_out(void)
 /* With the least m, 2^-20, and P11 = 0.03 the gain is below its last place: x moves by a count all the same. */
 static void least_gain_moves_by_a_count(void)
 {
-    soft_config_t config;
-    soft_defaults(&config, 8000);
-    config.r_lsb2_q8 = FILTER_R_MIN_LSB2_Q8;
-    config.q_lsb2_s3 = 1;
-    config.soft_sigma_q8 = 256;
-    soft_t f = settled(&config, 0);
+    filter_config_t config = filter_defaults(&filter_law_soft, 8000);
+    config.value[SOFT_R_LSB2_Q8] = FILTER_R_MIN_LSB2_Q8;
+    config.value[SOFT_Q_LSB2_S3] = 1;
+    config.value[SOFT_SOFT_SIGMA_Q8] = 256;
+    filter_t f = settled(&config, 0);
     for (uint16_t k = 0; k < 3000U; k++) {
-        (void)soft_update(&f, 0);
+        (void)filter_update(&f, 0);
     }
-    TEST_ASSERT_EQUAL_INT32(1, soft_update(&f, 4095));
-    TEST_ASSERT_EQUAL_INT32(0, soft_update(&f, -4095));
+    TEST_ASSERT_EQUAL_INT32(1, filter_update(&f, 4095));
+    TEST_ASSERT_EQUAL_INT32(0, filter_update(&f, -4095));
 }
 
 /* The way of a run over a missing sample is unknown: it restarts without its slope. */
 static void run_with_a_gap_restarts_at_rest(void)
 {
-    soft_config_t config = config_100hz();
-    soft_t f = settled(&config, 0);
+    filter_config_t config = config_100hz();
+    filter_t f = settled(&config, 0);
     for (int16_t k = 0; k < 5; k++) {
         if (k == 2) {
-            (void)soft_coast(&f);
+            (void)filter_missing(&f);
         }
-        (void)soft_update(&f, (int16_t)(1000 + 4 * k));
+        (void)filter_update(&f, (int16_t)(1000 + 4 * k));
     }
-    TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, soft_flags(&f));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, f.flags);
     filter_probe_t probe;
-    soft_probe(&f, &probe);
+    filter_probe(&f, &probe);
     TEST_ASSERT_EQUAL_INT32(0, probe.rate_lsb_q16);
 }
 

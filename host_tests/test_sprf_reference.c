@@ -1,6 +1,5 @@
 /* sprf against Eigen and the normal law: gate, no lock-out. */
 #include "reference_filters.h"
-#include "sprf.h"
 #include "support_filters.h"
 #include "unity.h"
 
@@ -18,21 +17,20 @@ void setUp(void) {}
 void tearDown(void) {}
 
 /* 100 Hz, R 16 LSB^2: sigma 4, agreement within floor(3 sqrt(32) + 8) = 24 LSB, rate at most 8 LSB per sample. */
-static sprf_config_t config_100hz(void)
+static filter_config_t config_100hz(void)
 {
-    sprf_config_t config;
-    sprf_defaults(&config, 1000);
-    config.r_lsb2_q8 = R_LSB2 * 256U;
+    filter_config_t config = filter_defaults(&filter_law_sprf, 1000);
+    config.value[SPRF_R_LSB2_Q8] = R_LSB2 * 256U;
     return config;
 }
 
 /* Settled at level: 300 equal samples. */
-static sprf_t settled(const sprf_config_t *config, int16_t level)
+static filter_t settled(const filter_config_t *config, int16_t level)
 {
-    sprf_t f;
-    TEST_ASSERT_TRUE(sprf_init(&f, config));
+    filter_t f;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf, config));
     for (int k = 0; k < 300; k++) {
-        (void)sprf_update(&f, level);
+        (void)filter_update(&f, level);
     }
     return f;
 }
@@ -81,27 +79,27 @@ static void reference_follows_the_golden_rows(void)
 static void gate_is_at_gate_sigmas_of_the_innovation(void)
 {
     static const uint16_t gates_q8[] = { 256, 512, 768, 1536, 4096 };
-    static const uint32_t r_lsb2[] = { 16, 400, 1000 };
+    static const int32_t r_lsb2[] = { 16, 400, 1000 };
     for (int i = 0; i < 15; i++) {
-        sprf_config_t config = config_100hz();
-        config.gate_sigma_q8 = gates_q8[i % 5];
-        config.r_lsb2_q8 = r_lsb2[i / 5] * 256U;
-        sprf_t f = settled(&config, 0);
+        filter_config_t config = config_100hz();
+        config.value[SPRF_GATE_SIGMA_Q8] = gates_q8[i % 5];
+        config.value[SPRF_R_LSB2_Q8] = r_lsb2[i / 5] * 256;
+        filter_t f = settled(&config, 0);
         reference_filter_t r;
-        reference_library(&r, 100.0, r_lsb2[i / 5], config.q_lsb2_s3, 0.0, 0, 0.0, 0.0);
+        reference_library(&r, 100.0, r_lsb2[i / 5], config.value[SPRF_Q_LSB2_S3], 0.0, 0, 0.0, 0.0);
         for (int k = 0; k < 295; k++) {
             reference_step(&r, 0.0);
         }
         reference_coast(&r);
         double limit = gates_q8[i % 5] / 256.0 * sqrt(r.p[0] + r.r);
-        sprf_t inside = f;
-        sprf_t outside = f;
-        (void)sprf_update(&inside, (int16_t)floor(limit * 0.995));
-        (void)sprf_update(&outside, (int16_t)-ceil(limit * 1.005));
-        TEST_ASSERT_EQUAL_UINT8(0, sprf_flags(&inside));
-        TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, sprf_flags(&outside));
+        filter_t inside = f;
+        filter_t outside = f;
+        (void)filter_update(&inside, (int16_t)floor(limit * 0.995));
+        (void)filter_update(&outside, (int16_t)-ceil(limit * 1.005));
+        TEST_ASSERT_EQUAL_UINT8(0, inside.flags);
+        TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, outside.flags);
         filter_probe_t probe;
-        sprf_probe(&outside, &probe);
+        filter_probe(&outside, &probe);
         TEST_ASSERT_EQUAL_UINT16(0, probe.gain_uq16);
         TEST_ASSERT_DOUBLE_WITHIN(0.01 * limit * limit, limit * limit, probe.gate_lsb2_q8 / 256.0);
     }
@@ -110,14 +108,14 @@ static void gate_is_at_gate_sigmas_of_the_innovation(void)
 /* Samples until the estimate stays within 4 sigma of the noise for 10 samples after a step; 1000 when it does not. */
 static int samples_to_recover(test_random_t *random, double step_lsb, double outlier_probability)
 {
-    sprf_config_t config = config_100hz();
-    sprf_t f;
-    TEST_ASSERT_TRUE(sprf_init(&f, &config));
+    filter_config_t config = config_100hz();
+    filter_t f;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf, &config));
     int good = 0;
     for (int k = -300; k < 1000; k++) {
         double level = k < 0 ? 0.0 : step_lsb;
         double sigma = random_uniform(random) < outlier_probability ? 80.0 : 4.0;
-        double x = sprf_update(&f, as_sample(level + sigma * random_normal(random))) / 65536.0;
+        double x = filter_update(&f, as_sample(level + sigma * random_normal(random))) / 65536.0;
         good = (k >= 0 && fabs(x - level) < 16.0) ? good + 1 : 0;
         if (good == 10) {
             return k - 9;
@@ -144,15 +142,15 @@ static void every_step_is_reacquired_within_200_samples(void)
 /* Refused samples on clean noise: 2 (1 - Phi(3)) = 0.27 %, binomial 5 sigma of 60,000. */
 static void false_alarms_are_those_of_the_normal_law(void)
 {
-    sprf_config_t config = config_100hz();
-    sprf_t f;
-    TEST_ASSERT_TRUE(sprf_init(&f, &config));
+    filter_config_t config = config_100hz();
+    filter_t f;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf, &config));
     test_random_t random;
     random_seed(&random, SEED + 2);
     int refused = 0;
     for (int k = 0; k < 60000; k++) {
-        (void)sprf_update(&f, as_sample(4.0 * random_normal(&random)));
-        refused += (sprf_flags(&f) & FILTER_GATED) != 0;
+        (void)filter_update(&f, as_sample(4.0 * random_normal(&random)));
+        refused += (f.flags & FILTER_GATED) != 0;
     }
     /* q is 10,000 where the truth has none, so S is a little too large: fewer alarms than the law, never more */
     TEST_ASSERT_LESS_OR_EQUAL_INT(162 + 64, refused);

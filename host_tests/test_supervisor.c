@@ -2,10 +2,12 @@
  * The whole firmware with the filter `auto` on a board that rolls while an axis is stuck or at its rail: the angle from
  * the axes that remain, flagged and told; with another filter, and with two bad axes, none is left out.
  */
+#include "filter_list.h"
 #include "pipeline_state.h"
 #include "supervisor.h"
 #include "support_board.h"
 #include "support_random.h"
+#include "support_roles.h"
 #include "unity.h"
 
 #include <math.h>
@@ -157,7 +159,7 @@ static void test_a_healthy_board_leaves_none_out(void)
 static void test_another_filter_leaves_none_out(void)
 {
     stream_t stream = rolling_stream(2, AT_ZERO);
-    run(&stream, "kf");
+    run(&stream, by_role("{plain}"));
     judged_t during = judge(FAULT_FROM + 200.0, FAULT_TO - 1.0);
     TEST_ASSERT_EQUAL_UINT(0, during.left_out);
     TEST_ASSERT_TRUE(during.worst_deg > 20.0);
@@ -249,7 +251,7 @@ static void test_changes_of_the_choice_are_flagged(void)
         changes += (board.rows[i].flags & ROW_SWITCHED) != 0;
     }
     TEST_ASSERT_TRUE(changes > 10 && changes < board.row_count / 2);
-    run(&stream, "kf");
+    run(&stream, by_role("{plain}"));
     for (size_t i = 0; i < board.row_count; i++) {
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & ROW_SWITCHED);
     }
@@ -264,15 +266,15 @@ static void test_no_choices_are_told_of_a_filter_that_is_leaving(void)
     board_run_ms(100);
     board_type("filter auto");
     board_run_ms(1000);
-    board_type("filter kf");
-    for (int ms = 0; ms < 40 && pipeline.axes[AXES - 1].filter.kind != (uint8_t)FILTER_KIND_kf; ms++) {
+    board_type(by_role("filter {plain}"));
+    for (int ms = 0; ms < 40 && pipeline.axes[AXES - 1].filter.law != filter_listed(plain_kind()); ms++) {
         board_run_ms(1);
     }
-    TEST_ASSERT_EQUAL_UINT8(FILTER_KIND_auto, pipeline.axes[0].filter.kind);
+    TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline.axes[0].filter.law);
     size_t first = board.note_count;
     board_type("status");
     board_run_ms(3);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_KIND_auto, pipeline.axes[0].filter.kind);
+    TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline.axes[0].filter.law);
     board_run_ms(100);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# state streaming", first));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("chosen", first));

@@ -1,30 +1,32 @@
 /* synth_opt: its schedule, classes and start on integers; runs on the PC and on the chip. */
-#include "support_filters.h"
-#include "synth_opt.h"
+#include "support_laws.h"
 #include "unity.h"
 
 void setUp(void) {}
 
 void tearDown(void) {}
 
-static void make(synth_opt_t *f, uint16_t variant_u, uint32_t p0_lsb2_q8, uint32_t r_lsb2_q8)
+static void make(filter_t *f, int32_t variant_u, int32_t p0_lsb2_q8, int32_t r_lsb2_q8)
 {
-    synth_opt_config_t config = { 1000, variant_u, p0_lsb2_q8, r_lsb2_q8 };
-    TEST_ASSERT_TRUE(synth_opt_init(f, &config));
+    filter_config_t config = {
+        1000,
+        { [SYNTH_OPT_VARIANT_U] = variant_u, [SYNTH_OPT_P0_LSB2_Q8] = p0_lsb2_q8, [SYNTH_OPT_R_LSB2_Q8] = r_lsb2_q8 }
+    };
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_synth_opt, &config));
 }
 
-static void warm_up(synth_opt_t *f, int16_t z_lsb)
+static void warm_up(filter_t *f, int16_t z_lsb)
 {
     for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)synth_opt_update(f, z_lsb);
+        (void)filter_update(f, z_lsb);
     }
 }
 
-static uint16_t gain_of_next_sample(synth_opt_t *f)
+static uint16_t gain_of_next_sample(filter_t *f)
 {
     filter_probe_t probe;
-    (void)synth_opt_update(f, 7);
-    synth_opt_probe(f, &probe);
+    (void)filter_update(f, 7);
+    filter_probe(f, &probe);
     return probe.gain_uq16;
 }
 
@@ -35,7 +37,7 @@ static uint16_t gain_of_next_sample(synth_opt_t *f)
  */
 static void schedule_of_16_by_hand(void)
 {
-    synth_opt_t f;
+    filter_t f;
     make(&f, 0, 25600, 1600);
     warm_up(&f, 7);
     TEST_ASSERT_EQUAL_UINT16(61681, gain_of_next_sample(&f));
@@ -52,12 +54,12 @@ static void schedule_of_16_by_hand(void)
 /* First gain of U: Pe = ((2 + 1/6)^2 + (4/3)^2 + 1/36) P0 = 6.5 P0, b0 = 104/105 for 16. Limit 11/13. */
 static void schedule_of_u_by_hand(void)
 {
-    synth_opt_t f;
+    filter_t f;
     make(&f, 1, 25600, 1600);
     warm_up(&f, 7);
     TEST_ASSERT_EQUAL_UINT16(64912, gain_of_next_sample(&f));
     for (uint8_t k = 1; k < 12; k++) {
-        (void)synth_opt_update(&f, 7);
+        (void)filter_update(&f, 7);
     }
     TEST_ASSERT_EQUAL_UINT16(55454, gain_of_next_sample(&f));
 }
@@ -65,24 +67,24 @@ static void schedule_of_u_by_hand(void)
 /* a1 of U's limit is -1/6: from 600 after rest at 0, b0 = 11/13: 507.69; then 2 x1 + x1 / 6. Exact has 2 x1. */
 static void coast_extrapolates_with_the_limit_of_a1(void)
 {
-    synth_opt_t f;
+    filter_t f;
     make(&f, 1, 25600, 1600);
-    synth_opt_reset(&f, 0);
-    int32_t x = synth_opt_update(&f, 600);
+    filter_reset(&f, 0);
+    int32_t x = filter_update(&f, 600);
     TEST_ASSERT_INT32_WITHIN(600, (int32_t)600 * 65536 / 13 * 11, x);
-    TEST_ASSERT_INT32_WITHIN(600, 2 * x + x / 6, synth_opt_coast(&f));
-    TEST_ASSERT_EQUAL_UINT8(FILTER_COASTED, synth_opt_flags(&f));
+    TEST_ASSERT_INT32_WITHIN(600, 2 * x + x / 6, coast(&f));
+    TEST_ASSERT_EQUAL_UINT8(FILTER_COASTED, f.flags);
     make(&f, 0, 25600, 1600);
-    synth_opt_reset(&f, 0);
-    x = synth_opt_update(&f, 600);
-    TEST_ASSERT_EQUAL_INT32(2 * x, synth_opt_coast(&f));
+    filter_reset(&f, 0);
+    x = filter_update(&f, 600);
+    TEST_ASSERT_EQUAL_INT32(2 * x, coast(&f));
 }
 
 /* The border between 4^i and 4^(i + 1) is 2 x 4^i; below 1 and above 1024 the last class goes on. */
 static void class_is_the_nearest_ratio(void)
 {
     static const struct {
-        uint32_t p0_lsb2_q8, r_lsb2_q8;
+        int32_t p0_lsb2_q8, r_lsb2_q8;
         uint8_t ratio_class;
     } cases[] = {
         { 3, 256000, 0 },   { 512, 256, 0 },    { 513, 256, 1 },         { 2048, 256, 1 },  { 2049, 256, 2 },
@@ -90,25 +92,25 @@ static void class_is_the_nearest_ratio(void)
         { 131073, 256, 5 }, { 25600000, 3, 5 }, { 25600000, 256000, 3 },
     };
     for (uint8_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        synth_opt_t f;
+        filter_t f;
         make(&f, 0, cases[i].p0_lsb2_q8, cases[i].r_lsb2_q8);
-        TEST_ASSERT_EQUAL_UINT8(cases[i].ratio_class, f.ratio_class);
+        TEST_ASSERT_EQUAL_UINT8(cases[i].ratio_class, f.own.synth.of.scheduled.ratio_class);
     }
 }
 
 /* R told during the warm-up counts, R told later changes no gain. */
 static void noise_counts_until_the_schedule_runs(void)
 {
-    synth_opt_t f;
+    filter_t f;
     make(&f, 0, 25600, 1600);
-    (void)synth_opt_update(&f, 7);
-    synth_opt_set_noise(&f, 25600);
-    TEST_ASSERT_EQUAL_UINT8(0, f.ratio_class);
-    synth_opt_set_noise(&f, 1600);
+    (void)filter_update(&f, 7);
+    filter_set_noise(&f, 25600);
+    TEST_ASSERT_EQUAL_UINT8(0, f.own.synth.of.scheduled.ratio_class);
+    filter_set_noise(&f, 1600);
     for (uint8_t k = 1; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)synth_opt_update(&f, 7);
+        (void)filter_update(&f, 7);
     }
-    synth_opt_set_noise(&f, 25600);
+    filter_set_noise(&f, 25600);
     TEST_ASSERT_EQUAL_UINT16(61681, gain_of_next_sample(&f));
 }
 
@@ -116,16 +118,17 @@ static void noise_counts_until_the_schedule_runs(void)
 static void gains_are_within_the_clamps(void)
 {
     for (uint8_t turn = 0; turn < 12; turn++) {
-        synth_opt_t f;
-        make(&f, turn & 1U, 1UL << (8 + 2 * (turn >> 1)), 256);
-        TEST_ASSERT_EQUAL_UINT8(turn >> 1, f.ratio_class);
+        filter_t f;
+        make(&f, turn & 1, 1L << (8 + 2 * (turn >> 1)), 256);
+        TEST_ASSERT_EQUAL_UINT8(turn >> 1, f.own.synth.of.scheduled.ratio_class);
         warm_up(&f, 7);
         for (uint8_t k = 0; k < 16; k++) {
-            synth_opt_t bent = f;
-            bent.core.u.run.x_lsb_q16[0] = 3 * 65536;
-            bent.core.u.run.x_lsb_q16[1] = 0;
-            bent.core.u.run.x_lsb_q16[2] = 0;
-            int32_t x = synth_opt_coast(&bent); /* 6 + 3 |a1| */
+            filter_t bent = f;
+            /* 0, 0 and then 3 LSB */
+            bent.x_lsb_q16 = 3 * 65536;
+            bent.rate_lsb = 3 * 65536;
+            bent.own.synth.rate_before_lsb_q16 = 0;
+            int32_t x = coast(&bent); /* 6 + 3 |a1| */
             TEST_ASSERT_TRUE(x >= 6 * 65536 && x <= 7 * 65536);
             TEST_ASSERT_TRUE(gain_of_next_sample(&f) >= 32768);
         }
@@ -136,29 +139,29 @@ static void gains_are_within_the_clamps(void)
 static void start_is_the_median(void)
 {
     static const int16_t z_lsb[FILTER_WARM_UP_SAMPLES] = { 40, 44, -4000, 42, 43 };
-    synth_opt_t f;
+    filter_t f;
     make(&f, 0, 25600, 1600);
     int32_t x = 0;
     for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        x = synth_opt_update(&f, z_lsb[k]);
+        x = filter_update(&f, z_lsb[k]);
     }
     TEST_ASSERT_EQUAL_INT32(42L * 65536, x);
-    TEST_ASSERT_EQUAL_INT32(42L * 65536, synth_opt_coast(&f));
-    TEST_ASSERT_EQUAL_INT32(42L * 65536, synth_opt_update(&f, 42));
+    TEST_ASSERT_EQUAL_INT32(42L * 65536, coast(&f));
+    TEST_ASSERT_EQUAL_INT32(42L * 65536, filter_update(&f, 42));
 }
 
 /* A gap does not use up the schedule; a reset ends it, as if z0 had been read for ever. */
 static void schedule_goes_by_samples_seen(void)
 {
-    synth_opt_t f;
+    filter_t f;
     make(&f, 0, 25600, 1600);
     warm_up(&f, 7);
     (void)gain_of_next_sample(&f);
     for (uint8_t k = 0; k < 30; k++) {
-        (void)synth_opt_coast(&f);
+        (void)coast(&f);
     }
     TEST_ASSERT_EQUAL_UINT16(61681, gain_of_next_sample(&f));
-    synth_opt_reset(&f, 7);
+    filter_reset(&f, 7);
     TEST_ASSERT_EQUAL_UINT16(43691, gain_of_next_sample(&f));
     TEST_ASSERT_EQUAL_UINT16(43691, gain_of_next_sample(&f));
 }
@@ -167,20 +170,20 @@ static void schedule_goes_by_samples_seen(void)
 static void probe_tells_the_variance(void)
 {
     filter_probe_t probe;
-    synth_opt_t f;
+    filter_t f;
     make(&f, 0, 409600, 25600);
     warm_up(&f, 7);
-    synth_opt_probe(&f, &probe);
+    filter_probe(&f, &probe);
     TEST_ASSERT_EQUAL_UINT32(25600, probe.p_lsb2_q8);
-    (void)synth_opt_update(&f, 7);
-    synth_opt_probe(&f, &probe);
+    (void)filter_update(&f, 7);
+    filter_probe(&f, &probe);
     TEST_ASSERT_UINT32_WITHIN(4, 24094, probe.p_lsb2_q8);
-    synth_opt_reset(&f, 7);
-    synth_opt_probe(&f, &probe);
+    filter_reset(&f, 7);
+    filter_probe(&f, &probe);
     TEST_ASSERT_UINT32_WITHIN(4, 17067, probe.p_lsb2_q8);
     make(&f, 1, 409600, 25600);
-    synth_opt_reset(&f, 7);
-    synth_opt_probe(&f, &probe);
+    filter_reset(&f, 7);
+    filter_probe(&f, &probe);
     TEST_ASSERT_UINT32_WITHIN(4, 20632, probe.p_lsb2_q8);
 }
 
@@ -192,29 +195,33 @@ static void default_p0_is_that_of_the_median(void)
 {
     static const struct {
         uint16_t rate_dhz;
-        uint32_t p0_lsb2_q8;
+        int32_t p0_lsb2_q8;
     } cases[] = { { 1000, 4324 }, { 250, 65594 }, { 8000, 1889 } };
     for (uint8_t i = 0; i < 3; i++) {
-        synth_opt_config_t config;
-        synth_opt_defaults(&config, cases[i].rate_dhz);
-        TEST_ASSERT_UINT32_WITHIN(2, cases[i].p0_lsb2_q8, config.p0_lsb2_q8);
-        TEST_ASSERT_EQUAL_UINT16(0, config.variant_u);
+        filter_config_t config = filter_defaults(&filter_law_synth_opt, cases[i].rate_dhz);
+        TEST_ASSERT_INT32_WITHIN(2, cases[i].p0_lsb2_q8, config.value[SYNTH_OPT_P0_LSB2_Q8]);
+        TEST_ASSERT_EQUAL_INT32(0, config.value[SYNTH_OPT_VARIANT_U]);
     }
 }
 
 static void parameters_outside_are_refused(void)
 {
-    synth_opt_t f;
-    const synth_opt_config_t legal = { 1000, 1, 3, 3 };
-    TEST_ASSERT_TRUE(synth_opt_init(&f, &legal));
-    synth_opt_config_t config = legal;
-    config.variant_u = 2;
-    TEST_ASSERT_FALSE(synth_opt_init(&f, &config));
+    filter_t f;
+    const filter_config_t legal = {
+        1000, { [SYNTH_OPT_VARIANT_U] = 1, [SYNTH_OPT_P0_LSB2_Q8] = 3, [SYNTH_OPT_R_LSB2_Q8] = 3 }
+    };
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_opt, &legal));
+    filter_config_t config = legal;
+    config.value[SYNTH_OPT_VARIANT_U] = 2;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_FIRST + SYNTH_OPT_VARIANT_U,
+                            filter_init(&f, &filter_law_synth_opt, &config));
     config = legal;
-    config.p0_lsb2_q8 = 2;
-    TEST_ASSERT_FALSE(synth_opt_init(&f, &config));
-    config.p0_lsb2_q8 = 25600001;
-    TEST_ASSERT_FALSE(synth_opt_init(&f, &config));
+    config.value[SYNTH_OPT_P0_LSB2_Q8] = 2;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_FIRST + SYNTH_OPT_P0_LSB2_Q8,
+                            filter_init(&f, &filter_law_synth_opt, &config));
+    config.value[SYNTH_OPT_P0_LSB2_Q8] = 25600001;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_FIRST + SYNTH_OPT_P0_LSB2_Q8,
+                            filter_init(&f, &filter_law_synth_opt, &config));
 }
 
 int main(void)

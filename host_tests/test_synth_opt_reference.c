@@ -1,15 +1,14 @@
 /* synth_opt against its double reference, and the reference against the values and limits of the notes. */
 #include "reference_synth_opt.h"
-#include "support_filters.h"
-#include "synth_opt.h"
+#include "support_laws.h"
+#include "synth.h"
 #include "unity.h"
 
 #include <math.h>
 
-#define SEED 7101
 #define PI 3.14159265358979323846
 #define STRETCH 0.9413
-#define STEPS 12
+enum { SEED = 7101, STEPS = 12 };
 
 void setUp(void) {}
 
@@ -106,10 +105,10 @@ static void u_schedule_has_its_limit(void)
 }
 
 /* P0 = ratio R, with R = 4 LSB^2. */
-static void make(synth_opt_t *f, bool u, double ratio)
+static void make(filter_t *f, bool u, double ratio)
 {
-    synth_opt_config_t config = { 1000, u, (uint32_t)lround(1024.0 * ratio), 1024 };
-    TEST_ASSERT_TRUE(synth_opt_init(f, &config));
+    filter_config_t config = { 1000, { u, (int32_t)lround(1024.0 * ratio), 1024 } };
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_synth_opt, &config));
 }
 
 /* Gains of the steps of class i: its own first four, then those of 16, then the limit; a1 told by a bend of 3000. */
@@ -127,17 +126,18 @@ static reference_gains_t expected_gains(bool u, double own_ratio, int step)
 }
 
 /* What the filter does at a step: gain from the probe, a1 from the extrapolation of 3000, 0, 0 (a bend of 3000). */
-static void assert_step(synth_opt_t *f, const reference_gains_t *expected)
+static void assert_step(filter_t *f, const reference_gains_t *expected)
 {
-    synth_opt_t bent = *f;
-    bent.core.u.run.x_lsb_q16[0] = 1000 * 65536;
-    bent.core.u.run.x_lsb_q16[1] = 0;
-    bent.core.u.run.x_lsb_q16[2] = 0;
-    double extrapolated = synth_opt_coast(&bent) / 65536.0;
+    filter_t bent = *f;
+    /* 0, 0 and then 1000 LSB */
+    bent.x_lsb_q16 = 1000 * 65536;
+    bent.rate_lsb = 1000 * 65536;
+    bent.own.synth.rate_before_lsb_q16 = 0;
+    double extrapolated = coast(&bent) / 65536.0;
     TEST_ASSERT_DOUBLE_WITHIN(1000.0 / 131072.0 + 1e-4, 2000.0 - 1000.0 * expected->a1, extrapolated);
     filter_probe_t probe;
-    (void)synth_opt_update(f, 10);
-    synth_opt_probe(f, &probe);
+    (void)filter_update(f, 10);
+    filter_probe(f, &probe);
     TEST_ASSERT_DOUBLE_WITHIN(0.6, fmin(expected->b0 * 65536.0, 65535.0), probe.gain_uq16);
 }
 
@@ -145,11 +145,11 @@ static void table_is_the_schedule_of_the_reference(void)
 {
     for (int u = 0; u <= 1; u++) {
         for (int i = 0; i < 6; i++) {
-            synth_opt_t f;
+            filter_t f;
             double ratio = pow(4.0, i);
             make(&f, u != 0, ratio);
             for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-                (void)synth_opt_update(&f, 10);
+                (void)filter_update(&f, 10);
             }
             for (int step = 0; step < STEPS + 5; step++) {
                 reference_gains_t expected = expected_gains(u != 0, ratio, step);
@@ -171,18 +171,18 @@ static void nearest_class_costs_little(void)
         double best[9];
         double own[9];
         double sums[2] = { 0.0, 0.0 };
-        synth_opt_t f;
-        synth_opt_config_t config = { 1000, 0, (uint32_t)lround(256.0 * ratio), 256 };
-        TEST_ASSERT_TRUE(ratio > 99999.0 || synth_opt_init(&f, &config));
+        filter_t f;
+        filter_config_t config = { 1000, { 0, (int32_t)lround(256.0 * ratio), 256 } };
+        TEST_ASSERT_TRUE(ratio > 99999.0 || (filter_init(&f, &filter_law_synth_opt, &config) == FILTER_ACCEPTED));
         equal_errors(best, ratio);
         equal_errors(own, ratio);
         for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-            (void)synth_opt_update(&f, 10);
+            (void)filter_update(&f, 10);
         }
         for (int step = 0; step < 16; step++) {
             filter_probe_t probe;
-            (void)synth_opt_update(&f, 10);
-            synth_opt_probe(&f, &probe);
+            (void)filter_update(&f, 10);
+            filter_probe(&f, &probe);
             double optimum = reference_opt_exact_step(best).p;
             double variance = reference_given_step(own, 0.0, probe.gain_uq16 / 65536.0);
             worst = fmax(worst, variance / optimum);
@@ -271,20 +271,19 @@ static void fixed_point_switches_as_the_reference(void)
 {
     test_random_t random;
     random_seed(&random, SEED + 2);
-    synth_core_t c;
+    filter_t f;
     double x[3] = { 0.0, 0.0, 0.0 };
-    synth_begin(&c, sizeof c);
-    synth_at_rest(&c, 0);
+    make(&f, true, 1.0);
+    filter_reset(&f, 0);
     for (long k = 0; k < 100000; k++) {
         uint16_t a1_uq16 = (uint16_t)(21845.0 * uniform(&random));
-        c.gain_uq16 = (uint16_t)(32768.0 + 32767.0 * uniform(&random));
+        f.gain_uq16 = (uint16_t)(32768.0 + 32767.0 * uniform(&random));
         int16_t z = random_normal(&random) > 0.0 ? 150 : -150;
-        c.flags = 0;
-        synth_extrapolate(&c, synth_scaled(synth_bend(&c, false), a1_uq16));
-        double got = synth_correct(&c, z) / 65536.0;
-        double wanted = reference_opt_filter(x, -a1_uq16 / 65536.0, c.gain_uq16 / 65536.0, z);
+        filter_synth_bent_step(&f, z, STEP_SAMPLE, a1_uq16);
+        double got = f.x_lsb_q16 / 65536.0;
+        double wanted = reference_opt_filter(x, -a1_uq16 / 65536.0, f.gain_uq16 / 65536.0, z);
         TEST_ASSERT_TRUE(fabs(got - wanted) < switching_bound() * 1.5 / 131072.0);
-        TEST_ASSERT_TRUE(fabs(got) < switching_bound() * 150.0 && c.flags == 0U);
+        TEST_ASSERT_TRUE(fabs(got) < switching_bound() * 150.0 && f.flags == 0U);
     }
 }
 
@@ -296,13 +295,13 @@ static void estimate_equals_the_reference(void)
     test_random_t random;
     random_seed(&random, SEED + 3);
     for (int i = 0; i < 12; i++) {
-        synth_opt_t f;
+        filter_t f;
         bool u = i % 2 != 0;
         make(&f, u, pow(4.0, i / 2));
         double x[3] = { 0.0, 0.0, 0.0 };
         for (int k = 0; k < 5000; k++) {
             int16_t z = as_sample(900.0 * sin(0.01 * k) + 2.0 * random_normal(&random));
-            double got = synth_opt_update(&f, z) / 65536.0;
+            double got = filter_update(&f, z) / 65536.0;
             if (k < FILTER_WARM_UP_SAMPLES) {
                 x[0] = x[1] = x[2] = got;
                 continue;
@@ -339,15 +338,15 @@ static void roll_experiment_has_the_errors_of_the_notes(void)
     for (int which = 0; which < 3; which++) {
         double sums[3] = { 0.0, 0.0, 0.0 };
         for (int run = 0; run < 4000; run++) {
-            synth_opt_t f;
+            filter_t f;
             make(&f, false, 4.0);
             for (int k = 0; k <= 150; k++) {
                 double truth = 100.0 * (profile(which, 0.1 * k) - 30.0);
                 int16_t z = as_sample(truth + 100.0 * sqrt(0.6) * random_normal(&random));
                 if (k == 0) {
-                    synth_opt_reset(&f, z);
+                    filter_reset(&f, z);
                 }
-                double error = (synth_opt_update(&f, z) / 65536.0 - truth) / 100.0;
+                double error = (filter_update(&f, z) / 65536.0 - truth) / 100.0;
                 for (int i = 0; i < 3; i++) {
                     sums[i] += k >= first[i] && k <= last[i] ? error * error : 0.0;
                 }
@@ -366,17 +365,17 @@ static void probe_tells_the_true_variance(void)
     test_random_t random;
     random_seed(&random, SEED + 5);
     for (int u = 0; u <= 1; u++) {
-        synth_opt_t f;
+        filter_t f;
         filter_probe_t probe;
         make(&f, u != 0, 4.0);
-        synth_opt_set_noise(&f, 25600);
-        synth_opt_reset(&f, 0);
+        filter_set_noise(&f, 25600);
+        filter_reset(&f, 0);
         double squares = 0.0;
         for (long k = 0; k < 200000; k++) {
-            double x = synth_opt_update(&f, as_sample(10.0 * random_normal(&random))) / 65536.0;
+            double x = filter_update(&f, as_sample(10.0 * random_normal(&random))) / 65536.0;
             squares += x * x / 200000.0;
         }
-        synth_opt_probe(&f, &probe);
+        filter_probe(&f, &probe);
         TEST_ASSERT_DOUBLE_WITHIN(0.02 * squares, squares, probe.p_lsb2_q8 / 256.0);
     }
 }

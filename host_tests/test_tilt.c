@@ -62,7 +62,7 @@ static void test_atan2_accepts_every_int32(void)
 static void test_no_acceleration_is_defined(void)
 {
     tilt_t tilt = { .roll_cdeg = -4321, .pitch_cdeg = 99, .roll_undefined = false };
-    tilt_angles(&tilt, 0, 0, 0);
+    tilt_angles(&tilt, (const int32_t[]){ 0, 0, 0 });
     TEST_ASSERT_EQUAL_INT16(-4321, tilt.roll_cdeg);
     TEST_ASSERT_EQUAL_INT16(0, tilt.pitch_cdeg);
     TEST_ASSERT_TRUE(tilt.roll_undefined);
@@ -71,11 +71,11 @@ static void test_no_acceleration_is_defined(void)
 static void test_roll_is_kept_at_the_singularity_and_found_again(void)
 {
     tilt_t tilt = { .roll_cdeg = 777 };
-    tilt_angles(&tilt, -65536, 3 * 256, 2 * 256); /* |(y, z)| = 3.6 LSB: below 4 */
+    tilt_angles(&tilt, (const int32_t[]){ -65536, 3 * 256, 2 * 256 }); /* |(y, z)| = 3.6 LSB: below 4 */
     TEST_ASSERT_TRUE(tilt.roll_undefined);
     TEST_ASSERT_EQUAL_INT16(777, tilt.roll_cdeg);
-    TEST_ASSERT_INT16_WITHIN(3, 8919, tilt.pitch_cdeg); /* atan(256 / 3.6056) = 89.193 degrees */
-    tilt_angles(&tilt, -65536, 3 * 256, 3 * 256);       /* 4.24 LSB */
+    TEST_ASSERT_INT16_WITHIN(3, 8919, tilt.pitch_cdeg);                /* atan(256 / 3.6056) = 89.193 degrees */
+    tilt_angles(&tilt, (const int32_t[]){ -65536, 3 * 256, 3 * 256 }); /* 4.24 LSB */
     TEST_ASSERT_FALSE(tilt.roll_undefined);
     TEST_ASSERT_EQUAL_INT16(4500, tilt.roll_cdeg);
 }
@@ -83,15 +83,15 @@ static void test_roll_is_kept_at_the_singularity_and_found_again(void)
 static void test_signs_follow_the_data_sheet_orientations(void)
 {
     tilt_t tilt = { 0 };
-    tilt_angles(&tilt, 0, 0, 65536);
+    tilt_angles(&tilt, (const int32_t[]){ 0, 0, 65536 });
     TEST_ASSERT_TRUE(tilt.roll_cdeg == 0 && tilt.pitch_cdeg == 0);
-    tilt_angles(&tilt, 0, 65536, 0);
+    tilt_angles(&tilt, (const int32_t[]){ 0, 65536, 0 });
     TEST_ASSERT_TRUE(tilt.roll_cdeg == 9000 && tilt.pitch_cdeg == 0);
-    tilt_angles(&tilt, 0, 0, -65536);
+    tilt_angles(&tilt, (const int32_t[]){ 0, 0, -65536 });
     TEST_ASSERT_TRUE(tilt.roll_cdeg == 18000 && tilt.pitch_cdeg == 0);
-    tilt_angles(&tilt, 65536, 0, 0);
+    tilt_angles(&tilt, (const int32_t[]){ 65536, 0, 0 });
     TEST_ASSERT_TRUE(tilt.roll_undefined && tilt.pitch_cdeg == -9000);
-    tilt_angles(&tilt, -65536, 0, 0);
+    tilt_angles(&tilt, (const int32_t[]){ -65536, 0, 0 });
     TEST_ASSERT_TRUE(tilt.roll_undefined && tilt.pitch_cdeg == 9000);
 }
 
@@ -104,11 +104,11 @@ static void test_mirrored_vectors_give_mirrored_angles(void)
         int32_t z = (int32_t)random32_below(&random, 131072U) + 1;
         tilt_t first = { 0 };
         tilt_t opposite = { 0 };
-        tilt_angles(&first, x, y, z);
-        tilt_angles(&opposite, -x, -y, z);
+        tilt_angles(&first, (const int32_t[]){ x, y, z });
+        tilt_angles(&opposite, (const int32_t[]){ -x, -y, z });
         TEST_ASSERT_EQUAL_INT16(first.roll_cdeg, -opposite.roll_cdeg);
         TEST_ASSERT_EQUAL_INT16(first.pitch_cdeg, -opposite.pitch_cdeg);
-        tilt_angles(&opposite, x, y, -z);
+        tilt_angles(&opposite, (const int32_t[]){ x, y, -z });
         TEST_ASSERT_EQUAL_INT16(18000 - first.roll_cdeg, opposite.roll_cdeg);
         TEST_ASSERT_EQUAL_INT16(first.pitch_cdeg, opposite.pitch_cdeg);
     }
@@ -124,7 +124,7 @@ static void test_gravity_limits_on_every_axis(void)
             const bool plausible[4] = { false, true, true, false };
             for (uint8_t i = 0; i < 4; i++) {
                 a[axis] = sign * value_q8[i];
-                TEST_ASSERT_EQUAL(plausible[i], tilt_gravity_plausible(a[0], a[1], a[2]));
+                TEST_ASSERT_EQUAL(plausible[i], tilt_gravity_plausible(a));
             }
         }
     }
@@ -133,12 +133,12 @@ static void test_gravity_limits_on_every_axis(void)
 static void test_gravity_of_extreme_states_does_not_wrap(void)
 {
     const int32_t limit_q8 = (int32_t)4608 * 256;
-    TEST_ASSERT_FALSE(tilt_gravity_plausible(limit_q8, limit_q8, limit_q8));
-    TEST_ASSERT_FALSE(tilt_gravity_plausible(-limit_q8, 0, 0));
-    TEST_ASSERT_FALSE(tilt_gravity_plausible(0, 0, 0));
-    TEST_ASSERT_FALSE(tilt_gravity_plausible(INT32_MIN, INT32_MAX, INT32_MIN));
+    TEST_ASSERT_FALSE(tilt_gravity_plausible((const int32_t[]){ limit_q8, limit_q8, limit_q8 }));
+    TEST_ASSERT_FALSE(tilt_gravity_plausible((const int32_t[]){ -limit_q8, 0, 0 }));
+    TEST_ASSERT_FALSE(tilt_gravity_plausible((const int32_t[]){ 0, 0, 0 }));
+    TEST_ASSERT_FALSE(tilt_gravity_plausible((const int32_t[]){ INT32_MIN, INT32_MAX, INT32_MIN }));
     for (int32_t a = 43552; a <= limit_q8; a += 97) { /* 1.151 g / sqrt(3) in Q8 */
-        TEST_ASSERT_FALSE(tilt_gravity_plausible(a, -a, a));
+        TEST_ASSERT_FALSE(tilt_gravity_plausible((const int32_t[]){ a, -a, a }));
     }
 }
 

@@ -37,7 +37,7 @@ static tilt_t tilt_without(uint8_t missing, vector_t a, vector_t good)
     int32_t size_q8 = (int32_t)tilt_missing_q6(q8[0], q8[1], q8[2]) * 4;
     q8[missing] = (signs[missing] < 0.0) ? -size_q8 : size_q8;
     tilt_t out = { 0, 0, false };
-    tilt_angles(&out, q8[0], q8[1], q8[2]);
+    tilt_angles(&out, q8);
     return out;
 }
 
@@ -119,7 +119,7 @@ static void test_sigmas_of_the_table(void)
         for (int n = 0; n < DRAWS; n++) {
             vector_t a = { 0.0, truth.y + 0.004 * random_normal(&random), truth.z + 0.004 * random_normal(&random) };
             tilt_t both = { 0, 0, false };
-            tilt_angles(&both, 0, (int32_t)lrint(a.y * G_Q8), (int32_t)lrint(a.z * G_Q8));
+            tilt_angles(&both, (const int32_t[]){ 0, (int32_t)lrint(a.y * G_Q8), (int32_t)lrint(a.z * G_Q8) });
             const double rolls[3] = { tilt_without(2, a, truth).roll_cdeg / 100.0,
                                       tilt_without(1, a, truth).roll_cdeg / 100.0, both.roll_cdeg / 100.0 };
             for (int k = 0; k < 3; k++) {

@@ -118,7 +118,7 @@ static void test_atan2_at_every_magnitude(void)
 static void check_point(int32_t x, int32_t y, int32_t z)
 {
     tilt_t tilt = { .roll_cdeg = 12345 };
-    tilt_angles(&tilt, x, y, z);
+    tilt_angles(&tilt, (const int32_t[]){ x, y, z });
     double yz = sqrt((double)y * y + (double)z * z);
     double pitch_error = wrapped_error_deg(tilt.pitch_cdeg, atan2(-(double)x, yz));
     worst_pitch_deg = fmax(worst_pitch_deg, pitch_error);
@@ -197,7 +197,7 @@ static void test_gravity_verdict_equals_the_double_one_away_from_the_limits(void
         }
         double g = sqrt((double)a[0] * a[0] + (double)a[1] * a[1] + (double)a[2] * a[2]) / 65536.0;
         if (fabs(g - 0.85) > 2e-4 && fabs(g - 1.15) > 2e-4) {
-            TEST_ASSERT_EQUAL(g > 0.85 && g < 1.15, tilt_gravity_plausible(a[0], a[1], a[2]));
+            TEST_ASSERT_EQUAL(g > 0.85 && g < 1.15, tilt_gravity_plausible(a));
             judged++;
         }
     }

@@ -114,7 +114,7 @@ static void test_the_coefficients_of_the_length_are_rounded_to_whole_units(void)
         double yz = n * half_root / 32768.0;
         int32_t x = (int32_t)(yz * (0.98 + 0.02 * (n % 997) / 997.0));
         tilt_t tilt = { 0 };
-        tilt_angles(&tilt, -x, n, n);
+        tilt_angles(&tilt, (const int32_t[]){ -x, n, n });
         sum += 8.0 * tilt.pitch_cdeg - polynomial(whole, x / yz);
     }
     TEST_ASSERT_DOUBLE_WITHIN(0.24, 0.83 + 0.38, sum / count);
@@ -128,7 +128,8 @@ static bool plausible_with(uint32_t sum_q12)
         for (uint32_t y = tilt_isqrt32(rest); y * y * 2U >= rest && y > 0; y--) {
             uint32_t z = tilt_isqrt32(rest - y * y);
             if (z * z == rest - y * y) {
-                return tilt_gravity_plausible((int32_t)x * 4 + 3, -(int32_t)y * 4, (int32_t)z * 4 + 1);
+                return tilt_gravity_plausible(
+                    (const int32_t[]){ (int32_t)x * 4 + 3, -(int32_t)y * 4, (int32_t)z * 4 + 1 });
             }
         }
     }
@@ -151,9 +152,9 @@ static void test_the_limits_of_gravity_to_the_last_unit(void)
 static void test_a_huge_axis_is_not_left_out(void)
 {
     for (int32_t huge = 131072; huge < (1 << 30); huge *= 2) {
-        TEST_ASSERT_FALSE(tilt_gravity_plausible(huge, 0, 65536));
-        TEST_ASSERT_FALSE(tilt_gravity_plausible(65536, -huge, 0));
-        TEST_ASSERT_FALSE(tilt_gravity_plausible(0, 65536, huge - 1));
+        TEST_ASSERT_FALSE(tilt_gravity_plausible((const int32_t[]){ huge, 0, 65536 }));
+        TEST_ASSERT_FALSE(tilt_gravity_plausible((const int32_t[]){ 65536, -huge, 0 }));
+        TEST_ASSERT_FALSE(tilt_gravity_plausible((const int32_t[]){ 0, 65536, huge - 1 }));
     }
 }
 
@@ -161,10 +162,10 @@ static void test_a_huge_axis_is_not_left_out(void)
 static void test_the_limit_of_roll(void)
 {
     tilt_t tilt = { 0 };
-    tilt_angles(&tilt, 65536, 1024, 0);
+    tilt_angles(&tilt, (const int32_t[]){ 65536, 1024, 0 });
     TEST_ASSERT_FALSE(tilt.roll_undefined);
     TEST_ASSERT_EQUAL_INT16(9000, tilt.roll_cdeg);
-    tilt_angles(&tilt, 65536, 1023, 0);
+    tilt_angles(&tilt, (const int32_t[]){ 65536, 1023, 0 });
     TEST_ASSERT_TRUE(tilt.roll_undefined);
 }
 
@@ -172,7 +173,7 @@ static void check_point(int32_t x, int32_t y, int32_t z)
 {
     const double pitch_bound_deg = 0.0289; /* test_tilt_reference.c */
     tilt_t tilt = { .roll_cdeg = 12345 };
-    tilt_angles(&tilt, x, y, z);
+    tilt_angles(&tilt, (const int32_t[]){ x, y, z });
     double yz = hypot(y, z);
     TEST_ASSERT_DOUBLE_WITHIN(pitch_bound_deg, atan2(-(double)x, yz) * 57.295779513082320877, tilt.pitch_cdeg / 100.0);
     TEST_ASSERT_EQUAL(tilt.roll_undefined, tilt.roll_cdeg == 12345);

@@ -1,4 +1,4 @@
-# lib/filters as an Arduino library: its example sketches with the Arduino core (Debian: arduino-core-avr 1.8.7), flags as platform.txt
+# lib/filters and lib/tilt as one library for the Arduino IDE and PlatformIO, and its example sketches with the Arduino core (Debian: arduino-core-avr 1.8.7), flags as platform.txt
 # of the core has them (-isystem would make its headers C for this compiler). DECIMAL_DIG: avr-gcc 5.4.0 defines it only with its underscores in C++11, and WString.cpp wants it.
 ARDUINO_DIR ?= /usr/share/arduino/hardware/arduino/avr
 A := $(B)/arduino
@@ -8,10 +8,16 @@ ARDUINO_FLAGS := -c -g -Os -flto -ffunction-sections -fdata-sections -MMD -MP -m
 ARDUINO_C   := $(AVR_CC) -std=gnu11 $(ARDUINO_FLAGS)
 ARDUINO_CXX := avr-g++ -std=gnu++11 -fpermissive -fno-exceptions -fno-threadsafe-statics $(ARDUINO_FLAGS)
 ARDUINO_SRC := $(wildcard $(addprefix $(ARDUINO_DIR)/,cores/arduino/*.c cores/arduino/*.cpp libraries/Wire/src/*.cpp libraries/Wire/src/utility/*.c))
-ARDUINO_OBJ := $(patsubst $(ARDUINO_DIR)/%,$(A)/core/%.o,$(ARDUINO_SRC)) $(patsubst %.c,$(A)/%.o,$(wildcard lib/filters/src/*.c))
+LIBRARY     := $(B)/library/tilt-filters
+LIBRARY_OF  := $(shell find lib/filters -type f) $(wildcard lib/tilt/src/*.[ch])
+LIBRARY_SRC := $(notdir $(wildcard lib/filters/src/*.c lib/tilt/src/*.c))
+ARDUINO_OBJ := $(patsubst $(ARDUINO_DIR)/%,$(A)/core/%.o,$(ARDUINO_SRC)) $(LIBRARY_SRC:%.c=$(A)/library/%.o)
 SKETCHES    := $(wildcard lib/filters/examples/*/*.ino)
 # what make test builds for it: without the core the sketches are skipped
-ARDUINO_IMAGES := $(A)/libfilters.so $(if $(ARDUINO_SRC),$(SKETCHES:lib/filters/examples/%.ino=$(A)/%.elf))
+ARDUINO_IMAGES := $(LIBRARY).zip $(A)/libtiltfilters.so $(if $(ARDUINO_SRC),$(SKETCHES:lib/filters/examples/%.ino=$(A)/%.elf))
+
+$(LIBRARY).zip: $(LIBRARY_OF) tools/library.py
+	@python3 tools/library.py $(@D)
 
 $(A)/core/%.c.o: $(ARDUINO_DIR)/%.c mk/arduino.mk
 	@mkdir -p $(@D)
@@ -21,24 +27,24 @@ $(A)/core/%.cpp.o: $(ARDUINO_DIR)/%.cpp mk/arduino.mk
 	@mkdir -p $(@D)
 	@$(ARDUINO_CXX) -w $< -o $@
 
-$(A)/lib/%.o: lib/%.c mk/arduino.mk
+$(A)/library/%.o: $(LIBRARY).zip mk/arduino.mk
 	@mkdir -p $(@D)
-	@$(ARDUINO_C) -Wall -Wextra -Werror $< -o $@
+	@$(ARDUINO_C) -Wall -Wextra -Werror $(LIBRARY)/src/$*.c -o $@
 
 # a sketch is C++ behind Arduino.h
-$(A)/%.ino.o: lib/filters/examples/%.ino mk/arduino.mk
+$(A)/%.ino.o: $(LIBRARY).zip mk/arduino.mk
 	@mkdir -p $(@D)
-	@$(ARDUINO_CXX) -Wall -Wextra -Werror -Ilib/filters/src -include Arduino.h -x c++ $< -o $@
+	@$(ARDUINO_CXX) -Wall -Wextra -Werror -I$(LIBRARY)/src -include Arduino.h -x c++ $(LIBRARY)/examples/$*.ino -o $@
 
 $(A)/%.elf: $(A)/%.ino.o $(ARDUINO_OBJ)
 	@$(AVR_CC) -Os -g -flto -fuse-linker-plugin -Wl,--gc-sections -mmcu=atmega328p $^ -lm -o $@
 
-# the same filters on the PC, to say what the sketches have to print
-$(A)/libfilters.so: $(wildcard lib/filters/src/*.c lib/filters/src/*.h) mk/arduino.mk
+# the same library on the PC, to say what the sketches have to print
+$(A)/libtiltfilters.so: $(LIBRARY).zip mk/arduino.mk
 	@mkdir -p $(@D)
-	@$(HOST_CC) -std=c11 -O2 $(WARNINGS) -fPIC -shared $(filter %.c,$^) -o $@
+	@$(HOST_CC) -std=c11 -O2 $(WARNINGS) -fPIC -shared $(LIBRARY)/src/*.c -o $@
 
-## arduino: lib/filters as an Arduino library: rules of its files, its sketches with the Arduino core in the simulated UNO (1 minute)
+## arduino: build/library/tilt-filters.zip, a library for the Arduino IDE and PlatformIO; its sketches in the simulated UNO (1 minute)
 arduino:
 	@sh tools/deps.sh arduino
 	@$(MAKE) arduino_images
@@ -48,7 +54,7 @@ arduino_images: $(ARDUINO_IMAGES) $(S)/simrun
 
 clean: clean_arduino
 clean_arduino:
-	@rm -rf $(A)
+	@rm -rf $(A) $(B)/library
 
 .PHONY: arduino arduino_images clean_arduino
 

@@ -11,7 +11,7 @@ $(CHK)/avr/%.o: %.c Makefile mk/check.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(filter-out -flto -Werror,$(AVR_FLAGS)) -fstack-usage -MMD -MP -c $< -o $@ 2> $@.log || { cat $@.log >&2; exit 1; }
 
-CHECKS := compile tidy int16 cppcheck includes format lengths symbols memory frames painted waits size seam deviations breakages texts
+CHECKS := compile tidy int16 cppcheck includes format lengths names symbols memory frames painted waits size seam deviations breakages texts
 
 ## check: every rule of the tree, and a planted fault for each that must be found (8 minutes; PLANTED=20: a sample of them)
 check:
@@ -47,6 +47,9 @@ check-format:
 
 check-lengths:
 	@$(PY) tools/check_lengths.py $(ONLY)
+
+check-names:
+	@python3 tools/check_names.py $(ONLY)
 
 check-symbols: check-objects $(U)/firmware.elf
 	@python3 tools/check_symbols.py $(U)/firmware.elf

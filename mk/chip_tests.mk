@@ -1,21 +1,22 @@
 # The portable part of the unit tests, and the long sequence of filter calls, as images for the ATmega328P.
 
 # the chip's flash holds about nine filters: the tests that go over the list run in two images, which link these
-CHIP_ALL    := $(shell sed -n 's/^    X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter_list.h)
-CHIP_SECOND := $(filter adaptive synth_plus kf3 auto,$(CHIP_ALL))
+CHIP_ALL    := $(shell sed -n 's/^    X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter.h)
+# the first and the last three are the largest
+CHIP_SECOND := $(firstword $(CHIP_ALL)) $(wordlist $(words $(wordlist 3,99,$(CHIP_ALL))),99,$(CHIP_ALL))
 CHIP_FIRST  := $(filter-out $(CHIP_SECOND),$(CHIP_ALL))
 linked_flag  = '-DFILTER_LINKED(X)=$(foreach f,$(1),X($(f)))'
-UNITY_1     := test_filters test_filter_gaps test_fx test_kf test_lrf test_soft test_sprf test_synth test_synth_opt test_two_state_wide test_sprf_paper \
-               test_shrf test_pbf test_af test_noise test_tilt test_calibration
-UNITY_2     := test_filters_2 test_filter_gaps_2 $(filter $(patsubst host_tests/%.c,%,$(wildcard host_tests/test_*.c)),$(CHIP_SECOND:%=test_%))
+own_tests    = $(filter $(patsubst host_tests/%.c,%,$(wildcard host_tests/test_*.c)),$(1:%=test_%))
+UNITY_1     := test_filters test_filter_gaps test_fx test_wide test_noise test_tilt test_calibration $(call own_tests,$(CHIP_FIRST))
+UNITY_2     := test_filters_2 test_filter_gaps_2 $(call own_tests,$(CHIP_SECOND))
 CHIP_TESTS  := $(patsubst %,$(U)/tests/%.elf,$(UNITY_1) $(UNITY_2) filter_sequence_1 filter_sequence_2)
 BITEXACT    := host_tests/bitexact
-SEQUENCE    := $(addprefix $(BITEXACT)/,sequence_main.c filter_sequence.c crc32.c output.c) host_tests/support_filters.c host_tests/support_filter_bounds.c host_tests/support_filter_promises.c
+SEQUENCE    := $(addprefix $(BITEXACT)/,sequence_main.c filter_sequence.c crc32.c output.c) $(LAW_SUPPORT)
 FILTER_SRC  := $(wildcard lib/filters/src/*.c lib/tilt/src/*.c)
 CHIP_FLAGS  := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihost_tests -I$(BITEXACT) -isystem $(UNITY_DIR)
-CHIP_COMMON := $(FILTER_SRC) host_tests/support_filters.c host_tests/support_filter_bounds.c host_tests/support_filter_promises.c $(BITEXACT)/output.c $(BITEXACT)/output_chip.c
-ANY_FILTER  := lib/filters/src/filter_any
+CHIP_COMMON := $(FILTER_SRC) $(LAW_SUPPORT) $(BITEXACT)/output.c $(BITEXACT)/output_chip.c
+ANY_FILTER  := lib/filters/src/filter_list
 CHIP_OBJ    := $(patsubst %.c,$(U)/tests/%.o,$(filter-out $(ANY_FILTER).c,$(CHIP_COMMON))) $(U)/tests/host_tests/avr/unity_chip.o $(U)/tests/unity.o
 UNITY_CHIP  := -include host_tests/avr/unity_chip.h
 
@@ -54,4 +55,4 @@ $(H)/filter_sequence_2: SEQUENCE_OF = $(call linked_flag,$(CHIP_SECOND))
 $(SEQUENCES): $(SEQUENCE) $(BITEXACT)/output_pc.c $(FILTER_SRC) $(wildcard lib/*/src/*.h host_tests/*.h $(BITEXACT)/*.h) \
               Makefile mk/chip_tests.mk
 	@mkdir -p $(@D)
-	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) $(SANITIZE) $(SEQUENCE_OF) -I$(BITEXACT) $(filter %.c,$^) -o $@
+	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) $(SANITIZE) $(SEQUENCE_OF) -I$(BITEXACT) $(filter %.c,$^) -lm -o $@

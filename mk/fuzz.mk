@@ -3,7 +3,7 @@
 FZ           := $(B)/fuzz
 FUZZ_TARGETS := commands stream driver filters
 FUZZ_APP_OBJ := $(HOST_SRC:%.c=$(FZ)/app/%.o)
-FUZZ_COMMON  := fuzz_support fuzz_protocol fuzz_said fuzz_parameters support_filters support_filter_bounds support_filter_promises
+FUZZ_COMMON  := fuzz_support fuzz_protocol fuzz_said fuzz_parameters $(notdir $(LAW_SUPPORT:.c=))
 FUZZ_LINKED  := $(FUZZ_COMMON:%=$(FZ)/%.o) $(FZ)/fuzz_drive.o $(FZ)/fuzz_mutate.o $(FZ)/fuzz_dictionary.o
 FUZZ_BIN     := $(FUZZ_TARGETS:%=$(FZ)/fuzz_%)
 FUZZ_LIBFUZZER := $(FUZZ_TARGETS:%=$(FZ)/libfuzzer_%)
@@ -28,7 +28,7 @@ $(FZ)/fuzz_%.o: host_tests/fuzz/fuzz_%.c Makefile mk/fuzz.mk
 	@mkdir -p $(@D)
 	@$(FUZZ_GCC) -MMD -MP -c $< -o $@
 
-$(FZ)/support_filter%.o: host_tests/support_filter%.c Makefile mk/fuzz.mk
+$(FZ)/support_%.o: host_tests/support_%.c Makefile mk/fuzz.mk
 	@mkdir -p $(@D)
 	@$(FUZZ_GCC) -MMD -MP -c $< -o $@
 
@@ -42,7 +42,7 @@ endif
 FUZZ_PLANTED := $(foreach p,$(FUZZ_PLANTS),$(FZ)/planted/$(firstword $(subst :, ,$(p))))
 
 define FUZZ_PLANT
-$(FZ)/planted/$(1).c: $(3) campaigns/breakages.txt host_tests/planted.txt tools/anchors.py tools/fuzz.py
+$(FZ)/planted/$(1).c: $(3) $(wildcard campaigns/breakages*.txt) host_tests/planted.txt tools/anchors.py tools/fuzz.py
 	@mkdir -p $$(@D)
 	@python3 tools/fuzz.py plant $(1) $$@
 
@@ -66,7 +66,7 @@ $(FZ)/clang/app.o: $(HOST_SRC:%.c=$(FZ)/clang/%.o)
 	@$(FUZZ_GROUP)
 
 $(FUZZ_LIBFUZZER): $(FZ)/libfuzzer_%: $(FZ)/clang/host_tests/fuzz/fuzz_%.o \
-        $(FZ)/clang/host_tests/fuzz/fuzz_support.o $(FZ)/clang/host_tests/fuzz/fuzz_protocol.o $(FZ)/clang/host_tests/support_filters.o $(FZ)/clang/host_tests/support_filter_bounds.o $(FZ)/clang/host_tests/support_filter_promises.o \
+        $(FZ)/clang/host_tests/fuzz/fuzz_support.o $(FZ)/clang/host_tests/fuzz/fuzz_protocol.o $(LAW_SUPPORT:%.c=$(FZ)/clang/%.o) \
         $(FZ)/clang/app.o
 	@$(CLANG) $(SANITIZE) -fsanitize=fuzzer $^ -lm -o $@
 

@@ -8,6 +8,8 @@ HOST_INC   := $(INCLUDES) -Ihal/host -Isim -Ihost_tests -isystem $(UNITY_DIR)
 HOST_FLAGS := -std=c11 -O1 -g -D_POSIX_C_SOURCE=200809L -DHANG_TEST=1 -DSUPERVISOR=1 -DUNITY_INCLUDE_DOUBLE $(HOST_INC)
 MODEL_SRC  := sim/adxl345_model.c sim/stream.c
 HOST_SRC   := $(filter-out firmware/main.c,$(APP_SRC)) $(LIB_SRC) $(wildcard hal/host/*.c) $(MODEL_SRC)
+# of them what knows the laws, on the chip too
+LAW_SUPPORT := host_tests/support_random32.c $(wildcard host_tests/support_filter*.c host_tests/support_law_*.c)
 SUPPORT_SRC := $(wildcard host_tests/support_*.c)
 TESTS      := $(patsubst host_tests/%.c,$(H)/%,$(wildcard host_tests/test_*.c))
 
@@ -69,7 +71,7 @@ $(H)/roll_replay: $(H)/o2/host_tests/roll_replay.o $(H)/o2/libfilters.a
 	@$(HOST_CC) $^ -lm -o $@
 
 $(H)/pipeline_replay: $(H)/o2/host_tests/pipeline_replay.o $(ARCHIVES_O2)
-	@$(HOST_CC) -Wl,--wrap=parameters_start,--wrap=noise_r_lsb2_q8 $(call linked,$^) -lm -o $@
+	@$(HOST_CC) -Wl,--wrap=parameters_start,--wrap=filter_noise_r_lsb2_q8 $(call linked,$^) -lm -o $@
 
 $(H)/exhaustive_isqrt: host_tests/exhaustive_isqrt.c lib/tilt/src/tilt.c lib/filters/src/fx.c $(wildcard lib/*/src/*.h)
 	@mkdir -p $(@D)

@@ -1,27 +1,20 @@
 # The images of the firmware: which filters are in them, and those that tests need besides.
 
-# Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter_list.h; the firmware starts with
+# Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter.h; the firmware starts with
 # the first. The first set is what is built and flashed when nothing is said; together they hold every filter.
-FILTER_SETS          := everyday robust soft mixture published synthesised schedule linear acceleration auto
-FILTERS_everyday     := adaptive
-FILTERS_robust       := sprf kf
-FILTERS_soft         := soft
+FILTER_SETS          := everyday synthesised soft mixture published auto
+FILTERS_everyday     := adaptive sprf synth
+FILTERS_synthesised  := synth synth_opt synth_plus
+FILTERS_soft         := soft lrf kf
 FILTERS_mixture      := shrf pbf af
-FILTERS_published    := sprf_paper
-FILTERS_synthesised  := synth synth_plus
-FILTERS_schedule     := synth_opt
-FILTERS_linear       := lrf kf
-FILTERS_acceleration := kf3
+FILTERS_published    := sprf_paper kf3
 FILTERS_auto         := auto
 FILTERS              := $(firstword $(FILTER_SETS))
 
-# images with one of these have no room for cal6; the calibration that another image saves is theirs too
-WITHOUT_CAL6   := soft shrf auto
-
 CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))
 IMAGE_FILTERS   = $(FILTERS_everyday)
-FILTER_FLAG     = '-DFILTER_LIST(X)=$(foreach f,$(IMAGE_FILTERS),X($(f)))' $(if $(filter $(WITHOUT_CAL6),$(IMAGE_FILTERS)),-DCALIBRATE_SIX=0) \
-                  $(if $(filter auto,$(IMAGE_FILTERS)),-DSUPERVISOR=1)
+FILTER_FLAG     = '-DFILTER_LIST(X)=$(foreach f,$(IMAGE_FILTERS),X($(f)))' \
+                  $(if $(filter auto,$(IMAGE_FILTERS)),-DSUPERVISOR=1,-DFILTER_WITHOUT_PROBE)
 
 # the image that holds a filter: the chosen one if it does, else the first set's that does
 image_with = $(or $(firstword $(if $(filter $(1),$(CHOSEN_FILTERS)),$(U)/firmware.elf) \
@@ -38,8 +31,8 @@ $(U)/%.o: %.c Makefile mk/images.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
 
-$(U)/firmware.elf: $(AVR_OBJ)
-	@$(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $^ -o $@
+$(U)/firmware.elf: $(AVR_OBJ) $(UNO_LD)
+	@$(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $(AVR_OBJ) -o $@
 	@echo "built $@"
 
 # IMAGE(name, filters, further flags): build/uno/NAME/firmware.elf, and filters.txt, which says what it holds
@@ -52,7 +45,7 @@ $(U)/$(1)/%.o: %.c Makefile mk/images.mk
 $(U)/$(1)/filters.txt: Makefile mk/images.mk
 	@sh tools/filters_txt.sh $$@ $$(IMAGE_FILTERS)
 
-$(U)/$(1)/firmware.elf: $(AVR_SRC:%.c=$(U)/$(1)/%.o) | $(U)/$(1)/filters.txt
+$(U)/$(1)/firmware.elf: $(AVR_SRC:%.c=$(U)/$(1)/%.o) $(UNO_LD) | $(U)/$(1)/filters.txt
 	@$$(AVR_CC) $$(AVR_LINK) $$(filter %.o,$$^) -o $$@
 endef
 
@@ -64,7 +57,7 @@ $(eval $(call IMAGE,hang,$(FILTERS_everyday),-DHANG_TEST=1))
 $(eval $(call IMAGE,wrap,$(FILTERS_everyday),-DHAL_TIME_START_US=4289967296ul))
 $(eval $(call IMAGE,late,$(FILTERS_mixture),-DHAL_TIME_START_US=4200000000ul))
 # told of a slower processor: its sample period is short for a filter
-$(eval $(call IMAGE,tight,$(FILTERS_mixture),-DHAL_CPU_HZ=15000000ul))
+$(eval $(call IMAGE,tight,$(FILTERS_mixture),-DHAL_CPU_HZ=15500000ul))
 
 # beside the first, its readings are believed unseen: the difference is what checking them costs
 PLAIN_OBJ := $(AVR_SRC:%.c=$(U)/plain/%.o) $(U)/plain/host_tests/avr/plain_read.o
@@ -74,8 +67,8 @@ $(U)/plain/%.o: %.c Makefile mk/images.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
 
-$(U)/plain/firmware.elf: $(PLAIN_OBJ)
-	@$(AVR_CC) $(AVR_LINK) $^ -o $@
+$(U)/plain/firmware.elf: $(PLAIN_OBJ) $(UNO_LD)
+	@$(AVR_CC) $(AVR_LINK) $(PLAIN_OBJ) -o $@
 
 SET_IMAGES      := $(U)/firmware.elf $(patsubst %,$(U)/%/firmware.elf,$(filter-out everyday,$(FILTER_SETS)))
 FIRMWARE_IMAGES := $(SET_IMAGES) $(patsubst %,$(U)/%/firmware.elf,hang wrap late tight plain)

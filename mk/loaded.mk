@@ -10,7 +10,7 @@ loaded:
 desk:
 	@sh tools/deps.sh tilt
 	@sh tools/deps.sh live
-	@$(MAKE) $(S)/simrun $(U)/robust/firmware.elf
+	@$(MAKE) $(S)/simrun $(U)/firmware.elf
 	@$(PY) host_tests/tilt/desk_live.py
 
 .PHONY: loaded desk

@@ -2,8 +2,8 @@
 P := $(B)/papers
 PAPERS_MAIN := $(wildcard host_tests/papers/paper0*.cpp)
 PAPERS_CPP := $(filter-out $(PAPERS_MAIN),$(wildcard host_tests/papers/*.cpp)) \
-              $(addprefix host_tests/reference_,robust.cpp synthesis.cpp)
-PAPERS_C   := $(wildcard lib/filters/src/*.c) host_tests/support_filters.c host_tests/support_filter_bounds.c host_tests/support_filter_promises.c host_tests/support_random.c host_tests/support_tilt_phases.c
+              $(addprefix host_tests/reference_,noise.cpp robust.cpp synthesis.cpp)
+PAPERS_C   := $(wildcard lib/filters/src/*.c) $(LAW_SUPPORT) host_tests/support_random.c host_tests/support_tilt_phases.c
 PAPERS_OBJ := $(PAPERS_CPP:%.cpp=$(P)/%.o) $(PAPERS_C:%.c=$(P)/%.o)
 RUNS ?= 10000
 
@@ -27,10 +27,10 @@ $(P)/paper003: $(P)/host_tests/papers/paper003.o $(NAV_PAPER)
 
 # paper 002's filters once more, as C++ with integers that count: what does not compile with them is named by the compiler
 OPERATIONS := host_tests/papers/operations
-LISTED     := $(shell sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter_list.h)
-NOT_002    := $(shell sed -n 's/.*others{ \(.*\) };/\1/p' host_tests/papers/scope.hpp | tr -d '",')
+LISTED     := $(shell sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter.h)
+NOT_002    := $(filter-out $(shell python3 tools/laws.py kalman),$(LISTED))
 ONLY_002   := -D'FILTER_LIST(X)=$(foreach f,$(filter-out $(NOT_002),$(LISTED)),X($f))'
-COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(filter-out $(NOT_002:%=lib/filters/src/%.c) %/synth_common.c,$(wildcard lib/filters/src/*.c)))
+COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(filter-out $(NOT_002:%=lib/filters/src/%.c) $(NOT_002:%=lib/filters/src/%_%.c),$(wildcard lib/filters/src/*.c)))
 COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers $(ONLY_002)
 $(P)/operations/fx.o: COUNT_CXX += -DCOUNTING_PRIMITIVES
 
@@ -38,7 +38,7 @@ $(P)/operations/%.o: lib/filters/src/%.c $(wildcard lib/filters/src/*.h) $(OPERA
 	@mkdir -p $(@D)
 	@sed -E 's/\[([^][]+)\]/[counting::index(\1)]/g; 1s|^|#line 1 "$<"\n|' $< | $(COUNT_CXX) -include $(OPERATIONS)/counting.hpp -x c++ -c - -o $@
 
-$(P)/operations/main.o: $(OPERATIONS)/main.cpp host_tests/papers/scope.hpp $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
+$(P)/operations/main.o: $(OPERATIONS)/main.cpp $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
 	@mkdir -p $(@D)
 	@$(COUNT_CXX) -Wall -Wextra -Werror -c $< -o $@
 
@@ -54,7 +54,7 @@ $(P)/operations/family.o: $(OPERATIONS)/family.cpp $(wildcard lib/filters/src/*.
 	@mkdir -p $(@D)
 	@$(COUNT_CXX) -Wall -Wextra -Werror -c $< -o $@
 
-$(P)/products000: $(addprefix $(P)/operations/,family.o synth.o synth_opt.o synth_plus.o synth_common.o filter_common.o fx.o)
+$(P)/products000: $(addprefix $(P)/operations/,family.o filter.o tracker.o parameters.o fx.o) $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(wildcard lib/filters/src/synth*.c))
 	@$(HOST_CXX) $^ -lm -o $@
 
 PAPERS := $(P)/paper000 $(P)/paper001 $(P)/paper002 $(P)/paper003 $(P)/paper004_board $(P)/operations002 $(P)/products000

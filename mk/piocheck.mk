@@ -4,7 +4,7 @@
 piocheck:
 	@sh tools/deps.sh test piocheck
 	@python3 tools/pio_standins.py build/pio/core build/venv-pio
-	@$(MAKE) $(U)/firmware.elf $(S)/simrun $(H)/native_replay
+	@$(MAKE) $(U)/firmware.elf $(S)/simrun $(H)/native_replay $(LIBRARY).zip
 	@python3 host_tests/test_platformio.py
 
 .PHONY: piocheck

@@ -46,7 +46,7 @@ export function runFaultWords(job) {
   BEFALLS[job.fault](board);
   board.run(2200);
   const said = notesOf(board.output).filter((note) => note.startsWith('# fault'));
-  const wanted = new RegExp(`^# fault ${job.fault} over: samples again after \\d+ ms, \\d+ lost, sensor at ${hex(job.address)}$`);
+  const wanted = new RegExp(`^# fault ${job.fault} over: after \\d+ ms, \\d+ lost, sensor at ${hex(job.address)}$`);
   const right = said.length === 2 && said[0] === expectedLine(job.fault, []) && wanted.test(said[1]);
   return { rows: 0, different: 0, why: right ? null : `wanted fault ${job.fault} and its end at ${hex(job.address)}, said "${said.join(' / ')}"` };
 }

@@ -1,11 +1,13 @@
 /*
- * Whether the rows go on. A row is good that its flags do not disown (simrun_judge.h); it shows a sample when at most
- * the filter's gate speaks against it (flag 1). The longest times without a row that shows a sample: of the whole run,
- * and of its calm, in which every fault that has come is over and has had its good row.
+ * Whether the rows go on. A row is good that its flags do not disown (simrun_judge.h) and that no axis at the rail was
+ * left out of; it shows a sample when at most the filter's gate or the rail speaks against it (flags 1 and 8). The
+ * longest times without a row that shows a sample: of the whole run, and of its calm, in which every fault that has
+ * come is over and has had its good row.
  */
 #include "simrun.h"
 
 #define FLAG_GATED 1u
+#define FLAG_CLIPPED 8u
 
 typedef struct {
     uint64_t cycles, from;
@@ -28,7 +30,7 @@ static void keep_longest(gap_t *gap, uint64_t from, uint64_t to)
 void flow_on_row(const row_t *row)
 {
     unsigned against = row->flags & JUDGE_DISOWNED;
-    if (against == 0) {
+    if (against == 0 && (row->flags & FLAG_CLIPPED) == 0) {
         last_good = row->sent;
     }
     if ((against & ~FLAG_GATED) != 0) {

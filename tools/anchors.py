@@ -40,10 +40,17 @@ class Entry:
         return f"'{self.name}' ({self.place})"
 
 
+def lists(path):
+    """A list and its further parts beside it, breakages_NAME.txt of breakages.txt."""
+    return [path, *sorted(path.parent.glob(f"{path.stem}_*{path.suffix}"))]
+
+
 def load(path):
-    """The entries of a list."""
-    paragraphs = re.split(r"\n\s*\n", re.sub(r"^#.*\n?", "", path.read_text(encoding="utf-8"), flags=re.M).strip("\n"))
-    entries = [entry_of(paragraph.rstrip("\n").split("\n"), path) for paragraph in paragraphs if paragraph.strip()]
+    """The entries of a list and its parts."""
+    entries = []
+    for part in lists(path):
+        paragraphs = re.split(r"\n\s*\n", re.sub(r"^#.*\n?", "", part.read_text(encoding="utf-8"), flags=re.M).strip("\n"))
+        entries += [entry_of(paragraph.rstrip("\n").split("\n"), part) for paragraph in paragraphs if paragraph.strip()]
     names = [entry.name for entry in entries]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:

@@ -1,4 +1,5 @@
 """The firmware's objects before link-time optimisation (build/check/avr): symbols, sections, and who calls whom."""
+import functools
 import pathlib
 import re
 from dataclasses import dataclass, field
@@ -6,6 +7,8 @@ from dataclasses import dataclass, field
 from check_support import Stop, run
 
 FOLDER = pathlib.Path("build/check/avr")
+# a function of a law's descriptor, in the source
+SLOT = re.compile(r"(?:\bLAW_OF\(\w+, |\bFX_FLASH_FUNCTION\(&\w+->)(\w+)\)")
 
 
 @dataclass
@@ -84,9 +87,47 @@ def note_call(function, instruction, line):
             function.calls.add(target)
 
 
+def descriptors(every):
+    """{slot: set of keys}: the functions in the descriptors of the laws of lib/filters, which end with their pointers."""
+    header = pathlib.Path("lib/filters/src/tracker.h").read_text(encoding="utf-8")
+    slots = re.findall(r"\(\*(\w+)\)\(", header.partition("struct filter_law {")[2].partition("\n};")[0])
+    ends = {s.name: s.size for s in symbols() if s.name.startswith("filter_law_") and s.section != "*UND*"}
+    found, law = {slot: set() for slot in slots}, None
+    for path in objects():
+        for line in run("avr-objdump", "-r", path).splitlines():
+            if line.startswith("RELOCATION RECORDS"):
+                law = next(iter(re.findall(r"\[\S*\.(filter_law_\w+)\]", line)), None)
+            pointer = law and re.match(r"([0-9a-f]{8}) R_AVR_16_PM\s+(?:\.text\.)?(\w+)$", line)
+            if pointer:
+                own = (source_of(path), pointer.group(2))
+                keys = [own] if own in every else [key for key in every if key[1] == own[1]]
+                if len(keys) != 1:
+                    raise Stop(f"{path}: {law}: {own[1]} is defined {len(keys)} times in the objects")
+                found[slots[(int(pointer.group(1), 16) - ends[law]) // 2]].add(keys[0])
+    return found
+
+
+def called_slots(function):
+    """Slots of a descriptor through which it calls; none: its calls through a pointer, if any, are others."""
+    return slots_used(function.source).get(function.name, set()) if function.indirect else set()
+
+
+@functools.cache
+def slots_used(source):
+    """{function: slots of a descriptor that it calls}, what the compiler may inline into it included."""
+    text = pathlib.Path(source).read_text(encoding="utf-8")
+    bodies = dict(re.findall(r"^\w[^;{}\n]*?\b(\w+)\([^;{}]*\)\n\{\n(.*?)^\}", text, re.M | re.S))
+    used = {name: set(SLOT.findall(body)) for name, body in bodies.items()}
+    for _ in bodies:
+        for name, body in bodies.items():
+            used[name].update(*(used[other] for other in bodies if re.search(rf"\b{other}\(", body)))
+    return used
+
+
 def graph():
-    """(functions, {key: set of keys called}, {key: set of names that no object defines})."""
+    """(functions, {key: set of keys called, also by descriptors}, {key: set of names that no object defines})."""
     every = functions()
+    law = descriptors(every)
     by_name = {}
     for source, name in every:
         by_name.setdefault(name, []).append((source, name))
@@ -101,6 +142,10 @@ def graph():
                 edges[key].add(by_name[name][0])
             else:
                 outside[key].add(name)
+        for slot in called_slots(function):
+            if not law.get(slot):
+                raise Stop(f"{function.source}: {function.name} calls {slot}, which no descriptor in the objects has")
+            edges[key] |= law[slot]
     return every, edges, outside
 
 

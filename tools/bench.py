@@ -10,6 +10,7 @@ import sys
 
 import bench_where
 import images
+import laws
 from bench_firmware import OUT, SIMRUN, Fault, measure_rest, measure_sample, run
 
 JSON = pathlib.Path("build/bench.json")
@@ -17,18 +18,11 @@ DOCUMENT = pathlib.Path("docs/benchmarks.md")
 BEGIN, END = "<!-- written by make bench: begin -->", "<!-- written by make bench: end -->"
 COMPILER = "5.4.0"  # the limits are for Debian's avr-gcc; elsewhere the numbers are only reported
 
-WORST_LIMIT = {"kf": 800, "kf3": 2500, "sprf": 1000, "synth": 500, "synth_opt": 500, "synth_plus": 700, "lrf": 800, "soft": 1300,
-               "sprf_paper": 2150, "shrf": 3500, "pbf": 5000, "af": 5000, "adaptive": 1500, "auto": 2500, "angles": 1500}
-RATIO_LIMIT = 4.0
-KEPT = "float_synth_kept"  # a row of its own: what the float version takes when it keeps the coefficients made from a1
-# The filters with the wide covariance keep to their cycles and save flash before more: their products are calls.
-RATIO_LIMITS = {"synth": 3.5, "sprf_paper": 2.5, "shrf": 3.5, "pbf": 3.5, "af": 3.0}
+# of what is no filter: those of a filter stand beside its yardstick (tools/laws.py)
+ANGLES = laws.Limits(worst=1500, ratio=4.0, rms=0.029)  # degrees: the bound that lib/tilt derives
+KEPT = f"float_{laws.LIGHT}_kept"  # a row of its own: what the float version takes when it keeps the coefficients made from a1
 SAMPLES_MIN = 5000
 REGRESSION = 0.02
-# The yardstick must do the same job. LSB: a twentieth of the stream's noise of 4.6 LSB. Degrees: the bound that lib/tilt derives.
-RMS_LIMIT = {"angles": 0.029, "synth_plus": 1.25,  # synth_plus at 800 Hz: the float version does not see the line that ours starts with
-             "auto": 0.6}  # where two scores are near, rounding decides which estimate is shown, and for how long: an eighth of the noise
-RMS_LIMIT_FILTER = 0.25
 # At 12.5 Hz P grows so fast that single decisions at the gate's threshold fall differently, and each shows for some samples.
 RMS_FROM_DHZ = 250
 
@@ -59,22 +53,23 @@ def parse(text, source):
 
 
 def summarise(sections):
-    """{name: {min, median, worst, where, samples, worst_both}}; the median is that of the typical streams, the rest of all. worst_both is
-    over the samples that the float version saw too: it has no warm-up."""
-    calls, both = {}, {}
+    """{name: {min, median, worst, where, samples}}; the median is that of the typical streams, the rest of all. The samples of a filter's
+    start, which its float version does not see, are of the row `start`, all filters together."""
+    calls = {}
     for name, regime, rate_dhz, pairs in sections:
-        both[name] = max([both.get(name, 0)] + [p[0] for p in pairs if p[1]])
         where = regime + (f" {rate_dhz / 10:g} Hz" if rate_dhz else "")
-        for key, values in ((name, [p[0] for p in pairs]), (f"float_{name}", [p[1] for p in pairs if p[1]])):
+        both = [pair for pair in pairs if pair[1]]
+        begins = [ours for ours, yardstick in pairs if both and not yardstick]
+        for key, told, values in ((name, where, [ours for ours, _ in both or pairs]), (f"float_{name}", where, [yardstick for _, yardstick in both]),
+                                  ("start", f"{name}, {where}", begins)):
             if values:
-                calls.setdefault(key, []).append((where, regime == "typical", values))
+                calls.setdefault(key, []).append((told, regime == "typical", values))
     result = {}
     for name, parts in calls.items():
         values = [v for _, _, part in parts for v in part]
         typical = [v for _, is_typical, part in parts if is_typical for v in part] or values
         worst, where = max((max(part), where) for where, _, part in parts)
-        result[name] = {"min": min(values), "median": round(statistics.median(typical)), "worst": worst, "where": where, "samples": len(values),
-                        "worst_both": both.get(name, 0) or max(values)}
+        result[name] = {"min": min(values), "median": round(statistics.median(typical)), "worst": worst, "where": where, "samples": len(values)}
     return result
 
 
@@ -118,13 +113,14 @@ def filters_of(flags):
 
 def declared_of(flags, filters):
     """{name: worst case in cycles that the code declares}: the filters, sample_rest and row."""
-    source = '#include "filter_list.h"\n#include "settings.h"\n'
+    source = '#include "settings.h"\n'
     source += "sample_rest_worst_cycles = SETTINGS_REST_CYCLES\nrow_worst_cycles = SETTINGS_ROW_CYCLES\n"
     done = subprocess.run(["avr-gcc", *flags, "-E", "-P", "-x", "c", "-"], input=source, capture_output=True, text=True, timeout=60)
-    found = {name: int(value) for name, value in re.findall(r"\b(\w+)_worst_cycles = (\d+)u?\b", done.stdout)}
+    found = laws.worst_cycles()
+    found |= {name: int(value) for name, value in re.findall(r"\b(\w+)_worst_cycles = (\d+)u?\b", done.stdout)}
     missed = [name for name in [*filters, "sample_rest", "row"] if name not in found]
     if done.returncode != 0 or missed:
-        raise Fault(f"{missed[0] if missed else 'filter_list.h'}: declares no worst case ({missed[0] if missed else ''}_worst_cycles)")
+        raise Fault(f"{missed[0] if missed else 'settings.h'}: declares no worst case")
     return found
 
 
@@ -169,26 +165,30 @@ def measure_sizes(flags, sources, filters):
 
 # --- table and judgement ---
 
+def limits_of(name):
+    """What the filter, or the angles, are held to; no row for a filter without the line beside its yardstick."""
+    return ANGLES if name == "angles" else laws.limits(name)
+
+
 def limit_faults(filters, rows, rms):
     """What is over a limit, one sentence each."""
     faults = []
     for name in [*filters, "angles"]:
-        row, yardstick = rows[name], rows.get(f"float_{name}")
-        if name not in WORST_LIMIT:
-            faults.append(f"{name}: no limit of its cycles in tools/bench.py (WORST_LIMIT)")
-        else:
-            faults += [f"{name}: worst case {row[kind]} cycles ({where}), limit {WORST_LIMIT[name]}"
-                       for kind, where in (("worst", row["where"]), ("worst_small", "the firmware's flags")) if row[kind] > WORST_LIMIT[name]]
+        row, yardstick, limits = rows[name], rows.get(f"float_{name}"), limits_of(name)
+        if limits is None:
+            faults.append(f"{name}: no limits beside its yardstick ({laws.yardstick(name)}: bench: worst ...)")
+            continue
+        faults += [f"{name}: worst case {row[kind]} cycles ({where}), limit {limits.worst}"
+                   for kind, where in (("worst", row["where"]), ("worst_small", "the firmware's flags")) if row[kind] > limits.worst]
         if row["samples"] < SAMPLES_MIN:
             faults.append(f"{name}: {row['samples']} samples, at least {SAMPLES_MIN} are wanted")
         if yardstick is None:
             faults.append(f"{name}: no float version was measured")
             continue
-        for kind in ("median", "worst_both"):
-            wanted = RATIO_LIMITS.get(name, RATIO_LIMIT)
-            if yardstick[kind] < wanted * row[kind]:
-                faults.append(f"{name}: {kind.split('_')[0]} {row[kind]} cycles, float {yardstick[kind]}: "
-                              f"{yardstick[kind] / row[kind]:.2f} times fewer, wanted {wanted:g}")
+        for kind in ("median", "worst"):
+            if yardstick[kind] < limits.ratio * row[kind]:
+                faults.append(f"{name}: {kind} {row[kind]} cycles, float {yardstick[kind]}: "
+                              f"{yardstick[kind] / row[kind]:.2f} times fewer, wanted {limits.ratio:g}")
     return faults + agreement_faults(filters, rms)
 
 
@@ -207,14 +207,14 @@ def declared_faults(declared, rows):
 def agreement_faults(filters, rms):
     faults = []
     for name in [*filters, "angles"]:
-        limit = RMS_LIMIT.get(name, RMS_LIMIT_FILTER)
+        limits = limits_of(name)
         compared = [(value, regime, rate) for n, regime, rate, value in rms
                     if n == name and (name == "angles" or (regime == "typical" and rate >= RMS_FROM_DHZ))]
         if not compared:
             faults.append(f"{name}: not compared with its float version")
         for value, regime, rate in compared:
-            if value > limit:
-                faults.append(f"{name}: differs from its float version by {value:g} rms ({regime} {rate / 10:g} Hz), limit {limit:g}")
+            if limits is not None and value > limits.rms:
+                faults.append(f"{name}: differs from its float version by {value:g} rms ({regime} {rate / 10:g} Hz), limit {limits.rms:g}")
     return faults
 
 
@@ -223,8 +223,8 @@ def table(rows):
     head = ["name", "min", *COLUMNS[:2], "worst seen in", *COLUMNS[2:4], "of it shared", *COLUMNS[4:], "float / ours, median", "worst"]
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
     for name, row in rows.items():
-        yardstick, ours = (row, rows["synth"]) if name == KEPT else (rows.get(f"float_{name}"), row)
-        ratios = [f"{yardstick[k] / ours[k]:.1f}" if yardstick else "" for k in ("median", "worst_both")]
+        yardstick, ours = (row, rows[laws.LIGHT]) if name == KEPT else (rows.get(f"float_{name}"), row)
+        ratios = [f"{yardstick[k] / ours[k]:.1f}" if yardstick else "" for k in ("median", "worst")]
         cells = [f"`{name}`", row["min"], row["median"], row["worst"], row["where"], row.get("worst_small", ""), row.get("flash", ""),
                  row.get("shared", ""), row.get("ram", ""), row.get("stack", ""), *ratios]
         lines.append("| " + " | ".join(f"{c:,}" if isinstance(c, int) else c for c in cells) + " |")
@@ -298,10 +298,10 @@ def collect(flags, sources, parts):
     small, _, _ = together(results[len(parts):])
     kept, kept_stack, _ = kept
     rows, rows_small = summarise(sections), summarise(small)
-    rows[KEPT], stack[KEPT] = summarise(kept)["float_synth"], kept_stack["float_synth"]
+    rows[KEPT], stack[KEPT] = summarise(kept)[f"float_{laws.LIGHT}"], kept_stack[f"float_{laws.LIGHT}"]
     missed = [f for f in filters if f not in rows or f not in rows_small]
     if missed:
-        raise Fault(f"{missed[0]}: in no image of the benchmark (BENCH_LIST in host_tests/avr/bench_part.h)")
+        raise Fault(f"{missed[0]}: in no image of the benchmark (BENCH_LIST in mk/bench.mk)")
     alone, shared = measure_sizes(flags, sources, filters)
     rows["sample_total"], stack["sample_total"] = measure_sample()
     rows_small["sample_total"] = rows["sample_total"]
@@ -317,7 +317,7 @@ def collect(flags, sources, parts):
             row["flash"], row["ram"] = alone[name]
         if name in shared:
             row["shared"] = shared[name]
-    wanted = [*filters, "angles", "format_row", "sample_total", "sample_rest", "row", "noise", *(f"{f}_set_noise" for f in filters),
+    wanted = [*filters, "start", "angles", "format_row", "sample_total", "sample_rest", "row", "noise", *(f"{f}_set_noise" for f in filters),
               *(f"float_{f}" for f in filters), KEPT, "float_angles"]
     return filters, {name: rows[name] for name in wanted}, rms
 

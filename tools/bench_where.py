@@ -2,27 +2,27 @@
 import collections
 import csv
 
+from laws import SLOWEST
+
 MARKERS = ("<!-- where, written by make bench: begin -->", "<!-- where, written by make bench: end -->")
-FILTER = "af"
+FILTER = SLOWEST
 STREAM = "outliers-15pct"
-ENTRY = "mixture_update"  # called once per axis and sample
+ENTRY = "mixed"  # called once per axis and sample
 # what of the profile is the filter's, and what the page says of it
 FUNCTIONS = {
-    "mixture_update": "evidence, probability and learning (what is in line of it)",
+    "mixed": "prediction, evidence, probability and learning (what is in line of it)",
     "log2_uq9": "logarithms, by a table",
-    "mixture_log_odds_q9": "",
-    "two_state_wide_predict": "prediction of x and P, S",
-    "two_state_wide_distance_uq8": "r^2 / (R S)",
-    "two_state_wide_update": "gains, x and P",
+    "filter_mixture_log_odds_q9": "",
+    "filter_wide_correct": "gains, x and P",
     "give_back": "",
     "step_by": "",
     "bend_lsb": "",
-    "fx_times_uq16": "products",
-    "fx_high_u16": "",
+    "filter_fx_times_uq16": "products",
     "__umulhisi3": "",
-    "fx_inverse_uq16": "reciprocals, by a table",
-    "fx_leading": "leading bits and shifts",
-    "fx_shifted_right": "",
+    "__muluhisi3": "",
+    "filter_fx_inverse_uq16": "reciprocals, by a table",
+    "filter_fx_leading": "leading bits and shifts",
+    "filter_fx_shifted_right": "",
     "__prologue_saves__": "calls: registers saved and restored",
     "__epilogue_restores__": "",
 }

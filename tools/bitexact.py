@@ -16,6 +16,8 @@ import shutil
 import subprocess
 import sys
 
+import laws
+
 OUT = pathlib.Path("build/bitexact")
 HERE = "host_tests/bitexact"
 SIMRUN = "build/sim/simrun"
@@ -23,31 +25,26 @@ STREAM = "sim/streams/tilt-fast.csv"
 STOPPED = 8          # simrun: the program slept with interrupts off
 BLOCK = 200          # VECTORS_BLOCK of vectors.h
 SHOWN = 3            # differences shown in detail
-FIRMWARE = [f"firmware/{name}.c" for name in ("format", "text", "rows", "pipeline", "pipeline_change", "pass", "settings", "counters", "coast",
-                                              "silence", "parameters")]
+FIRMWARE = [f"firmware/{name}.c" for name in ("format", "text", "rows", "pipeline", "pipeline_change", "pass", "settings", "settings_words",
+                                              "counters", "coast", "silence", "parameters")]
 HEADERS = ["lib", "firmware", "hal", "host_tests"]
 SANITIZE = "-O1 -fsanitize=address,undefined -fno-sanitize-recover=all"
 # as the planted differences: name, file under lib, text, broken text, build, paths that must be named
 TWINS = [
     ("one rounding bit dropped", "filters/src/fx.h",
      "return fx_mul_u16_c((uint16_t)(a >> 16), b_uq16) + (low >> 16) + ((low >> 15) & 1U);",
-     "return fx_mul_u16_c((uint16_t)(a >> 16), b_uq16) + (low >> 16);", "gcc -O2", {"fx_mul_uq16", "kf"}),
+     "return fx_mul_u16_c((uint16_t)(a >> 16), b_uq16) + (low >> 16);", "gcc -O2", {"fx_mul_uq16", laws.PLAIN}),
     ("product in 16-bit int", "tilt/src/tilt.c",
-     "uint32_t sum_q12 = (uint32_t)x * x + (uint32_t)y * y;",
-     "uint32_t sum_q12 = (uint32_t)(x * x) + (uint32_t)y * y;", "avr-gcc -Os", {"tilt_gravity_plausible"}),
+     "sum_q12 += (uint32_t)magnitude * magnitude;",
+     "sum_q12 += (uint32_t)(magnitude * magnitude);", "avr-gcc -Os", {"tilt_gravity_plausible"}),
 ]
 
 
-ROWS = ["kf", "sprf", "synth", "adaptive"]  # whose rows vectors_text.c compares
+ROWS = laws.names()[:4]  # whose rows vectors_text.c compares
 
 
 class Failure(Exception):
     """Something that stops the comparison, in one sentence."""
-
-
-def filter_names():
-    text = pathlib.Path("lib/filters/src/filter_list.h").read_text(encoding="utf-8")
-    return re.findall(r"^    X\((\w+)\)", text, re.M)
 
 
 def linked(names):
@@ -79,7 +76,7 @@ class Build:
         parts = {"": []}
         if self.chip:
             second = os.environ["CHIP_SECOND"].split()
-            first = [name for name in filter_names() if name not in second]
+            first = [name for name in laws.names() if name not in second]
             parts = {"first": ["-DVECTORS_FILTERS=1", linked(first)], "second": ["-DVECTORS_FILTERS=1", linked(second)],
                      "rest": ["-DVECTORS_FILTERS=0", linked(ROWS)]}
         return [self.compile_part(part, flags, packed) for part, flags in parts.items()]
@@ -88,7 +85,7 @@ class Build:
         ends = ("-packed" if packed else "") + (f"-{part}.elf" if self.chip else "")
         exe = OUT / (re.sub(r"\W+", "_", self.name) + ends)
         if not fresh(exe, self.lib):
-            command = self.command + flags + sources(self.chip, self.lib) + ["-o", str(exe)]
+            command = self.command + flags + sources(self.chip, self.lib) + ["-o", str(exe), "-lm"]
             if packed and not self.chip:
                 command += ["-include", f"{HERE}/packed_states.h", "-Wno-address-of-packed-member", "-fno-sanitize=alignment"]
             done = call(command)
@@ -129,8 +126,9 @@ def sources(chip, lib):
                 "host_tests", HERE]
     files = sorted(pathlib.Path(HERE).glob("vectors*.c"))
     files += [f"{HERE}/crc32.c", f"{HERE}/output.c", f"{HERE}/output_{'chip' if chip else 'pc'}.c"]
-    files += ["host_tests/support_filters.c", "host_tests/support_filter_promises.c"]
-    files += FIRMWARE + sorted(pathlib.Path(lib).glob("filters/src/*.c")) + [f"{lib}/tilt/src/tilt.c", f"{lib}/tilt/src/calibration.c"]
+    files += [path for name in ("random32", "filter*", "law_*") for path in sorted(pathlib.Path("host_tests").glob(f"support_{name}.c"))]
+    files += FIRMWARE + sorted(pathlib.Path(lib).glob("filters/src/*.c"))
+    files += [f"{lib}/tilt/src/{name}.c" for name in ("tilt", "tilt_axis", "calibration")]
     return [f"-I{folder}" for folder in includes] + [str(file) for file in files]
 
 
@@ -226,7 +224,7 @@ def differences(pair, tables):
 def missing_paths(answers):
     """Filters of the list and public functions of fx.h without a path."""
     have = {path for path, _ in answers}
-    wanted = set(filter_names())
+    wanted = set(laws.names())
     text = pathlib.Path("lib/filters/src/fx.h").read_text(encoding="utf-8")
     wanted |= set(re.findall(r"^(?:static inline|FX_INLINE|FX_ONCE) [\w *]*?(fx_(?!flash_)\w+)\(", text, re.M))
     assert len(wanted) > 20, "the list of functions in fx.h was not found"
@@ -272,7 +270,7 @@ def judge_twin(report, twin, reference, answers, by_name):
         report.tell(f"planted {name} is found", str(problem))
         return
     explained = any(re.match(r"answer \d+: ", line) for line in lines)
-    in_states = "kf" not in wanted or any(re.match(r"state byte \d+: ", line) for line in lines)
+    in_states = laws.PLAIN not in wanted or any(re.match(r"state byte \d+: ", line) for line in lines)
     if wanted <= set(found) and explained and in_states:
         report.tell(f"planted {name} is found in {', '.join(found[:5])}", None, lines)
     else:

@@ -88,7 +88,7 @@ def main():
     faults += [text for _, file, text in jobs if file is None]
     faults += [fault for fault in parallel(unbuilt, [job for job in jobs if compiled_alone(job[1])]) if fault]
     faults += [fault for fault in map(misplaced, planted) if fault]
-    lines = sum(path.read_text(encoding="utf-8").count("\n") for path in (breakages.LIST, PLANTED))
+    lines = sum(path.read_text(encoding="utf-8").count("\n") for path in (*anchors.lists(breakages.LIST), PLANTED))
     if len(named) > MOST or lines > MOST_LINES:
         faults.append(f"{breakages.LIST}: {len(named)} breakages, {lines} lines of lists, at most {MOST} and {MOST_LINES}: see make mutants")
     print("\n".join(faults), end="\n" if faults else "")

@@ -5,6 +5,7 @@ import re
 
 import check_includes
 import check_lengths
+import check_names
 import check_stack
 from check_support import DEVIATIONS, FOLDERS, deviations, main, report
 from clang_avr import STAND_INS
@@ -47,6 +48,7 @@ def tidy_checks_off():
 def departures():
     found = set(silenced()) | set(tidy_checks_off())
     found |= check_includes.contracts_without_port() | check_lengths.over_limits() | check_stack.over_limit()
+    found |= check_names.over_limits()
     if STAND_INS:
         found.add(("stand-ins for clang", "hal/avr"))
     return found

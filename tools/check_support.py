@@ -101,15 +101,6 @@ def binding():
     return version == FOR_COMPILER
 
 
-def filter_names():
-    """The filters of FILTER_LIST."""
-    path = pathlib.Path("lib/filters/src/filter_list.h")
-    names = re.findall(r"X\((\w+)\)", path.read_text(encoding="utf-8").split("#define FILTER_LIST(X)")[-1])
-    if not names:
-        raise Stop(f"{path}: no X(name) after #define FILTER_LIST(X)")
-    return names
-
-
 def report(name, findings, summary):
     """Prints the findings and the last line; the exit status."""
     for line in findings:

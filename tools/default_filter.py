@@ -13,6 +13,7 @@ import default_streams as streams
 from default_score import CANDIDATE, CONTENTION, KEPT, NAMED, OWN
 from default_streams import BAD_READS, CLASSES, MOTIONS, RATES_HZ
 from page import Fault, Page, run_as_program
+from laws import PLAIN
 
 PROGRAM = "build/host/default_filter"
 JSON = pathlib.Path("build/default.json")
@@ -117,7 +118,8 @@ def class_table(t):
     order = t.named + t.others()
     lines = [[group, *(lsb(t.classes[group][name]) for name in order)] for group in CLASSES if group in t.classes]
     return markdown("RMSE by class", "LSB (256 per g), geometric mean over the rates of the geometric mean over their streams; behind the first "
-                    f"{len(t.named)} filters, which the rule compares, the others of the list, a median of five before `kf`, and the raw samples.",
+                    f"{len(t.named)} filters, which the rule compares, the others of the list, a median of five before `{PLAIN}`, "
+                    "and the raw samples.",
                     ["class", *ticks(order)], lines)
 
 
@@ -186,7 +188,7 @@ def readings(t):
     with_contention = {**t.classes}
     cells = [cell for cell in t.cells if cell.group in (BAD_READS, CONTENTION)]
     with_contention[BAD_READS] = {name: score.geometric(cells, name) for name in t.names}
-    filters = [name for name in t.names if name not in ("raw", "median5_kf")]
+    filters = [name for name in t.names if name not in ("raw", f"median5_{PLAIN}")]
     made = [cell for cell in t.cells if cell.made]
     real = [cell for cell in t.cells if not cell.made]
     return [("as decided", t.classes, NAMED),

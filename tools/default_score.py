@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 from default_streams import BAD_READS, CLASSES
 from page import Fault
+from laws import DEFAULT, PLAIN, ROBUST
 
-NAMED = ("kf", "sprf", "soft", "pbf", "adaptive")  # among these is the best
-CANDIDATE, KEPT = "adaptive", "sprf"
+NAMED = (PLAIN, ROBUST, "soft", "pbf", DEFAULT)  # among these is the best
+CANDIDATE, KEPT = DEFAULT, ROBUST
 WITHIN, HALF = 1.05, len(CLASSES) / 2
 HELD = "held back, "  # before the class of what does not decide
 NONE, HEALTHY, WIRING, CONTENTION = "none", "bad reads 1e-5", "bad reads 1e-3", "contention 20 %"

@@ -30,10 +30,11 @@ import images
 from faults_judge import NO_LIMIT
 from faults_kinds import KINDS, LONG, MOVING, OF, OTHER_RATES, REST, TYPED, rated
 from faults_runs import Fault, SIMRUN, attempt, flagged_share, moments, need, phases, roll_differences, seeded_pairs, simulate, write_whole
+from laws import DEFAULT, LIGHT
 
 PAGE = pathlib.Path("docs/faults-campaign.md")
 RESULTS = pathlib.Path("build/faults.json")
-PHASES, MOMENTS, FILTERS = faults_judge.PHASES_AT_LEAST, 8, ("adaptive", "kf")
+PHASES, MOMENTS, FILTERS = faults_judge.PHASES_AT_LEAST, 8, (DEFAULT, LIGHT)
 SHARE_FLAGGED, SHARE_ROLL, ROLL_CDEG = 0.99, 0.999, 50
 # a share of less is none; and of the rows of the run without faults, so many may have no partner in the run with them
 LARGE_AT_LEAST, MISSING_MOST = 100, 0.01

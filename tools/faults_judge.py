@@ -3,9 +3,9 @@ import dataclasses
 import math
 
 NO_LIMIT = 9999  # ms to a good row: readings that were true and are no longer at the rail; when the filter takes them is its own affair
-PASS_CYCLES = 16000  # 1 ms of main loop at 16 MHz
+PASS_CYCLES = 64000  # 4 ms of main loop at 16 MHz
 LINE_MS = 8  # a row waits until the line ahead of it is out: 90 characters at 115200 baud
-# samples that a filter refuses at most, one after another, before it restarts from them (lib/filters/src/reacquire.h: default)
+# samples that a filter refuses at most, one after another, before it restarts from them (lib/filters/src/parameters.c: reacquire)
 GATED_ROWS = 5
 PHASES_AT_LEAST, LONG_PHASES_AT_LEAST, PAIR_PHASES_AT_LEAST, COMMAND_PHASES_AT_LEAST = 50, 8, 5, 6
 STANDBY_MS = 100  # a sensor that is to stand still has it from the end of a fault

@@ -2,6 +2,7 @@
 import dataclasses
 
 from faults_judge import GATED_ROWS, LINE_MS, NO_LIMIT, PASS_CYCLES, Command
+from laws import DEFAULT, LIGHT, PLAIN, ROBUST
 
 REST, MOVING = "sim/streams/rest-2lsb.csv", "sim/streams/tilt-slow.csv"
 BEGIN_MS, RUN_MS = 1000, 2600  # streaming and warmed up; the fault and the second after it
@@ -27,7 +28,7 @@ class Kind:
     more_ms: int = 0  # that its run takes longer
     stream: str = None  # where it is not that of the rate
     base: str = ""  # of one at another rate: the kind's name at its own
-    filter_name: str = "adaptive"  # where the campaign has it in one only; None: nobody asks for one
+    filter_name: str = DEFAULT  # where the campaign has it in one only; None: nobody asks for one
     pass_cycles: int = PASS_CYCLES  # the longest pass of the main loop
     row_ms: float = 0  # from row to row at the end, where it is not that of the rate
     said_ms: float = LINE_MS  # what the firmware says at once ahead of a row, as long as it takes
@@ -73,7 +74,8 @@ def typed(name, what, *lines, begin_ms=BEGIN_MS - 20, every_ms=45, **more):
 
 
 TYPED = [
-    typed("typed: filters", "scl:40", "filter kf", "filter sprf", "filter synth", "filter adaptive", "filter", "filter none", "status",
+    typed("typed: filters", "scl:40", f"filter {PLAIN}", f"filter {ROBUST}", f"filter {LIGHT}", f"filter {DEFAULT}", "filter",
+          "filter none", "status",
           filter_name=None, said_ms=40),  # the status is 0.4 kB
     typed("typed: settings", "noint:300", "rate 200", "rate", "rate 3", "rate 99999999", "range 4", "range 3", "range", "every 3", "every 0", "every",
           "rate 800", "status", "baud 250000", "baud 1", "baud 9600", "baud", "rate 800", "every",
@@ -82,8 +84,8 @@ TYPED = [
           "mode x", "status", "help", said_ms=110),  # the help is 1.1 kB
     typed("typed: spoilt bytes", ("rxspoil:0", "@50 rxspoil:1", "@100 rxspoil:0"), "help", "status", "rate", "every 1", said_ms=110),
     typed("typed: stop", "power:50", "stop", "status", "go", "stop", "go", "stop", "stop", "range 2", "go", every_ms=11),
-    typed("typed: plot", "sda:60", "mode plot", "status", "mode csv", every_ms=400, filter_name="sprf"),
-    typed("typed: kf", "frozen:200", "filter kf", "filter sprf", every_ms=300, filter_name="sprf"),
+    typed("typed: plot", "sda:60", "mode plot", "status", "mode csv", every_ms=400, filter_name=ROBUST),
+    typed(f"typed: {LIGHT}", "frozen:200", f"filter {LIGHT}", f"filter {ROBUST}", every_ms=300, filter_name=ROBUST),
     typed("typed: what is settled", "noint:300", "settings", "offset 10 -10 3.5", "scale 260 260 250", "level 0 0.1 0.99", "axes -yxz", "address 53",
           "settings", "offset 99 0 0", "scale 1 1 1", "level 9 9 9", "axes xxy", "address 12", "offset 1", "save", "status", "defaults", "settings",
           every_ms=120, more_ms=1000, said_ms=110),  # the settings are 1.1 kB
@@ -97,9 +99,9 @@ TYPED = [
     typed("upside down", "nack", stream="sim/streams/through-roll-180.csv"), typed("upright", "nackdata", stream="sim/streams/through-pitch-90.csv"),
     # what these streams do to one axis, the filter sees on the others at another time
     *(typed(f"outliers, {name}", "nack", stream="sim/streams/steps-outliers.csv", filter_name=name, gated_rows=3 * GATED_ROWS)
-      for name in ("adaptive", "sprf", "synth")),
+      for name in (DEFAULT, ROBUST, LIGHT)),
     *(typed(f"vibration, {name}", "buserr", stream="sim/streams/vibration.csv", filter_name=name, gated_rows=3 * GATED_ROWS)
-      for name in ("sprf", "synth")),
+      for name in (ROBUST, LIGHT)),
     # a byte every 160 cycles, and its handler takes 66 of them
     typed("flood at 1000000 baud", "rxflood:200", "baud 1000000", begin_ms=900),
     # behind one another; the fourth start in a row by the watchdog is with safe settings

@@ -3,7 +3,7 @@
 set -eu
 file=$1
 shift
-known=$(sed -n 's/^    X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter_list.h | tr '\n' ' ')
+known=$(sed -n 's/^    X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter.h | tr '\n' ' ')
 sets=$(sed -n 's/^FILTER_SETS *:= *//p' mk/images.mk)
 for filter in "$@"; do
     case " $known" in

@@ -4,7 +4,9 @@ import re
 import shutil
 
 FW = "build/uno/firmware.elf"
-SETS = re.search(r"^FILTER_SETS *:= *(.*)$", pathlib.Path("mk/images.mk").read_text(encoding="utf-8"), re.M).group(1).split()
+MAKEFILE = pathlib.Path("mk/images.mk").read_text(encoding="utf-8")
+SETS = re.search(r"^FILTER_SETS *:= *(.*)$", MAKEFILE, re.M).group(1).split()
+HOLDS = {name: held.split() for name, held in re.findall(r"^FILTERS_(\w+) *:= *([a-z0-9_ ]+)$", MAKEFILE, re.M)}
 SET_IMAGES = [FW] + [f"build/uno/{name}/firmware.elf" for name in SETS[1:]]
 
 

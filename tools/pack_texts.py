@@ -11,8 +11,8 @@ import shutil
 import subprocess
 import sys
 
-PAIR_FIRST, PAIRS_MAX = 0x90, 0x70  # bytes 0x01..0x1F and 0x7F..0x8F stand for values (enum say)
-STEP = 8                            # texts between two whose start is kept; the firmware counts ends from there
+ALONE, PAIR_FIRST, PAIRS_MAX = 0x7B, 0x8D, 0x73  # smaller bytes are characters, or stand for values; from ALONE on (enum say) in no pair
+STEP = 16                           # texts between two whose start is kept; the firmware counts ends from there
 COLUMNS = 110
 
 
@@ -37,6 +37,8 @@ def occurrences(rows):
     for row in rows:
         before = None
         for pair in zip(row, row[1:]):
+            if any(ALONE <= code < PAIR_FIRST for code in pair):
+                continue
             if pair == before and pair[0] == pair[1]:
                 before = None
                 continue

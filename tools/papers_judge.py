@@ -11,6 +11,7 @@ import math
 import re
 
 from papers_bands import BOUND_RULES, Fault, Rows, band_of, faulty_cells, limit_of, too_wide, verdict_by
+from laws import PLAIN
 
 FIELDS = ["experiment", "filter", "arithmetic", "metric", "low", "high", "published", "verdict", "reason"]
 ARITHMETICS = ("double", "float", "fixed")
@@ -171,5 +172,5 @@ def judge(rows, expected, partial=False, full_runs=VERDICT_RUNS, wanted=BANDED):
 def unjudged(rows, fixed, wanted=BANDED):
     """Every shipped filter but the yardstick has a limit on the wanted numbers: K_ef and coming back."""
     banded = {(row["filter"], row["metric"]) for row in rows if row["arithmetic"] == "fixed" and row.get("band")}
-    return [f"{name} is in FILTER_LIST and {metric} of its fixed-point code has no band" for name in sorted(fixed - {"kf"})
+    return [f"{name} is in FILTER_LIST and {metric} of its fixed-point code has no band" for name in sorted(fixed - {PLAIN})
             for metric in wanted if (name, metric) not in banded]

@@ -2,6 +2,7 @@
 import math
 import pathlib
 
+from laws import ROBUST
 from page import no_title_twice
 
 DOCUMENT = pathlib.Path("docs/papers.md")
@@ -109,7 +110,7 @@ def tables(rows):
     yield "Without outliers: the Kalman filter's mean square error over the filter's", grid(
         rows, [("efficiency", "clean", ["clean_efficiency"])], intervals=True)
     yield "Width of the gate in sigma: false alarms / misses (first sample no outlier)", grid(
-        [r for r in rows if r["filter"] == "sprf"], [(g, f"gate_{g}_sigma", ["false_alarm", "miss"]) for g in GATES])
+        [r for r in rows if r["filter"] == ROBUST], [(g, f"gate_{g}_sigma", ["false_alarm", "miss"]) for g in GATES])
     yield "Width of the gate in sigma: K_ef", grid(rows, [(g, f"gate_{g}_sigma", ["k_ef_steady"]) for g in GATES])
     yield "Samples until back after a step of so many sigma, no outliers: median / 95 %", grid(
         rows, [(s, f"step_clean_{s}_sigma", back) for s in STEPS])

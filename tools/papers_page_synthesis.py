@@ -65,14 +65,12 @@ def guard_table(rows):
 
 
 def identified_table(rows):
-    """R as adaptive has it after 10 s by the true one: mean and deviation of a run, each with its limits."""
+    """R as noise.c has it after 10 s by 1.5 times the variance: mean and deviation of a run, each with what theory says."""
     lines = []
-    for experiment in dict.fromkeys(row["experiment"] for row in of(rows, "adaptive_r_*")):
-        mean, deviation = (pick(rows, experiment, "adaptive", "fixed", metric) for metric in ("r_by_true", "r_one_run_sd"))
-        low, high = mean.get("band") or (None, None)
-        lines.append(["`adaptive`", experiment[len("adaptive_r_"):].replace("_", " "), with_interval(mean),
-                      f"{shown(low)} to {shown(high)}" if low is not None else "", limited(deviation)])
-    return table(["filter", "case", "mean by the true one [95 %]", "issue", "deviation of one run, relative"], lines)
+    for experiment in dict.fromkeys(row["experiment"] for row in of(rows, "noise_*")):
+        exact, mean, deviation = (pick(rows, experiment, "noise(x)", "fixed", metric) for metric in ("exact_r_by_true", "r_by_true", "r_one_run_sd"))
+        lines.append(["`noise(x)`", experiment[len("noise_"):].replace("_", " "), with_interval(mean), shown(exact["value"]), limited(deviation)])
+    return table(["estimator", "case", "mean by the wanted one [95 %]", "theory, without fluctuation", "deviation of one run, relative"], lines)
 
 
 def schedule_table(rows):
@@ -129,7 +127,7 @@ def tables_000(rows):
         rows, [(turn, f"filters_{turn}", windows(names=("2_5", "6_10", "11_15"))) for turn in TURNS])
     yield "adaptive: mean square error in 2-5 / 6-10 / 11-15 s, degree^2, the limit beside", adaptive_table(rows)
     yield "adaptive: what the width of its gate trades, mean square error in 6-10 s, degree^2", guard_table(rows)
-    yield "adaptive: R identified in 10 s from a start hundreds of times too small", identified_table(rows)
+    yield "noise: R identified in 10 s from a start hundreds of times too small, by 1.5 times the variance", identified_table(rows)
     yield from equal_noise_tables(rows)
     for stream in STREAMS:
         yield f"Roll on {stream}: rms error in degrees, filtered as an angle / unwrapped first / axes first", grid(rows, [

@@ -3,8 +3,10 @@
 
     proof.py [PATTERN...]  all, or the entries and breakages in whose name a regular expression matches
 
-An entry calls NAME with any argument and any state within its bounds. It passes with no alarm and every contract, check
-and assertion proved. `Uses: a, b` in its comment: a and b are taken by their contract, which entries of their own prove.
+An entry calls NAME with any argument and any state within its bounds; law_NAME every function of that law (law.h). It
+passes with no alarm and every contract, check and assertion proved. A function with a contract that says what it assigns
+and with an entry of its own, which proves that contract, is taken by it in all other entries but those that say
+`Whole: NAME` in their comment.
 Unsigned wraps are looked for as well (Rte's assertions as checks, which do not narrow what follows); those that are
 meant stand in deliberate.txt. What is compiled are the C twins of the primitives (no __AVR__); host_tests/avr/fx_twins.c ties the assembler twins to
 them on the chip. Not covered: truncating unsigned casts, which the code means; right shifts of negative values, which
@@ -29,7 +31,6 @@ HERE = pathlib.Path("host_tests/proof")
 BREAKAGES = pathlib.Path("campaigns/breakages.txt")
 OUT = pathlib.Path("build/proof")
 SOURCES = ["lib/filters/src", "lib/tilt/src", "host_tests/proof"]
-FUNCTIONS = ["init", "set_noise", "reset", "update", "coast", "gap"]
 COMMON = ["-machdep", "gcc_x86_16", "-c11", "-no-unicode", "-kernel-warn-key", "asm:clobber=inactive"]
 WRAPS = ["-rte", "-rte-no-mem", "-rte-no-div", "-rte-no-shift", "-rte-no-pointer-call", "-no-warn-signed-overflow",
          "-no-warn-invalid-bool", "-no-warn-left-shift-negative", "-warn-unsigned-overflow"]
@@ -37,11 +38,11 @@ LIMIT_S = 600  # of the processor's time: a busy machine proves as much
 WALL_S = 4 * LIMIT_S
 NOT_DONE = f"not done after {LIMIT_S} s"
 PROVED = {"Valid", "Considered valid"}
-ENTRY = re.compile(r"(?:/\*((?:(?!\*/).)*)\*/\s*)?^void proof_(\w+)\(void\)", re.S | re.M)
+ENTRY = re.compile(r"(?:/\*((?:(?!\*/).)*)\*/\s*)?^(?:void proof_(\w+)\(void\)|PROVE_LAW\((\w+)\))", re.S | re.M)
+CONTRACT = re.compile(r"^/\*@((?:(?!\*/).)*\bassigns\b(?:(?!\*/).)*)\*/\s*[^;{}/]*?\b(\w+)\([^;{}]*\);", re.S | re.M)
 
-# of filter_any.c: switches over the functions proved, and the look for a name, no arithmetic
-SWITCH = re.compile(r"filter_any_(init|configure|start|set_noise|reset|reset_step|update|coast|gap|damp|hold|restart|flags|probe)"
-                    r"|filter_any_(name|find|worst_cycles)|same_text")
+# of filter_list.c: the switch over the laws, and the look for a name, no arithmetic
+SWITCH = re.compile(r"filter_listed(_name)?|filter_find|same_text")
 
 
 def fail(text):
@@ -61,15 +62,28 @@ def frama_c(arguments, what):
 
 def load_entries():
     """name -> (file, functions taken by contract, options)"""
+    paths = sorted(HERE.glob("proof_*.c"))
+    found = [(path, comment, f"law_{law}" if law else name) for path in paths
+             for comment, name, law in ENTRY.findall(path.read_text(encoding="utf-8"))]
+    names = {name for _, _, name in found}
     entries = {}
-    for path in sorted(HERE.glob("proof_*.c")):
-        for comment, name in ENTRY.findall(path.read_text(encoding="utf-8")):
-            comment = " ".join((comment or "").replace("*", " ").split())
-            uses = re.search(r"Uses: ([\w, ]+)", comment)
-            options = re.search(r"Options: (.*)", comment)
-            entries[name] = (path.name, re.findall(r"\w+", uses[1]) if uses else [],
-                             options[1].split() if options else [])
+    for path, comment, name in found:
+        comment = " ".join(comment.replace("*", " ").split())
+        options = re.search(r"Options: (.*)", comment)
+        whole = re.search(r"Whole: ([\w, ]+)", comment)
+        uses = contracts(path) & names - {name} - set(re.findall(r"\w+", whole[1]) if whole else [])
+        entries[name] = (path.name, sorted(uses), options[1].split() if options else [])
     return entries
+
+
+def contracts(path):
+    """Functions that a proof has a contract of with all that they assign, by the name that they have in it."""
+    found = set()
+    for file in {path} | {p for p in included(path, set()) if p.parent == HERE}:
+        text = file.read_text(encoding="utf-8")
+        others = dict(re.findall(r"^#define ([a-z]\w*) ([a-z]\w*)$", text, flags=re.M))
+        found |= {others.get(name, name) for _, name in CONTRACT.findall(text)}
+    return found
 
 
 def annotate(file, out, overlay=None):
@@ -97,14 +111,15 @@ def judge(name, entry, out):
     file, uses, options = entry
     table = out / f"{name}.csv"
     start = time.monotonic()
-    by_contract = ["-eva-use-spec", ",".join(uses)] if uses else []
+    specified = ["-eva-use-spec", ",".join(uses)] if uses else []
     try:
-        log = frama_c([*COMMON, str(out / file), "-eva", "-main", f"proof_{name}", *by_contract, "-eva-slevel", "50000",
+        log = frama_c([*COMMON, str(out / file), "-eva", "-main", f"proof_{name}", *specified, "-eva-slevel", "50000",
                        "-warn-signed-downcast", *options, "-report-csv", str(table)], name)
     except subprocess.TimeoutExpired:
         return [NOT_DONE], 0, 1, set(), set(), LIMIT_S
     (out / f"{name}.log").write_text(log, encoding="utf-8")
     reached = set(re.findall(r"Values at end of function (\w+):", log))
+    by_contract = set(uses) & set(re.findall(r"using specification for function (\w+)", log))
     findings, met, proved, total = [], set(), 0, 0
     if f"proof_{name}" not in reached:
         findings.append("the end of the entry is not reached")
@@ -119,7 +134,7 @@ def judge(name, entry, out):
             ours = row["directory"] != "FRAMAC_SHARE/libc" and not where.startswith(("Frama_C", "__builtin"))
             if not ours or kind == "user hypothesis" or "assigns" in kind or "from" in kind:
                 continue
-            if kind == "postcondition" and where in uses or where not in reached | set(uses):
+            if kind == "postcondition" and where in by_contract or where not in reached | by_contract:
                 continue
             wrap = next((w for w in allowed if w[0] == where and w[1] in text), None)
             if wrap and status not in PROVED:
@@ -134,23 +149,51 @@ def judge(name, entry, out):
 
 
 def missing_filters(entries):
-    """Functions of FILTER_LIST without a proof."""
+    """Laws of FILTER_LIST without a proof."""
     names = subprocess.run(["gcc", "-E", "-P", "-x", "c", "-", "-Ilib/filters/src"], text=True, capture_output=True,
                            input='#include "filter_list.h"\n#define X(f) in_list:f;\nFILTER_LIST(X)\n', check=True).stdout
     filters = re.findall(r"in_list:(\w+);", names.replace(" ", ""))
     if not filters:
         fail("no filter found in lib/filters/src/filter_list.h")
-    return [f"{f}_{function}" for f in filters for function in FUNCTIONS if f"{f}_{function}" not in entries]
+    return [f"law_{f}" for f in filters if f"law_{f}" not in entries]
 
 
-def sourced_functions():
-    """Functions with a body in the sources that are proved, without the assembler twins."""
-    found = set()
-    for path in sorted(p for source in SOURCES[:2] for p in pathlib.Path(source).glob("*.[ch]")):
-        text = path.read_text(encoding="utf-8")
-        text = re.sub(r"^#ifdef __AVR__\n.*?^#else", "", text, flags=re.S | re.M)
-        found |= set(re.findall(r"^(?!.*;$)[A-Za-z_][\w *]*?\b(\w+)\([^;{}]*\)\n\{", text, flags=re.M))
+def included(path, seen):
+    """The files that a proof is one translation unit with."""
+    for name in re.findall(r'^#include "([^"]+)"', path.read_text(encoding="utf-8"), flags=re.M):
+        for found in (pathlib.Path(source) / name for source in SOURCES):
+            if found.exists() and found not in seen:
+                seen.add(found)
+                included(found, seen)
+    return seen
+
+
+def other_names(paths):
+    """What the proofs call a function whose name two sources have: name -> the other ones."""
+    found = {}
+    for path in paths:
+        for name, other in re.findall(r"^#define ([a-z]\w*) ([a-z]\w*)$", path.read_text(encoding="utf-8"), flags=re.M):
+            found.setdefault(name, set()).add(other)
+    return found
+
+
+def functions_of(path):
+    """Functions with a body in a source that is proved, without the assembler twins."""
+    text = re.sub(r"^#ifdef __AVR__\n.*?^#else", "", path.read_text(encoding="utf-8"), flags=re.S | re.M)
+    found = set(re.findall(r"^(?!.*;$)[A-Za-z_][\w *]*?\b(\w+)\([^;{}]*\)\n\{", text, flags=re.M))
     return {name for name in found if not SWITCH.fullmatch(name)}
+
+
+def unreached(reached):
+    """Functions of the sources that no entry of a proof with their file in it reaches."""
+    proofs = {path: included(path, set()) for path in HERE.glob("proof_*.c")}
+    missing = []
+    for path in sorted(p for source in SOURCES[:2] for p in pathlib.Path(source).glob("*.[ch]")):
+        with_it = [proof for proof, files in proofs.items() if path in files]
+        names = set().union(*(reached.get(proof.name, set()) for proof in with_it))
+        others = other_names(with_it + sorted(HERE.glob("*.h")))
+        missing += [f"{path.name}: {name}" for name in sorted(functions_of(path)) if not names & ({name} | others.get(name, set()))]
+    return missing
 
 
 def load_plants():
@@ -185,10 +228,11 @@ def run_entries(pool, entries, wanted):
         annotate(file, OUT)
     print(f"{'function':<32} {'alarms and unproved':>20} {'proved':>10} {'s':>6}")
     jobs = {name: pool.submit(judge, name, entries[name], OUT) for name in wanted}
-    failed, met, reached = set(), set(), set()
+    failed, met, reached = set(), set(), {}
     for name, job in jobs.items():
         findings, proved, total, wraps, seen, seconds = job.result()
-        met, reached = met | wraps, reached | seen
+        met = met | wraps
+        reached.setdefault(entries[name][0], set()).update(seen)
         if total == 0:
             findings.append("nothing to prove")
         print(f"{name:<32} {len(findings):>20} {f'{proved}/{total}':>10} {seconds:>6.1f}", flush=True)
@@ -202,9 +246,7 @@ def run_entries(pool, entries, wanted):
 def gaps(entries, met, reached):
     """What a whole run must cover besides the entries themselves."""
     found = [f"{name}: in FILTER_LIST, but no entry proof_{name} in {HERE}" for name in missing_filters(entries)]
-    used = {use for _, uses, _ in entries.values() for use in uses}
-    found += [f"{use}: taken by contract, but no entry proves it" for use in sorted(used - set(entries))]
-    found += [f"{name}: no entry reaches it" for name in sorted(sourced_functions() - reached)]
+    found += [f"{name}: no entry reaches it" for name in unreached(reached)]
     found += [f"{wrap[0]}: `{wrap[1]}` of deliberate.txt is proved or gone: strike it" for wrap in sorted(deliberate() - met)]
     return found
 
@@ -242,7 +284,7 @@ def main():
     entries = load_entries()
     wanted, plants = chosen(patterns, entries)
     plants = sampled(plants)
-    wanted.sort(key=lambda name: name not in ("two_state_step", "two_state_settle", "factor_uq16"))  # the longest first
+    wanted.sort(key=lambda name: name != "filter_kalman_step" and not name.startswith("law_"))  # the longest first
     with concurrent.futures.ThreadPoolExecutor(max_workers=2) as pool:
         broken, met, reached = run_entries(pool, entries, wanted)
         failed, passed = len(broken), len(wanted) - len(broken)

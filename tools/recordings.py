@@ -6,6 +6,7 @@ import pathlib
 import subprocess
 import sys
 
+from laws import PLAIN
 from page import Fault, Page, run_as_program
 
 PROGRAM = "build/host/recordings"
@@ -17,13 +18,13 @@ ABSENT, SAID = 3, 2  # status of the program; SAID: it has told why
 
 COUNTS = ("samples", "gated", "reacquired", "saturated", "longest_gated", "bounds_broken", "judged", "broken", "worst_share", "hull_judged",
           "hull_broken", "hull_left_lsb", "outside", "outside_worst_lsb")
-OWN, OF_KF = "the filter's own run without faults", "the run of `kf` without faults"
+OWN, OF_PLAIN = "the filter's own run without faults", f"the run of `{PLAIN}` without faults"
 FIELDS = {
     "stream": ("name", "rate_hz", "range_g", "rows_hz", "rows", "clipped", "duplicates", "zeros", "ones"),
     "filter": ("name", "filter", "axis", *COUNTS),
     "tails": ("name", "from_s", "axis", "samples", "sd_lsb", "beyond3", "beyond5"),
     "rest": ("name", "from_s", "filter", "axis", *COUNTS),
-    "fault": ("pool", "fault", "filter", "share", "own_mean", "own_worst", "kf_mean", "kf_worst", "predicted"),
+    "fault": ("pool", "fault", "filter", "share", "own_mean", "own_worst", "plain_mean", "plain_worst", "predicted"),
 }
 
 
@@ -154,7 +155,7 @@ def tables(rows):
     lines = ["## The recordings", "", *streams_table(rows), "## Diverged?", "", *rules_table(rows), "## Gated", "", *gated_table(rows),
              "## Re-acquisitions, longest run of gated samples", "", *again_table(rows),
              "## Outside the range of the last second's samples", "", *outside_table(rows), "## At rest: false gates", "", *rest_table(rows)]
-    for mean, worst, title in (("own_mean", "own_worst", OWN), ("kf_mean", "kf_worst", OF_KF)):
+    for mean, worst, title in (("own_mean", "own_worst", OWN), ("plain_mean", "plain_worst", OF_PLAIN)):
         for pool in unique(rows["fault"], "pool"):
             lines += [f"## Faults put in {pool}: RMSE in LSB from {title}, mean of 20 seeds (worst)", ""]
             lines += faults_table(rows, pool, mean, worst)
@@ -181,7 +182,7 @@ def facts(text):
         elif title == "Gated":
             found[f"gated {row} {column}"] = cell
         elif title.startswith("Faults put in"):
-            pool = title.split(":")[0].removeprefix("Faults put in ") + (" from kf" if OF_KF in title else "")
+            pool = title.split(":")[0].removeprefix("Faults put in ") + (f" from {PLAIN}" if OF_PLAIN in title else "")
             mean, worst = cell.split(" ")
             found.update({f"{pool} {row} {column}": mean, f"{pool} {row} {column} worst": worst.strip("()")})
     return {key: f"{value:g}" if isinstance(value, float) else value for key, value in found.items()}

@@ -12,9 +12,9 @@ budget() {
 flash_budget=$(budget "${image}flash_bytes")
 ram_budget=$(budget "${image}ram_static_bytes")
 data_budget=$(budget "${image}data_bytes")
-# largest TYPES: the eight largest symbols of these types of avr-nm, bytes, name and file
+# largest TYPES: the twelve largest symbols of these types of avr-nm, bytes, name and file
 largest() {
-    for at in $(avr-nm -S --size-sort "$elf" | awk -v types="$1" 'index(types, $3) { print $2 ":" $4 }' | tail -n 8); do
+    for at in $(avr-nm -S --size-sort "$elf" | awk -v types="$1" 'index(types, $3) { print $2 ":" $4 }' | tail -n 12); do
         name=${at#*:}
         source=$(grep -lE "\b${name%%.*}\b" firmware/*.c firmware/*/*.c lib/*/src/*.c hal/avr/*.c | tr '\n' ' ')
         echo "    $((0x${at%%:*})) bytes: $name in ${source:-the libraries of the compiler}" >&2

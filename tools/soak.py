@@ -3,8 +3,8 @@
 
     soak.py [--fw ELF] [--hours H] [--seed N] [--every S]
 
-Two halves run side by side, one with the filter adaptive and one with kf, each with its own seed, in one piece each; a fault of each kind
-comes once at a moment of its own, and about every --every seconds (600, or a third of a shorter half) as chance has it.
+Two halves run side by side, one with the default filter and one with a plain Kalman filter, each with its own seed, in one piece each; a fault
+of each kind comes once at a moment of its own, and about every --every seconds (600, or a third of a shorter half) as chance has it.
 Results: build/soak.json. Exit status 1 when anything is not as it has to be.
 """
 import argparse
@@ -21,8 +21,9 @@ import images
 from faults_judge import NO_LIMIT, PASS_CYCLES
 from faults_kinds import BUS_MS, KINDS, REST, RESET_MS
 from faults_runs import SIMRUN, STATUS_WORDS, need, write_whole
+from laws import DEFAULT, PLAIN
 
-FILTERS = ("adaptive", "kf")
+FILTERS = (DEFAULT, PLAIN)
 RATE_HZ, START_MS = 100, 1000  # until rows come, and filters have warmed up
 ASKED = [kind for kind in KINDS if kind.detectable and kind.rate == RATE_HZ]
 # Faults overlap: when one is over the longest other one may just have begun; then the longest recovery allowed, and a row. As long may no

@@ -17,6 +17,7 @@ try:
     from design.synthesis import by_formula, error_by_formula
 except ImportError as missing:
     sys.exit(f"synthesised: {missing.name} is missing: run make synthesised, which installs it")
+import laws
 from page import Fault, Page, run_as_program
 
 DOCUMENT = pathlib.Path("docs/synthesised-filters.md")
@@ -121,19 +122,17 @@ def shifted(share):
 
 
 UNGUARDED = re.compile(r"^unguarded +(\w+) +0 %: ([\d.]+) ([\d.]+) ([\d.]+) deg\^2$", re.M)
-IDENTIFIED = re.compile(r"^identified R, profile (\d), ([\d.]+) Hz, \d+ samples, outliers (\d+) deg: ([\d.]+) of the true one, sd ([\d.]+)$", re.M)
 WINS = re.compile(r"^a1 (\S+) b0 (\S+) lambda (\S+) wins (\w+) (\S+) s: ([\d.]+), adaptive ([\d.]+)$", re.M)
 MEANS = re.compile(r"^mean of 12 cells: adaptive ([\d.]+), best fixed tuning ([\d.]+) deg\^2$", re.M)
 
 
 def told_by_the_test():
-    """(rows of the unguarded filter with R known and identified, {(profile, Hz, outliers): (mean, sd)}, winners, the two means)."""
+    """(rows of the unguarded filter with R known and its scatter identified, winners, the two means)."""
     text = output_of([ROLL_TEST])
     rows, means = UNGUARDED.findall(text), MEANS.search(text)
     if [row[0] for row in rows[:8]] != [*PROFILES, *PROFILES] or not means:
         raise Fault(f"{ROLL_TEST}: its lines are not as this tool reads them")
-    identified = {(int(p), hz, outliers): (mean, sd) for p, hz, outliers, mean, sd in IDENTIFIED.findall(text)}
-    return rows[:4], rows[4:8], identified, WINS.findall(text), means.groups()
+    return rows[:4], rows[4:8], WINS.findall(text), means.groups()
 
 
 def curve():
@@ -181,9 +180,9 @@ def winning_cells(wins):
 
 
 def adaptive_tables(values, grid):
-    known, identified, found_r, wins, means = told_by_the_test()
+    known, identified, wins, means = told_by_the_test()
     rows = [[name, *(" ".join(f"{float(x):.3f}" for x in row[1:]) for row in cells)] for name, cells in
-            (("unguarded, R known", known), ("unguarded, R identified", identified))]
+            (("unguarded, R known", known), ("unguarded, scatter identified", identified))]
     for share in SHARES:
         cells = [grid[GATE_CHOSEN, profile, share] for profile in PROFILES]
         for profile, cell in zip(PROFILES, cells):
@@ -203,17 +202,13 @@ def adaptive_tables(values, grid):
     for profile in PROFILES:
         values[f"wins {profile} 6-10"] = str(sum(1 for win in wins if win[3:5] == (profile, "6-10")))
     values["wins 2-5 11-15"] = str(len({win[:3] for win in wins if win[4] != "6-10"}))
-    for (profile, hz, outliers), (mean, sd) in found_r.items():
-        values[f"R {profile} {hz} {outliers}"] = mean
-        values[f"R sd {profile} {hz} {outliers}"] = sd
     return lines
 
 
 def declared(values):
-    """The worst case of each filter's update as its header declares it, which make bench holds it to."""
-    for name in ("synth", "synth_opt", "synth_plus", "adaptive", "kf3"):
-        text = pathlib.Path(f"lib/filters/src/{name}.h").read_text(encoding="utf-8")
-        values[f"cycles {name}"] = f"{int(re.search(rf'{name}_worst_cycles = ([0-9]+)', text)[1]):,}"
+    """The worst case of each filter's update as its law declares it."""
+    for name, worst in laws.worst_cycles().items():
+        values[f"cycles {name}"] = f"{worst:,}"
 
 
 def pictures_of(grid):

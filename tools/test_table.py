@@ -34,7 +34,7 @@ def packages(name, *targets):
 # Tests in Python; those without targets compile what they need, or need nothing.
 SCRIPTS = [
     plain("test_flash", "flashtest_images"), plain("test_resets", "system_images", "flashtest_images"), plain("test_fault_page"),
-    plain("test_bench"), plain("test_mutants"), plain("test_progress"),
+    plain("test_bench"), plain("test_layout", "system_images"), plain("test_mutants"), plain("test_progress"),
     plain("test_papers", "paper_programs"), plain("test_papers_synthesis", "paper_programs"), plain("test_schedule"),
     plain("test_pages"), plain("test_default"), plain("test_images"), plain("test_run_tests", "system_images"), plain("test_faults", "system_images"),
     plain("test_arduino", "arduino_images"), plain("test_plotter", "system_images"), plain("test_compile_commands"),
@@ -101,7 +101,7 @@ def one(words):
         print(" ".join(sorted(name.removeprefix("test_") for name in tests)))
         return 0
     if not words:
-        sys.exit("t: which test? make t T=sprf (make t T=list lists all names)")
+        sys.exit("t: which test? make t T=filters (make t T=list lists all names)")
     name, *further = words
     test = tests[found(name, tests)]
     if further and len(test.command) == 1:

@@ -148,7 +148,7 @@ static inline __attribute__((always_inline)) void hal_time_stamp_isr(volatile ui
                      : "memory");
 }
 
-/* Timer2 at 125 kHz */
+/* Timer2 at 15.6 kHz */
 static inline uint8_t hal_time_lap(void)
 {
     return TCNT2;

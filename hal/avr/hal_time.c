@@ -40,7 +40,7 @@ void hal_time_init(void)
     OCR1A = COUNTS_PER_TICK;
     TIMSK1 = _BV(OCIE1A) | _BV(OCIE1B);
     TCCR1B = _BV(CS11);
-    TCCR2B = _BV(CS22) | _BV(CS20);
+    TCCR2B = _BV(CS22) | _BV(CS21) | _BV(CS20);
 }
 
 /* The counter begins at 0 at the start of time and is never written, so a moment has one count. */

@@ -1,7 +1,7 @@
 /*
- * Runs on the ATmega328P (simavr): cycles of each filter of its part of the list (bench_part.h) beside its float
- * yardstick, and in part 1 of the noise estimate, the angles and the formatting of a row, call included, over streams
- * that look for the longest path. On the UART (1 Mbaud), for tools/bench.py:
+ * Runs on the ATmega328P (simavr): cycles of each filter of its part of the list (BENCH_LIST, mk/bench.mk) beside its
+ * float yardstick, and in the first part (BENCH_THE_REST) of the noise estimate, the angles and the formatting of a
+ * row, call included, over streams that look for the longest path. On the UART (1 Mbaud), for tools/bench.py:
  *
  *   =NAME REGIME RATE    a section: then 8 hexadecimal digits per call, cycles of ours and of the float one (0: none)
  *   +stack NAME BYTES    deepest stack of a call seen in the section, return address included; another for float_NAME
@@ -21,14 +21,13 @@
 #include "float_filters.h"
 #include "noise.h"
 #include "tilt.h"
+#include "tracker.h"
 
 /* The row as the firmware composes it; what of it is not used the linker drops. */
 #include "../../firmware/rows.c"
 
-#include "bench_longer.h"
 #include "bench_measure.h"
 #include "bench_out.h"
-#include "bench_part.h"
 #include "bench_streams.h"
 
 enum { SETTLED = 50 };
@@ -54,95 +53,99 @@ static void NOINLINE run_empty(void)
     __asm__ volatile("");
 }
 
-/* The regime of the longer paths is running. */
-static bool longer;
-
+/* A filter of this part: its law, and its yardstick. */
 typedef struct {
-    const char *name; /* in program memory */
-    void (*begin)(uint16_t rate_dhz);
-    void (*set_noise)(void);
-    void (*coast)(void);
-    void (*update)(void);
-    bool (*warming_up)(void);
+    const filter_law_t *law;
+    void (*lengthen)(filter_config_t *config);
     void (*float_start)(void);
     void (*float_set_noise)(void);
     void (*float_coast)(void);
     void (*float_update)(void);
 } subject_t;
 
-#define SUBJECT(F)                                                          \
-    static F##_config_t config_##F;                                         \
-    static F##_t state_##F;                                                 \
-    static float_##F##_t float_##F;                                         \
-    static void begin_##F(uint16_t rate_dhz)                                \
-    {                                                                       \
-        F##_defaults(&config_##F, rate_dhz);                                \
-        if (longer) {                                                       \
-            lengthen_##F(&config_##F);                                      \
-        }                                                                   \
-        config_##F.r_lsb2_q8 = r_lsb2_q8;                                   \
-        (void)F##_init(&state_##F, &config_##F);                            \
-    }                                                                       \
-    static void NOINLINE set_noise_##F(void)                                \
-    {                                                                       \
-        F##_set_noise(&state_##F, r_lsb2_q8);                               \
-    }                                                                       \
-    static void NOINLINE coast_##F(void)                                    \
-    {                                                                       \
-        sink = F##_coast(&state_##F);                                       \
-    }                                                                       \
-    static void NOINLINE update_##F(void)                                   \
-    {                                                                       \
-        sink = F##_update(&state_##F, z_lsb);                               \
-    }                                                                       \
-    static bool warming_up_##F(void)                                        \
-    {                                                                       \
-        return (F##_flags(&state_##F) & FILTER_WARMING_UP) != 0;            \
-    }                                                                       \
-    static void float_start_##F(void)                                       \
-    {                                                                       \
-        float_##F##_start(&float_##F, &config_##F, (float)sink / 65536.0f); \
-    }                                                                       \
-    static void float_set_noise_##F(void)                                   \
-    {                                                                       \
-        float_##F##_set_noise(&float_##F, (float)r_lsb2_q8 / 256.0f);       \
-    }                                                                       \
-    static void NOINLINE float_coast_step_##F(void)                         \
-    {                                                                       \
-        float_sink = float_##F##_coast(&float_##F);                         \
-    }                                                                       \
-    static void NOINLINE float_update_step_##F(void)                        \
-    {                                                                       \
-        float_sink = float_##F##_update(&float_##F, z_lsb);                 \
-    }                                                                       \
-    static const char name_##F[] PROGMEM = #F;
+static filter_config_t config;
+static filter_t state;
+
+/* R stands at another place in each law's parameters. */
+static void put_r(const filter_law_t *law)
+{
+    for (uint8_t i = 0; i < filter_parameter_count(law); i++) {
+        if (filter_parameter(law, i) == &filter_parameter_r) {
+            config.value[i] = (int32_t)r_lsb2_q8;
+        }
+    }
+}
+
+static void begin(const subject_t *s, uint16_t rate_dhz, bool longer)
+{
+    config = filter_defaults(s->law, rate_dhz);
+    if (longer) {
+        s->lengthen(&config);
+    }
+    put_r(s->law);
+    (void)filter_init(&state, s->law, &config);
+}
+
+static void NOINLINE set_noise(void)
+{
+    filter_set_noise(&state, r_lsb2_q8);
+}
+
+static void NOINLINE coast(void)
+{
+    sink = filter_missing(&state);
+}
+
+static void NOINLINE update(void)
+{
+    sink = filter_update(&state, z_lsb);
+}
+
+static bool warms_up(void)
+{
+    return state.collected != FILTER_RUNNING;
+}
+
+/* Compiled alone, as by make check: every filter. */
+#ifndef BENCH_LIST
+#define BENCH_LIST(X) FILTER_LIST(X)
+#endif
+
+#define SUBJECT(F)                                                      \
+    static void float_start_##F(void)                                   \
+    {                                                                   \
+        float_##F##_start(&float_##F, &config, (float)sink / 65536.0f); \
+    }                                                                   \
+    static void float_set_noise_##F(void)                               \
+    {                                                                   \
+        float_##F##_set_noise(&float_##F, (float)r_lsb2_q8 / 256.0f);   \
+    }                                                                   \
+    static void NOINLINE float_coast_step_##F(void)                     \
+    {                                                                   \
+        float_sink = float_##F##_coast(&float_##F);                     \
+    }                                                                   \
+    static void NOINLINE float_update_step_##F(void)                    \
+    {                                                                   \
+        float_sink = float_##F##_update(&float_##F, z_lsb);             \
+    }
 BENCH_LIST(SUBJECT)
 
-#define SUBJECT_ROW(F)      \
-    { name_##F,             \
-      begin_##F,            \
-      set_noise_##F,        \
-      coast_##F,            \
-      update_##F,           \
-      warming_up_##F,       \
-      float_start_##F,      \
-      float_set_noise_##F,  \
-      float_coast_step_##F, \
-      float_update_step_##F },
+#define SUBJECT_FLOAT(F) float_start_##F, float_set_noise_##F, float_coast_step_##F, float_update_step_##F
+#define SUBJECT_ROW(F) { &filter_law_##F, lengthen_##F, SUBJECT_FLOAT(F) },
 static const subject_t subjects[] = { BENCH_LIST(SUBJECT_ROW) };
 
-#if BENCH_PART == 1
+#ifdef BENCH_THE_REST
 static noise_t noise;
 static void NOINLINE update_noise(void)
 {
-    sink = noise_update(&noise, z_lsb);
+    sink = filter_noise_update(&noise, z_lsb);
 }
 
 static tilt_t tilt;
 static int32_t a_q8[3];
 static void NOINLINE update_angles(void)
 {
-    tilt_angles(&tilt, a_q8[0], a_q8[1], a_q8[2]);
+    tilt_angles(&tilt, a_q8);
 }
 
 static float float_a[3];
@@ -154,11 +157,10 @@ static void NOINLINE update_float_angles(void)
 }
 
 static row_t row;
-static int16_t row_mg[3];
 static char line[ROW_MAX];
 static void NOINLINE update_format_row(void)
 {
-    char *end = write_csv(line, &row, row_mg);
+    char *end = write_csv(line, &row);
     sink = *end;
 }
 #endif
@@ -178,13 +180,13 @@ static void provoke(const subject_t *s, bool with_float)
     uint8_t dice = (uint8_t)(random_bits() >> 24);
     if (dice < 40u) {
         another_noise();
-        s->set_noise();
+        set_noise();
         if (with_float) {
             s->float_set_noise();
         }
     }
     for (uint8_t missing = dice < 128u ? dice & 7u : 0; missing != 0; missing--) {
-        s->coast();
+        coast();
         if (with_float) {
             s->float_coast();
         }
@@ -195,18 +197,17 @@ static void run_regime(const subject_t *s, const regime_t *regime, uint16_t rate
 {
     float squares = 0.0f;
     uint16_t compared = 0;
-    put_section(s->name, regime->name, rate_dhz);
+    put_section(filter_name(s->law), regime->name, rate_dhz);
     r_lsb2_q8 = 20ul * 256u;
-    longer = regime->longer;
-    s->begin(rate_dhz);
+    begin(s, rate_dhz, regime->longer);
     level_lsb = 0;
     for (sample_number = 0; sample_number < regime->count; sample_number++) {
-        bool warming_up = s->warming_up();
+        bool warming_up = warms_up();
         if (regime->provoke && !warming_up) {
             provoke(s, true);
         }
         regime->sample();
-        put_hex((uint16_t)(timed(s->update) - overhead));
+        put_hex((uint16_t)(timed(update) - overhead));
         float ours = (float)sink / 65536.0f;
         if (warming_up) {
             put_hex(0);
@@ -223,33 +224,32 @@ static void run_regime(const subject_t *s, const regime_t *regime, uint16_t rate
     /* the states are spent on the stack: each call is one sample more */
     for (; stack_calls != 0; stack_calls--) {
         regime->sample();
-        watch_stack(s->update, &deepest);
+        watch_stack(update, &deepest);
         watch_stack(s->float_update, &float_deepest);
     }
-    end_section(s->name, true);
+    end_section(filter_name(s->law), true);
     if (!regime->provoke) {
         float rms = (float)sqrtf(squares / (float)compared) * 1000.0f;
-        put_result(PSTR("\n+rms "), PSTR(""), s->name, rms < 65535.0f ? (uint16_t)rms : UINT16_MAX);
+        put_result(PSTR("\n+rms "), PSTR(""), filter_name(s->law), rms < 65535.0f ? (uint16_t)rms : UINT16_MAX);
     }
 }
 
 static void run_set_noise(const subject_t *s)
 {
     put_text(PSTR("\n="));
-    put_text(s->name);
+    put_text(filter_name(s->law));
     put_text(PSTR("_set_noise anything 1000\n"));
     deepest = 0;
-    longer = false;
-    s->begin(1000);
+    begin(s, 1000, false);
     for (uint16_t n = 0; n < 500u; n++) {
         another_noise();
         r_lsb2_q8 += n & 1u ? (uint16_t)random_bits() & (uint16_t)(r_lsb2_q8 >> 1) : 0u;
-        put_hex((uint16_t)(timed(s->set_noise) - empty_overhead));
+        put_hex((uint16_t)(timed(set_noise) - empty_overhead));
         put_hex(0);
-        watch_stack(s->set_noise, &deepest);
+        watch_stack(set_noise, &deepest);
     }
     put_text(PSTR("\n+stack "));
-    put_text(s->name);
+    put_text(filter_name(s->law));
     put_text(PSTR("_set_noise"));
     put_number(deepest);
 }
@@ -264,14 +264,14 @@ static void run_filter(const subject_t *s)
     run_set_noise(s);
 }
 
-#if BENCH_PART == 1
+#ifdef BENCH_THE_REST
 static void run_noise(void)
 {
     static const char name[] PROGMEM = "noise";
     for (uint8_t r = 0; r < sizeof regimes / sizeof regimes[0]; r++) {
         for (uint8_t i = 0; i < sizeof rates_dhz / sizeof rates_dhz[0]; i++) {
             put_section(name, regimes[r].name, pgm_read_word(&rates_dhz[i]));
-            noise_init(&noise, pgm_read_word(&rates_dhz[i]), (i & 1u) != 0);
+            filter_noise_init(&noise, pgm_read_word(&rates_dhz[i]), (i & 1u) != 0);
             for (sample_number = 0; sample_number < regimes[r].count; sample_number++) {
                 regimes[r].sample();
                 put_hex((uint16_t)(timed(update_noise) - overhead));
@@ -345,7 +345,7 @@ static void run_format_row(const char *regime, bool widest, uint16_t count)
         row.t_us = widest ? 3999999999ul : random_bits();
         for (uint8_t axis = 0; axis < 3; axis++) {
             row.lsb[axis] = widest ? nines(4096) : uniform(10);
-            row_mg[axis] = widest ? nines(18000) : uniform(12);
+            row.mg[axis] = widest ? nines(18000) : uniform(12);
         }
         row.roll_cdeg = widest ? nines(18000) : uniform(15);
         row.pitch_cdeg = widest ? nines(9000) : uniform(13);

@@ -32,44 +32,42 @@ static volatile int16_t in;
 static volatile int32_t out;
 static volatile float float_out;
 
-#define USE(F)                                         \
-    static void use_##F(void)                          \
-    {                                                  \
-        static F##_t state;                            \
-        F##_config_t config;                           \
-        F##_defaults(&config, (uint16_t)in);           \
-        (void)F##_init(&state, &config);               \
-        F##_set_noise(&state, (uint32_t)out);          \
-        F##_reset(&state, in);                         \
-        out = F##_update(&state, in);                  \
-        out = F##_coast(&state);                       \
-        out = F##_flags(&state);                       \
-    }                                                  \
-    static void use_float_##F(void)                    \
-    {                                                  \
-        static float_##F##_t state;                    \
-        F##_config_t config = { 0 };                   \
-        config.rate_dhz = (uint16_t)in;                \
-        float_##F##_start(&state, &config, float_out); \
-        float_##F##_set_noise(&state, float_out);      \
-        float_out = float_##F##_update(&state, in);    \
-        float_out = float_##F##_coast(&state);         \
+#define USE(F)                                                                   \
+    static void use_##F(void)                                                    \
+    {                                                                            \
+        static filter_t state;                                                   \
+        filter_config_t config = filter_defaults(&filter_law_##F, (uint16_t)in); \
+        (void)filter_init(&state, &filter_law_##F, &config);                     \
+        filter_set_noise(&state, (uint32_t)out);                                 \
+        filter_reset(&state, in);                                                \
+        out = filter_update(&state, in);                                         \
+        out = filter_missing(&state);                                            \
+        out = state.flags;                                                       \
+    }                                                                            \
+    static void use_float_##F(void)                                              \
+    {                                                                            \
+        filter_config_t config = { 0 };                                          \
+        config.rate_dhz = (uint16_t)in;                                          \
+        float_##F##_start(&float_##F, &config, float_out);                       \
+        float_##F##_set_noise(&float_##F, float_out);                            \
+        float_out = float_##F##_update(&float_##F, in);                          \
+        float_out = float_##F##_coast(&float_##F);                               \
     }
 FILTER_LIST(USE)
 
 static void use_noise(void)
 {
     static noise_t state;
-    noise_init(&state, (uint16_t)in, in > 0);
-    out = noise_update(&state, in);
-    noise_gap(&state);
-    out = (int32_t)noise_r_lsb2_q8(&state);
+    filter_noise_init(&state, (uint16_t)in, in > 0);
+    out = filter_noise_update(&state, in);
+    filter_noise_gap(&state);
+    out = (int32_t)filter_noise_r_lsb2_q8(&state);
 }
 
 static void use_angles(void)
 {
     static tilt_t state;
-    tilt_angles(&state, out, out, out);
+    tilt_angles(&state, (const int32_t[]){ out, out, out });
     out = state.roll_cdeg + state.pitch_cdeg;
 }
 
@@ -85,16 +83,15 @@ static void use_format_row(void)
 {
     char line[ROW_MAX];
     row_t row;
-    int16_t mg[3];
     row.t_us = (uint32_t)out;
     row.flags = (uint16_t)in;
     for (uint8_t axis = 0; axis < 3; axis++) {
         row.lsb[axis] = in;
-        mg[axis] = in;
+        row.mg[axis] = in;
     }
     row.roll_cdeg = in;
     row.pitch_cdeg = in;
-    out = *write_csv(line, &row, mg);
+    out = *write_csv(line, &row);
 }
 
 int main(void)

@@ -1,14 +1,26 @@
 /* The Kalman filter with the mean variance of normal and outlying samples, in float. */
 #include "float_filters.h"
 
-void float_lrf_start(float_lrf_t *f, const lrf_config_t *config, float x0_lsb)
+/* bench: worst 830 cycles; float / ours 4.0; rms 0.25 LSB */
+
+struct float_lrf {
+    float x, v;
+    float p00, p01, p10, p11;
+    float dt, q, r, factor; /* r: R_L, factor times that of a normal sample */
+};
+
+float_lrf_t float_lrf;
+
+NOTHING_LONGER(lrf)
+
+void float_lrf_start(float_lrf_t *f, const filter_config_t *config, float x0_lsb)
 {
     f->dt = 10.0f / (float)config->rate_dhz;
-    f->q = (float)config->q_lsb2_s3;
-    float ratio = (float)config->ratio_uq8 / 256.0f;
+    f->q = (float)config->value[LRF_Q_LSB2_S3];
+    float ratio = (float)config->value[LRF_RATIO_UQ8] / 256.0f;
     float square = ratio * ratio;
-    f->factor = (float)config->clean_uq16 / 65536.0f * (1.0f - square) + square;
-    f->r = f->factor * (float)config->r_lsb2_q8 / 256.0f;
+    f->factor = (float)config->value[LRF_CLEAN_UQ16] / 65536.0f * (1.0f - square) + square;
+    f->r = f->factor * (float)config->value[LRF_R_LSB2_Q8] / 256.0f;
     f->x = x0_lsb;
     f->v = 0.0f;
     f->p00 = f->r;

@@ -1,16 +1,16 @@
 /* A sample that is normal or an outlier, in float: what shrf, pbf and af of paper 002 share. */
-#include "float_filters.h"
+#include "float_mixture.h"
 
 #include <math.h>
 
-void float_mixture_start(float_mixture_t *f, const mixture_config_t *config, float x0_lsb)
+void float_mixture_start(float_mixture_t *f, const filter_config_t *config, float x0_lsb)
 {
-    float ratio = (float)config->ratio_uq8 / 256.0f;
+    float ratio = (float)config->value[MIXTURE_RATIO_UQ8] / 256.0f;
     f->dt = 10.0f / (float)config->rate_dhz;
-    f->q = (float)config->q_lsb2_s3;
-    f->r = (float)config->r_lsb2_q8 / 256.0f;
+    f->q = (float)config->value[MIXTURE_Q_LSB2_S3];
+    f->r = (float)config->value[MIXTURE_R_LSB2_Q8] / 256.0f;
     f->ratio2 = ratio * ratio;
-    f->clean = (float)config->clean_uq16 / 65536.0f;
+    f->clean = (float)config->value[MIXTURE_CLEAN_UQ16] / 65536.0f;
     f->count = 0.0f;
     f->x = x0_lsb;
     f->v = 0.0f;
@@ -54,4 +54,11 @@ void float_mixture_apply(float_mixture_t *f, float innovation, float m, float m2
     f->p01 -= m2 * p00 * p01;
     f->p10 -= m2 * p10 * p00;
     f->p11 -= m2 * p10 * p01;
+}
+
+/* The numbers whose normalising takes longest, of a search over the legal ones. */
+void float_mixture_lengthen(filter_config_t *config)
+{
+    config->value[MIXTURE_RATIO_UQ8] = 640;
+    config->value[MIXTURE_CLEAN_UQ16] = 45158;
 }

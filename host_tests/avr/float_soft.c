@@ -6,15 +6,35 @@
 
 #include <math.h>
 
-void float_soft_start(float_soft_t *f, const soft_config_t *config, float x0_lsb)
+/* bench: worst 1350 cycles; float / ours 4.0; rms 0.25 LSB */
+
+struct float_soft {
+    float x, v;
+    float p00, p01, p10, p11;
+    float dt, q, r;
+    float soft, gate, rate_max, agree; /* sigmas (0: none) twice, LSB/s, LSB */
+    float previous, first;
+    uint8_t run, reacquire;
+    bool broken;
+};
+
+float_soft_t float_soft;
+
+/* From R = 16 LSB^2 on such a soft gate takes the coarse format. */
+void lengthen_soft(filter_config_t *config)
+{
+    config->value[SOFT_SOFT_SIGMA_Q8] = 4096;
+}
+
+void float_soft_start(float_soft_t *f, const filter_config_t *config, float x0_lsb)
 {
     f->dt = 10.0f / (float)config->rate_dhz;
-    f->q = (float)config->q_lsb2_s3;
-    f->gate = (float)config->gate_sigma_q8 / 256.0f;
-    f->soft = (float)config->soft_sigma_q8 / 256.0f;
-    f->rate_max = (float)config->rate_max_lsb_s;
-    f->reacquire = (uint8_t)config->reacquire_samples;
-    float_soft_set_noise(f, (float)config->r_lsb2_q8 / 256.0f);
+    f->q = (float)config->value[SOFT_Q_LSB2_S3];
+    f->gate = (float)config->value[SOFT_GATE_SIGMA_Q8] / 256.0f;
+    f->soft = (float)config->value[SOFT_SOFT_SIGMA_Q8] / 256.0f;
+    f->rate_max = (float)config->value[SOFT_RATE_MAX_LSB_S];
+    f->reacquire = (uint8_t)config->value[SOFT_REACQUIRE_SAMPLES];
+    float_soft_set_noise(f, (float)config->value[SOFT_R_LSB2_Q8] / 256.0f);
     f->x = x0_lsb;
     f->v = 0.0f;
     f->p00 = f->r;

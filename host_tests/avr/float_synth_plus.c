@@ -1,13 +1,35 @@
 /* The synthesised filter with a memory of innovations, as its equation says, in float. */
 #include "float_filters.h"
 
-void float_synth_plus_start(float_synth_plus_t *f, const synth_plus_config_t *config, float x0_lsb)
+/*
+ * bench: worst 700 cycles; float / ours 4.0; rms 1.25 LSB
+ * at 800 Hz the float version does not see the line that ours starts with
+ */
+
+struct float_synth_plus {
+    float x1, x2, x3, u1, memory;
+    float a1, b0, b1, b2;
+    float samples; /* of the start; 0: steady */
+};
+
+float_synth_plus_t float_synth_plus;
+
+/* Three taps and the longest shift: near alpha-beta-gamma with 0.431, 0.129 and 0.0169 (lambda = 0.0005). */
+void lengthen_synth_plus(filter_config_t *config)
 {
-    float rest = (config->k < 8U) ? 1.0f / (float)(1UL << config->k) : 0.0f;
+    config->value[SYNTH_PLUS_K] = 7;
+    config->value[SYNTH_PLUS_B0_UQ16] = 28266;
+    config->value[SYNTH_PLUS_B1_Q16] = -48056;
+    config->value[SYNTH_PLUS_B2_Q16] = 20895;
+}
+
+void float_synth_plus_start(float_synth_plus_t *f, const filter_config_t *config, float x0_lsb)
+{
+    float rest = (config->value[SYNTH_PLUS_K] < 8U) ? 1.0f / (float)(1UL << config->value[SYNTH_PLUS_K]) : 0.0f;
     f->a1 = rest - 1.0f;
-    f->b0 = (float)config->b0_uq16 / 65536.0f;
-    f->b1 = (float)config->b1_q16 / 65536.0f;
-    f->b2 = (float)config->b2_q16 / 65536.0f;
+    f->b0 = (float)config->value[SYNTH_PLUS_B0_UQ16] / 65536.0f;
+    f->b1 = (float)config->value[SYNTH_PLUS_B1_Q16] / 65536.0f;
+    f->b2 = (float)config->value[SYNTH_PLUS_B2_Q16] / 65536.0f;
     f->x1 = x0_lsb;
     f->x2 = x0_lsb;
     f->x3 = x0_lsb;

@@ -55,17 +55,6 @@ static uint32_t random_operand(void)
     return random_state >> (random_state & 15);
 }
 
-/* b among neighbours that give other sums. */
-static const int32_t *addends(int32_t b)
-{
-    static int32_t array[4];
-    array[0] = ~b;
-    array[1] = b;
-    array[2] = b;
-    array[3] = ~b;
-    return array;
-}
-
 #define TWIN(name, assembler, c_twin)               \
     static bool twin_##name(uint32_t a, uint32_t b) \
     {                                               \
@@ -82,10 +71,6 @@ TWIN(mul_uq16, fx_mul_uq16(a, (uint16_t)b), fx_mul_uq16_c(a, (uint16_t)b))
 TWIN(mul_uq24, fx_mul_uq24(a, b & 0xFFFFFFUL), fx_mul_uq24_c(a, b & 0xFFFFFFUL))
 TWIN(mul24_uq16, fx_mul24_uq16(a & 0xFFFFFFUL, (uint16_t)b), fx_mul24_uq16_c(a & 0xFFFFFFUL, (uint16_t)b))
 TWIN(mul24_uq24, fx_mul24_uq24(a & 0xFFFFFFUL, b & 0xFFFFFFUL), fx_mul24_uq24_c(a & 0xFFFFFFUL, b & 0xFFFFFFUL))
-TWIN(scale_uq16, fx_scale_uq16((int32_t)a, (uint16_t)b), fx_scale_uq16_c((int32_t)a, (uint16_t)b))
-TWIN(plus, fx_plus((int32_t)a / 2, addends((int32_t)b / 2), 1), fx_plus_c((int32_t)a / 2, addends((int32_t)b / 2), 1))
-TWIN(minus, fx_minus((int32_t)a / 2, addends((int32_t)b / 2), 2),
-     fx_minus_c((int32_t)a / 2, addends((int32_t)b / 2), 2))
 TWIN(sixteenth, fx_sixteenth(a), fx_sixteenth_c(a))
 TWIN(shift12, fx_shift12((uint16_t)a), fx_shift12_c((uint16_t)a))
 TWIN(eightfold, fx_eightfold(a), fx_eightfold_c(a))
@@ -146,9 +131,6 @@ int main(void)
     RUN(mul_uq24);
     RUN(mul24_uq16);
     RUN(mul24_uq24);
-    RUN(scale_uq16);
-    RUN(plus);
-    RUN(minus);
     RUN(sixteenth);
     RUN(shift12);
     RUN(eightfold);

@@ -40,14 +40,13 @@ static uint8_t take_digit(uint32_t *number, uint8_t base)
 }
 
 /* Corner number i: rate, then every parameter at its lower end, its upper end, or off. False: there are no more. */
-static bool corner_config(filter_kind_t kind, uint32_t i, filter_any_config_t *config)
+static bool corner_config(filter_kind_t kind, uint32_t i, filter_config_t *config)
 {
-    filter_any_defaults(kind, config, take_digit(&i, 2) == 0U ? CONFIG_RATE_MIN_DHZ : CONFIG_RATE_MAX_DHZ);
+    *config = filter_defaults(filter_listed(kind), take_digit(&i, 2) == 0U ? FILTER_RATE_MIN_DHZ : FILTER_RATE_MAX_DHZ);
     for (uint8_t n = 0; n < parameter_count(kind); n++) {
         filter_parameter_t parameter = parameter_at(kind, n);
         uint8_t digit = take_digit(&i, parameter.zero_means_off != 0U ? 3 : 2);
-        uint32_t value = (digit == 0U) ? (uint32_t)parameter.min : (digit == 1U) ? (uint32_t)parameter.max : 0U;
-        parameter_set(config, &parameter, value);
+        config->value[n] = (digit == 0U) ? parameter.min : (digit == 1U) ? parameter.max : 0;
     }
     return i == 0U;
 }
@@ -56,15 +55,15 @@ static bool corner_config(filter_kind_t kind, uint32_t i, filter_any_config_t *c
 static bool begin_extreme(filter_sequence_t *s)
 {
     filter_kind_t kind = (filter_kind_t)s->kind;
-    filter_any_config_t config;
+    filter_config_t config;
     while (corner_config(kind, s->corner / EXTREME_SIGNALS, &config)) {
         s->signal = (uint8_t)(s->corner % EXTREME_SIGNALS);
         s->corner++;
         s->calls_end = EXTREME_CALLS;
-        if (filter_any_init(&s->filter, kind, &config)) {
+        if (filter_init(&s->filter, filter_listed(kind), &config) == FILTER_ACCEPTED) {
             return true;
         }
-        if (!has_joint_condition(kind)) {
+        if (!law_facts(kind).joint_condition) {
             return false;
         }
         s->refused++;
@@ -134,21 +133,18 @@ static int16_t next_input(filter_sequence_t *s)
     }
 }
 
-enum call { UPDATE, COAST, RESET, SET_NOISE, DAMP, HOLD, RESTART };
+enum call { UPDATE, MISSING, RESET, SET_NOISE, RESTART };
 
-/* Extremes: 28 updates, 4 coasts damped in their middle, a held update and 3 more, a reset to a rail, updates. */
+/* Extremes: 28 updates, 4 missing samples, 4 updates, a reset to a rail, updates. */
 static enum call next_call(filter_sequence_t *s)
 {
     if (s->extremes) {
         switch (s->calls) {
         case 28:
         case 29:
-        case 31:
-            return COAST;
         case 30:
-            return DAMP;
-        case 32:
-            return HOLD;
+        case 31:
+            return MISSING;
         case 36:
             return RESET;
         default:
@@ -159,42 +155,29 @@ static enum call next_call(filter_sequence_t *s)
     if (what < 6U) {
         return (what < 1U) ? RESET : SET_NOISE; /* a reset settles for 64 steps */
     }
-    if (what < 12U) {
-        return (what < 9U) ? DAMP : (what < 11U) ? HOLD : RESTART;
+    if (what == 6U) {
+        return RESTART;
     }
-    return (what < 12U + s->coasts) ? COAST : UPDATE;
-}
-
-static int32_t estimate_of(const filter_any_t *f)
-{
-    filter_probe_t probe = { 0 };
-    filter_any_probe(f, &probe);
-    return probe.x_lsb_q16;
+    return (what < 7U + s->coasts) ? MISSING : UPDATE;
 }
 
 static int32_t make_call(filter_sequence_t *s)
 {
     switch (next_call(s)) {
-    case COAST:
-        return filter_any_coast(&s->filter);
+    case MISSING:
+        return filter_missing(&s->filter);
     case RESET:
-        filter_any_reset(&s->filter, next_input(s));
+        filter_reset(&s->filter, next_input(s));
         break;
     case SET_NOISE:
-        filter_any_set_noise(&s->filter, random32(&s->random) >> s->noise_bits);
-        break;
-    case DAMP:
-        filter_any_damp(&s->filter);
-        break;
-    case HOLD:
-        filter_any_hold(&s->filter);
+        filter_set_noise(&s->filter, random32(&s->random) >> s->noise_bits);
         break;
     case RESTART:
-        filter_any_restart(&s->filter);
+        filter_restart(&s->filter);
         break;
     case UPDATE:
         s->updates++;
-        return filter_any_update(&s->filter, next_input(s));
+        return filter_update(&s->filter, next_input(s));
     }
     return estimate_of(&s->filter);
 }
@@ -207,7 +190,7 @@ static void add_to_crc(filter_sequence_t *s, const filter_probe_t *probe, int32_
     crc = crc32_u32(crc, probe->p_lsb2_q8);
     crc = crc32_u32(crc, probe->gate_lsb2_q8);
     crc = crc32_u16(crc, probe->gain_uq16);
-    s->crc = crc32_u8(crc, filter_any_flags(&s->filter));
+    s->crc = crc32_u8(crc, s->filter.flags);
 }
 
 const char *sequence_run(filter_sequence_t *s, uint32_t updates)
@@ -224,7 +207,7 @@ const char *sequence_run(filter_sequence_t *s, uint32_t updates)
         int32_t x_lsb_q16 = make_call(s);
         s->calls++;
         filter_probe_t probe;
-        filter_any_probe(&s->filter, &probe);
+        filter_probe(&s->filter, &probe);
         add_to_crc(s, &probe, x_lsb_q16);
         const char *broken = broken_bound(&s->filter, &probe, x_lsb_q16);
         if (broken != NULL) {

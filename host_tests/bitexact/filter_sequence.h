@@ -11,7 +11,7 @@
 typedef struct {
     uint32_t random;
     uint32_t crc;       /* over all calls so far; crc32_value() of it is what to compare */
-    uint32_t updates;   /* calls of F_update so far */
+    uint32_t updates;   /* calls of filter_update so far */
     uint32_t refused;   /* configurations drawn in vain */
     uint32_t episode;   /* configurations begun */
     uint32_t corner;    /* next corner of this kind's configurations */
@@ -21,10 +21,10 @@ typedef struct {
     uint16_t slope;     /* of the input */
     uint8_t signal;     /* which input */
     uint8_t noise_bits; /* of the input */
-    uint8_t coasts;     /* of 256 calls in random episodes */
+    uint8_t coasts;     /* missing samples of 256 calls in random episodes */
     uint8_t kind;       /* in force */
     bool extremes;      /* corners are not through */
-    filter_any_t filter;
+    filter_t filter;
 } filter_sequence_t;
 
 void sequence_start(filter_sequence_t *s);

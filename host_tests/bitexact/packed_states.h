@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 #pragma pack(push, 1)
-#include "filter_any.h"
+#include "filter_list.h"
 #include "noise.h"
 #include "tilt.h"
 #pragma pack(pop)

@@ -7,7 +7,7 @@
 
 #include <stdint.h>
 
-#include "filter_any.h"
+#include "filter_list.h"
 
 #define VECTORS_BLOCK 200U
 

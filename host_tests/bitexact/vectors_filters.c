@@ -4,14 +4,8 @@
 
 enum { ITEMS = 2000, ITEMS_PER_CONFIG = 100 };
 
-static filter_any_t filter;
+static filter_t filter;
 static uint32_t random_state;
-
-static const uint8_t state_sizes[FILTER_KIND_COUNT] FX_FLASH = {
-#define STATE_SIZE(F) sizeof(F##_t),
-    FILTER_LIST(STATE_SIZE)
-#undef STATE_SIZE
-};
 
 uint8_t filter_paths(void)
 {
@@ -20,16 +14,14 @@ uint8_t filter_paths(void)
 
 vectors_path_t filter_path(uint8_t which)
 {
-    return (vectors_path_t){ filter_any_name((filter_kind_t)which), linked_kind(which) == which ? ITEMS : 0 };
+    return (vectors_path_t){ filter_listed_name((filter_kind_t)which), linked_kind(which) == which ? ITEMS : 0 };
 }
 
 /* Every second configuration that of a board at 100 Hz, so that gates open and close as they do in use. */
 static void begin(filter_kind_t kind, uint16_t index)
 {
     uint32_t refused = 0;
-    filter_any_config_t config;
-    filter_any_defaults(kind, &config, 1000);
-    (void)filter_any_init(&filter, kind, &config);
+    (void)init_default(&filter, kind, 1000);
     if ((index / ITEMS_PER_CONFIG & 1U) != 0U) {
         (void)init_random(&filter, kind, &random_state, &refused);
     }
@@ -49,25 +41,21 @@ static void call(uint16_t index)
     uint8_t what = (uint8_t)(vectors_random() >> 24);
     vectors_input(what);
     if (what < 17U) {
-        vectors_output((uint32_t)filter_any_coast(&filter), 4);
+        vectors_output((uint32_t)filter_missing(&filter), 4);
     } else if (what == 17U) {
-        filter_any_damp(&filter);
-    } else if (what == 18U) {
-        filter_any_hold(&filter);
-    } else if (what == 19U) {
-        filter_any_restart(&filter);
-    } else if (what < 22U) {
+        filter_restart(&filter);
+    } else if (what < 20U) {
         int16_t z = sample(index);
         vectors_input((uint16_t)z);
-        filter_any_reset(&filter, z);
-    } else if (what < 25U) {
+        filter_reset(&filter, z);
+    } else if (what < 23U) {
         uint32_t r_lsb2_q8 = vectors_random() >> what;
         vectors_input(r_lsb2_q8);
-        filter_any_set_noise(&filter, r_lsb2_q8);
+        filter_set_noise(&filter, r_lsb2_q8);
     } else {
         int16_t z = sample(index);
         vectors_input((uint16_t)z);
-        vectors_output((uint32_t)filter_any_update(&filter, z), 4);
+        vectors_output((uint32_t)filter_update(&filter, z), 4);
     }
 }
 
@@ -81,13 +69,15 @@ void filter_path_item(uint8_t which, uint16_t index)
     }
     call(index);
     filter_probe_t probe = { 0 };
-    filter_any_probe(&filter, &probe);
+    filter_probe(&filter, &probe);
     vectors_output((uint32_t)probe.x_lsb_q16, 4);
     vectors_output((uint32_t)probe.rate_lsb_q16, 4);
     vectors_output((uint32_t)probe.innovation_lsb_q16, 4);
     vectors_output(probe.p_lsb2_q8, 4);
     vectors_output(probe.gate_lsb2_q8, 4);
     vectors_output(probe.gain_uq16, 2);
-    vectors_output(filter_any_flags(&filter), 1);
-    vectors_state(&filter.state, fx_flash_u8(&state_sizes[which]));
+    vectors_output(filter.flags, 1);
+    filter_t state = filter;
+    state.law = NULL; /* an address */
+    vectors_state(&state, sizeof state);
 }

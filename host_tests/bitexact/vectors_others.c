@@ -29,15 +29,15 @@ static void noise_item(uint16_t index)
 {
     uint32_t v = vectors_random();
     if (index % 250U == 0U) {
-        noise_init(&noise, (uint16_t)(50U + (v >> 8) % 39951U), (v & 1U) != 0U);
+        filter_noise_init(&noise, (uint16_t)(50U + (v >> 8) % 39951U), (v & 1U) != 0U);
     } else if ((v & 0x3FU) == 0U) {
-        noise_gap(&noise);
+        filter_noise_gap(&noise);
     }
     int16_t z = (int16_t)((int32_t)(vectors_random() >> 16) - 32768);
     z = (int16_t)(z / (int16_t)(1 << ((index >> 5) & 14U)));
     vectors_input((uint16_t)z);
-    vectors_output(noise_update(&noise, z), 1);
-    vectors_output(noise_r_lsb2_q8(&noise), 4);
+    vectors_output(filter_noise_update(&noise, z), 1);
+    vectors_output(filter_noise_r_lsb2_q8(&noise), 4);
     vectors_state(&noise, sizeof noise);
 }
 
@@ -64,7 +64,7 @@ static void angles_item(bool any)
     int32_t x = any ? any_i32() : acceleration_q8();
     int32_t y = any ? any_i32() : acceleration_q8();
     int32_t z = any ? any_i32() : acceleration_q8();
-    tilt_angles(&tilt, x, y, z);
+    tilt_angles(&tilt, (const int32_t[]){ x, y, z });
     vectors_output((uint16_t)tilt.roll_cdeg, 2);
     vectors_output((uint16_t)tilt.pitch_cdeg, 2);
     vectors_output(tilt.roll_undefined, 1);
@@ -76,7 +76,7 @@ static void gravity_item(bool any)
     int32_t x = any ? any_i32() : acceleration_q8();
     int32_t y = any ? any_i32() : acceleration_q8();
     int32_t z = any ? any_i32() : acceleration_q8();
-    vectors_output(tilt_gravity_plausible(x, y, z), 1);
+    vectors_output(tilt_gravity_plausible((const int32_t[]){ x, y, z }), 1);
 }
 
 void other_path_item(uint8_t which, uint16_t index)

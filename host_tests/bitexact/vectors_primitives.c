@@ -26,14 +26,6 @@ static fx_scaled_t scaled_of(uint32_t v)
 /* The halves of any two numbers have a sum and a difference. */
 #define HALF(v) ((int32_t)(v) / 2)
 
-static const int32_t *two(uint32_t v)
-{
-    static int32_t array[2];
-    array[0] = HALF(v);
-    array[1] = HALF(~v);
-    return array;
-}
-
 /* The number shifted, with the places in its low bits: both are the same in every build or the result is another. */
 static uint32_t normalised(uint32_t v)
 {
@@ -66,9 +58,6 @@ static uint32_t normalised_c(uint32_t v)
     X(fx_mul24_uq16, fx_mul24_uq16(A24, B16))                                          \
     X(fx_mul24_uq24, fx_mul24_uq24(A24, B24))                                          \
     X(fx_mul_uq24, fx_mul_uq24(a, B24))                                                \
-    X(fx_scale_uq16, (uint32_t)fx_scale_uq16((int32_t)a, B16))                         \
-    X(fx_plus, (uint32_t)fx_plus(HALF(a), two(b), 0))                                  \
-    X(fx_minus, (uint32_t)fx_minus(HALF(a), two(b), 1))                                \
     X(fx_shift12, fx_shift12(A16))                                                     \
     X(fx_eightfold, fx_eightfold(a))                                                   \
     X(fx_sixteenth, fx_sixteenth(a))                                                   \
@@ -78,9 +67,6 @@ static uint32_t normalised_c(uint32_t v)
     X(fx_mul24_uq16_c, fx_mul24_uq16_c(A24, B16))                                      \
     X(fx_mul24_uq24_c, fx_mul24_uq24_c(A24, B24))                                      \
     X(fx_mul_uq24_c, fx_mul_uq24_c(a, B24))                                            \
-    X(fx_scale_uq16_c, (uint32_t)fx_scale_uq16_c((int32_t)a, B16))                     \
-    X(fx_plus_c, (uint32_t)fx_plus_c(HALF(a), two(b), 0))                              \
-    X(fx_minus_c, (uint32_t)fx_minus_c(HALF(a), two(b), 1))                            \
     X(fx_shift12_c, fx_shift12_c(A16))                                                 \
     X(fx_eightfold_c, fx_eightfold_c(a))                                               \
     X(fx_sixteenth_c, fx_sixteenth_c(a))                                               \
@@ -88,28 +74,28 @@ static uint32_t normalised_c(uint32_t v)
     X(fx_normalise, normalised(NOT_0(a)))                                              \
     X(fx_shift_right_c, fx_shift_right_c(a, (uint8_t)(b & 31U)))                       \
     X(fx_shift_right, fx_shift_right(a, (uint8_t)(b & 31U)))                           \
-    X(fx_shifted_right, fx_shifted_right(a, (uint8_t)(b & 31U)))                       \
+    X(filter_fx_shifted_right, filter_fx_shifted_right(a, (uint8_t)(b & 31U)))         \
     X(fx_without_part_c, (uint32_t)fx_without_part_c(HALF(a), PART(b)))                \
     X(fx_without_part, (uint32_t)fx_without_part(HALF(a), PART(b)))                    \
     X(fx_clamp_high_c, (uint32_t)fx_clamp_high_c((int32_t)a, 54))                      \
     X(fx_clamp_high, (uint32_t)fx_clamp_high((int32_t)a, 54))                          \
-    X(fx_high_u16, fx_high_u16(A16, B16))                                              \
-    X(fx_times_uq16, fx_times_uq16(a, B16))                                            \
-    X(fx_leading, fx_leading(a))                                                       \
+    X(filter_fx_high_u16, filter_fx_high_u16(A16, B16))                                \
+    X(filter_fx_times_uq16, filter_fx_times_uq16(a, B16))                              \
+    X(filter_fx_leading, filter_fx_leading(a))                                         \
     X(fx_places, fx_places(a))                                                         \
     X(fx_mantissa, fx_mantissa(a))                                                     \
-    X(fx_inverse_uq16, fx_inverse_uq16(LED(a)))                                        \
+    X(filter_fx_inverse_uq16, filter_fx_inverse_uq16(LED(a)))                          \
     X(fx_reciprocal_leading_uq16, fx_reciprocal_leading_uq16(LED(a)))                  \
     X(fx_abs32, fx_abs32((int32_t)a))                                                  \
     X(fx_add_sat, fx_add_sat(a, b))                                                    \
     X(fx_clamp, (uint32_t)fx_clamp((int32_t)a, POSITIVE(b)))                           \
     X(fx_inverse_m_uq16, fx_inverse_m_uq16((uint8_t)(a & 0x7FU), B16))                 \
     X(fx_reciprocal_uq16, fx_reciprocal_uq16(a < 0x10000000UL ? a | 0x10000000UL : a)) \
-    X(fx_isqrt32, fx_isqrt32(a))                                                       \
-    X(fx_scaled, pack(fx_scaled(a)))                                                   \
-    X(fx_scaled_mul, pack(fx_scaled_mul(scaled_of(a), scaled_of(b))))                  \
-    X(fx_scaled_div, pack(fx_scaled_div(scaled_of(a), scaled_of(b))))                  \
-    X(fx_scaled_fixed, fx_scaled_fixed(scaled_of(a), (uint8_t)(b & 31U)))
+    X(filter_fx_isqrt32, filter_fx_isqrt32(a))                                         \
+    X(filter_fx_scaled, pack(filter_fx_scaled(a)))                                     \
+    X(filter_fx_scaled_mul, pack(filter_fx_scaled_mul(scaled_of(a), scaled_of(b))))    \
+    X(filter_fx_scaled_div, pack(filter_fx_scaled_div(scaled_of(a), scaled_of(b))))    \
+    X(filter_fx_scaled_fixed, filter_fx_scaled_fixed(scaled_of(a), (uint8_t)(b & 31U)))
 
 enum {
 #define NUMBER(name, result) NUMBER_##name,

@@ -1,45 +1,38 @@
 /*
- * Calibration and parameters of the filters once more, for judging: by their descriptors and F_init, sharing nothing
- * with firmware/.
+ * Calibration and parameters of the filters once more, for judging: by their descriptors and filter_init, sharing
+ * nothing with firmware/.
  */
 #include <stdio.h>
 #include <string.h>
 
-#include "filter_any.h"
+#include "filter_list.h"
 #include "fuzz_commands.h"
 
 static const filter_parameter_t *named(const settings_t *s, const char *name, unsigned *which)
 {
-    const filter_descriptor_t *d = filter_any_descriptor((filter_kind_t)s->filter);
-    for (*which = 0; *which < d->parameter_count; ++*which) {
-        if (strcmp(d->parameters[*which].name, name) == 0) {
-            return &d->parameters[*which];
+    const filter_law_t *law = filter_listed((filter_kind_t)s->filter);
+    for (*which = 0; *which < filter_parameter_count(law); ++*which) {
+        const filter_parameter_t *parameter = filter_parameter(law, (uint8_t)*which);
+        if (strcmp(parameter->words, name) == 0) {
+            return parameter;
         }
     }
     return NULL;
 }
 
-static void put(filter_any_config_t *config, const filter_parameter_t *parameter, uint32_t value)
-{
-    uint16_t short_value = (uint16_t)value;
-    memcpy((uint8_t *)config + parameter->offset, parameter->size == 2 ? (void *)&short_value : (void *)&value,
-           parameter->size);
-}
-
 /* The filter takes the value with the user's others. */
-static bool taken(const settings_t *s, const filter_parameter_t *parameter, uint32_t value)
+static bool taken(const settings_t *s, unsigned which, uint32_t value)
 {
-    filter_any_t f;
-    filter_any_config_t config;
-    const filter_parameter_t *all = filter_any_descriptor((filter_kind_t)s->filter)->parameters;
-    filter_any_defaults((filter_kind_t)s->filter, &config, s->rate_dhz);
+    filter_t f;
+    const filter_law_t *law = filter_listed((filter_kind_t)s->filter);
+    filter_config_t config = filter_defaults(law, s->rate_dhz);
     for (unsigned i = 0; i < SETTINGS_PARAMETERS_MAX; i++) {
         if (s->own >> i & 1u) {
-            put(&config, &all[i], s->parameters[i]);
+            config.value[i] = (int32_t)s->parameters[i];
         }
     }
-    put(&config, parameter, value);
-    return filter_any_init(&f, (filter_kind_t)s->filter, &config);
+    config.value[which] = (int32_t)value;
+    return filter_init(&f, law, &config) == FILTER_ACCEPTED;
 }
 
 bool expected_parameter(settings_t *s, const char *name, const char *value, char reply[REPLY_TEXT])
@@ -59,7 +52,7 @@ bool expected_parameter(settings_t *s, const char *name, const char *value, char
     bool off = parameter->zero_means_off && v * one == 0.0;
     legal = legal && (off || (v * one >= parameter->min && v * one <= parameter->max));
     uint32_t stored = legal ? (uint32_t)(int64_t)(v * one) : 0;
-    if (!legal || !taken(s, parameter, stored)) {
+    if (!legal || !taken(s, which, stored)) {
         snprintf(reply, REPLY_TEXT, "# refused 4: illegal value; %s ", name);
         return true;
     }

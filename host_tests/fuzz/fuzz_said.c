@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "filter_any.h"
+#include "filter_list.h"
 #include "fuzz.h"
 #include "fuzz_commands.h"
 
@@ -164,7 +164,7 @@ static unsigned lines_after(const char *first)
     if (sscanf(first, "# filter %15[^: ]: ", name) != 1 || strchr(first, ':') == NULL) {
         return 0;
     }
-    return FUZZ_SETTINGS + FUZZ_VECTORS - 1 + filter_any_descriptor(filter_any_find(name))->parameter_count;
+    return FUZZ_SETTINGS + FUZZ_VECTORS - 1 + filter_parameter_count(filter_listed(filter_find(name)));
 }
 
 unsigned count_replies(const said_t *s)

@@ -7,7 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "filter_any.h"
 #include "support_filters.h"
 #include "support_random.h"
 
@@ -24,19 +23,17 @@ static int16_t sample(int row, test_random_t *random)
 
 int main(void)
 {
-    static filter_any_t f[FILTER_KIND_COUNT];
+    static filter_t f[FILTER_KIND_COUNT];
     test_random_t random;
     random_seed(&random, 2002);
     printf("# x in Q15.16 of every filter at its defaults for 100 Hz; made by `make golden`, held by test_golden\nz");
     FOR_EACH_KIND(kind)
     {
-        filter_any_config_t config;
-        filter_any_defaults((filter_kind_t)kind, &config, 1000);
-        if (!filter_any_init(&f[kind], (filter_kind_t)kind, &config)) {
-            fprintf(stderr, "golden_vectors: %s refuses its defaults\n", filter_any_name((filter_kind_t)kind));
+        if (!init_default(&f[kind], (filter_kind_t)kind, 1000)) {
+            fprintf(stderr, "golden_vectors: %s refuses its defaults\n", filter_listed_name((filter_kind_t)kind));
             return 1;
         }
-        printf(",%s", filter_any_name((filter_kind_t)kind));
+        printf(",%s", filter_listed_name((filter_kind_t)kind));
     }
     for (int row = 0; row < ROWS; row++) {
         bool missing = row >= GAP_AT && row < GAP_END;
@@ -44,7 +41,7 @@ int main(void)
         printf(missing ? "\n" : "\n%d", z);
         FOR_EACH_KIND(kind)
         {
-            printf(",%" PRId32, missing ? filter_any_coast(&f[kind]) : filter_any_update(&f[kind], z));
+            printf(",%" PRId32, missing ? coast_only(&f[kind]) : filter_update(&f[kind], z));
         }
     }
     printf("\n");

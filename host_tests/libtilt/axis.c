@@ -1,9 +1,10 @@
 /* One filter on one axis, with any parameters: what a choice of parameters or of a filter is judged by. */
 #include "libtilt.h"
 
+#include <stdio.h>
 #include <string.h>
 
-#include "filter_any.h"
+#include "filter_list.h"
 #include "noise.h"
 
 enum { MISSING = 0, AT_RAIL = 2, HOLD_PER_S = 10 };
@@ -15,49 +16,34 @@ int libtilt_filters(void)
 
 const char *libtilt_filter_name(int kind)
 {
-    return filter_any_name((filter_kind_t)kind);
+    return filter_listed_name((filter_kind_t)kind);
 }
 
-static int64_t field(const filter_parameter_t *p, const filter_any_config_t *config)
+int libtilt_filter_cycles(int kind)
 {
-    uint16_t narrow;
-    uint32_t wide;
-    memcpy(&narrow, (const char *)config + p->offset, sizeof narrow);
-    if (p->size == sizeof narrow) {
-        return p->is_signed ? (int16_t)narrow : narrow;
-    }
-    memcpy(&wide, (const char *)config + p->offset, sizeof wide);
-    return p->is_signed ? (int32_t)wide : (int64_t)wide;
-}
-
-static void set_field(const filter_parameter_t *p, filter_any_config_t *config, int64_t value)
-{
-    uint16_t narrow = (uint16_t)value;
-    uint32_t wide = (uint32_t)value;
-    memcpy((char *)config + p->offset, p->size == sizeof narrow ? (void *)&narrow : (void *)&wide, p->size);
+    return filter_worst_cycles(filter_listed((filter_kind_t)kind));
 }
 
 bool libtilt_parameter(int kind, int index, uint16_t rate_dhz, libtilt_parameter_t *out)
 {
-    const filter_descriptor_t *descriptor = filter_any_descriptor((filter_kind_t)kind);
-    if (index >= descriptor->parameter_count) {
+    const filter_law_t *law = filter_listed((filter_kind_t)kind);
+    if (index >= filter_parameter_count(law)) {
         return false;
     }
-    const filter_parameter_t *p = &descriptor->parameters[index];
-    filter_any_config_t config;
-    filter_any_defaults((filter_kind_t)kind, &config, rate_dhz);
+    const filter_parameter_t *p = filter_parameter(law, (uint8_t)index);
+    filter_config_t config = filter_defaults(law, rate_dhz);
     *out = (libtilt_parameter_t){ .min = p->min,
                                   .max = p->max,
-                                  .value = field(p, &config),
+                                  .value = config.value[index],
                                   .fraction_bits = p->fraction_bits,
                                   .zero_means_off = p->zero_means_off };
-    memcpy(out->name, p->name, sizeof p->name);
-    memcpy(out->unit, p->unit, sizeof p->unit);
+    (void)snprintf(out->name, sizeof out->name, "%s", p->words);
+    (void)snprintf(out->unit, sizeof out->unit, "%s", p->words + strlen(p->words) + 1);
     return true;
 }
 
 typedef struct {
-    filter_any_t filter;
+    filter_t filter;
     noise_t noise;
     uint32_t fixed_r_lsb2_q8; /* 0: estimated */
     uint32_t r_lsb2_q8;
@@ -68,36 +54,34 @@ typedef struct {
 /* 100 ms of predictions, as the sample path; then the filter waits and starts anew. */
 static void miss(axis_t *a)
 {
-    if (a->missing == 0) {
-        filter_any_gap(&a->filter);
-    }
     if (a->missing++ < a->hold) {
-        (void)filter_any_coast(&a->filter);
-        noise_gap(&a->noise);
+        (void)filter_missing(&a->filter);
+        filter_noise_gap(&a->noise);
     } else {
-        filter_any_restart(&a->filter);
+        filter_restart(&a->filter);
     }
 }
 
+/* At the rail a sample tells nothing. */
 static void take(axis_t *a, int16_t z_lsb, bool at_rail)
 {
     a->missing = 0;
     if (at_rail) {
-        filter_any_hold(&a->filter);
-    } else if (a->fixed_r_lsb2_q8 == 0 && noise_update(&a->noise, z_lsb)) {
-        a->r_lsb2_q8 = noise_r_lsb2_q8(&a->noise);
-        filter_any_set_noise(&a->filter, a->r_lsb2_q8);
+        (void)filter_missing(&a->filter);
+        filter_noise_gap(&a->noise);
+        return;
     }
-    (void)filter_any_update(&a->filter, z_lsb);
-    if (at_rail) {
-        filter_any_hold(&a->filter);
+    if (a->fixed_r_lsb2_q8 == 0 && filter_noise_update(&a->noise, z_lsb)) {
+        a->r_lsb2_q8 = filter_noise_r_lsb2_q8(&a->noise);
+        filter_set_noise(&a->filter, a->r_lsb2_q8);
     }
+    (void)filter_update(&a->filter, z_lsb);
 }
 
 static void keep(const axis_t *a, uint8_t state, libtilt_probe_t *out)
 {
     filter_probe_t probe = { 0 };
-    filter_any_probe(&a->filter, &probe);
+    filter_probe(&a->filter, &probe);
     *out = (libtilt_probe_t){ .x_lsb_q16 = probe.x_lsb_q16,
                               .rate_lsb_q16 = probe.rate_lsb_q16,
                               .innovation_lsb_q16 = probe.innovation_lsb_q16,
@@ -113,21 +97,21 @@ static void keep(const axis_t *a, uint8_t state, libtilt_probe_t *out)
 int libtilt_axis(int kind, uint16_t rate_dhz, const int64_t *values, const uint8_t *changed, uint32_t r_lsb2_q8,
                  bool noisy_axis, const int16_t *z_lsb, const uint8_t *state, int64_t count, libtilt_probe_t *out)
 {
-    const filter_descriptor_t *descriptor = filter_any_descriptor((filter_kind_t)kind);
-    filter_any_config_t config;
-    filter_any_defaults((filter_kind_t)kind, &config, rate_dhz);
-    for (int i = 0; i < descriptor->parameter_count; i++) {
+    const filter_law_t *law = filter_listed((filter_kind_t)kind);
+    filter_config_t config = filter_defaults(law, rate_dhz);
+    for (int i = 0; i < filter_parameter_count(law); i++) {
         if (changed[i]) {
-            set_field(&descriptor->parameters[i], &config, values[i]);
+            config.value[i] = (int32_t)values[i];
         }
     }
     axis_t axis = { .fixed_r_lsb2_q8 = r_lsb2_q8, .hold = rate_dhz / (10 * HOLD_PER_S) };
-    if (!filter_any_init(&axis.filter, (filter_kind_t)kind, &config)) {
-        return filter_any_refused((filter_kind_t)kind, &config) + 1;
+    filter_answer_t answer = filter_init(&axis.filter, law, &config);
+    if (answer != FILTER_ACCEPTED) {
+        return answer;
     }
-    noise_init(&axis.noise, rate_dhz, noisy_axis);
-    axis.r_lsb2_q8 = r_lsb2_q8 != 0 ? r_lsb2_q8 : noise_r_lsb2_q8(&axis.noise);
-    filter_any_set_noise(&axis.filter, axis.r_lsb2_q8);
+    filter_noise_init(&axis.noise, rate_dhz, noisy_axis);
+    axis.r_lsb2_q8 = r_lsb2_q8 != 0 ? r_lsb2_q8 : filter_noise_r_lsb2_q8(&axis.noise);
+    filter_set_noise(&axis.filter, axis.r_lsb2_q8);
     for (int64_t i = 0; i < count; i++) {
         if (state[i] == MISSING) {
             miss(&axis);

@@ -57,6 +57,7 @@ typedef struct {
 /* Kinds are 0 .. libtilt_filters() - 1, in the order of filter_list.h. */
 int libtilt_filters(void);
 const char *libtilt_filter_name(int kind);
+int libtilt_filter_cycles(int kind); /* worst case on the chip */
 
 /* False: the filter has no parameter with this number. */
 bool libtilt_parameter(int kind, int index, uint16_t rate_dhz, libtilt_parameter_t *out);
@@ -74,7 +75,7 @@ int64_t libtilt_replay(const libtilt_stream_t *in, int kind, uint16_t rate_dhz, 
 /*
  * One axis through one filter: count samples, state 0 missing, 1 there, 2 at the rail. The filter has its defaults but
  * for values[i] of parameter i where changed[i] is not 0. r_lsb2_q8: R throughout; 0: as the firmware estimates it.
- * Returns 0, or what filter_any_refused says plus 1, where the filter refuses its parameters.
+ * Returns 0, or filter_init's answer, where the filter refuses its parameters.
  */
 int libtilt_axis(int kind, uint16_t rate_dhz, const int64_t *values, const uint8_t *changed, uint32_t r_lsb2_q8,
                  bool noisy_axis, const int16_t *z_lsb, const uint8_t *state, int64_t count, libtilt_probe_t *out);

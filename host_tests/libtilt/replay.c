@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "coast.h"
-#include "filter_any.h"
+#include "filter_list.h"
 #include "pipeline.h"
 #include "settings.h"
 #include "silence.h"

@@ -46,25 +46,23 @@ struct Subject {
 };
 
 // A filter of the list at 10 Hz, told R, with parameters by their names in the descriptor.
-filter_any_t begun(const std::string &name, const std::vector<Parameter> &parameters, const Values &values)
+filter_t begun(const std::string &name, const std::vector<Parameter> &parameters, const Values &values)
 {
-    const filter_kind_t kind = filter_any_find(name.c_str());
-    filter_any_config_t config;
-    filter_any_defaults(kind, &config, TILT_RATE_DHZ);
+    const filter_kind_t kind = filter_find(name.c_str());
+    filter_config_t config = filter_defaults(filter_listed(kind), TILT_RATE_DHZ);
     for (std::uint8_t i = 0; i < parameter_count(kind); i++) {
         const filter_parameter_t entry = parameter_at(kind, i);
-        if (std::string(entry.name) == "r") {
-            parameter_set(&config, &entry, TILT_R_LSB2_Q8);
+        if (std::string(entry.words) == "r") {
+            config.value[i] = TILT_R_LSB2_Q8;
         }
         for (std::size_t k = 0; k < values.size(); k++) {
-            if (parameters[k].name == entry.name) {
-                parameter_set(&config, &entry,
-                              static_cast<std::uint32_t>(std::lround(std::ldexp(values[k], entry.fraction_bits))));
+            if (parameters[k].name == entry.words) {
+                config.value[i] = static_cast<std::int32_t>(std::lround(std::ldexp(values[k], entry.fraction_bits)));
             }
         }
     }
-    filter_any_t f;
-    if (!filter_any_init(&f, kind, &config)) {
+    filter_t f;
+    if (filter_init(&f, filter_listed(kind), &config) != FILTER_ACCEPTED) {
         throw std::runtime_error(name + ": refuses the parameters of its grid");
     }
     return f;
@@ -74,7 +72,7 @@ Subject of_list(const std::string &name, const std::vector<Parameter> &parameter
 {
     return { name, Arithmetic::fixed, parameters,
              [name, parameters](const Values &values, const tilt_run_t &run, tilt_errors_t *errors, tilt_bank_t *bank) {
-                 const filter_any_t f = begun(name, parameters, values);
+                 const filter_t f = begun(name, parameters, values);
                  tilt_judge(&f, &run, errors, bank);
              } };
 }

@@ -10,49 +10,40 @@ namespace papers
 {
 void covariance(const Options & /*options*/)
 {
-    robust_reference_t kf;
-    robust_reference_t lrf;
-    robust_reference_table1(&kf, ROBUST_KF);
-    robust_reference_table1(&lrf, ROBUST_LRF);
+    robust_reference_t plain;
+    robust_reference_t linear;
+    robust_reference_table1(&plain, plain_name.c_str());
+    robust_reference_table1(&linear, linear_name.c_str());
     double p[4];
-    double kf_gain[2];
-    double lrf_gain[2];
+    double plain_gain[2];
+    double linear_gain[2];
     double unused[4];
-    robust_reference_steady(&kf, p, kf_gain);
-    robust_reference_steady(&lrf, unused, lrf_gain);
-    const Contestant of_kf = contestant("kf", Arithmetic::in_double, {});
-    const Contestant of_lrf = contestant("lrf", Arithmetic::in_double, {});
-    row("covariance", of_kf, "p11", p[0], 1);
-    row("covariance", of_kf, "p12", p[1], 1);
-    row("covariance", of_kf, "p22", p[3], 1);
-    row("covariance", of_kf, "gain", kf_gain[0], 1);
-    row("covariance", of_lrf, "gain", lrf_gain[0], 1);
+    robust_reference_steady(&plain, p, plain_gain);
+    robust_reference_steady(&linear, unused, linear_gain);
+    const Contestant of_plain = contestant(plain_name, Arithmetic::in_double, {});
+    const Contestant of_linear = contestant(linear_name, Arithmetic::in_double, {});
+    row("covariance", of_plain, "p11", p[0], 1);
+    row("covariance", of_plain, "p12", p[1], 1);
+    row("covariance", of_plain, "p22", p[3], 1);
+    row("covariance", of_plain, "gain", plain_gain[0], 1);
+    row("covariance", of_linear, "gain", linear_gain[0], 1);
     for (const bool with_outliers : { true, false }) {
-        const double noise = with_outliers ? robust_reference_r(&lrf) : kf.r;
-        const double ratio_of_variances = robust_reference_lyapunov(&kf, kf_gain, noise) /
-                                          robust_reference_lyapunov(&lrf, lrf_gain, noise);
-        row("covariance", of_lrf, with_outliers ? "variance_ratio" : "variance_ratio_clean", ratio_of_variances, 1);
+        const double noise = with_outliers ? robust_reference_r(&linear) : plain.r;
+        const double ratio_of_variances = robust_reference_lyapunov(&plain, plain_gain, noise) /
+                                          robust_reference_lyapunov(&linear, linear_gain, noise);
+        row("covariance", of_linear, with_outliers ? "variance_ratio" : "variance_ratio_clean", ratio_of_variances, 1);
     }
 }
 
 // The columns of Table 2 that are quotients of its others.
 void table2(const Options & /*options*/)
 {
-    constexpr double kf_products = 47.0;
-    constexpr double kf_sums = 32.0;
-    const struct {
-        const char *name;
-        double products;
-        double sums;
-    } printed[] = { { "pbf", 84.0, 41.0 },
-                    { "af_grid", 584.0, 292.0 },
-                    { "shrf", 49.0, 37.0 },
-                    { "sprf_paper", 53.0, 36.0 },
-                    { "lrf", 47.0, 38.0 } };
-    for (const auto &line : printed) {
+    constexpr double plain_products = 47.0;
+    constexpr double plain_sums = 32.0;
+    for (const PrintedCost &line : printed_costs()) {
         const Contestant c = contestant(line.name, Arithmetic::in_double, {});
-        row("table2", c, "multiplications_by_kf", line.products / kf_products, 1);
-        row("table2", c, "additions_by_kf", line.sums / kf_sums, 1);
+        row("table2", c, "multiplications_by_kf", line.products / plain_products, 1);
+        row("table2", c, "additions_by_kf", line.sums / plain_sums, 1);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "experiments.hpp"
 #include "model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -72,7 +73,7 @@ std::size_t find(const std::vector<Contestant> &all, const std::string &name, Ar
 }
 
 // Index of the filter that each is compared with, in the same arithmetic.
-std::vector<std::size_t> standards(const std::vector<Contestant> &all, const std::string &name = "kf")
+std::vector<std::size_t> standards(const std::vector<Contestant> &all, const std::string &name = plain_name)
 {
     std::vector<std::size_t> result;
     for (const Contestant &c : all) {
@@ -127,11 +128,20 @@ void group_rows(const std::string &experiment, const std::vector<Contestant> &al
     }
 }
 
+// Of Table 2, and compared with the PBF there.
+bool loses(const std::string &name)
+{
+    const std::vector<std::string> ours = library_names();
+    const std::vector<PrintedCost> printed = printed_costs();
+    return name != merged_name && std::find(ours.begin(), ours.end(), name) != ours.end() &&
+           std::any_of(printed.begin(), printed.end(), [&](const PrintedCost &line) { return line.name == name; });
+}
+
 // Mean square error of the filters over that of the PBF.
 void loss_rows(const std::string &experiment, const std::vector<Contestant> &all, const std::vector<Scores> &scores,
                const Options &options)
 {
-    const std::vector<std::size_t> standard = standards(all, "pbf");
+    const std::vector<std::size_t> standard = standards(all, merged_name);
     std::vector<const std::vector<double> *> above;
     std::vector<const std::vector<double> *> below;
     for (std::size_t i = 0; i < all.size(); i++) {
@@ -141,10 +151,11 @@ void loss_rows(const std::string &experiment, const std::vector<Contestant> &all
     const std::vector<Interval> ratios = bootstrap_ratios(above, below, options.seed);
     for (std::size_t i = 0; i < all.size(); i++) {
         const std::string &name = all[i].name;
-        if (name == "shrf" || name == "sprf_paper" || name == "lrf") {
-            row(experiment, all[i], "loss_to_pbf", ratios[i], options.runs);
+        if (loses(name)) {
+            row(experiment, all[i], "loss_to_" + merged_name, ratios[i], options.runs);
             if (options.runs >= static_cast<int>(group)) {
-                row(experiment, all[i], "loss_to_pbf_median_of_50", group_ratio(*above[i], *below[i]), options.runs);
+                row(experiment, all[i], "loss_to_" + merged_name + "_median_of_50", group_ratio(*above[i], *below[i]),
+                    options.runs);
             }
         }
     }
@@ -164,7 +175,7 @@ void agreement_rows(const std::string &experiment, const std::vector<Contestant>
 {
     for (std::size_t i = 0; i < all.size(); i++) {
         const std::size_t twin = find(all, all[i].name, Arithmetic::in_double);
-        if (all[i].arithmetic == Arithmetic::fixed && twin < all.size() && all[i].name != "kf") {
+        if (all[i].arithmetic == Arithmetic::fixed && twin < all.size() && all[i].name != plain_name) {
             const std::vector<std::size_t> s = standards(all);
             const double ours = total(scores[s[i]].square[steady]) / total(scores[i].square[steady]);
             const double theirs = total(scores[s[twin]].square[steady]) / total(scores[twin].square[steady]);
@@ -214,7 +225,8 @@ static void after_warm_up(const std::string &experiment, Start start, const Opti
 {
     const std::vector<Contestant> all = contestants(reference_names(), { start });
     for (const Contestant &c : all) {
-        row(experiment, c, "warm_up_rows", c.name.compare(0, 10, "sprf_paper") == 0 ? 0 : warm_up_rows, 1);
+        row(experiment, c, "warm_up_rows",
+            c.name.compare(0, published_name.size(), published_name) == 0 ? 0 : warm_up_rows, 1);
     }
     start_rows(experiment, all, Scenario{}, options);
 }
@@ -243,7 +255,7 @@ void clean_data(const Options &options)
 void printed_readings(const Options &options)
 {
     std::vector<std::string> names = printed_names();
-    names.insert(names.begin(), "kf");
+    names.insert(names.begin(), plain_name);
     std::vector<Contestant> all;
     for (const std::string &name : names) {
         all.push_back(contestant(name, Arithmetic::in_double, { Start::table1 }));
@@ -263,8 +275,7 @@ void printed_readings(const Options &options)
 void wrong_r(const Options &options)
 {
     const std::array<double, 7> factors = { 1.0 / 16, 0.25, 0.5, 1.0, 2.0, 4.0, 16.0 };
-    const std::vector<std::string> names = { "kf",   "lrf", "sprf_paper", "sprf_paper_3sigma", "sprf", "soft",
-                                             "shrf", "pbf", "af" };
+    const std::vector<std::string> names = library_names();
     Scenario scenario;
     scenario.first_clean = true;
     Progress progress(options.runs * 1.05 * factors.size());
@@ -272,8 +283,8 @@ void wrong_r(const Options &options)
         std::vector<Contestant> all = contestants(names, { Start::table1, factor });
         // the standard is the Kalman filter that knows R
         for (Contestant &c : all) {
-            if (c.name == "kf") {
-                c = contestant("kf", c.arithmetic, { Start::table1 });
+            if (c.name == plain_name) {
+                c = contestant(plain_name, c.arithmetic, { Start::table1 });
             }
         }
         const std::vector<Scores> scores = scored(all, scenario, options, progress);

@@ -1,7 +1,7 @@
 #include "estimators.hpp"
 
 extern "C" {
-#include "filter_any.h"
+#include "filter_list.h"
 #include "support_filters.h"
 }
 
@@ -14,22 +14,22 @@ namespace papers
 {
 namespace
 {
-filter_any_t initialised(const std::string &name, const Shipping &shipping)
+filter_t initialised(const std::string &name, const Shipping &shipping)
 {
-    const filter_kind_t kind = filter_any_find(name.c_str());
+    const filter_kind_t kind = filter_find(name.c_str());
     if (kind == FILTER_KIND_COUNT) {
         throw std::runtime_error(name + ": not in FILTER_LIST");
     }
     std::map<std::string, double> wanted = shipping.parameters;
     wanted.emplace("r", std::min(shipping.r * shipping.lsb_per_unit * shipping.lsb_per_unit, largest_r_lsb2()));
-    filter_any_config_t config;
-    filter_any_defaults(kind, &config, static_cast<std::uint16_t>(std::lround(10.0 * shipping.rate_hz)));
+    filter_config_t config = filter_defaults(filter_listed(kind),
+                                             static_cast<std::uint16_t>(std::lround(10.0 * shipping.rate_hz)));
     for (std::uint8_t i = 0; i < parameter_count(kind); i++) {
         const filter_parameter_t parameter = parameter_at(kind, i);
-        const auto found = wanted.find(parameter.name);
+        const auto found = wanted.find(parameter.words);
         if (found != wanted.end()) {
-            const auto value = std::llround(std::ldexp(found->second, parameter.fraction_bits));
-            parameter_set(&config, &parameter, static_cast<std::uint32_t>(value));
+            config.value[i] = static_cast<std::int32_t>(
+                std::llround(std::ldexp(found->second, parameter.fraction_bits)));
             wanted.erase(found);
         }
     }
@@ -37,11 +37,11 @@ filter_any_t initialised(const std::string &name, const Shipping &shipping)
     if (!wanted.empty()) {
         throw std::runtime_error(name + ": has no parameter " + wanted.begin()->first);
     }
-    filter_any_t f;
-    if (!filter_any_init(&f, kind, &config)) {
+    filter_t f;
+    if (filter_init(&f, filter_listed(kind), &config) != FILTER_ACCEPTED) {
         throw std::runtime_error(name + ": refuses these parameters");
     }
-    filter_any_set_noise(
+    filter_set_noise(
         &f, static_cast<std::uint32_t>(std::lround(
                 256.0 * std::min(shipping.r * shipping.lsb_per_unit * shipping.lsb_per_unit, largest_r_lsb2()))));
     return f;
@@ -50,7 +50,7 @@ filter_any_t initialised(const std::string &name, const Shipping &shipping)
 class Shipped
 {
   public:
-    Shipped(const filter_any_t &begun, const Shipping &shipping)
+    Shipped(const filter_t &begun, const Shipping &shipping)
         : f_(begun), counts_(shipping.lsb_per_unit), zero_(shipping.zero), reset_(shipping.reset_at_first)
     {
     }
@@ -58,14 +58,14 @@ class Shipped
     {
         const std::int16_t z_lsb = as_sample((z - zero_) * counts_);
         if (reset_) {
-            filter_any_reset(&f_, z_lsb);
+            filter_reset(&f_, z_lsb);
             reset_ = false;
         }
-        return filter_any_update(&f_, z_lsb) / (65536.0 * counts_) + zero_;
+        return filter_update(&f_, z_lsb) / (65536.0 * counts_) + zero_;
     }
 
   private:
-    filter_any_t f_;
+    filter_t f_;
     double counts_;
     double zero_;
     bool reset_;
@@ -91,7 +91,7 @@ Maker synthesised(double a1, double b0, std::optional<double> x0)
 
 Maker shipped(const std::string &name, const Shipping &shipping)
 {
-    const filter_any_t begun = initialised(name, shipping);
+    const filter_t begun = initialised(name, shipping);
     return [begun, shipping] { return Shipped(begun, shipping); };
 }
 
@@ -99,14 +99,14 @@ std::vector<std::string> shipped_names()
 {
     std::vector<std::string> result;
     for (std::uint8_t kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-        result.emplace_back(filter_any_name(static_cast<filter_kind_t>(kind)));
+        result.emplace_back(filter_listed_name(static_cast<filter_kind_t>(kind)));
     }
     return result;
 }
 
 bool is_shipped(const std::string &name)
 {
-    return filter_any_find(name.c_str()) != FILTER_KIND_COUNT;
+    return filter_find(name.c_str()) != FILTER_KIND_COUNT;
 }
 
 double largest_r_lsb2()

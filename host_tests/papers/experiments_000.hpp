@@ -26,6 +26,9 @@ void all_filters(const Options &options);
 // adaptive without its guard and with several, on clean samples and with outliers.
 void adaptive(const Options &options);
 
+// R as noise.c identifies it in 10 s, at rest, in motion and with bad reads.
+void noise(const Options &options);
+
 // Roll filtered as an angle against filtered axes, on the shipped tilt streams.
 void roll_as_angle(const Options &options);
 } // namespace papers::roll

@@ -13,35 +13,39 @@ namespace
 {
 struct Entry {
     const char *name;
-    robust_kind_t kind;
+    const char *reference; // reference_robust.h
     robust_reading_t reading;
     double gate_sigma;
     int reacquire;
+    // of those that are the library's too: samples after a step within which each trial is to be back; 0: not of them
+    int returns_within;
+    // Table 2: multiplications and additions; 0: not in it
+    double products, sums;
 };
 
 const Entry entries[] = {
-    { "kf", ROBUST_KF, ROBUST_CORRECTED, 3.0, 0 },
-    { "lrf", ROBUST_LRF, ROBUST_CORRECTED, 3.0, 0 },
-    { "sprf_paper", ROBUST_SPRF, ROBUST_CORRECTED, 2.0, 0 },
-    { "sprf_paper_3sigma", ROBUST_SPRF, ROBUST_CORRECTED, 3.0, 0 },
-    { "sprf", ROBUST_SPRF, ROBUST_CORRECTED, 3.0, 5 },
-    { "soft", ROBUST_SOFT, ROBUST_CORRECTED, 3.0, 5 },
-    { "shrf", ROBUST_SHRF, ROBUST_CORRECTED, 3.0, 0 },
-    { "pbf", ROBUST_PBF, ROBUST_CORRECTED, 3.0, 0 },
-    { "af", ROBUST_AF, ROBUST_CORRECTED, 3.0, 0 },
-    { "af_grid", ROBUST_AF_GRID, ROBUST_CORRECTED, 3.0, 0 },
-    { "clairvoyant", ROBUST_CLAIRVOYANT, ROBUST_CORRECTED, 3.0, 0 },
-    { "af_grid_eq15", ROBUST_AF_GRID, ROBUST_PRINTED_15, 3.0, 0 },
-    { "af_grid_i_by_50", ROBUST_AF_GRID, ROBUST_PRINTED_GRID, 3.0, 0 },
-    { "pbf_eq21", ROBUST_PBF, ROBUST_PRINTED_21, 3.0, 0 },
-    { "shrf_eq24", ROBUST_SHRF, ROBUST_PRINTED_24, 3.0, 0 },
-    { "shrf_eq25", ROBUST_SHRF, ROBUST_PRINTED_25, 3.0, 0 },
-    { "pbf_eq26", ROBUST_PBF, ROBUST_PRINTED_26, 3.0, 0 },
-    { "shrf_eq29_cut", ROBUST_SHRF, ROBUST_PRINTED_27, 3.0, 0 },
-    { "shrf_eq30", ROBUST_SHRF, ROBUST_PRINTED_30, 3.0, 0 },
-    { "sprf_eq33", ROBUST_SPRF, ROBUST_PRINTED_33, 2.0, 0 },
-    { "sprf_eq34", ROBUST_SPRF, ROBUST_PRINTED_34, 2.0, 0 },
-    { "lrf_eq39", ROBUST_LRF, ROBUST_PRINTED_39, 3.0, 0 },
+    { "kf", "kf", ROBUST_CORRECTED, 3.0, 0, 1200, 0, 0 },
+    { "lrf", "lrf", ROBUST_CORRECTED, 3.0, 0, 800, 47, 38 },
+    { "sprf_paper", "sprf", ROBUST_CORRECTED, 2.0, 0, 1200, 53, 36 },
+    { "sprf_paper_3sigma", "sprf", ROBUST_CORRECTED, 3.0, 0, 1200, 0, 0 },
+    { "sprf", "sprf", ROBUST_CORRECTED, 3.0, 5, 200, 0, 0 },
+    { "soft", "soft", ROBUST_CORRECTED, 3.0, 5, 200, 0, 0 },
+    { "shrf", "shrf", ROBUST_CORRECTED, 3.0, 0, 1200, 49, 37 },
+    { "pbf", "pbf", ROBUST_CORRECTED, 3.0, 0, 800, 84, 41 },
+    { "af", "af", ROBUST_CORRECTED, 3.0, 0, 800, 0, 0 },
+    { "af_grid", "af_grid", ROBUST_CORRECTED, 3.0, 0, 0, 584, 292 },
+    { "clairvoyant", "clairvoyant", ROBUST_CORRECTED, 3.0, 0, 0, 0, 0 },
+    { "af_grid_eq15", "af_grid", ROBUST_PRINTED_15, 3.0, 0, 0, 0, 0 },
+    { "af_grid_i_by_50", "af_grid", ROBUST_PRINTED_GRID, 3.0, 0, 0, 0, 0 },
+    { "pbf_eq21", "pbf", ROBUST_PRINTED_21, 3.0, 0, 0, 0, 0 },
+    { "shrf_eq24", "shrf", ROBUST_PRINTED_24, 3.0, 0, 0, 0, 0 },
+    { "shrf_eq25", "shrf", ROBUST_PRINTED_25, 3.0, 0, 0, 0, 0 },
+    { "pbf_eq26", "pbf", ROBUST_PRINTED_26, 3.0, 0, 0, 0, 0 },
+    { "shrf_eq29_cut", "shrf", ROBUST_PRINTED_27, 3.0, 0, 0, 0, 0 },
+    { "shrf_eq30", "shrf", ROBUST_PRINTED_30, 3.0, 0, 0, 0, 0 },
+    { "sprf_eq33", "sprf", ROBUST_PRINTED_33, 2.0, 0, 0, 0, 0 },
+    { "sprf_eq34", "sprf", ROBUST_PRINTED_34, 2.0, 0, 0, 0, 0 },
+    { "lrf_eq39", "lrf", ROBUST_PRINTED_39, 3.0, 0, 0, 0, 0 },
 };
 
 // The library's rules, in degrees: rate at most 3 degree/s, runs agree within 3 sqrt(2 R) + what that rate moves
@@ -53,7 +57,7 @@ class DoubleFilter final : public Filter
   public:
     DoubleFilter(const Entry &entry, const Settings &settings)
     {
-        robust_reference_table1(&initial_, entry.kind);
+        (void)robust_reference_table1(&initial_, entry.reference);
         initial_.reading = entry.reading;
         initial_.r *= settings.r_factor;
         initial_.gate_sigma = (settings.gate_sigma > 0.0) ? settings.gate_sigma : entry.gate_sigma;
@@ -62,7 +66,7 @@ class DoubleFilter final : public Filter
             initial_.rate_max = rate_max_deg_s;
             initial_.agree = 3.0 * std::sqrt(2.0 * initial_.r) + rate_max_deg_s * period_s;
         }
-        const bool as_published = entry.kind == ROBUST_SPRF && entry.reacquire == 0;
+        const bool as_published = entry.reference == gated_name && entry.reacquire == 0;
         initial_.median_window = (settings.start != Start::table1 && !as_published) ? 5 : 0;
         if (settings.start == Start::shipped) { // the library limits it to R per sample
             initial_.p22_start = std::min(shipped_rate_variance, initial_.r / (period_s * period_s));
@@ -110,10 +114,20 @@ std::vector<std::string> names(bool printed)
     return result;
 }
 
-double steady_sigma_of(robust_kind_t kind)
+const Entry &entry_of(const std::string &name)
+{
+    const Entry *found = std::find_if(std::begin(entries), std::end(entries),
+                                      [&](const Entry &entry) { return name == entry.name; });
+    if (found == std::end(entries)) {
+        throw std::runtime_error(name + ": no filter of paper 002");
+    }
+    return *found;
+}
+
+double steady_sigma_of(const std::string &name)
 {
     robust_reference_t f;
-    robust_reference_table1(&f, kind);
+    (void)robust_reference_table1(&f, name.c_str());
     double p[4];
     double gain[2];
     robust_reference_steady(&f, p, gain);
@@ -171,10 +185,43 @@ std::vector<Contestant> contestants(const std::vector<std::string> &chosen, cons
     return result;
 }
 
+std::vector<std::string> library_names()
+{
+    std::vector<std::string> result;
+    for (const Entry &entry : entries) {
+        if (entry.returns_within != 0) {
+            result.emplace_back(entry.name);
+        }
+    }
+    return result;
+}
+
+int return_limit(const std::string &name)
+{
+    return entry_of(name).returns_within;
+}
+
+std::vector<PrintedCost> printed_costs()
+{
+    std::vector<PrintedCost> result;
+    for (const Entry &entry : entries) {
+        if (entry.products != 0.0) {
+            result.push_back({ entry.name, entry.products, entry.sums });
+        }
+    }
+    return result;
+}
+
+const std::string plain_name = "kf";
+const std::string linear_name = "lrf";
+const std::string published_name = "sprf_paper";
+const std::string gated_name = "sprf";
+const std::string merged_name = "pbf";
+
 double steady_sigma_deg(const std::string &name)
 {
-    static const double of_kf = steady_sigma_of(ROBUST_KF);
-    static const double of_lrf = steady_sigma_of(ROBUST_LRF);
-    return (name.compare(0, 3, "lrf") == 0) ? of_lrf : of_kf;
+    static const double of_plain = steady_sigma_of(plain_name);
+    static const double of_linear = steady_sigma_of(linear_name);
+    return (name.compare(0, linear_name.size(), linear_name) == 0) ? of_linear : of_plain;
 }
 } // namespace papers

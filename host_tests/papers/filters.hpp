@@ -55,6 +55,26 @@ std::vector<std::string> printed_names();
 // Names of the filters of FILTER_LIST that are paper 002's.
 std::vector<std::string> fixed_names();
 
+// Names of the references that are the library's filters, the published one with the gate of ours as well.
+std::vector<std::string> library_names();
+
+// Samples after a step within which each trial of such a filter is to be back.
+int return_limit(const std::string &name);
+
+// Table 2.
+struct PrintedCost {
+    std::string name;
+    double products;
+    double sums;
+};
+std::vector<PrintedCost> printed_costs();
+
+// Kalman's filter, which is the standard; with one R for both kinds of samples; with a gate as published; and with
+// ours.
+extern const std::string plain_name, linear_name, published_name, gated_name;
+// The one that the paper compares the simpler ones with.
+extern const std::string merged_name;
+
 // The named filters in both arithmetics, the fixed ones as far as they are in FILTER_LIST.
 std::vector<Contestant> contestants(const std::vector<std::string> &names, const Settings &settings);
 

@@ -9,9 +9,8 @@
 #include "scope.hpp"
 
 extern "C" {
-#include "filter_any.h"
-#include "support_filters.h"
-#include "two_state_wide.h"
+#include "filter_list.h"
+#include "support_laws.h"
 }
 
 #include <cmath>
@@ -37,7 +36,7 @@ double table1_value(const std::string &filter, const std::string &parameter, dou
         return rate_max_deg_s / lsb_deg * period_s / t_s;
     }
     if (parameter == "clean") {
-        return filter == "af" ? 0.5 : clean; // af learns it: (15) begins with all values alike
+        return law_facts(filter_find(filter.c_str())).learns ? 0.5 : clean; // (15) begins with all values alike
     }
     if (parameter == "ratio") {
         return ratio;
@@ -45,22 +44,20 @@ double table1_value(const std::string &filter, const std::string &parameter, dou
     return parameter == "gate" ? settings.gate_sigma : 0.0;
 }
 
-filter_any_t initialised(filter_kind_t kind, const std::string &name, const Settings &settings)
+filter_t initialised(filter_kind_t kind, const std::string &name, const Settings &settings)
 {
     const double speed = (settings.start == Start::shipped) ? 1.0 : hurry;
     const auto rate_dhz = static_cast<std::uint16_t>(std::lround(speed * 10.0 / period_s));
-    filter_any_config_t config;
-    filter_any_defaults(kind, &config, rate_dhz);
+    filter_config_t config = filter_defaults(filter_listed(kind), rate_dhz);
     for (std::uint8_t i = 0; i < parameter_count(kind); i++) {
         const filter_parameter_t parameter = parameter_at(kind, i);
-        const double value = table1_value(name, parameter.name, 10.0 / rate_dhz, settings);
+        const double value = table1_value(name, parameter.words, 10.0 / rate_dhz, settings);
         if (value != 0.0) {
-            parameter_set(&config, &parameter,
-                          static_cast<std::uint32_t>(std::lround(std::ldexp(value, parameter.fraction_bits))));
+            config.value[i] = static_cast<std::int32_t>(std::lround(std::ldexp(value, parameter.fraction_bits)));
         }
     }
-    filter_any_t f;
-    if (!filter_any_init(&f, kind, &config)) {
+    filter_t f;
+    if (filter_init(&f, filter_listed(kind), &config) != FILTER_ACCEPTED) {
         throw std::runtime_error(name + ": refuses the parameters of Table 1");
     }
     return f;
@@ -76,41 +73,24 @@ std::uint32_t fixed(double value, int fraction_bits)
         std::lround(std::ldexp(std::fmin(value, std::ldexp(1.0, 31 - fraction_bits)), fraction_bits)));
 }
 
-void begin(two_state_t &core, double p11, double p22)
+// A law holds P in units of its R (lrf: R_L).
+void begin_table1(filter_t &f)
 {
-    two_state_begin(&core, static_cast<std::int32_t>(fixed(x0_lsb, 16)),
-                    static_cast<std::int32_t>(fixed(rate0_lsb, 16)), fixed(p11, 28), 0, fixed(p22, 28));
-}
-
-void begin(two_state_wide_t &core, double p11, double p22)
-{
-    two_state_wide_begin(&core, static_cast<std::int32_t>(fixed(x0_lsb, 16)),
-                         static_cast<std::int32_t>(fixed(rate0_lsb, 16)), fixed(p11, 16), 0, fixed(p22, 28));
-}
-
-// A state with a core that can be begun; one without is another paper's. A core holds P in units of its R (lrf: R_L).
-template <class State> auto begin_state(State &state, int) -> decltype(begin(state.core, 0.0, 0.0))
-{
-    const double r_core_deg2 = state.core.r_lsb2_q8 / 256.0 * lsb_deg * lsb_deg;
-    begin(state.core, 0.7 / r_core_deg2, 0.04 * period_s * period_s / r_core_deg2);
-}
-
-template <class State> void begin_state(State &, long)
-{
-    throw std::runtime_error("a filter without a core cannot start from Table 1");
-}
-
-void begin_table1(filter_any_t &f)
-{
-    switch (f.kind) {
-#define BEGIN(F)                        \
-    case FILTER_KIND_##F:               \
-        begin_state(f.state.of_##F, 0); \
-        break;
-        FILTER_LIST(BEGIN)
-#undef BEGIN
-    default:
-        break;
+    const auto x_q16 = static_cast<std::int32_t>(fixed(x0_lsb, 16));
+    const auto rate_q16 = static_cast<std::int32_t>(fixed(rate0_lsb, 16));
+    const auto per_r = [](double variance_deg2, std::uint32_t r_lsb2_q8) {
+        return variance_deg2 / (r_lsb2_q8 / 256.0 * lsb_deg * lsb_deg);
+    };
+    constexpr double p11_deg2 = 0.7;
+    constexpr double p22_deg2 = 0.04 * period_s * period_s;
+    if (f.law->start == filter_kalman_start) {
+        const std::uint32_t r = f.own.kalman.r_lsb2_q8;
+        kalman_from(&f, x_q16, rate_q16, { fixed(per_r(p11_deg2, r), 28), 0, fixed(per_r(p22_deg2, r), 28) });
+    } else if (f.law->report == filter_wide_report) {
+        const std::uint32_t r = f.own.wide.r_lsb2_q8;
+        wide_from(&f, x_q16, rate_q16, { fixed(per_r(p11_deg2, r), 16), 0, fixed(per_r(p22_deg2, r), 28) });
+    } else {
+        throw std::runtime_error("a filter without a covariance of position and rate cannot start from Table 1");
     }
 }
 
@@ -131,28 +111,28 @@ class FixedFilter final : public Filter
     }
     double step(double y_deg) override
     {
-        return filter_any_update(&f_, as_sample(y_deg / lsb_deg)) * (lsb_deg / 65536.0);
+        return filter_update(&f_, as_sample(y_deg / lsb_deg)) * (lsb_deg / 65536.0);
     }
     bool refused() const override
     {
-        return (filter_any_flags(&f_) & FILTER_GATED) != 0;
+        return (f_.flags & FILTER_GATED) != 0;
     }
     double gain() const override
     {
         filter_probe_t probe;
-        filter_any_probe(&f_, &probe);
+        filter_probe(&f_, &probe);
         return probe.gain_uq16 / 65536.0;
     }
 
   private:
-    filter_any_t initial_;
-    filter_any_t f_;
+    filter_t initial_;
+    filter_t f_;
 };
 } // namespace
 
 std::unique_ptr<Filter> detail::make_fixed(const std::string &name, const Settings &settings)
 {
-    const filter_kind_t kind = filter_any_find(name.c_str());
+    const filter_kind_t kind = filter_find(name.c_str());
     if (kind == FILTER_KIND_COUNT) {
         throw std::runtime_error(name + ": not in FILTER_LIST");
     }
@@ -163,7 +143,7 @@ std::vector<std::string> fixed_names()
 {
     std::vector<std::string> result;
     for (std::uint8_t kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-        const std::string name = filter_any_name(static_cast<filter_kind_t>(kind));
+        const std::string name = filter_listed_name(static_cast<filter_kind_t>(kind));
         if (of_paper_002(name)) {
             result.push_back(name);
         }

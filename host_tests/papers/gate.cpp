@@ -48,7 +48,7 @@ void rows_of(const std::string &experiment, const std::vector<Contestant> &all, 
     const std::vector<Interval> ratios = bootstrap_ratios(above, below, options.seed);
     for (std::size_t i = 2; i < all.size(); i++) {
         row(experiment, all[i], "k_ef_steady", ratios[i], options.runs);
-        if (all[i].name == "sprf") { // the printed one is locked out too often to tell of its gate
+        if (all[i].name == gated_name) { // the printed one is locked out too often to tell of its gate
             row(experiment, all[i], "false_alarm", share(counts[i].false_alarms, counts[i].normal), options.runs);
             row(experiment, all[i], "miss", share(counts[i].misses, counts[i].outliers), options.runs);
         }
@@ -63,8 +63,8 @@ void gate_width(const Options &options)
     scenario.first_clean = true;
     Progress progress(options.runs * 1.0 * widths.size());
     for (const double width : widths) {
-        std::vector<Contestant> all = contestants({ "kf" }, { Start::table1 });
-        for (const char *name : { "sprf_paper", "sprf" }) {
+        std::vector<Contestant> all = contestants({ plain_name }, { Start::table1 });
+        for (const std::string &name : { published_name, gated_name }) {
             for (Contestant &c : contestants({ name }, { Start::table1, 1.0, width })) {
                 all.push_back(std::move(c));
             }

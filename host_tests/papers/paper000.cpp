@@ -7,6 +7,7 @@ int main(int argc, char **argv)
     return papers::program("paper000",
                            { { "all_filters", 10, all_filters },
                              { "adaptive", 6, adaptive },
+                             { "noise", 1, noise },
                              { "roll_reference", 1, reference_table },
                              { "table1_search", 3, table1_search },
                              { "schedules", 2, schedules },

@@ -2,6 +2,7 @@
 #include "experiments.hpp"
 #include "model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -39,9 +40,6 @@ double samples_to_return(const Contestant &c, Realisation &realisation, int from
     return never;
 }
 
-const std::vector<std::string> returning = { "kf",   "lrf", "sprf_paper", "sprf_paper_3sigma", "sprf", "soft",
-                                             "shrf", "pbf", "af" };
-
 void step_rows(const std::string &experiment, double low_sigma, double high_sigma, double outliers,
                const std::vector<Contestant> &all, const Options &options, Progress &progress)
 {
@@ -59,7 +57,7 @@ void step_rows(const std::string &experiment, double low_sigma, double high_sigm
         scenario.step_sigma *= (random_u32(&random) & 1U) != 0U ? 1.0 : -1.0;
         Realisation realisation(scenario, seed);
         for (std::size_t i = 0; i < all.size(); i++) {
-            const double back_deg = 4.0 * steady_sigma_deg("kf");
+            const double back_deg = 4.0 * steady_sigma_deg(plain_name);
             found[i].push_back(samples_to_return(all[i], realisation, scenario.step_at, limit, back_deg));
         }
         progress.advance();
@@ -78,7 +76,7 @@ void step_rows(const std::string &experiment, double low_sigma, double high_sigm
 void steps(const std::string &name, double outliers, const Options &options)
 {
     const std::array<double, 6> sizes = { 1.0, 5.0, 10.0, 20.0, 50.0, 100.0 };
-    const std::vector<Contestant> all = contestants(returning, { Start::median });
+    const std::vector<Contestant> all = contestants(library_names(), { Start::median });
     Progress progress(options.runs * 8.0);
     for (const double size : sizes) {
         char experiment[40];
@@ -118,7 +116,7 @@ Burst through_burst(const Contestant &c, Realisation &realisation, int from, int
 
 void burst_rows(int length, const std::vector<Contestant> &all, const Options &options, Progress &progress)
 {
-    const double sigma_ss = steady_sigma_deg("kf");
+    const double sigma_ss = steady_sigma_deg(plain_name);
     std::vector<std::vector<double>> peak(all.size());
     std::vector<std::vector<double>> back(all.size());
     for (int run = 0; run < options.runs; run++) {
@@ -156,12 +154,12 @@ Scenario lockout_trial(std::uint64_t seed)
     return scenario;
 }
 
-int return_limit(const std::string &name)
+// Those that are in FILTER_LIST and refuse samples, or take them for what they are.
+std::vector<std::string> may_lock_out()
 {
-    if (name == "sprf" || name == "soft") {
-        return 200;
-    }
-    return (name == "pbf" || name == "af" || name == "lrf") ? 800 : 1200;
+    std::vector<std::string> result = fixed_names();
+    result.erase(std::remove(result.begin(), result.end(), plain_name), result.end());
+    return result;
 }
 } // namespace
 
@@ -177,7 +175,7 @@ void steps_with_outliers(const Options &options)
 
 void bursts(const Options &options)
 {
-    const std::vector<Contestant> all = contestants(returning, { Start::median });
+    const std::vector<Contestant> all = contestants(library_names(), { Start::median });
     Progress progress(options.runs * 2.0);
     burst_rows(10, all, options, progress);
     burst_rows(30, all, options, progress);
@@ -186,8 +184,7 @@ void bursts(const Options &options)
 void lockout(const Options &options)
 {
     const int trials = 10 * options.runs;
-    const std::vector<Contestant> all = contestants({ "lrf", "sprf_paper", "sprf", "soft", "shrf", "pbf", "af" },
-                                                    { Start::shipped });
+    const std::vector<Contestant> all = contestants(may_lock_out(), { Start::shipped });
     std::vector<double> lost(all.size());
     std::vector<std::vector<double>> found(all.size());
     Progress progress(trials);

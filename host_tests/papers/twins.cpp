@@ -2,7 +2,8 @@
 #include "linear.hpp"
 
 extern "C" {
-#include "filter_any.h"
+#include "filter_list.h"
+#include "kalman.h"
 #include "support_filters.h"
 }
 
@@ -14,13 +15,13 @@ namespace papers
 namespace
 {
 // Drive of a model whose process noise has the power density q, by R and per sample: q T^n / R, with `factor` times the
-// R told; limited as two_state.h and kf3.h limit it.
+// R told; limited as kalman.h and kf3.c limit it.
 double drive(const std::string &name, const Shipping &shipping, int power, double factor, double limit)
 {
     const double r_lsb2 = factor * parameter_of(name, "r", shipping);
     return std::fmin(limit, parameter_of(name, "q", shipping) / (std::pow(shipping.rate_hz, power) * r_lsb2));
 }
-const double rate_drive_max = std::ldexp(static_cast<double>(TWO_STATE_Q22_MAX_UQ28), -28);
+const double rate_drive_max = std::ldexp(static_cast<double>(KALMAN_Q22_MAX_UQ28), -28);
 constexpr double acceleration_drive_max = 1.0;
 
 // (8) of lrf: one R for both kinds of samples.
@@ -31,7 +32,7 @@ double pooled(const Shipping &shipping)
     return clean + (1.0 - clean) * ratio * ratio;
 }
 
-// kf3.h: a walks, v += a, x += v, so a step of a is in all three at once.
+// kf3.c: a walks, v += a, x += v, so a step of a is in all three at once.
 StateSpace white_jerk_as_shipped(double lambda)
 {
     return { 3,
@@ -59,17 +60,16 @@ double parameter_of(const std::string &name, const std::string &parameter, const
     if (parameter == "r") {
         return shipping.r * shipping.lsb_per_unit * shipping.lsb_per_unit;
     }
-    const filter_kind_t kind = filter_any_find(name.c_str());
+    const filter_kind_t kind = filter_find(name.c_str());
     if (kind == FILTER_KIND_COUNT) {
         throw std::runtime_error(name + ": not in FILTER_LIST");
     }
-    filter_any_config_t config;
-    filter_any_defaults(kind, &config, static_cast<std::uint16_t>(std::lround(10.0 * shipping.rate_hz)));
+    filter_config_t config = filter_defaults(filter_listed(kind),
+                                             static_cast<std::uint16_t>(std::lround(10.0 * shipping.rate_hz)));
     for (std::uint8_t i = 0; i < parameter_count(kind); i++) {
         const filter_parameter_t entry = parameter_at(kind, i);
-        if (parameter == entry.name) {
-            const auto stored = parameter_get(&config, &entry);
-            return std::ldexp(static_cast<double>(static_cast<std::int32_t>(stored)), -entry.fraction_bits);
+        if (parameter == entry.words) {
+            return std::ldexp(static_cast<double>(config.value[i]), -entry.fraction_bits);
         }
     }
     throw std::runtime_error(name + ": has no parameter " + parameter);

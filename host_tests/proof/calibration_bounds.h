@@ -10,7 +10,7 @@
 #define MEAN_END 32440    /* rest_mean_lsb_q4 */
 #define LEVEL_END 18841   /* 1.15 g */
 #define SCALE_END 25126   /* 10600 over the least two components */
-#define KNOWN_LEAST 13824 /* sqrt(3/4) as fx_isqrt32 tells it */
+#define KNOWN_LEAST 13824 /* sqrt(3/4) as filter_fx_isqrt32 tells it */
 
 #define BETWEEN(v, low, high) ((low) <= (v) <= (high))
 #define OF_ALL(v, low, high) (BETWEEN((v)[0], low, high) && BETWEEN((v)[1], low, high) && BETWEEN((v)[2], low, high))
@@ -65,9 +65,16 @@ static int32_t row_times(int32_t sum_q14, const int32_t a_q8[3], const int16_t r
 static void prepare_bias(calibration_applied_t *applied, const calibration_t *c);
 
 /*@ requires LEGAL(c) && ours < 3;
-    assigns *applied \from *applied, *c, ours;
+    requires BETWEEN(w_q14[0], -32768, 32767) && BETWEEN(w_q14[1], -32768, 32767) && BETWEEN(w_q14[2], -16384, 49151);
+    assigns applied->matrix_q14[0..8] \from applied->matrix_q14[0..8], *c, w_q14[0..2], ours;
 */
-void calibration_prepare_column(calibration_applied_t *applied, const calibration_t *c, uint8_t ours);
+static void prepare_column(calibration_applied_t *applied, const calibration_t *c, const int32_t w_q14[3],
+                           uint8_t ours);
+
+/*@ assigns out_q8[0..2] \from *applied, a_q8[0..2];
+    ensures \initialized(&out_q8[0..2]);
+*/
+void calibration_apply(const calibration_applied_t *applied, const int32_t a_q8[3], int32_t out_q8[3]);
 
 /*@ requires axis < 3 && -MEAN_END <= lsb_q4 <= MEAN_END;
     requires 12000 <= c->scale_lsb_per_g_uq6[axis] <= SCALE_END;
@@ -95,7 +102,7 @@ calibration_verdict_t calibration_single(calibration_t *c, const int16_t mean_ls
     (MEANS(m) && MEANS((m) + 3) && MEANS((m) + 6) && MEANS((m) + 9) && MEANS((m) + 12) && MEANS((m) + 15))
 #define KNOWN(k) (OF_ALL(k, KNOWN_LEAST, 16384) && OF_ALL((k) + 3, KNOWN_LEAST, 16384))
 #define SLOPES(c) OF_ALL((c)->scale_lsb_per_g_uq6, 12000, SCALE_END)
-#define GOING_ON(s) (SLOPES(&(s)->found) && KNOWN((s)->known_q14) && (s)->piece < 9 && (s)->round <= 6)
+#define GOING_ON(s) (SLOPES(&(s)->found) && KNOWN((s)->known_q14) && (s)->round <= 6)
 
 /*@ requires SLOPES(c) && ALL_MEANS(means) && position < 6;
     assigns \result \from *c, means[0..17], position;
@@ -121,7 +128,6 @@ static bool draw_line(calibration_t *c, const int16_t *means, uint8_t axis, cons
 static bool improve(calibration_six_t *six, const int16_t *means, uint8_t position);
 
 /*@ requires GOING_ON(six) && ALL_MEANS(mean_lsb_q4) && six->where < 6;
-    requires six->piece == 0 || six->off_q14 <= 16384;
     assigns *six, \result \from *six, mean_lsb_q4[0..17];
     ensures \initialized(&six->off_q14) && \initialized(&six->where) && \initialized(&six->verdict.why);
     ensures six->off_q14 <= 16384 && six->where < 6;

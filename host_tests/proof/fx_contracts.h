@@ -46,13 +46,18 @@ static inline uint8_t fx_normalise(uint32_t *v);
 */
 static fx_scaled_t rounded(uint32_t v, int8_t exponent);
 
-/* The ends that its callers ask for, of Q28: 1 g, and what is left of it across 30 degrees, 27/32 rounded down. */
+/*
+ * The ends that its callers ask for, of Q28: 1 g, and what is left of it across 30 degrees, 27/32 rounded down; and of
+ * the least noise, and kf3's largest drive.
+ */
 #define SQUARE(k) ((k) * (k)*0x40000)
 /*@ assigns \result \from v;
     ensures v <= 0x10000000 ==> \result <= 0x4000;
     ensures v >= SQUARE(27) ==> \result >= 512 * 27;
+    ensures v <= 0x2000000 ==> \result <= 8191;
+    ensures v >= 12288 ==> \result >= 104;
 */
-uint16_t fx_isqrt32(uint32_t v);
+uint16_t filter_fx_isqrt32(uint32_t v);
 
 /*
  * What is left lies between 0 and v: told by powers of 2, because intervals keep no relation to v, and by 18432 LSB,

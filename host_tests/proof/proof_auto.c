@@ -1,64 +1,77 @@
-/* auto: any int16, any state within its bounds; the same bounds afterwards. */
-#include "auto_bounds.h"
-/*@ ensures \result ==> BOUND(f); */
-bool auto_init(auto_t *f, const auto_config_t *config);
-/*@ requires f->gate_sigma_q8 <= 4096; ensures NOISE(f); */
-void auto_set_noise(auto_t *f, uint32_t r_lsb2_q8);
-/*@ requires BOUND(f); ensures BOUND(f); */
-void auto_reset(auto_t *f, int16_t z0_lsb);
-/*@ requires BOUND(f); ensures BOUND(f); */
-bool auto_reset_step(auto_t *f, int16_t z0_lsb, uint8_t step);
-/*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN_X(\result); */
-int32_t auto_update(auto_t *f, int16_t z_lsb);
-/*@ requires BOUND(f); ensures BOUND(f); ensures WITHIN_X(\result); */
-int32_t auto_coast(auto_t *f);
-/*@ requires BOUND(f); ensures BOUND(f); */
-void auto_gap(auto_t *f);
-/*@ requires BOUND(f); ensures BOUND(f); */
-void auto_damp(auto_t *f);
-/*@ requires BOUND(f); ensures BOUND(f); */
-void auto_hold(auto_t *f);
+/* auto: see law.h. */
+#define Z_LEAST_Q16 268435456 /* 4096 LSB, below 0 */
+#define Z_MOST_Q16 268369920  /* 4095 LSB */
+#define U_END 570425344       /* 8704 LSB */
+#define TURNED_END 517734400  /* 7900 LSB: 4608 + 0.36 x 8704, and what intervals add */
+#define GATE_END 0x7FFFFFFF   /* none */
+#define K_LEAST 256
+#define K_END 39322
+#define GAIN_END 63019      /* 0.96: of 0.84 what the widest interval of k keeps */
+#define SQUARE_END 16776704 /* the square of any eight sigmas of 16 bits */
+#define SCORE_END 134213639 /* 8 SQUARE_END + 7, below 2^27 */
 
-#include "filter_common.c"
-#include "fx.c"
-/* Other entries prove functions of these names. */
-#define predict predict_member
+#define MOTION(m) \
+    (WITHIN((m)->x_lsb_q16, X_MAX_Q16) && WITHIN((m)->rate_lsb_q16, X_MAX_Q16) && K_LEAST <= (m)->k_uq16 <= K_END)
+#define MEMBER(m) (MOTION(m) && (m)->score_lsb2_uq8 <= SCORE_END && -5 < (m)->refused < 5)
+#define FINAL_K(k) (K_LEAST <= (k) <= K_END)
+#define KEPT(f)                                                                       \
+    ((f)->own.bank.gate_sigma_q8 <= 4096 && FINAL_K((f)->own.bank.final_k_uq16[0]) && \
+     FINAL_K((f)->own.bank.final_k_uq16[1]) && FINAL_K((f)->own.bank.final_k_uq16[2]))
+#define FORCE(f)                                                                                                    \
+    (MEMBER(&(f)->own.bank.members[0]) && MEMBER(&(f)->own.bank.members[1]) && MEMBER(&(f)->own.bank.members[2]) && \
+     (f)->own.bank.chosen < 3 && (f)->own.bank.shown < 3)
+#define KINDS 1
+#include "law.h"
+
+/* kalman.c has a function of that name. */
 #define correct correct_member
-#define step step_member
-#define legal legal_auto
-#include "auto.c"
-#include "auto_setup.c"
 
-/*@ requires TOLD(f) && NOISE(f) && RUNNING(f);
+/*@ requires -TURNED_END <= rate_lsb_q16 <= TURNED_END && f->rate_max_lsb <= X_MAX_Q16;
+    assigns f->flags, \result \from f->flags, f->rate_max_lsb, rate_lsb_q16;
+    ensures WITHIN(\result, X_MAX_Q16);
+*/
+static inline int32_t within_rate(filter_t *f, int32_t rate_lsb_q16);
+
+/*@ requires SAMPLE(z_lsb) && WITHIN(m->x_lsb_q16, X_MAX_Q16) && WITHIN(m->rate_lsb_q16, X_MAX_Q16);
+    requires -5 < m->refused < 5;
+    assigns m->x_lsb_q16, m->rate_lsb_q16, m->k_uq16, m->refused, \result \from *m, below, z_lsb;
+    ensures -5 < m->refused < 5;
+    ensures WITHIN(m->x_lsb_q16, X_MAX_Q16) && WITHIN(m->rate_lsb_q16, X_MAX_Q16) && K_LEAST <= m->k_uq16 <= K_END;
+*/
+static uint8_t refused(filter_member_t *m, bool below, int16_t z_lsb);
+
+/* The sample towards which x goes lies within its range. */
+/*@ requires MOTION(m) && f->rate_max_lsb <= X_MAX_Q16 && FINAL_K(final_k);
+    requires size_lsb_uq8 <= U_END / 256;
+    requires reach: (below != 0 ==> m->x_lsb_q16 - 256 * size_lsb_uq8 >= -Z_LEAST_Q16) &&
+                    (below == 0 ==> m->x_lsb_q16 + 256 * size_lsb_uq8 <= Z_MOST_Q16);
+    assigns m->x_lsb_q16, m->rate_lsb_q16, m->k_uq16, f->flags, \result \from *m, f->rate_max_lsb,
+            f->flags, final_k, size_lsb_uq8, below;
+    ensures MOTION(m);
+    ensures \result <= GAIN_END;
+*/
+static inline uint16_t correct(filter_t *f, filter_member_t *m, uint16_t final_k, uint32_t size_lsb_uq8, bool below);
+
+/*@ requires FORCE(f) && f->own.bank.chosen < 3;
+    assigns f->own.bank.chosen, f->flags \from f->own, f->flags;
+    ensures f->own.bank.chosen < 3;
+*/
+static void choose(filter_t *f);
+
+#include "auto.c"
+
+/*@ requires TRACKED(f) && KEPT(f) && FORCE(f) && gate_lsb_uq8 <= GATE_END;
     requires i < 3 && SAMPLE(z_lsb);
-    assigns f->u.members[i], f->flags \from *f, i, z_lsb;
-    assigns a->innovation_lsb_q16, a->gain_uq16, a->flags \from f->u.members[i].x_lsb_q16, f->gate_lsb_uq8, z_lsb;
+    assigns f->own.bank.members[i], f->flags \from f->own, f->rate_max_lsb, f->flags, i, z_lsb, gate_lsb_uq8;
+    assigns a->innovation_lsb_q16, a->gain_uq16, a->flags \from f->own.bank.members[i].x_lsb_q16, gate_lsb_uq8, z_lsb;
     ensures \initialized(&a->innovation_lsb_q16) && \initialized(&a->gain_uq16) && \initialized(&a->flags);
-    ensures MEMBER(&f->u.members[i]);
+    ensures MEMBER(&f->own.bank.members[i]);
     ensures -U_END <= a->innovation_lsb_q16 <= U_END;
     ensures a->gain_uq16 <= GAIN_END;
 */
-static void step_member(auto_t *f, uint8_t i, int16_t z_lsb, answer_t *a);
+static void step_member(filter_t *f, uint8_t i, int16_t z_lsb, uint32_t gate_lsb_uq8, answer_t *a);
 
-static void any_told(auto_t *f)
-{
-    f->innovation_lsb_q16 = ANY_S32(-U_END, U_END);
-    f->gate_lsb_uq8 = ANY_U32(0, GATE_END);
-    f->rate_max_lsb_q16 = ANY_U32(0, X_MAX_Q16);
-    f->r_lsb2_q8 = ANY_U32(3, 256000);
-    f->eight_sigmas_lsb_uq8 = ANY_U16(0, UINT16_MAX);
-    for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
-        f->final_k_uq16[i] = ANY_U16(K_LEAST, K_END);
-    }
-    f->still_uq16 = ANY_U16(0, UINT16_MAX);
-    f->gate_sigma_q8 = ANY_U16(0, 4096);
-    f->gain_uq16 = ANY_U16(0, UINT16_MAX);
-    f->chosen = ANY_U8(0, 2);
-    f->shown = ANY_U8(0, 2);
-    f->flags = ANY_U8(0, UINT8_MAX);
-}
-
-static void any_member(auto_member_t *m)
+static void any_member(filter_member_t *m)
 {
     m->x_lsb_q16 = ANY_S32(-X_MAX_Q16, X_MAX_Q16);
     m->rate_lsb_q16 = ANY_S32(-X_MAX_Q16, X_MAX_Q16);
@@ -67,39 +80,25 @@ static void any_member(auto_member_t *m)
     m->refused = ANY_S8(-4, 4);
 }
 
-static void any_run(auto_t *f)
+static void any_own(filter_t *f, uint8_t kind)
 {
-    any_told(f);
+    filter_auto_t *b = &f->own.bank;
+    (void)kind;
     for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
-        any_member(&f->u.members[i]);
+        any_member(&b->members[i]);
+        b->final_k_uq16[i] = ANY_U16(K_LEAST, K_END);
     }
-    f->collected = FILTER_WARM_UP_SAMPLES;
-}
-
-static void any_start(auto_t *f, uint8_t from_collected, uint8_t to_collected)
-{
-    any_told(f);
-    f->collected = ANY_U8(from_collected, to_collected);
-    f->flags = ANY_BOOL() ? FILTER_WARMING_UP : FILTER_WARMING_UP | FILTER_COASTED;
-    for (uint8_t i = 0; i < FILTER_WARM_UP_SAMPLES; i++) {
-        f->u.start_lsb[i] = ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB);
-    }
-}
-
-void proof_within_x(void)
-{
-    auto_t f;
-    any_run(&f);
-    (void)within_x(&f, ANY_S32(-2L * X_MAX_Q16, -X_MAX_Q16 - 1L));
-    (void)within_x(&f, ANY_S32(-X_MAX_Q16, -1));
-    (void)within_x(&f, ANY_S32(0, X_MAX_Q16 - 1L));
-    (void)within_x(&f, ANY_S32(X_MAX_Q16, 2L * X_MAX_Q16));
+    b->chosen = ANY_U8(0, 2);
+    b->shown = ANY_U8(0, 2);
+    b->eight_sigmas_lsb_uq8 = ANY_U16(0, UINT16_MAX);
+    b->gate_sigma_q8 = ANY_U16(0, 4096);
+    b->still_uq16 = ANY_U16(0, UINT16_MAX);
 }
 
 void proof_within_rate(void)
 {
-    auto_t f;
-    any_run(&f);
+    filter_t f;
+    any_running(&f, &filter_law_auto, 0);
     (void)within_rate(&f, ANY_S32(-TURNED_END, -X_MAX_Q16 - 1L));
     (void)within_rate(&f, ANY_S32(-X_MAX_Q16, -1));
     (void)within_rate(&f, ANY_S32(0, X_MAX_Q16));
@@ -110,10 +109,10 @@ void proof_within_rate(void)
 void proof_refused(void)
 {
     for (int8_t run = -4; run <= 4; run++) {
-        auto_t f;
-        any_run(&f);
-        f.u.members[1].refused = run;
-        (void)refused(&f.u.members[1], ANY_BOOL(), ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
+        filter_t f;
+        any_running(&f, &filter_law_auto, 0);
+        f.own.bank.members[1].refused = run;
+        (void)refused(&f.own.bank.members[1], ANY_BOOL(), ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
     }
 }
 
@@ -122,9 +121,9 @@ static void any_correction(uint16_t from_k, uint16_t to_k)
 {
     for (int32_t x = -X_MAX_Q16; x < X_MAX_Q16; x += 256L * 65536L) {
         int32_t to_x = x + 256L * 65536L;
-        auto_t f;
-        any_run(&f);
-        auto_member_t *m = &f.u.members[1];
+        filter_t f;
+        any_running(&f, &filter_law_auto, 0);
+        filter_member_t *m = &f.own.bank.members[1];
         m->k_uq16 = ANY_U16(from_k, to_k);
         if (to_x >= -Z_LEAST_Q16) {
             m->x_lsb_q16 = ANY_S32(x, to_x);
@@ -139,7 +138,6 @@ static void any_correction(uint16_t from_k, uint16_t to_k)
     }
 }
 
-/* Uses: within_rate */
 void proof_correct_member(void)
 {
     for (uint16_t k = K_LEAST; k < 16384U; k *= 2U) {
@@ -151,10 +149,7 @@ void proof_correct_member(void)
     any_correction(32000, K_END);
 }
 
-/*
- * Uses: within_x, refused, correct_member.
- * The score in ranges, so narrow towards its end that what is forgotten of all of a range makes room for the square.
- */
+/* The score in ranges, so narrow towards its end that what is forgotten of all of a range makes room for the square. */
 void proof_step_member(void)
 {
     uint32_t to = 0;
@@ -162,11 +157,11 @@ void proof_step_member(void)
         uint32_t room = SCORE_END - SQUARE_END + (from >> 3);
         to = (from < room / 8U) ? 8U * from + 7U : room;
         for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
-            auto_t f;
+            filter_t f;
             answer_t answer;
-            any_run(&f);
-            f.u.members[i].score_lsb2_uq8 = ANY_U32(from, to);
-            step(&f, i, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB), &answer);
+            any_running(&f, &filter_law_auto, 0);
+            f.own.bank.members[i].score_lsb2_uq8 = ANY_U32(from, to);
+            step_member(&f, i, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB), ANY_U32(0, GATE_END), &answer);
         }
     }
 }
@@ -175,145 +170,19 @@ void proof_step_member(void)
 void proof_choose(void)
 {
     for (uint8_t chosen = 0; chosen < (uint8_t)AUTO_MEMBERS; chosen++) {
-        auto_t f;
-        any_run(&f);
-        f.chosen = chosen;
-        f.u.members[chosen].score_lsb2_uq8 = 0;
+        filter_t f;
+        any_running(&f, &filter_law_auto, 0);
+        f.own.bank.chosen = chosen;
+        f.own.bank.members[chosen].score_lsb2_uq8 = 0;
         choose(&f);
         for (uint32_t from = 1; from <= SCORE_END; from *= 2U) {
-            any_run(&f);
-            f.chosen = chosen;
-            f.u.members[chosen].score_lsb2_uq8 = ANY_U32(from, (2U * from <= SCORE_END) ? 2U * from - 1U : SCORE_END);
+            any_running(&f, &filter_law_auto, 0);
+            f.own.bank.chosen = chosen;
+            f.own.bank.members[chosen].score_lsb2_uq8 = ANY_U32(from,
+                                                                (2U * from <= SCORE_END) ? 2U * from - 1U : SCORE_END);
             choose(&f);
         }
     }
 }
 
-void proof_warm_up(void)
-{
-    for (uint8_t collected = 0; collected < FILTER_WARM_UP_SAMPLES; collected++) {
-        auto_t f;
-        any_start(&f, collected, collected);
-        (void)warm_up(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
-    }
-}
-
-/*
- * Uses: fx_isqrt32, fx_normalise, rounded.
- * All legal configurations, with a gate and without, then all with one parameter below or above its range.
- */
-void proof_auto_init(void)
-{
-    auto_t f;
-    auto_config_t config;
-    for (uint8_t number = 0; number < CASES(7); number++) {
-        config.rate_dhz = any_u16(part_of(number, 0), 50, 40000);
-        config.gate_sigma_q8 = any_u16(part_of(number, 1), 256, 4096);
-        config.r_lsb2_q8 = any_u32(part_of(number, 2), 3, 256000, UINT32_MAX);
-        config.slow_ms = any_u16(part_of(number, 3), 1, 60000);
-        config.middle_ms = any_u16(part_of(number, 4), 1, 60000);
-        config.fast_ms = any_u16(part_of(number, 5), 1, 60000);
-        config.rate_max_lsb_s = any_u32(part_of(number, 6), 10, 1000000, UINT32_MAX);
-        if (part_of(number, 1) == BELOW_RANGE) {
-            config.gate_sigma_q8 = ANY_U16(1, 255);
-        }
-        bool taken = auto_init(&f, &config);
-        //@ check alone: number == 0 || taken == 0;
-        if (number == 0U) {
-            config.gate_sigma_q8 = 0;
-            (void)auto_init(&f, &config);
-        }
-    }
-    auto_defaults(&config, ANY_U16(0, UINT16_MAX));
-    (void)auto_together(&config);
-}
-
-/* Uses: fx_isqrt32 */
-void proof_auto_set_noise(void)
-{
-    auto_t f;
-    any_run(&f);
-    auto_set_noise(&f, ANY_U32(0, UINT32_MAX));
-    //@ check running: BOUND(&f);
-    any_start(&f, 0, 4);
-    auto_set_noise(&f, ANY_U32(0, UINT32_MAX));
-    //@ check starting: BOUND(&f);
-}
-
-void proof_auto_reset(void)
-{
-    auto_t f;
-    any_run(&f);
-    auto_reset(&f, ANY_Z());
-    any_start(&f, 0, 4);
-    auto_reset(&f, ANY_Z());
-}
-
-void proof_auto_reset_step(void)
-{
-    auto_t f;
-    any_run(&f);
-    (void)auto_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
-    any_start(&f, 0, 4);
-    (void)auto_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
-}
-
-/* Uses: warm_up, step_member, choose */
-void proof_auto_update(void)
-{
-    auto_t f;
-    any_run(&f);
-    (void)auto_update(&f, ANY_Z());
-    any_start(&f, 0, 4);
-    (void)auto_update(&f, ANY_Z());
-}
-
-/* Uses: within_x */
-void proof_auto_coast(void)
-{
-    auto_t f;
-    any_run(&f);
-    (void)auto_coast(&f);
-    for (uint8_t collected = 0; collected < FILTER_WARM_UP_SAMPLES; collected++) {
-        any_start(&f, collected, collected);
-        (void)auto_coast(&f);
-    }
-}
-
-/* What is told of missing samples, of states as those of a coast. */
-void proof_auto_gap(void)
-{
-    auto_t f;
-    any_run(&f);
-    auto_gap(&f);
-    any_start(&f, 0, 4);
-    auto_gap(&f);
-    any_run(&f);
-    auto_damp(&f);
-    any_start(&f, 0, 4);
-    auto_damp(&f);
-    any_run(&f);
-    auto_hold(&f);
-    any_start(&f, 0, 4);
-    auto_hold(&f);
-    any_run(&f);
-    auto_restart(&f);
-    //@ check running: BOUND(&f);
-    any_start(&f, 0, 4);
-    auto_restart(&f);
-    //@ check starting: BOUND(&f);
-}
-
-/* Uses: fx_normalise, rounded */
-void proof_auto_probe(void)
-{
-    auto_t f;
-    filter_probe_t probe;
-    any_run(&f);
-    auto_probe(&f, &probe);
-    for (uint8_t collected = 0; collected < FILTER_WARM_UP_SAMPLES; collected++) {
-        any_start(&f, collected, collected);
-        auto_probe(&f, &probe);
-    }
-    (void)auto_flags(&f);
-}
+PROVE_LAW(auto)

@@ -45,7 +45,6 @@ void proof_calibration_square(void)
     (void)calibration_square(ANY_S16(0, 32767));
 }
 
-/* Uses: calibration_square */
 void proof_length_square_q28(void)
 {
     const int16_t v_q14[3] = { ANY_Z(), ANY_Z(), ANY_Z() };
@@ -86,7 +85,7 @@ void proof_row_times(void)
     (void)row_times(ANY_S32(S32_MIN, INT32_MAX), a_q8, row_q14);
 }
 
-/* Uses: row_times. Options: -no-warn-signed-downcast */
+/* Options: -no-warn-signed-downcast */
 void proof_calibration_apply(void)
 {
     calibration_applied_t applied;
@@ -102,7 +101,6 @@ void proof_calibration_apply(void)
     calibration_apply(&applied, a_q8, out_q8);
 }
 
-/* Uses: row_times */
 void proof_prepare_bias(void)
 {
     calibration_applied_t applied;
@@ -114,7 +112,7 @@ void proof_prepare_bias(void)
     prepare_bias(&applied, &c);
 }
 
-/* Divisors in ranges, with every dividend that one of the range can have. */
+/* Divisors in ranges, with every dividend that one of the range can have. Whole: calibration_over */
 void proof_quotient_q14(void)
 {
     for (uint32_t b = 12800; b <= UINT16_MAX; b += 512U) {
@@ -125,18 +123,20 @@ void proof_quotient_q14(void)
     }
 }
 
-/* Uses: quotient_q14, prepare_bias, fx_isqrt32, calibration_square */
-void proof_calibration_prepare_column(void)
+void proof_prepare_column(void)
 {
     for (uint8_t ours = 0; ours < 3U; ours++) {
         calibration_applied_t applied;
         calibration_t c;
         any_legal(&c);
-        calibration_prepare_column(&applied, &c, ours);
+        for (uint8_t i = 0; i < 9U; i++) {
+            applied.matrix_q14[i] = ANY_Z();
+        }
+        const int32_t w_q14[3] = { ANY_Z(), ANY_Z(), ANY_S32(-16384, 49151) };
+        prepare_column(&applied, &c, w_q14, ours);
     }
 }
 
-/* Uses: calibration_check, calibration_prepare_column */
 void proof_calibration_prepare(void)
 {
     calibration_t c;
@@ -156,7 +156,6 @@ void proof_calibration_gravity_q14(void)
     }
 }
 
-/* Uses: calibration_check */
 void proof_calibration_commit(void)
 {
     calibration_t c;
@@ -166,7 +165,6 @@ void proof_calibration_commit(void)
     (void)calibration_commit(&c, &found);
 }
 
-/* Uses: calibration_gravity_q14, calibration_commit */
 void proof_calibration_tare(void)
 {
     calibration_t c;
@@ -189,8 +187,8 @@ void proof_calibration_position(void)
 }
 
 /*
- * Sign by sign: 1 g is taken off the side on which the mean lies.
- * Uses: calibration_commit. Options: -eva-split-return-function calibration_position:full
+ * Sign by sign: 1 g is taken off the side on which the mean lies. Options: -eva-split-return-function
+ * calibration_position:full
  */
 void proof_calibration_single(void)
 {

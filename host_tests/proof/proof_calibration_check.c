@@ -6,7 +6,7 @@
 
 #include "calibration.c"
 
-/* One thing out of its range, whatever the rest: refused. Uses: length_square_q28 */
+/* One thing out of its range, whatever the rest: refused. */
 void proof_calibration_check(void)
 {
     calibration_t c;
@@ -36,7 +36,10 @@ void proof_calibration_check(void)
     }
 }
 
-/* Each axis has to be named once. A level too short or too long, in whichever component, is refused. */
+/*
+ * Each axis has to be named once. A level too short or too long, in whichever component, is refused.
+ * Whole: calibration_check, length_square_q28, calibration_square
+ */
 void proof_calibration_named(void)
 {
     calibration_t c;

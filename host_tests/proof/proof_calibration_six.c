@@ -1,4 +1,4 @@
-/* Six rests: any means that rests can have, from any legal calibration, piece by piece in any legal state. */
+/* Six rests: any means that rests can have, from any legal calibration, round by round in any legal state. */
 #include "calibration_bounds.h"
 
 #include "fx.c"
@@ -38,7 +38,6 @@ static void any_six(calibration_six_t *six)
     six->verdict.where = ANY_U8(0, 5);
 }
 
-/* Uses: calibration_gravity_q14, calibration_square, fx_isqrt32 */
 void proof_component_q14(void)
 {
     int16_t means[18];
@@ -52,7 +51,7 @@ void proof_component_q14(void)
 
 /*
  * What lies too far apart to be told from what lies near wraps into an offset that is not legal: its reading would have
- * to be beyond 1,900 LSB. Options: -no-warn-signed-downcast
+ * to be beyond 1,900 LSB. Whole: calibration_over. Options: -no-warn-signed-downcast
  */
 void proof_draw_line(void)
 {
@@ -66,7 +65,6 @@ void proof_draw_line(void)
     }
 }
 
-/* Uses: component_q14 */
 void proof_improve(void)
 {
     int16_t means[18];
@@ -74,28 +72,23 @@ void proof_improve(void)
     any_means(means);
     for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
         any_six(&six);
-        six.piece = ANY_U8(0, 8);
         (void)improve(&six, means, position);
     }
 }
 
-/* Piece by piece, round by round. Uses: draw_line, improve */
+/* Round by round. */
 void proof_calibration_six_step(void)
 {
     int16_t means[18];
     calibration_six_t six;
     any_means(means);
-    for (uint8_t piece = 0; piece < 9U; piece++) {
-        for (uint8_t round = 0; round <= ROUNDS; round++) {
-            any_six(&six);
-            six.piece = piece;
-            six.round = round;
-            (void)calibration_six_step(&six, means);
-        }
+    for (uint8_t round = 0; round <= ROUNDS; round++) {
+        any_six(&six);
+        six.round = round;
+        (void)calibration_six_step(&six, means);
     }
 }
 
-/* Uses: calibration_commit */
 void proof_calibration_six_end(void)
 {
     calibration_six_t six;
@@ -107,7 +100,7 @@ void proof_calibration_six_end(void)
     //@ check residual: residual_mg <= 1000;
 }
 
-/* From any legal calibration. Uses: calibration_six_step, calibration_commit */
+/* From any legal calibration. */
 void proof_calibration_six(void)
 {
     int16_t means[18];
@@ -120,6 +113,6 @@ void proof_calibration_six(void)
     }
     calibration_six_t six;
     calibration_six_start(&six, &c);
-    //@ check started: GOING_ON(&six) && six.piece == 0 && six.where < 6;
+    //@ check started: GOING_ON(&six) && six.where < 6;
     (void)calibration_six(&c, means, &residual_mg);
 }

@@ -9,7 +9,10 @@ static void reciprocal_in(uint32_t from, uint32_t to)
     (void)fx_reciprocal_uq16(ANY_U32(from, to));
 }
 
-/* One call for each interval of the table and each number of halvings: together all of 1 <= s < 16. */
+/*
+ * One call for each interval of the table and each number of halvings: together all of 1 <= s < 16. Whole:
+ * fx_inverse_m_uq16
+ */
 void proof_fx_reciprocal_uq16(void)
 {
     uint32_t from = 0x10000000U;
@@ -56,16 +59,25 @@ void proof_rounded(void)
 }
 
 /* Options: -eva-slevel 1 -eva-min-loop-unroll 16 */
-void proof_fx_isqrt32(void)
+void proof_filter_fx_isqrt32(void)
 {
-    (void)fx_isqrt32(ANY_U32(0, SQUARE(27UL) - 1U));
+    (void)filter_fx_isqrt32(ANY_U32(0, 12287));
+    (void)filter_fx_isqrt32(ANY_U32(12288, 12543)); /* 112^2 less 1 */
+    (void)filter_fx_isqrt32(ANY_U32(12544, 16383));
+    //@ loop unroll 8;
+    for (uint32_t from = 16384; from < 0x1000000U; from *= 4U) {
+        (void)filter_fx_isqrt32(ANY_U32(from, 4U * from - 1U));
+    }
+    (void)filter_fx_isqrt32(ANY_U32(0x1000000U, 0x2000000U));
+    (void)filter_fx_isqrt32(ANY_U32(0x2000001U, 0x3FFFFFFU));
+    (void)filter_fx_isqrt32(ANY_U32(0x4000000U, SQUARE(27UL) - 1U));
     //@ loop unroll 5;
     for (uint32_t k = 27; k < 32U; k++) {
-        (void)fx_isqrt32(ANY_U32(SQUARE(k), SQUARE(k + 1U) - 1U));
+        (void)filter_fx_isqrt32(ANY_U32(SQUARE(k), SQUARE(k + 1U) - 1U));
     }
-    (void)fx_isqrt32(0x10000000U);
-    (void)fx_isqrt32(ANY_U32(0x10000001U, 0x3FFFFFFFU));
-    (void)fx_isqrt32(ANY_U32(0x40000000U, UINT32_MAX));
+    (void)filter_fx_isqrt32(0x10000000U);
+    (void)filter_fx_isqrt32(ANY_U32(0x10000001U, 0x3FFFFFFFU));
+    (void)filter_fx_isqrt32(ANY_U32(0x40000000U, UINT32_MAX));
 }
 
 static fx_scaled_t any_scaled(void)
@@ -74,14 +86,13 @@ static fx_scaled_t any_scaled(void)
     return v;
 }
 
-/* Uses: fx_normalise, rounded */
-void proof_fx_scaled(void)
+void proof_filter_fx_scaled(void)
 {
-    (void)fx_scaled(ANY_U32(0, UINT32_MAX));
-    (void)fx_scaled_mul(any_scaled(), any_scaled());
-    (void)fx_scaled_div(any_scaled(), any_scaled());
+    (void)filter_fx_scaled(ANY_U32(0, UINT32_MAX));
+    (void)filter_fx_scaled_mul(any_scaled(), any_scaled());
+    (void)filter_fx_scaled_div(any_scaled(), any_scaled());
     fx_scaled_t v = { ANY_U16(0, UINT16_MAX), ANY_S8(-128, 127) };
-    (void)fx_scaled_fixed(v, ANY_U8(0, 28));
+    (void)filter_fx_scaled_fixed(v, ANY_U8(0, 28));
 }
 
 /* The results at the largest arguments: a product that lost bits is no longer the largest. */

@@ -1,126 +1,97 @@
-/* kf3: any int16, any state within its bounds; the same bounds afterwards. */
-#include "two_state_bounds.h"
-
-#include "kf3.h"
+/* kf3: see law.h. */
 
 /* After a prediction from P11 < 4 and all else below 1; held ones and those after an update lie within too. */
-#define P_BOUND(f)                                                                                                   \
-    ((f)->core.u.p.p11_uq28 < 13 * ONE && (f)->core.u.p.p12_uq28 < 1879048192 && (f)->core.u.p.p22_uq28 < 5 * ONE && \
-     (f)->p13_uq28 < 4 * ONE && (f)->p23_uq28 < 3 * ONE && (f)->p33_uq28 < 2 * ONE)
-#define TOLD(f)                                                                                                       \
-    (16 <= (f)->core.q22_uq28 <= ONE && 16 <= (f)->core.p22_start_uq28 <= ONE && 3 <= (f)->core.r_lsb2_q8 <= R_END && \
-     SCALED((f)->core.drive_lsb2) && SCALED((f)->core.start_lsb2) && (f)->core.rate_max_lsb_q16 <= X_MAX_Q16 &&       \
-     ((f)->fine == 0 || (f)->fine == 1))
-#define MOTION(f) (ESTIMATE(&(f)->core) && -X_MAX_Q16 <= (f)->acceleration_q16 <= X_MAX_Q16)
-#define RUNNING(f) ((f)->core.collected == 5 && P_BOUND(f))
-#define BOUND(f) (TOLD(f) && MOTION(f) && (RUNNING(f) || ((f)->core.collected < 5 && SAMPLES(&(f)->core))))
+#define P12_END 1879048192UL /* 7 */
+#define P_OF(k)                                                                                      \
+    ((k).p.p11 < 13 * ONE && (k).p.p12 < P12_END && (k).p.p22 < 5 * ONE && (k).p13_uq28 < 4 * ONE && \
+     (k).p23_uq28 < 3 * ONE && (k).p33_uq28 < 2 * ONE)
+#define P_BOUND(f) P_OF((f)->own.kf3)
+#define ACCELERATION(f) WITHIN((f)->own.kf3.acceleration_q16, X_MAX_Q16)
+#define DRIVE(k) (16 <= (k).q33_uq28 <= 0x2000000 || ((k).fine == 0 && 16 <= (k).q33_uq28 <= ONE))
+#define KEPT(f)                                                                                \
+    (DRIVE((f)->own.kf3) && 3 <= (f)->own.kf3.r_lsb2_q8 <= R_END && FLAG((f)->own.kf3.fine) && \
+     (f)->own.kf3.p22_start_uq28 <= 0x8000000 && SCALED((f)->own.kf3.drive_lsb2) && SCALED((f)->own.kf3.start_lsb2))
+#define FORCE(f) (P_BOUND(f) && ACCELERATION(f))
+#define KINDS 2 /* coarse and fine */
+#define CONFIGURATIONS(law) 2
+#include "kalman_bounds.h"
+
+/* kalman.c and wide.c have functions of these names. */
+#define correct correct_three
+#define limited limited_kf3
 
 /*@ requires -3 * X_MAX_Q16 <= v_q16 <= 3 * X_MAX_Q16;
-    assigns f->core.flags, \result \from f->core.flags, v_q16;
+    assigns f->flags, \result \from f->flags, v_q16;
     ensures -X_MAX_Q16 <= \result <= X_MAX_Q16;
 */
-static int32_t limited(kf3_t *f, int32_t v_q16);
+static int32_t limited(filter_t *f, int32_t v_q16);
 
 /*@ requires gain_uq24 <= 0xFFFFFF; */
 static uint32_t less(uint32_t p_uq28, uint32_t column_uq28, uint32_t gain_uq24);
 /*@ requires gain_uq24 <= 0xFFFFFF; */
-static int32_t moved(const kf3_t *f, int32_t v_q16, uint32_t gain_uq24);
+static int32_t moved(const filter_t *f, int32_t v_q16, uint32_t gain_uq24);
 
-/*@ requires TOLD(f) && f->core.collected == 5;
-    requires P_BOUND(f);
-    assigns f->core.u, f->p13_uq28, f->p23_uq28, f->p33_uq28, \result \from *f;
-    ensures P_BOUND(f);
-    ensures \result == 0 || \result == 1;
+/*@ requires 16 <= k->q33_uq28 <= ONE && FLAG(k->fine);
+    requires P_OF(*k);
+    assigns k->p, k->p13_uq28, k->p23_uq28, k->p33_uq28, \result \from *k;
+    ensures P_OF(*k);
+    ensures FLAG(\result);
 */
-static bool grow_covariance(kf3_t *f);
+static bool grow_covariance(filter_kf3_t *k);
 
-/*@ requires TOLD(f) && MOTION(f) && f->core.collected == 5;
+/*@ requires KEPT(f) && TRACKED(f) && ACCELERATION(f) && f->collected == 5;
     requires P_BOUND(f);
-    assigns f->core.u, f->p13_uq28, f->p23_uq28, f->p33_uq28, f->core.x_lsb_q16, f->core.rate_lsb_q16,
-            f->acceleration_q16, f->core.flags \from *f;
+    assigns f->own.kf3.p, f->own.kf3.p13_uq28, f->own.kf3.p23_uq28, f->own.kf3.p33_uq28, f->x_lsb_q16, f->rate_lsb,
+            f->own.kf3.acceleration_q16, f->flags \from f->own, f->x_lsb_q16, f->rate_lsb, f->flags,
+            f->size_lsb_uq16, f->negative;
     ensures P_BOUND(f);
-    ensures MOTION(f);
+    ensures TRACKED(f) && ACCELERATION(f);
 */
-static void predict(kf3_t *f);
+static void predict(filter_t *f);
 
-/*@ requires TOLD(f) && MOTION(f) && f->core.collected == 5;
+/*@ requires KEPT(f) && TRACKED(f) && ACCELERATION(f) && f->collected == 5;
     requires P_BOUND(f);
-    requires reach: REACH(&f->core);
-    assigns f->core.u, f->p13_uq28, f->p23_uq28, f->p33_uq28, f->core.x_lsb_q16, f->core.rate_lsb_q16,
-            f->acceleration_q16, f->core.flags, f->core.gain_uq16 \from *f;
+    requires reach: f->collected == 5 && REACH(f);
+    assigns f->own.kf3.p, f->own.kf3.p13_uq28, f->own.kf3.p23_uq28, f->own.kf3.p33_uq28, f->x_lsb_q16, f->rate_lsb,
+            f->own.kf3.acceleration_q16, f->flags, f->gain_uq16 \from f->own, f->x_lsb_q16, f->rate_lsb,
+            f->flags, f->size_lsb_uq16, f->negative;
     ensures P_BOUND(f);
-    ensures MOTION(f);
+    ensures TRACKED(f) && ACCELERATION(f);
 */
-static void correct(kf3_t *f);
-
-/*@ requires SAMPLE(z_lsb);
-    requires TOLD(f) && MOTION(f) && f->core.collected == 5;
-    requires P_BOUND(f);
-    assigns f->core.u, f->p13_uq28, f->p23_uq28, f->p33_uq28, f->core.x_lsb_q16, f->core.rate_lsb_q16,
-            f->acceleration_q16, f->core.flags, f->core.gain_uq16, f->core.size_lsb_uq8, f->core.negative
-            \from *f, z_lsb;
-    ensures P_BOUND(f);
-    ensures MOTION(f);
-*/
-static void take(kf3_t *f, int16_t z_lsb);
-
-/*@ ensures \result ==> BOUND(f); */
-bool kf3_init(kf3_t *f, const kf3_config_t *config);
-/*@ requires BOUND(f); ensures BOUND(f); */
-void kf3_set_noise(kf3_t *f, uint32_t r_lsb2_q8);
-/*@ requires BOUND(f); ensures BOUND(f); */
-void kf3_reset(kf3_t *f, int16_t z0_lsb);
-bool kf3_reset_step(kf3_t *f, int16_t z0_lsb, uint8_t step);
-/*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
-int32_t kf3_update(kf3_t *f, int16_t z_lsb);
-/*@ requires BOUND(f); ensures BOUND(f); ensures -X_MAX_Q16 <= \result <= X_MAX_Q16; */
-int32_t kf3_coast(kf3_t *f);
-/*@ requires BOUND(f); ensures BOUND(f); */
-void kf3_damp(kf3_t *f);
-/*@ requires BOUND(f); ensures BOUND(f); */
-void kf3_hold(kf3_t *f);
-/*@ requires BOUND(f); ensures BOUND(f); */
-void kf3_restart(kf3_t *f);
-
-#include "filter_common.c"
-#include "fx.c"
-#include "two_state.c"
+static void correct(filter_t *f);
 
 #include "kf3.c"
 
-#define P12_END 1879048192UL /* 7 */
-
-static void any_told(kf3_t *f)
+static void any_own(filter_t *f, uint8_t kind)
 {
-    any_state(&f->core);
-    f->core.r_lsb2_q8 = ANY_U32(3, R_END);
-    f->acceleration_q16 = ANY_S32(-X_MAX_Q16, X_MAX_Q16);
-    f->fine = ANY_BOOL();
+    filter_kf3_t *k = &f->own.kf3;
+    k->p.p11 = ANY_U32(0, 13UL * ONE - 1U);
+    k->p.p12 = ANY_U32(0, P12_END - 1U);
+    k->p.p22 = ANY_U32(0, 5UL * ONE - 1U);
+    k->p13_uq28 = ANY_U32(0, 4UL * ONE - 1U);
+    k->p23_uq28 = ANY_U32(0, 3UL * ONE - 1U);
+    k->p33_uq28 = ANY_U32(0, 2UL * ONE - 1U);
+    k->acceleration_q16 = ANY_S32(-X_MAX_Q16, X_MAX_Q16);
+    k->q33_uq28 = ANY_U32(16, (kind == 0U) ? ONE : 0x2000000);
+    k->p22_start_uq28 = ANY_U32(0, P22_START_MAX_UQ28);
+    k->r_lsb2_q8 = ANY_U32(3, R_END);
+    k->drive_lsb2.mantissa = ANY_U16(0x8000, UINT16_MAX);
+    k->drive_lsb2.exponent = ANY_S8(SCALED_LEAST, 25);
+    k->start_lsb2.mantissa = ANY_U16(0x8000, UINT16_MAX);
+    k->start_lsb2.exponent = ANY_S8(SCALED_LEAST, 25);
+    k->fine = kind != 0U;
 }
 
-static void any_run(kf3_t *f)
+/* Coarse and fine. */
+static void narrow_config(filter_config_t *config, uint16_t number)
 {
-    any_told(f);
-    f->core.u.p.p11_uq28 = ANY_U32(0, 13UL * ONE - 1U);
-    f->core.u.p.p12_uq28 = ANY_U32(0, P12_END - 1U);
-    f->core.u.p.p22_uq28 = ANY_U32(0, 5UL * ONE - 1U);
-    f->p13_uq28 = ANY_U32(0, 4UL * ONE - 1U);
-    f->p23_uq28 = ANY_U32(0, 3UL * ONE - 1U);
-    f->p33_uq28 = ANY_U32(0, 2UL * ONE - 1U);
+    config->rate_dhz = (number == 0U) ? ANY_U16(50, FINE_FROM_DHZ - 1U) : ANY_U16(FINE_FROM_DHZ, 40000);
 }
 
-static void any_warm_up(kf3_t *f, uint8_t from_collected, uint8_t to_collected)
+void proof_limited_kf3(void)
 {
-    any_run(f);
-    any_start(&f->core);
-    f->core.r_lsb2_q8 = ANY_U32(3, R_END);
-    f->core.collected = ANY_U8(from_collected, to_collected);
-}
-
-void proof_limited(void)
-{
-    kf3_t f;
-    f.core.flags = 0;
+    filter_t f;
+    f.flags = 0;
     (void)limited(&f, ANY_S32(-3L * X_MAX_Q16, -X_MAX_Q16 - 1L));
     (void)limited(&f, ANY_S32(-X_MAX_Q16, -1));
     (void)limited(&f, ANY_S32(0, X_MAX_Q16));
@@ -130,158 +101,51 @@ void proof_limited(void)
 /* All that is predicted; then each element at the end of its range, the others anywhere. */
 void proof_grow_covariance(void)
 {
-    kf3_t f;
-    any_told(&f);
-    f.core.u.p.p11_uq28 = ANY_U32(0, 4UL * ONE - 1U);
-    f.core.u.p.p12_uq28 = ANY_U32(0, ONE - 1U);
-    f.core.u.p.p22_uq28 = ANY_U32(0, ONE - 1U);
-    f.p13_uq28 = ANY_U32(0, ONE - 1U);
-    f.p23_uq28 = ANY_U32(0, ONE - 1U);
-    f.p33_uq28 = ANY_U32(0, ONE - 1U);
-    (void)grow_covariance(&f);
-    any_run(&f);
-    f.core.u.p.p11_uq28 = ANY_U32(4UL * ONE, 13UL * ONE - 1U);
-    (void)grow_covariance(&f);
-    any_run(&f);
-    f.core.u.p.p12_uq28 = ANY_U32(ONE, P12_END - 1U);
-    (void)grow_covariance(&f);
-    any_run(&f);
-    f.core.u.p.p22_uq28 = ANY_U32(ONE, 5UL * ONE - 1U);
-    (void)grow_covariance(&f);
-    any_run(&f);
-    f.p13_uq28 = ANY_U32(ONE, 4UL * ONE - 1U);
-    (void)grow_covariance(&f);
-    any_run(&f);
-    f.p23_uq28 = ANY_U32(ONE, 3UL * ONE - 1U);
-    (void)grow_covariance(&f);
-    any_run(&f);
-    f.p33_uq28 = ANY_U32(ONE, 2UL * ONE - 1U);
-    (void)grow_covariance(&f);
+    filter_t f;
+    any_running(&f, &filter_law_kf3, 0);
+    f.own.kf3.p.p11 = ANY_U32(0, 4UL * ONE - 1U);
+    f.own.kf3.p.p12 = ANY_U32(0, ONE - 1U);
+    f.own.kf3.p.p22 = ANY_U32(0, ONE - 1U);
+    f.own.kf3.p13_uq28 = ANY_U32(0, ONE - 1U);
+    f.own.kf3.p23_uq28 = ANY_U32(0, ONE - 1U);
+    f.own.kf3.p33_uq28 = ANY_U32(0, ONE - 1U);
+    (void)grow_covariance(&f.own.kf3);
+    any_running(&f, &filter_law_kf3, 0);
+    f.own.kf3.p.p11 = ANY_U32(4UL * ONE, 13UL * ONE - 1U);
+    (void)grow_covariance(&f.own.kf3);
+    any_running(&f, &filter_law_kf3, 0);
+    f.own.kf3.p.p12 = ANY_U32(ONE, P12_END - 1U);
+    (void)grow_covariance(&f.own.kf3);
+    any_running(&f, &filter_law_kf3, 0);
+    f.own.kf3.p.p22 = ANY_U32(ONE, 5UL * ONE - 1U);
+    (void)grow_covariance(&f.own.kf3);
+    any_running(&f, &filter_law_kf3, 0);
+    f.own.kf3.p13_uq28 = ANY_U32(ONE, 4UL * ONE - 1U);
+    (void)grow_covariance(&f.own.kf3);
+    any_running(&f, &filter_law_kf3, 0);
+    f.own.kf3.p23_uq28 = ANY_U32(ONE, 3UL * ONE - 1U);
+    (void)grow_covariance(&f.own.kf3);
+    any_running(&f, &filter_law_kf3, 0);
+    f.own.kf3.p33_uq28 = ANY_U32(ONE, 2UL * ONE - 1U);
+    (void)grow_covariance(&f.own.kf3);
 }
 
-/* Uses: limited, grow_covariance */
 void proof_predict(void)
 {
-    kf3_t f;
-    any_run(&f);
-    f.core.flags = 0;
+    filter_t f;
+    any_running(&f, &filter_law_kf3, 0);
+    f.flags = 0;
     predict(&f);
 }
 
-/* Uses: fx_normalise, fx_inverse_m_uq16, limited. Options: -eva-split-return-function fx_leading:full */
-void proof_correct(void)
+/* Options: -eva-split-return-function filter_fx_leading:full */
+void proof_correct_three(void)
 {
-    kf3_t f;
-    any_run(&f);
-    //@ admit REACH(&f.core);
+    filter_t f;
+    any_running(&f, &filter_law_kf3, 0);
+    //@ admit REACH(&f);
     correct(&f);
 }
 
-/* Uses: predict, correct */
-void proof_take(void)
-{
-    kf3_t f;
-    any_run(&f);
-    take(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
-}
-
-/*
- * Uses: fx_normalise, rounded. All legal configurations, coarse and fine, then all with one parameter below or above.
- */
-void proof_kf3_init(void)
-{
-    kf3_t f;
-    kf3_config_t config;
-    for (uint8_t number = 0; number < CASES(3); number++) {
-        config.rate_dhz = any_u16(part_of(number, 0), 50, KF3_FINE_FROM_DHZ - 1U);
-        config.r_lsb2_q8 = any_u32(part_of(number, 1), 3, 256000, UINT32_MAX);
-        config.q_lsb2_s5 = any_u32(part_of(number, 2), 1, 1000000000, UINT32_MAX);
-        if (number == 2U) {
-            config.rate_dhz = ANY_U16(40001, UINT16_MAX);
-        }
-        (void)kf3_init(&f, &config);
-        if (number == 0U) {
-            config.rate_dhz = ANY_U16(KF3_FINE_FROM_DHZ, 40000);
-            (void)kf3_init(&f, &config);
-        }
-    }
-    kf3_defaults(&config, ANY_U16(50, 40000));
-}
-
-/* Uses: fx_normalise, rounded */
-void proof_kf3_set_noise(void)
-{
-    kf3_t f;
-    any_run(&f);
-    kf3_set_noise(&f, ANY_U32(0, UINT32_MAX));
-    any_warm_up(&f, 0, 4);
-    kf3_set_noise(&f, ANY_U32(0, UINT32_MAX));
-}
-
-/* Uses: take */
-void proof_kf3_reset(void)
-{
-    kf3_t f;
-    any_run(&f);
-    kf3_reset(&f, ANY_Z());
-    any_warm_up(&f, 0, 4);
-    kf3_reset(&f, ANY_Z());
-}
-
-/* Uses: take */
-void proof_kf3_reset_step(void)
-{
-    kf3_t f;
-    any_run(&f);
-    (void)kf3_reset_step(&f, ANY_Z(), ANY_U8(0, UINT8_MAX));
-    any_warm_up(&f, 0, 4);
-    (void)kf3_reset_step(&f, ANY_Z(), 0);
-}
-
-/* Uses: take */
-void proof_kf3_update(void)
-{
-    kf3_t f;
-    any_run(&f);
-    (void)kf3_update(&f, ANY_Z());
-    any_warm_up(&f, 0, 3);
-    (void)kf3_update(&f, ANY_Z());
-    any_warm_up(&f, 4, 4);
-    (void)kf3_update(&f, ANY_Z());
-}
-
-/* Uses: predict */
-void proof_kf3_coast(void)
-{
-    kf3_t f;
-    any_run(&f);
-    (void)kf3_coast(&f);
-    any_warm_up(&f, 0, 4);
-    (void)kf3_coast(&f);
-    filter_probe_t probe;
-    any_run(&f);
-    kf3_probe(&f, &probe);
-    (void)kf3_flags(&f);
-}
-
-/* What is told of missing samples, of states as those of a coast. */
-void proof_kf3_gap(void)
-{
-    kf3_t f;
-    any_run(&f);
-    kf3_damp(&f);
-    any_warm_up(&f, 0, 4);
-    kf3_damp(&f);
-    any_run(&f);
-    kf3_gap(&f);
-    any_run(&f);
-    kf3_hold(&f);
-    any_warm_up(&f, 0, 4);
-    kf3_gap(&f);
-    any_warm_up(&f, 0, 4);
-    kf3_hold(&f);
-    any_run(&f);
-    kf3_restart(&f);
-    any_warm_up(&f, 0, 4);
-    kf3_restart(&f);
-}
+/* Root by root. Options: -eva-split-return-function sixth_root_uq10:full */
+PROVE_LAW(kf3)

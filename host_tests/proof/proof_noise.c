@@ -12,14 +12,14 @@
      (n)->filled <= 5 && HISTORY_BOUND(n))
 
 /*@ ensures BOUND(n); */
-void noise_init(noise_t *n, uint16_t rate_dhz, bool noisy_axis);
+void filter_noise_init(noise_t *n, uint16_t rate_dhz, bool noisy_axis);
 /*@ requires BOUND(n); ensures BOUND(n); */
-void noise_gap(noise_t *n);
+void filter_noise_gap(noise_t *n);
 /*@ requires BOUND(n); ensures BOUND(n); */
-bool noise_update(noise_t *n, int16_t z_lsb);
+bool filter_noise_update(noise_t *n, int16_t z_lsb);
 
-#include "filter_common.c"
 #include "noise.c"
+#include "tracker.c"
 
 static void any_noise(noise_t *n)
 {
@@ -34,23 +34,23 @@ static void any_noise(noise_t *n)
     n->terms = ANY_U8(0, UINT8_MAX);
 }
 
-void proof_noise_init(void)
+void proof_filter_noise_init(void)
 {
     noise_t n;
-    noise_init(&n, ANY_U16(0, UINT16_MAX), ANY_BOOL());
-    (void)noise_r_lsb2_q8(&n);
+    filter_noise_init(&n, ANY_U16(0, UINT16_MAX), ANY_BOOL());
+    (void)filter_noise_r_lsb2_q8(&n);
 }
 
-void proof_noise_gap(void)
+void proof_filter_noise_gap(void)
 {
     noise_t n;
     any_noise(&n);
-    noise_gap(&n);
+    filter_noise_gap(&n);
 }
 
-void proof_noise_update(void)
+void proof_filter_noise_update(void)
 {
     noise_t n;
     any_noise(&n);
-    (void)noise_update(&n, ANY_Z());
+    (void)filter_noise_update(&n, ANY_Z());
 }

@@ -81,7 +81,6 @@ void proof_rest_variance_lsb2_q8(void)
     (void)rest_variance_lsb2_q8(&axis);
 }
 
-/* Uses: rest_variance_lsb2_q8 */
 void proof_rest_still(void)
 {
     rest_t rest;

@@ -31,7 +31,7 @@ int16_t tilt_atan2_cdeg(int32_t y, int32_t x);
     ensures ROLL(out->roll_cdeg) && PITCH(out->pitch_cdeg);
     ensures out->roll_undefined == 0 || out->roll_undefined == 1;
 */
-void tilt_angles(tilt_t *out, int32_t x_q8, int32_t y_q8, int32_t z_q8);
+void tilt_angles(tilt_t *out, const int32_t a_q8[3]);
 
 #include "fx.c"
 
@@ -64,21 +64,19 @@ void proof_fraction_uq16(void)
     (void)fraction_uq16(ANY_U16(0, 0x7FFF), ANY_U16(0x4000, 0x7FFF));
 }
 
-/* Uses: scale_to_15_bits, fraction_uq16 */
 void proof_tilt_atan2_cdeg(void)
 {
     (void)tilt_atan2_cdeg(ANY_S32(S32_MIN, INT32_MAX), ANY_S32(S32_MIN, INT32_MAX));
 }
 
-/* Uses: scale_to_15_bits, fraction_uq16 */
 void proof_tilt_angles(void)
 {
     tilt_t tilt;
     tilt.roll_cdeg = ANY_S16(-17999, 18000);
-    tilt_angles(&tilt, ANY_S32(S32_MIN, INT32_MAX), ANY_S32(S32_MIN, INT32_MAX), ANY_S32(S32_MIN, INT32_MAX));
+    tilt_angles(&tilt, (const int32_t[]){ ANY_S32(S32_MIN, INT32_MAX), ANY_S32(S32_MIN, INT32_MAX),
+                                          ANY_S32(S32_MIN, INT32_MAX) });
 }
 
-/* Uses: fx_isqrt32 */
 void proof_tilt_isqrt32(void)
 {
     (void)tilt_isqrt32(ANY_U32(0, UINT32_MAX));
@@ -86,5 +84,6 @@ void proof_tilt_isqrt32(void)
 
 void proof_tilt_gravity_plausible(void)
 {
-    (void)tilt_gravity_plausible(ANY_S32(S32_MIN, INT32_MAX), ANY_S32(S32_MIN, INT32_MAX), ANY_S32(S32_MIN, INT32_MAX));
+    (void)tilt_gravity_plausible(
+        (const int32_t[]){ ANY_S32(S32_MIN, INT32_MAX), ANY_S32(S32_MIN, INT32_MAX), ANY_S32(S32_MIN, INT32_MAX) });
 }

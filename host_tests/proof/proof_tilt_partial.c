@@ -27,7 +27,6 @@ void proof_size_q6(void)
     (void)size_q6(any_s32_all());
 }
 
-/* Uses: fx_isqrt32 */
 void proof_tilt_missing_q6(void)
 {
     (void)tilt_missing_q6(any_s32_all(), any_s32_all(), any_s32_all());

@@ -6,6 +6,7 @@ import threading
 import time
 import unittest
 
+from laws import DEFAULT, LIGHT, PLAIN, ROBUST
 from tilt import serving
 from tilt.board import Board
 from tilt.feed import Feed
@@ -13,7 +14,7 @@ from tilt.port import Port
 from browser import Browser
 from fake_board import BANNER, HEADER, FakeBoard, row
 
-FILTERS = ("adaptive", "kf", "sprf", "synth")
+FILTERS = (DEFAULT, PLAIN, ROBUST, LIGHT)
 PAGE_FILE = serving.PAGE.resolve().as_uri()
 
 
@@ -25,14 +26,14 @@ class Talk:
     def __init__(self, rate_hz=100, count=None, left_out=frozenset(), flags=lambda number: 0, faster=1, first=None):
         self.faster, self.first, self.go_on = faster, first, threading.Event()
         self.rate_hz, self.count, self.left_out, self.flags = rate_hz, count, left_out, flags
-        self.sent, self.said, self.filter, self.over = 0, [], "adaptive", threading.Event()
+        self.sent, self.said, self.filter, self.over = 0, [], DEFAULT, threading.Event()
         self.commands = []
 
     def say(self, text):
         self.said.append(text.encode("ascii") + b"\n")
 
     def __call__(self, board):
-        board.send(BANNER + b"# filter adaptive, rate 100 Hz, range 16 g, every 1, baud 115200\n# settings: as saved\n" + HEADER)
+        board.send(BANNER + f"# filter {DEFAULT}, rate 100 Hz, range 16 g, every 1, baud 115200\n# settings: as saved\n".encode() + HEADER)
         began, number = time.monotonic(), 0
         while True:
             held = self.first is not None and not self.go_on.is_set()

@@ -15,6 +15,8 @@ import scipy.linalg
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
+import laws  # noqa: E402
+from laws import DEFAULT, LIGHT, LONG, PLAIN, ROBUST  # noqa: E402
 from tilt import angles, cli, judge, native, stream  # noqa: E402
 from tilt.commands import compare  # noqa: E402
 
@@ -28,7 +30,7 @@ def run(*words):
     return status, out.getvalue(), err.getvalue()
 
 
-def answer_of(stem, names="adaptive,kf,sprf,synth", truth=True):
+def answer_of(stem, names=f"{DEFAULT},{PLAIN},{ROBUST},{LIGHT}", truth=True):
     given = stream.read(STREAMS / f"{stem}.csv")
     if not truth:
         given.roll_true_cdeg = given.pitch_true_cdeg = None
@@ -59,8 +61,8 @@ class Angles(unittest.TestCase):
 class Truth(unittest.TestCase):
     def test_errors_are_those_computed_here(self):
         given = stream.read(STREAMS / "outliers-15pct.csv")
-        rows = native.replay(given, ["kf"], 1000)["kf"]
-        found = by_name(answer_of("outliers-15pct", "kf"))["kf"]
+        rows = native.replay(given, [PLAIN], 1000)[PLAIN]
+        found = by_name(answer_of("outliers-15pct", PLAIN))[PLAIN]
         late = rows["flags"] & judge.WARMING == 0
         for angle, key in (("roll", "roll_rms_deg"), ("pitch", "pitch_rms_deg")):
             true = getattr(given, f"{angle}_true_cdeg").astype(float)
@@ -70,7 +72,7 @@ class Truth(unittest.TestCase):
 
     def test_across_180_degrees(self):
         found = by_name(answer_of("through-roll-180"))
-        self.assertLess(found["adaptive"]["worst_deg"], 5.0)
+        self.assertLess(found[DEFAULT]["worst_deg"], 5.0)
 
     def test_a_delay_is_its_lag(self):
         """Rows that show the truth of 30 ms earlier, and 0.5 degrees of noise."""
@@ -87,8 +89,8 @@ class Truth(unittest.TestCase):
     def test_a_gate_is_worth_it_where_there_are_outliers_and_the_words_say_so(self):
         answer = answer_of("outliers-15pct")
         found = by_name(answer)
-        self.assertLess(found["sprf"]["tilt_rms_deg"], 0.25 * found["kf"]["tilt_rms_deg"])
-        self.assertTrue(found["kf"]["told_from_best"])
+        self.assertLess(found[ROBUST]["tilt_rms_deg"], 0.25 * found[PLAIN]["tilt_rms_deg"])
+        self.assertTrue(found[PLAIN]["told_from_best"])
         self.assertEqual([row["tilt_rms_deg"] for row in answer["filters"]], sorted(row["tilt_rms_deg"] for row in answer["filters"]))
         # 15 % are 20 times as far: beyond 4 sigmas lie 2 Phi(-0.2) = 84 % of them where sigma is known; the filter's own is up to 1.6 times that
         self.assertTrue(9.0 < answer["outliers_percent"] < 13.0, answer["outliers_percent"])
@@ -133,10 +135,10 @@ class Difference(unittest.TestCase):
 
 class Innovations(unittest.TestCase):
     def test_variance_is_that_of_the_riccati_equation(self):
-        """kf at 100 Hz, R = 4, q = 10000: x += v, v += w with the variance q T^3 = 0.01."""
+        """The plain Kalman filter at 100 Hz, R = 4, q = 10000: x += v, v += w with the variance q T^3 = 0.01."""
         rng = np.random.default_rng(6)
         z = np.round(rng.normal(100, 2, 3000)).astype(np.int16)
-        probes = native.axis("kf", 1000, z, np.full(3000, native.THERE), r_lsb2=4.0)
+        probes = native.axis(PLAIN, 1000, z, np.full(3000, native.THERE), r_lsb2=4.0)
         phi, drive = np.array([[1.0, 1.0], [0.0, 1.0]]), np.diag([0.0, 0.01])
         predicted = scipy.linalg.solve_discrete_are(phi.T, np.array([[1.0], [0.0]]), drive, np.array([[4.0]]))
         self.assertAlmostEqual(judge.variance_of(probes)[-1], predicted[0, 0] + 4.0, delta=0.01)
@@ -145,7 +147,7 @@ class Innovations(unittest.TestCase):
     def test_a_refused_sample_has_the_variance_of_the_one_before(self):
         z = np.full(300, 100, np.int16)
         z[200] = 900
-        probes = native.axis("sprf", 1000, z, np.full(300, native.THERE), r_lsb2=4.0)
+        probes = native.axis(ROBUST, 1000, z, np.full(300, native.THERE), r_lsb2=4.0)
         self.assertEqual(probes["gain_uq16"][200], 0)
         self.assertAlmostEqual(judge.variance_of(probes)[200], judge.variance_of(probes)[199], delta=1e-9)
         self.assertAlmostEqual(judge.innovations(probes)[200], 800.0, delta=1.0)
@@ -154,7 +156,7 @@ class Innovations(unittest.TestCase):
         state = np.full(300, native.THERE)
         state[100:104], state[150] = native.MISSING, native.AT_RAIL
         state[200:230] = native.MISSING  # 300 ms: it starts anew, with five samples
-        probes = native.axis("sprf", 1000, np.full(300, 7, np.int16), state, r_lsb2=4.0)
+        probes = native.axis(ROBUST, 1000, np.full(300, 7, np.int16), state, r_lsb2=4.0)
         self.assertEqual(np.flatnonzero(probes["judged"] == 0).tolist(), [0, 1, 2, 3, 4, 100, 101, 102, 103, 150, *range(200, 235)])
 
     def test_correlation_of_neighbours(self):
@@ -179,35 +181,37 @@ class Blind(unittest.TestCase):
 
     def test_a_healthy_sensor_at_rest_has_two_thirds(self):
         """NIS: the board's R is 1.5 times the variance, and nearly all of S. 6,000 samples of the median: 3 %; of R: 5 %."""
-        found = by_name(answer_of("rest-4lsb", "kf,sprf", truth=False))
+        found = by_name(answer_of("rest-4lsb", f"{PLAIN},{ROBUST}", truth=False))
         for row in found.values():
             self.assertAlmostEqual(row["nis"], 1 / 1.5, delta=0.08)
 
 
 class Command(unittest.TestCase):
     def test_the_table_and_the_words(self):
-        status, out, _ = run(STREAMS / "outliers-15pct.csv", "--filter", "kf,sprf")
+        status, out, _ = run(STREAMS / "outliers-15pct.csv", "--filter", f"{PLAIN},{ROBUST}")
         self.assertEqual(status, 0)
         lines = out.splitlines()
         self.assertRegex(lines[0], r"outliers-15pct.csv: 5995 rows judged by angle from the truth \(degrees\)")  # five rows are warming up
-        self.assertRegex(lines[2], r"^sprf .* best$")
-        self.assertRegex(lines[3], r"^kf .* \+[0-9.]+ %$")
-        self.assertIn("Best: sprf", lines[5])
+        self.assertRegex(lines[2], fr"^{ROBUST} .* best$")
+        self.assertRegex(lines[3], fr"^{PLAIN} .* \+[0-9.]+ %$")
+        self.assertIn(f"Best: {ROBUST}", lines[5])
 
     def test_equals_are_called_so(self):
-        answer = answer_of("tilt-fast", "kf,af,soft")  # no outliers: their gates do nothing
-        self.assertEqual(len(answer["same_as_best"]), 2)
+        # whose gate takes a part of what is beyond it, or which learn what is normal: no outliers, so they do nothing else
+        names = [PLAIN, *(name for name in laws.kalman() if name not in (PLAIN, ROBUST, LONG) and "GATED" in laws.laws()[name].traits)]
+        answer = answer_of("tilt-fast", ",".join(names))  # no outliers: their gates do nothing
+        self.assertEqual(len(answer["same_as_best"]), len(names) - 1)
         self.assertIn("take the one you know", " ".join(answer["why"]))
 
     def test_json(self):
-        status, out, _ = run(STREAMS / "steps.csv", "--filter", "kf,sprf", "--json")
+        status, out, _ = run(STREAMS / "steps.csv", "--filter", f"{PLAIN},{ROBUST}", "--json")
         answer = json.loads(out)
         self.assertEqual((status, answer["rate_hz"], answer["rows_judged"]), (0, 100.0, 5095))
-        self.assertEqual({row["filter"] for row in answer["filters"]}, {"kf", "sprf"})
+        self.assertEqual({row["filter"] for row in answer["filters"]}, {PLAIN, ROBUST})
         self.assertEqual(answer["best"], answer["filters"][0]["filter"])
 
     def test_one_filter_and_a_short_recording(self):
-        self.assertIn("nothing to compare it with", run(STREAMS / "steps.csv", "--filter", "kf")[1])
+        self.assertIn("nothing to compare it with", run(STREAMS / "steps.csv", "--filter", PLAIN)[1])
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "short.csv"
             lsb = np.round(np.random.default_rng(8).normal([0, 0, 256], 2, (100, 3)))

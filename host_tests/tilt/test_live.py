@@ -19,6 +19,7 @@ from unittest import mock
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
+from laws import PLAIN  # noqa: E402
 from tilt import board as board_module  # noqa: E402
 from tilt import cli, serving, stream  # noqa: E402
 from tilt.commands import live  # noqa: E402
@@ -127,8 +128,8 @@ class TestServer(unittest.TestCase):
         self.assertEqual(self.server.server_address[0], "127.0.0.1")
 
     def test_command_goes_to_the_board(self):
-        self.assertEqual(self.post("filter kf").status, 204)
-        self.assertEqual(self.typed, ["filter kf"])
+        self.assertEqual(self.post(f"filter {PLAIN}").status, 204)
+        self.assertEqual(self.typed, [f"filter {PLAIN}"])
 
     def test_others_are_refused_and_type_nothing(self):
         port, token = self.server.server_port, self.server.token
@@ -203,15 +204,15 @@ class TestBoard(unittest.TestCase):
     def test_all_lines_come_and_commands_go(self):
         def script(board):
             board.send(BANNER + HEADER + rows(0, 200))
-            board.heard(b"filter kf\n")
-            board.send(b"# filter kf\n")
+            board.heard(f"filter {PLAIN}\n".encode())
+            board.send(f"# filter {PLAIN}\n".encode())
 
         with FakeBoard(self.folder, script) as fake, Watched(fake.name) as watched:
             until(lambda: watched.lines().count(b"\n") >= 200)
-            watched.board.send("filter kf")
-            until(lambda: b"# filter kf" in watched.lines())
-            self.assertEqual(watched.lines().lstrip(), (BANNER + HEADER + rows(0, 200) + b"# filter kf\n").lstrip())
-            self.assertEqual(watched.got("sent"), ["filter kf"])
+            watched.board.send(f"filter {PLAIN}")
+            until(lambda: f"# filter {PLAIN}".encode() in watched.lines())
+            self.assertEqual(watched.lines().lstrip(), (BANNER + HEADER + rows(0, 200) + f"# filter {PLAIN}\n".encode()).lstrip())
+            self.assertEqual(watched.got("sent"), [f"filter {PLAIN}"])
             for wrong in ("", "x" * 41, "a\nb", "gr\u00fcn"):
                 with self.assertRaisesRegex(TiltError, "1 to 40 characters"):
                     watched.board.send(wrong)

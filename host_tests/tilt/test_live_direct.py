@@ -6,6 +6,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
+from laws import DEFAULT, PLAIN  # noqa: E402
 from browser import ABSENT  # noqa: E402
 from fake_board import BANNER, HEADER, row, rows  # noqa: E402
 from live_support import PAGE_FILE, Case  # noqa: E402
@@ -54,11 +55,11 @@ class TestDirect(Case):
         page.until("tiltLive.figures().rows === 30 && tiltLive.figures().firstPictureMs")
         page.until("typed.length === 2")
         self.assertEqual(page.value("typed"), ["filter\n", "help\n"])
-        self.say(page, b"# filter: adaptive kf\n# filter kf\n" + rows(30, 60))
-        page.until("tiltLive.figures().filter === 'kf'")
-        page.value("document.querySelector('input[value=adaptive]').click()")
+        self.say(page, f"# filter: {DEFAULT} {PLAIN}\n# filter {PLAIN}\n".encode() + rows(30, 60))
+        page.until(f"tiltLive.figures().filter === '{PLAIN}'")
+        page.value(f"document.querySelector('input[value={DEFAULT}]').click()")
         page.until("typed.length === 3")
-        self.assertEqual(page.value("typed[2]"), "filter adaptive\n")
+        self.assertEqual(page.value("typed[2]"), f"filter {DEFAULT}\n")
         self.assertEqual(page.figures()["lost"], 0)
 
     def test_baud_is_not_changed_under_the_browser(self):

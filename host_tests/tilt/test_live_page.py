@@ -6,6 +6,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
+from laws import DEFAULT, LIGHT, PLAIN, ROBUST  # noqa: E402
 from tilt import protocol  # noqa: E402
 from browser import ABSENT  # noqa: E402
 from fake_board import until  # noqa: E402
@@ -20,19 +21,19 @@ class TestServed(Case):
             page = self.opened(server.address)
             self.assertEqual(page.until("tiltLive.figures().filters.length && tiltLive.figures().filters"), list(FILTERS))
             self.assertEqual(talk.commands, ["filter", "help"])
-            page.value("document.querySelector('input[value=sprf]').click()")
-            page.until("tiltLive.figures().filter === 'sprf'")
-            self.assertEqual((talk.filter, talk.commands[2:]), ("sprf", ["filter sprf"]))
-            self.assertTrue(page.value("document.querySelector('input[value=sprf]').checked"))
+            page.value(f"document.querySelector('input[value={ROBUST}]').click()")
+            page.until(f"tiltLive.figures().filter === '{ROBUST}'")
+            self.assertEqual((talk.filter, talk.commands[2:]), (ROBUST, [f"filter {ROBUST}"]))
+            self.assertTrue(page.value(f"document.querySelector('input[value={ROBUST}]').checked"))
             self.lights(page, talk)
 
     def lights(self, page, talk):
         fault = "document.getElementById('fault')"
         self.assertEqual(page.value(f"[{fault}.className, {fault}.textContent]"), ["card fault", "no fault told"])
-        talk.say("# fault 8: SDA held low: check SDA to A4, pull-ups, GND")
+        talk.say("# fault 8: SDA held low: check SDA, SCL, pull-ups, GND")
         page.until(f"{fault}.classList.contains('lit')")
-        self.assertEqual(page.value(f"{fault}.textContent"), "fault 8: SDA held low: check SDA to A4, pull-ups, GND")
-        talk.say("# fault 8 over: samples again after 1234 ms, 123 lost, sensor at 0x53")
+        self.assertEqual(page.value(f"{fault}.textContent"), "fault 8: SDA held low: check SDA, SCL, pull-ups, GND")
+        talk.say("# fault 8 over: after 1234 ms, 123 lost, sensor at 0x53")
         page.until(f"!{fault}.classList.contains('lit')")
         for line in ("# fault 8: SDA held low", "fault 8 over"):
             self.assertIn(line, page.value("document.getElementById('log').innerText"))
@@ -61,7 +62,7 @@ class TestServed(Case):
                 if page.value("document.activeElement.name") == "filter":
                     break
             page.press("ArrowRight")
-            page.until("tiltLive.figures().filter === 'kf'")
+            page.until(f"tiltLive.figures().filter === '{PLAIN}'")
             for _ in range(4):
                 page.press("Tab")
                 if page.value("document.activeElement.id") == "line":
@@ -75,28 +76,29 @@ class TestServed(Case):
     def test_refused_filter_leaves_what_is_in_force_marked(self):
         talk = Talk()
         talk.reply_before = talk.reply
-        talk.reply = lambda command: b"# refused 5: kf takes 12600 of the 11950 cycles that a sample at 800 Hz leaves\n# filter adaptive\n" \
-            if command == "filter kf" else talk.reply_before(command)
+        talk.reply = lambda command: f"# refused 5: {PLAIN} takes 12600 of the 11950 cycles that a sample at 800 Hz leaves\n" \
+            f"# filter {DEFAULT}\n".encode() \
+            if command == f"filter {PLAIN}" else talk.reply_before(command)
         with watched(talk) as (server, _):
             page = self.opened(server.address)
             page.until("tiltLive.figures().filters.length")
-            page.value("document.querySelector('input[value=kf]').click()")
-            page.until("document.getElementById('log').innerText.includes('refused 5: kf')")
-            page.until("document.querySelector('input[value=adaptive]').checked")
+            page.value(f"document.querySelector('input[value={PLAIN}]').click()")
+            page.until(f"document.getElementById('log').innerText.includes('refused 5: {PLAIN}')")
+            page.until(f"document.querySelector('input[value={DEFAULT}]').checked")
 
     def test_filter_is_asked_for_again_where_settings_were_loaded(self):
         talk = Talk()
         with watched(talk) as (server, _):
             page = self.opened(server.address)
             page.until("tiltLive.figures().filters.length")
-            talk.filter = "synth"
+            talk.filter = LIGHT
             talk.say("# settings: as saved")
-            page.until("tiltLive.figures().filter === 'synth'")
-            talk.say("# filter kf: kf synth sprf")
-            page.until("tiltLive.figures().filters.join() === 'kf,synth,sprf' && tiltLive.figures().filter === 'kf'")
-            talk.say("# filter synth")
-            talk.say("# refused 4: filter is one of synth kf")
-            page.until("tiltLive.figures().filters.join() === 'synth,kf' && tiltLive.figures().filter === 'synth'")
+            page.until(f"tiltLive.figures().filter === '{LIGHT}'")
+            talk.say(f"# filter {PLAIN}: {PLAIN} {LIGHT} {ROBUST}")
+            page.until(f"tiltLive.figures().filters.join() === '{PLAIN},{LIGHT},{ROBUST}' && tiltLive.figures().filter === '{PLAIN}'")
+            talk.say(f"# filter {LIGHT}")
+            talk.say(f"# refused 4: filter is one of {LIGHT} {PLAIN}")
+            page.until(f"tiltLive.figures().filters.join() === '{LIGHT},{PLAIN}' && tiltLive.figures().filter === '{LIGHT}'")
 
     def test_picture_moves_and_stands_still_in_a_pause(self):
         with watched(Talk()) as (server, _):

@@ -12,6 +12,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
+from laws import LIGHT  # noqa: E402
 from browser import ABSENT, Browser  # noqa: E402
 from fake_board import DEADLINE_S  # noqa: E402
 from live_support import Talk, watched  # noqa: E402
@@ -20,7 +21,7 @@ RATE_HZ, SECONDS = 400, 20
 COUNT = RATE_HZ * SECONDS
 FASTER = 8  # than a board: the rows' times are its own
 FEW = RATE_HZ // 4  # rows of which there must be a picture
-SIMRUN, FIRMWARE, STREAM = (pathlib.Path(name) for name in ("build/sim/simrun", "build/uno/robust/firmware.elf", "sim/streams/tilt-400hz.csv"))
+SIMRUN, FIRMWARE, STREAM = (pathlib.Path(name) for name in ("build/sim/simrun", "build/uno/firmware.elf", "sim/streams/tilt-400hz.csv"))
 
 
 def left_out():
@@ -53,7 +54,7 @@ class TestRate(unittest.TestCase):
         self.assertEqual((figures[1]["rows"], figures[1]["lost"]), (COUNT - len(missing), len(missing)))
         self.assertGreater(len(missing), 100)
 
-    @unittest.skipUnless(SIMRUN.exists() and FIRMWARE.exists(), "no simrun or firmware built: make build/sim/simrun build/uno/robust/firmware.elf")
+    @unittest.skipUnless(SIMRUN.exists() and FIRMWARE.exists(), "no simrun or firmware built: make build/sim/simrun build/uno/firmware.elf")
     def test_the_firmware_in_the_simulator(self):
         """Over simrun's pseudo terminal, where simulated time waits for a reader that is late; the filter of the real firmware is switched."""
         with contextlib.ExitStack() as stack:
@@ -67,8 +68,8 @@ class TestRate(unittest.TestCase):
             page.until("tiltLive.figures().firstPictureMs && tiltLive.figures().filters.length")
             page.until("tiltLive.figures().rate > 390")
             before = page.figures()
-            page.value("document.querySelector('input[value=kf]').click()")
-            page.until("tiltLive.figures().filter === 'kf'")
+            page.value(f"document.querySelector('input[value={LIGHT}]').click()")
+            page.until(f"tiltLive.figures().filter === '{LIGHT}'")
             page.until(f"tiltLive.figures().rows > {before['rows'] + 2 * RATE_HZ}")
             after = page.figures()
         print(f"simrun: {after['rows']} rows, {after['rate']:.1f} rows/s")

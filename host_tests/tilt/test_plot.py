@@ -19,6 +19,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
+from laws import LONG, PLAIN  # noqa: E402
 from tilt import cli, picture, pictured, plot_page, spectrum, stream, thin  # noqa: E402
 
 SEED = 20261122
@@ -233,11 +234,11 @@ class Picture(Case):
 
     def test_several_filters_in_one_file_as_replay_writes_them(self):
         path = self.folder / "several.csv"
-        columns = {f"{name}_{end}": np.full(40, value) for end, value in (("kf", 100), ("sprf_paper", 200)) for name in ("roll_cdeg", "x_mg")}
-        columns |= {"flags_kf": np.arange(40) == 3, "flags_sprf_paper": np.full(40, 200)}
+        columns = {f"{name}_{end}": np.full(40, value) for end, value in ((PLAIN, 100), (LONG, 200)) for name in ("roll_cdeg", "x_mg")}
+        columns |= {f"flags_{PLAIN}": np.arange(40) == 3, f"flags_{LONG}": np.full(40, 200)}
         stream.write(path, 10_000 * np.arange(40), np.full((40, 3), 100), flags=np.zeros(40, int), columns=columns)
         found = pictured.load(path)
-        self.assertEqual([one.name for one in found], ["several.csv: kf", "several.csv: sprf_paper"])
+        self.assertEqual([one.name for one in found], [f"several.csv: {PLAIN}", f"several.csv: {LONG}"])
         self.assertEqual([(one.filtered["roll"][0], one.filtered["x"][0], int(one.flags[5])) for one in found], [(1.0, 100.0, 0), (2.0, 200.0, 200)])
         self.assertEqual([np.flatnonzero(one.gated).tolist() for one in found], [[3], []])
         self.assertTrue(pictured.same_readings(found))
@@ -332,7 +333,8 @@ requestAnimationFrame(() => { new Plot(drawings[0][0], 0, 100).marks(DATA.files[
   i => DATA.files[0].flags[i] & 1, 2, () => document.body.dataset.crosses++); });
 </script></body>"""
         page.write_text(page.read_text().replace("</body>", script))
-        command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=3000", f"--user-data-dir={self.folder}/user"]
+        command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=3000",
+                   "--run-all-compositor-stages-before-draw", f"--user-data-dir={self.folder}/user"]
         done = subprocess.run([*command, "--dump-dom", f"file://{page}"], capture_output=True, text=True, timeout=600, check=False)
         body = re.search(r"<body([^>]*)>", done.stdout)
         self.assertIsNotNone(body, done.stderr)

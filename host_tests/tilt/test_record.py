@@ -14,6 +14,7 @@ from unittest import mock
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
+from laws import ROBUST  # noqa: E402
 from fake_board import BANNER, HEADER, FakeBoard, row, rows, until  # noqa: E402
 from tilt import cli, protocol, stream  # noqa: E402
 from tilt.commands import record  # noqa: E402
@@ -68,7 +69,7 @@ class Case(unittest.TestCase):
 
 class Lines(Case):
     def test_what_a_board_sends_is_kept_as_it_came_however_it_is_cut(self):
-        whole = BANNER + HEADER + rows(0, 50) + b"# filter sprf\n" + rows(50, 90)
+        whole = BANNER + HEADER + rows(0, 50) + f"# filter {ROBUST}\n".encode() + rows(50, 90)
         for size in (1, 7, len(whole)):
             counts, text = recorded(*(whole[i:i + size] for i in range(0, len(whole), size)))
             self.assertEqual(text, whole.decode().lstrip("\n"))
@@ -253,11 +254,11 @@ class Command(Case):
     def test_commands_are_typed_when_the_board_is_there_and_after_a_reset(self):
         def script(board):
             board.send(BANNER + HEADER + rows(0, 50))
-            board.heard(b"filter sprf\nevery 2\n")
-            board.send(b"# filter sprf\n" + BANNER + HEADER)
-            board.heard(b"filter sprf\nevery 2\nfilter sprf\nevery 2\n")
+            board.heard(f"filter {ROBUST}\nevery 2\n".encode())
+            board.send(f"# filter {ROBUST}\n".encode() + BANNER + HEADER)
+            board.heard(f"filter {ROBUST}\nevery 2\nfilter {ROBUST}\nevery 2\n".encode())
             board.send(rows(0, 150))
-        status, _, _, _ = self.run_tilt(script, *self.for_seconds(1.9), "--send", "filter sprf", "--send", "every 2")
+        status, _, _, _ = self.run_tilt(script, *self.for_seconds(1.9), "--send", f"filter {ROBUST}", "--send", "every 2")
         self.assertEqual(status, 1)  # the reset
 
     def test_a_wrong_baud_rate_is_told_with_the_right_one(self):

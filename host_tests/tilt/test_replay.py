@@ -16,6 +16,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
+from laws import DEFAULT, LIGHT, PLAIN, ROBUST, SLOWEST  # noqa: E402
 import images  # noqa: E402
 from tilt import cli, errors, native, stream  # noqa: E402
 from tilt.commands import replay as command  # noqa: E402
@@ -107,7 +108,7 @@ class EqualsFirmware(Case):
         return sent[skip:], self.path / "tail.csv"
 
     def test_at_400_hz(self):
-        for name in ("adaptive", "sprf", "kf3"):
+        for name in (DEFAULT, ROBUST, SLOWEST):
             sent, tail = self.from_cold_start("sim/streams/tilt-400hz.csv", name, "baud 500000", "rate 400")
             rows = native.replay(stream.read(tail), [name], 4000)[name]
             length = min(len(rows), len(sent))
@@ -115,7 +116,7 @@ class EqualsFirmware(Case):
             self.assert_same(sent, rows[:length], name)
 
     def test_at_the_rails_of_2_g(self):
-        for name in ("adaptive", "sprf", "kf3"):
+        for name in (DEFAULT, ROBUST, SLOWEST):
             sent, tail = self.from_cold_start("sim/streams/clipping.csv", name, "range 2")
             rows = native.replay(stream.read(tail), [name], 1000, 2)[name]
             length = min(len(rows), len(sent))
@@ -125,7 +126,7 @@ class EqualsFirmware(Case):
     @unittest.skipUnless(SIMRUN.exists() and all(pathlib.Path(image).exists() for image in images.SET_IMAGES),
                          "the simulator is not built: make system_images")
     def test_the_chip(self):
-        for stem, name in (("outliers-15pct", "adaptive"), ("bad-reads", "sprf"), ("clipping", "kf"), ("through-roll-180", "synth")):
+        for stem, name in (("outliers-15pct", DEFAULT), ("bad-reads", ROBUST), ("clipping", PLAIN), ("through-roll-180", LIGHT)):
             out = self.path / "chip.csv"
             subprocess.run([SIMRUN, "--fw", images.image_with(name), "--in", f"sim/streams/{stem}.csv", "--out", out, "--filter", name], check=True,
                            capture_output=True)
@@ -158,15 +159,15 @@ class EqualsFirmware(Case):
         flags[[50, 51, 90]] = [2, 18, 16]
         keep = np.delete(np.arange(400), [200, 201, 300])  # and there without a row
         path = self.made(lsb[keep], flags[keep], t_us=keep * 10000)
-        rows = native.replay(stream.read(path), ["sprf"], 1000)["sprf"]
-        self.assert_same(self.firmware(path, "sprf"), rows, "sprf")
+        rows = native.replay(stream.read(path), [ROBUST], 1000)[ROBUST]
+        self.assert_same(self.firmware(path, ROBUST), rows, ROBUST)
         self.assertEqual(np.flatnonzero(rows["flags"] & COASTED).tolist(), [50, 51, 90, 200, 201, 300])
         self.assertEqual(rows["t_us"].tolist(), [10000 * i for i in range(400)])
 
     def test_a_smaller_range_clips(self):
         lsb = np.tile([[0, 0, 256], [1, 0, 600], [0, 1, -600]], (40, 1))
         path = self.made(lsb)
-        rows = native.replay(stream.read(path), ["kf"], 1000, 2)["kf"]
+        rows = native.replay(stream.read(path), [PLAIN], 1000, 2)[PLAIN]
         self.assertEqual(rows["lsb"][:, 2].tolist(), [256, 511, -512] * 40)
         self.assertEqual((rows["flags"] & CLIPPED != 0).tolist(), [False, True, True] * 40)
 
@@ -181,14 +182,14 @@ class Itself(Case):
             alone = native.replay(given, [name], 1000)[name]
             np.testing.assert_array_equal(alone, together[name])
             np.testing.assert_array_equal(alone, shared[name])
-        self.assertTrue(np.any(together["kf"]["mg"] != together["sprf"]["mg"]))
+        self.assertTrue(np.any(together[PLAIN]["mg"] != together[ROBUST]["mg"]))
 
     def test_times_are_those_of_the_recording(self):
         """At 97 Hz, which a sensor at 100 Hz takes as a row a tick; 50 rows are missing. Time goes on throughout."""
         keep = np.delete(np.arange(600), np.arange(300, 350))
         path = self.made(np.tile([3, 4, 250], (550, 1)) + keep[:, None] % 3, t_us=7_000_000_000 + keep * 10309)
         given = stream.read(path)
-        rows = native.replay(given, ["adaptive"], 1000)["adaptive"]
+        rows = native.replay(given, [DEFAULT], 1000)[DEFAULT]
         taken = rows["source"] >= 0
         self.assertEqual(rows["t_us"][taken].tolist(), (keep * 10309).tolist())
         self.assertEqual(rows["t_us"].tolist(), (np.arange(600) * 10309).tolist())
@@ -197,7 +198,7 @@ class Itself(Case):
         """8 h without a sample: a row each tick for a second, then ten a second."""
         at = np.arange(200)
         path = self.made(np.tile([0, 1, 256], (200, 1)) + at[:, None] % 2, t_us=at * 10000 + (at >= 100) * 28_800_000_000)
-        rows = native.replay(stream.read(path), ["kf"], 1000)["kf"]
+        rows = native.replay(stream.read(path), [PLAIN], 1000)[PLAIN]
         silent = int(((rows["flags"] & COASTED) != 0).sum())
         # ticks 1..101 (100 ms more than a second: the long step follows the row that finds it long), then each 10th of 2,880,000
         self.assertAlmostEqual(silent, 100 + 2_879_900 / 10, delta=3)
@@ -213,12 +214,12 @@ class Command(Case):
 
     def test_one_filter_has_the_columns_of_the_firmware_and_its_output_is_a_stream(self):
         out = self.path / "out.csv"
-        status, said, _ = self.run_it("sim/streams/gaps-jitter.csv", "--filter", "sprf", "-o", out)
+        status, said, _ = self.run_it("sim/streams/gaps-jitter.csv", "--filter", ROBUST, "-o", out)
         self.assertEqual(status, 0)
         self.assertTrue(out.read_text(encoding="ascii").startswith(HEADER + ",roll_true_cdeg,pitch_true_cdeg\n"))
         self.assertRegex(said, r"1 filter in [0-9.]+ s, reading included: [0-9,]+ times real time\n")
         again = stream.read(out, ["roll_cdeg"])
-        rows = native.replay(stream.read("sim/streams/gaps-jitter.csv"), ["sprf"], 1000)["sprf"]
+        rows = native.replay(stream.read("sim/streams/gaps-jitter.csv"), [ROBUST], 1000)[ROBUST]
         np.testing.assert_array_equal(again.columns["roll_cdeg"], rows["roll_cdeg"])
         np.testing.assert_array_equal(again.missing, (rows["flags"] & (COASTED | FAULT)) != 0)
         np.testing.assert_array_equal(again.t_us, rows["t_us"])
@@ -227,20 +228,21 @@ class Command(Case):
 
     def test_several_have_columns_each_and_flags_in_common(self):
         out = self.path / "out.csv"
-        status, said, _ = self.run_it("sim/streams/outliers-15pct.csv", "--filter", "kf,sprf", "--rate", "100", "-o", out)
+        status, said, _ = self.run_it("sim/streams/outliers-15pct.csv", "--filter", f"{PLAIN},{ROBUST}", "--rate", "100", "-o", out)
         self.assertEqual(status, 0)
         self.assertIn(f"{out}: 6000 rows written", said)
-        again = stream.read(out, ["x_mg_kf", "flags_sprf", "flags_kf"])
-        self.assertFalse(np.any(again.columns["flags_kf"] & 1))
-        self.assertTrue(np.any(again.columns["flags_sprf"] & 1))
-        np.testing.assert_array_equal(again.flags, again.columns["flags_kf"] & again.columns["flags_sprf"])
+        again = stream.read(out, [f"x_mg_{PLAIN}", f"flags_{ROBUST}", f"flags_{PLAIN}"])
+        self.assertFalse(np.any(again.columns[f"flags_{PLAIN}"] & 1))
+        self.assertTrue(np.any(again.columns[f"flags_{ROBUST}"] & 1))
+        np.testing.assert_array_equal(again.flags, again.columns[f"flags_{PLAIN}"] & again.columns[f"flags_{ROBUST}"])
         self.assertIn("times real time", said)
 
     def test_what_cannot_be_is_told(self):
         good = "sim/streams/steps.csv"
         dead = self.made(np.full((20, 3), -1))
-        for words, said in (([good, "--filter", "kf,kx"], "--filter: there is no filter 'kx'; there are adaptive kf "),
-                            ([good, "--filter", "kf,kf"], "--filter: kf stands twice"), ([good, "--rate", "101"], "--rate: 101: one of 12.5 25 50 "),
+        for words, said in (([good, "--filter", f"{PLAIN},kx"], f"--filter: there is no filter 'kx'; there are {DEFAULT} {PLAIN} "),
+                            ([good, "--filter", f"{PLAIN},{PLAIN}"], f"--filter: {PLAIN} stands twice"),
+                            ([good, "--rate", "101"], "--rate: 101: one of 12.5 25 50 "),
                             ([dead], "made.csv: no row: every row is missing or reads -1,-1,-1"), (["absent.csv"], "absent.csv: cannot be read: ")):
             status, out, err = self.run_it(*words)
             self.assertEqual((status, out), (2, ""))
@@ -255,14 +257,14 @@ class Command(Case):
         for out in (mine, other):
             err = io.StringIO()
             with contextlib.redirect_stderr(err):
-                self.assertEqual(cli.main(["replay", str(mine), "--filter", "kf", "-o", str(out)]), 2)
+                self.assertEqual(cli.main(["replay", str(mine), "--filter", PLAIN, "-o", str(out)]), 2)
             self.assertIn("would replace the recording", err.getvalue())
             self.assertEqual(mine.read_bytes(), before)
 
     def test_one_row_has_no_rate(self):
         path = self.made(np.array([[0, 0, 256]]))
         self.assertIn("all rows have one time", self.run_it(path)[2])
-        self.assertEqual(self.run_it(path, "--rate", "50", "--filter", "kf")[0], 0)
+        self.assertEqual(self.run_it(path, "--rate", "50", "--filter", PLAIN)[0], 0)
 
 
 class Library(unittest.TestCase):
@@ -297,20 +299,20 @@ class Library(unittest.TestCase):
         self.assertEqual(sources - watched, set())
 
     def test_parameters_are_those_of_the_descriptors(self):
-        q, gate = (native.parameters("sprf", 1000)[name] for name in ("q", "gate"))
-        self.assertEqual((q.unit, q.low, q.high, q.default, q.step), ("LSB2/s3", 1, 1e9, 10000, 1))  # two_state.h
+        q, gate = (native.parameters(ROBUST, 1000)[name] for name in ("q", "gate"))
+        self.assertEqual((q.unit, q.low, q.high, q.default, q.step), ("LSB2/s3", 1, 1e9, 10000, 1))  # parameters.c
         self.assertEqual((gate.unit, gate.low, gate.high, gate.default, gate.text(3.5), gate.text(2.999)), ("sigma", 1, 16, 3, "3.5", "3"))
         self.assertEqual((q.text(1234.4), q.text(0)), ("1234", "1"))
 
     def test_parameters_that_a_filter_refuses(self):
-        with self.assertRaisesRegex(errors.TiltError, "sprf refuses its parameters: values that do not go together"):
-            native.axis("sprf", 1000, [0], [1], {"reacquire": 4})
+        with self.assertRaisesRegex(errors.TiltError, f"{ROBUST} refuses its parameters: values that do not go together"):
+            native.axis(ROBUST, 1000, [0], [1], {"reacquire": 4})
 
     def test_command_summary_counts(self):
         rows = np.zeros(4, native.ROW)
         rows["flags"] = [1, 1 | 4, 2, 0]
         given = stream.read("sim/streams/steps.csv")
-        self.assertRegex(command.summary(given, {"kf": rows}, 1000)[2], r"^kf +4 +50\.00 +1 +25\.00 +0\.00 +0\.00$")
+        self.assertRegex(command.summary(given, {PLAIN: rows}, 1000)[2], fr"^{PLAIN} +4 +50\.00 +1 +25\.00 +0\.00 +0\.00$")
 
 
 if __name__ == "__main__":

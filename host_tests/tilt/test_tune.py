@@ -15,6 +15,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
+from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
 from tilt import cli, model, native, rest, stream  # noqa: E402
 from tilt.commands import tune  # noqa: E402
 
@@ -25,7 +26,7 @@ ROUNDING = 1.0 / 12.0        # variance that whole numbers add
 
 
 def motion(rng, q, samples=PART_SAMPLES):
-    """x += v, v += w with the variance q T^3, as two_state.h has it."""
+    """x += v, v += w with the variance q T^3, as kalman.h has it."""
     rate = np.concatenate(([0.0], np.cumsum(rng.normal(0, math.sqrt(q * T_S ** 3), samples - 1))))
     return np.concatenate(([0.0], np.cumsum(rate[:-1])))
 
@@ -107,10 +108,10 @@ class Recovers(Case):
     def test_the_boards_own_r_is_made_up_for(self):
         """Its R is 1.5 times the variance (noise.h), the gain depends on q / R: so is the q of the command. Its estimate is of 128 terms: 15 %."""
         self.write(*made(np.random.default_rng(21), 1000, 2.0))
-        _, answer = self.answer("--filter", "kf")
+        _, answer = self.answer("--filter", PLAIN)
         self.assertAlmostEqual(answer["board_q"] / answer["q"], 1.5, delta=0.25)
         name, q = answer["commands"]
-        self.assertEqual((name, q), ("filter kf", f"q {answer['board_q']:.0f}"))
+        self.assertEqual((name, q), (f"filter {PLAIN}", f"q {answer['board_q']:.0f}"))
 
     def test_the_commands_predict_better_than_what_ships(self):
         """q = 100 where 10000 ships: at 100 Hz and R = 4 the variance of the prediction falls, by the Riccati equation, from 1.19 to 1.06 R."""
@@ -173,15 +174,15 @@ class ClaimsNothing(Case):
         rng = np.random.default_rng(34)
         self.write(np.round(rng.normal([10, 20, 250], 2.0, (3000, 3))).astype(int))
         self.refused("no motion that q could be told from", "no commands: the values that the filter ships with stay")
-        self.assertNotIn("filter sprf", self.tune()[1])
+        self.assertNotIn(f"filter {ROBUST}", self.tune()[1])
 
     def test_the_shipped_values_stay_where_they_predict_better(self):
         """tilt-fast moves for a third of the time: its q costs more at rest than it gains."""
         self.path = pathlib.Path("sim/streams/tilt-fast.csv")
         status, answer = self.answer()
-        self.assertEqual((status, answer["commands"], answer["better_told"]), (0, ["filter sprf"], True))
+        self.assertEqual((status, answer["commands"], answer["better_told"]), (0, [f"filter {ROBUST}"], True))
         self.assertLess(answer["better_percent"], 0.0)
-        self.assertIn("worse than with the values that sprf ships with: keep them", self.tune()[1])
+        self.assertIn(f"worse than with the values that {ROBUST} ships with: keep them", self.tune()[1])
 
 
 class Rest(unittest.TestCase):
@@ -234,9 +235,9 @@ class Rest(unittest.TestCase):
 class Command(Case):
     def test_what_cannot_be_is_told(self):
         self.write(*made(np.random.default_rng(40), 400, 2.0))
-        for words, said in ((["--filter", "adaptive"], "--filter: adaptive has no q in LSB2/s3; kf sprf"),
+        for words, said in ((["--filter", DEFAULT], f"--filter: {DEFAULT} has no q in LSB2/s3; {PLAIN} {ROBUST}"),
                             (["--filter", "kx"], "there is no filter 'kx'"),
-                            (["--filter", "kf,sprf"], "--filter: one filter was expected")):
+                            (["--filter", f"{PLAIN},{ROBUST}"], "--filter: one filter was expected")):
             status, out, err = self.tune(*words)
             self.assertEqual((status, out), (2, ""))
             self.assertIn(said, err)
@@ -252,7 +253,7 @@ class Command(Case):
         self.assertEqual(len(samples.lsb), 1000 - 400 + 29)
 
     def test_values_are_typed_as_the_board_takes_them(self):
-        every = tune.tunable("sprf", 1000)
+        every = tune.tunable(ROBUST, 1000)
         self.assertEqual((every["q"].text(1234.56), every["gate"].text(2.5), every["gate"].text(99.0)), ("1235", "2.5", "16"))
 
 

@@ -32,7 +32,7 @@ examples
   python tools/design --rate 100 --sigma 2 --noise-gain 0.3 -k 0 -l 1           least error for a noise gain of 0.3, alpha-beta
   python tools/design --rate 10 --sigma 0.5 --unit m -k 1 -l 0 --a=-0.3 --b 0.1   what paper 001's filter does
   python tools/design --rate 100 --sigma-of sim/streams/rest-2lsb.csv --error 2 --at 500 --json build/design/design.json
-  python tools/design schedule --p0-over-r 8.33                                 off-line gain schedule of synth_opt; `schedule` stands first
+  python tools/design schedule --p0-over-r 8.33                                 gains of a start, off line; `schedule` stands first
 """
 
 
@@ -217,7 +217,7 @@ def alternatives(task, f):
         except Infeasible as problem:
             found.append((name, f"none: {problem}"))
     if v in (2, 3):
-        name = f"({v}, 0, {v - 1}) steady Kalman ({'kf' if v == 2 else 'kf3'})"
+        name = f"({v}, 0, {v - 1}) steady Kalman ({configuration.KALMAN[v][0]})"
         try:
             found.append((name, configuration.kalman_for(v, error, None if error is not None else task.noise_max)))
         except configuration.Unfit as problem:
@@ -261,8 +261,8 @@ def configured(name, f, task, lsb_per_unit, fixed_a):
                   "commands": lines, "notes": told + made.notes}, made
 
 
-def limit_of_synth_opt(f, task, lsb_per_unit):
-    """Lines for synth_opt where a schedule of its ends at this filter."""
+def limit_of_schedule(f, task, lsb_per_unit):
+    """Lines for it where a schedule of its ends at this filter."""
     try:
         made = configuration.stored_opt(f, configuration.common_fields(round(1 / task.period_s, 9), task.sigma * lsb_per_unit))
     except configuration.Unfit:
@@ -305,7 +305,7 @@ def design(options):
         text += lines
         entries.append(entry)
         if g is f and f.v == 2 and f.k <= 1 and f.l == 0:
-            lines, more = limit_of_synth_opt(f, task, lsb_per_unit)
+            lines, more = limit_of_schedule(f, task, lsb_per_unit)
             text += lines
             entries += more
     drawn = []

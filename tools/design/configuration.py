@@ -19,7 +19,9 @@ B0 = (656, 65535)
 A1 = (-65535, 65535)
 PLUS_K_MAX = 8
 Q = (1, 1_000_000_000)
-KF3_FINE_FROM_DHZ = 1000  # kf3's unit of the acceleration changes here
+# by the order of astatism: name, the field of its q and that field's power of the period
+KALMAN = {2: ("kf", "q_lsb2_s3", 3), 3: ("kf3", "q_lsb2_s5", 5)}
+THREE_FINE_FROM_DHZ = 1000  # the unit of the acceleration changes here
 OPT_LIMITS = ((0.0, 2 / 3), (-1 / 6, 11 / 13))  # of synth_opt: exact, variant U
 START_RATE_LSB_S, P0_Q8_MAX = 200, 25_600_000
 IMAGES = pathlib.Path(__file__).resolve().parents[2] / "mk" / "images.mk"
@@ -34,13 +36,13 @@ class Unfit(Exception):
 @dataclass
 class Configuration:
     name: str  # of the filter in the library
-    fields: dict  # field of NAME_config_t: stored value
+    fields: dict  # rate_dhz and, by the end of NAME_... in filter.h, parameters: stored value
     filter: Filter  # what the stored values are, exact
     notes: list = field(default_factory=list)
 
     def initialiser(self):
-        values = ", ".join(f".{name} = {value}{'U' if value > 32767 else ''}" for name, value in self.fields.items())
-        return f"static const {self.name}_config_t config = {{ {values} }};"
+        values = ", ".join(f"[{self.name.upper()}_{name.upper()}] = {value}" for name, value in self.fields.items() if name != "rate_dhz")
+        return f"static const filter_config_t config = {{ .rate_dhz = {self.fields['rate_dhz']}, .value = {{ {values} }} }};"
 
 
 def common_fields(rate_hz, sigma_lsb):
@@ -56,14 +58,14 @@ def common_fields(rate_hz, sigma_lsb):
     return {"rate_dhz": rate_dhz, "r_lsb2_q8": r}
 
 
-def synth_legal(b0_uq16, a1_q16):
-    """What synth_init asks of b0 and a1, in integers: 1 + 2 a1 (1 - b0) > 0."""
+def gain_legal(b0_uq16, a1_q16):
+    """What synth asks of b0 and a1, in integers: 1 + 2 a1 (1 - b0) > 0."""
     if not (B0[0] <= b0_uq16 <= B0[1] and A1[0] <= a1_q16 <= A1[1]):
         return False
     return a1_q16 >= 0 or -a1_q16 * (ONE - b0_uq16) < 2 ** 31
 
 
-def synth_filter(b0_uq16, a1_q16):
+def gain_filter(b0_uq16, a1_q16):
     return Filter(2, (Fraction(a1_q16, ONE),), (Fraction(b0_uq16, ONE),))
 
 
@@ -79,7 +81,7 @@ def neighbours(value, low, high, reach=2):
     return sorted(near)
 
 
-def stored_synth(f, common, error_max, noise_max, fixed_a=False):
+def stored_gain(f, common, error_max, noise_max, fixed_a=False):
     """The stored values nearest to the filter that keep the bound and are best under it."""
     a1 = (float(f.a[0]) if f.a else 0.0) * ONE
     b0 = float(f.b[0]) * ONE
@@ -91,16 +93,16 @@ def stored_synth(f, common, error_max, noise_max, fixed_a=False):
                     f"nearest: --a={min(max(a1, A1[0]), A1[1]) / ONE:.5f}")
     if error_max is None and noise_max is None:
         chosen = (min(max(round(b0), B0[0]), B0[1]), min(max(round(a1), A1[0]), A1[1]))
-        if not synth_legal(*chosen):
+        if not gain_legal(*chosen):
             raise Unfit(f"stored as b0 = {chosen[0]}, a1 = {chosen[1]} (in 1/65536) it is unstable; nearest: a larger b0")
     else:
         first = [round(a1)] if fixed_a or abs(a1) < 1e-6 else neighbours(a1, *A1)
-        pairs = [pair for pair in itertools.product(neighbours(b0, *B0), first) if synth_legal(*pair)]
-        chosen = min(pairs, key=lambda pair: worth(synth_filter(*pair), error_max, noise_max))
-        if worth(synth_filter(*chosen), error_max, noise_max)[0]:
+        pairs = [pair for pair in itertools.product(neighbours(b0, *B0), first) if gain_legal(*pair)]
+        chosen = min(pairs, key=lambda pair: worth(gain_filter(*pair), error_max, noise_max))
+        if worth(gain_filter(*chosen), error_max, noise_max)[0]:
             raise Unfit("no values in 1/65536 near the design keep the bound; nearest: a bound 0.1 % wider")
     fields = {"rate_dhz": common["rate_dhz"], "b0_uq16": chosen[0], "a1_q16": chosen[1], "r_lsb2_q8": common["r_lsb2_q8"]}
-    return Configuration("synth", fields, synth_filter(*chosen))
+    return Configuration("synth", fields, gain_filter(*chosen))
 
 
 def plus_rho(k):
@@ -115,7 +117,7 @@ def plus_filter(k, b, v=2):
 
 
 def plus_legal(k, b0_uq16, b1_q16, b2_q16):
-    """What synth_plus_init asks of its coefficients."""
+    """What synth_plus asks of its coefficients."""
     if not (0 <= k <= PLUS_K_MAX and B0[0] <= b0_uq16 <= B0[1] and all(A1[0] <= b <= A1[1] for b in (b1_q16, b2_q16))):
         return False
     return plus_filter(k, (b0_uq16, b1_q16, b2_q16)).stable()
@@ -155,8 +157,8 @@ def stored_opt(f, common):
         raise Unfit("synth_opt ends at (a1, b0) = (0, 2/3) or (-1/6, 11/13), whatever R")
     period_s, r = 10 / common["rate_dhz"], common["r_lsb2_q8"]
     start = min(max(round(256 * (2 * START_RATE_LSB_S * period_s) ** 2 + 0.29 * r), 3), P0_Q8_MAX)
-    stored = synth_filter(*((43691, 0), (55454, -10923))[variant])
-    notes = [f"P0 for an axis that starts at {START_RATE_LSB_S} LSB/s, as synth_opt_defaults; `schedule` shows the gains of the start"]
+    stored = gain_filter(*((43691, 0), (55454, -10923))[variant])
+    notes = [f"P0 for an axis that starts at {START_RATE_LSB_S} LSB/s, as shipped; `schedule` shows the gains of the start"]
     return Configuration("synth_opt", {"rate_dhz": common["rate_dhz"], "variant_u": variant, "p0_lsb2_q8": start, "r_lsb2_q8": r}, stored, notes)
 
 
@@ -200,8 +202,8 @@ def is_kalman(f, tolerance=1e-7):
 
 def stored_kf(f, common, error_max, noise_max):
     """q of kf or kf3 for a filter that is a steady Kalman filter, on the side that keeps the bound."""
-    name, field_name, power_of_period = {2: ("kf", "q_lsb2_s3", 3), 3: ("kf3", "q_lsb2_s5", 5)}[f.v]
-    low, high = drive_range(name, common["rate_dhz"])
+    name, field_name, power_of_period = KALMAN[f.v]
+    low, high = drive_range(f.v, common["rate_dhz"])
     wanted = drive_of(f)
     per_q = (10 / common["rate_dhz"]) ** power_of_period / (common["r_lsb2_q8"] / 256)
     q = wanted / per_q
@@ -219,18 +221,18 @@ def stored_kf(f, common, error_max, noise_max):
     return Configuration(name, fields, steady_kalman(f.v, q * per_q), notes)
 
 
-def drive_range(name, rate_dhz):
+def drive_range(v, rate_dhz):
     """Drives (q T^3 / R, kf3: q T^5 / R) that the filter does not limit."""
-    if name == "kf":
+    if v == 2:
         return 16 / 2 ** 28, 1.0
-    return (2.0 ** -24, 1.0) if rate_dhz < KF3_FINE_FROM_DHZ else (2.0 ** -32, 2.0 ** -11)
+    return (2.0 ** -24, 1.0) if rate_dhz < THREE_FINE_FROM_DHZ else (2.0 ** -32, 2.0 ** -11)
 
 
 def configure(f, rate_hz, sigma_lsb, error_max=None, noise_max=None, fixed_a=False):
     """The configuration of the library's filter with this structure; Unfit when there is none."""
     common = common_fields(rate_hz, sigma_lsb)
     if f.v == 2 and f.k <= 1 and f.l == 0:
-        return stored_synth(f, common, error_max, noise_max, fixed_a)
+        return stored_gain(f, common, error_max, noise_max, fixed_a)
     if f.v in (2, 3) and is_kalman(f):
         return stored_kf(f, common, error_max, noise_max)
     if f.v == 2 and f.k <= 1 and f.l in (1, 2) or f.order == (3, 0, 2):
@@ -244,15 +246,15 @@ def image_with(name):
     holding = [word for word, names in sets if name in names.split()]
     if holding:
         return f"in the image that `make flash FILTERS={holding[0]}` builds and writes"
-    return f"in no image as shipped: `make flash FILTERS='sprf {name}'` builds one and writes it"
+    return f"in no image as shipped: `make flash FILTERS={name}` builds one and writes it"
 
 
 def commands(configuration, rate_hz):
     """(lines to type, what they do not do)."""
     lines = [f"filter {configuration.name}"]
     told = [f"these lines leave {' and '.join(n for n in configuration.fields if n != 'rate_dhz')} alone: `filter {configuration.name}` runs "
-            f"it with the values of {configuration.name}_defaults (`settings` lists the parameters that the board takes, with their units); in "
-            f"a program of your own put the initialiser where it calls {configuration.name}_init",
+            f"it with the values of filter_defaults (`settings` lists the parameters that the board takes, with their units); in "
+            f"a program of your own give the initialiser to filter_init with filter_law_{configuration.name}",
             f"{configuration.name} is {image_with(configuration.name)}"]
     if rate_hz in FIRMWARE_RATES_HZ:
         lines.insert(0, f"rate {rate_hz:g}")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tilt import judge, native, rest
+from tilt import ROBUST, judge, native, rest
 
 CUT = 4.0                   # sigmas, of gate and sum
 GAP_SAMPLES_S = 0.3         # a longer gap is as one of this: the filter starts anew behind it
@@ -56,7 +56,7 @@ def gridded(stream, rate_dhz):
 
 def board_r_lsb2(samples):
     """R that the board takes, per axis: median over the recording."""
-    return np.array([float(np.median(probes["r_lsb2_q8"])) / 256.0 for probes in run(samples, "sprf", {})])
+    return np.array([float(np.median(probes["r_lsb2_q8"])) / 256.0 for probes in run(samples, ROBUST, {})])
 
 
 def run(samples, name, values, r_lsb2=None):
@@ -68,7 +68,7 @@ def run(samples, name, values, r_lsb2=None):
 def deviance(samples, r_lsb2, log_q, use):
     """-2 log likelihood of the innovations in use, but for a constant."""
     total = 0.0
-    for probes in run(samples, "sprf", {"q": 10.0 ** log_q, "gate": CUT}, r_lsb2):
+    for probes in run(samples, ROBUST, {"q": 10.0 ** log_q, "gate": CUT}, r_lsb2):
         variance = judge.variance_of(probes)
         part = use & (probes["judged"] == 1) & np.isfinite(variance)
         ratio = judge.innovations(probes)[part] ** 2 / variance[part]
@@ -150,7 +150,7 @@ def fit_of(samples, r_lsb2, q):
     """Fit of the samples in motion."""
     squares, inliers = np.zeros(3), np.zeros(3, int)
     products = power = far = again = 0.0
-    for axis, probes in enumerate(run(samples, "sprf", {"q": q, "gate": CUT}, r_lsb2)):
+    for axis, probes in enumerate(run(samples, ROBUST, {"q": q, "gate": CUT}, r_lsb2)):
         variance = judge.variance_of(probes)
         use = samples.moving & (probes["judged"] == 1) & np.isfinite(variance)
         ratio = np.where(use, judge.innovations(probes) / np.sqrt(np.where(use, variance, 1.0)), 0.0)

@@ -20,6 +20,7 @@ RANGES_G = (2, 4, 8, 16)
 FORK_FROM_ROWS = 20_000  # a second process takes 20 ms to begin and end
 MISSING, THERE, AT_RAIL = 0, 1, 2
 GATED, REACQUIRED = 1, 4  # flags of probes, as those of rows
+REFUSED_FIRST = 3  # answer of filter_init for the first parameter
 
 ROW = np.dtype([("t_us", "<i8"), ("source", "<i4"), ("lsb", "<i2", 3), ("mg", "<i2", 3), ("roll_cdeg", "<i2"), ("pitch_cdeg", "<i2"),
                 ("flags", "<u2"), ("unused", "<u2")], align=True)
@@ -198,13 +199,13 @@ def _into(given, names, i, rate_dhz, range_g, tables, counts):
 
 
 def _shares(names):
-    """Two lists of indices of about equal work: the slow filters take thrice as long."""
-    cost = {"af": 3, "pbf": 3, "shrf": 3, "kf3": 2, "sprf_paper": 2}
+    """Two lists of indices of about equal work: what takes more cycles on the chip takes longer here."""
+    cost = {name: 2000 + library().libtilt_filter_cycles(kind) for kind, name in enumerate(filters())}
     shares, loads = ([], []), [0, 0]
-    for i in sorted(range(len(names)), key=lambda i: -cost.get(names[i], 1)):
+    for i in sorted(range(len(names)), key=lambda i: -cost[names[i]]):
         least = loads.index(min(loads))
         shares[least].append(i)
-        loads[least] += cost.get(names[i], 1)
+        loads[least] += cost[names[i]]
     return shares
 
 
@@ -248,6 +249,6 @@ def axis(name, rate_dhz, z_lsb, state, values=None, r_lsb2=None, noisy_axis=Fals
     refused = library().libtilt_axis(filters().index(name), rate_dhz, stored.ctypes.data, changed.ctypes.data, r_q8, noisy_axis,
                                      z_lsb.ctypes.data, state.ctypes.data, len(z_lsb), out.ctypes.data)
     if refused:
-        which = [key for key, parameter in every.items() if parameter.index == refused - 1]
+        which = [key for key, parameter in every.items() if parameter.index == refused - REFUSED_FIRST]
         raise TiltError(f"{name} refuses its parameters: {which[0] if which else 'values that do not go together'}")
     return out

@@ -2,15 +2,19 @@
 
 #include "state_bytes.h"
 
-size_t state_bytes(unsigned kind)
+#define BYTES(member) sizeof(((const filter_t *)0)->member)
+
+/* Whatever the law, with a pointer to it of the AVR's two bytes. */
+#define TRACKER_BYTES (sizeof(filter_t) - BYTES(own) - BYTES(law) + 2U)
+
+size_t state_bytes(enum own_state own)
 {
-    switch (kind) {
-#define SIZE(F)           \
-    case FILTER_KIND_##F: \
-        return sizeof(F##_t);
-        FILTER_LIST(SIZE)
-#undef SIZE
+    switch (own) {
+    case OWN_KALMAN:
+        return TRACKER_BYTES + BYTES(own.kalman);
+    case OWN_WIDE:
+        return TRACKER_BYTES + BYTES(own.wide);
     default:
-        return 0;
+        return TRACKER_BYTES + BYTES(own.mixture);
     }
 }

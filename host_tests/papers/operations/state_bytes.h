@@ -1,4 +1,7 @@
-/* Bytes of a filter's state as the AVR lays it, without gaps: worked out apart, where the integers are plain ones. */
+/*
+ * Bytes of a filter's state as the AVR lays it, without gaps: the tracker's and those of the law's own. Worked out
+ * apart, where the integers are plain ones.
+ */
 #ifndef STATE_BYTES_H
 #define STATE_BYTES_H
 
@@ -8,8 +11,10 @@
 extern "C" {
 #endif
 
-/* kind: filter_kind_t; 0 when there is none such. */
-size_t state_bytes(unsigned kind);
+/* The laws of paper 002 have one of these for their own (filter_state.h). */
+enum own_state { OWN_KALMAN, OWN_WIDE, OWN_MIXTURE };
+
+size_t state_bytes(enum own_state own);
 
 #ifdef __cplusplus
 }

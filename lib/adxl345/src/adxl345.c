@@ -20,7 +20,7 @@
 #include "hal_time.h"
 
 /* A sensor that was not reached by a stop is looked for so many times more, for a second. */
-enum { DRAIN_LIMIT_MS = 100, BACK_OFF_MAX_MS = 25, RESTS = 40 };
+enum { RESTS = 40 };
 
 adxl345_driver_t driver;
 
@@ -34,23 +34,28 @@ static inline adxl345_driver_t *here(void)
     return d;
 }
 
-void driver_set_limit(uint8_t limit_ms)
+void driver_set_limit(uint8_t limit)
 {
-    driver.deadline_us = driver.now_us + (uint32_t)limit_ms * 1000u;
+    driver.deadline_us = driver.now_us + (uint32_t)limit * LIMIT_US;
 }
 
-void driver_enter(step_t step, uint8_t limit_ms)
+void driver_enter(step_t step, uint8_t limit)
 {
     driver.step = (uint8_t)step;
     driver.issued = false;
     driver.tries = 0;
-    driver_set_limit(limit_ms);
+    driver_set_limit(limit);
     hal_wake();
 }
 
-bool driver_deadline_passed(void)
+HAL_APART bool driver_reached(uint32_t t_us)
 {
-    return hal_time_reached(driver.now_us, driver.deadline_us);
+    return (int32_t)(t_us - driver.now_us) <= 0; /* hal_time_reached as a value takes 24 B more */
+}
+
+HAL_APART bool driver_deadline_passed(void)
+{
+    return driver_reached(driver.deadline_us);
 }
 
 /* A fault that was there is not mended, but it is not asked for any more. */
@@ -69,16 +74,16 @@ void driver_fail(adxl345_fault_t fault)
         stopped();
         if (d->rests != 0) {
             d->rests--;
-            driver_enter(STEP_REST_LATER, BACK_OFF_MAX_MS);
+            driver_enter(STEP_REST_LATER, BACK_OFF_MAX);
         }
         return;
     }
     d->fault = (uint8_t)fault;
     d->after_fault = true;
-    driver_enter(STEP_BACK_OFF, d->back_off_ms);
-    d->back_off_ms = (uint8_t)(d->back_off_ms * 2u);
-    if (d->back_off_ms > BACK_OFF_MAX_MS) {
-        d->back_off_ms = BACK_OFF_MAX_MS;
+    driver_enter(STEP_BACK_OFF, d->back_off);
+    d->back_off = (uint8_t)(d->back_off * 2u);
+    if (d->back_off > BACK_OFF_MAX) {
+        d->back_off = BACK_OFF_MAX;
     }
 }
 
@@ -96,7 +101,7 @@ bool driver_take_bus(void)
 static void begin_access(step_t step)
 {
     burst_set_mode(BURST_IGNORE);
-    driver_enter(step, TRANSFER_LIMIT_MS);
+    driver_enter(step, TRANSFER_LIMIT);
     (void)driver_take_bus();
 }
 
@@ -113,11 +118,10 @@ void driver_probe(void)
     adxl345_driver_t *d = here();
     if (d->renewed) {
         d->renewed = false;
-        period_start(d->nominal_us);
+        period_start(d->half_us);
     }
     uint8_t only = d->config.address;
-    d->alternate_tried = only != 0;
-    d->found = ADXL345_FAULT_NO_SENSOR;
+    d->found = ADXL345_FAULT_NONE;
     if (only != 0) {
         d->address = only;
     }
@@ -128,10 +132,12 @@ void adxl345_init(void)
 {
     burst_init();
     if (!HAL_RAM_CLEARED) {
-        integrity_init();
+        driver_forget_counters();
+        integrity_forget();
         watch_start();
         stopped();
         driver.issued = false;
+        driver.marks = 0;
     }
     driver.address = ADXL345_ADDRESS_LOW;
     driver.known = ADXL345_ADDRESS_LOW;
@@ -141,9 +147,10 @@ void adxl345_init(void)
 static bool quiesce(void)
 {
     driver.now_us = hal_time_us();
-    if (driver.step == STEP_STREAM || driver.step == STEP_ASK_SOURCE) {
+    if (driver_streams()) {
         burst_set_mode(BURST_STAMP);
-        driver_enter(STEP_QUIET_STANDBY, TRANSFER_LIMIT_MS);
+        driver_enter(STEP_QUIET_STANDBY, TRANSFER_LIMIT);
+        return true;
     }
     return driver.step == STEP_QUIET_STANDBY || driver.step == STEP_QUIET_DRAIN;
 }
@@ -153,10 +160,10 @@ void adxl345_start(const adxl345_config_t *config)
     adxl345_driver_t *d = here();
     bool quiescing = quiesce();
     d->config = *config;
-    d->nominal_us = table_period_us(config->rate_dhz);
+    d->half_us = table_half_period_us(config->rate_dhz);
     d->stop_wanted = false;
     d->renewed = true;
-    d->back_off_ms = BACK_OFF_MIN_MS;
+    d->back_off = BACK_OFF_MIN;
     if (!quiescing) {
         driver_probe();
     }
@@ -172,34 +179,17 @@ void adxl345_stop(void)
     }
 }
 
-/* Puts the step's register access on the bus; false when the bus is not free. */
-static bool issue(adxl345_driver_t *d)
+/* Register and value of the step. */
+static table_row_t row_of(const adxl345_driver_t *d)
 {
-    switch (d->step) {
-    case STEP_PROBE:
-        return burst_read_register(ADXL345_DEVID);
-    case STEP_CONFIGURE:
-        return burst_write_register(table_register(d->row), table_value(d->row, &d->config));
-    case STEP_READ_BACK:
-        return burst_read_register(table_register(d->row));
-    case STEP_MEASURE:
-        return burst_write_register(ADXL345_POWER_CTL, ADXL345_POWER_MEASURE);
-    case STEP_ASK_SOURCE:
-        return burst_read_register(ADXL345_INT_SOURCE);
-    default: /* STEP_QUIET_STANDBY, STEP_STANDBY */
-        return burst_write_register(ADXL345_POWER_CTL, 0);
-    }
+    return table_row(d->step & STEP_ROW, &d->config);
 }
 
-static HAL_APART void count_failure(i2c_bus_state_t state)
+bool driver_transfer_failed(i2c_bus_state_t state)
 {
-    uint16_t *counter = &driver.counters.bus_errors;
-    if (state == I2C_BUS_LOST) {
-        counter = &driver.counters.arbitrations_lost;
-    } else if (state == I2C_BUS_NACK_ADDRESS || state == I2C_BUS_NACK_DATA) {
-        counter = &driver.counters.nacks;
-    }
-    driver_count(counter);
+    uint8_t first = state == I2C_BUS_NACK_ADDRESS ? I2C_BUS_NACK_ADDRESS : I2C_BUS_NACK_DATA;
+    driver_count((counter_t)(COUNTER_NACKS + (uint8_t)state - first));
+    return state != I2C_BUS_TIMEOUT || driver_take_bus();
 }
 
 /*
@@ -208,16 +198,19 @@ static HAL_APART void count_failure(i2c_bus_state_t state)
  */
 static HAL_APART void not_here(adxl345_driver_t *d, adxl345_fault_t fault)
 {
-    if (d->config.address == 0) {
-        d->address = d->address == ADXL345_ADDRESS_LOW ? ADXL345_ADDRESS_HIGH : ADXL345_ADDRESS_LOW;
-    }
-    if (d->alternate_tried) {
-        driver_fail(fault == ADXL345_FAULT_NO_SENSOR ? (adxl345_fault_t)d->found : fault);
-        return;
-    }
-    d->alternate_tried = true;
+    uint8_t found = d->found;
     d->found = (uint8_t)fault;
-    begin_access(STEP_PROBE);
+    if (d->config.address == 0) {
+        d->address ^= ADXL345_ADDRESS_LOW ^ ADXL345_ADDRESS_HIGH;
+        if (found == ADXL345_FAULT_NONE) {
+            begin_access(STEP_PROBE);
+            return;
+        }
+    }
+    if (fault == ADXL345_FAULT_NO_SENSOR && found != ADXL345_FAULT_NONE) {
+        fault = (adxl345_fault_t)found;
+    }
+    driver_fail(fault);
 }
 
 void driver_give_up(adxl345_driver_t *d, i2c_bus_state_t state)
@@ -235,74 +228,61 @@ void driver_give_up(adxl345_driver_t *d, i2c_bus_state_t state)
 /* The step's register access failed: again, with a free bus, or that is enough. */
 static void access_failed(adxl345_driver_t *d, i2c_bus_state_t state)
 {
+    if (!driver_transfer_failed(state)) {
+        return;
+    }
     d->issued = false;
     d->tries++;
     if (d->tries == TRIES) {
         driver_give_up(d, state);
     } else {
-        driver_set_limit(TRANSFER_LIMIT_MS);
+        driver_set_limit(TRANSFER_LIMIT);
         hal_wake();
     }
-}
-
-/* A transfer did not end, or did not even begin, in time. */
-static void timed_out(adxl345_driver_t *d)
-{
-    driver_count(&d->counters.timeouts);
-    if (driver_take_bus()) {
-        access_failed(d, I2C_BUS_TIMEOUT);
-    }
-}
-
-static void read_back(adxl345_driver_t *d)
-{
-    if (burst_register_value() != table_value(d->row, &d->config)) {
-        driver_fail(ADXL345_FAULT_READ_BACK);
-        return;
-    }
-    d->row++;
-    driver_enter(d->row < TABLE_ROWS ? STEP_READ_BACK : STEP_MEASURE, TRANSFER_LIMIT_MS);
 }
 
 /*
  * What is said of a device that is none comes later: the first one is kept until the fault is over, unless one address
  * alone is to be asked.
  */
-static void probed(adxl345_driver_t *d)
+static void foreign(adxl345_driver_t *d, uint8_t id)
 {
-    uint8_t id = burst_register_value();
-    if (id != ADXL345_DEVID_VALUE) {
-        if (d->config.address != 0 || (d->fault != ADXL345_FAULT_WRONG_ID && d->found != ADXL345_FAULT_WRONG_ID)) {
-            d->foreign_address = d->address;
-            d->foreign_id = id;
+    if (d->config.address != 0 || (d->fault != ADXL345_FAULT_WRONG_ID && d->found != ADXL345_FAULT_WRONG_ID)) {
+        d->foreign_address = d->address;
+        d->foreign_id = id;
+    }
+    not_here(d, ADXL345_FAULT_WRONG_ID);
+}
+
+/* The rest of the table comes next: all rows are written, then all are read back. */
+static void configured(adxl345_driver_t *d)
+{
+    uint8_t step = d->step;
+    uint8_t value = burst_register_value();
+    if ((step & STEP_READS) && value != row_of(d).value) {
+        if (step == STEP_PROBE) {
+            foreign(d, value);
+        } else {
+            driver_fail(ADXL345_FAULT_READ_BACK);
         }
-        not_here(d, ADXL345_FAULT_WRONG_ID);
         return;
     }
     d->known = d->address;
-    d->row = 0;
-    driver_enter(STEP_CONFIGURE, TRANSFER_LIMIT_MS);
+    step++;
+    if (step == STEP_PROBE + 1) {
+        step = STEP_CONFIGURE;
+    } else if (step == STEP_MEASURE) {
+        step = STEP_READ_BACK;
+    } else if (step == (STEP_MEASURE | STEP_READS)) {
+        step = STEP_MEASURE;
+    }
+    driver_enter((step_t)step, TRANSFER_LIMIT);
 }
 
 /* The step's register access ended well. */
 static void advance(adxl345_driver_t *d)
 {
     switch (d->step) {
-    case STEP_PROBE:
-        probed(d);
-        break;
-    case STEP_CONFIGURE:
-        d->row++;
-        if (d->row == TABLE_ROWS) {
-            d->row = TABLE_READ_BACK;
-            driver_enter(STEP_READ_BACK, TRANSFER_LIMIT_MS);
-        } else {
-            driver_enter(STEP_CONFIGURE, TRANSFER_LIMIT_MS);
-        }
-        break;
-    case STEP_READ_BACK:
-        read_back(d);
-        break;
     case STEP_MEASURE:
         stream_start(d);
         break;
@@ -312,9 +292,12 @@ static void advance(adxl345_driver_t *d)
     case STEP_STANDBY:
         stopped();
         break;
-    default: /* STEP_QUIET_STANDBY */
+    case STEP_QUIET_STANDBY:
         burst_set_mode(BURST_READ);
-        driver_enter(STEP_QUIET_DRAIN, DRAIN_LIMIT_MS);
+        driver_enter(STEP_QUIET_DRAIN, DRAIN_LIMIT);
+        break;
+    default:
+        configured(d);
         break;
     }
 }
@@ -325,21 +308,26 @@ static void access_step(adxl345_driver_t *d)
     i2c_bus_state_t state = I2C_BUS_BUSY;
     if (d->issued) {
         state = burst_bus_state();
-    } else if (issue(d)) {
-        d->issued = true;
-        driver_set_limit(TRANSFER_LIMIT_MS);
-        return;
     } else {
+        table_row_t row = row_of(d);
+        if (burst_access(row.reg, row.value, (d->step & STEP_READS) != 0)) {
+            d->issued = true;
+            driver_set_limit(TRANSFER_LIMIT);
+            return;
+        }
         hal_wake(); /* the end of a STOP tells nobody */
     }
     if (state == I2C_BUS_OK) {
         advance(d);
-    } else if (state != I2C_BUS_BUSY) {
-        count_failure(state);
-        access_failed(d, state);
-    } else if (driver_deadline_passed()) {
-        timed_out(d);
+        return;
     }
+    if (state == I2C_BUS_BUSY) {
+        if (!driver_deadline_passed()) {
+            return;
+        }
+        state = I2C_BUS_TIMEOUT;
+    }
+    access_failed(d, state);
 }
 
 static void drain_step(adxl345_driver_t *d)
@@ -348,8 +336,7 @@ static void drain_step(adxl345_driver_t *d)
     if (waiting) {
         (void)burst_read(false);
     }
-    bool empty = !waiting && !burst_running() && burst_queued() == 0;
-    if (!empty && !driver_deadline_passed()) {
+    if ((waiting || burst_running() || burst_queued() != 0) && !driver_deadline_passed()) {
         hal_wake();
         return;
     }
@@ -361,23 +348,10 @@ static void drain_step(adxl345_driver_t *d)
     driver_probe();
 }
 
-void adxl345_poll(uint32_t now_us)
+/* All but STEP_STREAM, in which most polls are. */
+static HAL_APART void other_step(adxl345_driver_t *d)
 {
-    adxl345_driver_t *d = here();
-    d->now_us = now_us;
-    reading_t reading = burst_judge();
-    if (reading > READING_GOOD) {
-        hal_wake(); /* nobody takes it, and the next one may wait */
-        if (reading == READING_FAILED) {
-            count_failure(burst_failed_state());
-        }
-    }
     switch (d->step) {
-    case STEP_OFF:
-        break;
-    case STEP_STREAM:
-        stream_poll(d);
-        break;
     case STEP_QUIET_DRAIN:
         drain_step(d);
         break;
@@ -394,5 +368,23 @@ void adxl345_poll(uint32_t now_us)
     default:
         access_step(d);
         break;
+    }
+}
+
+void adxl345_poll(uint32_t now_us)
+{
+    adxl345_driver_t *d = here();
+    d->now_us = now_us;
+    reading_t reading = burst_judge();
+    if (reading > READING_GOOD) {
+        hal_wake(); /* nobody takes it, and the next one may wait */
+        if (reading == READING_FAILED) {
+            (void)driver_transfer_failed(burst_failed_state());
+        }
+    }
+    if (d->step == STEP_STREAM) {
+        stream_poll(d);
+    } else if (d->step != STEP_OFF) {
+        other_step(d);
     }
 }

@@ -47,11 +47,11 @@ HAL_IRQ_INLINE bool queue_has_room(void)
 }
 
 /* Interrupts off, or the bus made busy; begun_us is the caller's. */
-HAL_IRQ_INLINE void begin_burst(bool by_edge)
+HAL_IRQ_INLINE void begin_burst(struct burst *b, bool by_edge)
 {
-    burst.by_edge = by_edge;
-    burst.on_bus = 1;
-    i2c_bus_begin(&burst.bus);
+    b->by_edge = by_edge;
+    b->on_bus = 1;
+    i2c_bus_begin(&b->bus);
 }
 
 /* An edge whose level is gone again is noise: data-ready stays high until the data are read (p. 20). */
@@ -64,7 +64,7 @@ HAL_DRDY_ISR()
     volatile uint32_t *stamp_us = &burst.edge_us;
     if (burst.mode == BURST_READ && !burst.on_bus && I2C_BUS_FREE(&burst.bus) && queue_has_room()) {
         burst.edge_waiting = 0;
-        begin_burst(true);
+        begin_burst(&burst, true);
         stamp_us = &burst.begun_us;
     } else {
         burst.edge_waiting = 1;
@@ -96,11 +96,11 @@ static bool claim(struct burst *b)
 
 void burst_init(void)
 {
-    struct burst *b = base();
-    b->newest_lsb = b->queue[QUEUE_MASK].sample.lsb;
+    burst.newest_lsb = burst.queue[QUEUE_MASK].sample.lsb;
     if (HAL_RAM_CLEARED) {
         return;
     }
+    struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
     b->head = 0;
     b->tail = 0;
@@ -121,7 +121,7 @@ void burst_set_mode(burst_mode_t new_mode)
         b->last_known = false;
     }
     if (new_mode == BURST_READ) { /* what each burst transfers, until main uses the bus again; none runs now */
-        b->found_empty = false;
+        b->verdict = READING_NONE;
         b->bus.tx[0] = ADXL345_INT_SOURCE;
         b->bus.tx_length = 1;
         b->bus.rx_length = READING_BYTES;
@@ -152,28 +152,18 @@ uint8_t burst_take_bus(uint8_t address, bool fast)
     return lines;
 }
 
-static bool begin_register(uint8_t reg, uint8_t value, uint8_t tx_length, uint8_t rx_length)
+HAL_APART bool burst_access(uint8_t reg, uint8_t value, bool read)
 {
     struct burst *b = base();
     bool free = claim(b);
     if (free) {
         b->bus.tx[0] = reg;
         b->bus.tx[1] = value;
-        b->bus.tx_length = tx_length;
-        b->bus.rx_length = rx_length;
+        b->bus.tx_length = read ? 1 : 2;
+        b->bus.rx_length = read ? 1 : 0;
         i2c_bus_begin(&b->bus);
     }
     return free;
-}
-
-bool burst_write_register(uint8_t reg, uint8_t value)
-{
-    return begin_register(reg, value, 2, 0);
-}
-
-HAL_APART bool burst_read_register(uint8_t reg)
-{
-    return begin_register(reg, 0, 1, 1);
 }
 
 i2c_bus_state_t burst_bus_state(void)
@@ -194,11 +184,13 @@ static uint32_t waiting_since_us(struct burst *b, uint32_t now_us, bool is_new)
 {
     uint32_t step_us = period_us();
     uint32_t t_us = b->last_us + step_us;
-    if (b->found_empty && hal_time_reached(b->begun_us, t_us)) {
+    if (b->verdict == READING_EMPTY && hal_time_reached(b->begun_us, t_us)) {
         t_us = b->begun_us;
     }
-    bool plausible = !is_new && b->last_known && now_us - t_us <= SENSOR_DEPTH * step_us;
-    return plausible ? t_us : now_us;
+    if (is_new || !b->last_known || now_us - t_us > SENSOR_DEPTH * step_us) {
+        t_us = now_us;
+    }
+    return t_us;
 }
 
 bool burst_read(bool is_new)
@@ -213,26 +205,22 @@ bool burst_read(bool is_new)
     b->edge_waiting = 0;
     hal_irq_restore(state);
     uint32_t now_us = hal_time_us();
-    b->reading_us = exact ? t_us : waiting_since_us(b, now_us, is_new);
+    if (!exact) {
+        t_us = waiting_since_us(b, now_us, is_new);
+    }
+    b->reading_us = t_us;
     b->reading_exact = exact;
     b->begun_us = now_us;
-    begin_burst(false);
+    begin_burst(b, false);
     return true;
 }
 
-bool burst_drain(bool is_new)
-{
-    return hal_drdy_high() && burst_read(is_new);
-}
-
 /* One cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */
-static void keep_edge(struct burst *b)
+static inline void keep_edge(struct burst *b, uint8_t asked)
 {
     b->failed_state = b->bus.state;
-    if (b->failures != UINT8_MAX) {
-        b->failures++;
-    }
-    if (b->reading_exact && !i2c_bus_asked(&b->bus, READING_DATA)) {
+    b->failures++;
+    if (b->reading_exact && asked <= READING_DATA) {
         b->edge_us = b->reading_us;
         b->edge_waiting = 1;
     }
@@ -245,14 +233,13 @@ static void keep_edge(struct burst *b)
  */
 static HAL_APART void restamp(struct burst *b)
 {
-    uint8_t behind = b->bus.rx[READING_FIFO_STATUS];
-    bool overrun = (b->bus.rx[READING_SOURCE] & ADXL345_INT_OVERRUN) != 0;
     uint32_t step_us = period_us();
-    uint32_t age_us = behind * step_us + (step_us >> 1);
-    /* before the last one: a bit of the count was wrong */
-    bool after_last = !b->last_known || !hal_time_reached(b->last_us, b->begun_us - age_us);
-    if (after_last && (overrun || b->begun_us - b->reading_us + 2u * step_us < age_us)) {
-        b->reading_us = b->begun_us - age_us;
+    uint32_t t_us = b->begun_us - (step_us >> 1) - b->bus.rx[READING_FIFO_STATUS] * step_us;
+    if (b->last_known && hal_time_reached(b->last_us, t_us)) {
+        return; /* a bit of the count was wrong */
+    }
+    if ((b->bus.rx[READING_SOURCE] & ADXL345_INT_OVERRUN) || !hal_time_reached(t_us + 2u * step_us, b->reading_us)) {
+        b->reading_us = t_us;
         b->reading_exact = false;
     }
 }
@@ -263,7 +250,7 @@ static reading_t judge(struct burst *b)
     HAL_POINTER(entry); /* else its address is computed anew at each use */
     b->failures = 0;
     reading_t verdict = integrity_judge(b->bus.rx, entry->sample.lsb, b->newest_lsb);
-    b->found_empty = verdict == READING_EMPTY;
+    b->verdict = (uint8_t)verdict;
     if (verdict != READING_GOOD) {
         return verdict;
     }
@@ -282,7 +269,8 @@ static reading_t judge(struct burst *b)
 static HAL_APART reading_t judge_ended(void)
 {
     struct burst *b = base();
-    reading_t verdict = READING_NONE;
+    uint8_t asked = READING_BYTES;
+    reading_t verdict = READING_FAILED;
     if (b->by_edge) {
         b->reading_us = b->begun_us;
         b->reading_exact = true;
@@ -290,11 +278,11 @@ static HAL_APART reading_t judge_ended(void)
     if (b->bus.state == I2C_BUS_OK) {
         verdict = judge(b);
     } else {
-        keep_edge(b);
-        verdict = READING_FAILED;
+        asked = i2c_bus_asked(&b->bus);
+        keep_edge(b, asked);
     }
-    bool had_sample = i2c_bus_received(&b->bus, READING_DATA) && (b->bus.rx[READING_SOURCE] & ADXL345_INT_DATA_READY);
-    if (verdict == READING_GOOD || had_sample) {
+    if (verdict == READING_GOOD ||
+        (asked > READING_DATA + 1u && (b->bus.rx[READING_SOURCE] & ADXL345_INT_DATA_READY))) {
         b->last_us = b->reading_us;
         b->last_known = true;
     }
@@ -313,14 +301,9 @@ bool burst_running(void)
     return burst.on_bus != 0;
 }
 
-bool burst_bus_taken(void)
-{
-    return burst.on_bus != 0 || hal_i2c_stop_pending();
-}
-
 bool burst_found_empty(void)
 {
-    return burst.found_empty;
+    return burst.verdict == READING_EMPTY;
 }
 
 bool burst_left_more(void)
@@ -338,15 +321,14 @@ HAL_APART uint32_t burst_begun_us(void)
 
 void burst_expect(uint32_t t_us)
 {
-    hal_irq_state_t state = hal_irq_save();
-    burst.begun_us = t_us;
-    hal_irq_restore(state);
-    burst.last_us = t_us;
+    struct burst *b = base();
+    b->begun_us = t_us;
+    b->last_us = t_us;
 }
 
 uint32_t burst_met_sample_us(void)
 {
-    return burst.found_empty ? burst.last_us : burst_begun_us();
+    return burst.verdict == READING_EMPTY ? burst.last_us : burst_begun_us();
 }
 
 i2c_bus_state_t burst_failed_state(void)
@@ -383,12 +365,11 @@ const burst_entry_t *burst_take(void)
 {
     struct burst *b = base();
     uint8_t at = b->tail;
-    if (at == b->head) {
-        return NULL;
-    }
     const burst_entry_t *entry = &b->queue[at];
+    HAL_POINTER(entry);
+    const burst_entry_t *before = at != 0 ? entry - 1 : &b->queue[QUEUE_MASK];
     b->tail = (uint8_t)((uint8_t)(at + 1u) & QUEUE_MASK);
-    watch_sample(entry->sample.lsb, b->queue[(uint8_t)(at - 1u) & QUEUE_MASK].sample.lsb);
+    watch_sample(entry->sample.lsb, before->sample.lsb);
     period_sample(entry->sample.t_us, entry->exact);
     return entry;
 }

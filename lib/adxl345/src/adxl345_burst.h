@@ -39,18 +39,14 @@ uint8_t burst_take_bus(uint8_t address, bool fast);
  * Register access outside streaming: false when the bus is not free yet. Poll burst_bus_state until it is not busy;
  * the byte read is burst_register_value.
  */
-bool burst_write_register(uint8_t reg, uint8_t value);
-bool burst_read_register(uint8_t reg);
+bool burst_access(uint8_t reg, uint8_t value, bool read);
 i2c_bus_state_t burst_bus_state(void);
 uint8_t burst_register_value(void);
 
 /*
- * A sample waits (INT1 high), bus and queue are free: start reading it. is_new: one that was not there a moment ago,
- * else the next in the FIFO. True when a burst was started.
+ * A sample waits, by INT1 or by the sensor's registers: start reading it if bus and queue are free. is_new: one that
+ * was not there a moment ago, else the next in the FIFO. True when a burst was started.
  */
-bool burst_drain(bool is_new);
-
-/* The same whatever INT1 says, for a sensor that has said by its registers that a sample waits. */
 bool burst_read(bool is_new);
 
 /*
@@ -62,16 +58,13 @@ reading_t burst_judge(void);
 /* A burst is on the bus, or has not been judged. */
 bool burst_running(void);
 
-/* A burst is on the bus, or the STOP of a transfer has not got out. */
-bool burst_bus_taken(void);
-
 /* The newest burst met no sample; false again with burst_set_mode(BURST_READ). */
 bool burst_found_empty(void);
 
 /* The newest good reading left samples in the sensor's FIFO. An edge may have begun another since: a hint then. */
 bool burst_left_more(void);
 
-/* When the newest burst was put on the bus; until the first, the moment by which it is expected. */
+/* When the newest burst was put on the bus; until the first, the moment by which it is expected (before BURST_READ). */
 uint32_t burst_begun_us(void);
 void burst_expect(uint32_t t_us);
 
@@ -92,7 +85,7 @@ bool burst_queue_full(void);
 /* Time of the oldest entry; false when the queue is empty. */
 bool burst_oldest_us(uint32_t *t_us);
 
-/* Oldest entry out, which stays as it is until the next burst is judged; NULL when the queue is empty. */
+/* Oldest entry out, which stays as it is until the next burst is judged. The queue must not be empty. */
 const burst_entry_t *burst_take(void);
 
 #endif

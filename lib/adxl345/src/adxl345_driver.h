@@ -6,27 +6,35 @@
 #define ADXL345_DRIVER_H
 
 #include "adxl345.h"
+#include "adxl345_table.h"
 #include "i2c_bus.h"
 
-/* A register access takes under 0.2 ms, a burst under 0.4 ms. */
-enum { TRANSFER_LIMIT_MS = 3, BACK_OFF_MIN_MS = 5 };
+/* Limits of time in half milliseconds: a byte holds them. A register access takes under 0.2 ms, a burst under 0.4. */
+#define LIMIT_US 500u
+enum { LOOK_LIMIT = 1, RETURN_LIMIT = 2, TRANSFER_LIMIT = 6, BACK_OFF_MIN = 10, BACK_OFF_MAX = 50, DRAIN_LIMIT = 200 };
 
 /* Failed transfers of one kind that are a fault: a single one may be noise. */
 enum { TRIES = 3 };
 
+/*
+ * A step has the phase that it belongs to in its upper three bits. One that accesses a register has the row of the
+ * table in its lower four, and above them whether the register is read.
+ */
+#define STEP_PHASE(phase) ((phase) << 5)
+enum { STEP_READS = 0x10, STEP_ROW = 0x0F };
 typedef enum {
-    STEP_OFF,
-    STEP_PROBE,
-    STEP_CONFIGURE,
-    STEP_READ_BACK,
-    STEP_MEASURE,
-    STEP_STREAM,
-    STEP_ASK_SOURCE, /* no data in time: does the sensor have some? */
-    STEP_QUIET_STANDBY,
-    STEP_QUIET_DRAIN,
-    STEP_STANDBY,    /* a stop while no samples come */
+    STEP_OFF = STEP_PHASE(ADXL345_STOPPED),
     STEP_REST_LATER, /* stopped, but the sensor was not reached */
-    STEP_BACK_OFF
+    STEP_PROBE = STEP_PHASE(ADXL345_STARTING) + STEP_READS + TABLE_DEVID,
+    STEP_CONFIGURE = STEP_PHASE(ADXL345_STARTING) | TABLE_WRITTEN, /* and those after it up to STEP_MEASURE, */
+    STEP_READ_BACK = STEP_PHASE(ADXL345_STARTING) | STEP_READS | TABLE_READ_BACK, /* here too */
+    STEP_MEASURE = STEP_PHASE(ADXL345_STARTING) | TABLE_MEASURE,
+    STEP_STREAM = STEP_PHASE(ADXL345_STREAMING),
+    STEP_ASK_SOURCE = STEP_PHASE(ADXL345_STREAMING) | STEP_READS | TABLE_SOURCE, /* no data in time: has it some? */
+    STEP_QUIET_STANDBY = STEP_PHASE(ADXL345_QUIESCING) | TABLE_WRITTEN,
+    STEP_STANDBY = STEP_PHASE(ADXL345_QUIESCING) | TABLE_STANDBY, /* a stop while no samples come */
+    STEP_QUIET_DRAIN,
+    STEP_BACK_OFF = STEP_PHASE(ADXL345_FAULTY)
 } step_t;
 
 /* The sample that is read without INT1, because the sensor says that it is there while the pin is low. */
@@ -34,13 +42,11 @@ typedef enum { TIMED_NONE, TIMED_WANTED, TIMED_READ } timed_t;
 
 typedef struct {
     adxl345_config_t config;
-    adxl345_counters_t counters;
     uint32_t now_us; /* of the poll or call that runs */
     uint32_t deadline_us;
-    uint32_t nominal_us; /* between samples, for the configured rate */
-    uint8_t back_off_ms;
-    uint8_t step;
-    uint8_t row;             /* of settings */
+    uint16_t half_us;        /* half the nominal time between samples, for the configured rate */
+    uint8_t back_off;        /* limit */
+    uint8_t step;            /* step_t */
     uint8_t address;         /* that is asked now */
     uint8_t known;           /* the address at which the sensor was found last */
     uint8_t foreign_address; /* of the device that ADXL345_FAULT_WRONG_ID is about, and what it reads as DEVID */
@@ -51,8 +57,7 @@ typedef struct {
     bool issued;   /* the step's register access is on the bus */
     bool first_sample_seen;
     bool stop_wanted; /* after quiescing: stop, not start */
-    bool alternate_tried;
-    uint8_t found;    /* at the first of both addresses: the fault that it would be */
+    uint8_t found;    /* at the first of both addresses: the fault that it would be; NONE: none asked yet */
     uint8_t rests;    /* attempts left to put a sensor to rest that a stop has not reached */
     uint8_t tries;    /* of the step's register access that failed */
     bool renewed;     /* a configuration was asked for that the sensor has not been looked for with */
@@ -63,12 +68,20 @@ typedef struct {
 
 extern adxl345_driver_t driver;
 
-/* The step that runs from now on, with a deadline in limit_ms; main passes again at once. */
-void driver_enter(step_t step, uint8_t limit_ms);
+/* Bursts bring samples, or the sensor is being asked why they do not. */
+static inline bool driver_streams(void)
+{
+    return driver.step / STEP_PHASE(1) == ADXL345_STREAMING;
+}
+
+/* The step that runs from now on, with a deadline after this limit; main passes again at once. */
+void driver_enter(step_t step, uint8_t limit);
 
 /* Another deadline for the step that runs, counted from the poll's time. */
-void driver_set_limit(uint8_t limit_ms);
+void driver_set_limit(uint8_t limit);
 
+/* The poll's time is t_us or later; that of the step's deadline. */
+bool driver_reached(uint32_t t_us);
 bool driver_deadline_passed(void);
 
 /* Ends the step with a fault: backs off before the sensor is looked for again, or stops when that is asked for. */
@@ -76,6 +89,12 @@ void driver_fail(adxl345_fault_t fault);
 
 /* Frees the bus of a transfer that hangs; false when somebody holds a line low: that is a fault then, and told. */
 bool driver_take_bus(void);
+
+/*
+ * A transfer failed, or did not end or even begin in time: counted, and the bus freed where it hangs. False when
+ * somebody holds a line low.
+ */
+bool driver_transfer_failed(i2c_bus_state_t state);
 
 /* Three transfers in a row failed: names the fault, or looks for a sensor that does not answer. */
 void driver_give_up(adxl345_driver_t *d, i2c_bus_state_t state);
@@ -95,7 +114,25 @@ void stream_source_asked(adxl345_driver_t *d);
 /* INT1 is known to tell nothing, low or high: samples are read by the clock. */
 bool stream_without_edges(void);
 
+/* The counters, by their places in adxl345_count. */
+typedef enum {
+    COUNTER_DRAINED,
+    COUNTER_STUCK,
+    COUNTER_RESTARTS,
+    COUNTER_NACKS, /* from here on in the order of i2c_bus_state_t */
+    COUNTER_LOST,
+    COUNTER_BUS_ERRORS,
+    COUNTER_TIMEOUTS,
+    COUNTER_FAILED,
+    COUNTER_EMPTY,
+    COUNTER_OVERRUNS,
+    COUNTERS
+} counter_t;
+
 /* One more, up to 65,535. */
-void driver_count(uint16_t *counter);
+void driver_count(counter_t counter);
+
+/* All to zero. */
+void driver_forget_counters(void);
 
 #endif

@@ -15,7 +15,6 @@
 enum { RUN_LIMIT = 3, RUN_RESET, RUN_EMPTY = RUN_LIMIT + 32 };
 
 static struct integrity {
-    adxl345_readings_t counters;
     uint8_t equal_run; /* good readings that were as the one before them */
     bool has_last;
     uint8_t range_g;
@@ -23,7 +22,6 @@ static struct integrity {
     uint8_t good;
     uint8_t bad_run;
     uint8_t empty_run;
-    bool failed;
 } integrity;
 
 /* Known by its address in a register, an access to it is half as long. */
@@ -34,13 +32,6 @@ static inline struct integrity *here(void)
     return i;
 }
 
-void integrity_init(void)
-{
-    integrity.counters = (adxl345_readings_t){ 0, 0, 0 };
-    integrity.failed = false;
-    integrity_forget();
-}
-
 void integrity_forget(void)
 {
     integrity.equal_run = 0;
@@ -49,12 +40,13 @@ void integrity_forget(void)
 
 void integrity_start(const adxl345_config_t *config)
 {
-    integrity.range_g = config->range_g;
-    integrity.format = table_format(config);
-    integrity.has_last = false;
-    integrity.bad_run = 0;
-    if (!integrity_stuck()) {
-        integrity.equal_run = 0;
+    struct integrity *i = here();
+    i->range_g = config->range_g;
+    i->format = table_format(config);
+    i->has_last = false;
+    i->bad_run = 0;
+    if (i->equal_run != ADXL345_STUCK_REPEATS) {
+        i->equal_run = 0;
     }
 }
 
@@ -74,7 +66,10 @@ static inline bool plausible(const uint8_t *raw, int16_t lsb[3])
         *lsb++ = (int16_t)(uint16_t)(low | (uint16_t)((uint16_t)high << 8));
         above |= (uint8_t)(high + range_g);
     }
-    return above < (uint8_t)(2u * range_g) && ones != UINT8_MAX;
+    if (ones == UINT8_MAX) {
+        above = UINT8_MAX;
+    }
+    return above < (uint8_t)(2u * range_g);
 }
 
 static bool same(const int16_t *a, const int16_t *b)
@@ -101,15 +96,15 @@ static HAL_APART reading_t discard(reading_t why)
         if (i->empty_run == RUN_LIMIT) {
             i->empty_run = RUN_EMPTY;
         }
-        driver_count(&i->counters.empty);
+        driver_count(COUNTER_EMPTY);
         return why;
     }
-    i->failed = true;
+    driver.marks |= ADXL345_MARK_INTEGRITY;
     lengthen(&i->bad_run);
     if (why == READING_RESET) {
         i->bad_run = RUN_RESET;
     }
-    driver_count(&i->counters.failed);
+    driver_count(COUNTER_FAILED);
     return why;
 }
 
@@ -127,21 +122,24 @@ static void accept(uint8_t source, bool repeated)
     i->good++;
     i->bad_run = 0;
     if (!hal_drdy_high()) {
-        i->empty_run = integrity_int1_stuck() ? (uint8_t)(i->empty_run - 1u) : 0;
+        i->empty_run = i->empty_run >= RUN_LIMIT ? (uint8_t)(i->empty_run - 1u) : 0;
     }
     if (source & ADXL345_INT_OVERRUN) {
-        driver_count(&i->counters.overruns);
+        driver_count(COUNTER_OVERRUNS);
     }
 }
 
 /*
- * INT_SOURCE has the bit of its watermark after power-on (p. 26), so that bits which a low SDA makes zeros do not pass
- * for a lost configuration.
+ * A reading with other registers than were written. INT_SOURCE has the bit of its watermark after power-on (p. 26), so
+ * that bits which a low SDA makes zeros do not pass for a lost configuration.
  */
-static bool after_power_on(const uint8_t reading[READING_BYTES])
+static reading_t discard_foreign(const uint8_t reading[READING_BYTES])
 {
-    return reading[READING_FIFO_CTL] == ADXL345_FIFO_BYPASS && reading[READING_FORMAT] == 0 &&
-           (reading[READING_SOURCE] & ADXL345_INT_WATERMARK) != 0;
+    if (reading[READING_FIFO_CTL] == ADXL345_FIFO_BYPASS && reading[READING_FORMAT] == 0 &&
+        (reading[READING_SOURCE] & ADXL345_INT_WATERMARK)) {
+        return discard(READING_RESET);
+    }
+    return discard(READING_BAD);
 }
 
 /*
@@ -151,15 +149,14 @@ static bool after_power_on(const uint8_t reading[READING_BYTES])
 reading_t integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3])
 {
     if (reading[READING_FIFO_CTL] != TABLE_FIFO_CTL || reading[READING_FORMAT] != integrity.format) {
-        return discard(after_power_on(reading) ? READING_RESET : READING_BAD);
+        return discard_foreign(reading);
     }
     if (reading[READING_FIFO_STATUS] > SENSOR_DEPTH || !plausible(&reading[READING_DATA], lsb)) {
         return discard(READING_BAD);
     }
     uint8_t source = reading[READING_SOURCE];
-    bool ready = (source & ADXL345_INT_DATA_READY) != 0;
     bool repeated = integrity.has_last && same(lsb, last_lsb);
-    if (!ready && (repeated || !integrity.has_last)) {
+    if (!(source & ADXL345_INT_DATA_READY) && (repeated || !integrity.has_last)) {
         return discard(READING_EMPTY);
     }
     accept(source, repeated);
@@ -187,16 +184,4 @@ bool integrity_int1_stuck(void)
 bool integrity_stuck(void)
 {
     return integrity.equal_run == ADXL345_STUCK_REPEATS;
-}
-
-uint8_t integrity_marks(void)
-{
-    uint8_t marks = integrity.failed ? ADXL345_MARK_INTEGRITY : 0;
-    integrity.failed = false;
-    return marks;
-}
-
-const adxl345_readings_t *integrity_counters(void)
-{
-    return &integrity.counters;
 }

@@ -32,10 +32,6 @@ typedef enum {
     READING_FAILED /* the transfer did */
 } reading_t;
 
-/* Once, at the start of the program: counters to zero. */
-void integrity_init(void);
-const adxl345_readings_t *integrity_counters(void);
-
 /* Readings come with this configuration's range and self-test from now on, the first behind no other. */
 void integrity_start(const adxl345_config_t *config);
 
@@ -69,8 +65,5 @@ adxl345_fault_t integrity_fault(void);
 
 /* INT1 was high and the sensor empty three times without a good reading; until 32 of those have left INT1 low. */
 bool integrity_int1_stuck(void);
-
-/* ADXL345_MARK_INTEGRITY when a reading was discarded as BAD or RESET since the last call, else 0. */
-uint8_t integrity_marks(void);
 
 #endif

@@ -22,12 +22,13 @@ static inline struct period *here(void)
     return p;
 }
 
-void period_start(uint32_t nominal_us)
+void period_start(uint16_t half_us)
 {
     struct period *p = here();
+    uint32_t nominal_us = (uint32_t)half_us * 2u;
     p->us_q8 = nominal_us << 8;
-    p->step_span_us = (uint16_t)(nominal_us >> 2);
-    p->shortest_us = nominal_us - (nominal_us >> 3);
+    p->step_span_us = half_us >> 1;
+    p->shortest_us = nominal_us - (half_us >> 2);
     p->steps = 0;
     p->measured = false;
 }
@@ -58,7 +59,12 @@ HAL_APART uint32_t period_us(void)
     return period.us_q8 >> 8;
 }
 
-uint32_t period_measured_us_q8(void)
+uint32_t period_us_q8(void)
 {
-    return period.measured ? period.us_q8 : 0;
+    return period.us_q8;
+}
+
+bool period_measured(void)
+{
+    return period.measured;
 }

@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Begins with the nominal one, 1250..80000 us. */
-void period_start(uint32_t nominal_us);
+/* Begins with the nominal one, of which half is 625..40000 us. */
+void period_start(uint16_t half_us);
 
 /* The stamp of the next sample, us; exact: the sample was read as it became ready. */
 void period_sample(uint32_t t_us, bool exact);
@@ -17,7 +17,8 @@ void period_sample(uint32_t t_us, bool exact);
 /* The nominal one until it was measured. */
 uint32_t period_us(void);
 
-/* The measured one in 1/256 us; 0 until it was measured. */
-uint32_t period_measured_us_q8(void);
+/* The same in 1/256 us, and whether it was measured. */
+uint32_t period_us_q8(void);
+bool period_measured(void);
 
 #endif

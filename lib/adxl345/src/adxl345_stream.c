@@ -15,13 +15,17 @@
 
 #define MARGIN_US 3000u
 #define TURN_ON_MS 20u /* p. 5: period + 1.1 ms, with room for a slow start */
-#define TRANSFER_LIMIT_US (TRANSFER_LIMIT_MS * INT32_C(1000))
-#define LOOK_US 500ul /* behind the moment when a sample was due, and again and again while none comes */
 
-/* Since the newest burst that met a sample, or until the first is expected (negative). */
-static HAL_APART int32_t silent_for_us(void)
+/* So many halves of the nominal time between samples. */
+static HAL_APART uint32_t halves_us(uint8_t count)
 {
-    return (int32_t)(driver.now_us - burst_met_sample_us());
+    return (uint32_t)driver.half_us * count;
+}
+
+/* So long after the newest burst that met a sample, or after the moment by which the first is expected. */
+static HAL_APART bool silent_for(uint32_t us)
+{
+    return driver_reached(burst_met_sample_us() + us);
 }
 
 /*
@@ -31,25 +35,25 @@ static HAL_APART int32_t silent_for_us(void)
 void stream_source_asked(adxl345_driver_t *d)
 {
     uint8_t source = burst_register_value() & (uint8_t)(ADXL345_INT_DATA_READY | ADXL345_INT_EVENTS);
-    bool has_data = source == ADXL345_INT_DATA_READY;
-    bool may_come = source == 0 && silent_for_us() < (int32_t)(d->nominal_us * 3u + MARGIN_US);
-    if (!has_data && !may_come && (!hal_drdy_high() || integrity_int1_stuck())) {
-        driver_fail(ADXL345_FAULT_NO_DATA);
-        return;
-    }
-    burst_set_mode(BURST_READ);
-    driver_enter(STEP_STREAM, 1);
-    d->was_empty = d->was_empty || !has_data;
-    if (has_data && !hal_drdy_high()) { /* while it is high, the sample is read because it is */
+    if (source != ADXL345_INT_DATA_READY) {
+        bool may_come = source == 0 && !silent_for(halves_us(6) + MARGIN_US);
+        if (!may_come && (!hal_drdy_high() || integrity_int1_stuck())) {
+            driver_fail(ADXL345_FAULT_NO_DATA);
+            return;
+        }
+        d->was_empty = true;
+    } else if (!hal_drdy_high()) { /* while it is high, the sample is read because it is */
         d->fault = ADXL345_FAULT_INT1_SILENT;
         d->timed = TIMED_WANTED;
     }
+    burst_set_mode(BURST_READ);
+    driver_enter(STEP_STREAM, RETURN_LIMIT);
 }
 
 void stream_start(adxl345_driver_t *d)
 {
     if (d->after_fault) {
-        driver_count(&d->counters.restarts);
+        driver_count(COUNTER_RESTARTS);
         integrity_forget();
         watch_start();
     }
@@ -60,7 +64,7 @@ void stream_start(adxl345_driver_t *d)
     d->seen_good = integrity_good();
     burst_expect(d->now_us + TURN_ON_MS * 1000ul);
     burst_set_mode(BURST_READ); /* last: an edge may come with it */
-    driver_enter(STEP_STREAM, 1);
+    driver_enter(STEP_STREAM, RETURN_LIMIT);
 }
 
 HAL_APART bool stream_without_edges(void)
@@ -72,10 +76,9 @@ HAL_APART bool stream_without_edges(void)
  * Without a sample until the sensor is asked: two periods, or while INT1 is known to tell nothing less than one, so
  * that a sensor that is fast does not fill its FIFO.
  */
-static HAL_APART uint32_t patience_us(adxl345_driver_t *d)
+static HAL_APART uint32_t patience_us(void)
 {
-    uint32_t nominal_us = d->nominal_us;
-    return stream_without_edges() ? nominal_us - nominal_us / 4u : nominal_us * 2u;
+    return halves_us(stream_without_edges() ? 3 : 8) >> 1;
 }
 
 static void sample_arrived(adxl345_driver_t *d)
@@ -84,10 +87,10 @@ static void sample_arrived(adxl345_driver_t *d)
     d->was_empty = false;
     d->after_fault = false;
     d->first_sample_seen = true;
-    d->back_off_ms = BACK_OFF_MIN_MS;
-    d->deadline_us = d->now_us + d->nominal_us + LOOK_US;
+    d->back_off = BACK_OFF_MIN;
+    d->deadline_us = d->now_us + (uint32_t)d->half_us * 2u + LIMIT_US;
     if (d->timed == TIMED_READ) {
-        d->deadline_us = burst_begun_us() + patience_us(d);
+        d->deadline_us = burst_begun_us() + patience_us();
         d->timed = burst_left_more() ? TIMED_WANTED : TIMED_NONE;
         return;
     }
@@ -95,34 +98,23 @@ static void sample_arrived(adxl345_driver_t *d)
     d->timed = TIMED_NONE;
 }
 
-/* A burst or the STOP behind it hangs: the sample is read again, unless a line that is low says why. */
-static void end_hung_burst(adxl345_driver_t *d)
-{
-    driver_count(&d->counters.timeouts);
-    if (driver_take_bus()) {
-        driver_enter(STEP_STREAM, 1);
-    }
-}
-
 /*
- * No sample came by the time it was due: a burst may hang, or there was none for so long that the sensor is asked. One
- * that failed counts as a sign of life: three in a row are a fault by themselves.
+ * No sample came by the time it was due. A burst or the STOP behind it may hang: the sample is read again, unless a
+ * line that is low says why. Or there was none for so long that the sensor is asked; a burst that failed counts as a
+ * sign of life: three in a row are a fault by themselves.
  */
-static void look_for_sample(adxl345_driver_t *d)
+static HAL_APART void look_for_sample(adxl345_driver_t *d)
 {
-    int32_t since_us = (int32_t)(d->now_us - burst_begun_us());
-    bool waiting = burst_queue_full() || (hal_drdy_high() && !burst_found_empty()); /* main was late */
-    if (burst_bus_taken()) {
-        if (since_us >= TRANSFER_LIMIT_US) {
-            end_hung_burst(d);
-        } else {
-            d->deadline_us = d->now_us + (uint32_t)(TRANSFER_LIMIT_US - since_us);
+    if (burst_running() || hal_i2c_stop_pending()) {
+        d->deadline_us = burst_begun_us() + (uint32_t)TRANSFER_LIMIT * LIMIT_US;
+        if (driver_deadline_passed() && driver_transfer_failed(I2C_BUS_TIMEOUT)) {
+            driver_enter(STEP_STREAM, RETURN_LIMIT);
         }
-    } else if (!waiting && silent_for_us() >= (int32_t)patience_us(d)) {
-        burst_set_mode(BURST_STAMP);
-        driver_enter(STEP_ASK_SOURCE, TRANSFER_LIMIT_MS);
+    } else if (burst_queue_full() || (hal_drdy_high() && !burst_found_empty()) || !silent_for(patience_us())) {
+        driver_set_limit(LOOK_LIMIT); /* main was late, or it is early */
     } else {
-        d->deadline_us = d->now_us + LOOK_US;
+        burst_set_mode(BURST_STAMP);
+        driver_enter(STEP_ASK_SOURCE, TRANSFER_LIMIT);
     }
 }
 
@@ -143,15 +135,17 @@ static bool readings_failed(void)
 /* Begins the burst of a sample that waits, seen by INT1 or by the clock. */
 static void fetch(adxl345_driver_t *d)
 {
-    if (d->timed != TIMED_WANTED) {
-        if (burst_drain(d->was_empty)) {
-            driver_set_limit(TRANSFER_LIMIT_MS);
-        } else if (hal_drdy_high() && hal_i2c_stop_pending()) {
-            hal_wake(); /* the end of a STOP tells nobody */
+    bool by_clock = d->timed == TIMED_WANTED;
+    if (!by_clock && !hal_drdy_high()) {
+        return;
+    }
+    if (burst_read(d->was_empty)) {
+        if (by_clock) {
+            d->timed = TIMED_READ;
         }
-    } else if (burst_read(d->was_empty)) {
-        d->timed = TIMED_READ;
-        driver_set_limit(TRANSFER_LIMIT_MS);
+        driver_set_limit(TRANSFER_LIMIT);
+    } else if (hal_i2c_stop_pending()) {
+        hal_wake(); /* the end of a STOP tells nobody */
     }
 }
 

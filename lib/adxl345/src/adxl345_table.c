@@ -4,20 +4,17 @@
 #include "flash.h"
 #include "hal_pointer.h"
 
-typedef struct {
-    uint8_t reg;
-    uint8_t value; /* BW_RATE and DATA_FORMAT: from rate and range */
-} setting_t;
-
 /*
  * Standby first, interrupt off before it is reconfigured (p. 20), bypass to clear the FIFO (p. 21); Measure is set
  * after the read-back. Offsets are cleared because the sensor may have kept another program's.
+ * The values of BW_RATE and DATA_FORMAT follow from the configuration.
  */
-static const setting_t table[] FLASH = {
-    { ADXL345_POWER_CTL, 0 },
+static const table_row_t table[] FLASH = {
+    [TABLE_DEVID] = { ADXL345_DEVID, ADXL345_DEVID_VALUE },
+    [TABLE_WRITTEN] = { ADXL345_POWER_CTL, 0 },
     { ADXL345_INT_ENABLE, 0 },
     { ADXL345_FIFO_CTL, ADXL345_FIFO_BYPASS },
-    { ADXL345_BW_RATE, 0 },
+    [TABLE_READ_BACK] = { ADXL345_BW_RATE, 0 },
     { ADXL345_DATA_FORMAT, 0 },
     { ADXL345_OFSX, 0 },
     { ADXL345_OFSY, 0 },
@@ -25,9 +22,10 @@ static const setting_t table[] FLASH = {
     { ADXL345_INT_MAP, 0 },
     { ADXL345_FIFO_CTL, TABLE_FIFO_CTL },
     { ADXL345_INT_ENABLE, ADXL345_INT_DATA_READY },
+    [TABLE_MEASURE] = { ADXL345_POWER_CTL, ADXL345_POWER_MEASURE },
+    [TABLE_SOURCE] = { ADXL345_INT_SOURCE, 0 },
+    [TABLE_STANDBY] = { ADXL345_POWER_CTL, 0 },
 };
-
-_Static_assert(sizeof table / sizeof table[0] == TABLE_ROWS, "TABLE_ROWS");
 
 enum { RATE_CODE_12_5_HZ = 7 }; /* p. 14 */
 
@@ -55,9 +53,13 @@ HAL_APART uint8_t table_format(const adxl345_config_t *config)
     return (uint8_t)(ADXL345_FORMAT_FULL_RES | force | range_code(config->range_g));
 }
 
-uint32_t table_period_us(uint16_t rate_dhz)
+uint16_t table_half_period_us(uint16_t rate_dhz)
 {
-    return 80000ul >> (rate_code(rate_dhz) - RATE_CODE_12_5_HZ);
+    uint16_t half_us = 40000;
+    for (uint16_t at = 125; at < rate_dhz; at = (uint16_t)(at * 2u)) {
+        half_us >>= 1;
+    }
+    return half_us;
 }
 
 bool adxl345_config_valid(const adxl345_config_t *config)
@@ -70,19 +72,16 @@ bool adxl345_config_valid(const adxl345_config_t *config)
     return rate_ok && (range == 2 || range == 4 || range == 8 || range == 16);
 }
 
-uint8_t table_register(uint8_t row)
+HAL_APART table_row_t table_row(uint8_t at, const adxl345_config_t *config)
 {
-    return flash_u8(&table[row].reg);
-}
-
-uint8_t table_value(uint8_t row, const adxl345_config_t *config)
-{
-    uint8_t reg = flash_u8(&table[row].reg);
-    uint8_t value = flash_u8(&table[row].value);
-    if (reg == ADXL345_BW_RATE) {
-        value = rate_code(config->rate_dhz);
-    } else if (reg == ADXL345_DATA_FORMAT) {
-        value = table_format(config);
+    const uint8_t *p = &table[at].reg;
+    table_row_t row;
+    row.reg = flash_u8(p++);
+    row.value = flash_u8(p);
+    if (row.reg == ADXL345_BW_RATE) {
+        row.value = rate_code(config->rate_dhz);
+    } else if (row.reg == ADXL345_DATA_FORMAT) {
+        row.value = table_format(config);
     }
-    return value;
+    return row;
 }

@@ -1,5 +1,5 @@
 /*
- * Inside the driver: the one constant table of registers that it writes, in standby, and reads back. Main only.
+ * Inside the driver: the one constant table of registers that it asks, writes in standby and reads back. Main only.
  */
 #ifndef ADXL345_TABLE_H
 #define ADXL345_TABLE_H
@@ -10,18 +10,31 @@
 /* What FIFO_CTL holds while measuring, in every mode of the driver: no reset leaves a Samples field of 10 behind. */
 #define TABLE_FIFO_CTL (ADXL345_FIFO_STREAM | 0x0Au)
 
-/* Rows of the table; from TABLE_READ_BACK on each register holds what its last row says. */
-#define TABLE_ROWS 11u
-#define TABLE_READ_BACK 3u
+/*
+ * Rows of the table. Those that configure the sensor come before TABLE_MEASURE, and from TABLE_READ_BACK on each
+ * register holds what its row says.
+ */
+enum {
+    TABLE_DEVID,
+    TABLE_WRITTEN,
+    TABLE_READ_BACK = TABLE_WRITTEN + 3,
+    TABLE_MEASURE = TABLE_READ_BACK + 8,
+    TABLE_SOURCE,
+    TABLE_STANDBY
+};
 
-/* Register and value of a row for this configuration. */
-uint8_t table_register(uint8_t row);
-uint8_t table_value(uint8_t row, const adxl345_config_t *config);
+typedef struct {
+    uint8_t reg;
+    uint8_t value;
+} table_row_t;
+
+/* Register and value for this configuration. */
+table_row_t table_row(uint8_t at, const adxl345_config_t *config);
 
 /* What DATA_FORMAT holds while measuring with this configuration. */
 uint8_t table_format(const adxl345_config_t *config);
 
-/* Nominal time between samples at a legal rate. */
-uint32_t table_period_us(uint16_t rate_dhz);
+/* Half the nominal time between samples at a legal rate. */
+uint16_t table_half_period_us(uint16_t rate_dhz);
 
 #endif

@@ -7,32 +7,43 @@
 #include "hal_drdy.h"
 #include "hal_pointer.h"
 
-void driver_count(uint16_t *counter)
+static uint16_t counters[COUNTERS];
+
+void driver_count(counter_t counter)
 {
-    if (*counter != UINT16_MAX) {
-        (*counter)++;
+    uint16_t *count = &counters[counter];
+    HAL_POINTER(count); /* else its address is computed twice */
+    if (*count != UINT16_MAX) {
+        (*count)++;
+    }
+}
+
+void driver_forget_counters(void)
+{
+    for (uint8_t at = 0; at < COUNTERS; at++) {
+        counters[at] = 0;
     }
 }
 
 const adxl345_sample_t *adxl345_take(void)
 {
-    const burst_entry_t *entry = burst_take();
-    if (entry == NULL) {
+    if (burst_queued() == 0) {
         return NULL;
     }
+    const burst_entry_t *entry = burst_take();
     if (!entry->exact) {
-        driver_count(&driver.counters.samples_drained);
+        driver_count(COUNTER_DRAINED);
     }
     if (entry->stuck) {
-        driver.marks = ADXL345_MARK_STUCK;
-        driver_count(&driver.counters.samples_stuck);
+        driver.marks |= ADXL345_MARK_STUCK;
+        driver_count(COUNTER_STUCK);
     }
     return &entry->sample;
 }
 
 uint8_t adxl345_marks(void)
 {
-    uint8_t marks = (uint8_t)(driver.marks | integrity_marks());
+    uint8_t marks = driver.marks;
     driver.marks = 0;
     return marks;
 }
@@ -42,12 +53,6 @@ HAL_APART uint8_t adxl345_queued(void)
     return burst_queued();
 }
 
-/* Bursts bring samples, or the sensor is being asked why they do not. */
-static bool streams(void)
-{
-    return driver.step == STEP_STREAM || driver.step == STEP_ASK_SOURCE;
-}
-
 bool adxl345_oldest_us(uint32_t *t_us)
 {
     return burst_oldest_us(t_us);
@@ -55,7 +60,7 @@ bool adxl345_oldest_us(uint32_t *t_us)
 
 bool adxl345_sample_coming(void)
 {
-    return streams() && !burst_found_empty() && (burst_running() || hal_drdy_high());
+    return driver_streams() && !burst_found_empty() && (burst_running() || hal_drdy_high());
 }
 
 uint32_t adxl345_lateness_us(void)
@@ -65,27 +70,13 @@ uint32_t adxl345_lateness_us(void)
 
 adxl345_phase_t adxl345_phase(void)
 {
-    if (streams()) {
-        return driver.first_sample_seen ? ADXL345_STREAMING : ADXL345_STARTING;
-    }
-    switch (driver.step) {
-    case STEP_OFF:
-    case STEP_REST_LATER:
-        return ADXL345_STOPPED;
-    case STEP_BACK_OFF:
-        return ADXL345_FAULTY;
-    case STEP_QUIET_STANDBY:
-    case STEP_QUIET_DRAIN:
-    case STEP_STANDBY:
-        return ADXL345_QUIESCING;
-    default:
-        return ADXL345_STARTING;
-    }
+    uint8_t phase = driver.step / STEP_PHASE(1);
+    return phase == ADXL345_STREAMING && !driver.first_sample_seen ? ADXL345_STARTING : (adxl345_phase_t)phase;
 }
 
 adxl345_fault_t adxl345_fault(void)
 {
-    if (driver.fault != ADXL345_FAULT_NONE || !streams()) {
+    if (driver.fault != ADXL345_FAULT_NONE || !driver_streams()) {
         return (adxl345_fault_t)driver.fault;
     }
     if (integrity_int1_stuck()) {
@@ -130,27 +121,26 @@ uint32_t adxl345_period_us(void)
 /* 1e8 us x 256 over the period, both by 8 that 32 bits are enough; that rounds by 1.3e-5 at 800 Hz, less below. */
 uint32_t adxl345_rate_chz(void)
 {
-    uint32_t eighth_us_q8 = (period_measured_us_q8() + 4u) >> 3;
-    if (eighth_us_q8 == 0) {
+    if (!period_measured()) {
         return 0;
     }
+    uint32_t eighth_us_q8 = (period_us_q8() + 4u) >> 3;
     return (UINT32_C(3200000000) + (eighth_us_q8 >> 1)) / eighth_us_q8;
 }
 
 void adxl345_counters(adxl345_counters_t *out)
 {
-    *out = driver.counters;
+    *out = (adxl345_counters_t){ counters[COUNTER_DRAINED], counters[COUNTER_STUCK], counters[COUNTER_RESTARTS],
+                                 counters[COUNTER_NACKS],   counters[COUNTER_LOST],  counters[COUNTER_BUS_ERRORS],
+                                 counters[COUNTER_TIMEOUTS] };
 }
 
 void adxl345_readings(adxl345_readings_t *out)
 {
-    *out = *integrity_counters();
+    *out = (adxl345_readings_t){ counters[COUNTER_FAILED], counters[COUNTER_EMPTY], counters[COUNTER_OVERRUNS] };
 }
 
 uint16_t adxl345_count(uint8_t at)
 {
-    enum { OWN = sizeof driver.counters / sizeof(uint16_t) };
-    const uint16_t *own = (const uint16_t *)&driver.counters;
-    const uint16_t *readings = (const uint16_t *)integrity_counters();
-    return at < OWN ? own[at] : readings[at - OWN];
+    return counters[at];
 }

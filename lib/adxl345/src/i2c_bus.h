@@ -56,16 +56,13 @@ HAL_IRQ_INLINE void i2c_bus_begin(i2c_bus_t *bus)
     hal_i2c_start();
 }
 
-/* The transfer that runs or ended last came so far that byte `at` (0: the first) was asked of the device. */
-static inline bool i2c_bus_asked(const i2c_bus_t *bus, uint8_t at)
+/*
+ * Bytes that the transfer which runs or ended last has asked the device for. All but the last of them came in, and that
+ * one too where the transfer is good.
+ */
+static inline uint8_t i2c_bus_asked(const i2c_bus_t *bus)
 {
-    return bus->expected >= HAL_I2C_RECEIVED_ACK && bus->index >= at;
-}
-
-/* The same, and it came in and was not the last one (so a good transfer with another byte after it: true). */
-static inline bool i2c_bus_received(const i2c_bus_t *bus, uint8_t at)
-{
-    return bus->expected >= HAL_I2C_RECEIVED_ACK && bus->index > at;
+    return bus->expected >= HAL_I2C_RECEIVED_ACK ? (uint8_t)(bus->index + 1u) : 0;
 }
 
 static inline void i2c_bus_finish(i2c_bus_t *bus, i2c_bus_state_t state)
@@ -75,17 +72,15 @@ static inline void i2c_bus_finish(i2c_bus_t *bus, i2c_bus_state_t state)
     hal_wake();
 }
 
-static inline void i2c_bus_step_write(i2c_bus_t *bus)
+/* All bytes are sent. */
+static inline void i2c_bus_step_sent(i2c_bus_t *bus)
 {
-    if (bus->index < bus->tx_length) {
-        hal_i2c_send(bus->tx[bus->index++]);
-        bus->expected = HAL_I2C_SENT_ACK;
-    } else if (bus->rx_length != 0) {
-        hal_i2c_start();
-        bus->expected = HAL_I2C_RESTARTED;
-    } else {
+    if (bus->rx_length == 0) {
         i2c_bus_finish(bus, I2C_BUS_OK);
+        return;
     }
+    hal_i2c_start();
+    bus->expected = HAL_I2C_RESTARTED;
 }
 
 /* The last byte is refused, so that the device lets go of SDA. */
@@ -122,6 +117,31 @@ static inline void i2c_bus_unexpected(i2c_bus_t *bus, uint8_t status)
     i2c_bus_finish(bus, state);
 }
 
+/* What comes before the first byte that is received. */
+static inline void i2c_bus_step_send(i2c_bus_t *bus, uint8_t status)
+{
+    uint8_t byte;
+    uint8_t expected = HAL_I2C_WRITE_ADDRESS_ACK;
+    if (status <= HAL_I2C_RESTARTED) {
+        byte = bus->address;
+        if (status == HAL_I2C_RESTARTED) {
+            byte |= 1u;
+            expected = HAL_I2C_READ_ADDRESS_ACK;
+        }
+    } else { /* the address or a byte was sent */
+        uint8_t index = bus->index;
+        if (index >= bus->tx_length) {
+            i2c_bus_step_sent(bus);
+            return;
+        }
+        byte = bus->tx[index];
+        bus->index = (uint8_t)(index + 1u);
+        expected = HAL_I2C_SENT_ACK;
+    }
+    hal_i2c_send(byte);
+    bus->expected = expected;
+}
+
 /* One bus event (interrupt). A stale event of an abandoned transfer is ignored. */
 static inline void i2c_bus_step(i2c_bus_t *bus)
 {
@@ -134,33 +154,20 @@ static inline void i2c_bus_step(i2c_bus_t *bus)
         i2c_bus_unexpected(bus, status);
         return;
     }
-    if (status == HAL_I2C_RECEIVED_ACK) { /* first, because most are */
-        uint8_t index = bus->index;
+    uint8_t index = 0;
+    if (status >= HAL_I2C_RECEIVED_ACK) { /* first, because most are */
+        index = bus->index;
         bus->rx[index] = hal_i2c_received();
-        i2c_bus_step_read(bus, (uint8_t)(index + 1u));
+        if (status == HAL_I2C_RECEIVED_NACK) {
+            i2c_bus_finish(bus, I2C_BUS_OK);
+            return;
+        }
+        index++;
+    } else if (status != HAL_I2C_READ_ADDRESS_ACK) {
+        i2c_bus_step_send(bus, status);
         return;
     }
-    switch (status) {
-    case HAL_I2C_STARTED:
-        hal_i2c_send(bus->address);
-        bus->expected = HAL_I2C_WRITE_ADDRESS_ACK;
-        break;
-    case HAL_I2C_WRITE_ADDRESS_ACK:
-    case HAL_I2C_SENT_ACK:
-        i2c_bus_step_write(bus);
-        break;
-    case HAL_I2C_RESTARTED:
-        hal_i2c_send((uint8_t)(bus->address | 1u));
-        bus->expected = HAL_I2C_READ_ADDRESS_ACK;
-        break;
-    case HAL_I2C_READ_ADDRESS_ACK:
-        i2c_bus_step_read(bus, 0);
-        break;
-    default: /* HAL_I2C_RECEIVED_NACK */
-        bus->rx[bus->index] = hal_i2c_received();
-        i2c_bus_finish(bus, I2C_BUS_OK);
-        break;
-    }
+    i2c_bus_step_read(bus, index);
 }
 
 #endif

@@ -1,399 +1,367 @@
-/* One sample of the guarded adaptive filter: see adaptive.h for the equations. */
-#include "adaptive_scale.h"
-#include "filter_common.h"
+/*
+ * adaptive: a fading-memory filter whose memory the innovations drive, guarded against outliers. The future work that
+ * paper 000 names: noise identified on line, the filter's parameters driven by it.
+ *
+ *   x_e = x + v                              straight line through the past, u = z - x_e
+ *   x = x_e + (2 k - k^2) t, v = v + k^2 t   t: the part of u that is taken
+ *
+ * weights a sample n steps old by (1 - k)^n (fading memory of the first order): its memory is about 2 / k samples
+ * and the innovation's sigma, within 6 % up to k = 0.6, (1 + k) sigma for noise of that sigma. k grows at once to that
+ * of the shortest memory when the mean innovation is not explained by noise, and falls by k^2 / 4 a sample, which
+ * lengthens the memory by half a sample, to that of the slowest.
+ *
+ * Guard: a sample further off than `guard` sigmas counts as motion only when the one before it, carried on with the
+ * estimated rate, lies off to the same side too; what both agree on is taken and the memory is shortened. An isolated
+ * one is taken up to the gate, and the less the further off it is, not at all from twice the gate on. An innovation
+ * further beyond the gate than motion explains (an eighth of `ratemax`) is believed after `confirm` of samples on the
+ * same side.
+ *
+ * Noise, with `identify` on (1): the scatter of the innovations about their mean, of every second sample, each limited
+ * to 2.5 times what it is expected to be. Motion that the line does not follow widens it, and so the gate. It starts
+ * from the R that was configured or told last before the first sample after the start; later calls of filter_set_noise
+ * change nothing: a pipeline that estimates an R of its own may go on telling it, and need not. Off (0): the square
+ * root of that R, always.
+ *
+ * FILTER_GATED tells that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be
+ * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the identified noise and
+ * forgets rate and mean innovation; the memory is the slowest.
+ *
+ * Parameters guard, r, identify, slow, fast, confirm, ratemax (at most 127 LSB per sample of it).
+ *
+ * Scaling:
+ *   rate     Q7.24, <= 127 LSB per sample
+ *   k        UQ0.32, its upper 16 bits as the gain
+ *   sizes    of the innovation, what is taken of it and its gate in UQ16, towards its side: no sign is to be watched
+ *   means    of innovations (Q7.24, towards the side of the last one) and of their scatter (UQ8.24): a term is rounded
+ *            to 2^-8 LSB, the mean moves by the exact product of what they differ and the weight
+ */
+#include "adaptive.h"
 
-/* Estimate within its bound, looked for in the high word: 4608 LSB and a fraction count as 4608. */
-FX_NOINLINE void limit_x(adaptive_t *f, int32_t x_lsb_q16)
+static const char guard_words[] FX_FLASH = "guard\0sigma";
+static const filter_parameter_t guard FX_FLASH = { guard_words, 8, 1, 256, 4096, 1152 };
+static const char identify_words[] FX_FLASH = "identify\0";
+static const filter_parameter_t identify FX_FLASH = { identify_words, 0, 0, 0, 1, 1 };
+static const char slow_words[] FX_FLASH = "slow\0ms";
+static const filter_parameter_t slow FX_FLASH = { slow_words, 0, 0, 10, 60000, 500 };
+static const char fast_words[] FX_FLASH = "fast\0ms";
+static const filter_parameter_t fast FX_FLASH = { fast_words, 0, 0, 1, 60000, 0 };
+static const char confirm_words[] FX_FLASH = "confirm\0ms";
+static const filter_parameter_t confirm FX_FLASH = { confirm_words, 0, 0, 0, 10000, 120 };
+static const filter_parameter_t *const parameters[] FX_FLASH = {
+    &guard, &filter_parameter_r, &identify, &slow, &fast, &confirm, &filter_parameter_ratemax
+};
+
+/*
+ * One rule for all rates. Shortest memory: 80 ms, a quick turn of the hand, and two samples, without which no line is
+ * known. Slowest: half a second and at least 20 samples. The gate is 3 sigma below 20 Hz, where a motion is a few
+ * samples long and outliers among them cost most, and 4.5 from there on: more than what hands do between samples.
+ */
+static void standard(filter_config_t *config)
 {
-    uint16_t whole_lsb = (uint16_t)((uint32_t)x_lsb_q16 >> 16);
-    if ((uint16_t)(whole_lsb + FILTER_X_MAX_LSB) >= 2U * FILTER_X_MAX_LSB) {
-        f->flags |= FILTER_SATURATED;
-        x_lsb_q16 = (x_lsb_q16 < 0) ? -X_MAX_LSB_Q16 : X_MAX_LSB_Q16;
+    uint16_t rate_dhz = config->rate_dhz;
+    if (rate_dhz < 200U) {
+        config->value[ADAPTIVE_GUARD_SIGMA_Q8] = 768;
     }
-    f->x_lsb_q16 = x_lsb_q16;
+    if (rate_dhz < 400U) {
+        config->value[ADAPTIVE_SLOW_MS] = (int32_t)(200000U / rate_dhz);
+    }
+    config->value[ADAPTIVE_FAST_MS] = (int32_t)80 + (int32_t)(20000U / rate_dhz);
 }
 
-/* The mean innovation towards `below`, rounded down. */
-FX_INLINE int16_t mean_lsb_q8(const adaptive_t *f)
+/* Shares and thresholds that follow from the shortest memory. */
+static void set_memory(filter_adaptive_t *a, const filter_config_t *config)
 {
-    return (int16_t)(f->mean_lsb_q24 >> 16);
+    a->slow_uq16 = filter_tracker_memory_k_uq16((uint16_t)config->value[ADAPTIVE_SLOW_MS], config->rate_dhz,
+                                                ADAPTIVE_K_MIN_UQ16);
+    a->fast_uq16 = filter_tracker_memory_k_uq16((uint16_t)config->value[ADAPTIVE_FAST_MS], config->rate_dhz,
+                                                a->slow_uq16);
+    a->share_uq16 = filter_fx_high_u16(a->fast_uq16, 26214); /* 0.4 */
+    /* sigma of the mean, sqrt(share / (2 - share)), times 2.15 */
+    uint32_t ratio_uq32 = ((uint32_t)a->share_uq16 << 15) / (0x20000U - a->share_uq16) << 17;
+    a->manoeuvre_uq16 = (uint16_t)((275U * (uint32_t)filter_fx_isqrt32(ratio_uq32)) >> 7); /* <= 0.8 */
 }
 
-/* A size of 8.8 bits, limited to 128 LSB. */
-FX_INLINE uint16_t size_lsb_uq8(uint32_t size_lsb_uq16)
+static void set_up(filter_t *f, const filter_config_t *config)
 {
-    return (uint16_t)((size_lsb_uq16 >= 0x800000U) ? 0x7FFFU : size_lsb_uq16 >> 8);
+    filter_adaptive_t *a = &f->own.adaptive;
+    a->guarded = config->value[ADAPTIVE_GUARD_SIGMA_Q8] != 0;
+    a->gate_sigma_q8 = a->guarded ? (uint16_t)config->value[ADAPTIVE_GUARD_SIGMA_Q8] : ADAPTIVE_UNGUARDED_SIGMA_Q8;
+    a->identify = config->value[ADAPTIVE_IDENTIFY] != 0;
+    set_memory(a, config);
+    uint32_t confirm_samples = (uint32_t)config->value[ADAPTIVE_CONFIRM_MS] * config->rate_dhz / 10000U; /* <= 40000 */
+    a->confirm = (confirm_samples < ADAPTIVE_CONFIRM_LEAST) ? ADAPTIVE_CONFIRM_LEAST : (uint16_t)confirm_samples;
+    filter_tracker_limit_rate(f, (uint32_t)config->value[ADAPTIVE_RATE_MAX_LSB_S], 24);
+    filter_set_noise(f, (uint32_t)config->value[ADAPTIVE_R_LSB2_Q8]);
 }
 
-FX_INLINE void remember(adaptive_t *f, int16_t z_lsb)
+static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
-    f->history_lsb[2] = f->history_lsb[1];
-    f->history_lsb[1] = f->history_lsb[0];
-    f->history_lsb[0] = z_lsb;
-    if (f->filled < 3U) {
-        f->filled++;
+    filter_adaptive_t *a = &f->own.adaptive;
+    if (a->learnt == 0U) {
+        uint32_t sigma_q10 = filter_fx_isqrt32(r_lsb2_q8 << 12); /* 110..32382 */
+        a->scatter_lsb_uq24 = sigma_q10 << 14;
     }
 }
 
-/* A mean moved towards a new term by a part of what they differ; exact. */
-FX_NOINLINE uint32_t averaged(uint32_t mean_uq24, uint16_t term_uq8, uint16_t from_uq8, uint16_t weight_uq16)
+static void start(filter_t *f, bool settled)
 {
-    if (term_uq8 < from_uq8) {
-        return mean_uq24 - fx_product_u16((uint16_t)(from_uq8 - term_uq8), weight_uq16);
-    }
-    return mean_uq24 + fx_product_u16((uint16_t)(term_uq8 - from_uq8), weight_uq16);
+    filter_adaptive_t *a = &f->own.adaptive;
+    filter_tracker_clear(a, offsetof(filter_adaptive_t, scatter_lsb_uq24));
+    f->negative = false;
+    f->broken = false;
+    a->k_uq32 = settled ? (uint32_t)a->slow_uq16 << 16 : ADAPTIVE_K_START_UQ32;
 }
 
-/* The weight halved when as many terms have come as it averages over. */
-FX_INLINE void count_term(adaptive_t *f)
+/* The rate of one sample, rounded down towards the side of the last innovation. */
+static int32_t rate_lsb_q16(const filter_t *f)
 {
-    if (f->weight_uq16 != f->last_uq16) {
-        f->terms--;
-        if (f->terms == 0U) {
-            f->weight_uq16 >>= 1;
-            f->stage = (uint16_t)(f->stage + f->stage);
-            f->terms = f->stage;
+    int32_t rate = f->rate_lsb >> 8;
+    return (f->negative && (uint8_t)(uint32_t)f->rate_lsb != 0U) ? rate + 1 : rate;
+}
+
+/* A size in 8.8 bits, limited to 128 LSB. */
+FX_NOINLINE int16_t size_lsb_q8(uint32_t size_lsb_uq16)
+{
+    return (int16_t)((size_lsb_uq16 >= 0x800000U) ? 0x7FFF : (int16_t)(uint16_t)(size_lsb_uq16 >> 8));
+}
+
+/* A mean moved by a part of what a new term differs from what was expected of it; exact. */
+FX_INLINE uint32_t averaged(uint32_t mean_uq24, uint16_t expected_uq8, uint16_t term_uq8, uint16_t weight_uq16)
+{
+    if (term_uq8 < expected_uq8) {
+        return mean_uq24 - fx_product_u16((uint16_t)(expected_uq8 - term_uq8), weight_uq16);
+    }
+    return mean_uq24 + fx_product_u16((uint16_t)(term_uq8 - expected_uq8), weight_uq16);
+}
+
+/*
+ * What is taken of an innovation, as far as the gate, in their mean; signed: numbers keep their order when the top bit
+ * is turned over.
+ */
+FX_INLINE void average_innovation(filter_adaptive_t *a, uint32_t taken)
+{
+    uint16_t term = (uint16_t)size_lsb_q8((taken > a->gate_lsb_uq16) ? a->gate_lsb_uq16 : taken);
+    uint32_t mean = (uint32_t)a->mean_lsb_q24 ^ 0x80000000U;
+    mean = averaged(mean, (uint16_t)(mean >> 16), term ^ 0x8000U, a->share_uq16);
+    a->mean_lsb_q24 = (int32_t)(mean ^ 0x80000000U);
+}
+
+/*
+ * What the sample before was off, towards the side of this one, carried on with the rate, and no more than this one is
+ * off; 0 where a sample was missing between them.
+ */
+static uint32_t agreed_lsb_uq16(const filter_t *f, int32_t x1_lsb_q16)
+{
+    if (f->broken) {
+        return 0;
+    }
+    int32_t before = (int32_t)f->previous_lsb * 65536 - x1_lsb_q16;
+    if (f->negative) {
+        before = -before;
+    }
+    if (before < 0) {
+        return 0;
+    }
+    return ((uint32_t)before > f->size_lsb_uq16) ? f->size_lsb_uq16 : (uint32_t)before;
+}
+
+/* Counts a sample beyond the gate, and judges what is taken of its innovation. */
+static uint32_t judge(filter_t *f, int32_t x1_lsb_q16)
+{
+    filter_adaptive_t *a = &f->own.adaptive;
+    uint16_t run = (a->verdict == (uint8_t)ADAPTIVE_WITHIN) ? 0U : a->run;
+    if (run != UINT16_MAX) {
+        a->run = (uint16_t)(run + 1U);
+    }
+    uint32_t agreed = agreed_lsb_uq16(f, x1_lsb_q16);
+    uint32_t size = f->size_lsb_uq16;
+    uint32_t gate = a->gate_lsb_uq16;
+    if (agreed > gate) {
+        uint16_t jump_lsb_uq8 = (uint16_t)(f->rate_max_lsb >> 19); /* beyond the gate, what motion does not explain */
+        bool large = size - gate > (uint32_t)jump_lsb_uq8 << 8;
+        if (!large || a->run >= a->confirm) {
+            a->verdict = large ? ADAPTIVE_JUMP : ADAPTIVE_MOTION;
+            return agreed;
         }
+        agreed = gate;
+    }
+    f->flags |= FILTER_GATED;
+    uint32_t twice = gate + gate;
+    uint32_t left = (size < twice) ? twice - size : 0U;
+    if (left > agreed) {
+        agreed = left;
+    }
+    a->verdict = (agreed == 0U) ? ADAPTIVE_UNUSED : ADAPTIVE_OUTLIER;
+    return agreed;
+}
+
+/* Memory after this sample. */
+static void adapt(filter_adaptive_t *a, uint16_t spread_uq8)
+{
+    int16_t mean = (int16_t)(a->mean_lsb_q24 >> 16);
+    uint16_t mean_uq8 = (mean < 0) ? (uint16_t)(0U - (uint16_t)mean) : (uint16_t)mean;
+    uint16_t threshold_uq8 = filter_fx_high_u16(spread_uq8, a->manoeuvre_uq16);
+    uint16_t k = (uint16_t)(a->k_uq32 >> 16);
+    if (a->verdict >= (uint8_t)ADAPTIVE_MOTION || mean_uq8 > threshold_uq8) {
+        if (k < a->fast_uq16) {
+            a->k_uq32 = (uint32_t)a->fast_uq16 << 16;
+        }
+    } else if (mean_uq8 <= (uint16_t)(threshold_uq8 - (threshold_uq8 >> 2))) {
+        k >>= 1;
+        uint32_t less = a->k_uq32 - fx_product_u16(k, k); /* k^2 / 4 */
+        if ((uint16_t)(less >> 16) < a->slow_uq16) {
+            less = (uint32_t)a->slow_uq16 << 16;
+        }
+        a->k_uq32 = less;
     }
 }
 
-/* The mean of the start. A bad read makes it large: then the largest of so many terms below its half replaces it. */
-FX_INLINE uint32_t doubted(adaptive_t *f, uint32_t mean_uq24, uint16_t term_uq8, uint16_t before_uq8)
+/* Rate changed by so much, at most 127 LSB, towards the innovation and within its limit. */
+FX_INLINE void turn(filter_t *f, int32_t by_lsb_q24)
 {
-    if (term_uq8 >= before_uq8 >> 1) {
-        f->small = 0;
-        return mean_uq24;
-    }
-    if (f->small == 0U || term_uq8 > f->largest_lsb_uq8) {
-        f->largest_lsb_uq8 = term_uq8;
-    }
-    f->small++;
-    if (f->small < SMALL_TERMS) {
-        return mean_uq24;
-    }
-    f->small = 0;
-    return (uint32_t)f->largest_lsb_uq8 << 16;
+    int32_t limit = (int32_t)f->rate_max_lsb;
+    int32_t rate = f->negative ? -f->rate_lsb : f->rate_lsb;
+    rate = (rate > limit - by_lsb_q24) ? limit : rate + by_lsb_q24;
+    f->rate_lsb = f->negative ? -rate : rate;
 }
 
-FX_INLINE bool is_first_term(const adaptive_t *f)
+/* k w, at most 127 LSB: from a w of 128 LSB on to 2^-16. */
+static uint32_t turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
 {
-    return f->terms == 2U && f->weight_uq16 == WEIGHT_START_UQ16;
+    if (w_lsb_uq16 < 0x800000U) {
+        return filter_fx_times_uq16(w_lsb_uq16 << 8, k_uq16);
+    }
+    uint32_t kw = filter_fx_times_uq16(w_lsb_uq16, k_uq16);
+    return (kw >= (uint32_t)127 << 16) ? (uint32_t)127 << 24 : kw << 8;
 }
 
-/* Noise of a sample from |z - 3 z1 + 3 z2 - z3|, limited to 2.48 times the sigma that is expected of it. */
-FX_NOINLINE void identify(adaptive_t *f, int16_t z_lsb)
+/* Of the magnitude that is taken x moves by 2 w - k w with w = k taken; the rate turns by k w. */
+static void follow(filter_t *f, uint32_t taken)
 {
-    int16_t third = (int16_t)(f->history_lsb[1] - f->history_lsb[0]);
-    third = (int16_t)(third + third + third + z_lsb - f->history_lsb[2]); /* <= 4 x 8191 */
-    uint16_t size = (uint16_t)((third < 0) ? -third : third);
-    uint16_t term_uq8 = (uint16_t)(((size > 318U) ? 318U : size) << 7); /* sigma below 90 LSB */
-    uint16_t mean_uq8 = (uint16_t)(f->third_lsb_uq24 >> 16);
-    uint16_t limit_uq8 = UINT16_MAX;
-    if (mean_uq8 < 20971U) { /* 3.125 times as large it fits: 2.48 sigma */
-        limit_uq8 = (uint16_t)(3U * mean_uq8 + (mean_uq8 >> 3));
+    if (f->own.adaptive.verdict == (uint8_t)ADAPTIVE_JUMP) {
+        f->flags |= FILTER_REACQUIRED;
+        f->rate_lsb = 0;
+    } else {
+        uint16_t k = (uint16_t)(f->own.adaptive.k_uq32 >> 16);
+        uint32_t w = filter_fx_times_uq16(taken, k);
+        uint32_t kw = turn_lsb_uq24(w, k);
+        turn(f, (int32_t)kw);
+        taken = w + w - (kw >> 8);
     }
-    if (term_uq8 > limit_uq8 && f->weight_uq16 < WEIGHT_LIMITED_UQ16) {
-        term_uq8 = limit_uq8;
+    tracker_move(f, (int32_t)taken);
+    f->x_lsb_q16 = tracker_bounded(f, f->x_lsb_q16); /* the rate's limit may leave x a step beyond the sample */
+}
+
+/* Innovation and gate; returns the sigma of the innovation, LSB. An innovation of 0 keeps to its side. */
+static uint16_t meet(filter_t *f, int16_t z_lsb)
+{
+    filter_adaptive_t *a = &f->own.adaptive;
+    bool before = f->negative;
+    tracker_meet(f, z_lsb);
+    if (f->size_lsb_uq16 == 0U) {
+        f->negative = before;
+    } else if (f->negative != before) {
+        a->run = 0;
+        a->mean_lsb_q24 = -a->mean_lsb_q24;
     }
-    uint32_t mean = averaged(f->third_lsb_uq24, term_uq8, mean_uq8, f->weight_uq16);
-    if (is_first_term(f)) {
-        mean = (uint32_t)term_uq8 << 16; /* nothing is left of the R to start from */
-    } else if (f->weight_uq16 >= WEIGHT_DOUBTED_UQ16) {
-        mean = doubted(f, mean, term_uq8, mean_uq8);
-    }
-    if ((uint16_t)(mean >> 16) < (uint16_t)(THIRD_MIN_LSB_UQ24 >> 16)) {
-        mean = THIRD_MIN_LSB_UQ24;
-    }
-    f->third_lsb_uq24 = mean;
-    if (!f->guarded) {
-        f->scatter_lsb_uq24 = fx_product_u16((uint16_t)(mean >> 16), SIGMA_OF_THIRD_UQ16);
-    }
-    count_term(f);
+    uint16_t spread_uq8 = (uint16_t)(a->scatter_lsb_uq24 >> 16);
+    spread_uq8 = (uint16_t)(spread_uq8 + filter_fx_high_u16(spread_uq8, (uint16_t)(a->k_uq32 >> 16)));
+    a->gate_lsb_uq16 = fx_product_u16(spread_uq8, a->gate_sigma_q8);
+    return spread_uq8;
 }
 
 /*
  * Scatter of the innovations from 1.375 |u - mean|, limited to 2.5 times what is expected of it: sqrt(pi / 2) = 1.253
  * makes a mean size a sigma, and a tenth more keeps false alarms rarer than known noise would.
  */
-FX_NOINLINE void disperse(adaptive_t *f, uint16_t spread_uq8)
+static void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spread_uq8)
 {
-    int16_t mean = mean_lsb_q8(f);
-    int16_t size = (int16_t)size_lsb_uq8(f->u.run.size_lsb_uq16);
-    uint16_t term_uq8 = (mean > size) ? (uint16_t)(mean - size) : (uint16_t)((uint16_t)size - (uint16_t)mean);
-    if (term_uq8 > 47662U) {
-        term_uq8 = 47662U; /* 1.375 times this fits */
+    int16_t mean = (int16_t)(a->mean_lsb_q24 >> 16);
+    int16_t size = size_lsb_q8(size_lsb_uq16);
+    uint16_t term = (mean > size) ? (uint16_t)(mean - size) : (uint16_t)((uint16_t)size - (uint16_t)mean);
+    if (term > 47662U) {
+        term = 47662U; /* 1.375 times this fits */
     }
-    term_uq8 = (uint16_t)(term_uq8 + (term_uq8 >> 2) + (term_uq8 >> 3));
-    uint16_t limit_uq8 = UINT16_MAX;
-    if (spread_uq8 < 26214U) {
-        limit_uq8 = (uint16_t)(2U * spread_uq8 + (spread_uq8 >> 1));
-    }
-    if (term_uq8 > limit_uq8) {
-        term_uq8 = limit_uq8;
-    }
-    uint16_t weight = f->weight_uq16;
-    if (weight < WEIGHT_SCATTER_UQ16) {
-        weight = WEIGHT_SCATTER_UQ16;
-    } else if (weight > WEIGHT_SCATTER_START_UQ16) {
-        weight = WEIGHT_SCATTER_START_UQ16;
-    }
-    uint32_t scatter = averaged(f->scatter_lsb_uq24, term_uq8, spread_uq8, weight);
-    if ((uint16_t)(scatter >> 16) < (uint16_t)(SCATTER_MIN_LSB_UQ24 >> 16)) {
-        scatter = SCATTER_MIN_LSB_UQ24;
-    }
-    if ((uint16_t)(scatter >> 16) >= (uint16_t)(SCATTER_MAX_LSB_UQ24 >> 16)) {
-        scatter = SCATTER_MAX_LSB_UQ24;
-    }
-    f->scatter_lsb_uq24 = scatter;
-}
-
-/* One sample of the start. */
-FX_NOINLINE void collect(adaptive_t *f, int16_t z_lsb)
-{
-    filter_warm_up_insert(f->u.start_lsb, f->collected, z_lsb);
-    f->collected++;
-    f->x_lsb_q16 = filter_warm_up_median_q16(f->u.start_lsb, f->collected);
-    f->flags = FILTER_WARMING_UP;
-    if (f->collected == FILTER_WARM_UP_SAMPLES) {
-        f->k_uq32 = K_START_UQ32;
-        f->u.run.size_lsb_uq16 = 0;
-        f->u.run.gate_lsb_uq16 = 0;
-    }
-}
-
-/* Counts a sample beyond the gate. What the sample before was off in the same direction, carried on with the rate. */
-FX_NOINLINE uint32_t agreed_lsb_uq16(adaptive_t *f)
-{
-    uint16_t run = f->run;
-    if (f->verdict == (uint8_t)WITHIN_GATE) {
-        run = 0;
-    }
-    run++;
-    if (run != 0U) {
-        f->run = run;
-    }
-    FX_FENCE();
-    int32_t before = f->u.run.before_lsb_q16;
-    if (f->below) {
-        before = -before;
-    }
-    return (before < 0) ? 0U : (uint32_t)before;
-}
-
-/* What is taken of the size of an innovation beyond the gate. */
-FX_NOINLINE uint32_t judge(adaptive_t *f, uint32_t size)
-{
-    uint32_t agreed = agreed_lsb_uq16(f);
-    FX_FENCE();
-    if (agreed > size) {
-        agreed = size;
-    }
-    uint32_t gate = f->u.run.gate_lsb_uq16;
-    if (agreed > gate) {
-        bool large = size - gate > (uint32_t)f->jump_lsb_uq8 << 8;
-        if (!large || f->run >= f->confirm) {
-            f->verdict = large ? JUMP : MOTION;
-            return agreed;
-        }
-        agreed = gate;
-    }
-    f->flags |= FILTER_GATED;
-    f->verdict = OUTLIER;
-    uint32_t twice = gate + gate;
-    if (size < twice) {
-        twice -= size;
-        if (twice > agreed) {
-            return twice;
+    term = (uint16_t)(term + (term >> 2) + (term >> 3));
+    uint16_t weight = a->guarded ? ADAPTIVE_WEIGHT_UQ16 : ADAPTIVE_UNGUARDED_WEIGHT_UQ16;
+    if (spread_uq8 < 26214U) { /* else the limit is beyond all terms */
+        uint16_t limit = (uint16_t)(2U * spread_uq8 + (spread_uq8 >> 1));
+        if (term > limit) {
+            term = limit;
+            weight = ADAPTIVE_WEIGHT_UQ16;
         }
     }
-    if (agreed == 0U) {
-        f->verdict = UNUSED;
+    if (a->learnt < ADAPTIVE_OPENING_TERMS) {
+        a->learnt++;
+        weight = ADAPTIVE_OPENING_UQ16;
     }
-    return agreed;
-}
-
-/* Innovations in their mean, each limited to the gate. */
-FX_INLINE void average_innovation(adaptive_t *f, uint32_t taken)
-{
-    uint32_t gate = f->u.run.gate_lsb_uq16;
-    int16_t limited = (int16_t)size_lsb_uq8((taken > gate) ? gate : taken);
-    int16_t mean = mean_lsb_q8(f);
-    if (limited < mean) {
-        f->mean_lsb_q24 -= (int32_t)fx_product_u16((uint16_t)(mean - limited), f->share_uq16);
-    } else {
-        f->mean_lsb_q24 += (int32_t)fx_product_u16((uint16_t)((uint16_t)limited - (uint16_t)mean), f->share_uq16);
+    uint32_t scatter = averaged(a->scatter_lsb_uq24, spread_uq8, term, weight);
+    if (scatter < ADAPTIVE_SCATTER_MIN_UQ24) {
+        scatter = ADAPTIVE_SCATTER_MIN_UQ24;
     }
+    a->scatter_lsb_uq24 = (scatter > ADAPTIVE_SCATTER_MAX_UQ24) ? ADAPTIVE_SCATTER_MAX_UQ24 : scatter;
 }
 
-/* Memory after this sample. */
-FX_INLINE void adapt(adaptive_t *f, uint16_t spread_uq8)
+static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    int16_t mean = mean_lsb_q8(f);
-    uint16_t mean_uq8 = (mean < 0) ? (uint16_t)(0U - (uint16_t)mean) : (uint16_t)mean;
-    uint16_t threshold_uq8 = (uint16_t)(fx_mul_u16(spread_uq8, f->manoeuvre_uq16) >> 16);
-    uint16_t k = (uint16_t)(f->k_uq32 >> 16);
-    if (f->verdict >= (uint8_t)MOTION || mean_uq8 > threshold_uq8) {
-        if (k < f->fast_uq16) {
-            f->k_uq32 = (uint32_t)f->fast_uq16 << 16;
-        }
-    } else if (mean_uq8 <= (uint16_t)(threshold_uq8 - (threshold_uq8 >> 2))) {
-        k >>= 1;
-        uint32_t less = f->k_uq32 - fx_mul_u16(k, k); /* k^2 / 4 */
-        if ((uint16_t)(less >> 16) < f->slow_uq16) {
-            less = (uint32_t)f->slow_uq16 << 16;
-        }
-        f->k_uq32 = less;
+    filter_adaptive_t *a = &f->own.adaptive;
+    int32_t x1_lsb_q16 = f->x_lsb_q16;
+    f->x_lsb_q16 = tracker_bounded(f, x1_lsb_q16 + rate_lsb_q16(f));
+    if (what == STEP_MISSING) {
+        return;
     }
-}
-
-/* Rate changed by so much, at most 127 LSB, in the direction of the innovation and within its limit. */
-FX_INLINE void turn(adaptive_t *f, int32_t by_lsb_q24)
-{
-    int32_t limit = f->rate_max_lsb_q24;
-    if (f->rate_lsb_q24 > limit - by_lsb_q24) {
-        f->rate_lsb_q24 = limit;
-    } else {
-        f->rate_lsb_q24 += by_lsb_q24;
-    }
-}
-
-/* k w of a w of 128 LSB and more. */
-FX_NOINLINE uint32_t coarse_turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
-{
-    uint32_t kw = fx_times_uq16(w_lsb_uq16, k_uq16);
-    return (kw >= (uint32_t)127 << 16) ? (uint32_t)RATE_LIMIT_LSB_Q24 : kw << 8;
-}
-
-/* What of the magnitude that is taken x moves by: 2 w - k w with w = k taken; the rate turns by k w. */
-FX_INLINE uint32_t gained(adaptive_t *f, uint32_t taken)
-{
-    uint16_t k = (uint16_t)(f->k_uq32 >> 16);
-    uint32_t w = fx_mul24_uq16(taken >> 8, k);
-    uint32_t kw = (w >= 0x800000U) ? coarse_turn_lsb_uq24(w, k) : fx_mul24_uq16(w, k);
-    FX_FENCE();
-    turn(f, (int32_t)kw);
-    return w + w - (kw >> 8);
-}
-
-/* x moved by so much in the direction of the innovation. */
-FX_INLINE void move(adaptive_t *f, uint32_t by_lsb_uq16)
-{
-    int32_t x = f->x_lsb_q16;
-    limit_x(f, f->below ? x - (int32_t)by_lsb_uq16 : x + (int32_t)by_lsb_uq16);
-}
-
-/* The innovation's size and direction: rate and mean are kept towards it, so that what follows knows no sign. */
-FX_INLINE void face(adaptive_t *f, int16_t z_lsb)
-{
-    int32_t innovation = (int32_t)z_lsb * 65536 - f->x_lsb_q16;
-    bool below = f->below;
-    if (innovation < 0) {
-        innovation = -innovation;
-        below = true;
-    } else if (innovation != 0) {
-        below = false;
-    }
-    f->u.run.size_lsb_uq16 = (uint32_t)innovation;
-    if (below != f->below) {
-        f->below = below;
-        f->run = 0;
-        f->rate_lsb_q24 = -f->rate_lsb_q24;
-        FX_FENCE();
-        f->mean_lsb_q24 = -f->mean_lsb_q24;
-    }
-}
-
-/* Innovation and gate; returns the sigma of the innovation, LSB. */
-FX_NOINLINE uint16_t meet(adaptive_t *f, int16_t z_lsb)
-{
-    f->flags = 0;
-    f->u.run.before_lsb_q16 = 0;
-    if (f->filled != 0U) {
-        f->u.run.before_lsb_q16 = (int32_t)f->history_lsb[0] * 65536 - f->x_lsb_q16;
-    }
-    FX_FENCE();
-    limit_x(f, f->x_lsb_q16 + adaptive_rate_lsb_q16(f));
-    FX_FENCE();
-    face(f, z_lsb);
-    FX_FENCE();
-    uint16_t spread_uq8 = (uint16_t)(f->scatter_lsb_uq24 >> 16);
-    uint16_t k = (uint16_t)(f->k_uq32 >> 16);
-    spread_uq8 = (uint16_t)(spread_uq8 + (uint16_t)(fx_mul_u16(spread_uq8, k) >> 16));
-    f->u.run.gate_lsb_uq16 = fx_mul_u16(spread_uq8, f->gate_sigma_q8);
-    return spread_uq8;
-}
-
-/* Estimate and memory moved by a part of the innovation. */
-FX_NOINLINE void follow(adaptive_t *f, uint32_t taken, uint16_t spread_uq8)
-{
-    average_innovation(f, taken);
-    FX_FENCE();
-    adapt(f, spread_uq8);
-    FX_FENCE();
-    if (f->verdict == (uint8_t)JUMP) {
-        f->flags |= FILTER_REACQUIRED;
-        f->rate_lsb_q24 = 0;
-    } else {
-        taken = gained(f, taken);
-    }
-    move(f, taken);
-}
-
-/* One sample on. */
-FX_INLINE void step(adaptive_t *f, int16_t z_lsb)
-{
     uint16_t spread_uq8 = meet(f, z_lsb);
-    uint32_t taken = f->u.run.size_lsb_uq16;
-    if (f->guarded && taken > f->u.run.gate_lsb_uq16) {
-        taken = judge(f, taken);
+    uint32_t taken = f->size_lsb_uq16;
+    if (taken > a->gate_lsb_uq16 && a->guarded) {
+        taken = judge(f, x1_lsb_q16);
     } else {
-        f->verdict = WITHIN_GATE;
+        a->verdict = ADAPTIVE_WITHIN;
     }
-    follow(f, taken, spread_uq8);
-    if (f->third == 0U && f->identify) {
-        disperse(f, spread_uq8);
+    f->broken = false;
+    average_innovation(a, taken);
+    adapt(a, spread_uq8);
+    follow(f, taken);
+    a->turn ^= a->identify;
+    if (a->turn) {
+        disperse(a, f->size_lsb_uq16, spread_uq8);
     }
 }
 
-/*
- * Scaling:
- *   input    Q0, any int16, clamped to -4096..4095 LSB
- *   x        Q15.16; |x_e| <= 4608 LSB by a clamp; the update moves it towards a sample within 4096
- *   rate     Q7.24, <= 127 LSB per sample; |u| <= 8704 LSB
- *   k        UQ0.32, its upper 16 bits as the gain
- *   cost     docs/benchmarks.md
- */
-int32_t adaptive_update(adaptive_t *f, int16_t z_lsb)
+/* Of the last update; 0 when nothing was taken. */
+static uint16_t gain_uq16(const filter_t *f)
 {
-    int16_t z = filter_limited_z(z_lsb);
-    if (f->collected < FILTER_WARM_UP_SAMPLES) {
-        collect(f, z);
-    } else {
-        step(f, z);
+    if ((f->flags & FILTER_COASTED) != 0U || f->own.adaptive.verdict == (uint8_t)ADAPTIVE_UNUSED) {
+        return 0;
     }
-    if (f->third != 0U && f->filled == 3U) {
-        identify(f, z);
-    }
-    f->third ^= f->by_turns;
-    remember(f, z);
-    return f->x_lsb_q16;
+    uint16_t k = (uint16_t)(f->own.adaptive.k_uq32 >> 16);
+    return (uint16_t)(2U * k - filter_fx_high_u16(k, k));
 }
 
-/* The sample before is missing then: nothing agrees with the next, and no difference is taken across the gap. */
-int32_t adaptive_coast(adaptive_t *f)
+/* The variance is that of the memory for samples that scatter as the innovations do. */
+static void report(const filter_t *f, filter_probe_t *out)
 {
-    f->filled = 0;
-    if (f->collected < FILTER_WARM_UP_SAMPLES) {
-        f->flags = FILTER_WARMING_UP | FILTER_COASTED;
-        return f->x_lsb_q16;
+    const filter_adaptive_t *a = &f->own.adaptive;
+    uint16_t sigma_uq8 = (uint16_t)(a->scatter_lsb_uq24 >> 16);
+    out->p_lsb2_q8 = fx_product_u16(sigma_uq8, sigma_uq8) >> 8;
+    if (f->collected != FILTER_RUNNING) {
+        return;
     }
-    f->u.run.size_lsb_uq16 = 0;
-    f->flags = FILTER_COASTED;
-    limit_x(f, f->x_lsb_q16 + adaptive_rate_lsb_q16(f));
-    return f->x_lsb_q16;
+    out->p_lsb2_q8 = filter_tracker_fading_variance(out->p_lsb2_q8, (uint16_t)(a->k_uq32 >> 16));
+    out->gain_uq16 = gain_uq16(f);
+    if (a->guarded && a->gate_lsb_uq16 != 0U) {
+        uint16_t gate_uq4 = (uint16_t)(a->gate_lsb_uq16 >> 12); /* <= 4000 LSB */
+        out->gate_lsb2_q8 = fx_product_u16(gate_uq4, gate_uq4);
+    }
 }
 
-uint8_t adaptive_flags(const adaptive_t *f)
-{
-    return f->flags;
-}
+const filter_law_t filter_law_adaptive FX_FLASH = { .name = "adaptive",
+                                                    .parameter_count = 7,
+                                                    .traits = LAW_FINE_RATE | LAW_GATED,
+                                                    .worst_cycles = 1600,
+                                                    .parameters = parameters,
+                                                    .standard = standard,
+                                                    .set_up = set_up,
+                                                    .set_noise = set_noise,
+                                                    .start = start,
+                                                    .step = step,
+                                                    .report = LAW_REPORT(report) };

@@ -1,46 +1,129 @@
-/* Three fading memories and the choice among them: see auto.h. */
-#include "auto_inside.h"
+/*
+ * auto: three fading-memory filters side by side on the same samples, the estimate is that of the one that has
+ * predicted best of late. Paper 004's rule, prediction against measurement, within one sensor.
+ *
+ *   x_e = x + v,  u = z - x_e,  x = x_e + (2 k - k^2) u,  v = v + k^2 u      k = 2 / memory in samples
+ *
+ * with a slow, a middle and a fast memory. Each member refuses a sample further off than its gate (the slow one, which
+ * motion leaves behind, has twice the gate of the others); five refused in a row and on the same side restart it there,
+ * at rest, with a memory that grows by half a sample per sample up to its own.
+ *
+ * Each innovation is formed before its member is updated, refused ones too. The score of a member is the exponential
+ * mean over eight samples of min(u^2, 64 R), so that an outlier, which all members meet alike, cannot decide alone. The
+ * member with the least score is chosen, for this sample already, when it lies a thirty-second below that of the one
+ * in force; FILTER_SWITCHED tells. Missing samples leave the scores alone.
+ *
+ * Through missing samples each member goes on by its rate, and the estimate is that of the middle one: its rate is
+ * quiet enough for a gap at rest and quick enough for one in motion (fade: stopped where it may be noise).
+ * Parameters gate (in sigmas of a sample; 0: none), r, slow, middle, fast (memories, each limited to 3.3..512 samples,
+ * in any order), ratemax.
+ *
+ * Scaling:
+ *   x, rate  Q15.16; |x| <= 4608 LSB by a clamp after the prediction (the update moves x towards a sample within 4096),
+ *            |rate| <= rate_max <= 4608 LSB per sample by a clamp after the update; so |u| <= 8704 LSB < 2^30 / 2^16,
+ *            and rate + k^2 u <= 4608 + 0.36 x 8704 < 2^15 LSB
+ *   k        UQ0.16, 1/256..0.6; gains 2 k - k^2 <= 0.84 in UQ0.16 and k^2 in UQ0.24, each rounded down
+ *   u        rounded down to 2^-8 LSB in magnitude, products half away from zero to 2^-16: a member settles where
+ *            k^2 u is below 2^-17 LSB, within 0.005 LSB with a memory of 50 samples, 0.3 with 400, 0.5 with 512
+ *   score    UQ24.8, eight times the mean: s + l - s / 8 with l <= (8 x 31.63)^2 = 64 R <= 64,000 LSB^2, so
+ *            s <= 8 l + 7 counts < 2^27; rounded down by less than a count a sample
+ *   gate     UQ24.8 within 2^-8 LSB and 2^-11 of itself: 16 x 2 sigmas of 31.63 LSB are 1,012 LSB
+ */
+#include "tracker.h"
 
+/* k = 2 / 512: beyond it a rate would round to a standstill. */
+#define K_MIN_UQ16 256U
+/* The median of five samples is worth a memory of about four. */
+#define K_START_UQ16 32768U
 /* A member with a shorter memory than eight samples takes every sample until it has grown to its own. */
 #define K_OPEN_UQ16 16384U
+#define NO_GATE_LSB_UQ8 0x7FFFFFFFU
+/* Refused samples in a row and on one side that restart a member. */
+#define RESTART_SAMPLES 5
 
-/* One sample of the warm-up. */
-static int32_t warm_up(auto_t *f, int16_t z_lsb)
+static const char gate_words[] FX_FLASH = "gate\0sigma";
+static const filter_parameter_t gate FX_FLASH = { gate_words, 8, 1, 256, 4096, 1536 };
+static const char slow_words[] FX_FLASH = "slow\0ms";
+static const filter_parameter_t slow FX_FLASH = { slow_words, 0, 0, 1, 60000, 0 };
+static const char middling_words[] FX_FLASH = "middle\0ms";
+static const filter_parameter_t middling FX_FLASH = { middling_words, 0, 0, 1, 60000, 0 };
+static const char fast_words[] FX_FLASH = "fast\0ms";
+static const filter_parameter_t fast FX_FLASH = { fast_words, 0, 0, 1, 60000, 0 };
+static const filter_parameter_t *const parameters[] FX_FLASH = { &gate, &filter_parameter_r,      &slow, &middling,
+                                                                 &fast, &filter_parameter_ratemax };
+
+/* So many samples in ms, at least so many ms. */
+static uint16_t memory_ms(uint16_t rate_dhz, uint32_t samples, uint16_t least_ms)
 {
-    filter_warm_up_insert(f->u.start_lsb, f->collected, z_lsb);
-    f->collected++;
-    int32_t median_q16 = filter_warm_up_median_q16(f->u.start_lsb, f->collected);
-    if (!auto_warming_up(f)) {
-        auto_all_at(f, median_q16, false);
+    uint32_t ms = samples * 10000U / rate_dhz;
+    if (ms > 60000U) {
+        return 60000U;
     }
-    f->flags = FILTER_WARMING_UP;
-    return median_q16;
+    return (ms > least_ms) ? (uint16_t)ms : least_ms;
 }
 
-/* x within its bound by the high word: 4608 LSB and a fraction count as 4608. */
-FX_INLINE int32_t within_x(auto_t *f, int32_t x_lsb_q16)
+static void standard(filter_config_t *config)
 {
-    uint16_t whole_lsb = (uint16_t)((uint32_t)x_lsb_q16 >> 16);
-    if ((uint16_t)(whole_lsb + FILTER_X_MAX_LSB) >= 2U * FILTER_X_MAX_LSB) {
-        x_lsb_q16 = (x_lsb_q16 < 0) ? -AUTO_X_MAX_LSB_Q16 : AUTO_X_MAX_LSB_Q16;
-        f->flags |= FILTER_SATURATED;
-    }
-    return x_lsb_q16;
+    config->value[AUTO_SLOW_MS] = memory_ms(config->rate_dhz, 28, 500);
+    config->value[AUTO_MIDDLE_MS] = memory_ms(config->rate_dhz, 11, 200);
+    config->value[AUTO_FAST_MS] = memory_ms(config->rate_dhz, 5, 80);
 }
 
-FX_INLINE int32_t within_rate(auto_t *f, int32_t rate_lsb_q16)
+/*
+ * 1/8 of two sigmas of the rate for noise of sigma 1: with t = k / (2 - k) the rate's variance is 2 t^3, so it is
+ * sqrt(t) t / sqrt(8).
+ */
+static uint16_t still_of(uint16_t k_uq16)
 {
-    if (fx_abs32(rate_lsb_q16) > f->rate_max_lsb_q16) {
-        rate_lsb_q16 = (rate_lsb_q16 < 0) ? -(int32_t)f->rate_max_lsb_q16 : (int32_t)f->rate_max_lsb_q16;
+    uint32_t t_uq16 = ((uint32_t)k_uq16 << 15) / (0x20000U - k_uq16) << 1; /* <= 3/7 */
+    uint16_t root_uq16 = filter_fx_isqrt32(t_uq16 << 16);
+    return filter_fx_high_u16(filter_fx_high_u16(root_uq16, (uint16_t)t_uq16), 23170);
+}
+
+static void set_up(filter_t *f, const filter_config_t *config)
+{
+    filter_auto_t *b = &f->own.bank;
+    for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
+        b->final_k_uq16[i] = filter_tracker_memory_k_uq16((uint16_t)config->value[AUTO_SLOW_MS + i], config->rate_dhz,
+                                                          K_MIN_UQ16);
+    }
+    b->still_uq16 = still_of(b->final_k_uq16[AUTO_MIDDLE]);
+    b->gate_sigma_q8 = (uint16_t)config->value[AUTO_GATE_SIGMA_Q8];
+    filter_tracker_limit_rate(f, (uint32_t)config->value[AUTO_RATE_MAX_LSB_S], 16);
+    filter_set_noise(f, (uint32_t)config->value[AUTO_R_LSB2_Q8]);
+}
+
+/* Scores are kept: they are LSB^2, and forgotten after some eight samples anyway. */
+static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
+{
+    f->own.bank.eight_sigmas_lsb_uq8 = filter_fx_isqrt32(r_lsb2_q8 << 14); /* <= 64763 */
+}
+
+/* All members at rest, with the memory of the start or their own: at rest the slow one predicts best. */
+static void start(filter_t *f, bool settled)
+{
+    filter_auto_t *b = &f->own.bank;
+    for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
+        filter_member_t member = { f->x_lsb_q16, 0, 0, settled ? b->final_k_uq16[i] : K_START_UQ16, 0 };
+        b->members[i] = member;
+    }
+    b->chosen = settled ? AUTO_SLOW : AUTO_MIDDLE;
+    b->shown = b->chosen;
+}
+
+FX_INLINE int32_t within_rate(filter_t *f, int32_t rate_lsb_q16)
+{
+    if (fx_abs32(rate_lsb_q16) > f->rate_max_lsb) {
+        rate_lsb_q16 = (rate_lsb_q16 < 0) ? -(int32_t)f->rate_max_lsb : (int32_t)f->rate_max_lsb;
         f->flags |= FILTER_SATURATED;
     }
     return rate_lsb_q16;
 }
 
 /* One sample on. */
-FX_INLINE void predict(auto_t *f, auto_member_t *m)
+FX_INLINE void predict_member(filter_t *f, filter_member_t *m)
 {
-    m->x_lsb_q16 = within_x(f, m->x_lsb_q16 + m->rate_lsb_q16);
+    m->x_lsb_q16 = tracker_bounded(f, m->x_lsb_q16 + m->rate_lsb_q16);
 }
 
 /* What the update of one member told. */
@@ -51,7 +134,7 @@ typedef struct {
 } answer_t;
 
 /* A sample beyond the gate: one more on its side; the last of a run restarts the member at it. Returns the flag. */
-FX_NOINLINE uint8_t refused(auto_member_t *m, bool below, int16_t z_lsb)
+static uint8_t refused(filter_member_t *m, bool below, int16_t z_lsb)
 {
     int8_t run = m->refused;
     if (below) {
@@ -60,18 +143,18 @@ FX_NOINLINE uint8_t refused(auto_member_t *m, bool below, int16_t z_lsb)
         run = (int8_t)((run > 0) ? run + 1 : 1);
     }
     m->refused = run;
-    if (run < AUTO_RESTART_SAMPLES && run > -AUTO_RESTART_SAMPLES) {
+    if (run < RESTART_SAMPLES && run > -RESTART_SAMPLES) {
         return FILTER_GATED;
     }
     m->x_lsb_q16 = (int32_t)z_lsb * 65536;
     m->rate_lsb_q16 = 0;
-    m->k_uq16 = AUTO_K_MAX_UQ16;
+    m->k_uq16 = TRACKER_K_MAX_UQ16;
     m->refused = 0;
     return FILTER_REACQUIRED;
 }
 
 /* The member's gains, its memory half a sample longer, its state moved by the innovation. Returns the gain. */
-FX_INLINE uint16_t correct(auto_t *f, auto_member_t *m, uint16_t final_k, uint32_t size_lsb_uq8, bool below)
+FX_INLINE uint16_t correct(filter_t *f, filter_member_t *m, uint16_t final_k, uint32_t size_lsb_uq8, bool below)
 {
     uint16_t k = m->k_uq16;
     uint32_t square_uq32 = fx_mul_u16(k, k);
@@ -81,35 +164,31 @@ FX_INLINE uint16_t correct(auto_t *f, auto_member_t *m, uint16_t final_k, uint32
         k = (uint16_t)(k - (square_uq16 >> 2) - 1U);
         m->k_uq16 = (k > final_k) ? k : final_k;
     }
-    FX_FENCE();
     int32_t x_step = (int32_t)fx_mul24_uq16(size_lsb_uq8, gain_uq16);
     m->x_lsb_q16 += below ? -x_step : x_step;
-    FX_FENCE();
     int32_t rate_step = (int32_t)fx_mul24_uq24(size_lsb_uq8, square_uq32 >> 8);
     m->rate_lsb_q16 = within_rate(f, m->rate_lsb_q16 + (below ? -rate_step : rate_step));
     return gain_uq16;
 }
 
 /* One member one sample on: its score by the innovation, then its state. */
-FX_NOINLINE void step(auto_t *f, uint8_t i, int16_t z_lsb, answer_t *a)
+static void step_member(filter_t *f, uint8_t i, int16_t z_lsb, uint32_t gate_lsb_uq8, answer_t *a)
 {
-    auto_member_t *m = &f->u.members[i];
+    filter_auto_t *b = &f->own.bank;
+    filter_member_t *m = &b->members[i];
     FX_FENCE_OF(m); /* else computed from i at each use */
-    uint16_t final_k = f->final_k_uq16[i];
-    predict(f, m);
+    uint16_t final_k = b->final_k_uq16[i];
+    predict_member(f, m);
     int32_t innovation = (int32_t)z_lsb * 65536 - m->x_lsb_q16;
     a->innovation_lsb_q16 = innovation;
     bool below = innovation < 0;
     uint32_t size_lsb_uq8 = fx_abs32(innovation) >> 8;
-    FX_FENCE();
-    uint16_t bounded = f->eight_sigmas_lsb_uq8;
+    uint16_t bounded = b->eight_sigmas_lsb_uq8;
     if (size_lsb_uq8 < bounded) {
         bounded = (uint16_t)size_lsb_uq8;
     }
     uint32_t square_lsb2_uq8 = fx_mul_u16(bounded, bounded) >> 8;
     m->score_lsb2_uq8 = m->score_lsb2_uq8 - (m->score_lsb2_uq8 >> 3) + square_lsb2_uq8;
-    FX_FENCE();
-    uint32_t gate_lsb_uq8 = f->gate_lsb_uq8;
     if (i == (uint8_t)AUTO_SLOW) {
         gate_lsb_uq8 += gate_lsb_uq8;
     }
@@ -125,80 +204,73 @@ FX_NOINLINE void step(auto_t *f, uint8_t i, int16_t z_lsb, answer_t *a)
 }
 
 /* The member with the least score, if it lies a thirty-second below that of the one in force. */
-static void choose(auto_t *f)
+static void choose(filter_t *f)
 {
+    filter_auto_t *b = &f->own.bank;
     uint8_t best = 0;
     for (uint8_t i = 1; i < (uint8_t)AUTO_MEMBERS; i++) {
-        if (f->u.members[i].score_lsb2_uq8 < f->u.members[best].score_lsb2_uq8) {
+        if (b->members[i].score_lsb2_uq8 < b->members[best].score_lsb2_uq8) {
             best = i;
         }
     }
-    uint32_t in_force = f->u.members[f->chosen].score_lsb2_uq8;
-    if (f->u.members[best].score_lsb2_uq8 < in_force - (in_force >> 5)) {
-        f->chosen = best;
+    uint32_t in_force = b->members[b->chosen].score_lsb2_uq8;
+    if (b->members[best].score_lsb2_uq8 < in_force - (in_force >> 5)) {
+        b->chosen = best;
         f->flags |= FILTER_SWITCHED;
     }
 }
 
-/*
- * Scaling:
- *   input    Q0, any int16, clamped to -4096..4095 LSB
- *   x, rate  Q15.16; |x| <= 4608 LSB by a clamp after the prediction (the update moves x towards a sample within 4096),
- *            |rate| <= rate_max <= 4608 LSB per sample by a clamp after the update; so |u| <= 8704 LSB < 2^30 / 2^16,
- *            and rate + k^2 u <= 4608 + 0.36 x 8704 < 2^15 LSB
- *   k        UQ0.16, 1/256..0.6; gains 2 k - k^2 <= 0.84 in UQ0.16 and k^2 in UQ0.24, each rounded down
- *   u        rounded down to 2^-8 LSB in magnitude, products half away from zero to 2^-16: a member settles where
- *            k^2 u is below 2^-17 LSB, within 0.005 LSB with a memory of 50 samples, 0.3 with 400, 0.5 with 512
- *   score    UQ24.8, eight times the mean: s + l - s / 8 with l <= (8 x 31.63)^2 = 64 R <= 64,000 LSB^2, so
- *            s <= 8 l + 7 counts < 2^27; rounded down by less than a count a sample
- *   gate     UQ24.8 within 2^-8 LSB and 2^-11 of itself: 16 x 2 sigmas of 31.63 LSB are 1,012 LSB
- *   cost     docs/benchmarks.md
- */
-int32_t auto_update(auto_t *f, int16_t z_lsb)
+/* The estimate is that of a member. */
+static void show(filter_t *f, uint8_t member)
 {
-    int16_t z = filter_limited_z(z_lsb);
-    if (auto_warming_up(f)) {
-        return warm_up(f, z);
-    }
-    answer_t answers[AUTO_MEMBERS];
-    f->flags = 0;
-    for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
-        step(f, i, z, &answers[i]);
-    }
-    choose(f);
-    f->shown = f->chosen;
-    const answer_t *a = &answers[f->shown];
-    f->innovation_lsb_q16 = a->innovation_lsb_q16;
-    f->gain_uq16 = a->gain_uq16;
-    f->flags |= a->flags;
-    return f->u.members[f->shown].x_lsb_q16;
+    filter_auto_t *b = &f->own.bank;
+    b->shown = member;
+    f->x_lsb_q16 = b->members[member].x_lsb_q16;
+    f->rate_lsb = b->members[member].rate_lsb_q16;
 }
 
-int32_t auto_coast(auto_t *f)
+static uint32_t gate_of(const filter_auto_t *b)
 {
-    if (auto_warming_up(f)) {
-        f->flags = FILTER_WARMING_UP | FILTER_COASTED;
-        return auto_estimate(f);
-    }
-    f->flags = FILTER_COASTED;
-    f->innovation_lsb_q16 = 0;
-    f->gain_uq16 = 0;
-    f->shown = AUTO_MIDDLE;
-    for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
-        predict(f, &f->u.members[i]);
-    }
-    return f->u.members[AUTO_MIDDLE].x_lsb_q16;
+    return (b->gate_sigma_q8 == 0U) ? NO_GATE_LSB_UQ8 : fx_product_u16(b->eight_sigmas_lsb_uq8, b->gate_sigma_q8) >> 11;
 }
 
-/* Two sigmas of its rate, four times that while its memory grows. */
-void auto_gap(auto_t *f)
+static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    auto_member_t *m = &f->u.members[AUTO_MIDDLE];
-    if (auto_warming_up(f)) {
+    filter_auto_t *b = &f->own.bank;
+    if (what == STEP_MISSING) {
+        for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
+            predict_member(f, &b->members[i]);
+        }
+        show(f, AUTO_MIDDLE);
         return;
     }
-    uint32_t still_lsb_q16 = fx_product_u16(f->eight_sigmas_lsb_uq8, f->still_uq16) >> 8;
-    if (m->k_uq16 > f->final_k_uq16[AUTO_MIDDLE]) {
+    answer_t answers[AUTO_MEMBERS];
+    uint32_t gate_lsb_uq8 = gate_of(b);
+    for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
+        step_member(f, i, z_lsb, gate_lsb_uq8, &answers[i]);
+    }
+    choose(f);
+    const answer_t *a = &answers[b->chosen];
+    f->negative = a->innovation_lsb_q16 < 0;
+    f->size_lsb_uq16 = fx_abs32(a->innovation_lsb_q16);
+    f->gain_uq16 = a->gain_uq16;
+    f->flags |= a->flags;
+    show(f, b->chosen);
+}
+
+/* The middle member's rate is believed into a gap from two sigmas of it on, four times that while its memory grows. */
+static void fade(filter_t *f, bool first)
+{
+    filter_auto_t *b = &f->own.bank;
+    filter_member_t *m = &b->members[AUTO_MIDDLE];
+    if (!first) {
+        for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
+            b->members[i].rate_lsb_q16 >>= 1;
+        }
+        return;
+    }
+    uint32_t still_lsb_q16 = fx_product_u16(b->eight_sigmas_lsb_uq8, b->still_uq16) >> 8;
+    if (m->k_uq16 > b->final_k_uq16[AUTO_MIDDLE]) {
         still_lsb_q16 <<= 2;
     }
     if (fx_abs32(m->rate_lsb_q16) <= still_lsb_q16) {
@@ -206,27 +278,25 @@ void auto_gap(auto_t *f)
     }
 }
 
-void auto_damp(auto_t *f)
+static void report(const filter_t *f, filter_probe_t *out)
 {
-    if (auto_warming_up(f)) {
-        return;
-    }
-    for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
-        f->u.members[i].rate_lsb_q16 >>= 1;
+    const filter_auto_t *b = &f->own.bank;
+    uint16_t sigmas = b->eight_sigmas_lsb_uq8;
+    out->p_lsb2_q8 = (fx_product_u16(sigmas, sigmas) + 0x3FFFU) >> 14;
+    if (f->collected == FILTER_RUNNING) {
+        out->p_lsb2_q8 = filter_tracker_fading_variance(out->p_lsb2_q8, b->members[b->shown].k_uq16);
     }
 }
 
-void auto_hold(auto_t *f)
-{
-    if (auto_warming_up(f)) {
-        return;
-    }
-    for (uint8_t i = 0; i < (uint8_t)AUTO_MEMBERS; i++) {
-        auto_member_t *m = &f->u.members[i];
-        if (m->refused > 1) {
-            m->refused = 1;
-        } else if (m->refused < -1) {
-            m->refused = -1;
-        }
-    }
-}
+const filter_law_t filter_law_auto FX_FLASH = { .name = "auto",
+                                                .parameter_count = 6,
+                                                .traits = LAW_GATED,
+                                                .worst_cycles = 2450,
+                                                .parameters = parameters,
+                                                .standard = standard,
+                                                .set_up = set_up,
+                                                .set_noise = set_noise,
+                                                .start = start,
+                                                .step = step,
+                                                .fade = fade,
+                                                .report = LAW_REPORT(report) };

@@ -1,36 +1,21 @@
 /*
- * What all filters share: flags, probe, descriptor. One header per filter adds F_config_t, F_t and the functions
+ * Every filter of this library is one tracker with a gain law.
  *
- *   void     F_defaults(F_config_t *config, uint16_t rate_dhz);   the shipped values at that output data rate
- *   bool     F_init(F_t *f, const F_config_t *config);            false: a parameter is outside its legal range, f
- *            untouched
- *   bool     F_together(const F_config_t *config);                parameters within the ranges of the descriptor, and a
- *            legal rate, are what F_init takes: no gap in a range, no condition over several
- *   void     F_configure(F_t *f, const F_config_t *config);       the same for what is known to be legal, as the
- *            defaults are at a rate of FILTER_RATE_MIN_DHZ to FILTER_RATE_MAX_DHZ
- *   void     F_set_noise(F_t *f, uint32_t r_lsb2_q8);             measurement variance R changed (estimated on line)
- *   void     F_reset(F_t *f, int16_t z0_lsb);                     as if z0 had been read for ever; no warm-up
- *   bool     F_reset_step(F_t *f, int16_t z0_lsb, uint8_t step);  F_reset in parts that take no longer than an update:
- *            step 0, 1, 2 ... until it is false; no other call in between
- *   int32_t  F_update(F_t *f, int16_t z_lsb);                     one sample in, estimate (LSB, Q16) out; total, cannot
- *            fail
- *   int32_t  F_coast(F_t *f);                                     sample missing: prediction only
- *   void     F_gap(F_t *f);                                       samples begin to be missing, before the first
- *            F_coast: a rate that may be all noise is not believed
- *   void     F_damp(F_t *f);                                      the estimated rate of change halved: samples have
- *            been missing for a while
- *   void     F_hold(F_t *f);                                      before and after an update with a sample that tells
- *            no position, as one at the sensor's rail: it is used, but the filter does not restart on it
- *   void     F_restart(F_t *f);                                   warming up anew, parameters and what was learnt of
- *            the noise stay; the next call is F_update, until then the estimate means nothing
- *   uint8_t  F_flags(const F_t *f);                               FILTER_* of the last update or coast
- *   void     F_probe(const F_t *f, filter_probe_t *out);          gain, variance, innovation, gate of the last update
+ *   predict  x += v                    x: estimate, LSB; v: its change per sample
+ *   correct  u = z - x                 u: innovation of the sample z
+ *            x += w1 t, v += w2 t      the law answers (w1, w2, t) to u
  *
- * and F_worst_cycles: what F_update takes at most on an ATmega328P, for callers that must know whether it fits their
- * sample period; `make bench` of the project holds it to the measured worst case (never below, at most 10 % above).
+ * The tracker (filter.c) has all that the filters share: start, prediction, bounds, missing samples, reset, restart. A
+ * law is one constant descriptor in program memory: parameters, facts, and the functions that answer. Only the laws
+ * that a program names are linked.
  *
- * F_t is plain data without pointers: copy it, compare it, dump it. Nothing here does I/O, allocates, uses float or
- * blocks; every function may be called from main or from an interrupt, one caller at a time per F_t.
+ *   filter_config_t config = filter_defaults(&filter_law_sprf, 1000);
+ *   filter_t f;
+ *   if (filter_init(&f, &filter_law_sprf, &config) != FILTER_ACCEPTED) { ... }
+ *   int32_t x_lsb_q16 = filter_update(&f, sample);
+ *
+ * filter_t is plain data without pointers to RAM: copy it, compare it, dump it. Nothing here does I/O, allocates, uses
+ * float or blocks; every function may be called from main or from an interrupt, one caller at a time per filter_t.
  */
 #ifndef FILTER_H
 #define FILTER_H
@@ -38,6 +23,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#include "filter_state.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -50,7 +37,7 @@ extern "C" {
 /* Bound of the estimate, inductive over any sequence of calls: |x| <= FILTER_X_MAX_LSB. */
 #define FILTER_X_MAX_LSB 4608
 
-/* Legal ranges shared by the configurations of all filters: output data rate (0.1 Hz), measurement variance R. */
+/* Legal ranges that all laws share: output data rate (0.1 Hz), measurement variance R. */
 #define FILTER_RATE_MIN_DHZ 50U
 #define FILTER_RATE_MAX_DHZ 40000U
 #define FILTER_R_MIN_LSB2_Q8 3U
@@ -59,8 +46,11 @@ extern "C" {
 /* Samples that a filter collects after init before it runs; until then it puts out the running median. */
 #define FILTER_WARM_UP_SAMPLES 5
 
+/* After this long without a sample the estimate holds, ms; the rate of change is halved each 25 ms before that. */
+#define FILTER_HOLD_MS 100
+
 enum filter_flag {
-    FILTER_GATED = 0x01,      /* beyond the gate: refused, or by `soft` taken in part */
+    FILTER_GATED = 0x01,      /* beyond the gate: refused, or by `soft` and `adaptive` taken in part */
     FILTER_COASTED = 0x02,    /* no sample: the output is a prediction */
     FILTER_REACQUIRED = 0x04, /* the filter restarted on consistent refused samples */
     FILTER_SATURATED = 0x08,  /* a state was clamped to its bound */
@@ -68,44 +58,180 @@ enum filter_flag {
     FILTER_SWITCHED = 0x20    /* a filter made of several has chosen another of them (`auto`) */
 };
 
-/* A sample limited to the range that the bounds of all filters assume. */
-static inline int16_t filter_clamp_z(int16_t z_lsb)
-{
-    if (z_lsb > FILTER_Z_MAX_LSB) {
-        return FILTER_Z_MAX_LSB;
-    }
-    return (int16_t)((z_lsb < FILTER_Z_MIN_LSB) ? FILTER_Z_MIN_LSB : z_lsb);
-}
-
 /* Snapshot for telemetry and tests. */
 typedef struct {
     int32_t x_lsb_q16;          /* estimate */
-    int32_t rate_lsb_q16;       /* estimated change per sample; 0 while warming up and for filters without a rate */
-    int32_t innovation_lsb_q16; /* measurement minus prediction of the last update; 0 after a coast */
+    int32_t rate_lsb_q16;       /* estimated change per sample; 0 while warming up */
+    int32_t innovation_lsb_q16; /* measurement minus prediction of the last update; 0 after a missing sample */
     uint32_t p_lsb2_q8;         /* variance of the estimate after the last update */
     uint32_t gate_lsb2_q8;      /* limit of the squared innovation, saturated; UINT32_MAX: no gate */
-    uint16_t gain_uq16;         /* gain of the last update, 0 when refused or coasted */
+    uint16_t gain_uq16;         /* gain of the last update, 0 when refused or missing */
     uint8_t flags;              /* FILTER_* */
 } filter_probe_t;
 
-/* One parameter of a filter as a person sees it; lives in program memory (FX_FLASH in fx.h). */
+/* One parameter of a law as a person sees it; lives in program memory (FX_FLASH in fx.h). */
 typedef struct {
-    char name[10];          /* as typed in a command, e.g. "gate" */
-    char unit[8];           /* e.g. "sigma", "LSB2", "LSB2/s3" */
-    uint8_t offset;         /* of the field in F_config_t */
-    uint8_t size;           /* of the field: 2 or 4 bytes */
+    const char *words;      /* in program memory: the name as typed, "gate", its end, the unit: "sigma", "LSB2", "" */
     uint8_t fraction_bits;  /* binary point of the stored value */
     uint8_t zero_means_off; /* 1: 0 is legal and switches the feature off although below min */
-    uint8_t is_signed;      /* 1: the field is in two's complement */
-    int32_t min, max;       /* legal range of the stored value; a filter may refuse combinations within it */
+    int32_t min, max;       /* legal range of the stored value; a law may refuse combinations within it */
+    int32_t standard;       /* shipped value; where that depends on the rate the law has the rule */
 } filter_parameter_t;
 
-/* What F is; lives in program memory. Default values come from F_defaults, which knows the rate. */
+/* Most parameters that a law has. */
+#define FILTER_PARAMETERS_MAX 7
+
+/* Values of a law's parameters in the order of its descriptor, as stored: fixed point, signed. */
 typedef struct {
-    char name[12]; /* as typed in `filter NAME` */
-    uint8_t parameter_count;
-    const filter_parameter_t *parameters; /* in program memory too */
-} filter_descriptor_t;
+    uint16_t rate_dhz; /* output data rate, 0.1 Hz */
+    int32_t value[FILTER_PARAMETERS_MAX];
+} filter_config_t;
+
+/*
+ * Places of a law's parameters in filter_config_t.value: format and unit stand in the names, ranges and defaults in the
+ * descriptors (and in the library's README).
+ */
+enum filter_kf_parameter { KF_R_LSB2_Q8, KF_Q_LSB2_S3 };
+enum filter_lrf_parameter { LRF_R_LSB2_Q8, LRF_Q_LSB2_S3, LRF_CLEAN_UQ16, LRF_RATIO_UQ8 };
+enum filter_sprf_parameter {
+    SPRF_R_LSB2_Q8,
+    SPRF_Q_LSB2_S3,
+    SPRF_GATE_SIGMA_Q8,
+    SPRF_REACQUIRE_SAMPLES,
+    SPRF_RATE_MAX_LSB_S
+};
+enum filter_soft_parameter {
+    SOFT_R_LSB2_Q8,
+    SOFT_Q_LSB2_S3,
+    SOFT_SOFT_SIGMA_Q8,
+    SOFT_GATE_SIGMA_Q8,
+    SOFT_REACQUIRE_SAMPLES,
+    SOFT_RATE_MAX_LSB_S
+};
+enum filter_sprf_paper_parameter { SPRF_PAPER_R_LSB2_Q8, SPRF_PAPER_Q_LSB2_S3, SPRF_PAPER_GATE_SIGMA_Q8 };
+enum filter_mixture_parameter {
+    MIXTURE_R_LSB2_Q8,
+    MIXTURE_Q_LSB2_S3,
+    MIXTURE_RATIO_UQ8,
+    MIXTURE_CLEAN_UQ16
+}; /* pbf, shrf, af */
+enum filter_synth_parameter { SYNTH_A1_Q16, SYNTH_B0_UQ16, SYNTH_R_LSB2_Q8 };
+enum filter_synth_opt_parameter { SYNTH_OPT_VARIANT_U, SYNTH_OPT_P0_LSB2_Q8, SYNTH_OPT_R_LSB2_Q8 };
+enum filter_synth_plus_parameter {
+    SYNTH_PLUS_K,
+    SYNTH_PLUS_B0_UQ16,
+    SYNTH_PLUS_B1_Q16,
+    SYNTH_PLUS_B2_Q16,
+    SYNTH_PLUS_R_LSB2_Q8
+};
+enum filter_adaptive_parameter {
+    ADAPTIVE_GUARD_SIGMA_Q8,
+    ADAPTIVE_R_LSB2_Q8,
+    ADAPTIVE_IDENTIFY,
+    ADAPTIVE_SLOW_MS,
+    ADAPTIVE_FAST_MS,
+    ADAPTIVE_CONFIRM_MS,
+    ADAPTIVE_RATE_MAX_LSB_S
+};
+enum filter_kf3_parameter { KF3_R_LSB2_Q8, KF3_Q_LSB2_S5 };
+enum filter_auto_parameter {
+    AUTO_GATE_SIGMA_Q8,
+    AUTO_R_LSB2_Q8,
+    AUTO_SLOW_MS,
+    AUTO_MIDDLE_MS,
+    AUTO_FAST_MS,
+    AUTO_RATE_MAX_LSB_S
+};
+
+/* Why filter_init refuses a configuration: FILTER_REFUSED_FIRST + i for parameter i outside its range. */
+typedef uint8_t filter_answer_t;
+enum filter_answer {
+    FILTER_ACCEPTED = 0,
+    FILTER_REFUSED_RATE = 1, /* rate_dhz */
+    FILTER_REFUSED_TOGETHER =
+        2, /* each is in its range: a gap in it (reacquire: 3, 5, 9) or a condition over several */
+    FILTER_REFUSED_FIRST = 3
+};
+
+/* The shipped values of a law at an output data rate (FILTER_RATE_MIN_DHZ..MAX). */
+filter_config_t filter_defaults(const filter_law_t *law, uint16_t rate_dhz);
+
+/*
+ * A filter that begins to warm up, made of a configuration that is judged first: anything but FILTER_ACCEPTED says what
+ * is wrong, and f is untouched. Divides: up to 10,000 cycles.
+ */
+filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_config_t *config);
+
+/*
+ * The measurement variance R changed (estimated on line); limited to its legal range. Another parameter: filter_init,
+ * then filter_reset. Divides: up to 4,000 cycles.
+ */
+void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8);
+
+/* Running as if z0 had been read for ever; no warm-up. As long as 16 updates at most. */
+void filter_reset(filter_t *f, int16_t z0_lsb);
+
+/*
+ * One sample in, estimate (LSB, Q16) out: any int16, any history; cannot fail. A sample beyond FILTER_Z_MIN..MAX is
+ * clamped and flagged FILTER_SATURATED. Scaling: of x below, of the rest with each law.
+ *
+ *   z        Q0, clamped to -4096..4095 LSB
+ *   x        Q15.16; |x| <= 4608 LSB by a clamp after the prediction, and a correction moves it towards a sample within
+ *            4096 LSB; so |u| <= 8704 LSB < 2^30 / 2^16
+ *   rate     Q15.16, or Q7.24 where the law says so, limited to the configured ratemax, if the law has one
+ */
+int32_t filter_update(filter_t *f, int16_t z_lsb);
+
+/*
+ * No sample came, or one that tells nothing, as at the sensor's rail: a prediction. The rate of change is halved each
+ * 25 ms without a sample and after FILTER_HOLD_MS the estimate holds.
+ */
+int32_t filter_missing(filter_t *f);
+
+/*
+ * Warming up again; parameters and what was learnt of the noise stay. The estimate is the old one until the next call.
+ */
+void filter_restart(filter_t *f);
+
+/* Gain, variance, innovation and gate of the last update. Divides. */
+void filter_probe(const filter_t *f, filter_probe_t *out);
+
+/* Facts of a law, from its descriptor in program memory. */
+const char *filter_name(const filter_law_t *law); /* in program memory, as typed in `filter NAME` */
+uint8_t filter_parameter_count(const filter_law_t *law);
+const filter_parameter_t *filter_parameter(const filter_law_t *law, uint8_t index); /* in program memory */
+/* Its name; behind the name's end follows the unit. Both in program memory. */
+const char *filter_parameter_words(const filter_parameter_t *parameter);
+uint16_t filter_worst_cycles(const filter_law_t *law); /* of filter_update on an ATmega328P, at most */
+
+/* The parameter that is the measurement variance R: what laws that have it need not be told is estimated. */
+extern const filter_parameter_t filter_parameter_r;
+
+/* The value is 0 where that switches the feature off, or within min..max. */
+bool filter_in_range(const filter_parameter_t *parameter, int32_t value);
+
+/* Why filter_init would refuse this configuration. */
+filter_answer_t filter_judge(const filter_law_t *law, const filter_config_t *config);
+
+/* The laws, filter_law_NAME. What each is, with its parameters, equations and bounds, stands in its own file. */
+#define FILTER_LAWS(X) \
+    X(adaptive)        \
+    X(kf)              \
+    X(sprf)            \
+    X(synth)           \
+    X(lrf)             \
+    X(soft)            \
+    X(sprf_paper)      \
+    X(shrf)            \
+    X(pbf)             \
+    X(af)              \
+    X(synth_opt)       \
+    X(synth_plus)      \
+    X(kf3)             \
+    X(auto)
+#define FILTER_LAW(F) extern const filter_law_t filter_law_##F;
+FILTER_LAWS(FILTER_LAW)
+#undef FILTER_LAW
 
 #ifdef __cplusplus
 }

@@ -5,7 +5,7 @@
  * Node i: 65536 / (1 + i/128) - h^2/16 x second derivative, h = 1/128, so that the chord's error is centred on zero
  * (a chord of the convex 1/m lies up to h^2/8 x f'' above it); rounded to nearest, the first limited to 65535.
  */
-const uint16_t fx_reciprocal_nodes_uq16[129] FX_FLASH = {
+const uint16_t filter_fx_reciprocal_nodes_uq16[129] FX_FLASH = {
     65535, 65027, 64527, 64035, 63550, 63072, 62601, 62137, 61681, 61230, 60787, 60349, 59918, 59493, 59074,
     58661, 58254, 57852, 57456, 57065, 56679, 56299, 55924, 55553, 55188, 54827, 54471, 54120, 53773, 53430,
     53092, 52758, 52429, 52103, 51781, 51464, 51150, 50840, 50534, 50231, 49932, 49637, 49345, 49056, 48771,
@@ -17,7 +17,7 @@ const uint16_t fx_reciprocal_nodes_uq16[129] FX_FLASH = {
     33825, 33689, 33554, 33421, 33288, 33156, 33026, 32896, 32768,
 };
 
-uint16_t fx_isqrt32(uint32_t v)
+uint16_t filter_fx_isqrt32(uint32_t v)
 {
     uint32_t rest = v;
     uint32_t root = 0;
@@ -32,27 +32,27 @@ uint16_t fx_isqrt32(uint32_t v)
     return (uint16_t)root;
 }
 
-uint16_t fx_high_u16(uint16_t a, uint16_t b)
+uint16_t filter_fx_high_u16(uint16_t a, uint16_t b)
 {
     return (uint16_t)(fx_product_u16(a, b) >> 16);
 }
 
-uint32_t fx_times_uq16(uint32_t a, uint16_t b_uq16)
+uint32_t filter_fx_times_uq16(uint32_t a, uint16_t b_uq16)
 {
     return fx_mul_uq16(a, b_uq16);
 }
 
-uint32_t fx_shifted_right(uint32_t v, uint8_t places)
+uint32_t filter_fx_shifted_right(uint32_t v, uint8_t places)
 {
     return fx_shift_right(v, places);
 }
 
-uint16_t fx_inverse_uq16(uint32_t m_uq31)
+uint16_t filter_fx_inverse_uq16(uint32_t m_uq31)
 {
     return fx_reciprocal_leading_uq16(m_uq31);
 }
 
-fx_leading_t fx_leading(uint32_t v)
+fx_leading_t filter_fx_leading(uint32_t v)
 {
     if (v == 0U) {
         v = 1;
@@ -82,23 +82,23 @@ static fx_scaled_t normalised(uint32_t v, int8_t exponent)
     return rounded(v, (int8_t)(exponent - (int8_t)places));
 }
 
-fx_scaled_t fx_scaled(uint32_t v)
+fx_scaled_t filter_fx_scaled(uint32_t v)
 {
     return normalised((v == 0U) ? 1U : v, 0);
 }
 
-fx_scaled_t fx_scaled_mul(fx_scaled_t a, fx_scaled_t b)
+fx_scaled_t filter_fx_scaled_mul(fx_scaled_t a, fx_scaled_t b)
 {
     return normalised(fx_product_u16(a.mantissa, b.mantissa), (int8_t)(a.exponent + b.exponent));
 }
 
-fx_scaled_t fx_scaled_div(fx_scaled_t a, fx_scaled_t b)
+FX_ONCE fx_scaled_t filter_fx_scaled_div(fx_scaled_t a, fx_scaled_t b)
 {
     uint32_t quotient = ((uint32_t)a.mantissa << 16) / b.mantissa; /* 2^15 < quotient < 2^17 */
     return normalised(quotient, (int8_t)(a.exponent - b.exponent - 16));
 }
 
-uint32_t fx_scaled_fixed(fx_scaled_t a, uint8_t fraction_bits)
+uint32_t filter_fx_scaled_fixed(fx_scaled_t a, uint8_t fraction_bits)
 {
     int16_t shift = (int16_t)(a.exponent + (int16_t)fraction_bits);
     if (shift > 16) {

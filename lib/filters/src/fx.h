@@ -63,6 +63,7 @@ static inline const void *fx_flash_pointer(const void *p)
 {
     return pgm_read_ptr(p);
 }
+#define FX_FLASH_FUNCTION(place) ((__typeof__(*(place)))(uintptr_t)pgm_read_word(place))
 #else
 #define FX_FLASH
 static inline uint8_t fx_flash_u8(const uint8_t *p)
@@ -81,6 +82,7 @@ static inline const void *fx_flash_pointer(const void *p)
 {
     return *(const void *const *)p;
 }
+#define FX_FLASH_FUNCTION(place) (*(place))
 #endif
 
 /* |v|; INT32_MIN gives 2^31. */
@@ -139,24 +141,6 @@ static inline uint32_t fx_mul24_uq24_c(uint32_t a_q8, uint32_t b_uq24)
     uint32_t low = fx_mul_u16_c(a_low, b_low);
     return (fx_mul_u16_c(a_high, b_high) << 16) + fx_mul_u16_c(a_low, b_high) + fx_mul_u16_c(a_high, b_low) +
            (low >> 16) + ((low >> 15) & 1U);
-}
-
-/* v x b_uq16 rounded half away from zero, any v: the format of v is kept. */
-static inline int32_t fx_scale_uq16_c(int32_t v, uint16_t b_uq16)
-{
-    return (v < 0) ? -(int32_t)fx_mul_uq16_c(0U - (uint32_t)v, b_uq16) : (int32_t)fx_mul_uq16_c((uint32_t)v, b_uq16);
-}
-
-/* v + array[index], which must fit 32 bits; the index a constant 0..15. */
-static inline int32_t fx_plus_c(int32_t v, const int32_t *array, uint8_t index)
-{
-    return v + array[index];
-}
-
-/* v - array[index], which must fit 32 bits; the index a constant 0..15. */
-static inline int32_t fx_minus_c(int32_t v, const int32_t *array, uint8_t index)
-{
-    return v - array[index];
 }
 
 /* v x 2^12, exact. */
@@ -251,18 +235,6 @@ static inline uint32_t fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
 {
     return fx_mul24_uq24_c(a_q8, b_uq24);
 }
-static inline int32_t fx_scale_uq16(int32_t v, uint16_t b_uq16)
-{
-    return fx_scale_uq16_c(v, b_uq16);
-}
-static inline int32_t fx_plus(int32_t v, const int32_t *array, uint8_t index)
-{
-    return fx_plus_c(v, array, index);
-}
-static inline int32_t fx_minus(int32_t v, const int32_t *array, uint8_t index)
-{
-    return fx_minus_c(v, array, index);
-}
 static inline uint32_t fx_shift12(uint16_t v)
 {
     return fx_shift12_c(v);
@@ -306,7 +278,7 @@ static inline uint32_t fx_add_sat(uint32_t a, uint32_t b)
 }
 
 /* Nodes of the reciprocal, see fx.c; in program memory. */
-extern const uint16_t fx_reciprocal_nodes_uq16[129];
+extern const uint16_t filter_fx_reciprocal_nodes_uq16[129];
 
 /*
  * 1 / m in UQ0.16, at most 65535, for m = 1 + (interval + fraction / 2^16) / 128, interval < 128. Table of 129 nodes in
@@ -315,7 +287,7 @@ extern const uint16_t fx_reciprocal_nodes_uq16[129];
  */
 FX_INLINE uint16_t fx_inverse_m_uq16(uint8_t interval, uint16_t fraction)
 {
-    const uint16_t *node = &fx_reciprocal_nodes_uq16[interval];
+    const uint16_t *node = &filter_fx_reciprocal_nodes_uq16[interval];
     uint16_t left = fx_flash_u16(node);
     uint16_t drop = (uint16_t)(left - fx_flash_u16(node + 1));
     return (uint16_t)(left - fx_mul16_uq16(drop, fraction));
@@ -344,17 +316,17 @@ FX_INLINE uint16_t fx_reciprocal_uq16(uint32_t s_uq28)
 }
 
 /* floor(sqrt(v)), exact. About 700 cycles: configuration only. */
-FX_ONCE uint16_t fx_isqrt32(uint32_t v);
+uint16_t filter_fx_isqrt32(uint32_t v);
 
 /*
  * The products as functions, for code with many of them: a call costs 10 to 30 cycles, the code in line up to 150
  * bytes. In their order: the upper half of fx_mul_u16, rounded down; fx_mul_uq16.
  */
-FX_ONCE uint16_t fx_high_u16(uint16_t a, uint16_t b);
-FX_ONCE uint32_t fx_times_uq16(uint32_t a, uint16_t b_uq16);
+uint16_t filter_fx_high_u16(uint16_t a, uint16_t b);
+uint32_t filter_fx_times_uq16(uint32_t a, uint16_t b_uq16);
 
 /* fx_shift_right as a function. */
-FX_ONCE uint32_t fx_shifted_right(uint32_t v, uint8_t places);
+uint32_t filter_fx_shifted_right(uint32_t v, uint8_t places);
 
 /*
  * a x b, exact: fx_mul_u16 as a call of the compiler's library, 24 bytes less for each and a dozen cycles more. Written
@@ -366,14 +338,14 @@ FX_INLINE uint32_t fx_product_u16(uint16_t a, uint16_t b)
 }
 
 /* fx_reciprocal_leading_uq16 as a function; the low byte does not matter. */
-FX_ONCE uint16_t fx_inverse_uq16(uint32_t m_uq31);
+uint16_t filter_fx_inverse_uq16(uint32_t m_uq31);
 
 /*
  * A number's 24 leading bits, shifted left until the top bit of 32 is set, and in the low byte the places they were
  * shifted by: one word, because a structure would go through memory. 0 is taken as 1.
  */
 typedef uint32_t fx_leading_t;
-FX_ONCE fx_leading_t fx_leading(uint32_t v);
+fx_leading_t filter_fx_leading(uint32_t v);
 
 static inline uint8_t fx_places(fx_leading_t leading)
 {
@@ -393,14 +365,17 @@ typedef struct {
 } fx_scaled_t;
 
 /* v > 0 to 16 significant bits (error <= 2^-16 relative); 0 is taken as 1. */
-FX_ONCE fx_scaled_t fx_scaled(uint32_t v);
+fx_scaled_t filter_fx_scaled(uint32_t v);
 
-/* a x b and a / b, each with a relative error <= 2^-14. Exponents must stay within -100..100. fx_scaled_div divides. */
-FX_ONCE fx_scaled_t fx_scaled_mul(fx_scaled_t a, fx_scaled_t b);
-FX_ONCE fx_scaled_t fx_scaled_div(fx_scaled_t a, fx_scaled_t b);
+/*
+ * a x b and a / b, each with a relative error <= 2^-14. Exponents must stay within -100..100. filter_fx_scaled_div
+ * divides.
+ */
+fx_scaled_t filter_fx_scaled_mul(fx_scaled_t a, fx_scaled_t b);
+fx_scaled_t filter_fx_scaled_div(fx_scaled_t a, fx_scaled_t b);
 
 /* a in fixed point with so many fraction bits, rounded half up, saturated to UINT32_MAX. */
-FX_ONCE uint32_t fx_scaled_fixed(fx_scaled_t a, uint8_t fraction_bits);
+uint32_t filter_fx_scaled_fixed(fx_scaled_t a, uint8_t fraction_bits);
 
 #ifdef __cplusplus
 }

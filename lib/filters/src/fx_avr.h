@@ -103,61 +103,6 @@ FX_INLINE uint32_t fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
     return product;
 }
 
-/* Works on the magnitude, the sign waits in T; named registers, so that a function around it has nothing to save. */
-FX_INLINE int32_t fx_scale_uq16(int32_t v, uint16_t b_uq16)
-{
-    __asm__("bst %D[v],7\n\tbrtc 1f\n\t"
-            "com %D[v]\n\tcom %C[v]\n\tcom %B[v]\n\tneg %A[v]\n\t"
-            "sbci %B[v],0xFF\n\tsbci %C[v],0xFF\n\tsbci %D[v],0xFF\n"
-            "1:\tclr r30\n\t"
-            "mul %B[v],%B[b]\n\tmovw r18,r0\n\t"
-            "mul %D[v],%B[b]\n\tmovw r26,r0\n\t"
-            "mul %A[v],%A[b]\n\tmov r31,r1\n\t"
-            "mul %C[v],%A[b]\n\tadd r18,r0\n\tadc r19,r1\n\tadc r26,r30\n\tadc r27,r30\n\t"
-            "mul %D[v],%A[b]\n\tadd r19,r0\n\tadc r26,r1\n\tadc r27,r30\n\t"
-            "mul %C[v],%B[b]\n\tadd r19,r0\n\tadc r26,r1\n\tadc r27,r30\n\t"
-            "mul %B[v],%A[b]\n\tadd r31,r0\n\tadc r18,r1\n\tadc r19,r30\n\tadc r26,r30\n\tadc r27,r30\n\t"
-            "mul %A[v],%B[b]\n\tadd r31,r0\n\tadc r18,r1\n\tadc r19,r30\n\tadc r26,r30\n\tadc r27,r30\n\t"
-            "lsl r31\n\tadc r18,r30\n\tadc r19,r30\n\tadc r26,r30\n\tadc r27,r30\n\t"
-            "movw %A[v],r18\n\tmovw %C[v],r26\n\t"
-            "brtc 2f\n\t"
-            "com %D[v]\n\tcom %C[v]\n\tcom %B[v]\n\tneg %A[v]\n\t"
-            "sbci %B[v],0xFF\n\tsbci %C[v],0xFF\n\tsbci %D[v],0xFF\n"
-            "2:\tclr r1"
-            : [v] "+&d"(v)
-            : [b] "r"(b_uq16)
-            : "r18", "r19", "r26", "r27", "r30", "r31");
-    return v;
-}
-
-/*
- * Byte by byte from memory through one register: no registers to save. Memory is clobbered as a whole, because an
- * operand for it would take a second of the two pointers that -mstrict-X leaves.
- */
-FX_INLINE int32_t fx_plus(int32_t v, const int32_t *array, uint8_t index)
-{
-    __asm__("ldd __tmp_reg__,%a[p]+%[o]\n\tadd %A[v],__tmp_reg__\n\t"
-            "ldd __tmp_reg__,%a[p]+%[o]+1\n\tadc %B[v],__tmp_reg__\n\t"
-            "ldd __tmp_reg__,%a[p]+%[o]+2\n\tadc %C[v],__tmp_reg__\n\t"
-            "ldd __tmp_reg__,%a[p]+%[o]+3\n\tadc %D[v],__tmp_reg__"
-            : [v] "+&r"(v)
-            : [p] "b"(array), [o] "i"(4U * index)
-            : "memory");
-    return v;
-}
-
-FX_INLINE int32_t fx_minus(int32_t v, const int32_t *array, uint8_t index)
-{
-    __asm__("ldd __tmp_reg__,%a[p]+%[o]\n\tsub %A[v],__tmp_reg__\n\t"
-            "ldd __tmp_reg__,%a[p]+%[o]+1\n\tsbc %B[v],__tmp_reg__\n\t"
-            "ldd __tmp_reg__,%a[p]+%[o]+2\n\tsbc %C[v],__tmp_reg__\n\t"
-            "ldd __tmp_reg__,%a[p]+%[o]+3\n\tsbc %D[v],__tmp_reg__"
-            : [v] "+&r"(v)
-            : [p] "b"(array), [o] "i"(4U * index)
-            : "memory");
-    return v;
-}
-
 FX_INLINE uint32_t fx_shift12(uint16_t v)
 {
     uint32_t shifted;

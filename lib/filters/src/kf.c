@@ -1,91 +1,71 @@
-/* Two-state Kalman filter: the core of two_state.h without a gate. */
-#include "kf.h"
-
-static const filter_parameter_t parameters[] FX_FLASH = {
-    { "r", "LSB2", offsetof(kf_config_t, r_lsb2_q8), 4, 8, 0, 0, FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8 },
-    { "q", "LSB2/s3", offsetof(kf_config_t, q_lsb2_s3), 4, 0, 0, 0, TWO_STATE_Q_MIN_LSB2_S3, TWO_STATE_Q_MAX_LSB2_S3 },
-};
-
-const filter_descriptor_t kf_descriptor FX_FLASH = { "kf", sizeof parameters / sizeof parameters[0], parameters };
-
-void kf_defaults(kf_config_t *config, uint16_t rate_dhz)
-{
-    config->rate_dhz = rate_dhz;
-    config->r_lsb2_q8 = filter_default_r_lsb2_q8(rate_dhz);
-    config->q_lsb2_s3 = TWO_STATE_Q_DEFAULT_LSB2_S3;
-}
-
-void kf_configure(kf_t *f, const kf_config_t *config)
-{
-    two_state_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3, 0);
-}
-
-bool kf_init(kf_t *f, const kf_config_t *config)
-{
-    if (!two_state_legal(config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3)) {
-        return false;
-    }
-    kf_configure(f, config);
-    return true;
-}
-
-void kf_set_noise(kf_t *f, uint32_t r_lsb2_q8)
-{
-    two_state_set_noise(&f->core, r_lsb2_q8);
-}
-
-void kf_reset(kf_t *f, int16_t z0_lsb)
-{
-    (void)two_state_reset(&f->core, z0_lsb);
-}
-
-bool kf_reset_step(kf_t *f, int16_t z0_lsb, uint8_t step)
-{
-    return two_state_reset_step(&f->core, z0_lsb, step);
-}
-
 /*
- * Scaling: input any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB; formats, bounds and rounding
- * errors as two_state_step. Cost: docs/benchmarks.md.
+ * kf: two-state Kalman filter (position, rate), driven by white acceleration. Optimal for Gaussian noise; every outlier
+ * passes with the full gain: the yardstick for the robust laws. Parameters r, q. Equations and scaling: kalman.h.
+ *
+ * lrf: linear robust filter (Volovyk et al., paper 002 equation (31)): kf made for the mean variance of normal and
+ * outlying samples, R_L = R (N^2 - q1 (N^2 - 1)), with q1 the probability of a normal sample (clean) and N the sigma of
+ * an outlier over that of a normal one (ratio). P is in units of R_L, which is limited to 65,536 LSB^2 and within 2^-13
+ * of the formula. With ratio 1 it is kf.
  */
-int32_t kf_update(kf_t *f, int16_t z_lsb)
+#include "kalman.h"
+
+/* What binds first is the smallest q T^3 / R_L, 6e-8: with the default q and R above 550 Hz. */
+#define LRF_R_MAX_LSB2_Q8 0xFFFFFFU
+
+static const char clean_words[] FX_FLASH = "clean\0";
+static const filter_parameter_t clean FX_FLASH = { clean_words, 16, 0, 656, 65535, 55706 };
+static const char ratio_words[] FX_FLASH = "ratio\0";
+static const filter_parameter_t ratio FX_FLASH = { ratio_words, 8, 0, 256, 8192, 5120 };
+static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &filter_parameter_q, &clean,
+                                                                 &ratio };
+
+static void kf_set_up(filter_t *f, const filter_config_t *config)
 {
-    int16_t z = filter_clamp_z(z_lsb);
-    if (two_state_warming_up(&f->core)) {
-        two_state_warm_up(&f->core, z);
-    } else {
-        (void)two_state_step(&f->core, z, true);
-    }
-    return f->core.x_lsb_q16;
+    filter_kalman_set_up(f, config, 0);
 }
 
-int32_t kf_coast(kf_t *f)
+static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    return two_state_coast(&f->core);
+    (void)filter_kalman_step(f, z_lsb, what);
 }
 
-void kf_damp(kf_t *f)
+/* The factor is rounded to 2^-16. */
+static void lrf_set_up(filter_t *f, const filter_config_t *config)
 {
-    two_state_damp(&f->core);
+    uint16_t ratio_uq8 = (uint16_t)config->value[LRF_RATIO_UQ8];
+    uint32_t square_uq16 = fx_mul_u16(ratio_uq8, ratio_uq8);
+    f->own.kalman.of.factor_uq16 = square_uq16 -
+                                   filter_fx_times_uq16(square_uq16 - 65536U, (uint16_t)config->value[LRF_CLEAN_UQ16]);
+    filter_kalman_set_up(f, config, 0);
 }
 
-/* Takes every sample as it is: nothing to be held back. */
-void kf_hold(kf_t *f)
+static void lrf_set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
-    (void)f;
+    fx_scaled_t product = filter_fx_scaled_mul(filter_fx_scaled(r_lsb2_q8),
+                                               filter_fx_scaled(f->own.kalman.of.factor_uq16));
+    product.exponent = (int8_t)(product.exponent - 16);
+    uint32_t r_mixed_lsb2_q8 = filter_fx_scaled_fixed(product, 0);
+    filter_kalman_set_variance(f, (r_mixed_lsb2_q8 > LRF_R_MAX_LSB2_Q8) ? LRF_R_MAX_LSB2_Q8 : r_mixed_lsb2_q8);
 }
 
-void kf_restart(kf_t *f)
-{
-    two_state_restart(&f->core);
-}
+const filter_law_t filter_law_kf FX_FLASH = { .name = "kf",
+                                              .parameter_count = 2,
+                                              .traits = LAW_COVARIANCE | LAW_SETTLES,
+                                              .worst_cycles = 830,
+                                              .parameters = parameters,
+                                              .set_up = kf_set_up,
+                                              .set_noise = filter_kalman_set_variance,
+                                              .start = filter_kalman_start,
+                                              .step = step,
+                                              .report = LAW_REPORT(filter_kalman_report) };
 
-uint8_t kf_flags(const kf_t *f)
-{
-    return f->core.flags;
-}
-
-void kf_probe(const kf_t *f, filter_probe_t *out)
-{
-    two_state_probe(&f->core, out);
-}
+const filter_law_t filter_law_lrf FX_FLASH = { .name = "lrf",
+                                               .parameter_count = 4,
+                                               .traits = LAW_COVARIANCE | LAW_SETTLES,
+                                               .worst_cycles = 830,
+                                               .parameters = parameters,
+                                               .set_up = lrf_set_up,
+                                               .set_noise = lrf_set_noise,
+                                               .start = filter_kalman_start,
+                                               .step = step,
+                                               .report = LAW_REPORT(filter_kalman_report) };

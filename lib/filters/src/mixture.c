@@ -1,5 +1,23 @@
-/* Posterior probability of a normal sample, and the update by it: see mixture.h for the equations. */
+/*
+ * pbf, shrf, af: one law of paper 002 with three presets. A sample is normal (variance R) with probability q, else an
+ * outlier (variance N^2 R), and each counts by the probability p that it is normal, given those before (equations
+ * (10)-(13), (25)-(30) with (29) corrected):
+ *
+ *   t = u^2 / (R S); b = 1 - S / S_N, S_N = P11 + N^2
+ *   L = ln(q / (1 - q)) + 1/2 ln(S_N / S) - 1/2 b t;  p = 1 / (1 + e^-L)
+ *   pbf, af   loss = b (1 - p), back = loss (1 + p b t)     both states of the channel, moments matched (GPB1)
+ *   shrf      loss = 1 - p,     back = loss (1 + p t)       an outlier is not used at all
+ *
+ * with loss and back of wide.h. af learns q: q += (p - q) / n, n = 3, 4 .. 1024; reset forgets it, restart does not.
+ * Nothing is refused for ever: an outlier moves the estimate of pbf a little, and P by as much as the sample is
+ * surprising; where P is at the end of its range (32,768 R) and the sample is still an outlier beyond doubt shrf
+ * restarts from it (FILTER_REACQUIRED). FILTER_GATED means that the sample is more likely an outlier than not; its gain
+ * is small, with shrf perhaps 0. Parameters r, q, ratio (N), clean (q: at least one half, or a sample on the prediction
+ * would count as an outlier; what af begins with).
+ */
 #include "mixture.h"
+
+#include "wide.h"
 
 #define ONE_UQ16 0x10000U
 #define ONE_UQ24 0x1000000U
@@ -8,14 +26,15 @@
 #define LEARNT_FROM_START 2U
 #define LEARNT_FROM_MAX 1024U
 
-const filter_parameter_t mixture_parameters[MIXTURE_PARAMETERS] FX_FLASH = {
-    { "r", "LSB2", offsetof(mixture_config_t, r_lsb2_q8), 4, 8, 0, 0, FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8 },
-    { "q", "LSB2/s3", offsetof(mixture_config_t, q_lsb2_s3), 4, 0, 0, 0, TWO_STATE_Q_MIN_LSB2_S3,
-      TWO_STATE_Q_MAX_LSB2_S3 },
-    { "ratio", "", offsetof(mixture_config_t, ratio_uq8), 2, 8, 0, 0, MIXTURE_RATIO_MIN_Q8, MIXTURE_RATIO_MAX_Q8 },
-    { "clean", "", offsetof(mixture_config_t, clean_uq16), 2, 16, 0, 0, MIXTURE_CLEAN_MIN_UQ16,
-      MIXTURE_CLEAN_MAX_UQ16 },
-};
+#define CLEAN_MIN_UQ16 32768
+#define CLEAN_MAX_UQ16 65470
+
+static const char ratio_words[] FX_FLASH = "ratio\0";
+static const filter_parameter_t ratio FX_FLASH = { ratio_words, 8, 0, 512, 25600, 5120 };
+static const char clean_words[] FX_FLASH = "clean\0";
+static const filter_parameter_t clean FX_FLASH = { clean_words, 16, 0, CLEAN_MIN_UQ16, CLEAN_MAX_UQ16, 55706 };
+static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &filter_parameter_q, &ratio,
+                                                                 &clean };
 
 /* Node i: 1 / (1 + e^(i/2)) less h^2/16 x second derivative, h = 1/2: half of how far the chord is above the curve. */
 static const uint32_t rest_nodes_uq24[25] FX_FLASH = {
@@ -25,15 +44,6 @@ static const uint32_t rest_nodes_uq24[25] FX_FLASH = {
 
 /* Node i: log2(1 + i/8) - i/8. */
 static const uint8_t log2_nodes_uq11[9] FX_FLASH = { 0, 92, 147, 173, 174, 155, 117, 65, 0 };
-
-void mixture_defaults(mixture_config_t *config, uint16_t rate_dhz)
-{
-    config->rate_dhz = rate_dhz;
-    config->r_lsb2_q8 = filter_default_r_lsb2_q8(rate_dhz);
-    config->q_lsb2_s3 = TWO_STATE_Q_DEFAULT_LSB2_S3;
-    config->ratio_uq8 = MIXTURE_RATIO_DEFAULT_Q8;
-    config->clean_uq16 = MIXTURE_CLEAN_DEFAULT_UQ16;
-}
 
 /* log2 of a number by its leading bits, plus a constant that differences lose. */
 static uint16_t log2_uq9(fx_leading_t v)
@@ -49,21 +59,21 @@ static uint16_t log2_uq9(fx_leading_t v)
     return (uint16_t)(whole_uq9 + linear_uq9 + ((uint16_t)(bow_uq16 + 64U) >> 7));
 }
 
-int16_t mixture_log_odds_q9(uint32_t q_uq24)
+int16_t filter_mixture_log_odds_q9(uint32_t q_uq24)
 {
-    uint16_t normal = log2_uq9(fx_leading(q_uq24));
-    uint16_t outlier = log2_uq9(fx_leading(ONE_UQ24 - q_uq24));
+    uint16_t normal = log2_uq9(filter_fx_leading(q_uq24));
+    uint16_t outlier = log2_uq9(filter_fx_leading(ONE_UQ24 - q_uq24));
     if (normal >= outlier) {
         uint16_t above_uq9 = (uint16_t)(normal - outlier);
         /*@ assert above_uq9 <= 16480; */ /* for make proof: the larger less the smaller, in the bound of both */
-        return (int16_t)fx_high_u16(above_uq9, LN2_UQ16);
+        return (int16_t)filter_fx_high_u16(above_uq9, LN2_UQ16);
     }
     uint16_t below_uq9 = (uint16_t)(outlier - normal);
     /*@ assert below_uq9 <= 16480; */
-    return (int16_t)(0 - (int16_t)fx_high_u16(below_uq9, LN2_UQ16));
+    return (int16_t)(0 - (int16_t)filter_fx_high_u16(below_uq9, LN2_UQ16));
 }
 
-mixture_posterior_t mixture_posterior(int16_t log_odds_q9)
+mixture_posterior_t filter_mixture_posterior(int16_t log_odds_q9)
 {
     mixture_posterior_t posterior = { 0, log_odds_q9 < 0 };
     uint16_t size_uq9 = (uint16_t)((log_odds_q9 < 0) ? 0 - log_odds_q9 : log_odds_q9);
@@ -71,81 +81,71 @@ mixture_posterior_t mixture_posterior(int16_t log_odds_q9)
         const uint32_t *node = &rest_nodes_uq24[size_uq9 >> 8];
         uint32_t left = fx_flash_u32(node);
         uint16_t right_uq16 = (uint16_t)(size_uq9 << 8);
-        posterior.rest_uq24 = left - fx_times_uq16(left - fx_flash_u32(node + 1), right_uq16);
+        posterior.rest_uq24 = left - filter_fx_times_uq16(left - fx_flash_u32(node + 1), right_uq16);
     }
     return posterior;
 }
 
-static bool legal(const mixture_config_t *config)
+/* q as configured; what was learnt is forgotten. */
+static void forget(filter_mixture_t *m)
 {
-    return two_state_legal(config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3) &&
-           (uint16_t)(config->ratio_uq8 - MIXTURE_RATIO_MIN_Q8) <= MIXTURE_RATIO_MAX_Q8 - MIXTURE_RATIO_MIN_Q8 &&
-           (uint16_t)(config->clean_uq16 - MIXTURE_CLEAN_MIN_UQ16) <=
-               MIXTURE_CLEAN_MAX_UQ16 - MIXTURE_CLEAN_MIN_UQ16; /* below the range is above it, modulo 2^16 */
-}
-
-static void forget(mixture_t *f)
-{
-    f->learnt_uq24 = (uint32_t)f->clean_uq16 << 8;
-    f->log_odds_q9 = mixture_log_odds_q9(f->learnt_uq24);
-    if (f->learnt_from != 0U) {
-        f->learnt_from = LEARNT_FROM_START;
+    m->learnt_uq24 = (uint32_t)m->clean_uq16 << 8;
+    m->log_odds_q9 = filter_mixture_log_odds_q9(m->learnt_uq24);
+    if (m->learnt_from != 0U) {
+        m->learnt_from = LEARNT_FROM_START;
     }
 }
 
-void mixture_configure(mixture_t *f, const mixture_config_t *config, bool learning)
+static void set_up(filter_t *f, const filter_config_t *config)
 {
-    two_state_wide_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3);
-    f->span_uq16 = fx_mul_u16(config->ratio_uq8, config->ratio_uq8) - ONE_UQ16;
-    f->span = fx_leading(f->span_uq16);
-    f->clean_uq16 = config->clean_uq16;
-    f->learnt_from = learning ? LEARNT_FROM_START : 0U;
-    forget(f);
+    filter_mixture_t *m = &f->own.mixture;
+    uint16_t ratio_uq8 = (uint16_t)config->value[MIXTURE_RATIO_UQ8];
+    m->span_uq16 = fx_mul_u16(ratio_uq8, ratio_uq8) - ONE_UQ16;
+    m->clean_uq16 = (uint16_t)config->value[MIXTURE_CLEAN_UQ16];
+    forget(m);
+    filter_wide_set_up(f, config);
 }
 
-bool mixture_init(mixture_t *f, const mixture_config_t *config, bool learning)
+static void af_set_up(filter_t *f, const filter_config_t *config)
 {
-    if (!legal(config)) {
-        return false;
+    f->own.mixture.learnt_from = LEARNT_FROM_START;
+    set_up(f, config);
+}
+
+/* af has no opinion before its first sample: one half. */
+static void af_standard(filter_config_t *config)
+{
+    config->value[MIXTURE_CLEAN_UQ16] = CLEAN_MIN_UQ16;
+}
+
+static void start(filter_t *f, bool settled)
+{
+    if (settled) {
+        forget(&f->own.mixture);
     }
-    mixture_configure(f, config, learning);
-    return true;
-}
-
-void mixture_reset(mixture_t *f, int16_t z0_lsb)
-{
-    forget(f);
-    two_state_wide_reset(&f->core, z0_lsb);
-}
-
-bool mixture_reset_step(mixture_t *f, int16_t z0_lsb, uint8_t step)
-{
-    if (step == 0U) {
-        forget(f);
-    }
-    return two_state_wide_reset_step(&f->core, z0_lsb, step);
+    filter_wide_start(f, settled);
 }
 
 /* p into the mean of those before: q += (p - q) / n. */
-static void learn(mixture_t *f, mixture_posterior_t posterior)
+static void learn(filter_mixture_t *m, mixture_posterior_t posterior)
 {
-    if (f->learnt_from < LEARNT_FROM_MAX) {
-        f->learnt_from++;
+    if (m->learnt_from < LEARNT_FROM_MAX) {
+        m->learnt_from++;
     }
-    fx_leading_t n = fx_leading(f->learnt_from); /* 1..2 x 2^(31 - places) */
+    fx_leading_t n = filter_fx_leading(m->learnt_from); /* 1..2 x 2^(31 - places) */
     uint32_t p = posterior.outlier ? posterior.rest_uq24 : ONE_UQ24 - posterior.rest_uq24;
-    uint32_t q = f->learnt_uq24;
+    uint32_t q = m->learnt_uq24;
     bool rises = p >= q;
-    uint32_t part = fx_shifted_right(fx_times_uq16(rises ? p - q : q - p, fx_inverse_uq16(n)),
-                                     (uint8_t)(31U - fx_places(n)));
+    uint32_t part = filter_fx_shifted_right(filter_fx_times_uq16(rises ? p - q : q - p, filter_fx_inverse_uq16(n)),
+                                            (uint8_t)(31U - fx_places(n)));
     q = rises ? q + part : q - part; /* a mean of p and q: within 0..1 */
     if (q < MIXTURE_LEARNT_MARGIN_UQ24) {
         q = MIXTURE_LEARNT_MARGIN_UQ24;
     } else if (q > ONE_UQ24 - MIXTURE_LEARNT_MARGIN_UQ24) {
         q = ONE_UQ24 - MIXTURE_LEARNT_MARGIN_UQ24;
     }
-    f->learnt_uq24 = q;
-    f->log_odds_q9 = mixture_log_odds_q9(q);
+    m->learnt_uq24 = q;
+    m->log_odds_q9 = filter_mixture_log_odds_q9(q);
 }
 
 /* What a sample's distance says about it. */
@@ -156,71 +156,110 @@ typedef struct {
     mixture_posterior_t p;
 } evidence_t;
 
-static evidence_t weigh(const mixture_t *f)
+static evidence_t weigh(const filter_t *f)
 {
+    const filter_mixture_t *m = &f->own.mixture;
     evidence_t e;
-    fx_leading_t outlier = fx_leading(f->core.u.p.p11_uq16 + ONE_UQ16 + f->span_uq16); /* S_N < 33,033 + 10,000 */
+    fx_leading_t span = filter_fx_leading(m->span_uq16);
+    fx_leading_t outlier = filter_fx_leading(m->core.p.p11 + ONE_UQ16 + m->span_uq16); /* S_N < 33,033 + 10,000 */
     /* (N^2 - 1) / S_N < 1: its leading bits are at most those of S_N, and the quotient of mantissas less than 2 */
-    uint16_t share_uq15 = fx_high_u16(fx_mantissa(f->span), fx_inverse_uq16(outlier));
-    uint32_t share_uq16 = fx_shifted_right((uint32_t)share_uq15 << 1,
-                                           (uint8_t)(fx_places(f->span) - fx_places(outlier)));
+    uint16_t share_uq15 = filter_fx_high_u16(fx_mantissa(span), filter_fx_inverse_uq16(outlier));
+    uint32_t share_uq16 = filter_fx_shifted_right((uint32_t)share_uq15 << 1,
+                                                  (uint8_t)(fx_places(span) - fx_places(outlier)));
     e.b_uq16 = (share_uq16 > UINT16_MAX) ? UINT16_MAX : (uint16_t)share_uq16;
-    e.t_uq8 = two_state_wide_distance_uq8(&f->core);
-    e.tb_uq8 = fx_high_u16(e.t_uq8, e.b_uq16);
+    e.t_uq8 = filter_wide_distance_uq8(f);
+    e.tb_uq8 = filter_fx_high_u16(e.t_uq8, e.b_uq16);
     /* half of tb in Q9 has the number of tb in Q8 */
     uint16_t half_uq9 = (e.tb_uq8 > 0x4000U) ? 0x4000U : e.tb_uq8;
-    uint16_t spread_uq9 = fx_high_u16((uint16_t)(log2_uq9(outlier) - log2_uq9(f->core.variance)), HALF_LN2_UQ16);
+    uint16_t spread_uq9 = filter_fx_high_u16((uint16_t)(log2_uq9(outlier) - log2_uq9(m->core.variance)), HALF_LN2_UQ16);
     /*@ assert spread_uq9 <= 5712; */ /* for make proof: S <= S_N, log2 in UQ.9 < 16480 */
-    e.p = mixture_posterior((int16_t)(f->log_odds_q9 + (int16_t)spread_uq9 - (int16_t)half_uq9));
+    e.p = filter_mixture_posterior((int16_t)(m->log_odds_q9 + (int16_t)spread_uq9 - (int16_t)half_uq9));
     return e;
 }
 
 /* The update by p; false: an outlier beyond doubt that the rule does not use. */
-static bool apply(mixture_t *f, const evidence_t *e, mixture_rule_t rule)
+static bool apply(filter_t *f, const evidence_t *e, bool shortened)
 {
     bool certain = e->p.rest_uq24 == 0U;
     uint16_t loss_uq16 = (uint16_t)((e->p.rest_uq24 + 128U) >> 8); /* 1 - p */
     uint32_t p_uq24 = ONE_UQ24 - e->p.rest_uq24;
     if (e->p.outlier) {
-        if (certain && rule == MIXTURE_SHORTENED) {
+        if (certain && shortened) {
             return false;
         }
         p_uq24 = e->p.rest_uq24;
         loss_uq16 = (loss_uq16 == 0U) ? UINT16_MAX : (uint16_t)(0U - loss_uq16);
     }
     uint16_t t_uq8 = e->t_uq8;
-    if (rule == MIXTURE_BAYES) {
+    if (!shortened) {
         t_uq8 = e->tb_uq8;
-        loss_uq16 = (certain && e->p.outlier) ? e->b_uq16 : fx_high_u16(e->b_uq16, loss_uq16);
+        loss_uq16 = (certain && e->p.outlier) ? e->b_uq16 : filter_fx_high_u16(e->b_uq16, loss_uq16);
     }
-    uint32_t back_uq16 = fx_times_uq16(fx_times_uq16(p_uq24, t_uq8), loss_uq16) + loss_uq16;
-    two_state_wide_update(&f->core, loss_uq16,
-                          (back_uq16 > TWO_STATE_WIDE_BACK_MAX_UQ16) ? TWO_STATE_WIDE_BACK_MAX_UQ16 : back_uq16);
+    uint32_t back_uq16 = filter_fx_times_uq16(filter_fx_times_uq16(p_uq24, t_uq8), loss_uq16) + loss_uq16;
+    filter_wide_correct(f, loss_uq16, (back_uq16 > WIDE_BACK_MAX_UQ16) ? WIDE_BACK_MAX_UQ16 : back_uq16);
     return true;
 }
 
-/* One sample of a filter that runs. */
-static void step(mixture_t *f, int16_t z_lsb, mixture_rule_t rule)
+static void mixed(filter_t *f, int16_t z_lsb, uint8_t what, bool shortened)
 {
-    bool grows = two_state_wide_predict(&f->core, z_lsb);
-    evidence_t e = weigh(f);
-    if (f->learnt_from != 0U) {
-        learn(f, e.p);
+    bool grows = filter_wide_predict(f, z_lsb);
+    if (what == STEP_SETTLE) {
+        filter_wide_correct(f, 0, 0);
     }
-    if (!apply(f, &e, rule)) {
-        two_state_wide_refuse(&f->core, grows);
+    if (what != STEP_SAMPLE) {
+        return;
+    }
+    evidence_t e = weigh(f);
+    if (f->own.mixture.learnt_from != 0U) {
+        learn(&f->own.mixture, e.p);
+    }
+    if (!apply(f, &e, shortened)) {
+        filter_wide_refuse(f, grows);
     } else if (e.p.outlier) {
-        f->core.flags |= FILTER_GATED;
+        f->flags |= FILTER_GATED;
     }
 }
 
-int32_t mixture_update(mixture_t *f, int16_t z_lsb, mixture_rule_t rule)
+static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    int16_t z = filter_clamp_z(z_lsb);
-    if (two_state_wide_warming_up(&f->core)) {
-        two_state_wide_warm_up(&f->core, z);
-    } else {
-        step(f, z, rule);
-    }
-    return f->core.x_lsb_q16;
+    mixed(f, z_lsb, what, false);
 }
+
+static void shortened_step(filter_t *f, int16_t z_lsb, uint8_t what)
+{
+    mixed(f, z_lsb, what, true);
+}
+
+const filter_law_t filter_law_pbf FX_FLASH = { .name = "pbf",
+                                               .parameter_count = 4,
+                                               .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
+                                               .worst_cycles = 3650,
+                                               .parameters = parameters,
+                                               .set_up = set_up,
+                                               .set_noise = filter_wide_set_noise,
+                                               .start = start,
+                                               .step = step,
+                                               .report = LAW_REPORT(filter_wide_report) };
+
+const filter_law_t filter_law_shrf FX_FLASH = { .name = "shrf",
+                                                .parameter_count = 4,
+                                                .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
+                                                .worst_cycles = 3650,
+                                                .parameters = parameters,
+                                                .set_up = set_up,
+                                                .set_noise = filter_wide_set_noise,
+                                                .start = start,
+                                                .step = shortened_step,
+                                                .report = LAW_REPORT(filter_wide_report) };
+
+const filter_law_t filter_law_af FX_FLASH = { .name = "af",
+                                              .parameter_count = 4,
+                                              .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
+                                              .worst_cycles = 4350,
+                                              .parameters = parameters,
+                                              .standard = af_standard,
+                                              .set_up = af_set_up,
+                                              .set_noise = filter_wide_set_noise,
+                                              .start = start,
+                                              .step = step,
+                                              .report = LAW_REPORT(filter_wide_report) };

@@ -1,8 +1,8 @@
 /* Winsorised variance of the smaller of two second differences; see noise.h. */
 #include "noise.h"
 
-#include "filter_common.h"
 #include "fx.h"
+#include "tracker.h"
 
 /*
  * With a, b independent standard normal and m = min(a^2, b^2), the factor w solves w = E min(m, c w): a second
@@ -26,23 +26,23 @@
 #define MEAN_MAX_LSB2_Q16 43690667U
 
 /* 1.5 times a variance in Q16, as Q8. */
-FX_NOINLINE uint32_t r_of(uint32_t mean_lsb2_q16)
+static uint32_t r_of(uint32_t mean_lsb2_q16)
 {
     return (mean_lsb2_q16 + (mean_lsb2_q16 >> 1) + 128U) >> 8;
 }
 
-void noise_init(noise_t *n, uint16_t rate_dhz, bool noisy_axis)
+void filter_noise_init(noise_t *n, uint16_t rate_dhz, bool noisy_axis)
 {
     /* 0.02 LSB^2 / Hz in Q16 per 0.1 Hz: 131.07; times 1.7 */
     uint16_t each_q16 = noisy_axis ? 223U : 131U;
-    filter_zero(n, sizeof *n);
+    filter_tracker_clear(n, sizeof *n);
     n->floor_lsb2_q16 = (uint32_t)rate_dhz * each_q16;
     n->mean_lsb2_q16 = n->floor_lsb2_q16;
     n->r_lsb2_q8 = r_of(n->floor_lsb2_q16);
     n->spaced = rate_dhz >= SPACED_MIN_DHZ;
 }
 
-void noise_gap(noise_t *n)
+void filter_noise_gap(noise_t *n)
 {
     n->filled = 0;
 }
@@ -132,9 +132,9 @@ static void remember(noise_t *n, int16_t z_lsb)
     at[0] = z_lsb;
 }
 
-bool noise_update(noise_t *n, int16_t z_lsb)
+bool filter_noise_update(noise_t *n, int16_t z_lsb)
 {
-    int16_t z = filter_limited_z(z_lsb);
+    int16_t z = filter_tracker_limited_z(z_lsb);
     bool changed = false;
     if (n->filled < HISTORY) {
         n->filled++;
@@ -146,7 +146,7 @@ bool noise_update(noise_t *n, int16_t z_lsb)
     return changed;
 }
 
-uint32_t noise_r_lsb2_q8(const noise_t *n)
+uint32_t filter_noise_r_lsb2_q8(const noise_t *n)
 {
     return n->r_lsb2_q8;
 }

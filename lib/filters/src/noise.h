@@ -33,16 +33,16 @@ typedef struct {
 /*
  * Start at the floor for this output data rate (0.1 Hz); noisy_axis: the z axis of the ADXL345, 1.7 times the variance.
  */
-void noise_init(noise_t *n, uint16_t rate_dhz, bool noisy_axis);
+void filter_noise_init(noise_t *n, uint16_t rate_dhz, bool noisy_axis);
 
 /* Forget the differences across a gap, keep the estimate. */
-void noise_gap(noise_t *n);
+void filter_noise_gap(noise_t *n);
 
 /* One raw sample in. True when the R to use has changed enough to be worth passing on to the filter. */
-bool noise_update(noise_t *n, int16_t z_lsb);
+bool filter_noise_update(noise_t *n, int16_t z_lsb);
 
 /* R to use now, LSB^2 in Q8. */
-uint32_t noise_r_lsb2_q8(const noise_t *n);
+uint32_t filter_noise_r_lsb2_q8(const noise_t *n);
 
 #ifdef __cplusplus
 }

@@ -1,90 +1,67 @@
-/* Kalman filter with a soft gate and consistency re-acquisition around the core of two_state.h. */
-#include "soft.h"
+/*
+ * soft: kf that trusts a sample the less the further off it is, and no sample not at all.
+ *
+ * The update takes S_eff = max(S, u^2 / softgate^2) for the variance S of the innovation u (Chang 2014, scaled
+ * innovation variance): within softgate sigmas it is kf bit for bit, beyond them its step falls with 1 / |u| but is
+ * never zero, so it cannot be locked out even without re-acquisition. Samples beyond `gate` sigmas that agree among
+ * themselves re-acquire as in sprf. Parameters r, q, softgate, gate, reacquire, ratemax; softgate 0: kf, gate 0: none.
+ *
+ * FILTER_GATED means that the sample lies beyond the gate (as far out as sprf with that gate would refuse it) and
+ * beyond softgate: it was taken in part only, so unlike in sprf the gain is not 0. gate_lsb2_q8 of the probe is the
+ * limit of the squared innovation above which the weight falls, softgate^2 S.
+ *
+ * Scaling: within the soft gate as kalman.h. Beyond it
+ *   m        UQ0.20, of u rounded down to 2^-8 LSB and gate_lsb2_uq4 (softgate^2 R, 1/16 LSB^2), within 2^-18
+ *   w1, w2   UQ0.24, <= 1, from P11 and P12 in UQ4.20; P11 and P12 times 1 - w1 - 2^-16 rounded to 2^-28, so they fall;
+ *            P22 less P12 w2 (w2 rounded down to 2^-16), not below 0
+ *   steps    of x rounded up, of the rate down to 2^-16; both below |u| + 2^-16 LSB (x: w1 < 8/9), so x stays between
+ *            prediction and sample and the bounds of kalman.h hold
+ *   gate     where S / S_eff is (softgate / gate)^2 within 2^-15
+ */
+#include "kalman.h"
 
-#define SOFT_DEFAULT_SIGMA_Q8 512U
-
-static const filter_parameter_t parameters[] FX_FLASH = {
-    { "r", "LSB2", offsetof(soft_config_t, r_lsb2_q8), 4, 8, 0, 0, FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8 },
-    { "q", "LSB2/s3", offsetof(soft_config_t, q_lsb2_s3), 4, 0, 0, 0, TWO_STATE_Q_MIN_LSB2_S3,
-      TWO_STATE_Q_MAX_LSB2_S3 },
-    { "softgate", "sigma", offsetof(soft_config_t, soft_sigma_q8), 2, 8, 1, 0, TWO_STATE_GATE_MIN_SIGMA_Q8,
-      TWO_STATE_GATE_MAX_SIGMA_Q8 },
-    { "gate", "sigma", offsetof(soft_config_t, gate_sigma_q8), 2, 8, 1, 0, TWO_STATE_GATE_MIN_SIGMA_Q8,
-      TWO_STATE_GATE_MAX_SIGMA_Q8 },
-    { "reacquire", "samples", offsetof(soft_config_t, reacquire_samples), 2, 0, 1, 0, REACQUIRE_SAMPLES_MIN,
-      REACQUIRE_SAMPLES_MAX },
-    { "ratemax", "LSB/s", offsetof(soft_config_t, rate_max_lsb_s), 4, 0, 0, 0, REACQUIRE_RATE_MAX_MIN_LSB_S,
-      REACQUIRE_RATE_MAX_MAX_LSB_S },
+static const char softgate_words[] FX_FLASH = "softgate\0sigma";
+static const filter_parameter_t softgate FX_FLASH = { softgate_words,           8,  1, KALMAN_GATE_MIN_SIGMA_Q8,
+                                                      KALMAN_GATE_MAX_SIGMA_Q8, 512 };
+static const filter_parameter_t *const parameters[] FX_FLASH = {
+    &filter_parameter_r,    &filter_parameter_q,         &softgate,
+    &filter_parameter_gate, &filter_parameter_reacquire, &filter_parameter_ratemax
 };
 
-const filter_descriptor_t soft_descriptor FX_FLASH = { "soft", sizeof parameters / sizeof parameters[0], parameters };
-
-void soft_defaults(soft_config_t *config, uint16_t rate_dhz)
+static bool together(const filter_config_t *config)
 {
-    config->rate_dhz = rate_dhz;
-    config->r_lsb2_q8 = filter_default_r_lsb2_q8(rate_dhz);
-    config->q_lsb2_s3 = TWO_STATE_Q_DEFAULT_LSB2_S3;
-    config->soft_sigma_q8 = SOFT_DEFAULT_SIGMA_Q8;
-    config->gate_sigma_q8 = TWO_STATE_GATE_DEFAULT_SIGMA_Q8;
-    config->reacquire_samples = REACQUIRE_SAMPLES_DEFAULT;
-    config->rate_max_lsb_s = REACQUIRE_RATE_MAX_DEFAULT_LSB_S;
+    return filter_kalman_run_legal(config->value[SOFT_REACQUIRE_SAMPLES]);
 }
 
 /*
  * (softgate / gate)^2, at most 65535 / 65536, so that with a gate inside the soft gate all that lies beyond the latter
  * is flagged; 0 without a gate: nothing is.
  */
-static uint16_t flagged_share_uq16(uint16_t soft_sigma_q8, uint16_t gate_sigma_q8)
+static uint16_t flagged_share_uq16(int32_t soft_sigma_q8, int32_t gate_sigma_q8)
 {
-    if (gate_sigma_q8 == 0U) {
+    if (gate_sigma_q8 == 0) {
         return 0;
     }
-    fx_scaled_t ratio = fx_scaled_div(fx_scaled(soft_sigma_q8), fx_scaled(gate_sigma_q8));
-    uint32_t share = fx_scaled_fixed(fx_scaled_mul(ratio, ratio), 16);
+    fx_scaled_t ratio = filter_fx_scaled_div(filter_fx_scaled((uint32_t)soft_sigma_q8),
+                                             filter_fx_scaled((uint32_t)gate_sigma_q8));
+    uint32_t share = filter_fx_scaled_fixed(filter_fx_scaled_mul(ratio, ratio), 16);
     return (share > 0xFFFFU) ? 0xFFFFU : (uint16_t)share;
 }
 
-void soft_configure(soft_t *f, const soft_config_t *config)
+static void set_up(filter_t *f, const filter_config_t *config)
 {
-    two_state_init(&f->core, config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3, config->rate_max_lsb_s);
-    reacquire_init(&f->again, config->reacquire_samples);
-    f->soft_sigma_q8 = config->soft_sigma_q8;
-    f->share_uq16 = flagged_share_uq16(config->soft_sigma_q8, config->gate_sigma_q8);
-    soft_set_noise(f, config->r_lsb2_q8);
+    int32_t samples = config->value[SOFT_REACQUIRE_SAMPLES];
+    f->own.kalman.of.gated.gate_sigma_q8 = (uint16_t)config->value[SOFT_SOFT_SIGMA_Q8];
+    f->own.kalman.of.gated.share_uq16 = flagged_share_uq16(config->value[SOFT_SOFT_SIGMA_Q8],
+                                                           config->value[SOFT_GATE_SIGMA_Q8]);
+    f->own.kalman.steps = (uint8_t)((samples == 0) ? 0 : samples - 1);
+    filter_kalman_set_up(f, config, (uint32_t)config->value[SOFT_RATE_MAX_LSB_S]);
 }
 
-bool soft_together(const soft_config_t *config)
+static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
-    return reacquire_steps_legal(config->reacquire_samples);
-}
-
-bool soft_init(soft_t *f, const soft_config_t *config)
-{
-    if (!two_state_legal(config->rate_dhz, config->r_lsb2_q8, config->q_lsb2_s3) ||
-        !two_state_gate_legal(config->soft_sigma_q8) || !two_state_gate_legal(config->gate_sigma_q8) ||
-        !reacquire_legal(config->reacquire_samples, config->rate_max_lsb_s)) {
-        return false;
-    }
-    soft_configure(f, config);
-    return true;
-}
-
-void soft_set_noise(soft_t *f, uint32_t r_lsb2_q8)
-{
-    two_state_set_noise(&f->core, r_lsb2_q8);
-    two_state_set_gate(&f->core, f->soft_sigma_q8);
-    reacquire_set_noise(&f->again, &f->core);
-}
-
-void soft_reset(soft_t *f, int16_t z0_lsb)
-{
-    reacquire_reset(&f->again, two_state_reset(&f->core, z0_lsb));
-}
-
-bool soft_reset_step(soft_t *f, int16_t z0_lsb, uint8_t step)
-{
-    reacquire_reset(&f->again, filter_clamp_z(z0_lsb));
-    return two_state_reset_step(&f->core, z0_lsb, step);
+    filter_kalman_set_variance(f, r_lsb2_q8);
+    filter_kalman_set_gate(f, f->own.kalman.of.gated.gate_sigma_q8);
 }
 
 /* One place in line each: told two the compiler makes a loop of them on AVR. */
@@ -121,13 +98,13 @@ FX_INLINE uint32_t placed(uint32_t weight, uint8_t b)
 }
 
 /*
- * m = softgate^2 R / r^2, so below 1 / S: UQ0.20, within 2^-18, and never 0, so the furthest sample counts too. With
- * |r| = m' 2^b LSB/256, 1 <= m' < 2, and K = 16 softgate^2 R it is K / m'^2 x 2^(16 - 2 b) counts. r^2 > K / 16 >= 1/16
- * LSB^2 makes b >= 6; the coarse K is 256 times as large, and r^2 >= 4096 LSB^2 makes b >= 14.
+ * m = softgate^2 R / u^2, so below 1 / S: UQ0.20, within 2^-18, and never 0, so the furthest sample counts too. With
+ * |u| = m' 2^b LSB/256, 1 <= m' < 2, and K = 16 softgate^2 R it is K / m'^2 x 2^(16 - 2 b) counts. u^2 > K / 16 >= 1/16
+ * LSB^2 makes b >= 6; the coarse K is 256 times as large, and u^2 >= 4096 LSB^2 makes b >= 14.
  */
-FX_INLINE uint32_t weight_uq20(const two_state_t *s)
+FX_INLINE uint32_t weight_uq20(const filter_t *f)
 {
-    uint32_t size = s->size_lsb_uq8;
+    uint32_t size = f->size_lsb_uq16 >> 8;
     uint8_t b = 23;
     if ((uint8_t)(size >> 16) == 0U) {
         size <<= 8;
@@ -148,24 +125,23 @@ FX_INLINE uint32_t weight_uq20(const two_state_t *s)
         } while ((size & 0x800000U) == 0U);
     }
     uint16_t inverse = fx_inverse_m_uq16((uint8_t)(size >> 16) & 0x7FU, (uint16_t)size);
-    FX_FENCE();
-    uint32_t weight = fx_mul_u16(s->gate_lsb2_uq4, fx_mul16_uq16(inverse, inverse));
-    if (s->coarse) {
+    uint32_t weight = fx_mul_u16(f->own.kalman.gate_lsb2_uq4, fx_mul16_uq16(inverse, inverse));
+    if (f->own.kalman.coarse) {
         b = (uint8_t)(b - 4U);
     }
     return placed(weight, b) | 1U;
 }
 
-/* |r| w in LSB, Q16, rounded down; |r| to whole LSB from 256 LSB on. */
-FX_INLINE int32_t part_of_innovation(const two_state_t *s, uint32_t w_uq24)
+/* |u| w in LSB, Q16, rounded down; |u| to whole LSB from 256 LSB on. */
+FX_INLINE int32_t part_of_innovation(const filter_t *f, uint32_t w_uq24)
 {
-    bool far = (uint8_t)(s->size_lsb_uq8 >> 16) != 0U;
-    uint16_t size = far ? (uint16_t)(s->size_lsb_uq8 >> 8) : (uint16_t)s->size_lsb_uq8;
+    bool far = (uint8_t)(f->size_lsb_uq16 >> 24) != 0U;
+    uint16_t size = far ? (uint16_t)(f->size_lsb_uq16 >> 16) : (uint16_t)(f->size_lsb_uq16 >> 8);
     uint32_t product = fx_mul24_uq16(w_uq24, size);
     return far ? (int32_t)product : (int32_t)(product >> 8);
 }
 
-/* At most 1: so small that the steps stay below |r|. */
+/* At most 1: so small that the steps stay below |u|. */
 FX_INLINE uint32_t limited_uq24(uint32_t w_uq24)
 {
     return ((uint8_t)(w_uq24 >> 24) != 0U) ? 0xFFFFFFU : w_uq24;
@@ -180,141 +156,76 @@ FX_INLINE uint16_t weight_uq16(uint32_t m_uq20)
     return (uint16_t)(((uint16_t)high << 8) | low);
 }
 
-/* The rate moved by so much in the direction of the innovation; it can leave its range on that side only. */
-FX_INLINE void move_rate(two_state_t *s, int32_t step_lsb_q16)
+/* x and P11 with the gain w1 = P11 m. x moves by a count more than w1 u, so that no sample is without effect. */
+FX_INLINE void update_x(filter_t *f, uint32_t w1_uq24)
 {
-    int32_t rate = s->rate_lsb_q16;
-    int32_t limit = (int32_t)s->rate_max_lsb_q16;
-    bool beyond;
-    if (s->negative) {
-        rate -= step_lsb_q16;
-        limit = -limit;
-        /*@ assert rate < -301989888 || -301989888 <= rate; */ /* for make proof, as in two_state.c */
-        beyond = rate < limit;
-    } else {
-        rate += step_lsb_q16;
-        /*@ assert rate <= 301989888 || 301989888 < rate; */
-        beyond = rate > limit;
-    }
-    if (beyond) {
-        rate = limit;
-        s->flags |= FILTER_SATURATED;
-    }
-    s->rate_lsb_q16 = rate;
-}
-
-/* x and P11 with the gain w1 = P11 m. x moves by a count more than w1 r, so that no sample is without effect. */
-FX_INLINE void update_x(two_state_t *s, uint32_t w1_uq24)
-{
-    int32_t x_step = part_of_innovation(s, w1_uq24) + 1;
-    if (s->negative) {
-        s->x_lsb_q16 -= x_step;
-    } else {
-        s->x_lsb_q16 += x_step;
-    }
-    FX_FENCE();
-    s->u.p.p11_uq28 = fx_mul24_uq16(s->u.p.p11_uq28 >> 8, (uint16_t)~s->gain_uq16);
+    tracker_move(f, part_of_innovation(f, w1_uq24) + 1);
+    f->own.kalman.p.p11 = fx_mul24_uq16(f->own.kalman.p.p11 >> 8, (uint16_t)~f->gain_uq16);
 }
 
 /* Rate, P12 and P22 with w2 = P12 m. */
-FX_INLINE void update_rate(two_state_t *s, uint32_t m_uq20)
+FX_INLINE void update_rate(filter_t *f, uint32_t m_uq20)
 {
-    uint32_t p12_uq20 = s->u.p.p12_uq28 >> 8;
-    s->u.p.p12_uq28 = fx_mul24_uq16(p12_uq20, (uint16_t)~s->gain_uq16);
-    FX_FENCE();
+    filter_covariance_t *p = &f->own.kalman.p;
+    uint32_t p12_uq20 = p->p12 >> 8;
+    p->p12 = fx_mul24_uq16(p12_uq20, (uint16_t)~f->gain_uq16);
     uint32_t w2_uq24 = limited_uq24(fx_mul24_uq24(p12_uq20, m_uq20));
     uint16_t w2_uq16 = (uint16_t)(w2_uq24 >> 8);
-    int32_t p22_q28 = (int32_t)s->u.p.p22_uq28 - (int32_t)fx_mul24_uq16(p12_uq20, w2_uq16); /* < 3 less < 4: fits */
-    s->u.p.p22_uq28 = (p22_q28 < 0) ? 0U : (uint32_t)p22_q28;
-    FX_FENCE();
-    move_rate(s, part_of_innovation(s, w2_uq24));
+    int32_t p22_q28 = (int32_t)p->p22 - (int32_t)fx_mul24_uq16(p12_uq20, w2_uq16); /* < 3 less < 4: fits */
+    p->p22 = (p22_q28 < 0) ? 0U : (uint32_t)p22_q28;
+    tracker_turn(f, part_of_innovation(f, w2_uq24));
 }
 
 /*
- * A sample beyond the soft gate, predicted over by the core. Its share S / S_eff = S m = m + w1 tells whether it lies
- * beyond the gate: r^2 > gate^2 S where S m < (softgate / gate)^2.
+ * A sample beyond the soft gate. Its share S / S_eff = S m = m + w1 tells whether it lies beyond the gate: u^2 > gate^2
+ * S where S m < (softgate / gate)^2.
  */
-FX_NOINLINE void take_part(soft_t *f, int16_t z_lsb)
+static void take_part(filter_t *f, int16_t z_lsb)
 {
-    two_state_t *s = &f->core;
-    uint32_t m_uq20 = weight_uq20(s);
-    FX_FENCE();
-    uint32_t w1_uq24 = limited_uq24(fx_mul24_uq24(s->u.p.p11_uq28 >> 8, m_uq20));
-    s->gain_uq16 = (uint16_t)(w1_uq24 >> 8);
-    FX_FENCE();
+    filter_kalman_t *k = &f->own.kalman;
+    uint32_t m_uq20 = weight_uq20(f);
+    uint32_t w1_uq24 = limited_uq24(fx_mul24_uq24(k->p.p11 >> 8, m_uq20));
+    f->gain_uq16 = (uint16_t)(w1_uq24 >> 8);
     uint16_t weight = weight_uq16(m_uq20);
-    uint16_t share_uq16 = (uint16_t)(weight + s->gain_uq16);
-    if (share_uq16 >= weight && share_uq16 < f->share_uq16) { /* rounding may carry the sum of a share of 1 past it */
-        if (reacquire_refused(&f->again, s, z_lsb)) {
+    uint16_t share_uq16 = (uint16_t)(weight + f->gain_uq16);
+    if (share_uq16 >= weight && share_uq16 < k->of.gated.share_uq16) { /* rounding may carry a share of 1 past it */
+        f->flags |= FILTER_GATED;
+        if (filter_kalman_refused(f, z_lsb)) {
             return;
         }
     } else {
-        f->again.run = 0;
-        s->flags = (uint8_t)(s->flags & ~FILTER_GATED);
+        k->run = 0;
     }
-    FX_FENCE();
-    update_x(s, w1_uq24);
-    FX_FENCE();
-    update_rate(s, m_uq20);
+    update_x(f, w1_uq24);
+    update_rate(f, m_uq20);
 }
 
-/*
- * Scaling: input any int16, clamped to -4096..4095 LSB; output Q15.16, |x| <= 4608 LSB; within the soft gate formats,
- * bounds and rounding errors as two_state_step. Beyond it
- *   m        UQ0.20, of r rounded down to 2^-8 LSB and gate_lsb2_uq4 (softgate^2 R, 1/16 LSB^2), within 2^-18
- *   w1, w2   UQ0.24, <= 1, from P11 and P12 in UQ4.20; P11 and P12 times 1 - w1 - 2^-16 rounded to 2^-28, so they fall;
- *            P22 less P12 w2 (w2 rounded down to 2^-16), not below 0
- *   steps    of x rounded up, of the rate down to 2^-16; both below |r| + 2^-16 LSB (x: w1 < 8/9), so x stays between
- *            prediction and sample and the bounds of two_state_step hold
- *   gate     where S / S_eff is (softgate / gate)^2 within 2^-15
- * Cost: docs/benchmarks.md.
- */
-int32_t soft_update(soft_t *f, int16_t z_lsb)
+static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    int16_t z = filter_clamp_z(z_lsb);
-    if (two_state_warming_up(&f->core)) {
-        two_state_warm_up(&f->core, z);
-    } else if (two_state_step(&f->core, z, true)) {
-        f->again.run = 0;
-    } else {
-        take_part(f, z);
+    if (filter_kalman_step(f, z_lsb, what)) {
+        f->own.kalman.run = 0;
+    } else if (what != STEP_MISSING) {
+        take_part(f, z_lsb);
     }
-    f->again.previous_lsb = z;
-    return f->core.x_lsb_q16;
 }
 
-int32_t soft_coast(soft_t *f)
+/* A gain too small for its 16 bits is reported as 2^-16: only refused samples have none, and soft refuses none. */
+static void report(const filter_t *f, filter_probe_t *out)
 {
-    f->again.broken = true;
-    return two_state_coast(&f->core);
-}
-
-void soft_damp(soft_t *f)
-{
-    two_state_damp(&f->core);
-}
-
-void soft_hold(soft_t *f)
-{
-    reacquire_hold(&f->again);
-}
-
-void soft_restart(soft_t *f)
-{
-    two_state_restart(&f->core);
-    f->again.run = 0;
-}
-
-uint8_t soft_flags(const soft_t *f)
-{
-    return f->core.flags;
-}
-
-/* A gain too small for its 16 bits is told as 2^-16: only refused samples have none, and soft refuses none. */
-void soft_probe(const soft_t *f, filter_probe_t *out)
-{
-    two_state_probe(&f->core, out);
+    filter_kalman_report(f, out);
     if (out->gain_uq16 == 0U && (out->flags & FILTER_GATED) != 0U) {
         out->gain_uq16 = 1;
     }
 }
+
+const filter_law_t filter_law_soft FX_FLASH = { .name = "soft",
+                                                .parameter_count = 6,
+                                                .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
+                                                .worst_cycles = 1350,
+                                                .parameters = parameters,
+                                                .together = together,
+                                                .set_up = set_up,
+                                                .set_noise = set_noise,
+                                                .start = filter_kalman_start,
+                                                .step = step,
+                                                .report = LAW_REPORT(report) };

@@ -1,36 +1,38 @@
-/* The synthesised filter: see synth.h for the equations. */
+/*
+ * synth: the synthesised polynomial filter with constant parameters (Zimchuk and Shapar; paper 000 equation 7, paper
+ * 001).
+ *
+ *   x_e = (2 - a1) x1 - (1 - 2 a1) x2 - a1 x3        extrapolation from the last three estimates
+ *   x   = x_e + b0 (z - x_e)
+ *
+ * computed in the incremental form x_e = x1 + v - a1 (v - v'), v = x1 - x2, v' = x2 - x3: two products instead of four,
+ * the same by algebra. The papers feed back the estimates, not x_e (as one example prints): with x_e fed back no
+ * measurement would reach the prediction. Not robust: every outlier passes with the gain b0. With a1 <= 0 the variance
+ * of the estimate cannot fall below R / 2, whatever b0 (notes of the papers: synthesised-filter).
+ *
+ * Parameters a1 (0: a straight line through two estimates), b0, r (for start and probe). Together a1 and b0 must lie
+ * inside the stability region: 1 + 2 a1 (1 - b0) > 0, which is exact within their ranges. The papers' b0 > -a1 - 0.3 is
+ * sufficient only. Paper 001's preset is a1 = -0.3, b0 = 0.1 (-19661, 6554): it overshoots a step by 69 % and hardly
+ * smooths (variance 0.82 R).
+ *
+ * Scaling:
+ *   a1, b0   UQ0.16 magnitudes, within 2^-17 of the wanted ones
+ *   rounding each product half away from zero to 2^-16 LSB; both together reach the output with the noise gain over
+ *            b0^2 of the filter: 0.0002 LSB rms at (-0.3, 0.1). The bound that the tests hold against the double
+ *            reference is (1 + |1 - b0|) 2^-17 times the sum of the error's impulse response
+ */
 #include "synth.h"
 
-#include "filter_common.h"
-#include "fx.h"
-
-static const filter_parameter_t parameters[] FX_FLASH = {
-    { "a1", "", offsetof(synth_config_t, a1_q16), 4, 16, 0, 1, -SYNTH_A1_MAX_Q16, SYNTH_A1_MAX_Q16 },
-    { "b0", "", offsetof(synth_config_t, b0_uq16), 2, 16, 0, 0, SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16 },
-    { "r", "LSB2", offsetof(synth_config_t, r_lsb2_q8), 4, 8, 0, 0, FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8 },
-};
-
-const filter_descriptor_t synth_descriptor FX_FLASH = { "synth", sizeof parameters / sizeof parameters[0], parameters };
-
-void synth_defaults(synth_config_t *config, uint16_t rate_dhz)
-{
-    config->rate_dhz = rate_dhz;
-    config->b0_uq16 = 19661; /* 0.3 */
-    config->a1_q16 = 0;
-    config->r_lsb2_q8 = filter_default_r_lsb2_q8(rate_dhz);
-}
-
-void synth_paper(synth_config_t *config, uint16_t rate_dhz)
-{
-    synth_defaults(config, rate_dhz);
-    config->b0_uq16 = 6554;  /* 0.1 */
-    config->a1_q16 = -19661; /* -0.3 */
-}
+static const char a1_words[] FX_FLASH = "a1\0";
+static const filter_parameter_t a1 FX_FLASH = { a1_words, 16, 0, -65535, 65535, 0 };
+static const char b0_words[] FX_FLASH = "b0\0";
+static const filter_parameter_t b0 FX_FLASH = { b0_words, 16, 0, SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16, 19661 };
+static const filter_parameter_t *const parameters[] FX_FLASH = { &a1, &b0, &filter_parameter_r };
 
 /* |a1| (1 - b0), UQ0.32, exact. */
 static uint32_t memory_uq32(uint16_t b0_uq16, uint16_t a1_uq16)
 {
-    return fx_mul_u16(a1_uq16, (uint16_t)(0U - b0_uq16));
+    return fx_product_u16(a1_uq16, (uint16_t)(0U - b0_uq16));
 }
 
 /* (4 - 3 b0) / 4, UQ0.32, exact. */
@@ -54,10 +56,13 @@ static bool stable(uint16_t b0_uq16, int32_t a1_q16)
 }
 
 /*
+ * Variance of the estimate's error per R in the steady state, white noise, UQ16.16, saturated; 1 (65536) and more: the
+ * filter amplifies noise. Relative error below 2^-11 for a1 <= 0.95, 4e-3 at the upper corner of the region:
+ *
  * (2 - b0 - 2 ac (b0 + ac)) / ((1 + 2 ac) (4 - 3 b0 - 4 ac)), ac = a1 (1 - b0): the stationary variance solved from the
  * closed loop. The factors that vanish on the border of the region are formed exactly.
  */
-uint32_t synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16)
+uint32_t filter_synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16)
 {
     uint32_t memory = memory_uq32(b0_uq16, magnitude(a1_q16)) >> 1; /* |ac|, UQ1.31 */
     uint32_t margin = margin_uq32(b0_uq16) >> 1;
@@ -69,138 +74,62 @@ uint32_t synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16)
     int32_t above_q16 = 0x20000 - (int32_t)b0_uq16 - (negative ? -2 * product_q16 : 2 * product_q16);
     uint32_t left = (a1_q16 < 0) ? 0x40000000U - memory : 0x40000000U + memory; /* (1 + 2 ac) / 2, UQ1.31 */
     uint32_t right = (a1_q16 < 0) ? margin + memory : margin - memory;          /* (4 - 3 b0 - 4 ac) / 4 */
-    fx_scaled_t above = fx_scaled((above_q16 > 0) ? (uint32_t)above_q16 : 1U);
+    fx_scaled_t above = filter_fx_scaled((above_q16 > 0) ? (uint32_t)above_q16 : 1U);
     above.exponent = (int8_t)(above.exponent - 16 - 3);
-    fx_scaled_t below = fx_scaled_mul(fx_scaled(left), fx_scaled(right));
+    fx_scaled_t below = filter_fx_scaled_mul(filter_fx_scaled(left), filter_fx_scaled(right));
     below.exponent = (int8_t)(below.exponent - 62);
-    return fx_scaled_fixed(fx_scaled_div(above, below), 16);
+    return filter_fx_scaled_fixed(filter_fx_scaled_div(above, below), 16);
 }
 
-void synth_configure(synth_t *f, const synth_config_t *config)
+static bool together(const filter_config_t *config)
 {
-    synth_begin(&f->core, sizeof *f);
-    f->a1_uq16 = magnitude(config->a1_q16);
-    f->a1_negative = config->a1_q16 < 0;
-    f->b0_uq16 = config->b0_uq16;
-    synth_spread_of_rate(&f->spread, config->rate_dhz);
-    synth_set_noise(f, config->r_lsb2_q8);
+    return stable((uint16_t)config->value[SYNTH_B0_UQ16], config->value[SYNTH_A1_Q16]);
 }
 
-bool synth_together(const synth_config_t *config)
+static void set_up(filter_t *f, const filter_config_t *config)
 {
-    return stable(config->b0_uq16, config->a1_q16);
+    filter_synth_t *s = &f->own.synth;
+    s->a1_uq16 = magnitude(config->value[SYNTH_A1_Q16]);
+    s->a1_negative = config->value[SYNTH_A1_Q16] < 0;
+    s->b0_uq16 = (uint16_t)config->value[SYNTH_B0_UQ16];
+    filter_set_noise(f, (uint32_t)config->value[SYNTH_R_LSB2_Q8]);
 }
 
-FX_ONCE bool synth_init(synth_t *f, const synth_config_t *config)
+/* In the start the gain is that of a line, and the prediction the straight line alone. */
+static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    bool legal = filter_common_legal(config->rate_dhz, config->r_lsb2_q8) && config->b0_uq16 >= SYNTH_B0_MIN_UQ16 &&
-                 config->a1_q16 >= -SYNTH_A1_MAX_Q16 && config->a1_q16 <= SYNTH_A1_MAX_Q16;
-    if (!legal || !synth_together(config)) {
-        return false;
+    filter_synth_t *s = &f->own.synth;
+    if (s->count != SYNTH_STEADY && what != STEP_MISSING) {
+        f->gain_uq16 = filter_synth_next_gain_uq16(f);
     }
-    synth_configure(f, config);
-    return true;
-}
-
-void synth_set_noise(synth_t *f, uint32_t r_lsb2_q8)
-{
-    synth_take_noise_and_spread(&f->core, &f->spread, r_lsb2_q8);
-}
-
-bool synth_reset_step(synth_t *f, int16_t z0_lsb, uint8_t step)
-{
-    (void)step;
-    synth_reset(f, z0_lsb);
-    return false;
-}
-
-FX_ONCE void synth_reset(synth_t *f, int16_t z0_lsb)
-{
-    synth_at_rest(&f->core, z0_lsb);
-}
-
-/* - a1 (x1 - 2 x2 + x3); 0 while the start's gains are in force: the straight line alone. */
-FX_NOINLINE int32_t curvature(const synth_t *f)
-{
-    if (f->core.collected != SYNTH_STEADY || f->a1_uq16 == 0U) {
-        return 0;
+    if (s->count == SYNTH_STEADY) {
+        filter_synth_steady_step(f, z_lsb, what);
+    } else {
+        s->rate_before_lsb_q16 = f->rate_lsb;
+        filter_synth_step(f, z_lsb, what);
     }
-    return synth_scaled(synth_bend(&f->core, !f->a1_negative), f->a1_uq16);
-}
-
-/* One sample on. */
-FX_NOINLINE int32_t step(synth_t *f, int16_t z_lsb)
-{
-    f->core.flags = 0;
-    f->core.gain_uq16 = f->b0_uq16;
-    if (f->core.collected != SYNTH_STEADY) {
-        f->core.gain_uq16 = synth_next_gain_uq16(&f->core, f->b0_uq16);
-    }
-    synth_extrapolate(&f->core, curvature(f));
-    return synth_correct(&f->core, z_lsb);
-}
-
-/*
- * Scaling:
- *   input    Q0, any int16, clamped to -4096..4095 LSB
- *   x        Q15.16; |x_e| <= 4608 LSB by a clamp; the update moves x_e towards a sample within 4096, so |x| <= 4608
- *            and the bound is inductive; |z - x_e| <= 8704 LSB < 2^30 / 2^16
- *   a1, b0   UQ0.16 magnitudes, within 2^-17 of the wanted ones
- *   rounding each product half away from zero to 2^-16 LSB; both together reach the output with the noise gain over
- *            b0^2 of the filter: 0.0002 LSB rms at (-0.3, 0.1). The bound that the tests hold against the double
- *            reference is (1 + |1 - b0|) 2^-17 times the sum of the error's impulse response
- *   cost     docs/benchmarks.md
- */
-int32_t synth_update(synth_t *f, int16_t z_lsb)
-{
-    int16_t z = filter_clamp_z(z_lsb);
-    if (f->core.collected >= FILTER_WARM_UP_SAMPLES) {
-        return step(f, z);
-    }
-    return synth_warm_up(&f->core, z, &f->spread);
-}
-
-int32_t synth_coast(synth_t *f)
-{
-    if (synth_coasts(&f->core)) {
-        synth_extrapolate(&f->core, curvature(f));
-        return f->core.u.run.x_lsb_q16[0];
-    }
-    return synth_estimate(&f->core);
-}
-
-void synth_damp(synth_t *f)
-{
-    synth_core_damp(&f->core);
-}
-
-void synth_gap(synth_t *f)
-{
-    synth_core_gap(&f->core);
-}
-
-/* Takes every sample as it is: nothing to be held back. */
-void synth_hold(synth_t *f)
-{
-    (void)f;
-}
-
-void synth_restart(synth_t *f)
-{
-    synth_core_restart(&f->core);
-}
-
-uint8_t synth_flags(const synth_t *f)
-{
-    return f->core.flags;
 }
 
 /* The variance is that of one sample until the gain is steady, then R times the noise gain, limited to 32 bits. */
-void synth_probe(const synth_t *f, filter_probe_t *out)
+static void report(const filter_t *f, filter_probe_t *out)
 {
-    synth_probe_core(&f->core, out);
-    if (f->core.collected == SYNTH_STEADY) {
-        int32_t a1_q16 = f->a1_negative ? -(int32_t)f->a1_uq16 : f->a1_uq16;
-        out->p_lsb2_q8 = synth_variance_lsb2_q8(&f->core, synth_noise_gain_uq16(f->b0_uq16, a1_q16));
+    const filter_synth_t *s = &f->own.synth;
+    out->p_lsb2_q8 = s->r_lsb2_q8;
+    if (f->collected == FILTER_RUNNING && s->count == SYNTH_STEADY) {
+        int32_t a1_q16 = (int32_t)s->a1_uq16;
+        a1_q16 = s->a1_negative ? -a1_q16 : a1_q16;
+        out->p_lsb2_q8 = filter_synth_variance_lsb2_q8(f, filter_synth_noise_gain_uq16(s->b0_uq16, a1_q16));
     }
 }
+
+const filter_law_t filter_law_synth FX_FLASH = { .name = "synth",
+                                                 .parameter_count = 3,
+                                                 .worst_cycles = 620,
+                                                 .parameters = parameters,
+                                                 .together = together,
+                                                 .set_up = set_up,
+                                                 .set_noise = filter_synth_take_noise,
+                                                 .start = filter_synth_start,
+                                                 .step = step,
+                                                 .fade = filter_synth_fade,
+                                                 .report = LAW_REPORT(report) };

@@ -1,76 +1,66 @@
 /*
- * synth: the synthesised polynomial filter with constant parameters (Zimchuk and Shapar; paper 000
- * equation 7, paper 001).
+ * What the synthesised laws share (synth, synth_opt, synth_plus): the start and one step
  *
- *   x_e = (2 - a1) x1 - (1 - 2 a1) x2 - a1 x3        extrapolation from the last three estimates
- *   x   = x_e + b0 (z - x_e)
+ *   x_e = 2 x1 - x2 + addend,   u = z - x_e,   x = x_e + b0 u
  *
- * computed in the incremental form x_e = x1 + d - a1 (d - d'), d = x1 - x2, d' = x2 - x3: two products instead of four,
- * the same by algebra. The papers feed back the estimates, not x_e (as one example prints): with x_e fed back no
- * measurement would reach the prediction. Not robust: every outlier passes with the gain b0. With a1 <= 0 the variance
- * of the estimate cannot fall below R / 2, whatever b0 (notes of the papers: synthesised-filter). Functions: filter.h.
+ * with the addend that makes the filter. In the tracker's state this is v = x1 - x2: w1 = w2 = b0. Internal to the
+ * library.
  */
 #ifndef SYNTH_H
 #define SYNTH_H
 
-#include "synth_common.h"
+#include "tracker.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/*
- * Together a1 and b0 must lie inside the stability region: 1 + 2 a1 (1 - b0) > 0, which is exact within their ranges
- * (where the region's other condition, 4 - 3 b0 - 4 a1 (1 - b0) > 0, always holds). The papers' b0 > -a1 - 0.3 is
- * sufficient only.
- */
-typedef struct {
-    uint16_t rate_dhz;  /* output data rate, 0.1 Hz: 50..40000 */
-    uint16_t b0_uq16;   /* gain: 0.01..0.99998 (656..65535); 0 is refused */
-    int32_t a1_q16;     /* extrapolation: -0.99998..0.99998 (-65535..65535); 0: straight line through two estimates */
-    uint32_t r_lsb2_q8; /* measurement variance R, LSB^2: 0.01..1000 (3..256000), for start and probe; 0 is refused */
-} synth_config_t;
+/* `count` of a filter whose gains are the steady ones, and where those of the start begin and end. */
+enum { SYNTH_STEADY = 255, SYNTH_FIRST_GAIN = FILTER_WARM_UP_SAMPLES, SYNTH_END_GAIN = 63 };
 
-typedef struct {
-    synth_core_t core;
-    synth_spread_t spread;
-    uint16_t a1_uq16; /* magnitude */
-    uint16_t b0_uq16; /* steady gain */
-    bool a1_negative;
-} synth_t;
+/* A lower gain than 0.01 would need more than 16 bits of it: the lag goes with 1 / b0. */
+#define SYNTH_B0_MIN_UQ16 656
+#define SYNTH_B0_MAX_UQ16 65535
 
-/* Descriptor in program memory. */
-extern const filter_descriptor_t synth_descriptor;
+/* Noise for the report and for what of the rate is believed when samples are missing. */
+void filter_synth_take_noise(filter_t *f, uint32_t r_lsb2_q8);
 
-enum { synth_worst_cycles = 500 }; /* of synth_update, as in filter.h */
-
-/* The preset to use: a1 = 0, b0 = 0.3. */
-void synth_defaults(synth_config_t *config, uint16_t rate_dhz);
-
-/* The preset of paper 001: a1 = -0.3, b0 = 0.1. It overshoots a step by 69 % and hardly smooths (variance 0.82 R). */
-void synth_paper(synth_config_t *config, uint16_t rate_dhz);
+/* At the median of the start; settled: at rest with the steady gains. */
+void filter_synth_start(filter_t *f, bool settled);
 
 /*
- * Variance of the estimate's error per R in the steady state, white noise, UQ16.16, saturated; 1 (65536) and more: the
- * filter amplifies noise. Relative error below 2^-11 for a1 <= 0.95, 4e-3 at the upper corner of the region. Meaningful
- * for legal configurations; divides, 6,000 cycles.
+ * The gain for this sample, at least b0: (4 n - 2) / (n (n + 1)) of a least-squares line through n samples in the
+ * start, which ends with the first of them that is not above b0 or with sample SYNTH_END_GAIN.
  */
-uint32_t synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16);
+uint16_t filter_synth_next_gain_uq16(filter_t *f);
 
-bool synth_together(const synth_config_t *config);
-bool synth_init(synth_t *f, const synth_config_t *config);
-void synth_configure(synth_t *f, const synth_config_t *config);
-void synth_set_noise(synth_t *f, uint32_t r_lsb2_q8);
-void synth_reset(synth_t *f, int16_t z0_lsb);
-bool synth_reset_step(synth_t *f, int16_t z0_lsb, uint8_t step);
-int32_t synth_update(synth_t *f, int16_t z_lsb);
-int32_t synth_coast(synth_t *f);
-void synth_damp(synth_t *f);
-void synth_gap(synth_t *f);
-void synth_hold(synth_t *f);
-void synth_restart(synth_t *f);
-uint8_t synth_flags(const synth_t *f);
-void synth_probe(const synth_t *f, filter_probe_t *out);
+/*
+ * One step: prediction by v, to which the law has added what bends it, |addend| <= 18432 LSB (with |2 x1 - x2| <= 13824
+ * the sum stays below 2^31 in Q16), then the correction with f->gain_uq16, without a sample none.
+ */
+void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what);
+
+/* The same with v - a1 (v - v') in place of v, for an a1 of this magnitude. */
+void filter_synth_bent_step(filter_t *f, int16_t z_lsb, uint8_t what, uint16_t a1_uq16);
+
+/* One step with the steady gain and extrapolation. */
+void filter_synth_steady_step(filter_t *f, int16_t z_lsb, uint8_t what);
+
+/*
+ * The rate is the difference of two estimates, the noise of which is 0.3 to 0.7 sigmas of a sample: unless it is more
+ * than three it is not believed when samples begin to be missing, nor is the curvature.
+ */
+void filter_synth_fade(filter_t *f, bool first);
+
+/* The last two steps halved. */
+void filter_synth_damp(filter_t *f);
+
+/* Noise gains in the steady state, see synth.c and synth_plus.c; for the tools too. Divide. */
+uint32_t filter_synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16);
+uint32_t filter_synth_taps_noise_gain_uq16(const filter_config_t *config);
+
+/* Variance R x noise_gain, saturated. Divides. */
+uint32_t filter_synth_variance_lsb2_q8(const filter_t *f, uint32_t noise_gain_uq16);
 
 #ifdef __cplusplus
 }

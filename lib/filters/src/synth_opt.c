@@ -1,191 +1,137 @@
-/* The synthesised filter with a schedule of gains: see synth_opt.h for the equations. */
-#include "synth_opt.h"
-
-#include "filter_common.h"
-#include "fx.h"
+/*
+ * synth_opt: the synthesised filter with parametric synthesis (Zimchuk and Shapar, paper 000, algorithm 22): a1 and b0
+ * change from sample to sample by a schedule that the variance of the start's error, P0 over R, determines.
+ *
+ *   x_e = 2 x1 - x2 - a1(n) (x1 - 2 x2 + x3),   x = x_e + b0(n) (z - x_e),   b0 = Pe / (Pe + R)
+ *
+ * As printed the schedule is chaotic and its variance goes negative, because (17)-(19) take the variance of a linear
+ * combination for a squared shift operator. Two that work, made off line by tools/design/schedule.py:
+ *
+ *   exact  Pe = h S h' with the covariance S of the last three errors, a1 = its optimum: ends at (0, 2/3), P = 2/3 R
+ *   U      a1 by the paper's (21), Pe as if the errors were uncorrelated, the closest working relative of (20):
+ *          ends at (-1/6, 11/13); its own P = 11/13 R there, true are 0.8059 R
+ *
+ * both with a1 in [-1/3, 0] and b0 in [1/2, 1), where any switching is stable. The steady gains do not depend on R: R
+ * on line changes the start only. Not robust: every outlier passes with the gain b0. Parameters u (0: exact, 1: variant
+ * U), p0, r (for start and probe).
+ *
+ * Scaling:
+ *   a1, b0   UQ0.16 magnitudes of the table, within 2^-17 of the schedule's for its class of P0 / R. With the class's
+ *            ratio off by up to a factor 2 the variance is at most 15 % above the optimum of the exact schedule in one
+ *            sample of the start and 2.3 % in its mean (P0 >= R / 2; below R the first gain is the clamp, 1/2)
+ *   rounding each product half away from zero to 2^-16 LSB; |x - reference| <= (1 + |1 - b0|) 2^-17 sum |g|, g the
+ *            error's impulse response; for any gains within the clamps sum |g| < 25 (test_synth_opt_reference.c)
+ */
+#include "synth.h"
 #include "synth_opt_table.h"
 
-#define P0_MIN_LSB2_Q8 3U
-#define P0_MAX_LSB2_Q8 25600000U
+/* Place of the gains behind the schedule. */
+enum { LIMIT = (int)SYNTH_OPT_COMMON + (int)SYNTH_OPT_STEPS };
 
 /* 11/13 in the limit of variant U, where its errors are taken as uncorrelated; with the closed loop's it is this. */
 #define U_NOISE_GAIN_UQ16 52818U
 
-static const filter_parameter_t synth_opt_parameters[] FX_FLASH = {
-    { "u", "", offsetof(synth_opt_config_t, variant_u), 2, 0, 0, 0, 0, 1 },
-    { "p0", "LSB2", offsetof(synth_opt_config_t, p0_lsb2_q8), 4, 8, 0, 0, P0_MIN_LSB2_Q8, P0_MAX_LSB2_Q8 },
-    { "r", "LSB2", offsetof(synth_opt_config_t, r_lsb2_q8), 4, 8, 0, 0, FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8 },
-};
+static const char u_words[] FX_FLASH = "u\0";
+static const filter_parameter_t u FX_FLASH = { u_words, 0, 0, 0, 1, 0 };
+static const char p0_words[] FX_FLASH = "p0\0LSB2";
+static const filter_parameter_t p0 FX_FLASH = { p0_words, 8, 0, 3, 25600000, 0 };
+static const filter_parameter_t *const parameters[] FX_FLASH = { &u, &p0, &filter_parameter_r };
 
-const filter_descriptor_t synth_opt_descriptor FX_FLASH = {
-    "synth_opt", sizeof synth_opt_parameters / sizeof synth_opt_parameters[0], synth_opt_parameters
-};
-
-void synth_opt_defaults(synth_opt_config_t *config, uint16_t rate_dhz)
+static void standard(filter_config_t *config)
 {
-    config->rate_dhz = rate_dhz;
-    config->variant_u = 0;
-    config->r_lsb2_q8 = filter_default_r_lsb2_q8(rate_dhz);
-    uint32_t distance_lsb_q4 = 64000U / rate_dhz; /* 2 x 200 LSB/s x T, rounded down: <= 1280 */
-    config->p0_lsb2_q8 = distance_lsb_q4 * distance_lsb_q4 + 1U + (config->r_lsb2_q8 * 19U) / 64U;
+    uint32_t distance_lsb_q4 = 64000U / config->rate_dhz; /* 2 x 200 LSB/s x T, rounded down: <= 1280 */
+    config->value[SYNTH_OPT_P0_LSB2_Q8] = (int32_t)(distance_lsb_q4 * distance_lsb_q4 + 1U +
+                                                    ((uint32_t)config->value[SYNTH_OPT_R_LSB2_Q8] * 19U) / 64U);
 }
 
-void synth_opt_configure(synth_opt_t *f, const synth_opt_config_t *config)
+static void set_up(filter_t *f, const filter_config_t *config)
 {
-    synth_begin(&f->core, sizeof *f);
-    f->variant_u = config->variant_u != 0U;
-    f->p0_lsb2_q8 = config->p0_lsb2_q8;
-    synth_opt_set_noise(f, config->r_lsb2_q8);
-}
-
-FX_ONCE bool synth_opt_init(synth_opt_t *f, const synth_opt_config_t *config)
-{
-    if (!filter_common_legal(config->rate_dhz, config->r_lsb2_q8) || config->variant_u > 1U ||
-        config->p0_lsb2_q8 < P0_MIN_LSB2_Q8 || config->p0_lsb2_q8 > P0_MAX_LSB2_Q8) {
-        return false;
+    filter_synth_t *s = &f->own.synth;
+    s->of.scheduled.p0_lsb2_q8 = (uint32_t)config->value[SYNTH_OPT_P0_LSB2_Q8];
+    s->b0_uq16 = fx_flash_u16(&exact_b0_uq16[LIMIT]);
+    if (config->value[SYNTH_OPT_VARIANT_U] != 0) {
+        s->of.scheduled.variant_u = true;
+        s->b0_uq16 = fx_flash_u16(&u_b0_uq16[LIMIT]);
+        s->a1_uq16 = fx_flash_u16(&u_a1_uq16[LIMIT]);
+        s->a1_negative = true;
     }
-    synth_opt_configure(f, config);
-    return true;
+    filter_set_noise(f, (uint32_t)config->value[SYNTH_OPT_R_LSB2_Q8]);
 }
 
 /*
  * The class whose ratio is nearest to P0 / R on a logarithmic scale: the border between 4^i and 4^(i + 1) is 2 x 4^i.
  * Once the schedule runs R changes nothing.
  */
-void synth_opt_set_noise(synth_opt_t *f, uint32_t r_lsb2_q8)
+static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
-    synth_take_noise(&f->core, r_lsb2_q8);
-    if (f->core.collected < FILTER_WARM_UP_SAMPLES) {
-        uint32_t border_lsb2_q8 = f->core.r_lsb2_q8 << 1; /* at most 2^1 x 4^4 x 256000 < 2^32 below */
-        f->ratio_class = 0;
-        while (f->ratio_class < (uint8_t)(SYNTH_OPT_CLASSES - 1) && f->p0_lsb2_q8 > border_lsb2_q8) {
+    filter_synth_take_noise(f, r_lsb2_q8);
+    if (f->collected < FILTER_WARM_UP_SAMPLES) {
+        uint32_t border_lsb2_q8 = r_lsb2_q8 << 1; /* at most 2^1 x 4^4 x 256000 < 2^32 below */
+        uint8_t ratio_class = 0;
+        while (ratio_class < (uint8_t)(SYNTH_OPT_CLASSES - 1) &&
+               f->own.synth.of.scheduled.p0_lsb2_q8 > border_lsb2_q8) {
             border_lsb2_q8 <<= 2;
-            f->ratio_class++;
+            ratio_class++;
         }
+        f->own.synth.of.scheduled.ratio_class = ratio_class;
     }
 }
 
-bool synth_opt_reset_step(synth_opt_t *f, int16_t z0_lsb, uint8_t step)
+/* A step of the schedule, with its place in the tables: of the class, then of all. It waits for missing samples. */
+FX_NOINLINE void scheduled_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    (void)step;
-    synth_opt_reset(f, z0_lsb);
-    return false;
-}
-
-FX_ONCE void synth_opt_reset(synth_opt_t *f, int16_t z0_lsb)
-{
-    synth_at_rest(&f->core, z0_lsb);
-}
-
-/* Place of the next step's gains in the tables: of its class, of all classes, or the limit. */
-FX_INLINE uint8_t place(const synth_opt_t *f)
-{
-    uint8_t steps = (uint8_t)(f->core.collected - FILTER_WARM_UP_SAMPLES);
+    filter_synth_t *s = &f->own.synth;
+    uint8_t steps = (uint8_t)(s->count - (uint8_t)SYNTH_FIRST_GAIN);
+    uint8_t at = (uint8_t)(steps + (uint8_t)SYNTH_OPT_COMMON);
     if (steps < (uint8_t)SYNTH_OPT_OWN_STEPS) {
-        return (uint8_t)((uint16_t)f->ratio_class * SYNTH_OPT_OWN_STEPS + steps);
+        at = (uint8_t)((uint8_t)((uint16_t)s->of.scheduled.ratio_class * SYNTH_OPT_OWN_STEPS) + steps);
     }
-    if (steps > (uint8_t)SYNTH_OPT_STEPS) {
-        steps = (uint8_t)SYNTH_OPT_STEPS;
+    bool variant_u = s->of.scheduled.variant_u;
+    f->gain_uq16 = fx_flash_u16(variant_u ? &u_b0_uq16[at] : &exact_b0_uq16[at]);
+    if (what != STEP_MISSING) {
+        s->count = (steps < (uint8_t)(SYNTH_OPT_STEPS - 1)) ? (uint8_t)(s->count + 1U) : (uint8_t)SYNTH_STEADY;
     }
-    return (uint8_t)(steps + (uint8_t)SYNTH_OPT_COMMON);
-}
-
-/* The estimates moved on; the exact schedule's a1 is 0. */
-FX_NOINLINE void move_on(synth_opt_t *f, uint8_t at)
-{
-    int32_t curvature_q16 = 0;
-    if (f->variant_u) {
-        uint16_t a1_uq16 = fx_flash_u16(&u_a1_uq16[at]);
-        curvature_q16 = synth_scaled(synth_bend(&f->core, false), a1_uq16);
-    }
-    synth_extrapolate(&f->core, curvature_q16);
-}
-
-/* One sample on. */
-FX_NOINLINE int32_t synth_opt_step(synth_opt_t *f, int16_t z_lsb)
-{
-    uint8_t at = place(f);
-    f->core.flags = 0;
-    f->core.gain_uq16 = fx_flash_u16(f->variant_u ? &u_b0_uq16[at] : &exact_b0_uq16[at]);
-    move_on(f, at);
-    if (f->core.collected < (uint8_t)(FILTER_WARM_UP_SAMPLES + SYNTH_OPT_STEPS - 1)) {
-        f->core.collected++;
+    if (variant_u) {
+        filter_synth_bent_step(f, z_lsb, what, fx_flash_u16(&u_a1_uq16[at]));
     } else {
-        f->core.collected = SYNTH_STEADY;
+        filter_synth_step(f, z_lsb, what);
     }
-    return synth_correct(&f->core, z_lsb);
 }
 
-/*
- * Scaling:
- *   input    Q0, any int16, clamped to -4096..4095 LSB
- *   x        Q15.16; |x_e| <= 4608 LSB by a clamp; the update moves x_e towards a sample within 4096, so |x| <= 4608
- *            and the bound is inductive; |z - x_e| <= 8704 LSB < 2^30 / 2^16
- *   a1, b0   UQ0.16 magnitudes of the table, within 2^-17 of the schedule's for its class of P0 / R. With the class's
- *            ratio off by up to a factor 2 the variance is at most 15 % above the optimum of the exact schedule in one
- *            sample of the start and 2.3 % in its mean (P0 >= R / 2; below R the first gain is the clamp, 1/2)
- *   rounding each product half away from zero to 2^-16 LSB; |x - reference| <= (1 + |1 - b0|) 2^-17 sum |g|, g the
- *            error's impulse response; for any gains within the clamps sum |g| < 25 (test_synth_opt_reference.c)
- *   cost     docs/benchmarks.md
- */
-int32_t synth_opt_update(synth_opt_t *f, int16_t z_lsb)
+static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    int16_t z = filter_clamp_z(z_lsb);
-    if (f->core.collected >= FILTER_WARM_UP_SAMPLES) {
-        return synth_opt_step(f, z);
+    if (f->own.synth.count == SYNTH_STEADY) {
+        filter_synth_steady_step(f, z_lsb, what);
+    } else {
+        scheduled_step(f, z_lsb, what);
     }
-    return synth_warm_up(&f->core, z, NULL);
-}
-
-/* The schedule goes by samples seen: it waits. */
-int32_t synth_opt_coast(synth_opt_t *f)
-{
-    if (synth_coasts(&f->core)) {
-        move_on(f, place(f));
-        return f->core.u.run.x_lsb_q16[0];
-    }
-    return synth_estimate(&f->core);
-}
-
-void synth_opt_damp(synth_opt_t *f)
-{
-    synth_core_damp(&f->core);
-}
-
-void synth_opt_gap(synth_opt_t *f)
-{
-    synth_core_gap(&f->core);
-}
-
-/* Takes every sample as it is: nothing to be held back. */
-void synth_opt_hold(synth_opt_t *f)
-{
-    (void)f;
-}
-
-void synth_opt_restart(synth_opt_t *f)
-{
-    synth_core_restart(&f->core);
-}
-
-uint8_t synth_opt_flags(const synth_opt_t *f)
-{
-    return f->core.flags;
 }
 
 /*
  * The variance is that of one sample while warming up, then what the schedule takes it for, R b0 (more than the true
  * one where b0 was clamped), and behind it the noise gain of the limit.
  */
-void synth_opt_probe(const synth_opt_t *f, filter_probe_t *out)
+static void report(const filter_t *f, filter_probe_t *out)
 {
-    synth_probe_core(&f->core, out);
-    if (f->core.collected > FILTER_WARM_UP_SAMPLES) {
-        uint8_t at = (uint8_t)((uint8_t)SYNTH_OPT_COMMON + (uint8_t)SYNTH_OPT_STEPS);
-        uint16_t noise_gain_uq16 = f->variant_u ? (uint16_t)U_NOISE_GAIN_UQ16 : fx_flash_u16(&exact_b0_uq16[at]);
-        if (f->core.collected != SYNTH_STEADY && f->core.gain_uq16 != 0U) {
-            noise_gain_uq16 = f->core.gain_uq16;
+    const filter_synth_t *s = &f->own.synth;
+    out->p_lsb2_q8 = s->r_lsb2_q8;
+    if (f->collected == FILTER_RUNNING && s->count > (uint8_t)SYNTH_FIRST_GAIN) {
+        uint16_t noise_gain_uq16 = s->of.scheduled.variant_u ? (uint16_t)U_NOISE_GAIN_UQ16 : s->b0_uq16;
+        if (s->count != SYNTH_STEADY && f->gain_uq16 != 0U) {
+            noise_gain_uq16 = f->gain_uq16;
         }
-        out->p_lsb2_q8 = synth_variance_lsb2_q8(&f->core, noise_gain_uq16);
+        out->p_lsb2_q8 = filter_synth_variance_lsb2_q8(f, noise_gain_uq16);
     }
 }
+
+const filter_law_t filter_law_synth_opt FX_FLASH = { .name = "synth_opt",
+                                                     .parameter_count = 3,
+                                                     .worst_cycles = 620,
+                                                     .parameters = parameters,
+                                                     .standard = standard,
+                                                     .set_up = set_up,
+                                                     .set_noise = set_noise,
+                                                     .start = filter_synth_start,
+                                                     .step = step,
+                                                     .fade = filter_synth_fade,
+                                                     .report = LAW_REPORT(report) };

@@ -1,32 +1,64 @@
-/* The synthesised filter with a memory of innovations: see synth_plus.h for the equations. */
-#include "synth_plus.h"
-
-#include "filter_common.h"
-#include "fx.h"
+/*
+ * synth_plus: the synthesised filter with a memory of innovations, B(z) = b0 + b1 z^-1 + b2 z^-2 (paper 001 equation
+ * 16, the past innovations inside x_e):
+ *
+ *   x_e = 2 x1 - x2 - a1 (x1 - 2 x2 + x3) + b1 u1 + b2 u2,   u = z - x_e,   x = x_e + b0 u
+ *
+ * so x / z = B / D with D = B + (1 - b0) A, A = (1 - z^-1)^2 (1 + a1 z^-1). Contains what `synth` cannot be, with the
+ * acceleration's correlation rho = -a1 from sample to sample and gains k1, k2, k3 of x' = x + v, v' = v + a, a' = rho a
+ *
+ *   alpha-beta        rho = 0: b0 = alpha, b1 = beta - alpha, b2 = 0
+ *   steady Singer     b0 = k1, b1 = k2 - (1 + rho) k1, b2 = rho (k1 - k2) + k3; of a Kalman filter that is
+ *   filter            b2 = rho (1 - b0) (b1 + (2 + rho) b0)
+ *   alpha-beta-gamma  the same with rho = 1
+ *
+ * At most three products a sample: b0 u, b1 u and, unless b2 is 0, b2 u, each of a state of 32 bits and a tap of 16,
+ * that is two multiplications of 16 x 16 bits or eight of the chip's. Four free coefficients would need a fourth, so
+ * rho = 1 - 2^-k: what is taken from the curvature is a shift. The chip, which shifts one place at a time, makes that
+ * shift with four multiplications of its bytes by 2^(8-k), half of what a product takes. A process whose rho lies
+ * between two of these is followed with the taps made for the nearer one (test_synth_plus_reference.c tells what that
+ * costs). Not robust: every outlier passes with the gain b0.
+ *
+ * Parameters k (rho = 1 - 2^-k; 8: 1), b0, b1, b2, r (for start and probe). Together the four must be stable: D has its
+ * zeros inside the unit circle, which is (Jury's test of the third order)
+ *
+ *   b0 + b1 + b2 > 0,   b0 - b1 + b2 + 4 (1 - b0) (1 + rho) > 0,   b0 - b2 > (1 - b0) rho (2 b0 + b1)
+ *
+ * and decided in exact integers.
+ *
+ * Scaling:
+ *   memory   Q15.16, b1 u1 + b2 u2 - a1 (x1 - 2 x2 + x3): |b1 u1 + b2 u2| <= 17410 LSB; with a curvature, below 18432
+ *            LSB, the two are limited to 13824 and the sum to 18432: with 2 x1 - x2 each sum is below 2^31 in Q16
+ *   b0..b2   UQ0.16 magnitudes, within 2^-17 of the wanted ones; rho exact
+ *   products b0, b1, b2: three of 32 x 16 bits, and of b2 that is 0 none; rho is a shift that rounds (fx_without_part)
+ *   rounding products half away from zero to 2^-16 LSB, the shift half up; with n half counts in x_e (one for each of
+ *            b1, b2 and the shift) and the one of b0 the error is below
+ *            2^-17 (sum |g0| + n sum |g1|), g0, g1 the impulse responses of (B + (1 - b0)) / D and (1 - b0) / D
+ */
+#include "synth.h"
 
 #define ONE_Q16 65536
-#define K_MAX 8U /* rho = 1 */
+#define K_MAX 8 /* rho = 1 */
 
-/* Of the defaults: kf's gains at the ends of its range of process noise, 6e-8 and 1 R per sample. */
+/* Of the shipped values: kf's gains at the ends of its range of process noise, 6e-8 and 1 R per sample. */
 #define ALPHA_MIN_UQ16 1442U
 #define ALPHA_MAX_UQ16 50403U
 
-static const filter_parameter_t synth_plus_parameters[] FX_FLASH = {
-    { "k", "", offsetof(synth_plus_config_t, k), 2, 0, 0, 0, 0, K_MAX },
-    { "b0", "", offsetof(synth_plus_config_t, b0_uq16), 2, 16, 0, 0, SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16 },
-    { "b1", "", offsetof(synth_plus_config_t, b1_q16), 4, 16, 0, 1, -SYNTH_A1_MAX_Q16, SYNTH_A1_MAX_Q16 },
-    { "b2", "", offsetof(synth_plus_config_t, b2_q16), 4, 16, 0, 1, -SYNTH_A1_MAX_Q16, SYNTH_A1_MAX_Q16 },
-    { "r", "LSB2", offsetof(synth_plus_config_t, r_lsb2_q8), 4, 8, 0, 0, FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8 },
-};
-
-const filter_descriptor_t synth_plus_descriptor FX_FLASH = {
-    "synth_plus", sizeof synth_plus_parameters / sizeof synth_plus_parameters[0], synth_plus_parameters
-};
+static const char k_words[] FX_FLASH = "k\0";
+static const filter_parameter_t k_parameter FX_FLASH = { k_words, 0, 0, 0, K_MAX, 0 };
+static const char b0_words[] FX_FLASH = "b0\0";
+static const filter_parameter_t b0_parameter FX_FLASH = { b0_words, 16, 0, SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16, 0 };
+static const char b1_words[] FX_FLASH = "b1\0";
+static const filter_parameter_t b1_parameter FX_FLASH = { b1_words, 16, 0, -65535, 65535, 0 };
+static const char b2_words[] FX_FLASH = "b2\0";
+static const filter_parameter_t b2_parameter FX_FLASH = { b2_words, 16, 0, -65535, 65535, 0 };
+static const filter_parameter_t *const parameters[] FX_FLASH = { &k_parameter, &b0_parameter, &b1_parameter,
+                                                                 &b2_parameter, &filter_parameter_r };
 
 /*
  * - b1 of the alpha-beta form of a least-squares line through n samples, (4 n - 8) / (n (n + 1)), n = 6..31, UQ0.16.
- * With the gains of synth_next_gain_uq16 the start is that line. A slower filter goes on with its own from there: they
- * are at most 0.13 apart.
+ * With the gains of filter_synth_next_gain_uq16 the start is that line. A slower filter goes on with its own from
+ * there: they are at most 0.13 apart.
  */
 enum { LINE_END = 31 };
 static const uint16_t line_memory_uq16[(uint8_t)LINE_END - (uint8_t)SYNTH_FIRST_GAIN] FX_FLASH = {
@@ -35,13 +67,16 @@ static const uint16_t line_memory_uq16[(uint8_t)LINE_END - (uint8_t)SYNTH_FIRST_
 };
 
 /*
+ * Alpha-beta with the steady gains of `kf` at its defaults (q = 10,000 LSB^2/s^3, R by rate): alpha by a rational
+ * function of the rate within 0.1 % of them from 25 to 800 Hz, limited as they are to 0.022..0.769; beta = alpha^2 /
+ * (2 - alpha), the relation that they have.
+ *
  * Gains of kf: alpha^4 / ((2 - alpha)^2 (1 - alpha)) = q T^3 / R = g^4, g = 24.03 Hz / rate. alpha = sqrt(2) g /
  * (1 + g / sqrt(2) + 0.13 g^2) is exact for small g; with the rate in 0.1 Hz, numerator and denominator times it:
  */
-void synth_plus_defaults(synth_plus_config_t *config, uint16_t rate_dhz)
+static void standard(filter_config_t *config)
 {
-    config->rate_dhz = rate_dhz;
-    config->r_lsb2_q8 = filter_default_r_lsb2_q8(rate_dhz);
+    uint16_t rate_dhz = config->rate_dhz;
     uint16_t alpha_uq16 = (uint16_t)(22271000U / ((uint32_t)rate_dhz + 170U + (uint16_t)(7500U / rate_dhz)));
     if (alpha_uq16 < ALPHA_MIN_UQ16) {
         alpha_uq16 = ALPHA_MIN_UQ16;
@@ -49,34 +84,33 @@ void synth_plus_defaults(synth_plus_config_t *config, uint16_t rate_dhz)
         alpha_uq16 = ALPHA_MAX_UQ16;
     }
     uint16_t beta_uq16 = (uint16_t)(fx_mul_u16(alpha_uq16, alpha_uq16) / (0x20000U - alpha_uq16));
-    config->b0_uq16 = alpha_uq16;
-    config->b1_q16 = (int32_t)beta_uq16 - (int32_t)alpha_uq16;
-    config->k = 0;
-    config->b2_q16 = 0;
+    config->value[SYNTH_PLUS_B0_UQ16] = alpha_uq16;
+    config->value[SYNTH_PLUS_B1_Q16] = (int32_t)beta_uq16 - (int32_t)alpha_uq16;
 }
 
 /* A call of its own for the products that run rarely. */
-FX_NOINLINE uint32_t product_u16(uint16_t a, uint16_t b)
+static uint32_t product_u16(uint16_t a, uint16_t b)
 {
     return fx_mul_u16(a, b);
 }
 
 /* m = (1 - b0) rho, UQ0.32, exact. */
-static uint32_t plus_memory_uq32(const synth_plus_config_t *config)
+static uint32_t memory_uq32(const filter_config_t *config)
 {
-    uint32_t c_uq32 = ((uint32_t)0x10000 - config->b0_uq16) << 16;
-    return (config->k < K_MAX) ? c_uq32 - (c_uq32 >> config->k) : c_uq32;
+    uint32_t c_uq32 = ((uint32_t)0x10000 - (uint32_t)config->value[SYNTH_PLUS_B0_UQ16]) << 16;
+    return (config->value[SYNTH_PLUS_K] < K_MAX) ? c_uq32 - (c_uq32 >> config->value[SYNTH_PLUS_K]) : c_uq32;
 }
 
-/* The three conditions of synth_plus.h in units of 2^-16, exact. The first and third contain 2 b0 + b1 > 0. */
-static bool plus_stable(const synth_plus_config_t *config)
+/* The three conditions of synth_plus.c in units of 2^-16, exact. The first and third contain 2 b0 + b1 > 0. */
+static bool together(const filter_config_t *config)
 {
-    uint32_t memory = plus_memory_uq32(config);
-    int32_t b0 = (int32_t)config->b0_uq16;
-    int32_t twice = 2 * b0 + config->b1_q16;
-    int32_t at_minus_one = b0 - config->b1_q16 + config->b2_q16 + 4 * (ONE_Q16 - b0) + (int32_t)(memory >> 14);
-    if (b0 + config->b1_q16 + config->b2_q16 <= 0 || twice <= 0 || at_minus_one < 0 ||
-        (at_minus_one == 0 && (memory & 0x3FFFU) == 0U)) {
+    uint32_t memory = memory_uq32(config);
+    int32_t b0 = config->value[SYNTH_PLUS_B0_UQ16];
+    int32_t twice = 2 * b0 + config->value[SYNTH_PLUS_B1_Q16];
+    int32_t at_minus_one = b0 - config->value[SYNTH_PLUS_B1_Q16] + config->value[SYNTH_PLUS_B2_Q16] +
+                           4 * (ONE_Q16 - b0) + (int32_t)(memory >> 14);
+    if (b0 + config->value[SYNTH_PLUS_B1_Q16] + config->value[SYNTH_PLUS_B2_Q16] <= 0 || twice <= 0 ||
+        at_minus_one < 0 || (at_minus_one == 0 && (memory & 0x3FFFU) == 0U)) {
         return false;
     }
     /* m (2 b0 + b1) by halves of 16 bits: the product has 50; what it has beyond 32 fraction bits makes it larger */
@@ -88,198 +122,114 @@ static bool plus_stable(const synth_plus_config_t *config)
     uint32_t right = product_u16(low, twice_high);
     uint32_t middle = (product_u16(low, twice_low) >> 16) + (left & 0xFFFFU) + (right & 0xFFFFU);
     uint32_t whole = (middle >> 16) + (left >> 16) + (right >> 16) + product_u16(high, twice_high);
-    return b0 - config->b2_q16 > (int32_t)whole;
+    return b0 - config->value[SYNTH_PLUS_B2_Q16] > (int32_t)whole;
 }
 
-static bool within(int32_t q16)
+static void set_up(filter_t *f, const filter_config_t *config)
 {
-    return q16 >= -SYNTH_A1_MAX_Q16 && q16 <= SYNTH_A1_MAX_Q16;
+    filter_synth_t *s = &f->own.synth;
+    s->b0_uq16 = (uint16_t)config->value[SYNTH_PLUS_B0_UQ16];
+    s->of.plus.k = (uint8_t)config->value[SYNTH_PLUS_K];
+    s->of.plus.rest_uq8 = (uint8_t)((0x100U >> s->of.plus.k) & 0xFEU); /* of k = 0 and 8 nothing */
+    s->of.plus.b1_uq16 = (uint16_t)fx_abs32(config->value[SYNTH_PLUS_B1_Q16]);
+    s->of.plus.b1_negative = config->value[SYNTH_PLUS_B1_Q16] < 0;
+    s->of.plus.b2_uq16 = (uint16_t)fx_abs32(config->value[SYNTH_PLUS_B2_Q16]);
+    s->of.plus.b2_negative = config->value[SYNTH_PLUS_B2_Q16] < 0;
+    filter_set_noise(f, (uint32_t)config->value[SYNTH_PLUS_R_LSB2_Q8]);
 }
 
-void synth_plus_configure(synth_plus_t *f, const synth_plus_config_t *config)
+/* The last innovation x a tap: by magnitudes, so that rounding is the same for both signs. */
+FX_INLINE int32_t tapped(const filter_t *f, bool negative, uint16_t tap_uq16)
 {
-    synth_begin(&f->core, sizeof *f);
-    f->b0_uq16 = config->b0_uq16;
-    f->k = (uint8_t)config->k;
-    f->rest_uq8 = (uint8_t)((0x100U >> f->k) & 0xFEU); /* of k = 0 and 8 nothing */
-    f->b1_uq16 = (uint16_t)fx_abs32(config->b1_q16);
-    f->b1_negative = config->b1_q16 < 0;
-    f->b2_uq16 = (uint16_t)fx_abs32(config->b2_q16);
-    f->b2_negative = config->b2_q16 < 0;
-    synth_spread_of_rate(&f->spread, config->rate_dhz);
-    synth_plus_set_noise(f, config->r_lsb2_q8);
-}
-
-bool synth_plus_together(const synth_plus_config_t *config)
-{
-    return plus_stable(config);
-}
-
-FX_ONCE bool synth_plus_init(synth_plus_t *f, const synth_plus_config_t *config)
-{
-    if (!filter_common_legal(config->rate_dhz, config->r_lsb2_q8) || config->b0_uq16 < SYNTH_B0_MIN_UQ16 ||
-        config->k > K_MAX || !within(config->b1_q16) || !within(config->b2_q16) || !plus_stable(config)) {
-        return false;
-    }
-    synth_plus_configure(f, config);
-    return true;
-}
-
-void synth_plus_set_noise(synth_plus_t *f, uint32_t r_lsb2_q8)
-{
-    synth_take_noise_and_spread(&f->core, &f->spread, r_lsb2_q8);
-}
-
-bool synth_plus_reset_step(synth_plus_t *f, int16_t z0_lsb, uint8_t step)
-{
-    (void)step;
-    synth_plus_reset(f, z0_lsb);
-    return false;
-}
-
-FX_ONCE void synth_plus_reset(synth_plus_t *f, int16_t z0_lsb)
-{
-    synth_at_rest(&f->core, z0_lsb);
-    f->memory_lsb_q16 = 0;
-}
-
-/* The last innovation x a tap. */
-FX_NOINLINE int32_t tapped(const int32_t *innovation, bool negative, uint16_t tap_uq16)
-{
-    if (negative) {
-        return synth_scaled(fx_minus(0, innovation, 0), tap_uq16);
-    }
-    return synth_scaled(*innovation, tap_uq16);
+    int32_t tapped_q16 = (int32_t)fx_mul_uq16(f->size_lsb_uq16, tap_uq16);
+    return (f->negative != negative) ? -tapped_q16 : tapped_q16;
 }
 
 /* b2 u of the last sample, for the x_e after the next. */
-FX_INLINE int32_t older_q16(const synth_plus_t *f)
+static int32_t older_q16(const filter_t *f)
 {
-    return (f->b2_uq16 == 0U) ? 0 : tapped(&f->core.innovation_lsb_q16, f->b2_negative, f->b2_uq16);
+    const filter_synth_t *s = &f->own.synth;
+    return (s->of.plus.b2_uq16 == 0U) ? 0 : tapped(f, s->of.plus.b2_negative, s->of.plus.b2_uq16);
 }
 
 /*
- * What the next x_e adds to the straight line: b1 u, besides the b2 u1 that is there, and rho (x1 - 2 x2 + x3). Both
- * limited on the way so that |memory| <= 18432 LSB, which the extrapolation takes: only steps over most of the range
- * come there. Returns the estimate.
+ * What the next x_e adds to the straight line: b1 u, besides the b2 u1 that is there, and rho (v - v'). Both limited on
+ * the way so that |memory| <= 18432 LSB, which the prediction takes: only steps over most of the range come there.
  */
-FX_NOINLINE int32_t remember(synth_plus_t *f)
+static void remember(filter_t *f)
 {
-    int32_t memory_q16 = fx_plus(tapped(&f->core.innovation_lsb_q16, f->b1_negative, f->b1_uq16), &f->memory_lsb_q16,
-                                 0);
-    if (f->k != 0U) {
-        f->memory_lsb_q16 = fx_clamp_high(memory_q16, 54);
-        memory_q16 = synth_bend(&f->core, false);
-        FX_FENCE();
-        memory_q16 = fx_without_part(memory_q16, f->rest_uq8);
-        memory_q16 = fx_clamp_high(fx_plus(memory_q16, &f->memory_lsb_q16, 0), 72);
+    filter_synth_t *s = &f->own.synth;
+    int32_t memory_q16 = s->memory_lsb_q16 + tapped(f, s->of.plus.b1_negative, s->of.plus.b1_uq16);
+    if (s->of.plus.k != 0U) {
+        memory_q16 = fx_clamp_high(memory_q16, 54);
+        memory_q16 += fx_without_part(f->rate_lsb - s->rate_before_lsb_q16, s->of.plus.rest_uq8);
+        memory_q16 = fx_clamp_high(memory_q16, 72);
     }
-    f->memory_lsb_q16 = memory_q16;
-    return f->core.u.run.x_lsb_q16[0];
+    s->memory_lsb_q16 = memory_q16;
 }
 
 /*
  * A sample of the start, with the gain and the b1 of the line and no other memory. The one that ends it has the own
  * gain and b1.
  */
-FX_NOINLINE int32_t start_step(synth_plus_t *f, int16_t z_lsb)
+static void start_step(filter_t *f, int16_t z_lsb)
 {
-    uint16_t b1_uq16;
-    bool negative;
-    f->core.gain_uq16 = synth_next_gain_uq16(&f->core, f->b0_uq16);
-    if (f->core.collected > (uint8_t)LINE_END) {
-        f->core.collected = SYNTH_STEADY;
-        f->core.gain_uq16 = f->b0_uq16;
-        b1_uq16 = f->b1_uq16;
-        negative = f->b1_negative;
+    filter_synth_t *s = &f->own.synth;
+    uint16_t b1_uq16 = s->of.plus.b1_uq16;
+    bool negative = s->of.plus.b1_negative;
+    f->gain_uq16 = filter_synth_next_gain_uq16(f);
+    if (s->count > (uint8_t)LINE_END) {
+        s->count = SYNTH_STEADY;
+        f->gain_uq16 = s->b0_uq16;
     } else {
-        uint8_t place = (uint8_t)(f->core.collected - ((uint8_t)SYNTH_FIRST_GAIN + 1U)); /* counted already */
+        uint8_t place = (uint8_t)(s->count - ((uint8_t)SYNTH_FIRST_GAIN + 1U)); /* counted already */
         b1_uq16 = fx_flash_u16(&line_memory_uq16[place]);
         negative = true;
     }
-    synth_extrapolate(&f->core, f->memory_lsb_q16);
-    (void)synth_correct(&f->core, z_lsb);
-    f->memory_lsb_q16 = tapped(&f->core.innovation_lsb_q16, negative, b1_uq16);
-    return f->core.u.run.x_lsb_q16[0];
+    f->rate_lsb += s->memory_lsb_q16;
+    filter_synth_step(f, z_lsb, STEP_SAMPLE);
+    s->memory_lsb_q16 = tapped(f, negative, b1_uq16);
 }
 
-/* One sample on. */
-FX_NOINLINE int32_t plus_step(synth_plus_t *f, int16_t z_lsb)
+/* A missing sample is one with the innovation 0; in the start it leaves no memory. */
+static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    f->core.flags = 0;
-    if (f->core.collected != SYNTH_STEADY) {
-        return start_step(f, z_lsb);
+    filter_synth_t *s = &f->own.synth;
+    int32_t memory_q16 = s->memory_lsb_q16;
+    bool steady = s->count == SYNTH_STEADY;
+    if (!steady) {
+        if (what != STEP_MISSING) {
+            start_step(f, z_lsb);
+            return;
+        }
     }
-    f->core.gain_uq16 = f->b0_uq16;
-    synth_extrapolate(&f->core, f->memory_lsb_q16);
-    f->memory_lsb_q16 = older_q16(f);
-    (void)synth_correct(&f->core, z_lsb);
-    return remember(f);
-}
-
-/*
- * Scaling:
- *   input    Q0, any int16, clamped to -4096..4095 LSB
- *   x        Q15.16; |x_e| <= 4608 LSB by clamps; the update moves x_e towards a sample within 4096, so |x| <= 4608 and
- *            the bound is inductive; |z - x_e| <= 8704 LSB < 2^30 / 2^16
- *   memory   Q15.16, b1 u1 + b2 u2 - a1 (x1 - 2 x2 + x3): |b1 u1 + b2 u2| <= 17410 LSB; with a curvature, below 18432
- *            LSB, the two are limited to 13824 and the sum to 18432: with 2 x1 - x2 each sum is below 2^31 in Q16
- *   b0..b2   UQ0.16 magnitudes, within 2^-17 of the wanted ones; rho exact
- *   products b0, b1, b2: three of 32 x 16 bits, and of b2 that is 0 none; rho is a shift that rounds (fx_without_part)
- *   rounding products half away from zero to 2^-16 LSB, the shift half up; with n half counts in x_e (one for each of
- *            b1, b2 and the shift) and the one of b0 the error is below
- *            2^-17 (sum |g0| + n sum |g1|), g0, g1 the impulse responses of (B + (1 - b0)) / D and (1 - b0) / D
- *   cost     docs/benchmarks.md
- */
-int32_t synth_plus_update(synth_plus_t *f, int16_t z_lsb)
-{
-    int16_t z = filter_clamp_z(z_lsb);
-    if (f->core.collected >= FILTER_WARM_UP_SAMPLES) {
-        return plus_step(f, z);
+    s->memory_lsb_q16 = steady ? older_q16(f) : 0;
+    if (what == STEP_MISSING) {
+        filter_tracker_nothing(f);
+    } else {
+        f->gain_uq16 = s->b0_uq16;
     }
-    return synth_warm_up(&f->core, z, &f->spread);
-}
-
-/* A missing sample is one with the innovation 0. */
-int32_t synth_plus_coast(synth_plus_t *f)
-{
-    bool steady = f->core.collected == SYNTH_STEADY;
-    int32_t memory_q16 = f->memory_lsb_q16;
-    f->memory_lsb_q16 = steady ? older_q16(f) : 0;
-    if (!synth_coasts(&f->core)) {
-        return synth_estimate(&f->core);
+    s->rate_before_lsb_q16 = f->rate_lsb;
+    f->rate_lsb += memory_q16;
+    filter_synth_step(f, z_lsb, what);
+    if (steady) {
+        remember(f);
     }
-    synth_extrapolate(&f->core, memory_q16);
-    return steady ? remember(f) : f->core.u.run.x_lsb_q16[0];
 }
 
-void synth_plus_damp(synth_plus_t *f)
+static void fade(filter_t *f, bool first)
 {
-    synth_core_damp(&f->core);
-    f->memory_lsb_q16 >>= 1;
-}
-
-/* Takes every sample as it is: nothing to be held back. */
-void synth_plus_hold(synth_plus_t *f)
-{
-    (void)f;
-}
-
-void synth_plus_restart(synth_plus_t *f)
-{
-    synth_core_restart(&f->core);
-    f->memory_lsb_q16 = 0;
-}
-
-uint8_t synth_plus_flags(const synth_plus_t *f)
-{
-    return f->core.flags;
+    if (!first) {
+        filter_synth_damp(f);
+        f->own.synth.memory_lsb_q16 >>= 1;
+    }
 }
 
 /* v x factor / 2^16, |factor| <= 65535. */
-FX_NOINLINE int32_t times(int32_t v, int32_t factor_q16)
+static int32_t times(int32_t v, int32_t factor_q16)
 {
-    return synth_scaled((factor_q16 < 0) ? -v : v, (uint16_t)fx_abs32(factor_q16));
+    int32_t product = (int32_t)filter_fx_times_uq16(fx_abs32(v), (uint16_t)fx_abs32(factor_q16));
+    return ((v < 0) != (factor_q16 < 0)) ? -product : product;
 }
 
 /* Q7.25 from Q16. */
@@ -289,6 +239,9 @@ static int32_t q25(int32_t v_q16)
 }
 
 /*
+ * Variance of the estimate's error per R in the steady state, white noise, UQ16.16, saturated. Relative error below
+ * 2^-9 where the poles are within 0.99.
+ *
  * With m = (1 - b0) rho the stationary variance, solved from the closed loop, is N / ((b0 - b1 + b2 + 4 (1 - b0) + 4 m)
  * (b0 - b2 - m (2 b0 + b1))), the factors those of the stability test (the third cancels),
  *
@@ -297,12 +250,12 @@ static int32_t q25(int32_t v_q16)
  *
  * In Q25: |N| < 46 for any coefficients of the format.
  */
-uint32_t synth_plus_noise_gain_uq16(const synth_plus_config_t *config)
+uint32_t filter_synth_taps_noise_gain_uq16(const filter_config_t *config)
 {
-    int32_t b0 = (int32_t)config->b0_uq16;
-    int32_t b1 = config->b1_q16;
-    int32_t b2 = config->b2_q16;
-    uint32_t memory = plus_memory_uq32(config);
+    int32_t b0 = config->value[SYNTH_PLUS_B0_UQ16];
+    int32_t b1 = config->value[SYNTH_PLUS_B1_Q16];
+    int32_t b2 = config->value[SYNTH_PLUS_B2_Q16];
+    uint32_t memory = memory_uq32(config);
     int32_t m = (int32_t)(memory >> 16);
     int32_t n = q25(2 * ONE_Q16 - b0 - 3 * b1 - 8 * b2) + times(q25(6 * b0 + 2 * b1 - 2 * b2), b2);
     n = times(n, b0) + q25(2 * (b1 + b2)) + times(q25(b2 - b1), b2);
@@ -310,24 +263,40 @@ uint32_t synth_plus_noise_gain_uq16(const synth_plus_config_t *config)
     n -= times(by_m, m);
     int32_t left = q25(b0 - b1 + b2 + 4 * (ONE_Q16 - b0)) + (int32_t)(memory >> 7) * 4;
     int32_t right = q25(b0 - b2) - times(q25(2 * b0 + b1), m);
-    fx_scaled_t above = fx_scaled((n > 0) ? (uint32_t)n : 1U);
-    fx_scaled_t below = fx_scaled_mul(fx_scaled((left > 0) ? (uint32_t)left : 1U),
-                                      fx_scaled((right > 0) ? (uint32_t)right : 1U));
-    fx_scaled_t gain = fx_scaled_div(above, below);
+    fx_scaled_t above = filter_fx_scaled((n > 0) ? (uint32_t)n : 1U);
+    fx_scaled_t below = filter_fx_scaled_mul(filter_fx_scaled((left > 0) ? (uint32_t)left : 1U),
+                                             filter_fx_scaled((right > 0) ? (uint32_t)right : 1U));
+    fx_scaled_t gain = filter_fx_scaled_div(above, below);
     gain.exponent = (int8_t)(gain.exponent + 25);
-    return fx_scaled_fixed(gain, 16);
+    return filter_fx_scaled_fixed(gain, 16);
 }
 
 /* The variance is that of one sample until the gains are steady, then R times the noise gain, limited to 32 bits. */
-void synth_plus_probe(const synth_plus_t *f, filter_probe_t *out)
+static void report(const filter_t *f, filter_probe_t *out)
 {
-    synth_probe_core(&f->core, out);
-    if (f->core.collected == SYNTH_STEADY) {
-        synth_plus_config_t config = { 0 };
-        config.b0_uq16 = f->b0_uq16;
-        config.k = f->k;
-        config.b1_q16 = f->b1_negative ? -(int32_t)f->b1_uq16 : (int32_t)f->b1_uq16;
-        config.b2_q16 = f->b2_negative ? -(int32_t)f->b2_uq16 : (int32_t)f->b2_uq16;
-        out->p_lsb2_q8 = synth_variance_lsb2_q8(&f->core, synth_plus_noise_gain_uq16(&config));
+    const filter_synth_t *s = &f->own.synth;
+    out->p_lsb2_q8 = s->r_lsb2_q8;
+    if (f->collected == FILTER_RUNNING && s->count == SYNTH_STEADY) {
+        filter_config_t config = { 0 };
+        config.value[SYNTH_PLUS_B0_UQ16] = s->b0_uq16;
+        config.value[SYNTH_PLUS_K] = s->of.plus.k;
+        config.value[SYNTH_PLUS_B1_Q16] = s->of.plus.b1_negative ? -(int32_t)s->of.plus.b1_uq16
+                                                                 : (int32_t)s->of.plus.b1_uq16;
+        config.value[SYNTH_PLUS_B2_Q16] = s->of.plus.b2_negative ? -(int32_t)s->of.plus.b2_uq16
+                                                                 : (int32_t)s->of.plus.b2_uq16;
+        out->p_lsb2_q8 = filter_synth_variance_lsb2_q8(f, filter_synth_taps_noise_gain_uq16(&config));
     }
 }
+
+const filter_law_t filter_law_synth_plus FX_FLASH = { .name = "synth_plus",
+                                                      .parameter_count = 5,
+                                                      .worst_cycles = 700,
+                                                      .parameters = parameters,
+                                                      .standard = standard,
+                                                      .together = together,
+                                                      .set_up = set_up,
+                                                      .set_noise = filter_synth_take_noise,
+                                                      .start = filter_synth_start,
+                                                      .step = step,
+                                                      .fade = fade,
+                                                      .report = LAW_REPORT(report) };

@@ -80,9 +80,25 @@ static void prepare_bias(calibration_applied_t *applied, const calibration_t *c)
  * i = j, else 0: the matrix of calibration.h, all elements by one rule. Upside down it is that of (x, -y, -z), with the
  * columns of y and z turned round.
  */
-FX_ONCE void calibration_prepare_column(calibration_applied_t *applied, const calibration_t *c, uint8_t ours)
+static void prepare_column(calibration_applied_t *applied, const calibration_t *c, const int32_t w_q14[3], uint8_t ours)
 {
-    uint16_t length_q14 = fx_isqrt32(length_square_q28(c->level_q14));
+    uint8_t theirs = calibration_named(c->axes[ours]);
+    int16_t share_q14 = quotient_q14(w_q14[ours], (uint16_t)w_q14[2]);
+    bool reversed = (c->axes[ours] < 0) != (c->level_q14[2] < 0 && ours != 0U);
+    for (uint8_t i = 0; i < 3U; i++) {
+        int32_t m_q14 = ((w_q14[i] * share_q14 + 8192) >> 14) - (i == ours ? CALIBRATION_ONE_Q14 : 0);
+        m_q14 = (reversed == (i == 2U)) ? -m_q14 : m_q14;
+        applied->matrix_q14[3U * i + theirs] = quotient_q14(m_q14, c->scale_lsb_per_g_uq6[theirs]);
+    }
+}
+
+FX_ONCE calibration_verdict_t calibration_prepare(calibration_applied_t *applied, const calibration_t *c)
+{
+    calibration_verdict_t verdict = calibration_check(c);
+    if (verdict.why != (uint8_t)CALIBRATION_GOOD) {
+        return verdict;
+    }
+    uint16_t length_q14 = filter_fx_isqrt32(length_square_q28(c->level_q14));
     bool down = c->level_q14[2] < 0;
     int32_t w_q14[3];
     for (uint8_t i = 0; i < 3U; i++) {
@@ -90,27 +106,10 @@ FX_ONCE void calibration_prepare_column(calibration_applied_t *applied, const ca
         w_q14[i] = quotient_q14((down && i != 0U) ? -level_q14 : level_q14, length_q14);
     }
     w_q14[2] += CALIBRATION_ONE_Q14;
-    uint8_t theirs = calibration_named(c->axes[ours]);
-    int16_t share_q14 = quotient_q14(w_q14[ours], (uint16_t)w_q14[2]);
-    bool reversed = (c->axes[ours] < 0) != (down && ours != 0U);
-    for (uint8_t i = 0; i < 3U; i++) {
-        int32_t m_q14 = ((w_q14[i] * share_q14 + 8192) >> 14) - (i == ours ? CALIBRATION_ONE_Q14 : 0);
-        m_q14 = (reversed == (i == 2U)) ? -m_q14 : m_q14;
-        applied->matrix_q14[3U * i + theirs] = quotient_q14(m_q14, c->scale_lsb_per_g_uq6[theirs]);
+    for (uint8_t ours = 0; ours < 3U; ours++) {
+        prepare_column(applied, c, w_q14, ours);
     }
-    if (ours == 2U) {
-        prepare_bias(applied, c);
-    }
-}
-
-FX_ONCE calibration_verdict_t calibration_prepare(calibration_applied_t *applied, const calibration_t *c)
-{
-    calibration_verdict_t verdict = calibration_check(c);
-    if (verdict.why == (uint8_t)CALIBRATION_GOOD) {
-        for (uint8_t ours = 0; ours < 3U; ours++) {
-            calibration_prepare_column(applied, c, ours);
-        }
-    }
+    prepare_bias(applied, c);
     return verdict;
 }
 

@@ -87,12 +87,6 @@ calibration_verdict_t calibration_check(const calibration_t *c);
 calibration_verdict_t calibration_prepare(calibration_applied_t *applied, const calibration_t *c);
 
 /*
- * A third of that, for a loop that must not wait: what our axis x, y, z (0 to 2, in this order) has of a calibration
- * that is legal. Ready behind the last of the three, of no use before. Divides 7 times.
- */
-void calibration_prepare_column(calibration_applied_t *applied, const calibration_t *c, uint8_t ours);
-
-/*
  * LSB in Q8 to 1/256 g in Q8. a and out must not overlap. Any int32 is safe; meant for |a| <= 4,608 LSB.
  *
  * Scaling: a, out Q8; matrix Q14, |element| <= 1.28; sums Q14. |out| <= sqrt(3) x 256/200 x (4,608 + 80) = 10,394 LSB,
@@ -134,21 +128,20 @@ calibration_verdict_t calibration_single(calibration_t *c, const int16_t mean_ls
 calibration_verdict_t calibration_six(calibration_t *c, const int16_t mean_lsb_q4[3 * CALIBRATION_POSITIONS],
                                       uint16_t *residual_mg);
 
-/* The same in pieces of two divisions and a root, for a loop that must not wait. Inside it: not for reading. */
+/* The same round by round, for a loop that must not wait 8 ms. Inside it: not for reading. */
 typedef struct {
     calibration_t found;
     uint16_t known_q14[CALIBRATION_POSITIONS];
     uint16_t off_q14;
     uint8_t where;
     uint8_t round;
-    uint8_t piece;
     calibration_verdict_t verdict;
 } calibration_six_t;
 
 /* With the axes and the level of this calibration, which stays as it is. */
 void calibration_six_start(calibration_six_t *six, const calibration_t *c);
 
-/* One piece; the means are the same each time. False: it was the last one, and calibration_six_end follows. */
+/* One round; the means are the same each time. False: it was the last one, and calibration_six_end follows. */
 bool calibration_six_step(calibration_six_t *six, const int16_t mean_lsb_q4[3 * CALIBRATION_POSITIONS]);
 
 /* As calibration_six ends. */

@@ -33,7 +33,7 @@ static uint16_t component_q14(const calibration_t *c, means_t means, uint8_t pos
             across_q28 += calibration_square(calibration_gravity_q14(c, axis, means[3U * position + axis]));
         }
     }
-    return across_q28 > ACROSS_MAX_Q28 ? 0U : fx_isqrt32(ONE_Q28 - across_q28);
+    return across_q28 > ACROSS_MAX_Q28 ? 0U : filter_fx_isqrt32(ONE_Q28 - across_q28);
 }
 
 /* Line through the two readings of an axis, where its components are plus and -minus; false: it is no scale. */
@@ -46,7 +46,7 @@ static bool draw_line(calibration_t *c, means_t means, uint8_t axis, const uint1
     }
     uint16_t scale_uq6 = (uint16_t)calibration_over(apart_q4, (uint16_t)(component_q14[0] + component_q14[1]));
     c->scale_lsb_per_g_uq6[axis] = scale_uq6;
-    uint16_t rise_q5 = fx_high_u16((uint16_t)(scale_uq6 << 1), component_q14[0]); /* scale < 2^15 */
+    uint16_t rise_q5 = filter_fx_high_u16((uint16_t)(scale_uq6 << 1), component_q14[0]); /* scale < 2^15 */
     c->offset_lsb_q4[axis] = (int16_t)((uint16_t)upper_q4 - ((rise_q5 + 1U) >> 1));
     return true;
 }
@@ -59,7 +59,6 @@ FX_ONCE void calibration_six_start(calibration_six_t *six, const calibration_t *
     }
     six->where = 0;
     six->round = 0;
-    six->piece = 0;
 }
 
 /* What a position's component is by the offsets and scales of this round. */
@@ -76,24 +75,22 @@ static bool improve(calibration_six_t *six, means_t means, uint8_t position)
     return better_q14 != 0U;
 }
 
-/* Three lines, then six components, round after round. */
+/* Three lines, then six components. */
 FX_ONCE bool calibration_six_step(calibration_six_t *six, const int16_t means[3 * CALIBRATION_POSITIONS])
 {
-    uint8_t piece = six->piece++;
-    if (piece < 3U) {
-        six->off_q14 = 0;
-        six->verdict = calibration_verdict(CALIBRATION_SCALE, piece);
-        return draw_line(&six->found, means, piece, &six->known_q14[2U * piece]);
+    six->off_q14 = 0;
+    for (uint8_t axis = 0; axis < 3U; axis++) {
+        six->verdict = calibration_verdict(CALIBRATION_SCALE, axis);
+        if (!draw_line(&six->found, means, axis, &six->known_q14[2U * axis])) {
+            return false;
+        }
     }
-    uint8_t position = (uint8_t)(piece - 3U);
-    six->verdict = calibration_verdict(CALIBRATION_TILTED, position);
-    if (!improve(six, means, position)) {
-        return false;
+    for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
+        six->verdict = calibration_verdict(CALIBRATION_TILTED, position);
+        if (!improve(six, means, position)) {
+            return false;
+        }
     }
-    if (position != CALIBRATION_POSITIONS - 1U) {
-        return true;
-    }
-    six->piece = 0;
     six->verdict.why = (uint8_t)CALIBRATION_GOOD;
     return six->round++ != ROUNDS;
 }

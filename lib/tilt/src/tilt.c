@@ -158,8 +158,11 @@ int16_t tilt_atan2_cdeg(int32_t y, int32_t x)
     return signed_cdeg(slope_cdeg(&slope), y < 0, x < 0);
 }
 
-void tilt_angles(tilt_t *out, int32_t x_q8, int32_t y_q8, int32_t z_q8)
+void tilt_angles(tilt_t *out, const int32_t a_q8[3])
 {
+    int32_t x_q8 = a_q8[0];
+    int32_t y_q8 = a_q8[1];
+    int32_t z_q8 = a_q8[2];
     slope_t slope;
     slope_of(&slope, fx_abs32(y_q8), fx_abs32(z_q8));
     uint32_t x = fx_abs32(x_q8);
@@ -179,7 +182,7 @@ void tilt_angles(tilt_t *out, int32_t x_q8, int32_t y_q8, int32_t z_q8)
 
 uint16_t tilt_isqrt32(uint32_t v)
 {
-    return fx_isqrt32(v);
+    return filter_fx_isqrt32(v);
 }
 
 /* An acceleration in 1/64 LSB, rounded down; 2^15 for all that is larger, beyond any plausible one. */
@@ -189,14 +192,14 @@ static uint16_t magnitude_q6(int32_t a_q8)
     return (a_q6 > 0x8000UL) ? 0x8000U : (uint16_t)a_q6;
 }
 
-bool tilt_gravity_plausible(int32_t x_q8, int32_t y_q8, int32_t z_q8)
+bool tilt_gravity_plausible(const int32_t a_q8[3])
 {
     const uint32_t lowest_q12 = 193944617UL;  /* (0.85 g * 256 LSB/g * 64)^2 = 13926.4^2 */
     const uint32_t highest_q12 = 355005890UL; /* (1.15 g * 256 LSB/g * 64)^2 = 18841.6^2 */
-    uint16_t x = magnitude_q6(x_q8);
-    uint16_t y = magnitude_q6(y_q8);
-    uint16_t z = magnitude_q6(z_q8);
-    uint32_t sum_q12 = (uint32_t)x * x + (uint32_t)y * y;
-    sum_q12 += (uint32_t)z * z;
+    uint32_t sum_q12 = 0;
+    for (uint8_t axis = 0; axis < 3U; axis++) {
+        uint16_t magnitude = magnitude_q6(a_q8[axis]);
+        sum_q12 += (uint32_t)magnitude * magnitude; /* <= 3 x 2^30 */
+    }
     return sum_q12 >= lowest_q12 && sum_q12 <= highest_q12;
 }

@@ -29,7 +29,7 @@ typedef struct {
  * Error against double from the same inputs, |a| >= 0.25 g: roll <= 0.021, pitch <= 0.029 degree (0.015 found).
  * Any context; no float, no 64-bit products, no division helper, no table.
  */
-void tilt_angles(tilt_t *out, int32_t x_q8, int32_t y_q8, int32_t z_q8);
+void tilt_angles(tilt_t *out, const int32_t a_q8[3]);
 
 /* atan2 in 0.01 degree, -17999..18000, of any two values; (0, 0) gives 0. Error <= 0.021 degree. Any context. */
 int16_t tilt_atan2_cdeg(int32_t y, int32_t x);
@@ -41,7 +41,7 @@ uint16_t tilt_isqrt32(uint32_t v);
  * |a|^2 within 0.85..1.15 g of the nominal 256 LSB/g, from LSB in Q8: false means that the tilt is not to be trusted
  * (flag 512 of the protocol).
  */
-bool tilt_gravity_plausible(int32_t x_q8, int32_t y_q8, int32_t z_q8);
+bool tilt_gravity_plausible(const int32_t a_q8[3]);
 
 #ifdef __cplusplus
 }

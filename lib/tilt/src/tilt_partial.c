@@ -19,7 +19,7 @@ uint16_t tilt_missing_q6(int32_t x_q8, int32_t y_q8, int32_t z_q8)
     uint16_t z = size_q6(z_q8);
     uint32_t known_q12 = fx_product_u16(x, x) + fx_product_u16(y, y); /* <= 3 x 2^28 */
     known_q12 += fx_product_u16(z, z);
-    return (known_q12 < G2_Q12) ? fx_isqrt32(G2_Q12 - known_q12) : 0U;
+    return (known_q12 < G2_Q12) ? filter_fx_isqrt32(G2_Q12 - known_q12) : 0U;
 }
 
 uint16_t tilt_partial_sigma_cdeg(uint16_t sigma_q8, uint16_t missing_q6)

@@ -6,6 +6,7 @@ worse, or `same` where the recording is too short or too noisy to tell.
 """
 import json
 
+from tilt import PLAIN, ROBUST
 from tilt.commands import replay
 
 NAME = "compare"
@@ -31,7 +32,7 @@ def facts_of(stream, tables, rate_dhz):
     rows = next(iter(tables.values()))
     state = judge.states(rows)
     found = rest.find(rows["lsb"], (state == 1).all(axis=1), rate_dhz / 10)
-    probes = judge.probes_of("sprf", rate_dhz, rows, state)
+    probes = judge.probes_of(ROBUST, rate_dhz, rows, state)
     use = judge.judged([probes])
     far = [judge.innovations(axis)[use] ** 2 > judge.CUT ** 2 * judge.variance_of(axis)[use] / judge.BOARD_FACTOR for axis in probes]
     outliers = 100.0 * float(np.mean(far)) if np.any(use) else 0.0
@@ -122,10 +123,10 @@ def why(answer):
 def reasons(answer, rows, best):
     said = []
     if answer["outliers_percent"] >= OUTLIERS_PERCENT:
-        plain = f"; kf, which takes every one, is at {size(rows['kf'])}" if "kf" in rows and best["filter"] != "kf" else ""
-        said.append(f"{answer['outliers_percent']:.1f} % of the readings lie more than 4 sigmas from where sprf expects them{plain}.")
+        plain = f"; {PLAIN}, which takes every one, is at {size(rows[PLAIN])}" if PLAIN in rows and best["filter"] != PLAIN else ""
+        said.append(f"{answer['outliers_percent']:.1f} % of the readings lie more than 4 sigmas from where {ROBUST} expects them{plain}.")
     else:
-        said.append(f"{answer['outliers_percent']:.2f} % of the readings lie more than 4 sigmas from where sprf expects them: no outliers to "
+        said.append(f"{answer['outliers_percent']:.2f} % of the readings lie more than 4 sigmas from where {ROBUST} expects them: no outliers to "
                     "speak of.")
     if answer["still_share"] >= STILL_SHARE:
         said.append(f"It lies still for {100 * answer['still_share']:.0f} % of the time: a long memory wins here, and would lag in motion.")

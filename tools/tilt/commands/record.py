@@ -43,7 +43,7 @@ def arguments(parser):
     parser.add_argument("--seconds", type=real_option, metavar="N", help="end after N seconds by the board's clock (the PC's while nothing comes)")
     parser.add_argument("--baud", type=whole_option, default=protocol.BAUD_AT_START, metavar="N",
                         help=f"of the line (default {protocol.BAUD_AT_START})")
-    parser.add_argument("--send", action="append", default=[], metavar="COMMAND", help="type this when the board is there, as 'filter sprf'; "
+    parser.add_argument("--send", action="append", default=[], metavar="COMMAND", help="type this when the board is there, as 'rate 200'; "
                         "again after each reset; may be given more than once; `baud N` is followed")
     parser.add_argument("--no-reset", action="store_true", help="do not reset the board: join what runs (on Linux the very first opening after "
                         "plugging in may reset it all the same)")

@@ -6,9 +6,11 @@ filters' model does not fit is not called a success: then the status is 1, and t
 """
 import json
 
+from tilt import ROBUST
+
 NAME = "tune"
 SUMMARY = "R, q and gate from a recording, and the commands that set them"
-DEFAULT_FILTER = "sprf"
+DEFAULT_FILTER = ROBUST
 
 
 def arguments(parser):

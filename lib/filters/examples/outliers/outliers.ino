@@ -1,27 +1,26 @@
 /*
- * A made-up signal, 4 LSB of noise, every seventh sample ruined: kf follows the ruin, sprf does not.
+ * A number that is measured again and again, without the tilt. The signal is made up: 4 LSB of noise, every seventh
+ * sample ruined. kf follows the ruin, sprf does not.
  * Open the serial plotter at 115200 baud. No sensor needed.
  */
-#include <kf.h>
+#include <filter.h>
 #include <noise.h>
-#include <sprf.h>
 
-static const uint16_t RATE_DHZ = 1000;  // 100 Hz
+static const uint16_t RATE_HZ = 100;
+static const uint16_t RATE_DHZ = RATE_HZ * 10;  // the filters count in 0.1 Hz
 
-static kf_t plain;
-static sprf_t robust;
+static filter_t plain;
+static filter_t robust;
 static noise_t noise;
 
 void setup()
 {
     Serial.begin(115200);
-    kf_config_t plain_config;
-    kf_defaults(&plain_config, RATE_DHZ);
-    kf_init(&plain, &plain_config);
-    sprf_config_t robust_config;
-    sprf_defaults(&robust_config, RATE_DHZ);
-    sprf_init(&robust, &robust_config);
-    noise_init(&noise, RATE_DHZ, false);
+    filter_config_t config = filter_defaults(&filter_law_kf, RATE_DHZ);
+    filter_init(&plain, &filter_law_kf, &config);
+    config = filter_defaults(&filter_law_sprf, RATE_DHZ);
+    filter_init(&robust, &filter_law_sprf, &config);
+    filter_noise_init(&noise, RATE_DHZ, false);
 }
 
 void loop()
@@ -33,15 +32,15 @@ void loop()
     if (random(7) == 0) {
         z += random(-300, 301);
     }
-    if (noise_update(&noise, z)) {
-        kf_set_noise(&plain, noise_r_lsb2_q8(&noise));
-        sprf_set_noise(&robust, noise_r_lsb2_q8(&noise));
+    if (filter_noise_update(&noise, z)) {
+        filter_set_noise(&plain, filter_noise_r_lsb2_q8(&noise));
+        filter_set_noise(&robust, filter_noise_r_lsb2_q8(&noise));
     }
     Serial.print("raw:");
     Serial.print(z);
     Serial.print(",kf:");
-    Serial.print(kf_update(&plain, z) / 65536.0);
+    Serial.print(filter_update(&plain, z) / 65536.0);
     Serial.print(",sprf:");
-    Serial.println(sprf_update(&robust, z) / 65536.0);
+    Serial.println(filter_update(&robust, z) / 65536.0);
     delay(10);
 }

@@ -1,0 +1,16 @@
+/* The words that settings have for values. Pure; any context. */
+#ifndef SETTINGS_WORDS_H
+#define SETTINGS_WORDS_H
+
+#include <stdint.h>
+
+#include "filter_list.h"
+#include "flash.h"
+
+/* Places: filters by their kind, then output modes, then addresses of the sensor. */
+enum { WORD_FILTER, WORD_MODE = FILTER_KIND_COUNT, WORD_ADDRESS = WORD_MODE + 2, WORDS_END = WORD_ADDRESS + 3 };
+
+/* In program memory, as typed but for capitals. */
+flash_text_t settings_word(uint8_t place);
+
+#endif
