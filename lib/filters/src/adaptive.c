@@ -37,16 +37,13 @@
  */
 #include "adaptive.h"
 
-static const char guard_words[] FX_FLASH = "guard\0sigma";
-static const filter_parameter_t guard FX_FLASH = { guard_words, 8, 1, 256, 4096, 1152 };
-static const char identify_words[] FX_FLASH = "identify\0";
-static const filter_parameter_t identify FX_FLASH = { identify_words, 0, 0, 0, 1, 1 };
-static const char slow_words[] FX_FLASH = "slow\0ms";
-static const filter_parameter_t slow FX_FLASH = { slow_words, 0, 0, 10, 60000, 500 };
-static const char fast_words[] FX_FLASH = "fast\0ms";
-static const filter_parameter_t fast FX_FLASH = { fast_words, 0, 0, 1, 60000, 0 };
-static const char confirm_words[] FX_FLASH = "confirm\0ms";
-static const filter_parameter_t confirm FX_FLASH = { confirm_words, 0, 0, 0, 10000, 120 };
+LAW_KEEPS_FROM(filter_adaptive_t, scatter_lsb_uq24);
+
+LAW_PARAMETER(guard, "guard\0sigma", 8, 1, 256, 4096, 1152);
+LAW_PARAMETER(identify, "identify\0", 0, 0, 0, 1, 1);
+LAW_PARAMETER(slow, "slow\0ms", 0, 0, 10, 60000, 500);
+LAW_PARAMETER(fast, "fast\0ms", 0, 0, 1, 60000, 0);
+LAW_PARAMETER(confirm, "confirm\0ms", 0, 0, 0, 10000, 120);
 static const filter_parameter_t *const parameters[] FX_FLASH = {
     &guard, &filter_parameter_r, &identify, &slow, &fast, &confirm, &filter_parameter_ratemax
 };

@@ -31,6 +31,8 @@
  */
 #include "tracker.h"
 
+LAW_KEEPS_FROM(filter_auto_t, eight_sigmas_lsb_uq8);
+
 /* k = 2 / 512: beyond it a rate would round to a standstill. */
 #define K_MIN_UQ16 256U
 /* The median of five samples is worth a memory of about four. */
@@ -41,14 +43,10 @@
 /* Refused samples in a row and on one side that restart a member. */
 #define RESTART_SAMPLES 5
 
-static const char gate_words[] FX_FLASH = "gate\0sigma";
-static const filter_parameter_t gate FX_FLASH = { gate_words, 8, 1, 256, 4096, 1536 };
-static const char slow_words[] FX_FLASH = "slow\0ms";
-static const filter_parameter_t slow FX_FLASH = { slow_words, 0, 0, 1, 60000, 0 };
-static const char middling_words[] FX_FLASH = "middle\0ms";
-static const filter_parameter_t middling FX_FLASH = { middling_words, 0, 0, 1, 60000, 0 };
-static const char fast_words[] FX_FLASH = "fast\0ms";
-static const filter_parameter_t fast FX_FLASH = { fast_words, 0, 0, 1, 60000, 0 };
+LAW_PARAMETER(gate, "gate\0sigma", 8, 1, 256, 4096, 1536);
+LAW_PARAMETER(slow, "slow\0ms", 0, 0, 1, 60000, 0);
+LAW_PARAMETER(middling, "middle\0ms", 0, 0, 1, 60000, 0);
+LAW_PARAMETER(fast, "fast\0ms", 0, 0, 1, 60000, 0);
 static const filter_parameter_t *const parameters[] FX_FLASH = { &gate, &filter_parameter_r,      &slow, &middling,
                                                                  &fast, &filter_parameter_ratemax };
 

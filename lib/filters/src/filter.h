@@ -50,7 +50,7 @@ extern "C" {
 #define FILTER_HOLD_MS 100
 
 enum filter_flag {
-    FILTER_GATED = 0x01,      /* beyond the gate: refused, or by `soft` and `adaptive` taken in part */
+    FILTER_GATED = 0x01,      /* beyond the gate: refused, or by some laws taken in part */
     FILTER_COASTED = 0x02,    /* no sample: the output is a prediction */
     FILTER_REACQUIRED = 0x04, /* the filter restarted on consistent refused samples */
     FILTER_SATURATED = 0x08,  /* a state was clamped to its bound */
@@ -193,7 +193,7 @@ int32_t filter_missing(filter_t *f);
  */
 void filter_restart(filter_t *f);
 
-/* Gain, variance, innovation and gate of the last update. Divides. */
+/* Gain, variance, innovation and gate of the last update; not there with -DFILTER_WITHOUT_PROBE. Divides. */
 void filter_probe(const filter_t *f, filter_probe_t *out);
 
 /* Facts of a law, from its descriptor in program memory. */

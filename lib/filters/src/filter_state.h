@@ -18,13 +18,12 @@ typedef struct filter_law filter_law_t;
 
 /*
  * The law's state begins with what is in force while the filter runs: it lies where the samples of the start are kept,
- * and means nothing before. What follows FILTER_START_BYTES is made of the configuration or learnt of the noise, and
+ * and means nothing before. What lies behind them is made of the configuration or learnt of the noise, and
  * survives a restart.
  */
 typedef struct {
     int16_t ascending_lsb[5]; /* the samples seen, by size */
 } filter_start_t;
-#define FILTER_START_BYTES 10
 
 /* Covariance of position and rate over R, see kalman.h; wide.h has another format of the same elements. */
 typedef struct {

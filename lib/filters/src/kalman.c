@@ -1,6 +1,8 @@
 /* Covariance, gains and re-acquisition of the Kalman laws: see kalman.h for the equations. */
 #include "kalman.h"
 
+LAW_KEEPS_FROM(filter_kalman_t, q22_uq28);
+
 /* Spread of the rate of a sensor picked up at any moment: 200 LSB/s, 45 degree/s around level. */
 #define START_RATE_VARIANCE_LSB2_S2 40000U
 

@@ -12,10 +12,8 @@
 /* What binds first is the smallest q T^3 / R_L, 6e-8: with the default q and R above 550 Hz. */
 #define LRF_R_MAX_LSB2_Q8 0xFFFFFFU
 
-static const char clean_words[] FX_FLASH = "clean\0";
-static const filter_parameter_t clean FX_FLASH = { clean_words, 16, 0, 656, 65535, 55706 };
-static const char ratio_words[] FX_FLASH = "ratio\0";
-static const filter_parameter_t ratio FX_FLASH = { ratio_words, 8, 0, 256, 8192, 5120 };
+LAW_PARAMETER(clean, "clean\0", 16, 0, 656, 65535, 55706);
+LAW_PARAMETER(ratio, "ratio\0", 8, 0, 256, 8192, 5120);
 static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &filter_parameter_q, &clean,
                                                                  &ratio };
 

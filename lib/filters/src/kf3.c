@@ -10,7 +10,8 @@
  *
  * v and a are differences to the samples before: on x = a n^2 / 2 the rate is that of half a sample ago. Acceleration
  * walks at random (Singer's correlation is 1): with less the lag under constant acceleration, whose absence the filter
- * is for, would be back.  *
+ * is for, would be back.
+ *
  * A long gap: P is predicted until P11 reaches 4 R (or another element 1), then it stays and the acceleration is not
  * believed, so the estimate goes on along a straight line; at the bound of the format it stands still.
  *
@@ -24,6 +25,8 @@
  */
 #include "kalman.h"
 
+LAW_KEEPS_FROM(filter_kf3_t, q33_uq28);
+
 /*
  * From this rate on the acceleration is counted in sixteenths of an LSB per sample^2, because the drive falls with the
  * fifth power of the rate. q33 is limited to 2^-24..1 below this rate (gain 0.118..0.871) and to 2^-32..2^-11 from it
@@ -34,8 +37,7 @@
 #define Q33_MAX_FINE_UQ28 0x2000000U
 #define P22_START_MAX_UQ28 0x8000000U
 
-static const char q_words[] FX_FLASH = "q\0LSB2/s5";
-static const filter_parameter_t q FX_FLASH = { q_words, 0, 0, 1, 1000000000, 300000 };
+LAW_PARAMETER(q, "q\0LSB2/s5", 0, 0, 1, 1000000000, 300000);
 static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &q };
 
 static void set_up(filter_t *f, const filter_config_t *config)

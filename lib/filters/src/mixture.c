@@ -29,10 +29,8 @@
 #define CLEAN_MIN_UQ16 32768
 #define CLEAN_MAX_UQ16 65470
 
-static const char ratio_words[] FX_FLASH = "ratio\0";
-static const filter_parameter_t ratio FX_FLASH = { ratio_words, 8, 0, 512, 25600, 5120 };
-static const char clean_words[] FX_FLASH = "clean\0";
-static const filter_parameter_t clean FX_FLASH = { clean_words, 16, 0, CLEAN_MIN_UQ16, CLEAN_MAX_UQ16, 55706 };
+LAW_PARAMETER(ratio, "ratio\0", 8, 0, 512, 25600, 5120);
+LAW_PARAMETER(clean, "clean\0", 16, 0, CLEAN_MIN_UQ16, CLEAN_MAX_UQ16, 55706);
 static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &filter_parameter_q, &ratio,
                                                                  &clean };
 

@@ -20,9 +20,7 @@
  */
 #include "kalman.h"
 
-static const char softgate_words[] FX_FLASH = "softgate\0sigma";
-static const filter_parameter_t softgate FX_FLASH = { softgate_words,           8,  1, KALMAN_GATE_MIN_SIGMA_Q8,
-                                                      KALMAN_GATE_MAX_SIGMA_Q8, 512 };
+LAW_PARAMETER(softgate, "softgate\0sigma", 8, 1, KALMAN_GATE_MIN_SIGMA_Q8, KALMAN_GATE_MAX_SIGMA_Q8, 512);
 static const filter_parameter_t *const parameters[] FX_FLASH = {
     &filter_parameter_r,    &filter_parameter_q,         &softgate,
     &filter_parameter_gate, &filter_parameter_reacquire, &filter_parameter_ratemax

@@ -12,9 +12,7 @@
  */
 #include "wide.h"
 
-static const char gate_words[] FX_FLASH = "gate\0sigma";
-static const filter_parameter_t gate FX_FLASH = { gate_words, 8, 0, KALMAN_GATE_MIN_SIGMA_Q8, KALMAN_GATE_MAX_SIGMA_Q8,
-                                                  512 };
+LAW_PARAMETER(gate, "gate\0sigma", 8, 0, KALMAN_GATE_MIN_SIGMA_Q8, KALMAN_GATE_MAX_SIGMA_Q8, 512);
 static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &filter_parameter_q, &gate };
 
 /* The squared gate is kept below the saturated distance: 16 sigma are 15.9998. */

@@ -23,10 +23,8 @@
  */
 #include "synth.h"
 
-static const char a1_words[] FX_FLASH = "a1\0";
-static const filter_parameter_t a1 FX_FLASH = { a1_words, 16, 0, -65535, 65535, 0 };
-static const char b0_words[] FX_FLASH = "b0\0";
-static const filter_parameter_t b0 FX_FLASH = { b0_words, 16, 0, SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16, 19661 };
+LAW_PARAMETER(a1, "a1\0", 16, 0, -65535, 65535, 0);
+LAW_PARAMETER(b0, "b0\0", 16, 0, SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16, 19661);
 static const filter_parameter_t *const parameters[] FX_FLASH = { &a1, &b0, &filter_parameter_r };
 
 /* |a1| (1 - b0), UQ0.32, exact. */

@@ -1,6 +1,8 @@
 /* The step and the start of the synthesised laws: see synth.h. */
 #include "synth.h"
 
+LAW_KEEPS_FROM(filter_synth_t, r_lsb2_q8);
+
 /*
  * Gains of a least-squares line through n samples, (4 n - 2) / (n (n + 1)), n = 6..63, UQ0.16: what the constant gain
  * is raised to after the start. Behind the last one the estimate's variance is within a few per cent of the steady one.

@@ -31,10 +31,8 @@ enum { LIMIT = (int)SYNTH_OPT_COMMON + (int)SYNTH_OPT_STEPS };
 /* 11/13 in the limit of variant U, where its errors are taken as uncorrelated; with the closed loop's it is this. */
 #define U_NOISE_GAIN_UQ16 52818U
 
-static const char u_words[] FX_FLASH = "u\0";
-static const filter_parameter_t u FX_FLASH = { u_words, 0, 0, 0, 1, 0 };
-static const char p0_words[] FX_FLASH = "p0\0LSB2";
-static const filter_parameter_t p0 FX_FLASH = { p0_words, 8, 0, 3, 25600000, 0 };
+LAW_PARAMETER(u, "u\0", 0, 0, 0, 1, 0);
+LAW_PARAMETER(p0, "p0\0LSB2", 8, 0, 3, 25600000, 0);
 static const filter_parameter_t *const parameters[] FX_FLASH = { &u, &p0, &filter_parameter_r };
 
 static void standard(filter_config_t *config)

@@ -44,14 +44,10 @@
 #define ALPHA_MIN_UQ16 1442U
 #define ALPHA_MAX_UQ16 50403U
 
-static const char k_words[] FX_FLASH = "k\0";
-static const filter_parameter_t k_parameter FX_FLASH = { k_words, 0, 0, 0, K_MAX, 0 };
-static const char b0_words[] FX_FLASH = "b0\0";
-static const filter_parameter_t b0_parameter FX_FLASH = { b0_words, 16, 0, SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16, 0 };
-static const char b1_words[] FX_FLASH = "b1\0";
-static const filter_parameter_t b1_parameter FX_FLASH = { b1_words, 16, 0, -65535, 65535, 0 };
-static const char b2_words[] FX_FLASH = "b2\0";
-static const filter_parameter_t b2_parameter FX_FLASH = { b2_words, 16, 0, -65535, 65535, 0 };
+LAW_PARAMETER(k_parameter, "k\0", 0, 0, 0, K_MAX, 0);
+LAW_PARAMETER(b0_parameter, "b0\0", 16, 0, SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16, 0);
+LAW_PARAMETER(b1_parameter, "b1\0", 16, 0, -65535, 65535, 0);
+LAW_PARAMETER(b2_parameter, "b2\0", 16, 0, -65535, 65535, 0);
 static const filter_parameter_t *const parameters[] FX_FLASH = { &k_parameter, &b0_parameter, &b1_parameter,
                                                                  &b2_parameter, &filter_parameter_r };
 

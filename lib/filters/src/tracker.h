@@ -46,6 +46,15 @@ struct filter_law {
     void (*report)(const filter_t *f, filter_probe_t *out); /* variance and gate */
 };
 
+/* What a law keeps over a start, from this member of its state on, lies behind the samples of the start. */
+#define LAW_KEEPS_FROM(state, member) \
+    _Static_assert(offsetof(state, member) >= sizeof(filter_start_t), "the samples of the start would go over it")
+
+/* A parameter of a law's own: its name, end and unit in one string, then the members of filter_parameter_t. */
+#define LAW_PARAMETER(parameter, words, ...)                \
+    static const char parameter##_words[] FX_FLASH = words; \
+    static const filter_parameter_t parameter FX_FLASH = { parameter##_words, __VA_ARGS__ }
+
 /*
  * What filter_probe needs of a law. A program that has no use for filter_probe is spared the code, 1.8 KB with seven
  * laws, by -DFILTER_WITHOUT_PROBE; filter_probe is not there then.

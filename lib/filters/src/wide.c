@@ -1,6 +1,8 @@
 /* Covariance that may grow far: see wide.h for the equations. */
 #include "wide.h"
 
+LAW_KEEPS_FROM(filter_wide_t, gate2_uq8);
+
 #define ONE_UQ16 0x10000U
 
 void filter_wide_set_up(filter_t *f, const filter_config_t *config)

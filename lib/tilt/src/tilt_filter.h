@@ -60,7 +60,8 @@ static inline bool tilt_filter_begin(tilt_filter_t *t, uint16_t rate_hz)
  * A sensor whose readings have so many bits, at most 16, and so many LSB per g on x and y, and on z. Readings are
  * shifted right, with rounding, until they have 13 bits and 330 LSB per g at most; legal when 200 LSB per g and 8 bits
  * are left. False: not legal, and nothing is changed. Examples: ADXL345 in its 2 g range 10, 265, 256; MPU-6050 in its
- * 2 g range 16, 16384, 16384. R is that of an ADXL345 at least.
+ * 2 g range 16, 16384, 16384. R is that of an ADXL345 at least. Before the first sample: what
+ * the filters know is in the LSB of the sensor before.
  */
 bool tilt_filter_sensor(tilt_filter_t *t, uint8_t bits, uint16_t xy_lsb_per_g, uint16_t z_lsb_per_g);
 
