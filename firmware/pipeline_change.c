@@ -52,7 +52,7 @@ FX_NOINLINE void begin_axis(tilt_axis_t *axis)
 FX_ONCE bool begin_next(void)
 {
     uint8_t left = pipeline.to_begin;
-    if (left == 0 || !(pipeline.turn || pipeline.cold || !pipeline.has_sample)) {
+    if (left == 0 || !(pipeline.turn || pipeline.cold)) {
         return false;
     }
     left--;

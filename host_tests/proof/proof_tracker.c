@@ -369,4 +369,5 @@ void proof_tracker_rest(void)
     k = filter_tracker_memory_k_uq16(ANY_U16(1, 60000), ANY_U16(50, 40000), 256);
     //@ check shortest: 256 <= k <= 39322;
     (void)filter_tracker_fading_variance(ANY_U32(3, 256000), ANY_U16(0, 39322));
+    (void)filter_parameter_words(&filter_parameter_r);
 }
