@@ -7,7 +7,8 @@ enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_retime; 1 degree */
 
 /*
  * Filters that go on from an output are changed one with each sample, so that a row waits for one of them: a Kalman
- * filter takes up to 2.4 ms to settle. Else, and where the noise is not known either, all at once: no sample comes meanwhile.
+ * filter takes up to 2.4 ms to settle. Else, and where the noise is not known either, all at once: no sample comes
+ * meanwhile.
  */
 FX_ONCE void begin_all(bool cold)
 {

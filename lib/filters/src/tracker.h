@@ -47,8 +47,13 @@ struct filter_law {
 };
 
 /* What a law keeps over a start, from this member of its state on, lies behind the samples of the start. */
+#ifdef __cplusplus
+#define LAW_ASSERT static_assert
+#else
+#define LAW_ASSERT _Static_assert
+#endif
 #define LAW_KEEPS_FROM(state, member) \
-    _Static_assert(offsetof(state, member) >= sizeof(filter_start_t), "the samples of the start would go over it")
+    LAW_ASSERT(offsetof(state, member) >= sizeof(filter_start_t), "the samples of the start would go over it")
 
 /* A parameter of a law's own: its name, end and unit in one string, then the members of filter_parameter_t. */
 #define LAW_PARAMETER(parameter, words, ...)                \
