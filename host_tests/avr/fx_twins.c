@@ -78,6 +78,9 @@ TWIN(without_part, fx_without_part((int32_t)a, PART(b)), fx_without_part_c((int3
 TWIN(clamp_high, fx_clamp_high((int32_t)a, 54), fx_clamp_high_c((int32_t)a, 54))
 TWIN(shift_right, fx_shift_right(a, (uint8_t)b & 31U), fx_shift_right_c(a, (uint8_t)b & 31U))
 
+TWIN(upper, fx_upper(&a), fx_upper_c(&a))
+TWIN(upper_signed, fx_upper_signed((const int32_t *)&a), fx_upper_signed_c((const int32_t *)&a))
+
 static bool twin_normalise(uint32_t a, uint32_t b)
 {
     uint32_t by_assembler = (a >> ((uint8_t)b & 31U)) | 1U; /* not 0: it has no leading bit */
@@ -137,6 +140,8 @@ int main(void)
     RUN(without_part);
     RUN(clamp_high);
     RUN(shift_right);
+    RUN(upper);
+    RUN(upper_signed);
     RUN(normalise);
     RUN(dot24);
     while ((UCSR0A & _BV(UDRE0)) == 0) {

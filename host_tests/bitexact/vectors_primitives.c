@@ -87,6 +87,10 @@ static uint32_t normalised_c(uint32_t v)
     X(filter_fx_inverse_uq16, filter_fx_inverse_uq16(LED(a)))                          \
     X(fx_reciprocal_leading_uq16, fx_reciprocal_leading_uq16(LED(a)))                  \
     X(fx_abs32, fx_abs32((int32_t)a))                                                  \
+    X(fx_upper_c, fx_upper_c(&a))                                                      \
+    X(fx_upper, fx_upper(&a))                                                          \
+    X(fx_upper_signed_c, (uint32_t)fx_upper_signed_c((const int32_t *)&a))             \
+    X(fx_upper_signed, (uint32_t)fx_upper_signed((const int32_t *)&a))                 \
     X(fx_add_sat, fx_add_sat(a, b))                                                    \
     X(fx_clamp, (uint32_t)fx_clamp((int32_t)a, POSITIVE(b)))                           \
     X(fx_inverse_m_uq16, fx_inverse_m_uq16((uint8_t)(a & 0x7FU), B16))                 \

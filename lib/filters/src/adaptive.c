@@ -7,14 +7,19 @@
  *
  * weights a sample n steps old by (1 - k)^n (fading memory of the first order): its memory is about 2 / k samples
  * and the innovation's sigma, within 6 % up to k = 0.6, (1 + k) sigma for noise of that sigma. k grows at once to that
- * of the shortest memory when the mean innovation is not explained by noise, and falls by k^2 / 4 a sample, which
- * lengthens the memory by half a sample, to that of the slowest.
+ * of the shortest memory when the mean innovation is beyond 2.9 of its sigmas (noise alone does that twice a minute at
+ * 100 Hz), and falls by k^2 / 4 a sample, which lengthens the memory by half a sample, to that of the slowest.
  *
- * Guard: a sample further off than `guard` sigmas counts as motion only when the one before it, carried on with the
- * estimated rate, lies off to the same side too; what both agree on is taken and the memory is shortened. An isolated
- * one is taken up to the gate, and the less the further off it is, not at all from twice the gate on. An innovation
+ * Guard: the gate is `guard` times what an innovation is expected to be, its sigma and the size of the mean, which
+ * motion gives it. A sample beyond the gate counts as motion only when the one before it, carried on with the estimated
+ * rate, lies off to the same side too; what both agree on is taken and the memory is shortened. An isolated one is
+ * taken up to the gate, and the less the further off it is, not at all from twice the gate on: a stray. An innovation
  * further beyond the gate than motion explains (an eighth of `ratemax`) is believed after `confirm` of samples on the
  * same side.
+ *
+ * While more than one sample in 64 is a stray, two bad ones in a row are frequent enough to pass for motion. So the
+ * gate is 2.25 sigma then, whatever the mean, unless `guard` is 3 or less; from the fourth sample in a row on one side
+ * on it is 9 sigma, so that a jump among bad samples is not late.
  *
  * Noise, with `identify` on (1): the scatter of the innovations about their mean, of every second sample, each limited
  * to 2.5 times what it is expected to be. Motion that the line does not follow widens it, and so the gate. It starts
@@ -24,7 +29,7 @@
  *
  * FILTER_GATED tells that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be
  * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the identified noise and
- * forgets rate and mean innovation; the memory is the slowest.
+ * forgets rate, mean innovation and strays; the memory is the slowest.
  *
  * Parameters guard, r, identify, slow, fast, confirm, ratemax (at most 127 LSB per sample of it).
  *
@@ -65,6 +70,12 @@ static void standard(filter_config_t *config)
     config->value[ADAPTIVE_FAST_MS] = (int32_t)80 + (int32_t)(20000U / rate_dhz);
 }
 
+/*
+ * Mean innovation that shortens the memory, at most, in sigmas of one: below 30 Hz the mean is of a few samples, and
+ * 2.9 sigmas of it would be reached too late.
+ */
+#define MANOEUVRE_MAX_UQ16 55378U /* 0.845 */
+
 /* Shares and thresholds that follow from the shortest memory. */
 static void set_memory(filter_adaptive_t *a, const filter_config_t *config)
 {
@@ -73,17 +84,18 @@ static void set_memory(filter_adaptive_t *a, const filter_config_t *config)
     a->fast_uq16 = filter_tracker_memory_k_uq16((uint16_t)config->value[ADAPTIVE_FAST_MS], config->rate_dhz,
                                                 a->slow_uq16);
     a->share_uq16 = filter_fx_high_u16(a->fast_uq16, 26214); /* 0.4 */
-    /* sigma of the mean, sqrt(share / (2 - share)), times 2.15 */
-    uint32_t ratio_uq32 = ((uint32_t)a->share_uq16 << 15) / (0x20000U - a->share_uq16) << 17;
-    a->manoeuvre_uq16 = (uint16_t)((275U * (uint32_t)filter_fx_isqrt32(ratio_uq32)) >> 7); /* <= 0.8 */
+    /* 2.9 sigma of the mean, whose variance is about share / 2 */
+    uint32_t manoeuvre_uq16 = fx_product_u16(filter_fx_isqrt32((uint32_t)a->share_uq16 << 16), 525) >> 8;
+    a->manoeuvre_uq16 = (manoeuvre_uq16 > MANOEUVRE_MAX_UQ16) ? MANOEUVRE_MAX_UQ16 : (uint16_t)manoeuvre_uq16;
 }
 
 static void set_up(filter_t *f, const filter_config_t *config)
 {
     filter_adaptive_t *a = &f->own.adaptive;
-    a->guarded = config->value[ADAPTIVE_GUARD_SIGMA_Q8] != 0;
-    a->gate_sigma_q8 = a->guarded ? (uint16_t)config->value[ADAPTIVE_GUARD_SIGMA_Q8] : ADAPTIVE_UNGUARDED_SIGMA_Q8;
-    a->identify = config->value[ADAPTIVE_IDENTIFY] != 0;
+    uint16_t guard_sigma_q8 = (uint16_t)config->value[ADAPTIVE_GUARD_SIGMA_Q8];
+    a->guarded = guard_sigma_q8 != 0U;
+    a->gate_sigma_q8 = a->guarded ? guard_sigma_q8 : ADAPTIVE_UNGUARDED_SIGMA_Q8;
+    a->identify = (uint8_t)config->value[ADAPTIVE_IDENTIFY] != 0U;
     set_memory(a, config);
     uint32_t confirm_samples = (uint32_t)config->value[ADAPTIVE_CONFIRM_MS] * config->rate_dhz / 10000U; /* <= 40000 */
     a->confirm = (confirm_samples < ADAPTIVE_CONFIRM_LEAST) ? ADAPTIVE_CONFIRM_LEAST : (uint16_t)confirm_samples;
@@ -114,6 +126,13 @@ static int32_t rate_lsb_q16(const filter_t *f)
 {
     int32_t rate = f->rate_lsb >> 8;
     return (f->negative && (uint8_t)(uint32_t)f->rate_lsb != 0U) ? rate + 1 : rate;
+}
+
+/* Size of the mean innovation, UQ8.8. */
+static uint16_t mean_size_uq8(const filter_adaptive_t *a)
+{
+    int16_t mean = fx_upper_signed(&a->mean_lsb_q24);
+    return (mean < 0) ? (uint16_t)(0U - (uint16_t)mean) : (uint16_t)mean;
 }
 
 /* A size in 8.8 bits, limited to 128 LSB. */
@@ -166,15 +185,15 @@ static uint32_t agreed_lsb_uq16(const filter_t *f, int32_t x1_lsb_q16)
 static uint32_t judge(filter_t *f, int32_t x1_lsb_q16)
 {
     filter_adaptive_t *a = &f->own.adaptive;
-    uint16_t run = (a->verdict == (uint8_t)ADAPTIVE_WITHIN) ? 0U : a->run;
-    if (run != UINT16_MAX) {
-        a->run = (uint16_t)(run + 1U);
+    if (a->run != UINT16_MAX) {
+        a->run++;
     }
     uint32_t agreed = agreed_lsb_uq16(f, x1_lsb_q16);
     uint32_t size = f->size_lsb_uq16;
     uint32_t gate = a->gate_lsb_uq16;
     if (agreed > gate) {
-        uint16_t jump_lsb_uq8 = (uint16_t)(f->rate_max_lsb >> 19); /* beyond the gate, what motion does not explain */
+        /* beyond the gate, what motion does not explain */
+        uint16_t jump_lsb_uq8 = (uint16_t)(fx_upper(&f->rate_max_lsb) >> 3);
         bool large = size - gate > (uint32_t)jump_lsb_uq8 << 8;
         if (!large || a->run >= a->confirm) {
             a->verdict = large ? ADAPTIVE_JUMP : ADAPTIVE_MOTION;
@@ -188,17 +207,20 @@ static uint32_t judge(filter_t *f, int32_t x1_lsb_q16)
     if (left > agreed) {
         agreed = left;
     }
-    a->verdict = (agreed == 0U) ? ADAPTIVE_UNUSED : ADAPTIVE_OUTLIER;
+    a->verdict = ADAPTIVE_OUTLIER;
+    if (agreed == 0U) {
+        a->verdict = ADAPTIVE_UNUSED;
+        a->strays = (a->strays > UINT8_MAX - ADAPTIVE_STRAY) ? UINT8_MAX : (uint8_t)(a->strays + ADAPTIVE_STRAY);
+    }
     return agreed;
 }
 
 /* Memory after this sample. */
 static void adapt(filter_adaptive_t *a, uint16_t spread_uq8)
 {
-    int16_t mean = (int16_t)(a->mean_lsb_q24 >> 16);
-    uint16_t mean_uq8 = (mean < 0) ? (uint16_t)(0U - (uint16_t)mean) : (uint16_t)mean;
+    uint16_t mean_uq8 = mean_size_uq8(a);
     uint16_t threshold_uq8 = filter_fx_high_u16(spread_uq8, a->manoeuvre_uq16);
-    uint16_t k = (uint16_t)(a->k_uq32 >> 16);
+    uint16_t k = fx_upper(&a->k_uq32);
     if (a->verdict >= (uint8_t)ADAPTIVE_MOTION || mean_uq8 > threshold_uq8) {
         if (k < a->fast_uq16) {
             a->k_uq32 = (uint32_t)a->fast_uq16 << 16;
@@ -239,7 +261,7 @@ static void follow(filter_t *f, uint32_t taken)
         f->flags |= FILTER_REACQUIRED;
         f->rate_lsb = 0;
     } else {
-        uint16_t k = (uint16_t)(f->own.adaptive.k_uq32 >> 16);
+        uint16_t k = fx_upper(&f->own.adaptive.k_uq32);
         uint32_t w = filter_fx_times_uq16(taken, k);
         uint32_t kw = turn_lsb_uq24(w, k);
         turn(f, (int32_t)kw);
@@ -247,6 +269,22 @@ static void follow(filter_t *f, uint32_t taken)
     }
     tracker_move(f, (int32_t)taken);
     f->x_lsb_q16 = tracker_bounded(f, f->x_lsb_q16); /* the rate's limit may leave x a step beyond the sample */
+}
+
+/* The gate of this sample, from its innovation's sigma; what is expected is below 256 LSB, 16 times it below 4096. */
+static uint32_t gate_lsb_uq16(const filter_adaptive_t *a, uint16_t expected_uq8)
+{
+    uint16_t sigma_q8 = a->gate_sigma_q8;
+    if (a->strays > ADAPTIVE_STRAY) {
+        if (sigma_q8 > ADAPTIVE_CLOSE_SIGMA_Q8) {
+            sigma_q8 = (a->run < ADAPTIVE_TIGHT_RUN) ? ADAPTIVE_TIGHT_SIGMA_Q8 : ADAPTIVE_WIDE_SIGMA_Q8;
+        }
+    } else if (a->run == 0U) {
+        uint16_t mean_uq8 = mean_size_uq8(a);
+        uint16_t most_uq8 = (uint16_t)~expected_uq8;
+        expected_uq8 = (uint16_t)(expected_uq8 + ((mean_uq8 < most_uq8) ? mean_uq8 : most_uq8));
+    }
+    return fx_product_u16(expected_uq8, sigma_q8);
 }
 
 /* Innovation and gate; returns the sigma of the innovation, LSB. An innovation of 0 keeps to its side. */
@@ -261,9 +299,9 @@ static uint16_t meet(filter_t *f, int16_t z_lsb)
         a->run = 0;
         a->mean_lsb_q24 = -a->mean_lsb_q24;
     }
-    uint16_t spread_uq8 = (uint16_t)(a->scatter_lsb_uq24 >> 16);
-    spread_uq8 = (uint16_t)(spread_uq8 + filter_fx_high_u16(spread_uq8, (uint16_t)(a->k_uq32 >> 16)));
-    a->gate_lsb_uq16 = fx_product_u16(spread_uq8, a->gate_sigma_q8);
+    uint16_t spread_uq8 = fx_upper(&a->scatter_lsb_uq24);
+    spread_uq8 = (uint16_t)(spread_uq8 + filter_fx_high_u16(spread_uq8, fx_upper(&a->k_uq32)));
+    a->gate_lsb_uq16 = gate_lsb_uq16(a, spread_uq8);
     return spread_uq8;
 }
 
@@ -273,7 +311,7 @@ static uint16_t meet(filter_t *f, int16_t z_lsb)
  */
 static void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spread_uq8)
 {
-    int16_t mean = (int16_t)(a->mean_lsb_q24 >> 16);
+    int16_t mean = fx_upper_signed(&a->mean_lsb_q24);
     int16_t size = size_lsb_q8(size_lsb_uq16);
     uint16_t term = (mean > size) ? (uint16_t)(mean - size) : (uint16_t)((uint16_t)size - (uint16_t)mean);
     if (term > 47662U) {
@@ -313,6 +351,10 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
         taken = judge(f, x1_lsb_q16);
     } else {
         a->verdict = ADAPTIVE_WITHIN;
+        a->run = 0;
+        if (a->strays != 0U) {
+            a->strays--;
+        }
     }
     f->broken = false;
     average_innovation(a, taken);
@@ -330,7 +372,7 @@ static uint16_t gain_uq16(const filter_t *f)
     if ((f->flags & FILTER_COASTED) != 0U || f->own.adaptive.verdict == (uint8_t)ADAPTIVE_UNUSED) {
         return 0;
     }
-    uint16_t k = (uint16_t)(f->own.adaptive.k_uq32 >> 16);
+    uint16_t k = fx_upper(&f->own.adaptive.k_uq32);
     return (uint16_t)(2U * k - filter_fx_high_u16(k, k));
 }
 
@@ -338,15 +380,15 @@ static uint16_t gain_uq16(const filter_t *f)
 static void report(const filter_t *f, filter_probe_t *out)
 {
     const filter_adaptive_t *a = &f->own.adaptive;
-    uint16_t sigma_uq8 = (uint16_t)(a->scatter_lsb_uq24 >> 16);
+    uint16_t sigma_uq8 = fx_upper(&a->scatter_lsb_uq24);
     out->p_lsb2_q8 = fx_product_u16(sigma_uq8, sigma_uq8) >> 8;
     if (f->collected != FILTER_RUNNING) {
         return;
     }
-    out->p_lsb2_q8 = filter_tracker_fading_variance(out->p_lsb2_q8, (uint16_t)(a->k_uq32 >> 16));
+    out->p_lsb2_q8 = filter_tracker_fading_variance(out->p_lsb2_q8, fx_upper(&a->k_uq32));
     out->gain_uq16 = gain_uq16(f);
     if (a->guarded && a->gate_lsb_uq16 != 0U) {
-        uint16_t gate_uq4 = (uint16_t)(a->gate_lsb_uq16 >> 12); /* <= 4000 LSB */
+        uint16_t gate_uq4 = (uint16_t)(a->gate_lsb_uq16 >> 12); /* < 4096 LSB */
         out->gate_lsb2_q8 = fx_product_u16(gate_uq4, gate_uq4);
     }
 }
@@ -354,7 +396,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 const filter_law_t filter_law_adaptive FX_FLASH = { .name = "adaptive",
                                                     .parameter_count = 7,
                                                     .traits = LAW_FINE_RATE | LAW_GATED,
-                                                    .worst_cycles = 1600,
+                                                    .worst_cycles = 1400,
                                                     .parameters = parameters,
                                                     .standard = standard,
                                                     .set_up = set_up,

@@ -29,6 +29,17 @@ extern "C" {
 #define ADAPTIVE_WEIGHT_UQ16 4096U
 #define ADAPTIVE_UNGUARDED_WEIGHT_UQ16 2048U
 
+/*
+ * Strays: each counts as much as so many samples within the gate, so the count rises while more than one in 65 is one.
+ * Above one stray the gate is the tight one, unless it is as close as that of the low rates; from this sample in a row
+ * on one side on it is a wide one.
+ */
+#define ADAPTIVE_STRAY 64U
+#define ADAPTIVE_TIGHT_SIGMA_Q8 576U
+#define ADAPTIVE_WIDE_SIGMA_Q8 2304U
+#define ADAPTIVE_CLOSE_SIGMA_Q8 768U
+#define ADAPTIVE_TIGHT_RUN 4U
+
 /* Fewest samples in a row on one side that make a jump believed. */
 #define ADAPTIVE_CONFIRM_LEAST 3U
 

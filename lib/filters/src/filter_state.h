@@ -110,12 +110,12 @@ typedef struct {
 
 /* adaptive: see adaptive.c. */
 typedef struct {
-    int32_t mean_lsb_q24;   /* of the innovations, each limited to the gate and 128 LSB; towards the last one */
-    uint32_t k_uq32;        /* 1 - fading factor, of the last update */
-    uint32_t gate_lsb_uq16; /* of the last step */
-    uint16_t run;           /* samples beyond the gate on one side, up to the last */
-    uint8_t verdict;        /* of the guard on the last sample */
-    uint8_t unused;
+    int32_t mean_lsb_q24;      /* of the innovations, each limited to the gate and 128 LSB; towards the last one */
+    uint32_t k_uq32;           /* 1 - fading factor, of the last update */
+    uint32_t gate_lsb_uq16;    /* of the last step */
+    uint16_t run;              /* samples beyond the gate on one side, up to the last */
+    uint8_t verdict;           /* of the guard on the last sample */
+    uint8_t strays;            /* samples of which nothing was taken, see adaptive.h */
     uint32_t scatter_lsb_uq24; /* sigma of the innovations for k = 0: 0.1..90 */
     uint16_t gate_sigma_q8;    /* in sigmas of the innovation */
     bool guarded;              /* a gate was configured */

@@ -211,6 +211,16 @@ static inline int32_t fx_clamp_high_c(int32_t v, uint8_t limit)
     return fx_clamp(v, (int32_t)limit * 16777216);
 }
 
+/* Upper half of a number in memory: of v >> 16 the compiler of the 8-bit machine would load all four bytes. */
+static inline uint16_t fx_upper_c(const uint32_t *v)
+{
+    return (uint16_t)(*v >> 16);
+}
+static inline int16_t fx_upper_signed_c(const int32_t *v)
+{
+    return (int16_t)(*v >> 16);
+}
+
 #if defined(__AVR__) && defined(__OPTIMIZE__)
 #include "fx_avr.h"
 #else
@@ -266,6 +276,14 @@ static inline int32_t fx_without_part(int32_t v, uint8_t part_uq8)
 static inline int32_t fx_clamp_high(int32_t v, uint8_t limit)
 {
     return fx_clamp_high_c(v, limit);
+}
+static inline uint16_t fx_upper(const uint32_t *v)
+{
+    return fx_upper_c(v);
+}
+static inline int16_t fx_upper_signed(const int32_t *v)
+{
+    return fx_upper_signed_c(v);
 }
 
 #endif

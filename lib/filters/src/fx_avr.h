@@ -9,6 +9,20 @@
 /* Here the assembler twins are used: fx_dot.h asks. */
 #define FX_ASSEMBLER
 
+FX_INLINE uint16_t fx_upper(const uint32_t *v)
+{
+    uint16_t upper;
+    __builtin_memcpy(&upper, (const uint8_t *)v + 2, sizeof upper);
+    return upper;
+}
+
+FX_INLINE int16_t fx_upper_signed(const int32_t *v)
+{
+    int16_t upper;
+    __builtin_memcpy(&upper, (const uint8_t *)v + 2, sizeof upper);
+    return upper;
+}
+
 FX_INLINE uint32_t fx_mul_u16(uint16_t a, uint16_t b)
 {
     uint32_t product;
