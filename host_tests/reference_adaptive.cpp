@@ -13,6 +13,7 @@ constexpr double q32 = q16 * q16;
 constexpr double x_max = 4608.0;
 constexpr double turn_max = 127.0;
 constexpr double size_max = 128.0;
+constexpr int stray = 64, strays_max = 255, tight_run = 4;
 
 // A number and the largest difference of its fixed-point twin.
 struct Value {
@@ -45,13 +46,19 @@ void meet(reference_adaptive_t &f, double z, Step &s)
     }
     s.size = { std::fabs(u), q16 };
     s.spread = { f.now.scatter * (1.0 + f.now.k), q8 * (2.0 + f.now.k) + f.now.scatter * q16 };
-    s.gate = { f.sigmas * s.spread.v, f.sigmas * s.spread.e };
+    const bool strays = f.strays > stray;
+    const double sigmas = (strays && f.sigmas > 3.0) ? (f.run < tight_run ? 2.25 : 9.0) : f.sigmas;
+    s.gate = { sigmas * s.spread.v, sigmas * s.spread.e };
+    if (!strays && f.run == 0) { // the mean has 8 bits behind the point
+        s.gate.v = sigmas * std::min(s.spread.v + std::fabs(f.now.mean), 256.0);
+        s.gate.e += sigmas * q8;
+    }
 }
 
 // Beyond the gate.
 void judge(reference_adaptive_t &f, Step &s)
 {
-    f.run = (f.verdict == VERDICT_WITHIN) ? 1 : f.run + 1;
+    f.run++;
     double agreed = std::min(std::max(0.0, f.side * s.before), s.size.v);
     const double near = s.gate.e + q16;
     if (s.above(agreed, s.gate.v, near)) {
@@ -66,7 +73,11 @@ void judge(reference_adaptive_t &f, Step &s)
     }
     const bool far = s.above(s.size.v, 2.0 * s.gate.v, 2.0 * s.gate.e + q16);
     s.taken = { far ? agreed : std::max(agreed, 2.0 * s.gate.v - s.size.v), 2.0 * s.gate.e + q16 };
-    f.verdict = (far && agreed == 0.0) ? VERDICT_UNUSED : VERDICT_OUTLIER;
+    f.verdict = VERDICT_OUTLIER;
+    if (far && agreed == 0.0) {
+        f.verdict = VERDICT_UNUSED;
+        f.strays = std::min(strays_max, f.strays + stray);
+    }
 }
 
 // The mean innovation; both terms have 8 bits behind the point.
@@ -178,7 +189,7 @@ void reference_adaptive_begin(reference_adaptive_t *f, double z)
 {
     f->before = z;
     f->broken = false;
-    f->run = f->samples = f->terms = 0;
+    f->run = f->samples = f->terms = f->strays = 0;
     f->side = 1;
     f->verdict = VERDICT_UNUSED;
 }
@@ -193,6 +204,8 @@ bool reference_adaptive_step(reference_adaptive_t *f, double z, reference_adapti
     } else {
         s.taken = s.size;
         f->verdict = VERDICT_WITHIN;
+        f->run = 0;
+        f->strays = std::max(0, f->strays - 1);
     }
     average(*f, s);
     bound->mean = s.mean.e;

@@ -25,7 +25,7 @@ typedef struct {
     reference_adaptive_value_t now;
     double before; /* the sample before */
     bool broken;   /* one was missing since */
-    int side, run, samples, terms;
+    int side, run, samples, terms, strays;
     reference_verdict_t verdict;
 } reference_adaptive_t;
 

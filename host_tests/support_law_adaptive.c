@@ -16,7 +16,7 @@ static const char *broken_adaptive_memory(const filter_t *f)
 
 /*
  * adaptive.c: the sigma is that of the R it was told (at most 31.7 LSB) or between 0.1 and 90 LSB, memory between 3.3
- * and 4096 samples, a gate of 16 sigma of 90 LSB times 1.6; mean and gate lie where the samples of the start were.
+ * and 4096 samples, a gate of 16 times 256 LSB; mean and gate lie where the samples of the start were.
  */
 const char *broken_adaptive(const filter_t *f)
 {
@@ -24,7 +24,7 @@ const char *broken_adaptive(const filter_t *f)
     if (a->scatter_lsb_uq24 < ADAPTIVE_SCATTER_MIN_UQ24 || a->scatter_lsb_uq24 > ADAPTIVE_SCATTER_MAX_UQ24) {
         return "noise";
     }
-    if (running(f) && a->gate_lsb_uq16 > (uint32_t)2305 << 16) {
+    if (running(f) && a->gate_lsb_uq16 > (uint32_t)4096 << 16) {
         return "gate";
     }
     if (running(f) && fx_abs32(a->mean_lsb_q24) > (uint32_t)128 << 24) {

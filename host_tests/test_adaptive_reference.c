@@ -113,6 +113,7 @@ static void tell(reference_adaptive_t *r, const filter_t *f)
 {
     r->verdict = (reference_verdict_t)f->own.adaptive.verdict;
     r->run = f->own.adaptive.run;
+    r->strays = f->own.adaptive.strays;
     r->side = f->negative ? -1 : 1;
 }
 
@@ -209,7 +210,7 @@ static void a_start_with_a_bad_read_is_that_of_the_reference(void)
     TEST_ASSERT_TRUE(compared > 110000 - 110000 / 20);
 }
 
-/* k = 2 / memory, share 0.4 k, threshold 2.15 sqrt(share / (2 - share)); its root is taken of 15 bits. */
+/* k = 2 / memory, share 0.4 k, threshold 2.9 sqrt(share / 2) but at most 0.845; the factor is rounded to 2^-8. */
 static void parameters_are_those_of_the_equations(void)
 {
     static const uint16_t rates_dhz[] = { 100, 250, 500, 1000, 4000, 8000 };
@@ -220,12 +221,12 @@ static void parameters_are_those_of_the_equations(void)
         double fast = fmin(0.6, 20000.0 / ((double)config.value[ADAPTIVE_FAST_MS] * rates_dhz[i]));
         double slow = 20000.0 / ((double)config.value[ADAPTIVE_SLOW_MS] * rates_dhz[i]);
         double share = 0.4 * fast;
-        double ratio = share / (2.0 - share);
         assert_within(2e-5, fast, f.own.adaptive.fast_uq16 / 65536.0, "fast");
         assert_within(2e-5, slow, f.own.adaptive.slow_uq16 / 65536.0, "slow");
         assert_within(4e-5, share, f.own.adaptive.share_uq16 / 65536.0, "share");
-        double error = 2.15 * (6e-5 / sqrt(ratio)) + 0.002 * sqrt(ratio);
-        assert_within(error, 2.15 * sqrt(ratio), f.own.adaptive.manoeuvre_uq16 / 65536.0, "threshold");
+        double error = 2.9 * 4e-5 / sqrt(2.0 * share) + 0.004 * sqrt(share) + 2e-5;
+        double threshold = fmin(0.845, 2.9 * sqrt(share / 2.0));
+        assert_within(error, threshold, f.own.adaptive.manoeuvre_uq16 / 65536.0, "threshold");
     }
 }
 

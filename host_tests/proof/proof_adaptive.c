@@ -1,7 +1,7 @@
 /* adaptive: see law.h. */
 #define RATE_END 2130706432 /* 127 LSB */
 #define MEAN_END 2147483647 /* below 128 LSB, so that it can be negated */
-#define GATE_END 150994944  /* 2304 LSB: 16 sigma of 90 LSB times 1.6 */
+#define GATE_END 268431360  /* below 4096 LSB: 16 times 256 */
 #define K_END 2577072127    /* 39322 and a fraction */
 #define SPREAD_END 36864    /* 90 LSB times 1.6 */
 
@@ -43,7 +43,7 @@ static inline void average_innovation(filter_adaptive_t *a, uint32_t taken);
 static void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spread_uq8);
 
 /*@ requires TRACKED(f) && RUNNING(&f->own.adaptive) && FLAG(f->negative) && WITHIN(x1_lsb_q16, X_MAX_Q16);
-    assigns f->flags, f->own.adaptive.verdict, f->own.adaptive.run, \result \from f->x_lsb_q16, f->rate_lsb, f->flags,
+    assigns f->flags, f->own.adaptive.verdict, f->own.adaptive.run, f->own.adaptive.strays, \result \from f->x_lsb_q16, f->rate_lsb, f->flags,
             f->own, f->size_lsb_uq16, f->negative, f->rate_max_lsb, f->previous_lsb, x1_lsb_q16;
     ensures \result <= SIZE_END;
     ensures f->own.adaptive.verdict <= 4;
@@ -94,6 +94,7 @@ static void any_own(filter_t *f, uint8_t kind)
     a->learnt = ANY_U8(0, 7);
     a->verdict = ANY_U8(0, 4);
     a->run = ANY_U16(0, UINT16_MAX);
+    a->strays = ANY_U8(0, UINT8_MAX);
 }
 
 /* By powers of 2 of the rate. */
