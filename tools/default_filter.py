@@ -85,13 +85,13 @@ class Tables:
         self.named = [name for name in NAMED if name in self.names]
         self.classes = score.by_class(self.cells, self.names)
         self.verdict = score.verdict(self.classes)
-        self.draws = score.redrawn(self.cells, self.named)
+        self.draws = score.redrawn(self.cells, score.compared(self.classes))
 
     def group(self, group, rate_hz=None):
         return [cell for cell in self.cells if cell.group == group and rate_hz in (None, cell.rate_hz)]
 
     def best(self, group):
-        return min(self.named, key=lambda name: self.classes[group][name])
+        return min(score.compared(self.classes), key=lambda name: self.classes[group][name])
 
     def others(self):
         return [name for name in self.names if name not in NAMED]
@@ -118,7 +118,7 @@ def class_table(t):
     order = t.named + t.others()
     lines = [[group, *(lsb(t.classes[group][name]) for name in order)] for group in CLASSES if group in t.classes]
     return markdown("RMSE by class", "LSB (256 per g), geometric mean over the rates of the geometric mean over their streams; behind the first "
-                    f"{len(t.named)} filters, which the rule compares, the others of the list, a median of five before `{PLAIN}`, "
+                    f"{len(t.named)} filters, the others of the list, a median of five before `{PLAIN}`, "
                     "and the raw samples.",
                     ["class", *ticks(order)], lines)
 
@@ -156,9 +156,9 @@ def best_table(t):
         for rate_hz in RATES_HZ:
             found = {name: score.geometric(t.group(group, rate_hz), name) for name in t.named} if t.group(group, rate_hz) else {}
             least = min(found.values(), default=0.0)
-            cells.append(" ".join(f"`{name}`" for name in sorted(found, key=found.get) if found[name] <= score.WITHIN * least))
+            cells.append(" ".join(f"`{name}`" for name in sorted(found, key=found.get) if found[name] <= score.NEAR * least))
         lines.append([group, *cells])
-    return markdown("Which filter when", f"Of the {len(t.named)} that the rule compares: the best, then those within 5 % of it.",
+    return markdown("Which filter when", f"Of {len(t.named)}: the best, then those within 5 % of it.",
                     ["class", *(f"{rate_hz} Hz" for rate_hz in RATES_HZ)], lines)
 
 
@@ -184,29 +184,27 @@ def losses_table(t):
 
 
 def readings(t):
-    """(what, {class: {filter: score}}, filters among which is the best) of every reading of the rule, the deciding one first."""
+    """(what, {class: {filter: score}}) of every reading of the rule, the deciding one first."""
     with_contention = {**t.classes}
     cells = [cell for cell in t.cells if cell.group in (BAD_READS, CONTENTION)]
     with_contention[BAD_READS] = {name: score.geometric(cells, name) for name in t.names}
-    filters = [name for name in t.names if name not in ("raw", f"median5_{PLAIN}")]
     made = [cell for cell in t.cells if cell.made]
     real = [cell for cell in t.cells if not cell.made]
-    return [("as decided", t.classes, NAMED),
-            ("recordings smoothed at 2.5 Hz", score.by_class(t.cells, t.names, reference=1), NAMED),
-            ("recordings smoothed at 10 Hz", score.by_class(t.cells, t.names, reference=2), NAMED),
-            ("against the filter's own run without faults", score.by_class(t.cells, t.names, score.pooled_rms, OWN), NAMED),
-            ("mean squares pooled: the worst streams count", score.by_class(t.cells, t.names, score.pooled_rms), NAMED),
-            ("bad reads judged over the whole stream", score.by_class(t.whole, t.names), NAMED),
-            ("contention among the bad reads", with_contention, NAMED),
-            ("best of all filters of the list", t.classes, filters),
-            ("recordings alone", score.by_class(real, t.names), NAMED),
-            ("shipped and made streams alone", score.by_class(made, t.names), NAMED)]
+    return [("as decided", t.classes),
+            ("recordings smoothed at 2.5 Hz", score.by_class(t.cells, t.names, reference=1)),
+            ("recordings smoothed at 10 Hz", score.by_class(t.cells, t.names, reference=2)),
+            ("against the filter's own run without faults", score.by_class(t.cells, t.names, score.pooled_rms, OWN)),
+            ("mean squares pooled: the worst streams count", score.by_class(t.cells, t.names, score.pooled_rms)),
+            ("bad reads judged over the whole stream", score.by_class(t.whole, t.names)),
+            ("contention among the bad reads", with_contention),
+            ("recordings alone", score.by_class(real, t.names)),
+            ("shipped and made streams alone", score.by_class(made, t.names))]
 
 
 def readings_table(t):
     lines = []
-    for what, scores, named in readings(t):
-        found = score.verdict(scores, named=named)
+    for what, scores in readings(t):
+        found = score.verdict(scores)
         lines.append([what, *(f"{found.ratio[group]:.2f}" if group in found.ratio else "" for group in CLASSES), str(len(found.best_in)),
                       f"`{found.default}`"])
     return markdown(READINGS, f"`{CANDIDATE}` over the best, class by class; only the first line decides.",
@@ -215,11 +213,11 @@ def readings_table(t):
 
 def candidates_table(t):
     lines = []
-    for name in t.named:
+    for name in sorted(t.verdict.mean, key=t.verdict.mean.get):
         found = score.verdict(t.classes, candidate=name)
-        lines.append([f"`{name}`", *(f"{found.ratio[group]:.2f}" if group in found.ratio else "" for group in CLASSES), str(len(found.best_in)),
-                      "no" if found.beyond or len(found.best_in) < score.HALF else "yes"])
-    return markdown("Would another pass?", "The rule put to each of the filters that it compares.", ["filter", *CLASSES, "best in", "passes"], lines)
+        lines.append([f"`{name}`", lsb(found.mean[name]), *(f"{found.ratio[group]:.2f}" for group in CLASSES), "no" if found.beyond else "yes"])
+    return markdown("All filters by the rule", "Geometric mean over the classes in LSB, and how many times the best each is in each class.",
+                    ["filter", "mean", *CLASSES, "within the floor"], lines)
 
 
 def contention_table(t):
@@ -271,7 +269,7 @@ def verdict_table(t):
     agree = sum(score.verdict(draw).default == v.default for draw in t.draws)
     said = f"The default is **`{v.default}`**: " + (f"`{CANDIDATE}` is {v.why}." if v.ratio else f"{v.why}.")
     return markdown("Verdict", f"{said} With the streams drawn anew the rule says the same in {agree} of {len(t.draws)} draws.",
-                    ["class", "best", f"`{CANDIDATE}` / best", "within 5 %", "best there"], lines)
+                    ["class", "best", f"`{CANDIDATE}` / best", f"within {score.FLOOR:g} times", "best there"], lines)
 
 
 def tables(t):

@@ -8,9 +8,10 @@ from default_streams import BAD_READS, CLASSES
 from page import Fault
 from laws import DEFAULT, PLAIN, ROBUST
 
-NAMED = (PLAIN, ROBUST, "soft", "pbf", DEFAULT)  # among these is the best
+NAMED = (PLAIN, ROBUST, "soft", "pbf", DEFAULT)  # of which the page has columns; the rule compares all
+NOT_FILTERS = ("raw", f"median5_{PLAIN}")
 CANDIDATE, KEPT = DEFAULT, ROBUST
-WITHIN, HALF = 1.05, len(CLASSES) / 2
+NEAR, FLOOR = 1.05, 1.25  # times the best: as good as it; the most that a default may have in any class
 HELD = "held back, "  # before the class of what does not decide
 NONE, HEALTHY, WIRING, CONTENTION = "none", "bad reads 1e-5", "bad reads 1e-3", "contention 20 %"
 REFERENCES = ("5 Hz", "2.5 Hz", "10 Hz", "own")    # as host_tests/default_filter.c: truth or smoothed, then the own run
@@ -154,30 +155,42 @@ def ratio_interval(draws, group, name, rival):
 @dataclass
 class Verdict:
     default: str
-    ratio: dict     # {class: candidate / best of the named}
-    beyond: list    # classes in which the candidate is not within 5 %
+    mean: dict      # {filter: geometric mean over the classes, LSB}
+    ratio: dict     # {class: candidate / best}
+    beyond: list    # classes in which the candidate is more than FLOOR times the best
     best_in: list   # classes in which it is best
     why: str
 
 
-def verdict(scores, candidate=CANDIDATE, named=NAMED):
-    """The rule of the choice. scores: {class: {filter: LSB}}; a class or the candidate missing keeps the default."""
+def compared(scores):
+    """Filters of the list that have a score in every class."""
+    every = set.intersection(*(set(found) for found in scores.values()))
+    return [name for name in next(iter(scores.values())) if name in every and name not in NOT_FILTERS]
+
+
+def verdict(scores, candidate=CANDIDATE):
+    """The rule: of the filters that are at most FLOOR times the best in every class, the one with the least geometric mean over the classes.
+
+    scores: {class: {filter: LSB}}; a class without a stream, or no filter within the floor, leaves KEPT. What is told is told of the candidate.
+    """
     missing = [group for group in CLASSES if group not in scores]
     if missing:
-        return Verdict(KEPT, {}, missing, [], f"no stream of class {', '.join(missing)}")
-    if any(candidate not in scores[group] for group in CLASSES):
-        return Verdict(KEPT, {}, list(CLASSES), [], f"{candidate} is not in the filter list")
-    best = {group: min(scores[group][name] for name in named if name in scores[group]) for group in CLASSES}
+        return Verdict(KEPT, {}, {}, missing, [], f"no stream of class {', '.join(missing)}")
+    names = compared(scores)
+    if candidate not in names:
+        return Verdict(KEPT, {}, {}, list(CLASSES), [], f"{candidate} is not in the filter list")
+    best = {group: min(scores[group][name] for name in names) for group in CLASSES}
+    beyond = {name: [group for group in CLASSES if scores[group][name] > FLOOR * best[group]] for name in names}
+    means = {name: math.exp(mean(math.log(scores[group][name]) for group in CLASSES)) for name in names}
+    passing = sorted((name for name in names if not beyond[name]), key=means.get)
     ratio = {group: scores[group][candidate] / best[group] for group in CLASSES}
-    beyond = [group for group in CLASSES if ratio[group] > WITHIN]
-    best_in = [group for group in CLASSES if ratio[group] <= 1.0]
-    if beyond:
-        why = "more than 5 % behind the best in " + ", ".join(f"{group} ({ratio[group]:.2f} times)" for group in beyond)
-    elif len(best_in) < HALF:
-        why = f"best in {len(best_in)} of {len(CLASSES)} classes only"
+    if beyond[candidate]:
+        why = f"more than {FLOOR:g} times the best in " + ", ".join(f"{group} ({ratio[group]:.2f} times)" for group in beyond[candidate])
     else:
-        why = f"within 5 % of the best in every class and best in {len(best_in)} of {len(CLASSES)}"
-    return Verdict(KEPT if beyond or len(best_in) < HALF else candidate, ratio, beyond, best_in, why)
+        rival = min((name for name in names if name != candidate), key=means.get, default=candidate)
+        why = (f"within {FLOOR:g} times the best in every class, and its geometric mean over them is {means[candidate]:.3g} LSB "
+               f"(`{rival}` {means[rival] / means[candidate]:.2f} times that)")
+    return Verdict(passing[0] if passing else KEPT, means, ratio, beyond[candidate], [group for group in CLASSES if ratio[group] <= 1.0], why)
 
 
 def fixed_wins(cells):
