@@ -6,7 +6,7 @@ import { feedOf, writePiece } from './streams.mjs';
 import { MCUSR } from './uno.mjs';
 
 // the bus is free, and no try of the firmware falls within microseconds of the fault's end in any of these runs
-const AT_MS = 1001.5, AFTER_SAMPLE = { 100: 0.5, 400: 0.8, 800: 0.8 };
+const AT_MS = 1001.5, AFTER_SAMPLE = { 100: 0.5, 400: 0.8, 800: 0.7 };
 
 const lasting = (ms, begin, end) => (board, at) => board.at(at, begin).at(at + ms, end);
 const unplugged = (ms) => lasting(ms, (b) => { b.wires.unplugged = true; }, (b) => { b.wires.unplugged = false; });
@@ -20,7 +20,7 @@ const SLOWLY = 1;
 const starved = (ms) => lasting(ms, (b) => b.uno.starve(true), (b) => b.uno.starve(false));
 const once = (kind) => (board, at) => board.at(at, (b) => b.wires.once.push(kind));
 
-// name: [what simrun calls it, the same here, when, rate, ms of the run, tolerance of a fault's length in ms]
+// name: what simrun calls it, the same here, when or after which sample (AT_MS), rate, how many drained samples may be apart
 export const FAULTS = {
   absent: { sim: ['0ms:unplug'], here: (b) => { b.wires.unplugged = true; }, at: 0 },
   unplugged_500_ms: { sim: [':unplug:500'], here: unplugged(500) },
@@ -37,7 +37,7 @@ export const FAULTS = {
   bus_error_once: { sim: [':buserr'], here: once('buserror') },
   int1_cut_25_ms: { sim: [':noint:25'], here: cut(25) },
   int1_cut_500_ms: { sim: [':noint:500'], here: cut(500) },
-  int1_cut_60_ms_800_hz: { sim: [':noint:60'], here: cut(60), rate: 800 },
+  int1_cut_60_ms_800_hz: { sim: [':noint:60'], here: cut(60), rate: 800, near: 1006.2 },
   unplugged_100_ms_400_hz: { sim: [':unplug:100'], here: unplugged(100), rate: 400 },
   sda_low_100_ms_400_hz: { sim: [':sda:100'], here: held('sda', 100), rate: 400 },
   starved_20_ms_800_hz: { sim: [':starve:20'], here: starved(20), rate: 800, drained: AT_THE_END },
@@ -74,8 +74,9 @@ export function run(job) {
   const base = `${OUT}/run-${process.pid}`;
   writePiece(`${base}.csv`, 'rest-2lsb', { rate, offset: 0, count: MS / 1000 * rate + 100 });
   const ask = { elf: job.image.replace('.hex', '.elf'), stream: `${base}.csv`, simrun: job.simrun };
-  const before = simrun(base, { ...ask, ms: AT_MS, script: fasterScript(rate) });
-  const at = fault.at ?? afterSample(before.served, AT_MS, rate, AFTER_SAMPLE[rate]);
+  const near = fault.near ?? AT_MS;
+  const before = simrun(base, { ...ask, ms: near, script: fasterScript(rate) });
+  const at = fault.at ?? afterSample(before.served, near, rate, AFTER_SAMPLE[rate]);
   ask.faults = fault.sim.map((f) => (f[0] === ':' ? `${at}ms${f}` : f));
   ask.options = fault.options;
   const { served } = simrun(base, { ...ask, ms: STOP_MS, script: fasterScript(rate) });
