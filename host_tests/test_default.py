@@ -35,7 +35,7 @@ def decided(*ratio, **more):
 
 
 @test
-def the_least_geometric_mean_within_the_floor_is_the_default():
+def the_least_geometric_mean_of_those_that_pass_is_the_default():
     assert decided(*(0.5,) * 6).default == DEFAULT
     found = decided(0.9, 0.9, 0.9, 0.9, 0.9, 1.25)  # the mean of these is 0.95 of the other's
     assert found.default == DEFAULT and found.beyond == [] and found.best_in == list(score.CLASSES[:5]), found
@@ -44,7 +44,7 @@ def the_least_geometric_mean_within_the_floor_is_the_default():
 
 
 @test
-def one_class_beyond_the_floor_rules_out_and_is_named():
+def one_class_too_far_from_the_best_rules_out_and_is_named():
     found = decided(0.1, 0.1, 0.1, 0.1, 1.251, 0.1)
     assert found.default != DEFAULT and found.beyond == ["vibration"] and "vibration (1.25 times)" in found.why, found
     assert decided(1.251, 0.1, 0.1, 0.1, 0.1, 0.1).beyond == ["rest"]
@@ -57,20 +57,20 @@ def every_filter_is_compared_but_what_is_none():
 
 
 @test
-def no_filter_within_the_floor_keeps_the_default():
+def where_no_filter_passes_none_is_chosen():
     scores = {group: {PLAIN: 1.0 + 9.0 * (i % 2), DEFAULT: 10.0 - 9.0 * (i % 2), ROBUST: 5.0} for i, group in enumerate(score.CLASSES)}
-    assert score.verdict(scores).default == ROBUST
+    assert score.verdict(scores).default == score.NONE_PASSES
 
 
 @test
-def a_missing_class_or_candidate_keeps_the_default():
+def a_missing_class_or_candidate_chooses_none():
     scores = planted((0.5,) * 6)
     del scores["walking"]
-    assert score.verdict(scores).default == ROBUST and "walking" in score.verdict(scores).why
+    assert score.verdict(scores).default == score.NONE_PASSES and "walking" in score.verdict(scores).why
     scores = planted((0.5,) * 6)
     del scores["bad reads"][DEFAULT]
     found = score.verdict(scores)
-    assert found.default == ROBUST and f"{DEFAULT} is not in the filter list" in found.why, found
+    assert found.default == score.NONE_PASSES and f"{DEFAULT} is not in the filter list" in found.why, found
 
 
 # --- scores -----------------------------------------------------------------------------------------------------------
@@ -352,7 +352,7 @@ def without_recordings_the_page_is_left_alone():
     try:
         assert default_filter.main() == 0 and not default_filter.DOCUMENT.exists()
         rows = json.loads(default_filter.JSON.read_text(encoding="ascii"))
-        assert rows[0]["default"] == ROBUST and rows[0]["recordings"] is False and "no stream of class rest" in rows[0]["why"], rows[0]
+        assert rows[0]["default"] == score.NONE_PASSES and rows[0]["recordings"] is False and "no stream of class rest" in rows[0]["why"], rows[0]
     finally:
         default_filter.measure, default_filter.JSON, default_filter.DOCUMENT = kept
 

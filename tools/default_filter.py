@@ -10,7 +10,7 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import default_score as score
 import default_streams as streams
-from default_score import CANDIDATE, CONTENTION, KEPT, NAMED, OWN
+from default_score import CANDIDATE, CONTENTION, NAMED, OWN
 from default_streams import BAD_READS, CLASSES, MOTIONS, RATES_HZ
 from page import Fault, Page, run_as_program
 from laws import PLAIN
@@ -217,7 +217,7 @@ def candidates_table(t):
         found = score.verdict(t.classes, candidate=name)
         lines.append([f"`{name}`", lsb(found.mean[name]), *(f"{found.ratio[group]:.2f}" for group in CLASSES), "no" if found.beyond else "yes"])
     return markdown("All filters by the rule", "Geometric mean over the classes in LSB, and how many times the best each is in each class.",
-                    ["filter", "mean", *CLASSES, "within the floor"], lines)
+                    ["filter", "mean", *CLASSES, "passes"], lines)
 
 
 def contention_table(t):
@@ -269,7 +269,7 @@ def verdict_table(t):
     agree = sum(score.verdict(draw).default == v.default for draw in t.draws)
     said = f"The default is **`{v.default}`**: " + (f"`{CANDIDATE}` is {v.why}." if v.ratio else f"{v.why}.")
     return markdown("Verdict", f"{said} With the streams drawn anew the rule says the same in {agree} of {len(t.draws)} draws.",
-                    ["class", "best", f"`{CANDIDATE}` / best", f"within {score.FLOOR:g} times", "best there"], lines)
+                    ["class", "best", f"`{CANDIDATE}` / best", f"within {score.MOST:g} times", "best there"], lines)
 
 
 def tables(t):

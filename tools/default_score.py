@@ -10,8 +10,8 @@ from laws import DEFAULT, PLAIN, ROBUST
 
 NAMED = (PLAIN, ROBUST, "soft", "pbf", DEFAULT)  # of which the page has columns; the rule compares all
 NOT_FILTERS = ("raw", f"median5_{PLAIN}")
-CANDIDATE, KEPT = DEFAULT, ROBUST
-NEAR, FLOOR = 1.05, 1.25  # times the best: as good as it; the most that a default may have in any class
+CANDIDATE, NONE_PASSES = DEFAULT, "none"
+NEAR, MOST = 1.05, 1.25  # times the best: as good as it; the most that a default may have in any class
 HELD = "held back, "  # before the class of what does not decide
 NONE, HEALTHY, WIRING, CONTENTION = "none", "bad reads 1e-5", "bad reads 1e-3", "contention 20 %"
 REFERENCES = ("5 Hz", "2.5 Hz", "10 Hz", "own")    # as host_tests/default_filter.c: truth or smoothed, then the own run
@@ -157,7 +157,7 @@ class Verdict:
     default: str
     mean: dict      # {filter: geometric mean over the classes, LSB}
     ratio: dict     # {class: candidate / best}
-    beyond: list    # classes in which the candidate is more than FLOOR times the best
+    beyond: list    # classes in which the candidate is more than MOST times the best
     best_in: list   # classes in which it is best
     why: str
 
@@ -169,28 +169,28 @@ def compared(scores):
 
 
 def verdict(scores, candidate=CANDIDATE):
-    """The rule: of the filters that are at most FLOOR times the best in every class, the one with the least geometric mean over the classes.
+    """The rule: of the filters that are at most MOST times the best in every class, the one with the least geometric mean over the classes.
 
-    scores: {class: {filter: LSB}}; a class without a stream, or no filter within the floor, leaves KEPT. What is told is told of the candidate.
+    scores: {class: {filter: LSB}}; a class without a stream, or no filter within that, chooses none. What is told is told of the candidate.
     """
     missing = [group for group in CLASSES if group not in scores]
     if missing:
-        return Verdict(KEPT, {}, {}, missing, [], f"no stream of class {', '.join(missing)}")
+        return Verdict(NONE_PASSES, {}, {}, missing, [], f"no stream of class {', '.join(missing)}")
     names = compared(scores)
     if candidate not in names:
-        return Verdict(KEPT, {}, {}, list(CLASSES), [], f"{candidate} is not in the filter list")
+        return Verdict(NONE_PASSES, {}, {}, list(CLASSES), [], f"{candidate} is not in the filter list")
     best = {group: min(scores[group][name] for name in names) for group in CLASSES}
-    beyond = {name: [group for group in CLASSES if scores[group][name] > FLOOR * best[group]] for name in names}
+    beyond = {name: [group for group in CLASSES if scores[group][name] > MOST * best[group]] for name in names}
     means = {name: math.exp(mean(math.log(scores[group][name]) for group in CLASSES)) for name in names}
     passing = sorted((name for name in names if not beyond[name]), key=means.get)
     ratio = {group: scores[group][candidate] / best[group] for group in CLASSES}
     if beyond[candidate]:
-        why = f"more than {FLOOR:g} times the best in " + ", ".join(f"{group} ({ratio[group]:.2f} times)" for group in beyond[candidate])
+        why = f"more than {MOST:g} times the best in " + ", ".join(f"{group} ({ratio[group]:.2f} times)" for group in beyond[candidate])
     else:
         rival = min((name for name in names if name != candidate), key=means.get, default=candidate)
-        why = (f"within {FLOOR:g} times the best in every class, and its geometric mean over them is {means[candidate]:.3g} LSB "
+        why = (f"within {MOST:g} times the best in every class, and its geometric mean over them is {means[candidate]:.3g} LSB "
                f"(`{rival}` {means[rival] / means[candidate]:.2f} times that)")
-    return Verdict(passing[0] if passing else KEPT, means, ratio, beyond[candidate], [group for group in CLASSES if ratio[group] <= 1.0], why)
+    return Verdict(passing[0] if passing else NONE_PASSES, means, ratio, beyond[candidate], [group for group in CLASSES if ratio[group] <= 1.0], why)
 
 
 def fixed_wins(cells):
