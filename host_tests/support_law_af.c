@@ -13,5 +13,5 @@ const char *broken_af(const filter_t *f)
 law_facts_t law_facts_af(void)
 {
     return (law_facts_t){ ENVELOPE(MIXTURE_SUM, 1.0, 800.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_MIXTURE) USUAL,
-                          SETTLES_IN(150), .learns = true };
+                          SETTLES_IN(150), .learns = true, .loses_motion = true };
 }

@@ -21,5 +21,5 @@ const char *broken_lrf(const filter_t *f)
 law_facts_t law_facts_lrf(void)
 {
     return (law_facts_t){ ENVELOPE(TWO_STATE_SUM, 60.85, LINEAR_FORGETS, 0, ENVELOPE_LINEAR) USUAL, REFUSES,
-                          SETTLES_IN(114), .stays_away = true };
+                          SETTLES_IN(114), .stays_away = true, .loses_motion = true };
 }

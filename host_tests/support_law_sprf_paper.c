@@ -16,6 +16,10 @@ const char *broken_sprf_paper(const filter_t *f)
 
 law_facts_t law_facts_sprf_paper(void)
 {
-    return (law_facts_t){ ENVELOPE(0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_NONE) REFUSES, SETTLES_IN(443),
-                          .locks_out = true, .stays_away = true, .restarts = true };
+    return (law_facts_t){ ENVELOPE(0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_NONE) REFUSES,
+                          SETTLES_IN(443),
+                          .locks_out = true,
+                          .stays_away = true,
+                          .restarts = true,
+                          .loses_motion = true };
 }
