@@ -32,6 +32,19 @@ struct Step {
     }
 };
 
+// The gate; the mean in it has 8 bits behind the point.
+Value gate_of(const reference_adaptive_t &f, const Value &spread)
+{
+    if (f.strays > stray) {
+        const double sigmas = (f.sigmas <= 3.0) ? f.sigmas : (f.run < tight_run) ? 2.25 : 9.0;
+        return { sigmas * spread.v, sigmas * spread.e };
+    }
+    if (f.run != 0) {
+        return { f.sigmas * spread.v, f.sigmas * spread.e };
+    }
+    return { f.sigmas * std::min(spread.v + std::fabs(f.now.mean), 256.0), f.sigmas * (spread.e + q8) };
+}
+
 // Innovation and gate. Of the scatter and of its product with k, 8 bits remain behind the point; k has 16.
 void meet(reference_adaptive_t &f, double z, Step &s)
 {
@@ -46,13 +59,7 @@ void meet(reference_adaptive_t &f, double z, Step &s)
     }
     s.size = { std::fabs(u), q16 };
     s.spread = { f.now.scatter * (1.0 + f.now.k), q8 * (2.0 + f.now.k) + f.now.scatter * q16 };
-    const bool strays = f.strays > stray;
-    const double sigmas = (strays && f.sigmas > 3.0) ? (f.run < tight_run ? 2.25 : 9.0) : f.sigmas;
-    s.gate = { sigmas * s.spread.v, sigmas * s.spread.e };
-    if (!strays && f.run == 0) { // the mean has 8 bits behind the point
-        s.gate.v = sigmas * std::min(s.spread.v + std::fabs(f.now.mean), 256.0);
-        s.gate.e += sigmas * q8;
-    }
+    s.gate = gate_of(f, s.spread);
 }
 
 // Beyond the gate.

@@ -11,7 +11,6 @@
 
 enum { SAMPLES = 20000, RUNS = 3000, SEED = 9417 };
 static uint32_t random_state;
-
 void setUp(void)
 {
     random_state = SEED;

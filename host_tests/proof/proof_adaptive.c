@@ -43,8 +43,9 @@ static inline void average_innovation(filter_adaptive_t *a, uint32_t taken);
 static void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spread_uq8);
 
 /*@ requires TRACKED(f) && RUNNING(&f->own.adaptive) && FLAG(f->negative) && WITHIN(x1_lsb_q16, X_MAX_Q16);
-    assigns f->flags, f->own.adaptive.verdict, f->own.adaptive.run, f->own.adaptive.strays, \result \from f->x_lsb_q16, f->rate_lsb, f->flags,
-            f->own, f->size_lsb_uq16, f->negative, f->rate_max_lsb, f->previous_lsb, x1_lsb_q16;
+    assigns f->flags, f->own.adaptive.verdict, f->own.adaptive.run, f->own.adaptive.strays, \result
+            \from f->x_lsb_q16, f->rate_lsb, f->flags, f->own, f->size_lsb_uq16, f->negative, f->rate_max_lsb,
+            f->previous_lsb, x1_lsb_q16;
     ensures \result <= SIZE_END;
     ensures f->own.adaptive.verdict <= 4;
 */

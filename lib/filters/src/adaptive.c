@@ -7,19 +7,16 @@
  *
  * weights a sample n steps old by (1 - k)^n (fading memory of the first order): its memory is about 2 / k samples
  * and the innovation's sigma, within 6 % up to k = 0.6, (1 + k) sigma for noise of that sigma. k grows at once to that
- * of the shortest memory when the mean innovation is beyond 2.9 of its sigmas (noise alone does that twice a minute at
- * 100 Hz), and falls by k^2 / 4 a sample, which lengthens the memory by half a sample, to that of the slowest.
+ * of the shortest memory when the mean innovation is beyond 2.9 of its sigmas (noise alone: about twice a minute at 100
+ * Hz), and falls by k^2 / 4 a sample, which lengthens the memory by half a sample, to that of the slowest.
  *
- * Guard: the gate is `guard` times what an innovation is expected to be, its sigma and the size of the mean, which
- * motion gives it. A sample beyond the gate counts as motion only when the one before it, carried on with the estimated
- * rate, lies off to the same side too; what both agree on is taken and the memory is shortened. An isolated one is
- * taken up to the gate, and the less the further off it is, not at all from twice the gate on: a stray. An innovation
- * further beyond the gate than motion explains (an eighth of `ratemax`) is believed after `confirm` of samples on the
- * same side.
- *
- * While more than one sample in 64 is a stray, two bad ones in a row are frequent enough to pass for motion. So the
- * gate is 2.25 sigma then, whatever the mean, unless `guard` is 3 or less; from the fourth sample in a row on one side
- * on it is 9 sigma, so that a jump among bad samples is not late.
+ * Guard: the gate is `guard` sigmas of the innovation; for a sample that follows one within the gate, of the sigma and
+ * the size of the mean together, because motion that was taken goes on. A sample beyond it counts as motion only when
+ * the one before it, carried on with the estimated rate, lies off to the same side too; what both agree on is taken and
+ * the memory is shortened. An isolated one is taken up to the gate, and the less the further off it is, not at all from
+ * twice the gate on: a stray. An innovation further beyond the gate than motion explains (an eighth of `ratemax`) is
+ * believed after `confirm` of samples on the same side. While strays are frequent, see adaptive.h, the gate is a tight
+ * one, so that two bad samples in a row do not pass for motion.
  *
  * Noise, with `identify` on (1): the scatter of the innovations about their mean, of every second sample, each limited
  * to 2.5 times what it is expected to be. Motion that the line does not follow widens it, and so the gate. It starts
@@ -70,10 +67,7 @@ static void standard(filter_config_t *config)
     config->value[ADAPTIVE_FAST_MS] = (int32_t)80 + (int32_t)(20000U / rate_dhz);
 }
 
-/*
- * Mean innovation that shortens the memory, at most, in sigmas of one: below 30 Hz the mean is of a few samples, and
- * 2.9 sigmas of it would be reached too late.
- */
+/* At most so much of a sigma: below 34 Hz, where the mean is of few samples, 2.9 of its sigmas would be too late. */
 #define MANOEUVRE_MAX_UQ16 55378U /* 0.845 */
 
 /* Shares and thresholds that follow from the shortest memory. */

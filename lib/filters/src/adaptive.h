@@ -17,7 +17,7 @@ extern "C" {
 #define ADAPTIVE_SCATTER_MIN_UQ24 0x1A0000U
 #define ADAPTIVE_SCATTER_MAX_UQ24 0x5A000000U
 
-/* The unguarded filter limits the innovations in their mean to 4.5 sigmas, as the guarded one to its gate. */
+/* The unguarded filter limits the innovations in their mean to a gate of 4.5, as the guarded one to its own. */
 #define ADAPTIVE_UNGUARDED_SIGMA_Q8 1152U
 
 /*
@@ -30,14 +30,15 @@ extern "C" {
 #define ADAPTIVE_UNGUARDED_WEIGHT_UQ16 2048U
 
 /*
- * Strays: each counts as much as so many samples within the gate, so the count rises while more than one in 65 is one.
- * Above one stray the gate is the tight one, unless it is as close as that of the low rates; from this sample in a row
- * on one side on it is a wide one.
+ * Strays: each adds as many as good samples take off again, so the count rises where more than one sample in 65 is
+ * one; it holds up to 255 of them. Above one stray a `guard` of more than 3 sigma is 2.25: half of the usual 4.5, which
+ * of 15 % outliers lets one in twelve pass. After this many samples in a row on one side it is 9, twice the usual:
+ * what a jump is followed by until it is believed.
  */
 #define ADAPTIVE_STRAY 64U
+#define ADAPTIVE_CLOSE_SIGMA_Q8 768U
 #define ADAPTIVE_TIGHT_SIGMA_Q8 576U
 #define ADAPTIVE_WIDE_SIGMA_Q8 2304U
-#define ADAPTIVE_CLOSE_SIGMA_Q8 768U
 #define ADAPTIVE_TIGHT_RUN 4U
 
 /* Fewest samples in a row on one side that make a jump believed. */

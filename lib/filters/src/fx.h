@@ -211,7 +211,7 @@ static inline int32_t fx_clamp_high_c(int32_t v, uint8_t limit)
     return fx_clamp(v, (int32_t)limit * 16777216);
 }
 
-/* Upper half of a number in memory: of v >> 16 the compiler of the 8-bit machine would load all four bytes. */
+/* Upper half of a number in memory: for v >> 16 the 8-bit machine's compiler loads all four bytes. */
 static inline uint16_t fx_upper_c(const uint32_t *v)
 {
     return (uint16_t)(*v >> 16);
@@ -224,7 +224,6 @@ static inline int16_t fx_upper_signed_c(const int32_t *v)
 #if defined(__AVR__) && defined(__OPTIMIZE__)
 #include "fx_avr.h"
 #else
-
 static inline uint32_t fx_mul_u16(uint16_t a, uint16_t b)
 {
     return fx_mul_u16_c(a, b);
