@@ -158,7 +158,7 @@ def best_table(t):
             least = min(found.values(), default=0.0)
             cells.append(" ".join(f"`{name}`" for name in sorted(found, key=found.get) if found[name] <= score.NEAR * least))
         lines.append([group, *cells])
-    return markdown("Which filter when", f"Of {len(t.named)}: the best, then those within 5 % of it.",
+    return markdown("Which filter when", f"Of the first {len(t.named)} filters: the best, then those within 5 % of it.",
                     ["class", *(f"{rate_hz} Hz" for rate_hz in RATES_HZ)], lines)
 
 

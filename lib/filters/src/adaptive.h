@@ -30,10 +30,10 @@ extern "C" {
 #define ADAPTIVE_UNGUARDED_WEIGHT_UQ16 2048U
 
 /*
- * Strays: each adds as many as good samples take off again, so the count rises where more than one sample in 65 is
- * one; it holds up to 255 of them. Above one stray a `guard` of more than 3 sigma is 2.25: half of the usual 4.5, which
- * of 15 % outliers lets one in twelve pass. After this many samples in a row on one side it is 9, twice the usual:
- * what a jump is followed by until it is believed.
+ * Strays: each adds to their count (at most 255) what as many samples within the gate take off again, so it rises while
+ * more than one sample in 65 is a stray. Above one stray a `guard` of more than 3 sigma is replaced by 2.25, half of
+ * the usual 4.5: of outliers with 20 times the noise one in eleven is taken whole in place of one in six. After this
+ * many samples in a row on one side it is 9, twice the usual, so that a jump is followed until it is believed.
  */
 #define ADAPTIVE_STRAY 64U
 #define ADAPTIVE_CLOSE_SIGMA_Q8 768U
