@@ -212,6 +212,26 @@ static void test_the_third_empty_reading_is_of_an_int1_that_is_stuck(void)
     }
 }
 
+/* 33 good readings that leave INT1 low: the line is trusted again, and three more empty readings make it stuck. */
+static void test_an_int1_that_was_stuck_is_trusted_anew(void)
+{
+    static const int16_t lsb[] = { 1, -2, 256 };
+    start(16, false);
+    format = 0x0B;
+    integrity_forget();
+    for (unsigned times = 0; times < 2; times++) {
+        for (unsigned i = 1; i <= 3; i++) {
+            TEST_ASSERT_FALSE(integrity_int1_stuck());
+            TEST_ASSERT_EQUAL(READING_EMPTY, judged(lsb, READING_SOURCE, 0x80));
+        }
+        for (unsigned i = 1; i <= 33; i++) {
+            TEST_ASSERT_TRUE(integrity_int1_stuck());
+            TEST_ASSERT_EQUAL(READING_GOOD, judged(lsb, 0, 0));
+        }
+    }
+    TEST_ASSERT_FALSE(integrity_int1_stuck());
+}
+
 /* The tenth equal triplet in a row and all that follow it, until one differs in one axis. */
 static void test_the_tenth_equal_reading_is_stuck(void)
 {
@@ -331,6 +351,7 @@ int main(void)
     RUN_TEST(test_a_failed_reading_is_marked_once);
     RUN_TEST(test_torn_readings_stay_torn);
     RUN_TEST(test_the_third_empty_reading_is_of_an_int1_that_is_stuck);
+    RUN_TEST(test_an_int1_that_was_stuck_is_trusted_anew);
     RUN_TEST(test_the_tenth_equal_reading_is_stuck);
     RUN_TEST(test_a_sensor_that_may_be_another_has_ten_readings_of_its_own);
     RUN_TEST(test_the_bound_of_a_false_alarm);

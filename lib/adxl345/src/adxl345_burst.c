@@ -96,7 +96,6 @@ static bool claim(struct burst *b)
 
 void burst_init(void)
 {
-    burst.newest_lsb = burst.queue[QUEUE_MASK].sample.lsb;
     if (HAL_RAM_CLEARED) {
         return;
     }

@@ -6,7 +6,7 @@
 
 struct burst {
     i2c_bus_t bus; /* rx: the reading of a burst, by integrity's places; a register's value is its first byte */
-    const int16_t *newest_lsb; /* of the last good one: taken or not, it is still there */
+    const int16_t *newest_lsb; /* of the last good one, taken or not; none before the first */
     volatile uint8_t head;
     volatile uint8_t tail;
     volatile uint8_t mode;

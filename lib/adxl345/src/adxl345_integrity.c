@@ -122,7 +122,7 @@ static void accept(uint8_t source, bool repeated)
     i->good++;
     i->bad_run = 0;
     if (!hal_drdy_high()) {
-        i->empty_run = i->empty_run >= RUN_LIMIT ? (uint8_t)(i->empty_run - 1u) : 0;
+        i->empty_run = i->empty_run > RUN_LIMIT ? (uint8_t)(i->empty_run - 1u) : 0;
     }
     if (source & ADXL345_INT_OVERRUN) {
         driver_count(COUNTER_OVERRUNS);
