@@ -127,6 +127,9 @@ double probability_normal(robust_reference_t &f, const Estimate &e, double z)
         f.q_count += 1.0;
         f.q_mean += (p - f.q_mean) / f.q_count;
     }
+    if (f.stay > 0.0) { // (11) with the share of outliers that q1 says
+        f.q_mean = 1.0 - f.stay + p * (f.clean + f.stay - 1.0) / f.clean;
+    }
     return p;
 }
 

@@ -40,6 +40,7 @@ typedef struct {
     double q[4];           /* process noise per sample, row-major */
     double clean;          /* q1, in (0, 1) */
     double ratio;          /* N > 1 */
+    double stay;           /* (11): probability that an outlier follows an outlier; 0: they are independent */
     double gate_sigma;     /* of sprf and of what counts as refused in soft; >= 1 */
     double softgate_sigma; /* >= 1 */
     int reacquire;         /* sprf, soft: consistent refused samples that restart; 0: never */

@@ -83,7 +83,7 @@ const char *broken_wide(const filter_t *f)
     return wide_covariance_broken(w) ? "P" : NULL;
 }
 
-/* mixture.c: N^2 - 1 of 3..9999; q in 0.5..0.999, or learnt within its margin. */
+/* mixture.c: N^2 - 1 of 3..9999; q within its margin. */
 const char *broken_mixture(const filter_t *f)
 {
     const filter_mixture_t *m = &f->own.mixture;
@@ -94,10 +94,8 @@ const char *broken_mixture(const filter_t *f)
     if ((m->learnt_from != 0U) != learning || m->learnt_from > 1024U) {
         return "learnt_from";
     }
-    /* 1 - q at least 66 of 65536 where it is given */
-    uint32_t margin = learning ? MIXTURE_LEARNT_MARGIN_UQ24 : 66UL << 8;
-    uint32_t q_uq24 = learning ? m->learnt_uq24 : (uint32_t)m->clean_uq16 << 8;
-    if (q_uq24 < margin || q_uq24 > 0x1000000U - margin || fx_abs32(m->log_odds_q9) > (uint32_t)7 * 512U) {
+    if (m->normal_uq24 < MIXTURE_MARGIN_UQ24 || m->normal_uq24 > 0x1000000U - MIXTURE_MARGIN_UQ24 ||
+        fx_abs32(m->log_odds_q9) > (uint32_t)7 * 512U) {
         return "q";
     }
     return broken_wide(f);

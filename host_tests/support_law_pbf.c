@@ -1,5 +1,5 @@
 /*
- * pbf: its bounds, and what no descriptor tells (support_law_facts.h).
+ * pbf: its bounds, and what no descriptor tells (support_law_facts.h). Joint condition: of stay with ratio and clean.
  *
  * It uses every sample and is faster than shrf, whose bound it has.
  */
@@ -13,5 +13,5 @@ const char *broken_pbf(const filter_t *f)
 law_facts_t law_facts_pbf(void)
 {
     return (law_facts_t){ ENVELOPE(MIXTURE_SUM, 1.0, 800.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_MIXTURE) USUAL,
-                          SETTLES_IN(150), .loses_motion = true };
+                          SETTLES_IN(150), .joint_condition = true, .loses_motion = true };
 }

@@ -43,10 +43,10 @@ static void outliers_are_learnt_by_hand(void)
     static const uint32_t expected_uq24[] = { ONE_UQ24 / 3, ONE_UQ24 / 4, ONE_UQ24 / 5, ONE_UQ24 / 6 };
     filter_t f = made();
     filter_reset(&f, 0);
-    TEST_ASSERT_EQUAL_UINT32(ONE_UQ24 / 2, f.own.mixture.learnt_uq24);
+    TEST_ASSERT_EQUAL_UINT32(ONE_UQ24 / 2, f.own.mixture.normal_uq24);
     for (uint8_t k = 0; k < 4; k++) {
         (void)filter_update(&f, (k & 1U) != 0U ? 4000 : -4000);
-        TEST_ASSERT_UINT32_WITHIN(ONE_UQ24 >> 14, expected_uq24[k], f.own.mixture.learnt_uq24);
+        TEST_ASSERT_UINT32_WITHIN(ONE_UQ24 >> 14, expected_uq24[k], f.own.mixture.normal_uq24);
     }
 }
 
@@ -61,15 +61,15 @@ static void only_samples_teach(void)
         (void)coast(&f);
     }
     filter_set_noise(&f, 100);
-    TEST_ASSERT_EQUAL_UINT32(ONE_UQ24 / 2, f.own.mixture.learnt_uq24);
+    TEST_ASSERT_EQUAL_UINT32(ONE_UQ24 / 2, f.own.mixture.normal_uq24);
     TEST_ASSERT_EQUAL_UINT16(2, f.own.mixture.learnt_from);
     for (uint8_t k = 0; k < 50; k++) {
         (void)filter_update(&f, 100);
     }
-    TEST_ASSERT_TRUE(f.own.mixture.learnt_uq24 > ONE_UQ24 / 10 * 9);
+    TEST_ASSERT_TRUE(f.own.mixture.normal_uq24 > ONE_UQ24 / 10 * 9);
     TEST_ASSERT_EQUAL_UINT16(52, f.own.mixture.learnt_from);
     filter_reset(&f, 100);
-    TEST_ASSERT_EQUAL_UINT32(ONE_UQ24 / 2, f.own.mixture.learnt_uq24);
+    TEST_ASSERT_EQUAL_UINT32(ONE_UQ24 / 2, f.own.mixture.normal_uq24);
     TEST_ASSERT_EQUAL_UINT16(2, f.own.mixture.learnt_from);
 }
 
@@ -81,12 +81,12 @@ static void what_is_learnt_stays_within_its_margin(void)
     for (uint16_t k = 0; k < ON_PC_OR_CHIP(20000, 1500); k++) {
         (void)filter_update(&f, 0);
     }
-    TEST_ASSERT_TRUE(f.own.mixture.learnt_uq24 <= ONE_UQ24 - MIXTURE_LEARNT_MARGIN_UQ24);
-    TEST_ASSERT_TRUE(f.own.mixture.learnt_uq24 > ONE_UQ24 / 100 * 99);
+    TEST_ASSERT_TRUE(f.own.mixture.normal_uq24 <= ONE_UQ24 - MIXTURE_MARGIN_UQ24);
+    TEST_ASSERT_TRUE(f.own.mixture.normal_uq24 > ONE_UQ24 / 100 * 99);
     TEST_ASSERT_EQUAL_UINT16(1024, f.own.mixture.learnt_from);
     for (uint16_t k = 0; k < ON_PC_OR_CHIP(20000, 1500); k++) {
         (void)filter_update(&f, (k & 1U) != 0U ? 4000 : -4000);
-        TEST_ASSERT_TRUE(f.own.mixture.learnt_uq24 >= MIXTURE_LEARNT_MARGIN_UQ24);
+        TEST_ASSERT_TRUE(f.own.mixture.normal_uq24 >= MIXTURE_MARGIN_UQ24);
     }
 }
 
@@ -103,7 +103,7 @@ static void share_of_outliers_is_found(void)
         (void)filter_update(&f, outlier ? (int16_t)((int16_t)((v >> 20) & 255U) - 128) : noise);
     }
     /* outliers within 4 sigma, an eighth of them, pass for normal: 0.74 */
-    TEST_ASSERT_UINT32_WITHIN(ONE_UQ24 / 20, ONE_UQ24 / 100 * 73, f.own.mixture.learnt_uq24);
+    TEST_ASSERT_UINT32_WITHIN(ONE_UQ24 / 20, ONE_UQ24 / 100 * 73, f.own.mixture.normal_uq24);
 }
 
 int main(void)

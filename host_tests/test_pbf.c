@@ -91,6 +91,50 @@ static void every_second_sample_an_outlier_does_not_lead_it_away(void)
     }
 }
 
+/* stay against clean 0.85: from 0.15 on; against N = 2: below 2/3; else the two do not go together. */
+static void stay_goes_with_the_share_and_the_ratio(void)
+{
+    static const struct {
+        int32_t stay, ratio_q8;
+        filter_answer_t answer;
+    } cases[] = { { 9829, 5120, FILTER_REFUSED_TOGETHER },
+                  { 9830, 5120, FILTER_ACCEPTED },
+                  { 43690, 512, FILTER_ACCEPTED },
+                  { 43691, 512, FILTER_REFUSED_TOGETHER },
+                  { 62415, 5120, FILTER_ACCEPTED },
+                  { 62416, 5120, FILTER_REFUSED_TOGETHER },
+                  { 0, 512, FILTER_ACCEPTED } };
+    for (uint8_t i = 0; i < 7U; i++) {
+        filter_config_t config = filter_defaults(&filter_law_pbf, 1000);
+        config.value[MIXTURE_STAY_UQ16] = cases[i].stay;
+        config.value[MIXTURE_RATIO_UQ8] = cases[i].ratio_q8;
+        filter_t f;
+        TEST_ASSERT_EQUAL_UINT8(cases[i].answer, filter_init(&f, &filter_law_pbf, &config));
+    }
+}
+
+/*
+ * After an outlier q is 1 - stay = 0.2; each missing sample takes turn = (0.85 + 0.8 - 1) / 0.85 = 0.765 of the way that
+ * is left to the share of normal samples, 0.85.
+ */
+static void a_chain_fades_over_missing_samples(void)
+{
+    filter_config_t config = filter_defaults(&filter_law_pbf, 1000);
+    config.value[MIXTURE_STAY_UQ16] = 52429;
+    filter_t f;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_pbf, &config));
+    filter_reset(&f, 0);
+    (void)filter_update(&f, 4000);
+    TEST_ASSERT_UINT32_WITHIN(3000, 3355443UL, f.own.mixture.normal_uq24); /* 0.2 */
+    (void)filter_missing(&f);
+    TEST_ASSERT_UINT32_WITHIN(3000, 5921370UL, f.own.mixture.normal_uq24); /* 0.2 + 0.2 x 0.765 = 0.85 - 0.65 x 0.765 */
+    for (uint8_t k = 0; k < 7U; k++) {
+        (void)filter_missing(&f);
+    }
+    filter_reset(&f, 0);
+    TEST_ASSERT_EQUAL_UINT32(55706UL << 8, f.own.mixture.normal_uq24);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -100,5 +144,7 @@ int main(void)
     RUN_TEST(doubt_makes_p_grow);
     RUN_TEST(step_of_100_sigma_is_followed_within_800_samples);
     RUN_TEST(every_second_sample_an_outlier_does_not_lead_it_away);
+    RUN_TEST(stay_goes_with_the_share_and_the_ratio);
+    RUN_TEST(a_chain_fades_over_missing_samples);
     return UNITY_END();
 }

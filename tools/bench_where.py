@@ -12,7 +12,7 @@ ENTRY = "mixed"  # called once per axis and sample
 FUNCTIONS = {
     "mixed": "prediction, evidence, probability and learning (what is in line of it)",
     "log2_uq9": "logarithms, by a table",
-    "filter_mixture_log_odds_q9": "",
+    "believe": "",
     "filter_wide_correct": "gains, x and P",
     "give_back": "",
     "step_by": "",

@@ -4,7 +4,7 @@
 #define MIXED(f) (f)->own.mixture
 #define LEARNT(m)                                                                            \
     (-LOG_ODDS_MAX <= (m).log_odds_q9 <= LOG_ODDS_MAX && 32768 <= (m).clean_uq16 <= 65470 && \
-     (m).learnt_from <= 1024 && 0x4000 <= (m).learnt_uq24 <= 0xFFC000)
+     (m).learnt_from <= 1024 && 0x4000 <= (m).normal_uq24 <= 0xFFC000 && (m).leave_uq16 <= 65470)
 #define KEPT(f) (WIDE_PARAMETERS(f) && LEARNT(MIXED(f)) && 0x20000 <= MIXED(f).span_uq16 <= SPAN_END)
 #define CONFIGURATIONS(law) 13
 #include "wide_bounds.h"
@@ -31,11 +31,11 @@ int16_t filter_mixture_log_odds_q9(uint32_t q_uq24);
 mixture_posterior_t filter_mixture_posterior(int16_t log_odds_q9);
 
 /*@ requires LEARNT(*m) && 1 <= m->learnt_from;
-    requires posterior.rest_uq24 <= 0x800000;
-    assigns m->learnt_from, m->learnt_uq24, m->log_odds_q9 \from *m, posterior;
+    requires p <= 0x1000000;
+    assigns m->learnt_from, m->normal_uq24, m->log_odds_q9 \from *m, p;
     ensures LEARNT(*m);
 */
-static void learn(filter_mixture_t *m, mixture_posterior_t posterior);
+static void learn(filter_mixture_t *m, uint32_t p);
 
 #include "mixture.c"
 
@@ -57,7 +57,9 @@ static void any_own(filter_t *f, uint8_t kind)
     m->log_odds_q9 = ANY_S16(-LOG_ODDS_MAX, LOG_ODDS_MAX);
     m->clean_uq16 = ANY_U16(32768, 65470);
     m->learnt_from = ANY_BOOL() ? 0 : ANY_U16(2, 1024);
-    m->learnt_uq24 = ANY_U32(0x4000, 0xFFC000);
+    m->normal_uq24 = ANY_U32(0x4000, 0xFFC000);
+    m->leave_uq16 = ANY_BOOL() ? 0 : ANY_U16(656, 65470);
+    m->turn_uq16 = ANY_U16(0, UINT16_MAX);
 }
 
 /* The first ratio N of each leading bit of N^2 - 1, and the first beyond the legal ones. */
@@ -101,8 +103,7 @@ void proof_learn(void)
     filter_t f;
     any_own(&f, 0);
     f.own.mixture.learnt_from = ANY_U16(2, 1024);
-    mixture_posterior_t posterior = { ANY_U32(0, 0x800000), ANY_BOOL() };
-    learn(&f.own.mixture, posterior);
+    learn(&f.own.mixture, ANY_U32(0, 0x1000000));
 }
 
 /* By places of S and of N^2 - 1. Options: -eva-split-return-function filter_fx_leading:full */

@@ -61,7 +61,6 @@ typedef struct {
     filter_covariance_t p; /* UQ16.16, UQ8.24, UQ4.28 */
     fx_leading_t variance; /* S of the last step, UQ16.16; 0: none yet */
     uint16_t inverse_uq16; /* 1 / its mantissa */
-    uint16_t unused;
     uint16_t gate2_uq8;     /* sprf_paper: squared gate; 0: none */
     uint32_t q22_uq28;      /* process noise of the rate per sample / R */
     uint32_t r_lsb2_q8;     /* measurement variance in force */
@@ -77,8 +76,10 @@ typedef struct {
     uint32_t span_uq16;   /* N^2 - 1 */
     int16_t log_odds_q9;  /* ln(q / (1 - q)) */
     uint16_t clean_uq16;  /* q as configured */
-    uint16_t learnt_from; /* samples that q is learnt from, 2 to begin with; 0: q is given */
-    uint32_t learnt_uq24; /* q, where it is learnt */
+    uint16_t learnt_from; /* samples that q is learnt from, 2 to begin with; 0: it is not learnt */
+    uint32_t normal_uq24; /* q in force */
+    uint16_t leave_uq16;  /* of a chain of outliers: probability of a normal sample after one; 0: there is no chain */
+    uint16_t turn_uq16;   /* how much larger it is after a normal sample */
 } filter_mixture_t;
 
 /* synth, synth_opt, synth_plus: see synth.h. */

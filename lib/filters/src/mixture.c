@@ -9,11 +9,14 @@
  *   shrf      loss = 1 - p,     back = loss (1 + p t)       an outlier is not used at all
  *
  * with loss and back of wide.h. af learns q: q += (p - q) / n, n = 3, 4 .. 1024; reset forgets it, restart does not.
+ * pbf and shrf may expect outliers in runs, a Markov chain with the same share of them (equation (11)): q of the next
+ * sample is 1 - stay + p (clean + stay - 1) / clean, with stay the probability that an outlier follows an outlier.
  * Nothing is refused for ever: an outlier moves the estimate of pbf a little, and P by as much as the sample is
  * surprising; where P is at the end of its range (32,768 R) and the sample is still an outlier beyond doubt shrf
  * restarts from it (FILTER_REACQUIRED). FILTER_GATED means that the sample is more likely an outlier than not; its gain
  * is small, with shrf perhaps 0. Parameters r, q, ratio (N), clean (q: at least one half, or a sample on the prediction
- * would count as an outlier; what af begins with).
+ * would count as an outlier; what af begins with), stay (0: outliers come independently; else at least 1 - clean, and
+ * less than N / (N + 1), so that a sample on the prediction counts as normal after an outlier too while P11 is small).
  */
 #include "mixture.h"
 
@@ -31,8 +34,18 @@
 
 LAW_PARAMETER(ratio, "ratio\0", 8, 0, 512, 25600, 5120);
 LAW_PARAMETER(clean, "clean\0", 16, 0, CLEAN_MIN_UQ16, CLEAN_MAX_UQ16, 55706);
+LAW_PARAMETER(stay, "stay\0", 16, 1, ONE_UQ16 - CLEAN_MAX_UQ16, 64880, 0);
+/* The last is not one of af's. */
 static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &filter_parameter_q, &ratio,
-                                                                 &clean };
+                                                                 &clean, &stay };
+
+static bool together(const filter_config_t *config)
+{
+    uint32_t stay_uq16 = (uint32_t)config->value[MIXTURE_STAY_UQ16];
+    uint32_t ratio_uq8 = (uint32_t)config->value[MIXTURE_RATIO_UQ8];
+    return stay_uq16 == 0U || (stay_uq16 + (uint32_t)config->value[MIXTURE_CLEAN_UQ16] >= ONE_UQ16 &&
+                               stay_uq16 * (ratio_uq8 + 256U) < ratio_uq8 << 16);
+}
 
 /* Node i: 1 / (1 + e^(i/2)) less h^2/16 x second derivative, h = 1/2: half of how far the chord is above the curve. */
 static const uint32_t rest_nodes_uq24[25] FX_FLASH = {
@@ -84,11 +97,22 @@ mixture_posterior_t filter_mixture_posterior(int16_t log_odds_q9)
     return posterior;
 }
 
+/* q of the samples to come, kept from 0 and 1. */
+static void believe(filter_mixture_t *m, uint32_t q_uq24)
+{
+    if (q_uq24 < MIXTURE_MARGIN_UQ24) {
+        q_uq24 = MIXTURE_MARGIN_UQ24;
+    } else if (q_uq24 > ONE_UQ24 - MIXTURE_MARGIN_UQ24) {
+        q_uq24 = ONE_UQ24 - MIXTURE_MARGIN_UQ24;
+    }
+    m->normal_uq24 = q_uq24;
+    m->log_odds_q9 = filter_mixture_log_odds_q9(q_uq24);
+}
+
 /* q as configured; what was learnt is forgotten. */
 static void forget(filter_mixture_t *m)
 {
-    m->learnt_uq24 = (uint32_t)m->clean_uq16 << 8;
-    m->log_odds_q9 = filter_mixture_log_odds_q9(m->learnt_uq24);
+    believe(m, (uint32_t)m->clean_uq16 << 8);
     if (m->learnt_from != 0U) {
         m->learnt_from = LEARNT_FROM_START;
     }
@@ -102,6 +126,24 @@ static void set_up(filter_t *f, const filter_config_t *config)
     m->clean_uq16 = (uint16_t)config->value[MIXTURE_CLEAN_UQ16];
     forget(m);
     filter_wide_set_up(f, config);
+}
+
+static void chain_set_up(filter_t *f, const filter_config_t *config)
+{
+    filter_mixture_t *m = &f->own.mixture;
+    uint32_t clean_uq16 = (uint32_t)config->value[MIXTURE_CLEAN_UQ16];
+    uint32_t stay_uq16 = (uint32_t)config->value[MIXTURE_STAY_UQ16];
+    uint32_t sum_uq16 = clean_uq16 + stay_uq16;
+    if (stay_uq16 != 0U) {
+        m->leave_uq16 = (uint16_t)(ONE_UQ16 - stay_uq16);
+        if (sum_uq16 > ONE_UQ16) { /* (clean + stay - 1) / clean, within 2^-14 of it */
+            fx_scaled_t turn = filter_fx_scaled_div(filter_fx_scaled(sum_uq16 - ONE_UQ16),
+                                                    filter_fx_scaled(clean_uq16));
+            uint32_t turn_uq16 = filter_fx_scaled_fixed(turn, 16);
+            m->turn_uq16 = (turn_uq16 > UINT16_MAX) ? UINT16_MAX : (uint16_t)turn_uq16;
+        }
+    }
+    set_up(f, config);
 }
 
 static void af_set_up(filter_t *f, const filter_config_t *config)
@@ -118,32 +160,35 @@ static void af_standard(filter_config_t *config)
 
 static void start(filter_t *f, bool settled)
 {
-    if (settled) {
+    if (settled || f->own.mixture.leave_uq16 != 0U) { /* a chain begins anew; what was learnt stays */
         forget(&f->own.mixture);
     }
     filter_wide_start(f, settled);
 }
 
+static uint32_t normal_uq24(mixture_posterior_t posterior)
+{
+    return posterior.outlier ? posterior.rest_uq24 : ONE_UQ24 - posterior.rest_uq24;
+}
+
+/* The chain: q of the next sample from the probability that this one, or one that is missing, is normal. */
+static void expect_next(filter_mixture_t *m, uint32_t p_uq24)
+{
+    believe(m, ((uint32_t)m->leave_uq16 << 8) + filter_fx_times_uq16(p_uq24, m->turn_uq16));
+}
+
 /* p into the mean of those before: q += (p - q) / n. */
-static void learn(filter_mixture_t *m, mixture_posterior_t posterior)
+static void learn(filter_mixture_t *m, uint32_t p)
 {
     if (m->learnt_from < LEARNT_FROM_MAX) {
         m->learnt_from++;
     }
     fx_leading_t n = filter_fx_leading(m->learnt_from); /* 1..2 x 2^(31 - places) */
-    uint32_t p = posterior.outlier ? posterior.rest_uq24 : ONE_UQ24 - posterior.rest_uq24;
-    uint32_t q = m->learnt_uq24;
+    uint32_t q = m->normal_uq24;
     bool rises = p >= q;
     uint32_t part = filter_fx_shifted_right(filter_fx_times_uq16(rises ? p - q : q - p, filter_fx_inverse_uq16(n)),
                                             (uint8_t)(31U - fx_places(n)));
-    q = rises ? q + part : q - part; /* a mean of p and q: within 0..1 */
-    if (q < MIXTURE_LEARNT_MARGIN_UQ24) {
-        q = MIXTURE_LEARNT_MARGIN_UQ24;
-    } else if (q > ONE_UQ24 - MIXTURE_LEARNT_MARGIN_UQ24) {
-        q = ONE_UQ24 - MIXTURE_LEARNT_MARGIN_UQ24;
-    }
-    m->learnt_uq24 = q;
-    m->log_odds_q9 = filter_mixture_log_odds_q9(q);
+    believe(m, rises ? q + part : q - part); /* a mean of p and q: within 0..1 */
 }
 
 /* What a sample's distance says about it. */
@@ -200,16 +245,22 @@ static bool apply(filter_t *f, const evidence_t *e, bool shortened)
 
 static void mixed(filter_t *f, int16_t z_lsb, uint8_t what, bool shortened)
 {
+    filter_mixture_t *m = &f->own.mixture;
     bool grows = filter_wide_predict(f, z_lsb);
     if (what == STEP_SETTLE) {
         filter_wide_correct(f, 0, 0);
+    }
+    if (what == STEP_MISSING && m->leave_uq16 != 0U) {
+        expect_next(m, m->normal_uq24);
     }
     if (what != STEP_SAMPLE) {
         return;
     }
     evidence_t e = weigh(f);
-    if (f->own.mixture.learnt_from != 0U) {
-        learn(&f->own.mixture, e.p);
+    if (m->leave_uq16 != 0U) {
+        expect_next(m, normal_uq24(e.p));
+    } else if (m->learnt_from != 0U) {
+        learn(m, normal_uq24(e.p));
     }
     if (!apply(f, &e, shortened)) {
         filter_wide_refuse(f, grows);
@@ -229,22 +280,24 @@ static void shortened_step(filter_t *f, int16_t z_lsb, uint8_t what)
 }
 
 const filter_law_t filter_law_pbf FX_FLASH = { .name = "pbf",
-                                               .parameter_count = 4,
+                                               .parameter_count = 5,
                                                .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                               .worst_cycles = 3650,
+                                               .worst_cycles = 4150,
                                                .parameters = parameters,
-                                               .set_up = set_up,
+                                               .together = together,
+                                               .set_up = chain_set_up,
                                                .set_noise = filter_wide_set_noise,
                                                .start = start,
                                                .step = step,
                                                .report = LAW_REPORT(filter_wide_report) };
 
 const filter_law_t filter_law_shrf FX_FLASH = { .name = "shrf",
-                                                .parameter_count = 4,
+                                                .parameter_count = 5,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                                .worst_cycles = 3650,
+                                                .worst_cycles = 4150,
                                                 .parameters = parameters,
-                                                .set_up = set_up,
+                                                .together = together,
+                                                .set_up = chain_set_up,
                                                 .set_noise = filter_wide_set_noise,
                                                 .start = start,
                                                 .step = shortened_step,

@@ -12,8 +12,8 @@ extern "C" {
 /* L beyond this: p or 1 - p is exactly 0. Nearer p (1 - p) u^2 still matters, because it is what makes P grow again. */
 #define MIXTURE_TAIL_Q9 (12 * 512)
 
-/* A learnt q stays this far from 0 and 1: 1/1024, what one sample can move it. */
-#define MIXTURE_LEARNT_MARGIN_UQ24 0x4000U
+/* q stays this far from 0 and 1: 1/1024, what one sample can move a learnt one. */
+#define MIXTURE_MARGIN_UQ24 0x4000U
 
 /* p as min(p, 1 - p) and which of the two it is. */
 typedef struct {
