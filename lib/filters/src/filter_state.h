@@ -25,24 +25,24 @@ typedef struct {
     int16_t ascending_lsb[5]; /* the samples seen, by size */
 } filter_start_t;
 
-/* Covariance of position and rate over R, see kalman.h; wide.h has another format of the same elements. */
+/* Covariance of position and rate over R; kalman.h, wide.h and kf3.c have each a format of the elements. */
 typedef struct {
     uint32_t p11, p12, p22;
 } filter_covariance_t;
 
 /* kf, lrf, sprf, soft: see kalman.h. */
 typedef struct {
-    filter_covariance_t p;  /* UQ4.28 */
+    filter_covariance_t p;  /* P11 in UQ8.24, P12 and P22 in UQ6.26 */
     uint32_t limit_lsb2;    /* of the squared innovation at the last step: UQ16.16, UQ24.8 when coarse; 0: none yet */
     int16_t first_lsb;      /* of the run of refused samples */
     uint8_t run;            /* its length so far */
     uint8_t refused;        /* samples refused since the last accepted one, up to a few */
-    uint32_t q22_uq28;      /* process noise of the rate per sample / R */
-    uint16_t gate_lsb2_uq4; /* gate^2 R, UQ12.4; when coarse, in 16 LSB^2 */
+    uint32_t q22_uq26;      /* process noise of the rate per sample / R */
+    uint16_t gate_lsb2_uq6; /* gate^2 R, UQ10.6; when coarse, in 4 LSB^2 */
     bool gated;             /* there is one */
     bool coarse;
     uint16_t agree_lsb;      /* raw samples of one run differ by at most this */
-    uint32_t p22_start_uq28; /* variance of the rate at the start / R */
+    uint32_t p22_start_uq26; /* variance of the rate at the start / R */
     uint32_t r_lsb2_q8;      /* measurement variance in force */
     fx_scaled_t drive_lsb2;  /* q T^3 */
     fx_scaled_t start_lsb2;  /* variance of the rate per sample at the start */
@@ -58,9 +58,9 @@ typedef struct {
 
 /* sprf_paper and the mixture: see wide.h. */
 typedef struct {
-    filter_covariance_t p; /* UQ16.16, UQ8.24, UQ4.28 */
-    fx_leading_t variance; /* S of the last step, UQ16.16; 0: none yet */
-    uint16_t inverse_uq16; /* 1 / its mantissa */
+    filter_covariance_t p;  /* UQ16.16, UQ8.24, UQ4.28 */
+    fx_leading_t variance;  /* S of the last step, UQ16.16; 0: none yet */
+    uint16_t inverse_uq16;  /* 1 / its mantissa */
     uint16_t gate2_uq8;     /* sprf_paper: squared gate; 0: none */
     uint32_t q22_uq28;      /* process noise of the rate per sample / R */
     uint32_t r_lsb2_q8;     /* measurement variance in force */

@@ -316,20 +316,24 @@ FX_INLINE uint16_t fx_reciprocal_leading_uq16(uint32_t m_uq31)
     return fx_inverse_m_uq16((uint8_t)(m_uq31 >> 24) & 0x7FU, (uint16_t)(m_uq31 >> 8));
 }
 
-/* 1 / s for 1 <= s < 16 (UQ4.28) in UQ0.16, at most 65535. |result - 1/s| <= 1.5 x 2^-16, tested. */
-FX_INLINE uint16_t fx_reciprocal_uq16(uint32_t s_uq28)
+/* 1 / s for 1 <= s < 256 (UQ8.24) in UQ0.16, at most 65535. |result - 1/s| <= 1.5 x 2^-16, tested. */
+FX_INLINE uint16_t fx_reciprocal_uq16(uint32_t s_uq24)
 {
     uint8_t halvings = 0;
-    while ((uint8_t)(s_uq28 >> 24) >= 0x20U) {
-        s_uq28 >>= 1;
+    while ((uint8_t)(s_uq24 >> 24) >= 2U) {
+        s_uq24 >>= 1;
         halvings++;
     }
-    /* s = m x 2^halvings, 1 <= m < 2; three doublings bring m's leading bit to the top */
-    uint16_t inverse = fx_reciprocal_leading_uq16(fx_eightfold(s_uq28));
-    for (; halvings != 0U; halvings--) {
-        inverse = (uint16_t)((inverse >> 1) + (inverse & 1U));
+    /* s = m x 2^halvings, 1 <= m < 2: a byte up and a place down bring m's leading bit to the top */
+    uint32_t half = s_uq24 >> 1;
+    uint16_t inverse = fx_inverse_m_uq16((uint8_t)(half >> 16) & 0x7FU, (uint16_t)half);
+    if (halvings == 0U) {
+        return inverse;
     }
-    return inverse;
+    while (--halvings != 0U) {
+        inverse >>= 1;
+    }
+    return (uint16_t)((inverse >> 1) + (inverse & 1U));
 }
 
 /* floor(sqrt(v)), exact. About 700 cycles: configuration only. */

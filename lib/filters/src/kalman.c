@@ -1,7 +1,7 @@
 /* Covariance, gains and re-acquisition of the Kalman laws: see kalman.h for the equations. */
 #include "kalman.h"
 
-LAW_KEEPS_FROM(filter_kalman_t, q22_uq28);
+LAW_KEEPS_FROM(filter_kalman_t, q22_uq26);
 
 /* Spread of the rate of a sensor picked up at any moment: 200 LSB/s, 45 degree/s around level. */
 #define START_RATE_VARIANCE_LSB2_S2 40000U
@@ -15,13 +15,13 @@ void filter_kalman_scales(const filter_config_t *config, fx_scaled_t *drive_lsb2
     *start_lsb2 = filter_fx_scaled_mul(filter_fx_scaled(START_RATE_VARIANCE_LSB2_S2), period2);
 }
 
-uint32_t filter_kalman_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28)
+uint32_t filter_kalman_per_r(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint8_t fraction_bits, uint32_t min, uint32_t max)
 {
-    uint32_t quotient = filter_fx_scaled_fixed(filter_fx_scaled_div(lsb2, r_lsb2), 28);
-    if (quotient < min_uq28) {
-        return min_uq28;
+    uint32_t quotient = filter_fx_scaled_fixed(filter_fx_scaled_div(lsb2, r_lsb2), fraction_bits);
+    if (quotient < min) {
+        quotient = min;
     }
-    return (quotient > KALMAN_Q22_MAX_UQ28) ? KALMAN_Q22_MAX_UQ28 : quotient;
+    return (quotient > max) ? max : quotient;
 }
 
 fx_scaled_t filter_kalman_scaled_r(uint32_t r_lsb2_q8)
@@ -39,55 +39,53 @@ void filter_kalman_set_up(filter_t *f, const filter_config_t *config, uint32_t r
     filter_set_noise(f, (uint32_t)config->value[KALMAN_R]);
 }
 
+static uint32_t per_r_uq26(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq26)
+{
+    return filter_kalman_per_r(lsb2, r_lsb2, 26, min_uq26, KALMAN_Q22_MAX_UQ26);
+}
+
 void filter_kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8)
 {
     filter_kalman_t *k = &f->own.kalman;
     fx_scaled_t r_lsb2 = filter_kalman_scaled_r(r_lsb2_q8);
     k->r_lsb2_q8 = r_lsb2_q8;
-    k->q22_uq28 = filter_kalman_per_r_uq28(k->drive_lsb2, r_lsb2, KALMAN_Q22_MIN_UQ28);
-    k->p22_start_uq28 = filter_kalman_per_r_uq28(k->start_lsb2, r_lsb2, k->q22_uq28);
+    k->q22_uq26 = per_r_uq26(k->drive_lsb2, r_lsb2, KALMAN_Q22_MIN_UQ26);
+    k->p22_start_uq26 = per_r_uq26(k->start_lsb2, r_lsb2, k->q22_uq26);
 }
 
 /* The agreement is 3 sqrt(2 R) and a period at ratemax: < 135 + 4609 LSB. */
 void filter_kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8)
 {
     filter_kalman_t *k = &f->own.kalman;
-    /* gate^2 R; from UQ12.20 the two products in Q8 lead to UQ.4 */
-    uint32_t gate_uq4 = filter_fx_times_uq16(filter_fx_times_uq16(k->r_lsb2_q8 << 12, gate_sigma_q8), gate_sigma_q8);
-    k->coarse = gate_uq4 > 0xFFFFU;
+    /* gate^2 R; from UQ10.22 the two products in Q8 lead to UQ.6 */
+    uint32_t gate_uq6 = filter_fx_times_uq16(filter_fx_times_uq16(k->r_lsb2_q8 << 14, gate_sigma_q8), gate_sigma_q8);
+    k->coarse = gate_uq6 > 0xFFFFU;
     if (k->coarse) {
-        gate_uq4 >>= 8;
+        gate_uq6 >>= 8;
     }
     k->gated = gate_sigma_q8 != 0U;
-    k->gate_lsb2_uq4 = (gate_uq4 == 0U) ? 1U : (uint16_t)gate_uq4;
+    k->gate_lsb2_uq6 = (gate_uq6 == 0U) ? 1U : (uint16_t)gate_uq6;
     k->agree_lsb = (uint16_t)((filter_fx_isqrt32(18U * k->r_lsb2_q8) + (f->rate_max_lsb >> 12)) >> 4);
 }
 
 /* What the law forgets with its run of refused samples and its last gate. */
 FX_NOINLINE void fresh(filter_kalman_t *k)
 {
-    k->p.p11 = KALMAN_ONE_UQ28;
+    k->p.p11 = KALMAN_ONE_UQ24;
     k->p.p12 = 0;
-    k->p.p22 = k->p22_start_uq28;
+    k->p.p22 = k->p22_start_uq26;
     k->limit_lsb2 = 0;
     k->run = 0;
 }
 
-/* A square root in UQ2.14, at most 1. */
-FX_NOINLINE uint16_t root_uq14(uint32_t square_uq28)
+/* For small q P settles at P12 = sqrt q, P11 = sqrt(2 P12), P22 = P11 P12; for q = 14 these are 3.7, 2.7, 10.2. */
+void filter_kalman_near(filter_covariance_t *p, uint32_t q22_uq26)
 {
-    uint16_t root = filter_fx_isqrt32(square_uq28);
-    return (root > 0x4000U) ? 0x4000U : root;
-}
-
-/* For small q P settles at P12 = sqrt q, P11 = sqrt(2 P12), P22 = P11 P12. */
-void filter_kalman_near(filter_covariance_t *p, uint32_t q22_uq28)
-{
-    uint16_t p12_uq14 = root_uq14(q22_uq28);
-    uint16_t p11_uq14 = root_uq14((uint32_t)p12_uq14 << 15);
-    p->p11 = (uint32_t)p11_uq14 << 14;
-    p->p12 = (uint32_t)p12_uq14 << 14;
-    p->p22 = fx_product_u16(p11_uq14, p12_uq14);
+    uint16_t p12_uq13 = filter_fx_isqrt32(q22_uq26);
+    uint16_t p11_uq13 = filter_fx_isqrt32((uint32_t)p12_uq13 << 14);
+    p->p11 = (uint32_t)p11_uq13 << 11;
+    p->p12 = (uint32_t)p12_uq13 << 13;
+    p->p22 = fx_product_u16(p11_uq13, p12_uq13);
 }
 
 void filter_kalman_start(filter_t *f, bool settled)
@@ -95,29 +93,34 @@ void filter_kalman_start(filter_t *f, bool settled)
     f->own.kalman.refused = 0;
     fresh(&f->own.kalman);
     if (settled) {
-        filter_kalman_near(&f->own.kalman.p, f->own.kalman.q22_uq28);
+        filter_kalman_near(&f->own.kalman.p, f->own.kalman.q22_uq26);
     }
 }
 
-/* P / R one sample on, while all its elements are below 2. */
+/* P / R one sample on, while P11 < 4, P12 < 16, P22 < 16. */
 FX_INLINE void grow(filter_kalman_t *k)
 {
-    uint8_t high = (uint8_t)((uint8_t)(k->p.p11 >> 24) | (uint8_t)(k->p.p12 >> 24) | (uint8_t)(k->p.p22 >> 24));
-    if ((high & 0xE0U) == 0U) {
+    uint8_t high = (uint8_t)((uint8_t)(k->p.p12 >> 24) | (uint8_t)(k->p.p22 >> 24));
+    if ((high & 0xC0U) == 0U && (uint8_t)(k->p.p11 >> 24) < 4U) {
         uint32_t p12 = k->p.p12;
         uint32_t sum = p12 + k->p.p22;
         k->p.p12 = sum;
-        k->p.p11 += p12 + sum;
-        k->p.p22 += k->q22_uq28;
+        k->p.p11 += kalman_quarter(p12 + sum);
+        k->p.p22 += k->q22_uq26;
     }
+}
+
+/* S = P11 + 1 < 53. */
+FX_INLINE uint16_t variance_uq10(const filter_kalman_t *k)
+{
+    return (uint16_t)(kalman_fourfold(k->p.p11 + KALMAN_ONE_UQ24) >> 16);
 }
 
 /* Sixteen bits of S and of u do: what does not fit in them lies outside any limit. */
 FX_NOINLINE bool within_gate(filter_t *f)
 {
     filter_kalman_t *k = &f->own.kalman;
-    uint16_t s_uq12 = (uint16_t)((k->p.p11 + KALMAN_ONE_UQ28) >> 16); /* < 9 */
-    uint32_t limit_lsb2 = fx_mul_u16(s_uq12, k->gate_lsb2_uq4);
+    uint32_t limit_lsb2 = fx_mul_u16(variance_uq10(k), k->gate_lsb2_uq6);
     k->limit_lsb2 = limit_lsb2;
     uint32_t size_lsb_uq16 = f->size_lsb_uq16;
     if (k->coarse) { /* UQ24.8: whole LSB do */
@@ -132,17 +135,17 @@ FX_NOINLINE bool within_gate(filter_t *f)
 FX_INLINE void correct(filter_t *f)
 {
     filter_kalman_t *k = &f->own.kalman;
-    uint16_t g = fx_reciprocal_uq16(k->p.p11 + KALMAN_ONE_UQ28);
+    uint16_t g = fx_reciprocal_uq16(k->p.p11 + KALMAN_ONE_UQ24);
     uint16_t w1_uq16 = (uint16_t)(0U - g);
     f->gain_uq16 = w1_uq16;
-    k->p.p11 = fx_shift12(w1_uq16);
+    k->p.p11 = (uint32_t)w1_uq16 << 8;
     tracker_move(f, (int32_t)fx_mul24_uq16(f->size_lsb_uq16 >> 8, w1_uq16));
     uint32_t p12 = k->p.p12;
-    uint32_t w2_uq28 = fx_mul_uq16(p12, g);
-    k->p.p12 = w2_uq28;
-    uint32_t w2_uq24 = fx_sixteenth(w2_uq28); /* < 1 because P12 <= P11 after a prediction */
-    int32_t p22_q28 = (int32_t)k->p.p22 - (int32_t)fx_mul24_uq24(p12 >> 8, w2_uq24); /* < 3 less < 4: fits */
-    k->p.p22 = (p22_q28 < 0) ? 0U : (uint32_t)p22_q28;
+    uint32_t w2_uq26 = fx_mul_uq16(p12, g);
+    k->p.p12 = w2_uq26;
+    uint32_t w2_uq24 = kalman_limited_uq24(kalman_quarter(w2_uq26));
+    uint32_t taken_uq26 = fx_mul24_uq24(p12 >> 8, w2_uq24);
+    k->p.p22 = kalman_less(k->p.p22, taken_uq26);
     tracker_turn(f, (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, w2_uq24));
 }
 
@@ -176,11 +179,26 @@ FX_NOINLINE void restart(filter_t *f, int16_t z_lsb)
             share_uq12 >>= 1;
         }
         f->rate_lsb = fx_clamp(slope, (int32_t)f->rate_max_lsb);
-        k->p.p12 = (uint32_t)share_uq12 << 16;
-        k->p.p22 = 32U * fx_product_u16(share_uq12, share_uq12) + k->q22_uq28;
+        k->p.p12 = (uint32_t)share_uq12 << 14;
+        k->p.p22 = 8U * fx_product_u16(share_uq12, share_uq12) + k->q22_uq26;
     }
     filter_tracker_nothing(f);
     f->flags = (uint8_t)((f->flags & FILTER_SATURATED) | FILTER_REACQUIRED);
+}
+
+/*
+ * A sample was refused although the prediction is less certain than a sample: the motion changes within a few of them,
+ * so half of the rate, towards 0, is as likely to go on as all of it.
+ */
+static void doubt_rate(filter_t *f)
+{
+    int32_t rate = f->rate_lsb;
+    if (f->own.kalman.p.p11 >= KALMAN_ONE_UQ24) {
+        if (rate < 0) {
+            rate++;
+        }
+        f->rate_lsb = rate >> 1;
+    }
 }
 
 bool filter_kalman_refused(filter_t *f, int16_t z_lsb)
@@ -199,6 +217,9 @@ bool filter_kalman_refused(filter_t *f, int16_t z_lsb)
         }
         k->run++;
     }
+    if (k->steps != 0U) {
+        doubt_rate(f);
+    }
     return false;
 }
 
@@ -212,7 +233,7 @@ void filter_kalman_report(const filter_t *f, filter_probe_t *out)
     const filter_kalman_t *k = &f->own.kalman;
     /* while warming up P is not there yet: the variance of one sample */
     bool running = f->collected == FILTER_RUNNING;
-    out->p_lsb2_q8 = (fx_mul_uq24(running ? k->p.p11 : KALMAN_ONE_UQ28, k->r_lsb2_q8) + 8U) >> 4;
+    out->p_lsb2_q8 = fx_mul_uq24(running ? k->p.p11 : KALMAN_ONE_UQ24, k->r_lsb2_q8);
     if (running && k->limit_lsb2 != 0U) {
         out->gate_lsb2_q8 = k->coarse ? k->limit_lsb2 : k->limit_lsb2 >> 8;
     }

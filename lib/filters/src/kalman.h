@@ -9,20 +9,18 @@
  * which is Kalman's update for H = [1 0], R = 1 with the differences P - K H P replaced by what they equal: one
  * reciprocal, no cancellation (notes: robust-filters, section 6).
  *
- * P / R (UQ4.28) is predicted only while all elements are below 2: then P11 < 8, P12 < 4, P22 < 3 afterwards, S = P11 +
- * 1 fits UQ4.28, and P, kept as a whole when it may not grow, stays a covariance. Updates never raise an element. The
- * bound that holds before and after every call (make proof): all elements below 2, or P11 < 8, P12 < 4, P22 < 3 and P12
- * < max(1, P11 + 3/4). The last is needed: with P12 = 3.9, P11 = 0 nothing is predicted, w2 is 3.9, and the step of the
- * rate overflows. P12 <= P11, true after each prediction, implies it.
+ * P / R is predicted only while P11 < 4, P12 < 16, P22 < 16: then P11 < 52, P12 < 32, P22 < 30 afterwards, S = P11 +
+ * 1 fits UQ8.24, and P, kept as a whole when it may not grow, stays a covariance. Updates never raise an element. So
+ * these are the bounds that hold before and after every call (make proof).
  *
  * Scaling:
- *   P / R    UQ4.28; P12 <= P11 after a prediction, so w2 < 1
- *   g, w1    UQ0.16 within 1.5 counts of 1/S; w2 UQ0.24; q22 and P22 rounded to 2^-28 per step, of which w2 P12 with
- *            P12 rounded down to 2^-20
+ *   P / R    P11 UQ8.24, P12 and P22 UQ6.26; P12 <= P11 after a prediction, so w2 < 1, and it is limited to that
+ *   g, w1    UQ0.16 within 1.5 counts of 1/S; w2 UQ0.24; q22 and P22 rounded to 2^-26 per step, of which w2 P12 with
+ *            P12 rounded down to 2^-18
  *   u        rounded down to 2^-8 LSB in magnitude; x and rate steps rounded half away from zero to 2^-16: an estimate
  *            within 1/256 LSB of a constant input stays where it is
- *   gate     limit of u^2: gate^2 R rounded to 1/16 LSB^2 (16 LSB^2 from 4096 on, with u in whole LSB): 1 % at
- *            gate^2 R = 3; times S rounded down to 2^-12
+ *   gate     limit of u^2: gate^2 R rounded to 1/64 LSB^2 (down to 4 LSB^2 from 1024 on, with u in whole LSB); times S rounded
+ *            down to 2^-10
  */
 #ifndef KALMAN_H
 #define KALMAN_H
@@ -33,28 +31,63 @@
 extern "C" {
 #endif
 
-#define KALMAN_ONE_UQ28 0x10000000U
+#define KALMAN_ONE_UQ24 0x1000000U
 
 /*
- * Bounds of q22 and of the rate's start variance (UQ4.28, per R): below 6e-8 (gain 0.022) P22 would round to a
- * standstill; at 1 (gain 0.77, P22 1.60 after the update) the filter nearly follows the raw samples, and P22 stays
- * below 2.
+ * Bounds of q22 and of the rate's start variance, per R: below 6e-8 (gain 0.022) P22 would round to a standstill; at 14
+ * (gain 0.95, P22 15.5 after the update) the filter follows the raw samples, and P22 stays below 16. With the shipped q
+ * and R they are met at 1,500 and at 12.4 Hz.
  */
-#define KALMAN_Q22_MIN_UQ28 16U
-#define KALMAN_Q22_MAX_UQ28 0x10000000U
+#define KALMAN_Q22_MIN_UQ26 4U
+#define KALMAN_Q22_MAX_UQ26 0x38000000U
 
 /* Legal range of a gate in sigmas of the innovation, Q8. */
 #define KALMAN_GATE_MIN_SIGMA_Q8 256
 #define KALMAN_GATE_MAX_SIGMA_Q8 4096
 
+/*
+ * At rates up to this, 0.1 Hz, a run is three samples long as shipped, not five: five are 200 ms at 25 Hz, in which a
+ * hand turns a board by 18 degrees.
+ */
+#define KALMAN_SHORT_RUN_DHZ 300U
+#define KALMAN_SHORT_RUN 3
+
 /* Places of the parameters that every Kalman law begins with. */
 enum { KALMAN_R, KALMAN_Q };
+
+/* Places in line: told two the compiler makes a loop of them on AVR. */
+FX_INLINE uint32_t kalman_quarter(uint32_t v)
+{
+    v >>= 1;
+    FX_FENCE_OF(v);
+    return v >> 1;
+}
+
+FX_INLINE uint32_t kalman_fourfold(uint32_t v)
+{
+    v <<= 1;
+    FX_FENCE_OF(v);
+    return v << 1;
+}
+
+/* An element of P less what an update takes of it, both < 2^31, not below 0 for rounding. */
+FX_INLINE uint32_t kalman_less(uint32_t p, uint32_t taken)
+{
+    int32_t left = (int32_t)p - (int32_t)taken;
+    return (left < 0) ? 0U : (uint32_t)left;
+}
+
+/* At most 1: so small that a step stays below |u|. */
+FX_INLINE uint32_t kalman_limited_uq24(uint32_t w_uq24)
+{
+    return ((uint8_t)(w_uq24 >> 24) != 0U) ? 0xFFFFFFU : w_uq24;
+}
 
 /* q T^3 and the start variance of the rate, LSB^2 per sample^2, of a configuration. Divides. */
 void filter_kalman_scales(const filter_config_t *config, fx_scaled_t *drive_lsb2, fx_scaled_t *start_lsb2);
 
-/* A variance over R in UQ4.28, within min_uq28..KALMAN_Q22_MAX_UQ28. Divides. */
-uint32_t filter_kalman_per_r_uq28(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq28);
+/* A variance over R in so many fraction bits, within min..max. Divides. */
+uint32_t filter_kalman_per_r(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint8_t fraction_bits, uint32_t min, uint32_t max);
 
 /* r_lsb2_q8 as a number that spans decades, LSB^2. */
 fx_scaled_t filter_kalman_scaled_r(uint32_t r_lsb2_q8);
@@ -71,8 +104,8 @@ void filter_kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8);
 /* P11 = R, rate as uncertain as at the start. */
 void filter_kalman_start(filter_t *f, bool settled);
 
-/* P near where it settles, UQ4.28. */
-void filter_kalman_near(filter_covariance_t *p, uint32_t q22_uq28);
+/* P near where it settles. */
+void filter_kalman_near(filter_covariance_t *p, uint32_t q22_uq26);
 
 /*
  * One step: prediction of x and P, innovation, and unless the gate refuses it Kalman's update by the innovation's
@@ -85,8 +118,8 @@ bool filter_kalman_step(filter_t *f, int16_t z_lsb, uint8_t what);
 /*
  * Consistency re-acquisition: refused samples that agree among themselves are no outliers but where the signal is now.
  * L refused raw samples in a row, each within `agree` of the sample before it, restart the filter at the last of them,
- * on the slope from the first to the last. A sample that is not refused ends the run; a missing one makes the slope
- * unknown. True: this sample was the last of a run.
+ * on the slope from the first to the last; until then the rate is doubted. A sample that is not refused ends the run; a
+ * missing one makes the slope unknown. True: this sample was the last of a run.
  */
 bool filter_kalman_refused(filter_t *f, int16_t z_lsb);
 

@@ -33,6 +33,8 @@ LAW_KEEPS_FROM(filter_kf3_t, q33_uq28);
  * on (gain 0.048..0.430).
  */
 #define FINE_FROM_DHZ 1000U
+#define ONE_UQ28 0x10000000U
+#define Q33_MIN_UQ28 16U
 /* Largest drive when fine: with more P33, counted 256 times, would not settle below 1. */
 #define Q33_MAX_FINE_UQ28 0x2000000U
 #define P22_START_MAX_UQ28 0x8000000U
@@ -59,12 +61,9 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
     filter_kf3_t *k = &f->own.kf3;
     k->r_lsb2_q8 = r_lsb2_q8;
     fx_scaled_t r_lsb2 = filter_kalman_scaled_r(r_lsb2_q8);
-    k->q33_uq28 = filter_kalman_per_r_uq28(k->drive_lsb2, r_lsb2, KALMAN_Q22_MIN_UQ28);
-    if (k->fine && k->q33_uq28 > Q33_MAX_FINE_UQ28) {
-        k->q33_uq28 = Q33_MAX_FINE_UQ28;
-    }
-    uint32_t p22 = filter_kalman_per_r_uq28(k->start_lsb2, r_lsb2, k->q33_uq28);
-    k->p22_start_uq28 = (p22 < P22_START_MAX_UQ28) ? p22 : P22_START_MAX_UQ28;
+    uint32_t most = k->fine ? Q33_MAX_FINE_UQ28 : ONE_UQ28;
+    k->q33_uq28 = filter_kalman_per_r(k->drive_lsb2, r_lsb2, 28, Q33_MIN_UQ28, most);
+    k->p22_start_uq28 = filter_kalman_per_r(k->start_lsb2, r_lsb2, 28, k->q33_uq28, P22_START_MAX_UQ28);
 }
 
 /* The third root of sqrt q, at most 511/1024: UQ0.10. */
@@ -106,7 +105,7 @@ static void start(filter_t *f, bool settled)
 {
     filter_kf3_t *k = &f->own.kf3;
     uint32_t p22 = k->p22_start_uq28;
-    k->p.p11 = KALMAN_ONE_UQ28;
+    k->p.p11 = ONE_UQ28;
     k->p.p12 = 0;
     k->p.p22 = p22;
     k->acceleration_q16 = 0;
@@ -233,7 +232,7 @@ static void keep_predictable(filter_kf3_t *k)
 static void correct(filter_t *f)
 {
     filter_kf3_t *k = &f->own.kf3;
-    fx_leading_t variance = filter_fx_leading(k->p.p11 + KALMAN_ONE_UQ28); /* 1 <= S < 14: places 3..0 */
+    fx_leading_t variance = filter_fx_leading(k->p.p11 + ONE_UQ28); /* 1 <= S < 14: places 3..0 */
     uint16_t g_uq16 = (uint16_t)filter_fx_shifted_right(filter_fx_inverse_uq16(variance),
                                                         (uint8_t)(3U - fx_places(variance)));
     uint16_t w1_uq16 = (uint16_t)(0U - g_uq16);
@@ -279,7 +278,7 @@ static void fade(filter_t *f, bool first)
 static void report(const filter_t *f, filter_probe_t *out)
 {
     const filter_kf3_t *k = &f->own.kf3;
-    uint32_t p11_uq28 = (f->collected == FILTER_RUNNING) ? k->p.p11 : KALMAN_ONE_UQ28;
+    uint32_t p11_uq28 = (f->collected == FILTER_RUNNING) ? k->p.p11 : ONE_UQ28;
     out->p_lsb2_q8 = (fx_mul_uq24(p11_uq28, k->r_lsb2_q8) + 8U) >> 4;
 }
 

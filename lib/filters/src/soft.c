@@ -11,10 +11,11 @@
  * limit of the squared innovation above which the weight falls, softgate^2 S.
  *
  * Scaling: within the soft gate as kalman.h. Beyond it
- *   m        UQ0.20, of u rounded down to 2^-8 LSB and gate_lsb2_uq4 (softgate^2 R, 1/16 LSB^2), within 2^-18
- *   w1, w2   UQ0.24, <= 1, from P11 and P12 in UQ4.20; P11 and P12 times 1 - w1 - 2^-16 rounded to 2^-28, so they fall;
- *            P22 less P12 w2 (w2 rounded down to 2^-16), not below 0
- *   steps    of x rounded up, of the rate down to 2^-16; both below |u| + 2^-16 LSB (x: w1 < 8/9), so x stays between
+ *   m        UQ0.24, of u rounded down to 2^-8 LSB and gate_lsb2_uq6 (softgate^2 R, 1/64 LSB^2), within 2^-20 and 2^-13
+ *            of itself
+ *   w1, w2   UQ0.24, <= 1, from P11 in UQ8.16 and P12 in UQ6.18; P11 and P12 times 1 - w1 - 2^-16, rounded, so they
+ *            fall; P22 less P12 w2 (w2 rounded down to 2^-16), not below 0
+ *   steps    of x rounded up, of the rate down to 2^-16; both below |u| + 2^-16 LSB (x: w1 < 52/53), so x stays between
  *            prediction and sample and the bounds of kalman.h hold
  *   gate     where S / S_eff is (softgate / gate)^2 within 2^-15
  */
@@ -25,6 +26,13 @@ static const filter_parameter_t *const parameters[] FX_FLASH = {
     &filter_parameter_r,    &filter_parameter_q,         &softgate,
     &filter_parameter_gate, &filter_parameter_reacquire, &filter_parameter_ratemax
 };
+
+static void standard(filter_config_t *config)
+{
+    if (config->rate_dhz <= KALMAN_SHORT_RUN_DHZ) {
+        config->value[SOFT_REACQUIRE_SAMPLES] = KALMAN_SHORT_RUN;
+    }
+}
 
 static bool together(const filter_config_t *config)
 {
@@ -62,54 +70,43 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
     filter_kalman_set_gate(f, f->own.kalman.of.gated.gate_sigma_q8);
 }
 
-/* One place in line each: told two the compiler makes a loop of them on AVR. */
-FX_INLINE uint32_t quarter(uint32_t v)
-{
-    v >>= 1;
-    FX_FENCE_OF(v);
-    return v >> 1;
-}
+/* The least weight of a sample. */
+#define LEAST_UQ24 16U
 
-FX_INLINE uint32_t fourfold(uint32_t v)
-{
-    v <<= 1;
-    FX_FENCE_OF(v);
-    return v << 1;
-}
-
-/* K / m'^2 to m, see below: shifted by 16 - 2 b places, b = 6..22. */
+/* K / m'^2 to m, see below: shifted by 16 - 2 b places, b = 4..20. */
 FX_INLINE uint32_t placed(uint32_t weight, uint8_t b)
 {
     for (; b >= 11U; b = (uint8_t)(b - 4U)) {
         weight >>= 8;
     }
     if (b > 8U) { /* 9 or 10 */
-        weight = quarter(weight);
+        weight = kalman_quarter(weight);
         if (b > 9U) {
-            weight = quarter(weight);
+            weight = kalman_quarter(weight);
         }
     }
     for (; b < 8U; b++) {
-        weight = fourfold(weight);
+        weight = kalman_fourfold(weight);
     }
     return weight;
 }
 
 /*
- * m = softgate^2 R / u^2, so below 1 / S: UQ0.20, within 2^-18, and never 0, so the furthest sample counts too. With
- * |u| = m' 2^b LSB/256, 1 <= m' < 2, and K = 16 softgate^2 R it is K / m'^2 x 2^(16 - 2 b) counts. u^2 > K / 16 >= 1/16
- * LSB^2 makes b >= 6; the coarse K is 256 times as large, and u^2 >= 4096 LSB^2 makes b >= 14.
+ * m = softgate^2 R / u^2, so below 1 / S: UQ0.24, and at least 2^-20, so the furthest sample counts too. With |u| = m'
+ * 2^(b + 1) LSB/256, 1 <= m' < 2, and K = 64 softgate^2 R K / m'^2 in UQ.16 is
+ * 2^(2 b - 16) times as many counts. u^2 > K / 64 >= 1/64
+ * LSB^2 makes b >= 4; the coarse K is 256 times as large, and u^2 >= 1024 LSB^2 makes b >= 12.
  */
-FX_INLINE uint32_t weight_uq20(const filter_t *f)
+FX_INLINE uint32_t weight_uq24(const filter_t *f)
 {
     uint32_t size = f->size_lsb_uq16 >> 8;
-    uint8_t b = 23;
+    uint8_t b = 22;
     if ((uint8_t)(size >> 16) == 0U) {
         size <<= 8;
-        b = 15;
+        b = 14;
         if ((uint8_t)(size >> 16) == 0U) {
             size <<= 8;
-            b = 7;
+            b = 6;
         }
     }
     while ((uint8_t)(size >> 16) < 0x20U) { /* three places in line cost as much as two in the loop below */
@@ -123,11 +120,11 @@ FX_INLINE uint32_t weight_uq20(const filter_t *f)
         } while ((size & 0x800000U) == 0U);
     }
     uint16_t inverse = fx_inverse_m_uq16((uint8_t)(size >> 16) & 0x7FU, (uint16_t)size);
-    uint32_t weight = fx_mul_u16(f->own.kalman.gate_lsb2_uq4, fx_mul16_uq16(inverse, inverse));
+    uint32_t weight = fx_mul_u16(f->own.kalman.gate_lsb2_uq6, fx_mul16_uq16(inverse, inverse));
     if (f->own.kalman.coarse) {
         b = (uint8_t)(b - 4U);
     }
-    return placed(weight, b) | 1U;
+    return kalman_limited_uq24(placed(weight, b) | LEAST_UQ24);
 }
 
 /* |u| w in LSB, Q16, rounded down; |u| to whole LSB from 256 LSB on. */
@@ -139,21 +136,6 @@ FX_INLINE int32_t part_of_innovation(const filter_t *f, uint32_t w_uq24)
     return far ? (int32_t)product : (int32_t)(product >> 8);
 }
 
-/* At most 1: so small that the steps stay below |u|. */
-FX_INLINE uint32_t limited_uq24(uint32_t w_uq24)
-{
-    return ((uint8_t)(w_uq24 >> 24) != 0U) ? 0xFFFFFFU : w_uq24;
-}
-
-/* m, which is below 1, from UQ0.20 to UQ0.16, rounded down; byte by byte, because a shift is a loop on AVR. */
-FX_INLINE uint16_t weight_uq16(uint32_t m_uq20)
-{
-    uint16_t middle = (uint16_t)((uint8_t)(m_uq20 >> 8) * 16U);
-    uint8_t low = (uint8_t)((uint8_t)middle | (uint8_t)((uint8_t)m_uq20 >> 4));
-    uint8_t high = (uint8_t)((uint8_t)(middle >> 8) | (uint8_t)((uint8_t)(m_uq20 >> 16) * 16U));
-    return (uint16_t)(((uint16_t)high << 8) | low);
-}
-
 /* x and P11 with the gain w1 = P11 m. x moves by a count more than w1 u, so that no sample is without effect. */
 FX_INLINE void update_x(filter_t *f, uint32_t w1_uq24)
 {
@@ -162,15 +144,15 @@ FX_INLINE void update_x(filter_t *f, uint32_t w1_uq24)
 }
 
 /* Rate, P12 and P22 with w2 = P12 m. */
-FX_INLINE void update_rate(filter_t *f, uint32_t m_uq20)
+FX_INLINE void update_rate(filter_t *f, uint32_t m_uq24)
 {
     filter_covariance_t *p = &f->own.kalman.p;
-    uint32_t p12_uq20 = p->p12 >> 8;
-    p->p12 = fx_mul24_uq16(p12_uq20, (uint16_t)~f->gain_uq16);
-    uint32_t w2_uq24 = limited_uq24(fx_mul24_uq24(p12_uq20, m_uq20));
+    uint32_t p12_uq18 = p->p12 >> 8;
+    p->p12 = fx_mul24_uq16(p12_uq18, (uint16_t)~f->gain_uq16);
+    uint32_t w2_uq24 = kalman_limited_uq24(kalman_quarter(fx_mul24_uq24(p12_uq18, m_uq24)));
     uint16_t w2_uq16 = (uint16_t)(w2_uq24 >> 8);
-    int32_t p22_q28 = (int32_t)p->p22 - (int32_t)fx_mul24_uq16(p12_uq20, w2_uq16); /* < 3 less < 4: fits */
-    p->p22 = (p22_q28 < 0) ? 0U : (uint32_t)p22_q28;
+    uint32_t taken_uq26 = fx_mul24_uq16(p12_uq18, w2_uq16);
+    p->p22 = kalman_less(p->p22, taken_uq26);
     tracker_turn(f, part_of_innovation(f, w2_uq24));
 }
 
@@ -181,10 +163,10 @@ FX_INLINE void update_rate(filter_t *f, uint32_t m_uq20)
 static void take_part(filter_t *f, int16_t z_lsb)
 {
     filter_kalman_t *k = &f->own.kalman;
-    uint32_t m_uq20 = weight_uq20(f);
-    uint32_t w1_uq24 = limited_uq24(fx_mul24_uq24(k->p.p11 >> 8, m_uq20));
+    uint32_t m_uq24 = weight_uq24(f);
+    uint32_t w1_uq24 = kalman_limited_uq24(fx_mul24_uq24(k->p.p11 >> 8, m_uq24));
     f->gain_uq16 = (uint16_t)(w1_uq24 >> 8);
-    uint16_t weight = weight_uq16(m_uq20);
+    uint16_t weight = (uint16_t)(m_uq24 >> 8);
     uint16_t share_uq16 = (uint16_t)(weight + f->gain_uq16);
     if (share_uq16 >= weight && share_uq16 < k->of.gated.share_uq16) { /* rounding may carry a share of 1 past it */
         f->flags |= FILTER_GATED;
@@ -195,7 +177,7 @@ static void take_part(filter_t *f, int16_t z_lsb)
         k->run = 0;
     }
     update_x(f, w1_uq24);
-    update_rate(f, m_uq20);
+    update_rate(f, m_uq24);
 }
 
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
@@ -219,8 +201,9 @@ static void report(const filter_t *f, filter_probe_t *out)
 const filter_law_t filter_law_soft FX_FLASH = { .name = "soft",
                                                 .parameter_count = 6,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                                .worst_cycles = 1350,
+                                                .worst_cycles = 1420,
                                                 .parameters = parameters,
+                                                .standard = standard,
                                                 .together = together,
                                                 .set_up = set_up,
                                                 .set_noise = set_noise,

@@ -16,6 +16,13 @@ static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_paramet
                                                                  &filter_parameter_gate, &filter_parameter_reacquire,
                                                                  &filter_parameter_ratemax };
 
+static void standard(filter_config_t *config)
+{
+    if (config->rate_dhz <= KALMAN_SHORT_RUN_DHZ) {
+        config->value[SPRF_REACQUIRE_SAMPLES] = KALMAN_SHORT_RUN;
+    }
+}
+
 static bool together(const filter_config_t *config)
 {
     return filter_kalman_run_legal(config->value[SPRF_REACQUIRE_SAMPLES]);
@@ -67,8 +74,9 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 const filter_law_t filter_law_sprf FX_FLASH = { .name = "sprf",
                                                 .parameter_count = 5,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                                .worst_cycles = 1000,
+                                                .worst_cycles = 1010,
                                                 .parameters = parameters,
+                                                .standard = standard,
                                                 .together = together,
                                                 .set_up = set_up,
                                                 .set_noise = set_noise,

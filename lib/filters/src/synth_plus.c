@@ -40,7 +40,7 @@
 #define ONE_Q16 65536
 #define K_MAX 8 /* rho = 1 */
 
-/* Of the shipped values: kf's gains at the ends of its range of process noise, 6e-8 and 1 R per sample. */
+/* Of the shipped values: kf's gains with process noise of 6e-8 and of 1 R per sample. */
 #define ALPHA_MIN_UQ16 1442U
 #define ALPHA_MAX_UQ16 50403U
 

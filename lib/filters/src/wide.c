@@ -19,8 +19,8 @@ void filter_wide_set_noise(filter_t *f, uint32_t r_lsb2_q8)
     fx_scaled_t r_lsb2 = filter_kalman_scaled_r(r_lsb2_q8);
     w->r_lsb2_q8 = r_lsb2_q8;
     w->per_r = filter_fx_scaled_div(filter_fx_scaled(1), r_lsb2);
-    w->q22_uq28 = filter_kalman_per_r_uq28(w->drive_lsb2, r_lsb2, KALMAN_Q22_MIN_UQ28);
-    w->p22_start_uq28 = filter_kalman_per_r_uq28(w->start_lsb2, r_lsb2, w->q22_uq28);
+    w->q22_uq28 = filter_kalman_per_r(w->drive_lsb2, r_lsb2, 28, WIDE_Q22_MIN_UQ28, WIDE_Q22_MAX_UQ28);
+    w->p22_start_uq28 = filter_kalman_per_r(w->start_lsb2, r_lsb2, 28, w->q22_uq28, WIDE_Q22_MAX_UQ28);
 }
 
 void filter_wide_start(filter_t *f, bool settled)
@@ -30,9 +30,10 @@ void filter_wide_start(filter_t *f, bool settled)
     w->p.p12 = 0;
     w->p.p22 = w->p22_start_uq28;
     if (settled) {
-        filter_kalman_near(&w->p, w->q22_uq28);
-        w->p.p11 >>= 12;
-        w->p.p12 >>= 4;
+        filter_kalman_near(&w->p, w->q22_uq28 >> 2);
+        w->p.p11 >>= 8;
+        w->p.p12 >>= 2;
+        w->p.p22 <<= 2;
     }
     w->variance = 0;
 }

@@ -1,5 +1,5 @@
 /*
- * Covariance that may grow far, for the laws of paper 002: P / R to 32,768 instead of the 8 of kalman.h, and an update
+ * Covariance that may grow far, for the laws of paper 002: P / R to 32,768 instead of the 52 of kalman.h, and an update
  * by less, or by more, than Kalman's. Internal to the library.
  *
  * With P divided by R and the rate per sample, S = P11 + 1, g = 1 / S and u the innovation, all filters of paper 002
@@ -35,6 +35,10 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Bounds of q22 and of the rate's start variance per R, 6e-8 and 1: see kalman.h for the lower one. */
+#define WIDE_Q22_MIN_UQ28 16U
+#define WIDE_Q22_MAX_UQ28 0x10000000U
 
 #define WIDE_P_END 0x80000000U
 
