@@ -46,6 +46,9 @@ void forget_rate(reference_filter_t &f)
     if (f.reacquire != 0 && f.soft2 == 0.0 && f.refused > 5) {
         f.x[1] = 0.0;
     }
+    if (f.doubts && f.p[0] >= f.r) {
+        f.x[1] *= 0.5;
+    }
 }
 
 // Rule CR: L refused raw samples in a row, each within `agree` of the one before, restart the filter on their slope.
@@ -130,8 +133,8 @@ void reference_library(reference_filter_t *f, double rate_hz, double r, double q
                        double rate_max, double x0)
 {
     const double t = 1.0 / rate_hz;
-    const double q22 = std::clamp(q * t * t * t / r, 16.0 / 268435456.0, 1.0);
-    const double start = std::clamp(40000.0 * t * t / r, q22, 1.0);
+    const double q22 = std::clamp(q * t * t * t / r, 4.0 / 67108864.0, 14.0);
+    const double start = std::clamp(40000.0 * t * t / r, q22, 14.0);
     *f = reference_filter_t{};
     f->period_s = t;
     f->r = f->r_gain = r;
@@ -139,6 +142,7 @@ void reference_library(reference_filter_t *f, double rate_hz, double r, double q
     f->gate2 = gate_sigma * gate_sigma;
     f->reacquire = reacquire;
     f->agree = 3.0 * std::sqrt(2.0 * r) + rate_max * t;
+    f->doubts = reacquire != 0;
     f->rate_max = rate_max;
     f->x[0] = x0;
     f->p[0] = r;

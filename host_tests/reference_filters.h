@@ -22,6 +22,7 @@ typedef struct {
     double soft2;    /* squared soft gate in units of S; 0: none; beyond it S is raised to r^2 / soft2 */
     int reacquire;   /* consistent refused samples L; 0: never */
     double agree;    /* D of the consistency rule */
+    bool doubts;     /* half of the rate is left by a refused sample where P11 >= R */
     double rate_max; /* 0: no limit */
     double x[2];
     double p[4];

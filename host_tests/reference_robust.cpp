@@ -210,15 +210,23 @@ void limit_rate(robust_reference_t &f)
     }
 }
 
+// What the library believes of the rate after a sample refused in a row: nothing after five, half where P11 >= R.
+void doubt_rate(robust_reference_t &f, Estimate &e)
+{
+    f.refused = (f.run == 0) ? 1 : f.refused + 1;
+    if (f.kind == ROBUST_SPRF && f.reacquire != 0 && f.refused > 5) {
+        e.s(1) = 0.0;
+    }
+    if (f.doubts && e.p(0, 0) >= f.r) {
+        e.s(1) *= 0.5;
+    }
+}
+
 // Consistency re-acquisition: so many refused raw samples in a row, each near the one before, restart on their slope.
 bool reacquired(robust_reference_t &f, double z)
 {
     const bool agrees = f.run > 0 && std::abs(z - f.previous) <= f.agree;
-    f.refused = (f.run == 0) ? 1 : f.refused + 1;
     f.run = agrees ? f.run + 1 : 1;
-    if (f.kind == ROBUST_SPRF && f.reacquire != 0 && f.refused > 5) {
-        f.x[1] = 0.0; // of the motion that it stands for nothing was seen since
-    }
     if (!agrees) {
         f.first = z;
     }
@@ -246,13 +254,15 @@ bool within_gate(const robust_reference_t &f, const Estimate &e)
 // (34), and the soft gate, whose update goes on with a larger variance of the innovation
 void step_gated(robust_reference_t &f, const Estimate &e, double z)
 {
-    hold(f, e);
+    Estimate now = e;
     f.gated = !within_gate(f, e);
-    if (!f.gated) {
+    if (f.gated) {
+        doubt_rate(f, now);
+    } else {
         f.run = 0;
-    } else if (reacquired(f, z)) {
-        return;
-    } else if (f.kind == ROBUST_SPRF) {
+    }
+    hold(f, now);
+    if (f.gated && (reacquired(f, z) || f.kind == ROBUST_SPRF)) {
         return;
     }
     double s = xi(f, e.p, 1.0);
@@ -262,7 +272,7 @@ void step_gated(robust_reference_t &f, const Estimate &e, double z)
     const Vector w = observed_column(e.p) / s;
     const Matrix keep = keeping(w);
     note_gain(f, w);
-    hold(f, { sum(1.0, e.s, f.innovation, w),
+    hold(f, { sum(1.0, now.s, f.innovation, w),
               (f.reading == ROBUST_PRINTED_34) ? product(e.p, keep) : product(keep, e.p) });
 }
 

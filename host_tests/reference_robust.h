@@ -45,6 +45,7 @@ typedef struct {
     double softgate_sigma; /* >= 1 */
     int reacquire;         /* sprf, soft: consistent refused samples that restart; 0: never */
     double agree;          /* they differ from one to the next by at most this */
+    bool doubts;           /* as the library: half of the rate is left by a refused sample where P11 >= R */
     double rate_max;       /* of the estimate; 0: no limit */
     int median_window;     /* odd: the estimate starts as the median of so many samples; 0: from x and p as given */
     double p22_start;      /* of the rate, after a median start */

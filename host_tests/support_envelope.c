@@ -4,7 +4,7 @@
 #include <string.h>
 
 #define P11_END 32768.0
-#define Q22_MIN 5.96e-8 /* kalman.h: 16 / 2^28 */
+#define Q22_MIN 5.96e-8 /* kalman.h: 4 / 2^26 */
 #define GATE_SIGMA 3.0
 #define S_MAX_PER_R 9.0
 
@@ -20,7 +20,7 @@ double noise_gain_of(double w1)
 double process_noise_per_r(uint16_t rate_dhz, double r_lsb2)
 {
     double period_s = 10.0 / rate_dhz;
-    return fmin(1.0, fmax(Q22_MIN, filter_parameter_q.standard * period_s * period_s * period_s / r_lsb2));
+    return fmin(14.0, fmax(Q22_MIN, filter_parameter_q.standard * period_s * period_s * period_s / r_lsb2));
 }
 
 double time_constant_samples(uint16_t rate_dhz, double r_lsb2)

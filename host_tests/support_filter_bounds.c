@@ -20,14 +20,14 @@ bool running(const filter_t *f)
 const char *broken_core(const filter_t *f, uint32_t r_max_lsb2_q8)
 {
     const filter_kalman_t *k = &f->own.kalman;
-    if (k->q22_uq28 < KALMAN_Q22_MIN_UQ28 || k->q22_uq28 > KALMAN_Q22_MAX_UQ28 ||
-        k->p22_start_uq28 > KALMAN_Q22_MAX_UQ28) {
+    if (k->q22_uq26 < KALMAN_Q22_MIN_UQ26 || k->q22_uq26 > KALMAN_Q22_MAX_UQ26 ||
+        k->p22_start_uq26 > KALMAN_Q22_MAX_UQ26) {
         return "q22";
     }
     if (r_broken(k->r_lsb2_q8, r_max_lsb2_q8)) {
         return "r";
     }
-    if (running(f) && (k->p.p11 >= 0x80000000U || k->p.p12 >= 0x40000000U || k->p.p22 >= 0x30000000U)) {
+    if (running(f) && (k->p.p11 >= 0x34000000U || k->p.p12 >= 0x80000000U || k->p.p22 >= 0x78000000U)) {
         return "P";
     }
     return NULL;
@@ -68,7 +68,7 @@ static bool wide_covariance_broken(const filter_wide_t *w)
 const char *broken_wide(const filter_t *f)
 {
     const filter_wide_t *w = &f->own.wide;
-    if (w->q22_uq28 < KALMAN_Q22_MIN_UQ28 || w->q22_uq28 > KALMAN_Q22_MAX_UQ28) {
+    if (w->q22_uq28 < WIDE_Q22_MIN_UQ28 || w->q22_uq28 > WIDE_Q22_MAX_UQ28) {
         return "q22";
     }
     if (r_broken(w->r_lsb2_q8, FILTER_R_MAX_LSB2_Q8)) {

@@ -1,9 +1,8 @@
 /*
  * kf: its bounds, and what no descriptor tells (support_law_facts.h).
  *
- * With q T^3 / R = 1/300 (defaults at 100 Hz) and P grown over the gap up to the core's limit of 2, sqrt(P11 V) is
- * below
- * 1/4 LSB after 43 samples for the worst gap.
+ * With q T^3 / R = 1/300 (defaults at 100 Hz) and P grown over the gap, sqrt(P11 V) is below 1/4 LSB after 43 samples
+ * for the worst gap.
  */
 #include "support_law_facts.h"
 

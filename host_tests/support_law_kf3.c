@@ -9,6 +9,8 @@
 #include "kalman.h"
 #include "support_law_facts.h"
 
+#define ONE_UQ28 0x10000000U /* kf3.c */
+
 #ifndef __AVR__
 #include <math.h>
 
@@ -43,7 +45,7 @@ static bool kf3_covariance_broken(const filter_t *f)
     const uint32_t elements[] = { k->p.p11, k->p.p12, k->p.p22, k->p13_uq28, k->p23_uq28, k->p33_uq28 };
     const uint32_t ends[] = { p11_end, 7U, 5U, 4U, 3U, 2U };
     for (uint8_t i = 0; i < 6U; i++) {
-        if (elements[i] >= ends[i] * KALMAN_ONE_UQ28) {
+        if (elements[i] >= ends[i] * ONE_UQ28) {
             return true;
         }
     }
@@ -57,7 +59,7 @@ const char *broken_kf3(const filter_t *f)
     if (gate_shows(f)) {
         return "flags of a gate";
     }
-    uint32_t drive_end = k->fine ? KALMAN_ONE_UQ28 / 8U : KALMAN_ONE_UQ28;
+    uint32_t drive_end = k->fine ? ONE_UQ28 / 8U : ONE_UQ28;
     if (k->q33_uq28 < 16U || k->q33_uq28 > drive_end || r_broken(k->r_lsb2_q8, FILTER_R_MAX_LSB2_Q8)) {
         return "q33 or r";
     }

@@ -39,13 +39,13 @@ static inline void run_from(filter_t *f, int32_t x_lsb_q16, int32_t rate_lsb_q16
     f->flags = 0;
 }
 
-/* A Kalman law running from a state and a covariance per R (UQ4.28), each within what kalman.h says of it. */
+/* A Kalman law running from a state and a covariance per R (UQ8.24, UQ6.26 twice), within its range of kalman.h. */
 static inline void kalman_from(filter_t *f, int32_t x_lsb_q16, int32_t rate_lsb_q16, filter_covariance_t p)
 {
     run_from(f, x_lsb_q16, rate_lsb_q16);
-    p.p11 = at_most(p.p11, 0x7FFFFFFFUL);
-    p.p12 = at_most(p.p12, at_most(p.p11, 0x3FFFFFFFUL));
-    p.p22 = at_most(p.p22, 0x2FFFFFFFUL);
+    p.p11 = at_most(p.p11, 0x33FFFFFFUL);
+    p.p12 = at_most(p.p12, at_most(p.p11, 0x1FFFFFFFUL) * 4U);
+    p.p22 = at_most(p.p22, 0x77FFFFFFUL);
     f->own.kalman.p = p;
 }
 

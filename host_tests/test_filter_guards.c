@@ -9,7 +9,7 @@
 #include "support_roles.h"
 #include "unity.h"
 
-#define ONE_UQ28 0x10000000u
+#define ONE_UQ26 0x4000000u
 
 void setUp(void) {}
 
@@ -25,13 +25,13 @@ static void start(filter_t *f, uint32_t p11, uint32_t p12, uint32_t p22)
 
 /*
  * P / R = (0, 1; 1, 1/2) is no covariance. Predicted: P12 = 1.5, P11 = 2.5, P22 = 0.5 + q; update:
- * P22 - P12^2 / (P11 + 1) = 0.5 - 0.643 + q < 0: rounded to 0, not wrapped to 15.9.
+ * P22 - P12^2 / (P11 + 1) = 0.5 - 0.643 + q < 0: rounded to 0, not wrapped to 63.9.
  */
 static void test_p22_does_not_wrap_below_zero(void)
 {
     filter_t f;
-    start(&f, 0, ONE_UQ28, ONE_UQ28 / 2);
-    TEST_ASSERT_TRUE(f.own.kalman.q22_uq28 < ONE_UQ28 / 10);
+    start(&f, 0, ONE_UQ26, ONE_UQ26 / 2);
+    TEST_ASSERT_TRUE(f.own.kalman.q22_uq26 < ONE_UQ26 / 10);
     (void)filter_update(&f, 10);
     TEST_ASSERT_NOT_EQUAL_UINT16(0, f.gain_uq16);
     TEST_ASSERT_EQUAL_HEX32(0, f.own.kalman.p.p22);
@@ -44,12 +44,12 @@ static void test_p22_does_not_wrap_below_zero(void)
 static void test_p22_that_stays_positive_is_kept(void)
 {
     filter_t f;
-    start(&f, 0, ONE_UQ28, ONE_UQ28);
-    /* predicted: P12 = 2, P11 = 3, P22 = 1 + q; P12^2 / (P11 + 1) = 1: with q left over, in UQ4.28 */
-    double expected = (double)f.own.kalman.q22_uq28 / ONE_UQ28;
+    start(&f, 0, ONE_UQ26, ONE_UQ26);
+    /* predicted: P12 = 2, P11 = 3, P22 = 1 + q; P12^2 / (P11 + 1) = 1: with q left over, in UQ6.26 */
+    double expected = (double)f.own.kalman.q22_uq26 / ONE_UQ26;
     (void)filter_update(&f, 10);
     TEST_ASSERT_NOT_EQUAL_UINT16(0, f.gain_uq16);
-    TEST_ASSERT_DOUBLE_WITHIN(4.0 * 1.5 / 65536.0, expected, (double)f.own.kalman.p.p22 / ONE_UQ28);
+    TEST_ASSERT_DOUBLE_WITHIN(4.0 * 1.5 / 65536.0, expected, (double)f.own.kalman.p.p22 / ONE_UQ26);
 }
 
 /* R = 1.5 times the mean, Q16 to Q8. */

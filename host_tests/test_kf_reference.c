@@ -1,6 +1,7 @@
 /* kf against Eigen: the double reference against numbers of paper 002, the fixed-point filter against the reference. */
 #include "reference_filters.h"
 #include "support_filters.h"
+#include "support_own_model.h"
 #include "unity.h"
 
 #include <math.h>
@@ -111,7 +112,7 @@ static void gains_equal_the_reference(void)
                 (void)filter_update(&f, 0);
                 reference_step(&r, 0.0);
                 double error = fabs(f.gain_uq16 / 65536.0 - r.gain[0]);
-                double bound = gain_bound(r.gain[0], f.own.kalman.q22_uq28);
+                double bound = gain_bound(r.gain[0], f.own.kalman.q22_uq26);
                 worst = fmax(worst, error / bound);
             }
             TEST_ASSERT_TRUE_MESSAGE(worst <= 1.0, "gain outside its bound");
@@ -141,7 +142,7 @@ static void estimate_equals_the_reference(void)
             reference_step(&r, z);
             double w1 = r.gain[0];
             double reach = 5.0 * sigma / sqrt(1.0 - w1);
-            double bound = 2.0 * (gain_bound(w1, f.own.kalman.q22_uq28) * reach / w1 + 1.0 / 256.0);
+            double bound = 2.0 * (gain_bound(w1, f.own.kalman.q22_uq26) * reach / w1 + 1.0 / 256.0);
             TEST_ASSERT_DOUBLE_WITHIN(bound, r.x[0], x);
         }
     }
@@ -159,10 +160,32 @@ static void probe_tells_the_variance(void)
     }
     filter_probe_t probe;
     filter_probe(&f, &probe);
-    TEST_ASSERT_DOUBLE_WITHIN(1.0 + 256.0 * 16.0 * gain_bound(r.gain[0], f.own.kalman.q22_uq28), r.p[0] * 256.0,
+    TEST_ASSERT_DOUBLE_WITHIN(1.0 + 256.0 * 16.0 * gain_bound(r.gain[0], f.own.kalman.q22_uq26), r.p[0] * 256.0,
                               probe.p_lsb2_q8);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, probe.gate_lsb2_q8);
     TEST_ASSERT_DOUBLE_WITHIN(0.02, r.innovation, probe.innovation_lsb_q16 / 65536.0);
+}
+
+/*
+ * At every rate of the sensor, and with so much noise that q T^3 / R is the least: as good as in double, and S is the
+ * innovations' variance.
+ */
+static void as_good_as_in_double_on_its_own_model(void)
+{
+    static const struct {
+        uint16_t rate_dhz;
+        int32_t noise;
+    } cases[] = {
+        { 125, 1 }, { 250, 1 }, { 500, 1 }, { 1000, 1 }, { 2000, 1 }, { 4000, 1 }, { 8000, 1 }, { 8000, 12 }
+    };
+    for (int i = 0; i < 8; i++) {
+        filter_config_t config = filter_defaults(&filter_law_kf, cases[i].rate_dhz);
+        config.value[KF_R_LSB2_Q8] *= cases[i].noise;
+        const own_model_t found = own_model(&filter_law_kf, &config, SEED);
+        TEST_ASSERT_DOUBLE_WITHIN(0.001, 1.0, found.rmse);
+        TEST_ASSERT_DOUBLE_WITHIN(0.041, 1.0, found.nis); /* 5 sigma of 30,000 squares */
+        TEST_ASSERT_TRUE(found.gated == 0.0);
+    }
 }
 
 int main(void)
@@ -173,5 +196,6 @@ int main(void)
     RUN_TEST(gains_equal_the_reference);
     RUN_TEST(estimate_equals_the_reference);
     RUN_TEST(probe_tells_the_variance);
+    RUN_TEST(as_good_as_in_double_on_its_own_model);
     return UNITY_END();
 }

@@ -129,7 +129,7 @@ static void estimate_equals_the_reference(void)
         double x = filter_update(&f, z) / 65536.0;
         reference_step(&r, z);
         double w1 = r.gain[0];
-        double error = 1.5 / 65536.0 / w1 + w1 * 0.5 * (8.0 / 16384.0 + 1.0 / f.own.kalman.q22_uq28);
+        double error = 1.5 / 65536.0 / w1 + w1 * 0.5 * (8.0 / 16384.0 + 1.0 / f.own.kalman.q22_uq26);
         TEST_ASSERT_DOUBLE_WITHIN(2.0 * (error * 60.0 * sigma / w1 + 1.0 / 256.0), r.x[0], x);
     }
 }
@@ -141,12 +141,12 @@ static void estimate_equals_the_reference(void)
 static void smallest_gain_binds_where_the_header_says(void)
 {
     filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_lrf, 5400);
+    filter_config_t config = filter_defaults(&filter_law_lrf, 5100); /* 5.4 counts of 2^-26 */
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
-    TEST_ASSERT_TRUE(f.own.kalman.q22_uq28 > 16U);
+    TEST_ASSERT_TRUE(f.own.kalman.q22_uq26 > 4U);
     config = filter_defaults(&filter_law_lrf, 5600);
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
-    TEST_ASSERT_EQUAL_UINT32(16, f.own.kalman.q22_uq28);
+    TEST_ASSERT_EQUAL_UINT32(4, f.own.kalman.q22_uq26);
     TEST_ASSERT_DOUBLE_WITHIN(0.0005, 0.022, steady_gain(&f));
 }
 

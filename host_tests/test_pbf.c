@@ -114,8 +114,8 @@ static void stay_goes_with_the_share_and_the_ratio(void)
 }
 
 /*
- * After an outlier q is 1 - stay = 0.2; each missing sample takes turn = (0.85 + 0.8 - 1) / 0.85 = 0.765 of the way that
- * is left to the share of normal samples, 0.85.
+ * After an outlier q is 1 - stay = 0.2; a missing sample leaves turn = (0.85 + 0.8 - 1) / 0.85 = 0.765 of its distance
+ * to the share of normal samples, 0.85.
  */
 static void a_chain_fades_over_missing_samples(void)
 {

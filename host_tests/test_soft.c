@@ -177,9 +177,9 @@ static void consistent_run_restarts_on_its_slope(void)
     TEST_ASSERT_EQUAL_INT32((int32_t)z * 65536, filter_update(&f, z));
     TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, f.flags);
     TEST_ASSERT_EQUAL_INT32((int32_t)4 * 65536, f.rate_lsb);
-    TEST_ASSERT_EQUAL_UINT32(268435456U, f.own.kalman.p.p11);
-    TEST_ASSERT_EQUAL_UINT32(268435456U / 4U, f.own.kalman.p.p12);
-    TEST_ASSERT_EQUAL_UINT32(268435456U / 8U + f.own.kalman.q22_uq28, f.own.kalman.p.p22);
+    TEST_ASSERT_EQUAL_UINT32(16777216U, f.own.kalman.p.p11);
+    TEST_ASSERT_EQUAL_UINT32(67108864U / 4U, f.own.kalman.p.p12);
+    TEST_ASSERT_EQUAL_UINT32(67108864U / 8U + f.own.kalman.q22_uq26, f.own.kalman.p.p22);
 }
 
 /* 80 and 4 LSB agree (8000 LSB/s: within 17 + 80), so that only its being taken whole lets 4 end the run. */

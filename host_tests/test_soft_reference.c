@@ -68,55 +68,56 @@ static void reference_follows_the_golden_rows(void)
 static reference_filter_t reference_in_the_state_of(const filter_t *f)
 {
     const double r = f->own.kalman.r_lsb2_q8 / 256.0;
-    const double one = 268435456.0;
-    const double k = f->own.kalman.coarse ? 16.0 * f->own.kalman.gate_lsb2_uq4 : f->own.kalman.gate_lsb2_uq4 / 16.0;
+    const double one = 67108864.0;
+    const double k = f->own.kalman.coarse ? 4.0 * f->own.kalman.gate_lsb2_uq6 : f->own.kalman.gate_lsb2_uq6 / 64.0;
     reference_filter_t reference = { .period_s = 1.0, .r = r, .r_gain = r, .soft2 = k / r };
-    reference.q[3] = f->own.kalman.q22_uq28 / one * r;
+    reference.q[3] = f->own.kalman.q22_uq26 / one * r;
     reference.x[0] = f->x_lsb_q16 / 65536.0;
     reference.x[1] = f->rate_lsb / 65536.0;
     reference.rate_max = f->rate_max_lsb / 65536.0;
-    reference.p[0] = f->own.kalman.p.p11 / one * r;
+    reference.p[0] = f->own.kalman.p.p11 / (one / 4.0) * r;
     reference.p[1] = reference.p[2] = f->own.kalman.p.p12 / one * r;
     reference.p[3] = f->own.kalman.p.p22 / one * r;
     return reference;
 }
 
 /*
- * One step of both from the same state. With P in units of R: m errs by e = 2^-18 + m (2^-8 / |r| x 2 + 2^-13), from
- * its own rounding, that of |r| to 2^-8 LSB and that of the reciprocal, squared; P11 m and P12 m by P (e + 2^-20 m) +
- * 2^-25. P22 takes w2 rounded down to 2^-16. A step errs by |r| times that, by w 2^-8 LSB (2^-8 of itself beyond 256
- * LSB) and by two counts.
+ * One step of both from the same state. With P in units of R: m errs by e = 2^-20 + m (2^-8 / |r| x 2 + 2^-13), from
+ * its own rounding, that of |r| to 2^-8 LSB and that of the reciprocal, squared; P11 m by P11 e + 2^-16 m + 2^-25, P12 m
+ * by P12 e + 2^-18 m + 2^-24. P22 takes w2 rounded down to 2^-16. A step errs by |r| times that, by w 2^-8 LSB (2^-8
+ * of itself beyond 256 LSB) and by two counts.
  */
 static void assert_step_equals_the_reference(const filter_t *start, int16_t z)
 {
     filter_t f = *start;
-    if (((f.own.kalman.p.p11 | f.own.kalman.p.p12 | f.own.kalman.p.p22) & 0xE0000000U) != 0U) {
+    if (f.own.kalman.p.p11 >= 0x4000000U || ((f.own.kalman.p.p12 | f.own.kalman.p.p22) & 0xC0000000U) != 0U) {
         return; /* P at its limit is not predicted, and the reference knows no limit */
     }
     reference_filter_t r = reference_in_the_state_of(&f);
     (void)filter_update(&f, z);
     reference_step(&r, z);
-    if (r.innovation * r.innovation <= r.soft2 * r.r * 9.0 || (f.flags & FILTER_SATURATED) != 0U) {
-        return; /* S <= 9 R: not surely beyond the soft gate */
+    if (r.innovation * r.innovation <= r.soft2 * r.r * 53.0 || (f.flags & FILTER_SATURATED) != 0U) {
+        return; /* S <= 53 R: not surely beyond the soft gate */
     }
     const double size = fabs(r.innovation);
     const double m = r.soft2 * r.r / (size * size);
-    const double e = 1.0 / 262144.0 + m * (2.0 / 256.0 / size + 1.0 / 8192.0);
+    const double e = 1.0 / 1048576.0 + m * (2.0 / 256.0 / size + 1.0 / 8192.0);
     const double p11 = r.gain[0] / m;
     const double p12 = r.gain[1] / m;
-    const double w_error = e + m / 1048576.0;
+    const double w1_error = p11 * e + m / 65536.0;
+    const double w2_error = p12 * e + m / 262144.0;
     const double step = 1.0 / 256.0 / size + (size >= 256.0 ? 1.0 / size : 0.0);
-    TEST_ASSERT_DOUBLE_WITHIN(size * (p11 * w_error + r.gain[0] * step + 6e-8) + 2.0 / 65536.0, r.x[0],
+    TEST_ASSERT_DOUBLE_WITHIN(size * (w1_error + r.gain[0] * step + 6e-8) + 2.0 / 65536.0, r.x[0],
                               f.x_lsb_q16 / 65536.0);
-    TEST_ASSERT_DOUBLE_WITHIN(size * (p12 * w_error + m / 1048576.0 + r.gain[1] * step + 6e-8) + 2.0 / 65536.0, r.x[1],
+    TEST_ASSERT_DOUBLE_WITHIN(size * (w2_error + r.gain[1] * step + 12e-8) + 2.0 / 65536.0, r.x[1],
                               f.rate_lsb / 65536.0);
     const double p_error = 3.0 / 65536.0;
-    TEST_ASSERT_DOUBLE_WITHIN(r.r * p11 * (p11 * w_error + p_error) + r.r / 1048576.0, r.p[0],
-                              f.own.kalman.p.p11 / 268435456.0 * r.r);
-    TEST_ASSERT_DOUBLE_WITHIN(r.r * p12 * (p11 * w_error + p_error) + r.r / 1048576.0, r.p[1],
-                              f.own.kalman.p.p12 / 268435456.0 * r.r);
-    const double p22_error = p12 * (p12 * w_error + 3.0 * m / 1048576.0 + 1.0 / 65536.0) + 4.0 / 268435456.0;
-    TEST_ASSERT_DOUBLE_WITHIN(r.r * p22_error, r.p[3], f.own.kalman.p.p22 / 268435456.0 * r.r);
+    TEST_ASSERT_DOUBLE_WITHIN(r.r * p11 * (w1_error + p_error) + r.r / 65536.0, r.p[0],
+                              f.own.kalman.p.p11 / 16777216.0 * r.r);
+    TEST_ASSERT_DOUBLE_WITHIN(r.r * p12 * (w1_error + p_error) + r.r / 262144.0, r.p[1],
+                              f.own.kalman.p.p12 / 67108864.0 * r.r);
+    const double p22_error = p12 * (w2_error + 3.0 * m / 262144.0 + 1.0 / 65536.0) + 4.0 / 67108864.0;
+    TEST_ASSERT_DOUBLE_WITHIN(r.r * p22_error, r.p[3], f.own.kalman.p.p22 / 67108864.0 * r.r);
 }
 
 /* Any configuration, after any samples and gaps: P small and at its limit. */

@@ -78,9 +78,9 @@ static void consistent_run_restarts_on_its_slope(void)
         TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, f.flags);
         uint32_t steps = lengths[i] - 1U; /* a power of two: exact */
         TEST_ASSERT_EQUAL_INT32((int32_t)4 * 65536, f.rate_lsb);
-        TEST_ASSERT_EQUAL_UINT32(268435456U, f.own.kalman.p.p11);
-        TEST_ASSERT_EQUAL_UINT32(268435456U / steps, f.own.kalman.p.p12);
-        TEST_ASSERT_EQUAL_UINT32(2U * 268435456U / steps / steps + f.own.kalman.q22_uq28, f.own.kalman.p.p22);
+        TEST_ASSERT_EQUAL_UINT32(16777216U, f.own.kalman.p.p11);
+        TEST_ASSERT_EQUAL_UINT32(67108864U / steps, f.own.kalman.p.p12);
+        TEST_ASSERT_EQUAL_UINT32(2U * 67108864U / steps / steps + f.own.kalman.q22_uq26, f.own.kalman.p.p22);
     }
 }
 
@@ -247,7 +247,7 @@ static void where_nothing_agrees_it_comes_to_stand(void)
     expect_a_stand(-1);
 }
 
-/* An accepted sample begins the count anew: the rate is held over 5 refused ones, however often they come. */
+/* An accepted sample begins the count anew: the rate is held over 3 refused ones, however often they come. */
 static void rate_is_held_over_short_runs(void)
 {
     filter_config_t config = config_100hz();
@@ -257,13 +257,52 @@ static void rate_is_held_over_short_runs(void)
     }
     filter_probe_t probe;
     for (int16_t k = 401; k <= 700; k++) {
-        bool refused = k % 6 != 0;
+        bool refused = k % 4 != 0;
         int16_t away = ((k & 1) != 0) ? 4000 : -4000;
         (void)filter_update(&f, refused ? away : (int16_t)(k * 4));
         TEST_ASSERT_EQUAL_UINT8(refused ? FILTER_GATED : 0, f.flags);
         filter_probe(&f, &probe);
         TEST_ASSERT_INT32_WITHIN(1024, (int32_t)4 * 65536, probe.rate_lsb_q16);
     }
+}
+
+/* From 30 Hz down three samples that agree restart it as shipped, above that five. */
+static void at_low_rates_three_samples_restart_it(void)
+{
+    static const uint16_t rates_dhz[] = { 50, 250, 300, 301, 1000, 8000 };
+    for (uint8_t i = 0; i < 6U; i++) {
+        filter_config_t config = filter_defaults(&filter_law_sprf, rates_dhz[i]);
+        filter_t f = settled(&config, 0);
+        uint8_t samples = 1;
+        for (; (filter_update(&f, 1000), f.flags == FILTER_GATED) && samples < 20U; samples++) {
+        }
+        TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, f.flags);
+        TEST_ASSERT_EQUAL_UINT8((i < 3U) ? 3 : 5, samples);
+    }
+}
+
+/* P11 is above R: each refused sample leaves half of the rate, towards 0 on both sides. */
+static void expect_doubt(int16_t direction)
+{
+    filter_config_t config = config_100hz();
+    config.value[SPRF_Q_LSB2_S3] = 20000000; /* q T^3 / R = 1.25: P11 settles at 3.9 before the update */
+    filter_t f = settled(&config, 0);
+    for (int16_t k = 1; k <= 100; k++) {
+        (void)filter_update(&f, (int16_t)(k * 7 * direction));
+    }
+    int32_t rate = f.rate_lsb;
+    TEST_ASSERT_INT32_WITHIN(1024, (int32_t)7 * direction * 65536, rate);
+    for (uint8_t n = 1; n <= 4U; n++) {
+        (void)filter_update(&f, (n & 1U) != 0U ? 4000 : -4000);
+        rate /= 2;
+        TEST_ASSERT_EQUAL_INT32(rate, f.rate_lsb);
+    }
+}
+
+static void an_uncertain_rate_is_halved_by_refused_samples(void)
+{
+    expect_doubt(1);
+    expect_doubt(-1);
 }
 
 /* A run beyond the range of samples: each is clamped and says so, the one that re-acquires too. */
@@ -293,6 +332,8 @@ int main(void)
     RUN_TEST(run_with_a_gap_restarts_at_rest);
     RUN_TEST(where_nothing_agrees_it_comes_to_stand);
     RUN_TEST(rate_is_held_over_short_runs);
+    RUN_TEST(at_low_rates_three_samples_restart_it);
+    RUN_TEST(an_uncertain_rate_is_halved_by_refused_samples);
     RUN_TEST(without_reacquisition_it_runs_on);
     return UNITY_END();
 }

@@ -50,55 +50,55 @@ static uint32_t normalised_c(uint32_t v)
 #define POSITIVE(v) ((int32_t)((v)&0x7FFFFFFFUL))
 
 /* X(name, what it gives for the operands a and b) */
-#define PRIMITIVES(X)                                                                  \
-    X(fx_mul_u16, fx_mul_u16(A16, B16))                                                \
-    X(fx_product_u16, fx_product_u16(A16, B16))                                        \
-    X(fx_mul_uq16, fx_mul_uq16(a, B16))                                                \
-    X(fx_mul16_uq16, fx_mul16_uq16(A16, B16))                                          \
-    X(fx_mul24_uq16, fx_mul24_uq16(A24, B16))                                          \
-    X(fx_mul24_uq24, fx_mul24_uq24(A24, B24))                                          \
-    X(fx_mul_uq24, fx_mul_uq24(a, B24))                                                \
-    X(fx_shift12, fx_shift12(A16))                                                     \
-    X(fx_eightfold, fx_eightfold(a))                                                   \
-    X(fx_sixteenth, fx_sixteenth(a))                                                   \
-    X(fx_mul_u16_c, fx_mul_u16_c(A16, B16))                                            \
-    X(fx_mul_uq16_c, fx_mul_uq16_c(a, B16))                                            \
-    X(fx_mul16_uq16_c, fx_mul16_uq16_c(A16, B16))                                      \
-    X(fx_mul24_uq16_c, fx_mul24_uq16_c(A24, B16))                                      \
-    X(fx_mul24_uq24_c, fx_mul24_uq24_c(A24, B24))                                      \
-    X(fx_mul_uq24_c, fx_mul_uq24_c(a, B24))                                            \
-    X(fx_shift12_c, fx_shift12_c(A16))                                                 \
-    X(fx_eightfold_c, fx_eightfold_c(a))                                               \
-    X(fx_sixteenth_c, fx_sixteenth_c(a))                                               \
-    X(fx_normalise_c, normalised_c(NOT_0(a)))                                          \
-    X(fx_normalise, normalised(NOT_0(a)))                                              \
-    X(fx_shift_right_c, fx_shift_right_c(a, (uint8_t)(b & 31U)))                       \
-    X(fx_shift_right, fx_shift_right(a, (uint8_t)(b & 31U)))                           \
-    X(filter_fx_shifted_right, filter_fx_shifted_right(a, (uint8_t)(b & 31U)))         \
-    X(fx_without_part_c, (uint32_t)fx_without_part_c(HALF(a), PART(b)))                \
-    X(fx_without_part, (uint32_t)fx_without_part(HALF(a), PART(b)))                    \
-    X(fx_clamp_high_c, (uint32_t)fx_clamp_high_c((int32_t)a, 54))                      \
-    X(fx_clamp_high, (uint32_t)fx_clamp_high((int32_t)a, 54))                          \
-    X(filter_fx_high_u16, filter_fx_high_u16(A16, B16))                                \
-    X(filter_fx_times_uq16, filter_fx_times_uq16(a, B16))                              \
-    X(filter_fx_leading, filter_fx_leading(a))                                         \
-    X(fx_places, fx_places(a))                                                         \
-    X(fx_mantissa, fx_mantissa(a))                                                     \
-    X(filter_fx_inverse_uq16, filter_fx_inverse_uq16(LED(a)))                          \
-    X(fx_reciprocal_leading_uq16, fx_reciprocal_leading_uq16(LED(a)))                  \
-    X(fx_abs32, fx_abs32((int32_t)a))                                                  \
-    X(fx_upper_c, fx_upper_c(&a))                                                      \
-    X(fx_upper, fx_upper(&a))                                                          \
-    X(fx_upper_signed_c, (uint32_t)fx_upper_signed_c((const int32_t *)&a))             \
-    X(fx_upper_signed, (uint32_t)fx_upper_signed((const int32_t *)&a))                 \
-    X(fx_add_sat, fx_add_sat(a, b))                                                    \
-    X(fx_clamp, (uint32_t)fx_clamp((int32_t)a, POSITIVE(b)))                           \
-    X(fx_inverse_m_uq16, fx_inverse_m_uq16((uint8_t)(a & 0x7FU), B16))                 \
-    X(fx_reciprocal_uq16, fx_reciprocal_uq16(a < 0x10000000UL ? a | 0x10000000UL : a)) \
-    X(filter_fx_isqrt32, filter_fx_isqrt32(a))                                         \
-    X(filter_fx_scaled, pack(filter_fx_scaled(a)))                                     \
-    X(filter_fx_scaled_mul, pack(filter_fx_scaled_mul(scaled_of(a), scaled_of(b))))    \
-    X(filter_fx_scaled_div, pack(filter_fx_scaled_div(scaled_of(a), scaled_of(b))))    \
+#define PRIMITIVES(X)                                                                \
+    X(fx_mul_u16, fx_mul_u16(A16, B16))                                              \
+    X(fx_product_u16, fx_product_u16(A16, B16))                                      \
+    X(fx_mul_uq16, fx_mul_uq16(a, B16))                                              \
+    X(fx_mul16_uq16, fx_mul16_uq16(A16, B16))                                        \
+    X(fx_mul24_uq16, fx_mul24_uq16(A24, B16))                                        \
+    X(fx_mul24_uq24, fx_mul24_uq24(A24, B24))                                        \
+    X(fx_mul_uq24, fx_mul_uq24(a, B24))                                              \
+    X(fx_shift12, fx_shift12(A16))                                                   \
+    X(fx_eightfold, fx_eightfold(a))                                                 \
+    X(fx_sixteenth, fx_sixteenth(a))                                                 \
+    X(fx_mul_u16_c, fx_mul_u16_c(A16, B16))                                          \
+    X(fx_mul_uq16_c, fx_mul_uq16_c(a, B16))                                          \
+    X(fx_mul16_uq16_c, fx_mul16_uq16_c(A16, B16))                                    \
+    X(fx_mul24_uq16_c, fx_mul24_uq16_c(A24, B16))                                    \
+    X(fx_mul24_uq24_c, fx_mul24_uq24_c(A24, B24))                                    \
+    X(fx_mul_uq24_c, fx_mul_uq24_c(a, B24))                                          \
+    X(fx_shift12_c, fx_shift12_c(A16))                                               \
+    X(fx_eightfold_c, fx_eightfold_c(a))                                             \
+    X(fx_sixteenth_c, fx_sixteenth_c(a))                                             \
+    X(fx_normalise_c, normalised_c(NOT_0(a)))                                        \
+    X(fx_normalise, normalised(NOT_0(a)))                                            \
+    X(fx_shift_right_c, fx_shift_right_c(a, (uint8_t)(b & 31U)))                     \
+    X(fx_shift_right, fx_shift_right(a, (uint8_t)(b & 31U)))                         \
+    X(filter_fx_shifted_right, filter_fx_shifted_right(a, (uint8_t)(b & 31U)))       \
+    X(fx_without_part_c, (uint32_t)fx_without_part_c(HALF(a), PART(b)))              \
+    X(fx_without_part, (uint32_t)fx_without_part(HALF(a), PART(b)))                  \
+    X(fx_clamp_high_c, (uint32_t)fx_clamp_high_c((int32_t)a, 54))                    \
+    X(fx_clamp_high, (uint32_t)fx_clamp_high((int32_t)a, 54))                        \
+    X(filter_fx_high_u16, filter_fx_high_u16(A16, B16))                              \
+    X(filter_fx_times_uq16, filter_fx_times_uq16(a, B16))                            \
+    X(filter_fx_leading, filter_fx_leading(a))                                       \
+    X(fx_places, fx_places(a))                                                       \
+    X(fx_mantissa, fx_mantissa(a))                                                   \
+    X(filter_fx_inverse_uq16, filter_fx_inverse_uq16(LED(a)))                        \
+    X(fx_reciprocal_leading_uq16, fx_reciprocal_leading_uq16(LED(a)))                \
+    X(fx_abs32, fx_abs32((int32_t)a))                                                \
+    X(fx_upper_c, fx_upper_c(&a))                                                    \
+    X(fx_upper, fx_upper(&a))                                                        \
+    X(fx_upper_signed_c, (uint32_t)fx_upper_signed_c((const int32_t *)&a))           \
+    X(fx_upper_signed, (uint32_t)fx_upper_signed((const int32_t *)&a))               \
+    X(fx_add_sat, fx_add_sat(a, b))                                                  \
+    X(fx_clamp, (uint32_t)fx_clamp((int32_t)a, POSITIVE(b)))                         \
+    X(fx_inverse_m_uq16, fx_inverse_m_uq16((uint8_t)(a & 0x7FU), B16))               \
+    X(fx_reciprocal_uq16, fx_reciprocal_uq16(a < 0x1000000UL ? a | 0x1000000UL : a)) \
+    X(filter_fx_isqrt32, filter_fx_isqrt32(a))                                       \
+    X(filter_fx_scaled, pack(filter_fx_scaled(a)))                                   \
+    X(filter_fx_scaled_mul, pack(filter_fx_scaled_mul(scaled_of(a), scaled_of(b))))  \
+    X(filter_fx_scaled_div, pack(filter_fx_scaled_div(scaled_of(a), scaled_of(b))))  \
     X(filter_fx_scaled_fixed, filter_fx_scaled_fixed(scaled_of(a), (uint8_t)(b & 31U)))
 
 enum {

@@ -52,6 +52,13 @@ const Entry entries[] = {
 constexpr double rate_max_deg_s = 3.0;
 constexpr double shipped_rate_variance = 4.0 * 4.0;
 
+// The library has it on the core of kalman.h, not on that of wide.h.
+bool kalman_core(const Entry &entry)
+{
+    const std::string reference = entry.reference;
+    return reference == "kf" || reference == "lrf" || entry.reacquire != 0;
+}
+
 class DoubleFilter final : public Filter
 {
   public:
@@ -65,11 +72,13 @@ class DoubleFilter final : public Filter
         if (entry.reacquire != 0) {
             initial_.rate_max = rate_max_deg_s;
             initial_.agree = 3.0 * std::sqrt(2.0 * initial_.r) + rate_max_deg_s * period_s;
+            initial_.doubts = true;
         }
         const bool as_published = entry.reference == gated_name && entry.reacquire == 0;
         initial_.median_window = (settings.start != Start::table1 && !as_published) ? 5 : 0;
-        if (settings.start == Start::shipped) { // the library limits it to R per sample
-            initial_.p22_start = std::min(shipped_rate_variance, initial_.r / (period_s * period_s));
+        if (settings.start == Start::shipped) { // the library limits it, as kalman.h and wide.h say
+            const double limit_r = kalman_core(entry) ? 14.0 : 1.0;
+            initial_.p22_start = std::min(shipped_rate_variance, limit_r * initial_.r / (period_s * period_s));
         }
         const char *refused = robust_reference_refused(&initial_);
         if (refused != nullptr) {

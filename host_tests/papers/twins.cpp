@@ -21,7 +21,7 @@ double drive(const std::string &name, const Shipping &shipping, int power, doubl
     const double r_lsb2 = factor * parameter_of(name, "r", shipping);
     return std::fmin(limit, parameter_of(name, "q", shipping) / (std::pow(shipping.rate_hz, power) * r_lsb2));
 }
-const double rate_drive_max = std::ldexp(static_cast<double>(KALMAN_Q22_MAX_UQ28), -28);
+const double rate_drive_max = std::ldexp(static_cast<double>(KALMAN_Q22_MAX_UQ26), -26);
 constexpr double acceleration_drive_max = 1.0;
 
 // (8) of lrf: one R for both kinds of samples.

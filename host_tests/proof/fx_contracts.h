@@ -6,12 +6,12 @@
 
 #include "fx.h"
 
-/* 2^44 / s is 1 / s in UQ0.16; 600 counts: one interval of the table, as coarse as the proof looks. */
-/*@ requires s_uq28 >= 0x10000000;
-    assigns \result \from s_uq28;
-    ensures \result <= 17592186044416 / s_uq28 + 600;
+/* 2^40 / s is 1 / s in UQ0.16; 600 counts: one interval of the table, as coarse as the proof looks. */
+/*@ requires s_uq24 >= 0x1000000;
+    assigns \result \from s_uq24;
+    ensures \result <= 1099511627776 / s_uq24 + 600;
 */
-static inline uint16_t fx_reciprocal_uq16(uint32_t s_uq28);
+static inline uint16_t fx_reciprocal_uq16(uint32_t s_uq24);
 
 /*@ requires interval < 128;
     assigns \result \from interval, fraction;
@@ -48,11 +48,12 @@ static fx_scaled_t rounded(uint32_t v, int8_t exponent);
 
 /*
  * The ends that its callers ask for, of Q28: 1 g, and what is left of it across 30 degrees, 27/32 rounded down; and of
- * the least noise, and kf3's largest drive.
+ * the least noise, and the largest drive of kf (Q26) and of kf3.
  */
 #define SQUARE(k) ((k) * (k)*0x40000)
 /*@ assigns \result \from v;
     ensures v <= 0x10000000 ==> \result <= 0x4000;
+    ensures v <= 0x40000000 ==> \result <= 0x8000;
     ensures v >= SQUARE(27) ==> \result >= 512 * 27;
     ensures v <= 0x2000000 ==> \result <= 8191;
     ensures v >= 12288 ==> \result >= 104;

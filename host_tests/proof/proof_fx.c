@@ -10,22 +10,22 @@ static void reciprocal_in(uint32_t from, uint32_t to)
 }
 
 /*
- * One call for each interval of the table and each number of halvings: together all of 1 <= s < 16. Whole:
+ * One call for each interval of the table and each number of halvings: together all of 1 <= s < 256. Whole:
  * fx_inverse_m_uq16
  */
 void proof_fx_reciprocal_uq16(void)
 {
-    uint32_t from = 0x10000000U;
+    uint32_t from = 0x1000000U;
     bool whole = false;
-    for (uint8_t halvings = 0; halvings < 4; halvings++) {
-        uint32_t width = (uint32_t)0x200000U << halvings;
+    for (uint8_t halvings = 0; halvings < 8; halvings++) {
+        uint32_t width = (uint32_t)0x20000U << halvings;
         for (uint8_t node = 0; node < 128; node++) {
             uint32_t to = from + (width - 1U);
             reciprocal_in(from, to);
             if (to != UINT32_MAX) {
                 from = to + 1U;
             } else {
-                whole = halvings == 3 && node == 127;
+                whole = halvings == 7 && node == 127;
             }
         }
     }
@@ -77,7 +77,8 @@ void proof_filter_fx_isqrt32(void)
     }
     (void)filter_fx_isqrt32(0x10000000U);
     (void)filter_fx_isqrt32(ANY_U32(0x10000001U, 0x3FFFFFFFU));
-    (void)filter_fx_isqrt32(ANY_U32(0x40000000U, UINT32_MAX));
+    (void)filter_fx_isqrt32(0x40000000U);
+    (void)filter_fx_isqrt32(ANY_U32(0x40000001U, UINT32_MAX));
 }
 
 static fx_scaled_t any_scaled(void)

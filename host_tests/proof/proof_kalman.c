@@ -8,42 +8,53 @@ static void any_own(filter_t *f, uint8_t kind)
     any_kalman(f, kind);
 }
 
-static void grow_in_cell(uint32_t p12_from_uq28, uint32_t p22_from_uq28)
+static void grow_from(uint32_t p11_from, uint32_t p11_to, uint32_t p12_from, uint32_t p12_to, uint32_t p22_from,
+                      uint32_t p22_to)
 {
     filter_kalman_t k;
-    k.q22_uq28 = ANY_U32(16, ONE);
-    k.p.p11 = ANY_U32(0, 2 * ONE - 1);
-    k.p.p12 = ANY_U32(p12_from_uq28, p12_from_uq28 + ONE / 8 - 1);
-    k.p.p22 = ANY_U32(p22_from_uq28, p22_from_uq28 + ONE / 8 - 1);
+    k.q22_uq26 = ANY_U32(4, Q22_MOST);
+    k.p.p11 = ANY_U32(p11_from, p11_to);
+    k.p.p12 = ANY_U32(p12_from, p12_to);
+    k.p.p22 = ANY_U32(p22_from, p22_to);
     grow(&k);
 }
 
-/* All elements below 2 in cells of 1/8 of P12 and P22, then the states that are held. */
+/* P that is predicted, by whole numbers of P11, then P that is not, for P11, for P12, for P22. */
 void proof_grow(void)
 {
-    for (uint8_t i = 0; i < 16; i++) {
-        for (uint8_t j = 0; j < 16; j++) {
-            grow_in_cell((uint32_t)i * (ONE / 8), (uint32_t)j * (ONE / 8));
-        }
+    for (uint8_t whole = 0; whole < 4; whole++) {
+        grow_from((uint32_t)whole << 24, ((uint32_t)whole << 24) + 0xFFFFFF, 0, 0x3FFFFFFF, 0, 0x3FFFFFFF);
     }
-    filter_t f;
-    any_kalman(&f, 0);
-    /*@ admit f.own.kalman.p.p11 >= 4 * ONE || f.own.kalman.p.p11 >= 2 * ONE || f.own.kalman.p.p12 >= 2 * ONE ||
-              f.own.kalman.p.p22 >= 2 * ONE; */
-    //@ admit HELD(f.own.kalman.p);
-    grow(&f.own.kalman);
+    grow_from(0x4000000, 0x33FFFFFF, 0, 0x7FFFFFFF, 0, 0x77FFFFFF);
+    grow_from(0, 0x33FFFFFF, 0x40000000, 0x7FFFFFFF, 0, 0x77FFFFFF);
+    grow_from(0, 0x33FFFFFF, 0, 0x7FFFFFFF, 0x40000000, 0x77FFFFFF);
 }
 
-static void gate_in(uint32_t from_lsb_uq8, uint32_t to_lsb_uq8, uint16_t gate_from_uq4, uint16_t gate_to_uq4)
+void proof_kalman_limited_uq24(void)
+{
+    (void)kalman_limited_uq24(ANY_U32(0, 0xFFFFFF));
+    (void)kalman_limited_uq24(ANY_U32(0x1000000, UINT32_MAX));
+}
+
+void proof_variance_uq10(void)
+{
+    filter_kalman_t k;
+    k.p.p11 = ANY_U32(0, 0x33FFFFFF);
+    (void)variance_uq10(&k);
+}
+
+static void gate_in(uint32_t from_lsb_uq8, uint32_t to_lsb_uq8, uint16_t gate_from_uq6, uint16_t gate_to_uq6)
 {
     for (uint8_t coarse = 0; coarse < 2; coarse++) {
         filter_t f;
         any_running(&f, NULL, 0);
-        f.own.kalman.p.p11 = ANY_U32(0, 0x7FFFFFFF);
+        f.own.kalman.p.p11 = ANY_U32(0, 0x33FFFFFF);
         f.own.kalman.coarse = coarse != 0U;
         uint32_t scale = (coarse != 0U) ? 16 : 1;
-        f.size_lsb_uq16 = ANY_U32(from_lsb_uq8 * scale * 256U, (to_lsb_uq8 * scale + (scale - 1)) * 256U + 255U);
-        f.own.kalman.gate_lsb2_uq4 = ANY_U16(gate_from_uq4, gate_to_uq4);
+        uint32_t from = (coarse != 0U && from_lsb_uq8 == 1U) ? 32U : from_lsb_uq8 * scale;
+        uint32_t to = (coarse != 0U && to_lsb_uq8 == 0U) ? 31U : to_lsb_uq8 * scale + (scale - 1U);
+        f.size_lsb_uq16 = ANY_U32(from * 256U, to * 256U + 255U);
+        f.own.kalman.gate_lsb2_uq6 = ANY_U16(gate_from_uq6, gate_to_uq6);
         (void)within_gate(&f);
     }
 }
@@ -54,16 +65,16 @@ void proof_within_gate(void)
     uint16_t gate = 0;
     for (uint32_t above = 1; above <= 65536; above <<= 4) {
         gate_in(0, 0, gate, (uint16_t)(above - 1));
-        gate_in(1, 63, gate, (uint16_t)(above - 1));
-        gate_in(64, 255, gate, (uint16_t)(above - 1));
-        gate_in(256, 1023, gate, (uint16_t)(above - 1));
-        gate_in(1024, 4095, gate, (uint16_t)(above - 1));
-        gate_in(4096, 65535, gate, (uint16_t)(above - 1));
+        gate_in(1, 31, gate, (uint16_t)(above - 1));
+        gate_in(32, 127, gate, (uint16_t)(above - 1));
+        gate_in(128, 511, gate, (uint16_t)(above - 1));
+        gate_in(512, 2047, gate, (uint16_t)(above - 1));
+        gate_in(2048, 65535, gate, (uint16_t)(above - 1));
         gate = (uint16_t)above;
     }
     filter_t f;
     any_running(&f, NULL, 0);
-    f.own.kalman.p.p11 = ANY_U32(0, 0x7FFFFFFF);
+    f.own.kalman.p.p11 = ANY_U32(0, 0x33FFFFFF);
     f.size_lsb_uq16 = ANY_U32(65536UL * 256, SIZE_END);
     f.own.kalman.coarse = false;
     (void)within_gate(&f);
@@ -76,7 +87,6 @@ void proof_filter_kalman_step(void)
 {
     filter_t f;
     any_running(&f, NULL, 1);
-    //@ admit COVARIANCE(&f);
     (void)filter_kalman_step(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB), ANY_U8(0, 2));
 }
 
@@ -86,7 +96,6 @@ void proof_filter_kalman_refused(void)
     {
         filter_t f;
         any_running(&f, NULL, kind);
-        //@ admit HELD(f.own.kalman.p);
         (void)filter_kalman_refused(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
     }
 }

@@ -1,29 +1,21 @@
 /* soft: see law.h. */
 #define KEPT(f) (PARAMETERS(f) && (f)->own.kalman.of.gated.gate_sigma_q8 <= 4096)
-#define REFUSED_WITH WIDTH
-#define REFUSED_LEAVES WIDTH
 #include "kalman_bounds.h"
 
 /*@ requires farther: f->size_lsb_uq16 >= 256 && FARTHER(f);
     assigns \result \from f->size_lsb_uq16, f->own;
     ensures \result < 0x1000000;
 */
-static inline uint32_t weight_uq20(const filter_t *f);
-
-/*@ assigns \result \from w_uq24;
-    ensures \result <= 0xFFFFFF;
-*/
-static inline uint32_t limited_uq24(uint32_t w_uq24);
+static inline uint32_t weight_uq24(const filter_t *f);
 
 /*@ requires TRACKED(f) && PARAMETERS(f) && f->collected == 5 && SAMPLE(z_lsb);
     requires RUN(f);
-    requires WIDTH(f->own.kalman.p);
+    requires COVARIANCE(f);
     requires reach: f->collected == 5 && REACH(f);
     assigns KALMAN_STATE, f->broken, f->own.kalman.run, f->own.kalman.first_lsb \from KALMAN_SEES, f->broken;
     ensures TRACKED(f) && FLAG(f->broken);
     ensures RUN(f);
-    ensures WIDTH(f->own.kalman.p);
-    ensures covariance: COVARIANCE(f);
+    ensures COVARIANCE(f);
 */
 static void take_part(filter_t *f, int16_t z_lsb);
 
@@ -36,33 +28,27 @@ static void any_own(filter_t *f, uint8_t kind)
     f->own.kalman.of.gated.share_uq16 = ANY_U16(0, UINT16_MAX);
 }
 
-static void weight_in(uint8_t bit, bool coarse, uint16_t gate_end_uq4)
+static void weight_in(uint8_t bit, bool coarse, uint16_t gate_end_uq6)
 {
     filter_t f;
     any_running(&f, &filter_law_soft, 0);
     uint32_t from = (uint32_t)256 << bit;
     f.size_lsb_uq16 = ANY_U32(from, (bit == 21) ? SIZE_END : from + (from - 1));
     f.own.kalman.coarse = coarse;
-    f.own.kalman.gate_lsb2_uq4 = ANY_U16(0, gate_end_uq4);
-    (void)weight_uq20(&f);
+    f.own.kalman.gate_lsb2_uq6 = ANY_U16(0, gate_end_uq6);
+    (void)weight_uq24(&f);
 }
 
 /* By powers of two of the size, fine and coarse. */
-void proof_weight_uq20(void)
+void proof_weight_uq24(void)
 {
-    static const uint16_t gate_end_uq4[] = { 0, 15, 255, 4095 };
+    static const uint16_t gate_end_uq6[] = { 0, 15, 255, 4095 };
     for (uint8_t bit = 0; bit < 22; bit++) {
-        weight_in(bit, false, (bit < 6) ? 0 : (bit < 12) ? gate_end_uq4[(bit - 4) / 2] : UINT16_MAX);
-        if (bit >= 4) {
-            weight_in(bit, true, (bit < 10) ? 0 : (bit < 16) ? gate_end_uq4[(bit - 8) / 2] : UINT16_MAX);
+        weight_in(bit, false, (bit < 5) ? 0 : (bit < 11) ? gate_end_uq6[(bit - 3) / 2] : UINT16_MAX);
+        if (bit >= 5) {
+            weight_in(bit, true, (bit < 9) ? 0 : (bit < 15) ? gate_end_uq6[(bit - 7) / 2] : UINT16_MAX);
         }
     }
-}
-
-void proof_limited_uq24(void)
-{
-    (void)limited_uq24(ANY_U32(0, 0xFFFFFF));
-    (void)limited_uq24(ANY_U32(0x1000000, UINT32_MAX));
 }
 
 /*
@@ -75,7 +61,6 @@ void proof_take_part(void)
     {
         filter_t f;
         any_running(&f, &filter_law_soft, kind);
-        //@ admit WIDTH(f.own.kalman.p);
         //@ admit REACH(&f);
         take_part(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
     }

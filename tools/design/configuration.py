@@ -224,7 +224,7 @@ def stored_kf(f, common, error_max, noise_max):
 def drive_range(v, rate_dhz):
     """Drives (q T^3 / R, kf3: q T^5 / R) that the filter does not limit."""
     if v == 2:
-        return 16 / 2 ** 28, 1.0
+        return 4 / 2 ** 26, 14.0  # lib/filters/src/kalman.h
     return (2.0 ** -24, 1.0) if rate_dhz < THREE_FINE_FROM_DHZ else (2.0 ** -32, 2.0 ** -11)
 
 

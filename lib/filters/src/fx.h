@@ -324,16 +324,12 @@ FX_INLINE uint16_t fx_reciprocal_uq16(uint32_t s_uq24)
         s_uq24 >>= 1;
         halvings++;
     }
-    /* s = m x 2^halvings, 1 <= m < 2: a byte up and a place down bring m's leading bit to the top */
-    uint32_t half = s_uq24 >> 1;
+    uint32_t half = s_uq24 >> 1; /* s = m x 2^halvings, 1 <= m < 2: m's leading bit is bit 23 of it */
     uint16_t inverse = fx_inverse_m_uq16((uint8_t)(half >> 16) & 0x7FU, (uint16_t)half);
-    if (halvings == 0U) {
-        return inverse;
-    }
-    while (--halvings != 0U) {
+    for (; halvings > 1U; halvings--) {
         inverse >>= 1;
     }
-    return (uint16_t)((inverse >> 1) + (inverse & 1U));
+    return (halvings == 0U) ? inverse : (uint16_t)((inverse >> 1) + (inverse & 1U));
 }
 
 /* floor(sqrt(v)), exact. About 700 cycles: configuration only. */

@@ -19,8 +19,8 @@
  *            P12 rounded down to 2^-18
  *   u        rounded down to 2^-8 LSB in magnitude; x and rate steps rounded half away from zero to 2^-16: an estimate
  *            within 1/256 LSB of a constant input stays where it is
- *   gate     limit of u^2: gate^2 R rounded to 1/64 LSB^2 (down to 4 LSB^2 from 1024 on, with u in whole LSB); times S rounded
- *            down to 2^-10
+ *   gate     limit of u^2: gate^2 R rounded to 1/64 LSB^2 (from 1024 on down to 4 LSB^2, with u in whole LSB); times S
+ *            rounded down to 2^-10
  */
 #ifndef KALMAN_H
 #define KALMAN_H
