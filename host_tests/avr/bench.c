@@ -9,10 +9,7 @@
  *
  * Then it sleeps with interrupts off.
  */
-#include <avr/interrupt.h>
-#include <avr/io.h>
 #include <avr/pgmspace.h>
-#include <avr/sleep.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -374,10 +371,7 @@ static void run_the_rest(void) {}
 
 int main(void)
 {
-    UCSR0A = _BV(U2X0);
-    UBRR0 = 1;
-    UCSR0B = _BV(TXEN0);
-    TCCR1B = _BV(CS10);
+    begin_measuring();
     overhead = timed(run_nothing);
     float_overhead = timed(run_nothing_float);
     empty_overhead = timed(run_empty);
@@ -386,12 +380,7 @@ int main(void)
         run_filter(&subjects[i]);
     }
     run_the_rest();
-    put_text(PSTR("\n=end\n"));
-    while ((UCSR0A & _BV(UDRE0)) == 0) {
-    }
-    cli();
-    sleep_enable();
-    sleep_cpu();
+    end_measuring();
     for (;;) {
     }
 }

@@ -9,8 +9,6 @@
 
 #include "bench_out.h"
 
-#define NOINLINE __attribute__((noinline, noclone))
-
 enum { PAINT = 0xA5, PAINTED = 160, STACK_CALLS = 100 };
 
 static uint16_t overhead;
@@ -20,13 +18,6 @@ static uint8_t stack_calls;
 static uint16_t deepest;
 static uint16_t float_deepest;
 static uint8_t own_depth;
-
-static uint16_t NOINLINE timed(void (*call)(void))
-{
-    TCNT1 = 0;
-    call();
-    return TCNT1;
-}
 
 /* Bytes of stack that a call takes, the return address included: what no longer shows the paint below SP. */
 static uint16_t NOINLINE stack_of(void (*call)(void))

@@ -1,26 +1,11 @@
-/* Text out of the UART and random numbers, for bench.c only. */
+/* Numbers out of the UART and random ones, for bench.c only. */
 #ifndef BENCH_OUT_H
 #define BENCH_OUT_H
 
-#include <avr/io.h>
-#include <avr/pgmspace.h>
 #include <stdint.h>
 
+#include "bench_call.h"
 #include "format.h"
-
-static void put(char c)
-{
-    while ((UCSR0A & _BV(UDRE0)) == 0) {
-    }
-    UDR0 = (uint8_t)c;
-}
-
-static void put_text(const char *flash_text)
-{
-    for (char c = (char)pgm_read_byte(flash_text); c != '\0'; c = (char)pgm_read_byte(++flash_text)) {
-        put(c);
-    }
-}
 
 static void put_number(uint16_t value)
 {
@@ -29,14 +14,6 @@ static void put_number(uint16_t value)
     put(' ');
     for (const char *at = digits; at != end; at++) {
         put(*at);
-    }
-}
-
-static void put_hex(uint16_t value)
-{
-    for (uint8_t i = 0; i < 4; i++, value = (uint16_t)(value << 4)) {
-        uint8_t digit = (uint8_t)(value >> 12);
-        put((char)(digit < 10 ? '0' + digit : 'a' + digit - 10));
     }
 }
 
