@@ -11,7 +11,7 @@ from laws import ROBUST  # noqa: E402
 spec = importlib.util.spec_from_file_location("bench", pathlib.Path("tools/bench.py"))
 bench = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(bench)
-bench_firmware, laws = sys.modules["bench_firmware"], sys.modules["laws"]
+bench_firmware, bench_peers, laws = sys.modules["bench_firmware"], sys.modules["bench_peers"], sys.modules["laws"]
 
 # a filter of this test's own
 limits_of_the_list = laws.limits
@@ -206,6 +206,75 @@ def only_the_table_of_the_page_is_written():
             assert "markers" in str(fault)
         else:
             raise AssertionError("taken for a page")
+
+
+def fault_of(function, *arguments):
+    try:
+        function(*arguments)
+    except bench.Fault as fault:
+        return str(fault)
+    raise AssertionError("no fault")
+
+
+@test
+def other_people_s_filters_are_skipped_and_counted_where_they_are_absent():
+    nowhere, part = OUT / "nowhere", OUT / "peers_in_part"
+    for folder in ("TinyEKF/src", "libfixkalman"):
+        (part / folder).mkdir(parents=True, exist_ok=True)
+    found, absent = bench_peers.present(nowhere)
+    said = bench_peers.said_of(absent, nowhere)
+    assert found == [] and len(absent) == len(bench_peers.THEIRS) and len(said) == 1, said
+    assert said[0].startswith(f"skipped: {len(absent)} (") and all(s.name in said[0] for s in absent) and f"no folder {nowhere}" in said[0], said
+    found, absent = bench_peers.present(part)
+    said = bench_peers.said_of(absent, part)
+    assert [s.name for s in found] == ["TinyEKF"] and "libfixmath, libfixmatrix" in said[0] and "TinyEKF" not in said[0], said
+    assert bench_peers.said_of([], part) == []
+
+
+@test
+def their_table_is_left_alone_unless_all_of_them_were_measured():
+    page = "".join(f"{begin}\nold\n{end}\n" for begin, end in ((bench.BEGIN, bench.END), bench.bench_where.MARKERS, bench_peers.MARKERS))
+    peers = {"one": {"label": "`one`", "words": "ours", "min": 700, "median": 1234, "worst": 1300, "flash": 5000, "ram": 90, "error": 1.716},
+             "no filter": {"label": "no filter", "words": "read", "error": 0.5}}
+    for absent, left in (([bench_peers.THEIRS[0]], 1), ([], 0)):
+        written = bench.page_with(page, ["| new |"], ["| where |"], peers, absent)
+        assert written.count("old") == left and written.count("| new |") == written.count("| where |") == 1, written
+    # the best error first; what was not timed has no cycles
+    rows = ["| no filter | read |  |  |  |  |  | 0.50 |", "| `one` | ours | 700 | 1,234 | 1,300 | 5,000 | 90 | 1.72 |"]
+    assert "\n".join(rows) in written, written
+    told = bench_peers.json_rows(peers)[0]
+    assert told["name"] == "peers/one" and told["cycles_max"] == 1300 and told["error_lsb_rms"] == 1.716, told
+
+
+@test
+def a_filter_of_theirs_that_does_not_build_is_named():
+    peers = OUT / "peers_broken"
+    broken = next(s for s in bench_peers.THEIRS if s.name == "TinyEKF")
+    (peers / broken.folders[0]).mkdir(parents=True, exist_ok=True)
+    (peers / broken.folders[0] / "tinyekf.h").write_text("#error of another make\n", encoding="ascii")
+    said = fault_of(bench_peers.build, broken, ["-mmcu=atmega328p"], [], peers)
+    assert said.startswith("TinyEKF: does not build: ") and said.endswith("of another make") and len(said.splitlines()) == 1, said
+
+
+@test
+def what_a_filter_beside_others_prints_is_read():
+    assert bench_peers.parse("\n=f\n02bc3fc00000\n\n=end\n", "one", 1) == [(700, 1.5)]
+    assert bench_peers.parse("=q 0001fffe8000 =end", "one", 1) == [(1, -1.5)]
+    assert bench_peers.parse("=i 00010000fffe =end", "one", 1) == [(1, -2)]
+    assert "one: 1 of 2 samples" in fault_of(bench_peers.parse, "=f 000100000000 =end", "one", 2)
+    assert "did not run to its end" in fault_of(bench_peers.parse, "=f 000100000000 000100000000", "one", 2)
+    assert "one: a call takes more" in fault_of(bench_peers.parse, "=f ffff00000000 =end", "one", 1)
+    settled = [(500, 0.0)] * bench_peers.SETTLED
+    row = bench_peers.row_of([*settled, (100, 3.0), (102, 4.0), (300, 5.0)], [9.0] * len(settled) + [0.0, 0.0, 5.0])
+    assert row == {"min": 100, "median": 102, "worst": 300, "error": (25 / 3) ** 0.5}, row
+
+
+@test
+def the_committed_page_has_every_filter_beside_theirs():
+    begin, end = bench_peers.MARKERS
+    table = bench.DOCUMENT.read_text(encoding="utf-8").split(begin)[1].split(end)[0]
+    for subject in (*bench_peers.ours(), *bench_peers.THEIRS):
+        assert table.count(f"| {subject.label} | {subject.words} |") == 1, f"{subject.name} has no row in {bench.DOCUMENT}: run make bench"
 
 
 @test

@@ -45,10 +45,13 @@ $(U)/bench_rest/%.o: %.c Makefile mk/bench.mk
 $(U)/bench_rest.elf: $(BENCH_REST_OBJ)
 	@$(AVR_CC) $(AVR_LINK) $^ -o $@
 
-## bench: cycles, flash, RAM and stack of each filter, beside float, into docs/benchmarks.md (2 minutes)
+# other people's filters, measured beside ours where they are
+PEERS ?= ../shared/peers/filters
+
+## bench: cycles, flash, RAM and stack of each filter, beside float and other people's (PEERS=folder), into docs/benchmarks.md (3 minutes)
 bench:
 	@sh tools/deps.sh bench
 	@$(MAKE) -j2 $(BENCH_IMAGES) $(U)/bench_sample.elf $(U)/bench_rest.elf $(SET_IMAGES) $(S)/simrun
-	@python3 tools/bench.py --flags '$(BENCH_COMMON) -Wl,--gc-sections $(BENCH_INC)' --small '$(AVR_SMALL)' --sources '$(BENCH_SRC)' --parts '$(BENCH_PARTS)'
+	@python3 tools/bench.py --flags '$(BENCH_COMMON) -Wl,--gc-sections $(BENCH_INC)' --small '$(AVR_SMALL)' --sources '$(BENCH_SRC)' --parts '$(BENCH_PARTS)' --peers '$(PEERS)'
 
 .PHONY: bench

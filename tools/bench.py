@@ -1,4 +1,4 @@
-"""make bench: runs the images of the benchmark in the simulator, judges the numbers, writes build/bench.json and the table of
+"""make bench: runs the images of the benchmark in the simulator, judges the numbers, writes build/bench.json and the tables of
 docs/benchmarks.md."""
 import argparse
 import json
@@ -8,10 +8,11 @@ import statistics
 import subprocess
 import sys
 
+import bench_peers
 import bench_where
 import images
 import laws
-from bench_firmware import OUT, SIMRUN, Fault, measure_rest, measure_sample, run
+from bench_firmware import OUT, SIMRUN, Fault, image_size, measure_rest, measure_sample, run
 
 JSON = pathlib.Path("build/bench.json")
 DOCUMENT = pathlib.Path("docs/benchmarks.md")
@@ -122,13 +123,6 @@ def declared_of(flags, filters):
     if done.returncode != 0 or missed:
         raise Fault(f"{missed[0] if missed else 'settings.h'}: declares no worst case")
     return found
-
-
-def image_size(elf):
-    """Flash and RAM bytes."""
-    sizes = {w[0]: int(w[1]) for w in (line.split() for line in run(["avr-size", "-A", elf]).splitlines()) if len(w) == 3 and w[1].isdigit()}
-    data = sizes.get(".data", 0)
-    return sizes.get(".text", 0) + data, data + sizes.get(".bss", 0) + sizes.get(".noinit", 0)
 
 
 class Sizes:
@@ -274,6 +268,12 @@ def with_table(page, lines, begin=BEGIN, end=END):
     return head + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1]
 
 
+def page_with(page, lines, where, peers, absent):
+    """The page with its tables; that of other people's filters only where all of them were there."""
+    page = with_table(with_table(page, lines), where, *bench_where.MARKERS)
+    return page if absent else with_table(page, bench_peers.table(peers), *bench_peers.MARKERS)
+
+
 def committed_page():
     done = subprocess.run(["git", "show", f"HEAD:{DOCUMENT}"], capture_output=True, text=True, timeout=60)
     return done.stdout if done.returncode == 0 else ""
@@ -328,11 +328,13 @@ def main():
     options.add_argument("--small", default="", help="the firmware's flags, for the page")
     options.add_argument("--sources", required=True)
     options.add_argument("--parts", required=True, help="the images' numbers")
+    options.add_argument("--peers", required=True, type=pathlib.Path, help="the folder of other people's filters")
     arguments = options.parse_args()
+    peers, absent = bench_peers.measure(arguments.flags.split(), arguments.sources.split(), arguments.peers)
     filters, rows, rms = collect(arguments.flags.split(), arguments.sources.split(), arguments.parts.split())
     lines = table(rows)
-    print("\n".join(lines))
-    JSON.write_text(json.dumps(bench_json(rows), indent=1) + "\n", encoding="ascii")
+    print("\n".join([*lines, "", *bench_peers.table(peers), *bench_peers.said_of(absent, arguments.peers)]))
+    JSON.write_text(json.dumps(bench_json(rows) + bench_peers.json_rows(peers), indent=1) + "\n", encoding="ascii")
     new = read_table("\n".join([BEGIN, *lines, END]))
     faults = limit_faults(filters, rows, rms) + declared_faults(declared_of(arguments.flags.split(), filters), rows)
     faults += regressions(read_table(committed_page()), new)
@@ -340,8 +342,7 @@ def main():
     if version != COMPILER:
         print(f"bench: avr-gcc {version}: reported only, the limits and docs/benchmarks.md are for {COMPILER}")
         return 0
-    page = with_table(DOCUMENT.read_text(encoding="utf-8"), lines)
-    DOCUMENT.write_text(with_table(page, measure_where(), *bench_where.MARKERS), encoding="utf-8")
+    DOCUMENT.write_text(page_with(DOCUMENT.read_text(encoding="utf-8"), lines, measure_where(), peers, absent), encoding="utf-8")
     for fault in faults:
         print(f"bench: {fault}", file=sys.stderr)
     print(f"bench: {len(rows)} rows, {len(faults)} findings; docs/benchmarks.md and {JSON} written")

@@ -36,6 +36,13 @@ def run(command, statuses=(0,)):
     return done.stdout
 
 
+def image_size(elf):
+    """Flash and RAM bytes."""
+    sizes = {w[0]: int(w[1]) for w in (line.split() for line in run(["avr-size", "-A", elf]).splitlines()) if len(w) == 3 and w[1].isdigit()}
+    data = sizes.get(".data", 0)
+    return sizes.get(".text", 0) + data, data + sizes.get(".bss", 0) + sizes.get(".noinit", 0)
+
+
 def measure_sample():
     """The sample's way in the firmware: cycles and stack of every sample of some streams."""
     cycles, stack, worst = [], 0, (0, "")

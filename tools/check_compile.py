@@ -23,6 +23,7 @@ FOLDERS_OF = {
     "sim": ("host",),
     "host_tests": ("host",),
     "host_tests/avr": ("avr",),
+    "host_tests/avr/peers": (),  # adapters to libraries that are in no folder of this repository; make bench compiles them
     "host_tests/bitexact": ("host", "avr"),
     "host_tests/proof": (),  # speaks to the prover in its own built-in functions; make proof parses it
 }
