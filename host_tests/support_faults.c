@@ -188,10 +188,8 @@ static void make_clipping(faulty_t *f, const stream_t *clean, test_random_t *ran
     f->range_g = 2;
 }
 
-bool faulty_make(faulty_t *faulty, const stream_t *clean, fault_t fault, uint16_t rate_dhz, uint8_t range_g,
-                 uint64_t seed)
+bool faulty_begin(faulty_t *faulty, const stream_t *clean, uint8_t range_g)
 {
-    static const double bad_rate[] = { 1e-5, 1e-4, 1e-3 };
     memset(faulty, 0, sizeof *faulty);
     faulty->range_g = range_g;
     faulty->stream.rate_hz = clean->rate_hz;
@@ -199,6 +197,16 @@ bool faulty_make(faulty_t *faulty, const stream_t *clean, fault_t fault, uint16_
     faulty->source = calloc(2 * clean->count + 1, sizeof *faulty->source);
     if (faulty->stream.rows == NULL || faulty->source == NULL) {
         faulty_free(faulty);
+        return false;
+    }
+    return true;
+}
+
+bool faulty_make(faulty_t *faulty, const stream_t *clean, fault_t fault, uint16_t rate_dhz, uint8_t range_g,
+                 uint64_t seed)
+{
+    static const double bad_rate[] = { 1e-5, 1e-4, 1e-3 };
+    if (!faulty_begin(faulty, clean, range_g)) {
         return false;
     }
     test_random_t random;

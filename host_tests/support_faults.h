@@ -35,6 +35,9 @@ typedef struct {
     size_t faulty; /* rows that are not as in the clean stream, or repeat */
 } faulty_t;
 
+/* Room for twice the rows of the clean stream, none in it yet. False: out of memory. */
+bool faulty_begin(faulty_t *faulty, const stream_t *clean, uint8_t range_g);
+
 /* False: out of memory. The clean stream has no missing rows. */
 bool faulty_make(faulty_t *faulty, const stream_t *clean, fault_t fault, uint16_t rate_dhz, uint8_t range_g,
                  uint64_t seed);
