@@ -8,14 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from robust_runs import FLAG_GATED, Fault, errors_cdeg, unfiltered
-from default_score import NAMED
-from laws import DEFAULT, ROBUST
+from laws import PLAIN, ROBUST
 
 FOLDER = pathlib.Path("docs/pictures")
 MAX_BYTES = 60_000
 INCHES, DPI, COLOURS = (10.0, 6.2), 90, 192
 # colour and width of line: where several run alike all can be seen
-SHOWN = dict(zip((name for name in NAMED if name != DEFAULT), (("#e08e0b", 1.6), ("#7db4f5", 4.0), ("#1b7f3b", 2.0), ("#c0187a", 0.9))))
+SHOWN = {PLAIN: ("#e08e0b", 1.6), ROBUST: ("#7db4f5", 4.0), "soft": ("#1b7f3b", 2.0), "pbf": ("#c0187a", 0.9)}
 GATING = ROBUST  # whose refused samples are marked
 RAW_COLOUR, GATED_COLOUR, TRUTH_COLOUR = "#9aa3ad", "#d1495b", "#111111"
 KEY = "robust-data"
