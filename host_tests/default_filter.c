@@ -3,16 +3,18 @@
  *
  *   default_filter < JOBS > ROWS.csv
  *
- * A job is a line: KEY PATH RATE_DHZ RANGE_G DIVIDE FROM_S TO_S truth|smooth SEEDS. The part FROM_S..TO_S of a stream,
- * DIVIDE rows averaged to one (support_smooth.h), goes through every filter at RATE_DHZ with its defaults: once as it
- * is and SEEDS times with each kind of fault. `truth`: the reference is gravity at the attitude of the truth columns,
- * else the clean stream smoothed both ways.
+ * A job is a line: KEY PATH RATE_DHZ RANGE_G DIVIDE FROM_S TO_S truth|smooth SEEDS OUTLIER_SEEDS. The part FROM_S..TO_S
+ * of a stream, DIVIDE rows averaged to one (support_smooth.h), goes at RATE_DHZ through every filter with its defaults
+ * and every peer: once as it is, SEEDS times with each kind of fault, OUTLIER_SEEDS times with each kind of outliers.
+ * `truth`: the reference is gravity at the attitude of the truth columns, else the clean stream smoothed both ways.
  *
  * A row: KEY,RATE_DHZ,FAULT,SEED,CONTENDER, then number of values and sums of squared differences from each reference,
  * over all samples, then over those within half a second after a bad read. The first second is never counted.
  * Status 2: a job cannot be read, one sentence says which.
  */
 #include "support_faults.h"
+#include "support_outliers.h"
+#include "support_peers.h"
 #include "support_shipped.h"
 #include "support_smooth.h"
 
@@ -25,22 +27,32 @@
 static const double cut_hz[] = { 5.0, 2.5, 10.0 };
 enum { SMOOTHED = sizeof cut_hz / sizeof cut_hz[0], OWN = SMOOTHED, REFERENCES };
 
-#define RAW CONTENDERS                                     /* a contender that does nothing */
+/* Behind the contenders of support_faults.h: the peers, and one that does nothing. */
+#define RAW (CONTENDERS + (size_t)PEERS)
+#define ALL (RAW + 1U)
+
 static const double lsb_per_g[] = { 265.0, 265.0, 256.0 }; /* of the streams */
 static const double bad_for_s = 0.5;
 
 typedef struct {
     char key[64], path[512], reference[8];
-    unsigned rate_dhz, range_g, divide, seeds;
+    unsigned rate_dhz, range_g, divide, seeds, outlier_seeds;
     double from_s, to_s;
 } job_t;
 
 typedef struct {
     job_t job;
     divided_t divided;
-    study_t study;
     double *reference[SMOOTHED][3]; /* by row of the divided stream */
+    double *own[ALL][3];            /* what each makes of it */
 } bench_t;
+
+/* One contender on one axis. */
+typedef struct {
+    size_t contender;
+    chain_t chain;
+    peer_t peer;
+} runner_t;
 
 typedef struct {
     size_t count;
@@ -94,6 +106,61 @@ static bool references(bench_t *bench, const stream_t *whole)
 
 /* --- runs --- */
 
+static bool runner_begin(runner_t *runner, const job_t *job, size_t contender, int axis)
+{
+    runner->contender = contender;
+    if (contender >= CONTENDERS) {
+        peer_begin(&runner->peer, (peer_kind_t)(contender - CONTENDERS), job->rate_dhz / 10.0);
+        return true;
+    }
+    return contender_begin(&runner->chain, contender, (uint16_t)job->rate_dhz, (uint8_t)job->range_g, axis);
+}
+
+static double runner_lsb(runner_t *runner, const stream_row_t *row, int axis)
+{
+    if (runner->contender == RAW) {
+        return row->lsb[axis];
+    }
+    if (runner->contender >= CONTENDERS) {
+        return peer_sample(&runner->peer, row->lsb[axis]);
+    }
+    return chain_sample(&runner->chain, row->t_us, row->lsb[axis]) / 65536.0;
+}
+
+static const char *runner_name(size_t contender)
+{
+    if (contender == RAW) {
+        return "raw";
+    }
+    return contender < CONTENDERS ? contender_name(contender) : peer_name((peer_kind_t)(contender - CONTENDERS));
+}
+
+static bool own_run(bench_t *bench, size_t contender, int axis)
+{
+    const stream_t *clean = &bench->divided.stream;
+    runner_t runner;
+    double *own_lsb = malloc(clean->count * sizeof *own_lsb);
+    bench->own[contender][axis] = own_lsb;
+    if (own_lsb == NULL || !runner_begin(&runner, &bench->job, contender, axis)) {
+        return false;
+    }
+    for (size_t i = 0; i < clean->count; i++) {
+        own_lsb[i] = runner_lsb(&runner, &clean->rows[i], axis);
+    }
+    return true;
+}
+
+static bool own_runs(bench_t *bench)
+{
+    bool good = true;
+    for (size_t contender = 0; contender < ALL; contender++) {
+        for (int axis = 0; axis < 3; axis++) {
+            good = good && own_run(bench, contender, axis);
+        }
+    }
+    return good;
+}
+
 static void add(sums_t *sums, const bench_t *bench, size_t source, int axis, double x_lsb, double own_lsb)
 {
     sums->count++;
@@ -104,26 +171,18 @@ static void add(sums_t *sums, const bench_t *bench, size_t source, int axis, dou
     sums->square[OWN] += (x_lsb - own_lsb) * (x_lsb - own_lsb);
 }
 
-static double output_lsb(chain_t *chain, size_t contender, const stream_row_t *row, int axis)
-{
-    return contender == RAW ? row->lsb[axis] : chain_sample(chain, row->t_us, row->lsb[axis]) / 65536.0;
-}
-
 static void one_axis(const bench_t *bench, const faulty_t *faulty, size_t contender, int axis, sums_t sums[2])
 {
     const stream_t *clean = &bench->divided.stream;
-    chain_t chain;
-    if (contender != RAW) { /* study_begin began it before, so it cannot be refused here */
-        (void)contender_begin(&chain, contender, (uint16_t)bench->job.rate_dhz, (uint8_t)bench->job.range_g, axis);
-    }
+    runner_t runner;
+    (void)runner_begin(&runner, &bench->job, contender, axis); /* own_run did it before, so it cannot be refused here */
     double bad_until_s = -1.0;
     for (size_t i = 0; i < faulty->stream.count; i++) {
         const stream_row_t *row = &faulty->stream.rows[i];
         const stream_row_t *good = &clean->rows[faulty->source[i]];
         double t_s = 1e-6 * (double)row->t_us;
-        double x_lsb = output_lsb(&chain, contender, row, axis);
-        double own_lsb = contender == RAW ? good->lsb[axis]
-                                          : bench->study.x_lsb_q16[contender][axis][faulty->source[i]] / 65536.0;
+        double x_lsb = runner_lsb(&runner, row, axis);
+        double own_lsb = bench->own[contender][axis][faulty->source[i]];
         if (memcmp(row->lsb, good->lsb, sizeof row->lsb) != 0) {
             bad_until_s = t_s + bad_for_s;
         }
@@ -139,8 +198,7 @@ static void one_axis(const bench_t *bench, const faulty_t *faulty, size_t conten
 
 static void print_row(const bench_t *bench, const char *fault, unsigned seed, size_t contender, const sums_t sums[2])
 {
-    printf("%s,%u,%s,%u,%s", bench->job.key, bench->job.rate_dhz, fault, seed,
-           contender == RAW ? "raw" : contender_name(contender));
+    printf("%s,%u,%s,%u,%s", bench->job.key, bench->job.rate_dhz, fault, seed, runner_name(contender));
     for (int part = 0; part < 2; part++) {
         printf(",%zu", sums[part].count);
         for (size_t which = 0; which < REFERENCES; which++) {
@@ -152,7 +210,7 @@ static void print_row(const bench_t *bench, const char *fault, unsigned seed, si
 
 static void one_run(const bench_t *bench, const faulty_t *faulty, const char *fault, unsigned seed)
 {
-    for (size_t contender = 0; contender <= RAW; contender++) {
+    for (size_t contender = 0; contender < ALL; contender++) {
         sums_t sums[2] = { { 0 }, { 0 } };
         for (int axis = 0; axis < 3; axis++) {
             one_axis(bench, faulty, contender, axis, sums);
@@ -177,23 +235,53 @@ static bool clean_run(const bench_t *bench)
 }
 
 /* A seed that puts no fault in is told with no rows: it is the run without faults. */
-static bool faulty_runs(const bench_t *bench)
+static bool run_and_free(const bench_t *bench, faulty_t *faulty, bool made, const char *fault, unsigned seed)
+{
+    if (made && faulty->faulty > 0) {
+        one_run(bench, faulty, fault, seed);
+    }
+    if (made) {
+        faulty_free(faulty);
+    }
+    return made;
+}
+
+static bool faulty_runs(const bench_t *bench, fault_t kind)
+{
+    const job_t *job = &bench->job;
+    bool good = true;
+    for (unsigned seed = 1; good && seed <= job->seeds; seed++) {
+        faulty_t faulty;
+        good = faulty_make(&faulty, &bench->divided.stream, kind, (uint16_t)job->rate_dhz, (uint8_t)job->range_g, seed);
+        good = run_and_free(bench, &faulty, good, fault_name(kind), seed);
+    }
+    return good;
+}
+
+static bool outlier_runs(const bench_t *bench, outliers_t kind)
+{
+    const job_t *job = &bench->job;
+    bool good = true;
+    for (unsigned seed = 1; good && seed <= job->outlier_seeds; seed++) {
+        faulty_t faulty;
+        good = outliers_make(&faulty, &bench->divided.stream, kind, (uint16_t)job->rate_dhz, (uint8_t)job->range_g,
+                             seed);
+        good = run_and_free(bench, &faulty, good, outliers_name(kind), seed);
+    }
+    return good;
+}
+
+static bool all_runs(const bench_t *bench)
 {
     static const fault_t kinds[] = { FAULT_BAD_1E5, FAULT_BAD_1E3, FAULT_CONTENTION };
+    bool good = clean_run(bench);
     for (size_t kind = 0; kind < sizeof kinds / sizeof kinds[0]; kind++) {
-        for (unsigned seed = 1; seed <= bench->job.seeds; seed++) {
-            faulty_t faulty;
-            if (!faulty_make(&faulty, &bench->divided.stream, kinds[kind], (uint16_t)bench->job.rate_dhz,
-                             (uint8_t)bench->job.range_g, seed)) {
-                return false;
-            }
-            if (faulty.faulty > 0) {
-                one_run(bench, &faulty, fault_name(kinds[kind]), seed);
-            }
-            faulty_free(&faulty);
-        }
+        good = good && faulty_runs(bench, kinds[kind]);
     }
-    return true;
+    for (outliers_t kind = (outliers_t)0; kind < OUTLIERS_COUNT; kind++) {
+        good = good && outlier_runs(bench, kind);
+    }
+    return good;
 }
 
 /* --- jobs --- */
@@ -210,12 +298,10 @@ static const char *run_job(bench_t *bench, const stream_t *whole)
     if (!references(bench, whole)) {
         return "too short to be smoothed";
     }
-    if (!study_begin(&bench->study, &bench->divided.stream, (uint16_t)job->rate_dhz, (uint8_t)job->range_g)) {
+    if (!own_runs(bench)) {
         return "a filter refuses this rate";
     }
-    bool good = clean_run(bench) && faulty_runs(bench);
-    study_end(&bench->study);
-    return good ? NULL : "out of memory";
+    return all_runs(bench) ? NULL : "out of memory";
 }
 
 static bool one_job(const job_t *job)
@@ -235,6 +321,9 @@ static bool one_job(const job_t *job)
     for (size_t i = 0; i < SMOOTHED * 3U; i++) {
         free(bench.reference[i / 3U][i % 3U]);
     }
+    for (size_t i = 0; i < ALL * 3U; i++) {
+        free(bench.own[i / 3U][i % 3U]);
+    }
     divided_free(&bench.divided);
     stream_free(&file);
     if (reason != NULL) {
@@ -245,10 +334,11 @@ static bool one_job(const job_t *job)
 
 static bool read_job(job_t *job, const char *line)
 {
-    int fields = sscanf(line, "%63s %511s %u %u %u %lf %lf %7s %u", job->key, job->path, &job->rate_dhz, &job->range_g,
-                        &job->divide, &job->from_s, &job->to_s, job->reference, &job->seeds);
+    int fields = sscanf(line, "%63s %511s %u %u %u %lf %lf %7s %u %u", job->key, job->path, &job->rate_dhz,
+                        &job->range_g, &job->divide, &job->from_s, &job->to_s, job->reference, &job->seeds,
+                        &job->outlier_seeds);
     bool range = job->range_g == 2 || job->range_g == 4 || job->range_g == 8 || job->range_g == 16;
-    return fields == 9 && range && job->divide >= 1 && job->rate_dhz >= 50 && job->rate_dhz <= 40000;
+    return fields == 10 && range && job->divide >= 1 && job->rate_dhz >= 50 && job->rate_dhz <= 40000;
 }
 
 int main(void)

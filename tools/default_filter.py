@@ -1,6 +1,7 @@
 """make default: which filter should be the default, decided by a table; writes build/default.json (every number) and the tables of
 docs/default-filter.md, and the numbers in its text, which are taken from them. Status 1: a number of the committed page does not come out
 again, each is named. Without the recordings it judges the shipped streams alone, says so, and leaves the page as it is."""
+import dataclasses
 import json
 import pathlib
 import re
@@ -10,18 +11,18 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import default_score as score
 import default_streams as streams
-from default_score import CANDIDATE, CONTENTION, NAMED, OWN
-from default_streams import BAD_READS, CLASSES, MOTIONS, RATES_HZ
+from default_score import CANDIDATE, CONTENTION, NOT_JUDGED, OWN
+from default_streams import BAD_READS, BURSTS, CLASSES, MOTIONS, OUTLIERS, RATES_HZ
 from page import Fault, Page, run_as_program
-from laws import PLAIN
 
 PROGRAM = "build/host/default_filter"
 JSON = pathlib.Path("build/default.json")
 DOCUMENT = pathlib.Path("docs/default-filter.md")
 BEGIN, END = "<!-- written by make default: begin -->", "<!-- written by make default: end -->"
 PAGE = Page(DOCUMENT, BEGIN, END)
-WORST_LISTED = 15
+WORST_LISTED = 2
 READINGS = "The same rule, read otherwise"
+WINS = "Where another filter wins"
 
 
 # --- the run ----------------------------------------------------------------------------------------------------------
@@ -81,20 +82,23 @@ class Tables:
         self.jobs = jobs
         self.cells = score.cells_of(jobs, rows)
         self.whole = score.cells_of(jobs, rows, whole_bad_reads=True)
+        self.tuning = [dataclasses.replace(cell, group=cell.group.removeprefix(NOT_JUDGED)) for cell in self.cells
+                       if cell.group.startswith(NOT_JUDGED)]
         self.names = list(self.cells[0].sums)
-        self.named = [name for name in NAMED if name in self.names]
         self.classes = score.by_class(self.cells, self.names)
+        self.compared = score.compared(self.classes)
         self.verdict = score.verdict(self.classes)
-        self.draws = score.redrawn(self.cells, score.compared(self.classes))
+        self.draws = score.redrawn(self.cells, self.compared)
 
     def group(self, group, rate_hz=None):
         return [cell for cell in self.cells if cell.group == group and rate_hz in (None, cell.rate_hz)]
 
     def best(self, group):
-        return min(score.compared(self.classes), key=lambda name: self.classes[group][name])
+        return min(self.compared, key=lambda name: self.classes[group][name])
 
-    def others(self):
-        return [name for name in self.names if name not in NAMED]
+    def order(self):
+        """The filters by their mean, then what is none of ours."""
+        return sorted(self.compared, key=self.verdict.mean.get) + [name for name in score.NOT_FILTERS if name in self.names]
 
 
 def lsb(value):
@@ -114,32 +118,38 @@ def ticks(names):
     return [f"`{name}`" for name in names]
 
 
+def filter_lines(t, scores):
+    """A line for each filter: its geometric mean over the classes, then of each class the RMSE and, in brackets, times the best of ours."""
+    best = {group: min(found[name] for name in t.compared) for group, found in scores.items()}
+    return {name: [f"`{name}`", lsb(score.geometric_mean(found[name] for found in scores.values())),
+                   *(f"{lsb(found[name])} ({found[name] / best[group]:.2f})" for group, found in scores.items())] for name in t.order()}
+
+
 def class_table(t):
-    order = t.named + t.others()
-    lines = [[group, *(lsb(t.classes[group][name]) for name in order)] for group in CLASSES if group in t.classes]
-    return markdown("RMSE by class", "LSB (256 per g), geometric mean over the rates of the geometric mean over their streams; behind the first "
-                    f"{len(t.named)} filters, the others of the list, a median of five before `{PLAIN}`, "
-                    "and the raw samples.",
-                    ["class", *ticks(order)], lines)
-
-
-def ratio_table(t):
     lines = []
-    for group in t.classes:
-        best, part, cells = t.best(group), [], t.group(group)
-        for name in t.named:
-            if name == best:
-                part.append("**1**")
-            else:
-                low, high = score.ratio_interval(t.draws, group, name, best)
-                part.append(f"{ratio_text(t.classes[group][name] / t.classes[group][best])} ({low:.2f}..{high:.2f})")
-        lines.append([group, *part, str(len({cell.name for cell in cells})), str(len(cells))])
-    return markdown("Times the best", "RMSE over that of the best in the class; in brackets the 95 % interval when its streams are drawn anew "
-                    f"{score.RESAMPLES} times. A cell is a stream at a rate.", ["class", *ticks(t.named), "streams", "cells"], lines)
+    for name, line in filter_lines(t, t.classes).items():
+        passes = "" if name not in t.compared else "no" if score.verdict(t.classes, candidate=name).beyond else "yes"
+        lines.append([*line, passes])
+    return markdown("RMSE by class", "LSB (256 per g), geometric mean over the rates of the geometric mean over their streams; in brackets, times "
+                    "the best filter of the list. Below it, never chosen: [what people use instead](#what-people-use-instead) and the raw samples.",
+                    ["filter", "mean", *t.classes, "passes"], lines)
+
+
+def tuning_table(t):
+    scores = score.by_class(t.tuning, t.names)
+    return markdown("Tuning recordings", "As above, of the recordings with which defaults may be tuned; they do not decide.",
+                    ["filter", "mean", *scores], list(filter_lines(t, scores).values()))
+
+
+def contention_table(t):
+    cells = {motion: [cell for cell in t.group(CONTENTION) if cell.motion == motion] for motion in MOTIONS}
+    scores = {motion: {name: score.geometric(part, name) for name in t.names} for motion, part in cells.items() if part}
+    return markdown("Contention", "Two sensors at one address: 20 % of the reads doubled in runs of up to nine. As above, does not decide.",
+                    ["filter", "mean", *scores], list(filter_lines(t, scores).values()))
 
 
 def rate_table(t):
-    order = t.named + t.others()
+    order = t.order()
     lines = []
     for group in t.classes:
         for rate_hz in RATES_HZ:
@@ -154,32 +164,32 @@ def best_table(t):
     for group in t.classes:
         cells = []
         for rate_hz in RATES_HZ:
-            found = {name: score.geometric(t.group(group, rate_hz), name) for name in t.named} if t.group(group, rate_hz) else {}
+            found = {name: score.geometric(t.group(group, rate_hz), name) for name in t.compared} if t.group(group, rate_hz) else {}
             least = min(found.values(), default=0.0)
             cells.append(" ".join(f"`{name}`" for name in sorted(found, key=found.get) if found[name] <= score.NEAR * least))
         lines.append([group, *cells])
-    return markdown("Which filter when", f"Of the first {len(t.named)} filters: the best, then those within 5 % of it.",
-                    ["class", *(f"{rate_hz} Hz" for rate_hz in RATES_HZ)], lines)
+    return markdown("Which filter when", "The best, then those within 5 % of it.", ["class", *(f"{rate_hz} Hz" for rate_hz in RATES_HZ)], lines)
 
 
-def fixed_table(t):
-    wins = score.fixed_wins(t.cells)
+def wins_table(t):
+    wins = score.other_wins(t.cells, t.compared)
     cells = sum(1 for group in t.classes for rate_hz in RATES_HZ if t.group(group, rate_hz))
     lines = [[f"{group}, {rate_hz} Hz", f"`{winner}`", ratio_text(value)] for group, rate_hz, winner, value in wins]
-    return markdown("Where a fixed filter wins", f"{len(wins)} of {cells} classes at a rate, and how far `{CANDIDATE}` is behind there.",
+    return markdown(WINS, f"{len(wins)} of {cells} classes at a rate, and how far `{CANDIDATE}` is behind there.",
                     ["class, rate", "best", f"`{CANDIDATE}` / best"], lines)
 
 
 def losses_table(t):
     lost = []
     for cell in t.cells:
-        if cell.group in CLASSES and CANDIDATE in cell.sums:
-            best = min(t.named, key=cell.rmse)
+        if cell.group in CLASSES:
+            best = min(t.compared, key=cell.rmse)
             lost.append((cell.rmse(CANDIDATE) / cell.rmse(best), cell, best))
     lost.sort(key=lambda item: -item[0])
-    lines = [[f"{cell.name}, {cell.rate_hz} Hz", cell.group, f"`{best}`", lsb(cell.rmse(best)), lsb(cell.rmse(CANDIDATE)), f"{value:.2f}"]
-             for value, cell, best in lost[:WORST_LISTED]]
-    return markdown(f"Where `{CANDIDATE}` loses most", f"The {WORST_LISTED} of {len(lost)} streams and rates.",
+    worst = [item for group in CLASSES for item in [item for item in lost if item[1].group == group][:WORST_LISTED]]
+    lines = [[f"{cell.name}, {cell.rate_hz} Hz", f"{cell.group}, {cell.fault}" if cell.group == BURSTS else cell.group, f"`{best}`",
+              lsb(cell.rmse(best)), lsb(cell.rmse(CANDIDATE)), f"{value:.2f}"] for value, cell, best in worst]
+    return markdown(f"Where `{CANDIDATE}` loses most", f"The worst {WORST_LISTED} cells of each class.",
                     ["stream, rate", "class", "best", "its RMSE", f"`{CANDIDATE}`", "ratio"], lines)
 
 
@@ -190,6 +200,7 @@ def readings(t):
     with_contention[BAD_READS] = {name: score.geometric(cells, name) for name in t.names}
     made = [cell for cell in t.cells if cell.made]
     real = [cell for cell in t.cells if not cell.made]
+    calm = {group: found for group, found in t.classes.items() if group not in (OUTLIERS, BURSTS)}
     return [("as decided", t.classes),
             ("recordings smoothed at 2.5 Hz", score.by_class(t.cells, t.names, reference=1)),
             ("recordings smoothed at 10 Hz", score.by_class(t.cells, t.names, reference=2)),
@@ -197,51 +208,20 @@ def readings(t):
             ("mean squares pooled: the worst streams count", score.by_class(t.cells, t.names, score.pooled_rms)),
             ("bad reads judged over the whole stream", score.by_class(t.whole, t.names)),
             ("contention among the bad reads", with_contention),
+            ("without outliers and bursts", calm),
             ("recordings alone", score.by_class(real, t.names)),
-            ("shipped and made streams alone", score.by_class(made, t.names))]
+            ("shipped and made streams alone", score.by_class(made, t.names)),
+            ("tuning recordings in place of the others", score.by_class(made + t.tuning, t.names))]
 
 
 def readings_table(t):
     lines = []
     for what, scores in readings(t):
-        found = score.verdict(scores)
+        found = score.verdict(scores, classes=tuple(scores))
         lines.append([what, *(f"{found.ratio[group]:.2f}" if group in found.ratio else "" for group in CLASSES), str(len(found.best_in)),
                       f"`{found.default}`"])
     return markdown(READINGS, f"`{CANDIDATE}` over the best, class by class; only the first line decides.",
                     ["reading", *CLASSES, "best in", "default"], lines)
-
-
-def candidates_table(t):
-    lines = []
-    for name in sorted(t.verdict.mean, key=t.verdict.mean.get):
-        found = score.verdict(t.classes, candidate=name)
-        lines.append([f"`{name}`", lsb(found.mean[name]), *(f"{found.ratio[group]:.2f}" for group in CLASSES), "no" if found.beyond else "yes"])
-    return markdown("All filters by the rule", "Geometric mean over the classes in LSB, and how many times the best each is in each class.",
-                    ["filter", "mean", *CLASSES, "passes"], lines)
-
-
-def contention_table(t):
-    order = t.named + t.others()
-    lines = []
-    for motion in MOTIONS:
-        cells = [cell for cell in t.group(CONTENTION) if cell.motion == motion]
-        if cells:
-            lines.append([motion, *(lsb(score.geometric(cells, name)) for name in order)])
-    return markdown("Contention", "Two sensors at one address: 20 % of the reads doubled in runs of up to nine. LSB, does not decide.",
-                    ["class", *ticks(order)], lines)
-
-
-def held_table(t):
-    order = t.named + t.others()
-    lines = []
-    for group in CLASSES:
-        cells = t.group(score.HELD + group)
-        if cells:
-            found = {name: score.geometric(cells, name) for name in order}
-            best = min(t.named, key=found.get)
-            lines.append([group, f"`{best}`", *(lsb(found[name]) for name in order), str(len({cell.name for cell in cells})), str(len(cells))])
-    return markdown("Parts held back", "Later parts of the long recordings, with which no default was chosen. LSB; they do not decide.",
-                    ["class", "best", *ticks(order), "parts", "cells"], lines)
 
 
 def streams_table(t):
@@ -250,32 +230,42 @@ def streams_table(t):
         found.setdefault((job.source.motion, job.key()), []).append(job)
     lines = []
     for group in CLASSES:
-        for (motion, _), jobs in sorted(found.items(), key=lambda item: item[1][0].source.held):
+        for (motion, _), jobs in sorted(found.items(), key=lambda item: item[1][0].source.tuning):
             if motion == group:
                 source, rates = jobs[0].source, sorted(job.rate_hz for job in jobs)
                 part = f", {source.from_s:g}..{source.to_s:g} s" if source.from_s or source.to_s < streams.LONGEST_S else ""
-                held = score.HELD if source.held else ""
-                lines.append([source.name + part, held + group, source.why, " ".join(map(str, rates)), "recorded" if jobs[0].recorded else "made",
+                mark = NOT_JUDGED if source.tuning else ""
+                lines.append([source.name + part, mark + group, source.why, " ".join(map(str, rates)), "recorded" if jobs[0].recorded else "made",
                               f"{max(job.rows for job in jobs):,}", f"{min(job.seeds() for job in jobs)}..{max(job.seeds() for job in jobs)}"])
     left = "; ".join(f"{name} ({why})" for name, why in streams.LEFT_OUT.items())
     return markdown("Which stream is in which class", f"Rates in Hz; rows at the highest of them; seeds of the faults put in. Left out: {left}.",
                     ["stream", "class", "why", "rates", "from", "rows", "seeds"], lines)
 
 
+def verdict_line(t, group):
+    v, best, cells = t.verdict, t.best(group), t.group(group)
+    counts = [str(len({cell.name for cell in cells})), str(len(cells))]
+    if group not in v.ratio:
+        return [group, f"`{best}`", "", "", *counts]
+    low, high = score.ratio_interval(t.draws, group, CANDIDATE, best)
+    interval = "" if best == CANDIDATE else f" ({low:.2f}..{high:.2f})"
+    return [group, f"`{best}`", ratio_text(v.ratio[group]) + interval, "no" if group in v.beyond else "yes", *counts]
+
+
 def verdict_table(t):
     v = t.verdict
-    lines = [[group, f"`{t.best(group)}`", ratio_text(v.ratio[group]) if group in v.ratio else "",
-              "" if group not in v.ratio else "no" if group in v.beyond else "yes", "yes" if group in v.best_in else "no"] for group in t.classes]
     agree = sum(score.verdict(draw).default == v.default for draw in t.draws)
-    said = f"The default is **`{v.default}`**: " + (f"`{CANDIDATE}` is {v.why}." if v.ratio else f"{v.why}.")
-    return markdown("Verdict", f"{said} With the streams drawn anew the rule says the same in {agree} of {len(t.draws)} draws.",
-                    ["class", "best", f"`{CANDIDATE}` / best", f"within {score.MOST:g} times", "best there"], lines)
+    said = f"The rule chooses **`{v.default}`**: " + (f"`{CANDIDATE}` is {v.why}." if v.ratio else f"{v.why}.")
+    return markdown("Verdict", f"{said} With the streams drawn anew the rule says the same in {agree} of {len(t.draws)} draws; in brackets the "
+                    "95 % interval over them. A cell is a stream at a rate with a kind of fault.",
+                    ["class", "best", f"`{CANDIDATE}` / best", f"within {score.MOST:g} times", "streams", "cells"],
+                    [verdict_line(t, group) for group in t.classes])
 
 
 def tables(t):
     lines = []
-    for table in (verdict_table, ratio_table, class_table, best_table, rate_table, fixed_table, losses_table, readings_table, candidates_table,
-                  held_table, contention_table, streams_table):
+    for table in (verdict_table, class_table, best_table, wins_table, losses_table, readings_table, tuning_table, contention_table, rate_table,
+                  streams_table):
         lines += table(t)
     return [*lines, ""]
 
@@ -285,16 +275,21 @@ def tables(t):
 
 def facts(text):
     """{key: number} for the text of a page, from its tables (`class ROW COLUMN` and so on, without ticks and intervals) and the verdict's draws."""
-    keys = {"RMSE by class": "class", "RMSE by class and rate": "rate", "Times the best": "ratio", "Contention": "contention", "Verdict": "verdict",
-            "Parts held back": "held"}
+    keys = {"RMSE by class": "class", "RMSE by class and rate": "rate", "Contention": "contention", "Verdict": "verdict",
+            "Tuning recordings": "tuning", WINS: "win"}
     found = {}
     for title, row, column, cell in PAGE.cells(text):
         if title in keys:
-            found[f"{keys[title]} {row} {column}".replace("`", "")] = cell.split(" (")[0].replace("*", "").replace("`", "")
+            number, _, ratio = cell.rstrip(")").partition(" (")
+            found[f"{keys[title]} {row} {column}".replace("`", "")] = number.replace("`", "")
+            if title == "RMSE by class" and ratio:
+                found[f"times {row} {column}".replace("`", "")] = ratio
     agree = re.search(r"the same in (\d+) of (\d+) draws", text[text.index(BEGIN):])
     if agree:
         found["draws that agree"], found["draws"] = agree.groups()
     read = [cell for title, _, column, cell in PAGE.cells(text) if (title, column) == (READINGS, "default")]
+    chosen = re.search(r"The rule chooses \*\*`(\w+)`\*\*", text[text.index(BEGIN):])
+    found["chosen"] = chosen[1] if chosen else ""
     found["other readings"] = str(max(len(read) - 1, 0))
     found["other readings that differ"] = str(sum(cell != read[0] for cell in read))
     return found

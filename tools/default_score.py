@@ -4,16 +4,16 @@ import random
 from collections import defaultdict
 from dataclasses import dataclass
 
-from default_streams import BAD_READS, CLASSES
+from default_streams import BAD_READS, BURSTS, CLASSES, MOTIONS, OUTLIERS
 from page import Fault
-from laws import DEFAULT, PLAIN, ROBUST
+from laws import DEFAULT, PLAIN
 
-NAMED = (PLAIN, ROBUST, "soft", "pbf", DEFAULT)  # of which the page has columns; the rule compares all
-NOT_FILTERS = ("raw", f"median5_{PLAIN}")
+NOT_FILTERS = (f"median5_{PLAIN}", "ema", "median5_ema", "hampel7_ema", "one_euro", "raw")  # shown beside the list's, never chosen
 CANDIDATE, NONE_PASSES = DEFAULT, "none"
 NEAR, MOST = 1.05, 1.25  # times the best: as good as it; the most that a default may have in any class
-HELD = "held back, "  # before the class of what does not decide
+NOT_JUDGED = "tuning, "  # before the class: what the defaults may be tuned with does not decide
 NONE, HEALTHY, WIRING, CONTENTION = "none", "bad reads 1e-5", "bad reads 1e-3", "contention 20 %"
+OUTLIER_KINDS = {"outliers 15 %": OUTLIERS, "outliers in runs": BURSTS, "outliers held": BURSTS}  # and the class of each
 REFERENCES = ("5 Hz", "2.5 Hz", "10 Hz", "own")    # as host_tests/default_filter.c: truth or smoothed, then the own run
 DECIDES, OWN = 0, 3
 VALUES_MIN = 100    # a cell with fewer values says nothing
@@ -46,6 +46,7 @@ class Cell:
     made: bool      # shipped or made, not recorded
     motion: str     # class of the motion
     sums: dict      # {filter: Sums}
+    fault: str = NONE
 
     def rmse(self, name, reference=DECIDES):
         return self.sums[name].rmse(reference)
@@ -74,20 +75,24 @@ def pooled(runs, fault, seeds, part):
     return dict(total)
 
 
+def cells_of_job(job, runs, whole_bad_reads):
+    """[(class, fault, {filter: Sums})]"""
+    if job.source.motion not in MOTIONS:
+        return [(job.source.motion, NONE, {name: sums[0] for name, sums in runs[NONE][0].items()})]
+    return [(job.source.motion, HEALTHY, pooled(runs, HEALTHY, job.seeds(), 0)),
+            (BAD_READS, WIRING, pooled(runs, WIRING, job.seeds(), 0 if whole_bad_reads else 1)),
+            (CONTENTION, CONTENTION, pooled(runs, CONTENTION, job.seeds(), 0)),
+            *((group, fault, pooled(runs, fault, job.outlier_seeds(), 0)) for fault, group in OUTLIER_KINDS.items())]
+
+
 def cells_of(jobs, rows, whole_bad_reads=False):
-    """A cell per stream and rate in the class of its motion, one more among the bad reads and one with contention."""
+    """A cell per stream and rate in the class of its motion, and one more for each fault."""
     cells = []
     for job in jobs:
-        runs = rows[job.key(), job.rate_hz]
-        if job.source.motion == BAD_READS:
-            made = [(BAD_READS, {name: sums[0] for name, sums in runs[NONE][0].items()})]
-        else:
-            made = [(job.source.motion, pooled(runs, HEALTHY, job.seeds(), 0)),
-                    (BAD_READS, pooled(runs, WIRING, job.seeds(), 0 if whole_bad_reads else 1)),
-                    (CONTENTION, pooled(runs, CONTENTION, job.seeds(), 0))]
         label = f"{job.source.name} from {job.source.from_s:g} s" if job.source.from_s else job.source.name
-        mark = HELD if job.source.held else ""
-        cells += [Cell(mark + group, label, job.rate_hz, not job.recorded, job.source.motion, sums) for group, sums in made
+        mark = NOT_JUDGED if job.source.tuning else ""
+        cells += [Cell(mark + group, label, job.rate_hz, not job.recorded, job.source.motion, sums, fault)
+                  for group, fault, sums in cells_of_job(job, rows[job.key(), job.rate_hz], whole_bad_reads)
                   if min(s.count for s in sums.values()) >= VALUES_MIN]
     return cells
 
@@ -98,6 +103,10 @@ def cells_of(jobs, rows, whole_bad_reads=False):
 def mean(values):
     values = list(values)
     return sum(values) / len(values)
+
+
+def geometric_mean(values):
+    return math.exp(mean(math.log(value) for value in values))
 
 
 def log_score(cells, name, reference=DECIDES):
@@ -168,39 +177,39 @@ def compared(scores):
     return [name for name in next(iter(scores.values())) if name in every and name not in NOT_FILTERS]
 
 
-def verdict(scores, candidate=CANDIDATE):
+def verdict(scores, candidate=CANDIDATE, classes=CLASSES):
     """The rule: of the filters that are at most MOST times the best in every class, the one with the least geometric mean over the classes.
 
     scores: {class: {filter: LSB}}; a class without a stream, or no filter within that, chooses none. What is told is told of the candidate.
     """
-    missing = [group for group in CLASSES if group not in scores]
+    missing = [group for group in classes if group not in scores]
     if missing:
         return Verdict(NONE_PASSES, {}, {}, missing, [], f"no stream of class {', '.join(missing)}")
     names = compared(scores)
     if candidate not in names:
-        return Verdict(NONE_PASSES, {}, {}, list(CLASSES), [], f"{candidate} is not in the filter list")
-    best = {group: min(scores[group][name] for name in names) for group in CLASSES}
-    beyond = {name: [group for group in CLASSES if scores[group][name] > MOST * best[group]] for name in names}
-    means = {name: math.exp(mean(math.log(scores[group][name]) for group in CLASSES)) for name in names}
+        return Verdict(NONE_PASSES, {}, {}, list(classes), [], f"{candidate} is not in the filter list")
+    best = {group: min(scores[group][name] for name in names) for group in classes}
+    beyond = {name: [group for group in classes if scores[group][name] > MOST * best[group]] for name in names}
+    means = {name: geometric_mean(scores[group][name] for group in classes) for name in names}
     passing = sorted((name for name in names if not beyond[name]), key=means.get)
-    ratio = {group: scores[group][candidate] / best[group] for group in CLASSES}
+    ratio = {group: scores[group][candidate] / best[group] for group in classes}
     if beyond[candidate]:
         why = f"more than {MOST:g} times the best in " + ", ".join(f"{group} ({ratio[group]:.2f} times)" for group in beyond[candidate])
     else:
         rival = min((name for name in names if name != candidate), key=means.get, default=candidate)
         why = (f"within {MOST:g} times the best in every class, and its geometric mean over them is {means[candidate]:.3g} LSB "
                f"(`{rival}` {means[rival] / means[candidate]:.2f} times that)")
-    return Verdict(passing[0] if passing else NONE_PASSES, means, ratio, beyond[candidate], [group for group in CLASSES if ratio[group] <= 1.0], why)
+    return Verdict(passing[0] if passing else NONE_PASSES, means, ratio, beyond[candidate], [group for group in classes if ratio[group] <= 1.0], why)
 
 
-def fixed_wins(cells):
-    """[(class, rate, best other filter, candidate / best)] where a named filter other than the candidate is best."""
+def other_wins(cells, names):
+    """[(class, rate, best filter, candidate / best)] where another filter than the candidate is best."""
     found = []
     for group in CLASSES:
         for rate_hz in sorted({cell.rate_hz for cell in cells if cell.group == group}):
             part = [cell for cell in cells if cell.group == group and cell.rate_hz == rate_hz]
-            scores = {name: geometric(part, name) for name in NAMED if name in part[0].sums}
+            scores = {name: geometric(part, name) for name in names}
             winner = min(scores, key=scores.get)
-            if CANDIDATE in scores and winner != CANDIDATE:
+            if winner != CANDIDATE:
                 found.append((group, rate_hz, winner, scores[CANDIDATE] / scores[winner]))
     return found
