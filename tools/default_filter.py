@@ -199,7 +199,7 @@ def readings(t):
     cells = [cell for cell in t.cells if cell.group in (BAD_READS, CONTENTION)]
     with_contention[BAD_READS] = {name: score.geometric(cells, name) for name in t.names}
     made = [cell for cell in t.cells if cell.made]
-    real = [cell for cell in t.cells if not cell.made]
+    real = [cell for cell in t.cells if not cell.made and not cell.group.startswith(NOT_JUDGED)]
     calm = {group: found for group, found in t.classes.items() if group not in (OUTLIERS, BURSTS)}
     return [("as decided", t.classes),
             ("recordings smoothed at 2.5 Hz", score.by_class(t.cells, t.names, reference=1)),
@@ -209,9 +209,10 @@ def readings(t):
             ("bad reads judged over the whole stream", score.by_class(t.whole, t.names)),
             ("contention among the bad reads", with_contention),
             ("without outliers and bursts", calm),
-            ("recordings alone", score.by_class(real, t.names)),
+            ("judged recordings alone", score.by_class(real, t.names)),
             ("shipped and made streams alone", score.by_class(made, t.names)),
-            ("tuning recordings in place of the others", score.by_class(made + t.tuning, t.names))]
+            ("tuning recordings in place of the judged ones", score.by_class(made + t.tuning, t.names)),
+            ("tuning recordings alone", score.by_class(t.tuning, t.names))]
 
 
 def readings_table(t):
