@@ -12,8 +12,6 @@ void float_mixture_start(float_mixture_t *f, const filter_config_t *config, floa
     f->ratio2 = ratio * ratio;
     f->clean = (float)config->value[MIXTURE_CLEAN_UQ16] / 65536.0f;
     f->count = 0.0f;
-    f->stay = (float)config->value[MIXTURE_STAY_UQ16] / 65536.0f;
-    f->turn = (f->clean + f->stay - 1.0f) / f->clean;
     f->x = x0_lsb;
     f->v = 0.0f;
     f->p00 = f->r;
@@ -42,11 +40,7 @@ float float_mixture_weigh(float_mixture_t *f, int16_t z_lsb, float *innovation, 
     *outlier = 1.0f / s_outlier;
     float square = *innovation * *innovation;
     float odds = (1.0f - f->clean) / f->clean * (float)sqrtf(s / s_outlier);
-    float p = 1.0f / (1.0f + odds * (float)expf(0.5f * square * (*normal - *outlier)));
-    if (f->stay > 0.0f) {
-        f->clean = 1.0f - f->stay + p * f->turn;
-    }
-    return p;
+    return 1.0f / (1.0f + odds * (float)expf(0.5f * square * (*normal - *outlier)));
 }
 
 void float_mixture_apply(float_mixture_t *f, float innovation, float m, float m2)

@@ -8,10 +8,9 @@ typedef struct {
     float x, v;
     float p00, p01, p10, p11;
     float dt, q, r;
-    float ratio2;     /* N^2 */
-    float clean;      /* probability of a normal sample */
-    float count;      /* samples that it is learnt from; 0: given */
-    float stay, turn; /* of a chain of outliers; 0: there is none */
+    float ratio2; /* N^2 */
+    float clean;  /* probability of a normal sample */
+    float count;  /* samples that it is learnt from; 0: given */
 } float_mixture_t;
 
 void float_mixture_start(float_mixture_t *f, const filter_config_t *config, float x0_lsb);

@@ -203,7 +203,8 @@ uint8_t filter_parameter_count(const filter_law_t *law);
 const filter_parameter_t *filter_parameter(const filter_law_t *law, uint8_t index); /* in program memory */
 /* Its name; behind the name's end follows the unit. Both in program memory. */
 const char *filter_parameter_words(const filter_parameter_t *parameter);
-uint16_t filter_worst_cycles(const filter_law_t *law); /* of filter_update on an ATmega328P, at most */
+uint16_t filter_worst_cycles(
+    const filter_law_t *law); /* of filter_update on an ATmega328P, at most (but see `stay` in mixture.c) */
 
 /* The parameter that is the measurement variance R: what laws that have it need not be told is estimated. */
 extern const filter_parameter_t filter_parameter_r;

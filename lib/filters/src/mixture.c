@@ -16,7 +16,8 @@
  * restarts from it (FILTER_REACQUIRED). FILTER_GATED means that the sample is more likely an outlier than not; its gain
  * is small, with shrf perhaps 0. Parameters r, q, ratio (N), clean (q: at least one half, or a sample on the prediction
  * would count as an outlier; what af begins with), stay (0: outliers come independently; else at least 1 - clean, and
- * less than N / (N + 1), so that a sample on the prediction counts as normal after an outlier too while P11 is small).
+ * less than N / (N + 1), so that a sample on the prediction counts as normal after an outlier too while P11 is small; up
+ * to 500 Hz, because a logarithm in each sample makes the law 500 cycles dearer than it declares).
  */
 #include "mixture.h"
 
@@ -39,11 +40,15 @@ LAW_PARAMETER(stay, "stay\0", 16, 1, ONE_UQ16 - CLEAN_MAX_UQ16, 64880, 0);
 static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &filter_parameter_q, &ratio,
                                                                  &clean, &stay };
 
+/* 0.1 Hz. */
+#define CHAIN_RATE_MAX_DHZ 5000U
+
 static bool together(const filter_config_t *config)
 {
     uint32_t stay_uq16 = (uint32_t)config->value[MIXTURE_STAY_UQ16];
     uint32_t ratio_uq8 = (uint32_t)config->value[MIXTURE_RATIO_UQ8];
-    return stay_uq16 == 0U || (stay_uq16 + (uint32_t)config->value[MIXTURE_CLEAN_UQ16] >= ONE_UQ16 &&
+    return stay_uq16 == 0U || (config->rate_dhz <= CHAIN_RATE_MAX_DHZ &&
+                               stay_uq16 + (uint32_t)config->value[MIXTURE_CLEAN_UQ16] >= ONE_UQ16 &&
                                stay_uq16 * (ratio_uq8 + 256U) < ratio_uq8 << 16);
 }
 
@@ -282,7 +287,7 @@ static void shortened_step(filter_t *f, int16_t z_lsb, uint8_t what)
 const filter_law_t filter_law_pbf FX_FLASH = { .name = "pbf",
                                                .parameter_count = 5,
                                                .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                               .worst_cycles = 4150,
+                                               .worst_cycles = 3650,
                                                .parameters = parameters,
                                                .together = together,
                                                .set_up = chain_set_up,
@@ -294,7 +299,7 @@ const filter_law_t filter_law_pbf FX_FLASH = { .name = "pbf",
 const filter_law_t filter_law_shrf FX_FLASH = { .name = "shrf",
                                                 .parameter_count = 5,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                                .worst_cycles = 4150,
+                                                .worst_cycles = 3650,
                                                 .parameters = parameters,
                                                 .together = together,
                                                 .set_up = chain_set_up,
