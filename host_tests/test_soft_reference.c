@@ -83,8 +83,8 @@ static reference_filter_t reference_in_the_state_of(const filter_t *f)
 
 /*
  * One step of both from the same state. With P in units of R: m errs by e = 2^-20 + m (2^-8 / |r| x 2 + 2^-13), from
- * its own rounding, that of |r| to 2^-8 LSB and that of the reciprocal, squared; P11 m by P11 e + 2^-16 m + 2^-25, P12 m
- * by P12 e + 2^-18 m + 2^-24. P22 takes w2 rounded down to 2^-16. A step errs by |r| times that, by w 2^-8 LSB
+ * its own rounding, that of |r| to 2^-8 LSB and that of the reciprocal, squared; P11 m by P11 e + 2^-16 m + 2^-25,
+ * P12 m by P12 e + 2^-18 m + 2^-24. P22 takes w2 rounded down to 2^-16. A step errs by |r| times that, by w 2^-8 LSB
  * (2^-8 of itself beyond 256 LSB) and by two counts.
  */
 static void assert_step_equals_the_reference(const filter_t *start, int16_t z)

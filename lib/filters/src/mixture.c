@@ -16,8 +16,8 @@
  * restarts from it (FILTER_REACQUIRED). FILTER_GATED means that the sample is more likely an outlier than not; its gain
  * is small, with shrf perhaps 0. Parameters r, q, ratio (N), clean (q: at least one half, or a sample on the prediction
  * would count as an outlier; what af begins with), stay (0: outliers come independently; else at least 1 - clean, and
- * less than N / (N + 1), so that a sample on the prediction counts as normal after an outlier too while P11 is small; up
- * to 500 Hz, because a logarithm in each sample makes the law 500 cycles dearer than it declares).
+ * less than N / (N + 1), so that a sample on the prediction counts as normal after an outlier too while P11 is small;
+ * up to 500 Hz, because a logarithm in each sample makes the law 500 cycles dearer than it declares).
  */
 #include "mixture.h"
 
