@@ -4,8 +4,8 @@
 #include "tracker.h"
 
 /*
- * From filter_kalman_near a covariance comes so close to where it settles that a gain is off by 1 %; by up to 17 % at
- * the least process noise, of which the start knows one digit.
+ * From filter_kalman_near a covariance comes close to where it settles; least so at the least process noise, of which
+ * the start knows one digit.
  */
 #define SETTLE_STEPS 16U
 

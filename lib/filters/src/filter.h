@@ -109,13 +109,14 @@ enum filter_soft_parameter {
     SOFT_RATE_MAX_LSB_S
 };
 enum filter_sprf_paper_parameter { SPRF_PAPER_R_LSB2_Q8, SPRF_PAPER_Q_LSB2_S3, SPRF_PAPER_GATE_SIGMA_Q8 };
+/* pbf, shrf, af */
 enum filter_mixture_parameter {
     MIXTURE_R_LSB2_Q8,
     MIXTURE_Q_LSB2_S3,
     MIXTURE_RATIO_UQ8,
     MIXTURE_CLEAN_UQ16,
     MIXTURE_STAY_UQ16 /* not of af */
-};                    /* pbf, shrf, af */
+};
 enum filter_synth_parameter { SYNTH_A1_Q16, SYNTH_B0_UQ16, SYNTH_R_LSB2_Q8 };
 enum filter_synth_opt_parameter { SYNTH_OPT_VARIANT_U, SYNTH_OPT_P0_LSB2_Q8, SYNTH_OPT_R_LSB2_Q8 };
 enum filter_synth_plus_parameter {
@@ -203,8 +204,8 @@ uint8_t filter_parameter_count(const filter_law_t *law);
 const filter_parameter_t *filter_parameter(const filter_law_t *law, uint8_t index); /* in program memory */
 /* Its name; behind the name's end follows the unit. Both in program memory. */
 const char *filter_parameter_words(const filter_parameter_t *parameter);
-uint16_t filter_worst_cycles(
-    const filter_law_t *law); /* of filter_update on an ATmega328P, at most (but see `stay` in mixture.c) */
+/* Of filter_update on an ATmega328P, at most; `stay` of pbf and shrf costs 500 more. */
+uint16_t filter_worst_cycles(const filter_law_t *law);
 
 /* The parameter that is the measurement variance R: what laws that have it need not be told is estimated. */
 extern const filter_parameter_t filter_parameter_r;

@@ -118,8 +118,8 @@ bool filter_kalman_step(filter_t *f, int16_t z_lsb, uint8_t what);
 /*
  * Consistency re-acquisition: refused samples that agree among themselves are no outliers but where the signal is now.
  * L refused raw samples in a row, each within `agree` of the sample before it, restart the filter at the last of them,
- * on the slope from the first to the last; until then the rate is doubted. A sample that is not refused ends the run; a
- * missing one makes the slope unknown. True: this sample was the last of a run.
+ * on the slope from the first to the last; until then each of them halves a rate that is uncertain. A sample that is
+ * not refused ends the run; a missing one makes the slope unknown. True: this sample was the last of a run.
  */
 bool filter_kalman_refused(filter_t *f, int16_t z_lsb);
 

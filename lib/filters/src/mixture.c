@@ -17,7 +17,7 @@
  * is small, with shrf perhaps 0. Parameters r, q, ratio (N), clean (q: at least one half, or a sample on the prediction
  * would count as an outlier; what af begins with), stay (0: outliers come independently; else at least 1 - clean, and
  * less than N / (N + 1), so that a sample on the prediction counts as normal after an outlier too while P11 is small;
- * up to 500 Hz, because a logarithm in each sample makes the law 500 cycles dearer than it declares).
+ * up to 500 Hz, because a logarithm in each sample costs 500 cycles more than the law declares).
  */
 #include "mixture.h"
 
@@ -165,7 +165,7 @@ static void af_standard(filter_config_t *config)
 
 static void start(filter_t *f, bool settled)
 {
-    if (settled || f->own.mixture.leave_uq16 != 0U) { /* a chain begins anew; what was learnt stays */
+    if (settled || f->own.mixture.leave_uq16 != 0U) { /* a chain restarts; what was learnt stays */
         forget(&f->own.mixture);
     }
     filter_wide_start(f, settled);
