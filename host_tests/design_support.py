@@ -54,8 +54,16 @@ def impulse_sum(f, samples=200_000):
 
 
 class Parameter(ctypes.Structure):
-    _fields_ = [("name", ctypes.c_char * 10), ("unit", ctypes.c_char * 8), ("fraction_bits", ctypes.c_uint8), ("zero_means_off", ctypes.c_uint8),
+    _fields_ = [("words", ctypes.c_void_p), ("fraction_bits", ctypes.c_uint8), ("zero_means_off", ctypes.c_uint8),
                 ("min", ctypes.c_int32), ("max", ctypes.c_int32), ("standard", ctypes.c_int32)]
+
+    @property
+    def name(self):
+        return ctypes.string_at(self.words)
+
+    @property
+    def unit(self):
+        return ctypes.string_at(self.words + len(self.name) + 1)
 
 
 class Config(ctypes.Structure):
