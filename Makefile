@@ -14,7 +14,7 @@ WARNINGS := -Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Wundef -Wdoub
             -Wmissing-prototypes -Wcast-qual -Werror
 LIB_DIRS := lib/filters/src lib/tilt/src lib/adxl345/src
 LIB_SRC  := $(wildcard lib/filters/src/*.c lib/tilt/src/*.c lib/adxl345/src/*.c)
-APP_SRC  := $(wildcard firmware/*.c)
+APP_SRC  := $(wildcard firmware/*/*.c)
 INCLUDES := -Ihal -Ifirmware $(addprefix -I,$(LIB_DIRS))
 
 ## help: this list
@@ -35,7 +35,7 @@ AVR_CC      := avr-gcc
 # what makes the smallest image with avr-gcc 5.4.0 (and no table of a switch in RAM); the filters keep their speed
 AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -fshort-enums -fno-inline-small-functions \
                -fno-tree-dominator-opts -fno-tree-switch-conversion -fno-forward-propagate \
-               -fno-tree-loop-ivcanon -fno-tree-scev-cprop -fno-tree-copy-prop -fno-move-loop-invariants -frename-registers -fno-jump-tables -mstrict-X -fno-guess-branch-probability -fno-strict-aliasing
+               -fno-tree-loop-ivcanon -fno-tree-scev-cprop -fno-tree-copy-prop -fno-move-loop-invariants -frename-registers -fno-jump-tables -mstrict-X -fno-guess-branch-probability -fno-strict-aliasing -fno-gcse-lm
 # lines, which change a few bytes, and no variables, which would change 50 of code through link-time optimisation: every program below,
 # flashed, tested, profiled or traced, is the same bits
 AVR_DEBUG   := -gdwarf-2 -g1
@@ -62,7 +62,7 @@ $(U)/hal_probe.elf: host_tests/avr/hal_probe.c $(wildcard hal/avr/*.c hal/*.h ha
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr $(filter %.c,$^) -o $@
 
-$(U)/store_probe.elf: host_tests/avr/store_probe.c firmware/store.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) firmware/store.h Makefile
+$(U)/store_probe.elf: host_tests/avr/store_probe.c firmware/settings/store.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) firmware/settings/store.h Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr -Ifirmware -Ilib/filters/src $(filter %.c,$^) -o $@
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app.h"
+#include "app/app.h"
 #include "hal_host.h"
 
 enum { COMMANDS_MAX = 32, COMMAND_LENGTH = 80 };

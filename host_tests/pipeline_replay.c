@@ -17,11 +17,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "coast.h"
 #include "filter_list.h"
 #include "noise.h"
-#include "pipeline.h"
-#include "settings.h"
+#include "path/coast.h"
+#include "path/pipeline.h"
+#include "settings/settings.h"
 #include "stream.h"
 
 enum { CHANGES_MAX = 16, RATE_TOLERANCE_PERCENT = 5 };

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "adxl345.h"
-#include "app.h"
+#include "app/app.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 #include "support_roles.h"

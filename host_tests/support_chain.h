@@ -1,5 +1,5 @@
 /*
- * One axis of the firmware's sample path (firmware/pipeline.c: noise estimate, coasting over gaps, clipping, filter) as
+ * One axis of the firmware's sample path (pipeline.c: noise estimate, coasting over gaps, clipping, filter) as
  * a value, so that many can run. A test holds it to be pipeline.c bit for bit. PC only.
  */
 #ifndef SUPPORT_CHAIN_H

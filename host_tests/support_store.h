@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "store.h"
+#include "settings/store.h"
 
 /* Places behind the image, as store.h orders its tail. */
 enum { STORE_AT_VERSION = STORE_IMAGE_SIZE, STORE_AT_SEQUENCE, STORE_AT_CHECK, STORE_AT_MARK = STORE_RECORD_SIZE - 1 };

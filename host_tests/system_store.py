@@ -6,7 +6,7 @@ import re
 from system_support import OUT, SIMRUN, STREAMS, run, test
 
 # the image, sequence number, two checks, and the mark twice, or the version and it once
-IMAGE_SIZE = int(re.search(r"STORE_IMAGE_SIZE (\d+)u", pathlib.Path("firmware/store.h").read_text(encoding="ascii")).group(1))
+IMAGE_SIZE = int(re.search(r"STORE_IMAGE_SIZE (\d+)u", pathlib.Path("firmware/settings/store.h").read_text(encoding="ascii")).group(1))
 WRITES = IMAGE_SIZE + 5
 STATUS = "damaged empty other_version good other_copy".split()
 PROBE = "build/uno/store_probe.elf"

@@ -2,10 +2,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app.h"
-#include "hang_test.h"
-#include "pipeline.h"
-#include "settings.h"
+#include "app/app.h"
+#include "base/hang_test.h"
+#include "path/pipeline.h"
+#include "settings/settings.h"
 #include "support_board.h"
 #include "support_roles.h"
 #include "unity.h"

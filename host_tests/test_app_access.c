@@ -7,9 +7,9 @@
 
 #include "adxl345.h"
 #include "adxl345_registers.h"
-#include "counters.h"
+#include "base/counters.h"
 #include "hal_i2c.h"
-#include "pipeline.h"
+#include "path/pipeline.h"
 #include "support_board.h"
 #include "support_random.h"
 #include "unity.h"

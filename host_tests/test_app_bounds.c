@@ -7,12 +7,12 @@
 #include <string.h>
 
 #include "adxl345.h"
-#include "app.h"
-#include "counters.h"
+#include "app/app.h"
+#include "base/counters.h"
 #include "hal_time.h"
 #include "hal_watchdog.h"
-#include "pipeline.h"
-#include "settings.h"
+#include "path/pipeline.h"
+#include "settings/settings.h"
 #include "support_talk.h"
 #include "unity.h"
 

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "calibration.h"
-#include "pipeline.h"
-#include "settings.h"
+#include "path/pipeline.h"
+#include "settings/settings.h"
 #include "support_random.h"
 #include "support_talk.h"
 #include "unity.h"

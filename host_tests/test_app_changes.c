@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app.h"
-#include "counters.h"
-#include "pipeline_state.h"
-#include "settings.h"
+#include "app/app.h"
+#include "base/counters.h"
+#include "path/pipeline_state.h"
+#include "settings/settings.h"
 #include "support_board.h"
 #include "unity.h"
 

@@ -5,11 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app.h"
+#include "app/app.h"
+#include "base/hang_test.h"
+#include "base/health.h"
 #include "hal_watchdog.h"
-#include "hang_test.h"
-#include "health.h"
-#include "pipeline.h"
+#include "path/pipeline.h"
 #include "support_board.h"
 #include "unity.h"
 

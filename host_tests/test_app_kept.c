@@ -1,13 +1,13 @@
 /* Settings over power cycles as a person meets them: save, load, defaults, the strap, resets again and again. */
 #include <string.h>
 
-#include "app.h"
-#include "counters.h"
+#include "app/app.h"
+#include "base/counters.h"
 #include "filter_list.h"
 #include "hal_watchdog.h"
-#include "pipeline_state.h"
-#include "settings.h"
-#include "settings_kept.h"
+#include "path/pipeline_state.h"
+#include "settings/settings.h"
+#include "settings/settings_kept.h"
 #include "support_roles.h"
 #include "support_talk.h"
 #include "unity.h"

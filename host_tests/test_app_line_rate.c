@@ -1,8 +1,8 @@
 /* The whole firmware while its line changes: what waits is kept, and replies never cost a row. */
 #include <stdio.h>
 
-#include "counters.h"
-#include "settings.h"
+#include "base/counters.h"
+#include "settings/settings.h"
 #include "support_board.h"
 #include "unity.h"
 

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "settings.h"
+#include "settings/settings.h"
 #include "support_talk.h"
 #include "unity.h"
 

@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "adxl345.h"
-#include "counters.h"
-#include "pipeline.h"
-#include "replies.h"
+#include "base/counters.h"
+#include "base/replies.h"
+#include "path/pipeline.h"
 #include "support_board.h"
 #include "unity.h"
 

@@ -2,10 +2,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/hang_test.h"
 #include "filter_list.h"
-#include "hang_test.h"
-#include "pipeline.h"
-#include "settings.h"
+#include "path/pipeline.h"
+#include "settings/settings.h"
 #include "support_board.h"
 #include "support_roles.h"
 #include "unity.h"

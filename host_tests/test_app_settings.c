@@ -2,10 +2,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "filter_list.h"
-#include "number.h"
-#include "pipeline_state.h"
-#include "settings.h"
+#include "path/pipeline_state.h"
+#include "settings/settings.h"
 #include "support_roles.h"
 #include "support_talk.h"
 #include "unity.h"

@@ -5,11 +5,11 @@
 #include <string.h>
 
 #include "adxl345.h"
-#include "counters.h"
-#include "pipeline.h"
-#include "replies.h"
+#include "base/counters.h"
+#include "base/replies.h"
+#include "base/text.h"
+#include "path/pipeline.h"
 #include "support_board.h"
-#include "text.h"
 #include "unity.h"
 
 void setUp(void) {}

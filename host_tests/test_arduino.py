@@ -28,7 +28,7 @@ def every_file_of_the_library_keeps_the_rules():
     found = arduino_rules.findings(LIBRARY)
     assert found == [], found
     assert (LIBRARY / "LICENSE").read_text(encoding="utf-8") == pathlib.Path("LICENSE").read_text(encoding="utf-8")
-    version = re.search(r'FIRMWARE_VERSION "(.*)"', pathlib.Path("firmware/version.h").read_text(encoding="utf-8"))[1]
+    version = re.search(r'FIRMWARE_VERSION "(.*)"', pathlib.Path("firmware/console/version.h").read_text(encoding="utf-8"))[1]
     assert arduino_rules.properties(LIBRARY / "library.properties")[0]["version"][1] == version
 
 

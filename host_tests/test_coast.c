@@ -6,11 +6,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "coast.h"
-#include "counters.h"
-#include "pipeline.h"
-#include "settings.h"
-#include "silence.h"
+#include "base/counters.h"
+#include "path/coast.h"
+#include "path/pipeline.h"
+#include "path/silence.h"
+#include "settings/settings.h"
 #include "support_filters.h"
 #include "support_random.h"
 #include "support_roles.h"

@@ -1,8 +1,8 @@
 /* What the clock of missing samples counts, and which samples it keeps out, from the start and through long outages. */
-#include "coast.h"
-#include "counters.h"
-#include "pipeline.h"
-#include "settings.h"
+#include "base/counters.h"
+#include "path/coast.h"
+#include "path/pipeline.h"
+#include "settings/settings.h"
 #include "unity.h"
 
 enum { PERIOD_US = 10000, LOOK_US = 4000, START_US = 1000000 };

@@ -18,7 +18,7 @@ import compile_commands  # noqa: E402
 
 DATABASE = OUT / "compile_commands.json"
 # what is built for which side; the longest name decides. A test is built for one at least.
-SIDES = {"firmware": {"PC", "chip"}, "firmware/main.c": {"chip"}, "firmware/nav/main.c": {"chip"}, "lib": {"PC", "chip"},
+SIDES = {"firmware": {"PC", "chip"}, "firmware/app/main.c": {"chip"}, "nav/image/main.c": {"chip"}, "lib": {"PC", "chip"},
          "hal/avr": {"chip"}, "hal/host": {"PC"}, "sim": {"PC"}}
 
 
@@ -73,7 +73,7 @@ def every_command_compiles_its_file():
     print(f"    {len(in_c)} commands")
     assert said == [], said[0]
     # one that lacks its folders does not
-    entry = next(entry for entry in in_c if entry["file"] == "firmware/rows.c")
+    entry = next(entry for entry in in_c if entry["file"] == "firmware/output/rows.c")
     bare = entry | {"arguments": [word for word in entry["arguments"] if not word.startswith("-Ihal")]}
     assert "fatal error" in compiles(bare)
 
@@ -98,10 +98,10 @@ def clang_understands_the_first_command_of_each_file():
 @test
 def words_are_those_that_the_shell_would_see():
     line = (f"avr-gcc -std=gnu11 -Os '-DFILTER_LIST(X)=X({PLAIN}) X({ROBUST})' -flto -mrelax -Wl,--gc-sections -I $(echo hal) -MMD "
-            "-c firmware/rows.c "
+            "-c firmware/output/rows.c "
             "-o x.o 2> x.log || true")
     assert list(compile_commands.entries_of(line)) == [
-        ("firmware/rows.c", "avr-gcc", ["-std=gnu11", "-Os", f"-DFILTER_LIST(X)=X({PLAIN}) X({ROBUST})", "-I", "hal"])]
+        ("firmware/output/rows.c", "avr-gcc", ["-std=gnu11", "-Os", f"-DFILTER_LIST(X)=X({PLAIN}) X({ROBUST})", "-I", "hal"])]
     assert list(compile_commands.entries_of("mkdir -p build")) == [] and list(compile_commands.entries_of("")) == []
 
 

@@ -6,13 +6,13 @@ import subprocess
 from system_support import run_all, test
 
 PAGE = pathlib.Path("docs/faults.md")
-TEXTS = pathlib.Path("firmware/reply_texts.h")
+TEXTS = pathlib.Path("firmware/console/reply_texts.h")
 INCLUDES = ["-Ifirmware", "-Ihal", "-Ihal/host"]
 
 
 def texts():
-    """name -> lines of firmware/reply_texts.h, a byte of enum say as .. ."""
-    source = '#include "reply_texts.h"\n#define SHOWN(name, words) @name words\nREPLY_TEXTS(SHOWN)\n'
+    """name -> lines of firmware/console/reply_texts.h, a byte of enum say as .. ."""
+    source = '#include "console/reply_texts.h"\n#define SHOWN(name, words) @name words\nREPLY_TEXTS(SHOWN)\n'
     done = subprocess.run(["gcc", "-E", "-P", *INCLUDES, "-xc", "-"], input=source, capture_output=True, text=True, check=True)
     raw = {}
     for entry in done.stdout.split("@")[1:]:
@@ -56,7 +56,7 @@ def words_are_those_of_the_firmware():
 
 @test
 def flashes_are_those_of_the_led():
-    source = pathlib.Path("firmware/sensor_watch.c").read_text(encoding="utf-8")
+    source = pathlib.Path("firmware/control/sensor_watch.c").read_text(encoding="utf-8")
     table = {name: int(times) for name, times in re.findall(r"\[ADXL345_FAULT_(\w+)\] = (\d)", source)}
     assert {number: table[name] for name, number in codes().items()} == {code: times for code, _, times in rows()}
 

@@ -1,12 +1,12 @@
 /* The watchdog's feeding place alone: how long a driver that stands still passes for healthy. */
 #include "adxl345.h"
+#include "base/health.h"
 #include "hal_drdy.h"
 #include "hal_host.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
-#include "health.h"
 #include "support_board.h"
 #include "unity.h"
 

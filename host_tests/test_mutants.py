@@ -281,12 +281,12 @@ def a_part_of_a_folder_neither_sets_nor_fails_its_rate():
 @test
 def a_folder_of_the_goals_is_that_one_alone_and_other_words_begin_a_path():
     campaign = campaign_module()
-    campaign.product = lambda: ["firmware/a.c", "firmware/nav/b.c", "hal/c.h"]
+    campaign.product = lambda: ["firmware/a.c", "nav/image/b.c", "hal/c.h"]
     campaign.goals = lambda: {"firmware": (0.0, None)}
 
     def chosen(only):
         return campaign.sources(types.SimpleNamespace(only=only, sample=0))
-    assert chosen("firmware") == ["firmware/a.c"] and chosen("firmware/") == ["firmware/a.c", "firmware/nav/b.c"] and chosen("h") == ["hal/c.h"]
+    assert chosen("firmware") == ["firmware/a.c"] and chosen("nav/") == ["nav/image/b.c"] and chosen("h") == ["hal/c.h"]
 
 
 @test

@@ -1,6 +1,6 @@
 /* The calibration's place in the sample path: what it changes of a row, what it leaves, when it counts. */
 #include "filter_list.h"
-#include "pipeline.h"
+#include "path/pipeline.h"
 #include "support_roles.h"
 #include "unity.h"
 

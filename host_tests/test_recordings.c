@@ -2,9 +2,9 @@
  * What the filters do on real recordings, and on the shipped streams by the same rules: within their documented bounds,
  * no further from the raw samples than the rules of support_envelope.h allow, hardly anything refused at rest.
  */
-#include "coast.h"
-#include "pipeline.h"
-#include "settings.h"
+#include "path/coast.h"
+#include "path/pipeline.h"
+#include "settings/settings.h"
 #include "support_recordings.h"
 #include "support_shipped.h"
 #include "support_survey.h"

@@ -3,8 +3,8 @@
  * the axes that remain, flagged and told; with another filter, and with two bad axes, none is left out.
  */
 #include "filter_list.h"
-#include "pipeline_state.h"
-#include "supervisor.h"
+#include "path/pipeline_state.h"
+#include "path/supervisor.h"
 #include "support_board.h"
 #include "support_random.h"
 #include "support_roles.h"

@@ -1,7 +1,7 @@
 /* Decimal output against printf, over every 16-bit value and the corners of 32 bits. */
-#include "text.h"
+#include "base/text.h"
 
-#include "format.h"
+#include "base/format.h"
 #include <stdio.h>
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* The facade lib/tilt/src/tilt_filter.h: the firmware's sample path bit for bit, other sensors, bad input. */
-#include "coast.h"
 #include "filter_list.h"
-#include "pipeline.h"
-#include "settings.h"
+#include "path/coast.h"
+#include "path/pipeline.h"
+#include "settings/settings.h"
 #include "support_filters.h"
 #include "support_random.h"
 #include "support_shipped.h"

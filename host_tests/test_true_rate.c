@@ -5,12 +5,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "app.h"
-#include "coast.h"
-#include "counters.h"
+#include "app/app.h"
+#include "base/counters.h"
 #include "filter_list.h"
-#include "pipeline_state.h"
-#include "settings.h"
+#include "path/coast.h"
+#include "path/pipeline_state.h"
+#include "settings/settings.h"
 #include "support_board.h"
 #include "support_roles.h"
 #include "unity.h"

@@ -3,8 +3,8 @@
 # WITH_DEFAULTS and the rest of the images are made by tools/bench.py, which knows the filters from the list
 BENCH_INC    := $(INCLUDES) -Ihal/avr -Ihost_tests/avr
 BENCH_COMMON := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -ffunction-sections -fdata-sections
-BENCH_SRC    := $(wildcard host_tests/avr/float_*.c lib/filters/src/*.c lib/tilt/src/*.c) firmware/format.c
-BENCH_DEPS   := $(BENCH_SRC) host_tests/avr/bench.c firmware/rows.c Makefile mk/bench.mk $(wildcard host_tests/avr/*.h lib/*/src/*.h firmware/*.h hal/*.h hal/avr/*.h)
+BENCH_SRC    := $(wildcard host_tests/avr/float_*.c lib/filters/src/*.c lib/tilt/src/*.c) firmware/base/format.c
+BENCH_DEPS   := $(BENCH_SRC) host_tests/avr/bench.c firmware/output/rows.c Makefile mk/bench.mk $(wildcard host_tests/avr/*.h lib/*/src/*.h firmware/*/*.h hal/*.h hal/avr/*.h)
 
 # the filters and their yardsticks together do not fit the flash: an image times a part of the list, four of it
 BENCH_PARTS  := 1 2 3 4
@@ -25,7 +25,7 @@ $(U)/bench_kept.elf: $(BENCH_DEPS)
 	@$(AVR_CC) $(BENCH_COMMON) $(call bench_part,1) -DFLOAT_KEPT -Os $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/avr/bench.c $(BENCH_SRC) -lm -o $@
 
 # the firmware with two places around a sample's way that the simulator can time
-$(U)/bench_sample/firmware/app.o: AVR_FLAGS += -Dpipeline_sample=bench_sample_begins -Dhealth_sample_filtered=bench_sample_ends
+$(U)/bench_sample/firmware/app/app.o: AVR_FLAGS += -Dpipeline_sample=bench_sample_begins -Dhealth_sample_filtered=bench_sample_ends
 BENCH_SAMPLE_OBJ := $(AVR_SRC:%.c=$(U)/bench_sample/%.o) $(U)/bench_sample/host_tests/avr/bench_sample.o
 $(U)/bench_sample/%.o: %.c Makefile mk/bench.mk
 	@mkdir -p $(@D)
@@ -37,7 +37,7 @@ $(U)/bench_sample.elf: $(BENCH_SAMPLE_OBJ)
 # the firmware without its filters, whose clock starts at ten digits: what is left is the rest of a sample's way, and rows
 BENCH_REST_OBJ := $(AVR_SRC:%.c=$(U)/bench_rest/%.o) $(U)/bench_rest/host_tests/avr/bench_rest.o
 $(U)/bench_rest/%.o: IMAGE_FILTERS = $(shell python3 tools/laws.py light)
-$(U)/bench_rest/firmware/pipeline.o: AVR_FLAGS += -Dfilter_update=bench_no_filter
+$(U)/bench_rest/firmware/path/pipeline.o: AVR_FLAGS += -Dfilter_update=bench_no_filter
 $(U)/bench_rest/%.o: %.c Makefile mk/bench.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -DHAL_TIME_START_US=4200000000ul -MMD -MP -c $< -o $@

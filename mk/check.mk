@@ -1,4 +1,4 @@
-# The rules of the tree, enforced. Each check is a target of its own (make check-tidy ONLY=firmware/app.c looks at one file); limits
+# The rules of the tree, enforced. Each check is a target of its own (make check-tidy ONLY=firmware/app/app.c looks at one file); limits
 # are in tools/budgets.txt, what departs from a rule in docs/deviations.md, and host_tests/planted.txt holds faults that each check
 # must find.
 CHK := $(B)/check
@@ -81,17 +81,17 @@ check-breakages:
 check-texts:
 	@mkdir -p $(CHK)
 	@python3 tools/pack_texts.py $(CHK)/reply_packed.h
-	@cmp -s $(CHK)/reply_packed.h firmware/reply_packed.h || \
-	    { echo 'texts: firmware/reply_texts.h is not what firmware/reply_packed.h was made of: make texts' >&2; exit 1; }
+	@cmp -s $(CHK)/reply_packed.h firmware/console/reply_packed.h || \
+	    { echo 'texts: firmware/console/reply_texts.h is not what firmware/console/reply_packed.h was made of: make texts' >&2; exit 1; }
 	@echo 'texts: packed as they are written'
 
 check-planted:
 	@python3 host_tests/test_planted.py
 	@python3 tools/planted.py $(ONLY)
 
-## texts: pack the firmware's words anew after a change of firmware/reply_texts.h
+## texts: pack the firmware's words anew after a change of firmware/console/reply_texts.h
 texts:
-	@python3 tools/pack_texts.py firmware/reply_packed.h
+	@python3 tools/pack_texts.py firmware/console/reply_packed.h
 
 .PHONY: texts check check-built check-objects check-planted $(CHECKS:%=check-%)
 

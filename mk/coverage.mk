@@ -1,7 +1,7 @@
 # Coverage of lib by the unit tests (gcov; built apart, without sanitizers) and of the AVR binary by the system tests.
 C := $(B)/coverage
 # what watches over the sensor and the stages is judged beside lib, and the navigation image's link (mk/nav_lib_coverage.mk)
-SUPERVISION   := $(wildcard $(addprefix firmware/,sensor_watch.c health.c pipeline.c pipeline_change.c coast.c supervisor.c))
+SUPERVISION   := $(wildcard $(addprefix firmware/*/,sensor_watch.c health.c pipeline.c pipeline_change.c coast.c supervisor.c))
 # test_nav_flight, a minute of flights, runs no line of lib/nav that the short ones leave
 COVERAGE_TESTS := $(patsubst host_tests/%.c,$(C)/%,$(filter-out host_tests/test_nav_flight.c,$(wildcard host_tests/test_*.c)))
 
@@ -30,7 +30,7 @@ $(C)/host.json: $(COVERAGE_TESTS)
 	@printf '%s\n' $(COVERAGE_TESTS) | xargs -P 2 -I TEST sh -c \
 	    'timeout 900 TEST > TEST.log 2>&1 || { echo "coverage: TEST failed:"; grep :FAIL TEST.log; exit 255; }'
 	@mkdir -p $(C)/html
-	@gcovr --root . --object-directory $(C) --filter '$(CURDIR)/lib/' --filter '$(CURDIR)/firmware/nav/' $(SUPERVISION:%=--filter '$(CURDIR)/%') --exclude-unreachable-branches --json $@ \
+	@gcovr --root . --object-directory $(C) --filter '$(CURDIR)/lib/' --filter '$(CURDIR)/nav/image/' $(SUPERVISION:%=--filter '$(CURDIR)/%') --exclude-unreachable-branches --json $@ \
 	    --html-details $(C)/html/index.html $(C) > $(C)/gcovr.log 2>&1 || { cat $(C)/gcovr.log; exit 1; }
 
 $(C)/probe.elf: host_tests/avr/coverage_probe.c Makefile

@@ -7,7 +7,7 @@ SANITIZE   := -fsanitize=address,undefined -fno-sanitize-recover=all
 HOST_INC   := $(INCLUDES) -Ihal/host -Isim -Ihost_tests -isystem $(UNITY_DIR)
 HOST_FLAGS := -std=c11 -O1 -g -D_POSIX_C_SOURCE=200809L -DHANG_TEST=1 -DSUPERVISOR=1 -DUNITY_INCLUDE_DOUBLE $(HOST_INC)
 MODEL_SRC  := sim/adxl345_model.c sim/stream.c
-HOST_SRC   := $(filter-out firmware/main.c,$(APP_SRC)) $(LIB_SRC) $(wildcard hal/host/*.c) $(MODEL_SRC)
+HOST_SRC   := $(filter-out firmware/app/main.c,$(APP_SRC)) $(LIB_SRC) $(wildcard hal/host/*.c) $(MODEL_SRC)
 # of them what knows the laws, on the chip too
 LAW_SUPPORT := host_tests/support_random32.c $(wildcard host_tests/support_filter*.c host_tests/support_law_*.c)
 SUPPORT_SRC := $(wildcard host_tests/support_*.c)
@@ -42,7 +42,7 @@ ARCHIVED := filters tilt adxl345 firmware hal model support
 SRC_filters  := $(wildcard lib/filters/src/*.c)
 SRC_tilt     := $(wildcard lib/tilt/src/*.c)
 SRC_adxl345  := $(wildcard lib/adxl345/src/*.c)
-SRC_firmware := $(filter-out firmware/main.c,$(APP_SRC))
+SRC_firmware := $(filter-out firmware/app/main.c,$(APP_SRC))
 SRC_hal      := $(wildcard hal/host/*.c)
 SRC_model    := $(MODEL_SRC)
 SRC_support  := $(SUPPORT_SRC)
@@ -57,7 +57,7 @@ $(H)/test_%: $(H)/host_tests/test_%.o $(H)/unity.o $(H)/libsupport.a
 # python3, which make deps installs, what needs no test is built all the same.
 PARTS := $(H)/parts.mk $(if $(filter coverage $(B)/coverage/%,$(MAKECMDGOALS)),$(B)/coverage/parts.mk)
 ifneq ($(filter-out help deps clean,$(MAKECMDGOALS)),)
-$(PARTS): tools/test_parts.py $(wildcard host_tests/*.c host_tests/*.h host_tests/*.cpp host_tests/*.hpp) $(HOST_SRC) $(wildcard */*.h hal/*/*.h lib/*/src/*.h)
+$(PARTS): tools/test_parts.py $(wildcard host_tests/*.c host_tests/*.h host_tests/*.cpp host_tests/*.hpp) $(HOST_SRC) $(wildcard */*.h firmware/*/*.h hal/*/*.h lib/*/src/*.h)
 	@mkdir -p $(@D)
 	@! command -v python3 > /dev/null || { python3 tools/test_parts.py $(@D) > $@.$$$$ && mv $@.$$$$ $@; }
 -include $(PARTS)

@@ -12,10 +12,11 @@ import sys
 from check_support import Stop, chosen, files, main, parallel, report, run
 
 LIBRARIES = ["lib/filters/src", "lib/tilt/src", "lib/adxl345/src", "lib/nav/src"]
-PORTABLE = ["hal", "firmware", "firmware/nav", *LIBRARIES]
+PORTABLE = ["hal", "firmware", "nav/image", *LIBRARIES]
 # which compiler takes what; a folder below one of these goes with it, the longest name decides
 FOLDERS_OF = {
     "firmware": ("host", "avr"),
+    "nav": ("host", "avr"),
     "lib": ("host", "avr"),
     "hal": ("host", "avr"),
     "hal/host": ("host",),

@@ -3,5 +3,5 @@
 set -eu
 command -v clang-format > /dev/null || { echo 'check_format.sh: clang-format is not installed: sh tools/deps.sh check' >&2; exit 2; }
 # shellcheck disable=SC2046
-clang-format --dry-run -Werror ${*:-$(find firmware lib hal sim host_tests \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.hpp' \) | sort)}
+clang-format --dry-run -Werror ${*:-$(find firmware nav lib hal sim host_tests \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.hpp' \) | sort)}
 echo 'format: clean'

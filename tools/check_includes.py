@@ -23,9 +23,25 @@ HAL = headers("hal") | {"hal_port.h"}
 FILTERS, TILT, ADXL = headers("lib/filters/src"), headers("lib/tilt/src"), headers("lib/adxl345/src")
 # what of lib/filters is for its laws, tests and proof alone
 INSIDE = {"tracker.h", "kalman.h", "wide.h", "mixture.h", "fx_avr.h"} | {path.name for path in pathlib.Path("lib/filters/src").glob("*_table.h")}
-NAV, NAV_IMAGE = headers("lib/nav/src"), headers("firmware/nav")
-FIRMWARE, SIM = headers("firmware"), headers("sim")
+NAV, NAV_IMAGE = headers("lib/nav/src"), headers("nav/image")
+SIM = headers("sim")
 MODEL = {"adxl345_model.h", "stream.h"}
+# the rooms of the firmware, and which others each may use: nothing points up. A header is included with its room.
+ROOMS = {
+    "base": (),
+    "settings": ("base",),
+    "path": ("base",),
+    "output": ("path", "base"),
+    "control": ("path", "settings", "base"),
+    "console": ("control", "output", "path", "settings", "base"),
+    "app": ("console", "control", "output", "path", "settings", "base"),
+}
+BELOW = STANDARD | FILTERS | TILT | ADXL | HAL  # what lies under the firmware
+
+
+def room_headers(room):
+    return {f"{name}/{path.name}" for name in (room, *ROOMS[room]) for path in pathlib.Path("firmware", name).glob("*.h")}
+
 
 # folder -> (names allowed, pattern of further names allowed); a folder below goes with the longest name
 RULES = {
@@ -37,8 +53,8 @@ RULES = {
     "hal": (STANDARD | {"hal_port.h"}, None),
     "hal/avr": (STANDARD | HAL | headers("hal/avr"), AVR_LIBC),
     "hal/host": (LIBC | HAL | MODEL | headers("hal/host"), None),
-    "firmware": (STANDARD | FIRMWARE | FILTERS | TILT | ADXL | HAL, None),
-    "firmware/nav": (STANDARD | NAV_IMAGE | NAV | HAL, None),
+    **{f"firmware/{room}": (BELOW | room_headers(room), None) for room in ROOMS},
+    "nav/image": (STANDARD | NAV_IMAGE | NAV | HAL, None),
     "sim": (LIBC | SIM | {"adxl345_registers.h"}, SIMAVR),
 }
 # everything but hal/avr: here what must not be included; AVR headers where the code is for the chip
@@ -47,7 +63,7 @@ TESTS, TESTS_NEVER = "host_tests", re.compile(r"hal/avr/")
 CHIP_TESTS, CHIP_TESTS_NEVER = "host_tests/avr", re.compile(r"hal/(avr|host)/")
 # the one file that may know the machine inside the pure libraries, and only under a guard
 PRIMITIVES = pathlib.Path("lib/filters/src/fx.h")
-PURE = ("lib", "firmware")
+PURE = ("lib", "firmware", "nav")
 # names that tell one machine from another, wherever they stand in the code
 MACHINE = re.compile(r"\b(__AVR\w*|AVR|ARDUINO\w*|__GNUC_AVR\w*|__INT_MAX__|__INT_WIDTH__|__SIZEOF_\w+|__WORDSIZE)\b")
 

@@ -12,7 +12,8 @@ import laws
 from check_support import deviations, limit_for, main, report
 
 MOST, RULE = 8, "files that name a filter"
-PLACES = ["Makefile", "platformio.ini", "mk", "tools", "checks", "campaigns", "second", "firmware", "lib", "hal", "sim", "host_tests", "web", "wokwi"]
+PLACES = ["Makefile", "platformio.ini", "mk", "tools", "checks", "campaigns", "second", "firmware", "nav", "lib", "hal", "sim",
+          "host_tests", "web", "wokwi"]
 # pages, and what programs recorded, drew or read as data
 NO_CODE = {".md", ".csv", ".png", ".svg", ".json", ".hex", ".pyc"}
 DATA = "host_tests/fuzz/corpus"

@@ -25,10 +25,10 @@ ROOT = pathlib.Path.cwd()
 EXCLUSIONS = pathlib.Path("host_tests/coverage_exclusions.txt")
 # two calls, which link-time optimisation takes in line: the instructions may carry the lines of what is called alone; of the
 # navigation image's, no program of the PC holds main()
-CALLS_ONLY = {"firmware/main.c", "firmware/nav/main.c"}
+CALLS_ONLY = {"firmware/app/main.c", "nav/image/main.c"}
 # not in the image that is traced, but in that of `auto`: judged on the PC alone
-NOT_TRACED = {"firmware/supervisor.c"}
-NAVIGATION = ("lib/nav/", "firmware/nav/")
+NOT_TRACED = {"firmware/path/supervisor.c"}
+NAVIGATION = ("lib/nav/", "nav/image/")
 HOST_LINES, HOST_BRANCHES, AVR_LINES = 100.0, 95.0, 95.0
 CAMPAIGN_LINES, WATCHING_BRANCHES = 95.0, 100.0
 PLACES = ("host", "host-branch", "avr", "campaign")
@@ -215,7 +215,7 @@ def complete(rows, pattern, source, exempt=frozenset()):
 
 
 def complete_on_avr(rows, source):
-    complete(rows, "firmware/*.c", source, NOT_TRACED)
+    complete(rows, "firmware/*/*.c", source, NOT_TRACED)
     complete(rows, "hal/avr/*.c", source)
 
 
@@ -235,7 +235,7 @@ def judge(report, elf, folder):
     ours = [row for row in avr if not row["file"].startswith("lib/")]
     flying = [row for row in host if row["file"].startswith(NAVIGATION)]
     watching = [row for row in host if row["file"].startswith(("lib/adxl345/", "firmware/")) and row not in flying]
-    for pattern in ("lib/*/src/*.c", "firmware/nav/*.c", *NOT_TRACED):
+    for pattern in ("lib/*/src/*.c", "nav/image/*.c", *NOT_TRACED):
         complete(host, pattern, report)
     complete_on_avr(ours, elf)
     print("lib, supervision and the navigation image's link on the PC, unit tests:")
@@ -246,7 +246,7 @@ def judge(report, elf, folder):
     print("\n".join(["uncovered:"] + host_missed + half + avr_missed + excluder.stale(*PLACES[:3])))
     results = [judge_one("lib lines on the PC", percent(total(host, "lines_executed"), total(host, "lines")), HOST_LINES),
                judge_one("lib branches on the PC", percent(total(host, "branches_taken"), total(host, "branches")), HOST_BRANCHES),
-               judge_one("branches of lib/nav and firmware/nav on the PC",
+               judge_one("branches of lib/nav and nav/image on the PC",
                          percent(total(flying, "branches_taken"), total(flying, "branches")), HOST_BRANCHES),
                judge_one("branches of bus master, driver and supervision on the PC",
                          percent(total(watching, "branches_taken"), total(watching, "branches")), WATCHING_BRANCHES),

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""pack_texts.py OUT: the texts of firmware/reply_texts.h, packed for program memory, as a header (firmware/reply_packed.h).
+"""pack_texts.py OUT: the texts of firmware/console/reply_texts.h, packed for program memory, as a header (firmware/console/reply_packed.h).
 
 Byte pair encoding: the commonest pair of neighbours gets a byte of its own, again and again, until a pair saves no more than the two bytes
 that it takes in the list of pairs. reply_lines.c unpacks them with a stack of PACKED_DEPTH bytes.
@@ -21,7 +21,7 @@ def texts():
     compiler = next((name for name in ("gcc", "cc", "avr-gcc") if shutil.which(name)), None)
     if compiler is None:
         sys.exit("pack_texts: no C compiler found: sh tools/deps.sh firmware")
-    source = '#include "reply_texts.h"\n#define TEXT(name, words) @name words\nREPLY_TEXTS(TEXT)\n'
+    source = '#include "console/reply_texts.h"\n#define TEXT(name, words) @name words\nREPLY_TEXTS(TEXT)\n'
     command = [compiler, "-E", "-P", "-mmcu=atmega328p"][:4 if compiler == "avr-gcc" else 3]
     includes = ["-Ifirmware", "-Ihal", "-Ihal/avr" if compiler == "avr-gcc" else "-Ihal/host"]
     done = subprocess.run([*command, *includes, "-x", "c", "-"], input=source, capture_output=True, text=True, check=False)

@@ -25,7 +25,7 @@ KILLED = {124, 137}  # what timeout gives
 LIMIT_S = 600  # by the wall, on a machine that others may load: only a check that hangs takes that long
 # these look at one file when it is named; the others look at the whole
 TAKES_FILE = {"compile", "tidy", "int16", "cppcheck", "format", "lengths"}
-FOLDERS = ["firmware", "lib", "hal", "sim", "host_tests", "mk", "tools", "campaigns", "docs"]
+FOLDERS = ["firmware", "nav", "lib", "hal", "sim", "host_tests", "mk", "tools", "campaigns", "docs"]
 FILES = ["Makefile", ".clang-tidy", ".clang-format", "platformio.ini", "sim/streams/outliers-15pct.csv", "build/uno/firmware.elf",
          "build/uno/filters.txt", "build/sim/simrun"]
 BUILT = ["build/check/avr", "build/uno/firmware", "build/uno/hal", "build/uno/lib"]

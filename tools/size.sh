@@ -16,7 +16,7 @@ data_budget=$(budget "${image}data_bytes")
 largest() {
     for at in $(avr-nm -S --size-sort "$elf" | awk -v types="$1" 'index(types, $3) { print $2 ":" $4 }' | tail -n 12); do
         name=${at#*:}
-        source=$(grep -lE "\b${name%%.*}\b" firmware/*.c firmware/*/*.c lib/*/src/*.c hal/avr/*.c | tr '\n' ' ')
+        source=$(grep -lE "\b${name%%.*}\b" firmware/*/*.c nav/*/*.c lib/*/src/*.c hal/avr/*.c | tr '\n' ' ')
         echo "    $((0x${at%%:*})) bytes: $name in ${source:-the libraries of the compiler}" >&2
     done
 }

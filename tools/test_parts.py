@@ -11,8 +11,9 @@ import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
 # archive: its folder; hal's headers are the contracts, its sources the host's side
-ARCHIVES = {"filters": "lib/filters/src", "tilt": "lib/tilt/src", "adxl345": "lib/adxl345/src", "firmware": "firmware", "hal": "hal/host"}
-FOLDERS = [*ARCHIVES.values(), "hal", "sim", "host_tests"]
+ARCHIVES = {"filters": "lib/filters/src", "tilt": "lib/tilt/src", "adxl345": "lib/adxl345/src", "hal": "hal/host"}
+ROOMS = "firmware"  # an archive of all its folders
+FOLDERS = [*ARCHIVES.values(), f"{ROOMS}/*", "hal", "sim", "host_tests"]
 MODEL = {"adxl345_model", "stream"}
 # lib/nav is linked as variants with a table of functions each (mk/nav_lib.mk); test_nav_link has a rule of its own
 OWN_RULE = {"test_nav_link"}
@@ -22,7 +23,7 @@ def headers():
     """name -> file of every header that a test can include"""
     found = {}
     for folder in FOLDERS:
-        for path in sorted(pathlib.Path(folder).glob("*.h*")):
+        for path in sorted(pathlib.Path(".").glob(f"{folder}/*.h*")):
             found.setdefault(path.name, path)
     return found
 
@@ -49,6 +50,8 @@ class Parts:
         for archive, home in ARCHIVES.items():
             if folder == home or (archive == "hal" and folder == "hal"):
                 self.take(archive, sorted(pathlib.Path(home).glob("*.c")))
+        if folder.startswith(f"{ROOMS}/"):
+            self.take(ROOMS, sorted(pathlib.Path(ROOMS).glob("*/*.c")))
         if header.stem in MODEL:
             self.take("model", [header.with_suffix(".c")])
         elif folder in ("host_tests", "sim"):

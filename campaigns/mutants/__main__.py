@@ -1,7 +1,7 @@
 """Mutants by operators: each is one small change of the product that some test must notice.
 
     make mutants                    all (hours; goes on where it stopped)
-    make mutants ONLY=lib/tilt      those of a folder in goals.txt, or of files whose path begins so (ONLY=firmware/ is with firmware/nav)
+    make mutants ONLY=lib/tilt      those of a folder in goals.txt, or of files whose path begins so
     make mutants SAMPLE=25          so many of the folders in goals.txt, drawn by the tree's hash: fails on a survivor that is not accepted
 """
 import argparse
@@ -25,9 +25,9 @@ from shop import Stop, alone, copy_tree, digest, tree_files
 
 WORKERS = 2
 # files that no mutant is made of, each with its reason
-LEFT_OUT = {"firmware/reply_packed.h": "written by tools/pack_texts.py, which make check runs",
-            "firmware/nav/main.c": "20 lines that only the navigation image runs, whose test takes minutes"}
-NAV = ("lib/nav/", "firmware/nav/")
+LEFT_OUT = {"firmware/console/reply_packed.h": "written by tools/pack_texts.py, which make check runs",
+            "nav/image/main.c": "20 lines that only the navigation image runs, whose test takes minutes"}
+NAV = ("lib/nav/", "nav/image/")
 
 
 def say(text):
@@ -63,7 +63,7 @@ def options_of(arguments):
 
 
 def product():
-    return [name for name in tree_files() if name.startswith(("lib/", "firmware/", "hal/")) and name.endswith((".c", ".h"))
+    return [name for name in tree_files() if name.startswith(("lib/", "firmware/", "nav/", "hal/")) and name.endswith((".c", ".h"))
             and name not in LEFT_OUT and "/examples/" not in name]
 
 

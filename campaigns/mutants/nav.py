@@ -63,9 +63,9 @@ class Link(Host):
         super().__init__(settings, "ubsan", tree)
         self.variant, self.folder = "navlink", self.folder.with_name("navlink")
         self.objects = self.objects.named("navlink", self.command)
-        self.product = [*sources("firmware/nav", ["firmware/nav/main.c"]), *sources("lib/nav/src")]
+        self.product = [*sources("nav/image", ["nav/image/main.c"]), *sources("lib/nav/src")]
         self.supports = ["host_tests/nav_line.c", "host_tests/support_random.c"]
         self.tests = ["test_nav_link"]
 
     def command(self, source):
-        return [*super().command(source), *shlex.split(os.environ["NAV_RINGS"]), "-Ifirmware/nav", "-Ilib/nav/src"]
+        return [*super().command(source), *shlex.split(os.environ["NAV_RINGS"]), "-Inav/image", "-Ilib/nav/src"]

@@ -86,7 +86,7 @@ def write_accepted(rows, files):
 
 def folder_of(file):
     parts = pathlib.Path(file).parts
-    return "/".join(parts[:2]) if parts[0] in ("lib", "hal") and len(parts) > 2 or parts[:2] == ("firmware", "nav") else parts[0]
+    return "/".join(parts[:2]) if parts[0] in ("lib", "hal") and len(parts) > 2 or parts[:2] == ("nav", "image") else parts[0]
 
 
 def table(rows, of, title):

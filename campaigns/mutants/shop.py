@@ -10,7 +10,7 @@ import subprocess
 import threading
 
 ROOT = pathlib.Path("build/mutants").resolve()
-COPIED = ("lib", "firmware", "hal", "sim", "host_tests", "tools", "mk", "Makefile")
+COPIED = ("lib", "firmware", "nav", "hal", "sim", "host_tests", "tools", "mk", "Makefile")
 
 
 class Stop(Exception):

@@ -21,7 +21,7 @@
 #include "tracker.h"
 
 /* The row as the firmware composes it; what of it is not used the linker drops. */
-#include "../../firmware/rows.c"
+#include "../../firmware/output/rows.c"
 
 #include "bench_measure.h"
 #include "bench_out.h"

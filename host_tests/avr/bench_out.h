@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
+#include "base/format.h"
 #include "bench_call.h"
-#include "format.h"
 
 static void put_number(uint16_t value)
 {

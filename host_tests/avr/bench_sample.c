@@ -3,8 +3,8 @@
  * around a sample's way. app.c of the image calls these instead of the functions that they call (tools/bench.py).
  */
 #include "adxl345.h"
-#include "health.h"
-#include "pipeline.h"
+#include "base/health.h"
+#include "path/pipeline.h"
 
 void bench_sample_begins(const adxl345_sample_t *sample);
 void bench_sample_ends(void);

@@ -10,7 +10,7 @@
 #include "noise.h"
 #include "tilt.h"
 
-#include "../../firmware/rows.c"
+#include "../../firmware/output/rows.c"
 
 /* -D'PARTS=(PART(kf) | PART(noise))' */
 enum {

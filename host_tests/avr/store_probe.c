@@ -11,7 +11,7 @@
 #include "hal_sleep.h"
 #include "hal_time.h"
 #include "hal_uart.h"
-#include "store.h"
+#include "settings/store.h"
 
 static uint8_t record[STORE_RECORD_SIZE];
 

@@ -2,14 +2,14 @@
  * Paths of the formatting: numbers, and whole rows of the real pipeline in both output modes. The UART of this program
  * is the output that is compared.
  */
-#include "coast.h"
-#include "format.h"
+#include "base/format.h"
+#include "base/text.h"
 #include "fx.h"
 #include "hal_uart.h"
-#include "pipeline.h"
-#include "rows.h"
-#include "settings.h"
-#include "text.h"
+#include "output/rows.h"
+#include "path/coast.h"
+#include "path/pipeline.h"
+#include "settings/settings.h"
 #include "vectors.h"
 
 enum { U16, I16, U32, HUNDREDTHS, TEXT_U32, TEXT_HEX8, TEXT_TENTHS, ROWS_CSV, ROWS_PLOT, TEXT_COUNT };

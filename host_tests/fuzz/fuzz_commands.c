@@ -10,14 +10,14 @@
 #include <string.h>
 
 #include "adxl345_registers.h"
-#include "app.h"
-#include "counters.h"
+#include "app/app.h"
+#include "base/counters.h"
+#include "base/replies.h"
 #include "fuzz.h"
 #include "fuzz_commands.h"
 #include "hal_host.h"
 #include "hal_uart.h"
-#include "replies.h"
-#include "settings.h"
+#include "settings/settings.h"
 
 enum {
     OPTION_NO_SENSOR = 1,

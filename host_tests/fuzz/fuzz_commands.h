@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "settings.h"
+#include "settings/settings.h"
 
 /* Settings with a name of their own, without the parameters of the filter. */
 enum { FUZZ_SETTINGS = 8, FUZZ_VECTORS = 3 };

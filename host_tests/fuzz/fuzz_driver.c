@@ -113,7 +113,7 @@ static void run_ms(double ms, bool take)
         poll();
         while (take && (sample = adxl345_take()) != NULL) {
             check_sample(sample);
-            hal_wake(); /* a slot is free: the driver may go on, as in firmware/app.c */
+            hal_wake(); /* a slot is free: the driver may go on, as in firmware/app/app.c */
         }
         hal_sleep_until_wake();
     }

@@ -1,4 +1,4 @@
-/* docs/protocol.md once more, for judging: written from the document, sharing nothing with firmware/commands.c. */
+/* docs/protocol.md once more, for judging: written from the document, sharing nothing with commands.c. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "coast.h"
 #include "filter_list.h"
-#include "pipeline.h"
-#include "settings.h"
-#include "silence.h"
+#include "path/coast.h"
+#include "path/pipeline.h"
+#include "path/silence.h"
+#include "settings/settings.h"
 #include "stream.h"
 
 #define STUCK_REPEATS 9u /* ADXL345_STUCK_REPEATS of the driver's own header */

@@ -282,11 +282,11 @@ class Library(unittest.TestCase):
             root = pathlib.Path(folder)
             (root / "build/host").mkdir(parents=True)
             (root / native.LIBRARY).touch()
-            (root / "firmware").mkdir()
-            (root / "firmware/pipeline.c").touch()
+            (root / "firmware/path").mkdir(parents=True)
+            (root / "firmware/path/pipeline.c").touch()
             os.utime(root / native.LIBRARY, (2000, 2000))
             for at, stale in ((1000, False), (3000, True)):
-                os.utime(root / "firmware/pipeline.c", (at, at))
+                os.utime(root / "firmware/path/pipeline.c", (at, at))
                 self.assertEqual(native._stale(root), stale)
 
     def test_what_is_watched_is_what_make_builds_it_from(self):

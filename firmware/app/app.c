@@ -1,0 +1,341 @@
+/*
+ * Data walks one way: driver -> pipeline -> rows -> UART. Commands come back the other way through this file.
+ * Before the banner and the header are out, and while the baud rate changes, samples wait in the driver's queue and in
+ * the sensor's FIFO: 39 of them, 48 ms at 800 Hz.
+ */
+#include "app/app.h"
+
+#include <stddef.h>
+
+#include "adxl345.h"
+#include "base/counters.h"
+#include "base/hang_test.h"
+#include "base/health.h"
+#include "base/pass.h"
+#include "base/replies.h"
+#include "console/commands.h"
+#include "control/app_state.h"
+#include "control/measure.h"
+#include "control/sensor_watch.h"
+#include "fx.h"
+#include "hal_drdy.h"
+#include "hal_irq.h"
+#include "hal_led.h"
+#include "hal_pointer.h"
+#include "hal_ram.h"
+#include "hal_sleep.h"
+#include "hal_strap.h"
+#include "hal_time.h"
+#include "hal_uart.h"
+#include "hal_watchdog.h"
+#include "output/rows.h"
+#include "path/coast.h"
+#include "path/pipeline.h"
+#include "path/silence.h"
+#include "settings/settings.h"
+#include "settings/settings_kept.h"
+#include "settings/store.h"
+
+/*
+ * What hung so often in a row, each time within SETTLED_S of its start, hangs again: it gets the lowest rate, at which
+ * the processor has most time for everything else. Saved settings are
+ * left alone.
+ */
+enum { RESETS_TO_SAFE = 3, SETTLED_S = 10, WHOLE_LOOP = 0x80 };
+
+app_state_t app;
+
+static struct loop {
+    uint32_t pass_us; /* time at the beginning of the pass */
+    uint32_t next_second_us;
+    uint16_t next_service_us; /* its low half: it is never 32 ms away */
+    bool row_due;             /* for the sample that the pipeline has, or had last */
+    bool look_at_rate;        /* each second, where a pass has time for it */
+} loop;
+
+/* Known by its address in a register, an access to it is half as long. */
+static inline struct loop *here(void)
+{
+    struct loop *l = &loop;
+    HAL_POINTER(l);
+    return l;
+}
+
+void app_start_sensor(void)
+{
+    adxl345_config_t config = { settings.rate_dhz, settings.range_g, false, settings.address };
+    measure_configure(&config);
+    adxl345_start(&config);
+}
+
+bool app_is_safe(void)
+{
+    return hal_reset_repeats() >= RESETS_TO_SAFE;
+}
+
+static void forget(void)
+{
+    counters_start();
+    replies_start();
+    commands_start();
+    rows_start();
+    measure_reset();
+    pipeline_reset();
+    app.stage = STAGE_BANNER;
+    loop.row_due = false;
+    loop.look_at_rate = false;
+    app.changes = 0;
+}
+
+static void open_line(void)
+{
+    hal_uart_init(settings.baud);
+}
+
+static void start_pipeline(void)
+{
+    pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
+}
+
+void app_start(void)
+{
+    struct loop *l = here();
+    hal_strap_init();
+    hal_led_init();
+    hal_time_init();
+    adxl345_init();
+    if (!HAL_RAM_CLEARED) {
+        forget();
+    }
+    health_start();
+    settings_load();
+    if (hal_strap_low() || app_is_safe()) {
+        settings_defaults();
+        settings_kept = KEPT_UNREAD;
+    }
+    if (app_is_safe()) {
+        settings.rate_dhz = SETTINGS_RATE_MIN_DHZ;
+        settings_follow();
+    }
+    pipeline_calibrate(&settings.calibration);
+    open_line();
+    health_pause_filtering(APP_HOLD_PASSES);
+    hal_drdy_enable(); /* last, so that an edge does not wait for the settings */
+    hal_irq_enable();
+    uint32_t now_us = hal_time_us();
+    l->next_service_us = (uint16_t)now_us;
+    l->next_second_us = now_us + 1000000ul;
+    app.sampling = true;
+    coast_wait(now_us);
+    start_pipeline();
+    (void)replies_add(REPLY_BANNER, 0);
+    app_start_sensor();
+}
+
+bool app_takes_commands(void)
+{
+    return app.stage == STAGE_RUNNING && !store_busy();
+}
+
+static void count_seconds(uint32_t now_us)
+{
+    struct loop *l = here();
+    if (hal_time_reached(now_us, l->next_second_us)) {
+        l->next_second_us += 1000000ul;
+        count(COUNT_SECONDS);
+        l->look_at_rate = true;
+        if ((uint8_t)counters[COUNT_SECONDS] == SETTLED_S) { /* and again later: no harm */
+            hal_reset_settled();
+        }
+    }
+}
+
+/* Begins the pipeline's change where there is one to follow. */
+static bool follow_settings(void)
+{
+    if (app.changes == 0) {
+        return false;
+    }
+    bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
+    uint8_t now = old_samples ? app.changes & CHANGE_FILTER : app.changes;
+    app.changes = (uint8_t)(app.changes & ~now);
+    if (now & CHANGE_MEASURE) {
+        measure_configured();
+    }
+    if ((now & CHANGE_COLD) || ((now & CHANGE_CONFIG) && !silence_holds())) { /* else more is lost, and rows go on */
+        coast_wait(loop.pass_us);
+    }
+    if (now & CHANGE_COLD) {
+        start_pipeline();
+    } else if (now & (CHANGE_FILTER | CHANGE_CONFIG)) {
+        pipeline_change(settings.filter, settings.rate_dhz, settings.range_g);
+    }
+    return now != 0;
+}
+
+/* Samples are due: not while the sensor is stopped or follows a command. */
+static bool sample_due(void)
+{
+    return adxl345_fault() != ADXL345_FAULT_NONE || adxl345_interrupted() || adxl345_phase() == ADXL345_STREAMING;
+}
+
+/* Of the sample that the pipeline has, or of one that is missing, whose place it has filled. */
+static void write_row(void)
+{
+    loop.row_due = false;
+    if (silence_long()) {
+        rows_at_once();
+    } else {
+        rows_sample();
+    }
+    health_sample_filtered();
+}
+
+/* Begins the way of one that is missing: before the oldest sample, or by now where none is on its way. */
+static bool fill_gap(void)
+{
+    uint32_t t_us = loop.pass_us - adxl345_lateness_us();
+    bool queued = adxl345_oldest_us(&t_us);
+    if (!coast_due(t_us)) {
+        return false;
+    }
+    if (!queued && !sample_due()) {
+        coast_wait(t_us);
+        return false;
+    }
+    return (queued || !adxl345_sample_coming()) && coast_over(adxl345_period_us(), queued);
+}
+
+/* Begins the way of the next sample. One that is in the queue came before this pass. */
+FX_NOINLINE bool next_sample(void)
+{
+    if (measure_borrows()) {
+        coast_wait(loop.pass_us);
+    }
+    loop.row_due = coast_due(loop.pass_us) && fill_gap();
+    if (!loop.row_due) {
+        const adxl345_sample_t *sample = adxl345_take();
+        if (sample == NULL) {
+            return false;
+        }
+        hal_wake_at(loop.pass_us - HAL_WAKE_LATE_US); /* the alarm for this sample would else call for another pass */
+        if (measure_sample(sample->lsb)) {
+            health_sample_filtered();
+            return true;
+        }
+        loop.row_due = coast_sample(sample->t_us, adxl345_period_us());
+        if (loop.row_due) {
+            pipeline_sample(sample);
+        } else {
+            health_sample_filtered(); /* its row is out already */
+        }
+    }
+    pipeline_flag(adxl345_marks());
+    return true;
+}
+
+/* One piece of the samples' way; false: there is nothing to do. */
+static bool filter_samples(void)
+{
+    if (HANGS(HEALTH_FILTERING)) {
+        return false;
+    }
+    if (pipeline_work()) {
+        return true;
+    }
+    if (loop.row_due) {
+        write_row();
+        return true;
+    }
+    if (loop.look_at_rate) {
+        loop.look_at_rate = false;
+        pipeline_retime(adxl345_period_us());
+        return true;
+    }
+    return follow_settings() || next_sample();
+}
+
+/* One piece of what the stage has to do; false: nothing is left, or it waits. */
+static bool stage_piece(void)
+{
+    switch (app.stage) {
+    case STAGE_BANNER:
+        if (!replies_empty()) {
+            return false;
+        }
+        rows_enable(true);
+        sensor_watch_start(hal_time_us());
+        coast_wait(hal_time_us());
+        break;
+    case STAGE_BAUD:
+        if (!replies_empty() || !hal_uart_tx_idle()) {
+            return false;
+        }
+        open_line();
+        break;
+    default:
+        return filter_samples();
+    }
+    health_pause_filtering(0);
+    app.stage = STAGE_RUNNING;
+    hal_wake(); /* what was typed meanwhile goes before the samples */
+    return false;
+}
+
+/* What a person or the watchdog waits for need not run for every sample. */
+static void service(uint32_t now_us)
+{
+    struct loop *l = here();
+    l->next_service_us = (uint16_t)(now_us + APP_SERVICE_US);
+    count_seconds(now_us);
+    if (app.stage == STAGE_RUNNING) {
+        sensor_watch_pass(now_us);
+    }
+    health_pass(now_us);
+}
+
+/* A row that is due and waits for a sample to be read has no moment of its own; that of a stopped driver is past. */
+static void set_alarm(void)
+{
+    struct loop *l = here();
+    uint32_t t_us = adxl345_deadline_us();
+    bool row_first = coast_due(t_us) && !coast_due(l->pass_us);
+    hal_wake_at(row_first ? coast_due_us() : t_us);
+}
+
+/* Commands, samples, replies, while the pass has time; out of time, another pass follows. */
+static void serve(void)
+{
+    if (pass_in_time() && !(commands_pass() && !pass_in_time())) {
+        do {
+            if (!stage_piece() && !replies_pass()) {
+                return;
+            }
+        } while (pass_in_time());
+    }
+    hal_wake();
+}
+
+void app_pass(void)
+{
+    pass_begin();
+    uint32_t now_us = hal_time_us();
+    loop.pass_us = now_us;
+    if (!HANGS(HEALTH_SAMPLING)) {
+        adxl345_poll(now_us);
+        health_driver_polled();
+    }
+    while (HANGS(WHOLE_LOOP)) {
+    }
+    if ((int16_t)(uint16_t)((uint16_t)now_us - loop.next_service_us) >= 0) {
+        service(now_us);
+    }
+    measure_pass();
+    serve();
+    if (store_busy()) {
+        (void)store_pass();
+        hal_wake();
+    }
+    set_alarm();
+    hal_sleep_until_wake();
+}

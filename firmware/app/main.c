@@ -1,0 +1,10 @@
+/* The firmware's entry. */
+#include "app/app.h"
+
+int main(void)
+{
+    app_start();
+    for (;;) {
+        app_pass();
+    }
+}

@@ -1,0 +1,35 @@
+/* Counters that never wrap. */
+#include "base/counters.h"
+
+#include "fx.h"
+#include "hal_pointer.h"
+
+uint32_t counters[COUNTERS];
+
+void counters_start(void)
+{
+    for (uint8_t i = 0; i < COUNTERS; i++) {
+        counters[i] = 0;
+    }
+}
+
+FX_ONCE void count(uint8_t what)
+{
+    uint32_t *counter = &counters[what];
+    HAL_POINTER(counter);
+    uint32_t now = *counter;
+    if (now != UINT32_MAX) {
+        *counter = now + 1u;
+    }
+}
+
+void count_lost(uint32_t missing)
+{
+    uint32_t *lost = &counters[COUNT_LOST];
+    HAL_POINTER(lost);
+    uint32_t sum = *lost + missing;
+    if (sum < missing) {
+        sum = UINT32_MAX;
+    }
+    *lost = sum;
+}

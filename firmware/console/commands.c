@@ -1,0 +1,179 @@
+/* Lines and their first words. What a setting takes is settings_table.c's, what a command does app_settings.c's. */
+#include "console/commands.h"
+
+#include <stdbool.h>
+
+#include "app/app.h"
+#include "base/counters.h"
+#include "base/pass.h"
+#include "base/replies.h"
+#include "base/text.h"
+#include "console/reply_lines.h"
+#include "control/calibrate.h"
+#include "control/measure.h"
+#include "flash.h"
+#include "fx.h"
+#include "hal_sleep.h"
+#include "hal_uart.h"
+#include "settings/settings_table.h"
+
+static char line[COMMANDS_LINE_MAX + 1u];
+static uint8_t length;
+static uint8_t wrong; /* with the line: REPLY_TOO_LONG, REPLY_GARBAGE, or 0 */
+
+void commands_start(void)
+{
+    length = 0;
+    wrong = 0;
+    line[0] = '\0';
+}
+
+_Static_assert(REPLY_SETTING + SETTING_ILLEGAL == (int)REPLY_ILLEGAL, "answers in the order of their replies");
+_Static_assert(REPLY_SETTING + SETTING_TOO_SLOW == (int)REPLY_TOO_SLOW, "the same");
+
+static void answer(uint8_t kind, uint8_t argument)
+{
+    if (kind >= REPLY_ILLEGAL && kind <= REPLY_BUSY) {
+        count(COUNT_REFUSED);
+    }
+    (void)replies_add((reply_kind_t)kind, argument);
+}
+
+static void run_setting(uint8_t which, const char *value)
+{
+    setting_answer_t taken = SETTING_TAKEN;
+    if (value != 0) {
+        taken = app_set(which, value);
+        if (taken == SETTING_TAKEN) {
+            which |= REPLY_CHANGED;
+        }
+    }
+    answer((uint8_t)(REPLY_SETTING + taken), which);
+}
+
+/* The reply kind of a command's name; REPLY_BANNER when it is none. */
+static uint8_t command_named(const char *name)
+{
+    uint8_t kind = REPLY_LISTING;
+    while (kind != REPLY_BANNER && !text_equal(name, reply_command_name(kind))) {
+        kind--;
+    }
+    return kind;
+}
+
+/* The text after the first blanks, NULL when there is none; the name before it is cut off (a blank becomes the end). */
+static char *split_value(void)
+{
+    char *at = line;
+    while (*at != '\0' && *at != ' ') {
+        at++;
+    }
+    char *blank = at;
+    while (*at == ' ') {
+        at++;
+    }
+    if (*at == '\0') {
+        *blank = '\0';
+        return 0;
+    }
+    *blank = '\0';
+    return at;
+}
+
+/* The reply: that of the verb, or why it is refused. */
+static uint8_t run_verb(uint8_t verb)
+{
+    switch (verb) {
+    case REPLY_STOPPED:
+    case REPLY_GOING:
+        app_sample(verb == REPLY_GOING);
+        break;
+    case REPLY_SAVED:
+        return app_save() ? verb : REPLY_STREAMING;
+    case REPLY_LOADED:
+    case REPLY_DEFAULTS:
+        app_restore(verb == REPLY_LOADED);
+        break;
+    case REPLY_NOISE:
+    case REPLY_SELFTEST:
+    case REPLY_TARE:
+    case REPLY_CAL:
+    case REPLY_CAL6:
+        return measure_start(verb) ? verb : REPLY_BUSY;
+    default:
+        break;
+    }
+    return verb;
+}
+
+static void run_command(uint8_t kind, const char *value)
+{
+    if (kind == REPLY_CAL6 && value != 0 && text_equal(value, FLASH_TEXT("stop"))) {
+        measure_stop();
+        answer(REPLY_CAL6, MEASURE_STOPPED);
+    } else {
+        answer(kind == REPLY_BANNER || value != 0 ? REPLY_UNKNOWN : run_verb(kind), MEASURE_BEGUN);
+    }
+}
+
+static void run_line(void)
+{
+    const char *value = split_value();
+    uint8_t which = setting_named(line);
+    if (which == SETTING_NONE) {
+        run_command(command_named(line), value);
+    } else {
+        run_setting(which, value);
+    }
+}
+
+static void end_line(void)
+{
+    while (length != 0 && line[length - 1u] == ' ') {
+        length--;
+    }
+    line[length] = '\0';
+    if (wrong != 0) {
+        answer(wrong, 0);
+    } else if (length != 0) {
+        run_line();
+    }
+    length = 0;
+    wrong = 0;
+}
+
+static void take_byte(uint8_t byte)
+{
+    if (byte < ' ' || byte > '~') {
+        wrong = wrong != 0 ? wrong : REPLY_GARBAGE;
+    } else if (length == COMMANDS_LINE_MAX) {
+        wrong = REPLY_TOO_LONG;
+    } else if (length != 0 || byte != ' ') {
+        bool upper = byte >= 'A' && byte <= 'Z';
+        line[length++] = (char)(upper ? byte + ('a' - 'A') : byte);
+    }
+}
+
+/* Not while a reply waits that reports what the next command may change. */
+static bool commands_wanted(void)
+{
+    return replies_room() && !replies_hold(REPLY_LISTING, REPLY_TOO_SLOW) && app_takes_commands();
+}
+
+bool commands_pass(void)
+{
+    uint8_t byte;
+    while (commands_wanted() && hal_uart_rx(&byte)) {
+        if (byte == '\r' || byte == '\n') {
+            end_line();
+            hal_wake();
+            return true;
+        }
+        take_byte(byte);
+        if (!pass_in_time()) {
+            hal_wake();
+            break;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,185 @@
+/* Which text of reply_texts.h answers, what it is about, and how far it is out. */
+#include "console/reply_lines.h"
+
+#include <stdbool.h>
+
+#include "adxl345.h"
+#include "base/replies.h"
+#include "base/text.h"
+#include "console/reply_said.h"
+#include "console/reply_texts.h"
+#include "control/calibrate.h"
+#include "control/measure.h"
+#include "flash.h"
+#include "settings/settings.h"
+#include "settings/settings_table.h"
+#include "settings/store.h"
+
+_Static_assert(TEXT_FAULT_END - TEXT_BANNER == (int)REPLY_FAULT_END, "a text for each reply");
+_Static_assert(TEXT_REPEATED - TEXT_HOLD_STILL == MEASURE_REPEATED - MEASURE_BEGUN, "words for each outcome");
+_Static_assert(TEXT_NO_GRAVITY - TEXT_TILTED == CALIBRATION_NO_GRAVITY - CALIBRATION_TILTED, "words for each verdict");
+
+/* Texts that go on behind another: the banner, FAULT_BEGIN in it, the fault's words in that, which end in CHECK_BUS. */
+enum { TEXTS_DEPTH = 3 };
+
+static const uint8_t *at; /* where the reply goes on */
+static uint8_t again;     /* how often the line comes again */
+
+static uint8_t setting_text(void)
+{
+    bool changed = (said.subject & REPLY_CHANGED) != 0;
+    said.subject = (uint8_t)(said.subject & ~REPLY_CHANGED);
+    switch (said.subject) {
+    case SETTING_FILTER:
+    case SETTING_RATE:
+    case SETTING_BAUD:
+        return TEXT_ROWS_SETTING;
+    case SETTING_MODE:
+        return changed ? TEXT_MODE_SET : TEXT_SETTING;
+    default:
+        return said.subject >= SETTING_OFFSET ? TEXT_LISTED : TEXT_SETTING;
+    }
+}
+
+/* The results by axis, the vectors that are new, or why there is no result. */
+static uint8_t measured_text(uint8_t kind)
+{
+    uint8_t outcome = said.subject;
+    if (outcome == MEASURE_WRONG) {
+        said.subject = calibrate_told.verdict.where;
+        return (uint8_t)(TEXT_TILTED - CALIBRATION_TILTED + calibrate_told.verdict.why);
+    }
+    if (outcome != MEASURE_DONE) {
+        said.subject = outcome == MEASURE_BEGUN ? kind : calibrate_told.position;
+        return (uint8_t)(TEXT_HOLD_STILL - MEASURE_BEGUN + outcome);
+    }
+    said.subject = kind < REPLY_TARE ? 0 : kind == REPLY_TARE ? SETTING_LEVEL : SETTING_OFFSET;
+    again = kind < REPLY_TARE ? 2 : kind == REPLY_CAL6;
+    return (uint8_t)(TEXT_BANNER + kind);
+}
+
+/* TEXT_NONE: what is to be reported is not known yet. */
+static uint8_t text_of(uint8_t kind)
+{
+    switch (kind) {
+    case REPLY_HELP:
+        again = SETTING_OFFSET - 1;
+        break;
+    case REPLY_STATUS:
+        said.subject = (uint8_t)adxl345_fault();
+        said.counters_out = 0;
+        break;
+    case REPLY_LISTING:
+        again = (uint8_t)(settings_count() - 1u);
+        break;
+    case REPLY_SETTING:
+        return setting_text();
+    case REPLY_ILLEGAL:
+        return said.subject >= SETTING_OFFSET ? TEXT_ILLEGAL_NUMBER : TEXT_ILLEGAL;
+    case REPLY_SAVED:
+        return store_busy() ? TEXT_NONE : store_failed() ? TEXT_NOT_SAVED : TEXT_SAVED;
+    case REPLY_ODR:
+        return adxl345_rate_chz() == 0 ? TEXT_ODR_UNKNOWN : TEXT_ODR;
+    default:
+        if (kind >= REPLY_NOISE && kind <= REPLY_CAL6) {
+            return measured_text(kind);
+        }
+    }
+    return (uint8_t)(TEXT_BANNER + kind);
+}
+
+/* Begins a line, or waits. The very first ends one that a reset has cut. */
+static bool begin_line(bool very_first)
+{
+    uint8_t code = flash_u8(at);
+    if (code == SAY_SENSOR && adxl345_fault() == ADXL345_FAULT_NONE && adxl345_phase() != ADXL345_STREAMING) {
+        return false;
+    }
+    if (code != SAY_HEADER) {
+        text_words(FLASH_TEXT("\n# ") + !very_first);
+    }
+    return true;
+}
+
+/* What ends a line; true: another follows. */
+static bool goes_on(uint8_t code)
+{
+    if (code == SAY_LINE_IF_FORCED) {
+        return settings_every_in_force() != settings.every;
+    }
+    return code == SAY_LINE || (code == SAY_LINE_IF_CSV && settings.mode == MODE_CSV);
+}
+
+/* Texts that are being unpacked. */
+typedef struct {
+    const uint8_t *from;
+    const uint8_t *outer[TEXTS_DEPTH]; /* where those go on in which a text stands */
+    uint8_t seconds[REPLY_PAIRS_DEPTH];
+    uint8_t texts;
+    uint8_t pairs;
+} unpacking_t;
+
+static void open_text(unpacking_t *u, uint8_t text)
+{
+    if (text != TEXT_NONE) {
+        u->outer[u->texts++] = u->from;
+        u->from = reply_text(text);
+    }
+}
+
+/* The next byte of the line; 0: there is none. */
+static uint8_t next_code(unpacking_t *u)
+{
+    while (u->pairs == 0 && u->texts != 0 && flash_u8(u->from) == 0) {
+        u->from = u->outer[--u->texts];
+    }
+    uint8_t code = u->pairs != 0 ? u->seconds[--u->pairs] : flash_u8(u->from++);
+    while (code >= SAY_PAIR) {
+        u->seconds[u->pairs++] = reply_pair(code, 1);
+        code = reply_pair(code, 0);
+    }
+    return code;
+}
+
+/* The rest of the line; false: it was the last. */
+static bool write_line(void)
+{
+    unpacking_t u;
+    u.from = at;
+    u.texts = 0;
+    u.pairs = 0;
+    for (;;) {
+        uint8_t code = next_code(&u);
+        if (code == SAY_AGAIN) {
+            if (again != 0) {
+                again--;
+                said.subject++;
+                return true;
+            }
+        } else if (code == 0 || code >= SAY_LINE) {
+            at = u.from;
+            return goes_on(code);
+        } else {
+            open_text(&u, say(code));
+        }
+    }
+}
+
+reply_progress_t reply_line(uint8_t kind, uint8_t argument, bool first)
+{
+    if (first) {
+        said.subject = argument;
+        again = 0;
+        uint8_t text = text_of(kind);
+        if (text == TEXT_NONE) {
+            return REPLY_WAITS;
+        }
+        at = reply_text(text);
+    }
+    if (!begin_line(first && kind == REPLY_BANNER)) {
+        return REPLY_WAITS;
+    }
+    bool more = write_line();
+    text_close();
+    return more ? REPLY_GOES_ON : REPLY_ENDED;
+}

@@ -1,0 +1,34 @@
+/* The texts as reply_packed.h has them, and the names of the commands, which are compared too and so are not packed. */
+#include "console/reply_texts.h"
+
+#include "base/replies.h"
+#include "base/text.h"
+#include "console/reply_lines.h"
+#include "console/reply_packed.h"
+#include "flash.h"
+
+static const char names[] FLASH = REPLY_NAMES;
+
+_Static_assert((int)PACKED_DEPTH <= (int)REPLY_PAIRS_DEPTH, "room for the pairs in a pair");
+_Static_assert(PACKED_PAIR_FIRST == SAY_PAIR, "the codes of pairs follow those of values");
+
+flash_text_t reply_command_name(uint8_t kind)
+{
+    return text_nth(names, (uint8_t)(kind - REPLY_HELP));
+}
+
+const uint8_t *reply_text(uint8_t text)
+{
+    const uint8_t *at = packed_texts + flash_u16(&packed_starts[text / PACKED_STEP]);
+    for (uint8_t ends = text % PACKED_STEP; ends != 0; at++) {
+        if (flash_u8(at) == 0) {
+            ends--;
+        }
+    }
+    return at;
+}
+
+uint8_t reply_pair(uint8_t code, uint8_t half)
+{
+    return flash_u8(packed_pairs + 2u * (uint8_t)(code - PACKED_PAIR_FIRST) + half);
+}

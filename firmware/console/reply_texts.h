@@ -1,0 +1,247 @@
+/*
+ * All the words of the replies. A byte below ' ' or from 0x7F on is one of enum say: a value, or another text in its
+ * place. Each line gets "# " in front. Main only.
+ */
+#ifndef REPLY_TEXTS_H
+#define REPLY_TEXTS_H
+
+#include <stdint.h>
+
+#include "console/version.h"
+#include "flash.h"
+
+/* The bytes of enum say, to be written between the words. */
+#define V_COUNT "\x01"
+#define V_SERIAL_LOST "\x02"
+#define V_CYCLES "\x03"
+#define V_LEFT "\x04"
+#define V_RESIDUAL "\x05"
+#define V_TO_GO "\x06"
+#define V_RUN_NOTE "\x07"
+#define V_OUTAGE_MS "\x08"
+#define V_OUTAGE_LOST "\x09"
+#define V_SUBJECT "\x0A"
+#define V_ADDRESS "\x0B"
+#define V_OUTAGE_ADDRESS "\x0C"
+#define V_FOREIGN_ADDRESS "\x0D"
+#define V_FOREIGN_ID "\x0E"
+#define V_SHIFT "\x0F"
+#define V_RMS "\x10"
+#define V_R "\x11"
+#define V_OFF "\x12"
+#define V_NAME "\x13"
+#define V_SETTING_NAME "\x14"
+#define V_SETTING "\x15"
+#define V_LEGAL "\x16"
+#define V_SETTINGS "\x17"
+#define V_VERBS "\x18"
+#define V_RATE "\x19"
+#define V_MEASURED "\x1A"
+#define V_BUS_KHZ "\x1B"
+#define V_POSITION "\x1C"
+#define V_AXIS "\x1D"
+#define V_CHOICES "\x1E"
+#define V_CAUSE "\x7B"
+#define V_SAFE "\x7C"
+#define V_STATE "\x7D"
+#define V_KEPT "\x7E"
+#define V_LIMITS "\x7F"
+#define V_VERDICT "\x80"
+#define V_FAULT_WORDS "\x81"
+#define V_SETTING_NOTE "\x82"
+#define V_EVERY "\x83"
+#define V_SENSOR "\x84"
+#define V_LISTED "\x85"
+#define V_HEADER "\x86"
+#define V_BUS "\x87"
+#define V_CHECK_BUS "\x88"
+#define V_LINE "\x89"
+#define V_LINE_IF_FORCED "\x8A"
+#define V_LINE_IF_CSV "\x8B"
+#define V_AGAIN "\x8C"
+
+/*
+ * From SAY_ALONE on, above the characters that texts have, not packed with others: what goes on in another text, and
+ * from SAY_LINE on what ends a line, in texts of lines only.
+ */
+enum say {
+    SAY_COUNT = 1, /* numbers: the next of the counters of the firmware, then of the driver */
+    SAY_SERIAL_LOST,
+    SAY_CYCLES, /* that the filter would take, and that are left for it */
+    SAY_LEFT,
+    SAY_RESIDUAL,  /* of cal6, mg */
+    SAY_TO_GO,     /* how many positions are not known yet */
+    SAY_RUN_NOTE,  /* what the run before the reset left */
+    SAY_OUTAGE_MS, /* how long the last fault was, and how many samples are missing of its time */
+    SAY_OUTAGE_LOST,
+    SAY_SUBJECT, /* what the line is about: a fault's code */
+    SAY_LAST_NUMBER = SAY_SUBJECT,
+    SAY_ADDRESS,         /* hexadecimal: of the sensor */
+    SAY_OUTAGE_ADDRESS,  /* where the sensor was when the last fault was over */
+    SAY_FOREIGN_ADDRESS, /* of a device that is no ADXL345, and what it reads as DEVID */
+    SAY_FOREIGN_ID,
+    SAY_LAST_HEXADECIMAL = SAY_FOREIGN_ID,
+    SAY_SHIFT, /* in Q8, of the line's axis: by the self-test */
+    SAY_RMS,
+    SAY_R,
+    SAY_OFF, /* how far the measured rate is from the nominal one, % */
+    SAY_LAST_Q8 = SAY_OFF,
+    SAY_NAME,         /* of the command that the line is about */
+    SAY_SETTING_NAME, /* of the setting that the line is about */
+    SAY_SETTING,      /* its name, value and unit */
+    SAY_LEGAL,        /* its legal values */
+    SAY_SETTINGS,     /* those of the banner */
+    SAY_VERBS,        /* all commands */
+    SAY_RATE,         /* Hz, nominal and measured */
+    SAY_MEASURED,
+    SAY_BUS_KHZ,
+    SAY_POSITION, /* of cal6: which of the sensor's axes points up */
+    SAY_AXIS,     /* of measurements */
+    SAY_CHOICES,  /* those of the supervisor, where it is in force */
+    SAY_ALONE = 0x7B,
+    SAY_CAUSE = SAY_ALONE, /* texts: of a reset */
+    SAY_SAFE,              /* on safe settings, if they are in force */
+    SAY_STATE,             /* phase of the driver */
+    SAY_KEPT,              /* what the settings began as */
+    SAY_LIMITS,            /* of the self-test */
+    SAY_VERDICT,           /* on the line's axis */
+    SAY_FAULT_WORDS,
+    SAY_SETTING_NOTE, /* what is to be said of a setting behind its value */
+    SAY_EVERY,        /* that setting, after another */
+    SAY_SENSOR,       /* at the start of a line: its address, or what is wrong with it; waits until that is known */
+    SAY_LISTED,       /* from here to CHECK_BUS each in the text of this name */
+    SAY_HEADER,       /* at the start of a line, without "# " */
+    SAY_BUS,
+    SAY_CHECK_BUS,
+    SAY_LINE,           /* here the line ends and another follows */
+    SAY_LINE_IF_FORCED, /* ... if another `every` is in force than was asked for; else this was the last */
+    SAY_LINE_IF_CSV,    /* ... if that is the mode */
+    SAY_AGAIN,          /* the line comes again for the next subject, as often as wanted */
+    SAY_PAIR            /* pairs of packed texts from here on */
+};
+
+/* The commands as typed, one for each reply_kind_t from REPLY_HELP on, in its order. */
+#define REPLY_NAMES "help\0status\0stop\0go\0save\0load\0defaults\0odr\0noise\0selftest\0tare\0cal\0cal6\0settings"
+
+/*
+ * One text for each reply_kind_t, in its order; then the others, those that belong together in their order. They are
+ * packed into program memory by tools/pack_texts.py (reply_packed.h). Not formatted: aligned ends of the lines would
+ * all change with the longest.
+ */
+/* clang-format off */
+#define REPLY_TEXTS(X) \
+    X(BANNER, FIRMWARE_NAME " " FIRMWARE_VERSION ": roll and pitch from an ADXL345" V_LINE \
+      "reset: " V_CAUSE V_LINE \
+      V_SETTINGS V_LINE \
+      "settings: " V_KEPT V_LINE \
+      "type help, or mode plot for the Arduino plotter" V_LINE \
+      V_SENSOR V_LINE \
+      V_HEADER) \
+    X(HELP, V_SETTING_NAME ": " V_LEGAL V_AGAIN V_LINE \
+      V_VERBS "; NAME VALUE sets") \
+    X(STATUS, "state " V_STATE ", fault " V_SUBJECT ", rate " V_RATE " Hz, measured " V_MEASURED " Hz, uptime s " \
+      V_COUNT V_CHOICES V_LINE \
+      "samples " V_COUNT ", gated " V_COUNT ", reacquired " V_COUNT ", clipped " V_COUNT V_LINE \
+      "rows " V_COUNT ", dropped " V_COUNT ", serial bytes lost " V_SERIAL_LOST ", lines refused " V_COUNT V_LINE \
+      "lost " V_COUNT ", late " V_COUNT ", drained " V_COUNT ", stuck " V_COUNT ", restarts " V_COUNT V_LINE \
+      "not acknowledged " V_COUNT ", arbitration lost " V_COUNT ", bus errors " V_COUNT ", timeouts " V_COUNT V_LINE \
+      "readings torn " V_COUNT ", empty " V_COUNT ", overruns " V_COUNT V_LINE \
+      "reset: " V_CAUSE) \
+    X(STOPPED, "stopped") \
+    X(GOING, "going") \
+    X(SAVED, "saved") \
+    X(LOADED, "settings: " V_KEPT V_LINE_IF_CSV V_HEADER) \
+    X(DEFAULTS, "settings: defaults" V_LINE_IF_CSV V_HEADER) \
+    X(ODR, "odr " V_MEASURED " Hz, " V_OFF " % from " V_RATE " Hz") \
+    X(NOISE, "noise " V_AXIS " " V_RMS " LSB rms, R " V_R " LSB^2" V_AGAIN) \
+    X(SELFTEST, "selftest " V_AXIS " " V_SHIFT " LSB, " V_LIMITS V_AGAIN) \
+    X(TARE, V_LISTED) \
+    X(CAL, V_LISTED) \
+    X(CAL6, "cal6: residual " V_RESIDUAL " mg" V_LINE \
+      V_LISTED V_AGAIN) \
+    X(LISTING, V_LISTED V_AGAIN) \
+    X(SETTING, V_SETTING V_SETTING_NOTE) \
+    X(ILLEGAL, "refused 4: " V_SETTING_NAME " is one of " V_LEGAL) \
+    X(TOO_SLOW, "refused 5: takes " V_CYCLES " of " V_LEFT " cycles a sample") \
+    X(UNKNOWN, "refused 1: unknown command (type help)") \
+    X(TOO_LONG, "refused 2: line too long") \
+    X(GARBAGE, "refused 3: illegal characters") \
+    X(STREAMING, "refused 6: type stop first") \
+    X(BUSY, "refused 10: busy measuring") \
+    X(FAULT_BEGIN, "fault " V_SUBJECT ": " V_FAULT_WORDS) \
+    X(FAULT_END, "fault " V_SUBJECT " over: after " V_OUTAGE_MS " ms, " V_OUTAGE_LOST \
+      " lost, sensor at 0x" V_OUTAGE_ADDRESS) \
+    X(SENSOR, "sensor: ADXL345 at 0x" V_ADDRESS V_BUS) \
+    X(ILLEGAL_NUMBER, "refused 4: illegal value; " V_SETTING ": " V_LEGAL) \
+    X(ROWS_SETTING, V_SETTING V_SETTING_NOTE V_LINE_IF_FORCED V_EVERY) \
+    X(MODE_SET, V_SETTING V_LINE_IF_CSV V_HEADER) \
+    X(LISTED, V_SETTING V_SETTING_NOTE ": " V_LEGAL) \
+    X(HEADER, "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags") \
+    X(BUS, ", I2C at " V_BUS_KHZ " kHz") \
+    X(CHECK_BUS, ": check SDA, SCL, pull-ups, GND") \
+    X(ODR_UNKNOWN, "odr: not measured yet") \
+    X(LIMITS_XY, "88.5 to 955.8: " V_VERDICT) \
+    X(LIMITS_Z, "110.25 to 1286.25: " V_VERDICT) \
+    X(FAIL, "FAIL") \
+    X(PASS, "pass") \
+    X(HIGH, "high") \
+    X(HOLD_STILL, V_NAME ": hold still") \
+    X(MOVED, "refused 8: moving") \
+    X(ABORTED, "refused 9: samples lost or settings changed") \
+    X(CAL_STOPPED, "cal6: stopped") \
+    X(POSITION, "cal6: " V_POSITION " up, " V_TO_GO " to go") \
+    X(REPEATED, "cal6: " V_POSITION " up again: try another") \
+    X(TILTED, "refused 11: " V_POSITION " is 20 degrees off or more") \
+    X(OFFSET, "refused 11: illegal offset of " V_AXIS) \
+    X(SCALE, "refused 11: illegal scale of " V_AXIS) \
+    X(RESIDUAL, "refused 11: " V_POSITION " does not fit the others") \
+    X(WRONG_AXES, "") \
+    X(NO_GRAVITY, "refused 11: not 1 g") \
+    X(LINE_CARRIES, ": the least for this baud rate") \
+    X(FILTER_LEAVES, ": the least for this filter") \
+    X(POWER_ON, "power on") \
+    X(EXTERNAL, "reset button or serial port opened") \
+    X(BROWN_OUT, "supply dropped") \
+    X(WATCHDOG, "watchdog, stage mask " V_RUN_NOTE V_SAFE) \
+    X(SAFE, ", repeatedly: safe settings") \
+    X(STATE_STOPPED, "stopped") \
+    X(STATE_STARTING, "starting") \
+    X(STATE_STREAMING, "streaming") \
+    X(STATE_QUIESCING, "starting") \
+    X(STATE_FAULTY, "fault") \
+    X(KEPT_DAMAGED, "defaults, saved ones damaged") \
+    X(KEPT_EMPTY, "defaults, none saved") \
+    X(KEPT_OTHER_VERSION, "defaults, saved by another version") \
+    X(KEPT_GOOD, "as saved") \
+    X(KEPT_OLDER, "as saved, other copy damaged") \
+    X(KEPT_NO_FILTER, "as saved, but another filter") \
+    X(KEPT_UNREAD, "defaults, saved ones not read") \
+    X(NOT_SAVED, "refused 7: EEPROM failed") \
+    X(NO_SENSOR, "no sensor at 0x53 or 0x1D: check power, SDA to A4, SCL to A5, CS to 3.3 V") \
+    X(WRONG_ID, "no ADXL345 at 0x" V_FOREIGN_ADDRESS ": DEVID 0x" V_FOREIGN_ID ", not 0xE5") \
+    X(BUS_FAULT, "I2C bus disturbed" V_CHECK_BUS) \
+    X(READ_BACK, "a register lost its value: check supply, bus") \
+    X(INT1_SILENT, "INT1 stays low: check INT1 to D2") \
+    X(NO_DATA, "the sensor stopped: check supply") \
+    X(SCL_LOW, "SCL held low" V_CHECK_BUS) \
+    X(SDA_LOW, "SDA held low" V_CHECK_BUS) \
+    X(INT1_STUCK, "INT1 stays high: check INT1 to D2") \
+    X(STUCK, "values do not change: check supply, bus") \
+    X(TORN, "torn readings" V_CHECK_BUS) \
+    X(TWO_SENSORS, "values double: two sensors at 0x" V_ADDRESS)
+/* clang-format on */
+
+#define REPLY_TEXT_ID(name, words) TEXT_##name,
+enum reply_text { REPLY_TEXTS(REPLY_TEXT_ID) TEXT_NONE };
+#undef REPLY_TEXT_ID
+
+/* So many second bytes of pairs wait at most while the first one is a pair again. */
+enum { REPLY_PAIRS_DEPTH = 16 };
+
+/* The bytes of a text, packed, in program memory; 0 ends them. */
+const uint8_t *reply_text(uint8_t text);
+
+/* What a code from SAY_PAIR on stands for, the first byte or the second: such a code again, or a byte of the text. */
+uint8_t reply_pair(uint8_t code, uint8_t half);
+
+#endif

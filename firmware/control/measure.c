@@ -1,0 +1,270 @@
+/* Which samples a measurement takes, and what ends it. The words for it are in measure_lines.c. */
+#include "control/measure.h"
+
+#include "app/app.h"
+#include "base/counters.h"
+#include "base/replies.h"
+#include "control/calibrate.h"
+#include "hal_pointer.h"
+#include "hal_sleep.h"
+#include "settings/settings.h"
+
+enum { AXES = 3 };
+
+/* A position of cal6, with the time to turn the board; 256 samples at 12.5 Hz are 20.5 s, a self-test is 1.4 s. */
+enum { SECONDS_MAX = 120 };
+
+/* What runs. */
+typedef enum {
+    STEP_IDLE,
+    STEP_TOLD,    /* the reply is on its way */
+    STEP_TELL,    /* it waits for room */
+    STEP_BACK,    /* self-test: the result is there, the settings' configuration comes back */
+    STEP_SOLVE,   /* cal6: all positions are known */
+    STEP_COLLECT, /* samples that the filters get too */
+    STEP_PLAIN,   /* self-test: without the force */
+    STEP_FORCED   /* with it */
+} step_t;
+
+static struct measure {
+    union {
+        rest_t rest;
+        calibration_six_t six; /* in STEP_SOLVE */
+    };
+    int16_t result_lsb_q4[AXES]; /* the mean; of the second of two less that of the first */
+    uint8_t kind;                /* reply_kind_t */
+    uint8_t step;                /* step_t */
+    uint8_t outcome;             /* measure_outcome_t, from STEP_BACK and STEP_TELL on */
+    uint8_t skip;                /* samples that are not taken */
+    uint8_t began_s;
+    bool takes; /* samples come as the step wants them */
+    bool borrows;
+} measure;
+
+/* Known by its address in a register, an access to it is half as long. */
+static inline struct measure *here(void)
+{
+    struct measure *m = &measure;
+    HAL_POINTER(m);
+    return m;
+}
+
+void measure_reset(void)
+{
+    measure.step = STEP_IDLE;
+    measure.takes = false;
+    measure.borrows = false;
+}
+
+bool measure_borrows(void)
+{
+    return measure.borrows;
+}
+
+void measure_configure(adxl345_config_t *config)
+{
+    if (measure.step >= STEP_PLAIN) {
+        config->rate_dhz = MEASURE_SELFTEST_DHZ;
+        config->range_g = MEASURE_SELFTEST_G;
+        config->self_test = measure.step == STEP_FORCED;
+    }
+}
+
+static void enter(step_t step)
+{
+    measure.step = (uint8_t)step;
+    measure.takes = step == STEP_COLLECT;
+    measure.skip = 0;
+    if (step != STEP_COLLECT) {
+        measure.skip = MEASURE_SETTLE;
+        app_configure(step == STEP_BACK);
+    }
+}
+
+static uint8_t second(void)
+{
+    return (uint8_t)counters[COUNT_SECONDS];
+}
+
+static void collect(step_t step)
+{
+    struct measure *m = here();
+    if (step != STEP_FORCED) {
+        for (uint8_t axis = 0; axis < AXES; axis++) {
+            m->result_lsb_q4[axis] = 0;
+        }
+    }
+    rest_start(&m->rest);
+    enter(step);
+}
+
+static void end(measure_outcome_t outcome)
+{
+    measure.outcome = (uint8_t)outcome;
+    measure.takes = false;
+    if (measure.step == STEP_COLLECT || measure.step == STEP_SOLVE) {
+        measure.step = STEP_TELL;
+    } else {
+        enter(STEP_BACK);
+    }
+}
+
+void measure_configured(void)
+{
+    struct measure *m = here();
+    m->borrows = m->step != STEP_BACK;
+    m->takes = m->borrows;
+    if (!m->borrows) {
+        m->step = STEP_TELL;
+    }
+}
+
+bool measure_start(uint8_t kind)
+{
+    if (measure.step != STEP_IDLE) {
+        return false;
+    }
+    measure.kind = kind;
+    measure.began_s = second();
+    calibrate_start();
+    collect(kind == REPLY_SELFTEST ? STEP_PLAIN : STEP_COLLECT);
+    return true;
+}
+
+void measure_abort(void)
+{
+    if (measure.step >= STEP_COLLECT) {
+        end(MEASURE_ABORTED);
+    }
+}
+
+/* No samples come, or have not come all the time. */
+static bool failed(void)
+{
+    uint8_t seconds = (uint8_t)(second() - measure.began_s);
+    return seconds > SECONDS_MAX || adxl345_fault() != ADXL345_FAULT_NONE || adxl345_interrupted() ||
+           adxl345_phase() == ADXL345_STOPPED;
+}
+
+void measure_stop(void)
+{
+    if (measure.kind == REPLY_CAL6 && (measure.step == STEP_COLLECT || measure.step == STEP_SOLVE)) {
+        measure_reset();
+    }
+}
+
+static void solve(void)
+{
+    measure_outcome_t outcome = calibrate_step(&measure.six);
+    if (outcome != MEASURE_BEGUN) {
+        end(outcome);
+    }
+    hal_wake();
+}
+
+void measure_pass(void)
+{
+    struct measure *m = here();
+    if (m->step == STEP_SOLVE) {
+        solve();
+    }
+    if (m->step >= STEP_COLLECT && failed()) {
+        measure_abort();
+    }
+    if (m->step == STEP_TELL && replies_add((reply_kind_t)m->kind, m->outcome)) {
+        m->step = STEP_TOLD;
+    }
+    if (m->step == STEP_TOLD && replies_empty()) {
+        m->step = STEP_IDLE;
+    }
+}
+
+/* cal6: it is being turned, and told when it lies still. */
+static void board_moves(void)
+{
+    if (measure.kind == REPLY_CAL6) {
+        collect(STEP_COLLECT);
+    } else {
+        end(MEASURE_MOVED);
+    }
+}
+
+/* A position that could not be told is taken again. */
+static void calibrate(void)
+{
+    struct measure *m = here();
+    measure_outcome_t outcome = MEASURE_UNCHANGED;
+    if (replies_room()) {
+        outcome = calibrate_take(m->kind, m->result_lsb_q4);
+    }
+    if (outcome == MEASURE_POSITION || outcome == MEASURE_REPEATED) {
+        (void)replies_add(REPLY_CAL6, outcome);
+        m->began_s = second();
+        outcome = MEASURE_UNCHANGED;
+    }
+    if (outcome == MEASURE_UNCHANGED) {
+        collect(STEP_COLLECT);
+    } else if (outcome == MEASURE_BEGUN) {
+        m->takes = false;
+        m->step = STEP_SOLVE;
+        calibrate_start_six(&m->six);
+        hal_wake();
+    } else {
+        end(outcome);
+    }
+}
+
+/* All samples are there, or one of them has shown that the board moves. */
+static void collected(void)
+{
+    if (!rest_still(&measure.rest, measure.step == STEP_COLLECT ? settings.rate_dhz : MEASURE_SELFTEST_DHZ)) {
+        board_moves();
+        return;
+    }
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        int16_t *result = &measure.result_lsb_q4[axis];
+        *result = (int16_t)((uint16_t)rest_mean_lsb_q4(&measure.rest.axes[axis]) - (uint16_t)*result);
+    }
+    if (measure.step == STEP_PLAIN) {
+        collect(STEP_FORCED);
+    } else if (measure.kind >= REPLY_TARE) {
+        calibrate();
+    } else {
+        end(MEASURE_DONE);
+    }
+}
+
+/* Of 200, 400 and 800 Hz every second, fourth and eighth sample, so that they fill as much time. */
+static void take(const int16_t lsb[3])
+{
+    struct measure *m = here();
+    if (m->step == STEP_COLLECT) {
+        m->skip = (uint8_t)(settings.rate_dhz >> 10);
+    }
+    if (rest_add(&m->rest, lsb)) {
+        collected();
+    }
+}
+
+bool measure_sample(const int16_t lsb[3])
+{
+    bool borrowed = measure.borrows;
+    if (measure.takes) {
+        if (measure.skip != 0) {
+            measure.skip--;
+        } else {
+            take(lsb);
+        }
+    }
+    return borrowed;
+}
+
+const rest_t *measure_rest(void)
+{
+    return &measure.rest;
+}
+
+int16_t measure_result_lsb_q4(uint8_t axis)
+{
+    return measure.result_lsb_q4[axis];
+}

@@ -1,0 +1,136 @@
+/* When a fault is told and shown. The words are in reply_texts.h. */
+#include "control/sensor_watch.h"
+
+#include <stdbool.h>
+
+#include "adxl345.h"
+#include "base/counters.h"
+#include "base/replies.h"
+#include "flash.h"
+#include "fx.h"
+#include "hal_led.h"
+#include "hal_pointer.h"
+#include "settings/settings.h"
+
+/* A second is eight times this, as good as: what of the time of now goes into the pattern of the LED. */
+#define FLASH_SHIFT 16
+enum { FLASH_SLOTS = 8 };
+
+#define MS_WRAP_S (UINT32_MAX / 1000u)
+
+/* Flashes in a second, by what to look at: 1 the bus, 2 the sensor or its supply, 3 INT1, 4 the readings. */
+static const uint8_t flashes[] FLASH = {
+    [ADXL345_FAULT_NO_SENSOR] = 2, [ADXL345_FAULT_WRONG_ID] = 2,    [ADXL345_FAULT_BUS] = 1,
+    [ADXL345_FAULT_READ_BACK] = 2, [ADXL345_FAULT_INT1_SILENT] = 3, [ADXL345_FAULT_NO_DATA] = 2,
+    [ADXL345_FAULT_SCL_LOW] = 1,   [ADXL345_FAULT_SDA_LOW] = 1,     [ADXL345_FAULT_INT1_STUCK] = 3,
+    [ADXL345_FAULT_STUCK] = 4,     [ADXL345_FAULT_TORN] = 4,        [ADXL345_FAULT_TWO_SENSORS] = 4,
+};
+
+sensor_outage_t sensor_watch_outage;
+
+typedef struct {
+    uint32_t began_us; /* the outage; what the counters were then: */
+    uint32_t began_s;
+    uint32_t began_lost;
+    sensor_outage_t outage; /* that is over: its numbers, until the line that tells them is queued */
+    uint16_t told_mask;     /* codes told since it began: each once */
+    uint8_t newest;         /* of its fault codes; NONE: no outage */
+    bool over;              /* and the line that says so is not queued yet */
+} watch_t;
+
+static watch_t watch;
+
+/* Nothing is told of what was before. */
+FX_NOINLINE void forget(void)
+{
+    watch.newest = ADXL345_FAULT_NONE;
+    watch.told_mask = 0;
+}
+
+static void begin_outage(watch_t *w, uint32_t now_us)
+{
+    w->began_us = now_us;
+    const uint32_t *at = counters;
+    HAL_POINTER(at);
+    w->began_s = at[COUNT_SECONDS];
+    w->began_lost = at[COUNT_LOST];
+}
+
+/* Microseconds wrap after 71 minutes: an outage of more than a minute is told in whole seconds. So do milliseconds. */
+static void end_outage(watch_t *w, uint32_t now_us)
+{
+    const uint32_t *at = counters;
+    HAL_POINTER(at);
+    uint32_t seconds = at[COUNT_SECONDS] - w->began_s;
+    if (seconds < 60u) {
+        w->outage.ms = (now_us - w->began_us) / 1000u;
+    } else {
+        w->outage.ms = seconds < MS_WRAP_S ? seconds * 1000u : UINT32_MAX;
+    }
+    w->outage.lost = at[COUNT_LOST] - w->began_lost;
+    w->outage.address = adxl345_address();
+    w->over = true;
+}
+
+/*
+ * What is seen, whether it can be told or not. A fault that is back before the end is told goes on as the same outage.
+ * It is over when the pipeline has taken the samples that have come again: those that are missing are counted then.
+ */
+FX_NOINLINE void note(uint8_t fault, uint32_t now_us)
+{
+    watch_t *w = &watch;
+    HAL_POINTER(w);
+    if (fault != ADXL345_FAULT_NONE) {
+        if (w->newest == ADXL345_FAULT_NONE) {
+            begin_outage(w, now_us);
+        }
+        w->newest = fault;
+        w->over = false;
+    } else if (!w->over && adxl345_phase() == ADXL345_STREAMING && adxl345_queued() == 0) {
+        end_outage(w, now_us);
+    }
+}
+
+/* The LED flashes for 65 ms in each of the first slots of 131 ms, of which a second has eight. */
+static void show(uint8_t fault, uint32_t now_us)
+{
+    uint8_t half_slot = (uint8_t)(now_us >> FLASH_SHIFT);
+    uint8_t slot = (half_slot >> 1) % FLASH_SLOTS;
+    hal_led_set((half_slot & 1u) == 0 && slot < flash_u8(&flashes[fault]));
+}
+
+void sensor_watch_start(uint32_t now_us)
+{
+    forget();
+    note((uint8_t)adxl345_fault(), now_us);
+    watch.told_mask = (uint16_t)(1u << watch.newest);
+}
+
+/* What was noted and is not told yet, a line at a time. */
+static void tell(void)
+{
+    uint16_t bit = (uint16_t)(1u << watch.newest);
+    if (watch.newest == ADXL345_FAULT_NONE || settings.mode == MODE_PLOT) {
+        return;
+    }
+    if (!(watch.told_mask & bit)) {
+        if (replies_add(REPLY_FAULT_BEGIN, watch.newest)) {
+            watch.told_mask |= bit;
+        }
+    } else if (watch.over && !replies_hold(REPLY_FAULT_END, REPLY_FAULT_END) &&
+               replies_add(REPLY_FAULT_END, watch.newest)) {
+        sensor_watch_outage = watch.outage;
+        forget();
+    }
+}
+
+void sensor_watch_pass(uint32_t now_us)
+{
+    uint8_t fault = (uint8_t)adxl345_fault();
+    show(fault, now_us);
+    if (adxl345_phase() == ADXL345_STOPPED) {
+        forget(); /* not mended, only not asked any more */
+    }
+    note(fault, now_us);
+    tell();
+}

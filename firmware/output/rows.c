@@ -1,0 +1,93 @@
+/* A row is composed on the stack and goes out whole or not at all. */
+#include "output/rows.h"
+
+#include "base/counters.h"
+#include "base/format.h"
+#include "flash.h"
+#include "hal_uart.h"
+#include "path/pipeline.h"
+#include "settings/settings.h"
+
+/* The longest row is one of the plotter: four angles of FORMAT_HUNDREDTHS_MAX and the labels, 69 bytes. */
+enum { ROW_MAX = 72 };
+
+static uint16_t since_row;
+static bool enabled;
+
+void rows_start(void)
+{
+    rows_enable(false);
+}
+
+void rows_enable(bool now_enabled)
+{
+    enabled = now_enabled;
+    since_row = 0;
+}
+
+static char *write_csv(char *at, const row_t *row)
+{
+    at = format_u32(at, row->t_us);
+    for (uint8_t column = 0; column < ROW_COLUMNS; column++) {
+        *at++ = ',';
+        at = format_i16(at, row->columns[column]);
+    }
+    *at++ = ',';
+    return format_u16(at, row->flags);
+}
+
+static char *label(char *at, flash_text_t words)
+{
+    for (char c = flash_char(words); c != '\0'; c = flash_char(words)) {
+        *at++ = c;
+        words++;
+    }
+    return at;
+}
+
+static char *write_plot(char *at, const row_t *row)
+{
+    int16_t roll_raw_cdeg;
+    int16_t pitch_raw_cdeg;
+    pipeline_raw_angles(&roll_raw_cdeg, &pitch_raw_cdeg);
+    at = format_hundredths(label(at, FLASH_TEXT("roll_raw:")), roll_raw_cdeg);
+    at = format_hundredths(label(at, FLASH_TEXT(",roll:")), row->roll_cdeg);
+    at = format_hundredths(label(at, FLASH_TEXT(",pitch_raw:")), pitch_raw_cdeg);
+    at = format_hundredths(label(at, FLASH_TEXT(",pitch:")), row->pitch_cdeg);
+    at = label(at, FLASH_TEXT(",gated:"));
+    *at++ = (row->flags & ROW_GATED) ? '1' : '0';
+    return at;
+}
+
+static void write(const row_t *row)
+{
+    char line[ROW_MAX];
+    char *end = settings.mode == MODE_PLOT ? write_plot(line, row) : write_csv(line, row);
+    *end++ = '\n';
+    if (!hal_uart_tx_write(line, (uint8_t)(end - line))) {
+        count(COUNT_DROPPED);
+        pipeline_flag(ROW_DROPPED);
+        return;
+    }
+    count(COUNT_ROWS);
+    pipeline_row_done();
+}
+
+void rows_sample(void)
+{
+    since_row++;
+    if (since_row >= settings.every_smallest && since_row >= settings.every) {
+        rows_at_once();
+    }
+}
+
+void rows_at_once(void)
+{
+    if (!enabled) {
+        return;
+    }
+    since_row = 0;
+    row_t row;
+    pipeline_row(&row);
+    write(&row);
+}

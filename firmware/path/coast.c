@@ -1,0 +1,87 @@
+/* The clock of missing samples; what a missing sample does to the filters is in pipeline.c. */
+#include "path/coast.h"
+
+#include "base/counters.h"
+#include "fx.h"
+#include "hal_pointer.h"
+#include "hal_time.h"
+#include "path/pipeline.h"
+#include "path/silence.h"
+
+#define LONG_STEP_US UINT32_C(100000)
+
+typedef enum {
+    STATE_WAITING, /* for the first sample, and no row is out yet */
+    STATE_RUNNING,
+    STATE_COASTING /* the newest row is of a sample that is missing */
+} state_t;
+
+static struct coast {
+    uint32_t next_us; /* time of the sample that comes next */
+    uint32_t due_us;  /* then it is missing */
+    uint32_t lost_us; /* COASTING: the same as it was behind the newest sample that has come, or for the first row */
+    uint8_t state;    /* state_t */
+} coast;
+
+/* Known by its address in a register, an access to it is half as long. */
+static inline struct coast *here(void)
+{
+    struct coast *c = &coast;
+    HAL_POINTER(c);
+    return c;
+}
+
+FX_NOINLINE void expect(uint32_t t_us, uint32_t period_us)
+{
+    struct coast *c = here();
+    c->next_us = t_us;
+    c->due_us = t_us + (period_us >> 1);
+}
+
+void coast_wait(uint32_t now_us)
+{
+    coast.state = STATE_WAITING;
+    expect(now_us + LONG_STEP_US, 0);
+}
+
+bool coast_due(uint32_t t_us)
+{
+    return hal_time_reached(t_us, coast.due_us);
+}
+
+uint32_t coast_due_us(void)
+{
+    return coast.due_us;
+}
+
+bool coast_over(uint32_t period_us, bool sample)
+{
+    struct coast *c = here();
+    if (sample && (c->state == STATE_WAITING || silence_holds())) {
+        return false;
+    }
+    if (c->state != STATE_COASTING) {
+        c->state = STATE_COASTING;
+        c->lost_us = c->due_us;
+    }
+    pipeline_coast(c->next_us);
+    expect(c->next_us + (silence_long() ? LONG_STEP_US : period_us), period_us);
+    return true;
+}
+
+bool coast_sample(uint32_t t_us, uint32_t period_us)
+{
+    struct coast *c = here();
+    if (c->state != STATE_WAITING && hal_time_reached(pipeline_newest_us(), t_us)) {
+        c->lost_us = t_us + period_us + (period_us >> 1);
+        count(COUNT_LATE);
+        return false;
+    }
+    if (c->state == STATE_COASTING) { /* t_us is two periods before lost_us at most, or up to 71 minutes behind */
+        uint32_t periods = (t_us - c->lost_us + 2u * period_us) / period_us;
+        count_lost(periods > 1u ? periods - 1u : 0u);
+    }
+    c->state = STATE_RUNNING;
+    expect(t_us + period_us, period_us);
+    return true;
+}

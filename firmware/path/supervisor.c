@@ -1,0 +1,160 @@
+/* Choices told, a bad axis left out: see supervisor.h. */
+#include "path/supervisor.h"
+
+#if SUPERVISOR
+
+#include "base/text.h"
+#include "flash.h"
+#include "fx.h"
+#include "path/pipeline_state.h"
+#include "tilt_partial.h"
+
+static struct {
+    uint8_t repeated[AXES]; /* readings on end that are the one before, saturating */
+    uint8_t negative;       /* a bit per axis: its last estimate while its readings changed */
+    uint8_t left_out;       /* AXES: none */
+    uint16_t missing_q6;    /* component of it */
+} supervisor;
+
+/* On all axes: a change of filter begins with the last and ends with the first. */
+static bool in_force(void)
+{
+    return pipeline.axes[0].filter.law == &filter_law_auto && pipeline.axes[AXES - 1].filter.law == &filter_law_auto;
+}
+
+/* The signs stay: of an axis that is stuck since before, its last is the best guess. */
+void supervisor_reset(void)
+{
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        supervisor.repeated[axis] = 0;
+    }
+    supervisor.left_out = AXES;
+}
+
+void supervisor_look(const int16_t lsb[3])
+{
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        uint8_t *repeated = &supervisor.repeated[axis];
+        if (lsb[axis] != pipeline.newest.lsb[axis]) {
+            *repeated = 0;
+        } else if (*repeated != UINT8_MAX) {
+            (*repeated)++;
+        }
+    }
+}
+
+static bool is_bad(uint8_t axis)
+{
+    int16_t lsb = pipeline.newest.lsb[axis];
+    bool at_rail = tilt_at_rail(lsb, pipeline.rail_high_lsb);
+    uint8_t limit = at_rail ? SUPERVISOR_RAIL_SAMPLES : SUPERVISOR_REPEATED_SAMPLES;
+    return supervisor.repeated[axis] >= limit;
+}
+
+/* The one axis that is bad, while another changes; AXES: none, or more. */
+static uint8_t bad_axis(void)
+{
+    uint8_t found = AXES;
+    bool changes = false;
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        changes |= supervisor.repeated[axis] < SUPERVISOR_RAIL_SAMPLES;
+        if (is_bad(axis)) {
+            if (found != AXES) {
+                return AXES;
+            }
+            found = axis;
+        }
+    }
+    return changes ? found : (uint8_t)AXES;
+}
+
+/* What an axis reads at 0 g, Q8. */
+static int32_t offset_q8(uint8_t axis)
+{
+    return (int32_t)pipeline.calibration->offset_lsb_q4[axis] * 16;
+}
+
+static void note_signs(const int32_t estimates_q8[3])
+{
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        uint8_t bit = (uint8_t)(1u << axis);
+        if (supervisor.repeated[axis] == 0) {
+            supervisor.negative &= (uint8_t)~bit;
+            if (estimates_q8[axis] < offset_q8(axis)) {
+                supervisor.negative |= bit;
+            }
+        }
+    }
+}
+
+/*
+ * Without the bad axis' part the calibrated vector lies across it, whatever the mounting is; what is missing of 1 g is
+ * its part, and in its own readings that by its scale.
+ */
+void supervisor_complete(int32_t estimates_q8[3])
+{
+    supervisor.left_out = AXES;
+    if (!in_force()) {
+        return;
+    }
+    note_signs(estimates_q8);
+    uint8_t bad = bad_axis();
+    if (bad == AXES) {
+        return;
+    }
+    int32_t a_q8[AXES];
+    estimates_q8[bad] = offset_q8(bad);
+    calibration_apply(&pipeline.applied, estimates_q8, a_q8);
+    uint16_t missing_q6 = tilt_missing_q6(a_q8[0], a_q8[1], a_q8[2]);
+    /* Q6 x UQ6 of 256 LSB per g: Q8 */
+    int32_t part_q8 = (int32_t)(fx_product_u16(missing_q6, pipeline.calibration->scale_lsb_per_g_uq6[bad]) >> 12);
+    bool negative = (supervisor.negative & (uint8_t)(1u << bad)) != 0;
+    estimates_q8[bad] += negative ? -part_q8 : part_q8;
+    supervisor.missing_q6 = missing_q6;
+    supervisor.left_out = bad;
+    pipeline_flag(ROW_LEFT_OUT);
+}
+
+/* What offset and scale leave of 1 g before a calibration, 39 mg: typical 0 g offset 35 mg (data sheet p. 3). LSB. */
+#define PART_ERROR_LSB 10ul
+
+/* Of the noisier axis that remains, LSB in Q8, and in it what the part may be off. */
+static uint16_t remaining_sigma_q8(void)
+{
+    uint32_t p_lsb2_q8 = 0;
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        filter_probe_t probe;
+        filter_probe(&pipeline.axes[axis].filter, &probe);
+        if (axis != supervisor.left_out && probe.p_lsb2_q8 > p_lsb2_q8) {
+            p_lsb2_q8 = probe.p_lsb2_q8;
+        }
+    }
+    return filter_fx_isqrt32((p_lsb2_q8 << 8) + (PART_ERROR_LSB * PART_ERROR_LSB << 16)); /* <= 1100 LSB^2 in Q16 */
+}
+
+static void say_axis(uint8_t axis)
+{
+    text_char((char)('x' + axis));
+}
+
+void supervisor_say(void)
+{
+    static const char names[AUTO_MEMBERS][8] FLASH = { " slow", " middle", " fast" };
+    if (!in_force()) {
+        return;
+    }
+    text_words(FLASH_TEXT(", chosen"));
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        text_char(' ');
+        say_axis(axis);
+        text_words(names[pipeline.axes[axis].filter.own.bank.chosen]);
+    }
+    if (supervisor.left_out != AXES) {
+        text_words(FLASH_TEXT(", without "));
+        say_axis(supervisor.left_out);
+        text_words(FLASH_TEXT(" sigma cdeg "));
+        text_u32(tilt_partial_sigma_cdeg(remaining_sigma_q8(), supervisor.missing_q6));
+    }
+}
+
+#endif

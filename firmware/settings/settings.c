@@ -1,0 +1,103 @@
+/* Defaults and the arithmetic of what the line carries and the processor has time for. */
+#include "settings/settings.h"
+
+#include "filter_list.h"
+#include "flash.h"
+#include "fx.h"
+#include "hal_time.h"
+#include "path/pipeline.h"
+#include "settings/settings_words.h"
+
+settings_t settings;
+settings_cycles_t settings_cycles;
+
+enum { AXES = 3 };
+
+void settings_defaults(void)
+{
+    settings.baud = SETTINGS_BAUD_DEFAULT;
+    settings.rate_dhz = 1000;
+    settings.every = 1;
+    settings.range_g = 16;
+    settings_take_filter(0); /* the first of the image's */
+    settings.mode = MODE_CSV;
+    settings.address = 0;
+    calibration_plain(&settings.calibration, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
+    settings_follow();
+}
+
+uint8_t settings_filter_mark(uint8_t filter)
+{
+    flash_text_t name = settings_word(filter);
+    uint8_t mark = 0;
+    for (char c = flash_char(name); c != '\0'; c = flash_char(name)) {
+        mark = (uint8_t)(mark * 2u + (uint8_t)c);
+        name++;
+    }
+    return mark;
+}
+
+void settings_take_filter(uint8_t filter)
+{
+    settings.filter = filter;
+    settings.filter_mark = settings_filter_mark(filter);
+    settings.own = 0;
+}
+
+bool settings_calibrate(const calibration_t *calibration)
+{
+    if (calibration_check(calibration).why != CALIBRATION_GOOD) {
+        return false;
+    }
+    settings.calibration = *calibration;
+    pipeline_calibrate(&settings.calibration);
+    return true;
+}
+
+FX_ONCE uint16_t settings_filter_cycles(uint8_t filter)
+{
+    return (uint16_t)(AXES * filter_worst_cycles(filter_listed((filter_kind_t)filter)));
+}
+
+FX_ONCE uint32_t settings_left_cycles(uint16_t rate_dhz)
+{
+    uint32_t period = HAL_CPU_HZ * 10u / rate_dhz;
+    return period > SETTINGS_REST_CYCLES ? period - SETTINGS_REST_CYCLES : 0;
+}
+
+bool settings_fit(uint8_t filter, uint16_t rate_dhz)
+{
+    uint16_t takes = settings_filter_cycles(filter);
+    uint32_t left = settings_left_cycles(rate_dhz);
+    if (takes < left) {
+        return true;
+    }
+    settings_cycles = (settings_cycles_t){ takes, (uint16_t)left };
+    return false;
+}
+
+/* Rounded up; wanted is at least 1. */
+FX_NOINLINE uint16_t quotient(uint32_t wanted, uint32_t each)
+{
+    return (uint16_t)((wanted - 1u) / each + 1u);
+}
+
+/* Ten bits a byte: baud bytes in ten seconds; rate_dhz samples in ten seconds. */
+uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
+{
+    return quotient((uint32_t)rate_dhz * SETTINGS_ROW_MAX, baud);
+}
+
+void settings_follow(void)
+{
+    uint16_t carried = settings_smallest_every(settings.baud, settings.rate_dhz);
+    uint16_t computed = quotient(SETTINGS_ROW_CYCLES,
+                                 settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter));
+    settings.line_is_slower = carried >= computed;
+    settings.every_smallest = settings.line_is_slower ? carried : computed;
+}
+
+FX_ONCE uint16_t settings_every_in_force(void)
+{
+    return settings.every > settings.every_smallest ? settings.every : settings.every_smallest;
+}

@@ -1,0 +1,92 @@
+/* What the user can set, with its legal values. One instance, owned by app.c; changed by commands in main. */
+#ifndef SETTINGS_H
+#define SETTINGS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "calibration.h"
+#include "settings/store.h"
+
+enum { SETTINGS_PARAMETERS_MAX = 8 };
+
+typedef enum { MODE_CSV, MODE_PLOT } output_mode_t;
+
+/* All that is kept; the image has room for what later versions keep. */
+#define SETTINGS_KEPT_BYTES (45u + sizeof(calibration_t))
+
+/* Little-endian on PC and chip and without gaps, as far as it is kept: its bytes are the image that `save` writes. */
+typedef struct {
+    uint32_t parameters[SETTINGS_PARAMETERS_MAX]; /* of the filter, as stored: those of which `own` has a bit */
+    uint32_t baud;                                /* legal values of all: settings_table.c */
+    uint16_t rate_dhz;                            /* output data rate in 0.1 Hz */
+    uint16_t every;                               /* a row for every Nth sample, as asked for: 1..SETTINGS_EVERY_MAX */
+    calibration_t calibration;                    /* legal: settings_calibrate */
+    uint8_t range_g;                              /* 2, 4, 8, 16 */
+    uint8_t mode;                                 /* output_mode_t */
+    uint8_t address;                              /* of the sensor, 7 bits; 0: the one that answers */
+    uint8_t own;                                  /* bits: which parameters of the filter the user has set */
+    uint8_t filter_mark; /* settings_filter_mark of the filter: kinds are numbered anew in each image */
+    uint8_t spare[STORE_IMAGE_SIZE - SETTINGS_KEPT_BYTES];
+    uint8_t store_tail[STORE_TAIL_SIZE]; /* the store's own, see store.h */
+    /* not kept */
+    uint8_t filter;          /* filter_kind_t */
+    uint16_t every_smallest; /* follows from baud, rate and filter: settings_follow */
+    bool line_is_slower;     /* than the processor: it decides that */
+} settings_t;
+
+#define SETTINGS_BAUD_DEFAULT 115200ul
+#define SETTINGS_EVERY_MAX 10000u
+#define SETTINGS_RATE_MIN_DHZ 125u
+
+/* What the line must carry for a row: at most 67 bytes (csv) or 69 (plot), and some for replies. */
+#define SETTINGS_ROW_MAX 72u
+
+/*
+ * What a sample takes of the processor beside its three filters, and a row, in cycles: worst cases for any length of
+ * time, as `make bench` measures and judges them (sample_rest, row). The rest: the interrupts of bus and clock, passes
+ * of the main loop, three noise estimates, and new variances as often as an estimate can leave the last by an eighth.
+ * What is longer but rare (five warm-up samples, variances on all axes at once, replies, a change of settings) waits
+ * in the sensor's FIFO and the driver's queue, 39 samples together, and is caught up with what a sample leaves over.
+ * At 800 Hz the two leave 1,200 cycles, 400 for each axis: less than any filter takes, so not every row goes out.
+ */
+#define SETTINGS_REST_CYCLES 8300u
+#define SETTINGS_ROW_CYCLES 10500u
+
+extern settings_t settings;
+
+void settings_defaults(void);
+
+/* A byte that tells each filter of filter_list.h from the others, whatever image holds it. */
+uint8_t settings_filter_mark(uint8_t filter);
+
+/* The setting `filter`: with its mark, its parameters as shipped. */
+void settings_take_filter(uint8_t filter);
+
+/* A calibration takes effect and is in the settings; false: it is not legal, nothing changes. */
+bool settings_calibrate(const calibration_t *calibration);
+
+/* Cycles that three axes of a filter take at most, and those that this output data rate leaves for them. */
+uint16_t settings_filter_cycles(uint8_t filter);
+uint32_t settings_left_cycles(uint16_t rate_dhz);
+
+/* The rule: the first is less than the second. What it leaves over is for rows. */
+bool settings_fit(uint8_t filter, uint16_t rate_dhz);
+
+/* Both, of the last that did not fit. */
+typedef struct {
+    uint16_t takes;
+    uint16_t left;
+} settings_cycles_t;
+extern settings_cycles_t settings_cycles;
+
+/* To be called when baud, rate or filter has changed. */
+void settings_follow(void);
+
+/* The smallest `every` with which this baud rate carries rows of SETTINGS_ROW_MAX bytes at this output data rate. */
+uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz);
+
+/* What is in force: the greatest of what was asked for, what the line carries and what the processor has time for. */
+uint16_t settings_every_in_force(void);
+
+#endif

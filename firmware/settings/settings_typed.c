@@ -1,0 +1,265 @@
+/* What is typed to values and back; see settings_table.h. Values are stored as settings.h and filter.h say. */
+#include "base/number.h"
+#include "base/text.h"
+#include "fx.h"
+#include "settings/parameters.h"
+#include "settings/settings.h"
+#include "settings/settings_row.h"
+#include "settings/settings_table.h"
+#include "settings/settings_words.h"
+
+enum { AXES = 3 };
+
+static uint8_t numbers(const setting_t *s)
+{
+    return s->format.kind == VECTOR ? AXES : 1;
+}
+
+static uint8_t *place_of(const setting_t *s, uint8_t number)
+{
+    uint8_t size = s->format.size;
+    return (uint8_t *)&settings + s->format.place + (uint8_t)((uint16_t)number * size);
+}
+
+/* Little-endian on PC and chip, as settings.h wants it; all numbers have a sign. */
+static uint32_t value_of(const setting_t *s, uint8_t number)
+{
+    if (s->which >= SETTING_PARAMETERS) {
+        return parameters_value((uint8_t)(s->which - SETTING_PARAMETERS));
+    }
+    if (s->which == SETTING_EVERY) {
+        return settings_every_in_force();
+    }
+    const uint8_t *at = place_of(s, number) + s->format.size;
+    uint32_t value = (uint32_t)(int32_t)(int8_t) * --at;
+    for (uint8_t left = s->format.size; --left != 0;) {
+        value = value << 8 | *--at;
+    }
+    return value;
+}
+
+FX_NOINLINE void put(const setting_t *s, uint8_t number, uint32_t value)
+{
+    uint8_t *at = place_of(s, number);
+    for (uint8_t left = s->format.size; left != 0; left--) {
+        *at++ = (uint8_t)value;
+        value >>= 8;
+    }
+}
+
+static flash_text_t word(const setting_t *s, uint8_t i)
+{
+    return settings_word((uint8_t)(s->least + i));
+}
+
+static bool take_word(const setting_t *s, const char *text)
+{
+    uint8_t i = (uint8_t)s->most;
+    do {
+        if (i == 0) {
+            return false;
+        }
+        i--;
+    } while (!text_equal(text, word(s, i)));
+    put(s, 0, setting_choice(s, i));
+    return true;
+}
+
+static bool is_legal(const setting_t *s, uint32_t value)
+{
+    if (s->format.kind != LIST) {
+        return ((int32_t)value >= s->least && (int32_t)value <= s->most) || (value == 0 && s->zero_is_off);
+    }
+    uint8_t i = (uint8_t)s->most;
+    while (i != 0) {
+        i--;
+        if (setting_choice(s, i) == value) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A rate has 6 fraction bits, with which each legal one is exact, and is stored in tenths: with a rest it is none. */
+static bool to_tenths(uint32_t *value)
+{
+    uint32_t tenths_q5 = *value * 5u;
+    *value = tenths_q5 >> 5;
+    return (tenths_q5 & 31u) == 0;
+}
+
+FX_NOINLINE bool take_numbers(const setting_t *s, const char *text)
+{
+    for (uint8_t i = 0; i < numbers(s); i++) {
+        uint32_t value;
+        if (!number_parse(&text, s->format.fraction_bits, &value) || (s->which == SETTING_RATE && !to_tenths(&value)) ||
+            !is_legal(s, value)) {
+            return false;
+        }
+        put(s, i, value);
+    }
+    return *text == '\0';
+}
+
+/* Each of x, y, z once, with a sign where it is reversed, and no mirror image: that is no way to mount a board. */
+static bool take_axes(const char *text)
+{
+    enum { XYZ = 0x123, YZX = 0x231, ZXY = 0x312 };
+    uint16_t order = 0;
+    bool mirrored = true;
+    for (uint8_t i = 0; i < AXES; i++) {
+        bool reversed = *text == '-';
+        text += reversed;
+        int8_t axis = (int8_t)(*text++ - ('x' - 1));
+        if (axis < 1 || axis > AXES) {
+            return false;
+        }
+        order = (uint16_t)(order << 4 | (uint8_t)axis);
+        mirrored ^= reversed;
+        settings.calibration.axes[i] = (int8_t)(reversed ? -axis : axis);
+    }
+    bool turned = order == XYZ || order == YZX || order == ZXY;
+    return turned == mirrored && *text == '\0';
+}
+
+static bool take(const setting_t *s, const char *text)
+{
+    switch (s->format.kind) {
+    case WORDS:
+        return take_word(s, text);
+    case SIGNED_AXES:
+        return take_axes(text);
+    default:
+        return take_numbers(s, text);
+    }
+}
+
+/* Whether the filter takes the user's parameters with this one among them. */
+static setting_answer_t judge_parameter(uint8_t which)
+{
+    uint8_t own = settings.own;
+    settings.own = (uint8_t)(own | 1u << which);
+    if (parameters_legal()) {
+        return SETTING_TAKEN;
+    }
+    settings.own = own;
+    return SETTING_ILLEGAL;
+}
+
+/* All settings with the new one among them. */
+static setting_answer_t judge(const setting_t *s)
+{
+    if (s->which >= SETTING_PARAMETERS) {
+        return judge_parameter((uint8_t)(s->which - SETTING_PARAMETERS));
+    }
+    if (!settings_fit(settings.filter, settings.rate_dhz)) {
+        return SETTING_TOO_SLOW;
+    }
+    if (s->which == SETTING_FILTER) {
+        settings_take_filter(settings.filter);
+    }
+    return calibration_check(&settings.calibration).why == CALIBRATION_GOOD ? SETTING_TAKEN : SETTING_ILLEGAL;
+}
+
+/* Bytes to where they are kept; true: they differ from those that were there. */
+static bool keep(uint8_t *to, const uint8_t *from, uint8_t bytes)
+{
+    bool differ = false;
+    for (; bytes != 0; bytes--, to++, from++) {
+        differ = differ || *to != *from;
+        *to = *from;
+    }
+    return differ;
+}
+
+/* A filter that is in force already starts with what is shipped again. */
+setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
+{
+    static uint8_t before[AXES * sizeof(int16_t)];
+    setting_t s;
+    setting_look(&s, which);
+    uint8_t *place = place_of(&s, 0);
+    uint8_t bytes = s.format.size;
+    if (s.format.kind >= VECTOR) {
+        bytes = (uint8_t)((uint16_t)bytes * AXES);
+    }
+    (void)keep(before, place, bytes);
+    setting_answer_t answer = take(&s, text) ? judge(&s) : SETTING_ILLEGAL;
+    bool changed = answer == SETTING_TAKEN ? keep(before, place, bytes) : keep(place, before, bytes);
+    *starts = which == SETTING_FILTER || changed ? s.format.starts : 0;
+    return answer;
+}
+
+static void write_axes(void)
+{
+    for (uint8_t i = 0; i < AXES; i++) {
+        int8_t axis = settings.calibration.axes[i];
+        if (axis < 0) {
+            text_char('-');
+            axis = (int8_t)-axis;
+        }
+        text_char((char)('x' - 1 + axis));
+    }
+}
+
+static void write_value(const setting_t *s, uint32_t value)
+{
+    uint8_t i = 0;
+    if (s->format.kind == SIGNED_AXES) {
+        write_axes();
+    } else if (s->format.kind == WORDS) {
+        while (setting_choice(s, i) != value) {
+            i++;
+        }
+        text_words(word(s, i));
+    } else if (s->which == SETTING_RATE) {
+        text_tenths((uint16_t)value);
+    } else {
+        number_write(value, s->format.fraction_bits);
+    }
+}
+
+void setting_write(uint8_t which)
+{
+    setting_t s;
+    setting_look(&s, which);
+    flash_text_t name = setting_name(which);
+    text_words(name);
+    for (uint8_t i = 0; i < numbers(&s); i++) {
+        text_char(' ');
+        write_value(&s, value_of(&s, i));
+    }
+    flash_text_t unit = text_nth(name, 1);
+    if (flash_char(unit) != '\0') {
+        text_char(' ');
+        text_words(unit);
+    }
+}
+
+static void write_range(const setting_t *s)
+{
+    number_write((uint32_t)s->least, s->format.fraction_bits);
+    text_words(FLASH_TEXT(" to "));
+    number_write((uint32_t)s->most, s->format.fraction_bits);
+    if (s->zero_is_off) {
+        text_words(FLASH_TEXT(", 0: off"));
+    }
+}
+
+void setting_write_legal(uint8_t which)
+{
+    setting_t s;
+    setting_look(&s, which);
+    if (s.format.kind == SIGNED_AXES) {
+        text_words(FLASH_TEXT("24 like xyz or -yxz"));
+    } else if (s.format.kind > LIST) {
+        write_range(&s);
+    } else {
+        for (uint8_t i = 0; i < s.most; i++) {
+            if (i != 0) {
+                text_char(' ');
+            }
+            write_value(&s, setting_choice(&s, i));
+        }
+    }
+}
