@@ -8,7 +8,7 @@
  *
  * CSV: a stream as in docs/protocol.md, whose rows come at the rate given; its times are counted from its first row.
  * SKIP: data rows before the cold start. NAME is a parameter of the filter as its descriptor names it, VALUE in its
- * unit; R=VALUE multiplies what the noise estimate says. The program is linked with --wrap for parameters_start and
+ * unit; R=VALUE multiplies what the noise estimate says. The program is linked with --wrap for choice_begin and
  * filter_noise_r_lsb2_q8, so that the sample path meets these in place of the shipped values and is itself unchanged.
  */
 #include <math.h>
@@ -37,7 +37,7 @@ static change_t changes[CHANGES_MAX];
 static size_t change_count;
 static double r_factor = 1.0;
 
-void __wrap_parameters_start(filter_t *f, filter_kind_t kind, uint16_t rate_dhz);
+void __wrap_choice_begin(const filter_choice_t *choice, filter_t *f, filter_kind_t kind, uint16_t rate_dhz);
 uint32_t __real_filter_noise_r_lsb2_q8(const noise_t *n);
 uint32_t __wrap_filter_noise_r_lsb2_q8(const noise_t *n);
 
@@ -91,8 +91,9 @@ static bool start_changed(filter_t *f, filter_kind_t kind, filter_config_t *conf
     return filter_init(f, filter_listed(kind), config) == FILTER_ACCEPTED;
 }
 
-void __wrap_parameters_start(filter_t *f, filter_kind_t kind, uint16_t rate_dhz)
+void __wrap_choice_begin(const filter_choice_t *choice, filter_t *f, filter_kind_t kind, uint16_t rate_dhz)
 {
+    (void)choice;
     filter_config_t config;
     (void)start_changed(f, kind, &config, rate_dhz); /* check_configuration has asked */
 }
@@ -265,8 +266,9 @@ int main(int argc, char **argv)
     coast_wait(0);
     pipeline_reset();
     settings_defaults();
-    pipeline_calibrate(&settings.calibration);
-    pipeline_start((uint8_t)kind, rate_dhz, range_g);
+    pipeline_calibrate(&settings()->calibration);
+    settings_take_filter((uint8_t)kind);
+    pipeline_start(&settings()->choice, rate_dhz, range_g);
     pipeline_finish();
     replay(argv[1], rate_dhz, (size_t)number("rows to skip", argv[5], 0, 1000000000));
     return 0;

@@ -12,7 +12,7 @@
 
 void setUp(void)
 {
-    hang_stages = 0;
+    *hang_stages_here() = 0;
 }
 
 void tearDown(void)
@@ -169,7 +169,7 @@ static void test_garbage_and_long_lines_are_refused_whole(void)
     board_type("ra\x01te 400");
     board_run_ms(100);
     TEST_ASSERT_EQUAL_STRING("# refused 3: illegal characters", board.notes[before + 1]);
-    TEST_ASSERT_EQUAL_UINT(1000, settings.rate_dhz);
+    TEST_ASSERT_EQUAL_UINT(1000, settings()->rate_dhz);
     board_type("status");
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("lines refused 2", before));
@@ -360,7 +360,7 @@ static void test_a_line_with_a_lost_byte_is_refused(void)
     board_type("every 1000");
     board_run_ms(100);
     hal_host_faults.corrupt_rx_every = 0;
-    TEST_ASSERT_EQUAL_UINT(1, settings.every);
+    TEST_ASSERT_EQUAL_UINT(1, settings()->every);
     TEST_ASSERT_EQUAL_STRING("# refused 3: illegal characters", board_last_note());
 }
 
@@ -381,7 +381,7 @@ static void test_plot_mode_on_a_slow_line_answers(void)
     size_t before = board.note_count;
     board_type("mode csv");
     board_run_ms(90000);
-    TEST_ASSERT_EQUAL_UINT(MODE_CSV, settings.mode);
+    TEST_ASSERT_EQUAL_UINT(MODE_CSV, settings()->mode);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("t_us,x_lsb", before));
     stream_free(&wide);
 }

@@ -76,7 +76,7 @@ static void test_one_failed_access_in_a_change_of_rate_is_not_noticed(void)
                 TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault", 0));
                 TEST_ASSERT_EQUAL_DOUBLE(rates_hz[c], adxl345_model_odr_hz(&hal_host_sensor));
                 TEST_ASSERT_UINT32_WITHIN(30, (uint32_t)(1e6 / rates_hz[c]), adxl345_period_us());
-                TEST_ASSERT_TRUE(counters[COUNT_LOST] <= 2);
+                TEST_ASSERT_TRUE(counted(COUNT_LOST) <= 2);
             }
         }
     }
@@ -107,10 +107,10 @@ static void test_a_fault_in_a_change_of_rate_keeps_no_old_period(void)
         hal_host_faults.sda_low = false;
         board_run_ms(500);
         size_t row = board.row_count;
-        uint32_t lost = counters[COUNT_LOST];
+        uint32_t lost = counted(COUNT_LOST);
         board_run_ms(1000);
         TEST_ASSERT_UINT32_WITHIN(30, 20000, adxl345_period_us());
-        TEST_ASSERT_EQUAL_UINT32(lost, counters[COUNT_LOST]);
+        TEST_ASSERT_EQUAL_UINT32(lost, counted(COUNT_LOST));
         TEST_ASSERT_UINT_WITHIN(1, 50, (unsigned)(board.row_count - row));
     }
 }
@@ -229,11 +229,11 @@ static void test_three_refused_bursts_of_a_sensor_that_is_there(void)
     adxl345_counters(&now);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault", 0));
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-    TEST_ASSERT_UINT32_WITHIN(1, (uint32_t)board.latched_count, counters[COUNT_SAMPLES]);
+    TEST_ASSERT_UINT32_WITHIN(1, (uint32_t)board.latched_count, counted(COUNT_SAMPLES));
     for (size_t row = 50; row < board.row_count; row++) { /* what is missing has its rows, and is counted */
         TEST_ASSERT_UINT32_WITHIN(5000, 10000, board.rows[row].t_us - board.rows[row - 1].t_us);
     }
-    TEST_ASSERT_UINT32_WITHIN(1, 2, counters[COUNT_LOST]);
+    TEST_ASSERT_UINT32_WITHIN(1, 2, counted(COUNT_LOST));
     TEST_ASSERT_EQUAL_UINT16(before.restarts + 1, now.restarts);
 }
 

@@ -127,7 +127,7 @@ static uint16_t rate_after_three_resets(double run_ms)
         app_start();
     }
     board_run_ms(500);
-    return settings.rate_dhz;
+    return settings()->rate_dhz;
 }
 
 /*
@@ -189,7 +189,7 @@ static void test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
     TEST_ASSERT_EQUAL_UINT8(4, adxl345_queued());
     board_run_ms(4000);
-    TEST_ASSERT_EQUAL_UINT8(2, settings.range_g);
+    TEST_ASSERT_EQUAL_UINT8(2, settings()->range_g);
     size_t waited = 0;
     for (size_t i = first; i < board.row_count; i++) {
         waited += board.rows[i].lsb[0] == 600 && (board.rows[i].flags & ROW_COASTED) == 0;

@@ -114,7 +114,7 @@ static double angle_deg(const double a[3], const double b[3])
 static double worst_tilt_deg(const adxl345_part_t *part, double *uncalibrated_deg)
 {
     calibration_applied_t applied;
-    TEST_ASSERT_EQUAL(CALIBRATION_GOOD, calibration_prepare(&applied, &settings.calibration).why);
+    TEST_ASSERT_EQUAL(CALIBRATION_GOOD, calibration_prepare(&applied, &settings()->calibration).why);
     double worst = 0.0;
     for (int i = 0; i < 200; i++) {
         double g[3];
@@ -232,11 +232,11 @@ static void test_a_position_too_far_off_is_refused(void)
     memcpy(lays, ups, sizeof lays);
     lays[2] = (attitude_t){ { 0.5736, 0.8192, 0 } };
     start_lays(lays, 6, adxl345_part_typical);
-    calibration_t before = settings.calibration;
+    calibration_t before = settings()->calibration;
     size_t note = talk_typed("cal6", 41700.0);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# refused 11: +y is 20 degrees off or more", note));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("residual", note));
-    TEST_ASSERT_EQUAL_MEMORY(&before, &settings.calibration, sizeof before);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &settings()->calibration, sizeof before);
 }
 
 /* Beyond the legal numbers: refused with the axis. An offset of 90 LSB on y; a gain that makes z 340 LSB/g. */
@@ -249,10 +249,10 @@ static void test_a_part_beyond_the_limits_is_refused(void)
                   { { { 1, 1, 1.328 }, { 0, 0, 0 }, { 0, 0, 0 } }, "# refused 11: illegal scale of z" } };
     for (size_t i = 0; i < 2; i++) {
         start_order("012345", 2.0, parts[i].part);
-        calibration_t before = settings.calibration;
+        calibration_t before = settings()->calibration;
         size_t note = talk_typed("cal6", 41700.0);
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with(parts[i].told, note));
-        TEST_ASSERT_EQUAL_MEMORY(&before, &settings.calibration, sizeof before);
+        TEST_ASSERT_EQUAL_MEMORY(&before, &settings()->calibration, sizeof before);
         stream_free(&stream);
     }
 }
@@ -261,13 +261,13 @@ static void test_a_part_beyond_the_limits_is_refused(void)
 static void test_cal6_stops(void)
 {
     start_order("0444", 5.0, adxl345_part_typical);
-    calibration_t before = settings.calibration;
+    calibration_t before = settings()->calibration;
     size_t note = talk_typed("cal6", 6000.0);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", 5 to go", note));
     size_t stopped = talk_typed("cal6 stop", 2000.0);
     TEST_ASSERT_EQUAL_STRING("# cal6: stopped", board.notes[stopped]);
     TEST_ASSERT_EQUAL_size_t(stopped + 1, board.note_count);
-    TEST_ASSERT_EQUAL_MEMORY(&before, &settings.calibration, sizeof before);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &settings()->calibration, sizeof before);
     note = talk_typed("cal6", 5500.0);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: +z up, 5 to go", note));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("unknown command", talk_typed("cal6 go", 100.0)));
@@ -280,7 +280,7 @@ static void test_cal6_stops(void)
 static void test_cal6_ends_with_the_sensor(void)
 {
     start_order("0123", 5.0, adxl345_part_typical);
-    calibration_t before = settings.calibration;
+    calibration_t before = settings()->calibration;
     size_t note = talk_typed("cal6", 13000.0);
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(100);
@@ -288,7 +288,7 @@ static void test_cal6_ends_with_the_sensor(void)
     board_run_ms(5000);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# refused 9: samples lost or settings changed", note));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with(", 3 to go", note));
-    TEST_ASSERT_EQUAL_MEMORY(&before, &settings.calibration, sizeof before);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &settings()->calibration, sizeof before);
 }
 
 /*
@@ -320,16 +320,16 @@ static void test_tare_of_what_is_no_rest_is_refused(void)
     static const attitude_t turning[] = { { { 0, 0, 1 } }, { { 0, 1, 0 } } };
     static const attitude_t pulled = { { 0, 0, 1.5 } };
     start_lays(turning, 2, adxl345_part_typical);
-    calibration_t before = settings.calibration;
+    calibration_t before = settings()->calibration;
     board_run_ms(5000.0);
     size_t note = talk_typed("tare", 3000.0);
     TEST_ASSERT_EQUAL_STRING("# refused 8: moving", board.notes[note + 1]);
-    TEST_ASSERT_EQUAL_MEMORY(&before, &settings.calibration, sizeof before);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &settings()->calibration, sizeof before);
     stream_free(&stream);
     start_lays(&pulled, 1, adxl345_part_typical);
     note = talk_typed("tare", 3000.0);
     TEST_ASSERT_EQUAL_STRING("# refused 11: not 1 g", board.notes[note + 1]);
-    TEST_ASSERT_EQUAL_MEMORY(&before, &settings.calibration, sizeof before);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &settings()->calibration, sizeof before);
 }
 
 /* One level rest gives the offsets, whichever of the six is up; scales stay. */
@@ -340,14 +340,14 @@ static void test_cal_finds_offsets(void)
         adxl345_part_t part = adxl345_part_typical;
         start_lays(&ups[i], 1, part);
         for (int axis = 0; axis < 3; axis++) {
-            hal_host_sensor.part.gain[axis] = settings.calibration.scale_lsb_per_g_uq6[axis] / 64.0 / 256.0;
+            hal_host_sensor.part.gain[axis] = settings()->calibration.scale_lsb_per_g_uq6[axis] / 64.0 / 256.0;
             hal_host_sensor.part.offset_lsb[axis] = offsets[axis];
         }
         board_run_ms(100);
         size_t note = talk_typed("cal", 3000.0);
         TEST_ASSERT_EQUAL_STRING_LEN("# offset ", board.notes[note + 1], 9);
         for (int axis = 0; axis < 3; axis++) {
-            TEST_ASSERT_INT_WITHIN(8, 16 * offsets[axis], settings.calibration.offset_lsb_q4[axis]);
+            TEST_ASSERT_INT_WITHIN(8, 16 * offsets[axis], settings()->calibration.offset_lsb_q4[axis]);
         }
         stream_free(&stream);
     }

@@ -8,7 +8,7 @@
 
 #include "app/app.h"
 #include "base/counters.h"
-#include "path/pipeline_state.h"
+#include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support_board.h"
 #include "unity.h"
@@ -50,12 +50,12 @@ static void test_alternating_faults_are_told_once_each(void)
 static void test_counters_stay_at_their_greatest_value(void)
 {
     counters_start();
-    counters[COUNT_GATED] = UINT32_MAX - 1u;
-    count(COUNT_GATED);
-    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, counters[COUNT_GATED]);
-    count(COUNT_GATED);
-    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, counters[COUNT_GATED]);
-    TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_SAMPLES]);
+    count_lost(UINT32_MAX - 1u);
+    count(COUNT_LOST);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, counted(COUNT_LOST));
+    count(COUNT_LOST);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, counted(COUNT_LOST));
+    TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_SAMPLES));
 }
 
 /* Whole seconds since the start, over a stop and over the wrap of the microseconds. */
@@ -64,12 +64,12 @@ static void test_uptime_counts_seconds(void)
     stream = board_constant_stream(1000, 100.0, 31, -53, 248);
     board_start(&stream, 0.0, 0xFFFFFFFFu - 2500000u);
     board_run_ms(990);
-    TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_SECONDS]);
+    TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_SECONDS));
     board_run_ms(30);
-    TEST_ASSERT_EQUAL_UINT32(1, counters[COUNT_SECONDS]);
+    TEST_ASSERT_EQUAL_UINT32(1, counted(COUNT_SECONDS));
     board_type("stop");
     board_run_ms(6000);
-    TEST_ASSERT_EQUAL_UINT32(7, counters[COUNT_SECONDS]);
+    TEST_ASSERT_EQUAL_UINT32(7, counted(COUNT_SECONDS));
     size_t before = board.note_count;
     board_type("status");
     board_run_ms(300);
@@ -119,7 +119,7 @@ static void test_old_samples_are_filtered_as_before_a_change_of_range(void)
         snprintf(typed, sizeof typed, "%*s", (int)phase + 8, "range 2"); /* a leading blank takes 87 us */
         board_type(typed);
         double changed_ms = 0.0;
-        while (settings.range_g != 2 && hal_host_now_ms() < 400.0) {
+        while (settings()->range_g != 2 && hal_host_now_ms() < 400.0) {
             changed_ms = hal_host_now_ms(); /* before the pass that obeys */
             app_pass();
         }
@@ -141,19 +141,19 @@ static void test_a_change_of_filter_goes_axis_by_axis(void)
 {
     board_start_resting();
     board_run_ms(500);
-    const filter_law_t *old = pipeline.axes[0].filter.law;
+    const filter_law_t *old = pipeline_axes()[0].filter.law;
     board_type("filter {plain}");
     int changed = 0;
     for (int ms = 0; ms < 40; ms++) {
         board_run_ms(1);
         int now = 0;
-        for (size_t axis = 0; axis < AXES; axis++) {
-            now += pipeline.axes[axis].filter.law != old;
+        for (size_t axis = 0; axis < 3; axis++) {
+            now += pipeline_axes()[axis].filter.law != old;
         }
         TEST_ASSERT_TRUE(now == changed || now == changed + 1);
         changed = now;
     }
-    TEST_ASSERT_EQUAL_INT(AXES, changed);
+    TEST_ASSERT_EQUAL_INT(3, changed);
 }
 
 int main(void)

@@ -15,7 +15,7 @@
 
 void setUp(void)
 {
-    hang_stages = 0;
+    *hang_stages_here() = 0;
 }
 
 void tearDown(void)
@@ -265,7 +265,7 @@ static void assert_bite(uint8_t stage)
     double bitten_ms = (double)hal_host_watchdog_bite() / 16000.0;
     TEST_ASSERT_TRUE(hal_host_watchdog_bite() != 0);
     TEST_ASSERT_TRUE(bitten_ms - begun_ms <= 300.0);
-    hang_stages = 0;
+    *hang_stages_here() = 0;
     hal_host_faults.tx_stuck = false;
     hal_host_reset_mcu(HAL_RESET_WATCHDOG);
     app_start();
@@ -278,14 +278,14 @@ static void test_hung_sampling_is_bitten(void)
 {
     (void)start_streaming();
     hal_host_faults.int1_cut = true;
-    hang_stages = HEALTH_SAMPLING;
+    *hang_stages_here() = HEALTH_SAMPLING;
     assert_bite(HEALTH_SAMPLING);
 }
 
 static void test_hung_filtering_is_bitten(void)
 {
     (void)start_streaming();
-    hang_stages = HEALTH_FILTERING;
+    *hang_stages_here() = HEALTH_FILTERING;
     assert_bite(HEALTH_FILTERING);
 }
 

@@ -5,7 +5,7 @@
 #include "base/counters.h"
 #include "filter_list.h"
 #include "hal_watchdog.h"
-#include "path/pipeline_state.h"
+#include "path/pipeline.h"
 #include "settings/settings.h"
 #include "settings/settings_kept.h"
 #include "support_roles.h"
@@ -42,11 +42,11 @@ static void test_saved_settings_survive_power(void)
     talk_start();
     save_some();
     talk_power_cycle(false);
-    TEST_ASSERT_EQUAL_UINT(KEPT_GOOD, settings_kept);
+    TEST_ASSERT_EQUAL_UINT(KEPT_GOOD, settings_kept());
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: as saved", 0));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# filter {robust}, rate 50 Hz, range 4 g, every 3, baud 115200", 0));
     TEST_ASSERT_EQUAL_STRING("# gate 4.5 sigma: 1 to 16, 0: off", talk_answer("gate"));
-    TEST_ASSERT_EQUAL_UINT(4 * 256 + 128, pipeline.axes[1].filter.own.kalman.of.gated.gate_sigma_q8);
+    TEST_ASSERT_EQUAL_UINT(4 * 256 + 128, pipeline_axes()[1].filter.own.kalman.of.gated.gate_sigma_q8);
 }
 
 /* EEPROM writes are for a sensor that stands still: not one while rows go out, whatever is typed. */
@@ -64,7 +64,7 @@ static void test_nothing_is_saved_while_sampling(void)
     talk_type("stop");
     talk_type("go");
     TEST_ASSERT_EQUAL_STRING("# refused 6: type stop first", talk_answer("save"));
-    TEST_ASSERT_EQUAL_UINT32(2, counters[COUNT_REFUSED]);
+    TEST_ASSERT_EQUAL_UINT32(2, counted(COUNT_REFUSED));
 }
 
 /* Settings do not change under a save: what is typed meanwhile waits, and then counts. */
@@ -79,7 +79,7 @@ static void test_commands_wait_for_the_save(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# rate 200 Hz", before));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# going", before));
     talk_power_cycle(false);
-    TEST_ASSERT_EQUAL_UINT(1000, settings.rate_dhz);
+    TEST_ASSERT_EQUAL_UINT(1000, settings()->rate_dhz);
 }
 
 static void test_load_and_defaults(void)
@@ -100,7 +100,7 @@ static void test_load_and_defaults(void)
     board_run_ms(1000);
     TEST_ASSERT_INT_WITHIN(3, 100, (int)(board.row_count - rows));
     talk_power_cycle(false); /* defaults were not saved */
-    TEST_ASSERT_EQUAL_UINT(500, settings.rate_dhz);
+    TEST_ASSERT_EQUAL_UINT(500, settings()->rate_dhz);
 }
 
 /* A saved baud rate that the PC does not speak is no trap. */
@@ -135,9 +135,9 @@ static void test_resets_again_and_again_leave_saved_settings_alone(void)
         app_start();
         board_run_ms(800);
     }
-    TEST_ASSERT_EQUAL_UINT(KEPT_UNREAD, settings_kept);
-    TEST_ASSERT_EQUAL_UINT(125, settings.rate_dhz);
-    TEST_ASSERT_EQUAL_UINT(16, settings.range_g);
+    TEST_ASSERT_EQUAL_UINT(KEPT_UNREAD, settings_kept());
+    TEST_ASSERT_EQUAL_UINT(125, settings()->rate_dhz);
+    TEST_ASSERT_EQUAL_UINT(16, settings()->range_g);
 }
 
 /* Each filter of the list has a mark of its own, and what another image saved keeps all but the filter. */
@@ -153,16 +153,16 @@ static void test_a_filter_that_the_image_does_not_hold(void)
     talk_type("gate 2"); /* adaptive has none: refused */
     talk_type("guard 2");
     talk_type("stop");
-    settings.filter_mark = (uint8_t)~settings.filter_mark;
+    settings()->choice.mark = (uint8_t)~settings()->choice.mark;
     for (uint8_t kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-        TEST_ASSERT_NOT_EQUAL_UINT8(settings_filter_mark(kind), settings.filter_mark);
+        TEST_ASSERT_NOT_EQUAL_UINT8(settings_filter_mark(kind), settings()->choice.mark);
     }
     talk_type("save");
     talk_power_cycle(false);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# settings: as saved, but another filter", 0));
-    TEST_ASSERT_EQUAL_UINT(500, settings.rate_dhz);
-    TEST_ASSERT_EQUAL_UINT(0, settings.filter);
-    TEST_ASSERT_EQUAL_UINT(0, settings.own);
+    TEST_ASSERT_EQUAL_UINT(500, settings()->rate_dhz);
+    TEST_ASSERT_EQUAL_UINT(0, settings()->choice.filter);
+    TEST_ASSERT_EQUAL_UINT(0, settings()->choice.own);
 }
 
 int main(void)

@@ -47,7 +47,7 @@ static void test_lines_behind_a_change_of_baud_are_obeyed(void)
     TEST_ASSERT_EQUAL_STRING("# baud 500000", board.notes[before]);
     TEST_ASSERT_EQUAL_STRING("# every 3", board.notes[before + 1]);
     TEST_ASSERT_EQUAL_STRING("# range 4 g", board.notes[before + 2]);
-    TEST_ASSERT_EQUAL_UINT(4, settings.range_g);
+    TEST_ASSERT_EQUAL_UINT(4, settings()->range_g);
 }
 
 /* Help and status asked for again when they are answered, for so many times, at another phase of the rows each time. */
@@ -87,7 +87,7 @@ static void test_replies_never_push_a_row_out(void)
         board_run_ms(1500);
         size_t first = board.row_count;
         ask_all_the_time(lines[i].times);
-        TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_DROPPED]);
+        TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_DROPPED));
         TEST_ASSERT_TRUE(board.row_count > first + 100);
         for (size_t row = first + 1; row < board.row_count; row++) {
             uint32_t step_us = board.rows[row].t_us - board.rows[row - 1].t_us;

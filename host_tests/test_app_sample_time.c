@@ -12,7 +12,7 @@
 
 void setUp(void)
 {
-    hang_stages = 0;
+    *hang_stages_here() = 0;
 }
 
 void tearDown(void) {}
@@ -62,10 +62,10 @@ static void test_a_filter_too_slow_for_the_rate_is_refused(void)
 {
     board_start_with_a_slow_processor();
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
-    settings_t kept = settings;
+    settings_t kept = *settings();
     size_t rows = board.row_count;
     type_and_read("filter {slowest}", "# refused 5: takes 13050 of 11075 cycles a sample");
-    TEST_ASSERT_EQUAL_MEMORY(&kept, &settings, sizeof kept);
+    TEST_ASSERT_EQUAL_MEMORY(&kept, settings(), sizeof kept);
     for (size_t i = rows + 1; i < board.row_count; i++) {
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & ROW_WARMING_UP);
         TEST_ASSERT_UINT32_WITHIN(2, 1250u * settings_every_in_force(), board.rows[i].t_us - board.rows[i - 1].t_us);
@@ -80,11 +80,11 @@ static void test_a_rate_too_fast_for_the_filter_is_refused(void)
 {
     board_start_with_a_slow_processor();
     type_and_read("filter {slowest}", "# filter {slowest}");
-    settings_t kept = settings;
+    settings_t kept = *settings();
     size_t before = board.note_count;
     type_and_read("rate 800", "# refused 5: takes 13050 of 11075 cycles a sample");
     TEST_ASSERT_EQUAL_size_t(before + 1, board.note_count);
-    TEST_ASSERT_EQUAL_MEMORY(&kept, &settings, sizeof kept);
+    TEST_ASSERT_EQUAL_MEMORY(&kept, settings(), sizeof kept);
     type_and_read("rate 1600", "# refused 4: rate is one of 12.5 25 50 100 200 400 800");
     type_and_read("rate 400", "# rate 400 Hz, I2C at 363.6 kHz");
     type_and_read("rate 12.5", "# rate 12.5 Hz, I2C at 363.6 kHz");
@@ -101,7 +101,7 @@ static void test_a_rate_too_fast_for_the_filter_is_refused(void)
 static void test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_hz(void)
 {
     board_start_resting();
-    TEST_ASSERT_TRUE(settings_fit(settings.filter, settings.rate_dhz));
+    TEST_ASSERT_TRUE(settings_fit(settings()->choice.filter, settings()->rate_dhz));
     for (uint8_t filter = 0; filter < FILTER_KIND_COUNT; filter++) {
         for (uint16_t rate_dhz = 125; rate_dhz <= 8000; rate_dhz = (uint16_t)(rate_dhz * 2u)) {
             bool fits = filter != slowest_kind() || rate_dhz != 8000;
@@ -129,7 +129,7 @@ static void test_every_follows_what_the_filter_leaves_time_for(void)
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         char typed[32], answer[96];
-        if (kind == (int)slowest_kind() || kind == (int)settings.filter) {
+        if (kind == (int)slowest_kind() || kind == (int)settings()->choice.filter) {
             continue;
         }
         unsigned over = 20000u - SETTINGS_REST_CYCLES - 3u * filter_worst_cycles(filter_listed((filter_kind_t)kind));

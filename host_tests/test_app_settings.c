@@ -4,7 +4,7 @@
 
 #include "base/number.h"
 #include "filter_list.h"
-#include "path/pipeline_state.h"
+#include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support_roles.h"
 #include "support_talk.h"
@@ -96,7 +96,7 @@ static void test_parameters_reach_the_filter(void)
     TEST_ASSERT_TRUE(rough[2] > rough[0] * 2.0);
     TEST_ASSERT_TRUE(rough[3] < rough[2] / 4.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.3 * rough[0], rough[0], rough[4]); /* as shipped again, and the calibration as it was */
-    TEST_ASSERT_EQUAL_INT(5 * 16, settings.calibration.offset_lsb_q4[0]);
+    TEST_ASSERT_EQUAL_INT(5 * 16, settings()->calibration.offset_lsb_q4[0]);
 }
 
 /* No parameter of one filter is taken for one of another while the pipeline changes. */
@@ -109,11 +109,11 @@ static void test_changes_in_quick_succession(void)
     board_run_ms(1500);
     TEST_ASSERT_EQUAL_size_t(before + 7, board.note_count);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("refused", before));
-    for (int axis = 0; axis < AXES; axis++) {
-        TEST_ASSERT_EQUAL_PTR(filter_listed(robust_kind()), pipeline.axes[axis].filter.law);
-        TEST_ASSERT_EQUAL_UINT(3 * 256, pipeline.axes[axis].filter.own.kalman.of.gated.gate_sigma_q8);
+    for (int axis = 0; axis < 3; axis++) {
+        TEST_ASSERT_EQUAL_PTR(filter_listed(robust_kind()), pipeline_axes()[axis].filter.law);
+        TEST_ASSERT_EQUAL_UINT(3 * 256, pipeline_axes()[axis].filter.own.kalman.of.gated.gate_sigma_q8);
     }
-    TEST_ASSERT_EQUAL_UINT(0, settings.own);
+    TEST_ASSERT_EQUAL_UINT(0, settings()->choice.own);
 }
 
 /* Each line names a setting, its value and what is legal; each, typed as it is told, changes nothing. */
@@ -274,7 +274,7 @@ static void test_a_level_of_more_than_1_g_can_be_typed_again(void)
     board_run_ms(300);
     board_type("tare");
     board_run_ms(4000);
-    TEST_ASSERT_EQUAL_INT16(16896, settings.calibration.level_q14[2]); /* 264 / 256 */
+    TEST_ASSERT_EQUAL_INT16(16896, settings()->calibration.level_q14[2]); /* 264 / 256 */
     TEST_ASSERT_EQUAL_STRING("# level 0 0 1.0312: -1.1499 to 1.1499", board_last_note());
     TEST_ASSERT_EQUAL_STRING("# level 0 0 1.0311: -1.1499 to 1.1499",
                              talk_answer("level 0 0 1.0312")); /* 16895 / 16384 */

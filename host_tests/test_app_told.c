@@ -6,7 +6,7 @@
 
 #include "adxl345.h"
 #include "base/counters.h"
-#include "base/replies.h"
+#include "base/notices.h"
 #include "base/text.h"
 #include "path/pipeline.h"
 #include "support_board.h"
@@ -71,7 +71,7 @@ static void test_each_fault_has_its_words(void)
         char begin[24];
         snprintf(begin, sizeof begin, "# fault %u: ", code);
         size_t before = board.note_count;
-        TEST_ASSERT_TRUE(replies_add(REPLY_FAULT_BEGIN, code));
+        TEST_ASSERT_TRUE(notices_add(NOTICE_FAULT_BEGIN, code));
         board_run_ms(100);
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with(begin, before));
         TEST_ASSERT_TRUE(strlen(board_last_note()) > strlen(begin) + 20);
@@ -88,7 +88,7 @@ static void test_a_change_of_rate_loses_nothing(void)
     board_run_ms(500);
     board_type("range 4");
     board_run_ms(500);
-    TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LOST]);
+    TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_LOST));
 }
 
 /* What is missing of a second at the new rate: the old one ends with its command. */
@@ -103,7 +103,7 @@ static void test_a_change_of_rate_in_an_outage_forgets_no_sample(void)
     adxl345_model_power(&hal_host_sensor, true);
     board_run_ms(500);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1 over", 0));
-    TEST_ASSERT_UINT32_WITHIN(10, 205, counters[COUNT_LOST]);
+    TEST_ASSERT_UINT32_WITHIN(10, 205, counted(COUNT_LOST));
 }
 
 /* x jumps to its double and back, as where two sensors answer. */

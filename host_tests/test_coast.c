@@ -65,8 +65,9 @@ static void begin(uint8_t kind, uint16_t rate_dhz, double slope)
     coast_wait(world.t_us);
     pipeline_reset();
     settings_defaults();
-    pipeline_calibrate(&settings.calibration);
-    pipeline_start(kind, rate_dhz, 16);
+    pipeline_calibrate(&settings()->calibration);
+    settings_take_filter(kind);
+    pipeline_start(&settings()->choice, rate_dhz, 16);
     pipeline_finish();
 }
 
@@ -242,10 +243,10 @@ static void test_rows_of_missing_samples(void)
         TEST_ASSERT_EQUAL_HEX16(n < 3u ? ROW_COASTED : ROW_COASTED | ROW_FAULT, world.row.flags);
         TEST_ASSERT_EQUAL_INT(n >= 401u, silence_long());
     }
-    TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LOST]);
+    TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_LOST));
     pass_time(7000000u + 2500u); /* counted when it is known how many they were */
     sample();
-    TEST_ASSERT_EQUAL_UINT32(2800, counters[COUNT_LOST]);
+    TEST_ASSERT_EQUAL_UINT32(2800, counted(COUNT_LOST));
 }
 
 /* Whether main looked in time or comes when the sample is there: the same rows, up to the hold. */
@@ -292,12 +293,12 @@ static void test_samples_older_than_the_newest_row_are_dropped(void)
     TEST_ASSERT_FALSE(coast_sample(last_us, world.period_us));
     TEST_ASSERT_TRUE(missing_by(last_us + 15000u, false));
     TEST_ASSERT_FALSE(coast_sample(last_us + 10000u, world.period_us));
-    TEST_ASSERT_EQUAL_UINT32(2, counters[COUNT_LATE]);
+    TEST_ASSERT_EQUAL_UINT32(2, counted(COUNT_LATE));
     TEST_ASSERT_TRUE(coast_sample(last_us + 10001u, world.period_us));
-    TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LOST]); /* late, not lost */
-    coast_wait(last_us);                               /* stopped for an hour: any time may come */
+    TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_LOST)); /* late, not lost */
+    coast_wait(last_us);                              /* stopped for an hour: any time may come */
     TEST_ASSERT_TRUE(coast_sample(last_us - 1u, world.period_us));
-    TEST_ASSERT_EQUAL_UINT32(2, counters[COUNT_LATE]);
+    TEST_ASSERT_EQUAL_UINT32(2, counted(COUNT_LATE));
 }
 
 /* Rows without samples begin 0.1 s after the start, but not where the first sample is just being read. */

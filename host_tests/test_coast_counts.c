@@ -12,8 +12,9 @@ void setUp(void)
     counters_start();
     pipeline_reset();
     settings_defaults();
-    pipeline_calibrate(&settings.calibration);
-    pipeline_start(0, 1000, 16);
+    pipeline_calibrate(&settings()->calibration);
+    settings_take_filter(0);
+    pipeline_start(&settings()->choice, 1000, 16);
     pipeline_finish();
     coast_wait(START_US);
 }
@@ -44,9 +45,9 @@ static void test_a_first_sample_older_than_the_newest_row_is_dropped(void)
     TEST_ASSERT_TRUE(row_by(START_US + 100001u));
     uint32_t newest_us = pipeline_newest_us();
     TEST_ASSERT_FALSE(sample_at(newest_us));
-    TEST_ASSERT_EQUAL_UINT32(1, counters[COUNT_LATE]);
+    TEST_ASSERT_EQUAL_UINT32(1, counted(COUNT_LATE));
     TEST_ASSERT_TRUE(sample_at(newest_us + 1u));
-    TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LOST]);
+    TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_LOST));
 }
 
 /* A sample that comes after its row is late, not lost: what is missing after it is counted from it, jitter or not. */
@@ -58,12 +59,12 @@ static void test_after_a_late_sample_only_the_missing_ones_are_lost(void)
             TEST_ASSERT_TRUE(sample_at(START_US));
             TEST_ASSERT_TRUE(row_by(START_US + PERIOD_US + PERIOD_US / 2));
             TEST_ASSERT_FALSE(sample_at(START_US + PERIOD_US));
-            TEST_ASSERT_EQUAL_UINT32(1, counters[COUNT_LATE]);
+            TEST_ASSERT_EQUAL_UINT32(1, counted(COUNT_LATE));
             uint32_t next_us = START_US + (missing + 2u) * PERIOD_US - (uint32_t)early_us;
             while (row_by(next_us)) {
             }
             TEST_ASSERT_TRUE(sample_at(next_us));
-            TEST_ASSERT_EQUAL_UINT32(missing, counters[COUNT_LOST]);
+            TEST_ASSERT_EQUAL_UINT32(missing, counted(COUNT_LOST));
         }
     }
 }
@@ -84,7 +85,7 @@ static void test_samples_lost_in_a_long_outage_are_counted(void)
         t_us += gap_us;
         sum += missing[i];
         TEST_ASSERT_TRUE(sample_at(t_us));
-        TEST_ASSERT_EQUAL_UINT32(sum, counters[COUNT_LOST]);
+        TEST_ASSERT_EQUAL_UINT32(sum, counted(COUNT_LOST));
     }
 }
 

@@ -1,6 +1,7 @@
 /* The calibration's place in the sample path: what it changes of a row, what it leaves, when it counts. */
 #include "filter_list.h"
 #include "path/pipeline.h"
+#include "settings/settings.h"
 #include "support_roles.h"
 #include "unity.h"
 
@@ -14,7 +15,8 @@ void setUp(void)
     calibration_plain(&c, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6);
     pipeline_calibrate(&c);
     pipeline_reset();
-    pipeline_start(plain_kind(), 1000, RANGE_G);
+    settings_take_filter(plain_kind());
+    pipeline_start(&settings()->choice, 1000, RANGE_G);
     pipeline_finish();
 }
 

@@ -52,9 +52,10 @@ static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t
     coast_wait(0);
     pipeline_reset();
     settings_defaults();
-    calibration_plain(&settings.calibration, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6); /* as row_mg */
-    pipeline_calibrate(&settings.calibration);
-    pipeline_start(kind, rate_dhz, range_g);
+    calibration_plain(&settings()->calibration, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6); /* as row_mg */
+    pipeline_calibrate(&settings()->calibration);
+    settings_take_filter(kind);
+    pipeline_start(&settings()->choice, rate_dhz, range_g);
     pipeline_finish();
     for (int axis = 0; axis < 3; axis++) {
         TEST_ASSERT_TRUE(chain_begin(&chain[axis], (filter_kind_t)kind, rate_dhz, range_g, axis));

@@ -3,7 +3,7 @@
  * the axes that remain, flagged and told; with another filter, and with two bad axes, none is left out.
  */
 #include "filter_list.h"
-#include "path/pipeline_state.h"
+#include "path/pipeline.h"
 #include "path/supervisor.h"
 #include "support_board.h"
 #include "support_random.h"
@@ -267,14 +267,14 @@ static void test_no_choices_are_told_of_a_filter_that_is_leaving(void)
     board_type("filter auto");
     board_run_ms(1000);
     board_type(by_role("filter {plain}"));
-    for (int ms = 0; ms < 40 && pipeline.axes[AXES - 1].filter.law != filter_listed(plain_kind()); ms++) {
+    for (int ms = 0; ms < 40 && pipeline_axes()[2].filter.law != filter_listed(plain_kind()); ms++) {
         board_run_ms(1);
     }
-    TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline.axes[0].filter.law);
+    TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline_axes()[0].filter.law);
     size_t first = board.note_count;
     board_type("status");
     board_run_ms(3);
-    TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline.axes[0].filter.law);
+    TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline_axes()[0].filter.law);
     board_run_ms(100);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# state streaming", first));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("chosen", first));

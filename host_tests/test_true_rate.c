@@ -9,7 +9,7 @@
 #include "base/counters.h"
 #include "filter_list.h"
 #include "path/coast.h"
-#include "path/pipeline_state.h"
+#include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support_board.h"
 #include "support_roles.h"
@@ -35,8 +35,9 @@ static void begin(uint8_t kind)
     coast_wait(0);
     pipeline_reset();
     settings_defaults();
-    pipeline_calibrate(&settings.calibration);
-    pipeline_start(kind, 1000, 16);
+    pipeline_calibrate(&settings()->calibration);
+    settings_take_filter(kind);
+    pipeline_start(&settings()->choice, 1000, 16);
     pipeline_finish();
 }
 
@@ -60,10 +61,10 @@ static void sample(int16_t y_lsb)
 /* The look at the end of each second; true when the filters get another rate. */
 static bool look(uint32_t period_us)
 {
+    uint16_t before_dhz = pipeline_rate_dhz();
     pipeline_retime(period_us);
-    bool handed_over = pipeline.to_begin != 0;
     pipeline_finish();
-    return handed_over;
+    return pipeline_rate_dhz() != before_dhz;
 }
 
 static bool second(uint32_t period_us, int16_t from_lsb, int16_t step_lsb)
@@ -183,12 +184,14 @@ static void test_how_long_it_holds(void)
     for (int k = 1; k <= 6; k++) {
         (void)second(10500, 60, 0);
     }
-    pipeline_change(1, 1000, 16);
+    settings_take_filter(1);
+    pipeline_change(&settings()->choice, 1000, 16);
     pipeline_finish();
     for (int k = 1; k <= 10; k++) {
         TEST_ASSERT_FALSE(second(10500, 60, 0));
     }
-    pipeline_change(1, 2000, 16);
+    settings_take_filter(1);
+    pipeline_change(&settings()->choice, 2000, 16);
     pipeline_finish();
     for (int k = 1; k <= 10; k++) {
         TEST_ASSERT_FALSE(second(5000, 60, 0));
@@ -205,7 +208,7 @@ static double handed_over_at_s(double ppm)
     double at_s = 0.0;
     while (hal_host_now_ms() < 20000.0) {
         app_pass();
-        if (pipeline.to_begin != 0 && at_s == 0.0) {
+        if (pipeline_rate_dhz() != 1000 && at_s == 0.0) {
             at_s = hal_host_now_ms() / 1000.0;
         }
     }

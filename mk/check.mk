@@ -11,7 +11,7 @@ $(CHK)/avr/%.o: %.c Makefile mk/check.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(filter-out -flto -Werror,$(AVR_FLAGS)) -fstack-usage -MMD -MP -c $< -o $@ 2> $@.log || { cat $@.log >&2; exit 1; }
 
-CHECKS := compile tidy int16 cppcheck includes format lengths names symbols memory frames painted waits size seam deviations breakages texts
+CHECKS := compile tidy int16 cppcheck includes circles format lengths names symbols memory frames painted waits size seam deviations breakages texts
 
 ## check: every rule of the tree, and a planted fault for each that must be found (8 minutes; PLANTED=20: a sample of them)
 check:
@@ -41,6 +41,15 @@ check-cppcheck:
 
 check-includes:
 	@python3 tools/check_includes.py
+
+# the PC's side of the HAL, for its circles
+CHECK_HOST_OBJ := $(patsubst %.c,$(CHK)/host/%.o,$(wildcard hal/host/*.c))
+$(CHK)/host/%.o: %.c Makefile mk/check.mk
+	@mkdir -p $(@D)
+	@$(HOST_CC) $(HOST_FLAGS) -MMD -MP -c $< -o $@
+
+check-circles: check-objects $(CHECK_HOST_OBJ)
+	@python3 tools/check_circles.py $(CHK)/avr $(CHK)/host
 
 check-format:
 	@sh tools/check_format.sh $(ONLY)

@@ -71,7 +71,7 @@ $(H)/roll_replay: $(H)/o2/host_tests/roll_replay.o $(H)/o2/libfilters.a
 	@$(HOST_CC) $^ -lm -o $@
 
 $(H)/pipeline_replay: $(H)/o2/host_tests/pipeline_replay.o $(ARCHIVES_O2)
-	@$(HOST_CC) -Wl,--wrap=parameters_start,--wrap=filter_noise_r_lsb2_q8 $(call linked,$^) -lm -o $@
+	@$(HOST_CC) -Wl,--wrap=choice_begin,--wrap=filter_noise_r_lsb2_q8 $(call linked,$^) -lm -o $@
 
 $(H)/exhaustive_isqrt: host_tests/exhaustive_isqrt.c lib/tilt/src/tilt.c lib/filters/src/fx.c $(wildcard lib/*/src/*.h)
 	@mkdir -p $(@D)

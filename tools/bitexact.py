@@ -26,8 +26,8 @@ STOPPED = 8          # simrun: the program slept with interrupts off
 BLOCK = 200          # VECTORS_BLOCK of vectors.h
 SHOWN = 3            # differences shown in detail
 FIRMWARE = [f"firmware/{name}.c" for name in (
-    "base/format", "base/text", "base/pass", "base/counters", "output/rows", "path/pipeline", "path/pipeline_change", "path/coast", "path/silence",
-    "settings/settings", "settings/settings_words", "settings/parameters")]
+    "base/format", "base/text", "base/pass", "base/counters", "output/rows", "path/pipeline", "path/coast", "path/silence",
+    "settings/settings", "settings/settings_words", "base/choice")]
 HEADERS = ["lib", "firmware", "hal", "host_tests"]
 SANITIZE = "-O1 -fsanitize=address,undefined -fno-sanitize-recover=all"
 # as the planted differences: name, file under lib, text, broken text, build, paths that must be named

@@ -5,16 +5,19 @@
  */
 #include "app/app.h"
 
+#include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "adxl345.h"
 #include "base/counters.h"
 #include "base/hang_test.h"
 #include "base/health.h"
+#include "base/notices.h"
 #include "base/pass.h"
-#include "base/replies.h"
 #include "console/commands.h"
-#include "control/app_state.h"
+#include "console/speaker.h"
+#include "control/control.h"
 #include "control/measure.h"
 #include "control/sensor_watch.h"
 #include "fx.h"
@@ -36,19 +39,14 @@
 #include "settings/settings_kept.h"
 #include "settings/store.h"
 
-/*
- * What hung so often in a row, each time within SETTLED_S of its start, hangs again: it gets the lowest rate, at which
- * the processor has most time for everything else. Saved settings are
- * left alone.
- */
-enum { RESETS_TO_SAFE = 3, SETTLED_S = 10, WHOLE_LOOP = 0x80 };
-
-app_state_t app;
+/* A run that lasted so long has not hung again. WHOLE_LOOP: of hang_test.h. */
+enum { SETTLED_S = 10, WHOLE_LOOP = 0x80 };
 
 static struct loop {
     uint32_t pass_us; /* time at the beginning of the pass */
     uint32_t next_second_us;
     uint16_t next_service_us; /* its low half: it is never 32 ms away */
+    bool greeted;             /* banner and header are out */
     bool row_due;             /* for the sample that the pipeline has, or had last */
     bool look_at_rate;        /* each second, where a pass has time for it */
 } loop;
@@ -61,40 +59,35 @@ static inline struct loop *here(void)
     return l;
 }
 
-void app_start_sensor(void)
-{
-    adxl345_config_t config = { settings.rate_dhz, settings.range_g, false, settings.address };
-    measure_configure(&config);
-    adxl345_start(&config);
-}
-
-bool app_is_safe(void)
-{
-    return hal_reset_repeats() >= RESETS_TO_SAFE;
-}
-
 static void forget(void)
 {
     counters_start();
-    replies_start();
+    notices_start();
+    speaker_start();
     commands_start();
     rows_start();
     measure_reset();
     pipeline_reset();
-    app.stage = STAGE_BANNER;
+    loop.greeted = false;
     loop.row_due = false;
     loop.look_at_rate = false;
-    app.changes = 0;
 }
 
 static void open_line(void)
 {
-    hal_uart_init(settings.baud);
+    hal_uart_init(settings()->baud);
 }
 
-static void start_pipeline(void)
+static void start_settings(void)
 {
-    pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
+    settings_load();
+    if (hal_strap_low() || health_is_safe()) {
+        settings_unread();
+    }
+    if (health_is_safe()) {
+        settings()->rate_dhz = SETTINGS_RATE_MIN_DHZ;
+        settings_follow();
+    }
 }
 
 void app_start(void)
@@ -108,33 +101,16 @@ void app_start(void)
         forget();
     }
     health_start();
-    settings_load();
-    if (hal_strap_low() || app_is_safe()) {
-        settings_defaults();
-        settings_kept = KEPT_UNREAD;
-    }
-    if (app_is_safe()) {
-        settings.rate_dhz = SETTINGS_RATE_MIN_DHZ;
-        settings_follow();
-    }
-    pipeline_calibrate(&settings.calibration);
+    start_settings();
     open_line();
-    health_pause_filtering(APP_HOLD_PASSES);
+    health_pause_filtering(HEALTH_HOLD_PASSES);
     hal_drdy_enable(); /* last, so that an edge does not wait for the settings */
     hal_irq_enable();
     uint32_t now_us = hal_time_us();
     l->next_service_us = (uint16_t)now_us;
     l->next_second_us = now_us + 1000000ul;
-    app.sampling = true;
-    coast_wait(now_us);
-    start_pipeline();
-    (void)replies_add(REPLY_BANNER, 0);
-    app_start_sensor();
-}
-
-bool app_takes_commands(void)
-{
-    return app.stage == STAGE_RUNNING && !store_busy();
+    (void)notices_add(NOTICE_BANNER, 0);
+    control_start(now_us);
 }
 
 static void count_seconds(uint32_t now_us)
@@ -144,33 +120,10 @@ static void count_seconds(uint32_t now_us)
         l->next_second_us += 1000000ul;
         count(COUNT_SECONDS);
         l->look_at_rate = true;
-        if ((uint8_t)counters[COUNT_SECONDS] == SETTLED_S) { /* and again later: no harm */
+        if ((uint8_t)counted(COUNT_SECONDS) == SETTLED_S) { /* and again later: no harm */
             hal_reset_settled();
         }
     }
-}
-
-/* Begins the pipeline's change where there is one to follow. */
-static bool follow_settings(void)
-{
-    if (app.changes == 0) {
-        return false;
-    }
-    bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
-    uint8_t now = old_samples ? app.changes & CHANGE_FILTER : app.changes;
-    app.changes = (uint8_t)(app.changes & ~now);
-    if (now & CHANGE_MEASURE) {
-        measure_configured();
-    }
-    if ((now & CHANGE_COLD) || ((now & CHANGE_CONFIG) && !silence_holds())) { /* else more is lost, and rows go on */
-        coast_wait(loop.pass_us);
-    }
-    if (now & CHANGE_COLD) {
-        start_pipeline();
-    } else if (now & (CHANGE_FILTER | CHANGE_CONFIG)) {
-        pipeline_change(settings.filter, settings.rate_dhz, settings.range_g);
-    }
-    return now != 0;
 }
 
 /* Samples are due: not while the sensor is stopped or follows a command. */
@@ -184,9 +137,9 @@ static void write_row(void)
 {
     loop.row_due = false;
     if (silence_long()) {
-        rows_at_once();
+        rows_at_once(settings()->mode == MODE_PLOT);
     } else {
-        rows_sample();
+        rows_sample(settings_every_in_force(), settings()->mode == MODE_PLOT);
     }
     health_sample_filtered();
 }
@@ -252,43 +205,47 @@ static bool filter_samples(void)
         pipeline_retime(adxl345_period_us());
         return true;
     }
-    return follow_settings() || next_sample();
+    return control_follow(loop.pass_us) || next_sample();
 }
 
-/* One piece of what the stage has to do; false: nothing is left, or it waits. */
-static bool stage_piece(void)
+/* Rows and filtering begin, or go on; what was typed meanwhile goes before the samples. */
+static void go_on(void)
 {
-    switch (app.stage) {
-    case STAGE_BANNER:
-        if (!replies_empty()) {
-            return false;
-        }
-        rows_enable(true);
-        sensor_watch_start(hal_time_us());
-        coast_wait(hal_time_us());
-        break;
-    case STAGE_BAUD:
-        if (!replies_empty() || !hal_uart_tx_idle()) {
-            return false;
-        }
-        open_line();
-        break;
-    default:
-        return filter_samples();
-    }
     health_pause_filtering(0);
-    app.stage = STAGE_RUNNING;
-    hal_wake(); /* what was typed meanwhile goes before the samples */
-    return false;
+    hal_wake();
+}
+
+/* One piece of the work; false: nothing is left, or it waits. */
+static bool work_piece(void)
+{
+    if (!loop.greeted) {
+        if (notices_empty()) {
+            loop.greeted = true;
+            rows_enable(true);
+            sensor_watch_start(hal_time_us());
+            coast_wait(hal_time_us());
+            go_on();
+        }
+        return false;
+    }
+    if (control_line_waits()) {
+        if (notices_empty() && hal_uart_tx_idle()) {
+            open_line();
+            control_line_changed();
+            go_on();
+        }
+        return false;
+    }
+    return filter_samples();
 }
 
 /* What a person or the watchdog waits for need not run for every sample. */
 static void service(uint32_t now_us)
 {
     struct loop *l = here();
-    l->next_service_us = (uint16_t)(now_us + APP_SERVICE_US);
+    l->next_service_us = (uint16_t)(now_us + HEALTH_PASS_US);
     count_seconds(now_us);
-    if (app.stage == STAGE_RUNNING) {
+    if (loop.greeted && !control_line_waits()) {
         sensor_watch_pass(now_us);
     }
     health_pass(now_us);
@@ -303,12 +260,18 @@ static void set_alarm(void)
     hal_wake_at(row_first ? coast_due_us() : t_us);
 }
 
+/* Bytes wait in the receive ring while the banner goes out, the baud rate changes or a save runs. */
+static bool takes_commands(void)
+{
+    return loop.greeted && !control_line_waits() && !store_busy();
+}
+
 /* Commands, samples, replies, while the pass has time; out of time, another pass follows. */
 static void serve(void)
 {
-    if (pass_in_time() && !(commands_pass() && !pass_in_time())) {
+    if (pass_in_time() && !(takes_commands() && commands_pass() && !pass_in_time())) {
         do {
-            if (!stage_piece() && !replies_pass()) {
+            if (!work_piece() && !speaker_pass()) {
                 return;
             }
         } while (pass_in_time());

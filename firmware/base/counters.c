@@ -4,13 +4,18 @@
 #include "fx.h"
 #include "hal_pointer.h"
 
-uint32_t counters[COUNTERS];
+static uint32_t counters[COUNTERS];
 
 void counters_start(void)
 {
     for (uint8_t i = 0; i < COUNTERS; i++) {
         counters[i] = 0;
     }
+}
+
+uint32_t counted(uint8_t what)
+{
+    return counters[what];
 }
 
 FX_ONCE void count(uint8_t what)

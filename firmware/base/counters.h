@@ -19,11 +19,12 @@ enum counter {
     COUNTERS
 };
 
-extern uint32_t counters[COUNTERS];
-
 void counters_start(void);
 
-/* One more of a kind (enum counter). */
+/* How many so far of a kind (enum counter). */
+uint32_t counted(uint8_t what);
+
+/* One more of a kind. */
 void count(uint8_t what);
 
 /* So many samples are missing. */

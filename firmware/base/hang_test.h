@@ -11,8 +11,8 @@
 
 #if HANG_TEST
 #include <stdint.h>
-extern volatile uint8_t hang_stages; /* bits of health_stage; 0x80: the whole loop */
-#define HANGS(stage) ((hang_stages & (stage)) != 0)
+volatile uint8_t *hang_stages_here(void); /* bits of health_stage; 0x80: the whole loop */
+#define HANGS(stage) ((*hang_stages_here() & (stage)) != 0)
 #else
 #define HANGS(stage) 0
 #endif

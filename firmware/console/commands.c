@@ -1,15 +1,15 @@
-/* Lines and their first words. What a setting takes is settings_table.c's, what a command does app_settings.c's. */
+/* Lines and their first words. What a setting takes is settings_table.c's, what a command does control.c's. */
 #include "console/commands.h"
 
 #include <stdbool.h>
 
-#include "app/app.h"
 #include "base/counters.h"
+#include "base/notices.h"
 #include "base/pass.h"
-#include "base/replies.h"
 #include "base/text.h"
 #include "console/reply_lines.h"
 #include "control/calibrate.h"
+#include "control/control.h"
 #include "control/measure.h"
 #include "flash.h"
 #include "fx.h"
@@ -19,7 +19,7 @@
 
 static char line[COMMANDS_LINE_MAX + 1u];
 static uint8_t length;
-static uint8_t wrong; /* with the line: REPLY_TOO_LONG, REPLY_GARBAGE, or 0 */
+static uint8_t wrong; /* with the line: NOTICE_TOO_LONG, NOTICE_GARBAGE, or 0 */
 
 void commands_start(void)
 {
@@ -28,34 +28,34 @@ void commands_start(void)
     line[0] = '\0';
 }
 
-_Static_assert(REPLY_SETTING + SETTING_ILLEGAL == (int)REPLY_ILLEGAL, "answers in the order of their replies");
-_Static_assert(REPLY_SETTING + SETTING_TOO_SLOW == (int)REPLY_TOO_SLOW, "the same");
+_Static_assert(NOTICE_SETTING + SETTING_ILLEGAL == (int)NOTICE_ILLEGAL, "answers in the order of their replies");
+_Static_assert(NOTICE_SETTING + SETTING_TOO_SLOW == (int)NOTICE_TOO_SLOW, "the same");
 
 static void answer(uint8_t kind, uint8_t argument)
 {
-    if (kind >= REPLY_ILLEGAL && kind <= REPLY_BUSY) {
+    if (kind >= NOTICE_ILLEGAL && kind <= NOTICE_BUSY) {
         count(COUNT_REFUSED);
     }
-    (void)replies_add((reply_kind_t)kind, argument);
+    (void)notices_add((notice_kind_t)kind, argument);
 }
 
 static void run_setting(uint8_t which, const char *value)
 {
     setting_answer_t taken = SETTING_TAKEN;
     if (value != 0) {
-        taken = app_set(which, value);
+        taken = control_set(which, value);
         if (taken == SETTING_TAKEN) {
-            which |= REPLY_CHANGED;
+            which |= NOTICE_CHANGED;
         }
     }
-    answer((uint8_t)(REPLY_SETTING + taken), which);
+    answer((uint8_t)(NOTICE_SETTING + taken), which);
 }
 
-/* The reply kind of a command's name; REPLY_BANNER when it is none. */
+/* The reply kind of a command's name; NOTICE_BANNER when it is none. */
 static uint8_t command_named(const char *name)
 {
-    uint8_t kind = REPLY_LISTING;
-    while (kind != REPLY_BANNER && !text_equal(name, reply_command_name(kind))) {
+    uint8_t kind = NOTICE_LISTING;
+    while (kind != NOTICE_BANNER && !text_equal(name, reply_command_name(kind))) {
         kind--;
     }
     return kind;
@@ -84,22 +84,22 @@ static char *split_value(void)
 static uint8_t run_verb(uint8_t verb)
 {
     switch (verb) {
-    case REPLY_STOPPED:
-    case REPLY_GOING:
-        app_sample(verb == REPLY_GOING);
+    case NOTICE_STOPPED:
+    case NOTICE_GOING:
+        control_sample(verb == NOTICE_GOING);
         break;
-    case REPLY_SAVED:
-        return app_save() ? verb : REPLY_STREAMING;
-    case REPLY_LOADED:
-    case REPLY_DEFAULTS:
-        app_restore(verb == REPLY_LOADED);
+    case NOTICE_SAVED:
+        return control_save() ? verb : NOTICE_STREAMING;
+    case NOTICE_LOADED:
+    case NOTICE_DEFAULTS:
+        control_restore(verb == NOTICE_LOADED);
         break;
-    case REPLY_NOISE:
-    case REPLY_SELFTEST:
-    case REPLY_TARE:
-    case REPLY_CAL:
-    case REPLY_CAL6:
-        return measure_start(verb) ? verb : REPLY_BUSY;
+    case NOTICE_NOISE:
+    case NOTICE_SELFTEST:
+    case NOTICE_TARE:
+    case NOTICE_CAL:
+    case NOTICE_CAL6:
+        return measure_start(verb) ? verb : NOTICE_BUSY;
     default:
         break;
     }
@@ -108,11 +108,11 @@ static uint8_t run_verb(uint8_t verb)
 
 static void run_command(uint8_t kind, const char *value)
 {
-    if (kind == REPLY_CAL6 && value != 0 && text_equal(value, FLASH_TEXT("stop"))) {
+    if (kind == NOTICE_CAL6 && value != 0 && text_equal(value, FLASH_TEXT("stop"))) {
         measure_stop();
-        answer(REPLY_CAL6, MEASURE_STOPPED);
+        answer(NOTICE_CAL6, MEASURE_STOPPED);
     } else {
-        answer(kind == REPLY_BANNER || value != 0 ? REPLY_UNKNOWN : run_verb(kind), MEASURE_BEGUN);
+        answer(kind == NOTICE_BANNER || value != 0 ? NOTICE_UNKNOWN : run_verb(kind), MEASURE_BEGUN);
     }
 }
 
@@ -145,9 +145,9 @@ static void end_line(void)
 static void take_byte(uint8_t byte)
 {
     if (byte < ' ' || byte > '~') {
-        wrong = wrong != 0 ? wrong : REPLY_GARBAGE;
+        wrong = wrong != 0 ? wrong : NOTICE_GARBAGE;
     } else if (length == COMMANDS_LINE_MAX) {
-        wrong = REPLY_TOO_LONG;
+        wrong = NOTICE_TOO_LONG;
     } else if (length != 0 || byte != ' ') {
         bool upper = byte >= 'A' && byte <= 'Z';
         line[length++] = (char)(upper ? byte + ('a' - 'A') : byte);
@@ -157,7 +157,7 @@ static void take_byte(uint8_t byte)
 /* Not while a reply waits that reports what the next command may change. */
 static bool commands_wanted(void)
 {
-    return replies_room() && !replies_hold(REPLY_LISTING, REPLY_TOO_SLOW) && app_takes_commands();
+    return notices_room() && !notices_hold(NOTICE_LISTING, NOTICE_TOO_SLOW);
 }
 
 bool commands_pass(void)

@@ -40,7 +40,7 @@ int32_t measure_number_q8(uint8_t what, uint8_t axis)
         return shift_q4(axis) * INT32_C(16);
     }
     if (what == SAY_OFF) {
-        return (int32_t)(adxl345_rate_chz() * 2560u / settings.rate_dhz) - 25600;
+        return (int32_t)(adxl345_rate_chz() * 2560u / settings()->rate_dhz) - 25600;
     }
     uint32_t variance_q8 = rest_variance_lsb2_q8(&measure_rest()->axes[axis]);
     return what == SAY_RMS ? (int32_t)tilt_isqrt32(variance_q8 << 8) : (int32_t)(variance_q8 + (variance_q8 >> 1));

@@ -4,7 +4,7 @@
 #include <stdbool.h>
 
 #include "adxl345.h"
-#include "base/replies.h"
+#include "base/notices.h"
 #include "base/text.h"
 #include "console/reply_said.h"
 #include "console/reply_texts.h"
@@ -15,7 +15,7 @@
 #include "settings/settings_table.h"
 #include "settings/store.h"
 
-_Static_assert(TEXT_FAULT_END - TEXT_BANNER == (int)REPLY_FAULT_END, "a text for each reply");
+_Static_assert(TEXT_FAULT_END - TEXT_BANNER == (int)NOTICE_FAULT_END, "a text for each reply");
 _Static_assert(TEXT_REPEATED - TEXT_HOLD_STILL == MEASURE_REPEATED - MEASURE_BEGUN, "words for each outcome");
 _Static_assert(TEXT_NO_GRAVITY - TEXT_TILTED == CALIBRATION_NO_GRAVITY - CALIBRATION_TILTED, "words for each verdict");
 
@@ -23,12 +23,13 @@ _Static_assert(TEXT_NO_GRAVITY - TEXT_TILTED == CALIBRATION_NO_GRAVITY - CALIBRA
 enum { TEXTS_DEPTH = 3 };
 
 static const uint8_t *at; /* where the reply goes on */
-static uint8_t again;     /* how often the line comes again */
+static said_t said;
+static uint8_t again; /* how often the line comes again */
 
 static uint8_t setting_text(void)
 {
-    bool changed = (said.subject & REPLY_CHANGED) != 0;
-    said.subject = (uint8_t)(said.subject & ~REPLY_CHANGED);
+    bool changed = (said.subject & NOTICE_CHANGED) != 0;
+    said.subject = (uint8_t)(said.subject & ~NOTICE_CHANGED);
     switch (said.subject) {
     case SETTING_FILTER:
     case SETTING_RATE:
@@ -46,15 +47,15 @@ static uint8_t measured_text(uint8_t kind)
 {
     uint8_t outcome = said.subject;
     if (outcome == MEASURE_WRONG) {
-        said.subject = calibrate_told.verdict.where;
-        return (uint8_t)(TEXT_TILTED - CALIBRATION_TILTED + calibrate_told.verdict.why);
+        said.subject = calibrate_told()->verdict.where;
+        return (uint8_t)(TEXT_TILTED - CALIBRATION_TILTED + calibrate_told()->verdict.why);
     }
     if (outcome != MEASURE_DONE) {
-        said.subject = outcome == MEASURE_BEGUN ? kind : calibrate_told.position;
+        said.subject = outcome == MEASURE_BEGUN ? kind : calibrate_told()->position;
         return (uint8_t)(TEXT_HOLD_STILL - MEASURE_BEGUN + outcome);
     }
-    said.subject = kind < REPLY_TARE ? 0 : kind == REPLY_TARE ? SETTING_LEVEL : SETTING_OFFSET;
-    again = kind < REPLY_TARE ? 2 : kind == REPLY_CAL6;
+    said.subject = kind < NOTICE_TARE ? 0 : kind == NOTICE_TARE ? SETTING_LEVEL : SETTING_OFFSET;
+    again = kind < NOTICE_TARE ? 2 : kind == NOTICE_CAL6;
     return (uint8_t)(TEXT_BANNER + kind);
 }
 
@@ -62,26 +63,26 @@ static uint8_t measured_text(uint8_t kind)
 static uint8_t text_of(uint8_t kind)
 {
     switch (kind) {
-    case REPLY_HELP:
+    case NOTICE_HELP:
         again = SETTING_OFFSET - 1;
         break;
-    case REPLY_STATUS:
+    case NOTICE_STATUS:
         said.subject = (uint8_t)adxl345_fault();
         said.counters_out = 0;
         break;
-    case REPLY_LISTING:
+    case NOTICE_LISTING:
         again = (uint8_t)(settings_count() - 1u);
         break;
-    case REPLY_SETTING:
+    case NOTICE_SETTING:
         return setting_text();
-    case REPLY_ILLEGAL:
+    case NOTICE_ILLEGAL:
         return said.subject >= SETTING_OFFSET ? TEXT_ILLEGAL_NUMBER : TEXT_ILLEGAL;
-    case REPLY_SAVED:
+    case NOTICE_SAVED:
         return store_busy() ? TEXT_NONE : store_failed() ? TEXT_NOT_SAVED : TEXT_SAVED;
-    case REPLY_ODR:
+    case NOTICE_ODR:
         return adxl345_rate_chz() == 0 ? TEXT_ODR_UNKNOWN : TEXT_ODR;
     default:
-        if (kind >= REPLY_NOISE && kind <= REPLY_CAL6) {
+        if (kind >= NOTICE_NOISE && kind <= NOTICE_CAL6) {
             return measured_text(kind);
         }
     }
@@ -105,9 +106,9 @@ static bool begin_line(bool very_first)
 static bool goes_on(uint8_t code)
 {
     if (code == SAY_LINE_IF_FORCED) {
-        return settings_every_in_force() != settings.every;
+        return settings_every_in_force() != settings()->every;
     }
-    return code == SAY_LINE || (code == SAY_LINE_IF_CSV && settings.mode == MODE_CSV);
+    return code == SAY_LINE || (code == SAY_LINE_IF_CSV && settings()->mode == MODE_CSV);
 }
 
 /* Texts that are being unpacked. */
@@ -160,7 +161,7 @@ static bool write_line(void)
             at = u.from;
             return goes_on(code);
         } else {
-            open_text(&u, say(code));
+            open_text(&u, say(&said, code));
         }
     }
 }
@@ -176,7 +177,7 @@ reply_progress_t reply_line(uint8_t kind, uint8_t argument, bool first)
         }
         at = reply_text(text);
     }
-    if (!begin_line(first && kind == REPLY_BANNER)) {
+    if (!begin_line(first && kind == NOTICE_BANNER)) {
         return REPLY_WAITS;
     }
     bool more = write_line();

@@ -13,10 +13,10 @@ typedef enum {
     REPLY_ENDED    /* the last one is out */
 } reply_progress_t;
 
-/* Writes the first line of a reply (reply_kind_t), or its next one. Room for TEXT_LINE_MAX has been checked. */
+/* Writes the first line of a reply (notice_kind_t), or its next one. Room for TEXT_LINE_MAX has been checked. */
 reply_progress_t reply_line(uint8_t kind, uint8_t argument, bool first);
 
-/* The word that asks for a reply (REPLY_HELP to REPLY_LISTING), as it is typed. */
+/* The word that asks for a reply (NOTICE_HELP to NOTICE_LISTING), as it is typed. */
 flash_text_t reply_command_name(uint8_t kind);
 
 #endif

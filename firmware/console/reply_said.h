@@ -10,9 +10,7 @@ typedef struct {
     uint8_t counters_out; /* how many `status` has written */
 } said_t;
 
-extern said_t said;
-
 /* Writes a byte of a text, or what stands in its place; returns the text in which that goes on, or TEXT_NONE. */
-uint8_t say(uint8_t code);
+uint8_t say(said_t *said, uint8_t code);
 
 #endif

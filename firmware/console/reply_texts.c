@@ -1,7 +1,7 @@
 /* The texts as reply_packed.h has them, and the names of the commands, which are compared too and so are not packed. */
 #include "console/reply_texts.h"
 
-#include "base/replies.h"
+#include "base/notices.h"
 #include "base/text.h"
 #include "console/reply_lines.h"
 #include "console/reply_packed.h"
@@ -14,7 +14,7 @@ _Static_assert(PACKED_PAIR_FIRST == SAY_PAIR, "the codes of pairs follow those o
 
 flash_text_t reply_command_name(uint8_t kind)
 {
-    return text_nth(names, (uint8_t)(kind - REPLY_HELP));
+    return text_nth(names, (uint8_t)(kind - NOTICE_HELP));
 }
 
 const uint8_t *reply_text(uint8_t text)

@@ -120,11 +120,11 @@ enum say {
     SAY_PAIR            /* pairs of packed texts from here on */
 };
 
-/* The commands as typed, one for each reply_kind_t from REPLY_HELP on, in its order. */
+/* The commands as typed, one for each notice_kind_t from NOTICE_HELP on, in its order. */
 #define REPLY_NAMES "help\0status\0stop\0go\0save\0load\0defaults\0odr\0noise\0selftest\0tare\0cal\0cal6\0settings"
 
 /*
- * One text for each reply_kind_t, in its order; then the others, those that belong together in their order. They are
+ * One text for each notice_kind_t, in its order; then the others, those that belong together in their order. They are
  * packed into program memory by tools/pack_texts.py (reply_packed.h). Not formatted: aligned ends of the lines would
  * all change with the longest.
  */

@@ -2,10 +2,10 @@
 #include "console/reply_said.h"
 
 #include "adxl345.h"
-#include "app/app.h"
 #include "base/counters.h"
+#include "base/health.h"
+#include "base/notices.h"
 #include "base/number.h"
-#include "base/replies.h"
 #include "base/text.h"
 #include "console/measure_lines.h"
 #include "console/reply_lines.h"
@@ -15,6 +15,7 @@
 #include "flash.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
+#include "path/pipeline.h"
 #include "path/supervisor.h"
 #include "settings/settings.h"
 #include "settings/settings_kept.h"
@@ -26,8 +27,6 @@ _Static_assert(TEXT_WATCHDOG - TEXT_POWER_ON == HAL_RESET_WATCHDOG, "words for e
 _Static_assert(TEXT_STATE_FAULTY - TEXT_STATE_STOPPED == ADXL345_FAULTY, "words for each phase");
 
 _Static_assert(TEXT_CHECK_BUS - TEXT_LISTED == SAY_CHECK_BUS - SAY_LISTED, "a text for each");
-
-said_t said;
 
 /* value / 100, with both decimals. */
 static void say_hundredths(uint32_t value)
@@ -42,38 +41,38 @@ static void say_hundredths(uint32_t value)
 }
 
 /* The counters of the firmware, then those of the driver. */
-static uint32_t next_count(void)
+static uint32_t next_count(said_t *said)
 {
-    uint8_t at = said.counters_out++;
+    uint8_t at = said->counters_out++;
     if (at < COUNTERS) {
-        return counters[at];
+        return counted(at);
     }
     return adxl345_count((uint8_t)(at - COUNTERS));
 }
 
-static uint32_t number(uint8_t what)
+static uint32_t number(said_t *said, uint8_t what)
 {
     switch (what) {
     case SAY_COUNT:
-        return next_count();
+        return next_count(said);
     case SAY_SERIAL_LOST:
         return hal_uart_rx_lost();
     case SAY_CYCLES:
-        return settings_cycles.takes;
+        return settings_cycles()->takes;
     case SAY_LEFT:
-        return settings_cycles.left;
+        return settings_cycles()->left;
     case SAY_RESIDUAL:
-        return calibrate_told.residual_mg;
+        return calibrate_told()->residual_mg;
     case SAY_TO_GO:
-        return calibrate_told.left;
+        return calibrate_told()->left;
     case SAY_RUN_NOTE:
         return hal_reset_note();
     case SAY_OUTAGE_MS:
-        return sensor_watch_outage.ms;
+        return sensor_watch_outage()->ms;
     case SAY_OUTAGE_LOST:
-        return sensor_watch_outage.lost;
+        return sensor_watch_outage()->lost;
     default:
-        return said.subject;
+        return said->subject;
     }
 }
 
@@ -81,7 +80,7 @@ static uint8_t hexadecimal(uint8_t what)
 {
     switch (what) {
     case SAY_OUTAGE_ADDRESS:
-        return sensor_watch_outage.address;
+        return sensor_watch_outage()->address;
     case SAY_FOREIGN_ADDRESS:
         return adxl345_foreign_address();
     case SAY_FOREIGN_ID:
@@ -104,8 +103,8 @@ static void say_settings(void)
 
 static void say_verbs(void)
 {
-    for (uint8_t kind = REPLY_HELP; kind <= REPLY_LISTING; kind++) {
-        if (kind != REPLY_HELP) {
+    for (uint8_t kind = NOTICE_HELP; kind <= NOTICE_LISTING; kind++) {
+        if (kind != NOTICE_HELP) {
             text_words(FLASH_TEXT(", "));
         }
         text_words(reply_command_name(kind));
@@ -113,63 +112,63 @@ static void say_verbs(void)
 }
 
 /* What is to be said of a setting behind its value. */
-static uint8_t note(void)
+static uint8_t note(said_t *said)
 {
-    if (said.subject == SETTING_RATE) {
+    if (said->subject == SETTING_RATE) {
         return TEXT_BUS;
     }
-    if (said.subject == SETTING_EVERY && settings_every_in_force() != settings.every) {
-        return settings.line_is_slower ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES;
+    if (said->subject == SETTING_EVERY && settings_every_in_force() != settings()->every) {
+        return settings()->line_is_slower ? TEXT_LINE_CARRIES : TEXT_FILTER_LEAVES;
     }
     return TEXT_NONE;
 }
 
 /* A text that is one of several. */
-static uint8_t text_chosen(uint8_t what)
+static uint8_t text_chosen(said_t *said, uint8_t what)
 {
     switch (what) {
     case SAY_CAUSE:
         return (uint8_t)(TEXT_POWER_ON + hal_reset_cause());
     case SAY_SAFE:
-        return app_is_safe() ? TEXT_SAFE : TEXT_NONE;
+        return health_is_safe() ? TEXT_SAFE : TEXT_NONE;
     case SAY_STATE:
         return (uint8_t)(TEXT_STATE_STOPPED + adxl345_phase());
     case SAY_KEPT:
-        return (uint8_t)(TEXT_KEPT_DAMAGED + settings_kept);
+        return (uint8_t)(TEXT_KEPT_DAMAGED + settings_kept());
     case SAY_LIMITS:
-        return said.subject == 2 ? TEXT_LIMITS_Z : TEXT_LIMITS_XY;
+        return said->subject == 2 ? TEXT_LIMITS_Z : TEXT_LIMITS_XY;
     case SAY_VERDICT:
-        return (uint8_t)(TEXT_FAIL - VERDICT_FAIL + measure_verdict(said.subject));
+        return (uint8_t)(TEXT_FAIL - VERDICT_FAIL + measure_verdict(said->subject));
     case SAY_SETTING_NOTE:
-        return note();
+        return note(said);
     case SAY_EVERY:
-        said.subject = SETTING_EVERY;
+        said->subject = SETTING_EVERY;
         return TEXT_SETTING;
     case SAY_SENSOR:
-        said.subject = (uint8_t)adxl345_fault();
-        return said.subject == ADXL345_FAULT_NONE ? TEXT_SENSOR : TEXT_FAULT_BEGIN;
+        said->subject = (uint8_t)adxl345_fault();
+        return said->subject == ADXL345_FAULT_NONE ? TEXT_SENSOR : TEXT_FAULT_BEGIN;
     case SAY_FAULT_WORDS:
-        return (uint8_t)(TEXT_NO_SENSOR - ADXL345_FAULT_NO_SENSOR + said.subject);
+        return (uint8_t)(TEXT_NO_SENSOR - ADXL345_FAULT_NO_SENSOR + said->subject);
     default:
         return (uint8_t)(TEXT_LISTED - SAY_LISTED + what);
     }
 }
 
 /* What is neither a text nor one of many numbers. */
-static void say_other(uint8_t what)
+static void say_other(said_t *said, uint8_t what)
 {
     switch (what) {
     case SAY_NAME:
-        text_words(reply_command_name(said.subject));
+        text_words(reply_command_name(said->subject));
         break;
     case SAY_SETTING_NAME:
-        text_words(setting_name(said.subject));
+        text_words(setting_name(said->subject));
         break;
     case SAY_SETTING:
-        setting_write(said.subject);
+        setting_write(said->subject);
         break;
     case SAY_LEGAL:
-        setting_write_legal(said.subject);
+        setting_write_legal(said->subject);
         break;
     case SAY_SETTINGS:
         say_settings();
@@ -178,44 +177,44 @@ static void say_other(uint8_t what)
         say_verbs();
         break;
     case SAY_RATE:
-        text_tenths(settings.rate_dhz);
+        text_tenths(settings()->rate_dhz);
         break;
     case SAY_MEASURED:
         say_hundredths(adxl345_rate_chz());
         break;
     case SAY_BUS_KHZ: /* 800 Hz needs 400, where tLOW is 1.25 us instead of the 1.3 us of both data sheets */
-        text_tenths(settings.rate_dhz == 8000 ? 4000 : 3636);
+        text_tenths(settings()->rate_dhz == 8000 ? 4000 : 3636);
         break;
     case SAY_POSITION:
-        text_char((said.subject & 1u) != 0 ? '-' : '+');
-        text_char((char)('x' + (said.subject >> 1)));
+        text_char((said->subject & 1u) != 0 ? '-' : '+');
+        text_char((char)('x' + (said->subject >> 1)));
         break;
     case SAY_AXIS:
-        text_char((char)('x' + said.subject));
+        text_char((char)('x' + said->subject));
         break;
     default:
 #if SUPERVISOR
-        supervisor_say();
+        supervisor_say(pipeline_axes());
 #endif
         break;
     }
 }
 
-uint8_t say(uint8_t code)
+uint8_t say(said_t *said, uint8_t code)
 {
     if (code >= SAY_ALONE) {
-        return text_chosen(code);
+        return text_chosen(said, code);
     }
     if (code >= ' ') {
         text_char((char)code);
     } else if (code <= SAY_LAST_NUMBER) {
-        text_u32(number(code));
+        text_u32(number(said, code));
     } else if (code <= SAY_LAST_HEXADECIMAL) {
         text_hex8(hexadecimal(code));
     } else if (code <= SAY_LAST_Q8) {
-        number_write((uint32_t)measure_number_q8(code, said.subject), 8);
+        number_write((uint32_t)measure_number_q8(code, said->subject), 8);
     } else {
-        say_other(code);
+        say_other(said, code);
     }
     return TEXT_NONE;
 }

@@ -1,20 +1,25 @@
 /* The means of cal6, and what becomes of a calibration that is found. */
 #include "control/calibrate.h"
 
-#include "base/replies.h"
+#include "base/notices.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
 
-calibrate_told_t calibrate_told;
+static calibrate_told_t told;
 
 static int16_t means_lsb_q4[3 * CALIBRATION_POSITIONS]; /* x, y, z of each position in turn */
 static uint8_t known;                                   /* a bit for each position */
 
+const calibrate_told_t *calibrate_told(void)
+{
+    return &told;
+}
+
 void calibrate_start(void)
 {
     known = 0;
-    calibrate_told.left = CALIBRATION_POSITIONS;
-    calibrate_told.position = CALIBRATION_POSITIONS;
+    told.left = CALIBRATION_POSITIONS;
+    told.position = CALIBRATION_POSITIONS;
 }
 
 static uint16_t size_of(int16_t mean_lsb_q4)
@@ -43,45 +48,45 @@ static bool oblique(const int16_t mean_lsb_q4[3], uint8_t position)
 static measure_outcome_t add_position(const int16_t mean_lsb_q4[3])
 {
     uint8_t position = calibration_position(mean_lsb_q4);
-    if (position == calibrate_told.position || oblique(mean_lsb_q4, position)) {
+    if (position == told.position || oblique(mean_lsb_q4, position)) {
         return MEASURE_UNCHANGED;
     }
-    calibrate_told.position = position;
+    told.position = position;
     uint8_t bit = (uint8_t)(1u << position);
     if (known & bit) {
         return MEASURE_REPEATED;
     }
     known |= bit;
-    calibrate_told.left--;
+    told.left--;
     for (uint8_t axis = 0; axis < 3; axis++) {
         means_lsb_q4[3u * position + axis] = mean_lsb_q4[axis];
     }
-    return calibrate_told.left == 0 ? MEASURE_BEGUN : MEASURE_POSITION;
+    return told.left == 0 ? MEASURE_BEGUN : MEASURE_POSITION;
 }
 
 /* What was found is in the settings, or refused. */
 static measure_outcome_t outcome_of(calibration_verdict_t verdict)
 {
-    calibrate_told.verdict = verdict;
+    told.verdict = verdict;
     if (verdict.why != CALIBRATION_GOOD) {
         return MEASURE_WRONG;
     }
-    pipeline_calibrate(&settings.calibration);
+    pipeline_calibrate(&settings()->calibration);
     return MEASURE_DONE;
 }
 
 measure_outcome_t calibrate_take(uint8_t kind, const int16_t mean_lsb_q4[3])
 {
-    if (kind == REPLY_CAL6) {
+    if (kind == NOTICE_CAL6) {
         return add_position(mean_lsb_q4);
     }
-    return outcome_of(kind == REPLY_TARE ? calibration_tare(&settings.calibration, mean_lsb_q4)
-                                         : calibration_single(&settings.calibration, mean_lsb_q4));
+    return outcome_of(kind == NOTICE_TARE ? calibration_tare(&settings()->calibration, mean_lsb_q4)
+                                          : calibration_single(&settings()->calibration, mean_lsb_q4));
 }
 
 void calibrate_start_six(calibration_six_t *six)
 {
-    calibration_six_start(six, &settings.calibration);
+    calibration_six_start(six, &settings()->calibration);
 }
 
 measure_outcome_t calibrate_step(calibration_six_t *six)
@@ -89,5 +94,5 @@ measure_outcome_t calibrate_step(calibration_six_t *six)
     if (calibration_six_step(six, means_lsb_q4)) {
         return MEASURE_BEGUN;
     }
-    return outcome_of(calibration_six_end(six, &settings.calibration, &calibrate_told.residual_mg));
+    return outcome_of(calibration_six_end(six, &settings()->calibration, &told.residual_mg));
 }

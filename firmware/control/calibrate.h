@@ -18,13 +18,13 @@ typedef struct {
     uint8_t position;              /* of cal6: CALIBRATION_POSITIONS, the newest one; none: that number */
     uint8_t left;                  /* positions that are not known yet */
 } calibrate_told_t;
-extern calibrate_told_t calibrate_told;
+const calibrate_told_t *calibrate_told(void);
 
 /* No position is known. */
 void calibrate_start(void);
 
 /*
- * A mean at rest, LSB in Q4, for the command of this reply_kind_t. DONE: a new calibration is in force. WRONG: refused,
+ * A mean at rest, LSB in Q4, for the command of this notice_kind_t. DONE: a new calibration is in force. WRONG: refused,
  * by the verdict, and the old one stays. Of cal6 also: POSITION, one of the six is known and others are not; REPEATED:
  * it was known before; UNCHANGED: it lies as it did; BEGUN: it was the last, and calibrate_step follows.
  */

@@ -1,9 +1,8 @@
 /* Which samples a measurement takes, and what ends it. The words for it are in measure_lines.c. */
 #include "control/measure.h"
 
-#include "app/app.h"
 #include "base/counters.h"
-#include "base/replies.h"
+#include "base/notices.h"
 #include "control/calibrate.h"
 #include "hal_pointer.h"
 #include "hal_sleep.h"
@@ -32,11 +31,12 @@ static struct measure {
         calibration_six_t six; /* in STEP_SOLVE */
     };
     int16_t result_lsb_q4[AXES]; /* the mean; of the second of two less that of the first */
-    uint8_t kind;                /* reply_kind_t */
+    uint8_t kind;                /* notice_kind_t */
     uint8_t step;                /* step_t */
     uint8_t outcome;             /* measure_outcome_t, from STEP_BACK and STEP_TELL on */
     uint8_t skip;                /* samples that are not taken */
     uint8_t began_s;
+    bool asks;  /* for another configuration of the sensor, or for that of the settings */
     bool takes; /* samples come as the step wants them */
     bool borrows;
 } measure;
@@ -52,6 +52,7 @@ static inline struct measure *here(void)
 void measure_reset(void)
 {
     measure.step = STEP_IDLE;
+    measure.asks = false;
     measure.takes = false;
     measure.borrows = false;
 }
@@ -77,13 +78,20 @@ static void enter(step_t step)
     measure.skip = 0;
     if (step != STEP_COLLECT) {
         measure.skip = MEASURE_SETTLE;
-        app_configure(step == STEP_BACK);
+        measure.asks = true;
     }
+}
+
+bool measure_asks(void)
+{
+    bool asks = measure.asks;
+    measure.asks = false;
+    return asks;
 }
 
 static uint8_t second(void)
 {
-    return (uint8_t)counters[COUNT_SECONDS];
+    return (uint8_t)counted(COUNT_SECONDS);
 }
 
 static void collect(step_t step)
@@ -109,14 +117,16 @@ static void end(measure_outcome_t outcome)
     }
 }
 
-void measure_configured(void)
+bool measure_configured(void)
 {
     struct measure *m = here();
-    m->borrows = m->step != STEP_BACK;
-    m->takes = m->borrows;
-    if (!m->borrows) {
+    bool back = m->step == STEP_BACK;
+    m->borrows = !back;
+    m->takes = !back;
+    if (back) {
         m->step = STEP_TELL;
     }
+    return back;
 }
 
 bool measure_start(uint8_t kind)
@@ -127,7 +137,7 @@ bool measure_start(uint8_t kind)
     measure.kind = kind;
     measure.began_s = second();
     calibrate_start();
-    collect(kind == REPLY_SELFTEST ? STEP_PLAIN : STEP_COLLECT);
+    collect(kind == NOTICE_SELFTEST ? STEP_PLAIN : STEP_COLLECT);
     return true;
 }
 
@@ -148,7 +158,7 @@ static bool failed(void)
 
 void measure_stop(void)
 {
-    if (measure.kind == REPLY_CAL6 && (measure.step == STEP_COLLECT || measure.step == STEP_SOLVE)) {
+    if (measure.kind == NOTICE_CAL6 && (measure.step == STEP_COLLECT || measure.step == STEP_SOLVE)) {
         measure_reset();
     }
 }
@@ -171,10 +181,10 @@ void measure_pass(void)
     if (m->step >= STEP_COLLECT && failed()) {
         measure_abort();
     }
-    if (m->step == STEP_TELL && replies_add((reply_kind_t)m->kind, m->outcome)) {
+    if (m->step == STEP_TELL && notices_add((notice_kind_t)m->kind, m->outcome)) {
         m->step = STEP_TOLD;
     }
-    if (m->step == STEP_TOLD && replies_empty()) {
+    if (m->step == STEP_TOLD && notices_empty()) {
         m->step = STEP_IDLE;
     }
 }
@@ -182,7 +192,7 @@ void measure_pass(void)
 /* cal6: it is being turned, and told when it lies still. */
 static void board_moves(void)
 {
-    if (measure.kind == REPLY_CAL6) {
+    if (measure.kind == NOTICE_CAL6) {
         collect(STEP_COLLECT);
     } else {
         end(MEASURE_MOVED);
@@ -194,11 +204,11 @@ static void calibrate(void)
 {
     struct measure *m = here();
     measure_outcome_t outcome = MEASURE_UNCHANGED;
-    if (replies_room()) {
+    if (notices_room()) {
         outcome = calibrate_take(m->kind, m->result_lsb_q4);
     }
     if (outcome == MEASURE_POSITION || outcome == MEASURE_REPEATED) {
-        (void)replies_add(REPLY_CAL6, outcome);
+        (void)notices_add(NOTICE_CAL6, outcome);
         m->began_s = second();
         outcome = MEASURE_UNCHANGED;
     }
@@ -217,7 +227,7 @@ static void calibrate(void)
 /* All samples are there, or one of them has shown that the board moves. */
 static void collected(void)
 {
-    if (!rest_still(&measure.rest, measure.step == STEP_COLLECT ? settings.rate_dhz : MEASURE_SELFTEST_DHZ)) {
+    if (!rest_still(&measure.rest, measure.step == STEP_COLLECT ? settings()->rate_dhz : MEASURE_SELFTEST_DHZ)) {
         board_moves();
         return;
     }
@@ -227,7 +237,7 @@ static void collected(void)
     }
     if (measure.step == STEP_PLAIN) {
         collect(STEP_FORCED);
-    } else if (measure.kind >= REPLY_TARE) {
+    } else if (measure.kind >= NOTICE_TARE) {
         calibrate();
     } else {
         end(MEASURE_DONE);
@@ -239,7 +249,7 @@ static void take(const int16_t lsb[3])
 {
     struct measure *m = here();
     if (m->step == STEP_COLLECT) {
-        m->skip = (uint8_t)(settings.rate_dhz >> 10);
+        m->skip = (uint8_t)(settings()->rate_dhz >> 10);
     }
     if (rest_add(&m->rest, lsb)) {
         collected();

@@ -40,7 +40,7 @@ enum { MEASURE_SELFTEST_DHZ = 4000, MEASURE_SELFTEST_G = 16, MEASURE_SETTLE = 4 
 /* Once at start-up: nothing runs. */
 void measure_reset(void);
 
-/* Begins what this command (reply_kind_t) asks for, whose reply follows; false: another runs. */
+/* Begins what this command (notice_kind_t) asks for, whose reply follows; false: another runs. */
 bool measure_start(uint8_t kind);
 
 /* Every pass of the main loop, after adxl345_poll: ends what has failed, and tells what is over. */
@@ -61,8 +61,14 @@ void measure_stop(void);
 /* What a measurement wants of the sensor, in place of the settings' configuration; nothing: it stays as it is. */
 void measure_configure(adxl345_config_t *config);
 
-/* The configuration that was asked for with app_configure is in force from the next sample on. */
-void measure_configured(void);
+/* The sensor is to follow measure_configure: told once. */
+bool measure_asks(void);
+
+/*
+ * The configuration that was asked for is in force from the next sample on. True: it is that of the settings again, and
+ * the filters, which have missed samples, are to restart.
+ */
+bool measure_configured(void);
 
 /* The results of MEASURE_DONE, by axis: the readings of the last rest, */
 const rest_t *measure_rest(void);

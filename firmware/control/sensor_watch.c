@@ -5,7 +5,7 @@
 
 #include "adxl345.h"
 #include "base/counters.h"
-#include "base/replies.h"
+#include "base/notices.h"
 #include "flash.h"
 #include "fx.h"
 #include "hal_led.h"
@@ -26,8 +26,6 @@ static const uint8_t flashes[] FLASH = {
     [ADXL345_FAULT_STUCK] = 4,     [ADXL345_FAULT_TORN] = 4,        [ADXL345_FAULT_TWO_SENSORS] = 4,
 };
 
-sensor_outage_t sensor_watch_outage;
-
 typedef struct {
     uint32_t began_us; /* the outage; what the counters were then: */
     uint32_t began_s;
@@ -39,6 +37,12 @@ typedef struct {
 } watch_t;
 
 static watch_t watch;
+static sensor_outage_t told;
+
+const sensor_outage_t *sensor_watch_outage(void)
+{
+    return &told;
+}
 
 /* Nothing is told of what was before. */
 FX_NOINLINE void forget(void)
@@ -50,24 +54,20 @@ FX_NOINLINE void forget(void)
 static void begin_outage(watch_t *w, uint32_t now_us)
 {
     w->began_us = now_us;
-    const uint32_t *at = counters;
-    HAL_POINTER(at);
-    w->began_s = at[COUNT_SECONDS];
-    w->began_lost = at[COUNT_LOST];
+    w->began_s = counted(COUNT_SECONDS);
+    w->began_lost = counted(COUNT_LOST);
 }
 
 /* Microseconds wrap after 71 minutes: an outage of more than a minute is told in whole seconds. So do milliseconds. */
 static void end_outage(watch_t *w, uint32_t now_us)
 {
-    const uint32_t *at = counters;
-    HAL_POINTER(at);
-    uint32_t seconds = at[COUNT_SECONDS] - w->began_s;
+    uint32_t seconds = counted(COUNT_SECONDS) - w->began_s;
     if (seconds < 60u) {
         w->outage.ms = (now_us - w->began_us) / 1000u;
     } else {
         w->outage.ms = seconds < MS_WRAP_S ? seconds * 1000u : UINT32_MAX;
     }
-    w->outage.lost = at[COUNT_LOST] - w->began_lost;
+    w->outage.lost = counted(COUNT_LOST) - w->began_lost;
     w->outage.address = adxl345_address();
     w->over = true;
 }
@@ -110,16 +110,16 @@ void sensor_watch_start(uint32_t now_us)
 static void tell(void)
 {
     uint16_t bit = (uint16_t)(1u << watch.newest);
-    if (watch.newest == ADXL345_FAULT_NONE || settings.mode == MODE_PLOT) {
+    if (watch.newest == ADXL345_FAULT_NONE || settings()->mode == MODE_PLOT) {
         return;
     }
     if (!(watch.told_mask & bit)) {
-        if (replies_add(REPLY_FAULT_BEGIN, watch.newest)) {
+        if (notices_add(NOTICE_FAULT_BEGIN, watch.newest)) {
             watch.told_mask |= bit;
         }
-    } else if (watch.over && !replies_hold(REPLY_FAULT_END, REPLY_FAULT_END) &&
-               replies_add(REPLY_FAULT_END, watch.newest)) {
-        sensor_watch_outage = watch.outage;
+    } else if (watch.over && !notices_hold(NOTICE_FAULT_END, NOTICE_FAULT_END) &&
+               notices_add(NOTICE_FAULT_END, watch.newest)) {
+        told = watch.outage;
         forget();
     }
 }

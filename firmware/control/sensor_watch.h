@@ -18,6 +18,6 @@ typedef struct {
     uint32_t lost;
     uint8_t address;
 } sensor_outage_t;
-extern sensor_outage_t sensor_watch_outage;
+const sensor_outage_t *sensor_watch_outage(void);
 
 #endif

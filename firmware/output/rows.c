@@ -6,7 +6,6 @@
 #include "flash.h"
 #include "hal_uart.h"
 #include "path/pipeline.h"
-#include "settings/settings.h"
 
 /* The longest row is one of the plotter: four angles of FORMAT_HUNDREDTHS_MAX and the labels, 69 bytes. */
 enum { ROW_MAX = 72 };
@@ -59,10 +58,10 @@ static char *write_plot(char *at, const row_t *row)
     return at;
 }
 
-static void write(const row_t *row)
+static void write(const row_t *row, bool plot)
 {
     char line[ROW_MAX];
-    char *end = settings.mode == MODE_PLOT ? write_plot(line, row) : write_csv(line, row);
+    char *end = plot ? write_plot(line, row) : write_csv(line, row);
     *end++ = '\n';
     if (!hal_uart_tx_write(line, (uint8_t)(end - line))) {
         count(COUNT_DROPPED);
@@ -73,15 +72,15 @@ static void write(const row_t *row)
     pipeline_row_done();
 }
 
-void rows_sample(void)
+void rows_sample(uint16_t every, bool plot)
 {
     since_row++;
-    if (since_row >= settings.every_smallest && since_row >= settings.every) {
-        rows_at_once();
+    if (since_row >= every) {
+        rows_at_once(plot);
     }
 }
 
-void rows_at_once(void)
+void rows_at_once(bool plot)
 {
     if (!enabled) {
         return;
@@ -89,5 +88,5 @@ void rows_at_once(void)
     since_row = 0;
     row_t row;
     pipeline_row(&row);
-    write(&row);
+    write(&row, plot);
 }

@@ -11,10 +11,13 @@ void rows_start(void);
 /* Rows may go out (false while the banner and the header are not through). */
 void rows_enable(bool enabled);
 
-/* A sample has been filtered, or is missing: its row if it is the one in `every`. */
-void rows_sample(void);
+/*
+ * A sample has been filtered, or is missing: its row if it is the one in `every`. plot: in the form for the plotters, not
+ * csv.
+ */
+void rows_sample(uint16_t every, bool plot);
 
 /* Its row, whatever `every` says. */
-void rows_at_once(void);
+void rows_at_once(bool plot);
 
 #endif

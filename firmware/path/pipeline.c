@@ -1,24 +1,57 @@
 /*
- * The sample path of main; how filters begin and change is in pipeline_change.c. Its cycles: sample_total in
- * docs/benchmarks.md.
+ * The sample path of main: filters begun, changed, told the sensor's true rate; samples, or the places of missing ones,
+ * taken through them. Its cycles: sample_total in docs/benchmarks.md.
  */
 #include "path/pipeline.h"
 
+#include "base/choice.h"
 #include "base/counters.h"
 #include "fx.h"
-#include "path/pipeline_state.h"
 #include "path/silence.h"
 #include "path/supervisor.h"
-#include "settings/parameters.h"
+#include "tilt.h"
+#include "tilt_axis.h"
 
-enum { HUNG_SAMPLES = 16 }; /* with ROW_STUCK, on end: a filter has learned from them */
+enum { AXES = 3, WARM_ROWS = 5 };
+enum { HUNG_SAMPLES = 16 };                /* with ROW_STUCK, in a row: a filter has learned from them */
+enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_retime; 1 degree */
+
+/* What pipeline_work is to take through the filters: a sample, or the place of one that is missing. */
+typedef enum { WORK_NONE, WORK_SAMPLE, WORK_COAST } work_t;
+
+static struct {
+    tilt_axis_t axes[AXES];
+    uint16_t looked_lsb_q2[AXES]; /* the estimates a second ago */
+    int32_t a_q8[AXES];           /* the estimates in the axes of the carrier, 1/256 g */
+    calibration_applied_t applied;
+#if SUPERVISOR
+    const calibration_t *calibration; /* that is applied */
+#endif
+    const filter_choice_t *choice;
+    adxl345_sample_t newest; /* or the time of the one that is missing, and the last readings */
+    tilt_t tilt;
+    tilt_t raw_tilt;
+    int16_t rail_high_lsb;
+    uint16_t rate_dhz; /* nominal */
+    uint16_t true_dhz; /* that the filters have */
+    uint8_t calls_off;
+    uint16_t flags;
+    uint8_t warm_rows;
+    uint8_t work;     /* work_t */
+    uint8_t to_begin; /* so many axes, the first ones, are to get a new filter */
+    bool cold;        /* all of them before the next sample, and a new noise estimate; else one with each sample */
+    bool turn;        /* one with this sample */
+    uint8_t new_kind; /* filter_kind_t */
+    bool own_r;       /* R is the user's, not the estimated one */
+    bool is_stuck;    /* the newest sample has ROW_STUCK */
+    uint8_t stuck;    /* samples with ROW_STUCK in a row before this one, up to HUNG_SAMPLES */
+    bool has_sample;
+} pipeline;
 
 _Static_assert((int)TILT_GATED == (int)ROW_GATED && (int)TILT_COASTED == (int)ROW_COASTED &&
                    (int)TILT_REACQUIRED == (int)ROW_REACQUIRED && (int)TILT_CLIPPED == (int)ROW_CLIPPED &&
                    (int)TILT_WARMING_UP == (int)ROW_WARMING_UP,
                "same bits");
-
-pipeline_t pipeline;
 
 void pipeline_reset(void)
 {
@@ -38,15 +71,106 @@ FX_ONCE void pipeline_coast(uint32_t t_us)
     pipeline.work = WORK_COAST;
 }
 
+uint16_t pipeline_rate_dhz(void)
+{
+    return pipeline.true_dhz;
+}
+
+const tilt_axis_t *pipeline_axes(void)
+{
+    return pipeline.axes;
+}
+
 uint32_t pipeline_newest_us(void)
 {
     return pipeline.newest.t_us;
 }
 
-uint32_t axis_r_lsb2_q8(const tilt_axis_t *axis)
+/*
+ * Filters that go on from an output are changed one with each sample, so that a row waits for one of them: a Kalman
+ * filter takes up to 2.4 ms to settle. Else, and where the noise is not known either, all at once: no sample comes
+ * meanwhile.
+ */
+FX_NOINLINE void begin_all(bool cold)
 {
-    uint32_t set_lsb2_q8 = parameters_r_lsb2_q8();
-    return set_lsb2_q8 != 0 ? set_lsb2_q8 : filter_noise_r_lsb2_q8(&axis->noise);
+    pipeline.cold = cold;
+    pipeline.turn = false;
+    pipeline.to_begin = AXES;
+}
+
+FX_ONCE void pipeline_retime(uint32_t period_us)
+{
+    bool still = true;
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        uint16_t now_lsb_q2 = (uint16_t)(tilt_axis_estimate_q8(&pipeline.axes[axis]) >> 6);
+        still = (uint16_t)(now_lsb_q2 - pipeline.looked_lsb_q2[axis] + STILL_LSB_Q2) <= 2u * STILL_LSB_Q2 && still;
+        pipeline.looked_lsb_q2[axis] = now_lsb_q2;
+    }
+    uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
+    uint16_t near_dhz = (pipeline.true_dhz >> 7) + 1u;
+    if ((uint16_t)(true_dhz - pipeline.true_dhz + near_dhz) <= (uint16_t)(2u * near_dhz)) {
+        pipeline.calls_off = 0;
+    } else if (pipeline.calls_off < CALLS_OFF) {
+        pipeline.calls_off++;
+    } else if (still) {
+        pipeline.true_dhz = true_dhz;
+        begin_all(false);
+    }
+}
+
+/* The filter goes on from the old one's estimate, where there is one, or warms up. */
+FX_NOINLINE void begin_axis(tilt_axis_t *axis)
+{
+    int16_t from_lsb = tilt_axis_estimate_lsb(axis);
+    choice_begin(pipeline.choice, &axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
+    uint32_t r_lsb2_q8 = choice_r_lsb2_q8(pipeline.choice);
+    pipeline.own_r = r_lsb2_q8 != 0;
+    filter_set_noise(&axis->filter, r_lsb2_q8 != 0 ? r_lsb2_q8 : filter_noise_r_lsb2_q8(&axis->noise));
+    if (pipeline.has_sample) {
+        filter_reset(&axis->filter, from_lsb);
+    } else {
+        axis->away = 0;
+    }
+}
+
+FX_NOINLINE bool begin_next(void)
+{
+    uint8_t left = pipeline.to_begin;
+    if (left == 0 || !(pipeline.turn || pipeline.cold)) {
+        return false;
+    }
+    left--;
+    pipeline.to_begin = left;
+    pipeline.turn = false;
+    tilt_axis_t *axis = &pipeline.axes[left];
+    if (pipeline.cold) {
+        filter_noise_init(&axis->noise, pipeline.rate_dhz, left == 2);
+    }
+    begin_axis(axis);
+    return true;
+}
+
+/* The filters go on from the old output, where there is one, the noise estimates too unless the rate is new. */
+void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g)
+{
+    bool cold = !pipeline.has_sample || rate_dhz != pipeline.rate_dhz;
+    if (cold) {
+        pipeline.true_dhz = rate_dhz;
+        pipeline.calls_off = 0;
+    }
+    pipeline.choice = choice;
+    pipeline.new_kind = choice->filter;
+    pipeline.rate_dhz = rate_dhz;
+    pipeline.warm_rows = WARM_ROWS;
+    pipeline.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
+    begin_all(cold);
+}
+
+void pipeline_start(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g)
+{
+    pipeline.has_sample = false;
+    pipeline.stuck = 0;
+    pipeline_change(choice, rate_dhz, range_g);
 }
 
 static void count_sample(uint8_t flags)
@@ -71,7 +195,7 @@ void pipeline_calibrate(const calibration_t *calibration)
     (void)calibration_prepare(&pipeline.applied, calibration);
 }
 
-/* Once for the sample, or the missing one, because it is dear: the row takes what the check of gravity took. */
+/* Once for the sample, or the missing one, because it is expensive: the row takes what the check of gravity took. */
 static void find_accelerations(void)
 {
     int32_t estimates_q8[AXES];
@@ -79,7 +203,11 @@ static void find_accelerations(void)
         estimates_q8[axis] = tilt_axis_estimate_q8(&pipeline.axes[axis]);
     }
 #if SUPERVISOR
-    supervisor_complete(estimates_q8);
+    supervisor_view_t view = { pipeline.axes, pipeline.newest.lsb, pipeline.rail_high_lsb, pipeline.calibration,
+                               &pipeline.applied };
+    if (supervisor_complete(&view, estimates_q8)) {
+        pipeline_flag(ROW_LEFT_OUT);
+    }
 #endif
     calibration_apply(&pipeline.applied, estimates_q8, pipeline.a_q8);
 }
@@ -113,7 +241,6 @@ static bool hung(void)
 FX_NOINLINE void filter_axes(void)
 {
     bool sample = pipeline.work == WORK_SAMPLE;
-    bool own_r = parameters_r_lsb2_q8() != 0;
     uint8_t flags = 0;
     const int16_t *lsb = pipeline.newest.lsb;
     for (tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
@@ -121,7 +248,7 @@ FX_NOINLINE void filter_axes(void)
             flags |= tilt_axis_missing(axis);
             continue;
         }
-        flags |= tilt_axis_update(axis, *lsb++, pipeline.rail_high_lsb, own_r);
+        flags |= tilt_axis_update(axis, *lsb++, pipeline.rail_high_lsb, pipeline.own_r);
         if (SUPERVISOR && (axis->filter.flags & FILTER_SWITCHED) != 0) {
             pipeline_flag(ROW_SWITCHED);
         }
@@ -161,7 +288,7 @@ void pipeline_sample(const adxl345_sample_t *sample)
     pipeline.is_stuck = false;
     silence_end();
 #if SUPERVISOR
-    supervisor_look(sample->lsb);
+    supervisor_look(pipeline.newest.lsb, sample->lsb);
 #endif
     pipeline.newest = *sample;
     pipeline.work = WORK_SAMPLE;

@@ -9,7 +9,9 @@
 #include <stdint.h>
 
 #include "adxl345.h"
+#include "base/choice.h"
 #include "calibration.h"
+#include "tilt_axis.h"
 
 /* Bits of the row's `flags` column (docs/protocol.md). */
 enum row_flag {
@@ -50,14 +52,17 @@ void pipeline_reset(void);
 /* What turns readings into accelerations from now on, legal (calibration.h) and to be left where it lies. */
 void pipeline_calibrate(const calibration_t *calibration);
 
-/* Begin anew: filters collect a robust start, noise estimates start at their floor. */
-void pipeline_start(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
+/*
+ * Restart: filters collect a robust start, noise estimates start at their floor. The choice is to be left where it lies:
+ * it is looked at whenever a filter begins.
+ */
+void pipeline_start(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g);
 
 /*
  * Change filter, rate or range while running: the new filters start from the old output, one axis ahead of each of the
  * next three samples, so that no row waits for all. With another rate all at once, and the noise begins anew.
  */
-void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
+void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g);
 
 /*
  * Each second the measured time between samples: when its rate is 0.8 % (at 12.5 Hz 1.6 %) or more from what the
@@ -68,8 +73,7 @@ void pipeline_change(uint8_t filter_kind, uint16_t rate_dhz, uint8_t range_g);
 void pipeline_retime(uint32_t period_us);
 
 /*
- * One piece of what pipeline_start, _change, _retime, _coast or _sample have begun: the filter of an axis changed, up
- * to
+ * One piece of what pipeline_start, _change, _retime, _coast or _sample have begun: the filter of an axis changed, up to
  * 4 ms, or a sample; false: nothing was left to do. So the main loop can look after other things meanwhile. Nothing
  * else is to be begun before, but a change takes the place of a change.
  */
@@ -90,6 +94,12 @@ void pipeline_sample(const adxl345_sample_t *sample);
  * halved every 25 ms, then the estimate holds.
  */
 void pipeline_coast(uint32_t t_us);
+
+/* The output data rate that the filters have, or get with the next samples, 0.1 Hz. */
+uint16_t pipeline_rate_dhz(void);
+
+/* The three axes, to be looked at. */
+const tilt_axis_t *pipeline_axes(void);
 
 /* Time of the newest sample, or of the one that is missing. */
 uint32_t pipeline_newest_us(void);

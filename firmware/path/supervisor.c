@@ -4,10 +4,12 @@
 #if SUPERVISOR
 
 #include "base/text.h"
+#include "filter_list.h"
 #include "flash.h"
 #include "fx.h"
-#include "path/pipeline_state.h"
 #include "tilt_partial.h"
+
+enum { AXES = 3 };
 
 static struct {
     uint8_t repeated[AXES]; /* readings on end that are the one before, saturating */
@@ -17,9 +19,9 @@ static struct {
 } supervisor;
 
 /* On all axes: a change of filter begins with the last and ends with the first. */
-static bool in_force(void)
+static bool in_force(const tilt_axis_t *axes)
 {
-    return pipeline.axes[0].filter.law == &filter_law_auto && pipeline.axes[AXES - 1].filter.law == &filter_law_auto;
+    return axes[0].filter.law == &filter_law_auto && axes[AXES - 1].filter.law == &filter_law_auto;
 }
 
 /* The signs stay: of an axis that is stuck since before, its last is the best guess. */
@@ -31,11 +33,11 @@ void supervisor_reset(void)
     supervisor.left_out = AXES;
 }
 
-void supervisor_look(const int16_t lsb[3])
+void supervisor_look(const int16_t before[3], const int16_t lsb[3])
 {
     for (uint8_t axis = 0; axis < AXES; axis++) {
         uint8_t *repeated = &supervisor.repeated[axis];
-        if (lsb[axis] != pipeline.newest.lsb[axis]) {
+        if (lsb[axis] != before[axis]) {
             *repeated = 0;
         } else if (*repeated != UINT8_MAX) {
             (*repeated)++;
@@ -43,22 +45,21 @@ void supervisor_look(const int16_t lsb[3])
     }
 }
 
-static bool is_bad(uint8_t axis)
+static bool is_bad(const supervisor_view_t *view, uint8_t axis)
 {
-    int16_t lsb = pipeline.newest.lsb[axis];
-    bool at_rail = tilt_at_rail(lsb, pipeline.rail_high_lsb);
+    bool at_rail = tilt_at_rail(view->lsb[axis], view->rail_high_lsb);
     uint8_t limit = at_rail ? SUPERVISOR_RAIL_SAMPLES : SUPERVISOR_REPEATED_SAMPLES;
     return supervisor.repeated[axis] >= limit;
 }
 
 /* The one axis that is bad, while another changes; AXES: none, or more. */
-static uint8_t bad_axis(void)
+static uint8_t bad_axis(const supervisor_view_t *view)
 {
     uint8_t found = AXES;
     bool changes = false;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         changes |= supervisor.repeated[axis] < SUPERVISOR_RAIL_SAMPLES;
-        if (is_bad(axis)) {
+        if (is_bad(view, axis)) {
             if (found != AXES) {
                 return AXES;
             }
@@ -69,18 +70,18 @@ static uint8_t bad_axis(void)
 }
 
 /* What an axis reads at 0 g, Q8. */
-static int32_t offset_q8(uint8_t axis)
+static int32_t offset_q8(const supervisor_view_t *view, uint8_t axis)
 {
-    return (int32_t)pipeline.calibration->offset_lsb_q4[axis] * 16;
+    return (int32_t)view->calibration->offset_lsb_q4[axis] * 16;
 }
 
-static void note_signs(const int32_t estimates_q8[3])
+static void note_signs(const supervisor_view_t *view, const int32_t estimates_q8[3])
 {
     for (uint8_t axis = 0; axis < AXES; axis++) {
         uint8_t bit = (uint8_t)(1u << axis);
         if (supervisor.repeated[axis] == 0) {
             supervisor.negative &= (uint8_t)~bit;
-            if (estimates_q8[axis] < offset_q8(axis)) {
+            if (estimates_q8[axis] < offset_q8(view, axis)) {
                 supervisor.negative |= bit;
             }
         }
@@ -91,40 +92,40 @@ static void note_signs(const int32_t estimates_q8[3])
  * Without the bad axis' part the calibrated vector lies across it, whatever the mounting is; what is missing of 1 g is
  * its part, and in its own readings that by its scale.
  */
-void supervisor_complete(int32_t estimates_q8[3])
+bool supervisor_complete(const supervisor_view_t *view, int32_t estimates_q8[3])
 {
     supervisor.left_out = AXES;
-    if (!in_force()) {
-        return;
+    if (!in_force(view->axes)) {
+        return false;
     }
-    note_signs(estimates_q8);
-    uint8_t bad = bad_axis();
+    note_signs(view, estimates_q8);
+    uint8_t bad = bad_axis(view);
     if (bad == AXES) {
-        return;
+        return false;
     }
     int32_t a_q8[AXES];
-    estimates_q8[bad] = offset_q8(bad);
-    calibration_apply(&pipeline.applied, estimates_q8, a_q8);
+    estimates_q8[bad] = offset_q8(view, bad);
+    calibration_apply(view->applied, estimates_q8, a_q8);
     uint16_t missing_q6 = tilt_missing_q6(a_q8[0], a_q8[1], a_q8[2]);
     /* Q6 x UQ6 of 256 LSB per g: Q8 */
-    int32_t part_q8 = (int32_t)(fx_product_u16(missing_q6, pipeline.calibration->scale_lsb_per_g_uq6[bad]) >> 12);
+    int32_t part_q8 = (int32_t)(fx_product_u16(missing_q6, view->calibration->scale_lsb_per_g_uq6[bad]) >> 12);
     bool negative = (supervisor.negative & (uint8_t)(1u << bad)) != 0;
     estimates_q8[bad] += negative ? -part_q8 : part_q8;
     supervisor.missing_q6 = missing_q6;
     supervisor.left_out = bad;
-    pipeline_flag(ROW_LEFT_OUT);
+    return true;
 }
 
 /* What offset and scale leave of 1 g before a calibration, 39 mg: typical 0 g offset 35 mg (data sheet p. 3). LSB. */
 #define PART_ERROR_LSB 10ul
 
 /* Of the noisier axis that remains, LSB in Q8, and in it what the part may be off. */
-static uint16_t remaining_sigma_q8(void)
+static uint16_t remaining_sigma_q8(const tilt_axis_t *axes)
 {
     uint32_t p_lsb2_q8 = 0;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         filter_probe_t probe;
-        filter_probe(&pipeline.axes[axis].filter, &probe);
+        filter_probe(&axes[axis].filter, &probe);
         if (axis != supervisor.left_out && probe.p_lsb2_q8 > p_lsb2_q8) {
             p_lsb2_q8 = probe.p_lsb2_q8;
         }
@@ -137,23 +138,23 @@ static void say_axis(uint8_t axis)
     text_char((char)('x' + axis));
 }
 
-void supervisor_say(void)
+void supervisor_say(const tilt_axis_t axes[3])
 {
     static const char names[AUTO_MEMBERS][8] FLASH = { " slow", " middle", " fast" };
-    if (!in_force()) {
+    if (!in_force(axes)) {
         return;
     }
     text_words(FLASH_TEXT(", chosen"));
     for (uint8_t axis = 0; axis < AXES; axis++) {
         text_char(' ');
         say_axis(axis);
-        text_words(names[pipeline.axes[axis].filter.own.bank.chosen]);
+        text_words(names[axes[axis].filter.own.bank.chosen]);
     }
     if (supervisor.left_out != AXES) {
         text_words(FLASH_TEXT(", without "));
         say_axis(supervisor.left_out);
         text_words(FLASH_TEXT(" sigma cdeg "));
-        text_u32(tilt_partial_sigma_cdeg(remaining_sigma_q8(), supervisor.missing_q6));
+        text_u32(tilt_partial_sigma_cdeg(remaining_sigma_q8(axes), supervisor.missing_q6));
     }
 }
 

@@ -13,7 +13,11 @@
 #ifndef SUPERVISOR_H
 #define SUPERVISOR_H
 
+#include <stdbool.h>
 #include <stdint.h>
+
+#include "calibration.h"
+#include "tilt_axis.h"
 
 #ifndef SUPERVISOR
 #define SUPERVISOR 0
@@ -24,13 +28,25 @@ enum { SUPERVISOR_RAIL_SAMPLES = 16, SUPERVISOR_REPEATED_SAMPLES = 250 };
 /* No axis is left out, nothing is known of their readings. */
 void supervisor_reset(void);
 
-/* The readings of a sample, before they take the place of those in the pipeline. */
-void supervisor_look(const int16_t lsb[3]);
+/* The readings of a sample, and those of the one before. */
+void supervisor_look(const int16_t before[3], const int16_t lsb[3]);
 
-/* In the place of the bad axis' estimate (LSB in Q8) what the others leave of 1 g. Flags the row. */
-void supervisor_complete(int32_t estimates_q8[3]);
+/* What the sample path has of the newest sample. */
+typedef struct {
+    const tilt_axis_t *axes; /* three */
+    const int16_t *lsb;      /* the readings */
+    int16_t rail_high_lsb;
+    const calibration_t *calibration;
+    const calibration_applied_t *applied; /* the same, prepared */
+} supervisor_view_t;
 
-/* "x slow y fast z fast", and of an axis left out "without z sigma cdeg 93", for `status`; nothing of other filters. */
-void supervisor_say(void);
+/* In the place of the bad axis' estimate (LSB in Q8) what the others leave of 1 g: true; false: no axis is bad. */
+bool supervisor_complete(const supervisor_view_t *view, int32_t estimates_q8[3]);
+
+/*
+ * "x slow y fast z fast", and of an axis left out "without z sigma cdeg 93", for `status`; nothing of other
+ * filters.
+ */
+void supervisor_say(const tilt_axis_t axes[3]);
 
 #endif

@@ -5,24 +5,28 @@
 #include "flash.h"
 #include "fx.h"
 #include "hal_time.h"
-#include "path/pipeline.h"
 #include "settings/settings_words.h"
 
-settings_t settings;
-settings_cycles_t settings_cycles;
+static settings_t kept;
+static settings_cycles_t cycles;
 
 enum { AXES = 3 };
 
+settings_t *settings(void)
+{
+    return &kept;
+}
+
 void settings_defaults(void)
 {
-    settings.baud = SETTINGS_BAUD_DEFAULT;
-    settings.rate_dhz = 1000;
-    settings.every = 1;
-    settings.range_g = 16;
+    settings()->baud = SETTINGS_BAUD_DEFAULT;
+    settings()->rate_dhz = 1000;
+    settings()->every = 1;
+    settings()->range_g = 16;
     settings_take_filter(0); /* the first of the image's */
-    settings.mode = MODE_CSV;
-    settings.address = 0;
-    calibration_plain(&settings.calibration, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
+    settings()->mode = MODE_CSV;
+    settings()->address = 0;
+    calibration_plain(&settings()->calibration, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
     settings_follow();
 }
 
@@ -39,19 +43,9 @@ uint8_t settings_filter_mark(uint8_t filter)
 
 void settings_take_filter(uint8_t filter)
 {
-    settings.filter = filter;
-    settings.filter_mark = settings_filter_mark(filter);
-    settings.own = 0;
-}
-
-bool settings_calibrate(const calibration_t *calibration)
-{
-    if (calibration_check(calibration).why != CALIBRATION_GOOD) {
-        return false;
-    }
-    settings.calibration = *calibration;
-    pipeline_calibrate(&settings.calibration);
-    return true;
+    settings()->choice.filter = filter;
+    settings()->choice.mark = settings_filter_mark(filter);
+    settings()->choice.own = 0;
 }
 
 FX_ONCE uint16_t settings_filter_cycles(uint8_t filter)
@@ -72,8 +66,13 @@ bool settings_fit(uint8_t filter, uint16_t rate_dhz)
     if (takes < left) {
         return true;
     }
-    settings_cycles = (settings_cycles_t){ takes, (uint16_t)left };
+    cycles = (settings_cycles_t){ takes, (uint16_t)left };
     return false;
+}
+
+const settings_cycles_t *settings_cycles(void)
+{
+    return &cycles;
 }
 
 /* Rounded up; wanted is at least 1. */
@@ -90,14 +89,14 @@ uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
 
 void settings_follow(void)
 {
-    uint16_t carried = settings_smallest_every(settings.baud, settings.rate_dhz);
-    uint16_t computed = quotient(SETTINGS_ROW_CYCLES,
-                                 settings_left_cycles(settings.rate_dhz) - settings_filter_cycles(settings.filter));
-    settings.line_is_slower = carried >= computed;
-    settings.every_smallest = settings.line_is_slower ? carried : computed;
+    uint16_t carried = settings_smallest_every(settings()->baud, settings()->rate_dhz);
+    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, settings_left_cycles(settings()->rate_dhz) -
+                                                          settings_filter_cycles(settings()->choice.filter));
+    settings()->line_is_slower = carried >= computed;
+    settings()->every_smallest = settings()->line_is_slower ? carried : computed;
 }
 
 FX_ONCE uint16_t settings_every_in_force(void)
 {
-    return settings.every > settings.every_smallest ? settings.every : settings.every_smallest;
+    return settings()->every > settings()->every_smallest ? settings()->every : settings()->every_smallest;
 }

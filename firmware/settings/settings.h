@@ -5,32 +5,28 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/choice.h"
 #include "calibration.h"
 #include "settings/store.h"
-
-enum { SETTINGS_PARAMETERS_MAX = 8 };
 
 typedef enum { MODE_CSV, MODE_PLOT } output_mode_t;
 
 /* All that is kept; the image has room for what later versions keep. */
-#define SETTINGS_KEPT_BYTES (45u + sizeof(calibration_t))
+#define SETTINGS_KEPT_BYTES (sizeof(filter_choice_t) + 11u + sizeof(calibration_t))
 
 /* Little-endian on PC and chip and without gaps, as far as it is kept: its bytes are the image that `save` writes. */
 typedef struct {
-    uint32_t parameters[SETTINGS_PARAMETERS_MAX]; /* of the filter, as stored: those of which `own` has a bit */
-    uint32_t baud;                                /* legal values of all: settings_table.c */
-    uint16_t rate_dhz;                            /* output data rate in 0.1 Hz */
-    uint16_t every;                               /* a row for every Nth sample, as asked for: 1..SETTINGS_EVERY_MAX */
-    calibration_t calibration;                    /* legal: settings_calibrate */
-    uint8_t range_g;                              /* 2, 4, 8, 16 */
-    uint8_t mode;                                 /* output_mode_t */
-    uint8_t address;                              /* of the sensor, 7 bits; 0: the one that answers */
-    uint8_t own;                                  /* bits: which parameters of the filter the user has set */
-    uint8_t filter_mark; /* settings_filter_mark of the filter: kinds are numbered anew in each image */
+    filter_choice_t choice;    /* as stored; the filter follows from its mark when settings are loaded */
+    uint32_t baud;             /* legal values of all: settings_table.c */
+    uint16_t rate_dhz;         /* output data rate in 0.1 Hz */
+    uint16_t every;            /* a row for every Nth sample, as asked for: 1..SETTINGS_EVERY_MAX */
+    calibration_t calibration; /* legal: calibration_check */
+    uint8_t range_g;           /* 2, 4, 8, 16 */
+    uint8_t mode;              /* output_mode_t */
+    uint8_t address;           /* of the sensor, 7 bits; 0: the one that answers */
     uint8_t spare[STORE_IMAGE_SIZE - SETTINGS_KEPT_BYTES];
     uint8_t store_tail[STORE_TAIL_SIZE]; /* the store's own, see store.h */
     /* not kept */
-    uint8_t filter;          /* filter_kind_t */
     uint16_t every_smallest; /* follows from baud, rate and filter: settings_follow */
     bool line_is_slower;     /* than the processor: it decides that */
 } settings_t;
@@ -53,7 +49,8 @@ typedef struct {
 #define SETTINGS_REST_CYCLES 8300u
 #define SETTINGS_ROW_CYCLES 10500u
 
-extern settings_t settings;
+/* The one instance: changed by this room and by control. */
+settings_t *settings(void);
 
 void settings_defaults(void);
 
@@ -62,9 +59,6 @@ uint8_t settings_filter_mark(uint8_t filter);
 
 /* The setting `filter`: with its mark, its parameters as shipped. */
 void settings_take_filter(uint8_t filter);
-
-/* A calibration takes effect and is in the settings; false: it is not legal, nothing changes. */
-bool settings_calibrate(const calibration_t *calibration);
 
 /* Cycles that three axes of a filter take at most, and those that this output data rate leaves for them. */
 uint16_t settings_filter_cycles(uint8_t filter);
@@ -78,7 +72,7 @@ typedef struct {
     uint16_t takes;
     uint16_t left;
 } settings_cycles_t;
-extern settings_cycles_t settings_cycles;
+const settings_cycles_t *settings_cycles(void);
 
 /* To be called when baud, rate or filter has changed. */
 void settings_follow(void);

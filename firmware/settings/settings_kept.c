@@ -10,7 +10,18 @@
 _Static_assert(STORE_IMAGE_SIZE == offsetof(settings_t, store_tail), "what is kept of the settings");
 _Static_assert((int)KEPT_OLDER == (int)STORE_OTHER_COPY, "the store's answers, in its order");
 
-uint8_t settings_kept;
+static uint8_t kept; /* kept_t */
+
+uint8_t settings_kept(void)
+{
+    return kept;
+}
+
+void settings_unread(void)
+{
+    settings_defaults();
+    kept = KEPT_UNREAD;
+}
 
 /* The kind whose name has this mark; FILTER_KIND_COUNT when the image holds none. */
 static uint8_t kind_marked(uint8_t mark)
@@ -24,17 +35,17 @@ static uint8_t kind_marked(uint8_t mark)
 
 void settings_load(void)
 {
-    settings_kept = (uint8_t)store_load((uint8_t *)&settings);
-    if (settings_kept >= KEPT_GOOD && calibration_check(&settings.calibration).why != CALIBRATION_GOOD) {
-        settings_kept = KEPT_DAMAGED;
+    kept = (uint8_t)store_load((uint8_t *)settings());
+    if (kept >= KEPT_GOOD && calibration_check(&settings()->calibration).why != CALIBRATION_GOOD) {
+        kept = KEPT_DAMAGED;
     }
-    if (settings_kept < KEPT_GOOD) {
+    if (kept < KEPT_GOOD) {
         settings_defaults();
     } else {
-        settings.filter = kind_marked(settings.filter_mark);
-        if (settings.filter == FILTER_KIND_COUNT) {
+        settings()->choice.filter = kind_marked(settings()->choice.mark);
+        if (settings()->choice.filter == FILTER_KIND_COUNT) {
             settings_take_filter(0);
-            settings_kept = KEPT_NO_FILTER;
+            kept = KEPT_NO_FILTER;
         }
         settings_follow();
     }

@@ -22,7 +22,10 @@ typedef enum {
  */
 void settings_load(void);
 
+/* Defaults in place of the saved settings, which are left alone; after settings_load. */
+void settings_unread(void);
+
 /* kept_t of what is in force since settings_load. */
-extern uint8_t settings_kept;
+uint8_t settings_kept(void);
 
 #endif

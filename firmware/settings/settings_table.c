@@ -29,7 +29,7 @@ enum { OFFSET_MAX = CALIBRATION_OFFSET_MAX_LSB_Q4, LEVEL_MAX_Q14 = 18841 }; /* 1
  * of a list where it begins in `choices` and how long it is. calibration_check has the last word on vectors.
  */
 #define SETTINGS(X) \
-    X("filter", "", filter, 1, WORDS, 0, STARTS_FILTER, WORD_FILTER, WORD_MODE) \
+    X("filter", "", choice.filter, 1, WORDS, 0, STARTS_FILTER, WORD_FILTER, WORD_MODE) \
     X("rate", "Hz", rate_dhz, 2, LIST, 6, STARTS_SENSOR, RATE, RANGE - RATE) \
     X("range", "g", range_g, 1, LIST, 0, STARTS_SENSOR, RANGE, BAUD - RANGE) \
     X("every", "", every, 2, NUMBER, 0, 0, 1, SETTINGS_EVERY_MAX) \
@@ -55,13 +55,12 @@ static const char words[] FLASH = SETTINGS(WORDS_OF); /* as a parameter has them
 static const row_t rows[] FLASH = { SETTINGS(ROW) };
 
 _Static_assert(sizeof rows / sizeof rows[0] == SETTING_PARAMETERS, "a row for each setting");
-_Static_assert((int)FILTER_PARAMETERS_MAX <= (int)SETTINGS_PARAMETERS_MAX, "the settings hold a filter's parameters");
 _Static_assert(CALIBRATION_SCALE_MAX_UQ6 <= INT16_MAX, "two bytes are read with sign");
 _Static_assert(offsetof(settings_t, calibration) + sizeof(calibration_t) <= UINT8_MAX, "a place has a byte");
 
 static const filter_law_t *law_in_force(void)
 {
-    return filter_listed((filter_kind_t)settings.filter);
+    return choice_law(&settings()->choice);
 }
 
 static void look_at_row(setting_t *s, uint8_t which)
@@ -86,11 +85,11 @@ static const filter_parameter_t *parameter_of(uint8_t which)
 static void look_at_parameter(setting_t *s, uint8_t which)
 {
     const filter_parameter_t *parameter = parameter_of(which);
-    enum { EACH = sizeof settings.parameters[0] };
-    uint8_t place = (uint8_t)(offsetof(settings_t, parameters) +
+    enum { EACH = sizeof((settings_t *)0)->choice.parameters[0] };
+    uint8_t place = (uint8_t)(offsetof(settings_t, choice.parameters) +
                               (uint16_t)(uint8_t)(which - SETTING_PARAMETERS) * EACH);
-    s->format = (format_t){ place, sizeof settings.parameters[0], NUMBER, flash_u8(&parameter->fraction_bits),
-                            STARTS_FILTER };
+    s->format = (format_t){ place, sizeof((settings_t *)0)->choice.parameters[0], NUMBER,
+                            flash_u8(&parameter->fraction_bits), STARTS_FILTER };
     s->least = (int32_t)flash_u32((const uint32_t *)&parameter->min);
     s->most = (int32_t)flash_u32((const uint32_t *)&parameter->max);
     s->zero_is_off = flash_u8(&parameter->zero_means_off) != 0;

@@ -2,7 +2,6 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "fx.h"
-#include "settings/parameters.h"
 #include "settings/settings.h"
 #include "settings/settings_row.h"
 #include "settings/settings_table.h"
@@ -18,14 +17,14 @@ static uint8_t numbers(const setting_t *s)
 static uint8_t *place_of(const setting_t *s, uint8_t number)
 {
     uint8_t size = s->format.size;
-    return (uint8_t *)&settings + s->format.place + (uint8_t)((uint16_t)number * size);
+    return (uint8_t *)settings() + s->format.place + (uint8_t)((uint16_t)number * size);
 }
 
 /* Little-endian on PC and chip, as settings.h wants it; all numbers have a sign. */
 static uint32_t value_of(const setting_t *s, uint8_t number)
 {
     if (s->which >= SETTING_PARAMETERS) {
-        return parameters_value((uint8_t)(s->which - SETTING_PARAMETERS));
+        return choice_value(&settings()->choice, settings()->rate_dhz, (uint8_t)(s->which - SETTING_PARAMETERS));
     }
     if (s->which == SETTING_EVERY) {
         return settings_every_in_force();
@@ -116,7 +115,7 @@ static bool take_axes(const char *text)
         }
         order = (uint16_t)(order << 4 | (uint8_t)axis);
         mirrored ^= reversed;
-        settings.calibration.axes[i] = (int8_t)(reversed ? -axis : axis);
+        settings()->calibration.axes[i] = (int8_t)(reversed ? -axis : axis);
     }
     bool turned = order == XYZ || order == YZX || order == ZXY;
     return turned == mirrored && *text == '\0';
@@ -137,12 +136,12 @@ static bool take(const setting_t *s, const char *text)
 /* Whether the filter takes the user's parameters with this one among them. */
 static setting_answer_t judge_parameter(uint8_t which)
 {
-    uint8_t own = settings.own;
-    settings.own = (uint8_t)(own | 1u << which);
-    if (parameters_legal()) {
+    uint8_t own = settings()->choice.own;
+    settings()->choice.own = (uint8_t)(own | 1u << which);
+    if (choice_legal(&settings()->choice, settings()->rate_dhz)) {
         return SETTING_TAKEN;
     }
-    settings.own = own;
+    settings()->choice.own = own;
     return SETTING_ILLEGAL;
 }
 
@@ -152,13 +151,13 @@ static setting_answer_t judge(const setting_t *s)
     if (s->which >= SETTING_PARAMETERS) {
         return judge_parameter((uint8_t)(s->which - SETTING_PARAMETERS));
     }
-    if (!settings_fit(settings.filter, settings.rate_dhz)) {
+    if (!settings_fit(settings()->choice.filter, settings()->rate_dhz)) {
         return SETTING_TOO_SLOW;
     }
     if (s->which == SETTING_FILTER) {
-        settings_take_filter(settings.filter);
+        settings_take_filter(settings()->choice.filter);
     }
-    return calibration_check(&settings.calibration).why == CALIBRATION_GOOD ? SETTING_TAKEN : SETTING_ILLEGAL;
+    return calibration_check(&settings()->calibration).why == CALIBRATION_GOOD ? SETTING_TAKEN : SETTING_ILLEGAL;
 }
 
 /* Bytes to where they are kept; true: they differ from those that were there. */
@@ -193,7 +192,7 @@ setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
 static void write_axes(void)
 {
     for (uint8_t i = 0; i < AXES; i++) {
-        int8_t axis = settings.calibration.axes[i];
+        int8_t axis = settings()->calibration.axes[i];
         if (axis < 0) {
             text_char('-');
             axis = (int8_t)-axis;

@@ -93,15 +93,15 @@ static void begin_rows(uint8_t mode, uint16_t index)
     static const uint16_t rates_dhz[] FX_FLASH = { 1000, 125, 8000 };
     uint8_t turn = (uint8_t)(index / ROWS_PER_START);
     settings_defaults();
-    settings.mode = mode;
-    settings.baud = 1000000;
-    settings.filter = turn % 4U; /* the first of the list */
-    settings.rate_dhz = fx_flash_u16(&rates_dhz[turn % 3U]);
+    settings()->mode = mode;
+    settings()->baud = 1000000;
+    settings()->choice.filter = turn % 4U; /* the first of the list */
+    settings()->rate_dhz = fx_flash_u16(&rates_dhz[turn % 3U]);
     now_us = vectors_random();
     coast_wait(now_us);
     pipeline_reset();
-    pipeline_calibrate(&settings.calibration);
-    pipeline_start(settings.filter, settings.rate_dhz, settings.range_g);
+    pipeline_calibrate(&settings()->calibration);
+    pipeline_start(&settings()->choice, settings()->rate_dhz, settings()->range_g);
     pipeline_finish();
     rows_start();
     rows_enable(true);
@@ -112,7 +112,7 @@ static void row_item(uint8_t mode, uint16_t index)
     if (index % ROWS_PER_START == 0U) {
         begin_rows(mode, index);
     }
-    uint32_t period_us = (uint32_t)10000000 / settings.rate_dhz;
+    uint32_t period_us = (uint32_t)10000000 / settings()->rate_dhz;
     uint32_t v = vectors_random();
     adxl345_sample_t sample = { 0 };
     now_us += ((v & 0x1FU) == 0U) ? 5U * period_us : period_us; /* a gap now and then */

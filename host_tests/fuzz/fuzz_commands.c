@@ -12,7 +12,7 @@
 #include "adxl345_registers.h"
 #include "app/app.h"
 #include "base/counters.h"
-#include "base/replies.h"
+#include "base/notices.h"
 #include "fuzz.h"
 #include "fuzz_commands.h"
 #include "hal_host.h"
@@ -64,16 +64,16 @@ static void make_stream(void)
 
 static void check_settings(void)
 {
-    FUZZ_CHECK(settings_legal(&settings), "settings: filter %u rate %u range %u every %u baud %lu mode %u",
-               settings.filter, settings.rate_dhz, settings.range_g, settings.every, (unsigned long)settings.baud,
-               settings.mode);
+    FUZZ_CHECK(settings_legal(settings()), "settings: filter %u rate %u range %u every %u baud %lu mode %u",
+               settings()->choice.filter, settings()->rate_dhz, settings()->range_g, settings()->every,
+               (unsigned long)settings()->baud, settings()->mode);
 }
 
 static void pass(void)
 {
     app_pass();
     check_settings();
-    said.faults_expected = said.faults_expected || settings.address == ADXL345_ADDRESS_HIGH;
+    said.faults_expected = said.faults_expected || settings()->address == ADXL345_ADDRESS_HIGH;
     FUZZ_CHECK(hal_host_watchdog_bite() == 0, "the watchdog bites at %.1f ms", hal_host_now_ms());
 }
 
@@ -86,7 +86,7 @@ static void run_ms(double ms)
 
 static bool quiet(void)
 {
-    return replies_empty() && app_takes_commands();
+    return notices_empty() && control_takes_commands();
 }
 
 /* A pass takes one line at most and may sleep before; the ring holds 64 blank ones. */
@@ -95,13 +95,13 @@ static bool quiet(void)
 /* Until nothing is under way: bytes, replies, a change of the line rate; and what the ring held has gone out. */
 static void settle(void)
 {
-    double quiet_ms = READ_LIMIT_MS + 257e4 / (double)settings.baud;
+    double quiet_ms = READ_LIMIT_MS + 257e4 / (double)settings()->baud;
     double limit_ms = hal_host_now_ms() + SETTLE_LIMIT_MS;
     for (double quiet_since_ms = hal_host_now_ms(); hal_host_now_ms() < quiet_since_ms + quiet_ms;) {
         pass();
         if (!quiet()) {
             quiet_since_ms = hal_host_now_ms();
-            quiet_ms = READ_LIMIT_MS + 257e4 / (double)settings.baud;
+            quiet_ms = READ_LIMIT_MS + 257e4 / (double)settings()->baud;
         }
         FUZZ_CHECK(hal_host_now_ms() < limit_ms, "the replies do not end");
     }
@@ -152,7 +152,7 @@ static void start(uint8_t options)
         adxl345_model_power(&hal_host_sensor, false);
     }
     app_start();
-    while (!app_takes_commands()) {
+    while (!control_takes_commands()) {
         pass();
         FUZZ_CHECK(hal_host_now_ms() < BANNER_LIMIT_MS, "the banner does not end");
     }
@@ -175,11 +175,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     if (hal_uart_rx_lost() == 0) {
         check_replies(&said, &expected);
-        FUZZ_CHECK(settings_equal(&settings, &expected.settings),
-                   "settings are not what was typed: rate %u every %u baud %lu", settings.rate_dhz, settings.every,
-                   (unsigned long)settings.baud);
-        FUZZ_CHECK(counters[COUNT_DROPPED] == 0 || expected.baud_changed, "%u rows dropped",
-                   (unsigned)counters[COUNT_DROPPED]);
+        FUZZ_CHECK(settings_equal(settings(), &expected.settings),
+                   "settings are not what was typed: rate %u every %u baud %lu", settings()->rate_dhz,
+                   settings()->every, (unsigned long)settings()->baud);
+        FUZZ_CHECK(counted(COUNT_DROPPED) == 0 || expected.baud_changed, "%u rows dropped",
+                   (unsigned)counted(COUNT_DROPPED));
     } else {
         FUZZ_CHECK(count_replies(&said) <= expected.line_ends, "%u replies to %u lines", count_replies(&said),
                    expected.line_ends);

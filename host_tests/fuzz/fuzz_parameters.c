@@ -26,7 +26,7 @@ static bool taken(const settings_t *s, unsigned which, uint32_t value)
     filter_t f;
     const filter_law_t *law = filter_listed((filter_kind_t)s->filter);
     filter_config_t config = filter_defaults(law, s->rate_dhz);
-    for (unsigned i = 0; i < SETTINGS_PARAMETERS_MAX; i++) {
+    for (unsigned i = 0; i < CHOICE_PARAMETERS_MAX; i++) {
         if (s->own >> i & 1u) {
             config.value[i] = (int32_t)s->parameters[i];
         }

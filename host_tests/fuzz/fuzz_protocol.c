@@ -32,7 +32,7 @@ bool settings_legal(const settings_t *s)
 
 bool settings_equal(const settings_t *a, const settings_t *b)
 {
-    for (unsigned i = 0; i < SETTINGS_PARAMETERS_MAX; i++) {
+    for (unsigned i = 0; i < CHOICE_PARAMETERS_MAX; i++) {
         if ((a->own >> i & 1u) && a->parameters[i] != b->parameters[i]) {
             return false;
         }

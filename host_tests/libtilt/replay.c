@@ -186,8 +186,9 @@ int64_t libtilt_replay(const libtilt_stream_t *in, int kind, uint16_t rate_dhz, 
     coast_wait(0);
     settings_defaults();
     pipeline_reset();
-    pipeline_calibrate(&settings.calibration);
-    pipeline_start((uint8_t)kind, rate_dhz, range_g);
+    pipeline_calibrate(&settings()->calibration);
+    settings_take_filter((uint8_t)kind);
+    pipeline_start(&settings()->choice, rate_dhz, range_g);
     pipeline_finish();
     run(&replay, &feed);
     free(stream.rows);

@@ -1,0 +1,31 @@
+/* When a line may go out. The words are in reply_lines.c. */
+#include "console/speaker.h"
+
+#include "base/notices.h"
+#include "base/text.h"
+#include "console/reply_lines.h"
+#include "settings/settings.h"
+
+static bool begun; /* the oldest notice: a line of it is out */
+
+void speaker_start(void)
+{
+    begun = false;
+}
+
+bool speaker_pass(void)
+{
+    if (notices_empty() || !text_open((uint8_t)(TEXT_LINE_MAX + SETTINGS_ROW_MAX))) {
+        return false;
+    }
+    const notice_t *notice = notices_oldest();
+    reply_progress_t progress = reply_line(notice->kind, notice->argument, !begun);
+    if (progress == REPLY_WAITS) {
+        return false;
+    }
+    begun = progress == REPLY_GOES_ON;
+    if (!begun) {
+        notices_drop();
+    }
+    return true;
+}

@@ -1,0 +1,153 @@
+/* See control.h. */
+#include "control/control.h"
+
+#include "adxl345.h"
+#include "base/health.h"
+#include "control/measure.h"
+#include "path/coast.h"
+#include "path/pipeline.h"
+#include "path/silence.h"
+#include "settings/settings.h"
+#include "settings/settings_kept.h"
+#include "settings/store.h"
+
+/*
+ * What the sample path is to follow. FILTER is for all samples to come, the others wait for those of the old
+ * configuration. COLD: filters restart. MEASURE: it is told (measure_configured).
+ */
+enum { CHANGE_FILTER = 1, CHANGE_CONFIG = 2, CHANGE_COLD = 4, CHANGE_MEASURE = 8 };
+
+static struct {
+    bool sampling; /* wanted: go or start-up, not stop */
+    bool line_waits;
+    uint8_t changes; /* to be followed yet */
+} control;
+
+/* With the settings' configuration, or what a measurement wants. */
+static void start_sensor(void)
+{
+    adxl345_config_t config = { settings()->rate_dhz, settings()->range_g, false, settings()->address };
+    measure_configure(&config);
+    adxl345_start(&config);
+}
+
+static void start_pipeline(void)
+{
+    pipeline_start(&settings()->choice, settings()->rate_dhz, settings()->range_g);
+}
+
+void control_start(uint32_t now_us)
+{
+    control.changes = 0;
+    control.line_waits = false;
+    control.sampling = true;
+    pipeline_calibrate(&settings()->calibration);
+    coast_wait(now_us);
+    start_pipeline();
+    start_sensor();
+}
+
+/* What follows by arithmetic costs two divisions. */
+static void follow(uint8_t starts)
+{
+    settings_follow();
+    if (starts & STARTS_CALIBRATION) {
+        pipeline_calibrate(&settings()->calibration);
+    }
+    if (starts & STARTS_FILTER) {
+        control.changes |= CHANGE_FILTER;
+    }
+    if (starts & STARTS_SENSOR) {
+        measure_abort();
+        if (control.sampling) {
+            control.changes |= CHANGE_CONFIG;
+            start_sensor();
+        }
+    }
+    if (starts & STARTS_LINE) {
+        control.line_waits = true;
+        health_pause_filtering(HEALTH_HOLD_PASSES);
+    }
+}
+
+setting_answer_t control_set(uint8_t which, const char *text)
+{
+    uint8_t starts;
+    setting_answer_t answer = setting_set(which, text, &starts);
+    if (answer == SETTING_TAKEN) {
+        follow(starts);
+    }
+    return answer;
+}
+
+void control_restore(bool saved)
+{
+    uint32_t old_baud = settings()->baud;
+    if (saved) {
+        settings_load();
+    } else {
+        settings_defaults();
+    }
+    follow(STARTS_FILTER | STARTS_SENSOR | STARTS_CALIBRATION | (settings()->baud != old_baud ? STARTS_LINE : 0));
+}
+
+bool control_save(void)
+{
+    return !control.sampling && store_save_begin();
+}
+
+void control_sample(bool wanted)
+{
+    control.sampling = wanted;
+    measure_abort();
+    if (wanted) {
+        control.changes |= CHANGE_COLD;
+        start_sensor();
+    } else {
+        adxl345_stop();
+    }
+}
+
+bool control_line_waits(void)
+{
+    return control.line_waits;
+}
+
+void control_line_changed(void)
+{
+    control.line_waits = false;
+}
+
+/* What a measurement wants of the sensor. */
+static void follow_measurement(void)
+{
+    control.changes |= CHANGE_MEASURE;
+    if (control.sampling) {
+        start_sensor();
+    }
+}
+
+bool control_follow(uint32_t now_us)
+{
+    if (measure_asks()) {
+        follow_measurement();
+    }
+    if (control.changes == 0) {
+        return false;
+    }
+    bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
+    uint8_t now = old_samples ? control.changes & CHANGE_FILTER : control.changes;
+    control.changes = (uint8_t)(control.changes & ~now);
+    if ((now & CHANGE_MEASURE) && measure_configured()) {
+        now |= CHANGE_COLD;
+    }
+    if ((now & CHANGE_COLD) || ((now & CHANGE_CONFIG) && !silence_holds())) { /* else more is lost, and rows go on */
+        coast_wait(now_us);
+    }
+    if (now & CHANGE_COLD) {
+        start_pipeline();
+    } else if (now & (CHANGE_FILTER | CHANGE_CONFIG)) {
+        pipeline_change(&settings()->choice, settings()->rate_dhz, settings()->range_g);
+    }
+    return now != 0;
+}
