@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""No circles: of two modules at most one may use what the other defines, also by way of others, and no header of firmware and lib declares an object. Looks into
-the objects, where an arrow is a symbol used here and defined there; the rooms of the firmware are one folder.
+"""No circles: of two modules at most one may use what the other defines, also by way of others; and no header of firmware and lib declares
+an object. Looks into the compiled objects: an arrow is a symbol used here and defined there. The rooms of the firmware are one folder.
 
     check_circles.py OBJECTS...     folders of objects of the chip and of the PC, with the sources' paths in them
 """

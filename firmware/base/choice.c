@@ -9,8 +9,8 @@ const filter_law_t *choice_law(const filter_choice_t *choice)
 }
 
 /*
- * False: the filter does not take what the user wants, as where it was set beside what another rate has; then all are as
- * shipped.
+ * False: the filter does not take what the user wants, as where it was set beside what another rate has; then all are
+ * as shipped.
  */
 static bool configure(const filter_choice_t *choice, filter_config_t *config, filter_kind_t kind, uint16_t rate_dhz)
 {

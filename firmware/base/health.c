@@ -14,8 +14,8 @@
 #define POLL_GRACE_US 20000ul
 
 /*
- * What hung so often in a row, each time within ten seconds of its start, hangs again: it gets the lowest rate, at which
- * the processor has most time for everything else. Saved settings are left alone.
+ * What hung so often in a row, each time within ten seconds of its start, hangs again: it gets the lowest rate, at
+ * which the processor has most time for everything else. Saved settings are left alone.
  */
 enum { RESETS_TO_SAFE = 3 };
 

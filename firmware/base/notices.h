@@ -1,6 +1,6 @@
 /*
- * What is to be said on lines that begin with '#': the banner, answers to commands, faults. Any room posts a notice; the
- * console takes them in their order and finds the words (console/speaker.h). Main only.
+ * What is to be said on lines that begin with '#': the banner, answers to commands, faults. Any room posts a notice;
+ * the console takes them in their order and finds the words (console/speaker.h). Main only.
  */
 #ifndef NOTICES_H
 #define NOTICES_H

@@ -11,8 +11,8 @@ void commands_start(void);
 
 /*
  * Takes received bytes while the pass has time, one at least; runs at most one complete line, and only while there is
- * room for its reply. True: it has run one. Not to be called while a save runs or the baud rate is to change: the bytes wait
- * in the receive ring.
+ * room for its reply. True: it has run one. Not to be called while a save runs or the baud rate is to change: the bytes
+ * wait in the receive ring.
  */
 bool commands_pass(void);
 

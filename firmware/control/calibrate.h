@@ -24,9 +24,9 @@ const calibrate_told_t *calibrate_told(void);
 void calibrate_start(void);
 
 /*
- * A mean at rest, LSB in Q4, for the command of this notice_kind_t. DONE: a new calibration is in force. WRONG: refused,
- * by the verdict, and the old one stays. Of cal6 also: POSITION, one of the six is known and others are not; REPEATED:
- * it was known before; UNCHANGED: it lies as it did; BEGUN: it was the last, and calibrate_step follows.
+ * A mean at rest, LSB in Q4, for the command of this notice_kind_t. DONE: a new calibration is in force. WRONG:
+ * refused, by the verdict, and the old one stays. Of cal6 also: POSITION, one of the six is known and others are not;
+ * REPEATED: it was known before; UNCHANGED: it lies as it did; BEGUN: it was the last, and calibrate_step follows.
  */
 measure_outcome_t calibrate_take(uint8_t kind, const int16_t mean_lsb_q4[3]);
 

@@ -127,6 +127,18 @@ static void follow_measurement(void)
     }
 }
 
+/* The changes that are due: not all while samples of the old configuration are under way. */
+static uint8_t take_changes(void)
+{
+    bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
+    uint8_t now = old_samples ? control.changes & CHANGE_FILTER : control.changes;
+    control.changes = (uint8_t)(control.changes & ~now);
+    if ((now & CHANGE_MEASURE) && measure_configured()) {
+        now |= CHANGE_COLD;
+    }
+    return now;
+}
+
 bool control_follow(uint32_t now_us)
 {
     if (measure_asks()) {
@@ -135,12 +147,7 @@ bool control_follow(uint32_t now_us)
     if (control.changes == 0) {
         return false;
     }
-    bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
-    uint8_t now = old_samples ? control.changes & CHANGE_FILTER : control.changes;
-    control.changes = (uint8_t)(control.changes & ~now);
-    if ((now & CHANGE_MEASURE) && measure_configured()) {
-        now |= CHANGE_COLD;
-    }
+    uint8_t now = take_changes();
     if ((now & CHANGE_COLD) || ((now & CHANGE_CONFIG) && !silence_holds())) { /* else more is lost, and rows go on */
         coast_wait(now_us);
     }

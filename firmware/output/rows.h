@@ -12,8 +12,8 @@ void rows_start(void);
 void rows_enable(bool enabled);
 
 /*
- * A sample has been filtered, or is missing: its row if it is the one in `every`. plot: in the form for the plotters, not
- * csv.
+ * A sample has been filtered, or is missing: its row if it is the one in `every`. plot: in the form for the plotters,
+ * not csv.
  */
 void rows_sample(uint16_t every, bool plot);
 

@@ -53,8 +53,8 @@ void pipeline_reset(void);
 void pipeline_calibrate(const calibration_t *calibration);
 
 /*
- * Restart: filters collect a robust start, noise estimates start at their floor. The choice is to be left where it lies:
- * it is looked at whenever a filter begins.
+ * Restart: filters collect a robust start, noise estimates start at their floor. The choice is to be left where it
+ * lies: it is looked at whenever a filter begins.
  */
 void pipeline_start(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g);
 
@@ -73,8 +73,8 @@ void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t r
 void pipeline_retime(uint32_t period_us);
 
 /*
- * One piece of what pipeline_start, _change, _retime, _coast or _sample have begun: the filter of an axis changed, up to
- * 4 ms, or a sample; false: nothing was left to do. So the main loop can look after other things meanwhile. Nothing
+ * One piece of what pipeline_start, _change, _retime, _coast or _sample have begun: the filter of an axis changed, up
+ * to 4 ms, or a sample; false: nothing was left to do. So the main loop can look after other things meanwhile. Nothing
  * else is to be begun before, but a change takes the place of a change.
  */
 bool pipeline_work(void);
