@@ -198,10 +198,10 @@ def cycles_go_to_the_function_that_the_profile_names():
 @test
 def only_the_table_of_the_page_is_written():
     page = f"head\n{bench.BEGIN}\nold\n{bench.END}\ntail\n"
-    assert bench.with_table(page, ["| new |"]) == f"head\n{bench.BEGIN}\n| new |\n{bench.END}\ntail\n"
+    assert bench.with_table(page, ["| new |"], bench.BEGIN, bench.END) == f"head\n{bench.BEGIN}\n| new |\n{bench.END}\ntail\n"
     for broken in (page.replace(bench.END, ""), page + bench.BEGIN):
         try:
-            bench.with_table(broken, [])
+            bench.with_table(broken, [], bench.BEGIN, bench.END)
         except bench.Fault as fault:
             assert "markers" in str(fault)
         else:

@@ -54,4 +54,8 @@ bench:
 	@$(MAKE) -j2 $(BENCH_IMAGES) $(U)/bench_sample.elf $(U)/bench_rest.elf $(SET_IMAGES) $(S)/simrun
 	@python3 tools/bench.py --flags '$(BENCH_COMMON) -Wl,--gc-sections $(BENCH_INC)' --small '$(AVR_SMALL)' --sources '$(BENCH_SRC)' --parts '$(BENCH_PARTS)' --peers '$(PEERS)'
 
-.PHONY: bench
+# of bench: one sample's cycles by part, in the image that is flashed
+cycles: $(S)/simrun $(U)/firmware.elf
+	@python3 tools/bench_parts.py
+
+.PHONY: bench cycles

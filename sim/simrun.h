@@ -54,7 +54,8 @@ typedef struct {
 } typed_line_t;
 
 typedef struct {
-    const char *fw, *in, *frames, *out, *served, *altered, *eeprom, *stats, *profile, *vcd, *bootloader, *filter, *span;
+    const char *fw, *in, *frames, *out, *served, *altered, *eeprom, *stats, *profile, *calls, *vcd, *bootloader,
+        *filter, *span;
     bool loop, pty, blank, judge, strap, alt_address;
     double ppm, max_ms, patience_s; /* max_ms 0: none */
     adxl345_part_t part;
@@ -261,6 +262,8 @@ void rules_print(FILE *json);
 /* --- statistics --- */
 extern uint64_t stats_slept;       /* cycles asleep */
 extern uint64_t stats_interrupted; /* cycles in interrupt handlers, entry and return included */
+extern bool stats_profiling;       /* for --profile or --calls */
+uint64_t stats_own_cycles(void);   /* awake, without the responses to interrupts */
 bool stats_in_interrupt(void);
 void stats_start(void);
 void stats_reset(void);
@@ -271,6 +274,11 @@ void stats_summary(void);
 /* Streaming, for the load: first row, end of the stream. */
 void stats_streaming_begins(void);
 void stats_streaming_ends(void);
+
+/* --- cycles by chain of callers (--calls) --- */
+void calls_on_step(uint32_t pc, uint64_t cycles, bool interrupt); /* interrupt: it is the instruction of a vector */
+void calls_reset(void);
+void calls_write(void);
 
 /* --- passes of the main loop --- */
 void pass_start(void);

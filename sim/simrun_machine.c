@@ -233,7 +233,7 @@ void machine_start(void)
     faults_start();
     span_start();
     pass_start();
-    if (faults_watch_pc || span_wanted || options.profile != NULL) {
+    if (faults_watch_pc || span_wanted || stats_profiling) {
         chunk_cycles = 0;
     }
     rules_start();
@@ -352,7 +352,7 @@ static void run(void)
     bool stack_low = false;
     do {
         bool running = mcu->state == cpu_Running;
-        uint64_t began = mcu->cycle;
+        uint64_t began = stats_own_cycles();
         last_pc = mcu->pc;
         if (faults_watch_pc && running) {
             faults_on_pc(last_pc);
@@ -363,8 +363,8 @@ static void run(void)
         machine_steps++;
         bool eventful = step(stack_low ? 0 : chunk_cycles);
         stack_low = stack_watch(machine_size.end_of_ram);
-        if (options.profile != NULL && running) {
-            stats_profile(last_pc, mcu->cycle - began);
+        if (stats_profiling && running) {
+            stats_profile(last_pc, stats_own_cycles() - began);
         }
         if (eventful || mcu->pc >= machine_size.flash_bytes) {
             watch_everything(mcu->state);

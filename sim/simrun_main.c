@@ -21,6 +21,7 @@ int main(int argc, char **argv)
     clock_gettime(CLOCK_MONOTONIC, &ended);
     stats_write(status);
     stats_profile_write();
+    calls_write();
     stats_summary();
     sensor_print_mode(stderr);
     verdict_tell();

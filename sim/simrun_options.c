@@ -20,6 +20,7 @@ enum option_code {
     OPTION_EEPROM,
     OPTION_STATS,
     OPTION_PROFILE,
+    OPTION_CALLS,
     OPTION_SPAN,
     OPTION_VCD,
     OPTION_BOOTLOADER,
@@ -53,6 +54,7 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "eeprom", required_argument, NULL, OPTION_EEPROM },
                                        { "stats", required_argument, NULL, OPTION_STATS },
                                        { "profile", required_argument, NULL, OPTION_PROFILE },
+                                       { "calls", required_argument, NULL, OPTION_CALLS },
                                        { "span", required_argument, NULL, OPTION_SPAN },
                                        { "vcd", required_argument, NULL, OPTION_VCD },
                                        { "bootloader", required_argument, NULL, OPTION_BOOTLOADER },
@@ -136,8 +138,7 @@ static const char help_text[] =
     "FIFO\n"
     "                                        has lost N samples (1). A reset of the MCU ends both\n"
     "           poke:SYMBOL=VALUE            a byte of the firmware's RAM\n"
-    "           flip[:BITS]                  once: so many bits (1) of the next byte that the sensor sends arrive "
-    "flipped *\n"
+    "           flip[:BITS]                  once: so many bits (1) of the next byte from the sensor arrive flipped *\n"
     "           noise[:SIGMA] double[:AXIS]  once: the next sample read has noise (20 LSB rms), or twice the value of "
     "z, "
     "x or y *\n"
@@ -146,8 +147,7 @@ static const char help_text[] =
     "           clip[:AXIS][:MS]             the axis (z) is beyond the range\n"
     "           glitch storm[:HZ[:MS]]       4 us pulse on INT1 against its level, one or many (1000 Hz)\n"
     "           odr[:PPM[:MS]]               error of the sensor's clock (50000), instead of --ppm\n"
-    "           rxflood[:MS] txstall[:MS]    random bytes to the UART without a pause; the UART's transmitter stands "
-    "still\n"
+    "           rxflood[:MS] txstall[:MS]    random bytes to the UART without a pause; its transmitter stands still\n"
     "           rxspoil[:LOST]               once: the next byte typed has no stop bit (0), or comes after one that "
     "found "
     "no\n"
@@ -163,12 +163,11 @@ static const char help_text[] =
     "  --seed N           for p:, junk in RAM (1)\n"
     "  --expect-resets N  MCU resets that are right, injected ones included (0)\n"
     "  --bootloader HEX   load this image too and start in it by an external reset; resets out of it are not counted\n"
-    "  --blank            with --bootloader: the flash holds nothing else; --fw only names what will be written into "
-    "it\n"
+    "  --blank            with --bootloader: the flash holds nothing else; --fw names what will be written\n"
     "  --eeprom FILE      1024 bytes, read if there, written at the end\n"
     "  --profile FILE     CSV pc,count,cycles,symbol of every instruction executed\n"
-    "  --span FROM:TO:CSV at_us,cycles,stack_bytes from the entry of function FROM to that of TO, interrupts taken "
-    "out\n"
+    "  --calls FILE       CSV cell,frame,pc,count,cycles,symbol: the same by callers; a frame is the cell of its call\n"
+    "  --span FROM:TO:CSV at_us,cycles,stack_bytes from the entry of function FROM to that of TO, without interrupts\n"
     "  --vcd FILE         D2, stuck lines, UART bytes and interrupt handlers, for GTKWave\n"
     "  --gdb PORT         wait for avr-gdb before the first instruction\n"
     "  --pty              connect the UART to a pseudo terminal, in real time; with --bootloader opening it resets the "
@@ -270,6 +269,7 @@ static bool take_file(int code, const char *argument)
         { OPTION_VCD, &options.vcd },         { OPTION_PROFILE, &options.profile },
         { OPTION_SPAN, &options.span },       { OPTION_BOOTLOADER, &options.bootloader },
         { OPTION_ALTERED, &options.altered }, { OPTION_FRAMES, &options.frames },
+        { OPTION_CALLS, &options.calls },
     };
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         if (files[i].code == code) {

@@ -7,6 +7,7 @@
 
 enum {
     VECTORS = 26,
+    VECTOR_BYTES = 4,
     ENTRY_CYCLES = 4, /* interrupt response (data sheet "Interrupt Response Time"), which simavr leaves out */
     RAM_START = 0x100,
     RAM_END = 0x8FF,
@@ -27,6 +28,8 @@ static const char *const vector_name[VECTORS] = {
 
 uint64_t stats_slept;
 uint64_t stats_interrupted;
+bool stats_profiling;
+static uint64_t entering; /* cycles of interrupt responses */
 static unsigned nested;
 static interrupt_t interrupts[VECTORS];
 static uint64_t streaming_from = NEVER, slept_from, streaming_to = NEVER, slept_to;
@@ -44,6 +47,7 @@ static void enter(interrupt_t *interrupt)
     interrupt->entered = mcu->cycle;
     interrupt->running = true;
     nested++;
+    entering += ENTRY_CYCLES;
     mcu->cycle += ENTRY_CYCLES;
 }
 
@@ -96,6 +100,7 @@ void stats_start(void)
         avr_irq_register_notify(&vector->irq[AVR_INT_IRQ_RUNNING], on_running, interrupt);
         avr_irq_register_notify(&vector->irq[AVR_INT_IRQ_PENDING], on_pending, interrupt);
     }
+    stats_profiling = options.profile != NULL || options.calls != NULL;
     if (options.profile != NULL) {
         profile = calloc(FLASH_WORDS, sizeof *profile);
         if (profile == NULL) {
@@ -103,6 +108,11 @@ void stats_start(void)
             exit(EXIT_INTERNAL);
         }
     }
+}
+
+uint64_t stats_own_cycles(void)
+{
+    return mcu->cycle - stats_slept - entering;
 }
 
 bool stats_in_interrupt(void)
@@ -113,6 +123,7 @@ bool stats_in_interrupt(void)
 void stats_reset(void)
 {
     nested = 0;
+    calls_reset();
     for (unsigned v = 0; v < VECTORS; v++) {
         interrupts[v].running = false;
         interrupts[v].pending = false;
@@ -131,11 +142,19 @@ void stats_streaming_ends(void)
     slept_to = stats_slept;
 }
 
+/* The response to an interrupt counts to the vector, not to the instruction, or the sleep, after which it came. */
 void stats_profile(uint32_t pc, uint64_t cycles)
 {
-    uint32_t word = pc / 2 % FLASH_WORDS;
-    profile[word].count++;
-    profile[word].cycles += cycles;
+    bool interrupt = pc != 0 && pc / VECTOR_BYTES < VECTORS;
+    cycles += interrupt ? ENTRY_CYCLES : 0u;
+    if (profile != NULL) {
+        uint32_t word = pc / 2 % FLASH_WORDS;
+        profile[word].count++;
+        profile[word].cycles += cycles;
+    }
+    if (options.calls != NULL) {
+        calls_on_step(pc, cycles, interrupt);
+    }
 }
 
 void stats_profile_write(void)

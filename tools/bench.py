@@ -8,16 +8,15 @@ import statistics
 import subprocess
 import sys
 
+import bench_parts
 import bench_peers
 import bench_where
 import images
 import laws
-from bench_firmware import OUT, SIMRUN, Fault, image_size, measure_rest, measure_sample, run
+from bench_firmware import COMPILER, DOCUMENT, OUT, SIMRUN, Fault, image_size, measure_rest, measure_sample, run, with_table
 
 JSON = pathlib.Path("build/bench.json")
-DOCUMENT = pathlib.Path("docs/benchmarks.md")
 BEGIN, END = "<!-- written by make bench: begin -->", "<!-- written by make bench: end -->"
-COMPILER = "5.4.0"  # the limits are for Debian's avr-gcc; elsewhere the numbers are only reported
 
 # of what is no filter: those of a filter stand beside its yardstick (tools/laws.py)
 ANGLES = laws.Limits(worst=1500, ratio=4.0, rms=0.029)  # degrees: the bound that lib/tilt derives
@@ -261,16 +260,9 @@ def regressions(old, new):
     return faults
 
 
-def with_table(page, lines, begin=BEGIN, end=END):
-    if page.count(begin) != 1 or page.count(end) != 1:
-        raise Fault(f"{DOCUMENT}: its markers are missing or doubled: '{begin}' and '{end}'")
-    head, rest = page.split(begin)
-    return head + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1]
-
-
 def page_with(page, lines, where, peers, absent):
     """The page with its tables; that of other people's filters only where all of them were there."""
-    page = with_table(with_table(page, lines), where, *bench_where.MARKERS)
+    page = with_table(with_table(page, lines, BEGIN, END), where, *bench_where.MARKERS)
     return page if absent else with_table(page, bench_peers.table(peers), *bench_peers.MARKERS)
 
 
@@ -343,6 +335,7 @@ def main():
         print(f"bench: avr-gcc {version}: reported only, the limits and docs/benchmarks.md are for {COMPILER}")
         return 0
     DOCUMENT.write_text(page_with(DOCUMENT.read_text(encoding="utf-8"), lines, measure_where(), peers, absent), encoding="utf-8")
+    faults += bench_parts.report()
     for fault in faults:
         print(f"bench: {fault}", file=sys.stderr)
     print(f"bench: {len(rows)} rows, {len(faults)} findings; docs/benchmarks.md and {JSON} written")
