@@ -25,6 +25,7 @@
 #define HAL_TICK_US 8192u
 #define HAL_LAP_US 64u
 #define HAL_WAKE_LATE_US 1000u
+#define HAL_WAKE_AHEAD_US 31000u /* hal_wake_at tells a moment so far ahead from one that has just passed */
 
 /* now is at or after deadline, for moments less than 35 minutes apart (any context). */
 static inline bool hal_time_reached(uint32_t now_us, uint32_t deadline_us)

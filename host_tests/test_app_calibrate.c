@@ -306,7 +306,8 @@ static void test_tare_levels_any_mounting(void)
         size_t note = talk_typed("tare", 3300.0);
         TEST_ASSERT_EQUAL_STRING("# tare: hold still", board.notes[note]);
         TEST_ASSERT_EQUAL_STRING_LEN("# level ", board.notes[note + 1], 8);
-        TEST_ASSERT_EQUAL_size_t(note + 2, board.note_count);
+        TEST_ASSERT_EQUAL_STRING("# in force now; type save to keep it", board.notes[note + 2]);
+        TEST_ASSERT_EQUAL_size_t(note + 3, board.note_count);
         const board_row_t *row = &board.rows[board.row_count - 1];
         TEST_ASSERT_INT_WITHIN(70, 0, row->roll_cdeg);
         TEST_ASSERT_INT_WITHIN(70, 0, row->pitch_cdeg);

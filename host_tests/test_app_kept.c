@@ -49,22 +49,35 @@ static void test_saved_settings_survive_power(void)
     TEST_ASSERT_EQUAL_UINT(4 * 256 + 128, pipeline_axes()[1].filter.own.kalman.of.gated.gate_sigma_q8);
 }
 
-/* EEPROM writes are for a sensor that stands still: not one while rows go out, whatever is typed. */
-static void test_nothing_is_saved_while_sampling(void)
+/* Rows go on through a save, one for each sample, and what is saved is whole. */
+static void test_a_save_while_sampling_costs_no_row(void)
+{
+    talk_start();
+    talk_type("filter {robust}");
+    size_t first = board.row_count;
+    TEST_ASSERT_EQUAL_STRING("# saved", talk_answer("save"));
+    board_run_ms(500);
+    for (size_t i = first + 1; i < board.row_count; i++) {
+        TEST_ASSERT_UINT32_WITHIN(50, 10000, board.rows[i].t_us - board.rows[i - 1].t_us);
+        TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & (ROW_COASTED | ROW_DROPPED));
+    }
+    TEST_ASSERT_TRUE(board.row_count > first + 50);
+    talk_power_cycle(false);
+    TEST_ASSERT_EQUAL_UINT(KEPT_GOOD, settings_kept());
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# filter {robust}, rate 100 Hz", 0));
+}
+
+/* A measurement would change what is being saved. */
+static void test_no_save_while_something_is_measured(void)
 {
     uint8_t before[1024];
     talk_start();
     memcpy(before, hal_host_eeprom(), sizeof before);
-    TEST_ASSERT_EQUAL_STRING("# refused 6: type stop first", talk_answer("save"));
-    talk_type("rate 50");
-    talk_type("defaults");
-    talk_type("load");
+    talk_type("tare");
+    TEST_ASSERT_EQUAL_STRING("# refused 10: busy measuring", talk_answer("save"));
     board_run_ms(1000);
     TEST_ASSERT_EQUAL_MEMORY(before, hal_host_eeprom(), sizeof before);
-    talk_type("stop");
-    talk_type("go");
-    TEST_ASSERT_EQUAL_STRING("# refused 6: type stop first", talk_answer("save"));
-    TEST_ASSERT_EQUAL_UINT32(2, counted(COUNT_REFUSED));
+    TEST_ASSERT_EQUAL_UINT32(1, counted(COUNT_REFUSED));
 }
 
 /* Settings do not change under a save: what is typed meanwhile waits, and then counts. */
@@ -169,7 +182,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_saved_settings_survive_power);
-    RUN_TEST(test_nothing_is_saved_while_sampling);
+    RUN_TEST(test_a_save_while_sampling_costs_no_row);
+    RUN_TEST(test_no_save_while_something_is_measured);
     RUN_TEST(test_commands_wait_for_the_save);
     RUN_TEST(test_load_and_defaults);
     RUN_TEST(test_the_strap_brings_the_default_baud_back);

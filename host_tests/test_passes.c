@@ -32,6 +32,7 @@ static void run(uint8_t lap_step, const char *const *lines, size_t count)
         board_type(lines[i]);
         board_run_ms(400.0);
     }
+    board_run_ms(3000.0); /* rows are held for a person who reads */
 }
 
 /* Rows, times of rows and notes of the board are those of `quick`; the sensor may start an access later. */

@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 
-ALONE, PAIR_FIRST, PAIRS_MAX = 0x7B, 0x8D, 0x73  # smaller bytes are characters, or stand for values; from ALONE on (enum say) in no pair
+ALONE, PAIR_FIRST, PAIRS_MAX = 0x7B, 0x8F, 0x71  # smaller bytes are characters, or stand for values; from ALONE on (enum say) in no pair
 STEP = 16                           # texts between two whose start is kept; the firmware counts ends from there
 COLUMNS = 110
 

@@ -251,13 +251,21 @@ static void service(uint32_t now_us)
     health_pass(now_us);
 }
 
-/* A row that is due and waits for a sample to be read has no moment of its own; that of a stopped driver is past. */
+/*
+ * A row that is due and waits for a sample to be read has no moment of its own. What is further away than the alarm tells
+ * apart from what is past gets another look on the way; so does a stopped driver, whose moment is past.
+ */
 static void set_alarm(void)
 {
     struct loop *l = here();
     uint32_t t_us = adxl345_deadline_us();
-    bool row_first = coast_due(t_us) && !coast_due(l->pass_us);
-    hal_wake_at(row_first ? coast_due_us() : t_us);
+    if (coast_due(t_us) && !coast_due(l->pass_us)) {
+        t_us = coast_due_us();
+    }
+    if (t_us - l->pass_us > HAL_WAKE_AHEAD_US) {
+        t_us = l->pass_us + HAL_WAKE_AHEAD_US;
+    }
+    hal_wake_at(t_us);
 }
 
 /* Bytes wait in the receive ring while the banner goes out, the baud rate changes or a save runs. */

@@ -13,6 +13,7 @@ enum counter {
     COUNT_CLIPPED,
     COUNT_ROWS,
     COUNT_DROPPED, /* rows for which the line had no room */
+    COUNT_HELD,    /* rows that waited for a person who reads */
     COUNT_REFUSED, /* lines: too long, garbage, unknown, illegal value */
     COUNT_LOST,    /* samples that did not come */
     COUNT_LATE,    /* samples that came when their rows were out */

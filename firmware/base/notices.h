@@ -23,6 +23,7 @@ typedef enum {
     NOTICE_TARE,
     NOTICE_CAL,
     NOTICE_CAL6,
+    NOTICE_VERSION,
     NOTICE_LISTING,  /* all settings, with what is legal; the last of the commands' names */
     NOTICE_SETTING,  /* argument: which of settings_table.h, with NOTICE_CHANGED after it was set */
     NOTICE_ILLEGAL,  /* argument: which of settings_table.h */
@@ -30,8 +31,7 @@ typedef enum {
     NOTICE_UNKNOWN,  /* no such command */
     NOTICE_TOO_LONG, /* a line that is too long, or has characters that no command has */
     NOTICE_GARBAGE,
-    NOTICE_STREAMING,   /* not while sampling */
-    NOTICE_BUSY,        /* one measurement at a time */
+    NOTICE_BUSY,        /* not while a measurement runs */
     NOTICE_FAULT_BEGIN, /* argument: adxl345_fault_t */
     NOTICE_FAULT_END
 } notice_kind_t;

@@ -54,6 +54,9 @@ static void run_setting(uint8_t which, const char *value)
 /* The reply kind of a command's name; NOTICE_BANNER when it is none. */
 static uint8_t command_named(const char *name)
 {
+    if (name[0] == '?' && name[1] == '\0') {
+        return NOTICE_HELP;
+    }
     uint8_t kind = NOTICE_LISTING;
     while (kind != NOTICE_BANNER && !text_equal(name, reply_command_name(kind))) {
         kind--;
@@ -89,7 +92,7 @@ static uint8_t run_verb(uint8_t verb)
         control_sample(verb == NOTICE_GOING);
         break;
     case NOTICE_SAVED:
-        return control_save() ? verb : NOTICE_STREAMING;
+        return control_save() ? verb : NOTICE_BUSY;
     case NOTICE_LOADED:
     case NOTICE_DEFAULTS:
         control_restore(verb == NOTICE_LOADED);

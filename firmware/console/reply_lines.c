@@ -63,13 +63,11 @@ static uint8_t measured_text(uint8_t kind)
 static uint8_t text_of(uint8_t kind)
 {
     switch (kind) {
-    case NOTICE_HELP:
-        again = SETTING_OFFSET - 1;
-        break;
     case NOTICE_STATUS:
         said.subject = (uint8_t)adxl345_fault();
         said.counters_out = 0;
         break;
+    case NOTICE_HELP:
     case NOTICE_LISTING:
         again = (uint8_t)(settings_count() - 1u);
         break;

@@ -55,10 +55,12 @@
 #define V_HEADER "\x86"
 #define V_BUS "\x87"
 #define V_CHECK_BUS "\x88"
-#define V_LINE "\x89"
-#define V_LINE_IF_FORCED "\x8A"
-#define V_LINE_IF_CSV "\x8B"
-#define V_AGAIN "\x8C"
+#define V_WHO "\x89"
+#define V_KEEP "\x8A"
+#define V_LINE "\x8B"
+#define V_LINE_IF_FORCED "\x8C"
+#define V_LINE_IF_CSV "\x8D"
+#define V_AGAIN "\x8E"
 
 /*
  * From SAY_ALONE on, above the characters that texts have, not packed with others: what goes on in another text, and
@@ -109,10 +111,12 @@ enum say {
     SAY_SETTING_NOTE, /* what is to be said of a setting behind its value */
     SAY_EVERY,        /* that setting, after another */
     SAY_SENSOR,       /* at the start of a line: its address, or what is wrong with it; waits until that is known */
-    SAY_LISTED,       /* from here to CHECK_BUS each in the text of this name */
+    SAY_LISTED,       /* from here to KEEP each in the text of this name */
     SAY_HEADER,       /* at the start of a line, without "# " */
     SAY_BUS,
     SAY_CHECK_BUS,
+    SAY_WHO,
+    SAY_KEEP,
     SAY_LINE,           /* here the line ends and another follows */
     SAY_LINE_IF_FORCED, /* ... if another `every` is in force than was asked for; else this was the last */
     SAY_LINE_IF_CSV,    /* ... if that is the mode */
@@ -121,7 +125,7 @@ enum say {
 };
 
 /* The commands as typed, one for each notice_kind_t from NOTICE_HELP on, in its order. */
-#define REPLY_NAMES "help\0status\0stop\0go\0save\0load\0defaults\0odr\0noise\0selftest\0tare\0cal\0cal6\0settings"
+#define REPLY_NAMES "help\0status\0stop\0go\0save\0load\0defaults\0odr\0noise\0selftest\0tare\0cal\0cal6\0version\0settings"
 
 /*
  * One text for each notice_kind_t, in its order; then the others, those that belong together in their order. They are
@@ -130,7 +134,7 @@ enum say {
  */
 /* clang-format off */
 #define REPLY_TEXTS(X) \
-    X(BANNER, FIRMWARE_NAME " " FIRMWARE_VERSION ": roll and pitch from an ADXL345" V_LINE \
+    X(BANNER, V_WHO V_LINE \
       "reset: " V_CAUSE V_LINE \
       V_SETTINGS V_LINE \
       "settings: " V_KEPT V_LINE \
@@ -142,7 +146,7 @@ enum say {
     X(STATUS, "state " V_STATE ", fault " V_SUBJECT ", rate " V_RATE " Hz, measured " V_MEASURED " Hz, uptime s " \
       V_COUNT V_CHOICES V_LINE \
       "samples " V_COUNT ", gated " V_COUNT ", reacquired " V_COUNT ", clipped " V_COUNT V_LINE \
-      "rows " V_COUNT ", dropped " V_COUNT ", serial bytes lost " V_SERIAL_LOST ", lines refused " V_COUNT V_LINE \
+      "rows " V_COUNT ", dropped " V_COUNT ", held " V_COUNT ", serial bytes lost " V_SERIAL_LOST ", lines refused " V_COUNT V_LINE \
       "lost " V_COUNT ", late " V_COUNT ", drained " V_COUNT ", stuck " V_COUNT ", restarts " V_COUNT V_LINE \
       "not acknowledged " V_COUNT ", arbitration lost " V_COUNT ", bus errors " V_COUNT ", timeouts " V_COUNT V_LINE \
       "readings torn " V_COUNT ", empty " V_COUNT ", overruns " V_COUNT V_LINE \
@@ -155,10 +159,14 @@ enum say {
     X(ODR, "odr " V_MEASURED " Hz, " V_OFF " % from " V_RATE " Hz") \
     X(NOISE, "noise " V_AXIS " " V_RMS " LSB rms, R " V_R " LSB^2" V_AGAIN) \
     X(SELFTEST, "selftest " V_AXIS " " V_SHIFT " LSB, " V_LIMITS V_AGAIN) \
-    X(TARE, V_LISTED) \
-    X(CAL, V_LISTED) \
+    X(TARE, V_LISTED V_LINE \
+      V_KEEP) \
+    X(CAL, V_LISTED V_LINE \
+      V_KEEP) \
     X(CAL6, "cal6: residual " V_RESIDUAL " mg" V_LINE \
-      V_LISTED V_AGAIN) \
+      V_LISTED V_AGAIN V_LINE \
+      V_KEEP) \
+    X(VERSION, V_WHO) \
     X(LISTING, V_LISTED V_AGAIN) \
     X(SETTING, V_SETTING V_SETTING_NOTE) \
     X(ILLEGAL, "refused 4: " V_SETTING_NAME " is one of " V_LEGAL) \
@@ -166,7 +174,6 @@ enum say {
     X(UNKNOWN, "refused 1: unknown command (type help)") \
     X(TOO_LONG, "refused 2: line too long") \
     X(GARBAGE, "refused 3: illegal characters") \
-    X(STREAMING, "refused 6: type stop first") \
     X(BUSY, "refused 10: busy measuring") \
     X(FAULT_BEGIN, "fault " V_SUBJECT ": " V_FAULT_WORDS) \
     X(FAULT_END, "fault " V_SUBJECT " over: after " V_OUTAGE_MS " ms, " V_OUTAGE_LOST \
@@ -179,6 +186,8 @@ enum say {
     X(HEADER, "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags") \
     X(BUS, ", I2C at " V_BUS_KHZ " kHz") \
     X(CHECK_BUS, ": check SDA, SCL, pull-ups, GND") \
+    X(WHO, FIRMWARE_NAME " " FIRMWARE_VERSION ": roll and pitch from an ADXL345") \
+    X(KEEP, "in force now; type save to keep it") \
     X(ODR_UNKNOWN, "odr: not measured yet") \
     X(LIMITS_XY, "88.5 to 955.8: " V_VERDICT) \
     X(LIMITS_Z, "110.25 to 1286.25: " V_VERDICT) \

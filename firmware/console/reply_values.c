@@ -26,7 +26,7 @@ _Static_assert(TEXT_TWO_SENSORS - TEXT_NO_SENSOR == ADXL345_FAULT_TWO_SENSORS - 
 _Static_assert(TEXT_WATCHDOG - TEXT_POWER_ON == HAL_RESET_WATCHDOG, "words for each cause");
 _Static_assert(TEXT_STATE_FAULTY - TEXT_STATE_STOPPED == ADXL345_FAULTY, "words for each phase");
 
-_Static_assert(TEXT_CHECK_BUS - TEXT_LISTED == SAY_CHECK_BUS - SAY_LISTED, "a text for each");
+_Static_assert(TEXT_KEEP - TEXT_LISTED == SAY_KEEP - SAY_LISTED, "a text for each");
 
 /* value / 100, with both decimals. */
 static void say_hundredths(uint32_t value)

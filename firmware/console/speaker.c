@@ -4,9 +4,16 @@
 #include "base/notices.h"
 #include "base/text.h"
 #include "console/reply_lines.h"
+#include "output/rows.h"
 #include "settings/settings.h"
 
 static bool begun; /* the oldest notice: a line of it is out */
+
+/* A reply of many lines, which a person is to see whole. */
+static bool is_read(uint8_t kind)
+{
+    return kind == NOTICE_HELP || kind == NOTICE_STATUS || kind == NOTICE_LISTING;
+}
 
 void speaker_start(void)
 {
@@ -24,6 +31,9 @@ bool speaker_pass(void)
         return false;
     }
     begun = progress == REPLY_GOES_ON;
+    if (is_read(notice->kind)) {
+        rows_hold();
+    }
     if (!begun) {
         notices_drop();
     }

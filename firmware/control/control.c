@@ -93,7 +93,7 @@ void control_restore(bool saved)
 
 bool control_save(void)
 {
-    return !control.sampling && store_save_begin();
+    return !measure_runs() && store_save_begin();
 }
 
 void control_sample(bool wanted)

@@ -23,7 +23,10 @@ setting_answer_t control_set(uint8_t which, const char *text);
 /* All settings as saved (settings_kept.h), or as shipped; they take effect like each by itself. */
 void control_restore(bool saved);
 
-/* Begins to save all settings; false while sampling. Until it is over (store_busy) no command is to be taken. */
+/*
+ * Begins to save all settings while samples and rows go on; false while a measurement may change them. Until it is over
+ * (store_busy) no command is to be taken.
+ */
 bool control_save(void);
 
 /* Sampling on and off (sensor in standby). */

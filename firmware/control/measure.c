@@ -129,9 +129,14 @@ bool measure_configured(void)
     return back;
 }
 
+bool measure_runs(void)
+{
+    return measure.step != STEP_IDLE;
+}
+
 bool measure_start(uint8_t kind)
 {
-    if (measure.step != STEP_IDLE) {
+    if (measure_runs()) {
         return false;
     }
     measure.kind = kind;

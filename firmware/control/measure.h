@@ -43,6 +43,9 @@ void measure_reset(void);
 /* Begins what this command (notice_kind_t) asks for, whose reply follows; false: another runs. */
 bool measure_start(uint8_t kind);
 
+/* One runs, or its reply is not out yet. */
+bool measure_runs(void);
+
 /* Every pass of the main loop, after adxl345_poll: ends what has failed, and tells what is over. */
 void measure_pass(void);
 

@@ -10,8 +10,12 @@
 /* The longest row is one of the plotter: four angles of FORMAT_HUNDREDTHS_MAX and the labels, 69 bytes. */
 enum { ROW_MAX = 72 };
 
+enum { HELD_TIMES = 31 }; /* of newest_time, 2 s */
+
 static uint16_t since_row;
 static bool enabled;
+static bool held;
+static uint16_t held_from; /* of newest_time */
 
 void rows_start(void)
 {
@@ -21,7 +25,20 @@ void rows_start(void)
 void rows_enable(bool now_enabled)
 {
     enabled = now_enabled;
+    held = false;
     since_row = 0;
+}
+
+/* Of the newest sample, in 65.536 ms; wraps after 71 minutes. */
+static uint16_t newest_time(void)
+{
+    return (uint16_t)(pipeline_newest_us() >> 16);
+}
+
+void rows_hold(void)
+{
+    held = true;
+    held_from = newest_time();
 }
 
 static char *write_csv(char *at, const row_t *row)
@@ -86,6 +103,12 @@ void rows_at_once(bool plot)
         return;
     }
     since_row = 0;
+    held = held && (uint16_t)(newest_time() - held_from) < HELD_TIMES;
+    if (held && !plot) {
+        count(COUNT_HELD);
+        pipeline_flag(ROW_DROPPED);
+        return;
+    }
     row_t row;
     pipeline_row(&row);
     write(&row, plot);

@@ -154,9 +154,6 @@ static setting_answer_t judge(const setting_t *s)
     if (!settings_fit(settings()->choice.filter, settings()->rate_dhz)) {
         return SETTING_TOO_SLOW;
     }
-    if (s->which == SETTING_FILTER) {
-        settings_take_filter(settings()->choice.filter);
-    }
     return calibration_check(&settings()->calibration).why == CALIBRATION_GOOD ? SETTING_TAKEN : SETTING_ILLEGAL;
 }
 
@@ -171,7 +168,6 @@ static bool keep(uint8_t *to, const uint8_t *from, uint8_t bytes)
     return differ;
 }
 
-/* A filter that is in force already starts with what is shipped again. */
 setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
 {
     static uint8_t before[AXES * sizeof(int16_t)];
@@ -185,7 +181,10 @@ setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
     (void)keep(before, place, bytes);
     setting_answer_t answer = take(&s, text) ? judge(&s) : SETTING_ILLEGAL;
     bool changed = answer == SETTING_TAKEN ? keep(before, place, bytes) : keep(place, before, bytes);
-    *starts = which == SETTING_FILTER || changed ? s.format.starts : 0;
+    *starts = changed ? s.format.starts : 0;
+    if (which == SETTING_FILTER && *starts != 0) {
+        settings_take_filter(settings()->choice.filter);
+    }
     return answer;
 }
 

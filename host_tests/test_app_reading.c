@@ -1,0 +1,128 @@
+/* What makes the console one for a person: rows wait while he reads, and the answers say what he needs next. */
+#include <string.h>
+
+#include "app/app.h"
+#include "base/counters.h"
+#include "path/pipeline.h"
+#include "settings/settings.h"
+#include "support_roles.h"
+#include "support_talk.h"
+#include "unity.h"
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+/* After the last line of a long answer no row for 2 s; the next has the flag, and those in between are counted. */
+static void assert_rows_wait(const char *command)
+{
+    talk_start();
+    size_t note = board.note_count;
+    board_type(command);
+    board_run_ms(6000);
+    TEST_ASSERT_TRUE_MESSAGE(board.note_count > note, command);
+    double last_ms = board.note_ms[board.note_count - 1];
+    size_t next = board.row_count;
+    while (board.rows[next - 1].at_ms > last_ms) {
+        next--;
+    }
+    TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(80.0, 2000.0, board.rows[next].at_ms - last_ms, command);
+    TEST_ASSERT_EQUAL_UINT_MESSAGE(ROW_DROPPED, board.rows[next].flags & ROW_DROPPED, command);
+    uint32_t missing = (board.rows[next].t_us - board.rows[next - 1].t_us + 5000u) / 10000u - 1u;
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(missing, counted(COUNT_HELD), command);
+    TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_DROPPED));
+    for (size_t i = next + 1; i < board.row_count; i++) {
+        TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & (ROW_DROPPED | ROW_WARMING_UP | ROW_COASTED));
+    }
+}
+
+static void test_rows_wait_while_a_long_answer_is_read(void)
+{
+    assert_rows_wait("help");
+    assert_rows_wait("settings");
+    assert_rows_wait("status");
+    assert_rows_wait("?");
+}
+
+/* Samples are filtered meanwhile: the first row afterwards is where a filter that went on is. */
+static void test_filters_go_on_meanwhile(void)
+{
+    talk_start();
+    uint32_t before = counted(COUNT_SAMPLES);
+    board_type("help");
+    board_run_ms(1500);
+    TEST_ASSERT_UINT32_WITHIN(2, before + 150u, counted(COUNT_SAMPLES));
+}
+
+static void test_short_answers_and_a_reset_hold_no_row(void)
+{
+    talk_start();
+    board_type("rate");
+    board_type("version");
+    board_type("nonsense");
+    board_run_ms(1000);
+    TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_HELD));
+}
+
+static void test_a_plot_goes_on(void)
+{
+    talk_start();
+    talk_type("mode plot");
+    board_type("help");
+    board_run_ms(3000);
+    TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_HELD));
+}
+
+static void test_the_filter_in_force_keeps_its_parameters(void)
+{
+    talk_start();
+    talk_type("filter {robust}");
+    talk_type("gate 5");
+    size_t first = board.row_count;
+    TEST_ASSERT_EQUAL_STRING(by_role("# filter {robust}"), talk_answer("filter {robust}"));
+    TEST_ASSERT_EQUAL_STRING("# gate 5 sigma: 1 to 16, 0: off", talk_answer("gate"));
+    board_run_ms(300);
+    for (size_t i = first; i < board.row_count; i++) {
+        TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & ROW_WARMING_UP);
+    }
+    talk_type("filter {plain}");
+    talk_type("filter {robust}");
+    TEST_ASSERT_EQUAL_STRING("# gate 3 sigma: 1 to 16, 0: off", talk_answer("gate"));
+}
+
+static void test_help_lists_the_parameters_of_the_filter_in_force(void)
+{
+    talk_start();
+    talk_type("filter {robust}");
+    size_t before = board.note_count;
+    board_type("help");
+    board_run_ms(1000);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# gate: 1 to 16, 0: off", before));
+    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# b0", before));
+    talk_type("filter {default}");
+    before = board.note_count;
+    board_type("help");
+    board_run_ms(1000);
+    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# gate:", before));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# every: 1 to 10000", before));
+}
+
+static void test_the_version_is_said(void)
+{
+    talk_start();
+    TEST_ASSERT_EQUAL_STRING(board.notes[0], talk_answer("version"));
+    TEST_ASSERT_EQUAL_STRING_LEN("# tilt-uno ", board.notes[0], 11);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_rows_wait_while_a_long_answer_is_read);
+    RUN_TEST(test_filters_go_on_meanwhile);
+    RUN_TEST(test_short_answers_and_a_reset_hold_no_row);
+    RUN_TEST(test_a_plot_goes_on);
+    RUN_TEST(test_the_filter_in_force_keeps_its_parameters);
+    RUN_TEST(test_help_lists_the_parameters_of_the_filter_in_force);
+    RUN_TEST(test_the_version_is_said);
+    return UNITY_END();
+}
