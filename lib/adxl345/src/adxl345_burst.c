@@ -94,7 +94,7 @@ static bool claim(struct burst *b)
     return true;
 }
 
-void burst_init(void)
+void adxl345_burst_init(void)
 {
     if (HAL_RAM_CLEARED) {
         return;
@@ -112,7 +112,7 @@ void burst_init(void)
     hal_irq_restore(state);
 }
 
-void burst_set_mode(burst_mode_t new_mode)
+void adxl345_burst_set_mode(burst_mode_t new_mode)
 {
     struct burst *b = base();
     if (b->mode == BURST_IGNORE) {
@@ -133,7 +133,7 @@ void burst_set_mode(burst_mode_t new_mode)
     hal_irq_restore(state);
 }
 
-uint8_t burst_take_bus(uint8_t address, bool fast)
+uint8_t adxl345_burst_take_bus(uint8_t address, bool fast)
 {
     struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
@@ -147,11 +147,11 @@ uint8_t burst_take_bus(uint8_t address, bool fast)
     state = hal_irq_save(); /* written before: from now on an edge may start a burst */
     b->bus.state = was == I2C_BUS_BUSY ? (uint8_t)I2C_BUS_TIMEOUT : was;
     hal_irq_restore(state);
-    (void)burst_judge();
+    (void)adxl345_burst_judge();
     return lines;
 }
 
-HAL_APART bool burst_access(uint8_t reg, uint8_t value, bool read)
+HAL_APART bool adxl345_burst_access(uint8_t reg, uint8_t value, bool read)
 {
     struct burst *b = base();
     bool free = claim(b);
@@ -165,12 +165,12 @@ HAL_APART bool burst_access(uint8_t reg, uint8_t value, bool read)
     return free;
 }
 
-i2c_bus_state_t burst_bus_state(void)
+i2c_bus_state_t adxl345_burst_bus_state(void)
 {
     return (i2c_bus_state_t)burst.bus.state;
 }
 
-uint8_t burst_register_value(void)
+uint8_t adxl345_burst_register_value(void)
 {
     return burst.bus.rx[0];
 }
@@ -181,7 +181,7 @@ uint8_t burst_register_value(void)
  */
 static uint32_t waiting_since_us(struct burst *b, uint32_t now_us, bool is_new)
 {
-    uint32_t step_us = period_us();
+    uint32_t step_us = adxl345_period_us();
     uint32_t t_us = b->last_us + step_us;
     if (b->verdict == READING_EMPTY && hal_time_reached(b->begun_us, t_us)) {
         t_us = b->begun_us;
@@ -192,7 +192,7 @@ static uint32_t waiting_since_us(struct burst *b, uint32_t now_us, bool is_new)
     return t_us;
 }
 
-bool burst_read(bool is_new)
+bool adxl345_burst_read(bool is_new)
 {
     struct burst *b = base();
     if (b->mode != BURST_READ || !queue_has_room() || !claim(b)) {
@@ -232,7 +232,7 @@ static inline void keep_edge(struct burst *b, uint8_t asked)
  */
 static HAL_APART void restamp(struct burst *b)
 {
-    uint32_t step_us = period_us();
+    uint32_t step_us = adxl345_period_us();
     uint32_t t_us = b->begun_us - (step_us >> 1) - b->bus.rx[READING_FIFO_STATUS] * step_us;
     if (b->last_known && hal_time_reached(b->last_us, t_us)) {
         return; /* a bit of the count was wrong */
@@ -248,7 +248,7 @@ static reading_t judge(struct burst *b)
     burst_entry_t *entry = &b->queue[b->head];
     HAL_POINTER(entry); /* else its address is computed anew at each use */
     b->failures = 0;
-    reading_t verdict = integrity_judge(b->bus.rx, entry->sample.lsb, b->newest_lsb);
+    reading_t verdict = adxl345_integrity_judge(b->bus.rx, entry->sample.lsb, b->newest_lsb);
     b->verdict = (uint8_t)verdict;
     if (verdict != READING_GOOD) {
         return verdict;
@@ -259,7 +259,7 @@ static reading_t judge(struct burst *b)
     b->newest_lsb = entry->sample.lsb;
     entry->sample.t_us = b->reading_us;
     entry->exact = b->reading_exact;
-    entry->stuck = integrity_stuck();
+    entry->stuck = adxl345_integrity_stuck();
     b->head = (uint8_t)((uint8_t)(b->head + 1u) & QUEUE_MASK);
     return verdict;
 }
@@ -290,27 +290,27 @@ static HAL_APART reading_t judge_ended(void)
 }
 
 /* Asked in every pass, of which most find nothing. */
-reading_t burst_judge(void)
+reading_t adxl345_burst_judge(void)
 {
     return !burst.on_bus || burst.bus.state == I2C_BUS_BUSY ? READING_NONE : judge_ended();
 }
 
-bool burst_running(void)
+bool adxl345_burst_running(void)
 {
     return burst.on_bus != 0;
 }
 
-bool burst_found_empty(void)
+bool adxl345_burst_found_empty(void)
 {
     return burst.verdict == READING_EMPTY;
 }
 
-bool burst_left_more(void)
+bool adxl345_burst_left_more(void)
 {
     return burst.bus.rx[READING_FIFO_STATUS] != 0;
 }
 
-HAL_APART uint32_t burst_begun_us(void)
+HAL_APART uint32_t adxl345_burst_begun_us(void)
 {
     hal_irq_state_t state = hal_irq_save();
     uint32_t t_us = burst.begun_us;
@@ -318,39 +318,39 @@ HAL_APART uint32_t burst_begun_us(void)
     return t_us;
 }
 
-void burst_expect(uint32_t t_us)
+void adxl345_burst_expect(uint32_t t_us)
 {
     struct burst *b = base();
     b->begun_us = t_us;
     b->last_us = t_us;
 }
 
-uint32_t burst_met_sample_us(void)
+uint32_t adxl345_burst_met_sample_us(void)
 {
-    return burst.verdict == READING_EMPTY ? burst.last_us : burst_begun_us();
+    return burst.verdict == READING_EMPTY ? burst.last_us : adxl345_burst_begun_us();
 }
 
-i2c_bus_state_t burst_failed_state(void)
+i2c_bus_state_t adxl345_burst_failed_state(void)
 {
     return (i2c_bus_state_t)burst.failed_state;
 }
 
-uint8_t burst_failures(void)
+uint8_t adxl345_burst_failures(void)
 {
     return burst.failures;
 }
 
-uint8_t burst_queued(void)
+uint8_t adxl345_queued(void)
 {
     return (uint8_t)((uint8_t)(burst.head - burst.tail) & QUEUE_MASK);
 }
 
-bool burst_queue_full(void)
+bool adxl345_burst_queue_full(void)
 {
     return !queue_has_room();
 }
 
-bool burst_oldest_us(uint32_t *t_us)
+bool adxl345_oldest_us(uint32_t *t_us)
 {
     uint8_t at = burst.tail;
     if (at == burst.head) {
@@ -360,7 +360,7 @@ bool burst_oldest_us(uint32_t *t_us)
     return true;
 }
 
-const burst_entry_t *burst_take(void)
+const burst_entry_t *adxl345_burst_take(void)
 {
     struct burst *b = base();
     uint8_t at = b->tail;
@@ -368,7 +368,7 @@ const burst_entry_t *burst_take(void)
     HAL_POINTER(entry);
     const burst_entry_t *before = at != 0 ? entry - 1 : &b->queue[QUEUE_MASK];
     b->tail = (uint8_t)((uint8_t)(at + 1u) & QUEUE_MASK);
-    watch_sample(entry->sample.lsb, before->sample.lsb);
-    period_sample(entry->sample.t_us, entry->exact);
+    adxl345_watch_sample(entry->sample.lsb, before->sample.lsb);
+    adxl345_period_sample(entry->sample.t_us, entry->exact);
     return entry;
 }
