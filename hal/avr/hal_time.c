@@ -4,9 +4,12 @@
  */
 #include "hal_time.h"
 
+#include <avr/interrupt.h>
+#include <avr/io.h>
+
 #include "hal_irq.h"
 #include "hal_sleep.h"
-#include "hal_watchdog.h"
+#include "hal_watchdog_tick.h"
 
 enum { COUNTS_PER_US = 2, COUNTS_PER_TICK = HAL_TICK_US * COUNTS_PER_US };
 

@@ -1,6 +1,9 @@
 /* UART rings and their interrupts. The interrupts move one byte each. */
 #include "hal_uart.h"
 
+#include <avr/interrupt.h>
+#include <avr/io.h>
+
 #include "hal_irq.h"
 #include "hal_ring.h"
 #include "hal_sleep.h"

@@ -110,12 +110,12 @@ bool hal_host_led(void)
 }
 
 /* Main is never interrupted here, so there is nothing to hold off. */
-uint8_t hal_irq_save(void)
+hal_irq_state_t hal_irq_save(void)
 {
     return 0;
 }
 
-void hal_irq_restore(uint8_t state)
+void hal_irq_restore(hal_irq_state_t state)
 {
     (void)state;
 }
@@ -152,9 +152,9 @@ void hal_watchdog_note(uint8_t new_note)
     note = new_note;
 }
 
-uint8_t hal_watchdog_cause(void)
+hal_reset_t hal_reset_cause(void)
 {
-    return reset_cause;
+    return (hal_reset_t)reset_cause;
 }
 
 uint8_t hal_reset_note(void)
