@@ -49,7 +49,7 @@ RULES = (
     ("hal_probe", "hal/avr/hal_sleep.c", "        cli();\n", "", SLEEP),
     ("hal_probe", "hal/avr/hal_sleep.c", "        sei();\n        sleep_cpu", "        sei();\n        __builtin_avr_nop();\n        sleep_cpu",
      SLEEP),
-    ("hal_probe", "hal/avr/hal_time.c", "hal_irq_save();\n    uint32_t now", "SREG;\n    uint32_t now", TIMER),
+    ("hal_probe", "hal/avr/hal_time.c", "hal_irq_save();\n    uint16_t since", "SREG;\n    uint16_t since", TIMER),
     ("hal_probe", "hal/avr/hal_time.c", "hal_irq_save(); /* the timer", "SREG; /* the timer", TIMER),
     ("hal_probe", "hal/avr/hal_eeprom.c", "hal_irq_save();\n    EECR", "SREG;\n    EECR", EEPROM),
     ("hal_probe", "hal/avr/hal_eeprom.c", "EECR |= _BV(EEMPE);\n", "EECR |= _BV(EEMPE);\n    __builtin_avr_delay_cycles(6);\n",

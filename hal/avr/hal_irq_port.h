@@ -10,15 +10,14 @@
 
 HAL_BODY hal_irq_state_t hal_irq_save(void)
 {
-    hal_irq_state_t state = SREG;
-    cli();
+    hal_irq_state_t state;
+    __asm__ volatile("in %0, __SREG__\n\tcli" : "=r"(state)::"memory");
     return state;
 }
 
 HAL_BODY void hal_irq_restore(hal_irq_state_t state)
 {
-    __asm__ volatile("" ::: "memory");
-    SREG = state;
+    __asm__ volatile("out __SREG__, %0" ::"r"(state) : "memory");
 }
 
 HAL_BODY void hal_irq_enable(void)
