@@ -90,12 +90,12 @@ static void sample_arrived(adxl345_driver_t *d)
     d->after_fault = false;
     d->first_sample_seen = true;
     d->back_off = BACK_OFF_MIN;
-    d->deadline_us = d->now_us + (uint32_t)d->half_us * 2u + LIMIT_US;
     if (d->timed == TIMED_READ) {
         d->deadline_us = adxl345_burst_begun_us() + patience_us();
         d->timed = adxl345_burst_left_more() ? TIMED_WANTED : TIMED_NONE;
         return;
     }
+    d->deadline_us = d->now_us + LIMIT_US + halves_us(2);
     d->fault = ADXL345_FAULT_NONE;
     d->timed = TIMED_NONE;
 }
