@@ -1,10 +1,4 @@
-/*
- * EEPROM, 1024 bytes, one byte at a time. A write takes 3.4 ms and goes on by itself.
- *
- *   bool hal_eeprom_ready(void)                              no write under way (main)
- *   uint8_t hal_eeprom_read(uint16_t address)                only when ready (main)
- *   void hal_eeprom_write_start(uint16_t address, uint8_t value)   only when ready; returns at once (main)
- */
+/* EEPROM, one byte at a time. A write takes 3.4 ms (data sheet p. 22) and goes on by itself. */
 #ifndef HAL_EEPROM_H
 #define HAL_EEPROM_H
 
@@ -13,6 +7,13 @@
 
 #define HAL_EEPROM_SIZE 1024u
 
-#include "hal_port.h"
+/* No write is under way. Main. */
+bool hal_eeprom_ready(void);
+
+/* The byte at address, 0 to HAL_EEPROM_SIZE - 1. Only when ready. Main. */
+uint8_t hal_eeprom_read(uint16_t address);
+
+/* Begins to write the byte at address, 0 to HAL_EEPROM_SIZE - 1, and returns at once. Only when ready. Main. */
+void hal_eeprom_write_start(uint16_t address, uint8_t value);
 
 #endif

@@ -1,11 +1,7 @@
 /*
  * Critical sections. Everything an interrupt shares with main is one byte, or is touched between save and restore.
  *
- *   hal_irq_state_t hal_irq_save(void)            switch interrupts off, return what they were (any context)
- *   void hal_irq_restore(hal_irq_state_t state)   put them back
- *   void hal_irq_enable(void)                     switch them on (main, once at start-up)
- *
- * Hold a section for 19 cycles at most, 1.2 us: an interrupt may wait for a handler, a section right behind it and a
+ * Hold a section for 19 cycles at most, 1.2 us: an interrupt may wait for a handler, a section right after it and a
  * handler again (tools/latency.py; make check-waits).
  */
 #ifndef HAL_IRQ_H
@@ -18,6 +14,15 @@ typedef uint8_t hal_irq_state_t;
 /* For what a handler calls: a call makes it save every register that a function may use, 60 cycles. */
 #define HAL_IRQ_INLINE static inline __attribute__((always_inline))
 
-#include "hal_port.h"
+/* Switches interrupts off; returns what they were. Any context. */
+hal_irq_state_t hal_irq_save(void);
+
+/* Puts them back. Any context. */
+void hal_irq_restore(hal_irq_state_t state);
+
+/* Switches them on. Main, once at start-up. */
+void hal_irq_enable(void);
+
+#include "hal_irq_port.h"
 
 #endif

@@ -1,15 +1,13 @@
-/*
- * The board's LED (D13).
- *
- *   void hal_led_init(void)        main, once
- *   void hal_led_set(bool on)      any context
- */
+/* The board's LED (D13). */
 #ifndef HAL_LED_H
 #define HAL_LED_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
-#include "hal_port.h"
+/* Off, and a pin that can be set. Main, once. */
+void hal_led_init(void);
+
+/* Any context. */
+void hal_led_set(bool on);
 
 #endif

@@ -1,15 +1,16 @@
-/*
- * Idle sleep without lost wake-ups.
- *
- *   void hal_wake(void)                    main has work (called by handlers, or by main to stay awake)
- *   void hal_sleep_until_wake(void)        returns at once if hal_wake was called since the last return, else sleeps
- *                                          until it is; handlers that need no work of main do not end the sleep (main)
- */
+/* Idle sleep without lost wake-ups. */
 #ifndef HAL_SLEEP_H
 #define HAL_SLEEP_H
 
-#include <stdint.h>
+/* Main has work: called by handlers, or by main to stay awake. Any context. */
+void hal_wake(void);
 
-#include "hal_port.h"
+/*
+ * Returns at once if hal_wake was called since the last return, else sleeps until it is. Handlers that need no work of
+ * main do not end the sleep. Main.
+ */
+void hal_sleep_until_wake(void);
+
+#include "hal_sleep_port.h"
 
 #endif

@@ -1,19 +1,6 @@
 /*
  * Microseconds since start in 32 bits; wraps after 71.6 minutes, so compare with hal_time_reached only.
  *
- *   void hal_time_init(void)          start the timer (main, once)
- *   uint32_t hal_time_us(void)        now (any context)
- *   uint16_t hal_time_count_isr(void)                                  the timer now, with interrupts off (a handler)
- *   void hal_time_stamp_isr(volatile uint32_t *t_us, uint16_t count)   *t_us = the time of that count, up to 32 ms ago;
- *                                     in few registers, because a handler saves each that it uses
- *   void hal_wake_at(uint32_t t_us)   wake main at this moment (main); one alarm, a later call moves it. For moments
- *                                     more than 32.7 ms ahead main is also woken each 32.768 ms before, and the same
- *                                     after a moment that is past: so look at the clock, not at having been woken. At
- *                                     once where it has just passed, less than HAL_WAKE_LATE_US ago
- *   uint8_t hal_time_lap(void)        counts HAL_LAP_US, wraps: for times of at most 16 ms (main)
- *
- *   uint32_t HAL_CPU_HZ               cycles of the processor in a second
- *
  * The timer also wakes main every HAL_TICK_US, so main looks around even when no other interrupt comes.
  */
 #ifndef HAL_TIME_H
@@ -27,12 +14,37 @@
 #define HAL_WAKE_LATE_US 1000u
 #define HAL_WAKE_AHEAD_US 31000u /* hal_wake_at tells a moment so far ahead from one that has just passed */
 
-/* now is at or after deadline, for moments less than 35 minutes apart (any context). */
+/* Starts the timer. Main, once. */
+void hal_time_init(void);
+
+/* Now, us. Any context. */
+uint32_t hal_time_us(void);
+
+/* The timer now: for hal_time_stamp_isr. A handler. */
+uint16_t hal_time_count_isr(void);
+
+/*
+ * *t_us = the time of that count, up to 32 ms ago. A handler; in few registers, because it saves each that it uses.
+ */
+void hal_time_stamp_isr(volatile uint32_t *t_us, uint16_t count);
+
+/*
+ * Wakes main at this moment; one alarm, a later call moves it. For moments more than 32.7 ms ahead main is also woken
+ * each 32.768 ms before, and the same after a moment that is past: so look at the clock, not at having been woken. At
+ * once where it has just passed, less than HAL_WAKE_LATE_US ago. Main.
+ */
+void hal_wake_at(uint32_t t_us);
+
+/* Counts HAL_LAP_US, wraps: for times of at most 16 ms. Main. */
+uint8_t hal_time_lap(void);
+
+/* now is at or after deadline, for moments less than 35 minutes apart. Any context. */
 static inline bool hal_time_reached(uint32_t now_us, uint32_t deadline_us)
 {
     return (int32_t)(now_us - deadline_us) >= 0;
 }
 
-#include "hal_port.h"
+/* The port's HAL_CPU_HZ: cycles of the processor in a second (uint32_t). */
+#include "hal_time_port.h"
 
 #endif

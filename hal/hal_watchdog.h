@@ -1,19 +1,10 @@
 /*
  * Watchdog (250 ms, reset only) and the cause of the last reset.
  *
- * The UNO's bootloader clears MCUSR before the application runs, so the cause is told by a breadcrumb in RAM that no
+ * The UNO's bootloader clears MCUSR before the application runs, so the cause is found by a breadcrumb in RAM that no
  * start-up code clears: a mark, the time since the last feed, a note of the application, and how many watchdog resets
  * there were in a row. Behind a bootloader it cannot tell a supply that dropped, but not so far that RAM forgot, from
  * the reset button.
- *
- *   void hal_watchdog_start(void)             main, once
- *   void hal_watchdog_feed(void)              main, in one place only
- *   void hal_watchdog_note(uint8_t note)      what main was waiting for; survives the reset (main)
- *   hal_reset_t hal_reset_cause(void)         of the start of this run (any context)
- *   uint8_t hal_reset_note(void)              the note left by the run before; 0 after power-on
- *   uint8_t hal_reset_repeats(void)           watchdog resets in a row, this start's included, saturating; 0 after
- *                                             another cause (any context)
- *   void hal_reset_settled(void)              this run lasts: the next watchdog reset counts as the first (main)
  */
 #ifndef HAL_WATCHDOG_H
 #define HAL_WATCHDOG_H
@@ -24,6 +15,27 @@
 #define HAL_WATCHDOG_MS 250u
 
 typedef enum { HAL_RESET_POWER_ON, HAL_RESET_EXTERNAL, HAL_RESET_BROWN_OUT, HAL_RESET_WATCHDOG } hal_reset_t;
+
+/* Starts the dog; before that the cause is not known. Main, once. */
+void hal_watchdog_start(void);
+
+/* Main, in one place only. */
+void hal_watchdog_feed(void);
+
+/* What main was waiting for; survives the reset. Main. */
+void hal_watchdog_note(uint8_t note);
+
+/* The cause of the start of this run. Any context. */
+hal_reset_t hal_reset_cause(void);
+
+/* The note left by the run before; 0 after power-on. Any context. */
+uint8_t hal_reset_note(void);
+
+/* Watchdog resets in a row, this start's included, saturating; 0 after another cause. Any context. */
+uint8_t hal_reset_repeats(void);
+
+/* This run lasts: the next watchdog reset counts as the first. Main. */
+void hal_reset_settled(void);
 
 /* MCUSR bits (data sheet p. 54). */
 enum { HAL_MCUSR_POWER_ON = 0x01, HAL_MCUSR_EXTERNAL = 0x02, HAL_MCUSR_BROWN_OUT = 0x04, HAL_MCUSR_WATCHDOG = 0x08 };
@@ -64,7 +76,5 @@ static inline uint8_t hal_reset_count(hal_reset_t cause, bool mark_intact, uint8
     }
     return before == UINT8_MAX ? before : (uint8_t)(before + 1u);
 }
-
-#include "hal_port.h"
 
 #endif

@@ -56,7 +56,7 @@ void hal_wake_at(uint32_t t_us)
     (void)t_us;
 }
 
-uint8_t hal_watchdog_cause(void)
+hal_reset_t hal_reset_cause(void)
 {
     return HAL_RESET_WATCHDOG;
 }

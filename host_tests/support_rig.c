@@ -128,7 +128,7 @@ void rig_away(unsigned passes)
 
 void rig_until_burst(void)
 {
-    while (!burst_running()) {
+    while (!adxl345_burst_running()) {
         adxl345_poll(hal_time_us());
         rig_away(1);
     }
@@ -136,7 +136,7 @@ void rig_until_burst(void)
 
 void rig_until_pause(void)
 {
-    while (hal_drdy_high() || burst_running()) {
+    while (hal_drdy_high() || adxl345_burst_running()) {
         rig_run_ms(0.1);
     }
 }
@@ -144,11 +144,12 @@ void rig_until_pause(void)
 void rig_until_source_asked(void)
 {
     hal_host_faults.int1_cut = true;
-    for (double end_ms = hal_host_now_ms() + 60.0; burst_running() || burst_bus_state() != I2C_BUS_BUSY;) {
+    for (double end_ms = hal_host_now_ms() + 60.0;
+         adxl345_burst_running() || adxl345_burst_bus_state() != I2C_BUS_BUSY;) {
         TEST_ASSERT_TRUE(hal_host_now_ms() < end_ms);
         adxl345_poll(hal_time_us());
         rig_take_all();
-        if (burst_bus_state() != I2C_BUS_BUSY) {
+        if (adxl345_burst_bus_state() != I2C_BUS_BUSY) {
             board_driver_sleep();
         }
     }

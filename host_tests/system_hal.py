@@ -4,14 +4,13 @@ import re
 
 from system_support import OUT, SIMRUN, STREAMS, run, simrun, test
 
-HAL = [f"hal/avr/hal_{name}.c" for name in ("uart", "time", "sleep", "watchdog", "i2c")]
+HAL = [f"hal/avr/hal_{name}.c" for name in ("uart", "time", "sleep", "watchdog", "i2c", "eeprom")]
 
 
 def probe(name, status, plant=None, resets=0):
     """What a program of host_tests/avr sends, and what simrun says at its end; plant: (file of the hal, text, another in its place)."""
     elf, out, folder, sources = OUT / f"{name}.elf", OUT / f"{name}.txt", OUT / "planted", list(HAL)
     folder.mkdir(exist_ok=True)
-    (folder / "hal_port.h").unlink(missing_ok=True)
     if plant is not None:
         file, old, new = plant
         text = pathlib.Path(file).read_text(encoding="utf-8")
@@ -50,10 +49,10 @@ RULES = (
     ("hal_probe", "hal/avr/hal_sleep.c", "        cli();\n", "", SLEEP),
     ("hal_probe", "hal/avr/hal_sleep.c", "        sei();\n        sleep_cpu", "        sei();\n        __builtin_avr_nop();\n        sleep_cpu",
      SLEEP),
-    ("hal_probe", "hal/avr/hal_time.c", "hal_irq_save();\n    uint32_t now", "SREG;\n    uint32_t now", TIMER),
+    ("hal_probe", "hal/avr/hal_time.c", "hal_irq_save();\n    uint16_t since", "SREG;\n    uint16_t since", TIMER),
     ("hal_probe", "hal/avr/hal_time.c", "hal_irq_save(); /* the timer", "SREG; /* the timer", TIMER),
-    ("hal_probe", "hal/avr/hal_port.h", "hal_irq_save();\n    EECR", "SREG;\n    EECR", EEPROM),
-    ("hal_probe", "hal/avr/hal_port.h", "EECR |= _BV(EEMPE);\n", "EECR |= _BV(EEMPE);\n    __builtin_avr_delay_cycles(6);\n",
+    ("hal_probe", "hal/avr/hal_eeprom.c", "hal_irq_save();\n    EECR", "SREG;\n    EECR", EEPROM),
+    ("hal_probe", "hal/avr/hal_eeprom.c", "EECR |= _BV(EEMPE);\n", "EECR |= _BV(EEMPE);\n    __builtin_avr_delay_cycles(6);\n",
      "EEPE is set more than four cycles after EEMPE"),
     ("watchdog_probe", "hal/avr/hal_watchdog.c", "    MCUSR = 0;\n", "", BITES),
     *(("watchdog_probe", "hal/avr/hal_watchdog.c", "    wdt_disable();\n", instead, BITES) for instead in (

@@ -209,9 +209,9 @@ static void test_stop_while_every_read_fails(void)
     double begun_ms = hal_host_now_ms();
     unsigned tries = 0;
     while (adxl345_phase() != ADXL345_STOPPED) {
-        uint32_t begun_us = burst_begun_us();
+        uint32_t begun_us = adxl345_burst_begun_us();
         rig_pass();
-        tries += burst_begun_us() != begun_us;
+        tries += adxl345_burst_begun_us() != begun_us;
         TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms < 110);
     }
     TEST_ASSERT_TRUE(tries > 300);
@@ -225,13 +225,13 @@ static void test_a_sample_is_coming_while_int1_is_high(void)
     TEST_ASSERT_FALSE(adxl345_sample_coming());
     rig.leaves = true;
     rig_run_ms(12 * PERIOD_MS); /* the queue is full: nothing is on the bus */
-    TEST_ASSERT_FALSE(burst_running());
+    TEST_ASSERT_FALSE(adxl345_burst_running());
     TEST_ASSERT_TRUE(adxl345_sample_coming());
     rig.leaves = false;
     rig_run_ms(5 * PERIOD_MS);
     hal_host_faults.int1_high = true;
     rig_run_ms(2.5 * PERIOD_MS);
-    while (burst_running() || !burst_found_empty()) {
+    while (adxl345_burst_running() || !adxl345_burst_found_empty()) {
         rig_pass();
     }
     TEST_ASSERT_FALSE(adxl345_sample_coming());

@@ -122,10 +122,10 @@ static void test_what_follows_a_burst_that_hung_has_its_own_time(void)
         rig_until_pause();
         rig_until_burst();
         rig_away(phase); /* a burst takes 300 us */
-        bool cut = burst_bus_state() == I2C_BUS_BUSY;
+        bool cut = adxl345_burst_bus_state() == I2C_BUS_BUSY;
         inside += cut;
         hal_host_faults.hang_clocks = 9;
-        while (burst_running()) {
+        while (adxl345_burst_running()) {
             rig_pass();
         }
         rig_run_ms(30);
@@ -191,19 +191,19 @@ static void until_a_burst_behind_the_last_refused_one(void)
     rig_run_ms(100);
     rig_until_pause();
     hal_host_sensor.address = 0x2A;
-    while (burst_failures() < 2) {
+    while (adxl345_burst_failures() < 2) {
         adxl345_poll(hal_time_us());
         rig_away(1);
     }
     rig_until_burst();
-    while (burst_bus_state() == I2C_BUS_BUSY) {
+    while (adxl345_burst_bus_state() == I2C_BUS_BUSY) {
         rig_away(1);
     }
     rig_away(1); /* its STOP is out */
-    TEST_ASSERT_EQUAL(READING_FAILED, burst_judge());
-    TEST_ASSERT_EQUAL_UINT8(3, burst_failures());
+    TEST_ASSERT_EQUAL(READING_FAILED, adxl345_burst_judge());
+    TEST_ASSERT_EQUAL_UINT8(3, adxl345_burst_failures());
     hal_host_drdy_handler();
-    TEST_ASSERT_EQUAL(I2C_BUS_BUSY, burst_bus_state());
+    TEST_ASSERT_EQUAL(I2C_BUS_BUSY, adxl345_burst_bus_state());
 }
 
 static void test_a_burst_behind_the_last_refused_one_does_not_hide_it(void)
@@ -244,7 +244,7 @@ static void test_a_sensor_lost_while_it_is_asked_has_no_data(void)
     for (unsigned phase = 0; phase < 20; phase++) {
         until_the_source_is_asked();
         rig_away(phase);
-        bool inside = burst_bus_state() == I2C_BUS_BUSY;
+        bool inside = adxl345_burst_bus_state() == I2C_BUS_BUSY;
         cut += inside;
         adxl345_model_power(&hal_host_sensor, false);
         while (adxl345_fault() == ADXL345_FAULT_NONE) {
@@ -261,11 +261,11 @@ static void test_ones_in_the_source_are_no_data(void)
     for (unsigned bits = 0; bits <= 8; bits++) {
         uint8_t value = (uint8_t)(0x83u | (0xFFu >> bits));
         until_the_source_is_asked();
-        while (burst_bus_state() == I2C_BUS_BUSY) {
+        while (adxl345_burst_bus_state() == I2C_BUS_BUSY) {
             hal_host_sensor.reg[ADXL345_INT_SOURCE] = value;
             rig_away(1);
         }
-        TEST_ASSERT_EQUAL_HEX8(value, burst_register_value());
+        TEST_ASSERT_EQUAL_HEX8(value, adxl345_burst_register_value());
         rig_pass();
         /* bits 6 to 2 belong to functions that are off (p. 26): with all of them read, it is the sensor's own answer */
         TEST_ASSERT_EQUAL(bits >= 6 ? ADXL345_FAULT_INT1_SILENT : ADXL345_FAULT_NO_DATA, adxl345_fault());
@@ -303,13 +303,13 @@ static bool sensor_away;
 /* The bus is taken before each look for the sensor: whoever is at that address answers it. */
 static void whoever_is_there(void)
 {
-    bool away = sensor_away && driver.address != neighbour;
-    hal_host_sensor.address = away ? 0x2A : driver.address;
+    bool away = sensor_away && adxl345_driver.address != neighbour;
+    hal_host_sensor.address = away ? 0x2A : adxl345_driver.address;
 }
 
 static uint8_t neighbour_id(uint8_t reg, uint8_t byte)
 {
-    return driver.address == neighbour && reg == ADXL345_DEVID ? NEIGHBOUR_ID : byte;
+    return adxl345_driver.address == neighbour && reg == ADXL345_DEVID ? NEIGHBOUR_ID : byte;
 }
 
 /* Another device answers at the other address, always: the sensor is found, lost, and found again. */

@@ -103,7 +103,7 @@ static void test_times_follow_while_int1_is_stuck(void)
         stream_for_ms(300);
         hal_host_faults.int1_high = true;
         rig.limit_us = 1000; /* a sample that is read before the sensor was found empty is 900 us off */
-        period_start((uint16_t)(5000 - percent * 50));
+        adxl345_period_start((uint16_t)(5000 - percent * 50));
         rig_run_ms(3000);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
@@ -235,9 +235,9 @@ static void test_edges_without_a_level_are_noise(void)
     for (unsigned i = 0; i < 300; i++) {
         rig_run_ms(1.3);
         if (!hal_drdy_high()) {
-            uint32_t begun_us = burst_begun_us();
+            uint32_t begun_us = adxl345_burst_begun_us();
             hal_host_drdy_handler();
-            TEST_ASSERT_EQUAL_UINT32(begun_us, burst_begun_us());
+            TEST_ASSERT_EQUAL_UINT32(begun_us, adxl345_burst_begun_us());
         }
     }
     adxl345_readings_t readings;

@@ -258,21 +258,21 @@ static void test_a_burst_that_ended_well_when_the_bus_is_taken_is_delivered(void
     unsigned ended = 0;
     for (unsigned phase = 0; phase < 60; phase++) {
         start_and_change(FLIP, READING_FIFO_CTL, 0x40, 3);
-        while (bursts_left > 1 || burst_running()) {
+        while (bursts_left > 1 || adxl345_burst_running()) {
             pass();
         }
         rig_until_burst();
-        while (burst_bus_state() == I2C_BUS_BUSY) {
+        while (adxl345_burst_bus_state() == I2C_BUS_BUSY) {
             rig_away(1);
         }
-        TEST_ASSERT_EQUAL(READING_BAD, burst_judge());
-        while (!burst_running()) {
+        TEST_ASSERT_EQUAL(READING_BAD, adxl345_burst_judge());
+        while (!adxl345_burst_running()) {
             rig_away(1);
         }
         adxl345_poll(hal_time_us());
         TEST_ASSERT_EQUAL(ADXL345_FAULT_TORN, adxl345_fault());
         rig_away(phase / 2);
-        bool whole = burst_bus_state() == I2C_BUS_OK;
+        bool whole = adxl345_burst_bus_state() == I2C_BUS_OK;
         ended += whole;
         if ((phase & 1u) != 0) {
             adxl345_start(&at_100_hz);
@@ -280,7 +280,7 @@ static void test_a_burst_that_ended_well_when_the_bus_is_taken_is_delivered(void
             adxl345_stop();
         }
         TEST_ASSERT_EQUAL_UINT8(whole, adxl345_queued());
-        TEST_ASSERT_EQUAL_UINT8(!whole, burst_failures());
+        TEST_ASSERT_EQUAL_UINT8(!whole, adxl345_burst_failures());
         rig_take_all();
         TEST_ASSERT_TRUE(!whole || rig.taken_count == rig.latched_count - 3);
         rig_run_ms(60);

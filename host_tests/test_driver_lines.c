@@ -206,7 +206,7 @@ static void test_a_busy_bus_is_waited_for_no_longer_than_it_is_busy(void)
         rig_until_pause();
         rig_until_burst();
         rig_away(i / 2);
-        running += burst_bus_state() == I2C_BUS_BUSY;
+        running += adxl345_burst_bus_state() == I2C_BUS_BUSY;
         rig.leaves = (i & 1u) != 0;
         double begun_ms = hal_host_now_ms();
         adxl345_stop();
@@ -252,7 +252,7 @@ static void test_silent_int1_is_noticed_within_three_periods(void)
             begin(config.rate_dhz / 10.0);
             adxl345_start(&config);
             rig_run_ms(50.0 + (5.0 + phase / 20.0) * period_ms);
-            while (hal_drdy_high() || burst_running()) {
+            while (hal_drdy_high() || adxl345_burst_running()) {
                 rig_pass();
             }
             hal_host_faults.int1_cut = true;

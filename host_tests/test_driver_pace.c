@@ -112,12 +112,12 @@ static void test_a_hung_burst_is_given_up(void)
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
     adxl345_counters(&before);
-    RUN_UNTIL(!hal_drdy_high() && !burst_running(), 50);
+    RUN_UNTIL(!hal_drdy_high() && !adxl345_burst_running(), 50);
     rig_run_ms(2); /* the last STOP is out */
     hal_host_faults.hang_clocks = 9;
     rig_until_burst();
     double begun_ms = hal_host_now_ms();
-    RUN_UNTIL(!burst_running(), 12);
+    RUN_UNTIL(!adxl345_burst_running(), 12);
     double took_ms = hal_host_now_ms() - begun_ms;
     const double given_up_ms = 3.0 + 119 * 0.00275;
     TEST_ASSERT_TRUE(took_ms >= given_up_ms - 0.02 && took_ms <= given_up_ms + 0.02);
@@ -135,7 +135,7 @@ static void test_three_failed_bursts_are_a_fault(void)
     adxl345_counters_t counters;
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
-    RUN_UNTIL(!hal_drdy_high() && !burst_running(), 20);
+    RUN_UNTIL(!hal_drdy_high() && !adxl345_burst_running(), 20);
     adxl345_counters(&counters);
     uint16_t errors_before = counters.bus_errors;
     for (unsigned failed = 1; failed <= 3; failed++) {
@@ -146,7 +146,7 @@ static void test_three_failed_bursts_are_a_fault(void)
             pass();
         }
         adxl345_poll(hal_time_us());
-        TEST_ASSERT_EQUAL_UINT8(failed, burst_failures());
+        TEST_ASSERT_EQUAL_UINT8(failed, adxl345_burst_failures());
     }
     rig_run_ms(0.1);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_BUS, adxl345_fault());
@@ -284,11 +284,11 @@ static void test_a_stale_bus_event_is_ignored(void)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
-    RUN_UNTIL(!burst_running() && !hal_drdy_high(), 20);
-    burst_take_bus(0x53, false);
-    TEST_ASSERT_EQUAL(I2C_BUS_OK, burst_bus_state());
+    RUN_UNTIL(!adxl345_burst_running() && !hal_drdy_high(), 20);
+    adxl345_burst_take_bus(0x53, false);
+    TEST_ASSERT_EQUAL(I2C_BUS_OK, adxl345_burst_bus_state());
     hal_host_i2c_handler();
-    TEST_ASSERT_EQUAL(I2C_BUS_OK, burst_bus_state());
+    TEST_ASSERT_EQUAL(I2C_BUS_OK, adxl345_burst_bus_state());
     TEST_ASSERT_EQUAL_UINT8(0, adxl345_queued());
     rig_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(50));
@@ -303,14 +303,14 @@ static void test_an_edge_while_the_bus_is_cleared_starts_no_transfer(void)
     const adxl345_sample_t *sample;
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
-    RUN_UNTIL(!burst_running() && !hal_drdy_high(), 20);
+    RUN_UNTIL(!adxl345_burst_running() && !hal_drdy_high(), 20);
     rig_run_ms(2); /* the last STOP is out */
     sample_comes_while_clearing = true;
-    burst_take_bus(0x53, false);
+    adxl345_burst_take_bus(0x53, false);
     TEST_ASSERT_TRUE(hal_drdy_high());
-    TEST_ASSERT_FALSE(burst_running());
-    TEST_ASSERT_EQUAL(I2C_BUS_OK, burst_bus_state());
-    TEST_ASSERT_EQUAL_UINT8(0, burst_failures());
+    TEST_ASSERT_FALSE(adxl345_burst_running());
+    TEST_ASSERT_EQUAL(I2C_BUS_OK, adxl345_burst_bus_state());
+    TEST_ASSERT_EQUAL_UINT8(0, adxl345_burst_failures());
     board_driver_sleep();
     TEST_ASSERT_TRUE(hal_time_us() > edge_us);
     double end_ms = hal_host_now_ms() + 1.0;
@@ -336,7 +336,7 @@ static void test_edges_before_streaming_are_ignored(void)
     TEST_ASSERT_TRUE(hal_drdy_high());
     rig_run_ms(5);
     TEST_ASSERT_EQUAL_UINT8(0, adxl345_queued());
-    TEST_ASSERT_FALSE(burst_running());
+    TEST_ASSERT_FALSE(adxl345_burst_running());
     rig.latched_count = 0;
     adxl345_start(&at_100_hz);
     rig_run_ms(300);

@@ -14,7 +14,7 @@ static uint32_t t_us;
 void setUp(void)
 {
     t_us = 0xFFFFFFFFu - 40000u; /* the clock wraps on the way */
-    period_start(5000);
+    adxl345_period_start(5000);
 }
 
 void tearDown(void) {}
@@ -22,13 +22,13 @@ void tearDown(void) {}
 /* 0 until the period was measured. */
 static uint32_t measured_us_q8(void)
 {
-    return period_measured() ? period_us_q8() : 0;
+    return adxl345_period_measured() ? adxl345_period_us_q8() : 0;
 }
 
 static void step(uint32_t us, bool exact)
 {
     t_us += us;
-    period_sample(t_us, exact);
+    adxl345_period_sample(t_us, exact);
 }
 
 static void steps(unsigned count, uint32_t us)
@@ -46,10 +46,10 @@ static void test_sixteen_steps_are_a_measurement(void)
         step(times, true);
         steps(STEPS - 1, 10100);
         TEST_ASSERT_EQUAL_UINT32(0, measured_us_q8());
-        TEST_ASSERT_EQUAL_UINT32(10000, period_us());
+        TEST_ASSERT_EQUAL_UINT32(10000, adxl345_period_us());
         steps(1, 10100);
         TEST_ASSERT_EQUAL_UINT32(10100u * 256u, measured_us_q8());
-        TEST_ASSERT_EQUAL_UINT32(10100, period_us());
+        TEST_ASSERT_EQUAL_UINT32(10100, adxl345_period_us());
     }
 }
 
@@ -59,7 +59,7 @@ static void test_each_sixteen_make_a_mean_of_their_own(void)
     step(0, true);
     steps(STEPS, 10100);
     steps(STEPS - 1, 9900);
-    TEST_ASSERT_EQUAL_UINT32(10100, period_us());
+    TEST_ASSERT_EQUAL_UINT32(10100, adxl345_period_us());
     steps(1, 9900);
     TEST_ASSERT_EQUAL_UINT32(9900u * 256u, measured_us_q8());
     for (unsigned i = 0; i < STEPS; i++) {
@@ -79,12 +79,12 @@ static void test_a_step_is_within_an_eighth_of_the_nominal_one(void)
         const uint32_t lengths_us[] = { shortest_us - 1, shortest_us, longest_us, longest_us + 2 };
         for (unsigned i = 0; i < 4; i++) {
             setUp();
-            period_start((uint16_t)(nominals_us[r] / 2u));
+            adxl345_period_start((uint16_t)(nominals_us[r] / 2u));
             step(0, true);
             steps(STEPS, lengths_us[i]);
             bool is_step = i == 1 || i == 2;
             TEST_ASSERT_EQUAL_UINT32(is_step ? lengths_us[i] * 256u : 0, measured_us_q8());
-            TEST_ASSERT_EQUAL_UINT32(is_step ? lengths_us[i] : nominals_us[r], period_us());
+            TEST_ASSERT_EQUAL_UINT32(is_step ? lengths_us[i] : nominals_us[r], adxl345_period_us());
         }
     }
 }
@@ -120,9 +120,9 @@ static void test_a_start_forgets(void)
 {
     step(0, true);
     steps(STEPS + STEPS / 2, 10100);
-    period_start(10000);
+    adxl345_period_start(10000);
     TEST_ASSERT_EQUAL_UINT32(0, measured_us_q8());
-    TEST_ASSERT_EQUAL_UINT32(20000, period_us());
+    TEST_ASSERT_EQUAL_UINT32(20000, adxl345_period_us());
     step(20000, true);
     steps(STEPS - 1, 20000);
     TEST_ASSERT_EQUAL_UINT32(0, measured_us_q8());
@@ -134,7 +134,7 @@ static void test_the_rate_is_one_over_the_period(void)
     for (unsigned r = 0; r < sizeof nominals_us / sizeof nominals_us[0]; r++) {
         for (int per_mille = -120; per_mille <= 120; per_mille += 5) {
             uint32_t us = nominals_us[r] + (uint32_t)((int32_t)nominals_us[r] * per_mille / 1000);
-            period_start((uint16_t)(nominals_us[r] / 2u));
+            adxl345_period_start((uint16_t)(nominals_us[r] / 2u));
             TEST_ASSERT_EQUAL_UINT32(0, adxl345_rate_chz());
             step(0, true);
             steps(STEPS / 2, us);

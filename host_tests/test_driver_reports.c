@@ -69,14 +69,14 @@ static void test_the_bus_is_fast_at_800_hz_alone(void)
         adxl345_start(&config);
         rig_run_ms(50.0 + 30000.0 / rates_dhz[r]);
         rig_until_pause();
-        while (!burst_running()) {
+        while (!adxl345_burst_running()) {
             adxl345_poll(hal_time_us());
             board_driver_sleep();
         }
-        while (burst_bus_state() == I2C_BUS_BUSY) {
+        while (adxl345_burst_bus_state() == I2C_BUS_BUSY) {
             hal_sleep_until_wake(); /* its end wakes */
         }
-        uint32_t took_us = hal_time_us() - burst_begun_us();
+        uint32_t took_us = hal_time_us() - adxl345_burst_begun_us();
         TEST_ASSERT_UINT32_WITHIN(12, (rates_dhz[r] == 8000 ? 297 : 327) + 10, took_us);
     }
 }
@@ -326,7 +326,7 @@ static void test_an_edge_while_stopped_is_nobodys(void)
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(50));
     hal_host_faults.int1_high = true;
     hal_host_drdy_handler();
-    TEST_ASSERT_FALSE(burst_running());
+    TEST_ASSERT_FALSE(adxl345_burst_running());
     hal_host_faults.int1_high = false;
     rig_run_ms(200);
     hal_host_faults.int1_cut = true; /* the first sample is read by the clock, with others that give its age */
@@ -361,7 +361,7 @@ static void test_a_silent_sensor_is_asked_after_two_periods(void)
         setUp();
         stream_for_ms(300 + phase);
         hal_host_faults.int1_cut = true;
-        uint32_t last_us = burst_begun_us();
+        uint32_t last_us = adxl345_burst_begun_us();
         unsigned passes = 0;
         while (adxl345_fault() == ADXL345_FAULT_NONE && passes < 1000) {
             rig_pass();

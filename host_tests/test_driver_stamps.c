@@ -66,7 +66,7 @@ static uint32_t next_stamp_us(void)
     uint32_t t_us = 0;
     for (unsigned left = 2 * PASSES_PER_PERIOD; !adxl345_oldest_us(&t_us); left--) {
         TEST_ASSERT_TRUE_MESSAGE(left != 0, "the sample never came");
-        (void)burst_judge();
+        (void)adxl345_burst_judge();
         rig_away(1);
     }
     return t_us;
@@ -89,7 +89,7 @@ static void test_no_sample_waits_longer_than_the_sensor_is_deep(void)
         hal_host_sensor.reg[ADXL345_POWER_CTL] = ADXL345_POWER_MEASURE;
         TEST_ASSERT_TRUE(adxl345_model_tick(&hal_host_sensor, rig.stream.rows[3000].lsb));
         uint32_t now_us = hal_time_us();
-        TEST_ASSERT_TRUE(burst_read(false));
+        TEST_ASSERT_TRUE(adxl345_burst_read(false));
         uint32_t waited_us = now_us - (last_us + PERIOD_US);
         TEST_ASSERT_UINT32_WITHIN(BURST_US, (periods - 1) * PERIOD_US, waited_us);
         bool may_be = waited_us <= DEPTH * PERIOD_US;
@@ -193,7 +193,7 @@ static void test_a_sample_after_an_empty_reading_came_when_it_was_due(void)
         hal_host_faults.int1_high = true;
         hal_host_drdy_handler();
         rig_away(BURST_US / 20u);
-        TEST_ASSERT_EQUAL(READING_EMPTY, burst_judge());
+        TEST_ASSERT_EQUAL(READING_EMPTY, adxl345_burst_judge());
         away_until_held(1);
         pass_until_taken(before + 2);
         TEST_ASSERT_TRUE(rig.off_us <= EXACT_US);

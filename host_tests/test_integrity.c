@@ -39,7 +39,7 @@ static reading_t judged(const int16_t lsb[3], unsigned byte, uint8_t flipped)
         reading[READING_DATA + i] = (uint8_t)((uint16_t)lsb[i / 2] >> (i % 2 * 8));
     }
     reading[byte] ^= flipped;
-    reading_t verdict = integrity_judge(reading, out, last);
+    reading_t verdict = adxl345_integrity_judge(reading, out, last);
     if (verdict == READING_GOOD && flipped == 0) {
         TEST_ASSERT_EQUAL_INT16_ARRAY(lsb, out, 3);
     }
@@ -49,7 +49,7 @@ static reading_t judged(const int16_t lsb[3], unsigned byte, uint8_t flipped)
 static void start(uint8_t range_g, bool self_test)
 {
     adxl345_config_t config = { 1000, range_g, self_test, 0 };
-    integrity_start(&config);
+    adxl345_integrity_start(&config);
 }
 
 /* All that power-on leaves, and nothing less: zeros alone are a line that is low. */
@@ -59,12 +59,12 @@ static void test_registers_after_power_on(void)
     static const int16_t last[] = { 1, -2, 256 };
     int16_t out[3];
     start(16, false);
-    TEST_ASSERT_EQUAL(READING_RESET, integrity_judge(reading, out, last));
+    TEST_ASSERT_EQUAL(READING_RESET, adxl345_integrity_judge(reading, out, last));
     reading[READING_SOURCE] = 0;
-    TEST_ASSERT_EQUAL(READING_BAD, integrity_judge(reading, out, last));
+    TEST_ASSERT_EQUAL(READING_BAD, adxl345_integrity_judge(reading, out, last));
     reading[READING_SOURCE] = 0x02;
     reading[READING_FORMAT] = 0x0B;
-    TEST_ASSERT_EQUAL(READING_BAD, integrity_judge(reading, out, last));
+    TEST_ASSERT_EQUAL(READING_BAD, adxl345_integrity_judge(reading, out, last));
 }
 
 /* A reading is of the self-test if it was asked for, and only then. */
@@ -193,21 +193,24 @@ static void test_torn_readings_stay_torn(void)
     format = 0x0B;
     for (unsigned i = 1; i <= 300; i++) {
         TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_CTL, 1));
-        TEST_ASSERT_EQUAL(i >= 3 ? ADXL345_FAULT_TORN : ADXL345_FAULT_NONE, integrity_fault());
+        TEST_ASSERT_EQUAL(i >= 3 ? ADXL345_FAULT_TORN : ADXL345_FAULT_NONE, adxl345_integrity_fault());
     }
 }
 
-/* INT1 is called stuck by three bursts in a row that met no sample, of which those before integrity_forget are none. */
+/*
+ * INT1 is called stuck by three bursts in a row that met no sample, of which those before adxl345_integrity_forget are
+ * none.
+ */
 static void test_the_third_empty_reading_is_of_an_int1_that_is_stuck(void)
 {
     static const int16_t lsb[] = { 1, -2, 256 };
     start(16, false);
     format = 0x0B;
     for (unsigned times = 0; times < 2; times++) {
-        integrity_forget();
+        adxl345_integrity_forget();
         for (unsigned i = 1; i <= 300; i++) {
             TEST_ASSERT_EQUAL(READING_EMPTY, judged(lsb, READING_SOURCE, 0x80));
-            TEST_ASSERT_EQUAL(i >= 3, integrity_int1_stuck());
+            TEST_ASSERT_EQUAL(i >= 3, adxl345_integrity_int1_stuck());
         }
     }
 }
@@ -218,18 +221,18 @@ static void test_an_int1_that_was_stuck_is_trusted_anew(void)
     static const int16_t lsb[] = { 1, -2, 256 };
     start(16, false);
     format = 0x0B;
-    integrity_forget();
+    adxl345_integrity_forget();
     for (unsigned times = 0; times < 2; times++) {
         for (unsigned i = 1; i <= 3; i++) {
-            TEST_ASSERT_FALSE(integrity_int1_stuck());
+            TEST_ASSERT_FALSE(adxl345_integrity_int1_stuck());
             TEST_ASSERT_EQUAL(READING_EMPTY, judged(lsb, READING_SOURCE, 0x80));
         }
         for (unsigned i = 1; i <= 33; i++) {
-            TEST_ASSERT_TRUE(integrity_int1_stuck());
+            TEST_ASSERT_TRUE(adxl345_integrity_int1_stuck());
             TEST_ASSERT_EQUAL(READING_GOOD, judged(lsb, 0, 0));
         }
     }
-    TEST_ASSERT_FALSE(integrity_int1_stuck());
+    TEST_ASSERT_FALSE(adxl345_integrity_int1_stuck());
 }
 
 /* The tenth equal triplet in a row and all that follow it, until one differs in one axis. */
@@ -238,15 +241,15 @@ static void test_the_tenth_equal_reading_is_stuck(void)
     for (unsigned axis = 0; axis < 3; axis++) {
         uint8_t reading[READING_BYTES] = { 0x80, 0x0B, 1, 0, 2, 0, 3, 0, PATTERN, 0 };
         int16_t lsb[2][3] = { { 0 }, { 0 } };
-        integrity_forget();
+        adxl345_integrity_forget();
         start(16, false);
         for (unsigned i = 1; i <= 300; i++) {
-            TEST_ASSERT_EQUAL(READING_GOOD, integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]));
-            TEST_ASSERT_EQUAL(i >= 10, integrity_stuck());
+            TEST_ASSERT_EQUAL(READING_GOOD, adxl345_integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]));
+            TEST_ASSERT_EQUAL(i >= 10, adxl345_integrity_stuck());
         }
         reading[READING_DATA + 2 * axis]++;
-        TEST_ASSERT_EQUAL(READING_GOOD, integrity_judge(reading, lsb[1], lsb[0]));
-        TEST_ASSERT_FALSE(integrity_stuck());
+        TEST_ASSERT_EQUAL(READING_GOOD, adxl345_integrity_judge(reading, lsb[1], lsb[0]));
+        TEST_ASSERT_FALSE(adxl345_integrity_stuck());
     }
 }
 
@@ -256,18 +259,18 @@ static void test_a_sensor_that_may_be_another_has_ten_readings_of_its_own(void)
     for (unsigned differs = 0; differs < 2; differs++) {
         uint8_t reading[READING_BYTES] = { 0x80, 0x0B, 1, 0, 2, 0, 3, 0, PATTERN, 0 };
         int16_t lsb[2][3] = { { 0 }, { 0 } };
-        integrity_forget();
+        adxl345_integrity_forget();
         start(16, false);
         for (unsigned i = 1; i <= 30; i++) {
-            (void)integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]);
+            (void)adxl345_integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]);
         }
-        TEST_ASSERT_TRUE(integrity_stuck());
-        integrity_forget();
+        TEST_ASSERT_TRUE(adxl345_integrity_stuck());
+        adxl345_integrity_forget();
         start(16, false);
         reading[READING_DATA] = (uint8_t)(reading[READING_DATA] + differs);
         for (unsigned i = 1; i <= 12; i++) {
-            TEST_ASSERT_EQUAL(READING_GOOD, integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]));
-            TEST_ASSERT_EQUAL(i >= 10, integrity_stuck());
+            TEST_ASSERT_EQUAL(READING_GOOD, adxl345_integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]));
+            TEST_ASSERT_EQUAL(i >= 10, adxl345_integrity_stuck());
         }
     }
 }
@@ -320,7 +323,7 @@ static void test_noise_is_never_stuck(void)
     unsigned fours = 0;
     test_random_t random;
     random_seed(&random, 20261122u);
-    integrity_forget();
+    adxl345_integrity_forget();
     start(16, false);
     for (unsigned i = 0; i < SAMPLES; i++) {
         for (unsigned axis = 0; axis < 3; axis++) {
@@ -328,8 +331,8 @@ static void test_noise_is_never_stuck(void)
             reading[READING_DATA + 2 * axis] = (uint8_t)word;
             reading[READING_DATA + 2 * axis + 1] = (uint8_t)(word >> 8);
         }
-        (void)integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]);
-        TEST_ASSERT_FALSE(integrity_stuck());
+        (void)adxl345_integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]);
+        TEST_ASSERT_FALSE(adxl345_integrity_stuck());
         run = memcmp(lsb[0], lsb[1], sizeof lsb[0]) == 0 ? run + 1 : 0;
         fours += run >= 3;
     }

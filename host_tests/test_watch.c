@@ -13,7 +13,7 @@ enum { SENSOR_AT_REST_LSB = 248, END_SAMPLES = 255 };
 
 void setUp(void)
 {
-    watch_start();
+    adxl345_watch_start();
 }
 
 void tearDown(void) {}
@@ -24,7 +24,7 @@ static void jump(size_t axis, int16_t from_lsb, int16_t to_lsb)
     int16_t to[] = { 13, -22, 28 };
     from[axis] = from_lsb;
     to[axis] = to_lsb;
-    watch_sample(to, from);
+    adxl345_watch_sample(to, from);
 }
 
 static void rest(unsigned samples)
@@ -32,7 +32,7 @@ static void rest(unsigned samples)
     static const int16_t a[] = { 10, -20, 248 };
     static const int16_t b[] = { 12, -21, 245 };
     for (unsigned i = 0; i < samples; i++) {
-        watch_sample(i % 2 ? a : b, i % 2 ? b : a);
+        adxl345_watch_sample(i % 2 ? a : b, i % 2 ? b : a);
     }
 }
 
@@ -42,15 +42,15 @@ static void test_the_eighth_jump_is_told_and_quiet_ends_it(void)
     for (unsigned which = 0; which < 12; which++) {
         int16_t lsb = (int16_t)(which & 1u ? SENSOR_AT_REST_LSB : -SENSOR_AT_REST_LSB);
         bool up = (which & 2u) != 0;
-        watch_start();
+        adxl345_watch_start();
         for (unsigned jumps = 1; jumps <= 20; jumps++) {
             jump(which / 4, up ? lsb : (int16_t)(2 * lsb), up ? (int16_t)(2 * lsb) : lsb);
-            TEST_ASSERT_EQUAL(jumps >= 8, watch_two_sensors());
+            TEST_ASSERT_EQUAL(jumps >= 8, adxl345_watch_two_sensors());
         }
         rest(END_SAMPLES);
-        TEST_ASSERT_TRUE(watch_two_sensors());
+        TEST_ASSERT_TRUE(adxl345_watch_two_sensors());
         rest(1);
-        TEST_ASSERT_FALSE(watch_two_sensors());
+        TEST_ASSERT_FALSE(adxl345_watch_two_sensors());
     }
 }
 
@@ -62,13 +62,13 @@ static void test_share_of_doubled_readings(void)
         jump(2, 500, 250);
         rest(8);
     }
-    TEST_ASSERT_TRUE(watch_two_sensors());
-    watch_start();
+    TEST_ASSERT_TRUE(adxl345_watch_two_sensors());
+    adxl345_watch_start();
     for (unsigned i = 0; i < 1000; i++) {
         jump(2, 250, 500);
         jump(2, 500, 250);
         rest(38);
-        TEST_ASSERT_FALSE(watch_two_sensors());
+        TEST_ASSERT_FALSE(adxl345_watch_two_sensors());
     }
 }
 
@@ -78,12 +78,12 @@ static void test_share_of_doubled_readings(void)
 static void test_one_jump_in_sixteen_is_the_limit(void)
 {
     for (unsigned calm = 15; calm <= 16; calm++) {
-        watch_start();
+        adxl345_watch_start();
         unsigned jumps = 0;
-        while (!watch_two_sensors() && jumps < 1000) {
+        while (!adxl345_watch_two_sensors() && jumps < 1000) {
             jump(2, 250, 500);
             jumps++;
-            if (!watch_two_sensors()) {
+            if (!adxl345_watch_two_sensors()) {
                 rest(calm);
             }
         }
@@ -98,10 +98,10 @@ static void test_one_jump_in_sixteen_is_the_limit(void)
 static void test_eight_jumps_with_a_calm_sample_are_one_short(void)
 {
     for (unsigned before = 1; before < 8; before++) {
-        watch_start();
+        adxl345_watch_start();
         for (unsigned jumps = 1; jumps <= 9; jumps++) {
             jump(0, 250, 500);
-            TEST_ASSERT_EQUAL(jumps == 9, watch_two_sensors());
+            TEST_ASSERT_EQUAL(jumps == 9, adxl345_watch_two_sensors());
             if (jumps == before) {
                 rest(1);
             }
@@ -111,11 +111,11 @@ static void test_eight_jumps_with_a_calm_sample_are_one_short(void)
 
 static bool suspected_after(int16_t from_lsb, int16_t to_lsb)
 {
-    watch_start();
+    adxl345_watch_start();
     for (unsigned i = 0; i < 100; i++) {
         jump(2, from_lsb, to_lsb);
     }
-    return watch_two_sensors();
+    return adxl345_watch_two_sensors();
 }
 
 /* Below 64 LSB noise does it; a double is meant within a sixteenth of the single value. */
@@ -144,17 +144,17 @@ static void test_two_axes_at_once_are_a_movement(void)
     static const int16_t one[] = { 159, 5, 400 };
     static const int16_t moved[] = { 160, 5, 400 };
     for (unsigned i = 0; i < 100; i++) {
-        watch_sample(i % 2 ? low : both, i % 2 ? both : low);
-        TEST_ASSERT_FALSE(watch_two_sensors());
+        adxl345_watch_sample(i % 2 ? low : both, i % 2 ? both : low);
+        TEST_ASSERT_FALSE(adxl345_watch_two_sensors());
     }
     for (unsigned i = 0; i < 100; i++) {
-        watch_sample(i % 2 ? low : moved, i % 2 ? moved : low);
-        TEST_ASSERT_FALSE(watch_two_sensors());
+        adxl345_watch_sample(i % 2 ? low : moved, i % 2 ? moved : low);
+        TEST_ASSERT_FALSE(adxl345_watch_two_sensors());
     }
     for (unsigned i = 0; i < 8; i++) {
-        watch_sample(i % 2 ? low : one, i % 2 ? one : low);
+        adxl345_watch_sample(i % 2 ? low : one, i % 2 ? one : low);
     }
-    TEST_ASSERT_TRUE(watch_two_sensors());
+    TEST_ASSERT_TRUE(adxl345_watch_two_sensors());
 }
 
 /* 15 % of each axis' readings are 8 sigma off, where that comes nearest to a doubling: sigma 8 and 64 LSB. */
@@ -169,18 +169,18 @@ static void test_outliers_are_no_second_sensor(void)
             double level = i / 1000 % 3 == axis ? 64.0 : 0.0;
             lsb[i % 2][axis] = as_sample(level + outlier + 8.0 * random_normal(&random));
         }
-        watch_sample(lsb[i % 2], lsb[(i + 1) % 2]);
-        TEST_ASSERT_FALSE(watch_two_sensors());
+        adxl345_watch_sample(lsb[i % 2], lsb[(i + 1) % 2]);
+        TEST_ASSERT_FALSE(adxl345_watch_two_sensors());
     }
 }
 
 /* Samples until it is suspected; 0: never. */
 static size_t suspected_in(const stream_t *stream)
 {
-    watch_start();
+    adxl345_watch_start();
     for (size_t i = 1; i < stream->count; i++) {
-        watch_sample(stream->rows[i].lsb, stream->rows[i - 1].lsb);
-        if (watch_two_sensors()) {
+        adxl345_watch_sample(stream->rows[i].lsb, stream->rows[i - 1].lsb);
+        if (adxl345_watch_two_sensors()) {
             return i;
         }
     }

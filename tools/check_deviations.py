@@ -3,7 +3,6 @@
 import pathlib
 import re
 
-import check_includes
 import check_lengths
 import check_names
 import check_stack
@@ -47,8 +46,7 @@ def tidy_checks_off():
 
 def departures():
     found = set(silenced()) | set(tidy_checks_off())
-    found |= check_includes.contracts_without_port() | check_lengths.over_limits() | check_stack.over_limit()
-    found |= check_names.over_limits()
+    found |= check_lengths.over_limits() | check_stack.over_limit() | check_names.over_limits()
     if STAND_INS:
         found.add(("stand-ins for clang", "hal/avr"))
     return found

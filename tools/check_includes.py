@@ -3,7 +3,7 @@
 import pathlib
 import re
 
-from check_support import FOLDERS, Stop, deviations, files, main, report
+from check_support import FOLDERS, Stop, files, main, report
 
 STANDARD = {"stdint.h", "stdbool.h", "stddef.h"}
 LIBC = STANDARD | {"assert.h", "ctype.h", "errno.h", "float.h", "inttypes.h", "limits.h", "math.h", "setjmp.h", "stdarg.h", "stdio.h",
@@ -19,7 +19,9 @@ def headers(*folders):
     return {p.name for folder in folders for p in pathlib.Path(folder).glob("*.h")}
 
 
-HAL = headers("hal") | {"hal_port.h"}
+HAL = headers("hal")
+# flash.h, hal_pointer.h and hal_ram.h have one port's header between them
+SHARED_PORT = {"flash.h", "hal_pointer.h", "hal_ram.h"}
 FILTERS, TILT, ADXL = headers("lib/filters/src"), headers("lib/tilt/src"), headers("lib/adxl345/src")
 # what of lib/filters is for its laws, tests and proof alone
 INSIDE = {"tracker.h", "kalman.h", "wide.h", "mixture.h", "fx_avr.h"} | {path.name for path in pathlib.Path("lib/filters/src").glob("*_table.h")}
@@ -50,7 +52,7 @@ RULES = {
     "lib/tilt/src": (STANDARD | TILT | FILTERS - INSIDE, None),
     "lib/adxl345/src": (STANDARD | ADXL | HAL, None),
     "lib/nav/src": (STANDARD | NAV | {"math.h"}, None),
-    "hal": (STANDARD | {"hal_port.h"}, None),
+    "hal": (STANDARD, None),
     "hal/avr": (STANDARD | HAL | headers("hal/avr"), AVR_LIBC),
     "hal/host": (LIBC | HAL | MODEL | headers("hal/host"), None),
     **{f"firmware/{room}": (BELOW | room_headers(room), None) for room in ROOMS},
@@ -115,7 +117,7 @@ def refused(path, number, name):
         raise Stop(f"{path}: the table has no row for its folder (RULES in tools/check_includes.py)")
     if folder in RULES:
         names, pattern = RULES[folder]
-        allowed = name in names or (pattern and pattern.match(name))
+        allowed = name in names or (pattern and pattern.match(name)) or (folder == "hal" and name == port_of(path))
         if path == PRIMITIVES and name == "avr/pgmspace.h":
             return None if number in guarded(path) else f"{name} outside #ifdef __AVR__"
         return None if allowed else f"{folder} may not include {name}"
@@ -134,18 +136,20 @@ def breaches():
                 yield f"{path}:{number}: {reason}"
 
 
+def port_of(contract):
+    """The header in which each port has what a contract cannot declare: inline bodies, macros."""
+    return "hal_port.h" if contract.name in SHARED_PORT else f"{contract.stem}_port.h"
+
+
 def contracts_end_with_port():
-    granted = deviations()
+    """Where a port has such a header: behind the declarations, so that the compiler compares the bodies with them."""
     for path in sorted(pathlib.Path("hal").glob("*.h")):
         names = [NAMED.match(text).group(2) for _, text in includes(path) if NAMED.match(text)]
-        if names[-1:] != ["hal_port.h"] and ("contract without a port", str(path)) not in granted:
-            yield f"{path}:1: the last include of a contract is hal_port.h"
-
-
-def contracts_without_port():
-    """For the table of deviations."""
-    return {("contract without a port", str(p)) for p in pathlib.Path("hal").glob("*.h")
-            if not any('"hal_port.h"' in text for _, text in includes(p))}
+        ports = [folder for folder in ("hal/avr", "hal/host") if pathlib.Path(folder, port_of(path)).exists()]
+        if ports and names[-1:] != [port_of(path)]:
+            yield f"{path}:1: the last include of this contract is {port_of(path)}"
+        if len(ports) == 1:
+            yield f"{path}:1: {port_of(path)} is in {ports[0]} alone"
 
 
 def machine_guards():

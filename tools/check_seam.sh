@@ -11,7 +11,7 @@ done
 if cmp -s "$dir/seam_hal.txt" "$dir/seam_direct.txt"; then
     echo "HAL seam: same machine code ($(grep -c '^ ' "$dir/seam_hal.txt") instructions)"
 else
-    echo "HAL seam: a verb of hal/avr/hal_port.h or hal/hal_i2c.h costs something; registers written out (<) and verbs (>):" >&2
+    echo "HAL seam: a verb of hal/avr/hal_i2c_port.h costs something; registers written out (<) and verbs (>):" >&2
     diff "$dir/seam_direct.txt" "$dir/seam_hal.txt" >&2 || true
     version=$(avr-gcc -dumpversion)
     if [ "$version" = 5.4.0 ]; then

@@ -2,9 +2,12 @@
  * The one I2C verb that is more than a register access: getting a slave to let go of SDA, with a STOP by hand. Each
  * clock also pulls SDA while SCL is low and lets go of it while SCL is high, which is a STOP as soon as the slave lets
  * SDA rise; so there is no need to know at which bit the slave stands, and no clock beyond those it needs.
+ *
+ * SDA is PC4, SCL PC5. Open drain by the direction register, the port bits stay 0: never drives high.
  */
 #include "hal_i2c.h"
 
+#include <avr/io.h>
 #include <util/delay.h>
 
 enum { CLOCKS_MAX = 16, STEP_US = 5 }; /* STEP_US: rise of a line with 10 kOhm and 400 pF */

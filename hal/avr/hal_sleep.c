@@ -1,6 +1,10 @@
 /* Idle sleep (SM2:0 = 0). SEI takes effect after the next instruction, so nothing can slip in between it and SLEEP. */
 #include "hal_sleep.h"
 
+#include <avr/interrupt.h>
+#include <avr/io.h>
+#include <avr/sleep.h>
+
 void hal_sleep_until_wake(void)
 {
     SMCR = _BV(SE);

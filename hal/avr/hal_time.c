@@ -4,9 +4,13 @@
  */
 #include "hal_time.h"
 
+#include <avr/interrupt.h>
+#include <avr/io.h>
+
 #include "hal_irq.h"
+#include "hal_pointer.h"
 #include "hal_sleep.h"
-#include "hal_watchdog.h"
+#include "hal_watchdog_tick.h"
 
 enum { COUNTS_PER_US = 2, COUNTS_PER_TICK = HAL_TICK_US * COUNTS_PER_US };
 
@@ -14,15 +18,14 @@ enum { COUNTS_PER_US = 2, COUNTS_PER_TICK = HAL_TICK_US * COUNTS_PER_US };
 #define HAL_TIME_START_US 0ul
 #endif
 
-volatile uint32_t hal_tick_us = HAL_TIME_START_US;
-volatile uint16_t hal_tick_count;
+volatile hal_tick_t hal_tick = { .us = HAL_TIME_START_US };
 
 ISR(TIMER1_COMPA_vect)
 {
     uint16_t count = OCR1A;
-    hal_tick_count = count;
+    hal_tick.count = count;
     OCR1A = (uint16_t)(count + COUNTS_PER_TICK);
-    hal_tick_us += HAL_TICK_US;
+    hal_tick.us += HAL_TICK_US;
     hal_watchdog_tick_isr();
     hal_wake();
 }
@@ -55,17 +58,14 @@ void hal_wake_at(uint32_t t_us)
     hal_irq_restore(state);
 }
 
-/* Interrupts off. A late tick only makes the difference longer: right for 32 ms. */
-static inline uint32_t now_us(void)
-{
-    uint16_t since = (uint16_t)(TCNT1 - hal_tick_count);
-    return hal_tick_us + (since >> 1);
-}
-
+/* A late tick only makes the difference longer: right for 32 ms. */
 uint32_t hal_time_us(void)
 {
+    const volatile hal_tick_t *tick = &hal_tick;
+    HAL_POINTER(tick); /* an access is half as long */
     hal_irq_state_t state = hal_irq_save();
-    uint32_t now = now_us();
+    uint16_t since = (uint16_t)(TCNT1 - tick->count);
+    uint32_t now = tick->us + (since >> 1);
     hal_irq_restore(state);
     return now;
 }

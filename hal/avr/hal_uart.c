@@ -1,7 +1,11 @@
 /* UART rings and their interrupts. The interrupts move one byte each. */
 #include "hal_uart.h"
 
+#include <avr/interrupt.h>
+#include <avr/io.h>
+
 #include "hal_irq.h"
+#include "hal_pointer.h"
 #include "hal_ring.h"
 #include "hal_sleep.h"
 
@@ -14,6 +18,13 @@ static hal_ring_t rx;
 static volatile uint8_t rx_lost;
 static bool rx_gap;
 static bool line_used;
+
+/* Known by its address in a register, an access to a ring is half as long. */
+static inline hal_ring_t *near(hal_ring_t *ring)
+{
+    HAL_POINTER(ring);
+    return ring;
+}
 
 /* A ring of 256 bytes wraps as its index does. */
 #if HAL_UART_TX_SIZE == 256
@@ -148,20 +159,21 @@ void hal_uart_init(uint32_t baud)
 
 uint8_t hal_uart_tx_room(void)
 {
-    return hal_ring_room(&tx, TX_MASK);
+    return hal_ring_room(near(&tx), TX_MASK);
 }
 
 void hal_uart_tx_stage(uint8_t byte)
 {
-    hal_ring_stage(&tx, tx_buffer, TX_MASK, byte);
+    hal_ring_stage(near(&tx), tx_buffer, TX_MASK, byte);
 }
 
 void hal_uart_tx_commit(void)
 {
-    if (tx.staged == tx.head) {
+    hal_ring_t *r = near(&tx);
+    if (r->staged == r->head) {
         return;
     }
-    hal_ring_commit(&tx);
+    hal_ring_commit(r);
     line_used = true;
     hal_irq_state_t state = hal_irq_save();
     UCSR0B |= _BV(UDRIE0);
@@ -200,10 +212,11 @@ uint8_t hal_uart_tx_sent(void)
 
 bool hal_uart_rx(uint8_t *byte)
 {
-    if (hal_ring_empty(&rx)) {
+    hal_ring_t *r = near(&rx);
+    if (hal_ring_empty(r)) {
         return false;
     }
-    *byte = hal_ring_take(&rx, rx_buffer, RX_MASK);
+    *byte = hal_ring_take(r, rx_buffer, RX_MASK);
     return true;
 }
 

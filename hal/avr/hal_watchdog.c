@@ -4,8 +4,11 @@
  */
 #include "hal_watchdog.h"
 
+#include <avr/io.h>
+#include <avr/wdt.h>
+
 #include "hal_pointer.h"
-#include "hal_time.h"
+#include "hal_watchdog_tick.h"
 
 #define MARK 0x7117A117ul
 
@@ -54,9 +57,9 @@ void hal_watchdog_note(uint8_t note)
     breadcrumb.note = note;
 }
 
-uint8_t hal_watchdog_cause(void)
+hal_reset_t hal_reset_cause(void)
 {
-    return cause;
+    return (hal_reset_t)cause;
 }
 
 uint8_t hal_reset_note(void)

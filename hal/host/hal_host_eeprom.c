@@ -7,7 +7,7 @@
 #include "hal_eeprom.h"
 #include "hal_host_private.h"
 
-enum { WRITE_US = 3400, CYCLES_PER_US = 16, POLL_CYCLES = CYCLES_PER_US };
+enum { WRITE_US = 3400, POLL_CYCLES = HOST_CYCLES_PER_US };
 
 static uint8_t cells[HAL_EEPROM_SIZE];
 static uint32_t writes[HAL_EEPROM_SIZE];
@@ -109,5 +109,5 @@ void hal_eeprom_write_start(uint16_t address, uint8_t value)
     cut.writes_left -= cut.writes_left != 0 ? 1u : 0u;
     writes[address]++;
     cells[address] = outcome(address, value);
-    ready_at = host_now + (uint64_t)WRITE_US * CYCLES_PER_US;
+    ready_at = host_now + (uint64_t)WRITE_US * HOST_CYCLES_PER_US;
 }

@@ -1,4 +1,7 @@
-/* Shared by the parts of the host's HAL. Each device has a time of its next event, HOST_NEVER if none, and a step. */
+/*
+ * Inside the host's HAL: what its parts share. The clock is the lowest of them and knows the others only by the table
+ * that hal_host.c, the highest, hands to it.
+ */
 #ifndef HAL_HOST_PRIVATE_H
 #define HAL_HOST_PRIVATE_H
 
@@ -6,15 +9,36 @@
 
 #define HOST_NEVER UINT64_MAX
 
-/* hal_host.c: the clock */
-extern uint64_t host_now;
+enum { HOST_CYCLES_PER_US = 16 };
+
+/* A part of the board that does something by itself as time goes by. */
+typedef struct {
+    uint64_t (*next)(void); /* cycle of its next event, HOST_NEVER: none; NULL: it looks around after each event */
+    void (*step)(void);     /* at that cycle or later */
+} host_part_t;
+
+/* hal_host_clock.c: time, and the sleep in which it goes by */
+extern uint64_t host_now; /* cycles since power-on */
 extern hal_host_config_t host_config;
-void host_drdy_changed(bool high);
-void host_drdy_serve(void);
+/* These parts, in this order where several are due; they stay the caller's. */
+void host_clock_begin(const host_part_t *parts, size_t count);
+void host_clock_reset(void);
+/* No time goes by any more until host_clock_reset, and a sleep ends at once. */
+void host_clock_stop(void);
 
 /* hal_host_eeprom.c */
 void host_eeprom_power_on(void);
 void host_eeprom_reset(void);
+
+/* hal_host_sensor.c: the sensor, and its line INT1 */
+void host_sensor_begin(const stream_t *stream, bool loop);
+uint64_t host_sensor_next(void);
+void host_sensor_step(void);
+/* After every bus write: the firmware may have changed the output data rate. */
+void host_sensor_check_rate(void);
+void host_drdy_reset(void);
+/* Runs the handler of an edge that is there. */
+void host_drdy_serve(void);
 
 /* hal_host_i2c.c */
 void hal_host_i2c_handler(void);
@@ -27,12 +51,5 @@ void host_i2c_step(void);
 void host_uart_begin(void);
 uint64_t host_uart_next(void);
 void host_uart_step(void);
-
-/* hal_host_sensor.c */
-void host_sensor_begin(const stream_t *stream, bool loop);
-uint64_t host_sensor_next(void);
-void host_sensor_step(void);
-/* After every bus write: the firmware may have changed the output data rate. */
-void host_sensor_check_rate(void);
 
 #endif

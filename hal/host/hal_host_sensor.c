@@ -1,4 +1,8 @@
-/* The virtual sensor's clock: one tick per output-data-rate period takes a row of the stream. */
+/*
+ * The virtual sensor: its clock, of which one tick per output-data-rate period takes a row of the stream, and its line
+ * INT1.
+ */
+#include "hal_drdy.h"
 #include "hal_host_private.h"
 
 #define TURN_ON_US 1100.0 /* data sheet p. 5: first data one period and 1.1 ms after Measure */
@@ -11,20 +15,48 @@ static double odr_hz;
 static double next_tick; /* cycles */
 static bool over;
 static size_t row_latched;
+static bool drdy_enabled;
+static bool drdy_edge;
+
+void hal_host_drdy_handler(void);
 
 static void pin_changed(void *owner, unsigned pin, bool high)
 {
     (void)owner;
-    if (pin == 1) {
-        host_drdy_changed(high);
+    if (pin == 1 && high && drdy_enabled && !hal_host_faults.int1_cut && !hal_host_faults.int1_high) {
+        drdy_edge = true;
     }
+}
+
+void host_drdy_reset(void)
+{
+    drdy_enabled = false;
+    drdy_edge = false;
+}
+
+void host_drdy_serve(void)
+{
+    while (drdy_edge) {
+        drdy_edge = false;
+        hal_host_drdy_handler();
+    }
+}
+
+void hal_drdy_enable(void)
+{
+    drdy_enabled = true;
+}
+
+bool hal_drdy_high(void)
+{
+    return hal_host_faults.int1_high || (hal_host_sensor.pin_high[1] && !hal_host_faults.int1_cut);
 }
 
 static void latched(void *owner, const int16_t lsb[3])
 {
     (void)owner;
     if (host_config.on_latched != NULL) {
-        host_config.on_latched(host_now / 16u, row_latched, lsb);
+        host_config.on_latched(host_now / HOST_CYCLES_PER_US, row_latched, lsb);
     }
 }
 
@@ -58,9 +90,9 @@ void host_sensor_check_rate(void)
     }
     odr_hz = now_hz;
     if (odr_hz > 0.0) {
-        next_tick = (double)host_now + period_cycles() + TURN_ON_US * 16.0;
+        next_tick = (double)host_now + period_cycles() + TURN_ON_US * HOST_CYCLES_PER_US;
         if (source != NULL) {
-            feed_set_rate(&feed, source, odr_hz, host_now / 16u);
+            feed_set_rate(&feed, source, odr_hz, host_now / HOST_CYCLES_PER_US);
         }
     }
 }
@@ -73,7 +105,7 @@ void host_sensor_step(void)
         return;
     }
     size_t row = 0;
-    switch (feed_tick(&feed, host_now / 16u, &row)) {
+    switch (feed_tick(&feed, host_now / HOST_CYCLES_PER_US, &row)) {
     case FEED_SAMPLE:
         row_latched = row;
         (void)adxl345_model_tick(&hal_host_sensor, source->rows[row].lsb);

@@ -8,6 +8,7 @@
 #include "hal_irq.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
+#include "hal_watchdog_tick.h"
 
 enum { STARTS = 3, SLOW_START_MS = 20 };
 

@@ -164,7 +164,7 @@ static int foreign_status(uint8_t choice)
 
 static void change_register(uint8_t reg, uint8_t value)
 {
-    if (!burst_running()) { /* not in the middle of a transfer: the model has one bus */
+    if (!adxl345_burst_running()) { /* not in the middle of a transfer: the model has one bus */
         in_order = false;
         write_register(reg, value);
     }
@@ -241,7 +241,7 @@ static void end_faults(void)
 static void empty_all(void)
 {
     double limit_ms = hal_host_now_ms() + 50.0;
-    while (hal_drdy_high() || burst_running() || adxl345_queued() != 0) {
+    while (hal_drdy_high() || adxl345_burst_running() || adxl345_queued() != 0) {
         run_ms(0.05, true);
         FUZZ_CHECK(hal_host_now_ms() < limit_ms, "the sensor is never empty");
     }

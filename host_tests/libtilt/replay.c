@@ -87,7 +87,7 @@ static void look_for_repeats(replay_t *r, const int16_t lsb[3])
     memcpy(r->last_lsb, lsb, sizeof r->last_lsb);
 }
 
-/* As integrity_judge. */
+/* As adxl345_integrity_judge. */
 static bool plausible(replay_t *r, const int16_t lsb[3])
 {
     if (lsb[0] == -1 && lsb[1] == -1 && lsb[2] == -1) {

@@ -41,9 +41,18 @@ static inline struct burst *base(void)
     return b;
 }
 
+/*
+ * An entry of the queue, by its place, of which the lower bits count. The one at head is free, because a burst begins
+ * only where the queue has room: it takes the sample that is read.
+ */
+static HAL_APART burst_entry_t *entry_at(uint8_t at)
+{
+    return &burst.queue[at & QUEUE_MASK];
+}
+
 HAL_IRQ_INLINE bool queue_has_room(void)
 {
-    return (uint8_t)((uint8_t)(burst.head + 1u) & QUEUE_MASK) != burst.tail;
+    return (uint8_t)(burst.head - burst.tail) != QUEUE_MASK;
 }
 
 /* Interrupts off, or the bus made busy; begun_us is the caller's. */
@@ -94,7 +103,7 @@ static bool claim(struct burst *b)
     return true;
 }
 
-void burst_init(void)
+void adxl345_burst_init(void)
 {
     if (HAL_RAM_CLEARED) {
         return;
@@ -112,7 +121,7 @@ void burst_init(void)
     hal_irq_restore(state);
 }
 
-void burst_set_mode(burst_mode_t new_mode)
+void adxl345_burst_set_mode(burst_mode_t new_mode)
 {
     struct burst *b = base();
     if (b->mode == BURST_IGNORE) {
@@ -133,25 +142,23 @@ void burst_set_mode(burst_mode_t new_mode)
     hal_irq_restore(state);
 }
 
-uint8_t burst_take_bus(uint8_t address, bool fast)
+uint8_t adxl345_burst_take_bus(uint8_t address, bool fast)
 {
     struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
     hal_i2c_disable();
     uint8_t was = b->bus.state;
     b->bus.state = I2C_BUS_BUSY; /* so that no edge starts a burst while the bus is being cleared, with interrupts on */
+    b->bus.address = (uint8_t)(address * 2U);
     hal_irq_restore(state);
     uint8_t lines = hal_i2c_clear();
     hal_i2c_enable(fast);
-    b->bus.address = (uint8_t)(address * 2U);
-    state = hal_irq_save(); /* written before: from now on an edge may start a burst */
-    b->bus.state = was == I2C_BUS_BUSY ? (uint8_t)I2C_BUS_TIMEOUT : was;
-    hal_irq_restore(state);
-    (void)burst_judge();
+    b->bus.state = was == I2C_BUS_BUSY ? (uint8_t)I2C_BUS_TIMEOUT : was; /* from now on an edge may start a burst */
+    (void)adxl345_burst_judge();
     return lines;
 }
 
-HAL_APART bool burst_access(uint8_t reg, uint8_t value, bool read)
+HAL_APART bool adxl345_burst_access(uint8_t reg, uint8_t value, bool read)
 {
     struct burst *b = base();
     bool free = claim(b);
@@ -165,12 +172,12 @@ HAL_APART bool burst_access(uint8_t reg, uint8_t value, bool read)
     return free;
 }
 
-i2c_bus_state_t burst_bus_state(void)
+i2c_bus_state_t adxl345_burst_bus_state(void)
 {
     return (i2c_bus_state_t)burst.bus.state;
 }
 
-uint8_t burst_register_value(void)
+uint8_t adxl345_burst_register_value(void)
 {
     return burst.bus.rx[0];
 }
@@ -181,7 +188,7 @@ uint8_t burst_register_value(void)
  */
 static uint32_t waiting_since_us(struct burst *b, uint32_t now_us, bool is_new)
 {
-    uint32_t step_us = period_us();
+    uint32_t step_us = adxl345_period_us();
     uint32_t t_us = b->last_us + step_us;
     if (b->verdict == READING_EMPTY && hal_time_reached(b->begun_us, t_us)) {
         t_us = b->begun_us;
@@ -192,10 +199,10 @@ static uint32_t waiting_since_us(struct burst *b, uint32_t now_us, bool is_new)
     return t_us;
 }
 
-bool burst_read(bool is_new)
+bool adxl345_burst_read(bool is_new)
 {
     struct burst *b = base();
-    if (b->mode != BURST_READ || !queue_has_room() || !claim(b)) {
+    if (b->mode != BURST_READ || adxl345_burst_queue_full() || !claim(b)) {
         return false;
     }
     hal_irq_state_t state = hal_irq_save();
@@ -207,20 +214,21 @@ bool burst_read(bool is_new)
     if (!exact) {
         t_us = waiting_since_us(b, now_us, is_new);
     }
-    b->reading_us = t_us;
-    b->reading_exact = exact;
+    burst_entry_t *entry = entry_at(b->head);
+    entry->sample.t_us = t_us;
+    entry->exact = exact;
     b->begun_us = now_us;
     begin_burst(b, false);
     return true;
 }
 
 /* One cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */
-static inline void keep_edge(struct burst *b, uint8_t asked)
+static inline void keep_edge(struct burst *b, const burst_entry_t *entry, uint8_t asked)
 {
     b->failed_state = b->bus.state;
     b->failures++;
-    if (b->reading_exact && asked <= READING_DATA) {
-        b->edge_us = b->reading_us;
+    if (entry->exact && asked <= READING_DATA) {
+        b->edge_us = entry->sample.t_us;
         b->edge_waiting = 1;
     }
 }
@@ -230,37 +238,34 @@ static inline void keep_edge(struct burst *b, uint8_t asked)
  * the samples that wait behind it is that of INT1 coming back to a FIFO that had filled. The newest sample is half a
  * period old then.
  */
-static HAL_APART void restamp(struct burst *b)
+static HAL_APART void restamp(const struct burst *b, burst_entry_t *entry)
 {
-    uint32_t step_us = period_us();
+    uint32_t step_us = adxl345_period_us();
     uint32_t t_us = b->begun_us - (step_us >> 1) - b->bus.rx[READING_FIFO_STATUS] * step_us;
     if (b->last_known && hal_time_reached(b->last_us, t_us)) {
         return; /* a bit of the count was wrong */
     }
-    if ((b->bus.rx[READING_SOURCE] & ADXL345_INT_OVERRUN) || !hal_time_reached(t_us + 2u * step_us, b->reading_us)) {
-        b->reading_us = t_us;
-        b->reading_exact = false;
+    if ((b->bus.rx[READING_SOURCE] & ADXL345_INT_OVERRUN) ||
+        !hal_time_reached(t_us + 2u * step_us, entry->sample.t_us)) {
+        entry->sample.t_us = t_us;
+        entry->exact = false;
     }
 }
 
-static reading_t judge(struct burst *b)
+static reading_t judge(struct burst *b, burst_entry_t *entry)
 {
-    burst_entry_t *entry = &b->queue[b->head];
-    HAL_POINTER(entry); /* else its address is computed anew at each use */
     b->failures = 0;
-    reading_t verdict = integrity_judge(b->bus.rx, entry->sample.lsb, b->newest_lsb);
+    reading_t verdict = adxl345_integrity_judge(b->bus.rx, entry->sample.lsb,
+                                                entry_at((uint8_t)(b->head - 1u))->sample.lsb);
     b->verdict = (uint8_t)verdict;
     if (verdict != READING_GOOD) {
         return verdict;
     }
     if (b->bus.rx[READING_FIFO_STATUS] >= 2u) {
-        restamp(b);
+        restamp(b, entry);
     }
-    b->newest_lsb = entry->sample.lsb;
-    entry->sample.t_us = b->reading_us;
-    entry->exact = b->reading_exact;
-    entry->stuck = integrity_stuck();
-    b->head = (uint8_t)((uint8_t)(b->head + 1u) & QUEUE_MASK);
+    entry->stuck = adxl345_integrity_stuck();
+    b->head = (uint8_t)(b->head + 1u);
     return verdict;
 }
 
@@ -268,21 +273,22 @@ static reading_t judge(struct burst *b)
 static HAL_APART reading_t judge_ended(void)
 {
     struct burst *b = base();
+    burst_entry_t *entry = entry_at(b->head);
     uint8_t asked = READING_BYTES;
     reading_t verdict = READING_FAILED;
     if (b->by_edge) {
-        b->reading_us = b->begun_us;
-        b->reading_exact = true;
+        entry->sample.t_us = b->begun_us;
+        entry->exact = true;
     }
     if (b->bus.state == I2C_BUS_OK) {
-        verdict = judge(b);
+        verdict = judge(b, entry);
     } else {
         asked = i2c_bus_asked(&b->bus);
-        keep_edge(b, asked);
+        keep_edge(b, entry, asked);
     }
     if (verdict == READING_GOOD ||
         (asked > READING_DATA + 1u && (b->bus.rx[READING_SOURCE] & ADXL345_INT_DATA_READY))) {
-        b->last_us = b->reading_us;
+        b->last_us = entry->sample.t_us;
         b->last_known = true;
     }
     b->on_bus = 0;
@@ -290,27 +296,27 @@ static HAL_APART reading_t judge_ended(void)
 }
 
 /* Asked in every pass, of which most find nothing. */
-reading_t burst_judge(void)
+reading_t adxl345_burst_judge(void)
 {
     return !burst.on_bus || burst.bus.state == I2C_BUS_BUSY ? READING_NONE : judge_ended();
 }
 
-bool burst_running(void)
+bool adxl345_burst_running(void)
 {
     return burst.on_bus != 0;
 }
 
-bool burst_found_empty(void)
+bool adxl345_burst_found_empty(void)
 {
     return burst.verdict == READING_EMPTY;
 }
 
-bool burst_left_more(void)
+bool adxl345_burst_left_more(void)
 {
     return burst.bus.rx[READING_FIFO_STATUS] != 0;
 }
 
-HAL_APART uint32_t burst_begun_us(void)
+HAL_APART uint32_t adxl345_burst_begun_us(void)
 {
     hal_irq_state_t state = hal_irq_save();
     uint32_t t_us = burst.begun_us;
@@ -318,57 +324,56 @@ HAL_APART uint32_t burst_begun_us(void)
     return t_us;
 }
 
-void burst_expect(uint32_t t_us)
+void adxl345_burst_expect(uint32_t t_us)
 {
     struct burst *b = base();
     b->begun_us = t_us;
     b->last_us = t_us;
 }
 
-uint32_t burst_met_sample_us(void)
+uint32_t adxl345_burst_met_sample_us(void)
 {
-    return burst.verdict == READING_EMPTY ? burst.last_us : burst_begun_us();
+    return burst.verdict == READING_EMPTY ? burst.last_us : adxl345_burst_begun_us();
 }
 
-i2c_bus_state_t burst_failed_state(void)
+i2c_bus_state_t adxl345_burst_failed_state(void)
 {
     return (i2c_bus_state_t)burst.failed_state;
 }
 
-uint8_t burst_failures(void)
+uint8_t adxl345_burst_failures(void)
 {
     return burst.failures;
 }
 
-uint8_t burst_queued(void)
+uint8_t adxl345_queued(void)
 {
-    return (uint8_t)((uint8_t)(burst.head - burst.tail) & QUEUE_MASK);
+    return (uint8_t)(burst.head - burst.tail);
 }
 
-bool burst_queue_full(void)
+bool adxl345_burst_queue_full(void)
 {
-    return !queue_has_room();
+    return adxl345_queued() == QUEUE_MASK;
 }
 
-bool burst_oldest_us(uint32_t *t_us)
+bool adxl345_oldest_us(uint32_t *t_us)
 {
     uint8_t at = burst.tail;
     if (at == burst.head) {
         return false;
     }
-    *t_us = burst.queue[at].sample.t_us;
+    *t_us = entry_at(at)->sample.t_us;
     return true;
 }
 
-const burst_entry_t *burst_take(void)
+const burst_entry_t *adxl345_burst_take(void)
 {
     struct burst *b = base();
     uint8_t at = b->tail;
-    const burst_entry_t *entry = &b->queue[at];
-    HAL_POINTER(entry);
-    const burst_entry_t *before = at != 0 ? entry - 1 : &b->queue[QUEUE_MASK];
-    b->tail = (uint8_t)((uint8_t)(at + 1u) & QUEUE_MASK);
-    watch_sample(entry->sample.lsb, before->sample.lsb);
-    period_sample(entry->sample.t_us, entry->exact);
+    const burst_entry_t *entry = entry_at(at);
+    const burst_entry_t *before = entry_at((uint8_t)(at - 1u));
+    b->tail = (uint8_t)(at + 1u);
+    adxl345_watch_sample(entry->sample.lsb, before->sample.lsb);
+    adxl345_period_sample(entry->sample.t_us, entry->exact);
     return entry;
 }

@@ -21,71 +21,66 @@ typedef enum {
 typedef struct {
     adxl345_sample_t sample;
     bool exact; /* stamped by its own edge; false: interpolated */
-    bool stuck; /* as integrity_stuck */
+    bool stuck; /* as adxl345_integrity_stuck */
 } burst_entry_t;
 
 /* Forget everything: queue, stamps, bus state. */
-void burst_init(void);
+void adxl345_burst_init(void);
 
-void burst_set_mode(burst_mode_t mode);
+void adxl345_burst_set_mode(burst_mode_t mode);
 
 /*
  * Take the pins (anew): HAL_I2C_FREE, or the line that is low. A transfer that runs is abandoned, a slave in its byte
  * clocked out of it.
  */
-uint8_t burst_take_bus(uint8_t address, bool fast);
+uint8_t adxl345_burst_take_bus(uint8_t address, bool fast);
 
 /*
- * Register access outside streaming: false when the bus is not free yet. Poll burst_bus_state until it is not busy;
- * the byte read is burst_register_value.
+ * Register access outside streaming: false when the bus is not free yet. Poll adxl345_burst_bus_state until it is not
+ * busy; the byte read is adxl345_burst_register_value.
  */
-bool burst_access(uint8_t reg, uint8_t value, bool read);
-i2c_bus_state_t burst_bus_state(void);
-uint8_t burst_register_value(void);
+bool adxl345_burst_access(uint8_t reg, uint8_t value, bool read);
+i2c_bus_state_t adxl345_burst_bus_state(void);
+uint8_t adxl345_burst_register_value(void);
 
 /*
  * A sample waits, by INT1 or by the sensor's registers: start reading it if bus and queue are free. is_new: one that
  * was not there a moment ago, else the next in the FIFO. True when a burst was started.
  */
-bool burst_read(bool is_new);
+bool adxl345_burst_read(bool is_new);
 
 /*
  * The verdict on a burst that has ended, by itself or because the bus was taken. To be called in every pass, else no
  * other burst begins. A good sample goes into the queue; of others nothing goes out.
  */
-reading_t burst_judge(void);
+reading_t adxl345_burst_judge(void);
 
 /* A burst is on the bus, or has not been judged. */
-bool burst_running(void);
+bool adxl345_burst_running(void);
 
-/* The newest burst met no sample; false again with burst_set_mode(BURST_READ). */
-bool burst_found_empty(void);
+/* The newest burst met no sample; false again with adxl345_burst_set_mode(BURST_READ). */
+bool adxl345_burst_found_empty(void);
 
 /* The newest good reading left samples in the sensor's FIFO. An edge may have begun another since: a hint then. */
-bool burst_left_more(void);
+bool adxl345_burst_left_more(void);
 
 /* When the newest burst was put on the bus; until the first, the moment by which it is expected (before BURST_READ). */
-uint32_t burst_begun_us(void);
-void burst_expect(uint32_t t_us);
+uint32_t adxl345_burst_begun_us(void);
+void adxl345_burst_expect(uint32_t t_us);
 
 /* The same, but an empty burst does not count: the time of the sample before it. */
-uint32_t burst_met_sample_us(void);
+uint32_t adxl345_burst_met_sample_us(void);
 
 /* Bursts that failed on the bus one after another; 0 after one that did not. */
-uint8_t burst_failures(void);
+uint8_t adxl345_burst_failures(void);
 
 /* How the newest of them ended; another burst may be on the bus by now. */
-i2c_bus_state_t burst_failed_state(void);
-
-uint8_t burst_queued(void);
+i2c_bus_state_t adxl345_burst_failed_state(void);
 
 /* No slot is free: samples wait in the sensor until main takes one. */
-bool burst_queue_full(void);
-
-/* Time of the oldest entry; false when the queue is empty. */
-bool burst_oldest_us(uint32_t *t_us);
+bool adxl345_burst_queue_full(void);
 
 /* Oldest entry out, which stays as it is until the next burst is judged. The queue must not be empty. */
-const burst_entry_t *burst_take(void);
+const burst_entry_t *adxl345_burst_take(void);
 
 #endif

@@ -5,9 +5,8 @@
 #include "adxl345_burst.h"
 
 struct burst {
-    i2c_bus_t bus; /* rx: the reading of a burst, by integrity's places; a register's value is its first byte */
-    const int16_t *newest_lsb; /* of the last good one, taken or not; none before the first */
-    volatile uint8_t head;
+    i2c_bus_t bus;         /* rx: the reading of a burst, by integrity's places; a register's value is its first byte */
+    volatile uint8_t head; /* and tail wrap at 256: the lower bits are the place in the queue */
     volatile uint8_t tail;
     volatile uint8_t mode;
     volatile uint8_t on_bus; /* a burst that main has not judged: it runs, or has ended */
@@ -15,14 +14,12 @@ struct burst {
     volatile uint32_t edge_us;
     volatile uint32_t begun_us; /* when the newest burst was put on the bus, */
     volatile uint8_t by_edge;   /* by the edge of its own sample */
-    uint32_t reading_us;        /* stamp of the sample that is read */
-    bool reading_exact;
     uint8_t failures;
-    uint8_t failed_state; /* i2c_bus_state_t in which the newest of them ended */
-    uint32_t last_us;     /* stamp of the newest sample that left the sensor, delivered or cut */
-    bool last_known;      /* last_us belongs to this run of the sensor */
-    uint8_t verdict;      /* reading_t of the newest burst that did not fail on the bus */
-    burst_entry_t queue[ADXL345_QUEUE_LENGTH];
+    uint8_t failed_state;                      /* i2c_bus_state_t in which the newest of them ended */
+    uint32_t last_us;                          /* stamp of the newest sample that left the sensor, delivered or cut */
+    bool last_known;                           /* last_us belongs to this run of the sensor */
+    uint8_t verdict;                           /* reading_t of the newest burst that did not fail on the bus */
+    burst_entry_t queue[ADXL345_QUEUE_LENGTH]; /* the one at head has the stamp of the sample that is read */
 };
 
 #endif

@@ -1,12 +1,13 @@
 /*
- * Inside the driver: its state, and what its files call of each other. adxl345.c finds and configures the sensor,
- * adxl345_stream.c takes samples of it, adxl345_tell.c tells. Main only.
+ * Inside the driver: its state, and what its steps share. Above stand adxl345_stream.c, which takes samples of the
+ * sensor, then adxl345.c, which finds and configures it, and adxl345_report.c. Nothing here calls upwards. Main only.
  */
 #ifndef ADXL345_DRIVER_H
 #define ADXL345_DRIVER_H
 
 #include "adxl345.h"
 #include "adxl345_table.h"
+#include "hal_pointer.h"
 #include "i2c_bus.h"
 
 /* Limits of time in half milliseconds: a byte holds them. A register access takes under 0.2 ms, a burst under 0.4. */
@@ -53,8 +54,7 @@ typedef struct {
     uint8_t foreign_id;
     uint8_t fault;
     uint8_t seen_good;
-    uint8_t marks; /* of the samples taken since adxl345_marks */
-    bool issued;   /* the step's register access is on the bus */
+    bool issued; /* the step's register access is on the bus */
     bool first_sample_seen;
     bool stop_wanted; /* after quiescing: stop, not start */
     uint8_t found;    /* at the first of both addresses: the fault that it would be; NONE: none asked yet */
@@ -66,73 +66,60 @@ typedef struct {
     bool was_empty;   /* when the sensor was asked last: a sample that is ready now is new */
 } adxl345_driver_t;
 
-extern adxl345_driver_t driver;
+extern adxl345_driver_t adxl345_driver;
+
+/* What touches much of the driver finds it through a pointer, what touches little at its fixed address. */
+static inline adxl345_driver_t *adxl345_driver_here(void)
+{
+    adxl345_driver_t *d = &adxl345_driver;
+    HAL_POINTER(d);
+    return d;
+}
 
 /* Bursts bring samples, or the sensor is being asked why they do not. */
-static inline bool driver_streams(void)
+static inline bool adxl345_driver_streams(void)
 {
-    return driver.step / STEP_PHASE(1) == ADXL345_STREAMING;
+    return adxl345_driver.step / STEP_PHASE(1) == ADXL345_STREAMING;
 }
 
 /* The step that runs from now on, with a deadline after this limit; main passes again at once. */
-void driver_enter(step_t step, uint8_t limit);
+void adxl345_driver_enter(step_t step, uint8_t limit);
 
 /* Another deadline for the step that runs, counted from the poll's time. */
-void driver_set_limit(uint8_t limit);
+void adxl345_driver_set_limit(uint8_t limit);
 
 /* The poll's time is t_us or later; that of the step's deadline. */
-bool driver_reached(uint32_t t_us);
-bool driver_deadline_passed(void);
+bool adxl345_driver_reached(uint32_t t_us);
+bool adxl345_driver_deadline_passed(void);
 
 /* Ends the step with a fault: backs off before the sensor is looked for again, or stops when that is asked for. */
-void driver_fail(adxl345_fault_t fault);
+void adxl345_driver_fail(adxl345_fault_t fault);
+
+/* Nothing runs and no fault is reported: one that was there is not mended, but it is not asked for any more. */
+void adxl345_driver_stopped(void);
+
+/* Enters a step with one register access, on a bus of its own, of which no data come. */
+void adxl345_driver_begin_access(step_t step);
 
 /* Frees the bus of a transfer that hangs; false when somebody holds a line low: that is a fault then, and told. */
-bool driver_take_bus(void);
+bool adxl345_driver_take_bus(void);
 
 /*
  * A transfer failed, or did not end or even begin in time: counted, and the bus freed where it hangs. False when
  * somebody holds a line low.
  */
-bool driver_transfer_failed(i2c_bus_state_t state);
+bool adxl345_driver_transfer_failed(i2c_bus_state_t state);
 
 /* Three transfers in a row failed: names the fault, or looks for a sensor that does not answer. */
-void driver_give_up(adxl345_driver_t *d, i2c_bus_state_t state);
+void adxl345_driver_give_up(adxl345_driver_t *d, i2c_bus_state_t state);
+
+/*
+ * No sensor at this address. That is a fault when the other one, if it may be asked, has none either: by the name of
+ * the device that did answer if there is one.
+ */
+void adxl345_driver_not_here(adxl345_driver_t *d, adxl345_fault_t fault);
 
 /* Looks for the sensor at once, at the address that it had, then at the other one. */
-void driver_probe(void);
-
-/* The sensor measures from now on: expects its first sample. */
-void stream_start(adxl345_driver_t *d);
-
-/* STEP_STREAM, once a poll. */
-void stream_poll(adxl345_driver_t *d);
-
-/* STEP_ASK_SOURCE has INT_SOURCE: reads the sample that waits, waits on, or fails for want of data. */
-void stream_source_asked(adxl345_driver_t *d);
-
-/* INT1 is known to tell nothing, low or high: samples are read by the clock. */
-bool stream_without_edges(void);
-
-/* The counters, by their places in adxl345_count. */
-typedef enum {
-    COUNTER_DRAINED,
-    COUNTER_STUCK,
-    COUNTER_RESTARTS,
-    COUNTER_NACKS, /* from here on in the order of i2c_bus_state_t */
-    COUNTER_LOST,
-    COUNTER_BUS_ERRORS,
-    COUNTER_TIMEOUTS,
-    COUNTER_FAILED,
-    COUNTER_EMPTY,
-    COUNTER_OVERRUNS,
-    COUNTERS
-} counter_t;
-
-/* One more, up to 65,535. */
-void driver_count(counter_t counter);
-
-/* All to zero. */
-void driver_forget_counters(void);
+void adxl345_driver_probe(void);
 
 #endif

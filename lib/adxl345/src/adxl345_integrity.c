@@ -1,6 +1,6 @@
 #include "adxl345_integrity.h"
 
-#include "adxl345_driver.h"
+#include "adxl345_counters.h"
 #include "adxl345_registers.h"
 #include "adxl345_table.h"
 #include "hal_drdy.h"
@@ -32,17 +32,17 @@ static inline struct integrity *here(void)
     return i;
 }
 
-void integrity_forget(void)
+void adxl345_integrity_forget(void)
 {
     integrity.equal_run = 0;
     integrity.empty_run = 0;
 }
 
-void integrity_start(const adxl345_config_t *config)
+void adxl345_integrity_start(const adxl345_config_t *config)
 {
     struct integrity *i = here();
     i->range_g = config->range_g;
-    i->format = table_format(config);
+    i->format = adxl345_table_format(config);
     i->has_last = false;
     i->bad_run = 0;
     if (i->equal_run != ADXL345_STUCK_REPEATS) {
@@ -96,15 +96,15 @@ static HAL_APART reading_t discard(reading_t why)
         if (i->empty_run == RUN_LIMIT) {
             i->empty_run = RUN_EMPTY;
         }
-        driver_count(COUNTER_EMPTY);
+        adxl345_counters_add(COUNTER_EMPTY);
         return why;
     }
-    driver.marks |= ADXL345_MARK_INTEGRITY;
+    adxl345_counters_mark(ADXL345_MARK_INTEGRITY);
     lengthen(&i->bad_run);
     if (why == READING_RESET) {
         i->bad_run = RUN_RESET;
     }
-    driver_count(COUNTER_FAILED);
+    adxl345_counters_add(COUNTER_FAILED);
     return why;
 }
 
@@ -125,7 +125,7 @@ static void accept(uint8_t source, bool repeated)
         i->empty_run = i->empty_run > RUN_LIMIT ? (uint8_t)(i->empty_run - 1u) : 0;
     }
     if (source & ADXL345_INT_OVERRUN) {
-        driver_count(COUNTER_OVERRUNS);
+        adxl345_counters_add(COUNTER_OVERRUNS);
     }
 }
 
@@ -146,7 +146,7 @@ static reading_t discard_foreign(const uint8_t reading[READING_BYTES])
  * FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). A sample that comes between
  * the byte of INT_SOURCE and the data is read too; it differs from the last, which an empty sensor shows again.
  */
-reading_t integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3])
+reading_t adxl345_integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3])
 {
     if (reading[READING_FIFO_CTL] != TABLE_FIFO_CTL || reading[READING_FORMAT] != integrity.format) {
         return discard_foreign(reading);
@@ -163,12 +163,12 @@ reading_t integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], 
     return READING_GOOD;
 }
 
-uint8_t integrity_good(void)
+uint8_t adxl345_integrity_good(void)
 {
     return integrity.good;
 }
 
-adxl345_fault_t integrity_fault(void)
+adxl345_fault_t adxl345_integrity_fault(void)
 {
     if (integrity.bad_run < RUN_LIMIT) {
         return ADXL345_FAULT_NONE;
@@ -176,12 +176,12 @@ adxl345_fault_t integrity_fault(void)
     return integrity.bad_run == RUN_RESET ? ADXL345_FAULT_NO_DATA : ADXL345_FAULT_TORN;
 }
 
-bool integrity_int1_stuck(void)
+bool adxl345_integrity_int1_stuck(void)
 {
     return integrity.empty_run >= RUN_LIMIT;
 }
 
-bool integrity_stuck(void)
+bool adxl345_integrity_stuck(void)
 {
     return integrity.equal_run == ADXL345_STUCK_REPEATS;
 }

@@ -33,19 +33,19 @@ typedef enum {
 } reading_t;
 
 /* Readings come with this configuration's range and self-test from now on, the first behind no other. */
-void integrity_start(const adxl345_config_t *config);
+void adxl345_integrity_start(const adxl345_config_t *config);
 
 /* The sensor may be another: no value is known to repeat, and INT1 not to be stuck. */
-void integrity_forget(void);
+void adxl345_integrity_forget(void);
 
 /*
  * The verdict on a reading, which is counted. lsb: its data, x, y, z as in adxl345_sample_t, valid when GOOD; last_lsb:
  * those of the last one that was GOOD.
  */
-reading_t integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3]);
+reading_t adxl345_integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3]);
 
 /* Good readings, wraps. */
-uint8_t integrity_good(void);
+uint8_t adxl345_integrity_good(void);
 
 /*
  * The newest good reading is at least the tenth in a row that is equal on all axes.
@@ -58,12 +58,12 @@ uint8_t integrity_good(void);
  * equal ones have 3.3e-9.
  */
 #define ADXL345_STUCK_REPEATS 9u
-bool integrity_stuck(void);
+bool adxl345_integrity_stuck(void);
 
 /* Why the sensor must be configured anew: ADXL345_FAULT_NO_DATA, ADXL345_FAULT_TORN, or NONE. */
-adxl345_fault_t integrity_fault(void);
+adxl345_fault_t adxl345_integrity_fault(void);
 
 /* INT1 was high and the sensor empty three times without a good reading; until 32 of those have left INT1 low. */
-bool integrity_int1_stuck(void);
+bool adxl345_integrity_int1_stuck(void);
 
 #endif

@@ -1,5 +1,6 @@
 #include "adxl345_period.h"
 
+#include "adxl345.h"
 #include "hal_pointer.h"
 
 enum { STEPS = 16 };
@@ -22,7 +23,7 @@ static inline struct period *here(void)
     return p;
 }
 
-void period_start(uint16_t half_us)
+void adxl345_period_start(uint16_t half_us)
 {
     struct period *p = here();
     uint32_t nominal_us = (uint32_t)half_us * 2u;
@@ -37,7 +38,7 @@ void period_start(uint16_t half_us)
  * The mean of STEPS steps on end between stamps that are exact, each within an eighth of the nominal one: that takes
  * less time for a sample than a mean that follows each, and does not hang half a microsecond beside the truth.
  */
-void period_sample(uint32_t t_us, bool exact)
+void adxl345_period_sample(uint32_t t_us, bool exact)
 {
     struct period *p = here();
     uint32_t step_us = t_us - p->newest_us;
@@ -54,17 +55,17 @@ void period_sample(uint32_t t_us, bool exact)
     p->measured_from_us = t_us;
 }
 
-HAL_APART uint32_t period_us(void)
+HAL_APART uint32_t adxl345_period_us(void)
 {
     return period.us_q8 >> 8;
 }
 
-uint32_t period_us_q8(void)
+uint32_t adxl345_period_us_q8(void)
 {
     return period.us_q8;
 }
 
-bool period_measured(void)
+bool adxl345_period_measured(void)
 {
     return period.measured;
 }

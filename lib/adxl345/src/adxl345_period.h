@@ -9,16 +9,13 @@
 #include <stdint.h>
 
 /* Begins with the nominal one, of which half is 625..40000 us. */
-void period_start(uint16_t half_us);
+void adxl345_period_start(uint16_t half_us);
 
 /* The stamp of the next sample, us; exact: the sample was read as it became ready. */
-void period_sample(uint32_t t_us, bool exact);
+void adxl345_period_sample(uint32_t t_us, bool exact);
 
-/* The nominal one until it was measured. */
-uint32_t period_us(void);
-
-/* The same in 1/256 us, and whether it was measured. */
-uint32_t period_us_q8(void);
-bool period_measured(void);
+/* adxl345_period_us in 1/256 us, and whether it was measured: the nominal one until then. */
+uint32_t adxl345_period_us_q8(void);
+bool adxl345_period_measured(void);
 
 #endif

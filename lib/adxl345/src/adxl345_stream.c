@@ -2,8 +2,10 @@
  * The step of the driver's state machine in which samples come: when the sensor is asked why none does, when it is read
  * by the clock because INT1 tells nothing, and what failed. All in main.
  */
+#include "adxl345_stream.h"
+
 #include "adxl345_burst.h"
-#include "adxl345_driver.h"
+#include "adxl345_counters.h"
 #include "adxl345_integrity.h"
 #include "adxl345_registers.h"
 #include "adxl345_watch.h"
@@ -19,26 +21,26 @@
 /* So many halves of the nominal time between samples. */
 static HAL_APART uint32_t halves_us(uint8_t count)
 {
-    return (uint32_t)driver.half_us * count;
+    return (uint32_t)adxl345_driver.half_us * count;
 }
 
 /* So long after the newest burst that met a sample, or after the moment by which the first is expected. */
 static HAL_APART bool silent_for(uint32_t us)
 {
-    return driver_reached(burst_met_sample_us() + us);
+    return adxl345_driver_reached(adxl345_burst_met_sample_us() + us);
 }
 
 /*
  * INT1 may have risen just now, unless it is always high. Ones of a sensor that is gone show in the bits of functions
  * that are off. A sensor that has none ready may still come: that is a fault after three periods.
  */
-void stream_source_asked(adxl345_driver_t *d)
+void adxl345_stream_source_asked(adxl345_driver_t *d)
 {
-    uint8_t source = burst_register_value() & (uint8_t)(ADXL345_INT_DATA_READY | ADXL345_INT_EVENTS);
+    uint8_t source = adxl345_burst_register_value() & (uint8_t)(ADXL345_INT_DATA_READY | ADXL345_INT_EVENTS);
     if (source != ADXL345_INT_DATA_READY) {
         bool may_come = source == 0 && !silent_for(halves_us(6) + MARGIN_US);
-        if (!may_come && (!hal_drdy_high() || integrity_int1_stuck())) {
-            driver_fail(ADXL345_FAULT_NO_DATA);
+        if (!may_come && (!hal_drdy_high() || adxl345_integrity_int1_stuck())) {
+            adxl345_driver_fail(ADXL345_FAULT_NO_DATA);
             return;
         }
         d->was_empty = true;
@@ -46,30 +48,30 @@ void stream_source_asked(adxl345_driver_t *d)
         d->fault = ADXL345_FAULT_INT1_SILENT;
         d->timed = TIMED_WANTED;
     }
-    burst_set_mode(BURST_READ);
-    driver_enter(STEP_STREAM, RETURN_LIMIT);
+    adxl345_burst_set_mode(BURST_READ);
+    adxl345_driver_enter(STEP_STREAM, RETURN_LIMIT);
 }
 
-void stream_start(adxl345_driver_t *d)
+void adxl345_stream_start(adxl345_driver_t *d)
 {
     if (d->after_fault) {
-        driver_count(COUNTER_RESTARTS);
-        integrity_forget();
-        watch_start();
+        adxl345_counters_add(COUNTER_RESTARTS);
+        adxl345_integrity_forget();
+        adxl345_watch_start();
     }
-    integrity_start(&d->config);
+    adxl345_integrity_start(&d->config);
     d->first_sample_seen = false;
     d->timed = TIMED_NONE;
     d->was_empty = false;
-    d->seen_good = integrity_good();
-    burst_expect(d->now_us + TURN_ON_MS * 1000ul);
-    burst_set_mode(BURST_READ); /* last: an edge may come with it */
-    driver_enter(STEP_STREAM, RETURN_LIMIT);
+    d->seen_good = adxl345_integrity_good();
+    adxl345_burst_expect(d->now_us + TURN_ON_MS * 1000ul);
+    adxl345_burst_set_mode(BURST_READ); /* last: an edge may come with it */
+    adxl345_driver_enter(STEP_STREAM, RETURN_LIMIT);
 }
 
-HAL_APART bool stream_without_edges(void)
+HAL_APART bool adxl345_stream_without_edges(void)
 {
-    return driver.fault == ADXL345_FAULT_INT1_SILENT || integrity_int1_stuck();
+    return adxl345_driver.fault == ADXL345_FAULT_INT1_SILENT || adxl345_integrity_int1_stuck();
 }
 
 /*
@@ -78,22 +80,22 @@ HAL_APART bool stream_without_edges(void)
  */
 static HAL_APART uint32_t patience_us(void)
 {
-    return halves_us(stream_without_edges() ? 3 : 8) >> 1;
+    return halves_us(adxl345_stream_without_edges() ? 3 : 8) >> 1;
 }
 
 static void sample_arrived(adxl345_driver_t *d)
 {
-    d->seen_good = integrity_good();
+    d->seen_good = adxl345_integrity_good();
     d->was_empty = false;
     d->after_fault = false;
     d->first_sample_seen = true;
     d->back_off = BACK_OFF_MIN;
-    d->deadline_us = d->now_us + (uint32_t)d->half_us * 2u + LIMIT_US;
     if (d->timed == TIMED_READ) {
-        d->deadline_us = burst_begun_us() + patience_us();
-        d->timed = burst_left_more() ? TIMED_WANTED : TIMED_NONE;
+        d->deadline_us = adxl345_burst_begun_us() + patience_us();
+        d->timed = adxl345_burst_left_more() ? TIMED_WANTED : TIMED_NONE;
         return;
     }
+    d->deadline_us = d->now_us + LIMIT_US + halves_us(2);
     d->fault = ADXL345_FAULT_NONE;
     d->timed = TIMED_NONE;
 }
@@ -105,29 +107,30 @@ static void sample_arrived(adxl345_driver_t *d)
  */
 static HAL_APART void look_for_sample(adxl345_driver_t *d)
 {
-    if (burst_running() || hal_i2c_stop_pending()) {
-        d->deadline_us = burst_begun_us() + (uint32_t)TRANSFER_LIMIT * LIMIT_US;
-        if (driver_deadline_passed() && driver_transfer_failed(I2C_BUS_TIMEOUT)) {
-            driver_enter(STEP_STREAM, RETURN_LIMIT);
+    if (adxl345_burst_running() || hal_i2c_stop_pending()) {
+        d->deadline_us = adxl345_burst_begun_us() + (uint32_t)TRANSFER_LIMIT * LIMIT_US;
+        if (adxl345_driver_deadline_passed() && adxl345_driver_transfer_failed(I2C_BUS_TIMEOUT)) {
+            adxl345_driver_enter(STEP_STREAM, RETURN_LIMIT);
         }
-    } else if (burst_queue_full() || (hal_drdy_high() && !burst_found_empty()) || !silent_for(patience_us())) {
-        driver_set_limit(LOOK_LIMIT); /* main was late, or it is early */
+    } else if (adxl345_burst_queue_full() || (hal_drdy_high() && !adxl345_burst_found_empty()) ||
+               !silent_for(patience_us())) {
+        adxl345_driver_set_limit(LOOK_LIMIT); /* main was late, or it is early */
     } else {
-        burst_set_mode(BURST_STAMP);
-        driver_enter(STEP_ASK_SOURCE, TRANSFER_LIMIT);
+        adxl345_burst_set_mode(BURST_STAMP);
+        adxl345_driver_enter(STEP_ASK_SOURCE, TRANSFER_LIMIT);
     }
 }
 
 /* What the readings say; a sensor that has lost its configuration is given it again at once. */
 static bool readings_failed(void)
 {
-    adxl345_fault_t fault = integrity_fault();
+    adxl345_fault_t fault = adxl345_integrity_fault();
     if (fault == ADXL345_FAULT_NONE) {
         return false;
     }
-    driver_fail(fault);
+    adxl345_driver_fail(fault);
     if (fault == ADXL345_FAULT_NO_DATA) {
-        driver_probe();
+        adxl345_driver_probe();
     }
     return true;
 }
@@ -139,28 +142,28 @@ static void fetch(adxl345_driver_t *d)
     if (!by_clock && !hal_drdy_high()) {
         return;
     }
-    if (burst_read(d->was_empty)) {
+    if (adxl345_burst_read(d->was_empty)) {
         if (by_clock) {
             d->timed = TIMED_READ;
         }
-        driver_set_limit(TRANSFER_LIMIT);
+        adxl345_driver_set_limit(TRANSFER_LIMIT);
     } else if (hal_i2c_stop_pending()) {
         hal_wake(); /* the end of a STOP tells nobody */
     }
 }
 
-void stream_poll(adxl345_driver_t *d)
+void adxl345_stream_poll(adxl345_driver_t *d)
 {
     if (readings_failed()) {
         return;
     }
-    if (burst_failures() >= (uint8_t)TRIES) {
-        driver_give_up(d, burst_failed_state());
+    if (adxl345_burst_failures() >= (uint8_t)TRIES) {
+        adxl345_driver_give_up(d, adxl345_burst_failed_state());
         return;
     }
-    if (integrity_good() != d->seen_good) {
+    if (adxl345_integrity_good() != d->seen_good) {
         sample_arrived(d);
-    } else if (driver_deadline_passed() || (burst_found_empty() && !burst_running())) {
+    } else if (adxl345_driver_deadline_passed() || (adxl345_burst_found_empty() && !adxl345_burst_running())) {
         look_for_sample(d);
     }
     fetch(d);

@@ -47,13 +47,13 @@ static uint8_t range_code(uint8_t range_g)
     return code;
 }
 
-HAL_APART uint8_t table_format(const adxl345_config_t *config)
+HAL_APART uint8_t adxl345_table_format(const adxl345_config_t *config)
 {
     uint8_t force = config->self_test ? ADXL345_FORMAT_SELF_TEST : 0;
     return (uint8_t)(ADXL345_FORMAT_FULL_RES | force | range_code(config->range_g));
 }
 
-uint16_t table_half_period_us(uint16_t rate_dhz)
+uint16_t adxl345_table_half_period_us(uint16_t rate_dhz)
 {
     uint16_t half_us = 40000;
     for (uint16_t at = 125; at < rate_dhz; at = (uint16_t)(at * 2u)) {
@@ -72,7 +72,7 @@ bool adxl345_config_valid(const adxl345_config_t *config)
     return rate_ok && (range == 2 || range == 4 || range == 8 || range == 16);
 }
 
-HAL_APART table_row_t table_row(uint8_t at, const adxl345_config_t *config)
+HAL_APART table_row_t adxl345_table_row(uint8_t at, const adxl345_config_t *config)
 {
     const uint8_t *p = &table[at].reg;
     table_row_t row;
@@ -81,7 +81,7 @@ HAL_APART table_row_t table_row(uint8_t at, const adxl345_config_t *config)
     if (row.reg == ADXL345_BW_RATE) {
         row.value = rate_code(config->rate_dhz);
     } else if (row.reg == ADXL345_DATA_FORMAT) {
-        row.value = table_format(config);
+        row.value = adxl345_table_format(config);
     }
     return row;
 }

@@ -29,12 +29,12 @@ typedef struct {
 } table_row_t;
 
 /* Register and value for this configuration. */
-table_row_t table_row(uint8_t at, const adxl345_config_t *config);
+table_row_t adxl345_table_row(uint8_t at, const adxl345_config_t *config);
 
 /* What DATA_FORMAT holds while measuring with this configuration. */
-uint8_t table_format(const adxl345_config_t *config);
+uint8_t adxl345_table_format(const adxl345_config_t *config);
 
 /* Half the nominal time between samples at a legal rate. */
-uint16_t table_half_period_us(uint16_t rate_dhz);
+uint16_t adxl345_table_half_period_us(uint16_t rate_dhz);
 
 #endif

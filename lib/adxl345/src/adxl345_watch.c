@@ -16,7 +16,7 @@ enum { RAISE = 16, LIMIT = 128, SCORE_MAX = 255 };
 static uint8_t score;
 static bool suspected;
 
-void watch_start(void)
+void adxl345_watch_start(void)
 {
     score = 0;
     suspected = false;
@@ -51,7 +51,7 @@ static bool doubled(const int16_t *now_lsb, const int16_t *before_lsb)
     return jumps == 1 && (is_double(to_lsb, from_lsb) || is_double(from_lsb, to_lsb));
 }
 
-void watch_sample(const int16_t now_lsb[3], const int16_t before_lsb[3])
+void adxl345_watch_sample(const int16_t now_lsb[3], const int16_t before_lsb[3])
 {
     if (doubled(now_lsb, before_lsb)) {
         score = score > SCORE_MAX - RAISE ? SCORE_MAX : (uint8_t)(score + RAISE);
@@ -65,7 +65,7 @@ void watch_sample(const int16_t now_lsb[3], const int16_t before_lsb[3])
     }
 }
 
-bool watch_two_sensors(void)
+bool adxl345_watch_two_sensors(void)
 {
     return suspected;
 }

@@ -8,15 +8,15 @@
 #include <stdint.h>
 
 /* The first sample of a run comes next. */
-void watch_start(void);
+void adxl345_watch_start(void);
 
 /* The next sample and the one before it, x, y, z in LSB (-4096..4095). */
-void watch_sample(const int16_t now_lsb[3], const int16_t before_lsb[3]);
+void adxl345_watch_sample(const int16_t now_lsb[3], const int16_t before_lsb[3]);
 
 /*
  * An axis has jumped between a value and its double again and again: from the eighth jump in close order, or some
  * more than one in sixteen samples, until 255 samples after the last one at most.
  */
-bool watch_two_sensors(void);
+bool adxl345_watch_two_sensors(void);
 
 #endif

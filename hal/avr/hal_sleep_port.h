@@ -1,0 +1,15 @@
+/* GPIOR0 is one instruction to set and one cycle to test, so it holds the wake flag. */
+#ifndef HAL_SLEEP_PORT_H
+#define HAL_SLEEP_PORT_H
+
+#include <avr/io.h>
+
+#include "hal_body.h"
+#include "hal_sleep.h"
+
+HAL_BODY void hal_wake(void)
+{
+    GPIOR0 |= 1;
+}
+
+#endif

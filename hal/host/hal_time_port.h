@@ -1,0 +1,11 @@
+/* A test may change what the firmware is told of its processor. */
+#ifndef HAL_TIME_PORT_H
+#define HAL_TIME_PORT_H
+
+#include <stdint.h>
+
+#define HAL_CPU_HZ hal_host_cpu_hz
+
+extern uint32_t hal_host_cpu_hz;
+
+#endif

@@ -1,0 +1,135 @@
+/*
+ * What every step of the driver does: enter the next one, keep its limit, take the bus, fail, look for the sensor. The
+ * steps stand above it, in adxl345.c and adxl345_stream.c. All in main.
+ */
+#include "adxl345_driver.h"
+
+#include "adxl345_burst.h"
+#include "adxl345_counters.h"
+#include "adxl345_period.h"
+#include "adxl345_registers.h"
+#include "hal_i2c.h"
+#include "hal_sleep.h"
+
+adxl345_driver_t adxl345_driver;
+
+void adxl345_driver_set_limit(uint8_t limit)
+{
+    adxl345_driver.deadline_us = adxl345_driver.now_us + (uint32_t)limit * LIMIT_US;
+}
+
+void adxl345_driver_enter(step_t step, uint8_t limit)
+{
+    adxl345_driver.step = (uint8_t)step;
+    adxl345_driver.issued = false;
+    adxl345_driver.tries = 0;
+    adxl345_driver_set_limit(limit);
+    hal_wake();
+}
+
+HAL_APART bool adxl345_driver_reached(uint32_t t_us)
+{
+    return (int32_t)(t_us - adxl345_driver.now_us) <= 0; /* hal_time_reached as a value takes 24 B more */
+}
+
+HAL_APART bool adxl345_driver_deadline_passed(void)
+{
+    return adxl345_driver_reached(adxl345_driver.deadline_us);
+}
+
+HAL_APART void adxl345_driver_stopped(void)
+{
+    adxl345_driver.fault = ADXL345_FAULT_NONE;
+    adxl345_driver.after_fault = false;
+    adxl345_driver.step = STEP_OFF;
+}
+
+void adxl345_driver_fail(adxl345_fault_t fault)
+{
+    adxl345_driver_t *d = adxl345_driver_here();
+    adxl345_burst_set_mode(BURST_IGNORE);
+    if (d->stop_wanted) {
+        adxl345_driver_stopped();
+        if (d->rests != 0) {
+            d->rests--;
+            adxl345_driver_enter(STEP_REST_LATER, BACK_OFF_MAX);
+        }
+        return;
+    }
+    d->fault = (uint8_t)fault;
+    d->after_fault = true;
+    adxl345_driver_enter(STEP_BACK_OFF, d->back_off);
+    d->back_off = (uint8_t)(d->back_off * 2u);
+    if (d->back_off > BACK_OFF_MAX) {
+        d->back_off = BACK_OFF_MAX;
+    }
+}
+
+bool adxl345_driver_take_bus(void)
+{
+    uint8_t lines = adxl345_burst_take_bus(adxl345_driver.address, adxl345_driver.config.rate_dhz == 8000);
+    if (lines == HAL_I2C_FREE) {
+        return true;
+    }
+    adxl345_driver_fail((adxl345_fault_t)(ADXL345_FAULT_SCL_LOW - HAL_I2C_SCL_LOW + lines));
+    return false;
+}
+
+void adxl345_driver_begin_access(step_t step)
+{
+    adxl345_burst_set_mode(BURST_IGNORE);
+    adxl345_driver_enter(step, TRANSFER_LIMIT);
+    (void)adxl345_driver_take_bus();
+}
+
+/* What was measured of a sensor that has to be found again still holds, unless its rate is another one now. */
+void adxl345_driver_probe(void)
+{
+    adxl345_driver_t *d = adxl345_driver_here();
+    if (d->renewed) {
+        d->renewed = false;
+        adxl345_period_start(d->half_us);
+    }
+    uint8_t only = d->config.address;
+    d->found = ADXL345_FAULT_NONE;
+    if (only != 0) {
+        d->address = only;
+    }
+    adxl345_driver_begin_access(STEP_PROBE);
+}
+
+bool adxl345_driver_transfer_failed(i2c_bus_state_t state)
+{
+    uint8_t first = state == I2C_BUS_NACK_ADDRESS ? I2C_BUS_NACK_ADDRESS : I2C_BUS_NACK_DATA;
+    adxl345_counters_add((counter_t)(COUNTER_NACKS + (uint8_t)state - first));
+    return state != I2C_BUS_TIMEOUT || adxl345_driver_take_bus();
+}
+
+HAL_APART void adxl345_driver_not_here(adxl345_driver_t *d, adxl345_fault_t fault)
+{
+    uint8_t found = d->found;
+    d->found = (uint8_t)fault;
+    if (d->config.address == 0) {
+        d->address ^= ADXL345_ADDRESS_LOW ^ ADXL345_ADDRESS_HIGH;
+        if (found == ADXL345_FAULT_NONE) {
+            adxl345_driver_begin_access(STEP_PROBE);
+            return;
+        }
+    }
+    if (fault == ADXL345_FAULT_NO_SENSOR && found != ADXL345_FAULT_NONE) {
+        fault = (adxl345_fault_t)found;
+    }
+    adxl345_driver_fail(fault);
+}
+
+void adxl345_driver_give_up(adxl345_driver_t *d, i2c_bus_state_t state)
+{
+    if (state != I2C_BUS_NACK_ADDRESS || d->stop_wanted) {
+        adxl345_driver_fail(ADXL345_FAULT_BUS);
+    } else if (d->step == STEP_PROBE) {
+        adxl345_driver_not_here(d, ADXL345_FAULT_NO_SENSOR);
+    } else {
+        d->after_fault = true;
+        adxl345_driver_probe();
+    }
+}
