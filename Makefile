@@ -49,7 +49,7 @@ AVR_OBJ     := $(AVR_SRC:%.c=$(U)/%.o)
 include mk/images.mk
 
 # assembler primitives against their C twins, on the chip: with plain -Os, and as the firmware is built
-TWINS_SRC := host_tests/avr/fx_twins.c lib/filters/src/fx.c
+TWINS_SRC := host_tests/avr/fx_twins.c lib/filters/src/fx.c lib/filters/src/fx_avr.c
 $(U)/fx_twins.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx_avr.h lib/filters/src/fx_dot.h Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ilib/filters/src $(TWINS_SRC) -o $@

@@ -33,8 +33,8 @@ SANITIZE = "-O1 -fsanitize=address,undefined -fno-sanitize-recover=all"
 # as the planted differences: name, file under lib, text, broken text, build, paths that must be named
 TWINS = [
     ("one rounding bit dropped", "filters/src/fx.h",
-     "return fx_mul_u16_c((uint16_t)(a >> 16), b_uq16) + (low >> 16) + ((low >> 15) & 1U);",
-     "return fx_mul_u16_c((uint16_t)(a >> 16), b_uq16) + (low >> 16);", "gcc -O2", {"fx_mul_uq16", laws.PLAIN}),
+     "return fx_product_u16((uint16_t)(a >> 16), b_uq16) + (low >> 16) + ((low >> 15) & 1U);",
+     "return fx_product_u16((uint16_t)(a >> 16), b_uq16) + (low >> 16);", "gcc -O2", {"filter_fx_mul_uq16", laws.PLAIN}),
     ("product in 16-bit int", "tilt/src/tilt.c",
      "sum_q12 += (uint32_t)magnitude * magnitude;",
      "sum_q12 += (uint32_t)(magnitude * magnitude);", "avr-gcc -Os", {"tilt_gravity_plausible"}),
@@ -227,7 +227,7 @@ def missing_paths(answers):
     have = {path for path, _ in answers}
     wanted = set(laws.names())
     text = pathlib.Path("lib/filters/src/fx.h").read_text(encoding="utf-8")
-    wanted |= set(re.findall(r"^(?:static inline|FX_INLINE|FX_ONCE) [\w *]*?(fx_(?!flash_)\w+)\(", text, re.M))
+    wanted |= set(re.findall(r"^(?:(?:static inline|FX_INLINE) )?\w+ ((?:filter_)?fx_(?!flash_)\w+)\(", text, re.M))
     assert len(wanted) > 20, "the list of functions in fx.h was not found"
     return sorted(wanted - have)
 

@@ -51,17 +51,15 @@ static uint32_t normalised_c(uint32_t v)
 
 /* X(name, what it gives for the operands a and b) */
 #define PRIMITIVES(X)                                                                \
-    X(fx_mul_u16, fx_mul_u16(A16, B16))                                              \
     X(fx_product_u16, fx_product_u16(A16, B16))                                      \
-    X(fx_mul_uq16, fx_mul_uq16(a, B16))                                              \
-    X(fx_mul16_uq16, fx_mul16_uq16(A16, B16))                                        \
-    X(fx_mul24_uq16, fx_mul24_uq16(A24, B16))                                        \
-    X(fx_mul24_uq24, fx_mul24_uq24(A24, B24))                                        \
-    X(fx_mul_uq24, fx_mul_uq24(a, B24))                                              \
+    X(filter_fx_mul_uq16, filter_fx_mul_uq16(a, B16))                                \
+    X(filter_fx_mul16_uq16, filter_fx_mul16_uq16(A16, B16))                          \
+    X(filter_fx_mul24_uq16, filter_fx_mul24_uq16(A24, B16))                          \
+    X(filter_fx_mul24_uq24, filter_fx_mul24_uq24(A24, B24))                          \
+    X(filter_fx_mul_uq24, filter_fx_mul_uq24(a, B24))                                \
     X(fx_shift12, fx_shift12(A16))                                                   \
     X(fx_eightfold, fx_eightfold(a))                                                 \
     X(fx_sixteenth, fx_sixteenth(a))                                                 \
-    X(fx_mul_u16_c, fx_mul_u16_c(A16, B16))                                          \
     X(fx_mul_uq16_c, fx_mul_uq16_c(a, B16))                                          \
     X(fx_mul16_uq16_c, fx_mul16_uq16_c(A16, B16))                                    \
     X(fx_mul24_uq16_c, fx_mul24_uq16_c(A24, B16))                                    \
@@ -73,19 +71,16 @@ static uint32_t normalised_c(uint32_t v)
     X(fx_normalise_c, normalised_c(NOT_0(a)))                                        \
     X(fx_normalise, normalised(NOT_0(a)))                                            \
     X(fx_shift_right_c, fx_shift_right_c(a, (uint8_t)(b & 31U)))                     \
-    X(fx_shift_right, fx_shift_right(a, (uint8_t)(b & 31U)))                         \
-    X(filter_fx_shifted_right, filter_fx_shifted_right(a, (uint8_t)(b & 31U)))       \
+    X(filter_fx_shift_right, filter_fx_shift_right(a, (uint8_t)(b & 31U)))           \
     X(fx_without_part_c, (uint32_t)fx_without_part_c(HALF(a), PART(b)))              \
     X(fx_without_part, (uint32_t)fx_without_part(HALF(a), PART(b)))                  \
     X(fx_clamp_high_c, (uint32_t)fx_clamp_high_c((int32_t)a, 54))                    \
     X(fx_clamp_high, (uint32_t)fx_clamp_high((int32_t)a, 54))                        \
     X(filter_fx_high_u16, filter_fx_high_u16(A16, B16))                              \
-    X(filter_fx_times_uq16, filter_fx_times_uq16(a, B16))                            \
     X(filter_fx_leading, filter_fx_leading(a))                                       \
     X(fx_places, fx_places(a))                                                       \
     X(fx_mantissa, fx_mantissa(a))                                                   \
     X(filter_fx_inverse_uq16, filter_fx_inverse_uq16(LED(a)))                        \
-    X(fx_reciprocal_leading_uq16, fx_reciprocal_leading_uq16(LED(a)))                \
     X(fx_abs32, fx_abs32((int32_t)a))                                                \
     X(fx_upper_c, fx_upper_c(&a))                                                    \
     X(fx_upper, fx_upper(&a))                                                        \

@@ -242,9 +242,9 @@ FX_INLINE void turn(filter_t *f, int32_t by_lsb_q24)
 static uint32_t turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
 {
     if (w_lsb_uq16 < 0x800000U) {
-        return filter_fx_times_uq16(w_lsb_uq16 << 8, k_uq16);
+        return filter_fx_mul_uq16(w_lsb_uq16 << 8, k_uq16);
     }
-    uint32_t kw = filter_fx_times_uq16(w_lsb_uq16, k_uq16);
+    uint32_t kw = filter_fx_mul_uq16(w_lsb_uq16, k_uq16);
     return (kw >= (uint32_t)127 << 16) ? (uint32_t)127 << 24 : kw << 8;
 }
 
@@ -256,7 +256,7 @@ static void follow(filter_t *f, uint32_t taken)
         f->rate_lsb = 0;
     } else {
         uint16_t k = fx_upper(&f->own.adaptive.k_uq32);
-        uint32_t w = filter_fx_times_uq16(taken, k);
+        uint32_t w = filter_fx_mul_uq16(taken, k);
         uint32_t kw = turn_lsb_uq24(w, k);
         turn(f, (int32_t)kw);
         taken = w + w - (kw >> 8);

@@ -155,16 +155,16 @@ static uint8_t refused(filter_member_t *m, bool below, int16_t z_lsb)
 FX_INLINE uint16_t correct(filter_t *f, filter_member_t *m, uint16_t final_k, uint32_t size_lsb_uq8, bool below)
 {
     uint16_t k = m->k_uq16;
-    uint32_t square_uq32 = fx_mul_u16(k, k);
+    uint32_t square_uq32 = fx_product_u16(k, k);
     uint16_t square_uq16 = (uint16_t)(square_uq32 >> 16);
     uint16_t gain_uq16 = (uint16_t)(k + (uint16_t)(k - square_uq16)); /* <= 0.84 */
     if (k > final_k) {
         k = (uint16_t)(k - (square_uq16 >> 2) - 1U);
         m->k_uq16 = (k > final_k) ? k : final_k;
     }
-    int32_t x_step = (int32_t)fx_mul24_uq16(size_lsb_uq8, gain_uq16);
+    int32_t x_step = (int32_t)filter_fx_mul24_uq16(size_lsb_uq8, gain_uq16);
     m->x_lsb_q16 += below ? -x_step : x_step;
-    int32_t rate_step = (int32_t)fx_mul24_uq24(size_lsb_uq8, square_uq32 >> 8);
+    int32_t rate_step = (int32_t)filter_fx_mul24_uq24(size_lsb_uq8, square_uq32 >> 8);
     m->rate_lsb_q16 = within_rate(f, m->rate_lsb_q16 + (below ? -rate_step : rate_step));
     return gain_uq16;
 }
@@ -185,7 +185,7 @@ static void step_member(filter_t *f, uint8_t i, int16_t z_lsb, uint32_t gate_lsb
     if (size_lsb_uq8 < bounded) {
         bounded = (uint16_t)size_lsb_uq8;
     }
-    uint32_t square_lsb2_uq8 = fx_mul_u16(bounded, bounded) >> 8;
+    uint32_t square_lsb2_uq8 = fx_product_u16(bounded, bounded) >> 8;
     m->score_lsb2_uq8 = m->score_lsb2_uq8 - (m->score_lsb2_uq8 >> 3) + square_lsb2_uq8;
     if (i == (uint8_t)AUTO_SLOW) {
         gate_lsb_uq8 += gate_lsb_uq8;
@@ -289,7 +289,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 const filter_law_t filter_law_auto FX_FLASH = { .name = "auto",
                                                 .parameter_count = 6,
                                                 .traits = LAW_GATED,
-                                                .worst_cycles = 2450,
+                                                .worst_cycles = 2620,
                                                 .parameters = parameters,
                                                 .standard = standard,
                                                 .set_up = set_up,

@@ -32,24 +32,46 @@ uint16_t filter_fx_isqrt32(uint32_t v)
     return (uint16_t)root;
 }
 
+#ifndef FX_ASSEMBLER /* else in fx_avr.c */
+uint32_t filter_fx_mul_uq16(uint32_t a, uint16_t b_uq16)
+{
+    return fx_mul_uq16_c(a, b_uq16);
+}
+
+uint16_t filter_fx_mul16_uq16(uint16_t a, uint16_t b_uq16)
+{
+    return fx_mul16_uq16_c(a, b_uq16);
+}
+
+uint32_t filter_fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
+{
+    return fx_mul24_uq16_c(a_q8, b_uq16);
+}
+
+uint32_t filter_fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
+{
+    return fx_mul24_uq24_c(a_q8, b_uq24);
+}
+
+uint32_t filter_fx_mul_uq24(uint32_t a, uint32_t b_uq24)
+{
+    return fx_mul_uq24_c(a, b_uq24);
+}
+
+uint32_t filter_fx_shift_right(uint32_t v, uint8_t places)
+{
+    return fx_shift_right_c(v, places);
+}
+#endif
+
 uint16_t filter_fx_high_u16(uint16_t a, uint16_t b)
 {
     return (uint16_t)(fx_product_u16(a, b) >> 16);
 }
 
-uint32_t filter_fx_times_uq16(uint32_t a, uint16_t b_uq16)
-{
-    return fx_mul_uq16(a, b_uq16);
-}
-
-uint32_t filter_fx_shifted_right(uint32_t v, uint8_t places)
-{
-    return fx_shift_right(v, places);
-}
-
 uint16_t filter_fx_inverse_uq16(uint32_t m_uq31)
 {
-    return fx_reciprocal_leading_uq16(m_uq31);
+    return fx_inverse_m_uq16((uint8_t)(m_uq31 >> 24) & 0x7FU, (uint16_t)(m_uq31 >> 8));
 }
 
 fx_leading_t filter_fx_leading(uint32_t v)

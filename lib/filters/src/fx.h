@@ -1,9 +1,10 @@
 /*
- * Fixed-point primitives: this header and fx_avr.h are all of the library that knows the machine.
+ * Fixed-point primitives: this header, fx_avr.h and fx_avr.c are all of the library that knows the machine.
  *
- * Every primitive exists twice, in portable C and, where the compiler's code is slow, as inline assembler (fx_avr.h);
- * both give the same bits for every argument (host_tests/avr/fx_twins.c compares them on the chip). No primitive
- * divides, uses float or 64-bit arithmetic on AVR. All are pure and may be called from main or from an interrupt.
+ * Every primitive exists twice, in portable C and, where the compiler's code is slow, in assembler (fx_avr.h, and
+ * fx_avr.c for functions); both give the same bits for every argument (host_tests/avr/fx_twins.c compares them on the
+ * chip). No primitive divides, uses float or 64-bit arithmetic on AVR. All are pure and may be called from main or from
+ * an interrupt.
  */
 #ifndef FX_H
 #define FX_H
@@ -100,9 +101,14 @@ static inline int32_t fx_clamp(int32_t v, int32_t limit)
     return (v < -limit) ? -limit : v;
 }
 
-/* a x b, exact. */
-static inline uint32_t fx_mul_u16_c(uint16_t a, uint16_t b)
+/*
+ * a x b, exact: written as a product, because the compiler knows which few registers its library's takes. What it
+ * knew of a and b would make it take a longer one.
+ */
+FX_INLINE uint32_t fx_product_u16(uint16_t a, uint16_t b)
 {
+    FX_FENCE_OF(a);
+    FX_FENCE_OF(b);
     return (uint32_t)a * b;
 }
 
@@ -112,21 +118,21 @@ static inline uint32_t fx_mul_u16_c(uint16_t a, uint16_t b)
  */
 static inline uint32_t fx_mul_uq16_c(uint32_t a, uint16_t b_uq16)
 {
-    uint32_t low = fx_mul_u16_c((uint16_t)a, b_uq16);
-    return fx_mul_u16_c((uint16_t)(a >> 16), b_uq16) + (low >> 16) + ((low >> 15) & 1U);
+    uint32_t low = fx_product_u16((uint16_t)a, b_uq16);
+    return fx_product_u16((uint16_t)(a >> 16), b_uq16) + (low >> 16) + ((low >> 15) & 1U);
 }
 
 /* a x b_uq16 rounded half up, any a of 16 bits. */
 static inline uint16_t fx_mul16_uq16_c(uint16_t a, uint16_t b_uq16)
 {
-    uint32_t product = fx_mul_u16_c(a, b_uq16);
+    uint32_t product = fx_product_u16(a, b_uq16);
     return (uint16_t)((product >> 16) + ((product >> 15) & 1U));
 }
 
 /* a x b_uq16 / 2^8 rounded half up, a < 2^24: a in Q8 gives the product in Q16. */
 static inline uint32_t fx_mul24_uq16_c(uint32_t a_q8, uint16_t b_uq16)
 {
-    uint32_t low = fx_mul_u16_c((uint16_t)a_q8, b_uq16);
+    uint32_t low = fx_product_u16((uint16_t)a_q8, b_uq16);
     uint32_t high = (uint32_t)(a_q8 >> 16) * b_uq16;
     return (high << 8) + (low >> 8) + ((low >> 7) & 1U);
 }
@@ -138,8 +144,8 @@ static inline uint32_t fx_mul24_uq24_c(uint32_t a_q8, uint32_t b_uq24)
     uint16_t b_low = (uint16_t)b_uq24;
     uint16_t a_high = (uint16_t)(a_q8 >> 16);
     uint16_t b_high = (uint16_t)(b_uq24 >> 16);
-    uint32_t low = fx_mul_u16_c(a_low, b_low);
-    return (fx_mul_u16_c(a_high, b_high) << 16) + fx_mul_u16_c(a_low, b_high) + fx_mul_u16_c(a_high, b_low) +
+    uint32_t low = fx_product_u16(a_low, b_low);
+    return (fx_product_u16(a_high, b_high) << 16) + fx_product_u16(a_low, b_high) + fx_product_u16(a_high, b_low) +
            (low >> 16) + ((low >> 15) & 1U);
 }
 
@@ -189,11 +195,11 @@ static inline uint32_t fx_mul_uq24_c(uint32_t a, uint32_t b_uq24)
     uint16_t b_low = (uint16_t)(b_uq24 & 0xFFU);
     uint16_t a_high = (uint16_t)(a >> 16);
     uint16_t a_low = (uint16_t)a;
-    uint32_t cross = fx_mul_u16_c(a_low, b_high);
-    uint32_t rest = ((cross & 0xFFU) << 8) + fx_mul_u16_c(a_low, b_low);
+    uint32_t cross = fx_product_u16(a_low, b_high);
+    uint32_t rest = ((cross & 0xFFU) << 8) + fx_product_u16(a_low, b_low);
     /* a x b = a_high x b_high x 2^24 + middle x 2^16 + (rest mod 2^16) */
-    uint32_t middle = (cross >> 8) + fx_mul_u16_c(a_high, b_low) + (rest >> 16);
-    return fx_mul_u16_c(a_high, b_high) + (middle >> 8) + ((middle >> 7) & 1U);
+    uint32_t middle = (cross >> 8) + fx_product_u16(a_high, b_low) + (rest >> 16);
+    return fx_product_u16(a_high, b_high) + (middle >> 8) + ((middle >> 7) & 1U);
 }
 
 /* v - v x part_uq8 / 2^8, what is taken rounded half up; part_uq8 0 or a power of 2: the 8-bit machine multiplies. */
@@ -224,26 +230,6 @@ static inline int16_t fx_upper_signed_c(const int32_t *v)
 #if defined(__AVR__) && defined(__OPTIMIZE__)
 #include "fx_avr.h"
 #else
-static inline uint32_t fx_mul_u16(uint16_t a, uint16_t b)
-{
-    return fx_mul_u16_c(a, b);
-}
-static inline uint32_t fx_mul_uq16(uint32_t a, uint16_t b_uq16)
-{
-    return fx_mul_uq16_c(a, b_uq16);
-}
-static inline uint16_t fx_mul16_uq16(uint16_t a, uint16_t b_uq16)
-{
-    return fx_mul16_uq16_c(a, b_uq16);
-}
-static inline uint32_t fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
-{
-    return fx_mul24_uq16_c(a_q8, b_uq16);
-}
-static inline uint32_t fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
-{
-    return fx_mul24_uq24_c(a_q8, b_uq24);
-}
 static inline uint32_t fx_shift12(uint16_t v)
 {
     return fx_shift12_c(v);
@@ -256,17 +242,9 @@ static inline uint32_t fx_sixteenth(uint32_t v)
 {
     return fx_sixteenth_c(v);
 }
-static inline uint32_t fx_mul_uq24(uint32_t a, uint32_t b_uq24)
-{
-    return fx_mul_uq24_c(a, b_uq24);
-}
 static inline uint8_t fx_normalise(uint32_t *v)
 {
     return fx_normalise_c(v);
-}
-static inline uint32_t fx_shift_right(uint32_t v, uint8_t places)
-{
-    return fx_shift_right_c(v, places);
 }
 static inline int32_t fx_without_part(int32_t v, uint8_t part_uq8)
 {
@@ -286,6 +264,18 @@ static inline int16_t fx_upper_signed(const int32_t *v)
 }
 
 #endif
+
+/*
+ * What is too long to be in line: a call takes 10 to 30 cycles, the code in line up to 150 bytes. In their order: the
+ * products of the C twins of these names; fx_shift_right_c; the upper half of fx_product_u16, rounded down.
+ */
+uint32_t filter_fx_mul_uq16(uint32_t a, uint16_t b_uq16);
+uint16_t filter_fx_mul16_uq16(uint16_t a, uint16_t b_uq16);
+uint32_t filter_fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16);
+uint32_t filter_fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24);
+uint32_t filter_fx_mul_uq24(uint32_t a, uint32_t b_uq24);
+uint32_t filter_fx_shift_right(uint32_t v, uint8_t places);
+uint16_t filter_fx_high_u16(uint16_t a, uint16_t b);
 
 /* a + b, at most UINT32_MAX. */
 static inline uint32_t fx_add_sat(uint32_t a, uint32_t b)
@@ -307,13 +297,7 @@ FX_INLINE uint16_t fx_inverse_m_uq16(uint8_t interval, uint16_t fraction)
     const uint16_t *node = &filter_fx_reciprocal_nodes_uq16[interval];
     uint16_t left = fx_flash_u16(node);
     uint16_t drop = (uint16_t)(left - fx_flash_u16(node + 1));
-    return (uint16_t)(left - fx_mul16_uq16(drop, fraction));
-}
-
-/* 1 / m in UQ0.16, at most 65535, for 1 <= m < 2 (UQ1.31, so the leading bit is set): the bits of fx_inverse_m_uq16. */
-FX_INLINE uint16_t fx_reciprocal_leading_uq16(uint32_t m_uq31)
-{
-    return fx_inverse_m_uq16((uint8_t)(m_uq31 >> 24) & 0x7FU, (uint16_t)(m_uq31 >> 8));
+    return (uint16_t)(left - filter_fx_mul16_uq16(drop, fraction));
 }
 
 /* 1 / s for 1 <= s < 256 (UQ8.24) in UQ0.16, at most 65535. |result - 1/s| <= 1.5 x 2^-16, tested. */
@@ -332,30 +316,14 @@ FX_INLINE uint16_t fx_reciprocal_uq16(uint32_t s_uq24)
     return (halvings == 0U) ? inverse : (uint16_t)((inverse >> 1) + (inverse & 1U));
 }
 
+/*
+ * 1 / m in UQ0.16, at most 65535, for 1 <= m < 2 (UQ1.31, so the leading bit is set, and the low byte does not matter):
+ * the bits of fx_inverse_m_uq16.
+ */
+uint16_t filter_fx_inverse_uq16(uint32_t m_uq31);
+
 /* floor(sqrt(v)), exact. About 700 cycles: configuration only. */
 uint16_t filter_fx_isqrt32(uint32_t v);
-
-/*
- * The products as functions, for code with many of them: a call costs 10 to 30 cycles, the code in line up to 150
- * bytes. In their order: the upper half of fx_mul_u16, rounded down; fx_mul_uq16.
- */
-uint16_t filter_fx_high_u16(uint16_t a, uint16_t b);
-uint32_t filter_fx_times_uq16(uint32_t a, uint16_t b_uq16);
-
-/* fx_shift_right as a function. */
-uint32_t filter_fx_shifted_right(uint32_t v, uint8_t places);
-
-/*
- * a x b, exact: fx_mul_u16 as a call of the compiler's library, 24 bytes less for each and a dozen cycles more. Written
- * as a product, because the compiler knows which few registers its library takes.
- */
-FX_INLINE uint32_t fx_product_u16(uint16_t a, uint16_t b)
-{
-    return (uint32_t)a * b;
-}
-
-/* fx_reciprocal_leading_uq16 as a function; the low byte does not matter. */
-uint16_t filter_fx_inverse_uq16(uint32_t m_uq31);
 
 /*
  * A number's 24 leading bits, shifted left until the top bit of 32 is set, and in the low byte the places they were

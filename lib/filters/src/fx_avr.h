@@ -1,7 +1,7 @@
 /*
- * The primitives of fx.h in assembler for the ATmega328P; included by fx.h alone, where each one's contract stands with
- * its C twin (fx_..._c). __zero_reg__ (r1) holds half a product meanwhile: an interrupt saves and clears it, and so
- * does each end.
+ * The inline primitives of fx.h in assembler for the ATmega328P; included by fx.h alone, where each one's contract
+ * stands with its C twin (fx_..._c). __zero_reg__ (r1) holds half a product meanwhile: an interrupt saves and clears
+ * it, and so does each end.
  */
 #ifndef FX_AVR_H
 #define FX_AVR_H
@@ -21,100 +21,6 @@ FX_INLINE int16_t fx_upper_signed(const int32_t *v)
     int16_t upper;
     __builtin_memcpy(&upper, (const uint8_t *)v + 2, sizeof upper);
     return upper;
-}
-
-FX_INLINE uint32_t fx_mul_u16(uint16_t a, uint16_t b)
-{
-    uint32_t product;
-    uint8_t zero;
-    __asm__("clr %[z]\n\t"
-            "mul %A[a],%A[b]\n\tmovw %A[p],r0\n\t"
-            "mul %B[a],%B[b]\n\tmovw %C[p],r0\n\t"
-            "mul %B[a],%A[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "clr r1"
-            : [p] "=&r"(product), [z] "=&r"(zero)
-            : [a] "r"(a), [b] "r"(b));
-    return product;
-}
-
-FX_INLINE uint32_t fx_mul_uq16(uint32_t a, uint16_t b_uq16)
-{
-    uint32_t product; /* bytes 2..5 of the 6-byte product; byte 1 is only needed for its top bit, byte 0 not at all */
-    uint8_t zero;
-    uint8_t byte1;
-    __asm__("clr %[z]\n\t"
-            "mul %B[a],%B[b]\n\tmovw %A[p],r0\n\t"
-            "mul %D[a],%B[b]\n\tmovw %C[p],r0\n\t"
-            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
-            "mul %C[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %D[a],%A[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "clr r1"
-            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1)
-            : [a] "r"(a), [b] "r"(b_uq16));
-    return product;
-}
-
-FX_INLINE uint16_t fx_mul16_uq16(uint16_t a, uint16_t b_uq16)
-{
-    uint16_t product; /* bytes 2 and 3 of the 4-byte product; of byte 1 only the carry and the top bit are needed */
-    uint8_t zero;
-    uint8_t byte1;
-    __asm__("clr %[z]\n\t"
-            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
-            "mul %B[a],%B[b]\n\tmovw %A[p],r0\n\t"
-            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\t"
-            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\t"
-            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\t"
-            "clr r1"
-            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1)
-            : [a] "r"(a), [b] "r"(b_uq16));
-    return product;
-}
-
-FX_INLINE uint32_t fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
-{
-    uint32_t product; /* bytes 1..4 of the 5-byte product; byte 0 only rounds */
-    uint8_t zero;
-    uint8_t byte0;
-    __asm__("clr %[z]\n\t"
-            "mul %A[a],%A[b]\n\tmov %[l],r0\n\tmov %A[p],r1\n\t"
-            "mul %B[a],%B[b]\n\tmov %B[p],r0\n\tmov %C[p],r1\n\tclr %D[p]\n\t"
-            "mul %B[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%B[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%A[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%B[b]\n\tadd %C[p],r0\n\tadc %D[p],r1\n\t"
-            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "clr r1"
-            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte0)
-            : [a] "r"(a_q8), [b] "r"(b_uq16));
-    return product;
-}
-
-FX_INLINE uint32_t fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
-{
-    uint32_t product; /* bytes 2..5 of the 6-byte product; of byte 1 only the carry and the top bit are needed */
-    uint8_t zero;
-    uint8_t byte1;
-    __asm__("clr %[z]\n\t"
-            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
-            "mul %B[a],%B[b]\n\tmovw %A[p],r0\n\t"
-            "mul %C[a],%C[b]\n\tmovw %C[p],r0\n\t"
-            "mul %C[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%C[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %B[a],%C[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "lsl %[l]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "clr r1"
-            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1)
-            : [a] "r"(a_q8), [b] "r"(b_uq24));
-    return product;
 }
 
 FX_INLINE uint32_t fx_shift12(uint16_t v)
@@ -164,16 +70,6 @@ FX_INLINE uint8_t fx_normalise(uint32_t *v)
     return places;
 }
 
-FX_INLINE uint32_t fx_shift_right(uint32_t v, uint8_t places)
-{
-    __asm__("1:\tcpi %[n],8\n\tbrlo 2f\n\t"
-            "mov %A[v],%B[v]\n\tmov %B[v],%C[v]\n\tmov %C[v],%D[v]\n\tclr %D[v]\n\tsubi %[n],8\n\trjmp 1b\n"
-            "2:\tsubi %[n],1\n\tbrcs 3f\n\tlsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\trjmp 2b\n"
-            "3:"
-            : [v] "+r"(v), [n] "+&d"(places));
-    return v;
-}
-
 /* With one bit set in part_uq8 the halves of neighbouring products have no bits in common; the half is the borrow. */
 FX_INLINE int32_t fx_without_part(int32_t v, uint8_t part_uq8)
 {
@@ -202,35 +98,6 @@ FX_INLINE int32_t fx_clamp_high(int32_t v, uint8_t limit)
             : [v] "+&d"(v), [t] "=&d"(top)
             : [l] "M"(limit));
     return v;
-}
-
-FX_INLINE uint32_t fx_mul_uq24(uint32_t a, uint32_t b_uq24)
-{
-    uint32_t product; /* bytes 3..6 of the 7-byte product; of bytes 1 and 2 only the carry and the top bit are needed */
-    uint8_t zero;
-    uint8_t byte1;
-    uint8_t byte2;
-    __asm__("clr %[z]\n\t"
-            "mul %B[a],%C[b]\n\tmovw %A[p],r0\n\t"
-            "mul %D[a],%C[b]\n\tmovw %C[p],r0\n\t"
-            "mul %A[a],%A[b]\n\tmov %[l],r1\n\t"
-            "mul %B[a],%B[b]\n\tmov %[h],r0\n\t"
-            "add %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%B[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %D[a],%A[b]\n\tadd %A[p],r0\n\tadc %B[p],r1\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%C[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %D[a],%B[b]\n\tadd %B[p],r0\n\tadc %C[p],r1\n\tadc %D[p],%[z]\n\t"
-            "mul %C[a],%A[b]\n\tadd %[h],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%C[b]\n\tadd %[h],r0\n\tadc %A[p],r1\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %B[a],%A[b]\n\tadd %[l],r0\n\tadc %[h],r1\n\t"
-            "adc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "mul %A[a],%B[b]\n\tadd %[l],r0\n\tadc %[h],r1\n\t"
-            "adc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "lsl %[h]\n\tadc %A[p],%[z]\n\tadc %B[p],%[z]\n\tadc %C[p],%[z]\n\tadc %D[p],%[z]\n\t"
-            "clr r1"
-            : [p] "=&r"(product), [z] "=&r"(zero), [l] "=&r"(byte1), [h] "=&r"(byte2)
-            : [a] "r"(a), [b] "r"(b_uq24));
-    return product;
 }
 
 #endif

@@ -58,7 +58,7 @@ void filter_kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8)
 {
     filter_kalman_t *k = &f->own.kalman;
     /* gate^2 R; from UQ10.22 the two products in Q8 lead to UQ.6 */
-    uint32_t gate_uq6 = filter_fx_times_uq16(filter_fx_times_uq16(k->r_lsb2_q8 << 14, gate_sigma_q8), gate_sigma_q8);
+    uint32_t gate_uq6 = filter_fx_mul_uq16(filter_fx_mul_uq16(k->r_lsb2_q8 << 14, gate_sigma_q8), gate_sigma_q8);
     k->coarse = gate_uq6 > 0xFFFFU;
     if (k->coarse) {
         gate_uq6 >>= 8;
@@ -120,7 +120,7 @@ FX_INLINE uint16_t variance_uq10(const filter_kalman_t *k)
 FX_NOINLINE bool within_gate(filter_t *f)
 {
     filter_kalman_t *k = &f->own.kalman;
-    uint32_t limit_lsb2 = fx_mul_u16(variance_uq10(k), k->gate_lsb2_uq6);
+    uint32_t limit_lsb2 = fx_product_u16(variance_uq10(k), k->gate_lsb2_uq6);
     k->limit_lsb2 = limit_lsb2;
     uint32_t size_lsb_uq16 = f->size_lsb_uq16;
     if (k->coarse) { /* UQ24.8: whole LSB do */
@@ -128,7 +128,7 @@ FX_NOINLINE bool within_gate(filter_t *f)
         size_lsb_uq16 >>= 8;
     }
     uint16_t size = (uint16_t)(size_lsb_uq16 >> 8);
-    return (uint8_t)(size_lsb_uq16 >> 24) == 0U && fx_mul_u16(size, size) <= limit_lsb2;
+    return (uint8_t)(size_lsb_uq16 >> 24) == 0U && fx_product_u16(size, size) <= limit_lsb2;
 }
 
 /* Gains, x, rate and P. */
@@ -139,14 +139,14 @@ FX_INLINE void correct(filter_t *f)
     uint16_t w1_uq16 = (uint16_t)(0U - g);
     f->gain_uq16 = w1_uq16;
     k->p.p11 = (uint32_t)w1_uq16 << 8;
-    tracker_move(f, (int32_t)fx_mul24_uq16(f->size_lsb_uq16 >> 8, w1_uq16));
+    tracker_move(f, (int32_t)filter_fx_mul24_uq16(f->size_lsb_uq16 >> 8, w1_uq16));
     uint32_t p12 = k->p.p12;
-    uint32_t w2_uq26 = fx_mul_uq16(p12, g);
+    uint32_t w2_uq26 = filter_fx_mul_uq16(p12, g);
     k->p.p12 = w2_uq26;
     uint32_t w2_uq24 = kalman_limited_uq24(kalman_quarter(w2_uq26));
-    uint32_t taken_uq26 = fx_mul24_uq24(p12 >> 8, w2_uq24);
+    uint32_t taken_uq26 = filter_fx_mul24_uq24(p12 >> 8, w2_uq24);
     k->p.p22 = kalman_less(k->p.p22, taken_uq26);
-    tracker_turn(f, (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, w2_uq24));
+    tracker_turn(f, (int32_t)filter_fx_mul24_uq24(f->size_lsb_uq16 >> 8, w2_uq24));
 }
 
 bool filter_kalman_step(filter_t *f, int16_t z_lsb, uint8_t what)
@@ -233,7 +233,7 @@ void filter_kalman_report(const filter_t *f, filter_probe_t *out)
     const filter_kalman_t *k = &f->own.kalman;
     /* while warming up P is not there yet: the variance of one sample */
     bool running = f->collected == FILTER_RUNNING;
-    out->p_lsb2_q8 = fx_mul_uq24(running ? k->p.p11 : KALMAN_ONE_UQ24, k->r_lsb2_q8);
+    out->p_lsb2_q8 = filter_fx_mul_uq24(running ? k->p.p11 : KALMAN_ONE_UQ24, k->r_lsb2_q8);
     if (running && k->limit_lsb2 != 0U) {
         out->gate_lsb2_q8 = k->coarse ? k->limit_lsb2 : k->limit_lsb2 >> 8;
     }

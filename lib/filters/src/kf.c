@@ -31,9 +31,9 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 static void lrf_set_up(filter_t *f, const filter_config_t *config)
 {
     uint16_t ratio_uq8 = (uint16_t)config->value[LRF_RATIO_UQ8];
-    uint32_t square_uq16 = fx_mul_u16(ratio_uq8, ratio_uq8);
+    uint32_t square_uq16 = fx_product_u16(ratio_uq8, ratio_uq8);
     f->own.kalman.of.factor_uq16 = square_uq16 -
-                                   filter_fx_times_uq16(square_uq16 - 65536U, (uint16_t)config->value[LRF_CLEAN_UQ16]);
+                                   filter_fx_mul_uq16(square_uq16 - 65536U, (uint16_t)config->value[LRF_CLEAN_UQ16]);
     filter_kalman_set_up(f, config, 0);
 }
 
@@ -49,7 +49,7 @@ static void lrf_set_noise(filter_t *f, uint32_t r_lsb2_q8)
 const filter_law_t filter_law_kf FX_FLASH = { .name = "kf",
                                               .parameter_count = 2,
                                               .traits = LAW_COVARIANCE | LAW_SETTLES,
-                                              .worst_cycles = 870,
+                                              .worst_cycles = 990,
                                               .parameters = parameters,
                                               .set_up = kf_set_up,
                                               .set_noise = filter_kalman_set_variance,
@@ -60,7 +60,7 @@ const filter_law_t filter_law_kf FX_FLASH = { .name = "kf",
 const filter_law_t filter_law_lrf FX_FLASH = { .name = "lrf",
                                                .parameter_count = 4,
                                                .traits = LAW_COVARIANCE | LAW_SETTLES,
-                                               .worst_cycles = 870,
+                                               .worst_cycles = 990,
                                                .parameters = parameters,
                                                .set_up = lrf_set_up,
                                                .set_noise = lrf_set_noise,

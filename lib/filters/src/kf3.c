@@ -193,14 +193,14 @@ static void predict(filter_t *f)
 /* An element of P less a gain times the column's element, at least 0. */
 static uint32_t less(uint32_t p_uq28, uint32_t column_uq28, uint32_t gain_uq24)
 {
-    int32_t left_q28 = (int32_t)p_uq28 - (int32_t)fx_mul_uq24(column_uq28, gain_uq24); /* < 5 less < 7: fits */
+    int32_t left_q28 = (int32_t)p_uq28 - (int32_t)filter_fx_mul_uq24(column_uq28, gain_uq24); /* < 5 less < 7: fits */
     return (left_q28 < 0) ? 0U : (uint32_t)left_q28;
 }
 
 /* A state and its gain times the innovation: by the magnitude, so that rounding is the same for both signs. */
 static int32_t moved(const filter_t *f, int32_t v_q16, uint32_t gain_uq24)
 {
-    int32_t part_q16 = (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, gain_uq24); /* < 8704 LSB */
+    int32_t part_q16 = (int32_t)filter_fx_mul24_uq24(f->size_lsb_uq16 >> 8, gain_uq24); /* < 8704 LSB */
     return f->negative ? v_q16 - part_q16 : v_q16 + part_q16;
 }
 
@@ -213,7 +213,7 @@ static uint32_t below_one_uq24(uint32_t gain_uq28)
 
 static void to_sixteenth(uint32_t *p)
 {
-    *p = filter_fx_shifted_right(*p, 4);
+    *p = filter_fx_shift_right(*p, 4);
 }
 
 /* What is no longer below 1 brings all of P down: a sixteenth of a covariance is one, and can be predicted. */
@@ -233,21 +233,21 @@ static void correct(filter_t *f)
 {
     filter_kf3_t *k = &f->own.kf3;
     fx_leading_t variance = filter_fx_leading(k->p.p11 + ONE_UQ28); /* 1 <= S < 14: places 3..0 */
-    uint16_t g_uq16 = (uint16_t)filter_fx_shifted_right(filter_fx_inverse_uq16(variance),
-                                                        (uint8_t)(3U - fx_places(variance)));
+    uint16_t g_uq16 = (uint16_t)filter_fx_shift_right(filter_fx_inverse_uq16(variance),
+                                                      (uint8_t)(3U - fx_places(variance)));
     uint16_t w1_uq16 = (uint16_t)(0U - g_uq16);
     f->gain_uq16 = w1_uq16;
     k->p.p11 = fx_shift12(w1_uq16);
     f->x_lsb_q16 = moved(f, f->x_lsb_q16, (uint32_t)w1_uq16 << 8); /* towards the sample: within its bound */
     uint32_t p12 = k->p.p12;
-    uint32_t w2_uq28 = filter_fx_times_uq16(p12, g_uq16);
+    uint32_t w2_uq28 = filter_fx_mul_uq16(p12, g_uq16);
     k->p.p12 = w2_uq28;
     uint32_t gain_uq24 = below_one_uq24(w2_uq28);
     k->p.p22 = less(k->p.p22, p12, gain_uq24);
     uint32_t p13 = k->p13_uq28;
     k->p23_uq28 = less(k->p23_uq28, p13, gain_uq24);
     f->rate_lsb = limited(f, moved(f, f->rate_lsb, gain_uq24));
-    uint32_t w3_uq28 = filter_fx_times_uq16(p13, g_uq16);
+    uint32_t w3_uq28 = filter_fx_mul_uq16(p13, g_uq16);
     k->p13_uq28 = w3_uq28;
     gain_uq24 = below_one_uq24(w3_uq28);
     k->p33_uq28 = less(k->p33_uq28, p13, gain_uq24);
@@ -279,13 +279,13 @@ static void report(const filter_t *f, filter_probe_t *out)
 {
     const filter_kf3_t *k = &f->own.kf3;
     uint32_t p11_uq28 = (f->collected == FILTER_RUNNING) ? k->p.p11 : ONE_UQ28;
-    out->p_lsb2_q8 = (fx_mul_uq24(p11_uq28, k->r_lsb2_q8) + 8U) >> 4;
+    out->p_lsb2_q8 = (filter_fx_mul_uq24(p11_uq28, k->r_lsb2_q8) + 8U) >> 4;
 }
 
 const filter_law_t filter_law_kf3 FX_FLASH = { .name = "kf3",
                                                .parameter_count = 2,
                                                .traits = LAW_COVARIANCE | LAW_SETTLES,
-                                               .worst_cycles = 2350,
+                                               .worst_cycles = 2150,
                                                .parameters = parameters,
                                                .set_up = set_up,
                                                .set_noise = set_noise,

@@ -97,7 +97,7 @@ mixture_posterior_t filter_mixture_posterior(int16_t log_odds_q9)
         const uint32_t *node = &rest_nodes_uq24[size_uq9 >> 8];
         uint32_t left = fx_flash_u32(node);
         uint16_t right_uq16 = (uint16_t)(size_uq9 << 8);
-        posterior.rest_uq24 = left - filter_fx_times_uq16(left - fx_flash_u32(node + 1), right_uq16);
+        posterior.rest_uq24 = left - filter_fx_mul_uq16(left - fx_flash_u32(node + 1), right_uq16);
     }
     return posterior;
 }
@@ -127,7 +127,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
 {
     filter_mixture_t *m = &f->own.mixture;
     uint16_t ratio_uq8 = (uint16_t)config->value[MIXTURE_RATIO_UQ8];
-    m->span_uq16 = fx_mul_u16(ratio_uq8, ratio_uq8) - ONE_UQ16;
+    m->span_uq16 = fx_product_u16(ratio_uq8, ratio_uq8) - ONE_UQ16;
     m->clean_uq16 = (uint16_t)config->value[MIXTURE_CLEAN_UQ16];
     forget(m);
     filter_wide_set_up(f, config);
@@ -179,7 +179,7 @@ static uint32_t normal_uq24(mixture_posterior_t posterior)
 /* The chain: q of the next sample from the probability that this one, or one that is missing, is normal. */
 static void expect_next(filter_mixture_t *m, uint32_t p_uq24)
 {
-    believe(m, ((uint32_t)m->leave_uq16 << 8) + filter_fx_times_uq16(p_uq24, m->turn_uq16));
+    believe(m, ((uint32_t)m->leave_uq16 << 8) + filter_fx_mul_uq16(p_uq24, m->turn_uq16));
 }
 
 /* p into the mean of those before: q += (p - q) / n. */
@@ -191,8 +191,8 @@ static void learn(filter_mixture_t *m, uint32_t p)
     fx_leading_t n = filter_fx_leading(m->learnt_from); /* 1..2 x 2^(31 - places) */
     uint32_t q = m->normal_uq24;
     bool rises = p >= q;
-    uint32_t part = filter_fx_shifted_right(filter_fx_times_uq16(rises ? p - q : q - p, filter_fx_inverse_uq16(n)),
-                                            (uint8_t)(31U - fx_places(n)));
+    uint32_t part = filter_fx_shift_right(filter_fx_mul_uq16(rises ? p - q : q - p, filter_fx_inverse_uq16(n)),
+                                          (uint8_t)(31U - fx_places(n)));
     believe(m, rises ? q + part : q - part); /* a mean of p and q: within 0..1 */
 }
 
@@ -212,8 +212,8 @@ static evidence_t weigh(const filter_t *f)
     fx_leading_t outlier = filter_fx_leading(m->core.p.p11 + ONE_UQ16 + m->span_uq16); /* S_N < 33,033 + 10,000 */
     /* (N^2 - 1) / S_N < 1: its leading bits are at most those of S_N, and the quotient of mantissas less than 2 */
     uint16_t share_uq15 = filter_fx_high_u16(fx_mantissa(span), filter_fx_inverse_uq16(outlier));
-    uint32_t share_uq16 = filter_fx_shifted_right((uint32_t)share_uq15 << 1,
-                                                  (uint8_t)(fx_places(span) - fx_places(outlier)));
+    uint32_t share_uq16 = filter_fx_shift_right((uint32_t)share_uq15 << 1,
+                                                (uint8_t)(fx_places(span) - fx_places(outlier)));
     e.b_uq16 = (share_uq16 > UINT16_MAX) ? UINT16_MAX : (uint16_t)share_uq16;
     e.t_uq8 = filter_wide_distance_uq8(f);
     e.tb_uq8 = filter_fx_high_u16(e.t_uq8, e.b_uq16);
@@ -243,7 +243,7 @@ static bool apply(filter_t *f, const evidence_t *e, bool shortened)
         t_uq8 = e->tb_uq8;
         loss_uq16 = (certain && e->p.outlier) ? e->b_uq16 : filter_fx_high_u16(e->b_uq16, loss_uq16);
     }
-    uint32_t back_uq16 = filter_fx_times_uq16(filter_fx_times_uq16(p_uq24, t_uq8), loss_uq16) + loss_uq16;
+    uint32_t back_uq16 = filter_fx_mul_uq16(filter_fx_mul_uq16(p_uq24, t_uq8), loss_uq16) + loss_uq16;
     filter_wide_correct(f, loss_uq16, (back_uq16 > WIDE_BACK_MAX_UQ16) ? WIDE_BACK_MAX_UQ16 : back_uq16);
     return true;
 }

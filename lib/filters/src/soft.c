@@ -120,7 +120,7 @@ FX_INLINE uint32_t weight_uq24(const filter_t *f)
         } while ((size & 0x800000U) == 0U);
     }
     uint16_t inverse = fx_inverse_m_uq16((uint8_t)(size >> 16) & 0x7FU, (uint16_t)size);
-    uint32_t weight = fx_mul_u16(f->own.kalman.gate_lsb2_uq6, fx_mul16_uq16(inverse, inverse));
+    uint32_t weight = fx_product_u16(f->own.kalman.gate_lsb2_uq6, filter_fx_mul16_uq16(inverse, inverse));
     if (f->own.kalman.coarse) {
         b = (uint8_t)(b - 4U);
     }
@@ -132,7 +132,7 @@ FX_INLINE int32_t part_of_innovation(const filter_t *f, uint32_t w_uq24)
 {
     bool far = (uint8_t)(f->size_lsb_uq16 >> 24) != 0U;
     uint16_t size = far ? (uint16_t)(f->size_lsb_uq16 >> 16) : (uint16_t)(f->size_lsb_uq16 >> 8);
-    uint32_t product = fx_mul24_uq16(w_uq24, size);
+    uint32_t product = filter_fx_mul24_uq16(w_uq24, size);
     return far ? (int32_t)product : (int32_t)(product >> 8);
 }
 
@@ -140,7 +140,7 @@ FX_INLINE int32_t part_of_innovation(const filter_t *f, uint32_t w_uq24)
 FX_INLINE void update_x(filter_t *f, uint32_t w1_uq24)
 {
     tracker_move(f, part_of_innovation(f, w1_uq24) + 1);
-    f->own.kalman.p.p11 = fx_mul24_uq16(f->own.kalman.p.p11 >> 8, (uint16_t)~f->gain_uq16);
+    f->own.kalman.p.p11 = filter_fx_mul24_uq16(f->own.kalman.p.p11 >> 8, (uint16_t)~f->gain_uq16);
 }
 
 /* Rate, P12 and P22 with w2 = P12 m. */
@@ -148,10 +148,10 @@ FX_INLINE void update_rate(filter_t *f, uint32_t m_uq24)
 {
     filter_covariance_t *p = &f->own.kalman.p;
     uint32_t p12_uq18 = p->p12 >> 8;
-    p->p12 = fx_mul24_uq16(p12_uq18, (uint16_t)~f->gain_uq16);
-    uint32_t w2_uq24 = kalman_limited_uq24(kalman_quarter(fx_mul24_uq24(p12_uq18, m_uq24)));
+    p->p12 = filter_fx_mul24_uq16(p12_uq18, (uint16_t)~f->gain_uq16);
+    uint32_t w2_uq24 = kalman_limited_uq24(kalman_quarter(filter_fx_mul24_uq24(p12_uq18, m_uq24)));
     uint16_t w2_uq16 = (uint16_t)(w2_uq24 >> 8);
-    uint32_t taken_uq26 = fx_mul24_uq16(p12_uq18, w2_uq16);
+    uint32_t taken_uq26 = filter_fx_mul24_uq16(p12_uq18, w2_uq16);
     p->p22 = kalman_less(p->p22, taken_uq26);
     tracker_turn(f, part_of_innovation(f, w2_uq24));
 }
@@ -164,7 +164,7 @@ static void take_part(filter_t *f, int16_t z_lsb)
 {
     filter_kalman_t *k = &f->own.kalman;
     uint32_t m_uq24 = weight_uq24(f);
-    uint32_t w1_uq24 = kalman_limited_uq24(fx_mul24_uq24(k->p.p11 >> 8, m_uq24));
+    uint32_t w1_uq24 = kalman_limited_uq24(filter_fx_mul24_uq24(k->p.p11 >> 8, m_uq24));
     f->gain_uq16 = (uint16_t)(w1_uq24 >> 8);
     uint16_t weight = (uint16_t)(m_uq24 >> 8);
     uint16_t share_uq16 = (uint16_t)(weight + f->gain_uq16);
@@ -201,7 +201,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 const filter_law_t filter_law_soft FX_FLASH = { .name = "soft",
                                                 .parameter_count = 6,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                                .worst_cycles = 1420,
+                                                .worst_cycles = 1715,
                                                 .parameters = parameters,
                                                 .standard = standard,
                                                 .together = together,

@@ -19,7 +19,7 @@ static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_paramet
 static void set_up(filter_t *f, const filter_config_t *config)
 {
     uint16_t sigma_q8 = (uint16_t)config->value[SPRF_PAPER_GATE_SIGMA_Q8];
-    uint32_t gate2_uq8 = fx_mul_u16(sigma_q8, sigma_q8) >> 8;
+    uint32_t gate2_uq8 = fx_product_u16(sigma_q8, sigma_q8) >> 8;
     f->own.wide.gate2_uq8 = (gate2_uq8 >= UINT16_MAX) ? UINT16_MAX - 1U : (uint16_t)gate2_uq8;
     filter_wide_set_up(f, config);
 }

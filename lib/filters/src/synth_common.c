@@ -47,7 +47,7 @@ void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what)
     if (what != STEP_MISSING) {
         f->x_lsb_q16 = x;
         tracker_meet(f, z_lsb);
-        int32_t step = (int32_t)fx_mul_uq16(f->size_lsb_uq16, f->gain_uq16);
+        int32_t step = (int32_t)filter_fx_mul_uq16(f->size_lsb_uq16, f->gain_uq16);
         x = f->negative ? x - step : x + step;
     }
     f->x_lsb_q16 = x;
@@ -60,7 +60,7 @@ void filter_synth_bent_step(filter_t *f, int16_t z_lsb, uint8_t what, uint16_t a
     int32_t rate = f->rate_lsb;
     int32_t bend = rate - s->rate_before_lsb_q16; /* x1 - 2 x2 + x3 < 18432 LSB */
     s->rate_before_lsb_q16 = rate;
-    int32_t part = (int32_t)filter_fx_times_uq16(fx_abs32(bend), a1_uq16);
+    int32_t part = (int32_t)filter_fx_mul_uq16(fx_abs32(bend), a1_uq16);
     f->rate_lsb = ((bend < 0) != s->a1_negative) ? rate + part : rate - part;
     filter_synth_step(f, z_lsb, what);
 }

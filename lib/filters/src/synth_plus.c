@@ -79,7 +79,7 @@ static void standard(filter_config_t *config)
     } else if (alpha_uq16 > ALPHA_MAX_UQ16) {
         alpha_uq16 = ALPHA_MAX_UQ16;
     }
-    uint16_t beta_uq16 = (uint16_t)(fx_mul_u16(alpha_uq16, alpha_uq16) / (0x20000U - alpha_uq16));
+    uint16_t beta_uq16 = (uint16_t)(fx_product_u16(alpha_uq16, alpha_uq16) / (0x20000U - alpha_uq16));
     config->value[SYNTH_PLUS_B0_UQ16] = alpha_uq16;
     config->value[SYNTH_PLUS_B1_Q16] = (int32_t)beta_uq16 - (int32_t)alpha_uq16;
 }
@@ -87,7 +87,7 @@ static void standard(filter_config_t *config)
 /* A call of its own for the products that run rarely. */
 static uint32_t product_u16(uint16_t a, uint16_t b)
 {
-    return fx_mul_u16(a, b);
+    return fx_product_u16(a, b);
 }
 
 /* m = (1 - b0) rho, UQ0.32, exact. */
@@ -137,7 +137,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
 /* The last innovation x a tap: by magnitudes, so that rounding is the same for both signs. */
 FX_INLINE int32_t tapped(const filter_t *f, bool negative, uint16_t tap_uq16)
 {
-    int32_t tapped_q16 = (int32_t)fx_mul_uq16(f->size_lsb_uq16, tap_uq16);
+    int32_t tapped_q16 = (int32_t)filter_fx_mul_uq16(f->size_lsb_uq16, tap_uq16);
     return (f->negative != negative) ? -tapped_q16 : tapped_q16;
 }
 
@@ -224,7 +224,7 @@ static void fade(filter_t *f, bool first)
 /* v x factor / 2^16, |factor| <= 65535. */
 static int32_t times(int32_t v, int32_t factor_q16)
 {
-    int32_t product = (int32_t)filter_fx_times_uq16(fx_abs32(v), (uint16_t)fx_abs32(factor_q16));
+    int32_t product = (int32_t)filter_fx_mul_uq16(fx_abs32(v), (uint16_t)fx_abs32(factor_q16));
     return ((v < 0) != (factor_q16 < 0)) ? -product : product;
 }
 
@@ -286,7 +286,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 
 const filter_law_t filter_law_synth_plus FX_FLASH = { .name = "synth_plus",
                                                       .parameter_count = 5,
-                                                      .worst_cycles = 700,
+                                                      .worst_cycles = 720,
                                                       .parameters = parameters,
                                                       .standard = standard,
                                                       .together = together,

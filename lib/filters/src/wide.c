@@ -74,13 +74,13 @@ uint16_t filter_wide_distance_uq8(const filter_t *f)
                                           8); /* |u| = mantissa x 2^(8 - places) LSB, places 10..31 */
     uint16_t mantissa = fx_mantissa(size);
     uint16_t square = filter_fx_high_u16(filter_fx_high_u16(mantissa, mantissa), w->per_r.mantissa);
-    uint32_t product = fx_mul_u16(square, w->inverse_uq16);
+    uint32_t product = fx_product_u16(square, w->inverse_uq16);
     /* |u|^2 / (R S) = product x 2^(per_r.exponent - 2 places + places of S + 17); product is 0 or >= 2^27 */
     int8_t shift = (int8_t)((int8_t)(2U * fx_places(size)) - (int8_t)fx_places(w->variance) - w->per_r.exponent - 25);
     if (shift > 31) {
         return 0;
     }
-    uint32_t distance = (shift < 12) ? UINT32_MAX : filter_fx_shifted_right(product, (uint8_t)shift);
+    uint32_t distance = (shift < 12) ? UINT32_MAX : filter_fx_shift_right(product, (uint8_t)shift);
     return (distance > UINT16_MAX) ? UINT16_MAX : (uint16_t)distance;
 }
 
@@ -98,7 +98,7 @@ static void give_back(uint32_t *p, uint32_t left, uint16_t fraction_uq16, bool g
 {
     uint32_t before = *p;
     uint32_t taken = (before > left) ? before - left : 0U; /* not below 0 for rounding */
-    uint32_t part = (fraction_uq16 == 0U) ? 0U : filter_fx_times_uq16(taken, fraction_uq16);
+    uint32_t part = (fraction_uq16 == 0U) ? 0U : filter_fx_mul_uq16(taken, fraction_uq16);
     if (grows) {
         left = before;
         part = fx_eightfold(part);
@@ -110,12 +110,12 @@ static void give_back(uint32_t *p, uint32_t left, uint16_t fraction_uq16, bool g
 static uint32_t left_of_p22(const filter_wide_t *w, uint32_t w2_uq24)
 {
     fx_leading_t w2 = filter_fx_leading(w2_uq24); /* mantissa x 2^-(places - 8) x 2^-16, places >= 8 */
-    uint32_t taken_uq24 = filter_fx_times_uq16(w->p.p12, fx_mantissa(w2));
+    uint32_t taken_uq24 = filter_fx_mul_uq16(w->p.p12, fx_mantissa(w2));
     uint8_t places = fx_places(w2);
     for (; places < 13U; places++) {
         taken_uq24 = fx_add_sat(taken_uq24, taken_uq24);
     }
-    uint32_t taken_uq29 = filter_fx_shifted_right(taken_uq24, (uint8_t)(places - 13U));
+    uint32_t taken_uq29 = filter_fx_shift_right(taken_uq24, (uint8_t)(places - 13U));
     uint32_t taken_uq28 = (taken_uq29 >> 1) + (taken_uq29 & 1U);
     uint32_t p22 = w->p.p22;
     return (p22 > taken_uq28) ? p22 - taken_uq28 : 0U;
@@ -130,7 +130,7 @@ static void correct_covariance(filter_wide_t *w, uint16_t w1_uq16, uint32_t w2_u
         if (high >= (uint8_t)(WIDE_GROWTH_END >> 24)) {
             return;
         }
-        fraction_uq16 = (uint16_t)filter_fx_shifted_right(back_uq16 - ONE_UQ16, 3);
+        fraction_uq16 = (uint16_t)filter_fx_shift_right(back_uq16 - ONE_UQ16, 3);
     }
     give_back(&w->p.p22, left_of_p22(w, w2_uq24), fraction_uq16, grows);
     give_back(&w->p.p12, w2_uq24, fraction_uq16, grows);
@@ -140,19 +140,19 @@ static void correct_covariance(filter_wide_t *w, uint16_t w1_uq16, uint32_t w2_u
 /* A gain times the innovation's magnitude, so that rounding is the same for both signs; < 8704 LSB. */
 static int32_t step_by(const filter_t *f, uint32_t gain_uq24)
 {
-    return (int32_t)fx_mul24_uq24(f->size_lsb_uq16 >> 8, gain_uq24);
+    return (int32_t)filter_fx_mul24_uq24(f->size_lsb_uq16 >> 8, gain_uq24);
 }
 
 void filter_wide_correct(filter_t *f, uint16_t loss_uq16, uint32_t back_uq16)
 {
     filter_wide_t *w = &f->own.wide;
     uint8_t halvings = (uint8_t)(15U - fx_places(w->variance)); /* S = 1..2 x 2^halvings */
-    uint16_t w1_uq16 = (uint16_t)(0U - filter_fx_shifted_right(w->inverse_uq16, halvings));
+    uint16_t w1_uq16 = (uint16_t)(0U - filter_fx_shift_right(w->inverse_uq16, halvings));
     f->gain_uq16 = (uint16_t)(w1_uq16 - filter_fx_high_u16(w1_uq16, loss_uq16));
     tracker_move(f, step_by(f, (uint32_t)f->gain_uq16 << 8)); /* towards the sample: within its bound */
-    uint32_t w2_uq24 = filter_fx_shifted_right(filter_fx_times_uq16(w->p.p12, w->inverse_uq16), halvings);
+    uint32_t w2_uq24 = filter_fx_shift_right(filter_fx_mul_uq16(w->p.p12, w->inverse_uq16), halvings);
     w2_uq24 = (w2_uq24 > 0xFFFFFFU) ? 0xFFFFFFU : w2_uq24;
-    uint32_t gain2_uq24 = (loss_uq16 == 0U) ? w2_uq24 : w2_uq24 - filter_fx_times_uq16(w2_uq24, loss_uq16);
+    uint32_t gain2_uq24 = (loss_uq16 == 0U) ? w2_uq24 : w2_uq24 - filter_fx_mul_uq16(w2_uq24, loss_uq16);
     /*@ assert below_one: gain2_uq24 <= 0xFFFFFF; */
     tracker_turn(f, step_by(f, gain2_uq24));
     correct_covariance(w, w1_uq16, w2_uq24, back_uq16);
