@@ -67,6 +67,52 @@ static void test_a_save_while_sampling_costs_no_row(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# filter {robust}, rate 100 Hz", 0));
 }
 
+/* A set of another version: its calibration counts, the rest is as shipped, and the EEPROM is left alone. */
+static void test_the_calibration_outlives_another_version(void)
+{
+    for (uint8_t version = 0; version < 3; version++) {
+        bool own = version == SETTINGS_VERSION;
+        uint8_t before[1024];
+        talk_start();
+        talk_type("offset 3 -4 5.5");
+        talk_type("scale 260 261 250");
+        talk_type("axes -yxz");
+        talk_type("rate 50");
+        settings()->version = version;
+        calibration_t saved = settings()->calibration;
+        TEST_ASSERT_EQUAL_STRING("# saved", talk_answer("save"));
+        memcpy(before, hal_host_eeprom(), sizeof before);
+        talk_power_cycle(false);
+        TEST_ASSERT_EQUAL_UINT(own ? KEPT_GOOD : KEPT_CALIBRATION, settings_kept());
+        TEST_ASSERT_EQUAL_size_t(own ? 0 : 1, board_notes_with("# settings: calibration as saved, else defaults", 0));
+        TEST_ASSERT_EQUAL_MEMORY(&saved, &settings()->calibration, sizeof saved);
+        TEST_ASSERT_EQUAL_UINT(own ? 500 : 1000, settings()->rate_dhz);
+        board_run_ms(500);
+        TEST_ASSERT_EQUAL_MEMORY(before, hal_host_eeprom(), sizeof before);
+        TEST_ASSERT_EQUAL_STRING("# saved", talk_answer("save"));
+        talk_power_cycle(false);
+        TEST_ASSERT_EQUAL_UINT(KEPT_GOOD, settings_kept());
+    }
+}
+
+/* Where every version finds them in a record: bytes 0 and 1, then offset, scale, level, axes, little-endian. */
+static void test_the_places_of_a_record(void)
+{
+    talk_start();
+    talk_type("offset 1 -2 3");
+    talk_type("scale 260 265 256");
+    talk_type("level 0 0 1");
+    talk_type("axes -yxz");
+    TEST_ASSERT_EQUAL_STRING("# saved", talk_answer("save"));
+    const uint8_t *copy = hal_host_eeprom() + STORE_COPY_0;
+    if (copy[STORE_IMAGE_SIZE] != STORE_VERSION) {
+        copy = hal_host_eeprom() + STORE_COPY_1;
+    }
+    static const uint8_t wanted[] = { 1,    71,   16, 0, 0xE0, 0xFF, 48, 0,    0x00, 0x41, 0x40, 0x42,
+                                      0x00, 0x40, 0,  0, 0,    0,    0,  0x40, 0xFE, 1,    3 };
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(wanted, copy, sizeof wanted);
+}
+
 /* A measurement would change what is being saved. */
 static void test_no_save_while_something_is_measured(void)
 {
@@ -183,6 +229,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_saved_settings_survive_power);
     RUN_TEST(test_a_save_while_sampling_costs_no_row);
+    RUN_TEST(test_the_calibration_outlives_another_version);
+    RUN_TEST(test_the_places_of_a_record);
     RUN_TEST(test_no_save_while_something_is_measured);
     RUN_TEST(test_commands_wait_for_the_save);
     RUN_TEST(test_load_and_defaults);

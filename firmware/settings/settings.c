@@ -19,6 +19,8 @@ settings_t *settings(void)
 
 void settings_defaults(void)
 {
+    settings()->version = SETTINGS_VERSION;
+    settings()->length = SETTINGS_KEPT_BYTES;
     settings()->baud = SETTINGS_BAUD_DEFAULT;
     settings()->rate_dhz = 1000;
     settings()->every = 1;

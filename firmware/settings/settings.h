@@ -12,15 +12,23 @@
 typedef enum { MODE_CSV, MODE_PLOT } output_mode_t;
 
 /* All that is kept; the image has room for what later versions keep. */
-#define SETTINGS_KEPT_BYTES (sizeof(filter_choice_t) + 11u + sizeof(calibration_t))
+#define SETTINGS_KEPT_BYTES (13u + sizeof(calibration_t) + sizeof(filter_choice_t))
+
+/*
+ * Of what is kept: raised when a byte gets another meaning. Version, length and calibration stay where they are in
+ * every version, so that a calibration outlives an update; what lies behind them is another version's own.
+ */
+#define SETTINGS_VERSION 1u
 
 /* Little-endian on PC and chip and without gaps, as far as it is kept: its bytes are the image that `save` writes. */
 typedef struct {
+    uint8_t version;           /* SETTINGS_VERSION of the firmware that saved it */
+    uint8_t length;            /* SETTINGS_KEPT_BYTES of it */
+    calibration_t calibration; /* legal: calibration_check */
     filter_choice_t choice;    /* as stored; the filter follows from its mark when settings are loaded */
     uint32_t baud;             /* legal values of all: settings_table.c */
     uint16_t rate_dhz;         /* output data rate in 0.1 Hz */
     uint16_t every;            /* a row for every Nth sample, as asked for: 1..SETTINGS_EVERY_MAX */
-    calibration_t calibration; /* legal: calibration_check */
     uint8_t range_g;           /* 2, 4, 8, 16 */
     uint8_t mode;              /* output_mode_t */
     uint8_t address;           /* of the sensor, 7 bits; 0: the one that answers */

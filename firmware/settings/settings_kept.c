@@ -8,6 +8,11 @@
 #include "settings/store.h"
 
 _Static_assert(STORE_IMAGE_SIZE == offsetof(settings_t, store_tail), "what is kept of the settings");
+_Static_assert(offsetof(settings_t, version) == 0 && offsetof(settings_t, length) == 1 &&
+                   offsetof(settings_t, calibration) == 2 && offsetof(calibration_t, scale_lsb_per_g_uq6) == 6 &&
+                   offsetof(calibration_t, level_q14) == 12 && offsetof(calibration_t, axes) == 18 &&
+                   sizeof(calibration_t) == 22,
+               "where every version finds them");
 _Static_assert((int)KEPT_OLDER == (int)STORE_OTHER_COPY, "the store's answers, in its order");
 
 static uint8_t kept; /* kept_t */
@@ -33,6 +38,26 @@ static uint8_t kind_marked(uint8_t mark)
     return kind;
 }
 
+/* The filter by its name's mark; where this image has none, its first with shipped parameters. */
+static void find_filter(void)
+{
+    settings()->choice.filter = kind_marked(settings()->choice.mark);
+    if (settings()->choice.filter == FILTER_KIND_COUNT) {
+        settings_take_filter(0);
+        kept = KEPT_NO_FILTER;
+    }
+    settings_follow();
+}
+
+/* Of a set that another version saved. */
+static void keep_calibration(void)
+{
+    calibration_t saved = settings()->calibration;
+    settings_defaults();
+    settings()->calibration = saved;
+    kept = KEPT_CALIBRATION;
+}
+
 void settings_load(void)
 {
     kept = (uint8_t)store_load((uint8_t *)settings());
@@ -41,12 +66,9 @@ void settings_load(void)
     }
     if (kept < KEPT_GOOD) {
         settings_defaults();
+    } else if (settings()->version != SETTINGS_VERSION) {
+        keep_calibration();
     } else {
-        settings()->choice.filter = kind_marked(settings()->choice.mark);
-        if (settings()->choice.filter == FILTER_KIND_COUNT) {
-            settings_take_filter(0);
-            kept = KEPT_NO_FILTER;
-        }
-        settings_follow();
+        find_filter();
     }
 }

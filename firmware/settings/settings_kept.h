@@ -9,11 +9,12 @@
 typedef enum {
     KEPT_DAMAGED,       /* defaults: no saved copy is whole */
     KEPT_EMPTY,         /* defaults: nothing was saved */
-    KEPT_OTHER_VERSION, /* defaults: saved by firmware that saves other things */
+    KEPT_OTHER_VERSION, /* defaults: saved by firmware that keeps records of another form */
     KEPT_GOOD,          /* as saved last */
     KEPT_OLDER,         /* one copy is damaged: the other's set, which may be the older */
     KEPT_NO_FILTER,     /* as saved, but this image does not hold the filter: its first, with shipped parameters */
-    KEPT_UNREAD         /* defaults: asked for by D4 or after resets again and again */
+    KEPT_UNREAD,        /* defaults: asked for by D4 or after resets again and again */
+    KEPT_CALIBRATION    /* calibration as saved, else defaults: saved by a version that keeps other things beside it */
 } kept_t;
 
 /*

@@ -23,9 +23,9 @@
  * The same for all versions that are to be told as such: what was saved with another size is told as damaged. So have
  * it large enough from the beginning, 2 to STORE_IMAGE_MAX, and raise the version when the bytes get another meaning.
  */
-#define STORE_IMAGE_SIZE 72u
+#define STORE_IMAGE_SIZE 80u
 #define STORE_IMAGE_MAX 120u
-#define STORE_VERSION 1u /* 0..254 */
+#define STORE_VERSION 2u /* 0..254 */
 
 #define STORE_TAIL_SIZE 5u /* version, sequence number, two of the check, mark */
 #define STORE_RECORD_SIZE (STORE_IMAGE_SIZE + STORE_TAIL_SIZE)

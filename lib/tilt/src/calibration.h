@@ -33,8 +33,9 @@ extern "C" {
 typedef struct {
     int16_t offset_lsb_q4[3]; /* reading at 0 g */
     uint16_t scale_lsb_per_g_uq6[3];
+    int16_t level_q14[3]; /* gravity in our axes, 1 g = 16384, when what the board is mounted on is level */
     int8_t axes[3];       /* 1, 2, 3 for the sensor's x, y, z, negative when reversed: what is our x, y, z */
-    int16_t level_q14[3]; /* gravity in these axes, 1 g = 16384, when what the board is mounted on is level */
+    uint8_t unused;       /* no gap on any machine: the firmware saves the bytes as they lie */
 } calibration_t;
 
 /* The same, ready for use. */
