@@ -71,12 +71,16 @@ static void give_back(outage_t *was)
     board_run_ms(200);
 }
 
+/*
+ * Of the length in periods up to two more than are lost: the sample that ends an outage is not, and the last one before
+ * it came up to a period earlier; the moments are a millisecond late at most. Twice, where two outages are one.
+ */
 static void assert_told_as_it_was(const outage_t *was, size_t note)
 {
     told_t told = told_by(note);
     TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_NO_SENSOR, told.code);
     TEST_ASSERT_DOUBLE_WITHIN(20.0, was->over_ms - was->seen_ms, told.ms);
-    TEST_ASSERT_DOUBLE_WITHIN(4.0, (was->over_ms - was->off_ms - was->there_ms) / 10.0, told.lost);
+    TEST_ASSERT_DOUBLE_WITHIN(4.4, (was->over_ms - was->off_ms - was->there_ms) / 10.0, told.lost);
     TEST_ASSERT_EQUAL_HEX(was->address, told.address);
 }
 
@@ -308,6 +312,32 @@ static void test_a_fault_that_begins_in_a_plot_is_told_behind_it(void)
     }
 }
 
+/*
+ * INT1 is cut at any moment between two samples: the driver finds out by asking the sensor, and what it reads then is
+ * in time for its row. So no sample is discarded as late, and the line may say that none is lost. At 800 Hz a sample
+ * that is read by the clock may be stamped a period late, which counts as one lost.
+ */
+static void test_a_cut_of_int1_loses_no_sample(void)
+{
+    static const char *const rates[] = { "rate 12.5", "rate 25", "rate 50", "rate 100", "rate 200", "rate 400" };
+    for (size_t r = 0; r < sizeof rates / sizeof rates[0]; r++) {
+        board_start_resting();
+        board_run_ms(300);
+        board_type(rates[r]);
+        board_run_ms(1000);
+        for (unsigned tenths = 0; tenths < 10; tenths++) {
+            hal_host_faults.int1_cut = true;
+            board_run_ms(500);
+            hal_host_faults.int1_cut = false;
+            board_run_ms(300 + tenths * adxl345_period_us() / 10000.0);
+            told_t told = told_by(board.note_count - 1);
+            TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_INT1_SILENT, told.code);
+            TEST_ASSERT_EQUAL_UINT(0, told.lost);
+        }
+        TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LATE]);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -320,5 +350,6 @@ int main(void)
     RUN_TEST(test_an_outage_of_two_months_is_not_told_as_a_short_one);
     RUN_TEST(test_a_fault_that_ends_in_a_plot_is_told_with_its_length);
     RUN_TEST(test_a_fault_that_begins_in_a_plot_is_told_behind_it);
+    RUN_TEST(test_a_cut_of_int1_loses_no_sample);
     return UNITY_END();
 }

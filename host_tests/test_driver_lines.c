@@ -242,8 +242,8 @@ static void test_a_late_main_is_no_timeout(void)
     }
 }
 
-/* INT1 falls silent at any phase: named within three periods of the last sample, at every rate. */
-static void test_silent_int1_is_noticed_within_three_periods(void)
+/* INT1 falls silent at any phase: named before the row of the sample that is missed is due, at every rate. */
+static void test_silent_int1_is_noticed_in_time_for_the_row(void)
 {
     for (size_t r = 0; r < sizeof rates_dhz / sizeof rates_dhz[0]; r++) {
         adxl345_config_t config = { rates_dhz[r], 16, false, 0 };
@@ -258,7 +258,7 @@ static void test_silent_int1_is_noticed_within_three_periods(void)
             hal_host_faults.int1_cut = true;
             double took_ms = ms_until_fault(true);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
-            TEST_ASSERT_TRUE(took_ms >= period_ms && took_ms <= 3.0 * period_ms);
+            TEST_ASSERT_TRUE(took_ms >= 0.2 * period_ms && took_ms <= 1.5 * period_ms);
         }
     }
 }
@@ -328,7 +328,7 @@ int main(void)
     RUN_TEST(test_a_stop_that_does_not_get_out);
     RUN_TEST(test_a_busy_bus_is_waited_for_no_longer_than_it_is_busy);
     RUN_TEST(test_a_late_main_is_no_timeout);
-    RUN_TEST(test_silent_int1_is_noticed_within_three_periods);
+    RUN_TEST(test_silent_int1_is_noticed_in_time_for_the_row);
     RUN_TEST(test_without_int1_samples_are_read_by_the_clock);
     RUN_TEST(test_without_int1_a_sensor_that_stops_is_noticed);
     return UNITY_END();

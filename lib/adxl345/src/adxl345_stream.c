@@ -75,12 +75,13 @@ HAL_APART bool adxl345_stream_without_edges(void)
 }
 
 /*
- * Without a sample until the sensor is asked: two periods, or while INT1 is known to tell nothing less than one, so
+ * Without a sample until the sensor is asked: a quarter of a period after it was due, so that one whose edge is lost is
+ * read before its row is filled, which happens at a half; or while INT1 is known to tell nothing less than a period, so
  * that a sensor that is fast does not fill its FIFO.
  */
 static HAL_APART uint32_t patience_us(void)
 {
-    return halves_us(adxl345_stream_without_edges() ? 3 : 8) >> 1;
+    return halves_us(adxl345_stream_without_edges() ? 3 : 5) >> 1;
 }
 
 static void sample_arrived(adxl345_driver_t *d)
@@ -90,12 +91,11 @@ static void sample_arrived(adxl345_driver_t *d)
     d->after_fault = false;
     d->first_sample_seen = true;
     d->back_off = BACK_OFF_MIN;
+    d->deadline_us = adxl345_burst_begun_us() + patience_us();
     if (d->timed == TIMED_READ) {
-        d->deadline_us = adxl345_burst_begun_us() + patience_us();
         d->timed = adxl345_burst_left_more() ? TIMED_WANTED : TIMED_NONE;
         return;
     }
-    d->deadline_us = d->now_us + LIMIT_US + halves_us(2);
     d->fault = ADXL345_FAULT_NONE;
     d->timed = TIMED_NONE;
 }
