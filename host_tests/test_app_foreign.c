@@ -78,7 +78,7 @@ static void test_the_device_stays_named_while_the_other_address_is_asked(void)
         board_run_ms(20);
         for (unsigned step = 0; step < 5000; step++) {
             board_run_ms(0.02);
-            asked_elsewhere += adxl345_driver.address != addresses[a];
+            asked_elsewhere += adxl345_driver_state()->address != addresses[a];
             TEST_ASSERT_EQUAL_HEX8(addresses[a], adxl345_foreign_address());
             TEST_ASSERT_EQUAL_HEX8(id_at(addresses[a]), adxl345_foreign_id());
         }
@@ -90,7 +90,7 @@ static void test_the_device_stays_named_while_the_other_address_is_asked(void)
 static void both_answer_for_ms(unsigned ms)
 {
     for (unsigned step = 0; step < 10 * ms; step++) {
-        hal_host_sensor.address = adxl345_driver.address;
+        hal_host_sensor.address = adxl345_driver_state()->address;
         board_run_ms(0.1);
     }
 }
@@ -139,7 +139,7 @@ static void test_fault_2_names_one_of_two_devices_with_its_own_identity(void)
     for (unsigned phase = 0; phase < PHASES; phase++) {
         board_start_with_rx(&stream, on_rx);
         for (unsigned step = 0; step < 10 * PHASES + 1000; step++) {
-            hal_host_sensor.address = adxl345_driver.address;
+            hal_host_sensor.address = adxl345_driver_state()->address;
             if (step == 10 * phase) {
                 board_type("status");
             }

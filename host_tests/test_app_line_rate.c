@@ -50,7 +50,10 @@ static void test_lines_behind_a_change_of_baud_are_obeyed(void)
     TEST_ASSERT_EQUAL_UINT(4, settings()->range_g);
 }
 
-/* Long replies, for which rows are not held, asked for again when they have come, for so many times, at another phase of the rows each time. */
+/*
+ * Long replies, for which rows are not held, asked for again when they have come, for so many times, at another phase
+ * of the rows each time.
+ */
 static void ask_all_the_time(size_t times)
 {
     for (size_t i = 1; i <= times; i++) {

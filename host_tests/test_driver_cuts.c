@@ -303,13 +303,13 @@ static bool sensor_away;
 /* The bus is taken before each look for the sensor: whoever is at that address answers it. */
 static void whoever_is_there(void)
 {
-    bool away = sensor_away && adxl345_driver.address != neighbour;
-    hal_host_sensor.address = away ? 0x2A : adxl345_driver.address;
+    bool away = sensor_away && adxl345_driver_state()->address != neighbour;
+    hal_host_sensor.address = away ? 0x2A : adxl345_driver_state()->address;
 }
 
 static uint8_t neighbour_id(uint8_t reg, uint8_t byte)
 {
-    return adxl345_driver.address == neighbour && reg == ADXL345_DEVID ? NEIGHBOUR_ID : byte;
+    return adxl345_driver_state()->address == neighbour && reg == ADXL345_DEVID ? NEIGHBOUR_ID : byte;
 }
 
 /* Another device answers at the other address, always: the sensor is found, lost, and found again. */

@@ -252,8 +252,8 @@ static void service(uint32_t now_us)
 }
 
 /*
- * A row that is due and waits for a sample to be read has no moment of its own. What is further away than the alarm tells
- * apart from what is past gets another look on the way; so does a stopped driver, whose moment is past.
+ * A row that is due and waits for a sample to be read has no moment of its own. What is further away than the alarm
+ * tells apart from what is past gets another look on the way; so does a stopped driver, whose moment is past.
  */
 static void set_alarm(void)
 {

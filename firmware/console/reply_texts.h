@@ -125,7 +125,8 @@ enum say {
 };
 
 /* The commands as typed, one for each notice_kind_t from NOTICE_HELP on, in its order. */
-#define REPLY_NAMES "help\0status\0stop\0go\0save\0load\0defaults\0odr\0noise\0selftest\0tare\0cal\0cal6\0version\0settings"
+#define REPLY_NAMES \
+    "help\0status\0stop\0go\0save\0load\0defaults\0odr\0noise\0selftest\0tare\0cal\0cal6\0version\0settings"
 
 /*
  * One text for each notice_kind_t, in its order; then the others, those that belong together in their order. They are
@@ -146,7 +147,8 @@ enum say {
     X(STATUS, "state " V_STATE ", fault " V_SUBJECT ", rate " V_RATE " Hz, measured " V_MEASURED " Hz, uptime s " \
       V_COUNT V_CHOICES V_LINE \
       "samples " V_COUNT ", gated " V_COUNT ", reacquired " V_COUNT ", clipped " V_COUNT V_LINE \
-      "rows " V_COUNT ", dropped " V_COUNT ", held " V_COUNT ", serial bytes lost " V_SERIAL_LOST ", lines refused " V_COUNT V_LINE \
+      "rows " V_COUNT ", dropped " V_COUNT ", held " V_COUNT ", serial bytes lost " V_SERIAL_LOST \
+      ", lines refused " V_COUNT V_LINE \
       "lost " V_COUNT ", late " V_COUNT ", drained " V_COUNT ", stuck " V_COUNT ", restarts " V_COUNT V_LINE \
       "not acknowledged " V_COUNT ", arbitration lost " V_COUNT ", bus errors " V_COUNT ", timeouts " V_COUNT V_LINE \
       "readings torn " V_COUNT ", empty " V_COUNT ", overruns " V_COUNT V_LINE \

@@ -18,8 +18,8 @@ void rows_enable(bool enabled);
 void rows_sample(uint16_t every, bool plot);
 
 /*
- * Csv rows of the samples of the next 2 s are held, so that a person can read what was said: counted, not sent; the next
- * one that is sent has ROW_DROPPED.
+ * Csv rows of the samples of the next 2 s are held, so that a person can read what was said: counted, not sent; the
+ * next one that is sent has ROW_DROPPED.
  */
 void rows_hold(void);
 

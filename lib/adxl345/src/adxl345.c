@@ -26,7 +26,7 @@ enum { RESTS = 40 };
 /* The one that was found last: who answers at the other address may be another device. */
 static HAL_APART void rest_sensor(void)
 {
-    adxl345_driver.address = adxl345_driver.known;
+    adxl345_driver_state()->address = adxl345_driver_state()->known;
     adxl345_driver_begin_access(STEP_STANDBY);
 }
 
@@ -38,22 +38,22 @@ void adxl345_init(void)
         adxl345_integrity_forget();
         adxl345_watch_start();
         adxl345_driver_stopped();
-        adxl345_driver.issued = false;
+        adxl345_driver_state()->issued = false;
     }
-    adxl345_driver.address = ADXL345_ADDRESS_LOW;
-    adxl345_driver.known = ADXL345_ADDRESS_LOW;
+    adxl345_driver_state()->address = ADXL345_ADDRESS_LOW;
+    adxl345_driver_state()->known = ADXL345_ADDRESS_LOW;
 }
 
 /* Where samples may be waiting, begins to put the sensor to rest; true when that is under way. */
 static bool quiesce(void)
 {
-    adxl345_driver.now_us = hal_time_us();
+    adxl345_driver_state()->now_us = hal_time_us();
     if (adxl345_driver_streams()) {
         adxl345_burst_set_mode(BURST_STAMP);
         adxl345_driver_enter(STEP_QUIET_STANDBY, TRANSFER_LIMIT);
         return true;
     }
-    return adxl345_driver.step == STEP_QUIET_STANDBY || adxl345_driver.step == STEP_QUIET_DRAIN;
+    return adxl345_driver_state()->step == STEP_QUIET_STANDBY || adxl345_driver_state()->step == STEP_QUIET_DRAIN;
 }
 
 void adxl345_start(const adxl345_config_t *config)
@@ -73,9 +73,9 @@ void adxl345_start(const adxl345_config_t *config)
 void adxl345_stop(void)
 {
     bool quiescing = quiesce();
-    adxl345_driver.stop_wanted = true;
-    adxl345_driver.rests = RESTS;
-    if (!quiescing && adxl345_driver.step != STEP_OFF) {
+    adxl345_driver_state()->stop_wanted = true;
+    adxl345_driver_state()->rests = RESTS;
+    if (!quiescing && adxl345_driver_state()->step != STEP_OFF) {
         rest_sensor();
     }
 }

@@ -11,37 +11,42 @@
 #include "hal_i2c.h"
 #include "hal_sleep.h"
 
-adxl345_driver_t adxl345_driver;
+static adxl345_driver_t driver;
+
+adxl345_driver_t *adxl345_driver_state(void)
+{
+    return &driver;
+}
 
 void adxl345_driver_set_limit(uint8_t limit)
 {
-    adxl345_driver.deadline_us = adxl345_driver.now_us + (uint32_t)limit * LIMIT_US;
+    adxl345_driver_state()->deadline_us = adxl345_driver_state()->now_us + (uint32_t)limit * LIMIT_US;
 }
 
 void adxl345_driver_enter(step_t step, uint8_t limit)
 {
-    adxl345_driver.step = (uint8_t)step;
-    adxl345_driver.issued = false;
-    adxl345_driver.tries = 0;
+    adxl345_driver_state()->step = (uint8_t)step;
+    adxl345_driver_state()->issued = false;
+    adxl345_driver_state()->tries = 0;
     adxl345_driver_set_limit(limit);
     hal_wake();
 }
 
 HAL_APART bool adxl345_driver_reached(uint32_t t_us)
 {
-    return (int32_t)(t_us - adxl345_driver.now_us) <= 0; /* hal_time_reached as a value takes 24 B more */
+    return (int32_t)(t_us - adxl345_driver_state()->now_us) <= 0; /* hal_time_reached as a value takes 24 B more */
 }
 
 HAL_APART bool adxl345_driver_deadline_passed(void)
 {
-    return adxl345_driver_reached(adxl345_driver.deadline_us);
+    return adxl345_driver_reached(adxl345_driver_state()->deadline_us);
 }
 
 HAL_APART void adxl345_driver_stopped(void)
 {
-    adxl345_driver.fault = ADXL345_FAULT_NONE;
-    adxl345_driver.after_fault = false;
-    adxl345_driver.step = STEP_OFF;
+    adxl345_driver_state()->fault = ADXL345_FAULT_NONE;
+    adxl345_driver_state()->after_fault = false;
+    adxl345_driver_state()->step = STEP_OFF;
 }
 
 void adxl345_driver_fail(adxl345_fault_t fault)
@@ -67,7 +72,8 @@ void adxl345_driver_fail(adxl345_fault_t fault)
 
 bool adxl345_driver_take_bus(void)
 {
-    uint8_t lines = adxl345_burst_take_bus(adxl345_driver.address, adxl345_driver.config.rate_dhz == 8000);
+    uint8_t lines = adxl345_burst_take_bus(adxl345_driver_state()->address,
+                                           adxl345_driver_state()->config.rate_dhz == 8000);
     if (lines == HAL_I2C_FREE) {
         return true;
     }

@@ -66,12 +66,13 @@ typedef struct {
     bool was_empty;   /* when the sensor was asked last: a sample that is ready now is new */
 } adxl345_driver_t;
 
-extern adxl345_driver_t adxl345_driver;
+/* The one there is. */
+adxl345_driver_t *adxl345_driver_state(void);
 
 /* What touches much of the driver finds it through a pointer, what touches little at its fixed address. */
 static inline adxl345_driver_t *adxl345_driver_here(void)
 {
-    adxl345_driver_t *d = &adxl345_driver;
+    adxl345_driver_t *d = adxl345_driver_state();
     HAL_POINTER(d);
     return d;
 }
@@ -79,7 +80,7 @@ static inline adxl345_driver_t *adxl345_driver_here(void)
 /* Bursts bring samples, or the sensor is being asked why they do not. */
 static inline bool adxl345_driver_streams(void)
 {
-    return adxl345_driver.step / STEP_PHASE(1) == ADXL345_STREAMING;
+    return adxl345_driver_state()->step / STEP_PHASE(1) == ADXL345_STREAMING;
 }
 
 /* The step that runs from now on, with a deadline after this limit; main passes again at once. */

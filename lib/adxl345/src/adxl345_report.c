@@ -37,14 +37,15 @@ uint32_t adxl345_lateness_us(void)
 
 adxl345_phase_t adxl345_phase(void)
 {
-    uint8_t phase = adxl345_driver.step / STEP_PHASE(1);
-    return phase == ADXL345_STREAMING && !adxl345_driver.first_sample_seen ? ADXL345_STARTING : (adxl345_phase_t)phase;
+    uint8_t phase = adxl345_driver_state()->step / STEP_PHASE(1);
+    return phase == ADXL345_STREAMING && !adxl345_driver_state()->first_sample_seen ? ADXL345_STARTING
+                                                                                    : (adxl345_phase_t)phase;
 }
 
 adxl345_fault_t adxl345_fault(void)
 {
-    if (adxl345_driver.fault != ADXL345_FAULT_NONE || !adxl345_driver_streams()) {
-        return (adxl345_fault_t)adxl345_driver.fault;
+    if (adxl345_driver_state()->fault != ADXL345_FAULT_NONE || !adxl345_driver_streams()) {
+        return (adxl345_fault_t)adxl345_driver_state()->fault;
     }
     if (adxl345_integrity_int1_stuck()) {
         return ADXL345_FAULT_INT1_STUCK;
@@ -57,27 +58,27 @@ adxl345_fault_t adxl345_fault(void)
 
 bool adxl345_interrupted(void)
 {
-    return adxl345_driver.after_fault;
+    return adxl345_driver_state()->after_fault;
 }
 
 HAL_APART uint32_t adxl345_deadline_us(void)
 {
-    return adxl345_driver.deadline_us;
+    return adxl345_driver_state()->deadline_us;
 }
 
 uint8_t adxl345_address(void)
 {
-    return adxl345_driver.known;
+    return adxl345_driver_state()->known;
 }
 
 uint8_t adxl345_foreign_address(void)
 {
-    return adxl345_driver.foreign_address;
+    return adxl345_driver_state()->foreign_address;
 }
 
 uint8_t adxl345_foreign_id(void)
 {
-    return adxl345_driver.foreign_id;
+    return adxl345_driver_state()->foreign_id;
 }
 
 /* 1e8 us x 256 over the period, both by 8 that 32 bits are enough; that rounds by 1.3e-5 at 800 Hz, less below. */

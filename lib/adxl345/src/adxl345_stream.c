@@ -21,7 +21,7 @@
 /* So many halves of the nominal time between samples. */
 static HAL_APART uint32_t halves_us(uint8_t count)
 {
-    return (uint32_t)adxl345_driver.half_us * count;
+    return (uint32_t)adxl345_driver_state()->half_us * count;
 }
 
 /* So long after the newest burst that met a sample, or after the moment by which the first is expected. */
@@ -71,7 +71,7 @@ void adxl345_stream_start(adxl345_driver_t *d)
 
 HAL_APART bool adxl345_stream_without_edges(void)
 {
-    return adxl345_driver.fault == ADXL345_FAULT_INT1_SILENT || adxl345_integrity_int1_stuck();
+    return adxl345_driver_state()->fault == ADXL345_FAULT_INT1_SILENT || adxl345_integrity_int1_stuck();
 }
 
 /*
