@@ -14,7 +14,7 @@ COMMANDS = ("status", "help", "filter {0}", "range 8", "filter", "filter {1}", "
 SETTING_COMMANDS = (("settings", "# level "), ("level 0.5 0.5 0.7", "# level 0.5 0.5 0.7"), ("axes -yxz", "# axes -yxz"), ("odr", "# odr "),
                     ("offset -79.9375 64.0625 33", "# offset -79.9375"), ("scale 200.5 329.25 256", "# scale 200.5"), ("cal6", "# cal6: hold still"),
                     ("tare", "# refused 10"), ("cal6 stop", "# cal6: stopped"), ("noise", "# noise: hold still"), ("stop", "# stopped"),
-                    ("save", "# saved"), ("load", "# settings: as saved"), ("go", "# going"), ("save", "# refused 6"),
+                    ("save", "# saved"), ("load", "# settings: as saved"), ("go", "# going"), ("save", "# saved"),
                     ("selftest", "# selftest: hold still"), ("settings", "# scale "), ("address 53", "# address 53"),
                     ("defaults", "# settings: defaults"))
 FAULTS = ("unplug:60", "power:20", "scl:40", "sda:40", "hang:5", "noint:60", "nack", "nackdata", "buserr", "arb", "devid:0:60", "storm:1000:30",

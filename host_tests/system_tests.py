@@ -366,10 +366,10 @@ def missing_files_are_named():
 def over_long_and_garbage_serial_input_costs_no_row():
     long_line = "rate " + "4" * 60
     rows, notes, served, _ = simrun("garbage", STREAMS / "rest-2lsb.csv", "--cmd", f"500:{long_line}", "--cmd", "700:\x01\x02garbage",
-                                    "--cmd", "900:nonsense", "--cmd", "1200:status", "--max-ms", "3000")
+                                    "--cmd", "900:nonsense", "--cmd", "2950:status", "--max-ms", "3100")
     assert "# refused 2: line too long" in notes and "# refused 1: unknown command (type help)" in notes, notes
     assert any("lines refused 3" in n for n in notes), notes
-    assert [r[1:4] for r in rows] == triplets(served)[:len(rows)] and len(rows) >= len(served) - 2
+    assert [r[1:4] for r in rows] == triplets(served)[:len(rows)] and len(rows) >= 290
 
 
 @test

@@ -12,11 +12,11 @@ FAULTS = (
     (8, "SDA held low: check SDA, SCL, pull-ups, GND", ["500ms:sda:60"]),
     (7, "SCL held low: check SDA, SCL, pull-ups, GND", ["700ms:scl:60"]),
     (1, "no sensor at 0x53 or 0x1D: check power, SDA to A4, SCL to A5, CS to 3.3 V", ["900ms:unplug:60"]),
-    (6, "the sensor stopped: check supply", ["1100ms:power:5"]),
+    (6, "the sensor stopped: check supply", ["1100ms:power:1"]),
     (5, "INT1 stays low: check INT1 to D2", ["1300ms:noint:100"]),
     (9, "INT1 stays high: check INT1 to D2", ["1500.3ms:inthigh:100"]),
     (10, "values do not change: check supply, bus", ["2300ms:frozen:250"]),
-    (2, "no ADXL345 at {address}: DEVID 0xE6, not 0xE5", ["2800ms:devid:230:300", "2800ms:power:5"]),
+    (2, "no ADXL345 at {address}: DEVID 0xE6, not 0xE5", ["2800ms:devid:230:300", "2800ms:power:1"]),
     (12, "values double: two sensors at {address}", [f"{3300 + 40 * i}ms:double:z" for i in range(20)]),
 )
 END_MS = 8000
