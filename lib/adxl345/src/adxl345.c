@@ -119,10 +119,9 @@ static void foreign(adxl345_driver_t *d, uint8_t id)
 static void configured(adxl345_driver_t *d)
 {
     uint8_t step = d->step;
-    uint8_t value = adxl345_burst_register_value();
-    if ((step & STEP_READS) && value != row_of(d).value) {
+    if ((step & STEP_READS) && !adxl345_burst_register_holds()) {
         if (step == STEP_PROBE) {
-            foreign(d, value);
+            foreign(d, adxl345_burst_register_value());
         } else {
             adxl345_driver_fail(ADXL345_FAULT_READ_BACK);
         }

@@ -124,7 +124,8 @@ void adxl345_burst_init(void)
 void adxl345_burst_set_mode(burst_mode_t new_mode)
 {
     struct burst *b = base();
-    if (b->mode == BURST_IGNORE) {
+    bool ignored = b->mode == BURST_IGNORE;
+    if (ignored) {
         b->failures = 0;
         b->last_known = false;
     }
@@ -135,7 +136,7 @@ void adxl345_burst_set_mode(burst_mode_t new_mode)
         b->bus.rx_length = READING_BYTES;
     }
     hal_irq_state_t state = hal_irq_save();
-    if (b->mode == BURST_IGNORE) {
+    if (ignored) {
         b->edge_waiting = 0;
     }
     b->mode = (uint8_t)new_mode;
@@ -158,15 +159,15 @@ uint8_t adxl345_burst_take_bus(uint8_t address, bool fast)
     return lines;
 }
 
-HAL_APART bool adxl345_burst_access(uint8_t reg, uint8_t value, bool read)
+bool adxl345_burst_access(uint8_t reg, uint8_t value, bool read)
 {
     struct burst *b = base();
     bool free = claim(b);
     if (free) {
         b->bus.tx[0] = reg;
         b->bus.tx[1] = value;
-        b->bus.tx_length = read ? 1 : 2;
-        b->bus.rx_length = read ? 1 : 0;
+        b->bus.tx_length = (uint8_t)(2u - read);
+        b->bus.rx_length = read;
         i2c_bus_begin(&b->bus);
     }
     return free;
@@ -180,6 +181,11 @@ i2c_bus_state_t adxl345_burst_bus_state(void)
 uint8_t adxl345_burst_register_value(void)
 {
     return burst.bus.rx[0];
+}
+
+bool adxl345_burst_register_holds(void)
+{
+    return burst.bus.rx[0] == burst.bus.tx[1];
 }
 
 /*
@@ -240,13 +246,13 @@ static inline void keep_edge(struct burst *b, const burst_entry_t *entry, uint8_
  */
 static HAL_APART void restamp(const struct burst *b, burst_entry_t *entry)
 {
-    uint32_t step_us = adxl345_period_us();
-    uint32_t t_us = b->begun_us - (step_us >> 1) - b->bus.rx[READING_FIFO_STATUS] * step_us;
+    uint32_t half_us = adxl345_period_us() >> 1;
+    uint32_t t_us = b->begun_us - (uint8_t)(2u * b->bus.rx[READING_FIFO_STATUS] + 1u) * half_us;
     if (b->last_known && hal_time_reached(b->last_us, t_us)) {
         return; /* a bit of the count was wrong */
     }
     if ((b->bus.rx[READING_SOURCE] & ADXL345_INT_OVERRUN) ||
-        !hal_time_reached(t_us + 2u * step_us, entry->sample.t_us)) {
+        !hal_time_reached(t_us + 4u * half_us, entry->sample.t_us)) {
         entry->sample.t_us = t_us;
         entry->exact = false;
     }

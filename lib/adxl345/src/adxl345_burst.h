@@ -43,6 +43,9 @@ bool adxl345_burst_access(uint8_t reg, uint8_t value, bool read);
 i2c_bus_state_t adxl345_burst_bus_state(void);
 uint8_t adxl345_burst_register_value(void);
 
+/* The byte read is the value that the access was given. */
+bool adxl345_burst_register_holds(void);
+
 /*
  * A sample waits, by INT1 or by the sensor's registers: start reading it if bus and queue are free. is_new: one that
  * was not there a moment ago, else the next in the FIFO. True when a burst was started.

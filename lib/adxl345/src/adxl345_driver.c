@@ -37,7 +37,7 @@ HAL_APART bool adxl345_driver_reached(uint32_t t_us)
     return (int32_t)(t_us - adxl345_driver_state()->now_us) <= 0; /* hal_time_reached as a value takes 24 B more */
 }
 
-HAL_APART bool adxl345_driver_deadline_passed(void)
+bool adxl345_driver_deadline_passed(void)
 {
     return adxl345_driver_reached(adxl345_driver_state()->deadline_us);
 }
@@ -106,8 +106,8 @@ void adxl345_driver_probe(void)
 
 bool adxl345_driver_transfer_failed(i2c_bus_state_t state)
 {
-    uint8_t first = state == I2C_BUS_NACK_ADDRESS ? I2C_BUS_NACK_ADDRESS : I2C_BUS_NACK_DATA;
-    adxl345_counters_add((counter_t)(COUNTER_NACKS + (uint8_t)state - first));
+    uint8_t place = (uint8_t)(COUNTER_NACKS - I2C_BUS_NACK_DATA + (uint8_t)state);
+    adxl345_counters_add((counter_t)(state == I2C_BUS_NACK_ADDRESS ? COUNTER_NACKS : place));
     return state != I2C_BUS_TIMEOUT || adxl345_driver_take_bus();
 }
 

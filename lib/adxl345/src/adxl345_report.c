@@ -7,7 +7,6 @@
 #include "adxl345_stream.h"
 #include "adxl345_watch.h"
 #include "hal_drdy.h"
-#include "hal_pointer.h"
 
 const adxl345_sample_t *adxl345_take(void)
 {
@@ -61,7 +60,7 @@ bool adxl345_interrupted(void)
     return adxl345_driver_state()->after_fault;
 }
 
-HAL_APART uint32_t adxl345_deadline_us(void)
+uint32_t adxl345_deadline_us(void)
 {
     return adxl345_driver_state()->deadline_us;
 }

@@ -105,7 +105,7 @@ static void sample_arrived(adxl345_driver_t *d)
  * line that is low says why. Or there was none for so long that the sensor is asked; a burst that failed counts as a
  * sign of life: three in a row are a fault by themselves.
  */
-static HAL_APART void look_for_sample(adxl345_driver_t *d)
+static void look_for_sample(adxl345_driver_t *d)
 {
     if (adxl345_burst_running() || hal_i2c_stop_pending()) {
         d->deadline_us = adxl345_burst_begun_us() + (uint32_t)TRANSFER_LIMIT * LIMIT_US;

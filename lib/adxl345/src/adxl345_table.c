@@ -38,13 +38,10 @@ static uint8_t rate_code(uint16_t rate_dhz)
     return code;
 }
 
+/* 0 to 3 for 2, 4, 8 and 16 g (p. 27). */
 static uint8_t range_code(uint8_t range_g)
 {
-    uint8_t code = 0;
-    for (uint8_t at = 2; at < range_g; at = (uint8_t)(at * 2u)) {
-        code++;
-    }
-    return code;
+    return (uint8_t)((uint8_t)(range_g >> 2) - (uint8_t)(range_g >> 4));
 }
 
 HAL_APART uint8_t adxl345_table_format(const adxl345_config_t *config)
@@ -55,11 +52,7 @@ HAL_APART uint8_t adxl345_table_format(const adxl345_config_t *config)
 
 uint16_t adxl345_table_half_period_us(uint16_t rate_dhz)
 {
-    uint16_t half_us = 40000;
-    for (uint16_t at = 125; at < rate_dhz; at = (uint16_t)(at * 2u)) {
-        half_us >>= 1;
-    }
-    return half_us;
+    return (uint16_t)(UINT32_C(5000000) / rate_dhz); /* exact at each of them */
 }
 
 bool adxl345_config_valid(const adxl345_config_t *config)
@@ -72,7 +65,7 @@ bool adxl345_config_valid(const adxl345_config_t *config)
     return rate_ok && (range == 2 || range == 4 || range == 8 || range == 16);
 }
 
-HAL_APART table_row_t adxl345_table_row(uint8_t at, const adxl345_config_t *config)
+table_row_t adxl345_table_row(uint8_t at, const adxl345_config_t *config)
 {
     const uint8_t *p = &table[at].reg;
     table_row_t row;
