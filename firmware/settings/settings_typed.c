@@ -259,5 +259,8 @@ void setting_write_legal(uint8_t which)
             }
             write_value(&s, setting_choice(&s, i));
         }
+        if (which == SETTING_FILTER) {
+            text_words(FLASH_TEXT("; others: make flash FILTERS=NAME"));
+        }
     }
 }

@@ -58,10 +58,8 @@ class Talk:
 
     def reply(self, command):
         name, _, value = command.partition(" ")
-        if command == "help":
-            return f"# filter: {' '.join(FILTERS)}\n# rate: 12.5 25 50 100 200 400 800\n".encode("ascii")
         if name == "filter" and value and value not in FILTERS:
-            return f"# refused 4: filter is one of {' '.join(FILTERS)}\n".encode("ascii")
+            return f"# refused 4: filter is one of {' '.join(FILTERS)}; others: make flash FILTERS=NAME\n".encode("ascii")
         if name == "filter":
             self.filter = value or self.filter
             return f"# filter {self.filter}\n".encode("ascii")

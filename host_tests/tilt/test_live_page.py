@@ -20,7 +20,7 @@ class TestServed(Case):
         with watched(talk) as (server, _):
             page = self.opened(server.address)
             self.assertEqual(page.until("tiltLive.figures().filters.length && tiltLive.figures().filters"), list(FILTERS))
-            self.assertEqual(talk.commands, ["filter", "help"])
+            self.assertEqual(talk.commands, ["filter", "filter ?"])
             page.value(f"document.querySelector('input[value={ROBUST}]').click()")
             page.until(f"tiltLive.figures().filter === '{ROBUST}'")
             self.assertEqual((talk.filter, talk.commands[2:]), (ROBUST, [f"filter {ROBUST}"]))
