@@ -64,6 +64,23 @@ static void test_short_answers_and_a_reset_hold_no_row(void)
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_HELD));
 }
 
+/* Who types on has read it: Enter alone, too. */
+static void test_the_next_line_lets_rows_go_on(void)
+{
+    static const char *const lines[] = { "", "rate" };
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        talk_start();
+        board_type("status");
+        board_run_ms(500);
+        double typed_ms = hal_host_now_ms();
+        size_t rows = board.row_count;
+        board_type(lines[i]);
+        board_run_ms(300);
+        TEST_ASSERT_TRUE(board.row_count > rows + 25);
+        TEST_ASSERT_TRUE(board.rows[rows].at_ms - typed_ms < 30.0);
+    }
+}
+
 static void test_a_plot_goes_on(void)
 {
     talk_start();
@@ -120,6 +137,7 @@ int main(void)
     RUN_TEST(test_rows_wait_while_a_long_answer_is_read);
     RUN_TEST(test_filters_go_on_meanwhile);
     RUN_TEST(test_short_answers_and_a_reset_hold_no_row);
+    RUN_TEST(test_the_next_line_lets_rows_go_on);
     RUN_TEST(test_a_plot_goes_on);
     RUN_TEST(test_the_filter_in_force_keeps_its_parameters);
     RUN_TEST(test_help_lists_the_parameters_of_the_filter_in_force);

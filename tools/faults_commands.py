@@ -2,13 +2,13 @@
 import dataclasses
 import random
 
-from faults_judge import LAST_MS, NO_LIMIT, Command
+from faults_judge import END_MS, LAST_MS, NO_LIMIT, Command
 from faults_kinds import BEGIN_MS, OF, RUN_MS
 from faults_runs import simulate
 
 BEFORE_MS, CHANGE_MS = 1, 8  # a change is over 7 ms after its command
 GO_MS = 30  # from `stop` to `go`
-CHANGE_SAID_MS = 45  # from the last row ahead of a change to the first behind it more than from row to row; meanwhile, a status of 0.4 kB
+CHANGE_SAID_MS = 80  # from the last row ahead of a change, or of a status, to the first behind it more than from row to row
 COMMANDS = (
     Command("rate 50", (f"{BEGIN_MS}:rate 50",), rate=50),
     Command("rate 400", (f"{BEGIN_MS - 200}:baud 500000", f"{BEGIN_MS}:rate 400"), rate=400),
@@ -16,7 +16,8 @@ COMMANDS = (
     Command("stop", (f"{BEGIN_MS}:stop",), rate=0),
     Command("stop and go", (f"{BEGIN_MS}:stop", f"{BEGIN_MS + GO_MS}:go")),
 )
-STATUS = (f"{RUN_MS - LAST_MS - 50}:status", f"{RUN_MS - 60}:status")
+# rows are held behind a status until the next line
+STATUS = (f"{RUN_MS - LAST_MS - 50}:status", f"{RUN_MS - LAST_MS}:every", f"{RUN_MS - END_MS}:status")
 # of a single transfer, at each of the change; of the bus, the supply and INT1, and others of the sensor, at so many moments
 TRANSFERS = ("hang", "arb", "buserr", "nack", "nackdata", "torn")
 LAST_BYTE = {"nack": 1, "nackdata": 2}  # what comes later strikes the next transfer; every other kind: 3, as long as each transfer is

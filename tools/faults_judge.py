@@ -12,6 +12,7 @@ STANDBY_MS = 100  # a sensor that is to stand still has it from the end of a fau
 STOP_MS = 20  # rows of what was under way when `stop` came
 STEP_SHARE, MEASURED_SHARE = 0.25, 0.02  # by which two rows' distance and the rate in `status` may be off
 LAST_MS = 500  # of a run, in which the command's work is done
+END_MS = 60  # of it, in which no rows come behind the last status
 # what a whole campaign has to have, and the kinds that are it
 REQUIRED = {
     "unplug and plug": ("unplug",), "power cycle": ("power",), "SDA low": ("sda",), "SCL low": ("scl",),
@@ -97,11 +98,11 @@ class Ending:
     def streaming_failures(self, command):
         due = 1e6 / command.rate
         wrong = [step for step in self.steps_us if abs(step - due) > STEP_SHARE * due]
-        few = len(self.steps_us) < LAST_MS * 1000 / due - 3
+        few = len(self.steps_us) < (LAST_MS - END_MS) * 1000 / due - 3
         said = [f"the sensor has {self.sensor_hz:g} Hz instead of {command.rate}"] if self.sensor_hz != command.rate else []
         said += [f"the sensor has {self.range_g} g instead of {command.range_g}"] if self.range_g != command.range_g else []
         said += [f"{len(wrong)} rows {wrong[0] / 1000:.1f} ms behind the one ahead instead of {due / 1000:.1f}"] if wrong else []
-        said += [f"only {len(self.steps_us) + 1} rows in the last {LAST_MS} ms"] if few and not wrong else []
+        said += [f"only {len(self.steps_us) + 1} rows in {LAST_MS - END_MS} ms near the end"] if few and not wrong else []
         said += [f"{self.coasted} rows coasted to the end"] if self.coasted else []
         said += [f"lost goes on growing: {self.lost[0]}, {self.lost[-1]}"] if self.lost and self.lost[-1] > self.lost[0] else []
         return said + self.told_failures("streaming", command.rate)

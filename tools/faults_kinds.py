@@ -67,32 +67,39 @@ KINDS = [
 ]
 
 
+# rows are held behind these until the next line
+HELD_BEHIND, HELD_MS = {"help", "status", "settings"}, 200
+
+
 def typed(name, what, *lines, begin_ms=BEGIN_MS - 20, every_ms=45, **more):
     """A fault while somebody types: what is judged is that nothing hangs and that no row is wrong."""
-    commands = tuple(f"{begin_ms + every_ms * n}:{line}" for n, line in enumerate(lines))
+    at = [(begin_ms + every_ms * n, line) for n, line in enumerate(lines)]
+    if HELD_BEHIND.intersection(lines):
+        at.append((at[-1][0] + HELD_MS, "every"))
+    commands = tuple(f"{ms}:{line}" for ms, line in at)
     return Kind(name, (what,) if isinstance(what, str) else what, limit_ms=NO_LIMIT, typed=commands, **more)
 
 
 TYPED = [
     typed("typed: filters", "scl:40", f"filter {PLAIN}", f"filter {ROBUST}", f"filter {LIGHT}", f"filter {DEFAULT}", "filter",
           "filter none", "status",
-          filter_name=None, said_ms=40),  # the status is 0.4 kB
+          filter_name=None, said_ms=300),
     typed("typed: settings", "noint:300", "rate 200", "rate", "rate 3", "rate 99999999", "range 4", "range 3", "range", "every 3", "every 0", "every",
           "rate 800", "status", "baud 250000", "baud 1", "baud 9600", "baud", "rate 800", "every",
-          row_ms=75, said_ms=260),  # every 60 at 800 Hz, and five replies, 250 characters at 9600 baud
+          row_ms=75, said_ms=300),  # every 60 at 800 Hz, and five replies, 250 characters at 9600 baud
     typed("typed: words", "unplug:300", "help", "status", "st\x07atus", "x" * 90, "HELP 3", "go now", "stop", "go", "mode plot", "mode", "mode csv",
-          "mode x", "status", "help", said_ms=110),  # the help is 1.1 kB
-    typed("typed: spoilt bytes", ("rxspoil:0", "@50 rxspoil:1", "@100 rxspoil:0"), "help", "status", "rate", "every 1", said_ms=110),
+          "mode x", "status", "help", said_ms=300),
+    typed("typed: spoilt bytes", ("rxspoil:0", "@50 rxspoil:1", "@100 rxspoil:0"), "help", "status", "rate", "every 1", said_ms=300),
     typed("typed: stop", "power:50", "stop", "status", "go", "stop", "go", "stop", "stop", "range 2", "go", every_ms=11),
     typed("typed: plot", "sda:60", "mode plot", "status", "mode csv", every_ms=400, filter_name=ROBUST),
     typed(f"typed: {LIGHT}", "frozen:200", f"filter {LIGHT}", f"filter {ROBUST}", every_ms=300, filter_name=ROBUST),
     typed("typed: what is settled", "noint:300", "settings", "offset 10 -10 3.5", "scale 260 260 250", "level 0 0.1 0.99", "axes -yxz", "address 53",
           "settings", "offset 99 0 0", "scale 1 1 1", "level 9 9 9", "axes xxy", "address 12", "offset 1", "save", "status", "defaults", "settings",
-          every_ms=120, more_ms=1000, said_ms=110),  # the settings are 1.1 kB
+          every_ms=120, more_ms=1000, said_ms=320),
     # 0.3 s for each save that finds every byte another; 100 ms for a start
     typed("typed: what is kept", "unplug:100", "stop", "every 2", "offset 5 5 5", "save", "load", "defaults", "load", "save", "go", every_ms=400,
           more_ms=3000, row_ms=20, said_ms=1700),
-    typed("typed: measures", "nackdata", "odr", "noise", "tare", "settings", every_ms=2900, more_ms=8500, said_ms=110),
+    typed("typed: measures", "nackdata", "odr", "noise", "tare", "settings", every_ms=2900, more_ms=8500, said_ms=320),
     typed("typed: what the sensor's force adds", "sda:40", "selftest", "odr", every_ms=2900, more_ms=3000, said_ms=1500),
     typed("typed: calibrations", "torn", "cal6", "noise", "cal6 stop", "cal", "go", every_ms=2900, more_ms=11600,
           said_ms=20),  # two lines ahead of a row
@@ -106,7 +113,7 @@ TYPED = [
     typed("flood at 1000000 baud", "rxflood:200", "baud 1000000", begin_ms=900),
     # behind one another; the fourth start in a row by the watchdog is with safe settings
     typed("starve again", ("starve:2000", "@450 starve:2000", "@900 starve:2000", "@1350 starve:2000"), "status", begin_ms=3300, resets=4,
-          row_ms=80),
+          row_ms=80, said_ms=300),
 ]
 OF = {kind.name: kind for kind in KINDS}
 

@@ -219,7 +219,8 @@ def judged(filter_name, kinds, whens, max_ms, command, status, said, stats):
 def ending(command, stats):
     """What a run with a command has come to, from its rows, from what it said, and from the virtual sensor."""
     rows = read_rows(folder() / "out.csv")
-    late = [row for row in rows if row[0] > 1000 * (stats["sim_ms"] - faults_judge.LAST_MS)]
+    begin_ms, end_ms = (stats["sim_ms"] - ms for ms in (faults_judge.LAST_MS, faults_judge.END_MS))
+    late = [row for row in rows if 1000 * begin_ms < row[0] < 1000 * end_ms]
     said = (folder() / "out.csv").read_text(encoding="ascii", errors="replace")
     states = re.findall(r"^# state (\w+),.* rate ([\d.]+) Hz(?:, measured ([\d.]+) Hz)?", said, re.MULTILINE)
     over = max([command.given_ms(), *(end for end, _ in ends_of(stats))])

@@ -15,6 +15,7 @@
 #include "fx.h"
 #include "hal_sleep.h"
 #include "hal_uart.h"
+#include "output/rows.h"
 #include "settings/settings_table.h"
 
 static char line[COMMANDS_LINE_MAX + 1u];
@@ -130,8 +131,10 @@ static void run_line(void)
     }
 }
 
+/* Who types on has read what was said. */
 static void end_line(void)
 {
+    rows_release();
     while (length != 0 && line[length - 1u] == ' ') {
         length--;
     }

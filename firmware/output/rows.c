@@ -41,6 +41,11 @@ void rows_hold(void)
     held_from = newest_time();
 }
 
+void rows_release(void)
+{
+    held = false;
+}
+
 static char *write_csv(char *at, const row_t *row)
 {
     at = format_u32(at, row->t_us);

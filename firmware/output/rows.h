@@ -23,6 +23,9 @@ void rows_sample(uint16_t every, bool plot);
  */
 void rows_hold(void);
 
+/* Not any longer. */
+void rows_release(void);
+
 /* Its row, whatever `every` says. */
 void rows_at_once(bool plot);
 
