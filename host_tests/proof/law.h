@@ -68,13 +68,13 @@ static inline int32_t tracker_bounded(filter_t *f, int32_t x_lsb_q16);
     ensures f->size_lsb_uq16 <= SIZE_END && FLAG(f->negative);
     ensures reach: MET(f);
 */
-static inline void tracker_meet(filter_t *f, int16_t z_lsb);
+void filter_tracker_meet(filter_t *f, int16_t z_lsb);
 
 /*@ requires WITHIN(f->rate_lsb, 3 * X_MAX_Q16) && f->rate_max_lsb <= X_MAX_Q16 && 0 <= step_lsb <= 2 * X_MAX_Q16;
     assigns f->rate_lsb, f->flags \from f->rate_lsb, f->rate_max_lsb, f->negative, f->flags, step_lsb;
     ensures WITHIN(f->rate_lsb, X_MAX_Q16);
 */
-static inline void tracker_turn(filter_t *f, int32_t step_lsb);
+void filter_tracker_turn(filter_t *f, int32_t step_lsb);
 
 /*@ requires \valid_read(p);
     assigns \result \from *p;

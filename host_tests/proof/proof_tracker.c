@@ -133,16 +133,16 @@ void proof_tracker_bounded(void)
     }
 }
 
-void proof_tracker_meet(void)
+void proof_filter_tracker_meet(void)
 {
     filter_t f;
     for (int32_t cell = -9; cell <= 8; cell++) {
         f.x_lsb_q16 = ANY_S32(33554432L * cell, 33554432L * cell + 33554431L);
         //@ admit WITHIN(f.x_lsb_q16, X_MAX_Q16);
-        tracker_meet(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
+        filter_tracker_meet(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
     }
     f.x_lsb_q16 = X_MAX_Q16;
-    tracker_meet(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
+    filter_tracker_meet(&f, ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB));
 }
 
 static void turn_from(int32_t low, int32_t high)
@@ -151,23 +151,23 @@ static void turn_from(int32_t low, int32_t high)
     any_tracked(&f, NULL);
     f.rate_lsb = ANY_S32(low, high);
     f.rate_max_lsb = ANY_U32(0, X_MAX_Q16);
-    tracker_turn(&f, 0);
+    filter_tracker_turn(&f, 0);
 }
 
 /*
  * Any sum, as the rate of a change of 0, on which alone the result depends; and the sums that come nearest to 32 bits.
  */
-void proof_tracker_turn(void)
+void proof_filter_tracker_turn(void)
 {
     filter_t f;
     any_tracked(&f, NULL);
     f.rate_max_lsb = ANY_U32(0, X_MAX_Q16);
     f.negative = false;
     f.rate_lsb = ANY_S32(X_MAX_Q16 + 1L, 3L * X_MAX_Q16);
-    tracker_turn(&f, ANY_S32(0, 2L * X_MAX_Q16));
+    filter_tracker_turn(&f, ANY_S32(0, 2L * X_MAX_Q16));
     f.negative = true;
     f.rate_lsb = ANY_S32(-3L * X_MAX_Q16, -X_MAX_Q16 - 1L);
-    tracker_turn(&f, ANY_S32(0, 2L * X_MAX_Q16));
+    filter_tracker_turn(&f, ANY_S32(0, 2L * X_MAX_Q16));
     turn_from(-3L * X_MAX_Q16, -X_MAX_Q16 - 1L);
     turn_from(-X_MAX_Q16, -1);
     turn_from(0, X_MAX_Q16);

@@ -136,7 +136,7 @@ FX_NOINLINE int16_t size_lsb_q8(uint32_t size_lsb_uq16)
 }
 
 /* A mean moved by a part of what a new term differs from what was expected of it; exact. */
-FX_INLINE uint32_t averaged(uint32_t mean_uq24, uint16_t expected_uq8, uint16_t term_uq8, uint16_t weight_uq16)
+static uint32_t averaged(uint32_t mean_uq24, uint16_t expected_uq8, uint16_t term_uq8, uint16_t weight_uq16)
 {
     if (term_uq8 < expected_uq8) {
         return mean_uq24 - fx_product_u16((uint16_t)(expected_uq8 - term_uq8), weight_uq16);
@@ -148,7 +148,7 @@ FX_INLINE uint32_t averaged(uint32_t mean_uq24, uint16_t expected_uq8, uint16_t 
  * What is taken of an innovation, as far as the gate, in their mean; signed: numbers keep their order when the top bit
  * is turned over.
  */
-FX_INLINE void average_innovation(filter_adaptive_t *a, uint32_t taken)
+static void average_innovation(filter_adaptive_t *a, uint32_t taken)
 {
     uint16_t term = (uint16_t)size_lsb_q8((taken > a->gate_lsb_uq16) ? a->gate_lsb_uq16 : taken);
     uint32_t mean = (uint32_t)a->mean_lsb_q24 ^ 0x80000000U;
@@ -230,7 +230,7 @@ static void adapt(filter_adaptive_t *a, uint16_t spread_uq8)
 }
 
 /* Rate changed by so much, at most 127 LSB, towards the innovation and within its limit. */
-FX_INLINE void turn(filter_t *f, int32_t by_lsb_q24)
+static void turn(filter_t *f, int32_t by_lsb_q24)
 {
     int32_t limit = (int32_t)f->rate_max_lsb;
     int32_t rate = f->negative ? -f->rate_lsb : f->rate_lsb;
@@ -261,7 +261,7 @@ static void follow(filter_t *f, uint32_t taken)
         turn(f, (int32_t)kw);
         taken = w + w - (kw >> 8);
     }
-    tracker_move(f, (int32_t)taken);
+    filter_tracker_move(f, (int32_t)taken);
     f->x_lsb_q16 = tracker_bounded(f, f->x_lsb_q16); /* the rate's limit may leave x a step beyond the sample */
 }
 
@@ -286,7 +286,7 @@ static uint16_t meet(filter_t *f, int16_t z_lsb)
 {
     filter_adaptive_t *a = &f->own.adaptive;
     bool before = f->negative;
-    tracker_meet(f, z_lsb);
+    filter_tracker_meet(f, z_lsb);
     if (f->size_lsb_uq16 == 0U) {
         f->negative = before;
     } else if (f->negative != before) {

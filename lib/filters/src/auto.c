@@ -109,7 +109,7 @@ static void start(filter_t *f, bool settled)
     b->shown = b->chosen;
 }
 
-FX_INLINE int32_t within_rate(filter_t *f, int32_t rate_lsb_q16)
+static int32_t within_rate(filter_t *f, int32_t rate_lsb_q16)
 {
     if (fx_abs32(rate_lsb_q16) > f->rate_max_lsb) {
         rate_lsb_q16 = (rate_lsb_q16 < 0) ? -(int32_t)f->rate_max_lsb : (int32_t)f->rate_max_lsb;
@@ -119,7 +119,7 @@ FX_INLINE int32_t within_rate(filter_t *f, int32_t rate_lsb_q16)
 }
 
 /* One sample on. */
-FX_INLINE void predict_member(filter_t *f, filter_member_t *m)
+static void predict_member(filter_t *f, filter_member_t *m)
 {
     m->x_lsb_q16 = tracker_bounded(f, m->x_lsb_q16 + m->rate_lsb_q16);
 }
@@ -152,7 +152,7 @@ static uint8_t refused(filter_member_t *m, bool below, int16_t z_lsb)
 }
 
 /* The member's gains, its memory half a sample longer, its state moved by the innovation. Returns the gain. */
-FX_INLINE uint16_t correct(filter_t *f, filter_member_t *m, uint16_t final_k, uint32_t size_lsb_uq8, bool below)
+static uint16_t correct(filter_t *f, filter_member_t *m, uint16_t final_k, uint32_t size_lsb_uq8, bool below)
 {
     uint16_t k = m->k_uq16;
     uint32_t square_uq32 = fx_product_u16(k, k);

@@ -28,12 +28,6 @@ extern "C" {
  */
 #define FX_ONCE __attribute__((noinline))
 
-/*
- * Values do not stay in registers across it: spares the compiler of an 8-bit machine from spilling them to a stack
- * frame.
- */
-#define FX_FENCE() __asm__ volatile("" ::: "memory")
-
 /* The compiler of the 8-bit machine forgets what it knows of v, an integer in a register. */
 #ifdef __AVR__
 #define FX_FENCE_OF(v) __asm__("" : "+r"(v))
@@ -292,7 +286,7 @@ extern const uint16_t filter_fx_reciprocal_nodes_uq16[129];
  * program memory, straight lines between. |result - 1/m| <= 1.5 x 2^-16 (chord 0.25, nodes 0.5, product 0.5, the first
  * node's limit 0.25), tested.
  */
-FX_INLINE uint16_t fx_inverse_m_uq16(uint8_t interval, uint16_t fraction)
+static inline uint16_t fx_inverse_m_uq16(uint8_t interval, uint16_t fraction)
 {
     const uint16_t *node = &filter_fx_reciprocal_nodes_uq16[interval];
     uint16_t left = fx_flash_u16(node);
@@ -301,7 +295,7 @@ FX_INLINE uint16_t fx_inverse_m_uq16(uint8_t interval, uint16_t fraction)
 }
 
 /* 1 / s for 1 <= s < 256 (UQ8.24) in UQ0.16, at most 65535. |result - 1/s| <= 1.5 x 2^-16, tested. */
-FX_INLINE uint16_t fx_reciprocal_uq16(uint32_t s_uq24)
+static inline uint16_t fx_reciprocal_uq16(uint32_t s_uq24)
 {
     uint8_t halvings = 0;
     while ((uint8_t)(s_uq24 >> 24) >= 2U) {

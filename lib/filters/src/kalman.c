@@ -98,7 +98,7 @@ void filter_kalman_start(filter_t *f, bool settled)
 }
 
 /* P / R one sample on, while P11 < 4, P12 < 16, P22 < 16. */
-FX_INLINE void grow(filter_kalman_t *k)
+static void grow(filter_kalman_t *k)
 {
     uint8_t high = (uint8_t)((uint8_t)(k->p.p12 >> 24) | (uint8_t)(k->p.p22 >> 24));
     if ((high & 0xC0U) == 0U && (uint8_t)(k->p.p11 >> 24) < 4U) {
@@ -111,13 +111,13 @@ FX_INLINE void grow(filter_kalman_t *k)
 }
 
 /* S = P11 + 1 < 53. */
-FX_INLINE uint16_t variance_uq10(const filter_kalman_t *k)
+static uint16_t variance_uq10(const filter_kalman_t *k)
 {
     return (uint16_t)(kalman_fourfold(k->p.p11 + KALMAN_ONE_UQ24) >> 16);
 }
 
 /* Sixteen bits of S and of u do: what does not fit in them lies outside any limit. */
-FX_NOINLINE bool within_gate(filter_t *f)
+static bool within_gate(filter_t *f)
 {
     filter_kalman_t *k = &f->own.kalman;
     uint32_t limit_lsb2 = fx_product_u16(variance_uq10(k), k->gate_lsb2_uq6);
@@ -132,27 +132,27 @@ FX_NOINLINE bool within_gate(filter_t *f)
 }
 
 /* Gains, x, rate and P. */
-FX_INLINE void correct(filter_t *f)
+static void correct(filter_t *f)
 {
     filter_kalman_t *k = &f->own.kalman;
     uint16_t g = fx_reciprocal_uq16(k->p.p11 + KALMAN_ONE_UQ24);
     uint16_t w1_uq16 = (uint16_t)(0U - g);
     f->gain_uq16 = w1_uq16;
     k->p.p11 = (uint32_t)w1_uq16 << 8;
-    tracker_move(f, (int32_t)filter_fx_mul24_uq16(f->size_lsb_uq16 >> 8, w1_uq16));
+    filter_tracker_move(f, (int32_t)filter_fx_mul24_uq16(f->size_lsb_uq16 >> 8, w1_uq16));
     uint32_t p12 = k->p.p12;
     uint32_t w2_uq26 = filter_fx_mul_uq16(p12, g);
     k->p.p12 = w2_uq26;
     uint32_t w2_uq24 = kalman_limited_uq24(kalman_quarter(w2_uq26));
     uint32_t taken_uq26 = filter_fx_mul24_uq24(p12 >> 8, w2_uq24);
     k->p.p22 = kalman_less(k->p.p22, taken_uq26);
-    tracker_turn(f, (int32_t)filter_fx_mul24_uq24(f->size_lsb_uq16 >> 8, w2_uq24));
+    filter_tracker_turn(f, (int32_t)filter_fx_mul24_uq24(f->size_lsb_uq16 >> 8, w2_uq24));
 }
 
 bool filter_kalman_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     tracker_predict(f);
-    tracker_meet(f, z_lsb);
+    filter_tracker_meet(f, z_lsb);
     grow(&f->own.kalman);
     if (what == STEP_MISSING) {
         return false;
@@ -165,7 +165,7 @@ bool filter_kalman_step(filter_t *f, int16_t z_lsb, uint8_t what)
 }
 
 /* Position and rate from the ends of a run of L samples: variances R, R / (L-1), 2 R / (L-1)^2. */
-FX_NOINLINE void restart(filter_t *f, int16_t z_lsb)
+static void restart(filter_t *f, int16_t z_lsb)
 {
     filter_kalman_t *k = &f->own.kalman;
     fresh(k);

@@ -56,14 +56,14 @@ extern "C" {
 enum { KALMAN_R, KALMAN_Q };
 
 /* Places in line: told two the compiler makes a loop of them on AVR. */
-FX_INLINE uint32_t kalman_quarter(uint32_t v)
+static inline uint32_t kalman_quarter(uint32_t v)
 {
     v >>= 1;
     FX_FENCE_OF(v);
     return v >> 1;
 }
 
-FX_INLINE uint32_t kalman_fourfold(uint32_t v)
+static inline uint32_t kalman_fourfold(uint32_t v)
 {
     v <<= 1;
     FX_FENCE_OF(v);
@@ -71,14 +71,14 @@ FX_INLINE uint32_t kalman_fourfold(uint32_t v)
 }
 
 /* An element of P less what an update takes of it, both < 2^31, not below 0 for rounding. */
-FX_INLINE uint32_t kalman_less(uint32_t p, uint32_t taken)
+static inline uint32_t kalman_less(uint32_t p, uint32_t taken)
 {
     int32_t left = (int32_t)p - (int32_t)taken;
     return (left < 0) ? 0U : (uint32_t)left;
 }
 
 /* At most 1: so small that a step stays below |u|. */
-FX_INLINE uint32_t kalman_limited_uq24(uint32_t w_uq24)
+static inline uint32_t kalman_limited_uq24(uint32_t w_uq24)
 {
     return ((uint8_t)(w_uq24 >> 24) != 0U) ? 0xFFFFFFU : w_uq24;
 }

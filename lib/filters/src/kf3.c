@@ -133,7 +133,7 @@ static uint32_t to_rate(const filter_kf3_t *k, uint32_t v)
     return k->fine ? fx_sixteenth(v) : v;
 }
 
-FX_INLINE bool one_or_more(uint32_t p_uq28)
+static bool one_or_more(uint32_t p_uq28)
 {
     return (uint8_t)(p_uq28 >> 24) >= 0x10U;
 }
@@ -259,7 +259,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     predict(f);
     if (what != STEP_MISSING) {
-        tracker_meet(f, z_lsb);
+        filter_tracker_meet(f, z_lsb);
         correct(f);
     }
 }
@@ -285,7 +285,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 const filter_law_t filter_law_kf3 FX_FLASH = { .name = "kf3",
                                                .parameter_count = 2,
                                                .traits = LAW_COVARIANCE | LAW_SETTLES,
-                                               .worst_cycles = 2150,
+                                               .worst_cycles = 2170,
                                                .parameters = parameters,
                                                .set_up = set_up,
                                                .set_noise = set_noise,

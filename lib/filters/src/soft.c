@@ -74,7 +74,7 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 #define LEAST_UQ24 16U
 
 /* K / m'^2 to m, see below: shifted by 16 - 2 b places, b = 4..20. */
-FX_INLINE uint32_t placed(uint32_t weight, uint8_t b)
+static uint32_t placed(uint32_t weight, uint8_t b)
 {
     for (; b >= 11U; b = (uint8_t)(b - 4U)) {
         weight >>= 8;
@@ -97,7 +97,7 @@ FX_INLINE uint32_t placed(uint32_t weight, uint8_t b)
  * 2^(2 b - 16) times as many counts. u^2 > K / 64 >= 1/64
  * LSB^2 makes b >= 4; the coarse K is 256 times as large, and u^2 >= 1024 LSB^2 makes b >= 12.
  */
-FX_INLINE uint32_t weight_uq24(const filter_t *f)
+static uint32_t weight_uq24(const filter_t *f)
 {
     uint32_t size = f->size_lsb_uq16 >> 8;
     uint8_t b = 22;
@@ -128,7 +128,7 @@ FX_INLINE uint32_t weight_uq24(const filter_t *f)
 }
 
 /* |u| w in LSB, Q16, rounded down; |u| to whole LSB from 256 LSB on. */
-FX_INLINE int32_t part_of_innovation(const filter_t *f, uint32_t w_uq24)
+static int32_t part_of_innovation(const filter_t *f, uint32_t w_uq24)
 {
     bool far = (uint8_t)(f->size_lsb_uq16 >> 24) != 0U;
     uint16_t size = far ? (uint16_t)(f->size_lsb_uq16 >> 16) : (uint16_t)(f->size_lsb_uq16 >> 8);
@@ -137,14 +137,14 @@ FX_INLINE int32_t part_of_innovation(const filter_t *f, uint32_t w_uq24)
 }
 
 /* x and P11 with the gain w1 = P11 m. x moves by a count more than w1 u, so that no sample is without effect. */
-FX_INLINE void update_x(filter_t *f, uint32_t w1_uq24)
+static void update_x(filter_t *f, uint32_t w1_uq24)
 {
-    tracker_move(f, part_of_innovation(f, w1_uq24) + 1);
+    filter_tracker_move(f, part_of_innovation(f, w1_uq24) + 1);
     f->own.kalman.p.p11 = filter_fx_mul24_uq16(f->own.kalman.p.p11 >> 8, (uint16_t)~f->gain_uq16);
 }
 
 /* Rate, P12 and P22 with w2 = P12 m. */
-FX_INLINE void update_rate(filter_t *f, uint32_t m_uq24)
+static void update_rate(filter_t *f, uint32_t m_uq24)
 {
     filter_covariance_t *p = &f->own.kalman.p;
     uint32_t p12_uq18 = p->p12 >> 8;
@@ -153,7 +153,7 @@ FX_INLINE void update_rate(filter_t *f, uint32_t m_uq24)
     uint16_t w2_uq16 = (uint16_t)(w2_uq24 >> 8);
     uint32_t taken_uq26 = filter_fx_mul24_uq16(p12_uq18, w2_uq16);
     p->p22 = kalman_less(p->p22, taken_uq26);
-    tracker_turn(f, part_of_innovation(f, w2_uq24));
+    filter_tracker_turn(f, part_of_innovation(f, w2_uq24));
 }
 
 /*
@@ -201,7 +201,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 const filter_law_t filter_law_soft FX_FLASH = { .name = "soft",
                                                 .parameter_count = 6,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                                .worst_cycles = 1715,
+                                                .worst_cycles = 1650,
                                                 .parameters = parameters,
                                                 .standard = standard,
                                                 .together = together,

@@ -122,7 +122,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 
 const filter_law_t filter_law_synth FX_FLASH = { .name = "synth",
                                                  .parameter_count = 3,
-                                                 .worst_cycles = 620,
+                                                 .worst_cycles = 670,
                                                  .parameters = parameters,
                                                  .together = together,
                                                  .set_up = set_up,

@@ -43,15 +43,12 @@ uint16_t filter_synth_next_gain_uq16(filter_t *f)
 void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     int32_t before = f->x_lsb_q16;
-    int32_t x = tracker_bounded(f, before + f->rate_lsb);
+    tracker_predict(f);
     if (what != STEP_MISSING) {
-        f->x_lsb_q16 = x;
-        tracker_meet(f, z_lsb);
-        int32_t step = (int32_t)filter_fx_mul_uq16(f->size_lsb_uq16, f->gain_uq16);
-        x = f->negative ? x - step : x + step;
+        filter_tracker_meet(f, z_lsb);
+        filter_tracker_move(f, (int32_t)filter_fx_mul_uq16(f->size_lsb_uq16, f->gain_uq16));
     }
-    f->x_lsb_q16 = x;
-    f->rate_lsb = x - before;
+    f->rate_lsb = f->x_lsb_q16 - before;
 }
 
 void filter_synth_bent_step(filter_t *f, int16_t z_lsb, uint8_t what, uint16_t a1_uq16)

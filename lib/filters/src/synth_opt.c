@@ -76,7 +76,7 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 }
 
 /* A step of the schedule, with its place in the tables: of the class, then of all. It waits for missing samples. */
-FX_NOINLINE void scheduled_step(filter_t *f, int16_t z_lsb, uint8_t what)
+static void scheduled_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     filter_synth_t *s = &f->own.synth;
     uint8_t steps = (uint8_t)(s->count - (uint8_t)SYNTH_FIRST_GAIN);
@@ -124,7 +124,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 
 const filter_law_t filter_law_synth_opt FX_FLASH = { .name = "synth_opt",
                                                      .parameter_count = 3,
-                                                     .worst_cycles = 620,
+                                                     .worst_cycles = 670,
                                                      .parameters = parameters,
                                                      .standard = standard,
                                                      .set_up = set_up,

@@ -17,10 +17,41 @@ FX_ONCE int16_t filter_tracker_limited_z(int16_t z_lsb)
     return (int16_t)((z_lsb < FILTER_Z_MIN_LSB) ? FILTER_Z_MIN_LSB : z_lsb);
 }
 
+void filter_tracker_meet(filter_t *f, int16_t z_lsb)
+{
+    int32_t innovation = (int32_t)z_lsb * 65536 - f->x_lsb_q16;
+    bool negative = false;
+    if (innovation < 0) {
+        innovation = -innovation;
+        negative = true;
+    }
+    f->negative = negative;
+    f->size_lsb_uq16 = (uint32_t)innovation;
+}
+
 void filter_tracker_nothing(filter_t *f)
 {
     f->size_lsb_uq16 = 0;
     f->gain_uq16 = 0;
+}
+
+static int32_t towards_sample(const filter_t *f, int32_t step)
+{
+    return f->negative ? -step : step;
+}
+
+void filter_tracker_move(filter_t *f, int32_t step_lsb_q16)
+{
+    f->x_lsb_q16 += towards_sample(f, step_lsb_q16);
+}
+
+void filter_tracker_turn(filter_t *f, int32_t step_lsb)
+{
+    int32_t rate = f->rate_lsb + towards_sample(f, step_lsb);
+    f->rate_lsb = fx_clamp(rate, (int32_t)f->rate_max_lsb);
+    if (f->rate_lsb != rate) {
+        f->flags |= FILTER_SATURATED;
+    }
 }
 
 void filter_tracker_limit_rate(filter_t *f, uint32_t rate_max_lsb_s, uint8_t fraction_bits)

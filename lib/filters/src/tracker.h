@@ -103,17 +103,7 @@ FX_INLINE void tracker_predict(filter_t *f)
 }
 
 /* Innovation of a sample. */
-FX_INLINE void tracker_meet(filter_t *f, int16_t z_lsb)
-{
-    int32_t innovation = (int32_t)z_lsb * 65536 - f->x_lsb_q16;
-    bool negative = false;
-    if (innovation < 0) {
-        innovation = -innovation;
-        negative = true;
-    }
-    f->negative = negative;
-    f->size_lsb_uq16 = (uint32_t)innovation;
-}
+void filter_tracker_meet(filter_t *f, int16_t z_lsb);
 
 /* Of a step without a sample. */
 void filter_tracker_nothing(filter_t *f);
@@ -125,32 +115,12 @@ void filter_tracker_fade(filter_t *f, bool first);
 void filter_tracker_damp(filter_t *f);
 
 /* x moved by so much in the direction of the innovation. */
-FX_INLINE void tracker_move(filter_t *f, int32_t step_lsb_q16)
-{
-    if (f->negative) {
-        f->x_lsb_q16 -= step_lsb_q16;
-    } else {
-        f->x_lsb_q16 += step_lsb_q16;
-    }
-}
+void filter_tracker_move(filter_t *f, int32_t step_lsb_q16);
 
 /*
  * The rate moved by so much in the direction of the innovation, within its limit (flagged). No overflow: see each law.
  */
-FX_INLINE void tracker_turn(filter_t *f, int32_t step_lsb)
-{
-    int32_t rate = f->rate_lsb;
-    if (f->negative) {
-        rate -= step_lsb;
-    } else {
-        rate += step_lsb;
-    }
-    f->rate_lsb = rate;
-    if (fx_abs32(rate) > f->rate_max_lsb) {
-        f->rate_lsb = (rate < 0) ? -(int32_t)f->rate_max_lsb : (int32_t)f->rate_max_lsb;
-        f->flags |= FILTER_SATURATED;
-    }
-}
+void filter_tracker_turn(filter_t *f, int32_t step_lsb);
 
 /* The limit of the rate in so many fraction bits, made of ratemax (LSB/s); 0: the bound of the format. Divides. */
 void filter_tracker_limit_rate(filter_t *f, uint32_t rate_max_lsb_s, uint8_t fraction_bits);

@@ -60,7 +60,7 @@ bool filter_wide_predict(filter_t *f, int16_t z_lsb)
 {
     filter_wide_t *w = &f->own.wide;
     tracker_predict(f);
-    tracker_meet(f, z_lsb);
+    filter_tracker_meet(f, z_lsb);
     bool grows = grow(w);
     w->variance = filter_fx_leading(w->p.p11 + ONE_UQ16);
     w->inverse_uq16 = filter_fx_inverse_uq16(w->variance);
@@ -149,12 +149,12 @@ void filter_wide_correct(filter_t *f, uint16_t loss_uq16, uint32_t back_uq16)
     uint8_t halvings = (uint8_t)(15U - fx_places(w->variance)); /* S = 1..2 x 2^halvings */
     uint16_t w1_uq16 = (uint16_t)(0U - filter_fx_shift_right(w->inverse_uq16, halvings));
     f->gain_uq16 = (uint16_t)(w1_uq16 - filter_fx_high_u16(w1_uq16, loss_uq16));
-    tracker_move(f, step_by(f, (uint32_t)f->gain_uq16 << 8)); /* towards the sample: within its bound */
+    filter_tracker_move(f, step_by(f, (uint32_t)f->gain_uq16 << 8)); /* towards the sample: within its bound */
     uint32_t w2_uq24 = filter_fx_shift_right(filter_fx_mul_uq16(w->p.p12, w->inverse_uq16), halvings);
     w2_uq24 = (w2_uq24 > 0xFFFFFFU) ? 0xFFFFFFU : w2_uq24;
     uint32_t gain2_uq24 = (loss_uq16 == 0U) ? w2_uq24 : w2_uq24 - filter_fx_mul_uq16(w2_uq24, loss_uq16);
     /*@ assert below_one: gain2_uq24 <= 0xFFFFFF; */
-    tracker_turn(f, step_by(f, gain2_uq24));
+    filter_tracker_turn(f, step_by(f, gain2_uq24));
     correct_covariance(w, w1_uq16, w2_uq24, back_uq16);
 }
 

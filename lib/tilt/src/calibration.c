@@ -7,7 +7,7 @@
 
 enum { HALF_Q14 = 32 }; /* half a unit of Q8 */
 
-FX_ONCE void calibration_plain(calibration_t *c, uint16_t scale_xy_uq6, uint16_t scale_z_uq6)
+void calibration_plain(calibration_t *c, uint16_t scale_xy_uq6, uint16_t scale_z_uq6)
 {
     *c = (calibration_t){ .scale_lsb_per_g_uq6 = { scale_xy_uq6, scale_xy_uq6, scale_z_uq6 },
                           .axes = { 1, 2, 3 },
@@ -25,12 +25,12 @@ FX_ONCE uint32_t calibration_square(int16_t a)
     return (uint32_t)((int32_t)a * a);
 }
 
-FX_NOINLINE uint32_t length_square_q28(const int16_t v_q14[3])
+static uint32_t length_square_q28(const int16_t v_q14[3])
 {
     return calibration_square(v_q14[0]) + calibration_square(v_q14[1]) + calibration_square(v_q14[2]);
 }
 
-FX_ONCE calibration_verdict_t calibration_check(const calibration_t *c)
+calibration_verdict_t calibration_check(const calibration_t *c)
 {
     uint8_t seen = 0;
     for (uint8_t i = 0; i < 3U; i++) {
@@ -52,7 +52,7 @@ FX_ONCE calibration_verdict_t calibration_check(const calibration_t *c)
     return calibration_verdict(seen == 7U ? CALIBRATION_GOOD : CALIBRATION_AXES, 0);
 }
 
-FX_NOINLINE int32_t row_times(int32_t sum_q14, const int32_t a_q8[3], const int16_t row_q14[3])
+static int32_t row_times(int32_t sum_q14, const int32_t a_q8[3], const int16_t row_q14[3])
 {
     return fx_dot24(sum_q14, a_q8, row_q14);
 }
@@ -114,7 +114,7 @@ FX_ONCE calibration_verdict_t calibration_prepare(calibration_applied_t *applied
 }
 
 /* Q14 to Q8 as four times it, less a byte: cheaper than six places on a machine of bytes. */
-FX_ONCE void calibration_apply(const calibration_applied_t *applied, const int32_t a_q8[3], int32_t out_q8[3])
+void calibration_apply(const calibration_applied_t *applied, const int32_t a_q8[3], int32_t out_q8[3])
 {
     const int16_t *row_q14 = applied->matrix_q14;
     for (uint8_t i = 0; i < 3U; i++) {

@@ -9,7 +9,7 @@ FX_ONCE int16_t calibration_gravity_q14(const calibration_t *c, uint8_t axis, in
     return (int16_t)fx_clamp(calibration_over(off_q4, c->scale_lsb_per_g_uq6[axis]), INT16_MAX);
 }
 
-FX_ONCE calibration_verdict_t calibration_commit(calibration_t *c, const calibration_t *found)
+calibration_verdict_t calibration_commit(calibration_t *c, const calibration_t *found)
 {
     calibration_verdict_t verdict = calibration_check(found);
     if (verdict.why == (uint8_t)CALIBRATION_GOOD) {
@@ -29,7 +29,7 @@ FX_ONCE calibration_verdict_t calibration_tare(calibration_t *c, const int16_t m
     return calibration_commit(c, &found);
 }
 
-FX_ONCE uint8_t calibration_position(const int16_t mean_lsb_q4[3])
+uint8_t calibration_position(const int16_t mean_lsb_q4[3])
 {
     uint8_t position = 0;
     uint16_t largest = 0;

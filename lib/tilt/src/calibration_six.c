@@ -51,7 +51,7 @@ static bool draw_line(calibration_t *c, means_t means, uint8_t axis, const uint1
     return true;
 }
 
-FX_ONCE void calibration_six_start(calibration_six_t *six, const calibration_t *c)
+void calibration_six_start(calibration_six_t *six, const calibration_t *c)
 {
     six->found = *c;
     for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
@@ -76,7 +76,7 @@ static bool improve(calibration_six_t *six, means_t means, uint8_t position)
 }
 
 /* Three lines, then six components. */
-FX_ONCE bool calibration_six_step(calibration_six_t *six, const int16_t means[3 * CALIBRATION_POSITIONS])
+bool calibration_six_step(calibration_six_t *six, const int16_t means[3 * CALIBRATION_POSITIONS])
 {
     six->off_q14 = 0;
     for (uint8_t axis = 0; axis < 3U; axis++) {
@@ -95,7 +95,7 @@ FX_ONCE bool calibration_six_step(calibration_six_t *six, const int16_t means[3 
     return six->round++ != ROUNDS;
 }
 
-FX_ONCE calibration_verdict_t calibration_six_end(const calibration_six_t *six, calibration_t *c, uint16_t *residual_mg)
+calibration_verdict_t calibration_six_end(const calibration_six_t *six, calibration_t *c, uint16_t *residual_mg)
 {
     if (six->verdict.why != (uint8_t)CALIBRATION_GOOD) {
         return six->verdict;
@@ -107,8 +107,8 @@ FX_ONCE calibration_verdict_t calibration_six_end(const calibration_six_t *six, 
     return calibration_commit(c, &six->found);
 }
 
-FX_ONCE calibration_verdict_t calibration_six(calibration_t *c, const int16_t means[3 * CALIBRATION_POSITIONS],
-                                              uint16_t *residual_mg)
+calibration_verdict_t calibration_six(calibration_t *c, const int16_t means[3 * CALIBRATION_POSITIONS],
+                                      uint16_t *residual_mg)
 {
     calibration_six_t six;
     calibration_six_start(&six, c);

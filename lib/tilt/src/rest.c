@@ -8,7 +8,7 @@ enum { AXES = 3, HALF = REST_SAMPLES / 2U };
 /* Of the second half's sum from the first's: 2 LSB for each of its readings. */
 enum { DRIFT_LSB = 2 * HALF };
 
-FX_ONCE void rest_start(rest_t *rest)
+void rest_start(rest_t *rest)
 {
     *rest = (rest_t){ 0 };
 }
@@ -39,7 +39,7 @@ FX_ONCE bool rest_add(rest_t *rest, const int16_t lsb[3])
     return rest->moved || rest->samples == 0;
 }
 
-FX_ONCE int16_t rest_mean_lsb_q4(const rest_axis_t *axis)
+int16_t rest_mean_lsb_q4(const rest_axis_t *axis)
 {
     return (int16_t)((int32_t)axis->first_lsb * 16 + ((axis->sum_lsb + 8) >> 4));
 }
@@ -50,7 +50,7 @@ FX_ONCE uint32_t rest_variance_lsb2_q8(const rest_axis_t *axis)
     return axis->squares_lsb2 - ((uint32_t)((int32_t)axis->sum_lsb * axis->sum_lsb) >> 8);
 }
 
-FX_ONCE bool rest_still(const rest_t *rest, uint16_t rate_dhz)
+bool rest_still(const rest_t *rest, uint16_t rate_dhz)
 {
     bool still = !rest->moved;
     for (const rest_axis_t *axis = rest->axes; axis != rest->axes + AXES; axis++) {

@@ -13,7 +13,7 @@ void tilt_axis_begin(tilt_axis_t *a, uint16_t rate_dhz, bool noisy_axis)
     filter_set_noise(&a->filter, filter_noise_r_lsb2_q8(&a->noise));
 }
 
-FX_ONCE int32_t tilt_axis_estimate_q8(const tilt_axis_t *a)
+int32_t tilt_axis_estimate_q8(const tilt_axis_t *a)
 {
     return (a->filter.x_lsb_q16 + 128) >> 8;
 }
