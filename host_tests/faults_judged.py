@@ -74,7 +74,7 @@ def the_stream_has_to_go_on_after_the_first_good_row():
     # after a reset the rate is 100 Hz
     for name, gap_ms, end_ms in (("sda", 18, 68), ("sda, 12.5 Hz", 88, 488), ("sda, 400 Hz", 10.5, 23), ("sda, 800 Hz", 10.5, 23),
                                  ("reset, 800 Hz", 18, 68), ("reset, 12.5 Hz", 18, 68), (f"vibration, {ROBUST}", 18, 168),
-                                 ("typed: settings", 335, 710)):
+                                 ("typed: settings", 375, 750)):
         assert not result(name, calm_gap_ms=gap_ms, since_good_ms=end_ms).failures(), name
         assert "without a sample's row" in result(name, calm_gap_ms=gap_ms + 0.1).failures()[0], name
         assert "before the end" in result(name, since_good_ms=end_ms + 0.1).failures()[0], name
