@@ -334,7 +334,7 @@ static void test_a_cut_of_int1_loses_no_sample(void)
             TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_INT1_SILENT, told.code);
             TEST_ASSERT_EQUAL_UINT(0, told.lost);
         }
-        TEST_ASSERT_EQUAL_UINT32(0, counters[COUNT_LATE]);
+        TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_LATE));
     }
 }
 
