@@ -125,12 +125,12 @@ static void row_item(uint8_t mode, uint16_t index)
     }
     while (coast_due(now_us) && coast_over(period_us, true)) {
         pipeline_finish();
-        rows_sample();
+        rows_sample(settings_every_in_force(), settings()->mode == MODE_PLOT);
     }
     (void)coast_sample(now_us, period_us);
     pipeline_sample(&sample);
     pipeline_finish();
-    rows_sample();
+    rows_sample(settings_every_in_force(), settings()->mode == MODE_PLOT);
 }
 
 void text_path_item(uint8_t which, uint16_t index)

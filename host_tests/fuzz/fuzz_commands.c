@@ -13,11 +13,13 @@
 #include "app/app.h"
 #include "base/counters.h"
 #include "base/notices.h"
+#include "control/control.h"
 #include "fuzz.h"
 #include "fuzz_commands.h"
 #include "hal_host.h"
 #include "hal_uart.h"
 #include "settings/settings.h"
+#include "settings/store.h"
 
 enum {
     OPTION_NO_SENSOR = 1,
@@ -86,7 +88,7 @@ static void run_ms(double ms)
 
 static bool quiet(void)
 {
-    return notices_empty() && control_takes_commands();
+    return notices_empty() && !control_line_waits() && !store_busy();
 }
 
 /* A pass takes one line at most and may sleep before; the ring holds 64 blank ones. */
@@ -152,7 +154,7 @@ static void start(uint8_t options)
         adxl345_model_power(&hal_host_sensor, false);
     }
     app_start();
-    while (!control_takes_commands()) {
+    while (!quiet()) {
         pass();
         FUZZ_CHECK(hal_host_now_ms() < BANNER_LIMIT_MS, "the banner does not end");
     }

@@ -10,7 +10,7 @@
 
 static const filter_parameter_t *named(const settings_t *s, const char *name, unsigned *which)
 {
-    const filter_law_t *law = filter_listed((filter_kind_t)s->filter);
+    const filter_law_t *law = filter_listed((filter_kind_t)s->choice.filter);
     for (*which = 0; *which < filter_parameter_count(law); ++*which) {
         const filter_parameter_t *parameter = filter_parameter(law, (uint8_t)*which);
         if (strcmp(parameter->words, name) == 0) {
@@ -24,11 +24,11 @@ static const filter_parameter_t *named(const settings_t *s, const char *name, un
 static bool taken(const settings_t *s, unsigned which, uint32_t value)
 {
     filter_t f;
-    const filter_law_t *law = filter_listed((filter_kind_t)s->filter);
+    const filter_law_t *law = filter_listed((filter_kind_t)s->choice.filter);
     filter_config_t config = filter_defaults(law, s->rate_dhz);
     for (unsigned i = 0; i < CHOICE_PARAMETERS_MAX; i++) {
-        if (s->own >> i & 1u) {
-            config.value[i] = (int32_t)s->parameters[i];
+        if (s->choice.own >> i & 1u) {
+            config.value[i] = (int32_t)s->choice.parameters[i];
         }
     }
     config.value[which] = (int32_t)value;
@@ -56,8 +56,8 @@ bool expected_parameter(settings_t *s, const char *name, const char *value, char
         snprintf(reply, REPLY_TEXT, "# refused 4: illegal value; %s ", name);
         return true;
     }
-    s->parameters[which] = stored;
-    s->own = (uint8_t)(s->own | 1u << which);
+    s->choice.parameters[which] = stored;
+    s->choice.own = (uint8_t)(s->choice.own | 1u << which);
     return true;
 }
 

@@ -26,14 +26,14 @@ static bool one_of(double value, const double *list, size_t count)
 
 bool settings_legal(const settings_t *s)
 {
-    return s->filter < FILTER_KIND_COUNT && s->mode <= MODE_PLOT && s->every >= 1 && s->every <= 10000 &&
+    return s->choice.filter < FILTER_KIND_COUNT && s->mode <= MODE_PLOT && s->every >= 1 && s->every <= 10000 &&
            one_of(s->rate_dhz / 10.0, rates_hz, 7) && one_of(s->range_g, ranges_g, 4) && one_of(s->baud, bauds, 8);
 }
 
 bool settings_equal(const settings_t *a, const settings_t *b)
 {
     for (unsigned i = 0; i < CHOICE_PARAMETERS_MAX; i++) {
-        if ((a->own >> i & 1u) && a->parameters[i] != b->parameters[i]) {
+        if ((a->choice.own >> i & 1u) && a->choice.parameters[i] != b->choice.parameters[i]) {
             return false;
         }
     }
@@ -44,14 +44,15 @@ bool settings_equal(const settings_t *a, const settings_t *b)
         memcmp(c->level_q14, d->level_q14, 6) != 0) {
         return false;
     }
-    return a->own == b->own && a->baud == b->baud && a->rate_dhz == b->rate_dhz && a->every == b->every &&
-           a->range_g == b->range_g && a->mode == b->mode && a->address == b->address && a->filter == b->filter;
+    return a->choice.own == b->choice.own && a->baud == b->baud && a->rate_dhz == b->rate_dhz && a->every == b->every &&
+           a->range_g == b->range_g && a->mode == b->mode && a->address == b->address &&
+           a->choice.filter == b->choice.filter;
 }
 
 static settings_t defaults(void)
 {
     settings_t s = { .baud = 115200, .rate_dhz = 1000, .every = 1, .range_g = 16, .mode = MODE_CSV };
-    s.filter = 0; /* the first of the list */
+    s.choice.filter = 0; /* the first of the list */
     for (int8_t i = 0; i < 3; i++) {
         s.calibration.scale_lsb_per_g_uq6[i] = (i < 2 ? 265 : 256) * 64;
         s.calibration.axes[i] = (int8_t)(i + 1);
@@ -140,8 +141,10 @@ static bool set(settings_t *s, const char *name, const char *value)
     double v = 0.0;
     if (strcmp(name, "filter") == 0) {
         uint8_t filter = (uint8_t)filter_find(value);
-        s->own = 0;
-        s->filter = filter;
+        if (filter != s->choice.filter) { /* the one in force keeps its parameters */
+            s->choice.own = 0;
+        }
+        s->choice.filter = filter;
         return filter < FILTER_KIND_COUNT;
     }
     if (strcmp(name, "axes") == 0) {
@@ -205,12 +208,14 @@ static bool expect_measuring(expected_t *e, const char *line)
 
 static bool expect_verb(expected_t *e, const char *line)
 {
-    if (strcmp(line, "help") == 0) {
-        expect_lines(e, "# filter: ", SETTINGS + 1);
+    unsigned parameters = filter_parameter_count(filter_listed((filter_kind_t)e->settings.choice.filter));
+    if (strcmp(line, "help") == 0 || strcmp(line, "?") == 0) {
+        expect_lines(e, "# filter: ", SETTINGS + FUZZ_VECTORS + parameters + 1);
+    } else if (strcmp(line, "version") == 0) {
+        expect(e, "# tilt-uno ");
     } else if (strcmp(line, "status") == 0) {
         expect_lines(e, "# state ", 7);
     } else if (strcmp(line, "settings") == 0) {
-        unsigned parameters = filter_parameter_count(filter_listed((filter_kind_t)e->settings.filter));
         expect_lines(e, "# filter ", SETTINGS + FUZZ_VECTORS + parameters);
     } else if (strcmp(line, "stop") == 0) {
         e->sampling = false;
@@ -219,9 +224,9 @@ static bool expect_verb(expected_t *e, const char *line)
         e->sampling = true;
         expect(e, "# going");
     } else if (strcmp(line, "save") == 0) {
-        e->has_saved = e->has_saved || !e->sampling;
-        e->saved = e->sampling ? e->saved : e->settings;
-        expect(e, e->sampling ? "# refused 6: type stop first" : "# saved");
+        e->has_saved = true;
+        e->saved = e->settings;
+        expect(e, "# saved");
     } else if (strcmp(line, "load") == 0) {
         take_settings(e, e->has_saved ? e->saved : defaults());
         expect(e, e->has_saved ? "# settings: as saved" : "# settings: defaults, none saved");
