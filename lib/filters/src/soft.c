@@ -195,7 +195,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 const filter_law_t filter_law_soft FX_FLASH = { .name = "soft",
                                                 .parameter_count = 6,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                                .worst_cycles = 1650,
+                                                .worst_cycles = 1695,
                                                 .parameters = parameters,
                                                 .standard = standard,
                                                 .together = together,

@@ -68,7 +68,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 const filter_law_t filter_law_sprf FX_FLASH = { .name = "sprf",
                                                 .parameter_count = 5,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                                .worst_cycles = 1160,
+                                                .worst_cycles = 1230,
                                                 .parameters = parameters,
                                                 .standard = standard,
                                                 .together = together,
