@@ -75,11 +75,19 @@ static void coast_over_gap(chain_t *chain, uint64_t t_us)
     }
 }
 
+/* As in tilt_axis.c: what the law has found, not below the estimate beside it. */
+static uint32_t r_lsb2_q8(const chain_t *chain)
+{
+    uint32_t own_lsb2_q8 = filter_own_noise_lsb2_q8(&chain->filter);
+    uint32_t estimated_lsb2_q8 = filter_noise_r_lsb2_q8(&chain->noise);
+    return own_lsb2_q8 > estimated_lsb2_q8 ? own_lsb2_q8 : estimated_lsb2_q8;
+}
+
 /* After a hold: pipeline.c, rejoins. */
 static bool rejoins(chain_t *chain, int16_t lsb)
 {
     int16_t off_lsb = (int16_t)(lsb - ((((chain->x_lsb_q16 + 128) >> 8) + 128) >> 8));
-    if ((uint32_t)(off_lsb * off_lsb) > filter_noise_r_lsb2_q8(&chain->noise) >> 5) {
+    if ((uint32_t)(off_lsb * off_lsb) > r_lsb2_q8(chain) >> 5) {
         if (chain->away++ < AWAY_SAMPLES) {
             return false;
         }
@@ -102,7 +110,9 @@ int32_t chain_sample(chain_t *chain, uint64_t t_us, int16_t lsb)
         chain->waits = true;
         return chain->x_lsb_q16;
     }
-    if (filter_noise_update(&chain->noise, lsb)) {
+    if (filter_own_noise_lsb2_q8(&chain->filter) != 0) {
+        filter_noise_gap(&chain->noise);
+    } else if (filter_noise_update(&chain->noise, lsb)) {
         filter_set_noise(&chain->filter, filter_noise_r_lsb2_q8(&chain->noise));
     }
     int16_t z_lsb = chain->median.window == 0U ? lsb : median_update(&chain->median, lsb);
@@ -115,5 +125,5 @@ int32_t chain_sample(chain_t *chain, uint64_t t_us, int16_t lsb)
 
 double chain_r_lsb2(const chain_t *chain)
 {
-    return filter_noise_r_lsb2_q8(&chain->noise) / 256.0;
+    return r_lsb2_q8(chain) / 256.0;
 }

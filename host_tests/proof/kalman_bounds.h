@@ -121,7 +121,7 @@ void filter_kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8);
             gate_sigma_q8, f->own.kalman.r_lsb2_q8, f->rate_max_lsb;
     ensures FLAG(f->own.kalman.gated) && FLAG(f->own.kalman.coarse);
 */
-void filter_kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8);
+static void set_gate(filter_t *f, uint16_t gate_sigma_q8);
 
 /* With what any Kalman law's set_noise does (proof_kalman.c). */
 /*@ requires 50 <= config->rate_dhz <= 40000 && 3 <= config->value[0] <= R_END && 1 <= config->value[1] <= 1000000000;

@@ -234,6 +234,9 @@ static void prove_set_noise(const filter_law_t *law)
         law->set_noise(&f, ANY_U32(FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8));
         //@ check running: TRACKED(&f) && KEPT(&f) && f.collected == 5;
         //@ check force: FORCE(&f);
+        if (law->own_noise != NULL) {
+            (void)law->own_noise(&f);
+        }
         any_starting(&f, law, kind, 4);
         f.collected = ANY_U8(0, 4);
         law->set_noise(&f, ANY_U32(FILTER_R_MIN_LSB2_Q8, FILTER_R_MAX_LSB2_Q8));

@@ -108,19 +108,19 @@ void proof_filter_kalman_set_variance(void)
     filter_kalman_set_variance(&f, ANY_U32(R_END + 1, R_ANY));
 }
 
-void proof_filter_kalman_set_gate(void)
+void proof_set_gate(void)
 {
     filter_t f;
     any_running(&f, NULL, 0);
     f.own.kalman.r_lsb2_q8 = ANY_U32(R_LEAST, R_END);
-    filter_kalman_set_gate(&f, ANY_U16(0, 4096));
+    set_gate(&f, ANY_U16(0, 4096));
 }
 
 /* As the laws' own, with any gate. */
 static void any_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
     filter_kalman_set_variance(f, r_lsb2_q8);
-    filter_kalman_set_gate(f, ANY_U16(0, 4096));
+    set_gate(f, ANY_U16(0, 4096));
 }
 
 /* Without a limit of the rate, and with one. */

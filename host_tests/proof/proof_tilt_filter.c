@@ -17,6 +17,8 @@
 filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_config_t *config);
 /*@ assigns f->own \from r_lsb2_q8; */
 void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8);
+/*@ assigns \result \from f->own; */
+uint32_t filter_own_noise_lsb2_q8(const filter_t *f);
 /*@ assigns f->x_lsb_q16, f->flags, f->quarters, f->own, \result \from f->x_lsb_q16, f->flags, f->quarters, z_lsb;
     ensures ESTIMATE(f);
 */

@@ -21,8 +21,7 @@
  * Noise, with `identify` on (1): the scatter of the innovations about their mean, of every second sample, each limited
  * to 2.5 times what it is expected to be. Motion that the line does not follow widens it, and so the gate. It starts
  * from the R that was configured or told last before the first sample after the start; later calls of filter_set_noise
- * change nothing: a pipeline that estimates an R of its own may go on telling it, and need not. Off (0): the square
- * root of that R, always.
+ * change nothing, and filter_own_noise_lsb2_q8 says what R it has found. Off (0): the square root of that R, always.
  *
  * FILTER_GATED tells that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be
  * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the identified noise and
@@ -104,6 +103,17 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
         uint32_t sigma_q10 = filter_fx_isqrt32(r_lsb2_q8 << 12); /* 110..32382 */
         a->scatter_lsb_uq24 = sigma_q10 << 14;
     }
+}
+
+/*
+ * 1.5 variances, as noise.h has it: the scatter is 1.375 / sqrt(pi / 2) = 1.097 sigmas, so 1.246 times its square, here
+ * 1.25; 3 at least, the lowest R, at 0.1 LSB. Before the first term it is a quarter more than the R that was told.
+ */
+static uint32_t own_noise(const filter_t *f)
+{
+    uint16_t scatter_uq8 = fx_upper(&f->own.adaptive.scatter_lsb_uq24);
+    uint32_t r_lsb2_uq8 = fx_product_u16(scatter_uq8, (uint16_t)(scatter_uq8 + (scatter_uq8 >> 2))) >> 8;
+    return f->own.adaptive.identify ? r_lsb2_uq8 : 0U;
 }
 
 static void start(filter_t *f, bool settled)
@@ -198,9 +208,7 @@ static uint32_t judge(filter_t *f, int32_t x1_lsb_q16)
     f->flags |= FILTER_GATED;
     uint32_t twice = gate + gate;
     uint32_t left = (size < twice) ? twice - size : 0U;
-    if (left > agreed) {
-        agreed = left;
-    }
+    agreed = (left > agreed) ? left : agreed;
     a->verdict = ADAPTIVE_OUTLIER;
     if (agreed == 0U) {
         a->verdict = ADAPTIVE_UNUSED;
@@ -325,9 +333,7 @@ static void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spre
         weight = ADAPTIVE_OPENING_UQ16;
     }
     uint32_t scatter = averaged(a->scatter_lsb_uq24, spread_uq8, term, weight);
-    if (scatter < ADAPTIVE_SCATTER_MIN_UQ24) {
-        scatter = ADAPTIVE_SCATTER_MIN_UQ24;
-    }
+    scatter = (scatter < ADAPTIVE_SCATTER_MIN_UQ24) ? ADAPTIVE_SCATTER_MIN_UQ24 : scatter;
     a->scatter_lsb_uq24 = (scatter > ADAPTIVE_SCATTER_MAX_UQ24) ? ADAPTIVE_SCATTER_MAX_UQ24 : scatter;
 }
 
@@ -360,16 +366,6 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     }
 }
 
-/* Of the last update; 0 when nothing was taken. */
-static uint16_t gain_uq16(const filter_t *f)
-{
-    if ((f->flags & FILTER_COASTED) != 0U || f->own.adaptive.verdict == (uint8_t)ADAPTIVE_UNUSED) {
-        return 0;
-    }
-    uint16_t k = fx_upper(&f->own.adaptive.k_uq32);
-    return (uint16_t)(2U * k - filter_fx_high_u16(k, k));
-}
-
 /* The variance is that of the memory for samples that scatter as the innovations do. */
 static void report(const filter_t *f, filter_probe_t *out)
 {
@@ -379,8 +375,10 @@ static void report(const filter_t *f, filter_probe_t *out)
     if (f->collected != FILTER_RUNNING) {
         return;
     }
-    out->p_lsb2_q8 = filter_tracker_fading_variance(out->p_lsb2_q8, fx_upper(&a->k_uq32));
-    out->gain_uq16 = gain_uq16(f);
+    uint16_t k = fx_upper(&a->k_uq32);
+    bool taken = (f->flags & FILTER_COASTED) == 0U && a->verdict != (uint8_t)ADAPTIVE_UNUSED;
+    out->p_lsb2_q8 = filter_tracker_fading_variance(out->p_lsb2_q8, k);
+    out->gain_uq16 = taken ? (uint16_t)(2U * k - filter_fx_high_u16(k, k)) : 0U;
     if (a->guarded && a->gate_lsb_uq16 != 0U) {
         uint16_t gate_uq4 = (uint16_t)(a->gate_lsb_uq16 >> 12); /* < 4096 LSB */
         out->gate_lsb2_q8 = fx_product_u16(gate_uq4, gate_uq4);
@@ -395,6 +393,7 @@ const filter_law_t filter_law_adaptive FX_FLASH = { .name = "adaptive",
                                                     .standard = standard,
                                                     .set_up = set_up,
                                                     .set_noise = set_noise,
+                                                    .own_noise = own_noise,
                                                     .start = start,
                                                     .step = step,
                                                     .report = LAW_REPORT(report) };

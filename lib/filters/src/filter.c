@@ -31,6 +31,12 @@ void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8)
     LAW_OF(f, set_noise)(f, filter_tracker_limited_r(r_lsb2_q8));
 }
 
+uint32_t filter_own_noise_lsb2_q8(const filter_t *f)
+{
+    uint32_t (*own)(const filter_t *) = LAW_OF(f, own_noise);
+    return (own == NULL) ? 0U : own(f);
+}
+
 static uint8_t traits(const filter_t *f)
 {
     return fx_flash_u8(&f->law->traits);

@@ -53,8 +53,11 @@ void filter_kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8)
     k->p22_start_uq26 = per_r_uq26(k->start_lsb2, r_lsb2, k->q22_uq26);
 }
 
-/* The agreement is 3 sqrt(2 R) and a period at ratemax: < 135 + 4609 LSB. */
-void filter_kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8)
+/*
+ * Gate of so many sigmas (<= 16) with the R in force, and how far two samples of one run may lie apart: 3 sqrt(2 R) and
+ * a period at ratemax, < 135 + 4609 LSB.
+ */
+static void set_gate(filter_t *f, uint16_t gate_sigma_q8)
 {
     filter_kalman_t *k = &f->own.kalman;
     /* gate^2 R; from UQ10.22 the two products in Q8 lead to UQ.6 */
@@ -66,6 +69,20 @@ void filter_kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8)
     k->gated = gate_sigma_q8 != 0U;
     k->gate_lsb2_uq6 = (gate_uq6 == 0U) ? 1U : (uint16_t)gate_uq6;
     k->agree_lsb = (uint16_t)((filter_fx_isqrt32(18U * k->r_lsb2_q8) + (f->rate_max_lsb >> 12)) >> 4);
+}
+
+void filter_kalman_set_noise_gated(filter_t *f, uint32_t r_lsb2_q8)
+{
+    filter_kalman_set_variance(f, r_lsb2_q8);
+    set_gate(f, f->own.kalman.of.gated.gate_sigma_q8);
+}
+
+void filter_kalman_set_up_gated(filter_t *f, const filter_config_t *config, uint8_t reacquire)
+{
+    uint8_t samples = (uint8_t)config->value[reacquire];
+    f->own.kalman.of.gated.gate_sigma_q8 = (uint16_t)config->value[KALMAN_GATE];
+    f->own.kalman.steps = (samples == 0U) ? 0U : (uint8_t)(samples - 1U);
+    filter_kalman_set_up(f, config, (uint32_t)config->value[reacquire + 1]);
 }
 
 /* What the law forgets with its run of refused samples and its last gate. */

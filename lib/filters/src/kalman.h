@@ -52,8 +52,8 @@ extern "C" {
 #define KALMAN_SHORT_RUN_DHZ 300U
 #define KALMAN_SHORT_RUN 3
 
-/* Places of the parameters that every Kalman law begins with. */
-enum { KALMAN_R, KALMAN_Q };
+/* Places of the parameters that every Kalman law begins with, and of the first own one of a law with a gate. */
+enum { KALMAN_R, KALMAN_Q, KALMAN_GATE };
 
 /* Places in line: told two the compiler makes a loop of them on AVR. */
 static inline uint32_t kalman_quarter(uint32_t v)
@@ -98,8 +98,12 @@ void filter_kalman_set_up(filter_t *f, const filter_config_t *config, uint32_t r
 /* R for the samples to come, 2..2^24 - 1. The estimate stays, P / R is re-scaled by time. Divides. */
 void filter_kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8);
 
-/* Gate of so many sigmas (<= 16) with the R in force, and how far two samples of one run may lie apart. */
-void filter_kalman_set_gate(filter_t *f, uint16_t gate_sigma_q8);
+/*
+ * The same two for a law whose first own parameter is the gate of its update; `reacquire` is the place of the samples
+ * of a run, and ratemax follows it. Divide.
+ */
+void filter_kalman_set_up_gated(filter_t *f, const filter_config_t *config, uint8_t reacquire);
+void filter_kalman_set_noise_gated(filter_t *f, uint32_t r_lsb2_q8);
 
 /* P11 = R, rate as uncertain as at the start. */
 void filter_kalman_start(filter_t *f, bool settled);

@@ -54,20 +54,14 @@ static uint16_t flagged_share_uq16(int32_t soft_sigma_q8, int32_t gate_sigma_q8)
     return (share > 0xFFFFU) ? 0xFFFFU : (uint16_t)share;
 }
 
+LAW_ASSERT((int)SOFT_SOFT_SIGMA_Q8 == (int)KALMAN_GATE && (int)SOFT_RATE_MAX_LSB_S == (int)SOFT_REACQUIRE_SAMPLES + 1,
+           "where filter_kalman_set_up_gated looks");
+
 static void set_up(filter_t *f, const filter_config_t *config)
 {
-    int32_t samples = config->value[SOFT_REACQUIRE_SAMPLES];
-    f->own.kalman.of.gated.gate_sigma_q8 = (uint16_t)config->value[SOFT_SOFT_SIGMA_Q8];
     f->own.kalman.of.gated.share_uq16 = flagged_share_uq16(config->value[SOFT_SOFT_SIGMA_Q8],
                                                            config->value[SOFT_GATE_SIGMA_Q8]);
-    f->own.kalman.steps = (uint8_t)((samples == 0) ? 0 : samples - 1);
-    filter_kalman_set_up(f, config, (uint32_t)config->value[SOFT_RATE_MAX_LSB_S]);
-}
-
-static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
-{
-    filter_kalman_set_variance(f, r_lsb2_q8);
-    filter_kalman_set_gate(f, f->own.kalman.of.gated.gate_sigma_q8);
+    filter_kalman_set_up_gated(f, config, SOFT_REACQUIRE_SAMPLES);
 }
 
 /* The least weight of a sample. */
@@ -201,12 +195,12 @@ static void report(const filter_t *f, filter_probe_t *out)
 const filter_law_t filter_law_soft FX_FLASH = { .name = "soft",
                                                 .parameter_count = 6,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                                .worst_cycles = 1650,
+                                                .worst_cycles = 1695,
                                                 .parameters = parameters,
                                                 .standard = standard,
                                                 .together = together,
                                                 .set_up = set_up,
-                                                .set_noise = set_noise,
+                                                .set_noise = filter_kalman_set_noise_gated,
                                                 .start = filter_kalman_start,
                                                 .step = step,
                                                 .report = LAW_REPORT(report) };

@@ -28,18 +28,12 @@ static bool together(const filter_config_t *config)
     return filter_kalman_run_legal(config->value[SPRF_REACQUIRE_SAMPLES]);
 }
 
+LAW_ASSERT((int)SPRF_GATE_SIGMA_Q8 == (int)KALMAN_GATE && (int)SPRF_RATE_MAX_LSB_S == (int)SPRF_REACQUIRE_SAMPLES + 1,
+           "where filter_kalman_set_up_gated looks");
+
 static void set_up(filter_t *f, const filter_config_t *config)
 {
-    int32_t samples = config->value[SPRF_REACQUIRE_SAMPLES];
-    f->own.kalman.of.gated.gate_sigma_q8 = (uint16_t)config->value[SPRF_GATE_SIGMA_Q8];
-    f->own.kalman.steps = (uint8_t)((samples == 0) ? 0 : samples - 1);
-    filter_kalman_set_up(f, config, (uint32_t)config->value[SPRF_RATE_MAX_LSB_S]);
-}
-
-static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
-{
-    filter_kalman_set_variance(f, r_lsb2_q8);
-    filter_kalman_set_gate(f, f->own.kalman.of.gated.gate_sigma_q8);
+    filter_kalman_set_up_gated(f, config, SPRF_REACQUIRE_SAMPLES);
 }
 
 /*
@@ -74,12 +68,12 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 const filter_law_t filter_law_sprf FX_FLASH = { .name = "sprf",
                                                 .parameter_count = 5,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
-                                                .worst_cycles = 1160,
+                                                .worst_cycles = 1230,
                                                 .parameters = parameters,
                                                 .standard = standard,
                                                 .together = together,
                                                 .set_up = set_up,
-                                                .set_noise = set_noise,
+                                                .set_noise = filter_kalman_set_noise_gated,
                                                 .start = filter_kalman_start,
                                                 .step = step,
                                                 .report = LAW_REPORT(filter_kalman_report) };

@@ -31,12 +31,30 @@ static uint8_t flags_of(const filter_t *f)
     return (uint8_t)(((f->flags & FILTER_WARMING_UP) != 0U) ? flags | TILT_WARMING_UP : flags);
 }
 
-/* Within 2.8 sigmas of the estimate, by the R of the noise, which is 3.5 of a healthy sensor's. */
+/* R is estimated once: beside a law that identifies its own the estimate stands still. */
+static void estimate_noise(tilt_axis_t *a, int16_t lsb, bool own_r)
+{
+    if (filter_own_noise_lsb2_q8(&a->filter) != 0U) {
+        filter_noise_gap(&a->noise);
+    } else if (filter_noise_update(&a->noise, lsb) && !own_r) {
+        filter_set_noise(&a->filter, filter_noise_r_lsb2_q8(&a->noise));
+    }
+}
+
+/*
+ * Within 2.8 sigmas of the estimate, by the R of the noise, which is 3.5 of a healthy sensor's: that of the law where
+ * it has identified it, but not below the estimate beside it, which then stands at its floor or where it last ran.
+ */
 static bool near_estimate(const tilt_axis_t *a, int16_t lsb)
 {
     int16_t off_lsb = (int16_t)(lsb - tilt_axis_estimate_lsb(a));
     uint16_t size_lsb = (uint16_t)((off_lsb < 0) ? -off_lsb : off_lsb);
-    return fx_product_u16(size_lsb, size_lsb) <= filter_noise_r_lsb2_q8(&a->noise) >> 5;
+    uint32_t r_lsb2_q8 = filter_noise_r_lsb2_q8(&a->noise);
+    uint32_t own_lsb2_q8 = filter_own_noise_lsb2_q8(&a->filter);
+    if (own_lsb2_q8 > r_lsb2_q8) {
+        r_lsb2_q8 = own_lsb2_q8;
+    }
+    return fx_product_u16(size_lsb, size_lsb) <= r_lsb2_q8 >> 5;
 }
 
 /* A sample after a hold, which the filter is not to have as long as a->away is not 0. */
@@ -70,9 +88,7 @@ uint8_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, boo
         miss(a);
         return (uint8_t)(TILT_CLIPPED | flags_of(&a->filter));
     }
-    if (filter_noise_update(&a->noise, lsb) && !own_r) {
-        filter_set_noise(&a->filter, filter_noise_r_lsb2_q8(&a->noise));
-    }
+    estimate_noise(a, lsb, own_r);
     if (a->away != 0U) {
         flags = rejoin(a, lsb);
     }

@@ -47,8 +47,8 @@ int16_t tilt_axis_estimate_lsb(const tilt_axis_t *a);
 void tilt_axis_begin(tilt_axis_t *a, uint16_t rate_dhz, bool noisy_axis);
 
 /*
- * One sample. own_r: R is the caller's, not the estimated one. The estimate is in a->filter; answers what is true of
- * the sample on this axis.
+ * One sample. own_r: R is the caller's, not the estimated one; a law that identifies its own is given none. The
+ * estimate is in a->filter; answers what is true of the sample on this axis.
  *
  * A sample at the rail of its range says no more than that it is outside: it is missing. After a hold (100 ms without a
  * sample) the filter goes on from what it held when the sample lies near it. A single one away from it may be a bad
