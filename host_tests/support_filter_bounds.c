@@ -95,7 +95,7 @@ const char *broken_mixture(const filter_t *f)
         return "learnt_from";
     }
     if (m->normal_uq24 < MIXTURE_MARGIN_UQ24 || m->normal_uq24 > 0x1000000U - MIXTURE_MARGIN_UQ24 ||
-        fx_abs32(m->log_odds_q9) > (uint32_t)7 * 512U) {
+        filter_fx_abs32(m->log_odds_q9) > (uint32_t)7 * 512U) {
         return "q";
     }
     return broken_wide(f);
@@ -105,7 +105,7 @@ const char *broken_mixture(const filter_t *f)
 static const char *broken_tracker(const filter_t *f, bool fine, bool difference)
 {
     uint32_t most = fine ? RATE_MAX_FINE_Q24 : X_MAX_Q16;
-    if (f->rate_max_lsb > most || fx_abs32(f->rate_lsb) > (difference ? 2U * X_MAX_Q16 : f->rate_max_lsb)) {
+    if (f->rate_max_lsb > most || filter_fx_abs32(f->rate_lsb) > (difference ? 2U * X_MAX_Q16 : f->rate_max_lsb)) {
         return "rate";
     }
     if (f->size_lsb_uq16 > (uint32_t)8704 << 16) {
@@ -152,7 +152,7 @@ const char *broken_bound(const filter_t *f, const filter_probe_t *probe, int32_t
 {
     filter_kind_t kind = kind_of(f);
     law_facts_t facts = law_facts(kind);
-    if (fx_abs32(x_lsb_q16) > X_MAX_Q16) {
+    if (filter_fx_abs32(x_lsb_q16) > X_MAX_Q16) {
         return "x";
     }
     if (x_lsb_q16 != f->x_lsb_q16) {

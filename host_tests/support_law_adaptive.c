@@ -27,7 +27,7 @@ const char *broken_adaptive(const filter_t *f)
     if (running(f) && a->gate_lsb_uq16 > (uint32_t)4096 << 16) {
         return "gate";
     }
-    if (running(f) && fx_abs32(a->mean_lsb_q24) > (uint32_t)128 << 24) {
+    if (running(f) && filter_fx_abs32(a->mean_lsb_q24) > (uint32_t)128 << 24) {
         return "mean";
     }
     return broken_adaptive_memory(f);

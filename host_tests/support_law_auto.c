@@ -8,10 +8,10 @@
 /* auto.c: every member within its formats, memories between 3.3 and 512 samples, scores of squares within 8 sigmas. */
 static const char *broken_member(const filter_t *f, const filter_member_t *m)
 {
-    if (fx_abs32(m->x_lsb_q16) > X_MAX_Q16) {
+    if (filter_fx_abs32(m->x_lsb_q16) > X_MAX_Q16) {
         return "x of a member";
     }
-    if (fx_abs32(m->rate_lsb_q16) > f->rate_max_lsb) {
+    if (filter_fx_abs32(m->rate_lsb_q16) > f->rate_max_lsb) {
         return "rate of a member";
     }
     if (m->score_lsb2_uq8 > 8U * 64U * FILTER_R_MAX_LSB2_Q8 + 8U) {

@@ -66,7 +66,7 @@ const char *broken_kf3(const filter_t *f)
     if (!running(f)) {
         return NULL;
     }
-    if (fx_abs32(k->acceleration_q16) > X_MAX_Q16) {
+    if (filter_fx_abs32(k->acceleration_q16) > X_MAX_Q16) {
         return "acceleration";
     }
     return kf3_covariance_broken(f) ? "P" : NULL;

@@ -23,10 +23,10 @@ static double noise_gain(const filter_t *f)
 static const char *broken_running_estimates(const filter_t *f)
 {
     const filter_synth_t *s = &f->own.synth;
-    if (fx_abs32(f->x_lsb_q16 - f->rate_lsb) > X_MAX_Q16 + 1U) {
+    if (filter_fx_abs32(f->x_lsb_q16 - f->rate_lsb) > X_MAX_Q16 + 1U) {
         return "older x";
     }
-    if (fx_abs32(s->rate_before_lsb_q16) > 2U * X_MAX_Q16) {
+    if (filter_fx_abs32(s->rate_before_lsb_q16) > 2U * X_MAX_Q16) {
         return "oldest x";
     }
     bool steady = s->count == (uint8_t)SYNTH_STEADY;

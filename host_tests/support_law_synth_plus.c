@@ -16,7 +16,7 @@ const char *broken_synth_plus(const filter_t *f)
     if (s->b0_uq16 < SYNTH_B0_MIN_UQ16 || s->of.plus.k > 8U) {
         return "configuration";
     }
-    if (running(f) && fx_abs32(s->memory_lsb_q16) > (uint32_t)18432 << 16) {
+    if (running(f) && filter_fx_abs32(s->memory_lsb_q16) > (uint32_t)18432 << 16) {
         return "memory";
     }
     return broken_estimates(f);

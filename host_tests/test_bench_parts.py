@@ -13,7 +13,7 @@ CASE = Case("default", 100, 1, 115200)
 
 # pc: what the line numbers tell, the outermost function first; none for the compiler's own code and the table of vectors
 SOURCES = {0x200: ["main"], 0x202: ["main", "app_pass", "serve"], 0x204: ["main", "app_pass", "newcomer"], 0x206: ["main", "app_pass", "set_alarm"],
-           0x300: ["filter_axes"], 0x302: ["filter_axes", "tilt_axis_update", "filter_update"], 0x304: ["filter_axes", "newcomer", "fx_abs32"],
+           0x300: ["filter_axes"], 0x302: ["filter_axes", "tilt_axis_update", "filter_update"], 0x304: ["filter_axes", "newcomer", "filter_fx_abs32"],
            0x400: ["step"], 0x402: ["step", "learn"], 0x500: ["sort"], 0x600: ["__vector_24", "i2c_bus_step"]}
 CALLS = """cell,frame,pc,count,cycles,symbol
 1,0,0x0000,1,3,__vectors+0x0
@@ -59,7 +59,7 @@ def a_function_in_no_part_is_the_rest_s_where_its_caller_has_its_own_code_alone(
     assert bench_parts.part_of(("main", "app_pass", "newcomer", "sort")) == (REST, "newcomer")
     assert bench_parts.part_of(("main", "app_pass", "service", "newcomer")) == ("supervision", None)
     assert bench_parts.part_of(("main", "app_pass", "newcomer", "filter_update", "step")) == ("filters", None)
-    assert bench_parts.part_of(("main", "app_pass", "fx_abs32", "__umulhisi3")) == ("main loop", None)
+    assert bench_parts.part_of(("main", "app_pass", "filter_fx_abs32", "__umulhisi3")) == ("main loop", None)
     assert bench_parts.part_of(("newcomer", "__umulhisi3")) == (REST, "newcomer")
 
 

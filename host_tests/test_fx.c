@@ -132,8 +132,8 @@ static void reciprocal_is_within_its_bound(void)
 
 static void saturating_and_clamping(void)
 {
-    TEST_ASSERT_EQUAL_HEX32(0x80000000U, fx_abs32(INT32_MIN));
-    TEST_ASSERT_EQUAL_UINT32(7, fx_abs32(-7));
+    TEST_ASSERT_EQUAL_HEX32(0x80000000U, filter_fx_abs32(INT32_MIN));
+    TEST_ASSERT_EQUAL_UINT32(7, filter_fx_abs32(-7));
     TEST_ASSERT_EQUAL_INT32(-5, fx_clamp(-9, 5));
     TEST_ASSERT_EQUAL_INT32(5, fx_clamp(9, 5));
     TEST_ASSERT_EQUAL_INT32(-4, fx_clamp(-4, 5));

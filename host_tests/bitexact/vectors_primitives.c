@@ -81,7 +81,7 @@ static uint32_t normalised_c(uint32_t v)
     X(fx_places, fx_places(a))                                                       \
     X(fx_mantissa, fx_mantissa(a))                                                   \
     X(filter_fx_inverse_uq16, filter_fx_inverse_uq16(LED(a)))                        \
-    X(fx_abs32, fx_abs32((int32_t)a))                                                \
+    X(filter_fx_abs32, filter_fx_abs32((int32_t)a))                                  \
     X(fx_upper_c, fx_upper_c(&a))                                                    \
     X(fx_upper, fx_upper(&a))                                                        \
     X(fx_upper_signed_c, (uint32_t)fx_upper_signed_c((const int32_t *)&a))           \

@@ -157,7 +157,7 @@ void proof_fx_clamp_high(void)
 
 void proof_fx_rest(void)
 {
-    uint32_t size = fx_abs32(ANY_S32(S32_MIN, INT32_MAX));
+    uint32_t size = filter_fx_abs32(ANY_S32(S32_MIN, INT32_MAX));
     //@ check size <= 0x80000000;
     uint32_t sum = fx_add_sat(ANY_U32(0, UINT32_MAX), ANY_U32(0, UINT32_MAX));
     int32_t limited = fx_clamp(ANY_S32(S32_MIN, INT32_MAX), ANY_S32(0, 1000));

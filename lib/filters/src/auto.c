@@ -111,7 +111,7 @@ static void start(filter_t *f, bool settled)
 
 static int32_t within_rate(filter_t *f, int32_t rate_lsb_q16)
 {
-    if (fx_abs32(rate_lsb_q16) > f->rate_max_lsb) {
+    if (filter_fx_abs32(rate_lsb_q16) > f->rate_max_lsb) {
         rate_lsb_q16 = (rate_lsb_q16 < 0) ? -(int32_t)f->rate_max_lsb : (int32_t)f->rate_max_lsb;
         f->flags |= FILTER_SATURATED;
     }
@@ -180,7 +180,7 @@ static void step_member(filter_t *f, uint8_t i, int16_t z_lsb, uint32_t gate_lsb
     int32_t innovation = (int32_t)z_lsb * 65536 - m->x_lsb_q16;
     a->innovation_lsb_q16 = innovation;
     bool below = innovation < 0;
-    uint32_t size_lsb_uq8 = fx_abs32(innovation) >> 8;
+    uint32_t size_lsb_uq8 = filter_fx_abs32(innovation) >> 8;
     uint16_t bounded = b->eight_sigmas_lsb_uq8;
     if (size_lsb_uq8 < bounded) {
         bounded = (uint16_t)size_lsb_uq8;
@@ -250,7 +250,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     choose(f);
     const answer_t *a = &answers[b->chosen];
     f->negative = a->innovation_lsb_q16 < 0;
-    f->size_lsb_uq16 = fx_abs32(a->innovation_lsb_q16);
+    f->size_lsb_uq16 = filter_fx_abs32(a->innovation_lsb_q16);
     f->gain_uq16 = a->gain_uq16;
     f->flags |= a->flags;
     show(f, b->chosen);
@@ -271,7 +271,7 @@ static void fade(filter_t *f, bool first)
     if (m->k_uq16 > b->final_k_uq16[AUTO_MIDDLE]) {
         still_lsb_q16 <<= 2;
     }
-    if (fx_abs32(m->rate_lsb_q16) <= still_lsb_q16) {
+    if (filter_fx_abs32(m->rate_lsb_q16) <= still_lsb_q16) {
         m->rate_lsb_q16 = 0;
     }
 }

@@ -17,6 +17,11 @@ const uint16_t filter_fx_reciprocal_nodes_uq16[129] FX_FLASH = {
     33825, 33689, 33554, 33421, 33288, 33156, 33026, 32896, 32768,
 };
 
+FX_ONCE uint32_t filter_fx_abs32(int32_t v)
+{
+    return (v < 0) ? 0U - (uint32_t)v : (uint32_t)v;
+}
+
 uint16_t filter_fx_isqrt32(uint32_t v)
 {
     uint32_t rest = v;

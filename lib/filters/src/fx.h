@@ -81,10 +81,7 @@ static inline const void *fx_flash_pointer(const void *p)
 #endif
 
 /* |v|; INT32_MIN gives 2^31. */
-static inline uint32_t fx_abs32(int32_t v)
-{
-    return (v < 0) ? 0U - (uint32_t)v : (uint32_t)v;
-}
+uint32_t filter_fx_abs32(int32_t v);
 
 /* v limited to -limit..limit; limit >= 0. */
 static inline int32_t fx_clamp(int32_t v, int32_t limit)
@@ -199,7 +196,7 @@ static inline uint32_t fx_mul_uq24_c(uint32_t a, uint32_t b_uq24)
 /* v - v x part_uq8 / 2^8, what is taken rounded half up; part_uq8 0 or a power of 2: the 8-bit machine multiplies. */
 static inline int32_t fx_without_part_c(int32_t v, uint8_t part_uq8)
 {
-    uint32_t size = fx_abs32(v);
+    uint32_t size = filter_fx_abs32(v);
     uint32_t half = (v < 0) ? 127U : 128U;
     int32_t part = (int32_t)((size >> 8) * part_uq8 + (((size & 0xFFU) * part_uq8 + half) >> 8));
     return (v < 0) ? v + part : v - part;

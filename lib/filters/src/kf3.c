@@ -120,7 +120,7 @@ static void start(filter_t *f, bool settled)
 /* A state limited to the bound of the format; flagged. */
 static int32_t limited(filter_t *f, int32_t v_q16)
 {
-    if (fx_abs32(v_q16) > (uint32_t)TRACKER_X_MAX_LSB_Q16) {
+    if (filter_fx_abs32(v_q16) > (uint32_t)TRACKER_X_MAX_LSB_Q16) {
         f->flags |= FILTER_SATURATED;
         return (v_q16 < 0) ? -TRACKER_X_MAX_LSB_Q16 : TRACKER_X_MAX_LSB_Q16;
     }
@@ -178,7 +178,7 @@ static void predict(filter_t *f)
     if (!grow_covariance(k)) {
         k->acceleration_q16 = 0;
     }
-    int32_t acceleration = (int32_t)to_rate(k, fx_abs32(k->acceleration_q16));
+    int32_t acceleration = (int32_t)to_rate(k, filter_fx_abs32(k->acceleration_q16));
     int32_t rate = f->rate_lsb;
     rate = limited(f, (k->acceleration_q16 < 0) ? rate - acceleration : rate + acceleration);
     f->x_lsb_q16 = limited(f, f->x_lsb_q16 + rate);

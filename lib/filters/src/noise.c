@@ -115,7 +115,7 @@ static void average(noise_t *n, uint32_t term_q16)
 static bool follow(noise_t *n)
 {
     uint32_t r_q8 = r_of(n->mean_lsb2_q16);
-    if (fx_abs32((int32_t)r_q8 - (int32_t)n->r_lsb2_q8) <= n->r_lsb2_q8 >> 3) {
+    if (filter_fx_abs32((int32_t)r_q8 - (int32_t)n->r_lsb2_q8) <= n->r_lsb2_q8 >> 3) {
         return false;
     }
     n->r_lsb2_q8 = r_q8;

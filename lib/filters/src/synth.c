@@ -41,7 +41,7 @@ static uint32_t margin_uq32(uint16_t b0_uq16)
 
 static uint16_t magnitude(int32_t a1_q16)
 {
-    return (uint16_t)fx_abs32(a1_q16);
+    return (uint16_t)filter_fx_abs32(a1_q16);
 }
 
 /*
@@ -67,7 +67,7 @@ uint32_t filter_synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16)
     uint16_t ac_uq16 = (uint16_t)(memory >> 15);
     int32_t ac_q16 = (a1_q16 < 0) ? -(int32_t)ac_uq16 : (int32_t)ac_uq16;
     int32_t sum_q16 = (int32_t)b0_uq16 + ac_q16;
-    int32_t product_q16 = (int32_t)filter_fx_mul_uq16(fx_abs32(sum_q16), ac_uq16);
+    int32_t product_q16 = (int32_t)filter_fx_mul_uq16(filter_fx_abs32(sum_q16), ac_uq16);
     bool negative = (sum_q16 < 0) != (ac_q16 < 0);
     int32_t above_q16 = 0x20000 - (int32_t)b0_uq16 - (negative ? -2 * product_q16 : 2 * product_q16);
     uint32_t left = (a1_q16 < 0) ? 0x40000000U - memory : 0x40000000U + memory; /* (1 + 2 ac) / 2, UQ1.31 */

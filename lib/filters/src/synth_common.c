@@ -57,7 +57,7 @@ void filter_synth_bent_step(filter_t *f, int16_t z_lsb, uint8_t what, uint16_t a
     int32_t rate = f->rate_lsb;
     int32_t bend = rate - s->rate_before_lsb_q16; /* x1 - 2 x2 + x3 < 18432 LSB */
     s->rate_before_lsb_q16 = rate;
-    int32_t part = (int32_t)filter_fx_mul_uq16(fx_abs32(bend), a1_uq16);
+    int32_t part = (int32_t)filter_fx_mul_uq16(filter_fx_abs32(bend), a1_uq16);
     f->rate_lsb = ((bend < 0) != s->a1_negative) ? rate + part : rate - part;
     filter_synth_step(f, z_lsb, what);
 }
@@ -81,7 +81,7 @@ void filter_synth_damp(filter_t *f)
 /* More than three sigmas of a sample: both squares in UQ16.16, 9 R < 2^14. */
 static bool rate_counts(const filter_t *f)
 {
-    uint32_t size_lsb_uq8 = fx_abs32(f->rate_lsb) >> 8;
+    uint32_t size_lsb_uq8 = filter_fx_abs32(f->rate_lsb) >> 8;
     uint16_t size = (uint16_t)size_lsb_uq8;
     return (size_lsb_uq8 >> 16) != 0U || fx_product_u16(size, size) > (9U * f->own.synth.r_lsb2_q8) << 8;
 }

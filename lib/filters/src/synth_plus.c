@@ -127,9 +127,9 @@ static void set_up(filter_t *f, const filter_config_t *config)
     s->b0_uq16 = (uint16_t)config->value[SYNTH_PLUS_B0_UQ16];
     s->of.plus.k = (uint8_t)config->value[SYNTH_PLUS_K];
     s->of.plus.rest_uq8 = (uint8_t)((0x100U >> s->of.plus.k) & 0xFEU); /* of k = 0 and 8 nothing */
-    s->of.plus.b1_uq16 = (uint16_t)fx_abs32(config->value[SYNTH_PLUS_B1_Q16]);
+    s->of.plus.b1_uq16 = (uint16_t)filter_fx_abs32(config->value[SYNTH_PLUS_B1_Q16]);
     s->of.plus.b1_negative = config->value[SYNTH_PLUS_B1_Q16] < 0;
-    s->of.plus.b2_uq16 = (uint16_t)fx_abs32(config->value[SYNTH_PLUS_B2_Q16]);
+    s->of.plus.b2_uq16 = (uint16_t)filter_fx_abs32(config->value[SYNTH_PLUS_B2_Q16]);
     s->of.plus.b2_negative = config->value[SYNTH_PLUS_B2_Q16] < 0;
     filter_set_noise(f, (uint32_t)config->value[SYNTH_PLUS_R_LSB2_Q8]);
 }
@@ -224,7 +224,7 @@ static void fade(filter_t *f, bool first)
 /* v x factor / 2^16, |factor| <= 65535. */
 static int32_t times(int32_t v, int32_t factor_q16)
 {
-    int32_t product = (int32_t)filter_fx_mul_uq16(fx_abs32(v), (uint16_t)fx_abs32(factor_q16));
+    int32_t product = (int32_t)filter_fx_mul_uq16(filter_fx_abs32(v), (uint16_t)filter_fx_abs32(factor_q16));
     return ((v < 0) != (factor_q16 < 0)) ? -product : product;
 }
 

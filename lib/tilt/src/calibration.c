@@ -16,7 +16,7 @@ void calibration_plain(calibration_t *c, uint16_t scale_xy_uq6, uint16_t scale_z
 
 FX_ONCE int32_t calibration_over(int32_t a, uint16_t b)
 {
-    uint32_t size = ((fx_abs32(a) << 16) + (b >> 1)) / b;
+    uint32_t size = ((filter_fx_abs32(a) << 16) + (b >> 1)) / b;
     return (a < 0) ? -(int32_t)size : (int32_t)size;
 }
 

@@ -154,7 +154,7 @@ static int16_t signed_cdeg(uint16_t first_quadrant_cdeg, bool y_negative, bool x
 int16_t tilt_atan2_cdeg(int32_t y, int32_t x)
 {
     slope_t slope;
-    slope_of(&slope, fx_abs32(y), fx_abs32(x));
+    slope_of(&slope, filter_fx_abs32(y), filter_fx_abs32(x));
     return signed_cdeg(slope_cdeg(&slope), y < 0, x < 0);
 }
 
@@ -164,8 +164,8 @@ void tilt_angles(tilt_t *out, const int32_t a_q8[3])
     int32_t y_q8 = a_q8[1];
     int32_t z_q8 = a_q8[2];
     slope_t slope;
-    slope_of(&slope, fx_abs32(y_q8), fx_abs32(z_q8));
-    uint32_t x = fx_abs32(x_q8);
+    slope_of(&slope, filter_fx_abs32(y_q8), filter_fx_abs32(z_q8));
+    uint32_t x = filter_fx_abs32(x_q8);
     uint16_t yz = slope_length(&slope);
     if (slope.shift < 0) {
         x >>= (uint8_t)(0 - slope.shift); /* x comes to the unit of yz: cheaper than yz to the unit of x */
@@ -188,7 +188,7 @@ uint16_t tilt_isqrt32(uint32_t v)
 /* An acceleration in 1/64 LSB, rounded down; 2^15 for all that is larger, beyond any plausible one. */
 static uint16_t magnitude_q6(int32_t a_q8)
 {
-    uint32_t a_q6 = fx_abs32(a_q8) >> 2;
+    uint32_t a_q6 = filter_fx_abs32(a_q8) >> 2;
     return (a_q6 > 0x8000UL) ? 0x8000U : (uint16_t)a_q6;
 }
 

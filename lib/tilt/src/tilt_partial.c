@@ -8,7 +8,7 @@
 /* In Q6, rounded down; 1 g for all that is larger. */
 static uint16_t size_q6(int32_t a_q8)
 {
-    uint32_t a_q6 = fx_abs32(a_q8) >> 2;
+    uint32_t a_q6 = filter_fx_abs32(a_q8) >> 2;
     return (a_q6 > 16384U) ? 16384U : (uint16_t)a_q6;
 }
 
