@@ -10,7 +10,7 @@
  *                                     more than 32.7 ms ahead main is also woken each 32.768 ms before, and the same
  *                                     after a moment that is past: so look at the clock, not at having been woken. At
  *                                     once where it has just passed, less than HAL_WAKE_LATE_US ago
- *   uint8_t hal_time_lap(void)        counts HAL_LAP_US, wraps: for times of at most 16 ms (main)
+ *   uint8_t hal_time_lap(void)        counts the port's HAL_LAP_US, wraps: for times of at most 16 ms (main)
  *
  *   uint32_t HAL_CPU_HZ               cycles of the processor in a second
  *
@@ -23,7 +23,6 @@
 #include <stdint.h>
 
 #define HAL_TICK_US 8192u
-#define HAL_LAP_US 64u
 #define HAL_WAKE_LATE_US 1000u
 
 /* now is at or after deadline, for moments less than 35 minutes apart (any context). */

@@ -14,6 +14,7 @@
  *   bool hal_uart_rx(uint8_t *byte)              take one received byte, false when there is none; 0 stands where some
  *                                                were lost (main)
  *   uint8_t hal_uart_rx_lost(void)               bytes lost to a full ring, framing or overrun, saturating (main)
+ *   HAL_UART_REACHES(baud)                       for #if: this processor's clock makes this rate and has time for it
  */
 #ifndef HAL_UART_H
 #define HAL_UART_H

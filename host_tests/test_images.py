@@ -15,6 +15,7 @@ from system_support import run_all, test
 OUT = pathlib.Path("build/images-test")
 IMAGES = pathlib.Path("mk/images.mk").read_text(encoding="utf-8")
 SETS = {name: names.split() for name, names in re.findall(r"^FILTERS_([a-z]+) *:= *(.*)$", IMAGES, re.M)}
+SMALL = SETS.pop("small")  # no image of its own: what boards with less flash get
 FLAG = re.compile(r"-DFILTER_LIST\(X\)= ?((?:X\(\w+\) ?)+)")
 # FILTERS, what the sentence names
 BAD = (("kff", "there is no filter kff;"), (f"{PLAIN} kff", "there is no filter kff;"), (PLAIN.upper(), f"there is no filter {PLAIN.upper()};"),
@@ -58,11 +59,13 @@ def every_filter_is_in_a_set_and_no_set_has_strange_ones():
     assert order == list(SETS) and len(order) >= 3, order
     assert {name for names in SETS.values() for name in names} == set(EVERY), SETS
     assert all(len(names) == len(set(names)) for names in SETS.values()), SETS
+    assert set(SMALL) < set(SETS[order[0]]) and SMALL[0] == SETS[order[0]][0], SMALL  # tested with the first set
 
 
 @test
 def filters_are_taken_in_the_order_given():
-    for words, wanted in (([], SETS[next(iter(SETS))]), *((["FILTERS=" + name], names) for name, names in SETS.items()),
+    for words, wanted in (([], SETS[next(iter(SETS))]), (["BOARD=nano"], SETS[next(iter(SETS))]), (["BOARD=nano-old"], SMALL), (["FILTERS=small"], SMALL),
+                          ([f"FILTERS={ROBUST}", "BOARD=promini"], [ROBUST]), *((["FILTERS=" + name], names) for name, names in SETS.items()),
                           ([f"FILTERS={SLOWEST}"], [SLOWEST]), ([f"FILTERS={ROBUST} {PLAIN}"], [ROBUST, PLAIN]),
                           ([f"FILTERS={PLAIN}  {ROBUST} "], [PLAIN, ROBUST]),
                           ([f"FILTERS={SLOWEST} {DEFAULT} {PLAIN}"], [SLOWEST, DEFAULT, PLAIN])):

@@ -9,7 +9,9 @@ FILTERS_soft         := soft lrf kf
 FILTERS_mixture      := pbf shrf af
 FILTERS_published    := sprf_paper kf3
 FILTERS_auto         := auto
-FILTERS              := $(firstword $(FILTER_SETS))
+# fewer, all of them in the first set too: for boards whose boot loader leaves less than the UNO's
+FILTERS_small        := adaptive synth
+FILTERS              := $(if $(filter 32256,$(BOARD_FLASH)),$(firstword $(FILTER_SETS)),small)
 
 CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))
 IMAGE_FILTERS   = $(FILTERS_everyday)
@@ -72,6 +74,13 @@ $(U)/plain/firmware.elf: $(PLAIN_OBJ) $(UNO_LD)
 
 SET_IMAGES      := $(U)/firmware.elf $(patsubst %,$(U)/%/firmware.elf,$(filter-out everyday,$(FILTER_SETS)))
 FIRMWARE_IMAGES := $(SET_IMAGES) $(patsubst %,$(U)/%/firmware.elf,hang wrap late tight plain)
+
+# the image of a board with half the clock, as make firmware builds it
+SLOW_IMAGE      := $(B)/promini-8mhz/firmware.elf
+ifneq ($(U)/firmware.elf,$(SLOW_IMAGE))
+$(SLOW_IMAGE): FORCE
+	@$(MAKE) BOARD=promini-8mhz U=$(@D) FILTERS=small $@
+endif
 
 FORCE:
 .PHONY: FORCE

@@ -34,6 +34,7 @@ bool hal_i2c_stop_pending(void);
 
 /* hal_time.h */
 #define HAL_CPU_HZ hal_host_cpu_hz
+#define HAL_LAP_US 64u
 extern uint32_t hal_host_cpu_hz;
 void hal_time_init(void);
 uint32_t hal_time_us(void);
@@ -54,6 +55,7 @@ void hal_wake(void);
 void hal_sleep_until_wake(void);
 
 /* hal_uart.h */
+#define HAL_UART_REACHES(baud) ((baud) != 0)
 void hal_uart_init(uint32_t baud);
 uint8_t hal_uart_tx_room(void);
 void hal_uart_tx_stage(uint8_t byte);
