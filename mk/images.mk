@@ -24,7 +24,7 @@ image_with = $(or $(firstword $(if $(filter $(1),$(CHOSEN_FILTERS)),$(U)/firmwar
              $(error FILTER: no image holds a filter $(1); filters: $(sort $(foreach s,$(FILTER_SETS),$(FILTERS_$(s))))))
 
 # the chosen one is built anew when the choice changes
-$(AVR_OBJ) $(U)/filters.txt: IMAGE_FILTERS = $(CHOSEN_FILTERS)
+$(AVR_OBJ) $(U)/filters.txt $(U)/firmware.elf: IMAGE_FILTERS = $(CHOSEN_FILTERS)
 $(AVR_OBJ): $(U)/filters.txt
 $(U)/filters.txt: FORCE
 	@sh tools/filters_txt.sh $@ $(IMAGE_FILTERS)
@@ -34,7 +34,7 @@ $(U)/%.o: %.c Makefile mk/images.mk
 	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
 
 $(U)/firmware.elf: $(AVR_OBJ) $(UNO_LD)
-	@$(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $(AVR_OBJ) -o $@
+	@python3 tools/link_image.py $(BOARD) $(BOARD_FLASH) "$(IMAGE_FILTERS)" $(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $(AVR_OBJ) -o $@
 	@echo "built $@"
 
 # IMAGE(name, filters, further flags): build/uno/NAME/firmware.elf, and filters.txt, which says what it holds

@@ -9,6 +9,7 @@ is done: that is how each choice with one filter less is measured here, by make 
 """
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -63,7 +64,7 @@ def remedy(board, flash, names, size, folder):
     """What to leave out, found by building it."""
     if len(names) == 1:
         others = [each.name for each in boards.TABLE.values() if each.flash >= size]
-        return f"{names[0]} alone does not fit; " + (f"it fits a board with more flash: {' '.join(others)}" if others else "it fits no board")
+        return f"{names[0]} does not fit even alone; boards with room for it: {' '.join(others) or 'none'}"
     print(f"measuring the {len(names)} choices with one filter less ...", flush=True)
     without = {name: [other for other in names if other != name] for name in names}
     takes = {name: size - measured(board, rest, folder / f"without-{name}") for name, rest in without.items()}
@@ -89,8 +90,15 @@ def main():
         return 1
     size = flash_bytes(elf)
     elf.unlink()
-    over = f"FILTERS: {size - flash:,} bytes too many for {boards.TABLE[board].what} ({size:,} of {flash:,})"
-    print(f"{over}: {remedy(board, flash, names, size, elf.parent / 'measured')}", file=sys.stderr)
+    over = f"FILTERS: {size - flash:,} bytes too many for {boards.TABLE[board].what} ({size:,} where {flash:,} fit)"
+    folder = elf.parent / "measured"
+    try:
+        advice = remedy(board, flash, names, size, folder)
+    except subprocess.CalledProcessError:  # make has said why
+        advice = "leave some out"
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    print(f"{over}: {advice}", file=sys.stderr)
     return 1
 
 
