@@ -7,8 +7,6 @@ SHELL := /bin/sh
 B := build
 PY := $(B)/venv/bin/python
 UNITY_DIR ?= $(B)/unity
-PORT ?= /dev/ttyACM0
-BAUD ?= 115200
 
 WARNINGS := -Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Wundef -Wdouble-promotion -Wstrict-prototypes \
             -Wmissing-prototypes -Wcast-qual -Werror
@@ -75,24 +73,27 @@ TEST_IMAGES := $(U)/hal_probe.elf $(U)/store_probe.elf $(U)/fx_twins.elf $(U)/fx
 $(U)/firmware.hex: $(U)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $< $@
 
-## firmware: build build/uno/firmware.elf and .hex (FILTERS=: a set of mk/images.mk, or names of filters)
+## firmware: build build/uno/firmware.elf and .hex (BOARD= of tools/boards.txt; FILTERS=: a set of mk/images.mk, or names of filters)
 firmware:
 	@sh tools/deps.sh firmware
+	@$(SAY_FILTERS)
 	@$(MAKE) $(U)/firmware.hex size
 
 ## size: flash and RAM of the firmware
 size: $(U)/firmware.elf
-	@sh tools/size.sh $<
+	@sh tools/size.sh $< '' $(BOARD_FLASH)
 
-## flash: write the firmware to an UNO (PORT=/dev/ttyACM0 FILTERS=)
+## flash: write the firmware to a board (BOARD=nano-old: old boot loader; PORT= where several are there; FILTERS=)
 flash:
 	@sh tools/deps.sh flash
+	@python3 tools/flash.py port flash '$(PORT)'
+	@$(SAY_FILTERS)
 	@$(MAKE) $(U)/firmware.hex
-	avrdude -p atmega328p -c arduino -P $(PORT) -b 115200 -D -U flash:w:$(U)/firmware.hex:i
+	@python3 tools/flash.py write flash $(BOARD) $(U)/firmware.hex '$(PORT)'
 
 ## monitor: show what the board sends (PORT=, BAUD=); Ctrl-C ends
 monitor:
-	@sh tools/monitor.sh $(PORT) $(BAUD)
+	@python3 tools/flash.py monitor $(BAUD) '$(PORT)'
 
 .PHONY: firmware size flash monitor
 

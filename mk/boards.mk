@@ -6,3 +6,5 @@ BOARD_FACTS  := $(shell awk '$$1 == "$(BOARD)"' tools/boards.txt)
 BOARD_FLASH  := $(word 3,$(BOARD_FACTS))
 CPU_HZ       := $(word 4,$(BOARD_FACTS))
 BOARD_FOLDER := $(word 5,$(BOARD_FACTS))
+# what the firmware of such a clock starts with
+BAUD ?= $(if $(filter 16000000,$(CPU_HZ)),115200,57600)
