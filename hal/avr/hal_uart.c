@@ -151,7 +151,7 @@ void hal_uart_init(uint32_t baud)
     /* simulators compute the byte time when UBRR0L is written, so it comes last */
     UCSR0A = _BV(U2X0);
     UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);
-    uint16_t divider = (uint16_t)((F_CPU / 8 + baud / 2) / baud - 1);
+    uint16_t divider = (uint16_t)(HAL_UART_DIVISOR(baud) - 1);
     UBRR0H = (uint8_t)(divider >> 8);
     UBRR0L = (uint8_t)divider;
     UCSR0B = _BV(TXEN0) | _BV(RXEN0) | _BV(RXCIE0);
