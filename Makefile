@@ -7,8 +7,6 @@ SHELL := /bin/sh
 B := build
 PY := $(B)/venv/bin/python
 UNITY_DIR ?= $(B)/unity
-PORT ?= /dev/ttyACM0
-BAUD ?= 115200
 
 WARNINGS := -Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Wundef -Wdouble-promotion -Wstrict-prototypes \
             -Wmissing-prototypes -Wcast-qual -Werror
@@ -30,7 +28,8 @@ deps:
 .PHONY: help deps
 
 # --- the UNO ---------------------------------------------------------------------------------------------------------
-U := $(B)/uno
+include mk/boards.mk
+U := $(B)/$(BOARD_FOLDER)
 AVR_CC      := avr-gcc
 # what makes the smallest image with avr-gcc 5.4.0 (and no table of a switch in RAM); the filters keep their speed
 AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -fshort-enums -fno-inline-small-functions \
@@ -39,11 +38,14 @@ AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -fshort-en
 # lines, which change a few bytes, and no variables, which would change 50 of code through link-time optimisation: every program below,
 # flashed, tested, profiled or traced, is the same bits
 AVR_DEBUG   := -gdwarf-2 -g1
-AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections $(WARNINGS) \
+AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=$(CPU_HZ)UL $(AVR_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr $(FILTER_FLAG)
 # calls of functions that lie within 4 KB take half the bytes: functions.ld has an order that makes most of them so (tools/layout.py)
 UNO_LD      := hal/avr/uno.ld hal/avr/functions.ld
-AVR_LINK    := -mmcu=atmega328p $(AVR_DEBUG) $(AVR_SMALL) -ffunction-sections -Wl,--gc-sections -Wl,-T,hal/avr/uno.ld
+# a clock that is not the UNO's stands in the image as a symbol, for the simulator
+COMMA       := ,
+AVR_LINK    := -mmcu=atmega328p $(AVR_DEBUG) $(AVR_SMALL) -ffunction-sections -Wl,--gc-sections -Wl,-T,hal/avr/uno.ld \
+               $(if $(filter-out 16000000,$(CPU_HZ)),-Wl$(COMMA)--defsym=cpu_hz=$(CPU_HZ))
 AVR_SRC     := $(APP_SRC) $(LIB_SRC) $(wildcard hal/avr/*.c)
 AVR_OBJ     := $(AVR_SRC:%.c=$(U)/%.o)
 include mk/images.mk
@@ -71,24 +73,27 @@ TEST_IMAGES := $(U)/hal_probe.elf $(U)/store_probe.elf $(U)/fx_twins.elf $(U)/fx
 $(U)/firmware.hex: $(U)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $< $@
 
-## firmware: build build/uno/firmware.elf and .hex (FILTERS=: a set of mk/images.mk, or names of filters)
+## firmware: build build/uno/firmware.elf and .hex (BOARD= of tools/boards.txt; FILTERS=: a set of mk/images.mk, or names of filters)
 firmware:
 	@sh tools/deps.sh firmware
+	@$(SAY_FILTERS)
 	@$(MAKE) $(U)/firmware.hex size
 
 ## size: flash and RAM of the firmware
 size: $(U)/firmware.elf
-	@sh tools/size.sh $<
+	@sh tools/size.sh $< '' $(BOARD_FLASH)
 
-## flash: write the firmware to an UNO (PORT=/dev/ttyACM0 FILTERS=)
+## flash: write the firmware to a board (BOARD=nano-old: old boot loader; PORT= where several are there; FILTERS=)
 flash:
 	@sh tools/deps.sh flash
+	@python3 tools/flash.py port flash '$(PORT)'
+	@$(SAY_FILTERS)
 	@$(MAKE) $(U)/firmware.hex
-	avrdude -p atmega328p -c arduino -P $(PORT) -b 115200 -D -U flash:w:$(U)/firmware.hex:i
+	@python3 tools/flash.py write flash $(BOARD) $(U)/firmware.hex '$(PORT)'
 
 ## monitor: show what the board sends (PORT=, BAUD=); Ctrl-C ends
 monitor:
-	@sh tools/monitor.sh $(PORT) $(BAUD)
+	@python3 tools/flash.py monitor $(BAUD) '$(PORT)'
 
 .PHONY: firmware size flash monitor
 
@@ -143,14 +148,14 @@ quick:
 	@$(TEST_ENV) python3 tools/run_tests.py quick
 
 # what the tests of the whole firmware run
-system_images: $(U)/firmware.elf $(TEST_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay
+system_images: $(U)/firmware.elf $(TEST_IMAGES) $(SLOW_IMAGE) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay
 
 ## clean: remove what was built (the downloads in build/unity and build/venv stay)
 clean:
 	@rm -rf $(U) $(H) $(S) $(CHK) $(B)/planted $(B)/*.json
 
 # one file per further target
-include $(sort $(filter-out mk/images.mk mk/host.mk,$(wildcard mk/*.mk)))
+include $(sort $(filter-out mk/boards.mk mk/images.mk mk/host.mk,$(wildcard mk/*.mk)))
 
 # keep the test objects: no other .SECONDARY may name targets, or only those would be kept
 .SECONDARY:

@@ -10,7 +10,6 @@
 #include <stdint.h>
 
 #define HAL_TICK_US 8192u
-#define HAL_LAP_US 64u
 #define HAL_WAKE_LATE_US 1000u
 #define HAL_WAKE_AHEAD_US 31000u /* hal_wake_at tells a moment so far ahead from one that has just passed */
 
@@ -35,7 +34,7 @@ void hal_time_stamp_isr(volatile uint32_t *t_us, uint16_t count);
  */
 void hal_wake_at(uint32_t t_us);
 
-/* Counts HAL_LAP_US, wraps: for times of at most 16 ms. Main. */
+/* Counts the port's HAL_LAP_US, wraps: for times of at most 16 ms. Main. */
 uint8_t hal_time_lap(void);
 
 /* now is at or after deadline, for moments less than 35 minutes apart. Any context. */
@@ -44,7 +43,7 @@ static inline bool hal_time_reached(uint32_t now_us, uint32_t deadline_us)
     return (int32_t)(now_us - deadline_us) >= 0;
 }
 
-/* The port's HAL_CPU_HZ: cycles of the processor in a second (uint32_t). */
+/* The port's HAL_CPU_HZ: cycles of the processor in a second (uint32_t); HAL_LAP_US: what hal_time_lap counts, us. */
 #include "hal_time_port.h"
 
 #endif

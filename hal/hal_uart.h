@@ -46,4 +46,7 @@ bool hal_uart_rx(uint8_t *byte);
 /* Bytes lost to a full ring, framing or overrun, saturating. */
 uint8_t hal_uart_rx_lost(void);
 
+/* The port's HAL_UART_REACHES(baud), for #if: the processor's clock makes this rate and has time for it. */
+#include "hal_uart_port.h"
+
 #endif

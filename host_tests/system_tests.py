@@ -5,7 +5,8 @@ import re
 import sys
 from unittest import mock
 
-import system_gaps  # noqa: F401  (its tests join the list)
+import system_clock  # noqa: F401  (its tests join the list)
+import system_gaps  # noqa: F401
 import system_hal  # noqa: F401
 import system_injections  # noqa: F401
 import system_injections_more  # noqa: F401

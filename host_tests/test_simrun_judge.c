@@ -15,7 +15,7 @@ static served_t served[SAMPLES];
 /* Ten samples, 10 ms apart, the first latched 10 ms after the clock began at cycle 5000: sample i is i, -i, 256 + i. */
 void setUp(void)
 {
-    judge = (judge_t){ 0 };
+    judge = (judge_t){ .cycles_per_us = US };
     judge_clock_begins(&judge, 5000);
     for (int i = 0; i < SAMPLES; i++) {
         served[i] = (served_t){ .cycle = 5000u + (uint64_t)(i + 1) * PERIOD_US * US,
@@ -177,7 +177,7 @@ static void steps_back_are_counted_in_every_row(void)
 
 static void a_clock_that_begins_elsewhere_may_wrap(void)
 {
-    judge = (judge_t){ .start_us = UINT32_MAX - 24999u };
+    judge = (judge_t){ .cycles_per_us = US, .start_us = UINT32_MAX - 24999u };
     judge_clock_begins(&judge, 5000);
     for (int i = 0; i < SAMPLES; i++) {
         row_t row = row_of(i, (uint32_t)(i + 1) * PERIOD_US, 0, 5000);
@@ -202,7 +202,7 @@ static void a_reset_begins_the_clock_anew(void)
 
 static void without_a_clock_nothing_is_judged(void)
 {
-    judge = (judge_t){ 0 };
+    judge = (judge_t){ .cycles_per_us = US };
     TEST_ASSERT_EQUAL(JUDGE_UNTIMED, verdict_of(row_of(3, 40000, 0, 5000)));
     TEST_ASSERT_EQUAL_UINT32(0, judge_judged(&judge));
     judge_clock_begins(&judge, 5000);

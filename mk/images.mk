@@ -9,7 +9,10 @@ FILTERS_soft         := soft lrf kf
 FILTERS_mixture      := pbf shrf af
 FILTERS_published    := sprf_paper kf3
 FILTERS_auto         := auto
-FILTERS              := $(firstword $(FILTER_SETS))
+# fewer, all of them in the first set too: for boards whose boot loader leaves less than the UNO's
+FILTERS_small        := adaptive synth
+FILTERS              := $(if $(filter 32256,$(BOARD_FLASH)),$(firstword $(FILTER_SETS)),small)
+SAY_FILTERS          := $(if $(filter small,$(FILTERS)),echo "BOARD=$(BOARD) has $(BOARD_FLASH) bytes of flash: the image holds the set small ($(FILTERS_small)); FILTERS= takes others",:)
 
 CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))
 IMAGE_FILTERS   = $(FILTERS_everyday)
@@ -22,7 +25,7 @@ image_with = $(or $(firstword $(if $(filter $(1),$(CHOSEN_FILTERS)),$(U)/firmwar
              $(error FILTER: no image holds a filter $(1); filters: $(sort $(foreach s,$(FILTER_SETS),$(FILTERS_$(s))))))
 
 # the chosen one is built anew when the choice changes
-$(AVR_OBJ) $(U)/filters.txt: IMAGE_FILTERS = $(CHOSEN_FILTERS)
+$(AVR_OBJ) $(U)/filters.txt $(U)/firmware.elf: IMAGE_FILTERS = $(CHOSEN_FILTERS)
 $(AVR_OBJ): $(U)/filters.txt
 $(U)/filters.txt: FORCE
 	@sh tools/filters_txt.sh $@ $(IMAGE_FILTERS)
@@ -32,7 +35,7 @@ $(U)/%.o: %.c Makefile mk/images.mk
 	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
 
 $(U)/firmware.elf: $(AVR_OBJ) $(UNO_LD)
-	@$(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $(AVR_OBJ) -o $@
+	@python3 tools/link_image.py $(BOARD) $(BOARD_FLASH) "$(IMAGE_FILTERS)" $(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $(AVR_OBJ) -o $@
 	@echo "built $@"
 
 # IMAGE(name, filters, further flags): build/uno/NAME/firmware.elf, and filters.txt, which says what it holds
@@ -72,6 +75,13 @@ $(U)/plain/firmware.elf: $(PLAIN_OBJ) $(UNO_LD)
 
 SET_IMAGES      := $(U)/firmware.elf $(patsubst %,$(U)/%/firmware.elf,$(filter-out everyday,$(FILTER_SETS)))
 FIRMWARE_IMAGES := $(SET_IMAGES) $(patsubst %,$(U)/%/firmware.elf,hang wrap late tight plain)
+
+# the image of a board with half the clock, as make firmware builds it
+SLOW_IMAGE      := $(B)/promini-8mhz/firmware.elf
+ifneq ($(U)/firmware.elf,$(SLOW_IMAGE))
+$(SLOW_IMAGE): FORCE
+	@$(MAKE) BOARD=promini-8mhz U=$(@D) FILTERS=small $@
+endif
 
 FORCE:
 .PHONY: FORCE

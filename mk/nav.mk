@@ -43,11 +43,13 @@ nav:
 	@$(MAKE) $(dir $(call nav_image,$(STATES)))firmware.hex
 	@sh tools/size.sh $(call nav_image,$(STATES)) nav
 
-## navflash: write it to an UNO (PORT=/dev/ttyACM0 STATES=12); make flash brings the tilt firmware back
+## navflash: write it to a board of 16 MHz (BOARD= PORT= STATES=12); make flash brings the tilt firmware back
 navflash:
+	@[ $(CPU_HZ) = 16000000 ] || { echo "navflash: the navigation image needs 16 MHz, BOARD=$(BOARD) has $(CPU_HZ) Hz" >&2; exit 2; }
 	@sh tools/deps.sh flash
+	@python3 tools/flash.py port navflash '$(PORT)'
 	@$(MAKE) $(dir $(call nav_image,$(STATES)))firmware.hex
-	avrdude -p atmega328p -c arduino -P $(PORT) -b 115200 -D -U flash:w:$(dir $(call nav_image,$(STATES)))firmware.hex:i
+	@python3 tools/flash.py write navflash $(BOARD) $(dir $(call nav_image,$(STATES)))firmware.hex '$(PORT)'
 
 # what its tests run
 NAV_TESTED := $(U)/nav/firmware.elf $(U)/nav9/firmware.elf $(H)/nav_replay_12 $(H)/nav_replay_9

@@ -1,7 +1,7 @@
 /*
  * simrun: the unmodified firmware of the UNO in libsimavr, with the virtual ADXL345 on its bus and a recorded stream in
  * the sensor. Each part below is one simrun_<part>.c with its own state; simrun_main.c ties them together. Time is
- * avr->cycle, 16 per microsecond, from the start of the MCU.
+ * avr->cycle, CYCLES_PER_US per microsecond, from the start of the MCU.
  */
 #ifndef SIMRUN_H
 #define SIMRUN_H
@@ -18,8 +18,8 @@
 #include "stream.h"
 #include "twi_peripheral.h"
 
-#define CYCLES_PER_US 16u
-#define CYCLES_PER_MS 16000u
+#define CYCLES_PER_US machine_size.cycles_per_us
+#define CYCLES_PER_MS (machine_size.cycles_per_us * 1000u)
 #define NEVER UINT64_MAX
 
 /* samples that the judge can look back at: what is older decides nothing, and a day has 8.6 million at 100 Hz */
@@ -77,9 +77,10 @@ bool part_take(const char *argument, adxl345_part_t *part);
 
 /* --- the machine --- */
 typedef struct {
-    uint32_t end_of_ram;  /* _end: first free RAM address */
-    uint32_t code_bytes;  /* .text */
-    uint32_t flash_bytes; /* .text and .data */
+    uint32_t end_of_ram;    /* _end: first free RAM address */
+    uint32_t code_bytes;    /* .text */
+    uint32_t flash_bytes;   /* .text and .data */
+    uint32_t cycles_per_us; /* the processor's clock in MHz: 16, or as the symbol cpu_hz says */
 } program_size_t;
 
 extern avr_t *mcu;

@@ -4,10 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum {
-    CYCLES_PER_US = 16,
-    LOOK_BACK = 4096 /* samples: an older triplet that happens to be equal excuses nothing */
-};
+enum { LOOK_BACK = 4096 /* samples: an older triplet that happens to be equal excuses nothing */ };
 
 static const char *const verdict_words[JUDGE_VERDICTS] = {
     [JUDGE_STALE] = "stale: the sensor latched these readings, but more than two sample periods before the stamp",
@@ -25,9 +22,9 @@ void judge_clock_begins(judge_t *judge, uint64_t cycle)
 /* Cycle of the row's stamp: less than 35 minutes before or after it was sent. May be negative. */
 static int64_t stamped_at(const judge_t *judge, const row_t *row)
 {
-    uint64_t sent_us = (row->sent - judge->clock_cycle) / CYCLES_PER_US;
+    uint64_t sent_us = (row->sent - judge->clock_cycle) / judge->cycles_per_us;
     int32_t age_us = (int32_t)((uint32_t)sent_us + judge->start_us - row->t_us);
-    return (int64_t)row->sent - (int64_t)age_us * CYCLES_PER_US;
+    return (int64_t)row->sent - (int64_t)age_us * judge->cycles_per_us;
 }
 
 /*
@@ -74,7 +71,7 @@ judge_verdict_t judge_row(judge_t *judge, const row_t *row, served_t *served, si
 {
     judge_verdict_t verdict = JUDGE_DISOWNED_ROW;
     if ((row->flags & JUDGE_DISOWNED) == 0) {
-        int64_t near = (int64_t)(2.0 * period_us * CYCLES_PER_US);
+        int64_t near = (int64_t)(2.0 * period_us * judge->cycles_per_us);
         verdict = judge->has_clock ? compare(row, stamped_at(judge, row), near, served, served_count) : JUDGE_UNTIMED;
     }
     bool back = steps_back(judge, row);

@@ -42,7 +42,8 @@ typedef enum {
 } judge_verdict_t;
 
 typedef struct {
-    uint32_t start_us; /* what the firmware's clock reads when Timer1 begins to count */
+    uint32_t cycles_per_us; /* given, as is the next */
+    uint32_t start_us;      /* what the firmware's clock reads when Timer1 begins to count */
     bool has_clock;
     uint64_t clock_cycle;
     uint32_t rows; /* since the clock began */

@@ -196,12 +196,12 @@ static void load_program(void)
 void machine_start(void)
 {
     random_state = options.seed * 2654435769u; /* a small seed begins with small numbers, below every chance */
-    max_cycle = options.max_ms > 0.0 ? (uint64_t)(options.max_ms * CYCLES_PER_MS) : NEVER;
     interactive = options.pty || options.gdb_port != 0;
     (void)signal(SIGINT, on_signal);
     (void)signal(SIGTERM, on_signal);
     avr_global_logger_set(on_log);
     load_program();
+    max_cycle = options.max_ms > 0.0 ? (uint64_t)(options.max_ms * CYCLES_PER_MS) : NEVER;
     stack_paint();
     if (options.bootloader != NULL) {
         load_boot_loader();

@@ -85,7 +85,7 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
 static const char help_text[] =
     "simrun --fw ELF --in CSV --out CSV [options]: runs the UNO's firmware on a recorded stream\n"
     "\n"
-    "  --fw ELF           firmware for the ATmega328P, 16 MHz\n"
+    "  --fw ELF           firmware for the ATmega328P; 16 MHz unless its symbol cpu_hz says less\n"
     "  --in CSV           stream: t_us,x,y,z or t_us,x_lsb,y_lsb,z_lsb (as it reads)\n"
     "  --frames FILE      instead of --in, for the navigation image: 'DUE_US HEX' a frame, sent when it is due and "
     "when "

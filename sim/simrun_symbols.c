@@ -8,7 +8,7 @@
 
 #include "simrun.h"
 
-enum { RAM_OFFSET = 0x800000, EEPROM_OFFSET = 0x810000, EM_AVR_MACHINE = 83 };
+enum { RAM_OFFSET = 0x800000, EEPROM_OFFSET = 0x810000, EM_AVR_MACHINE = 83, UNO_MHZ = 16 };
 
 typedef struct {
     uint32_t pc;
@@ -60,6 +60,8 @@ static void take_symbol(const GElf_Sym *symbol, const char *name, program_size_t
 {
     if (strcmp(name, "_end") == 0) {
         size->end_of_ram = (uint32_t)symbol->st_value & 0xFFFFu;
+    } else if (strcmp(name, "cpu_hz") == 0) {
+        size->cycles_per_us = (uint32_t)(symbol->st_value / 1000000u);
     } else if (is_function(symbol)) {
         add_symbol(&functions, (uint32_t)symbol->st_value, name);
     } else if (is_variable(symbol)) {
@@ -120,7 +122,7 @@ static Elf *open_elf(const char *path, int file)
 
 void symbols_load(const char *path, program_size_t *size)
 {
-    *size = (program_size_t){ 0 };
+    *size = (program_size_t){ .cycles_per_us = UNO_MHZ };
     int file = open(path, O_RDONLY);
     if (file < 0) {
         refuse(path, "cannot open");
@@ -141,6 +143,9 @@ void symbols_load(const char *path, program_size_t *size)
     close(file);
     if (size->code_bytes == 0) {
         refuse(path, "no program in it");
+    }
+    if (size->cycles_per_us == 0 || size->cycles_per_us > UNO_MHZ) {
+        refuse(path, "its symbol cpu_hz, the processor's clock, is not between 1 and 16 MHz");
     }
     if (functions.count != 0) {
         qsort(functions.list, functions.count, sizeof *functions.list, compare);

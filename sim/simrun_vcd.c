@@ -1,12 +1,12 @@
 /*
  * Waveforms for GTKWave. Written here and not by simavr, whose writer loses its timer at every reset of the MCU.
- * A cycle is 62.5 ns: 625 units of 100 ps.
+ * A cycle at 16 MHz is 62.5 ns: 625 units of 100 ps.
  */
 #include <stdlib.h>
 
 #include "simrun.h"
 
-enum { SIGNAL_MAX = VCD_ISR + 26, UNITS_PER_CYCLE = 625 };
+enum { SIGNAL_MAX = VCD_ISR + 26, UNITS_PER_US = 10000 };
 
 static const struct {
     const char *name;
@@ -48,7 +48,7 @@ void vcd_change(unsigned signal, uint32_t value)
     }
     if (mcu->cycle != last_time) {
         last_time = mcu->cycle;
-        fprintf(file, "#%llu\n", (unsigned long long)last_time * UNITS_PER_CYCLE);
+        fprintf(file, "#%llu\n", (unsigned long long)last_time * UNITS_PER_US / CYCLES_PER_US);
     }
     write_value(signal, value);
 }

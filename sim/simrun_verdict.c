@@ -17,7 +17,7 @@ static void on_timer(avr_t *avr, avr_io_addr_t address, uint8_t value, void *par
 
 void verdict_start(void)
 {
-    judge = (judge_t){ .start_us = options.clock_start_us };
+    judge = (judge_t){ .cycles_per_us = CYCLES_PER_US, .start_us = options.clock_start_us };
     avr_register_io_write(mcu, REG_TCCR1B, on_timer, NULL);
 }
 

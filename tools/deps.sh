@@ -150,7 +150,7 @@ collect() {
     missing=''
     for group in "$@"; do
         case $group in
-            firmware) need_avr ;;
+            firmware) need_avr; need python3 has python3 ;;
             sim) need_simulator; need_plots ;;
             bench) need_simulator; need python3 has python3 ;;
             test) need_simulator; need_plots; need_unity ;;
@@ -164,7 +164,7 @@ collect() {
             design) need_scipy ;;
             tilt) need_tilt ;;
             live) need_tilt; need chromium has_chromium ;;
-            flash) need_avr; need avrdude has avrdude ;;
+            flash) need_avr; need avrdude has avrdude; need python3 has python3 ;;
             piocheck) need_avr; need_host_compiler; want_pio=yes; need python3-venv has_venv_module; need ca-certificates has_certificates ;;
             flashtest) need_simulator; need avrdude has avrdude; need arduino-core-avr has_optiboot ;;
             arduino) need_simulator; need g++ has g++; need python3 has python3; need arduino-core-avr has_arduino_core ;;

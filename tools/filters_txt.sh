@@ -4,7 +4,8 @@ set -eu
 file=$1
 shift
 known=$(sed -n 's/^    X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter.h | tr '\n' ' ')
-sets=$(sed -n 's/^FILTER_SETS *:= *//p' mk/images.mk)
+sets=$(sed -n 's/^FILTERS_\([a-z]*\) *:=.*/\1/p' mk/images.mk | tr '\n' ' ')
+sets=${sets% }
 for filter in "$@"; do
     case " $known" in
         *" $filter "*) ;;

@@ -7,6 +7,7 @@
 
 #include "base/choice.h"
 #include "calibration.h"
+#include "hal_uart.h"
 #include "settings/store.h"
 
 typedef enum { MODE_CSV, MODE_PLOT } output_mode_t;
@@ -39,7 +40,11 @@ typedef struct {
     bool line_is_slower;     /* than the processor: it decides that */
 } settings_t;
 
+#if HAL_UART_REACHES(115200)
 #define SETTINGS_BAUD_DEFAULT 115200ul
+#else
+#define SETTINGS_BAUD_DEFAULT 57600ul
+#endif
 #define SETTINGS_EVERY_MAX 10000u
 #define SETTINGS_RATE_MIN_DHZ 125u
 

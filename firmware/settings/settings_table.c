@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "filter_list.h"
+#include "hal_uart.h"
 #include "settings/settings.h"
 #include "settings/settings_row.h"
 #include "settings/settings_words.h"
@@ -18,7 +19,14 @@ static const uint16_t choices[] FLASH = {
     0, 0x53, 0x1D,                                /* address; 0: the one that answers */
     125, 250, 500, 1000, 2000, 4000, 8000,        /* rate, 0.1 Hz */
     2, 4, 8, 16,                                  /* range */
-    96, 192, 384, 576, 1152, 2500, 5000, 10000    /* baud, in hundreds */
+    96, 192, 384, 576,                            /* baud, in hundreds */
+#if HAL_UART_REACHES(115200)
+    1152,
+#endif
+    2500, 5000,
+#if HAL_UART_REACHES(1000000)
+    10000
+#endif
 };
 enum { RATE = WORDS_END, RANGE = RATE + 7, BAUD = RANGE + 4, BAUD_UNIT = 100 };
 enum { LISTED = sizeof choices / sizeof choices[0] };

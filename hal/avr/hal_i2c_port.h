@@ -1,6 +1,6 @@
 /*
- * TWI of the ATmega328P (data sheet chapter 26). TWBR 14 and 12 give 16 MHz / (16 + 2 TWBR) = 363.6 and 400 kHz. The
- * internal pull-ups stay off (5 V).
+ * TWI of the ATmega328P (data sheet chapter 26). SCL is F_CPU / (16 + 2 TWBR): a clock of 2.75 us gives 363.6 kHz, one
+ * of 2.5 us 400 kHz, with TWBR 14 and 12 at 16 MHz, 3 and 2 at 8 MHz. The internal pull-ups stay off (5 V).
  */
 #ifndef HAL_I2C_PORT_H
 #define HAL_I2C_PORT_H
@@ -11,6 +11,7 @@
 #include "hal_body.h"
 #include "hal_i2c.h"
 
+#define HAL_I2C_TWBR(clock_ns) ((uint8_t)((F_CPU / 1000000 * (clock_ns) / 1000 - 16) / 2))
 #define HAL_I2C_ISR() ISR(TWI_vect)
 
 enum { HAL_I2C_GO = _BV(TWINT) | _BV(TWEN) | _BV(TWIE) };
@@ -18,7 +19,7 @@ enum { HAL_I2C_GO = _BV(TWINT) | _BV(TWEN) | _BV(TWIE) };
 HAL_BODY void hal_i2c_enable(bool fast)
 {
     TWSR = 0;
-    TWBR = fast ? 12 : 14;
+    TWBR = fast ? HAL_I2C_TWBR(2500) : HAL_I2C_TWBR(2750);
     TWCR = _BV(TWEN);
 }
 

@@ -1,6 +1,7 @@
 /*
- * Time from Timer1 at 2 MHz. Compare A fires every 8192 us and moves on by itself, compare B is main's alarm; the
- * 16-bit counter runs freely, so a time is (microseconds at the last tick) + (counter - counter at the last tick) / 2.
+ * Time from Timer1 at F_CPU / 8. Compare A fires every 8192 us and moves on by itself, compare B is main's alarm; the
+ * 16-bit counter runs freely, so a time is
+ *   (microseconds at the last tick) + (counter - counter at the last tick) / HAL_COUNTS_PER_US.
  */
 #include "hal_time.h"
 
@@ -12,7 +13,7 @@
 #include "hal_sleep.h"
 #include "hal_watchdog_tick.h"
 
-enum { COUNTS_PER_US = 2, COUNTS_PER_TICK = HAL_TICK_US * COUNTS_PER_US };
+enum { COUNTS_PER_TICK = HAL_TICK_US * HAL_COUNTS_PER_US };
 
 #ifndef HAL_TIME_START_US
 #define HAL_TIME_START_US 0ul
@@ -49,10 +50,10 @@ void hal_time_init(void)
 /* The counter begins at 0 at the start of time and is never written, so a moment has one count. */
 void hal_wake_at(uint32_t t_us)
 {
-    uint16_t count = (uint16_t)((t_us - HAL_TIME_START_US) * COUNTS_PER_US);
+    uint16_t count = (uint16_t)((t_us - HAL_TIME_START_US) * HAL_COUNTS_PER_US);
     hal_irq_state_t state = hal_irq_save(); /* the timer's 16-bit registers share a byte with the handlers' reads */
     OCR1B = count;
-    if ((uint16_t)(TCNT1 - count) < HAL_WAKE_LATE_US * COUNTS_PER_US) {
+    if ((uint16_t)(TCNT1 - count) < HAL_WAKE_LATE_US * HAL_COUNTS_PER_US) {
         hal_wake();
     }
     hal_irq_restore(state);
@@ -65,7 +66,7 @@ uint32_t hal_time_us(void)
     HAL_POINTER(tick); /* an access is half as long */
     hal_irq_state_t state = hal_irq_save();
     uint16_t since = (uint16_t)(TCNT1 - tick->count);
-    uint32_t now = tick->us + (since >> 1);
+    uint32_t now = tick->us + since / HAL_COUNTS_PER_US;
     hal_irq_restore(state);
     return now;
 }

@@ -1,4 +1,7 @@
-/* Timer1 at 2 MHz, Timer2 at 15.6 kHz. */
+/*
+ * Timer1 at F_CPU / 8, Timer2 at F_CPU / 1024. Counts of Timer1 must be whole microseconds or halves, which leaves two
+ * clocks: 16 MHz (UNO, Nano, Pro Mini 5 V) and 8 MHz (Pro Mini 3.3 V).
+ */
 #ifndef HAL_TIME_PORT_H
 #define HAL_TIME_PORT_H
 
@@ -7,9 +10,15 @@
 #include "hal_body.h"
 #include "hal_time.h"
 
+#if F_CPU != 16000000 && F_CPU != 8000000
+#error "F_CPU: this firmware knows processors of 16 MHz and of 8 MHz"
+#endif
+
 #ifndef HAL_CPU_HZ /* a test image tells a slower one */
 #define HAL_CPU_HZ F_CPU
 #endif
+#define HAL_LAP_US ((uint8_t)(1024000000ul / F_CPU)) /* of Timer2 */
+enum { HAL_COUNTS_PER_US = F_CPU / 8000000 };        /* of Timer1 */
 
 typedef struct {
     uint32_t us;    /* at the last tick of Timer1 */
@@ -24,20 +33,22 @@ HAL_BODY uint16_t hal_time_count_isr(void)
 }
 
 /*
- * *t_us = hal_tick.us + (uint16_t)(count - hal_tick.count) / 2; a late tick only makes the difference longer: right for
- * 32 ms. By hand, a byte at a time: the compiler would have the handler save four registers more, 16 cycles.
- * What lies between the additions leaves the carry as it is.
+ * *t_us = hal_tick.us + (uint16_t)(count - hal_tick.count) / HAL_COUNTS_PER_US; a late tick only makes the difference
+ * longer: right for 32 ms. By hand, a byte at a time: the compiler would have the handler save four registers more, 16
+ * cycles. What lies between the additions leaves the carry as it is.
  */
+#if F_CPU == 16000000
+#define HAL_COUNTS_TO_US "lsr %B[count]\n\tror %A[count]\n\t"
+#else
+#define HAL_COUNTS_TO_US ""
+#endif
 HAL_BODY void hal_time_stamp_isr(volatile uint32_t *t_us, uint16_t count)
 {
     uint8_t byte;
     __asm__ volatile("lds %[byte], %[tick]\n\t"
                      "sub %A[count], %[byte]\n\t"
                      "lds %[byte], %[tick]+1\n\t"
-                     "sbc %B[count], %[byte]\n\t"
-                     "lsr %B[count]\n\t"
-                     "ror %A[count]\n\t"
-                     "lds %[byte], %[us]\n\t"
+                     "sbc %B[count], %[byte]\n\t" HAL_COUNTS_TO_US "lds %[byte], %[us]\n\t"
                      "add %A[count], %[byte]\n\t"
                      "st %a[to], %A[count]\n\t"
                      "lds %[byte], %[us]+1\n\t"

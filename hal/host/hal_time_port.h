@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 #define HAL_CPU_HZ hal_host_cpu_hz
+#define HAL_LAP_US 64u
 
 extern uint32_t hal_host_cpu_hz;
 

@@ -1,0 +1,10 @@
+# Boards with an ATmega328P: what tools/boards.txt says of the one that BOARD names.
+BOARD  ?= uno
+BOARDS := $(shell awk '!/^\#/ { print $$1 }' tools/boards.txt)
+$(if $(filter 1,$(words $(filter $(BOARD),$(BOARDS)))),,$(error BOARD: there is no board '$(BOARD)'; boards: $(BOARDS)))
+BOARD_FACTS  := $(shell awk '$$1 == "$(BOARD)"' tools/boards.txt)
+BOARD_FLASH  := $(word 3,$(BOARD_FACTS))
+CPU_HZ       := $(word 4,$(BOARD_FACTS))
+BOARD_FOLDER := $(word 5,$(BOARD_FACTS))
+# what the firmware of such a clock starts with
+BAUD ?= $(if $(filter 16000000,$(CPU_HZ)),115200,57600)
