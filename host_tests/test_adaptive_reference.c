@@ -37,7 +37,7 @@ static reference_adaptive_t twin_of(const filter_t *f)
                                .rate_max = f->rate_max_lsb / 16777216.0,
                                .confirm = f->own.adaptive.confirm,
                                .guarded = f->own.adaptive.guarded,
-                               .identify = f->own.adaptive.identify };
+                               .identify = f->identifies };
     reference_adaptive_begin(&r, f->previous_lsb);
     return r;
 }

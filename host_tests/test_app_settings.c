@@ -63,7 +63,7 @@ static void test_an_unknown_filter_is_refused_with_the_list(void)
         (void)strcat(strcat(answer, " "), filter_listed_name((filter_kind_t)kind));
     }
     talk_start();
-    (void)strcat(answer, "; others: make flash FILTERS=NAME");
+    (void)strcat(answer, "; make flash FILTERS=NAME");
     TEST_ASSERT_EQUAL_STRING(answer, talk_answer("filter median"));
 }
 

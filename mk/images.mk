@@ -2,12 +2,11 @@
 
 # Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter.h; the firmware starts with
 # the first. The first set is what is built and flashed when nothing is said; together they hold every filter.
-FILTER_SETS          := everyday synthesised soft mixture published auto
-FILTERS_everyday     := adaptive sprf synth
-FILTERS_synthesised  := synth synth_opt synth_plus
-FILTERS_soft         := soft lrf kf
-FILTERS_mixture      := pbf shrf af
-FILTERS_published    := sprf_paper kf3
+FILTER_SETS          := everyday soft research models auto
+FILTERS_everyday     := adaptive sprf kf synth
+FILTERS_soft         := soft lrf synth_opt
+FILTERS_research     := pbf sprf_paper shrf af
+FILTERS_models       := synth_plus kf3
 FILTERS_auto         := auto
 # fewer, all of them in the first set too: for boards whose boot loader leaves less than the UNO's
 FILTERS_small        := adaptive synth
@@ -58,9 +57,9 @@ $(foreach s,$(FILTER_SETS),$(eval $(call IMAGE,$(s),$(FILTERS_$(s)))))
 $(eval $(call IMAGE,hang,$(FILTERS_everyday),-DHANG_TEST=1))
 # the clock starts shortly before its wrap; at ten digits
 $(eval $(call IMAGE,wrap,$(FILTERS_everyday),-DHAL_TIME_START_US=4289967296ul))
-$(eval $(call IMAGE,late,$(FILTERS_mixture),-DHAL_TIME_START_US=4200000000ul))
+$(eval $(call IMAGE,late,$(FILTERS_research),-DHAL_TIME_START_US=4200000000ul))
 # told of a slower processor: its sample period is short for a filter
-$(eval $(call IMAGE,tight,$(FILTERS_mixture),-DHAL_CPU_HZ=15500000ul))
+$(eval $(call IMAGE,tight,$(FILTERS_research),-DHAL_CPU_HZ=15500000ul))
 
 # beside the first, its readings are believed unseen: the difference is what checking them costs
 PLAIN_OBJ := $(AVR_SRC:%.c=$(U)/plain/%.o) $(U)/plain/host_tests/avr/plain_read.o

@@ -47,13 +47,13 @@ PARTS = {
     "time and alarm": "hal_time_* hal_wake_at set_alarm",
     "missing samples": "coast_* expect",
     "supervision": "service health_*",
-    "commands and replies": "commands_pass replies_pass measure_pass measure_sample",
+    "commands and replies": "commands_pass takes_commands speaker_pass measure_pass measure_sample",
 }
 OWN = {
     "glue per axis": "filter_axes tilt_axis_update tilt_at_rail flags_of",
-    "glue per sample": "pipeline_work begin_next pipeline_sample end_sample count_sample hung parameters_* silence_* pipeline_retime",
-    "row: rest": "write_row rows_sample rows_at_once pipeline_row pipeline_row_done write",
-    "main loop": "main app_pass serve stage_piece filter_samples next_sample pass_* follow_settings",
+    "glue per sample": "pipeline_work begin_next pipeline_sample end_sample count_sample hung silence_* pipeline_retime",
+    "row: rest": "write_row settings_every_in_force rows_sample rows_at_once pipeline_row pipeline_row_done write",
+    "main loop": "main app_pass serve work_piece filter_samples next_sample pass_* control_follow",
 }
 HELPERS = "__* fx_* filter_fx_* hal_irq_* hal_wake here count pipeline_flag"
 

@@ -20,7 +20,6 @@
 #include "control/control.h"
 #include "control/measure.h"
 #include "control/sensor_watch.h"
-#include "fx.h"
 #include "hal_drdy.h"
 #include "hal_irq.h"
 #include "hal_led.h"
@@ -160,7 +159,7 @@ static bool fill_gap(void)
 }
 
 /* Begins the way of the next sample. One that is in the queue came before this pass. */
-FX_NOINLINE bool next_sample(void)
+static bool next_sample(void)
 {
     if (measure_borrows()) {
         coast_wait(loop.pass_us);

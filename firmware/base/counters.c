@@ -1,7 +1,6 @@
 /* Counters that never wrap. */
 #include "base/counters.h"
 
-#include "fx.h"
 #include "hal_pointer.h"
 
 static uint32_t counters[COUNTERS];
@@ -18,7 +17,7 @@ uint32_t counted(uint8_t what)
     return counters[what];
 }
 
-FX_ONCE void count(uint8_t what)
+void count(uint8_t what)
 {
     uint32_t *counter = &counters[what];
     HAL_POINTER(counter);

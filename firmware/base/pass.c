@@ -1,6 +1,5 @@
 #include "base/pass.h"
 
-#include "fx.h"
 #include "hal_time.h"
 
 static uint8_t began; /* hal_time_lap */
@@ -10,7 +9,7 @@ void pass_begin(void)
     began = hal_time_lap();
 }
 
-FX_ONCE bool pass_in_time(void)
+bool pass_in_time(void)
 {
     return (uint8_t)(hal_time_lap() - began) < PASS_US / HAL_LAP_US;
 }

@@ -227,7 +227,7 @@ enum say {
     X(KEPT_OLDER, "as saved, other copy damaged") \
     X(KEPT_NO_FILTER, "as saved, but another filter") \
     X(KEPT_UNREAD, "defaults, saved ones not read") \
-    X(KEPT_CALIBRATION, "calibration as saved, else defaults: saved by another version") \
+    X(KEPT_CALIBRATION, "defaults but calibration, saved by another version") \
     X(NOT_SAVED, "refused 7: EEPROM failed") \
     X(NO_SENSOR, "no sensor at 0x53 or 0x1D: check power, SDA to A4, SCL to A5, CS to 3.3 V") \
     X(WRONG_ID, "no ADXL345 at 0x" V_FOREIGN_ADDRESS ": DEVID 0x" V_FOREIGN_ID ", not 0xE5") \

@@ -76,7 +76,7 @@ static void end_outage(watch_t *w, uint32_t now_us)
  * What is seen, whether it can be told or not. A fault that is back before the end is told goes on as the same outage.
  * It is over when the pipeline has taken the samples that have come again: those that are missing are counted then.
  */
-FX_NOINLINE void note(uint8_t fault, uint32_t now_us)
+static void note(uint8_t fault, uint32_t now_us)
 {
     watch_t *w = &watch;
     HAL_POINTER(w);

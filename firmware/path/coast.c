@@ -31,7 +31,7 @@ static inline struct coast *here(void)
     return c;
 }
 
-FX_NOINLINE void expect(uint32_t t_us, uint32_t period_us)
+static void expect(uint32_t t_us, uint32_t period_us)
 {
     struct coast *c = here();
     c->next_us = t_us;

@@ -63,7 +63,7 @@ void pipeline_reset(void)
 #endif
 }
 
-FX_ONCE void pipeline_coast(uint32_t t_us)
+void pipeline_coast(uint32_t t_us)
 {
     silence_step(pipeline.true_dhz);
     pipeline.newest.t_us = t_us;
@@ -98,7 +98,7 @@ FX_NOINLINE void begin_all(bool cold)
     pipeline.to_begin = AXES;
 }
 
-FX_ONCE void pipeline_retime(uint32_t period_us)
+void pipeline_retime(uint32_t period_us)
 {
     bool still = true;
     for (uint8_t axis = 0; axis < AXES; axis++) {
@@ -133,7 +133,7 @@ FX_NOINLINE void begin_axis(tilt_axis_t *axis)
     }
 }
 
-FX_NOINLINE bool begin_next(void)
+static bool begin_next(void)
 {
     uint8_t left = pipeline.to_begin;
     if (left == 0 || !(pipeline.turn || pipeline.cold)) {
@@ -295,7 +295,7 @@ void pipeline_sample(const adxl345_sample_t *sample)
     pipeline.turn = true;
 }
 
-FX_ONCE void pipeline_flag(uint16_t flags)
+void pipeline_flag(uint16_t flags)
 {
     pipeline.flags |= flags;
     if (flags & ROW_STUCK) {

@@ -78,7 +78,7 @@ const settings_cycles_t *settings_cycles(void)
 }
 
 /* Rounded up; wanted is at least 1. */
-FX_NOINLINE uint16_t quotient(uint32_t wanted, uint32_t each)
+static uint16_t quotient(uint32_t wanted, uint32_t each)
 {
     return (uint16_t)((wanted - 1u) / each + 1u);
 }
@@ -98,7 +98,7 @@ void settings_follow(void)
     settings()->every_smallest = settings()->line_is_slower ? carried : computed;
 }
 
-FX_ONCE uint16_t settings_every_in_force(void)
+uint16_t settings_every_in_force(void)
 {
     return settings()->every > settings()->every_smallest ? settings()->every : settings()->every_smallest;
 }

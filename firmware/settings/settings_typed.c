@@ -1,7 +1,6 @@
 /* What is typed to values and back; see settings_table.h. Values are stored as settings.h and filter.h say. */
 #include "base/number.h"
 #include "base/text.h"
-#include "fx.h"
 #include "settings/settings.h"
 #include "settings/settings_row.h"
 #include "settings/settings_table.h"
@@ -37,7 +36,7 @@ static uint32_t value_of(const setting_t *s, uint8_t number)
     return value;
 }
 
-FX_NOINLINE void put(const setting_t *s, uint8_t number, uint32_t value)
+static void put(const setting_t *s, uint8_t number, uint32_t value)
 {
     uint8_t *at = place_of(s, number);
     for (uint8_t left = s->format.size; left != 0; left--) {
@@ -87,7 +86,7 @@ static bool to_tenths(uint32_t *value)
     return (tenths_q5 & 31u) == 0;
 }
 
-FX_NOINLINE bool take_numbers(const setting_t *s, const char *text)
+static bool take_numbers(const setting_t *s, const char *text)
 {
     for (uint8_t i = 0; i < numbers(s); i++) {
         uint32_t value;
@@ -260,7 +259,7 @@ void setting_write_legal(uint8_t which)
             write_value(&s, setting_choice(&s, i));
         }
         if (which == SETTING_FILTER) {
-            text_words(FLASH_TEXT("; others: make flash FILTERS=NAME"));
+            text_words(FLASH_TEXT("; make flash FILTERS=NAME"));
         }
     }
 }

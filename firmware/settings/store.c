@@ -6,7 +6,6 @@
  */
 #include "settings/store.h"
 
-#include "fx.h"
 #include "hal_eeprom.h"
 #include "hal_pointer.h"
 
@@ -42,7 +41,7 @@ static uint16_t address_of(uint8_t copy, uint8_t place)
 }
 
 /* Of the record's first bytes, 1 or more: of all before the check that is the check, with the check it is 0. */
-FX_NOINLINE uint16_t remainder_of(uint8_t count)
+static uint16_t remainder_of(uint8_t count)
 {
     const uint8_t *byte = save.record;
     uint8_t high = 0;
@@ -60,7 +59,7 @@ FX_NOINLINE uint16_t remainder_of(uint8_t count)
 }
 
 /* Reads a copy and says what it is by itself: STORE_DAMAGED, STORE_EMPTY, STORE_OTHER_VERSION or STORE_GOOD. */
-FX_NOINLINE store_status_t fetch(uint8_t copy)
+static store_status_t fetch(uint8_t copy)
 {
     uint8_t *byte = save.record;
     uint8_t place = 0;
@@ -87,7 +86,7 @@ static store_status_t told(store_status_t status, store_status_t other)
     return other == STORE_DAMAGED && status == STORE_GOOD ? STORE_OTHER_COPY : status;
 }
 
-FX_ONCE store_status_t store_load(uint8_t record[STORE_RECORD_SIZE])
+store_status_t store_load(uint8_t record[STORE_RECORD_SIZE])
 {
     save.record = record;
     save.state = IDLE;
@@ -106,7 +105,7 @@ FX_ONCE store_status_t store_load(uint8_t record[STORE_RECORD_SIZE])
 }
 
 /* The sequence number of a save that failed is used again: were it not, many of them would make the next look older. */
-FX_ONCE bool store_save_begin(void)
+bool store_save_begin(void)
 {
     if (store_busy()) {
         return false;
@@ -137,7 +136,7 @@ static bool end_save_or_write(struct save *s, uint16_t address, uint8_t byte)
     return false;
 }
 
-FX_ONCE bool store_pass(void)
+bool store_pass(void)
 {
     struct save *s = &save;
     HAL_POINTER(s);

@@ -23,7 +23,7 @@
  * The same for all versions that are to be told as such: what was saved with another size is told as damaged. So have
  * it large enough from the beginning, 2 to STORE_IMAGE_MAX, and raise the version when the bytes get another meaning.
  */
-#define STORE_IMAGE_SIZE 80u
+#define STORE_IMAGE_SIZE 76u
 #define STORE_IMAGE_MAX 120u
 #define STORE_VERSION 2u /* 0..254 */
 

@@ -105,6 +105,7 @@ static void any_tracked(filter_t *f, const filter_law_t *law)
     f->previous_lsb = ANY_S16(FILTER_Z_MIN_LSB, FILTER_Z_MAX_LSB);
     f->negative = ANY_BOOL();
     f->broken = ANY_BOOL();
+    f->identifies = ANY_BOOL();
     f->quarters = ANY_U8(0, 4);
     f->quarter_dhz = ANY_U16(0, 39999);
     f->rate_dhz = ANY_U16(50, 40000);

@@ -7,7 +7,7 @@
 
 #define TOLD(a)                                                                                             \
     (256 <= (a)->gate_sigma_q8 <= 4096 && 32 <= (a)->slow_uq16 <= 39322 && 32 <= (a)->fast_uq16 <= 39322 && \
-     (a)->share_uq16 <= 15728 && (a)->confirm >= 3 && FLAG((a)->guarded) && FLAG((a)->identify) && FLAG((a)->turn))
+     (a)->share_uq16 <= 15728 && (a)->confirm >= 3 && FLAG((a)->guarded) && FLAG((a)->turn))
 #define MEMORY(a) (WITHIN((a)->mean_lsb_q24, MEAN_END) && (a)->k_uq32 <= K_END)
 #define SCATTER(v) (0x1A0000 <= (v) <= 0x5A000000)
 #define LEARNT(a) (SCATTER((a)->scatter_lsb_uq24) && (a)->learnt <= 7)
@@ -86,7 +86,6 @@ static void any_own(filter_t *f, uint8_t kind)
     a->share_uq16 = ANY_U16(0, 15728);
     a->confirm = ANY_U16(3, UINT16_MAX);
     a->guarded = ANY_BOOL();
-    a->identify = ANY_BOOL();
     a->turn = ANY_BOOL();
     a->mean_lsb_q24 = ANY_S32(-MEAN_END, MEAN_END);
     a->k_uq32 = ANY_U32(0, K_END);

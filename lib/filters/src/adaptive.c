@@ -88,7 +88,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
     uint16_t guard_sigma_q8 = (uint16_t)config->value[ADAPTIVE_GUARD_SIGMA_Q8];
     a->guarded = guard_sigma_q8 != 0U;
     a->gate_sigma_q8 = a->guarded ? guard_sigma_q8 : ADAPTIVE_UNGUARDED_SIGMA_Q8;
-    a->identify = (uint8_t)config->value[ADAPTIVE_IDENTIFY] != 0U;
+    f->identifies = (uint8_t)config->value[ADAPTIVE_IDENTIFY] != 0U;
     set_memory(a, config);
     uint32_t confirm_samples = (uint32_t)config->value[ADAPTIVE_CONFIRM_MS] * config->rate_dhz / 10000U; /* <= 40000 */
     a->confirm = (confirm_samples < ADAPTIVE_CONFIRM_LEAST) ? ADAPTIVE_CONFIRM_LEAST : (uint16_t)confirm_samples;
@@ -113,7 +113,7 @@ static uint32_t own_noise(const filter_t *f)
 {
     uint16_t scatter_uq8 = fx_upper(&f->own.adaptive.scatter_lsb_uq24);
     uint32_t r_lsb2_uq8 = fx_product_u16(scatter_uq8, (uint16_t)(scatter_uq8 + (scatter_uq8 >> 2))) >> 8;
-    return f->own.adaptive.identify ? r_lsb2_uq8 : 0U;
+    return f->identifies ? r_lsb2_uq8 : 0U;
 }
 
 static void start(filter_t *f, bool settled)
@@ -360,7 +360,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     average_innovation(a, taken);
     adapt(a, spread_uq8);
     follow(f, taken);
-    a->turn ^= a->identify;
+    a->turn ^= f->identifies;
     if (a->turn) {
         disperse(a, f->size_lsb_uq16, spread_uq8);
     }

@@ -120,7 +120,6 @@ typedef struct {
     uint32_t scatter_lsb_uq24; /* sigma of the innovations for k = 0: 0.1..90 */
     uint16_t gate_sigma_q8;    /* in sigmas of the innovation */
     bool guarded;              /* a gate was configured */
-    bool identify;             /* noise identified on line */
     uint8_t learnt;            /* terms that the scatter was learnt from, as far as its opening */
     bool turn;                 /* the last sample was a term of the scatter */
     uint16_t share_uq16;       /* of a new innovation in their mean */
@@ -176,6 +175,7 @@ typedef struct {
     uint16_t gain_uq16;   /* w1 of the last step, 0 when refused or missing */
     int16_t previous_lsb; /* last raw sample */
     bool negative;        /* sign of the innovation */
+    bool identifies;      /* the law identifies its noise itself: filter_own_noise_lsb2_q8 */
     bool broken;          /* a sample was missing since the run of refused ones began, see kalman.h */
     uint8_t quarters;     /* times 25 ms without a sample, as far as FILTER_HOLD_MS */
     union {

@@ -189,12 +189,11 @@ static void restart(filter_t *f, int16_t z_lsb)
     f->x_lsb_q16 = (int32_t)z_lsb * 65536;
     f->rate_lsb = 0;
     if (!f->broken) {
-        int32_t slope = (int32_t)(z_lsb - k->first_lsb) * 65536; /* over one sample */
-        uint16_t share_uq12 = 0x1000;                            /* 1 / (L - 1) in the end */
+        uint16_t share_uq12 = 0x1000; /* 1 / (L - 1) in the end */
         for (uint8_t steps = k->steps; steps > 1U; steps >>= 1) {
-            slope >>= 1;
             share_uq12 >>= 1;
         }
+        int32_t slope = (int32_t)(z_lsb - k->first_lsb) * (int32_t)(uint16_t)(share_uq12 << 4); /* exact: a shift */
         f->rate_lsb = fx_clamp(slope, (int32_t)f->rate_max_lsb);
         k->p.p12 = (uint32_t)share_uq12 << 14;
         k->p.p22 = 8U * fx_product_u16(share_uq12, share_uq12) + k->q22_uq26;

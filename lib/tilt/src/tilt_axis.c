@@ -34,7 +34,7 @@ static uint8_t flags_of(const filter_t *f)
 /* R is estimated once: beside a law that identifies its own the estimate stands still. */
 static void estimate_noise(tilt_axis_t *a, int16_t lsb, bool own_r)
 {
-    if (filter_own_noise_lsb2_q8(&a->filter) != 0U) {
+    if (a->filter.identifies) {
         filter_noise_gap(&a->noise);
     } else if (filter_noise_update(&a->noise, lsb) && !own_r) {
         filter_set_noise(&a->filter, filter_noise_r_lsb2_q8(&a->noise));
