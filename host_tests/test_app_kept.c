@@ -84,7 +84,8 @@ static void test_the_calibration_outlives_another_version(void)
         memcpy(before, hal_host_eeprom(), sizeof before);
         talk_power_cycle(false);
         TEST_ASSERT_EQUAL_UINT(own ? KEPT_GOOD : KEPT_CALIBRATION, settings_kept());
-        TEST_ASSERT_EQUAL_size_t(own ? 0 : 1, board_notes_with("# settings: defaults but calibration, saved by another", 0));
+        TEST_ASSERT_EQUAL_size_t(own ? 0 : 1,
+                                 board_notes_with("# settings: defaults but calibration, saved by another", 0));
         TEST_ASSERT_EQUAL_MEMORY(&saved, &settings()->calibration, sizeof saved);
         TEST_ASSERT_EQUAL_UINT(own ? 500 : 1000, settings()->rate_dhz);
         board_run_ms(500);

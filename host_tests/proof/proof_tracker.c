@@ -8,9 +8,9 @@
 #define PACE(f)                                                                                                       \
     (PACE_OF(f, 32) || PACE_OF(f, 64) || PACE_OF(f, 128) || PACE_OF(f, 256) || PACE_OF(f, 512) || PACE_OF(f, 1024) || \
      PACE_OF(f, 2048) || PACE_OF(f, 4096) || PACE_OF(f, 8192) || PACE_OF(f, 16384) || PACE_OF(f, 32768))
-#define BOUND(f)                                                                                \
-    (TRACKED(f) && (f)->quarters <= 4 && FLAG((f)->negative) && FLAG((f)->broken) && FLAG((f)->identifies) && PACE(f) && \
-     (STARTING(f) || (f)->collected == 5))
+#define BOUND(f)                                                                                              \
+    (TRACKED(f) && (f)->quarters <= 4 && FLAG((f)->negative) && FLAG((f)->broken) && FLAG((f)->identifies) && \
+     PACE(f) && (STARTING(f) || (f)->collected == 5))
 
 #define LAW_STATE f->x_lsb_q16, f->rate_lsb, f->size_lsb_uq16, f->gain_uq16, f->flags, f->negative, f->broken, f->own
 #define LAW_SEES f->x_lsb_q16, f->rate_lsb, f->own, f->rate_dhz, f->collected, f->previous_lsb
