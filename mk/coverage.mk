@@ -1,7 +1,7 @@
 # Coverage of lib by the unit tests (gcov; built apart, without sanitizers) and of the AVR binary by the system tests.
 C := $(B)/coverage
 # what watches over the sensor and the stages is judged beside lib, and the navigation image's link (mk/nav_lib_coverage.mk)
-SUPERVISION   := $(wildcard $(addprefix firmware/*/,sensor_watch.c health.c pipeline.c pipeline_change.c coast.c supervisor.c))
+SUPERVISION   := $(wildcard $(addprefix firmware/*/,sensor_watch.c health.c pipeline.c coast.c supervisor.c))
 # test_nav_flight, a minute of flights, runs no line of lib/nav that the short ones leave
 COVERAGE_TESTS := $(patsubst host_tests/%.c,$(C)/%,$(filter-out host_tests/test_nav_flight.c,$(wildcard host_tests/test_*.c)))
 
