@@ -3,7 +3,7 @@ import functools
 import math
 import random
 
-from system_support import FW, OUT, STREAMS, TESTS, assert_nothing_lost, image_with, simrun, test, within
+from system_support import FW, OUT, SET_IMAGES, STREAMS, TESTS, assert_nothing_lost, image_with, simrun, test, within
 from laws import DEFAULT, LIGHT, PLAIN, ROBUST  # noqa: E402
 
 REST = STREAMS / "rest-2lsb.csv"
@@ -194,11 +194,11 @@ def a_board_locked_out_by_its_settings_comes_back_with_the_strap():
 
 @test
 def saved_settings_of_another_image_lose_only_the_filter():
-    """The filter that another image starts with is not in the everyday one: its filter as shipped there, all else as saved."""
+    """The filter that the second image starts with is not in the everyday one: its filter as shipped there, all else as saved."""
     image = OUT / "settings-other.bin"
     image.unlink(missing_ok=True)
     lines = [line for line in SETS[1] if "guard" not in line]
-    saved(image, lines, image_with(PLAIN))
+    saved(image, lines, SET_IMAGES[1])
     notes, _, _, _ = started("settings-other", image, *typed(("settings",), 400), fw=FW, max_ms=900)
     assert told_as(notes) == "as saved, but another filter", notes
     listing = listed(notes)

@@ -113,7 +113,7 @@ def filters_of(flags):
 
 def declared_of(flags, filters):
     """{name: worst case in cycles that the code declares}: the filters, sample_rest and row."""
-    source = '#include "settings.h"\n'
+    source = '#include "settings/settings.h"\n'
     source += "sample_rest_worst_cycles = SETTINGS_REST_CYCLES\nrow_worst_cycles = SETTINGS_ROW_CYCLES\n"
     done = subprocess.run(["avr-gcc", *flags, "-E", "-P", "-x", "c", "-"], input=source, capture_output=True, text=True, timeout=60)
     found = laws.worst_cycles()
