@@ -366,6 +366,16 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     }
 }
 
+/* Of the last update; 0 when nothing was taken. */
+static uint16_t gain_uq16(const filter_t *f)
+{
+    if ((f->flags & FILTER_COASTED) != 0U || f->own.adaptive.verdict == (uint8_t)ADAPTIVE_UNUSED) {
+        return 0;
+    }
+    uint16_t k = fx_upper(&f->own.adaptive.k_uq32);
+    return (uint16_t)(2U * k - filter_fx_high_u16(k, k));
+}
+
 /* The variance is that of the memory for samples that scatter as the innovations do. */
 static void report(const filter_t *f, filter_probe_t *out)
 {
@@ -375,10 +385,8 @@ static void report(const filter_t *f, filter_probe_t *out)
     if (f->collected != FILTER_RUNNING) {
         return;
     }
-    uint16_t k = fx_upper(&a->k_uq32);
-    bool taken = (f->flags & FILTER_COASTED) == 0U && a->verdict != (uint8_t)ADAPTIVE_UNUSED;
-    out->p_lsb2_q8 = filter_tracker_fading_variance(out->p_lsb2_q8, k);
-    out->gain_uq16 = taken ? (uint16_t)(2U * k - filter_fx_high_u16(k, k)) : 0U;
+    out->p_lsb2_q8 = filter_tracker_fading_variance(out->p_lsb2_q8, fx_upper(&a->k_uq32));
+    out->gain_uq16 = gain_uq16(f);
     if (a->guarded && a->gate_lsb_uq16 != 0U) {
         uint16_t gate_uq4 = (uint16_t)(a->gate_lsb_uq16 >> 12); /* < 4096 LSB */
         out->gate_lsb2_q8 = fx_product_u16(gate_uq4, gate_uq4);
