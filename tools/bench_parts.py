@@ -32,7 +32,7 @@ CHEAPER_CYCLES = 5           # and at least so many below it, or rounding asks
 # A part of OWN has the code of its functions and of HELPERS alone: what else they call is in REST until it is named here.
 REST = "rest"
 PARTS = {
-    "noise estimate": "filter_noise_*",
+    "noise estimate": "filter_noise_* estimate_noise",
     "filters": "filter_update filter_set_noise",
     "calibration and gravity": "find_accelerations calibration_* tilt_gravity_* tilt_axis_estimate_*",
     "angles": "tilt_angles",
@@ -53,7 +53,7 @@ OWN = {
     "glue per axis": "filter_axes tilt_axis_update tilt_at_rail flags_of",
     "glue per sample": "pipeline_work begin_next pipeline_sample end_sample count_sample hung silence_* pipeline_retime",
     "row: rest": "write_row settings_every_in_force rows_sample rows_at_once pipeline_row pipeline_row_done write",
-    "main loop": "main app_pass serve work_piece filter_samples next_sample pass_* control_follow",
+    "main loop": "main app_pass serve work_piece filter_samples next_sample pass_* control_follow control_line_waits measure_asks measure_borrows store_busy",
 }
 HELPERS = "__* fx_* filter_fx_* hal_irq_* hal_wake here count pipeline_flag"
 

@@ -396,7 +396,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 const filter_law_t filter_law_adaptive FX_FLASH = { .name = "adaptive",
                                                     .parameter_count = 7,
                                                     .traits = LAW_FINE_RATE | LAW_GATED,
-                                                    .worst_cycles = 1400,
+                                                    .worst_cycles = 1300,
                                                     .parameters = parameters,
                                                     .standard = standard,
                                                     .set_up = set_up,

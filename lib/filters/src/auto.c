@@ -289,7 +289,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 const filter_law_t filter_law_auto FX_FLASH = { .name = "auto",
                                                 .parameter_count = 6,
                                                 .traits = LAW_GATED,
-                                                .worst_cycles = 2620,
+                                                .worst_cycles = 2690,
                                                 .parameters = parameters,
                                                 .standard = standard,
                                                 .set_up = set_up,

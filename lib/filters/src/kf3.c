@@ -285,7 +285,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 const filter_law_t filter_law_kf3 FX_FLASH = { .name = "kf3",
                                                .parameter_count = 2,
                                                .traits = LAW_COVARIANCE | LAW_SETTLES,
-                                               .worst_cycles = 2170,
+                                               .worst_cycles = 2390,
                                                .parameters = parameters,
                                                .set_up = set_up,
                                                .set_noise = set_noise,
