@@ -53,7 +53,8 @@ OWN = {
     "glue per axis": "filter_axes tilt_axis_update tilt_at_rail flags_of",
     "glue per sample": "pipeline_work begin_next pipeline_sample end_sample count_sample hung silence_* pipeline_retime",
     "row: rest": "write_row settings_every_in_force rows_sample rows_at_once pipeline_row pipeline_row_done write",
-    "main loop": "main app_pass serve work_piece filter_samples next_sample pass_* control_follow control_line_waits measure_asks measure_borrows store_busy",
+    "main loop": "main app_pass serve work_piece filter_samples next_sample pass_* control_follow "
+                 "control_line_waits measure_asks measure_borrows store_busy",
 }
 HELPERS = "__* fx_* filter_fx_* hal_irq_* hal_wake here count pipeline_flag"
 

@@ -1,6 +1,5 @@
 /*
- * adaptive: a fading-memory filter whose memory the innovations drive, guarded against outliers. The future work that
- * paper 000 names: noise identified on line, the filter's parameters driven by it.
+ * adaptive: a fading memory that the innovations drive, guarded against outliers; the future work of paper 000.
  *
  *   x_e = x + v                              straight line through the past, u = z - x_e
  *   x = x_e + (2 k - k^2) t, v = v + k^2 t   t: the part of u that is taken
@@ -26,8 +25,6 @@
  * FILTER_GATED tells that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be
  * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the identified noise and
  * forgets rate, mean innovation and strays; the memory is the slowest.
- *
- * Parameters guard, r, identify, slow, fast, confirm, ratemax (at most 127 LSB per sample of it).
  *
  * Scaling:
  *   rate     Q7.24, <= 127 LSB per sample
@@ -105,15 +102,11 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
     }
 }
 
-/*
- * 1.5 variances, as noise.h has it: the scatter is 1.375 / sqrt(pi / 2) = 1.097 sigmas, so 1.246 times its square, here
- * 1.25; 3 at least, the lowest R, at 0.1 LSB. Before the first term it is a quarter more than the R that was told.
- */
+/* 1.5 variances, as noise.h has it: the scatter is 1.375 / sqrt(pi / 2) = 1.097 sigmas, so 1.25 times its square. */
 static uint32_t own_noise(const filter_t *f)
 {
     uint16_t scatter_uq8 = fx_upper(&f->own.adaptive.scatter_lsb_uq24);
-    uint32_t r_lsb2_uq8 = fx_product_u16(scatter_uq8, (uint16_t)(scatter_uq8 + (scatter_uq8 >> 2))) >> 8;
-    return f->identifies ? r_lsb2_uq8 : 0U;
+    return f->identifies ? fx_product_u16(scatter_uq8, (uint16_t)(scatter_uq8 + (scatter_uq8 >> 2))) >> 8 : 0U;
 }
 
 static void start(filter_t *f, bool settled)
