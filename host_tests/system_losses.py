@@ -97,7 +97,7 @@ def make_width_test(rate, baud, every):
 
 TESTS.append(make_width_test(100, 115200, 1))
 TESTS.append(make_width_test(400, 500000, 1))
-TESTS.append(make_width_test(800, 500000, 14))  # of the filters there none leaves time for more
+TESTS.append(make_width_test(800, 500000, 15))  # of the filters there none leaves time for more
 
 
 def forced_every(filter_name, rate):

@@ -114,6 +114,20 @@ static void test_the_places_of_a_record(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(wanted, copy, sizeof wanted);
 }
 
+/* What is typed behind a save that fails is not taken for its outcome. */
+static void test_a_failed_save_is_said_before_the_next_command(void)
+{
+    talk_start();
+    hal_host_eeprom_wear_out(STORE_COPY_0 + 5);
+    talk_type("rate 50");
+    size_t before = board.note_count;
+    board_type("save");
+    board_type("load");
+    board_run_ms(2000);
+    TEST_ASSERT_EQUAL_STRING("# refused 7: EEPROM failed", board.notes[before]);
+    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# saved", before));
+}
+
 /* A measurement would change what is being saved. */
 static void test_no_save_while_something_is_measured(void)
 {
@@ -232,6 +246,7 @@ int main(void)
     RUN_TEST(test_a_save_while_sampling_costs_no_row);
     RUN_TEST(test_the_calibration_outlives_another_version);
     RUN_TEST(test_the_places_of_a_record);
+    RUN_TEST(test_a_failed_save_is_said_before_the_next_command);
     RUN_TEST(test_no_save_while_something_is_measured);
     RUN_TEST(test_commands_wait_for_the_save);
     RUN_TEST(test_load_and_defaults);

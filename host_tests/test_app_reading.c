@@ -107,6 +107,37 @@ static void test_the_filter_in_force_keeps_its_parameters(void)
     TEST_ASSERT_EQUAL_STRING("# gate 3 sigma: 1 to 16, 0: off", talk_answer("gate"));
 }
 
+/* A parameter typed as it was before its filter was left is no unchanged one: the filter gets it. */
+static void test_a_parameter_typed_again_after_another_filter_counts(void)
+{
+    talk_start();
+    talk_type("filter {robust}");
+    talk_type("gate 4.5");
+    talk_type("filter {plain}");
+    talk_type("filter {robust}");
+    TEST_ASSERT_EQUAL_STRING("# gate 4.5 sigma: 1 to 16, 0: off", talk_answer("gate 4.5"));
+    board_run_ms(300);
+    TEST_ASSERT_EQUAL_UINT(4 * 256 + 128, pipeline_axes()[1].filter.own.kalman.of.gated.gate_sigma_q8);
+}
+
+/* Long answers first: a change of the line's rate behind them stops the filters for the last one at most. */
+static void test_a_change_of_baud_behind_long_answers_resets_nothing(void)
+{
+    static const char *const lines[] = { "help", "status" };
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        talk_start();
+        talk_type("baud 9600");
+        board_run_ms(500);
+        for (int k = 0; k < 4; k++) {
+            board_type(lines[i]);
+        }
+        board_type("baud 19200");
+        board_run_ms(12000);
+        TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
+        TEST_ASSERT_EQUAL_UINT32(19200, settings()->baud);
+    }
+}
+
 static void test_help_lists_the_parameters_of_the_filter_in_force(void)
 {
     talk_start();
@@ -140,6 +171,8 @@ int main(void)
     RUN_TEST(test_the_next_line_lets_rows_go_on);
     RUN_TEST(test_a_plot_goes_on);
     RUN_TEST(test_the_filter_in_force_keeps_its_parameters);
+    RUN_TEST(test_a_parameter_typed_again_after_another_filter_counts);
+    RUN_TEST(test_a_change_of_baud_behind_long_answers_resets_nothing);
     RUN_TEST(test_help_lists_the_parameters_of_the_filter_in_force);
     RUN_TEST(test_the_version_is_said);
     return UNITY_END();

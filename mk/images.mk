@@ -11,7 +11,7 @@ FILTERS_auto         := auto
 # fewer, all of them in the first set too: for boards whose boot loader leaves less than the UNO's
 FILTERS_small        := adaptive synth
 FILTERS              := $(if $(filter 32256,$(BOARD_FLASH)),$(firstword $(FILTER_SETS)),small)
-SAY_FILTERS          := $(if $(filter small,$(FILTERS)),echo "BOARD=$(BOARD) has $(BOARD_FLASH) bytes of flash: the image holds the set small ($(FILTERS_small)); FILTERS= takes others",:)
+SAY_FILTERS          := $(if $(filter-out 32256,$(BOARD_FLASH)),$(if $(filter small,$(FILTERS)),echo "BOARD=$(BOARD) has $(BOARD_FLASH) bytes of flash: the image holds the set small ($(FILTERS_small)); FILTERS= takes others",:),:)
 
 CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))
 IMAGE_FILTERS   = $(FILTERS_everyday)

@@ -5,7 +5,7 @@ NAVIMG_INC    := -Ihal -Inav/image -Ilib/nav/src
 # its records are long and its answers short
 NAV_RINGS  := -DHAL_UART_RX_SIZE=128 -DHAL_UART_TX_SIZE=128
 # what leaves flash and stack as small as the budgets want: frames of functions that are no larger when put into one another
-NAV_SMALL  := $(filter-out -flto-partition=one,$(AVR_SMALL)) -fno-tree-pta --param=large-stack-frame=64 --param=large-stack-frame-growth=50
+NAV_SMALL  := $(filter-out -flto-partition=one -fno-gcse-lm -fno-tree-dce -fno-tree-pre -fno-ssa-phiopt,$(AVR_SMALL)) -fno-tree-pta --param=large-stack-frame=64 --param=large-stack-frame-growth=50
 NAVIMG_FLAGS   = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(NAV_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections \
               $(WARNINGS) $(NAVIMG_INC) -Ihal/avr $(NAV_RINGS)
 nav_image   = $(U)/nav$(filter-out 12,$(1))/firmware.elf

@@ -267,10 +267,10 @@ static void set_alarm(void)
     hal_wake_at(t_us);
 }
 
-/* Bytes wait in the receive ring while the banner goes out, the baud rate changes or a save runs. */
+/* Bytes wait in the receive ring while the banner goes out, the baud rate changes, or until it is said how a save went. */
 static bool takes_commands(void)
 {
-    return loop.greeted && !control_line_waits() && !store_busy();
+    return loop.greeted && !control_line_waits() && !notices_hold(NOTICE_SAVED, NOTICE_SAVED);
 }
 
 /* Commands, samples, replies, while the pass has time; out of time, another pass follows. */

@@ -10,8 +10,6 @@
 
 typedef enum {
     NOTICE_BANNER, /* who we are, reset cause, how to get help; ends with the csv header */
-    NOTICE_HELP,
-    NOTICE_STATUS,
     NOTICE_STOPPED,
     NOTICE_GOING,
     NOTICE_SAVED, /* waits until the save is over, and reports how it went */
@@ -24,6 +22,8 @@ typedef enum {
     NOTICE_CAL,
     NOTICE_CAL6,
     NOTICE_VERSION,
+    NOTICE_HELP, /* from here to LISTING many lines, for a person to read */
+    NOTICE_STATUS,
     NOTICE_LISTING,  /* all settings, with what is legal; the last of the commands' names */
     NOTICE_SETTING,  /* argument: which of settings_table.h, with NOTICE_CHANGED after it was set */
     NOTICE_ILLEGAL,  /* argument: which of settings_table.h */

@@ -16,7 +16,7 @@ typedef enum {
 /* Writes the first line of a reply (notice_kind_t), or its next one. Room for TEXT_LINE_MAX has been checked. */
 reply_progress_t reply_line(uint8_t kind, uint8_t argument, bool first);
 
-/* The word that asks for a reply (NOTICE_HELP to NOTICE_LISTING), as it is typed. */
+/* The word that asks for a reply (NOTICE_STOPPED to NOTICE_LISTING), as it is typed. */
 flash_text_t reply_command_name(uint8_t kind);
 
 #endif

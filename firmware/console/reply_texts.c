@@ -14,7 +14,7 @@ _Static_assert(PACKED_PAIR_FIRST == SAY_PAIR, "the codes of pairs follow those o
 
 flash_text_t reply_command_name(uint8_t kind)
 {
-    return text_nth(names, (uint8_t)(kind - NOTICE_HELP));
+    return text_nth(names, (uint8_t)(kind - NOTICE_STOPPED));
 }
 
 const uint8_t *reply_text(uint8_t text)

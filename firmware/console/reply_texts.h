@@ -124,9 +124,9 @@ enum say {
     SAY_PAIR            /* pairs of packed texts from here on */
 };
 
-/* The commands as typed, one for each notice_kind_t from NOTICE_HELP on, in its order. */
+/* The commands as typed, one for each notice_kind_t from NOTICE_STOPPED on, in its order. */
 #define REPLY_NAMES \
-    "help\0status\0stop\0go\0save\0load\0defaults\0odr\0noise\0selftest\0tare\0cal\0cal6\0version\0settings"
+    "stop\0go\0save\0load\0defaults\0odr\0noise\0selftest\0tare\0cal\0cal6\0version\0help\0status\0settings"
 
 /*
  * One text for each notice_kind_t, in its order; then the others, those that belong together in their order. They are
@@ -142,17 +142,6 @@ enum say {
       "type help, or mode plot for the Arduino plotter" V_LINE \
       V_SENSOR V_LINE \
       V_HEADER) \
-    X(HELP, V_SETTING_NAME ": " V_LEGAL V_AGAIN V_LINE \
-      V_VERBS "; NAME VALUE sets") \
-    X(STATUS, "state " V_STATE ", fault " V_SUBJECT ", rate " V_RATE " Hz, measured " V_MEASURED " Hz, uptime s " \
-      V_COUNT V_CHOICES V_LINE \
-      "samples " V_COUNT ", gated " V_COUNT ", reacquired " V_COUNT ", clipped " V_COUNT V_LINE \
-      "rows " V_COUNT ", dropped " V_COUNT ", held " V_COUNT ", serial bytes lost " V_SERIAL_LOST \
-      ", lines refused " V_COUNT V_LINE \
-      "lost " V_COUNT ", late " V_COUNT ", drained " V_COUNT ", stuck " V_COUNT ", restarts " V_COUNT V_LINE \
-      "not acknowledged " V_COUNT ", arbitration lost " V_COUNT ", bus errors " V_COUNT ", timeouts " V_COUNT V_LINE \
-      "readings torn " V_COUNT ", empty " V_COUNT ", overruns " V_COUNT V_LINE \
-      "reset: " V_CAUSE) \
     X(STOPPED, "stopped") \
     X(GOING, "going") \
     X(SAVED, "saved") \
@@ -169,6 +158,17 @@ enum say {
       V_LISTED V_AGAIN V_LINE \
       V_KEEP) \
     X(VERSION, V_WHO) \
+    X(HELP, V_SETTING_NAME ": " V_LEGAL V_AGAIN V_LINE \
+      V_VERBS "; NAME VALUE sets") \
+    X(STATUS, "state " V_STATE ", fault " V_SUBJECT ", rate " V_RATE " Hz, measured " V_MEASURED " Hz, uptime s " \
+      V_COUNT V_CHOICES V_LINE \
+      "samples " V_COUNT ", gated " V_COUNT ", reacquired " V_COUNT ", clipped " V_COUNT V_LINE \
+      "rows " V_COUNT ", dropped " V_COUNT ", held " V_COUNT ", serial bytes lost " V_SERIAL_LOST \
+      ", lines refused " V_COUNT V_LINE \
+      "lost " V_COUNT ", late " V_COUNT ", drained " V_COUNT ", stuck " V_COUNT ", restarts " V_COUNT V_LINE \
+      "not acknowledged " V_COUNT ", arbitration lost " V_COUNT ", bus errors " V_COUNT ", timeouts " V_COUNT V_LINE \
+      "readings torn " V_COUNT ", empty " V_COUNT ", overruns " V_COUNT V_LINE \
+      "reset: " V_CAUSE) \
     X(LISTING, V_LISTED V_AGAIN) \
     X(SETTING, V_SETTING V_SETTING_NOTE) \
     X(ILLEGAL, "refused 4: " V_SETTING_NAME " is one of " V_LEGAL) \

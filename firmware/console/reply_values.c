@@ -103,8 +103,8 @@ static void say_settings(void)
 
 static void say_verbs(void)
 {
-    for (uint8_t kind = NOTICE_HELP; kind <= NOTICE_LISTING; kind++) {
-        if (kind != NOTICE_HELP) {
+    for (uint8_t kind = NOTICE_STOPPED; kind <= NOTICE_LISTING; kind++) {
+        if (kind != NOTICE_STOPPED) {
             text_words(FLASH_TEXT(", "));
         }
         text_words(reply_command_name(kind));

@@ -12,7 +12,7 @@ static bool begun; /* the oldest notice: a line of it is out */
 /* A reply of many lines, which a person is to see whole. */
 static bool is_read(uint8_t kind)
 {
-    return kind == NOTICE_HELP || kind == NOTICE_STATUS || kind == NOTICE_LISTING;
+    return kind >= NOTICE_HELP && kind <= NOTICE_LISTING;
 }
 
 void speaker_start(void)

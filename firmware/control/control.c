@@ -131,7 +131,10 @@ static void follow_measurement(void)
 static uint8_t take_changes(void)
 {
     bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
-    uint8_t now = old_samples ? control.changes & CHANGE_FILTER : control.changes;
+    uint8_t now = control.changes;
+    if (old_samples) { /* those have their own rate and range */
+        now = (now & CHANGE_CONFIG) ? 0 : now & CHANGE_FILTER;
+    }
     control.changes = (uint8_t)(control.changes & ~now);
     if ((now & CHANGE_MEASURE) && measure_configured()) {
         now |= CHANGE_COLD;

@@ -148,7 +148,7 @@ bool measure_start(uint8_t kind)
 
 void measure_abort(void)
 {
-    if (measure.step >= STEP_COLLECT) {
+    if (measure.step >= STEP_SOLVE) {
         end(MEASURE_ABORTED);
     }
 }

@@ -22,7 +22,7 @@ void settings_defaults(void)
     settings()->version = SETTINGS_VERSION;
     settings()->length = SETTINGS_KEPT_BYTES;
     settings()->baud = SETTINGS_BAUD_DEFAULT;
-    settings()->rate_dhz = 1000;
+    settings()->rate_dhz = SETTINGS_RATE_DEFAULT_DHZ;
     settings()->every = 1;
     settings()->range_g = 16;
     settings_take_filter(0); /* the first of the image's */
@@ -89,11 +89,20 @@ uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
     return quotient((uint32_t)rate_dhz * SETTINGS_ROW_MAX, baud);
 }
 
+/* What was loaded may be a rate too fast for the filter of this image: it gets one for which each is fast enough. */
 void settings_follow(void)
 {
+    uint16_t takes = settings_filter_cycles(settings()->choice.filter);
+    uint32_t left;
+    for (;;) {
+        left = settings_left_cycles(settings()->rate_dhz);
+        if (left > takes) {
+            break;
+        }
+        settings()->rate_dhz = SETTINGS_RATE_DEFAULT_DHZ;
+    }
     uint16_t carried = settings_smallest_every(settings()->baud, settings()->rate_dhz);
-    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, settings_left_cycles(settings()->rate_dhz) -
-                                                          settings_filter_cycles(settings()->choice.filter));
+    uint16_t computed = quotient(SETTINGS_ROW_CYCLES, left - takes);
     settings()->line_is_slower = carried >= computed;
     settings()->every_smallest = settings()->line_is_slower ? carried : computed;
 }

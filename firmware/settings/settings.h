@@ -1,4 +1,4 @@
-/* What the user can set, with its legal values. One instance, owned by app.c; changed by commands in main. */
+/* What the user can set, with its legal values. Main only. */
 #ifndef SETTINGS_H
 #define SETTINGS_H
 
@@ -47,6 +47,7 @@ typedef struct {
 #endif
 #define SETTINGS_EVERY_MAX 10000u
 #define SETTINGS_RATE_MIN_DHZ 125u
+#define SETTINGS_RATE_DEFAULT_DHZ 1000u
 
 /* What the line must carry for a row: at most 67 bytes (csv) or 69 (plot), and some for replies. */
 #define SETTINGS_ROW_MAX 72u

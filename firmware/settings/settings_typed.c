@@ -177,9 +177,11 @@ setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
     if (s.format.kind >= VECTOR) {
         bytes = (uint8_t)((uint16_t)bytes * AXES);
     }
+    uint8_t own = settings()->choice.own;
     (void)keep(before, place, bytes);
     setting_answer_t answer = take(&s, text) ? judge(&s) : SETTING_ILLEGAL;
     bool changed = answer == SETTING_TAKEN ? keep(before, place, bytes) : keep(place, before, bytes);
+    changed = changed || own != settings()->choice.own; /* as the value was before, but not in force */
     *starts = changed ? s.format.starts : 0;
     if (which == SETTING_FILTER && *starts != 0) {
         settings_take_filter(settings()->choice.filter);

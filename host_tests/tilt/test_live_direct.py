@@ -54,7 +54,7 @@ class TestDirect(Case):
         self.say(page, b"5,0,0,256,0,0,1000,0,0,0\n" + BANNER + HEADER + rows(0, 30))
         page.until("tiltLive.figures().rows === 30 && tiltLive.figures().firstPictureMs")
         page.until("typed.length === 2")
-        self.assertEqual(page.value("typed"), ["filter\n", "help\n"])
+        self.assertEqual(page.value("typed"), ["filter\n", "filter ?\n"])
         self.say(page, f"# filter: {DEFAULT} {PLAIN}\n# filter {PLAIN}\n".encode() + rows(30, 60))
         page.until(f"tiltLive.figures().filter === '{PLAIN}'")
         page.value(f"document.querySelector('input[value={DEFAULT}]').click()")
