@@ -13,6 +13,7 @@ STOP_MS = 20  # rows of what was under way when `stop` came
 STEP_SHARE, MEASURED_SHARE = 0.25, 0.02  # by which two rows' distance and the rate in `status` may be off
 LAST_MS = 500  # of a run, in which the command's work is done
 END_MS = 60  # of it, in which no rows come behind the last status
+HELD_MS = 60  # behind the status before it: rows that are held count as lost in --stats
 # what a whole campaign has to have, and the kinds that are it
 REQUIRED = {
     "unplug and plug": ("unplug",), "power cycle": ("power",), "SDA low": ("sda",), "SCL low": ("scl",),
@@ -41,7 +42,8 @@ def lost_most(kinds):
     if any(kind.lost_max is None and kind.limit_ms >= NO_LIMIT for kind in kinds):
         return None
     rate = max(max(kind.rate, kind.command.rate if kind.command else 0) for kind in kinds)
-    return sum(math.ceil((kind.lasts_ms + kind.limit_ms) * rate / 1000) if kind.lost_max is None else kind.lost_max for kind in kinds)
+    held_ms = HELD_MS if any(kind.command for kind in kinds) else 0
+    return sum(math.ceil((kind.lasts_ms + kind.limit_ms + held_ms) * rate / 1000) if kind.lost_max is None else kind.lost_max for kind in kinds)
 
 
 def resets_due(kinds, whens):

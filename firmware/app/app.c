@@ -267,7 +267,9 @@ static void set_alarm(void)
     hal_wake_at(t_us);
 }
 
-/* Bytes wait in the receive ring while the banner goes out, the baud rate changes, or until it is said how a save went. */
+/*
+ * Bytes wait in the receive ring while the banner goes out, the baud rate changes, or until it is said how a save went.
+ */
 static bool takes_commands(void)
 {
     return loop.greeted && !control_line_waits() && !notices_hold(NOTICE_SAVED, NOTICE_SAVED);

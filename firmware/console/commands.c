@@ -160,7 +160,9 @@ static void take_byte(uint8_t byte)
     }
 }
 
-/* Not while a reply waits that reports what the next command may change, or is so long that the line is not free soon. */
+/*
+ * Not while a reply waits that reports what the next command may change, or is so long that the line is not free soon.
+ */
 static bool commands_wanted(void)
 {
     return notices_room() && !notices_hold(NOTICE_HELP, NOTICE_TOO_SLOW);
