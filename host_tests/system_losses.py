@@ -17,7 +17,7 @@ def worst_width_stream():
     return path
 
 
-SUPERVISION_CYCLES = 620  # what checking and supervising a sample may cost beside reading, filtering and writing it
+SUPERVISION_CYCLES = 600  # what checking and supervising a sample may cost beside reading, filtering and writing it
 
 
 def lose_nothing(name, stream, ppm, rate, baud, every, load_limit, fw=FW, shift_us=0, filter_name=None):
@@ -48,7 +48,7 @@ def lose_nothing(name, stream, ppm, rate, baud, every, load_limit, fw=FW, shift_
 
 
 @test
-def supervision_costs_at_most_620_cycles_a_sample():
+def supervision_costs_at_most_600_cycles_a_sample():
     """Against an image that takes readings as they come, and the four bytes that a plain read does without (INT_SOURCE to FIFO_STATUS)."""
     def cycles(name, fw, rate):
         options = ("--rate", rate, "--baud", 1000000, "--loop", "--max-ms", 20500)

@@ -37,11 +37,11 @@ export const FAULTS = {
   bus_error_once: { sim: [':buserr'], here: once('buserror') },
   int1_cut_25_ms: { sim: [':noint:25'], here: cut(25) },
   int1_cut_500_ms: { sim: [':noint:500'], here: cut(500) },
-  int1_cut_60_ms_800_hz: { sim: [':noint:60'], here: cut(60), rate: 800, near: 1006.2 },
+  int1_cut_60_ms_800_hz: { sim: [':noint:60'], here: cut(60), rate: 800, near: 1016.2 },
   unplugged_100_ms_400_hz: { sim: [':unplug:100'], here: unplugged(100), rate: 400 },
   sda_low_100_ms_400_hz: { sim: [':sda:100'], here: held('sda', 100), rate: 400 },
   starved_20_ms_800_hz: { sim: [':starve:20'], here: starved(20), rate: 800, drained: AT_THE_END },
-  starved_60_ms_800_hz: { sim: [':starve:60'], here: starved(60), rate: 800, drained: AT_THE_END + SLOWLY, near: 1006.2 }, // the sensor's FIFO overflows
+  starved_60_ms_800_hz: { sim: [':starve:60'], here: starved(60), rate: 800, drained: AT_THE_END + SLOWLY, at: 1002 }, // the sensor's FIFO overflows
   starved_200_ms_100_hz: { sim: [':starve:200'], here: starved(200) },
   reset_button: { sim: [':reset'], here: (b, at) => b.at(at, () => b.reset(MCUSR.external)), options: ['--expect-resets', 1] },
   nothing: { sim: [], here: () => {} },

@@ -9,7 +9,7 @@ export const GO_MS = 500;
 const STAMP_SPREAD_US = 100; // of t_us about the sensor's own time: +-50 us, as the first simulator's tests grant
 const FLAG_DISOWNED = 64, FLAG_ROLL_UNDEFINED = 1024;
 // after a long gap the sensor is configured again, and which of its irregular samples that meets depends on microseconds
-const GAP = [PASSES_MS + 10, 1]; // and a period of the sensor
+const GAP = [PASSES_MS, 1];
 export const ROWS_AT_THE_END = 2; // on their way when the time is over
 
 function scriptOf({ filter, rate }) {

@@ -42,7 +42,7 @@ bool adxl345_driver_deadline_passed(void)
     return adxl345_driver_reached(adxl345_driver_state()->deadline_us);
 }
 
-HAL_APART void adxl345_driver_stopped(void)
+void adxl345_driver_stopped(void)
 {
     adxl345_driver_state()->fault = ADXL345_FAULT_NONE;
     adxl345_driver_state()->after_fault = false;

@@ -16,6 +16,7 @@
 #include "hal_time.h"
 
 #define MARGIN_US 3000u
+#define TRANSFER_US ((uint32_t)TRANSFER_LIMIT * LIMIT_US)
 #define TURN_ON_MS 20u /* p. 5: period + 1.1 ms, with room for a slow start */
 
 /* So many halves of the nominal time between samples. */
@@ -69,22 +70,24 @@ void adxl345_stream_start(adxl345_driver_t *d)
     adxl345_driver_enter(STEP_STREAM, RETURN_LIMIT);
 }
 
-HAL_APART bool adxl345_stream_without_edges(void)
+bool adxl345_stream_without_edges(void)
 {
     return adxl345_driver_state()->fault == ADXL345_FAULT_INT1_SILENT || adxl345_integrity_int1_stuck();
 }
 
-/* At 800 Hz a sample has been read and taken by then: no pass of main for the deadline of one that came. */
-#define SPARE_US 256u
-
 /*
  * Without a sample until the sensor is asked: a quarter of a period after it was due, so that one whose edge is lost is
- * read before its row is filled, which happens at a half; or while INT1 is known to tell nothing less than a period, so
- * that a sensor that is fast does not fill its FIFO.
+ * read before its row is filled, which happens at a half; but no sooner than a transfer may take, which is later at
+ * 800 Hz alone. While INT1 is known to tell nothing less than a period, so that a sensor that is fast does not fill its
+ * FIFO.
  */
-static HAL_APART uint32_t patience_us(void)
+static uint32_t patience_us(void)
 {
-    return adxl345_stream_without_edges() ? halves_us(3) >> 1 : (halves_us(5) >> 1) + SPARE_US;
+    if (adxl345_stream_without_edges()) {
+        return halves_us(3) >> 1;
+    }
+    uint32_t us = halves_us(5) >> 1;
+    return us < TRANSFER_US ? TRANSFER_US : us;
 }
 
 static void sample_arrived(adxl345_driver_t *d)
@@ -111,7 +114,7 @@ static void sample_arrived(adxl345_driver_t *d)
 static void look_for_sample(adxl345_driver_t *d)
 {
     if (adxl345_burst_running() || hal_i2c_stop_pending()) {
-        d->deadline_us = adxl345_burst_begun_us() + (uint32_t)TRANSFER_LIMIT * LIMIT_US;
+        d->deadline_us = adxl345_burst_begun_us() + TRANSFER_US;
         if (adxl345_driver_deadline_passed() && adxl345_driver_transfer_failed(I2C_BUS_TIMEOUT)) {
             adxl345_driver_enter(STEP_STREAM, RETURN_LIMIT);
         }
