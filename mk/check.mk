@@ -76,7 +76,7 @@ check-waits: check-objects $(SET_IMAGES)
 	@python3 tools/check_waits.py $(SET_IMAGES)
 
 check-size: $(SET_IMAGES)
-	@for image in $^; do sh tools/size.sh $$image || exit 1; done
+	@bad=0; for image in $^; do sh tools/size.sh $$image || bad=1; done; exit $$bad
 
 check-seam:
 	@sh tools/check_seam.sh
