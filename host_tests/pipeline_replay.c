@@ -177,13 +177,11 @@ static void check_configuration(filter_kind_t kind, uint16_t rate_dhz)
 static void print_row(void)
 {
     row_t row;
-    int16_t mg[3];
     pipeline_finish();
     pipeline_row(&row);
-    pipeline_mg(mg);
     pipeline_row_done();
-    printf("%u,%d,%d,%d,%d,%d,%d,%d,%d,%u\n", (unsigned)row.t_us, row.lsb[0], row.lsb[1], row.lsb[2], mg[0], mg[1],
-           mg[2], row.roll_cdeg, row.pitch_cdeg, row.flags);
+    printf("%u,%d,%d,%d,%d,%d,%d,%d,%d,%u\n", (unsigned)row.t_us, row.lsb[0], row.lsb[1], row.lsb[2], row.mg[0],
+           row.mg[1], row.mg[2], row.roll_cdeg, row.pitch_cdeg, row.flags);
 }
 
 /* A row for each sample, and for each that is missing before it while the filters predict. */

@@ -22,14 +22,6 @@ void setUp(void)
 
 void tearDown(void) {}
 
-/* Of the newest row. */
-static int16_t mg_of(int axis)
-{
-    int16_t mg[3];
-    pipeline_mg(mg);
-    return mg[axis];
-}
-
 /* One reading for 2 s: every filter has it then. */
 static row_t row_of(int x, int y, int z)
 {
@@ -54,9 +46,9 @@ static void test_mg_are_calibrated_and_readings_are_not(void)
     row_t row = row_of(256, 0, 256);
     TEST_ASSERT_EQUAL_INT16(256, row.lsb[0]);
     TEST_ASSERT_EQUAL_INT16(256, row.lsb[2]);
-    TEST_ASSERT_EQUAL_INT16(966, mg_of(0));
-    TEST_ASSERT_EQUAL_INT16(0, mg_of(1));
-    TEST_ASSERT_EQUAL_INT16(922, mg_of(2));
+    TEST_ASSERT_EQUAL_INT16(966, row.mg[0]);
+    TEST_ASSERT_EQUAL_INT16(0, row.mg[1]);
+    TEST_ASSERT_EQUAL_INT16(922, row.mg[2]);
 }
 
 /* (0, 3, 4) / 5 g with y and z changed and x reversed: roll atan2(4, 3) = 53.13 degrees in place of 36.87. */
@@ -70,11 +62,9 @@ static void test_angles_are_those_of_the_axes_named_anew(void)
     pipeline_calibrate(&c);
     row = row_of(0, 154, 205);
     TEST_ASSERT_INT16_WITHIN(3, 5309, row.roll_cdeg);
-    int16_t roll_cdeg;
-    int16_t pitch_cdeg;
-    pipeline_raw_angles(&roll_cdeg, &pitch_cdeg);
-    TEST_ASSERT_INT16_WITHIN(3, 5309, roll_cdeg);
-    TEST_ASSERT_INT16_WITHIN(3, 0, pitch_cdeg);
+    const tilt_t *raw = pipeline_raw_tilt();
+    TEST_ASSERT_INT16_WITHIN(3, 5309, raw->roll_cdeg);
+    TEST_ASSERT_INT16_WITHIN(3, 0, raw->pitch_cdeg);
 }
 
 /* Tared on its side, that attitude is level, raw and filtered. */
@@ -86,11 +76,9 @@ static void test_a_tared_attitude_is_level(void)
     row_t row = row_of(100, -200, 125);
     TEST_ASSERT_INT16_WITHIN(5, 0, row.roll_cdeg); /* 0.022 + 0.008 + 0.02 degree */
     TEST_ASSERT_INT16_WITHIN(6, 0, row.pitch_cdeg);
-    int16_t roll_cdeg;
-    int16_t pitch_cdeg;
-    pipeline_raw_angles(&roll_cdeg, &pitch_cdeg);
-    TEST_ASSERT_INT16_WITHIN(5, 0, roll_cdeg);
-    TEST_ASSERT_INT16_WITHIN(6, 0, pitch_cdeg);
+    const tilt_t *raw = pipeline_raw_tilt();
+    TEST_ASSERT_INT16_WITHIN(5, 0, raw->roll_cdeg);
+    TEST_ASSERT_INT16_WITHIN(6, 0, raw->pitch_cdeg);
 }
 
 /* A part of 296 LSB/g shows 1.156 g at rest: not to be trusted, until its scale is known. */
@@ -110,10 +98,8 @@ static void test_mg_are_limited(void)
         c.level_q14[i] = 9459;
     }
     pipeline_calibrate(&c);
-    (void)row_of(4094, 4094, 4094);
-    TEST_ASSERT_EQUAL_INT16(32000, mg_of(2));
-    (void)row_of(-4094, -4094, -4094);
-    TEST_ASSERT_EQUAL_INT16(-32000, mg_of(2));
+    TEST_ASSERT_EQUAL_INT16(32000, row_of(4094, 4094, 4094).mg[2]);
+    TEST_ASSERT_EQUAL_INT16(-32000, row_of(-4094, -4094, -4094).mg[2]);
 }
 
 /* A sample that is missing has a prediction of its own, calibrated. */
@@ -129,19 +115,23 @@ static void test_a_missing_sample_is_calibrated_as_well(void)
         pipeline_finish();
     }
     row_t row;
+    pipeline_row(&row);
     pipeline_row_done();
-    int16_t before_mg = mg_of(2);
+    int16_t before_mg = row.mg[2];
     pipeline_coast(now_us + 10000);
     pipeline_finish();
     pipeline_row(&row);
     TEST_ASSERT_EQUAL_UINT16(ROW_COASTED, row.flags);
-    TEST_ASSERT_TRUE(mg_of(2) > before_mg && mg_of(2) < before_mg + 20); /* 2 LSB a sample: 6.25 mg */
+    TEST_ASSERT_TRUE(row.mg[2] > before_mg && row.mg[2] < before_mg + 20); /* 2 LSB a sample: 6.25 mg */
 }
 
-/* A calibration is in force whole from the sample on that is under way, which is calibrated at its end. */
-static void test_a_sample_is_calibrated_by_one_calibration(void)
+/* A calibration is in force whole from the next row on, although its sample may be filtered already. */
+static void test_a_row_is_calibrated_by_one_calibration(void)
 {
-    (void)row_of(256, 128, 64);
+    row_t row = row_of(256, 128, 64);
+    TEST_ASSERT_INT16_WITHIN(1, 1000, row.mg[0]);
+    TEST_ASSERT_INT16_WITHIN(1, 500, row.mg[1]);
+    TEST_ASSERT_INT16_WITHIN(1, 250, row.mg[2]);
     static calibration_t another;
     another = c;
     for (uint8_t i = 0; i < 3; i++) {
@@ -149,19 +139,35 @@ static void test_a_sample_is_calibrated_by_one_calibration(void)
     }
     adxl345_sample_t sample = { .t_us = now_us + 10000, .lsb = { 256, 128, 64 } };
     pipeline_sample(&sample);
+    pipeline_finish();
     pipeline_calibrate(&another);
-    TEST_ASSERT_INT16_WITHIN(1, 1000, mg_of(0)); /* of the sample before, until this one is filtered */
-    TEST_ASSERT_INT16_WITHIN(1, 500, mg_of(1));
-    TEST_ASSERT_INT16_WITHIN(1, 250, mg_of(2));
-    TEST_ASSERT_TRUE(pipeline_work());
-    TEST_ASSERT_INT16_WITHIN(1, 800, mg_of(0));
-    TEST_ASSERT_INT16_WITHIN(1, 400, mg_of(1));
-    TEST_ASSERT_INT16_WITHIN(1, 200, mg_of(2));
-    TEST_ASSERT_FALSE(pipeline_work());
-    (void)row_of(256, 128, 64);
-    TEST_ASSERT_INT16_WITHIN(1, 800, mg_of(0));
-    TEST_ASSERT_INT16_WITHIN(1, 400, mg_of(1));
-    TEST_ASSERT_INT16_WITHIN(1, 200, mg_of(2));
+    pipeline_row(&row);
+    TEST_ASSERT_INT16_WITHIN(1, 800, row.mg[0]);
+    TEST_ASSERT_INT16_WITHIN(1, 400, row.mg[1]);
+    TEST_ASSERT_INT16_WITHIN(1, 200, row.mg[2]);
+}
+
+/* Of four samples for a row the last is judged: a jerk before it is not in the row's acceleration, nor in its flag. */
+static void test_gravity_is_judged_of_the_rows_own_acceleration(void)
+{
+    (void)row_of(0, 0, 256);
+    row_t row;
+    unsigned not_gravity = 0;
+    for (int i = 0; i < 2 * SAMPLES; i++) {
+        now_us += 10000;
+        adxl345_sample_t sample = { .t_us = now_us, .lsb = { 0, 0, (int16_t)(i < 100 ? 330 : 256) } };
+        pipeline_sample(&sample);
+        pipeline_finish();
+        if (i % 4 == 3) {
+            pipeline_row(&row);
+            pipeline_row_done();
+            bool outside = row.mg[2] < 850 || row.mg[2] > 1150;
+            TEST_ASSERT_EQUAL_UINT16(outside ? ROW_NOT_GRAVITY : 0, row.flags & ROW_NOT_GRAVITY);
+            not_gravity += outside;
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_UINT(20, not_gravity);
+    TEST_ASSERT_LESS_THAN_UINT(40, not_gravity);
 }
 
 int main(void)
@@ -173,6 +179,7 @@ int main(void)
     RUN_TEST(test_gravity_is_judged_after_the_calibration);
     RUN_TEST(test_mg_are_limited);
     RUN_TEST(test_a_missing_sample_is_calibrated_as_well);
-    RUN_TEST(test_a_sample_is_calibrated_by_one_calibration);
+    RUN_TEST(test_a_row_is_calibrated_by_one_calibration);
+    RUN_TEST(test_gravity_is_judged_of_the_rows_own_acceleration);
     return UNITY_END();
 }

@@ -66,9 +66,7 @@ static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t
         row_t row;
         uint16_t flags = 0;
         filter_sample(&sample, chain[0].period_us);
-        int16_t mg[3];
         pipeline_row(&row);
-        pipeline_mg(mg);
         pipeline_row_done();
         for (int axis = 0; axis < 3; axis++) {
             (void)chain_sample(&chain[axis], in->t_us, in->lsb[axis]);
@@ -77,7 +75,7 @@ static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t
             flags |= (own & FILTER_GATED) != 0U ? ROW_GATED : 0U;
             flags |= (own & FILTER_REACQUIRED) != 0U || chain[axis].begun ? ROW_REACQUIRED : 0U;
             flags |= chain[axis].clipped ? ROW_CLIPPED : 0U;
-            TEST_ASSERT_EQUAL_INT16_MESSAGE(mg[axis], row_mg(&chain[axis]), about("pipeline", kind, axis, "mg"));
+            TEST_ASSERT_EQUAL_INT16_MESSAGE(row.mg[axis], row_mg(&chain[axis]), about("pipeline", kind, axis, "mg"));
         }
         TEST_ASSERT_EQUAL_HEX16(row.flags & (ROW_GATED | ROW_REACQUIRED | ROW_CLIPPED), flags);
     }

@@ -165,9 +165,8 @@ static int16_t answer_to_a_step(uint32_t period_us)
         (void)second(period_us, 60, 0);
     }
     sample(100);
-    int16_t mg[3];
-    pipeline_mg(mg);
-    return mg[1];
+    pipeline_row(&row);
+    return row.mg[1];
 }
 
 static void test_the_filter_has_the_parameters_of_the_true_rate(void)

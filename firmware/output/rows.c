@@ -68,12 +68,10 @@ static char *label(char *at, flash_text_t words)
 
 static char *write_plot(char *at, const row_t *row)
 {
-    int16_t roll_raw_cdeg;
-    int16_t pitch_raw_cdeg;
-    pipeline_raw_angles(&roll_raw_cdeg, &pitch_raw_cdeg);
-    at = format_hundredths(label(at, FLASH_TEXT("roll_raw:")), roll_raw_cdeg);
+    const tilt_t *raw = pipeline_raw_tilt();
+    at = format_hundredths(label(at, FLASH_TEXT("roll_raw:")), raw->roll_cdeg);
     at = format_hundredths(label(at, FLASH_TEXT(",roll:")), row->roll_cdeg);
-    at = format_hundredths(label(at, FLASH_TEXT(",pitch_raw:")), pitch_raw_cdeg);
+    at = format_hundredths(label(at, FLASH_TEXT(",pitch_raw:")), raw->pitch_cdeg);
     at = format_hundredths(label(at, FLASH_TEXT(",pitch:")), row->pitch_cdeg);
     at = label(at, FLASH_TEXT(",gated:"));
     *at++ = (row->flags & ROW_GATED) ? '1' : '0';
@@ -108,7 +106,9 @@ void rows_at_once(bool plot)
         return;
     }
     since_row = 0;
-    held = held && (uint16_t)(newest_time() - held_from) < HELD_TIMES;
+    if ((uint16_t)(newest_time() - held_from) >= HELD_TIMES) {
+        held = false;
+    }
     if (held && !plot) {
         count(COUNT_HELD);
         pipeline_flag(ROW_DROPPED);

@@ -9,7 +9,6 @@
 #include "fx.h"
 #include "path/silence.h"
 #include "path/supervisor.h"
-#include "tilt.h"
 #include "tilt_axis.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
@@ -22,7 +21,7 @@ typedef enum { WORK_NONE, WORK_SAMPLE, WORK_COAST } work_t;
 static struct {
     tilt_axis_t axes[AXES];
     uint16_t looked_lsb_q2[AXES]; /* the estimates a second ago */
-    int32_t a_q8[AXES];           /* the estimates in the axes of the carrier, 1/256 g */
+    int32_t a_q8[AXES];           /* of the row, in the axes of the carrier, 1/256 g */
     calibration_applied_t applied;
 #if SUPERVISOR
     const calibration_t *calibration; /* that is applied */
@@ -91,7 +90,7 @@ uint32_t pipeline_newest_us(void)
  * filter takes up to 2.4 ms to settle. Else, and where the noise is not known either, all at once: no sample comes
  * meanwhile.
  */
-FX_NOINLINE void begin_all(bool cold)
+static void begin_all(bool cold)
 {
     pipeline.cold = cold;
     pipeline.turn = false;
@@ -195,32 +194,6 @@ void pipeline_calibrate(const calibration_t *calibration)
     (void)calibration_prepare(&pipeline.applied, calibration);
 }
 
-/* Once for the sample, or the missing one, because it is expensive: the row takes what the check of gravity took. */
-static void find_accelerations(void)
-{
-    int32_t estimates_q8[AXES];
-    for (uint8_t axis = 0; axis < AXES; axis++) {
-        estimates_q8[axis] = tilt_axis_estimate_q8(&pipeline.axes[axis]);
-    }
-#if SUPERVISOR
-    supervisor_view_t view = { pipeline.axes, pipeline.newest.lsb, pipeline.rail_high_lsb, pipeline.calibration,
-                               &pipeline.applied };
-    if (supervisor_complete(&view, estimates_q8)) {
-        pipeline_flag(ROW_LEFT_OUT);
-    }
-#endif
-    calibration_apply(&pipeline.applied, estimates_q8, pipeline.a_q8);
-}
-
-static void end_sample(uint8_t flags)
-{
-    if (!tilt_gravity_plausible(pipeline.a_q8)) {
-        pipeline_flag(ROW_NOT_GRAVITY);
-    }
-    count_sample(flags);
-    pipeline.has_sample = true;
-}
-
 /*
  * Counts what a sensor that hangs repeats. True: it has come back, and what the filters have learned of the noise was
  * that of readings without any, so that they would refuse what comes now.
@@ -243,7 +216,8 @@ FX_NOINLINE void filter_axes(void)
     bool sample = pipeline.work == WORK_SAMPLE;
     uint8_t flags = 0;
     const int16_t *lsb = pipeline.newest.lsb;
-    for (tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
+    tilt_axis_t *axis = pipeline.axes;
+    for (uint8_t left = AXES; left != 0; left--, axis++) {
         if (!sample) {
             flags |= tilt_axis_missing(axis);
             continue;
@@ -254,9 +228,12 @@ FX_NOINLINE void filter_axes(void)
         }
     }
     pipeline_flag(flags);
-    find_accelerations();
+#if SUPERVISOR
+    supervisor_sample(pipeline.axes, pipeline.newest.lsb, pipeline.rail_high_lsb, pipeline.calibration);
+#endif
     if (sample) {
-        end_sample(flags);
+        count_sample(flags);
+        pipeline.has_sample = true;
     }
     pipeline.work = WORK_NONE;
 }
@@ -316,26 +293,37 @@ static int16_t to_mg(int32_t value_q8)
     return (int16_t)((value_q8 * 1000 + 32768) >> 16);
 }
 
+/* Accelerations of readings or estimates, LSB in Q8, and their angles. For a row only, because it is expensive. */
+static void find_angles(tilt_t *tilt, const int32_t lsb_q8[3], int32_t a_q8[3])
+{
+    calibration_apply(&pipeline.applied, lsb_q8, a_q8);
+    tilt_angles(tilt, a_q8);
+}
+
 void pipeline_row(row_t *row)
 {
+    int32_t estimates_q8[AXES];
+    int32_t *estimate = estimates_q8;
+    for (const tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
+        *estimate++ = tilt_axis_estimate_q8(axis);
+    }
+    row->flags = pipeline.flags;
+#if SUPERVISOR
+    if (supervisor_complete(pipeline.calibration, &pipeline.applied, estimates_q8)) {
+        row->flags |= ROW_LEFT_OUT;
+    }
+#endif
+    find_angles(&pipeline.tilt, estimates_q8, pipeline.a_q8);
     row->t_us = pipeline.newest.t_us;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         row->lsb[axis] = pipeline.newest.lsb[axis];
+        row->mg[axis] = to_mg(pipeline.a_q8[axis]);
     }
-    pipeline_mg(row->mg);
-    tilt_angles(&pipeline.tilt, pipeline.a_q8);
     row->roll_cdeg = pipeline.tilt.roll_cdeg;
     row->pitch_cdeg = pipeline.tilt.pitch_cdeg;
-    row->flags = pipeline.flags;
+    row->flags |= tilt_gravity_plausible(pipeline.a_q8) ? 0u : ROW_NOT_GRAVITY;
     row->flags |= pipeline.tilt.roll_undefined ? ROW_ROLL_UNDEFINED : 0u;
     row->flags |= pipeline.warm_rows != 0 ? ROW_WARMING_UP : 0u;
-}
-
-void pipeline_mg(int16_t mg[3])
-{
-    for (uint8_t axis = 0; axis < AXES; axis++) {
-        mg[axis] = to_mg(pipeline.a_q8[axis]);
-    }
 }
 
 void pipeline_row_done(void)
@@ -346,15 +334,13 @@ void pipeline_row_done(void)
     }
 }
 
-void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg)
+const tilt_t *pipeline_raw_tilt(void)
 {
     int32_t readings_q8[AXES];
     int32_t a_q8[AXES];
     for (uint8_t axis = 0; axis < AXES; axis++) {
         readings_q8[axis] = (int32_t)pipeline.newest.lsb[axis] * 256;
     }
-    calibration_apply(&pipeline.applied, readings_q8, a_q8);
-    tilt_angles(&pipeline.raw_tilt, a_q8);
-    *roll_cdeg = pipeline.raw_tilt.roll_cdeg;
-    *pitch_cdeg = pipeline.raw_tilt.pitch_cdeg;
+    find_angles(&pipeline.raw_tilt, readings_q8, a_q8);
+    return &pipeline.raw_tilt;
 }

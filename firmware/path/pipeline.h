@@ -11,6 +11,7 @@
 #include "adxl345.h"
 #include "base/choice.h"
 #include "calibration.h"
+#include "tilt.h"
 #include "tilt_axis.h"
 
 /* Bits of the row's `flags` column (docs/protocol.md). */
@@ -107,16 +108,16 @@ uint32_t pipeline_newest_us(void);
 /* Flags that hold until the next row. */
 void pipeline_flag(uint16_t flags);
 
-/* The row for the newest sample, or for the missing one, with the flags of all samples since pipeline_row_done. */
+/*
+ * The row for the newest sample, or for the missing one, with the flags of all samples since pipeline_row_done; but
+ * ROW_NOT_GRAVITY and ROW_LEFT_OUT are said of this row's own acceleration.
+ */
 void pipeline_row(row_t *row);
 
 /* The row went out: start collecting flags anew and count a warm-up row. */
 void pipeline_row_done(void);
 
-/* Filtered accelerations of the row, mg. */
-void pipeline_mg(int16_t mg[3]);
-
 /* Roll and pitch of the newest raw sample, for the plotter. */
-void pipeline_raw_angles(int16_t *roll_cdeg, int16_t *pitch_cdeg);
+const tilt_t *pipeline_raw_tilt(void);
 
 #endif

@@ -45,21 +45,21 @@ void supervisor_look(const int16_t before[3], const int16_t lsb[3])
     }
 }
 
-static bool is_bad(const supervisor_view_t *view, uint8_t axis)
+static bool is_bad(uint8_t axis, const int16_t lsb[3], int16_t rail_high_lsb)
 {
-    bool at_rail = tilt_at_rail(view->lsb[axis], view->rail_high_lsb);
+    bool at_rail = tilt_at_rail(lsb[axis], rail_high_lsb);
     uint8_t limit = at_rail ? SUPERVISOR_RAIL_SAMPLES : SUPERVISOR_REPEATED_SAMPLES;
     return supervisor.repeated[axis] >= limit;
 }
 
 /* The one axis that is bad, while another changes; AXES: none, or more. */
-static uint8_t bad_axis(const supervisor_view_t *view)
+static uint8_t bad_axis(const int16_t lsb[3], int16_t rail_high_lsb)
 {
     uint8_t found = AXES;
     bool changes = false;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         changes |= supervisor.repeated[axis] < SUPERVISOR_RAIL_SAMPLES;
-        if (is_bad(view, axis)) {
+        if (is_bad(axis, lsb, rail_high_lsb)) {
             if (found != AXES) {
                 return AXES;
             }
@@ -70,21 +70,31 @@ static uint8_t bad_axis(const supervisor_view_t *view)
 }
 
 /* What an axis reads at 0 g, Q8. */
-static int32_t offset_q8(const supervisor_view_t *view, uint8_t axis)
+static int32_t offset_q8(const calibration_t *calibration, uint8_t axis)
 {
-    return (int32_t)view->calibration->offset_lsb_q4[axis] * 16;
+    return (int32_t)calibration->offset_lsb_q4[axis] * 16;
 }
 
-static void note_signs(const supervisor_view_t *view, const int32_t estimates_q8[3])
+static void note_signs(const tilt_axis_t axes[3], const calibration_t *calibration)
 {
     for (uint8_t axis = 0; axis < AXES; axis++) {
         uint8_t bit = (uint8_t)(1u << axis);
         if (supervisor.repeated[axis] == 0) {
             supervisor.negative &= (uint8_t)~bit;
-            if (estimates_q8[axis] < offset_q8(view, axis)) {
+            if (tilt_axis_estimate_q8(&axes[axis]) < offset_q8(calibration, axis)) {
                 supervisor.negative |= bit;
             }
         }
+    }
+}
+
+void supervisor_sample(const tilt_axis_t axes[3], const int16_t lsb[3], int16_t rail_high_lsb,
+                       const calibration_t *calibration)
+{
+    supervisor.left_out = AXES;
+    if (in_force(axes)) {
+        note_signs(axes, calibration);
+        supervisor.left_out = bad_axis(lsb, rail_high_lsb);
     }
 }
 
@@ -92,27 +102,22 @@ static void note_signs(const supervisor_view_t *view, const int32_t estimates_q8
  * Without the bad axis' part the calibrated vector lies across it, whatever the mounting is; what is missing of 1 g is
  * its part, and in its own readings that by its scale.
  */
-bool supervisor_complete(const supervisor_view_t *view, int32_t estimates_q8[3])
+bool supervisor_complete(const calibration_t *calibration, const calibration_applied_t *applied,
+                         int32_t estimates_q8[3])
 {
-    supervisor.left_out = AXES;
-    if (!in_force(view->axes)) {
-        return false;
-    }
-    note_signs(view, estimates_q8);
-    uint8_t bad = bad_axis(view);
+    uint8_t bad = supervisor.left_out;
     if (bad == AXES) {
         return false;
     }
     int32_t a_q8[AXES];
-    estimates_q8[bad] = offset_q8(view, bad);
-    calibration_apply(view->applied, estimates_q8, a_q8);
+    estimates_q8[bad] = offset_q8(calibration, bad);
+    calibration_apply(applied, estimates_q8, a_q8);
     uint16_t missing_q6 = tilt_missing_q6(a_q8[0], a_q8[1], a_q8[2]);
     /* Q6 x UQ6 of 256 LSB per g: Q8 */
-    int32_t part_q8 = (int32_t)(fx_product_u16(missing_q6, view->calibration->scale_lsb_per_g_uq6[bad]) >> 12);
+    int32_t part_q8 = (int32_t)(fx_product_u16(missing_q6, calibration->scale_lsb_per_g_uq6[bad]) >> 12);
     bool negative = (supervisor.negative & (uint8_t)(1u << bad)) != 0;
     estimates_q8[bad] += negative ? -part_q8 : part_q8;
     supervisor.missing_q6 = missing_q6;
-    supervisor.left_out = bad;
     return true;
 }
 

@@ -61,7 +61,7 @@ static void keep_row(replay_t *r, int32_t source)
                                 .pitch_cdeg = row.pitch_cdeg,
                                 .flags = row.flags };
         memcpy(out->lsb, row.lsb, sizeof row.lsb);
-        pipeline_mg(out->mg);
+        memcpy(out->mg, row.mg, sizeof row.mg);
     }
     r->count++;
 }

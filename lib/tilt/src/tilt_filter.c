@@ -99,6 +99,9 @@ static void find_angles(tilt_filter_t *t)
     if (t->angles.roll_undefined) {
         t->flags |= TILT_ROLL_UNDEFINED;
     }
+    if (!tilt_gravity_plausible(t->a_q8)) {
+        t->flags |= TILT_NOT_GRAVITY;
+    }
 }
 
 static void update_axis(tilt_filter_t *t, uint8_t axis, int16_t reading)
@@ -117,9 +120,6 @@ void tilt_filter_update(tilt_filter_t *t, int16_t ax, int16_t ay, int16_t az)
     update_axis(t, 1, ay);
     update_axis(t, 2, az);
     find_angles(t);
-    if (!tilt_gravity_plausible(t->a_q8)) {
-        t->flags |= TILT_NOT_GRAVITY;
-    }
 }
 
 void tilt_filter_missing(tilt_filter_t *t)
