@@ -131,10 +131,9 @@ static void run_line(void)
     }
 }
 
-/* Who types on has read what was said. */
+/* Who types on has read what was said, unless it is more to be read that is asked for: no row comes between. */
 static void end_line(void)
 {
-    rows_release();
     while (length != 0 && line[length - 1u] == ' ') {
         length--;
     }
@@ -143,6 +142,9 @@ static void end_line(void)
         answer(wrong, 0);
     } else if (length != 0) {
         run_line();
+    }
+    if (!notices_hold(NOTICE_HELP, NOTICE_LISTING)) {
+        rows_release();
     }
     length = 0;
     wrong = 0;
