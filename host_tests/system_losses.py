@@ -64,6 +64,17 @@ def supervision_costs_at_most_600_cycles_a_sample():
         within(what, round(verdict + 4 * a_byte), SUPERVISION_CYCLES)
 
 
+@test
+def a_rate_above_the_streams_raises_no_fault():
+    """A row that several samples take is not the reading of a sensor that hangs."""
+    for rate in (400, 800):
+        options = ("--rate", rate, "--every", 4, "--baud", 500000, "--loop", "--max-ms", 30000)
+        rows, notes, _, _ = simrun(f"above-the-stream-{rate}", STREAMS / "rest-0.7lsb.csv", *options)
+        faults = [note for note in notes if note.startswith("# fault")]
+        assert not faults and not any(row[9] & 32 for row in rows[20:]), f"at {rate} Hz: {faults[:3]}"
+        assert len(rows) > 28 * rate / 4, f"at {rate} Hz: {len(rows)} rows"
+
+
 def make_loss_test(filter_name, rate, baud, every, load_limit, ppm):
     def check():
         lose_nothing(f"loss-{filter_name}-{rate}-{ppm}", STREAMS / "tilt-slow.csv", ppm, rate, baud, every, load_limit, filter_name=filter_name)

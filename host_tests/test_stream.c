@@ -1,4 +1,4 @@
-/* The reader of recorded streams and the feed to the virtual sensor. Formats and errors as in design.md, "Streams". */
+/* The reader of recorded streams. Formats and errors as in design.md, "Streams". */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -222,102 +222,6 @@ static void test_refuses_binary(void)
     TEST_ASSERT_NOT_NULL(strstr(stream.error, ":3: a NUL byte"));
 }
 
-/* --- feed --- */
-
-static feed_t feed_of(double odr_hz, bool loop)
-{
-    feed_t feed = { .stream = &stream, .loop = loop };
-    feed_set_rate(&feed, &stream, odr_hz, 0);
-    return feed;
-}
-
-static void assert_tick(feed_t *feed, uint64_t now_us, feed_result_t result, size_t row)
-{
-    size_t index = 999;
-    TEST_ASSERT_EQUAL_INT(result, feed_tick(feed, now_us, &index));
-    if (result == FEED_SAMPLE) {
-        TEST_ASSERT_EQUAL_size_t(row, index);
-    }
-}
-
-static void test_feed_mode_at_the_5_percent_border(void)
-{
-    load("t_us,x,y,z\n0,1,0,0\n10000,2,0,0\n20000,3,0,0\n"); /* 100 Hz; 5 % of the sensor's rate */
-    TEST_ASSERT_EQUAL_INT(FEED_ROW_PER_TICK, feed_of(100.0, false).mode);
-    TEST_ASSERT_EQUAL_INT(FEED_ROW_PER_TICK, feed_of(105.2, false).mode);
-    TEST_ASSERT_EQUAL_INT(FEED_IN_FORCE, feed_of(105.3, false).mode);
-    TEST_ASSERT_EQUAL_INT(FEED_ROW_PER_TICK, feed_of(95.3, false).mode);
-    TEST_ASSERT_EQUAL_INT(FEED_IN_FORCE, feed_of(95.2, false).mode);
-}
-
-static void test_feed_gaps_and_missing_rows_are_silent_ticks(void)
-{
-    /* 10 ms steps; rows 2 and 3 are 35 ms apart: 35/10 rounds to 4, so three ticks are silent; row 4 marked missing */
-    load("t_us,x,y,z,flags\n0,1,0,0,0\n10000,2,0,0,0\n20000,3,0,0,0\n55000,4,0,0,0\n65000,5,0,0,2\n75000,6,0,0,1\n");
-    feed_t feed = feed_of(100.0, false);
-    assert_tick(&feed, 0, FEED_SAMPLE, 0);
-    assert_tick(&feed, 0, FEED_SAMPLE, 1);
-    assert_tick(&feed, 0, FEED_SAMPLE, 2);
-    for (int i = 0; i < 3; i++) {
-        assert_tick(&feed, 0, FEED_NOTHING, 0);
-    }
-    assert_tick(&feed, 0, FEED_SAMPLE, 3);
-    assert_tick(&feed, 0, FEED_NOTHING, 0);
-    assert_tick(&feed, 0, FEED_SAMPLE, 5);
-    assert_tick(&feed, 0, FEED_END, 0);
-    assert_tick(&feed, 0, FEED_END, 0);
-}
-
-static void test_feed_jitter_below_half_a_step_is_no_gap(void)
-{
-    load("t_us,x,y,z\n0,1,0,0\n14900,2,0,0\n20000,3,0,0\n30000,4,0,0\n40000,5,0,0\n");
-    feed_t feed = feed_of(100.0, false);
-    for (size_t row = 0; row < 5; row++) {
-        assert_tick(&feed, 0, FEED_SAMPLE, row);
-    }
-}
-
-static void test_feed_loops(void)
-{
-    load("t_us,x,y,z\n0,1,0,0\n10000,2,0,0\n20000,3,0,0\n");
-    feed_t feed = feed_of(100.0, true);
-    for (size_t i = 0; i < 10; i++) {
-        assert_tick(&feed, 0, FEED_SAMPLE, i % 3);
-    }
-    feed = feed_of(50.0, true);
-    TEST_ASSERT_EQUAL_INT(FEED_IN_FORCE, feed.mode);
-    /* 30 ms long, ticks 20 ms apart: at 0, 20, 40 = 10, 60 = 0 ms of the stream */
-    assert_tick(&feed, 500000, FEED_SAMPLE, 0);
-    assert_tick(&feed, 520000, FEED_SAMPLE, 2);
-    assert_tick(&feed, 540000, FEED_SAMPLE, 1);
-    assert_tick(&feed, 560000, FEED_SAMPLE, 0);
-}
-
-static void test_feed_in_force_takes_the_newest_row_not_later(void)
-{
-    load("t_us,x,y,z\n0,1,0,0\n10000,2,0,0\n20000,3,0,0\n30000,4,0,0\n");
-    feed_t feed = feed_of(400.0, false);
-    static const size_t rows[] = { 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 };
-    for (size_t i = 0; i < 16; i++) { /* the first tick is at the first row's time */
-        assert_tick(&feed, 77000 + 2500 * i, FEED_SAMPLE, rows[i]);
-    }
-    assert_tick(&feed, 77000 + 2500 * 16, FEED_END, 0);
-}
-
-static void test_feed_keeps_its_place_when_the_rate_changes(void)
-{
-    load("t_us,x,y,z\n0,1,0,0\n10000,2,0,0\n20000,3,0,0\n30000,4,0,0\n40000,5,0,0\n50000,6,0,0\n");
-    feed_t feed = feed_of(100.0, false);
-    assert_tick(&feed, 0, FEED_SAMPLE, 0);
-    assert_tick(&feed, 10000, FEED_SAMPLE, 1);
-    feed_set_rate(&feed, &stream, 50.0, 10000);
-    assert_tick(&feed, 90000, FEED_SAMPLE, 2);
-    assert_tick(&feed, 110000, FEED_SAMPLE, 4);
-    feed_set_rate(&feed, &stream, 100.0, 110000);
-    assert_tick(&feed, 400000, FEED_SAMPLE, 5);
-    assert_tick(&feed, 410000, FEED_END, 0);
-}
-
 static void test_recordings(void)
 {
     /* rows and duration as in the recordings' index.csv */
@@ -359,12 +263,6 @@ int main(void)
     RUN_TEST(test_refuses_values_outside_the_sensor);
     RUN_TEST(test_refuses_time_going_backwards);
     RUN_TEST(test_refuses_binary);
-    RUN_TEST(test_feed_mode_at_the_5_percent_border);
-    RUN_TEST(test_feed_gaps_and_missing_rows_are_silent_ticks);
-    RUN_TEST(test_feed_jitter_below_half_a_step_is_no_gap);
-    RUN_TEST(test_feed_loops);
-    RUN_TEST(test_feed_in_force_takes_the_newest_row_not_later);
-    RUN_TEST(test_feed_keeps_its_place_when_the_rate_changes);
     RUN_TEST(test_recordings);
     unlink(path);
     return UNITY_END();

@@ -15,7 +15,7 @@
 #include "avr_uart.h"
 #include "sim_avr.h"
 #include "simrun_judge.h"
-#include "stream.h"
+#include "feed.h"
 #include "twi_peripheral.h"
 
 #define CYCLES_PER_US machine_size.cycles_per_us

@@ -160,10 +160,13 @@ void sensor_step(void)
         return;
     }
     size_t row = 0;
+    int16_t lsb[3];
     switch (feed_tick(&feed, mcu->cycle / CYCLES_PER_US, &row)) {
     case FEED_SAMPLE:
         row_now = row;
-        (void)adxl345_model_tick(&sensor, alter_sample(stream.rows[row].lsb));
+        memcpy(lsb, stream.rows[row].lsb, sizeof lsb);
+        feed_vary(&feed, lsb);
+        (void)adxl345_model_tick(&sensor, alter_sample(lsb));
         faults_on_sample();
         break;
     case FEED_NOTHING:

@@ -1,7 +1,4 @@
-/*
- * Recorded accelerometer streams: the CSV reader and the feed that hands rows to the virtual sensor.
- * Used by simrun and by the native build, so that both see the same samples.
- */
+/* Recorded accelerometer streams: the CSV reader. Used by simrun and by the native build: both see the same samples. */
 #ifndef STREAM_H
 #define STREAM_H
 
@@ -35,29 +32,5 @@ typedef struct {
  */
 bool stream_load(stream_t *stream, const char *path);
 void stream_free(stream_t *stream);
-
-/* How ticks of the virtual sensor meet rows of the stream. */
-typedef enum {
-    FEED_ROW_PER_TICK, /* rates agree within 5 %: one row per tick; gaps in t_us are ticks without a sample */
-    FEED_IN_FORCE      /* else: the sample in force (newest row not later than the tick) */
-} feed_mode_t;
-
-typedef struct {
-    const stream_t *stream;
-    feed_mode_t mode;
-    bool loop;             /* start again at the end */
-    size_t next;           /* row of the next tick */
-    uint32_t silent_ticks; /* still to pass without a sample before `next` */
-    uint64_t origin_us;    /* sensor time of row 0 (FEED_IN_FORCE) */
-    bool started;
-} feed_t;
-
-/* Chooses the mode for this output data rate; call again when the firmware changes the rate (the position is kept). */
-void feed_set_rate(feed_t *feed, const stream_t *stream, double odr_hz, uint64_t now_us);
-
-typedef enum { FEED_SAMPLE, FEED_NOTHING, FEED_END } feed_result_t;
-
-/* One output-data-rate tick at time now_us. FEED_SAMPLE: *row_index is the row. FEED_NOTHING: a gap. FEED_END: over. */
-feed_result_t feed_tick(feed_t *feed, uint64_t now_us, size_t *row_index);
 
 #endif

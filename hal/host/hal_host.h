@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 #include "adxl345_model.h"
-#include "stream.h"
+#include "feed.h"
 
 #define HAL_HOST_HZ 16000000ull /* of the virtual clock: the UNO's cycles */
 

@@ -2,6 +2,8 @@
  * The virtual sensor: its clock, of which one tick per output-data-rate period takes a row of the stream, and its line
  * INT1.
  */
+#include <string.h>
+
 #include "hal_drdy.h"
 #include "hal_host_private.h"
 
@@ -105,10 +107,13 @@ void host_sensor_step(void)
         return;
     }
     size_t row = 0;
+    int16_t lsb[3];
     switch (feed_tick(&feed, host_now / HOST_CYCLES_PER_US, &row)) {
     case FEED_SAMPLE:
         row_latched = row;
-        (void)adxl345_model_tick(&hal_host_sensor, source->rows[row].lsb);
+        memcpy(lsb, source->rows[row].lsb, sizeof lsb);
+        feed_vary(&feed, lsb);
+        (void)adxl345_model_tick(&hal_host_sensor, lsb);
         break;
     case FEED_NOTHING:
         break;

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "fuzz.h"
-#include "stream.h"
+#include "feed.h"
 
 enum { FEED_TICKS = 300 };
 

@@ -7,12 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "feed.h"
 #include "filter_list.h"
 #include "path/coast.h"
 #include "path/pipeline.h"
 #include "path/silence.h"
 #include "settings/settings.h"
-#include "stream.h"
 
 #define STUCK_REPEATS 9u /* ADXL345_STUCK_REPEATS of the driver's own header */
 
@@ -101,11 +101,13 @@ static bool plausible(replay_t *r, const int16_t lsb[3])
     return true;
 }
 
-static void take(replay_t *r, size_t source)
+static void take(replay_t *r, const feed_t *feed, size_t source)
 {
     adxl345_sample_t sample = { .t_us = (uint32_t)r->now_us, .lsb = { 0, 0, 0 } };
+    memcpy(sample.lsb, &r->in->lsb[3 * source], sizeof sample.lsb);
+    feed_vary(feed, sample.lsb);
     for (int axis = 0; axis < 3; axis++) {
-        sample.lsb[axis] = within_range(r, r->in->lsb[3 * source + (size_t)axis]);
+        sample.lsb[axis] = within_range(r, sample.lsb[axis]);
     }
     if (!plausible(r, sample.lsb) || !coast_sample(sample.t_us, r->period_us)) {
         return;
@@ -136,7 +138,7 @@ static void run(replay_t *r, feed_t *feed)
     while (got != FEED_END && r->count <= r->room) {
         fill_gap(r);
         if (got == FEED_SAMPLE) {
-            take(r, source);
+            take(r, feed, source);
         }
         r->now_us += r->period_us;
         got = feed_tick(feed, r->now_us, &source);

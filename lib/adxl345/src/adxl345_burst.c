@@ -229,7 +229,7 @@ bool adxl345_burst_read(bool is_new)
 }
 
 /* One cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */
-static HAL_APART void keep_edge(struct burst *b, const burst_entry_t *entry, uint8_t asked)
+static inline void keep_edge(struct burst *b, const burst_entry_t *entry, uint8_t asked)
 {
     b->failed_state = b->bus.state;
     b->failures++;

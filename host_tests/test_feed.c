@@ -1,0 +1,229 @@
+/* The feed: which row of a stream each tick of the virtual sensor takes, and the noise of a row that several take. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "feed.h"
+#include "unity.h"
+
+static char path[] = "/tmp/test_feed_XXXXXX";
+static stream_t stream;
+
+void setUp(void) {}
+
+void tearDown(void)
+{
+    stream_free(&stream);
+}
+
+static void load(const char *text)
+{
+    FILE *file = fopen(path, "wb");
+    TEST_ASSERT_NOT_NULL(file);
+    TEST_ASSERT_EQUAL_size_t(strlen(text), fwrite(text, 1, strlen(text), file));
+    fclose(file);
+    TEST_ASSERT_TRUE_MESSAGE(stream_load(&stream, path), stream.error);
+}
+
+static feed_t feed_of(double odr_hz, bool loop)
+{
+    feed_t feed = { .stream = &stream, .loop = loop };
+    feed_set_rate(&feed, &stream, odr_hz, 0);
+    return feed;
+}
+
+static void assert_tick(feed_t *feed, uint64_t now_us, feed_result_t result, size_t row)
+{
+    size_t index = 999;
+    TEST_ASSERT_EQUAL_INT(result, feed_tick(feed, now_us, &index));
+    if (result == FEED_SAMPLE) {
+        TEST_ASSERT_EQUAL_size_t(row, index);
+    }
+}
+
+static void test_feed_mode_at_the_5_percent_border(void)
+{
+    load("t_us,x,y,z\n0,1,0,0\n10000,2,0,0\n20000,3,0,0\n"); /* 100 Hz; 5 % of the sensor's rate */
+    TEST_ASSERT_EQUAL_INT(FEED_ROW_PER_TICK, feed_of(100.0, false).mode);
+    TEST_ASSERT_EQUAL_INT(FEED_ROW_PER_TICK, feed_of(105.2, false).mode);
+    TEST_ASSERT_EQUAL_INT(FEED_IN_FORCE, feed_of(105.3, false).mode);
+    TEST_ASSERT_EQUAL_INT(FEED_ROW_PER_TICK, feed_of(95.3, false).mode);
+    TEST_ASSERT_EQUAL_INT(FEED_IN_FORCE, feed_of(95.2, false).mode);
+}
+
+static void test_feed_gaps_and_missing_rows_are_silent_ticks(void)
+{
+    /* 10 ms steps; rows 2 and 3 are 35 ms apart: 35/10 rounds to 4, so three ticks are silent; row 4 marked missing */
+    load("t_us,x,y,z,flags\n0,1,0,0,0\n10000,2,0,0,0\n20000,3,0,0,0\n55000,4,0,0,0\n65000,5,0,0,2\n75000,6,0,0,1\n");
+    feed_t feed = feed_of(100.0, false);
+    assert_tick(&feed, 0, FEED_SAMPLE, 0);
+    assert_tick(&feed, 0, FEED_SAMPLE, 1);
+    assert_tick(&feed, 0, FEED_SAMPLE, 2);
+    for (int i = 0; i < 3; i++) {
+        assert_tick(&feed, 0, FEED_NOTHING, 0);
+    }
+    assert_tick(&feed, 0, FEED_SAMPLE, 3);
+    assert_tick(&feed, 0, FEED_NOTHING, 0);
+    assert_tick(&feed, 0, FEED_SAMPLE, 5);
+    assert_tick(&feed, 0, FEED_END, 0);
+    assert_tick(&feed, 0, FEED_END, 0);
+}
+
+static void test_feed_jitter_below_half_a_step_is_no_gap(void)
+{
+    load("t_us,x,y,z\n0,1,0,0\n14900,2,0,0\n20000,3,0,0\n30000,4,0,0\n40000,5,0,0\n");
+    feed_t feed = feed_of(100.0, false);
+    for (size_t row = 0; row < 5; row++) {
+        assert_tick(&feed, 0, FEED_SAMPLE, row);
+    }
+}
+
+static void test_feed_loops(void)
+{
+    load("t_us,x,y,z\n0,1,0,0\n10000,2,0,0\n20000,3,0,0\n");
+    feed_t feed = feed_of(100.0, true);
+    for (size_t i = 0; i < 10; i++) {
+        assert_tick(&feed, 0, FEED_SAMPLE, i % 3);
+    }
+    feed = feed_of(50.0, true);
+    TEST_ASSERT_EQUAL_INT(FEED_IN_FORCE, feed.mode);
+    /* 30 ms long, ticks 20 ms apart: at 0, 20, 40 = 10, 60 = 0 ms of the stream */
+    assert_tick(&feed, 500000, FEED_SAMPLE, 0);
+    assert_tick(&feed, 520000, FEED_SAMPLE, 2);
+    assert_tick(&feed, 540000, FEED_SAMPLE, 1);
+    assert_tick(&feed, 560000, FEED_SAMPLE, 0);
+}
+
+static void test_feed_in_force_takes_the_newest_row_not_later(void)
+{
+    load("t_us,x,y,z\n0,1,0,0\n10000,2,0,0\n20000,3,0,0\n30000,4,0,0\n");
+    feed_t feed = feed_of(400.0, false);
+    static const size_t rows[] = { 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 };
+    for (size_t i = 0; i < 16; i++) { /* the first tick is at the first row's time */
+        assert_tick(&feed, 77000 + 2500 * i, FEED_SAMPLE, rows[i]);
+    }
+    assert_tick(&feed, 77000 + 2500 * 16, FEED_END, 0);
+}
+
+static void test_feed_keeps_its_place_when_the_rate_changes(void)
+{
+    load("t_us,x,y,z\n0,1,0,0\n10000,2,0,0\n20000,3,0,0\n30000,4,0,0\n40000,5,0,0\n50000,6,0,0\n");
+    feed_t feed = feed_of(100.0, false);
+    assert_tick(&feed, 0, FEED_SAMPLE, 0);
+    assert_tick(&feed, 10000, FEED_SAMPLE, 1);
+    feed_set_rate(&feed, &stream, 50.0, 10000);
+    assert_tick(&feed, 90000, FEED_SAMPLE, 2);
+    assert_tick(&feed, 110000, FEED_SAMPLE, 4);
+    feed_set_rate(&feed, &stream, 100.0, 110000);
+    assert_tick(&feed, 400000, FEED_SAMPLE, 5);
+    assert_tick(&feed, 410000, FEED_END, 0);
+}
+
+static void varied(feed_t *feed, uint64_t now_us, int16_t lsb[3])
+{
+    size_t row = 0;
+    TEST_ASSERT_EQUAL_INT(FEED_SAMPLE, feed_tick(feed, now_us, &row));
+    memcpy(lsb, stream.rows[row].lsb, 3 * sizeof *lsb);
+    feed_vary(feed, lsb);
+}
+
+static int off(const int16_t a[3], const int16_t b[3])
+{
+    return abs(a[0] - b[0]) + abs(a[1] - b[1]) + abs(a[2] - b[2]);
+}
+
+/* 50 equal rows of 100 Hz at 800 Hz: no sample as the one before, each within an LSB of its row, in the mean the row. */
+static void test_a_row_measured_again_has_noise(void)
+{
+    char text[2048] = "t_us,x,y,z\n";
+    for (int i = 0; i < 50; i++) {
+        char row[32];
+        snprintf(row, sizeof row, "%d,10,-20,256\n", 10000 * i);
+        strcat(text, row);
+    }
+    load(text);
+    feed_t feed = feed_of(800.0, false);
+    int32_t sum[3] = { 0, 0, 0 };
+    int16_t before[3] = { 0, 0, 0 };
+    for (uint64_t i = 0; i < 400; i++) {
+        int16_t lsb[3];
+        varied(&feed, 1250 * i, lsb);
+        TEST_ASSERT_EQUAL_INT(i % 8 == 0 ? 0 : 1, off(lsb, stream.rows[0].lsb));
+        TEST_ASSERT_NOT_EQUAL_INT(0, off(lsb, before));
+        for (int axis = 0; axis < 3; axis++) {
+            sum[axis] += lsb[axis] - stream.rows[0].lsb[axis];
+        }
+        memcpy(before, lsb, sizeof before);
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        TEST_ASSERT_INT32_WITHIN(1, 0, sum[axis]);
+    }
+}
+
+static void test_at_the_rate_of_the_stream_readings_are_its_own(void)
+{
+    load("t_us,x,y,z\n0,1,2,3\n10000,1,2,3\n20000,1,2,3\n30000,1,2,3\n");
+    static const double rates_hz[] = { 100.0, 50.0 };
+    for (size_t k = 0; k < 2; k++) {
+        feed_t feed = feed_of(rates_hz[k], true);
+        for (uint64_t i = 0; i < 40; i++) {
+            int16_t lsb[3];
+            varied(&feed, (uint64_t)(1e6 / rates_hz[k]) * i, lsb);
+            TEST_ASSERT_EQUAL_INT(0, off(lsb, stream.rows[0].lsb));
+        }
+    }
+}
+
+/* A reading at a rail stays there and none comes to it; a sensor without power is one, and none becomes one. */
+static void test_noise_changes_no_meaning(void)
+{
+    load("t_us,x,y,z\n0,-1,-1,-1\n10000,511,-512,0\n20000,4095,1024,510\n30000,-4096,-511,-2047\n"
+         "40000,-1,-1,0\n50000,-1,-2,-1\n60000,-1,-1,-1\n");
+    feed_t feed = feed_of(800.0, true);
+    int16_t least[3] = { 32767, 32767, 32767 };
+    for (uint64_t i = 0; i < 7 * 8 * 4; i++) {
+        size_t row = 0;
+        TEST_ASSERT_EQUAL_INT(FEED_SAMPLE, feed_tick(&feed, 1250 * i, &row));
+        int16_t lsb[3];
+        memcpy(lsb, stream.rows[row].lsb, sizeof lsb);
+        feed_vary(&feed, lsb);
+        bool off_now = lsb[0] == -1 && lsb[1] == -1 && lsb[2] == -1;
+        TEST_ASSERT_EQUAL(row == 0 || row == 6, off_now);
+        if (row == 1) {
+            TEST_ASSERT_EQUAL_INT16(511, lsb[0]);
+            TEST_ASSERT_EQUAL_INT16(-512, lsb[1]);
+        } else if (row == 2) {
+            TEST_ASSERT_EQUAL_INT16(4095, lsb[0]);
+            TEST_ASSERT_TRUE(lsb[2] == 509 || lsb[2] == 510);
+            least[2] = lsb[2] < least[2] ? lsb[2] : least[2];
+        } else if (row == 3) {
+            TEST_ASSERT_EQUAL_INT16(-4096, lsb[0]);
+            TEST_ASSERT_TRUE(lsb[1] == -511 || lsb[1] == -510);
+            TEST_ASSERT_TRUE(lsb[2] == -2047 || lsb[2] == -2046);
+        }
+    }
+    TEST_ASSERT_EQUAL_INT16(509, least[2]);
+}
+
+int main(void)
+{
+    int file = mkstemp(path);
+    if (file < 0) {
+        return 1;
+    }
+    close(file);
+    UNITY_BEGIN();
+    RUN_TEST(test_feed_mode_at_the_5_percent_border);
+    RUN_TEST(test_feed_gaps_and_missing_rows_are_silent_ticks);
+    RUN_TEST(test_feed_jitter_below_half_a_step_is_no_gap);
+    RUN_TEST(test_feed_loops);
+    RUN_TEST(test_feed_in_force_takes_the_newest_row_not_later);
+    RUN_TEST(test_feed_keeps_its_place_when_the_rate_changes);
+    RUN_TEST(test_a_row_measured_again_has_noise);
+    RUN_TEST(test_at_the_rate_of_the_stream_readings_are_its_own);
+    RUN_TEST(test_noise_changes_no_meaning);
+    int failed = UNITY_END();
+    unlink(path);
+    return failed;
+}
