@@ -10,7 +10,7 @@ UNITY_DIR ?= $(B)/unity
 
 WARNINGS := -Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Wundef -Wdouble-promotion -Wstrict-prototypes \
             -Wmissing-prototypes -Wcast-qual -Werror
-LIB_DIRS := lib/filters/src lib/tilt/src lib/adxl345/src
+LIB_DIRS := lib/machine/src lib/filters/src lib/tilt/src lib/adxl345/src
 LIB_SRC  := $(wildcard lib/filters/src/*.c lib/tilt/src/*.c lib/adxl345/src/*.c)
 APP_SRC  := $(wildcard firmware/*/*.c)
 INCLUDES := -Ihal -Ifirmware $(addprefix -I,$(LIB_DIRS))
@@ -54,7 +54,7 @@ include mk/images.mk
 TWINS_SRC := host_tests/avr/fx_twins.c lib/filters/src/fx.c lib/filters/src/fx_avr.c
 $(U)/fx_twins.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx_avr.h lib/filters/src/fx_dot.h Makefile
 	@mkdir -p $(@D)
-	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ilib/filters/src $(TWINS_SRC) -o $@
+	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ilib/machine/src -Ilib/filters/src $(TWINS_SRC) -o $@
 
 $(U)/fx_twins_firmware.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx_avr.h lib/filters/src/fx_dot.h Makefile
 	@mkdir -p $(@D)
@@ -62,11 +62,11 @@ $(U)/fx_twins_firmware.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx
 
 $(U)/hal_probe.elf: host_tests/avr/hal_probe.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) Makefile
 	@mkdir -p $(@D)
-	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr $(filter %.c,$^) -o $@
+	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr -Ilib/machine/src $(filter %.c,$^) -o $@
 
 $(U)/store_probe.elf: host_tests/avr/store_probe.c firmware/settings/store.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) firmware/settings/store.h Makefile
 	@mkdir -p $(@D)
-	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr -Ifirmware -Ilib/filters/src $(filter %.c,$^) -o $@
+	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr -Ifirmware -Ilib/machine/src -Ilib/filters/src $(filter %.c,$^) -o $@
 
 TEST_IMAGES := $(U)/hal_probe.elf $(U)/store_probe.elf $(U)/fx_twins.elf $(U)/fx_twins_firmware.elf $(FIRMWARE_IMAGES)
 

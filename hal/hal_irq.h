@@ -11,9 +11,6 @@
 
 typedef uint8_t hal_irq_state_t;
 
-/* For what a handler calls: a call makes it save every register that a function may use, 60 cycles. */
-#define HAL_IRQ_INLINE static inline __attribute__((always_inline))
-
 /* Switches interrupts off; returns what they were. Any context. */
 hal_irq_state_t hal_irq_save(void);
 

@@ -92,7 +92,7 @@ def compiled_library():
     OUT.mkdir(parents=True, exist_ok=True)
     sources = sorted(str(p) for p in pathlib.Path("lib/filters/src").glob("*.c"))
     built = OUT / "libfilters.so"
-    subprocess.run(["gcc", "-std=c11", "-O1", "-shared", "-fPIC", "-Ilib/filters/src", *sources, "-o", str(built)], check=True)
+    subprocess.run(["gcc", "-std=c11", "-O1", "-shared", "-fPIC", "-Ilib/machine/src", "-Ilib/filters/src", *sources, "-o", str(built)], check=True)
     return built.resolve()
 
 
@@ -164,7 +164,7 @@ def compiles_and_runs(initialiser, name):
     source.write_text(f'#include "filter.h"\n{initialiser}\n'
                       f'int main(void) {{ filter_t f; return filter_init(&f, &filter_law_{name}, &config); }}\n', encoding="utf-8")
     library = compiled_library()
-    command = ["gcc", "-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-Ilib/filters/src", str(source), str(library),
+    command = ["gcc", "-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-Ilib/machine/src", "-Ilib/filters/src", str(source), str(library),
                f"-Wl,-rpath,{library.parent}", "-o", str(program)]
     subprocess.run(command, check=True, capture_output=True)
     return subprocess.run([str(program)]).returncode == 0

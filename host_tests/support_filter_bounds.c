@@ -158,7 +158,7 @@ const char *broken_bound(const filter_t *f, const filter_probe_t *probe, int32_t
     if (x_lsb_q16 != f->x_lsb_q16) {
         return "x returned";
     }
-    bool fine = (fx_flash_u8(&f->law->traits) & LAW_FINE_RATE) != 0U;
+    bool fine = (flash_u8(&f->law->traits) & LAW_FINE_RATE) != 0U;
     const char *broken = broken_probe(f, probe, facts.gated_means_unused);
     broken = (broken != NULL) ? broken : broken_tracker(f, fine, facts.synthesised);
     return (broken != NULL) ? broken : broken_state(f, kind);

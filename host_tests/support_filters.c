@@ -44,7 +44,7 @@ filter_parameter_t parameter_at(filter_kind_t kind, uint8_t index)
     const uint8_t *from = (const uint8_t *)filter_parameter(filter_listed(kind), index);
     uint8_t *to = (uint8_t *)&parameter;
     for (uint8_t i = 0; i < sizeof parameter; i++) {
-        to[i] = fx_flash_u8(from + i);
+        to[i] = flash_u8(from + i);
     }
     return parameter;
 }
@@ -54,7 +54,7 @@ const char *parameter_name(filter_kind_t kind, uint8_t index)
     static char name[16];
     const char *from = filter_parameter_words(filter_parameter(filter_listed(kind), index));
     for (uint8_t i = 0; i < sizeof name - 1U; i++) {
-        name[i] = (char)fx_flash_u8((const uint8_t *)from + i);
+        name[i] = (char)flash_u8((const uint8_t *)from + i);
         if (name[i] == '\0') {
             break;
         }

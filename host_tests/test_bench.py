@@ -100,7 +100,8 @@ def a_declared_worst_case_is_held_from_both_sides():
 
 @test
 def what_the_code_declares_is_read():
-    flags = ["-mmcu=atmega328p", "-Ilib/filters/src", "-Ilib/tilt/src", "-Ilib/adxl345/src", "-Ifirmware", "-Ihal", "-Ihal/avr", "-DF_CPU=16000000UL"]
+    folders = ("lib/machine/src", "lib/filters/src", "lib/tilt/src", "lib/adxl345/src", "firmware", "hal", "hal/avr")
+    flags = ["-mmcu=atmega328p", *(f"-I{folder}" for folder in folders), "-DF_CPU=16000000UL"]
     filters = bench.filters_of(flags)
     declared = bench.declared_of(flags, filters)
     assert set(declared) == {*filters, "sample_rest", "row"} and all(300 < cycles < 12000 for cycles in declared.values()), declared
@@ -281,7 +282,7 @@ def the_committed_page_has_every_filter_beside_theirs():
 @test
 def the_committed_page_has_every_filter():
     table = bench.read_table(bench.DOCUMENT.read_text(encoding="utf-8"))
-    for name in [*bench.filters_of(["-mmcu=atmega328p", "-Ilib/filters/src"]), "angles", "format_row", "sample_total"]:
+    for name in [*bench.filters_of(["-mmcu=atmega328p", "-Ilib/machine/src", "-Ilib/filters/src"]), "angles", "format_row", "sample_total"]:
         assert table.get(name, {}).get("worst"), f"{name} has no row in {bench.DOCUMENT}: run make bench"
 
 
@@ -319,15 +320,15 @@ def page_row(name):
 def the_readmes_tell_the_numbers_of_the_page():
     readme = pathlib.Path("README.md").read_text(encoding="utf-8")
     library = pathlib.Path("lib/filters/README.md").read_text(encoding="utf-8")
-    for name in (*bench.filters_of(["-mmcu=atmega328p", "-Ilib/filters/src"]), "angles"):
+    for name in (*bench.filters_of(["-mmcu=atmega328p", "-Ilib/machine/src", "-Ilib/filters/src"]), "angles"):
         _, median, worst = page_row(name)[:3]
         assert f"{median} ({worst})" in readme, f"README.md does not say {median} ({worst}) for {name}"
-    for name in (*bench.filters_of(["-mmcu=atmega328p", "-Ilib/filters/src"]), "noise"):
+    for name in (*bench.filters_of(["-mmcu=atmega328p", "-Ilib/machine/src", "-Ilib/filters/src"]), "noise"):
         row = page_row(name)
         wanted = f"| {row[1]}, {row[2]} | {row[7]} B | {row[8]} B |"
         line = next(line for line in library.splitlines() if line.startswith(f"| `{name}` |"))
         assert line.endswith(wanted), f"lib/filters/README.md: {line}, the page says {wanted}"
-    for name in bench.filters_of(["-mmcu=atmega328p", "-Ilib/filters/src"]):
+    for name in bench.filters_of(["-mmcu=atmega328p", "-Ilib/machine/src", "-Ilib/filters/src"]):
         assert page_row(f"{name}_set_noise")[2] in library, f"lib/filters/README.md: set_noise of {name}"
 
 

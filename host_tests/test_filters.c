@@ -62,7 +62,7 @@ static void every_name_finds_its_kind_and_no_other_does(void)
         char name[16];
         uint8_t length = 0;
         do {
-            name[length] = (char)fx_flash_u8((const uint8_t *)filter_listed_name((filter_kind_t)kind) + length);
+            name[length] = (char)flash_u8((const uint8_t *)filter_listed_name((filter_kind_t)kind) + length);
         } while (name[length++] != '\0');
         TEST_ASSERT_EQUAL_INT(kind, filter_find(name));
         name[length - 1U] = 'x';

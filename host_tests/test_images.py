@@ -32,7 +32,7 @@ BAD = (("kff", "there is no filter kff;"), (f"{PLAIN} kff", "there is no filter 
 def listed(*flags):
     """FILTER_LIST as the preprocessor has it."""
     source = '#include "filter_list.h"\n#define NAME(name) name\nlist: FILTER_LIST(NAME)\n'
-    command = ["gcc", "-E", "-P", "-Ilib/filters/src", *flags, "-xc", "-"]
+    command = ["gcc", "-E", "-P", "-Ilib/machine/src", "-Ilib/filters/src", *flags, "-xc", "-"]
     done = subprocess.run(command, input=source, capture_output=True, text=True, timeout=600, check=True)
     return done.stdout.split("list:")[1].split()
 

@@ -16,7 +16,7 @@ static const filter_law_t *published(void)
     FOR_EACH_KIND(kind)
     {
         const filter_law_t *each = filter_listed((filter_kind_t)kind);
-        if ((fx_flash_u8(&each->traits) & LAW_FIRST_SAMPLE) != 0U) {
+        if ((flash_u8(&each->traits) & LAW_FIRST_SAMPLE) != 0U) {
             law = each;
         }
     }

@@ -9,7 +9,7 @@ RUNS ?= 10000
 
 $(P)/%.o: %.cpp Makefile mk/papers.mk
 	@mkdir -p $(@D)
-	@$(HOST_CXX) -std=c++17 -O2 -g -Wall -Wextra -Wconversion -Wshadow -Werror -Ihost_tests -Ilib/filters/src -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
+	@$(HOST_CXX) -std=c++17 -O2 -g -Wall -Wextra -Wconversion -Wshadow -Werror -Ihost_tests -Ilib/machine/src -Ilib/filters/src -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
 
 $(P)/%.o: %.c Makefile mk/papers.mk
 	@mkdir -p $(@D)
@@ -31,7 +31,7 @@ LISTED     := $(shell sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/fil
 NOT_002    := $(filter-out $(shell python3 tools/laws.py kalman),$(LISTED))
 ONLY_002   := -D'FILTER_LIST(X)=$(foreach f,$(filter-out $(NOT_002),$(LISTED)),X($f))'
 COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(filter-out $(NOT_002:%=lib/filters/src/%.c) $(NOT_002:%=lib/filters/src/%_%.c),$(wildcard lib/filters/src/*.c)))
-COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers $(ONLY_002)
+COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/machine/src -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers $(ONLY_002)
 $(P)/operations/fx.o: COUNT_CXX += -DCOUNTING_PRIMITIVES
 
 $(P)/operations/%.o: lib/filters/src/%.c $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk

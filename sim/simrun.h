@@ -13,9 +13,9 @@
 
 #include "adxl345_model.h"
 #include "avr_uart.h"
+#include "feed.h"
 #include "sim_avr.h"
 #include "simrun_judge.h"
-#include "feed.h"
 #include "twi_peripheral.h"
 
 #define CYCLES_PER_US machine_size.cycles_per_us

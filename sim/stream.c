@@ -7,14 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    COLUMNS_MAX = 64,
-    LSB_MIN = -4096,
-    LSB_MAX = 4095,
-    CDEG_MAX = 18000,
-    FLAG_COASTED = 2,
-    FLAG_FAULT = 16
-};
+enum { COLUMNS_MAX = 64, LSB_MIN = -4096, LSB_MAX = 4095, CDEG_MAX = 18000, FLAG_COASTED = 2, FLAG_FAULT = 16 };
 
 #define TIME_MAX INT64_C(1000000000000000) /* 31 years in us: unwrapped times stay far from the end of 64 bits */
 #define WRAP_US (INT64_C(1) << 32)

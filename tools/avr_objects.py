@@ -8,7 +8,7 @@ from check_support import Stop, run
 
 FOLDER = pathlib.Path("build/check/avr")
 # a function of a law's descriptor, in the source
-SLOT = re.compile(r"(?:\bLAW_OF\(\w+, |\bFX_FLASH_FUNCTION\(&\w+->)(\w+)\)")
+SLOT = re.compile(r"(?:\bLAW_OF\(\w+, |\bFLASH_FUNCTION\(&\w+->)(\w+)\)")
 
 
 @dataclass

@@ -11,7 +11,7 @@ import sys
 
 from check_support import Stop, chosen, files, main, parallel, report, run
 
-LIBRARIES = ["lib/filters/src", "lib/tilt/src", "lib/adxl345/src", "lib/nav/src"]
+LIBRARIES = ["lib/machine/src", "lib/filters/src", "lib/tilt/src", "lib/adxl345/src", "lib/nav/src"]
 PORTABLE = ["hal", "firmware", "nav/image", *LIBRARIES]
 # which compiler takes what; a folder below one of these goes with it, the longest name decides
 FOLDERS_OF = {
@@ -83,8 +83,9 @@ def jobs():
             yield from header_jobs(path)
     for path in files(".hpp"):  # of the references and experiments, which are C++ on the PC only
         if str(path) not in NOT_ALONE:
-            yield path, ["g++", "-std=gnu++20", "-Ihost_tests", f"-I{path.parent}", "-Ilib/filters/src", "-isystem", "/usr/include/eigen3",
-                         *(w for w in warnings() if w not in C_ONLY), "-fsyntax-only", "-include", path, "-x", "c++", "/dev/null"]
+            yield path, ["g++", "-std=gnu++20", "-Ihost_tests", f"-I{path.parent}", "-Ilib/machine/src", "-Ilib/filters/src",
+                         "-isystem", "/usr/include/eigen3", *(w for w in warnings() if w not in C_ONLY), "-fsyntax-only", "-include", path,
+                         "-x", "c++", "/dev/null"]
 
 
 def header_jobs(path):

@@ -6,6 +6,7 @@ import re
 from check_support import FOLDERS, Stop, files, main, report
 
 STANDARD = {"stdint.h", "stdbool.h", "stddef.h"}
+MACHINES = {"machine.h"}
 LIBC = STANDARD | {"assert.h", "ctype.h", "errno.h", "float.h", "inttypes.h", "limits.h", "math.h", "setjmp.h", "stdarg.h", "stdio.h",
                    "stdlib.h", "string.h", "time.h"}
 AVR_LIBC = re.compile(r"^(avr|util|compat)/|^setbaud\.h$")
@@ -20,8 +21,6 @@ def headers(*folders):
 
 
 HAL = headers("hal")
-# flash.h, hal_pointer.h and hal_ram.h have one port's header between them
-SHARED_PORT = {"flash.h", "hal_pointer.h", "hal_ram.h"}
 FILTERS, TILT, ADXL = headers("lib/filters/src"), headers("lib/tilt/src"), headers("lib/adxl345/src")
 # what of lib/filters is for its laws, tests and proof alone
 INSIDE = {"tracker.h", "kalman.h", "wide.h", "mixture.h", "fx_avr.h"} | {path.name for path in pathlib.Path("lib/filters/src").glob("*_table.h")}
@@ -38,7 +37,7 @@ ROOMS = {
     "console": ("control", "output", "path", "settings", "base"),
     "app": ("console", "control", "output", "path", "settings", "base"),
 }
-BELOW = STANDARD | FILTERS | TILT | ADXL | HAL  # what lies under the firmware
+BELOW = STANDARD | MACHINES | FILTERS | TILT | ADXL | HAL  # what lies under the firmware
 
 
 def room_headers(room):
@@ -47,24 +46,26 @@ def room_headers(room):
 
 # folder -> (names allowed, pattern of further names allowed); a folder below goes with the longest name
 RULES = {
-    "lib/filters/src": (STANDARD | FILTERS, None),
+    "lib/machine/src": ({"stdint.h"}, None),
+    "lib/filters/src": (STANDARD | MACHINES | FILTERS, None),
     "lib/filters/examples": (STANDARD | FILTERS | TILT | {"Arduino.h", "Wire.h", "SPI.h"}, None),
-    "lib/tilt/src": (STANDARD | TILT | FILTERS - INSIDE, None),
-    "lib/adxl345/src": (STANDARD | ADXL | HAL, None),
+    "lib/tilt/src": (STANDARD | MACHINES | TILT | FILTERS - INSIDE, None),
+    "lib/adxl345/src": (STANDARD | MACHINES | ADXL | HAL, None),
     "lib/nav/src": (STANDARD | NAV | {"math.h"}, None),
-    "hal": (STANDARD, None),
-    "hal/avr": (STANDARD | HAL | headers("hal/avr"), AVR_LIBC),
-    "hal/host": (LIBC | HAL | MODEL | headers("hal/host"), None),
+    "hal": (STANDARD | MACHINES, None),
+    "hal/avr": (STANDARD | MACHINES | HAL | headers("hal/avr"), AVR_LIBC),
+    "hal/host": (LIBC | MACHINES | HAL | MODEL | headers("hal/host"), None),
     **{f"firmware/{room}": (BELOW | room_headers(room), None) for room in ROOMS},
-    "nav/image": (STANDARD | NAV_IMAGE | NAV | HAL, None),
+    "nav/image": (STANDARD | MACHINES | NAV_IMAGE | NAV | HAL, None),
     "sim": (LIBC | SIM | {"adxl345_registers.h"}, SIMAVR),
 }
 # everything but hal/avr: here what must not be included; AVR headers where the code is for the chip
 TESTS, TESTS_NEVER = "host_tests", re.compile(r"hal/avr/")
 # programs for the chip: they may know it, but stand on the contracts as the firmware does
 CHIP_TESTS, CHIP_TESTS_NEVER = "host_tests/avr", re.compile(r"hal/(avr|host)/")
-# the one file that may know the machine inside the pure libraries, and only under a guard
-PRIMITIVES = pathlib.Path("lib/filters/src/fx.h")
+# the two that may know the machine inside the pure libraries: its words, and arithmetic in its assembler; AVR headers under a guard
+WORDS = pathlib.Path("lib/machine/src/machine.h")
+KNOW_MACHINE = {WORDS, pathlib.Path("lib/filters/src/fx.h")}
 PURE = ("lib", "firmware", "nav")
 # names that tell one machine from another, wherever they stand in the code
 MACHINE = re.compile(r"\b(__AVR\w*|AVR|ARDUINO\w*|__GNUC_AVR\w*|__INT_MAX__|__INT_WIDTH__|__SIZEOF_\w+|__WORDSIZE)\b")
@@ -118,7 +119,7 @@ def refused(path, number, name):
     if folder in RULES:
         names, pattern = RULES[folder]
         allowed = name in names or (pattern and pattern.match(name)) or (folder == "hal" and name == port_of(path))
-        if path == PRIMITIVES and name == "avr/pgmspace.h":
+        if path == WORDS and name == "avr/pgmspace.h":
             return None if number in guarded(path) else f"{name} outside #ifdef __AVR__"
         return None if allowed else f"{folder} may not include {name}"
     never = TESTS_NEVER if folder == TESTS else CHIP_TESTS_NEVER
@@ -138,7 +139,7 @@ def breaches():
 
 def port_of(contract):
     """The header in which each port has what a contract cannot declare: inline bodies, macros."""
-    return "hal_port.h" if contract.name in SHARED_PORT else f"{contract.stem}_port.h"
+    return f"{contract.stem}_port.h"
 
 
 def contracts_end_with_port():
@@ -153,13 +154,13 @@ def contracts_end_with_port():
 
 
 def machine_guards():
-    """Only the primitives' header asks for the machine."""
+    """Only two headers ask for the machine."""
     for path in files(".c", ".h", folders=PURE):
-        if path != PRIMITIVES:
+        if path not in KNOW_MACHINE:
             for number, line in code(path):
                 asked = MACHINE.search(re.sub(r'"[^"]*"', "", line))
                 if asked:
-                    yield f"{path}:{number}: only {PRIMITIVES} may ask for the machine, by {asked.group()}"
+                    yield f"{path}:{number}: only {WORDS} may ask for the machine, by {asked.group()}"
 
 
 def check():

@@ -20,7 +20,7 @@ def named_constants():
     found = {}
     for s in symbols():
         if CONSTANT.match(s.section) and s.size:
-            words = f"constant {s.name} ({s.size} bytes) lies in RAM: place it with FLASH or FX_FLASH"
+            words = f"constant {s.name} ({s.size} bytes) lies in RAM: place it with IN_FLASH"
             found.setdefault((s.source, s.section), []).append(words)
     return found
 
@@ -55,7 +55,7 @@ def constants_in_ram():
         if (source, section) not in named:
             path = of_source[source]
             yield (f"{source}: text or constant without a name lies in RAM ({size} bytes, used by {users(path, section)}): "
-                   f"{texts(path, section)}: use FLASH_TEXT or FLASH")
+                   f"{texts(path, section)}: use FLASH_TEXT or IN_FLASH")
 
 
 def check():

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""library.py FOLDER: lib/filters and lib/tilt as one library for the Arduino IDE and PlatformIO, FOLDER/tilt-filters, and beside it as
-tilt-filters.zip (Sketch, Include Library, Add .ZIP Library).
+"""library.py FOLDER: lib/filters, lib/tilt and the header of lib/machine as one library for the Arduino IDE and PlatformIO,
+FOLDER/tilt-filters, and beside it as tilt-filters.zip (Sketch, Include Library, Add .ZIP Library).
 
-Both build systems look for headers in src/ alone, so the sources of the two stand side by side there; all else is that of lib/filters.
+Both build systems look for headers in src/ alone, so the sources stand side by side there; all else is that of lib/filters.
 """
 import pathlib
 import shutil
@@ -11,7 +11,7 @@ import zipfile
 
 NAME = "tilt-filters"
 ROOT = pathlib.Path("lib/filters")
-SOURCES = (ROOT / "src", pathlib.Path("lib/tilt/src"))
+SOURCES = (ROOT / "src", pathlib.Path("lib/tilt/src"), pathlib.Path("lib/machine/src"))
 ANY_TIME = (1980, 1, 1, 0, 0, 0)  # the first that a zip can name: the same sources give the same file
 
 

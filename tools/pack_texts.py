@@ -23,7 +23,7 @@ def texts():
         sys.exit("pack_texts: no C compiler found: sh tools/deps.sh firmware")
     source = '#include "console/reply_texts.h"\n#define TEXT(name, words) @name words\nREPLY_TEXTS(TEXT)\n'
     command = [compiler, "-E", "-P", "-mmcu=atmega328p"][:4 if compiler == "avr-gcc" else 3]
-    includes = ["-Ifirmware", "-Ihal", "-Ihal/avr" if compiler == "avr-gcc" else "-Ihal/host"]
+    includes = ["-Ifirmware", "-Ilib/machine/src", "-Ihal", "-Ihal/avr" if compiler == "avr-gcc" else "-Ihal/host"]
     done = subprocess.run([*command, *includes, "-x", "c", "-"], input=source, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         sys.exit(f"pack_texts: {done.stderr}")
@@ -114,23 +114,23 @@ def header(named):
 
 #include <stdint.h>
 
-#include "flash.h"
+#include "machine.h"
 
 #define PACKED_PAIR_FIRST 0x{PAIR_FIRST:02X}u
 #define PACKED_DEPTH {depth}
 #define PACKED_STEP {STEP}u
 
 /* clang-format off */
-static const uint8_t packed_pairs[] FLASH = {{
+static const uint8_t packed_pairs[] IN_FLASH = {{
 {lines([code for pair in pairs for code in pair])}
 }};
 
 /* Where every PACKED_STEP-th text begins. */
-static const uint16_t packed_starts[] FLASH = {{
+static const uint16_t packed_starts[] IN_FLASH = {{
 {lines(ends[0:-1:STEP])}
 }};
 
-static const uint8_t packed_texts[] FLASH = {{
+static const uint8_t packed_texts[] IN_FLASH = {{
 {lines(flat)}
 }};
 /* clang-format on */

@@ -30,7 +30,7 @@ from sampled import by_commit
 HERE = pathlib.Path("host_tests/proof")
 BREAKAGES = pathlib.Path("campaigns/breakages.txt")
 OUT = pathlib.Path("build/proof")
-SOURCES = ["lib/filters/src", "lib/tilt/src", "host_tests/proof"]
+SOURCES = ["lib/machine/src", "lib/filters/src", "lib/tilt/src", "host_tests/proof"]
 COMMON = ["-machdep", "gcc_x86_16", "-c11", "-no-unicode", "-kernel-warn-key", "asm:clobber=inactive"]
 WRAPS = ["-rte", "-rte-no-mem", "-rte-no-div", "-rte-no-shift", "-rte-no-pointer-call", "-no-warn-signed-overflow",
          "-no-warn-invalid-bool", "-no-warn-left-shift-negative", "-warn-unsigned-overflow"]
@@ -150,7 +150,7 @@ def judge(name, entry, out):
 
 def missing_filters(entries):
     """Laws of FILTER_LIST without a proof."""
-    names = subprocess.run(["gcc", "-E", "-P", "-x", "c", "-", "-Ilib/filters/src"], text=True, capture_output=True,
+    names = subprocess.run(["gcc", "-E", "-P", "-x", "c", "-", "-Ilib/machine/src", "-Ilib/filters/src"], text=True, capture_output=True,
                            input='#include "filter_list.h"\n#define X(f) in_list:f;\nFILTER_LIST(X)\n', check=True).stdout
     filters = re.findall(r"in_list:(\w+);", names.replace(" ", ""))
     if not filters:

@@ -23,13 +23,12 @@
 #include "hal_drdy.h"
 #include "hal_irq.h"
 #include "hal_led.h"
-#include "hal_pointer.h"
-#include "hal_ram.h"
 #include "hal_sleep.h"
 #include "hal_strap.h"
 #include "hal_time.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
+#include "machine.h"
 #include "output/rows.h"
 #include "path/coast.h"
 #include "path/pipeline.h"
@@ -54,7 +53,7 @@ static struct loop {
 static inline struct loop *here(void)
 {
     struct loop *l = &loop;
-    HAL_POINTER(l);
+    MACHINE_POINTER(l);
     return l;
 }
 
@@ -96,7 +95,7 @@ void app_start(void)
     hal_led_init();
     hal_time_init();
     adxl345_init();
-    if (!HAL_RAM_CLEARED) {
+    if (!MACHINE_RAM_CLEARED) {
         forget();
     }
     health_start();

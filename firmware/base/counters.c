@@ -1,7 +1,7 @@
 /* Counters that never wrap. */
 #include "base/counters.h"
 
-#include "hal_pointer.h"
+#include "machine.h"
 
 static uint32_t counters[COUNTERS];
 
@@ -20,7 +20,7 @@ uint32_t counted(uint8_t what)
 void count(uint8_t what)
 {
     uint32_t *counter = &counters[what];
-    HAL_POINTER(counter);
+    MACHINE_POINTER(counter);
     uint32_t now = *counter;
     if (now != UINT32_MAX) {
         *counter = now + 1u;
@@ -30,7 +30,7 @@ void count(uint8_t what)
 void count_lost(uint32_t missing)
 {
     uint32_t *lost = &counters[COUNT_LOST];
-    HAL_POINTER(lost);
+    MACHINE_POINTER(lost);
     uint32_t sum = *lost + missing;
     if (sum < missing) {
         sum = UINT32_MAX;

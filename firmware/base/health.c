@@ -5,10 +5,10 @@
 
 #include "adxl345.h"
 #include "base/hang_test.h"
-#include "hal_pointer.h"
 #include "hal_time.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
+#include "machine.h"
 
 /* A poll at the deadline moves it; one that finds it this long past shows that the driver does not. */
 #define POLL_GRACE_US 20000ul
@@ -39,7 +39,7 @@ static struct health {
 static inline struct health *here(void)
 {
     struct health *h = &health;
-    HAL_POINTER(h);
+    MACHINE_POINTER(h);
     return h;
 }
 

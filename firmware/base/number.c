@@ -5,7 +5,7 @@
 #include "fx.h"
 
 /* value / 2^bits, the one place for it: written out each would be a loop of its own. */
-FX_NOINLINE uint32_t down(uint32_t value, uint8_t bits)
+static MACHINE_APART uint32_t down(uint32_t value, uint8_t bits)
 {
     return value >> bits;
 }

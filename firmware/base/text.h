@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "flash.h"
+#include "machine.h"
 
 /* Longest line that anything here writes, end of line included. */
 #define TEXT_LINE_MAX 128u

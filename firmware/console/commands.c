@@ -11,10 +11,10 @@
 #include "control/calibrate.h"
 #include "control/control.h"
 #include "control/measure.h"
-#include "flash.h"
 #include "fx.h"
 #include "hal_sleep.h"
 #include "hal_uart.h"
+#include "machine.h"
 #include "output/rows.h"
 #include "settings/settings_table.h"
 

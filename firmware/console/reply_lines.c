@@ -10,7 +10,7 @@
 #include "console/reply_texts.h"
 #include "control/calibrate.h"
 #include "control/measure.h"
-#include "flash.h"
+#include "machine.h"
 #include "settings/settings.h"
 #include "settings/settings_table.h"
 #include "settings/store.h"

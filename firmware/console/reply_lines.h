@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "flash.h"
+#include "machine.h"
 
 typedef enum {
     REPLY_WAITS,   /* what the line reports is not known yet, nothing is staged */

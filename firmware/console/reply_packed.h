@@ -7,14 +7,14 @@
 
 #include <stdint.h>
 
-#include "flash.h"
+#include "machine.h"
 
 #define PACKED_PAIR_FIRST 0x8Fu
 #define PACKED_DEPTH 6
 #define PACKED_STEP 16u
 
 /* clang-format off */
-static const uint8_t packed_pairs[] FLASH = {
+static const uint8_t packed_pairs[] IN_FLASH = {
     58, 32, 101, 100, 44, 32, 115, 32, 116, 32, 114, 101, 144, 32, 104, 101, 117, 115, 110, 111, 115, 101,
     114, 32, 105, 110, 116, 111, 97, 108, 151, 149, 148, 102, 159, 158, 101, 32, 1, 145, 115, 97, 155, 103,
     115, 116, 108, 111, 101, 146, 117, 108, 116, 150, 112, 112, 111, 154, 102, 97, 172, 168, 163, 118, 101,
@@ -29,11 +29,11 @@ static const uint8_t packed_pairs[] FLASH = {
 };
 
 /* Where every PACKED_STEP-th text begins. */
-static const uint16_t packed_starts[] FLASH = {
+static const uint16_t packed_starts[] IN_FLASH = {
     0, 342, 578, 798, 945, 1175,
 };
 
-static const uint8_t packed_texts[] FLASH = {
+static const uint8_t packed_texts[] IN_FLASH = {
     137, 139, 148, 182, 143, 123, 139, 23, 139, 225, 143, 126, 139, 245, 112, 161, 215, 112, 145, 171, 109,
     111, 100, 161, 112, 166, 147, 102, 171, 211, 65, 114, 100, 117, 105, 239, 112, 166, 116, 244, 139, 132,
     139, 134, 0, 246, 0, 103, 111, 164, 0, 209, 0, 225, 143, 126, 141, 134, 0, 225, 143, 201, 115, 141, 134,

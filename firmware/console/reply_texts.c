@@ -5,9 +5,9 @@
 #include "base/text.h"
 #include "console/reply_lines.h"
 #include "console/reply_packed.h"
-#include "flash.h"
+#include "machine.h"
 
-static const char names[] FLASH = REPLY_NAMES;
+static const char names[] IN_FLASH = REPLY_NAMES;
 
 _Static_assert((int)PACKED_DEPTH <= (int)REPLY_PAIRS_DEPTH, "room for the pairs in a pair");
 _Static_assert(PACKED_PAIR_FIRST == SAY_PAIR, "the codes of pairs follow those of values");

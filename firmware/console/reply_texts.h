@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "console/version.h"
-#include "flash.h"
+#include "machine.h"
 
 /* The bytes of enum say, to be written between the words. */
 #define V_COUNT "\x01"

@@ -4,8 +4,8 @@
 #include "base/counters.h"
 #include "base/notices.h"
 #include "control/calibrate.h"
-#include "hal_pointer.h"
 #include "hal_sleep.h"
+#include "machine.h"
 #include "settings/settings.h"
 
 enum { AXES = 3 };
@@ -45,7 +45,7 @@ static struct measure {
 static inline struct measure *here(void)
 {
     struct measure *m = &measure;
-    HAL_POINTER(m);
+    MACHINE_POINTER(m);
     return m;
 }
 

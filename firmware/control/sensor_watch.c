@@ -6,10 +6,9 @@
 #include "adxl345.h"
 #include "base/counters.h"
 #include "base/notices.h"
-#include "flash.h"
 #include "fx.h"
 #include "hal_led.h"
-#include "hal_pointer.h"
+#include "machine.h"
 #include "settings/settings.h"
 
 /* A second is eight times this, as good as: what of the time of now goes into the pattern of the LED. */
@@ -19,7 +18,7 @@ enum { FLASH_SLOTS = 8 };
 #define MS_WRAP_S (UINT32_MAX / 1000u)
 
 /* Flashes in a second, by what to look at: 1 the bus, 2 the sensor or its supply, 3 INT1, 4 the readings. */
-static const uint8_t flashes[] FLASH = {
+static const uint8_t flashes[] IN_FLASH = {
     [ADXL345_FAULT_NO_SENSOR] = 2, [ADXL345_FAULT_WRONG_ID] = 2,    [ADXL345_FAULT_BUS] = 1,
     [ADXL345_FAULT_READ_BACK] = 2, [ADXL345_FAULT_INT1_SILENT] = 3, [ADXL345_FAULT_NO_DATA] = 2,
     [ADXL345_FAULT_SCL_LOW] = 1,   [ADXL345_FAULT_SDA_LOW] = 1,     [ADXL345_FAULT_INT1_STUCK] = 3,
@@ -45,7 +44,7 @@ const sensor_outage_t *sensor_watch_outage(void)
 }
 
 /* Nothing is told of what was before. */
-FX_NOINLINE void forget(void)
+static MACHINE_APART void forget(void)
 {
     watch.newest = ADXL345_FAULT_NONE;
     watch.told_mask = 0;
@@ -79,7 +78,7 @@ static void end_outage(watch_t *w, uint32_t now_us)
 static void note(uint8_t fault, uint32_t now_us)
 {
     watch_t *w = &watch;
-    HAL_POINTER(w);
+    MACHINE_POINTER(w);
     if (fault != ADXL345_FAULT_NONE) {
         if (w->newest == ADXL345_FAULT_NONE) {
             begin_outage(w, now_us);

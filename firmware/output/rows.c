@@ -3,8 +3,8 @@
 
 #include "base/counters.h"
 #include "base/format.h"
-#include "flash.h"
 #include "hal_uart.h"
+#include "machine.h"
 #include "path/pipeline.h"
 
 /* The longest row is one of the plotter: four angles of FORMAT_HUNDREDTHS_MAX and the labels, 69 bytes. */

@@ -3,8 +3,8 @@
 
 #include "base/counters.h"
 #include "fx.h"
-#include "hal_pointer.h"
 #include "hal_time.h"
+#include "machine.h"
 #include "path/pipeline.h"
 #include "path/silence.h"
 
@@ -27,7 +27,7 @@ static struct coast {
 static inline struct coast *here(void)
 {
     struct coast *c = &coast;
-    HAL_POINTER(c);
+    MACHINE_POINTER(c);
     return c;
 }
 

@@ -118,7 +118,7 @@ void pipeline_retime(uint32_t period_us)
 }
 
 /* The filter goes on from the old one's estimate, where there is one, or warms up. */
-FX_NOINLINE void begin_axis(tilt_axis_t *axis)
+static MACHINE_APART void begin_axis(tilt_axis_t *axis)
 {
     int16_t from_lsb = tilt_axis_estimate_lsb(axis);
     choice_begin(pipeline.choice, &axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
@@ -211,7 +211,7 @@ static bool hung(void)
 }
 
 /* Apart: it needs every register, and most calls of pipeline_work find nothing to do. */
-FX_NOINLINE void filter_axes(void)
+static MACHINE_APART void filter_axes(void)
 {
     bool sample = pipeline.work == WORK_SAMPLE;
     uint8_t flags = 0;

@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 #include "filter_list.h"
-#include "flash.h"
+#include "machine.h"
 #include "fx.h"
 #include "tilt_partial.h"
 
@@ -145,7 +145,7 @@ static void say_axis(uint8_t axis)
 
 void supervisor_say(const tilt_axis_t axes[3])
 {
-    static const char names[AUTO_MEMBERS][8] FLASH = { " slow", " middle", " fast" };
+    static const char names[AUTO_MEMBERS][8] IN_FLASH = { " slow", " middle", " fast" };
     if (!in_force(axes)) {
         return;
     }

@@ -2,9 +2,9 @@
 #include "settings/settings.h"
 
 #include "filter_list.h"
-#include "flash.h"
 #include "fx.h"
 #include "hal_time.h"
+#include "machine.h"
 #include "settings/settings_words.h"
 
 static settings_t kept;
@@ -50,12 +50,12 @@ void settings_take_filter(uint8_t filter)
     settings()->choice.own = 0;
 }
 
-FX_ONCE uint16_t settings_filter_cycles(uint8_t filter)
+MACHINE_APART uint16_t settings_filter_cycles(uint8_t filter)
 {
     return (uint16_t)(AXES * filter_worst_cycles(filter_listed((filter_kind_t)filter)));
 }
 
-FX_ONCE uint32_t settings_left_cycles(uint16_t rate_dhz)
+MACHINE_APART uint32_t settings_left_cycles(uint16_t rate_dhz)
 {
     uint32_t period = HAL_CPU_HZ * 10u / rate_dhz;
     return period > SETTINGS_REST_CYCLES ? period - SETTINGS_REST_CYCLES : 0;

@@ -13,7 +13,7 @@
 /* Values of the lists, each beside its word where it has one. */
 /* clang-format off */
 #define KIND(F) FILTER_KIND_##F,
-static const uint16_t choices[] FLASH = {
+static const uint16_t choices[] IN_FLASH = {
     FILTER_LIST(KIND)
     MODE_CSV, MODE_PLOT,
     0, 0x53, 0x1D,                                /* address; 0: the one that answers */
@@ -59,8 +59,8 @@ typedef struct {
 #define WORDS_OF(name, unit, ...) name "\0" unit "\0"
 #define ROW(name, unit, member, size, kind, bits, starts, least, most) \
     { { offsetof(settings_t, member), size, kind, bits, starts }, least, most },
-static const char words[] FLASH = SETTINGS(WORDS_OF); /* as a parameter has them: the unit behind the name */
-static const row_t rows[] FLASH = { SETTINGS(ROW) };
+static const char words[] IN_FLASH = SETTINGS(WORDS_OF); /* as a parameter has them: the unit behind the name */
+static const row_t rows[] IN_FLASH = { SETTINGS(ROW) };
 
 _Static_assert(sizeof rows / sizeof rows[0] == SETTING_PARAMETERS, "a row for each setting");
 _Static_assert(CALIBRATION_SCALE_MAX_UQ6 <= INT16_MAX, "two bytes are read with sign");

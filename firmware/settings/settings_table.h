@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "flash.h"
+#include "machine.h"
 
 /* Rows, in the order of the listing. */
 enum {

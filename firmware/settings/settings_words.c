@@ -3,9 +3,9 @@
 
 #include "base/text.h"
 
-static const char words[] FLASH = "csv\0plot\0auto\0"
-                                  "53\0"
-                                  "1D";
+static const char words[] IN_FLASH = "csv\0plot\0auto\0"
+                                     "53\0"
+                                     "1D";
 
 flash_text_t settings_word(uint8_t place)
 {

@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "filter_list.h"
-#include "flash.h"
+#include "machine.h"
 
 /* Places: filters by their kind, then output modes, then addresses of the sensor. */
 enum { WORD_FILTER, WORD_MODE = FILTER_KIND_COUNT, WORD_ADDRESS = WORD_MODE + 2, WORDS_END = WORD_ADDRESS + 3 };

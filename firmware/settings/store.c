@@ -7,7 +7,7 @@
 #include "settings/store.h"
 
 #include "hal_eeprom.h"
-#include "hal_pointer.h"
+#include "machine.h"
 
 /* Places in a record and in its copies, behind the image. */
 enum { VERSION = STORE_IMAGE_SIZE, SEQUENCE, CHECK_HIGH, CHECK_LOW, MARK, END };
@@ -67,7 +67,7 @@ static store_status_t fetch(uint8_t copy)
         *byte++ = hal_eeprom_read(address_of(copy, place));
     } while (++place != END);
     const uint8_t *tail = byte - STORE_TAIL_SIZE;
-    HAL_POINTER(tail);
+    MACHINE_POINTER(tail);
     if ((tail[0] & tail[SEQUENCE - VERSION] & tail[MARK - VERSION]) == 0xFFu) {
         return STORE_EMPTY;
     }
@@ -111,7 +111,7 @@ bool store_save_begin(void)
         return false;
     }
     uint8_t *tail = save.record + STORE_IMAGE_SIZE;
-    HAL_POINTER(tail);
+    MACHINE_POINTER(tail);
     tail[0] = STORE_VERSION;
     tail[SEQUENCE - VERSION] = (uint8_t)(tail[SEQUENCE - VERSION] + 1u - save.state) & SEQUENCE_MASK;
     uint16_t check = remainder_of(CHECK_HIGH);
@@ -139,7 +139,7 @@ static bool end_save_or_write(struct save *s, uint16_t address, uint8_t byte)
 bool store_pass(void)
 {
     struct save *s = &save;
-    HAL_POINTER(s);
+    MACHINE_POINTER(s);
     if (s->state <= FAILED || !hal_eeprom_ready()) {
         return false;
     }

@@ -9,9 +9,9 @@
 #include <avr/io.h>
 
 #include "hal_irq.h"
-#include "hal_pointer.h"
 #include "hal_sleep.h"
 #include "hal_watchdog_tick.h"
+#include "machine.h"
 
 enum { COUNTS_PER_TICK = HAL_TICK_US * HAL_COUNTS_PER_US };
 
@@ -63,7 +63,7 @@ void hal_wake_at(uint32_t t_us)
 uint32_t hal_time_us(void)
 {
     const volatile hal_tick_t *tick = &hal_tick;
-    HAL_POINTER(tick); /* an access is half as long */
+    MACHINE_POINTER(tick); /* an access is half as long */
     hal_irq_state_t state = hal_irq_save();
     uint16_t since = (uint16_t)(TCNT1 - tick->count);
     uint32_t now = tick->us + since / HAL_COUNTS_PER_US;

@@ -5,9 +5,9 @@
 #include <avr/io.h>
 
 #include "hal_irq.h"
-#include "hal_pointer.h"
 #include "hal_ring.h"
 #include "hal_sleep.h"
+#include "machine.h"
 
 enum { TX_SIZE = HAL_UART_TX_SIZE, RX_SIZE = HAL_UART_RX_SIZE, TX_MASK = TX_SIZE - 1, RX_MASK = RX_SIZE - 1 };
 
@@ -22,7 +22,7 @@ static bool line_used;
 /* Known by its address in a register, an access to a ring is half as long. */
 static inline hal_ring_t *near(hal_ring_t *ring)
 {
-    HAL_POINTER(ring);
+    MACHINE_POINTER(ring);
     return ring;
 }
 

@@ -7,8 +7,8 @@
 #include <avr/io.h>
 #include <avr/wdt.h>
 
-#include "hal_pointer.h"
 #include "hal_watchdog_tick.h"
+#include "machine.h"
 
 #define MARK 0x7117A117ul
 
@@ -34,7 +34,7 @@ void hal_watchdog_early(void)
 void hal_watchdog_start(void)
 {
     struct breadcrumb *b = &breadcrumb;
-    HAL_POINTER(b); /* an access is half as long */
+    MACHINE_POINTER(b); /* an access is half as long */
     bool intact = b->mark == MARK;
     __asm__("" : "+r"(intact)); /* else the mark is compared anew at each use */
     cause = (uint8_t)hal_reset_classify(mcusr_at_start, intact, b->unfed_ticks);

@@ -6,13 +6,13 @@
 #include <avr/interrupt.h>
 #include <avr/sleep.h>
 
-#include "flash.h"
 #include "hal_eeprom.h"
 #include "hal_irq.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
+#include "machine.h"
 
 enum { LAST_BYTE = 1023 };
 
@@ -55,8 +55,8 @@ static void say_passed(uint16_t ago_us)
     say(FLASH_TEXT("slept"), slept_us > UINT8_MAX ? UINT8_MAX : (uint8_t)slept_us);
 }
 
-static const uint16_t passed_us[] FLASH = { 0, 100, 900 };
-static const uint16_t alarms_us[] FLASH = { 300, 3000, 5000, 10000, 25000, 32766, 40000 };
+static const uint16_t passed_us[] IN_FLASH = { 0, 100, 900 };
+static const uint16_t alarms_us[] IN_FLASH = { 300, 3000, 5000, 10000, 25000, 32766, 40000 };
 
 int main(void)
 {

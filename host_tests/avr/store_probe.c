@@ -6,11 +6,11 @@
 #include <avr/interrupt.h>
 #include <avr/sleep.h>
 
-#include "flash.h"
 #include "hal_irq.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 #include "hal_uart.h"
+#include "machine.h"
 #include "settings/store.h"
 
 static uint8_t record[STORE_RECORD_SIZE];

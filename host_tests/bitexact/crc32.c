@@ -12,12 +12,12 @@
 #define REST16(i) REST4(i), REST4((i) + 4), REST4((i) + 8), REST4((i) + 12)
 #define REST64(i) REST16(i), REST16((i) + 16), REST16((i) + 32), REST16((i) + 48)
 
-static const uint32_t rests[256] FX_FLASH = { REST64(0), REST64(64), REST64(128), REST64(192) };
+static const uint32_t rests[256] IN_FLASH = { REST64(0), REST64(64), REST64(128), REST64(192) };
 
 /* 40 cycles on the chip. */
-FX_INLINE uint32_t step(uint32_t crc, uint8_t value)
+MACHINE_INLINE uint32_t step(uint32_t crc, uint8_t value)
 {
-    return (crc >> 8) ^ fx_flash_u32(&rests[(uint8_t)((uint8_t)crc ^ value)]);
+    return (crc >> 8) ^ flash_u32(&rests[(uint8_t)((uint8_t)crc ^ value)]);
 }
 
 uint32_t crc32_u8(uint32_t crc, uint8_t value)

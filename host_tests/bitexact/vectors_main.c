@@ -73,8 +73,8 @@ typedef void path_item_t(uint8_t which, uint16_t index);
 
 static void print_block(const char *flash_name, uint16_t first)
 {
-    for (char c = (char)fx_flash_u8((const uint8_t *)flash_name); c != '\0';
-         c = (char)fx_flash_u8((const uint8_t *)flash_name)) {
+    for (char c = (char)flash_u8((const uint8_t *)flash_name); c != '\0';
+         c = (char)flash_u8((const uint8_t *)flash_name)) {
         output_char(c);
         flash_name++;
     }

@@ -8,7 +8,7 @@ enum { NOISE, ANGLES, ATAN2, ISQRT, GRAVITY, OTHER_COUNT };
 
 enum { ITEMS = 5 * VECTORS_BLOCK };
 
-static const char names[OTHER_COUNT][24] FX_FLASH = { "noise", "tilt_angles", "tilt_atan2_cdeg", "tilt_isqrt32",
+static const char names[OTHER_COUNT][24] IN_FLASH = { "noise", "tilt_angles", "tilt_atan2_cdeg", "tilt_isqrt32",
                                                       "tilt_gravity_plausible" };
 
 static noise_t noise;

@@ -4,7 +4,7 @@
 
 enum { ITEMS = 2 * VECTORS_BLOCK };
 
-static const uint32_t edges[] FX_FLASH = {
+static const uint32_t edges[] IN_FLASH = {
     0UL,      1UL,       2UL,        0x7FUL,     0x80UL,     0xFFUL,      0x100UL,      0x7FFFUL,     0x8000UL,
     0xFFFFUL, 0x10000UL, 0x7FFFFFUL, 0x800000UL, 0xFFFFFFUL, 0x1000000UL, 0x7FFFFFFFUL, 0x80000000UL, 0xFFFFFFFFUL,
 };
@@ -103,7 +103,7 @@ enum {
         PRIMITIVE_COUNT
 };
 
-static const char names[PRIMITIVE_COUNT][27] FX_FLASH = {
+static const char names[PRIMITIVE_COUNT][27] IN_FLASH = {
 #define NAME(name, result) #name,
     PRIMITIVES(NAME)
 #undef NAME
@@ -136,7 +136,7 @@ static uint32_t result_of(uint8_t which, uint32_t a, uint32_t b)
 static uint32_t operand(uint16_t index)
 {
     uint32_t v = vectors_random();
-    return (index < VECTORS_BLOCK && (v & 1U) != 0U) ? fx_flash_u32(&edges[(v >> 8) % EDGES]) : v >> (v & 31U);
+    return (index < VECTORS_BLOCK && (v & 1U) != 0U) ? flash_u32(&edges[(v >> 8) % EDGES]) : v >> (v & 31U);
 }
 
 void primitive_path_item(uint8_t which, uint16_t index)

@@ -16,7 +16,7 @@ enum { U16, I16, U32, HUNDREDTHS, TEXT_U32, TEXT_HEX8, TEXT_TENTHS, ROWS_CSV, RO
 
 enum { NUMBER_ITEMS = 2 * VECTORS_BLOCK, ROW_ITEMS = 4 * VECTORS_BLOCK, ROWS_PER_START = 100 };
 
-static const char names[TEXT_COUNT][20] FX_FLASH = { "format_u16",        "format_i16", "format_u32",
+static const char names[TEXT_COUNT][20] IN_FLASH = { "format_u16",        "format_i16", "format_u32",
                                                      "format_hundredths", "text_u32",   "text_hex8",
                                                      "text_tenths",       "rows_csv",   "rows_plot" };
 
@@ -90,13 +90,13 @@ static uint32_t now_us;
 /* Four filters and some rates in turn, for there is no room for all; slow motion on each axis. */
 static void begin_rows(uint8_t mode, uint16_t index)
 {
-    static const uint16_t rates_dhz[] FX_FLASH = { 1000, 125, 8000 };
+    static const uint16_t rates_dhz[] IN_FLASH = { 1000, 125, 8000 };
     uint8_t turn = (uint8_t)(index / ROWS_PER_START);
     settings_defaults();
     settings()->mode = mode;
     settings()->baud = 1000000;
     settings()->choice.filter = turn % 4U; /* the first of the list */
-    settings()->rate_dhz = fx_flash_u16(&rates_dhz[turn % 3U]);
+    settings()->rate_dhz = flash_u16(&rates_dhz[turn % 3U]);
     now_us = vectors_random();
     coast_wait(now_us);
     pipeline_reset();

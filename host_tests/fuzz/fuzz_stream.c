@@ -9,8 +9,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "fuzz.h"
 #include "feed.h"
+#include "fuzz.h"
 
 enum { FEED_TICKS = 300 };
 

@@ -162,9 +162,9 @@ void proof_fx_rest(void)
     uint32_t sum = fx_add_sat(ANY_U32(0, UINT32_MAX), ANY_U32(0, UINT32_MAX));
     int32_t limited = fx_clamp(ANY_S32(S32_MIN, INT32_MAX), ANY_S32(0, 1000));
     //@ check -1000 <= limited <= 1000;
-    static const uint32_t word FX_FLASH = 7;
-    static const void *const pointer FX_FLASH = &word;
-    (void)fx_flash_u8((const uint8_t *)&word);
-    (void)fx_flash_u32(&word);
-    (void)fx_flash_pointer(&pointer);
+    static const uint32_t word IN_FLASH = 7;
+    static const void *const pointer IN_FLASH = &word;
+    (void)flash_u8((const uint8_t *)&word);
+    (void)flash_u32(&word);
+    (void)flash_pointer(&pointer);
 }

@@ -3,9 +3,9 @@
 
 #include <stddef.h>
 
-#include "hal_pointer.h"
 #include "hal_time.h"
 #include "hal_watchdog.h"
+#include "machine.h"
 #include "nav_frame.h"
 
 enum {
@@ -74,7 +74,7 @@ static uint16_t one_more(uint16_t count)
     return count == UINT16_MAX ? count : (uint16_t)(count + 1u);
 }
 
-HAL_APART static void send_hello(void)
+MACHINE_APART static void send_hello(void)
 {
     uint8_t frame[HELLO_BYTES + FRAME_OVERHEAD] = { 0, ANSWER_HELLO, LINK_VERSION, NAV_STATES };
     put_u16(&frame[4], LINK_WINDOW);
@@ -82,7 +82,7 @@ HAL_APART static void send_hello(void)
     frame_send(frame, HELLO_BYTES);
 }
 
-HAL_APART static void send_state(uint32_t t_us)
+MACHINE_APART static void send_state(uint32_t t_us)
 {
     uint8_t frame[STATE_BYTES + FRAME_OVERHEAD];
     uint8_t *record = &frame[1];
@@ -93,7 +93,7 @@ HAL_APART static void send_state(uint32_t t_us)
     frame_send(frame, STATE_BYTES);
 }
 
-HAL_APART static void send_variances(void)
+MACHINE_APART static void send_variances(void)
 {
     uint8_t frame[VARIANCES_BYTES + FRAME_OVERHEAD] = { 0, ANSWER_VARIANCES, nav_healthy(&filter.nav) };
     nav_real_t variance[NAV_STATES];
@@ -102,7 +102,7 @@ HAL_APART static void send_variances(void)
     frame_send(frame, VARIANCES_BYTES);
 }
 
-HAL_APART static void send_counts(void)
+MACHINE_APART static void send_counts(void)
 {
     uint8_t frame[1 + sizeof(uint16_t[NAV_ANSWERS + LINK_ANSWERS + 1]) + FRAME_OVERHEAD];
     uint8_t *record = &frame[1];
@@ -134,7 +134,7 @@ static uint8_t on_parameters(const uint8_t *body)
     return NAV_TAKEN;
 }
 
-HAL_APART static uint8_t on_start(const uint8_t *body)
+MACHINE_APART static uint8_t on_start(const uint8_t *body)
 {
     if (started || parameters != ALL_PARAMETERS) {
         return LINK_START_REFUSED;
@@ -150,7 +150,7 @@ HAL_APART static uint8_t on_start(const uint8_t *body)
     return started ? NAV_TAKEN : LINK_START_REFUSED;
 }
 
-HAL_APART static uint8_t on_imu(const uint8_t *body)
+MACHINE_APART static uint8_t on_imu(const uint8_t *body)
 {
     nav_real_t measured[6];
     uint32_t t_us = get_u32(body);
@@ -162,7 +162,7 @@ HAL_APART static uint8_t on_imu(const uint8_t *body)
     return answer;
 }
 
-HAL_APART static uint8_t on_gps(const uint8_t *body)
+MACHINE_APART static uint8_t on_gps(const uint8_t *body)
 {
     nav_real_t measured[6];
     copy(measured, &body[TIME], sizeof measured);
@@ -271,7 +271,7 @@ static uint8_t answer_to(uint8_t type, uint8_t sequence, uint8_t length, const u
     return carry_out(type, body);
 }
 
-HAL_APART static void send_answer(uint8_t type, uint8_t sequence, uint8_t answer)
+MACHINE_APART static void send_answer(uint8_t type, uint8_t sequence, uint8_t answer)
 {
     uint8_t frame[ANSWER_BYTES + FRAME_OVERHEAD] = { 0, ANSWER_RECORD, sequence, type, answer };
     frame[5] = started ? nav_queued(&filter.nav) : 0;

@@ -117,7 +117,7 @@ def library_gains(variant, ratio_class):
 
 def c_rows(name, values):
     lines = [", ".join(str(v) for v in values[i:i + 12]) for i in range(0, len(values), 12)]
-    return f"static const uint16_t {name}[{len(values)}] FX_FLASH = {{\n" + "".join(f"    {line},\n" for line in lines) + "};\n"
+    return f"static const uint16_t {name}[{len(values)}] IN_FLASH = {{\n" + "".join(f"    {line},\n" for line in lines) + "};\n"
 
 
 def library_table():

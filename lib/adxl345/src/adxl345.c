@@ -15,16 +15,15 @@
 #include "adxl345_table.h"
 #include "adxl345_watch.h"
 #include "hal_drdy.h"
-#include "hal_pointer.h"
-#include "hal_ram.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
+#include "machine.h"
 
 /* A sensor that was not reached by a stop is looked for so many times more, for a second. */
 enum { RESTS = 40 };
 
 /* The one that was found last: who answers at the other address may be another device. */
-static HAL_APART void rest_sensor(void)
+static MACHINE_APART void rest_sensor(void)
 {
     adxl345_driver_state()->address = adxl345_driver_state()->known;
     adxl345_driver_begin_access(STEP_STANDBY);
@@ -33,7 +32,7 @@ static HAL_APART void rest_sensor(void)
 void adxl345_init(void)
 {
     adxl345_burst_init();
-    if (!HAL_RAM_CLEARED) {
+    if (!MACHINE_RAM_CLEARED) {
         adxl345_counters_clear();
         adxl345_integrity_forget();
         adxl345_watch_start();
@@ -209,7 +208,7 @@ static void drain_step(adxl345_driver_t *d)
 }
 
 /* All but STEP_STREAM, in which most polls are. */
-static HAL_APART void other_step(adxl345_driver_t *d)
+static MACHINE_APART void other_step(adxl345_driver_t *d)
 {
     switch (d->step) {
     case STEP_QUIET_DRAIN:

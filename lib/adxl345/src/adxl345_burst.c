@@ -17,10 +17,9 @@
 #include "adxl345_watch.h"
 #include "hal_drdy.h"
 #include "hal_irq.h"
-#include "hal_pointer.h"
-#include "hal_ram.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
+#include "machine.h"
 
 enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1 };
 
@@ -37,7 +36,7 @@ static struct burst burst;
 static inline struct burst *base(void)
 {
     struct burst *b = &burst;
-    HAL_POINTER(b);
+    MACHINE_POINTER(b);
     return b;
 }
 
@@ -45,18 +44,18 @@ static inline struct burst *base(void)
  * An entry of the queue, by its place, of which the lower bits count. The one at head is free, because a burst begins
  * only where the queue has room: it takes the sample that is read.
  */
-static HAL_APART burst_entry_t *entry_at(uint8_t at)
+static MACHINE_APART burst_entry_t *entry_at(uint8_t at)
 {
     return &burst.queue[at & QUEUE_MASK];
 }
 
-HAL_IRQ_INLINE bool queue_has_room(void)
+MACHINE_INLINE bool queue_has_room(void)
 {
     return (uint8_t)(burst.head - burst.tail) != QUEUE_MASK;
 }
 
 /* Interrupts off, or the bus made busy; begun_us is the caller's. */
-HAL_IRQ_INLINE void begin_burst(struct burst *b, bool by_edge)
+MACHINE_INLINE void begin_burst(struct burst *b, bool by_edge)
 {
     b->by_edge = by_edge;
     b->on_bus = 1;
@@ -105,7 +104,7 @@ static bool claim(struct burst *b)
 
 void adxl345_burst_init(void)
 {
-    if (HAL_RAM_CLEARED) {
+    if (MACHINE_RAM_CLEARED) {
         return;
     }
     struct burst *b = base();
@@ -244,7 +243,7 @@ static inline void keep_edge(struct burst *b, const burst_entry_t *entry, uint8_
  * the samples that wait behind it is that of INT1 coming back to a FIFO that had filled. The newest sample is half a
  * period old then.
  */
-static HAL_APART void restamp(const struct burst *b, burst_entry_t *entry)
+static MACHINE_APART void restamp(const struct burst *b, burst_entry_t *entry)
 {
     uint32_t half_us = adxl345_period_us() >> 1;
     uint32_t t_us = b->begun_us - (uint8_t)(2u * b->bus.rx[READING_FIFO_STATUS] + 1u) * half_us;
@@ -276,7 +275,7 @@ static reading_t judge(struct burst *b, burst_entry_t *entry)
 }
 
 /* No burst begins until on_bus is 0 again, so what the handlers wrote stays as it is. */
-static HAL_APART reading_t judge_ended(void)
+static MACHINE_APART reading_t judge_ended(void)
 {
     struct burst *b = base();
     burst_entry_t *entry = entry_at(b->head);
@@ -322,7 +321,7 @@ bool adxl345_burst_left_more(void)
     return burst.bus.rx[READING_FIFO_STATUS] != 0;
 }
 
-HAL_APART uint32_t adxl345_burst_begun_us(void)
+MACHINE_APART uint32_t adxl345_burst_begun_us(void)
 {
     hal_irq_state_t state = hal_irq_save();
     uint32_t t_us = burst.begun_us;

@@ -1,7 +1,7 @@
 #include "adxl345_counters.h"
 
 #include "adxl345.h"
-#include "hal_pointer.h"
+#include "machine.h"
 
 static uint16_t counters[COUNTERS];
 static uint8_t marked;
@@ -9,7 +9,7 @@ static uint8_t marked;
 void adxl345_counters_add(counter_t counter)
 {
     uint16_t *count = &counters[counter];
-    HAL_POINTER(count); /* else its address is computed twice */
+    MACHINE_POINTER(count); /* else its address is computed twice */
     if (*count != UINT16_MAX) {
         (*count)++;
     }

@@ -32,7 +32,7 @@ void adxl345_driver_enter(step_t step, uint8_t limit)
     hal_wake();
 }
 
-HAL_APART bool adxl345_driver_reached(uint32_t t_us)
+MACHINE_APART bool adxl345_driver_reached(uint32_t t_us)
 {
     return (int32_t)(t_us - adxl345_driver_state()->now_us) <= 0; /* hal_time_reached as a value takes 24 B more */
 }
@@ -111,7 +111,7 @@ bool adxl345_driver_transfer_failed(i2c_bus_state_t state)
     return state != I2C_BUS_TIMEOUT || adxl345_driver_take_bus();
 }
 
-HAL_APART void adxl345_driver_not_here(adxl345_driver_t *d, adxl345_fault_t fault)
+MACHINE_APART void adxl345_driver_not_here(adxl345_driver_t *d, adxl345_fault_t fault)
 {
     uint8_t found = d->found;
     d->found = (uint8_t)fault;

@@ -7,8 +7,8 @@
 
 #include "adxl345.h"
 #include "adxl345_table.h"
-#include "hal_pointer.h"
 #include "i2c_bus.h"
+#include "machine.h"
 
 /* Limits of time in half milliseconds: a byte holds them. A register access takes under 0.2 ms, a burst under 0.4. */
 #define LIMIT_US 500u
@@ -73,7 +73,7 @@ adxl345_driver_t *adxl345_driver_state(void);
 static inline adxl345_driver_t *adxl345_driver_here(void)
 {
     adxl345_driver_t *d = adxl345_driver_state();
-    HAL_POINTER(d);
+    MACHINE_POINTER(d);
     return d;
 }
 

@@ -4,7 +4,7 @@
 #include "adxl345_registers.h"
 #include "adxl345_table.h"
 #include "hal_drdy.h"
-#include "hal_pointer.h"
+#include "machine.h"
 
 #define SENSOR_DEPTH 33u /* samples that the sensor can hold (p. 27) */
 
@@ -28,7 +28,7 @@ static struct integrity {
 static inline struct integrity *here(void)
 {
     struct integrity *i = &integrity;
-    HAL_POINTER(i);
+    MACHINE_POINTER(i);
     return i;
 }
 
@@ -88,7 +88,7 @@ static void lengthen(uint8_t *run)
     }
 }
 
-static HAL_APART reading_t discard(reading_t why)
+static MACHINE_APART reading_t discard(reading_t why)
 {
     struct integrity *i = here();
     if (why == READING_EMPTY) {

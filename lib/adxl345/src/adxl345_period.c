@@ -1,7 +1,7 @@
 #include "adxl345_period.h"
 
 #include "adxl345.h"
-#include "hal_pointer.h"
+#include "machine.h"
 
 enum { STEPS = 16 };
 
@@ -19,7 +19,7 @@ static struct period {
 static inline struct period *here(void)
 {
     struct period *p = &period;
-    HAL_POINTER(p);
+    MACHINE_POINTER(p);
     return p;
 }
 
@@ -55,7 +55,7 @@ void adxl345_period_sample(uint32_t t_us, bool exact)
     p->measured_from_us = t_us;
 }
 
-HAL_APART uint32_t adxl345_period_us(void)
+MACHINE_APART uint32_t adxl345_period_us(void)
 {
     return period.us_q8 >> 8;
 }

@@ -11,22 +11,22 @@
 #include "adxl345_watch.h"
 #include "hal_drdy.h"
 #include "hal_i2c.h"
-#include "hal_pointer.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
+#include "machine.h"
 
 #define MARGIN_US 3000u
 #define TRANSFER_US ((uint32_t)TRANSFER_LIMIT * LIMIT_US)
 #define TURN_ON_MS 20u /* p. 5: period + 1.1 ms, with room for a slow start */
 
 /* So many halves of the nominal time between samples. */
-static HAL_APART uint32_t halves_us(uint8_t count)
+static MACHINE_APART uint32_t halves_us(uint8_t count)
 {
     return (uint32_t)adxl345_driver_state()->half_us * count;
 }
 
 /* So long after the newest burst that met a sample, or after the moment by which the first is expected. */
-static HAL_APART bool silent_for(uint32_t us)
+static MACHINE_APART bool silent_for(uint32_t us)
 {
     return adxl345_driver_reached(adxl345_burst_met_sample_us() + us);
 }

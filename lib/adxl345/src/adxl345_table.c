@@ -1,15 +1,14 @@
 /* What the driver writes into the sensor, and the codes of rates and ranges. */
 #include "adxl345_table.h"
 
-#include "flash.h"
-#include "hal_pointer.h"
+#include "machine.h"
 
 /*
  * Standby first, interrupt off before it is reconfigured (p. 20), bypass to clear the FIFO (p. 21); Measure is set
  * after the read-back. Offsets are cleared because the sensor may have kept another program's.
  * The values of BW_RATE and DATA_FORMAT follow from the configuration.
  */
-static const table_row_t table[] FLASH = {
+static const table_row_t table[] IN_FLASH = {
     [TABLE_DEVID] = { ADXL345_DEVID, ADXL345_DEVID_VALUE },
     [TABLE_WRITTEN] = { ADXL345_POWER_CTL, 0 },
     { ADXL345_INT_ENABLE, 0 },
@@ -44,7 +43,7 @@ static uint8_t range_code(uint8_t range_g)
     return (uint8_t)((uint8_t)(range_g >> 2) - (uint8_t)(range_g >> 4));
 }
 
-HAL_APART uint8_t adxl345_table_format(const adxl345_config_t *config)
+MACHINE_APART uint8_t adxl345_table_format(const adxl345_config_t *config)
 {
     uint8_t force = config->self_test ? ADXL345_FORMAT_SELF_TEST : 0;
     return (uint8_t)(ADXL345_FORMAT_FULL_RES | force | range_code(config->range_g));

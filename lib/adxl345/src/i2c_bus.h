@@ -15,6 +15,7 @@
 #include "hal_i2c.h"
 #include "hal_irq.h"
 #include "hal_sleep.h"
+#include "machine.h"
 
 #define I2C_BUS_TX_MAX 2
 #define I2C_BUS_RX_MAX 10
@@ -48,7 +49,7 @@ typedef struct {
 #define I2C_BUS_FREE(bus) ((bus)->state != I2C_BUS_BUSY && !hal_i2c_stop_pending())
 
 /* Begins the transfer set up in *bus. Only when I2C_BUS_FREE; interrupts off, or in an interrupt. */
-HAL_IRQ_INLINE void i2c_bus_begin(i2c_bus_t *bus)
+MACHINE_INLINE void i2c_bus_begin(i2c_bus_t *bus)
 {
     bus->index = 0;
     bus->expected = HAL_I2C_STARTED;
@@ -84,7 +85,7 @@ static inline void i2c_bus_step_sent(i2c_bus_t *bus)
 }
 
 /* The last byte is refused, so that the device lets go of SDA. */
-HAL_IRQ_INLINE void i2c_bus_step_read(i2c_bus_t *bus, uint8_t index)
+MACHINE_INLINE void i2c_bus_step_read(i2c_bus_t *bus, uint8_t index)
 {
     bus->index = index;
     if ((uint8_t)(index + 1u) < bus->rx_length) {

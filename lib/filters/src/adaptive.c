@@ -42,7 +42,7 @@ LAW_PARAMETER(identify, "identify\0", 0, 0, 0, 1, 1);
 LAW_PARAMETER(slow, "slow\0ms", 0, 0, 10, 60000, 500);
 LAW_PARAMETER(fast, "fast\0ms", 0, 0, 1, 60000, 0);
 LAW_PARAMETER(confirm, "confirm\0ms", 0, 0, 0, 10000, 120);
-static const filter_parameter_t *const parameters[] FX_FLASH = {
+static const filter_parameter_t *const parameters[] IN_FLASH = {
     &guard, &filter_parameter_r, &identify, &slow, &fast, &confirm, &filter_parameter_ratemax
 };
 
@@ -133,7 +133,7 @@ static uint16_t mean_size_uq8(const filter_adaptive_t *a)
 }
 
 /* A size in 8.8 bits, limited to 128 LSB. */
-FX_NOINLINE int16_t size_lsb_q8(uint32_t size_lsb_uq16)
+static MACHINE_APART int16_t size_lsb_q8(uint32_t size_lsb_uq16)
 {
     return (int16_t)((size_lsb_uq16 >= 0x800000U) ? 0x7FFF : (int16_t)(uint16_t)(size_lsb_uq16 >> 8));
 }
@@ -386,7 +386,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     }
 }
 
-const filter_law_t filter_law_adaptive FX_FLASH = { .name = "adaptive",
+const filter_law_t filter_law_adaptive IN_FLASH = { .name = "adaptive",
                                                     .parameter_count = 7,
                                                     .traits = LAW_FINE_RATE | LAW_GATED,
                                                     .worst_cycles = 1300,

@@ -47,7 +47,7 @@ LAW_PARAMETER(gate, "gate\0sigma", 8, 1, 256, 4096, 1536);
 LAW_PARAMETER(slow, "slow\0ms", 0, 0, 1, 60000, 0);
 LAW_PARAMETER(middling, "middle\0ms", 0, 0, 1, 60000, 0);
 LAW_PARAMETER(fast, "fast\0ms", 0, 0, 1, 60000, 0);
-static const filter_parameter_t *const parameters[] FX_FLASH = { &gate, &filter_parameter_r,      &slow, &middling,
+static const filter_parameter_t *const parameters[] IN_FLASH = { &gate, &filter_parameter_r,      &slow, &middling,
                                                                  &fast, &filter_parameter_ratemax };
 
 /* So many samples in ms, at least so many ms. */
@@ -174,7 +174,7 @@ static void step_member(filter_t *f, uint8_t i, int16_t z_lsb, uint32_t gate_lsb
 {
     filter_auto_t *b = &f->own.bank;
     filter_member_t *m = &b->members[i];
-    FX_FENCE_OF(m); /* else computed from i at each use */
+    MACHINE_FENCE(m); /* else computed from i at each use */
     uint16_t final_k = b->final_k_uq16[i];
     predict_member(f, m);
     int32_t innovation = (int32_t)z_lsb * 65536 - m->x_lsb_q16;
@@ -286,7 +286,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     }
 }
 
-const filter_law_t filter_law_auto FX_FLASH = { .name = "auto",
+const filter_law_t filter_law_auto IN_FLASH = { .name = "auto",
                                                 .parameter_count = 6,
                                                 .traits = LAW_GATED,
                                                 .worst_cycles = 2690,

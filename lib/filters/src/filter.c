@@ -39,7 +39,7 @@ uint32_t filter_own_noise_lsb2_q8(const filter_t *f)
 
 static uint8_t traits(const filter_t *f)
 {
-    return fx_flash_u8(&f->law->traits);
+    return flash_u8(&f->law->traits);
 }
 
 /* Running from x at rest, with what the law begins with. */

@@ -3,7 +3,7 @@
 
 #include "fx.h"
 
-static const filter_law_t *const laws[FILTER_KIND_COUNT] FX_FLASH = {
+static const filter_law_t *const laws[FILTER_KIND_COUNT] IN_FLASH = {
 #define LISTED(F) [FILTER_KIND_##F] = &filter_law_##F,
     FILTER_LINKED(LISTED)
 #undef LISTED
@@ -14,11 +14,11 @@ const filter_law_t *filter_listed(filter_kind_t kind)
     if (kind >= FILTER_KIND_COUNT) {
         return NULL;
     }
-    return (const filter_law_t *)fx_flash_pointer(&laws[kind]);
+    return (const filter_law_t *)flash_pointer(&laws[kind]);
 }
 
 /* Apart from the descriptors: also of those that are not linked. */
-static const char names[FILTER_KIND_COUNT][12] FX_FLASH = {
+static const char names[FILTER_KIND_COUNT][12] IN_FLASH = {
 #define NAME(F) #F,
     FILTER_LIST(NAME)
 #undef NAME
@@ -33,7 +33,7 @@ const char *filter_listed_name(filter_kind_t kind)
 static bool same_text(const char *ram, const char *flash)
 {
     for (;; ram++, flash++) {
-        char c = (char)fx_flash_u8((const uint8_t *)flash);
+        char c = (char)flash_u8((const uint8_t *)flash);
         if (*ram != c) {
             return false;
         }

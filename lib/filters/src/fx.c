@@ -5,7 +5,7 @@
  * Node i: 65536 / (1 + i/128) - h^2/16 x second derivative, h = 1/128, so that the chord's error is centred on zero
  * (a chord of the convex 1/m lies up to h^2/8 x f'' above it); rounded to nearest, the first limited to 65535.
  */
-const uint16_t filter_fx_reciprocal_nodes_uq16[129] FX_FLASH = {
+const uint16_t filter_fx_reciprocal_nodes_uq16[129] IN_FLASH = {
     65535, 65027, 64527, 64035, 63550, 63072, 62601, 62137, 61681, 61230, 60787, 60349, 59918, 59493, 59074,
     58661, 58254, 57852, 57456, 57065, 56679, 56299, 55924, 55553, 55188, 54827, 54471, 54120, 53773, 53430,
     53092, 52758, 52429, 52103, 51781, 51464, 51150, 50840, 50534, 50231, 49932, 49637, 49345, 49056, 48771,
@@ -17,7 +17,7 @@ const uint16_t filter_fx_reciprocal_nodes_uq16[129] FX_FLASH = {
     33825, 33689, 33554, 33421, 33288, 33156, 33026, 32896, 32768,
 };
 
-FX_ONCE uint32_t filter_fx_abs32(int32_t v)
+MACHINE_APART uint32_t filter_fx_abs32(int32_t v)
 {
     return (v < 0) ? 0U - (uint32_t)v : (uint32_t)v;
 }
@@ -119,7 +119,7 @@ fx_scaled_t filter_fx_scaled_mul(fx_scaled_t a, fx_scaled_t b)
     return normalised(fx_product_u16(a.mantissa, b.mantissa), (int8_t)(a.exponent + b.exponent));
 }
 
-FX_ONCE fx_scaled_t filter_fx_scaled_div(fx_scaled_t a, fx_scaled_t b)
+MACHINE_APART fx_scaled_t filter_fx_scaled_div(fx_scaled_t a, fx_scaled_t b)
 {
     uint32_t quotient = ((uint32_t)a.mantissa << 16) / b.mantissa; /* 2^15 < quotient < 2^17 */
     return normalised(quotient, (int8_t)(a.exponent - b.exponent - 16));

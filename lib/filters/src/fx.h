@@ -12,72 +12,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "machine.h"
+
 #ifdef __cplusplus
 extern "C" {
-#endif
-
-/* Inlined whatever the optimiser's opinion: for code with one hot caller. */
-#define FX_INLINE static inline __attribute__((always_inline))
-
-/* Never inlined: keeps the registers of a rare or heavy part out of its caller's prologue. */
-#define FX_NOINLINE static __attribute__((noinline))
-
-/*
- * For public functions that run rarely or only dispatch: link-time optimisation shall not copy them to each caller
- * either.
- */
-#define FX_ONCE __attribute__((noinline))
-
-/* The compiler of the 8-bit machine forgets what it knows of v, an integer in a register. */
-#ifdef __AVR__
-#define FX_FENCE_OF(v) __asm__("" : "+r"(v))
-#else
-#define FX_FENCE_OF(v) ((void)0)
-#endif
-
-/*
- * Constants in program memory: `static const uint16_t table[] FX_FLASH = {...};`, read only through fx_flash_*.
- * A plain const would be copied into the 2 KB of RAM on AVR.
- */
-#ifdef __AVR__
-#include <avr/pgmspace.h>
-#define FX_FLASH PROGMEM
-static inline uint8_t fx_flash_u8(const uint8_t *p)
-{
-    return pgm_read_byte(p);
-}
-static inline uint16_t fx_flash_u16(const uint16_t *p)
-{
-    return pgm_read_word(p);
-}
-static inline uint32_t fx_flash_u32(const uint32_t *p)
-{
-    return pgm_read_dword(p);
-}
-static inline const void *fx_flash_pointer(const void *p)
-{
-    return pgm_read_ptr(p);
-}
-#define FX_FLASH_FUNCTION(place) ((__typeof__(*(place)))(uintptr_t)pgm_read_word(place))
-#else
-#define FX_FLASH
-static inline uint8_t fx_flash_u8(const uint8_t *p)
-{
-    return *p;
-}
-static inline uint16_t fx_flash_u16(const uint16_t *p)
-{
-    return *p;
-}
-static inline uint32_t fx_flash_u32(const uint32_t *p)
-{
-    return *p;
-}
-static inline const void *fx_flash_pointer(const void *p)
-{
-    return *(const void *const *)p;
-}
-#define FX_FLASH_FUNCTION(place) (*(place))
 #endif
 
 /* |v|; INT32_MIN gives 2^31. */
@@ -96,10 +34,10 @@ static inline int32_t fx_clamp(int32_t v, int32_t limit)
  * a x b, exact: written as a product, because the compiler knows which few registers its library's takes. What it
  * knew of a and b would make it take a longer one.
  */
-FX_INLINE uint32_t fx_product_u16(uint16_t a, uint16_t b)
+MACHINE_INLINE uint32_t fx_product_u16(uint16_t a, uint16_t b)
 {
-    FX_FENCE_OF(a);
-    FX_FENCE_OF(b);
+    MACHINE_FENCE(a);
+    MACHINE_FENCE(b);
     return (uint32_t)a * b;
 }
 
@@ -286,8 +224,8 @@ extern const uint16_t filter_fx_reciprocal_nodes_uq16[129];
 static inline uint16_t fx_inverse_m_uq16(uint8_t interval, uint16_t fraction)
 {
     const uint16_t *node = &filter_fx_reciprocal_nodes_uq16[interval];
-    uint16_t left = fx_flash_u16(node);
-    uint16_t drop = (uint16_t)(left - fx_flash_u16(node + 1));
+    uint16_t left = flash_u16(node);
+    uint16_t drop = (uint16_t)(left - flash_u16(node + 1));
     return (uint16_t)(left - filter_fx_mul16_uq16(drop, fraction));
 }
 

@@ -7,7 +7,7 @@
 #include "fx.h"
 
 #ifdef FX_ASSEMBLER
-FX_ONCE uint32_t filter_fx_mul_uq16(uint32_t a, uint16_t b_uq16)
+MACHINE_APART uint32_t filter_fx_mul_uq16(uint32_t a, uint16_t b_uq16)
 {
     uint16_t low; /* bytes 2..5 of the 6-byte product; byte 1 is only needed for its top bit, byte 0 not at all */
     uint16_t high;
@@ -29,7 +29,7 @@ FX_ONCE uint32_t filter_fx_mul_uq16(uint32_t a, uint16_t b_uq16)
     return a;
 }
 
-FX_ONCE uint16_t filter_fx_mul16_uq16(uint16_t a, uint16_t b_uq16)
+MACHINE_APART uint16_t filter_fx_mul16_uq16(uint16_t a, uint16_t b_uq16)
 {
     uint16_t product; /* bytes 2 and 3 of the 4-byte product; of byte 1 only the carry and the top bit are needed */
     uint8_t zero;
@@ -46,7 +46,7 @@ FX_ONCE uint16_t filter_fx_mul16_uq16(uint16_t a, uint16_t b_uq16)
     return a;
 }
 
-FX_ONCE uint32_t filter_fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
+MACHINE_APART uint32_t filter_fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
 {
     uint16_t low; /* bytes 1..4 of the 5-byte product; byte 0 only rounds */
     uint16_t high;
@@ -64,7 +64,7 @@ FX_ONCE uint32_t filter_fx_mul24_uq16(uint32_t a_q8, uint16_t b_uq16)
     return a_q8;
 }
 
-FX_ONCE uint32_t filter_fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
+MACHINE_APART uint32_t filter_fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
 {
     uint16_t low; /* bytes 2..5 of the 6-byte product; of byte 1, in D[b], only the carry and the top bit are needed */
     uint16_t high;
@@ -86,7 +86,7 @@ FX_ONCE uint32_t filter_fx_mul24_uq24(uint32_t a_q8, uint32_t b_uq24)
     return a_q8;
 }
 
-FX_ONCE uint32_t filter_fx_mul_uq24(uint32_t a, uint32_t b_uq24)
+MACHINE_APART uint32_t filter_fx_mul_uq24(uint32_t a, uint32_t b_uq24)
 {
     uint16_t low; /* bytes 3..6 of the 7-byte product; of bytes 1 and 2 only the carry and the top bit are needed */
     uint16_t high;
@@ -116,7 +116,7 @@ FX_ONCE uint32_t filter_fx_mul_uq24(uint32_t a, uint32_t b_uq24)
     return a;
 }
 
-FX_ONCE uint32_t filter_fx_shift_right(uint32_t v, uint8_t places)
+MACHINE_APART uint32_t filter_fx_shift_right(uint32_t v, uint8_t places)
 {
     __asm__("1:\tcpi %[n],8\n\tbrlo 2f\n\t"
             "mov %A[v],%B[v]\n\tmov %B[v],%C[v]\n\tmov %C[v],%D[v]\n\tclr %D[v]\n\tsubi %[n],8\n\trjmp 1b\n"

@@ -9,21 +9,21 @@
 /* Here the assembler twins are used: fx_dot.h asks. */
 #define FX_ASSEMBLER
 
-FX_INLINE uint16_t fx_upper(const uint32_t *v)
+MACHINE_INLINE uint16_t fx_upper(const uint32_t *v)
 {
     uint16_t upper;
     __builtin_memcpy(&upper, (const uint8_t *)v + 2, sizeof upper);
     return upper;
 }
 
-FX_INLINE int16_t fx_upper_signed(const int32_t *v)
+MACHINE_INLINE int16_t fx_upper_signed(const int32_t *v)
 {
     int16_t upper;
     __builtin_memcpy(&upper, (const uint8_t *)v + 2, sizeof upper);
     return upper;
 }
 
-FX_INLINE uint32_t fx_shift12(uint16_t v)
+MACHINE_INLINE uint32_t fx_shift12(uint16_t v)
 {
     uint32_t shifted;
     uint8_t nibble;
@@ -36,7 +36,7 @@ FX_INLINE uint32_t fx_shift12(uint16_t v)
     return shifted;
 }
 
-FX_INLINE uint32_t fx_eightfold(uint32_t v)
+MACHINE_INLINE uint32_t fx_eightfold(uint32_t v)
 {
     __asm__("lsl %A[v]\n\trol %B[v]\n\trol %C[v]\n\trol %D[v]\n\t"
             "lsl %A[v]\n\trol %B[v]\n\trol %C[v]\n\trol %D[v]\n\t"
@@ -45,7 +45,7 @@ FX_INLINE uint32_t fx_eightfold(uint32_t v)
     return v;
 }
 
-FX_INLINE uint32_t fx_sixteenth(uint32_t v)
+MACHINE_INLINE uint32_t fx_sixteenth(uint32_t v)
 {
     __asm__("lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
             "lsr %D[v]\n\tror %C[v]\n\tror %B[v]\n\tror %A[v]\n\t"
@@ -56,7 +56,7 @@ FX_INLINE uint32_t fx_sixteenth(uint32_t v)
     return v;
 }
 
-FX_INLINE uint8_t fx_normalise(uint32_t *v)
+MACHINE_INLINE uint8_t fx_normalise(uint32_t *v)
 {
     uint32_t bits = *v;
     uint8_t places;
@@ -71,7 +71,7 @@ FX_INLINE uint8_t fx_normalise(uint32_t *v)
 }
 
 /* With one bit set in part_uq8 the halves of neighbouring products have no bits in common; the half is the borrow. */
-FX_INLINE int32_t fx_without_part(int32_t v, uint8_t part_uq8)
+MACHINE_INLINE int32_t fx_without_part(int32_t v, uint8_t part_uq8)
 {
     uint8_t byte0;
     uint8_t byte1;
@@ -89,7 +89,7 @@ FX_INLINE int32_t fx_without_part(int32_t v, uint8_t part_uq8)
 }
 
 /* Looked for in the highest byte: what has the limit's counts as beyond, to the same effect. */
-FX_INLINE int32_t fx_clamp_high(int32_t v, uint8_t limit)
+MACHINE_INLINE int32_t fx_clamp_high(int32_t v, uint8_t limit)
 {
     uint8_t top;
     __asm__("mov %[t],%D[v]\n\tsubi %[t],-%[l]\n\tcpi %[t],2*%[l]\n\tbrlo 1f\n\t"

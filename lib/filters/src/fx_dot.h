@@ -25,7 +25,7 @@ static inline int32_t fx_dot24_c(int32_t sum, const int32_t a[3], const int16_t 
 
 #ifdef FX_ASSEMBLER
 /* Of the product's five bytes the lowest is left out; the bytes of a come one by one, which spares registers. */
-FX_INLINE int32_t fx_dot24(int32_t sum, const int32_t a[3], const int16_t b[3])
+MACHINE_INLINE int32_t fx_dot24(int32_t sum, const int32_t a[3], const int16_t b[3])
 {
     uint8_t byte, low, high, zero, left;
     __asm__("clr %[z]\n\tldi %[n],3\n"

@@ -86,7 +86,7 @@ void filter_kalman_set_up_gated(filter_t *f, const filter_config_t *config, uint
 }
 
 /* What the law forgets with its run of refused samples and its last gate. */
-FX_NOINLINE void fresh(filter_kalman_t *k)
+static MACHINE_APART void fresh(filter_kalman_t *k)
 {
     k->p.p11 = KALMAN_ONE_UQ24;
     k->p.p12 = 0;

@@ -59,14 +59,14 @@ enum { KALMAN_R, KALMAN_Q, KALMAN_GATE };
 static inline uint32_t kalman_quarter(uint32_t v)
 {
     v >>= 1;
-    FX_FENCE_OF(v);
+    MACHINE_FENCE(v);
     return v >> 1;
 }
 
 static inline uint32_t kalman_fourfold(uint32_t v)
 {
     v <<= 1;
-    FX_FENCE_OF(v);
+    MACHINE_FENCE(v);
     return v << 1;
 }
 

@@ -14,7 +14,7 @@
 
 LAW_PARAMETER(clean, "clean\0", 16, 0, 656, 65535, 55706);
 LAW_PARAMETER(ratio, "ratio\0", 8, 0, 256, 8192, 5120);
-static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &filter_parameter_q, &clean,
+static const filter_parameter_t *const parameters[] IN_FLASH = { &filter_parameter_r, &filter_parameter_q, &clean,
                                                                  &ratio };
 
 static void kf_set_up(filter_t *f, const filter_config_t *config)
@@ -46,7 +46,7 @@ static void lrf_set_noise(filter_t *f, uint32_t r_lsb2_q8)
     filter_kalman_set_variance(f, (r_mixed_lsb2_q8 > LRF_R_MAX_LSB2_Q8) ? LRF_R_MAX_LSB2_Q8 : r_mixed_lsb2_q8);
 }
 
-const filter_law_t filter_law_kf FX_FLASH = { .name = "kf",
+const filter_law_t filter_law_kf IN_FLASH = { .name = "kf",
                                               .parameter_count = 2,
                                               .traits = LAW_COVARIANCE | LAW_SETTLES,
                                               .worst_cycles = 1080,
@@ -57,7 +57,7 @@ const filter_law_t filter_law_kf FX_FLASH = { .name = "kf",
                                               .step = step,
                                               .report = LAW_REPORT(filter_kalman_report) };
 
-const filter_law_t filter_law_lrf FX_FLASH = { .name = "lrf",
+const filter_law_t filter_law_lrf IN_FLASH = { .name = "lrf",
                                                .parameter_count = 4,
                                                .traits = LAW_COVARIANCE | LAW_SETTLES,
                                                .worst_cycles = 1080,

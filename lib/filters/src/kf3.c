@@ -40,7 +40,7 @@ LAW_KEEPS_FROM(filter_kf3_t, q33_uq28);
 #define P22_START_MAX_UQ28 0x8000000U
 
 LAW_PARAMETER(q, "q\0LSB2/s5", 0, 0, 1, 1000000000, 300000);
-static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &q };
+static const filter_parameter_t *const parameters[] IN_FLASH = { &filter_parameter_r, &q };
 
 static void set_up(filter_t *f, const filter_config_t *config)
 {
@@ -282,7 +282,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     out->p_lsb2_q8 = (filter_fx_mul_uq24(p11_uq28, k->r_lsb2_q8) + 8U) >> 4;
 }
 
-const filter_law_t filter_law_kf3 FX_FLASH = { .name = "kf3",
+const filter_law_t filter_law_kf3 IN_FLASH = { .name = "kf3",
                                                .parameter_count = 2,
                                                .traits = LAW_COVARIANCE | LAW_SETTLES,
                                                .worst_cycles = 2390,

@@ -37,7 +37,7 @@ LAW_PARAMETER(ratio, "ratio\0", 8, 0, 512, 25600, 5120);
 LAW_PARAMETER(clean, "clean\0", 16, 0, CLEAN_MIN_UQ16, CLEAN_MAX_UQ16, 55706);
 LAW_PARAMETER(stay, "stay\0", 16, 1, ONE_UQ16 - CLEAN_MAX_UQ16, 64880, 0);
 /* The last is not one of af's. */
-static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &filter_parameter_q, &ratio,
+static const filter_parameter_t *const parameters[] IN_FLASH = { &filter_parameter_r, &filter_parameter_q, &ratio,
                                                                  &clean, &stay };
 
 /* 0.1 Hz. */
@@ -53,13 +53,13 @@ static bool together(const filter_config_t *config)
 }
 
 /* Node i: 1 / (1 + e^(i/2)) less h^2/16 x second derivative, h = 1/2: half of how far the chord is above the curve. */
-static const uint32_t rest_nodes_uq24[25] FX_FLASH = {
+static const uint32_t rest_nodes_uq24[25] IN_FLASH = {
     8388608, 6318993, 4488271, 3035759, 1978931, 1257100, 784955, 484756, 297295, 181544, 110568, 67232, 40840,
     24794,   15047,   9129,    5538,    3360,    2038,    1236,   750,    455,    276,    167,    101,
 };
 
 /* Node i: log2(1 + i/8) - i/8. */
-static const uint8_t log2_nodes_uq11[9] FX_FLASH = { 0, 92, 147, 173, 174, 155, 117, 65, 0 };
+static const uint8_t log2_nodes_uq11[9] IN_FLASH = { 0, 92, 147, 173, 174, 155, 117, 65, 0 };
 
 /* log2 of a number by its leading bits, plus a constant that differences lose. */
 static uint16_t log2_uq9(fx_leading_t v)
@@ -69,8 +69,8 @@ static uint16_t log2_uq9(fx_leading_t v)
     const uint8_t *node = &log2_nodes_uq11[high >> 5];
     uint8_t right = high & 31U;
     uint8_t left = (uint8_t)(32U - right);
-    uint16_t bow_uq16 = (uint16_t)((uint16_t)(fx_flash_u8(node) * (uint16_t)left) +
-                                   (uint16_t)(fx_flash_u8(node + 1) * (uint16_t)right));
+    uint16_t bow_uq16 = (uint16_t)((uint16_t)(flash_u8(node) * (uint16_t)left) +
+                                   (uint16_t)(flash_u8(node + 1) * (uint16_t)right));
     uint16_t whole_uq9 = (uint16_t)((uint16_t)(uint8_t)(62U - 2U * fx_places(v)) << 8);
     return (uint16_t)(whole_uq9 + linear_uq9 + ((uint16_t)(bow_uq16 + 64U) >> 7));
 }
@@ -95,9 +95,9 @@ mixture_posterior_t filter_mixture_posterior(int16_t log_odds_q9)
     uint16_t size_uq9 = (uint16_t)((log_odds_q9 < 0) ? 0 - log_odds_q9 : log_odds_q9);
     if (size_uq9 < MIXTURE_TAIL_Q9) {
         const uint32_t *node = &rest_nodes_uq24[size_uq9 >> 8];
-        uint32_t left = fx_flash_u32(node);
+        uint32_t left = flash_u32(node);
         uint16_t right_uq16 = (uint16_t)(size_uq9 << 8);
-        posterior.rest_uq24 = left - filter_fx_mul_uq16(left - fx_flash_u32(node + 1), right_uq16);
+        posterior.rest_uq24 = left - filter_fx_mul_uq16(left - flash_u32(node + 1), right_uq16);
     }
     return posterior;
 }
@@ -284,7 +284,7 @@ static void shortened_step(filter_t *f, int16_t z_lsb, uint8_t what)
     mixed(f, z_lsb, what, true);
 }
 
-const filter_law_t filter_law_pbf FX_FLASH = { .name = "pbf",
+const filter_law_t filter_law_pbf IN_FLASH = { .name = "pbf",
                                                .parameter_count = 5,
                                                .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
                                                .worst_cycles = 3650,
@@ -296,7 +296,7 @@ const filter_law_t filter_law_pbf FX_FLASH = { .name = "pbf",
                                                .step = step,
                                                .report = LAW_REPORT(filter_wide_report) };
 
-const filter_law_t filter_law_shrf FX_FLASH = { .name = "shrf",
+const filter_law_t filter_law_shrf IN_FLASH = { .name = "shrf",
                                                 .parameter_count = 5,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
                                                 .worst_cycles = 3650,
@@ -308,7 +308,7 @@ const filter_law_t filter_law_shrf FX_FLASH = { .name = "shrf",
                                                 .step = shortened_step,
                                                 .report = LAW_REPORT(filter_wide_report) };
 
-const filter_law_t filter_law_af FX_FLASH = { .name = "af",
+const filter_law_t filter_law_af IN_FLASH = { .name = "af",
                                               .parameter_count = 4,
                                               .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
                                               .worst_cycles = 4350,

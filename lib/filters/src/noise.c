@@ -51,7 +51,7 @@ void filter_noise_gap(noise_t *n)
  * |a - 2 b + c| of samples within the sensor's range, at most 255: the largest that counts is sqrt(667 x 4.5 x 6) =
  * 134.
  */
-FX_NOINLINE uint8_t bend_lsb(int16_t a, int16_t b, int16_t c)
+static MACHINE_APART uint8_t bend_lsb(int16_t a, int16_t b, int16_t c)
 {
     int16_t bend = (int16_t)(a - b - b + c); /* <= 4 x 4096 */
     uint16_t size = (uint16_t)((bend < 0) ? -bend : bend);

@@ -6,17 +6,17 @@
  * README of the library. gate: in sigmas of the innovation. reacquire: refused samples in a row that restart a filter;
  * of 3, 5 and 9 the slope is a shift. ratemax: with R it says how far two samples of such a run may lie apart.
  */
-static const char common_r_words[] FX_FLASH = "r\0LSB2";
-const filter_parameter_t filter_parameter_r FX_FLASH = { common_r_words,       8, 0, FILTER_R_MIN_LSB2_Q8,
+static const char common_r_words[] IN_FLASH = "r\0LSB2";
+const filter_parameter_t filter_parameter_r IN_FLASH = { common_r_words,       8, 0, FILTER_R_MIN_LSB2_Q8,
                                                          FILTER_R_MAX_LSB2_Q8, 0 };
-static const char common_q_words[] FX_FLASH = "q\0LSB2/s3";
-const filter_parameter_t filter_parameter_q FX_FLASH = { common_q_words, 0, 0, 1, 1000000000, 10000 };
-static const char common_gate_words[] FX_FLASH = "gate\0sigma";
-const filter_parameter_t filter_parameter_gate FX_FLASH = { common_gate_words, 8, 1, 256, 4096, 768 };
-static const char common_reacquire_words[] FX_FLASH = "reacquire\0samples";
-const filter_parameter_t filter_parameter_reacquire FX_FLASH = { common_reacquire_words, 0, 1, 3, 9, 5 };
-static const char common_ratemax_words[] FX_FLASH = "ratemax\0LSB/s";
-const filter_parameter_t filter_parameter_ratemax FX_FLASH = { common_ratemax_words, 0, 0, 10, 1000000, 800 };
+static const char common_q_words[] IN_FLASH = "q\0LSB2/s3";
+const filter_parameter_t filter_parameter_q IN_FLASH = { common_q_words, 0, 0, 1, 1000000000, 10000 };
+static const char common_gate_words[] IN_FLASH = "gate\0sigma";
+const filter_parameter_t filter_parameter_gate IN_FLASH = { common_gate_words, 8, 1, 256, 4096, 768 };
+static const char common_reacquire_words[] IN_FLASH = "reacquire\0samples";
+const filter_parameter_t filter_parameter_reacquire IN_FLASH = { common_reacquire_words, 0, 1, 3, 9, 5 };
+static const char common_ratemax_words[] IN_FLASH = "ratemax\0LSB/s";
+const filter_parameter_t filter_parameter_ratemax IN_FLASH = { common_ratemax_words, 0, 0, 10, 1000000, 800 };
 
 const char *filter_name(const filter_law_t *law)
 {
@@ -25,23 +25,23 @@ const char *filter_name(const filter_law_t *law)
 
 uint8_t filter_parameter_count(const filter_law_t *law)
 {
-    return fx_flash_u8(&law->parameter_count);
+    return flash_u8(&law->parameter_count);
 }
 
 const filter_parameter_t *filter_parameter(const filter_law_t *law, uint8_t index)
 {
-    const filter_parameter_t *const *list = (const filter_parameter_t *const *)fx_flash_pointer(&law->parameters);
-    return (const filter_parameter_t *)fx_flash_pointer(&list[index]);
+    const filter_parameter_t *const *list = (const filter_parameter_t *const *)flash_pointer(&law->parameters);
+    return (const filter_parameter_t *)flash_pointer(&list[index]);
 }
 
 const char *filter_parameter_words(const filter_parameter_t *parameter)
 {
-    return (const char *)fx_flash_pointer(&parameter->words);
+    return (const char *)flash_pointer(&parameter->words);
 }
 
 uint16_t filter_worst_cycles(const filter_law_t *law)
 {
-    return fx_flash_u16(&law->worst_cycles);
+    return flash_u16(&law->worst_cycles);
 }
 
 uint32_t filter_tracker_default_r_lsb2_q8(uint16_t rate_dhz)
@@ -51,7 +51,7 @@ uint32_t filter_tracker_default_r_lsb2_q8(uint16_t rate_dhz)
 
 static int32_t flash_i32(const int32_t *p)
 {
-    return (int32_t)fx_flash_u32((const uint32_t *)p);
+    return (int32_t)flash_u32((const uint32_t *)p);
 }
 
 filter_config_t filter_defaults(const filter_law_t *law, uint16_t rate_dhz)
@@ -63,7 +63,7 @@ filter_config_t filter_defaults(const filter_law_t *law, uint16_t rate_dhz)
         config.value[i] = (parameter == &filter_parameter_r) ? (int32_t)filter_tracker_default_r_lsb2_q8(rate_dhz)
                                                              : flash_i32(&parameter->standard);
     }
-    void (*standard)(filter_config_t *) = FX_FLASH_FUNCTION(&law->standard);
+    void (*standard)(filter_config_t *) = FLASH_FUNCTION(&law->standard);
     if (standard != NULL) {
         standard(&config);
     }
@@ -72,7 +72,7 @@ filter_config_t filter_defaults(const filter_law_t *law, uint16_t rate_dhz)
 
 bool filter_in_range(const filter_parameter_t *parameter, int32_t value)
 {
-    if (value == 0 && fx_flash_u8(&parameter->zero_means_off) != 0U) {
+    if (value == 0 && flash_u8(&parameter->zero_means_off) != 0U) {
         return true;
     }
     return value >= flash_i32(&parameter->min) && value <= flash_i32(&parameter->max);
@@ -88,6 +88,6 @@ filter_answer_t filter_judge(const filter_law_t *law, const filter_config_t *con
             return (filter_answer_t)(FILTER_REFUSED_FIRST + i);
         }
     }
-    bool (*together)(const filter_config_t *) = FX_FLASH_FUNCTION(&law->together);
+    bool (*together)(const filter_config_t *) = FLASH_FUNCTION(&law->together);
     return (together == NULL || together(config)) ? FILTER_ACCEPTED : FILTER_REFUSED_TOGETHER;
 }

@@ -22,7 +22,7 @@
 #include "kalman.h"
 
 LAW_PARAMETER(softgate, "softgate\0sigma", 8, 1, KALMAN_GATE_MIN_SIGMA_Q8, KALMAN_GATE_MAX_SIGMA_Q8, 512);
-static const filter_parameter_t *const parameters[] FX_FLASH = {
+static const filter_parameter_t *const parameters[] IN_FLASH = {
     &filter_parameter_r,    &filter_parameter_q,         &softgate,
     &filter_parameter_gate, &filter_parameter_reacquire, &filter_parameter_ratemax
 };
@@ -192,7 +192,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     }
 }
 
-const filter_law_t filter_law_soft FX_FLASH = { .name = "soft",
+const filter_law_t filter_law_soft IN_FLASH = { .name = "soft",
                                                 .parameter_count = 6,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
                                                 .worst_cycles = 1695,

@@ -12,7 +12,7 @@
 /* Samples refused in a row until the rate is no longer believed: the next one stops it. */
 #define RATE_HELD_SAMPLES 5U
 
-static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &filter_parameter_q,
+static const filter_parameter_t *const parameters[] IN_FLASH = { &filter_parameter_r, &filter_parameter_q,
                                                                  &filter_parameter_gate, &filter_parameter_reacquire,
                                                                  &filter_parameter_ratemax };
 
@@ -65,7 +65,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     }
 }
 
-const filter_law_t filter_law_sprf FX_FLASH = { .name = "sprf",
+const filter_law_t filter_law_sprf IN_FLASH = { .name = "sprf",
                                                 .parameter_count = 5,
                                                 .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
                                                 .worst_cycles = 1230,

@@ -13,7 +13,7 @@
 #include "wide.h"
 
 LAW_PARAMETER(gate, "gate\0sigma", 8, 0, KALMAN_GATE_MIN_SIGMA_Q8, KALMAN_GATE_MAX_SIGMA_Q8, 512);
-static const filter_parameter_t *const parameters[] FX_FLASH = { &filter_parameter_r, &filter_parameter_q, &gate };
+static const filter_parameter_t *const parameters[] IN_FLASH = { &filter_parameter_r, &filter_parameter_q, &gate };
 
 /* The squared gate is kept below the saturated distance: 16 sigma are 15.9998. */
 static void set_up(filter_t *f, const filter_config_t *config)
@@ -37,7 +37,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     }
 }
 
-const filter_law_t filter_law_sprf_paper FX_FLASH = { .name = "sprf_paper",
+const filter_law_t filter_law_sprf_paper IN_FLASH = { .name = "sprf_paper",
                                                       .parameter_count = 3,
                                                       .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_FIRST_SAMPLE |
                                                                 LAW_GATED,

@@ -7,7 +7,7 @@ LAW_KEEPS_FROM(filter_synth_t, r_lsb2_q8);
  * Gains of a least-squares line through n samples, (4 n - 2) / (n (n + 1)), n = 6..63, UQ0.16: what the constant gain
  * is raised to after the start. Behind the last one the estimate's variance is within a few per cent of the steady one.
  */
-static const uint16_t start_gains_uq16[SYNTH_END_GAIN - SYNTH_FIRST_GAIN] FX_FLASH = {
+static const uint16_t start_gains_uq16[SYNTH_END_GAIN - SYNTH_FIRST_GAIN] IN_FLASH = {
     34328, 30427, 27307, 24758, 22640, 20852, 19325, 18004, 16852, 15838, 14938, 14135, 13414, 12762, 12171,
     11632, 11139, 10685, 10267, 9881,  9522,  9189,  8878,  8587,  8315,  8060,  7820,  7593,  7380,  7178,
     6987,  6805,  6633,  6470,  6314,  6165,  6024,  5889,  5759,  5635,  5517,  5403,  5294,  5189,  5089,
@@ -30,7 +30,7 @@ uint16_t filter_synth_next_gain_uq16(filter_t *f)
 {
     filter_synth_t *s = &f->own.synth;
     if (s->count < (uint8_t)SYNTH_END_GAIN) {
-        uint16_t gain_uq16 = fx_flash_u16(&start_gains_uq16[s->count - (uint8_t)SYNTH_FIRST_GAIN]);
+        uint16_t gain_uq16 = flash_u16(&start_gains_uq16[s->count - (uint8_t)SYNTH_FIRST_GAIN]);
         s->count++;
         if (gain_uq16 > s->b0_uq16) {
             return gain_uq16;

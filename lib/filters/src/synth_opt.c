@@ -33,7 +33,7 @@ enum { LIMIT = (int)SYNTH_OPT_COMMON + (int)SYNTH_OPT_STEPS };
 
 LAW_PARAMETER(u, "u\0", 0, 0, 0, 1, 0);
 LAW_PARAMETER(p0, "p0\0LSB2", 8, 0, 3, 25600000, 0);
-static const filter_parameter_t *const parameters[] FX_FLASH = { &u, &p0, &filter_parameter_r };
+static const filter_parameter_t *const parameters[] IN_FLASH = { &u, &p0, &filter_parameter_r };
 
 static void standard(filter_config_t *config)
 {
@@ -46,11 +46,11 @@ static void set_up(filter_t *f, const filter_config_t *config)
 {
     filter_synth_t *s = &f->own.synth;
     s->of.scheduled.p0_lsb2_q8 = (uint32_t)config->value[SYNTH_OPT_P0_LSB2_Q8];
-    s->b0_uq16 = fx_flash_u16(&exact_b0_uq16[LIMIT]);
+    s->b0_uq16 = flash_u16(&exact_b0_uq16[LIMIT]);
     if (config->value[SYNTH_OPT_VARIANT_U] != 0) {
         s->of.scheduled.variant_u = true;
-        s->b0_uq16 = fx_flash_u16(&u_b0_uq16[LIMIT]);
-        s->a1_uq16 = fx_flash_u16(&u_a1_uq16[LIMIT]);
+        s->b0_uq16 = flash_u16(&u_b0_uq16[LIMIT]);
+        s->a1_uq16 = flash_u16(&u_a1_uq16[LIMIT]);
         s->a1_negative = true;
     }
     filter_set_noise(f, (uint32_t)config->value[SYNTH_OPT_R_LSB2_Q8]);
@@ -85,12 +85,12 @@ static void scheduled_step(filter_t *f, int16_t z_lsb, uint8_t what)
         at = (uint8_t)((uint8_t)((uint16_t)s->of.scheduled.ratio_class * SYNTH_OPT_OWN_STEPS) + steps);
     }
     bool variant_u = s->of.scheduled.variant_u;
-    f->gain_uq16 = fx_flash_u16(variant_u ? &u_b0_uq16[at] : &exact_b0_uq16[at]);
+    f->gain_uq16 = flash_u16(variant_u ? &u_b0_uq16[at] : &exact_b0_uq16[at]);
     if (what != STEP_MISSING) {
         s->count = (steps < (uint8_t)(SYNTH_OPT_STEPS - 1)) ? (uint8_t)(s->count + 1U) : (uint8_t)SYNTH_STEADY;
     }
     if (variant_u) {
-        filter_synth_bent_step(f, z_lsb, what, fx_flash_u16(&u_a1_uq16[at]));
+        filter_synth_bent_step(f, z_lsb, what, flash_u16(&u_a1_uq16[at]));
     } else {
         filter_synth_step(f, z_lsb, what);
     }
@@ -122,7 +122,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     }
 }
 
-const filter_law_t filter_law_synth_opt FX_FLASH = { .name = "synth_opt",
+const filter_law_t filter_law_synth_opt IN_FLASH = { .name = "synth_opt",
                                                      .parameter_count = 3,
                                                      .worst_cycles = 670,
                                                      .parameters = parameters,

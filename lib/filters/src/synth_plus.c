@@ -48,7 +48,7 @@ LAW_PARAMETER(k_parameter, "k\0", 0, 0, 0, K_MAX, 0);
 LAW_PARAMETER(b0_parameter, "b0\0", 16, 0, SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16, 0);
 LAW_PARAMETER(b1_parameter, "b1\0", 16, 0, -65535, 65535, 0);
 LAW_PARAMETER(b2_parameter, "b2\0", 16, 0, -65535, 65535, 0);
-static const filter_parameter_t *const parameters[] FX_FLASH = { &k_parameter, &b0_parameter, &b1_parameter,
+static const filter_parameter_t *const parameters[] IN_FLASH = { &k_parameter, &b0_parameter, &b1_parameter,
                                                                  &b2_parameter, &filter_parameter_r };
 
 /*
@@ -57,7 +57,7 @@ static const filter_parameter_t *const parameters[] FX_FLASH = { &k_parameter, &
  * there: they are at most 0.13 apart.
  */
 enum { LINE_END = 31 };
-static const uint16_t line_memory_uq16[(uint8_t)LINE_END - (uint8_t)SYNTH_FIRST_GAIN] FX_FLASH = {
+static const uint16_t line_memory_uq16[(uint8_t)LINE_END - (uint8_t)SYNTH_FIRST_GAIN] IN_FLASH = {
     24966, 23406, 21845, 20389, 19065, 17873, 16804, 15844, 14980, 14199, 13493, 12850, 12264,
     11727, 11235, 10781, 10361, 9973,  9612,  9276,  8962,  8669,  8394,  8136,  7893,  7663,
 };
@@ -179,7 +179,7 @@ static void start_step(filter_t *f, int16_t z_lsb)
         f->gain_uq16 = s->b0_uq16;
     } else {
         uint8_t place = (uint8_t)(s->count - ((uint8_t)SYNTH_FIRST_GAIN + 1U)); /* counted already */
-        b1_uq16 = fx_flash_u16(&line_memory_uq16[place]);
+        b1_uq16 = flash_u16(&line_memory_uq16[place]);
         negative = true;
     }
     f->rate_lsb += s->memory_lsb_q16;
@@ -284,7 +284,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     }
 }
 
-const filter_law_t filter_law_synth_plus FX_FLASH = { .name = "synth_plus",
+const filter_law_t filter_law_synth_plus IN_FLASH = { .name = "synth_plus",
                                                       .parameter_count = 5,
                                                       .worst_cycles = 745,
                                                       .parameters = parameters,

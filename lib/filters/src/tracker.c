@@ -9,7 +9,7 @@ void filter_tracker_clear(void *state, size_t size)
     }
 }
 
-FX_ONCE int16_t filter_tracker_limited_z(int16_t z_lsb)
+MACHINE_APART int16_t filter_tracker_limited_z(int16_t z_lsb)
 {
     if (z_lsb > FILTER_Z_MAX_LSB) {
         return FILTER_Z_MAX_LSB;
@@ -73,7 +73,7 @@ int32_t filter_tracker_median_q16(const int16_t *ascending_lsb, uint8_t count)
     return ((int32_t)(int16_t)(low + high) * 65536) >> 1; /* even before the halving: exact */
 }
 
-FX_ONCE uint32_t filter_tracker_limited_r(uint32_t r_lsb2_q8)
+MACHINE_APART uint32_t filter_tracker_limited_r(uint32_t r_lsb2_q8)
 {
     if (r_lsb2_q8 < FILTER_R_MIN_LSB2_Q8) {
         return FILTER_R_MIN_LSB2_Q8;
@@ -97,7 +97,7 @@ void filter_tracker_fade(filter_t *f, bool first)
 void filter_tracker_damp(filter_t *f)
 {
     f->rate_lsb >>= 1;
-    if ((fx_flash_u8(&f->law->traits) & LAW_COVARIANCE) != 0U) {
+    if ((flash_u8(&f->law->traits) & LAW_COVARIANCE) != 0U) {
         filter_covariance_t *p = &f->own.kalman.p; /* P of (x, v / 2): it stays a covariance within its bounds */
         filter_tracker_halve(&p->p12);
         filter_tracker_halve(&p->p22);
@@ -106,7 +106,7 @@ void filter_tracker_damp(filter_t *f)
     filter_tracker_fade(f, false);
 }
 
-FX_ONCE uint16_t filter_tracker_memory_k_uq16(uint16_t memory_ms, uint16_t rate_dhz, uint16_t k_min_uq16)
+MACHINE_APART uint16_t filter_tracker_memory_k_uq16(uint16_t memory_ms, uint16_t rate_dhz, uint16_t k_min_uq16)
 {
     uint32_t k_uq16 = 1310720000U / ((uint32_t)memory_ms * rate_dhz);
     if (k_uq16 > TRACKER_K_MAX_UQ16) {

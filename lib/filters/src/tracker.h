@@ -58,8 +58,8 @@ struct filter_law {
 
 /* A parameter of a law's own: its name, end and unit in one string, then the members of filter_parameter_t. */
 #define LAW_PARAMETER(parameter, words, ...)                \
-    static const char parameter##_words[] FX_FLASH = words; \
-    static const filter_parameter_t parameter FX_FLASH = { parameter##_words, __VA_ARGS__ }
+    static const char parameter##_words[] IN_FLASH = words; \
+    static const filter_parameter_t parameter IN_FLASH = { parameter##_words, __VA_ARGS__ }
 
 /*
  * What filter_probe needs of a law. A program that has no use for filter_probe is spared the code, 1.8 KB with seven
@@ -72,7 +72,7 @@ struct filter_law {
 #endif
 
 /* A function of the law in force. */
-#define LAW_OF(f, function) FX_FLASH_FUNCTION(&(f)->law->function)
+#define LAW_OF(f, function) FLASH_FUNCTION(&(f)->law->function)
 
 /* All of a state to 0, gaps too. */
 void filter_tracker_clear(void *state, size_t size);
@@ -87,7 +87,7 @@ int16_t filter_tracker_limited_z(int16_t z_lsb);
 uint32_t filter_tracker_default_r_lsb2_q8(uint16_t rate_dhz);
 
 /* x within its bound by the high word: 4608 LSB and a fraction count as 4608. Flagged. */
-FX_INLINE int32_t tracker_bounded(filter_t *f, int32_t x_lsb_q16)
+MACHINE_INLINE int32_t tracker_bounded(filter_t *f, int32_t x_lsb_q16)
 {
     uint16_t whole_lsb = (uint16_t)((uint32_t)x_lsb_q16 >> 16);
     if ((uint16_t)(whole_lsb + FILTER_X_MAX_LSB) >= 2U * FILTER_X_MAX_LSB) {
@@ -98,7 +98,7 @@ FX_INLINE int32_t tracker_bounded(filter_t *f, int32_t x_lsb_q16)
 }
 
 /* Prediction of the estimate: x += v within its bound (<= 2 x 4608 LSB before it: fits). */
-FX_INLINE void tracker_predict(filter_t *f)
+MACHINE_INLINE void tracker_predict(filter_t *f)
 {
     f->x_lsb_q16 = tracker_bounded(f, f->x_lsb_q16 + f->rate_lsb);
 }

@@ -14,13 +14,13 @@ void calibration_plain(calibration_t *c, uint16_t scale_xy_uq6, uint16_t scale_z
                           .level_q14 = { 0, 0, CALIBRATION_ONE_Q14 } };
 }
 
-FX_ONCE int32_t calibration_over(int32_t a, uint16_t b)
+MACHINE_APART int32_t calibration_over(int32_t a, uint16_t b)
 {
     uint32_t size = ((filter_fx_abs32(a) << 16) + (b >> 1)) / b;
     return (a < 0) ? -(int32_t)size : (int32_t)size;
 }
 
-FX_ONCE uint32_t calibration_square(int16_t a)
+MACHINE_APART uint32_t calibration_square(int16_t a)
 {
     return (uint32_t)((int32_t)a * a);
 }
@@ -58,7 +58,7 @@ static int32_t row_times(int32_t sum_q14, const int32_t a_q8[3], const int16_t r
 }
 
 /* a / b, Q14. */
-FX_NOINLINE int16_t quotient_q14(int32_t a, uint16_t b)
+static MACHINE_APART int16_t quotient_q14(int32_t a, uint16_t b)
 {
     return (int16_t)((calibration_over(a, b) + 2) >> 2);
 }
@@ -92,7 +92,7 @@ static void prepare_column(calibration_applied_t *applied, const calibration_t *
     }
 }
 
-FX_ONCE calibration_verdict_t calibration_prepare(calibration_applied_t *applied, const calibration_t *c)
+MACHINE_APART calibration_verdict_t calibration_prepare(calibration_applied_t *applied, const calibration_t *c)
 {
     calibration_verdict_t verdict = calibration_check(c);
     if (verdict.why != (uint8_t)CALIBRATION_GOOD) {
@@ -121,7 +121,7 @@ void calibration_apply(const calibration_applied_t *applied, const int32_t a_q8[
         uint32_t sum_q14 = (uint32_t)row_times(applied->bias_lsb_q14[i], a_q8, row_q14);
         row_q14 += 3;
         sum_q14 += sum_q14;
-        FX_FENCE_OF(sum_q14); /* else the two become a loop */
+        MACHINE_FENCE(sum_q14); /* else the two become a loop */
         sum_q14 += sum_q14;
         out_q8[i] = (int32_t)sum_q14 >> 8;
     }

@@ -3,7 +3,7 @@
 #include "calibration_inside.h"
 #include "fx.h"
 
-FX_ONCE int16_t calibration_gravity_q14(const calibration_t *c, uint8_t axis, int16_t lsb_q4)
+MACHINE_APART int16_t calibration_gravity_q14(const calibration_t *c, uint8_t axis, int16_t lsb_q4)
 {
     int16_t off_q4 = (int16_t)((uint16_t)lsb_q4 - (uint16_t)c->offset_lsb_q4[axis]);
     return (int16_t)fx_clamp(calibration_over(off_q4, c->scale_lsb_per_g_uq6[axis]), INT16_MAX);
@@ -18,7 +18,7 @@ calibration_verdict_t calibration_commit(calibration_t *c, const calibration_t *
     return verdict;
 }
 
-FX_ONCE calibration_verdict_t calibration_tare(calibration_t *c, const int16_t mean_lsb_q4[3])
+MACHINE_APART calibration_verdict_t calibration_tare(calibration_t *c, const int16_t mean_lsb_q4[3])
 {
     calibration_t found = *c;
     for (uint8_t ours = 0; ours < 3U; ours++) {
@@ -44,7 +44,7 @@ uint8_t calibration_position(const int16_t mean_lsb_q4[3])
     return position;
 }
 
-FX_ONCE calibration_verdict_t calibration_single(calibration_t *c, const int16_t mean_lsb_q4[3])
+MACHINE_APART calibration_verdict_t calibration_single(calibration_t *c, const int16_t mean_lsb_q4[3])
 {
     calibration_t found = *c;
     uint8_t position = calibration_position(mean_lsb_q4);

@@ -13,7 +13,7 @@ void rest_start(rest_t *rest)
     *rest = (rest_t){ 0 };
 }
 
-FX_ONCE bool rest_add(rest_t *rest, const int16_t lsb[3])
+MACHINE_APART bool rest_add(rest_t *rest, const int16_t lsb[3])
 {
     uint8_t before = rest->samples++;
     for (rest_axis_t *axis = rest->axes; axis != rest->axes + AXES; axis++) {
@@ -45,7 +45,7 @@ int16_t rest_mean_lsb_q4(const rest_axis_t *axis)
 }
 
 /* 256 x variance = squares - sum^2 / 256 */
-FX_ONCE uint32_t rest_variance_lsb2_q8(const rest_axis_t *axis)
+MACHINE_APART uint32_t rest_variance_lsb2_q8(const rest_axis_t *axis)
 {
     return axis->squares_lsb2 - ((uint32_t)((int32_t)axis->sum_lsb * axis->sum_lsb) >> 8);
 }

@@ -18,7 +18,7 @@ int32_t tilt_axis_estimate_q8(const tilt_axis_t *a)
     return (a->filter.x_lsb_q16 + 128) >> 8;
 }
 
-FX_ONCE int16_t tilt_axis_estimate_lsb(const tilt_axis_t *a)
+MACHINE_APART int16_t tilt_axis_estimate_lsb(const tilt_axis_t *a)
 {
     return (int16_t)((tilt_axis_estimate_q8(a) + 128) >> 8);
 }
@@ -72,7 +72,7 @@ static uint8_t rejoin(tilt_axis_t *a, int16_t lsb)
     return flags;
 }
 
-FX_NOINLINE void miss(tilt_axis_t *a)
+static MACHINE_APART void miss(tilt_axis_t *a)
 {
     filter_noise_gap(&a->noise);
     (void)filter_missing(&a->filter);
