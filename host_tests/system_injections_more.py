@@ -125,12 +125,12 @@ def brown_out_keeps_the_ram_and_says_so():
 @test
 def function_is_found_without_the_suffix_of_the_compiler():
     names = run("avr-nm", FW).stdout
-    assert " tilt_angles\n" in names
-    name = next(word.partition(".")[0] for word in names.split() if word.startswith("calibration_apply."))
-    for function in (name, "tilt_angles"):
-        stats = injected("suffix", f"pc:{function}#3:odr:1", judge=True, max_ms=400)[3]
+    assert " slope_of\n" in names
+    name = next(word.partition(".")[0] for word in names.split() if word.startswith("calibration_prepare."))
+    for call in (f"{name}#1", "slope_of#3"):
+        stats = injected("suffix", f"pc:{call}:odr:1", judge=True, max_ms=400)[3]
         assert stats["fault_1_injected"] == 1, stats
-    for wrong in ("keep_estimat", "calibration_apply.lto", "ilt_angles"):
+    for wrong in ("keep_estimat", "calibration_prepare.lto", "lope_of"):
         done = run(SIMRUN, "--fw", FW, "--in", REST, "--out", OUT / "x.csv", "--fault", f"pc:{wrong}:glitch", expect=2)
         assert "no such function in the firmware" in done.stderr, done.stderr
 

@@ -64,7 +64,7 @@ static void test_a_filter_too_slow_for_the_rate_is_refused(void)
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
     settings_t kept = *settings();
     size_t rows = board.row_count;
-    type_and_read("filter {slowest}", "# refused 5: takes 13050 of 11075 cycles a sample");
+    type_and_read("filter {slowest}", "# refused 5: takes 13050 of 12075 cycles a sample");
     TEST_ASSERT_EQUAL_MEMORY(&kept, settings(), sizeof kept);
     for (size_t i = rows + 1; i < board.row_count; i++) {
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & ROW_WARMING_UP);
@@ -82,7 +82,7 @@ static void test_a_rate_too_fast_for_the_filter_is_refused(void)
     type_and_read("filter {slowest}", "# filter {slowest}");
     settings_t kept = *settings();
     size_t before = board.note_count;
-    type_and_read("rate 800", "# refused 5: takes 13050 of 11075 cycles a sample");
+    type_and_read("rate 800", "# refused 5: takes 13050 of 12075 cycles a sample");
     TEST_ASSERT_EQUAL_size_t(before + 1, board.note_count);
     TEST_ASSERT_EQUAL_MEMORY(&kept, settings(), sizeof kept);
     type_and_read("rate 1600", "# refused 4: rate is one of 12.5 25 50 100 200 400 800");

@@ -121,7 +121,7 @@ def phases_are_every_byte_every_stage_and_the_whole_period():
     assert len({transfer for transfer, _ in bytes_of}) == 1 and [byte for _, byte in bytes_of] == list(range(1, len(bytes_of) + 1)), bytes_of
     assert len(bytes_of) in range(9, 16)
     functions = {w[3:].partition("#")[0].partition(".")[0] for w in whens if w.startswith("pc:")}
-    assert functions >= {"adxl345_burst_judge", "tilt_angles", "format_u32", "__vector_1", "__vector_24"} and "text_char" not in functions, functions
+    assert functions >= {"adxl345_burst_judge", "slope_of", "format_u32", "__vector_1", "__vector_24"} and "text_char" not in functions, functions
     moments = [float(w[:-2]) for w in whens if w.endswith("ms")]
     assert len(moments) >= 10 and min(moments) < 1001 and 1009 < max(moments) < 1010, moments
 

@@ -1,5 +1,6 @@
 // Rows against rows.
 const FLAG_COASTED = 2, FLAG_FAULT = 16, FLAG_WARM = 128;
+const OWN_FLAGS = 512 | 1024 | 4096; // said of the row's own angles
 const WARM_ROWS = 5; // docs/protocol.md
 
 const same = (a, b) => a.length === b.length && a.every((v, i) => v === b[i]);
@@ -20,14 +21,15 @@ export function compareRows(mine, other) {
   return { rows: count, missing: Math.abs(mine.length - other.length), different, first, t_us_low: low, t_us_high: high };
 }
 
-// What the firmware sends of every `every`-th of these rows: its flags are those of all since the row before; but five rows warm up,
-// of those sent, predictions not counted
+// What the firmware sends of every `every`-th of these rows: its flags are those of all since the row before, but what is said of its own
+// angles; five rows warm up, of those sent, predictions not counted
 export function thinned(rows, every) {
   if (every === 1) return rows;
   const kept = [];
   let warm = 0;
   for (let i = every - 1; i < rows.length; i += every) {
-    const flags = rows.slice(i - every + 1, i + 1).reduce((all, row) => all | row[9], 0) & ~FLAG_WARM;
+    const before = rows.slice(i - every + 1, i).reduce((all, row) => all | row[9], 0) & ~OWN_FLAGS;
+    const flags = (before | rows[i][9]) & ~FLAG_WARM;
     kept.push([...rows[i].slice(0, 9), flags | (warm < WARM_ROWS ? FLAG_WARM : 0)]);
     if (!(rows[i][9] & FLAG_COASTED)) warm++;
   }

@@ -7,6 +7,9 @@ import { MCUSR } from './uno.mjs';
 
 // the bus is free, and no try of the firmware falls within microseconds of the fault's end in any of these runs
 const AT_MS = 1001.5, AFTER_SAMPLE = { 100: 0.5, 400: 0.8, 800: 0.7 };
+// Where a fault ends within microseconds of what the firmware does next, the simulators may go on differently, and simrun alone does when
+// the fault comes a little earlier or later. Such a fault comes at the first of some moments about which simrun says the same.
+const ABOUT_MS = 0.04, STEP_MS = 0.17, MOMENTS = 20;
 
 const lasting = (ms, begin, end) => (board, at) => board.at(at, begin).at(at + ms, end);
 const unplugged = (ms) => lasting(ms, (b) => { b.wires.unplugged = true; }, (b) => { b.wires.unplugged = false; });
@@ -20,7 +23,7 @@ const SLOWLY = 1;
 const starved = (ms) => lasting(ms, (b) => b.uno.starve(true), (b) => b.uno.starve(false));
 const once = (kind) => (board, at) => board.at(at, (b) => b.wires.once.push(kind));
 
-// name: what simrun calls it, the same here, when or after which sample (AT_MS), rate, how many drained samples may be apart
+// name: what simrun calls it, the same here, when if not after a sample (AT_MS), rate, how many drained samples may be apart, steady
 export const FAULTS = {
   absent: { sim: ['0ms:unplug'], here: (b) => { b.wires.unplugged = true; }, at: 0 },
   unplugged_500_ms: { sim: [':unplug:500'], here: unplugged(500) },
@@ -37,11 +40,11 @@ export const FAULTS = {
   bus_error_once: { sim: [':buserr'], here: once('buserror') },
   int1_cut_25_ms: { sim: [':noint:25'], here: cut(25) },
   int1_cut_500_ms: { sim: [':noint:500'], here: cut(500) },
-  int1_cut_60_ms_800_hz: { sim: [':noint:60'], here: cut(60), rate: 800, near: 1016.2 },
+  int1_cut_60_ms_800_hz: { sim: [':noint:60'], here: cut(60), rate: 800, steady: true },
   unplugged_100_ms_400_hz: { sim: [':unplug:100'], here: unplugged(100), rate: 400 },
   sda_low_100_ms_400_hz: { sim: [':sda:100'], here: held('sda', 100), rate: 400 },
   starved_20_ms_800_hz: { sim: [':starve:20'], here: starved(20), rate: 800, drained: AT_THE_END },
-  starved_60_ms_800_hz: { sim: [':starve:60'], here: starved(60), rate: 800, drained: AT_THE_END + SLOWLY, at: 1002 }, // the sensor's FIFO overflows
+  starved_60_ms_800_hz: { sim: [':starve:60'], here: starved(60), rate: 800, drained: AT_THE_END + SLOWLY, steady: true }, // the FIFO overflows
   starved_200_ms_100_hz: { sim: [':starve:200'], here: starved(200) },
   reset_button: { sim: [':reset'], here: (b, at) => b.at(at, () => b.reset(MCUSR.external)), options: ['--expect-resets', 1] },
   nothing: { sim: [], here: () => {} },
@@ -68,30 +71,49 @@ function afterSample(served, ms, rate, share) {
   return (last + share * 1e6 / rate) / 1000;
 }
 
+// What simrun makes of the fault at this moment, and what was typed: the counters are asked for when nothing counts any more
+function inSimrun(base, ask, fault, at, rate) {
+  const faults = fault.sim.map((f) => (f[0] === ':' ? `${at}ms${f}` : f));
+  const told = { ...ask, faults, options: fault.options };
+  const { served } = simrun(base, { ...told, ms: STOP_MS, script: fasterScript(rate) });
+  const script = [...fasterScript(rate), [afterSample(served, STOP_MS, rate, 0.4), 'stop'], [MS - 300, 'status']];
+  return { script, ...simrun(base, { ...told, ms: MS, script }) };
+}
+
+// Both runs: what is different, in words; else null
+function apart(mine, other, fault) {
+  const rows = compareRows(rowsOf(mine), rowsOf(other));
+  const words = compareWords(notesOf(mine), notesOf(other), PASSES_MS, 0, fault.drained);
+  const why = words ? `words differ: ${words}` : rows.different ? `rows differ: ${rows.first}` : rows.missing ? `${rows.missing} rows are missing` : null;
+  return { rows, why };
+}
+
+function steadyMoment(base, ask, fault, from, rate) {
+  for (let i = 0; i < MOMENTS; i++) {
+    const at = from + i * STEP_MS;
+    const [early, late] = [at - ABOUT_MS, at + ABOUT_MS].map((moment) => inSimrun(base, ask, fault, moment, rate).lines);
+    if (!apart(early, late, fault).why) return at;
+  }
+  throw new Error(`from ${from} ms on simrun says the same about none of ${MOMENTS} moments`);
+}
+
 export function run(job) {
   const fault = FAULTS[job.fault];
   const rate = fault.rate ?? 100;
   const base = `${OUT}/run-${process.pid}`;
   writePiece(`${base}.csv`, 'rest-2lsb', { rate, offset: 0, count: MS / 1000 * rate + 100 });
   const ask = { elf: job.image.replace('.hex', '.elf'), stream: `${base}.csv`, simrun: job.simrun };
-  const near = fault.near ?? AT_MS;
-  const before = simrun(base, { ...ask, ms: near, script: fasterScript(rate) });
-  const at = fault.at ?? afterSample(before.served, near, rate, AFTER_SAMPLE[rate]);
-  ask.faults = fault.sim.map((f) => (f[0] === ':' ? `${at}ms${f}` : f));
-  ask.options = fault.options;
-  const { served } = simrun(base, { ...ask, ms: STOP_MS, script: fasterScript(rate) });
-  // the counters are asked for when nothing counts any more
-  const script = [...fasterScript(rate), [afterSample(served, STOP_MS, rate, 0.4), 'stop'], [MS - 300, 'status']];
-  const first = simrun(base, { ...ask, ms: MS, script });
+  const before = simrun(base, { ...ask, ms: AT_MS, script: fasterScript(rate) });
+  const after = fault.at ?? afterSample(before.served, AT_MS, rate, AFTER_SAMPLE[rate]);
+  const at = fault.steady ? steadyMoment(base, ask, fault, after, rate) : after;
+  const first = inSimrun(base, ask, fault, at, rate);
   const board = new Board({ image: job.image, feed: feedOf(first.served, 0.4e6 / rate), sensor: job.sensor });
-  for (const [when, line] of script) board.type(when, line);
+  for (const [when, line] of first.script) board.type(when, line);
   fault.here(board, at);
   board.run(MS);
-  const rows = compareRows(rowsOf(board.output), rowsOf(first.lines));
-  const words = compareWords(notesOf(board.output), notesOf(first.lines), PASSES_MS, 0, fault.drained);
+  const { rows, why: difference } = apart(board.output, first.lines, fault);
   const least = leastRows(fault, rate);
   // `stop` was typed half a second before the end: no row is on its way
-  const why = words ? `words differ: ${words}` : rows.different ? `rows differ: ${rows.first}` : rows.missing ? `${rows.missing} rows are missing` :
-    rows.rows < least ? `only ${rows.rows} rows, ${least} are due` : null;
+  const why = difference ?? (rows.rows < least ? `only ${rows.rows} rows, ${least} are due` : null);
   return { rows: rows.rows, different: rows.different, t_us_low: rows.t_us_low, t_us_high: rows.t_us_high, why };
 }

@@ -23,6 +23,8 @@ test('thinned: every third row, with the flags of all since the row before; five
   assert.deepEqual(kept.map((r) => r[1]), [2, 5, 8, 11, 14, 17, 20, 23]);
   assert.deepEqual(kept.map((r) => r[9]), [128, 128 | 64 | 2, 128, 128, 128, 128, 0, 0]); // the second is a prediction: a sixth warms up
   assert.equal(thinned(rows, 1), rows);
+  const own = [[1, 512], [2, 1], [3, 1024], [4, 512]].map(([t, flags]) => [t, 0, 0, 0, 0, 0, 0, 0, 0, flags]);
+  assert.deepEqual(thinned(own, 2).map((r) => r[9] & ~128), [1, 512]);
   assert.notDeepEqual(thinned(rows, 2).map((r) => r[1]), kept.map((r) => r[1]));
 });
 

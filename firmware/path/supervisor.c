@@ -5,8 +5,8 @@
 
 #include "base/text.h"
 #include "filter_list.h"
-#include "machine.h"
 #include "fx.h"
+#include "machine.h"
 #include "tilt_partial.h"
 
 enum { AXES = 3 };
@@ -47,9 +47,9 @@ void supervisor_look(const int16_t before[3], const int16_t lsb[3])
 
 static bool is_bad(uint8_t axis, const int16_t lsb[3], int16_t rail_high_lsb)
 {
-    bool at_rail = tilt_at_rail(lsb[axis], rail_high_lsb);
-    uint8_t limit = at_rail ? SUPERVISOR_RAIL_SAMPLES : SUPERVISOR_REPEATED_SAMPLES;
-    return supervisor.repeated[axis] >= limit;
+    uint8_t repeated = supervisor.repeated[axis];
+    return repeated >= SUPERVISOR_REPEATED_SAMPLES ||
+           (repeated >= SUPERVISOR_RAIL_SAMPLES && tilt_at_rail(lsb[axis], rail_high_lsb));
 }
 
 /* The one axis that is bad, while another changes; AXES: none, or more. */
@@ -81,7 +81,8 @@ static void note_signs(const tilt_axis_t axes[3], const calibration_t *calibrati
         uint8_t bit = (uint8_t)(1u << axis);
         if (supervisor.repeated[axis] == 0) {
             supervisor.negative &= (uint8_t)~bit;
-            if (tilt_axis_estimate_q8(&axes[axis]) < offset_q8(calibration, axis)) {
+            int16_t estimate_lsb = (int16_t)((uint32_t)axes[axis].filter.x_lsb_q16 >> 16);
+            if (estimate_lsb < calibration->offset_lsb_q4[axis] >> 4) {
                 supervisor.negative |= bit;
             }
         }

@@ -58,10 +58,10 @@ typedef struct {
  * of the main loop, three noise estimates, and new variances as often as an estimate can leave the last by an eighth.
  * What is longer but rare (five warm-up samples, variances on all axes at once, replies, a change of settings) waits
  * in the sensor's FIFO and the driver's queue, 39 samples together, and is caught up with what a sample leaves over.
- * At 800 Hz the two leave 1,200 cycles, 400 for each axis: less than any filter takes, so not every row goes out.
+ * At 800 Hz the two leave 1,000 cycles, 333 for each axis: less than any filter takes, so not every row goes out.
  */
-#define SETTINGS_REST_CYCLES 8300u
-#define SETTINGS_ROW_CYCLES 10700u
+#define SETTINGS_REST_CYCLES 7300u
+#define SETTINGS_ROW_CYCLES 11700u
 
 /* The one instance: changed by this room and by control. */
 settings_t *settings(void);
