@@ -22,7 +22,7 @@ void hal_uart_init(uint32_t baud);
 /* Bytes that can be staged. */
 uint8_t hal_uart_tx_room(void);
 
-/* Appends behind the staged ones; the caller has checked the room. */
+/* Appends after the staged ones; the caller has checked the room. */
 void hal_uart_tx_stage(uint8_t byte);
 
 /* Hands the staged bytes to the interrupt. */

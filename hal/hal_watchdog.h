@@ -3,7 +3,7 @@
  *
  * The UNO's bootloader clears MCUSR before the application runs, so the cause is found by a breadcrumb in RAM that no
  * start-up code clears: a mark, the time since the last feed, a note of the application, and how many watchdog resets
- * there were in a row. Behind a bootloader it cannot tell a supply that dropped, but not so far that RAM forgot, from
+ * there were in a row. After a boot loader it cannot tell a supply that dropped, but not so far that RAM forgot, from
  * the reset button.
  */
 #ifndef HAL_WATCHDOG_H

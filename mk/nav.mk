@@ -1,7 +1,7 @@
 # The navigation image: a filter of its own on the same HAL, and the same code as a program of the PC.
 STATES     ?= 12
 NAVIMG_SRC    := $(wildcard nav/image/*.c) $(wildcard lib/nav/src/*.c) $(wildcard hal/avr/*.c)
-NAVIMG_INC    := -Ihal -Inav/image -Ilib/nav/src
+NAVIMG_INC    := -Ihal -Inav/image -Ilib/machine/src -Ilib/nav/src
 # its records are long and its answers short
 NAV_RINGS  := -DHAL_UART_RX_SIZE=128 -DHAL_UART_TX_SIZE=128
 # what leaves flash and stack as small as the budgets want: frames of functions that are no larger when put into one another

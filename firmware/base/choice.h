@@ -15,8 +15,8 @@ enum { CHOICE_PARAMETERS_MAX = 8 };
 typedef struct {
     uint32_t parameters[CHOICE_PARAMETERS_MAX]; /* those of which `own` has a bit */
     uint8_t own;                                /* bits: which parameters the user has set */
-    uint8_t filter;                             /* filter_kind_t: numbered anew in each image */
-    uint8_t mark;   /* the same for all images: a byte that tells each filter of filter_list.h from the others */
+    uint8_t filter;                             /* filter_kind_t: another number in each image */
+    uint8_t mark;   /* the same for all images: the byte by which a filter of filter_list.h is known */
     uint8_t unused; /* so that there is no gap on the PC: the bytes are saved as they lie */
 } filter_choice_t;
 

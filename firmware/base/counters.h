@@ -4,12 +4,12 @@
 
 #include <stdint.h>
 
-/* In the order in which `status` tells them. */
+/* In the order in which `status` prints them. */
 enum counter {
     COUNT_SECONDS, /* since the start */
     COUNT_SAMPLES,
     COUNT_GATED,      /* samples that a filter refused, on any axis */
-    COUNT_REACQUIRED, /* samples on which a filter began anew */
+    COUNT_REACQUIRED, /* samples on which a filter restarted */
     COUNT_CLIPPED,
     COUNT_ROWS,
     COUNT_DROPPED, /* rows for which the line had no room */

@@ -1,6 +1,6 @@
 /*
  * Numbers as decimal text, by subtraction of powers of ten: on the ATmega a 32-bit division costs 600 cycles per digit.
- * Each function writes at `at`, without a terminator, and returns the place behind the last character.
+ * Each function writes at `at`, without a terminator, and returns the place after the last character.
  * Pure; any context.
  */
 #ifndef FORMAT_H

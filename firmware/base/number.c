@@ -13,9 +13,9 @@ static MACHINE_APART uint32_t down(uint32_t value, uint8_t bits)
 /* A number as far as its text was read. */
 typedef struct {
     uint32_t limit;   /* for the digits, so that they can be shifted */
-    uint32_t digits;  /* with those behind the point */
+    uint32_t digits;  /* with those after the point */
     uint16_t divisor; /* 10 to the number of decimals, once the point was seen; else 0 */
-    bool whole;       /* it may end here: behind a digit */
+    bool whole;       /* it may end here: after a digit */
 } reading_t;
 
 /* False: the character does not go on with the number. */

@@ -19,7 +19,7 @@ _Static_assert(TEXT_FAULT_END - TEXT_BANNER == (int)NOTICE_FAULT_END, "a text fo
 _Static_assert(TEXT_REPEATED - TEXT_HOLD_STILL == MEASURE_REPEATED - MEASURE_BEGUN, "words for each outcome");
 _Static_assert(TEXT_NO_GRAVITY - TEXT_TILTED == CALIBRATION_NO_GRAVITY - CALIBRATION_TILTED, "words for each verdict");
 
-/* Texts that go on behind another: the banner, FAULT_BEGIN in it, the fault's words in that, which end in CHECK_BUS. */
+/* Texts that continue another: the banner, FAULT_BEGIN in it, the fault's words in that, which end in CHECK_BUS. */
 enum { TEXTS_DEPTH = 3 };
 
 static const uint8_t *at; /* where the reply goes on */

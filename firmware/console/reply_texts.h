@@ -108,7 +108,7 @@ enum say {
     SAY_LIMITS,            /* of the self-test */
     SAY_VERDICT,           /* on the line's axis */
     SAY_FAULT_WORDS,
-    SAY_SETTING_NOTE, /* what is to be said of a setting behind its value */
+    SAY_SETTING_NOTE, /* what is printed after a setting's value */
     SAY_EVERY,        /* that setting, after another */
     SAY_SENSOR,       /* at the start of a line: its address, or what is wrong with it; waits until that is known */
     SAY_LISTED,       /* from here to KEEP each in the text of this name */

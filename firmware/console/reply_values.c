@@ -111,7 +111,7 @@ static void say_verbs(void)
     }
 }
 
-/* What is to be said of a setting behind its value. */
+/* What is printed after a setting's value. */
 static uint8_t note(said_t *said)
 {
     if (said->subject == SETTING_RATE) {

@@ -33,7 +33,7 @@ bool control_save(void);
 void control_sample(bool wanted);
 
 /*
- * The baud rate is to change, when all replies are out (they tell of it at the old one). Until control_line_changed no
+ * The baud rate is to change, when all replies are out (they report it at the old one). Until control_line_changed no
  * command is to be taken.
  */
 bool control_line_waits(void);

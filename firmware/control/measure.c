@@ -194,7 +194,7 @@ void measure_pass(void)
     }
 }
 
-/* cal6: it is being turned, and told when it lies still. */
+/* cal6: it is being turned; that it lies still is reported. */
 static void board_moves(void)
 {
     if (measure.kind == NOTICE_CAL6) {
@@ -204,7 +204,7 @@ static void board_moves(void)
     }
 }
 
-/* A position that could not be told is taken again. */
+/* A position that could not be reported is taken again. */
 static void calibrate(void)
 {
     struct measure *m = here();

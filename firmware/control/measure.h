@@ -26,12 +26,12 @@ typedef enum {
     MEASURE_REPEATED, /* the same */
     MEASURE_WRONG,    /* no calibration can be made of it */
     MEASURE_DONE,     /* the results, which hold until the reply is out */
-    MEASURE_UNCHANGED /* never told */
+    MEASURE_UNCHANGED /* never reported */
 } measure_outcome_t;
 
 /*
  * 256 samples each. Self-test as the data sheet wants it (p. 22, 31): a rate of 100 to 800 Hz, 16 g, means of 0.1 s or
- * more before and with the force, four samples behind its change; at 400 Hz it takes 1.4 s. Noise over 2 s or more: of
+ * more before and with the force, four samples after its change; at 400 Hz it takes 1.4 s. Noise over 2 s or more: of
  * 200, 400 and 800 Hz every second, fourth and eighth sample; its rms is within 9 % (2 / sqrt(2 x 256)) of the true one
  * in 19 of 20 cases.
  */
@@ -46,7 +46,7 @@ bool measure_start(uint8_t kind);
 /* One runs, or its reply is not out yet. */
 bool measure_runs(void);
 
-/* Every pass of the main loop, after adxl345_poll: ends what has failed, and tells what is over. */
+/* Every pass of the main loop, after adxl345_poll: ends what has failed, and reports what is over. */
 void measure_pass(void);
 
 /* A sample has come. True: it is not for the filters. */
@@ -58,7 +58,7 @@ bool measure_borrows(void);
 /* The configuration of the sensor or its state changes by command: what runs ends without a result. */
 void measure_abort(void);
 
-/* Ends cal6 if that runs; nobody is told. */
+/* Ends cal6 if that runs; nothing is reported. */
 void measure_stop(void);
 
 /* What a measurement wants of the sensor, in place of the settings' configuration; nothing: it stays as it is. */

@@ -1,4 +1,4 @@
-/* When a fault is told and shown. The words are in reply_texts.h. */
+/* When a fault is reported and shown. The words are in reply_texts.h. */
 #include "control/sensor_watch.h"
 
 #include <stdbool.h>
@@ -29,8 +29,8 @@ typedef struct {
     uint32_t began_us; /* the outage; what the counters were then: */
     uint32_t began_s;
     uint32_t began_lost;
-    sensor_outage_t outage; /* that is over: its numbers, until the line that tells them is queued */
-    uint16_t told_mask;     /* codes told since it began: each once */
+    sensor_outage_t outage; /* that is over: its numbers, until the line with them is queued */
+    uint16_t told_mask;     /* codes reported since it began: each once */
     uint8_t newest;         /* of its fault codes; NONE: no outage */
     bool over;              /* and the line that says so is not queued yet */
 } watch_t;
@@ -43,7 +43,7 @@ const sensor_outage_t *sensor_watch_outage(void)
     return &told;
 }
 
-/* Nothing is told of what was before. */
+/* Nothing is reported of what was before. */
 static MACHINE_APART void forget(void)
 {
     watch.newest = ADXL345_FAULT_NONE;
@@ -57,7 +57,7 @@ static void begin_outage(watch_t *w, uint32_t now_us)
     w->began_lost = counted(COUNT_LOST);
 }
 
-/* Microseconds wrap after 71 minutes: an outage of more than a minute is told in whole seconds. So do milliseconds. */
+/* Microseconds wrap after 71 minutes: an outage of more than a minute is given in whole seconds. So do milliseconds. */
 static void end_outage(watch_t *w, uint32_t now_us)
 {
     uint32_t seconds = counted(COUNT_SECONDS) - w->began_s;
@@ -72,7 +72,7 @@ static void end_outage(watch_t *w, uint32_t now_us)
 }
 
 /*
- * What is seen, whether it can be told or not. A fault that is back before the end is told goes on as the same outage.
+ * What is seen, whether it can be reported or not. A fault that is back before its end is reported is the same outage.
  * It is over when the pipeline has taken the samples that have come again: those that are missing are counted then.
  */
 static void note(uint8_t fault, uint32_t now_us)
@@ -105,7 +105,7 @@ void sensor_watch_start(uint32_t now_us)
     watch.told_mask = (uint16_t)(1u << watch.newest);
 }
 
-/* What was noted and is not told yet, a line at a time. */
+/* What was noted and is not reported yet, a line at a time. */
 static void tell(void)
 {
     uint16_t bit = (uint16_t)(1u << watch.newest);

@@ -19,7 +19,7 @@ typedef enum {
 static struct coast {
     uint32_t next_us; /* time of the sample that comes next */
     uint32_t due_us;  /* then it is missing */
-    uint32_t lost_us; /* COASTING: the same as it was behind the newest sample that has come, or for the first row */
+    uint32_t lost_us; /* COASTING: the same as it was after the newest sample that has come, or for the first row */
     uint8_t state;    /* state_t */
 } coast;
 
@@ -77,7 +77,7 @@ bool coast_sample(uint32_t t_us, uint32_t period_us)
         count(COUNT_LATE);
         return false;
     }
-    if (c->state == STATE_COASTING) { /* t_us is two periods before lost_us at most, or up to 71 minutes behind */
+    if (c->state == STATE_COASTING) { /* t_us is two periods before lost_us at most, or up to 71 minutes late */
         uint32_t periods = (t_us - c->lost_us + 2u * period_us) / period_us;
         count_lost(periods > 1u ? periods - 1u : 0u);
     }

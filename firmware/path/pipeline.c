@@ -1,6 +1,6 @@
 /*
- * The sample path of main: filters begun, changed, told the sensor's true rate; samples, or the places of missing ones,
- * taken through them. Its cycles: sample_total in docs/benchmarks.md.
+ * The sample path of main: filters started, changed, given the sensor's true rate; samples, or the places of missing
+ * ones, taken through them. Its cycles: sample_total in docs/benchmarks.md.
  */
 #include "path/pipeline.h"
 

@@ -61,7 +61,7 @@ void pipeline_start(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t ra
 
 /*
  * Change filter, rate or range while running: the new filters start from the old output, one axis ahead of each of the
- * next three samples, so that no row waits for all. With another rate all at once, and the noise begins anew.
+ * next three samples, so that no row waits for all. With another rate all at once, and the noise estimates restart.
  */
 void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g);
 
@@ -75,8 +75,8 @@ void pipeline_retime(uint32_t period_us);
 
 /*
  * One piece of what pipeline_start, _change, _retime, _coast or _sample have begun: the filter of an axis changed, up
- * to 4 ms, or a sample; false: nothing was left to do. So the main loop can look after other things meanwhile. Nothing
- * else is to be begun before, but a change takes the place of a change.
+ * to 2.4 ms, or a sample; false: nothing was left to do. So the main loop can look after other things meanwhile.
+ * Nothing else is to be begun before, but a change takes the place of a change.
  */
 bool pipeline_work(void);
 
@@ -114,7 +114,7 @@ void pipeline_flag(uint16_t flags);
  */
 void pipeline_row(row_t *row);
 
-/* The row went out: start collecting flags anew and count a warm-up row. */
+/* The row went out: flags are collected from here on; a warm-up row is counted. */
 void pipeline_row_done(void);
 
 /* Roll and pitch of the newest raw sample, for the plotter. */

@@ -17,7 +17,7 @@ void silence_end(void);
 /* One is missing, at the rate that the filters have, 0.1 Hz. */
 void silence_step(uint16_t rate_dhz);
 
-/* Samples on end, up to SILENCE_FAULT_FROM. */
+/* Samples in a row, up to SILENCE_FAULT_FROM. */
 uint8_t silence_samples(void);
 
 /* So many samples are missing that the estimate holds (100 ms); that a second has passed without one. */

@@ -1,4 +1,4 @@
-/* Choices told, a bad axis left out: see supervisor.h. */
+/* Choices reported, a bad axis left out: see supervisor.h. */
 #include "path/supervisor.h"
 
 #if SUPERVISOR
@@ -12,7 +12,7 @@
 enum { AXES = 3 };
 
 static struct {
-    uint8_t repeated[AXES]; /* readings on end that are the one before, saturating */
+    uint8_t repeated[AXES]; /* readings in a row that repeat the one before, saturating */
     uint8_t negative;       /* a bit per axis: its last estimate while its readings changed */
     uint8_t left_out;       /* AXES: none */
     uint16_t missing_q6;    /* component of it */

@@ -1,5 +1,5 @@
 /*
- * What goes with the filter `auto`: the choices of its banks told, and an axis that is known bad left out of the
+ * What goes with the filter `auto`: the choices of its banks reported, and an axis that is known bad left out of the
  * angles, which then come from the other two and |a| = 1 g (tilt_partial.h). Main only.
  *
  * An axis is bad when it has stood at the rail of its range for 16 samples or repeated a reading for 250 while another

@@ -17,7 +17,7 @@ typedef enum { MODE_CSV, MODE_PLOT } output_mode_t;
 
 /*
  * Of what is kept: raised when a byte gets another meaning. Version, length and calibration stay where they are in
- * every version, so that a calibration outlives an update; what lies behind them is another version's own.
+ * every version, so that a calibration outlives an update; what lies after them is another version's own.
  */
 #define SETTINGS_VERSION 1u
 
@@ -68,7 +68,7 @@ settings_t *settings(void);
 
 void settings_defaults(void);
 
-/* A byte that tells each filter of filter_list.h from the others, whatever image holds it. */
+/* A byte by which each filter of filter_list.h is known, whatever image holds it. */
 uint8_t settings_filter_mark(uint8_t filter);
 
 /* The setting `filter`: with its mark, its parameters as shipped. */

@@ -59,7 +59,7 @@ typedef struct {
 #define WORDS_OF(name, unit, ...) name "\0" unit "\0"
 #define ROW(name, unit, member, size, kind, bits, starts, least, most) \
     { { offsetof(settings_t, member), size, kind, bits, starts }, least, most },
-static const char words[] IN_FLASH = SETTINGS(WORDS_OF); /* as a parameter has them: the unit behind the name */
+static const char words[] IN_FLASH = SETTINGS(WORDS_OF); /* as a parameter has them: the unit after the name */
 static const row_t rows[] IN_FLASH = { SETTINGS(ROW) };
 
 _Static_assert(sizeof rows / sizeof rows[0] == SETTING_PARAMETERS, "a row for each setting");

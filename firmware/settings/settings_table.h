@@ -38,7 +38,7 @@ uint8_t settings_count(void);
 /* Which has this name (RAM); SETTING_NONE when none has. */
 uint8_t setting_named(const char *name);
 
-/* In program memory, as typed; behind its end the unit, empty where there is none. */
+/* In program memory, as typed; after its end follows the unit, empty where there is none. */
 flash_text_t setting_name(uint8_t which);
 
 /*

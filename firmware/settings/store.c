@@ -9,7 +9,7 @@
 #include "hal_eeprom.h"
 #include "machine.h"
 
-/* Places in a record and in its copies, behind the image. */
+/* Places in a record and in its copies, after the image. */
 enum { VERSION = STORE_IMAGE_SIZE, SEQUENCE, CHECK_HIGH, CHECK_LOW, MARK, END };
 
 enum { COPY_0 = STORE_COPY_0 >> 8, COPY_1 = STORE_COPY_1 >> 8, OTHER_COPY = COPY_0 ^ COPY_1 }; /* of the address */

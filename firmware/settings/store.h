@@ -1,13 +1,13 @@
 /*
  * One record in the EEPROM, whole after a power cut at any moment: an image of STORE_IMAGE_SIZE bytes, whose meaning is
- * the caller's, and behind it STORE_TAIL_SIZE bytes of the store's own. Main only; nothing waits here, but store_load.
+ * the caller's, and after it STORE_TAIL_SIZE bytes of the store's own. Main only; nothing waits here, but store_load.
  *
  * The EEPROM holds two copies. A save goes to the one that store_load would not take. That one's mark, its last byte,
  * first becomes STORE_OPEN and is read back: from then on it is no copy, whatever the rest of it says. Image, version,
  * sequence number and check follow, each byte read back; then the mark becomes STORE_IMAGE_SIZE. So whatever byte a cut
  * leaves, erased, old, new or anything, the other copy is as it was and this one open or whole, and nothing rests on a
  * check happening not to fit. A mark that is torn stands with bytes that are all of one save: the copy's older one
- * while it opens, the new one while it closes. When that happens again as the next save opens this copy anew, and the
+ * while it opens, the new one while it closes. When that happens again as the next save opens this copy again, and the
  * torn mark then reads as right (1 in 256), the set of the save that was cut first is the one that counts: whole, too.
  *
  * The check (store.c) finds every damage to one or two bytes of a copy, whatever they have become, and misses one in

@@ -14,7 +14,7 @@
 #error "F_CPU: this firmware knows processors of 16 MHz and of 8 MHz"
 #endif
 
-#ifndef HAL_CPU_HZ /* a test image tells a slower one */
+#ifndef HAL_CPU_HZ /* a test image sets a slower one */
 #define HAL_CPU_HZ F_CPU
 #endif
 #define HAL_LAP_US ((uint8_t)(1024000000ul / F_CPU)) /* of Timer2 */

@@ -36,7 +36,7 @@ void hal_watchdog_start(void)
     struct breadcrumb *b = &breadcrumb;
     MACHINE_POINTER(b); /* an access is half as long */
     bool intact = b->mark == MARK;
-    __asm__("" : "+r"(intact)); /* else the mark is compared anew at each use */
+    __asm__("" : "+r"(intact)); /* else the mark is compared again at each use */
     cause = (uint8_t)hal_reset_classify(mcusr_at_start, intact, b->unfed_ticks);
     note_at_start = (intact && cause != HAL_RESET_POWER_ON) ? b->note : 0;
     b->mark = MARK;

@@ -174,7 +174,7 @@ static void access_step(adxl345_driver_t *d)
             adxl345_driver_set_limit(TRANSFER_LIMIT);
             return;
         }
-        hal_wake(); /* the end of a STOP tells nobody */
+        hal_wake(); /* the end of a STOP raises no interrupt */
     }
     if (state == I2C_BUS_OK) {
         advance(d);

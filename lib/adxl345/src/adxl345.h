@@ -88,7 +88,7 @@ bool adxl345_oldest_us(uint32_t *t_us);
  */
 bool adxl345_sample_coming(void);
 
-/* So much later than by INT1 may a sample come, us: two periods while INT1 tells nothing and the clock is asked. */
+/* So much later than by INT1 may a sample come, us: two periods while INT1 is silent and the clock is asked. */
 uint32_t adxl345_lateness_us(void);
 
 adxl345_phase_t adxl345_phase(void);
@@ -96,7 +96,7 @@ adxl345_phase_t adxl345_phase(void);
 /* While ADXL345_STREAMING with a fault samples go on: something is wrong with them, or with how they come. */
 adxl345_fault_t adxl345_fault(void);
 
-/* The sensor is looked for and configured anew because it failed, though that need not be a fault yet. Main. */
+/* The sensor is looked for and configured again because it failed, though that need not be a fault yet. Main. */
 bool adxl345_interrupted(void);
 
 /*
@@ -115,14 +115,14 @@ uint8_t adxl345_foreign_id(void);
 /* Measured time between samples, us (nominal until measured), by the board's clock. */
 uint32_t adxl345_period_us(void);
 
-/* The same as output data rate, 0.01 Hz: of 16 samples on end that were read in time; 0 until there were. Divides. */
+/* The same as output data rate, 0.01 Hz: of 16 samples in a row that were read in time; 0 until there were. Divides. */
 uint32_t adxl345_rate_chz(void);
 
 /* Counters, saturating. Each transfer that failed is in one of the last four, whether its sample was lost or not. */
 typedef struct {
     uint16_t samples_drained;   /* read late, with an interpolated stamp */
     uint16_t samples_stuck;     /* as ADXL345_MARK_STUCK */
-    uint16_t restarts;          /* sensor configured anew after a fault */
+    uint16_t restarts;          /* sensor configured again after a fault */
     uint16_t nacks;             /* address or data not acknowledged */
     uint16_t arbitrations_lost; /* noise, or another master */
     uint16_t bus_errors;        /* START or STOP out of place, or a status that cannot be */

@@ -2,7 +2,7 @@
  * One burst per sample: INT_SOURCE, DATA_FORMAT, the data, FIFO_CTL, FIFO_STATUS. The data-ready handler starts it, the
  * I2C handler moves its bytes, main judges them (adxl345_integrity.h) and queues the sample; until main has done so no
  * other burst begins, and samples wait in the sensor's FIFO. INT_SOURCE comes before the data because it says of them
- * whether they are new and whether older ones were lost; behind them it no longer does (reading them clears both,
+ * whether they are new and whether older ones were lost; after them it no longer does (reading them clears both,
  * p. 21).
  *
  * When a burst fails before a data byte was asked for, the sample is still in the sensor and INT1 still high, so main
@@ -240,7 +240,7 @@ static inline void keep_edge(struct burst *b, const burst_entry_t *entry, uint8_
 
 /*
  * Where samples ahead of this one were lost its stamp is theirs, and one that is more than two periods too late for
- * the samples that wait behind it is that of INT1 coming back to a FIFO that had filled. The newest sample is half a
+ * the samples that wait after it is that of INT1 coming back to a FIFO that had filled. The newest sample is half a
  * period old then.
  */
 static MACHINE_APART void restamp(const struct burst *b, burst_entry_t *entry)

@@ -30,7 +30,7 @@ void adxl345_burst_init(void);
 void adxl345_burst_set_mode(burst_mode_t mode);
 
 /*
- * Take the pins (anew): HAL_I2C_FREE, or the line that is low. A transfer that runs is abandoned, a slave in its byte
+ * Take the pins (again): HAL_I2C_FREE, or the line that is low. A transfer that runs is abandoned, a slave in its byte
  * clocked out of it.
  */
 uint8_t adxl345_burst_take_bus(uint8_t address, bool fast);

@@ -102,7 +102,7 @@ void adxl345_driver_stopped(void);
 /* Enters a step with one register access, on a bus of its own, of which no data come. */
 void adxl345_driver_begin_access(step_t step);
 
-/* Frees the bus of a transfer that hangs; false when somebody holds a line low: that is a fault then, and told. */
+/* Frees the bus of a transfer that hangs; false when somebody holds a line low: that is a fault then, and reported. */
 bool adxl345_driver_take_bus(void);
 
 /*

@@ -2,7 +2,7 @@
  * Inside the driver: is what a burst brought a reading of this sensor? Main only.
  *
  * A burst goes from INT_SOURCE through the data to FIFO_STATUS. The pattern in FIFO_CTL
- * is what no reset leaves behind and what no dead bus reads as, so a sensor that has lost its supply, a byte or a bit
+ * is what no reset leaves and what no dead bus reads as, so a sensor that has lost its supply, a byte or a bit
  * that slipped and a wire that came off show, and no sample of such a burst goes out.
  */
 #ifndef ADXL345_INTEGRITY_H
@@ -32,7 +32,7 @@ typedef enum {
     READING_FAILED /* the transfer did */
 } reading_t;
 
-/* Readings come with this configuration's range and self-test from now on, the first behind no other. */
+/* Readings come with this configuration's range and self-test from now on, the first after no other. */
 void adxl345_integrity_start(const adxl345_config_t *config);
 
 /* The sensor may be another: no value is known to repeat, and INT1 not to be stuck. */
@@ -60,7 +60,7 @@ uint8_t adxl345_integrity_good(void);
 #define ADXL345_STUCK_REPEATS 9u
 bool adxl345_integrity_stuck(void);
 
-/* Why the sensor must be configured anew: ADXL345_FAULT_NO_DATA, ADXL345_FAULT_TORN, or NONE. */
+/* Why the sensor must be configured again: ADXL345_FAULT_NO_DATA, ADXL345_FAULT_TORN, or NONE. */
 adxl345_fault_t adxl345_integrity_fault(void);
 
 /* INT1 was high and the sensor empty three times without a good reading; until 32 of those have left INT1 low. */

@@ -35,7 +35,7 @@ void adxl345_period_start(uint16_t half_us)
 }
 
 /*
- * The mean of STEPS steps on end between stamps that are exact, each within an eighth of the nominal one: that takes
+ * The mean of STEPS steps in a row between stamps that are exact, each within an eighth of the nominal one: that takes
  * less time for a sample than a mean that follows each, and does not hang half a microsecond beside the truth.
  */
 void adxl345_period_sample(uint32_t t_us, bool exact)

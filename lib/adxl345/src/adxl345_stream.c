@@ -1,6 +1,6 @@
 /*
  * The step of the driver's state machine in which samples come: when the sensor is asked why none does, when it is read
- * by the clock because INT1 tells nothing, and what failed. All in main.
+ * by the clock because INT1 is stuck, and what failed. All in main.
  */
 #include "adxl345_stream.h"
 
@@ -78,7 +78,7 @@ bool adxl345_stream_without_edges(void)
 /*
  * Without a sample until the sensor is asked: a quarter of a period after it was due, so that one whose edge is lost is
  * read before its row is filled, which happens at a half; but no sooner than a transfer may take, which is later at
- * 800 Hz alone. While INT1 is known to tell nothing less than a period, so that a sensor that is fast does not fill its
+ * 800 Hz alone. While INT1 is known to be stuck less than a period, so that a sensor that is fast does not fill its
  * FIFO.
  */
 static uint32_t patience_us(void)
@@ -107,7 +107,7 @@ static void sample_arrived(adxl345_driver_t *d)
 }
 
 /*
- * No sample came by the time it was due. A burst or the STOP behind it may hang: the sample is read again, unless a
+ * No sample came by the time it was due. A burst or the STOP after it may hang: the sample is read again, unless a
  * line that is low says why. Or there was none for so long that the sensor is asked; a burst that failed counts as a
  * sign of life: three in a row are a fault by themselves.
  */
@@ -154,7 +154,7 @@ static void fetch(adxl345_driver_t *d)
         }
         adxl345_driver_set_limit(TRANSFER_LIMIT);
     } else if (hal_i2c_stop_pending()) {
-        hal_wake(); /* the end of a STOP tells nobody */
+        hal_wake(); /* the end of a STOP raises no interrupt */
     }
 }
 

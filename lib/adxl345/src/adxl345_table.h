@@ -7,7 +7,7 @@
 #include "adxl345.h"
 #include "adxl345_registers.h"
 
-/* What FIFO_CTL holds while measuring, in every mode of the driver: no reset leaves a Samples field of 10 behind. */
+/* What FIFO_CTL holds while measuring, in every mode of the driver: no reset leaves a Samples field of 10. */
 #define TABLE_FIFO_CTL (ADXL345_FIFO_STREAM | 0x0Au)
 
 /*

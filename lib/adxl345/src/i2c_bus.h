@@ -4,7 +4,7 @@
  * Each command has one status that says it went well; any other ends the transfer, however good it would be at another
  * moment: so no byte is stored that was not asked for, and no transfer ends well that did not do all of its steps.
  * The steps run in the I2C interrupt; everything is inline so that the handler that includes this saves few registers.
- * A transfer that hangs produces no interrupt: whoever started it watches the time and takes the bus anew.
+ * A transfer that hangs produces no interrupt: whoever started it watches the time and takes the bus again.
  */
 #ifndef I2C_BUS_H
 #define I2C_BUS_H
@@ -28,11 +28,11 @@ typedef enum {
     I2C_BUS_NACK_DATA,
     I2C_BUS_LOST,   /* arbitration lost: noise, or a second master */
     I2C_BUS_ERROR,  /* illegal START or STOP on the bus, or a status that cannot be at this step */
-    I2C_BUS_TIMEOUT /* the owner took the bus anew while the transfer ran */
+    I2C_BUS_TIMEOUT /* the owner took the bus again while the transfer ran */
 } i2c_bus_state_t;
 
 typedef struct {
-    volatile uint8_t state; /* i2c_bus_state_t; leaves BUSY only in the interrupt or when the bus is taken anew */
+    volatile uint8_t state; /* i2c_bus_state_t; leaves BUSY only in the interrupt or when the bus is taken again */
     uint8_t address;        /* 7 bit, shifted left by one */
     uint8_t tx_length;
     uint8_t rx_length;

@@ -19,10 +19,10 @@
  *
  * Noise, with `identify` on (1): the scatter of the innovations about their mean, of every second sample, each limited
  * to 2.5 times what it is expected to be. Motion that the line does not follow widens it, and so the gate. It starts
- * from the R that was configured or told last before the first sample after the start; later calls of filter_set_noise
+ * from the R that was configured or set last before the first sample after the start; later calls of filter_set_noise
  * change nothing, and filter_own_noise_lsb2_q8 says what R it has found. Off (0): the square root of that R, always.
  *
- * FILTER_GATED tells that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be
+ * FILTER_GATED says that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be
  * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the identified noise and
  * forgets rate, mean innovation and strays; the memory is the slowest.
  *

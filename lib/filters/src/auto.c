@@ -5,13 +5,13 @@
  *   x_e = x + v,  u = z - x_e,  x = x_e + (2 k - k^2) u,  v = v + k^2 u      k = 2 / memory in samples
  *
  * with a slow, a middle and a fast memory. Each member refuses a sample further off than its gate (the slow one, which
- * motion leaves behind, has twice the gate of the others); five refused in a row and on the same side restart it there,
+ * motion leaves, has twice the gate of the others); five refused in a row and on the same side restart it there,
  * at rest, with a memory that grows by half a sample per sample up to its own.
  *
  * Each innovation is formed before its member is updated, refused ones too. The score of a member is the exponential
  * mean over eight samples of min(u^2, 64 R), so that an outlier, which all members meet alike, cannot decide alone. The
  * member with the least score is chosen, for this sample already, when it lies a thirty-second below that of the one
- * in force; FILTER_SWITCHED tells. Missing samples leave the scores alone.
+ * in force; FILTER_SWITCHED reports it. Missing samples leave the scores alone.
  *
  * Through missing samples each member goes on by its rate, and the estimate is that of the middle one: its rate is
  * quiet enough for a gap at rest and quick enough for one in motion (fade: stopped where it may be noise).
@@ -124,7 +124,7 @@ static void predict_member(filter_t *f, filter_member_t *m)
     m->x_lsb_q16 = tracker_bounded(f, m->x_lsb_q16 + m->rate_lsb_q16);
 }
 
-/* What the update of one member told. */
+/* What the update of one member returned. */
 typedef struct {
     int32_t innovation_lsb_q16;
     uint16_t gain_uq16;

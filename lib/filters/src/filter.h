@@ -171,8 +171,8 @@ filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_c
 void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8);
 
 /*
- * The R that a law has identified itself, LSB^2 in Q8, at most 10,200 LSB^2: it need not be told one
- * (filter_set_noise), and an estimate beside it would be wasted. 0: the law takes the R that it is told. Only for a
+ * The R that a law has identified itself, LSB^2 in Q8, at most 10,200 LSB^2: it need not be given one
+ * (filter_set_noise), and an estimate beside it would be wasted. 0: the law takes the R that is set. Only for a
  * filter that filter_init has accepted. About 80 cycles.
  */
 uint32_t filter_own_noise_lsb2_q8(const filter_t *f);
@@ -192,7 +192,7 @@ void filter_reset(filter_t *f, int16_t z0_lsb);
 int32_t filter_update(filter_t *f, int16_t z_lsb);
 
 /*
- * No sample came, or one that tells nothing, as at the sensor's rail: a prediction. The rate of change is halved each
+ * No sample came, or one without information, as at the sensor's rail: a prediction. The rate of change is halved each
  * 25 ms without a sample and after FILTER_HOLD_MS the estimate holds.
  */
 int32_t filter_missing(filter_t *f);
@@ -209,12 +209,12 @@ void filter_probe(const filter_t *f, filter_probe_t *out);
 const char *filter_name(const filter_law_t *law); /* in program memory, as typed in `filter NAME` */
 uint8_t filter_parameter_count(const filter_law_t *law);
 const filter_parameter_t *filter_parameter(const filter_law_t *law, uint8_t index); /* in program memory */
-/* Its name; behind the name's end follows the unit. Both in program memory. */
+/* Its name; after the name's end follows the unit. Both in program memory. */
 const char *filter_parameter_words(const filter_parameter_t *parameter);
 /* Of filter_update on an ATmega328P, at most; `stay` of pbf and shrf costs 500 more. */
 uint16_t filter_worst_cycles(const filter_law_t *law);
 
-/* The parameter that is the measurement variance R: what laws that have it need not be told is estimated. */
+/* The parameter that is the measurement variance R: laws that have it and are given none estimate it. */
 extern const filter_parameter_t filter_parameter_r;
 
 /* The value is 0 where that switches the feature off, or within min..max. */

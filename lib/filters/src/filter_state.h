@@ -1,5 +1,5 @@
 /*
- * State of a filter: what the tracker holds for every law, and behind it the law's own. Included by filter.h, because a
+ * State of a filter: what the tracker holds for every law, and after it the law's own. Included by filter.h, because a
  * filter_t is declared by its user; read it through filter_probe.
  */
 #ifndef FILTER_STATE_H
@@ -18,7 +18,7 @@ typedef struct filter_law filter_law_t;
 
 /*
  * The law's state begins with what is in force while the filter runs: it lies where the samples of the start are kept,
- * and means nothing before. What lies behind them is made of the configuration or learnt of the noise, and
+ * and means nothing before. What follows them is made of the configuration or learnt of the noise, and
  * survives a restart.
  */
 typedef struct {

@@ -5,7 +5,7 @@ LAW_KEEPS_FROM(filter_synth_t, r_lsb2_q8);
 
 /*
  * Gains of a least-squares line through n samples, (4 n - 2) / (n (n + 1)), n = 6..63, UQ0.16: what the constant gain
- * is raised to after the start. Behind the last one the estimate's variance is within a few per cent of the steady one.
+ * is raised to after the start. After the last one the estimate's variance is within a few per cent of the steady one.
  */
 static const uint16_t start_gains_uq16[SYNTH_END_GAIN - SYNTH_FIRST_GAIN] IN_FLASH = {
     34328, 30427, 27307, 24758, 22640, 20852, 19325, 18004, 16852, 15838, 14938, 14135, 13414, 12762, 12171,

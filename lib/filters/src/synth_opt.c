@@ -25,7 +25,7 @@
 #include "synth.h"
 #include "synth_opt_table.h"
 
-/* Place of the gains behind the schedule. */
+/* Place of the gains after the schedule. */
 enum { LIMIT = (int)SYNTH_OPT_COMMON + (int)SYNTH_OPT_STEPS };
 
 /* 11/13 in the limit of variant U, where its errors are taken as uncorrelated; with the closed loop's it is this. */
@@ -107,7 +107,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 
 /*
  * The variance is that of one sample while warming up, then what the schedule takes it for, R b0 (more than the true
- * one where b0 was clamped), and behind it the noise gain of the limit.
+ * one where b0 was clamped), and after it the noise gain of the limit.
  */
 static void report(const filter_t *f, filter_probe_t *out)
 {

@@ -40,14 +40,14 @@ struct filter_law {
     bool (*together)(const filter_config_t *config); /* NULL: each by itself */
     void (*set_up)(filter_t *f, const filter_config_t *config); /* from zero; the noise with set_noise */
     void (*set_noise)(filter_t *f, uint32_t r_lsb2_q8);         /* R within its range */
-    uint32_t (*own_noise)(const filter_t *f); /* see filter_own_noise_lsb2_q8; NULL: it takes what it is told */
+    uint32_t (*own_noise)(const filter_t *f); /* see filter_own_noise_lsb2_q8; NULL: it takes what is set */
     void (*start)(filter_t *f, bool settled); /* own state for a filter that begins at x: at rest for ever, or just */
     void (*step)(filter_t *f, int16_t z_lsb, uint8_t what); /* one sample on; what: filter_step_kind; flags are clear */
     void (*fade)(filter_t *f, bool first); /* samples begin to be missing, or the rate was halved; NULL */
     void (*report)(const filter_t *f, filter_probe_t *out); /* variance and gate */
 };
 
-/* What a law keeps over a start, from this member of its state on, lies behind the samples of the start. */
+/* What a law keeps over a start, from this member of its state on, lies after the samples of the start. */
 #ifdef __cplusplus
 #define LAW_ASSERT static_assert
 #else

@@ -1,7 +1,7 @@
 /*
  * From the sensor's readings to accelerations in the axes of what it is mounted on, and what finds the numbers for it.
  *
- * Readings less the offset, over the scale, axes named anew, then turned by the mounting's rotation:
+ * Readings less the offset, over the scale, axes renamed, then turned by the mounting's rotation:
  * out = mounting x axes x diag(256 / scale) x (reading - offset), in units of 1/256 g, which the rest of lib/tilt calls
  * LSB. Offsets and scales belong to the sensor's own axes, as printed on its board.
  * An accelerometer at rest cannot tell heading, nor a misalignment of its axes from the mounting.
@@ -124,7 +124,7 @@ calibration_verdict_t calibration_single(calibration_t *c, const int16_t mean_ls
  * Offsets and scales from the means at rest in all six positions (x, y, z of position 0, x, y, z of position 1, ...),
  * each up to 20 degrees from its axis in any direction. Refused, and *c unchanged, with the reason. residual_mg: the
  * largest | |a| - 1 g | of the six, when not refused; above 160/16384 g (9.8 mg) they do not fit each other. Six
- * readings determine six numbers, so it tells whether the solution fits, not how good the readings were.
+ * readings determine six numbers, so it says whether the solution fits, not how good the readings were.
  */
 calibration_verdict_t calibration_six(calibration_t *c, const int16_t mean_lsb_q4[3 * CALIBRATION_POSITIONS],
                                       uint16_t *residual_mg);

@@ -16,7 +16,7 @@
 extern "C" {
 #endif
 
-/* The largest sigma that is told, 90 degrees: it means that nothing is known. */
+/* The largest sigma that is reported, 90 degrees: it means that nothing is known. */
 #define TILT_PARTIAL_SIGMA_MAX_CDEG 9000U
 
 /*
