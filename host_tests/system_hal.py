@@ -18,7 +18,7 @@ def probe(name, status, plant=None, resets=0):
         path = folder / pathlib.Path(file).name
         path.write_text(text.replace(old, new), encoding="utf-8")
         sources = [path if source == file else source for source in HAL]
-    run("avr-gcc", "-std=gnu11", "-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Os", f"-I{folder}", "-Ihal", "-Ihal/avr",
+    run("avr-gcc", "-std=gnu11", "-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Os", f"-I{folder}", "-Ihal", "-Ihal/avr", "-Ilib/machine/src",
         f"host_tests/avr/{name}.c", *sources, "-o", elf)
     done = run(SIMRUN, "--fw", elf, "--in", STREAMS / "tilt-fast.csv", "--out", out, "--max-ms", "2000", "--expect-resets", resets,
                expect=status)

@@ -196,7 +196,7 @@ static void test_the_end_of_a_fault_keeps_its_numbers_until_it_is_told(void)
     board_type("baud 9600");
     board_run_ms(1000);
     size_t before = board.note_count;
-    take_away(&was[0], 700);
+    take_away(&was[0], 500);
     for (int i = 0; i < 6; i++) {
         board_type("help");
     }

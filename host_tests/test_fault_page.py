@@ -7,7 +7,7 @@ from system_support import run_all, test
 
 PAGE = pathlib.Path("docs/faults.md")
 TEXTS = pathlib.Path("firmware/console/reply_texts.h")
-INCLUDES = ["-Ifirmware", "-Ihal", "-Ihal/host"]
+INCLUDES = ["-Ifirmware", "-Ilib/machine/src", "-Ihal", "-Ihal/host"]
 
 
 def texts():

@@ -123,8 +123,8 @@ def run_chip(exe, path, block):
 
 
 def sources(chip, lib):
-    includes = ["hal", "hal/avr" if chip else "hal/host", "firmware", f"{lib}/filters/src", f"{lib}/tilt/src", f"{lib}/adxl345/src",
-                "host_tests", HERE]
+    includes = ["hal", "hal/avr" if chip else "hal/host", "firmware", "lib/machine/src", f"{lib}/filters/src", f"{lib}/tilt/src",
+                f"{lib}/adxl345/src", "host_tests", HERE]
     files = sorted(pathlib.Path(HERE).glob("vectors*.c"))
     files += [f"{HERE}/crc32.c", f"{HERE}/output.c", f"{HERE}/output_{'chip' if chip else 'pc'}.c"]
     files += [path for name in ("random32", "filter*", "law_*") for path in sorted(pathlib.Path("host_tests").glob(f"support_{name}.c"))]

@@ -68,4 +68,4 @@ class Link(Host):
         self.tests = ["test_nav_link"]
 
     def command(self, source):
-        return [*super().command(source), *shlex.split(os.environ["NAV_RINGS"]), "-Inav/image", "-Ilib/nav/src"]
+        return [*super().command(source), *shlex.split(os.environ["NAV_RINGS"]), "-Inav/image", "-Ilib/machine/src", "-Ilib/nav/src"]
