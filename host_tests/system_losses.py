@@ -84,14 +84,14 @@ def make_loss_test(filter_name, rate, baud, every, load_limit, ppm):
 
 TESTS.append(make_loss_test(DEFAULT, 100, 115200, 1, 0.108, 777))
 TESTS.append(make_loss_test(DEFAULT, 400, 500000, 1, 0.39, -777))
-TESTS.append(make_loss_test(DEFAULT, 800, 500000, 4, 0.52, 777))
-# above adaptive: three times 1,320 cycles of the filters (docs/benchmarks.md) and 600 of the supervisor
+TESTS.append(make_loss_test(DEFAULT, 800, 500000, 4, 0.47, 777))
+# above adaptive: three times 1,320 cycles of the filters (docs/benchmarks.md) and those of the supervisor
 TESTS.append(make_loss_test("auto", 100, 115200, 1, 0.14, 777))
 TESTS.append(make_loss_test("auto", 400, 500000, 1, 0.535, -777))
 TESTS.append(make_loss_test("auto", 800, 500000, 4, 0.80, 777))
 TESTS.append(make_loss_test(ROBUST, 100, 115200, 1, 0.11, -777))
 TESTS.append(make_loss_test(ROBUST, 400, 500000, 1, 0.42, 777))
-TESTS.append(make_loss_test(ROBUST, 800, 500000, 4, 0.56, -777))
+TESTS.append(make_loss_test(ROBUST, 800, 500000, 4, 0.54, -777))
 
 
 def make_width_test(rate, baud, every):

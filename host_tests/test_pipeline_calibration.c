@@ -125,6 +125,17 @@ static void test_a_missing_sample_is_calibrated_as_well(void)
     TEST_ASSERT_TRUE(row.mg[2] > before_mg && row.mg[2] < before_mg + 20); /* 2 LSB a sample: 6.25 mg */
 }
 
+/* What the filters hold of 1.156 g is as little to be trusted without a sample. */
+static void test_gravity_is_judged_of_a_prediction_too(void)
+{
+    (void)row_of(0, 0, 296);
+    row_t row;
+    pipeline_coast(now_us + 10000);
+    pipeline_finish();
+    pipeline_row(&row);
+    TEST_ASSERT_EQUAL_UINT16(ROW_COASTED | ROW_NOT_GRAVITY, row.flags);
+}
+
 /* A calibration is in force whole from the next row on, although its sample may be filtered already. */
 static void test_a_row_is_calibrated_by_one_calibration(void)
 {
@@ -179,6 +190,7 @@ int main(void)
     RUN_TEST(test_gravity_is_judged_after_the_calibration);
     RUN_TEST(test_mg_are_limited);
     RUN_TEST(test_a_missing_sample_is_calibrated_as_well);
+    RUN_TEST(test_gravity_is_judged_of_a_prediction_too);
     RUN_TEST(test_a_row_is_calibrated_by_one_calibration);
     RUN_TEST(test_gravity_is_judged_of_the_rows_own_acceleration);
     return UNITY_END();

@@ -178,10 +178,10 @@ static void test_two_bad_axes_are_too_many(void)
     stream_free(&stream);
 }
 
-/* `status` names the members, and the axis with the sigma of the direction: noise and 10 LSB of the part, 1 / cos. */
-static void test_status_tells_choices_and_the_axis_left_out(void)
+/* What `status` says of an axis that is frozen, with a row for so many samples. */
+static double sigma_of_cdeg(uint8_t axis, const char *every)
 {
-    stream_t stream = rolling_stream(2, FROZEN);
+    stream_t stream = rolling_stream(axis, FROZEN);
     board_start(&stream, 0.0, 0);
     board_run_ms(100);
     board_type("filter auto");
@@ -191,17 +191,30 @@ static void test_status_tells_choices_and_the_axis_left_out(void)
     board_run_ms(100);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", chosen x ", first));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("without", first));
+    board_type(every);
     board_run_ms(6500);
     first = board.note_count;
     board_type("status");
     board_run_ms(100);
-    const char *told = strstr(board.notes[first], ", without z sigma cdeg ");
+    char words[] = ", without z sigma cdeg ";
+    words[strlen(", without ")] = "xyz"[axis];
+    const char *told = strstr(board.notes[first], words);
     TEST_ASSERT_NOT_NULL(told);
-    double sigma_cdeg = strtod(told + strlen(", without z sigma cdeg "), NULL);
+    double sigma_cdeg = strtod(told + strlen(words), NULL);
+    stream_free(&stream);
+    return sigma_cdeg;
+}
+
+/* `status` names the members, and the axis with the sigma of the direction: noise and 10 LSB of the part, 1 / cos. */
+static void test_status_tells_choices_and_the_axis_left_out(void)
+{
+    double sigma_cdeg = sigma_of_cdeg(2, "every 1");
     /* R is 1.5 x 2.25 LSB^2; variance gains of the members 0.05 to 0.4; the component 0.6 to 1 of 1 g; rounded down */
     TEST_ASSERT_TRUE(sigma_cdeg > sqrt(0.05 * 2.0 + 100.0) / 256.0 * DEG_PER_RAD * 100.0 - 1.0);
     TEST_ASSERT_TRUE(sigma_cdeg < sqrt(0.40 * 5.0 + 100.0) / 256.0 / 0.45 * DEG_PER_RAD * 100.0);
-    stream_free(&stream);
+    /* it waits for no row, and keeps nothing of another axis */
+    TEST_ASSERT_TRUE(sigma_of_cdeg(0, "every 1") > 2.0 * sigma_cdeg);
+    TEST_ASSERT_EQUAL_DOUBLE(sigma_cdeg, sigma_of_cdeg(2, "every 1000"));
 }
 
 static double sigma_told_cdeg(void)

@@ -1,7 +1,7 @@
 # The filters' outputs as committed: host_tests/golden.
 GOLDEN := host_tests/golden
 
-$(H)/golden_vectors: $(GOLDEN)/golden_vectors.c $(wildcard lib/filters/src/*.c lib/filters/src/*.h) $(LAW_SUPPORT) \
+$(H)/golden_vectors: $(GOLDEN)/golden_vectors.c $(wildcard lib/filters/src/*.c lib/filters/src/*.h) $(MACHINE_H) $(LAW_SUPPORT) \
                      host_tests/support_random.c Makefile mk/golden.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(WARNINGS) $(SANITIZE) $(filter %.c,$^) -lm -o $@

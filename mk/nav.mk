@@ -33,7 +33,7 @@ $(eval $(call NAV_IMAGE,nav9,9))
 
 NAVIMG_HOST := $(filter-out nav/image/main.c hal/avr/%,$(NAVIMG_SRC))
 # with a line of its own in place of the host's HAL
-$(H)/test_nav_link: host_tests/test_nav_link.c host_tests/nav_line.c $(NAVIMG_HOST) host_tests/support_random.c $(H)/unity.o host_tests/nav_line.h $(wildcard hal/*.h nav/image/*.h lib/nav/src/*.h)
+$(H)/test_nav_link: host_tests/test_nav_link.c host_tests/nav_line.c $(NAVIMG_HOST) host_tests/support_random.c $(H)/unity.o host_tests/nav_line.h $(wildcard hal/*.h nav/image/*.h lib/nav/src/*.h) $(MACHINE_H)
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(NAV_RINGS) $(NAVIMG_INC) $(WARNINGS) $(SANITIZE) $(filter %.c %.o,$^) -lm -o $@
 

@@ -34,11 +34,11 @@ COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(filter-out $(
 COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/machine/src -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers $(ONLY_002)
 $(P)/operations/fx.o: COUNT_CXX += -DCOUNTING_PRIMITIVES
 
-$(P)/operations/%.o: lib/filters/src/%.c $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
+$(P)/operations/%.o: lib/filters/src/%.c $(wildcard lib/filters/src/*.h) $(MACHINE_H) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
 	@mkdir -p $(@D)
 	@sed -E 's/\[([^][]+)\]/[counting::index(\1)]/g; 1s|^|#line 1 "$<"\n|' $< | $(COUNT_CXX) -include $(OPERATIONS)/counting.hpp -x c++ -c - -o $@
 
-$(P)/operations/main.o: $(OPERATIONS)/main.cpp $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
+$(P)/operations/main.o: $(OPERATIONS)/main.cpp $(wildcard lib/filters/src/*.h) $(MACHINE_H) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
 	@mkdir -p $(@D)
 	@$(COUNT_CXX) -Wall -Wextra -Werror -c $< -o $@
 
@@ -50,7 +50,7 @@ $(P)/operations002: $(COUNTED) $(P)/operations/main.o $(P)/operations/state_byte
 	@$(HOST_CXX) $^ -lm -o $@
 
 # and the synthesised filters, whose headers tell how many products a sample takes
-$(P)/operations/family.o: $(OPERATIONS)/family.cpp $(wildcard lib/filters/src/*.h) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
+$(P)/operations/family.o: $(OPERATIONS)/family.cpp $(wildcard lib/filters/src/*.h) $(MACHINE_H) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
 	@mkdir -p $(@D)
 	@$(COUNT_CXX) -Wall -Wextra -Werror -c $< -o $@
 

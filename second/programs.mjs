@@ -16,14 +16,18 @@ function output(program, args) {
 }
 
 // A row that is measured again, because the sensor runs faster than the stream, has noise of its own: as feed_vary in sim/feed.h
-function varied(readings, row, repeats) {
+function varied(rows, row, repeats) {
   const atRail = (lsb) => [512, 1024, 2048, 4096].includes(lsb < 0 ? -lsb : lsb + 1);
   const off = (all) => all.every((lsb) => lsb === -1);
+  const readings = rows[row].slice(1);
   if (repeats === 0 || off(readings)) return readings;
-  const axis = (repeats - 1) % 3;
-  const step = (Math.floor((repeats - 1) / 3) + row + 1) % 2 === 0 ? 1 : -1;
-  const now = readings.map((lsb, i) => (i === axis ? lsb + step : lsb));
-  return atRail(readings[axis]) || atRail(now[axis]) || off(now) ? readings : now;
+  const turn = repeats + row + 1;
+  for (const axis of [turn % 3, (turn + 1) % 3, (turn + 2) % 3]) {
+    const lately = rows.slice(Math.max(0, row - 10), row + 1).map((each) => each[axis + 1]);
+    const now = readings.map((lsb, i) => (i === axis ? lsb + (turn % 2 === 0 ? 1 : -1) : lsb));
+    if (lately.some((lsb) => lsb !== lately[0]) && !atRail(readings[axis]) && !atRail(now[axis]) && !off(now)) return now;
+  }
+  return readings;
 }
 
 // When the first simulator's sensor measured, and which row of the stream: [t_us, x, y, z] with the stream's own readings, so that
@@ -37,7 +41,7 @@ function servedOf(path, stream) {
     const row = Number(fields[at]);
     repeats = row === before ? repeats + 1 : 0;
     before = row;
-    return [Number(fields[t]), ...varied(rows[row].slice(1), row, repeats)];
+    return [Number(fields[t]), ...varied(rows, row, repeats)];
   });
 }
 

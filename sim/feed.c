@@ -2,6 +2,7 @@
 #include "feed.h"
 
 enum { RATE_TOLERANCE_PERCENT = 5 };
+enum { MOVES_WITHIN = 10 }; /* rows: as many equal readings the driver calls stuck */
 
 void feed_set_rate(feed_t *feed, const stream_t *stream, double odr_hz, uint64_t now_us)
 {
@@ -98,16 +99,40 @@ static bool at_a_rail(int16_t lsb)
     return size >= 512 && (size & (size - 1)) == 0;
 }
 
+/* The stream changed this axis within the last rows: one that stands still is frozen, and stays so. */
+static bool moves(const feed_t *feed, size_t axis)
+{
+    const stream_row_t *rows = feed->stream->rows;
+    size_t row = feed->next - 1;
+    for (size_t back = 0; back < MOVES_WITHIN && row > back; back++) {
+        if (rows[row - back].lsb[axis] != rows[row - back - 1].lsb[axis]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* One LSB more or less on this axis, where that changes no meaning. */
+static bool vary(int16_t lsb[3], size_t axis, int16_t by)
+{
+    int16_t read = lsb[axis];
+    lsb[axis] = (int16_t)(read + by);
+    if (at_a_rail(read) || at_a_rail(lsb[axis]) || without_power(lsb)) {
+        lsb[axis] = read;
+        return false;
+    }
+    return true;
+}
+
 void feed_vary(const feed_t *feed, int16_t lsb[3])
 {
     if (feed->repeats == 0 || without_power(lsb)) {
         return;
     }
-    uint32_t turn = feed->repeats - 1u;
-    int16_t *axis = &lsb[turn % 3u];
-    int16_t read = *axis;
-    *axis = (int16_t)(read + ((turn / 3u + feed->next) % 2u == 0 ? 1 : -1));
-    if (at_a_rail(read) || at_a_rail(*axis) || without_power(lsb)) {
-        *axis = read;
+    size_t turn = feed->repeats + feed->next; /* the next tick or the next row is another axis' turn, the other way */
+    for (size_t axis = turn; axis < turn + 3; axis++) {
+        if (moves(feed, axis % 3) && vary(lsb, axis % 3, turn % 2 == 0 ? 1 : -1)) {
+            return;
+        }
     }
 }

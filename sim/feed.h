@@ -34,9 +34,9 @@ feed_result_t feed_tick(feed_t *feed, uint64_t now_us, size_t *row_index);
 
 /*
  * The readings of the row that the last tick took. A row that is in force for several ticks, because the sensor runs
- * faster than the stream, differs by one LSB on one axis from tick to tick, as the noise of a sensor would have it: to
- * the bit alike they would be those of a sensor that hangs, which the firmware tells (fault 10). Not what has a meaning
- * of its own: a reading at the rail of a range, and -1, -1, -1, which is a sensor without power.
+ * faster than the stream, differs by one LSB on one axis from tick to tick, as a sensor's noise would have it: equal
+ * readings would look like a sensor that hangs (fault 10). Not what has a meaning of its own: an axis that the stream
+ * has not changed for ten rows, a reading at the rail of a range, and -1, -1, -1, which is a sensor without power.
  */
 void feed_vary(const feed_t *feed, int16_t lsb[3]);
 

@@ -6,7 +6,7 @@
 static const uint32_t powers[] IN_FLASH = { 1000000000ul, 100000000ul, 10000000ul, 1000000ul, 100000ul, 10000ul };
 
 /* How often `power` goes into *value, as a digit; *value keeps the rest. */
-static inline __attribute__((always_inline)) char take_digit(uint16_t *value, uint16_t power)
+MACHINE_INLINE char take_digit(uint16_t *value, uint16_t power)
 {
     char digit = '0';
     while (*value >= power) {

@@ -2,7 +2,7 @@
 #include "base/number.h"
 
 #include "base/text.h"
-#include "fx.h"
+#include "machine.h"
 
 /* value / 2^bits, the one place for it: written out each would be a loop of its own. */
 static MACHINE_APART uint32_t down(uint32_t value, uint8_t bits)

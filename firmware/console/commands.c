@@ -11,7 +11,6 @@
 #include "control/calibrate.h"
 #include "control/control.h"
 #include "control/measure.h"
-#include "fx.h"
 #include "hal_sleep.h"
 #include "hal_uart.h"
 #include "machine.h"
@@ -131,7 +130,7 @@ static void run_line(void)
     }
 }
 
-/* Who types on has read what was said, unless it is more to be read that is asked for: no row comes between. */
+/* A line typed ends the hold of rows, unless it asks for another listing. */
 static void end_line(void)
 {
     while (length != 0 && line[length - 1u] == ' ') {
@@ -143,9 +142,7 @@ static void end_line(void)
     } else if (length != 0) {
         run_line();
     }
-    if (!notices_hold(NOTICE_HELP, NOTICE_LISTING)) {
-        rows_release();
-    }
+    rows_typed(notices_hold(NOTICE_HELP, NOTICE_LISTING));
     length = 0;
     wrong = 0;
 }

@@ -8,7 +8,6 @@
 #include <stdint.h>
 
 #include "console/version.h"
-#include "machine.h"
 
 /* The bytes of enum say, to be written between the words. */
 #define V_COUNT "\x01"

@@ -6,7 +6,6 @@
 #include "adxl345.h"
 #include "base/counters.h"
 #include "base/notices.h"
-#include "fx.h"
 #include "hal_led.h"
 #include "machine.h"
 #include "settings/settings.h"

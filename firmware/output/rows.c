@@ -41,9 +41,12 @@ void rows_hold(void)
     held_from = newest_time();
 }
 
-void rows_release(void)
+void rows_typed(bool more_to_read)
 {
-    held = false;
+    if (!more_to_read) {
+        held = false;
+    }
+    held_from = newest_time();
 }
 
 static char *write_csv(char *at, const row_t *row)

@@ -23,8 +23,8 @@ void rows_sample(uint16_t every, bool plot);
  */
 void rows_hold(void);
 
-/* Not any longer. */
-void rows_release(void);
+/* A line was typed: they are not held any longer, unless it asks for more to be read: then as long again. */
+void rows_typed(bool more_to_read);
 
 /* Its row, whatever `every` says. */
 void rows_at_once(bool plot);

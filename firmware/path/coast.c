@@ -2,7 +2,6 @@
 #include "path/coast.h"
 
 #include "base/counters.h"
-#include "fx.h"
 #include "hal_time.h"
 #include "machine.h"
 #include "path/pipeline.h"

@@ -6,7 +6,7 @@
 
 #include "base/choice.h"
 #include "base/counters.h"
-#include "fx.h"
+#include "machine.h"
 #include "path/silence.h"
 #include "path/supervisor.h"
 #include "tilt_axis.h"
@@ -21,7 +21,6 @@ typedef enum { WORK_NONE, WORK_SAMPLE, WORK_COAST } work_t;
 static struct {
     tilt_axis_t axes[AXES];
     uint16_t looked_lsb_q2[AXES]; /* the estimates a second ago */
-    int32_t a_q8[AXES];           /* of the row, in the axes of the carrier, 1/256 g */
     calibration_applied_t applied;
 #if SUPERVISOR
     const calibration_t *calibration; /* that is applied */
@@ -229,7 +228,9 @@ static MACHINE_APART void filter_axes(void)
     }
     pipeline_flag(flags);
 #if SUPERVISOR
-    supervisor_sample(pipeline.axes, pipeline.newest.lsb, pipeline.rail_high_lsb, pipeline.calibration);
+    supervisor_view_t view = { pipeline.axes, pipeline.newest.lsb, pipeline.rail_high_lsb, pipeline.calibration,
+                               &pipeline.applied };
+    supervisor_sample(&view);
 #endif
     if (sample) {
         count_sample(flags);
@@ -303,25 +304,26 @@ static void find_angles(tilt_t *tilt, const int32_t lsb_q8[3], int32_t a_q8[3])
 void pipeline_row(row_t *row)
 {
     int32_t estimates_q8[AXES];
+    static int32_t a_q8[AXES]; /* cheaper to reach than on the stack */
     int32_t *estimate = estimates_q8;
     for (const tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
         *estimate++ = tilt_axis_estimate_q8(axis);
     }
     row->flags = pipeline.flags;
 #if SUPERVISOR
-    if (supervisor_complete(pipeline.calibration, &pipeline.applied, estimates_q8)) {
+    if (supervisor_complete(pipeline.calibration, estimates_q8)) {
         row->flags |= ROW_LEFT_OUT;
     }
 #endif
-    find_angles(&pipeline.tilt, estimates_q8, pipeline.a_q8);
+    find_angles(&pipeline.tilt, estimates_q8, a_q8);
     row->t_us = pipeline.newest.t_us;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         row->lsb[axis] = pipeline.newest.lsb[axis];
-        row->mg[axis] = to_mg(pipeline.a_q8[axis]);
+        row->mg[axis] = to_mg(a_q8[axis]);
     }
     row->roll_cdeg = pipeline.tilt.roll_cdeg;
     row->pitch_cdeg = pipeline.tilt.pitch_cdeg;
-    row->flags |= tilt_gravity_plausible(pipeline.a_q8) ? 0u : ROW_NOT_GRAVITY;
+    row->flags |= tilt_gravity_plausible(a_q8) ? 0u : ROW_NOT_GRAVITY;
     row->flags |= pipeline.tilt.roll_undefined ? ROW_ROLL_UNDEFINED : 0u;
     row->flags |= pipeline.warm_rows != 0 ? ROW_WARMING_UP : 0u;
 }

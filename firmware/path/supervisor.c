@@ -81,44 +81,49 @@ static void note_signs(const tilt_axis_t axes[3], const calibration_t *calibrati
         uint8_t bit = (uint8_t)(1u << axis);
         if (supervisor.repeated[axis] == 0) {
             supervisor.negative &= (uint8_t)~bit;
-            int16_t estimate_lsb = (int16_t)((uint32_t)axes[axis].filter.x_lsb_q16 >> 16);
-            if (estimate_lsb < calibration->offset_lsb_q4[axis] >> 4) {
+            if (axes[axis].filter.x_lsb_q16 < (int32_t)calibration->offset_lsb_q4[axis] * 4096) {
                 supervisor.negative |= bit;
             }
         }
     }
 }
 
-void supervisor_sample(const tilt_axis_t axes[3], const int16_t lsb[3], int16_t rail_high_lsb,
-                       const calibration_t *calibration)
+/* Without the bad axis' part the calibrated vector lies across it, whatever the mounting is: what is missing of 1 g. */
+static uint16_t missing_of_q6(const supervisor_view_t *view)
+{
+    int32_t estimates_q8[AXES];
+    for (uint8_t axis = 0; axis < AXES; axis++) {
+        estimates_q8[axis] = tilt_axis_estimate_q8(&view->axes[axis]);
+    }
+    estimates_q8[supervisor.left_out] = offset_q8(view->calibration, supervisor.left_out);
+    int32_t a_q8[AXES];
+    calibration_apply(view->applied, estimates_q8, a_q8);
+    return tilt_missing_q6(a_q8[0], a_q8[1], a_q8[2]);
+}
+
+void supervisor_sample(const supervisor_view_t *view)
 {
     supervisor.left_out = AXES;
-    if (in_force(axes)) {
-        note_signs(axes, calibration);
-        supervisor.left_out = bad_axis(lsb, rail_high_lsb);
+    if (in_force(view->axes)) {
+        note_signs(view->axes, view->calibration);
+        supervisor.left_out = bad_axis(view->lsb, view->rail_high_lsb);
+        if (supervisor.left_out != AXES) {
+            supervisor.missing_q6 = missing_of_q6(view);
+        }
     }
 }
 
-/*
- * Without the bad axis' part the calibrated vector lies across it, whatever the mounting is; what is missing of 1 g is
- * its part, and in its own readings that by its scale.
- */
-bool supervisor_complete(const calibration_t *calibration, const calibration_applied_t *applied,
-                         int32_t estimates_q8[3])
+/* What is missing of 1 g is the bad axis' part, and in its own readings that by its scale. */
+bool supervisor_complete(const calibration_t *calibration, int32_t estimates_q8[3])
 {
     uint8_t bad = supervisor.left_out;
     if (bad == AXES) {
         return false;
     }
-    int32_t a_q8[AXES];
-    estimates_q8[bad] = offset_q8(calibration, bad);
-    calibration_apply(applied, estimates_q8, a_q8);
-    uint16_t missing_q6 = tilt_missing_q6(a_q8[0], a_q8[1], a_q8[2]);
     /* Q6 x UQ6 of 256 LSB per g: Q8 */
-    int32_t part_q8 = (int32_t)(fx_product_u16(missing_q6, calibration->scale_lsb_per_g_uq6[bad]) >> 12);
+    int32_t part_q8 = (int32_t)(fx_product_u16(supervisor.missing_q6, calibration->scale_lsb_per_g_uq6[bad]) >> 12);
     bool negative = (supervisor.negative & (uint8_t)(1u << bad)) != 0;
-    estimates_q8[bad] += negative ? -part_q8 : part_q8;
-    supervisor.missing_q6 = missing_q6;
+    estimates_q8[bad] = offset_q8(calibration, bad) + (negative ? -part_q8 : part_q8);
     return true;
 }
 

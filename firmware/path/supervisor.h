@@ -31,16 +31,20 @@ void supervisor_reset(void);
 /* The readings of a sample, and those of the one before. */
 void supervisor_look(const int16_t before[3], const int16_t lsb[3]);
 
-/* After the filters took it, or predicted one that is missing: which axis is bad, and the signs of the others. */
-void supervisor_sample(const tilt_axis_t axes[3], const int16_t lsb[3], int16_t rail_high_lsb,
-                       const calibration_t *calibration);
+/* What the sample path has of the newest sample. */
+typedef struct {
+    const tilt_axis_t *axes; /* three */
+    const int16_t *lsb;      /* the readings */
+    int16_t rail_high_lsb;
+    const calibration_t *calibration;
+    const calibration_applied_t *applied; /* the same, prepared */
+} supervisor_view_t;
 
-/*
- * For a row: in the place of the bad axis' estimate (LSB in Q8) what the others leave of 1 g: true; false: no axis is
- * bad. `applied` is the calibration, prepared.
- */
-bool supervisor_complete(const calibration_t *calibration, const calibration_applied_t *applied,
-                         int32_t estimates_q8[3]);
+/* After each sample or prediction: which axis is bad, and what is missing without it. */
+void supervisor_sample(const supervisor_view_t *view);
+
+/* In the place of the bad axis' estimate (LSB in Q8) what the others leave of 1 g: true; false: no axis is bad. */
+bool supervisor_complete(const calibration_t *calibration, int32_t estimates_q8[3]);
 
 /*
  * "x slow y fast z fast", and of an axis left out "without z sigma cdeg 93", for `status`; nothing of other

@@ -2,7 +2,6 @@
 #include "settings/settings.h"
 
 #include "filter_list.h"
-#include "fx.h"
 #include "hal_time.h"
 #include "machine.h"
 #include "settings/settings_words.h"

@@ -153,6 +153,7 @@ static bool make_stream(stream_t *stream, const libtilt_stream_t *in)
     for (size_t i = 0; stream->rows != NULL && i < count; i++) {
         stream->rows[i].t_us = (uint64_t)in->t_us[i];
         stream->rows[i].missing = in->missing[i] != 0;
+        memcpy(stream->rows[i].lsb, &in->lsb[3 * i], sizeof stream->rows[i].lsb);
     }
     return stream->rows != NULL;
 }

@@ -88,7 +88,7 @@ bool adxl345_oldest_us(uint32_t *t_us);
  */
 bool adxl345_sample_coming(void);
 
-/* So much later than by INT1 may a sample come, us: two periods while INT1 is silent and the clock is asked. */
+/* So much later than by INT1 may a sample come, us: two periods while INT1 is silent or stuck. */
 uint32_t adxl345_lateness_us(void);
 
 adxl345_phase_t adxl345_phase(void);

@@ -1,6 +1,6 @@
 /*
  * The step of the driver's state machine in which samples come: when the sensor is asked why none does, when it is read
- * by the clock because INT1 is stuck, and what failed. All in main.
+ * by the clock because INT1 is silent or stuck, and what failed. All in main.
  */
 #include "adxl345_stream.h"
 
@@ -78,8 +78,8 @@ bool adxl345_stream_without_edges(void)
 /*
  * Without a sample until the sensor is asked: a quarter of a period after it was due, so that one whose edge is lost is
  * read before its row is filled, which happens at a half; but no sooner than a transfer may take, which is later at
- * 800 Hz alone. While INT1 is known to be stuck less than a period, so that a sensor that is fast does not fill its
- * FIFO.
+ * 800 Hz alone. While INT1 is known to be silent or stuck less than a period, so that a sensor that is fast does not
+ * fill its FIFO.
  */
 static uint32_t patience_us(void)
 {

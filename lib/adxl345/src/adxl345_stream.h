@@ -15,7 +15,7 @@ void adxl345_stream_poll(adxl345_driver_t *d);
 /* STEP_ASK_SOURCE has INT_SOURCE: reads the sample that waits, waits on, or fails for want of data. */
 void adxl345_stream_source_asked(adxl345_driver_t *d);
 
-/* INT1 is known to be stuck, low or high: samples are read by the clock. */
+/* INT1 is known to be silent or stuck high: samples are read by the clock. */
 bool adxl345_stream_without_edges(void);
 
 #endif

@@ -1,7 +1,7 @@
 /* The laws of the list by number and by name: see filter_list.h. */
 #include "filter_list.h"
 
-#include "fx.h"
+#include "machine.h"
 
 static const filter_law_t *const laws[FILTER_KIND_COUNT] IN_FLASH = {
 #define LISTED(F) [FILTER_KIND_##F] = &filter_law_##F,

@@ -1,5 +1,6 @@
 /*
- * Fixed-point primitives: this header, fx_avr.h and fx_avr.c are all of the library that knows the machine.
+ * Fixed-point primitives: this header, fx_avr.h and fx_avr.c, beside machine.h, are all of the library that knows the
+ * machine.
  *
  * Every primitive exists twice, in portable C and, where the compiler's code is slow, in assembler (fx_avr.h, and
  * fx_avr.c for functions); both give the same bits for every argument (host_tests/avr/fx_twins.c compares them on the

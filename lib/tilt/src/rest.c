@@ -1,7 +1,7 @@
 /* Sums over readings at rest; see rest.h. */
 #include "rest.h"
 
-#include "fx.h"
+#include "machine.h"
 
 enum { AXES = 3, HALF = REST_SAMPLES / 2U };
 
