@@ -26,7 +26,7 @@ LIMIT_S = 600  # by the wall, on a machine that others may load: only a check th
 # these look at one file when it is named; the others look at the whole
 TAKES_FILE = {"compile", "tidy", "int16", "cppcheck", "format", "lengths"}
 # these look at an image, which must link with the fault in it: one of few filters has room for that
-TAKES_IMAGE = {"memory", "painted", "size"}
+TAKES_IMAGE = {"memory", "painted", "size", "symbols", "waits"}
 FOLDERS = ["firmware", "nav", "lib", "hal", "sim", "host_tests", "mk", "tools", "campaigns", "docs"]
 FILES = ["Makefile", ".clang-tidy", ".clang-format", "platformio.ini", "sim/streams/outliers-15pct.csv", "build/uno/firmware.elf",
          "build/uno/filters.txt", "build/sim/simrun"]

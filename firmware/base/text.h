@@ -11,7 +11,7 @@
 #include "machine.h"
 
 /* Longest line that anything here writes, end of line included. */
-#define TEXT_LINE_MAX 128u
+#define TEXT_LINE_MAX 144u
 
 /* True when a line of up to `length` bytes fits now; then append and close. Nothing is staged when false. */
 bool text_open(uint8_t length);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "filter_list.h"
 #include "fuzz.h"
 #include "fuzz_commands.h"
@@ -72,7 +73,7 @@ bool said_line(said_t *s, const char *line)
         return false;
     }
     FUZZ_CHECK(strcmp(line, header) == 0 || strncmp(line, "# ", 2) == 0, "neither row nor reply: '%s'", line);
-    FUZZ_CHECK(strlen(line) < 128, "a reply of %zu bytes: %s", strlen(line), line);
+    FUZZ_CHECK(strlen(line) < TEXT_LINE_MAX, "a reply of %zu bytes: %s", strlen(line), line);
     for (const char *c = line; *c != '\0'; c++) {
         FUZZ_CHECK(*c >= ' ' && *c <= '~', "byte 0x%02X in a reply", (unsigned)(uint8_t)*c);
     }
@@ -151,12 +152,17 @@ void check_replies(const said_t *s, const expected_t *e)
     fuzz_fail(__FILE__, __LINE__, "replies are not those expected");
 }
 
-/* Lines that follow the first of a reply for certain, by its words alone. */
-static unsigned lines_after(const char *first)
+/* Lines that follow reply line i for certain, by the words alone. The answer to help ends with the list of verbs. */
+static unsigned lines_after(const said_t *s, unsigned i)
 {
     char name[16];
+    const char *first = s->reply[i];
     if (begins(first, "# filter: ")) {
-        return FUZZ_SETTINGS;
+        unsigned last = i;
+        while (last + 1 < s->count && !begins(s->reply[last], "# stop, go, ")) {
+            last++;
+        }
+        return last - i;
     }
     if (begins(first, "# state ")) {
         return 6;
@@ -172,7 +178,7 @@ unsigned count_replies(const said_t *s)
     unsigned count = 0;
     for (unsigned i = 0; i < s->count; count++) {
         const char *optional;
-        unsigned after = lines_after(s->reply[i]);
+        unsigned after = lines_after(s, i);
         find_optional(s->reply[i], &optional);
         i += 1 + after;
         while (after == 0 && optional != NULL && i < s->count && begins(s->reply[i], optional)) {
