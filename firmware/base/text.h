@@ -10,8 +10,10 @@
 
 #include "machine.h"
 
-/* Longest line that anything here writes, end of line included. */
-#define TEXT_LINE_MAX 144u
+/* Longest line that anything here writes, end of line included; a program of all fourteen filters has a longer one. */
+#ifndef TEXT_LINE_MAX
+#define TEXT_LINE_MAX 128u
+#endif
 
 /* True when a line of up to `length` bytes fits now; then append and close. Nothing is staged when false. */
 bool text_open(uint8_t length);
