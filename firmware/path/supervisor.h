@@ -4,9 +4,8 @@
  *
  * An axis is bad when it has stood at the rail of its range for 16 samples or repeated a reading for 250 while another
  * axis changes: a centred axis of 0.265 LSB rms, the data sheet's 0.75 at 100 Hz taken to 12.5 Hz, did so once in ten
- * days of it. Two bad axes leave too little:
- * none is left out then. The sign of the missing component is that of the last estimate before its readings began to
- * repeat.
+ * days of it. Two bad axes leave too little: none is left out then. The sign of the missing component is that of the
+ * last estimate before its readings began to repeat.
  *
  * In images with `auto` only (mk/images.mk), and while it is in force.
  */

@@ -69,7 +69,7 @@ typedef struct {
     uint8_t flags;              /* FILTER_* */
 } filter_probe_t;
 
-/* One parameter of a law as a person sees it; lives in program memory (IN_FLASH in fx.h). */
+/* One parameter of a law as a person sees it; lives in program memory (IN_FLASH in machine.h). */
 typedef struct {
     const char *words;      /* in program memory: the name as typed, "gate", its end, the unit: "sigma", "LSB2", "" */
     uint8_t fraction_bits;  /* binary point of the stored value */
