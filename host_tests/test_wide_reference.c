@@ -211,6 +211,37 @@ static void a_chain_of_outliers_is_expected(void)
     TEST_ASSERT_EQUAL_INT(2, laws);
 }
 
+/*
+ * Equation (11) needs no sample: after an outlier the probability of a normal one goes back to clean, missing sample by
+ * missing sample, as the chain of two states alone says.
+ */
+static void the_chain_goes_on_over_missing_samples(void)
+{
+    static const double stay = 0.8;
+    int laws = 0;
+    for (int i = 0; i < pair_count; i++) {
+        if (pairs[i].law->parameter_count > MIXTURE_STAY_UQ16) {
+            filter_t f;
+            robust_reference_t r;
+            make_chain(&pairs[i], &f, &r, stay);
+            for (int k = 0; k < 50; k++) {
+                (void)filter_update(&f, 0);
+            }
+            (void)filter_update(&f, 400);
+            double normal = f.own.mixture.normal_uq24 / 16777216.0;
+            TEST_ASSERT_DOUBLE_WITHIN(0.001, 1.0 - stay, normal);
+            for (int k = 0; k < 40; k++) {
+                (void)filter_missing(&f);
+                normal = 1.0 - stay + normal * (r.clean + stay - 1.0) / r.clean;
+                TEST_ASSERT_DOUBLE_WITHIN(0.0001, normal, f.own.mixture.normal_uq24 / 16777216.0);
+            }
+            TEST_ASSERT_DOUBLE_WITHIN(0.001, r.clean, normal);
+            laws++;
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(2, laws);
+}
+
 /* After a step of n sigma, without outliers: p, gain and P11 follow the double filter through the whole recovery. */
 static void recovery_agrees_with_double(void)
 {
@@ -243,6 +274,7 @@ int main(void)
     RUN_TEST(steady_gains_are_kalmans);
     RUN_TEST(runs_agree_with_double);
     RUN_TEST(a_chain_of_outliers_is_expected);
+    RUN_TEST(the_chain_goes_on_over_missing_samples);
     RUN_TEST(recovery_agrees_with_double);
     return UNITY_END();
 }
