@@ -61,7 +61,7 @@ def at_8_mhz_what_does_not_fit_is_refused_with_its_reason():
 
 
 @test
-def at_8_mhz_the_divider_is_the_nearest_to_each_baud_rate():
+def at_8_mhz_each_baud_rate_has_its_nearest_divider():
     for baud in BAUDS:
         _, _, _, stats = simrun("clock-8-divider", STREAM, "--baud", baud, "--max-ms", "600", fw=SLOW)
         nearest = min((SLOW_HZ / 8 / divider for divider in range(1, 4097)), key=lambda rate: abs(rate - baud))

@@ -60,11 +60,38 @@ static void any_input_keeps_r_legal(void)
     }
 }
 
+/* How much one term far beyond the limit raises a mean of 4 LSB^2 after so many terms; Q16. */
+static uint32_t rise(uint8_t terms)
+{
+    noise_t n;
+    filter_noise_init(&n, 125, false);
+    n.mean_lsb2_q16 = (uint32_t)4 << 16;
+    n.terms = terms;
+    static const int16_t far[] = { 0, 100, 0, 100, 0, 100 };
+    for (uint8_t k = 0; k < 6; k++) {
+        (void)filter_noise_update(&n, far[k]);
+    }
+    return n.mean_lsb2_q16 - ((uint32_t)4 << 16);
+}
+
+/*
+ * noise.h: a term counts at most three times the mean, 4.5 times among the first 64; the window is the same from 32 to
+ * 63 terms and from 64 to 127, and twice as long.
+ */
+static void the_first_64_terms_may_count_more(void)
+{
+    TEST_ASSERT_TRUE(rise(63) > 0);
+    TEST_ASSERT_UINT32_WITHIN(1, rise(32), rise(63));
+    TEST_ASSERT_UINT32_WITHIN(1, rise(64), rise(127));
+    TEST_ASSERT_UINT32_WITHIN(rise(63) / 100U, rise(63), rise(64) * 35U / 10U); /* (4.5 - 1) / (3 - 1), twice */
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(starts_at_the_floor_and_stays_there_on_silence);
     RUN_TEST(gap_forgets_the_differences);
     RUN_TEST(any_input_keeps_r_legal);
+    RUN_TEST(the_first_64_terms_may_count_more);
     return UNITY_END();
 }

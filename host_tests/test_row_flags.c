@@ -159,6 +159,40 @@ static void test_the_default_filter_behind_a_sensor_that_hung(void)
     }
 }
 
+/* Mean square of the change of roll, cdeg^2, in the first rows behind a sensor that hung for so many samples. */
+static double unrest_behind(size_t hung)
+{
+    double squares = 0.0;
+    for (uint32_t seed = 0; seed < 20; seed++) {
+        stream_t stream = board_noisy_stream(400, 100.0, 6.0, 77u + seed);
+        for (size_t i = 301; i < 300 + hung; i++) {
+            memcpy(stream.rows[i].lsb, stream.rows[300].lsb, sizeof stream.rows[i].lsb);
+        }
+        board_start(&stream, 0.0, 0);
+        board_run_ms(10.0 * (double)(300 + hung + 20));
+        size_t last = board.row_count - 1;
+        while ((board.rows[last].flags & ROW_STUCK) == 0) {
+            last--;
+        }
+        for (size_t i = last + 1; i < last + 7; i++) {
+            double change = board.rows[i].roll_cdeg - board.rows[i - 1].roll_cdeg;
+            squares += change * change;
+        }
+        stream_free(&stream);
+    }
+    return squares / 120.0;
+}
+
+/* With the 16th marked reading, the 25th equal one, and none before, what the filters had learned is forgotten. */
+static void test_sixteen_marked_readings_are_forgotten(void)
+{
+    double kept = unrest_behind(24);
+    double forgotten = unrest_behind(25);
+    printf("    mean square of a change of roll behind it: %.0f, %.0f\n", kept, forgotten);
+    TEST_ASSERT_TRUE(kept < 1.3 * unrest_behind(23));
+    TEST_ASSERT_TRUE(forgotten > 1.6 * kept);
+}
+
 /* The first reading that differs is a bad one: the filter does not begin anew on it. */
 static void test_a_bad_reading_behind_a_sensor_that_hung(void)
 {
@@ -183,6 +217,7 @@ int main(void)
     RUN_TEST(test_stuck_from_the_tenth_equal_reading_on);
     RUN_TEST(test_two_sensors_are_told);
     RUN_TEST(test_the_default_filter_behind_a_sensor_that_hung);
+    RUN_TEST(test_sixteen_marked_readings_are_forgotten);
     RUN_TEST(test_a_bad_reading_behind_a_sensor_that_hung);
     return UNITY_END();
 }

@@ -52,7 +52,8 @@ class Chip:
         with self.guard:
             if self.ready:
                 return
-            sets = run(["make", "-s", "build/sim/simrun", *(f"build/uno/{name}/filters.txt" for name in self.sets())], self.clean, 600)
+            lists = ["build/uno/filters.txt", *(f"build/uno/{name}/filters.txt" for name in self.sets())]
+            sets = run(["make", "-s", "build/sim/simrun", *lists], self.clean, 600)
             for name, words in PROGRAMS.items():
                 status, said = self.make(self.clean, name)
                 if status != 0 or sets[0] != 0:
