@@ -215,12 +215,14 @@ def campaign_module():
     return campaign
 
 
-def reported(verdicts_of, accepted_keys, whole=("lib/tiny",), left=(), **options):
-    """(exit status, what a campaign with these results prints); left: mutants without a verdict."""
+def reported(verdicts_of, accepted_keys, whole=("lib/tiny",), left=(), sources="", now="1a2b", **options):
+    """(exit status, what a campaign with these results prints); left: mutants without a verdict; sources: what those of the folder were when
+    it was measured, now: what they are."""
     campaign = campaign_module()
+    campaign.digests = lambda: {"lib/tiny": now}
     pathlib.Path("build").mkdir(exist_ok=True)
     pathlib.Path("campaigns/mutants").mkdir(parents=True, exist_ok=True)
-    pathlib.Path("campaigns/mutants/goals.txt").write_text("# folder, goal, rate\nlib/tiny 50 -\n", encoding="utf-8")
+    pathlib.Path("campaigns/mutants/goals.txt").write_text(f"# folder, goal, rate\nlib/tiny 50 - {sources}\n", encoding="utf-8")
     one = object.__new__(campaign.Campaign)
     one.options = campaign.options_of([])
     vars(one.options).update(options)
@@ -248,7 +250,7 @@ def an_accepted_one_that_is_killed_is_named_and_leaves_the_list():
     assert status == 0 and "killed now, so it can leave the list: lib/tiny/a.c:a" in text, text
     lines = [x for x in pathlib.Path("campaigns/mutants/accepted.txt").read_text(encoding="utf-8").splitlines() if x[0] != "#"]
     assert lines == ["lib/tiny/a.c:b"], lines
-    assert pathlib.Path("campaigns/mutants/goals.txt").read_text(encoding="utf-8").split("\n")[-2].split() == ["lib/tiny", "50", "50.0"]
+    assert pathlib.Path("campaigns/mutants/goals.txt").read_text(encoding="utf-8").split("\n")[-2].split() == ["lib/tiny", "50", "50.0", "1a2b"]
 
 
 @test
@@ -276,6 +278,27 @@ def a_part_of_a_folder_neither_sets_nor_fails_its_rate():
     campaign = campaign_module()
     campaign.product = lambda: ["lib/tiny/a.c", "lib/tiny/b.c", "lib/other/c.c"]
     assert campaign.whole_folders(["lib/tiny/a.c", "lib/other/c.c"]) == {"lib/other"}
+
+
+@test
+def a_sample_of_a_folder_that_has_changed_is_held_to_its_goal():
+    """5 of 8 survive by chance in 36 % of the samples where half do, all 8 in 0.4 %."""
+    eight = [f"m{n}" for n in range(8)]
+    some = {key: "survived" if n < 5 else "killed" for n, key in enumerate(eight)}
+    status, text = reported(some, [], sample=8, sources="1a2b")
+    assert status == 1 and text.endswith("3 passed, 5 failed\n"), text
+    for sources in ("", "9f9f"):
+        status, text = reported(some, [], sample=8, sources=sources)
+        assert status == 0 and text.endswith("8 passed, 0 failed\n"), text
+        status, text = reported(dict.fromkeys(eight, "survived"), [], sample=8, sources=sources)
+        assert status == 1 and "lib/tiny: 8 of 8 survive, more than chance has where the goal of 50 % is met" in text, text
+
+
+@test
+def a_sample_is_drawn_from_folders_with_a_goal_or_as_they_were_measured():
+    from results import sampled
+    pathlib.Path("campaigns/mutants/goals.txt").write_text("lib/a 50 -\nlib/b 0 80.0 1a2b\nlib/c 0 80.0 1a2b\nlib/d 0 -\n", encoding="utf-8")
+    assert sampled({"lib/a": "x", "lib/b": "1a2b", "lib/c": "2", "lib/d": "y"}) == ["lib/a", "lib/b"]
 
 
 @test

@@ -2,7 +2,8 @@
 
     make mutants                    all (hours; goes on where it stopped)
     make mutants ONLY=lib/tilt      those of a folder in goals.txt, or of files whose path begins so
-    make mutants SAMPLE=25          so many of the folders in goals.txt, drawn by the tree's hash: fails on a survivor that is not accepted
+    make mutants SAMPLE=25          so many of the folders in goals.txt, drawn by the tree's hash: fails on a survivor that is not accepted where
+                                    all are known, else when their goal is missed
 """
 import argparse
 import concurrent.futures
@@ -20,7 +21,8 @@ from judge import Judge, Worker
 from nav import Link, Variants
 from operators import mutants_of
 from order import Cheapest, Listed, Reached, write_judges
-from results import Results, accepted, below_goal, folder_of, goals, measured, table, write_accepted, write_goals, write_json
+from results import (Results, accepted, below_goal, folder_of, goals, measured, missed_by_sample, sampled, table, write_accepted, write_goals,
+                     write_json)
 from shop import Stop, alone, copy_tree, digest, tree_files
 
 WORKERS = 2
@@ -67,11 +69,20 @@ def product():
             and name not in LEFT_OUT and "/examples/" not in name]
 
 
+def digests():
+    """folder -> what its sources are now."""
+    texts = {}
+    for name in product():
+        texts.setdefault(folder_of(name), []).append(pathlib.Path(name).read_bytes())
+    return {folder: digest(*parts)[:12] for folder, parts in texts.items()}
+
+
 def sources(options):
-    """The files that mutants are made of; a sample's are in the folders whose whole measurement is known."""
-    folders = measured() if options.sample else ["lib, firmware, hal"]
+    """The files that mutants are made of; a sample's are in the folders that one may be drawn from."""
+    folders = sampled(digests()) if options.sample else ["lib, firmware, hal"]
     if not folders:
-        raise Stop("no folder in campaigns/mutants/goals.txt was measured whole, so no sample can be judged: make mutants ONLY=folder ACCEPT=1")
+        raise Stop("no folder in campaigns/mutants/goals.txt has a goal or is as it was measured, so no sample can be judged: "
+                   "make mutants ONLY=folder ACCEPT=1")
     wanted = (lambda name: folder_of(name) == options.only) if options.only in goals() else lambda name: name.startswith(options.only)
     found = [name for name in product() if wanted(name) and (not options.sample or folder_of(name) in folders)]
     if not found:
@@ -97,7 +108,7 @@ def chosen(mutants, known, options):
     if not options.sample:
         return random.Random(0).sample(mutants, len(mutants))
     seed, noticed = options.seed or head_tree(), [m for m in mutants if m.key not in known]
-    say(f"{options.sample} of {len(noticed)} in {', '.join(measured())}, drawn by {seed}")
+    say(f"{options.sample} of {len(noticed)} in {', '.join(sorted({folder_of(m.file) for m in mutants}))}, drawn by {seed}")
     return random.Random(seed).sample(noticed, min(options.sample, len(noticed)))
 
 
@@ -176,7 +187,9 @@ class Campaign:
             write_json(rows)
         print(table(rows, lambda r: r["file"], "file"))
         print(table(rows, lambda r: folder_of(r["file"]), "folder"))
-        new = sorted(set(survived) - self.accepted)
+        new = set(survived) - self.accepted
+        changed = {folder_of(row["file"]) for row in rows} - set(measured(digests())) if self.options.sample else set()
+        new = {key for key in new if folder_of(key.partition(":")[0]) not in changed}
         for key in sorted(self.accepted & set(killed)):
             say(f"killed now, so it can leave the list: {key}")
         left = len(self.mutants) - len(rows)
@@ -186,8 +199,8 @@ class Campaign:
             say(f"nothing is accepted: {left} of {len(self.mutants)} mutants have no verdict yet, so run make mutants ACCEPT=1 again")
         elif self.options.accept:
             self.accept(rows)
-            new = []
-        low = [] if self.options.sample or left else below_goal(rows, self.whole)
+            new = set()
+        low = missed_by_sample(rows, changed) if self.options.sample else [] if left else below_goal(rows, self.whole)
         for text in low:
             say(text)
         print(f"{len(killed) + len(survived) - len(new)} passed, {len(new) + len(low)} failed")
@@ -196,7 +209,7 @@ class Campaign:
     def accept(self, rows):
         write_accepted(rows, self.texts)
         write_judges(rows)
-        write_goals(rows, self.whole)
+        write_goals(rows, self.whole, digests())
         say(f"{sum(row['verdict'] == 'survived' for row in rows)} survivors written to campaigns/mutants/accepted.txt")
 
 

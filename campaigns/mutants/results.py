@@ -1,5 +1,6 @@
 """What is known of each mutant: kept while it lasts, so that a campaign goes on where it stopped; the accepted survivors; the tables."""
 import json
+import math
 import pathlib
 import re
 import threading
@@ -14,10 +15,13 @@ HEAD = """# Mutants that no test notices, written by `make mutants`: file:functi
 """
 
 
-GOALS_HEAD = """# Folders, the least kill rate of each (0: only measured), and its rate at the last whole measurement (`make mutants ONLY=folder
-# ACCEPT=1` writes it): a sample is drawn from measured folders alone, because only their accepted survivors are all known.
-# folder            goal %  rate %
+GOALS_HEAD = """# Folders, the least kill rate of each (0: only measured), its rate at the last whole measurement (`make mutants ONLY=folder ACCEPT=1`
+# writes it), and what its sources were then. A sample is drawn from those with a goal or that are as they were measured. Of the latter
+# every survivor that is not accepted fails; of one that has changed its new survivors are not known, and it fails when so many of the
+# sample survive that its goal is missed (by chance once in a hundred samples of a folder that just meets it).
+# folder            goal %  rate %  sources
 """
+CHANCE = 0.01
 
 
 def source_of(judge):
@@ -111,9 +115,21 @@ def goals():
     return {row[0]: (float(row[1]), None if row[2] == "-" else float(row[2])) for row in rows}
 
 
-def measured():
-    """The folders that a sample may be drawn from: of others the accepted survivors are not all known."""
-    return [folder for folder, (_, rate) in goals().items() if rate is not None]
+def sources_measured():
+    """folder -> digest of its sources at its last whole measurement, where it is known."""
+    rows = [line.split() for line in GOALS.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
+    return {row[0]: row[3] for row in rows if len(row) > 3}
+
+
+def measured(digests):
+    """The folders whose accepted survivors are all known: their sources have these digests still."""
+    return [folder for folder, known in sources_measured().items() if digests.get(folder) == known]
+
+
+def sampled(digests):
+    """The folders that a sample may be drawn from."""
+    unchanged = measured(digests)
+    return [folder for folder, (goal, _) in goals().items() if goal > 0 or folder in unchanged]
 
 
 def rates(rows):
@@ -136,11 +152,28 @@ def below_goal(rows, folders):
     return found
 
 
-def write_goals(rows, folders):
+def at_least(survived, judged, share):
+    """The chance that so many or more of the judged survive where this share of all does."""
+    return sum(math.comb(judged, n) * share ** n * (1 - share) ** (judged - n) for n in range(survived, judged + 1))
+
+
+def missed_by_sample(rows, folders):
+    """Of these folders, of which a sample was judged."""
+    found = []
+    for folder, (killed, judged) in rates(rows).items():
+        goal = goals().get(folder, (0, None))[0]
+        if folder in folders and at_least(judged - killed, judged, 1 - goal / 100) < CHANCE:
+            found.append(f"{folder}: {judged - killed} of {judged} survive, more than chance has where the goal of {goal:g} % is met")
+    return found
+
+
+def write_goals(rows, folders, digests):
     """The rates of these folders, which were measured whole, beside their goals."""
-    table_ = goals()
+    table_, sources = goals(), sources_measured()
+    sources.update({folder: digests[folder] for folder in rates(rows) if folder in folders})
     for folder, (killed, judged) in rates(rows).items():
         if folder in folders:
             table_[folder] = table_.get(folder, (0.0, None))[0], 100 * killed / judged
-    lines = [f"{folder:<20}{goal:>6g}{'-' if rate is None else f'{rate:.1f}':>8}\n" for folder, (goal, rate) in sorted(table_.items())]
+    lines = [f"{folder:<20}{goal:>6g}{'-' if rate is None else f'{rate:.1f}':>8}  {sources.get(folder, '')}".rstrip() + "\n"
+             for folder, (goal, rate) in sorted(table_.items())]
     GOALS.write_text(GOALS_HEAD + "".join(lines), encoding="utf-8")
