@@ -159,8 +159,8 @@ static void test_the_default_filter_behind_a_sensor_that_hung(void)
     }
 }
 
-/* Mean square of the change of roll, cdeg^2, in the first rows behind a sensor that hung for so many samples. */
-static double unrest_behind(size_t hung)
+/* Mean square of the change of roll, cdeg^2, in the first rows after a sensor that hung for so many samples. */
+static double unrest_after(size_t hung)
 {
     double squares = 0.0;
     for (uint32_t seed = 0; seed < 20; seed++) {
@@ -186,10 +186,10 @@ static double unrest_behind(size_t hung)
 /* With the 16th marked reading, the 25th equal one, and none before, what the filters had learned is forgotten. */
 static void test_sixteen_marked_readings_are_forgotten(void)
 {
-    double kept = unrest_behind(24);
-    double forgotten = unrest_behind(25);
-    printf("    mean square of a change of roll behind it: %.0f, %.0f\n", kept, forgotten);
-    TEST_ASSERT_TRUE(kept < 1.3 * unrest_behind(23));
+    double kept = unrest_after(24);
+    double forgotten = unrest_after(25);
+    printf("    mean square of a change of roll after it: %.0f, %.0f\n", kept, forgotten);
+    TEST_ASSERT_TRUE(kept < 1.3 * unrest_after(23));
     TEST_ASSERT_TRUE(forgotten > 1.6 * kept);
 }
 
