@@ -215,9 +215,8 @@ def campaign_module():
     return campaign
 
 
-def reported(verdicts_of, accepted_keys, whole=("lib/tiny",), left=(), sources="", now="1a2b", **options):
-    """(exit status, what a campaign with these results prints); left: mutants without a verdict; sources: what those of the folder were when
-    it was measured, now: what they are."""
+def reported(verdicts_of, accepted_keys, whole=("lib/tiny",), left=(), sources="", now="1a2b", share=0.5, **options):
+    """(exit status, what is printed); left: mutants without a verdict; sources, now: digests as measured and as they are; share: may survive."""
     campaign = campaign_module()
     campaign.digests = lambda: {"lib/tiny": now}
     pathlib.Path("build").mkdir(exist_ok=True)
@@ -227,7 +226,7 @@ def reported(verdicts_of, accepted_keys, whole=("lib/tiny",), left=(), sources="
     one.options = campaign.options_of([])
     vars(one.options).update(options)
     one.accepted, one.mutants = set(accepted_keys), [*verdicts_of, *left]
-    one.texts, one.whole = {"lib/tiny/a.c": ""}, set(whole)
+    one.texts, one.whole, one.shares = {"lib/tiny/a.c": ""}, set(whole), {"lib/tiny": share}
     rows = [{"key": f"lib/tiny/a.c:{key}", "file": "lib/tiny/a.c", "line": 1, "verdict": verdict, "by": "test_tiny" if verdict == "killed" else ""}
             for key, verdict in verdicts_of.items()]
     out = io.StringIO()
@@ -282,23 +281,24 @@ def a_part_of_a_folder_neither_sets_nor_fails_its_rate():
 
 @test
 def a_sample_of_a_folder_that_has_changed_is_held_to_its_goal():
-    """5 of 8 survive by chance in 36 % of the samples where half do, all 8 in 0.4 %."""
-    eight = [f"m{n}" for n in range(8)]
-    some = {key: "survived" if n < 5 else "killed" for n, key in enumerate(eight)}
-    status, text = reported(some, [], sample=8, sources="1a2b")
-    assert status == 1 and text.endswith("3 passed, 5 failed\n"), text
+    """5 of 8 survive by chance in 36 % of the samples where half do and in 0.04 % where a tenth does, all 8 in 0.4 % where half do."""
+    five = {f"m{n}": "survived" if n < 5 else "killed" for n in range(8)}
+    assert reported(five, [], sample=8, sources="1a2b")[1].endswith("3 passed, 5 failed\n")
     for sources in ("", "9f9f"):
-        status, text = reported(some, [], sample=8, sources=sources)
-        assert status == 0 and text.endswith("8 passed, 0 failed\n"), text
-        status, text = reported(dict.fromkeys(eight, "survived"), [], sample=8, sources=sources)
-        assert status == 1 and "lib/tiny: 8 of 8 survive, more than chance has where the goal of 50 % is met" in text, text
+        for verdicts, share, status in ((five, 0.5, 0), (dict.fromkeys(five, "survived"), 0.5, 1), (five, 0.1, 1), (five, 0.0, 1)):
+            got, text = reported(verdicts, [], sample=8, sources=sources, share=share)
+            assert got == status and (f"of 8 survive, too many where the goal leaves {100 * share:.1f} %" in text) == bool(status), text
 
 
 @test
-def a_sample_is_drawn_from_folders_with_a_goal_or_as_they_were_measured():
-    from results import sampled
+def a_sample_is_drawn_from_folders_with_a_goal_or_as_they_were_measured_and_accepted_survivors_leave_less_room():
+    """Of 20 mutants 10 may survive where the goal is 50 %: 6 are accepted, so 4 of the other 14; or all ten and more, so none."""
+    from results import may_survive, sampled
     pathlib.Path("campaigns/mutants/goals.txt").write_text("lib/a 50 -\nlib/b 0 80.0 1a2b\nlib/c 0 80.0 1a2b\nlib/d 0 -\n", encoding="utf-8")
     assert sampled({"lib/a": "x", "lib/b": "1a2b", "lib/c": "2", "lib/d": "y"}) == ["lib/a", "lib/b"]
+    twenty = [types.SimpleNamespace(file="lib/a/a.c", key=f"m{n}") for n in range(20)]
+    for known, share in ((6, 4 / 14), (10, 0.0), (12, 0.0), (0, 0.5)):
+        assert may_survive(twenty, {f"m{n}" for n in range(known)} | {"of another folder"}) == {"lib/a": share}
 
 
 @test

@@ -21,8 +21,8 @@ from judge import Judge, Worker
 from nav import Link, Variants
 from operators import mutants_of
 from order import Cheapest, Listed, Reached, write_judges
-from results import (Results, accepted, below_goal, folder_of, goals, measured, missed_by_sample, sampled, table, write_accepted, write_goals,
-                     write_json)
+from results import (Results, accepted, below_goal, folder_of, goals, may_survive, measured, missed_by_sample, sampled, table, write_accepted,
+                     write_goals, write_json)
 from shop import Stop, alone, copy_tree, digest, tree_files
 
 WORKERS = 2
@@ -70,7 +70,7 @@ def product():
 
 
 def digests():
-    """folder -> what its sources are now."""
+    """folder -> digest of its sources now."""
     texts = {}
     for name in product():
         texts.setdefault(folder_of(name), []).append(pathlib.Path(name).read_bytes())
@@ -118,7 +118,9 @@ class Campaign:
         self.texts = {name: pathlib.Path(name).read_text(encoding="utf-8") for name in sources(options)}
         self.hashes = {name: digest(text) for name, text in self.texts.items()}
         self.accepted = accepted()
-        self.mutants = chosen([m for name, text in self.texts.items() for m in mutants_of(name, text)], self.accepted, options)
+        every = [m for name, text in self.texts.items() for m in mutants_of(name, text)]
+        self.shares = may_survive(every, self.accepted)
+        self.mutants = chosen(every, self.accepted, options)
         self.whole = whole_folders(self.texts)
         made_of = [n for n in tree_files() if n.endswith((".c", ".h", ".cpp", ".hpp", ".py", ".mk", "Makefile"))]
         self.results = Results(digest(options.patience, *(pathlib.Path(n).read_bytes() for n in made_of)))
@@ -200,7 +202,7 @@ class Campaign:
         elif self.options.accept:
             self.accept(rows)
             new = set()
-        low = missed_by_sample(rows, changed) if self.options.sample else [] if left else below_goal(rows, self.whole)
+        low = missed_by_sample(rows, changed, self.shares) if self.options.sample else [] if left else below_goal(rows, self.whole)
         for text in low:
             say(text)
         print(f"{len(killed) + len(survived) - len(new)} passed, {len(new) + len(low)} failed")

@@ -11,14 +11,14 @@ from shop import ROOT, digest
 ACCEPTED = pathlib.Path("campaigns/mutants/accepted.txt")
 GOALS = pathlib.Path("campaigns/mutants/goals.txt")
 HEAD = """# Mutants that no test notices, written by `make mutants`: file:function, operator, what became what, which of its kind in the
-# function. CI fails on a survivor that is not here. A line leaves the list when a test kills its mutant.
+# function. CI judges its sample by this list (goals.txt). A line leaves the list when a test kills its mutant.
 """
 
 
 GOALS_HEAD = """# Folders, the least kill rate of each (0: only measured), its rate at the last whole measurement (`make mutants ONLY=folder ACCEPT=1`
-# writes it), and what its sources were then. A sample is drawn from those with a goal or that are as they were measured. Of the latter
-# every survivor that is not accepted fails; of one that has changed its new survivors are not known, and it fails when so many of the
-# sample survive that its goal is missed (by chance once in a hundred samples of a folder that just meets it).
+# writes it), and a digest of its sources then. A sample is drawn from folders that have a goal or have not changed since. Where nothing
+# has changed, every survivor that is not accepted fails. Where something has, the new survivors are not known: the sample, in which no
+# accepted one is, fails when more survive than the goal leaves beside the accepted ones (by chance in one sample of a hundred).
 # folder            goal %  rate %  sources
 """
 CHANCE = 0.01
@@ -157,13 +157,22 @@ def at_least(survived, judged, share):
     return sum(math.comb(judged, n) * share ** n * (1 - share) ** (judged - n) for n in range(survived, judged + 1))
 
 
-def missed_by_sample(rows, folders):
-    """Of these folders, of which a sample was judged."""
+def may_survive(mutants, known):
+    """folder -> the share of its mutants that are not accepted that may survive while its goal is met."""
+    shares = {}
+    for folder in {folder_of(mutant.file) for mutant in mutants}:
+        keys = {mutant.key for mutant in mutants if folder_of(mutant.file) == folder}
+        spare = (1 - goals().get(folder, (0, None))[0] / 100) * len(keys) - len(keys & known)
+        shares[folder] = max(0.0, spare) / max(1, len(keys - known))
+    return shares
+
+
+def missed_by_sample(rows, folders, shares):
+    """Of these folders, of which a sample was judged; shares: may_survive's."""
     found = []
     for folder, (killed, judged) in rates(rows).items():
-        goal = goals().get(folder, (0, None))[0]
-        if folder in folders and at_least(judged - killed, judged, 1 - goal / 100) < CHANCE:
-            found.append(f"{folder}: {judged - killed} of {judged} survive, more than chance has where the goal of {goal:g} % is met")
+        if folder in folders and at_least(judged - killed, judged, shares[folder]) < CHANCE:
+            found.append(f"{folder}: {judged - killed} of {judged} survive, too many where the goal leaves {100 * shares[folder]:.1f} %")
     return found
 
 
