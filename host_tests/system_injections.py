@@ -234,7 +234,7 @@ def wrong_parameters_of_a_fault_are_refused():
     for what, words in (("flip:9", "flip wants a whole number from 1 to 8"), ("clip:4", "clip wants an axis: x, y or z"),
                         ("flip:x", "flip wants a whole number"),
                         ("double:w", "double wants an axis: x, y or z"), ("noise:0", "noise wants a whole number from 1 to 4096"),
-                        ("storm:0", "storm wants a whole number from 1 to 20000"), ("frozen:1:2", "too many parts"),
+                        ("storm:0", "storm wants a whole number from 1 to 500000"), ("frozen:1:2", "too many parts"),
                         ("odr:-200001", "odr wants a whole number from -200000 to 200000"), ("flip:1:5", "too many parts"),
                         ("devid:256", "devid wants a whole number from 0 to 255"), ("hang:17", "hang wants a whole number from 1 to 16")):
         done = run(SIMRUN, "--fw", FW, "--in", REST, "--out", OUT / "x.csv", "--fault", f"1ms:{what}", expect=2)

@@ -179,6 +179,12 @@ uint64_t alter_next(void)
     return pulse_at;
 }
 
+/* Half of the time where one follows the other sooner. */
+static uint64_t pulse_length(void)
+{
+    return pulse_period != 0 && pulse_period < 2 * PULSE_CYCLES ? pulse_period / 2 : PULSE_CYCLES;
+}
+
 /* A short pulse against the level that INT1 has. */
 void alter_step(void)
 {
@@ -186,7 +192,7 @@ void alter_step(void)
         return;
     }
     in_pulse = !in_pulse;
-    pulse_at = mcu->cycle + (in_pulse ? PULSE_CYCLES : pulse_period - PULSE_CYCLES);
+    pulse_at = mcu->cycle + (in_pulse ? pulse_length() : pulse_period - pulse_length());
     if (!in_pulse && pulse_period == 0) {
         pulse_at = NEVER;
     }

@@ -33,7 +33,7 @@ const kind_properties_t fault_kinds[KIND_COUNT] = {
     [KIND_NOISE] = { "noise", false, false, false, false, 1, 20, 4096 },
     [KIND_DOUBLE] = { "double", false, false, false, true, 0, 2, 2 },
     [KIND_FROZEN] = { .name = "frozen", .lasts = true, .detectable = true },
-    [KIND_STORM] = { "storm", true, false, true, false, 1, 1000, 20000 },
+    [KIND_STORM] = { "storm", true, false, true, false, 1, 1000, 500000 },
     [KIND_ODR] = { "odr", true, false, true, false, -200000, 50000, 200000 },
     [KIND_RXFLOOD] = { .name = "rxflood", .lasts = true, .detectable = true },
     [KIND_MIXED] = { .name = "mixed", .on_bus = true },

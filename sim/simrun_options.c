@@ -145,7 +145,7 @@ static const char help_text[] =
     "           frozen[:MS]                  the sensor measures the same readings again and again\n"
     "           mixed                        once: the rest of the next sample read is of the one before *\n"
     "           clip[:AXIS][:MS]             the axis (z) is beyond the range\n"
-    "           glitch storm[:HZ[:MS]]       4 us pulse on INT1 against its level, one or many (1000 Hz)\n"
+    "           glitch storm[:HZ[:MS]]       pulse of up to 4 us on INT1 against its level, one or many (1000 Hz)\n"
     "           odr[:PPM[:MS]]               error of the sensor's clock (50000), instead of --ppm\n"
     "           rxflood[:MS] txstall[:MS]    random bytes to the UART without a pause; its transmitter stands still\n"
     "           rxspoil[:LOST]               once: the next byte typed has no stop bit (0), or comes after one that "
