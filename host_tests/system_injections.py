@@ -168,6 +168,23 @@ def storm_on_int1_comes_at_its_rate():
 
 
 @test
+def storm_on_int1_keeps_its_rate_up_to_the_fastest():
+    """At the pin, because no handler runs so often: 100 ms, with the edges of up to eleven samples and of a pulse that is cut by the end."""
+    for hz in (20000, 125000, 500000):
+        path = OUT / "inject-fast-storm.vcd"
+        injected("fast-storm", f"100ms:storm:{hz}:100", max_ms=250, options=("--vcd", path))
+        lines = path.read_text(encoding="ascii").splitlines()
+        wire = next(line.split()[3] for line in lines if line.startswith("$var") and "INT1_D2" in line)
+        at_us, edges = 0.0, 0
+        for line in lines:
+            if line.startswith("#"):
+                at_us = int(line[1:]) / 10000  # 100 ps
+            elif line == f"1{wire}" and 100000 <= at_us < 200000:
+                edges += 1
+        assert abs(edges - hz / 10) <= 12, f"{edges} edges in 100 ms of {hz} Hz"
+
+
+@test
 def output_data_rate_changes_for_as_long_as_asked():
     for ppm in (50000, -50000):
         _, _, served, stats = injected("odr", f"2000ms:odr:{ppm}:4000", judge=True, max_ms=9000)

@@ -179,7 +179,7 @@ uint64_t alter_next(void)
     return pulse_at;
 }
 
-/* Half of the time where one follows the other sooner. */
+/* Cycles; in a storm a pulse lasts half of its period at most. */
 static uint64_t pulse_length(void)
 {
     return pulse_period != 0 && pulse_period < 2 * PULSE_CYCLES ? pulse_period / 2 : PULSE_CYCLES;
@@ -192,7 +192,7 @@ void alter_step(void)
         return;
     }
     in_pulse = !in_pulse;
-    pulse_at = mcu->cycle + (in_pulse ? pulse_length() : pulse_period - pulse_length());
+    pulse_at += in_pulse ? pulse_length() : pulse_period - pulse_length(); /* from when it was due: the rate holds */
     if (!in_pulse && pulse_period == 0) {
         pulse_at = NEVER;
     }
