@@ -10,8 +10,8 @@
 #include <stdint.h>
 
 #define HAL_TICK_US 8192u
-#define HAL_WAKE_LATE_US 1000u
-#define HAL_WAKE_AHEAD_US 31000u /* hal_wake_at tells a moment so far ahead from one that has just passed */
+#define HAL_WAKE_LATE_US 4000u
+#define HAL_WAKE_AHEAD_US 28000u /* hal_wake_at tells a moment so far ahead from one that has just passed */
 
 /* Starts the timer. Main, once. */
 void hal_time_init(void);

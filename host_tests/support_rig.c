@@ -141,15 +141,17 @@ void rig_until_pause(void)
     }
 }
 
-void rig_until_source_asked(void)
+void rig_until_asked(void)
 {
     hal_host_faults.int1_cut = true;
-    for (double end_ms = hal_host_now_ms() + 60.0;
-         adxl345_burst_running() || adxl345_burst_bus_state() != I2C_BUS_BUSY;) {
+    while (adxl345_burst_running()) {
+        rig_pass();
+    }
+    for (double end_ms = hal_host_now_ms() + 60.0; !adxl345_burst_running();) {
         TEST_ASSERT_TRUE(hal_host_now_ms() < end_ms);
         adxl345_poll(hal_time_us());
         rig_take_all();
-        if (adxl345_burst_bus_state() != I2C_BUS_BUSY) {
+        if (!adxl345_burst_running()) {
             board_driver_sleep();
         }
     }

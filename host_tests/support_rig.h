@@ -62,7 +62,7 @@ void rig_until_burst(void);
 /* No burst runs and none is due for a while: the next event is the START of the next sample. */
 void rig_until_pause(void);
 
-/* INT1 is cut; passes until the read of INT_SOURCE, which asks the sensor why, has just been put on the bus. */
-void rig_until_source_asked(void);
+/* INT1 is cut; passes until a burst that asks the sensor all the same has just been put on the bus. */
+void rig_until_asked(void);
 
 #endif

@@ -25,6 +25,8 @@ static bool level;    /* of SDA while the sensor did not drive it */
 static unsigned bursts_left;
 static uint8_t before;
 static unsigned next_byte; /* of the burst under way */
+static bool ready;         /* its INT_SOURCE came in with a sample ready: else it ends with the byte after */
+static bool forgotten;     /* it reads as after power-on: the sensor is configured again, which clears its FIFO */
 
 /* So many bits late: they have the level of the line, and push the others back. */
 static uint8_t late(unsigned at, uint8_t byte)
@@ -41,15 +43,8 @@ static uint8_t early(uint8_t reg, uint8_t byte)
     return (uint8_t)((unsigned)byte << bits | next >> (8u - bits));
 }
 
-static uint8_t on_rx(uint8_t reg, uint8_t byte)
+static uint8_t altered(unsigned at, uint8_t reg, uint8_t byte)
 {
-    unsigned at = (unsigned)reg - ADXL345_INT_SOURCE;
-    next_byte = reg == ADXL345_INT_SOURCE ? 0 : next_byte;
-    if (bursts_left == 0 || at != next_byte) {
-        return byte;
-    }
-    next_byte++;
-    bursts_left -= at == READING_BYTES - 1;
     if (at < from) {
         return byte;
     }
@@ -73,6 +68,28 @@ static uint8_t on_rx(uint8_t reg, uint8_t byte)
     default:
         return byte;
     }
+}
+
+static uint8_t on_rx(uint8_t reg, uint8_t byte)
+{
+    unsigned at = (unsigned)reg - ADXL345_INT_SOURCE;
+    next_byte = reg == ADXL345_INT_SOURCE ? 0 : next_byte;
+    if (bursts_left == 0 || at != next_byte) {
+        return byte;
+    }
+    next_byte++;
+    uint8_t arrives = altered(at, reg, byte);
+    if (at == READING_SOURCE) {
+        ready = (arrives & ADXL345_INT_DATA_READY) != 0;
+        forgotten = !ready && (arrives & ADXL345_INT_WATERMARK) != 0;
+    }
+    if (at == READING_FORMAT) {
+        forgotten = forgotten && arrives == 0;
+    }
+    if (bursts_left != 0 && at == (ready ? READING_BYTES - 1u : (unsigned)READING_FORMAT)) {
+        bursts_left--;
+    }
+    return arrives;
 }
 
 static void pass(void)
@@ -129,7 +146,7 @@ static void test_a_burst_that_goes_wrong_at_any_byte_brings_nothing(void)
             rig_run_ms(60);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
             TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-            TEST_ASSERT_EQUAL_size_t(1, rig_lost(60));
+            TEST_ASSERT_EQUAL_size_t(ready ? 1 : 0, rig_lost(60)); /* its data were read, or stayed in the sensor */
         }
     }
     start_and_change(ONES, READING_FIFO_STATUS, 0, 1); /* the data were right, but who knows */
@@ -161,7 +178,7 @@ static void test_bits_that_slip_at_any_byte_bring_nothing(void)
                 rig_run_ms(100);
                 TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
                 TEST_ASSERT_EQUAL_HEX8(ADXL345_MARK_INTEGRITY, marks);
-                TEST_ASSERT_EQUAL_size_t(1, rig_lost(60));
+                TEST_ASSERT_EQUAL_size_t(ready || forgotten ? 1 : 0, rig_lost(60));
             }
         }
     }

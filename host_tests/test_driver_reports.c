@@ -341,7 +341,7 @@ static void test_an_edge_while_the_sensor_is_asked_is_kept(void)
 {
     stream_for_ms(300);
     hal_host_sensor.reg[ADXL345_POWER_CTL] = 0;
-    rig_until_source_asked();
+    rig_until_asked();
     hal_host_faults.int1_cut = false;
     hal_host_sensor.reg[ADXL345_POWER_CTL] = ADXL345_POWER_MEASURE;
     size_t before = rig.taken_count;
@@ -352,8 +352,8 @@ static void test_an_edge_while_the_sensor_is_asked_is_kept(void)
 }
 
 /*
- * INT1 falls silent: the sensor is asked five quarters of a period after the last burst, and its answer takes 38 bits.
- * Main passes for that, and not for nothing.
+ * INT1 falls silent: the sensor is read five quarters of a period after the last burst, which takes 119 bits. Main
+ * passes for that, and not for nothing.
  */
 static void test_a_silent_sensor_is_asked_after_five_quarters_of_a_period(void)
 {
@@ -369,7 +369,7 @@ static void test_a_silent_sensor_is_asked_after_five_quarters_of_a_period(void)
         }
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
         uint32_t took_us = hal_time_us() - last_us;
-        TEST_ASSERT_TRUE(took_us >= 12500 && took_us <= 12500 + 38 * 44 / 16 + 100);
+        TEST_ASSERT_TRUE(took_us >= 12500 && took_us <= 12500 + 119 * 44 / 16 + 100);
         TEST_ASSERT_TRUE(passes <= 10);
     }
 }

@@ -28,6 +28,9 @@ static uint8_t sent;
 static uint8_t bus_status;
 static uint8_t next_byte;
 
+/* The first byte that is read has I2C_BUS_MORE, those after it follow one by one. */
+enum { FIRST_READ = 0x81 };
+
 static void give(command_t what)
 {
     command = what;
@@ -137,7 +140,7 @@ static void begin(unsigned transfer)
     bus->rx_length = transfers[transfer].rx_length;
     bus->tx[0] = 0xA0;
     bus->tx[1] = 0xA1;
-    next_byte = 1;
+    next_byte = FIRST_READ;
     i2c_bus_begin(bus);
     TEST_ASSERT_EQUAL(START, command);
     write_down(bus->tx_length, bus->rx_length);
@@ -169,7 +172,7 @@ static void assert_received(unsigned count)
     TEST_ASSERT_EQUAL_HEX8(0xA0, bus->tx[0]);
     TEST_ASSERT_EQUAL_HEX8(0xA1, bus->tx[1]);
     for (unsigned i = 0; i < LONGEST_READ; i++) {
-        TEST_ASSERT_EQUAL_HEX8(i < count ? i + 1 : CANARY, bus->rx[i]);
+        TEST_ASSERT_EQUAL_HEX8(i < count ? FIRST_READ + i : CANARY, bus->rx[i]);
     }
     for (unsigned i = 0; i < sizeof memory.behind; i++) {
         TEST_ASSERT_EQUAL_HEX8(CANARY, memory.behind[i]);
@@ -201,6 +204,25 @@ static void test_transfers_do_their_steps(void)
         go_well(0, step_count);
         assert_received(transfers[t].rx_length);
         TEST_ASSERT_EQUAL_UINT(transfers[t].rx_length, i2c_bus_asked(bus));
+    }
+}
+
+/* A first byte without I2C_BUS_MORE is followed by one, which is refused, however many were asked for. */
+static void test_a_read_that_needs_no_more_ends_with_its_second_byte(void)
+{
+    for (unsigned first = 0; first <= 0xFF; first++) {
+        for (unsigned t = 1; t < TRANSFERS; t++) {
+            begin(t);
+            unsigned reads = transfers[t].rx_length;
+            unsigned expected = (first & 0x80u) != 0 || reads < 2 ? reads : 2;
+            next_byte = (uint8_t)first;
+            write_down(bus->tx_length, expected);
+            go_well(0, step_count);
+            for (unsigned i = 0; i < LONGEST_READ; i++) {
+                TEST_ASSERT_EQUAL_HEX8(i < expected ? (uint8_t)(first + i) : CANARY, bus->rx[i]);
+            }
+            TEST_ASSERT_EQUAL_UINT(expected, i2c_bus_asked(bus));
+        }
     }
 }
 
@@ -259,6 +281,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_transfers_do_their_steps);
+    RUN_TEST(test_a_read_that_needs_no_more_ends_with_its_second_byte);
     RUN_TEST(test_every_wrong_status_at_every_step_ends_the_transfer);
     RUN_TEST(test_events_after_the_end_are_stale);
     return UNITY_END();

@@ -142,10 +142,22 @@ static void write_row(void)
     health_sample_filtered();
 }
 
+/*
+ * A row is out no sooner than so long after its sample is overdue, us: the sample may be on the bus, or the clock may
+ * still have to look for it.
+ */
+#define READ_LATE_US 2000u
+
+/* One that is late because main was: INT1 says that it waits, and is believed. */
+static bool sample_waits(void)
+{
+    return adxl345_fault() == ADXL345_FAULT_NONE && hal_drdy_high();
+}
+
 /* Begins the way of one that is missing: before the oldest sample, or by now where none is on its way. */
 static bool fill_gap(void)
 {
-    uint32_t t_us = loop.pass_us - adxl345_lateness_us();
+    uint32_t t_us = loop.pass_us - READ_LATE_US;
     bool queued = adxl345_oldest_us(&t_us);
     if (!coast_due(t_us)) {
         return false;
@@ -154,7 +166,7 @@ static bool fill_gap(void)
         coast_wait(t_us);
         return false;
     }
-    return (queued || !adxl345_sample_coming()) && coast_over(adxl345_period_us(), queued);
+    return (queued || !sample_waits()) && coast_over(adxl345_period_us(), queued);
 }
 
 /* Begins the way of the next sample. One that is in the queue came before this pass. */
@@ -257,8 +269,8 @@ static void set_alarm(void)
 {
     struct loop *l = here();
     uint32_t t_us = adxl345_deadline_us();
-    if (coast_due(t_us) && !coast_due(l->pass_us)) {
-        t_us = coast_due_us();
+    if (coast_due(t_us - READ_LATE_US) && !coast_due(l->pass_us - READ_LATE_US)) {
+        t_us = coast_due_us() + READ_LATE_US;
     }
     if (t_us - l->pass_us > HAL_WAKE_AHEAD_US) {
         t_us = l->pass_us + HAL_WAKE_AHEAD_US;

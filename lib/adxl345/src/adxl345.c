@@ -145,9 +145,6 @@ static void advance(adxl345_driver_t *d)
     case STEP_MEASURE:
         adxl345_stream_start(d);
         break;
-    case STEP_ASK_SOURCE:
-        adxl345_stream_source_asked(d);
-        break;
     case STEP_STANDBY:
         adxl345_driver_stopped();
         break;
@@ -191,9 +188,9 @@ static void access_step(adxl345_driver_t *d)
 
 static void drain_step(adxl345_driver_t *d)
 {
-    bool waiting = hal_drdy_high() && !adxl345_burst_found_empty();
+    bool waiting = adxl345_burst_sample_waits();
     if (waiting) {
-        (void)adxl345_burst_read(false);
+        (void)adxl345_burst_read();
     }
     if ((waiting || adxl345_burst_running() || adxl345_queued() != 0) && !adxl345_driver_deadline_passed()) {
         hal_wake();
@@ -242,7 +239,7 @@ void adxl345_poll(uint32_t now_us)
         }
     }
     if (d->step == STEP_STREAM) {
-        adxl345_stream_poll(d);
+        adxl345_stream_poll(d, reading);
     } else if (d->step != STEP_OFF) {
         other_step(d);
     }

@@ -82,15 +82,6 @@ uint8_t adxl345_queued(void);
 /* Time of the oldest sample in the queue; false when it is empty. */
 bool adxl345_oldest_us(uint32_t *t_us);
 
-/*
- * A sample is on the bus or waits in the sensor to be read: it may be older than now. INT1 that is high over an empty
- * sensor says nothing.
- */
-bool adxl345_sample_coming(void);
-
-/* So much later than by INT1 may a sample come, us: two periods while INT1 is silent or stuck. */
-uint32_t adxl345_lateness_us(void);
-
 adxl345_phase_t adxl345_phase(void);
 
 /* While ADXL345_STREAMING with a fault samples go on: something is wrong with them, or with how they come. */

@@ -24,6 +24,7 @@
 enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1 };
 
 #define SENSOR_DEPTH 33ul /* samples that the sensor can hold (p. 27) */
+#define ASKED_US 256u     /* into a burst at 100 kHz the sensor says whether it has data */
 
 _Static_assert((int)READING_BYTES == (int)I2C_BUS_RX_MAX, "a reading fits");
 
@@ -188,23 +189,24 @@ bool adxl345_burst_register_holds(void)
 }
 
 /*
- * Stamp of a sample that was found waiting without an edge: one period after the one before it unless it is new, but
- * not before the sensor was last seen empty.
+ * Stamp of a sample that was found waiting without an edge: one period after the one before it, but not before the
+ * sensor was last seen empty, nor in the future.
  */
-static uint32_t waiting_since_us(struct burst *b, uint32_t now_us, bool is_new)
+static uint32_t waiting_since_us(const struct burst *b, uint32_t now_us)
 {
     uint32_t step_us = adxl345_period_us();
     uint32_t t_us = b->last_us + step_us;
-    if (b->verdict == READING_EMPTY && hal_time_reached(b->begun_us, t_us)) {
-        t_us = b->begun_us;
+    uint32_t empty_us = b->begun_us + ASKED_US;
+    if (b->verdict == READING_EMPTY && hal_time_reached(empty_us, t_us)) {
+        t_us = empty_us;
     }
-    if (is_new || !b->last_known || now_us - t_us > SENSOR_DEPTH * step_us) {
+    if (!b->last_known || now_us - t_us > SENSOR_DEPTH * step_us) {
         t_us = now_us;
     }
     return t_us;
 }
 
-bool adxl345_burst_read(bool is_new)
+bool adxl345_burst_read(void)
 {
     struct burst *b = base();
     if (b->mode != BURST_READ || adxl345_burst_queue_full() || !claim(b)) {
@@ -217,8 +219,9 @@ bool adxl345_burst_read(bool is_new)
     hal_irq_restore(state);
     uint32_t now_us = hal_time_us();
     if (!exact) {
-        t_us = waiting_since_us(b, now_us, is_new);
+        t_us = waiting_since_us(b, now_us);
     }
+    b->by_clock = !exact && !hal_drdy_high();
     burst_entry_t *entry = entry_at(b->head);
     entry->sample.t_us = t_us;
     entry->exact = exact;
@@ -257,15 +260,30 @@ static MACHINE_APART void restamp(const struct burst *b, burst_entry_t *entry)
     }
 }
 
+/* INT1 was low when the clock began this burst: an edge since then is that of its sample, which came just in time. */
+static inline void take_edge(struct burst *b, burst_entry_t *entry)
+{
+    if (b->by_clock && b->edge_waiting) {
+        b->by_clock = false;
+        b->edge_waiting = 0;
+        entry->sample.t_us = b->edge_us;
+        entry->exact = true;
+    }
+}
+
 static reading_t judge(struct burst *b, burst_entry_t *entry)
 {
     b->failures = 0;
     reading_t verdict = adxl345_integrity_judge(b->bus.rx, entry->sample.lsb,
                                                 entry_at((uint8_t)(b->head - 1u))->sample.lsb);
     b->verdict = (uint8_t)verdict;
+    if (verdict == READING_EMPTY && !b->by_clock) {
+        adxl345_integrity_int1_lied();
+    }
     if (verdict != READING_GOOD) {
         return verdict;
     }
+    take_edge(b, entry);
     if (b->bus.rx[READING_FIFO_STATUS] >= 2u) {
         restamp(b, entry);
     }
@@ -284,6 +302,7 @@ static MACHINE_APART reading_t judge_ended(void)
     if (b->by_edge) {
         entry->sample.t_us = b->begun_us;
         entry->exact = true;
+        b->by_clock = false;
     }
     if (b->bus.state == I2C_BUS_OK) {
         verdict = judge(b, entry);
@@ -311,14 +330,14 @@ bool adxl345_burst_running(void)
     return burst.on_bus != 0;
 }
 
-bool adxl345_burst_found_empty(void)
+bool adxl345_burst_sample_waits(void)
 {
-    return burst.verdict == READING_EMPTY;
+    return hal_drdy_high() && (burst.verdict != READING_EMPTY || burst.edge_waiting);
 }
 
-bool adxl345_burst_left_more(void)
+bool adxl345_burst_by_clock(void)
 {
-    return burst.bus.rx[READING_FIFO_STATUS] != 0;
+    return burst.by_clock;
 }
 
 MACHINE_APART uint32_t adxl345_burst_begun_us(void)
@@ -336,9 +355,9 @@ void adxl345_burst_expect(uint32_t t_us)
     b->last_us = t_us;
 }
 
-uint32_t adxl345_burst_met_sample_us(void)
+uint32_t adxl345_burst_last_us(void)
 {
-    return burst.verdict == READING_EMPTY ? burst.last_us : adxl345_burst_begun_us();
+    return burst.last_us;
 }
 
 i2c_bus_state_t adxl345_burst_failed_state(void)

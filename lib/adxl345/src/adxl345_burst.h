@@ -46,11 +46,8 @@ uint8_t adxl345_burst_register_value(void);
 /* The byte read is the value that the access was given. */
 bool adxl345_burst_register_holds(void);
 
-/*
- * A sample waits, by INT1 or by the sensor's registers: start reading it if bus and queue are free. is_new: one that
- * was not there a moment ago, else the next in the FIFO. True when a burst was started.
- */
-bool adxl345_burst_read(bool is_new);
+/* Look for a sample, because INT1 or the clock says so: true when a burst was started, bus and queue being free. */
+bool adxl345_burst_read(void);
 
 /*
  * The verdict on a burst that has ended, by itself or because the bus was taken. To be called in every pass, else no
@@ -61,18 +58,19 @@ reading_t adxl345_burst_judge(void);
 /* A burst is on the bus, or has not been judged. */
 bool adxl345_burst_running(void);
 
-/* The newest burst met no sample; false again with adxl345_burst_set_mode(BURST_READ). */
-bool adxl345_burst_found_empty(void);
+/*
+ * INT1 is high and is believed: not where the newest burst since adxl345_burst_set_mode(BURST_READ) met no sample and no
+ * edge came after it.
+ */
+bool adxl345_burst_sample_waits(void);
 
-/* The newest good reading left samples in the sensor's FIFO. An edge may have begun another since: a hint then. */
-bool adxl345_burst_left_more(void);
+/* The newest sample was read with INT1 low, before or after. An edge may have begun another burst since: a hint then. */
+bool adxl345_burst_by_clock(void);
 
-/* When the newest burst was put on the bus; until the first, the moment by which it is expected (before BURST_READ). */
+/* When the newest burst was put on the bus, and the stamp of the newest sample; until the first, when to count from. */
 uint32_t adxl345_burst_begun_us(void);
+uint32_t adxl345_burst_last_us(void);
 void adxl345_burst_expect(uint32_t t_us);
-
-/* The same, but an empty burst does not count: the time of the sample before it. */
-uint32_t adxl345_burst_met_sample_us(void);
 
 /* Bursts that failed on the bus one after another; 0 after one that did not. */
 uint8_t adxl345_burst_failures(void);

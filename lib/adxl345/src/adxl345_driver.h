@@ -31,21 +31,18 @@ typedef enum {
     STEP_READ_BACK = STEP_PHASE(ADXL345_STARTING) | STEP_READS | TABLE_READ_BACK, /* here too */
     STEP_MEASURE = STEP_PHASE(ADXL345_STARTING) | TABLE_MEASURE,
     STEP_STREAM = STEP_PHASE(ADXL345_STREAMING),
-    STEP_ASK_SOURCE = STEP_PHASE(ADXL345_STREAMING) | STEP_READS | TABLE_SOURCE, /* no data in time: has it some? */
     STEP_QUIET_STANDBY = STEP_PHASE(ADXL345_QUIESCING) | TABLE_WRITTEN,
     STEP_STANDBY = STEP_PHASE(ADXL345_QUIESCING) | TABLE_STANDBY, /* a stop while no samples come */
     STEP_QUIET_DRAIN,
     STEP_BACK_OFF = STEP_PHASE(ADXL345_FAULTY)
 } step_t;
 
-/* The sample that is read without INT1, because the sensor says that it is there while the pin is low. */
-typedef enum { TIMED_NONE, TIMED_WANTED, TIMED_READ } timed_t;
-
 typedef struct {
     adxl345_config_t config;
     uint32_t now_us; /* of the poll or call that runs */
     uint32_t deadline_us;
     uint16_t half_us;        /* half the nominal time between samples, for the configured rate */
+    uint16_t patience_2us;   /* after a sample the edge of the next is overdue */
     uint8_t back_off;        /* limit */
     uint8_t step;            /* step_t */
     uint8_t address;         /* that is asked now */
@@ -53,7 +50,6 @@ typedef struct {
     uint8_t foreign_address; /* of the device that ADXL345_FAULT_WRONG_ID is about, and what it reads as DEVID */
     uint8_t foreign_id;
     uint8_t fault;
-    uint8_t seen_good;
     bool issued; /* the step's register access is on the bus */
     bool first_sample_seen;
     bool stop_wanted; /* after quiescing: stop, not start */
@@ -62,8 +58,6 @@ typedef struct {
     uint8_t tries;    /* of the step's register access that failed */
     bool renewed;     /* a configuration was asked for that the sensor has not been looked for with */
     bool after_fault; /* since the sensor was configured last */
-    uint8_t timed;    /* timed_t */
-    bool was_empty;   /* when the sensor was asked last: a sample that is ready now is new */
 } adxl345_driver_t;
 
 /* The one there is. */
@@ -77,10 +71,10 @@ static inline adxl345_driver_t *adxl345_driver_here(void)
     return d;
 }
 
-/* Bursts bring samples, or the sensor is being asked why they do not. */
+/* Bursts bring samples. */
 static inline bool adxl345_driver_streams(void)
 {
-    return adxl345_driver_state()->step / STEP_PHASE(1) == ADXL345_STREAMING;
+    return adxl345_driver_state()->step == STEP_STREAM;
 }
 
 /* The step that runs from now on, with a deadline after this limit; main passes again at once. */

@@ -12,14 +12,13 @@
  * A run that means something. Above it in bad_run: the sensor's registers are those after power-on; in empty_run: good
  * readings that must leave INT1 low before it is trusted again.
  */
-enum { RUN_LIMIT = 3, RUN_RESET, RUN_EMPTY = RUN_LIMIT + 32 };
+enum { RUN_LIMIT = 3, RUN_RESET, RUN_EMPTY = RUN_LIMIT + 31 };
 
 static struct integrity {
     uint8_t equal_run; /* good readings that were as the one before them */
     bool has_last;
     uint8_t range_g;
     uint8_t format; /* what DATA_FORMAT holds */
-    uint8_t good;
     uint8_t bad_run;
     uint8_t empty_run;
 } integrity;
@@ -88,17 +87,19 @@ static void lengthen(uint8_t *run)
     }
 }
 
-static MACHINE_APART reading_t discard(reading_t why)
+void adxl345_integrity_int1_lied(void)
 {
     struct integrity *i = here();
-    if (why == READING_EMPTY) {
-        lengthen(&i->empty_run);
-        if (i->empty_run == RUN_LIMIT) {
-            i->empty_run = RUN_EMPTY;
-        }
-        adxl345_counters_add(COUNTER_EMPTY);
-        return why;
+    lengthen(&i->empty_run);
+    if (i->empty_run == RUN_LIMIT) {
+        i->empty_run = RUN_EMPTY;
     }
+    adxl345_counters_add(COUNTER_EMPTY);
+}
+
+static reading_t discard(reading_t why)
+{
+    struct integrity *i = here();
     adxl345_counters_mark(ADXL345_MARK_INTEGRITY);
     lengthen(&i->bad_run);
     if (why == READING_RESET) {
@@ -119,7 +120,6 @@ static void accept(uint8_t source, bool repeated)
         i->equal_run++;
     }
     i->has_last = true;
-    i->good++;
     i->bad_run = 0;
     if (!hal_drdy_high()) {
         i->empty_run = i->empty_run > RUN_LIMIT ? (uint8_t)(i->empty_run - 1u) : 0;
@@ -130,42 +130,32 @@ static void accept(uint8_t source, bool repeated)
 }
 
 /*
- * A reading with other registers than were written. INT_SOURCE has the bit of its watermark after power-on (p. 26), so
- * that bits which a low SDA makes zeros do not pass for a lost configuration.
+ * A reading that ended with its second byte, for want of a sample. After power-on, where DATA_FORMAT is 0, INT_SOURCE
+ * has the bit of its watermark (p. 26), so that bits which a low SDA makes zeros do not pass for a lost configuration.
  */
-static reading_t discard_foreign(const uint8_t reading[READING_BYTES])
+static reading_t judge_empty(const uint8_t reading[READING_BYTES])
 {
-    if (reading[READING_FIFO_CTL] == ADXL345_FIFO_BYPASS && reading[READING_FORMAT] == 0 &&
-        (reading[READING_SOURCE] & ADXL345_INT_WATERMARK)) {
+    uint8_t format = reading[READING_FORMAT];
+    uint8_t source = reading[READING_SOURCE];
+    if (format == 0 && (source & ADXL345_INT_WATERMARK)) {
         return discard(READING_RESET);
     }
-    return discard(READING_BAD);
+    return format == integrity.format ? READING_EMPTY : discard(READING_BAD);
 }
 
-/*
- * FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). A sample that comes between
- * the byte of INT_SOURCE and the data is read too; it differs from the last, which an empty sensor shows again.
- */
+/* FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). */
 reading_t adxl345_integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3])
 {
-    if (reading[READING_FIFO_CTL] != TABLE_FIFO_CTL || reading[READING_FORMAT] != integrity.format) {
-        return discard_foreign(reading);
+    uint8_t source = reading[READING_SOURCE];
+    if (!(source & ADXL345_INT_DATA_READY)) {
+        return judge_empty(reading);
     }
-    if (reading[READING_FIFO_STATUS] > SENSOR_DEPTH || !plausible(&reading[READING_DATA], lsb)) {
+    if (reading[READING_FIFO_CTL] != TABLE_FIFO_CTL || reading[READING_FORMAT] != integrity.format ||
+        reading[READING_FIFO_STATUS] > SENSOR_DEPTH || !plausible(&reading[READING_DATA], lsb)) {
         return discard(READING_BAD);
     }
-    uint8_t source = reading[READING_SOURCE];
-    bool repeated = integrity.has_last && same(lsb, last_lsb);
-    if (!(source & ADXL345_INT_DATA_READY) && (repeated || !integrity.has_last)) {
-        return discard(READING_EMPTY);
-    }
-    accept(source, repeated);
+    accept(source, integrity.has_last && same(lsb, last_lsb));
     return READING_GOOD;
-}
-
-uint8_t adxl345_integrity_good(void)
-{
-    return integrity.good;
 }
 
 adxl345_fault_t adxl345_integrity_fault(void)

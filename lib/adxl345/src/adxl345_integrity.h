@@ -1,9 +1,9 @@
 /*
  * Inside the driver: is what a burst brought a reading of this sensor? Main only.
  *
- * A burst goes from INT_SOURCE through the data to FIFO_STATUS. The pattern in FIFO_CTL
- * is what no reset leaves and what no dead bus reads as, so a sensor that has lost its supply, a byte or a bit
- * that slipped and a wire that came off show, and no sample of such a burst goes out.
+ * A burst goes from INT_SOURCE through the data to FIFO_STATUS, or ends after DATA_FORMAT where INT_SOURCE has no
+ * sample ready. The pattern in FIFO_CTL is what no reset leaves and what no dead bus reads as, so a sensor that has lost
+ * its supply, a byte or a bit that slipped and a wire that came off show, and no sample of such a burst goes out.
  */
 #ifndef ADXL345_INTEGRITY_H
 #define ADXL345_INTEGRITY_H
@@ -26,7 +26,7 @@ enum {
 typedef enum {
     READING_NONE,  /* no burst ended since the last look */
     READING_GOOD,  /* a sample */
-    READING_EMPTY, /* the sensor had none: INT1 was high for nothing, the data are those of the sample before */
+    READING_EMPTY, /* the sensor had none */
     READING_BAD,   /* torn, shifted, or nobody there */
     READING_RESET, /* registers as after power-on: the sensor has lost its configuration */
     READING_FAILED /* the transfer did */
@@ -44,8 +44,8 @@ void adxl345_integrity_forget(void);
  */
 reading_t adxl345_integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3]);
 
-/* Good readings, wraps. */
-uint8_t adxl345_integrity_good(void);
+/* A reading was EMPTY although INT1 was high. */
+void adxl345_integrity_int1_lied(void);
 
 /*
  * The newest good reading is at least the tenth in a row that is equal on all axes.
@@ -63,7 +63,7 @@ bool adxl345_integrity_stuck(void);
 /* Why the sensor must be configured again: ADXL345_FAULT_NO_DATA, ADXL345_FAULT_TORN, or NONE. */
 adxl345_fault_t adxl345_integrity_fault(void);
 
-/* INT1 was high and the sensor empty three times without a good reading; until 32 of those have left INT1 low. */
+/* INT1 lied three times without a good reading that left it low; until 32 of those have left INT1 low. */
 bool adxl345_integrity_int1_stuck(void);
 
 #endif

@@ -28,7 +28,6 @@ enum adxl345_bits {
     ADXL345_BW_RATE_MASK = 0x0F, /* 100 Hz is 0x0A, each step doubles */
     ADXL345_POWER_MEASURE = 0x08,
     ADXL345_INT_DATA_READY = 0x80,
-    ADXL345_INT_EVENTS = 0x7C, /* taps, activity, inactivity, free fall: never without their function (p. 26) */
     ADXL345_INT_WATERMARK = 0x02,
     ADXL345_INT_OVERRUN = 0x01,
     ADXL345_FORMAT_SELF_TEST = 0x80,

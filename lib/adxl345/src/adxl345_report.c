@@ -4,9 +4,7 @@
 #include "adxl345_driver.h"
 #include "adxl345_integrity.h"
 #include "adxl345_period.h"
-#include "adxl345_stream.h"
 #include "adxl345_watch.h"
-#include "hal_drdy.h"
 
 const adxl345_sample_t *adxl345_take(void)
 {
@@ -22,16 +20,6 @@ const adxl345_sample_t *adxl345_take(void)
         adxl345_counters_add(COUNTER_STUCK);
     }
     return &entry->sample;
-}
-
-bool adxl345_sample_coming(void)
-{
-    return adxl345_driver_streams() && !adxl345_burst_found_empty() && (adxl345_burst_running() || hal_drdy_high());
-}
-
-uint32_t adxl345_lateness_us(void)
-{
-    return adxl345_stream_without_edges() ? 2u * adxl345_period_us() : 0;
 }
 
 adxl345_phase_t adxl345_phase(void)

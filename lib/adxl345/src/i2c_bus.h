@@ -1,6 +1,7 @@
 /*
  * One I2C transfer at a time: write `tx`, then (if rx_length, up to I2C_BUS_RX_MAX) a repeated START and a read into
- * `rx`, which lies in the bus itself: the handler knows its place.
+ * `rx`, which lies in the bus itself: the handler knows its place. A read whose first byte lacks I2C_BUS_MORE ends with
+ * the second: the sensor has no sample, and its data stay unread.
  * Each command has one status that says it went well; any other ends the transfer, however good it would be at another
  * moment: so no byte is stored that was not asked for, and no transfer ends well that did not do all of its steps.
  * The steps run in the I2C interrupt; everything is inline so that the handler that includes this saves few registers.
@@ -19,6 +20,7 @@
 
 #define I2C_BUS_TX_MAX 2
 #define I2C_BUS_RX_MAX 10
+#define I2C_BUS_MORE 0x80u /* in the first byte received: more than one is to follow it */
 
 typedef enum {
     I2C_BUS_IDLE, /* none yet */
@@ -36,7 +38,7 @@ typedef struct {
     uint8_t address;        /* 7 bit, shifted left by one */
     uint8_t tx_length;
     uint8_t rx_length;
-    uint8_t index;    /* of the byte to send, or to receive, next */
+    uint8_t count;    /* of bytes sent, then of bytes asked for */
     uint8_t expected; /* HAL_I2C_*: the command given last went well; kept when the transfer ends */
     uint8_t tx[I2C_BUS_TX_MAX];
     uint8_t rx[I2C_BUS_RX_MAX]; /* stays as it is from the end of a transfer to the next read */
@@ -51,7 +53,7 @@ typedef struct {
 /* Begins the transfer set up in *bus. Only when I2C_BUS_FREE; interrupts off, or in an interrupt. */
 MACHINE_INLINE void i2c_bus_begin(i2c_bus_t *bus)
 {
-    bus->index = 0;
+    bus->count = 0;
     bus->expected = HAL_I2C_STARTED;
     bus->state = I2C_BUS_BUSY;
     hal_i2c_start();
@@ -63,7 +65,7 @@ MACHINE_INLINE void i2c_bus_begin(i2c_bus_t *bus)
  */
 static inline uint8_t i2c_bus_asked(const i2c_bus_t *bus)
 {
-    return bus->expected >= HAL_I2C_RECEIVED_ACK ? (uint8_t)(bus->index + 1u) : 0;
+    return bus->expected >= HAL_I2C_RECEIVED_ACK ? bus->count : 0;
 }
 
 static inline void i2c_bus_finish(i2c_bus_t *bus, i2c_bus_state_t state)
@@ -84,11 +86,11 @@ static inline void i2c_bus_step_sent(i2c_bus_t *bus)
     bus->expected = HAL_I2C_RESTARTED;
 }
 
-/* The last byte is refused, so that the device lets go of SDA. */
-MACHINE_INLINE void i2c_bus_step_read(i2c_bus_t *bus, uint8_t index)
+/* The last byte is refused, so that the device lets go of SDA: the second one where the first says that it is enough. */
+MACHINE_INLINE void i2c_bus_step_read(i2c_bus_t *bus, uint8_t count)
 {
-    bus->index = index;
-    if ((uint8_t)(index + 1u) < bus->rx_length) {
+    bus->count = count;
+    if (count < bus->rx_length && (count != 2u || (bus->rx[0] & I2C_BUS_MORE))) {
         hal_i2c_receive(true);
         bus->expected = HAL_I2C_RECEIVED_ACK;
     } else {
@@ -130,13 +132,13 @@ static inline void i2c_bus_step_send(i2c_bus_t *bus, uint8_t status)
             expected = HAL_I2C_READ_ADDRESS_ACK;
         }
     } else { /* the address or a byte was sent */
-        uint8_t index = bus->index;
-        if (index >= bus->tx_length) {
+        uint8_t count = bus->count;
+        if (count >= bus->tx_length) {
             i2c_bus_step_sent(bus);
             return;
         }
-        byte = bus->tx[index];
-        bus->index = (uint8_t)(index + 1u);
+        byte = bus->tx[count];
+        bus->count = (uint8_t)(count + 1u);
         expected = HAL_I2C_SENT_ACK;
     }
     hal_i2c_send(byte);
@@ -155,20 +157,20 @@ static inline void i2c_bus_step(i2c_bus_t *bus)
         i2c_bus_unexpected(bus, status);
         return;
     }
-    uint8_t index = 0;
+    uint8_t count = 1;
     if (status >= HAL_I2C_RECEIVED_ACK) { /* first, because most are */
-        index = bus->index;
-        bus->rx[index] = hal_i2c_received();
+        count = bus->count;
+        bus->rx[count - 1u] = hal_i2c_received();
         if (status == HAL_I2C_RECEIVED_NACK) {
             i2c_bus_finish(bus, I2C_BUS_OK);
             return;
         }
-        index++;
+        count++;
     } else if (status != HAL_I2C_READ_ADDRESS_ACK) {
         i2c_bus_step_send(bus, status);
         return;
     }
-    i2c_bus_step_read(bus, index);
+    i2c_bus_step_read(bus, count);
 }
 
 #endif
