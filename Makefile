@@ -35,7 +35,7 @@ AVR_CC      := avr-gcc
 # what makes the smallest image with avr-gcc 5.4.0 (and no table of a switch in RAM); the filters keep their speed
 AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -fshort-enums -fno-inline-small-functions \
                -fno-tree-dominator-opts -fno-tree-switch-conversion -fno-forward-propagate \
-               -fno-tree-loop-ivcanon -fno-tree-scev-cprop -fno-tree-copy-prop -fno-move-loop-invariants -frename-registers -fno-jump-tables -mstrict-X -fno-guess-branch-probability -fno-strict-aliasing -fno-gcse-lm -fno-tree-dce -fno-tree-pre -fno-ssa-phiopt
+               -fno-tree-loop-ivcanon -fno-tree-scev-cprop -fno-tree-copy-prop -fno-move-loop-invariants -frename-registers -fno-jump-tables -mstrict-X -fno-if-conversion -fno-guess-branch-probability -fno-strict-aliasing -fno-gcse-lm -fno-tree-dce -fno-tree-pre -fno-ssa-phiopt
 # lines, which change a few bytes, and no variables, which would change 50 of code through link-time optimisation: every program below,
 # flashed, tested, profiled or traced, is the same bits
 AVR_DEBUG   := -gdwarf-2 -g1

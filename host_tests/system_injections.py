@@ -161,7 +161,7 @@ def doubled_axis_is_told_as_two_sensors_and_one_doubled_reading_is_not():
 @test
 def storm_on_int1_comes_at_its_rate():
     edges = injected("calm", judge=True, max_ms=3000)[3]["isr_int0_n"]
-    rows, _, served, stats = injected("storm", "1000ms:storm:1000:500", max_ms=3000)
+    rows, _, served, stats = injected("storm", "1000ms:storm:500:1000", max_ms=3000)
     # a pulse against a high level gives its edge when the level comes back
     assert 480 <= stats["isr_int0_n"] - edges <= 520, (edges, stats["isr_int0_n"])
     assert stats["rows_wrong"] == 0 and len(rows) >= len(served) - 2, stats

@@ -1,4 +1,6 @@
 """More faults of the simulator: what the bus, the MCU and the UART suffer; part of system_tests.py."""
+import re
+
 from system_injections import REST, altered, bus_probe, injected
 from system_support import SIMRUN, FW, OUT, run, simrun, test, triplets
 
@@ -141,3 +143,33 @@ def judge_looks_back_over_what_is_kept_of_a_long_run():
     stats = injected("long", "390000ms:txstall:200", "xfer:39500.8:flip:2", max_ms=400000, options=("--loop",))[3]
     assert stats["samples_served"] > 39900 and 14 <= stats["lost"] <= 22, stats
     assert stats["rows"] - 2 <= stats["rows_judged"] <= stats["rows"] and stats["rows_wrong"] == 1 and stats["rows_stale"] == 0, stats
+
+
+FLICKERS = "# fault 13: INT1 flickers: check INT1 to D2"
+
+
+def flickering(name, fault, rate):
+    """What a fault at 2000 ms that lasts 2 s does: rows, lines about faults, load and moments of the lines, against a run without it."""
+    options = ("--rate", rate, "--every", 4 if rate == 800 else 1, "--baud", 500000)
+    calm = injected(f"{name}-calm", max_ms=6000, options=options)[3]
+    _, notes, served, stats = injected(name, fault, judge=True, max_ms=6000, options=options)
+    assert stats["resets"] == 0 and stats["rows_wrong"] == 0, (name, stats["resets"], stats["rows_wrong"])
+    assert stats["rows"] >= calm["rows"] - 2, f"{name}: {stats['rows']} rows, {calm['rows']} without the fault"
+    # over 6 s, of which the fault lasts 2
+    assert (stats["cpu_load"] - calm["cpu_load"]) * 3 < 0.2, f"{name}: load {calm['cpu_load']} to {stats['cpu_load']}"
+    return [note for note in notes if note.startswith("# fault")]
+
+
+def assert_told(name, lines):
+    """Begun within a second, by its name, and over within a second: the numbers of the end say so."""
+    assert FLICKERS in lines, (name, lines)
+    over = re.fullmatch(r"# fault (9|13) over: after (\d+) ms, \d+ lost, sensor at 0x53", lines[-1])
+    assert over and 1000 < int(over[2]) < 3000, (name, lines)
+
+
+@test
+def int1_that_flickers_is_not_heard_and_told():
+    for rate in (100, 800):
+        for hz in (1000, 10000, 50000, 100000, 200000, 500000):
+            name = f"flickers-{rate}-{hz}"
+            assert_told(name, flickering(name, f"2000ms:storm:{hz}:2000", rate))

@@ -18,8 +18,9 @@ FAULTS = (
     (10, "values do not change: check supply, bus", ["2300ms:frozen:250"]),
     (2, "no ADXL345 at {address}: DEVID 0xE6, not 0xE5", ["2800ms:devid:230:300", "2800ms:power:1"]),
     (12, "values double: two sensors at {address}", [f"{3300 + 40 * i}ms:double:z" for i in range(20)]),
+    (13, "INT1 flickers: check INT1 to D2", ["7500ms:storm:200000:50"]),
 )
-END_MS = 8000
+END_MS = 8500
 # those that each sample raises again
 ALWAYS = (
     (3, "I2C bus disturbed: check SDA, SCL, pull-ups, GND", ["p:1:buserr"]),

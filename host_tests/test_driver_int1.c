@@ -9,6 +9,7 @@
 #include "hal_drdy.h"
 #include "hal_host.h"
 #include "hal_sleep.h"
+#include "hal_time.h"
 #include "support_rig.h"
 #include "unity.h"
 
@@ -247,6 +248,75 @@ static void test_edges_without_a_level_are_noise(void)
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
 }
 
+/* Within one pass of main. */
+static void edges(unsigned count)
+{
+    while (count-- != 0) {
+        hal_host_drdy_edge();
+    }
+}
+
+static void run_until_tick(void)
+{
+    for (uint32_t before = hal_time_us() / HAL_TICK_US; hal_time_us() / HAL_TICK_US == before;) {
+        rig_pass();
+    }
+    rig_away(1);
+}
+
+/* Eight edges in a tick of the clock may be: seven of a sensor at 800 Hz, and one. The ninth is not heard any more. */
+static void test_nine_edges_in_a_tick_flicker(void)
+{
+    static const adxl345_config_t at_12_5_hz = { 125, 16, false, 0 };
+    rig_begin(12.5, (hal_host_config_t){ 0 });
+    adxl345_start(&at_12_5_hz);
+    rig_run_ms(330); /* the next sample comes in more than 60 ms */
+    rig_until_pause();
+    for (unsigned ticks = 0; ticks < 2; ticks++) {
+        run_until_tick();
+        edges(8);
+        TEST_ASSERT_FALSE(hal_drdy_flickers());
+    }
+    run_until_tick();
+    edges(9);
+    for (unsigned ticks = 1; ticks <= HAL_DRDY_DEAF_TICKS; ticks++) {
+        TEST_ASSERT_TRUE(hal_drdy_flickers());
+        run_until_tick();
+    }
+    TEST_ASSERT_FALSE(hal_drdy_flickers());
+    rig.limit_us = 20000; /* by the clock */
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(400));
+}
+
+/* A wire off D2 picks up a noise of 250 kHz: every sample comes once, read by the clock, and the fault has its name. */
+static void test_an_int1_that_flickers_is_not_heard(void)
+{
+    static const uint16_t rates_dhz[] = { 125, 1000, 8000 };
+    for (unsigned r = 0; r < 3; r++) {
+        double period_ms = 10000.0 / rates_dhz[r];
+        adxl345_config_t config = { rates_dhz[r], 16, false, 0 };
+        begin(rates_dhz[r] / 10.0);
+        adxl345_start(&config);
+        rig_run_ms(20 + 30 * period_ms);
+        rig.limit_us = (uint32_t)(1000 * period_ms); /* of what an edge of the noise has read */
+        double begun_ms = hal_host_now_ms();
+        for (unsigned pass = 0; hal_host_now_ms() < begun_ms + 1000 + 10 * period_ms; pass++) {
+            hal_host_faults.int1_high = pass % 2 != 0;
+            hal_host_faults.int1_cut = !hal_host_faults.int1_high;
+            edges(5);
+            rig_pass();
+            if (hal_host_now_ms() > begun_ms + 10 + 3 * period_ms) {
+                TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_FLICKERS, adxl345_fault());
+            }
+        }
+        hal_host_faults.int1_high = false;
+        hal_host_faults.int1_cut = false;
+        rig_run_ms(300 + 3 * period_ms);
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+        TEST_ASSERT_EQUAL_size_t(0, rig_lost(60 + 3 * period_ms));
+    }
+}
+
 /* Main stalls for longer than the FIFO is deep: lost samples are counted, and the rest keep their time. */
 static void test_overruns_are_counted(void)
 {
@@ -294,6 +364,8 @@ int main(void)
     RUN_TEST(test_edges_for_nothing_bring_no_sample);
     RUN_TEST(test_a_sample_is_not_older_than_the_sensor_was_empty);
     RUN_TEST(test_edges_without_a_level_are_noise);
+    RUN_TEST(test_nine_edges_in_a_tick_flicker);
+    RUN_TEST(test_an_int1_that_flickers_is_not_heard);
     RUN_TEST(test_overruns_are_counted);
     RUN_TEST(test_int1_comes_back_to_a_full_sensor);
     return UNITY_END();

@@ -63,8 +63,8 @@ $(eval $(call IMAGE,tight,$(FILTERS_research),-DHAL_CPU_HZ=15500000ul))
 
 # beside the first, its readings are believed unseen: the difference is what checking them costs
 PLAIN_OBJ := $(AVR_SRC:%.c=$(U)/plain/%.o) $(U)/plain/host_tests/avr/plain_read.o
-$(U)/plain/%.o: AVR_FLAGS += -Dadxl345_integrity_judge=plain_judge -Dadxl345_integrity_good=plain_good
-$(U)/plain/lib/adxl345/src/adxl345_integrity.o: AVR_FLAGS += -Uadxl345_integrity_judge -Uadxl345_integrity_good
+$(U)/plain/%.o: AVR_FLAGS += -Dadxl345_integrity_judge=plain_judge
+$(U)/plain/lib/adxl345/src/adxl345_integrity.o: AVR_FLAGS += -Uadxl345_integrity_judge
 $(U)/plain/%.o: %.c Makefile mk/images.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@

@@ -148,12 +148,6 @@ static void write_row(void)
  */
 #define READ_LATE_US 2000u
 
-/* One that is late because main was: INT1 says that it waits, and is believed. */
-static bool sample_waits(void)
-{
-    return adxl345_fault() == ADXL345_FAULT_NONE && hal_drdy_high();
-}
-
 /* Begins the way of one that is missing: before the oldest sample, or by now where none is on its way. */
 static bool fill_gap(void)
 {
@@ -166,7 +160,7 @@ static bool fill_gap(void)
         coast_wait(t_us);
         return false;
     }
-    return (queued || !sample_waits()) && coast_over(adxl345_period_us(), queued);
+    return (queued || !adxl345_sample_waits()) && coast_over(adxl345_period_us(), queued);
 }
 
 /* Begins the way of the next sample. One that is in the queue came before this pass. */
@@ -304,14 +298,14 @@ void app_pass(void)
     pass_begin();
     uint32_t now_us = hal_time_us();
     loop.pass_us = now_us;
+    if ((int16_t)(uint16_t)((uint16_t)now_us - loop.next_service_us) >= 0) {
+        service(now_us); /* while no sample has come that is not filtered */
+    }
     if (!HANGS(HEALTH_SAMPLING)) {
         adxl345_poll(now_us);
         health_driver_polled();
     }
     while (HANGS(WHOLE_LOOP)) {
-    }
-    if ((int16_t)(uint16_t)((uint16_t)now_us - loop.next_service_us) >= 0) {
-        service(now_us);
     }
     measure_pass();
     serve();

@@ -239,7 +239,8 @@ enum say {
     X(INT1_STUCK, "INT1 stays high: check INT1 to D2") \
     X(STUCK, "values do not change: check supply, bus") \
     X(TORN, "torn readings" V_CHECK_BUS) \
-    X(TWO_SENSORS, "values double: two sensors at 0x" V_ADDRESS)
+    X(TWO_SENSORS, "values double: two sensors at 0x" V_ADDRESS) \
+    X(INT1_FLICKERS, "INT1 flickers: check INT1 to D2")
 /* clang-format on */
 
 #define REPLY_TEXT_ID(name, words) TEXT_##name,

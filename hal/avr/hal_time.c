@@ -8,6 +8,7 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
+#include "hal_drdy_tick.h"
 #include "hal_irq.h"
 #include "hal_sleep.h"
 #include "hal_watchdog_tick.h"
@@ -28,6 +29,7 @@ ISR(TIMER1_COMPA_vect)
     OCR1A = (uint16_t)(count + COUNTS_PER_TICK);
     hal_tick.us += HAL_TICK_US;
     hal_watchdog_tick_isr();
+    hal_drdy_tick_isr();
     hal_wake();
 }
 

@@ -36,6 +36,7 @@ static uint64_t tick_next(void)
 static void tick_step(void)
 {
     tick_at += (uint64_t)HAL_TICK_US * HOST_CYCLES_PER_US;
+    host_drdy_tick();
     hal_wake();
 }
 

@@ -57,6 +57,9 @@ void hal_host_begin(const hal_host_config_t *config, const stream_t *stream, boo
  */
 void hal_host_reset_mcu(uint8_t cause);
 
+/* A rising edge on D2, whatever makes it; the level is what the sensor and hal_host_faults say. */
+void hal_host_drdy_edge(void);
+
 /* Types these bytes at the current baud rate, beginning now. */
 void hal_host_type(const char *text);
 

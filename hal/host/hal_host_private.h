@@ -37,6 +37,7 @@ void host_sensor_step(void);
 /* After every bus write: the firmware may have changed the output data rate. */
 void host_sensor_check_rate(void);
 void host_drdy_reset(void);
+void host_drdy_tick(void);
 /* Runs the handler of an edge that is there. */
 void host_drdy_serve(void);
 

@@ -19,13 +19,28 @@ static bool over;
 static size_t row_latched;
 static bool drdy_enabled;
 static bool drdy_edge;
+static uint8_t edges_left; /* in this tick; 0 after a reset: 256 */
+static uint8_t deaf_ticks;
 
 void hal_host_drdy_handler(void);
+
+/* Not while D2 is not heard: its flag is cleared then. */
+static bool heard(void)
+{
+    return drdy_enabled && deaf_ticks <= 1;
+}
+
+void hal_host_drdy_edge(void)
+{
+    if (heard()) {
+        hal_host_drdy_handler();
+    }
+}
 
 static void pin_changed(void *owner, unsigned pin, bool high)
 {
     (void)owner;
-    if (pin == 1 && high && drdy_enabled && !hal_host_faults.int1_cut && !hal_host_faults.int1_high) {
+    if (pin == 1 && high && heard() && !hal_host_faults.int1_cut && !hal_host_faults.int1_high) {
         drdy_edge = true;
     }
 }
@@ -34,6 +49,8 @@ void host_drdy_reset(void)
 {
     drdy_enabled = false;
     drdy_edge = false;
+    edges_left = 0;
+    deaf_ticks = 0;
 }
 
 void host_drdy_serve(void)
@@ -49,8 +66,34 @@ void hal_drdy_enable(void)
     drdy_enabled = true;
 }
 
+void host_drdy_tick(void)
+{
+    edges_left = HAL_DRDY_EDGES;
+    if (deaf_ticks != 0) {
+        edges_left = HAL_DRDY_EDGES_AGAIN;
+        deaf_ticks--;
+    }
+}
+
+bool hal_drdy_flickers(void)
+{
+    return deaf_ticks != 0;
+}
+
+bool hal_drdy_edge_isr(void)
+{
+    edges_left--;
+    if (edges_left == 0) {
+        deaf_ticks = HAL_DRDY_DEAF_TICKS;
+    }
+    return hal_drdy_high();
+}
+
 bool hal_drdy_high(void)
 {
+    if (hal_drdy_flickers()) {
+        return false;
+    }
     return hal_host_faults.int1_high || (hal_host_sensor.pin_high[1] && !hal_host_faults.int1_cut);
 }
 

@@ -4,10 +4,7 @@
  */
 #include "adxl345_integrity.h"
 
-static uint8_t good;
-
 reading_t plain_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3]);
-uint8_t plain_good(void);
 
 reading_t plain_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3])
 {
@@ -18,11 +15,5 @@ reading_t plain_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], cons
         uint8_t high = *raw++;
         *lsb++ = (int16_t)(uint16_t)(low | (uint16_t)((uint16_t)high << 8));
     }
-    good++;
     return READING_GOOD;
-}
-
-uint8_t plain_good(void)
-{
-    return good;
 }

@@ -188,7 +188,7 @@ static void access_step(adxl345_driver_t *d)
 
 static void drain_step(adxl345_driver_t *d)
 {
-    bool waiting = adxl345_burst_sample_waits();
+    bool waiting = adxl345_sample_waits();
     if (waiting) {
         (void)adxl345_burst_read();
     }

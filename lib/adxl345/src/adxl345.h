@@ -44,7 +44,8 @@ typedef enum {
     ADXL345_FAULT_INT1_STUCK = 9,  /* INT1 stays high without data */
     ADXL345_FAULT_STUCK = 10,      /* the same values again and again */
     ADXL345_FAULT_TORN = 11,       /* three readings in a row were none of this sensor */
-    ADXL345_FAULT_TWO_SENSORS = 12 /* an axis jumps between a value and its double: two sensors on one address */
+    ADXL345_FAULT_TWO_SENSORS = 12, /* an axis jumps between a value and its double: two sensors on one address */
+    ADXL345_FAULT_INT1_FLICKERS = 13 /* more edges than samples: nothing drives D2 */
 } adxl345_fault_t;
 
 typedef enum {
@@ -81,6 +82,12 @@ uint8_t adxl345_queued(void);
 
 /* Time of the oldest sample in the queue; false when it is empty. */
 bool adxl345_oldest_us(uint32_t *t_us);
+
+/*
+ * One waits in the sensor: INT1 is high, and is believed. Not where the newest read found none and no edge came after
+ * it.
+ */
+bool adxl345_sample_waits(void);
 
 adxl345_phase_t adxl345_phase(void);
 

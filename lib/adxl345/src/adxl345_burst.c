@@ -66,7 +66,7 @@ MACHINE_INLINE void begin_burst(struct burst *b, bool by_edge)
 /* An edge whose level is gone again is noise: data-ready stays high until the data are read (p. 20). */
 HAL_DRDY_ISR()
 {
-    if (!hal_drdy_high()) {
+    if (!hal_drdy_edge_isr()) {
         return;
     }
     uint16_t now = hal_time_count_isr();
@@ -209,7 +209,7 @@ static uint32_t waiting_since_us(const struct burst *b, uint32_t now_us)
 bool adxl345_burst_read(void)
 {
     struct burst *b = base();
-    if (b->mode != BURST_READ || adxl345_burst_queue_full() || !claim(b)) {
+    if (adxl345_burst_queue_full() || !claim(b)) {
         return false;
     }
     hal_irq_state_t state = hal_irq_save();
@@ -260,15 +260,23 @@ static MACHINE_APART void restamp(const struct burst *b, burst_entry_t *entry)
     }
 }
 
-/* INT1 was low when the clock began this burst: an edge since then is that of its sample, which came just in time. */
+/*
+ * The edge began this burst, or INT1 was low when the clock did: an edge since then is that of its sample, which came
+ * just in time.
+ */
 static inline void take_edge(struct burst *b, burst_entry_t *entry)
 {
-    if (b->by_clock && b->edge_waiting) {
-        b->by_clock = false;
+    const volatile uint32_t *edge_us = &b->begun_us;
+    if (!b->by_edge) {
+        if (!b->by_clock || !b->edge_waiting || !(b->bus.rx[READING_SOURCE] & ADXL345_INT_DATA_READY)) {
+            return;
+        }
         b->edge_waiting = 0;
-        entry->sample.t_us = b->edge_us;
-        entry->exact = true;
+        edge_us = &b->edge_us;
     }
+    entry->sample.t_us = *edge_us;
+    entry->exact = true;
+    b->by_clock = false;
 }
 
 static reading_t judge(struct burst *b, burst_entry_t *entry)
@@ -283,7 +291,6 @@ static reading_t judge(struct burst *b, burst_entry_t *entry)
     if (verdict != READING_GOOD) {
         return verdict;
     }
-    take_edge(b, entry);
     if (b->bus.rx[READING_FIFO_STATUS] >= 2u) {
         restamp(b, entry);
     }
@@ -299,11 +306,7 @@ static MACHINE_APART reading_t judge_ended(void)
     burst_entry_t *entry = entry_at(b->head);
     uint8_t asked = READING_BYTES;
     reading_t verdict = READING_FAILED;
-    if (b->by_edge) {
-        entry->sample.t_us = b->begun_us;
-        entry->exact = true;
-        b->by_clock = false;
-    }
+    take_edge(b, entry);
     if (b->bus.state == I2C_BUS_OK) {
         verdict = judge(b, entry);
     } else {
@@ -330,9 +333,9 @@ bool adxl345_burst_running(void)
     return burst.on_bus != 0;
 }
 
-bool adxl345_burst_sample_waits(void)
+bool adxl345_sample_waits(void)
 {
-    return hal_drdy_high() && (burst.verdict != READING_EMPTY || burst.edge_waiting);
+    return burst.mode == BURST_READ && hal_drdy_high() && (burst.verdict != READING_EMPTY || burst.edge_waiting);
 }
 
 bool adxl345_burst_by_clock(void)

@@ -46,7 +46,7 @@ uint8_t adxl345_burst_register_value(void);
 /* The byte read is the value that the access was given. */
 bool adxl345_burst_register_holds(void);
 
-/* Look for a sample, because INT1 or the clock says so: true when a burst was started, bus and queue being free. */
+/* Looks for a sample, because INT1 or the clock says so; in BURST_READ. True: begun, bus and queue being free. */
 bool adxl345_burst_read(void);
 
 /*
@@ -57,12 +57,6 @@ reading_t adxl345_burst_judge(void);
 
 /* A burst is on the bus, or has not been judged. */
 bool adxl345_burst_running(void);
-
-/*
- * INT1 is high and is believed: not where the newest burst since adxl345_burst_set_mode(BURST_READ) met no sample and no
- * edge came after it.
- */
-bool adxl345_burst_sample_waits(void);
 
 /* The newest sample was read with INT1 low, before or after. An edge may have begun another burst since: a hint then. */
 bool adxl345_burst_by_clock(void);

@@ -12,7 +12,7 @@
 
 /* Limits of time in half milliseconds: a byte holds them. A register access takes under 0.2 ms, a burst under 0.4. */
 #define LIMIT_US 500u
-enum { LOOK_LIMIT = 1, RETURN_LIMIT = 2, TRANSFER_LIMIT = 6, BACK_OFF_MIN = 10, BACK_OFF_MAX = 50, DRAIN_LIMIT = 200 };
+enum { RETURN_LIMIT = 2, TRANSFER_LIMIT = 6, BACK_OFF_MIN = 10, BACK_OFF_MAX = 50, DRAIN_LIMIT = 200 };
 
 /* Failed transfers of one kind that are a fault: a single one may be noise. */
 enum { TRIES = 3 };

@@ -65,7 +65,10 @@ static void sample_arrived(adxl345_driver_t *d)
     d->after_fault = false;
     d->first_sample_seen = true;
     d->back_off = BACK_OFF_MIN;
-    d->fault = adxl345_burst_by_clock() ? ADXL345_FAULT_INT1_SILENT : ADXL345_FAULT_NONE;
+    d->fault = ADXL345_FAULT_NONE;
+    if (adxl345_burst_by_clock()) {
+        d->fault = hal_drdy_flickers() ? ADXL345_FAULT_INT1_FLICKERS : ADXL345_FAULT_INT1_SILENT;
+    }
     look_after(d);
 }
 
@@ -107,11 +110,14 @@ static bool failed(adxl345_driver_t *d, reading_t reading)
         adxl345_driver_give_up(d, adxl345_burst_failed_state());
         return true;
     }
-    if (reading != READING_EMPTY || adxl345_burst_sample_waits()) {
+    if (reading != READING_EMPTY || adxl345_sample_waits()) {
         return false;
     }
-    uint16_t silent_us = d->first_sample_seen ? SILENT_US : SILENT_US + SLOW_US;
-    if (!adxl345_driver_reached(adxl345_burst_last_us() + (uint32_t)d->half_us * 6u + silent_us)) {
+    uint32_t due_us = adxl345_burst_last_us() + (uint32_t)d->half_us * 6u + SILENT_US;
+    if (!d->first_sample_seen) {
+        due_us += SLOW_US;
+    }
+    if (!adxl345_driver_reached(due_us)) {
         return false;
     }
     adxl345_driver_fail(ADXL345_FAULT_NO_DATA);
@@ -128,12 +134,13 @@ void adxl345_stream_poll(adxl345_driver_t *d, reading_t reading)
     } else if (reading != READING_NONE) {
         look_after(d); /* at once, where the time for it has come */
     }
-    if (!adxl345_burst_sample_waits() && !adxl345_driver_deadline_passed()) {
+    if (!adxl345_sample_waits() && !adxl345_driver_deadline_passed()) {
         return;
     }
     if (adxl345_burst_running() || hal_i2c_stop_pending()) {
         look_at_bus(d);
         return;
     }
-    adxl345_driver_set_limit(adxl345_burst_read() ? TRANSFER_LIMIT : LOOK_LIMIT);
+    (void)adxl345_burst_read(); /* not while the queue is full */
+    adxl345_driver_set_limit(TRANSFER_LIMIT);
 }
