@@ -41,7 +41,7 @@ def sums_are_those_of_the_steps():
 
 
 @test
-def a_step_that_fails_or_should_speak_and_does_not_fails_the_whole():
+def a_step_that_fails_or_is_silent_fails_the_whole():
     for script in SCRIPTS:
         status, text, calls = run_with_make(script, fails="soak")
         assert status == 1 and "make soak HOURS=" in text and text.endswith(f"{2 * len(calls) + 2} passed, 2 failed\n"), text

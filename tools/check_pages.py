@@ -17,7 +17,7 @@ IMPLEMENTED = (".c", ".cpp")
 PRODUCT = ("lib", "firmware", "hal", "nav", "sim", "host_tests")
 # what fills a page, draws it, launches a program or says what is wrong with it makes no number
 NO_NUMBER = {"page.py", "page_sources.py", "robust_pictures.py", "look.py", "launched.py", "port.py", "errors.py"}
-COMMITS = 6  # of a page, searched for the one whose sources it was measured on
+COMMITS = 10  # of a page, searched for the one whose sources it was measured on
 SHOWN = 4
 
 
