@@ -11,7 +11,7 @@ $(CHK)/avr/%.o: %.c Makefile mk/check.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(filter-out -flto -Werror,$(AVR_FLAGS)) -fstack-usage -MMD -MP -c $< -o $@ 2> $@.log || { cat $@.log >&2; exit 1; }
 
-CHECKS := compile tidy int16 cppcheck includes circles format lengths names symbols memory frames painted waits size seam deviations breakages texts
+CHECKS := compile tidy int16 cppcheck includes circles format lengths names symbols memory frames painted waits size seam deviations breakages texts pages
 
 ## check: every rule of the tree, and a planted fault for each that must be found (8 minutes; PLANTED=20: a sample of them)
 check:
@@ -93,6 +93,10 @@ check-texts:
 	@cmp -s $(CHK)/reply_packed.h firmware/console/reply_packed.h || \
 	    { echo 'texts: firmware/console/reply_texts.h is not what firmware/console/reply_packed.h was made of: make texts' >&2; exit 1; }
 	@echo 'texts: packed as they are written'
+
+# STRICT=yes: a stale page is a failure
+check-pages:
+	@python3 tools/check_pages.py $(if $(call yes,STRICT),--strict)
 
 check-planted:
 	@python3 host_tests/test_planted.py

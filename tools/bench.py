@@ -13,6 +13,7 @@ import bench_peers
 import bench_where
 import images
 import laws
+import page_sources
 from bench_firmware import COMPILER, DOCUMENT, OUT, SIMRUN, Fault, image_size, measure_rest, measure_sample, run, with_table
 
 JSON = pathlib.Path("build/bench.json")
@@ -322,6 +323,7 @@ def main():
     options.add_argument("--parts", required=True, help="the images' numbers")
     options.add_argument("--peers", required=True, type=pathlib.Path, help="the folder of other people's filters")
     arguments = options.parse_args()
+    sources = page_sources.hash_now(DOCUMENT)
     peers, absent = bench_peers.measure(arguments.flags.split(), arguments.sources.split(), arguments.peers)
     filters, rows, rms = collect(arguments.flags.split(), arguments.sources.split(), arguments.parts.split())
     lines = table(rows)
@@ -336,6 +338,8 @@ def main():
         return 0
     DOCUMENT.write_text(page_with(DOCUMENT.read_text(encoding="utf-8"), lines, measure_where(), peers, absent), encoding="utf-8")
     faults += bench_parts.report()
+    if not absent:
+        page_sources.write_hash(DOCUMENT, sources)
     for fault in faults:
         print(f"bench: {fault}", file=sys.stderr)
     print(f"bench: {len(rows)} rows, {len(faults)} findings; docs/benchmarks.md and {JSON} written")

@@ -3,6 +3,7 @@
 import pathlib
 import re
 
+import comments
 from check_support import FOLDERS, Stop, files, main, report
 
 STANDARD = {"stdint.h", "stdbool.h", "stddef.h"}
@@ -78,10 +79,8 @@ def home(path, folders):
 
 def code(path):
     """(line number, line) of a file, comments taken out."""
-    text = path.read_text(encoding="utf-8")
-    text = re.sub(r"/\*.*?\*/", lambda m: "\n" * m.group().count("\n"), text, flags=re.S)
-    for number, line in enumerate(text.replace("\\\n", " \n").splitlines(), 1):
-        yield number, re.sub(r"//.*", "", line)
+    text = comments.without(path.read_text(encoding="utf-8"), path.suffix)
+    yield from enumerate(text.replace("\\\n", " \n").splitlines(), 1)
 
 
 def includes(path):

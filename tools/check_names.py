@@ -8,6 +8,7 @@ import pathlib
 import re
 import sys
 
+import comments
 import laws
 from check_support import deviations, limit_for, main, report
 
@@ -19,11 +20,6 @@ NO_CODE = {".md", ".csv", ".png", ".svg", ".json", ".hex", ".pyc"}
 DATA = ("host_tests/fuzz/corpus", "host_tests/transcript")
 WRITTEN = {"lib/filters/keywords.txt",  # by host_tests/arduino_rules.py, of the headers
            "hal/avr/functions.ld"}      # by tools/layout.py, of the image
-QUOTED = r'"(?:\\.|[^"\\\n])*"' + r"|'(?:\\.|[^'\\\n])*'"
-# what is no comment stands in the group
-C_CODE = re.compile(rf"({QUOTED})|/\*.*?\*/|//[^\n]*", re.S)
-OTHER_CODE = re.compile(rf'^[ \t]*""".*?"""|({QUOTED})|(?:^|(?<=\s))#[^\n]*', re.S | re.M)
-C_LIKE = {".c", ".h", ".cpp", ".hpp", ".ino", ".js", ".mjs", ".html"}
 # `auto` is a word of these languages too: there it counts in quotes
 HAVE_AUTO = {".cpp", ".hpp", ".html"}
 # and a value of the setting address, of the compiler's and of the plotter's options
@@ -38,8 +34,7 @@ def named(words):
 
 def code(path):
     text = path.read_text(encoding="utf-8", errors="replace")
-    pattern = C_CODE if path.suffix in C_LIKE else OTHER_CODE
-    text = NO_FILTER.sub(" ", pattern.sub(lambda found: found.group(1) or " ", text))
+    text = NO_FILTER.sub(" ", comments.without(text, path.suffix))
     return re.sub(r"""(?<!["'\w])auto(?!["'\w])""", " ", text) if path.suffix in HAVE_AUTO else text
 
 

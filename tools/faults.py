@@ -27,6 +27,7 @@ import faults_commands
 import faults_judge
 import faults_runs
 import images
+import page_sources
 from faults_judge import NO_LIMIT
 from faults_kinds import KINDS, LONG, MOVING, OF, OTHER_RATES, REST, TYPED, rated
 from faults_runs import Fault, SIMRUN, attempt, flagged_share, moments, need, phases, roll_differences, seeded_pairs, simulate, write_whole
@@ -286,13 +287,13 @@ def tell_failures(results, extra, lacking, most=12):
         print(f"faults: {sentence}")
 
 
-def write_page(rows, extra):
+def write_page(rows, extra, sources):
     text = PAGE.read_text(encoding="utf-8")
     head, begin, rest = text.partition("<!-- table: make faults -->\n")
     _, end, tail = rest.partition("<!-- end -->")
     if not begin or not end:
         raise Fault(f"{PAGE} has no lines '<!-- table: make faults -->' and '<!-- end -->'")
-    write_whole(PAGE, head + begin + "\n".join(tables(rows, extra)) + "\n" + end + tail)
+    write_whole(PAGE, page_sources.with_hash(head + begin + "\n".join(tables(rows, extra)) + "\n" + end + tail, sources))
 
 
 def ended_by_signal(number, frame):
@@ -321,6 +322,7 @@ def main():
 
 def carried_out_and_told(options, began):
     runs, results, extra, profile = [], [], [], set()
+    sources = page_sources.hash_now(PAGE)
     complete = not (options.words or options.sample)
     try:
         runs += planned(options)
@@ -342,7 +344,7 @@ def carried_out_and_told(options, began):
     tell_failures(results, extra, lacking)
     print("\n".join(tables(rows, extra)))
     if complete and not ended and not options.no_page:
-        write_page(rows, extra)
+        write_page(rows, extra, sources)
     bad = sum(bool(r.failures()) for r in results) + sum(not r["good"] for r in extra) + len(lacking)
     good = sum(r.injected and not r.failures() for r in results) + sum(r["good"] for r in extra)
     print(f"faults: {time.monotonic() - began:.0f} s, {absent} faults never came; {RESULTS} written")

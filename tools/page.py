@@ -5,12 +5,11 @@ import re
 import subprocess
 import sys
 
+import page_sources
+from page_sources import Fault
+
 INLINE = re.compile(r"<!--=([^>]*?)-->([^<]*)<!--\.-->")
 KEPT = pathlib.Path("build/pages")  # where there is no git: pages as they were before a command wrote them
-
-
-class Fault(Exception):
-    """One sentence about what is wrong."""
 
 
 def run_as_program(name, main):
@@ -92,8 +91,10 @@ class Page:
         return KEPT / self.document.name, KEPT / f"{self.document.name}.written"
 
     def write(self, text, lines, values):
-        """Fills and writes the page whose text this is; what the page before had otherwise."""
+        """Fills and writes the page whose text this is, and the hash of its sources; what the page before had otherwise."""
         new, before = self.filled(text, lines, values), self.before(text)
+        if str(self.document) in page_sources.table():
+            new = page_sources.with_hash(new, page_sources.hash_now(self.document))
         KEPT.mkdir(parents=True, exist_ok=True)
         kept, written = self.kept()
         kept.write_text(before, encoding="utf-8")

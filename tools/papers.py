@@ -16,8 +16,9 @@ import sys
 import time
 
 import page
+import page_sources
 from papers_judge import BANDED, VERDICT_RUNS, Fault, judge, read_expected
-from papers_page import write_page
+from papers_page import DOCUMENT, write_page
 
 # programs and accepted bands of each paper; a folder is a program in Python
 PAPERS = {paper: (tuple(map(pathlib.Path, programs)), pathlib.Path(f"host_tests/papers/expected_{paper}.csv"))
@@ -150,6 +151,7 @@ def main():
     whole = not options.only and options.runs >= PAGE_RUNS and options.seed == PAGE_SEED
     began, failures, collected = time.monotonic(), [], []
     try:
+        sources = page_sources.hash_now(DOCUMENT)
         for paper, experiments in chosen_of(options.only, options.paper).items():
             expected = read_expected(PAPERS[paper][1])
             rows = run_all(experiments, options)
@@ -162,6 +164,8 @@ def main():
             held = json.loads(JSON.read_text(encoding="utf-8")) if options.paper and JSON.exists() else []
             kept = [row for row in held if row["paper"] not in options.paper]
             JSON.write_text(json.dumps(sorted(kept + collected, key=lambda row: row["paper"]), indent=0) + "\n", encoding="utf-8")
+            if not options.paper:
+                page_sources.write_hash(DOCUMENT, sources)
     except (Fault, page.Fault, OSError, subprocess.TimeoutExpired) as error:
         print(f"papers: {error}", file=sys.stderr)
         return 2
