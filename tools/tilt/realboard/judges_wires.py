@@ -1,0 +1,75 @@
+"""Checks in which the owner pulls or shorts a wire of the sensor."""
+from tilt.realboard import watch
+from tilt.realboard.bench import Failed
+
+NO_SENSOR, BUS, READ_BACK, INT1_LOW, NO_DATA, SCL_LOW, SDA_LOW, INT1_HIGH, TORN = 1, 3, 4, 5, 6, 7, 8, 9, 11  # docs/faults.md
+INT1_S = 5.0          # of rows without INT1
+FINGER_S = 10.0
+ROWS_SHARE = 0.8      # of the nominal number: the sensor is read by the clock, a row may be predicted
+QUIET_S = 3.0         # without a fault that has begun, at the end
+
+
+def int1_wire(bench):
+    """D2 floats: rows go on, the LED shows three flashes."""
+    watch.fault_begins(bench, (INT1_LOW, INT1_HIGH))
+    rows_without_int1(bench, INT1_S)
+    if not bench.ask("Does the LED flash three times, then stay dark for a moment, again and again?"):
+        raise Failed("the LED does not flash three times")
+    bench.say("   Now put the wire back into D2.")
+    over, _ = watch.fault_over(bench)
+    watch.rows_again(bench, over.at_s)
+    if not bench.ask("Is the LED dark now?"):
+        raise Failed("the LED is not dark although the fault is over")
+
+
+def int1_finger(bench):
+    """A finger on the floating wire: hum on D2, and rows go on."""
+    watch.fault_begins(bench, (INT1_LOW, INT1_HIGH))
+    bench.say(f"   Now hold the bare end between two fingers for {FINGER_S:.0f} s.")
+    rows_without_int1(bench, FINGER_S)
+    bench.say("   Now put the wire back on INT1 of the sensor.")
+    over_s, until_s = None, bench.now() + bench.limit_s
+    while (seen := bench.next(until_s)) is not None:
+        watch.not_reset(seen)
+        if seen.kind == "said" and watch.OVER.match(seen.text):
+            over_s = seen.at_s
+        elif seen.kind == "said" and watch.FAULT.match(seen.text):
+            over_s = None
+        if over_s is not None and seen.at_s - over_s > QUIET_S:
+            watch.rows_again(bench, seen.at_s)
+            return
+    raise Failed(f"the fault was not over within {bench.limit_s:.0f} s")
+
+
+def rows_without_int1(bench, seconds):
+    """The sensor is read by the clock. A fault may change its name, or end and begin: the board is not to stop or start again."""
+    found = watch.Stretch()
+    for seen in bench.events(seconds):
+        watch.not_reset(seen)
+        found.add(seen)
+    shown = len(found.rows) - found.silent
+    bench.measured(rows_without_int1=shown, predicted_without_int1=found.silent)
+    if shown < ROWS_SHARE * watch.RATE_HZ * seconds:
+        raise Failed(f"{shown} rows with a sample came in {seconds:.0f} s without INT1")
+
+
+def broken_bus(faults, back):
+    """A judge: one of these faults is reported, rows say meanwhile that they show no sample, and all is well when it is put right."""
+    def judge(bench):
+        watch.fault_begins(bench, faults)
+        bench.say(f"   Now {back}.")
+        over, silent = watch.fault_over(bench)
+        bench.measured(rows_without_sample=silent)
+        watch.rows_again(bench, over.at_s)
+        if not silent:
+            raise Failed("no row said that it shows no sample (flag 16)")
+    return judge
+
+
+# a wire that floats may be read as low, and loses contact more than once: which fault comes first is the board's, not ours, to say
+sda_pulled = broken_bus((NO_SENSOR, BUS, SDA_LOW, SCL_LOW, TORN), "put SDA back into A4")
+scl_pulled = broken_bus((NO_SENSOR, BUS, SCL_LOW, SDA_LOW, TORN), "put SCL back into A5")
+sda_short = broken_bus((SDA_LOW, BUS), "take the short away")
+scl_short = broken_bus((SCL_LOW, BUS), "take the short away")
+# without its supply the sensor loads the lines, or lives on through them
+sensor_power = broken_bus((NO_SENSOR, BUS, READ_BACK, NO_DATA, SCL_LOW, SDA_LOW, TORN), "give the sensor its supply again")
