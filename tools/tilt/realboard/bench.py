@@ -79,7 +79,8 @@ class Wire:
                 found += [seen_of(at_s, line.rstrip("\r")) for line in data.decode("latin-1").split("\n") if line.strip()]
             elif kind == "state":
                 state = json.loads(data)
-                found.append(Seen(at_s, "back" if state["connected"] else "gone", f"port {state['port']}, {state['baud']} baud {state['why']}".strip()))
+                text = f"port {state['port']}, {state['baud']} baud {state['why']}".strip()
+                found.append(Seen(at_s, "back" if state["connected"] else "gone", text))
         return found
 
 

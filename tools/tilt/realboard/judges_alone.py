@@ -12,6 +12,7 @@ CLOCK_PPM = 5500      # the resonator of a UNO is within 0.5 %; 500 more for the
 FAST_HZ, FAST_S = 800, 20.0
 BUS_ERRORS_SHARE = 1e-3  # of the samples: one that was read again is no fault, many are a cable
 BUS_COUNTERS = ("not acknowledged", "arbitration lost", "bus errors", "timeouts", "readings torn", "overruns")
+LOST_COUNTERS = ("lost", "late")
 SELFTEST_S = 15.0
 BAUD_S, BAUD_ROWS = 3.0, 10
 BAUD_FOUND_S = 5.0    # for the first row at another rate; the slowest sends 16 rows a second
@@ -67,13 +68,16 @@ def fast_bus(bench):
         after = watch.counters(bench)
     finally:
         bench.type(f"rate {watch.RATE_HZ}")
-    grown = {name: after.get(name, 0) - before.get(name, 0) for name in BUS_COUNTERS}
+    grown = {name: after.get(name, 0) - before.get(name, 0) for name in BUS_COUNTERS + LOST_COUNTERS}
     samples = after.get("samples", 0) - before.get("samples", 0)
-    bench.measured(khz=float(told[2] or 0), samples=samples, rows=len(found.rows), rate_hz=round(samples / FAST_S, 1),
+    bench.measured(khz=float(told[2] or 0), samples=samples, seconds=round(found.board_s, 2),
                    **{name.replace(" ", "_"): number for name, number in grown.items()})
-    if samples < FAST_HZ * FAST_S * (1 - watch.RATE_SHARE):
-        raise Failed(f"{samples} samples in {FAST_S:.0f} s, {FAST_HZ * FAST_S:.0f} are due")
-    errors = sum(grown.values())
+    if samples < FAST_HZ * found.board_s * (1 - watch.RATE_SHARE) or not samples:
+        raise Failed(f"{samples} samples in {found.board_s:.1f} s, {FAST_HZ * found.board_s:.0f} are due")
+    lost = sum(grown[name] for name in LOST_COUNTERS)
+    if lost:
+        raise Failed(f"{lost} samples were lost")
+    errors = sum(grown[name] for name in BUS_COUNTERS)
     if errors > BUS_ERRORS_SHARE * samples:
         raise Failed(f"{errors} errors of the bus among {samples} samples")
 

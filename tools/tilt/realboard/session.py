@@ -4,6 +4,7 @@ import time
 from tilt.errors import TiltError
 from tilt.realboard import judges_starts, watch
 from tilt.realboard.bench import Failed, Quit, Repeat, Skip
+from tilt.realboard.checks import CHECKS
 from tilt.realboard.record import check_line, numbers_in_words
 
 MEET_S, MEET_STRANGE_S = 8.0, 16.0  # a silent port; one at which bytes come: the board is looked for at each baud rate
@@ -102,14 +103,16 @@ class Session:
         return verdict
 
     def lead_in(self, number, check):
+        """Whatever the owner does from the prompt on is seen, also before he presses Enter."""
         bench = self.bench
-        bench.say(f"\n{number:2}/20 {check.key} (waits {check.limit_s} s)\n   {check.do}")
-        if not check.alone:
-            bench.heed(bench.line("   Enter begins; s REASON skips, r repeats, q ends, here and at any moment: "))
+        bench.say(f"\n{number:2}/{len(CHECKS)} {check.key} (waits {check.limit_s} s)")
         bench.forget()
         watch.row_with_sample(bench, READY_S)
         judges_starts.ready(bench)
         watch.row_with_sample(bench, READY_S)
+        bench.say(f"   {check.do}")
+        if not check.alone:
+            bench.heed(bench.line("   Enter begins; s REASON skips, r repeats, q ends, here and at any moment: "))
 
     def after(self, number, check, verdict):
         """True: once more. A note goes into the record."""

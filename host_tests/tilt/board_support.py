@@ -1,0 +1,243 @@
+"""What the tests of `tilt board` share. For the judges: a line and an owner by a clock of their own (Desk). For the whole command: the firmware in
+the simulator, behind a cable that can be pulled out, and hands that do what the program asks for."""
+import collections
+import contextlib
+import os
+import pathlib
+import pty
+import re
+import select
+import subprocess
+import threading
+import time
+import tty
+from unittest import mock
+
+from fake_board import until
+from tilt.errors import TiltError
+from tilt.port import Port
+from tilt.realboard.bench import Bench, Seen, seen_of
+
+SIMRUN, FIRMWARE = "build/sim/simrun", "build/uno/firmware.elf"
+BANNER = ("# tilt-uno 0.1.0: roll and pitch from an ADXL345", "# reset: {cause}", "# filter adaptive, rate 100 Hz, range 16 g, every 1, baud 115200",
+          "# settings: {kept}", "# type help, or mode plot for the Arduino plotter", "# sensor: ADXL345 at 0x53, I2C at 363.6 kHz",
+          "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags")
+GONE, BACK = "GONE", "BACK"
+HEARD_BYTES = 100_000
+
+
+def banner(cause="reset button or serial port opened", kept="as saved"):
+    return [line.format(cause=cause, kept=kept) for line in BANNER]
+
+
+def row(at_s, flags=0, lsb=(0, 0, 256), mg=(0, 0, 1000), tilt=(0, 0), fast_ppm=0):
+    t_us = round(at_s * 1e6 * (1 + fast_ppm * 1e-6)) % (1 << 32)
+    return ",".join(map(str, (t_us, *lsb, *mg, *tilt, flags)))
+
+
+def rows(begin_s, end_s, period_s=0.01, **more):
+    """[(second, line)]"""
+    return [(begin_s + n * period_s, row(begin_s + n * period_s, **more)) for n in range(round((end_s - begin_s) / period_s))]
+
+
+class Desk:
+    """wire and owner of a Bench: what `script` [(second, line or list of lines, GONE, BACK)] says comes at its time, `replies` {command: lines or
+    function(command, desk)} after what is typed, `answers` are what the owner types at each prompt. No time passes but by waiting."""
+
+    baud = 115200
+
+    def __init__(self, script=(), replies=None, answers=()):
+        self.time_s, self.said, self.sent, self.gone = 0.0, [], [], False
+        self.script = collections.deque(sorted(script, key=lambda each: each[0]))
+        self.replies, self.answers, self.keys = replies or {}, collections.deque(answers), collections.deque()
+        self.pending = []
+
+    def bench(self, limit_s=20.0, **settings):
+        bench = Bench(self, self)
+        bench.begin(limit_s)
+        bench.settings = settings
+        return bench
+
+    # the wire
+    def now(self):
+        return self.time_s
+
+    def take(self, timeout_s):
+        found, self.pending = self.pending, []
+        until_s = self.time_s + (0 if found else timeout_s)
+        if not found and self.script and self.script[0][0] <= until_s:
+            self.time_s = max(self.time_s, self.script[0][0])
+            what = self.script.popleft()[1]
+            return [self.event(line) for line in (what if isinstance(what, list) else [what])]
+        self.time_s = until_s
+        return found
+
+    def event(self, line):
+        if line in (GONE, BACK):
+            self.gone = line == GONE
+            return Seen(self.time_s, line.lower(), "port")
+        return seen_of(self.time_s, line)
+
+    def send(self, text):
+        if self.gone:
+            raise TiltError("port: not connected")
+        self.sent.append(text)
+        reply = self.replies.get(text, self.replies.get(text.split()[0] if text.split() else "", ()))
+        lines = reply(text, self) if callable(reply) else reply
+        self.pending += [self.event(line) for line in lines]
+
+    def send_piece(self, text):
+        self.send(text)
+
+    # the owner
+    def typed(self):
+        return self.keys.popleft() if self.keys else None
+
+    def say(self, text):
+        self.said.append(text)
+
+    def prompt(self, text):
+        self.said.append(text)
+        self.keys.append(self.answers.popleft())
+
+
+class Simulated:
+    """simrun on its pseudo terminal. press() is what begins the next fault: `status` is typed, which alone visits this function, and its rows go on
+    at once. So faults are timed by what the test does and not by a clock."""
+
+    PRESSED = "adxl345_rate_chz"
+
+    def __init__(self, folder, stream, *options):
+        command = [SIMRUN, "--fw", FIRMWARE, "--in", str(stream), "--out", str(folder / "all.csv"), "--eeprom", str(folder / "eeprom.bin"), "--pty",
+                   "--loop", "--expect-resets", "99", *options]
+        self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)  # pylint: disable=consider-using-with
+        self.fd = os.open(next(line for line in self.process.stderr if "UART on" in line).split()[-1], os.O_RDWR | os.O_NOCTTY)
+        tty.setraw(self.fd)
+
+    def press(self):
+        os.write(self.fd, b"status\n\n")
+
+    def end(self):
+        os.close(self.fd)
+        self.process.terminate()
+        self.process.wait(60)
+        self.process.stderr.close()
+
+
+def faults(*kinds):
+    """Options for a Simulated: the first fault begins with the first press(), and so on."""
+    return [word for n, kind in enumerate(kinds, 1) for word in ("--fault", f"pc:{Simulated.PRESSED}#{n}:{kind}")]
+
+
+class Cable:
+    """`name` is a port that leads to a Simulated, which may be changed for another one; unplug() takes the port away. Whoever opens the port resets
+    the board, as on a UNO: the fault that is begun by a press() then is `reset`."""
+
+    def __init__(self, folder):
+        self.name, self.board, self.master, self.slave = str(pathlib.Path(folder) / "port"), None, None, None
+        self.heard, self.rest, self.lock, self.ending, self.cut_on = b"", b"", threading.RLock(), False, None
+        self.thread = threading.Thread(target=self.work, daemon=True)
+
+    def __enter__(self):
+        real, cable = Port.connect, self
+
+        def connect(port):
+            real(port)
+            cable.board.press()
+
+        self.patch = mock.patch.object(Port, "connect", connect)
+        self.patch.start()
+        self.plug()
+        self.thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self.patch.stop()
+        self.ending = True
+        self.thread.join(60)
+        self.unplug()
+        self.lead_to(None)
+
+    def lead_to(self, board):
+        with self.lock:
+            if self.board is not None:
+                self.board.end()
+            self.board = board
+
+    def plug(self):
+        with self.lock:
+            self.master, self.slave = pty.openpty()
+            tty.setraw(self.slave)
+            os.set_blocking(self.master, False)
+            self.rest = b""
+            pathlib.Path(self.name).symlink_to(os.ttyname(self.slave))
+
+    def unplug(self):
+        with self.lock:
+            if self.master is not None:
+                pathlib.Path(self.name).unlink()
+                os.close(self.master)
+                os.close(self.slave)
+                self.master = None
+
+    def work(self):
+        while not self.ending:
+            with self.lock:
+                ends = [end for end in (self.master, self.board and self.board.fd) if end is not None]
+                for end in select.select(ends, [], [], 0.005)[0]:
+                    self.pass_on(end)
+            time.sleep(0.001)
+
+    def pass_on(self, end):
+        data = os.read(end, 4096)
+        if end == self.master:
+            os.write(self.board.fd, data)
+            return
+        self.heard = (self.heard + data)[-HEARD_BYTES:]
+        if self.cut_on is not None and self.cut_on in self.heard:
+            self.cut_on = None
+            self.unplug()
+        if self.master is not None:
+            self.rest = (self.rest + data)[-HEARD_BYTES:]  # what nobody reads goes at last
+            with contextlib.suppress(BlockingIOError):
+                self.rest = self.rest[os.write(self.master, self.rest):]
+
+    def unplug_on(self, text):
+        """As soon as the board says this: nobody at the other end hears it."""
+        with self.lock:
+            self.heard, self.cut_on = b"", text
+
+    def unplugged(self):
+        until(lambda: self.master is None)
+
+
+class Hands:
+    """The owner in the tests of the command: deeds {key of the check: [function, ...]}, one for each prompt or order in it, in turn."""
+
+    def __init__(self, deeds):
+        self.deeds, self.key, self.said, self.keys = deeds, None, [], collections.deque()
+
+    def typed(self):
+        return self.keys.popleft() if self.keys else None
+
+    def say(self, text):
+        self.said.append(text)
+        found = re.search(r"\d+/20 (\w+)", text)
+        if found:
+            self.key = found[1]
+        elif text.startswith("   Now "):
+            self.do()
+
+    def prompt(self, text):
+        self.said.append(text)
+        if "(y/n)" in text:
+            self.keys.append("y")
+            return
+        self.keys.append("")
+        if "Enter begins" in text:
+            self.do()
+
+    def do(self):
+        deeds = self.deeds.get(self.key, [])
+        if deeds:
+            threading.Thread(target=deeds.pop(0), daemon=True).start()
