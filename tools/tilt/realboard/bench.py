@@ -51,6 +51,10 @@ def seen_of(at_s, text):
         return Seen(at_s, "strange", text)
 
 
+def matters(seen):
+    return seen.kind != "row" or bool(seen.row.flags & protocol.NO_SAMPLE)
+
+
 class Wire:
     """The line of a tilt.board.Board: take() what came, send() what is typed."""
 
@@ -163,11 +167,12 @@ class Bench:
         return reason
 
     def line(self, prompt):
-        """What the owner types, as it is. What the board says meanwhile is kept; rows are not, he may be away for long."""
+        """What the owner types, as it is. What the board says meanwhile is kept, he may do at once what he is asked for; of the rows only those
+        without a sample are, he may be away for long."""
         self.owner.prompt(prompt)
         while (typed := self.owner.typed()) is None:
             self.fill(LOOK_S)
-            self.waiting = collections.deque((seen for seen in self.waiting if seen.kind != "row"), maxlen=SAID_KEPT)
+            self.waiting = collections.deque(filter(matters, self.waiting), maxlen=SAID_KEPT)
         self.waiting = collections.deque(self.waiting)
         return typed
 

@@ -7,7 +7,6 @@ INT1_S = 5.0          # of rows without INT1
 FINGER_S = 10.0
 ROWS_SHARE = 0.8      # of the nominal number: the sensor is read by the clock, a row may be predicted
 HEARD_SHARE = 0.8     # of the time, by the board's clock
-QUIET_S = 3.0         # without a fault that has begun, at the end
 
 
 def int1_wire(bench):
@@ -17,8 +16,7 @@ def int1_wire(bench):
     if not bench.ask("Does the LED flash three times, then stay dark for a moment, again and again?"):
         raise Failed("the LED does not flash three times")
     bench.say("   Now put the wire back into D2.")
-    over, _ = watch.fault_over(bench)
-    watch.rows_again(bench, over.at_s)
+    watch.well_again(bench)
     if not bench.ask("Is the LED dark now?"):
         raise Failed("the LED is not dark although the fault is over")
 
@@ -27,31 +25,24 @@ def int1_finger(bench):
     """A finger on the floating wire: hum on D2, and rows go on."""
     watch.fault_begins(bench, (INT1_LOW, INT1_HIGH))
     bench.say(f"   Now hold the bare end between two fingers for {FINGER_S:.0f} s.")
-    rows_without_int1(bench, FINGER_S)
+    is_over = rows_without_int1(bench, FINGER_S)
     bench.say("   Now put the wire back on INT1 of the sensor.")
-    over_s, until_s = None, bench.now() + bench.limit_s
-    while (seen := bench.next(until_s)) is not None:
-        watch.not_reset(seen)
-        if seen.kind == "said" and watch.OVER.match(seen.text):
-            over_s = seen.at_s
-        elif seen.kind == "said" and watch.FAULT.match(seen.text):
-            over_s = None
-        if over_s is not None and seen.at_s - over_s > QUIET_S:
-            watch.rows_again(bench, seen.at_s)
-            return
-    raise Failed(f"the fault was not over within {bench.limit_s:.0f} s")
+    watch.well_again(bench, is_over)
 
 
 def rows_without_int1(bench, seconds):
-    """The sensor is read by the clock. A fault may change its name, or end and begin: the board is not to stop or start again."""
-    found = watch.Stretch()
+    """The sensor is read by the clock: True when the fault is over at the end. It may change its name, end and begin, hum is like data-ready;
+    the board is not to stop or start again."""
+    found, is_over = watch.Stretch(), False
     for seen in bench.events(seconds):
         watch.not_reset(seen)
         found.add(seen)
+        is_over = is_over if watch.fault_state(seen) is None else watch.fault_state(seen)
     shown = len(found.rows) - found.silent
     bench.measured(rows_without_int1=shown, predicted_without_int1=found.silent)
     if found.board_s < HEARD_SHARE * seconds or shown < ROWS_SHARE * watch.RATE_HZ * found.board_s:
         raise Failed(f"{shown} rows with a sample came in {seconds:.0f} s without INT1 ({found.board_s:.1f} s by the board's clock)")
+    return is_over
 
 
 def broken_bus(faults, back):
@@ -59,10 +50,7 @@ def broken_bus(faults, back):
     def judge(bench):
         watch.fault_begins(bench, faults)
         bench.say(f"   Now {back}.")
-        over, silent = watch.fault_over(bench)
-        bench.measured(rows_without_sample=silent)
-        watch.rows_again(bench, over.at_s)
-        if not silent:
+        if not watch.well_again(bench):
             raise Failed("no row said that it shows no sample (flag 16)")
     return judge
 

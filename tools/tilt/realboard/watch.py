@@ -11,6 +11,7 @@ from tilt.recorder import step_us
 ANSWER_S = 5.0         # for the reply to a command: a banner at 9600 baud goes before it
 RATE_HZ = 100          # at which all checks but one are done
 RATE_SHARE = 0.05      # a sensor is up to 4 % off, the board's resonator 0.5 %
+QUIET_S = 3.0          # without a fault that has begun, at the end of one
 STRETCH_S = 2.0        # of good rows, before and after a fault
 ROWS_WITHIN_S = 10.0   # rows are back: the boot loader takes 2 s
 OPENED_S = 4.0         # after the port was opened, for the banner of a board that this resets
@@ -205,16 +206,48 @@ def fault_begins(bench, numbers):
     raise Failed(f"no fault was reported within {bench.limit_s:.0f} s")
 
 
-def fault_over(bench):
-    """(seen, rows that came meanwhile and show no sample), and the numbers that the board tells of it."""
-    silent = 0
+def fault_state(seen):
+    """True: a line that says that a fault is over, False: that one has begun, None: another one."""
+    if seen.kind != "said" or not seen.text.startswith("# fault"):
+        return None
+    return OVER.match(seen.text) is not None
+
+
+class Recovery:
+    """From a fault that has begun until it is over for good."""
+
+    def __init__(self, bench, is_over):
+        self.bench, self.over_s, self.first_s = bench, bench.now() if is_over else None, None
+        self.times = self.lost = self.lasted_ms = self.silent = 0
+
+    def add(self, seen):
+        match = OVER.match(seen.text) if fault_state(seen) else None
+        if match:
+            self.over_s, self.first_s = seen.at_s, None
+            self.times, self.lasted_ms, self.lost = self.times + 1, self.lasted_ms + int(match[2]), self.lost + int(match[3])
+            self.bench.measured(times=self.times, fault_lasted_ms=self.lasted_ms, samples_lost=self.lost, sensor=f"0x{match[4]}")
+        elif fault_state(seen) is False:
+            self.over_s = None
+        if seen.kind == "row":
+            self.silent += bool(seen.row.flags & protocol.SILENCE)
+            if self.over_s is not None and self.first_s is None and not seen.row.flags & protocol.NO_SAMPLE:
+                self.first_s = seen.at_s
+                self.bench.measured(rows_back_s=round(seen.at_s - self.over_s, 3))
+
+    def is_done(self, seen):
+        return self.over_s is not None and seen.at_s - self.over_s > QUIET_S
+
+
+def well_again(bench, is_over=False):
+    """Waits until no fault has begun for a while: a wire that is put back by hand makes and breaks contact several times. How many rows said
+    meanwhile that they show no sample; then rows come at the nominal rate."""
+    recovery = Recovery(bench, is_over)
     for seen in bench.events(bench.limit_s):
         not_reset(seen)
-        silent += seen.kind == "row" and bool(seen.row.flags & protocol.SILENCE)
-        match = OVER.match(seen.text) if seen.kind == "said" else None
-        if match:
-            bench.measured(fault_lasted_ms=int(match[2]), samples_lost=int(match[3]), sensor=f"0x{match[4]}")
-            return seen, silent
+        recovery.add(seen)
+        if recovery.is_done(seen):
+            bench.measured(rows_without_sample=recovery.silent, rate_hz=round(steady(bench).rate_hz, 2))
+            return recovery.silent
     raise Failed(f"the fault was not over within {bench.limit_s:.0f} s")
 
 
