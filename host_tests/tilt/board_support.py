@@ -11,17 +11,22 @@ import subprocess
 import threading
 import time
 import tty
+import unittest
 from unittest import mock
 
 from fake_board import until
 from tilt.errors import TiltError
 from tilt.port import Port
-from tilt.realboard.bench import Bench, Seen, seen_of
+from tilt.realboard.bench import Bench, Failed, Seen, seen_of
+from tilt.realboard.checks import CHECKS
 
 SIMRUN, FIRMWARE = "build/sim/simrun", "build/uno/firmware.elf"
 BANNER = ("# tilt-uno 0.1.0: roll and pitch from an ADXL345", "# reset: {cause}", "# filter adaptive, rate 100 Hz, range 16 g, every 1, baud 115200",
           "# settings: {kept}", "# type help, or mode plot for the Arduino plotter", "# sensor: ADXL345 at 0x53, I2C at 363.6 kHz",
           "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags")
+BEGINS = "# fault {}: words: check the wire"
+OVER = "# fault {} over: after 1500 ms, 150 lost, sensor at 0x53"
+JUDGES = {check.key: check.judge for check in CHECKS}
 GONE, BACK = "GONE", "BACK"
 HEARD_BYTES = 100_000
 
@@ -64,12 +69,11 @@ class Desk:
 
     def take(self, timeout_s):
         found, self.pending = self.pending, []
-        until_s = self.time_s + (0 if found else timeout_s)
-        if not found and self.script and self.script[0][0] <= until_s:
-            self.time_s = max(self.time_s, self.script[0][0])
+        if not found and not (self.script and self.script[0][0] <= self.time_s):
+            self.time_s = min(self.time_s + timeout_s, self.script[0][0] if self.script else float("inf"))
+        while self.script and self.script[0][0] <= self.time_s:
             what = self.script.popleft()[1]
-            return [self.event(line) for line in (what if isinstance(what, list) else [what])]
-        self.time_s = until_s
+            found += [self.event(line) for line in (what if isinstance(what, list) else [what])]
         return found
 
     def event(self, line):
@@ -82,12 +86,12 @@ class Desk:
         if self.gone:
             raise TiltError("port: not connected")
         self.sent.append(text)
-        reply = self.replies.get(text, self.replies.get(text.split()[0] if text.split() else "", ()))
+        reply = self.replies.get(text, ())
         lines = reply(text, self) if callable(reply) else reply
         self.pending += [self.event(line) for line in lines]
 
     def send_piece(self, text):
-        self.send(text)
+        self.sent.append(text)
 
     # the owner
     def typed(self):
@@ -99,6 +103,68 @@ class Desk:
     def prompt(self, text):
         self.said.append(text)
         self.keys.append(self.answers.popleft())
+
+
+class Model:
+    """What the firmware answers, for the `replies` of a Desk: settings that can be set and saved, and counters that can be made to grow."""
+
+    UNITS = {"rate": " Hz, I2C at 363.6 kHz", "range": " g", "offset": " LSB: -80 to 80", "level": ": -1.1499 to 1.1499",
+             "scale": " LSB/g: 200 to 330"}
+
+    def __init__(self, fault=0, grow=None, **settings):
+        self.values = {"filter": "adaptive", "rate": "100", "range": "16", "every": "1", "baud": "115200", "mode": "csv", "offset": "0 0 0",
+                       "scale": "265 265 256", "level": "0 0 1"} | settings
+        self.saved, self.fault, self.grow, self.looks = dict(self.values), fault, grow or {}, 0
+
+    def get(self, text, default=()):
+        return default if " " in text.strip() and text.split()[0] not in self.values else lambda *_: self.reply(text)
+
+    def reply(self, text):
+        name, _, value = text.partition(" ")
+        if name in self.values:
+            self.values[name] = value or self.values[name]
+            return [self.line(name)]
+        known = {"version": self.version, "settings": self.settings, "status": self.status, "save": self.save}
+        return known[name]() if name in known else ["# refused 1: unknown command (type help)"]
+
+    def line(self, name):
+        return f"# {name} {self.values[name]}{self.UNITS.get(name, '')}"
+
+    def version(self):
+        return [BANNER[0]]
+
+    def settings(self):
+        legal = {"baud": "9600 115200 1000000"}
+        return [self.line(name) + ("" if ": " in self.line(name) else f": {legal.get(name, 'any')}") for name in self.values]
+
+    def status(self):
+        """Each look finds the counters grown by what a test says."""
+        count = {name: self.looks * self.grow.get(name, 0) for name in (
+            "samples", "lost", "late", "not acknowledged", "bus errors", "timeouts", "readings torn", "overruns")}
+        self.looks += 1
+        return [f"# state {'fault' if self.fault else 'streaming'}, fault {self.fault}, rate 100 Hz, measured 98.50 Hz, uptime s 4",
+                f"# samples {count['samples']}, gated 0, reacquired 0, clipped 0", f"# lost {count['lost']}, late {count['late']}, drained 0",
+                f"# not acknowledged {count['not acknowledged']}, arbitration lost 0, bus errors {count['bus errors']}, "
+                f"timeouts {count['timeouts']}", f"# readings torn {count['readings torn']}, empty 0, overruns {count['overruns']}"]
+
+    def save(self):
+        self.saved = dict(self.values)
+        return ["# saved"]
+
+
+class JudgeCase(unittest.TestCase):
+    def passes(self, key, desk, **settings):
+        """What was measured."""
+        bench = desk.bench(**settings)
+        JUDGES[key](bench)
+        return bench.numbers
+
+    def fails(self, key, reason, desk, **settings):
+        bench = desk.bench(**settings)
+        with self.assertRaises(Failed) as failed:
+            JUDGES[key](bench)
+        self.assertRegex(str(failed.exception), reason)
+        return bench.numbers
 
 
 class Simulated:

@@ -35,7 +35,7 @@ def rows_after(bench, start):
     first = watch.row_with_sample(bench, ROWS_AFTER_S)
     bench.measured(rows_back_s=round(first.at_s - begun_s, 3))
     ready(bench)
-    watch.rows_again(bench, first.at_s)
+    bench.measured(rate_hz=round(watch.steady(bench).rate_hz, 2))
 
 
 def ready(bench):

@@ -6,7 +6,6 @@ NO_SENSOR, BUS, READ_BACK, INT1_LOW, NO_DATA, SCL_LOW, SDA_LOW, INT1_HIGH, TORN 
 INT1_S = 5.0          # of rows without INT1
 FINGER_S = 10.0
 ROWS_SHARE = 0.8      # of the nominal number: the sensor is read by the clock, a row may be predicted
-HEARD_SHARE = 0.8     # of the time, by the board's clock
 
 
 def int1_wire(bench):
@@ -40,7 +39,7 @@ def rows_without_int1(bench, seconds):
         is_over = is_over if watch.fault_state(seen) is None else watch.fault_state(seen)
     shown = len(found.rows) - found.silent
     bench.measured(rows_without_int1=shown, predicted_without_int1=found.silent)
-    if found.board_s < HEARD_SHARE * seconds or shown < ROWS_SHARE * watch.RATE_HZ * found.board_s:
+    if found.board_s < watch.HEARD_SHARE * seconds or shown < ROWS_SHARE * watch.RATE_HZ * found.board_s:
         raise Failed(f"{shown} rows with a sample came in {seconds:.0f} s without INT1 ({found.board_s:.1f} s by the board's clock)")
     return is_over
 

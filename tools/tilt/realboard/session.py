@@ -9,6 +9,7 @@ from tilt.realboard.record import check_line, numbers_in_words
 
 MEET_S, MEET_STRANGE_S = 8.0, 16.0  # a silent port; one at which bytes come: the board is looked for at each baud rate
 VERSION_AFTER_S = 3.0               # where no banner has come: the board was not reset by the opening, or is stopped
+BEGUN_S = 1.0
 READY_S = 15.0
 LONGEST_SHOWN = 80
 
@@ -43,14 +44,18 @@ def what_came(strange):
 def settle(bench, name):
     """The settings with which the board has begun."""
     try:
-        watch.row_with_sample(bench, 1.0)
+        watch.row_with_sample(bench, BEGUN_S)
     except Failed:
-        pass  # a fault, or plotter mode: the first check will say
+        pass  # a fault, or plotter mode
     try:
         bench.forget()
-        return {each: value for each, (value, _) in watch.listed(bench).items()}
+        told = {each: value for each, (value, _) in watch.listed(bench).items()}
+        fault = watch.counters(bench).get("fault", 0)
     except Failed as why:
         raise TiltError(f"{name}: the board has said who it is, but does not answer: {why}") from why
+    if fault:
+        bench.say(f"The board reports fault {fault}: put that right first (docs/faults.md says what to check), then press Enter or r.")
+    return told
 
 
 class Session:

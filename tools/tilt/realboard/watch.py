@@ -11,6 +11,7 @@ from tilt.recorder import step_us
 ANSWER_S = 5.0         # for the reply to a command: a banner at 9600 baud goes before it
 RATE_HZ = 100          # at which all checks but one are done
 RATE_SHARE = 0.05      # a sensor is up to 4 % off, the board's resonator 0.5 %
+HEARD_SHARE = 0.8      # of the time, by the board's clock
 QUIET_S = 3.0          # without a fault that has begun, at the end of one
 STRETCH_S = 2.0        # of good rows, before and after a fault
 ROWS_WITHIN_S = 10.0   # rows are back: the boot loader takes 2 s
@@ -156,8 +157,8 @@ def not_reset(seen):
 def steady(bench, rate_hz=RATE_HZ, seconds=None):
     """A stretch at the nominal rate, none of its rows without a sample."""
     found = stretch(bench, seconds or STRETCH_S)
-    if len(found.rows) < 3:
-        raise Failed(f"{len(found.rows)} rows came in {seconds or STRETCH_S:.0f} s")
+    if found.board_s < HEARD_SHARE * (seconds or STRETCH_S):
+        raise Failed(f"{len(found.rows)} rows came in {seconds or STRETCH_S:.0f} s, of {found.board_s:.1f} s by the board's clock")
     if found.silent:
         raise Failed(f"{found.silent} of {len(found.rows)} rows show no sample (flags 2 and 16)")
     if abs(found.rate_hz / rate_hz - 1) > RATE_SHARE:
@@ -249,14 +250,6 @@ def well_again(bench, is_over=False):
             bench.measured(rows_without_sample=recovery.silent, rate_hz=round(steady(bench).rate_hz, 2))
             return recovery.silent
     raise Failed(f"the fault was not over within {bench.limit_s:.0f} s")
-
-
-def rows_again(bench, since_s):
-    """Rows at the nominal rate, and how soon they came."""
-    first = row_with_sample(bench, ROWS_WITHIN_S)
-    bench.measured(rows_back_s=round(first.at_s - since_s, 3))
-    found = steady(bench)
-    bench.measured(rate_hz=round(found.rate_hz, 2))
 
 
 class Start:
