@@ -15,7 +15,7 @@ from tilt.errors import TiltError
 from tilt.numbers import whole_option
 
 NAME = "board"
-SUMMARY = "check a real board with your hands: pull wires, reset, cut the power, and send in the record"
+SUMMARY = "check a real board by hand, and record how it went"
 
 
 def arguments(parser):

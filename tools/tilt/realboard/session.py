@@ -9,31 +9,32 @@ from tilt.realboard.record import check_line, numbers_in_words
 
 MEET_S, MEET_STRANGE_S = 8.0, 16.0  # a silent port; one at which bytes come: the board is looked for at each baud rate
 VERSION_AFTER_S = 3.0               # where no banner has come: the board was not reset by the opening, or is stopped
-BEGUN_S = 1.0
+OPENED_S, BEGUN_S = 1.0, 1.0
 READY_S = 15.0
 LONGEST_SHOWN = 80
 
 
 def meet(bench, name):
     """(first line of the banner, name -> value of its settings). TiltError by anything but a board of this firmware."""
-    began_s, asked, strange = bench.now(), False, []
-    until_s = began_s + MEET_S
-    while (seen := bench.next(until_s)) is not None:
+    began_s, strange = bench.now(), []
+    ask_s, until_s = began_s + VERSION_AFTER_S, began_s + MEET_S
+    while bench.now() < until_s:
+        seen = bench.next(min(ask_s, until_s))
+        if bench.now() >= ask_s:
+            bench.type("version")
+            ask_s = until_s + MEET_STRANGE_S  # once
+        if seen is None:
+            continue
         if watch.is_banner(seen):
             return seen.text, settle(bench, name)
-        if seen.kind in ("said", "row", "header"):
+        if seen.kind != "back" or seen.at_s > began_s + OPENED_S:  # another baud rate is tried
             until_s = began_s + MEET_STRANGE_S
-        elif seen.kind == "strange" or (seen.kind == "back" and seen.at_s > began_s + 1.0):
-            strange.append(seen)
-            until_s = began_s + MEET_STRANGE_S
-        if not asked and bench.now() > began_s + VERSION_AFTER_S:
-            asked = True
-            bench.type("version")
+            strange += [seen] if seen.kind in ("strange", "back") else []
     raise TiltError(f"{name}: {what_came(strange)}")
 
 
 def what_came(strange):
-    text = [seen.text for seen in strange if seen.kind == "strange" and seen.text.isprintable()]
+    text = [seen.text for seen in strange if seen.kind == "strange" and seen.text.isascii() and seen.text.isprintable()]
     if text:
         return f"text comes, but not this firmware's: '{max(text, key=len)[:LONGEST_SHOWN].strip()}'. Is it the right port? `make flash` writes it"
     if strange:
