@@ -15,13 +15,15 @@ import unittest
 from unittest import mock
 
 from fake_board import until
+from laws import DEFAULT
 from tilt.errors import TiltError
 from tilt.port import Port
 from tilt.realboard.bench import Bench, Failed, Seen, seen_of
 from tilt.realboard.checks import CHECKS
 
 SIMRUN, FIRMWARE = "build/sim/simrun", "build/uno/firmware.elf"
-BANNER = ("# tilt-uno 0.1.0: roll and pitch from an ADXL345", "# reset: {cause}", "# filter adaptive, rate 100 Hz, range 16 g, every 1, baud 115200",
+BANNER = ("# tilt-uno 0.1.0: roll and pitch from an ADXL345", "# reset: {cause}",
+          f"# filter {DEFAULT}, rate 100 Hz, range 16 g, every 1, baud 115200",
           "# settings: {kept}", "# type help, or mode plot for the Arduino plotter", "# sensor: ADXL345 at 0x53, I2C at 363.6 kHz",
           "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags")
 BEGINS = "# fault {}: words: check the wire"
@@ -112,7 +114,7 @@ class Model:
              "scale": " LSB/g: 200 to 330"}
 
     def __init__(self, fault=0, grow=None, **settings):
-        self.values = {"filter": "adaptive", "rate": "100", "range": "16", "every": "1", "baud": "115200", "mode": "csv", "offset": "0 0 0",
+        self.values = {"filter": DEFAULT, "rate": "100", "range": "16", "every": "1", "baud": "115200", "mode": "csv", "offset": "0 0 0",
                        "scale": "265 265 256", "level": "0 0 1"} | settings
         self.saved, self.fault, self.grow, self.looks = dict(self.values), fault, grow or {}, 0
 
@@ -168,10 +170,11 @@ class JudgeCase(unittest.TestCase):
 
 
 class Simulated:
-    """simrun on its pseudo terminal. press() is what begins the next fault: `status` is typed, which alone visits this function, and its rows go on
-    at once. So faults are timed by what the test does and not by a clock."""
+    """simrun on its pseudo terminal. press() is what begins the next fault: `status` is typed, which alone visits the function PRESSED, and rows
+    go on at once. So faults are timed by what the test does and not by a clock. As the command begins it types `status` once. BYTE is visited for each
+    byte that is typed."""
 
-    PRESSED = "adxl345_rate_chz"
+    PRESSED, BYTE = "adxl345_rate_chz", "__vector_18"
 
     def __init__(self, folder, stream, *options):
         command = [SIMRUN, "--fw", FIRMWARE, "--in", str(stream), "--out", str(folder / "all.csv"), "--eeprom", str(folder / "eeprom.bin"), "--pty",
@@ -179,9 +182,17 @@ class Simulated:
         self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)  # pylint: disable=consider-using-with
         self.fd = os.open(next(line for line in self.process.stderr if "UART on" in line).split()[-1], os.O_RDWR | os.O_NOCTTY)
         tty.setraw(self.fd)
+        self.typed = 0
+
+    def write(self, data):
+        self.typed += os.write(self.fd, data)
 
     def press(self):
-        os.write(self.fd, b"status\n\n")
+        self.write(b"status\n\n")
+
+    def fill(self, count):
+        """So many bytes have been typed, at the end empty lines."""
+        self.write(b"\n" * (count - self.typed))
 
     def end(self):
         os.close(self.fd)
@@ -191,8 +202,9 @@ class Simulated:
 
 
 def faults(*kinds):
-    """Options for a Simulated: the first fault begins with the first press(), and so on."""
-    return [word for n, kind in enumerate(kinds, 1) for word in ("--fault", f"pc:{Simulated.PRESSED}#{n}:{kind}")]
+    """Options for a Simulated: a reset as the port is opened, then a fault for each press()."""
+    visits = enumerate(("reset", None, *kinds), 1)  # the second visit is the command's own
+    return [word for n, kind in visits for each in (kind or "").split() for word in ("--fault", f"pc:{Simulated.PRESSED}#{n}:{each}")]
 
 
 class Cable:
@@ -257,7 +269,7 @@ class Cable:
     def pass_on(self, end):
         data = os.read(end, 4096)
         if end == self.master:
-            os.write(self.board.fd, data)
+            self.board.write(data)
             return
         self.heard = (self.heard + data)[-HEARD_BYTES:]
         if self.cut_on is not None and self.cut_on in self.heard:
@@ -278,10 +290,11 @@ class Cable:
 
 
 class Hands:
-    """The owner in the tests of the command: deeds {key of the check: [function, ...]}, one for each prompt or order in it, in turn."""
+    """The owner in the tests of the command: deeds {key of the check: [function, ...]}, one for each prompt or order in it, in turn. Those of the
+    checks in `first` are done before Enter is pressed, the others meanwhile."""
 
-    def __init__(self, deeds):
-        self.deeds, self.key, self.said, self.keys = deeds, None, [], collections.deque()
+    def __init__(self, deeds, first=()):
+        self.deeds, self.first, self.key, self.said, self.keys = deeds, first, None, [], collections.deque()
 
     def typed(self):
         return self.keys.popleft() if self.keys else None
@@ -299,11 +312,13 @@ class Hands:
         if "(y/n)" in text:
             self.keys.append("y")
             return
-        self.keys.append("")
         if "Enter begins" in text:
             self.do()
+        self.keys.append("")
 
     def do(self):
         deeds = self.deeds.get(self.key, [])
         if deeds:
-            threading.Thread(target=deeds.pop(0), daemon=True).start()
+            thread = threading.Thread(target=deeds.pop(0), daemon=True)
+            thread.start()
+            thread.join(60 if self.key in self.first else 0)

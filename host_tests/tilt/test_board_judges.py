@@ -8,6 +8,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
+from laws import DEFAULT  # noqa: E402
 from board_support import BEGINS, GONE, Desk, JudgeCase, Model, banner, row, rows  # noqa: E402
 from tilt.realboard import judges_motion, judges_starts, judges_wires, watch  # noqa: E402
 from tilt.realboard.checks import CHECKS  # noqa: E402
@@ -16,7 +17,7 @@ from tilt.realboard.checks import CHECKS  # noqa: E402
 class Alone(JudgeCase):
     def test_identity(self):
         numbers = self.passes("identity", Desk(rows(0, 20), Model()))
-        self.assertEqual((numbers["fault"], numbers["measured_hz"], numbers["filter"]), (0, 98.5, "adaptive"))
+        self.assertEqual((numbers["fault"], numbers["measured_hz"], numbers["filter"]), (0, 98.5, DEFAULT))
         self.fails("identity", "state 'fault' with fault 7", Desk(rows(0, 20), Model(fault=7)))
         self.fails("identity", "no reply to 'version' within 5 s", Desk(rows(0, 20)))
         versions = iter([[banner()[0]], []])
@@ -160,7 +161,7 @@ class Words(unittest.TestCase):
 
     def test_values(self):
         for words, value in (("0 0 0 LSB", "0 0 0"), ("100 Hz, I2C at 363.6 kHz", "100"), ("xyz", "xyz"), ("-yxz", "-yxz"),
-                             ("0.1212 0.207 0.9704", "0.1212 0.207 0.9704"), ("adaptive", "adaptive"), ("csv", "csv")):
+                             ("0.1212 0.207 0.9704", "0.1212 0.207 0.9704"), ("csv", "csv")):
             self.assertEqual(watch.value_of(words), value)
 
     def test_angle(self):

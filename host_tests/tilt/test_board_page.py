@@ -44,7 +44,7 @@ class Page(unittest.TestCase):
             self.assertIn(words, table[key])
         page = pathlib.Path("docs/board.md").read_text(encoding="utf-8")
         self.assertIn(f"up to {judges_starts.SAVES_MAX} times", page)
-        self.assertIn(f"the last {bench.LINES_KEPT} lines", page.replace("\n", " "))
+        self.assertIn(f"the last {bench.ROWS_KEPT} rows and the last {bench.LINES_KEPT} lines", page.replace("\n", " "))
         self.assertIn("none has begun for three seconds", page)
         self.assertEqual(watch.QUIET_S, 3.0)
 

@@ -49,7 +49,7 @@ class Played(unittest.TestCase):
     @contextlib.contextmanager
     def board(self, stream_path, *options):
         with Cable(self.folder) as self.cable:
-            self.cable.lead_to(Simulated(self.folder, stream_path, *(options or faults("reset"))))
+            self.cable.lead_to(Simulated(self.folder, stream_path, *(options or faults())))
             yield self.cable
 
     def press(self):
@@ -57,7 +57,7 @@ class Played(unittest.TestCase):
 
     def checks(self, keys, deeds=None, *words):
         """key -> line of the record; all must have passed."""
-        hands = Hands(deeds or {})
+        hands = Hands(deeds or {}, first={"reset_typing"})
         out, err = io.StringIO(), io.StringIO()
         with contextlib.ExitStack() as stack:
             for module, name, value in SHORTER:
@@ -94,20 +94,23 @@ class Played(unittest.TestCase):
         self.assertIn("six_faces", found)
 
     def test_wires(self):
-        kinds = {"int1_wire": "noint:4000", "int1_finger": "storm:300:4000", "sda_pulled": "unplug:1500", "scl_pulled": "scl:1500",
-                 "sda_short": "sda:1500", "scl_short": "scl:1500", "sensor_power": "power:1500"}
         # a finger on an open wire: INT1 does not come through, hum does
-        options = faults("reset", *kinds.values()) + ["--fault", f"pc:{Simulated.PRESSED}#3:noint:4500"]
-        with self.board(REST, *options):
+        kinds = {"int1_wire": "noint:4000", "int1_finger": "noint:4500 storm:300:4000", "sda_pulled": "unplug:1500", "scl_pulled": "scl:1500",
+                 "sda_short": "sda:1500", "scl_short": "scl:1500", "sensor_power": "power:1500"}
+        with self.board(REST, *faults(*kinds.values())):
             found = self.checks(list(kinds), {key: [self.press] for key in kinds})
         told = {key: line["numbers"]["fault"] for key, line in found.items()}
         self.assertEqual((told["sda_pulled"], told["sda_short"], told["scl_short"]), (1, 8, 7), told)
         self.assertGreater(found["sda_short"]["numbers"]["samples_lost"], 100)
 
     def test_resets(self):
-        with self.board(REST, *faults("reset", "reset", "reset")):
-            found = self.checks(["reset_button", "reset_typing"], {"reset_button": [self.press], "reset_typing": [self.press]})
+        """The second one comes as the last byte of half a command has been received."""
+        at, half = 500, len(judges_starts.TYPED)
+        with self.board(REST, *faults("reset"), "--fault", f"pc:{Simulated.BYTE}#{at}:reset"):
+            found = self.checks(["reset_button", "reset_typing"], {
+                "reset_button": [self.press], "reset_typing": [lambda: self.cable.board.fill(at - half)]})
         self.assertEqual(found["reset_button"]["numbers"]["cause"], "reset button or serial port opened")
+        self.assertIn("# refused 1: unknown command", "\n".join(found["reset_typing"]["lines"]))
 
     def pull_the_plug(self):
         """The board loses its supply with the port."""
@@ -123,7 +126,7 @@ class Played(unittest.TestCase):
         self.cable.plug()
 
     def test_supply(self):
-        options = faults("reset", "mcupower", "reset", "reset", "mcupower", "reset")
+        options = faults("mcupower", "reset", "reset", "mcupower", "reset")
         with self.board(REST, *options, "--fault", "eeprom:150:mcupower:random"):
             found = self.checks(["power_second", "eeprom_cut", "kept"], {
                 "power_second": [self.pull_the_plug], "eeprom_cut": [self.wait_for_the_cut], "kept": [lambda: None, self.pull_the_plug]})

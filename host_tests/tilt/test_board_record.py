@@ -136,6 +136,14 @@ class Sessions(Case):
         desk.keys.append("nothing of these")
         self.assertIsNotNone(desk.bench().next(3.0))
 
+    def test_rows_push_no_words_out_of_the_record(self):
+        desk = Desk(rows(0, 120) + [(1.0, "# fault 8: SDA held low"), (1.5, "not a line\x07")], Model())
+        bench = desk.bench()
+        self.assertEqual(len(list(bench.events(9.0))), 902)
+        self.assertEqual((bench.lines[:2], len(bench.lines)), (["# fault 8: SDA held low", "not a line?"], 22))
+        bench.begin(10.0)
+        self.assertEqual(bench.lines, [])
+
     def test_a_check_begins_with_a_board_that_sends_rows(self):
         desk = Desk([], Model())
         Session(desk.bench(), self.record(), [(1, check(alone=True))]).once(1, check(alone=True), 1)

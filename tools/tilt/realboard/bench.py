@@ -10,7 +10,7 @@ from tilt import protocol
 from tilt.errors import TiltError
 
 LOOK_S = 0.1        # how late a key of the owner is seen at most
-LINES_KEPT = 40     # of the line, for the record
+LINES_KEPT, ROWS_KEPT = 40, 20  # for the record: rows alone would be less than half a second
 LETTERS_KEPT = 160  # of each
 SAID_KEPT = 1000    # lines, while the owner is asked something
 
@@ -89,20 +89,27 @@ class Wire:
 
 
 class Bench:
-    """next() is the only way to what came; numbers: what the judge has measured so far; lines: the last raw ones; limit_s: for each thing that
-    the judge waits for; settings: name -> value as the board had them at the beginning; deaf: the owner is not heard, while settings are put
-    back."""
+    """next() is the only way to what came.
+
+    numbers: what the judge has measured so far; lines: the last raw ones of the check; limit_s: for each thing that the judge waits for; settings:
+    name -> value as the board had them at the beginning; deaf: the owner is not heard, while settings are put back."""
 
     def __init__(self, wire, owner):
         self.wire, self.owner = wire, owner
         self.now, self.waiting = wire.now, collections.deque()
-        self.lines, self.settings = collections.deque(maxlen=LINES_KEPT), {}
+        self.settings = {}
         self.deaf = False
         self.begin(60.0)
 
     def begin(self, limit_s):
         """As a check begins."""
-        self.limit_s, self.numbers = limit_s, {}
+        self.limit_s, self.numbers, self.count = limit_s, {}, 0
+        self.kept = {"row": collections.deque(maxlen=ROWS_KEPT), "other": collections.deque(maxlen=LINES_KEPT)}
+
+    @property
+    def lines(self):
+        """The last of what was seen, in its order: rows and, more of them, other lines."""
+        return [text for _, text in sorted([*self.kept["row"], *self.kept["other"]])]
 
     def measured(self, **numbers):
         self.numbers.update(numbers)
@@ -129,7 +136,9 @@ class Bench:
         for seen in self.wire.take(timeout_s):
             self.waiting.append(seen)
             mark = f"[{seen.text}]" if seen.kind in ("gone", "back") else seen.text
-            self.lines.append(re.sub(r"[^ -~]", "?", mark[:LETTERS_KEPT]))
+            self.count += 1
+            kept = self.kept["row" if seen.kind == "row" else "other"]
+            kept.append((self.count, re.sub(r"[^ -~]", "?", mark[:LETTERS_KEPT])))
 
     def put_back(self, seen):
         """The next thing seen, for somebody else."""

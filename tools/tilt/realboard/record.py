@@ -32,7 +32,7 @@ def begin_line(port, usb, firmware, settings):
 
 def check_line(number, check, verdict, reason, attempt, took_s, bench):
     return {"kind": "check", "number": number, "key": check.key, "verdict": verdict, "reason": reason, "try": attempt, "at": now(),
-            "took_s": round(took_s, 1), "numbers": bench.numbers, "lines": list(bench.lines)}
+            "took_s": round(took_s, 1), "numbers": bench.numbers, "lines": bench.lines}
 
 
 class Record:
