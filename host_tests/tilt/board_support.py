@@ -2,12 +2,15 @@
 the simulator, behind a cable that can be pulled out, and hands that do what the program asks for."""
 import collections
 import contextlib
+import io
+import json
 import os
 import pathlib
 import pty
 import re
 import select
 import subprocess
+import tempfile
 import threading
 import time
 import tty
@@ -16,16 +19,20 @@ from unittest import mock
 
 from fake_board import until
 from laws import DEFAULT
+from tilt import cli
 from tilt.errors import TiltError
 from tilt.port import Port
 from tilt.realboard.bench import Bench, Failed, Seen, seen_of
 from tilt.realboard.checks import CHECKS
+from tilt.realboard.record import Record, begin_line
 
 SIMRUN, FIRMWARE = "build/sim/simrun", "build/uno/firmware.elf"
 BANNER = ("# tilt-uno 0.1.0: roll and pitch from an ADXL345", "# reset: {cause}",
           f"# filter {DEFAULT}, rate 100 Hz, range 16 g, every 1, baud 115200",
           "# settings: {kept}", "# type help, or mode plot for the Arduino plotter", "# sensor: ADXL345 at 0x53, I2C at 363.6 kHz",
           "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags")
+FIRMWARE_SAYS = BANNER[0]
+ALL = list(enumerate(CHECKS, 1))
 BEGINS = "# fault {}: words: check the wire"
 OVER = "# fault {} over: after 1500 ms, 150 lost, sensor at 0x53"
 JUDGES = {check.key: check.judge for check in CHECKS}
@@ -169,10 +176,52 @@ class JudgeCase(unittest.TestCase):
         return bench.numbers
 
 
+class CommandCase(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.path = self.folder / "board.jsonl"
+
+    def record(self, resumed=False):
+        record = Record(self.path, resumed)
+        self.addCleanup(record.close)
+        if not resumed:
+            record.add(begin_line("port", [9025, 67], FIRMWARE_SAYS, {"every": "1"}))
+        return record
+
+    def lines(self):
+        return [json.loads(line) for line in self.path.read_text().splitlines()]
+
+    def tilt(self, *words):
+        """(status, stdout, stderr)"""
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            status = cli.main(["board", *map(str, words)])
+        return status, out.getvalue(), err.getvalue()
+
+
+def check(key="identity", judge=lambda bench: bench.measured(seconds=1.5), alone=False):
+    found = next(each for each in CHECKS if each.key == key)
+    return found._replace(judge=judge, alone=alone)
+
+
+def raises(*whys):
+    """A judge that raises these in turn (None: it passes)."""
+    whys = list(whys)
+
+    def judge(bench):
+        bench.measured(tries=len(whys))
+        why = whys.pop(0)
+        if why is not None:
+            raise why
+    return judge
+
+
 class Simulated:
     """simrun on its pseudo terminal. press() is what begins the next fault: `status` is typed, which alone visits the function PRESSED, and rows
-    go on at once. So faults are timed by what the test does and not by a clock. As the command begins it types `status` once. BYTE is visited for each
-    byte that is typed."""
+    go on at once. So faults are timed by what the test does and not by a clock. As the command begins it types `status` once. BYTE is visited for
+    each byte that is typed."""
 
     PRESSED, BYTE = "adxl345_rate_chz", "__vector_18"
 
