@@ -89,7 +89,7 @@ class Sessions(CommandCase):
         Session(desk.bench(), self.record(), [(1, check(alone=True))]).once(1, check(alone=True), 1)
         self.assertEqual(self.verdicts(), [("identity", "fail", "no row with a sample within 15 s", 1)])
 
-    def test_what_the_owner_does_before_he_presses_enter_is_seen(self):
+    def test_what_the_owner_does_before_enter_is_seen(self):
         desk = Desk(rows(0, 60), Model())
 
         def late(text):

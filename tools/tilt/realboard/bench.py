@@ -176,8 +176,8 @@ class Bench:
         return reason
 
     def line(self, prompt):
-        """What the owner types, as it is. What the board says meanwhile is kept, he may do at once what he is asked for; of the rows only those
-        without a sample are, he may be away for long."""
+        """What the owner types, as it is. What the board says meanwhile is kept, for the owner may do at once what is asked for; of the rows only
+        those without a sample are, for the owner may be away for long."""
         self.owner.prompt(prompt)
         while (typed := self.owner.typed()) is None:
             self.fill(LOOK_S)

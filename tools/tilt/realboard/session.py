@@ -109,7 +109,7 @@ class Session:
         return verdict
 
     def lead_in(self, number, check):
-        """Whatever the owner does from the prompt on is seen, also before he presses Enter."""
+        """Whatever the owner does from the prompt on is seen, also before Enter is pressed."""
         bench = self.bench
         bench.say(f"\n{number:2}/{len(CHECKS)} {check.key} (waits {check.limit_s} s)")
         bench.forget()
