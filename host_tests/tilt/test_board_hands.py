@@ -39,6 +39,7 @@ class Wires(JudgeCase):
     def test_a_wire_that_bounces(self):
         numbers = self.passes("sda_pulled", Desk(self.broken(bounces=(7.5, 8.0, 9.0, 9.5))))
         self.assertEqual((numbers["times"], numbers["samples_lost"]), (3, 450))
+        self.assertEqual(self.passes("sda_pulled", Desk(self.broken(bounces=(7.5, 12.5))))["times"], 2)
 
     def test_a_bus_check_fails(self):
         self.fails("sda_short", "no fault was reported within 20 s", Desk(rows(0, 60)))
@@ -114,6 +115,10 @@ class Starts(JudgeCase):
         script = rows(0, 4) + [(4.0, GONE), (5.0, BACK)] + rows(5.1, 60)
         numbers = self.passes("power_second", Desk(script, Model()))
         self.assertEqual((numbers["cause"], numbers["port_gone_s"]), (None, 1.0))
+
+    def test_a_plug_put_back_at_the_last_moment(self):
+        script = rows(0, 5) + [(5.0, GONE), (19.0, BACK), (22.0, banner())] + rows(22.1, 60)
+        self.assertEqual(self.passes("power_second", Desk(script, Model()))["port_gone_s"], 14.0)
 
     def test_the_last_of_two_starts_counts(self):
         script = rows(0, 3) + [(3.0, GONE), (4.0, BACK), (4.1, banner("power on")[:2]), (4.3, banner())] + rows(4.4, 60)

@@ -8,7 +8,7 @@ from unittest import mock
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, "tools")
-from board_support import ALL, FIRMWARE_SAYS, CommandCase, Desk, Model, check, raises, rows  # noqa: E402
+from board_support import ALL, FIRMWARE_SAYS, CommandCase, Desk, Model, check, raises, row, rows  # noqa: E402
 from tilt.errors import TiltError  # noqa: E402
 from tilt.realboard import owner as owner_module  # noqa: E402
 from tilt.realboard.bench import Failed, Quit, Repeat, Skip  # noqa: E402
@@ -94,14 +94,14 @@ class Sessions(CommandCase):
 
         def late(text):
             if "Enter begins" in text:
-                desk.script.appendleft((desk.time_s, "# fault 8: SDA held low"))
-                desk.time_s += 1.0
-            desk.keys.append("")
+                desk.script.appendleft((desk.time_s, ["# fault 8: SDA held low", row(desk.time_s, flags=2)]))
+            desk.keys.extend([None, None, ""])  # seen before Enter is pressed
         desk.prompt = late
         found = []
-        judge = lambda bench: found.extend(seen.text for seen in bench.events(0.5) if seen.kind == "said")  # noqa: E731
+        judge = lambda bench: found.extend(seen for seen in bench.events(0.5))  # noqa: E731
         Session(desk.bench(), self.record(), []).once(3, check("selftest", judge), 1)
-        self.assertIn("# fault 8: SDA held low", found)
+        self.assertEqual((found[0].text, found[1].row.flags), ("# fault 8: SDA held low", 2))
+        self.assertGreater(found[2].at_s, found[1].at_s + 0.05)  # good rows are not kept
 
     def test_resume(self):
         checks = [(1, check(alone=True)), (2, check("rate", raises(Failed("late")), alone=True)), (3, check("selftest"))]
