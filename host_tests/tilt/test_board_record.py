@@ -95,7 +95,7 @@ class Sessions(CommandCase):
         def late(text):
             if "Enter begins" in text:
                 desk.script.appendleft((desk.time_s, ["# fault 8: SDA held low", row(desk.time_s, flags=2)]))
-            desk.keys.extend([None, None, ""])  # seen before Enter is pressed
+            desk.keys.extend([None] * 10 + [""])  # seen before Enter is pressed
         desk.prompt = late
         found = []
         judge = lambda bench: found.extend(seen for seen in bench.events(0.5))  # noqa: E731
