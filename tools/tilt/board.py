@@ -60,14 +60,21 @@ class Board:
         """Types a command. TiltError where it cannot be one, or where there is no board."""
         if not 0 < len(text) <= LONGEST_COMMAND or not all(" " <= letter <= "~" for letter in text):
             raise TiltError(f"a command has 1 to {LONGEST_COMMAND} characters, none of them accented")
+        self._type(text + "\n")
+        self.feed.put("sent", text)
+
+    def send_piece(self, text):
+        """Types the beginning of a command, or its rest, without a line end. TiltError where there is no board."""
+        self._type(text)
+
+    def _type(self, text):
         with self._writing:
             if not self._connected:
                 raise TiltError(f"{self.port.name}: not connected")
             try:
-                self.port.send(text)
+                self.port.send_bytes(text.encode("ascii", "replace"))
             except Gone as why:
                 raise TiltError(f"{self.port.name}: {why}") from why
-        self.feed.put("sent", text)
 
     def _tell(self, connected, why=""):
         self._connected = connected
