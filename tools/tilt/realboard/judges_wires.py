@@ -2,7 +2,7 @@
 from tilt.realboard import watch
 from tilt.realboard.bench import Failed
 
-NO_SENSOR, BUS, READ_BACK, INT1_LOW, NO_DATA, SCL_LOW, SDA_LOW, INT1_HIGH, TORN = 1, 3, 4, 5, 6, 7, 8, 9, 11  # docs/faults.md
+NO_SENSOR, BUS, READ_BACK, INT1_LOW, NO_DATA, SCL_LOW, SDA_LOW, INT1_HIGH, TORN, INT1_FLICKERS = 1, 3, 4, 5, 6, 7, 8, 9, 11, 13  # docs/faults.md
 INT1_S = 5.0          # of rows without INT1
 FINGER_S = 10.0
 ROWS_SHARE = 0.8      # of the nominal number: the sensor is read by the clock, a row may be predicted
@@ -10,7 +10,7 @@ ROWS_SHARE = 0.8      # of the nominal number: the sensor is read by the clock, 
 
 def int1_wire(bench):
     """D2 floats: rows go on, the LED shows three flashes."""
-    watch.fault_begins(bench, (INT1_LOW, INT1_HIGH))
+    watch.fault_begins(bench, (INT1_LOW, INT1_HIGH, INT1_FLICKERS))
     rows_without_int1(bench, INT1_S)
     if not bench.ask("Does the LED flash three times, then stay dark for a moment, again and again?"):
         raise Failed("the LED does not flash three times")
@@ -22,7 +22,7 @@ def int1_wire(bench):
 
 def int1_finger(bench):
     """A finger on the floating wire: hum on D2, and rows go on."""
-    watch.fault_begins(bench, (INT1_LOW, INT1_HIGH))
+    watch.fault_begins(bench, (INT1_LOW, INT1_HIGH, INT1_FLICKERS))
     bench.say(f"   Now hold the bare end between two fingers for {FINGER_S:.0f} s.")
     is_over = rows_without_int1(bench, FINGER_S)
     bench.say("   Now put the wire back on INT1 of the sensor.")
