@@ -24,6 +24,11 @@ HAL_BODY bool hal_drdy_flickers(void)
     return GPIOR2 != 0;
 }
 
+HAL_BODY bool hal_drdy_high(void)
+{
+    return !hal_drdy_flickers() && (PIND & _BV(PD2)) != 0;
+}
+
 HAL_BODY bool hal_drdy_edge_isr(void)
 {
     uint8_t left = (uint8_t)(GPIOR1 - 1u);
@@ -32,7 +37,7 @@ HAL_BODY bool hal_drdy_edge_isr(void)
         EIMSK = left;
         GPIOR2 = HAL_DRDY_DEAF_TICKS;
     }
-    return GPIOR2 == 0 && (PIND & _BV(PD2)) != 0;
+    return hal_drdy_high();
 }
 
 #endif

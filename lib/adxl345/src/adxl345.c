@@ -232,11 +232,8 @@ void adxl345_poll(uint32_t now_us)
     adxl345_driver_t *d = adxl345_driver_here();
     d->now_us = now_us;
     reading_t reading = adxl345_burst_judge();
-    if (reading > READING_GOOD) {
-        hal_wake(); /* nobody takes it, and the next one may wait */
-        if (reading == READING_FAILED) {
-            (void)adxl345_driver_transfer_failed(adxl345_burst_failed_state());
-        }
+    if (reading == READING_FAILED) {
+        (void)adxl345_driver_transfer_failed(adxl345_burst_failed_state());
     }
     if (d->step == STEP_STREAM) {
         adxl345_stream_poll(d, reading);

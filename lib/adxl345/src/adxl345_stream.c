@@ -69,7 +69,6 @@ static void sample_arrived(adxl345_driver_t *d)
     if (adxl345_burst_by_clock()) {
         d->fault = hal_drdy_flickers() ? ADXL345_FAULT_INT1_FLICKERS : ADXL345_FAULT_INT1_SILENT;
     }
-    look_after(d);
 }
 
 /* A burst, or the STOP after one, is on the bus: it may hang. */
@@ -129,12 +128,13 @@ void adxl345_stream_poll(adxl345_driver_t *d, reading_t reading)
     if (failed(d, reading)) {
         return;
     }
-    if (reading == READING_GOOD) {
-        sample_arrived(d);
-    } else if (reading != READING_NONE) {
+    if (reading != READING_NONE) {
+        if (reading == READING_GOOD) {
+            sample_arrived(d);
+        }
         look_after(d); /* at once, where the time for it has come */
     }
-    if (!adxl345_sample_waits() && !adxl345_driver_deadline_passed()) {
+    if (!adxl345_sample_waits() && (reading == READING_GOOD || !adxl345_driver_deadline_passed())) {
         return;
     }
     if (adxl345_burst_running() || hal_i2c_stop_pending()) {
