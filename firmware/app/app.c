@@ -263,8 +263,9 @@ static void set_alarm(void)
 {
     struct loop *l = here();
     uint32_t t_us = adxl345_deadline_us();
-    if (coast_due(t_us - READ_LATE_US) && !coast_due(l->pass_us - READ_LATE_US)) {
-        t_us = coast_due_us() + READ_LATE_US;
+    uint32_t row_us = coast_due_us() + READ_LATE_US;
+    if (hal_time_reached(t_us, row_us) && !hal_time_reached(l->pass_us, row_us)) {
+        t_us = row_us;
     }
     if (t_us - l->pass_us > HAL_WAKE_AHEAD_US) {
         t_us = l->pass_us + HAL_WAKE_AHEAD_US;

@@ -24,7 +24,7 @@
 enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1 };
 
 #define SENSOR_DEPTH 33ul /* samples that the sensor can hold (p. 27) */
-#define ASKED_US 256u     /* into a burst at 100 kHz the sensor says whether it has data */
+#define ASKED_US 256u     /* after a look begins: the sensor has been asked, and the next look is 0.3 ms away */
 
 _Static_assert((int)READING_BYTES == (int)I2C_BUS_RX_MAX, "a reading fits");
 
@@ -190,7 +190,7 @@ bool adxl345_burst_register_holds(void)
 
 /*
  * Stamp of a sample that was found waiting without an edge: one period after the one before it, but not before the
- * sensor was last seen empty, nor in the future.
+ * sensor was last seen empty, nor in the future (the difference wraps).
  */
 static uint32_t waiting_since_us(const struct burst *b, uint32_t now_us)
 {
@@ -212,19 +212,21 @@ bool adxl345_burst_read(void)
     if (adxl345_burst_queue_full() || !claim(b)) {
         return false;
     }
+    burst_entry_t *entry = entry_at(b->head);
+    uint32_t now_us = hal_time_us();
+    entry->sample.t_us = waiting_since_us(b, now_us);
+    entry->exact = false;
+    b->by_clock = true;
     hal_irq_state_t state = hal_irq_save();
-    bool exact = b->edge_waiting != 0;
-    uint32_t t_us = b->edge_us;
+    if (hal_drdy_high()) { /* an edge whose level is gone is that of no sample */
+        b->by_clock = false;
+        if (b->edge_waiting) {
+            entry->exact = true;
+            entry->sample.t_us = b->edge_us;
+        }
+    }
     b->edge_waiting = 0;
     hal_irq_restore(state);
-    uint32_t now_us = hal_time_us();
-    if (!exact) {
-        t_us = waiting_since_us(b, now_us);
-    }
-    b->by_clock = !exact && !hal_drdy_high();
-    burst_entry_t *entry = entry_at(b->head);
-    entry->sample.t_us = t_us;
-    entry->exact = exact;
     b->begun_us = now_us;
     begin_burst(b, false);
     return true;
@@ -260,25 +262,6 @@ static MACHINE_APART void restamp(const struct burst *b, burst_entry_t *entry)
     }
 }
 
-/*
- * The edge began this burst, or INT1 was low when the clock did: an edge since then is that of its sample, which came
- * just in time.
- */
-static inline void take_edge(struct burst *b, burst_entry_t *entry)
-{
-    const volatile uint32_t *edge_us = &b->begun_us;
-    if (!b->by_edge) {
-        if (!b->by_clock || !b->edge_waiting || !(b->bus.rx[READING_SOURCE] & ADXL345_INT_DATA_READY)) {
-            return;
-        }
-        b->edge_waiting = 0;
-        edge_us = &b->edge_us;
-    }
-    entry->sample.t_us = *edge_us;
-    entry->exact = true;
-    b->by_clock = false;
-}
-
 static reading_t judge(struct burst *b, burst_entry_t *entry)
 {
     b->failures = 0;
@@ -290,6 +273,9 @@ static reading_t judge(struct burst *b, burst_entry_t *entry)
     }
     if (verdict != READING_GOOD) {
         return verdict;
+    }
+    if (b->edge_waiting) {
+        b->by_clock = false; /* INT1 rose meanwhile */
     }
     if (b->bus.rx[READING_FIFO_STATUS] >= 2u) {
         restamp(b, entry);
@@ -306,7 +292,11 @@ static MACHINE_APART reading_t judge_ended(void)
     burst_entry_t *entry = entry_at(b->head);
     uint8_t asked = READING_BYTES;
     reading_t verdict = READING_FAILED;
-    take_edge(b, entry);
+    if (b->by_edge) {
+        entry->sample.t_us = b->begun_us;
+        entry->exact = true;
+        b->by_clock = false;
+    }
     if (b->bus.state == I2C_BUS_OK) {
         verdict = judge(b, entry);
     } else {
@@ -335,7 +325,7 @@ bool adxl345_burst_running(void)
 
 bool adxl345_sample_waits(void)
 {
-    return burst.mode == BURST_READ && hal_drdy_high() && (burst.verdict != READING_EMPTY || burst.edge_waiting);
+    return hal_drdy_high() && burst.mode == BURST_READ && (burst.verdict != READING_EMPTY || burst.edge_waiting);
 }
 
 bool adxl345_burst_by_clock(void)

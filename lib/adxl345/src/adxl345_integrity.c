@@ -121,7 +121,9 @@ static void accept(uint8_t source, bool repeated)
     }
     i->has_last = true;
     i->bad_run = 0;
-    if (!hal_drdy_high()) {
+    if (hal_drdy_flickers()) {
+        i->empty_run = 0;
+    } else if (!hal_drdy_high()) {
         i->empty_run = i->empty_run > RUN_LIMIT ? (uint8_t)(i->empty_run - 1u) : 0;
     }
     if (source & ADXL345_INT_OVERRUN) {

@@ -39,7 +39,7 @@ static MACHINE_APART void look_after(adxl345_driver_t *d)
 {
     uint16_t after_2us = d->patience_2us;
     if (d->fault != ADXL345_FAULT_NONE || hal_drdy_high()) {
-        after_2us -= after_2us / 4u;
+        after_2us = d->half_us - d->half_us / 16u;
     }
     d->deadline_us = adxl345_burst_last_us() + (uint32_t)after_2us * 2u;
 }
@@ -134,7 +134,7 @@ void adxl345_stream_poll(adxl345_driver_t *d, reading_t reading)
         }
         look_after(d); /* at once, where the time for it has come */
     }
-    if (!adxl345_sample_waits() && (reading == READING_GOOD || !adxl345_driver_deadline_passed())) {
+    if (!adxl345_sample_waits() && !adxl345_driver_deadline_passed()) {
         return;
     }
     if (adxl345_burst_running() || hal_i2c_stop_pending()) {
