@@ -68,6 +68,7 @@ typedef struct {
 } options_t;
 
 extern options_t options;
+extern const char options_help[];
 
 /* Fills `options` from the command line; prints the reason and exits with EXIT_INPUT (or EXIT_OK after --help). */
 void options_parse(int argc, char **argv);
@@ -100,7 +101,6 @@ void machine_fail(exit_status_t status, const char *reason);
 double machine_ms(void);
 enum { OPCODE_SLEEP = 0x9588 };
 unsigned machine_opcode_at(uint32_t pc);  /* byte address */
-bool machine_asked_to_end(void);          /* by SIGINT or SIGTERM */
 uint32_t machine_random(void);            /* xorshift32 from --seed */
 bool machine_in_boot_loader(uint32_t pc); /* byte address; false without --bootloader */
 
@@ -117,6 +117,10 @@ void resets_port_opened(void);
 void resets_watch(uint32_t last_pc);
 uint32_t resets_count(void);
 uint32_t resets_boot_count(void); /* out of the boot loader; not counted above */
+
+/* --- signals --- */
+void signals_start(void);
+bool signals_asked_to_end(void); /* by SIGINT or SIGTERM */
 
 /* --- stack --- */
 void stack_paint(void);                /* before the start */

@@ -3,7 +3,6 @@
  * simrun_resets.c (resets that drop every timer, level interrupts), and every instruction is watched: program counter,
  * stack pointer, illegal opcodes.
  */
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +34,6 @@ static uint32_t random_state;
 static bool stopping;
 static avr_run_t plain_run; /* simavr puts another one in for gdb and for a watchdog reset */
 static uint64_t max_cycle = NEVER;
-static volatile sig_atomic_t asked_to_end;
 static bool interactive;
 static uint32_t chunk_cycles = CHUNK_CYCLES;
 uint64_t machine_steps;
@@ -157,18 +155,6 @@ static void load_boot_loader(void)
     avr_regbit_set(mcu, mcu->reset_flags.extrf);
 }
 
-/* A run that is ended keeps its files, and says what it has seen. */
-static void on_signal(int number)
-{
-    (void)number;
-    asked_to_end = 1;
-}
-
-bool machine_asked_to_end(void)
-{
-    return asked_to_end != 0;
-}
-
 static void load_program(void)
 {
     elf_firmware_t program;
@@ -197,8 +183,7 @@ void machine_start(void)
 {
     random_state = options.seed * 2654435769u; /* a small seed begins with small numbers, below every chance */
     interactive = options.pty || options.gdb_port != 0;
-    (void)signal(SIGINT, on_signal);
-    (void)signal(SIGTERM, on_signal);
+    signals_start();
     avr_global_logger_set(on_log);
     load_program();
     max_cycle = options.max_ms > 0.0 ? (uint64_t)(options.max_ms * CYCLES_PER_MS) : NEVER;
@@ -262,7 +247,7 @@ static bool ended(void)
 {
     uint64_t now = mcu->cycle;
     uint64_t over = done_at();
-    if (failure != EXIT_OK || now >= max_cycle || asked_to_end) {
+    if (failure != EXIT_OK || now >= max_cycle || signals_asked_to_end()) {
         return true;
     }
     if (over == NEVER || now < over + (uint64_t)END_MS * CYCLES_PER_MS) {
@@ -380,7 +365,7 @@ exit_status_t machine_run(const char **reason)
     static char text[512];
     run();
     stopping = true;
-    if (asked_to_end && !interactive) {
+    if (signals_asked_to_end() && !interactive) {
         machine_fail(EXIT_INTERNAL, "ended by a signal");
     }
     if (failure == EXIT_OK && resets_count() != options.expect_resets) {
