@@ -54,7 +54,7 @@ typedef struct {
 } typed_line_t;
 
 typedef struct {
-    const char *fw, *in, *frames, *out, *served, *altered, *eeprom, *stats, *profile, *calls, *vcd, *bootloader,
+    const char *fw, *in, *frames, *out, *served, *altered, *eeprom, *stats, *profile, *calls, *race, *vcd, *bootloader,
         *filter, *span;
     bool loop, pty, blank, judge, strap, alt_address;
     double ppm, max_ms, patience_s; /* max_ms 0: none */
@@ -145,6 +145,7 @@ bool symbols_find(const char *name, uint32_t *pc);
 bool symbols_find_variable(const char *name, uint32_t *address);
 /* "name+0x12" of the function around pc; static text. */
 const char *symbols_nearest(uint32_t pc);
+const char *symbols_variable_at(uint32_t address); /* the same of the variable around an address in data space */
 
 /* --- boot loader (--bootloader) --- */
 /* Puts the image into the flash; its lowest address. Exits with EXIT_INPUT on a bad file. */
@@ -270,6 +271,7 @@ extern uint64_t stats_interrupted; /* cycles in interrupt handlers, entry and re
 extern bool stats_profiling;       /* for --profile or --calls */
 uint64_t stats_own_cycles(void);   /* awake, without the responses to interrupts */
 bool stats_in_interrupt(void);
+const char *stats_vector_name(unsigned vector); /* as in --stats; static text */
 void stats_start(void);
 void stats_reset(void);
 void stats_profile(uint32_t pc, uint64_t cycles);
@@ -284,6 +286,20 @@ void stats_streaming_ends(void);
 void calls_on_step(uint32_t pc, uint64_t cycles, bool interrupt); /* interrupt: it is the instruction of a vector */
 void calls_reset(void);
 void calls_write(void);
+
+/* --- what an instruction reads or writes (simrun_access.c) --- */
+typedef struct {
+    uint16_t address; /* in data space */
+    bool reads, writes;
+} access_t;
+access_t access_at(uint32_t pc); /* neither reads nor writes: no access, or one to the stack */
+
+/* --- interrupts where main shares something with their handlers (--race) --- */
+extern bool race_wanted;
+void race_start(void);
+/* Before each instruction. It may let time pass and enter a handler; true when it did: look at everything. */
+bool race_on_step(void);
+void race_finish(void); /* stderr, and the file */
 
 /* --- passes of the main loop --- */
 void pass_start(void);

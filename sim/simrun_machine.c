@@ -218,7 +218,8 @@ void machine_start(void)
     faults_start();
     span_start();
     pass_start();
-    if (faults_watch_pc || span_wanted || stats_profiling) {
+    race_start();
+    if (faults_watch_pc || span_wanted || race_wanted || stats_profiling) {
         chunk_cycles = 0;
     }
     rules_start();
@@ -332,19 +333,30 @@ static void watch_everything(int state)
     watch_state(state);
 }
 
+/* What some options want to know before each instruction. */
+static void look_ahead(void)
+{
+    if (race_wanted && mcu->run == plain_run && race_on_step()) {
+        watch_everything(mcu->state);
+    }
+    if (faults_watch_pc) {
+        faults_on_pc(mcu->pc);
+    }
+    if (span_wanted) {
+        span_on_pc(mcu->pc);
+    }
+}
+
 static void run(void)
 {
     bool stack_low = false;
     do {
         bool running = mcu->state == cpu_Running;
+        if (chunk_cycles == 0 && running) {
+            look_ahead();
+        }
         uint64_t began = stats_own_cycles();
         last_pc = mcu->pc;
-        if (faults_watch_pc && running) {
-            faults_on_pc(last_pc);
-        }
-        if (span_wanted && running) {
-            span_on_pc(last_pc);
-        }
         machine_steps++;
         bool eventful = step(stack_low ? 0 : chunk_cycles);
         stack_low = stack_watch(machine_size.end_of_ram);

@@ -22,6 +22,7 @@ enum option_code {
     OPTION_PROFILE,
     OPTION_CALLS,
     OPTION_SPAN,
+    OPTION_RACE,
     OPTION_VCD,
     OPTION_BOOTLOADER,
     OPTION_BLANK,
@@ -56,6 +57,7 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "profile", required_argument, NULL, OPTION_PROFILE },
                                        { "calls", required_argument, NULL, OPTION_CALLS },
                                        { "span", required_argument, NULL, OPTION_SPAN },
+                                       { "race", required_argument, NULL, OPTION_RACE },
                                        { "vcd", required_argument, NULL, OPTION_VCD },
                                        { "bootloader", required_argument, NULL, OPTION_BOOTLOADER },
                                        { "blank", no_argument, NULL, OPTION_BLANK },
@@ -164,7 +166,7 @@ static bool take_file(int code, const char *argument)
         { OPTION_VCD, &options.vcd },         { OPTION_PROFILE, &options.profile },
         { OPTION_SPAN, &options.span },       { OPTION_BOOTLOADER, &options.bootloader },
         { OPTION_ALTERED, &options.altered }, { OPTION_FRAMES, &options.frames },
-        { OPTION_CALLS, &options.calls },
+        { OPTION_CALLS, &options.calls },     { OPTION_RACE, &options.race },
     };
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         if (files[i].code == code) {
@@ -272,6 +274,9 @@ static void check_together(void)
     }
     if (options.patience_s > 0.0 && !options.pty) {
         refuse("--patience is for a terminal: give --pty");
+    }
+    if (options.race != NULL && (options.gdb_port != 0 || options.pty)) {
+        refuse("--race goes with neither --gdb nor --pty");
     }
     if (options.loop && options.max_ms <= 0.0 && options.gdb_port == 0 && !options.pty) {
         refuse("--loop never ends: give --max-ms");
