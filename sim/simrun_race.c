@@ -14,7 +14,9 @@
 #include "simrun.h"
 
 enum {
-    REACH = 200,        /* cycles that main waits at most */
+    REACH = 200, /* cycles that main waits at most, */
+    CHAIN = 4,   /* and for a timer that the awaited one sets: the transmitter's buffer is empty 2 cycles later */
+    DOUBT = 8,   /* a timer is not waited for that kept its promise less than once in so many times */
     TAKEN_A_MINUTE = 4, /* how often a pair is forced, each way, in each minute of simulated time */
     VECTORS = 26,       /* 0, the reset, is none of them */
     VECTOR_BYTES = 4,
@@ -42,12 +44,12 @@ typedef struct {
     uint16_t taken[SIDES][VECTORS];
 } place_t;
 
-/* What a timer of the simulator is for, and the vectors that it was seen to raise. */
+/* What a timer of the simulator is for, and how often it raised each vector, or was waited for because of it. */
 typedef struct {
     avr_cycle_timer_t timer;
     void *param;
     unsigned due; /* which of our own parts it will step */
-    uint32_t raises;
+    unsigned raised[VECTORS], awaited[VECTORS];
 } kind_t;
 
 bool race_wanted;
@@ -56,11 +58,13 @@ static uint32_t handler_reads[CELLS], handler_writes[CELLS]; /* by vector */
 static avr_int_vector_t *vectors[VECTORS];
 static kind_t kinds[KINDS_MAX];
 static size_t kind_count;
-static kind_t *next_kind; /* of the timer that comes first, */
-static uint64_t next_at;  /* and when */
-static uint32_t served;   /* since main's last instruction */
-static unsigned running;  /* the vector whose handler runs */
-static place_t *last;     /* main's last instruction */
+static struct {
+    kind_t *kind;
+    uint64_t at;
+} next = { NULL, NEVER }, newest = { NULL, NEVER }; /* timer: the first to come, the last that came */
+static uint32_t served;                             /* since main's last instruction */
+static unsigned running;                            /* the vector whose handler runs */
+static place_t *last;                               /* main's last instruction */
 static uint64_t waits, waited_cycles;
 static struct {
     unsigned taken, guarded, not_reached;
@@ -88,24 +92,30 @@ static kind_t *kind_of(const avr_cycle_timer_slot_t *slot)
     if (kind_count == KINDS_MAX) {
         return NULL;
     }
-    kinds[kind_count] = (kind_t){ slot->timer, slot->param, due, 0 };
+    kinds[kind_count] = (kind_t){ .timer = slot->timer, .param = slot->param, .due = due };
     return &kinds[kind_count++];
 }
 
 static void note_next_timer(void)
 {
     const avr_cycle_timer_slot_t *first = mcu->cycle_timers.timer;
-    next_kind = first == NULL ? NULL : kind_of(first);
-    next_at = first == NULL ? NEVER : first->when;
+    if (next.at <= mcu->cycle) {
+        newest = next;
+    }
+    next.kind = first == NULL ? NULL : kind_of(first);
+    next.at = first == NULL ? NEVER : first->when;
 }
 
-/* Learns what each timer raises; where two are due at once the first is taken for both, which costs a wait in vain. */
+/* Learns what each timer raises, itself or by the one it sets; where two are due at once the first is taken for both. */
 static void on_pending(avr_irq_t *irq, uint32_t value, void *param)
 {
     (void)irq;
     const avr_int_vector_t *vector = param;
-    if (value && next_kind != NULL && mcu->cycle >= next_at) {
-        next_kind->raises |= 1u << vector->vector;
+    if (value && next.kind != NULL && mcu->cycle >= next.at) {
+        next.kind->raised[vector->vector]++;
+        if (newest.kind != NULL && newest.kind != next.kind && mcu->cycle <= newest.at + CHAIN) {
+            newest.kind->raised[vector->vector]++;
+        }
     }
 }
 
@@ -203,15 +213,26 @@ static uint32_t lacking(const place_t *place, unsigned side)
     return found;
 }
 
+static bool promises(kind_t *kind, uint32_t wanted)
+{
+    bool any = false;
+    for (unsigned v = 1; kind != NULL && v < VECTORS; v++) {
+        if ((wanted >> v & 1u) != 0 && kind->raised[v] != 0 && kind->awaited[v] / DOUBT <= kind->raised[v]) {
+            kind->awaited[v]++;
+            any = true;
+        }
+    }
+    return any;
+}
+
 /* When one of these vectors is to be expected; NEVER when that is out of reach. */
 static uint64_t expected(uint32_t wanted)
 {
     uint64_t until = mcu->cycle + REACH;
     for (const avr_cycle_timer_slot_t *slot = mcu->cycle_timers.timer; slot != NULL && slot->when <= until;
          slot = slot->next) {
-        const kind_t *kind = kind_of(slot);
-        if (kind != NULL && (kind->raises & wanted) != 0) {
-            return slot->when;
+        if (promises(kind_of(slot), wanted)) {
+            return slot->when + CHAIN;
         }
     }
     return NEVER;
@@ -221,8 +242,8 @@ static uint64_t expected(uint32_t wanted)
 static void wait_until(uint64_t at)
 {
     uint64_t began = mcu->cycle;
-    while (next_at <= at && mcu->interrupt_state == 0 && mcu->state == cpu_Running && !resets_wanted()) {
-        mcu->cycle = next_at > mcu->cycle ? next_at : mcu->cycle;
+    while (next.at <= at && mcu->interrupt_state == 0 && mcu->state == cpu_Running && !resets_wanted()) {
+        mcu->cycle = next.at > mcu->cycle ? next.at : mcu->cycle;
         avr_cycle_timer_process(mcu);
         note_next_timer();
     }
@@ -230,7 +251,7 @@ static void wait_until(uint64_t at)
     waited_cycles += mcu->cycle - began;
     if (mcu->interrupt_state > 0 && !resets_wanted()) {
         avr_service_interrupts(mcu);
-        if (next_at <= mcu->cycle) { /* the entry took time: as in step() of the machine */
+        if (next.at <= mcu->cycle) { /* the entry took time: as in step() of the machine */
             avr_cycle_timer_process(mcu);
         }
     }
