@@ -297,8 +297,8 @@ access_t access_at(uint32_t pc); /* neither reads nor writes: no access, or one 
 /* --- interrupts where main shares something with their handlers (--race) --- */
 extern bool race_wanted;
 void race_start(void);
-/* Before each instruction. It may let time pass and enter a handler; true when it did: look at everything. */
-bool race_on_step(void);
+/* Before each step; awake: it is an instruction. It may let time pass and enter a handler; true: look at everything. */
+bool race_on_step(bool awake);
 void race_finish(void); /* stderr, and the file */
 
 /* --- passes of the main loop --- */

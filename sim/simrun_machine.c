@@ -336,13 +336,14 @@ static void watch_everything(int state)
 /* What some options want to know before each instruction. */
 static void look_ahead(void)
 {
-    if (race_wanted && mcu->run == plain_run && race_on_step()) {
+    bool awake = mcu->state == cpu_Running;
+    if (race_wanted && race_on_step(awake && mcu->run == plain_run)) {
         watch_everything(mcu->state);
     }
-    if (faults_watch_pc) {
+    if (faults_watch_pc && awake) {
         faults_on_pc(mcu->pc);
     }
-    if (span_wanted) {
+    if (span_wanted && awake) {
         span_on_pc(mcu->pc);
     }
 }
@@ -351,10 +352,10 @@ static void run(void)
 {
     bool stack_low = false;
     do {
-        bool running = mcu->state == cpu_Running;
-        if (chunk_cycles == 0 && running) {
+        if (chunk_cycles == 0) {
             look_ahead();
         }
+        bool running = mcu->state == cpu_Running;
         uint64_t began = stats_own_cycles();
         last_pc = mcu->pc;
         machine_steps++;

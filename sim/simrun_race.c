@@ -268,10 +268,13 @@ static void on_handler_step(void)
     note_in_handler(mcu->pc);
 }
 
-bool race_on_step(void)
+bool race_on_step(bool awake)
 {
     bool waited = false;
     note_next_timer();
+    if (!awake) {
+        return false;
+    }
     if (machine_in_boot_loader(mcu->pc)) {
         last = NULL;
         return false;
