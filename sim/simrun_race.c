@@ -53,6 +53,7 @@ typedef struct {
 } kind_t;
 
 bool race_wanted;
+static FILE *file;
 static place_t places[FLASH_WORDS];
 static uint32_t handler_reads[CELLS], handler_writes[CELLS]; /* by vector */
 static avr_int_vector_t *vectors[VECTORS];
@@ -121,8 +122,12 @@ static void on_pending(avr_irq_t *irq, uint32_t value, void *param)
 
 void race_start(void)
 {
-    race_wanted = options.race != NULL;
-    for (int i = 0; race_wanted && i < mcu->interrupts.vector_count; i++) {
+    if (options.race == NULL) {
+        return;
+    }
+    race_wanted = true;
+    file = output_open(options.race);
+    for (int i = 0; i < mcu->interrupts.vector_count; i++) {
         avr_int_vector_t *vector = mcu->interrupts.vector[i];
         if (vector->vector != 0 && vector->vector < VECTORS) {
             vectors[vector->vector] = vector;
@@ -359,7 +364,7 @@ static const char *count_pair(const place_t *place, unsigned vector)
     return "not reached";
 }
 
-static void close_place(place_t *place, uint32_t pc, FILE *file)
+static void close_place(place_t *place, uint32_t pc)
 {
     for (unsigned i = 0; i < place->touched_count; i++) { /* a handler may have come to it later than main */
         place->vectors |= sharers(place->touched[i].address, place->touched[i].reads, place->touched[i].writes);
@@ -379,10 +384,9 @@ void race_finish(void)
     if (!race_wanted) {
         return;
     }
-    FILE *file = output_open(options.race);
     fputs("pc,symbol,variable,vector,before,after,state\n", file);
     for (uint32_t word = 0; word < FLASH_WORDS; word++) {
-        close_place(&places[word], word * 2, file);
+        close_place(&places[word], word * 2);
     }
     output_close(file, options.race);
     fprintf(stderr, "simrun: race: %u pairs taken, %u guarded, %u not reached; %llu waits of %llu cycles in all\n",
