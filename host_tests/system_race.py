@@ -11,7 +11,7 @@ from system_support import BOUNDS, FW, OUT, SIMRUN, STREAMS, run, simrun, test  
 CLOSED = ("hal_time_us", "hal_wake_at", "claim", "adxl345_burst_begun_us")
 HAVE_SECTIONS = ("adxl345_burst_read", "adxl345_burst_set_mode", "adxl345_driver_take_bus", "hal_uart_tx_commit")
 # what the firmware itself counts when its clock or its bus was spoilt
-SPOILT = re.compile(r"(late|torn|arbitration lost|bus errors|timeouts|not acknowledged|restarts|serial bytes lost) (\d+)")
+SPOILT = re.compile(r"(# lost|late|torn|arbitration lost|bus errors|timeouts|not acknowledged|restarts) (\d+)")
 
 
 def race_run(name, ms, phases, faults):
