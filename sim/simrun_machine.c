@@ -35,7 +35,7 @@ static bool stopping;
 static avr_run_t plain_run; /* simavr puts another one in for gdb and for a watchdog reset */
 static uint64_t max_cycle = NEVER;
 static bool interactive;
-static uint32_t chunk_cycles = CHUNK_CYCLES;
+static uint32_t chunk_cycles;
 uint64_t machine_steps;
 
 double machine_ms(void)
@@ -179,6 +179,11 @@ static void load_program(void)
     free(program.flash);
 }
 
+static bool instructions_are_watched(void)
+{
+    return faults_watch_pc || span_wanted || race_wanted || stats_profiling;
+}
+
 void machine_start(void)
 {
     random_state = options.seed * 2654435769u; /* a small seed begins with small numbers, below every chance */
@@ -219,9 +224,7 @@ void machine_start(void)
     span_start();
     pass_start();
     race_start();
-    if (faults_watch_pc || span_wanted || race_wanted || stats_profiling) {
-        chunk_cycles = 0;
-    }
+    chunk_cycles = instructions_are_watched() ? 0 : CHUNK_CYCLES;
     rules_start();
     resets_start();
 }

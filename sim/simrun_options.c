@@ -265,18 +265,24 @@ static void check_files(void)
     }
 }
 
+/* Its waits are of simulated time, and nobody at the other end would know of them. */
+static void check_race(void)
+{
+    if (options.race != NULL && (options.gdb_port != 0 || options.pty)) {
+        refuse("--race goes with neither --gdb nor --pty");
+    }
+}
+
 /* What is wrong only in combination. */
 static void check_together(void)
 {
     check_files();
+    check_race();
     if (options.blank && options.bootloader == NULL) {
         refuse("--blank leaves nothing to run: give --bootloader");
     }
     if (options.patience_s > 0.0 && !options.pty) {
         refuse("--patience is for a terminal: give --pty");
-    }
-    if (options.race != NULL && (options.gdb_port != 0 || options.pty)) {
-        refuse("--race goes with neither --gdb nor --pty");
     }
     if (options.loop && options.max_ms <= 0.0 && options.gdb_port == 0 && !options.pty) {
         refuse("--loop never ends: give --max-ms");

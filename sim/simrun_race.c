@@ -107,7 +107,7 @@ static void note_next_timer(void)
     next.at = first == NULL ? NEVER : first->when;
 }
 
-/* Learns what each timer raises, itself or by the one it sets; where two are due at once the first is taken for both. */
+/* Learns what each timer raises, or the one it sets; where two are due at once the first is taken for both. */
 static void on_pending(avr_irq_t *irq, uint32_t value, void *param)
 {
     (void)irq;
