@@ -270,17 +270,18 @@ static void on_handler_step(void)
         running = vector;
         served |= 1u << vector;
     }
-    note_in_handler(mcu->pc);
+    if (running != 0) {
+        note_in_handler(mcu->pc);
+    }
 }
 
 bool race_on_step(bool awake)
 {
     bool waited = false;
     note_next_timer();
-    if (!awake) {
-        return false;
-    }
-    if (machine_in_boot_loader(mcu->pc)) {
+    if (!awake || machine_in_boot_loader(mcu->pc)) {
+        running = 0; /* what is entered meanwhile is not seen */
+        served = 0;
         last = NULL;
         return false;
     }
