@@ -26,6 +26,7 @@ counted recordings
 step navcheck
 counted faults
 counted soak HOURS=24
+counted race
 counted loaded
 counted mutants NAMED=yes
 counted mutants

@@ -54,7 +54,7 @@ typedef struct {
 } typed_line_t;
 
 typedef struct {
-    const char *fw, *in, *frames, *out, *served, *altered, *eeprom, *stats, *profile, *calls, *vcd, *bootloader,
+    const char *fw, *in, *frames, *out, *served, *altered, *eeprom, *stats, *profile, *calls, *race, *vcd, *bootloader,
         *filter, *span;
     bool loop, pty, blank, judge, strap, alt_address;
     double ppm, max_ms, patience_s; /* max_ms 0: none */
@@ -68,6 +68,7 @@ typedef struct {
 } options_t;
 
 extern options_t options;
+extern const char options_help[];
 
 /* Fills `options` from the command line; prints the reason and exits with EXIT_INPUT (or EXIT_OK after --help). */
 void options_parse(int argc, char **argv);
@@ -100,7 +101,6 @@ void machine_fail(exit_status_t status, const char *reason);
 double machine_ms(void);
 enum { OPCODE_SLEEP = 0x9588 };
 unsigned machine_opcode_at(uint32_t pc);  /* byte address */
-bool machine_asked_to_end(void);          /* by SIGINT or SIGTERM */
 uint32_t machine_random(void);            /* xorshift32 from --seed */
 bool machine_in_boot_loader(uint32_t pc); /* byte address; false without --bootloader */
 
@@ -117,6 +117,10 @@ void resets_port_opened(void);
 void resets_watch(uint32_t last_pc);
 uint32_t resets_count(void);
 uint32_t resets_boot_count(void); /* out of the boot loader; not counted above */
+
+/* --- signals --- */
+void signals_start(void);
+bool signals_asked_to_end(void); /* by SIGINT or SIGTERM */
 
 /* --- stack --- */
 void stack_paint(void);                /* before the start */
@@ -141,6 +145,7 @@ bool symbols_find(const char *name, uint32_t *pc);
 bool symbols_find_variable(const char *name, uint32_t *address);
 /* "name+0x12" of the function around pc; static text. */
 const char *symbols_nearest(uint32_t pc);
+const char *symbols_variable_at(uint32_t address); /* the same of the variable around an address in data space */
 
 /* --- boot loader (--bootloader) --- */
 /* Puts the image into the flash; its lowest address. Exits with EXIT_INPUT on a bad file. */
@@ -266,6 +271,7 @@ extern uint64_t stats_interrupted; /* cycles in interrupt handlers, entry and re
 extern bool stats_profiling;       /* for --profile or --calls */
 uint64_t stats_own_cycles(void);   /* awake, without the responses to interrupts */
 bool stats_in_interrupt(void);
+const char *stats_vector_name(unsigned vector); /* as in --stats; static text */
 void stats_start(void);
 void stats_reset(void);
 void stats_profile(uint32_t pc, uint64_t cycles);
@@ -280,6 +286,20 @@ void stats_streaming_ends(void);
 void calls_on_step(uint32_t pc, uint64_t cycles, bool interrupt); /* interrupt: it is the instruction of a vector */
 void calls_reset(void);
 void calls_write(void);
+
+/* --- what an instruction reads or writes (simrun_access.c) --- */
+typedef struct {
+    uint16_t address; /* in data space */
+    bool reads, writes;
+} access_t;
+access_t access_at(uint32_t pc); /* neither reads nor writes: no access, or one to the stack */
+
+/* --- interrupts where main shares something with their handlers (--race) --- */
+extern bool race_wanted;
+void race_start(void);
+/* Before each step; awake: it is an instruction. It may let time pass and enter a handler; true: look at everything. */
+bool race_on_step(bool awake);
+void race_finish(void); /* stderr, and the file */
 
 /* --- passes of the main loop --- */
 void pass_start(void);

@@ -3,7 +3,6 @@
  * simrun_resets.c (resets that drop every timer, level interrupts), and every instruction is watched: program counter,
  * stack pointer, illegal opcodes.
  */
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,9 +34,8 @@ static uint32_t random_state;
 static bool stopping;
 static avr_run_t plain_run; /* simavr puts another one in for gdb and for a watchdog reset */
 static uint64_t max_cycle = NEVER;
-static volatile sig_atomic_t asked_to_end;
 static bool interactive;
-static uint32_t chunk_cycles = CHUNK_CYCLES;
+static uint32_t chunk_cycles;
 uint64_t machine_steps;
 
 double machine_ms(void)
@@ -157,18 +155,6 @@ static void load_boot_loader(void)
     avr_regbit_set(mcu, mcu->reset_flags.extrf);
 }
 
-/* A run that is ended keeps its files, and says what it has seen. */
-static void on_signal(int number)
-{
-    (void)number;
-    asked_to_end = 1;
-}
-
-bool machine_asked_to_end(void)
-{
-    return asked_to_end != 0;
-}
-
 static void load_program(void)
 {
     elf_firmware_t program;
@@ -193,12 +179,16 @@ static void load_program(void)
     free(program.flash);
 }
 
+static bool instructions_are_watched(void)
+{
+    return faults_watch_pc || span_wanted || race_wanted || stats_profiling;
+}
+
 void machine_start(void)
 {
     random_state = options.seed * 2654435769u; /* a small seed begins with small numbers, below every chance */
     interactive = options.pty || options.gdb_port != 0;
-    (void)signal(SIGINT, on_signal);
-    (void)signal(SIGTERM, on_signal);
+    signals_start();
     avr_global_logger_set(on_log);
     load_program();
     max_cycle = options.max_ms > 0.0 ? (uint64_t)(options.max_ms * CYCLES_PER_MS) : NEVER;
@@ -233,9 +223,8 @@ void machine_start(void)
     faults_start();
     span_start();
     pass_start();
-    if (faults_watch_pc || span_wanted || stats_profiling) {
-        chunk_cycles = 0;
-    }
+    race_start();
+    chunk_cycles = instructions_are_watched() ? 0 : CHUNK_CYCLES;
     rules_start();
     resets_start();
 }
@@ -262,7 +251,7 @@ static bool ended(void)
 {
     uint64_t now = mcu->cycle;
     uint64_t over = done_at();
-    if (failure != EXIT_OK || now >= max_cycle || asked_to_end) {
+    if (failure != EXIT_OK || now >= max_cycle || signals_asked_to_end()) {
         return true;
     }
     if (over == NEVER || now < over + (uint64_t)END_MS * CYCLES_PER_MS) {
@@ -347,19 +336,31 @@ static void watch_everything(int state)
     watch_state(state);
 }
 
+/* What some options want to know before each instruction. */
+static void look_ahead(void)
+{
+    bool awake = mcu->state == cpu_Running;
+    if (race_wanted && race_on_step(awake && mcu->run == plain_run)) {
+        watch_everything(mcu->state);
+    }
+    if (faults_watch_pc && awake) {
+        faults_on_pc(mcu->pc);
+    }
+    if (span_wanted && awake) {
+        span_on_pc(mcu->pc);
+    }
+}
+
 static void run(void)
 {
     bool stack_low = false;
     do {
+        if (chunk_cycles == 0) {
+            look_ahead();
+        }
         bool running = mcu->state == cpu_Running;
         uint64_t began = stats_own_cycles();
         last_pc = mcu->pc;
-        if (faults_watch_pc && running) {
-            faults_on_pc(last_pc);
-        }
-        if (span_wanted && running) {
-            span_on_pc(last_pc);
-        }
         machine_steps++;
         bool eventful = step(stack_low ? 0 : chunk_cycles);
         stack_low = stack_watch(machine_size.end_of_ram);
@@ -380,7 +381,7 @@ exit_status_t machine_run(const char **reason)
     static char text[512];
     run();
     stopping = true;
-    if (asked_to_end && !interactive) {
+    if (signals_asked_to_end() && !interactive) {
         machine_fail(EXIT_INTERNAL, "ended by a signal");
     }
     if (failure == EXIT_OK && resets_count() != options.expect_resets) {

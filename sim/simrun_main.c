@@ -26,6 +26,7 @@ int main(int argc, char **argv)
     sensor_print_mode(stderr);
     verdict_tell();
     faults_warn();
+    race_finish();
     double seconds = seconds_between(&began, &ended);
     fprintf(stderr, "simrun: %.2f s of computing, %.0f times real time\n", seconds, machine_ms() / 1e3 / seconds);
     uart_finish();

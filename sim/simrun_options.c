@@ -22,6 +22,7 @@ enum option_code {
     OPTION_PROFILE,
     OPTION_CALLS,
     OPTION_SPAN,
+    OPTION_RACE,
     OPTION_VCD,
     OPTION_BOOTLOADER,
     OPTION_BLANK,
@@ -56,6 +57,7 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "profile", required_argument, NULL, OPTION_PROFILE },
                                        { "calls", required_argument, NULL, OPTION_CALLS },
                                        { "span", required_argument, NULL, OPTION_SPAN },
+                                       { "race", required_argument, NULL, OPTION_RACE },
                                        { "vcd", required_argument, NULL, OPTION_VCD },
                                        { "bootloader", required_argument, NULL, OPTION_BOOTLOADER },
                                        { "blank", no_argument, NULL, OPTION_BLANK },
@@ -81,111 +83,6 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "part", required_argument, NULL, OPTION_PART },
                                        { "help", no_argument, NULL, OPTION_HELP },
                                        { NULL, 0, NULL, 0 } };
-
-static const char help_text[] =
-    "simrun --fw ELF --in CSV --out CSV [options]: runs the UNO's firmware on a recorded stream\n"
-    "\n"
-    "  --fw ELF           firmware for the ATmega328P; 16 MHz unless its symbol cpu_hz says less\n"
-    "  --in CSV           stream: t_us,x,y,z or t_us,x_lsb,y_lsb,z_lsb (as it reads)\n"
-    "  --frames FILE      instead of --in, for the navigation image: 'DUE_US HEX' a frame, sent when it is due and "
-    "when "
-    "the\n"
-    "                     board has room for it (docs/protocol.md, Navigation image)\n"
-    "  --out CSV          every byte the firmware's UART sends\n"
-    "  --loop             begin the stream again at its end (needs --max-ms)\n"
-    "  --max-ms N         end after N ms of simulated time\n"
-    "  --filter NAME --rate HZ --range G --every N --baud N\n"
-    "                     typed as commands, in this order of options, when the banner has appeared\n"
-    "  --cmd MS:TEXT      types TEXT and a line end, not before MS\n"
-    "  --ppm N            error of the sensor's clock\n"
-    "  --part 'gain=X,Y,Z offset=X,Y,Z selftest=X,Y,Z'\n"
-    "                     this ADXL345: gain (1,1,1) times the stream's LSB, then offset (0,0,0) and, while SELF_TEST "
-    "is set,\n"
-    "                     its shift (522,-522,698: typical at 3.3 V) in LSB; any of the three, also in several --part\n"
-    "  --served CSV       every sample the sensor latched: served,t_us,row,line,x_lsb,y_lsb,z_lsb[,truth]\n"
-    "  --altered CSV      every sample that a fault altered on its way to the MCU: altered,t_us,x_lsb,y_lsb,z_lsb as "
-    "it "
-    "arrived,\n"
-    "                     x_sent_lsb,y_sent_lsb,z_sent_lsb as the sensor sent it\n"
-    "  --stats JSON       statistics of the run\n"
-    "  --judge            exit status 10 unless every row is right: its readings are what the sensor latched within "
-    "two "
-    "sample\n"
-    "                     periods of its t_us and what no row has shown before, or a flag 1, 2, 16, 32 or 64 disowns\n"
-    "                     them; and no t_us steps back. Counted without it too: rows_judged, rows_wrong, rows_stale,\n"
-    "                     rows_twice, t_us_steps_back in --stats, and on stderr\n"
-    "  --clock-start US   what the firmware's clock reads when Timer1 begins to count (0)\n"
-    "  --strap            D4 is at ground: the firmware starts with default settings\n"
-    "  --alt-address      ALT ADDRESS of the sensor is high: it answers at 0x1D, not at 0x53\n"
-    "  --fault WHEN:KIND[:PARAM][:MS]\n"
-    "    WHEN   12.3ms | xfer:N.K (byte K of I2C transfer N, the address is byte 1) | pc:SYMBOL[#N] (Nth time it is "
-    "reached)\n"
-    "           | eeprom:N[.before|.after] (in the Nth EEPROM write, or just before or after it)\n"
-    "           | p:1e-3 (per sample, from --seed)\n"
-    "    KIND   unplug[:MS] plug power[:MS]  sensor off the bus and supply, back, off and on\n"
-    "           sda[:MS] scl[:MS]            line held low\n"
-    "           hang[:CLOCKS]                slave holds SDA low for so many clocks (5), then goes on where it "
-    "stopped\n"
-    "           arb buserr nack nackdata     once: arbitration lost, bus error, address or data refused\n"
-    "           devid[:VALUE][:MS]           DEVID reads VALUE (0)\n"
-    "           noint[:MS]                   INT1 does not reach D2\n"
-    "           inthigh[:MS]                 D2 is high whatever INT1 is\n"
-    "           torn                         slave lets go of SDA for the rest of the read: ones\n"
-    "           reset brownout               MCU: external reset; brown-out\n"
-    "           mcupower[:LEFT]              power cycle with junk in the MCU's RAM; leaves of an EEPROM byte that is\n"
-    "                                        being written: ff, old, new or random (random)\n"
-    "           starve[:MS] overrun[:N]      main loop without time, interrupts go on: for MS; until the sensor's "
-    "FIFO\n"
-    "                                        has lost N samples (1). A reset of the MCU ends both\n"
-    "           poke:SYMBOL=VALUE            a byte of the firmware's RAM\n"
-    "           flip[:BITS]                  once: so many bits (1) of the next byte from the sensor arrive flipped *\n"
-    "           noise[:SIGMA] double[:AXIS]  once: the next sample read has noise (20 LSB rms), or twice the value of "
-    "z, "
-    "x or y *\n"
-    "           frozen[:MS]                  the sensor measures the same readings again and again\n"
-    "           mixed                        once: the rest of the next sample read is of the one before *\n"
-    "           clip[:AXIS][:MS]             the axis (z) is beyond the range\n"
-    "           glitch storm[:HZ[:MS]]       pulse of up to 4 us on INT1 against its level, one or many (1000 Hz)\n"
-    "           odr[:PPM[:MS]]               error of the sensor's clock (50000), instead of --ppm\n"
-    "           rxflood[:MS] txstall[:MS]    random bytes to the UART without a pause; its transmitter stands still\n"
-    "           rxspoil[:LOST]               once: the next byte typed has no stop bit (0), or comes after one that "
-    "found "
-    "no\n"
-    "                                        room in the receiver (1)\n"
-    "           * altered inside a well-formed transfer, behind the sensor: --served stays true, and no firmware can "
-    "see "
-    "every\n"
-    "             one (fault_N_detectable is false in --stats)\n"
-    "           with p: what the bus suffers once begins at a random byte of the next transfer, a state only when it "
-    "is "
-    "over\n"
-    "           without MS a state lasts to the end (power: 5 ms)\n"
-    "  --seed N           for p:, junk in RAM (1)\n"
-    "  --expect-resets N  MCU resets that are right, injected ones included (0)\n"
-    "  --bootloader HEX   load this image too and start in it by an external reset; resets out of it are not counted\n"
-    "  --blank            with --bootloader: the flash holds nothing else; --fw names what will be written\n"
-    "  --eeprom FILE      1024 bytes, read if there, written at the end\n"
-    "  --profile FILE     CSV pc,count,cycles,symbol of every instruction executed\n"
-    "  --calls FILE       CSV cell,frame,pc,count,cycles,symbol: the same by callers; a frame is the cell of its call\n"
-    "  --span FROM:TO:CSV at_us,cycles,stack_bytes from the entry of function FROM to that of TO, without interrupts\n"
-    "  --vcd FILE         D2, stuck lines, UART bytes and interrupt handlers, for GTKWave\n"
-    "  --gdb PORT         wait for avr-gdb before the first instruction\n"
-    "  --pty              connect the UART to a pseudo terminal, in real time; with --bootloader opening it resets the "
-    "MCU,\n"
-    "                     as DTR resets an UNO (not counted), and with --blank nothing runs until then\n"
-    "                     and the boot loader waits for the first byte (5 s of real time at most)\n"
-    "  --patience S       with --pty: a program that holds the terminal and reads nothing for so long ends the run "
-    "(60)\n"
-    "\n"
-    "The run ends 20 ms after the stream, when the UART has been silent for 30 ms (2 s at most); with --pty or --gdb "
-    "Ctrl-C\n"
-    "ends it too.\n"
-    "Exit status: 0 ran to the end; 1 simrun failed, or a signal ended it; 2 usage or input; 3 crash;\n"
-    "4 illegal opcode; 5 stack overrun; 6 UART overrun; 7 unexpected number of resets;\n"
-    "8 firmware slept with interrupts off;\n"
-    "9 without --max-ms: the firmware did not use the sensor for 20 s; 10 --judge: a row is not right;\n"
-    "11 a rule of the data sheet is broken that simavr does not hold (the words say which);\n"
-    "12 with --pty: a program held the terminal and read nothing for the time of --patience.\n";
 
 static void refuse(const char *format, ...) __attribute__((format(printf, 1, 2), noreturn));
 static void refuse(const char *format, ...)
@@ -269,7 +166,7 @@ static bool take_file(int code, const char *argument)
         { OPTION_VCD, &options.vcd },         { OPTION_PROFILE, &options.profile },
         { OPTION_SPAN, &options.span },       { OPTION_BOOTLOADER, &options.bootloader },
         { OPTION_ALTERED, &options.altered }, { OPTION_FRAMES, &options.frames },
-        { OPTION_CALLS, &options.calls },
+        { OPTION_CALLS, &options.calls },     { OPTION_RACE, &options.race },
     };
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         if (files[i].code == code) {
@@ -347,7 +244,7 @@ static void take(int code, const char *name, const char *argument)
         add_setting(name, argument);
         break;
     case OPTION_HELP:
-        fputs(help_text, stdout);
+        fputs(options_help, stdout);
         exit(EXIT_OK);
     default:
         if (!take_file(code, argument) && !take_number(code, name, argument)) {
@@ -368,10 +265,19 @@ static void check_files(void)
     }
 }
 
+/* Its waits are of simulated time, and nobody at the other end would know of them. */
+static void check_race(void)
+{
+    if (options.race != NULL && (options.gdb_port != 0 || options.pty)) {
+        refuse("--race goes with neither --gdb nor --pty");
+    }
+}
+
 /* What is wrong only in combination. */
 static void check_together(void)
 {
     check_files();
+    check_race();
     if (options.blank && options.bootloader == NULL) {
         refuse("--blank leaves nothing to run: give --bootloader");
     }

@@ -97,7 +97,7 @@ static bool wait_for(short event, bool *came)
 {
     struct pollfd end = { .fd = master, .events = event };
     bool looked = poll(&end, 1, READER_LOOK_MS) >= 0 || errno == EINTR; /* a signal is no hanging up */
-    bool well = looked && (end.revents & POLLHUP) == 0 && !machine_asked_to_end();
+    bool well = looked && (end.revents & POLLHUP) == 0 && !signals_asked_to_end();
     *came = well && (end.revents & event) != 0;
     return well;
 }
@@ -143,7 +143,7 @@ void pty_send(uint8_t byte)
 static void wait_for_first_user(void)
 {
     struct timespec pause = { .tv_nsec = READER_LOOK_MS * 1000000L };
-    while (!ever_opened && !machine_asked_to_end()) {
+    while (!ever_opened && !signals_asked_to_end()) {
         nanosleep(&pause, NULL);
         look_for_user();
     }

@@ -184,6 +184,16 @@ static double load(void)
     return to == streaming_from ? 0.0 : 1.0 - (double)(slept - slept_from) / (double)(to - streaming_from);
 }
 
+const char *stats_vector_name(unsigned vector)
+{
+    static char number[16];
+    if (vector < VECTORS && vector_name[vector] != NULL) {
+        return vector_name[vector];
+    }
+    snprintf(number, sizeof number, "vector%u", vector);
+    return number;
+}
+
 static void write_interrupts(FILE *file)
 {
     uint64_t worst = 0;
@@ -192,9 +202,7 @@ static void write_interrupts(FILE *file)
         if (interrupt->count == 0) {
             continue;
         }
-        char number[16];
-        snprintf(number, sizeof number, "vector%u", v);
-        const char *name = vector_name[v] != NULL ? vector_name[v] : number;
+        const char *name = stats_vector_name(v);
         fprintf(file, "  \"isr_%s_n\": %llu,\n  \"isr_%s_min\": %llu,\n", name, (unsigned long long)interrupt->count,
                 name, (unsigned long long)interrupt->min);
         fprintf(file, "  \"isr_%s_mean\": %.2f,\n  \"isr_%s_max\": %llu,\n", name,

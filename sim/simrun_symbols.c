@@ -106,6 +106,13 @@ static int compare(const void *a, const void *b)
     return strcmp(x->name, y->name);
 }
 
+static void sort(const symbols_t *symbols)
+{
+    if (symbols->count != 0) {
+        qsort(symbols->list, symbols->count, sizeof *symbols->list, compare);
+    }
+}
+
 static Elf *open_elf(const char *path, int file)
 {
     elf_version(EV_CURRENT);
@@ -147,9 +154,8 @@ void symbols_load(const char *path, program_size_t *size)
     if (size->cycles_per_us == 0 || size->cycles_per_us > UNO_MHZ) {
         refuse(path, "its symbol cpu_hz, the processor's clock, is not between 1 and 16 MHz");
     }
-    if (functions.count != 0) {
-        qsort(functions.list, functions.count, sizeof *functions.list, compare);
-    }
+    sort(&functions);
+    sort(&variables);
 }
 
 /* The whole name decides; without such a one the first that has a suffix of the compiler's behind it. */
@@ -181,16 +187,26 @@ bool symbols_find_variable(const char *name, uint32_t *address)
     return find(&variables, name, address);
 }
 
-const char *symbols_nearest(uint32_t pc)
+static const char *nearest(const symbols_t *symbols, uint32_t value)
 {
     static char text[128];
     const symbol_t *best = NULL;
-    for (size_t i = 0; i < functions.count && functions.list[i].pc <= pc; i++) {
-        best = &functions.list[i];
+    for (size_t i = 0; i < symbols->count && symbols->list[i].pc <= value; i++) {
+        best = &symbols->list[i];
     }
     if (best == NULL) {
         return "?";
     }
-    snprintf(text, sizeof text, "%.100s+0x%x", best->name, (unsigned)(pc - best->pc));
+    snprintf(text, sizeof text, "%.100s+0x%x", best->name, (unsigned)(value - best->pc));
     return text;
+}
+
+const char *symbols_nearest(uint32_t pc)
+{
+    return nearest(&functions, pc);
+}
+
+const char *symbols_variable_at(uint32_t address)
+{
+    return nearest(&variables, address);
 }

@@ -1,0 +1,69 @@
+/* Which address in data space the instruction at hand reads or writes; the stack's own instructions do not count. */
+#include "simrun.h"
+
+enum { REG_X = 26, REG_Y = 28, REG_Z = 30, IO_OFFSET = 0x20 };
+
+static uint16_t pair(unsigned low)
+{
+    return (uint16_t)(mcu->data[low] | mcu->data[low + 1] << 8);
+}
+
+static access_t access_to(unsigned address, bool writes)
+{
+    return (access_t){ .address = (uint16_t)address, .reads = !writes, .writes = writes };
+}
+
+/* LDS and STS, and LD and ST with a pointer that may move. */
+static access_t direct(unsigned opcode, uint32_t pc)
+{
+    bool writes = (opcode & 0x0200u) != 0;
+    switch (opcode & 0xFu) {
+    case 0x0:
+        return access_to(machine_opcode_at(pc + 2), writes);
+    case 0x1:
+        return access_to(pair(REG_Z), writes);
+    case 0x2:
+        return access_to(pair(REG_Z) - 1u, writes);
+    case 0x9:
+        return access_to(pair(REG_Y), writes);
+    case 0xA:
+        return access_to(pair(REG_Y) - 1u, writes);
+    case 0xC:
+    case 0xD:
+        return access_to(pair(REG_X), writes);
+    case 0xE:
+        return access_to(pair(REG_X) - 1u, writes);
+    default: /* LPM, PUSH, POP */
+        return (access_t){ 0 };
+    }
+}
+
+static access_t displaced(unsigned opcode)
+{
+    unsigned offset = (opcode & 7u) | (opcode >> 7 & 0x18u) | (opcode >> 8 & 0x20u);
+    return access_to(pair((opcode & 8u) != 0 ? REG_Y : REG_Z) + offset, (opcode & 0x0200u) != 0);
+}
+
+static access_t bit(unsigned opcode)
+{
+    bool writes = (opcode & 0x0100u) == 0; /* SBI, CBI: they read it too; SBIS, SBIC only that */
+    return (access_t){ .address = (uint16_t)((opcode >> 3 & 0x1Fu) + IO_OFFSET), .reads = true, .writes = writes };
+}
+
+access_t access_at(uint32_t pc)
+{
+    unsigned opcode = machine_opcode_at(pc);
+    if ((opcode & 0xFC00u) == 0x9000u) {
+        return direct(opcode, pc);
+    }
+    if ((opcode & 0xD000u) == 0x8000u) {
+        return displaced(opcode);
+    }
+    if ((opcode & 0xF000u) == 0xB000u) {
+        return access_to((opcode & 0xFu) + (opcode >> 5 & 0x30u) + IO_OFFSET, (opcode & 0x0800u) != 0);
+    }
+    if ((opcode & 0xFC00u) == 0x9800u) {
+        return bit(opcode);
+    }
+    return (access_t){ 0 };
+}
