@@ -9,12 +9,13 @@
 #include "hal_host.h"
 #include "hal_i2c.h"
 #include "hal_time.h"
+#include "limits.h"
 #include "support_board.h"
 #include "support_rig.h"
 #include "unity.h"
 
 enum { PERIOD_US = 10000, PASSES_PER_PERIOD = PERIOD_US / 20, BURST_US = 500, EXACT_US = 100 };
-enum { FIFO_FULL = 32, DEPTH = 33 }; /* samples in the FIFO, and in the sensor (data sheet p. 27) */
+enum { FIFO_FULL = 32, DEPTH = LIMIT_SENSOR_DEPTH }; /* samples in the FIFO, and in the sensor (data sheet p. 27) */
 /* START, address, register, START, address, INT_SOURCE, DATA_FORMAT, data */
 enum { ADDRESS_EVENT = 1, FIRST_DATA_EVENT = 7 };
 
