@@ -4,11 +4,11 @@
 
 #include "app/app.h"
 #include "base/hang_test.h"
+#include "limits.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support_board.h"
 #include "support_roles.h"
-#include "limits.h"
 #include "unity.h"
 
 void setUp(void)

@@ -72,8 +72,10 @@ void tearDown(void)
 /* Back-off 5, 10, 20, then 25 ms for ever: the alarm wakes main for it, whose passes take 20 us here. */
 static void test_tries_again_at_a_pause_that_doubles_to_25_ms(void)
 {
-    static const double back_off_ms[] = { LIMIT_BACK_OFF_MIN_MS, 10, 20, LIMIT_BACK_OFF_MAX_MS,
-                                          LIMIT_BACK_OFF_MAX_MS, LIMIT_BACK_OFF_MAX_MS, LIMIT_BACK_OFF_MAX_MS };
+    static const double back_off_ms[] = {
+        LIMIT_BACK_OFF_MIN_MS, 10, 20, LIMIT_BACK_OFF_MAX_MS, LIMIT_BACK_OFF_MAX_MS, LIMIT_BACK_OFF_MAX_MS,
+        LIMIT_BACK_OFF_MAX_MS
+    };
     hal_host_sensor.powered = false;
     adxl345_start(&at_100_hz);
     double failed_ms = 0.0;
