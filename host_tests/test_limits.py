@@ -13,7 +13,7 @@ NTH = {3: "third", 8: "eighth", 9: "ninth", 10: "tenth"}
 
 def rows():
     """(name, value, promises, holders, test) of each limit; of the first two (file, text)."""
-    text = re.sub(r"\\\s*", "", TABLE.read_text(encoding="utf-8"))
+    text = re.sub(r'"\s+"', "", re.sub(r"\s*\\\s+", " ", TABLE.read_text(encoding="utf-8")))
     found = ROW.findall(text.partition("#define LIMITS(X)")[2])
     assert len(found) == text.count(" X(") + text.count(")X(") >= 45, f"{len(found)} rows are read"
     return [(name, int(value), places(promises), places(holders), tried) for name, value, promises, holders, tried in found]
