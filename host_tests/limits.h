@@ -1,8 +1,8 @@
 /*
- * The limits that pages promise, a row each: name, value, PAGE: the words that promise it, FILE: the text of the product
- * that holds it, TEST: the function that tries both sides. Several of a kind stand with ` | ` between them. {} is the
- * value, {word} and {nth} the same in words, any other {...} an expression of it, v. test_limits.py reads the rows and
- * holds pages and product to them; the tests take the numbers from here.
+ * The limits that pages promise, a row each: its name, its value, PAGE: the words that promise it, FILE: the product's
+ * text that holds it, TEST: the function that tries both sides. Several of a kind stand with ` | ` between them. {} is
+ * the value, {word} and {nth} the same in words, any other {...} an expression of it, v. test_limits.py reads the rows
+ * and holds pages and product to them; the tests take the numbers from here.
  */
 #ifndef LIMITS_H
 #define LIMITS_H
@@ -73,12 +73,20 @@
       "docs/faults.md: the sample is the {nth}",                                                                       \
       "lib/adxl345/src/adxl345_integrity.h: ADXL345_STUCK_REPEATS {v - 1}u",                                           \
       "test_integrity: test_the_tenth_equal_reading_is_stuck")                                                         \
-    X(GRAVITY_PERCENT, 15, "docs/protocol.md: lies outside {1 - v / 100:g}..{1 + v / 100:g} g",                        \
+    X(GRAVITY_PERCENT, 15,                                                                                             \
+      "docs/protocol.md: lies outside {1 - v / 100:g}..{1 + v / 100:g} g | docs/protocol.md: level; {1 - v / 100:g} "  \
+      "to {1 + v / 100:g} long",                                                                                       \
       "lib/tilt/src/tilt.c: lowest_q12 = {ceil(((100 - v) * 163.84) ** 2)}UL | lib/tilt/src/tilt.c: highest_q12 = "    \
       "{int(((100 + v) * 163.84) ** 2)}UL",                                                                            \
       "test_tilt_steps: test_the_limits_of_gravity_to_the_last_unit")                                                  \
     X(ROLL_MIN_LSB, 4, "docs/protocol.md: (y, z) below {} LSB", "lib/tilt/src/tilt.h: TILT_ROLL_MIN_Q8 {v * 256}U",    \
       "test_tilt_steps: test_the_limit_of_roll")                                                                       \
+    X(REST_CYCLES, 7300, "docs/protocol.md: the period less {format(v, ',')} cycles",                                  \
+      "firmware/settings/settings.h: SETTINGS_REST_CYCLES {}u",                                                        \
+      "test_app_sample_time: test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_hz")                  \
+    X(ROW_CYCLES, 11700, "docs/protocol.md: for it: {format(v, ',')} cycles a row",                                    \
+      "firmware/settings/settings.h: SETTINGS_ROW_CYCLES {}u",                                                         \
+      "test_app_sample_time: test_every_follows_what_the_filter_leaves_time_for")                                      \
     X(FOLLOW_PART, 128, "docs/protocol.md: by more than 1/{} and 0.1 Hz",                                              \
       "firmware/path/pipeline.c: true_dhz >> {v.bit_length() - 1}) + 1u",                                              \
       "test_true_rate: test_the_least_that_is_followed_at_each_rate")                                                  \
