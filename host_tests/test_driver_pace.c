@@ -106,7 +106,7 @@ static void test_a_good_sample_resets_the_pace(void)
     TEST_ASSERT_TRUE(probed_ms[0] - failed_ms <= LIMIT_BACK_OFF_MIN_MS + 0.1);
 }
 
-/* A burst that hangs is given up 3 ms after it began, and read again at once; each is seen up to a pass, 20 us, late. */
+/* A burst that hangs is given up 3 ms after it began, and read again at once; each is seen up to 20 us late. */
 static void test_a_hung_burst_is_given_up(void)
 {
     adxl345_counters_t before;
