@@ -28,7 +28,7 @@
       "test_settings_ranges: test_pages_have_the_ranges_of_the_table")                                                 \
     X(HELD_S, 2, "docs/protocol.md: csv rows are held for {} s, | docs/faults.md: held for {} s after a long answer",  \
       "firmware/output/rows.c: HELD_TIMES = {-(-v * 1000000 >> 16)} ",                                                 \
-      "test_app_reading: test_rows_wait_while_a_long_answer_is_read")                                                  \
+      "test_app_reading: test_rows_are_held_to_the_nearest_step")                                                      \
     X(WARM_ROWS, 5, "docs/protocol.md: {word} rows are marked warming up",                                             \
       "firmware/path/pipeline.c: WARM_ROWS = {} ", "test_app: test_first_five_rows_warm_up")                           \
     X(REST_READINGS, 256, "docs/protocol.md: running: {} readings,", "lib/tilt/src/rest.h: REST_SAMPLES {}U",          \
