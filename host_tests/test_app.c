@@ -4,6 +4,7 @@
 
 #include "app/app.h"
 #include "base/hang_test.h"
+#include "limits.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support_board.h"
@@ -52,7 +53,7 @@ static void test_first_five_rows_warm_up(void)
     board_start_resting();
     board_run_ms(300);
     for (size_t i = 0; i < 10; i++) {
-        TEST_ASSERT_EQUAL_UINT(i < 5 ? ROW_WARMING_UP : 0, board.rows[i].flags & ROW_WARMING_UP);
+        TEST_ASSERT_EQUAL_UINT(i < LIMIT_WARM_ROWS ? ROW_WARMING_UP : 0, board.rows[i].flags & ROW_WARMING_UP);
     }
 }
 
@@ -213,6 +214,8 @@ static void test_every_follows_what_the_line_carries(void)
     TEST_ASSERT_EQUAL_UINT16(2, settings_smallest_every(500000, 8000));
     TEST_ASSERT_EQUAL_UINT16(1, settings_smallest_every(1000000, 8000));
     TEST_ASSERT_EQUAL_UINT16(60, settings_smallest_every(9600, 8000));
+    TEST_ASSERT_EQUAL_UINT16(1, settings_smallest_every(1000u * LIMIT_ROW_BYTES, 1000)); /* ten bits a byte */
+    TEST_ASSERT_EQUAL_UINT16(2, settings_smallest_every(1000u * LIMIT_ROW_BYTES - 1u, 1000));
     board_start_resting();
     board_run_ms(200);
     size_t before = board.note_count;

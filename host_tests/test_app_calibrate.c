@@ -7,7 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/notices.h"
 #include "calibration.h"
+#include "control/calibrate.h"
+#include "limits.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support_random.h"
@@ -225,6 +228,21 @@ static void test_a_rest_39_degrees_off_is_a_position(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# cal6: -y up, 2 to go", note));
 }
 
+/* To a sixteenth of an LSB, with the part across on either axis and of either sign. */
+static void test_seven_eighths_across_is_the_last_that_is_a_position(void)
+{
+    enum { ALONG = 4096, MOST = ALONG - ALONG / LIMIT_CAL6_EIGHTHS };
+    for (int across = MOST - 1; across <= MOST + 1; across++) {
+        for (int which = 0; which < 4; which++) {
+            int16_t mean_lsb_q4[3] = { 0, 0, -ALONG };
+            mean_lsb_q4[which / 2] = (int16_t)(which % 2 ? across : -across);
+            calibrate_start();
+            TEST_ASSERT_EQUAL(across <= MOST ? MEASURE_POSITION : MEASURE_UNCHANGED,
+                              calibrate_take(NOTICE_CAL6, mean_lsb_q4));
+        }
+    }
+}
+
 /* x or y is 35 degrees off in its position: refused by name, and nothing changes. */
 static void test_a_position_too_far_off_is_refused(void)
 {
@@ -361,6 +379,7 @@ int main(void)
     RUN_TEST(test_rows_after_cal6);
     RUN_TEST(test_a_position_laid_again_is_refused);
     RUN_TEST(test_an_oblique_rest_is_no_position);
+    RUN_TEST(test_seven_eighths_across_is_the_last_that_is_a_position);
     RUN_TEST(test_a_rest_39_degrees_off_is_a_position);
     RUN_TEST(test_a_position_too_far_off_is_refused);
     RUN_TEST(test_a_part_beyond_the_limits_is_refused);

@@ -3,6 +3,8 @@
 
 #include "app/app.h"
 #include "base/counters.h"
+#include "limits.h"
+#include "output/rows.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support_roles.h"
@@ -13,7 +15,7 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-/* After the last line of a long answer no row for 2 s; the next has the flag, and those in between are counted. */
+/* After the last line of a long answer no row for so long; the next has the flag, and those in between are counted. */
 static void assert_rows_wait(const char *command)
 {
     talk_start();
@@ -26,7 +28,7 @@ static void assert_rows_wait(const char *command)
     while (board.rows[next - 1].at_ms > last_ms) {
         next--;
     }
-    TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(80.0, 2000.0, board.rows[next].at_ms - last_ms, command);
+    TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(80.0, 1e3 * LIMIT_HELD_S, board.rows[next].at_ms - last_ms, command);
     TEST_ASSERT_EQUAL_UINT_MESSAGE(ROW_DROPPED, board.rows[next].flags & ROW_DROPPED, command);
     uint32_t missing = (board.rows[next].t_us - board.rows[next - 1].t_us + 5000u) / 10000u - 1u;
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(missing, counted(COUNT_HELD), command);
@@ -42,6 +44,22 @@ static void test_rows_wait_while_a_long_answer_is_read(void)
     assert_rows_wait("settings");
     assert_rows_wait("status");
     assert_rows_wait("?");
+}
+
+/* By the time of the samples, in steps of 65.536 ms: to the one that is nearest. */
+static void test_rows_are_held_to_the_nearest_step(void)
+{
+    enum { STEP_US = 65536, STEPS = (1000000 * LIMIT_HELD_S + STEP_US / 2) / STEP_US };
+    for (uint32_t steps = STEPS - 1; steps <= STEPS + 1; steps++) {
+        talk_start();
+        uint32_t from_us = pipeline_newest_us();
+        rows_hold();
+        pipeline_coast(from_us + steps * STEP_US);
+        pipeline_finish();
+        uint32_t held = counted(COUNT_HELD);
+        rows_at_once(false);
+        TEST_ASSERT_EQUAL_UINT32(steps < STEPS ? held + 1u : held, counted(COUNT_HELD));
+    }
 }
 
 /* Samples are filtered meanwhile: the first row afterwards is where a filter that went on is. */
@@ -166,6 +184,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_rows_wait_while_a_long_answer_is_read);
+    RUN_TEST(test_rows_are_held_to_the_nearest_step);
     RUN_TEST(test_filters_go_on_meanwhile);
     RUN_TEST(test_short_answers_and_a_reset_hold_no_row);
     RUN_TEST(test_the_next_line_lets_rows_go_on);

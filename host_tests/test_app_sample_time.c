@@ -4,6 +4,7 @@
 
 #include "base/hang_test.h"
 #include "filter_list.h"
+#include "limits.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support_board.h"
@@ -111,9 +112,9 @@ static void test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_
     }
     TEST_ASSERT_EQUAL_UINT16(3u * filter_worst_cycles(filter_listed(slowest_kind())),
                              settings_filter_cycles(slowest_kind()));
-    TEST_ASSERT_EQUAL_UINT32(20000u - SETTINGS_REST_CYCLES, settings_left_cycles(8000));
-    TEST_ASSERT_EQUAL_UINT32(1280000u - SETTINGS_REST_CYCLES, settings_left_cycles(125));
-    hal_host_cpu_hz = (SETTINGS_REST_CYCLES + 3u * filter_worst_cycles(filter_listed(slowest_kind()))) * 800u;
+    TEST_ASSERT_EQUAL_UINT32(20000u - LIMIT_REST_CYCLES, settings_left_cycles(8000));
+    TEST_ASSERT_EQUAL_UINT32(1280000u - LIMIT_REST_CYCLES, settings_left_cycles(125));
+    hal_host_cpu_hz = (LIMIT_REST_CYCLES + 3u * filter_worst_cycles(filter_listed(slowest_kind()))) * 800u;
     TEST_ASSERT_FALSE(settings_fit(slowest_kind(), 8000)); /* nothing would be left for a row */
     hal_host_cpu_hz += 800u;
     TEST_ASSERT_TRUE(settings_fit(slowest_kind(), 8000));
@@ -132,9 +133,9 @@ static void test_every_follows_what_the_filter_leaves_time_for(void)
         if (kind == (int)slowest_kind() || kind == (int)settings()->choice.filter) {
             continue;
         }
-        unsigned over = 20000u - SETTINGS_REST_CYCLES - 3u * filter_worst_cycles(filter_listed((filter_kind_t)kind));
+        unsigned over = 20000u - LIMIT_REST_CYCLES - 3u * filter_worst_cycles(filter_listed((filter_kind_t)kind));
         unsigned every = 1;
-        while (every * over < SETTINGS_ROW_CYCLES) {
+        while (every * over < LIMIT_ROW_CYCLES) {
             every++;
         }
         size_t before = board.note_count;

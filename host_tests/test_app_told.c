@@ -8,6 +8,7 @@
 #include "base/counters.h"
 #include "base/notices.h"
 #include "base/text.h"
+#include "limits.h"
 #include "path/pipeline.h"
 #include "support_board.h"
 #include "unity.h"
@@ -37,7 +38,7 @@ static void assert_led_flashes(unsigned times)
         was = is;
     }
     TEST_ASSERT_EQUAL_UINT(times, flashes);
-    TEST_ASSERT_DOUBLE_WITHIN(10.0 * times, 65.5 * times, lit_ms);
+    TEST_ASSERT_DOUBLE_WITHIN(10.0 * times, (LIMIT_LED_MS + 0.5) * times, lit_ms);
 }
 
 static void test_led_flashes_by_what_to_look_at(void)

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "base/counters.h"
+#include "limits.h"
 #include "path/coast.h"
 #include "path/pipeline.h"
 #include "path/silence.h"
@@ -202,8 +203,8 @@ static void test_gaps_on_a_ramp_are_rejoined_within_the_gate(void)
 /* Of the step of sample n, by the middle of it: 1, 1/2, 1/4, 1/8, then nothing. */
 static double part_of_step(unsigned n)
 {
-    unsigned quarters = (2u * n - 1u) * (world.period_us / 2u) / 25000u;
-    return quarters < 4u ? 1.0 / (1u << quarters) : 0.0;
+    unsigned quarters = (2u * n - 1u) * (world.period_us / 2u) / (1000u * LIMIT_DAMP_MS);
+    return quarters < LIMIT_HOLD_MS / LIMIT_DAMP_MS ? 1.0 / (1u << quarters) : 0.0;
 }
 
 /* 60 degrees a second, no noise. At 100 Hz that is within the noise of a rate that is a difference. */
@@ -234,14 +235,15 @@ static void test_rows_of_missing_samples(void)
     begin(0, 4000, 0.0);
     samples(400);
     uint32_t last_us = world.t_us;
+    const unsigned last = LIMIT_LONG_S * 400u + 1u; /* of those a period apart */
     for (unsigned n = 1; n <= 460u; n++) {
-        uint32_t due_us = n <= 401u ? n * 2500u : 1002500u + (n - 401u) * 100000u;
+        uint32_t due_us = n <= last ? n * 2500u : last * 2500u + (n - last) * 1000u * LIMIT_LONG_STEP_MS;
         TEST_ASSERT_FALSE(missing_by(last_us + due_us + 1249u, false));
         TEST_ASSERT_TRUE(missing_by(last_us + due_us + 1250u, false));
         take_row();
         TEST_ASSERT_EQUAL_UINT32(last_us + due_us, world.row.t_us);
-        TEST_ASSERT_EQUAL_HEX16(n < 3u ? ROW_COASTED : ROW_COASTED | ROW_FAULT, world.row.flags);
-        TEST_ASSERT_EQUAL_INT(n >= 401u, silence_long());
+        TEST_ASSERT_EQUAL_HEX16(n < LIMIT_MISSING_FAULT ? ROW_COASTED : ROW_COASTED | ROW_FAULT, world.row.flags);
+        TEST_ASSERT_EQUAL_INT(n >= last, silence_long());
     }
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_LOST));
     pass_time(7000000u + 2500u); /* counted when it is known how many they were */

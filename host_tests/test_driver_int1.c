@@ -10,6 +10,7 @@
 #include "hal_host.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
+#include "limits.h"
 #include "support_rig.h"
 #include "unity.h"
 
@@ -264,6 +265,9 @@ static void run_until_tick(void)
     rig_away(1);
 }
 
+/* Not heard for so long, in whole ticks, and counted in one more. */
+enum { DEAF_TICKS = (1000 * LIMIT_DEAF_MS - 1) / (int)HAL_TICK_US + 2 };
+
 /* Eight edges in a tick of the clock may be: seven of a sensor at 800 Hz, and one. The ninth is not heard any more. */
 static void test_nine_edges_in_a_tick_flicker(void)
 {
@@ -274,18 +278,35 @@ static void test_nine_edges_in_a_tick_flicker(void)
     rig_until_pause();
     for (unsigned ticks = 0; ticks < 2; ticks++) {
         run_until_tick();
-        edges(8);
+        edges(LIMIT_EDGES - 1);
         TEST_ASSERT_FALSE(hal_drdy_flickers());
     }
     run_until_tick();
-    edges(9);
-    for (unsigned ticks = 1; ticks <= HAL_DRDY_DEAF_TICKS; ticks++) {
+    edges(LIMIT_EDGES);
+    for (unsigned ticks = 1; ticks <= DEAF_TICKS; ticks++) {
         TEST_ASSERT_TRUE(hal_drdy_flickers());
         run_until_tick();
     }
     TEST_ASSERT_FALSE(hal_drdy_flickers());
     rig.limit_us = 20000; /* by the clock */
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(400));
+}
+
+/* In the tick in which they are counted again so many edges make it flicker on, one less ends that. */
+static void test_eight_edges_are_too_many_to_be_believed_again(void)
+{
+    for (unsigned count = LIMIT_EDGES_AGAIN - 1; count <= LIMIT_EDGES_AGAIN + 1; count++) {
+        stream_for_ms(300);
+        run_until_tick();
+        edges(LIMIT_EDGES);
+        for (unsigned ticks = 1; ticks < DEAF_TICKS; ticks++) {
+            run_until_tick();
+        }
+        hal_host_faults.int1_cut = true; /* no edge of a sample is among them */
+        edges(count);
+        run_until_tick();
+        TEST_ASSERT_EQUAL(count >= LIMIT_EDGES_AGAIN, hal_drdy_flickers());
+    }
 }
 
 /* A wire off D2 picks up a noise of 250 kHz: every sample comes once, read by the clock, and the fault has its name. */
@@ -365,6 +386,7 @@ int main(void)
     RUN_TEST(test_a_sample_is_not_older_than_the_sensor_was_empty);
     RUN_TEST(test_edges_without_a_level_are_noise);
     RUN_TEST(test_nine_edges_in_a_tick_flicker);
+    RUN_TEST(test_eight_edges_are_too_many_to_be_believed_again);
     RUN_TEST(test_an_int1_that_flickers_is_not_heard);
     RUN_TEST(test_overruns_are_counted);
     RUN_TEST(test_int1_comes_back_to_a_full_sensor);

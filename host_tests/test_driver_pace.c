@@ -6,6 +6,7 @@
 #include "hal_host.h"
 #include "hal_i2c.h"
 #include "hal_time.h"
+#include "limits.h"
 #include "support_board.h"
 #include "support_rig.h"
 #include "unity.h"
@@ -71,7 +72,10 @@ void tearDown(void)
 /* Back-off 5, 10, 20, then 25 ms for ever: the alarm wakes main for it, whose passes take 20 us here. */
 static void test_tries_again_at_a_pause_that_doubles_to_25_ms(void)
 {
-    static const double back_off_ms[] = { 5, 10, 20, 25, 25, 25, 25 };
+    static const double back_off_ms[] = {
+        LIMIT_BACK_OFF_MIN_MS, 10, 20, LIMIT_BACK_OFF_MAX_MS, LIMIT_BACK_OFF_MAX_MS, LIMIT_BACK_OFF_MAX_MS,
+        LIMIT_BACK_OFF_MAX_MS
+    };
     hal_host_sensor.powered = false;
     adxl345_start(&at_100_hz);
     double failed_ms = 0.0;
@@ -99,10 +103,10 @@ static void test_a_good_sample_resets_the_pace(void)
     double failed_ms = hal_host_now_ms();
     probes = 0;
     RUN_UNTIL(probes == 1, 50);
-    TEST_ASSERT_TRUE(probed_ms[0] - failed_ms <= 5.0 + 0.1);
+    TEST_ASSERT_TRUE(probed_ms[0] - failed_ms <= LIMIT_BACK_OFF_MIN_MS + 0.1);
 }
 
-/* A burst that hangs is given up 3 ms after it began, and read again at once; each is seen up to a pass, 20 us, late. */
+/* A burst that hangs is given up 3 ms after it began, and read again at once; each is seen up to 20 us late. */
 static void test_a_hung_burst_is_given_up(void)
 {
     adxl345_counters_t before;
@@ -135,7 +139,8 @@ static void test_three_failed_bursts_are_a_fault(void)
     RUN_UNTIL(!hal_drdy_high() && !adxl345_burst_running(), 20);
     adxl345_counters(&counters);
     uint16_t errors_before = counters.bus_errors;
-    for (unsigned failed = 1; failed <= 3; failed++) {
+    for (unsigned failed = 1; failed <= LIMIT_TRIES; failed++) {
+        TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
         hal_host_faults.next_status = HAL_I2C_BUS_ERROR;
         hal_host_faults.status_skip = 0;
         double end_ms = hal_host_now_ms() + 20;
@@ -148,7 +153,7 @@ static void test_three_failed_bursts_are_a_fault(void)
     rig_run_ms(0.1);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_BUS, adxl345_fault());
     adxl345_counters(&counters);
-    TEST_ASSERT_EQUAL_UINT16(errors_before + 3, counters.bus_errors);
+    TEST_ASSERT_EQUAL_UINT16(errors_before + LIMIT_TRIES, counters.bus_errors);
     rig_run_ms(200);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
@@ -200,7 +205,7 @@ static void test_a_stop_is_tried_again_for_a_second(void)
         tries += is_try;
         last_ms = counters.nacks != before ? hal_host_now_ms() : last_ms;
     }
-    TEST_ASSERT_EQUAL_UINT(40, tries);
+    TEST_ASSERT_EQUAL_UINT(LIMIT_RESTS, tries);
     TEST_ASSERT_TRUE(last_ms - begun_ms >= 1000.0 && last_ms - begun_ms <= 1000.0 + 41 * 1.0);
     TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
 }

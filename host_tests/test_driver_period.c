@@ -4,9 +4,10 @@
  */
 #include "adxl345.h"
 #include "adxl345_period.h"
+#include "limits.h"
 #include "unity.h"
 
-enum { STEPS = 16 };
+enum { STEPS = LIMIT_PERIOD_STEPS };
 
 static const uint32_t nominals_us[] = { 1250, 2500, 5000, 10000, 20000, 40000, 80000 };
 static uint32_t t_us;

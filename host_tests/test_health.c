@@ -7,6 +7,7 @@
 #include "hal_time.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
+#include "limits.h"
 #include "support_board.h"
 #include "unity.h"
 
@@ -57,12 +58,12 @@ static double bitten_with_the_driver_standing_ms(double limit_ms)
     return bitten_ms();
 }
 
-/* The deadline, 20 ms of grace, 250 ms of the watchdog: the last feed is the last pass before the grace is up. */
+/* The deadline, its grace, the watchdog's time: the last feed is the last pass before the grace is up. */
 static void assert_bitten_after_deadline(double deadline_ms)
 {
     double bite_ms = bitten_with_the_driver_standing_ms(deadline_ms + 1000.0);
-    TEST_ASSERT_TRUE(bite_ms <= deadline_ms + 20.0 + 250.0);
-    TEST_ASSERT_TRUE(bite_ms >= deadline_ms + 20.0 + 250.0 - PASS_MS);
+    TEST_ASSERT_TRUE(bite_ms <= deadline_ms + LIMIT_GRACE_MS + LIMIT_WATCHDOG_MS);
+    TEST_ASSERT_TRUE(bite_ms >= deadline_ms + LIMIT_GRACE_MS + LIMIT_WATCHDOG_MS - PASS_MS);
     hal_host_reset_mcu(HAL_RESET_WATCHDOG);
     TEST_ASSERT_EQUAL_HEX8(HEALTH_SAMPLING, hal_reset_note());
 }
@@ -122,7 +123,7 @@ static void test_a_driver_that_nobody_polls_is_not_healthy(void)
     while (hal_host_watchdog_bite() == 0 && hal_host_now_ms() < 1000.0) {
         pass();
     }
-    TEST_ASSERT_DOUBLE_WITHIN(PASS_MS, begun_ms + 250.0, bitten_ms());
+    TEST_ASSERT_DOUBLE_WITHIN(PASS_MS, begun_ms + LIMIT_WATCHDOG_MS, bitten_ms());
 }
 
 /* Samples that nobody takes wait in the queue: a pause of filtering excuses that for its own passes, no longer. */
@@ -149,7 +150,7 @@ static void test_a_pause_of_filtering_ends_with_its_last_pass(void)
         hal_wake();
         hal_sleep_until_wake();
     }
-    TEST_ASSERT_DOUBLE_WITHIN(PASS_MS, (PAUSE - 1) * EVERY_MS + 250.0, bitten_ms());
+    TEST_ASSERT_DOUBLE_WITHIN(PASS_MS, (PAUSE - 1) * EVERY_MS + LIMIT_WATCHDOG_MS, bitten_ms());
     hal_host_reset_mcu(HAL_RESET_WATCHDOG);
     TEST_ASSERT_EQUAL_HEX8(HEALTH_FILTERING, hal_reset_note());
 }

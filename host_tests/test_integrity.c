@@ -5,6 +5,7 @@
 #include "adxl345.h"
 #include "adxl345_integrity.h"
 #include "adxl345_table.h"
+#include "limits.h"
 #include "support_random.h"
 #include "unity.h"
 
@@ -211,7 +212,7 @@ static void test_torn_readings_stay_torn(void)
     format = 0x0B;
     for (unsigned i = 1; i <= 300; i++) {
         TEST_ASSERT_EQUAL(READING_BAD, judged(lsb, READING_FIFO_CTL, 1));
-        TEST_ASSERT_EQUAL(i >= 3 ? ADXL345_FAULT_TORN : ADXL345_FAULT_NONE, adxl345_integrity_fault());
+        TEST_ASSERT_EQUAL(i >= LIMIT_TORN ? ADXL345_FAULT_TORN : ADXL345_FAULT_NONE, adxl345_integrity_fault());
     }
 }
 
@@ -227,7 +228,7 @@ static void test_the_third_empty_reading_is_of_an_int1_that_is_stuck(void)
         adxl345_integrity_forget();
         for (unsigned i = 1; i <= 300; i++) {
             adxl345_integrity_int1_lied();
-            TEST_ASSERT_EQUAL(i >= 3, adxl345_integrity_int1_stuck());
+            TEST_ASSERT_EQUAL(i >= LIMIT_EMPTY, adxl345_integrity_int1_stuck());
         }
     }
 }
@@ -240,11 +241,11 @@ static void test_an_int1_that_was_stuck_is_trusted_anew(void)
     format = 0x0B;
     adxl345_integrity_forget();
     for (unsigned times = 0; times < 2; times++) {
-        for (unsigned i = 1; i <= 3; i++) {
+        for (unsigned i = 1; i <= LIMIT_EMPTY; i++) {
             TEST_ASSERT_FALSE(adxl345_integrity_int1_stuck());
             adxl345_integrity_int1_lied();
         }
-        for (unsigned i = 1; i <= 32; i++) {
+        for (unsigned i = 1; i <= LIMIT_TRUSTED; i++) {
             TEST_ASSERT_TRUE(adxl345_integrity_int1_stuck());
             TEST_ASSERT_EQUAL(READING_GOOD, judged(lsb, 0, 0));
         }
@@ -262,7 +263,7 @@ static void test_the_tenth_equal_reading_is_stuck(void)
         start(16, false);
         for (unsigned i = 1; i <= 300; i++) {
             TEST_ASSERT_EQUAL(READING_GOOD, adxl345_integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]));
-            TEST_ASSERT_EQUAL(i >= 10, adxl345_integrity_stuck());
+            TEST_ASSERT_EQUAL(i >= LIMIT_STUCK_SAMPLES, adxl345_integrity_stuck());
         }
         reading[READING_DATA + 2 * axis]++;
         TEST_ASSERT_EQUAL(READING_GOOD, adxl345_integrity_judge(reading, lsb[1], lsb[0]));
@@ -287,7 +288,7 @@ static void test_a_sensor_that_may_be_another_has_ten_readings_of_its_own(void)
         reading[READING_DATA] = (uint8_t)(reading[READING_DATA] + differs);
         for (unsigned i = 1; i <= 12; i++) {
             TEST_ASSERT_EQUAL(READING_GOOD, adxl345_integrity_judge(reading, lsb[i % 2], lsb[(i + 1) % 2]));
-            TEST_ASSERT_EQUAL(i >= 10, adxl345_integrity_stuck());
+            TEST_ASSERT_EQUAL(i >= LIMIT_STUCK_SAMPLES, adxl345_integrity_stuck());
         }
     }
 }

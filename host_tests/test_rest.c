@@ -2,6 +2,7 @@
  * Sums at rest: mean and variance against exact integers, the limits of stillness from their definition, and what real
  * noise makes of them.
  */
+#include "limits.h"
 #include "rest.h"
 #include "support_random.h"
 #include "unity.h"
@@ -10,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { HZ_100 = 1000, HZ_800 = 8000, N = REST_SAMPLES };
+enum { HZ_100 = 1000, HZ_800 = 8000, N = LIMIT_REST_READINGS };
 
 static rest_t rest;
 
@@ -144,14 +145,12 @@ static bool still_with(int axis, int size, uint16_t rate_dhz)
  */
 static void test_the_limits_of_the_variance(void)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        TEST_ASSERT_TRUE(still_with(axis, 11, HZ_100));
-        TEST_ASSERT_FALSE(still_with(axis, 12, HZ_100));
-        TEST_ASSERT_TRUE(still_with(axis, 31, HZ_800));
-        TEST_ASSERT_FALSE(still_with(axis, 32, HZ_800));
-        TEST_ASSERT_FALSE(still_with(axis, 5, 200));
-        TEST_ASSERT_TRUE(still_with(axis, 5, 208));
-        TEST_ASSERT_FALSE(still_with(axis, 10, 800));
+    static const uint16_t rates_dhz[] = { 200, 208, 800, HZ_100, HZ_800 };
+    for (int i = 0; i < 3 * 5 * 40; i++) {
+        int size = i / 15;
+        uint16_t rate_dhz = rates_dhz[i / 3 % 5];
+        bool below = size * size * HZ_100 < LIMIT_REST_VARIANCE_LSB2 * rate_dhz;
+        TEST_ASSERT_EQUAL(below, still_with(i % 3, size, rate_dhz));
     }
 }
 
@@ -190,7 +189,7 @@ static void test_the_limit_of_the_drift_to_one_lsb_of_one_reading(void)
                 int in_half = k - N / 2;
                 (void)add(0, in_half < 0 ? 0 : sign * (apart / (N / 2) + (in_half < apart % (N / 2))), 256);
             }
-            TEST_ASSERT_EQUAL(apart <= 256, rest_still(&rest, HZ_800));
+            TEST_ASSERT_EQUAL(apart <= LIMIT_REST_DRIFT_LSB * N / 2, rest_still(&rest, HZ_800));
         }
     }
 }

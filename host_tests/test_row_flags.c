@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "limits.h"
 #include "path/pipeline.h"
 #include "support_board.h"
 #include "unity.h"
@@ -50,7 +51,7 @@ static void test_clipped_at_the_rails_of_the_range_in_force(void)
 {
     for (int range_g = 2; range_g <= 16; range_g *= 2) {
         char command[24];
-        int16_t high = (int16_t)(256 * range_g - 1);
+        int16_t high = (int16_t)(LIMIT_G_LSB * range_g - 1);
         snprintf(command, sizeof command, "range %d", range_g);
         TEST_ASSERT_EQUAL_UINT(ROW_CLIPPED, flags_of(command, high, 0, 256) & ROW_CLIPPED);
         TEST_ASSERT_EQUAL_UINT(ROW_CLIPPED, flags_of(command, (int16_t)(-high - 1), 0, 256) & ROW_CLIPPED);

@@ -111,6 +111,24 @@ static void test_after_a_hold_the_laws_noise_decides_who_is_near(void)
     }
 }
 
+/* sqrt(8) sigmas by R: at its floor at 100 Hz, 3 LSB^2, 4 LSB are near and 5 are none. */
+static void test_near_is_up_to_the_root_of_eight_r(void)
+{
+    static const double sigmas_lsb[] = { 0.0, 8.0 };
+    for (size_t i = 0; i < 2; i++) {
+        begin(DEFAULT_KIND, false);
+        rest(sigmas_lsb[i]);
+        hold();
+        tilt_axis_t held = axis;
+        double most_lsb = sqrt(8.0 * filter_noise_r_lsb2_q8(&axis.noise) / 256.0);
+        for (int off_lsb = -2 * (int)most_lsb; off_lsb <= 2 * (int)most_lsb; off_lsb++) {
+            axis = held;
+            (void)tilt_axis_update(&axis, (int16_t)(tilt_axis_estimate_lsb(&held) + off_lsb), RAIL_LSB, false);
+            TEST_ASSERT_EQUAL_UINT8(fabs((double)off_lsb) <= most_lsb ? 0 : 2, axis.away);
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -118,5 +136,6 @@ int main(void)
     RUN_TEST(test_a_law_that_does_not_identify_takes_the_estimate);
     RUN_TEST(test_the_law_reports_the_r_of_the_noise);
     RUN_TEST(test_after_a_hold_the_laws_noise_decides_who_is_near);
+    RUN_TEST(test_near_is_up_to_the_root_of_eight_r);
     return UNITY_END();
 }

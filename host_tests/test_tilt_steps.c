@@ -5,6 +5,7 @@
  */
 #include <math.h>
 
+#include "limits.h"
 #include "tilt.h"
 #include "unity.h"
 
@@ -137,15 +138,22 @@ static bool plausible_with(uint32_t sum_q12)
     return false;
 }
 
-/* 0.85 g is 13926.4 in Q6, its square 193,944,616.96; 1.15 g is 18841.6, its square 355,005,890.56. */
+/* Square of so many hundredths of 1 g, 16384 in Q6: 0.85 g make 193,944,616.96, 1.15 g 355,005,890.56. */
+static double square_q12(int percent)
+{
+    return pow(163.84 * percent, 2.0);
+}
+
 static void test_the_limits_of_gravity_to_the_last_unit(void)
 {
-    TEST_ASSERT_FALSE(plausible_with(193944616));
-    TEST_ASSERT_TRUE(plausible_with(193944617));
-    TEST_ASSERT_TRUE(plausible_with(193944618));
-    TEST_ASSERT_TRUE(plausible_with(355005889));
-    TEST_ASSERT_TRUE(plausible_with(355005890));
-    TEST_ASSERT_FALSE(plausible_with(355005891));
+    uint32_t least_q12 = (uint32_t)ceil(square_q12(100 - LIMIT_GRAVITY_PERCENT));
+    uint32_t most_q12 = (uint32_t)floor(square_q12(100 + LIMIT_GRAVITY_PERCENT));
+    TEST_ASSERT_FALSE(plausible_with(least_q12 - 1U));
+    TEST_ASSERT_TRUE(plausible_with(least_q12));
+    TEST_ASSERT_TRUE(plausible_with(least_q12 + 1U));
+    TEST_ASSERT_TRUE(plausible_with(most_q12 - 1U));
+    TEST_ASSERT_TRUE(plausible_with(most_q12));
+    TEST_ASSERT_FALSE(plausible_with(most_q12 + 1U));
 }
 
 /* 1 g and a huge number across is not 1 g. */
@@ -162,10 +170,10 @@ static void test_a_huge_axis_is_not_left_out(void)
 static void test_the_limit_of_roll(void)
 {
     tilt_t tilt = { 0 };
-    tilt_angles(&tilt, (const int32_t[]){ 65536, 1024, 0 });
+    tilt_angles(&tilt, (const int32_t[]){ 65536, 256 * LIMIT_ROLL_MIN_LSB, 0 });
     TEST_ASSERT_FALSE(tilt.roll_undefined);
     TEST_ASSERT_EQUAL_INT16(9000, tilt.roll_cdeg);
-    tilt_angles(&tilt, (const int32_t[]){ 65536, 1023, 0 });
+    tilt_angles(&tilt, (const int32_t[]){ 65536, 256 * LIMIT_ROLL_MIN_LSB - 1, 0 });
     TEST_ASSERT_TRUE(tilt.roll_undefined);
 }
 

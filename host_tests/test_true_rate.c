@@ -8,6 +8,7 @@
 #include "app/app.h"
 #include "base/counters.h"
 #include "filter_list.h"
+#include "limits.h"
 #include "path/coast.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
@@ -29,7 +30,7 @@ void setUp(void)
 
 void tearDown(void) {}
 
-static void begin(uint8_t kind)
+static void begin_at(uint8_t kind, uint16_t rate_dhz)
 {
     counters_start();
     coast_wait(0);
@@ -37,8 +38,13 @@ static void begin(uint8_t kind)
     settings_defaults();
     pipeline_calibrate(&settings()->calibration);
     settings_take_filter(kind);
-    pipeline_start(&settings()->choice, 1000, 16);
+    pipeline_start(&settings()->choice, rate_dhz, 16);
     pipeline_finish();
+}
+
+static void begin(uint8_t kind)
+{
+    begin_at(kind, 1000);
 }
 
 static void sample_of(int16_t x_lsb, int16_t y_lsb, int16_t z_lsb)
@@ -96,7 +102,7 @@ static void test_the_sixth_second_off_hands_the_rate_over_once(void)
         begin(0);
         (void)second(10000, 60, 0);
         for (int k = 1; k <= 30; k++) {
-            TEST_ASSERT_EQUAL_INT(k == 6, second(periods_us[i], 60, 0));
+            TEST_ASSERT_EQUAL_INT(k == LIMIT_FOLLOW_S + 1, second(periods_us[i], 60, 0));
         }
         for (int k = 1; k <= 6; k++) { /* the nominal one is the one that is off now */
             TEST_ASSERT_EQUAL_INT(k == 6, second(10000, 60, 0));
@@ -110,6 +116,49 @@ static void test_what_is_near_or_comes_back_changes_nothing(void)
     for (int k = 1; k <= 60; k++) {
         TEST_ASSERT_FALSE(second(k % 5 == 0 ? 10000 : 10300, 60, 0));
         TEST_ASSERT_FALSE(second(k & 1 ? 9950 : 10050, 60, 0));
+    }
+}
+
+/* By more than its 128th part and 0.1 Hz, which is 0.9 % at 100 Hz and more the slower the sensor is. */
+static void test_the_least_that_is_followed_at_each_rate(void)
+{
+    for (uint16_t rate_dhz = 125; rate_dhz <= 8000; rate_dhz = (uint16_t)(rate_dhz * 2u)) {
+        uint32_t nominal_us = 10000000u / rate_dhz;
+        uint32_t step_us = nominal_us / 10000u + 1u;
+        for (uint32_t us = nominal_us * 97u / 100u; us <= nominal_us * 103u / 100u; us += step_us) {
+            double off_dhz = fabs((double)(10000000u / us) - rate_dhz);
+            bool followed = false;
+            begin_at(0, rate_dhz);
+            for (int k = 0; k <= LIMIT_FOLLOW_S; k++) {
+                followed = look(us);
+            }
+            TEST_ASSERT_EQUAL(off_dhz > 1.0 + (double)rate_dhz / LIMIT_FOLLOW_PART, followed);
+        }
+    }
+}
+
+/* 10 s of readings whose mean is so many eighths of an LSB: the estimate has come to it. */
+static void settle(int eighths)
+{
+    for (int k = 0; k < 1000; k++) {
+        sample((int16_t)(eighths * (k + 1) / 8 - eighths * k / 8));
+    }
+}
+
+/* In quarters of an LSB, from the middle of one to the middle of another. */
+static void test_the_most_that_is_standing_still(void)
+{
+    enum { FROM = 8 * 60 + 1, MOST = 2 * LIMIT_STILL_LSB_Q1 };
+    for (int sign = -1; sign <= 1; sign += 2) {
+        for (int quarters = MOST - 1; quarters <= MOST + 1; quarters++) {
+            begin(0);
+            settle(FROM);
+            for (int k = 0; k < LIMIT_FOLLOW_S + 1; k++) {
+                TEST_ASSERT_FALSE(look(k == 0 ? 10000 : 10300));
+            }
+            settle(FROM + sign * 2 * quarters);
+            TEST_ASSERT_EQUAL(quarters <= MOST, look(10300));
+        }
     }
 }
 
@@ -235,6 +284,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_sixth_second_off_hands_the_rate_over_once);
     RUN_TEST(test_what_is_near_or_comes_back_changes_nothing);
+    RUN_TEST(test_the_least_that_is_followed_at_each_rate);
+    RUN_TEST(test_the_most_that_is_standing_still);
     RUN_TEST(test_a_board_that_moves_keeps_its_rates_of_change);
     RUN_TEST(test_a_turn_that_leaves_the_sum_of_the_axes_is_no_standing_still);
     RUN_TEST(test_no_row_shows_it);

@@ -1,5 +1,6 @@
 /* Two sensors on one address: what a jump to the double is, and who must not be suspected. */
 #include "adxl345_watch.h"
+#include "limits.h"
 #include "stream.h"
 #include "support_random.h"
 #include "support_recordings.h"
@@ -9,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SENSOR_AT_REST_LSB = 248, END_SAMPLES = 255 };
+enum { SENSOR_AT_REST_LSB = 248, END_SAMPLES = LIMIT_JUMPS_END };
 
 void setUp(void)
 {
@@ -45,7 +46,7 @@ static void test_the_eighth_jump_is_told_and_quiet_ends_it(void)
         adxl345_watch_start();
         for (unsigned jumps = 1; jumps <= 20; jumps++) {
             jump(which / 4, up ? lsb : (int16_t)(2 * lsb), up ? (int16_t)(2 * lsb) : lsb);
-            TEST_ASSERT_EQUAL(jumps >= 8, adxl345_watch_two_sensors());
+            TEST_ASSERT_EQUAL(jumps >= LIMIT_JUMPS, adxl345_watch_two_sensors());
         }
         rest(END_SAMPLES);
         TEST_ASSERT_TRUE(adxl345_watch_two_sensors());
@@ -77,7 +78,7 @@ static void test_share_of_doubled_readings(void)
  */
 static void test_one_jump_in_sixteen_is_the_limit(void)
 {
-    for (unsigned calm = 15; calm <= 16; calm++) {
+    for (unsigned calm = LIMIT_JUMP_SHARE - 2; calm <= LIMIT_JUMP_SHARE; calm++) {
         adxl345_watch_start();
         unsigned jumps = 0;
         while (!adxl345_watch_two_sensors() && jumps < 1000) {
@@ -87,7 +88,8 @@ static void test_one_jump_in_sixteen_is_the_limit(void)
                 rest(calm);
             }
         }
-        TEST_ASSERT_EQUAL_UINT(calm == 15 ? 1 + (128 - 16) : 1000, jumps);
+        unsigned growth = LIMIT_JUMP_SHARE - calm; /* with each jump, and the calm samples before it; from 16 to 128 */
+        TEST_ASSERT_EQUAL_UINT(growth != 0 ? 1 + (128 - 16 + growth - 1) / growth : 1000, jumps);
     }
 }
 
@@ -121,9 +123,10 @@ static bool suspected_after(int16_t from_lsb, int16_t to_lsb)
 /* Below 64 LSB noise does it; a double is meant within a sixteenth of the single value. */
 static void test_what_a_doubling_is(void)
 {
-    TEST_ASSERT_FALSE(suspected_after(63, 126));
-    TEST_ASSERT_FALSE(suspected_after(126, 63));
-    TEST_ASSERT_TRUE(suspected_after(64, 128));
+    for (int16_t lsb = LIMIT_DOUBLE_MIN_LSB - 1; lsb <= LIMIT_DOUBLE_MIN_LSB + 1; lsb++) {
+        TEST_ASSERT_EQUAL(lsb >= LIMIT_DOUBLE_MIN_LSB, suspected_after(lsb, (int16_t)(2 * lsb)));
+        TEST_ASSERT_EQUAL(lsb >= LIMIT_DOUBLE_MIN_LSB, suspected_after((int16_t)(2 * lsb), lsb));
+    }
     TEST_ASSERT_TRUE(suspected_after(64, 124));
     TEST_ASSERT_FALSE(suspected_after(64, 123));
     TEST_ASSERT_TRUE(suspected_after(-320, -660));

@@ -66,8 +66,8 @@ void pipeline_start(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t ra
 void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g);
 
 /*
- * Each second the measured time between samples: when its rate is 0.8 % (at 12.5 Hz 1.6 %) or more from what the
- * filters have, for 5 seconds, they go on from their outputs with its parameters. That costs them their rates of
+ * Each second the measured time between samples: when its rate differs by more than 1/128 and 0.1 Hz from what
+ * the filters have, for 5 seconds, they go on from their outputs with its parameters. That costs them their rates of
  * change, so it waits until each axis' estimate is where it was a second ago, within what a degree makes (4.5 LSB). No
  * row says so.
  */
