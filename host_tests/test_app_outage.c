@@ -320,7 +320,8 @@ static void test_a_fault_that_begins_in_a_plot_is_told_behind_it(void)
  */
 static void test_a_cut_of_int1_loses_no_sample(void)
 {
-    static const char *const rates[] = { "rate 12.5", "rate 25", "rate 50", "rate 100", "rate 200", "rate 400", "rate 800" };
+    static const char *const rates[] = { "rate 12.5", "rate 25",  "rate 50", "rate 100",
+                                         "rate 200",  "rate 400", "rate 800" };
     for (size_t r = 0; r < sizeof rates / sizeof rates[0]; r++) {
         board_start_resting();
         board_run_ms(300);

@@ -70,6 +70,20 @@ static uint8_t altered(unsigned at, uint8_t reg, uint8_t byte)
     }
 }
 
+/* What has arrived of a burst says whether it goes on, and whether the sensor seems to have forgotten its settings. */
+static void note(unsigned at, uint8_t arrives)
+{
+    if (at == READING_SOURCE) {
+        ready = (arrives & ADXL345_INT_DATA_READY) != 0;
+        forgotten = !ready && (arrives & ADXL345_INT_WATERMARK) != 0;
+    } else if (at == READING_FORMAT) {
+        forgotten = forgotten && arrives == 0;
+    }
+    if (bursts_left != 0 && at == (ready ? READING_BYTES - 1u : (unsigned)READING_FORMAT)) {
+        bursts_left--;
+    }
+}
+
 static uint8_t on_rx(uint8_t reg, uint8_t byte)
 {
     unsigned at = (unsigned)reg - ADXL345_INT_SOURCE;
@@ -79,16 +93,7 @@ static uint8_t on_rx(uint8_t reg, uint8_t byte)
     }
     next_byte++;
     uint8_t arrives = altered(at, reg, byte);
-    if (at == READING_SOURCE) {
-        ready = (arrives & ADXL345_INT_DATA_READY) != 0;
-        forgotten = !ready && (arrives & ADXL345_INT_WATERMARK) != 0;
-    }
-    if (at == READING_FORMAT) {
-        forgotten = forgotten && arrives == 0;
-    }
-    if (bursts_left != 0 && at == (ready ? READING_BYTES - 1u : (unsigned)READING_FORMAT)) {
-        bursts_left--;
-    }
+    note(at, arrives);
     return arrives;
 }
 

@@ -10,10 +10,12 @@
 
 #define HAL_DRDY_ISR() ISR(INT0_vect)
 
-/* GPIOR1 and GPIOR2 take a cycle to read and one to write: edges left in this tick, and ticks until D2 is believed again. */
+/*
+ * GPIOR1 and GPIOR2 take a cycle to read and one to write: edges left in this tick, and ticks until D2 is believed
+ * again.
+ */
 HAL_BODY void hal_drdy_enable(void)
 {
-
     EICRA = _BV(ISC01) | _BV(ISC00);
     EIFR = _BV(INTF0);
     EIMSK = _BV(INT0);

@@ -58,7 +58,10 @@ reading_t adxl345_burst_judge(void);
 /* A burst is on the bus, or has not been judged. */
 bool adxl345_burst_running(void);
 
-/* The newest sample was read with INT1 low, before or after. An edge may have begun another burst since: a hint then. */
+/*
+ * The newest burst was begun with INT1 low, and it has not risen since. An edge may have begun another one: a hint
+ * then.
+ */
 bool adxl345_burst_by_clock(void);
 
 /* When the newest burst was put on the bus, and the stamp of the newest sample; until the first, when to count from. */

@@ -2,8 +2,8 @@
  * Inside the driver: is what a burst brought a reading of this sensor? Main only.
  *
  * A burst goes from INT_SOURCE through the data to FIFO_STATUS, or ends after DATA_FORMAT where INT_SOURCE has no
- * sample ready. The pattern in FIFO_CTL is what no reset leaves and what no dead bus reads as, so a sensor that has lost
- * its supply, a byte or a bit that slipped and a wire that came off show, and no sample of such a burst goes out.
+ * sample ready. The pattern in FIFO_CTL is what no reset leaves and what no dead bus reads as, so a sensor that has
+ * lost its supply, a byte or a bit that slipped and a wire that came off show, and no sample of such a burst goes out.
  */
 #ifndef ADXL345_INTEGRITY_H
 #define ADXL345_INTEGRITY_H

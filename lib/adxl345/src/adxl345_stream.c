@@ -1,7 +1,7 @@
 /*
  * The step of the driver's state machine in which samples come: when a burst looks for one that INT1 has not told of,
- * and what failed. A burst on a sensor that has none is short and changes nothing, so it is also how the sensor is asked
- * why none comes. All in main.
+ * and what failed. A burst on a sensor that has none is short and changes nothing, so it is also how the sensor is
+ * asked why none comes. All in main.
  */
 #include "adxl345_stream.h"
 

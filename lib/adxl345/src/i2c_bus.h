@@ -86,7 +86,9 @@ static inline void i2c_bus_step_sent(i2c_bus_t *bus)
     bus->expected = HAL_I2C_RESTARTED;
 }
 
-/* The last byte is refused, so that the device lets go of SDA: the second one where the first says that it is enough. */
+/*
+ * The last byte is refused, so that the device lets go of SDA: the second one where the first says that it is enough.
+ */
 MACHINE_INLINE void i2c_bus_step_read(i2c_bus_t *bus, uint8_t count)
 {
     bus->count = count;
