@@ -121,10 +121,8 @@ static void accept(uint8_t source, bool repeated)
     }
     i->has_last = true;
     i->bad_run = 0;
-    if (hal_drdy_flickers()) {
-        i->empty_run = 0;
-    } else if (!hal_drdy_high()) {
-        i->empty_run = i->empty_run > RUN_LIMIT ? (uint8_t)(i->empty_run - 1u) : 0;
+    if (!hal_drdy_high()) {
+        i->empty_run = i->empty_run > RUN_LIMIT && !hal_drdy_flickers() ? (uint8_t)(i->empty_run - 1u) : 0;
     }
     if (source & ADXL345_INT_OVERRUN) {
         adxl345_counters_add(COUNTER_OVERRUNS);
@@ -146,7 +144,7 @@ static reading_t judge_empty(const uint8_t reading[READING_BYTES])
 }
 
 /* FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). */
-reading_t adxl345_integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3])
+MACHINE_APART reading_t adxl345_integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3])
 {
     uint8_t source = reading[READING_SOURCE];
     if (!(source & ADXL345_INT_DATA_READY)) {
