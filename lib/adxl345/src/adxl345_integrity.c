@@ -144,7 +144,8 @@ static reading_t judge_empty(const uint8_t reading[READING_BYTES])
 }
 
 /* FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). */
-MACHINE_APART reading_t adxl345_integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3], const int16_t last_lsb[3])
+MACHINE_APART reading_t adxl345_integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3],
+                                                const int16_t last_lsb[3])
 {
     uint8_t source = reading[READING_SOURCE];
     if (!(source & ADXL345_INT_DATA_READY)) {
