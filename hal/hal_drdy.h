@@ -19,10 +19,10 @@ bool hal_drdy_flickers(void);
 /* Edges in a tick that are too many, at first and when it is seen whether it is over: a sensor at 800 Hz makes 7. */
 enum { HAL_DRDY_EDGES = 9, HAL_DRDY_EDGES_AGAIN = 8, HAL_DRDY_DEAF_TICKS = 32 };
 
-/* In the handler, first: counts the edge. False: its level is gone again, or the input flickers. */
-bool hal_drdy_edge_isr(void);
-
-/* The port's HAL_DRDY_ISR() { ... } defines the handler: stamp a time, start a burst, nothing else. */
+/*
+ * The port's HAL_DRDY_ISR() { ... } defines what an edge does whose level stands and that is believed: stamp a time, start
+ * a burst, nothing else.
+ */
 #include "hal_drdy_port.h"
 
 #endif

@@ -1,4 +1,4 @@
-"""No pass of the main loop is longer than 4 ms, and no interrupt with a deadline waits longer than 15 us; part of system_tests.py."""
+"""No pass of the main loop is longer than 4 ms, and no interrupt with a deadline waits longer than 15.5 us; part of system_tests.py."""
 import pathlib
 import sys
 

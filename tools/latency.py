@@ -1,12 +1,12 @@
 """How long an interrupt of the firmware may wait, by what is on the serial line; for the fault campaign and host_tests/system_passes.py."""
 import math
 
-LATENCY_CYCLES = 240  # 15 us
+LATENCY_CYCLES = 248  # 15.5 us; the second byte that waits at 1,000,000 baud is lost after 20
 
 # The longest way through each handler, entry and return included, and the longest stretch of main with interrupts off. Between two of
 # them main carries out one instruction, of BETWEEN_CYCLES at most; where that is cli, the stretch comes next.
-MAIN_OFF_CYCLES, DATA_READY_CYCLES, CLOCK_CYCLES, ALARM_CYCLES, I2C_CYCLES = 19, 130, 83, 13, 96
-DATA_READY_BUSY_CYCLES = 105  # while a transfer is on the bus it only keeps its time
+MAIN_OFF_CYCLES, DATA_READY_CYCLES, CLOCK_CYCLES, ALARM_CYCLES, I2C_CYCLES = 19, 138, 96, 13, 96
+DATA_READY_BUSY_CYCLES = 114  # while a transfer is on the bus it only keeps its time
 BYTE_IN_CYCLES, BYTE_DAMAGED_CYCLES, BYTE_OUT_CYCLES = 66, 79, 55
 BETWEEN_CYCLES = RESPONSE_CYCLES = 4
 
@@ -15,7 +15,7 @@ CLOCK_WAITS_CYCLES = MAIN_OFF_CYCLES + 2 * BETWEEN_CYCLES + RESPONSE_CYCLES + ma
                                                                                 I2C_CYCLES + DATA_READY_BUSY_CYCLES)
 
 # I2C is served last. It has no deadline: SCL stays low meanwhile. It waits for each other handler once, at any speed of the line: the
-# clock, data-ready and a byte out alone, 268 cycles, are more than the limit of the others.
+# clock, data-ready and a byte out alone, 289 cycles, are more than the limit of the others.
 ONCE_CYCLES = MAIN_OFF_CYCLES + DATA_READY_CYCLES + CLOCK_CYCLES + ALARM_CYCLES + 4 * BETWEEN_CYCLES + RESPONSE_CYCLES
 # the others have no deadline: the next byte to send, and the alarm, which only wakes main
 WITH_DEADLINE = ("int0", "twi", "timer1_compa", "usart_rx")

@@ -8,7 +8,21 @@
 #include "hal_body.h"
 #include "hal_drdy.h"
 
-#define HAL_DRDY_ISR() ISR(INT0_vect)
+/* The conditions stand here, not in a function: its result would be a byte that is looked at, six cycles more. */
+#define HAL_DRDY_ISR()                                            \
+    static inline __attribute__((always_inline)) void edge(void); \
+    ISR(INT0_vect)                                                \
+    {                                                             \
+        uint8_t left = (uint8_t)(GPIOR1 - 1u);                    \
+        GPIOR1 = left;                                            \
+        if (left == 0) {                                          \
+            EIMSK = left;                                         \
+            GPIOR2 = HAL_DRDY_DEAF_TICKS;                         \
+        } else if (GPIOR2 == 0 && (PIND & _BV(PD2)) != 0) {       \
+            edge();                                               \
+        }                                                         \
+    }                                                             \
+    static inline void edge(void)
 
 /*
  * GPIOR1 and GPIOR2 take a cycle to read and one to write: edges left in this tick, and ticks until D2 is believed
@@ -29,17 +43,6 @@ HAL_BODY bool hal_drdy_flickers(void)
 HAL_BODY bool hal_drdy_high(void)
 {
     return !hal_drdy_flickers() && (PIND & _BV(PD2)) != 0;
-}
-
-HAL_BODY bool hal_drdy_edge_isr(void)
-{
-    uint8_t left = (uint8_t)(GPIOR1 - 1u);
-    GPIOR1 = left;
-    if (left == 0) {
-        EIMSK = left;
-        GPIOR2 = HAL_DRDY_DEAF_TICKS;
-    }
-    return hal_drdy_high();
 }
 
 #endif

@@ -2,8 +2,18 @@
 #ifndef HAL_DRDY_PORT_H
 #define HAL_DRDY_PORT_H
 
+/* Counts the edge. False: its level is gone again, or the input flickers. */
+bool host_drdy_counts(void);
+
 #define HAL_DRDY_ISR()                \
+    static void edge(void);           \
     void hal_host_drdy_handler(void); \
-    void hal_host_drdy_handler(void)
+    void hal_host_drdy_handler(void)  \
+    {                                 \
+        if (host_drdy_counts()) {     \
+            edge();                   \
+        }                             \
+    }                                 \
+    static void edge(void)
 
 #endif

@@ -80,7 +80,7 @@ bool hal_drdy_flickers(void)
     return deaf_ticks != 0;
 }
 
-bool hal_drdy_edge_isr(void)
+bool host_drdy_counts(void)
 {
     edges_left--;
     if (edges_left == 0) {

@@ -66,9 +66,6 @@ MACHINE_INLINE void begin_burst(struct burst *b, bool by_edge)
 /* An edge whose level is gone again is noise: data-ready stays high until the data are read (p. 20). */
 HAL_DRDY_ISR()
 {
-    if (!hal_drdy_edge_isr()) {
-        return;
-    }
     uint16_t now = hal_time_count_isr();
     volatile uint32_t *stamp_us = &burst.edge_us;
     if (burst.mode == BURST_READ && !burst.on_bus && I2C_BUS_FREE(&burst.bus) && queue_has_room()) {
@@ -218,15 +215,17 @@ bool adxl345_burst_read(void)
     entry->exact = false;
     b->by_clock = true;
     hal_irq_state_t state = hal_irq_save();
-    if (hal_drdy_high()) { /* an edge whose level is gone is that of no sample */
-        b->by_clock = false;
-        if (b->edge_waiting) {
-            entry->exact = true;
-            entry->sample.t_us = b->edge_us;
-        }
-    }
+    uint8_t waiting = b->edge_waiting;
+    uint32_t edge_us = b->edge_us;
     b->edge_waiting = 0;
     hal_irq_restore(state);
+    if (hal_drdy_high()) { /* an edge whose level is gone is that of no sample */
+        b->by_clock = false;
+        if (waiting) {
+            entry->exact = true;
+            entry->sample.t_us = edge_us;
+        }
+    }
     b->begun_us = now_us;
     begin_burst(b, false);
     return true;
