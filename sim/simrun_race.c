@@ -34,10 +34,7 @@ enum { BEFORE, AFTER, SIDES };
 
 /* An instruction of main. */
 typedef struct {
-    struct {
-        uint16_t address;
-        bool reads, writes;
-    } touched[TOUCHED_MAX];
+    access_t touched[TOUCHED_MAX];
     uint8_t touched_count;
     bool open;        /* it has run with interrupts on */
     uint32_t vectors; /* whose handlers share something with it */
@@ -176,10 +173,7 @@ static void touch(place_t *place, uint16_t address, bool reads, bool writes)
         }
     }
     if (place->touched_count < TOUCHED_MAX) {
-        place->touched[place->touched_count].address = address;
-        place->touched[place->touched_count].reads = reads;
-        place->touched[place->touched_count].writes = writes;
-        place->touched_count++;
+        place->touched[place->touched_count++] = (access_t){ address, reads, writes };
     }
 }
 
@@ -275,9 +269,28 @@ static void on_handler_step(void)
     }
 }
 
+/* Ahead of an instruction of main: what came since the one before, and whether to wait; true when it did. */
+static bool ahead_of(place_t *place)
+{
+    if (served != 0) {
+        mark(place, BEFORE);
+        mark(last, AFTER);
+        served = 0;
+    }
+    if (!mcu->sreg[S_I] || mcu->interrupt_state != 0) {
+        return false;
+    }
+    uint32_t wanted = lacking(place, BEFORE) | lacking(last, AFTER);
+    uint64_t at = wanted == 0 ? NEVER : expected(wanted);
+    if (at == NEVER) {
+        return false;
+    }
+    wait_until(at);
+    return true;
+}
+
 bool race_on_step(bool awake)
 {
-    bool waited = false;
     note_next_timer();
     if (!awake || machine_in_boot_loader(mcu->pc)) {
         running = 0; /* what is entered meanwhile is not seen */
@@ -286,21 +299,7 @@ bool race_on_step(bool awake)
         return false;
     }
     place_t *place = place_at(mcu->pc);
-    if (!stats_in_interrupt()) {
-        if (served != 0) {
-            mark(place, BEFORE);
-            mark(last, AFTER);
-            served = 0;
-        }
-        if (mcu->sreg[S_I] && mcu->interrupt_state == 0) {
-            uint32_t wanted = lacking(place, BEFORE) | lacking(last, AFTER);
-            uint64_t at = wanted == 0 ? NEVER : expected(wanted);
-            waited = at != NEVER;
-            if (waited) {
-                wait_until(at);
-            }
-        }
-    }
+    bool waited = !stats_in_interrupt() && ahead_of(place);
     if (stats_in_interrupt()) {
         on_handler_step();
     } else {
