@@ -20,8 +20,8 @@ bool hal_drdy_flickers(void);
 enum { HAL_DRDY_EDGES = 9, HAL_DRDY_EDGES_AGAIN = 8, HAL_DRDY_DEAF_TICKS = 32 };
 
 /*
- * The port's HAL_DRDY_ISR() { ... } defines what an edge does whose level stands and that is believed: stamp a time, start
- * a burst, nothing else.
+ * The port's HAL_DRDY_ISR() { ... } defines what an edge does whose level stands and that is believed: stamp a time,
+ * start a burst, nothing else.
  */
 #include "hal_drdy_port.h"
 
