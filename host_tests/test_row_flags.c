@@ -60,7 +60,10 @@ static void test_clipped_at_the_rails_of_the_range_in_force(void)
     }
 }
 
-/* y climbs by 1 LSB a sample; two samples are missing at 3 s: each has a row, whose estimate climbs on. */
+/*
+ * y climbs by 1 LSB a sample; two samples are missing at 3 s: each has a row, whose estimate climbs on. The clock looks
+ * for the next one when it comes: its time is as near as the looks are.
+ */
 static void test_missing_samples_are_coasted_over(void)
 {
     stream_t ramp = board_constant_stream(600, 100.0, 0, 0, 256);
@@ -79,7 +82,7 @@ static void test_missing_samples_are_coasted_over(void)
         coasts += coasted != 0;
         TEST_ASSERT_INT_WITHIN(3, (board.rows[i].lsb[1] + coasted) * 1000 / 265, board.rows[i].mg[1]);
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & (ROW_GATED | ROW_REACQUIRED | ROW_FAULT));
-        TEST_ASSERT_UINT32_WITHIN(60, 10000, board.rows[i].t_us - board.rows[i - 1].t_us);
+        TEST_ASSERT_UINT32_WITHIN(coasted ? 60 : 300, 10000, board.rows[i].t_us - board.rows[i - 1].t_us);
         compared++;
     }
     TEST_ASSERT_EQUAL_INT(2, coasts);

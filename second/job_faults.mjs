@@ -16,7 +16,7 @@ const unplugged = (ms) => lasting(ms, (b) => { b.wires.unplugged = true; }, (b) 
 const held = (wire, ms) => lasting(ms, (b) => b.wires.hold(wire, true), (b) => b.wires.hold(wire, false));
 const cut = (ms) => lasting(ms, (b) => b.cutInt1(true), (b) => b.cutInt1(false));
 const noPower = (ms) => lasting(ms, (b) => b.sensor.powerOff(), (b) => b.sensor.powerOn());
-// a sample that comes within the microseconds in which the last of those that waited is read counts with them or not
+// a sample that comes within the microseconds in which the last of those that waited is read, or in which the clock looks for it, counts or not
 const AT_THE_END = 1;
 // a full FIFO empties slowly: in simrun alone a fault that begins 0.1 ms later drains up to three samples more or fewer (84 to 88)
 const SLOWLY = 1;
@@ -38,7 +38,7 @@ export const FAULTS = {
   data_refused_once: { sim: [':nackdata'], here: once('nackdata') },
   arbitration_lost_once: { sim: [':arb'], here: once('arbitration') },
   bus_error_once: { sim: [':buserr'], here: once('buserror') },
-  int1_cut_25_ms: { sim: [':noint:25'], here: cut(25) },
+  int1_cut_25_ms: { sim: [':noint:25'], here: cut(25), drained: AT_THE_END },
   int1_cut_500_ms: { sim: [':noint:500'], here: cut(500) },
   int1_cut_60_ms_800_hz: { sim: [':noint:60'], here: cut(60), rate: 800, steady: true },
   unplugged_100_ms_400_hz: { sim: [':unplug:100'], here: unplugged(100), rate: 400 },
