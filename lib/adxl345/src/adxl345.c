@@ -190,7 +190,7 @@ static void drain_step(adxl345_driver_t *d)
 {
     bool waiting = adxl345_sample_waits();
     if (waiting) {
-        (void)adxl345_burst_read();
+        adxl345_burst_read();
     }
     if ((waiting || adxl345_burst_running() || adxl345_queued() != 0) && !adxl345_driver_deadline_passed()) {
         hal_wake();

@@ -203,11 +203,11 @@ static uint32_t waiting_since_us(const struct burst *b, uint32_t now_us)
     return t_us;
 }
 
-bool adxl345_burst_read(void)
+void adxl345_burst_read(void)
 {
     struct burst *b = base();
     if (adxl345_burst_queue_full() || !claim(b)) {
-        return false;
+        return;
     }
     burst_entry_t *entry = entry_at(b->head);
     uint32_t now_us = hal_time_us();
@@ -228,7 +228,6 @@ bool adxl345_burst_read(void)
     }
     b->begun_us = now_us;
     begin_burst(b, false);
-    return true;
 }
 
 /* One cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */

@@ -46,8 +46,8 @@ uint8_t adxl345_burst_register_value(void);
 /* The byte read is the value that the access was given. */
 bool adxl345_burst_register_holds(void);
 
-/* Looks for a sample, because INT1 or the clock says so; in BURST_READ. True: begun, bus and queue being free. */
-bool adxl345_burst_read(void);
+/* Looks for a sample, because INT1 or the clock says so; in BURST_READ. Nothing where bus or queue has no room. */
+void adxl345_burst_read(void);
 
 /*
  * The verdict on a burst that has ended, by itself or because the bus was taken. To be called in every pass, else no

@@ -141,6 +141,6 @@ void adxl345_stream_poll(adxl345_driver_t *d, reading_t reading)
         look_at_bus(d);
         return;
     }
-    (void)adxl345_burst_read(); /* not while the queue is full */
+    adxl345_burst_read(); /* not while the queue is full */
     adxl345_driver_set_limit(TRANSFER_LIMIT);
 }
