@@ -4,7 +4,7 @@
 
 #include "app/app.h"
 #include "base/hang_test.h"
-#include "limits.h"
+#include "documented_limits.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support_board.h"

@@ -10,7 +10,7 @@
 #include "base/notices.h"
 #include "calibration.h"
 #include "control/calibrate.h"
-#include "limits.h"
+#include "documented_limits.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support_random.h"

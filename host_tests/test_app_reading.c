@@ -3,7 +3,7 @@
 
 #include "app/app.h"
 #include "base/counters.h"
-#include "limits.h"
+#include "documented_limits.h"
 #include "output/rows.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "base/hang_test.h"
+#include "documented_limits.h"
 #include "filter_list.h"
-#include "limits.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support_board.h"

@@ -8,7 +8,7 @@
 #include "base/counters.h"
 #include "base/notices.h"
 #include "base/text.h"
-#include "limits.h"
+#include "documented_limits.h"
 #include "path/pipeline.h"
 #include "support_board.h"
 #include "unity.h"

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "base/counters.h"
-#include "limits.h"
+#include "documented_limits.h"
 #include "path/coast.h"
 #include "path/pipeline.h"
 #include "path/silence.h"

@@ -6,11 +6,11 @@
 #include "adxl345_burst.h"
 #include "adxl345_period.h"
 #include "adxl345_registers.h"
+#include "documented_limits.h"
 #include "hal_drdy.h"
 #include "hal_host.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
-#include "limits.h"
 #include "support_rig.h"
 #include "unity.h"
 

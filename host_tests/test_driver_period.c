@@ -4,7 +4,7 @@
  */
 #include "adxl345.h"
 #include "adxl345_period.h"
-#include "limits.h"
+#include "documented_limits.h"
 #include "unity.h"
 
 enum { STEPS = LIMIT_PERIOD_STEPS };

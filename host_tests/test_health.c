@@ -1,13 +1,13 @@
 /* The watchdog's feeding place alone: how long a driver that stands still passes for healthy. */
 #include "adxl345.h"
 #include "base/health.h"
+#include "documented_limits.h"
 #include "hal_drdy.h"
 #include "hal_host.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
-#include "limits.h"
 #include "support_board.h"
 #include "unity.h"
 

@@ -5,7 +5,7 @@
 #include "adxl345.h"
 #include "adxl345_integrity.h"
 #include "adxl345_table.h"
-#include "limits.h"
+#include "documented_limits.h"
 #include "support_random.h"
 #include "unity.h"
 

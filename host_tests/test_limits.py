@@ -1,11 +1,11 @@
-"""host_tests/limits.h: what pages promise, what the product holds and what is tried are the same number."""
+"""host_tests/documented_limits.h: what pages promise, what the product holds and what is tried are the same number."""
 import math
 import pathlib
 import re
 
 from system_support import run_all, test
 
-TABLE = pathlib.Path("host_tests/limits.h")
+TABLE = pathlib.Path("host_tests/documented_limits.h")
 ROW = re.compile(r'\bX\((\w+), (\d+), "([^"]+)", "([^"]+)", "([^"]+)"\)')
 WORDS = dict(enumerate("zero one two three four five six seven eight nine ten".split())) | {16: "sixteen"}
 NTH = {3: "third", 8: "eighth", 9: "ninth", 10: "tenth"}

@@ -2,7 +2,7 @@
  * Sums at rest: mean and variance against exact integers, the limits of stillness from their definition, and what real
  * noise makes of them.
  */
-#include "limits.h"
+#include "documented_limits.h"
 #include "rest.h"
 #include "support_random.h"
 #include "unity.h"

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "limits.h"
+#include "documented_limits.h"
 #include "path/pipeline.h"
 #include "support_board.h"
 #include "unity.h"

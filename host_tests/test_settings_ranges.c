@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "base/number.h"
+#include "documented_limits.h"
 #include "filter_list.h"
-#include "limits.h"
 #include "settings/settings.h"
 #include "settings/settings_row.h"
 #include "settings/settings_table.h"

@@ -5,7 +5,7 @@
  */
 #include <math.h>
 
-#include "limits.h"
+#include "documented_limits.h"
 #include "tilt.h"
 #include "unity.h"
 

@@ -7,8 +7,8 @@
 
 #include "app/app.h"
 #include "base/counters.h"
+#include "documented_limits.h"
 #include "filter_list.h"
-#include "limits.h"
 #include "path/coast.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"

@@ -1,6 +1,6 @@
 /* Two sensors on one address: what a jump to the double is, and who must not be suspected. */
 #include "adxl345_watch.h"
-#include "limits.h"
+#include "documented_limits.h"
 #include "stream.h"
 #include "support_random.h"
 #include "support_recordings.h"

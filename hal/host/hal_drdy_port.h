@@ -2,6 +2,8 @@
 #ifndef HAL_DRDY_PORT_H
 #define HAL_DRDY_PORT_H
 
+#include <stdbool.h>
+
 /* Counts the edge. False: its level is gone again, or the input flickers. */
 bool host_drdy_counts(void);
 

@@ -4,8 +4,8 @@
  * the value, {word} and {nth} the same in words, any other {...} an expression of it, v. test_limits.py reads the rows
  * and holds pages and product to them; the tests take the numbers from here.
  */
-#ifndef LIMITS_H
-#define LIMITS_H
+#ifndef DOCUMENTED_LIMITS_H
+#define DOCUMENTED_LIMITS_H
 
 #define LIMITS(X)                                                                                                      \
     X(CHARACTER_MAX, 126,                                                                                              \
