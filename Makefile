@@ -16,6 +16,13 @@ LIB_SRC  := $(wildcard lib/filters/src/*.c lib/tilt/src/*.c lib/adxl345/src/*.c)
 APP_SRC  := $(wildcard firmware/*/*.c)
 INCLUDES := -Ihal -Ifirmware $(addprefix -I,$(LIB_DIRS))
 
+# a variable that no makefile knows would be ignored, and something else done than was asked for
+ifeq ($(MAKELEVEL),0)
+TYPED    := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
+MISSPELT := $(if $(TYPED),$(shell python3 mk/misspelt.py $(TYPED)))
+$(if $(MISSPELT),$(error $(MISSPELT)))
+endif
+
 ## help: this list
 help:
 	@echo "tilt-uno: tilt from an Arduino UNO and an ADXL345 that outliers cannot fool"

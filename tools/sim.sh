@@ -8,7 +8,12 @@ if [ ! -r "$stream" ]; then
     echo "sim: cannot read the stream $stream (STREAM=file.csv; shipped ones are in sim/streams)" >&2
     exit 2
 fi
-mkdir -p "$(dirname "$out")" build/sim
+mkdir -p build/sim
+folder=$(dirname "$out")
+if [ ! -d "$folder" ]; then
+    echo "sim: there is no folder $folder for OUT=$out (mkdir -p $folder)" >&2
+    exit 2
+fi
 # 100 Hz rows fit 115200 baud; above that the line is the limit
 baud_option=
 case $rate in

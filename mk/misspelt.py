@@ -1,0 +1,33 @@
+#!/usr/bin/env python3
+"""misspelt.py NAME...: of the variables typed behind `make`, the first that no makefile knows, with the one that was probably meant.
+
+Prints one sentence, or nothing where all are known. Make itself would ignore such a variable and do something else than asked.
+"""
+import difflib
+import pathlib
+import re
+import sys
+
+# where a makefile uses, sets or explains a variable
+USED = re.compile(r"\$[({](?:value |origin )?([A-Z]\w*)|^(?:[\w %-]+:)? ?(?:export )?([A-Z]\w*) *[:?+]?=|(?<![-\w])([A-Z]\w*)=", re.MULTILINE)
+OF_MAKE = {"SHELL", "MAKEFLAGS", "CC", "CXX", "V"}
+
+
+def known():
+    """Names of all variables that a person may type."""
+    found = {name for path in (pathlib.Path("Makefile"), *pathlib.Path("mk").glob("*.mk"))
+             for groups in USED.findall(path.read_text(encoding="utf-8")) for name in groups if name}
+    return found | OF_MAKE
+
+
+def complaint(names, legal):
+    """One sentence on the first name that is not legal; empty when there is none."""
+    for name in names:
+        if name not in legal:
+            near = difflib.get_close_matches(name.upper(), sorted(legal), 1, 0.6)
+            return f"there is no variable {name}: " + (f"did you mean {near[0]}?" if near else "`make help` lists the targets and theirs")
+    return ""
+
+
+if __name__ == "__main__":
+    print(complaint(sys.argv[1:], known()), end="")
