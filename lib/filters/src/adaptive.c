@@ -1,37 +1,41 @@
 /*
- * adaptive: a fading memory that the innovations drive, guarded against outliers; the future work of paper 000.
+ * adaptive: a fading-memory filter whose memory follows the innovations, guarded against outliers; the future work of
+ * paper 000.
  *
- *   x_e = x + v                              straight line through the past, u = z - x_e
- *   x = x_e + (2 k - k^2) t, v = v + k^2 t   t: the part of u that is taken
+ *   x_e = x + v                              straight-line prediction, u = z - x_e
+ *   x = x_e + (2 k - k^2) t, v = v + k^2 t   t: the part of u that is used
  *
- * weights a sample n steps old by (1 - k)^n (fading memory of the first order): its memory is about 2 / k samples
- * and the innovation's sigma, within 6 % up to k = 0.6, (1 + k) sigma for noise of that sigma. k grows at once to that
- * of the shortest memory when the mean innovation is beyond 2.9 of its sigmas (noise alone: about twice a minute at 100
- * Hz), and falls by k^2 / 4 a sample, which lengthens the memory by half a sample, to that of the slowest.
+ * A sample n steps old has weight (1 - k)^n (first-order fading memory). The memory is about 2 / k samples. For noise
+ * of a given sigma the sigma of the innovation is (1 + k) sigma, within 6 % up to k = 0.6. When the mean innovation
+ * exceeds 2.9 of its sigmas (by noise alone about twice a minute at 100 Hz), k jumps to that of the shortest memory.
+ * Below three quarters of that it falls by k^2 / 4 per sample, which lengthens the memory by half a sample, down to
+ * that of the slowest.
  *
- * Guard: the gate is `guard` sigmas of the innovation; for a sample that follows one within the gate, of the sigma and
- * the size of the mean together, because motion that was taken goes on. A sample beyond it counts as motion only when
- * the one before it, carried on with the estimated rate, lies off to the same side too; what both agree on is taken and
- * the memory is shortened. An isolated one is taken up to the gate, and the less the further off it is, not at all from
- * twice the gate on: a stray. An innovation further beyond the gate than motion explains (an eighth of `ratemax`) is
- * believed after `confirm` of samples on the same side. While strays are frequent, see adaptive.h, the gate is a tight
- * one, so that two bad samples in a row do not pass for motion.
+ * Guard: the gate is `guard` sigmas of the innovation. For a sample that follows one within the gate it is that many
+ * times the sum of the sigma and the magnitude of the mean, because motion that was followed continues. A sample beyond
+ * the gate counts as motion only if the one before it, extrapolated with the estimated rate, is off to the same side
+ * too. The part that both agree on is then used, and the memory is shortened. An isolated one is used up to the gate,
+ * less the further off it is, and from twice the gate on not at all: a stray. An innovation that exceeds the gate by
+ * more than motion explains (an eighth of `ratemax`) is accepted as a jump after `confirm` of samples on the same side.
+ * While strays are frequent, see adaptive.h, a tighter gate applies, so that two bad samples in a row do not pass for
+ * motion.
  *
- * Noise, with `identify` on (1): the scatter of the innovations about their mean, of every second sample, each limited
- * to 2.5 times what it is expected to be. Motion that the line does not follow widens it, and so the gate. It starts
- * from the R that was configured or set last before the first sample after the start; later calls of filter_set_noise
- * change nothing, and filter_own_noise_lsb2_q8 says what R it has found. Off (0): the square root of that R, always.
+ * Noise, with `identify` on (1): the scatter of the innovations about their mean, from every second sample, each
+ * limited to 2.5 times its expected value. Motion that the line does not follow widens it, and with it the gate. It
+ * starts from the R that was configured, or set last before the first sample after the start. Later calls of
+ * filter_set_noise have no effect, and filter_own_noise_lsb2_q8 returns the R that was identified. Off (0): always the
+ * square root of that R.
  *
- * FILTER_GATED says that the sample lies beyond the gate and is taken in part or not at all, so its gain need not be
- * 0. Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the identified noise and
- * forgets rate, mean innovation and strays; the memory is the slowest.
+ * FILTER_GATED means that the sample is beyond the gate and used in part or not at all, so its gain need not be 0.
+ * Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the identified noise and clears
+ * rate, mean innovation and strays; the memory is then the slowest.
  *
  * Scaling:
  *   rate     Q7.24, <= 127 LSB per sample
- *   k        UQ0.32, its upper 16 bits as the gain
- *   sizes    of the innovation, what is taken of it and its gate in UQ16, towards its side: no sign is to be watched
- *   means    of innovations (Q7.24, towards the side of the last one) and of their scatter (UQ8.24): a term is rounded
- *            to 2^-8 LSB, the mean moves by the exact product of what they differ and the weight
+ *   k        UQ0.32, its upper 16 bits are the gain
+ *   sizes    of the innovation, of the part used and of the gate: magnitudes in UQ16, so there is no sign to handle
+ *   means    of innovations (Q7.24, positive towards the last one) and of their scatter (UQ8.24): a term is rounded to
+ *            2^-8 LSB, the mean moves by the exact product of the difference and the weight
  */
 #include "adaptive.h"
 
@@ -47,9 +51,9 @@ static const filter_parameter_t *const parameters[] IN_FLASH = {
 };
 
 /*
- * One rule for all rates. Shortest memory: 80 ms, a quick turn of the hand, and two samples, without which no line is
- * known. Slowest: half a second and at least 20 samples. The gate is 3 sigma below 20 Hz, where a motion is a few
- * samples long and outliers among them cost most, and 4.5 from there on: more than what hands do between samples.
+ * One rule for all rates. Shortest memory: 80 ms, a quick turn of the hand, plus two samples, the least that define a
+ * line. Slowest: half a second and at least 20 samples. Gate: 3 sigma below 20 Hz, where a motion lasts a few samples
+ * and outliers in it cost most; 4.5 from there on, more than a hand moves between samples.
  */
 static void standard(filter_config_t *config)
 {
@@ -63,10 +67,13 @@ static void standard(filter_config_t *config)
     config->value[ADAPTIVE_FAST_MS] = (int32_t)80 + (int32_t)(20000U / rate_dhz);
 }
 
-/* At most so much of a sigma: below 34 Hz, where the mean is of few samples, 2.9 of its sigmas would be too late. */
+/*
+ * Largest threshold of the mean innovation, in sigmas of one: below 34 Hz the mean covers few samples, and 2.9 of its
+ * sigmas would react too late.
+ */
 #define MANOEUVRE_MAX_UQ16 55378U /* 0.845 */
 
-/* Shares and thresholds that follow from the shortest memory. */
+/* Weights and thresholds derived from the shortest memory. */
 static void set_memory(filter_adaptive_t *a, const filter_config_t *config)
 {
     a->slow_uq16 = filter_tracker_memory_k_uq16((uint16_t)config->value[ADAPTIVE_SLOW_MS], config->rate_dhz,
@@ -102,7 +109,7 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
     }
 }
 
-/* 1.5 variances, as noise.h has it: the scatter is 1.375 / sqrt(pi / 2) = 1.097 sigmas, so 1.25 times its square. */
+/* 1.5 variances, as in noise.h: the scatter is 1.375 / sqrt(pi / 2) = 1.097 sigmas, so 1.25 times its square. */
 static uint32_t own_noise(const filter_t *f)
 {
     uint16_t scatter_uq8 = fx_upper(&f->own.adaptive.scatter_lsb_uq24);
@@ -118,27 +125,27 @@ static void start(filter_t *f, bool settled)
     a->k_uq32 = settled ? (uint32_t)a->slow_uq16 << 16 : ADAPTIVE_K_START_UQ32;
 }
 
-/* The rate of one sample, rounded down towards the side of the last innovation. */
+/* The rate per sample in Q16, rounded down as seen from the side of the last innovation. */
 static int32_t rate_lsb_q16(const filter_t *f)
 {
     int32_t rate = f->rate_lsb >> 8;
     return (f->negative && (uint8_t)(uint32_t)f->rate_lsb != 0U) ? rate + 1 : rate;
 }
 
-/* Size of the mean innovation, UQ8.8. */
+/* Magnitude of the mean innovation, UQ8.8. */
 static uint16_t mean_size_uq8(const filter_adaptive_t *a)
 {
     int16_t mean = fx_upper_signed(&a->mean_lsb_q24);
     return (mean < 0) ? (uint16_t)(0U - (uint16_t)mean) : (uint16_t)mean;
 }
 
-/* A size in 8.8 bits, limited to 128 LSB. */
+/* A magnitude in 8.8 bits, limited to 128 LSB. */
 static MACHINE_APART int16_t size_lsb_q8(uint32_t size_lsb_uq16)
 {
     return (int16_t)((size_lsb_uq16 >= 0x800000U) ? 0x7FFF : (int16_t)(uint16_t)(size_lsb_uq16 >> 8));
 }
 
-/* A mean moved by a part of what a new term differs from what was expected of it; exact. */
+/* Moves a mean by the weighted difference between a new term and its expected value; exact. */
 static uint32_t averaged(uint32_t mean_uq24, uint16_t expected_uq8, uint16_t term_uq8, uint16_t weight_uq16)
 {
     if (term_uq8 < expected_uq8) {
@@ -148,8 +155,8 @@ static uint32_t averaged(uint32_t mean_uq24, uint16_t expected_uq8, uint16_t ter
 }
 
 /*
- * What is taken of an innovation, as far as the gate, in their mean; signed: numbers keep their order when the top bit
- * is turned over.
+ * Adds the used part of an innovation, limited to the gate, to their mean. The mean is signed: flipping the top bit
+ * keeps the order of the numbers.
  */
 static void average_innovation(filter_adaptive_t *a, uint32_t taken)
 {
@@ -160,8 +167,8 @@ static void average_innovation(filter_adaptive_t *a, uint32_t taken)
 }
 
 /*
- * What the sample before was off, towards the side of this one, carried on with the rate, and no more than this one is
- * off; 0 where a sample was missing between them.
+ * How far the sample before, extrapolated with the rate, was off to the same side; at most the current innovation. 0 if
+ * a sample was missing in between.
  */
 static uint32_t agreed_lsb_uq16(const filter_t *f, int32_t x1_lsb_q16)
 {
@@ -178,7 +185,7 @@ static uint32_t agreed_lsb_uq16(const filter_t *f, int32_t x1_lsb_q16)
     return ((uint32_t)before > f->size_lsb_uq16) ? f->size_lsb_uq16 : (uint32_t)before;
 }
 
-/* Counts a sample beyond the gate, and judges what is taken of its innovation. */
+/* Counts a sample beyond the gate and decides how much of its innovation is used. */
 static uint32_t judge(filter_t *f, int32_t x1_lsb_q16)
 {
     filter_adaptive_t *a = &f->own.adaptive;
@@ -189,7 +196,7 @@ static uint32_t judge(filter_t *f, int32_t x1_lsb_q16)
     uint32_t size = f->size_lsb_uq16;
     uint32_t gate = a->gate_lsb_uq16;
     if (agreed > gate) {
-        /* beyond the gate, what motion does not explain */
+        /* the excess over the gate that motion does not explain */
         uint16_t jump_lsb_uq8 = (uint16_t)(fx_upper(&f->rate_max_lsb) >> 3);
         bool large = size - gate > (uint32_t)jump_lsb_uq8 << 8;
         if (!large || a->run >= a->confirm) {
@@ -230,7 +237,7 @@ static void adapt(filter_adaptive_t *a, uint16_t spread_uq8)
     }
 }
 
-/* Rate changed by so much, at most 127 LSB, towards the innovation and within its limit. */
+/* Changes the rate by at most 127 LSB in the direction of the innovation, within its limit. */
 static void turn(filter_t *f, int32_t by_lsb_q24)
 {
     int32_t limit = (int32_t)f->rate_max_lsb;
@@ -239,7 +246,7 @@ static void turn(filter_t *f, int32_t by_lsb_q24)
     f->rate_lsb = f->negative ? -rate : rate;
 }
 
-/* k w, at most 127 LSB: from a w of 128 LSB on to 2^-16. */
+/* k w, at most 127 LSB; from w = 128 LSB on to 2^-16. */
 static uint32_t turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
 {
     if (w_lsb_uq16 < 0x800000U) {
@@ -249,7 +256,7 @@ static uint32_t turn_lsb_uq24(uint32_t w_lsb_uq16, uint16_t k_uq16)
     return (kw >= (uint32_t)127 << 16) ? (uint32_t)127 << 24 : kw << 8;
 }
 
-/* Of the magnitude that is taken x moves by 2 w - k w with w = k taken; the rate turns by k w. */
+/* Of the used magnitude x moves by 2 w - k w, with w = k taken, and the rate changes by k w. */
 static void follow(filter_t *f, uint32_t taken)
 {
     if (f->own.adaptive.verdict == (uint8_t)ADAPTIVE_JUMP) {
@@ -263,10 +270,12 @@ static void follow(filter_t *f, uint32_t taken)
         taken = w + w - (kw >> 8);
     }
     filter_tracker_move(f, (int32_t)taken);
-    f->x_lsb_q16 = tracker_bounded(f, f->x_lsb_q16); /* the rate's limit may leave x a step beyond the sample */
+    f->x_lsb_q16 = tracker_bounded(f, f->x_lsb_q16); /* the limit of the rate may put x a step beyond the sample */
 }
 
-/* The gate of this sample, from its innovation's sigma; what is expected is below 256 LSB, 16 times it below 4096. */
+/*
+ * Gate of this sample, from the sigma of its innovation. The expected value is below 256 LSB, 16 times it below 4096.
+ */
 static uint32_t gate_lsb_uq16(const filter_adaptive_t *a, uint16_t expected_uq8)
 {
     uint16_t sigma_q8 = a->gate_sigma_q8;
@@ -282,7 +291,7 @@ static uint32_t gate_lsb_uq16(const filter_adaptive_t *a, uint16_t expected_uq8)
     return fx_product_u16(expected_uq8, sigma_q8);
 }
 
-/* Innovation and gate; returns the sigma of the innovation, LSB. An innovation of 0 keeps to its side. */
+/* Innovation and gate; returns the sigma of the innovation, LSB. An innovation of 0 keeps its side. */
 static uint16_t meet(filter_t *f, int16_t z_lsb)
 {
     filter_adaptive_t *a = &f->own.adaptive;
@@ -301,8 +310,8 @@ static uint16_t meet(filter_t *f, int16_t z_lsb)
 }
 
 /*
- * Scatter of the innovations from 1.375 |u - mean|, limited to 2.5 times what is expected of it: sqrt(pi / 2) = 1.253
- * makes a mean size a sigma, and a tenth more keeps false alarms rarer than known noise would.
+ * Scatter of the innovations from 1.375 |u - mean|, limited to 2.5 times its expected value: sqrt(pi / 2) = 1.253 turns
+ * a mean magnitude into a sigma, and the extra tenth makes false alarms rarer than with known noise.
  */
 static void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spread_uq8)
 {
@@ -314,7 +323,7 @@ static void disperse(filter_adaptive_t *a, uint32_t size_lsb_uq16, uint16_t spre
     }
     term = (uint16_t)(term + (term >> 2) + (term >> 3));
     uint16_t weight = a->guarded ? ADAPTIVE_WEIGHT_UQ16 : ADAPTIVE_UNGUARDED_WEIGHT_UQ16;
-    if (spread_uq8 < 26214U) { /* else the limit is beyond all terms */
+    if (spread_uq8 < 26214U) { /* else the limit exceeds every term */
         uint16_t limit = (uint16_t)(2U * spread_uq8 + (spread_uq8 >> 1));
         if (term > limit) {
             term = limit;
@@ -359,7 +368,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     }
 }
 
-/* Of the last update; 0 when nothing was taken. */
+/* Gain of the last update; 0 when nothing was used. */
 static uint16_t gain_uq16(const filter_t *f)
 {
     if ((f->flags & FILTER_COASTED) != 0U || f->own.adaptive.verdict == (uint8_t)ADAPTIVE_UNUSED) {
@@ -369,7 +378,7 @@ static uint16_t gain_uq16(const filter_t *f)
     return (uint16_t)(2U * k - filter_fx_high_u16(k, k));
 }
 
-/* The variance is that of the memory for samples that scatter as the innovations do. */
+/* Variance of the fading memory for samples that scatter as the innovations do. */
 static void report(const filter_t *f, filter_probe_t *out)
 {
     const filter_adaptive_t *a = &f->own.adaptive;

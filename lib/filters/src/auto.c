@@ -1,46 +1,47 @@
 /*
- * auto: three fading-memory filters side by side on the same samples, the estimate is that of the one that has
- * predicted best of late. Paper 004's rule, prediction against measurement, within one sensor.
+ * auto: three fading-memory filters side by side on the same samples. The estimate is that of the member that has
+ * predicted best recently: paper 004's rule, prediction against measurement, within one sensor.
  *
  *   x_e = x + v,  u = z - x_e,  x = x_e + (2 k - k^2) u,  v = v + k^2 u      k = 2 / memory in samples
  *
- * with a slow, a middle and a fast memory. Each member refuses a sample further off than its gate (the slow one, which
- * motion leaves, has twice the gate of the others); five refused in a row and on the same side restart it there,
- * at rest, with a memory that grows by half a sample per sample up to its own.
+ * with a slow, a middle and a fast memory. Each member refuses a sample beyond its gate (the slow one, which lags in
+ * motion, has twice the gate of the others). Five refused samples in a row on the same side restart it there, at rest,
+ * with a memory that grows by half a sample per sample up to its own.
  *
- * Each innovation is formed before its member is updated, refused ones too. The score of a member is the exponential
- * mean over eight samples of min(u^2, 64 R), so that an outlier, which all members meet alike, cannot decide alone. The
- * member with the least score is chosen, for this sample already, when it lies a thirty-second below that of the one
- * in force; FILTER_SWITCHED reports it. Missing samples leave the scores alone.
+ * Each innovation is formed before its member is updated, for refused samples too. The score of a member is the
+ * exponential mean over eight samples of min(u^2, 64 R), so that an outlier, which hits all members alike, cannot
+ * decide alone. The member with the lowest score is chosen, for the current sample already, if its score is lower than
+ * that of the one in force by more than a thirty-second; FILTER_SWITCHED reports it. Missing samples leave the scores
+ * unchanged.
  *
- * Through missing samples each member goes on by its rate, and the estimate is that of the middle one: its rate is
- * quiet enough for a gap at rest and quick enough for one in motion (fade: stopped where it may be noise).
- * Parameters gate (in sigmas of a sample; 0: none), r, slow, middle, fast (memories, each limited to 3.3..512 samples,
- * in any order), ratemax.
+ * Through missing samples each member coasts at its rate, and the estimate is that of the middle one: its rate is quiet
+ * enough for a gap at rest and quick enough for one in motion (fade: set to 0 where it may be noise). Parameters gate
+ * (in sigmas of a sample; 0: none), r, slow, middle, fast (memories, each limited to 3.3..512 samples, in any order),
+ * ratemax.
  *
  * Scaling:
  *   x, rate  Q15.16; |x| <= 4608 LSB by a clamp after the prediction (the update moves x towards a sample within 4096),
  *            |rate| <= rate_max <= 4608 LSB per sample by a clamp after the update; so |u| <= 8704 LSB < 2^30 / 2^16,
  *            and rate + k^2 u <= 4608 + 0.36 x 8704 < 2^15 LSB
  *   k        UQ0.16, 1/256..0.6; gains 2 k - k^2 <= 0.84 in UQ0.16 and k^2 in UQ0.24, each rounded down
- *   u        rounded down to 2^-8 LSB in magnitude, products half away from zero to 2^-16: a member settles where
+ *   u        magnitude rounded down to 2^-8 LSB, products half away from zero to 2^-16: a member settles where
  *            k^2 u is below 2^-17 LSB, within 0.005 LSB with a memory of 50 samples, 0.3 with 400, 0.5 with 512
  *   score    UQ24.8, eight times the mean: s + l - s / 8 with l <= (8 x 31.63)^2 = 64 R <= 64,000 LSB^2, so
- *            s <= 8 l + 7 counts < 2^27; rounded down by less than a count a sample
- *   gate     UQ24.8 within 2^-8 LSB and 2^-11 of itself: 16 x 2 sigmas of 31.63 LSB are 1,012 LSB
+ *            s <= 8 l + 7 counts < 2^27; rounded down by less than a count per sample
+ *   gate     UQ24.8, absolute error 2^-8 LSB, relative 2^-11: 16 x 2 sigmas of 31.63 LSB are 1,012 LSB
  */
 #include "tracker.h"
 
 LAW_KEEPS_FROM(filter_auto_t, eight_sigmas_lsb_uq8);
 
-/* k = 2 / 512: beyond it a rate would round to a standstill. */
+/* k = 2 / 512: with a longer memory the rate would round to zero. */
 #define K_MIN_UQ16 256U
 /* The median of five samples is worth a memory of about four. */
 #define K_START_UQ16 32768U
-/* A member with a shorter memory than eight samples takes every sample until it has grown to its own. */
+/* A member with a memory shorter than eight samples takes every sample until its memory has grown to its own. */
 #define K_OPEN_UQ16 16384U
 #define NO_GATE_LSB_UQ8 0x7FFFFFFFU
-/* Refused samples in a row and on one side that restart a member. */
+/* Refused samples in a row on one side that restart a member. */
 #define RESTART_SAMPLES 5
 
 LAW_PARAMETER(gate, "gate\0sigma", 8, 1, 256, 4096, 1536);
@@ -50,7 +51,7 @@ LAW_PARAMETER(fast, "fast\0ms", 0, 0, 1, 60000, 0);
 static const filter_parameter_t *const parameters[] IN_FLASH = { &gate, &filter_parameter_r,      &slow, &middling,
                                                                  &fast, &filter_parameter_ratemax };
 
-/* So many samples in ms, at least so many ms. */
+/* A number of samples in ms, at least least_ms. */
 static uint16_t memory_ms(uint16_t rate_dhz, uint32_t samples, uint16_t least_ms)
 {
     uint32_t ms = samples * 10000U / rate_dhz;
@@ -68,7 +69,7 @@ static void standard(filter_config_t *config)
 }
 
 /*
- * 1/8 of two sigmas of the rate for noise of sigma 1: with t = k / (2 - k) the rate's variance is 2 t^3, so it is
+ * 1/8 of two sigmas of the rate for noise of sigma 1: with t = k / (2 - k) the variance of the rate is 2 t^3, so it is
  * sqrt(t) t / sqrt(8).
  */
 static uint16_t still_of(uint16_t k_uq16)
@@ -91,13 +92,13 @@ static void set_up(filter_t *f, const filter_config_t *config)
     filter_set_noise(f, (uint32_t)config->value[AUTO_R_LSB2_Q8]);
 }
 
-/* Scores are kept: they are LSB^2, and forgotten after some eight samples anyway. */
+/* Scores are kept: they are in LSB^2, and forgotten after about eight samples anyway. */
 static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
     f->own.bank.eight_sigmas_lsb_uq8 = filter_fx_isqrt32(r_lsb2_q8 << 14); /* <= 64763 */
 }
 
-/* All members at rest, with the memory of the start or their own: at rest the slow one predicts best. */
+/* All members at rest, with the memory of the start or, if settled, their own: at rest the slow one predicts best. */
 static void start(filter_t *f, bool settled)
 {
     filter_auto_t *b = &f->own.bank;
@@ -118,20 +119,22 @@ static int32_t within_rate(filter_t *f, int32_t rate_lsb_q16)
     return rate_lsb_q16;
 }
 
-/* One sample on. */
+/* Predicts one sample ahead. */
 static void predict_member(filter_t *f, filter_member_t *m)
 {
     m->x_lsb_q16 = tracker_bounded(f, m->x_lsb_q16 + m->rate_lsb_q16);
 }
 
-/* What the update of one member returned. */
+/* Result of one member's update. */
 typedef struct {
     int32_t innovation_lsb_q16;
     uint16_t gain_uq16;
     uint8_t flags;
 } answer_t;
 
-/* A sample beyond the gate: one more on its side; the last of a run restarts the member at it. Returns the flag. */
+/*
+ * A sample beyond the gate: extends the run on its side; the last of a run restarts the member at it. Returns the flag.
+ */
 static uint8_t refused(filter_member_t *m, bool below, int16_t z_lsb)
 {
     int8_t run = m->refused;
@@ -151,7 +154,7 @@ static uint8_t refused(filter_member_t *m, bool below, int16_t z_lsb)
     return FILTER_REACQUIRED;
 }
 
-/* The member's gains, its memory half a sample longer, its state moved by the innovation. Returns the gain. */
+/* Corrects a member: gains, memory longer by half a sample, state moved by the innovation. Returns the gain. */
 static uint16_t correct(filter_t *f, filter_member_t *m, uint16_t final_k, uint32_t size_lsb_uq8, bool below)
 {
     uint16_t k = m->k_uq16;
@@ -169,12 +172,12 @@ static uint16_t correct(filter_t *f, filter_member_t *m, uint16_t final_k, uint3
     return gain_uq16;
 }
 
-/* One member one sample on: its score by the innovation, then its state. */
+/* One step of one member: its score from the innovation, then its state. */
 static void step_member(filter_t *f, uint8_t i, int16_t z_lsb, uint32_t gate_lsb_uq8, answer_t *a)
 {
     filter_auto_t *b = &f->own.bank;
     filter_member_t *m = &b->members[i];
-    MACHINE_FENCE(m); /* else computed from i at each use */
+    MACHINE_FENCE(m); /* otherwise computed from i at each use */
     uint16_t final_k = b->final_k_uq16[i];
     predict_member(f, m);
     int32_t innovation = (int32_t)z_lsb * 65536 - m->x_lsb_q16;
@@ -201,7 +204,7 @@ static void step_member(filter_t *f, uint8_t i, int16_t z_lsb, uint32_t gate_lsb
     a->gain_uq16 = correct(f, m, final_k, size_lsb_uq8, below);
 }
 
-/* The member with the least score, if it lies a thirty-second below that of the one in force. */
+/* Chooses the member with the lowest score, if lower than that of the one in force by more than a thirty-second. */
 static void choose(filter_t *f)
 {
     filter_auto_t *b = &f->own.bank;
@@ -218,7 +221,7 @@ static void choose(filter_t *f)
     }
 }
 
-/* The estimate is that of a member. */
+/* Shows the estimate of a member. */
 static void show(filter_t *f, uint8_t member)
 {
     filter_auto_t *b = &f->own.bank;
@@ -256,7 +259,9 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     show(f, b->chosen);
 }
 
-/* The middle member's rate is believed into a gap from two sigmas of it on, four times that while its memory grows. */
+/*
+ * In a gap the middle member's rate is kept if it exceeds two of its sigmas, eight while its memory is still growing.
+ */
 static void fade(filter_t *f, bool first)
 {
     filter_auto_t *b = &f->own.bank;

@@ -1,11 +1,13 @@
-/* The tracker: what all filters do alike. See filter.h; the verbs for laws are in tracker.c. */
+/*
+ * The tracker: what all filters have in common. See filter.h; the functions that laws are built from are in tracker.c.
+ */
 #include "filter.h"
 
 #include "tracker.h"
 
 /*
- * From filter_kalman_near a covariance comes close to where it settles; least so at the least process noise, of which
- * the start knows one digit.
+ * Steps from filter_kalman_near until a covariance is close to where it settles. Least accurate at the smallest process
+ * noise, of which the start has one digit.
  */
 #define SETTLE_STEPS 16U
 
@@ -42,7 +44,7 @@ static uint8_t traits(const filter_t *f)
     return flash_u8(&f->law->traits);
 }
 
-/* Running from x at rest, with what the law begins with. */
+/* Starts running from x at rest, with the law's initial state. */
 static void start(filter_t *f, bool settled)
 {
     f->collected = FILTER_RUNNING;
@@ -64,7 +66,7 @@ void filter_reset(filter_t *f, int16_t z0_lsb)
     f->flags = 0;
 }
 
-/* One sample of the start: the running median of what was seen, or as published the first sample. */
+/* One sample of the start: the running median of the samples so far, or, as published, the first sample. */
 static void collect(filter_t *f, int16_t z_lsb)
 {
     uint8_t count = f->collected;
@@ -100,8 +102,8 @@ int32_t filter_update(filter_t *f, int16_t z_lsb)
 }
 
 /*
- * Times 25 ms since the prediction before: step n is made with the rate that is in force in its middle, (n - 1/2)
- * periods after the last sample.
+ * Multiples of 25 ms since the previous prediction. Step n uses the rate in force at its middle, (n - 1/2) periods
+ * after the last sample.
  */
 static uint8_t quarters_passed(filter_t *f, bool first)
 {

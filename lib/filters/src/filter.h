@@ -3,11 +3,11 @@
  *
  *   predict  x += v                    x: estimate, LSB; v: its change per sample
  *   correct  u = z - x                 u: innovation of the sample z
- *            x += w1 t, v += w2 t      the law answers (w1, w2, t) to u
+ *            x += w1 t, v += w2 t      the law returns (w1, w2, t) for u
  *
- * The tracker (filter.c) has all that the filters share: start, prediction, bounds, missing samples, reset, restart. A
- * law is one constant descriptor in program memory: parameters, facts, and the functions that answer. Only the laws
- * that a program names are linked.
+ * The tracker (filter.c) holds what all filters share: start, prediction, bounds, missing samples, reset, restart. A
+ * law is one constant descriptor in program memory: parameters, facts and functions. Only the laws that a program names
+ * are linked.
  *
  *   filter_config_t config = filter_defaults(&filter_law_sprf, 1000);
  *   filter_t f;
@@ -15,7 +15,7 @@
  *   int32_t x_lsb_q16 = filter_update(&f, sample);
  *
  * filter_t is plain data without pointers to RAM: copy it, compare it, dump it. Nothing here does I/O, allocates, uses
- * float or blocks; every function may be called from main or from an interrupt, one caller at a time per filter_t.
+ * float or blocks. Every function may be called from main or from an interrupt, by one caller at a time per filter_t.
  */
 #ifndef FILTER_H
 #define FILTER_H
@@ -43,19 +43,19 @@ extern "C" {
 #define FILTER_R_MIN_LSB2_Q8 3U
 #define FILTER_R_MAX_LSB2_Q8 256000U
 
-/* Samples that a filter collects after init before it runs; until then it puts out the running median. */
+/* Samples that a filter collects after init before it runs; until then it outputs the running median. */
 #define FILTER_WARM_UP_SAMPLES 5
 
-/* After this long without a sample the estimate holds, ms; the rate of change is halved each 25 ms before that. */
+/* After this long without a sample the estimate holds, ms; until then the rate of change is halved every 25 ms. */
 #define FILTER_HOLD_MS 100
 
 enum filter_flag {
-    FILTER_GATED = 0x01,      /* beyond the gate: refused, or by some laws taken in part */
+    FILTER_GATED = 0x01,      /* beyond the gate: refused, or by some laws used in part */
     FILTER_COASTED = 0x02,    /* no sample: the output is a prediction */
-    FILTER_REACQUIRED = 0x04, /* the filter restarted on consistent refused samples */
+    FILTER_REACQUIRED = 0x04, /* restarted from consistent refused samples */
     FILTER_SATURATED = 0x08,  /* a state was clamped to its bound */
     FILTER_WARMING_UP = 0x10, /* fewer than FILTER_WARM_UP_SAMPLES since init */
-    FILTER_SWITCHED = 0x20    /* a filter made of several has chosen another of them (`auto`) */
+    FILTER_SWITCHED = 0x20    /* a filter made of several has switched to another of them (`auto`) */
 };
 
 /* Snapshot for telemetry and tests. */
@@ -69,16 +69,16 @@ typedef struct {
     uint8_t flags;              /* FILTER_* */
 } filter_probe_t;
 
-/* One parameter of a law as a person sees it; lives in program memory (IN_FLASH in machine.h). */
+/* One parameter of a law as a user sees it; lives in program memory (IN_FLASH in machine.h). */
 typedef struct {
-    const char *words;      /* in program memory: the name as typed, "gate", its end, the unit: "sigma", "LSB2", "" */
+    const char *words;      /* in program memory: the name as typed, "gate", NUL, the unit: "sigma", "LSB2", "" */
     uint8_t fraction_bits;  /* binary point of the stored value */
-    uint8_t zero_means_off; /* 1: 0 is legal and switches the feature off although below min */
+    uint8_t zero_means_off; /* 1: 0 is legal, although below min, and switches the feature off */
     int32_t min, max;       /* legal range of the stored value; a law may refuse combinations within it */
-    int32_t standard;       /* shipped value; where that depends on the rate the law has the rule */
+    int32_t standard;       /* default; where it depends on the rate the law has the rule */
 } filter_parameter_t;
 
-/* Most parameters that a law has. */
+/* Largest number of parameters of a law. */
 #define FILTER_PARAMETERS_MAX 7
 
 /* Values of a law's parameters in the order of its descriptor, as stored: fixed point, signed. */
@@ -88,7 +88,7 @@ typedef struct {
 } filter_config_t;
 
 /*
- * Places of a law's parameters in filter_config_t.value: format and unit stand in the names, ranges and defaults in the
+ * Index of each parameter in filter_config_t.value. Format and unit are in the names, ranges and defaults in the
  * descriptors (and in the library's README).
  */
 enum filter_kf_parameter { KF_R_LSB2_Q8, KF_Q_LSB2_S3 };
@@ -151,38 +151,38 @@ enum filter_answer {
     FILTER_ACCEPTED = 0,
     FILTER_REFUSED_RATE = 1, /* rate_dhz */
     FILTER_REFUSED_TOGETHER =
-        2, /* each is in its range: a gap in it (reacquire: 3, 5, 9) or a condition over several */
+        2, /* each is in its range, but one has an illegal value (reacquire: 3, 5, 9) or they conflict */
     FILTER_REFUSED_FIRST = 3
 };
 
-/* The shipped values of a law at an output data rate (FILTER_RATE_MIN_DHZ..MAX). */
+/* Defaults of a law at an output data rate (FILTER_RATE_MIN_DHZ..MAX). */
 filter_config_t filter_defaults(const filter_law_t *law, uint16_t rate_dhz);
 
 /*
- * A filter that begins to warm up, made of a configuration that is judged first: anything but FILTER_ACCEPTED says what
- * is wrong, and f is untouched. Divides: up to 10,000 cycles.
+ * Sets up a filter, which then begins to warm up. The configuration is checked first: any answer but FILTER_ACCEPTED
+ * says what is wrong, and f is unchanged. Divides: up to 10,000 cycles.
  */
 filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_config_t *config);
 
 /*
- * The measurement variance R changed (estimated on line); limited to its legal range. Another parameter: filter_init,
- * then filter_reset. Divides: up to 4,000 cycles.
+ * Sets a new measurement variance R (estimated on line), limited to its legal range. To change another parameter:
+ * filter_init, then filter_reset. Divides: up to 4,000 cycles.
  */
 void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8);
 
 /*
- * The R that a law has identified itself, LSB^2 in Q8, at most 10,200 LSB^2: it need not be given one
- * (filter_set_noise), and an estimate beside it would be wasted. 0: the law takes the R that is set. Only for a
- * filter that filter_init has accepted. About 80 cycles.
+ * The R that a law has identified itself, LSB^2 in Q8, at most 10,200 LSB^2. Such a law needs no filter_set_noise and
+ * no noise estimate beside it. 0: the law uses the R that is set. Only for a filter that filter_init has accepted.
+ * About 80 cycles.
  */
 uint32_t filter_own_noise_lsb2_q8(const filter_t *f);
 
-/* Running as if z0 had been read for ever; no warm-up. As long as 16 updates at most. */
+/* Runs as if z0 had always been read; no warm-up. Takes as long as 16 updates at most. */
 void filter_reset(filter_t *f, int16_t z0_lsb);
 
 /*
- * One sample in, estimate (LSB, Q16) out: any int16, any history; cannot fail. A sample beyond FILTER_Z_MIN..MAX is
- * clamped and flagged FILTER_SATURATED. Scaling: of x below, of the rest with each law.
+ * One sample in, estimate (LSB, Q16) out. Any int16, any history; cannot fail. A sample beyond FILTER_Z_MIN..MAX is
+ * clamped and flagged FILTER_SATURATED. Scaling of x below; of the other states with each law.
  *
  *   z        Q0, clamped to -4096..4095 LSB
  *   x        Q15.16; |x| <= 4608 LSB by a clamp after the prediction, and a correction moves it towards a sample within
@@ -192,38 +192,39 @@ void filter_reset(filter_t *f, int16_t z0_lsb);
 int32_t filter_update(filter_t *f, int16_t z_lsb);
 
 /*
- * No sample came, or one without information, as at the sensor's rail: a prediction. The rate of change is halved each
- * 25 ms without a sample and after FILTER_HOLD_MS the estimate holds.
+ * No sample, or one without information, such as at the sensor's rail: predicts. The rate of change is halved every 25
+ * ms without a sample, and after FILTER_HOLD_MS the estimate holds.
  */
 int32_t filter_missing(filter_t *f);
 
 /*
- * Warming up again; parameters and what was learnt of the noise stay. The estimate is the old one until the next call.
+ * Warms up again; parameters and what was learnt about the noise are kept. The estimate keeps its value until the next
+ * call.
  */
 void filter_restart(filter_t *f);
 
-/* Gain, variance, innovation and gate of the last update; not there with -DFILTER_WITHOUT_PROBE. Divides. */
+/* Gain, variance, innovation and gate of the last update; absent with -DFILTER_WITHOUT_PROBE. Divides. */
 void filter_probe(const filter_t *f, filter_probe_t *out);
 
 /* Facts of a law, from its descriptor in program memory. */
 const char *filter_name(const filter_law_t *law); /* in program memory, as typed in `filter NAME` */
 uint8_t filter_parameter_count(const filter_law_t *law);
 const filter_parameter_t *filter_parameter(const filter_law_t *law, uint8_t index); /* in program memory */
-/* Its name; after the name's end follows the unit. Both in program memory. */
+/* The parameter's name, NUL-terminated, followed by its unit. Both in program memory. */
 const char *filter_parameter_words(const filter_parameter_t *parameter);
-/* Of filter_update on an ATmega328P, at most; `stay` of pbf and shrf costs 500 more. */
+/* Upper bound of filter_update on an ATmega328P; `stay` of pbf and shrf costs 500 more. */
 uint16_t filter_worst_cycles(const filter_law_t *law);
 
-/* The parameter that is the measurement variance R: laws that have it and are given none estimate it. */
+/* The parameter for the measurement variance R: laws that have it and do not get a value estimate it. */
 extern const filter_parameter_t filter_parameter_r;
 
-/* The value is 0 where that switches the feature off, or within min..max. */
+/* Whether the value is within min..max, or 0 where that switches the feature off. */
 bool filter_in_range(const filter_parameter_t *parameter, int32_t value);
 
 /* Why filter_init would refuse this configuration. */
 filter_answer_t filter_judge(const filter_law_t *law, const filter_config_t *config);
 
-/* The laws, filter_law_NAME. What each is, with its parameters, equations and bounds, stands in its own file. */
+/* The laws, filter_law_NAME. Each is described in its own file, with its parameters, equations and bounds. */
 #define FILTER_LAWS(X) \
     X(adaptive)        \
     X(kf)              \

@@ -17,7 +17,7 @@ const filter_law_t *filter_listed(filter_kind_t kind)
     return (const filter_law_t *)flash_pointer(&laws[kind]);
 }
 
-/* Apart from the descriptors: also of those that are not linked. */
+/* Separate from the descriptors: includes laws that are not linked. */
 static const char names[FILTER_KIND_COUNT][12] IN_FLASH = {
 #define NAME(F) #F,
     FILTER_LIST(NAME)
@@ -29,7 +29,7 @@ const char *filter_listed_name(filter_kind_t kind)
     return names[kind];
 }
 
-/* Text in RAM equal to text in program memory. */
+/* Whether a text in RAM equals one in program memory. */
 static bool same_text(const char *ram, const char *flash)
 {
     for (;; ram++, flash++) {

@@ -1,9 +1,9 @@
-/* Fixed-point primitives too large to be inline; see fx.h. */
+/* Fixed-point primitives that are too large to inline; see fx.h. */
 #include "fx.h"
 
 /*
- * Node i: 65536 / (1 + i/128) - h^2/16 x second derivative, h = 1/128, so that the chord's error is centred on zero
- * (a chord of the convex 1/m lies up to h^2/8 x f'' above it); rounded to nearest, the first limited to 65535.
+ * Node i: 65536 / (1 + i/128) - h^2/16 x second derivative, h = 1/128, so that the error of the chord is centred on
+ * zero (a chord of the convex 1/m lies up to h^2/8 x f'' above it); rounded to nearest, the first limited to 65535.
  */
 const uint16_t filter_fx_reciprocal_nodes_uq16[129] IN_FLASH = {
     65535, 65027, 64527, 64035, 63550, 63072, 62601, 62137, 61681, 61230, 60787, 60349, 59918, 59493, 59074,
@@ -88,7 +88,7 @@ fx_leading_t filter_fx_leading(uint32_t v)
     return (v & 0xFFFFFF00U) | places;
 }
 
-/* A 32-bit value with its top bit set, times 2^exponent of the lowest bit, rounded to a 16-bit mantissa. */
+/* A 32-bit value with its top bit set, times 2^exponent (weight of the lowest bit), rounded to a 16-bit mantissa. */
 static fx_scaled_t rounded(uint32_t v, int8_t exponent)
 {
     fx_scaled_t result = { (uint16_t)(v >> 16), (int8_t)(exponent + 16) };
@@ -132,10 +132,10 @@ uint32_t filter_fx_scaled_fixed(fx_scaled_t a, uint8_t fraction_bits)
         return UINT32_MAX;
     }
     if (shift < -16) {
-        return 0; /* below a half */
+        return 0; /* below one half */
     }
     uint32_t v = (uint32_t)a.mantissa << 16;
-    uint8_t last = 0; /* of the places left out: rounds */
+    uint8_t last = 0; /* the last bit shifted out, for rounding */
     for (uint8_t places = (uint8_t)(16 - shift); places != 0U; places--) {
         last = (uint8_t)v & 1U;
         v >>= 1;

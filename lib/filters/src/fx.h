@@ -1,9 +1,8 @@
 /*
- * Fixed-point primitives: this header, fx_avr.h and fx_avr.c, beside machine.h, are all of the library that knows the
- * machine.
+ * Fixed-point primitives. Apart from machine.h, only this header, fx_avr.h and fx_avr.c depend on the machine.
  *
- * Every primitive exists twice, in portable C and, where the compiler's code is slow, in assembler (fx_avr.h, and
- * fx_avr.c for functions); both give the same bits for every argument (host_tests/avr/fx_twins.c compares them on the
+ * Every primitive has a portable C version and, where the compiler's code is slow, one in assembler (fx_avr.h, and
+ * fx_avr.c for functions). Both give the same bits for every argument (host_tests/avr/fx_twins.c compares them on the
  * chip). No primitive divides, uses float or 64-bit arithmetic on AVR. All are pure and may be called from main or from
  * an interrupt.
  */
@@ -32,8 +31,8 @@ static inline int32_t fx_clamp(int32_t v, int32_t limit)
 }
 
 /*
- * a x b, exact: written as a product, because the compiler knows which few registers its library's takes. What it
- * knew of a and b would make it take a longer one.
+ * a x b, exact. Written as a plain product because the compiler knows that its library routine for it uses few
+ * registers. Anything it knew about a and b would make it choose a longer one.
  */
 MACHINE_INLINE uint32_t fx_product_u16(uint16_t a, uint16_t b)
 {
@@ -43,8 +42,8 @@ MACHINE_INLINE uint32_t fx_product_u16(uint16_t a, uint16_t b)
 }
 
 /*
- * a x b_uq16 rounded half up, any a: the format of a is kept. Wide products by halves, so that no 64-bit helper is
- * linked.
+ * a x b_uq16 rounded half up, any a: the format of a is kept. Wide products are built from halves, so that no 64-bit
+ * helper is linked.
  */
 static inline uint32_t fx_mul_uq16_c(uint32_t a, uint16_t b_uq16)
 {
@@ -52,7 +51,7 @@ static inline uint32_t fx_mul_uq16_c(uint32_t a, uint16_t b_uq16)
     return fx_product_u16((uint16_t)(a >> 16), b_uq16) + (low >> 16) + ((low >> 15) & 1U);
 }
 
-/* a x b_uq16 rounded half up, any a of 16 bits. */
+/* a x b_uq16 rounded half up, any 16-bit a. */
 static inline uint16_t fx_mul16_uq16_c(uint16_t a, uint16_t b_uq16)
 {
     uint32_t product = fx_product_u16(a, b_uq16);
@@ -97,7 +96,7 @@ static inline uint32_t fx_sixteenth_c(uint32_t v)
     return (v >> 4) + ((v >> 3) & 1U);
 }
 
-/* *v > 0 shifted left until its top bit is set; by how many places. */
+/* Shifts *v > 0 left until its top bit is set; returns the number of places. */
 static inline uint8_t fx_normalise_c(uint32_t *v)
 {
     uint8_t places = 0;
@@ -132,7 +131,9 @@ static inline uint32_t fx_mul_uq24_c(uint32_t a, uint32_t b_uq24)
     return fx_product_u16(a_high, b_high) + (middle >> 8) + ((middle >> 7) & 1U);
 }
 
-/* v - v x part_uq8 / 2^8, what is taken rounded half up; part_uq8 0 or a power of 2: the 8-bit machine multiplies. */
+/*
+ * v - v x part_uq8 / 2^8, the part subtracted rounded half up; part_uq8 0 or a power of 2: the 8-bit chip multiplies.
+ */
 static inline int32_t fx_without_part_c(int32_t v, uint8_t part_uq8)
 {
     uint32_t size = filter_fx_abs32(v);
@@ -147,7 +148,7 @@ static inline int32_t fx_clamp_high_c(int32_t v, uint8_t limit)
     return fx_clamp(v, (int32_t)limit * 16777216);
 }
 
-/* Upper half of a number in memory: for v >> 16 the 8-bit machine's compiler loads all four bytes. */
+/* Upper half of a number in memory: for v >> 16 the compiler for the 8-bit chip loads all four bytes. */
 static inline uint16_t fx_upper_c(const uint32_t *v)
 {
     return (uint16_t)(*v >> 16);
@@ -196,8 +197,8 @@ static inline int16_t fx_upper_signed(const int32_t *v)
 #endif
 
 /*
- * What is too long to be in line: a call takes 10 to 30 cycles, the code in line up to 150 bytes. In their order: the
- * products of the C twins of these names; fx_shift_right_c; the upper half of fx_product_u16, rounded down.
+ * Too long to inline: a call takes 10 to 30 cycles, the inlined code up to 150 bytes. In this order: the products of
+ * the C versions of these names; fx_shift_right_c; the upper half of fx_product_u16, rounded down.
  */
 uint32_t filter_fx_mul_uq16(uint32_t a, uint16_t b_uq16);
 uint16_t filter_fx_mul16_uq16(uint16_t a, uint16_t b_uq16);
@@ -214,13 +215,13 @@ static inline uint32_t fx_add_sat(uint32_t a, uint32_t b)
     return (sum < a) ? UINT32_MAX : sum;
 }
 
-/* Nodes of the reciprocal, see fx.c; in program memory. */
+/* Nodes of the reciprocal table, see fx.c; in program memory. */
 extern const uint16_t filter_fx_reciprocal_nodes_uq16[129];
 
 /*
  * 1 / m in UQ0.16, at most 65535, for m = 1 + (interval + fraction / 2^16) / 128, interval < 128. Table of 129 nodes in
- * program memory, straight lines between. |result - 1/m| <= 1.5 x 2^-16 (chord 0.25, nodes 0.5, product 0.5, the first
- * node's limit 0.25), tested.
+ * program memory, linear interpolation. |result - 1/m| <= 1.5 x 2^-16 (chord 0.25, nodes 0.5, product 0.5, limit of the
+ * first node 0.25), tested.
  */
 static inline uint16_t fx_inverse_m_uq16(uint8_t interval, uint16_t fraction)
 {
@@ -238,7 +239,7 @@ static inline uint16_t fx_reciprocal_uq16(uint32_t s_uq24)
         s_uq24 >>= 1;
         halvings++;
     }
-    uint32_t half = s_uq24 >> 1; /* s = m x 2^halvings, 1 <= m < 2: m's leading bit is bit 23 of it */
+    uint32_t half = s_uq24 >> 1; /* s = m x 2^halvings, 1 <= m < 2: the leading bit of m is bit 23 of half */
     uint16_t inverse = fx_inverse_m_uq16((uint8_t)(half >> 16) & 0x7FU, (uint16_t)half);
     for (; halvings > 1U; halvings--) {
         inverse >>= 1;
@@ -247,8 +248,8 @@ static inline uint16_t fx_reciprocal_uq16(uint32_t s_uq24)
 }
 
 /*
- * 1 / m in UQ0.16, at most 65535, for 1 <= m < 2 (UQ1.31, so the leading bit is set, and the low byte does not matter):
- * the bits of fx_inverse_m_uq16.
+ * 1 / m in UQ0.16, at most 65535, for 1 <= m < 2 (UQ1.31: the leading bit is set, the low byte does not matter). Same
+ * bits as fx_inverse_m_uq16.
  */
 uint16_t filter_fx_inverse_uq16(uint32_t m_uq31);
 
@@ -256,8 +257,8 @@ uint16_t filter_fx_inverse_uq16(uint32_t m_uq31);
 uint16_t filter_fx_isqrt32(uint32_t v);
 
 /*
- * A number's 24 leading bits, shifted left until the top bit of 32 is set, and in the low byte the places they were
- * shifted by: one word, because a structure would go through memory. 0 is taken as 1.
+ * The 24 leading bits of a number, shifted left until the top bit of 32 is set, with the number of places in the low
+ * byte: one word, because a structure would be passed through memory. 0 is taken as 1.
  */
 typedef uint32_t fx_leading_t;
 fx_leading_t filter_fx_leading(uint32_t v);
@@ -273,13 +274,13 @@ static inline uint16_t fx_mantissa(fx_leading_t leading)
     return (uint16_t)(leading >> 16);
 }
 
-/* mantissa x 2^exponent with 0x8000 <= mantissa: configuration values that span many decades. */
+/* mantissa x 2^exponent with 0x8000 <= mantissa, for configuration values that span many decades. */
 typedef struct {
     uint16_t mantissa;
     int8_t exponent;
 } fx_scaled_t;
 
-/* v > 0 to 16 significant bits (error <= 2^-16 relative); 0 is taken as 1. */
+/* v > 0 to 16 significant bits (relative error <= 2^-16); 0 is taken as 1. */
 fx_scaled_t filter_fx_scaled(uint32_t v);
 
 /*
@@ -289,7 +290,7 @@ fx_scaled_t filter_fx_scaled(uint32_t v);
 fx_scaled_t filter_fx_scaled_mul(fx_scaled_t a, fx_scaled_t b);
 fx_scaled_t filter_fx_scaled_div(fx_scaled_t a, fx_scaled_t b);
 
-/* a in fixed point with so many fraction bits, rounded half up, saturated to UINT32_MAX. */
+/* a in fixed point with the given fraction bits, rounded half up, saturated to UINT32_MAX. */
 uint32_t filter_fx_scaled_fixed(fx_scaled_t a, uint8_t fraction_bits);
 
 #ifdef __cplusplus

@@ -1,15 +1,16 @@
 /*
- * The functions of fx.h that are in assembler for the ATmega328P; fx.c has them in C for other machines.
+ * The functions of fx.h in assembler for the ATmega328P; fx.c has them in C for other machines.
  *
- * A product grows in two halves of its own and moves at last to where the first operand was, which is where a function
- * answers: so hardly one has to save a register. A byte of an operand that is 0 serves for other ends.
+ * A product is built in two halves of its own and moved in the end to the registers of the first operand, where a
+ * function returns its result, so hardly any function has to save a register. A byte of an operand that is known to be
+ * 0 is reused as scratch.
  */
 #include "fx.h"
 
 #ifdef FX_ASSEMBLER
 MACHINE_APART uint32_t filter_fx_mul_uq16(uint32_t a, uint16_t b_uq16)
 {
-    uint16_t low; /* bytes 2..5 of the 6-byte product; byte 1 is only needed for its top bit, byte 0 not at all */
+    uint16_t low; /* bytes 2..5 of the 6-byte product; of byte 1 only the top bit is needed, of byte 0 nothing */
     uint16_t high;
     uint8_t zero;
     uint8_t byte1;

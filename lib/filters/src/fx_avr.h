@@ -1,12 +1,12 @@
 /*
- * The inline primitives of fx.h in assembler for the ATmega328P; included by fx.h alone, where each one's contract
- * stands with its C twin (fx_..._c). __zero_reg__ (r1) holds half a product meanwhile: an interrupt saves and clears
- * it, and so does each end.
+ * The inline primitives of fx.h in assembler for the ATmega328P. Included by fx.h only, where the contract of each is
+ * given with its C version (fx_..._c). __zero_reg__ (r1) holds half a product in the meantime: an interrupt saves and
+ * clears it, and so does the end of each primitive.
  */
 #ifndef FX_AVR_H
 #define FX_AVR_H
 
-/* Here the assembler twins are used: fx_dot.h asks. */
+/* The assembler versions are in use; fx_dot.h tests for this. */
 #define FX_ASSEMBLER
 
 MACHINE_INLINE uint16_t fx_upper(const uint32_t *v)
@@ -70,7 +70,10 @@ MACHINE_INLINE uint8_t fx_normalise(uint32_t *v)
     return places;
 }
 
-/* With one bit set in part_uq8 the halves of neighbouring products have no bits in common; the half is the borrow. */
+/*
+ * With one bit set in part_uq8 the halves of neighbouring products have no bits in common; the rounding half is the
+ * borrow.
+ */
 MACHINE_INLINE int32_t fx_without_part(int32_t v, uint8_t part_uq8)
 {
     uint8_t byte0;
@@ -88,7 +91,10 @@ MACHINE_INLINE int32_t fx_without_part(int32_t v, uint8_t part_uq8)
     return v;
 }
 
-/* Looked for in the highest byte: what has the limit's counts as beyond, to the same effect. */
+/*
+ * Checks the highest byte only: a value with the same highest byte as the limit counts as beyond it, with the same
+ * result.
+ */
 MACHINE_INLINE int32_t fx_clamp_high(int32_t v, uint8_t limit)
 {
     uint8_t top;

@@ -1,4 +1,4 @@
-/* A row of a matrix times a vector: beside fx.h, and made like it. */
+/* A matrix row times a vector; complements fx.h and is built like it. */
 #ifndef FX_DOT_H
 #define FX_DOT_H
 
@@ -9,8 +9,8 @@ extern "C" {
 #endif
 
 /*
- * sum + a[0] x b[0] + a[1] x b[1] + a[2] x b[2], each product / 2^8 and rounded down. |a| < 2^23: the byte above is not
- * looked at. Wraps beyond 32 bits.
+ * sum + a[0] x b[0] + a[1] x b[1] + a[2] x b[2], each product / 2^8 and rounded down. |a| < 2^23: the top byte is
+ * ignored. Wraps beyond 32 bits.
  */
 static inline int32_t fx_dot24_c(int32_t sum, const int32_t a[3], const int16_t b[3])
 {
@@ -24,7 +24,7 @@ static inline int32_t fx_dot24_c(int32_t sum, const int32_t a[3], const int16_t 
 }
 
 #ifdef FX_ASSEMBLER
-/* Of the product's five bytes the lowest is left out; the bytes of a come one by one, which spares registers. */
+/* The lowest of the product's five bytes is left out; the bytes of a are loaded one by one, which saves registers. */
 MACHINE_INLINE int32_t fx_dot24(int32_t sum, const int32_t a[3], const int16_t b[3])
 {
     uint8_t byte, low, high, zero, left;

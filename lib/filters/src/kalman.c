@@ -3,7 +3,7 @@
 
 LAW_KEEPS_FROM(filter_kalman_t, q22_uq26);
 
-/* Spread of the rate of a sensor picked up at any moment: 200 LSB/s, 45 degree/s around level. */
+/* Variance of the rate of a sensor picked up at any moment: (200 LSB/s)^2, 45 degree/s around level. */
 #define START_RATE_VARIANCE_LSB2_S2 40000U
 
 void filter_kalman_scales(const filter_config_t *config, fx_scaled_t *drive_lsb2, fx_scaled_t *start_lsb2)
@@ -54,13 +54,13 @@ void filter_kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8)
 }
 
 /*
- * Gate of so many sigmas (<= 16) with the R in force, and how far two samples of one run may lie apart: 3 sqrt(2 R) and
- * a period at ratemax, < 135 + 4609 LSB.
+ * Gate of gate_sigma_q8 (<= 16 sigma) for the R in force, and how far apart two samples of one run may lie: 3 sqrt(2 R)
+ * plus one period at ratemax, < 135 + 4609 LSB.
  */
 static void set_gate(filter_t *f, uint16_t gate_sigma_q8)
 {
     filter_kalman_t *k = &f->own.kalman;
-    /* gate^2 R; from UQ10.22 the two products in Q8 lead to UQ.6 */
+    /* gate^2 R; from UQ10.22, two products in Q8 give UQ.6 */
     uint32_t gate_uq6 = filter_fx_mul_uq16(filter_fx_mul_uq16(k->r_lsb2_q8 << 14, gate_sigma_q8), gate_sigma_q8);
     k->coarse = gate_uq6 > 0xFFFFU;
     if (k->coarse) {
@@ -85,7 +85,7 @@ void filter_kalman_set_up_gated(filter_t *f, const filter_config_t *config, uint
     filter_kalman_set_up(f, config, (uint32_t)config->value[reacquire + 1]);
 }
 
-/* What the law forgets with its run of refused samples and its last gate. */
+/* State that the law clears together with its run of refused samples and its last gate. */
 static MACHINE_APART void fresh(filter_kalman_t *k)
 {
     k->p.p11 = KALMAN_ONE_UQ24;
@@ -95,7 +95,7 @@ static MACHINE_APART void fresh(filter_kalman_t *k)
     k->run = 0;
 }
 
-/* For small q P settles at P12 = sqrt q, P11 = sqrt(2 P12), P22 = P11 P12; for q = 14 these are 3.7, 2.7, 10.2. */
+/* For small q P settles at P12 = sqrt q, P11 = sqrt(2 P12), P22 = P11 P12; for q = 14 it settles at 3.7, 2.7, 10.2. */
 void filter_kalman_near(filter_covariance_t *p, uint32_t q22_uq26)
 {
     uint16_t p12_uq13 = filter_fx_isqrt32(q22_uq26);
@@ -114,7 +114,7 @@ void filter_kalman_start(filter_t *f, bool settled)
     }
 }
 
-/* P / R one sample on, while P11 < 4, P12 < 16, P22 < 16. */
+/* Predicts P / R, while P11 < 4, P12 < 16, P22 < 16. */
 static void grow(filter_kalman_t *k)
 {
     uint8_t high = (uint8_t)((uint8_t)(k->p.p12 >> 24) | (uint8_t)(k->p.p22 >> 24));
@@ -133,14 +133,14 @@ static uint16_t variance_uq10(const filter_kalman_t *k)
     return (uint16_t)(kalman_fourfold(k->p.p11 + KALMAN_ONE_UQ24) >> 16);
 }
 
-/* Sixteen bits of S and of u do: what does not fit in them lies outside any limit. */
+/* Sixteen bits of S and of u are enough: what does not fit is beyond any limit. */
 static bool within_gate(filter_t *f)
 {
     filter_kalman_t *k = &f->own.kalman;
     uint32_t limit_lsb2 = fx_product_u16(variance_uq10(k), k->gate_lsb2_uq6);
     k->limit_lsb2 = limit_lsb2;
     uint32_t size_lsb_uq16 = f->size_lsb_uq16;
-    if (k->coarse) { /* UQ24.8: whole LSB do */
+    if (k->coarse) { /* UQ24.8: whole LSB are enough */
         limit_lsb2 >>= 8;
         size_lsb_uq16 >>= 8;
     }
@@ -148,7 +148,7 @@ static bool within_gate(filter_t *f)
     return (uint8_t)(size_lsb_uq16 >> 24) == 0U && fx_product_u16(size, size) <= limit_lsb2;
 }
 
-/* Gains, x, rate and P. */
+/* Corrects gains, x, rate and P. */
 static void correct(filter_t *f)
 {
     filter_kalman_t *k = &f->own.kalman;
@@ -189,7 +189,7 @@ static void restart(filter_t *f, int16_t z_lsb)
     f->x_lsb_q16 = (int32_t)z_lsb * 65536;
     f->rate_lsb = 0;
     if (!f->broken) {
-        uint16_t share_uq12 = 0x1000; /* 1 / (L - 1) in the end */
+        uint16_t share_uq12 = 0x1000; /* becomes 1 / (L - 1) */
         for (uint8_t steps = k->steps; steps > 1U; steps >>= 1) {
             share_uq12 >>= 1;
         }
@@ -203,8 +203,8 @@ static void restart(filter_t *f, int16_t z_lsb)
 }
 
 /*
- * A sample was refused although the prediction is less certain than a sample: the motion changes within a few of them,
- * so half of the rate, towards 0, is as likely to go on as all of it.
+ * A sample was refused although the prediction is less certain than a sample: the motion changes within a few samples,
+ * so half of the rate (towards 0) is as likely to last as all of it.
  */
 static void doubt_rate(filter_t *f)
 {
@@ -247,7 +247,7 @@ bool filter_kalman_run_legal(int32_t samples)
 void filter_kalman_report(const filter_t *f, filter_probe_t *out)
 {
     const filter_kalman_t *k = &f->own.kalman;
-    /* while warming up P is not there yet: the variance of one sample */
+    /* P is not set while warming up: the variance of one sample */
     bool running = f->collected == FILTER_RUNNING;
     out->p_lsb2_q8 = filter_fx_mul_uq24(running ? k->p.p11 : KALMAN_ONE_UQ24, k->r_lsb2_q8);
     if (running && k->limit_lsb2 != 0U) {

@@ -2,14 +2,14 @@
  * kf: two-state Kalman filter (position, rate), driven by white acceleration. Optimal for Gaussian noise; every outlier
  * passes with the full gain: the yardstick for the robust laws. Parameters r, q. Equations and scaling: kalman.h.
  *
- * lrf: linear robust filter (Volovyk et al., paper 002 equation (31)): kf made for the mean variance of normal and
- * outlying samples, R_L = R (N^2 - q1 (N^2 - 1)), with q1 the probability of a normal sample (clean) and N the sigma of
- * an outlier over that of a normal one (ratio). P is in units of R_L, which is limited to 65,536 LSB^2 and within 2^-13
- * of the formula. With ratio 1 it is kf.
+ * lrf: linear robust filter (Volovyk et al., paper 002 equation (31)): kf with the mean variance of normal and outlying
+ * samples, R_L = R (N^2 - q1 (N^2 - 1)), where q1 is the probability of a normal sample (clean) and N the sigma of an
+ * outlier over that of a normal one (ratio). P is in units of R_L, which is limited to 65,536 LSB^2 and within 2^-13 of
+ * the formula. With ratio 1 it is kf.
  */
 #include "kalman.h"
 
-/* What binds first is the smallest q T^3 / R_L, 6e-8: with the default q and R above 550 Hz. */
+/* The smallest q T^3 / R_L, 6e-8, is reached first: with the default q and R above 550 Hz. */
 #define LRF_R_MAX_LSB2_Q8 0xFFFFFFU
 
 LAW_PARAMETER(clean, "clean\0", 16, 0, 656, 65535, 55706);

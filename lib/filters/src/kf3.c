@@ -1,41 +1,41 @@
 /*
  * kf3: three-state Kalman filter (position, rate, acceleration), driven by white jerk: the model of order m = 2 of
- * paper 001, equation 1, whose "second-order Kalman filter" it is. No lag under constant acceleration, paid for with
- * noise; every outlier passes with the full gain: a yardstick. With P divided by R and everything per sample the
- * recursion is
+ * paper 001, equation 1, its "second-order Kalman filter". No lag under constant acceleration, at the cost of noise;
+ * every outlier passes with the full gain: a yardstick. With P divided by R, everything per sample and r the
+ * innovation, the recursion is
  *
  *   predict  P33 += q33; a stays; v += a; x += v                                         q33 = q T^5 / R
  *   update   g = 1 / (P11 + 1); w1 = 1 - g; w2 = P12 g; w3 = P13 g; (x, v, a) += (w1, w2, w3) r
  *            P22 -= w2 P12; P23 -= w2 P13; P33 -= w3 P13; P12 = w2; P13 = w3; P11 = w1
  *
- * v and a are differences to the samples before: on x = a n^2 / 2 the rate is that of half a sample ago. Acceleration
- * walks at random (Singer's correlation is 1): with less the lag under constant acceleration, whose absence the filter
- * is for, would be back.
+ * v and a are backward differences: on x = a n^2 / 2 the rate is that of half a sample ago. Acceleration is a random
+ * walk (Singer's correlation is 1): with less, the lag under constant acceleration, which the filter is meant to avoid,
+ * would return.
  *
- * A long gap: P is predicted until P11 reaches 4 R (or another element 1), then it stays and the acceleration is not
- * believed, so the estimate goes on along a straight line; at the bound of the format it stands still.
+ * In a long gap P is predicted until P11 reaches 4 R (or another element 1). Then P stays as it is and the acceleration
+ * is ignored, so the estimate continues along a straight line; at the bound of the format it stops.
  *
  * Scaling:
  *   x, v, a      Q15.16, a in sixteenths when fine (Q11.20); each within 4608 by a clamp after the prediction (x, v)
  *                and after the update (v, a); the update moves x towards a sample within 4096, so |r| <= 8704 LSB <
  *                2^30 / 2^16 and no sum overflows
- *   P / R        UQ4.28, see grow_covariance; below 1 after each update, so that the next step predicts it
+ *   P / R        UQ4.28, see grow_covariance; below 1 after each update, so that the next step can predict it
  *   g, w1        UQ0.16 within 1.75 counts of 1 / S; w2, w3 UQ0.24; P rounded to half a count of 2^-28 per product
- *   r            rounded down to 2^-8 LSB in magnitude; the steps of x, v and a rounded half away from zero to 2^-16
+ *   r            magnitude rounded down to 2^-8 LSB; the steps of x, v and a rounded half away from zero to 2^-16
  */
 #include "kalman.h"
 
 LAW_KEEPS_FROM(filter_kf3_t, q33_uq28);
 
 /*
- * From this rate on the acceleration is counted in sixteenths of an LSB per sample^2, because the drive falls with the
- * fifth power of the rate. q33 is limited to 2^-24..1 below this rate (gain 0.118..0.871) and to 2^-32..2^-11 from it
- * on (gain 0.048..0.430).
+ * From this rate on the acceleration is counted in sixteenths of an LSB per sample^2, because q33 falls with the fifth
+ * power of the rate. q33 is limited to 2^-24..1 below this rate (gain 0.118..0.871) and to 2^-32..2^-11 from it on
+ * (gain 0.048..0.430).
  */
 #define FINE_FROM_DHZ 1000U
 #define ONE_UQ28 0x10000000U
 #define Q33_MIN_UQ28 16U
-/* Largest drive when fine: with more P33, counted 256 times, would not settle below 1. */
+/* Largest q33 when fine: with more, P33, counted 256 times, would not settle below 1. */
 #define Q33_MAX_FINE_UQ28 0x2000000U
 #define P22_START_MAX_UQ28 0x8000000U
 
@@ -66,7 +66,7 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
     k->p22_start_uq28 = filter_kalman_per_r(k->start_lsb2, r_lsb2, 28, k->q33_uq28, P22_START_MAX_UQ28);
 }
 
-/* The third root of sqrt q, at most 511/1024: UQ0.10. */
+/* Cube root of sqrt q, at most 511/1024: UQ0.10. */
 static uint16_t sixth_root_uq10(const filter_kf3_t *k)
 {
     uint32_t root_uq14 = filter_fx_isqrt32(k->q33_uq28);
@@ -100,7 +100,7 @@ static void start_near(filter_kf3_t *k)
     }
 }
 
-/* Acceleration unknown; rate and acceleration no more uncertain than that P stays below 1 from the first update on. */
+/* Acceleration unknown. Rate and acceleration are only so uncertain that P stays below 1 from the first update on. */
 static void start(filter_t *f, bool settled)
 {
     filter_kf3_t *k = &f->own.kf3;
@@ -117,7 +117,7 @@ static void start(filter_t *f, bool settled)
     }
 }
 
-/* A state limited to the bound of the format; flagged. */
+/* A state limited to the bound of the format; sets the flag. */
 static int32_t limited(filter_t *f, int32_t v_q16)
 {
     if (filter_fx_abs32(v_q16) > (uint32_t)TRACKER_X_MAX_LSB_Q16) {
@@ -127,7 +127,7 @@ static int32_t limited(filter_t *f, int32_t v_q16)
     return v_q16;
 }
 
-/* In the unit of the acceleration to that of the rate. */
+/* From the unit of the acceleration to that of the rate. */
 static uint32_t to_rate(const filter_kf3_t *k, uint32_t v)
 {
     return k->fine ? fx_sixteenth(v) : v;
@@ -138,7 +138,7 @@ static bool one_or_more(uint32_t p_uq28)
     return (uint8_t)(p_uq28 >> 24) >= 0x10U;
 }
 
-/* True when an element of P other than P11 is 1 or more. */
+/* Whether an element of P other than P11 is 1 or more. */
 static bool reaches_one(const filter_kf3_t *k)
 {
     return one_or_more(k->p.p12) || one_or_more(k->p.p22) || one_or_more(k->p13_uq28) || one_or_more(k->p23_uq28) ||
@@ -146,8 +146,8 @@ static bool reaches_one(const filter_kf3_t *k)
 }
 
 /*
- * P / R one sample on: P33 < 2, P23 < 3, P22 < 5, P12 < 2 + 5, P13 < 4, P11 < 4 + 2 + 7 afterwards. False when P11 or
- * another element is at the end of its range: P stays.
+ * Predicts P / R: P33 < 2, P23 < 3, P22 < 5, P12 < 2 + 5, P13 < 4, P11 < 4 + 2 + 7 afterwards. False if P11 or another
+ * element is at the end of its range; P then stays as it is.
  */
 static bool grow_covariance(filter_kf3_t *k)
 {
@@ -169,7 +169,7 @@ static bool grow_covariance(filter_kf3_t *k)
     return true;
 }
 
-/* State and P one sample on. What has run to the bound of the format stands still there. */
+/* Predicts state and P. A state that reaches the bound of the format stops there. */
 static void predict(filter_t *f)
 {
     filter_kf3_t *k = &f->own.kf3;
@@ -197,14 +197,14 @@ static uint32_t less(uint32_t p_uq28, uint32_t column_uq28, uint32_t gain_uq24)
     return (left_q28 < 0) ? 0U : (uint32_t)left_q28;
 }
 
-/* A state and its gain times the innovation: by the magnitude, so that rounding is the same for both signs. */
+/* A state plus its gain times the innovation, by the magnitude, so that rounding is the same for both signs. */
 static int32_t moved(const filter_t *f, int32_t v_q16, uint32_t gain_uq24)
 {
     int32_t part_q16 = (int32_t)filter_fx_mul24_uq24(f->size_lsb_uq16 >> 8, gain_uq24); /* < 8704 LSB */
     return f->negative ? v_q16 - part_q16 : v_q16 + part_q16;
 }
 
-/* A gain UQ4.28 as UQ0.24, below 1: only right after a gap or a start is it more. */
+/* A gain from UQ4.28 to UQ0.24, limited to below 1: it is larger only right after a gap or a start. */
 static uint32_t below_one_uq24(uint32_t gain_uq28)
 {
     uint32_t gain_uq24 = fx_sixteenth(gain_uq28);
@@ -216,7 +216,10 @@ static void to_sixteenth(uint32_t *p)
     *p = filter_fx_shift_right(*p, 4);
 }
 
-/* What is no longer below 1 brings all of P down: a sixteenth of a covariance is one, and can be predicted. */
+/*
+ * An element that is not below 1 scales down all of P: a sixteenth of a covariance is a covariance, and can be
+ * predicted.
+ */
 static void keep_predictable(filter_kf3_t *k)
 {
     if (reaches_one(k)) {

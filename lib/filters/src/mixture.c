@@ -1,6 +1,6 @@
 /*
- * pbf, shrf, af: one law of paper 002 with three presets. A sample is normal (variance R) with probability q, else an
- * outlier (variance N^2 R), and each counts by the probability p that it is normal, given those before (equations
+ * pbf, shrf, af: one law of paper 002 with three presets. A sample is normal (variance R) with probability q, otherwise
+ * an outlier (variance N^2 R), and is weighted by the probability p that it is normal, given those before (equations
  * (10)-(13), (25)-(30) with (29) corrected):
  *
  *   t = u^2 / (R S); b = 1 - S / S_N, S_N = P11 + N^2
@@ -8,16 +8,16 @@
  *   pbf, af   loss = b (1 - p), back = loss (1 + p b t)     both states of the channel, moments matched (GPB1)
  *   shrf      loss = 1 - p,     back = loss (1 + p t)       an outlier is not used at all
  *
- * with loss and back of wide.h. af learns q: q += (p - q) / n, n = 3, 4 .. 1024; reset forgets it, restart does not.
- * pbf and shrf may expect outliers in runs, a Markov chain with the same share of them (equation (11)): q of the next
- * sample is 1 - stay + p (clean + stay - 1) / clean, with stay the probability that an outlier follows an outlier.
- * Nothing is refused for ever: an outlier moves the estimate of pbf a little, and P by as much as the sample is
- * surprising; where P is at the end of its range (32,768 R) and the sample is still an outlier beyond doubt shrf
- * restarts from it (FILTER_REACQUIRED). FILTER_GATED means that the sample is more likely an outlier than not; its gain
- * is small, with shrf perhaps 0. Parameters r, q, ratio (N), clean (q: at least one half, or a sample on the prediction
- * would count as an outlier; what af begins with), stay (0: outliers come independently; else at least 1 - clean, and
- * less than N / (N + 1), so that a sample on the prediction counts as normal after an outlier too while P11 is small;
- * up to 500 Hz, because a logarithm in each sample costs 500 cycles more than the law declares).
+ * with loss and back of wide.h. af learns q: q += (p - q) / n, n = 3, 4 .. 1024; reset clears it, restart does not. pbf
+ * and shrf can expect outliers in runs, a Markov chain with the same share of outliers (equation (11)): q of the next
+ * sample is 1 - stay + p (clean + stay - 1) / clean, where stay is the probability that an outlier follows an outlier.
+ * There is no lock-out: an outlier moves the estimate of pbf a little, and raises P in proportion to how unexpected the
+ * sample is. If P is at the end of its range (32,768 R) and the sample is still certainly an outlier, shrf restarts
+ * from it (FILTER_REACQUIRED). FILTER_GATED means that the sample is more likely an outlier than not; its gain is
+ * small, with shrf possibly 0. Parameters r, q, ratio (N), clean (q: at least one half, or a sample on the prediction
+ * would count as an outlier; af starts from it), stay (0: outliers are independent; otherwise at least 1 - clean, and
+ * below N / (N + 1), so that a sample on the prediction counts as normal after an outlier too while P11 is small; up to
+ * 500 Hz, because a logarithm per sample costs 500 cycles more than the law declares).
  */
 #include "mixture.h"
 
@@ -36,11 +36,11 @@
 LAW_PARAMETER(ratio, "ratio\0", 8, 0, 512, 25600, 5120);
 LAW_PARAMETER(clean, "clean\0", 16, 0, CLEAN_MIN_UQ16, CLEAN_MAX_UQ16, 55706);
 LAW_PARAMETER(stay, "stay\0", 16, 1, ONE_UQ16 - CLEAN_MAX_UQ16, 64880, 0);
-/* The last is not one of af's. */
+/* af does not have the last one. */
 static const filter_parameter_t *const parameters[] IN_FLASH = { &filter_parameter_r, &filter_parameter_q, &ratio,
                                                                  &clean, &stay };
 
-/* 0.1 Hz. */
+/* 0.1 Hz */
 #define CHAIN_RATE_MAX_DHZ 5000U
 
 static bool together(const filter_config_t *config)
@@ -52,7 +52,10 @@ static bool together(const filter_config_t *config)
                                stay_uq16 * (ratio_uq8 + 256U) < ratio_uq8 << 16);
 }
 
-/* Node i: 1 / (1 + e^(i/2)) less h^2/16 x second derivative, h = 1/2: half of how far the chord is above the curve. */
+/*
+ * Node i: 1 / (1 + e^(i/2)) less h^2/16 x second derivative, h = 1/2: half of the distance of the chord above the
+ * curve.
+ */
 static const uint32_t rest_nodes_uq24[25] IN_FLASH = {
     8388608, 6318993, 4488271, 3035759, 1978931, 1257100, 784955, 484756, 297295, 181544, 110568, 67232, 40840,
     24794,   15047,   9129,    5538,    3360,    2038,    1236,   750,    455,    276,    167,    101,
@@ -61,7 +64,7 @@ static const uint32_t rest_nodes_uq24[25] IN_FLASH = {
 /* Node i: log2(1 + i/8) - i/8. */
 static const uint8_t log2_nodes_uq11[9] IN_FLASH = { 0, 92, 147, 173, 174, 155, 117, 65, 0 };
 
-/* log2 of a number by its leading bits, plus a constant that differences lose. */
+/* log2 from the leading bits, plus a constant that cancels in differences. */
 static uint16_t log2_uq9(fx_leading_t v)
 {
     uint16_t linear_uq9 = (uint16_t)((uint16_t)(fx_mantissa(v) << 1) >> 7);
@@ -81,7 +84,7 @@ int16_t filter_mixture_log_odds_q9(uint32_t q_uq24)
     uint16_t outlier = log2_uq9(filter_fx_leading(ONE_UQ24 - q_uq24));
     if (normal >= outlier) {
         uint16_t above_uq9 = (uint16_t)(normal - outlier);
-        /*@ assert above_uq9 <= 16480; */ /* for make proof: the larger less the smaller, in the bound of both */
+        /*@ assert above_uq9 <= 16480; */ /* for make proof: the larger less the smaller, within the bound of both */
         return (int16_t)filter_fx_high_u16(above_uq9, LN2_UQ16);
     }
     uint16_t below_uq9 = (uint16_t)(outlier - normal);
@@ -102,7 +105,7 @@ mixture_posterior_t filter_mixture_posterior(int16_t log_odds_q9)
     return posterior;
 }
 
-/* q of the samples to come, kept from 0 and 1. */
+/* Sets q for the following samples, kept away from 0 and 1. */
 static void believe(filter_mixture_t *m, uint32_t q_uq24)
 {
     if (q_uq24 < MIXTURE_MARGIN_UQ24) {
@@ -114,7 +117,7 @@ static void believe(filter_mixture_t *m, uint32_t q_uq24)
     m->log_odds_q9 = filter_mixture_log_odds_q9(q_uq24);
 }
 
-/* q as configured; what was learnt is forgotten. */
+/* q as configured; drops what was learnt. */
 static void forget(filter_mixture_t *m)
 {
     believe(m, (uint32_t)m->clean_uq16 << 8);
@@ -165,7 +168,7 @@ static void af_standard(filter_config_t *config)
 
 static void start(filter_t *f, bool settled)
 {
-    if (settled || f->own.mixture.leave_uq16 != 0U) { /* a chain restarts; what was learnt stays */
+    if (settled || f->own.mixture.leave_uq16 != 0U) { /* a chain restarts; what was learnt is kept */
         forget(&f->own.mixture);
     }
     filter_wide_start(f, settled);
@@ -176,13 +179,13 @@ static uint32_t normal_uq24(mixture_posterior_t posterior)
     return posterior.outlier ? posterior.rest_uq24 : ONE_UQ24 - posterior.rest_uq24;
 }
 
-/* The chain: q of the next sample from the probability that this one, or one that is missing, is normal. */
+/* The chain: q of the next sample from the probability that this one, or a missing one, is normal. */
 static void expect_next(filter_mixture_t *m, uint32_t p_uq24)
 {
     believe(m, ((uint32_t)m->leave_uq16 << 8) + filter_fx_mul_uq16(p_uq24, m->turn_uq16));
 }
 
-/* p into the mean of those before: q += (p - q) / n. */
+/* Averages p into the mean of those before: q += (p - q) / n. */
 static void learn(filter_mixture_t *m, uint32_t p)
 {
     if (m->learnt_from < LEARNT_FROM_MAX) {
@@ -196,7 +199,7 @@ static void learn(filter_mixture_t *m, uint32_t p)
     believe(m, rises ? q + part : q - part); /* a mean of p and q: within 0..1 */
 }
 
-/* What a sample's distance says about it. */
+/* What the distance of a sample says about it. */
 typedef struct {
     uint16_t t_uq8;  /* r^2 / (R S) */
     uint16_t b_uq16; /* 1 - S / S_N */
@@ -217,7 +220,7 @@ static evidence_t weigh(const filter_t *f)
     e.b_uq16 = (share_uq16 > UINT16_MAX) ? UINT16_MAX : (uint16_t)share_uq16;
     e.t_uq8 = filter_wide_distance_uq8(f);
     e.tb_uq8 = filter_fx_high_u16(e.t_uq8, e.b_uq16);
-    /* half of tb in Q9 has the number of tb in Q8 */
+    /* half of tb in Q9 is the same number as tb in Q8 */
     uint16_t half_uq9 = (e.tb_uq8 > 0x4000U) ? 0x4000U : e.tb_uq8;
     uint16_t spread_uq9 = filter_fx_high_u16((uint16_t)(log2_uq9(outlier) - log2_uq9(m->core.variance)), HALF_LN2_UQ16);
     /*@ assert spread_uq9 <= 5712; */ /* for make proof: S <= S_N, log2 in UQ.9 < 16480 */
@@ -225,7 +228,7 @@ static evidence_t weigh(const filter_t *f)
     return e;
 }
 
-/* The update by p; false: an outlier beyond doubt that the rule does not use. */
+/* Updates with p. False: certainly an outlier, and the rule does not use it. */
 static bool apply(filter_t *f, const evidence_t *e, bool shortened)
 {
     bool certain = e->p.rest_uq24 == 0U;

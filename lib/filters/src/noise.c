@@ -5,17 +5,17 @@
 #include "tracker.h"
 
 /*
- * With a, b independent standard normal and m = min(a^2, b^2), the factor w solves w = E min(m, c w): a second
+ * With a, b independent standard normal and m = min(a^2, b^2), the factor w solves w = E min(m, c w). A second
  * difference has 6 times the variance of a sample, so m / 6w limited to c times the variance has the variance as its
- * mean. E min(m, L) is the integral of erfc(sqrt(t / 2))^2 over 0..L (a test repeats it). c = 3: 1 / 6w = 0.62428.
- * c = 4.5 for the first terms, when the estimate may have to climb from the floor: 1 / 6w = 0.51451.
+ * mean. E min(m, L) is the integral of erfc(sqrt(t / 2))^2 over 0..L (a test repeats it). c = 3: 1 / 6w = 0.62428. c =
+ * 4.5 for the first terms, when the estimate may have to climb from the floor: 1 / 6w = 0.51451.
  */
 #define UNBIAS_UQ16 40913U
 #define UNBIAS_OPENING_UQ16 33719U
 #define OPENING_TERMS 64U
 
 /*
- * From this output data rate on, every second sample is taken: at lower rates motion would bend too far in four
+ * From this output data rate on, every second sample is used: at lower rates motion would curve too much within four
  * samples.
  */
 #define SPACED_MIN_DHZ 700U
@@ -25,7 +25,7 @@
 /* 1000 LSB^2 / 1.5 */
 #define MEAN_MAX_LSB2_Q16 43690667U
 
-/* 1.5 times a variance in Q16, as Q8. */
+/* 1.5 times a variance: Q16 to Q8. */
 static uint32_t r_of(uint32_t mean_lsb2_q16)
 {
     return (mean_lsb2_q16 + (mean_lsb2_q16 >> 1) + 128U) >> 8;
@@ -48,7 +48,7 @@ void filter_noise_gap(noise_t *n)
 }
 
 /*
- * |a - 2 b + c| of samples within the sensor's range, at most 255: the largest that counts is sqrt(667 x 4.5 x 6) =
+ * |a - 2 b + c| of samples within the sensor's range, limited to 255: the largest that matters is sqrt(667 x 4.5 x 6) =
  * 134.
  */
 static MACHINE_APART uint8_t bend_lsb(int16_t a, int16_t b, int16_t c)
@@ -74,7 +74,7 @@ static uint8_t smaller_bend_lsb(const noise_t *n, int16_t z_lsb)
     return (one < other) ? one : other;
 }
 
-/* Variance that the difference stands for, limited; Q16. */
+/* The variance that a difference corresponds to, limited; Q16. */
 static uint32_t term_lsb2_q16(const noise_t *n, uint8_t bend)
 {
     bool opening = n->terms < OPENING_TERMS;
@@ -84,20 +84,22 @@ static uint32_t term_lsb2_q16(const noise_t *n, uint8_t bend)
     return (term < limit) ? term : limit;
 }
 
-/* difference / window rounded: the window is about half of the terms seen, 256 when the count is full. */
+/*
+ * difference / window, rounded. The window is about half of the number of terms seen, and 256 when the count is full.
+ */
 static int32_t share(int32_t difference, uint8_t terms)
 {
     if (terms == UINT8_MAX) {
         return (difference + 128) >> 8;
     }
-    /* one place at a time, the last one rounds: the same as half of the window added before, in less code */
+    /* one place at a time, the last one rounds: same as adding half of the window first, in less code */
     for (uint8_t left = terms; left > 3U; left >>= 1) {
         difference >>= 1;
     }
     return (difference + 1) >> 1;
 }
 
-/* Mean one term on. Its floor keeps the limit of the next term open, its ceiling is the largest R. */
+/* Adds a term to the mean. The floor keeps the limit of the next term open, the ceiling is the largest R. */
 static void average(noise_t *n, uint32_t term_q16)
 {
     int32_t mean = (int32_t)n->mean_lsb2_q16;
@@ -111,7 +113,7 @@ static void average(noise_t *n, uint32_t term_q16)
     }
 }
 
-/* R in force follows the estimate when that has left it by an eighth. */
+/* R in force follows the estimate when the two differ by more than an eighth. */
 static bool follow(noise_t *n)
 {
     uint32_t r_q8 = r_of(n->mean_lsb2_q16);
@@ -122,7 +124,7 @@ static bool follow(noise_t *n)
     return true;
 }
 
-/* By pointers: indices would be unrolled, 60 bytes more. */
+/* Uses pointers: with indices the loop would be unrolled, 60 bytes more. */
 static void remember(noise_t *n, int16_t z_lsb)
 {
     int16_t *at = &n->history_lsb[HISTORY - 1U];

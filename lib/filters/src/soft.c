@@ -1,18 +1,18 @@
 /*
- * soft: kf that trusts a sample the less the further off it is, and no sample not at all.
+ * soft: kf that weights a sample less the further off it is, but never by zero.
  *
- * The update takes S_eff = max(S, u^2 / softgate^2) for the variance S of the innovation u (Chang 2014, scaled
- * innovation variance): within softgate sigmas it is kf bit for bit, beyond them its step falls with 1 / |u| but is
- * never zero, so it cannot be locked out even without re-acquisition. Samples beyond `gate` sigmas that agree among
+ * The update uses S_eff = max(S, u^2 / softgate^2) for the variance S of the innovation u (Chang 2014, scaled
+ * innovation variance). Within softgate sigmas it is kf bit for bit. Beyond them its step falls with 1 / |u| but never
+ * to zero, so it cannot be locked out even without re-acquisition. Samples beyond `gate` sigmas that agree among
  * themselves re-acquire as in sprf. Parameters r, q, softgate, gate, reacquire, ratemax; softgate 0: kf, gate 0: none.
  *
- * FILTER_GATED means that the sample lies beyond the gate (as far out as sprf with that gate would refuse it) and
- * beyond softgate: it was taken in part only, so unlike in sprf the gain is not 0. gate_lsb2_q8 of the probe is the
- * limit of the squared innovation above which the weight falls, softgate^2 S.
+ * FILTER_GATED means that the sample is beyond the gate (where sprf with that gate would refuse it) and beyond
+ * softgate. It was used in part, so unlike in sprf the gain is not 0. gate_lsb2_q8 of the probe is the squared
+ * innovation above which the weight falls, softgate^2 S.
  *
  * Scaling: within the soft gate as kalman.h. Beyond it
- *   m        UQ0.24, of u rounded down to 2^-8 LSB and gate_lsb2_uq6 (softgate^2 R, 1/64 LSB^2), within 2^-20 and 2^-13
- *            of itself
+ *   m        UQ0.24, from u rounded down to 2^-8 LSB and gate_lsb2_uq6 (softgate^2 R, 1/64 LSB^2); absolute error
+ *            2^-20, relative 2^-13
  *   w1, w2   UQ0.24, <= 1, from P11 in UQ8.16 and P12 in UQ6.18; P11 and P12 times 1 - w1 - 2^-16, rounded, so they
  *            fall; P22 less P12 w2 (w2 rounded down to 2^-16), not below 0
  *   steps    of x rounded up, of the rate down to 2^-16; both below |u| + 2^-16 LSB (x: w1 < 52/53), so x stays between
@@ -40,8 +40,8 @@ static bool together(const filter_config_t *config)
 }
 
 /*
- * (softgate / gate)^2, at most 65535 / 65536, so that with a gate inside the soft gate all that lies beyond the latter
- * is flagged; 0 without a gate: nothing is.
+ * (softgate / gate)^2, at most 65535 / 65536, so that with a gate inside the soft gate everything beyond the latter is
+ * flagged; 0 without a gate: nothing is.
  */
 static uint16_t flagged_share_uq16(int32_t soft_sigma_q8, int32_t gate_sigma_q8)
 {
@@ -64,10 +64,10 @@ static void set_up(filter_t *f, const filter_config_t *config)
     filter_kalman_set_up_gated(f, config, SOFT_REACQUIRE_SAMPLES);
 }
 
-/* The least weight of a sample. */
+/* Smallest weight of a sample. */
 #define LEAST_UQ24 16U
 
-/* K / m'^2 to m, see below: shifted by 16 - 2 b places, b = 4..20. */
+/* From K / m'^2 to m, see below: shifted by 16 - 2 b places, b = 4..20. */
 static uint32_t placed(uint32_t weight, uint8_t b)
 {
     for (; b >= 11U; b = (uint8_t)(b - 4U)) {
@@ -86,10 +86,9 @@ static uint32_t placed(uint32_t weight, uint8_t b)
 }
 
 /*
- * m = softgate^2 R / u^2, so below 1 / S: UQ0.24, and at least 2^-20, so the furthest sample counts too. With |u| = m'
- * 2^(b + 1) LSB/256, 1 <= m' < 2, and K = 64 softgate^2 R K / m'^2 in UQ.16 is
- * 2^(2 b - 16) times as many counts. u^2 > K / 64 >= 1/64
- * LSB^2 makes b >= 4; the coarse K is 256 times as large, and u^2 >= 1024 LSB^2 makes b >= 12.
+ * m = softgate^2 R / u^2, so below 1 / S: UQ0.24, and at least 2^-20, so that the furthest sample counts too. With |u|
+ * = m' 2^(b + 1) LSB/256, 1 <= m' < 2, and K = 64 softgate^2 R, K / m'^2 in UQ.16 is 2^(2 b - 16) times as many counts.
+ * u^2 > K / 64 >= 1/64 LSB^2 gives b >= 4; the coarse K is 256 times as large, and u^2 >= 1024 LSB^2 gives b >= 12.
  */
 static uint32_t weight_uq24(const filter_t *f)
 {
@@ -103,7 +102,7 @@ static uint32_t weight_uq24(const filter_t *f)
             b = 6;
         }
     }
-    while ((uint8_t)(size >> 16) < 0x20U) { /* three places in line cost as much as two in the loop below */
+    while ((uint8_t)(size >> 16) < 0x20U) { /* unrolled, three places cost as much as two in the loop below */
         size = fx_eightfold(size);
         b = (uint8_t)(b - 3U);
     }
@@ -121,7 +120,7 @@ static uint32_t weight_uq24(const filter_t *f)
     return kalman_limited_uq24(placed(weight, b) | LEAST_UQ24);
 }
 
-/* |u| w in LSB, Q16, rounded down; |u| to whole LSB from 256 LSB on. */
+/* |u| w in LSB, Q16, rounded down; |u| in whole LSB from 256 LSB on. */
 static int32_t part_of_innovation(const filter_t *f, uint32_t w_uq24)
 {
     bool far = (uint8_t)(f->size_lsb_uq16 >> 24) != 0U;
@@ -130,7 +129,7 @@ static int32_t part_of_innovation(const filter_t *f, uint32_t w_uq24)
     return far ? (int32_t)product : (int32_t)(product >> 8);
 }
 
-/* x and P11 with the gain w1 = P11 m. x moves by a count more than w1 u, so that no sample is without effect. */
+/* x and P11 with the gain w1 = P11 m. x moves by one count more than w1 u, so that every sample has an effect. */
 static void update_x(filter_t *f, uint32_t w1_uq24)
 {
     filter_tracker_move(f, part_of_innovation(f, w1_uq24) + 1);
@@ -151,8 +150,8 @@ static void update_rate(filter_t *f, uint32_t m_uq24)
 }
 
 /*
- * A sample beyond the soft gate. Its share S / S_eff = S m = m + w1 tells whether it lies beyond the gate: u^2 > gate^2
- * S where S m < (softgate / gate)^2.
+ * A sample beyond the soft gate. Its share S / S_eff = S m = m + w1 shows whether it is beyond the gate: u^2 > gate^2 S
+ * where S m < (softgate / gate)^2.
  */
 static void take_part(filter_t *f, int16_t z_lsb)
 {
@@ -162,7 +161,7 @@ static void take_part(filter_t *f, int16_t z_lsb)
     f->gain_uq16 = (uint16_t)(w1_uq24 >> 8);
     uint16_t weight = (uint16_t)(m_uq24 >> 8);
     uint16_t share_uq16 = (uint16_t)(weight + f->gain_uq16);
-    if (share_uq16 >= weight && share_uq16 < k->of.gated.share_uq16) { /* rounding may carry a share of 1 past it */
+    if (share_uq16 >= weight && share_uq16 < k->of.gated.share_uq16) { /* rounding may wrap a share of 1 */
         f->flags |= FILTER_GATED;
         if (filter_kalman_refused(f, z_lsb)) {
             return;
@@ -183,7 +182,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     }
 }
 
-/* A gain too small for its 16 bits is reported as 2^-16: only refused samples have none, and soft refuses none. */
+/* A gain too small for 16 bits is reported as 2^-16: 0 stands for refused samples, and soft refuses none. */
 static void report(const filter_t *f, filter_probe_t *out)
 {
     filter_kalman_report(f, out);

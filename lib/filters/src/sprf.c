@@ -2,14 +2,14 @@
  * sprf: kf with a binary gate, made safe against lock-out.
  *
  * A sample further from the prediction than gate x sigma (of the innovation) is refused: predict only. Refused samples
- * that agree among themselves on raw values re-acquire: position and rate restart from them. Where nothing agrees for
- * long it stands still. Paper 002, rule (34) with u^2 <= gate^2 S, plus the running-median start and consistency
- * re-acquisition that its start and a step need. Parameters r, q, gate, reacquire, ratemax. Equations and scaling:
- * kalman.h.
+ * whose raw values agree re-acquire: position and rate restart from them. If nothing agrees for long, the rate is set
+ * to 0 and the estimate holds. Paper 002, rule (34) with u^2 <= gate^2 S, plus what its start and a step require: the
+ * running-median start and consistency re-acquisition. Parameters r, q, gate, reacquire, ratemax. Equations and
+ * scaling: kalman.h.
  */
 #include "kalman.h"
 
-/* Samples refused in a row until the rate is no longer believed: the next one stops it. */
+/* Refused samples for which the rate is still trusted; the next one sets it to 0. */
 #define RATE_HELD_SAMPLES 5U
 
 static const filter_parameter_t *const parameters[] IN_FLASH = { &filter_parameter_r, &filter_parameter_q,
@@ -37,13 +37,13 @@ static void set_up(filter_t *f, const filter_config_t *config)
 }
 
 /*
- * The rate stands for a motion of which nothing was seen since the last accepted sample. Where nothing agrees for long,
- * as on a frame that shakes, the filter would run on by it. Without re-acquisition it does, as published.
+ * The rate describes a motion that has not been observed since the last accepted sample. If nothing agrees for long, as
+ * on a shaking frame, the filter would drift off with it. Without re-acquisition it does, as published.
  */
 static void forget_rate(filter_t *f)
 {
     filter_kalman_t *k = &f->own.kalman;
-    if (k->run == 0U) { /* the first since one was accepted */
+    if (k->run == 0U) { /* first refused sample since one was accepted */
         k->refused = 0;
     }
     if (k->refused < RATE_HELD_SAMPLES) {

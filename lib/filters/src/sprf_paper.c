@@ -1,21 +1,21 @@
 /*
- * sprf_paper: the binary-gated filter of paper 002, (34), as published: it LOCKS OUT. Here to be compared with; use
+ * sprf_paper: the binary-gated filter of paper 002, (34), as published: it LOCKS OUT. Included for comparison; use
  * sprf.
  *
  * A sample further from the prediction than gate x sigma (of the innovation; 2 as published, with Xi read as an RMS) is
- * refused: predict only. Nothing else: no re-acquisition, no robust start. The first sample is taken whatever it is (x
- * = z, P11 = R: what an update from P(0) without bound leaves), so an outlier there makes every good sample after it an
- * outlier, and so does a step, until P has grown to it: a step of n sigma waits for P11 = n^2 / 4 R. Only at the end of
- * P's range (32,768 R, 362 sigma; from rest after 273 samples at 100 Hz with the defaults, 1,034 with the paper's R and
- * q) the next sample is taken (FILTER_REACQUIRED), because P can grow no further. Parameters r, q, gate (which cannot
- * be switched off). Equations and scaling: wide.h.
+ * refused: predict only. There is no re-acquisition and no robust start. The first sample is always used (x = z, P11 =
+ * R: what an update from an unbounded P(0) leaves). An outlier there makes every good sample after it an outlier, and
+ * so does a step, until P has grown to it: a step of n sigma waits for P11 = n^2 / 4 R. Only at the end of P's range
+ * (32,768 R, 362 sigma; from rest after 273 samples at 100 Hz with the defaults, 1,034 with the paper's R and q) is the
+ * next sample used (FILTER_REACQUIRED), because P cannot grow further. Parameters r, q, gate (which cannot be switched
+ * off). Equations and scaling: wide.h.
  */
 #include "wide.h"
 
 LAW_PARAMETER(gate, "gate\0sigma", 8, 0, KALMAN_GATE_MIN_SIGMA_Q8, KALMAN_GATE_MAX_SIGMA_Q8, 512);
 static const filter_parameter_t *const parameters[] IN_FLASH = { &filter_parameter_r, &filter_parameter_q, &gate };
 
-/* The squared gate is kept below the saturated distance: 16 sigma are 15.9998. */
+/* The squared gate is kept below the saturated distance: 16 sigma become 15.9998. */
 static void set_up(filter_t *f, const filter_config_t *config)
 {
     uint16_t sigma_q8 = (uint16_t)config->value[SPRF_PAPER_GATE_SIGMA_Q8];

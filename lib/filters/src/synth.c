@@ -5,20 +5,20 @@
  *   x_e = (2 - a1) x1 - (1 - 2 a1) x2 - a1 x3        extrapolation from the last three estimates
  *   x   = x_e + b0 (z - x_e)
  *
- * computed in the incremental form x_e = x1 + v - a1 (v - v'), v = x1 - x2, v' = x2 - x3: two products instead of four,
- * the same by algebra. The papers feed back the estimates, not x_e (as one example prints): with x_e fed back no
- * measurement would reach the prediction. Not robust: every outlier passes with the gain b0. With a1 <= 0 the variance
- * of the estimate cannot fall below R / 2, whatever b0 (notes of the papers: synthesised-filter).
+ * It is computed in the incremental form x_e = x1 + v - a1 (v - v'), v = x1 - x2, v' = x2 - x3: two products instead of
+ * four, algebraically the same. The papers feed back the estimates, not x_e (as one example prints): with x_e fed back
+ * no measurement would reach the prediction. Not robust: every outlier passes with the gain b0. With a1 <= 0 the
+ * variance of the estimate cannot fall below R / 2, whatever b0 (notes on the papers: synthesised-filter).
  *
  * Parameters a1 (0: a straight line through two estimates), b0, r (for start and probe). Together a1 and b0 must lie
  * inside the stability region: 1 + 2 a1 (1 - b0) > 0, which is exact within their ranges. The papers' b0 > -a1 - 0.3 is
- * sufficient only. Paper 001's preset is a1 = -0.3, b0 = 0.1 (-19661, 6554): it overshoots a step by 69 % and hardly
+ * only sufficient. Paper 001's preset is a1 = -0.3, b0 = 0.1 (-19661, 6554): it overshoots a step by 69 % and hardly
  * smooths (variance 0.82 R).
  *
  * Scaling:
- *   a1, b0   UQ0.16 magnitudes, within 2^-17 of the wanted ones
+ *   a1, b0   UQ0.16 magnitudes, within 2^-17 of the configured ones
  *   rounding each product half away from zero to 2^-16 LSB; both together reach the output with the noise gain over
- *            b0^2 of the filter: 0.0002 LSB rms at (-0.3, 0.1). The bound that the tests hold against the double
+ *            b0^2 of the filter: 0.0002 LSB rms at (-0.3, 0.1). The bound that the tests assert against the double
  *            reference is (1 + |1 - b0|) 2^-17 times the sum of the error's impulse response
  */
 #include "synth.h"
@@ -45,8 +45,8 @@ static uint16_t magnitude(int32_t a1_q16)
 }
 
 /*
- * 1 + 2 a1 (1 - b0) > 0 in exact integers. The region's other border lies outside the ranges of the parameters: with a1
- * < 1 and 0 < b0 < 1, 4 - 3 b0 - 4 a1 (1 - b0) > 4 - 3 b0 - 4 (1 - b0) = b0 > 0.
+ * 1 + 2 a1 (1 - b0) > 0 in exact integers. The other border of the region is outside the ranges of the parameters: with
+ * a1 < 1 and 0 < b0 < 1, 4 - 3 b0 - 4 a1 (1 - b0) > 4 - 3 b0 - 4 (1 - b0) = b0 > 0.
  */
 static bool stable(uint16_t b0_uq16, int32_t a1_q16)
 {
@@ -54,8 +54,8 @@ static bool stable(uint16_t b0_uq16, int32_t a1_q16)
 }
 
 /*
- * Variance of the estimate's error per R in the steady state, white noise, UQ16.16, saturated; 1 (65536) and more: the
- * filter amplifies noise. Relative error below 2^-11 for a1 <= 0.95, 4e-3 at the upper corner of the region:
+ * Steady-state variance of the estimate's error per R, white noise, UQ16.16, saturated; 1 (65536) and more: the filter
+ * amplifies noise. Relative error below 2^-11 for a1 <= 0.95, 4e-3 at the upper corner of the region:
  *
  * (2 - b0 - 2 ac (b0 + ac)) / ((1 + 2 ac) (4 - 3 b0 - 4 ac)), ac = a1 (1 - b0): the stationary variance solved from the
  * closed loop. The factors that vanish on the border of the region are formed exactly.
@@ -93,7 +93,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
     filter_set_noise(f, (uint32_t)config->value[SYNTH_R_LSB2_Q8]);
 }
 
-/* In the start the gain is that of a line, and the prediction the straight line alone. */
+/* During the start the gain is that of a line, and the prediction is the straight line alone. */
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     filter_synth_t *s = &f->own.synth;
@@ -108,7 +108,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     }
 }
 
-/* The variance is that of one sample until the gain is steady, then R times the noise gain, limited to 32 bits. */
+/* Variance of one sample until the gain is steady, then R times the noise gain, limited to 32 bits. */
 static void report(const filter_t *f, filter_probe_t *out)
 {
     const filter_synth_t *s = &f->own.synth;

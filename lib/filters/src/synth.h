@@ -1,10 +1,10 @@
 /*
- * What the synthesised laws share (synth, synth_opt, synth_plus): the start and one step
+ * What the synthesised laws share (synth, synth_opt, synth_plus): the start, and one step
  *
  *   x_e = 2 x1 - x2 + addend,   u = z - x_e,   x = x_e + b0 u
  *
- * with the addend that makes the filter. In the tracker's state this is v = x1 - x2: w1 = w2 = b0. Internal to the
- * library.
+ * where the addend is what distinguishes the filters. In the tracker's state this is v = x1 - x2: w1 = w2 = b0.
+ * Internal to the library.
  */
 #ifndef SYNTH_H
 #define SYNTH_H
@@ -15,28 +15,28 @@
 extern "C" {
 #endif
 
-/* `count` of a filter whose gains are the steady ones, and where those of the start begin and end. */
+/* `count` of a filter with steady gains, and where the gains of the start begin and end. */
 enum { SYNTH_STEADY = 255, SYNTH_FIRST_GAIN = FILTER_WARM_UP_SAMPLES, SYNTH_END_GAIN = 63 };
 
-/* A lower gain than 0.01 would need more than 16 bits of it: the lag goes with 1 / b0. */
+/* A gain below 0.01 would need more than 16 bits: the lag goes with 1 / b0. */
 #define SYNTH_B0_MIN_UQ16 656
 #define SYNTH_B0_MAX_UQ16 65535
 
-/* Noise for the report and for what of the rate is believed when samples are missing. */
+/* Noise for the report, and to decide whether the rate is kept when samples are missing. */
 void filter_synth_take_noise(filter_t *f, uint32_t r_lsb2_q8);
 
-/* At the median of the start; settled: at rest with the steady gains. */
+/* Starts at the median of the start; settled: at rest with the steady gains. */
 void filter_synth_start(filter_t *f, bool settled);
 
 /*
- * The gain for this sample, at least b0: (4 n - 2) / (n (n + 1)) of a least-squares line through n samples in the
- * start, which ends with the first of them that is not above b0 or with sample SYNTH_END_GAIN.
+ * The gain for this sample, at least b0. During the start it is (4 n - 2) / (n (n + 1)) of a least-squares line through
+ * n samples. The start ends with the first of these that is not above b0, or with sample SYNTH_END_GAIN.
  */
 uint16_t filter_synth_next_gain_uq16(filter_t *f);
 
 /*
- * One step: prediction by v, to which the law has added what bends it, |addend| <= 18432 LSB (with |2 x1 - x2| <= 13824
- * the sum stays below 2^31 in Q16), then the correction with f->gain_uq16, without a sample none.
+ * One step: prediction by v, to which the law has added its addend, |addend| <= 18432 LSB (with |2 x1 - x2| <= 13824
+ * the sum stays below 2^31 in Q16), then the correction with f->gain_uq16, or none without a sample.
  */
 void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what);
 
@@ -47,15 +47,15 @@ void filter_synth_bent_step(filter_t *f, int16_t z_lsb, uint8_t what, uint16_t a
 void filter_synth_steady_step(filter_t *f, int16_t z_lsb, uint8_t what);
 
 /*
- * The rate is the difference of two estimates, the noise of which is 0.3 to 0.7 sigmas of a sample: unless it is more
- * than three it is not believed when samples begin to be missing, nor is the curvature.
+ * The rate is the difference of two estimates, with a noise of 0.3 to 0.7 sigmas of a sample. When samples begin to be
+ * missing, rate and curvature are kept only if the rate exceeds three sigmas.
  */
 void filter_synth_fade(filter_t *f, bool first);
 
-/* The last two steps halved. */
+/* Halves the last two steps. */
 void filter_synth_damp(filter_t *f);
 
-/* Noise gains in the steady state, see synth.c and synth_plus.c; for the tools too. Divide. */
+/* Steady-state noise gains, see synth.c and synth_plus.c; for the tools too. Divide. */
 uint32_t filter_synth_noise_gain_uq16(uint16_t b0_uq16, int32_t a1_q16);
 uint32_t filter_synth_taps_noise_gain_uq16(const filter_config_t *config);
 

@@ -4,8 +4,9 @@
 LAW_KEEPS_FROM(filter_synth_t, r_lsb2_q8);
 
 /*
- * Gains of a least-squares line through n samples, (4 n - 2) / (n (n + 1)), n = 6..63, UQ0.16: what the constant gain
- * is raised to after the start. After the last one the estimate's variance is within a few per cent of the steady one.
+ * Gains of a least-squares line through n samples, (4 n - 2) / (n (n + 1)), n = 6..63, UQ0.16: they replace the
+ * constant gain after the start while they are higher. After the last one the variance of the estimate is within a few
+ * per cent of the steady one.
  */
 static const uint16_t start_gains_uq16[SYNTH_END_GAIN - SYNTH_FIRST_GAIN] IN_FLASH = {
     34328, 30427, 27307, 24758, 22640, 20852, 19325, 18004, 16852, 15838, 14938, 14135, 13414, 12762, 12171,
@@ -78,7 +79,7 @@ void filter_synth_damp(filter_t *f)
     f->own.synth.rate_before_lsb_q16 >>= 1;
 }
 
-/* More than three sigmas of a sample: both squares in UQ16.16, 9 R < 2^14. */
+/* Whether the rate exceeds three sigmas of a sample: both squares in UQ16.16, 9 R < 2^14. */
 static bool rate_counts(const filter_t *f)
 {
     uint32_t size_lsb_uq8 = filter_fx_abs32(f->rate_lsb) >> 8;

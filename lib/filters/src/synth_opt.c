@@ -1,19 +1,20 @@
 /*
  * synth_opt: the synthesised filter with parametric synthesis (Zimchuk and Shapar, paper 000, algorithm 22): a1 and b0
- * change from sample to sample by a schedule that the variance of the start's error, P0 over R, determines.
+ * change from sample to sample by a schedule that depends on the variance of the start's error, P0, over R.
  *
  *   x_e = 2 x1 - x2 - a1(n) (x1 - 2 x2 + x3),   x = x_e + b0(n) (z - x_e),   b0 = Pe / (Pe + R)
  *
- * As printed the schedule is chaotic and its variance goes negative, because (17)-(19) take the variance of a linear
- * combination for a squared shift operator. Two that work, made off line by tools/design/schedule.py:
+ * As printed the schedule is chaotic and its variance becomes negative, because (17)-(19) treat the variance of a
+ * linear combination as a squared shift operator. Two schedules that work, computed off line by
+ * tools/design/schedule.py:
  *
  *   exact  Pe = h S h' with the covariance S of the last three errors, a1 = its optimum: ends at (0, 2/3), P = 2/3 R
  *   U      a1 by the paper's (21), Pe as if the errors were uncorrelated, the closest working relative of (20):
- *          ends at (-1/6, 11/13); its own P = 11/13 R there, true are 0.8059 R
+ *          ends at (-1/6, 11/13); its own P = 11/13 R there, the true one is 0.8059 R
  *
- * both with a1 in [-1/3, 0] and b0 in [1/2, 1), where any switching is stable. The steady gains do not depend on R: R
- * on line changes the start only. Not robust: every outlier passes with the gain b0. Parameters u (0: exact, 1: variant
- * U), p0, r (for start and probe).
+ * both with a1 in [-1/3, 0] and b0 in [1/2, 1), where any switching is stable. The steady gains do not depend on R: a
+ * changed R affects only the start. Not robust: every outlier passes with the gain b0. Parameters u (0: exact, 1:
+ * variant U), p0, r (for start and probe).
  *
  * Scaling:
  *   a1, b0   UQ0.16 magnitudes of the table, within 2^-17 of the schedule's for its class of P0 / R. With the class's
@@ -25,10 +26,10 @@
 #include "synth.h"
 #include "synth_opt_table.h"
 
-/* Place of the gains after the schedule. */
+/* Index of the gains after the schedule. */
 enum { LIMIT = (int)SYNTH_OPT_COMMON + (int)SYNTH_OPT_STEPS };
 
-/* 11/13 in the limit of variant U, where its errors are taken as uncorrelated; with the closed loop's it is this. */
+/* Variant U takes its errors as uncorrelated and arrives at 11/13; computed from the closed loop it is this. */
 #define U_NOISE_GAIN_UQ16 52818U
 
 LAW_PARAMETER(u, "u\0", 0, 0, 0, 1, 0);
@@ -58,7 +59,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
 
 /*
  * The class whose ratio is nearest to P0 / R on a logarithmic scale: the border between 4^i and 4^(i + 1) is 2 x 4^i.
- * Once the schedule runs R changes nothing.
+ * Once the schedule runs, R has no effect.
  */
 static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
 {
@@ -75,7 +76,10 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
     }
 }
 
-/* A step of the schedule, with its place in the tables: of the class, then of all. It waits for missing samples. */
+/*
+ * A step of the schedule, with its index in the tables: first those of the class, then the common ones. It pauses for
+ * missing samples.
+ */
 static void scheduled_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     filter_synth_t *s = &f->own.synth;
@@ -106,8 +110,8 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 }
 
 /*
- * The variance is that of one sample while warming up, then what the schedule takes it for, R b0 (more than the true
- * one where b0 was clamped), and after it the noise gain of the limit.
+ * Variance of one sample while warming up, then the one that the schedule assumes, R b0 (more than the true one where
+ * b0 was clamped), and after the schedule the noise gain of the limit.
  */
 static void report(const filter_t *f, filter_probe_t *out)
 {

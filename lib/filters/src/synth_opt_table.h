@@ -10,7 +10,7 @@
 
 enum { SYNTH_OPT_CLASSES = 6, SYNTH_OPT_OWN_STEPS = 4, SYNTH_OPT_STEPS = 12 };
 
-/* Place of step n >= SYNTH_OPT_OWN_STEPS: n + SYNTH_OPT_COMMON. */
+/* Index of step n >= SYNTH_OPT_OWN_STEPS: n + SYNTH_OPT_COMMON. */
 enum { SYNTH_OPT_COMMON = 20 };
 
 /* clang-format off */

@@ -4,33 +4,34 @@
  *
  *   x_e = 2 x1 - x2 - a1 (x1 - 2 x2 + x3) + b1 u1 + b2 u2,   u = z - x_e,   x = x_e + b0 u
  *
- * so x / z = B / D with D = B + (1 - b0) A, A = (1 - z^-1)^2 (1 + a1 z^-1). Contains what `synth` cannot be, with the
- * acceleration's correlation rho = -a1 from sample to sample and gains k1, k2, k3 of x' = x + v, v' = v + a, a' = rho a
+ * so x / z = B / D with D = B + (1 - b0) A, A = (1 - z^-1)^2 (1 + a1 z^-1). It contains filters that `synth` does not.
+ * With rho = -a1 the correlation of the acceleration from sample to sample, and gains k1, k2, k3 of x' = x + v, v' = v
+ * + a, a' = rho a:
  *
  *   alpha-beta        rho = 0: b0 = alpha, b1 = beta - alpha, b2 = 0
  *   steady Singer     b0 = k1, b1 = k2 - (1 + rho) k1, b2 = rho (k1 - k2) + k3; of a Kalman filter that is
  *   filter            b2 = rho (1 - b0) (b1 + (2 + rho) b0)
  *   alpha-beta-gamma  the same with rho = 1
  *
- * At most three products a sample: b0 u, b1 u and, unless b2 is 0, b2 u, each of a state of 32 bits and a tap of 16,
- * that is two multiplications of 16 x 16 bits or eight of the chip's. Four free coefficients would need a fourth, so
- * rho = 1 - 2^-k: what is taken from the curvature is a shift. The chip, which shifts one place at a time, makes that
- * shift with four multiplications of its bytes by 2^(8-k), half of what a product takes. A process whose rho lies
- * between two of these is followed with the taps made for the nearer one (test_synth_plus_reference.c tells what that
- * costs). Not robust: every outlier passes with the gain b0.
+ * At most three products a sample: b0 u, b1 u and, unless b2 is 0, b2 u, each of a 32-bit state and a 16-bit tap, that
+ * is two multiplications of 16 x 16 bits or eight of the chip's. Four free coefficients would need a fourth, so rho = 1
+ * - 2^-k: what is subtracted from the curvature is a shift. The chip, which shifts one place at a time, does that shift
+ * with four byte multiplications by 2^(8-k), half the cost of a product. A process whose rho lies between two of these
+ * is tracked with the taps for the nearer one (test_synth_plus_reference.c shows the cost). Not robust: every outlier
+ * passes with the gain b0.
  *
  * Parameters k (rho = 1 - 2^-k; 8: 1), b0, b1, b2, r (for start and probe). Together the four must be stable: D has its
  * zeros inside the unit circle, which is (Jury's test of the third order)
  *
  *   b0 + b1 + b2 > 0,   b0 - b1 + b2 + 4 (1 - b0) (1 + rho) > 0,   b0 - b2 > (1 - b0) rho (2 b0 + b1)
  *
- * and decided in exact integers.
+ * and is decided in exact integers.
  *
  * Scaling:
  *   memory   Q15.16, b1 u1 + b2 u2 - a1 (x1 - 2 x2 + x3): |b1 u1 + b2 u2| <= 17410 LSB; with a curvature, below 18432
  *            LSB, the two are limited to 13824 and the sum to 18432: with 2 x1 - x2 each sum is below 2^31 in Q16
- *   b0..b2   UQ0.16 magnitudes, within 2^-17 of the wanted ones; rho exact
- *   products b0, b1, b2: three of 32 x 16 bits, and of b2 that is 0 none; rho is a shift that rounds (fx_without_part)
+ *   b0..b2   UQ0.16 magnitudes, within 2^-17 of the configured ones; rho exact
+ *   products b0, b1, b2: three of 32 x 16 bits, none for b2 = 0; rho is a shift that rounds (fx_without_part)
  *   rounding products half away from zero to 2^-16 LSB, the shift half up; with n half counts in x_e (one for each of
  *            b1, b2 and the shift) and the one of b0 the error is below
  *            2^-17 (sum |g0| + n sum |g1|), g0, g1 the impulse responses of (B + (1 - b0)) / D and (1 - b0) / D
@@ -40,7 +41,7 @@
 #define ONE_Q16 65536
 #define K_MAX 8 /* rho = 1 */
 
-/* Of the shipped values: kf's gains with process noise of 6e-8 and of 1 R per sample. */
+/* For the defaults: kf's gains with process noise of 6e-8 and of 1 R per sample. */
 #define ALPHA_MIN_UQ16 1442U
 #define ALPHA_MAX_UQ16 50403U
 
@@ -53,8 +54,8 @@ static const filter_parameter_t *const parameters[] IN_FLASH = { &k_parameter, &
 
 /*
  * - b1 of the alpha-beta form of a least-squares line through n samples, (4 n - 8) / (n (n + 1)), n = 6..31, UQ0.16.
- * With the gains of filter_synth_next_gain_uq16 the start is that line. A slower filter goes on with its own from
- * there: they are at most 0.13 apart.
+ * With the gains of filter_synth_next_gain_uq16 the start is that line. A slower filter continues with its own from
+ * there: they differ by at most 0.13.
  */
 enum { LINE_END = 31 };
 static const uint16_t line_memory_uq16[(uint8_t)LINE_END - (uint8_t)SYNTH_FIRST_GAIN] IN_FLASH = {
@@ -63,12 +64,12 @@ static const uint16_t line_memory_uq16[(uint8_t)LINE_END - (uint8_t)SYNTH_FIRST_
 };
 
 /*
- * Alpha-beta with the steady gains of `kf` at its defaults (q = 10,000 LSB^2/s^3, R by rate): alpha by a rational
- * function of the rate within 0.1 % of them from 25 to 800 Hz, limited as they are to 0.022..0.769; beta = alpha^2 /
- * (2 - alpha), the relation that they have.
+ * Alpha-beta with the steady gains of `kf` at its defaults (q = 10,000 LSB^2/s^3, R by rate). alpha is a rational
+ * function of the rate, within 0.1 % of them from 25 to 800 Hz, limited as they are to 0.022..0.769; beta = alpha^2 /
+ * (2 - alpha), as in kf.
  *
- * Gains of kf: alpha^4 / ((2 - alpha)^2 (1 - alpha)) = q T^3 / R = g^4, g = 24.03 Hz / rate. alpha = sqrt(2) g /
- * (1 + g / sqrt(2) + 0.13 g^2) is exact for small g; with the rate in 0.1 Hz, numerator and denominator times it:
+ * Gains of kf: alpha^4 / ((2 - alpha)^2 (1 - alpha)) = q T^3 / R = g^4, g = 24.03 Hz / rate. alpha = sqrt(2) g / (1 + g
+ * / sqrt(2) + 0.13 g^2) is exact for small g; with the rate in 0.1 Hz, numerator and denominator times it:
  */
 static void standard(filter_config_t *config)
 {
@@ -84,7 +85,7 @@ static void standard(filter_config_t *config)
     config->value[SYNTH_PLUS_B1_Q16] = (int32_t)beta_uq16 - (int32_t)alpha_uq16;
 }
 
-/* A call of its own for the products that run rarely. */
+/* Not inlined, for products that run rarely. */
 static uint32_t product_u16(uint16_t a, uint16_t b)
 {
     return fx_product_u16(a, b);
@@ -97,7 +98,7 @@ static uint32_t memory_uq32(const filter_config_t *config)
     return (config->value[SYNTH_PLUS_K] < K_MAX) ? c_uq32 - (c_uq32 >> config->value[SYNTH_PLUS_K]) : c_uq32;
 }
 
-/* The three conditions of synth_plus.c in units of 2^-16, exact. The first and third contain 2 b0 + b1 > 0. */
+/* The three conditions at the top of this file in units of 2^-16, exact. The first and third imply 2 b0 + b1 > 0. */
 static bool together(const filter_config_t *config)
 {
     uint32_t memory = memory_uq32(config);
@@ -109,7 +110,7 @@ static bool together(const filter_config_t *config)
         at_minus_one < 0 || (at_minus_one == 0 && (memory & 0x3FFFU) == 0U)) {
         return false;
     }
-    /* m (2 b0 + b1) by halves of 16 bits: the product has 50; what it has beyond 32 fraction bits makes it larger */
+    /* m (2 b0 + b1) from 16-bit halves: the product has 50 bits; bits beyond 32 fraction bits make it larger */
     uint16_t low = (uint16_t)memory;
     uint16_t high = (uint16_t)(memory >> 16);
     uint16_t twice_low = (uint16_t)(uint32_t)twice;
@@ -126,7 +127,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
     filter_synth_t *s = &f->own.synth;
     s->b0_uq16 = (uint16_t)config->value[SYNTH_PLUS_B0_UQ16];
     s->of.plus.k = (uint8_t)config->value[SYNTH_PLUS_K];
-    s->of.plus.rest_uq8 = (uint8_t)((0x100U >> s->of.plus.k) & 0xFEU); /* of k = 0 and 8 nothing */
+    s->of.plus.rest_uq8 = (uint8_t)((0x100U >> s->of.plus.k) & 0xFEU); /* 0 for k = 0 and 8 */
     s->of.plus.b1_uq16 = (uint16_t)filter_fx_abs32(config->value[SYNTH_PLUS_B1_Q16]);
     s->of.plus.b1_negative = config->value[SYNTH_PLUS_B1_Q16] < 0;
     s->of.plus.b2_uq16 = (uint16_t)filter_fx_abs32(config->value[SYNTH_PLUS_B2_Q16]);
@@ -134,7 +135,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
     filter_set_noise(f, (uint32_t)config->value[SYNTH_PLUS_R_LSB2_Q8]);
 }
 
-/* The last innovation x a tap: by magnitudes, so that rounding is the same for both signs. */
+/* The last innovation times a tap: by magnitudes, so that rounding is the same for both signs. */
 static int32_t tapped(const filter_t *f, bool negative, uint16_t tap_uq16)
 {
     int32_t tapped_q16 = (int32_t)filter_fx_mul_uq16(f->size_lsb_uq16, tap_uq16);
@@ -149,8 +150,9 @@ static int32_t older_q16(const filter_t *f)
 }
 
 /*
- * What the next x_e adds to the straight line: b1 u, besides the b2 u1 that is there, and rho (v - v'). Both limited on
- * the way so that |memory| <= 18432 LSB, which the prediction takes: only steps over most of the range come there.
+ * What the next x_e adds to the straight line: b1 u, on top of the b2 u1 already stored, and rho (v - v'). Both are
+ * limited on the way so that |memory| <= 18432 LSB, which the prediction allows: only steps over most of the range
+ * reach that.
  */
 static void remember(filter_t *f)
 {
@@ -165,7 +167,7 @@ static void remember(filter_t *f)
 }
 
 /*
- * A sample of the start, with the gain and the b1 of the line and no other memory. The one that ends it has the own
+ * A sample of the start, with the gain and the b1 of the line and no other memory. The last one uses the filter's own
  * gain and b1.
  */
 static void start_step(filter_t *f, int16_t z_lsb)
@@ -178,7 +180,7 @@ static void start_step(filter_t *f, int16_t z_lsb)
         s->count = SYNTH_STEADY;
         f->gain_uq16 = s->b0_uq16;
     } else {
-        uint8_t place = (uint8_t)(s->count - ((uint8_t)SYNTH_FIRST_GAIN + 1U)); /* counted already */
+        uint8_t place = (uint8_t)(s->count - ((uint8_t)SYNTH_FIRST_GAIN + 1U)); /* count already includes this sample */
         b1_uq16 = flash_u16(&line_memory_uq16[place]);
         negative = true;
     }
@@ -187,7 +189,7 @@ static void start_step(filter_t *f, int16_t z_lsb)
     s->memory_lsb_q16 = tapped(f, negative, b1_uq16);
 }
 
-/* A missing sample is one with the innovation 0; in the start it leaves no memory. */
+/* A missing sample counts as one with innovation 0; during the start it leaves no memory. */
 static void step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
     filter_synth_t *s = &f->own.synth;
@@ -235,8 +237,8 @@ static int32_t q25(int32_t v_q16)
 }
 
 /*
- * Variance of the estimate's error per R in the steady state, white noise, UQ16.16, saturated. Relative error below
- * 2^-9 where the poles are within 0.99.
+ * Steady-state variance of the estimate's error per R, white noise, UQ16.16, saturated. Relative error below 2^-9 where
+ * the poles are within 0.99.
  *
  * With m = (1 - b0) rho the stationary variance, solved from the closed loop, is N / ((b0 - b1 + b2 + 4 (1 - b0) + 4 m)
  * (b0 - b2 - m (2 b0 + b1))), the factors those of the stability test (the third cancels),
@@ -267,7 +269,7 @@ uint32_t filter_synth_taps_noise_gain_uq16(const filter_config_t *config)
     return filter_fx_scaled_fixed(gain, 16);
 }
 
-/* The variance is that of one sample until the gains are steady, then R times the noise gain, limited to 32 bits. */
+/* Variance of one sample until the gains are steady, then R times the noise gain, limited to 32 bits. */
 static void report(const filter_t *f, filter_probe_t *out)
 {
     const filter_synth_t *s = &f->own.synth;

@@ -1,4 +1,4 @@
-/* Verbs of the tracker that laws are written with: see tracker.h. */
+/* The tracker's functions that laws are built from: see tracker.h. */
 #include "tracker.h"
 
 void filter_tracker_clear(void *state, size_t size)
@@ -70,7 +70,7 @@ int32_t filter_tracker_median_q16(const int16_t *ascending_lsb, uint8_t count)
 {
     int16_t high = ascending_lsb[count >> 1];
     int16_t low = ((count & 1U) != 0U) ? high : ascending_lsb[(count >> 1) - 1];
-    return ((int32_t)(int16_t)(low + high) * 65536) >> 1; /* even before the halving: exact */
+    return ((int32_t)(int16_t)(low + high) * 65536) >> 1; /* the factor 65536 makes it even: halving is exact */
 }
 
 MACHINE_APART uint32_t filter_tracker_limited_r(uint32_t r_lsb2_q8)
@@ -98,7 +98,7 @@ void filter_tracker_damp(filter_t *f)
 {
     f->rate_lsb >>= 1;
     if ((flash_u8(&f->law->traits) & LAW_COVARIANCE) != 0U) {
-        filter_covariance_t *p = &f->own.kalman.p; /* P of (x, v / 2): it stays a covariance within its bounds */
+        filter_covariance_t *p = &f->own.kalman.p; /* P of (x, v / 2): stays a covariance within its bounds */
         filter_tracker_halve(&p->p12);
         filter_tracker_halve(&p->p22);
         filter_tracker_halve(&p->p22);

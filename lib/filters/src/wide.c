@@ -1,4 +1,4 @@
-/* Covariance that may grow far: see wide.h for the equations. */
+/* Covariance with a wide range: see wide.h for the equations. */
 #include "wide.h"
 
 LAW_KEEPS_FROM(filter_wide_t, gate2_uq8);
@@ -38,7 +38,7 @@ void filter_wide_start(filter_t *f, bool settled)
     w->variance = 0;
 }
 
-/* P / R one sample on; false when it is at the end of its range. */
+/* Predicts P / R; false if it is at the end of its range. */
 static bool grow(filter_wide_t *w)
 {
     uint32_t p11 = w->p.p11;
@@ -91,13 +91,13 @@ static uint32_t limited(uint32_t p)
 }
 
 /*
- * An element of P: what Kalman's update leaves of it, and a fraction of what that takes away; or, to grow, what was
- * there and eight times that fraction more.
+ * An element of P: what Kalman's update leaves, plus a fraction of what it removes; if it grows, the old value plus
+ * eight times that fraction.
  */
 static void give_back(uint32_t *p, uint32_t left, uint16_t fraction_uq16, bool grows)
 {
     uint32_t before = *p;
-    uint32_t taken = (before > left) ? before - left : 0U; /* not below 0 for rounding */
+    uint32_t taken = (before > left) ? before - left : 0U; /* rounding does not take it below 0 */
     uint32_t part = (fraction_uq16 == 0U) ? 0U : filter_fx_mul_uq16(taken, fraction_uq16);
     if (grows) {
         left = before;
@@ -106,7 +106,7 @@ static void give_back(uint32_t *p, uint32_t left, uint16_t fraction_uq16, bool g
     *p = limited(left + part);
 }
 
-/* P22 less w2 P12, at least 0: by w2's mantissa, because in UQ8.24 the product would be too coarse for P22. */
+/* P22 less w2 P12, at least 0. Uses w2's mantissa, because in UQ8.24 the product would be too coarse for P22. */
 static uint32_t left_of_p22(const filter_wide_t *w, uint32_t w2_uq24)
 {
     fx_leading_t w2 = filter_fx_leading(w2_uq24); /* mantissa x 2^-(places - 8) x 2^-16, places >= 8 */
@@ -172,7 +172,7 @@ void filter_wide_refuse(filter_t *f, bool grows)
 void filter_wide_report(const filter_t *f, filter_probe_t *out)
 {
     const filter_wide_t *w = &f->own.wide;
-    /* while warming up P is not there yet: the variance of one sample */
+    /* P is not set while warming up: the variance of one sample */
     bool running = f->collected == FILTER_RUNNING;
     fx_scaled_t p_lsb2 = filter_fx_scaled_mul(filter_fx_scaled(running ? w->p.p11 : ONE_UQ16),
                                               filter_fx_scaled(w->r_lsb2_q8));

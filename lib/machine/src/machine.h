@@ -1,13 +1,13 @@
 /*
- * What code says to the compiler of one machine, for libraries, HAL and firmware: what lies in program memory, what is
- * copied into its callers and what is not, what the optimiser may know. The only header that asks which machine it is,
- * beside the arithmetic of fx.h; elsewhere than on an 8-bit AVR constants are where they are and fences are nothing.
+ * What is specific to one machine's compiler, for libraries, HAL and firmware: placement in program memory, inlining,
+ * and what the optimiser may know. Apart from the arithmetic of fx.h this is the only header that asks which machine it
+ * compiles for. Except on an 8-bit AVR, constants stay where they are and fences do nothing.
  *
  * Program memory: on the chip every plain const and every string literal would occupy the 2 KB of RAM.
  *
  *   static const uint16_t table[] IN_FLASH = { ... };   place a constant; read it through flash_* only
  *   FLASH_TEXT("words")                                 a string literal there, a flash_text_t (inside a function)
- *   FLASH_FUNCTION(&descriptor->member)                 a pointer to a function that lies there
+ *   FLASH_FUNCTION(&descriptor->member)                 a function pointer stored there
  */
 #ifndef MACHINE_H
 #define MACHINE_H
@@ -19,12 +19,15 @@ extern "C" {
 #endif
 
 /*
- * Copied into its callers whatever the optimiser's opinion: for one hot caller, or for what an interrupt runs, which
- * would save every register that a function called may use, 60 cycles.
+ * Always inlined: for a single hot caller, or for code that an interrupt runs. A call from an interrupt handler would
+ * make it save every register that the callee may use, 60 cycles.
  */
 #define MACHINE_INLINE static inline __attribute__((always_inline))
 
-/* Not copied, by link-time optimisation either: a rare or heavy part, for which its callers shall save no registers. */
+/*
+ * Never inlined, not by link-time optimisation either: a rare or heavy part whose registers its callers should not
+ * save.
+ */
 #define MACHINE_APART __attribute__((noinline))
 
 typedef const char *flash_text_t;
@@ -32,18 +35,18 @@ typedef const char *flash_text_t;
 #ifdef __AVR__
 #include <avr/pgmspace.h>
 
-/* The compiler forgets what it knows of v, an integer in a register. */
+/* Makes the compiler forget what it knows of v, an integer in a register. */
 #define MACHINE_FENCE(v) __asm__("" : "+r"(v))
 
 /*
- * The compiler forgets what the pointer p points at and keeps p in registers: each access to the thing is two bytes
- * instead of four, where a function makes many.
+ * Makes the compiler forget what the pointer p points at and keeps p in registers: each access then takes two bytes
+ * instead of four. For functions with many accesses through p.
  */
 #define MACHINE_POINTER(p) __asm__("" : "+b"(p))
 
 /*
- * 1: every static variable is 0 when the program begins, and it begins but once; what would set them to 0 is left out.
- * On the PC 0: tests begin it again and again.
+ * 1: every static variable is 0 at program start, and the program starts only once, so code that would zero them is
+ * left out. 0 on the PC, where tests start it repeatedly.
  */
 #define MACHINE_RAM_CLEARED 1
 

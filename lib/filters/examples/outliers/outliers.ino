@@ -1,13 +1,12 @@
 /*
- * A number that is measured again and again, without the tilt. The signal is made up: 4 LSB of noise, every seventh
- * sample ruined. kf follows the ruin, sprf does not.
- * Open the serial plotter at 115200 baud. No sensor needed.
+ * Filters a single number, without the tilt part. The signal is synthetic: 4 LSB of noise, every seventh sample an
+ * outlier. kf follows the outliers, sprf does not. Open the serial plotter at 115200 baud. No sensor needed.
  */
 #include <filter.h>
 #include <noise.h>
 
 static const uint16_t RATE_HZ = 100;
-static const uint16_t RATE_DHZ = RATE_HZ * 10;  // the filters count in 0.1 Hz
+static const uint16_t RATE_DHZ = RATE_HZ * 10;  // the filters count in units of 0.1 Hz
 
 static filter_t plain;
 static filter_t robust;

@@ -1,8 +1,8 @@
 /*
- * Roll from a sensor of 16 bits, an MPU-6050 in its 2 g range: 16384 LSB per g. The facade shifts its readings to what
- * the filters take. Here the readings are made up (a slow roll of +-30 degrees with noise, one in twenty ruined), so
- * that the sketch needs no sensor; with one, take_sample gets what its driver reads.
- * Open the serial plotter at 115200 baud.
+ * Roll from a 16-bit sensor, an MPU-6050 in its 2 g range: 16384 LSB per g. The facade shifts its readings into the
+ * range that the filters take. The readings here are synthetic (a slow roll of +-30 degrees with noise, one in twenty
+ * an outlier), so that the sketch needs no sensor. With a sensor, take_sample passes on what its driver reads. Open the
+ * serial plotter at 115200 baud.
  */
 #include <tilt_filter.h>
 

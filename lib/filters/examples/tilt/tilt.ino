@@ -1,7 +1,7 @@
 /*
- * Roll and pitch from an ADXL345 at 100 Hz, in degrees, for the serial plotter at 115200 baud. Outliers are refused, a
- * reading that fails is made again, and after a bus that hung or a sensor that lost its supply the sketch goes on.
- * SDA to A4, SCL to A5 (through a level shifter: the sensor is a 3.3 V part), CS to 3.3 V, SDO to GND.
+ * Roll and pitch from an ADXL345 at 100 Hz, in degrees, for the serial plotter at 115200 baud. Outliers are rejected, a
+ * failed reading is repeated, and the sketch recovers from a hung bus and from a sensor that lost its supply. SDA to
+ * A4, SCL to A5 (through a level shifter: the sensor is a 3.3 V part), CS to 3.3 V, SDO to GND.
  */
 #include <Wire.h>
 #include <tilt_filter.h>
@@ -15,7 +15,7 @@ static const uint8_t RATE_HZ = 100, PERIOD_MS = 1000 / RATE_HZ;
 static tilt_filter_t tilt;
 static bool configured = false;
 static uint8_t missing = 0;
-static uint32_t due_ms;  // then the next sample is missing
+static uint32_t due_ms;  // when the next sample counts as missing
 
 static bool write_register(uint8_t reg, uint8_t value)
 {
@@ -40,13 +40,13 @@ static bool read_registers(uint8_t reg, uint8_t *bytes, uint8_t count)
 
 static void clock_pulse()
 {
-    pinMode(SCL, OUTPUT);  // low; nobody drives the lines high
+    pinMode(SCL, OUTPUT);  // low; the lines are never driven high
     delayMicroseconds(5);
     pinMode(SCL, INPUT);
     delayMicroseconds(5);
 }
 
-// Nine clocks and a STOP free a sensor that was left in the middle of a byte, which Wire does not.
+// Nine clocks and a STOP free a sensor that was interrupted in the middle of a byte. Wire does not do this.
 static void start_bus()
 {
     Wire.end();
@@ -59,13 +59,13 @@ static void start_bus()
     clock_pulse();
     pinMode(SDA, INPUT);
     Wire.begin();
-    digitalWrite(SDA, LOW);  // the pull-ups to 5 V off: the sensor's are to 3.3 V
+    digitalWrite(SDA, LOW);  // disable the pull-ups to 5 V: the sensor's go to 3.3 V
     digitalWrite(SCL, LOW);
     Wire.setClock(400000);
-    Wire.setWireTimeout(3000, true);  // off by default: a bus that hangs would stop the sketch for ever
+    Wire.setWireTimeout(3000, true);  // off by default: a hung bus would stop the sketch for ever
 }
 
-// In standby, Measure last (data sheet, p. 13): 100 Hz, 16 g, full resolution.
+// In standby, Measure bit last (data sheet, p. 13): 100 Hz, 16 g, full resolution.
 static bool configure()
 {
     uint8_t id;
@@ -79,7 +79,7 @@ static bool sample_waits()
     return read_registers(INT_SOURCE, &source, 1) && (source & DATA_READY) != 0;
 }
 
-// In full resolution the upper bits repeat the sign: a reading of more than 13 bits was cut short by a bus fault.
+// In full resolution the upper bits repeat the sign: a reading of more than 13 bits was corrupted by a bus fault.
 static bool read_sample(int16_t lsb[3])
 {
     uint8_t bytes[6];
@@ -115,7 +115,7 @@ static void take_sample(const int16_t lsb[3])
     Serial.println();
 }
 
-// The filter predicts for 100 ms, then it holds; after five samples the sensor may have lost its supply.
+// The filter predicts for 100 ms, then holds. After five missing samples the sensor may have lost its supply.
 static void miss_sample()
 {
     tilt_filter_missing(&tilt);
