@@ -1,30 +1,26 @@
 /*
- * adaptive: a fading-memory filter whose memory follows the innovations, guarded against outliers; the future work of
- * paper 000.
+ * adaptive: fading memory driven by the innovations, guarded against outliers; the future work of paper 000.
  *
  *   x_e = x + v                              straight-line prediction, u = z - x_e
  *   x = x_e + (2 k - k^2) t, v = v + k^2 t   t: the part of u that is used
  *
- * A sample n steps old has weight (1 - k)^n (first-order fading memory). The memory is about 2 / k samples. For noise
- * of a given sigma the sigma of the innovation is (1 + k) sigma, within 6 % up to k = 0.6. When the mean innovation
- * exceeds 2.9 of its sigmas (by noise alone about twice a minute at 100 Hz), k jumps to that of the shortest memory.
- * Below three quarters of that it falls by k^2 / 4 per sample, which lengthens the memory by half a sample, down to
- * that of the slowest.
+ * A sample n steps old has weight (1 - k)^n (first-order fading memory): a memory of about 2 / k samples. For noise of
+ * sigma s the sigma of the innovation is (1 + k) s, within 6 % up to k = 0.6. When the mean innovation exceeds 2.9 of
+ * its sigmas (noise alone: about twice a minute at 100 Hz), k jumps to that of the shortest memory. Below three
+ * quarters of that it falls by k^2 / 4 per sample, which lengthens the memory by half a sample, to that of the slowest.
  *
- * Guard: the gate is `guard` sigmas of the innovation. For a sample that follows one within the gate it is that many
- * times the sum of the sigma and the magnitude of the mean, because motion that was followed continues. A sample beyond
- * the gate counts as motion only if the one before it, extrapolated with the estimated rate, is off to the same side
- * too. The part that both agree on is then used, and the memory is shortened. An isolated one is used up to the gate,
- * less the further off it is, and from twice the gate on not at all: a stray. An innovation that exceeds the gate by
- * more than motion explains (an eighth of `ratemax`) is accepted as a jump after `confirm` of samples on the same side.
- * While strays are frequent, see adaptive.h, a tighter gate applies, so that two bad samples in a row do not pass for
- * motion.
+ * Guard: the gate is `guard` sigmas of the innovation. For a sample after one within the gate the magnitude of the mean
+ * is added to the sigma, because motion that was followed continues. A sample beyond the gate counts as motion only if
+ * the one before it, extrapolated with the estimated rate, is off to the same side too. The part that both agree on is
+ * then used, and the memory is shortened. An isolated one is used up to the gate, less the further off it is, and from
+ * twice the gate on not at all (a stray). An innovation that exceeds the gate by more than motion explains (an eighth
+ * of `ratemax`) is accepted as a jump after `confirm` of samples on the same side. While strays are frequent
+ * (adaptive.h) the gate is tighter, so that two bad samples in a row do not pass for motion.
  *
  * Noise, with `identify` on (1): the scatter of the innovations about their mean, from every second sample, each
  * limited to 2.5 times its expected value. Motion that the line does not follow widens it, and with it the gate. It
- * starts from the R that was configured, or set last before the first sample after the start. Later calls of
- * filter_set_noise have no effect, and filter_own_noise_lsb2_q8 returns the R that was identified. Off (0): always the
- * square root of that R.
+ * starts from the R configured, or set last before the first sample after the start; later filter_set_noise has no
+ * effect, and filter_own_noise_lsb2_q8 returns the R identified. Off (0): always the square root of that R.
  *
  * FILTER_GATED means that the sample is beyond the gate and used in part or not at all, so its gain need not be 0.
  * Noise above 90 LSB counts as 90, a mean innovation above 128 LSB as 128. Reset keeps the identified noise and clears
@@ -67,10 +63,7 @@ static void standard(filter_config_t *config)
     config->value[ADAPTIVE_FAST_MS] = (int32_t)80 + (int32_t)(20000U / rate_dhz);
 }
 
-/*
- * Largest threshold of the mean innovation, in sigmas of one: below 34 Hz the mean covers few samples, and 2.9 of its
- * sigmas would react too late.
- */
+/* Largest threshold, in sigmas of one: below 34 Hz, with few samples in the mean, 2.9 of its sigmas is too late. */
 #define MANOEUVRE_MAX_UQ16 55378U /* 0.845 */
 
 /* Weights and thresholds derived from the shortest memory. */
@@ -273,9 +266,7 @@ static void follow(filter_t *f, uint32_t taken)
     f->x_lsb_q16 = tracker_bounded(f, f->x_lsb_q16); /* the limit of the rate may put x a step beyond the sample */
 }
 
-/*
- * Gate of this sample, from the sigma of its innovation. The expected value is below 256 LSB, 16 times it below 4096.
- */
+/* Gate of this sample. The sigma of its innovation, mean included, is below 256 LSB, so 16 of them are below 4096. */
 static uint32_t gate_lsb_uq16(const filter_adaptive_t *a, uint16_t expected_uq8)
 {
     uint16_t sigma_q8 = a->gate_sigma_q8;
