@@ -1,8 +1,8 @@
 /*
- * The driver's state machine: finds the sensor, configures it, puts it to rest, backs off. The step in which samples
- * come is in adxl345_stream.c, what the steps share in adxl345_driver.c, what the driver reports of itself in
- * adxl345_report.c. Each step issues at most one register access, and has a deadline; adxl345_poll looks at the result
- * and goes on. All in main; the interrupts are in adxl345_burst.c.
+ * The driver's state machine: finds the sensor, configures it, puts it into standby, backs off. The step that receives
+ * samples is in adxl345_stream.c, what the steps share in adxl345_driver.c, what the driver reports about itself in
+ * adxl345_report.c. Each step issues at most one register access and has a deadline; adxl345_poll checks the result and
+ * moves on. All of it runs in main; the interrupts are in adxl345_burst.c.
  */
 #include "adxl345.h"
 
@@ -19,10 +19,10 @@
 #include "hal_time.h"
 #include "machine.h"
 
-/* A sensor that was not reached by a stop is looked for so many times more, for a second. */
+/* Further attempts to reach a sensor that a stop did not reach, for one second. */
 enum { RESTS = 40 };
 
-/* The one that was found last: who answers at the other address may be another device. */
+/* Addresses the sensor that was found last: a device at the other address may be a different one. */
 static MACHINE_APART void rest_sensor(void)
 {
     adxl345_driver_state()->address = adxl345_driver_state()->known;
@@ -43,7 +43,7 @@ void adxl345_init(void)
     adxl345_driver_state()->known = ADXL345_ADDRESS_LOW;
 }
 
-/* Where samples may be waiting, begins to put the sensor to rest; true when that is under way. */
+/* If samples may be waiting, starts to put the sensor into standby; true while that is under way. */
 static bool quiesce(void)
 {
     adxl345_driver_state()->now_us = hal_time_us();
@@ -85,7 +85,7 @@ static table_row_t row_of(const adxl345_driver_t *d)
     return adxl345_table_row(d->step & STEP_ROW, &d->config);
 }
 
-/* The step's register access failed: again, with a free bus, or that is enough. */
+/* The step's register access failed: retries with a free bus, or gives up. */
 static void access_failed(adxl345_driver_t *d, i2c_bus_state_t state)
 {
     if (!adxl345_driver_transfer_failed(state)) {
@@ -102,8 +102,8 @@ static void access_failed(adxl345_driver_t *d, i2c_bus_state_t state)
 }
 
 /*
- * What is said of a device that is none comes later: the first one is kept until the fault is over, unless one address
- * alone is to be asked.
+ * A device that is not an ADXL345. The first one reported is kept until the fault is cleared, unless only one address
+ * is to be probed.
  */
 static void foreign(adxl345_driver_t *d, uint8_t id)
 {
@@ -114,7 +114,7 @@ static void foreign(adxl345_driver_t *d, uint8_t id)
     adxl345_driver_not_here(d, ADXL345_FAULT_WRONG_ID);
 }
 
-/* The rest of the table comes next: all rows are written, then all are read back. */
+/* Goes on with the table: all rows are written, then all are read back. */
 static void configured(adxl345_driver_t *d)
 {
     uint8_t step = d->step;
@@ -138,7 +138,7 @@ static void configured(adxl345_driver_t *d)
     adxl345_driver_enter((step_t)step, TRANSFER_LIMIT);
 }
 
-/* The step's register access ended well. */
+/* The step's register access succeeded. */
 static void advance(adxl345_driver_t *d)
 {
     switch (d->step) {
@@ -158,7 +158,7 @@ static void advance(adxl345_driver_t *d)
     }
 }
 
-/* A step with one register access: a limit for getting the bus, and the same again for the transfer. */
+/* A step with one register access: one time limit for getting the bus, and the same again for the transfer. */
 static void access_step(adxl345_driver_t *d)
 {
     i2c_bus_state_t state = I2C_BUS_BUSY;
@@ -204,7 +204,7 @@ static void drain_step(adxl345_driver_t *d)
     adxl345_driver_probe();
 }
 
-/* All but STEP_STREAM, in which most polls are. */
+/* All steps except STEP_STREAM, which takes most polls. */
 static MACHINE_APART void other_step(adxl345_driver_t *d)
 {
     switch (d->step) {

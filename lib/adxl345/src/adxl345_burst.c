@@ -1,13 +1,12 @@
 /*
  * One burst per sample: INT_SOURCE, DATA_FORMAT, the data, FIFO_CTL, FIFO_STATUS. The data-ready handler starts it, the
- * I2C handler moves its bytes, main judges them (adxl345_integrity.h) and queues the sample; until main has done so no
- * other burst begins, and samples wait in the sensor's FIFO. INT_SOURCE comes before the data because it says of them
- * whether they are new and whether older ones were lost; after them it no longer does (reading them clears both,
- * p. 21).
+ * I2C handler moves its bytes, main judges them (adxl345_integrity.h) and queues the sample. Until main has done so no
+ * other burst begins, and samples wait in the sensor's FIFO. INT_SOURCE comes before the data because it shows whether
+ * they are new and whether older ones were lost; after the data it no longer does (reading them clears both, p. 21).
  *
- * When a burst fails before a data byte was asked for, the sample is still in the sensor and INT1 still high, so main
- * reads it again with the stamp of its edge. When it fails inside the data, that sample has left the FIFO (p. 21) and
- * its stamp goes with it: what main reads next is a later one.
+ * If a burst fails before a data byte was requested, the sample is still in the sensor and INT1 still high, so main
+ * reads it again with the stamp of its edge. If it fails within the data, that sample has left the FIFO (p. 21) and its
+ * stamp is dropped with it: what main reads next is a later one.
  */
 #include "adxl345_burst.h"
 
@@ -24,16 +23,13 @@
 enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1 };
 
 #define SENSOR_DEPTH 33ul /* samples that the sensor can hold (p. 27) */
-#define ASKED_US 256u     /* after a look begins: the sensor has been asked, and the next look is 0.3 ms away */
+#define ASKED_US 256u     /* after a read begins: the sensor has been polled, and the next read is 0.3 ms away */
 
 _Static_assert((int)READING_BYTES == (int)I2C_BUS_RX_MAX, "a reading fits");
 
 static struct burst burst;
 
-/*
- * For functions of main that touch much of it; the handlers find it at its fixed address, which costs them no pointer
- * register.
- */
+/* For functions of main with many accesses. The handlers use the fixed address, which needs no pointer register. */
 static inline struct burst *base(void)
 {
     struct burst *b = &burst;
@@ -42,8 +38,8 @@ static inline struct burst *base(void)
 }
 
 /*
- * An entry of the queue, by its place, of which the lower bits count. The one at head is free, because a burst begins
- * only where the queue has room: it takes the sample that is read.
+ * The queue entry for an index, of which only the lower bits count. The entry at head is free, because a burst begins
+ * only if the queue has room: it takes the sample being read.
  */
 static MACHINE_APART burst_entry_t *entry_at(uint8_t at)
 {
@@ -55,7 +51,7 @@ MACHINE_INLINE bool queue_has_room(void)
     return (uint8_t)(burst.head - burst.tail) != QUEUE_MASK;
 }
 
-/* Interrupts off, or the bus made busy; begun_us is the caller's. */
+/* Interrupts off, or the bus already marked busy; begun_us is set by the caller. */
 MACHINE_INLINE void begin_burst(struct burst *b, bool by_edge)
 {
     b->by_edge = by_edge;
@@ -63,7 +59,7 @@ MACHINE_INLINE void begin_burst(struct burst *b, bool by_edge)
     i2c_bus_begin(&b->bus);
 }
 
-/* An edge whose level is gone again is noise: data-ready stays high until the data are read (p. 20). */
+/* An edge whose level has already gone is noise: data-ready stays high until the data are read (p. 20). */
 HAL_DRDY_ISR()
 {
     uint16_t now = hal_time_count_isr();
@@ -85,13 +81,13 @@ HAL_I2C_ISR()
 }
 
 /*
- * The bus for main, made busy: no edge starts a burst from now on. Interrupts are off for so little because the clock
- * may wait for this, for the handler before it and for data-ready after it.
+ * Claims the bus for main and marks it busy: from then on no edge starts a burst. Interrupts are off for only this much
+ * because the clock may have to wait for this, for the handler before it and for data-ready after it.
  */
 static bool claim(struct burst *b)
 {
     hal_irq_state_t state = hal_irq_save();
-    if (b->on_bus || !I2C_BUS_FREE(&b->bus)) { /* what main has not judged keeps its state */
+    if (b->on_bus || !I2C_BUS_FREE(&b->bus)) { /* keep the state of a burst that main has not judged */
         hal_irq_restore(state);
         return false;
     }
@@ -126,7 +122,7 @@ void adxl345_burst_set_mode(burst_mode_t new_mode)
         b->failures = 0;
         b->last_known = false;
     }
-    if (new_mode == BURST_READ) { /* what each burst transfers, until main uses the bus again; none runs now */
+    if (new_mode == BURST_READ) { /* the transfer of every burst until main uses the bus again; none is running */
         b->verdict = READING_NONE;
         b->bus.tx[0] = ADXL345_INT_SOURCE;
         b->bus.tx_length = 1;
@@ -146,12 +142,12 @@ uint8_t adxl345_burst_take_bus(uint8_t address, bool fast)
     hal_irq_state_t state = hal_irq_save();
     hal_i2c_disable();
     uint8_t was = b->bus.state;
-    b->bus.state = I2C_BUS_BUSY; /* so that no edge starts a burst while the bus is being cleared, with interrupts on */
+    b->bus.state = I2C_BUS_BUSY; /* no edge starts a burst while the bus is being cleared with interrupts on */
     b->bus.address = (uint8_t)(address * 2U);
     hal_irq_restore(state);
     uint8_t lines = hal_i2c_clear();
     hal_i2c_enable(fast);
-    b->bus.state = was == I2C_BUS_BUSY ? (uint8_t)I2C_BUS_TIMEOUT : was; /* from now on an edge may start a burst */
+    b->bus.state = was == I2C_BUS_BUSY ? (uint8_t)I2C_BUS_TIMEOUT : was; /* from here on an edge may start a burst */
     (void)adxl345_burst_judge();
     return lines;
 }
@@ -186,8 +182,8 @@ bool adxl345_burst_register_holds(void)
 }
 
 /*
- * Stamp of a sample that was found waiting without an edge: one period after the one before it, but not before the
- * sensor was last seen empty, nor in the future (the difference wraps).
+ * Stamp of a sample that was found waiting without an edge: one period after the previous one, but not before the
+ * sensor was last seen empty, and not in the future (the difference wraps).
  */
 static uint32_t waiting_since_us(const struct burst *b, uint32_t now_us)
 {
@@ -219,7 +215,7 @@ void adxl345_burst_read(void)
     uint32_t edge_us = b->edge_us;
     b->edge_waiting = 0;
     hal_irq_restore(state);
-    if (hal_drdy_high()) { /* an edge whose level is gone is that of no sample */
+    if (hal_drdy_high()) { /* an edge whose level has gone belongs to no sample */
         b->by_clock = false;
         if (waiting) {
             entry->exact = true;
@@ -230,7 +226,7 @@ void adxl345_burst_read(void)
     begin_burst(b, false);
 }
 
-/* One cut in its first data byte may have taken the sample or not: only an edge of its own gives a stamp then. */
+/* A burst that failed at its first data byte may or may not have taken the sample: then only an edge gives a stamp. */
 static inline void keep_edge(struct burst *b, const burst_entry_t *entry, uint8_t asked)
 {
     b->failed_state = b->bus.state;
@@ -242,9 +238,9 @@ static inline void keep_edge(struct burst *b, const burst_entry_t *entry, uint8_
 }
 
 /*
- * Where samples ahead of this one were lost its stamp is theirs, and one that is more than two periods too late for
- * the samples that wait after it is that of INT1 coming back to a FIFO that had filled. The newest sample is half a
- * period old then.
+ * If samples before this one were lost, its stamp belongs to one of those. A stamp that is more than two periods too
+ * late for the number of samples waiting after it is that of INT1 rising again at a FIFO that had filled up. The newest
+ * sample is then half a period old.
  */
 static MACHINE_APART void restamp(const struct burst *b, burst_entry_t *entry)
 {
@@ -273,7 +269,7 @@ static reading_t judge(struct burst *b, burst_entry_t *entry)
         return verdict;
     }
     if (b->edge_waiting) {
-        b->by_clock = false; /* INT1 rose meanwhile */
+        b->by_clock = false; /* INT1 rose in the meantime */
     }
     if (b->bus.rx[READING_FIFO_STATUS] >= 2u) {
         restamp(b, entry);
@@ -283,7 +279,7 @@ static reading_t judge(struct burst *b, burst_entry_t *entry)
     return verdict;
 }
 
-/* No burst begins until on_bus is 0 again, so what the handlers wrote stays as it is. */
+/* No burst begins until on_bus is 0 again, so what the handlers wrote does not change. */
 static MACHINE_APART reading_t judge_ended(void)
 {
     struct burst *b = base();
@@ -310,7 +306,7 @@ static MACHINE_APART reading_t judge_ended(void)
     return verdict;
 }
 
-/* Asked in every pass, of which most find nothing. */
+/* Called in every pass, most of which find nothing. */
 reading_t adxl345_burst_judge(void)
 {
     return !burst.on_bus || burst.bus.state == I2C_BUS_BUSY ? READING_NONE : judge_ended();

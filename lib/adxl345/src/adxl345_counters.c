@@ -9,7 +9,7 @@ static uint8_t marked;
 void adxl345_counters_add(counter_t counter)
 {
     uint16_t *count = &counters[counter];
-    MACHINE_POINTER(count); /* else its address is computed twice */
+    MACHINE_POINTER(count); /* otherwise its address is computed twice */
     if (*count != UINT16_MAX) {
         (*count)++;
     }

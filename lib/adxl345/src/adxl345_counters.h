@@ -1,13 +1,13 @@
 /*
- * Inside the driver: what is counted and marked of its work. The lowest of its parts: each of the others may count, and
- * this one calls nobody. Main only.
+ * Inside the driver: its counters and marks. The lowest of its parts: every other part may count, and this one calls
+ * none. Main only.
  */
 #ifndef ADXL345_COUNTERS_H
 #define ADXL345_COUNTERS_H
 
 #include <stdint.h>
 
-/* By their places in adxl345_count. */
+/* By index in adxl345_count. */
 typedef enum {
     COUNTER_DRAINED,
     COUNTER_STUCK,
@@ -22,13 +22,13 @@ typedef enum {
     COUNTERS
 } counter_t;
 
-/* One more, up to 65,535. */
+/* Adds one, up to 65,535. */
 void adxl345_counters_add(counter_t counter);
 
-/* These bits (ADXL345_MARK_*) are in what adxl345_marks returns next. */
+/* Adds these bits (ADXL345_MARK_*) to the next result of adxl345_marks. */
 void adxl345_counters_mark(uint8_t marks);
 
-/* All to zero, and no mark. */
+/* Zeroes all counters and marks. */
 void adxl345_counters_clear(void);
 
 #endif

@@ -1,6 +1,6 @@
 /*
- * What every step of the driver does: enter the next one, keep its limit, take the bus, fail, look for the sensor. The
- * steps stand above it, in adxl345.c and adxl345_stream.c. All in main.
+ * What every step of the driver does: enter the next step, keep its time limit, take the bus, fail, probe for the
+ * sensor. The steps are one level up, in adxl345.c and adxl345_stream.c. All of it runs in main.
  */
 #include "adxl345_driver.h"
 
@@ -34,7 +34,7 @@ void adxl345_driver_enter(step_t step, uint8_t limit)
 
 MACHINE_APART bool adxl345_driver_reached(uint32_t t_us)
 {
-    return (int32_t)(t_us - adxl345_driver_state()->now_us) <= 0; /* hal_time_reached as a value takes 24 B more */
+    return (int32_t)(t_us - adxl345_driver_state()->now_us) <= 0; /* returning hal_time_reached takes 24 B more */
 }
 
 bool adxl345_driver_deadline_passed(void)
@@ -88,7 +88,7 @@ void adxl345_driver_begin_access(step_t step)
     (void)adxl345_driver_take_bus();
 }
 
-/* What was measured of a sensor that has to be found again still holds, unless its rate is another one now. */
+/* The measured period of a sensor that has to be found again still holds, unless the rate has changed. */
 void adxl345_driver_probe(void)
 {
     adxl345_driver_t *d = adxl345_driver_here();

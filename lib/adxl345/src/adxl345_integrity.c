@@ -9,21 +9,21 @@
 #define SENSOR_DEPTH 33u /* samples that the sensor can hold (p. 27) */
 
 /*
- * A run that means something. Above it in bad_run: the sensor's registers are those after power-on; in empty_run: good
- * readings that must leave INT1 low before it is trusted again.
+ * Length at which a run counts. Values above it: in bad_run, the sensor's registers are those after power-on; in
+ * empty_run, good readings that must leave INT1 low before it is trusted again.
  */
 enum { RUN_LIMIT = 3, RUN_RESET, RUN_EMPTY = RUN_LIMIT + 31 };
 
 static struct integrity {
-    uint8_t equal_run; /* good readings that were as the one before them */
+    uint8_t equal_run; /* good readings equal to the previous one */
     bool has_last;
     uint8_t range_g;
-    uint8_t format; /* what DATA_FORMAT holds */
+    uint8_t format; /* content of DATA_FORMAT */
     uint8_t bad_run;
     uint8_t empty_run;
 } integrity;
 
-/* Known by its address in a register, an access to it is half as long. */
+/* With the address in a register, an access takes half the code. */
 static inline struct integrity *here(void)
 {
     struct integrity *i = &integrity;
@@ -50,7 +50,7 @@ void adxl345_integrity_start(const adxl345_config_t *config)
 }
 
 /*
- * The data into lsb. Plausible: the bits above the range agree with the sign on every axis (the high byte is -range_g
+ * Converts the data to lsb. Plausible: the bits above the range match the sign on every axis (the high byte is -range_g
  * to range_g - 1), and not all bits are ones (a bus that nobody drives).
  */
 static inline bool plausible(const uint8_t *raw, int16_t lsb[3])
@@ -130,8 +130,8 @@ static void accept(uint8_t source, bool repeated)
 }
 
 /*
- * A reading that ended with its second byte, for want of a sample. After power-on, where DATA_FORMAT is 0, INT_SOURCE
- * has the bit of its watermark (p. 26), so that bits which a low SDA makes zeros do not pass for a lost configuration.
+ * A reading that ended with its second byte because there was no sample. After power-on DATA_FORMAT is 0 and INT_SOURCE
+ * has the watermark bit (p. 26), so bits zeroed by a low SDA do not pass for a lost configuration.
  */
 static reading_t judge_empty(const uint8_t reading[READING_BYTES])
 {
@@ -143,7 +143,7 @@ static reading_t judge_empty(const uint8_t reading[READING_BYTES])
     return format == integrity.format ? READING_EMPTY : discard(READING_BAD);
 }
 
-/* FIFO_STATUS: bit 7 is the trigger's, which is not in use, and bit 6 is always 0 (p. 28). */
+/* FIFO_STATUS: bit 7 is the trigger's, which is unused, and bit 6 is always 0 (p. 28). */
 MACHINE_APART reading_t adxl345_integrity_judge(const uint8_t reading[READING_BYTES], int16_t lsb[3],
                                                 const int16_t last_lsb[3])
 {

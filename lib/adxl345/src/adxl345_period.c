@@ -7,15 +7,15 @@ enum { STEPS = 16 };
 
 static struct period {
     uint32_t us_q8;
-    uint32_t shortest_us; /* what may be a step between two samples: from here on */
+    uint32_t shortest_us; /* shortest plausible step between two samples */
     uint16_t step_span_us;
     uint32_t newest_us;
     uint32_t measured_from_us;
-    uint8_t steps; /* since then, and one; 0: that stamp is not exact */
+    uint8_t steps; /* steps since then, plus one; 0: that stamp is not exact */
     bool measured;
 } period;
 
-/* Known by its address in a register, an access to it is half as long. */
+/* With the address in a register, an access takes half the code. */
 static inline struct period *here(void)
 {
     struct period *p = &period;
@@ -35,8 +35,8 @@ void adxl345_period_start(uint16_t half_us)
 }
 
 /*
- * The mean of STEPS steps in a row between stamps that are exact, each within an eighth of the nominal one: that takes
- * less time for a sample than a mean that follows each, and does not hang half a microsecond beside the truth.
+ * The mean of STEPS consecutive steps between exact stamps, each within an eighth of the nominal period. It costs less
+ * time per sample than a running mean, and does not settle half a microsecond off the true value.
  */
 void adxl345_period_sample(uint32_t t_us, bool exact)
 {

@@ -1,4 +1,4 @@
-/* What the driver reports of itself: samples, phase, fault, times. */
+/* What the driver reports about itself: samples, phase, fault, times. */
 #include "adxl345_burst.h"
 #include "adxl345_counters.h"
 #include "adxl345_driver.h"
@@ -68,7 +68,7 @@ uint8_t adxl345_foreign_id(void)
     return adxl345_driver_state()->foreign_id;
 }
 
-/* 1e8 us x 256 over the period, both by 8 that 32 bits are enough; that rounds by 1.3e-5 at 800 Hz, less below. */
+/* 1e8 us x 256 over the period, both divided by 8 to fit 32 bits; that rounds by 1.3e-5 at 800 Hz, less below. */
 uint32_t adxl345_rate_chz(void)
 {
     if (!adxl345_period_measured()) {

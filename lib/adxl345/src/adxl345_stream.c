@@ -1,7 +1,7 @@
 /*
- * The step of the driver's state machine in which samples come: when a burst looks for one that INT1 has not told of,
- * and what failed. A burst on a sensor that has none is short and changes nothing, so it is also how the sensor is
- * asked why none comes. All in main.
+ * The step of the state machine that receives samples: when to start a burst without an edge of INT1, and what has
+ * failed. A burst on a sensor without a sample is short and changes nothing, so it also serves to find out why none
+ * comes. All of it runs in main.
  */
 #include "adxl345_stream.h"
 
@@ -17,13 +17,13 @@
 #include "machine.h"
 
 #define TRANSFER_US ((uint32_t)TRANSFER_LIMIT * LIMIT_US)
-#define FIRST_US 2000u  /* and a period after Measure the first sample is due (p. 5: 1.1 ms) */
-#define SLOW_US 18000u  /* with so much room for a slow start */
-#define SILENT_US 3000u /* and three periods without a sample are a fault */
+#define FIRST_US 2000u  /* plus one period after Measure the first sample is due (p. 5: 1.1 ms) */
+#define SLOW_US 18000u  /* with this much extra for a slow start */
+#define SILENT_US 3000u /* plus three periods without a sample is a fault */
 
 /*
- * So long after a sample the edge of the next one is overdue: five quarters of a period, six at 800 Hz, where the burst
- * of an edge has not ended sooner.
+ * Time after a sample at which the edge of the next one is overdue: five quarters of a period, six at 800 Hz, where the
+ * burst started by an edge has not ended sooner.
  */
 static uint16_t patience_2us(uint16_t half_us)
 {
@@ -34,7 +34,10 @@ static uint16_t patience_2us(uint16_t half_us)
     return half_us + quarter_us;
 }
 
-/* No edge comes of an INT1 that is silent, or high already: so soon that a fast sensor does not fill its FIFO. */
+/*
+ * A silent INT1, or one that is already high, gives no edge. The time is short enough that a fast sensor does not fill
+ * its FIFO.
+ */
 static MACHINE_APART void look_after(adxl345_driver_t *d)
 {
     uint16_t after_2us = d->patience_2us;
@@ -85,7 +88,7 @@ static void look_at_bus(adxl345_driver_t *d)
     }
 }
 
-/* What the readings say; a sensor that has lost its configuration is given it again at once. */
+/* Acts on the readings; a sensor that has lost its configuration is configured again at once. */
 static bool readings_failed(void)
 {
     adxl345_fault_t fault = adxl345_integrity_fault();
@@ -99,7 +102,7 @@ static bool readings_failed(void)
     return true;
 }
 
-/* Main may be late: the sensor is found empty only by a burst that began after the time in which a sample was due. */
+/* Main may be late: only a burst that began after a sample was due can find the sensor empty. */
 static bool failed(adxl345_driver_t *d, reading_t reading)
 {
     if (readings_failed()) {
@@ -132,7 +135,7 @@ void adxl345_stream_poll(adxl345_driver_t *d, reading_t reading)
         if (reading == READING_GOOD) {
             sample_arrived(d);
         }
-        look_after(d); /* at once, where the time for it has come */
+        look_after(d); /* at once if it is time */
     }
     if (!adxl345_sample_waits() && !adxl345_driver_deadline_passed()) {
         return;
@@ -141,6 +144,6 @@ void adxl345_stream_poll(adxl345_driver_t *d, reading_t reading)
         look_at_bus(d);
         return;
     }
-    adxl345_burst_read(); /* not while the queue is full */
+    adxl345_burst_read(); /* does nothing while the queue is full */
     adxl345_driver_set_limit(TRANSFER_LIMIT);
 }

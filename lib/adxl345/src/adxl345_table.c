@@ -1,12 +1,12 @@
-/* What the driver writes into the sensor, and the codes of rates and ranges. */
+/* The registers that the driver writes to the sensor, and the codes of rates and ranges. */
 #include "adxl345_table.h"
 
 #include "machine.h"
 
 /*
  * Standby first, interrupt off before it is reconfigured (p. 20), bypass to clear the FIFO (p. 21); Measure is set
- * after the read-back. Offsets are cleared because the sensor may have kept another program's.
- * The values of BW_RATE and DATA_FORMAT follow from the configuration.
+ * after the read-back. Offsets are cleared because the sensor may still hold those of another program. BW_RATE and
+ * DATA_FORMAT follow from the configuration.
  */
 static const table_row_t table[] IN_FLASH = {
     [TABLE_DEVID] = { ADXL345_DEVID, ADXL345_DEVID_VALUE },
@@ -50,7 +50,7 @@ MACHINE_APART uint8_t adxl345_table_format(const adxl345_config_t *config)
 
 uint16_t adxl345_table_half_period_us(uint16_t rate_dhz)
 {
-    return (uint16_t)(UINT32_C(5000000) / rate_dhz); /* exact at each of them */
+    return (uint16_t)(UINT32_C(5000000) / rate_dhz); /* exact at every legal rate */
 }
 
 bool adxl345_config_valid(const adxl345_config_t *config)

@@ -1,5 +1,6 @@
 /*
- * Inside the driver: the one constant table of registers that it asks, writes in standby and reads back. Main only.
+ * Inside the driver: the one constant table of registers that it reads at the start, writes in standby and reads back.
+ * Main only.
  */
 #ifndef ADXL345_TABLE_H
 #define ADXL345_TABLE_H
@@ -7,12 +8,12 @@
 #include "adxl345.h"
 #include "adxl345_registers.h"
 
-/* What FIFO_CTL holds while measuring, in every mode of the driver: no reset leaves a Samples field of 10. */
+/* FIFO_CTL while measuring, in every mode of the driver: no reset leaves a Samples field of 10. */
 #define TABLE_FIFO_CTL (ADXL345_FIFO_STREAM | 0x0Au)
 
 /*
  * Rows of the table. Those that configure the sensor come before TABLE_MEASURE, and from TABLE_READ_BACK on each
- * register holds what its row says.
+ * register must read back as its row says.
  */
 enum {
     TABLE_DEVID,
@@ -30,7 +31,7 @@ typedef struct {
 /* Register and value for this configuration. */
 table_row_t adxl345_table_row(uint8_t at, const adxl345_config_t *config);
 
-/* What DATA_FORMAT holds while measuring with this configuration. */
+/* DATA_FORMAT while measuring with this configuration. */
 uint8_t adxl345_table_format(const adxl345_config_t *config);
 
 /* Half the nominal time between samples at a legal rate. */

@@ -1,11 +1,12 @@
 /*
- * Two sensors that answer at one address pull SDA low together, and a bit of theirs slips now and then: an axis reads
- * the double of its value for a sample or a few, while the others stay (recorded on a drone: one in five readings).
+ * Two sensors that answer at one address pull SDA low together, and now and then one of their bits slips: an axis reads
+ * double its value for one or a few samples, while the others are unaffected (recorded on a drone: one in five
+ * readings).
  *
- * A jump counts where one axis alone changes by as much as a doubling of MIN_LSB does, and to the double of its value
- * or back within a sixteenth. Each raises a score by RAISE, each other sample lowers it by one. The score of 32
- * recordings of sensors in motion, of up to 9 minutes, stays below a third of LIMIT, that of a stream with 1 % of bad
- * readings below a half; that of the recording with two sensors reaches LIMIT within 2 s.
+ * A jump counts if one axis alone changes by at least as much as a doubling of MIN_LSB, to double its value or back,
+ * within a sixteenth. Each jump raises a score by RAISE, every other sample lowers it by one. In 32 recordings of
+ * sensors in motion, up to 9 minutes long, the score stays below a third of LIMIT, in a stream with 1 % of bad readings
+ * below a half; in the recording with two sensors it reaches LIMIT within 2 s.
  */
 #include "adxl345_watch.h"
 

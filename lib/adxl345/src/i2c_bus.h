@@ -1,11 +1,12 @@
 /*
- * One I2C transfer at a time: write `tx`, then (if rx_length, up to I2C_BUS_RX_MAX) a repeated START and a read into
- * `rx`, which lies in the bus itself: the handler knows its place. A read whose first byte lacks I2C_BUS_MORE ends with
- * the second: the sensor has no sample, and its data stay unread.
- * Each command has one status that says it went well; any other ends the transfer, however good it would be at another
- * moment: so no byte is stored that was not asked for, and no transfer ends well that did not do all of its steps.
- * The steps run in the I2C interrupt; everything is inline so that the handler that includes this saves few registers.
- * A transfer that hangs produces no interrupt: whoever started it watches the time and takes the bus again.
+ * One I2C transfer at a time: writes `tx`, then (if rx_length, up to I2C_BUS_RX_MAX) a repeated START and a read into
+ * `rx`, which is part of the bus structure so that the handler knows its address. A read whose first byte lacks
+ * I2C_BUS_MORE ends with the second: the sensor has no sample, and its data stay unread.
+ *
+ * Each command has exactly one status for success; any other ends the transfer, even one that would be valid at another
+ * moment. So no byte is stored that was not requested, and no transfer succeeds without all of its steps. The steps run
+ * in the I2C interrupt; everything is inline so that the handler that includes this saves few registers. A hanging
+ * transfer raises no interrupt: its owner watches the time and takes the bus again.
  */
 #ifndef I2C_BUS_H
 #define I2C_BUS_H
@@ -20,37 +21,37 @@
 
 #define I2C_BUS_TX_MAX 2
 #define I2C_BUS_RX_MAX 10
-#define I2C_BUS_MORE 0x80u /* in the first byte received: more than one is to follow it */
+#define I2C_BUS_MORE 0x80u /* in the first byte received: more than one byte follows it */
 
 typedef enum {
-    I2C_BUS_IDLE, /* none yet */
+    I2C_BUS_IDLE, /* no transfer yet */
     I2C_BUS_BUSY,
     I2C_BUS_OK,
-    I2C_BUS_NACK_ADDRESS, /* nobody at that address */
+    I2C_BUS_NACK_ADDRESS, /* no device at that address */
     I2C_BUS_NACK_DATA,
     I2C_BUS_LOST,   /* arbitration lost: noise, or a second master */
-    I2C_BUS_ERROR,  /* illegal START or STOP on the bus, or a status that cannot be at this step */
-    I2C_BUS_TIMEOUT /* the owner took the bus again while the transfer ran */
+    I2C_BUS_ERROR,  /* illegal START or STOP on the bus, or a status that is impossible at this step */
+    I2C_BUS_TIMEOUT /* the owner took the bus again during the transfer */
 } i2c_bus_state_t;
 
 typedef struct {
-    volatile uint8_t state; /* i2c_bus_state_t; leaves BUSY only in the interrupt or when the bus is taken again */
-    uint8_t address;        /* 7 bit, shifted left by one */
+    volatile uint8_t state; /* i2c_bus_state_t; leaves BUSY only in the interrupt or if the bus is taken again */
+    uint8_t address;        /* 7 bits, shifted left by one */
     uint8_t tx_length;
     uint8_t rx_length;
-    uint8_t count;    /* of bytes sent, then of bytes asked for */
-    uint8_t expected; /* HAL_I2C_*: the command given last went well; kept when the transfer ends */
+    uint8_t count;    /* bytes sent, then bytes requested */
+    uint8_t expected; /* HAL_I2C_*: the status if the last command succeeded; kept after the transfer */
     uint8_t tx[I2C_BUS_TX_MAX];
-    uint8_t rx[I2C_BUS_RX_MAX]; /* stays as it is from the end of a transfer to the next read */
+    uint8_t rx[I2C_BUS_RX_MAX]; /* valid from the end of a transfer to the next read */
 } i2c_bus_t;
 
 /*
- * True when a transfer can begin: none under way and the last STOP is out (interrupts off, or in an interrupt). A
- * macro: the compiler makes a function's result a byte and looks at that, which costs a handler 6 cycles.
+ * True if a transfer can begin: none under way, and the last STOP is out (interrupts off, or in an interrupt). A macro:
+ * the compiler turns a function's result into a byte and tests that, which costs a handler 6 cycles.
  */
 #define I2C_BUS_FREE(bus) ((bus)->state != I2C_BUS_BUSY && !hal_i2c_stop_pending())
 
-/* Begins the transfer set up in *bus. Only when I2C_BUS_FREE; interrupts off, or in an interrupt. */
+/* Begins the transfer set up in *bus. Only if I2C_BUS_FREE; interrupts off, or in an interrupt. */
 MACHINE_INLINE void i2c_bus_begin(i2c_bus_t *bus)
 {
     bus->count = 0;
@@ -60,8 +61,8 @@ MACHINE_INLINE void i2c_bus_begin(i2c_bus_t *bus)
 }
 
 /*
- * Bytes that the transfer which runs or ended last has asked the device for. All but the last of them came in, and that
- * one too where the transfer is good.
+ * Bytes that the current or last transfer has requested from the device. All but the last were received, and the last
+ * one too if the transfer succeeded.
  */
 static inline uint8_t i2c_bus_asked(const i2c_bus_t *bus)
 {
@@ -86,9 +87,7 @@ static inline void i2c_bus_step_sent(i2c_bus_t *bus)
     bus->expected = HAL_I2C_RESTARTED;
 }
 
-/*
- * The last byte is refused, so that the device lets go of SDA: the second one where the first says that it is enough.
- */
+/* NACKs the last byte so that the device releases SDA; the second is the last if the first byte says so. */
 MACHINE_INLINE void i2c_bus_step_read(i2c_bus_t *bus, uint8_t count)
 {
     bus->count = count;
@@ -101,7 +100,7 @@ MACHINE_INLINE void i2c_bus_step_read(i2c_bus_t *bus, uint8_t count)
     }
 }
 
-/* Any status but the expected one. A refusal counts as one only where an answer was awaited. */
+/* Any status but the expected one. A NACK counts as one only where an acknowledge was expected. */
 static inline void i2c_bus_unexpected(i2c_bus_t *bus, uint8_t status)
 {
     enum { REFUSED = HAL_I2C_SENT_NACK - HAL_I2C_SENT_ACK };
@@ -122,7 +121,7 @@ static inline void i2c_bus_unexpected(i2c_bus_t *bus, uint8_t status)
     i2c_bus_finish(bus, state);
 }
 
-/* What comes before the first byte that is received. */
+/* The steps before the first received byte. */
 static inline void i2c_bus_step_send(i2c_bus_t *bus, uint8_t status)
 {
     uint8_t byte;
@@ -160,7 +159,7 @@ static inline void i2c_bus_step(i2c_bus_t *bus)
         return;
     }
     uint8_t count = 1;
-    if (status >= HAL_I2C_RECEIVED_ACK) { /* first, because most are */
+    if (status >= HAL_I2C_RECEIVED_ACK) { /* first, because it is the most frequent */
         count = bus->count;
         bus->rx[count - 1u] = hal_i2c_received();
         if (status == HAL_I2C_RECEIVED_NACK) {

@@ -1,4 +1,6 @@
-/* Calibration in force: its numbers to a matrix once, then a matrix times a vector; see calibration.h. */
+/*
+ * Calibration in force: its numbers are turned into a matrix once, which is then applied to vectors; see calibration.h.
+ */
 #include "calibration.h"
 
 #include "calibration_inside.h"
@@ -63,7 +65,7 @@ static MACHINE_APART int16_t quotient_q14(int32_t a, uint16_t b)
     return (int16_t)((calibration_over(a, b) + 2) >> 2);
 }
 
-/* What the offsets make of all axes, by the whole matrix. */
+/* Effect of the offsets on all axes, through the whole matrix. */
 static void prepare_bias(calibration_applied_t *applied, const calibration_t *c)
 {
     int32_t away_q8[3];
@@ -76,9 +78,9 @@ static void prepare_bias(calibration_applied_t *applied, const calibration_t *c)
 }
 
 /*
- * The rotation of the mounting is s_i (w_i w_j / (1 + z) - d_ij) with w = u + (0, 0, 1), s = (-1, -1, 1), d_ij = 1 for
- * i = j, else 0: the matrix of calibration.h, all elements by one rule. Upside down it is that of (x, -y, -z), with the
- * columns of y and z turned round.
+ * The mounting rotation is s_i (w_i w_j / (1 + z) - d_ij) with w = u + (0, 0, 1), s = (-1, -1, 1), d_ij = 1 for i = j,
+ * else 0: the matrix of calibration.h, one rule for all elements. Upside down it is that of (x, -y, -z), with the
+ * columns of y and z reversed.
  */
 static void prepare_column(calibration_applied_t *applied, const calibration_t *c, const int32_t w_q14[3], uint8_t ours)
 {
@@ -113,7 +115,7 @@ MACHINE_APART calibration_verdict_t calibration_prepare(calibration_applied_t *a
     return verdict;
 }
 
-/* Q14 to Q8 as four times it, less a byte: cheaper than six places on a machine of bytes. */
+/* Q14 to Q8 as times four, less a byte: cheaper on an 8-bit machine than a shift by six. */
 void calibration_apply(const calibration_applied_t *applied, const int32_t a_q8[3], int32_t out_q8[3])
 {
     const int16_t *row_q14 = applied->matrix_q14;
@@ -121,7 +123,7 @@ void calibration_apply(const calibration_applied_t *applied, const int32_t a_q8[
         uint32_t sum_q14 = (uint32_t)row_times(applied->bias_lsb_q14[i], a_q8, row_q14);
         row_q14 += 3;
         sum_q14 += sum_q14;
-        MACHINE_FENCE(sum_q14); /* else the two become a loop */
+        MACHINE_FENCE(sum_q14); /* otherwise the compiler makes a loop of the two */
         sum_q14 += sum_q14;
         out_q8[i] = (int32_t)sum_q14 >> 8;
     }

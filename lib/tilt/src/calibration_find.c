@@ -1,4 +1,4 @@
-/* What one rest shows: which way is level, or the offsets. */
+/* Calibration from a single rest: level, or the offsets. */
 #include "calibration.h"
 #include "calibration_inside.h"
 #include "fx.h"

@@ -1,17 +1,17 @@
 /*
  * Offsets and scales from six rests, each up to 20 degrees from its axis.
  *
- * Each of the six readings must have the length of 1 g. For an axis, its component in its two positions is then
- * +-sqrt(1 - b^2 - c^2) with b, c of the other axes by the offsets and scales known so far, and two readings make a
- * line: its slope is the scale, its reading at 0 the offset. Round after round b and c get better, four times and more:
- * at 20 degrees six rounds leave 0.005 LSB, at 15 degrees 0.0002 (600 parts each, half of them tilted the worst way).
+ * Each of the six readings must have the length of 1 g. So for an axis the component in its two positions is +-sqrt(1 -
+ * b^2 - c^2), with b, c of the other axes from the offsets and scales known so far. Two readings define a line: its
+ * slope is the scale, its reading at 0 the offset. Each round improves b and c by a factor of four or more: at 20
+ * degrees six rounds leave 0.005 LSB, at 15 degrees 0.0002 (600 parts each, half of them tilted the worst way).
  */
 #include "calibration.h"
 #include "calibration_inside.h"
 #include "fx.h"
 
 #define ONE_Q28 (1UL << 28)
-#define ACROSS_MAX_Q28 (ONE_Q28 / 4U) /* sin(30 degrees)^2: what is 20 degrees off stays below in every round */
+#define ACROSS_MAX_Q28 (ONE_Q28 / 4U) /* sin(30 degrees)^2: at 20 degrees off it stays below this in every round */
 
 enum { ROUNDS = 6, RESIDUAL_MAX_Q14 = 160 };
 
@@ -21,10 +21,10 @@ enum { ROUNDS = 6, RESIDUAL_MAX_Q14 = 160 };
  */
 enum { APART_MIN_Q4 = 6000, APART_MAX_Q4 = 10600 };
 
-/* What the six rests say: x, y, z of each position in turn. */
+/* The six means: x, y, z of each position in turn. */
 typedef const int16_t *means_t;
 
-/* Component of gravity along the axis of a position, from what the two others leave; 0: they leave too little. */
+/* Component of gravity along the axis of a position, from the two others; 0 if those leave too little. */
 static uint16_t component_q14(const calibration_t *c, means_t means, uint8_t position)
 {
     uint32_t across_q28 = 0;
@@ -36,7 +36,7 @@ static uint16_t component_q14(const calibration_t *c, means_t means, uint8_t pos
     return across_q28 > ACROSS_MAX_Q28 ? 0U : filter_fx_isqrt32(ONE_Q28 - across_q28);
 }
 
-/* Line through the two readings of an axis, where its components are plus and -minus; false: it is no scale. */
+/* Line through the two readings of an axis at its components, plus and minus; false if it is not a legal scale. */
 static bool draw_line(calibration_t *c, means_t means, uint8_t axis, const uint16_t component_q14[2])
 {
     int16_t upper_q4 = means[7U * axis];
@@ -61,7 +61,7 @@ void calibration_six_start(calibration_six_t *six, const calibration_t *c)
     six->round = 0;
 }
 
-/* What a position's component is by the offsets and scales of this round. */
+/* Updates a position's component from the offsets and scales of this round. */
 static bool improve(calibration_six_t *six, means_t means, uint8_t position)
 {
     uint16_t better_q14 = component_q14(&six->found, means, position);

@@ -5,7 +5,7 @@
 
 enum { AXES = 3, HALF = REST_SAMPLES / 2U };
 
-/* Of the second half's sum from the first's: 2 LSB for each of its readings. */
+/* Limit for the difference of the second half's sum from the first's: 2 LSB for each of its readings. */
 enum { DRIFT_LSB = 2 * HALF };
 
 void rest_start(rest_t *rest)

@@ -2,12 +2,12 @@
  * Roll and pitch in fixed point.
  *
  * An angle is the arc tangent of the ratio of the smaller to the larger leg (octant reduction), an odd minimax
- * polynomial. The length of (y, z) comes from the same ratio, larger leg times sqrt(1 + ratio^2), which spares pitch a
- * square root. No table, no library division: nothing here costs RAM. The polynomials are minimax fits on 0..1.
+ * polynomial. The length of (y, z) comes from the same ratio, larger leg times sqrt(1 + ratio^2), which saves a square
+ * root for pitch. No table, no library division, no RAM. The polynomials are minimax fits on 0..1.
  *
- * Scaling of tilt_angles: in LSB Q8; legs cut to 15 bits (error 2^-14); ratio, its square and polynomials in UQ0.16,
- * each product rounded down (error 2^-16); angles in 1/800 degree, rounded half up to 0.01. No state, so nothing can
- * drift or saturate. Sum of the bounds: roll 0.021, pitch 0.029 degree (derived in host_tests/test_tilt.c).
+ * Scaling of tilt_angles: in LSB Q8; legs truncated to 15 bits (error 2^-14); ratio, its square and polynomials in
+ * UQ0.16, each product rounded down (error 2^-16); angles in 1/800 degree, rounded half up to 0.01. No state, so
+ * nothing can drift or saturate. Sum of the bounds: roll 0.021, pitch 0.029 degree (derived in host_tests/test_tilt.c).
  * Cost: docs/benchmarks.md; no RAM.
  *
  * Square root: P. Zimmermann, "Karatsuba Square Root", INRIA RR-3805, one step on 8-bit digits.
@@ -16,7 +16,7 @@
 
 #include "fx.h"
 
-/* Product of two fractions in UQ0.16, rounded down. A macro: a function would be called, 90 cycles more in all. */
+/* Product of two fractions in UQ0.16, rounded down. A macro: a function would not be inlined, 90 cycles more in all. */
 #define PRODUCT_UQ16(a_uq16, b_uq16) ((uint16_t)(fx_product_u16(a_uq16, b_uq16) >> 16))
 
 #define RIGHT_ANGLE_CDEG 9000U
@@ -26,12 +26,12 @@
 typedef struct {
     uint16_t ratio_uq16;  /* smaller / larger leg */
     uint16_t ratio2_uq16; /* its square */
-    uint16_t larger;      /* larger leg times 2^shift: 2^14..2^15-1, or 0 when both legs are 0 */
+    uint16_t larger;      /* larger leg times 2^shift: 2^14..2^15-1, or 0 if both legs are 0 */
     int8_t shift;
     bool steep; /* the opposite leg is the larger one */
 } slope_t;
 
-/* Two numbers below 2^16 times the same power of two, so that the larger has 15 bits; returns the exponent. */
+/* Scales two numbers below 2^16 by the same power of two so that the larger has 15 bits; returns the exponent. */
 static int8_t scale_up(uint16_t *a, uint16_t *b)
 {
     uint16_t p = *a;
@@ -55,7 +55,7 @@ static int8_t scale_up(uint16_t *a, uint16_t *b)
     return shift;
 }
 
-/* Any two numbers to 15 bits, as scale_up; bits shifted out are dropped: an error below 2^-14 of the larger. */
+/* Scales any two numbers to 15 bits, as scale_up; bits shifted out are dropped: an error below 2^-14 of the larger. */
 static int8_t scale_to_15_bits(uint32_t opposite, uint32_t adjacent, uint16_t *o, uint16_t *a)
 {
     int8_t shift = 0;
@@ -89,8 +89,8 @@ static int8_t scale_to_15_bits(uint32_t opposite, uint32_t adjacent, uint16_t *o
     } while (0)
 
 /*
- * small / large rounded down to UQ0.16, for small <= large < 2^15; equal numbers give the largest fraction.
- * Four bits a turn, because the loop's own cost is a quarter of a bit's: saves 72 cycles in tilt_angles.
+ * small / large rounded down to UQ0.16, for small <= large < 2^15; equal numbers give the largest fraction. Four bits
+ * per iteration, because the loop costs a quarter of a bit: saves 72 cycles in tilt_angles.
  */
 static uint16_t fraction_uq16(uint16_t small, uint16_t large)
 {
@@ -122,8 +122,8 @@ static void slope_of(slope_t *slope, uint32_t opposite, uint32_t adjacent)
 }
 
 /*
- * Angle of a slope in 0.01 degree, 0..9000. atan(r) = r (c0 - c1 r^2 + c2 r^4 - c3 r^6) in 1/800 degree:
- * |error of the polynomial| < 0.0047 degree, plus 0.005 for the last digit.
+ * Angle of a slope in 0.01 degree, 0..9000. atan(r) = r (c0 - c1 r^2 + c2 r^4 - c3 r^6) in 1/800 degree: |error of the
+ * polynomial| < 0.0047 degree, plus 0.005 for the last digit.
  */
 static uint16_t slope_cdeg(const slope_t *slope)
 {
@@ -168,7 +168,7 @@ void tilt_angles(tilt_t *out, const int32_t a_q8[3])
     uint32_t x = filter_fx_abs32(x_q8);
     uint16_t yz = slope_length(&slope);
     if (slope.shift < 0) {
-        x >>= (uint8_t)(0 - slope.shift); /* x comes to the unit of yz: cheaper than yz to the unit of x */
+        x >>= (uint8_t)(0 - slope.shift); /* convert x to the unit of yz: cheaper than the other way round */
     } else {
         yz = (uint16_t)(yz >> slope.shift);
     }
@@ -185,7 +185,7 @@ uint16_t tilt_isqrt32(uint32_t v)
     return filter_fx_isqrt32(v);
 }
 
-/* An acceleration in 1/64 LSB, rounded down; 2^15 for all that is larger, beyond any plausible one. */
+/* An acceleration in 1/64 LSB, rounded down; larger ones give 2^15, beyond any plausible one. */
 static uint16_t magnitude_q6(int32_t a_q8)
 {
     uint32_t a_q6 = filter_fx_abs32(a_q8) >> 2;

@@ -1,9 +1,9 @@
-/* One axis of the way from readings to tilt: see tilt_axis.h. */
+/* One axis of the path from readings to tilt: see tilt_axis.h. */
 #include "tilt_axis.h"
 
 #include "fx.h"
 
-enum { AWAY_SAMPLES = 2 }; /* in a row, away from what was held: no bad reading */
+enum { AWAY_SAMPLES = 2 }; /* in a row, away from the held value: not a bad reading */
 enum { HOLD_QUARTERS = FILTER_HOLD_MS / 25 };
 
 void tilt_axis_begin(tilt_axis_t *a, uint16_t rate_dhz, bool noisy_axis)
@@ -31,7 +31,7 @@ static uint8_t flags_of(const filter_t *f)
     return (uint8_t)(((f->flags & FILTER_WARMING_UP) != 0U) ? flags | TILT_WARMING_UP : flags);
 }
 
-/* R is estimated once: beside a law that identifies its own the estimate stands still. */
+/* R is estimated once: with a law that identifies its own, the estimator does not run. */
 static void estimate_noise(tilt_axis_t *a, int16_t lsb, bool own_r)
 {
     if (a->filter.identifies) {
@@ -42,8 +42,8 @@ static void estimate_noise(tilt_axis_t *a, int16_t lsb, bool own_r)
 }
 
 /*
- * Within 2.8 sigmas of the estimate, by the R of the noise, which is 3.5 of a healthy sensor's: that of the law where
- * it has identified it, but not below the estimate beside it, which then stands at its floor or where it last ran.
+ * Within 2.8 sigmas of the estimate, using the R of the noise; that is 3.5 sigmas of a healthy sensor. R is the law's
+ * if it has identified it, but not less than the separate estimate, which then is at its floor or where it last ran.
  */
 static bool near_estimate(const tilt_axis_t *a, int16_t lsb)
 {
@@ -57,7 +57,7 @@ static bool near_estimate(const tilt_axis_t *a, int16_t lsb)
     return fx_product_u16(size_lsb, size_lsb) <= r_lsb2_q8 >> 5;
 }
 
-/* A sample after a hold, which the filter is not to have as long as a->away is not 0. */
+/* A sample after a hold. The filter does not get it as long as a->away is not 0. */
 static uint8_t rejoin(tilt_axis_t *a, int16_t lsb)
 {
     uint8_t flags = 0;

@@ -8,7 +8,7 @@ calibration_verdict_t tilt_filter_calibrate(tilt_filter_t *t, const calibration_
     return calibration_prepare(&t->calibration, calibration);
 }
 
-/* False: not legal, and nothing is changed. */
+/* False: not legal, nothing is changed. */
 static bool set_scale(tilt_filter_t *t, uint16_t xy_uq6, uint16_t z_uq6)
 {
     calibration_t plain;
@@ -32,7 +32,7 @@ bool tilt_filter_sensor(tilt_filter_t *t, uint8_t bits, uint16_t xy_lsb_per_g, u
         bits--;
         shift++;
     }
-    /* few enough bits to begin with, enough left */
+    /* not too many bits given, and enough left */
     if (bits + shift > BITS_MAX || bits < (uint8_t)BITS_MIN || !set_scale(t, (uint16_t)xy_uq6, (uint16_t)z_uq6)) {
         return false;
     }
@@ -49,7 +49,7 @@ filter_answer_t tilt_filter_use(tilt_filter_t *t, const filter_law_t *law, const
         tilt_axis_t *a = &t->axes[axis];
         filter_answer_t answer = filter_init(&a->filter, law, &wanted);
         if (answer != FILTER_ACCEPTED) {
-            return answer; /* of the first axis: the same for all */
+            return answer; /* for the first axis; the same for all */
         }
         tilt_axis_begin(a, t->rate_dhz, axis == 2U);
     }
@@ -74,11 +74,11 @@ bool tilt_filter_begin_with(tilt_filter_t *t, uint16_t rate_hz, const filter_law
     t->shift = 0;
     t->rail_high_lsb = highest_of(FILTER_BITS);
     (void)set_scale(t, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
-    (void)tilt_filter_use(t, law, NULL); /* shipped values are legal at every rate */
+    (void)tilt_filter_use(t, law, NULL); /* the defaults are legal at every rate */
     return legal;
 }
 
-/* A reading in the 13 bit that the filters take, rounded half up. */
+/* A reading in the 13 bits that the filters take, rounded half up. */
 static int16_t in_13_bits(const tilt_filter_t *t, int16_t reading)
 {
     if (t->shift == 0U) {
@@ -87,7 +87,7 @@ static int16_t in_13_bits(const tilt_filter_t *t, int16_t reading)
     return (int16_t)((((int32_t)reading >> (t->shift - 1U)) + 1) >> 1);
 }
 
-/* Accelerations and angles from the filters' estimates with their fraction. */
+/* Accelerations and angles from the filters' estimates, fraction bits included. */
 static void find_angles(tilt_filter_t *t)
 {
     int32_t estimates_q8[TILT_FILTER_AXES];

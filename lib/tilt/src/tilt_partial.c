@@ -1,11 +1,11 @@
-/* The missing component and what it does to the angles: see tilt_partial.h. */
+/* The missing component and its effect on the angles: see tilt_partial.h. */
 #include "tilt_partial.h"
 
 #include "fx.h"
 
 #define G2_Q12 0x10000000UL /* (256 in Q6)^2 */
 
-/* In Q6, rounded down; 1 g for all that is larger. */
+/* In Q6, rounded down, limited to 1 g. */
 static uint16_t size_q6(int32_t a_q8)
 {
     uint32_t a_q6 = filter_fx_abs32(a_q8) >> 2;
