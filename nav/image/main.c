@@ -1,4 +1,4 @@
-/* The navigation image: records of the PC through the filter, at the pace of the line. */
+/* The navigation image: records from the PC through the filter, at the speed of the serial line. */
 #include "hal_irq.h"
 #include "hal_sleep.h"
 #include "hal_time.h"

@@ -4,7 +4,7 @@
 #include "hal_uart.h"
 
 #define CRC_START 0xFFFFu
-enum { CODE_WHOLE = 0xFF }; /* the code of a run without a zero behind it */
+enum { CODE_WHOLE = 0xFF }; /* the code of a run with no zero after it */
 
 /* Eight steps of the shift register at once, without a table: x^16 + x^12 + x^5 + 1. */
 uint16_t frame_crc(uint16_t crc, uint8_t byte)
@@ -59,7 +59,7 @@ static frame_result_t end_of_frame(frame_reader_t *reader)
     return FRAME_GOOD;
 }
 
-/* The first byte behind the end of a frame begins the next. */
+/* The first byte after the end of a frame begins the next. */
 static void begin(frame_reader_t *reader)
 {
     frame_reader_init(reader);
@@ -87,7 +87,7 @@ frame_result_t frame_take(frame_reader_t *reader, uint8_t byte)
     return FRAME_MORE;
 }
 
-/* From the end, so that each zero is told how far the next one is. */
+/* Works backwards, so that the distance to the next zero is known at each zero. */
 void frame_send(uint8_t *frame, uint8_t length)
 {
     uint8_t end = (uint8_t)(length + FRAME_CRC + 1);

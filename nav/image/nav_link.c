@@ -1,4 +1,4 @@
-/* One record in, its answer out. */
+/* One record in, its reply out. */
 #include "nav_link.h"
 
 #include <stddef.h>
@@ -20,16 +20,16 @@ enum {
     VARIANCES_BYTES = 2 + NAV_STATES * REAL,
     ANSWER_BYTES = 7,
     HELLO_BYTES = 6,
-    ROOM = STATE_BYTES + FRAME_OVERHEAD + ANSWER_BYTES + FRAME_OVERHEAD, /* the longest that one record causes */
-    ROOM_US = 200,                                                       /* 20 bytes go out */
+    ROOM = STATE_BYTES + FRAME_OVERHEAD + ANSWER_BYTES + FRAME_OVERHEAD, /* the longest output that one record causes */
+    ROOM_US = 200,                                                       /* 20 bytes are sent */
     LINK_ANSWERS = LINK_ANSWERS_END - LINK_BROKEN,
-    SEQUENCES_AHEAD = 0x80 /* a number less than this behind the expected one was there before */
+    SEQUENCES_AHEAD = 0x80 /* a number less than this before the expected one has already been received */
 };
 
 _Static_assert(sizeof(nav_state_t) == STATE_REALS * REAL, "a state is sent as it lies in memory");
 _Static_assert(offsetof(nav_config_t, period_us) == PARAMETERS * REAL, "the parameters are the reals of nav_config_t");
 
-/* The parameters wait where the filter will be: RAM holds no second copy. */
+/* The parameters are stored where the filter will be: RAM has no room for a second copy. */
 static union {
     nav_t nav;
     nav_config_t config;
@@ -37,10 +37,10 @@ static union {
 static frame_reader_t reader;
 static uint16_t taken;
 static uint16_t refused[LINK_ANSWERS];
-static uint16_t missing; /* numbers that never came */
+static uint16_t missing; /* numbers that never arrived */
 static uint8_t expected;
-static bool any_number;    /* the next record's number is not looked at */
-static uint8_t parameters; /* a bit for each group that has come */
+static bool any_number;    /* the next record's number is not checked */
+static uint8_t parameters; /* a bit for each group received */
 static bool started;
 
 static void put_u16(uint8_t *to, uint16_t value)
@@ -59,7 +59,7 @@ static uint32_t get_u32(const uint8_t *from)
     return get_u16(from) | (uint32_t)get_u16(from + 2) << 16;
 }
 
-/* Reals lie in memory as they do on the line; only their place need not be aligned there. */
+/* Reals have the same layout in memory as on the line, but need not be aligned there. */
 static void copy(void *to, const void *from, uint8_t length)
 {
     uint8_t *destination = to;
@@ -157,7 +157,7 @@ MACHINE_APART static uint8_t on_imu(const uint8_t *body)
     copy(measured, &body[TIME], sizeof measured);
     uint8_t answer = (uint8_t)nav_imu(&filter.nav, t_us, measured, &measured[3]);
     if (body[TIME + 6 * REAL] == 1u) {
-        send_state(filter.nav.t_us); /* a refused record's time is not the state's */
+        send_state(filter.nav.t_us); /* a refused record's time is not that of the state */
     }
     return answer;
 }
@@ -183,7 +183,7 @@ static uint8_t on_field(const uint8_t *body)
     return (uint8_t)nav_field(&filter.nav, get_u32(body), field);
 }
 
-/* Bytes behind the head that a record of this type has; UINT8_MAX: there is no such type. */
+/* Bytes after the head of a record of this type; UINT8_MAX: no such type. */
 static uint8_t length_of(uint8_t type)
 {
     switch (type) {
@@ -232,7 +232,7 @@ static uint8_t carry_out(uint8_t type, const uint8_t *body)
     }
 }
 
-/* A number of before is refused; one further on means that those between are missing. */
+/* An earlier number is refused; a later one means that those in between are missing. */
 static bool in_order(uint8_t sequence)
 {
     uint8_t ahead = (uint8_t)(sequence - expected);
@@ -314,7 +314,7 @@ bool link_pass(void)
     uint8_t byte;
     bool any = false;
     if (hal_uart_tx_room() < ROOM) {
-        hal_wake_at(hal_time_us() + ROOM_US); /* bytes that go out wake nobody */
+        hal_wake_at(hal_time_us() + ROOM_US); /* transmitted bytes do not wake main */
         return false;
     }
     while (hal_uart_rx(&byte)) {

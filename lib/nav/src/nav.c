@@ -1,4 +1,4 @@
-/* Records in, state out: what is believed of a record, and the slot of an IMU record. */
+/* Records in, state out: checks of a record, and the slot of an IMU record. */
 #include "nav.h"
 #include "nav_align.h"
 #include "nav_ins.h"
@@ -17,18 +17,18 @@
 #define VELOCITY_MAX_MPS NAV_R(1e3)
 #define POSITION_MAX_M NAV_R(1e6)
 #define FIELD_MAX NAV_R(1e6)
-#define GAP_MAX_S NAV_R(10.0)  /* beyond, what a gap may hold is said by the gate's re-acquisition */
-#define CLOCK_GAP_US 1000000UL /* what a clock that began anew counts for */
-#define ONLY_ONE 0x80U /* in strays: of all times only the first record's was taken, and it may be the wrong one */
+#define GAP_MAX_S NAV_R(10.0)  /* for longer gaps the gate's re-acquisition covers the rest */
+#define CLOCK_GAP_US 1000000UL /* assumed gap if a clock has restarted */
+#define ONLY_ONE 0x80U /* in strays: the only time accepted so far is the first record's, which may be the wrong one */
 #define HALF NAV_R(0.5)
 
-/* NAV_TAKEN when all lie within +-limit. */
+/* NAV_TAKEN if all are within +-limit. */
 static nav_answer_t judged(const nav_real_t *values, uint8_t count, nav_real_t limit)
 {
     nav_answer_t answer = NAV_TAKEN;
     for (uint8_t i = 0; i < count; i++) {
         if (!(values[i] >= -limit && values[i] <= limit)) {
-            if (!(values[i] - values[i] <= 0)) { /* NaN, or infinite: the difference is NaN */
+            if (!(values[i] - values[i] <= 0)) { /* NaN or infinite: the difference is NaN */
                 return NAV_NOT_FINITE;
             }
             answer = NAV_OUT_OF_RANGE;
@@ -55,7 +55,7 @@ static bool within(nav_real_t value, nav_real_t low, nav_real_t high)
     return value >= low && value <= high;
 }
 
-/* The numbers of a configuration that follow one another: start's sigmas, walks, sensors' sigmas. */
+/* The consecutive numbers of a configuration: sigmas of the start, random walks, sigmas of the sensors. */
 enum { STARTS = 0, WALKS = 4, SENSORS = 8, NUMBERS = 12 };
 _Static_assert(offsetof(nav_config_t, gate) - offsetof(nav_config_t, start_position_m) == sizeof(nav_real_t[NUMBERS]),
                "nothing stands between the first sigma and the gate");
@@ -119,7 +119,7 @@ static void begin_at(nav_t *nav, uint32_t t_us)
     nav_noise_restart(&nav->noise, t_us);
 }
 
-/* This record is the last from now on; rate and force: its own, or the mean with the one before. */
+/* Stores this record as the last one; rate and force become its own, or the mean with the previous one if bridged. */
 static void read_record(nav_t *nav, nav_real_t rate[3], nav_real_t force[3], bool bridged)
 {
     for (uint8_t i = 0; i < 3U; i++) {
@@ -134,7 +134,7 @@ static void read_record(nav_t *nav, nav_real_t rate[3], nav_real_t force[3], boo
     }
 }
 
-/* Strapdown and covariance to t_us with mean rate and force. */
+/* Propagates strapdown and covariance to t_us with mean rate and force. */
 static void advance(nav_t *nav, uint32_t t_us, nav_real_t rate[3], const nav_real_t force[3])
 {
     nav_real_t step = nav_seconds(nav->t_us, t_us);
@@ -149,7 +149,7 @@ static void advance(nav_t *nav, uint32_t t_us, nav_real_t rate[3], const nav_rea
     nav_past_keep(&nav->past, &nav->state, t_us);
 }
 
-/* Nothing is known of the time before: on with the velocity, and the covariance owes what it may hold. */
+/* Nothing is known about the interval: moves on with the velocity, and the covariance owes what may have happened. */
 static void leap(nav_t *nav, uint32_t t_us, uint32_t gap_us)
 {
     nav_real_t gap = (nav_real_t)gap_us * NAV_R(1e-6);
@@ -167,8 +167,9 @@ static uint32_t bridged_us(const nav_t *nav)
 }
 
 /*
- * A time that does not go on from the last may be one wrong stamp, and to believe it would move the position by seconds
- * of flight. A gap is what the next record goes on from; what goes back may be late records, some in a row.
+ * A time that does not continue from the last may be a single wrong stamp, and accepting it would move the position by
+ * seconds of flight. It is a gap if the next record continues from it. Times that go back may be late records, several
+ * in a row.
  */
 static nav_answer_t stray(nav_t *nav, uint32_t t_us, uint32_t step_us)
 {
@@ -196,7 +197,7 @@ static nav_answer_t step_to(nav_t *nav, uint32_t t_us, nav_real_t rate[3], nav_r
     if (step_us - 1U >= bridged_us(nav)) {
         return stray(nav, t_us, step_us);
     }
-    bool leapt = nav->stray_us == nav->t_us; /* the last record that was read is of before */
+    bool leapt = nav->stray_us == nav->t_us; /* the last record read is from before the gap */
     read_record(nav, rate, force, !leapt && step_us > nav->period_us + nav->period_us / 2U);
     advance(nav, t_us, rate, force);
     return NAV_TAKEN;
@@ -222,7 +223,7 @@ nav_answer_t nav_imu(nav_t *nav, uint32_t t_us, const nav_real_t rate_rps[3], co
     return counted(nav, answer);
 }
 
-/* Values that were judged, into the queue if their time fits. */
+/* Queues values that passed the checks, if their time fits. */
 static nav_answer_t queued(nav_t *nav, nav_answer_t answer, nav_sensor_t sensor, uint32_t t_us,
                            const nav_real_t *values)
 {

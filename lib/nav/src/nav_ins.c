@@ -7,9 +7,9 @@
 #define HALF NAV_R(0.5)
 #define THREE_HALVES NAV_R(1.5)
 #define SIXTH NAV_R(0.16666666666666667)
-#define NEAR_LOW NAV_R(0.99) /* a Newton step leaves 4e-5 of this and less */
+#define NEAR_LOW NAV_R(0.99) /* a Newton step leaves an error of at most 4e-5 */
 #define NEAR_HIGH NAV_R(1.01)
-#define TURN_LARGE NAV_R(0.01) /* half the angle, squared: the length is off by its square / 12 */
+#define TURN_LARGE NAV_R(0.01) /* half the angle, squared: the error of the length is its square / 12 */
 
 /* (w^2 - v.v) I + 2 v v' + 2 w [v x], and w^2 + v.v = 1. */
 void nav_ins_dcm(nav_real_t dcm[9], const nav_real_t quaternion[4])
@@ -34,7 +34,7 @@ void nav_ins_dcm(nav_real_t dcm[9], const nav_real_t quaternion[4])
     }
 }
 
-/* q <- q (w, v), or (w, v) q when the turn is about the frame behind it. */
+/* q <- q (w, v) for a rotation about body axes, or (w, v) q for one about NED axes. */
 static void turn(nav_real_t quaternion[4], nav_real_t w, const nav_real_t v[3], bool in_body)
 {
     nav_real_t *vector = quaternion + 1;

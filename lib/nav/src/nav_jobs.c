@@ -1,10 +1,10 @@
 /*
- * The queue. A measurement of epoch e that is used at time t = e + age compares with the state then. To first order in
- * the age the errors were dr(e) = dr - age dv and dv(e) = dv - age f x mu, which gives the rows of H. What is computed
- * for the epoch is fixed when it is taken in; a correction x made later changes it by h x, with the row h of that time,
- * which is taken off the innovations that wait. So the scalars of an epoch may be used one after another, at later and
- * later times: in exact numbers, without noise in between and to first order in the age they give what all at once
- * give, because each scalar still measures the same error at the epoch.
+ * The queue. A measurement of epoch e that is used at time t = e + age is compared with the state of that epoch. To
+ * first order in the age the errors were dr(e) = dr - age dv and dv(e) = dv - age f x mu, which gives the rows of H.
+ * The computed value for the epoch is fixed when the measurement is taken in. A correction x made later changes it by h
+ * x, with the row h at that time, and this is subtracted from the waiting innovations. So the scalars of an epoch may
+ * be used one after another, at later and later times: in exact numbers, without noise in between and to first order in
+ * the age, the result is that of using all at once, because each scalar still measures the same error at the epoch.
  */
 #include "nav_jobs.h"
 #include "nav_align.h"
@@ -57,7 +57,7 @@ nav_answer_t nav_jobs_may(const nav_t *nav, nav_sensor_t sensor, uint32_t t_us)
         !nav_past_reaches(&nav->past, t_us)) {
         return NAV_LATE;
     }
-    /* a last epoch that seems to be far ahead is one of half the clock's round ago */
+    /* a last epoch that appears to be far ahead is half a clock period old */
     int32_t back = nav_time_from(t_us, queue->t_us[sensor]);
     if ((queue->seen & bit(sensor)) != 0U && back >= 0 && back <= (int32_t)(NAV_LATE_US + NAV_BRIDGE_US)) {
         return NAV_BACKWARDS;
@@ -79,7 +79,7 @@ void nav_jobs_put(nav_t *nav, nav_sensor_t sensor, uint32_t t_us, const nav_real
     queue->seen |= (uint8_t)bit(sensor);
 }
 
-/* A fixed direction, which the body has turned on from for the time since: m + m x (w age). */
+/* A fixed direction, from which the body has rotated since then: m + m x (w age). */
 static void take_field(nav_t *nav)
 {
     nav_queue_t *queue = &nav->queue;
@@ -98,7 +98,7 @@ static void take_field(nav_t *nav)
     nav_align_innovation(queue->value + FIELD, nav->tau, dcm, turned);
 }
 
-/* Measured less computed at the epoch. */
+/* Measured less computed, at the epoch. */
 static void take_motion(nav_t *nav, uint8_t sensor)
 {
     nav_queue_t *queue = &nav->queue;
@@ -113,7 +113,7 @@ static void take_motion(nav_t *nav, uint8_t sensor)
     }
 }
 
-/* Makes innovations of what has arrived and is not ahead of the state; false: nothing. */
+/* Turns arrived measurements that are not ahead of the state into innovations; false: there were none. */
 static bool take_in(nav_t *nav)
 {
     bool taken = false;
@@ -151,7 +151,7 @@ static void motion_row(nav_ud_scalar_t *row, uint8_t scalar, const nav_real_t fo
     row->f[row->first] = 1;
 }
 
-/* The row of a scalar now. */
+/* The current row of a scalar. */
 static void row_of(nav_ud_scalar_t *row, const nav_t *nav, uint8_t scalar)
 {
     for (uint8_t i = 0; i < NAV_STATES; i++) {
@@ -184,10 +184,10 @@ static uint16_t ready(const nav_queue_t *queue)
 }
 
 /*
- * Refused: the innovation's square is beyond the gate. After five epochs of it the covariance is what is wrong. The
- * innovation is likeliest when its variance is its square, so that much is added where the scalar measures; then it
- * passes any gate of 1 or more, and takes nearly all the gain. A field says nothing of the turn about itself, so what
- * it adds goes the way of P h', to the angles that are least known: to the heading, when GPS keeps the others.
+ * Refused: the innovation's square is beyond the gate. After five such epochs the covariance is considered wrong. The
+ * innovation is most likely when its variance equals its square, so that much is added where the scalar measures. It
+ * then passes any gate of 1 or more, and gets nearly the full gain. A field does not observe the rotation about itself,
+ * so its addition goes along P h', to the least known angles: to the heading, if GPS keeps the others.
  */
 static bool refuse(nav_t *nav, uint8_t scalar, nav_ud_scalar_t *update, nav_real_t square)
 {
@@ -210,7 +210,7 @@ static bool refuse(nav_t *nav, uint8_t scalar, nav_ud_scalar_t *update, nav_real
     return true;
 }
 
-/* Closed loop, by x in the place of the gain: the state at once, and what waits. */
+/* Closed loop, with x in place of the gain: corrects the state and the waiting innovations. */
 static void correct(nav_t *nav, nav_ud_scalar_t *update)
 {
     uint16_t scalars = ready(&nav->queue);
@@ -234,7 +234,7 @@ static void use_scalar(nav_t *nav, uint8_t scalar)
     nav_ud_look(&update, nav->ud, variance_of(nav, scalar));
     bool beyond = nav->gate_squared > 0 && square > nav->gate_squared * update.variance;
     if (beyond && refuse(nav, scalar, &update, square)) {
-        return; /* it waits on, and passes next time */
+        return; /* it stays queued, and passes next time */
     }
     queue->waits &= (uint16_t)~bit(scalar);
     if (beyond) {
@@ -248,7 +248,7 @@ static void use_scalar(nav_t *nav, uint8_t scalar)
     correct(nav, &update);
 }
 
-/* The last sensor first: the field comes most often, and must not wait until the next is there. */
+/* The last sensor first: the field arrives most often, and must be used before its next epoch. */
 static bool use_one(nav_t *nav)
 {
     uint16_t scalars = ready(&nav->queue);
@@ -271,7 +271,7 @@ void nav_jobs_run(nav_t *nav)
         return;
     }
     nav->queue.in_a_row = 0;
-    if (nav->noise.next == 0U) { /* once a round: steps of 0.2 rad take 8e-6 off the length */
+    if (nav->noise.next == 0U) { /* once a round: steps of 0.2 rad shorten it by 8e-6 */
         nav_ins_unit(nav->state.quaternion);
     }
     nav_noise_job(&nav->noise, nav->ud, nav->t_us);

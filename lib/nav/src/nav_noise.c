@@ -2,8 +2,8 @@
 #include "nav_noise.h"
 #include "nav_ud.h"
 
-#define TURNED_RPS NAV_R(0.5)      /* what may go unseen in a gap, 1 sigma: a slow turn of a vehicle that flies */
-#define TURNED_MOST_RAD NAV_R(0.5) /* beyond, an error is not small any more, and no variance makes it so */
+#define TURNED_RPS NAV_R(0.5)      /* may go unobserved in a gap, 1 sigma: a slow turn of a flying vehicle */
+#define TURNED_MOST_RAD NAV_R(0.5) /* above this an error is no longer small, and no variance can represent it */
 #define ACCELERATED_MPS2 NAV_R(5.0)
 #define HALF NAV_R(0.5)
 
@@ -58,7 +58,7 @@ static bool owes(const nav_noise_t *noise, uint8_t job)
     return (noise->owed & (uint16_t)((uint16_t)1U << job)) != 0U;
 }
 
-/* The first that owes, otherwise the next that has noise; NAV_NOISES for none. */
+/* The first job with an owed gap, otherwise the next with noise; NAV_NOISES if none. */
 static uint8_t whose_turn(nav_noise_t *noise)
 {
     for (uint8_t job = 0; noise->owed != 0U && job < NAV_NOISES; job++) {

@@ -1,4 +1,4 @@
-/* A ring of the past: kept without the corrections, read with all of them. */
+/* A ring buffer of the past: stored without the corrections, read with all of them. */
 #include "nav_past.h"
 #include "nav_time.h"
 #include "nav_ud.h"
@@ -49,7 +49,7 @@ void nav_past_correct(nav_past_t *past, const nav_real_t x[NAV_STATES])
     }
 }
 
-/* The one kept `back` places before the newest. */
+/* Index of the entry `back` places before the newest. */
 static uint8_t place(const nav_past_t *past, uint8_t back)
 {
     return (uint8_t)((past->newest >= back) ? past->newest - back : past->newest + NAV_PAST - back);

@@ -1,8 +1,8 @@
 /*
- * The number that lib/nav counts in: float, or double when NAV_DOUBLE is defined (the same code as its own reference).
+ * The number type of lib/nav: float, or double if NAV_DOUBLE is defined (the same code as its own reference).
  *
- * The same bits on every machine need: constants of that type (NAV_R), no fused multiply-add (-ffp-contract=off), and
- * only + - * / and the square root, which IEEE 754 rounds one way.
+ * Identical bits on every machine require constants of that type (NAV_R), no fused multiply-add (-ffp-contract=off),
+ * and only + - * / and the square root, which IEEE 754 rounds one way.
  */
 #ifndef NAV_REAL_H
 #define NAV_REAL_H

@@ -1,4 +1,4 @@
-/* The square root of lib/nav's number, rounded as IEEE 754 says: the only call of the mathematical library. */
+/* Square root of lib/nav's number type, rounded as IEEE 754 requires: the only call to the maths library. */
 #ifndef NAV_ROOT_H
 #define NAV_ROOT_H
 

@@ -1,4 +1,4 @@
-/* Times of lib/nav: microseconds in 32 bits that wrap; differences go the shorter way. */
+/* Times of lib/nav: microseconds in 32 bits that wrap; differences are taken the shorter way round. */
 #ifndef NAV_TIME_H
 #define NAV_TIME_H
 

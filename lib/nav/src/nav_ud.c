@@ -1,10 +1,10 @@
-/* The covariance as U D U'. Loops leave out what is known to be 0 or 1: a product costs 150 cycles on the AVR. */
+/* The covariance as U D U'. Loops skip elements known to be 0 or 1: a product costs 150 cycles on the AVR. */
 #include "nav_ud.h"
 #include "nav_vector.h"
 
 #define HALF NAV_R(0.5)
 
-/* Where column j begins. */
+/* Start of column j. */
 static uint8_t column(uint8_t j)
 {
     uint8_t next = (uint8_t)(j + 1U);
@@ -21,7 +21,7 @@ void nav_ud_start(nav_real_t ud[NAV_PACKED], const nav_real_t sigma[4])
     }
 }
 
-/* What Phi works with, once per step. */
+/* Factors of Phi, computed once per step. */
 typedef struct {
     nav_real_t step, half_step;
     nav_real_t force[3], half_force[3]; /* x step, x step / 2 */
@@ -39,7 +39,7 @@ static void carry_velocity_column(nav_real_t *u, uint8_t j, nav_real_t step)
 }
 
 #if NAV_STATES > 9
-/* mu += step A c, c ending with the 1 on the diagonal; twice: mu before + mu behind. */
+/* mu += step A c, where c ends with the 1 on the diagonal; twice: mu before + mu after. */
 static void carry_attitude(nav_real_t *u, uint8_t j, nav_real_t twice[3], const phi_t *phi)
 {
     uint8_t diagonal = (uint8_t)(j - NAV_C0);
@@ -57,7 +57,7 @@ static void carry_attitude(nav_real_t *u, uint8_t j, nav_real_t twice[3], const 
 }
 #endif
 
-/* A column of attitude or drift: v += f x (mu before + mu behind) step / 2, r += (v before + v behind) step / 2. */
+/* A column of attitude or drift: v += f x (mu before + mu after) step / 2, r += (v before + v after) step / 2. */
 static void carry_column(nav_real_t *u, uint8_t j, const phi_t *phi)
 {
     nav_real_t both[3];
@@ -101,7 +101,7 @@ void nav_ud_phi(nav_real_t ud[NAV_PACKED], nav_real_t step_s, const nav_real_t f
     }
 }
 
-/* One column of Agee and Turner: P += c a a'. Gives c for the columns before. */
+/* One column of Agee and Turner: P += c a a'. Returns c for the columns before. */
 static nav_real_t spread_column(nav_real_t *u, nav_real_t *a, uint8_t j, nav_real_t c)
 {
     nav_real_t d = u[j];
@@ -109,7 +109,7 @@ static nav_real_t spread_column(nav_real_t *u, nav_real_t *a, uint8_t j, nav_rea
     nav_real_t along = c * part;
     nav_real_t sum = d + along * part;
     u[j] = sum;
-    if (!(sum > 0)) { /* d = 0 and nothing to add: the columns before are as they were */
+    if (!(sum > 0)) { /* d = 0 and nothing to add: the columns before are unchanged */
         return c;
     }
     nav_real_t inverse = 1 / sum;
@@ -138,7 +138,7 @@ void nav_ud_noise(nav_real_t ud[NAV_PACKED], uint8_t k, nav_real_t variance)
     nav_ud_spread(ud, a, k, variance);
 }
 
-/* From the last column to the first, so that h is there until its last use. */
+/* From the last column to the first, so that h is intact until its last use. */
 void nav_ud_look(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], nav_real_t variance)
 {
     for (uint8_t j = NAV_STATES; j-- > scalar->first;) {
@@ -168,7 +168,7 @@ void nav_ud_reach(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], uint
     }
 }
 
-/* Bierman, column by column: alpha is the variance of the innovation as far as the columns up to here make it. */
+/* Bierman, column by column: alpha is the variance of the innovation from the columns up to this one. */
 void nav_ud_update(nav_real_t ud[NAV_PACKED], nav_ud_scalar_t *scalar, nav_real_t variance)
 {
     nav_real_t *gain = scalar->gain;

@@ -1,10 +1,10 @@
 /*
  * Covariance of the navigation errors as P = U D U', U unit upper triangular, D diagonal.
  *
- * State order [dr, dv, mu, dc] makes Phi block upper triangular, so Phi U is upper triangular again with the same ones:
- * carrying P on costs no factorisation (papers 003 (3.24)-(3.26) do one). Process noise is added by Agee and Turner's
- * rank-one update, a measurement by Bierman's. D never turns negative: each D comes out of products, quotients and
- * sums of numbers that are not negative.
+ * State order [dr, dv, mu, dc] makes Phi block upper triangular, so Phi U is again upper triangular with the same ones:
+ * propagating P needs no factorisation (paper 003 (3.24)-(3.26) does one). Process noise is added by Agee and Turner's
+ * rank-one update, a measurement by Bierman's. D never becomes negative: each D is formed from products, quotients and
+ * sums of non-negative numbers.
  *
  * Packed by columns: U[i][j] at j (j + 1) / 2 + i, and D[j] in the place of U[j][j].
  */
@@ -24,10 +24,10 @@ enum {
     NAV_C0 = 9  /* drift */
 };
 
-/* A scalar update. One array after another serves twice: the stack is what the AVR has least of. */
+/* A scalar update. Arrays are reused: stack is what the AVR has least of. */
 typedef struct {
-    nav_real_t f[NAV_STATES];    /* the row h of H, 0 outside first .. end - 1; h U behind nav_ud_look */
-    nav_real_t gain[NAV_STATES]; /* D U' h' behind nav_ud_look, K behind nav_ud_update */
+    nav_real_t f[NAV_STATES];    /* the row h of H, 0 outside first .. end - 1; h U after nav_ud_look */
+    nav_real_t gain[NAV_STATES]; /* D U' h' after nav_ud_look, K after nav_ud_update */
     nav_real_t variance;         /* of the innovation */
     uint8_t first, end;
 } nav_ud_scalar_t;
@@ -36,27 +36,27 @@ typedef struct {
 void nav_ud_start(nav_real_t ud[NAV_PACKED], const nav_real_t sigma[4]);
 
 /*
- * P <- Phi P Phi', Phi of (3.41) with F^2 dt^2 / 2: step_s seconds, specific force in NED, body to NED (row-major; not
- * looked at with 9 states).
+ * P <- Phi P Phi', Phi of (3.41) with F^2 dt^2 / 2: step_s seconds, specific force in NED, body to NED (row-major;
+ * ignored with 9 states).
  */
 void nav_ud_phi(nav_real_t ud[NAV_PACKED], nav_real_t step_s, const nav_real_t force_mps2[3], const nav_real_t dcm[9]);
 
 /* P <- P + variance e_k e_k'. variance >= 0. */
 void nav_ud_noise(nav_real_t ud[NAV_PACKED], uint8_t k, nav_real_t variance);
 
-/* P <- P + variance a a', a[k + 1] and on being 0. a is used up. */
+/* P <- P + variance a a', where a[k + 1] and beyond are 0. a is overwritten. */
 void nav_ud_spread(nav_real_t ud[NAV_PACKED], nav_real_t a[NAV_STATES], uint8_t k, nav_real_t variance);
 
-/* What this row with this measured variance (> 0) would do; P is left alone. */
+/* Evaluates this row with this measurement variance (> 0); P is not changed. */
 void nav_ud_look(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], nav_real_t variance);
 
-/* P h' in rows begin .. end - 1 and 0 before, from what was looked at, in the place of f. */
+/* P h' in rows begin .. end - 1 and 0 before, from the result of nav_ud_look, in place of f. */
 void nav_ud_reach(nav_ud_scalar_t *scalar, const nav_real_t ud[NAV_PACKED], uint8_t begin, uint8_t end);
 
-/* Does it: P <- P - K S K', S the variance of the innovation. scalar->gain becomes K. `variance` as in nav_ud_look. */
+/* Updates P <- P - K S K', S the variance of the innovation. scalar->gain becomes K. `variance` as in nav_ud_look. */
 void nav_ud_update(nav_real_t ud[NAV_PACKED], nav_ud_scalar_t *scalar, nav_real_t variance);
 
-/* h x, x being in the place of the gain. */
+/* h x, with x in place of the gain. */
 nav_real_t nav_ud_times(const nav_ud_scalar_t *scalar);
 
 /* All of D >= 0. */

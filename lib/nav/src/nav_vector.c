@@ -1,4 +1,4 @@
-/* Loops and not lines: a line of float costs 40 bytes of flash per operation on the AVR. */
+/* Loops rather than unrolled lines: a line of float costs 40 bytes of flash per operation on the AVR. */
 #include "nav_vector.h"
 
 #include <stdint.h>
