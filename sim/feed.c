@@ -1,8 +1,8 @@
-/* Gaps, loops and rates of a stream that the virtual sensor measures. */
+/* Gaps, loops and rates of the stream that the virtual sensor measures. */
 #include "feed.h"
 
 enum { RATE_TOLERANCE_PERCENT = 5 };
-enum { MOVES_WITHIN = 10 }; /* rows: as many equal readings the driver calls stuck */
+enum { MOVES_WITHIN = 10 }; /* rows: the driver reports stuck after this many equal readings */
 
 void feed_set_rate(feed_t *feed, const stream_t *stream, double odr_hz, uint64_t now_us)
 {
@@ -59,7 +59,7 @@ static feed_result_t tick_in_force(feed_t *feed, uint64_t now_us, size_t *row_in
 {
     const stream_t *stream = feed->stream;
     const stream_row_t *rows = stream->rows;
-    if (!feed->started) { /* the first tick is at the next row's time */
+    if (!feed->started) { /* the first tick is at the time of the next row */
         feed->next = feed->next < stream->count ? feed->next : (feed->loop ? 0 : stream->count - 1);
         feed->origin_us = now_us - rows[feed->next].t_us; /* may wrap below 0: only differences are used */
         feed->started = true;
@@ -92,14 +92,14 @@ static bool without_power(const int16_t lsb[3])
     return lsb[0] == -1 && lsb[1] == -1 && lsb[2] == -1;
 }
 
-/* Of any range: 2^9, 2^10, 2^11 and 2^12 LSB, less one above zero. */
+/* A rail of any range: 2^9, 2^10, 2^11 and 2^12 LSB, one less on the positive side. */
 static bool at_a_rail(int16_t lsb)
 {
     int32_t size = lsb < 0 ? -(int32_t)lsb : lsb + 1;
     return size >= 512 && (size & (size - 1)) == 0;
 }
 
-/* The stream changed this axis within the last rows: one that stands still is frozen, and stays so. */
+/* The stream changed this axis within the last rows; an axis that does not change is frozen, and stays so. */
 static bool moves(const feed_t *feed, size_t axis)
 {
     const stream_row_t *rows = feed->stream->rows;
@@ -112,7 +112,7 @@ static bool moves(const feed_t *feed, size_t axis)
     return false;
 }
 
-/* One LSB more or less on this axis, where that changes no meaning. */
+/* Changes this axis by one LSB, unless that changes the meaning of the reading. */
 static bool vary(int16_t lsb[3], size_t axis, int16_t by)
 {
     int16_t read = lsb[axis];
@@ -129,7 +129,7 @@ void feed_vary(const feed_t *feed, int16_t lsb[3])
     if (feed->repeats == 0 || without_power(lsb)) {
         return;
     }
-    size_t turn = feed->repeats + feed->next; /* the next tick or the next row is another axis' turn, the other way */
+    size_t turn = feed->repeats + feed->next; /* at the next tick or row it is another axis, in the other direction */
     for (size_t axis = turn; axis < turn + 3; axis++) {
         if (moves(feed, axis % 3) && vary(lsb, axis % 3, turn % 2 == 0 ? 1 : -1)) {
             return;

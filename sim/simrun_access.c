@@ -1,4 +1,4 @@
-/* Which address in data space the instruction at hand reads or writes; the stack's own instructions do not count. */
+/* The address in data space that the current instruction reads or writes; stack instructions do not count. */
 #include "simrun.h"
 
 enum { REG_X = 26, REG_Y = 28, REG_Z = 30, IO_OFFSET = 0x20 };
@@ -13,7 +13,7 @@ static access_t access_to(unsigned address, bool writes)
     return (access_t){ .address = (uint16_t)address, .reads = !writes, .writes = writes };
 }
 
-/* LDS and STS, and LD and ST with a pointer that may move. */
+/* LDS and STS, and LD and ST with a pointer that may change. */
 static access_t direct(unsigned opcode, uint32_t pc)
 {
     bool writes = (opcode & 0x0200u) != 0;
@@ -46,7 +46,7 @@ static access_t displaced(unsigned opcode)
 
 static access_t bit(unsigned opcode)
 {
-    bool writes = (opcode & 0x0100u) == 0; /* SBI, CBI: they read it too; SBIS, SBIC only that */
+    bool writes = (opcode & 0x0100u) == 0; /* SBI, CBI also read it; SBIS, SBIC only read it */
     return (access_t){ .address = (uint16_t)((opcode >> 3 & 0x1Fu) + IO_OFFSET), .reads = true, .writes = writes };
 }
 

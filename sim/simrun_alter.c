@@ -1,7 +1,8 @@
 /*
- * Faults that change values or clocks instead of breaking a transfer. Flips, noise and doubled readings come into the
- * bytes on their way to the master, behind the sensor, so that --served stays what the sensor latched; a frozen sensor
- * latches the frozen readings, and --served says so. What arrived at the master otherwise than it was sent: --altered.
+ * Faults that change values or clocks instead of breaking a transfer. Flips, noise and doubled readings are applied to
+ * the bytes on their way to the master, after the sensor, so that --served is still what the sensor latched. A frozen
+ * sensor latches the frozen readings, and --served shows them. --altered lists what reached the master different from
+ * what was sent.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -22,8 +23,8 @@ static uint8_t data_arrived[DATA_BYTES];
 static FILE *altered_file;
 static uint32_t altered_count;
 static uint32_t flip_bits;
-static change_t wanted;  /* of the next sample that is read */
-static change_t present; /* of the sample under way */
+static change_t wanted;  /* for the next sample that is read */
+static change_t present; /* for the sample in progress */
 static size_t changed_axis = NO_AXIS;
 static int16_t changed_lsb;
 static bool frozen;
@@ -31,7 +32,7 @@ static bool has_kept;
 static int16_t kept[AXES];
 static uint64_t pulse_at = NEVER; /* the next pulse on INT1, or its end */
 static uint64_t pulse_period;     /* 0: one pulse */
-static bool mixing;               /* what the master reads is of the burst before, to the end of this one */
+static bool mixing;               /* the master reads data of the previous burst, until the end of this one */
 static uint8_t data_before[DATA_BYTES];
 static size_t clipped_axis = NO_AXIS;
 static bool in_pulse;
@@ -47,7 +48,7 @@ static uint8_t random_mask(uint32_t bits)
     return (uint8_t)mask;
 }
 
-/* Twelve uniform numbers less their mean: variance 1, at most 6. */
+/* Twelve uniform numbers less their mean: variance 1, magnitude at most 6. */
 static double random_normal(void)
 {
     double sum = -6.0;
@@ -101,7 +102,7 @@ static int reading(const uint8_t data[DATA_BYTES], size_t axis)
     return (int16_t)(data[2 * axis] | data[2 * axis + 1] << 8);
 }
 
-/* A burst of the data that came to its end and is not what the sensor sent. */
+/* A data burst that was completed and differs from what the sensor sent. */
 static void record_altered(void)
 {
     if (memcmp(data_sent, data_arrived, DATA_BYTES) == 0) {
@@ -179,20 +180,20 @@ uint64_t alter_next(void)
     return pulse_at;
 }
 
-/* Cycles; in a storm a pulse lasts half of its period at most. */
+/* Cycles; in a storm a pulse lasts at most half of its period. */
 static uint64_t pulse_length(void)
 {
     return pulse_period != 0 && pulse_period < 2 * PULSE_CYCLES ? pulse_period / 2 : PULSE_CYCLES;
 }
 
-/* A short pulse against the level that INT1 has. */
+/* A short pulse opposite to the level of INT1. */
 void alter_step(void)
 {
     if (pulse_at > mcu->cycle) {
         return;
     }
     in_pulse = !in_pulse;
-    pulse_at += in_pulse ? pulse_length() : pulse_period - pulse_length(); /* from when it was due: the rate holds */
+    pulse_at += in_pulse ? pulse_length() : pulse_period - pulse_length(); /* from when it was due: keeps the rate */
     if (!in_pulse && pulse_period == 0) {
         pulse_at = NEVER;
     }

@@ -1,6 +1,6 @@
 /*
- * The boot loader's image, Intel HEX, beside the firmware. simavr 1.6 has a reader of its own, which takes the start
- * address record of Arduino's images for data.
+ * The boot loader's image, Intel HEX, beside the firmware. simavr 1.6 has its own reader, which takes the start address
+ * record of Arduino's images for data.
  */
 #include <ctype.h>
 #include <stdarg.h>
@@ -15,7 +15,7 @@ enum {
     RECORD_MAX = 255 + 5
 };
 
-/* Record types; the start addresses (03, 05) are for CPUs with segments and say nothing here. */
+/* Record types; the start addresses (03, 05) are for CPUs with segments and have no meaning here. */
 enum { TYPE_DATA, TYPE_END, TYPE_SEGMENT, TYPE_SEGMENT_START, TYPE_LINEAR, TYPE_LINEAR_START };
 
 typedef struct {
@@ -42,8 +42,8 @@ static void refuse(unsigned line, const char *format, ...)
 }
 
 /*
- * The bytes of a line, ":" and hexadecimal digits, checked as a record; returns how many data bytes are behind the
- * header.
+ * Decodes the bytes of a line, ":" and hexadecimal digits, and checks them as a record; returns the number of data
+ * bytes after the header.
  */
 static unsigned decode(const char *text, unsigned line, uint8_t record[RECORD_MAX])
 {

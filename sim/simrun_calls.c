@@ -1,8 +1,8 @@
 /*
- * Cycles by chain of callers (--calls). A cell is an instruction in a frame; a frame is known by the cell of the call
+ * Cycles by call chain (--calls). A cell is an instruction in a frame. A frame is identified by the cell of the call
  * that opened it, or of the vector where an interrupt enters; frame 0 has no caller. So one table holds the whole tree.
- * A jump opens no frame: what ends a function by jumping into another, or into the compiler's common prologues and
- * epilogues, stays in the frame of the one that was called.
+ * A jump opens no frame: a function that ends by jumping into another, or into the compiler's shared prologues and
+ * epilogues, stays in the frame of the function that was called.
  */
 #include <stdlib.h>
 
@@ -19,10 +19,10 @@ typedef struct {
     uint64_t count, cycles;
 } cell_t;
 
-static cell_t cells[CELLS]; /* in the order of their first use, so that a longer run only appends; 0 is none */
+static cell_t cells[CELLS]; /* in the order of their first use, so that a longer run only appends; 0 means none */
 static uint32_t places[PLACES];
 static uint32_t used = 1;
-static uint32_t frames[DEPTH]; /* open ones, the newest last */
+static uint32_t frames[DEPTH]; /* open frames, the newest last */
 static unsigned depth;
 
 static void give_up(const char *what)
@@ -59,7 +59,7 @@ static void open_frame(uint32_t cell)
 static bool is_call(unsigned opcode)
 {
     enum { CALL = 0x940E, CALL_MASK = 0xFE0E, RCALL = 0xD000, RCALL_MASK = 0xF000, ICALL = 0x9509 };
-    bool makes_room = opcode == RCALL; /* to the next instruction: two bytes on the stack, no function */
+    bool makes_room = opcode == RCALL; /* RCALL to the next instruction: reserves two bytes on the stack, no function */
     return (opcode & CALL_MASK) == CALL || ((opcode & RCALL_MASK) == RCALL && !makes_room) || opcode == ICALL;
 }
 

@@ -1,6 +1,6 @@
 /*
- * EEPROM contents in a file, and the 3.4 ms of a write, which simavr 1.6 does in no time: EEPE stays set, and a power
- * cycle in that time leaves junk in the cell, or what the fault says.
+ * EEPROM contents in a file, and the 3.4 ms of a write, which takes simavr 1.6 no time: EEPE stays set, and a power
+ * cycle in that time leaves junk in the cell, or what the fault specifies.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -39,7 +39,7 @@ static void on_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *p
     bool writes = (value & BIT_EEPE) != 0 && (avr->data[REG_EECR] & BIT_EEMPE) != 0;
     if (writes) {
         faults_on_eeprom_write(++write_count, EEPROM_BEFORE);
-        if (resets_wanted()) { /* it comes before the write */
+        if (resets_wanted()) { /* the reset comes before the write */
             core_write(avr, address, value & (uint8_t) ~(BIT_EEPE | BIT_EEMPE), core_param);
             return;
         }

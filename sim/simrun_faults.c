@@ -1,5 +1,5 @@
 /*
- * Faults from the command line: WHEN they begin, WHAT they do, how long a state lasts, and how long the firmware needs
+ * Faults from the command line: WHEN they begin, WHAT they do, how long a state lasts, and how long the firmware takes
  * until the first good row after it: a row that its flags do not disown (simrun_judge.h) and that shows a sample
  * latched after the fault had ended.
  */
@@ -24,7 +24,7 @@ void faults_start(void)
     }
 }
 
-/* A state that several faults can hold is let go by the last of them. */
+/* A state that several faults can hold is released by the last of them. */
 static bool any_active(kind_t kind)
 {
     for (size_t i = 0; i < fault_count; i++) {
@@ -55,7 +55,7 @@ static void set_power(bool on)
     sensor_check_rate();
 }
 
-/* Of the bytes under way; false when it is no such kind. */
+/* Faults of the bytes in progress; false for any other kind. */
 static bool apply_to_transfer(const fault_t *fault)
 {
     switch (fault->kind) {
@@ -82,7 +82,7 @@ static bool apply_to_transfer(const fault_t *fault)
     }
 }
 
-/* The state's beginning, or the whole of a fault that does not last. */
+/* Starts a state, or does all of a fault that does not last. */
 static void apply(const fault_t *fault)
 {
     if (apply_to_transfer(fault)) {
@@ -158,7 +158,7 @@ static void release(fault_t *fault)
     }
 }
 
-/* What it strikes is still to come: a byte, an acknowledge, the bus itself after a time in which nothing moved. */
+/* The fault has not struck yet: it still needs a byte, an acknowledge, or the bus after a time without activity. */
 static bool waits(const fault_t *fault)
 {
     switch (fault->kind) {
@@ -244,7 +244,7 @@ void faults_step(void)
     }
 }
 
-/* What the bus suffers comes at any byte of the read that follows, which is as long as the transfer before it. */
+/* A bus fault strikes at a random byte of the read that follows, which is as long as the previous transfer. */
 static void on_chance(fault_t *fault)
 {
     if (fault_kinds[fault->kind].on_bus) {

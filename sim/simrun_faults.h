@@ -1,4 +1,4 @@
-/* A fault of the command line, between its parser (simrun_faults_parse.c) and what it does (simrun_faults.c). */
+/* A fault of the command line, shared by its parser (simrun_faults_parse.c) and its action (simrun_faults.c). */
 #ifndef SIMRUN_FAULTS_H
 #define SIMRUN_FAULTS_H
 
@@ -48,7 +48,7 @@ typedef struct {
     kind_t kind;
     uint64_t at; /* WHEN_MS: cycle */
     uint32_t transfer, byte;
-    uint32_t bytes_left; /* WHEN_SAMPLE on the bus: until it begins, 0: not under way */
+    uint32_t bytes_left; /* WHEN_SAMPLE on the bus: bytes until it begins, 0: not in progress */
     uint32_t pc, visits_left;
     uint32_t eeprom_write;
     eeprom_moment_t eeprom_moment;
@@ -56,11 +56,11 @@ typedef struct {
     int32_t parameter;
     uint32_t address; /* KIND_POKE: of the variable */
     uint32_t overruns_before;
-    uint64_t lasts; /* cycles, NEVER: to the end */
-    bool armed;     /* has still to come (WHEN_SAMPLE: always) */
+    uint64_t lasts; /* cycles, NEVER: to the end of the run */
+    bool armed;     /* still to come (WHEN_SAMPLE: always) */
     bool active;
     uint64_t ends;    /* cycle, while active */
-    bool awaits_byte; /* has come, and no byte yet that it could strike: it ends when it has */
+    bool awaits_byte; /* has begun, but no byte has been affected yet: it ends once one has */
     bool awaits_row;
     uint64_t ended_at;
     uint32_t injected, recovered;
@@ -71,10 +71,10 @@ typedef struct {
     const char *name;
     bool lasts;                     /* a state, takes MS; the others happen once */
     bool on_bus;                    /* with p: it begins at a random byte of the transfer that follows the sample */
-    bool detectable;                /* false: alters the value inside a transfer that is well formed */
+    bool detectable;                /* false: alters a value inside a well-formed transfer */
     bool axis;                      /* PARAM is x, y or z */
     int32_t lowest, usual, highest; /* PARAM; all 0: takes none */
-    bool left;                      /* PARAM is what is left of a byte of EEPROM */
+    bool left;                      /* PARAM is what remains of an EEPROM byte */
 } kind_properties_t;
 
 extern const kind_properties_t fault_kinds[KIND_COUNT];
@@ -82,11 +82,11 @@ extern const kind_properties_t fault_kinds[KIND_COUNT];
 /* Fills *fault from WHEN:KIND[:PARAM][:MS]; exits with EXIT_INPUT and the reason. */
 void fault_parse(fault_t *fault, const char *text);
 
-/* The kinds from KIND_FLIP on: begins; the last of its kind ends. */
+/* The kinds from KIND_FLIP on: begins; ends with the last of its kind. */
 void alter_begin(const fault_t *fault);
 void alter_end(const fault_t *fault);
 
-/* A kind that happens once has begun, and the byte or reading that it alters is still to come. */
+/* A kind that happens once has begun, and the byte or reading that it alters has not come yet. */
 bool alter_waits(kind_t kind);
 
 #endif

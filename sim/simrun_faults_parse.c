@@ -5,7 +5,7 @@
 #include "simrun_faults.h"
 
 enum { POWER_OFF_MS = 5 };
-#define LAST_MS 1e9 /* that of --max-ms */
+#define LAST_MS 1e9 /* the limit of --max-ms */
 
 const kind_properties_t fault_kinds[KIND_COUNT] = {
     [KIND_UNPLUG] = { .name = "unplug", .lasts = true, .detectable = true },
@@ -50,7 +50,7 @@ static void refuse(const char *text, const char *reason)
     exit(EXIT_INPUT);
 }
 
-/* The text up to the next ':' or the end, cut off; NULL when there is none. */
+/* The text up to the next ':' or the end, cut off; NULL if there is none. */
 static char *next_part(char **rest)
 {
     char *part = *rest;
@@ -74,7 +74,7 @@ static double number(const fault_t *fault, const char *text, char **end)
     return value;
 }
 
-/* A whole number that begins at text and ends with the character `stop`; *rest is behind that. */
+/* A whole number that begins at text and ends with the character `stop`; *rest points after it. */
 static uint32_t whole(const fault_t *fault, const char *text, char stop, char **rest)
 {
     unsigned long value = strtoul(text, rest, 0);
@@ -85,7 +85,7 @@ static uint32_t whole(const fault_t *fault, const char *text, char stop, char **
     return (uint32_t)value;
 }
 
-/* The same of what is counted from 1. */
+/* The same for values counted from 1. */
 static uint32_t ordinal(const fault_t *fault, const char *text, char stop, char **rest)
 {
     uint32_t value = whole(fault, text, stop, rest);
@@ -109,7 +109,7 @@ static void parse_symbol(fault_t *fault, char *text)
     }
 }
 
-/* The number of a write, or that and .before or .after. */
+/* The number of a write, optionally with .before or .after. */
 static void parse_write(fault_t *fault, char *text)
 {
     char *end;

@@ -1,8 +1,8 @@
 /*
- * Whether the rows go on. A row is good that its flags do not disown (simrun_judge.h) and that no axis at the rail was
- * left out of; it shows a sample when at most the filter's gate or the rail speaks against it (flags 1 and 8). The
- * longest times without a row that shows a sample: of the whole run, and of its calm, in which every fault that has
- * come is over and has had its good row.
+ * Whether good rows keep coming. A row is good if its flags do not disown it (simrun_judge.h) and no axis at the rail
+ * was left out of it. It shows a sample if nothing but the filter's gate or the rail is against it (flags 1 and 8).
+ * Records the longest times without a row that shows a sample: of the whole run, and of its quiet parts, in which every
+ * fault so far is over and has had its good row.
  */
 #include "simrun.h"
 
@@ -24,8 +24,8 @@ static void keep_longest(gap_t *gap, uint64_t from, uint64_t to)
 }
 
 /*
- * No fault is under way or awaits its good row: then none has begun since the row before this one either, because it
- * would await a row that shows what was latched after it.
+ * No fault is in progress or waits for its good row. Then none has begun since the previous row either, because it
+ * would wait for a row that shows what was latched after it.
  */
 void flow_on_row(const row_t *row)
 {

@@ -1,6 +1,7 @@
 /*
- * A PC that speaks in frames with the navigation image (--frames): it sends each frame when it is due and when the
- * board has room for it, and reads the answers only so far. Frames and records: docs/protocol.md, "Navigation image".
+ * A PC that exchanges frames with the navigation image (--frames): it sends each frame when it is due and the board has
+ * room for it, and reads the replies only as far as needed for that. Frames and records: docs/protocol.md, "Navigation
+ * image".
  */
 #include <ctype.h>
 #include <stdlib.h>
@@ -11,13 +12,13 @@
 #define DUE_MAX_US 1e12
 
 enum {
-    FRAME_BYTES_MAX = 127, /* the board's window: a longer one would wait for ever */
+    FRAME_BYTES_MAX = 127, /* the board's window: a longer frame would wait for ever */
     ANSWER_MAX = 254,
     LINE_CHARACTERS = 1024,
     SILENT_MS = 2000
 };
 
-/* of the board's records: the greeting with its window, the answer with the bytes it has taken */
+/* the board's records: the greeting with its window, the reply with the bytes it has taken */
 enum { HELLO = 'h', HELLO_WINDOW = 3, ANSWER = 'k', ANSWER_TAKEN = 5, NUMBER_BYTES = 2 };
 
 typedef struct {
@@ -38,7 +39,7 @@ static uint16_t sent, taken;
 static uint64_t last_answer;
 static uint64_t over_at = NEVER;
 static double latest_us;
-static bool timed; /* the first frame that has a time of its own has gone */
+static bool timed; /* the first frame with a time of its own has been sent */
 
 static uint8_t answer[ANSWER_MAX];
 static unsigned answer_length, run;
@@ -68,7 +69,7 @@ static int digit(char character)
     return found == NULL ? -1 : (int)(found - digits);
 }
 
-/* The bytes of pairs of digits up to the end of the line, behind those before; how many. */
+/* Appends the bytes of pairs of digits up to the end of the line; returns how many. */
 static unsigned take_bytes(const char *at, unsigned line)
 {
     unsigned length = 0;
@@ -94,7 +95,7 @@ static unsigned take_bytes(const char *at, unsigned line)
     return length;
 }
 
-/* "DUE_US HEX": the frame goes behind those before. */
+/* "DUE_US HEX": appends the frame. */
 static void take_line(const char *text, unsigned line)
 {
     char *at;
@@ -159,18 +160,18 @@ static void on_record(void)
 {
     if (answer[0] == HELLO && answer_length >= HELLO_WINDOW + NUMBER_BYTES) {
         window = number_at(HELLO_WINDOW);
-        sent = 0; /* a board that starts anew knows of nothing */
+        sent = 0; /* a board that restarts has no record of anything */
         taken = 0;
         if (greeted_at == NEVER) {
             greeted_at = mcu->cycle;
         }
     } else if (answer[0] == ANSWER && answer_length >= ANSWER_TAKEN + NUMBER_BYTES) {
         taken = (uint16_t)number_at(ANSWER_TAKEN);
-        if ((int16_t)(sent - taken) < 0) { /* a frame was on its way when the board started anew */
+        if ((int16_t)(sent - taken) < 0) { /* a frame was in flight when the board restarted */
             sent = taken;
         }
         answered++;
-        if (next_frame == frame_count && taken == sent) { /* a damaged frame may have had two answers */
+        if (next_frame == frame_count && taken == sent) { /* a damaged frame may have had two replies */
             over_at = mcu->cycle;
             stats_streaming_ends();
         }
@@ -187,7 +188,7 @@ static void keep(uint8_t byte)
     }
 }
 
-/* The board's records: zero ends one, other bytes are stuffed (no run here is of 254 bytes). */
+/* The board's records: zero ends one, other bytes are stuffed (no run here has 254 bytes). */
 bool frames_take(uint8_t byte)
 {
     if (byte == 0) {
@@ -241,7 +242,7 @@ bool frames_next_byte(uint8_t *byte, uint64_t *look_again)
             return false;
         }
         if ((uint16_t)(sent - taken) + frame->length > window) {
-            return false; /* the next answer makes room */
+            return false; /* the next reply makes room */
         }
         begin_frame();
         sent = (uint16_t)(sent + frame->length);

@@ -1,10 +1,10 @@
-/* Times are taken relative to the moment at which a row was sent, so that the wrap of its stamp needs no counting. */
+/* Times are relative to the moment at which a row was sent, so that the wrap of its stamp needs no counting. */
 #include "simrun_judge.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { LOOK_BACK = 4096 /* samples: an older triplet that happens to be equal excuses nothing */ };
+enum { LOOK_BACK = 4096 /* samples: an older triplet that happens to be equal is no excuse */ };
 
 static const char *const verdict_words[JUDGE_VERDICTS] = {
     [JUDGE_STALE] = "stale: the sensor latched these readings, but more than two sample periods before the stamp",
@@ -28,9 +28,10 @@ static int64_t stamped_at(const judge_t *judge, const row_t *row)
 }
 
 /*
- * Equal samples near the stamp: the oldest that no row has shown becomes this row's own. Without any the newest equal
- * sample decides that is not too new. A sample is younger than its stamp says where the stamp was reckoned back from
- * the 33 that a full FIFO holds, by a period that had become 5 % shorter meanwhile: up to 33 x 0.05 + 0.5 periods.
+ * Equal samples near the stamp: the oldest that no row has shown becomes this row's own. If there is none, the newest
+ * equal sample that is not too new decides. A sample is newer than its stamp says if the stamp was computed back from
+ * the 33 samples that a full FIFO holds, with a period that has become 5 % shorter since: up to 33 x 0.05 + 0.5
+ * periods.
  */
 static judge_verdict_t compare(const row_t *row, int64_t at, int64_t near, served_t *served, size_t count)
 {

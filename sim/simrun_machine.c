@@ -1,6 +1,6 @@
 /*
- * The ATmega328P: what simavr 1.6 gets wrong is put right here (no-op sleep, interrupt entry time, frequency) and in
- * simrun_resets.c (resets that drop every timer, level interrupts), and every instruction is watched: program counter,
+ * The ATmega328P: what simavr 1.6 gets wrong is corrected here (no-op sleep, interrupt entry time, frequency) and in
+ * simrun_resets.c (resets that drop every timer, level interrupts), and every instruction is checked: program counter,
  * stack pointer, illegal opcodes.
  */
 #include <stdlib.h>
@@ -15,7 +15,7 @@
 
 enum {
     FLASH_BYTES = 0x8000,
-    CHUNK_CYCLES = 24 /* instructions run in one go between two looks at PC and stack */
+    CHUNK_CYCLES = 24 /* instructions run without a break between two checks of PC and stack */
 };
 
 enum { END_MS = 20, SILENCE_MS = 30, SILENCE_MAX_MS = 2000, STALLED_MS = 20000 };
@@ -32,7 +32,7 @@ static uint32_t failure_pc;
 static double failure_ms;
 static uint32_t random_state;
 static bool stopping;
-static avr_run_t plain_run; /* simavr puts another one in for gdb and for a watchdog reset */
+static avr_run_t plain_run; /* simavr replaces it for gdb and for a watchdog reset */
 static uint64_t max_cycle = NEVER;
 static bool interactive;
 static uint32_t chunk_cycles;
@@ -62,12 +62,12 @@ void machine_fail(exit_status_t status, const char *reason)
         failure = status;
         failure_reason = reason;
         bool plausible = mcu->pc != 0 && mcu->pc < machine_size.flash_bytes;
-        failure_pc = plausible ? mcu->pc : last_pc; /* a wild jump leaves nothing better than where it began */
+        failure_pc = plausible ? mcu->pc : last_pc; /* after a wild jump, the place it came from is the most useful */
         failure_ms = machine_ms();
     }
 }
 
-/* simavr only logs an illegal opcode and goes on; without this its reader of ELF files talks on stdout. */
+/* simavr only logs an illegal opcode and continues; without this its reader of ELF files prints to stdout. */
 static void on_log(avr_t *avr, const int level, const char *format, va_list arguments)
 {
     char text[256];
@@ -117,7 +117,7 @@ static uint64_t earliest(uint64_t a, uint64_t b)
 void machine_reschedule(void)
 {
     uint64_t at = earliest(earliest(sensor_next(), uart_next()), earliest(faults_next(), eeprom_next()));
-    at = earliest(earliest(at, max_cycle), mcu->cycle + CYCLES_PER_MS); /* the end of the run is looked at every ms */
+    at = earliest(earliest(at, max_cycle), mcu->cycle + CYCLES_PER_MS); /* the end of the run is checked every ms */
     avr_cycle_timer_register(mcu, at > mcu->cycle ? at - mcu->cycle : 1, on_event, NULL);
 }
 
@@ -186,7 +186,7 @@ static bool instructions_are_watched(void)
 
 void machine_start(void)
 {
-    random_state = options.seed * 2654435769u; /* a small seed begins with small numbers, below every chance */
+    random_state = options.seed * 2654435769u; /* a small seed gives small numbers at first, below every probability */
     interactive = options.pty || options.gdb_port != 0;
     signals_start();
     avr_global_logger_set(on_log);
@@ -229,7 +229,7 @@ void machine_start(void)
     resets_start();
 }
 
-/* When what there was to do was done: the stream or the frames are over; NEVER before. */
+/* When the work was done: the stream or the frames are over; NEVER before that. */
 static uint64_t done_at(void)
 {
     uint64_t now = mcu->cycle;
@@ -286,7 +286,7 @@ unsigned machine_opcode_at(uint32_t pc)
 
 /*
  * simavr serves what was pending at SEI one instruction later than the processor does. In a loop of SEI, SLEEP, CLI it
- * would never: a SLEEP that finds something pending falls through.
+ * never would: a SLEEP that finds something pending falls through.
  */
 static void serve_interrupts(void)
 {
@@ -302,8 +302,8 @@ static void serve_interrupts(void)
 }
 
 /*
- * A few instructions, as avr_run does them, but without asking every timer after each: four times as fast, same cycles
- * (a timer set meanwhile makes simavr end the chunk in time). True when more than the program counter may have changed.
+ * A few instructions, as avr_run does them, but without checking every timer after each: four times as fast, same
+ * cycles (a newly set timer makes simavr end the chunk in time). True if more than the PC may have changed.
  */
 static bool step(uint64_t chunk)
 {
@@ -336,7 +336,7 @@ static void watch_everything(int state)
     watch_state(state);
 }
 
-/* What some options want to know before each instruction. */
+/* Calls the options that need to see each instruction beforehand. */
 static void look_ahead(void)
 {
     bool awake = mcu->state == cpu_Running;

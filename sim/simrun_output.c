@@ -1,4 +1,4 @@
-/* Files that simrun writes: each opened and closed with the path in the complaint. */
+/* Files that simrun writes; errors on opening and closing name the path. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -6,7 +6,7 @@
 
 enum { AXES = 3 };
 
-/* Three numbers from low to high with commas between them, and nothing behind. */
+/* Three numbers from low to high separated by commas, and nothing after them. */
 static bool three(const char *text, double low, double high, double value[AXES])
 {
     for (size_t axis = 0; axis < AXES; axis++) {

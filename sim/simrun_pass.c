@@ -1,6 +1,6 @@
 /*
- * How long the main loop is away: a pass begins where main takes the wake flag back (GPIOR0, hal_sleep.h) and ends
- * where it does so again or sleeps. Counted with the interrupts in it and without them.
+ * Duration of the main loop's passes: a pass begins where main takes the wake flag back (GPIOR0, hal_sleep.h) and ends
+ * where it does so again or sleeps. Counted with and without the interrupts in it.
  */
 #include "sim_io.h"
 #include "simrun.h"
@@ -53,7 +53,7 @@ void pass_start(void)
     avr_register_io_write(mcu, REG_GPIOR0, on_wake_flag, NULL);
 }
 
-/* What a reset cut off is no pass. */
+/* A pass cut off by a reset does not count. */
 void pass_reset(void)
 {
     began = NEVER;

@@ -1,9 +1,9 @@
 /*
- * A pseudo terminal in place of the USB serial port: for a terminal program, a plotter or avrdude. Simulated time keeps
- * to real time and never runs ahead of it: where the PC has no processor for the simulator, or the reader none for what
- * is in the terminal, simulated time waits. So what happens does not depend on how busy the PC is. A boot loader with
- * an empty flash (--blank) leaves when nothing comes for a while of simulated time, and avrdude counts real time: from
- * the opening on simulated time runs ahead until the boot loader listens, and waits there for avrdude.
+ * A pseudo terminal in place of the USB serial port: for a terminal program, a plotter or avrdude. Simulated time
+ * follows real time and never runs ahead of it. If the PC has no processor time for the simulator, or the reader none
+ * for the terminal's data, simulated time waits. So the result does not depend on the load of the PC. A boot loader
+ * with an empty flash (--blank) exits if nothing arrives for some simulated time, whereas avrdude counts real time:
+ * after the opening, simulated time runs ahead until the boot loader listens, and waits there for avrdude.
  */
 #define _GNU_SOURCE /* posix_openpt */
 
@@ -19,23 +19,23 @@
 
 enum {
     READER_LOOK_MS = 50,
-    DEBT_MS = 20,        /* a debt of real time beyond that is not made up: boot loaders count time */
-    BOOT_QUIET_MS = 500, /* of simulated time: Optiboot listens after 375 ms, and leaves when nothing comes for 1 s */
-    BOOT_PATIENCE_MS = 5000 /* of real time: avrdude sends its first byte after 0.6 s */
+    DEBT_MS = 20,           /* a larger debt of real time is written off: boot loaders count time */
+    BOOT_QUIET_MS = 500,    /* simulated time: Optiboot listens after 375 ms, and exits if nothing arrives for 1 s */
+    BOOT_PATIENCE_MS = 5000 /* real time: avrdude sends its first byte after 0.6 s */
 };
 
-/* An opening with --blank: until the boot loader listens, while bytes come, and when it has been left. */
+/* An opening with --blank: until the boot loader listens, while bytes arrive, and once it has exited. */
 typedef enum { BOOT_OVER, BOOT_STARTS, BOOT_TALKS } boot_t;
 
 static int master = -1;
 static boot_t boot;
 static uint64_t boot_quiet_at; /* cycle from which on simulated time waits for a byte */
-static bool opened;            /* somebody holds the other end */
+static bool opened;            /* a program holds the other end */
 static bool ever_opened;
 static struct timespec began;
-static double forgiven_ms; /* of real time, in which simulated time waited; less what it was let run ahead */
+static double forgiven_ms; /* real time during which simulated time waited, less what it was allowed to run ahead */
 
-/* Bytes as they are, no echo; what else the one at the other end has set stays. */
+/* Raw bytes, no echo; other settings made at the other end are kept. */
 static bool make_raw(int terminal)
 {
     struct termios settings;
@@ -53,7 +53,7 @@ void pty_open(void)
     master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
     const char *name = master < 0 || grantpt(master) != 0 || unlockpt(master) != 0 ? NULL : ptsname(master);
     int slave = name == NULL ? -1 : open(name, O_RDWR | O_NOCTTY);
-    if (slave < 0 || close(slave) != 0) { /* closed once, the master tells when it is opened */
+    if (slave < 0 || close(slave) != 0) { /* once it has been opened and closed, the master reports each opening */
         perror("simrun: pseudo terminal");
         exit(EXIT_INTERNAL);
     }
@@ -74,7 +74,7 @@ static void boot_enter(boot_t state)
     boot_quiet_at = mcu->cycle + (uint64_t)BOOT_QUIET_MS * CYCLES_PER_MS;
 }
 
-/* The settings of a terminal go with its last user, so each new one gets it raw. */
+/* The settings of a terminal are lost with its last user, so each new one gets it raw. */
 static void look_for_user(void)
 {
     struct pollfd end = { .fd = master, .events = POLLIN };
@@ -86,23 +86,23 @@ static void look_for_user(void)
         resets_port_opened();
         boot_enter(options.blank ? BOOT_STARTS : BOOT_OVER);
     } else if (!now) {
-        boot = BOOT_OVER; /* nobody is left to wait for, or to run ahead for */
+        boot = BOOT_OVER; /* no program is left to wait for, or to run ahead for */
     }
     opened = now;
     ever_opened = ever_opened || now;
 }
 
-/* For `event` at the other end, a short time. False: nobody holds it any more, or the run is to end. */
+/* Waits a short time for `event` at the other end. False: it has been closed, or the run is to end. */
 static bool wait_for(short event, bool *came)
 {
     struct pollfd end = { .fd = master, .events = event };
-    bool looked = poll(&end, 1, READER_LOOK_MS) >= 0 || errno == EINTR; /* a signal is no hanging up */
+    bool looked = poll(&end, 1, READER_LOOK_MS) >= 0 || errno == EINTR; /* a signal is not a hang-up */
     bool well = looked && (end.revents & POLLHUP) == 0 && !signals_asked_to_end();
     *came = well && (end.revents & event) != 0;
     return well;
 }
 
-/* False: nobody holds the other end any more, the run is to end, or the one who holds it does not read. */
+/* False: the other end has been closed, the run is to end, or the program there does not read. */
 static bool wait_for_reader(double until_ms)
 {
     bool reads;
@@ -120,7 +120,7 @@ static bool wait_for_reader(double until_ms)
     return true;
 }
 
-/* Without anybody at the other end it is lost, as on a board without a PC. */
+/* If the other end is closed the byte is lost, as on a board without a PC. */
 void pty_send(uint8_t byte)
 {
     double until_ms = 0.0;
@@ -139,7 +139,7 @@ void pty_send(uint8_t byte)
     }
 }
 
-/* A boot loader that nobody talks to would soon leave for a flash that is empty. */
+/* Without a connection a boot loader would soon exit into an empty flash. */
 static void wait_for_first_user(void)
 {
     struct timespec pause = { .tv_nsec = READER_LOOK_MS * 1000000L };
@@ -149,7 +149,7 @@ static void wait_for_first_user(void)
     }
 }
 
-/* Simulated time stands still until a byte comes, unless the boot loader has been left or nobody sends any. */
+/* Simulated time stops until a byte arrives, unless the boot loader has exited or no bytes are sent. */
 static void wait_for_byte(void)
 {
     double until_ms = real_ms() + BOOT_PATIENCE_MS;
@@ -183,7 +183,7 @@ bool pty_receive(uint8_t *byte)
 void pty_pace(void)
 {
     double ahead_ms = machine_ms() + forgiven_ms - real_ms();
-    if (boot == BOOT_STARTS) { /* avrdude has begun to count: as fast as the PC can */
+    if (boot == BOOT_STARTS) { /* avrdude has begun to count: run as fast as the PC can */
         forgiven_ms -= ahead_ms;
         return;
     }

@@ -1,12 +1,12 @@
 /*
- * Interrupts where they hurt (--race). What main and a handler share, at least one of them writing it, is found as the
- * program runs. Ahead of each instruction of main that touches such a byte, and of the one after it, main is made to
- * wait until the interrupt comes, if it would come within REACH cycles. To the program that is a longer path to that
- * place, or one more interrupt on the way; no part of the chip does what it would not have done.
+ * Interrupts at critical places (--race). Data that main and a handler share, with at least one of them writing, is
+ * found as the program runs. Before each instruction of main that touches such a byte, and before the one after it,
+ * main is made to wait until the interrupt comes, if it would come within REACH cycles. To the program that is a longer
+ * path to that place, or one more interrupt on the way; no part of the chip does anything that it would not have done.
  *
- * A pair is such an instruction with such a vector. It is taken "before" when that interrupt is served ahead of the
- * instruction, whoever made it so, and "after" when it is served behind it: between a look and what follows from it. A
- * pair whose instruction ran only with interrupts off is guarded.
+ * A pair is such an instruction with such a vector. It is taken "before" if that interrupt is served before the
+ * instruction, whatever caused it, and "after" if it is served after it: between a read and its consequences. A pair
+ * whose instruction ran only with interrupts off is guarded.
  */
 #include <string.h>
 
@@ -14,19 +14,19 @@
 #include "simrun.h"
 
 enum {
-    REACH = 200, /* cycles that main waits at most, */
+    REACH = 200, /* most cycles that main waits, */
     CHAIN = 4,   /* and for a timer that the awaited one sets: the transmitter's buffer is empty 2 cycles later */
-    DOUBT = 8,   /* a timer is not waited for that kept its promise less than once in so many times */
-    TAKEN_A_MINUTE = 4, /* how often a pair is forced, each way, in each minute of simulated time */
-    VECTORS = 26,       /* 0, the reset, is none of them */
+    DOUBT = 8,   /* a timer that raised its interrupt less than once in this many waits is not waited for */
+    TAKEN_A_MINUTE = 4, /* how often a pair is forced, each way, per minute of simulated time */
+    VECTORS = 26,       /* 0 is the reset and not counted */
     VECTOR_BYTES = 4,
     FLASH_WORDS = 0x4000,
     RAM_START = 0x100,
     TIMER1_FIRST = 0x84, /* TCNT1L */
     TIMER1_LAST = 0x8B,  /* OCR1BH */
-    TIMER1_TEMP = 0x900, /* the byte through which the high ones go, for all of them; no address of data space */
+    TIMER1_TEMP = 0x900, /* the byte through which all the high ones go; not an address of data space */
     CELLS = 0x901,
-    TOUCHED_MAX = 6, /* addresses remembered of an instruction that has another one each time */
+    TOUCHED_MAX = 6, /* addresses remembered for an instruction whose address varies */
     KINDS_MAX = 64
 };
 
@@ -41,11 +41,11 @@ typedef struct {
     uint16_t taken[SIDES][VECTORS];
 } place_t;
 
-/* What a timer of the simulator is for, and how often it raised each vector, or was waited for because of it. */
+/* What a timer of the simulator is used for, and how often it raised each vector, or was waited for because of it. */
 typedef struct {
     avr_cycle_timer_t timer;
     void *param;
-    unsigned due; /* which of our own parts it will step */
+    unsigned due; /* which of simrun's own parts it will step */
     unsigned raised[VECTORS], awaited[VECTORS];
 } kind_t;
 
@@ -59,7 +59,7 @@ static size_t kind_count;
 static struct {
     kind_t *kind;
     uint64_t at;
-} next = { NULL, NEVER }, newest = { NULL, NEVER }; /* timer: the first to come, the last that came */
+} next = { NULL, NEVER }, newest = { NULL, NEVER }; /* timer: the next one due, the last one that fired */
 static uint32_t served;                             /* since main's last instruction */
 static unsigned running;                            /* the vector whose handler runs */
 static place_t *last;                               /* main's last instruction */
@@ -73,7 +73,7 @@ static place_t *place_at(uint32_t pc)
     return &places[pc / 2 % FLASH_WORDS];
 }
 
-/* One timer of the machine steps several parts; only what is due tells which interrupt may follow. */
+/* One timer of the machine steps several parts; only the part that is due shows which interrupt may follow. */
 static unsigned due_at(uint64_t at)
 {
     return (sensor_next() <= at ? 1u : 0u) | (uart_next() <= at ? 2u : 0u) | (faults_next() <= at ? 4u : 0u);
@@ -104,7 +104,7 @@ static void note_next_timer(void)
     next.at = first == NULL ? NEVER : first->when;
 }
 
-/* Learns what each timer raises, or the one it sets; where two are due at once the first is taken for both. */
+/* Learns what each timer raises, or the one it sets; if two are due at once the first counts for both. */
 static void on_pending(avr_irq_t *irq, uint32_t value, void *param)
 {
     (void)irq;
@@ -133,7 +133,7 @@ void race_start(void)
     }
 }
 
-/* Registers of the core are each context's own, and so is the stack. */
+/* Core registers are private to each context, and so is the stack. */
 static bool may_be_shared(uint16_t address)
 {
     enum { REG_GENERAL_LAST = 0x1F, REG_SPL = 0x5D, REG_SREG = 0x5F };
@@ -198,7 +198,7 @@ static void mark(place_t *place, unsigned side)
     }
 }
 
-/* Those of its vectors that have not come often enough there, and can come now. */
+/* Its vectors that have not come often enough there, and are enabled. */
 static uint32_t lacking(const place_t *place, unsigned side)
 {
     unsigned enough = TAKEN_A_MINUTE * (1u + (unsigned)(machine_ms() / 60e3));
@@ -224,7 +224,7 @@ static bool promises(kind_t *kind, uint32_t wanted)
     return any;
 }
 
-/* When one of these vectors is to be expected; NEVER when that is out of reach. */
+/* When one of these vectors is expected; NEVER if that is out of reach. */
 static uint64_t expected(uint32_t wanted)
 {
     uint64_t until = mcu->cycle + REACH;
@@ -237,7 +237,7 @@ static uint64_t expected(uint32_t wanted)
     return NEVER;
 }
 
-/* Lets time pass, and with it what the other parts do, until then or until an interrupt can be served. */
+/* Lets time pass, with the work of the other parts, until then or until an interrupt can be served. */
 static void wait_until(uint64_t at)
 {
     uint64_t began = mcu->cycle;
@@ -256,7 +256,7 @@ static void wait_until(uint64_t at)
     }
 }
 
-/* In a handler that has just been entered, or further inside it. */
+/* In a handler, on entry or later. */
 static void on_handler_step(void)
 {
     uint32_t vector = mcu->pc / VECTOR_BYTES;
@@ -269,7 +269,7 @@ static void on_handler_step(void)
     }
 }
 
-/* Ahead of an instruction of main: what came since the one before, and whether to wait; true when it did. */
+/* Before an instruction of main: what was served since the previous one, and whether to wait; true if it did. */
 static bool ahead_of(place_t *place)
 {
     if (served != 0) {
@@ -293,7 +293,7 @@ bool race_on_step(bool awake)
 {
     note_next_timer();
     if (!awake || machine_in_boot_loader(mcu->pc)) {
-        running = 0; /* what is entered meanwhile is not seen */
+        running = 0; /* interrupts in the meantime are not tracked */
         served = 0;
         last = NULL;
         return false;
@@ -338,7 +338,7 @@ static const char *cell_name(uint16_t address)
     return number;
 }
 
-/* What this instruction shares with that handler: the first of it. */
+/* The first byte that this instruction shares with that handler. */
 static const char *shared_with(const place_t *place, unsigned vector)
 {
     for (unsigned i = 0; i < place->touched_count; i++) {
@@ -366,7 +366,7 @@ static const char *count_pair(const place_t *place, unsigned vector)
 
 static void close_place(place_t *place, uint32_t pc)
 {
-    for (unsigned i = 0; i < place->touched_count; i++) { /* a handler may have come to it later than main */
+    for (unsigned i = 0; i < place->touched_count; i++) { /* a handler may have accessed it later than main */
         place->vectors |= sharers(place->touched[i].address, place->touched[i].reads, place->touched[i].writes);
     }
     for (unsigned v = 1; v < VECTORS; v++) {

@@ -1,13 +1,13 @@
 /*
- * Resets of the MCU: those that simavr does itself (the watchdog's, gdb's), those that a fault or an opened port asks
- * for, how many there were, and what each leaves for the parts around the core to do.
+ * Resets of the MCU: those that simavr does itself (watchdog, gdb), those requested by a fault or an opened port, how
+ * many there were, and what each leaves for the parts around the core to do.
  */
 #include "avr_extint.h"
 #include "avr_ioport.h"
 #include "simrun.h"
 
 enum {
-    REGISTERS_END = 32, /* r0..r31; from here to RAM_START lie the I/O registers, which a reset sets itself */
+    REGISTERS_END = 32, /* r0..r31; from here to RAM_START are the I/O registers, which a reset sets itself */
     RAM_START = 0x100,
     RAM_END = 0x8FF
 };
@@ -27,7 +27,7 @@ uint32_t resets_boot_count(void)
     return boot_resets;
 }
 
-/* Only notes it: after this simavr still resets its own parts and drops all timers. */
+/* Only records it: after this call simavr still resets its own parts and drops all timers. */
 static void on_reset(avr_t *avr)
 {
     if (core_reset != NULL) {
@@ -36,13 +36,13 @@ static void on_reset(avr_t *avr)
     reset_happened = true;
 }
 
-/* simavr forgets what the strap's pin reads, but not what is on its line: a pull-up would tell it nothing new. */
+/* simavr clears what the strap's pin reads, but not the state of its line: a pull-up would not be a change to it. */
 static void forget_strap(void)
 {
     avr_io_getirq(mcu, AVR_IOCTL_IOPORT_GETIRQ('D'), PIN_STRAP)->value = 0;
 }
 
-/* What a reset of the MCU leaves to us. */
+/* What a reset of the MCU leaves to simrun. */
 static void set_up_again(bool power_lost)
 {
     avr_extint_set_strict_lvl_trig(mcu, 0, 0);

@@ -1,6 +1,6 @@
 /*
- * Rows counted as they come, and what got lost between the sensor and them. The sensor's samples are kept for a while
- * only (SERVED_KEPT), so that a day has room in memory: each row is looked up when it arrives.
+ * Rows counted as they arrive, and what was lost between the sensor and them. The sensor's samples are kept for a
+ * limited time (SERVED_KEPT), so that a day fits in memory: each row is looked up when it arrives.
  */
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 enum { LOOK_BACK = 64, FLAG_GATED = 1, FLAG_COASTED = 2, FLAG_FAULT = 16 };
 enum { STEP_UNIT_US = 64 };
-#define STEPS 524288ul /* up to 33.5 s from row to row */
+#define STEPS 524288ul /* up to 33.5 s between two rows */
 
 /* Samples from that of the first row to that of the last row of one class, and rows of that class. */
 typedef struct {
@@ -17,13 +17,13 @@ typedef struct {
 
 static size_t row_count, gated, coasted, faulty;
 static row_t first, last;
-static size_t first_number; /* of the sample of the first row, in the whole run */
+static size_t first_number; /* number of the first row's sample, in the whole run */
 static uint64_t first_cycle;
-static class_t measured; /* rows that are no prediction */
+static class_t measured; /* rows that are not predictions */
 static uint32_t first_resets;
 static uint32_t steps[STEPS];
 
-/* How many samples were latched until then. */
+/* Number of samples latched up to that cycle. */
 static size_t served_until(uint64_t cycle)
 {
     size_t count;
@@ -55,7 +55,7 @@ static void find_first(const row_t *row)
     first_cycle = served[i - 1].cycle;
 }
 
-/* The rows' own time stamps measure the distance; a lost remainder shorter than one row is not seen. */
+/* The rows' own time stamps measure the distance; a lost remainder shorter than one row is not detected. */
 static void extend(class_t *rows, const row_t *row)
 {
     uint64_t span_us = row->t_us - first.t_us;
@@ -95,7 +95,7 @@ size_t rows_count(void)
     return row_count;
 }
 
-/* Median time from row to row in samples of the last rate in force: the `every` that was in force. */
+/* Median time between rows in samples of the last rate in force: the `every` in force. */
 static unsigned every_seen(void)
 {
     double period_us = sensor_period_us();
@@ -112,15 +112,15 @@ static unsigned every_seen(void)
 }
 
 /*
- * Where only every Nth sample has a row, nobody tells of those between two rows whether they came or were coasted; and
- * a reset begins the rows' clock anew.
+ * If only every Nth sample has a row, it is unknown whether those between two rows arrived or were coasted; and a reset
+ * restarts the clock of the rows.
  */
 static bool lost_is_known(unsigned every)
 {
     return every == 1 && resets_so_far() == first_resets;
 }
 
-/* Samples served from that of the first row to that of the last one that is no prediction, less those rows. */
+/* Samples served from that of the first row to that of the last one that is not a prediction, less those rows. */
 static size_t lost(void)
 {
     size_t shown = measured.rows < 2 ? measured.samples : measured.rows - 1;

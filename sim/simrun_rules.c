@@ -1,7 +1,7 @@
 /*
- * Rules of the ATmega328P's data sheet, and what follows from them, that a program may break for years before it shows:
- * simavr does as if each were kept. The first one broken ends the run with status 11 and its words. Boot loaders are
- * not judged.
+ * Rules of the ATmega328P's data sheet, and their consequences, that a program may break for years before it shows:
+ * simavr behaves as if each were kept. The first one broken ends the run with status 11 and its text. Boot loaders are
+ * not checked.
  */
 #include "simrun.h"
 
@@ -30,7 +30,7 @@ enum {
     WATCHED_MAX = 16
 };
 
-/* Its shortest period, 2048 cycles of 128 kHz less a tenth. */
+/* Shortest watchdog period, 2048 cycles of 128 kHz less a tenth. */
 #define WATCHDOG_SHORTEST (14ull * CYCLES_PER_MS)
 
 typedef struct {
@@ -44,8 +44,8 @@ static watched_t watched[WATCHED_MAX];
 static size_t watched_count;
 static uint64_t eempe_at;
 static uint64_t watchdog_bites = NEVER;
-static uint64_t wdce_until; /* WDTCSR takes WDE and its period up to this cycle */
-static uint32_t opened_at;  /* the instruction that follows the one that let interrupts in */
+static uint64_t wdce_until; /* writes to WDE and the period in WDTCSR take effect up to this cycle */
+static uint32_t opened_at;  /* the instruction after the one that enabled interrupts */
 static bool led_lit;
 static uint32_t led_flashes;
 
@@ -61,7 +61,7 @@ static bool interrupts_on(void)
     return mcu->sreg[S_I] != 0;
 }
 
-/* 16.3: the high bytes of Timer1's registers go through one byte that all share, handlers as well. */
+/* 16.3: the high bytes of Timer1's registers go through one byte shared by all accesses, those of handlers included. */
 static void check_timer(uint8_t value)
 {
     (void)value;
@@ -70,7 +70,7 @@ static void check_timer(uint8_t value)
     }
 }
 
-/* 8.6.3: EEPE counts within four cycles of EEMPE, which an interrupt between them would exceed. */
+/* 8.6.3: EEPE takes effect within four cycles of EEMPE, which an interrupt between them would exceed. */
 static void check_eeprom(uint8_t value)
 {
     if ((value & BIT_EEPE) != 0 && (mcu->data[REG_EECR] & BIT_EEPE) == 0) {
@@ -86,8 +86,8 @@ static void check_eeprom(uint8_t value)
 }
 
 /*
- * 11.8: the watchdog goes off, or has another period, by a write within four cycles of the one that sets WDCE and WDE;
- * 11.9.2: while WDRF is set in MCUSR it stays on all the same.
+ * 11.8: the watchdog is turned off, or its period changed, by a write within four cycles of the one that sets WDCE and
+ * WDE; 11.9.2: while WDRF is set in MCUSR it stays on regardless.
  */
 static void check_watchdog(uint8_t value)
 {
@@ -101,7 +101,7 @@ static void check_watchdog(uint8_t value)
     }
 }
 
-/* 22.9.2: TWSTO falls when the STOP is on the bus. */
+/* 22.9.2: TWSTO is cleared once the STOP is on the bus. */
 static void check_two_wire(uint8_t value)
 {
     if ((mcu->data[REG_TWCR] & BIT_TWSTO) != 0 && (value & BIT_TWSTA) != 0) {
@@ -179,7 +179,10 @@ void rules_on_reset(void)
     look_at_led();
 }
 
-/* 7.7: a SEI lets one more instruction pass. With another one between it and SLEEP, a wake-up can be lost. */
+/*
+ * 7.7: after SEI one more instruction runs before an interrupt. With another one between it and SLEEP, a wake-up can be
+ * lost.
+ */
 void rules_on_step(uint32_t from)
 {
     if (mcu->state == cpu_Sleeping && interrupts_on()) {

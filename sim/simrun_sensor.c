@@ -1,5 +1,5 @@
 /*
- * The clock of the virtual ADXL345: each output-data-rate period takes a row of the stream. And the file of what it
+ * The clock of the virtual ADXL345: each output-data-rate period takes a row of the stream. Also the file of what it
  * served.
  */
 #include <stdlib.h>
@@ -28,7 +28,7 @@ static bool int1_cut, int1_held_high, int1_disturbed;
 static double clock_error_ppm;
 static avr_irq_t *pin_d2;
 static FILE *served_file;
-static served_t served[2 * SERVED_KEPT]; /* the newest; when it is full the older half goes */
+static served_t served[2 * SERVED_KEPT]; /* the newest; when it is full the older half is dropped */
 static size_t kept_count, served_count;
 static bool mode_used[2];
 
@@ -45,7 +45,7 @@ void sensor_show_pin(void)
 {
     bool high = (int1_held_high || (sensor.pin_high[1] && !int1_cut)) != int1_disturbed;
     avr_raise_irq(pin_d2, high);
-    /* after a reset PIND is 0 and simavr's IRQ is silent, because the level is not new to it */
+    /* after a reset PIND is 0 and simavr's IRQ is silent, because the level has not changed for it */
     uint8_t mask = 1u << PIN_D2;
     mcu->data[REG_PIND] = (uint8_t)(high ? mcu->data[REG_PIND] | mask : mcu->data[REG_PIND] & (uint8_t)~mask);
     vcd_change(VCD_INT1, high);
@@ -214,7 +214,7 @@ const stream_t *sensor_stream(void)
     return &stream;
 }
 
-/* A tick is a measurement: in standby and without power there is none. */
+/* A tick is a measurement: there is none in standby or without power. */
 void sensor_print(FILE *json)
 {
     fprintf(json, "  \"sensor_hz\": %.4g,\n  \"sensor_range_g\": %u,\n", adxl345_model_odr_hz(&sensor),

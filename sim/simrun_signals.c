@@ -1,4 +1,4 @@
-/* A run that is ended by a signal keeps its files, and says what it has seen. */
+/* A run that is ended by a signal keeps its files and prints its summary. */
 #include <signal.h>
 
 #include "simrun.h"

@@ -1,6 +1,6 @@
 /*
- * Cycles from one function's entry to another's (--span): what main spends in between, interrupts taken out, and how
- * deep its stack goes, one line per passage.
+ * Cycles from one function's entry to another's (--span): what main spends in between, without interrupts, and how deep
+ * its stack goes, one line per passage.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,7 @@ static uint16_t lowest_sp;
 static uint16_t stack_pointer(void)
 {
     uint16_t sp;
-    memcpy(&sp, mcu->data + REG_SPL, sizeof sp); /* little endian, as the PC is */
+    memcpy(&sp, mcu->data + REG_SPL, sizeof sp); /* little endian, like the PC */
     return sp;
 }
 
@@ -82,7 +82,7 @@ void span_on_pc(uint32_t pc)
     }
 }
 
-/* What a reset cut off is no passage. */
+/* A passage cut off by a reset does not count. */
 void span_reset(void)
 {
     inside = false;

@@ -1,7 +1,7 @@
 /*
- * How deep the stack goes. All RAM above _end is painted before the start; what no longer shows the paint was used. The
- * stack has run into the variables when the byte that a push with SP = _end + 1 writes has changed, or SP stays at or
- * below _end.
+ * Stack depth. All RAM above _end is painted before the start; bytes that no longer hold the paint were used. The stack
+ * has run into the variables if the byte that a push with SP = _end + 1 writes has changed, or SP stays at or below
+ * _end.
  */
 #include <string.h>
 
@@ -12,7 +12,7 @@ enum {
     RAM_END = 0x8FF,
     REG_SPL = 0x5D,
     PAINT = 0xA5,
-    NEAR = 64,        /* bytes a stack can move in one chunk of instructions, amply */
+    NEAR = 64,        /* bytes: a generous bound for the movement of the stack in one chunk of instructions */
     SETTLED_STEPS = 4 /* SPH, SREG and SPL are written one after the other (avr-gcc's prologue) */
 };
 
@@ -36,8 +36,8 @@ void stack_paint_is(void)
 }
 
 /*
- * The first byte above the variables has changed. Far from the stack that is no push: then the firmware paints for
- * itself.
+ * The first byte above the variables has changed. Far from the stack that is not a push: the firmware is painting its
+ * own stack.
  */
 static void guard_changed(uint16_t sp, uint32_t end_of_ram)
 {
@@ -51,7 +51,7 @@ static void guard_changed(uint16_t sp, uint32_t end_of_ram)
 bool stack_watch(uint32_t end_of_ram)
 {
     uint16_t sp;
-    memcpy(&sp, mcu->data + REG_SPL, sizeof sp); /* little endian, as the PC is */
+    memcpy(&sp, mcu->data + REG_SPL, sizeof sp); /* little endian, like the PC */
     if (paint_holds && mcu->data[end_of_ram + 1] != paint[end_of_ram + 1]) {
         guard_changed(sp, end_of_ram);
     }

@@ -1,12 +1,12 @@
 /*
- * A main loop that gets no time, as if what it calls never came back, while interrupts go on: simavr is made to sleep
- * before each instruction outside of a handler.
+ * A main loop that gets no time, as if something it calls never returned, while interrupts continue: simavr is made to
+ * sleep before each instruction outside a handler.
  */
 #include "simrun.h"
 
 static avr_run_t run_before;
 
-/* Between SEI and SLEEP nothing comes: it falls asleep, and starves when it is woken. */
+/* Nothing may come between SEI and SLEEP: it is allowed to sleep, and starves once it is woken. */
 static bool falls_asleep(const avr_t *avr)
 {
     return machine_opcode_at(avr->pc) == OPCODE_SLEEP;
@@ -19,7 +19,7 @@ static void run_handlers_only(avr_t *avr)
     }
     run_before(avr);
     if (avr->state == cpu_Sleeping && !avr->sreg[S_I]) {
-        avr->state = cpu_Running; /* an interrupt that was pending before the sleep does not end it for simavr */
+        avr->state = cpu_Running; /* for simavr an interrupt that was pending before the sleep does not end it */
     }
 }
 

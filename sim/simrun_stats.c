@@ -8,7 +8,7 @@
 enum {
     VECTORS = 26,
     VECTOR_BYTES = 4,
-    ENTRY_CYCLES = 4, /* interrupt response (data sheet "Interrupt Response Time"), which simavr leaves out */
+    ENTRY_CYCLES = 4, /* interrupt response (data sheet "Interrupt Response Time"), which simavr omits */
     RAM_START = 0x100,
     RAM_END = 0x8FF,
     FLASH_WORDS = 0x4000
@@ -53,7 +53,7 @@ static void enter(interrupt_t *interrupt)
 
 static void leave(interrupt_t *interrupt)
 {
-    enum { RETI_CYCLES = 4 }; /* simavr tells before it counts them */
+    enum { RETI_CYCLES = 4 }; /* simavr notifies before it counts them */
     uint64_t cycles = mcu->cycle + RETI_CYCLES - interrupt->entered;
     interrupt->running = false;
     nested--;
@@ -142,7 +142,7 @@ void stats_streaming_ends(void)
     slept_to = stats_slept;
 }
 
-/* The response to an interrupt counts to the vector, not to the instruction, or the sleep, after which it came. */
+/* The response to an interrupt is charged to the vector, not to the instruction, or the sleep, after which it came. */
 void stats_profile(uint32_t pc, uint64_t cycles)
 {
     bool interrupt = pc != 0 && pc / VECTOR_BYTES < VECTORS;

@@ -1,4 +1,4 @@
-/* Function names, sizes and _end out of the firmware's ELF file. */
+/* Function names, sizes and _end from the firmware's ELF file. */
 #include <fcntl.h>
 #include <gelf.h>
 #include <libelf.h>
@@ -158,7 +158,7 @@ void symbols_load(const char *path, program_size_t *size)
     sort(&variables);
 }
 
-/* The whole name decides; without such a one the first that has a suffix of the compiler's behind it. */
+/* The exact name wins; otherwise the first one with a compiler suffix after it. */
 static bool find(const symbols_t *symbols, const char *name, uint32_t *value)
 {
     size_t length = strlen(name);

@@ -1,8 +1,8 @@
 /*
- * The USART's transmitter as the data sheet has it (ATmega328P, 20.6): a shift register and one buffer before it. UDRE0
- * is low while the buffer is taken; TXC0 rises when a frame ends and none follows it at once, and stays until a one is
- * written to it; a divider that changes within a frame spoils it. simavr's knows the buffer only, raises TXC0 with each
- * byte, and changes the divider at any time.
+ * The USART's transmitter according to the data sheet (ATmega328P, 20.6): a shift register and one buffer before it.
+ * UDRE0 is low while the buffer is full; TXC0 rises when a frame ends and none follows it at once, and stays set until
+ * a one is written to it; changing the divider within a frame corrupts it. simavr's transmitter has only the buffer,
+ * raises TXC0 with each byte, and changes the divider at any time.
  */
 #include "avr_uart.h"
 #include "simrun.h"
@@ -14,7 +14,7 @@ static void (*take)(uint8_t byte);
 static avr_io_write_t core_control;
 static void *core_param;
 static uint64_t frame_ends = NEVER; /* of the byte in the shift register */
-static bool waits;                  /* a byte, in the buffer */
+static bool waits;                  /* a byte is in the buffer */
 static uint8_t waiting;
 
 static avr_cycle_count_t on_frame_end(avr_t *avr, avr_cycle_count_t when, void *param);
@@ -29,7 +29,7 @@ static avr_cycle_count_t on_empty(avr_t *avr, avr_cycle_count_t when, void *para
     return 0;
 }
 
-/* It is of the kind that the interrupt itself does not clear. */
+/* This interrupt is not cleared by its own execution. */
 static void buffer_taken(void)
 {
     avr_clear_interrupt(mcu, &uart->udrc);
@@ -77,7 +77,7 @@ static void on_data(avr_t *avr, avr_io_addr_t address, uint8_t value, void *para
     }
 }
 
-/* simavr takes UDRE0 for high when UDRIE0 is set while it sends nothing itself. */
+/* simavr considers UDRE0 high if UDRIE0 is set while it sends nothing itself. */
 static void on_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
     (void)param;

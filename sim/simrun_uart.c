@@ -40,11 +40,11 @@ static size_t unanswered; /* bytes typed since the last reply */
 static bool waits_for_reply, waits_for_baud;
 static uint64_t reply_deadline;
 static uint64_t next_byte_at = NEVER;
-static uint64_t line_free_at; /* the last byte of a frame is over */
+static uint64_t line_free_at; /* end of the last byte of a frame */
 static uint32_t rx_overruns;
 static bool flooded;
 static uint64_t stalled_until;
-static enum { SPOILT_NOTHING, SPOILT_STOP, SPOILT_LOST } spoilt; /* of the next byte received */
+static enum { SPOILT_NOTHING, SPOILT_STOP, SPOILT_LOST } spoilt; /* fault of the next byte received */
 
 /* A row of csv mode: ten whole numbers; t_us, x_lsb, y_lsb, z_lsb first and flags last. */
 static bool parse_row(row_t *row)
@@ -67,7 +67,7 @@ static bool parse_row(row_t *row)
     return true;
 }
 
-/* Typing goes on a little later; another reply puts it off again. */
+/* Typing resumes a little later; another reply postpones it again. */
 static void on_reply(void)
 {
     if (waits_for_reply) {
@@ -84,7 +84,7 @@ static void begin_typing(void)
     machine_reschedule();
 }
 
-/* The firmware says which setting it refuses; one that was asked for by an option ends the run. */
+/* The firmware names the setting it refuses; if an option requested it, the run ends. */
 static void on_refusal(const char *setting)
 {
     for (size_t i = 0; i < options.typed_count; i++) {
@@ -144,7 +144,7 @@ uint64_t uart_frame_cycles(void)
     return byte_cycles() + (held < STALL_MAX_CYCLES ? held : STALL_MAX_CYCLES);
 }
 
-/* A record of the board's is what the next frame may have waited for. */
+/* The next frame may have been waiting for this record from the board. */
 static void on_frame_byte(uint8_t byte)
 {
     if (frames_take(byte)) {
@@ -179,7 +179,7 @@ static void on_baud(avr_t *avr, avr_io_addr_t address, uint8_t value, void *para
     (void)address;
     (void)value;
     (void)param;
-    uart->cycles_per_byte = byte_cycles(); /* of what is received */
+    uart->cycles_per_byte = byte_cycles(); /* for received bytes */
     if (waits_for_baud) {
         waits_for_baud = false;
         on_reply();
@@ -251,7 +251,7 @@ static void end_typed_line(void)
     }
 }
 
-/* False when nothing is to be typed now; then next_byte_at says when to look again. */
+/* False if there is nothing to type; next_byte_at is then the time to check again. */
 static bool next_typed_byte(uint8_t *byte)
 {
     next_byte_at = NEVER;

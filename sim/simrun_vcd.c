@@ -1,6 +1,6 @@
 /*
- * Waveforms for GTKWave. Written here and not by simavr, whose writer loses its timer at every reset of the MCU.
- * A cycle at 16 MHz is 62.5 ns: 625 units of 100 ps.
+ * Waveforms for GTKWave. Written here and not by simavr, whose writer loses its timer at every reset of the MCU. A
+ * cycle at 16 MHz is 62.5 ns: 625 units of 100 ps.
  */
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-/* The judge in the machine: Timer1's start is the start of the firmware's clock, rows come from the UART. */
+/* The judge in the machine: the firmware's clock starts with Timer1, rows come from the UART. */
 #include "sim_io.h"
 #include "simrun.h"
 

@@ -9,7 +9,7 @@
 
 enum { COLUMNS_MAX = 64, LSB_MIN = -4096, LSB_MAX = 4095, CDEG_MAX = 18000, FLAG_COASTED = 2, FLAG_FAULT = 16 };
 
-#define TIME_MAX INT64_C(1000000000000000) /* 31 years in us: unwrapped times stay far from the end of 64 bits */
+#define TIME_MAX INT64_C(1000000000000000) /* 31 years in us: unwrapped times stay far from the limit of 64 bits */
 #define WRAP_US (INT64_C(1) << 32)
 #define WRAP_STEP_US (INT64_C(1) << 31)
 
@@ -25,7 +25,7 @@ typedef struct {
     size_t capacity;
     bool has_header;
     size_t column_count;
-    int index[COLUMN_COUNT]; /* field of each column, -1: not there */
+    int index[COLUMN_COUNT]; /* field of each column, -1: absent */
     bool segment_begins;
     int64_t wrap_us; /* added to the file's times in this segment */
     int64_t segment_first_us;
@@ -40,7 +40,7 @@ static bool fail(reader_t *r, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(reason, sizeof reason, format, arguments);
     va_end(arguments);
-    size_t keep = strlen(r->path) > 70 ? strlen(r->path) - 70 : 0; /* the end of a long path says more */
+    size_t keep = strlen(r->path) > 70 ? strlen(r->path) - 70 : 0; /* the end of a long path is more useful */
     snprintf(r->stream->error, sizeof r->stream->error, "%s:%u: %s", r->path + keep, (unsigned)r->line, reason);
     return false;
 }
@@ -63,7 +63,7 @@ static char *trim(char *text)
     return text;
 }
 
-/* Cuts at commas; returns the number of fields, COLUMNS_MAX + 1 when there are more than COLUMNS_MAX. */
+/* Splits at commas; returns the number of fields, COLUMNS_MAX + 1 if there are more than COLUMNS_MAX. */
 static size_t split(char *line, char *field[COLUMNS_MAX])
 {
     size_t count = 0;
@@ -91,7 +91,7 @@ static bool parse_integer(const char *text, int64_t *value)
     return *text != '\0' && *end == '\0' && errno == 0;
 }
 
-/* x and x_lsb are one column; the first wins where a file has both. */
+/* x and x_lsb are the same column; the first one wins if a file has both. */
 static int column_of(const char *name)
 {
     for (int c = 0; c < COLUMN_COUNT; c++) {
@@ -272,7 +272,7 @@ static int compare_steps(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Median step inside the segments, us; 0 when there is none. */
+/* Median step inside the segments, us; 0 if there is none. */
 static bool median_step(reader_t *r, uint64_t *step_us)
 {
     const stream_t *stream = r->stream;
@@ -295,7 +295,7 @@ static bool median_step(reader_t *r, uint64_t *step_us)
     return true;
 }
 
-/* Each segment begins one period after the last row of the one before. */
+/* Each segment begins one period after the last row of the previous one. */
 static bool join_segments(reader_t *r)
 {
     stream_t *stream = r->stream;

@@ -1,4 +1,4 @@
-/* How the registers are taken over: simavr's table of I/O callbacks is public and these three have no second user. */
+/* The registers are taken over through simavr's public table of I/O callbacks; these three have no second user. */
 #include "twi_peripheral.h"
 
 #include <stddef.h>
@@ -50,7 +50,7 @@ static bool lines_free(const twi_peripheral_t *twi)
     return !twi_sda_low(twi) && !twi_scl_low(twi);
 }
 
-/* What the pins read while they are inputs. */
+/* What the pins read as inputs. */
 static void show_levels(twi_peripheral_t *twi)
 {
     bool sda = !twi_sda_low(twi);
@@ -62,7 +62,7 @@ static void show_levels(twi_peripheral_t *twi)
     avr_raise_irq(twi->pin_sda, sda);
     avr_raise_irq(twi->pin_scl, scl);
     uint8_t others = twi->avr->data[REG_PINC] & (uint8_t)~pull.mask;
-    twi->avr->data[REG_PINC] = (uint8_t)(others | pull.value); /* the IRQs above are silent when the level is not new */
+    twi->avr->data[REG_PINC] = (uint8_t)(others | pull.value); /* the IRQs above are silent if the level is unchanged */
 }
 
 static unsigned bit_cycles(const twi_peripheral_t *twi)
@@ -98,7 +98,7 @@ static bool under_way(const twi_peripheral_t *twi)
     return twi->done_at != 0 || twi->stalled_cycles != 0;
 }
 
-/* TWINT comes after so many bits, with this status; never while SCL is held low. */
+/* Sets TWINT after this many bits, with this status; never while SCL is held low. */
 static void finish_in(twi_peripheral_t *twi, unsigned bits, uint8_t status)
 {
     twi->bit_cycles = bit_cycles(twi);
@@ -126,7 +126,7 @@ static void send_start(twi_peripheral_t *twi)
     finish_in(twi, BITS_START, repeated ? STATUS_REPEATED_START : STATUS_START);
 }
 
-/* A START waits for a free bus, without limit. */
+/* A START waits for a free bus, indefinitely. */
 static void want_start(twi_peripheral_t *twi)
 {
     if (lines_free(twi)) {
@@ -141,7 +141,7 @@ static avr_cycle_count_t on_stopped(avr_t *avr, avr_cycle_count_t when, void *pa
     (void)when;
     twi_peripheral_t *twi = param;
     if (!lines_free(twi)) {
-        return 0; /* TWSTO stays set until twi_hold lets it go on */
+        return 0; /* TWSTO stays set until twi_hold resumes it */
     }
     avr->data[REG_TWCR] &= (uint8_t)~BIT_TWSTO;
     twi->mode = TWI_IDLE;
@@ -174,7 +174,7 @@ static void lose(twi_peripheral_t *twi, unsigned bits)
     finish_in(twi, bits, STATUS_ARBITRATION_LOST);
 }
 
-/* What the slave answers to an address or data byte; a refusal that was asked for happens once. */
+/* The slave's response to an address or data byte; a requested NACK happens once. */
 static bool slave_acknowledges(twi_peripheral_t *twi, bool is_address, uint8_t byte)
 {
     bool *nack = is_address ? &twi->nack_address : &twi->nack_data;
@@ -212,7 +212,7 @@ static void send_byte(twi_peripheral_t *twi)
     }
 }
 
-/* What the slave puts on the line in nine clocks; the master pulls in the last of them if it acknowledges. */
+/* What the slave puts on the line in nine clocks; the master pulls SDA low in the last one if it acknowledges. */
 static void receive_byte(twi_peripheral_t *twi, bool give_ack)
 {
     unsigned bits = 0;
@@ -259,7 +259,7 @@ static void next_byte(twi_peripheral_t *twi, bool give_ack)
     }
 }
 
-/* The slave does not notice that the master has gone: it stays in its byte, with the bit it has reached on the line. */
+/* The slave does not notice that the master is gone: it stays within its byte, driving the bit it has reached. */
 static void leave_slave_in_byte(twi_peripheral_t *twi)
 {
     bool addressed = twi->mode == TWI_RECEIVING || twi->mode == TWI_TRANSMITTING;
@@ -336,7 +336,7 @@ static void write_twcr(avr_t *avr, avr_io_addr_t address, uint8_t value, void *p
     }
 }
 
-/* While a byte is under way TWDR cannot be loaded. */
+/* While a byte is in progress TWDR cannot be loaded. */
 static void write_twdr(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
     twi_peripheral_t *twi = param;
@@ -357,7 +357,7 @@ static void write_twsr(avr_t *avr, avr_io_addr_t address, uint8_t value, void *p
     avr_core_watch_write(avr, address, (uint8_t)(status | (value & PRESCALER_MASK)));
 }
 
-/* While the TWI is off the lines follow DDRC: outputs that are low pull, inputs let go. */
+/* While the TWI is off the lines follow DDRC: low outputs pull, inputs release. */
 static void on_direction(avr_irq_t *irq, uint32_t value, void *param)
 {
     (void)irq;

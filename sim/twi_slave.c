@@ -1,4 +1,4 @@
-/* A slave changes SDA after SCL has fallen; SDA that changes while SCL is high is START or STOP (UM10204, 3.1.4). */
+/* A slave changes SDA after SCL has fallen; a change of SDA while SCL is high is START or STOP (UM10204, 3.1.4). */
 #include "twi_slave.h"
 
 #include <stddef.h>
