@@ -23,7 +23,7 @@ enum {
     SAMPLES_MASK = 0x1F,
     FIFO_FILLED = 32,   /* p. 21: "until it is full (32 samples)" */
     EVENTS_MASK = 0x7C, /* taps, activity, inactivity, free fall: cleared by reading INT_SOURCE (p. 26) */
-    SETTLED = 5,        /* samples until the force is all there */
+    SETTLED = 5,        /* samples until the force has settled */
     OFFSET_LSB = 4,     /* 15.6 mg / 3.9 mg (p. 24) */
     RATE_CODE_1600 = 0x0E
 };
@@ -95,7 +95,7 @@ static void trigger(adxl345_model_t *m)
     }
 }
 
-/* Follows every change of state: INT_SOURCE, FIFO_STATUS, trigger, both pins. */
+/* Call after every change of state: updates INT_SOURCE, FIFO_STATUS, trigger, both pins. */
 static void refresh(adxl345_model_t *m)
 {
     uint8_t enabled = interrupt_source(m) & m->reg[ADXL345_INT_ENABLE];
@@ -180,7 +180,7 @@ static void store_latest(adxl345_model_t *m, const int16_t lsb[3])
     m->data_ready = true;
 }
 
-/* False when the sample is lost because the FIFO collects no more. */
+/* False if the sample is lost because the FIFO is full. */
 static bool store_queued(adxl345_model_t *m, const int16_t lsb[3])
 {
     bool keeps_newest = fifo_mode(m) == MODE_STREAM || (fifo_mode(m) == MODE_TRIGGER && !m->triggered);
@@ -363,8 +363,8 @@ static int32_t clamp(int32_t value, int32_t low, int32_t high)
 }
 
 /*
- * What this part makes of an acceleration, in full resolution before its offset registers; rounded half up. The force
- * of the self-test settles over four samples (p. 22).
+ * The reading of an acceleration by this part, in full resolution before its offset registers; rounded half up. The
+ * self-test force settles over four samples (p. 22).
  */
 static int32_t sense(const adxl345_model_t *m, size_t axis, int16_t full)
 {

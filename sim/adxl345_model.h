@@ -1,5 +1,5 @@
 /*
- * A virtual ADXL345 at register level, in pure C: no simulator types, no clock of its own. Whoever owns time calls
+ * A virtual ADXL345 at register level, in pure C: no simulator types, no clock of its own. Its owner calls
  * adxl345_model_tick once per output-data-rate period and passes the bus events in; the model answers with ACKs, bytes
  * and the levels of INT1 and INT2. Used under simavr (sim/simrun.c) and natively (hal/host). Source: ADXL345 data sheet
  * Rev. E; facts with pages in docs/wiring.md.
@@ -13,13 +13,13 @@
 #define ADXL345_MODEL_FIFO_DEPTH 33 /* 32 in the FIFO and one in the output filter (p. 27) */
 
 /*
- * What differs from one part to the next, each for x, y, z. Data sheet p. 4: gain 230..282 of 256 LSB/g (a tenth to
- * each side), offsets of up to 38 LSB (x, y) and 64 LSB (z); p. 5: self-test.
+ * Differences between parts, each for x, y, z. Data sheet p. 4: gain 230..282 of 256 LSB/g (a tenth to each side),
+ * offsets of up to 38 LSB (x, y) and 64 LSB (z); p. 5: self-test.
  */
 typedef struct {
     double gain[3];           /* 1: 256 LSB/g */
-    int16_t offset_lsb[3];    /* what 0 g reads, full resolution */
-    int16_t self_test_lsb[3]; /* what SELF_TEST adds, full resolution */
+    int16_t offset_lsb[3];    /* reading at 0 g, full resolution */
+    int16_t self_test_lsb[3]; /* shift by SELF_TEST, full resolution */
 } adxl345_part_t;
 
 /* Exact gain, no offset, the self-test shift that is typical at 3.3 V. */
@@ -36,21 +36,21 @@ typedef struct adxl345_model {
     bool shadowing; /* true: a burst of the data registers is never torn (p. 21) */
     adxl345_part_t part;
 
-    /* state: read it in tests, write it only through the functions below */
+    /* state: tests may read it; change it only through the functions below */
     uint8_t reg[64];
-    uint8_t pointer; /* kept over STOP */
+    uint8_t pointer; /* kept across a STOP */
     bool powered;
     bool selected, reading, pointer_written, data_touched;
-    int16_t fifo[ADXL345_MODEL_FIFO_DEPTH][3]; /* fifo[0] is what DATAX0.. shows */
+    int16_t fifo[ADXL345_MODEL_FIFO_DEPTH][3]; /* fifo[0] is what DATAX0.. show */
     uint8_t fifo_count;
     int16_t pending[3]; /* arrived inside a burst (shadowing) */
     bool has_pending;
-    bool data_ready, overrun, triggered; /* data_ready: bypass mode only, else it is fifo_count != 0 */
+    bool data_ready, overrun, triggered; /* data_ready: bypass mode only, otherwise fifo_count != 0 */
     uint8_t events;                      /* INT_SOURCE bits 6..2, latched until INT_SOURCE is read */
     bool pin_high[3];                    /* index 1, 2 */
     uint32_t ticks_in_measure;           /* since Measure was set: first data after the turn-on time */
 
-    /* counters: the judge of the firmware's own */
+    /* counters, to check the firmware's own against */
     uint32_t samples, overruns, torn, data_reads, writes_while_measuring;
 } adxl345_model_t;
 
@@ -58,14 +58,14 @@ typedef struct adxl345_model {
 void adxl345_model_init(adxl345_model_t *m);
 
 /*
- * Power off (no ACK, pins low) and on (registers at reset, FIFO empty, pointer 0). An MCU reset does nothing to the
+ * Power off (no ACK, pins low) and on (registers at reset, FIFO empty, pointer 0). An MCU reset does not affect the
  * sensor.
  */
 void adxl345_model_power(adxl345_model_t *m, bool on);
 
 /*
- * Something outside made the sensor see a tap, activity, inactivity or free fall: these INT_SOURCE bits (6..2, others
- * are ignored) are latched until INT_SOURCE is read. The model does not compute them from the acceleration.
+ * The sensor has detected a tap, activity, inactivity or free fall: these INT_SOURCE bits (6..2, others are ignored)
+ * are latched until INT_SOURCE is read. The model does not compute them from the acceleration.
  */
 void adxl345_model_event(adxl345_model_t *m, uint8_t source_bits);
 

@@ -153,7 +153,7 @@ static void add_fault(const char *argument)
     options.faults[options.fault_count++] = argument;
 }
 
-/* Options that only keep a name; false when it is none of them. */
+/* Options that only store a name; false for all others. */
 static bool take_file(int code, const char *argument)
 {
     static const struct {
@@ -248,13 +248,13 @@ static void take(int code, const char *name, const char *argument)
         exit(EXIT_OK);
     default:
         if (!take_file(code, argument) && !take_number(code, name, argument)) {
-            exit(EXIT_INPUT); /* getopt has said why */
+            exit(EXIT_INPUT); /* getopt has printed the reason */
         }
         break;
     }
 }
 
-/* One of the two ways in which something comes to the firmware, and where what it says goes. */
+/* Exactly one kind of input to the firmware, and the file for its output. */
 static void check_files(void)
 {
     if (options.fw == NULL || options.out == NULL || (options.in == NULL && options.frames == NULL)) {
@@ -265,7 +265,7 @@ static void check_files(void)
     }
 }
 
-/* Its waits are of simulated time, and nobody at the other end would know of them. */
+/* Its waits are in simulated time, and the program at the other end would not know about them. */
 static void check_race(void)
 {
     if (options.race != NULL && (options.gdb_port != 0 || options.pty)) {
@@ -273,7 +273,7 @@ static void check_race(void)
     }
 }
 
-/* What is wrong only in combination. */
+/* Conflicts between options. */
 static void check_together(void)
 {
     check_files();

@@ -182,7 +182,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     }
 }
 
-/* A gain too small for 16 bits is reported as 2^-16: 0 stands for refused samples, and soft refuses none. */
+/* A gain too small for 16 bits is reported as 2^-16: 0 means refused, and soft refuses none. */
 static void report(const filter_t *f, filter_probe_t *out)
 {
     filter_kalman_report(f, out);
