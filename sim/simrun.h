@@ -124,7 +124,7 @@ bool signals_asked_to_end(void); /* by SIGINT or SIGTERM */
 
 /* --- stack --- */
 void stack_paint(void);                /* before the start */
-void stack_paint_is(void);             /* what the RAM holds now is the paint (junk after a power cycle) */
+void stack_paint_is(void);             /* takes the present RAM content as the paint (junk after a power cycle) */
 bool stack_watch(uint32_t end_of_ram); /* true: SP is suspiciously low, check again after each instruction */
 uint16_t stack_high_water(void);       /* bytes used so far */
 
@@ -133,7 +133,7 @@ FILE *output_open(const char *path); /* exits with EXIT_INPUT and the reason */
 /* Exits with EXIT_INTERNAL if anything written to it was lost; does nothing for NULL. */
 void output_close(FILE *file, const char *path);
 
-/* --- the main loop without time (simrun_starve.c) --- */
+/* --- a starved main loop (simrun_starve.c) --- */
 /* While on, no instruction is executed outside interrupt handlers and sections with interrupts off; a reset ends it. */
 void starve(bool on);
 
@@ -282,7 +282,7 @@ void stats_summary(void);
 void stats_streaming_begins(void);
 void stats_streaming_ends(void);
 
-/* --- cycles by chain of callers (--calls) --- */
+/* --- cycles by call chain (--calls) --- */
 void calls_on_step(uint32_t pc, uint64_t cycles, bool interrupt); /* interrupt: it is the instruction in a vector */
 void calls_reset(void);
 void calls_write(void);

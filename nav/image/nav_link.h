@@ -50,7 +50,7 @@ typedef enum {
     LINK_ANSWERS_END
 } link_answer_t;
 
-/* Sets up the line at LINK_BAUD and greets. Main, once. */
+/* Sets up the line at LINK_BAUD and sends the greeting. Main, once. */
 void link_start(void);
 
 /* Processes received bytes, at most one record, and replies. False: there was nothing to do. Main. */

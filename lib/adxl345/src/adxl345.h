@@ -121,7 +121,7 @@ uint32_t adxl345_rate_chz(void);
 /* Counters, saturating. Each failed transfer is in one of the last four, whether its sample was lost or not. */
 typedef struct {
     uint16_t samples_drained;   /* read late, with an interpolated stamp */
-    uint16_t samples_stuck;     /* as ADXL345_MARK_STUCK */
+    uint16_t samples_stuck;     /* see ADXL345_MARK_STUCK */
     uint16_t restarts;          /* sensor configured again after a fault */
     uint16_t nacks;             /* address or data not acknowledged */
     uint16_t arbitrations_lost; /* noise, or another master */

@@ -12,8 +12,8 @@ struct burst {
     volatile uint8_t on_bus; /* a burst that main has not judged: running or ended */
     volatile uint8_t edge_waiting;
     volatile uint32_t edge_us;
-    volatile uint32_t begun_us; /* when the newest burst was put on the bus, */
-    volatile uint8_t by_edge;   /* by the edge of its own sample */
+    volatile uint32_t begun_us; /* start of the newest burst */
+    volatile uint8_t by_edge;   /* it was started by the edge of its own sample */
     uint8_t failures;
     uint8_t failed_state;                      /* i2c_bus_state_t of the newest failed burst */
     uint32_t last_us;                          /* stamp of the newest sample that left the sensor, delivered or cut */

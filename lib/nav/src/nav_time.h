@@ -12,7 +12,7 @@ static inline int32_t nav_time_from(uint32_t from_us, uint32_t to_us)
     return (int32_t)(to_us - from_us);
 }
 
-/* to - from in seconds, to not before from. */
+/* to - from in seconds; to is not before from. */
 static inline nav_real_t nav_seconds(uint32_t from_us, uint32_t to_us)
 {
     return (nav_real_t)(to_us - from_us) * NAV_R(1e-6);
