@@ -179,7 +179,7 @@ def other_names(paths):
 
 def functions_of(path):
     """Functions with a body in a source that is proved, without the assembler twins."""
-    text = re.sub(r"^#ifdef __AVR__\n.*?^#else", "", path.read_text(encoding="utf-8"), flags=re.S | re.M)
+    text = re.sub(r"^#ifdef (?:__AVR__|FX_ASSEMBLER)\n.*?^#(?:else|endif)", "", path.read_text(encoding="utf-8"), flags=re.S | re.M)
     found = set(re.findall(r"^(?!.*;$)[A-Za-z_][\w *]*?\b(\w+)\([^;{}]*\)\n\{", text, flags=re.M))
     return {name for name in found if not SWITCH.fullmatch(name)}
 
