@@ -1,4 +1,4 @@
-/* The means of cal6, and what becomes of a calibration that is found. */
+/* Collects the means of cal6, and applies or refuses a calibration. */
 #include "control/calibrate.h"
 
 #include "base/notices.h"
@@ -8,7 +8,7 @@
 static calibrate_told_t told;
 
 static int16_t means_lsb_q4[3 * CALIBRATION_POSITIONS]; /* x, y, z of each position in turn */
-static uint8_t known;                                   /* a bit for each position */
+static uint8_t known;                                   /* one bit per position */
 
 const calibrate_told_t *calibrate_told(void)
 {
@@ -28,8 +28,8 @@ static uint16_t size_of(int16_t mean_lsb_q4)
 }
 
 /*
- * Nearly as far from a second axis as from this one: 41 degrees off by an exact part. At 20 degrees the worst part that
- * is legal (10 % of gain, 40 LSB) has 136 LSB across and 176 along.
+ * Nearly as far along a second axis as along this one: 41 degrees off for an exact part. At 20 degrees the worst legal
+ * part (10 % of gain, 40 LSB) has 136 LSB across and 176 along.
  */
 static bool oblique(const int16_t mean_lsb_q4[3], uint8_t position)
 {
@@ -44,7 +44,7 @@ static bool oblique(const int16_t mean_lsb_q4[3], uint8_t position)
     return false;
 }
 
-/* One more position; UNCHANGED, BEGUN when it was the last, and so on. */
+/* Adds a position; UNCHANGED, BEGUN when it was the last, and so on. */
 static measure_outcome_t add_position(const int16_t mean_lsb_q4[3])
 {
     uint8_t position = calibration_position(mean_lsb_q4);
@@ -64,7 +64,7 @@ static measure_outcome_t add_position(const int16_t mean_lsb_q4[3])
     return told.left == 0 ? MEASURE_BEGUN : MEASURE_POSITION;
 }
 
-/* What was found is in the settings, or refused. */
+/* The outcome of a calibration, which is in the settings or was refused. */
 static measure_outcome_t outcome_of(calibration_verdict_t verdict)
 {
     told.verdict = verdict;
