@@ -47,11 +47,11 @@ static uint8_t measured_text(uint8_t kind)
 {
     uint8_t outcome = said.subject;
     if (outcome == MEASURE_WRONG) {
-        said.subject = calibrate_told()->verdict.where;
-        return (uint8_t)(TEXT_TILTED - CALIBRATION_TILTED + calibrate_told()->verdict.why);
+        said.subject = calibrate_report()->verdict.where;
+        return (uint8_t)(TEXT_TILTED - CALIBRATION_TILTED + calibrate_report()->verdict.why);
     }
     if (outcome != MEASURE_DONE) {
-        said.subject = outcome == MEASURE_BEGUN ? kind : calibrate_told()->position;
+        said.subject = outcome == MEASURE_BEGUN ? kind : calibrate_report()->position;
         return (uint8_t)(TEXT_HOLD_STILL - MEASURE_BEGUN + outcome);
     }
     said.subject = kind < NOTICE_TARE ? 0 : kind == NOTICE_TARE ? SETTING_LEVEL : SETTING_OFFSET;

@@ -62,9 +62,9 @@ static uint32_t number(said_t *said, uint8_t what)
     case SAY_LEFT:
         return settings_cycles()->left;
     case SAY_RESIDUAL:
-        return calibrate_told()->residual_mg;
+        return calibrate_report()->residual_mg;
     case SAY_TO_GO:
-        return calibrate_told()->left;
+        return calibrate_report()->left;
     case SAY_RUN_NOTE:
         return hal_reset_note();
     case SAY_OUTAGE_MS:

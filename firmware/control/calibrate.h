@@ -17,8 +17,8 @@ typedef struct {
     uint16_t residual_mg;          /* cal6: how far its worst position is from 1 g */
     uint8_t position;              /* cal6: the newest one; CALIBRATION_POSITIONS: none */
     uint8_t left;                  /* cal6: positions still missing */
-} calibrate_told_t;
-const calibrate_told_t *calibrate_told(void);
+} calibrate_report_t;
+const calibrate_report_t *calibrate_report(void);
 
 /* Forgets all positions. */
 void calibrate_start(void);

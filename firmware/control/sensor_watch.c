@@ -30,24 +30,24 @@ typedef struct {
     uint32_t began_s;
     uint32_t began_lost;
     sensor_outage_t outage; /* numbers of the outage that is over, until the line with them is queued */
-    uint16_t told_mask;     /* fault codes reported during the outage: each once */
+    uint16_t reported_mask; /* fault codes reported during the outage: each once */
     uint8_t newest;         /* its newest fault code; NONE: no outage */
     bool over;              /* the outage is over, and the line that reports it is not queued yet */
 } watch_t;
 
 static watch_t watch;
-static sensor_outage_t told;
+static sensor_outage_t reported;
 
 const sensor_outage_t *sensor_watch_outage(void)
 {
-    return &told;
+    return &reported;
 }
 
 /* Nothing is reported about the time before. */
 static MACHINE_APART void forget(void)
 {
     watch.newest = ADXL345_FAULT_NONE;
-    watch.told_mask = 0;
+    watch.reported_mask = 0;
 }
 
 static void begin_outage(watch_t *w, uint32_t now_us)
@@ -103,7 +103,7 @@ void sensor_watch_start(uint32_t now_us)
 {
     forget();
     note((uint8_t)adxl345_fault(), now_us);
-    watch.told_mask = (uint16_t)(1u << watch.newest);
+    watch.reported_mask = (uint16_t)(1u << watch.newest);
 }
 
 /* Reports what was noted and is not reported yet, one line at a time. */
@@ -113,13 +113,13 @@ static void tell(void)
     if (watch.newest == ADXL345_FAULT_NONE || settings()->mode == MODE_PLOT) {
         return;
     }
-    if (!(watch.told_mask & bit)) {
+    if (!(watch.reported_mask & bit)) {
         if (notices_add(NOTICE_FAULT_BEGIN, watch.newest)) {
-            watch.told_mask |= bit;
+            watch.reported_mask |= bit;
         }
     } else if (watch.over && !notices_hold(NOTICE_FAULT_END, NOTICE_FAULT_END) &&
                notices_add(NOTICE_FAULT_END, watch.newest)) {
-        told = watch.outage;
+        reported = watch.outage;
         forget();
     }
 }
