@@ -78,7 +78,7 @@ static store_status_t fetch(uint8_t copy)
 }
 
 /* The status of the valid copy, given that of the other one. */
-static store_status_t told(store_status_t status, store_status_t other)
+static store_status_t overall_status(store_status_t status, store_status_t other)
 {
     if (other == STORE_DAMAGED && status == STORE_EMPTY) {
         return STORE_DAMAGED;
@@ -101,7 +101,7 @@ store_status_t store_load(uint8_t record[STORE_RECORD_SIZE])
         other = status;
         status = fetch(COPY_0);
     }
-    return told(status, other);
+    return overall_status(status, other);
 }
 
 /* A failed save's sequence number is used again: otherwise many failures would make the next save look older. */
