@@ -243,7 +243,7 @@ static bool work_piece(void)
     return filter_samples();
 }
 
-/* What a person or the watchdog waits for need not run for every sample. */
+/* What only a person or the watchdog waits for need not run for every sample. */
 static void service(uint32_t now_us)
 {
     struct loop *l = here();
