@@ -91,7 +91,7 @@ static void note(uint8_t fault, uint32_t now_us)
     }
 }
 
-/* The LED flashes for 65 ms in each of the first slots of 131 ms, of which a second has eight. */
+/* The LED flashes for 65 ms in each of the first slots of 131 ms, eight of which make a second. */
 static void show(uint8_t fault, uint32_t now_us)
 {
     uint8_t half_slot = (uint8_t)(now_us >> FLASH_SHIFT);
