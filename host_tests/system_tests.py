@@ -14,6 +14,7 @@ import system_losses  # noqa: F401
 import system_passes  # noqa: F401
 import system_pty  # noqa: F401
 import system_race  # noqa: F401
+import system_sensors  # noqa: F401
 import system_settings  # noqa: F401
 import system_store  # noqa: F401
 import system_support
