@@ -19,6 +19,7 @@ import system_settings  # noqa: F401
 import system_store  # noqa: F401
 import system_support
 import system_transcript  # noqa: F401
+import system_wires  # noqa: F401
 import system_words  # noqa: F401
 from system_support import (FW, OUT, SET_IMAGES, SIMRUN, STREAMS, TESTS, image_with, read_output, run, run_all, simrun, test,
                             triplets, within)

@@ -131,6 +131,10 @@ void stack_paint_is(void);             /* what the RAM holds now is the paint (j
 bool stack_watch(uint32_t end_of_ram); /* true: SP is suspiciously low, look again after each instruction */
 uint16_t stack_high_water(void);       /* bytes used so far */
 
+/* --- the wires of the bus (--wires, simrun_wires.c) --- */
+bool wires_take(const char *argument); /* OHM,PF or OHM,PF,PF_OF_SDA; false: it is not legal */
+void wires_start(void);                /* before the machine starts */
+
 /* --- files written --- */
 FILE *output_open(const char *path); /* exits with EXIT_INPUT and the reason */
 /* Exits with EXIT_INTERNAL when anything written to it did not arrive; nothing to do for NULL. */

@@ -43,6 +43,7 @@ enum option_code {
     OPTION_FILTER,
     OPTION_PART,
     OPTION_SENSOR,
+    OPTION_WIRES,
     OPTION_PATIENCE,
     OPTION_HELP
 };
@@ -82,6 +83,7 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "range", required_argument, NULL, OPTION_SETTING },
                                        { "filter", required_argument, NULL, OPTION_FILTER },
                                        { "sensor", required_argument, NULL, OPTION_SENSOR },
+                                       { "wires", required_argument, NULL, OPTION_WIRES },
                                        { "part", required_argument, NULL, OPTION_PART },
                                        { "help", no_argument, NULL, OPTION_HELP },
                                        { NULL, 0, NULL, 0 } };
@@ -158,6 +160,13 @@ static void add_part(const char *argument)
         refuse("--part wants gain=X,Y,Z (0.5 to 2), offset=X,Y,Z (-1000 to 1000) or selftest=X,Y,Z (-4096 to 4095), "
                "whole LSB, not '%s'",
                argument);
+    }
+}
+
+static void set_wires(const char *argument)
+{
+    if (!wires_take(argument)) {
+        refuse("--wires wants OHM,PF or OHM,PF,PF of SDA (100 to 100000 ohm, 0 to 10000 pF), not '%s'", argument);
     }
 }
 
@@ -254,6 +263,9 @@ static void take(int code, const char *name, const char *argument)
         break;
     case OPTION_SENSOR:
         set_sensor(argument);
+        break;
+    case OPTION_WIRES:
+        set_wires(argument);
         break;
     case OPTION_PART:
         add_part(argument);
