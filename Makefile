@@ -110,7 +110,7 @@ include mk/host.mk
 
 # --- the simulator ---------------------------------------------------------------------------------------------------
 S := $(B)/sim
-SIMRUN_SRC := $(wildcard sim/simrun*.c) $(wildcard sim/twi_*.c) sim/adxl345_model.c sim/feed.c sim/stream.c
+SIMRUN_SRC := $(wildcard sim/simrun*.c) $(wildcard sim/twi_*.c) sim/adxl345_model.c sim/adxl345_variants.c sim/feed.c sim/stream.c
 # libsimavr as an archive, where there is one: no detour at its calls takes a tenth of the time away, and changes no row
 SIMAVR_LINK := $(if $(wildcard /usr/lib/*/libsimavr.a),-l:libsimavr.a,$$(pkg-config --libs simavr))
 $(S)/simrun: $(SIMRUN_SRC) $(wildcard sim/*.h)

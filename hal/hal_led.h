@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-/* Off, and a pin that can be set. Main, once. */
+/* Makes the pin an output; the LED is off. Main, once. */
 void hal_led_init(void);
 
 /* Any context. */

@@ -1,8 +1,9 @@
 /*
  * Byte ring for one producer and one consumer, one of them an interrupt: each index has one owner and is one byte, so
- * no critical section is needed. SIZE is a power of two up to 256; one slot stays free to tell full from empty. The
- * producer works on `staged` and publishes it with hal_ring_commit. A byte is in the buffer before its index says
- * so, and out of it before its slot is free: HAL_RING_FENCE keeps the compiler from putting one behind the other.
+ * no critical section is needed. The size is a power of two up to 256; mask is the size - 1. One slot stays free to
+ * distinguish full from empty. The producer works on `staged` and publishes it with hal_ring_commit. A byte is in the
+ * buffer before the index says so, and is read before its slot is freed: HAL_RING_FENCE keeps the compiler from
+ * swapping the two.
  */
 #ifndef HAL_RING_H
 #define HAL_RING_H
@@ -14,7 +15,7 @@
 
 typedef struct {
     volatile uint8_t head; /* producer: first free slot as the consumer sees it */
-    volatile uint8_t tail; /* consumer: next byte out */
+    volatile uint8_t tail; /* consumer: next byte to take */
     uint8_t staged;        /* producer: first free slot as the producer sees it */
 } hal_ring_t;
 

@@ -1,4 +1,4 @@
-/* Idle sleep without lost wake-ups. */
+/* Idle sleep that loses no wake-up. */
 #ifndef HAL_SLEEP_H
 #define HAL_SLEEP_H
 
@@ -6,8 +6,8 @@
 void hal_wake(void);
 
 /*
- * Returns at once if hal_wake was called since the last return, else sleeps until it is. Handlers that need no work of
- * main do not end the sleep. Main.
+ * Returns at once if hal_wake was called since the last return, else sleeps until it is. A handler that has no work for
+ * main does not end the sleep. Main.
  */
 void hal_sleep_until_wake(void);
 

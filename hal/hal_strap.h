@@ -1,13 +1,13 @@
-/* The strap that asks for safe settings: D4 to ground while the board starts. */
+/* The strap that selects safe settings: D4 tied to ground during start-up. */
 #ifndef HAL_STRAP_H
 #define HAL_STRAP_H
 
 #include <stdbool.h>
 
-/* Pull-up on. Main, once, a few microseconds before the next. */
+/* Enables the pull-up. Main, once, a few microseconds before hal_strap_low. */
 void hal_strap_init(void);
 
-/* D4 is at ground. Main. */
+/* D4 is tied to ground. Main. */
 bool hal_strap_low(void);
 
 #endif

@@ -1,5 +1,5 @@
 /*
- * UART 8N1 with a transmit and a receive ring. Nothing waits. A line is staged byte by byte and becomes visible to the
+ * UART 8N1 with a transmit and a receive ring. Nothing blocks. A line is staged byte by byte and becomes visible to the
  * interrupt only with the commit, so it goes out whole or not at all. All functions are for main.
  */
 #ifndef HAL_UART_H
@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Bytes of the rings, powers of two up to 256, of which one stays free: an image may want others. */
+/* Ring sizes in bytes, powers of two up to 256; one byte stays free. An image may set others. */
 #ifndef HAL_UART_RX_SIZE
 #define HAL_UART_RX_SIZE 64
 #endif
@@ -16,37 +16,39 @@
 #define HAL_UART_TX_SIZE 256
 #endif
 
-/* Sets the rate, baud; only while nothing is being sent; received bytes stay. */
+/* Sets the baud rate; only while nothing is being sent. Received bytes are kept. */
 void hal_uart_init(uint32_t baud);
 
-/* Bytes that can be staged. */
+/* Number of bytes that can be staged. */
 uint8_t hal_uart_tx_room(void);
 
-/* Appends after the staged ones; the caller has checked the room. */
+/* Stages one more byte; the caller has checked the room. */
 void hal_uart_tx_stage(uint8_t byte);
 
 /* Hands the staged bytes to the interrupt. */
 void hal_uart_tx_commit(void);
 
-/* Forgets the staged bytes. */
+/* Drops the staged bytes. */
 void hal_uart_tx_discard(void);
 
 /* Stages and commits a line; false if it does not fit. */
 bool hal_uart_tx_write(const char *line, uint8_t length);
 
-/* The ring is empty and the last stop bit sent. */
+/* The ring is empty and the last stop bit is out. */
 bool hal_uart_tx_idle(void);
 
-/* Counts bytes handed to the line, wraps: progress. */
+/* Counts the bytes handed to the UART; wraps. Shows progress. */
 uint8_t hal_uart_tx_sent(void);
 
-/* Takes one received byte, false when there is none; 0 stands where some were lost. */
+/* Takes one received byte; false if there is none. A 0 marks lost bytes. */
 bool hal_uart_rx(uint8_t *byte);
 
-/* Bytes lost to a full ring, framing or overrun, saturating. */
+/* Bytes lost to a full ring, framing errors or overruns; saturates. */
 uint8_t hal_uart_rx_lost(void);
 
-/* The port's HAL_UART_REACHES(baud), for #if: the processor's clock makes this rate and has time for it. */
+/*
+ * The port defines HAL_UART_REACHES(baud), for #if: the processor's clock can make this baud rate and has time for it.
+ */
 #include "hal_uart_port.h"
 
 #endif

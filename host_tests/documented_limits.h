@@ -40,7 +40,7 @@
       "lib/tilt/src/rest.c: DRIFT_LSB = {} * HALF ",                                                                   \
       "test_rest: test_the_limit_of_the_drift_to_one_lsb_of_one_reading")                                              \
     X(MEASURE_MINUTES, 2,                                                                                              \
-      "docs/protocol.md: or {word} minutes have passed | docs/protocol.md: so do {word} minutes without",              \
+      "docs/protocol.md: or {word} minutes have passed | docs/protocol.md: as do {word} minutes without",              \
       "firmware/control/measure.c: SECONDS_MAX = {v * 60} ",                                                           \
       "test_app_measure: test_no_measurement_lasts_longer_than_two_minutes")                                           \
     X(CAL6_EIGHTHS, 8, "docs/protocol.md: more than {v - 1}/{} of the first",                                          \
@@ -50,7 +50,7 @@
       "firmware/settings/settings.h: SETTINGS_ROW_MAX {}u", "test_app: test_every_follows_what_the_line_carries")      \
     X(READ_LATE_US, 2000, "docs/protocol.md: by half a period and {v // 1000} ms after it was due",                    \
       "firmware/app/app.c: READ_LATE_US {}u", "test_app_bounds: test_a_predicted_row_waits_for_a_sample_on_its_way")   \
-    X(HOLD_MS, 100, "docs/protocol.md: (for {} ms, its rate | docs/protocol.md: held after {} ms, and",                \
+    X(HOLD_MS, 100, "docs/protocol.md: (for {} ms, its rate",                                                          \
       "firmware/path/silence.c: HOLD_QUARTERS = {v // 25}, | lib/filters/src/filter.h: FILTER_HOLD_MS {}",             \
       "test_coast: test_rate_is_halved_every_25_ms_and_then_held")                                                     \
     X(DAMP_MS, 25, "docs/protocol.md: its rate halved every {} ms",                                                    \
@@ -58,7 +58,7 @@
       "test_coast: test_rate_is_halved_every_25_ms_and_then_held")                                                     \
     X(LONG_S, 1, "docs/protocol.md: after {} s a row each 100 ms)",                                                    \
       "firmware/path/silence.c: LONG_QUARTERS = {v * 40} ", "test_coast: test_rows_of_missing_samples")                \
-    X(LONG_STEP_MS, 100, "docs/protocol.md: s a row each {} ms) | docs/protocol.md: one each {} ms |",                 \
+    X(LONG_STEP_MS, 100, "docs/protocol.md: s a row each {} ms)",                                                      \
       "firmware/path/coast.c: LONG_STEP_US UINT32_C({v * 1000})", "test_coast: test_rows_of_missing_samples")          \
     X(MISSING_FAULT, 3,                                                                                                \
       "docs/protocol.md: the {nth} sample missing in a row | docs/faults.md: the {nth} sample missing in a row",       \
@@ -74,8 +74,9 @@
       "lib/adxl345/src/adxl345_integrity.h: ADXL345_STUCK_REPEATS {v - 1}u",                                           \
       "test_integrity: test_the_tenth_equal_reading_is_stuck")                                                         \
     X(GRAVITY_PERCENT, 15,                                                                                             \
-      "docs/protocol.md: lies outside {1 - v / 100:g}..{1 + v / 100:g} g | docs/protocol.md: level; {1 - v / 100:g} "  \
-      "to {1 + v / 100:g} long",                                                                                       \
+      "docs/protocol.md: lies outside {1 - v / 100:g}..{1 + v / 100:g} g | docs/protocol.md: level; length {1 - v / "  \
+      "100:g} "                                                                                                        \
+      "to {1 + v / 100:g} |",                                                                                          \
       "lib/tilt/src/tilt.c: lowest_q12 = {ceil(((100 - v) * 163.84) ** 2)}UL | lib/tilt/src/tilt.c: highest_q12 = "    \
       "{int(((100 + v) * 163.84) ** 2)}UL",                                                                            \
       "test_tilt_steps: test_the_limits_of_gravity_to_the_last_unit")                                                  \
@@ -90,9 +91,9 @@
     X(FOLLOW_PART, 128, "docs/protocol.md: by more than 1/{} and 0.1 Hz",                                              \
       "firmware/path/pipeline.c: true_dhz >> {v.bit_length() - 1}) + 1u",                                              \
       "test_true_rate: test_the_least_that_is_followed_at_each_rate")                                                  \
-    X(FOLLOW_S, 5, "docs/protocol.md: reckon with for {} seconds", "firmware/path/pipeline.c: CALLS_OFF = {},",        \
+    X(FOLLOW_S, 5, "docs/protocol.md: for {} seconds in a row", "firmware/path/pipeline.c: CALLS_OFF = {},",           \
       "test_true_rate: test_the_sixth_second_off_hands_the_rate_over_once")                                            \
-    X(STILL_LSB_Q1, 9, "docs/protocol.md: within the {v / 2} LSB of a degree",                                         \
+    X(STILL_LSB_Q1, 9, "docs/protocol.md: within {v / 2} LSB (one degree)",                                            \
       "firmware/path/pipeline.c: STILL_LSB_Q2 = {v * 2} ", "test_true_rate: test_the_most_that_is_standing_still")     \
     X(OUTAGE_S, 60, "docs/faults.md: from {} s on in whole seconds", "firmware/control/sensor_watch.c: seconds < {}u", \
       "test_app_bounds: test_an_outage_from_a_minute_on_is_in_whole_seconds")                                          \

@@ -269,10 +269,11 @@ def wrong_occasions_of_a_fault_are_refused():
         assert words in done.stderr and len(done.stderr.splitlines()) == 1, (when, done.stderr)
 
 
-def bus_probe(*options):
+def bus_probe(*options, twbr=14):
     """The words that a program without driver says, which moves the lines by hand, and the statistics of its run."""
     elf, stats = OUT / "lines_by_hand.elf", OUT / "lines_by_hand.json"
-    run("avr-gcc", "-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Os", "host_tests/avr/lines_by_hand.c", "-o", elf)
+    run("avr-gcc", "-mmcu=atmega328p", "-DF_CPU=16000000UL", f"-DPROBE_TWBR={twbr}", "-Os", "host_tests/avr/lines_by_hand.c",
+        "-o", elf)
     run(SIMRUN, "--fw", elf, "--in", REST, "--out", OUT / "lines.txt", "--stats", stats, "--max-ms", "200", *options, expect=8)
     return (OUT / "lines.txt").read_text(encoding="ascii").split(), json.loads(stats.read_text(encoding="ascii"))
 

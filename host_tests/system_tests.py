@@ -14,10 +14,12 @@ import system_losses  # noqa: F401
 import system_passes  # noqa: F401
 import system_pty  # noqa: F401
 import system_race  # noqa: F401
+import system_sensors  # noqa: F401
 import system_settings  # noqa: F401
 import system_store  # noqa: F401
 import system_support
 import system_transcript  # noqa: F401
+import system_wires  # noqa: F401
 import system_words  # noqa: F401
 from system_support import (FW, OUT, SET_IMAGES, SIMRUN, STREAMS, TESTS, image_with, read_output, run, run_all, simrun, test,
                             triplets, within)

@@ -6,7 +6,7 @@ HOST_CXX   := g++
 SANITIZE   := -fsanitize=address,undefined -fno-sanitize-recover=all
 HOST_INC   := $(INCLUDES) -Ihal/host -Isim -Ihost_tests -isystem $(UNITY_DIR)
 HOST_FLAGS := -std=c11 -O1 -g -D_POSIX_C_SOURCE=200809L -DHANG_TEST=1 -DSUPERVISOR=1 -DUNITY_INCLUDE_DOUBLE $(HOST_INC)
-MODEL_SRC  := sim/adxl345_model.c sim/feed.c sim/stream.c
+MODEL_SRC  := sim/adxl345_model.c sim/adxl345_variants.c sim/feed.c sim/stream.c
 HOST_SRC   := $(filter-out firmware/app/main.c,$(APP_SRC)) $(LIB_SRC) $(wildcard hal/host/*.c) $(MODEL_SRC)
 # of them what knows the laws, on the chip too
 LAW_SUPPORT := host_tests/support_random32.c $(wildcard host_tests/support_filter*.c host_tests/support_law_*.c)

@@ -30,10 +30,7 @@ enum {
 
 enum fifo_mode { MODE_BYPASS = 0, MODE_FIFO = 1, MODE_STREAM = 2, MODE_TRIGGER = 3 };
 
-/*
- * Middle of the self-test limits in full resolution, 50..540, -540..-50 and 75..875 LSB at 2.5 V (p. 5; Table 15,
- * p. 31), times what 3.3 V makes of them: 1.77 on x and y, 1.47 on z (Table 14, p. 31).
- */
+/* The self-test shift is that of the ADXL345 (adxl345_variants.c). */
 const adxl345_part_t adxl345_part_typical = { { 1.0, 1.0, 1.0 }, { 0, 0, 0 }, { 522, -522, 698 } };
 
 static unsigned fifo_mode(const adxl345_model_t *m)
@@ -147,12 +144,21 @@ void adxl345_model_init(adxl345_model_t *m)
 {
     memset(m, 0, sizeof *m);
     m->address = ADXL345_ADDRESS_LOW;
-    m->device_id = ADXL345_DEVID_VALUE;
+    m->device_id = adxl345_itself->device_id;
+    m->variant = adxl345_itself;
     m->shadowing = true;
     m->part = adxl345_part_typical;
     m->powered = true;
     registers_at_reset(m);
     refresh(m);
+}
+
+void adxl345_model_become(adxl345_model_t *m, const adxl345_variant_t *variant)
+{
+    m->variant = variant;
+    m->device_id = variant->device_id;
+    memcpy(m->part.self_test_lsb, variant->self_test_lsb, sizeof m->part.self_test_lsb);
+    adxl345_model_power(m, true);
 }
 
 void adxl345_model_power(adxl345_model_t *m, bool on)
@@ -348,6 +354,17 @@ double adxl345_model_odr_hz(const adxl345_model_t *m)
     return 3200.0 / (double)(1u << (15u - code));
 }
 
+static unsigned range_code(const adxl345_model_t *m)
+{
+    unsigned code = m->reg[ADXL345_DATA_FORMAT] & ADXL345_FORMAT_RANGE_MASK;
+    return m->variant->one_range ? ADXL345_FORMAT_RANGE_MASK : code;
+}
+
+double adxl345_model_range_g(const adxl345_model_t *m)
+{
+    return m->variant->range_g / (double)(1u << (ADXL345_FORMAT_RANGE_MASK - range_code(m)));
+}
+
 static int32_t divide_down(int32_t value, int32_t divisor)
 {
     int32_t quotient = value / divisor;
@@ -368,7 +385,8 @@ static int32_t clamp(int32_t value, int32_t low, int32_t high)
  */
 static int32_t sense(const adxl345_model_t *m, size_t axis, int16_t full)
 {
-    int32_t value = (int32_t)floor(full * m->part.gain[axis] + 0.5) + m->part.offset_lsb[axis];
+    double scale = m->part.gain[axis] * (m->variant->lsb_per_g / adxl345_itself->lsb_per_g);
+    int32_t value = (int32_t)floor(full * scale + 0.5) + m->part.offset_lsb[axis];
     if ((m->reg[ADXL345_DATA_FORMAT] & ADXL345_FORMAT_SELF_TEST) != 0) {
         int32_t samples = m->ticks_in_measure < SETTLED ? (int32_t)m->ticks_in_measure : SETTLED;
         value += m->part.self_test_lsb[axis] * samples / SETTLED;
@@ -379,8 +397,8 @@ static int32_t sense(const adxl345_model_t *m, size_t axis, int16_t full)
 void adxl345_model_convert(const adxl345_model_t *m, const int16_t full[3], int16_t lsb[3])
 {
     uint8_t format = m->reg[ADXL345_DATA_FORMAT];
-    unsigned range = format & ADXL345_FORMAT_RANGE_MASK;
-    bool full_res = (format & ADXL345_FORMAT_FULL_RES) != 0;
+    unsigned range = range_code(m);
+    bool full_res = m->variant->one_range || (format & ADXL345_FORMAT_FULL_RES) != 0;
     int32_t divisor = full_res ? 1 : (int32_t)(1u << range);
     int32_t rail = full_res ? (int32_t)(512u << range) : 512;
     bool coarse = (m->reg[ADXL345_BW_RATE] & ADXL345_BW_RATE_MASK) >= RATE_CODE_1600 && (full_res || range == 0);

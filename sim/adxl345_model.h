@@ -10,6 +10,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "adxl345_variants.h"
+
 #define ADXL345_MODEL_FIFO_DEPTH 33 /* 32 in the FIFO and one in the output filter (p. 27) */
 
 /*
@@ -29,6 +31,7 @@ typedef struct adxl345_model {
     /* wiring and options, set by the owner after adxl345_model_init */
     uint8_t address;                                           /* 7 bit: 0x53, or 0x1D with ALT ADDRESS high */
     uint8_t device_id;                                         /* what DEVID holds after the next power-on; 0xE5 */
+    const adxl345_variant_t *variant;                          /* adxl345_model_become */
     void (*pin_changed)(void *owner, unsigned pin, bool high); /* pin 1 or 2; may be NULL */
     /* latched: a triplet became readable (reached the data registers or FIFO); value as the registers show it */
     void (*latched)(void *owner, const int16_t lsb[3]); /* may be NULL */
@@ -57,6 +60,9 @@ typedef struct adxl345_model {
 /* Powered, registers at their reset values, address 0x53, shadowing on, no callbacks; the typical part. */
 void adxl345_model_init(adxl345_model_t *m);
 
+/* Another sensor in its place, just powered: this row's identity, scale and self-test; the other options stay. */
+void adxl345_model_become(adxl345_model_t *m, const adxl345_variant_t *variant);
+
 /*
  * Power off (no ACK, pins low) and on (registers at reset, FIFO empty, pointer 0). An MCU reset does not affect the
  * sensor.
@@ -83,13 +89,16 @@ double adxl345_model_odr_hz(const adxl345_model_t *m);
 
 /*
  * One output-data-rate period has passed and the acceleration is `full` (full-resolution LSB at +-16 g, 256 LSB/g).
- * Applies the part's gain and offset, self-test shift, offset registers, range, resolution, justification and rails,
- * then stores into the data registers or the FIFO according to its mode. Returns false when not measuring (nothing
- * stored).
+ * Applies the variant's scale, the part's gain and offset, self-test shift, offset registers, range, resolution,
+ * justification and rails, then stores into the data registers or the FIFO according to its mode. Returns false when
+ * not measuring (nothing stored).
  * Turn-on: the owner makes the first tick one period and 1.1 ms after Measure was set (p. 5), the others one period
  * apart.
  */
 bool adxl345_model_tick(adxl345_model_t *m, const int16_t full[3]);
+
+/* The range in force, of data in full resolution or 10 bits. */
+double adxl345_model_range_g(const adxl345_model_t *m);
 
 /* The same conversion without storing: what the registers would show for this acceleration. */
 void adxl345_model_convert(const adxl345_model_t *m, const int16_t full[3], int16_t lsb[3]);

@@ -58,6 +58,7 @@ typedef struct {
         *filter, *span;
     bool loop, pty, blank, judge, strap, alt_address;
     double ppm, max_ms, patience_s; /* max_ms 0: none */
+    const adxl345_variant_t *variant;
     adxl345_part_t part;
     unsigned expect_resets, gdb_port;
     uint32_t seed, clock_start_us;
@@ -75,6 +76,8 @@ void options_parse(int argc, char **argv);
 
 /* Parses an argument of --part into *part; false if it is not legal. */
 bool part_take(const char *argument, adxl345_part_t *part);
+/* The self-test shift of this variant, unless a --part has named another. */
+void part_complete(const adxl345_variant_t *variant, adxl345_part_t *part);
 
 /* --- the machine --- */
 typedef struct {
@@ -127,6 +130,10 @@ void stack_paint(void);                /* before the start */
 void stack_paint_is(void);             /* takes the present RAM content as the paint (junk after a power cycle) */
 bool stack_watch(uint32_t end_of_ram); /* true: SP is suspiciously low, check again after each instruction */
 uint16_t stack_high_water(void);       /* bytes used so far */
+
+/* --- the wires of the bus (--wires, simrun_wires.c) --- */
+bool wires_take(const char *argument); /* OHM,PF or OHM,PF,PF_OF_SDA; false: it is not legal */
+void wires_start(void);                /* before the machine starts */
 
 /* --- files written --- */
 FILE *output_open(const char *path); /* exits with EXIT_INPUT and the reason */

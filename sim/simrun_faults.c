@@ -142,7 +142,7 @@ static void release(fault_t *fault)
         set_power(true);
         break;
     case KIND_DEVID:
-        sensor.device_id = sensor.reg[0] = 0xE5;
+        sensor.device_id = sensor.reg[0] = sensor.variant->device_id;
         break;
     case KIND_NOINT:
     case KIND_INTHIGH:

@@ -12,6 +12,7 @@ static double seconds_between(const struct timespec *a, const struct timespec *b
 int main(int argc, char **argv)
 {
     options_parse(argc, argv);
+    wires_start();
     machine_start();
     struct timespec began;
     struct timespec ended;

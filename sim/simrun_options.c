@@ -42,6 +42,8 @@ enum option_code {
     OPTION_SETTING,
     OPTION_FILTER,
     OPTION_PART,
+    OPTION_SENSOR,
+    OPTION_WIRES,
     OPTION_PATIENCE,
     OPTION_HELP
 };
@@ -80,6 +82,8 @@ static const struct option known[] = { { "fw", required_argument, NULL, OPTION_F
                                        { "every", required_argument, NULL, OPTION_SETTING },
                                        { "range", required_argument, NULL, OPTION_SETTING },
                                        { "filter", required_argument, NULL, OPTION_FILTER },
+                                       { "sensor", required_argument, NULL, OPTION_SENSOR },
+                                       { "wires", required_argument, NULL, OPTION_WIRES },
                                        { "part", required_argument, NULL, OPTION_PART },
                                        { "help", no_argument, NULL, OPTION_HELP },
                                        { NULL, 0, NULL, 0 } };
@@ -136,12 +140,33 @@ static void add_command(const char *argument)
     add_typed(at_ms, end + 1, false);
 }
 
+/* Or the names that there are. */
+static void set_sensor(const char *argument)
+{
+    char names[120] = "";
+    options.variant = adxl345_variant_named(argument);
+    for (size_t i = 0; options.variant == NULL && i < adxl345_variant_count; i++) {
+        size_t length = strlen(names);
+        snprintf(names + length, sizeof names - length, "%s%s", i == 0 ? "" : ", ", adxl345_variants[i].name);
+    }
+    if (options.variant == NULL) {
+        refuse("--sensor '%s' is none of %s", argument, names);
+    }
+}
+
 static void add_part(const char *argument)
 {
     if (!part_take(argument, &options.part)) {
         refuse("--part wants gain=X,Y,Z (0.5 to 2), offset=X,Y,Z (-1000 to 1000) or selftest=X,Y,Z (-4096 to 4095), "
                "whole LSB, not '%s'",
                argument);
+    }
+}
+
+static void set_wires(const char *argument)
+{
+    if (!wires_take(argument)) {
+        refuse("--wires wants OHM,PF or OHM,PF,PF of SDA (100 to 100000 ohm, 0 to 10000 pF), not '%s'", argument);
     }
 }
 
@@ -206,32 +231,41 @@ static bool take_number(int code, const char *name, const char *argument)
     }
 }
 
-static void take(int code, const char *name, const char *argument)
+/* Those without an argument. */
+static bool take_switch(int code)
 {
     switch (code) {
     case OPTION_LOOP:
-        options.loop = true;
-        break;
+        return options.loop = true;
     case OPTION_PTY:
-        options.pty = true;
-        break;
+        return options.pty = true;
     case OPTION_BLANK:
-        options.blank = true;
-        break;
+        return options.blank = true;
     case OPTION_STRAP:
-        options.strap = true;
-        break;
+        return options.strap = true;
     case OPTION_ALT_ADDRESS:
-        options.alt_address = true;
-        break;
+        return options.alt_address = true;
     case OPTION_JUDGE:
-        options.judge = true;
-        break;
+        return options.judge = true;
+    default:
+        return false;
+    }
+}
+
+static void take(int code, const char *name, const char *argument)
+{
+    switch (code) {
     case OPTION_CMD:
         add_command(argument);
         break;
     case OPTION_FAULT:
         add_fault(argument);
+        break;
+    case OPTION_SENSOR:
+        set_sensor(argument);
+        break;
+    case OPTION_WIRES:
+        set_wires(argument);
         break;
     case OPTION_PART:
         add_part(argument);
@@ -247,7 +281,7 @@ static void take(int code, const char *name, const char *argument)
         fputs(options_help, stdout);
         exit(EXIT_OK);
     default:
-        if (!take_file(code, argument) && !take_number(code, name, argument)) {
+        if (!take_switch(code) && !take_file(code, argument) && !take_number(code, name, argument)) {
             exit(EXIT_INPUT); /* getopt has printed the reason */
         }
         break;
@@ -293,6 +327,7 @@ void options_parse(int argc, char **argv)
 {
     int index = 0;
     int code;
+    options.variant = adxl345_itself;
     options.part = adxl345_part_typical;
     while ((code = getopt_long(argc, argv, "", known, &index)) != -1) {
         take(code, known[index].name, optarg);
@@ -301,5 +336,6 @@ void options_parse(int argc, char **argv)
         refuse("'%s' is no option", argv[optind]);
     }
     check_together();
+    part_complete(options.variant, &options.part);
     options.patience_s = options.patience_s > 0.0 ? options.patience_s : PATIENCE_S;
 }

@@ -1,10 +1,12 @@
-/* --part: what differs from one ADXL345 to the next. */
+/* --part: what differs from one sensor of a kind to the next. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "simrun.h"
 
 enum { AXES = 3 };
+
+static bool self_test_named;
 
 /* Three numbers from low to high separated by commas, and nothing after them. */
 static bool three(const char *text, double low, double high, double value[AXES])
@@ -44,7 +46,18 @@ static bool take_one(const char *text, adxl345_part_t *part)
     if (strncmp(text, "offset=", 7) == 0) {
         return whole(text + 7, -1000.0, 1000.0, part->offset_lsb);
     }
-    return strncmp(text, "selftest=", 9) == 0 && whole(text + 9, -4096.0, 4095.0, part->self_test_lsb);
+    if (strncmp(text, "selftest=", 9) == 0) {
+        self_test_named = true;
+        return whole(text + 9, -4096.0, 4095.0, part->self_test_lsb);
+    }
+    return false;
+}
+
+void part_complete(const adxl345_variant_t *variant, adxl345_part_t *part)
+{
+    if (!self_test_named) {
+        memcpy(part->self_test_lsb, variant->self_test_lsb, sizeof part->self_test_lsb);
+    }
 }
 
 bool part_take(const char *argument, adxl345_part_t *part)

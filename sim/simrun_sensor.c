@@ -103,6 +103,7 @@ void sensor_start(void)
     }
     pin_d2 = avr_io_getirq(mcu, AVR_IOCTL_IOPORT_GETIRQ('D'), PIN_D2);
     adxl345_model_init(&sensor);
+    adxl345_model_become(&sensor, options.variant);
     sensor.part = options.part;
     if (options.alt_address) {
         sensor.address = ADXL345_ADDRESS_HIGH;
@@ -217,8 +218,8 @@ const stream_t *sensor_stream(void)
 /* A tick is a measurement: there is none in standby or without power. */
 void sensor_print(FILE *json)
 {
-    fprintf(json, "  \"sensor_hz\": %.4g,\n  \"sensor_range_g\": %u,\n", adxl345_model_odr_hz(&sensor),
-            2u << (sensor.reg[ADXL345_DATA_FORMAT] & ADXL345_FORMAT_RANGE_MASK));
+    fprintf(json, "  \"sensor\": \"%s\",\n  \"sensor_hz\": %.4g,\n  \"sensor_range_g\": %.4g,\n", sensor.variant->name,
+            adxl345_model_odr_hz(&sensor), adxl345_model_range_g(&sensor));
     fprintf(json, "  \"sensor_last_tick_ms\": %.3f,\n", (double)last_tick / CYCLES_PER_MS);
 }
 

@@ -8,6 +8,7 @@
 #include "sim_interrupts.h"
 #include "sim_io.h"
 #include "twi_slave.h"
+#include "twi_wires.h"
 
 enum {
     REG_PINC = 0x26,
@@ -53,8 +54,8 @@ static bool lines_free(const twi_peripheral_t *twi)
 /* What the pins read as inputs. */
 static void show_levels(twi_peripheral_t *twi)
 {
-    bool sda = !twi_sda_low(twi);
-    bool scl = !twi_scl_low(twi);
+    bool sda = !twi_sda_low(twi) && !twi_wires_sda_rising(twi);
+    bool scl = !twi_scl_low(twi) && !twi_wires_scl_rising(twi);
     avr_ioport_external_t pull = { .name = 'C',
                                    .mask = (1u << PIN_SDA) | (1u << PIN_SCL),
                                    .value = (sda ? 1u << PIN_SDA : 0u) | (scl ? 1u << PIN_SCL : 0u) };
@@ -65,10 +66,16 @@ static void show_levels(twi_peripheral_t *twi)
     twi->avr->data[REG_PINC] = (uint8_t)(others | pull.value); /* the IRQs above are silent if the level is unchanged */
 }
 
-static unsigned bit_cycles(const twi_peripheral_t *twi)
+/* SCL is low for so long in each bit, and high as long. */
+static unsigned half_cycles(const twi_peripheral_t *twi)
 {
     const uint8_t *data = twi->avr->data;
-    return 16u + 2u * data[REG_TWBR] * (1u << (2u * (data[REG_TWSR] & PRESCALER_MASK)));
+    return 8u + data[REG_TWBR] * (1u << (2u * (data[REG_TWSR] & PRESCALER_MASK)));
+}
+
+static unsigned bit_cycles(const twi_peripheral_t *twi)
+{
+    return 2u * half_cycles(twi) + twi_wires_scl_cycles(twi);
 }
 
 static void set_status(twi_peripheral_t *twi, uint8_t status)
@@ -162,8 +169,9 @@ static void want_stop(twi_peripheral_t *twi)
         twi->mode = TWI_IDLE;
         return;
     }
-    twi->busy_cycles += bit_cycles(twi);
-    avr_cycle_timer_register(twi->avr, bit_cycles(twi), on_stopped, twi);
+    unsigned cycles = bit_cycles(twi) + twi_wires_sda_cycles(twi);
+    twi->busy_cycles += cycles;
+    avr_cycle_timer_register(twi->avr, cycles, on_stopped, twi);
 }
 
 static void lose(twi_peripheral_t *twi, unsigned bits)
@@ -186,13 +194,17 @@ static bool slave_acknowledges(twi_peripheral_t *twi, bool is_address, uint8_t b
     return is_address ? adxl345_model_start(twi->sensor, byte) : adxl345_model_write(twi->sensor, byte);
 }
 
+static bool one_reads_zero(const twi_peripheral_t *twi)
+{
+    return twi_sda_low(twi) || twi_wires_master_late(twi, half_cycles(twi));
+}
+
 /* Address or data to the slave. */
 static void send_byte(twi_peripheral_t *twi)
 {
     uint8_t byte = twi->avr->data[REG_TWDR];
     bool is_address = twi->mode == TWI_STARTED;
-    bool sda_was_low = twi_sda_low(twi);
-    bool lost = sda_was_low && byte != 0; /* a one that reads as zero; the master gives no further clock */
+    bool lost = byte != 0 && one_reads_zero(twi); /* the master gives no further clock */
     twi_slave_move(twi, lost ? BITS_UNTIL_ZERO : BITS_BYTE);
     if (lost) {
         lose(twi, BITS_UNTIL_ZERO);
@@ -217,13 +229,16 @@ static void receive_byte(twi_peripheral_t *twi, bool give_ack)
 {
     unsigned bits = 0;
     unsigned wire = 0;
+    bool was_one = false; /* the acknowledge before was low */
     twi->acknowledged = twi->acknowledged && !twi->let_go;
     twi->let_go = false;
     for (unsigned clock = 1; clock <= BITS_BYTE; clock++) {
         bool pulled = twi->sda_held || (clock == BITS_BYTE && give_ack);
         bool one = twi_slave_bit(twi, pulled);
+        bool is_one = one && !pulled;
         bits = bits << 1 | one;
-        wire = wire << 1 | (one && !pulled);
+        wire = wire << 1 | (is_one && twi_wires_in_time(twi, half_cycles(twi), clock, was_one));
+        was_one = is_one;
     }
     twi->byte_bits = (uint16_t)(bits << (16 - BITS_BYTE));
     if (!give_ack && (wire & 1u) == 0) {
@@ -368,6 +383,7 @@ static void on_direction(avr_irq_t *irq, uint32_t value, void *param)
     twi->pulled = (uint8_t)(value & lines & ~(unsigned)high);
     twi->driven_high = twi->driven_high || (value & high & lines) != 0;
     if (twi->mode == TWI_OFF && before != twi->pulled) {
+        twi_wires_let_go(twi, before & ~(unsigned)twi->pulled, show_levels);
         twi_slave_by_hand(twi, before, twi->pulled);
         show_levels(twi);
     }
@@ -417,6 +433,8 @@ void twi_reset(twi_peripheral_t *twi)
 {
     turn_off(twi);
     twi->pulled = 0;
+    twi->sda_up_at = 0;
+    twi->scl_up_at = 0;
     twi->avr->data[REG_TWCR] = 0;
     twi->avr->data[REG_TWSR] = STATUS_NOTHING;
     twi->avr->data[REG_TWDR] = 0xFF;

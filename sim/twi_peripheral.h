@@ -3,7 +3,8 @@
  * ignores TWBR and cannot be polled). Source: ATmega328P data sheet, chapter "2-wire Serial Interface", status codes in
  * Tables 22-2 and 22-3. Slave mode and other masters are not modelled, except as faults.
  *
- * Times: START and STOP one bit, a byte with its acknowledge nine; a bit is 16 + 2 TWBR 4^TWPS cycles.
+ * Times: START and STOP one bit, a byte with its acknowledge nine; a bit is 16 + 2 TWBR 4^TWPS cycles and SCL's rise
+ * (twi_wires.h), a STOP SDA's besides.
  * Levels of PC4 (SDA) and PC5 (SCL) as read by the firmware follow a line held low from outside, by the slave or by its
  * own DDRC; the TWI's own traffic is not shown on them.
  */
@@ -25,7 +26,7 @@ typedef enum {
     TWI_FAILED /* after a bus error: only TWSTO leads out */
 } twi_mode_t;
 
-typedef struct {
+typedef struct twi_peripheral {
     /* set by the owner before twi_attach */
     adxl345_model_t *sensor;
     void (*before_byte)(void *owner, uint32_t transfer,
@@ -34,6 +35,7 @@ typedef struct {
     uint8_t (*sent)(void *owner, uint8_t address, uint8_t byte); /* register and byte that the sensor puts on the
                                                                     wire; returns what arrives; may be NULL */
     void *owner;
+    double rise_sda_ns, rise_scl_ns; /* from 0 to where an input sees a one; 0: at once */
 
     /* faults that happen once, in the next byte that can show them */
     bool lose_arbitration, bus_error, nack_address, nack_data;
@@ -61,6 +63,8 @@ typedef struct {
     bool driven_high;        /* SDA or SCL was made an output that is high */
     uint32_t transfer, byte; /* transfers begun; bytes in this one */
     uint64_t bytes, busy_cycles;
+    uint64_t sda_up_at, scl_up_at; /* twi_wires.c */
+    void (*seen_high)(struct twi_peripheral *twi);
 } twi_peripheral_t;
 
 /* Takes over TWCR, TWDR and TWSR of this MCU. False if it has no TWI vector. */

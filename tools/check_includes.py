@@ -27,7 +27,7 @@ FILTERS, TILT, ADXL = headers("lib/filters/src"), headers("lib/tilt/src"), heade
 INSIDE = {"tracker.h", "kalman.h", "wide.h", "mixture.h", "fx_avr.h"} | {path.name for path in pathlib.Path("lib/filters/src").glob("*_table.h")}
 NAV, NAV_IMAGE = headers("lib/nav/src"), headers("nav/image")
 SIM = headers("sim")
-MODEL = {"adxl345_model.h", "feed.h", "stream.h"}
+MODEL = {"adxl345_model.h", "adxl345_variants.h", "feed.h", "stream.h"}
 # the rooms of the firmware, and which others each may use: nothing points up. A header is included with its room.
 ROOMS = {
     "base": (),

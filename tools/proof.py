@@ -2,6 +2,7 @@
 """Proof with Frama-C's Eva (16-bit int): entries proof_NAME of host_tests/proof, then breakages that must be found.
 
     proof.py [PATTERN...]  all, or the entries and breakages in whose name a regular expression matches
+    CHANGED=yes proof.py   one of the entries, and all of the files that are not as they were when host_tests/proof/proved.json was written
 
 An entry calls NAME with any argument and any state within its bounds; law_NAME every function of that law (law.h). It
 passes with no alarm and every contract, check and assertion proved. A function with a contract that says what it assigns
@@ -25,6 +26,7 @@ import sys
 import time
 
 import anchors
+import proved
 from sampled import by_commit
 
 HERE = pathlib.Path("host_tests/proof")
@@ -179,7 +181,7 @@ def other_names(paths):
 
 def functions_of(path):
     """Functions with a body in a source that is proved, without the assembler twins."""
-    text = re.sub(r"^#ifdef __AVR__\n.*?^#else", "", path.read_text(encoding="utf-8"), flags=re.S | re.M)
+    text = re.sub(r"^#ifdef (?:__AVR__|FX_ASSEMBLER)\n.*?^#(?:else|endif)", "", path.read_text(encoding="utf-8"), flags=re.S | re.M)
     found = set(re.findall(r"^(?!.*;$)[A-Za-z_][\w *]*?\b(\w+)\([^;{}]*\)\n\{", text, flags=re.M))
     return {name for name in found if not SWITCH.fullmatch(name)}
 
@@ -224,27 +226,57 @@ def try_plant(number, plant, entries):
 
 
 def run_entries(pool, entries, wanted):
+    """(entries that fail, {file: (functions reached, deliberate wraps met)})"""
     for file in sorted({entries[name][0] for name in wanted}):
         annotate(file, OUT)
     print(f"{'function':<32} {'alarms and unproved':>20} {'proved':>10} {'s':>6}")
     jobs = {name: pool.submit(judge, name, entries[name], OUT) for name in wanted}
-    failed, met, reached = set(), set(), {}
+    failed, seen = set(), {}
     for name, job in jobs.items():
-        findings, proved, total, wraps, seen, seconds = job.result()
-        met = met | wraps
-        reached.setdefault(entries[name][0], set()).update(seen)
+        findings, passed, total, wraps, reached, seconds = job.result()
+        note(seen, entries[name][0], reached, wraps)
         if total == 0:
             findings.append("nothing to prove")
-        print(f"{name:<32} {len(findings):>20} {f'{proved}/{total}':>10} {seconds:>6.1f}", flush=True)
+        print(f"{name:<32} {len(findings):>20} {f'{passed}/{total}':>10} {seconds:>6.1f}", flush=True)
         for finding in findings[:6]:
             print(f"    {finding}")
         if findings:
             failed.add(name)
-    return failed, met, reached
+    return failed, seen
 
 
-def gaps(entries, met, reached):
+def note(seen, file, reached, wraps):
+    """Adds to what was seen of a file."""
+    functions, met = seen.setdefault(file, (set(), set()))
+    functions.update(reached)
+    met.update(wraps)
+
+
+def inputs_of(file):
+    """The digest of all that a proof rests on."""
+    version = subprocess.run(["frama-c", "-version"], capture_output=True, text=True, check=True).stdout.strip()
+    return proved.digest({HERE / file, HERE / "deliberate.txt"} | included(HERE / file, set()), [version, *COMMON, *WRAPS])
+
+
+def unchanged(entries, patterns):
+    """{file: its line of proved.json} of the files that need no proof: with CHANGED=yes those whose inputs are the line's."""
+    if patterns or os.environ.get("CHANGED") != "yes":
+        return {}
+    known, files = proved.read(), {file for file, _, _ in entries.values()}
+    return {file: known[file] for file in sorted(files & set(known)) if known[file][0] == inputs_of(file)}
+
+
+def keep(entries, wanted, broken, seen, known):
+    """Writes the lines of the files of which each entry was proved, and of those unchanged of which none failed."""
+    whole = {file for file in seen if all(name in wanted and name not in broken for name in entries if entries[name][0] == file)}
+    spared = {file: line for file, line in known.items() if not any(entries[name][0] == file for name in broken)}
+    proved.write(spared | {file: (inputs_of(file), *seen[file]) for file in whole})
+
+
+def gaps(entries, seen):
     """What a whole run must cover besides the entries themselves."""
+    reached = {file: functions for file, (functions, _) in seen.items()}
+    met = set().union(*(wraps for _, wraps in seen.values()))
     found = [f"{name}: in FILTER_LIST, but no entry proof_{name} in {HERE}" for name in missing_filters(entries)]
     found += [f"{name}: no entry reaches it" for name in unreached(reached)]
     found += [f"{wrap[0]}: `{wrap[1]}` of deliberate.txt is proved or gone: strike it" for wrap in sorted(deliberate() - met)]
@@ -284,9 +316,14 @@ def main():
     entries = load_entries()
     wanted, plants = chosen(patterns, entries)
     plants = sampled(plants)
+    known = unchanged(entries, patterns)
+    if known:
+        print(f"proof: {len(known)} files are as they were proved ({proved.LEDGER}): {' '.join(known)}")
+        spared = [name for name in wanted if entries[name][0] in known]
+        wanted = [name for name in wanted if name not in spared] + by_commit(spared, 1, "proof", "entries of these")
     wanted.sort(key=lambda name: name != "filter_kalman_step" and not name.startswith("law_"))  # the longest first
     with concurrent.futures.ThreadPoolExecutor(max_workers=2) as pool:
-        broken, met, reached = run_entries(pool, entries, wanted)
+        broken, seen = run_entries(pool, entries, wanted)
         failed, passed = len(broken), len(wanted) - len(broken)
         jobs = [(p, pool.submit(try_plant, i, p, entries)) for i, p in enumerate(plants)]
         for (breakage, judged_by), job in jobs:
@@ -295,9 +332,13 @@ def main():
                 finding, reason = None, "its judge fails on the unbroken code"
             print(f"breakage {'found' if finding else 'MISSED'}: {breakage.name}: {finding or reason}")
             passed, failed = passed + bool(finding), failed + (not finding)
-    for gap in [] if patterns else gaps(entries, met, reached):
-        print(gap)
-        failed += 1
+    if not patterns:
+        keep(entries, wanted, broken, seen, known)
+        for file, (_, reached, wraps) in known.items():
+            note(seen, file, reached, wraps)
+        for gap in gaps(entries, seen):
+            print(gap)
+            failed += 1
     print("skipped: 0")
     print(f"{passed} passed, {failed} failed")
     return 1 if failed else 0

@@ -14,7 +14,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
 ARCHIVES = {"filters": "lib/filters/src", "tilt": "lib/tilt/src", "adxl345": "lib/adxl345/src", "hal": "hal/host"}
 ROOMS = "firmware"  # an archive of all its folders
 FOLDERS = [*ARCHIVES.values(), f"{ROOMS}/*", "hal", "sim", "host_tests"]
-MODEL = {"adxl345_model", "stream"}
+MODEL = {"adxl345_model", "adxl345_variants", "stream"}
 # lib/nav is linked as variants with a table of functions each (mk/nav_lib.mk); test_nav_link has a rule of its own
 OWN_RULE = {"test_nav_link"}
 

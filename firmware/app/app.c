@@ -1,7 +1,7 @@
 /*
- * Data walks one way: driver -> pipeline -> rows -> UART. Commands come back the other way through this file.
- * Before the banner and the header are out, and while the baud rate changes, samples wait in the driver's queue and in
- * the sensor's FIFO: 39 of them, 48 ms at 800 Hz.
+ * Data flows one way: driver -> pipeline -> rows -> UART. Commands come back the other way through this file. Until the
+ * banner and the header are out, and while the baud rate changes, samples wait in the driver's queue and the sensor's
+ * FIFO: 39 of them, 48 ms at 800 Hz.
  */
 #include "app/app.h"
 
@@ -37,19 +37,19 @@
 #include "settings/settings_kept.h"
 #include "settings/store.h"
 
-/* A run that lasted so long has not hung again. WHOLE_LOOP: of hang_test.h. */
+/* A run that has lasted this long counts as stable. WHOLE_LOOP: see hang_test.h. */
 enum { SETTLED_S = 10, WHOLE_LOOP = 0x80 };
 
 static struct loop {
-    uint32_t pass_us; /* time at the beginning of the pass */
+    uint32_t pass_us; /* time at the start of the pass */
     uint32_t next_second_us;
-    uint16_t next_service_us; /* its low half: it is never 32 ms away */
+    uint16_t next_service_us; /* low half of the time: always less than 32 ms away */
     bool greeted;             /* banner and header are out */
-    bool row_due;             /* for the sample that the pipeline has, or had last */
-    bool look_at_rate;        /* each second, where a pass has time for it */
+    bool row_due;             /* for the sample in the pipeline, or the last one it had */
+    bool look_at_rate;        /* set each second, done when a pass has time for it */
 } loop;
 
-/* Known by its address in a register, an access to it is half as long. */
+/* With its address in a register, each access takes half the code. */
 static inline struct loop *here(void)
 {
     struct loop *l = &loop;
@@ -102,7 +102,7 @@ void app_start(void)
     start_settings();
     open_line();
     health_pause_filtering(HEALTH_HOLD_PASSES);
-    hal_drdy_enable(); /* last, so that an edge does not wait for the settings */
+    hal_drdy_enable(); /* last, so that no edge waits for the settings */
     hal_irq_enable();
     uint32_t now_us = hal_time_us();
     l->next_service_us = (uint16_t)now_us;
@@ -118,19 +118,19 @@ static void count_seconds(uint32_t now_us)
         l->next_second_us += 1000000ul;
         count(COUNT_SECONDS);
         l->look_at_rate = true;
-        if ((uint8_t)counted(COUNT_SECONDS) == SETTLED_S) { /* and again later: no harm */
+        if ((uint8_t)counted(COUNT_SECONDS) == SETTLED_S) { /* true again later, which does no harm */
             hal_reset_settled();
         }
     }
 }
 
-/* Samples are due: not while the sensor is stopped or follows a command. */
+/* Samples are expected: not while the sensor is stopped or carries out a command. */
 static bool sample_due(void)
 {
     return adxl345_fault() != ADXL345_FAULT_NONE || adxl345_interrupted() || adxl345_phase() == ADXL345_STREAMING;
 }
 
-/* Of the sample that the pipeline has, or of one that is missing, whose place it has filled. */
+/* For the sample in the pipeline, or for the missing one whose place it has filled. */
 static void write_row(void)
 {
     loop.row_due = false;
@@ -143,12 +143,12 @@ static void write_row(void)
 }
 
 /*
- * A row is out no sooner than so long after its sample is overdue, us: the sample may be on the bus, or the clock may
- * still have to look for it.
+ * Time from a sample being overdue to its predicted row at the earliest, us: the sample may be on the bus, or may still
+ * have to be fetched by the clock.
  */
 #define READ_LATE_US 2000u
 
-/* Begins the way of one that is missing: before the oldest sample, or by now where none is on its way. */
+/* Starts on a missing sample: one due before the oldest queued sample, or by the current time if none is on its way. */
 static bool fill_gap(void)
 {
     uint32_t t_us = loop.pass_us - READ_LATE_US;
@@ -163,7 +163,7 @@ static bool fill_gap(void)
     return (queued || !adxl345_sample_waits()) && coast_over(adxl345_period_us(), queued);
 }
 
-/* Begins the way of the next sample. One that is in the queue came before this pass. */
+/* Starts on the next sample. A sample in the queue came before this pass. */
 static bool next_sample(void)
 {
     if (measure_borrows()) {
@@ -175,7 +175,7 @@ static bool next_sample(void)
         if (sample == NULL) {
             return false;
         }
-        hal_wake_at(loop.pass_us - HAL_WAKE_LATE_US); /* the alarm for this sample would else call for another pass */
+        hal_wake_at(loop.pass_us - HAL_WAKE_LATE_US); /* the alarm for this sample would otherwise cause another pass */
         if (measure_sample(sample->lsb)) {
             health_sample_filtered();
             return true;
@@ -184,14 +184,14 @@ static bool next_sample(void)
         if (loop.row_due) {
             pipeline_sample(sample);
         } else {
-            health_sample_filtered(); /* its row is out already */
+            health_sample_filtered(); /* its row is already out */
         }
     }
     pipeline_flag(adxl345_marks());
     return true;
 }
 
-/* One piece of the samples' way; false: there is nothing to do. */
+/* One piece of the sample path's work; false: there is nothing to do. */
 static bool filter_samples(void)
 {
     if (HANGS(HEALTH_FILTERING)) {
@@ -212,14 +212,14 @@ static bool filter_samples(void)
     return control_follow(loop.pass_us) || next_sample();
 }
 
-/* Rows and filtering begin, or go on; what was typed meanwhile goes before the samples. */
+/* Rows and filtering start or resume; what was typed meanwhile comes before the samples. */
 static void go_on(void)
 {
     health_pause_filtering(0);
     hal_wake();
 }
 
-/* One piece of the work; false: nothing is left, or it waits. */
+/* One piece of work; false: nothing is left, or it has to wait. */
 static bool work_piece(void)
 {
     if (!loop.greeted) {
@@ -243,7 +243,7 @@ static bool work_piece(void)
     return filter_samples();
 }
 
-/* What a person or the watchdog waits for need not run for every sample. */
+/* What only a person or the watchdog waits for need not run for every sample. */
 static void service(uint32_t now_us)
 {
     struct loop *l = here();
@@ -256,8 +256,8 @@ static void service(uint32_t now_us)
 }
 
 /*
- * A row that is due and waits for a sample to be read has no moment of its own. What is further away than the alarm
- * tells apart from what is past gets another look on the way; so does a stopped driver, whose moment is past.
+ * A row that is due and waits for a sample to be read needs no alarm of its own. A time further ahead than the alarm
+ * can distinguish from the past is checked again on the way; so is the deadline of a stopped driver, which is past.
  */
 static void set_alarm(void)
 {
@@ -274,14 +274,15 @@ static void set_alarm(void)
 }
 
 /*
- * Bytes wait in the receive ring while the banner goes out, the baud rate changes, or until it is said how a save went.
+ * Bytes stay in the receive ring while the banner goes out, while the baud rate changes, and until the result of a save
+ * is reported.
  */
 static bool takes_commands(void)
 {
     return loop.greeted && !control_line_waits() && !notices_hold(NOTICE_SAVED, NOTICE_SAVED);
 }
 
-/* Commands, samples, replies, while the pass has time; out of time, another pass follows. */
+/* Commands, samples, replies, while the pass has time; if time runs out, another pass follows. */
 static void serve(void)
 {
     if (pass_in_time() && !(takes_commands() && commands_pass() && !pass_in_time())) {
@@ -300,7 +301,7 @@ void app_pass(void)
     uint32_t now_us = hal_time_us();
     loop.pass_us = now_us;
     if ((int16_t)(uint16_t)((uint16_t)now_us - loop.next_service_us) >= 0) {
-        service(now_us); /* while no sample has come that is not filtered */
+        service(now_us); /* before the poll: no unfiltered sample has come yet */
     }
     if (!HANGS(HEALTH_SAMPLING)) {
         adxl345_poll(now_us);

@@ -1,4 +1,4 @@
-/* The firmware's entry. */
+/* The firmware's entry point. */
 #include "app/app.h"
 
 int main(void)

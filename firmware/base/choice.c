@@ -1,4 +1,4 @@
-/* Shipped parameters with the user's on top; see choice.h. */
+/* The shipped parameters, overridden by the user's; see choice.h. */
 #include "base/choice.h"
 
 _Static_assert((int)FILTER_PARAMETERS_MAX <= (int)CHOICE_PARAMETERS_MAX, "room for a filter's parameters");
@@ -9,8 +9,8 @@ const filter_law_t *choice_law(const filter_choice_t *choice)
 }
 
 /*
- * False: the filter does not take what the user wants, as where it was set beside what another rate has; then all are
- * as shipped.
+ * False: the filter refuses the user's parameters, for example ones that were set at a rate with other defaults; then
+ * all are as shipped.
  */
 static bool configure(const filter_choice_t *choice, filter_config_t *config, filter_kind_t kind, uint16_t rate_dhz)
 {
@@ -46,7 +46,7 @@ void choice_begin(const filter_choice_t *choice, filter_t *f, filter_kind_t kind
 {
     filter_config_t config;
     (void)configure(choice, &config, kind, rate_dhz);
-    (void)filter_init(f, filter_listed(kind), &config); /* judged there */
+    (void)filter_init(f, filter_listed(kind), &config); /* configure has judged it */
 }
 
 uint32_t choice_r_lsb2_q8(const filter_choice_t *choice)

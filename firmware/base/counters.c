@@ -1,4 +1,4 @@
-/* Counters that never wrap. */
+/* Counters that saturate. */
 #include "base/counters.h"
 
 #include "machine.h"

@@ -1,4 +1,4 @@
-/* What happened how often since the start, for `status`; each stays at its greatest value. Main only. */
+/* Events counted since the start, for `status`; each counter saturates. Main only. */
 #ifndef COUNTERS_H
 #define COUNTERS_H
 
@@ -8,27 +8,27 @@
 enum counter {
     COUNT_SECONDS, /* since the start */
     COUNT_SAMPLES,
-    COUNT_GATED,      /* samples that a filter refused, on any axis */
+    COUNT_GATED,      /* samples that a filter's gate refused, on any axis */
     COUNT_REACQUIRED, /* samples on which a filter restarted */
     COUNT_CLIPPED,
     COUNT_ROWS,
-    COUNT_DROPPED, /* rows for which the line had no room */
-    COUNT_HELD,    /* rows that waited for a person who reads */
+    COUNT_DROPPED, /* rows that did not fit into the transmit ring */
+    COUNT_HELD,    /* rows held back for a person who is reading */
     COUNT_REFUSED, /* lines: too long, garbage, unknown, illegal value */
-    COUNT_LOST,    /* samples that did not come */
-    COUNT_LATE,    /* samples that came when their rows were out */
+    COUNT_LOST,    /* samples that are missing */
+    COUNT_LATE,    /* samples that came after their rows were out */
     COUNTERS
 };
 
 void counters_start(void);
 
-/* How many so far of a kind (enum counter). */
+/* The current count of a kind (enum counter). */
 uint32_t counted(uint8_t what);
 
-/* One more of a kind. */
+/* Adds one to a kind. */
 void count(uint8_t what);
 
-/* So many samples are missing. */
+/* Adds missing samples. */
 void count_lost(uint32_t missing);
 
 #endif

@@ -1,11 +1,11 @@
-/* Decimal text; see format.h. The last two digits are done in 8 bits, the next ones in 16, only the rest in 32. */
+/* Decimal text; see format.h. The last two digits are done in 8 bits, the next in 16, only the rest in 32. */
 #include "base/format.h"
 
 #include "machine.h"
 
 static const uint32_t powers[] IN_FLASH = { 1000000000ul, 100000000ul, 10000000ul, 1000000ul, 100000ul, 10000ul };
 
-/* How often `power` goes into *value, as a digit; *value keeps the rest. */
+/* How often `power` goes into *value, as a digit; leaves the remainder in *value. */
 MACHINE_INLINE char take_digit(uint16_t *value, uint16_t power)
 {
     char digit = '0';

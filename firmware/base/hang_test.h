@@ -1,6 +1,7 @@
 /*
- * Test images only (HANG_TEST=1): a byte whose bits stop single stages of the main loop, set by the test, to show that
- * the watchdog notices each of them alone. In the shipped image the tests below are constant and vanish.
+ * Test images only (HANG_TEST=1): the bits of a byte, set by the test, stop single stages of the main loop, to show
+ * that the watchdog notices each of them alone. In the shipped image the tests below are constant and are optimised
+ * out.
  */
 #ifndef HANG_TEST_H
 #define HANG_TEST_H

@@ -1,4 +1,4 @@
-/* Who has checked in since the last feed. */
+/* Which stages have checked in since the last feed. */
 #include "base/health.h"
 
 #include <stdbool.h>
@@ -10,17 +10,17 @@
 #include "hal_watchdog.h"
 #include "machine.h"
 
-/* A poll at the deadline moves it; one that finds it this long past shows that the driver does not. */
+/* A poll at the deadline moves it; a deadline that is past by this much shows that the driver hangs. */
 #define POLL_GRACE_US 20000ul
 
 /*
- * What hung so often in a row, each time within ten seconds of its start, hangs again: it gets the lowest rate, at
- * which the processor has most time for everything else. Saved settings are left alone.
+ * After this many hangs in a row, each within ten seconds of its start, the next is to be expected: the run gets the
+ * lowest rate, at which the processor has most time for everything else. Saved settings are left alone.
  */
 enum { RESETS_TO_SAFE = 3 };
 
 #if HANG_TEST
-volatile uint8_t hang_stages; /* the simulator writes it by its name */
+volatile uint8_t hang_stages; /* the simulator writes it by name */
 
 volatile uint8_t *hang_stages_here(void)
 {
@@ -29,13 +29,13 @@ volatile uint8_t *hang_stages_here(void)
 #endif
 
 static struct health {
-    uint8_t pause_passes; /* of health_pass that filtering may still rest */
+    uint8_t pause_passes; /* calls of health_pass for which filtering may still pause */
     uint8_t checked_in;
     uint8_t tx_sent_seen;
     bool polled;
 } health;
 
-/* Known by its address in a register, an access to it is half as long. */
+/* With its address in a register, each access takes half the code. */
 static inline struct health *here(void)
 {
     struct health *h = &health;

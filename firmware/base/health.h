@@ -1,9 +1,10 @@
 /*
- * The watchdog's one feeding place. Each stage checks in; the dog is fed only when all have since the last time:
+ * The only place that feeds the watchdog. Each stage checks in; the watchdog is fed only when all have done so since
+ * the last feed:
  *   sampling   the driver was polled, and is stopped or in a named state whose own deadline has not passed
  *   filtering  the queue got shorter or is empty, or a named pause is not over
- *   output     the transmit ring moved on, or nothing is due
- * What is still missing is noted, so that a watchdog reset can say which stage hung. Main only.
+ *   output     the transmit ring has advanced, or nothing is due
+ * Missing stages are noted, so that a watchdog reset can report which one hung. Main only.
  */
 #ifndef HEALTH_H
 #define HEALTH_H
@@ -11,7 +12,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Of health_pass, 1 s: the banner at 9600 baud takes 0.4 s; the ring at 9600 baud drains in 0.27 s. */
+/* Calls of health_pass, 1 s: the banner at 9600 baud takes 0.4 s; the ring at 9600 baud drains in 0.27 s. */
 #define HEALTH_PASS_US 4000u
 enum { HEALTH_HOLD_PASSES = 250 };
 
@@ -19,17 +20,19 @@ enum health_stage { HEALTH_SAMPLING = 1, HEALTH_FILTERING = 2, HEALTH_OUTPUT = 4
 
 void health_start(void);
 
-/* The watchdog brought so many resets in a row that this run begins with safe settings, and it has not lasted yet. */
+/* There were so many watchdog resets in a row that this run started with safe settings, and it is not stable yet. */
 bool health_is_safe(void);
 
 /* The stages report progress as it happens. */
 void health_driver_polled(void);
 void health_sample_filtered(void);
 
-/* Filtering pauses on purpose for so many of the passes below at most (a change of the baud rate); 0: no longer. */
+/*
+ * Filtering pauses on purpose for at most this many calls of health_pass (a change of the baud rate); 0 ends the pause.
+ */
 void health_pause_filtering(uint8_t passes);
 
-/* To be called every HEALTH_PASS_US, which a person does not notice. */
+/* Call every HEALTH_PASS_US, a delay that a person does not notice. */
 void health_pass(uint32_t now_us);
 
 #endif

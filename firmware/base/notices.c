@@ -1,4 +1,4 @@
-/* A short queue: what does not fit is posted again by who wants it said. */
+/* A short queue: whoever finds it full posts the notice again. */
 #include "base/notices.h"
 
 enum { QUEUE_LENGTH = 8 };

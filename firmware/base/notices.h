@@ -1,6 +1,6 @@
 /*
- * What is to be said on lines that begin with '#': the banner, answers to commands, faults. Any room posts a notice;
- * the console takes them in their order and finds the words (console/speaker.h). Main only.
+ * What is to be reported in lines that begin with '#': the banner, replies to commands, faults. Any room posts a
+ * notice; the console takes them in order and finds the texts (console/speaker.h). Main only.
  */
 #ifndef NOTICES_H
 #define NOTICES_H
@@ -9,10 +9,10 @@
 #include <stdint.h>
 
 typedef enum {
-    NOTICE_BANNER, /* who we are, reset cause, how to get help; ends with the csv header */
+    NOTICE_BANNER, /* name and version, reset cause, how to get help; ends with the csv header */
     NOTICE_STOPPED,
     NOTICE_GOING,
-    NOTICE_SAVED, /* waits until the save is over, and reports how it went */
+    NOTICE_SAVED, /* waits until the save is over, then reports its result */
     NOTICE_LOADED,
     NOTICE_DEFAULTS,
     NOTICE_ODR,
@@ -22,16 +22,16 @@ typedef enum {
     NOTICE_CAL,
     NOTICE_CAL6,
     NOTICE_VERSION,
-    NOTICE_HELP, /* from here to LISTING many lines, for a person to read */
+    NOTICE_HELP, /* from here to LISTING: many lines, for a person to read */
     NOTICE_STATUS,
-    NOTICE_LISTING,  /* all settings, with what is legal; the last of the commands' names */
-    NOTICE_SETTING,  /* argument: which of settings_table.h, with NOTICE_CHANGED after it was set */
-    NOTICE_ILLEGAL,  /* argument: which of settings_table.h */
-    NOTICE_TOO_SLOW, /* settings_cycles */
+    NOTICE_LISTING,  /* all settings with their legal values; the last of the commands' names */
+    NOTICE_SETTING,  /* argument: index in settings_table.h, with NOTICE_CHANGED if it was set */
+    NOTICE_ILLEGAL,  /* argument: index in settings_table.h */
+    NOTICE_TOO_SLOW, /* numbers: settings_cycles */
     NOTICE_UNKNOWN,  /* no such command */
-    NOTICE_TOO_LONG, /* a line that is too long, or has characters that no command has */
+    NOTICE_TOO_LONG, /* too long; GARBAGE: with characters that no command has */
     NOTICE_GARBAGE,
-    NOTICE_BUSY,        /* not while a measurement runs */
+    NOTICE_BUSY,        /* refused while a measurement runs */
     NOTICE_FAULT_BEGIN, /* argument: adxl345_fault_t */
     NOTICE_FAULT_END
 } notice_kind_t;
@@ -46,22 +46,22 @@ typedef struct {
 /* Queues a notice; false when the queue is full (nothing is queued). */
 bool notices_add(notice_kind_t kind, uint8_t argument);
 
-/* Room for one more. */
+/* There is room for one more. */
 bool notices_room(void);
 
-/* A notice from the first kind to the last has not been said yet. */
+/* A notice of a kind from first to last has not been printed yet. */
 bool notices_hold(notice_kind_t first, notice_kind_t last);
 
-/* All have been said. */
+/* All have been printed. */
 bool notices_empty(void);
 
-/* The oldest, to be read while they are not empty. */
+/* The oldest notice, while there is one. */
 const notice_t *notices_oldest(void);
 
-/* The oldest has been said. */
+/* Removes the oldest notice, which has been printed. */
 void notices_drop(void);
 
-/* Forgets everything queued. */
+/* Empties the queue. */
 void notices_start(void);
 
 #endif

@@ -4,21 +4,21 @@
 #include "base/text.h"
 #include "machine.h"
 
-/* value / 2^bits, the one place for it: written out each would be a loop of its own. */
+/* value / 2^bits, in one place: each shift written out would be a loop of its own. */
 static MACHINE_APART uint32_t down(uint32_t value, uint8_t bits)
 {
     return value >> bits;
 }
 
-/* A number as far as its text was read. */
+/* A number as far as it has been read. */
 typedef struct {
-    uint32_t limit;   /* for the digits, so that they can be shifted */
-    uint32_t digits;  /* with those after the point */
-    uint16_t divisor; /* 10 to the number of decimals, once the point was seen; else 0 */
-    bool whole;       /* it may end here: after a digit */
+    uint32_t limit;   /* of the digits, so that they can be shifted */
+    uint32_t digits;  /* including those after the point */
+    uint16_t divisor; /* 10 to the number of decimals once the point has been read; else 0 */
+    bool whole;       /* may end here: after a digit */
 } reading_t;
 
-/* False: the character does not go on with the number. */
+/* False: the character does not continue the number. */
 static bool take(reading_t *n, char c, bool point)
 {
     if (c == '.' && point && n->whole && n->divisor == 0) {

@@ -1,4 +1,4 @@
-/* Text for the replies: clear rather than fast. Data rows are composed with format.h. */
+/* Text for replies: clear rather than fast. Data rows use format.h. */
 #include "base/text.h"
 
 #include "base/format.h"

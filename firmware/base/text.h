@@ -1,6 +1,6 @@
 /*
- * Lines of text straight into the UART's transmit ring: text_open reserves, the others append, text_close ends the line
- * and hands it over whole. Main only.
+ * Writes lines of text directly into the UART's transmit ring: text_open checks the room, the others append, text_close
+ * ends the line and commits it whole. Main only.
  */
 #ifndef TEXT_H
 #define TEXT_H
@@ -10,12 +10,12 @@
 
 #include "machine.h"
 
-/* Longest line that anything here writes, end of line included; a program of all fourteen filters has a longer one. */
+/* Longest line that anything here writes, line end included; a program with all fourteen filters has a longer one. */
 #ifndef TEXT_LINE_MAX
 #define TEXT_LINE_MAX 128u
 #endif
 
-/* True when a line of up to `length` bytes fits now; then append and close. Nothing is staged when false. */
+/* A line of up to `length` bytes fits: then append and close. Nothing is staged if false. */
 bool text_open(uint8_t length);
 void text_close(void);
 
@@ -25,13 +25,13 @@ void text_ram(const char *words);
 void text_u32(uint32_t value);
 void text_hex8(uint8_t value);
 
-/* value / 10, the decimal only when it is not 0: 125 gives 12.5, 1000 gives 100. */
+/* value / 10, with the decimal only if it is not 0: 125 gives 12.5, 1000 gives 100. */
 void text_tenths(uint16_t value);
 
-/* Of texts that follow each other, each with its end, the one after so many. */
+/* Skips `after` texts of a sequence, each with its terminator, and returns the next. */
 flash_text_t text_nth(flash_text_t texts, uint8_t after);
 
-/* The text in RAM, as typed: without capitals, is that of the words, which may have some. */
+/* `ram`, typed in lower case, equals `words`, which may have capitals. */
 bool text_equal(const char *ram, flash_text_t words);
 
 #endif

@@ -1,4 +1,4 @@
-/* Lines and their first words. What a setting takes is settings_table.c's, what a command does control.c's. */
+/* Lines and their first words. settings_table.c decides what a setting accepts, control.c what a command does. */
 #include "console/commands.h"
 
 #include <stdbool.h>
@@ -19,7 +19,7 @@
 
 static char line[COMMANDS_LINE_MAX + 1u];
 static uint8_t length;
-static uint8_t wrong; /* with the line: NOTICE_TOO_LONG, NOTICE_GARBAGE, or 0 */
+static uint8_t wrong; /* what is wrong with the line: NOTICE_TOO_LONG, NOTICE_GARBAGE, or 0 */
 
 void commands_start(void)
 {
@@ -51,7 +51,7 @@ static void run_setting(uint8_t which, const char *value)
     answer((uint8_t)(NOTICE_SETTING + taken), which);
 }
 
-/* The reply kind of a command's name; NOTICE_BANNER when it is none. */
+/* The notice kind of a command's name; NOTICE_BANNER if it is not a command. */
 static uint8_t command_named(const char *name)
 {
     if (name[0] == '?' && name[1] == '\0') {
@@ -64,7 +64,7 @@ static uint8_t command_named(const char *name)
     return kind;
 }
 
-/* The text after the first blanks, NULL when there is none; the name before it is cut off (a blank becomes the end). */
+/* The text after the first blanks, NULL if there is none; terminates the name before it (a blank becomes the end). */
 static char *split_value(void)
 {
     char *at = line;
@@ -83,7 +83,7 @@ static char *split_value(void)
     return at;
 }
 
-/* The reply: that of the verb, or why it is refused. */
+/* Runs a verb and returns the kind of its reply, or why it is refused. */
 static uint8_t run_verb(uint8_t verb)
 {
     switch (verb) {
@@ -130,7 +130,7 @@ static void run_line(void)
     }
 }
 
-/* A line typed ends the hold of rows, unless it asks for another listing. */
+/* A typed line ends the hold of rows, unless it asks for another listing. */
 static void end_line(void)
 {
     while (length != 0 && line[length - 1u] == ' ') {
@@ -159,9 +159,7 @@ static void take_byte(uint8_t byte)
     }
 }
 
-/*
- * Not while a reply waits that reports what the next command may change, or is so long that the line is not free soon.
- */
+/* Not while a reply waits that reports what the next command may change, or that keeps the line busy for long. */
 static bool commands_wanted(void)
 {
     return notices_room() && !notices_hold(NOTICE_HELP, NOTICE_TOO_SLOW);

@@ -1,4 +1,4 @@
-/* Serial commands: one line each, NAME VALUE sets, NAME shows, verbs stand alone. Main only. */
+/* Serial commands, one per line: NAME VALUE sets, NAME shows, verbs have no value. Main only. */
 #ifndef COMMANDS_H
 #define COMMANDS_H
 
@@ -10,8 +10,8 @@
 void commands_start(void);
 
 /*
- * Takes received bytes while the pass has time, one at least; runs at most one complete line, and only while there is
- * room for its reply. True: it has run one. Not to be called while a save runs or the baud rate is to change: the bytes
+ * Takes received bytes while the pass has time, at least one; runs at most one complete line, and only if there is room
+ * for its reply. True: it has run one. Do not call while a save is running or the baud rate is to change: the bytes
  * wait in the receive ring.
  */
 bool commands_pass(void);

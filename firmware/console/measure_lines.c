@@ -1,4 +1,4 @@
-/* The numbers and verdicts of measurements; the words around them are in reply_texts.h. */
+/* The numbers and verdicts of measurements; the texts around them are in reply_texts.h. */
 #include "console/measure_lines.h"
 
 #include "console/reply_texts.h"
@@ -7,19 +7,19 @@
 #include "tilt.h"
 
 /*
- * At 3.3 V: 50..540 LSB (x; y the other way) and 75..875 LSB (z) at 2.5 V, times 1.77 and 1.47 (data sheet p. 31,
- * tables 14 and 15), are 88.5..955.8 and 110.25..1286.25 LSB.
+ * At 3.3 V: 50..540 LSB (x; y with the opposite sign) and 75..875 LSB (z) at 2.5 V, times 1.77 and 1.47 (data sheet p.
+ * 31, tables 14 and 15), are 88.5..955.8 and 110.25..1286.25 LSB.
  */
 enum { LEAST_XY_Q4 = 1416, GREATEST_XY_Q4 = 15293, LEAST_Z_Q4 = 1764, GREATEST_Z_Q4 = 20580 };
 
-/* In the direction in which the force is to act: against y. */
+/* The shift in the direction in which the force should act: against y. */
 static int16_t shift_q4(uint8_t axis)
 {
     int16_t lsb_q4 = measure_result_lsb_q4(axis);
     return axis == 1 ? (int16_t)-lsb_q4 : lsb_q4;
 }
 
-/* A shift that is too great is "not necessarily a failure" (p. 22). */
+/* Too large a shift is "not necessarily a failure" (p. 22). */
 uint8_t measure_verdict(uint8_t axis)
 {
     int16_t shift = shift_q4(axis);
@@ -31,8 +31,8 @@ uint8_t measure_verdict(uint8_t axis)
 }
 
 /*
- * The root of a variance V in Q8, below 2^22, is that of 256 V in Q8; R is what the filters reckon of it (noise.h),
- * 1.5 V. A rate in 0.01 Hz, below 2^17, is 10 / rate_dhz % of the nominal one.
+ * The rms in Q8 of a variance V in Q8, below 2^22, is the integer root of 256 V; R is what the filters make of it
+ * (noise.h), 1.5 V. A rate in 0.01 Hz, below 2^17, times 10 / rate_dhz is its percentage of the nominal one.
  */
 int32_t measure_number_q8(uint8_t what, uint8_t axis)
 {

@@ -1,4 +1,4 @@
-/* Which text of reply_texts.h answers, what it is about, and how far it is out. */
+/* Selects the text of reply_texts.h for a reply, what it is about, and keeps track of how far it is out. */
 #include "console/reply_lines.h"
 
 #include <stdbool.h>
@@ -19,12 +19,12 @@ _Static_assert(TEXT_FAULT_END - TEXT_BANNER == (int)NOTICE_FAULT_END, "a text fo
 _Static_assert(TEXT_REPEATED - TEXT_HOLD_STILL == MEASURE_REPEATED - MEASURE_BEGUN, "words for each outcome");
 _Static_assert(TEXT_NO_GRAVITY - TEXT_TILTED == CALIBRATION_NO_GRAVITY - CALIBRATION_TILTED, "words for each verdict");
 
-/* Texts that continue another: the banner, FAULT_BEGIN in it, the fault's words in that, which end in CHECK_BUS. */
+/* Nested texts: FAULT_BEGIN in the banner, the fault's words in that, CHECK_BUS at the end of those. */
 enum { TEXTS_DEPTH = 3 };
 
-static const uint8_t *at; /* where the reply goes on */
+static const uint8_t *at; /* where the reply continues */
 static said_t said;
-static uint8_t again; /* how often the line comes again */
+static uint8_t again; /* how often the line still repeats */
 
 static uint8_t setting_text(void)
 {
@@ -42,16 +42,16 @@ static uint8_t setting_text(void)
     }
 }
 
-/* The results by axis, the vectors that are new, or why there is no result. */
+/* The results by axis, the new vectors, or why there is no result. */
 static uint8_t measured_text(uint8_t kind)
 {
     uint8_t outcome = said.subject;
     if (outcome == MEASURE_WRONG) {
-        said.subject = calibrate_told()->verdict.where;
-        return (uint8_t)(TEXT_TILTED - CALIBRATION_TILTED + calibrate_told()->verdict.why);
+        said.subject = calibrate_report()->verdict.where;
+        return (uint8_t)(TEXT_TILTED - CALIBRATION_TILTED + calibrate_report()->verdict.why);
     }
     if (outcome != MEASURE_DONE) {
-        said.subject = outcome == MEASURE_BEGUN ? kind : calibrate_told()->position;
+        said.subject = outcome == MEASURE_BEGUN ? kind : calibrate_report()->position;
         return (uint8_t)(TEXT_HOLD_STILL - MEASURE_BEGUN + outcome);
     }
     said.subject = kind < NOTICE_TARE ? 0 : kind == NOTICE_TARE ? SETTING_LEVEL : SETTING_OFFSET;
@@ -87,7 +87,7 @@ static uint8_t text_of(uint8_t kind)
     return (uint8_t)(TEXT_BANNER + kind);
 }
 
-/* Begins a line, or waits. The very first ends one that a reset has cut. */
+/* Starts a line, or waits. The very first one ends a line that a reset has cut. */
 static bool begin_line(bool very_first)
 {
     uint8_t code = flash_u8(at);
@@ -100,7 +100,7 @@ static bool begin_line(bool very_first)
     return true;
 }
 
-/* What ends a line; true: another follows. */
+/* Evaluates the code at the end of a line; true: another line follows. */
 static bool goes_on(uint8_t code)
 {
     if (code == SAY_LINE_IF_FORCED) {
@@ -109,10 +109,10 @@ static bool goes_on(uint8_t code)
     return code == SAY_LINE || (code == SAY_LINE_IF_CSV && settings()->mode == MODE_CSV);
 }
 
-/* Texts that are being unpacked. */
+/* Texts being unpacked. */
 typedef struct {
     const uint8_t *from;
-    const uint8_t *outer[TEXTS_DEPTH]; /* where those go on in which a text stands */
+    const uint8_t *outer[TEXTS_DEPTH]; /* where the enclosing texts continue */
     uint8_t seconds[REPLY_PAIRS_DEPTH];
     uint8_t texts;
     uint8_t pairs;
@@ -126,7 +126,7 @@ static void open_text(unpacking_t *u, uint8_t text)
     }
 }
 
-/* The next byte of the line; 0: there is none. */
+/* The next byte of the line; 0: there is no more. */
 static uint8_t next_code(unpacking_t *u)
 {
     while (u->pairs == 0 && u->texts != 0 && flash_u8(u->from) == 0) {
@@ -140,7 +140,7 @@ static uint8_t next_code(unpacking_t *u)
     return code;
 }
 
-/* The rest of the line; false: it was the last. */
+/* Writes the rest of the line; false: it was the last. */
 static bool write_line(void)
 {
     unpacking_t u;

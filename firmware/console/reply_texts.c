@@ -1,4 +1,4 @@
-/* The texts as reply_packed.h has them, and the names of the commands, which are compared too and so are not packed. */
+/* The texts as packed in reply_packed.h, and the names of the commands, which are also compared and so not packed. */
 #include "console/reply_texts.h"
 
 #include "base/notices.h"

@@ -1,6 +1,6 @@
 /*
- * All the words of the replies. A byte below ' ' or from 0x7F on is one of enum say: a value, or another text in its
- * place. Each line gets "# " in front. Main only.
+ * All texts of the replies. A byte below ' ' or from 0x7F on is one of enum say: a value, or another text to insert.
+ * Each line is preceded by "# ". Main only.
  */
 #ifndef REPLY_TEXTS_H
 #define REPLY_TEXTS_H
@@ -9,7 +9,7 @@
 
 #include "console/version.h"
 
-/* The bytes of enum say, to be written between the words. */
+/* The bytes of enum say, to be placed between the words. */
 #define V_COUNT "\x01"
 #define V_SERIAL_LOST "\x02"
 #define V_CYCLES "\x03"
@@ -62,75 +62,75 @@
 #define V_AGAIN "\x8E"
 
 /*
- * From SAY_ALONE on, above the characters that texts have, not packed with others: what goes on in another text, and
- * from SAY_LINE on what ends a line, in texts of lines only.
+ * From SAY_ALONE on, above the characters used in texts, codes are not packed with others: those that continue in
+ * another text and, from SAY_LINE on, those that end a line, which occur only in texts of whole lines.
  */
 enum say {
-    SAY_COUNT = 1, /* numbers: the next of the counters of the firmware, then of the driver */
+    SAY_COUNT = 1, /* numbers: the next counter of the firmware, then of the driver */
     SAY_SERIAL_LOST,
-    SAY_CYCLES, /* that the filter would take, and that are left for it */
+    SAY_CYCLES, /* cycles that the filter would take, and those left for it */
     SAY_LEFT,
     SAY_RESIDUAL,  /* of cal6, mg */
-    SAY_TO_GO,     /* how many positions are not known yet */
-    SAY_RUN_NOTE,  /* what the run before the reset left */
-    SAY_OUTAGE_MS, /* how long the last fault was, and how many samples are missing of its time */
+    SAY_TO_GO,     /* how many positions are still missing */
+    SAY_RUN_NOTE,  /* the note of the run before the reset */
+    SAY_OUTAGE_MS, /* how long the last fault lasted, and how many samples it cost */
     SAY_OUTAGE_LOST,
     SAY_SUBJECT, /* what the line is about: a fault's code */
     SAY_LAST_NUMBER = SAY_SUBJECT,
     SAY_ADDRESS,         /* hexadecimal: of the sensor */
-    SAY_OUTAGE_ADDRESS,  /* where the sensor was when the last fault was over */
-    SAY_FOREIGN_ADDRESS, /* of a device that is no ADXL345, and what it reads as DEVID */
+    SAY_OUTAGE_ADDRESS,  /* where the sensor was when the last fault ended */
+    SAY_FOREIGN_ADDRESS, /* of a device that is not an ADXL345, and what it reads as DEVID */
     SAY_FOREIGN_ID,
     SAY_LAST_HEXADECIMAL = SAY_FOREIGN_ID,
-    SAY_SHIFT, /* in Q8, of the line's axis: by the self-test */
+    SAY_SHIFT, /* in Q8, for the line's axis: by the self-test */
     SAY_RMS,
     SAY_R,
-    SAY_OFF, /* how far the measured rate is from the nominal one, % */
+    SAY_OFF, /* deviation of the measured rate from the nominal one, % */
     SAY_LAST_Q8 = SAY_OFF,
     SAY_NAME,         /* of the command that the line is about */
     SAY_SETTING_NAME, /* of the setting that the line is about */
     SAY_SETTING,      /* its name, value and unit */
     SAY_LEGAL,        /* its legal values */
-    SAY_SETTINGS,     /* those of the banner */
+    SAY_SETTINGS,     /* those in the banner */
     SAY_VERBS,        /* all commands */
     SAY_RATE,         /* Hz, nominal and measured */
     SAY_MEASURED,
     SAY_BUS_KHZ,
-    SAY_POSITION, /* of cal6: which of the sensor's axes points up */
+    SAY_POSITION, /* of cal6: the sensor's axis that points up */
     SAY_AXIS,     /* of measurements */
-    SAY_CHOICES,  /* those of the supervisor, where it is in force */
+    SAY_CHOICES,  /* those of the supervisor, if it is in force */
     SAY_ALONE = 0x7B,
     SAY_CAUSE = SAY_ALONE, /* texts: of a reset */
-    SAY_SAFE,              /* on safe settings, if they are in force */
+    SAY_SAFE,              /* safe settings, if they are in force */
     SAY_STATE,             /* phase of the driver */
-    SAY_KEPT,              /* what the settings began as */
+    SAY_KEPT,              /* where the settings come from */
     SAY_LIMITS,            /* of the self-test */
     SAY_VERDICT,           /* on the line's axis */
     SAY_FAULT_WORDS,
-    SAY_SETTING_NOTE, /* what is printed after a setting's value */
-    SAY_EVERY,        /* that setting, after another */
-    SAY_SENSOR,       /* at the start of a line: its address, or what is wrong with it; waits until that is known */
-    SAY_LISTED,       /* from here to KEEP each in the text of this name */
+    SAY_SETTING_NOTE, /* printed after a setting's value */
+    SAY_EVERY,        /* the setting `every`, after another setting */
+    SAY_SENSOR,       /* at the start of a line: the sensor's address or its fault; waits until it is known */
+    SAY_LISTED,       /* from here to KEEP: the text of the same name */
     SAY_HEADER,       /* at the start of a line, without "# " */
     SAY_BUS,
     SAY_CHECK_BUS,
     SAY_WHO,
     SAY_KEEP,
-    SAY_LINE,           /* here the line ends and another follows */
-    SAY_LINE_IF_FORCED, /* ... if another `every` is in force than was asked for; else this was the last */
-    SAY_LINE_IF_CSV,    /* ... if that is the mode */
-    SAY_AGAIN,          /* the line comes again for the next subject, as often as wanted */
-    SAY_PAIR            /* pairs of packed texts from here on */
+    SAY_LINE,           /* the line ends here and another follows */
+    SAY_LINE_IF_FORCED, /* ... if the `every` in force is not the requested one; else this was the last */
+    SAY_LINE_IF_CSV,    /* ... if the mode is csv */
+    SAY_AGAIN,          /* the line repeats for the next subject, as often as needed */
+    SAY_PAIR            /* from here on pairs of packed texts */
 };
 
-/* The commands as typed, one for each notice_kind_t from NOTICE_STOPPED on, in its order. */
+/* The commands as typed, one for each notice_kind_t from NOTICE_STOPPED on, in the same order. */
 #define REPLY_NAMES \
     "stop\0go\0save\0load\0defaults\0odr\0noise\0selftest\0tare\0cal\0cal6\0version\0help\0status\0settings"
 
 /*
- * One text for each notice_kind_t, in its order; then the others, those that belong together in their order. They are
- * packed into program memory by tools/pack_texts.py (reply_packed.h). Not formatted: aligned ends of the lines would
- * all change with the longest.
+ * One text for each notice_kind_t, in the same order; then the others, related ones in the order of their enum.
+ * tools/pack_texts.py packs them into program memory (reply_packed.h). Not formatted: the aligned line ends would all
+ * change with the longest.
  */
 /* clang-format off */
 #define REPLY_TEXTS(X) \
@@ -247,13 +247,13 @@ enum say {
 enum reply_text { REPLY_TEXTS(REPLY_TEXT_ID) TEXT_NONE };
 #undef REPLY_TEXT_ID
 
-/* So many second bytes of pairs wait at most while the first one is a pair again. */
+/* At most this many second bytes of pairs wait while the first one is a pair again. */
 enum { REPLY_PAIRS_DEPTH = 16 };
 
-/* The bytes of a text, packed, in program memory; 0 ends them. */
+/* The bytes of a text, packed, in program memory; terminated by 0. */
 const uint8_t *reply_text(uint8_t text);
 
-/* What a code from SAY_PAIR on stands for, the first byte or the second: such a code again, or a byte of the text. */
+/* The first or second byte that a code from SAY_PAIR on represents: another such code, or a byte of the text. */
 uint8_t reply_pair(uint8_t code, uint8_t half);
 
 #endif

@@ -1,4 +1,4 @@
-/* Texts of replies with the values in them. */
+/* Writes the texts of replies with the values in them. */
 #include "console/reply_said.h"
 
 #include "adxl345.h"
@@ -62,9 +62,9 @@ static uint32_t number(said_t *said, uint8_t what)
     case SAY_LEFT:
         return settings_cycles()->left;
     case SAY_RESIDUAL:
-        return calibrate_told()->residual_mg;
+        return calibrate_report()->residual_mg;
     case SAY_TO_GO:
-        return calibrate_told()->left;
+        return calibrate_report()->left;
     case SAY_RUN_NOTE:
         return hal_reset_note();
     case SAY_OUTAGE_MS:
@@ -90,7 +90,7 @@ static uint8_t hexadecimal(uint8_t what)
     }
 }
 
-/* Those of the banner. */
+/* The settings in the banner. */
 static void say_settings(void)
 {
     for (uint8_t which = SETTING_FILTER; which <= SETTING_BAUD; which++) {
@@ -111,7 +111,7 @@ static void say_verbs(void)
     }
 }
 
-/* What is printed after a setting's value. */
+/* The text printed after a setting's value. */
 static uint8_t note(said_t *said)
 {
     if (said->subject == SETTING_RATE) {
@@ -123,7 +123,7 @@ static uint8_t note(said_t *said)
     return TEXT_NONE;
 }
 
-/* A text that is one of several. */
+/* A text chosen from several. */
 static uint8_t text_chosen(said_t *said, uint8_t what)
 {
     switch (what) {
@@ -154,7 +154,7 @@ static uint8_t text_chosen(said_t *said, uint8_t what)
     }
 }
 
-/* What is neither a text nor one of many numbers. */
+/* Codes that are neither a text nor one of many numbers. */
 static void say_other(said_t *said, uint8_t what)
 {
     switch (what) {
@@ -182,7 +182,7 @@ static void say_other(said_t *said, uint8_t what)
     case SAY_MEASURED:
         say_hundredths(adxl345_rate_chz());
         break;
-    case SAY_BUS_KHZ: /* 800 Hz needs 400, where tLOW is 1.25 us instead of the 1.3 us of both data sheets */
+    case SAY_BUS_KHZ: /* 800 Hz needs 400 kHz, where tLOW is 1.25 us instead of the 1.3 us of both data sheets */
         text_tenths(settings()->rate_dhz == 8000 ? 4000 : 3636);
         break;
     case SAY_POSITION:

@@ -1,4 +1,4 @@
-/* When a line may go out. The words are in reply_lines.c. */
+/* When a line may go out. The texts are in reply_lines.c. */
 #include "console/speaker.h"
 
 #include "base/notices.h"
@@ -7,9 +7,9 @@
 #include "output/rows.h"
 #include "settings/settings.h"
 
-static bool begun; /* the oldest notice: a line of it is out */
+static bool begun; /* a line of the oldest notice is out */
 
-/* A reply of many lines, which a person is to see whole. */
+/* A reply of many lines, which a person should see whole. */
 static bool is_read(uint8_t kind)
 {
     return kind >= NOTICE_HELP && kind <= NOTICE_LISTING;

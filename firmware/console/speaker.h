@@ -1,6 +1,4 @@
-/*
- * Says the notices, one line at a time, when the line has room beside a data row: they never push a row out. Main only.
- */
+/* Prints the notices, one line at a time, when there is room for it and a data row: no row is displaced. Main only. */
 #ifndef SPEAKER_H
 #define SPEAKER_H
 
@@ -9,7 +7,7 @@
 /* No line of a notice is out yet. */
 void speaker_start(void);
 
-/* At most one line, if there is room for it and a data row; false: there is nothing to do, or it waits. */
+/* Prints at most one line, if there is room for it and a data row; false: there is nothing to do, or it waits. */
 bool speaker_pass(void);
 
 #endif

@@ -1,4 +1,4 @@
-/* The firmware's name and version as the banner shows them. */
+/* The firmware's name and version as printed in the banner. */
 #ifndef VERSION_H
 #define VERSION_H
 

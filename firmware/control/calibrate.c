@@ -1,25 +1,25 @@
-/* The means of cal6, and what becomes of a calibration that is found. */
+/* Collects the means of cal6, and applies or refuses a calibration. */
 #include "control/calibrate.h"
 
 #include "base/notices.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
 
-static calibrate_told_t told;
+static calibrate_report_t report;
 
 static int16_t means_lsb_q4[3 * CALIBRATION_POSITIONS]; /* x, y, z of each position in turn */
-static uint8_t known;                                   /* a bit for each position */
+static uint8_t known;                                   /* one bit per position */
 
-const calibrate_told_t *calibrate_told(void)
+const calibrate_report_t *calibrate_report(void)
 {
-    return &told;
+    return &report;
 }
 
 void calibrate_start(void)
 {
     known = 0;
-    told.left = CALIBRATION_POSITIONS;
-    told.position = CALIBRATION_POSITIONS;
+    report.left = CALIBRATION_POSITIONS;
+    report.position = CALIBRATION_POSITIONS;
 }
 
 static uint16_t size_of(int16_t mean_lsb_q4)
@@ -28,8 +28,8 @@ static uint16_t size_of(int16_t mean_lsb_q4)
 }
 
 /*
- * Nearly as far from a second axis as from this one: 41 degrees off by an exact part. At 20 degrees the worst part that
- * is legal (10 % of gain, 40 LSB) has 136 LSB across and 176 along.
+ * Nearly as far along a second axis as along this one: 41 degrees off for an exact part. At 20 degrees the worst legal
+ * part (10 % of gain, 40 LSB) has 136 LSB across and 176 along.
  */
 static bool oblique(const int16_t mean_lsb_q4[3], uint8_t position)
 {
@@ -44,30 +44,30 @@ static bool oblique(const int16_t mean_lsb_q4[3], uint8_t position)
     return false;
 }
 
-/* One more position; UNCHANGED, BEGUN when it was the last, and so on. */
+/* Adds a position; UNCHANGED, BEGUN when it was the last, and so on. */
 static measure_outcome_t add_position(const int16_t mean_lsb_q4[3])
 {
     uint8_t position = calibration_position(mean_lsb_q4);
-    if (position == told.position || oblique(mean_lsb_q4, position)) {
+    if (position == report.position || oblique(mean_lsb_q4, position)) {
         return MEASURE_UNCHANGED;
     }
-    told.position = position;
+    report.position = position;
     uint8_t bit = (uint8_t)(1u << position);
     if (known & bit) {
         return MEASURE_REPEATED;
     }
     known |= bit;
-    told.left--;
+    report.left--;
     for (uint8_t axis = 0; axis < 3; axis++) {
         means_lsb_q4[3u * position + axis] = mean_lsb_q4[axis];
     }
-    return told.left == 0 ? MEASURE_BEGUN : MEASURE_POSITION;
+    return report.left == 0 ? MEASURE_BEGUN : MEASURE_POSITION;
 }
 
-/* What was found is in the settings, or refused. */
+/* The outcome of a calibration, which is in the settings or was refused. */
 static measure_outcome_t outcome_of(calibration_verdict_t verdict)
 {
-    told.verdict = verdict;
+    report.verdict = verdict;
     if (verdict.why != CALIBRATION_GOOD) {
         return MEASURE_WRONG;
     }
@@ -94,5 +94,5 @@ measure_outcome_t calibrate_step(calibration_six_t *six)
     if (calibration_six_step(six, means_lsb_q4)) {
         return MEASURE_BEGUN;
     }
-    return outcome_of(calibration_six_end(six, &settings()->calibration, &told.residual_mg));
+    return outcome_of(calibration_six_end(six, &settings()->calibration, &report.residual_mg));
 }

@@ -12,18 +12,18 @@
 #include "settings/store.h"
 
 /*
- * What the sample path is to follow. FILTER is for all samples to come, the others wait for those of the old
- * configuration. COLD: filters restart. MEASURE: it is told (measure_configured).
+ * What the sample path still has to follow. FILTER applies to all samples to come; the others wait until the samples of
+ * the old configuration are through. COLD: filters restart. MEASURE: measure_configured is due.
  */
 enum { CHANGE_FILTER = 1, CHANGE_CONFIG = 2, CHANGE_COLD = 4, CHANGE_MEASURE = 8 };
 
 static struct {
-    bool sampling; /* wanted: go or start-up, not stop */
+    bool sampling; /* wanted: after go or start-up, not after stop */
     bool line_waits;
-    uint8_t changes; /* to be followed yet */
+    uint8_t changes; /* still to be followed */
 } control;
 
-/* With the settings' configuration, or what a measurement wants. */
+/* With the settings' configuration, or the one that a measurement needs. */
 static void start_sensor(void)
 {
     adxl345_config_t config = { settings()->rate_dhz, settings()->range_g, false, settings()->address };
@@ -47,7 +47,7 @@ void control_start(uint32_t now_us)
     start_sensor();
 }
 
-/* What follows by arithmetic costs two divisions. */
+/* Deriving what depends on the settings costs two divisions. */
 static void follow(uint8_t starts)
 {
     settings_follow();
@@ -118,7 +118,7 @@ void control_line_changed(void)
     control.line_waits = false;
 }
 
-/* What a measurement wants of the sensor. */
+/* Configures the sensor as a measurement asks. */
 static void follow_measurement(void)
 {
     control.changes |= CHANGE_MEASURE;
@@ -127,12 +127,12 @@ static void follow_measurement(void)
     }
 }
 
-/* The changes that are due: not all while samples of the old configuration are under way. */
+/* The changes that are due: not all while samples of the old configuration are in flight. */
 static uint8_t take_changes(void)
 {
     bool old_samples = adxl345_phase() == ADXL345_QUIESCING || adxl345_queued() != 0;
     uint8_t now = control.changes;
-    if (old_samples) { /* those have their own rate and range */
+    if (old_samples) { /* they have their own rate and range */
         now = (now & CHANGE_CONFIG) ? 0 : now & CHANGE_FILTER;
     }
     control.changes = (uint8_t)(control.changes & ~now);

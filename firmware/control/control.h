@@ -1,6 +1,6 @@
 /*
- * What a command or a fault causes: settings judged, taken and kept, the sensor configured, the sample path told when
- * the samples of the old configuration are through. Main only.
+ * Carries out what a command or a fault causes: judges, takes and keeps settings, configures the sensor, and changes
+ * the sample path once the samples of the old configuration are through. Main only.
  */
 #ifndef CONTROL_H
 #define CONTROL_H
@@ -10,7 +10,7 @@
 
 #include "settings/settings_table.h"
 
-/* Once at start-up, when the settings are known: sampling begins. */
+/* Once at start-up, after the settings are loaded: sampling starts. */
 void control_start(uint32_t now_us);
 
 /*
@@ -20,28 +20,28 @@ void control_start(uint32_t now_us);
  */
 setting_answer_t control_set(uint8_t which, const char *text);
 
-/* All settings as saved (settings_kept.h), or as shipped; they take effect like each by itself. */
+/* Restores all settings as saved (settings_kept.h) or as shipped; they take effect as if set one by one. */
 void control_restore(bool saved);
 
 /*
- * Begins to save all settings while samples and rows go on; false while a measurement may change them. Until it is over
- * (store_busy) no command is to be taken.
+ * Starts to save all settings while samples and rows go on; false while a measurement may change them. Take no command
+ * until the save is over (store_busy).
  */
 bool control_save(void);
 
-/* Sampling on and off (sensor in standby). */
+/* Turns sampling on or off (sensor in standby). */
 void control_sample(bool wanted);
 
 /*
- * The baud rate is to change, when all replies are out (they report it at the old one). Until control_line_changed no
- * command is to be taken.
+ * The baud rate is to change once all replies are out (they report it at the old rate). Take no command until
+ * control_line_changed.
  */
 bool control_line_waits(void);
 void control_line_changed(void);
 
 /*
- * What has changed and what a measurement asks for takes effect on sensor and sample path, each as soon as the samples
- * of before are through; true: something did. Between two samples.
+ * Applies what has changed, and what a measurement asks for, to sensor and sample path, each as soon as the earlier
+ * samples are through; true: something was applied. Call between two samples.
  */
 bool control_follow(uint32_t now_us);
 

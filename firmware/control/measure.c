@@ -1,4 +1,4 @@
-/* Which samples a measurement takes, and what ends it. The words for it are in measure_lines.c. */
+/* Which samples a measurement takes, and what ends it. Its texts are in measure_lines.c. */
 #include "control/measure.h"
 
 #include "base/counters.h"
@@ -10,15 +10,15 @@
 
 enum { AXES = 3 };
 
-/* A position of cal6, with the time to turn the board; 256 samples at 12.5 Hz are 20.5 s, a self-test is 1.4 s. */
+/* For one position of cal6, with the time to turn the board; 256 samples at 12.5 Hz take 20.5 s, a self-test 1.4 s. */
 enum { SECONDS_MAX = 120 };
 
-/* What runs. */
+/* The current step. */
 typedef enum {
     STEP_IDLE,
-    STEP_TOLD,    /* the reply is on its way */
-    STEP_TELL,    /* it waits for room */
-    STEP_BACK,    /* self-test: the result is there, the settings' configuration comes back */
+    STEP_TOLD,    /* the reply is in the queue */
+    STEP_TELL,    /* the reply waits for room */
+    STEP_BACK,    /* self-test: the result is known, the settings' configuration is being restored */
     STEP_SOLVE,   /* cal6: all positions are known */
     STEP_COLLECT, /* samples that the filters get too */
     STEP_PLAIN,   /* self-test: without the force */
@@ -30,18 +30,18 @@ static struct measure {
         rest_t rest;
         calibration_six_t six; /* in STEP_SOLVE */
     };
-    int16_t result_lsb_q4[AXES]; /* the mean; of the second of two less that of the first */
+    int16_t result_lsb_q4[AXES]; /* the mean; of a self-test the second mean minus the first */
     uint8_t kind;                /* notice_kind_t */
     uint8_t step;                /* step_t */
-    uint8_t outcome;             /* measure_outcome_t, from STEP_BACK and STEP_TELL on */
-    uint8_t skip;                /* samples that are not taken */
+    uint8_t outcome;             /* measure_outcome_t, set from STEP_BACK and STEP_TELL on */
+    uint8_t skip;                /* samples still to skip */
     uint8_t began_s;
     bool asks;  /* for another configuration of the sensor, or for that of the settings */
-    bool takes; /* samples come as the step wants them */
+    bool takes; /* samples have the configuration that the step needs */
     bool borrows;
 } measure;
 
-/* Known by its address in a register, an access to it is half as long. */
+/* With its address in a register, each access takes half the code. */
 static inline struct measure *here(void)
 {
     struct measure *m = &measure;
@@ -153,7 +153,7 @@ void measure_abort(void)
     }
 }
 
-/* No samples come, or have not come all the time. */
+/* It takes too long, no samples come, or there was a gap. */
 static bool failed(void)
 {
     uint8_t seconds = (uint8_t)(second() - measure.began_s);
@@ -194,7 +194,7 @@ void measure_pass(void)
     }
 }
 
-/* cal6: it is being turned; that it lies still is reported. */
+/* cal6: the board is being turned; what is reported is that it lies still. */
 static void board_moves(void)
 {
     if (measure.kind == NOTICE_CAL6) {
@@ -204,7 +204,7 @@ static void board_moves(void)
     }
 }
 
-/* A position that could not be reported is taken again. */
+/* A position that cannot be reported is taken again. */
 static void calibrate(void)
 {
     struct measure *m = here();
@@ -229,7 +229,7 @@ static void calibrate(void)
     }
 }
 
-/* All samples are there, or one of them has shown that the board moves. */
+/* All samples have come, or one of them shows that the board moves. */
 static void collected(void)
 {
     if (!rest_still(&measure.rest, measure.step == STEP_COLLECT ? settings()->rate_dhz : MEASURE_SELFTEST_DHZ)) {
@@ -249,7 +249,7 @@ static void collected(void)
     }
 }
 
-/* Of 200, 400 and 800 Hz every second, fourth and eighth sample, so that they fill as much time. */
+/* At 200, 400 and 800 Hz only every second, fourth and eighth sample, so that they span as much time. */
 static void take(const int16_t lsb[3])
 {
     struct measure *m = here();

@@ -1,4 +1,4 @@
-/* When a fault is reported and shown. The words are in reply_texts.h. */
+/* When a fault is reported and shown. The texts are in reply_texts.h. */
 #include "control/sensor_watch.h"
 
 #include <stdbool.h>
@@ -10,13 +10,13 @@
 #include "machine.h"
 #include "settings/settings.h"
 
-/* A second is eight times this, as good as: what of the time of now goes into the pattern of the LED. */
+/* Half a slot of the LED's pattern is 2^16 us; eight slots are about a second. */
 #define FLASH_SHIFT 16
 enum { FLASH_SLOTS = 8 };
 
 #define MS_WRAP_S (UINT32_MAX / 1000u)
 
-/* Flashes in a second, by what to look at: 1 the bus, 2 the sensor or its supply, 3 INT1, 4 the readings. */
+/* Flashes per second, by what to check: 1 the bus, 2 the sensor or its supply, 3 INT1, 4 the readings. */
 static const uint8_t flashes[] IN_FLASH = {
     [ADXL345_FAULT_NO_SENSOR] = 2,     [ADXL345_FAULT_WRONG_ID] = 2,    [ADXL345_FAULT_BUS] = 1,
     [ADXL345_FAULT_READ_BACK] = 2,     [ADXL345_FAULT_INT1_SILENT] = 3, [ADXL345_FAULT_NO_DATA] = 2,
@@ -26,28 +26,28 @@ static const uint8_t flashes[] IN_FLASH = {
 };
 
 typedef struct {
-    uint32_t began_us; /* the outage; what the counters were then: */
+    uint32_t began_us; /* start of the outage; the counters at that time: */
     uint32_t began_s;
     uint32_t began_lost;
-    sensor_outage_t outage; /* that is over: its numbers, until the line with them is queued */
-    uint16_t told_mask;     /* codes reported since it began: each once */
-    uint8_t newest;         /* of its fault codes; NONE: no outage */
-    bool over;              /* and the line that says so is not queued yet */
+    sensor_outage_t outage; /* numbers of the outage that is over, until the line with them is queued */
+    uint16_t reported_mask; /* fault codes reported during the outage: each once */
+    uint8_t newest;         /* its newest fault code; NONE: no outage */
+    bool over;              /* the outage is over, and the line that reports it is not queued yet */
 } watch_t;
 
 static watch_t watch;
-static sensor_outage_t told;
+static sensor_outage_t reported;
 
 const sensor_outage_t *sensor_watch_outage(void)
 {
-    return &told;
+    return &reported;
 }
 
-/* Nothing is reported of what was before. */
+/* Nothing is reported about the time before. */
 static MACHINE_APART void forget(void)
 {
     watch.newest = ADXL345_FAULT_NONE;
-    watch.told_mask = 0;
+    watch.reported_mask = 0;
 }
 
 static void begin_outage(watch_t *w, uint32_t now_us)
@@ -57,7 +57,7 @@ static void begin_outage(watch_t *w, uint32_t now_us)
     w->began_lost = counted(COUNT_LOST);
 }
 
-/* Microseconds wrap after 71 minutes: an outage of more than a minute is given in whole seconds. So do milliseconds. */
+/* Microseconds wrap after 71 minutes: an outage of a minute or more is in whole seconds. Milliseconds wrap too. */
 static void end_outage(watch_t *w, uint32_t now_us)
 {
     uint32_t seconds = counted(COUNT_SECONDS) - w->began_s;
@@ -72,8 +72,9 @@ static void end_outage(watch_t *w, uint32_t now_us)
 }
 
 /*
- * What is seen, whether it can be reported or not. A fault that is back before its end is reported is the same outage.
- * It is over when the pipeline has taken the samples that have come again: those that are missing are counted then.
+ * Notes the state of the sensor, whether it can be reported or not. A fault that comes back before its end is reported
+ * is the same outage. It is over when the pipeline has taken the samples that came again: the missing ones are counted
+ * then.
  */
 static void note(uint8_t fault, uint32_t now_us)
 {
@@ -90,7 +91,7 @@ static void note(uint8_t fault, uint32_t now_us)
     }
 }
 
-/* The LED flashes for 65 ms in each of the first slots of 131 ms, of which a second has eight. */
+/* The LED flashes for 65 ms in each of the first slots of 131 ms, eight of which make a second. */
 static void show(uint8_t fault, uint32_t now_us)
 {
     uint8_t half_slot = (uint8_t)(now_us >> FLASH_SHIFT);
@@ -102,23 +103,23 @@ void sensor_watch_start(uint32_t now_us)
 {
     forget();
     note((uint8_t)adxl345_fault(), now_us);
-    watch.told_mask = (uint16_t)(1u << watch.newest);
+    watch.reported_mask = (uint16_t)(1u << watch.newest);
 }
 
-/* What was noted and is not reported yet, a line at a time. */
+/* Reports what was noted and is not reported yet, one line at a time. */
 static void tell(void)
 {
     uint16_t bit = (uint16_t)(1u << watch.newest);
     if (watch.newest == ADXL345_FAULT_NONE || settings()->mode == MODE_PLOT) {
         return;
     }
-    if (!(watch.told_mask & bit)) {
+    if (!(watch.reported_mask & bit)) {
         if (notices_add(NOTICE_FAULT_BEGIN, watch.newest)) {
-            watch.told_mask |= bit;
+            watch.reported_mask |= bit;
         }
     } else if (watch.over && !notices_hold(NOTICE_FAULT_END, NOTICE_FAULT_END) &&
                notices_add(NOTICE_FAULT_END, watch.newest)) {
-        told = watch.outage;
+        reported = watch.outage;
         forget();
     }
 }
@@ -128,7 +129,7 @@ void sensor_watch_pass(uint32_t now_us)
     uint8_t fault = (uint8_t)adxl345_fault();
     show(fault, now_us);
     if (adxl345_phase() == ADXL345_STOPPED) {
-        forget(); /* not mended, only not asked any more */
+        forget(); /* not repaired, just not polled */
     }
     note(fault, now_us);
     tell();

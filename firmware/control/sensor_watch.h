@@ -1,18 +1,16 @@
-/*
- * Reports when the sensor fails and when it is back, by lines and by the LED. Main only.
- */
+/* Reports when the sensor fails and when it is back, in lines and by the LED. Main only. */
 #ifndef SENSOR_WATCH_H
 #define SENSOR_WATCH_H
 
 #include <stdint.h>
 
-/* When rows begin; the banner has reported a fault that is there by now. */
+/* Call when rows start; a fault present by then was reported by the banner. */
 void sensor_watch_start(uint32_t now_us);
 
-/* When rows may have been waited for long enough: every few ms, after adxl345_poll. */
+/* Call every few ms, in passes that poll the driver. */
 void sensor_watch_pass(uint32_t now_us);
 
-/* Of the last fault whose end is reported: how long it was, how many samples are missing, where they come from now. */
+/* The last fault whose end was reported: its duration, the samples lost, and the sensor's address after it. */
 typedef struct {
     uint32_t ms;
     uint32_t lost;

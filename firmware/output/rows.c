@@ -10,12 +10,12 @@
 /* The longest row is one of the plotter: four angles of FORMAT_HUNDREDTHS_MAX and the labels, 69 bytes. */
 enum { ROW_MAX = 72 };
 
-enum { HELD_TIMES = 31 }; /* of newest_time, 2 s */
+enum { HELD_TIMES = 31 }; /* units of newest_time, 2 s */
 
 static uint16_t since_row;
 static bool enabled;
 static bool held;
-static uint16_t held_from; /* of newest_time */
+static uint16_t held_from; /* as newest_time */
 
 void rows_start(void)
 {
@@ -29,7 +29,7 @@ void rows_enable(bool now_enabled)
     since_row = 0;
 }
 
-/* Of the newest sample, in 65.536 ms; wraps after 71 minutes. */
+/* Time of the newest sample in units of 65.536 ms; wraps after 71 minutes. */
 static uint16_t newest_time(void)
 {
     return (uint16_t)(pipeline_newest_us() >> 16);

@@ -1,4 +1,4 @@
-/* Data rows: decimation, both output modes, dropping whole rows when the line is full. Main only. */
+/* Data rows: decimation, both output modes, dropping of whole rows when the line is full. Main only. */
 #ifndef ROWS_H
 #define ROWS_H
 
@@ -8,25 +8,25 @@
 /* No rows yet. */
 void rows_start(void);
 
-/* Rows may go out (false while the banner and the header are not through). */
+/* Rows may go out; false until the banner and the header are out. */
 void rows_enable(bool enabled);
 
 /*
- * A sample has been filtered, or is missing: its row if it is the one in `every`. plot: in the form for the plotters,
+ * A sample has been filtered, or is missing: writes its row if it is the one in `every`. plot: in the plotters' format,
  * not csv.
  */
 void rows_sample(uint16_t every, bool plot);
 
 /*
- * Csv rows of the samples of the next 2 s are held, so that a person can read what was said: counted, not sent; the
- * next one that is sent has ROW_DROPPED.
+ * Holds back the csv rows of the samples of the next 2 s, so that a person can read the reply: they are counted, not
+ * sent; the next row that is sent has ROW_DROPPED.
  */
 void rows_hold(void);
 
-/* A line was typed: they are not held any longer, unless it asks for more to be read: then as long again. */
+/* A line was typed: ends the hold, or restarts it if the line asks for more to read. */
 void rows_typed(bool more_to_read);
 
-/* Its row, whatever `every` says. */
+/* Writes the row, whatever `every` is. */
 void rows_at_once(bool plot);
 
 #endif

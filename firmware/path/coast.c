@@ -10,19 +10,19 @@
 #define LONG_STEP_US UINT32_C(100000)
 
 typedef enum {
-    STATE_WAITING, /* for the first sample, and no row is out yet */
+    STATE_WAITING, /* for the first sample; no row is out yet */
     STATE_RUNNING,
-    STATE_COASTING /* the newest row is of a sample that is missing */
+    STATE_COASTING /* the newest row is for a missing sample */
 } state_t;
 
 static struct coast {
-    uint32_t next_us; /* time of the sample that comes next */
-    uint32_t due_us;  /* then it is missing */
-    uint32_t lost_us; /* COASTING: the same as it was after the newest sample that has come, or for the first row */
+    uint32_t next_us; /* time of the next sample */
+    uint32_t due_us;  /* when it counts as missing */
+    uint32_t lost_us; /* COASTING: due_us as it was after the newest sample that came, or for the first row */
     uint8_t state;    /* state_t */
 } coast;
 
-/* Known by its address in a register, an access to it is half as long. */
+/* With its address in a register, each access takes half the code. */
 static inline struct coast *here(void)
 {
     struct coast *c = &coast;
@@ -76,7 +76,7 @@ bool coast_sample(uint32_t t_us, uint32_t period_us)
         count(COUNT_LATE);
         return false;
     }
-    if (c->state == STATE_COASTING) { /* t_us is two periods before lost_us at most, or up to 71 minutes late */
+    if (c->state == STATE_COASTING) { /* t_us is at most two periods before lost_us, or up to 71 minutes late */
         uint32_t periods = (t_us - c->lost_us + 2u * period_us) / period_us;
         count_lost(periods > 1u ? periods - 1u : 0u);
     }

@@ -1,9 +1,9 @@
 /*
- * What takes the place of samples that do not come: when one is missing, and the time of its row. Main only.
+ * Fills in for samples that do not come: decides when one is missing, and the time of its row. Main only.
  *
- * With T the sample period, sample n after the last one is missing when it is not there at (n + 1/2) T; its row has the
- * time of the last one + n T, computed, so that the rows do not depend on when main looked. A second later a row each
- * 100 ms is enough.
+ * With T the sample period, sample n after the last one counts as missing if it has not come by (n + 1/2) T; its row
+ * gets the time of the last one + n T, computed, so that the rows do not depend on when main looked. After a second
+ * without samples, a row every 100 ms is enough.
  */
 #ifndef COAST_H
 #define COAST_H
@@ -11,25 +11,25 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* No sample is expected yet: none is missing before the first one, whenever that comes. Called as often as you like. */
+/* No sample is expected yet: none is missing before the first one, whenever that comes. May be called repeatedly. */
 void coast_wait(uint32_t now_us);
 
-/* At this time the next sample is missing, if it has not come. */
+/* At this time the next sample counts as missing, if it has not come. */
 bool coast_due(uint32_t t_us);
 
-/* When that will be. */
+/* The time from which it does. */
 uint32_t coast_due_us(void);
 
 /*
- * A sample is missing, before one that has come (sample) or the present: true when the pipeline fills its place.
- * period_us: between samples. Before a sample that comes after a long gap the rows that were not written meanwhile are
- * left out.
+ * A sample is missing before one that has come (`sample`), or before the present: true if the pipeline fills its place.
+ * period_us: time between samples. Before a sample that comes after a long gap, rows that were not written during the
+ * gap are left out.
  */
 bool coast_over(uint32_t period_us, bool sample);
 
 /*
- * A sample with this time has come. True: it goes into the pipeline; those that did not come before it are counted, and
- * the next is expected a period later. False: it is not after the newest row, which is counted, and not to be used.
+ * A sample with this time has come. True: it goes into the pipeline; samples missing before it are counted, and the
+ * next is expected one period later. False: it is not later than the newest row; it is counted, and must not be used.
  */
 bool coast_sample(uint32_t t_us, uint32_t period_us);
 

@@ -1,6 +1,6 @@
 /*
- * The sample path of main: filters started, changed, given the sensor's true rate; samples, or the places of missing
- * ones, taken through them. Its cycles: sample_total in docs/benchmarks.md.
+ * Main's sample path: starts and changes filters, gives them the sensor's true rate, and takes samples, or the places
+ * of missing ones, through them. Its cycles: sample_total in docs/benchmarks.md.
  */
 #include "path/pipeline.h"
 
@@ -12,32 +12,32 @@
 #include "tilt_axis.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
-enum { HUNG_SAMPLES = 16 };                /* with ROW_STUCK, in a row: a filter has learned from them */
+enum { HUNG_SAMPLES = 16 };                /* samples in a row with ROW_STUCK: a filter has learned from them */
 enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_retime; 1 degree */
 
-/* What pipeline_work is to take through the filters: a sample, or the place of one that is missing. */
+/* What pipeline_work is to take through the filters: a sample, or the place of a missing one. */
 typedef enum { WORK_NONE, WORK_SAMPLE, WORK_COAST } work_t;
 
 static struct {
     tilt_axis_t axes[AXES];
-    uint16_t looked_lsb_q2[AXES]; /* the estimates a second ago */
+    uint16_t looked_lsb_q2[AXES]; /* the estimates one second ago */
     calibration_applied_t applied;
 #if SUPERVISOR
-    const calibration_t *calibration; /* that is applied */
+    const calibration_t *calibration; /* the one in force */
 #endif
     const filter_choice_t *choice;
-    adxl345_sample_t newest; /* or the time of the one that is missing, and the last readings */
+    adxl345_sample_t newest; /* or the time of the missing one, with the last readings */
     tilt_t tilt;
     tilt_t raw_tilt;
     int16_t rail_high_lsb;
     uint16_t rate_dhz; /* nominal */
-    uint16_t true_dhz; /* that the filters have */
+    uint16_t true_dhz; /* the rate that the filters have */
     uint8_t calls_off;
     uint16_t flags;
     uint8_t warm_rows;
     uint8_t work;     /* work_t */
-    uint8_t to_begin; /* so many axes, the first ones, are to get a new filter */
-    bool cold;        /* all of them before the next sample, and a new noise estimate; else one with each sample */
+    uint8_t to_begin; /* axes that are still to get a new filter, the last of them first */
+    bool cold;        /* all of them before the next sample, with a new noise estimate; else one with each sample */
     bool turn;        /* one with this sample */
     uint8_t new_kind; /* filter_kind_t */
     bool own_r;       /* R is the user's, not the estimated one */
@@ -85,9 +85,9 @@ uint32_t pipeline_newest_us(void)
 }
 
 /*
- * Filters that go on from an output are changed one with each sample, so that a row waits for one of them: a Kalman
- * filter takes up to 2.4 ms to settle. Else, and where the noise is not known either, all at once: no sample comes
- * meanwhile.
+ * Filters that continue from an output are changed one per sample, so that a row waits for only one of them: a Kalman
+ * filter takes up to 2.4 ms to settle. Otherwise, and if the noise is not known either, all are changed at once: no
+ * sample comes meanwhile.
  */
 static void begin_all(bool cold)
 {
@@ -116,7 +116,7 @@ void pipeline_retime(uint32_t period_us)
     }
 }
 
-/* The filter goes on from the old one's estimate, where there is one, or warms up. */
+/* The filter continues from the old one's estimate, if there is one, or warms up. */
 static MACHINE_APART void begin_axis(tilt_axis_t *axis)
 {
     int16_t from_lsb = tilt_axis_estimate_lsb(axis);
@@ -148,7 +148,7 @@ static bool begin_next(void)
     return true;
 }
 
-/* The filters go on from the old output, where there is one, the noise estimates too unless the rate is new. */
+/* The filters continue from the old output, if there is one, and so do the noise estimates unless the rate is new. */
 void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g)
 {
     bool cold = !pipeline.has_sample || rate_dhz != pipeline.rate_dhz;
@@ -194,8 +194,8 @@ void pipeline_calibrate(const calibration_t *calibration)
 }
 
 /*
- * Counts what a sensor that hangs repeats. True: it has come back, and what the filters have learned of the noise was
- * that of readings without any, so that they would refuse what comes now.
+ * Counts the repeated readings of a hung sensor. True: it has recovered, and the noise that the filters have learned is
+ * that of constant readings, so that they would refuse the next ones.
  */
 static bool hung(void)
 {
@@ -209,7 +209,7 @@ static bool hung(void)
     return back;
 }
 
-/* Apart: it needs every register, and most calls of pipeline_work find nothing to do. */
+/* Out of line: it needs every register, and most calls of pipeline_work find nothing to do. */
 static MACHINE_APART void filter_axes(void)
 {
     bool sample = pipeline.work == WORK_SAMPLE;
@@ -282,8 +282,9 @@ void pipeline_flag(uint16_t flags)
 }
 
 /*
- * 1/256 g in Q8 to mg: x 1000 / 256, rounded half up. Limited to 32 g, so that the product fits 32 bits and mg 16: 18 g
- * on all axes of a weak part can come to 41 g on one of a carrier that lies across. By the high word, which is cheap.
+ * 1/256 g in Q8 to mg: x 1000 / 256, rounded half up. Limited to 32 g, so that the product fits 32 bits and mg fits 16:
+ * 18 g on all axes of a part of low gain can come to 41 g on one axis of a board mounted obliquely. Tested on the high
+ * word, which is cheap.
  */
 static int16_t to_mg(int32_t value_q8)
 {
@@ -294,7 +295,7 @@ static int16_t to_mg(int32_t value_q8)
     return (int16_t)((value_q8 * 1000 + 32768) >> 16);
 }
 
-/* Accelerations of readings or estimates, LSB in Q8, and their angles. For a row only, because it is expensive. */
+/* Accelerations from readings or estimates, LSB in Q8, and their angles. For rows only, because it is expensive. */
 static void find_angles(tilt_t *tilt, const int32_t lsb_q8[3], int32_t a_q8[3])
 {
     calibration_apply(&pipeline.applied, lsb_q8, a_q8);
@@ -304,7 +305,7 @@ static void find_angles(tilt_t *tilt, const int32_t lsb_q8[3], int32_t a_q8[3])
 void pipeline_row(row_t *row)
 {
     int32_t estimates_q8[AXES];
-    static int32_t a_q8[AXES]; /* cheaper to reach than on the stack */
+    static int32_t a_q8[AXES]; /* cheaper to access than on the stack */
     int32_t *estimate = estimates_q8;
     for (const tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
         *estimate++ = tilt_axis_estimate_q8(axis);

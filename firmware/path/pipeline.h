@@ -1,6 +1,6 @@
 /*
  * From samples to filtered tilt: one filter and one noise estimate per axis, in LSB; angles from the filtered states
- * with their fraction. Main only.
+ * including their fraction. Main only.
  */
 #ifndef PIPELINE_H
 #define PIPELINE_H
@@ -28,7 +28,7 @@ enum row_flag {
     ROW_NOT_GRAVITY = 512,
     ROW_ROLL_UNDEFINED = 1024,
     ROW_SWITCHED = 2048, /* `auto` has chosen another member on an axis */
-    ROW_LEFT_OUT = 4096  /* the angles are without one axis, which is known bad */
+    ROW_LEFT_OUT = 4096  /* the angles leave out one axis, which is known to be bad */
 };
 
 enum { ROW_COLUMNS = 8 };
@@ -37,7 +37,7 @@ typedef struct {
     uint32_t t_us;
     union {
         struct {
-            int16_t lsb[3]; /* as read; in a coasted row the last sample */
+            int16_t lsb[3]; /* as read; in a coasted row the last sample's */
             int16_t mg[3];  /* filtered accelerations */
             int16_t roll_cdeg;
             int16_t pitch_cdeg;
@@ -47,74 +47,74 @@ typedef struct {
     uint16_t flags;
 } row_t;
 
-/* Once at start-up: angles level. */
+/* Once at start-up: both angles are 0. */
 void pipeline_reset(void);
 
-/* What turns readings into accelerations from now on, legal (calibration.h) and to be left where it lies. */
+/* Sets the calibration that converts readings to accelerations; it must be legal (calibration.h) and stay in place. */
 void pipeline_calibrate(const calibration_t *calibration);
 
 /*
- * Restart: filters collect a robust start, noise estimates start at their floor. The choice is to be left where it
- * lies: it is looked at whenever a filter begins.
+ * Restart: filters collect a robust start, noise estimates start at their floor. The choice must stay in place: it is
+ * read whenever a filter starts.
  */
 void pipeline_start(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g);
 
 /*
- * Change filter, rate or range while running: the new filters start from the old output, one axis ahead of each of the
- * next three samples, so that no row waits for all. With another rate all at once, and the noise estimates restart.
+ * Changes filter, rate or range while running: the new filters continue from the old output, one axis before each of
+ * the next three samples, so that no row waits for all of them. With another rate all change at once, and the noise
+ * estimates restart.
  */
 void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g);
 
 /*
- * Each second the measured time between samples: when its rate differs by more than 1/128 and 0.1 Hz from what
- * the filters have, for 5 seconds, they go on from their outputs with its parameters. That costs them their rates of
- * change, so it waits until each axis' estimate is where it was a second ago, within what a degree makes (4.5 LSB). No
- * row says so.
+ * Call each second with the measured time between samples. If the measured rate differs from the filters' by more than
+ * 1/128 and 0.1 Hz for 5 seconds, the filters continue from their outputs with the parameters of the measured rate.
+ * That loses their rates of change, so it waits until each axis' estimate is where it was a second ago, within a degree
+ * (4.5 LSB). No row shows it.
  */
 void pipeline_retime(uint32_t period_us);
 
 /*
- * One piece of what pipeline_start, _change, _retime, _coast or _sample have begun: the filter of an axis changed, up
- * to 2.4 ms, or a sample; false: nothing was left to do. So the main loop can look after other things meanwhile.
- * Nothing else is to be begun before, but a change takes the place of a change.
+ * One piece of the work that pipeline_start, _change, _retime, _coast or _sample has started: the filter of an axis
+ * changed, up to 2.4 ms, or a sample; false: nothing was left to do. So the main loop can do other things in between.
+ * Start nothing else until it is done; only a change may replace a change.
  */
 bool pipeline_work(void);
 
-/* All that is left to do, for a program without a main loop. */
+/* Does all that is left, for a program without a main loop. */
 void pipeline_finish(void);
 
 /*
- * One sample, which pipeline_work takes to filters and noise estimates. After a hold the filters go on from the
- * estimate that was held when the sample agrees with it, and restart with the second in a row that does not, each axis
- * for itself.
+ * One sample, which pipeline_work takes to filters and noise estimates. After a hold, each axis continues from the held
+ * estimate if the sample agrees with it, and restarts with the second sample in a row that does not.
  */
 void pipeline_sample(const adxl345_sample_t *sample);
 
 /*
- * A sample is missing, and this is the time that it would have: the filters predict, for 100 ms at most, with the rate
- * halved every 25 ms, then the estimate holds.
+ * A sample is missing; t_us is the time that it would have had. The filters predict, for 100 ms at most, with the rate
+ * of change halved every 25 ms; then the estimate holds.
  */
 void pipeline_coast(uint32_t t_us);
 
 /* The output data rate that the filters have, or get with the next samples, 0.1 Hz. */
 uint16_t pipeline_rate_dhz(void);
 
-/* The three axes, to be looked at. */
+/* The three axes, for reading. */
 const tilt_axis_t *pipeline_axes(void);
 
-/* Time of the newest sample, or of the one that is missing. */
+/* Time of the newest sample, or of the missing one. */
 uint32_t pipeline_newest_us(void);
 
-/* Flags that hold until the next row. */
+/* Sets flags for the next row. */
 void pipeline_flag(uint16_t flags);
 
 /*
- * The row for the newest sample, or for the missing one, with the flags of all samples since pipeline_row_done; but
- * ROW_NOT_GRAVITY and ROW_LEFT_OUT are said of this row's own acceleration.
+ * The row for the newest sample, or for the missing one, with the flags of all samples since pipeline_row_done;
+ * ROW_NOT_GRAVITY and ROW_LEFT_OUT refer only to this row's own acceleration.
  */
 void pipeline_row(row_t *row);
 
-/* The row went out: flags are collected from here on; a warm-up row is counted. */
+/* The row went out: collects flags for the next row, and counts a warm-up row. */
 void pipeline_row_done(void);
 
 /* Roll and pitch of the newest raw sample, for the plotter. */

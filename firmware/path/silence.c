@@ -4,8 +4,8 @@
 enum { HALF_QUARTER_DHZ = 200, HOLD_QUARTERS = 4, LONG_QUARTERS = 40 };
 
 static struct {
-    uint16_t part_dhz; /* of 25 ms, in shares of the rate, at a missing sample's place */
-    uint8_t quarters;  /* times 25 ms without a sample, up to a second */
+    uint16_t part_dhz; /* position within 25 ms at a missing sample, in units of 25 ms / rate */
+    uint8_t quarters;  /* periods of 25 ms without a sample, up to a second */
     uint8_t missing;   /* samples in a row, up to SILENCE_FAULT_FROM */
 } silence;
 
@@ -16,7 +16,7 @@ void silence_end(void)
     silence.part_dhz = 0;
 }
 
-/* Step n is judged in its middle, (n - 1/2) / rate after the last sample, as the filters do (filter_missing). */
+/* Step n is judged at its middle, (n - 1/2) / rate after the last sample, as in the filters (filter_missing). */
 void silence_step(uint16_t rate_dhz)
 {
     uint16_t part_dhz = (uint16_t)(silence.part_dhz + HALF_QUARTER_DHZ);

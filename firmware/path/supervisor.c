@@ -1,4 +1,4 @@
-/* Choices reported, a bad axis left out: see supervisor.h. */
+/* Reports choices and leaves a bad axis out: see supervisor.h. */
 #include "path/supervisor.h"
 
 #if SUPERVISOR
@@ -12,19 +12,19 @@
 enum { AXES = 3 };
 
 static struct {
-    uint8_t repeated[AXES]; /* readings in a row that repeat the one before, saturating */
-    uint8_t negative;       /* a bit per axis: its last estimate while its readings changed */
+    uint8_t repeated[AXES]; /* readings in a row that repeat the one before; saturates */
+    uint8_t negative;       /* one bit per axis: sign of its last estimate while its readings changed */
     uint8_t left_out;       /* AXES: none */
-    uint16_t missing_q6;    /* component of it */
+    uint16_t missing_q6;    /* component of the axis left out */
 } supervisor;
 
-/* On all axes: a change of filter begins with the last and ends with the first. */
+/* On all axes: a change of filter starts with the last and ends with the first. */
 static bool in_force(const tilt_axis_t *axes)
 {
     return axes[0].filter.law == &filter_law_auto && axes[AXES - 1].filter.law == &filter_law_auto;
 }
 
-/* The signs stay: of an axis that is stuck since before, its last is the best guess. */
+/* The signs are kept: for an axis that is already stuck, its last sign is the best guess. */
 void supervisor_reset(void)
 {
     for (uint8_t axis = 0; axis < AXES; axis++) {
@@ -52,7 +52,7 @@ static bool is_bad(uint8_t axis, const int16_t lsb[3], int16_t rail_high_lsb)
            (repeated >= SUPERVISOR_RAIL_SAMPLES && tilt_at_rail(lsb[axis], rail_high_lsb));
 }
 
-/* The one axis that is bad, while another changes; AXES: none, or more. */
+/* The only bad axis, while another one changes; AXES: none, or more than one. */
 static uint8_t bad_axis(const int16_t lsb[3], int16_t rail_high_lsb)
 {
     uint8_t found = AXES;
@@ -69,7 +69,7 @@ static uint8_t bad_axis(const int16_t lsb[3], int16_t rail_high_lsb)
     return changes ? found : (uint8_t)AXES;
 }
 
-/* What an axis reads at 0 g, Q8. */
+/* The reading of an axis at 0 g, Q8. */
 static int32_t offset_q8(const calibration_t *calibration, uint8_t axis)
 {
     return (int32_t)calibration->offset_lsb_q4[axis] * 16;
@@ -88,7 +88,10 @@ static void note_signs(const tilt_axis_t axes[3], const calibration_t *calibrati
     }
 }
 
-/* Without the bad axis' part the calibrated vector lies across it, whatever the mounting is: what is missing of 1 g. */
+/*
+ * Without the bad axis' component the calibrated vector is perpendicular to that axis, whatever the mounting is:
+ * returns what it lacks to 1 g.
+ */
 static uint16_t missing_of_q6(const supervisor_view_t *view)
 {
     int32_t estimates_q8[AXES];
@@ -113,7 +116,7 @@ void supervisor_sample(const supervisor_view_t *view)
     }
 }
 
-/* What is missing of 1 g is the bad axis' part, and in its own readings that by its scale. */
+/* The component missing to 1 g is that of the bad axis; its scale converts it to a reading. */
 bool supervisor_complete(const calibration_t *calibration, int32_t estimates_q8[3])
 {
     uint8_t bad = supervisor.left_out;
@@ -127,10 +130,10 @@ bool supervisor_complete(const calibration_t *calibration, int32_t estimates_q8[
     return true;
 }
 
-/* What offset and scale leave of 1 g before a calibration, 39 mg: typical 0 g offset 35 mg (data sheet p. 3). LSB. */
+/* Offset and scale error of an uncalibrated part at 1 g, 39 mg: typical 0 g offset 35 mg (data sheet p. 3). LSB. */
 #define PART_ERROR_LSB 10ul
 
-/* Of the noisier axis that remains, LSB in Q8, and in it what the part may be off. */
+/* Sigma of the noisier of the remaining axes, LSB in Q8, including the error of the part. */
 static uint16_t remaining_sigma_q8(const tilt_axis_t *axes)
 {
     uint32_t p_lsb2_q8 = 0;

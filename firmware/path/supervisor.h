@@ -1,13 +1,13 @@
 /*
- * What goes with the filter `auto`: the choices of its banks reported, and an axis that is known bad left out of the
+ * Goes with the filter `auto`: reports the choices of its banks, and leaves an axis that is known to be bad out of the
  * angles, which then come from the other two and |a| = 1 g (tilt_partial.h). Main only.
  *
- * An axis is bad when it has stood at the rail of its range for 16 samples or repeated a reading for 250 while another
- * axis changes: a centred axis of 0.265 LSB rms, the data sheet's 0.75 at 100 Hz taken to 12.5 Hz, did so once in ten
- * days of it. Two bad axes leave too little: none is left out then. The sign of the missing component is that of the
- * last estimate before its readings began to repeat.
+ * An axis is bad when it has been at the rail of its range for 16 samples, or has repeated a reading for 250, while
+ * another axis changes: a centred axis of 0.265 LSB rms, the data sheet's 0.75 at 100 Hz scaled to 12.5 Hz, repeats
+ * itself that often once in ten days. With two bad axes too little is left: then none is left out. The sign of the
+ * missing component is that of the last estimate before the readings began to repeat.
  *
- * In images with `auto` only (mk/images.mk), and while it is in force.
+ * Only in images with `auto` (mk/images.mk), and while it is in force.
  */
 #ifndef SUPERVISOR_H
 #define SUPERVISOR_H
@@ -24,29 +24,29 @@
 
 enum { SUPERVISOR_RAIL_SAMPLES = 16, SUPERVISOR_REPEATED_SAMPLES = 250 };
 
-/* No axis is left out, nothing is known of their readings. */
+/* No axis is left out, nothing is known about the readings. */
 void supervisor_reset(void);
 
-/* The readings of a sample, and those of the one before. */
+/* The readings of a sample, and of the one before. */
 void supervisor_look(const int16_t before[3], const int16_t lsb[3]);
 
-/* What the sample path has of the newest sample. */
+/* What the sample path knows of the newest sample. */
 typedef struct {
-    const tilt_axis_t *axes; /* three */
+    const tilt_axis_t *axes; /* three of them */
     const int16_t *lsb;      /* the readings */
     int16_t rail_high_lsb;
     const calibration_t *calibration;
     const calibration_applied_t *applied; /* the same, prepared */
 } supervisor_view_t;
 
-/* After each sample or prediction: which axis is bad, and what is missing without it. */
+/* Call after each sample or prediction: finds the bad axis, and what is missing without it. */
 void supervisor_sample(const supervisor_view_t *view);
 
-/* In the place of the bad axis' estimate (LSB in Q8) what the others leave of 1 g: true; false: no axis is bad. */
+/* Replaces the bad axis' estimate (LSB in Q8) by what the others lack to 1 g. False: no axis is bad. */
 bool supervisor_complete(const calibration_t *calibration, int32_t estimates_q8[3]);
 
 /*
- * "x slow y fast z fast", and of an axis left out "without z sigma cdeg 93", for `status`; nothing of other
+ * Prints "x slow y fast z fast", and for an axis left out "without z sigma cdeg 93", for `status`; nothing for other
  * filters.
  */
 void supervisor_say(const tilt_axis_t axes[3]);

@@ -1,4 +1,4 @@
-/* Defaults and the arithmetic of what the line carries and the processor has time for. */
+/* Defaults, and the arithmetic of what the line can carry and the processor has time for. */
 #include "settings/settings.h"
 
 #include "filter_list.h"
@@ -24,7 +24,7 @@ void settings_defaults(void)
     settings()->rate_dhz = SETTINGS_RATE_DEFAULT_DHZ;
     settings()->every = 1;
     settings()->range_g = 16;
-    settings_take_filter(0); /* the first of the image's */
+    settings_take_filter(0); /* the image's first one */
     settings()->mode = MODE_CSV;
     settings()->address = 0;
     calibration_plain(&settings()->calibration, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
@@ -88,7 +88,7 @@ uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
     return quotient((uint32_t)rate_dhz * SETTINGS_ROW_MAX, baud);
 }
 
-/* What was loaded may be a rate too fast for the filter of this image: it gets one for which each is fast enough. */
+/* A loaded rate may be too fast for this image's filter: it is replaced by the default, which suits every filter. */
 void settings_follow(void)
 {
     uint16_t takes = settings_filter_cycles(settings()->choice.filter);

@@ -1,4 +1,4 @@
-/* What the user can set, with its legal values. Main only. */
+/* The user's settings and their legal values. Main only. */
 #ifndef SETTINGS_H
 #define SETTINGS_H
 
@@ -12,32 +12,32 @@
 
 typedef enum { MODE_CSV, MODE_PLOT } output_mode_t;
 
-/* All that is kept; the image has room for what later versions keep. */
+/* Bytes that are saved; the image has room for what later versions add. */
 #define SETTINGS_KEPT_BYTES (13u + sizeof(calibration_t) + sizeof(filter_choice_t))
 
 /*
- * Of what is kept: raised when a byte gets another meaning. Version, length and calibration stay where they are in
- * every version, so that a calibration outlives an update; what lies after them is another version's own.
+ * Version of the saved bytes: raised when one of them changes its meaning. Version, length and calibration have the
+ * same place in every version, so that a calibration survives an update; what follows them depends on the version.
  */
 #define SETTINGS_VERSION 1u
 
-/* Little-endian on PC and chip and without gaps, as far as it is kept: its bytes are the image that `save` writes. */
+/* Little-endian on PC and chip and without padding in the saved part: its bytes are the image that `save` writes. */
 typedef struct {
     uint8_t version;           /* SETTINGS_VERSION of the firmware that saved it */
-    uint8_t length;            /* SETTINGS_KEPT_BYTES of it */
+    uint8_t length;            /* SETTINGS_KEPT_BYTES of that firmware */
     calibration_t calibration; /* legal: calibration_check */
-    filter_choice_t choice;    /* as stored; the filter follows from its mark when settings are loaded */
-    uint32_t baud;             /* legal values of all: settings_table.c */
+    filter_choice_t choice;    /* as stored; the filter is found by its mark when settings are loaded */
+    uint32_t baud;             /* legal values of this and the rest: settings_table.c */
     uint16_t rate_dhz;         /* output data rate in 0.1 Hz */
-    uint16_t every;            /* a row for every Nth sample, as asked for: 1..SETTINGS_EVERY_MAX */
+    uint16_t every;            /* one row per N samples, as requested: 1..SETTINGS_EVERY_MAX */
     uint8_t range_g;           /* 2, 4, 8, 16 */
     uint8_t mode;              /* output_mode_t */
-    uint8_t address;           /* of the sensor, 7 bits; 0: the one that answers */
+    uint8_t address;           /* of the sensor, 7 bits; 0: whichever answers */
     uint8_t spare[STORE_IMAGE_SIZE - SETTINGS_KEPT_BYTES];
     uint8_t store_tail[STORE_TAIL_SIZE]; /* the store's own, see store.h */
-    /* not kept */
-    uint16_t every_smallest; /* follows from baud, rate and filter: settings_follow */
-    bool line_is_slower;     /* than the processor: it decides that */
+    /* not saved */
+    uint16_t every_smallest; /* derived from baud, rate and filter: settings_follow */
+    bool line_is_slower;     /* the line, not the processor, determines every_smallest */
 } settings_t;
 
 #if HAL_UART_REACHES(115200)
@@ -49,52 +49,55 @@ typedef struct {
 #define SETTINGS_RATE_MIN_DHZ 125u
 #define SETTINGS_RATE_DEFAULT_DHZ 1000u
 
-/* What the line must carry for a row: at most 67 bytes (csv) or 69 (plot), and some for replies. */
+/* Bytes that the line must carry per row: at most 67 (csv) or 69 (plot), and some for replies. */
 #define SETTINGS_ROW_MAX 72u
 
 /*
- * What a sample takes of the processor beside its three filters, and a row, in cycles: worst cases for any length of
- * time, as `make bench` measures and judges them (sample_rest, row). The rest: the interrupts of bus and clock, passes
- * of the main loop, three noise estimates, and new variances as often as an estimate can leave the last by an eighth.
- * What is longer but rare (five warm-up samples, variances on all axes at once, replies, a change of settings) waits
- * in the sensor's FIFO and the driver's queue, 39 samples together, and is caught up with what a sample leaves over.
- * At 800 Hz the two leave 1,000 cycles, 333 for each axis: less than any filter takes, so not every row goes out.
+ * Cycles that a sample takes besides its three filters, and cycles of a row: worst cases over any length of time, as
+ * `make bench` measures and judges them (sample_rest, row). The first covers the interrupts of bus and clock, passes of
+ * the main loop, three noise estimates, and new variances as often as an estimate can differ from the last by an
+ * eighth. During work that is longer but rare (five warm-up samples, variances on all axes at once, replies, a change
+ * of settings) samples wait in the sensor's FIFO and the driver's queue, 39 together, and are caught up on in the time
+ * that samples leave over. At 800 Hz the two leave 1,000 cycles, 333 for each axis: less than any filter takes, so not
+ * every row goes out.
  */
 #define SETTINGS_REST_CYCLES 7300u
 #define SETTINGS_ROW_CYCLES 11700u
 
-/* The one instance: changed by this room and by control. */
+/* The only instance: changed by this room and by control. */
 settings_t *settings(void);
 
 void settings_defaults(void);
 
-/* A byte by which each filter of filter_list.h is known, whatever image holds it. */
+/* A byte that identifies each filter of filter_list.h, whichever image has it. */
 uint8_t settings_filter_mark(uint8_t filter);
 
-/* The setting `filter`: with its mark, its parameters as shipped. */
+/* Sets `filter`, with its mark and its parameters as shipped. */
 void settings_take_filter(uint8_t filter);
 
 /* Cycles that three axes of a filter take at most, and those that this output data rate leaves for them. */
 uint16_t settings_filter_cycles(uint8_t filter);
 uint32_t settings_left_cycles(uint16_t rate_dhz);
 
-/* The rule: the first is less than the second. What it leaves over is for rows. */
+/* The rule: the first is less than the second. The difference is left for rows. */
 bool settings_fit(uint8_t filter, uint16_t rate_dhz);
 
-/* Both, of the last that did not fit. */
+/* Both numbers, from the last check that failed. */
 typedef struct {
     uint16_t takes;
     uint16_t left;
 } settings_cycles_t;
 const settings_cycles_t *settings_cycles(void);
 
-/* To be called when baud, rate or filter has changed. */
+/* Call after baud, rate or filter has changed. */
 void settings_follow(void);
 
-/* The smallest `every` with which this baud rate carries rows of SETTINGS_ROW_MAX bytes at this output data rate. */
+/* The smallest `every` at which this baud rate can carry rows of SETTINGS_ROW_MAX bytes at this output data rate. */
 uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz);
 
-/* What is in force: the greatest of what was asked for, what the line carries and what the processor has time for. */
+/*
+ * The `every` in force: the largest of what was requested, what the line can carry and what the processor has time for.
+ */
 uint16_t settings_every_in_force(void);
 
 #endif

@@ -1,4 +1,4 @@
-/* The image is the head of the settings as they lie in RAM; see settings_kept.h. */
+/* The image is the first part of the settings as they are in RAM; see settings_kept.h. */
 #include "settings/settings_kept.h"
 
 #include <stddef.h>
@@ -28,7 +28,7 @@ void settings_unread(void)
     kept = KEPT_UNREAD;
 }
 
-/* The kind whose name has this mark; FILTER_KIND_COUNT when the image holds none. */
+/* The kind of the filter with this mark; FILTER_KIND_COUNT if the image has none. */
 static uint8_t kind_marked(uint8_t mark)
 {
     uint8_t kind = 0;
@@ -38,7 +38,7 @@ static uint8_t kind_marked(uint8_t mark)
     return kind;
 }
 
-/* The filter by its name's mark; where this image has none, its first with shipped parameters. */
+/* Finds the filter by its mark; if this image has none, takes its first one with shipped parameters. */
 static void find_filter(void)
 {
     settings()->choice.filter = kind_marked(settings()->choice.mark);
@@ -49,7 +49,7 @@ static void find_filter(void)
     settings_follow();
 }
 
-/* Of a set that another version saved. */
+/* For settings that another version saved. */
 static void keep_calibration(void)
 {
     calibration_t saved = settings()->calibration;

@@ -10,13 +10,13 @@
 #include "settings/settings_row.h"
 #include "settings/settings_words.h"
 
-/* Values of the lists, each beside its word where it has one. */
+/* Values of the lists, at the same index as their words if they have any. */
 /* clang-format off */
 #define KIND(F) FILTER_KIND_##F,
 static const uint16_t choices[] IN_FLASH = {
     FILTER_LIST(KIND)
     MODE_CSV, MODE_PLOT,
-    0, 0x53, 0x1D,                                /* address; 0: the one that answers */
+    0, 0x53, 0x1D,                                /* address; 0: whichever answers */
     125, 250, 500, 1000, 2000, 4000, 8000,        /* rate, 0.1 Hz */
     2, 4, 8, 16,                                  /* range */
     96, 192, 384, 576,                            /* baud, in hundreds */
@@ -33,8 +33,8 @@ enum { LISTED = sizeof choices / sizeof choices[0] };
 enum { OFFSET_MAX = CALIBRATION_OFFSET_MAX_LSB_Q4, LEVEL_MAX_Q14 = 18841 }; /* 1.15 g */
 
 /*
- * Name, unit, place in settings_t, bytes of a number there, kind, fraction bits, what a change starts, and the range;
- * of a list where it begins in `choices` and how long it is. calibration_check has the last word on vectors.
+ * Name, unit, offset in settings_t, bytes of a number there, kind, fraction bits, what a change starts, and the range;
+ * for a list, where it starts in `choices` and its length. Vectors are finally judged by calibration_check.
  */
 #define SETTINGS(X) \
     X("filter", "", choice.filter, 1, WORDS, 0, STARTS_FILTER, WORD_FILTER, WORD_MODE) \
@@ -59,7 +59,7 @@ typedef struct {
 #define WORDS_OF(name, unit, ...) name "\0" unit "\0"
 #define ROW(name, unit, member, size, kind, bits, starts, least, most) \
     { { offsetof(settings_t, member), size, kind, bits, starts }, least, most },
-static const char words[] IN_FLASH = SETTINGS(WORDS_OF); /* as a parameter has them: the unit after the name */
+static const char words[] IN_FLASH = SETTINGS(WORDS_OF); /* as in parameters: the unit after the name */
 static const row_t rows[] IN_FLASH = { SETTINGS(ROW) };
 
 _Static_assert(sizeof rows / sizeof rows[0] == SETTING_PARAMETERS, "a row for each setting");
@@ -84,7 +84,7 @@ static void look_at_row(setting_t *s, uint8_t which)
     s->zero_is_off = false;
 }
 
-/* The descriptor of a setting that is the filter's, in program memory. */
+/* The descriptor of a filter parameter, in program memory. */
 static const filter_parameter_t *parameter_of(uint8_t which)
 {
     return filter_parameter(law_in_force(), (uint8_t)(which - SETTING_PARAMETERS));

@@ -1,4 +1,4 @@
-/* What is typed to values and back; see settings_table.h. Values are stored as settings.h and filter.h say. */
+/* Typed text to values and back; see settings_table.h. Values are stored as in settings.h and filter.h. */
 #include "base/number.h"
 #include "base/text.h"
 #include "settings/settings.h"
@@ -19,7 +19,7 @@ static uint8_t *place_of(const setting_t *s, uint8_t number)
     return (uint8_t *)settings() + s->format.place + (uint8_t)((uint16_t)number * size);
 }
 
-/* Little-endian on PC and chip, as settings.h wants it; all numbers have a sign. */
+/* Little-endian on PC and chip, as settings.h requires; all numbers are signed. */
 static uint32_t value_of(const setting_t *s, uint8_t number)
 {
     if (s->which >= SETTING_PARAMETERS) {
@@ -78,7 +78,7 @@ static bool is_legal(const setting_t *s, uint32_t value)
     return false;
 }
 
-/* A rate has 6 fraction bits, with which each legal one is exact, and is stored in tenths: with a rest it is none. */
+/* A rate has 6 fraction bits, in which each legal one is exact, and is stored in tenths: false with a remainder. */
 static bool to_tenths(uint32_t *value)
 {
     uint32_t tenths_q5 = *value * 5u;
@@ -99,7 +99,7 @@ static bool take_numbers(const setting_t *s, const char *text)
     return *text == '\0';
 }
 
-/* Each of x, y, z once, with a sign where it is reversed, and no mirror image: that is no way to mount a board. */
+/* Each of x, y, z once, with a sign if reversed. A mirror image is refused: a board cannot be mounted that way. */
 static bool take_axes(const char *text)
 {
     enum { XYZ = 0x123, YZX = 0x231, ZXY = 0x312 };
@@ -132,7 +132,7 @@ static bool take(const setting_t *s, const char *text)
     }
 }
 
-/* Whether the filter takes the user's parameters with this one among them. */
+/* Whether the filter accepts the user's parameters including this one. */
 static setting_answer_t judge_parameter(uint8_t which)
 {
     uint8_t own = settings()->choice.own;
@@ -144,7 +144,7 @@ static setting_answer_t judge_parameter(uint8_t which)
     return SETTING_ILLEGAL;
 }
 
-/* All settings with the new one among them. */
+/* Judges all settings including the new one. */
 static setting_answer_t judge(const setting_t *s)
 {
     if (s->which >= SETTING_PARAMETERS) {
@@ -156,7 +156,7 @@ static setting_answer_t judge(const setting_t *s)
     return calibration_check(&settings()->calibration).why == CALIBRATION_GOOD ? SETTING_TAKEN : SETTING_ILLEGAL;
 }
 
-/* Bytes to where they are kept; true: they differ from those that were there. */
+/* Copies bytes to where they are kept; true: they differ from the previous ones. */
 static bool keep(uint8_t *to, const uint8_t *from, uint8_t bytes)
 {
     bool differ = false;
@@ -181,7 +181,7 @@ setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
     (void)keep(before, place, bytes);
     setting_answer_t answer = take(&s, text) ? judge(&s) : SETTING_ILLEGAL;
     bool changed = answer == SETTING_TAKEN ? keep(before, place, bytes) : keep(place, before, bytes);
-    changed = changed || own != settings()->choice.own; /* as the value was before, but not in force */
+    changed = changed || own != settings()->choice.own; /* the value is as before, but was not in force */
     *starts = changed ? s.format.starts : 0;
     if (which == SETTING_FILTER && *starts != 0) {
         settings_take_filter(settings()->choice.filter);

@@ -1,4 +1,4 @@
-/* The words that settings have for values. Pure; any context. */
+/* The words used as values of settings. Pure; any context. */
 #ifndef SETTINGS_WORDS_H
 #define SETTINGS_WORDS_H
 
@@ -7,10 +7,10 @@
 #include "filter_list.h"
 #include "machine.h"
 
-/* Places: filters by their kind, then output modes, then addresses of the sensor. */
+/* Indices: filters by their kind, then output modes, then addresses of the sensor. */
 enum { WORD_FILTER, WORD_MODE = FILTER_KIND_COUNT, WORD_ADDRESS = WORD_MODE + 2, WORDS_END = WORD_ADDRESS + 3 };
 
-/* In program memory, as typed but for capitals. */
+/* The word in program memory, as typed except for capitals. */
 flash_text_t settings_word(uint8_t place);
 
 #endif

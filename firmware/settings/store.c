@@ -1,27 +1,27 @@
 /*
- * The check is a cyclic code over bytes, elements of GF(256), instead of one over bits: the remainder by the polynomial
- * (x - 1)(x - 2) = x^2 + 3x + 2, two bytes. Two damages d and e, n bytes apart, go unseen if d 2^n + e = 0 and d + e =
- * 0, so if 2^n = 1: the least such n is 255, and a record has 125 bytes at most. A CRC of as many bits over bits, the
- * usual CRC-16 for one, misses one in 65,536 of such pairs, and takes more instructions.
+ * The check is a cyclic code over bytes, elements of GF(256), instead of over bits: the two bytes of the remainder
+ * modulo (x - 1)(x - 2) = x^2 + 3x + 2. Two errors d and e, n bytes apart, go undetected if d 2^n + e = 0 and d + e =
+ * 0, so if 2^n = 1: the smallest such n is 255, and a record has 125 bytes at most. A bitwise CRC of the same size,
+ * such as the usual CRC-16, misses one in 65,536 of such pairs, and takes more instructions.
  */
 #include "settings/store.h"
 
 #include "hal_eeprom.h"
 #include "machine.h"
 
-/* Places in a record and in its copies, after the image. */
+/* Offsets in a record and in its copies, after the image. */
 enum { VERSION = STORE_IMAGE_SIZE, SEQUENCE, CHECK_HIGH, CHECK_LOW, MARK, END };
 
-enum { COPY_0 = STORE_COPY_0 >> 8, COPY_1 = STORE_COPY_1 >> 8, OTHER_COPY = COPY_0 ^ COPY_1 }; /* of the address */
+enum { COPY_0 = STORE_COPY_0 >> 8, COPY_1 = STORE_COPY_1 >> 8, OTHER_COPY = COPY_0 ^ COPY_1 }; /* address >> 8 */
 
-/* The last two: a save is under way. */
+/* OPENING, CLOSING: a save is in progress. */
 enum { IDLE, FAILED, OPENING, CLOSING };
 
-/* x^8 + x^4 + x^3 + x^2 + 1 without its first term: the powers of 2 are all 255 elements but 0. */
+/* x^8 + x^4 + x^3 + x^2 + 1 without its leading term: the powers of 2 are all 255 nonzero elements. */
 #define FIELD_POLYNOMIAL 0x1Du
 
 /*
- * Of two sequence numbers the one up to 63 further is the later. They are below 128: so never 0xFF, and no two damaged
+ * Of two sequence numbers, the one up to 63 ahead is the later. They are below 128, so never 0xFF, and no two damaged
  * bytes make a copy look as if nothing had ever been saved there.
  */
 #define SEQUENCE_MASK 0x7Fu
@@ -29,9 +29,9 @@ enum { IDLE, FAILED, OPENING, CLOSING };
 
 static struct save {
     uint8_t state;
-    uint8_t place; /* that is written next, or looked at */
-    uint8_t copy;  /* that counts: a save goes to the other one */
-    bool tried;    /* this byte was written: it must be right now */
+    uint8_t place; /* to compare or write next */
+    uint8_t copy;  /* the valid one: a save goes to the other */
+    bool tried;    /* this byte was written: it must read back right */
     uint8_t *record;
 } save;
 
@@ -40,7 +40,7 @@ static uint16_t address_of(uint8_t copy, uint8_t place)
     return (uint16_t)((uint16_t)copy << 8 | place);
 }
 
-/* Of the record's first bytes, 1 or more: of all before the check that is the check, with the check it is 0. */
+/* The remainder of the record's first bytes, 1 or more: of all before the check it is the check; with the check, 0. */
 static uint16_t remainder_of(uint8_t count)
 {
     const uint8_t *byte = save.record;
@@ -58,7 +58,7 @@ static uint16_t remainder_of(uint8_t count)
     return (uint16_t)((uint16_t)high << 8 | low);
 }
 
-/* Reads a copy and says what it is by itself: STORE_DAMAGED, STORE_EMPTY, STORE_OTHER_VERSION or STORE_GOOD. */
+/* Reads a copy and judges it by itself: STORE_DAMAGED, STORE_EMPTY, STORE_OTHER_VERSION or STORE_GOOD. */
 static store_status_t fetch(uint8_t copy)
 {
     uint8_t *byte = save.record;
@@ -77,8 +77,8 @@ static store_status_t fetch(uint8_t copy)
     return tail[0] == STORE_VERSION ? STORE_GOOD : STORE_OTHER_VERSION;
 }
 
-/* What the copy that counts says, together with the other one. */
-static store_status_t told(store_status_t status, store_status_t other)
+/* The status of the valid copy, given that of the other one. */
+static store_status_t overall_status(store_status_t status, store_status_t other)
 {
     if (other == STORE_DAMAGED && status == STORE_EMPTY) {
         return STORE_DAMAGED;
@@ -101,10 +101,10 @@ store_status_t store_load(uint8_t record[STORE_RECORD_SIZE])
         other = status;
         status = fetch(COPY_0);
     }
-    return told(status, other);
+    return overall_status(status, other);
 }
 
-/* The sequence number of a save that failed is used again: were it not, many of them would make the next look older. */
+/* A failed save's sequence number is used again: otherwise many failures would make the next save look older. */
 bool store_save_begin(void)
 {
     if (store_busy()) {
@@ -124,7 +124,7 @@ bool store_save_begin(void)
     return true;
 }
 
-/* A byte that is not right is written, once. */
+/* Writes a byte that is not right, once; if it still is not right, the save has failed. */
 static bool end_save_or_write(struct save *s, uint16_t address, uint8_t byte)
 {
     if (s->tried) {

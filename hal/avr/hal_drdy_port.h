@@ -8,7 +8,7 @@
 #include "hal_body.h"
 #include "hal_drdy.h"
 
-/* The conditions stand here, not in a function: its result would be a byte that is looked at, six cycles more. */
+/* The conditions are tested here, not in a function: its result would be a byte to test, six cycles more. */
 #define HAL_DRDY_ISR()                                            \
     static inline __attribute__((always_inline)) void edge(void); \
     ISR(INT0_vect)                                                \
@@ -25,8 +25,8 @@
     static inline void edge(void)
 
 /*
- * GPIOR1 and GPIOR2 take a cycle to read and one to write: edges left in this tick, and ticks until D2 is believed
- * again.
+ * GPIOR1: edges left in this tick. GPIOR2: ticks until D2 is trusted again. Each takes one cycle to read and one to
+ * write.
  */
 HAL_BODY void hal_drdy_enable(void)
 {

@@ -1,4 +1,4 @@
-/* Between two files of the chip's HAL: the clock's tick counts how long D2 is not heard. */
+/* Internal to the AVR HAL: the timer tick counts how long D2 stays muted. */
 #ifndef HAL_DRDY_TICK_H
 #define HAL_DRDY_TICK_H
 
@@ -7,7 +7,10 @@
 #include "hal_body.h"
 #include "hal_drdy.h"
 
-/* Each HAL_TICK_US; the clock's handler. In its last tick an input that flickered is heard, but not believed. */
+/*
+ * Called from the timer handler every HAL_TICK_US. In the last muted tick edges are counted again, but D2 is not
+ * trusted yet.
+ */
 HAL_BODY void hal_drdy_tick_isr(void)
 {
     GPIOR1 = HAL_DRDY_EDGES;

@@ -1,9 +1,10 @@
 /*
- * The one I2C verb that is more than a register access: getting a slave to let go of SDA, with a STOP by hand. Each
- * clock also pulls SDA while SCL is low and lets go of it while SCL is high, which is a STOP as soon as the slave lets
- * SDA rise; so there is no need to know at which bit the slave stands, and no clock beyond those it needs.
+ * The one I2C function that is more than a register access: it makes a slave release SDA, with a bit-banged STOP. Each
+ * clock also pulls SDA low while SCL is low and releases it while SCL is high, which is a STOP as soon as the slave
+ * lets SDA rise. So the slave's bit position need not be known, and there is no clock more than it needs.
  *
- * SDA is PC4, SCL PC5. Open drain by the direction register, the port bits stay 0: never drives high.
+ * SDA is PC4, SCL is PC5. Open drain through the direction register: the port bits stay 0, so a line is never driven
+ * high.
  */
 #include "hal_i2c.h"
 
@@ -13,7 +14,7 @@
 _Static_assert((16ul + 2ul * HAL_I2C_TWBR(2750)) * 1000000ul == F_CPU / 1000 * 2750, "SCL is exactly 363.6 kHz");
 _Static_assert((16ul + 2ul * HAL_I2C_TWBR(2500)) * 1000000ul == F_CPU / 1000 * 2500, "SCL is exactly 400 kHz");
 
-enum { CLOCKS_MAX = 16, STEP_US = 5 }; /* STEP_US: rise of a line with 10 kOhm and 400 pF */
+enum { CLOCKS_MAX = 16, STEP_US = 5 }; /* STEP_US: rise time of a line with 10 kOhm and 400 pF */
 
 uint8_t hal_i2c_clear(void)
 {

@@ -1,6 +1,6 @@
 /*
- * TWI of the ATmega328P (data sheet chapter 26). SCL is F_CPU / (16 + 2 TWBR): a clock of 2.75 us gives 363.6 kHz, one
- * of 2.5 us 400 kHz, with TWBR 14 and 12 at 16 MHz, 3 and 2 at 8 MHz. The internal pull-ups stay off (5 V).
+ * TWI of the ATmega328P (data sheet chapter 26). SCL is F_CPU / (16 + 2 TWBR): a clock period of 2.75 us gives 363.6
+ * kHz, 2.5 us gives 400 kHz, with TWBR 14 and 12 at 16 MHz, 3 and 2 at 8 MHz. The internal pull-ups (to 5 V) stay off.
  */
 #ifndef HAL_I2C_PORT_H
 #define HAL_I2C_PORT_H
@@ -30,7 +30,7 @@ HAL_BODY void hal_i2c_disable(void)
 
 HAL_BODY void hal_i2c_start(void)
 {
-    __asm__ volatile("" ::: "memory"); /* what the handler is to find is written before */
+    __asm__ volatile("" ::: "memory"); /* what the handler reads is written before this */
     TWCR = HAL_I2C_GO | _BV(TWSTA);
 }
 

@@ -1,4 +1,4 @@
-/* Idle sleep (SM2:0 = 0). SEI takes effect after the next instruction, so nothing can slip in between it and SLEEP. */
+/* Idle sleep (SM2:0 = 0). SEI takes effect after the next instruction, so no interrupt runs between SEI and SLEEP. */
 #include "hal_sleep.h"
 
 #include <avr/interrupt.h>

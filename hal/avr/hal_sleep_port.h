@@ -1,4 +1,4 @@
-/* GPIOR0 is one instruction to set and one cycle to test, so it holds the wake flag. */
+/* GPIOR0 holds the wake flag: it takes one instruction to set and one cycle to test. */
 #ifndef HAL_SLEEP_PORT_H
 #define HAL_SLEEP_PORT_H
 

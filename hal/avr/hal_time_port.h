@@ -1,6 +1,6 @@
 /*
- * Timer1 at F_CPU / 8, Timer2 at F_CPU / 1024. Counts of Timer1 must be whole microseconds or halves, which leaves two
- * clocks: 16 MHz (UNO, Nano, Pro Mini 5 V) and 8 MHz (Pro Mini 3.3 V).
+ * Timer1 runs at F_CPU / 8, Timer2 at F_CPU / 1024. A count of Timer1 must be 1 us or 0.5 us, which leaves two clocks:
+ * 16 MHz (UNO, Nano, Pro Mini 5 V) and 8 MHz (Pro Mini 3.3 V).
  */
 #ifndef HAL_TIME_PORT_H
 #define HAL_TIME_PORT_H
@@ -17,8 +17,8 @@
 #ifndef HAL_CPU_HZ /* a test image sets a slower one */
 #define HAL_CPU_HZ F_CPU
 #endif
-#define HAL_LAP_US ((uint8_t)(1024000000ul / F_CPU)) /* of Timer2 */
-enum { HAL_COUNTS_PER_US = F_CPU / 8000000 };        /* of Timer1 */
+#define HAL_LAP_US ((uint8_t)(1024000000ul / F_CPU)) /* one count of Timer2 */
+enum { HAL_COUNTS_PER_US = F_CPU / 8000000 };        /* Timer1 */
 
 typedef struct {
     uint32_t us;    /* at the last tick of Timer1 */
@@ -34,8 +34,8 @@ HAL_BODY uint16_t hal_time_count_isr(void)
 
 /*
  * *t_us = hal_tick.us + (uint16_t)(count - hal_tick.count) / HAL_COUNTS_PER_US; a late tick only makes the difference
- * longer: right for 32 ms. By hand, a byte at a time: the compiler would have the handler save four registers more, 16
- * cycles. What lies between the additions leaves the carry as it is.
+ * larger: correct for up to 32 ms. Hand-written, one byte at a time: the compiler would make the handler save four more
+ * registers, 16 cycles. The instructions between the additions leave the carry unchanged.
  */
 #if F_CPU == 16000000
 #define HAL_COUNTS_TO_US "lsr %B[count]\n\tror %A[count]\n\t"

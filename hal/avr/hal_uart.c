@@ -1,4 +1,4 @@
-/* UART rings and their interrupts. The interrupts move one byte each. */
+/* UART rings and their interrupts. Each interrupt moves one byte. */
 #include "hal_uart.h"
 
 #include <avr/interrupt.h>
@@ -19,14 +19,14 @@ static volatile uint8_t rx_lost;
 static bool rx_gap;
 static bool line_used;
 
-/* Known by its address in a register, an access to a ring is half as long. */
+/* With its address in a register, each access to a ring takes half the code. */
 static inline hal_ring_t *near(hal_ring_t *ring)
 {
     MACHINE_POINTER(ring);
     return ring;
 }
 
-/* A ring of 256 bytes wraps as its index does. */
+/* The index of a ring of 256 bytes wraps by itself. */
 #if HAL_UART_TX_SIZE == 256
 #define WRAP_TAIL
 #else
@@ -34,15 +34,15 @@ static inline hal_ring_t *near(hal_ring_t *ring)
 #endif
 
 /*
- * TXC0 means the last stop bit only if it is cleared after the last byte is in UDR0: a frame that ends before that
- * sets it. The other bits of UCSR0A that can be written are U2X0 and one that is 0.
+ * TXC0 marks the last stop bit only if it is cleared after the last byte is in UDR0: a frame that ends before that sets
+ * it. The other writable bits of UCSR0A are U2X0 and one that is 0.
  */
 enum { SENDS_LAST = _BV(U2X0) | _BV(TXC0) };
 
 /*
- * UDR0 = tx_buffer[tx.tail++]; with the last byte switch this interrupt off, clear TXC0. By hand, because it runs for
- * every byte sent: the compiler's entry and exit would cost 12 of 53 cycles more, 0.3 % of the processor at 100 rows a
- * second.
+ * UDR0 = tx_buffer[tx.tail++]; after the last byte, disable this interrupt and clear TXC0. Hand-written, because it
+ * runs for every byte sent: the compiler's entry and exit would add 12 cycles, for 53 in all, 0.3 % of the processor at
+ * 100 rows a second.
  */
 ISR(USART_UDRE_vect, ISR_NAKED)
 {
@@ -81,8 +81,9 @@ ISR(USART_UDRE_vect, ISR_NAKED)
 }
 
 /*
- * A received byte into the ring, 0 for one that is damaged or the first that fits after some that did not, so that the
- * line it belonged to can be refused. By hand too: at 1,000,000 baud a byte comes every 160 cycles. What it does is
+ * Puts a received byte into the ring. 0 replaces a damaged byte, and the first byte that fits after some that did not,
+ * so that the line it belongs to can be refused. Hand-written too: at 1,000,000 baud a byte comes every 160 cycles. It
+ * does
  *
  *   uint8_t next = (rx.head + 1) & RX_MASK, damage = UCSR0A & (FE0 | DOR0), byte = UDR0;
  *   if (next == rx.tail)  { rx_gap = 1; count }
@@ -148,10 +149,10 @@ void hal_uart_init(uint32_t baud)
 {
     UCSR0B = 0;
     line_used = false;
-    /* simulators compute the byte time when UBRR0L is written, so it comes last */
+    /* simulators compute the byte time when UBRR0L is written, so write it last */
     UCSR0A = _BV(U2X0);
     UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);
-    uint16_t divider = (uint16_t)((uint16_t)(F_CPU / 4 / baud - 1) / 2); /* F_CPU / 8 / baud, rounded, less one */
+    uint16_t divider = (uint16_t)((uint16_t)(F_CPU / 4 / baud - 1) / 2); /* F_CPU / 8 / baud, rounded, minus one */
     UBRR0H = (uint8_t)(divider >> 8);
     UBRR0L = (uint8_t)divider;
     UCSR0B = _BV(TXEN0) | _BV(RXEN0) | _BV(RXCIE0);

@@ -1,6 +1,6 @@
 /*
- * With 8 clocks a sample a frame is right within 2.2 % (115200 at 16 MHz and 57600 at 8 MHz are 2.12 % too fast), and a
- * byte must last 160 cycles, because its interrupts take most of them.
+ * In double-speed mode (F_CPU / 8) a frame tolerates a clock error of 2.2 % (115200 at 16 MHz and 57600 at 8 MHz are
+ * 2.12 % too fast). A byte must last at least 160 cycles, because its interrupts take most of them.
  */
 #ifndef HAL_UART_PORT_H
 #define HAL_UART_PORT_H

@@ -1,6 +1,6 @@
 /*
- * Watchdog in reset mode and the breadcrumb that outlives a reset. The start-up hook runs before .data and .bss are set
- * up: after a watchdog reset the dog is still on with its shortest period and must be stopped first.
+ * Watchdog in reset mode, and the breadcrumb that survives a reset. The start-up hook runs before .data and .bss are
+ * initialised: after a watchdog reset the watchdog is still on with its shortest period and must be stopped first.
  */
 #include "hal_watchdog.h"
 
@@ -34,9 +34,9 @@ void hal_watchdog_early(void)
 void hal_watchdog_start(void)
 {
     struct breadcrumb *b = &breadcrumb;
-    MACHINE_POINTER(b); /* an access is half as long */
+    MACHINE_POINTER(b); /* each access then takes half the code */
     bool intact = b->mark == MARK;
-    __asm__("" : "+r"(intact)); /* else the mark is compared again at each use */
+    __asm__("" : "+r"(intact)); /* or the compiler repeats the comparison at each use */
     cause = (uint8_t)hal_reset_classify(mcusr_at_start, intact, b->unfed_ticks);
     note_at_start = (intact && cause != HAL_RESET_POWER_ON) ? b->note : 0;
     b->mark = MARK;

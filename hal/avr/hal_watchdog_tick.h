@@ -1,8 +1,8 @@
-/* Between two files of the chip's HAL: the clock's tick counts what is unfed. */
+/* Internal to the AVR HAL: the timer tick counts the time since the last feed. */
 #ifndef HAL_WATCHDOG_TICK_H
 #define HAL_WATCHDOG_TICK_H
 
-/* Each HAL_TICK_US; the clock's handler. */
+/* Called from the timer handler every HAL_TICK_US. */
 void hal_watchdog_tick_isr(void);
 
 #endif

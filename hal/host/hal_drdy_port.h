@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-/* Counts the edge. False: its level is gone again, or the input flickers. */
+/* Counts the edge. False: the level is gone again, or the input flickers. */
 bool host_drdy_counts(void);
 
 #define HAL_DRDY_ISR()                \

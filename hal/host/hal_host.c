@@ -1,6 +1,6 @@
 /*
- * The host's board: which parts it has, what power-on and a reset make of them, and those that are no more than a few
- * lines: the timer's tick and alarm, the watchdog, the LED, the strap.
+ * The host's board: its parts, what power-on and a reset do to them, and the parts that take only a few lines: the
+ * timer's tick and alarm, the watchdog, the LED, the strap.
  */
 #include "hal_host.h"
 
@@ -14,7 +14,7 @@
 #include "hal_time.h"
 #include "hal_watchdog.h"
 
-#define ALARM_RANGE_US 32768u /* of the UNO's 16-bit counter: the alarm comes again after it */
+#define ALARM_RANGE_US 32768u /* of the UNO's 16-bit counter: the alarm repeats after it */
 
 uint32_t hal_host_cpu_hz = (uint32_t)HAL_HOST_HZ;
 
@@ -110,7 +110,7 @@ bool hal_host_led(void)
     return led;
 }
 
-/* Main is never interrupted here, so there is nothing to hold off. */
+/* Main is never interrupted here, so there is nothing to block. */
 hal_irq_state_t hal_irq_save(void)
 {
     return 0;
@@ -131,7 +131,7 @@ void hal_time_init(void)
 void hal_wake_at(uint32_t t_us)
 {
     uint32_t ahead_us = (t_us - hal_time_us()) % ALARM_RANGE_US;
-    uint64_t begun_at = host_now - host_now % HOST_CYCLES_PER_US; /* the microsecond that runs */
+    uint64_t begun_at = host_now - host_now % HOST_CYCLES_PER_US; /* start of the current microsecond */
     alarm_at = begun_at + (uint64_t)(ahead_us == 0 ? ALARM_RANGE_US : ahead_us) * HOST_CYCLES_PER_US;
     if ((hal_time_us() - t_us) % ALARM_RANGE_US < HAL_WAKE_LATE_US) {
         hal_wake();

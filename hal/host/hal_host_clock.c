@@ -1,9 +1,9 @@
-/* The host's virtual clock: it goes from event to event of the board's parts, which it is handed in a table. */
+/* The host's virtual clock: steps from event to event of the board's parts, which it gets in a table. */
 #include "hal_host_private.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 
-/* A pass of main takes time too; without it a main loop that asks to be called again would stop the clock. */
+/* A pass of main takes time too; otherwise a main loop that asks for another pass would stop the clock. */
 enum { PASS_CYCLES = 320 };
 
 uint64_t host_now;

@@ -1,6 +1,6 @@
 /*
- * The host's EEPROM: 3.4 ms a write, as the chip's, and what supply and age do to it. Tests cut a write, wear a cell
- * out, and read how often each was written.
+ * The host's EEPROM: 3.4 ms per write, as on the chip, and the effects of supply and wear. Tests cut a write, wear out
+ * a cell, and read how often each cell was written.
  */
 #include <string.h>
 
@@ -14,7 +14,7 @@ static uint32_t writes[HAL_EEPROM_SIZE];
 static uint64_t ready_at;
 static uint16_t worn;
 static struct {
-    uint32_t writes_left; /* until it comes, that one included; 0: none is to come */
+    uint32_t writes_left; /* until the cut, that write included; 0: no cut is due */
     hal_host_left_t left;
     uint8_t value;
     bool came;
@@ -29,7 +29,7 @@ void host_eeprom_power_on(void)
     ready_at = 0;
 }
 
-/* A write goes on over a reset, but not over a lack of supply. */
+/* A write continues across a reset, but not across a power loss. */
 void host_eeprom_reset(void)
 {
     if (cut.came) {
@@ -65,7 +65,7 @@ uint32_t hal_host_eeprom_writes(uint16_t address)
     return writes[address];
 }
 
-/* Who asks again and again comes to the end of the write, though main does not sleep. */
+/* Polling reaches the end of the write, although main does not sleep. */
 bool hal_eeprom_ready(void)
 {
     if (cut.came) {
@@ -83,7 +83,7 @@ uint8_t hal_eeprom_read(uint16_t address)
     return cells[address % HAL_EEPROM_SIZE];
 }
 
-/* What the cell holds after the write. */
+/* The cell's content after the write. */
 static uint8_t outcome(uint16_t address, uint8_t value)
 {
     if (address == worn) {

@@ -1,4 +1,4 @@
-/* I2C master over the virtual sensor: each command takes its bit times, then reports a status and calls the handler. */
+/* I2C master on the virtual sensor: each command takes its bit times, then reports a status and calls the handler. */
 #include "hal_i2c.h"
 
 #include "hal_host_private.h"
@@ -66,7 +66,7 @@ void hal_i2c_enable(bool fast)
     i2c.bit_cycles = fast ? CYCLES_PER_BIT_FAST : CYCLES_PER_BIT;
 }
 
-/* The sensor sees the lines released: like a STOP for it. */
+/* The sensor sees the lines released: like a STOP. */
 void hal_i2c_disable(void)
 {
     unsigned bit_cycles = i2c.bit_cycles;

@@ -1,6 +1,6 @@
 /*
- * Inside the host's HAL: what its parts share. The clock is the lowest of them and knows the others only by the table
- * that hal_host.c, the highest, hands to it.
+ * Shared by the parts of the host's HAL. The clock is the lowest of them and knows the others only through the table
+ * that hal_host.c, the highest, passes to it.
  */
 #ifndef HAL_HOST_PRIVATE_H
 #define HAL_HOST_PRIVATE_H
@@ -11,26 +11,26 @@
 
 enum { HOST_CYCLES_PER_US = 16 };
 
-/* A part of the board that does something by itself as time goes by. */
+/* A part of the board that acts by itself as time passes. */
 typedef struct {
-    uint64_t (*next)(void); /* cycle of its next event, HOST_NEVER: none; NULL: it looks around after each event */
-    void (*step)(void);     /* at that cycle or later */
+    uint64_t (*next)(void); /* cycle of its next event, HOST_NEVER: none; NULL: it runs after each event */
+    void (*step)(void);     /* runs at that cycle or later */
 } host_part_t;
 
-/* hal_host_clock.c: time, and the sleep in which it goes by */
+/* hal_host_clock.c: time, and the sleep during which it passes */
 extern uint64_t host_now; /* cycles since power-on */
 extern hal_host_config_t host_config;
-/* These parts, in this order where several are due; they stay the caller's. */
+/* These parts, in this order if several are due; the table stays the caller's. */
 void host_clock_begin(const host_part_t *parts, size_t count);
 void host_clock_reset(void);
-/* No time goes by any more until host_clock_reset, and a sleep ends at once. */
+/* Time stops until host_clock_reset, and a sleep ends at once. */
 void host_clock_stop(void);
 
 /* hal_host_eeprom.c */
 void host_eeprom_power_on(void);
 void host_eeprom_reset(void);
 
-/* hal_host_sensor.c: the sensor, and its line INT1 */
+/* hal_host_sensor.c: the sensor and its INT1 line */
 void host_sensor_begin(const stream_t *stream, bool loop);
 uint64_t host_sensor_next(void);
 void host_sensor_step(void);
@@ -38,7 +38,7 @@ void host_sensor_step(void);
 void host_sensor_check_rate(void);
 void host_drdy_reset(void);
 void host_drdy_tick(void);
-/* Runs the handler of an edge that is there. */
+/* Runs the handler of a pending edge. */
 void host_drdy_serve(void);
 
 /* hal_host_i2c.c */

@@ -1,7 +1,4 @@
-/*
- * The virtual sensor: its clock, of which one tick per output-data-rate period takes a row of the stream, and its line
- * INT1.
- */
+/* The virtual sensor: its clock, which takes one row of the stream per output data period, and its INT1 line. */
 #include <string.h>
 
 #include "hal_drdy.h"
@@ -19,12 +16,12 @@ static bool over;
 static size_t row_latched;
 static bool drdy_enabled;
 static bool drdy_edge;
-static uint8_t edges_left; /* in this tick; 0 after a reset: 256 */
+static uint8_t edges_left; /* in this tick; 0 after a reset acts as 256 */
 static uint8_t deaf_ticks;
 
 void hal_host_drdy_handler(void);
 
-/* Not while D2 is not heard: its flag is cleared then. */
+/* Not while D2 is muted: its interrupt flag is cleared at the end of that time. */
 static bool heard(void)
 {
     return drdy_enabled && deaf_ticks <= 1;

@@ -1,4 +1,4 @@
-/* UART line: bytes take ten bit times each way. The rings are those of the AVR. */
+/* UART line: a byte takes ten bit times each way. The rings are those of the AVR. */
 #include "hal_uart.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* A test may change what the firmware is told of its processor. */
+/* A test may change the processor clock that the firmware sees. */
 #ifndef HAL_TIME_PORT_H
 #define HAL_TIME_PORT_H
 

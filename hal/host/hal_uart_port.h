@@ -1,4 +1,4 @@
-/* The virtual line knows every rate. */
+/* The virtual line can use every baud rate. */
 #ifndef HAL_UART_PORT_H
 #define HAL_UART_PORT_H
 

@@ -8,6 +8,10 @@
 #include <avr/sleep.h>
 #include <util/delay.h>
 
+#ifndef PROBE_TWBR
+#define PROBE_TWBR 14 /* 363.6 kHz */
+#endif
+
 enum { SENSOR = 0x53, HALF_CLOCK_US = 5, CLOCKS = 10, CASES = 4 };
 enum { CASE_CLOCKS, CASE_STOP, CASE_START, CASE_DRIVEN };
 
@@ -93,7 +97,7 @@ int main(void)
     UCSR0A = _BV(U2X0);
     UBRR0 = 16;
     UCSR0B = _BV(TXEN0);
-    TWBR = 14;
+    TWBR = PROBE_TWBR;
     for (uint8_t which = 0; which < CASES; which++) {
         leave_in_byte();
         pull_sda(which);

@@ -56,7 +56,8 @@ bool tilt_gravity_plausible(const int32_t a_q8[3]);
 
 /*@ requires AXIS(a) && HIGHEST(rail_high_lsb);
     assigns a->filter.x_lsb_q16, a->filter.flags, a->filter.quarters, a->filter.own, a->noise, a->away, \result
-      \from a->filter.x_lsb_q16, a->filter.flags, a->filter.quarters, a->noise, a->away, lsb, rail_high_lsb, own_r;
+      \from a->filter.x_lsb_q16, a->filter.flags, a->filter.quarters, a->filter.identifies, a->noise, a->away, lsb,
+        rail_high_lsb, own_r;
     ensures AXIS(a);
 */
 uint8_t tilt_axis_update(tilt_axis_t *a, int16_t lsb, int16_t rail_high_lsb, bool own_r);
@@ -76,6 +77,7 @@ static void any_axis(tilt_axis_t *a)
     a->filter.x_lsb_q16 = ANY_S32(-X_MAX_Q16, X_MAX_Q16);
     a->filter.flags = ANY_U8(0, UINT8_MAX);
     a->filter.quarters = ANY_U8(0, UINT8_MAX);
+    a->filter.identifies = ANY_BOOL();
     a->noise.floor_lsb2_q16 = ANY_U32(0, 65535UL * 223U);
     a->noise.mean_lsb2_q16 = ANY_U32(0, MEAN_MAX_LSB2_Q16);
     a->noise.r_lsb2_q8 = ANY_U32(0, 256000);

@@ -26,6 +26,8 @@ static void law_set_up(filter_t *f, const filter_config_t *config);
     ensures STARTING(f) || f->collected == 5;
 */
 static void law_set_noise(filter_t *f, uint32_t r_lsb2_q8);
+/*@ assigns \result \from f->own; */
+static uint32_t law_own_noise(const filter_t *f);
 /*@ requires TRACKED(f) && f->collected == 5 && f->rate_lsb == 0;
     requires SAMPLE_Q16(f->x_lsb_q16);
     assigns LAW_STATE, f->previous_lsb \from settled, LAW_SEES;
@@ -89,6 +91,7 @@ static void any_law(uint8_t traits)
     any.together = ANY_BOOL() ? law_together : NULL;
     any.set_up = law_set_up;
     any.set_noise = law_set_noise;
+    any.own_noise = ANY_BOOL() ? law_own_noise : NULL;
     any.start = law_start;
     any.step = law_step;
     any.fade = ((traits & 32U) != 0U) ? law_fade : NULL;
@@ -277,6 +280,14 @@ void proof_filter_set_noise(void)
         any_filter(&f, collected, 1024);
         filter_set_noise(&f, ANY_U32(0, UINT32_MAX));
     }
+}
+
+void proof_filter_own_noise_lsb2_q8(void)
+{
+    filter_t f;
+    any_law(0);
+    any_filter(&f, FILTER_RUNNING, 1024);
+    (void)filter_own_noise_lsb2_q8(&f);
 }
 
 void proof_filter_reset(void)
