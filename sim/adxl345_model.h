@@ -60,7 +60,7 @@ typedef struct adxl345_model {
 /* Powered, registers at their reset values, address 0x53, shadowing on, no callbacks; the typical part. */
 void adxl345_model_init(adxl345_model_t *m);
 
-/* Another sensor in its place, just powered: this row's identity, scale and self-test; the other options stay. */
+/* Replaces the sensor by this variant, just powered: its identity, scale and self-test; the other options are kept. */
 void adxl345_model_become(adxl345_model_t *m, const adxl345_variant_t *variant);
 
 /*
@@ -97,7 +97,7 @@ double adxl345_model_odr_hz(const adxl345_model_t *m);
  */
 bool adxl345_model_tick(adxl345_model_t *m, const int16_t full[3]);
 
-/* The range in force, of data in full resolution or 10 bits. */
+/* The range in force, for data in full resolution or 10 bits. */
 double adxl345_model_range_g(const adxl345_model_t *m);
 
 /* The same conversion without storing: what the registers would show for this acceleration. */

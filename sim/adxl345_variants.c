@@ -1,11 +1,11 @@
 /*
  * Sources: "p." is a page of the part's own data sheet by Analog Devices (ADXL345 Rev. E, ADXL346 Rev. C, ADXL312 and
- * ADXL375 Rev. B). Pages that were not at hand are replaced by what others took from them: the drivers of Analog
- * Devices ("no-OS": drivers/accel/adxl313/adxl313.h), of Linux (drivers/input/misc/adxl34x.c), of Zephyr (adxl34x),
+ * ADXL375 Rev. B). Where a page was not available, the values come from others who used it: the drivers of Analog
+ * Devices ("no-OS": drivers/accel/adxl313/adxl313.h), Linux (drivers/input/misc/adxl34x.c) and Zephyr (adxl34x), and
  * distributors' extracts. All have the rate codes of the ADXL345 in 0x2C and its FIFO in 0x38 and 0x39.
  *
- * Self-test: the middle of the limits, times what a supply of 3.3 V makes of them (ADXL345 p. 31: 1.77 on x and y, 1.47
- * on z), or the typical value where that is given.
+ * Self-test: the middle of the limits, times the factor for a supply of 3.3 V (ADXL345 p. 31: 1.77 on x and y, 1.47 on
+ * z), or the typical value if that is given.
  */
 #include "adxl345_variants.h"
 
@@ -22,8 +22,8 @@ const adxl345_variant_t adxl345_variants[] = {
     { "adxl346", 0xE6, 256.0, 16.0, false, { 295, -295, 475 } },
     /*
      * 200 g: p. 1; 20.5 LSB/g (18.4 to 22.6): distributors; self-test 6.4 g on z, DEVID: drivers; no figure found for x
-     * and y. DATA_FORMAT: D3, D1 and D0 are to be written as 1; what other values do is not said: here they are kept
-     * and change nothing.
+     * and y. DATA_FORMAT: D3, D1 and D0 are to be written as 1; the effect of other values is not specified: here they
+     * are kept and change nothing.
      */
     { "adxl375", 0xE5, 20.5, 200.0, true, { 0, 0, 131 } },
     /*

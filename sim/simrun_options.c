@@ -140,7 +140,7 @@ static void add_command(const char *argument)
     add_typed(at_ms, end + 1, false);
 }
 
-/* Or the names that there are. */
+/* If there is no such sensor, refuses with the list of names. */
 static void set_sensor(const char *argument)
 {
     char names[120] = "";
@@ -231,7 +231,7 @@ static bool take_number(int code, const char *name, const char *argument)
     }
 }
 
-/* Those without an argument. */
+/* Options without an argument. */
 static bool take_switch(int code)
 {
     switch (code) {

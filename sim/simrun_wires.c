@@ -4,14 +4,14 @@
 
 #include "simrun.h"
 
-/* of an RC that rises from 0: to 0.7 VCC, where an input sees a one for sure, and from 0.3 to 0.7 VCC (UM10204) */
+/* an RC rising from 0: to 0.7 VCC, where an input is sure to see a one, and from 0.3 to 0.7 VCC (UM10204) */
 #define TO_ONE (-log(0.3))
 #define RISE_TIME log(0.7 / 0.3)
 #define NS_PER_OHM_PF 1e-3
 
 static double scl_rc_ns, sda_rc_ns;
 
-/* A number in these bounds, and what is behind it; NULL: it is none. */
+/* Parses a number within these bounds; returns the text after it, NULL if it is not legal. */
 static char *bounded(const char *text, double low, double high, double *value)
 {
     char *end;

@@ -66,7 +66,7 @@ static void show_levels(twi_peripheral_t *twi)
     twi->avr->data[REG_PINC] = (uint8_t)(others | pull.value); /* the IRQs above are silent if the level is unchanged */
 }
 
-/* SCL is low for so long in each bit, and high as long. */
+/* Time that SCL is low in each bit; it is high for as long. */
 static unsigned half_cycles(const twi_peripheral_t *twi)
 {
     const uint8_t *data = twi->avr->data;
@@ -229,7 +229,7 @@ static void receive_byte(twi_peripheral_t *twi, bool give_ack)
 {
     unsigned bits = 0;
     unsigned wire = 0;
-    bool was_one = false; /* the acknowledge before was low */
+    bool was_one = false; /* the preceding acknowledge was low */
     twi->acknowledged = twi->acknowledged && !twi->let_go;
     twi->let_go = false;
     for (unsigned clock = 1; clock <= BITS_BYTE; clock++) {

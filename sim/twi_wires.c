@@ -51,7 +51,7 @@ static avr_cycle_count_t on_sda_up(avr_t *avr, avr_cycle_count_t when, void *par
     return 0;
 }
 
-/* Another function than that of SDA: simavr has one timer for each. */
+/* A function separate from SDA's: simavr has one timer per function. */
 static avr_cycle_count_t on_scl_up(avr_t *avr, avr_cycle_count_t when, void *param)
 {
     return on_sda_up(avr, when, param);
