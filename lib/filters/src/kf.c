@@ -4,8 +4,9 @@
  *
  * lrf: linear robust filter (Volovyk et al., paper 002 equation (31)): kf with the mean variance of normal and outlying
  * samples, R_L = R (N^2 - q1 (N^2 - 1)), where q1 is the probability of a normal sample (clean) and N the sigma of an
- * outlier over that of a normal one (ratio). P is in units of R_L, which is limited to 65,536 LSB^2 and within 2^-13 of
- * the formula. With ratio 1 it is kf.
+ * outlier over that of a normal one (ratio); 60.85 R at the defaults. P is in units of R_L, which is limited to 65,536
+ * LSB^2 and within 2^-13 of the formula. With ratio 1 it is kf. Its error variance is 0.49 of that of kf with 15 %
+ * outliers of 20 sigma, and without outliers 5.8 times that of kf (kf / lrf = 0.1715; test_lrf_reference).
  */
 #include "kalman.h"
 
