@@ -17,7 +17,11 @@ from results import FOLDER, Results, table
 
 PROGRAM = "build/host/default_filter"
 JSON = pathlib.Path("build/default.json")
-ABOUT = pathlib.Path(__file__).with_name("default_about.md").read_text(encoding="utf-8")
+ABOUT = """
+Every filter over the shipped streams and over parts of real recordings ([recordings](../recordings.md)), with bad reads and outliers put in, at 25 to
+800 Hz; from this the default filter is chosen. [Choosing a filter](../choosing-a-filter.md) has what follows from it.
+
+""" + pathlib.Path(__file__).with_name("default_about.md").read_text(encoding="utf-8")
 PAGE = Results(FOLDER / "default-filter.md", "The default filter: results", "make default", ABOUT)
 WORST_LISTED = 2
 READINGS = "The same rule, read otherwise"
