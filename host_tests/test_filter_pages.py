@@ -46,7 +46,7 @@ def number_at(place):
     page, _, key = place.partition(": ")
     text = (results.FOLDER / f"{page}.md").read_text(encoding="utf-8")
     if key.startswith("~"):
-        return re.search(key[1:], text)[1]
+        return re.search(key[1:], one_line(text))[1]
     key, _, part = key.partition(" #")
     cell = results.numbers_of(text)[key].split(" (")[0]
     return re.split(r" / | ", cell)[int(part)] if part else cell

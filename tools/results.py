@@ -3,19 +3,21 @@ that the committed page has otherwise is named."""
 import hashlib
 import pathlib
 import subprocess
+import textwrap
 
 import page_sources
 from page import no_title_twice
 
 FOLDER = pathlib.Path("docs/results")
 PICTURES = FOLDER / "pictures"
+COLUMNS = 150
 KEPT = pathlib.Path("build/pages")  # where there is no git: pages as they were before a command wrote them
 
 
 def table(title, text, head, rows):
     """The lines of one table; text, if there is any, stands above it."""
-    return [f"## {title}", *([text] if text else []), "", f"| {' | '.join(head)} |", "|---" * len(head) + "|",
-            *(f"| {' | '.join(row)} |" for row in rows), ""]
+    above = textwrap.wrap(text, COLUMNS, break_long_words=False, break_on_hyphens=False)
+    return [f"## {title}", *above, "", f"| {' | '.join(head)} |", "|---" * len(head) + "|", *(f"| {' | '.join(row)} |" for row in rows), ""]
 
 
 def cells(text):
