@@ -1,5 +1,5 @@
 """Which filters are in which image: FILTERS= of make, tools/filters_txt.sh, the image that holds a filter; and that the filter with which the
-firmware starts is the one that docs/default-filter.md decides for, wherever it is named."""
+firmware starts is the one that docs/results/default-filter.md decides for, wherever it is named."""
 import os
 import pathlib
 import re
@@ -11,6 +11,7 @@ sys.path.insert(0, "tools")
 from laws import DEFAULT, PLAIN, ROBUST, SLOWEST  # noqa: E402
 import boards
 import default_filter
+import results
 import default_score as score
 import link_image
 import system_support
@@ -232,7 +233,7 @@ def other_faults_of_a_link_stay_as_the_linker_says_them():
 def decided():
     """The rule put to the table of the page."""
     scores = {}
-    for title, name, group, cell in default_filter.PAGE.cells(default_filter.DOCUMENT.read_text(encoding="utf-8")):
+    for title, name, group, cell in results.cells(default_filter.PAGE.held()):
         if title == "RMSE by class" and group in score.CLASSES:
             scores.setdefault(group, {})[name.strip("`")] = float(cell.split(" (")[0])
     assert set(scores) == set(score.CLASSES) and all(set(EVERY) <= set(found) for found in scores.values()), scores
@@ -248,7 +249,7 @@ def default_decided():
 @test
 def the_page_says_what_its_table_decides():
     found = decided()
-    text = default_filter.DOCUMENT.read_text(encoding="utf-8")
+    text = " ".join(default_filter.PAGE.held().split())
     assert f"The rule chooses **`{found.default}`**" in text and found.why in text, found
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The files that the numbers of a page depend on (tools/pages.txt), and the line at the page's end that holds their hash: the command that measures
+"""The files that the numbers of a page depend on (tools/pages.txt), and the line of the page that holds their hash: the command that measures
 a page writes it, so a page whose line is not today's hash was measured on other sources.
 
     page_sources.py                  the hash of each page's sources as they are
@@ -20,8 +20,8 @@ TABLE = pathlib.Path("tools/pages.txt")
 LINE = re.compile(r"^<!-- sources: (\w+) -->\n?", re.M)
 HASH = re.compile(r"[0-9a-f]{12}")
 NONE = "none"  # no commit is known on whose sources the page was measured
-# the marker of a page that a command writes
-WRITTEN = re.compile(r"<!-- (?:[\w ,]*written by|table:) (make \w+)")
+# the line of a page that a command writes whole, or in part
+WRITTEN = re.compile(r"^(?:Written by `|<!-- (?:[\w ,]*written by|table:) )(make \w+)", re.M)
 CODE = comments.C_LIKE | {".py", ".mk", ".sh", ""}
 
 
@@ -125,9 +125,15 @@ def hash_now(page):
     return digest(files_now(row_of(page).globs))
 
 
+def line(value):
+    return f"<!-- sources: {value} -->"
+
+
 def with_hash(text, value):
-    """The page's text with its line at the end."""
-    return LINE.sub("", text).rstrip("\n") + f"\n\n<!-- sources: {value} -->\n"
+    """The page's text with this hash in its line, which stands at the end if it has none."""
+    if LINE.search(text):
+        return LINE.sub(line(value) + "\n", text)
+    return text.rstrip("\n") + f"\n\n{line(value)}\n"
 
 
 def write_hash(page, value):
