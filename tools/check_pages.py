@@ -16,7 +16,7 @@ NAMED = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"(?:[^"\n]*/)?([^"/\n]+)"|^[ \t]
 IMPLEMENTED = (".c", ".cpp")
 PRODUCT = ("lib", "firmware", "hal", "nav", "sim", "host_tests")
 # what fills a page, draws it, launches a program or says what is wrong with it makes no number
-NO_NUMBER = {"page.py", "page_sources.py", "robust_pictures.py", "look.py", "launched.py", "port.py", "errors.py"}
+NO_NUMBER = {"page.py", "page_sources.py", "results.py", "robust_pictures.py", "look.py", "launched.py", "port.py", "errors.py"}
 COMMITS = 10  # of a page, searched for the one whose sources it was measured on
 SHOWN = 4
 
@@ -56,7 +56,7 @@ def missing(page, files, known):
 
 def unlisted(rows):
     """Pages that a command writes and that the table does not have, or under another command."""
-    for path in sorted(pathlib.Path("docs").glob("*.md")):
+    for path in sorted(pathlib.Path("docs").rglob("*.md")):
         for command in set(WRITTEN.findall(path.read_text(encoding="utf-8"))):
             if str(path) not in rows or rows[str(path)].command != command:
                 yield f"{TABLE}: {path} is written by {command}, which is not its row"

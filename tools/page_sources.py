@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The files that the numbers of a page depend on (tools/pages.txt), and the line at the page's end that holds their hash: the command that measures
+"""The files that the numbers of a page depend on (tools/pages.txt), and the line of the page that holds their hash: the command that measures
 a page writes it, so a page whose line is not today's hash was measured on other sources.
 
     page_sources.py                  the hash of each page's sources as they are
@@ -126,8 +126,9 @@ def hash_now(page):
 
 
 def with_hash(text, value):
-    """The page's text with its line at the end."""
-    return LINE.sub("", text).rstrip("\n") + f"\n\n<!-- sources: {value} -->\n"
+    """The page's text with its line, where it has one, else at the end."""
+    line = f"<!-- sources: {value} -->\n"
+    return LINE.sub(line, text) if LINE.search(text) else text.rstrip("\n") + "\n\n" + line
 
 
 def write_hash(page, value):
