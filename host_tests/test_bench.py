@@ -12,7 +12,7 @@ from laws import ROBUST  # noqa: E402
 spec = importlib.util.spec_from_file_location("bench", pathlib.Path("tools/bench.py"))
 bench = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(bench)
-bench_firmware, bench_page, bench_peers, laws = (sys.modules[name] for name in ("bench_firmware", "bench_page", "bench_peers", "laws"))
+bench_firmware, page_benchmarks, bench_peers, laws = (sys.modules[name] for name in ("bench_firmware", "page_benchmarks", "bench_peers", "laws"))
 
 # a filter of this test's own
 limits_of_the_list = laws.limits
@@ -42,7 +42,7 @@ def rows():
 
 def whole_page(calls):
     """The page's text with that table of calls."""
-    return bench_page.PAGE.whole(bench_page.lines(calls, ["| parts |"], ["| where |"], ["| peers |"]), "0123456789ab")
+    return page_benchmarks.PAGE.whole(page_benchmarks.lines(calls, ["| parts |"], ["| where |"], ["| peers |"]), "0123456789ab")
 
 
 RMS = [("one", "typical", 250, 0.01), ("one", "provoked", 250, 99.0), ("one", "typical", 125, 9.0), ("angles", "typical", 0, 0.004)]
@@ -228,17 +228,17 @@ def other_people_s_filters_are_skipped_and_counted_where_they_are_absent():
 def their_table_and_the_hash_are_left_alone_unless_all_of_them_were_measured():
     peers = {"one": {"label": "`one`", "words": "ours", "min": 700, "median": 1234, "worst": 1300, "flash": 5000, "ram": 90, "error": 1.716},
              "no filter": {"label": "no filter", "words": "read", "error": 0.5}}
-    kept = bench_page.DOCUMENT
-    bench_page.PAGE.document = bench_page.DOCUMENT = OUT / "benchmarks.md"
+    kept = page_benchmarks.DOCUMENT
+    page_benchmarks.PAGE.document = page_benchmarks.DOCUMENT = OUT / "benchmarks.md"
     try:
-        bench_page.write(["| old |"], ["| old |"], ["| old |"], ["| old |"], "0123456789ab")
+        page_benchmarks.write(["| old |"], ["| old |"], ["| old |"], ["| old |"], "0123456789ab")
         for table, left, sources in ((None, 1, "0123456789ab"), (bench_peers.table(peers), 0, "ba9876543210")):
-            bench_page.write(["| new |"], ["| parts |"], ["| where |"], table, "ba9876543210")
-            written = bench_page.PAGE.text()
+            page_benchmarks.write(["| new |"], ["| parts |"], ["| where |"], table, "ba9876543210")
+            written = page_benchmarks.PAGE.text()
             assert written.count("| old |") == left and f"<!-- sources: {sources} -->" in written, written
             assert written.count("| new |") == written.count("| parts |") == written.count("| where |") == 1, written
     finally:
-        bench_page.PAGE.document = bench_page.DOCUMENT = kept
+        page_benchmarks.PAGE.document = page_benchmarks.DOCUMENT = kept
     # the best error first; what was not timed has no cycles
     rows = ["| no filter | read |  |  |  |  |  | 0.50 |", "| `one` | ours | 700 | 1,234 | 1,300 | 5,000 | 90 | 1.72 |"]
     assert "\n".join(rows) in written, written
@@ -271,7 +271,7 @@ def what_a_filter_beside_others_prints_is_read():
 
 @test
 def the_committed_page_has_every_filter_beside_theirs():
-    table = "\n".join(bench_page.PAGE.section(bench_page.PAGE.text(), bench_page.PEERS))
+    table = "\n".join(page_benchmarks.PAGE.section(page_benchmarks.PAGE.text(), page_benchmarks.PEERS))
     for subject in (*bench_peers.ours(), *bench_peers.THEIRS):
         assert table.count(f"| {subject.label} | {subject.words} |") == 1, f"{subject.name} has no row in {bench.DOCUMENT}: run make bench"
 
@@ -308,7 +308,7 @@ def spans_leave_the_interrupts_out():
 
 def page_row(name):
     """The cells of a row of the page."""
-    row = next(line for line in bench_page.PAGE.text().splitlines() if line.startswith(f"| `{name}` |"))
+    row = next(line for line in page_benchmarks.PAGE.text().splitlines() if line.startswith(f"| `{name}` |"))
     return [cell.strip() for cell in row.split("|")[2:-1]]
 
 

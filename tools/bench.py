@@ -7,12 +7,12 @@ import statistics
 import subprocess
 import sys
 
-import bench_page
 import bench_parts
 import bench_peers
 import bench_where
 import images
 import laws
+import page_benchmarks
 import page_sources
 from bench_firmware import COMPILER, DOCUMENT, OUT, SIMRUN, Fault, image_size, measure_rest, measure_sample, run
 
@@ -226,7 +226,7 @@ def table(rows):
 
 def read_table(text):
     """{name: {column: number}} of the calls' table of a page; empty if it has none."""
-    lines = [line for line in bench_page.PAGE.section(text, bench_page.CALLS) if line.startswith("|")]
+    lines = [line for line in page_benchmarks.PAGE.section(text, page_benchmarks.CALLS) if line.startswith("|")]
     if not lines:
         return {}
     head = [cell.strip() for cell in lines[0].strip("|").split("|")]
@@ -320,7 +320,7 @@ def main():
     lines = table(rows)
     print("\n".join([*lines, "", *bench_peers.table(peers), *bench_peers.said_of(absent, arguments.peers)]))
     JSON.write_text(json.dumps(bench_json(rows) + bench_peers.json_rows(peers), indent=1) + "\n", encoding="ascii")
-    new = read_table("\n".join(["", f"## {bench_page.CALLS}", *lines]))
+    new = read_table("\n".join(["", f"## {page_benchmarks.CALLS}", *lines]))
     faults = limit_faults(filters, rows, rms) + declared_faults(declared_of(arguments.flags.split(), filters), rows)
     faults += regressions(read_table(committed_page()), new)
     version = run(["avr-gcc", "-dumpversion"]).strip()
@@ -329,7 +329,7 @@ def main():
         return 0
     parts, found = bench_parts.report()
     faults += found
-    bench_page.write(lines, parts, measure_where(), None if absent else bench_peers.table(peers), sources)
+    page_benchmarks.write(lines, parts, measure_where(), None if absent else bench_peers.table(peers), sources)
     for fault in faults:
         print(f"bench: {fault}", file=sys.stderr)
     print(f"bench: {len(rows)} rows, {len(faults)} findings; {DOCUMENT} and {JSON} written")

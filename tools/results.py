@@ -38,5 +38,7 @@ class Results(Page):
         kept.write_text(before, encoding="utf-8")
         written.write_text(digest(new), encoding="ascii")
         self.document.parent.mkdir(parents=True, exist_ok=True)
-        self.document.write_text(new, encoding="utf-8")
+        beside = self.document.with_name(self.document.name + ".new")
+        beside.write_text(new, encoding="utf-8")
+        beside.replace(self.document)  # what ends the program meanwhile leaves the page before
         return self.differences(before, new)

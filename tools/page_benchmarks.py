@@ -9,7 +9,8 @@ CALLS, PARTS, WHERE, PEERS = ("Filters, angles and rows", "Cycles of a sample, b
 
 INTRODUCTION = """\
 Measured in simavr on an ATmega328P at 16 MHz: 16,000 cycles are 1 ms. Flash, RAM and stack are bytes. `make bench` fails when a limit is broken or
-a number is more than 2 % above the committed page; to accept a new number, commit the page. With another compiler than avr-gcc 5.4.0 it only reports."""
+a number is more than 2 % above the committed page; to accept a new number, commit the page. With another compiler than avr-gcc 5.4.0 it only
+reports."""
 
 OF_CALLS = """\
 Cycles per call, call and return included, interrupts off: one axis for a filter, roll and pitch together for `angles`. `min` and `worst` are over
