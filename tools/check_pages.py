@@ -16,7 +16,7 @@ NAMED = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"(?:[^"\n]*/)?([^"/\n]+)"|^[ \t]
 IMPLEMENTED = (".c", ".cpp")
 PRODUCT = ("lib", "firmware", "hal", "nav", "sim", "host_tests")
 # what fills a page, draws it, launches a program or says what is wrong with it makes no number
-NO_NUMBER = {"page.py", "page_sources.py", "results.py", "page_benchmarks.py", "page_faults.py", "page_navigation.py",
+NO_NUMBER = {"page.py", "page_sources.py", "results.py", "page_benchmarks.py", "page_faults.py",
              "robust_pictures.py", "look.py", "launched.py", "port.py", "errors.py"}
 COMMITS = 10  # of a page, searched for the one whose sources it was measured on
 SHOWN = 4

@@ -1,6 +1,7 @@
 """docs/results/benchmarks.md: the tables of make bench as a page."""
 import page_sources
 from bench_firmware import DOCUMENT
+from laws import LIGHT
 from results import Results
 
 PAGE = Results(DOCUMENT, "make bench", "Benchmarks: cycles, flash, RAM and stack")
@@ -12,7 +13,7 @@ Measured in simavr on an ATmega328P at 16 MHz: 16,000 cycles are 1 ms. Flash, RA
 a number is more than 2 % above the committed page; to accept a new number, commit the page. With another compiler than avr-gcc 5.4.0 it only
 reports."""
 
-OF_CALLS = """\
+OF_CALLS = f"""\
 Cycles per call, call and return included, interrupts off: one axis for a filter, roll and pitch together for `angles`. `min` and `worst` are over
 all streams, `median` over the typical one; the streams are described in `bench_streams.h`. Everything is built with plain `-Os`, except the column
 "firmware's flags" (`AVR_SMALL` in the Makefile). Flash and RAM are what an empty image grows by; "of it shared" is what the other filters link too.
@@ -20,7 +21,7 @@ all streams, `median` over the typical one; the streams are described in `bench_
 - `start`: the samples of a filter's start, all filters together. `set_noise`: a new R. `noise`: the noise estimate of one sample.
 - `sample_total`: the firmware from the sample to the row in the transmit ring, three axes with the default filter, interrupts excluded.
 - `sample_rest` and `row`: the firmware without its filters, interrupts included, per sample and per row. `format_row`: the widest row.
-- `float_NAME`: the same filter in `float`, which must give the same result within the bound beside it; `float_synth_kept` keeps its coefficients.
+- `float_NAME`: the same filter in `float`, which must give the same result within the bound beside it; `float_{LIGHT}_kept` keeps its coefficients.
 
 Limits: the line `bench: worst` of each `float_NAME.c`; `angles` 1,500 cycles and 4 times."""
 

@@ -4,15 +4,17 @@ import pathlib
 import faults_commands
 from faults_judge import NO_LIMIT
 from faults_kinds import OTHER_RATES
+from laws import DEFAULT, LIGHT
 from results import Results
 
 DOCUMENT = pathlib.Path("docs/results/faults-campaign.md")
 PAGE = Results(DOCUMENT, "make faults", "The fault campaign")
 
-INTRODUCTION = """\
+INTRODUCTION = f"""\
 Every fault of the simulator is put into the unmodified firmware at every byte on the bus during a sample, at the entry of every function that runs
-for one, and at moments spread over its period, with `adaptive` and with `kf`, whose lack of a gate hides no wrong reading; then every pair of faults,
-long outages, other rates, and faults during a command. Each run is judged by what the virtual sensor latched, not by the firmware's own counters.
+for one, and at moments spread over its period, with `{DEFAULT}` and with `{LIGHT}`, whose lack of a gate hides no wrong reading; then every pair of
+faults, long outages, other rates, and faults during a command. Each run is judged by what the virtual sensor latched, not by the firmware's own
+counters.
 
 A run fails when the first good row comes later than its limit, rows stop or step back in time, more samples are lost than the fault's time and its
 limit hold, a row without a flag shows what the sensor did not latch, a pass of the main loop takes more than 4 ms, an interrupt with a deadline

@@ -21,14 +21,14 @@ COUNTS = ("samples", "gated", "reacquired", "saturated", "longest_gated", "bound
 OWN, OF_PLAIN = "the filter's own run without faults", f"the run of `{PLAIN}` without faults"
 INTRODUCTION = """\
 What every filter does with its defaults on recordings of real ADXL345, and on faults put into them at the rates measured on real boards. Each axis
-goes the firmware's way: noise estimate, gaps of up to 100 ms coasted, clipping, filter. `median5_kf` is a yardstick, a median of five samples before
-`kf`. What the recordings are and where they come from: [recordings](../recordings.md)."""
+goes the firmware's way: noise estimate, gaps of up to 100 ms coasted, clipping, filter. The yardstick `median5_...` has a median of five samples
+before that filter. What the recordings are and where they come from: [recordings](../recordings.md)."""
 OF_STREAMS = "Hz is the sensor's nominal rate; in brackets the rate of the rows, where a board polled faster or slower."
 OF_RULES = """\
-Samples of all axes. The rules that show divergence are derived in `support_envelope.h`; a share of 1 is the limit. `sprf_paper`, `adaptive` and
-`auto` have none. Saturated: a state was held at its bound, for `sprf` and `soft` the limit of the rate, as in fast motion."""
+Samples of all axes. The rules that show divergence are derived in `support_envelope.h`; a share of 1 is the limit. Empty: the filter has
+none. Saturated: a state was held at its bound, for the filters with a limit of the rate as a rule that, in fast motion."""
 OF_GATED = """\
-Refused (`sprf`, `sprf_paper`), taken in part (`soft`), limited (`adaptive`), or more likely an outlier than not (`shrf`, `pbf`, `af`)."""
+Refused, limited or taken in part; with the mixtures: more likely an outlier than not. Filters that gate nothing are left out."""
 OF_AGAIN = "Sum of the three axes; the longest run on any axis."
 OF_OUTSIDE = "Farther than 9 sqrt(R) from the range of the raw samples of the last second, of the samples of all axes. Empty: never."
 OF_REST = "Standard deviation and tails of the raw samples, and the share that is gated, x/y/z."
