@@ -100,6 +100,8 @@ def what_is_wrong_with_table_or_page_is_a_finding():
             ("tools/pages.txt", "lib/*.[ch]", "lib/b.h lib/x.h", "docs/p.md depends on lib/x.c too, which lib/x.h names"),
             ("tools/p.py", "print", "import q\nprint", "docs/p.md depends on tools/q.py too, which tools/p.py names"),
             ("docs/new.md", "", PAGE, "docs/new.md is written by make p, which is not its row"),
+            ("docs/p.md", "Text", "[a](typed.md#b) [b](https://x.org) [c](gone.md)", "docs/p.md: a link to gone.md, which is not there"),
+            ("docs/results/new.md", "", PAGE, "docs/results/new.md is written by make p, which is not its row"),
             ("docs/p.md", "<!-- sources", "<!-- source", "docs/p.md: no line '<!-- sources: HASH -->'"),
             ("docs/p.md", "Text", "<!-- sources: none -->", "docs/p.md: two lines '<!-- sources: HASH -->'"),
             ("docs/p.md", "<!-- sources: ", "<!-- sources: x", " is no hash of sources")):

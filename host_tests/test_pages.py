@@ -1,5 +1,5 @@
 """Pages that commands write: a number of docs/results/recordings.md that does not come out again is named, every time; a title that stands twice is
-refused. And the list of what make proof does not prove."""
+refused; the page of navigation. And the list of what make proof does not prove."""
 import contextlib
 import io
 import pathlib
@@ -9,6 +9,7 @@ import sys
 sys.path.insert(0, "tools")
 from laws import PLAIN, ROBUST  # noqa: E402
 import page
+import page_navigation
 import page_sources
 import proof
 import recordings
@@ -103,6 +104,43 @@ def a_failure_is_told_once():
         assert status == recordings.SAID and text == "" and not document.exists(), text
         status, text = run_of(status=1)
         assert status == 1 and "an estimate left its bounds" in text, text
+
+
+CHIP = """call init: 1, mean 9000, most 9000 cycles
+call imu: 500, mean 71000, most 150128 cycles
+call gps: 3, mean 1589, most 1589 cycles
+call down: 5, mean 678, most 678 cycles
+call field: 50, mean 3427, most 3427 cycles
+slot with take in: 10, mean 61378, most 73836 cycles
+slot with scalar: 20, mean 119352, most 150128 cycles
+slot with noise: 470, mean 71193, most 87375 cycles
+load 51.4 %; static 1000, stack 336 bytes; 0 of 500 states differ from the PC
+"""
+
+
+@test
+def the_page_of_navigation_holds_what_its_programs_say():
+    rows = []
+    for states in page_navigation.STATES:
+        rows += [{"part": "image", "states": states, "seconds": 500.0, "records": 56267, "compared": 5000, "cpu_load": 0.582,
+                  "pass_max_cycles": 153280, "frames_latest_us": 1830.0, "ram_used_bytes": 1666, "flash_bytes": 16298},
+                 {"part": "flight", "states": states, "interval": "no GPS", "from_s": 160.0, "to_s": 400.0, "heading_deg": 0.95, "level_deg": 0.65,
+                  "velocity_mps": 6.803, "position_m": 454.97},
+                 *page_navigation.chip_rows(CHIP, states)]
+        rows[-1]["flash_bytes"] = 14200
+    lines = page_navigation.lines(rows)
+    for line in ("| mean load | 58.2 % | 58.2 % |", "| longest pass of the main loop | 9.58 ms | 9.58 ms |",
+                 "| static RAM and stack | 1,666 B | 1,666 B |", "| 12 | 160 to 400 | no | 0.95 | 0.65 | 6.803 | 454.97 |", "| slot with scalar | 119,352, 150,128 | 119,352, 150,128 |",
+                 "| `nav_gps` | 1,589, 1,589 | 1,589, 1,589 |", "| static RAM, stack | 1,000 B, 336 B | 1,000 B, 336 B |",
+                 "| states that differ from the PC | 0 of 500 | 0 of 500 |"):
+        assert line in lines, (line, lines)
+    for cut in (CHIP.rpartition("load")[0], CHIP.replace("call gps", "gps call:")):
+        try:
+            page_navigation.chip_rows(cut, 12)
+        except page.Fault as fault:
+            assert str(fault) == "nav_chip_12: it did not run to its end", fault
+        else:
+            raise AssertionError("a run that was cut short was taken")
 
 
 @test
