@@ -25,7 +25,10 @@ What the image is: [navigation](../navigation.md). Sigmas and errors beside the 
 OF_IMAGE = "The image that `make nav` builds, serial line and interrupts included; each state is sent after ten IMU records, GPS 120 ms late."
 OF_FLIGHT = "The largest error in each interval of that flight."
 OF_PICTURE = "Without the late GPS; `tilt nav --board pc --plot docs/pictures/navigation.png` draws it."
-OF_SLOTS = "Cycles of one call, mean and most, without the image: `build/host/nav_chip_12 build/uno/nav_slots_12.elf 500`."
+OF_SLOTS = """\
+Without the image: `build/host/nav_chip_12 build/uno/nav_slots_12.elf 500`. Cycles of one `nav_imu` by its job, mean and most; of the other calls the
+most."""
+JOBS = {"slot with take in": "slot that takes in epochs", "slot with scalar": "slot that uses a scalar", "slot with noise": "slot that adds noise"}
 
 
 def chip_rows(text, states):
@@ -67,9 +70,9 @@ def of(rows, part):
 
 def image_table(rows):
     images = [found[0] for found in of(rows, "image")]
-    lines = (("mean load", lambda r: f"{100 * r['cpu_load']:.1f} %"),
+    lines = (("mean load", lambda r: f"{100 * r['cpu_load']:.3g} %"),
              ("longest pass of the main loop", lambda r: f"{r['pass_max_cycles'] / 16000:.2f} ms"),
-             ("latest frame", lambda r: f"{r['frames_latest_us'] / 1000:.2f} ms"), ("static RAM and stack", lambda r: f"{r['ram_used_bytes']:,} B"),
+             ("static RAM and stack", lambda r: f"{r['ram_used_bytes']:,} B"),
              ("flash", lambda r: f"{r['flash_bytes']:,} B"), ("records sent, none lost", lambda r: f"{r['records']:,}"),
              ("states compared, none differs", lambda r: f"{r['compared']:,}"))
     return table(["", *(f"{states} states" for states in STATES)], ([name, *map(cell, images)] for name, cell in lines))
@@ -83,10 +86,10 @@ def flight_table(rows):
 
 def slots_table(rows):
     calls = of(rows, "call")
-    names = [row["call"] for row in calls[0] if row["call"] != "init"]
-    cells = [{row["call"]: f"{row['cycles_mean']:,}, {row['cycles_max']:,}" for row in found} for found in calls]
+    by_name = [{row["call"]: row for row in found} for found in calls]
     own = [found[0] for found in of(rows, "alone")]
-    lines = [[f"`nav_{name}`" if " " not in name else name, *(cell[name] for cell in cells)] for name in names]
+    lines = [[words, *(f"{cell[name]['cycles_mean']:,}, {cell[name]['cycles_max']:,}" for cell in by_name)] for name, words in JOBS.items()]
+    lines += [[f"`nav_{name}`", *(f"{cell[name]['cycles_max']:,}" for cell in by_name)] for name in ("gps", "down", "field")]
     lines += [["mean load", *(f"{r['load_percent']:.1f} %" for r in own)], ["flash of the program", *(f"{r['flash_bytes']:,} B" for r in own)],
               ["static RAM, stack", *(f"{r['static_bytes']:,} B, {r['stack_bytes']:,} B" for r in own)],
               ["states that differ from the PC", *(f"{r['differ']} of {r['compared']:,}" for r in own)]]
