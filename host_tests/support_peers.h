@@ -10,7 +10,7 @@
 #ifndef SUPPORT_PEERS_H
 #define SUPPORT_PEERS_H
 
-#define PEER_EMA_HZ 4.0 /* why: docs/default-filter.md */
+#define PEER_EMA_HZ 4.0 /* why: docs/results/default-filter.md */
 #define PEER_MEDIAN 5U
 #define PEER_HAMPEL 7U
 #define PEER_EURO_HZ 1.0     /* cut-off at rest, and of the slope */

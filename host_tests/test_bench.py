@@ -42,7 +42,7 @@ def rows():
 
 def whole_page(calls):
     """The page's text with that table of calls."""
-    return page_benchmarks.PAGE.whole(page_benchmarks.lines(calls, ["| parts |"], ["| where |"], ["| peers |"]), "0123456789ab")
+    return page_benchmarks.PAGE.text(page_benchmarks.lines(calls, ["| parts |"], ["| where |"], ["| peers |"]))
 
 
 RMS = [("one", "typical", 250, 0.01), ("one", "provoked", 250, 99.0), ("one", "typical", 125, 9.0), ("angles", "typical", 0, 0.004)]
@@ -234,7 +234,7 @@ def their_table_and_the_hash_are_left_alone_unless_all_of_them_were_measured():
         page_benchmarks.write(["| old |"], ["| old |"], ["| old |"], ["| old |"], "0123456789ab")
         for table, left, sources in ((None, 1, "0123456789ab"), (bench_peers.table(peers), 0, "ba9876543210")):
             page_benchmarks.write(["| new |"], ["| parts |"], ["| where |"], table, "ba9876543210")
-            written = page_benchmarks.PAGE.text()
+            written = page_benchmarks.PAGE.held()
             assert written.count("| old |") == left and f"<!-- sources: {sources} -->" in written, written
             assert written.count("| new |") == written.count("| parts |") == written.count("| where |") == 1, written
     finally:
@@ -271,7 +271,7 @@ def what_a_filter_beside_others_prints_is_read():
 
 @test
 def the_committed_page_has_every_filter_beside_theirs():
-    table = "\n".join(page_benchmarks.PAGE.section(page_benchmarks.PAGE.text(), page_benchmarks.PEERS))
+    table = "\n".join(page_benchmarks.section(page_benchmarks.PAGE.held(), page_benchmarks.PEERS))
     for subject in (*bench_peers.ours(), *bench_peers.THEIRS):
         assert table.count(f"| {subject.label} | {subject.words} |") == 1, f"{subject.name} has no row in {bench.DOCUMENT}: run make bench"
 
@@ -308,7 +308,7 @@ def spans_leave_the_interrupts_out():
 
 def page_row(name):
     """The cells of a row of the page."""
-    row = next(line for line in page_benchmarks.PAGE.text().splitlines() if line.startswith(f"| `{name}` |"))
+    row = next(line for line in page_benchmarks.PAGE.held().splitlines() if line.startswith(f"| `{name}` |"))
     return [cell.strip() for cell in row.split("|")[2:-1]]
 
 

@@ -1,4 +1,4 @@
-"""make default: the rule of the default filter, its scores, its program, and that docs/default-filter.md is what the rule and the rows say."""
+"""make default: the rule of the default filter, its scores, its program, and that docs/results/default-filter.md is what the rule and the rows give."""
 import json
 import math
 import pathlib
@@ -11,7 +11,7 @@ import default_filter
 import default_score as score
 import default_streams as streams
 import make_streams
-from page import INLINE
+import results
 
 from system_support import Skip, run_all, test
 
@@ -241,45 +241,12 @@ def a_job_that_cannot_be_done_is_named():
 
 
 def page_text():
-    return default_filter.DOCUMENT.read_text(encoding="utf-8")
-
-
-@test
-def the_text_holds_what_the_tables_hold():
-    text = page_text()
-    assert default_filter.check(text) == [], default_filter.check(text)
-    key, number = INLINE.findall(text)[0]
-    found = default_filter.check(text.replace(f"<!--={key}-->{number}<!--.-->", f"<!--={key}-->9{number}<!--.-->", 1))
-    assert len(found) == 1 and f"9{number} on the page" in found[0], found
-
-
-@test
-def the_text_tells_how_narrow_the_verdict_is():
-    text = page_text()
-    numbers = default_filter.facts(text)
-    readings = [line for line in text.splitlines() if line.startswith("| as decided") or line.startswith("| recordings smoothed at 2.5 Hz")]
-    chosen = numbers["chosen"]
-    assert len(readings) == 2 and all(line.endswith(f"| `{chosen}` |") for line in readings), readings
-    for key, old, new in (("draws that agree", f"the same in {numbers['draws that agree']} of", "the same in 999 of"),
-                          ("draws", f"of {numbers['draws']} draws", "of 12 draws"),
-                          ("other readings that differ", readings[1], readings[1].replace(chosen, ROBUST)),
-                          ("chosen", f"rule chooses **`{chosen}`**", f"rule chooses **`{ROBUST}`**"),
-                          ("other readings", readings[1] + "\n", "")):
-        assert f"<!--={key}-->{numbers[key]}<!--.-->" in text, key
-        found = default_filter.check(text.replace(old, new))
-        assert any(f"'{key}': {numbers[key]} on the page" in line for line in found), (key, found)
-
-
-@test
-def the_text_names_the_classes_in_which_the_default_is_ahead():
-    cells = default_filter.PAGE.cells(page_text())
-    best = {group for title, group, column, name in cells if title == "Verdict" and column == "best" and name == f"`{DEFAULT}`"}
-    assert best == {"rest", "slow tilt", "vibration", "bad reads", "outliers"}, f"{best}: say so under What to take from it"
+    return default_filter.PAGE.held()
 
 
 @test
 def the_page_has_every_filter_in_every_class():
-    numbers = default_filter.PAGE.numbers_of(page_text())
+    numbers = results.numbers_of(page_text())
     names = {line.split(",")[4] for line in program(f"k {still_stream(10)} 1000 16 1 0 60 truth 0 0").stdout.splitlines()}
     missing = [(group, name) for group in score.CLASSES for name in names if f"RMSE by class, `{name}`, {group}" not in numbers]
     assert missing == [], f"{missing}: make default writes the page"
@@ -295,7 +262,7 @@ def kept_rows():
 
 @test
 def the_page_is_that_of_the_rows():
-    numbers = default_filter.PAGE.numbers_of(page_text())
+    numbers = results.numbers_of(page_text())
     for kept in kept_rows():
         if kept["level"] == "class":
             key = f"RMSE by class, `{kept['filter']}`, {kept['class']}"
@@ -320,17 +287,17 @@ def the_verdict_follows_from_the_streams():
 
 @test
 def without_recordings_the_page_is_left_alone():
-    kept = default_filter.measure, default_filter.JSON, default_filter.DOCUMENT
+    kept = default_filter.measure, default_filter.JSON, default_filter.PAGE
     jobs = [job for job in streams.scenario_jobs() if job.path in (streams.SHIPPED / "bad-reads.csv", streams.SHIPPED / "tilt-fast.csv")]
-    default_filter.JSON, default_filter.DOCUMENT = OUT / "rows.json", OUT / "no-such-page.md"
+    default_filter.JSON, default_filter.PAGE = OUT / "rows.json", results.Results(OUT / "no-such-page.md", "None", "make none", "")
     default_filter.measure = lambda: (jobs, default_filter.run_all(jobs), False)
     built()
     try:
-        assert default_filter.main() == 0 and not default_filter.DOCUMENT.exists()
+        assert default_filter.main() == 0 and not default_filter.PAGE.document.exists()
         rows = json.loads(default_filter.JSON.read_text(encoding="ascii"))
         assert rows[0]["default"] == score.NONE_PASSES and rows[0]["recordings"] is False and "no stream of class rest" in rows[0]["why"], rows[0]
     finally:
-        default_filter.measure, default_filter.JSON, default_filter.DOCUMENT = kept
+        default_filter.measure, default_filter.JSON, default_filter.PAGE = kept
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 """Which filters are in which image: FILTERS= of make, tools/filters_txt.sh, the image that holds a filter; and that the filter with which the
-firmware starts is the one that docs/default-filter.md decides for, wherever it is named."""
+firmware starts is the one that docs/results/default-filter.md decides for, wherever it is named."""
 import os
 import pathlib
 import re

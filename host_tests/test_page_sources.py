@@ -9,14 +9,14 @@ import tempfile
 from system_support import run_all, test
 
 sys.path.insert(0, "tools")
-import page  # noqa: E402
 import page_sources  # noqa: E402
+import results  # noqa: E402
 
 TOOLS = pathlib.Path("tools").resolve()
 SOURCE = '#include "b.h"\n/* a gain */\nint f(int a) { return a * 3; } // "3"\n'
-TABLE = "# pages\n@lib\n    lib/*.[ch]\n\ndocs/p.md | make p | never\n    @lib tools/p.py\ndocs/typed.md | make q | every commit\n    tools/p.py\n"
-PAGE = "Text\n<!-- written by make p: begin -->\n1\n<!-- written by make p: end -->\n"
-FILES = {"tools/pages.txt": TABLE, "tools/p.py": "print(1)  # one\n", "lib/a.c": SOURCE, "lib/b.h": "int f(int a);\n", "docs/p.md": PAGE,
+TABLE = "# pages\n@lib\n    lib/*.[ch]\n\ndocs/results/p.md | make p | never\n    @lib tools/p.py\ndocs/typed.md | make q | every commit\n    tools/p.py\n"
+PAGE = "# Pages\nWritten by `make p`; do not edit it.\n<!-- sources: none -->\n\nWhat.\n\n1\n"
+FILES = {"tools/pages.txt": TABLE, "tools/p.py": "print(1)  # one\n", "lib/a.c": SOURCE, "lib/b.h": "int f(int a);\n", "docs/results/p.md": PAGE,
          "docs/typed.md": "Typed: 1\n"}
 
 
@@ -67,7 +67,7 @@ def a_stale_page_is_skipped_and_fails_where_it_is_strict():
         put("lib/a.c", SOURCE.replace("3;", "4;"))
         status, text = said()
         assert status == 0 and "skipped: 1 (" in text, text
-        assert "stale: docs/p.md: make p measures it again (in CI: never); its sources have changed\n" in text, text
+        assert "stale: docs/results/p.md: make p measures it again (in CI: never); its sources have changed\n" in text, text
         status, text = said("--strict")
         assert status == 1 and text.endswith("1 passed, 1 failed\n"), text
         page_sources.write_hash("docs/typed.md", page_sources.NONE)
@@ -91,20 +91,22 @@ def what_is_wrong_with_table_or_page_is_a_finding():
             ("tools/pages.txt", "lib/*.[ch]", "lib/*.z", "tools/pages.txt: lib/*.z: there is no such file"),
             ("tools/pages.txt", "    tools/p.py\n", "    tools/gone.py\n", "tools/pages.txt: tools/gone.py: there is no such file"),
             ("tools/pages.txt", "docs/typed.md", "docs/gone.md", "No such file or directory: 'docs/gone.md'"),
-            ("tools/pages.txt", "docs/p.md", "docs/typed.md", "tools/pages.txt:7: docs/typed.md stands there twice"),
+            ("tools/pages.txt", "docs/results/p.md", "docs/typed.md", "tools/pages.txt:7: docs/typed.md stands there twice"),
             ("tools/pages.txt", " | never", "", "tools/pages.txt:5: a line is PAGE | COMMAND | CI, or @SET"),
             ("tools/pages.txt", "    @lib", "    @libs", "tools/pages.txt:6: @libs is no set above"),
             ("tools/pages.txt", "@lib\n", "", "tools/pages.txt:2: files of no page"),
-            ("tools/pages.txt", "make p", "make r", "docs/p.md is written by make p, which is not its row"),
-            ("tools/pages.txt", "lib/*.[ch]", "lib/a.c", "docs/p.md depends on lib/b.h too, which lib/a.c names"),
-            ("tools/pages.txt", "lib/*.[ch]", "lib/b.h lib/x.h", "docs/p.md depends on lib/x.c too, which lib/x.h names"),
-            ("tools/p.py", "print", "import q\nprint", "docs/p.md depends on tools/q.py too, which tools/p.py names"),
+            ("tools/pages.txt", "make p", "make r", "docs/results/p.md is written by make p, which is not its row"),
+            ("tools/pages.txt", "lib/*.[ch]", "lib/a.c", "docs/results/p.md depends on lib/b.h too, which lib/a.c names"),
+            ("tools/pages.txt", "lib/*.[ch]", "lib/b.h lib/x.h", "docs/results/p.md depends on lib/x.c too, which lib/x.h names"),
+            ("tools/p.py", "print", "import q\nprint", "docs/results/p.md depends on tools/q.py too, which tools/p.py names"),
             ("docs/new.md", "", PAGE, "docs/new.md is written by make p, which is not its row"),
-            ("docs/p.md", "Text", "[a](typed.md#b) [b](https://x.org) [c](gone.md)", "docs/p.md: a link to gone.md, which is not there"),
-            ("docs/results/new.md", "", PAGE, "docs/results/new.md is written by make p, which is not its row"),
-            ("docs/p.md", "<!-- sources", "<!-- source", "docs/p.md: no line '<!-- sources: HASH -->'"),
-            ("docs/p.md", "Text", "<!-- sources: none -->", "docs/p.md: two lines '<!-- sources: HASH -->'"),
-            ("docs/p.md", "<!-- sources: ", "<!-- sources: x", " is no hash of sources")):
+            ("docs/new.md", "", "<!-- written by make p: begin -->\n", "docs/new.md is written by make p, which is not its row"),
+            ("docs/results/new.md", "", "By hand.\n", "docs/results/new.md: no line 'Written by `make ...`'"),
+            ("docs/results/p.md", "What.", "[a](../typed.md#b) [b](https://x.org) [c](gone.md)",
+             "docs/results/p.md: a link to gone.md, which is not there"),
+            ("docs/results/p.md", "<!-- sources", "<!-- source", "docs/results/p.md: no line '<!-- sources: HASH -->'"),
+            ("docs/results/p.md", "What.", "<!-- sources: none -->", "docs/results/p.md: two lines '<!-- sources: HASH -->'"),
+            ("docs/results/p.md", "<!-- sources: ", "<!-- sources: x", " is no hash of sources")):
         with Tree():
             for extra in ("lib/x.h", "lib/x.c", "tools/q.py"):
                 put(extra, "")
@@ -122,11 +124,29 @@ def what_is_wrong_with_table_or_page_is_a_finding():
 def the_command_that_measures_writes_the_hash():
     with Tree():
         put("lib/a.c", "int f;\n")
-        written = page.Page(pathlib.Path("docs/p.md"), "<!-- written by make p: begin -->", "<!-- written by make p: end -->")
-        written.write(written.document.read_text(encoding="utf-8"), ["2"], {})
-        text = written.document.read_text(encoding="utf-8")
-        assert text == PAGE.replace("1", "2") + f"\n<!-- sources: {page_sources.hash_now('docs/p.md')} -->\n", text
+        written = results.Results(pathlib.Path("docs/results/p.md"), "Pages", "make p", "What.\n")
+        written.write(["2"])
+        text = written.held()
+        assert text == PAGE.replace("1", "2").replace("none", page_sources.hash_now("docs/results/p.md")), text
         assert said("--strict")[0] == 0
+
+
+@test
+def what_does_not_come_out_again_is_named_by_every_run():
+    with Tree():
+        page = results.Results(pathlib.Path("docs/results/p.md"), "Pages", "make p", "What.")
+
+        def lines(number):
+            return results.table("Roll", "In degrees.", ["stream", "raw"], [["steps", number]])
+
+        assert page.write(lines("1")) == [] and page.check(lines("1")) == []  # the page before had no number
+        shipped = page.held() + "\n"
+        put("docs/results/p.md", shipped)  # a page of its own, as if it had been shipped
+        for _ in range(2):
+            assert page.write(lines("2")) == ["Roll, steps, raw: 1 on the page, 2 in this run"]
+        assert page.check(lines("3")) == ["docs/results/p.md: Roll, steps, raw: 2 on the page, 3 in this run"]
+        assert page.check([*lines("2"), "More."]) == ["docs/results/p.md: its text or its tables differ from those of this run"]
+        assert results.numbers_of(page.held()) == {"Roll, steps, raw": "2"}
 
 
 @test
@@ -134,8 +154,8 @@ def a_person_writes_the_hash_only_of_a_page_that_no_command_writes():
     with Tree():
         put("tools/p.py", "print(2)\n")
         assert said("--stamp", "docs/typed.md", program="page_sources.py") == (0, "")
-        assert page_sources.hash_in("docs/typed.md") == page_sources.hash_now("docs/typed.md") != page_sources.hash_in("docs/p.md")
-        for words, answer in ((["docs/p.md"], "docs/p.md: make p measures it and writes its hash"), (["docs/gone.md"], "No such file"),
+        assert page_sources.hash_in("docs/typed.md") == page_sources.hash_now("docs/typed.md") != page_sources.hash_in("docs/results/p.md")
+        for words, answer in ((["docs/results/p.md"], "docs/results/p.md: make p measures it and writes its hash"), (["docs/gone.md"], "No such file"),
                               (["lib/a.c"], "lib/a.c: not in tools/pages.txt"), ([], "page_sources.py --stamp PAGE")):
             status, text = said("--stamp", *words, program="page_sources.py")
             assert status == 1 and answer in text and "Traceback" not in text, text

@@ -53,31 +53,30 @@ def run_of(**arguments):
 @contextlib.contextmanager
 def own_page():
     OUT.mkdir(parents=True, exist_ok=True)
-    kept = recordings.DOCUMENT, recordings.PAGE, recordings.CSV, recordings.PROGRAM, page.KEPT
-    recordings.DOCUMENT, recordings.CSV, page.KEPT = OUT.resolve() / "page.md", OUT / "rows.csv", OUT / "kept"
-    recordings.PAGE = results.Results(recordings.DOCUMENT, "make recordings", "Of the test")
-    for path in (recordings.DOCUMENT, *page.KEPT.glob("*")):
+    kept = recordings.DOCUMENT, recordings.PAGE, recordings.CSV, recordings.PROGRAM, results.KEPT
+    recordings.DOCUMENT, recordings.CSV, results.KEPT = OUT.resolve() / "page.md", OUT / "rows.csv", OUT / "kept"
+    recordings.PAGE = results.Results(recordings.DOCUMENT, "Of the test", "make recordings", "What.")
+    for path in (recordings.DOCUMENT, *results.KEPT.glob("*")):
         path.unlink(missing_ok=True)
     try:
         yield recordings.DOCUMENT
     finally:
-        recordings.DOCUMENT, recordings.PAGE, recordings.CSV, recordings.PROGRAM, page.KEPT = kept
+        recordings.DOCUMENT, recordings.PAGE, recordings.CSV, recordings.PROGRAM, results.KEPT = kept
 
 
 @test
 def no_page_has_a_title_twice():
     for name in page_sources.table():
         text = pathlib.Path(name).read_text(encoding="utf-8")
-        if pathlib.Path(name).parent.name == "results":
-            page.no_title_twice(name, text.splitlines())
-        for part in re.findall(r"<!-- written by [^>]*begin -->\n(.*?)<!-- written by [^>]*end -->", text, re.S):
+        parts = re.findall(r"<!-- written by [^>]*begin -->\n(.*?)<!-- written by [^>]*end -->", text, re.S)
+        for part in [text] if pathlib.Path(name).parent == results.FOLDER else parts:
             page.no_title_twice(name, part.splitlines())
     # the twin: a doubled table is named and nothing is written
     lines = ["### Roll", "", "| a | b |", "|---|---|", "| x | 1 |", "", "### Roll", "", "| a | b |", "|---|---|", "| x | 2 |"]
     try:
         page.Page(pathlib.Path("docs/any.md"), "<!--b-->", "<!--e-->").filled("<!--b--><!--e-->", lines, {})
     except page.Fault as fault:
-        assert str(fault) == "docs/any.md: the title 'Roll' occurs 2 times between the markers", fault
+        assert str(fault) == "docs/any.md: the title 'Roll' occurs 2 times", fault
     else:
         raise AssertionError("a title twice was taken")
 
@@ -87,7 +86,7 @@ def what_does_not_come_out_again_is_named_by_every_run():
     with own_page() as document:
         assert run_of()[0] == 0  # there was no page before
         written = document.read_text(encoding="utf-8")
-        assert written.startswith("# Of the test\n\n<!-- written by make recordings -->\n<!-- sources: none -->\n"), written
+        assert written.startswith("# Of the test\nWritten by `make recordings`; do not edit it.\n<!-- sources: none -->\n"), written
         document.write_text(written + "\n", encoding="utf-8")  # a page of its own, as if it had been shipped
         assert run_of()[0] == 0
         for _ in range(2):

@@ -1,4 +1,4 @@
-"""docs/robust-filters.md is what a new run gives; a number, a row or a picture that is not is found; scores and experiment are as described."""
+"""docs/results/robust-filters.md is what a new run gives; a number, a row or a picture that is not is found; scores and experiment are as described."""
 import copy
 import pathlib
 import random
@@ -13,7 +13,7 @@ try:
     import robust
     import robust_pictures
     import robust_runs
-    from page import INLINE
+    from results import numbers_of
 except ImportError as missing:
     sys.exit(f"test_robust: {missing.name} is missing: run it by `make test`")
 
@@ -25,10 +25,11 @@ FRESH = {}
 
 
 def fresh():
-    """One run for all tests: (numbers, pictures, the committed page)."""
+    """One run for all tests: (lines of the page, pictures, the committed page)."""
     if not FRESH:
-        page, streams, runs = robust.measure()
-        FRESH["all"] = page, robust_pictures.contents(streams, runs), robust.DOCUMENT.read_text(encoding="utf-8")
+        tables, streams, runs = robust.measure()
+        pictures = robust_pictures.contents(streams, runs)
+        FRESH["all"] = robust.page_lines(tables, pictures), pictures, robust.PAGE.held()
     return FRESH["all"]
 
 
@@ -46,15 +47,13 @@ def refused(function, *words):
 
 @test
 def the_page_is_what_a_new_run_gives():
-    page, _, text = fresh()
-    assert robust.check(text, page) == [], robust.check(text, page)
-    assert len(INLINE.findall(text)) >= 20, "the guide tells hardly a number"
+    assert robust.PAGE.check(fresh()[0]) == [], robust.PAGE.check(fresh()[0])
 
 
 @test
 def the_page_has_every_filter_and_every_stream():
     names = list(laws_names())
-    numbers = robust.TEXT.numbers_of(fresh()[2])
+    numbers = numbers_of(fresh()[2])
     streams = [path.stem for path in pathlib.Path("sim/streams").glob("*.csv")]
     assert len(names) >= 5 and len(streams) >= 18 and names == robust_runs.filters(), names
     for stream in streams:
@@ -65,31 +64,23 @@ def the_page_has_every_filter_and_every_stream():
 
 @test
 def a_changed_number_is_found_wherever_it_stands():
-    page, _, text = fresh()
-    right = f"| outliers-15pct | {page.values['roll outliers-15pct raw']} |"
+    lines, _, text = fresh()
+    right = f"| outliers-15pct | {numbers_of(text)['Roll, outliers-15pct, raw']} |"
     assert text.count(right) == 1
-    found = robust.check(text.replace(right, "| outliers-15pct | 7.530 |"), page)
+    found = robust.PAGE.check(lines, text.replace(right, "| outliers-15pct | 7.530 |"))
     assert len(found) == 1 and "Roll, outliers-15pct, raw: 7.530 on the page" in found[0], found
-    key, number = INLINE.findall(text)[0]
-    found = robust.check(text.replace(f"<!--={key}-->{number}<!--.-->", f"<!--={key}-->9{number}<!--.-->", 1), page)
-    assert len(found) == 1 and key.strip() in found[0] and f"9{number}" in found[0], found
+    found = robust.PAGE.check(lines, text.replace("within 80 degrees", "within 70 degrees"))
+    assert len(found) == 1 and "its text or its tables differ" in found[0], found
 
 
 @test
 def a_row_too_many_and_one_too_few_are_found():
-    page, _, text = fresh()
+    lines, _, text = fresh()
     row = next(line for line in text.splitlines() if line.startswith("| vibration | "))
-    found = robust.check(text.replace(row, row + "\n" + row.replace("vibration", "vibrations"), 1), page)
+    found = robust.PAGE.check(lines, text.replace(row, row + "\n" + row.replace("vibration", "vibrations"), 1))
     assert found and all("vibrations" in fault and "not there" in fault for fault in found), found
-    found = robust.check(text.replace(row + "\n", "", 1), page)
-    assert len(found) == 1 and "its tables differ" in found[0], found
-
-
-@test
-def a_page_without_its_markers_and_an_unknown_number_are_refused():
-    page, _, text = fresh()
-    refused(lambda: robust.filled(text.replace(robust.END, ""), page), "markers")
-    refused(lambda: robust.filled(f"<!--=roll nowhere {PLAIN}-->1<!--.-->" + text, page), f"'roll nowhere {PLAIN}'")
+    found = robust.PAGE.check(lines, text.replace(row + "\n", "", 1))
+    assert len(found) == 1 and "its text or its tables differ" in found[0], found
 
 
 @test
@@ -142,7 +133,7 @@ def scores_are_those_of_a_run_counted_by_hand():
 def the_raw_readings_keep_the_noise_of_their_stream():
     """4 LSB on each axis at 1 g: one axis moves pitch by 4 / 265 radians, rounding to whole LSB adds 1/12; 4 sigma of 5995 rows are 3.7 %."""
     expected = np.degrees(np.sqrt(16.0 + 1.0 / 12.0) / 265.0)
-    measured = float(fresh()[0].values["pitch rest-4lsb raw"])
+    measured = float(numbers_of(fresh()[2])["Pitch, rest-4lsb, raw"])
     assert abs(measured / expected - 1.0) < 0.037, (measured, expected)
 
 

@@ -15,6 +15,7 @@ import laws
 import page_benchmarks
 import page_sources
 from bench_firmware import COMPILER, DOCUMENT, OUT, SIMRUN, Fault, image_size, measure_rest, measure_sample, run
+from results import section
 
 JSON = pathlib.Path("build/bench.json")
 
@@ -226,7 +227,7 @@ def table(rows):
 
 def read_table(text):
     """{name: {column: number}} of the calls' table of a page; empty if it has none."""
-    lines = [line for line in page_benchmarks.PAGE.section(text, page_benchmarks.CALLS) if line.startswith("|")]
+    lines = [line for line in section(text, page_benchmarks.CALLS) if line.startswith("|")]
     if not lines:
         return {}
     head = [cell.strip() for cell in lines[0].strip("|").split("|")]

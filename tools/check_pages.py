@@ -18,9 +18,10 @@ LINK = re.compile(r"\]\(([^)\s:#]+)(?:#[^)\s]*)?\)")
 IMPLEMENTED = (".c", ".cpp")
 PRODUCT = ("lib", "firmware", "hal", "nav", "sim", "host_tests")
 PAGES = ("docs", "second", "campaigns")
-# what fills a page, draws it, launches a program or says what is wrong with it makes no number
-NO_NUMBER = {"page.py", "page_sources.py", "results.py", "page_benchmarks.py", "page_faults.py",
-             "robust_pictures.py", "look.py", "launched.py", "port.py", "errors.py"}
+# what writes a page, draws it, launches a program or says what is wrong with it makes no number
+NO_NUMBER = {"page.py", "page_sources.py", "results.py", "page_benchmarks.py", "page_faults.py", "robust_pictures.py", "look.py", "launched.py",
+             "port.py", "errors.py"}
+RESULTS = pathlib.Path("docs/results")
 COMMITS = 10  # of a page, searched for the one whose sources it was measured on
 SHOWN = 4
 
@@ -59,11 +60,14 @@ def missing(page, files, known):
 
 
 def unlisted(rows):
-    """Pages that a command writes and that the table does not have, or under another command."""
+    """Pages that a command writes and that the table does not have, or under another command; results that no command writes."""
     for path in sorted(pathlib.Path("docs").rglob("*.md")):
-        for command in set(WRITTEN.findall(path.read_text(encoding="utf-8"))):
+        commands = set(WRITTEN.findall(path.read_text(encoding="utf-8")))
+        for command in commands:
             if str(path) not in rows or rows[str(path)].command != command:
                 yield f"{TABLE}: {path} is written by {command}, which is not its row"
+        if path.parent == RESULTS and not commands:
+            yield f"{path}: no line 'Written by `make ...`'"
 
 
 def broken_links():

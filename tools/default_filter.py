@@ -1,10 +1,9 @@
-"""make default: which filter should be the default, decided by a table; writes build/default.json (every number) and the tables of
-docs/default-filter.md, and the numbers in its text, which are taken from them. Status 1: a number of the committed page does not come out
-again, each is named. Without the recordings it judges the shipped streams alone, says so, and leaves the page as it is."""
+"""make default: which filter should be the default, decided by a table; writes build/default.json (every number) and docs/results/default-filter.md.
+Status 1: a number of the committed page does not come out again, each is named. Without the recordings it judges the shipped streams alone,
+says so, and leaves the page as it is."""
 import dataclasses
 import json
 import pathlib
-import re
 import subprocess
 import sys
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -13,16 +12,15 @@ import default_score as score
 import default_streams as streams
 from default_score import CANDIDATE, CONTENTION, NOT_JUDGED, OWN
 from default_streams import BAD_READS, BURSTS, CLASSES, MOTIONS, OUTLIERS, RATES_HZ
-from page import Fault, Page, run_as_program
+from page import Fault, run_as_program
+from results import FOLDER, Results, table
 
 PROGRAM = "build/host/default_filter"
 JSON = pathlib.Path("build/default.json")
-DOCUMENT = pathlib.Path("docs/default-filter.md")
-BEGIN, END = "<!-- written by make default: begin -->", "<!-- written by make default: end -->"
-PAGE = Page(DOCUMENT, BEGIN, END)
+ABOUT = pathlib.Path(__file__).with_name("default_about.md").read_text(encoding="utf-8")
+PAGE = Results(FOLDER / "default-filter.md", "The default filter: results", "make default", ABOUT)
 WORST_LISTED = 2
 READINGS = "The same rule, read otherwise"
-WINS = "Where another filter wins"
 
 
 # --- the run ----------------------------------------------------------------------------------------------------------
@@ -109,11 +107,6 @@ def ratio_text(value):
     return f"{value:.3f}"
 
 
-def markdown(title, text, head, lines):
-    made = ["", f"### {title}", text, "", "| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
-    return made + ["| " + " | ".join(line) + " |" for line in lines]
-
-
 def ticks(names):
     return [f"`{name}`" for name in names]
 
@@ -130,22 +123,22 @@ def class_table(t):
     for name, line in filter_lines(t, t.classes).items():
         passes = "" if name not in t.compared else "no" if score.verdict(t.classes, candidate=name).beyond else "yes"
         lines.append([*line, passes])
-    return markdown("RMSE by class", "LSB (256 per g), geometric mean over the rates of the geometric mean over their streams; in brackets, times "
-                    "the best filter of the list. Below it, never chosen: [what people use instead](#what-people-use-instead) and the raw samples.",
-                    ["filter", "mean", *t.classes, "passes"], lines)
+    return table("RMSE by class", "LSB (256 per g), geometric mean over the rates of the geometric mean over their streams; in brackets, times "
+                 "the best filter of the list. Below it, never chosen: what is beside the list, and the raw samples.",
+                 ["filter", "mean", *t.classes, "passes"], lines)
 
 
 def tuning_table(t):
     scores = score.by_class(t.tuning, t.names)
-    return markdown("Tuning recordings", "As above, of the recordings with which defaults may be tuned; they do not decide.",
-                    ["filter", "mean", *scores], list(filter_lines(t, scores).values()))
+    return table("Tuning recordings", "As above, of the recordings with which defaults may be tuned; they do not decide.",
+                 ["filter", "mean", *scores], list(filter_lines(t, scores).values()))
 
 
 def contention_table(t):
     cells = {motion: [cell for cell in t.group(CONTENTION) if cell.motion == motion] for motion in MOTIONS}
     scores = {motion: {name: score.geometric(part, name) for name in t.names} for motion, part in cells.items() if part}
-    return markdown("Contention", "Two sensors at one address: 20 % of the reads doubled in runs of up to nine. As above, does not decide.",
-                    ["filter", "mean", *scores], list(filter_lines(t, scores).values()))
+    return table("Contention", "Two sensors at one address: 20 % of the reads doubled in runs of up to nine. As above, does not decide.",
+                 ["filter", "mean", *scores], list(filter_lines(t, scores).values()))
 
 
 def rate_table(t):
@@ -156,7 +149,7 @@ def rate_table(t):
             cells = t.group(group, rate_hz)
             if cells:
                 lines.append([f"{group}, {rate_hz} Hz", *(lsb(score.geometric(cells, name)) for name in order), str(len(cells))])
-    return markdown("RMSE by class and rate", "LSB, geometric mean over the streams.", ["class, rate", *ticks(order), "streams"], lines)
+    return table("RMSE by class and rate", "LSB, geometric mean over the streams.", ["class, rate", *ticks(order), "streams"], lines)
 
 
 def best_table(t):
@@ -168,15 +161,15 @@ def best_table(t):
             least = min(found.values(), default=0.0)
             cells.append(" ".join(f"`{name}`" for name in sorted(found, key=found.get) if found[name] <= score.NEAR * least))
         lines.append([group, *cells])
-    return markdown("Which filter when", "The best, then those within 5 % of it.", ["class", *(f"{rate_hz} Hz" for rate_hz in RATES_HZ)], lines)
+    return table("Which filter when", "The best, then those within 5 % of it.", ["class", *(f"{rate_hz} Hz" for rate_hz in RATES_HZ)], lines)
 
 
 def wins_table(t):
     wins = score.other_wins(t.cells, t.compared)
     cells = sum(1 for group in t.classes for rate_hz in RATES_HZ if t.group(group, rate_hz))
     lines = [[f"{group}, {rate_hz} Hz", f"`{winner}`", ratio_text(value)] for group, rate_hz, winner, value in wins]
-    return markdown(WINS, f"{len(wins)} of {cells} classes at a rate, and how far `{CANDIDATE}` is behind there.",
-                    ["class, rate", "best", f"`{CANDIDATE}` / best"], lines)
+    return table("Where another filter wins", f"{len(wins)} of {cells} classes at a rate, and how far `{CANDIDATE}` is behind there.",
+                 ["class, rate", "best", f"`{CANDIDATE}` / best"], lines)
 
 
 def losses_table(t):
@@ -189,8 +182,8 @@ def losses_table(t):
     worst = [item for group in CLASSES for item in [item for item in lost if item[1].group == group][:WORST_LISTED]]
     lines = [[f"{cell.name}, {cell.rate_hz} Hz", f"{cell.group}, {cell.fault}" if cell.group == BURSTS else cell.group, f"`{best}`",
               lsb(cell.rmse(best)), lsb(cell.rmse(CANDIDATE)), f"{value:.2f}"] for value, cell, best in worst]
-    return markdown(f"Where `{CANDIDATE}` loses most", f"The worst {WORST_LISTED} cells of each class.",
-                    ["stream, rate", "class", "best", "its RMSE", f"`{CANDIDATE}`", "ratio"], lines)
+    return table(f"Where `{CANDIDATE}` loses most", f"The worst {WORST_LISTED} cells of each class.",
+                 ["stream, rate", "class", "best", "its RMSE", f"`{CANDIDATE}`", "ratio"], lines)
 
 
 def readings(t):
@@ -221,8 +214,9 @@ def readings_table(t):
         found = score.verdict(scores, classes=tuple(scores))
         lines.append([what, *(f"{found.ratio[group]:.2f}" if group in found.ratio else "" for group in CLASSES), str(len(found.best_in)),
                       f"`{found.default}`"])
-    return markdown(READINGS, f"`{CANDIDATE}` over the best, class by class; only the first line decides.",
-                    ["reading", *CLASSES, "best in", "default"], lines)
+    return table(READINGS, f"`{CANDIDATE}` over the best, class by class; only the first line decides. The low pass of 5 Hz is a convention; against its own "
+                 "run a filter that stands still would score 0.",
+                 ["reading", *CLASSES, "best in", "default"], lines)
 
 
 def streams_table(t):
@@ -239,8 +233,8 @@ def streams_table(t):
                 lines.append([source.name + part, mark + group, source.why, " ".join(map(str, rates)), "recorded" if jobs[0].recorded else "made",
                               f"{max(job.rows for job in jobs):,}", f"{min(job.seeds() for job in jobs)}..{max(job.seeds() for job in jobs)}"])
     left = "; ".join(f"{name} ({why})" for name, why in streams.LEFT_OUT.items())
-    return markdown("Which stream is in which class", f"Rates in Hz; rows at the highest of them; seeds of the faults put in. Left out: {left}.",
-                    ["stream", "class", "why", "rates", "from", "rows", "seeds"], lines)
+    return table("Which stream is in which class", f"Rates in Hz; rows at the highest of them; seeds of the faults put in. Left out: {left}.",
+                 ["stream", "class", "why", "rates", "from", "rows", "seeds"], lines)
 
 
 def verdict_line(t, group):
@@ -257,48 +251,21 @@ def verdict_table(t):
     v = t.verdict
     agree = sum(score.verdict(draw).default == v.default for draw in t.draws)
     said = f"The rule chooses **`{v.default}`**: " + (f"`{CANDIDATE}` is {v.why}." if v.ratio else f"{v.why}.")
-    return markdown("Verdict", f"{said} With the streams drawn anew the rule says the same in {agree} of {len(t.draws)} draws; in brackets the "
-                    "95 % interval over them. A cell is a stream at a rate with a kind of fault.",
-                    ["class", "best", f"`{CANDIDATE}` / best", f"within {score.MOST:g} times", "streams", "cells"],
-                    [verdict_line(t, group) for group in t.classes])
+    return table("Verdict", f"{said} With the streams drawn again the rule says the same in {agree} of {len(t.draws)} draws; in brackets the "
+                 "95 % interval over them. A cell is a stream at a rate with a kind of fault.",
+                 ["class", "best", f"`{CANDIDATE}` / best", f"within {score.MOST:g} times", "streams", "cells"],
+                 [verdict_line(t, group) for group in t.classes])
 
 
 def tables(t):
     lines = []
-    for table in (verdict_table, class_table, best_table, wins_table, losses_table, readings_table, tuning_table, contention_table, rate_table,
-                  streams_table):
-        lines += table(t)
-    return [*lines, ""]
+    for part in (verdict_table, class_table, best_table, wins_table, losses_table, readings_table, tuning_table, contention_table, rate_table,
+                 streams_table):
+        lines += part(t)
+    return lines
 
 
 # --- page and rows ----------------------------------------------------------------------------------------------------
-
-
-def facts(text):
-    """{key: number} for the text of a page, from its tables (`class ROW COLUMN` and so on, without ticks and intervals) and the verdict's draws."""
-    keys = {"RMSE by class": "class", "RMSE by class and rate": "rate", "Contention": "contention", "Verdict": "verdict",
-            "Tuning recordings": "tuning", WINS: "win"}
-    found = {}
-    for title, row, column, cell in PAGE.cells(text):
-        if title in keys:
-            number, _, ratio = cell.rstrip(")").partition(" (")
-            found[f"{keys[title]} {row} {column}".replace("`", "")] = number.replace("`", "")
-            if title == "RMSE by class" and ratio:
-                found[f"times {row} {column}".replace("`", "")] = ratio
-    agree = re.search(r"the same in (\d+) of (\d+) draws", text[text.index(BEGIN):])
-    if agree:
-        found["draws that agree"], found["draws"] = agree.groups()
-    read = [cell for title, _, column, cell in PAGE.cells(text) if (title, column) == (READINGS, "default")]
-    chosen = re.search(r"The rule chooses \*\*`(\w+)`\*\*", text[text.index(BEGIN):])
-    found["chosen"] = chosen[1] if chosen else ""
-    found["other readings"] = str(max(len(read) - 1, 0))
-    found["other readings that differ"] = str(sum(cell != read[0] for cell in read))
-    return found
-
-
-def check(text):
-    """Numbers of the text that the tables below it do not hold."""
-    return PAGE.differences(text, PAGE.filled(text, [*PAGE.inside(text), ""], facts(text)))
 
 
 def json_rows(t, real):
@@ -323,13 +290,12 @@ def main():
     print(f"default: {len(jobs)} streams at a rate, {len(t.names)} filters; {JSON} written")
     print(f"default: the rule says {t.verdict.default}: {t.verdict.why}")
     if not real:
-        print(f"skipped: 1 (no recordings in {streams.recordings_folder()}: shipped streams only, {DOCUMENT} left as it is)")
+        print(f"skipped: 1 (no recordings in {streams.recordings_folder()}: shipped streams only, {PAGE.document} left as it is)")
         return 0
-    lines = tables(t)
-    faults = PAGE.write(DOCUMENT.read_text(encoding="utf-8"), lines, facts("\n".join([BEGIN, *lines, END])))
+    faults = PAGE.write(tables(t))
     for fault in faults:
         print(f"default: {fault}", file=sys.stderr)
-    print(f"default: {DOCUMENT} written" + (f"; {len(faults)} numbers of the page before did not come out again" if faults else ""))
+    print(f"default: {PAGE.document} written" + (f"; {len(faults)} numbers of the page before did not come out again" if faults else ""))
     print("0 passed, 1 failed" if faults else "1 passed, 0 failed")
     return 1 if faults else 0
 

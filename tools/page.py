@@ -108,7 +108,7 @@ def no_title_twice(document, lines):
     titles = [line.lstrip("# ") for line in "\n".join(lines).splitlines() if line.startswith("#")]
     for title in titles:
         if titles.count(title) > 1:
-            raise Fault(f"{document}: the title '{title}' occurs {titles.count(title)} times between the markers")
+            raise Fault(f"{document}: the title '{title}' occurs {titles.count(title)} times")
 
 
 def digest(text):

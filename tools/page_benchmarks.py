@@ -2,16 +2,17 @@
 import page_sources
 from bench_firmware import DOCUMENT
 from laws import LIGHT
-from results import Results
+from results import Results, section
 
-PAGE = Results(DOCUMENT, "make bench", "Benchmarks: cycles, flash, RAM and stack")
 CALLS, PARTS, WHERE, PEERS = ("Filters, angles and rows", "Cycles of a sample, by part", "Cycles of the most expensive filter",
                               "Beside other people's filters")
 
-INTRODUCTION = """\
+ABOUT = """\
 Measured in simavr on an ATmega328P at 16 MHz: 16,000 cycles are 1 ms. Flash, RAM and stack are bytes. `make bench` fails when a limit is broken or
 a number is more than 2 % above the committed page; to accept a new number, commit the page. With another compiler than avr-gcc 5.4.0 it only
 reports."""
+
+PAGE = Results(DOCUMENT, "Benchmarks: cycles, flash, RAM and stack", "make bench", ABOUT)
 
 OF_CALLS = f"""\
 Cycles per call, call and return included, interrupts off: one axis for a filter, roll and pitch together for `angles`. `min` and `worst` are over
@@ -40,16 +41,12 @@ has a gate. Theirs are not in this repository: `make bench PEERS=folder`; withou
 def lines(calls, parts, where, peers):
     """The page's text and tables, of lines of Markdown each."""
     sections = ((CALLS, OF_CALLS, calls), (PARTS, OF_PARTS, parts), (WHERE, OF_WHERE, where), (PEERS, OF_PEERS, peers))
-    found = [INTRODUCTION]
-    for title, words, table in sections:
-        found += ["", f"## {title}", words, "", *table]
-    return found
+    return [line for title, words, table in sections for line in (f"## {title}", words, "", *table, "")]
 
 
 def write(calls, parts, where, peers, sources):
     """Writes the page. peers: None where some of them were absent; then their table and the hash of the page before stay."""
-    before = PAGE.text()
     if peers is None:
-        peers = [line for line in PAGE.section(before, PEERS) if line.startswith("|")]
-        sources = page_sources.hash_in(DOCUMENT) if before else page_sources.NONE
+        peers = [line for line in section(PAGE.held(), PEERS) if line.startswith("|")]
+        sources = page_sources.hash_in(PAGE.document)
     PAGE.write(lines(calls, parts, where, peers), sources)

@@ -10,21 +10,24 @@ import subprocess
 import sys
 
 from page import Fault, run_as_program
-from results import Results
+from results import Results, table
 
 DOCUMENT = pathlib.Path("docs/results/navigation.md")
-PAGE = Results(DOCUMENT, "make navcheck", "The navigation image")
 JSON = pathlib.Path("build/nav.json")
 SECONDS = 500
 STATES = (12, 9)
+COLUMNS = ["", *(f"{states} states" for states in STATES)]
 
-INTRODUCTION = f"""\
+ABOUT = f"""\
 {SECONDS} s of the flight of paper 003 (section 3.4) in the simulated ATmega328P at 16 MHz: IMU at 100 Hz, field at 10 Hz, GPS and altimeter at 1 Hz,
 no GPS from 160 to 400 s. `make navcheck` fails when a state or variance differs from the PC's in any bit, a record is lost, or a limit is broken.
 What the image is: [navigation](../navigation.md). Sigmas and errors beside the thesis: [paper 003](../papers.md)."""
+PAGE = Results(DOCUMENT, "The navigation image", "make navcheck", ABOUT)
+
 OF_IMAGE = "The image that `make nav` builds, serial line and interrupts included; each state is sent after ten IMU records, GPS 120 ms late."
 OF_FLIGHT = "The largest error in each interval of that flight."
-OF_PICTURE = "Without the late GPS; `tilt nav --board pc --plot docs/pictures/navigation.png` draws it."
+PICTURE = ["![Errors of attitude, velocity and position with their sigmas](pictures/navigation.png)", "",
+           "Without the late GPS; `tilt nav --board pc --plot docs/results/pictures/navigation.png` draws it.", ""]
 OF_SLOTS = """\
 Without the image: `build/host/nav_chip_12 build/uno/nav_slots_12.elf 500`. Cycles of one `nav_imu` by its job, mean and most; of the other calls the
 most."""
@@ -59,10 +62,6 @@ def alone(states):
     return rows
 
 
-def table(head, lines):
-    return [f"| {' | '.join(head)} |", "|---" * len(head) + "|", *(f"| {' | '.join(line)} |" for line in lines)]
-
-
 def of(rows, part):
     """The rows of a part, of the number of states in the order of the page."""
     return [[row for row in rows if row["part"] == part and row["states"] == states] for states in STATES]
@@ -75,13 +74,14 @@ def image_table(rows):
              ("static RAM and stack", lambda r: f"{r['ram_used_bytes']:,} B"),
              ("flash", lambda r: f"{r['flash_bytes']:,} B"), ("records sent, none lost", lambda r: f"{r['records']:,}"),
              ("states compared, none differs", lambda r: f"{r['compared']:,}"))
-    return table(["", *(f"{states} states" for states in STATES)], ([name, *map(cell, images)] for name, cell in lines))
+    return table("The image", OF_IMAGE, COLUMNS, [[name, *map(cell, images)] for name, cell in lines])
 
 
 def flight_table(rows):
-    return table(["states", "interval, s", "GPS", "heading, degrees", "roll and pitch, degrees", "velocity, m/s", "position, m"],
-                 ([str(r["states"]), f"{r['from_s']:.0f} to {r['to_s']:.0f}", "yes" if r["interval"] == "GPS" else "no", f"{r['heading_deg']:.2f}",
-                   f"{r['level_deg']:.2f}", f"{r['velocity_mps']:.3f}", f"{r['position_m']:.2f}"] for found in of(rows, "flight") for r in found))
+    return table("Errors of the flight", OF_FLIGHT,
+                 ["states", "interval, s", "GPS", "heading, degrees", "roll and pitch, degrees", "velocity, m/s", "position, m"],
+                 [[str(r["states"]), f"{r['from_s']:.0f} to {r['to_s']:.0f}", "yes" if r["interval"] == "GPS" else "no", f"{r['heading_deg']:.2f}",
+                   f"{r['level_deg']:.2f}", f"{r['velocity_mps']:.3f}", f"{r['position_m']:.2f}"] for found in of(rows, "flight") for r in found])
 
 
 def slots_table(rows):
@@ -93,14 +93,12 @@ def slots_table(rows):
     lines += [["mean load", *(f"{r['load_percent']:.1f} %" for r in own)], ["flash of the program", *(f"{r['flash_bytes']:,} B" for r in own)],
               ["static RAM, stack", *(f"{r['static_bytes']:,} B, {r['stack_bytes']:,} B" for r in own)],
               ["states that differ from the PC", *(f"{r['differ']} of {r['compared']:,}" for r in own)]]
-    return table(["", *(f"{states} states" for states in STATES)], lines)
+    return table("lib/nav alone", OF_SLOTS, COLUMNS, lines)
 
 
 def lines(rows):
     """The page's text and tables."""
-    return [INTRODUCTION, "", "## The image", OF_IMAGE, "", *image_table(rows), "", "## Errors of the flight", OF_FLIGHT, "", *flight_table(rows),
-            "", "![Errors of attitude, velocity and position with their sigmas](../pictures/navigation.png)", "", OF_PICTURE,
-            "", "## lib/nav alone", OF_SLOTS, "", *slots_table(rows)]
+    return [*image_table(rows), *flight_table(rows), *PICTURE, *slots_table(rows)]
 
 
 def main():

@@ -20,8 +20,8 @@ TABLE = pathlib.Path("tools/pages.txt")
 LINE = re.compile(r"^<!-- sources: (\w+) -->\n?", re.M)
 HASH = re.compile(r"[0-9a-f]{12}")
 NONE = "none"  # no commit is known on whose sources the page was measured
-# the marker of a page that a command writes
-WRITTEN = re.compile(r"<!-- (?:[\w ,]*written by|table:) (make \w+)")
+# the line of a page that a command writes whole, or in part
+WRITTEN = re.compile(r"^(?:Written by `|<!-- (?:[\w ,]*written by|table:) )(make \w+)", re.M)
 CODE = comments.C_LIKE | {".py", ".mk", ".sh", ""}
 
 
@@ -125,10 +125,15 @@ def hash_now(page):
     return digest(files_now(row_of(page).globs))
 
 
+def line(value):
+    return f"<!-- sources: {value} -->"
+
+
 def with_hash(text, value):
-    """The page's text with its line, where it has one, else at the end."""
-    line = f"<!-- sources: {value} -->\n"
-    return LINE.sub(line, text) if LINE.search(text) else text.rstrip("\n") + "\n\n" + line
+    """The page's text with this hash in its line, which stands at the end if it has none."""
+    if LINE.search(text):
+        return LINE.sub(line(value) + "\n", text)
+    return text.rstrip("\n") + f"\n\n{line(value)}\n"
 
 
 def write_hash(page, value):

@@ -13,16 +13,17 @@ from results import Results
 PROGRAM = "build/host/recordings"
 CSV = pathlib.Path("build/recordings.csv")
 DOCUMENT = pathlib.Path("docs/results/recordings.md")
-PAGE = Results(DOCUMENT, "make recordings", "Real recordings")
 ABSENT, SAID = 3, 2  # status of the program; SAID: it has told why
 
 COUNTS = ("samples", "gated", "reacquired", "saturated", "longest_gated", "bounds_broken", "judged", "broken", "worst_share", "hull_judged",
           "hull_broken", "hull_left_lsb", "outside", "outside_worst_lsb")
 OWN, OF_PLAIN = "the filter's own run without faults", f"the run of `{PLAIN}` without faults"
-INTRODUCTION = """\
+ABOUT = """\
 What every filter does with its defaults on recordings of real ADXL345, and on faults put into them at the rates measured on real boards. Each axis
 goes the firmware's way: noise estimate, gaps of up to 100 ms coasted, clipping, filter. The yardstick `median5_...` has a median of five samples
 before that filter. What the recordings are and where they come from: [recordings](../recordings.md)."""
+PAGE = Results(DOCUMENT, "Real recordings: results", "make recordings", ABOUT)
+
 OF_STREAMS = "Hz is the sensor's nominal rate; in brackets the rate of the rows, where a board polled faster or slower."
 OF_RULES = """\
 Samples of all axes. The rules that show divergence are derived in `support_envelope.h`; a share of 1 is the limit. Empty: the filter has
@@ -167,15 +168,15 @@ def faults_table(rows, pool, mean, worst):
 
 
 def tables(rows):
-    lines = [INTRODUCTION]
+    lines = []
     for title, words, table in (("The recordings", OF_STREAMS, streams_table), ("Diverged?", OF_RULES, rules_table), ("Gated", OF_GATED, gated_table),
                                 ("Re-acquisitions, longest run of gated samples", OF_AGAIN, again_table),
                                 ("Outside the range of the last second's samples", OF_OUTSIDE, outside_table),
                                 ("At rest: false gates", OF_REST, rest_table)):
-        lines += ["", f"## {title}", words, "", *table(rows)[:-1]]
+        lines += [f"## {title}", words, "", *table(rows)]
     for mean, worst, reference in (("own_mean", "own_worst", OWN), ("plain_mean", "plain_worst", OF_PLAIN)):
         for pool in unique(rows["fault"], "pool"):
-            lines += ["", f"## Faults put in {pool}, from {reference}", OF_FAULTS, "", *faults_table(rows, pool, mean, worst)[:-1]]
+            lines += [f"## Faults put in {pool}, from {reference}", OF_FAULTS, "", *faults_table(rows, pool, mean, worst)]
     return lines
 
 

@@ -1,4 +1,4 @@
-"""The pictures of docs/robust-filters.md: raw readings and what some filters make of them, beside the truth. Each file holds the hash of what
+"""The pictures of docs/results/robust-filters.md: raw readings and what some filters make of them, beside the truth. Each file holds the hash of what
 it shows, so that one that a new run would draw otherwise is noticed by any version of matplotlib."""
 import hashlib
 import io
@@ -9,8 +9,8 @@ import numpy as np
 
 from robust_runs import FLAG_GATED, Fault, errors_cdeg, unfiltered
 from laws import PLAIN, ROBUST
+from results import PICTURES
 
-FOLDER = pathlib.Path("docs/pictures")
 MAX_BYTES = 60_000
 INCHES, DPI, COLOURS = (10.0, 6.2), 90, 192
 # colour and width of line: where several run alike all can be seen
@@ -71,7 +71,7 @@ def contents(streams, runs):
         shown = {kind: runs[name, kind] for kind in SHOWN if (name, kind) in runs}
         if len(shown) < len(SHOWN):
             raise Fault(f"the pictures want the filters {', '.join(SHOWN)}, and one of them is not in the list")
-        picture = Picture(FOLDER / f"robust-{name}.png", title, panels, stream, shown)
+        picture = Picture(PICTURES / f"robust-{name}.png", title, panels, stream, shown)
         picture.digest = digest_of(picture)
         pictures.append(picture)
     return pictures
@@ -98,7 +98,7 @@ def stale(pictures):
     sizes = {p.path: p.path.stat().st_size for p in pictures if p.path.is_file()}
     faults += [f"{path}: {size} bytes, more than {MAX_BYTES}" for path, size in sizes.items() if size > MAX_BYTES]
     known = {p.path for p in pictures}
-    return faults + [f"{path}: not drawn by make robust" for path in sorted(FOLDER.glob("robust-*")) if path not in known]
+    return faults + [f"{path}: not drawn by make robust" for path in sorted(PICTURES.glob("robust-*")) if path not in known]
 
 
 def draw_stale(pictures):

@@ -1,4 +1,4 @@
-"""The picture of docs/variable-structure.md: prediction and measurements of one flight, and the sensor of each 20 s window. The file holds the
+"""The picture of docs/results/variable-structure.md: prediction and measurements of one flight, and the sensor of each 20 s window. The file holds the
 hash of this file and of what it shows, so that one that would be drawn otherwise is drawn anew."""
 import hashlib
 import io
@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from page import Fault
-from robust_pictures import COLOURS, DPI, FOLDER, KEY, MAX_BYTES, TRUTH_COLOUR, digest_in
+from results import PICTURES
+from robust_pictures import COLOURS, DPI, KEY, MAX_BYTES, TRUTH_COLOUR, digest_in
 from variable_structure.rules import RULES
 from variable_structure.scenario import BIASED, DEGRADED, FROZEN, SENSORS, SOUND, WINDOW_S, fly
 from variable_structure.structure import fly_by
 
-PATH = FOLDER / "variable-structure.png"
+PATH = PICTURES / "variable-structure.png"
 SEED, RUN, FROM_WINDOW, WINDOWS = 2024, 28, 2, 12
 SENSOR_COLOURS = ("#0b5394", "#e08e0b", "#1b7f3b")
 PREDICTED_COLOUR, ESTIMATE_COLOUR = "#c0187a", "#6d7680"

@@ -1,8 +1,7 @@
-"""docs/synthesised-filters.md: its tables, the numbers in its text and its pictures, from the closed forms of tools/design and from programs that run
-the shipped filters (build/host/roll_replay, build/host/test_adaptive_roll). Fails with the name of each number that does not come out again."""
+"""docs/results/synthesised-filters.md and its pictures, from the closed forms of tools/design and from programs that run the shipped filters
+(build/host/roll_replay, build/host/test_adaptive_roll). Fails with the name of each number that does not come out again."""
 import argparse
 import math
-import pathlib
 import re
 import subprocess
 import sys
@@ -17,11 +16,20 @@ try:
     from design.synthesis import by_formula, error_by_formula
 except ImportError as missing:
     sys.exit(f"synthesised: {missing.name} is missing: run make synthesised, which installs it")
-import laws
-from page import Fault, Page, run_as_program
+from page import Fault, run_as_program
+from results import FOLDER, PICTURES, Results, table
 
-DOCUMENT = pathlib.Path("docs/synthesised-filters.md")
-PAGE = Page(DOCUMENT, "<!-- written by make synthesised: begin -->", "<!-- written by make synthesised: end -->")
+ABOUT = """
+Properties of the papers' filter (2, 1, 0): x_e = 2 x1 - x2 - a1 (x1 - 2 x2 + x3), x = x_e + b0 u, from closed forms; and what `adaptive` makes of the
+roll of paper 000 (15 s at 10 Hz, at rest, a turn from 6 to 10 s, at rest), from the shipped C code. [Synthesised filters](../filters-synthesised.md)
+has the meaning of the terms.
+
+In the picture of the gate, and in its table, the same roll has 5 or 15 % of its samples with 20 times the noise.
+"""
+PAGE = Results(FOLDER / "synthesised-filters.md", "Synthesised filters: results", "make synthesised", ABOUT)
+LEAST = ("Dynamic error D in second differences of the signal. `synth`: b0 = 1 / (1 + D), noise gain (1 + 2 D) / (1 + 4 D). Alpha-beta: beta = 2 / "
+         "(1 + 2 sqrt D + 2 D), alpha = 1 - beta D, noise gain (1 + 4 sqrt D) / (1 + 2 sqrt D)^2. Steady Kalman: beta = alpha^2 / (2 - alpha), alpha = 4 / "
+         "(3 + sqrt(1 + 8 D)).")
 REPLAY, ROLL_TEST = "build/host/roll_replay", "build/host/test_adaptive_roll"
 
 # name, a1, b0
@@ -144,27 +152,15 @@ def curve():
 # --- page -------------------------------------------------------------------------------------------------------------
 
 
-def table(title, before, head, rows):
-    return [f"### {title}", *([before, ""] if before else [""]), "| " + " | ".join(head) + " |", "|---" * len(head) + "|",
-            *("| " + " | ".join(row) + " |" for row in rows), ""]
-
-
-def closed_tables(values):
+def closed_tables():
     rows = []
     for name, a1, b0, gain, before, lag, radius, overshoot, settled in closed_rows():
         cells = [f"{float(gain):.6f}", f"{float(before):.6f}", f"{float(lag):.6f}", f"{radius:.5f}", f"{100 * overshoot:.1f}", str(settled)]
-        key = f"{a1}:{b0}"
-        values.update({f"{key} noise gain": cells[0], f"{key} lag": f"{float(lag):.4g}", f"{key} overshoot": f"{100 * overshoot:.0f}",
-                       f"{key} settled": cells[5]})
         rows.append([str(a1), str(b0), name, *cells])
     lines = table("Closed forms of the structure", "Noise gain and Pe in R, dynamic error in second differences of the signal (acceleration x T^2).",
                   ["a1", "b0", "", "noise gain", "Pe / R", "dynamic error", "pole radius", "overshoot, %", "step within 2 % from sample"], rows)
-    rows = []
-    for lag, *gains in floor_rows():
-        cells = [f"{gain:.4f}" for gain in gains]
-        values.update({f"lag {lag:g} {name}": cell for name, cell in zip(("synth", "alpha-beta", "kalman"), cells)})
-        rows.append([f"{lag:g}", *cells])
-    return lines + table("Least noise gain for a dynamic error", "", ["dynamic error", "`synth`, a1 = 0", "alpha-beta", "steady Kalman (`kf`)"], rows)
+    rows = [[f"{lag:g}", *(f"{gain:.4f}" for gain in gains)] for lag, *gains in floor_rows()]
+    return lines + table("Least noise gain for a dynamic error", LEAST, ["dynamic error", "`synth`, a1 = 0", "alpha-beta", "steady Kalman (`kf`)"], rows)
 
 
 def winning_cells(wins):
@@ -179,14 +175,12 @@ def winning_cells(wins):
     return rows
 
 
-def adaptive_tables(values, grid):
+def adaptive_tables(grid):
     known, identified, wins, means = told_by_the_test()
     rows = [[name, *(" ".join(f"{float(x):.3f}" for x in row[1:]) for row in cells)] for name, cells in
             (("unguarded, R known", known), ("unguarded, scatter identified", identified))]
     for share in SHARES:
         cells = [grid[GATE_CHOSEN, profile, share] for profile in PROFILES]
-        for profile, cell in zip(PROFILES, cells):
-            values.update({f"guarded {profile} {share:g} {window}": f"{mse:.3f}" for window, mse in zip(WINDOWS, cell)})
         rows.append([f"guarded, {100 * share:g} % with 20 times the noise", *(" ".join(f"{x:.3f}" for x in cell) for cell in cells)])
     for share in SHARES[1:]:
         rows.append([f"guarded, {100 * share:g} % shifted by +-20 sigma", *(" ".join(f"{x:.3f}" for x in cell) for cell in shifted(share))])
@@ -196,19 +190,10 @@ def adaptive_tables(values, grid):
              f"{max(grid[gate, profile, 0.05][2] for profile in PROFILES[:3]):.3f}"] for gate in GATES_SHOWN]
     lines += table("What the width of the gate trades", "degree^2; the last column is the worst of ramp30, cos60, bump30.",
                    ["gate, sigma", "sine30 clean, 6-10 s", "5 % outliers", "15 %", "bump30, 5 %, 6-10 s", "5 %, 11-15 s"], rows)
-    lines += table("Cells in which a fixed tuning has less error than `adaptive`", "Unguarded, mean square error in degree^2; of 83 fixed tunings.",
-                   ["cell", "tunings that win", "the best of them", "its error", "`adaptive`"], winning_cells(wins))
-    values.update({"mean of 12 cells adaptive": means[0], "mean of 12 cells fixed": means[1]})
-    for profile in PROFILES:
-        values[f"wins {profile} 6-10"] = str(sum(1 for win in wins if win[3:5] == (profile, "6-10")))
-    values["wins 2-5 11-15"] = str(len({win[:3] for win in wins if win[4] != "6-10"}))
-    return lines
-
-
-def declared(values):
-    """The worst case of each filter's update as its law declares it."""
-    for name, worst in laws.worst_cycles().items():
-        values[f"cycles {name}"] = f"{worst:,}"
+    lines += table("Cells in which a fixed tuning has less error than `adaptive`", "Unguarded, mean square error in degree^2; of 83 fixed tunings, 72 of `synth` "
+                   "and 11 of a Kalman filter.", ["cell", "tunings that win", "the best of them", "its error", "`adaptive`"], winning_cells(wins))
+    return lines + table("Mean of the twelve cells", "Unguarded, degree^2.", ["filter", "mean square error"],
+                         [["`adaptive`", means[0]], ["the best fixed tuning", means[1]]])
 
 
 def pictures_of(grid):
@@ -229,15 +214,14 @@ def pictures_of(grid):
 
 def main(arguments=None):
     argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args(arguments)
-    values, grid = {}, curve()
-    declared(values)
-    lines = closed_tables(values) + adaptive_tables(values, grid)
+    grid = curve()
     pictures = pictures_of(grid)
-    faults = PAGE.write(DOCUMENT.read_text(encoding="utf-8"), ["", *lines], values)
+    shown = [line for picture in pictures for line in (f"![{picture.title}]({PICTURES.name}/{picture.path.name})", "")]
+    faults = PAGE.write(shown + closed_tables() + adaptive_tables(grid))
     drawn = synthesised_pictures.draw_stale(pictures)
     for fault in faults:
-        print(f"synthesised: {DOCUMENT}: {fault}", file=sys.stderr)
-    print(f"synthesised: {DOCUMENT} written, {drawn} of {len(pictures)} pictures drawn anew, {len(faults)} findings")
+        print(f"synthesised: {PAGE.document}: {fault}", file=sys.stderr)
+    print(f"synthesised: {PAGE.document} written, {drawn} of {len(pictures)} pictures drawn, {len(faults)} findings")
     return 1 if faults else 0
 
 

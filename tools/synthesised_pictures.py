@@ -1,4 +1,4 @@
-"""The pictures of docs/synthesised-filters.md. Each file holds the hash of this file and of the numbers that it draws, so one that a new run
+"""The pictures of docs/results/synthesised-filters.md. Each file holds the hash of this file and of the numbers that it draws, so one that a new run
 would draw otherwise is drawn anew, and an equal one is left as it is."""
 import hashlib
 import io
@@ -10,8 +10,9 @@ import numpy as np
 from scipy.signal import lfilter
 
 from design.response import numbers
-from robust_pictures import COLOURS, DPI, FOLDER, KEY, MAX_BYTES, RAW_COLOUR, TRUTH_COLOUR, digest_in
+from robust_pictures import COLOURS, DPI, KEY, MAX_BYTES, RAW_COLOUR, TRUTH_COLOUR, digest_in
 from page import Fault
+from results import PICTURES
 
 FILTERS = {"synth": ("#1b7f3b", 1.5), "kf": ("#e08e0b", 1.5), "adaptive": ("#0b5394", 2.0)}
 OTHERS = {"alpha-beta": ("#c0187a", 1.6), "steady Kalman (kf)": ("#e08e0b", 1.6)}
@@ -48,7 +49,7 @@ def contents(steps, trade, roll, gates):
               ("outliers", "A roll of paper 000 (cos60), 5 % of the samples with 20 times the noise", (10.0, 5.6), draw_roll, roll),
               ("gate", "adaptive: what the width of its gate trades, 10 Hz", (10.0, 4.2), draw_gate, gates)]
     source = pathlib.Path(__file__).read_bytes()
-    return [Picture(FOLDER / f"synthesised-{name}.png", title, inches, draw, data,
+    return [Picture(PICTURES / f"synthesised-{name}.png", title, inches, draw, data,
                     hashlib.sha256(source + "\n".join(flat(data)).encode("ascii")).hexdigest()) for name, title, inches, draw, data in wanted]
 
 
