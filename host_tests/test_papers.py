@@ -3,7 +3,6 @@ fault that must be named."""
 import copy
 import io
 import pathlib
-import re
 import subprocess
 import sys
 
