@@ -252,7 +252,7 @@ static void no_fixed_tuning_has_a_smaller_mean(void)
     TEST_ASSERT_TRUE(ours < best);
 }
 
-/* What the gate trades on sine30, which is hardly separable from outliers: CSV, for docs/results/synthesised-filters.md. */
+/* What the gate trades on sine30, hardly separable from outliers: CSV, for docs/results/synthesised-filters.md. */
 static void print_curve(void)
 {
     static const double shares[] = { 0.0, 0.05, 0.15 };

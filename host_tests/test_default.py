@@ -1,4 +1,5 @@
-"""make default: the rule of the default filter, its scores, its program, and that docs/results/default-filter.md is what the rule and the rows give."""
+"""make default: the rule of the default filter, its scores, its program, and that docs/results/default-filter.md is what the rule and the rows
+give."""
 import json
 import math
 import pathlib

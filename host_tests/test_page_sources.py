@@ -14,7 +14,8 @@ import results  # noqa: E402
 
 TOOLS = pathlib.Path("tools").resolve()
 SOURCE = '#include "b.h"\n/* a gain */\nint f(int a) { return a * 3; } // "3"\n'
-TABLE = "# pages\n@lib\n    lib/*.[ch]\n\ndocs/results/p.md | make p | never\n    @lib tools/p.py\ndocs/typed.md | make q | every commit\n    tools/p.py\n"
+TABLE = ("# pages\n@lib\n    lib/*.[ch]\n\ndocs/results/p.md | make p | never\n    @lib tools/p.py\n"
+         "docs/typed.md | make q | every commit\n    tools/p.py\n")
 PAGE = "# Pages\nWritten by `make p`; do not edit it.\n<!-- sources: none -->\n\nWhat.\n\n1\n"
 FILES = {"tools/pages.txt": TABLE, "tools/p.py": "print(1)  # one\n", "lib/a.c": SOURCE, "lib/b.h": "int f(int a);\n", "docs/results/p.md": PAGE,
          "docs/typed.md": "Typed: 1\n"}
@@ -155,8 +156,9 @@ def a_person_writes_the_hash_only_of_a_page_that_no_command_writes():
         put("tools/p.py", "print(2)\n")
         assert said("--stamp", "docs/typed.md", program="page_sources.py") == (0, "")
         assert page_sources.hash_in("docs/typed.md") == page_sources.hash_now("docs/typed.md") != page_sources.hash_in("docs/results/p.md")
-        for words, answer in ((["docs/results/p.md"], "docs/results/p.md: make p measures it and writes its hash"), (["docs/gone.md"], "No such file"),
-                              (["lib/a.c"], "lib/a.c: not in tools/pages.txt"), ([], "page_sources.py --stamp PAGE")):
+        for words, answer in ((["docs/results/p.md"], "docs/results/p.md: make p measures it and writes its hash"),
+                              (["docs/gone.md"], "No such file"), (["lib/a.c"], "lib/a.c: not in tools/pages.txt"),
+                              ([], "page_sources.py --stamp PAGE")):
             status, text = said("--stamp", *words, program="page_sources.py")
             assert status == 1 and answer in text and "Traceback" not in text, text
 

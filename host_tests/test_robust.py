@@ -1,4 +1,5 @@
-"""docs/results/robust-filters.md is what a new run gives; a number, a row or a picture that is not is found; scores and experiment are as described."""
+"""docs/results/robust-filters.md is what a new run gives; a number, a row or a picture that is not is found; scores and experiment are as
+described."""
 import copy
 import pathlib
 import random

@@ -214,8 +214,8 @@ def readings_table(t):
         found = score.verdict(scores, classes=tuple(scores))
         lines.append([what, *(f"{found.ratio[group]:.2f}" if group in found.ratio else "" for group in CLASSES), str(len(found.best_in)),
                       f"`{found.default}`"])
-    return table(READINGS, f"`{CANDIDATE}` over the best, class by class; only the first line decides. The low pass of 5 Hz is a convention; against its own "
-                 "run a filter that stands still would score 0.",
+    return table(READINGS, f"`{CANDIDATE}` over the best, class by class; only the first line decides. The low pass of 5 Hz is a convention; against "
+                 "its own run a filter that stands still would score 0.",
                  ["reading", *CLASSES, "best in", "default"], lines)
 
 

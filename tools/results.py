@@ -59,7 +59,7 @@ class Results:
 
     def __init__(self, document, title, command, about):
         self.document = document
-        self.head = [f"# {title}", f"Written by `{command}`; do not edit it.", page_sources.line(page_sources.NONE), "", *about.strip().splitlines(), ""]
+        self.head = [f"# {title}", f"Written by `{command}`; do not edit it.", page_sources.line(page_sources.NONE), "", about.strip(), ""]
 
     def text(self, lines):
         """The page without the hash of its sources."""

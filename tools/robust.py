@@ -21,9 +21,9 @@ except ImportError as missing:
     sys.exit(f"robust: {missing.name} is missing: run `make robust`, or use a Python that has tools/requirements.txt")
 
 ABOUT = """
-Roll, pitch and acceleration that each filter makes of the [shipped streams](../../sim/streams/README.md), with its defaults, through the firmware's own
-sample path on the PC (noise estimate, filter, angles). The streams are simulated, so the truth is known. Rows that warm up or predict a missing sample
-do not count.
+Roll, pitch and acceleration that each filter makes of the [shipped streams](../../sim/streams/README.md), with its defaults, through the firmware's
+own sample path on the PC (noise estimate, filter, angles). The streams are simulated, so the truth is known. Rows that warm up or predict a missing
+sample do not count.
 
 In the pictures grey points are the raw roll, red crosses those of rows in which `sprf` refused a sample of at least one axis; the lower panels show
 the error.
@@ -93,9 +93,9 @@ def shake_table(names):
     for hz in SHAKE_HZ:
         pairs = [[score[streams[hz, rate].name, name]["roll"] for rate in SHAKE_RATES_HZ] for name in [RAW, *names]]
         rows.append([f"{hz} Hz", *(" / ".join(f"{value:.2f}" for value in pair) for pair in pairs)])
-    return table("The same vibration at 100 / 400 Hz", "Roll error in degrees rms at an output data rate of 100 Hz / of 400 Hz. Bursts of 1 s, 0.39 g "
-                 "in a random direction, on a slow tilt; equal noise density. Samples are taken at an instant: the sensor's own low pass (half the rate) "
-                 "is not modelled.", ["vibration", RAW, *(f"`{name}`" for name in names)], rows)
+    return table("The same vibration at 100 / 400 Hz", "Roll error in degrees rms at an output data rate of 100 Hz / of 400 Hz. Bursts of 1 s, "
+                 "0.39 g in a random direction, on a slow tilt; equal noise density. Samples are taken at an instant: the sensor's own low pass "
+                 "(half the rate) is not modelled.", ["vibration", RAW, *(f"`{name}`" for name in names)], rows)
 
 
 def measure():

@@ -1,5 +1,5 @@
-"""docs/results/variable-structure.md and its picture, from the experiments of tools/variable_structure with the seed and the runs of make papers. Fails
-with the name of each number that does not come out again."""
+"""docs/results/variable-structure.md and its picture, from the experiments of tools/variable_structure with the seed and the runs of make
+papers. Fails with the name of each number that does not come out again."""
 import argparse
 import sys
 
@@ -15,16 +15,16 @@ from papers_page import shown
 from results import FOLDER, PICTURES, Results, table
 
 ABOUT = f"""
-Which of three sensors a rule of [paper 004](../variable-structure.md) chooses for each window of 20 s, and what the estimate is worth: {DEFAULT_RUNS} simulated
-flights of 400 s. Velocity is measured once a second; from the third window on a sensor is in each window degraded (20 %: 6 to 20 times its noise),
-frozen (8 %) or biased by 3 m/s (8 %). rms of the velocity's error from 40 s on.
+Which of three sensors a rule of [paper 004](../variable-structure.md) chooses for each window of 20 s, and what the estimate is worth:
+{DEFAULT_RUNS} simulated flights of 400 s. Velocity is measured once a second; from the third window on a sensor is in each window degraded
+(20 %: 6 to 20 times its noise), frozen (8 %) or biased by 3 m/s (8 %). rms of the velocity's error from 40 s on.
 
-"Best sensor": how often the one of least true error is chosen; "within twice": one of at most twice that error; "frozen one taken": of the windows in which a
-sensor is frozen. The last column of the first three tables is the same rule when it knows only the window before.
+"Best sensor": how often the one of least true error is chosen; "within twice": one of at most twice that error; "frozen one taken": of the windows
+in which a sensor is frozen. The last column of the first three tables is the same rule when it knows only the window before.
 """
 PAGE = Results(FOLDER / "variable-structure.md", "Variable structure: results", "make structure", ABOUT)
-PICTURE = (f"![Above: measurements of three sensors, the trend's prediction of each 20 s window, estimate and truth. Below: the trouble of each sensor in "
-           f"each window and which one two rules choose]({PICTURES.name}/{structure_picture.PATH.name})")
+PICTURE = (f"![Above: measurements of three sensors, the trend's prediction of each 20 s window, estimate and truth. Below: the trouble of each "
+           f"sensor in each window and which one two rules choose]({PICTURES.name}/{structure_picture.PATH.name})")
 RULES = {"fixed_1": "sensor 1 always (0.15 m/s)", "fixed_2": "sensor 2 always (0.4 m/s)", "fixed_3": "sensor 3 always (0.25 m/s)",
          "fuse": "all three, nominal noise", "degree_only": "degree of observability (14) alone", "trend_acceptor": "trend acceptor (25)",
          "gate_then_degree": "acceptor's gate, then the degree", "normalised_innovation": "normalised innovation, may coast",
@@ -68,7 +68,8 @@ def trend_table(found):
 def exact_table(found):
     """Rules without a choice, whose mean square error can be worked out (tools/variable_structure/moments.py)."""
     kind = "windows_stuck_at_zero"
-    lines = [[RULES[rule], *(cell(found, kind, rule, metric) for metric in ("exact_mse", "mse"))] for rule in RULES if (kind, rule, "exact_mse") in found]
+    lines = [[words, *(cell(found, kind, rule, metric) for metric in ("exact_mse", "mse"))]
+             for rule, words in RULES.items() if (kind, rule, "exact_mse") in found]
     return table("Without a choice: mean square error", "A frozen sensor stuck at zero, (m/s)^2.", ["rule", "worked out", "measured"], lines)
 
 

@@ -1,5 +1,5 @@
-"""The picture of docs/results/variable-structure.md: prediction and measurements of one flight, and the sensor of each 20 s window. The file holds the
-hash of this file and of what it shows, so that one that would be drawn otherwise is drawn anew."""
+"""The picture of docs/results/variable-structure.md: prediction and measurements of one flight, and the sensor of each 20 s window. The file
+holds the hash of this file and of what it shows, so that one that would be drawn otherwise is drawn again."""
 import hashlib
 import io
 from dataclasses import dataclass

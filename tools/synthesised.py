@@ -28,8 +28,8 @@ In the picture of the gate, and in its table, the same roll has 5 or 15 % of its
 """
 PAGE = Results(FOLDER / "synthesised-filters.md", "Synthesised filters: results", "make synthesised", ABOUT)
 LEAST = ("Dynamic error D in second differences of the signal. `synth`: b0 = 1 / (1 + D), noise gain (1 + 2 D) / (1 + 4 D). Alpha-beta: beta = 2 / "
-         "(1 + 2 sqrt D + 2 D), alpha = 1 - beta D, noise gain (1 + 4 sqrt D) / (1 + 2 sqrt D)^2. Steady Kalman: beta = alpha^2 / (2 - alpha), alpha = 4 / "
-         "(3 + sqrt(1 + 8 D)).")
+         "(1 + 2 sqrt D + 2 D), alpha = 1 - beta D, noise gain (1 + 4 sqrt D) / (1 + 2 sqrt D)^2. Steady Kalman: beta = alpha^2 / (2 - alpha), "
+         "alpha = 4 / (3 + sqrt(1 + 8 D)).")
 REPLAY, ROLL_TEST = "build/host/roll_replay", "build/host/test_adaptive_roll"
 
 # name, a1, b0
@@ -160,7 +160,8 @@ def closed_tables():
     lines = table("Closed forms of the structure", "Noise gain and Pe in R, dynamic error in second differences of the signal (acceleration x T^2).",
                   ["a1", "b0", "", "noise gain", "Pe / R", "dynamic error", "pole radius", "overshoot, %", "step within 2 % from sample"], rows)
     rows = [[f"{lag:g}", *(f"{gain:.4f}" for gain in gains)] for lag, *gains in floor_rows()]
-    return lines + table("Least noise gain for a dynamic error", LEAST, ["dynamic error", "`synth`, a1 = 0", "alpha-beta", "steady Kalman (`kf`)"], rows)
+    return lines + table("Least noise gain for a dynamic error", LEAST,
+                         ["dynamic error", "`synth`, a1 = 0", "alpha-beta", "steady Kalman (`kf`)"], rows)
 
 
 def winning_cells(wins):
@@ -190,8 +191,9 @@ def adaptive_tables(grid):
              f"{max(grid[gate, profile, 0.05][2] for profile in PROFILES[:3]):.3f}"] for gate in GATES_SHOWN]
     lines += table("What the width of the gate trades", "degree^2; the last column is the worst of ramp30, cos60, bump30.",
                    ["gate, sigma", "sine30 clean, 6-10 s", "5 % outliers", "15 %", "bump30, 5 %, 6-10 s", "5 %, 11-15 s"], rows)
-    lines += table("Cells in which a fixed tuning has less error than `adaptive`", "Unguarded, mean square error in degree^2; of 83 fixed tunings, 72 of `synth` "
-                   "and 11 of a Kalman filter.", ["cell", "tunings that win", "the best of them", "its error", "`adaptive`"], winning_cells(wins))
+    lines += table("Cells in which a fixed tuning has less error than `adaptive`", "Unguarded, mean square error in degree^2; of 83 fixed "
+                   "tunings, 72 of `synth` and 11 of a Kalman filter.",
+                   ["cell", "tunings that win", "the best of them", "its error", "`adaptive`"], winning_cells(wins))
     return lines + table("Mean of the twelve cells", "Unguarded, degree^2.", ["filter", "mean square error"],
                          [["`adaptive`", means[0]], ["the best fixed tuning", means[1]]])
 

@@ -42,8 +42,9 @@ SCRIPTS = [
     plain("test_run_tests", "system_images"), plain("test_faults", "system_images"),
     plain("test_arduino", "arduino_images"), plain("test_plotter", "system_images"), plain("test_compile_commands"),
     packages("test_nav_image", "build/sim/simrun", "nav_images"), packages("test_plot_run"), packages("test_robust", "build/host/pipeline_replay"),
-    packages("test_design"), packages("test_design_command"), packages("test_design_refusals"), packages("test_synthesised"), packages("test_filter_pages"),
-    packages("test_variable_structure"), packages("test_variable_structure_flight"), packages("test_variable_structure_page"),
+    packages("test_design"), packages("test_design_command"), packages("test_design_refusals"), packages("test_synthesised"),
+    packages("test_filter_pages"), packages("test_variable_structure"), packages("test_variable_structure_flight"),
+    packages("test_variable_structure_page"),
 ]
 NOT_HERE = {"test_planted", "test_platformio"}  # make check and make piocheck run these
 
