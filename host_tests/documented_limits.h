@@ -60,8 +60,7 @@
       "firmware/path/silence.c: LONG_QUARTERS = {v * 40} ", "test_coast: test_rows_of_missing_samples")                \
     X(LONG_STEP_MS, 100, "docs/protocol.md: s a row each {} ms)",                                                      \
       "firmware/path/coast.c: LONG_STEP_US UINT32_C({v * 1000})", "test_coast: test_rows_of_missing_samples")          \
-    X(MISSING_FAULT, 3,                                                                                                \
-      "docs/protocol.md: the {nth} sample missing in a row | docs/faults.md: the {nth} sample missing in a row",       \
+    X(MISSING_FAULT, 3, "docs/protocol.md: the {nth} sample missing in a row",                                         \
       "firmware/path/silence.h: SILENCE_FAULT_FROM = {} ", "test_coast: test_rows_of_missing_samples")                 \
     X(G_LSB, 256,                                                                                                      \
       "docs/protocol.md: (16 g: -{16 * v}, {16 * v - 1}; 8 g: -{8 * v}, {8 * v - 1}; 4 g: -{4 * v}, {4 * v - 1}; 2 "   \
@@ -69,8 +68,7 @@
       "firmware/path/pipeline.c: range_g * {}U - 1U",                                                                  \
       "test_row_flags: test_clipped_at_the_rails_of_the_range_in_force")                                               \
     X(STUCK_SAMPLES, 10,                                                                                               \
-      "docs/protocol.md: at least the {nth} in a row | docs/faults.md: values {word} times in a row | "                \
-      "docs/faults.md: the sample is the {nth}",                                                                       \
+      "docs/protocol.md: at least the {nth} in a row | docs/faults.md: values {word} times in a row",                  \
       "lib/adxl345/src/adxl345_integrity.h: ADXL345_STUCK_REPEATS {v - 1}u",                                           \
       "test_integrity: test_the_tenth_equal_reading_is_stuck")                                                         \
     X(GRAVITY_PERCENT, 15,                                                                                             \
@@ -97,15 +95,15 @@
       "firmware/path/pipeline.c: STILL_LSB_Q2 = {v * 2} ", "test_true_rate: test_the_most_that_is_standing_still")     \
     X(OUTAGE_S, 60, "docs/faults.md: from {} s on in whole seconds", "firmware/control/sensor_watch.c: seconds < {}u", \
       "test_app_bounds: test_an_outage_from_a_minute_on_is_in_whole_seconds")                                          \
-    X(LED_MS, 65, "docs/faults.md: so many flashes of {} ms",                                                          \
+    X(LED_MS, 65, "docs/faults.md: that many flashes of {} ms",                                                        \
       "firmware/control/sensor_watch.c: FLASH_SHIFT {(v * 1000).bit_length()}",                                        \
       "test_app_told: test_led_flashes_by_what_to_look_at")                                                            \
-    X(TRIES, 3, "docs/faults.md: transfers fail {word} times on end", "lib/adxl345/src/adxl345_driver.h: TRIES = {} ", \
-      "test_driver_pace: test_three_failed_bursts_are_a_fault")                                                        \
+    X(TRIES, 3, "docs/faults.md: transfers fail {word} times in a row",                                                \
+      "lib/adxl345/src/adxl345_driver.h: TRIES = {} ", "test_driver_pace: test_three_failed_bursts_are_a_fault")       \
     X(BACK_OFF_MIN_MS, 5, "docs/faults.md: looked for again after {} ms,",                                             \
       "lib/adxl345/src/adxl345_driver.h: BACK_OFF_MIN = {v * 2},",                                                     \
       "test_driver_pace: test_tries_again_at_a_pause_that_doubles_to_25_ms")                                           \
-    X(BACK_OFF_MAX_MS, 25, "docs/faults.md: to {} ms at most",                                                         \
+    X(BACK_OFF_MAX_MS, 25, "docs/faults.md: up to {} ms.",                                                             \
       "lib/adxl345/src/adxl345_driver.h: BACK_OFF_MAX = {v * 2},",                                                     \
       "test_driver_pace: test_tries_again_at_a_pause_that_doubles_to_25_ms")                                           \
     X(RESTS, 40, "docs/faults.md: tried {} times more", "lib/adxl345/src/adxl345.c: RESTS = {} ",                      \
@@ -122,14 +120,14 @@
       "lib/adxl345/src/adxl345_burst.c: SENSOR_DEPTH {}ul | lib/adxl345/src/adxl345_integrity.c: SENSOR_DEPTH {}u",    \
       "test_driver_stamps: test_no_sample_waits_longer_than_the_sensor_is_deep")                                       \
     X(PERIOD_STEPS, 16,                                                                                                \
-      "docs/faults.md: the mean of {} samples on end | docs/protocol.md: of {} samples read on time",                  \
+      "docs/faults.md: the mean of {} samples in a row | docs/protocol.md: of {} samples read on time",                \
       "lib/adxl345/src/adxl345_period.c: STEPS = {} ", "test_driver_period: test_sixteen_steps_are_a_measurement")     \
     X(JUMPS, 8, "docs/faults.md: begins with the {nth} jump in close order",                                           \
       "lib/adxl345/src/adxl345_watch.c: LIMIT = {v * 16},",                                                            \
       "test_watch: test_the_eighth_jump_is_told_and_quiet_ends_it")                                                    \
     X(JUMP_SHARE, 16, "docs/faults.md: more than one in {word} samples",                                               \
       "lib/adxl345/src/adxl345_watch.c: RAISE = {},", "test_watch: test_one_jump_in_sixteen_is_the_limit")             \
-    X(JUMPS_END, 255, "docs/faults.md: ends {} samples after the last one",                                            \
+    X(JUMPS_END, 255, "docs/faults.md: ends {} samples after the last jump",                                           \
       "lib/adxl345/src/adxl345_watch.c: SCORE_MAX = {} ",                                                              \
       "test_watch: test_the_eighth_jump_is_told_and_quiet_ends_it")                                                    \
     X(DOUBLE_MIN_LSB, 64,                                                                                              \

@@ -7,6 +7,7 @@ import faults_commands
 import faults_judge
 import faults_kinds
 import faults_runs
+import page_faults
 from faults_judge import Ending
 from faults_judged import ALL, result
 from system_support import FW, test
@@ -147,6 +148,6 @@ def what_a_run_came_to_is_seen_in_the_sensor_its_rows_and_the_status():
 def the_table_has_a_line_for_each_fault_and_a_column_for_each_command():
     runs = [result("command rate 50: nack", ms_to_good=33.0), result("command stop: nack"), result("command stop: nack", when="1001ms", wrong=1),
             result("sda")]
-    lines = faults.tables(faults.summarised(runs), [])
+    lines = page_faults.tables(faults.summarised(runs), [])
     assert "| nack | 1, 33.0 | - | - | 2, -, 1 FAILED | - |" in lines and not any(line.startswith("| command ") for line in lines), lines
     assert any(line.endswith("| `rate 50` | `rate 400` | `range 8` | `stop` | `stop and go` |") for line in lines), lines

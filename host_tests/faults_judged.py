@@ -17,6 +17,7 @@ import faults_commands
 import faults_judge
 import faults_kinds
 import faults_runs
+import page_faults
 import soak
 from system_support import FW, OUT, test
 from laws import DEFAULT, LIGHT, ROBUST  # noqa: E402
@@ -111,7 +112,7 @@ def what_is_lost_is_not_judged_where_nobody_knows():
     assert result("arb", lost=None).failures() == [] and result("arb", lost=3).failures()
     assert result("sda", "power", lost=None).failures() == []
     rows = faults.summarised([result("arb", lost=None), result("sda", lost=None), result("sda", lost=2)])
-    assert [row["worst_rows_lost"] for row in rows] == [None, 2] and "| - |" in "\n".join(faults.tables(rows, []))
+    assert [row["worst_rows_lost"] for row in rows] == [None, 2] and "| - |" in "\n".join(page_faults.tables(rows, []))
 
 
 @test

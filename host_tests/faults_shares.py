@@ -6,6 +6,7 @@ import faults
 import faults_judge
 import faults_kinds
 import faults_runs
+import page_faults
 import soak
 from faults_judged import ALL, result
 from system_support import FW, OUT, test
@@ -63,7 +64,7 @@ def of_rows_999_in_a_thousand_have_roll_within_half_a_degree_and_1_percent_may_l
     for within, beyond, missing, good in ((9990, 10, 0, True), (9989, 11, 0, False), (9900, 0, 100, True), (9899, 0, 101, False)):
         row = with_made_up(roll_differences=([50] * within + [51] * beyond, missing))(faults.share_of_roll, FW, "torn", ["torn"], faults.REST, 1)
         assert row["good"] is good and row["rows_without_partner"] == missing and row["rows"] == within + beyond, row
-    assert "| torn | 9899 | 101 | 100.000 % | 0.50 |" in faults.tables([], [row])
+    assert "| torn | 9899 | 101 | 100.000 % | 0.50 |" in page_faults.tables([], [row])
 
 
 @test

@@ -85,7 +85,7 @@ def make_loss_test(filter_name, rate, baud, every, load_limit, ppm):
 TESTS.append(make_loss_test(DEFAULT, 100, 115200, 1, 0.108, 777))
 TESTS.append(make_loss_test(DEFAULT, 400, 500000, 1, 0.39, -777))
 TESTS.append(make_loss_test(DEFAULT, 800, 500000, 4, 0.47, 777))
-# above adaptive: three times 1,320 cycles of the filters (docs/benchmarks.md) and those of the supervisor
+# above adaptive: three times 1,320 cycles of the filters (docs/results/benchmarks.md) and those of the supervisor
 TESTS.append(make_loss_test("auto", 100, 115200, 1, 0.14, 777))
 TESTS.append(make_loss_test("auto", 400, 500000, 1, 0.535, -777))
 TESTS.append(make_loss_test("auto", 800, 500000, 4, 0.80, 777))

@@ -1,4 +1,4 @@
-"""The judgement of make bench: each limit is broken once and must be named; the rest of the page is left alone."""
+"""The judgement of make bench: each limit is broken once and must be named; and the page that it writes."""
 import copy
 import importlib.util
 import pathlib
@@ -12,7 +12,7 @@ from laws import ROBUST  # noqa: E402
 spec = importlib.util.spec_from_file_location("bench", pathlib.Path("tools/bench.py"))
 bench = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(bench)
-bench_firmware, bench_peers, laws = sys.modules["bench_firmware"], sys.modules["bench_peers"], sys.modules["laws"]
+bench_firmware, page_benchmarks, bench_peers, laws = (sys.modules[name] for name in ("bench_firmware", "page_benchmarks", "bench_peers", "laws"))
 
 # a filter of this test's own
 limits_of_the_list = laws.limits
@@ -38,6 +38,11 @@ def rows():
            "flash": 1000, "shared": 500, "ram": 60, "stack": 16}
     return {"one": row, "angles": dict(row, worst=1400), "float_one": dict(row, median=4000, worst=5000),
             "float_angles": dict(row, median=6000, worst=7000)}
+
+
+def whole_page(calls):
+    """The page's text with that table of calls."""
+    return page_benchmarks.PAGE.text(page_benchmarks.lines(calls, ["| parts |"], ["| where |"], ["| peers |"]))
 
 
 RMS = [("one", "typical", 250, 0.01), ("one", "provoked", 250, 99.0), ("one", "typical", 125, 9.0), ("angles", "typical", 0, 0.004)]
@@ -163,8 +168,7 @@ def a_yardstick_that_does_another_job_is_named():
 
 @test
 def a_number_two_per_cent_up_is_named_with_old_and_new():
-    page = "\n".join([bench.BEGIN, *bench.table(rows()), bench.END])
-    old = bench.read_table(page)
+    old = bench.read_table(whole_page(bench.table(rows())))
     assert old["one"] == {"median": 700, "worst": 790, "worst, firmware's flags": 800, "flash": 1000, "RAM": 60, "stack": 16}, old["one"]
     for column, value, found in (("worst", 805, 0), ("worst", 806, 1), ("flash", 1020, 0), ("flash", 1021, 1), ("stack", 17, 1), ("median", 1, 0)):
         new = copy.deepcopy(old)
@@ -197,19 +201,6 @@ def cycles_go_to_the_function_that_the_profile_names():
             raise AssertionError(f"a profile without {gone} was taken")
 
 
-@test
-def only_the_table_of_the_page_is_written():
-    page = f"head\n{bench.BEGIN}\nold\n{bench.END}\ntail\n"
-    assert bench.with_table(page, ["| new |"], bench.BEGIN, bench.END) == f"head\n{bench.BEGIN}\n| new |\n{bench.END}\ntail\n"
-    for broken in (page.replace(bench.END, ""), page + bench.BEGIN):
-        try:
-            bench.with_table(broken, [], bench.BEGIN, bench.END)
-        except bench.Fault as fault:
-            assert "markers" in str(fault)
-        else:
-            raise AssertionError("taken for a page")
-
-
 def fault_of(function, *arguments):
     try:
         function(*arguments)
@@ -234,13 +225,20 @@ def other_people_s_filters_are_skipped_and_counted_where_they_are_absent():
 
 
 @test
-def their_table_is_left_alone_unless_all_of_them_were_measured():
-    page = "".join(f"{begin}\nold\n{end}\n" for begin, end in ((bench.BEGIN, bench.END), bench.bench_where.MARKERS, bench_peers.MARKERS))
+def their_table_and_the_hash_are_left_alone_unless_all_of_them_were_measured():
     peers = {"one": {"label": "`one`", "words": "ours", "min": 700, "median": 1234, "worst": 1300, "flash": 5000, "ram": 90, "error": 1.716},
              "no filter": {"label": "no filter", "words": "read", "error": 0.5}}
-    for absent, left in (([bench_peers.THEIRS[0]], 1), ([], 0)):
-        written = bench.page_with(page, ["| new |"], ["| where |"], peers, absent)
-        assert written.count("old") == left and written.count("| new |") == written.count("| where |") == 1, written
+    kept = page_benchmarks.DOCUMENT
+    page_benchmarks.PAGE.document = page_benchmarks.DOCUMENT = OUT / "benchmarks.md"
+    try:
+        page_benchmarks.write(["| old |"], ["| old |"], ["| old |"], ["| old |"], "0123456789ab")
+        for table, left, sources in ((None, 1, "0123456789ab"), (bench_peers.table(peers), 0, "ba9876543210")):
+            page_benchmarks.write(["| new |"], ["| parts |"], ["| where |"], table, "ba9876543210")
+            written = page_benchmarks.PAGE.held()
+            assert written.count("| old |") == left and f"<!-- sources: {sources} -->" in written, written
+            assert written.count("| new |") == written.count("| parts |") == written.count("| where |") == 1, written
+    finally:
+        page_benchmarks.PAGE.document = page_benchmarks.DOCUMENT = kept
     # the best error first; what was not timed has no cycles
     rows = ["| no filter | read |  |  |  |  |  | 0.50 |", "| `one` | ours | 700 | 1,234 | 1,300 | 5,000 | 90 | 1.72 |"]
     assert "\n".join(rows) in written, written
@@ -273,8 +271,7 @@ def what_a_filter_beside_others_prints_is_read():
 
 @test
 def the_committed_page_has_every_filter_beside_theirs():
-    begin, end = bench_peers.MARKERS
-    table = bench.DOCUMENT.read_text(encoding="utf-8").split(begin)[1].split(end)[0]
+    table = "\n".join(page_benchmarks.section(page_benchmarks.PAGE.held(), page_benchmarks.PEERS))
     for subject in (*bench_peers.ours(), *bench_peers.THEIRS):
         assert table.count(f"| {subject.label} | {subject.words} |") == 1, f"{subject.name} has no row in {bench.DOCUMENT}: run make bench"
 
@@ -310,9 +307,8 @@ def spans_leave_the_interrupts_out():
 
 
 def page_row(name):
-    """The cells of a row of docs/benchmarks.md."""
-    text = pathlib.Path("docs/benchmarks.md").read_text(encoding="utf-8")
-    row = next(line for line in text.splitlines() if line.startswith(f"| `{name}` |"))
+    """The cells of a row of the page."""
+    row = next(line for line in page_benchmarks.PAGE.held().splitlines() if line.startswith(f"| `{name}` |"))
     return [cell.strip() for cell in row.split("|")[2:-1]]
 
 

@@ -7,6 +7,8 @@ from system_support import FW, OUT, SIMRUN, STREAMS, run, run_all, test
 
 sys.path.insert(0, "tools")
 import bench_parts  # noqa: E402
+import page_benchmarks  # noqa: E402
+from results import section  # noqa: E402
 from bench_parts import OWN, PARTS, REST, Case, Measured, Profile, part_names  # noqa: E402
 
 CASE = Case("default", 100, 1, 115200)
@@ -144,10 +146,9 @@ def tables_have_every_part():
     limits = bench_parts.read_limits(bench_parts.LIMITS.read_text(encoding="ascii"))
     assert list(limits) == [case.column() for case in bench_parts.CASES]
     assert all(set(parts) == set(part_names()) for parts in limits.values()), limits
-    begin, end = bench_parts.MARKERS
-    page = bench_parts.DOCUMENT.read_text(encoding="utf-8").split(begin)[1].split(end)[0]
+    page = section(page_benchmarks.PAGE.held(), page_benchmarks.PARTS)
     for part in (*part_names(), "together"):
-        assert page.count(f"\n| {part} |") == 1, f"{part} has no row in {bench_parts.DOCUMENT}: run make cycles"
+        assert sum(line.startswith(f"| {part} |") for line in page) == 1, f"{part} has no row in {page_benchmarks.DOCUMENT}: run make bench"
 
 
 @test

@@ -18,7 +18,7 @@
 #include "unity.h"
 
 #define DEGREES (3.14159265358979323846 / 180.0)
-#define NOISE_LSB_PER_ROOT_HZ 0.141 /* of real boards, docs/recordings.md; z 1.3 times */
+#define NOISE_LSB_PER_ROOT_HZ 0.141 /* of real boards, docs/results/recordings.md; z 1.3 times */
 
 enum { SEED = 61006, ROLL_CDEG = 2000 };
 

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """The navigation image in the simulated UNO: bit for bit what the PC computes, in time, within its RAM, and whatever comes down the line.
 
-    test_nav_image.py [--seconds N]     length of the flights that are compared (default 20; make navcheck: 500, with the load and RAM judged)
+    test_nav_image.py [--seconds N] [--json FILE]     length of the flights that are compared (default 20; make navcheck: 500, with the load and RAM
+                                                      judged); what they came to, for tools/page_navigation.py
 
 Run from the repository root with build/venv/bin/python; the images are built by make.
 """
 import argparse
+import atexit
 import dataclasses
 import json
 import pathlib
@@ -22,6 +24,7 @@ sys.path.insert(0, "host_tests/tilt")
 from tilt.navigation import boards, exchange, flight, frames, judge  # noqa: E402
 
 SECONDS, EVERY = 20.0, 10
+TOLD = []
 BUDGETS = dict(line.split()[:2] for line in pathlib.Path("tools/budgets.txt").read_text(encoding="utf-8").splitlines() if line and line[0] != "#")
 FOR_COMPILER = subprocess.run(["avr-gcc", "-dumpversion"], capture_output=True, text=True, check=False).stdout.strip() == "5.4.0"
 SLOT_US = 10_000
@@ -61,6 +64,9 @@ class Equal(unittest.TestCase):
         self.assertEqual([(a.code, a.waiting) for a in chip.outcome.answers], [(a.code, a.waiting) for a in pc.outcome.answers])
         self.assertEqual(chip.outcome.counts, pc.outcome.counts)
         self.assertTrue(chip.outcome.healthy)
+        TOLD.append({"part": "image", "states": states, "seconds": SECONDS, "records": len(sent), "compared": len(chip.outcome.states),
+                     **{name: chip.stats[name] for name in ("cpu_load", "pass_max_cycles", "frames_latest_us", "ram_used_bytes", "flash_bytes")}})
+        TOLD.extend({"part": "flight", "states": states, **row} for row in judge.largest(made, judge.errors(made, chip.outcome)))
         return chip.stats
 
     def judge(self, stats, states):
@@ -263,9 +269,12 @@ class BadInput(unittest.TestCase):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("--seconds", type=float, default=SECONDS)
+    parser.add_argument("--json", type=pathlib.Path)
     args, rest = parser.parse_known_args()
     SECONDS = args.seconds
     sys.argv = [sys.argv[0], *rest]
     print(f"flights of {SECONDS:g} s")
+    if args.json:
+        atexit.register(lambda: args.json.write_text(json.dumps(TOLD, indent=1) + "\n", encoding="ascii"))
     from unity_line import main
     main()

@@ -103,6 +103,8 @@ def what_is_wrong_with_table_or_page_is_a_finding():
             ("docs/new.md", "", PAGE, "docs/new.md is written by make p, which is not its row"),
             ("docs/new.md", "", "<!-- written by make p: begin -->\n", "docs/new.md is written by make p, which is not its row"),
             ("docs/results/new.md", "", "By hand.\n", "docs/results/new.md: no line 'Written by `make ...`'"),
+            ("docs/results/p.md", "What.", "[a](../typed.md#b) [b](https://x.org) [c](gone.md)",
+             "docs/results/p.md: a link to gone.md, which is not there"),
             ("docs/results/p.md", "<!-- sources", "<!-- source", "docs/results/p.md: no line '<!-- sources: HASH -->'"),
             ("docs/results/p.md", "What.", "<!-- sources: none -->", "docs/results/p.md: two lines '<!-- sources: HASH -->'"),
             ("docs/results/p.md", "<!-- sources: ", "<!-- sources: x", " is no hash of sources")):

@@ -3,7 +3,6 @@ fault that must be named."""
 import copy
 import io
 import pathlib
-import re
 import subprocess
 import sys
 
@@ -309,53 +308,6 @@ def bad_words_give_one_sentence():
         assert done.returncode == 2 and sentence in done.stderr and done.stderr.count("\n") == 1, done
     done = subprocess.run([sys.executable, "tools/papers.py", "--only", "nothing"], capture_output=True, text=True, timeout=600)
     assert done.returncode == 2 and "no experiment's name contains nothing" in done.stderr, done
-
-
-def cells_of(line):
-    return [cell.strip() for cell in line.strip().strip("|").split("|")]
-
-
-def closed_loops(page):
-    """{case: numbers} and {case: verdicts} of paper 003's closed loop in docs/papers.md."""
-    numbers, verdicts = {}, {}
-    for line in page[page.index("A strapdown INS corrected"):].splitlines():
-        cells = cells_of(line)
-        if len(cells) == 9 and re.match(r"`(9|12)_states", cells[0]):
-            numbers[cells[0].strip("`")] = [float(cell.split()[0].replace(",", "")) for cell in cells[2:]]
-        elif len(cells) == 8 and cells[2].startswith("closed loop"):
-            verdicts.setdefault(cells[0].strip("`"), set()).add(cells[6])
-    return numbers, verdicts
-
-
-def same(text, value):
-    """As printed here, of a value that was printed with three digits there."""
-    return abs(float(text) - value) <= 0.51 * 10.0 ** -len(text.partition(".")[2]) + 0.005 * value
-
-
-def disagreements(navigation, page):
-    """Cases of docs/navigation.md's table that docs/papers.md has otherwise."""
-    numbers, verdicts = closed_loops(page)
-    told = set()
-    for line in navigation.splitlines():
-        case = re.match(r"\| (9|12), (none|n_g|n_g and n_a), x(\d+), (\d+) Hz \|", line)
-        if case:
-            drift = {"none": "", "n_g": "_drift", "n_g and n_a": "_both_drifts"}[case[2]]
-            name = f"{case[1]}_states{drift}(q{case[3]}:{case[4]}_hz)"
-            cells = cells_of(line)
-            own = [number.replace(",", "") for number in re.findall(r"\d[\d,]*(?:\.\d+)?", " ".join(cells[1:5]).replace(", ", " "))]
-            near = len(own) == 7 and all(same(number, other) for number, other in zip(own, numbers[name]))
-            if not near or ("not reproduced" in line) != ("not reproduced" in verdicts.get(name, ())):
-                yield line
-            told.add(name)
-    yield from set(numbers) - told
-
-
-@test
-def navigation_md_tells_of_paper_003_what_the_page_does():
-    navigation, page = (pathlib.Path("docs", name).read_text(encoding="utf-8") for name in ("navigation.md", "papers.md"))
-    assert not list(disagreements(navigation, page)), list(disagreements(navigation, page))
-    for right, wrong in (("| 3.04 | 5.48", "| 3.34 | 5.48"), ("4 not reproduced", "compatible"), ("| 12, n_g, x2, 10 Hz", "| 12, n_g 10 Hz")):
-        assert len(list(disagreements(navigation.replace(right, wrong), page))) == 1, right
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 # Faults in simrun: the campaign, and random faults for hours.
 
-## faults: every fault at every phase, every pair, into build/faults.json and docs/faults-campaign.md (8,700 runs, 12 to 22 minutes; SAMPLE=300: so many)
+## faults: every fault at every phase, every pair, into build/faults.json and docs/results/faults-campaign.md (8,700 runs, 12 to 22 minutes; SAMPLE=300: so many)
 faults:
 	@sh tools/deps.sh sim
 	@$(MAKE) $(U)/firmware.elf $(S)/simrun

@@ -1,5 +1,4 @@
-"""make bench: runs the images of the benchmark in the simulator, judges the numbers, writes build/bench.json and the tables of
-docs/benchmarks.md."""
+"""make bench: runs the images of the benchmark in the simulator, judges the numbers, writes build/bench.json and docs/results/benchmarks.md."""
 import argparse
 import json
 import pathlib
@@ -13,11 +12,12 @@ import bench_peers
 import bench_where
 import images
 import laws
+import page_benchmarks
 import page_sources
-from bench_firmware import COMPILER, DOCUMENT, OUT, SIMRUN, Fault, image_size, measure_rest, measure_sample, run, with_table
+from bench_firmware import COMPILER, DOCUMENT, OUT, SIMRUN, Fault, image_size, measure_rest, measure_sample, run
+from results import section
 
 JSON = pathlib.Path("build/bench.json")
-BEGIN, END = "<!-- written by make bench: begin -->", "<!-- written by make bench: end -->"
 
 # of what is no filter: those of a filter stand beside its yardstick (tools/laws.py)
 ANGLES = laws.Limits(worst=1500, ratio=4.0, rms=0.029)  # degrees: the bound that lib/tilt derives
@@ -226,10 +226,8 @@ def table(rows):
 
 
 def read_table(text):
-    """{name: {column: number}} of a page's table; empty if it has none."""
-    if BEGIN not in text or END not in text:
-        return {}
-    lines = [line for line in text[text.index(BEGIN):text.index(END)].splitlines() if line.startswith("|")]
+    """{name: {column: number}} of the calls' table of a page; empty if it has none."""
+    lines = [line for line in section(text, page_benchmarks.CALLS) if line.startswith("|")]
     if not lines:
         return {}
     head = [cell.strip() for cell in lines[0].strip("|").split("|")]
@@ -252,19 +250,13 @@ def regressions(old, new):
         if name.startswith("float_"):
             continue
         if name not in new:
-            faults.append(f"{name}: was in docs/benchmarks.md and is gone")
+            faults.append(f"{name}: was in {DOCUMENT} and is gone")
             continue
         for column, before in columns.items():
             now = new[name].get(column)
             if now is None or now > before * (1.0 + REGRESSION):
                 faults.append(f"{name}: {column} {before} before, {now} now")
     return faults
-
-
-def page_with(page, lines, where, peers, absent):
-    """The page with its tables; that of other people's filters only where all of them were there."""
-    page = with_table(with_table(page, lines, BEGIN, END), where, *bench_where.MARKERS)
-    return page if absent else with_table(page, bench_peers.table(peers), *bench_peers.MARKERS)
 
 
 def committed_page():
@@ -329,20 +321,19 @@ def main():
     lines = table(rows)
     print("\n".join([*lines, "", *bench_peers.table(peers), *bench_peers.said_of(absent, arguments.peers)]))
     JSON.write_text(json.dumps(bench_json(rows) + bench_peers.json_rows(peers), indent=1) + "\n", encoding="ascii")
-    new = read_table("\n".join([BEGIN, *lines, END]))
+    new = read_table("\n".join(["", f"## {page_benchmarks.CALLS}", *lines]))
     faults = limit_faults(filters, rows, rms) + declared_faults(declared_of(arguments.flags.split(), filters), rows)
     faults += regressions(read_table(committed_page()), new)
     version = run(["avr-gcc", "-dumpversion"]).strip()
     if version != COMPILER:
-        print(f"bench: avr-gcc {version}: reported only, the limits and docs/benchmarks.md are for {COMPILER}")
+        print(f"bench: avr-gcc {version}: reported only, the limits and {DOCUMENT} are for {COMPILER}")
         return 0
-    DOCUMENT.write_text(page_with(DOCUMENT.read_text(encoding="utf-8"), lines, measure_where(), peers, absent), encoding="utf-8")
-    faults += bench_parts.report()
-    if not absent:
-        page_sources.write_hash(DOCUMENT, sources)
+    parts, found = bench_parts.report()
+    faults += found
+    page_benchmarks.write(lines, parts, measure_where(), None if absent else bench_peers.table(peers), sources)
     for fault in faults:
         print(f"bench: {fault}", file=sys.stderr)
-    print(f"bench: {len(rows)} rows, {len(faults)} findings; docs/benchmarks.md and {JSON} written")
+    print(f"bench: {len(rows)} rows, {len(faults)} findings; {DOCUMENT} and {JSON} written")
     return 1 if faults else 0
 
 

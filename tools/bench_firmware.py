@@ -8,7 +8,7 @@ from laws import LIGHT
 
 SIMRUN = "build/sim/simrun"
 OUT = pathlib.Path("build/uno")
-DOCUMENT = pathlib.Path("docs/benchmarks.md")
+DOCUMENT = pathlib.Path("docs/results/benchmarks.md")
 COMPILER = "5.4.0"  # the limits are for Debian's avr-gcc; elsewhere the numbers are only reported
 
 # The firmware's own way of a sample: stream, options of simrun
@@ -36,13 +36,6 @@ def run(command, statuses=(0,)):
     if done.returncode not in statuses:
         raise Fault(f"{command[0]} gave status {done.returncode}: {(done.stderr or done.stdout).strip()}")
     return done.stdout
-
-
-def with_table(page, lines, begin, end):
-    if page.count(begin) != 1 or page.count(end) != 1:
-        raise Fault(f"{DOCUMENT}: its markers are missing or doubled: '{begin}' and '{end}'")
-    head, rest = page.split(begin)
-    return head + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1]
 
 
 def image_size(elf):

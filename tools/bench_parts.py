@@ -1,5 +1,5 @@
 """make cycles, a part of make bench: where the cycles of one sample go, by part, in the image that is flashed. Each part is held to its limit
-in tools/cycles_by_part.txt; into build/cycles_by_part.json and docs/benchmarks.md.
+in tools/cycles_by_part.txt; into build/cycles_by_part.json, and by make bench into docs/results/benchmarks.md.
 
     bench_parts.py [--write-limits]     the limits anew: what is measured and 5 %
 """
@@ -16,12 +16,11 @@ import sys
 from typing import NamedTuple
 
 import laws
-from bench_firmware import COMPILER, CPU_HZ, DOCUMENT, OUT, SIMRUN, Fault, run, with_table
+from bench_firmware import COMPILER, CPU_HZ, OUT, SIMRUN, Fault, run
 from images import FW
 
 LIMITS = pathlib.Path("tools/cycles_by_part.txt")
 JSON = pathlib.Path("build/cycles_by_part.json")
-MARKERS = ("<!-- parts, written by make bench: begin -->", "<!-- parts, written by make bench: end -->")
 STREAM = "sim/streams/outliers-15pct.csv"
 FROM_MS, TO_MS = 2500, 8500  # the difference of two runs: start and commands are in both
 LOAD_OFF = 0.01              # how far the parts together may be from the load that simrun reports
@@ -298,7 +297,7 @@ def findings_of(results):
 
 
 def report(write_limits=False):
-    """Measures and writes; returns the findings."""
+    """Measures and writes; returns the lines of the table and the findings."""
     results = {case: measure(case) for case in CASES}
     lines = table(results)
     print("\n".join(lines))
@@ -310,19 +309,18 @@ def report(write_limits=False):
         LIMITS.write_text(written_limits(results), encoding="ascii")
     findings = findings_of(results)
     if run(["avr-gcc", "-dumpversion"]).strip() != COMPILER:
-        print(f"cycles: reported only, the limits and {DOCUMENT} are for avr-gcc {COMPILER}")
-        return []
-    DOCUMENT.write_text(with_table(DOCUMENT.read_text(encoding="utf-8"), lines, *MARKERS), encoding="utf-8")
-    return findings
+        print(f"cycles: reported only, the limits are for avr-gcc {COMPILER}")
+        return lines, []
+    return lines, findings
 
 
 def main():
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--write-limits", action="store_true", help=f"write {LIMITS}: what is measured and 5 %%")
-    findings = report(options.parse_args().write_limits)
+    _, findings = report(options.parse_args().write_limits)
     for finding in findings:
         print(f"cycles: {finding}", file=sys.stderr)
-    print(f"cycles: {len(CASES)} columns, {len(findings)} findings; {DOCUMENT} and {JSON} written")
+    print(f"cycles: {len(CASES)} columns, {len(findings)} findings; {JSON} written")
     return 1 if findings else 0
 
 

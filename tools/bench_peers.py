@@ -11,7 +11,6 @@ from typing import NamedTuple
 import laws
 from bench_firmware import OUT, SIMRUN, Fault, image_size, run
 
-MARKERS = ("<!-- peers, written by make bench: begin -->", "<!-- peers, written by make bench: end -->")
 FOLDER = OUT / "bench_peers"
 STREAM = pathlib.Path("sim/streams/outliers-15pct.csv")
 X_LSB_PER_G = 265  # of the stream, as its head says

@@ -4,7 +4,6 @@ import csv
 
 from laws import SLOWEST
 
-MARKERS = ("<!-- where, written by make bench: begin -->", "<!-- where, written by make bench: end -->")
 FILTER = SLOWEST
 STREAM = "outliers-15pct"
 ENTRY = "mixed"  # called once per axis and sample

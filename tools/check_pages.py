@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Pages of measurements against their sources (tools/pages.txt): a stale page was measured on others than there are now. Stale pages are counted
-as skipped; a page without a hash, one that the table does not have, and a file that the table lacks are findings.
+as skipped; a page without a hash, one that the table does not have, a file that the table lacks, and a link between pages that leads nowhere are
+findings.
 
     check_pages.py [--strict]     --strict: a stale page is a failure
 """
@@ -13,10 +14,13 @@ from check_support import Stop, main, report
 from page_sources import TABLE, WRITTEN, Fault
 
 NAMED = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"(?:[^"\n]*/)?([^"/\n]+)"|^[ \t]*(?:from|import)[ \t]+\.?([\w.]+)', re.M)
+LINK = re.compile(r"\]\(([^)\s:#]+)(?:#[^)\s]*)?\)")
 IMPLEMENTED = (".c", ".cpp")
 PRODUCT = ("lib", "firmware", "hal", "nav", "sim", "host_tests")
+PAGES = ("docs", "second", "campaigns")
 # what writes a page, draws it, launches a program or says what is wrong with it makes no number
-NO_NUMBER = {"page.py", "page_sources.py", "results.py", "robust_pictures.py", "look.py", "launched.py", "port.py", "errors.py"}
+NO_NUMBER = {"page.py", "page_sources.py", "results.py", "page_benchmarks.py", "page_faults.py", "robust_pictures.py", "look.py", "launched.py",
+             "port.py", "errors.py"}
 RESULTS = pathlib.Path("docs/results")
 COMMITS = 10  # of a page, searched for the one whose sources it was measured on
 SHOWN = 4
@@ -66,6 +70,15 @@ def unlisted(rows):
             yield f"{path}: no line 'Written by `make ...`'"
 
 
+def broken_links():
+    """Links from one file of the tree to another that is not there."""
+    places = ("*.md", *(f"{folder}/**/*.md" for folder in (*PRODUCT, *PAGES)))
+    for page in (page for place in places for page in sorted(pathlib.Path(".").glob(place))):
+        for link in LINK.findall(page.read_text(encoding="utf-8")):
+            if not (page.parent / link).exists():
+                yield f"{page}: a link to {link}, which is not there"
+
+
 def changed(page, row, held, files):
     """Files that have changed since a page was measured, where git has the commit; None where it has not."""
     for commit in page_sources.git("log", f"-{COMMITS}", "--format=%h", "--", page).decode().split():
@@ -101,7 +114,7 @@ def check():
     if sys.argv[1:] and not strict:
         raise Stop("check_pages.py [--strict]")
     rows, known = page_sources.table(), headers()
-    findings, fresh, stale = list(unlisted(rows)), 0, 0
+    findings, fresh, stale = [*unlisted(rows), *broken_links()], 0, 0
     for page, row in rows.items():
         faults, sentence = judged(page, row, known)
         findings += faults

@@ -5,8 +5,8 @@ command under a fault, judged by the model.
     faults.py [--fw ELF] [--sample N] [--pairs N] [--jobs N] [--seed N] [--no-page] [WORD...]
 
 WORDs: only kinds whose name begins with one of them; A+B: the pairs of two such kinds; no word: all. --sample: so many runs in all,
-chosen by the seed. Results go into build/faults.json, the table into docs/faults-campaign.md (whole campaigns only), what fails to
-stdout. Exit status 1 when anything is above its limit.
+chosen by the seed. Results go into build/faults.json, those of a whole campaign into docs/results/faults-campaign.md too, what
+fails to stdout. Exit status 1 when anything is above its limit.
 """
 import argparse
 import collections
@@ -27,13 +27,12 @@ import faults_commands
 import faults_judge
 import faults_runs
 import images
+import page_faults
 import page_sources
-from faults_judge import NO_LIMIT
-from faults_kinds import KINDS, LONG, MOVING, OF, OTHER_RATES, REST, TYPED, rated
+from faults_kinds import KINDS, LONG, MOVING, OF, REST, TYPED, rated
 from faults_runs import Fault, SIMRUN, attempt, flagged_share, moments, need, phases, roll_differences, seeded_pairs, simulate, write_whole
 from laws import DEFAULT, LIGHT
 
-PAGE = pathlib.Path("docs/faults-campaign.md")
 RESULTS = pathlib.Path("build/faults.json")
 PHASES, MOMENTS, FILTERS = faults_judge.PHASES_AT_LEAST, 8, (DEFAULT, LIGHT)
 SHARE_FLAGGED, SHARE_ROLL, ROLL_CDEG = 0.99, 0.999, 50
@@ -208,64 +207,6 @@ def lines_that_ran(options, profile):
     return {"fault": "lines of the AVR binary", "lines": whole, "lines_executed": executed, "good": executed >= coverage.CAMPAIGN_LINES / 100 * whole}
 
 
-def lost_words(row):
-    """- where no run could know."""
-    return "-" if row["worst_rows_lost"] is None else row["worst_rows_lost"]
-
-
-def crossed(title, columns, bases, cell, named):
-    """A line for each base, with a cell for each column (heading, key): what cell(row, key) says of the row that named(base, key) gives."""
-    def filled(row, key):
-        return cell(row, key) + (f", {row['failed']} FAILED" if row["failed"] else "") if row else "-"
-    lines = [f"| {title} | " + " | ".join(heading for heading, _ in columns) + " |", "|---|" + "---|" * len(columns)]
-    return lines + [f"| {base} | " + " | ".join(filled(named(base, key), key) for _, key in columns) + " |" for base in dict.fromkeys(bases)]
-
-
-def rates_table(rows):
-    """A line for each kind, with what it came to at each of the other rates."""
-    of = {row["fault"]: row for row in rows}
-    return crossed("fault at other rates: worst ms to a good row, samples lost", [(f"{rate:g} Hz", rate) for rate in OTHER_RATES],
-                   (fault.rpartition(",")[0] for fault in of), lambda row, rate: f"{row['worst_ms_to_good']:.1f}, {lost_words(row)}",
-                   lambda base, rate: of.get(f"{base}, {rate:g} Hz"))
-
-
-def commands_table(rows):
-    """A line for each kind, with what it came to under each command: where it ends in standby, no good row comes."""
-    of = {row["fault"]: row for row in rows}
-    return crossed("fault while a command is carried out: phases, worst ms to a good row",
-                   [(f"`{command.name}`", command.name) for command in faults_commands.COMMANDS], (fault.rpartition(": ")[2] for fault in of),
-                   lambda row, name: f"{row['phases']}, " + (f"{row['worst_ms_to_good']:.1f}" if name != "stop" else "-"),
-                   lambda base, name: of.get(f"command {name}: {base}"))
-
-
-def tables(rows, extra):
-    """The page's tables, as lines."""
-    lines = ["| fault | phases | recovered | worst ms to a good row | limit | worst rows lost | wrong rows | resets too many or too few "
-             "| longest pass (ms) | failed |", "|---|---|---|---|---|---|---|---|---|---|"]
-    for row in (row for row in rows if row["group"] in ("single", "long", "typed")):
-        wrong = row["wrong_rows"] if row["detectable"] else f"{row['wrong_rows']} (not detectable)"
-        limit = row["limit_ms"] if row["limit_ms"] < NO_LIMIT else "-"
-        lines.append(f"| {row['fault']} | {row['phases']} | {row['recovered']} of {row['runs']} | {row['worst_ms_to_good']:.1f} | "
-                     f"{limit} | {lost_words(row)} | {wrong} | {row['wrong_resets']} | {row['longest_pass_cycles'] / 16000:.2f} | {row['failed']} |")
-    lines += ["", *rates_table([row for row in rows if row["group"] == "rate"])]
-    lines += ["", *commands_table([row for row in rows if row["group"] == "command"])]
-    pairs = [row for row in rows if row["group"] == "pair"]
-    failing = [row for row in pairs if row["failed"]]
-    lines += ["", f"Pairs: {len(pairs)} of them, {sum(r['runs'] for r in pairs)} runs, {sum(r['failed'] for r in pairs)} failed"
-              + (": " + "; ".join(f"{r['fault']} ({r['failed']} of {r['runs']})" for r in failing[:40]) if failing else "") + ".", ""]
-    lines += ["| values changed on their way | changes of 8 sigma or more | flagged | share |", "|---|---|---|---|"]
-    lines += [f"| {r['fault']} | {r['changes_of_8_sigma']} | {r['flagged']} | {100 * r['flagged'] / max(1, r['changes_of_8_sigma']):.2f} % |"
-              for r in extra if "flagged" in r]
-    lines += ["", "| once in 1,000 samples | rows | rows without a partner | roll within 0.5 degree of the run without faults | worst (degree) |",
-              "|---|---|---|---|---|"]
-    lines += [f"| {r['fault']} | {r['rows']} | {r['rows_without_partner']} | {100 * r['share_within_half_degree']:.3f} % | "
-              f"{r['worst_cdeg'] / 100:.2f} |"
-              for r in extra if "rows" in r]
-    lines += ["".join(f"\nLines of the AVR binary that these runs execute: {r['lines_executed']} of {r['lines']}, "
-                      f"{100 * r['lines_executed'] / r['lines']:.1f} %." for r in extra if "lines" in r)]
-    return lines
-
-
 def tell_failures(results, extra, lacking, most=12):
     """What fails and where, a few phases of each kind."""
     groups = collections.defaultdict(list)
@@ -285,15 +226,6 @@ def tell_failures(results, extra, lacking, most=12):
                 f"{key} {value}" for key, value in row.items() if key not in ("fault", "good"))))
     for sentence in lacking:
         print(f"faults: {sentence}")
-
-
-def write_page(rows, extra, sources):
-    text = PAGE.read_text(encoding="utf-8")
-    head, begin, rest = text.partition("<!-- table: make faults -->\n")
-    _, end, tail = rest.partition("<!-- end -->")
-    if not begin or not end:
-        raise Fault(f"{PAGE} has no lines '<!-- table: make faults -->' and '<!-- end -->'")
-    write_whole(PAGE, page_sources.with_hash(head + begin + "\n".join(tables(rows, extra)) + "\n" + end + tail, sources))
 
 
 def ended_by_signal(number, frame):
@@ -322,7 +254,7 @@ def main():
 
 def carried_out_and_told(options, began):
     runs, results, extra, profile = [], [], [], set()
-    sources = page_sources.hash_now(PAGE)
+    sources = page_sources.hash_now(page_faults.DOCUMENT)
     complete = not (options.words or options.sample)
     try:
         runs += planned(options)
@@ -342,9 +274,9 @@ def carried_out_and_told(options, began):
     RESULTS.parent.mkdir(exist_ok=True)
     write_whole(RESULTS, json.dumps(rows + extra, indent=1) + "\n")
     tell_failures(results, extra, lacking)
-    print("\n".join(tables(rows, extra)))
+    print("\n".join(page_faults.tables(rows, extra)))
     if complete and not ended and not options.no_page:
-        write_page(rows, extra, sources)
+        page_faults.write(rows, extra, sources)
     bad = sum(bool(r.failures()) for r in results) + sum(not r["good"] for r in extra) + len(lacking)
     good = sum(r.injected and not r.failures() for r in results) + sum(r["good"] for r in extra)
     print(f"faults: {time.monotonic() - began:.0f} s, {absent} faults never came; {RESULTS} written")

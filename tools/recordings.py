@@ -1,24 +1,40 @@
 """make recordings: the filters on real recordings, which are not part of this repository; writes build/recordings.csv (every number) and
-the tables of docs/recordings.md, and the numbers in its text, which are taken from them. Status 1: a number of the committed page does not come
-out again, each is named, or an estimate left its bounds. Status 0 with `skipped: 1` when the recordings are not there."""
+docs/results/recordings.md. Status 1: a number of the committed page does not come out again, each is named, or an estimate left its bounds. Status 0
+with `skipped: 1` when the recordings are not there."""
 import csv
 import pathlib
 import subprocess
 import sys
 
 from laws import PLAIN
-from page import Fault, Page, run_as_program
+from page import Fault, run_as_program
+from results import Results
 
 PROGRAM = "build/host/recordings"
 CSV = pathlib.Path("build/recordings.csv")
-DOCUMENT = pathlib.Path("docs/recordings.md")
-BEGIN, END = "<!-- written by make recordings: begin -->", "<!-- written by make recordings: end -->"
-PAGE = Page(DOCUMENT, BEGIN, END)
+DOCUMENT = pathlib.Path("docs/results/recordings.md")
 ABSENT, SAID = 3, 2  # status of the program; SAID: it has told why
 
 COUNTS = ("samples", "gated", "reacquired", "saturated", "longest_gated", "bounds_broken", "judged", "broken", "worst_share", "hull_judged",
           "hull_broken", "hull_left_lsb", "outside", "outside_worst_lsb")
 OWN, OF_PLAIN = "the filter's own run without faults", f"the run of `{PLAIN}` without faults"
+ABOUT = """\
+What every filter does with its defaults on recordings of real ADXL345, and on faults put into them at the rates measured on real boards. Each axis
+goes the firmware's way: noise estimate, gaps of up to 100 ms coasted, clipping, filter. The yardstick `median5_...` has a median of five samples
+before that filter. What the recordings are and where they come from: [recordings](../recordings.md)."""
+PAGE = Results(DOCUMENT, "Real recordings: results", "make recordings", ABOUT)
+
+OF_STREAMS = "Hz is the sensor's nominal rate; in brackets the rate of the rows, where a board polled faster or slower."
+OF_RULES = """\
+Samples of all axes. The rules that show divergence are derived in `support_envelope.h`; a share of 1 is the limit. Empty: the filter has
+none. Saturated: a state was held at its bound, for the filters with a limit of the rate as a rule that, in fast motion."""
+OF_GATED = """\
+Refused, limited or taken in part; with the mixtures: more likely an outlier than not. Filters that gate nothing are left out."""
+OF_AGAIN = "Sum of the three axes; the longest run on any axis."
+OF_OUTSIDE = "Farther than 9 sqrt(R) from the range of the raw samples of the last second, of the samples of all axes. Empty: never."
+OF_REST = "Standard deviation and tails of the raw samples, and the share that is gated, x/y/z."
+OF_FAULTS = "RMS error in LSB, mean of 20 seeds (worst)."
+
 FIELDS = {
     "stream": ("name", "rate_hz", "range_g", "rows_hz", "rows", "clipped", "duplicates", "zeros", "ones"),
     "filter": ("name", "filter", "axis", *COUNTS),
@@ -152,45 +168,16 @@ def faults_table(rows, pool, mean, worst):
 
 
 def tables(rows):
-    lines = ["## The recordings", "", *streams_table(rows), "## Diverged?", "", *rules_table(rows), "## Gated", "", *gated_table(rows),
-             "## Re-acquisitions, longest run of gated samples", "", *again_table(rows),
-             "## Outside the range of the last second's samples", "", *outside_table(rows), "## At rest: false gates", "", *rest_table(rows)]
-    for mean, worst, title in (("own_mean", "own_worst", OWN), ("plain_mean", "plain_worst", OF_PLAIN)):
+    lines = []
+    for title, words, table in (("The recordings", OF_STREAMS, streams_table), ("Diverged?", OF_RULES, rules_table), ("Gated", OF_GATED, gated_table),
+                                ("Re-acquisitions, longest run of gated samples", OF_AGAIN, again_table),
+                                ("Outside the range of the last second's samples", OF_OUTSIDE, outside_table),
+                                ("At rest: false gates", OF_REST, rest_table)):
+        lines += [f"## {title}", words, "", *table(rows)]
+    for mean, worst, reference in (("own_mean", "own_worst", OWN), ("plain_mean", "plain_worst", OF_PLAIN)):
         for pool in unique(rows["fault"], "pool"):
-            lines += [f"## Faults put in {pool}: RMSE in LSB from {title}, mean of 20 seeds (worst)", ""]
-            lines += faults_table(rows, pool, mean, worst)
-    return lines[:-1]
-
-
-def largest(found, key, value):
-    found[key] = max(value, found.get(key, value))
-
-
-def facts(text):
-    """{key: number} for the text of a page, from its tables alone: whoever has the page can hold the one against the other."""
-    found = {}
-    for title, row, column, cell in PAGE.cells(text):
-        column = column.replace("`", "").removesuffix(", %")
-        if title.startswith("Outside") and cell:
-            largest(found, f"farthest {column}", float(cell.split("; ")[1]))
-        elif title.startswith("Re-acquisitions"):
-            largest(found, f"longest gated {column}", float(cell.split("; ")[1].removesuffix(" s")))
-        elif title.startswith("At rest") and "/" in cell:
-            gates = not column.startswith(("sd ", "beyond "))
-            kind = "gated" if gates and column != "sprf_paper" else column
-            largest(found, f"at rest {kind}", max(float(axis) for axis in cell.split("/")))
-        elif title == "Gated":
-            found[f"gated {row} {column}"] = cell
-        elif title.startswith("Faults put in"):
-            pool = title.split(":")[0].removeprefix("Faults put in ") + (f" from {PLAIN}" if OF_PLAIN in title else "")
-            mean, worst = cell.split(" ")
-            found.update({f"{pool} {row} {column}": mean, f"{pool} {row} {column} worst": worst.strip("()")})
-    return {key: f"{value:g}" if isinstance(value, float) else value for key, value in found.items()}
-
-
-def check(text):
-    """Numbers of the text that the tables below it do not hold."""
-    return PAGE.differences(text, PAGE.filled(text, PAGE.inside(text), facts(text)))
+            lines += [f"## Faults put in {pool}, from {reference}", OF_FAULTS, "", *faults_table(rows, pool, mean, worst)]
+    return lines
 
 
 def main():
@@ -199,7 +186,7 @@ def main():
         print(f"skipped: 1 (no recordings, {DOCUMENT} left as it is)")
         return 0
     lines = tables(rows)
-    faults = PAGE.write(DOCUMENT.read_text(encoding="utf-8"), lines, facts("\n".join([BEGIN, *lines, END])))
+    faults = PAGE.write(lines)
     for fault in faults:
         print(f"recordings: {fault}", file=sys.stderr)
     print(f"recordings: {len(rows['stream'])} streams, {len(rows['fault'])} rows of faults; {DOCUMENT} and {CSV} written")

@@ -35,6 +35,11 @@ def cells(text):
             yield from ((title, parts[0], column, cell) for column, cell in zip(head[1:], parts[1:]))
 
 
+def section(text, title):
+    """The lines of a page under a heading, up to the next one."""
+    return text.partition(f"\n## {title}\n")[2].partition("\n## ")[0].strip("\n").split("\n")
+
+
 def numbers_of(text):
     """{title, row, column: cell} of a page."""
     return {f"{title}, {row}, {column}": cell for title, row, column, cell in cells(text)}
@@ -91,15 +96,18 @@ class Results:
     def kept(self):
         return KEPT / self.document.name, KEPT / f"{self.document.name}.written"
 
-    def write(self, lines):
-        """Writes the page with the hash of its sources; what the page before had otherwise."""
+    def write(self, lines, sources=None):
+        """Writes the page with the hash of its sources, that of now or of when a long measurement began; what the page before had otherwise."""
         new, before = self.text(lines), self.before()
-        if str(self.document) in page_sources.table():
-            new = page_sources.with_hash(new, page_sources.hash_now(self.document))
+        if sources is None and str(self.document) in page_sources.table():
+            sources = page_sources.hash_now(self.document)
+        new = page_sources.with_hash(new, sources or page_sources.NONE)
         KEPT.mkdir(parents=True, exist_ok=True)
         kept, written = self.kept()
         kept.write_text(before, encoding="utf-8")
         written.write_text(digest(new), encoding="ascii")
         self.document.parent.mkdir(parents=True, exist_ok=True)
-        self.document.write_text(new, encoding="utf-8")
+        beside = self.document.with_name(f"{self.document.name}.new")
+        beside.write_text(new, encoding="utf-8")
+        beside.replace(self.document)  # what ends the program meanwhile leaves the page before
         return differences(before, new)

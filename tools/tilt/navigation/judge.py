@@ -44,14 +44,19 @@ def intervals(flight, seconds):
     return found
 
 
-def table(flight, found):
-    """Lines of text: the largest error of each kind in each interval."""
-    lines = [f"{'':<8}{'from s':>8}{'to s':>8}{'heading deg':>13}{'roll, pitch deg':>17}{'velocity m/s':>14}{'position m':>12}   (largest)"]
+def largest(flight, found):
+    """The largest error of each kind in each interval."""
     for name, begin, end in intervals(flight, float(found.t_s[-1])):
         inside = (found.t_s > begin) & (found.t_s <= end)
         if inside.any():
             euler = np.abs(found.euler_deg[inside]).max(axis=0)
-            lines.append(f"{name:<8}{begin:>8.0f}{end:>8.0f}{euler[2]:>13.2f}{euler[:2].max():>17.2f}"
-                         f"{np.linalg.norm(found.velocity_mps[inside], axis=1).max():>14.3f}"
-                         f"{np.linalg.norm(found.position_m[inside], axis=1).max():>12.2f}")
-    return lines
+            yield {"interval": name, "from_s": float(begin), "to_s": float(end), "heading_deg": float(euler[2]), "level_deg": float(euler[:2].max()),
+                   "velocity_mps": float(np.linalg.norm(found.velocity_mps[inside], axis=1).max()),
+                   "position_m": float(np.linalg.norm(found.position_m[inside], axis=1).max())}
+
+
+def table(flight, found):
+    """The same as lines of text."""
+    return [f"{'':<8}{'from s':>8}{'to s':>8}{'heading deg':>13}{'roll, pitch deg':>17}{'velocity m/s':>14}{'position m':>12}   (largest)",
+            *("{interval:<8}{from_s:>8.0f}{to_s:>8.0f}{heading_deg:>13.2f}{level_deg:>17.2f}{velocity_mps:>14.3f}{position_m:>12.2f}".format(**row)
+              for row in largest(flight, found))]
