@@ -163,11 +163,5 @@ def a_line_of_deliberate_that_stands_twice_is_refused():
         proof.HERE = kept
 
 
-@test
-def the_readme_tells_how_many_lines_are_not_proved():
-    readme = pathlib.Path("README.md").read_text(encoding="utf-8")
-    assert f"; {len(proof.deliberate())} meant or argued wraps" in readme, f"{len(proof.deliberate())} lines in {proof.HERE / 'deliberate.txt'}"
-
-
 if __name__ == "__main__":
     raise SystemExit(run_all())
