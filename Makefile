@@ -52,7 +52,7 @@ AVR_OBJ     := $(AVR_SRC:%.c=$(U)/%.o)
 include mk/images.mk
 
 # assembler primitives against their C twins, on the chip: with plain -Os, and as the firmware is built
-TWINS_SRC := host_tests/avr/fx_twins.c lib/filters/src/fx.c lib/filters/src/fx_avr.c
+TWINS_SRC := host_tests/chip/fx_twins.c lib/filters/src/fx.c lib/filters/src/fx_avr.c
 $(U)/fx_twins.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx_avr.h lib/filters/src/fx_dot.h $(MACHINE_H) Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ilib/machine/src -Ilib/filters/src $(TWINS_SRC) -o $@
@@ -61,11 +61,11 @@ $(U)/fx_twins_firmware.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -Wl,--gc-sections $(TWINS_SRC) -o $@
 
-$(U)/hal_probe.elf: host_tests/avr/hal_probe.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) $(MACHINE_H) Makefile
+$(U)/hal_probe.elf: host_tests/chip/hal_probe.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) $(MACHINE_H) Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr -Ilib/machine/src $(filter %.c,$^) -o $@
 
-$(U)/store_probe.elf: host_tests/avr/store_probe.c firmware/settings/store.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) firmware/settings/store.h $(MACHINE_H) Makefile
+$(U)/store_probe.elf: host_tests/chip/store_probe.c firmware/settings/store.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) firmware/settings/store.h $(MACHINE_H) Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr -Ifirmware -Ilib/machine/src -Ilib/filters/src $(filter %.c,$^) -o $@
 

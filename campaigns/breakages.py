@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, "tools")
+sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 sys.path.append("campaigns/mutants")
 import anchors  # noqa: E402
 import shop  # noqa: E402

@@ -17,7 +17,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 os.chdir(ROOT)
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import run_tests  # noqa: E402
 
 LIVE = ["test_resets", "test_flash", "test_plotter", "test_progress", "test_run_tests", "test_faults", "tilt_live", "tilt_live_direct",

@@ -48,7 +48,7 @@ $(A)/libtiltfilters.so: $(LIBRARY).zip mk/arduino.mk
 arduino:
 	@sh tools/deps.sh arduino
 	@$(MAKE) arduino_images
-	@python3 host_tests/test_arduino.py
+	@python3 host_tests/tools/scripts/test_arduino.py
 
 arduino_images: $(ARDUINO_IMAGES) $(S)/simrun
 

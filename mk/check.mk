@@ -1,5 +1,5 @@
 # The rules of the tree, enforced. Each check is a target of its own (make check-tidy ONLY=firmware/app/app.c looks at one file); limits
-# are in tools/budgets.txt, what departs from a rule in docs/deviations.md, and host_tests/planted.txt holds faults that each check
+# are in tools/budgets.txt, what departs from a rule in docs/deviations.md, and checks/planted.txt holds faults that each check
 # must find.
 CHK := $(B)/check
 ONLY ?=
@@ -99,7 +99,7 @@ check-pages:
 	@python3 tools/check_pages.py $(if $(call yes,STRICT),--strict)
 
 check-planted:
-	@python3 host_tests/test_planted.py
+	@python3 host_tests/tools/checks/test_planted.py
 	@python3 tools/planted.py $(ONLY)
 
 ## texts: pack the firmware's words anew after a change of firmware/console/reply_texts.h

@@ -3,8 +3,8 @@
 FZ           := $(B)/fuzz
 FUZZ_TARGETS := commands stream driver filters
 FUZZ_APP_OBJ := $(HOST_SRC:%.c=$(FZ)/app/%.o)
-FUZZ_COMMON  := fuzz_support fuzz_protocol fuzz_said fuzz_parameters $(notdir $(LAW_SUPPORT:.c=))
-FUZZ_LINKED  := $(FUZZ_COMMON:%=$(FZ)/%.o) $(FZ)/fuzz_drive.o $(FZ)/fuzz_mutate.o $(FZ)/fuzz_dictionary.o
+FUZZ_COMMON  := fuzz_support fuzz_protocol fuzz_said fuzz_parameters
+FUZZ_LINKED  := $(FUZZ_COMMON:%=$(FZ)/%.o) $(LAW_SUPPORT:host_tests/%.c=$(FZ)/%.o) $(FZ)/fuzz_drive.o $(FZ)/fuzz_mutate.o $(FZ)/fuzz_dictionary.o
 FUZZ_BIN     := $(FUZZ_TARGETS:%=$(FZ)/fuzz_%)
 FUZZ_LIBFUZZER := $(FUZZ_TARGETS:%=$(FZ)/libfuzzer_%)
 # all fourteen filters are in it: the refusal that names them has 139 bytes
@@ -30,7 +30,7 @@ $(FZ)/fuzz_%.o: host_tests/fuzz/fuzz_%.c Makefile mk/fuzz.mk
 	@mkdir -p $(@D)
 	@$(FUZZ_GCC) -MMD -MP -c $< -o $@
 
-$(FZ)/support_%.o: host_tests/support_%.c Makefile mk/fuzz.mk
+$(FZ)/support/%.o: host_tests/support/%.c Makefile mk/fuzz.mk
 	@mkdir -p $(@D)
 	@$(FUZZ_GCC) -MMD -MP -c $< -o $@
 
@@ -44,7 +44,7 @@ endif
 FUZZ_PLANTED := $(foreach p,$(FUZZ_PLANTS),$(FZ)/planted/$(firstword $(subst :, ,$(p))))
 
 define FUZZ_PLANT
-$(FZ)/planted/$(1).c: $(3) $(wildcard campaigns/breakages*.txt) host_tests/planted.txt tools/anchors.py tools/fuzz.py
+$(FZ)/planted/$(1).c: $(3) $(wildcard campaigns/breakages*.txt) checks/planted.txt tools/anchors.py tools/fuzz.py
 	@mkdir -p $$(@D)
 	@python3 tools/fuzz.py plant $(1) $$@
 
@@ -86,7 +86,7 @@ fuzz:
 # inputs found and kept stay
 clean: clean_fuzz
 clean_fuzz:
-	@rm -rf $(FZ)/app $(FZ)/clang $(FZ)/planted $(FZ)/*.o $(FZ)/*.d $(FUZZ_BIN) $(FUZZ_LIBFUZZER)
+	@rm -rf $(FZ)/app $(FZ)/support $(FZ)/clang $(FZ)/planted $(FZ)/*.o $(FZ)/*.d $(FUZZ_BIN) $(FUZZ_LIBFUZZER)
 
 .PHONY: fuzz clean_fuzz
 

@@ -62,7 +62,7 @@ $(eval $(call IMAGE,late,$(FILTERS_research),-DHAL_TIME_START_US=4200000000ul))
 $(eval $(call IMAGE,tight,$(FILTERS_research),-DHAL_CPU_HZ=15500000ul))
 
 # beside the first, its readings are believed unseen: the difference is what checking them costs
-PLAIN_OBJ := $(AVR_SRC:%.c=$(U)/plain/%.o) $(U)/plain/host_tests/avr/plain_read.o
+PLAIN_OBJ := $(AVR_SRC:%.c=$(U)/plain/%.o) $(U)/plain/host_tests/chip/plain_read.o
 $(U)/plain/%.o: AVR_FLAGS += -Dadxl345_integrity_judge=plain_judge
 $(U)/plain/lib/adxl345/src/adxl345_integrity.o: AVR_FLAGS += -Uadxl345_integrity_judge
 $(U)/plain/%.o: %.c Makefile mk/images.mk

@@ -2,14 +2,14 @@
 P := $(B)/papers
 PAPERS_MAIN := $(wildcard host_tests/papers/paper0*.cpp)
 PAPERS_CPP := $(filter-out $(PAPERS_MAIN),$(wildcard host_tests/papers/*.cpp)) \
-              $(addprefix host_tests/reference_,noise.cpp robust.cpp synthesis.cpp)
-PAPERS_C   := $(wildcard lib/filters/src/*.c) $(LAW_SUPPORT) host_tests/support_random.c host_tests/support_tilt_phases.c
+              $(addprefix host_tests/reference/,noise.cpp robust.cpp synthesis.cpp)
+PAPERS_C   := $(wildcard lib/filters/src/*.c) $(LAW_SUPPORT) host_tests/support/random.c host_tests/support/tilt_phases.c
 PAPERS_OBJ := $(PAPERS_CPP:%.cpp=$(P)/%.o) $(PAPERS_C:%.c=$(P)/%.o)
 RUNS ?= 10000
 
 $(P)/%.o: %.cpp Makefile mk/papers.mk
 	@mkdir -p $(@D)
-	@$(HOST_CXX) -std=c++17 -O2 -g -Wall -Wextra -Wconversion -Wshadow -Werror -Ihost_tests -Ilib/machine/src -Ilib/filters/src -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
+	@$(HOST_CXX) -std=c++17 -O2 -g -Wall -Wextra -Wconversion -Wshadow -Werror -Ihost_tests -Inav/tests -Ilib/machine/src -Ilib/filters/src -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
 
 $(P)/%.o: %.c Makefile mk/papers.mk
 	@mkdir -p $(@D)
@@ -18,9 +18,9 @@ $(P)/%.o: %.c Makefile mk/papers.mk
 $(P)/paper%: $(P)/host_tests/papers/paper%.o $(PAPERS_OBJ)
 	@$(HOST_CXX) $^ -lm -o $@
 
-# paper 003 asks lib/nav, not the filters
+# paper 003 asks nav/lib, not the filters
 NAV_PAPER := $(patsubst %.cpp,$(P)/%.o,$(wildcard host_tests/papers/navigation/*.cpp)) $(addprefix $(P)/host_tests/papers/,program.o report.o statistics.o model.o) \
-             $(addprefix $(P)/host_tests/,reference_nav.o nav_flights.o nav_histories.o support_flight.o support_random.o) $(NAV_VARIANTS:%=$(P)/nav/%.o)
+             $(addprefix $(P)/nav/tests/,reference_nav.o nav_flights.o nav_histories.o) $(addprefix $(P)/host_tests/support/,flight.o random.o) $(NAV_VARIANTS:%=$(P)/nav/%.o)
 $(foreach variant,$(NAV_VARIANTS),$(eval $(call nav_variant,$(variant),$(P))))
 $(P)/paper003: $(P)/host_tests/papers/paper003.o $(NAV_PAPER)
 	@$(HOST_CXX) $^ -lm -o $@

@@ -5,6 +5,6 @@ piocheck:
 	@sh tools/deps.sh test piocheck
 	@python3 tools/pio_standins.py build/pio/core build/venv-pio
 	@$(MAKE) $(U)/firmware.elf $(S)/simrun $(H)/native_replay $(LIBRARY).zip
-	@python3 host_tests/test_platformio.py
+	@python3 host_tests/tools/scripts/test_platformio.py
 
 .PHONY: piocheck

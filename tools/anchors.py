@@ -16,7 +16,7 @@ import functools
 import pathlib
 import re
 
-PRODUCT = ("lib", "firmware", "nav", "hal")
+PRODUCT = ("lib", "firmware", "nav/lib", "nav/image", "hal")
 TOKEN = re.compile(r"""/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|[A-Za-z_]\w*|\d[\w.]*|\.\.\.|<<=|>>=|->|\+\+|--|<<|>>"""
                    r"""|[<>=!+\-*/%&|^]=|&&|\|\||\S""", re.S)
 OPEN, CLOSE = "([{", ")]}"

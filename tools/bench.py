@@ -141,7 +141,7 @@ class Sizes:
     def of(self, chosen):
         elf = self.folder / "bench_size.elf"
         choice = ["-DPARTS=(" + "|".join(["0UL", *(f"PART({part})" for part in self.parts if part in chosen)]) + ")"]
-        run(["avr-gcc", *self.flags, "-Os", *choice, "host_tests/avr/bench_size.c", *self.objects, "-lm", "-o", elf])
+        run(["avr-gcc", *self.flags, "-Os", *choice, "host_tests/chip/bench_size.c", *self.objects, "-lm", "-o", elf])
         return image_size(elf)
 
     def above_empty(self, chosen):

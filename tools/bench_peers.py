@@ -17,7 +17,7 @@ STREAM = pathlib.Path("sim/streams/outliers-15pct.csv")
 X_LSB_PER_G = 265  # of the stream, as its head says
 SETTLED = 100      # samples before any number is taken
 CORES = 2
-ADAPTERS = pathlib.Path("host_tests/avr")
+ADAPTERS = pathlib.Path("host_tests/chip")
 # the Arduino core's options for C++
 CXX = ["-std=gnu++11", "-fno-exceptions", "-fno-threadsafe-statics"]
 KINDS = {"f": lambda bits: struct.unpack("<f", struct.pack("<I", bits))[0],

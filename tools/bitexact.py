@@ -127,7 +127,7 @@ def sources(chip, lib):
                 f"{lib}/adxl345/src", "host_tests", HERE]
     files = sorted(pathlib.Path(HERE).glob("vectors*.c"))
     files += [f"{HERE}/crc32.c", f"{HERE}/output.c", f"{HERE}/output_{'chip' if chip else 'pc'}.c"]
-    files += [path for name in ("random32", "filter*", "law_*") for path in sorted(pathlib.Path("host_tests").glob(f"support_{name}.c"))]
+    files += [path for name in ("random32", "filter*", "law_*") for path in sorted(pathlib.Path("host_tests/support").glob(f"{name}.c"))]
     files += FIRMWARE + sorted(pathlib.Path(lib).glob("filters/src/*.c"))
     files += [f"{lib}/tilt/src/{name}.c" for name in ("tilt", "tilt_axis", "calibration")]
     return [f"-I{folder}" for folder in includes] + [str(file) for file in files]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every breakage of campaigns/breakages.txt and every fault of host_tests/planted.txt has its place: the text it replaces stands exactly
+"""Every breakage of campaigns/breakages.txt and every fault of checks/planted.txt has its place: the text it replaces stands exactly
 once in its definition, its judges exist, and those of breakages in C that a test judges still compile with every warning an error. What
 is lost would otherwise be noticed only by the long target that uses it. Breakages are of the product, at most 120, the lists at most 1500
 lines: what an operator makes by itself belongs to make mutants. WARNINGS and UNITY_DIR come from the Makefile by the environment."""
@@ -8,16 +8,15 @@ import subprocess
 import sys
 import tempfile
 
+sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import anchors
+import breakages
 import check_compile
+import fuzz
 from check_support import parallel
 from proof import load_entries
 
-sys.path.insert(0, "campaigns")
-import breakages  # noqa: E402
-import fuzz  # noqa: E402
-
-PLANTED = pathlib.Path("host_tests/planted.txt")
+PLANTED = pathlib.Path("checks/planted.txt")
 MOST, MOST_LINES = 120, 1500
 
 

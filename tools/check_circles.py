@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""No circles: of two modules at most one may use what the other defines, also by way of others; and no header of firmware and lib declares
+"""No circles: of two modules at most one may use what the other defines, also by way of others; and no header of firmware, lib and nav/lib declares
 an object. Looks into the compiled objects: an arrow is a symbol used here and defined there. The rooms of the firmware are one folder.
 
     check_circles.py OBJECTS...     folders of objects of the chip and of the PC, with the sources' paths in them
@@ -57,7 +57,7 @@ def circles(objects):
 
 
 def objects_in_headers():
-    for folder in ("firmware", "lib"):
+    for folder in ("firmware", "lib", "nav/lib"):
         for path in sorted(pathlib.Path(folder).rglob("*.h")):
             for found in OBJECT.finditer("\n".join(line for _, line in code(path))):
                 words = " ".join(found.group().split())
@@ -73,4 +73,4 @@ def findings():
 
 
 if __name__ == "__main__":
-    main(lambda: report("circles", list(findings()), f"none in {', '.join(FOLDERS)}; no object in a header of firmware and lib"))
+    main(lambda: report("circles", list(findings()), f"none in {', '.join(FOLDERS)}; no object in a header of firmware, lib and nav/lib"))

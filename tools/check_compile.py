@@ -11,28 +11,30 @@ import sys
 
 from check_support import Stop, chosen, files, main, parallel, report, run
 
-LIBRARIES = ["lib/machine/src", "lib/filters/src", "lib/tilt/src", "lib/adxl345/src", "lib/nav/src"]
+LIBRARIES = ["lib/machine/src", "lib/filters/src", "lib/tilt/src", "lib/adxl345/src", "nav/lib"]
 PORTABLE = ["hal", "firmware", "nav/image", *LIBRARIES]
 # which compiler takes what; a folder below one of these goes with it, the longest name decides
 FOLDERS_OF = {
     "firmware": ("host", "avr"),
     "nav": ("host", "avr"),
     "lib": ("host", "avr"),
+    "nav/tests": ("host",),
+    "nav/tests/chip": ("avr",),
     "hal": ("host", "avr"),
     "hal/host": ("host",),
     "hal/avr": ("avr",),
     "sim": ("host",),
     "host_tests": ("host",),
-    "host_tests/avr": ("avr",),
-    "host_tests/avr/peers": (),  # adapters to libraries that are in no folder of this repository; make bench compiles them
+    "host_tests/chip": ("avr",),
+    "host_tests/chip/peers": (),  # adapters to libraries that are in no folder of this repository; make bench compiles them
     "host_tests/bitexact": ("host", "avr"),
     "host_tests/proof": (),  # speaks to the prover in its own built-in functions; make proof parses it
 }
 C_ONLY = {"-Wstrict-prototypes", "-Wmissing-prototypes"}
 # what is put before a file when it is built
-BEFORE = {"host_tests/avr/unity_chip.c": ["-include", "host_tests/avr/unity_chip.h"]}
+BEFORE = {"host_tests/chip/unity_chip.c": ["-include", "host_tests/chip/unity_chip.h"]}
 # pieces of a program that mean nothing alone
-NOT_ALONE = {"host_tests/avr/seam_body.h", "lib/filters/src/fx_avr.h", "host_tests/papers/operations/counting.hpp"}
+NOT_ALONE = {"host_tests/chip/seam_body.h", "lib/filters/src/fx_avr.h", "host_tests/papers/operations/counting.hpp"}
 
 
 def compilers(path):
@@ -58,14 +60,14 @@ def unity():
 def host_flags(path):
     # what the library needs of the system: strict C11 there; simrun uses more of it
     standard = "gnu11" if path.parts[0] == "sim" else "c11"
-    own = ["hal/host", "sim", "host_tests", "host_tests/bitexact", str(path.parent)]
+    own = ["hal/host", "sim", "host_tests", "host_tests/bitexact", "nav/tests", str(path.parent)]
     simavr = shlex.split(run("pkg-config", "--cflags", "simavr").replace("-I", "-isystem "))
     return [f"-std={standard}", "-D_POSIX_C_SOURCE=200809L", "-DHANG_TEST=1", "-DUNITY_INCLUDE_DOUBLE", *(f"-I{d}" for d in PORTABLE + own),
             "-isystem", unity(), *simavr, "-isystem", "/usr/include/simavr"]
 
 
 def avr_flags(path):
-    own = ["hal/avr", "host_tests", "host_tests/avr", "host_tests/bitexact", str(path.parent)]
+    own = ["hal/avr", "host_tests", "host_tests/chip", "host_tests/bitexact", str(path.parent)]
     return ["-std=gnu11", "-mmcu=atmega328p", "-DF_CPU=16000000UL", "-fshort-enums", *(f"-I{d}" for d in PORTABLE + own), "-isystem",
             unity()]
 
@@ -83,7 +85,7 @@ def jobs():
             yield from header_jobs(path)
     for path in files(".hpp"):  # of the references and experiments, which are C++ on the PC only
         if str(path) not in NOT_ALONE:
-            yield path, ["g++", "-std=gnu++20", "-Ihost_tests", f"-I{path.parent}", "-Ilib/machine/src", "-Ilib/filters/src",
+            yield path, ["g++", "-std=gnu++20", "-Ihost_tests", "-Inav/tests", f"-I{path.parent}", "-Ilib/machine/src", "-Ilib/filters/src",
                          "-isystem", "/usr/include/eigen3", *(w for w in warnings() if w not in C_ONLY), "-fsyntax-only", "-include", path,
                          "-x", "c++", "/dev/null"]
 
@@ -92,8 +94,9 @@ def header_jobs(path):
     alone = ["-fsyntax-only", "-include", path, "/dev/null"]
     for name in compilers(path):
         prefix, flags = ("", host_flags(path)) if name == "host" else ("avr-", avr_flags(path))
-        yield path, [f"{prefix}gcc", *flags, "-std=c11" if path.parts[0] == "lib" else flags[0], *warnings(), "-x", "c", *alone]
-        if path.parts[0] == "lib":  # a sketch includes it
+        library = path.parts[0] == "lib" or path.parts[:2] == ("nav", "lib")
+        yield path, [f"{prefix}gcc", *flags, "-std=c11" if library else flags[0], *warnings(), "-x", "c", *alone]
+        if library:  # a sketch includes it
             yield path, [f"{prefix}g++", *flags[1:], "-std=gnu++11", *(w for w in warnings() if w not in C_ONLY), "-x", "c++", *alone]
 
 

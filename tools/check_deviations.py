@@ -19,7 +19,7 @@ SILENCERS = [
     ("sanitizer silenced", re.compile(r"(no_sanitize\w*)")),
     ("formatter silenced", re.compile(r"(clang-format off)")),
 ]
-WHERE = re.compile(r"^(firmware|lib|hal|sim|host_tests|mk)/.*\.(c|h|cpp|ino|mk|sh)$|^tools/.*\.sh$|^Makefile$|^platformio\.ini$|^\.clang-tidy$")
+WHERE = re.compile(r"^(firmware|lib|hal|sim|nav|host_tests|mk)/.*\.(c|h|cpp|ino|mk|sh)$|^tools/.*\.sh$|^Makefile$|^platformio\.ini$|^\.clang-tidy$")
 
 
 def tree():

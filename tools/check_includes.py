@@ -25,7 +25,7 @@ HAL = headers("hal")
 FILTERS, TILT, ADXL = headers("lib/filters/src"), headers("lib/tilt/src"), headers("lib/adxl345/src")
 # what of lib/filters is for its laws, tests and proof alone
 INSIDE = {"tracker.h", "kalman.h", "wide.h", "mixture.h", "fx_avr.h"} | {path.name for path in pathlib.Path("lib/filters/src").glob("*_table.h")}
-NAV, NAV_IMAGE = headers("lib/nav/src"), headers("nav/image")
+NAV, NAV_IMAGE = headers("nav/lib"), headers("nav/image")
 SIM = headers("sim")
 MODEL = {"adxl345_model.h", "feed.h", "stream.h"}
 # the rooms of the firmware, and which others each may use: nothing points up. A header is included with its room.
@@ -52,7 +52,7 @@ RULES = {
     "lib/filters/examples": (STANDARD | FILTERS | TILT | {"Arduino.h", "Wire.h", "SPI.h"}, None),
     "lib/tilt/src": (STANDARD | MACHINES | TILT | FILTERS - INSIDE, None),
     "lib/adxl345/src": (STANDARD | MACHINES | ADXL | HAL, None),
-    "lib/nav/src": (STANDARD | NAV | {"math.h"}, None),
+    "nav/lib": (STANDARD | NAV | {"math.h"}, None),
     "hal": (STANDARD | MACHINES, None),
     "hal/avr": (STANDARD | MACHINES | HAL | headers("hal/avr"), AVR_LIBC),
     "hal/host": (LIBC | MACHINES | HAL | MODEL | headers("hal/host"), None),
@@ -61,13 +61,13 @@ RULES = {
     "sim": (LIBC | SIM | {"adxl345_registers.h"}, SIMAVR),
 }
 # everything but hal/avr: here what must not be included; AVR headers where the code is for the chip
-TESTS, TESTS_NEVER = "host_tests", re.compile(r"hal/avr/")
+TESTS, TESTS_NEVER = ("host_tests", "nav/tests"), re.compile(r"hal/avr/")
 # programs for the chip: they may know it, but stand on the contracts as the firmware does
-CHIP_TESTS, CHIP_TESTS_NEVER = "host_tests/avr", re.compile(r"hal/(avr|host)/")
+CHIP_TESTS, CHIP_TESTS_NEVER = ("host_tests/chip", "nav/tests/chip"), re.compile(r"hal/(avr|host)/")
 # the two that may know the machine inside the pure libraries: its words, and arithmetic in its assembler; AVR headers under a guard
 WORDS = pathlib.Path("lib/machine/src/machine.h")
 KNOW_MACHINE = {WORDS, pathlib.Path("lib/filters/src/fx.h")}
-PURE = ("lib", "firmware", "nav")
+PURE = ("lib", "firmware", "nav/lib", "nav/image")
 # names that tell one machine from another, wherever they stand in the code
 MACHINE = re.compile(r"\b(__AVR\w*|AVR|ARDUINO\w*|__GNUC_AVR\w*|__INT_MAX__|__INT_WIDTH__|__SIZEOF_\w+|__WORDSIZE)\b")
 
@@ -112,7 +112,7 @@ def for_the_chip(path, number):
 
 def refused(path, number, name):
     """Why this file may not include that name there; None when it may."""
-    folder = home(path, [*RULES, TESTS, CHIP_TESTS])
+    folder = home(path, [*RULES, *TESTS, *CHIP_TESTS])
     if folder is None:
         raise Stop(f"{path}: the table has no row for its folder (RULES in tools/check_includes.py)")
     if folder in RULES:
@@ -121,8 +121,8 @@ def refused(path, number, name):
         if path == WORDS and name == "avr/pgmspace.h":
             return None if number in guarded(path) else f"{name} outside #ifdef __AVR__"
         return None if allowed else f"{folder} may not include {name}"
-    never = TESTS_NEVER if folder == TESTS else CHIP_TESTS_NEVER
-    if folder == TESTS and AVR_LIBC.match(name) and not for_the_chip(path, number):
+    never = TESTS_NEVER if folder in TESTS else CHIP_TESTS_NEVER
+    if folder in TESTS and AVR_LIBC.match(name) and not for_the_chip(path, number):
         return f"{folder} may include {name} only in code for the chip"
     return f"{folder} may not include {name}" if never.search(name) else None
 

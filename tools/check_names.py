@@ -17,8 +17,8 @@ PLACES = ["Makefile", "platformio.ini", "mk", "tools", "checks", "campaigns", "s
           "host_tests", "web", "wokwi"]
 # pages, and what programs recorded, drew or read as data
 NO_CODE = {".md", ".csv", ".png", ".svg", ".json", ".hex", ".pyc"}
-DATA = ("host_tests/fuzz/corpus", "host_tests/transcript")
-WRITTEN = {"lib/filters/keywords.txt",  # by host_tests/arduino_rules.py, of the headers
+DATA = ("host_tests/fuzz/corpus", "host_tests/system/transcript")
+WRITTEN = {"lib/filters/keywords.txt",  # by host_tests/tools/scripts/arduino_rules.py, of the headers
            "hal/avr/functions.ld"}      # by tools/layout.py, of the image
 # `auto` is a word of these languages too: there it counts in quotes
 HAVE_AUTO = {".cpp", ".hpp", ".html"}

@@ -5,7 +5,7 @@ set -eu
 dir=build/check
 mkdir -p "$dir"
 for name in hal direct; do
-    avr-gcc -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os -Ihal -Ihal/avr -Ilib/machine/src -Ihost_tests/avr -c "host_tests/avr/seam_$name.c" -o "$dir/seam_$name.o"
+    avr-gcc -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os -Ihal -Ihal/avr -Ilib/machine/src -Ihost_tests/chip -c "host_tests/chip/seam_$name.c" -o "$dir/seam_$name.o"
     avr-objdump -d "$dir/seam_$name.o" | sed 1,3d > "$dir/seam_$name.txt"
 done
 if cmp -s "$dir/seam_hal.txt" "$dir/seam_direct.txt"; then

@@ -3,7 +3,7 @@
 binary (simrun's profiles, system tests; the lines that the fault campaign reaches are counted here too, for tools/faults.py).
 
     coverage.py judge GCOVR.json ELF FOLDER     tables, uncovered lines, build/coverage.json; 1 when below a target
-    coverage.py twins GCOVR.json ELF FOLDER     a line of lib and one of lib/nav not executed, a file of lib/nav left out, one run of the
+    coverage.py twins GCOVR.json ELF FOLDER     a line of lib and one of nav/lib not executed, a file of nav/lib left out, one run of the
                                                 chip alone: must be below
     coverage.py check ELF PROFILE SOURCE        the tool itself: lines marked `ran` and `not reached` in a small program
 
@@ -12,7 +12,7 @@ link-time optimisation the innermost source line), and executed when one of thos
 loaded constant alone is no evidence, because the compiler moves it out of the branch that it belongs to. What stays: equal
 ends of two branches are merged and then count for the line whose instructions were kept.
 
-lib/nav is compiled in variants (mk/nav_lib_coverage.mk): a line or branch is executed when it was in one of them.
+nav/lib is compiled in variants (mk/nav_lib_coverage.mk): a line or branch is executed when it was in one of them.
 """
 import collections
 import json
@@ -22,7 +22,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path.cwd()
-EXCLUSIONS = pathlib.Path("host_tests/coverage_exclusions.txt")
+EXCLUSIONS = pathlib.Path("campaigns/coverage_exclusions.txt")
 # two calls, which link-time optimisation takes in line: the instructions may carry the lines of what is called alone; of the
 # navigation image's, no program of the PC holds main()
 CALLS_ONLY = {"firmware/app/main.c", "nav/image/main.c"}
@@ -30,7 +30,7 @@ CALLS_ONLY = {"firmware/app/main.c", "nav/image/main.c"}
 NOT_TRACED = {"firmware/path/supervisor.c"}
 # assembler, of which the PC's programs hold nothing: judged on the chip alone
 CHIP_ONLY = {"lib/filters/src/fx_avr.c"}
-NAVIGATION = ("lib/nav/", "nav/image/")
+NAVIGATION = ("nav/lib/", "nav/image/")
 HOST_LINES, HOST_BRANCHES, AVR_LINES = 100.0, 95.0, 95.0
 CAMPAIGN_LINES, WATCHING_BRANCHES = 95.0, 100.0
 PLACES = ("host", "host-branch", "avr", "campaign")
@@ -238,7 +238,7 @@ def judge(report, elf, folder):
     ours = [row for row in avr if row["file"] in CHIP_ONLY or not row["file"].startswith("lib/")]
     flying = [row for row in host if row["file"].startswith(NAVIGATION)]
     watching = [row for row in host if row["file"].startswith(("lib/adxl345/", "firmware/")) and row not in flying]
-    for pattern in ("lib/*/src/*.c", "nav/image/*.c", *NOT_TRACED):
+    for pattern in ("lib/*/src/*.c", *(f"{folder}*.c" for folder in NAVIGATION), *NOT_TRACED):
         complete(host, pattern, report, CHIP_ONLY)
     complete_on_avr(ours, elf)
     print("lib, supervision and the navigation image's link on the PC, unit tests:")
@@ -249,7 +249,7 @@ def judge(report, elf, folder):
     print("\n".join(["uncovered:"] + host_missed + half + avr_missed + excluder.stale(*PLACES[:3])))
     results = [judge_one("lib lines on the PC", percent(total(host, "lines_executed"), total(host, "lines")), HOST_LINES),
                judge_one("lib branches on the PC", percent(total(host, "branches_taken"), total(host, "branches")), HOST_BRANCHES),
-               judge_one("branches of lib/nav and nav/image on the PC",
+               judge_one("branches of nav/lib and nav/image on the PC",
                          percent(total(flying, "branches_taken"), total(flying, "branches")), HOST_BRANCHES),
                judge_one("branches of bus master, driver and supervision on the PC",
                          percent(total(watching, "branches_taken"), total(watching, "branches")), WATCHING_BRANCHES),
@@ -291,9 +291,9 @@ def spoilt_is_seen(report, part):
 def twins(report, elf, folder):
     """The judge must see what is missing: a line, a file, all runs of the chip but one."""
     seen = [spoilt_is_seen(report, part) for part in ("lib/", *NAVIGATION)]
-    rows = [row for row in host_rows(report, Excluder([]))[0] if row["file"] != "lib/nav/src/nav_ud.c"]
-    seen.append(left_out(rows, "lib/*/src/*.c") - CHIP_ONLY == {"lib/nav/src/nav_ud.c"})
-    print(f"twins: lib/nav/src/nav_ud.c not in the data: {'seen' if seen[-1] else 'NOT SEEN'}")
+    rows = [row for row in host_rows(report, Excluder([]))[0] if row["file"] != "nav/lib/nav_ud.c"]
+    seen.append(left_out(rows, "nav/lib/*.c") == {"nav/lib/nav_ud.c"})
+    print(f"twins: nav/lib/nav_ud.c not in the data: {'seen' if seen[-1] else 'NOT SEEN'}")
     one = sorted(pathlib.Path(folder).glob("*/*.csv"))[:1]
     ours = [r for r in avr_rows(elf, executed(one), Excluder([]))[0] if not r["file"].startswith("lib/")]
     share = percent(total(ours, "lines_executed"), total(ours, "lines"))

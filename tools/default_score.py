@@ -14,7 +14,7 @@ NEAR, MOST = 1.05, 1.25  # times the best: as good as it; the most that a defaul
 NOT_JUDGED = "tuning, "  # before the class: what the defaults may be tuned with does not decide
 NONE, HEALTHY, WIRING, CONTENTION = "none", "bad reads 1e-5", "bad reads 1e-3", "contention 20 %"
 OUTLIER_KINDS = {"outliers 15 %": OUTLIERS, "outliers in runs": BURSTS, "outliers held": BURSTS}  # and the class of each
-REFERENCES = ("5 Hz", "2.5 Hz", "10 Hz", "own")    # as host_tests/default_filter.c: truth or smoothed, then the own run
+REFERENCES = ("5 Hz", "2.5 Hz", "10 Hz", "own")    # as host_tests/tools/campaigns/default_filter.c: truth or smoothed, then the own run
 DECIDES, OWN = 0, 3
 VALUES_MIN = 100    # a cell with fewer values says nothing
 LEAST_LSB = 1e-6    # for logarithms
@@ -53,7 +53,7 @@ class Cell:
 
 
 def read_rows(text):
-    """{(key, rate): {fault: {seed: {filter: (whole, after a bad read)}}}} of what host_tests/default_filter.c prints."""
+    """{(key, rate): {fault: {seed: {filter: (whole, after a bad read)}}}} of what host_tests/tools/campaigns/default_filter.c prints."""
     found = defaultdict(lambda: defaultdict(lambda: defaultdict(dict)))
     width = 1 + len(REFERENCES)
     for line in text.splitlines():

@@ -109,7 +109,7 @@ LEFT_OUT = {"steps-outliers": "steps with the outliers that the class puts in",
 
 @dataclass
 class Job:
-    """A line for host_tests/default_filter.c."""
+    """A line for host_tests/tools/campaigns/default_filter.c."""
 
     source: Source
     rate_hz: int

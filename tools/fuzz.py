@@ -18,7 +18,7 @@ import anchors
 
 BUILD = pathlib.Path("build/fuzz")
 SOURCES = pathlib.Path("host_tests/fuzz")
-LISTS = (pathlib.Path("campaigns/breakages.txt"), pathlib.Path("host_tests/planted.txt"))
+LISTS = (pathlib.Path("campaigns/breakages.txt"), pathlib.Path("checks/planted.txt"))
 TARGETS = ("commands", "stream", "driver", "filters")
 PLANTED_SECONDS = 60  # at most; found within some seconds as a rule
 REDUCE_SECONDS = 10

@@ -1,4 +1,4 @@
-"""How long an interrupt of the firmware may wait, by what is on the serial line; for the fault campaign and host_tests/system_passes.py."""
+"""How long an interrupt of the firmware may wait, by what is on the serial line; for the fault campaign and host_tests/system/system_passes.py."""
 import math
 
 LATENCY_CYCLES = 248  # 15.5 us; the second byte that waits at 1,000,000 baud is lost after 20

@@ -56,7 +56,7 @@ def worst_cycles():
 
 
 def yardstick(name):
-    return pathlib.Path(f"host_tests/avr/float_{name}.c")
+    return pathlib.Path(f"host_tests/chip/float_{name}.c")
 
 
 def limits(name):

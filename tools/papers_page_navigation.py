@@ -8,7 +8,7 @@ TAU = tuple(f"tau_{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
 ERRORS = (("heading 40..160 s, degrees", "heading_40_160"), ("without GPS", "heading_without_gps"), ("its rms", "heading_rms_without_gps"),
           ("level without GPS", "level_without_gps"), ("position after 60 s without GPS, m", "position_60_s"), ("120 s", "position_120_s"),
           ("239 s", "position_239_s"))
-LOOPS = (("closed_loop", "Closed loop, lib/nav with its queue"), ("closed_loop_100_hz", "Closed loop, the field at 100 Hz, all scalars at once"))
+LOOPS = (("closed_loop", "Closed loop, nav/lib with its queue"), ("closed_loop_100_hz", "Closed loop, the field at 100 Hz, all scalars at once"))
 
 
 def tables_003(rows):

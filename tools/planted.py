@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Planted faults, each of which its check must find: a fault is put into a copy of the tree, its check runs there, must fail and say
-of the file what is wrong with it (host_tests/test_planted.py shows that another complaint does not count).
+of the file what is wrong with it (host_tests/tools/checks/test_planted.py shows that another complaint does not count).
 
-    planted.py [WORD...]     all of host_tests/planted.txt, or those whose name contains a word
+    planted.py [WORD...]     all of checks/planted.txt, or those whose name contains a word
     PLANTED=20 planted.py    so many of them, others for each commit
 """
 import concurrent.futures
@@ -18,7 +18,7 @@ import time
 import anchors
 from sampled import by_commit
 
-LIST = pathlib.Path("host_tests/planted.txt")
+LIST = pathlib.Path("checks/planted.txt")
 COPIES = pathlib.Path("build/planted")
 WORKERS = 2
 KILLED = {124, 137}  # what timeout gives

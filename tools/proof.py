@@ -8,7 +8,7 @@ passes with no alarm and every contract, check and assertion proved. A function 
 and with an entry of its own, which proves that contract, is taken by it in all other entries but those that say
 `Whole: NAME` in their comment.
 Unsigned wraps are looked for as well (Rte's assertions as checks, which do not narrow what follows); those that are
-meant stand in deliberate.txt. What is compiled are the C twins of the primitives (no __AVR__); host_tests/avr/fx_twins.c ties the assembler twins to
+meant stand in deliberate.txt. What is compiled are the C twins of the primitives (no __AVR__); host_tests/chip/fx_twins.c ties the assembler twins to
 them on the chip. Not covered: truncating unsigned casts, which the code means; right shifts of negative values, which
 both compilers do arithmetically; |rate| <= rate_max, proved as |rate| <= 4608 LSB, because intervals keep no relation;
 the assigns clauses of the contracts, which Eva takes as read.

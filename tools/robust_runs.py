@@ -89,7 +89,7 @@ def shipped():
 
 
 def replay(stream, name, changes=()):
-    """The stream through the filter of this name; changes: NAME=VALUE, see host_tests/pipeline_replay.c."""
+    """The stream through the filter of this name; changes: NAME=VALUE, see host_tests/system/pipeline_replay.c."""
     text = output_of([REPLAY, stream.path, name, stream.rate_dhz, RANGE_G, 0, *changes])
     try:
         rows = table_of(text.splitlines())

@@ -23,8 +23,17 @@ class Test(NamedTuple):
     command: list
 
 
+def sources(suffix):
+    """name -> file of the tests; those of the command tilt have a list of their own."""
+    found = [*pathlib.Path("host_tests").rglob(f"test_*{suffix}"), *pathlib.Path("nav/tests").glob(f"test_*{suffix}")]
+    return {path.stem: path for path in sorted(found) if path.parts[1:3] not in (("tools", "tilt"), ("tools", "pio"))}
+
+
+PROGRAMS = sources(".py")
+
+
 def plain(name, *targets, python="python3"):
-    return Test(list(targets), [python, f"host_tests/{name}.py"])
+    return Test(list(targets), [python, str(PROGRAMS[name])])
 
 
 def packages(name, *targets):
@@ -50,8 +59,7 @@ NOT_HERE = {"test_planted", "test_platformio"}  # make check and make piocheck r
 
 def units():
     """The Unity programs of the PC."""
-    names = sorted(path.stem for path in pathlib.Path("host_tests").glob("test_*.c"))
-    return {name: Test([f"{HOST}/{name}"], [f"{HOST}/{name}"]) for name in names}
+    return {name: Test([f"{HOST}/{name}"], [f"{HOST}/{name}"]) for name in sorted(sources(".c"))}
 
 
 def on_chip(images):
@@ -60,7 +68,7 @@ def on_chip(images):
     for image in images:
         stem = pathlib.Path(image).stem
         beside = [f"{HOST}/{stem}"] if stem.startswith("filter_sequence") else []
-        found[f"chip_{stem}"] = Test([image, "build/sim/simrun", *beside], ["python3", "host_tests/chip_test.py", image])
+        found[f"chip_{stem}"] = Test([image, "build/sim/simrun", *beside], ["python3", "host_tests/chip/chip_test.py", image])
     return found
 
 
@@ -73,9 +81,9 @@ def table():
     tests["bitexact"] = Test(["build/sim/simrun"], ["python3", "tools/bitexact.py"])
     tests["exhaustive_isqrt"] = Test([f"{HOST}/exhaustive_isqrt"], [f"{HOST}/exhaustive_isqrt"])
     tests |= {pathlib.Path(test.command[1]).stem: test for test in SCRIPTS}
-    for path in sorted(pathlib.Path("host_tests/tilt").glob("test_*.py")):
+    for path in sorted(pathlib.Path("host_tests/tools/tilt").glob("test_*.py")):
         tests[f"tilt_{path.stem.removeprefix('test_')}"] = Test(["system_images", "build/host/nav_replay_12"], [VENV, str(path)])
-    tests["system_tests"] = Test(["system_images"], ["python3", "host_tests/system_tests.py"])
+    tests["system_tests"] = Test(["system_images"], ["python3", "host_tests/system/system_tests.py"])
     return tests
 
 

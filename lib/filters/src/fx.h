@@ -3,7 +3,7 @@
  * machine.
  *
  * Every primitive exists twice, in portable C and, where the compiler's code is slow, in assembler (fx_avr.h, and
- * fx_avr.c for functions); both give the same bits for every argument (host_tests/avr/fx_twins.c compares them on the
+ * fx_avr.c for functions); both give the same bits for every argument (host_tests/chip/fx_twins.c compares them on the
  * chip). No primitive divides, uses float or 64-bit arithmetic on AVR. All are pure and may be called from main or from
  * an interrupt.
  */
