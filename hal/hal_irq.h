@@ -2,7 +2,7 @@
  * Critical sections. Everything an interrupt shares with main is one byte, or is touched between save and restore.
  *
  * Hold a section for 19 cycles at most, 1.2 us: an interrupt may wait for a handler, a section right after it and a
- * handler again (tools/latency.py; make check-waits).
+ * handler again (campaigns/faults/latency.py; make check-waits).
  */
 #ifndef HAL_IRQ_H
 #define HAL_IRQ_H

@@ -1,6 +1,6 @@
 # The benchmark: cycles, flash, RAM and stack on the simulated chip, beside float.
 
-# WITH_DEFAULTS and the rest of the images are made by tools/bench.py, which knows the filters from the list
+# WITH_DEFAULTS and the rest of the images are made by campaigns/bench/bench.py, which knows the filters from the list
 BENCH_INC    := $(INCLUDES) -Ihal/avr -Ihost_tests/chip
 BENCH_COMMON := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -ffunction-sections -fdata-sections
 BENCH_SRC    := $(wildcard host_tests/chip/float_*.c lib/filters/src/*.c lib/tilt/src/*.c) firmware/base/format.c
@@ -36,7 +36,7 @@ $(U)/bench_sample.elf: $(BENCH_SAMPLE_OBJ)
 
 # the firmware without its filters, whose clock starts at ten digits: what is left is the rest of a sample's way, and rows
 BENCH_REST_OBJ := $(AVR_SRC:%.c=$(U)/bench_rest/%.o) $(U)/bench_rest/host_tests/chip/bench_rest.o
-$(U)/bench_rest/%.o: IMAGE_FILTERS = $(shell python3 tools/laws.py light)
+$(U)/bench_rest/%.o: IMAGE_FILTERS = $(shell python3 mk/scripts/laws.py light)
 $(U)/bench_rest/firmware/path/pipeline.o: AVR_FLAGS += -Dfilter_update=bench_no_filter
 $(U)/bench_rest/%.o: %.c Makefile mk/bench.mk
 	@mkdir -p $(@D)
@@ -52,10 +52,10 @@ PEERS ?= ../shared/peers/filters
 bench:
 	@sh tools/deps.sh bench
 	@$(MAKE) -j2 $(BENCH_IMAGES) $(U)/bench_sample.elf $(U)/bench_rest.elf $(SET_IMAGES) $(S)/simrun
-	@python3 tools/bench.py --flags '$(BENCH_COMMON) -Wl,--gc-sections $(BENCH_INC)' --small '$(AVR_SMALL)' --sources '$(BENCH_SRC)' --parts '$(BENCH_PARTS)' --peers '$(PEERS)'
+	@python3 campaigns/bench/bench.py --flags '$(BENCH_COMMON) -Wl,--gc-sections $(BENCH_INC)' --small '$(AVR_SMALL)' --sources '$(BENCH_SRC)' --parts '$(BENCH_PARTS)' --peers '$(PEERS)'
 
 # of bench: one sample's cycles by part, in the image that is flashed
 cycles: $(S)/simrun $(U)/firmware.elf
-	@python3 tools/bench_parts.py
+	@python3 campaigns/bench/bench_parts.py
 
 .PHONY: bench cycles

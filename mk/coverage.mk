@@ -58,9 +58,9 @@ $(COVERAGE_RUNS): system_images
 coverage:
 	@sh tools/deps.sh coverage
 	@$(MAKE) -j2 $(COVERAGE_RUNS) $(C)/host.json $(C)/probe.prof
-	@python3 tools/coverage.py check $(C)/probe.elf $(C)/probe.prof host_tests/chip/coverage_probe.c
-	@python3 tools/coverage.py twins $(C)/host.json $(U)/firmware.elf $(C)/runs
-	@python3 tools/coverage.py judge $(C)/host.json $(U)/firmware.elf $(C)/runs
+	@python3 campaigns/coverage/coverage.py check $(C)/probe.elf $(C)/probe.prof host_tests/chip/coverage_probe.c
+	@python3 campaigns/coverage/coverage.py twins $(C)/host.json $(U)/firmware.elf $(C)/runs
+	@python3 campaigns/coverage/coverage.py judge $(C)/host.json $(U)/firmware.elf $(C)/runs
 
 clean: clean_coverage
 clean_coverage:

@@ -39,14 +39,14 @@ $(FUZZ_BIN): $(FZ)/fuzz_%: $(FZ)/fuzz_%.o $(FUZZ_LINKED) $(FZ)/app.o
 
 # the same with one source broken, for each breakage that a fuzz target judges: NAME:TARGET:SOURCE (asked only when they are built)
 ifneq ($(findstring fuzz,$(MAKECMDGOALS)),)
-FUZZ_PLANTS  := $(shell python3 tools/fuzz.py plants)
+FUZZ_PLANTS  := $(shell python3 campaigns/fuzz/fuzz.py plants)
 endif
 FUZZ_PLANTED := $(foreach p,$(FUZZ_PLANTS),$(FZ)/planted/$(firstword $(subst :, ,$(p))))
 
 define FUZZ_PLANT
-$(FZ)/planted/$(1).c: $(3) $(wildcard campaigns/breakages*.txt) checks/planted.txt tools/anchors.py tools/fuzz.py
+$(FZ)/planted/$(1).c: $(3) $(wildcard campaigns/breakages/breakages*.txt) checks/planted.txt campaigns/breakages/anchors.py campaigns/fuzz/fuzz.py
 	@mkdir -p $$(@D)
-	@python3 tools/fuzz.py plant $(1) $$@
+	@python3 campaigns/fuzz/fuzz.py plant $(1) $$@
 
 $(FZ)/planted/$(1).o: $(FZ)/planted/$(1).c $(FZ)/app/$(3:.c=.o)
 	@$$(FUZZ_GCC) -fsanitize-coverage=trace-pc -c $$< -o $$@
@@ -78,9 +78,9 @@ fuzz:
 	@$(MAKE) -j2 $(FUZZ_BIN) $(FUZZ_PLANTED)
 	@if echo 'int LLVMFuzzerTestOneInput(const char *d, unsigned long n) { return d && n > 9; }' | \
 	    $(if $(CLANG),$(CLANG),false) -fsanitize=fuzzer -x c - -o $(FZ)/has_libfuzzer 2> $(FZ)/has_libfuzzer.log; then \
-	    $(MAKE) -j2 $(FUZZ_LIBFUZZER) && LIBFUZZER=yes python3 tools/fuzz.py run $(SECONDS) $(SEED); \
+	    $(MAKE) -j2 $(FUZZ_LIBFUZZER) && LIBFUZZER=yes python3 campaigns/fuzz/fuzz.py run $(SECONDS) $(SEED); \
 	else \
-	    python3 tools/fuzz.py run $(SECONDS) $(SEED); \
+	    python3 campaigns/fuzz/fuzz.py run $(SECONDS) $(SEED); \
 	fi
 
 # inputs found and kept stay

@@ -1,5 +1,5 @@
 # The PC: the product and the tests' helpers as one archive a folder, with the sanitizers for tests and optimised for tools. Which archives
-# and references a test needs follows from what it includes (tools/test_parts.py), so no test waits for what it does not use.
+# and references a test needs follows from what it includes (mk/scripts/test_parts.py), so no test waits for what it does not use.
 H := $(B)/host
 HOST_CC    := gcc
 HOST_CXX   := g++
@@ -60,9 +60,9 @@ $(filter-out %/test_nav_link,$(TESTS)): $(H)/test_%: $(H)/unity.o $(H)/libsuppor
 # python3, which make deps installs, what needs no test is built all the same.
 PARTS := $(H)/parts.mk $(if $(filter coverage $(B)/coverage/%,$(MAKECMDGOALS)),$(B)/coverage/parts.mk)
 ifneq ($(filter-out help deps clean,$(MAKECMDGOALS)),)
-$(PARTS): tools/test_parts.py $(wildcard $(addprefix host_tests/*/*.,c h cpp hpp) nav/tests/*) $(HOST_SRC) $(wildcard */*.h firmware/*/*.h hal/*/*.h lib/*/src/*.h)
+$(PARTS): mk/scripts/test_parts.py $(wildcard $(addprefix host_tests/*/*.,c h cpp hpp) nav/tests/*) $(HOST_SRC) $(wildcard */*.h firmware/*/*.h hal/*/*.h lib/*/src/*.h)
 	@mkdir -p $(@D)
-	@! command -v python3 > /dev/null || { python3 tools/test_parts.py $(@D) > $@.$$$$ && mv $@.$$$$ $@; }
+	@! command -v python3 > /dev/null || { python3 mk/scripts/test_parts.py $(@D) > $@.$$$$ && mv $@.$$$$ $@; }
 -include $(PARTS)
 endif
 

@@ -41,7 +41,7 @@ $(H)/test_nav_link: nav/tests/test_nav_link.c nav/tests/nav_line.c $(NAVIMG_HOST
 nav:
 	@sh tools/deps.sh firmware
 	@$(MAKE) $(dir $(call nav_image,$(STATES)))firmware.hex
-	@sh tools/size.sh $(call nav_image,$(STATES)) nav
+	@sh mk/scripts/size.sh $(call nav_image,$(STATES)) nav
 
 ## navflash: write it to a board of 16 MHz (BOARD= PORT= STATES=12); make flash brings the tilt firmware back
 navflash:

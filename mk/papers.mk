@@ -28,7 +28,7 @@ $(P)/paper003: $(P)/host_tests/papers/paper003.o $(NAV_PAPER)
 # paper 002's filters once more, as C++ with integers that count: what does not compile with them is named by the compiler
 OPERATIONS := host_tests/papers/operations
 LISTED     := $(shell sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter.h)
-NOT_002    := $(filter-out $(shell python3 tools/laws.py kalman),$(LISTED))
+NOT_002    := $(filter-out $(shell python3 mk/scripts/laws.py kalman),$(LISTED))
 ONLY_002   := -D'FILTER_LIST(X)=$(foreach f,$(filter-out $(NOT_002),$(LISTED)),X($f))'
 COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(filter-out $(NOT_002:%=lib/filters/src/%.c) $(NOT_002:%=lib/filters/src/%_%.c),$(wildcard lib/filters/src/*.c)))
 COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/machine/src -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers $(ONLY_002)
@@ -64,7 +64,7 @@ paper_programs: $(PAPERS)
 papers:
 	@sh tools/deps.sh papers
 	@$(MAKE) -j2 paper_programs
-	@python3 tools/papers.py --runs $(RUNS)
+	@python3 campaigns/papers/papers.py --runs $(RUNS)
 
 clean: clean_papers
 clean_papers:

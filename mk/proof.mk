@@ -4,6 +4,6 @@
 proof: export PROOF_ONLY = $(value ONLY)
 proof: export BREAKAGES := $(BREAKAGES)
 proof:
-	@sh tools/proof.sh
+	@sh campaigns/proof/proof.sh
 
 .PHONY: proof

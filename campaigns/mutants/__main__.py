@@ -27,7 +27,7 @@ from shop import Stop, alone, copy_tree, digest, tree_files
 
 WORKERS = 2
 # files that no mutant is made of, each with its reason
-LEFT_OUT = {"firmware/console/reply_packed.h": "written by tools/pack_texts.py, which make check runs",
+LEFT_OUT = {"firmware/console/reply_packed.h": "written by mk/scripts/pack_texts.py, which make check runs",
             "nav/image/main.c": "20 lines that only the navigation image runs, whose test takes minutes"}
 NAV = ("nav/lib/", "nav/image/")
 

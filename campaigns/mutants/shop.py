@@ -10,7 +10,8 @@ import subprocess
 import threading
 
 ROOT = pathlib.Path("build/mutants").resolve()
-COPIED = ("lib", "firmware", "nav", "hal", "sim", "host_tests", "tools", "mk", "Makefile")
+COPIED = ("lib", "firmware", "nav", "hal", "sim", "host_tests", "tools", "checks", "campaigns/faults", "campaigns/tests", "mk",
+          "Makefile")
 
 
 class Stop(Exception):

@@ -129,8 +129,8 @@ enum say {
 
 /*
  * One text for each notice_kind_t, in its order; then the others, those that belong together in their order. They are
- * packed into program memory by tools/pack_texts.py (reply_packed.h). Not formatted: aligned ends of the lines would
- * all change with the longest.
+ * packed into program memory by mk/scripts/pack_texts.py (reply_packed.h). Not formatted: aligned ends of the lines
+ * would all change with the longest.
  */
 /* clang-format off */
 #define REPLY_TEXTS(X) \

@@ -1,6 +1,6 @@
 /*
  * In place of the filters: an estimate that is the sample. pipeline.c of the image calls this instead of
- * filter_update, so that the processor's load is the rest of a sample's way (tools/bench.py).
+ * filter_update, so that the processor's load is the rest of a sample's way (campaigns/bench/bench.py).
  */
 #include "filter_list.h"
 

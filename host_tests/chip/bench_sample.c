@@ -1,6 +1,6 @@
 /*
  * Two places in the firmware that the simulator can time: link-time optimisation leaves no function boundary of its own
- * around a sample's way. app.c of the image calls these instead of the functions that they call (tools/bench.py).
+ * around a sample's way. app.c of the image calls these instead of the functions that they call (make bench).
  */
 #include "adxl345.h"
 #include "base/health.h"

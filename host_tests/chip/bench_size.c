@@ -1,6 +1,6 @@
 /*
  * What an image grows by when a part is linked: each part is used as the firmware uses it if PARTS holds it.
- * tools/bench.py builds this with nothing, with each part alone, with all filters, and with all filters but one.
+ * make bench builds this with nothing, with each part alone, with all filters, and with all filters but one.
  */
 #include <math.h>
 #include <stdint.h>

@@ -1,5 +1,5 @@
 /*
- * A program whose executed lines are known: tools/coverage.py check compares its marks with what the tool finds.
+ * A program whose executed lines are known: coverage.py check compares its marks with what the tool finds.
  * Inlined functions, a branch never taken, a loop, an interrupt that never comes. The branches end differently: equal
  * ends are merged by the compiler and count for either. Ends by sleeping with interrupts off.
  */

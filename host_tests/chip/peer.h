@@ -1,6 +1,6 @@
 /*
  * A filter on the chip beside others, for peer_run.c: what an adapter has. Test only. Other people's libraries are in
- * no folder of this repository: tools/bench_peers.py says where it finds them.
+ * no folder of this repository: campaigns/bench/bench_peers.py says where it finds them.
  */
 #ifndef PEER_H
 #define PEER_H

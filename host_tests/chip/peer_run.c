@@ -1,12 +1,12 @@
 /*
  * Runs on the ATmega328P (simavr): one filter over one stream, by its adapter (peer.h). On the UART (1 Mbaud), for
- * tools/bench_peers.py: the kind of its estimates, then for each sample 12 hexadecimal digits: cycles of the call
+ * bench_peers.py: the kind of its estimates, then for each sample 12 hexadecimal digits: cycles of the call
  * (those of an empty one taken off; ffff: more than the timer counts), bits of the estimate.
  */
 #include "bench_call.h"
 #include "peer.h"
 
-/* tools/bench_peers.py writes them. */
+/* campaigns/bench/bench_peers.py writes them. */
 extern const int16_t peer_stream[];
 extern const uint16_t peer_stream_count;
 

@@ -1,6 +1,6 @@
 /*
  * Filters for tests that need one and no particular one, by their role; which they are follows from the list and the
- * descriptors, as in tools/laws.py.
+ * descriptors, as in mk/scripts/laws.py.
  */
 #ifndef SUPPORT_ROLES_H
 #define SUPPORT_ROLES_H

@@ -142,7 +142,7 @@ for typed in ("rate 50", "range 8"):
 
 @test
 def memory_budgets():
-    lines = [line.split() for line in open("tools/budgets.txt", encoding="utf-8") if line[0] not in "#\n"]
+    lines = [line.split() for line in open("checks/budgets.txt", encoding="utf-8") if line[0] not in "#\n"]
     budget = {words[0]: int(words[1]) for words in lines}
     for image in SET_IMAGES:
         _, _, _, stats = simrun("memory", STREAMS / "outliers-15pct.csv", "--cmd", "1000:help", "--cmd", "2000:status", "--cmd",

@@ -21,7 +21,7 @@ sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from tilt.navigation import boards, exchange, flight, frames, judge  # noqa: E402
 
 SECONDS, EVERY = 20.0, 10
-BUDGETS = dict(line.split()[:2] for line in pathlib.Path("tools/budgets.txt").read_text(encoding="utf-8").splitlines() if line and line[0] != "#")
+BUDGETS = dict(line.split()[:2] for line in pathlib.Path("checks/budgets.txt").read_text(encoding="utf-8").splitlines() if line and line[0] != "#")
 FOR_COMPILER = subprocess.run(["avr-gcc", "-dumpversion"], capture_output=True, text=True, check=False).stdout.strip() == "5.4.0"
 SLOT_US = 10_000
 LOAD_LIMIT = 0.60

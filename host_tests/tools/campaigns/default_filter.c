@@ -1,5 +1,5 @@
 /*
- * Runs every filter over the streams that make default asks for (tools/default_filter.py makes the table).
+ * Runs every filter over the streams that make default asks for (campaigns/pages/default_filter.py makes the table).
  *
  *   default_filter < JOBS > ROWS.csv
  *

@@ -257,7 +257,8 @@ def both_programs_end_well_when_they_run_out_of_time():
         times = processor_times_s(process.pid)
         return len(times) == 2 and min(times) >= 0.5
 
-    for words, far_enough, least in ((("tools/faults.py", "--no-page", "sda"), planned, 0), (("tools/soak.py", "--hours", 20), simulating, 2)):
+    for words, far_enough, least in ((("campaigns/faults/faults.py", "--no-page", "sda"), planned, 0),
+                                     (("campaigns/faults/soak.py", "--hours", 20), simulating, 2)):
         status, said, errors = program_ended(words, far_enough)
         assert status == 1 and "Traceback" not in errors and "ended by a signal" in said, (words, status, said[-500:], errors)
         passed, failed = re.fullmatch(r"(\d+) passed, (\d+) failed", said.splitlines()[-1]).groups()
@@ -276,7 +277,7 @@ def what_cannot_be_is_one_sentence():
                             (("--fw", "/etc/passwd", "sda+scl"), "faults: simrun gave status 2 and no statistics: "),
                             (("--sample", "abc"), "faults: argument --sample: invalid int value: 'abc'"),
                             (("--sample", "0"), "faults: --sample and --jobs want 1 or more, --pairs 0 or more")):
-        status, said, errors = program("tools/faults.py", *words)
+        status, said, errors = program("campaigns/faults/faults.py", *words)
         assert status == 1 and errors.startswith(sentence) and errors.count("\n") == 1 and "passed" not in said, (words, errors)
     for words, sentence in ((("--hours", "nan"), "--hours wants 0.05 (in less, not every kind has its time) to 1000, not nan"),
                             (("--hours", "0"), "not 0"),
@@ -285,7 +286,7 @@ def what_cannot_be_is_one_sentence():
                             (("--fw", "build/no.elf"), "there is no file build/no.elf: make build/no.elf"),
                             (("--fw", "Makefile"), "Makefile does not run: simrun: Makefile: not an ELF file"),
                             (("--fw", "build/uno/hal_probe.elf"), "hal_probe.elf does not run: simrun: status 8")):
-        status, said, errors = program("tools/soak.py", *words)
+        status, said, errors = program("campaigns/faults/soak.py", *words)
         assert status == 1 and errors.startswith("soak: ") and sentence in errors and errors.count("\n") == 1 and not said, (words, errors)
     for simrun, of in (("faults", faults.need), ("soak", lambda path, how: soak.need(path, how, "soak"))):
         try:

@@ -1,5 +1,5 @@
 /*
- * Measures the filters on the real recordings, for make recordings (tools/recordings.py makes the tables).
+ * Measures the filters on the real recordings, for make recordings (campaigns/pages/recordings.py makes the tables).
  *
  *   recordings > ROWS.csv   progress on stderr; a row's first field says what it is: stream, filter, tails, rest, fault
  *

@@ -9,7 +9,7 @@ from system_support import OUT, SIMRUN, STREAMS, image_with, run, run_all, test
 
 import images  # noqa: E402
 from laws import ROBUST  # noqa: E402
-spec = importlib.util.spec_from_file_location("bench", pathlib.Path("tools/bench.py"))
+spec = importlib.util.spec_from_file_location("bench", pathlib.Path("campaigns/bench/bench.py"))
 bench = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(bench)
 bench_firmware, bench_peers, laws = sys.modules["bench_firmware"], sys.modules["bench_peers"], sys.modules["laws"]

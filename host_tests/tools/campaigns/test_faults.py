@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The fault campaign (tools/faults.py) and the soak (tools/soak.py): what they plan, and how they judge what a run of simrun says."""
+"""The fault campaign and the soak (faults.py and soak.py in campaigns/faults): what they plan, and how they judge what a run of simrun says."""
 import itertools
 import pathlib
 import random

@@ -370,7 +370,7 @@ def bad_words_are_refused_in_a_sentence():
 def make_takes_yes_and_no_and_nothing_else():
     alone = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "ACCEPT", "NAMED", "SAMPLE")}
     for words, status, said in ((["NAMED=maybe"], 2, "NAMED=maybe is neither yes nor no"), (["ACCEPT=perhaps"], 2, "ACCEPT=perhaps is neither"),
-                                (["NAMED=no"], 0, "campaigns/mutants "), (["NAMED=yes"], 0, "campaigns/breakages.py"),
+                                (["NAMED=no"], 0, "campaigns/mutants "), (["NAMED=yes"], 0, "campaigns/breakages/breakages.py"),
                                 (["ACCEPT=1"], 0, "--accept")):
         done = subprocess.run(["make", "-n", "mutants", *words], cwd=ROOT, env=alone, capture_output=True, text=True)
         assert done.returncode == status and said in done.stdout + done.stderr, (words, done)

@@ -110,7 +110,7 @@ def what_has_no_chance_in_it_is_as_on_the_page():
 def fewer_runs_and_other_seeds_leave_the_page_alone():
     before = papers_page.DOCUMENT.read_bytes()
     for words in (["--runs", "20"], ["--runs", "20", "--seed", "7"]):  # the quickest paper: which one makes no difference
-        done = subprocess.run([sys.executable, "tools/papers.py", "--paper", "001", *words], capture_output=True, text=True, timeout=600)
+        done = subprocess.run([sys.executable, "campaigns/papers/papers.py", "--paper", "001", *words], capture_output=True, text=True, timeout=600)
         assert "page left alone" in done.stdout and papers_page.DOCUMENT.read_bytes() == before, done
 
 
@@ -162,7 +162,8 @@ def a_program_in_python_is_one_of_them():
 @test
 def paper_004_runs_alone_and_leaves_the_page_alone():
     before = papers_page.DOCUMENT.read_bytes()
-    done = subprocess.run([sys.executable, "tools/papers.py", "--paper", "004", "--runs", "1000"], capture_output=True, text=True, timeout=600)
+    done = subprocess.run([sys.executable, "campaigns/papers/papers.py", "--paper", "004", "--runs", "1000"], capture_output=True, text=True,
+                          timeout=600)
     assert done.returncode == 0 and "page left alone" in done.stdout and papers_page.DOCUMENT.read_bytes() == before, done
 
 
@@ -307,7 +308,7 @@ def bad_words_give_one_sentence():
                             (["bursts", "--runs"], "--runs: takes a whole number"), (["bursts", "--hurry", "1"], "--hurry: unknown option")):
         done = subprocess.run([str(PROGRAM), *words], capture_output=True, text=True, timeout=600)
         assert done.returncode == 2 and sentence in done.stderr and done.stderr.count("\n") == 1, done
-    done = subprocess.run([sys.executable, "tools/papers.py", "--only", "nothing"], capture_output=True, text=True, timeout=600)
+    done = subprocess.run([sys.executable, "campaigns/papers/papers.py", "--only", "nothing"], capture_output=True, text=True, timeout=600)
     assert done.returncode == 2 and "no experiment's name contains nothing" in done.stderr, done
 
 

@@ -127,7 +127,7 @@ def what_has_no_chance_in_it_is_as_on_the_page():
         papers_judge.judge(rows, papers_judge.read_expected(papers.PAPERS[paper][1]), partial=True)
         part = papers_page.between(page, paper)[1]
         found = synthesis.stale(paper, rows, part)
-        assert found == [], "run tools/papers.py --paper 000 001: " + "; ".join(found)
+        assert found == [], "run campaigns/papers/papers.py --paper 000 001: " + "; ".join(found)
         # twins: another number, and one less
         for row in [r for r in rows if r["arithmetic"] == "double"][::40]:
             if row["metric"] not in ("sigma_one_run_sd", "true_variance_mean") and row["value"]:
@@ -304,14 +304,15 @@ def bad_words_give_one_sentence():
                                     (["roll_as_angle"], "host_tests", "sim/streams/tilt-slow.csv: cannot be read")):
         done = subprocess.run([str(program), *words], capture_output=True, text=True, timeout=600, cwd=folder)
         assert done.returncode == 2 and sentence in done.stderr and done.stderr.count("\n") == 1, done
-    done = subprocess.run([sys.executable, "tools/papers.py", "--paper", "005"], capture_output=True, text=True, timeout=600)
+    done = subprocess.run([sys.executable, "campaigns/papers/papers.py", "--paper", "005"], capture_output=True, text=True, timeout=600)
     assert done.returncode == 2 and "005" in done.stderr, done
 
 
 @test
 def one_paper_leaves_the_others_part_alone():
     before = pathlib.Path("docs/papers.md").read_bytes()
-    done = subprocess.run([sys.executable, "tools/papers.py", "--paper", "001", "--runs", "2000"], capture_output=True, text=True, timeout=600)
+    done = subprocess.run([sys.executable, "campaigns/papers/papers.py", "--paper", "001", "--runs", "2000"], capture_output=True, text=True,
+                          timeout=600)
     assert "page left alone" in done.stdout and pathlib.Path("docs/papers.md").read_bytes() == before, done
     assert done.returncode == 0, done.stdout
 

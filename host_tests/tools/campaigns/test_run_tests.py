@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of tools/run_tests.py and of the reports it reads: what a program says and how it ends, into lines, reasons and the sum."""
+"""Tests of campaigns/tests/run_tests.py and of the reports it reads: what a program says and how it ends, into lines, reasons and the sum."""
 import contextlib
 import io
 import json
@@ -232,8 +232,8 @@ def loaded_rounds_count_failures_and_leave_no_loop_however_they_end():
 
 @test
 def what_is_left_out_must_be_a_test():
-    done = subprocess.run([sys.executable, "tools/run_tests.py"], env={**os.environ, "LEAVE_OUT": "test_design nothing"}, capture_output=True,
-                          text=True, timeout=600, check=False)
+    done = subprocess.run([sys.executable, "campaigns/tests/run_tests.py"], env={**os.environ, "LEAVE_OUT": "test_design nothing"},
+                          capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == 1 and done.stderr == "run_tests: LEAVE_OUT names what is no test: nothing\n" and not done.stdout, done
 
 

@@ -56,7 +56,7 @@ def a_step_that_fails_or_is_silent_fails_the_whole():
 def the_night_begins_and_ends_with_the_pages_and_leaves_no_measurement_out():
     calls = run_with_make("campaigns/nightly.sh")[2]
     assert calls[0] == calls[-1] == "check-pages STRICT=yes", calls
-    pages = re.findall(r"^docs/\S+ \| make (\w+)", pathlib.Path("tools/pages.txt").read_text(encoding="utf-8"), re.M)
+    pages = re.findall(r"^docs/\S+ \| make (\w+)", pathlib.Path("checks/pages.txt").read_text(encoding="utf-8"), re.M)
     assert len(pages) >= 9 and set(pages) <= set(calls), set(pages) - set(calls)
 
 

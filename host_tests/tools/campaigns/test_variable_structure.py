@@ -1,5 +1,5 @@
-"""tools/variable_structure, the reference of paper 004: each equation against what was worked out by hand, each erratum with the printed form as the
-twin that must fail; intervals and command line. The flight and its rules: test_variable_structure_flight.py."""
+"""campaigns/variable_structure, the reference of paper 004: each equation against what was worked out by hand, each erratum with the printed form as
+the twin that must fail; intervals and command line. The flight and its rules: test_variable_structure_flight.py."""
 import io
 import os
 import pathlib
@@ -248,16 +248,16 @@ def bad_words_are_named():
 def help_is_a_usage_with_every_option():
     for words in (["--help"], ["-h"], ["trends", "--help"]):
         text = printed(*words)
-        assert text.startswith("usage: python tools/variable_structure"), text
+        assert text.startswith("usage: python campaigns/variable_structure"), text
         assert all(word in text for word in ("--list", "--runs", "--seed", "--help")), text
 
 
 @test
 def it_runs_as_a_module_and_as_a_folder():
-    for words in (["-m", "variable_structure"], ["tools/variable_structure"]):
+    for words in (["-m", "variable_structure"], ["campaigns/variable_structure"]):
         def said(*more):
-            done = subprocess.run([sys.executable, "-B", *words, *more], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": "tools"},
-                                  check=False)
+            done = subprocess.run([sys.executable, "-B", *words, *more], capture_output=True, text=True, check=False,
+                                  env={**os.environ, "PYTHONPATH": "campaigns"})
             return done.returncode, done.stdout, done.stderr
         assert said("--help") == (0, program.USAGE, "")
         assert said("--hurry") == (2, "", "variable_structure: --hurry: unknown option; the experiment stands first (--help)\n")
@@ -265,11 +265,11 @@ def it_runs_as_a_module_and_as_a_folder():
 
 @test
 def a_package_that_is_missing_is_named_with_what_installs_it():
-    for folder, packages in (("variable_structure", "papers"), ("design", "design")):
-        done = subprocess.run([sys.executable, "-B", "-S", f"tools/{folder}", "--help"], capture_output=True, text=True, check=False)
+    for folder, packages in (("campaigns/variable_structure", "papers"), ("tools/design", "design")):
+        done = subprocess.run([sys.executable, "-B", "-S", folder, "--help"], capture_output=True, text=True, check=False)
         assert done.returncode == 1 and not done.stdout, done
-        installs = f"sh tools/deps.sh {packages}, then build/venv/bin/python tools/{folder}\n"
-        assert done.stderr.startswith(f"{folder}: ") and done.stderr.endswith(installs), done
+        installs = f"sh tools/deps.sh {packages}, then build/venv/bin/python {folder}\n"
+        assert done.stderr.startswith(f"{pathlib.PurePath(folder).name}: ") and done.stderr.endswith(installs), done
 
 
 if __name__ == "__main__":

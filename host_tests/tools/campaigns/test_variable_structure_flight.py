@@ -1,5 +1,5 @@
-"""The flight of tools/variable_structure and the rules on it: against second moments worked out without chance, against the order of the issue, and
-what a choice may know. The equations: test_variable_structure.py."""
+"""The flight of campaigns/variable_structure and the rules on it: against second moments worked out without chance, against the order of the issue,
+and what a choice may know. The equations: test_variable_structure.py."""
 import pathlib
 import sys
 

@@ -12,12 +12,12 @@ from system_support import run_all, test
 import page  # noqa: E402
 import page_sources  # noqa: E402
 
-TOOLS = pathlib.Path("tools").resolve()
+CHECKS = pathlib.Path("checks").resolve()
 SOURCE = '#include "b.h"\n/* a gain */\nint f(int a) { return a * 3; } // "3"\n'
 TABLE = "# pages\n@lib\n    lib/*.[ch]\n\ndocs/p.md | make p | never\n    @lib tools/p.py\ndocs/typed.md | make q | every commit\n    tools/p.py\n"
 PAGE = "Text\n<!-- written by make p: begin -->\n1\n<!-- written by make p: end -->\n"
-FILES = {"tools/pages.txt": TABLE, "tools/p.py": "print(1)  # one\n", "lib/a.c": SOURCE, "lib/b.h": "int f(int a);\n", "docs/p.md": PAGE,
-         "docs/typed.md": "Typed: 1\n"}
+FILES = {"checks/pages.txt": TABLE, "tools/p.py": "print(1)  # one\n", "lib/a.c": SOURCE, "lib/b.h": "int f(int a);\n", "docs/p.md": PAGE,
+         "docs/typed.md": "Typed: 1\n", "mk/pythonpath": "tools\n"}
 
 
 def put(name, text):
@@ -44,7 +44,7 @@ class Tree:
 
 
 def said(*words, program="check_pages.py"):
-    done = subprocess.run([sys.executable, TOOLS / program, *words], capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, CHECKS / program, *words], capture_output=True, text=True, check=False)
     return done.returncode, done.stdout + done.stderr
 
 
@@ -88,16 +88,16 @@ def git_says_which_sources_have_changed_since():
 @test
 def what_is_wrong_with_table_or_page_is_a_finding():
     for name, old, new, words in (
-            ("tools/pages.txt", "lib/*.[ch]", "lib/*.z", "tools/pages.txt: lib/*.z: there is no such file"),
-            ("tools/pages.txt", "    tools/p.py\n", "    tools/gone.py\n", "tools/pages.txt: tools/gone.py: there is no such file"),
-            ("tools/pages.txt", "docs/typed.md", "docs/gone.md", "No such file or directory: 'docs/gone.md'"),
-            ("tools/pages.txt", "docs/p.md", "docs/typed.md", "tools/pages.txt:7: docs/typed.md stands there twice"),
-            ("tools/pages.txt", " | never", "", "tools/pages.txt:5: a line is PAGE | COMMAND | CI, or @SET"),
-            ("tools/pages.txt", "    @lib", "    @libs", "tools/pages.txt:6: @libs is no set above"),
-            ("tools/pages.txt", "@lib\n", "", "tools/pages.txt:2: files of no page"),
-            ("tools/pages.txt", "make p", "make r", "docs/p.md is written by make p, which is not its row"),
-            ("tools/pages.txt", "lib/*.[ch]", "lib/a.c", "docs/p.md depends on lib/b.h too, which lib/a.c names"),
-            ("tools/pages.txt", "lib/*.[ch]", "lib/b.h lib/x.h", "docs/p.md depends on lib/x.c too, which lib/x.h names"),
+            ("checks/pages.txt", "lib/*.[ch]", "lib/*.z", "checks/pages.txt: lib/*.z: there is no such file"),
+            ("checks/pages.txt", "    tools/p.py\n", "    tools/gone.py\n", "checks/pages.txt: tools/gone.py: there is no such file"),
+            ("checks/pages.txt", "docs/typed.md", "docs/gone.md", "No such file or directory: 'docs/gone.md'"),
+            ("checks/pages.txt", "docs/p.md", "docs/typed.md", "checks/pages.txt:7: docs/typed.md stands there twice"),
+            ("checks/pages.txt", " | never", "", "checks/pages.txt:5: a line is PAGE | COMMAND | CI, or @SET"),
+            ("checks/pages.txt", "    @lib", "    @libs", "checks/pages.txt:6: @libs is no set above"),
+            ("checks/pages.txt", "@lib\n", "", "checks/pages.txt:2: files of no page"),
+            ("checks/pages.txt", "make p", "make r", "docs/p.md is written by make p, which is not its row"),
+            ("checks/pages.txt", "lib/*.[ch]", "lib/a.c", "docs/p.md depends on lib/b.h too, which lib/a.c names"),
+            ("checks/pages.txt", "lib/*.[ch]", "lib/b.h lib/x.h", "docs/p.md depends on lib/x.c too, which lib/x.h names"),
             ("tools/p.py", "print", "import q\nprint", "docs/p.md depends on tools/q.py too, which tools/p.py names"),
             ("docs/new.md", "", PAGE, "docs/new.md is written by make p, which is not its row"),
             ("docs/p.md", "<!-- sources", "<!-- source", "docs/p.md: no line '<!-- sources: HASH -->'"),
@@ -134,7 +134,7 @@ def a_person_writes_the_hash_only_of_a_page_that_no_command_writes():
         assert said("--stamp", "docs/typed.md", program="page_sources.py") == (0, "")
         assert page_sources.hash_in("docs/typed.md") == page_sources.hash_now("docs/typed.md") != page_sources.hash_in("docs/p.md")
         for words, answer in ((["docs/p.md"], "docs/p.md: make p measures it and writes its hash"), (["docs/gone.md"], "No such file"),
-                              (["lib/a.c"], "lib/a.c: not in tools/pages.txt"), ([], "page_sources.py --stamp PAGE")):
+                              (["lib/a.c"], "lib/a.c: not in checks/pages.txt"), ([], "page_sources.py --stamp PAGE")):
             status, text = said("--stamp", *words, program="page_sources.py")
             assert status == 1 and answer in text and "Traceback" not in text, text
 

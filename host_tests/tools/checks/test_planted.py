@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""tools/planted.py: what counts as a planted fault that its check found, and what does not; tools/anchors.py: how a breakage finds its place."""
+"""checks/planted.py: what counts as a planted fault that its check found, and what does not; anchors.py of
+campaigns/breakages: how a breakage finds its place."""
 import pathlib
 import re
 import sys

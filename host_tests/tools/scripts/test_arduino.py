@@ -1,4 +1,4 @@
-"""lib/filters and lib/tilt as one Arduino library (tools/library.py): the rules for its files, headers and functions in C and C++, and its
+"""lib/filters and lib/tilt as one Arduino library (mk/scripts/library.py): the rules for its files, headers and functions in C and C++, and its
 sketches in the simulated UNO, which print what the same library says on the PC."""
 import csv
 import ctypes

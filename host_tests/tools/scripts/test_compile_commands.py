@@ -108,7 +108,7 @@ def words_are_those_that_the_shell_would_see():
 
 @test
 def a_target_that_is_none_is_one_sentence():
-    done = subprocess.run([sys.executable, "tools/compile_commands.py", "--out", str(OUT / "none.json"), "no_such_target"], capture_output=True,
+    done = subprocess.run([sys.executable, "mk/scripts/compile_commands.py", "--out", str(OUT / "none.json"), "no_such_target"], capture_output=True,
                           text=True, check=False, env=os.environ | {"WARNINGS": "-Wall"})
     assert done.returncode == 1 and "compile_commands: make -nB: make: *** No rule to make target 'no_such_target'" in done.stderr, done.stderr
     assert done.stderr.count("\n") == 1 and not (OUT / "none.json").exists()

@@ -1,4 +1,4 @@
-"""Which filters are in which image: FILTERS= of make, tools/filters_txt.sh, the image that holds a filter; and that the filter with which the
+"""Which filters are in which image: FILTERS= of make, mk/scripts/filters_txt.sh, the image that holds a filter; and that the filter with which the
 firmware starts is the one that docs/default-filter.md decides for, wherever it is named."""
 import os
 import pathlib
@@ -83,7 +83,7 @@ def each_filter_can_be_chosen_alone():
     target = OUT / "alone" / "filters.txt"
     for name in EVERY:
         target.unlink(missing_ok=True)
-        done = subprocess.run(["sh", "tools/filters_txt.sh", str(target), name], capture_output=True, text=True, timeout=600)
+        done = subprocess.run(["sh", "mk/scripts/filters_txt.sh", str(target), name], capture_output=True, text=True, timeout=600)
         assert done.returncode == 0 and not done.stdout + done.stderr and target.read_text(encoding="ascii") == name + "\n", (name, done)
 
 
@@ -95,7 +95,7 @@ def what_is_chosen_already_is_left_alone():
         if before is not None:
             subprocess.run(["touch", "-d", "2001-01-01", str(target)], check=True)
             before = target.stat().st_mtime_ns
-        subprocess.run(["sh", "tools/filters_txt.sh", str(target), *words], check=True, timeout=600)
+        subprocess.run(["sh", "mk/scripts/filters_txt.sh", str(target), *words], check=True, timeout=600)
         assert (target.stat().st_mtime_ns != before) == anew and target.read_text(encoding="ascii").split() == words, words
 
 
@@ -104,7 +104,7 @@ def what_cannot_be_chosen_is_refused_in_one_sentence():
     target = OUT / "bad" / "filters.txt"
     for filters, sentence in BAD:
         target.unlink(missing_ok=True)
-        done = subprocess.run(["sh", "tools/filters_txt.sh", str(target), *filters.split()], capture_output=True, text=True, timeout=600)
+        done = subprocess.run(["sh", "mk/scripts/filters_txt.sh", str(target), *filters.split()], capture_output=True, text=True, timeout=600)
         assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1, (filters, done)
         assert done.stderr.startswith("FILTERS") and sentence in done.stderr.strip() + ";" and not target.exists(), (filters, done.stderr)
         if "twice" not in sentence:
@@ -128,7 +128,7 @@ def the_image_with_a_filter_holds_it():
         done = make("--eval", show, "show", f"FILTERS={choice}")
         assert done.returncode == 0 and dict(line.split() for line in done.stdout.splitlines()) == wanted, (choice, done.stdout, done.stderr)
         for image, names in holds.items():
-            subprocess.run(["sh", "tools/filters_txt.sh", str(pathlib.Path(image).with_name("filters.txt")), *names], check=True, timeout=600)
+            subprocess.run(["sh", "mk/scripts/filters_txt.sh", str(pathlib.Path(image).with_name("filters.txt")), *names], check=True, timeout=600)
         system_support.SET_IMAGES = list(holds)
         try:
             assert {name: system_support.image_with(name) for name in EVERY} == wanted, choice
@@ -144,7 +144,7 @@ def the_image_with_a_filter_holds_it():
     assert done.returncode != 0 and f"no image holds a filter kff; filters: {DEFAULT}" in done.stderr, done.stderr
 
 
-# --- what does not fit (tools/link_image.py) ---------------------------------------------------------------------------
+# --- what does not fit (mk/scripts/link_image.py) ---------------------------------------------------------------------------
 
 FIT = OUT / "fit"
 UNO = boards.TABLE["uno"]
@@ -197,11 +197,11 @@ def where_one_filter_less_is_not_enough_it_says_how_many_fit():
 
 
 def linked_alone(name, source, *words):
-    """A C program of one filter, linked by tools/link_image.py as an image of a Pro Mini."""
+    """A C program of one filter, linked by mk/scripts/link_image.py as an image of a Pro Mini."""
     OUT.mkdir(parents=True, exist_ok=True)
     (OUT / f"{name}.c").write_text(source, encoding="ascii")
     command = ["avr-gcc", "-mmcu=atmega328p", "-Os", "-Wl,-T,hal/avr/uno.ld", str(OUT / f"{name}.c"), "-o", str(OUT / f"{name}.elf")]
-    return subprocess.run([sys.executable, "tools/link_image.py", "promini", "30720", PLAIN, *command, *words], capture_output=True, text=True,
+    return subprocess.run([sys.executable, "mk/scripts/link_image.py", "promini", "30720", PLAIN, *command, *words], capture_output=True, text=True,
                           timeout=600)
 
 

@@ -1,4 +1,4 @@
-"""platformio.ini with PlatformIO Core, against packages that stand in for its registry's (tools/pio_standins.py): lint, both
+"""platformio.ini with PlatformIO Core, against packages that stand in for its registry's (mk/scripts/pio_standins.py): lint, both
 environments built and their results compared with make's, pio test. Each result is looked at itself: pio's exit status is not reliable."""
 import ast
 import json

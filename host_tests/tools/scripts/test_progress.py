@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of tools/progress.py on a makefile made here: the count, what is passed on, the status, a dry run."""
+"""Tests of mk/scripts/progress.py on a makefile made here: the count, what is passed on, the status, a dry run."""
 import io
 import os
 import pathlib
@@ -15,7 +15,7 @@ import progress as tool  # noqa: E402
 from system_support import OUT, run_all, test  # noqa: E402
 
 FOLDER = OUT / "progress"
-TOOL = pathlib.Path("tools/progress.py").resolve()
+TOOL = pathlib.Path("mk/scripts/progress.py").resolve()
 RULES = """all: one two three
 one two:
 \t@echo words of $@; touch $@

@@ -1,4 +1,4 @@
-"""Ends a test program of Python with the lines that tools/run_tests.py reads, as Unity's do."""
+"""Ends a test program of Python with the lines that campaigns/tests/run_tests.py reads, as Unity's do."""
 import pathlib
 import sys
 import unittest
