@@ -2,7 +2,7 @@
 # proof.sh [PATTERN...]: Frama-C if it can be had, then campaigns/proof/proof.py. Without it a line that says so, counted, status 0.
 # make passes its one pattern as PROOF_ONLY, by the environment, where a quote in it breaks no shell.
 set -u
-cd "$(dirname "$0")/.." || exit 1
+cd "$(dirname "$0")/../.." || exit 1
 mkdir -p build
 sh tools/deps.sh proof 2> build/proof-deps.log
 if ! command -v frama-c > /dev/null 2>&1; then
