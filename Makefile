@@ -48,7 +48,7 @@ AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -fshort-en
 AVR_DEBUG   := -gdwarf-2 -g1
 AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=$(CPU_HZ)UL $(AVR_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr $(FILTER_FLAG)
-# calls of functions that lie within 4 KB take half the bytes: functions.ld has an order that makes most of them so (tools/layout.py)
+# calls of functions that lie within 4 KB take half the bytes: functions.ld has an order that makes most of them so (mk/scripts/layout.py)
 UNO_LD      := hal/avr/uno.ld hal/avr/functions.ld
 # a clock that is not the UNO's stands in the image as a symbol, for the simulator
 COMMA       := ,
@@ -59,7 +59,7 @@ AVR_OBJ     := $(AVR_SRC:%.c=$(U)/%.o)
 include mk/images.mk
 
 # assembler primitives against their C twins, on the chip: with plain -Os, and as the firmware is built
-TWINS_SRC := host_tests/avr/fx_twins.c lib/filters/src/fx.c lib/filters/src/fx_avr.c
+TWINS_SRC := host_tests/chip/fx_twins.c lib/filters/src/fx.c lib/filters/src/fx_avr.c
 $(U)/fx_twins.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx_avr.h lib/filters/src/fx_dot.h $(MACHINE_H) Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ilib/machine/src -Ilib/filters/src $(TWINS_SRC) -o $@
@@ -68,11 +68,11 @@ $(U)/fx_twins_firmware.elf: $(TWINS_SRC) lib/filters/src/fx.h lib/filters/src/fx
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -Wl,--gc-sections $(TWINS_SRC) -o $@
 
-$(U)/hal_probe.elf: host_tests/avr/hal_probe.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) $(MACHINE_H) Makefile
+$(U)/hal_probe.elf: host_tests/chip/hal_probe.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) $(MACHINE_H) Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr -Ilib/machine/src $(filter %.c,$^) -o $@
 
-$(U)/store_probe.elf: host_tests/avr/store_probe.c firmware/settings/store.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) firmware/settings/store.h $(MACHINE_H) Makefile
+$(U)/store_probe.elf: host_tests/chip/store_probe.c firmware/settings/store.c $(wildcard hal/avr/*.c hal/*.h hal/avr/*.h) firmware/settings/store.h $(MACHINE_H) Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -Os $(WARNINGS) -Ihal -Ihal/avr -Ifirmware -Ilib/machine/src -Ilib/filters/src $(filter %.c,$^) -o $@
 
@@ -81,7 +81,7 @@ TEST_IMAGES := $(U)/hal_probe.elf $(U)/store_probe.elf $(U)/fx_twins.elf $(U)/fx
 $(U)/firmware.hex: $(U)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $< $@
 
-## firmware: build build/uno/firmware.elf and .hex (BOARD= of tools/boards.txt; FILTERS=: a set of mk/images.mk, or names of filters)
+## firmware: build build/uno/firmware.elf and .hex (BOARD= of mk/boards.txt; FILTERS=: a set of mk/images.mk, or names of filters)
 firmware:
 	@sh tools/deps.sh firmware
 	@$(SAY_FILTERS)
@@ -89,7 +89,7 @@ firmware:
 
 ## size: flash and RAM of the firmware
 size: $(U)/firmware.elf
-	@sh tools/size.sh $< '' $(BOARD_FLASH)
+	@sh mk/scripts/size.sh $< '' $(BOARD_FLASH)
 
 ## flash: write the firmware to a board (BOARD=nano-old: old boot loader; PORT= where several are there; FILTERS=)
 flash:
@@ -141,19 +141,19 @@ test:
 	@sh tools/deps.sh design || echo "test: test_design will be skipped"
 	@sh tools/deps.sh tilt || echo "test: the tests of tilt will be skipped"
 	@sh tools/deps.sh live || echo "test: the tests of the page of tilt live will be skipped"
-	@python3 tools/progress.py $(MAKE) -j2 --no-print-directory $$($(TEST_ENV) python3 tools/test_table.py targets)
-	@$(TEST_ENV) python3 tools/run_tests.py
+	@python3 mk/scripts/progress.py $(MAKE) -j2 --no-print-directory $$($(TEST_ENV) python3 campaigns/tests/test_table.py targets)
+	@$(TEST_ENV) python3 campaigns/tests/run_tests.py
 
 ## t: build and run one test (T=sprf; T="system_tests equals": some of its tests; T=list: all names)
 t:
 	@sh tools/deps.sh test
-	@$(TEST_ENV) python3 tools/test_table.py t $(T)
+	@$(TEST_ENV) python3 campaigns/tests/test_table.py t $(T)
 
 ## quick: all unit tests on the PC (1 minute once built)
 quick:
 	@sh tools/deps.sh test
-	@python3 tools/progress.py $(MAKE) -j2 --no-print-directory $$(python3 tools/test_table.py targets quick)
-	@$(TEST_ENV) python3 tools/run_tests.py quick
+	@python3 mk/scripts/progress.py $(MAKE) -j2 --no-print-directory $$(python3 campaigns/tests/test_table.py targets quick)
+	@$(TEST_ENV) python3 campaigns/tests/run_tests.py quick
 
 # what the tests of the whole firmware run
 system_images: $(U)/firmware.elf $(TEST_IMAGES) $(SLOW_IMAGE) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay

@@ -17,7 +17,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 os.chdir(ROOT)
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import run_tests  # noqa: E402
 
 LIVE = ["test_resets", "test_flash", "test_plotter", "test_progress", "test_run_tests", "test_faults", "tilt_live", "tilt_live_direct",
@@ -51,7 +51,7 @@ def arguments():
     parser.add_argument("--rounds", type=int, default=10, metavar="N", help="of all tests (default 10)")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="tests at a time (default 2, as make test)")
     parser.add_argument("tests", nargs="*", metavar="TEST",
-                        help=f"as tools/test_table.py names them, with :WORD those whose name has it (default: {' '.join(LIVE)})")
+                        help=f"as campaigns/tests/test_table.py names them, with :WORD those whose name has it (default: {' '.join(LIVE)})")
     options = parser.parse_args()
     if options.load < 0 or options.rounds < 1 or options.jobs < 1:
         parser.error("--load wants 0 or more, --rounds and --jobs 1 or more")

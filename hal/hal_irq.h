@@ -3,7 +3,7 @@
  * restore.
  *
  * A section may last 19 cycles at most, 1.2 us: an interrupt may have to wait for a handler, a section right after it
- * and another handler (tools/latency.py; make check-waits).
+ * and another handler (campaigns/faults/latency.py; make check-waits).
  */
 #ifndef HAL_IRQ_H
 #define HAL_IRQ_H

@@ -16,8 +16,8 @@ SKETCHES    := $(wildcard lib/filters/examples/*/*.ino)
 # what make test builds for it: without the core the sketches are skipped
 ARDUINO_IMAGES := $(LIBRARY).zip $(A)/libtiltfilters.so $(if $(ARDUINO_SRC),$(SKETCHES:lib/filters/examples/%.ino=$(A)/%.elf))
 
-$(LIBRARY).zip: $(LIBRARY_OF) tools/library.py
-	@python3 tools/library.py $(@D)
+$(LIBRARY).zip: $(LIBRARY_OF) mk/scripts/library.py
+	@python3 mk/scripts/library.py $(@D)
 
 $(A)/core/%.c.o: $(ARDUINO_DIR)/%.c mk/arduino.mk
 	@mkdir -p $(@D)
@@ -48,7 +48,7 @@ $(A)/libtiltfilters.so: $(LIBRARY).zip mk/arduino.mk
 arduino:
 	@sh tools/deps.sh arduino
 	@$(MAKE) arduino_images
-	@python3 host_tests/test_arduino.py
+	@python3 host_tests/tools/scripts/test_arduino.py
 
 arduino_images: $(ARDUINO_IMAGES) $(S)/simrun
 

@@ -4,6 +4,6 @@
 bitexact:
 	@sh tools/deps.sh test
 	@$(MAKE) $(S)/simrun
-	@WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" CHIP_SECOND="$(CHIP_SECOND)" python3 tools/bitexact.py
+	@WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" CHIP_SECOND="$(CHIP_SECOND)" python3 campaigns/tests/bitexact.py
 
 .PHONY: bitexact

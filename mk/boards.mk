@@ -1,8 +1,8 @@
-# Boards with an ATmega328P: what tools/boards.txt says of the one that BOARD names.
+# Boards with an ATmega328P: what mk/boards.txt says of the one that BOARD names.
 BOARD  ?= uno
-BOARDS := $(shell awk '!/^\#/ { print $$1 }' tools/boards.txt)
+BOARDS := $(shell awk '!/^\#/ { print $$1 }' mk/boards.txt)
 $(if $(filter 1,$(words $(filter $(BOARD),$(BOARDS)))),,$(error BOARD: there is no board '$(BOARD)'; boards: $(BOARDS)))
-BOARD_FACTS  := $(shell awk '$$1 == "$(BOARD)"' tools/boards.txt)
+BOARD_FACTS  := $(shell awk '$$1 == "$(BOARD)"' mk/boards.txt)
 BOARD_FLASH  := $(word 3,$(BOARD_FACTS))
 CPU_HZ       := $(word 4,$(BOARD_FACTS))
 BOARD_FOLDER := $(word 5,$(BOARD_FACTS))

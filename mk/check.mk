@@ -1,5 +1,5 @@
 # The rules of the tree, enforced. Each check is a target of its own (make check-tidy ONLY=firmware/app/app.c looks at one file); limits
-# are in tools/budgets.txt, what departs from a rule in docs/deviations.md, and host_tests/planted.txt holds faults that each check
+# are in checks/budgets.txt, what departs from a rule in docs/deviations.md, and checks/planted.txt holds faults that each check
 # must find.
 CHK := $(B)/check
 ONLY ?=
@@ -28,19 +28,19 @@ check-objects: $(CHECK_OBJ)
 	@find $(CHK)/avr -name '*.o' 2>/dev/null | while read -r o; do s=$${o#$(CHK)/avr/}; [ -f "$${s%.o}.c" ] || rm -f "$$o" "$${o%.o}.su"; done
 
 check-compile:
-	@WARNINGS="$(WARNINGS)" UNITY_DIR="$(UNITY_DIR)" python3 tools/check_compile.py $(ONLY)
+	@WARNINGS="$(WARNINGS)" UNITY_DIR="$(UNITY_DIR)" python3 checks/check_compile.py $(ONLY)
 
 check-tidy:
-	@python3 tools/check_tidy.py $(ONLY)
+	@python3 checks/check_tidy.py $(ONLY)
 
 check-int16:
-	@python3 tools/check_int16.py $(ONLY)
+	@python3 checks/check_int16.py $(ONLY)
 
 check-cppcheck:
-	@sh tools/check_cppcheck.sh $(ONLY)
+	@sh checks/check_cppcheck.sh $(ONLY)
 
 check-includes:
-	@python3 tools/check_includes.py
+	@python3 checks/check_includes.py
 
 # the PC's side of the HAL, for its circles
 CHECK_HOST_OBJ := $(patsubst %.c,$(CHK)/host/%.o,$(wildcard hal/host/*.c))
@@ -49,62 +49,62 @@ $(CHK)/host/%.o: %.c Makefile mk/check.mk
 	@$(HOST_CC) $(HOST_FLAGS) -MMD -MP -c $< -o $@
 
 check-circles: check-objects $(CHECK_HOST_OBJ)
-	@python3 tools/check_circles.py $(CHK)/avr $(CHK)/host
+	@python3 checks/check_circles.py $(CHK)/avr $(CHK)/host
 
 check-format:
-	@sh tools/check_format.sh $(ONLY)
+	@sh checks/check_format.sh $(ONLY)
 
 check-lengths:
-	@$(PY) tools/check_lengths.py $(ONLY)
+	@$(PY) checks/check_lengths.py $(ONLY)
 
 check-names:
-	@python3 tools/check_names.py $(ONLY)
+	@python3 checks/check_names.py $(ONLY)
 
 check-symbols: check-objects $(U)/firmware.elf
-	@python3 tools/check_symbols.py $(U)/firmware.elf
+	@python3 checks/check_symbols.py $(U)/firmware.elf
 
 check-memory: check-objects $(U)/firmware.elf
-	@python3 tools/check_memory.py $(U)/firmware.elf
+	@python3 checks/check_memory.py $(U)/firmware.elf
 
 check-frames: check-objects
-	@python3 tools/check_stack.py frames
+	@python3 checks/check_stack.py frames
 
 check-painted: check-objects $(SET_IMAGES) $(S)/simrun
-	@python3 tools/check_stack.py painted $(SET_IMAGES)
+	@python3 checks/check_stack.py painted $(SET_IMAGES)
 
 check-waits: check-objects $(SET_IMAGES)
-	@python3 tools/check_waits.py $(SET_IMAGES)
+	@python3 checks/check_waits.py $(SET_IMAGES)
 
 check-size: $(SET_IMAGES)
-	@bad=0; for image in $^; do sh tools/size.sh $$image || bad=1; done; exit $$bad
+	@bad=0; for image in $^; do sh mk/scripts/size.sh $$image || bad=1; done; exit $$bad
 
 check-seam:
-	@sh tools/check_seam.sh
+	@sh checks/check_seam.sh
 
 check-deviations: check-objects
-	@$(PY) tools/check_deviations.py
+	@$(PY) checks/check_deviations.py
 
 check-breakages:
-	@WARNINGS="$(WARNINGS)" UNITY_DIR="$(UNITY_DIR)" python3 tools/check_breakages.py
+	@WARNINGS="$(WARNINGS)" UNITY_DIR="$(UNITY_DIR)" python3 checks/check_breakages.py
 
 check-texts:
 	@mkdir -p $(CHK)
-	@python3 tools/pack_texts.py $(CHK)/reply_packed.h
+	@python3 mk/scripts/pack_texts.py $(CHK)/reply_packed.h
 	@cmp -s $(CHK)/reply_packed.h firmware/console/reply_packed.h || \
 	    { echo 'texts: firmware/console/reply_texts.h is not what firmware/console/reply_packed.h was made of: make texts' >&2; exit 1; }
 	@echo 'texts: packed as they are written'
 
 # STRICT=yes: a stale page is a failure
 check-pages:
-	@python3 tools/check_pages.py $(if $(call yes,STRICT),--strict)
+	@python3 checks/check_pages.py $(if $(call yes,STRICT),--strict)
 
 check-planted:
-	@python3 host_tests/test_planted.py
-	@python3 tools/planted.py $(ONLY)
+	@python3 host_tests/tools/checks/test_planted.py
+	@python3 checks/planted.py $(ONLY)
 
 ## texts: pack the firmware's words anew after a change of firmware/console/reply_texts.h
 texts:
-	@python3 tools/pack_texts.py firmware/console/reply_packed.h
+	@python3 mk/scripts/pack_texts.py firmware/console/reply_packed.h
 
 .PHONY: texts check check-built check-objects check-planted $(CHECKS:%=check-%)
 

@@ -4,6 +4,6 @@ COMPILED_TARGETS = $(TESTS) $(H)/exhaustive_isqrt system_images paper_programs $
 
 ## compile_commands: write compile_commands.json for clangd: how every source is compiled, for the PC and for the chip
 compile_commands:
-	@WARNINGS="$(WARNINGS)" UNITY_DIR="$(UNITY_DIR)" python3 tools/compile_commands.py --out $(COMPILE_COMMANDS) $(COMPILED_TARGETS)
+	@WARNINGS="$(WARNINGS)" UNITY_DIR="$(UNITY_DIR)" python3 mk/scripts/compile_commands.py --out $(COMPILE_COMMANDS) $(COMPILED_TARGETS)
 
 .PHONY: compile_commands

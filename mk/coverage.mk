@@ -2,12 +2,13 @@
 C := $(B)/coverage
 # what watches over the sensor and the stages is judged beside lib, and the navigation image's link (mk/nav_lib_coverage.mk)
 SUPERVISION   := $(wildcard $(addprefix firmware/*/,sensor_watch.c health.c pipeline.c coast.c supervisor.c))
-# test_nav_flight, a minute of flights, runs no line of lib/nav that the short ones leave
-COVERAGE_TESTS := $(patsubst host_tests/%.c,$(C)/%,$(filter-out host_tests/test_nav_flight.c,$(wildcard host_tests/test_*.c)))
+# test_nav_flight, a minute of flights, runs no line of nav/lib that the short ones leave
+COVERAGE_SRC   := $(filter-out nav/tests/test_nav_flight.c,$(TEST_SRC))
+COVERAGE_TESTS := $(addprefix $(C)/,$(basename $(notdir $(COVERAGE_SRC))))
 
 # as it is written, so that a line is a line; the tests too, for what they call inline from the headers of lib; gcovr keeps what is judged
 COVERAGE_FLAGS := -O1
-$(C)/lib/%.o $(SUPERVISION:%.c=$(C)/%.o) $(C)/host_tests/test_%.o: COVERAGE_FLAGS := -O0 --coverage
+$(C)/lib/%.o $(SUPERVISION:%.c=$(C)/%.o) $(COVERAGE_SRC:%.c=$(C)/%.o): COVERAGE_FLAGS := -O0 --coverage
 
 $(C)/%.o: %.c Makefile mk/coverage.mk
 	@mkdir -p $(@D)
@@ -22,7 +23,8 @@ $(C)/unity.o: $(UNITY_DIR)/unity.c
 	@$(HOST_CC) -std=c11 -O1 -DUNITY_INCLUDE_DOUBLE -c $< -o $@
 
 # what each is linked with is in parts.mk, as for make test
-$(C)/test_%: $(C)/host_tests/test_%.o $(C)/unity.o $(C)/libsupport.a
+$(foreach t,$(filter-out %/test_nav_link.c,$(COVERAGE_SRC)),$(eval $(C)/$(basename $(notdir $(t))): $(C)/$(t:.c=.o)))
+$(filter-out %/test_nav_link,$(COVERAGE_TESTS)): $(C)/unity.o $(C)/libsupport.a
 	@$(HOST_CXX) --coverage $(call linked,$^) -lm -o $@
 
 $(C)/host.json: $(COVERAGE_TESTS)
@@ -30,10 +32,10 @@ $(C)/host.json: $(COVERAGE_TESTS)
 	@printf '%s\n' $(COVERAGE_TESTS) | xargs -P 2 -I TEST sh -c \
 	    'timeout 900 TEST > TEST.log 2>&1 || { echo "coverage: TEST failed:"; grep :FAIL TEST.log; exit 255; }'
 	@mkdir -p $(C)/html
-	@gcovr --root . --object-directory $(C) --filter '$(CURDIR)/lib/' --filter '$(CURDIR)/nav/image/' $(SUPERVISION:%=--filter '$(CURDIR)/%') --exclude-unreachable-branches --json $@ \
+	@gcovr --root . --object-directory $(C) --filter '$(CURDIR)/lib/' --filter '$(CURDIR)/nav/image/' --filter '$(CURDIR)/nav/lib/' $(SUPERVISION:%=--filter '$(CURDIR)/%') --exclude-unreachable-branches --json $@ \
 	    --html-details $(C)/html/index.html $(C) > $(C)/gcovr.log 2>&1 || { cat $(C)/gcovr.log; exit 1; }
 
-$(C)/probe.elf: host_tests/avr/coverage_probe.c Makefile
+$(C)/probe.elf: host_tests/chip/coverage_probe.c Makefile
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p -Os -flto -gdwarf-2 $(WARNINGS) $< -o $@
 
@@ -49,16 +51,16 @@ $(C)/runs/equal: RUNS_OF := chip_equals
 $(C)/runs/rest: RUNS_OF := -chip_equals -nothing_lost
 $(COVERAGE_RUNS): system_images
 	@rm -rf $@ && mkdir -p $@
-	@PROFILES=$@ python3 host_tests/system_tests.py $(RUNS_OF) > $(C)/system_$(@F).log 2>&1 || \
+	@PROFILES=$@ python3 host_tests/system/system_tests.py $(RUNS_OF) > $(C)/system_$(@F).log 2>&1 || \
 	    { grep ':FAIL' $(C)/system_$(@F).log; exit 1; }
 
 ## coverage: lines and branches of lib by the unit tests, lines of the AVR binary by the system tests (6 minutes)
 coverage:
 	@sh tools/deps.sh coverage
 	@$(MAKE) -j2 $(COVERAGE_RUNS) $(C)/host.json $(C)/probe.prof
-	@python3 tools/coverage.py check $(C)/probe.elf $(C)/probe.prof host_tests/avr/coverage_probe.c
-	@python3 tools/coverage.py twins $(C)/host.json $(U)/firmware.elf $(C)/runs
-	@python3 tools/coverage.py judge $(C)/host.json $(U)/firmware.elf $(C)/runs
+	@python3 campaigns/coverage/coverage.py check $(C)/probe.elf $(C)/probe.prof host_tests/chip/coverage_probe.c
+	@python3 campaigns/coverage/coverage.py twins $(C)/host.json $(U)/firmware.elf $(C)/runs
+	@python3 campaigns/coverage/coverage.py judge $(C)/host.json $(U)/firmware.elf $(C)/runs
 
 clean: clean_coverage
 clean_coverage:

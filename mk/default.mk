@@ -4,6 +4,6 @@
 default:
 	@sh tools/deps.sh test
 	@$(MAKE) -s $(H)/default_filter
-	@python3 tools/default_filter.py
+	@python3 campaigns/pages/default_filter.py
 
 .PHONY: default

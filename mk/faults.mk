@@ -4,12 +4,12 @@
 faults:
 	@sh tools/deps.sh sim
 	@$(MAKE) $(U)/firmware.elf $(S)/simrun
-	@python3 tools/faults.py $(if $(SAMPLE),--sample '$(SAMPLE)' --seed $(shell git rev-list --count HEAD 2>/dev/null || echo 1))
+	@python3 campaigns/faults/faults.py $(if $(SAMPLE),--sample '$(SAMPLE)' --seed $(shell git rev-list --count HEAD 2>/dev/null || echo 1))
 
 ## soak: simulated hours with random faults, in two halves side by side (HOURS=24: about 10 minutes on two cores)
 soak:
 	@sh tools/deps.sh sim
 	@$(MAKE) $(U)/firmware.elf $(S)/simrun
-	@python3 tools/soak.py --hours $(or $(HOURS),24)
+	@python3 campaigns/faults/soak.py --hours $(or $(HOURS),24)
 
 .PHONY: faults soak

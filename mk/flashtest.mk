@@ -20,7 +20,7 @@ FLASHTEST_IMAGES := $(U)/firmware.hex $(if $(wildcard $(OPTIBOOT_DIR)/optiboot.c
 flashtest:
 	@sh tools/deps.sh flashtest
 	@$(MAKE) flashtest_images
-	@python3 host_tests/test_flash.py
+	@python3 host_tests/tools/test_flash.py
 
 flashtest_images: $(FLASHTEST_IMAGES) $(S)/simrun
 

@@ -3,8 +3,8 @@
 FZ           := $(B)/fuzz
 FUZZ_TARGETS := commands stream driver filters
 FUZZ_APP_OBJ := $(HOST_SRC:%.c=$(FZ)/app/%.o)
-FUZZ_COMMON  := fuzz_support fuzz_protocol fuzz_said fuzz_parameters $(notdir $(LAW_SUPPORT:.c=))
-FUZZ_LINKED  := $(FUZZ_COMMON:%=$(FZ)/%.o) $(FZ)/fuzz_drive.o $(FZ)/fuzz_mutate.o $(FZ)/fuzz_dictionary.o
+FUZZ_COMMON  := fuzz_support fuzz_protocol fuzz_said fuzz_parameters
+FUZZ_LINKED  := $(FUZZ_COMMON:%=$(FZ)/%.o) $(LAW_SUPPORT:host_tests/%.c=$(FZ)/%.o) $(FZ)/fuzz_drive.o $(FZ)/fuzz_mutate.o $(FZ)/fuzz_dictionary.o
 FUZZ_BIN     := $(FUZZ_TARGETS:%=$(FZ)/fuzz_%)
 FUZZ_LIBFUZZER := $(FUZZ_TARGETS:%=$(FZ)/libfuzzer_%)
 # all fourteen filters are in it: the refusal that names them has 139 bytes
@@ -30,7 +30,7 @@ $(FZ)/fuzz_%.o: host_tests/fuzz/fuzz_%.c Makefile mk/fuzz.mk
 	@mkdir -p $(@D)
 	@$(FUZZ_GCC) -MMD -MP -c $< -o $@
 
-$(FZ)/support_%.o: host_tests/support_%.c Makefile mk/fuzz.mk
+$(FZ)/support/%.o: host_tests/support/%.c Makefile mk/fuzz.mk
 	@mkdir -p $(@D)
 	@$(FUZZ_GCC) -MMD -MP -c $< -o $@
 
@@ -39,14 +39,14 @@ $(FUZZ_BIN): $(FZ)/fuzz_%: $(FZ)/fuzz_%.o $(FUZZ_LINKED) $(FZ)/app.o
 
 # the same with one source broken, for each breakage that a fuzz target judges: NAME:TARGET:SOURCE (asked only when they are built)
 ifneq ($(findstring fuzz,$(MAKECMDGOALS)),)
-FUZZ_PLANTS  := $(shell python3 tools/fuzz.py plants)
+FUZZ_PLANTS  := $(shell python3 campaigns/fuzz/fuzz.py plants)
 endif
 FUZZ_PLANTED := $(foreach p,$(FUZZ_PLANTS),$(FZ)/planted/$(firstword $(subst :, ,$(p))))
 
 define FUZZ_PLANT
-$(FZ)/planted/$(1).c: $(3) $(wildcard campaigns/breakages*.txt) host_tests/planted.txt tools/anchors.py tools/fuzz.py
+$(FZ)/planted/$(1).c: $(3) $(wildcard campaigns/breakages/breakages*.txt) checks/planted.txt campaigns/breakages/anchors.py campaigns/fuzz/fuzz.py
 	@mkdir -p $$(@D)
-	@python3 tools/fuzz.py plant $(1) $$@
+	@python3 campaigns/fuzz/fuzz.py plant $(1) $$@
 
 $(FZ)/planted/$(1).o: $(FZ)/planted/$(1).c $(FZ)/app/$(3:.c=.o)
 	@$$(FUZZ_GCC) -fsanitize-coverage=trace-pc -c $$< -o $$@
@@ -78,15 +78,15 @@ fuzz:
 	@$(MAKE) -j2 $(FUZZ_BIN) $(FUZZ_PLANTED)
 	@if echo 'int LLVMFuzzerTestOneInput(const char *d, unsigned long n) { return d && n > 9; }' | \
 	    $(if $(CLANG),$(CLANG),false) -fsanitize=fuzzer -x c - -o $(FZ)/has_libfuzzer 2> $(FZ)/has_libfuzzer.log; then \
-	    $(MAKE) -j2 $(FUZZ_LIBFUZZER) && LIBFUZZER=yes python3 tools/fuzz.py run $(SECONDS) $(SEED); \
+	    $(MAKE) -j2 $(FUZZ_LIBFUZZER) && LIBFUZZER=yes python3 campaigns/fuzz/fuzz.py run $(SECONDS) $(SEED); \
 	else \
-	    python3 tools/fuzz.py run $(SECONDS) $(SEED); \
+	    python3 campaigns/fuzz/fuzz.py run $(SECONDS) $(SEED); \
 	fi
 
 # inputs found and kept stay
 clean: clean_fuzz
 clean_fuzz:
-	@rm -rf $(FZ)/app $(FZ)/clang $(FZ)/planted $(FZ)/*.o $(FZ)/*.d $(FUZZ_BIN) $(FUZZ_LIBFUZZER)
+	@rm -rf $(FZ)/app $(FZ)/support $(FZ)/clang $(FZ)/planted $(FZ)/*.o $(FZ)/*.d $(FUZZ_BIN) $(FUZZ_LIBFUZZER)
 
 .PHONY: fuzz clean_fuzz
 

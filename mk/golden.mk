@@ -1,12 +1,12 @@
-# The filters' outputs as committed: host_tests/golden.
-GOLDEN := host_tests/golden
+# The filters' outputs as committed: host_tests/filters/golden.
+GOLDEN := host_tests/filters/golden
 
 $(H)/golden_vectors: $(GOLDEN)/golden_vectors.c $(wildcard lib/filters/src/*.c lib/filters/src/*.h) $(MACHINE_H) $(LAW_SUPPORT) \
-                     host_tests/support_random.c Makefile mk/golden.mk
+                     host_tests/support/random.c Makefile mk/golden.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(WARNINGS) $(SANITIZE) $(filter %.c,$^) -lm -o $@
 
-## golden: writes the filters' vectors (host_tests/golden) anew, after a change of their bits that is meant
+## golden: writes the filters' vectors (host_tests/filters/golden) anew, after a change of their bits that is meant
 golden: $(H)/golden_vectors
 	@$(H)/golden_vectors > $(GOLDEN)/filters_100hz.csv.part && mv $(GOLDEN)/filters_100hz.csv.part $(GOLDEN)/filters_100hz.csv
 	@git diff --stat -- $(GOLDEN) 2>/dev/null || true

@@ -1,17 +1,19 @@
 # The PC: the product and the tests' helpers as one archive a folder, with the sanitizers for tests and optimised for tools. Which archives
-# and references a test needs follows from what it includes (tools/test_parts.py), so no test waits for what it does not use.
+# and references a test needs follows from what it includes (mk/scripts/test_parts.py), so no test waits for what it does not use.
 H := $(B)/host
 HOST_CC    := gcc
 HOST_CXX   := g++
 SANITIZE   := -fsanitize=address,undefined -fno-sanitize-recover=all
-HOST_INC   := $(INCLUDES) -Ihal/host -Isim -Ihost_tests -isystem $(UNITY_DIR)
+HOST_INC   := $(INCLUDES) -Ihal/host -Isim -Ihost_tests -Inav/tests -isystem $(UNITY_DIR)
 HOST_FLAGS := -std=c11 -O1 -g -D_POSIX_C_SOURCE=200809L -DHANG_TEST=1 -DSUPERVISOR=1 -DUNITY_INCLUDE_DOUBLE $(HOST_INC)
 MODEL_SRC  := sim/adxl345_model.c sim/adxl345_variants.c sim/feed.c sim/stream.c
 HOST_SRC   := $(filter-out firmware/app/main.c,$(APP_SRC)) $(LIB_SRC) $(wildcard hal/host/*.c) $(MODEL_SRC)
 # of them what knows the laws, on the chip too
-LAW_SUPPORT := host_tests/support_random32.c $(wildcard host_tests/support_filter*.c host_tests/support_law_*.c)
-SUPPORT_SRC := $(wildcard host_tests/support_*.c)
-TESTS      := $(patsubst host_tests/%.c,$(H)/%,$(wildcard host_tests/test_*.c))
+LAW_SUPPORT := host_tests/support/random32.c $(wildcard host_tests/support/filter*.c host_tests/support/law_*.c)
+SUPPORT_SRC := $(wildcard host_tests/support/*.c)
+# a test's program is build/host/test_NAME, whatever room its source is in
+TEST_SRC    := $(wildcard host_tests/*/test_*.c nav/tests/test_*.c)
+TESTS       := $(addprefix $(H)/,$(basename $(notdir $(TEST_SRC))))
 
 $(H)/%.o: %.c Makefile mk/host.mk
 	@mkdir -p $(@D)
@@ -50,29 +52,32 @@ $(foreach folder,$(H) $(H)/o2 $(B)/coverage,$(foreach a,$(ARCHIVED),$(eval $(cal
 ARCHIVES_O2 := $(ARCHIVED:%=$(H)/o2/lib%.a)
 linked       = $(filter %.o,$(1)) -Wl,--start-group $(filter %.a,$(1)) -Wl,--end-group
 
-$(H)/test_%: $(H)/host_tests/test_%.o $(H)/unity.o $(H)/libsupport.a
+$(foreach t,$(filter-out %/test_nav_link.c,$(TEST_SRC)),$(eval $(H)/$(basename $(notdir $(t))): $(H)/$(t:.c=.o)))
+$(filter-out %/test_nav_link,$(TESTS)): $(H)/test_%: $(H)/unity.o $(H)/libsupport.a
 	@$(HOST_CXX) $(SANITIZE) $(call linked,$^) -lm -o $@
 
 # One line a test: build/host/test_NAME: its archives and further objects. Moved there whole: make -nB, which writes it again, may run beside another make. Without
 # python3, which make deps installs, what needs no test is built all the same.
 PARTS := $(H)/parts.mk $(if $(filter coverage $(B)/coverage/%,$(MAKECMDGOALS)),$(B)/coverage/parts.mk)
 ifneq ($(filter-out help deps clean,$(MAKECMDGOALS)),)
-$(PARTS): tools/test_parts.py $(wildcard host_tests/*.c host_tests/*.h host_tests/*.cpp host_tests/*.hpp) $(HOST_SRC) $(wildcard */*.h firmware/*/*.h hal/*/*.h lib/*/src/*.h)
+$(PARTS): mk/scripts/test_parts.py $(wildcard $(addprefix host_tests/*/*.,c h cpp hpp) nav/tests/*) $(HOST_SRC) $(wildcard */*.h firmware/*/*.h hal/*/*.h lib/*/src/*.h)
 	@mkdir -p $(@D)
-	@! command -v python3 > /dev/null || { python3 tools/test_parts.py $(@D) > $@.$$$$ && mv $@.$$$$ $@; }
+	@! command -v python3 > /dev/null || { python3 mk/scripts/test_parts.py $(@D) > $@.$$$$ && mv $@.$$$$ $@; }
 -include $(PARTS)
 endif
 
+$(H)/native_replay: $(H)/o2/host_tests/system/native_replay.o
+$(H)/recordings $(H)/default_filter: $(H)/%: $(H)/o2/host_tests/tools/campaigns/%.o
 OPTIMISED := $(addprefix $(H)/,native_replay recordings default_filter)
-$(OPTIMISED): $(H)/%: $(H)/o2/host_tests/%.o $(ARCHIVES_O2)
+$(OPTIMISED): $(ARCHIVES_O2)
 	@$(HOST_CC) $(call linked,$^) -lm -o $@
 
-$(H)/roll_replay: $(H)/o2/host_tests/roll_replay.o $(H)/o2/libfilters.a
+$(H)/roll_replay: $(H)/o2/host_tests/tools/campaigns/roll_replay.o $(H)/o2/libfilters.a
 	@$(HOST_CC) $^ -lm -o $@
 
-$(H)/pipeline_replay: $(H)/o2/host_tests/pipeline_replay.o $(ARCHIVES_O2)
+$(H)/pipeline_replay: $(H)/o2/host_tests/system/pipeline_replay.o $(ARCHIVES_O2)
 	@$(HOST_CC) -Wl,--wrap=choice_begin,--wrap=filter_noise_r_lsb2_q8 $(call linked,$^) -lm -o $@
 
-$(H)/exhaustive_isqrt: host_tests/exhaustive_isqrt.c lib/tilt/src/tilt.c lib/filters/src/fx.c $(wildcard lib/*/src/*.h)
+$(H)/exhaustive_isqrt: host_tests/tilt/exhaustive_isqrt.c lib/tilt/src/tilt.c lib/filters/src/fx.c $(wildcard lib/*/src/*.h)
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) -O3 -flto $(WARNINGS) $(filter %.c,$^) -o $@

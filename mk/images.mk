@@ -27,14 +27,14 @@ image_with = $(or $(firstword $(if $(filter $(1),$(CHOSEN_FILTERS)),$(U)/firmwar
 $(AVR_OBJ) $(U)/filters.txt $(U)/firmware.elf: IMAGE_FILTERS = $(CHOSEN_FILTERS)
 $(AVR_OBJ): $(U)/filters.txt
 $(U)/filters.txt: FORCE
-	@sh tools/filters_txt.sh $@ $(IMAGE_FILTERS)
+	@sh mk/scripts/filters_txt.sh $@ $(IMAGE_FILTERS)
 
 $(U)/%.o: %.c Makefile mk/images.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
 
 $(U)/firmware.elf: $(AVR_OBJ) $(UNO_LD)
-	@python3 tools/link_image.py $(BOARD) $(BOARD_FLASH) "$(IMAGE_FILTERS)" $(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $(AVR_OBJ) -o $@
+	@python3 mk/scripts/link_image.py $(BOARD) $(BOARD_FLASH) "$(IMAGE_FILTERS)" $(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $(AVR_OBJ) -o $@
 	@echo "built $@"
 
 # IMAGE(name, filters, further flags): build/uno/NAME/firmware.elf, and filters.txt, which says what it holds
@@ -45,7 +45,7 @@ $(U)/$(1)/%.o: %.c Makefile mk/images.mk
 	@$$(AVR_CC) $$(AVR_FLAGS) $(3) -MMD -MP -c $$< -o $$@
 
 $(U)/$(1)/filters.txt: Makefile mk/images.mk
-	@sh tools/filters_txt.sh $$@ $$(IMAGE_FILTERS)
+	@sh mk/scripts/filters_txt.sh $$@ $$(IMAGE_FILTERS)
 
 $(U)/$(1)/firmware.elf: $(AVR_SRC:%.c=$(U)/$(1)/%.o) $(UNO_LD) | $(U)/$(1)/filters.txt
 	@$$(AVR_CC) $$(AVR_LINK) $$(filter %.o,$$^) -o $$@
@@ -62,7 +62,7 @@ $(eval $(call IMAGE,late,$(FILTERS_research),-DHAL_TIME_START_US=4200000000ul))
 $(eval $(call IMAGE,tight,$(FILTERS_research),-DHAL_CPU_HZ=15500000ul))
 
 # beside the first, its readings are believed unseen: the difference is what checking them costs
-PLAIN_OBJ := $(AVR_SRC:%.c=$(U)/plain/%.o) $(U)/plain/host_tests/avr/plain_read.o
+PLAIN_OBJ := $(AVR_SRC:%.c=$(U)/plain/%.o) $(U)/plain/host_tests/chip/plain_read.o
 $(U)/plain/%.o: AVR_FLAGS += -Dadxl345_integrity_judge=plain_judge
 $(U)/plain/lib/adxl345/src/adxl345_integrity.o: AVR_FLAGS += -Uadxl345_integrity_judge
 $(U)/plain/%.o: %.c Makefile mk/images.mk

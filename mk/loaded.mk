@@ -11,6 +11,6 @@ desk:
 	@sh tools/deps.sh tilt
 	@sh tools/deps.sh live
 	@$(MAKE) $(S)/simrun $(U)/firmware.elf
-	@$(PY) host_tests/tilt/desk_live.py
+	@$(PY) host_tests/tools/tilt/desk_live.py
 
 .PHONY: loaded desk

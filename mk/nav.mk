@@ -1,7 +1,7 @@
 # The navigation image: a filter of its own on the same HAL, and the same code as a program of the PC.
 STATES     ?= 12
-NAVIMG_SRC    := $(wildcard nav/image/*.c) $(wildcard lib/nav/src/*.c) $(wildcard hal/avr/*.c)
-NAVIMG_INC    := -Ihal -Inav/image -Ilib/machine/src -Ilib/nav/src
+NAVIMG_SRC    := $(wildcard nav/image/*.c) $(wildcard nav/lib/*.c) $(wildcard hal/avr/*.c)
+NAVIMG_INC    := -Ihal -Inav/image -Ilib/machine/src -Inav/lib
 # its records are long and its answers short
 NAV_RINGS  := -DHAL_UART_RX_SIZE=128 -DHAL_UART_TX_SIZE=128
 # what leaves flash and stack as small as the budgets want: frames of functions that are no larger when put into one another
@@ -23,7 +23,7 @@ $(U)/$(1)/firmware.hex: $(U)/$(1)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $$< $$@
 
 # one of the two ways in which the PC computes as the chip does; the other is that each constant has an f
-$(H)/nav_replay_$(2): host_tests/nav_replay.c $(filter-out hal/avr/%,$(NAVIMG_SRC)) $(wildcard hal/*.h hal/host/*.h nav/image/*.h lib/nav/src/*.h) Makefile mk/nav.mk
+$(H)/nav_replay_$(2): nav/tests/nav_replay.c $(filter-out hal/avr/%,$(NAVIMG_SRC)) $(wildcard hal/*.h hal/host/*.h nav/image/*.h nav/lib/*.h) Makefile mk/nav.mk
 	@mkdir -p $$(@D)
 	@$$(HOST_CC) -std=c11 -O2 -g -ffp-contract=off -D_POSIX_C_SOURCE=200809L -DNAV_STATES=$(2) $$(NAV_RINGS) $$(WARNINGS) $$(NAVIMG_INC) -Ihal/host \
 	    $$(filter-out nav/image/main.c,$$(filter %.c,$$^)) -lm -o $$@
@@ -33,7 +33,7 @@ $(eval $(call NAV_IMAGE,nav9,9))
 
 NAVIMG_HOST := $(filter-out nav/image/main.c hal/avr/%,$(NAVIMG_SRC))
 # with a line of its own in place of the host's HAL
-$(H)/test_nav_link: host_tests/test_nav_link.c host_tests/nav_line.c $(NAVIMG_HOST) host_tests/support_random.c $(H)/unity.o host_tests/nav_line.h $(wildcard hal/*.h nav/image/*.h lib/nav/src/*.h) $(MACHINE_H)
+$(H)/test_nav_link: nav/tests/test_nav_link.c nav/tests/nav_line.c $(NAVIMG_HOST) host_tests/support/random.c $(H)/unity.o nav/tests/nav_line.h $(wildcard hal/*.h nav/image/*.h nav/lib/*.h) $(MACHINE_H)
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(NAV_RINGS) $(NAVIMG_INC) $(WARNINGS) $(SANITIZE) $(filter %.c %.o,$^) -lm -o $@
 
@@ -41,7 +41,7 @@ $(H)/test_nav_link: host_tests/test_nav_link.c host_tests/nav_line.c $(NAVIMG_HO
 nav:
 	@sh tools/deps.sh firmware
 	@$(MAKE) $(dir $(call nav_image,$(STATES)))firmware.hex
-	@sh tools/size.sh $(call nav_image,$(STATES)) nav
+	@sh mk/scripts/size.sh $(call nav_image,$(STATES)) nav
 
 ## navflash: write it to a board of 16 MHz (BOARD= PORT= STATES=12); make flash brings the tilt firmware back
 navflash:
@@ -55,14 +55,14 @@ navflash:
 NAV_TESTED := $(U)/nav/firmware.elf $(U)/nav9/firmware.elf $(H)/nav_replay_12 $(H)/nav_replay_9
 
 NAV_SECONDS ?= 500
-# lib/nav without the image around it
+# nav/lib without the image around it
 NAV_ALONE  := $(H)/nav_chip_12 $(H)/nav_chip_9 $(U)/nav_slots_12.elf $(U)/nav_slots_9.elf
 ## navcheck: 500 s of flight in the simulated UNO, 12 and 9 states, bit for bit beside the PC, into docs/results/navigation.md (14 minutes; NAV_SECONDS=)
 navcheck:
 	@sh tools/deps.sh tilt
 	@$(MAKE) nav_images $(S)/simrun $(if $(filter 500,$(NAV_SECONDS)),$(NAV_ALONE))
-	@$(PY) host_tests/test_nav_image.py --seconds $(NAV_SECONDS) --json $(B)/nav_flights.json Equal
-	@[ $(NAV_SECONDS) != 500 ] || $(PY) tools/page_navigation.py $(B)/nav_flights.json
+	@$(PY) nav/tests/test_nav_image.py --seconds $(NAV_SECONDS) --json $(B)/nav_flights.json Equal
+	@[ $(NAV_SECONDS) != 500 ] || $(PY) campaigns/pages/page_navigation.py $(B)/nav_flights.json
 
 nav_images: $(NAV_TESTED)
 

@@ -2,14 +2,14 @@
 P := $(B)/papers
 PAPERS_MAIN := $(wildcard host_tests/papers/paper0*.cpp)
 PAPERS_CPP := $(filter-out $(PAPERS_MAIN),$(wildcard host_tests/papers/*.cpp)) \
-              $(addprefix host_tests/reference_,noise.cpp robust.cpp synthesis.cpp)
-PAPERS_C   := $(wildcard lib/filters/src/*.c) $(LAW_SUPPORT) host_tests/support_random.c host_tests/support_tilt_phases.c
+              $(addprefix host_tests/reference/,noise.cpp robust.cpp synthesis.cpp)
+PAPERS_C   := $(wildcard lib/filters/src/*.c) $(LAW_SUPPORT) host_tests/support/random.c host_tests/support/tilt_phases.c
 PAPERS_OBJ := $(PAPERS_CPP:%.cpp=$(P)/%.o) $(PAPERS_C:%.c=$(P)/%.o)
 RUNS ?= 10000
 
 $(P)/%.o: %.cpp Makefile mk/papers.mk
 	@mkdir -p $(@D)
-	@$(HOST_CXX) -std=c++17 -O2 -g -Wall -Wextra -Wconversion -Wshadow -Werror -Ihost_tests -Ilib/machine/src -Ilib/filters/src -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
+	@$(HOST_CXX) -std=c++17 -O2 -g -Wall -Wextra -Wconversion -Wshadow -Werror -Ihost_tests -Inav/tests -Ilib/machine/src -Ilib/filters/src -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
 
 $(P)/%.o: %.c Makefile mk/papers.mk
 	@mkdir -p $(@D)
@@ -18,9 +18,9 @@ $(P)/%.o: %.c Makefile mk/papers.mk
 $(P)/paper%: $(P)/host_tests/papers/paper%.o $(PAPERS_OBJ)
 	@$(HOST_CXX) $^ -lm -o $@
 
-# paper 003 asks lib/nav, not the filters
+# paper 003 asks nav/lib, not the filters
 NAV_PAPER := $(patsubst %.cpp,$(P)/%.o,$(wildcard host_tests/papers/navigation/*.cpp)) $(addprefix $(P)/host_tests/papers/,program.o report.o statistics.o model.o) \
-             $(addprefix $(P)/host_tests/,reference_nav.o nav_flights.o nav_histories.o support_flight.o support_random.o) $(NAV_VARIANTS:%=$(P)/nav/%.o)
+             $(addprefix $(P)/nav/tests/,reference_nav.o nav_flights.o nav_histories.o) $(addprefix $(P)/host_tests/support/,flight.o random.o) $(NAV_VARIANTS:%=$(P)/nav/%.o)
 $(foreach variant,$(NAV_VARIANTS),$(eval $(call nav_variant,$(variant),$(P))))
 $(P)/paper003: $(P)/host_tests/papers/paper003.o $(NAV_PAPER)
 	@$(HOST_CXX) $^ -lm -o $@
@@ -28,7 +28,7 @@ $(P)/paper003: $(P)/host_tests/papers/paper003.o $(NAV_PAPER)
 # paper 002's filters once more, as C++ with integers that count: what does not compile with them is named by the compiler
 OPERATIONS := host_tests/papers/operations
 LISTED     := $(shell sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter.h)
-NOT_002    := $(filter-out $(shell python3 tools/laws.py kalman),$(LISTED))
+NOT_002    := $(filter-out $(shell python3 mk/scripts/laws.py kalman),$(LISTED))
 ONLY_002   := -D'FILTER_LIST(X)=$(foreach f,$(filter-out $(NOT_002),$(LISTED)),X($f))'
 COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(filter-out $(NOT_002:%=lib/filters/src/%.c) $(NOT_002:%=lib/filters/src/%_%.c),$(wildcard lib/filters/src/*.c)))
 COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/machine/src -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers $(ONLY_002)
@@ -64,7 +64,7 @@ paper_programs: $(PAPERS)
 papers:
 	@sh tools/deps.sh papers
 	@$(MAKE) -j2 paper_programs
-	@python3 tools/papers.py --runs $(RUNS)
+	@python3 campaigns/papers/papers.py --runs $(RUNS)
 
 clean: clean_papers
 clean_papers:

@@ -3,8 +3,8 @@
 ## piocheck: platformio.ini with PlatformIO Core and stand-in packages (1 minute)
 piocheck:
 	@sh tools/deps.sh test piocheck
-	@python3 tools/pio_standins.py build/pio/core build/venv-pio
+	@python3 mk/scripts/pio_standins.py build/pio/core build/venv-pio
 	@$(MAKE) $(U)/firmware.elf $(S)/simrun $(H)/native_replay $(LIBRARY).zip
-	@python3 host_tests/test_platformio.py
+	@python3 host_tests/tools/scripts/test_platformio.py
 
 .PHONY: piocheck

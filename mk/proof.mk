@@ -5,6 +5,6 @@ proof: export PROOF_ONLY = $(value ONLY)
 proof: export BREAKAGES := $(BREAKAGES)
 proof: export CHANGED := $(CHANGED)
 proof:
-	@sh tools/proof.sh
+	@sh campaigns/proof/proof.sh
 
 .PHONY: proof

@@ -4,6 +4,6 @@
 race:
 	@sh tools/deps.sh sim
 	@$(MAKE) $(SET_IMAGES) $(S)/simrun
-	@python3 tools/race.py --minutes $(or $(MINUTES),10)
+	@python3 campaigns/faults/race.py --minutes $(or $(MINUTES),10)
 
 .PHONY: race

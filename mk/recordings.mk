@@ -4,6 +4,6 @@
 recordings:
 	@sh tools/deps.sh test
 	@$(MAKE) $(H)/recordings
-	@python3 tools/recordings.py
+	@python3 campaigns/pages/recordings.py
 
 .PHONY: recordings

@@ -4,6 +4,6 @@
 robust:
 	@sh tools/deps.sh sim
 	@$(MAKE) -s $(H)/pipeline_replay
-	@$(PY) tools/robust.py
+	@$(PY) campaigns/pages/robust.py
 
 .PHONY: robust

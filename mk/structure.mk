@@ -3,6 +3,6 @@
 ## structure: the numbers and the picture of docs/results/variable-structure.md (1 minute)
 structure:
 	@sh tools/deps.sh papers
-	@$(PY) tools/structure_page.py
+	@$(PY) campaigns/pages/structure_page.py
 
 .PHONY: structure

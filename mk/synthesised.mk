@@ -5,6 +5,6 @@ synthesised:
 	@sh tools/deps.sh test
 	@sh tools/deps.sh design
 	@$(MAKE) -s $(H)/roll_replay $(H)/test_adaptive_roll
-	@$(PY) tools/synthesised.py
+	@$(PY) campaigns/pages/synthesised.py
 
 .PHONY: synthesised

@@ -1,7 +1,7 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
 # Groups: firmware sim test check flash flashtest arduino bench piocheck papers design tilt live fuzz coverage proof second. Packages come by
-# apt-get, numpy and matplotlib (check: lizard, design: scipy, tilt: tools/pyproject.toml) by pip into build/venv, Unity by tools/get_unity.sh into build/unity
+# apt-get, numpy and matplotlib (check: lizard, design: scipy, tilt: tools/pyproject.toml) by pip into build/venv, Unity by tools/deps/get_unity.sh into build/unity
 # (UNITY_DIR=folder: use that one), avr8js by npm into build/second. Uses sudo only when not root.
 # Ends with 1 on failure; with 3 where the group second alone is asked for and Node or avr8js is absent, too old, or npm has no network.
 set -eu
@@ -17,7 +17,7 @@ want_tilt=no
 want_unity=no
 want_pio=no
 want_avr8js=no
-pio_requirements='platformio==6.2.0 scons==4.11.1' # the versions that tools/pio_standins.py stands in for
+pio_requirements='platformio==6.2.0 scons==4.11.1' # the versions that mk/scripts/pio_standins.py stands in for
 pio_venv=build/venv-pio
 fail_status=1 # 3 where what is missing is reason to skip, no failure
 
@@ -50,7 +50,7 @@ has_certificates() {
 
 # Packages are complete when the stamp written after pip equals the requirements.
 has_plot_packages() {
-    [ -x "$venv/bin/python" ] && cmp -s tools/requirements.txt "$venv/requirements.installed"
+    [ -x "$venv/bin/python" ] && cmp -s tools/deps/requirements.txt "$venv/requirements.installed"
 }
 
 # the command tilt runs from tools/, and what it imports is installed
@@ -227,14 +227,14 @@ install_lizard() {
             fail "cannot make $venv ($(tail -n 1 "$log")): $(how_to_supply python3-venv)"
     fi
     "$venv/bin/python" -m pip install --disable-pip-version-check --no-input --retries 2 --timeout 20 \
-        -r tools/requirements-check.txt > "$log" 2>&1 ||
+        -r tools/deps/requirements-check.txt > "$log" 2>&1 ||
         fail "cannot install lizard ($(first_error)): check the network and pip's index, or install it into $venv; log in $log"
 }
 
 install_scipy() {
     echo "deps: installing with pip into $venv: scipy"
     "$venv/bin/python" -m pip install --disable-pip-version-check --no-input --retries 2 --timeout 20 \
-        -r tools/requirements-design.txt > "$log" 2>&1 ||
+        -r tools/deps/requirements-design.txt > "$log" 2>&1 ||
         fail "cannot install scipy ($(first_error)): check the network and pip's index, or install it into $venv; log in $log"
 }
 
@@ -251,17 +251,17 @@ install_tilt() {
 
 install_plot_packages() {
     if [ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import numpy, matplotlib' > /dev/null 2>&1; then
-        cp tools/requirements.txt "$venv/requirements.installed"
+        cp tools/deps/requirements.txt "$venv/requirements.installed"
         return
     fi
     echo "deps: installing with pip into $venv: numpy matplotlib"
     python3 -m venv "$venv" > "$log" 2>&1 ||
         fail "cannot make $venv ($(tail -n 1 "$log")): $(how_to_supply python3-venv)"
     "$venv/bin/python" -m pip install --disable-pip-version-check --no-input --retries 2 --timeout 20 \
-        -r tools/requirements.txt > "$log" 2>&1 ||
+        -r tools/deps/requirements.txt > "$log" 2>&1 ||
         fail "cannot install numpy matplotlib ($(first_error)): check the network and pip's index, or install both\
  for the system's Python and run python3 -m venv --system-site-packages $venv; log in $log"
-    cp tools/requirements.txt "$venv/requirements.installed"
+    cp tools/deps/requirements.txt "$venv/requirements.installed"
 }
 
 has_pio() {
@@ -314,7 +314,7 @@ install_unity() {
         return
     fi
     [ -f build/unity/unity.c ] || echo "deps: fetching Unity from the distribution's archive into build/unity"
-    tools/get_unity.sh build/unity
+    tools/deps/get_unity.sh build/unity
 }
 
 [ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof, second)"

@@ -5,7 +5,7 @@
     flash.py write TARGET BOARD HEX [PORT]   avrdude writes and verifies; what it says goes into build/flash.log, a failure into one line
     flash.py monitor BAUD [PORT]             prints what the board sends, sends the lines that are typed; Ctrl-C ends
 
-TARGET: of make, flash or navflash, for the commands that are proposed. BOARD: tools/boards.txt. Without PORT (or with an empty one) the only port of
+TARGET: of make, flash or navflash, for the commands that are proposed. BOARD: mk/boards.txt. Without PORT (or with an empty one) the only port of
 /dev/ttyACM*, /dev/ttyUSB* and /dev/serial/by-id is taken and named; where there are none or several it says what to type. Status 1: it could not be
 done; 2: it is not to be done as asked. For the tests: FLASH_DEV is a folder instead of /dev, FLASH_LOG another file.
 """
@@ -17,6 +17,7 @@ import shlex
 import subprocess
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "mk/scripts"))
 import boards
 
 LOG = pathlib.Path(os.environ.get("FLASH_LOG", "build/flash.log"))

@@ -21,7 +21,7 @@ try:
     from tilt.look import FILE_COLOURS, GATED_COLOUR, MISSING_BAND, RAW_COLOUR, TRUTH_COLOUR, WARMING_BAND
     from tilt.protocol import GATED, NO_SAMPLE, WARMING_UP, WRAP_US
 except ImportError as missing:
-    sys.exit(f"plot_run: {missing.name} is missing: run `make deps`, or use a Python that has tools/requirements.txt")
+    sys.exit(f"plot_run: {missing.name} is missing: run `make deps`, or use a Python that has tools/deps/requirements.txt")
 
 RUN_COLUMNS = ["t_us", "x_lsb", "y_lsb", "z_lsb", "x_mg", "y_mg", "z_mg", "roll_cdeg", "pitch_cdeg", "flags"]
 READING = ["x_lsb", "y_lsb", "z_lsb"]

@@ -27,9 +27,9 @@ from shop import Stop, alone, copy_tree, digest, tree_files
 
 WORKERS = 2
 # files that no mutant is made of, each with its reason
-LEFT_OUT = {"firmware/console/reply_packed.h": "written by tools/pack_texts.py, which make check runs",
+LEFT_OUT = {"firmware/console/reply_packed.h": "written by mk/scripts/pack_texts.py, which make check runs",
             "nav/image/main.c": "20 lines that only the navigation image runs, whose test takes minutes"}
-NAV = ("lib/nav/", "nav/image/")
+NAV = ("nav/lib/", "nav/image/")
 
 
 def say(text):
@@ -65,7 +65,7 @@ def options_of(arguments):
 
 
 def product():
-    return [name for name in tree_files() if name.startswith(("lib/", "firmware/", "nav/", "hal/")) and name.endswith((".c", ".h"))
+    return [name for name in tree_files() if name.startswith(("lib/", "firmware/", *NAV, "hal/")) and name.endswith((".c", ".h"))
             and name not in LEFT_OUT and "/examples/" not in name]
 
 
@@ -145,7 +145,7 @@ class Campaign:
         if file.startswith(ONLY_CHIP):
             return self.chip, self.cheapest
         if file.startswith(NAV):
-            return self.nav if file.startswith("lib/") else self.nav_link, self.cheapest
+            return self.nav if file.startswith(NAV[0]) else self.nav_link, self.cheapest
         return self.judge, self.order
 
     def one(self, mutant):

@@ -1,5 +1,5 @@
 """Mutants of what only the chip compiles, judged in the simulator: a few programs, made in the worker's tree by the Makefile's own rules, each
-with tests of host_tests/system_tests.py that run it alone, the cheapest first. No counter says which line a test reaches here.
+with tests of host_tests/system/system_tests.py that run it alone, the cheapest first. No counter says which line a test reaches here.
 """
 import shutil
 import threading
@@ -62,7 +62,7 @@ class Chip:
                 for word in words:
                     began = time.monotonic()
                     if not self.passes(self.clean, word, 600):
-                        raise Stop(f"the system test {word} fails on the unbroken code: python3 host_tests/system_tests.py {word}")
+                        raise Stop(f"the system test {word} fails on the unbroken code: python3 host_tests/system/system_tests.py {word}")
                     self.seconds[word] = time.monotonic() - began
             self.ready = True
 
@@ -73,7 +73,7 @@ class Chip:
 
     @staticmethod
     def passes(tree, word, limit_s):
-        return run(["python3", "-B", "host_tests/system_tests.py", word], tree, limit_s)[0] == 0
+        return run(["python3", "-B", "host_tests/system/system_tests.py", word], tree, limit_s)[0] == 0
 
     def verdict(self, mutant, worker):
         self.prepare()

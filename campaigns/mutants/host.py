@@ -15,12 +15,18 @@ VARIANTS = {"ubsan": ["-fsanitize=undefined", "-fsanitize-undefined-trap-on-erro
             "asan": ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]}
 NOT_OF_THE_PRODUCT = {"test_simrun_judge"}  # of the simulator
 HANG_TIMES, HANG_MIN_S = 10, 1
+REFERENCES = ("host_tests/reference/", "nav/tests/reference_")
 # Unity's last word on each test function: one that failed has judged the mutant, the others of the program need not run
 FIRST_FAILURE = ["-DUNITY_PRINT_EXEC_TIME()=(Unity.TestFailures?_exit(1):(void)0)", "-includeunistd.h"]
 # linked into each test: what it starts itself (a shell, python) has no symbols for the libraries that are loaded before the test
 ALONE = """int unsetenv(const char *);
 __attribute__((constructor)) static void children_load_nothing(void) { unsetenv("LD_PRELOAD"); }
 """
+
+
+def sources():
+    """name -> file of the tests of the PC"""
+    return {p.stem: str(p) for pattern in ("host_tests/*/test_*.c", "nav/tests/test_*.c") for p in pathlib.Path(".").glob(pattern)}
 
 
 class Settings:
@@ -36,8 +42,8 @@ class Settings:
         self.product = words("HOST_SRC")
         names = (pathlib.Path(test).name for test in words("TESTS"))
         self.tests = [name for name in names if not name.startswith("test_nav") and name not in NOT_OF_THE_PRODUCT]
-        self.supports = sorted(str(p) for p in pathlib.Path("host_tests").glob("support_*.c"))
-        self.references = sorted(str(p) for p in pathlib.Path("host_tests").glob("reference_*.cpp"))
+        self.supports = sorted(str(p) for p in pathlib.Path("host_tests/support").glob("*.c"))
+        self.references = sorted(str(p) for start in REFERENCES for p in pathlib.Path(".").glob(f"{start}*.cpp"))
         self.unity = f"{environment.get('UNITY_DIR', 'build/unity')}/unity.c"
 
 
@@ -66,7 +72,7 @@ class Host:
         return [*(flag for flag in self.command(source) if flag not in self.flags), "-O2"]
 
     def test_source(self, test):
-        return f"host_tests/{test}.c"
+        return sources()[test]
 
     def compile(self, pool, tests=()):
         """The product's library, and what the tests are linked from."""
@@ -102,12 +108,12 @@ class Host:
     def references(self, test):
         """The double references that a test asks for: those that make test built, if they are at hand, else compiled here."""
         sources = [self.test_source(test), *self.supports]
-        if not any(name.startswith("host_tests/reference_") for source in sources for name in self.objects.deps(source)):
+        if not any(name.startswith(REFERENCES) for source in sources for name in self.objects.deps(source)):
             return []
         found = []
         for source in self.settings.references:
             built = pathlib.Path("build/host", source).with_suffix(".o")
-            newest = max(p.stat().st_mtime for p in [pathlib.Path(source), *pathlib.Path("host_tests").glob("reference_*.h*")])
+            newest = max(p.stat().st_mtime for p in [pathlib.Path(source), *pathlib.Path(source).parent.glob("*.h*")])
             found.append(built.resolve() if built.exists() and built.stat().st_mtime > newest else self.doubles.object(source))
         archive = self.folder / "libreference.a"
         with self.archiving:

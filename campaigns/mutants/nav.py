@@ -1,4 +1,4 @@
-"""The programs that judge the navigation filter: lib/nav in its four variants, each a library of its own, and the image's link."""
+"""The programs that judge the navigation filter: nav/lib in its four variants, each a library of its own, and the image's link."""
 import os
 import pathlib
 import shlex
@@ -6,7 +6,7 @@ import shlex
 from host import Host
 from shop import plain, run
 
-EXTRA = ["host_tests/nav_flights.c", "host_tests/nav_running.c", "host_tests/nav_histories.c"]
+EXTRA = ["nav/tests/nav_flights.c", "nav/tests/nav_running.c", "nav/tests/nav_histories.c"]
 
 
 def sources(folder, without=()):
@@ -21,15 +21,15 @@ class Variants(Host):
         self.variant, self.folder = "nav", self.folder.with_name("nav")
         self.objects = self.objects.named("nav", self.command)
         self.of = {word: shlex.split(os.environ[f"NAV_OF_{word}"]) for word in os.environ["NAV_VARIANTS"].split()}
-        self.inside = [*sources("lib/nav/src"), "host_tests/nav_variant.c"]
+        self.inside = [*sources("nav/lib"), "nav/tests/nav_variant.c"]
         self.product = [f"{word}:{source}" for word in self.of for source in self.inside]
         self.supports = [*settings.supports, *EXTRA]
-        self.tests = [name for name in sorted(p.stem for p in pathlib.Path("host_tests").glob("test_nav*.c")) if name != "test_nav_link"]
+        self.tests = [name for name in sorted(p.stem for p in pathlib.Path("nav/tests").glob("test_nav*.c")) if name != "test_nav_link"]
         self.tilt = tilt
 
     def command(self, source):
         word = source.split(":")[0] if ":" in source else None
-        more = ["-ffp-contract=off", "-Ilib/nav/src", *(self.of[word] if word else [])]
+        more = ["-ffp-contract=off", "-Inav/lib", *(self.of[word] if word else [])]
         return [*super().command(plain(source)), *more, *([f"-DNAV_VARIANT={word}"] if word else [])]
 
     def link_product(self):
@@ -63,9 +63,9 @@ class Link(Host):
         super().__init__(settings, "ubsan", tree)
         self.variant, self.folder = "navlink", self.folder.with_name("navlink")
         self.objects = self.objects.named("navlink", self.command)
-        self.product = [*sources("nav/image", ["nav/image/main.c"]), *sources("lib/nav/src")]
-        self.supports = ["host_tests/nav_line.c", "host_tests/support_random.c"]
+        self.product = [*sources("nav/image", ["nav/image/main.c"]), *sources("nav/lib")]
+        self.supports = ["nav/tests/nav_line.c", "host_tests/support/random.c"]
         self.tests = ["test_nav_link"]
 
     def command(self, source):
-        return [*super().command(source), *shlex.split(os.environ["NAV_RINGS"]), "-Inav/image", "-Ilib/machine/src", "-Ilib/nav/src"]
+        return [*super().command(source), *shlex.split(os.environ["NAV_RINGS"]), "-Inav/image", "-Ilib/machine/src", "-Inav/lib"]

@@ -28,10 +28,9 @@ def source_of(judge):
     """The file of a judging test: test_rest, or system:WORD with part of the name of a test of the chip; None where there is none."""
     word = judge.removeprefix("system:")
     if word == judge:
-        path = pathlib.Path(f"host_tests/{judge}.c")
-        return path if path.is_file() else None
+        return next((p for folder in ("host_tests", "nav") for p in pathlib.Path(folder).glob(f"*/{judge}.c")), None)
     named = re.compile(rf"^def \w*{re.escape(word)}", re.MULTILINE)
-    return next((p for p in sorted(pathlib.Path("host_tests").glob("system_*.py")) if named.search(p.read_text(encoding="utf-8"))), None)
+    return next((p for p in sorted(pathlib.Path("host_tests/system").glob("system_*.py")) if named.search(p.read_text(encoding="utf-8"))), None)
 
 
 class Results:
@@ -90,7 +89,7 @@ def write_accepted(rows, files):
 
 def folder_of(file):
     parts = pathlib.Path(file).parts
-    return "/".join(parts[:2]) if parts[0] in ("lib", "hal") and len(parts) > 2 or parts[:2] == ("nav", "image") else parts[0]
+    return "/".join(parts[:2]) if parts[0] in ("lib", "hal", "nav") and len(parts) > 2 else parts[0]
 
 
 def table(rows, of, title):

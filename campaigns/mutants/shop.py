@@ -10,7 +10,8 @@ import subprocess
 import threading
 
 ROOT = pathlib.Path("build/mutants").resolve()
-COPIED = ("lib", "firmware", "nav", "hal", "sim", "host_tests", "tools", "mk", "Makefile")
+COPIED = ("lib", "firmware", "nav", "hal", "sim", "host_tests", "tools", "checks", "campaigns/faults", "campaigns/tests", "mk",
+          "Makefile")
 
 
 class Stop(Exception):
@@ -97,7 +98,7 @@ def timed(command, cwd, limit_s, output=subprocess.DEVNULL, **environment):
 
 
 def plain(source):
-    """`n9f:lib/nav/src/nav.c` is that file in one of its variants."""
+    """`n9f:nav/lib.c` is that file in one of its variants."""
     return source.rsplit(":", 1)[-1]
 
 

@@ -1,5 +1,5 @@
 /*
- * Written by tools/pack_texts.py from reply_texts.h: 87 texts of 2377 bytes in 1271, and 113 pairs. A byte from
+ * Written by mk/scripts/pack_texts.py from reply_texts.h: 87 texts of 2377 bytes in 1271, and 113 pairs. A byte from
  * PACKED_PAIR_FIRST on stands for the two of its pair, which may be such bytes again, PACKED_DEPTH deep at most.
  */
 #ifndef REPLY_PACKED_H

@@ -6,7 +6,7 @@
 #ifndef FILTER_SEQUENCE_H
 #define FILTER_SEQUENCE_H
 
-#include "support_filters.h"
+#include "support/filters.h"
 
 typedef struct {
     uint32_t random;

@@ -1,5 +1,5 @@
 /* Paths of the filters: random legal configurations, any calls. */
-#include "support_filters.h"
+#include "support/filters.h"
 #include "vectors.h"
 
 enum { ITEMS = 2000, ITEMS_PER_CONFIG = 100 };

@@ -7,7 +7,7 @@
 #include "crc32.h"
 #include "fx.h"
 #include "output.h"
-#include "support_filters.h"
+#include "support/filters.h"
 #include "vectors.h"
 
 #ifdef __AVR__

@@ -1,4 +1,4 @@
-/* Paths of the primitives: every public function of fx.h that computes (tools/bitexact.py compares the names). */
+/* Paths of the primitives: every public function of fx.h that computes (bitexact.py compares the names). */
 #include "fx.h"
 #include "vectors.h"
 

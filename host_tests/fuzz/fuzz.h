@@ -1,7 +1,7 @@
 /*
  * What the fuzz targets share. A target is one source with LLVMFuzzerTestOneInput, as libFuzzer calls it; with gcc the
- * same source is driven by fuzz_drive.c. A broken property ends the process by fuzz_fail; tools/fuzz.py keeps the
- * input.
+ * same source is driven by fuzz_drive.c. A broken property ends the process by fuzz_fail; campaigns/fuzz/fuzz.py keeps
+ * the input.
  */
 #ifndef FUZZ_H
 #define FUZZ_H

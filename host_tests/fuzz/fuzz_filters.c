@@ -1,6 +1,6 @@
 /*
  * Any legal configuration of any filter, any sequence of calls. Holds what filter.h promises of every filter, and of
- * each filter the bounds that its own header states: broken_bound of support_filters.h, where a filter of the list that
+ * each filter the bounds that its own header states: broken_bound of support/filters.h, where a filter of the list that
  * has no bounds does not compile.
  *
  * Input: kind, rate, a byte per parameter (its place in the legal range) and then calls, an operation byte each.
@@ -10,7 +10,7 @@
 #include "filter_list.h"
 #include "fuzz.h"
 #include "noise.h"
-#include "support_filters.h"
+#include "support/filters.h"
 
 enum { ALL_FLAGS = FILTER_GATED | FILTER_COASTED | FILTER_REACQUIRED | FILTER_SATURATED | FILTER_WARMING_UP };
 

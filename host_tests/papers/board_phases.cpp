@@ -1,8 +1,8 @@
 #include "board_phases.hpp"
 
 extern "C" {
-#include "support_filters.h"
-#include "support_tilt_phases.h"
+#include "support/filters.h"
+#include "support/tilt_phases.h"
 }
 
 #include <cmath>

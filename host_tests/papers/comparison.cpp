@@ -4,7 +4,7 @@
 #include "roll.hpp"
 
 extern "C" {
-#include "reference_synthesis.h"
+#include "reference/synthesis.h"
 }
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // Numbers without chance: covariances of the linear filters, gains at rest.
 #include "experiments.hpp"
 #include "model.hpp"
-#include "reference_robust.h"
+#include "reference/robust.h"
 
 #include <algorithm>
 #include <cmath>

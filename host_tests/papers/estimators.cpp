@@ -2,7 +2,7 @@
 
 extern "C" {
 #include "filter_list.h"
-#include "support_filters.h"
+#include "support/filters.h"
 }
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "filters.hpp"
 #include "experiments.hpp"
 #include "model.hpp"
-#include "reference_robust.h"
+#include "reference/robust.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace
 {
 struct Entry {
     const char *name;
-    const char *reference; // reference_robust.h
+    const char *reference; // reference/robust.h
     robust_reading_t reading;
     double gate_sigma;
     int reacquire;

@@ -10,7 +10,7 @@
 
 extern "C" {
 #include "filter_list.h"
-#include "support_laws.h"
+#include "support/laws.h"
 }
 
 #include <cmath>

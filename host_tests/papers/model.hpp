@@ -6,7 +6,7 @@
 #include <vector>
 
 extern "C" {
-#include "support_random.h"
+#include "support/random.h"
 }
 
 namespace papers

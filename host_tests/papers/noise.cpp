@@ -1,7 +1,7 @@
 // The noise that lib/filters identifies from samples (noise.c), on paper 000's roll.
+#include "reference/noise.h"
 #include "experiments_000.hpp"
 #include "model.hpp"
-#include "reference_noise.h"
 #include "roll.hpp"
 
 extern "C" {

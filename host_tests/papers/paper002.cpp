@@ -1,5 +1,5 @@
-// paper002 --list | EXPERIMENT [--runs N] [--seed N]: one experiment; tools/papers.py runs them side by side and
-// judges.
+// paper002 --list | EXPERIMENT [--runs N] [--seed N]: one experiment; campaigns/papers/papers.py runs them side by
+// side and judges.
 #include "experiments.hpp"
 
 int main(int argc, char **argv)

@@ -1,4 +1,4 @@
-// What every experiment of every paper prints: rows and progress, on standard output, for tools/papers.py.
+// What every experiment of every paper prints: rows and progress, on standard output, for campaigns/papers/papers.py.
 #ifndef PAPERS_REPORT_H
 #define PAPERS_REPORT_H
 

@@ -1,6 +1,6 @@
 #include "roll.hpp"
 #include "model.hpp"
-#include "support_roll_shapes.h"
+#include "support/roll_shapes.h"
 
 #include <algorithm>
 #include <cmath>

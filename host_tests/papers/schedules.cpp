@@ -4,8 +4,8 @@
 #include "roll.hpp"
 
 extern "C" {
-#include "reference_synthesis.h"
-#include "support_random.h"
+#include "reference/synthesis.h"
+#include "support/random.h"
 }
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 extern "C" {
 #include "filter_list.h"
 #include "kalman.h"
-#include "support_filters.h"
+#include "support/filters.h"
 }
 
 #include <cmath>

@@ -2,8 +2,9 @@
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / folder) for folder in (ROOT / "mk/pythonpath").read_text(encoding="ascii").split()]
 from launched import run  # noqa: E402
 
 if __name__ == "__main__":
-    run("design", "command", "design")
+    run("tools/design", "command", "design")

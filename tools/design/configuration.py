@@ -1,5 +1,5 @@
 """A filter as the fixed-point library takes it: stored values, the same legal ranges and the same stability test as the C, and what the stored
-values really give. host_tests/test_design.py holds every number here to the compiled library."""
+values really give. host_tests/tools/design/test_design.py holds every number here to the compiled library."""
 import cmath
 import itertools
 import math

@@ -1,4 +1,4 @@
-"""The nearest that can be, in the command's words, where what was asked cannot; host_tests/test_design_refusals.py feeds it back."""
+"""The nearest that can be, in the command's words, where what was asked cannot; host_tests/tools/design/test_design_refusals.py feeds it back."""
 import dataclasses
 import math
 

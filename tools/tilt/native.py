@@ -1,4 +1,4 @@
-"""The shipped C code on the PC: build/host/libtilt.so (host_tests/libtilt), built by make when it is missing or older than its sources."""
+"""The shipped C code on the PC: build/host/libtilt.so (host_tests/tools/libtilt), built by make when it is missing or older than its sources."""
 import ctypes
 import functools
 import mmap
@@ -14,7 +14,8 @@ from tilt.errors import TiltError
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIBRARY = pathlib.Path("build/host/libtilt.so")
-SOURCES = ("firmware/*/*.[ch]", "lib/*/src/*.[ch]", "hal/*.h", "hal/host/*.[ch]", "sim/*.[ch]", "host_tests/libtilt/*.[ch]", "Makefile", "mk/tilt.mk")
+SOURCES = ("firmware/*/*.[ch]", "lib/*/src/*.[ch]", "hal/*.h", "hal/host/*.[ch]", "sim/*.[ch]", "host_tests/tools/libtilt/*.[ch]",
+           "Makefile", "mk/tilt.mk")
 RATES_DHZ = tuple(125 << power for power in range(7))  # of the firmware
 RANGES_G = (2, 4, 8, 16)
 FORK_FROM_ROWS = 20_000  # a second process takes 20 ms to begin and end

@@ -1,4 +1,4 @@
-// Paper 003: the thesis' square root, two conventional forms and lib/nav's U D U', all about the same true flight.
+// Paper 003: the thesis' square root, two conventional forms and nav/lib's U D U', all about the same true flight.
 #include "navigation.hpp"
 
 #include "reference_nav.h"

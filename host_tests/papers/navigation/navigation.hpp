@@ -1,4 +1,4 @@
-// Paper 003: the experiments of its INS/GNSS filter, by the references in Eigen and by lib/nav in double and float.
+// Paper 003: the experiments of its INS/GNSS filter, by the references in Eigen and by nav/lib in double and float.
 #ifndef PAPERS_NAVIGATION_H
 #define PAPERS_NAVIGATION_H
 
@@ -10,7 +10,7 @@ extern "C" {
 
 namespace papers::navigation
 {
-// The arithmetic that a variant of lib/nav calculates in.
+// The arithmetic that a variant of nav/lib calculates in.
 inline Arithmetic arithmetic_of(const nav_variant_t &variant)
 {
     return variant.in_double ? Arithmetic::in_double : Arithmetic::in_float;
@@ -22,7 +22,7 @@ void tau(const Options &options);
 // Sigmas without closed loop at 160, 399 and 500 s of the flight of 3.4, by five forms.
 void covariance(const Options &options);
 
-// Errors in closed loop, a flight for each 200 runs and 20 at most, without GPS in 160..400 s: lib/nav in float with
+// Errors in closed loop, a flight for each 200 runs and 20 at most, without GPS in 160..400 s: nav/lib in float with
 // its queue, the field at 1 and 10 Hz; and in double without queue, the field at 100 Hz.
 void closed_loop(const Options &options);
 void closed_loop_100_hz(const Options &options);

@@ -27,7 +27,7 @@ void of_thesis(const std::array<double, 3> &unit)
     }
 }
 
-// lib/nav keeps rows 2 and 3; the first is the field's direction
+// nav/lib keeps rows 2 and 3; the first is the field's direction
 void of_ours(const nav_variant_t &variant)
 {
     std::array<double, 6> rows{};

@@ -2,7 +2,7 @@
  * Fixed-point primitives. Apart from machine.h, only this header, fx_avr.h and fx_avr.c depend on the machine.
  *
  * Every primitive has a portable C version and, where the compiler's code is slow, one in assembler (fx_avr.h, and
- * fx_avr.c for functions). Both give the same bits for every argument (host_tests/avr/fx_twins.c compares them on the
+ * fx_avr.c for functions). Both give the same bits for every argument (host_tests/chip/fx_twins.c compares them on the
  * chip). No primitive divides, uses float or 64-bit arithmetic on AVR. All are pure and may be called from main or from
  * an interrupt.
  */

@@ -86,7 +86,7 @@ calibration_verdict_t calibration_check(const calibration_t *c);
  *
  * Error: |u| is right to 7.2e-5 (root rounded down) and its components to 3.1e-5; a share x/(1+z) and an element are
  * rounded to Q14, 3.1e-5 each. |M M^T - I| <= 5.2e-4, an element is right to 3.0e-4, and level comes out within 3.9e-4
- * rad = 0.022 degree of (0, 0, 1); found 0.015 (derived in host_tests/test_calibration_reference.c).
+ * rad = 0.022 degree of (0, 0, 1); found 0.015 (derived in host_tests/tilt/test_calibration_reference.c).
  */
 calibration_verdict_t calibration_prepare(calibration_applied_t *applied, const calibration_t *c);
 

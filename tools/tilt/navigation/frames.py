@@ -9,7 +9,7 @@ BAUD = 1_000_000
 VERSION = 1
 STATE_NUMBERS = 13
 PARAMETERS_AT_ONCE = 6
-# nav_answer_t (lib/nav/src/nav.h), then link_answer_t (nav/image/nav_link.h)
+# nav_answer_t (nav/lib/nav.h), then link_answer_t (nav/image/nav_link.h)
 NAV_ANSWERS = ("taken", "gated", "time went backwards", "too late", "not finite", "no length", "out of range", "queue full", "gap")
 LINK_FIRST = 32
 LINK_ANSWERS = ("broken frame", "unknown type", "wrong length", "out of order", "not started", "start refused")

@@ -1,4 +1,4 @@
-"""What the filter is started with: the fields of nav_config_t (lib/nav/src/nav.h), in its order."""
+"""What the filter is started with: the fields of nav_config_t (nav/lib/nav.h), in its order."""
 from tilt.errors import TiltError
 from tilt.numbers import real
 

@@ -1,4 +1,4 @@
-"""The table of the twenty checks. docs/board.md holds it as `tilt board --list` prints it (host_tests/tilt/test_board_page.py)."""
+"""The table of the twenty checks. docs/board.md holds it as `tilt board --list` prints it (host_tests/tools/tilt/test_board_page.py)."""
 from typing import Callable, NamedTuple
 
 from tilt.realboard import judges_alone, judges_motion, judges_starts, judges_wires

@@ -1,0 +1,204 @@
+"""make recordings: the filters on real recordings, which are not part of this repository; writes build/recordings.csv (every number) and
+docs/results/recordings.md. Status 1: a number of the committed page does not come out again, each is named, or an estimate left its bounds. Status 0
+with `skipped: 1` when the recordings are not there."""
+import csv
+import pathlib
+import subprocess
+import sys
+
+sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+from laws import PLAIN
+from page import Fault, run_as_program
+from results import Results
+
+PROGRAM = "build/host/recordings"
+CSV = pathlib.Path("build/recordings.csv")
+DOCUMENT = pathlib.Path("docs/results/recordings.md")
+ABSENT, SAID = 3, 2  # status of the program; SAID: it has told why
+
+COUNTS = ("samples", "gated", "reacquired", "saturated", "longest_gated", "bounds_broken", "judged", "broken", "worst_share", "hull_judged",
+          "hull_broken", "hull_left_lsb", "outside", "outside_worst_lsb")
+OWN, OF_PLAIN = "the filter's own run without faults", f"the run of `{PLAIN}` without faults"
+ABOUT = """\
+What every filter does with its defaults on recordings of real ADXL345, and on faults put into them at the rates measured on real boards. Each axis
+goes the firmware's way: noise estimate, gaps of up to 100 ms coasted, clipping, filter. The yardstick `median5_...` has a median of five samples
+before that filter. What the recordings are and where they come from: [recordings](../recordings.md)."""
+PAGE = Results(DOCUMENT, "Real recordings: results", "make recordings", ABOUT)
+
+OF_STREAMS = "Hz is the sensor's nominal rate; in brackets the rate of the rows, where a board polled faster or slower."
+OF_RULES = """\
+Samples of all axes. The rules that show divergence are derived in `support_envelope.h`; a share of 1 is the limit. Empty: the filter has
+none. Saturated: a state was held at its bound, for the filters with a limit of the rate as a rule that, in fast motion."""
+OF_GATED = """\
+Refused, limited or taken in part; with the mixtures: more likely an outlier than not. Filters that gate nothing are left out."""
+OF_AGAIN = "Sum of the three axes; the longest run on any axis."
+OF_OUTSIDE = "Farther than 9 sqrt(R) from the range of the raw samples of the last second, of the samples of all axes. Empty: never."
+OF_REST = "Standard deviation and tails of the raw samples, and the share that is gated, x/y/z."
+OF_FAULTS = "RMS error in LSB, mean of 20 seeds (worst)."
+
+FIELDS = {
+    "stream": ("name", "rate_hz", "range_g", "rows_hz", "rows", "clipped", "duplicates", "zeros", "ones"),
+    "filter": ("name", "filter", "axis", *COUNTS),
+    "tails": ("name", "from_s", "axis", "samples", "sd_lsb", "beyond3", "beyond5"),
+    "rest": ("name", "from_s", "filter", "axis", *COUNTS),
+    "fault": ("pool", "fault", "filter", "share", "own_mean", "own_worst", "plain_mean", "plain_worst", "predicted"),
+}
+
+
+def measure():
+    """The program's rows {kind: [dict]}; None when there are no recordings."""
+    done = subprocess.run([PROGRAM], stdout=subprocess.PIPE, text=True, timeout=600)
+    if done.returncode == ABSENT:
+        return None, True
+    if done.returncode == SAID:
+        sys.exit(SAID)
+    if done.returncode not in (0, 1):
+        raise Fault(f"{PROGRAM} gave status {done.returncode}")
+    CSV.write_text(done.stdout, encoding="ascii")
+    rows = {kind: [] for kind in FIELDS}
+    for cells in csv.reader(done.stdout.splitlines()):
+        kind, values = cells[0], cells[1:]
+        if kind not in FIELDS or len(values) != len(FIELDS[kind]):
+            raise Fault(f"{CSV}: a row of kind '{kind}' with {len(values)} fields")
+        rows[kind].append(dict(zip(FIELDS[kind], values)))
+    return rows, done.returncode == 0
+
+
+def unique(rows, field):
+    return list(dict.fromkeys(row[field] for row in rows))
+
+
+def markdown(head, lines):
+    return ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"] + ["| " + " | ".join(line) + " |" for line in lines] + [""]
+
+
+def per_cent(part, whole):
+    share = 100.0 * float(part) / max(1.0, float(whole))
+    if share == 0.0:
+        return "0"
+    return f"{share:.2g}" if share < 1.0 else f"{share:.0f}"
+
+
+def of(rows, **wanted):
+    return [row for row in rows if all(row[k] == v for k, v in wanted.items())]
+
+
+def streams_table(rows):
+    lines = []
+    for r in rows["stream"]:
+        nominal, seen = float(r["rate_hz"]), float(r["rows_hz"])
+        rate = f"{nominal:g}" + (f" (rows {seen:.0f})" if abs(seen - nominal) > 0.05 * nominal else "")
+        lines.append([r["name"], rate, r["range_g"], f"{int(r['rows']):,}", per_cent(r["clipped"], r["rows"]), per_cent(r["duplicates"], r["rows"]),
+                      f"{r['zeros']} / {r['ones']}"])
+    return markdown(["stream", "Hz", "range, g", "rows", "clipped, %", "duplicates, %", "0,0,0 / -1,-1,-1"], lines)
+
+
+def gating(rows):
+    """Filters that gate anything."""
+    return [f for f in unique(rows, "filter") if any(int(r["gated"]) for r in of(rows, filter=f))]
+
+
+def gated_table(rows):
+    filters = gating(rows["filter"])
+    lines = [[name] + ["/".join(per_cent(r["gated"], r["samples"]) for r in of(rows["filter"], name=name, filter=f)) for f in filters]
+             for name in unique(rows["filter"], "name")]
+    return markdown(["gated x/y/z, %"] + [f"`{f}`" for f in filters], lines)
+
+
+def again_table(rows):
+    filters = gating(rows["filter"])
+    rates = {r["name"]: float(r["rate_hz"]) for r in rows["stream"]}
+    lines = []
+    for name in unique(rows["filter"], "name"):
+        line = [name]
+        for f in filters:
+            axes = of(rows["filter"], name=name, filter=f)
+            longest_s = max(int(r["longest_gated"]) for r in axes) / rates[name]
+            line.append(f"{sum(int(r['reacquired']) for r in axes)}; {longest_s:.2f} s")
+        lines.append(line)
+    return markdown(["re-acquired; longest gated"] + [f"`{f}`" for f in filters], lines)
+
+
+def outside_table(rows):
+    filters = unique(rows["filter"], "filter")
+    lines = []
+    for name in unique(rows["filter"], "name"):
+        line = [name]
+        for f in filters:
+            axes = of(rows["filter"], name=name, filter=f)
+            samples, outside = (sum(int(r[k]) for r in axes) for k in ("samples", "outside"))
+            worst = max(float(r["outside_worst_lsb"]) for r in axes)
+            line.append(f"{per_cent(outside, samples)}; {worst:.0f}" if outside else "")
+        lines.append(line)
+    return markdown(["outside, %; farthest, LSB"] + [f"`{f}`" for f in filters], lines)
+
+
+def rules_table(rows):
+    lines = []
+    for f in unique(rows["filter"], "filter"):
+        axes = of(rows["filter"], filter=f)
+        total = {k: sum(int(r[k]) for r in axes) for k in COUNTS if k not in ("worst_share", "hull_left_lsb", "outside_worst_lsb")}
+        hulls = [float(r["hull_left_lsb"]) for r in axes if int(r["hull_judged"])]
+        lines.append([f"`{f}`", f"{total['samples']:,}", str(total["bounds_broken"]), f"{total['saturated']:,}", f"{total['judged']:,}",
+                      str(total["broken"]), f"{max(float(r['worst_share']) for r in axes):.2f}" if total["judged"] else "",
+                      *([f"{total['hull_judged']:,}", str(total["hull_broken"]), f"{min(hulls):.1f}"] if hulls else ["", "", ""])])
+    return markdown(["filter", "samples", "outside documented bounds", "saturated", "judged by band, run or wait", "broken", "worst share used",
+                     "judged by hull", "broken", "least left, LSB"], lines)
+
+
+def rest_table(rows):
+    filters = gating(rows["rest"])
+    lines = []
+    for name, from_s in dict.fromkeys((r["name"], r["from_s"]) for r in rows["tails"]):
+        tails = of(rows["tails"], name=name, from_s=from_s)
+        line = [f"{name} from {from_s} s", f"{int(tails[0]['samples']):,}", "/".join(f"{float(t['sd_lsb']):.1f}" for t in tails),
+                "/".join(per_cent(t["beyond3"], 1) for t in tails), "/".join(per_cent(t["beyond5"], 1) for t in tails)]
+        line += ["/".join(per_cent(r["gated"], r["samples"]) for r in of(rows["rest"], name=name, from_s=from_s, filter=f)) for f in filters]
+        lines.append(line)
+    return markdown(["at rest", "samples", "sd x/y/z, LSB", "beyond 3 sd, %", "beyond 5 sd, %"] + [f"`{f}`, %" for f in filters], lines)
+
+
+def faults_table(rows, pool, mean, worst):
+    part = of(rows["fault"], pool=pool)
+    filters = unique(part, "filter")
+    lines = []
+    for fault in unique(part, "fault"):
+        cells = [of(part, fault=fault, filter=f)[0] for f in filters]
+        lines.append([fault] + [f"{float(c[mean]):.3g} ({float(c[worst]):.3g})" for c in cells])
+    return markdown([pool] + [f"`{f}`" for f in filters], lines)
+
+
+def tables(rows):
+    lines = []
+    for title, words, table in (("The recordings", OF_STREAMS, streams_table), ("Diverged?", OF_RULES, rules_table), ("Gated", OF_GATED, gated_table),
+                                ("Re-acquisitions, longest run of gated samples", OF_AGAIN, again_table),
+                                ("Outside the range of the last second's samples", OF_OUTSIDE, outside_table),
+                                ("At rest: false gates", OF_REST, rest_table)):
+        lines += [f"## {title}", words, "", *table(rows)]
+    for mean, worst, reference in (("own_mean", "own_worst", OWN), ("plain_mean", "plain_worst", OF_PLAIN)):
+        for pool in unique(rows["fault"], "pool"):
+            lines += [f"## Faults put in {pool}, from {reference}", OF_FAULTS, "", *faults_table(rows, pool, mean, worst)]
+    return lines
+
+
+def main():
+    rows, good = measure()
+    if rows is None:
+        print(f"skipped: 1 (no recordings, {DOCUMENT} left as it is)")
+        return 0
+    lines = tables(rows)
+    faults = PAGE.write(lines)
+    for fault in faults:
+        print(f"recordings: {fault}", file=sys.stderr)
+    print(f"recordings: {len(rows['stream'])} streams, {len(rows['fault'])} rows of faults; {DOCUMENT} and {CSV} written")
+    if faults:
+        print(f"recordings: {len(faults)} numbers of the page before did not come out again")
+    if not good:
+        print("recordings: an estimate left its bounds, see 'Diverged?'")
+    passed = good and not faults
+    print("1 passed, 0 failed" if passed else "0 passed, 1 failed")
+    return 0 if passed else 1
+
+
+if __name__ == "__main__":
+    run_as_program("recordings", main)

@@ -1,7 +1,0 @@
-/* The test of make; PlatformIO wants a folder for each program, and the headers here to find the libraries. */
-#include "filter_list.h"
-#include "tilt.h"
-#include "unity.h"
-
-#include "../../support_random32.c"
-#include "../../test_tilt.c"

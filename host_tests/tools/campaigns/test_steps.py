@@ -1,0 +1,72 @@
+"""What .ci/run and make nightly make of their steps: sums, a step that fails, one that is silent, one that is skipped; and that each is a target."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+from system_support import OUT, run_all, test
+
+# in place of make: fails, says nothing or skips where the words of a step begin with $FAILS, $SILENT or $SKIPS
+MAKE = """#!/bin/sh
+echo "$*" >> "$CALLS"
+case "$*" in
+    "$FAILS"*) echo "4 passed, 2 failed"; exit 2 ;;
+    "$SILENT"*) exit 0 ;;
+    "$SKIPS"*) echo "skipped: 3 (as said above)"; echo "0 passed, 0 failed"; exit 0 ;;
+esac
+echo "2 passed, 0 failed"
+"""
+SCRIPTS = (".ci/run", "campaigns/nightly.sh")
+
+
+def run_with_make(script, fails="-", silent="-", skips="-"):
+    """(status, what it prints, the steps that it takes)."""
+    OUT.mkdir(parents=True, exist_ok=True)
+    make, calls = OUT / "make", (OUT / "calls").resolve()
+    make.write_text(MAKE, encoding="ascii")
+    make.chmod(0o755)
+    calls.unlink(missing_ok=True)
+    done = subprocess.run(["bash", script], capture_output=True, text=True, check=False, env={
+        **os.environ, "PATH": f"{OUT.resolve()}:{os.environ['PATH']}", "CALLS": str(calls), "FAILS": fails, "SILENT": silent, "SKIPS": skips})
+    return done.returncode, done.stdout + done.stderr, calls.read_text(encoding="ascii").splitlines()
+
+
+@test
+def sums_are_those_of_the_steps():
+    for script in SCRIPTS:
+        status, text, calls = run_with_make(script)
+        assert status == 0 and len(calls) >= 10 and text.endswith(f"{2 * len(calls)} passed, 0 failed\n"), text
+        status, text, calls = run_with_make(script, skips="soak")
+        assert status == 0 and ": 3 skipped, " in text and text.endswith(f"{2 * len(calls) - 2} passed, 0 failed\n"), text
+
+
+@test
+def a_step_that_fails_or_is_silent_fails_the_whole():
+    for script in SCRIPTS:
+        status, text, calls = run_with_make(script, fails="soak")
+        assert status == 1 and "make soak HOURS=" in text and text.endswith(f"{2 * len(calls) + 2} passed, 2 failed\n"), text
+        status, text, calls = run_with_make(script, silent="soak")
+        assert status == 1 and "it prints nothing passed, failed or skipped" in text, text
+        assert text.endswith(f"{2 * len(calls) - 2} passed, 1 failed\n"), text
+
+
+@test
+def the_night_begins_and_ends_with_the_pages_and_leaves_no_measurement_out():
+    calls = run_with_make("campaigns/nightly.sh")[2]
+    assert calls[0] == calls[-1] == "check-pages STRICT=yes", calls
+    pages = re.findall(r"^docs/\S+ \| make (\w+)", pathlib.Path("checks/pages.txt").read_text(encoding="utf-8"), re.M)
+    assert len(pages) >= 9 and set(pages) <= set(calls), set(pages) - set(calls)
+
+
+@test
+def each_step_is_a_target():
+    rules = "".join(path.read_text(encoding="utf-8") for path in [pathlib.Path("Makefile"), *pathlib.Path("mk").glob("*.mk")])
+    for script in SCRIPTS:
+        for step in re.findall(r"(?:step|counted) ([a-z][\w-]*)", pathlib.Path(script).read_text(encoding="utf-8")):
+            assert re.search(rf"^{step}:", rules, re.M), f"{script}: {step}"
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_all())

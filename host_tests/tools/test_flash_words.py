@@ -1,0 +1,185 @@
+"""What make flash and make monitor say: with an avrdude that ends as it is told, ports that are made up, and a pseudo terminal for the board."""
+import contextlib
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import termios
+
+sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+from system_support import OUT, images, run, run_all, test
+
+LOG = OUT / "flash.log"  # its own: test_flash may run at the same time
+PATIENCE_S = 300  # only reached when something is broken, however busy the machine
+FLASH = ("tools/flash.py", "write", "flash")
+AT = "/dev/ttyUSB7"
+# what avrdude 7.1 and 6.3 say, BOARD, what it means
+FAILURES = (
+    (f"avrdude OS error: cannot open port {AT}: No such file or directory\navrdude error: unable to open programmer arduino on port {AT}", "uno",
+     f"flash: there is no port {AT}: plug the board in"),
+    (f'avrdude: ser_open(): can\'t open device "{AT}": Permission denied', "uno",
+     f"flash: no permission for {AT}: sudo usermod -aG dialout $USER, then log"),
+    (f"avrdude OS error: cannot open port {AT}: Device or resource busy", "uno", f"flash: another program uses {AT}: close the serial monitor"),
+    ("avrdude warning: attempt 1 of 10: not in sync: resp=0x00\n" * 10, "uno",
+     f"flash: no boot loader answers at {AT} with 115200 baud (not in sync): wrong PORT or BOARD; try make flash BOARD=nano-old PORT={AT}; "),
+    ("avrdude: stk500_recv(): programmer is not responding", "nano-old",
+     f"57600 baud (not in sync): wrong PORT or BOARD; try make flash BOARD=nano PORT={AT}; "),
+    ("avrdude error: protocol expects OK byte 0x10 but got 0x14", "promini",
+     "57600 baud (not in sync): wrong PORT or BOARD; press its reset as writing begins; "),
+    ("avrdude warning: attempt 1 of 10: not in sync: resp=0x00\navrdude: verification error, first mismatch at byte 0x1234\n"
+     "         0x12 != 0x13\navrdude: verification error; content mismatch", "uno",
+     "flash: verification failed, the board does not hold what was written: try"),
+    ("avrdude warning: verification mismatch", "uno", "flash: verification failed"),
+    ("avrdude error: Yikes!  Invalid device signature.", "uno", f"flash: the chip at {AT} is no ATmega328P"),
+    ("avrdude: something that nobody has seen", "uno", "flash: avrdude gave status 1; "),
+)
+
+
+def folder(name, *files):
+    """An empty one, with links to these: {path in it: what it leads to}."""
+    path = OUT.resolve() / name
+    shutil.rmtree(path, ignore_errors=True)
+    path.mkdir(parents=True)
+    for each, leads_to in files:
+        (path / each).parent.mkdir(parents=True, exist_ok=True)
+        (path / each).symlink_to(leads_to)
+    return path
+
+
+def program(*command, words="", status=1, dev=None):
+    """A run with an avrdude that says these words, ends so and leaves its own command line in a file."""
+    bin_ = folder("bin")
+    (bin_ / "said").write_text(words + "\n", encoding="ascii")
+    (bin_ / "avrdude").write_text(f'#!/bin/sh\necho "$@" > {bin_}/typed\ncat {bin_}/said >&2\nexit {status}\n', encoding="ascii")
+    (bin_ / "avrdude").chmod(0o755)
+    environment = {**os.environ, "PATH": f"{bin_}:{os.environ['PATH']}", "FLASH_DEV": str(dev or folder("no-dev")), "FLASH_LOG": str(LOG),
+                   "MAKEFLAGS": ""}
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=PATIENCE_S, env=environment)
+    typed = bin_ / "typed"
+    return done, typed.read_text(encoding="ascii") if typed.exists() else ""
+
+
+def image_of(size):
+    """An Intel HEX file that fills so many bytes of the flash."""
+    OUT.mkdir(parents=True, exist_ok=True)
+    (OUT / "image.bin").write_bytes(bytes(size))
+    path = OUT / f"{size}.hex"
+    run("avr-objcopy", "-I", "binary", "-O", "ihex", OUT / "image.bin", path)
+    return path
+
+
+@test
+def failures_of_avrdude_are_one_line_that_says_what_to_do():
+    image = image_of(4096)
+    for words, board_, meaning in FAILURES:
+        done, _ = program(*FLASH, board_, image, AT, words=words)
+        assert done.returncode == 1 and meaning in done.stderr and done.stderr.count("\n") == 1, (words, done.stderr)
+        assert done.stderr.endswith(f"; avrdude's own words: {LOG}\n") and words in LOG.read_text(encoding="utf-8"), done.stderr
+
+
+@test
+def each_board_is_written_at_the_rate_of_its_boot_loader_with_what_fits():
+    image = image_of(4096)
+    for name, baud in (("uno", 115200), ("nano", 115200), ("nano-old", 57600), ("promini", 57600), ("promini-8mhz", 57600)):
+        done, typed = program(*FLASH, name, image, AT, status=0)
+        assert done.returncode == 0 and "4,096 bytes written and verified" in done.stdout, done
+        assert typed == f"-p atmega328p -c arduino -P {AT} -b {baud} -D -U flash:w:{image}:i\n", typed
+    done, typed = program("make", "flash", "BOARD=nano-old", f"PORT={AT}", status=0)
+    assert done.returncode == 0 and f" -P {AT} -b 57600 -D -U flash:w:build/promini/firmware.hex:i" in typed, done
+    small = " ".join(images.HOLDS["small"])
+    assert f"BOARD=nano-old has 30720 bytes of flash: the image holds the set small ({small}); FILTERS= takes others\n" in done.stdout, done.stdout
+    done, typed = program("make", "flash", "BOARD=mega", f"PORT={AT}")
+    refused = "BOARD: there is no board 'mega'; boards: uno nano nano-old promini promini-8mhz"
+    assert done.returncode != 0 and refused in done.stderr and not typed, done
+
+
+@test
+def image_that_does_not_fit_the_board_is_refused_before_avrdude_runs():
+    for board_, room in (("uno", 32256), ("nano", 32256), ("nano-old", 30720), ("promini", 30720), ("promini-8mhz", 30720)):
+        done, typed = program(*FLASH, board_, image_of(room + 16), AT, status=0)
+        assert done.returncode == 2 and not typed and f"{room + 16}.hex is 16 bytes too large for an Arduino " in done.stderr, done.stderr
+        assert f"({room + 16:,} where {room:,} fit): make flash BOARD={board_} writes a set of filters that fits" in done.stderr, done.stderr
+        done, typed = program(*FLASH, board_, image_of(room), AT, status=0)
+        assert done.returncode == 0 and typed, done.stderr
+    (OUT / "torn.hex").write_text(":10000000\nhello\n", encoding="ascii")
+    done, typed = program(*FLASH, "uno", OUT / "torn.hex", AT, status=0)
+    assert done.returncode == 2 and "torn.hex:2: not a record of Intel HEX" in done.stderr and not typed, done.stderr
+
+
+@test
+def the_only_port_is_taken_and_named():
+    image = image_of(4096)
+    for files in ((("ttyACM0", "/dev/null"),), (("ttyUSB3", "/dev/null"), ("serial/by-id/usb-1a86_USB_Serial-if00-port0", "../../ttyUSB3")),
+                  (("serial/by-id/usb-Arduino-if00", "/dev/null"),), (("ttyACM1", "/dev/null"), ("ttyUSB0", "/dev/gone"))):
+        dev = folder("dev", *files)
+        done, typed = program(*FLASH, "uno", image, status=0, dev=dev)
+        path = f"{dev}/{files[0][0]}"
+        assert done.returncode == 0 and f" -P {path} " in typed and f"flash: {path} is the only port of a board and is taken\n" in done.stdout, done
+
+
+@test
+def where_no_port_or_several_are_there_it_says_what_to_type():
+    several = folder("dev", ("ttyACM0", "/dev/null"), ("ttyUSB0", "/dev/zero"), ("serial/by-id/usb-Arduino-if00", "../../ttyACM0"))
+    for target in ("flash", "monitor"):
+        options = ("FILTERS=a b", "BOARD=nano-old")
+        done, typed = program("make", target, *options, dev=several)
+        command = f"make {target} BOARD=nano-old FILTERS='a b' PORT={several}"
+        for line in (f"{target}: 2 serial ports are there; type the line of the board's:", f"  {command}/ttyACM0   (usb-Arduino-if00)",
+                     f"  {command}/ttyUSB0"):
+            assert line in done.stderr.splitlines(), done.stderr
+        assert done.returncode != 0 and not typed and "built" not in done.stdout, done
+        done, typed = program("make", target)
+        assert f"{target}: no board is plugged in (" in done.stderr and f"\n  make {target} PORT=/dev/...\n" in done.stderr, done.stderr
+        assert done.returncode != 0 and not typed and "built" not in done.stdout, done
+
+
+@contextlib.contextmanager
+def monitored(*more):
+    """make monitor's program on the other end of a pseudo terminal, which is the only port; gives the board's end."""
+    ours, its = os.openpty()
+    dev = folder("dev", ("ttyACM0", os.ttyname(its)))
+    process = subprocess.Popen(["tools/flash.py", "monitor", "57600", *more], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               env={**os.environ, "FLASH_DEV": str(dev)})
+    try:
+        assert process.stdout.readline().endswith(b"is the only port of a board and is taken\n")
+        assert process.stdout.readline().endswith(b"at 57600 baud; type help and Enter, Ctrl-C ends\n")
+        assert termios.tcgetattr(its)[4:6] == [termios.B57600] * 2
+        os.close(its)
+        yield ours, process
+    finally:
+        process.kill()
+        process.wait()
+
+
+@test
+def monitor_shows_what_comes_and_sends_what_is_typed():
+    with monitored() as (board_end, process):
+        os.write(board_end, b"# tilt-uno\n")
+        assert process.stdout.readline() == b"# tilt-uno\n"
+        process.stdin.write(b"help\n")
+        process.stdin.flush()
+        assert os.read(board_end, 100) == b"help\n"
+        process.stdin.close()
+        assert process.wait(timeout=PATIENCE_S) == 0
+        os.close(board_end)
+
+
+@test
+def monitor_says_that_the_board_was_unplugged():
+    with monitored() as (board_end, process):
+        os.close(board_end)
+        assert process.wait(timeout=PATIENCE_S) == 1
+        assert b"ttyACM0 is gone: plug the board in again, then make monitor\n" in process.stderr.read()
+
+
+@test
+def monitor_says_why_a_port_does_not_open():
+    for port, words in (("/dev/ttyUSB77", "monitor: there is no port /dev/ttyUSB77: plug the board in"),
+                        ("/dev/null", "monitor: /dev/null cannot be set to 57600 baud (")):
+        done, _ = program("tools/flash.py", "monitor", "57600", port)
+        assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_all())

@@ -1,9 +1,0 @@
-"""python tools/variable_structure --list | EXPERIMENT [--runs N] [--seed N]: the experiments of paper 004, from any folder."""
-import pathlib
-import sys
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from launched import run  # noqa: E402
-
-if __name__ == "__main__":
-    run("variable_structure", "program", "papers")
