@@ -20,7 +20,7 @@ PRODUCT = ("lib", "firmware", "hal", "nav", "sim", "host_tests")
 PAGES = ("docs", "second", "campaigns")
 # what writes a page, draws it, launches a program or says what is wrong with it makes no number
 NO_NUMBER = {"page.py", "page_sources.py", "results.py", "page_benchmarks.py", "page_faults.py", "robust_pictures.py", "look.py", "launched.py",
-             "port.py", "errors.py"}
+             "port.py", "errors.py", "unity_line.py"}
 RESULTS = pathlib.Path("docs/results")
 PYTHONPATH = pathlib.Path("mk/pythonpath")
 COMMITS = 10  # of a page, searched for the one whose sources it was measured on

@@ -129,8 +129,8 @@ enum say {
 
 /*
  * One text for each notice_kind_t, in the same order; then the others, related ones in the order of their enum.
- * mk/scripts/pack_texts.py packs them into program memory (reply_packed.h). Not formatted: the aligned line ends would all
- * change with the longest.
+ * mk/scripts/pack_texts.py packs them into program memory (reply_packed.h). Not formatted: the aligned line ends would
+ * all change with the longest.
  */
 /* clang-format off */
 #define REPLY_TEXTS(X) \

@@ -7,8 +7,8 @@
  *
  * Scaling of tilt_angles: in LSB Q8; legs truncated to 15 bits (error 2^-14); ratio, its square and polynomials in
  * UQ0.16, each product rounded down (error 2^-16); angles in 1/800 degree, rounded half up to 0.01. No state, so
- * nothing can drift or saturate. Sum of the bounds: roll 0.021, pitch 0.029 degree (derived in host_tests/tilt/test_tilt.c).
- * Cost: docs/benchmarks.md; no RAM.
+ * nothing can drift or saturate. Sum of the bounds: roll 0.021, pitch 0.029 degree (derived in
+ * host_tests/tilt/test_tilt.c). Cost: make bench; no RAM.
  *
  * Square root: P. Zimmermann, "Karatsuba Square Root", INRIA RR-3805, one step on 8-bit digits.
  */
