@@ -19,7 +19,7 @@ INCLUDES := -Ihal -Ifirmware $(addprefix -I,$(LIB_DIRS))
 # a variable that no makefile knows would be ignored, and something else done than was asked for
 ifeq ($(MAKELEVEL),0)
 TYPED    := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
-MISSPELT := $(if $(TYPED),$(shell python3 mk/misspelt.py $(TYPED)))
+MISSPELT := $(if $(TYPED),$(shell python3 mk/scripts/misspelt.py $(TYPED)))
 $(if $(MISSPELT),$(error $(MISSPELT)))
 endif
 

@@ -1,6 +1,6 @@
 /*
  * Main's sample path: starts and changes filters, gives them the sensor's true rate, and takes samples, or the places
- * of missing ones, through them. Its cycles: sample_total in docs/benchmarks.md.
+ * of missing ones, through them. Its cycles: sample_total in docs/results/benchmarks.md.
  */
 #include "path/pipeline.h"
 

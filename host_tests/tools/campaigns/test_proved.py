@@ -1,0 +1,77 @@
+"""What make proof CHANGED=yes takes as proved: a proof whose sources, Frama-C and options are those of its line, and no other."""
+import pathlib
+import sys
+
+sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+import proof  # noqa: E402
+import proved
+
+from system_support import OUT, run_all, test
+
+WORK = OUT / "proved"
+
+
+def source(text):
+    WORK.mkdir(parents=True, exist_ok=True)
+    path = WORK / "law.c"
+    path.write_text(text, encoding="utf-8")
+    return {path}
+
+
+@test
+def code_and_contracts_count_and_comments_do_not():
+    plain = proved.digest(source("int f(void)\n{\n    return 1; /* why */\n}\n"), ["-slevel 5"])
+    assert proved.digest(source("int f(void) {\n    return 1; // because\n}\n"), ["-slevel 5"]) == plain
+    for other in ("int f(void) { return 2; }", "int f(void) { /*@ assert 1; */ return 1; }", "int f(void) { //@ check 1;\n return 1; }"):
+        assert proved.digest(source(other), ["-slevel 5"]) != plain, other
+    assert proved.digest(source("int f(void) { return 1; }"), ["-slevel 6"]) != plain
+
+
+@test
+def what_stands_in_a_proof_counts_whole():
+    here = proved.LEDGER.parent
+    files = {here / "proof_kf.c"}
+    kept, text = proved.digest(files, []), (here / "proof_kf.c").read_text(encoding="utf-8")
+    assert "/*" in text
+    original = pathlib.Path.read_text
+    try:
+        pathlib.Path.read_text = lambda path, encoding: original(path, encoding=encoding).replace("/*", "/* Options: none ", 1)
+        assert proved.digest(files, []) != kept
+    finally:
+        pathlib.Path.read_text = original
+
+
+@test
+def lines_come_back_as_written():
+    kept = proved.LEDGER
+    try:
+        proved.LEDGER = WORK / "proved.json"
+        rows = {"proof_b.c": ("00ff", {"f", "g"}, {("f", "a + b")}), "proof_a.c": ("11ee", {"h"}, set())}
+        proved.write(rows)
+        assert proved.read() == rows
+        assert len(proved.LEDGER.read_text(encoding="utf-8").splitlines()) == 4
+    finally:
+        proved.LEDGER = kept
+
+
+@test
+def every_proof_has_its_line_and_a_change_takes_it_away():
+    entries = {"a": ("proof_kf.c", [], []), "b": ("proof_fx.c", [], [])}
+    kept, original = proved.read, proof.inputs_of
+    try:
+        proved.read = lambda: {"proof_kf.c": ("1", {"f"}, set()), "proof_fx.c": ("2", {"g"}, set()), "proof_gone.c": ("3", set(), set())}
+        proof.inputs_of = lambda file: {"proof_kf.c": "1", "proof_fx.c": "other"}[file]
+        proof.os.environ["CHANGED"] = "yes"
+        assert list(proof.unchanged(entries, [])) == ["proof_kf.c"]
+        assert not proof.unchanged(entries, ["kf"])
+        proof.os.environ["CHANGED"] = ""
+        assert not proof.unchanged(entries, [])
+    finally:
+        proved.read, proof.inputs_of = kept, original
+        proof.os.environ.pop("CHANGED", None)
+    named = {file for file, _, _ in proof.load_entries().values()}
+    assert set(proved.read()) == named, set(proved.read()) ^ named
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_all())

@@ -1,0 +1,55 @@
+"""What make refuses before it does anything: a variable that no makefile knows, a folder of OUT that is not there."""
+import pathlib
+import re
+import subprocess
+import sys
+
+sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+import misspelt  # noqa: E402
+
+from system_support import run_all, test
+
+HELP = re.compile(r"\b([A-Z][A-Z_]+)=")
+
+
+def make(*arguments):
+    """(status, what it prints to its error stream). A dry run: nothing is built."""
+    done = subprocess.run(["make", "-n", *arguments], capture_output=True, text=True, check=False)
+    return done.returncode, done.stderr
+
+
+@test
+def a_misspelt_variable_names_the_right_one():
+    for typed, meant in (("STREM=a.csv", "STREAM"), ("FLTER=kf", "FILTER"), ("rate=50", "RATE"), ("BORD=nano", "BOARD"), ("FILTER5=x", "FILTERS?")):
+        status, text = make("sim", typed)
+        assert status == 2 and re.search(rf"there is no variable {typed.split('=')[0]}: did you mean {meant}", text), (typed, text)
+    status, text = make("sim", "XYZZY=1")
+    assert status == 2 and "there is no variable XYZZY: `make help`" in text, text
+
+
+@test
+def every_variable_that_help_and_ci_name_is_known():
+    text = subprocess.run(["make", "help"], capture_output=True, text=True, check=True).stdout
+    named = set(HELP.findall(text)) | set(HELP.findall(pathlib.Path(".ci/run").read_text(encoding="utf-8")))
+    named |= set(HELP.findall(pathlib.Path("README.md").read_text(encoding="utf-8")))
+    assert len(named) >= 15, named
+    unknown = {name for name in named if misspelt.complaint([name], misspelt.known())} - {"LEAVE_OUT"}  # of the environment
+    assert not unknown, unknown
+
+
+@test
+def variables_that_are_right_pass():
+    status, text = make("help", "STREAM=x.csv", "FILTER=kf", "RATE=50", "OUT=build/x.csv", "CC=gcc")
+    assert (status, text) == (0, ""), text
+
+
+@test
+def out_into_a_folder_that_is_not_there_is_refused():
+    nowhere = "build/no-such-folder/run.csv"
+    done = subprocess.run(["sh", "tools/sim.sh", "x.elf", "sim/streams/steps.csv", "kf", "100", nowhere], capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and f"sim: there is no folder build/no-such-folder for OUT={nowhere}" in done.stderr, done.stderr
+    assert not pathlib.Path(nowhere).parent.exists()
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_all())
