@@ -58,7 +58,7 @@ static bool within(nav_real_t value, nav_real_t low, nav_real_t high)
 /* The consecutive numbers of a configuration: sigmas of the start, random walks, sigmas of the sensors. */
 enum { STARTS = 0, WALKS = 4, SENSORS = 8, NUMBERS = 12 };
 _Static_assert(offsetof(nav_config_t, gate) - offsetof(nav_config_t, start_position_m) == sizeof(nav_real_t[NUMBERS]),
-               "nothing stands between the first sigma and the gate");
+               "no other field lies between the first sigma and the gate");
 
 static const nav_real_t *numbers_of(const nav_config_t *c)
 {

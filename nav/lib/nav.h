@@ -10,7 +10,7 @@
  *
  * Work is divided into slots, one per IMU record: every nav_imu propagates state and covariance by one step and does
  * ONE job: take in the epochs that have arrived, or one scalar update, or the process noise of one state. Other calls
- * only check and store their record. Longest slot on an ATmega328P at 16 MHz: docs/navigation.md.
+ * only check and store their record. Longest slot on the UNO: docs/results/navigation.md.
  *
  * No globals, no pointers inside nav_t: it may be copied. All functions of one nav_t belong to one context: call them
  * from the main loop, never from an interrupt.
