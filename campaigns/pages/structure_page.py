@@ -1,4 +1,4 @@
-"""docs/results/variable-structure.md and its picture, from the experiments of tools/variable_structure with the seed and the runs of make
+"""docs/results/variable-structure.md and its picture, from the experiments of campaigns/variable_structure with the seed and the runs of make
 papers. Fails with the name of each number that does not come out again."""
 import argparse
 import sys
