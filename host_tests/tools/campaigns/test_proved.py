@@ -31,8 +31,8 @@ def code_and_contracts_count_and_comments_do_not():
 @test
 def what_stands_in_a_proof_counts_whole():
     here = proved.LEDGER.parent
-    files = {here / "proof_kf.c"}
-    kept, text = proved.digest(files, []), (here / "proof_kf.c").read_text(encoding="utf-8")
+    files = {here / "proof_rest.c"}
+    kept, text = proved.digest(files, []), (here / "proof_rest.c").read_text(encoding="utf-8")
     assert "/*" in text
     original = pathlib.Path.read_text
     try:
@@ -46,16 +46,16 @@ def what_stands_in_a_proof_counts_whole():
 def how_a_proof_is_asked_and_judged_counts_and_so_does_what_it_takes_by_contract():
     if shutil.which("frama-c") is None:
         raise Skip("frama-c is not installed: sh tools/deps.sh proof")
-    entries = {"a": ("proof_kf.c", ["filter_kalman_step"], []), "b": ("proof_fx.c", [], [])}
+    entries = {"a": ("proof_rest.c", ["filter_kalman_step"], []), "b": ("proof_fx.c", [], [])}
     plain = proof.inputs_of(entries)
     assert proof.inputs_of(dict(reversed(entries.items()))) == plain
-    for entry in (("proof_kf.c", [], []), ("proof_kf.c", ["filter_kalman_step"], ["-eva-slevel", "1"])):
+    for entry in (("proof_rest.c", [], []), ("proof_rest.c", ["filter_kalman_step"], ["-eva-slevel", "1"])):
         other = proof.inputs_of(entries | {"a": entry})
-        assert other["proof_kf.c"] != plain["proof_kf.c"] and other["proof_fx.c"] == plain["proof_fx.c"], entry
+        assert other["proof_rest.c"] != plain["proof_rest.c"] and other["proof_fx.c"] == plain["proof_fx.c"], entry
     kept = proof.PROVED
     try:
         proof.PROVED = kept | {"Unknown"}
-        assert proof.inputs_of(entries)["proof_kf.c"] != plain["proof_kf.c"]
+        assert proof.inputs_of(entries)["proof_rest.c"] != plain["proof_rest.c"]
     finally:
         proof.PROVED = kept
 
@@ -88,13 +88,13 @@ def lines_come_back_as_written():
 
 @test
 def every_proof_has_its_line_and_a_change_takes_it_away():
-    inputs = {"proof_kf.c": "1", "proof_fx.c": "other"}
+    inputs = {"proof_rest.c": "1", "proof_fx.c": "other"}
     kept = proved.read
     try:
-        proved.read = lambda: {"proof_kf.c": ("1", {"f"}, set()), "proof_fx.c": ("2", {"g"}, set()), "proof_gone.c": ("3", set(), set())}
+        proved.read = lambda: {"proof_rest.c": ("1", {"f"}, set()), "proof_fx.c": ("2", {"g"}, set()), "proof_gone.c": ("3", set(), set())}
         proof.os.environ["CHANGED"] = "yes"
-        assert list(proof.unchanged(inputs, [])) == ["proof_kf.c"]
-        assert not proof.unchanged(inputs, ["kf"])
+        assert list(proof.unchanged(inputs, [])) == ["proof_rest.c"]
+        assert not proof.unchanged(inputs, ["rest"])
         proof.os.environ["CHANGED"] = ""
         assert not proof.unchanged(inputs, [])
     finally:
