@@ -160,12 +160,6 @@ static avr_cycle_count_t on_stopped(avr_t *avr, avr_cycle_count_t when, void *pa
     return 0;
 }
 
-/* A STOP ends when SDA is seen high. */
-static unsigned stop_cycles(const twi_peripheral_t *twi)
-{
-    return bit_cycles(twi) + twi_wires_sda_cycles(twi);
-}
-
 static void want_stop(twi_peripheral_t *twi)
 {
     set_status(twi, STATUS_NOTHING);
@@ -175,7 +169,7 @@ static void want_stop(twi_peripheral_t *twi)
         twi->mode = TWI_IDLE;
         return;
     }
-    unsigned cycles = stop_cycles(twi);
+    unsigned cycles = bit_cycles(twi) + twi_wires_sda_cycles(twi);
     twi->busy_cycles += cycles;
     avr_cycle_timer_register(twi->avr, cycles, on_stopped, twi);
 }
@@ -410,7 +404,7 @@ static void lines_changed(twi_peripheral_t *twi)
         return;
     }
     if (stop_waits && avr_cycle_timer_status(twi->avr, on_stopped, twi) == 0) {
-        avr_cycle_timer_register(twi->avr, stop_cycles(twi), on_stopped, twi);
+        avr_cycle_timer_register(twi->avr, bit_cycles(twi) + twi_wires_sda_cycles(twi), on_stopped, twi);
     } else if (!stop_waits && twi->start_waits) {
         send_start(twi);
     }

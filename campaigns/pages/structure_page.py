@@ -1,6 +1,7 @@
 """docs/results/variable-structure.md and its picture, from the experiments of campaigns/variable_structure with the seed and the runs of make
 papers. Fails with the name of each number that does not come out again."""
 import argparse
+import pathlib
 import sys
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()

@@ -2,6 +2,7 @@
 (build/host/roll_replay, build/host/test_adaptive_roll). Fails with the name of each number that does not come out again."""
 import argparse
 import math
+import pathlib
 import re
 import subprocess
 import sys
