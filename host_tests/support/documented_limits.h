@@ -113,7 +113,7 @@
     X(EMPTY, 3, "lib/adxl345/src/adxl345_integrity.h: INT1 was high without a sample {word} times",                    \
       "lib/adxl345/src/adxl345_integrity.c: RUN_LIMIT = {},",                                                          \
       "test_integrity: test_the_third_empty_reading_is_of_an_int1_that_is_stuck")                                      \
-    X(TRUSTED, 32, "lib/adxl345/src/adxl345_integrity.h: Lasts until {} good",                                         \
+    X(TRUSTED, 32, "lib/adxl345/src/adxl345_integrity.h: until {} good",                                               \
       "lib/adxl345/src/adxl345_integrity.c: RUN_EMPTY = RUN_LIMIT + {v - 1} ",                                         \
       "test_integrity: test_an_int1_that_was_stuck_is_trusted_anew")                                                   \
     X(SENSOR_DEPTH, 33, "docs/faults.md: FIFO that had filled up ({} samples)",                                        \
