@@ -404,7 +404,7 @@ static void lines_changed(twi_peripheral_t *twi)
         return;
     }
     if (stop_waits && avr_cycle_timer_status(twi->avr, on_stopped, twi) == 0) {
-        avr_cycle_timer_register(twi->avr, bit_cycles(twi), on_stopped, twi);
+        avr_cycle_timer_register(twi->avr, bit_cycles(twi) + twi_wires_sda_cycles(twi), on_stopped, twi);
     } else if (!stop_waits && twi->start_waits) {
         send_start(twi);
     }

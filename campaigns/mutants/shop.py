@@ -98,7 +98,7 @@ def timed(command, cwd, limit_s, output=subprocess.DEVNULL, **environment):
 
 
 def plain(source):
-    """`n9f:nav/lib.c` is that file in one of its variants."""
+    """`n9f:nav/lib/nav.c` is that file in one of its variants."""
     return source.rsplit(":", 1)[-1]
 
 

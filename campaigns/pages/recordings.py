@@ -27,7 +27,7 @@ PAGE = Results(DOCUMENT, "Real recordings: results", "make recordings", ABOUT)
 
 OF_STREAMS = "Hz is the sensor's nominal rate; in brackets the rate of the rows, where a board polled faster or slower."
 OF_RULES = """\
-Samples of all axes. The rules that show divergence are derived in `support_envelope.h`; a share of 1 is the limit. Empty: the filter has
+Samples of all axes. The rules that show divergence are derived in `host_tests/support/envelope.h`; a share of 1 is the limit. Empty: the filter has
 none. Saturated: a state was held at its bound, for the filters with a limit of the rate as a rule that, in fast motion."""
 OF_GATED = """\
 Refused, limited or taken in part; with the mixtures: more likely an outlier than not. Filters that gate nothing are left out."""

@@ -16,6 +16,7 @@ the assigns clauses of the contracts, which Eva takes as read.
 """
 import concurrent.futures
 import csv
+import inspect
 import os
 import pathlib
 import re
@@ -41,6 +42,7 @@ LIMIT_S = 600  # of the processor's time: a busy machine proves as much
 WALL_S = 4 * LIMIT_S
 NOT_DONE = f"not done after {LIMIT_S} s"
 PROVED = {"Valid", "Considered valid"}
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"]+)"', re.M)
 ENTRY = re.compile(r"(?:/\*((?:(?!\*/).)*)\*/\s*)?^(?:void proof_(\w+)\(void\)|PROVE_LAW\((\w+)\))", re.S | re.M)
 CONTRACT = re.compile(r"^/\*@((?:(?!\*/).)*\bassigns\b(?:(?!\*/).)*)\*/\s*[^;{}/]*?\b(\w+)\([^;{}]*\);", re.S | re.M)
 
@@ -162,10 +164,13 @@ def missing_filters(entries):
 
 
 def included(path, seen):
-    """The files that a proof is one translation unit with."""
-    for name in re.findall(r'^#include "([^"]+)"', path.read_text(encoding="utf-8"), flags=re.M):
-        for found in (pathlib.Path(source) / name for source in SOURCES):
-            if found.exists() and found not in seen:
+    """The files that a proof is one translation unit with. Each is in SOURCES: what is elsewhere would be in no hash."""
+    for name in INCLUDE.findall(path.read_text(encoding="utf-8")):
+        places = [place for source in SOURCES if (place := pathlib.Path(source) / name).exists()]
+        if not places:
+            fail(f"{path} includes {name}, which is in none of {' '.join(SOURCES)}")
+        for found in places:
+            if found not in seen:
                 seen.add(found)
                 included(found, seen)
     return seen
@@ -253,25 +258,29 @@ def note(seen, file, reached, wraps):
     met.update(wraps)
 
 
-def inputs_of(file):
-    """The digest of all that a proof rests on."""
+def inputs_of(entries):
+    """file -> the digest of all that its proof rests on: sources, Frama-C, how it is asked and judged, and what is taken by contract, which
+    the entries of other files decide too."""
     version = subprocess.run(["frama-c", "-version"], capture_output=True, text=True, check=True).stdout.strip()
-    return proved.digest({HERE / file, HERE / "deliberate.txt"} | included(HERE / file, set()), [version, *COMMON, *WRAPS])
+    rules = [version, *COMMON, *WRAPS, *sorted(PROVED), *map(inspect.getsource, (frama_c, annotate, judge))]
+    return {file: proved.digest({HERE / file, HERE / "deliberate.txt"} | included(HERE / file, set()),
+                                [*rules, *sorted(f"{name} {entry}" for name, entry in entries.items() if entry[0] == file)])
+            for file in {entry[0] for entry in entries.values()}}
 
 
-def unchanged(entries, patterns):
+def unchanged(inputs, patterns):
     """{file: its line of proved.json} of the files that need no proof: with CHANGED=yes those whose inputs are the line's."""
     if patterns or os.environ.get("CHANGED") != "yes":
         return {}
-    known, files = proved.read(), {file for file, _, _ in entries.values()}
-    return {file: known[file] for file in sorted(files & set(known)) if known[file][0] == inputs_of(file)}
+    known = proved.read()
+    return {file: known[file] for file in sorted(set(inputs) & set(known)) if known[file][0] == inputs[file]}
 
 
-def keep(entries, wanted, broken, seen, known):
+def keep(entries, inputs, wanted, broken, seen, known):
     """Writes the lines of the files of which each entry was proved, and of those unchanged of which none failed."""
     whole = {file for file in seen if all(name in wanted and name not in broken for name in entries if entries[name][0] == file)}
     spared = {file: line for file, line in known.items() if not any(entries[name][0] == file for name in broken)}
-    proved.write(spared | {file: (inputs_of(file), *seen[file]) for file in whole})
+    proved.write(spared | {file: (inputs[file], *seen[file]) for file in whole})
 
 
 def gaps(entries, seen):
@@ -317,7 +326,8 @@ def main():
     entries = load_entries()
     wanted, plants = chosen(patterns, entries)
     plants = sampled(plants)
-    known = unchanged(entries, patterns)
+    inputs = inputs_of(entries)  # as they are now: an edit during the run is of the next one
+    known = unchanged(inputs, patterns)
     if known:
         print(f"proof: {len(known)} files are as they were proved ({proved.LEDGER}): {' '.join(known)}")
         spared = [name for name in wanted if entries[name][0] in known]
@@ -334,7 +344,7 @@ def main():
             print(f"breakage {'found' if finding else 'MISSED'}: {breakage.name}: {finding or reason}")
             passed, failed = passed + bool(finding), failed + (not finding)
     if not patterns:
-        keep(entries, wanted, broken, seen, known)
+        keep(entries, inputs, wanted, broken, seen, known)
         for file, (_, reached, wraps) in known.items():
             note(seen, file, reached, wraps)
         for gap in gaps(entries, seen):

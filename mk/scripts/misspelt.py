@@ -10,7 +10,9 @@ import sys
 
 # where a makefile uses, sets or explains a variable
 USED = re.compile(r"\$[({](?:value |origin )?([A-Z]\w*)|^(?:[\w %-]+:)? ?(?:export )?([A-Z]\w*) *[:?+]?=|(?<![-\w])([A-Z]\w*)=", re.MULTILINE)
-OF_MAKE = {"SHELL", "MAKEFLAGS", "CC", "CXX", "V"}
+OF_MAKE = {"SHELL", "MAKEFLAGS"}
+# what other projects call it
+ELSEWHERE = {"CC": "HOST_CC", "CXX": "HOST_CXX"}
 
 
 def known():
@@ -24,7 +26,7 @@ def complaint(names, legal):
     """One sentence on the first name that is not legal; empty when there is none."""
     for name in names:
         if name not in legal:
-            near = difflib.get_close_matches(name.upper(), sorted(legal), 1, 0.6)
+            near = [ELSEWHERE[name]] if name in ELSEWHERE else difflib.get_close_matches(name.upper(), sorted(legal), 1, 0.6)
             return f"there is no variable {name}: " + (f"did you mean {near[0]}?" if near else "`make help` lists the targets and theirs")
     return ""
 

@@ -135,7 +135,7 @@ def library_table():
 
 enum {{ SYNTH_OPT_CLASSES = {len(RATIOS)}, SYNTH_OPT_OWN_STEPS = {OWN_STEPS}, SYNTH_OPT_STEPS = {OWN_STEPS + COMMON_STEPS} }};
 
-/* Place of step n >= SYNTH_OPT_OWN_STEPS: n + SYNTH_OPT_COMMON. */
+/* Index of step n >= SYNTH_OPT_OWN_STEPS: n + SYNTH_OPT_COMMON. */
 enum {{ SYNTH_OPT_COMMON = {(len(RATIOS) - 1) * OWN_STEPS} }};
 
 /* clang-format off */"""]

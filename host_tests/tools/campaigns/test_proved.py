@@ -1,12 +1,13 @@
 """What make proof CHANGED=yes takes as proved: a proof whose sources, Frama-C and options are those of its line, and no other."""
 import pathlib
+import shutil
 import sys
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import proof  # noqa: E402
 import proved
 
-from system_support import OUT, run_all, test
+from system_support import OUT, Skip, run_all, test
 
 WORK = OUT / "proved"
 
@@ -30,8 +31,8 @@ def code_and_contracts_count_and_comments_do_not():
 @test
 def what_stands_in_a_proof_counts_whole():
     here = proved.LEDGER.parent
-    files = {here / "proof_kf.c"}
-    kept, text = proved.digest(files, []), (here / "proof_kf.c").read_text(encoding="utf-8")
+    files = {here / "proof_rest.c"}
+    kept, text = proved.digest(files, []), (here / "proof_rest.c").read_text(encoding="utf-8")
     assert "/*" in text
     original = pathlib.Path.read_text
     try:
@@ -39,6 +40,37 @@ def what_stands_in_a_proof_counts_whole():
         assert proved.digest(files, []) != kept
     finally:
         pathlib.Path.read_text = original
+
+
+@test
+def how_a_proof_is_asked_and_judged_counts_and_so_does_what_it_takes_by_contract():
+    if shutil.which("frama-c") is None:
+        raise Skip("frama-c is not installed: sh tools/deps.sh proof")
+    entries = {"a": ("proof_rest.c", ["filter_kalman_step"], []), "b": ("proof_fx.c", [], [])}
+    plain = proof.inputs_of(entries)
+    assert proof.inputs_of(dict(reversed(entries.items()))) == plain
+    for entry in (("proof_rest.c", [], []), ("proof_rest.c", ["filter_kalman_step"], ["-eva-slevel", "1"])):
+        other = proof.inputs_of(entries | {"a": entry})
+        assert other["proof_rest.c"] != plain["proof_rest.c"] and other["proof_fx.c"] == plain["proof_fx.c"], entry
+    kept = proof.PROVED
+    try:
+        proof.PROVED = kept | {"Unknown"}
+        assert proof.inputs_of(entries)["proof_rest.c"] != plain["proof_rest.c"]
+    finally:
+        proof.PROVED = kept
+
+
+@test
+def an_include_from_elsewhere_is_refused():
+    WORK.mkdir(parents=True, exist_ok=True)
+    path = WORK / "proof_lost.c"
+    path.write_text('#include "fx.h"\n  #  include "of_no_folder.h"\n', encoding="utf-8")
+    try:
+        proof.included(path, set())
+    except SystemExit as end:
+        assert end.code == 1
+    else:
+        raise AssertionError("a header that no folder of the proofs has was left out of the hash")
 
 
 @test
@@ -56,18 +88,17 @@ def lines_come_back_as_written():
 
 @test
 def every_proof_has_its_line_and_a_change_takes_it_away():
-    entries = {"a": ("proof_kf.c", [], []), "b": ("proof_fx.c", [], [])}
-    kept, original = proved.read, proof.inputs_of
+    inputs = {"proof_rest.c": "1", "proof_fx.c": "other"}
+    kept = proved.read
     try:
-        proved.read = lambda: {"proof_kf.c": ("1", {"f"}, set()), "proof_fx.c": ("2", {"g"}, set()), "proof_gone.c": ("3", set(), set())}
-        proof.inputs_of = lambda file: {"proof_kf.c": "1", "proof_fx.c": "other"}[file]
+        proved.read = lambda: {"proof_rest.c": ("1", {"f"}, set()), "proof_fx.c": ("2", {"g"}, set()), "proof_gone.c": ("3", set(), set())}
         proof.os.environ["CHANGED"] = "yes"
-        assert list(proof.unchanged(entries, [])) == ["proof_kf.c"]
-        assert not proof.unchanged(entries, ["kf"])
+        assert list(proof.unchanged(inputs, [])) == ["proof_rest.c"]
+        assert not proof.unchanged(inputs, ["rest"])
         proof.os.environ["CHANGED"] = ""
-        assert not proof.unchanged(entries, [])
+        assert not proof.unchanged(inputs, [])
     finally:
-        proved.read, proof.inputs_of = kept, original
+        proved.read = kept
         proof.os.environ.pop("CHANGED", None)
     named = {file for file, _, _ in proof.load_entries().values()}
     assert set(proved.read()) == named, set(proved.read()) ^ named
