@@ -126,6 +126,7 @@ OUT    ?= $(S)/$(basename $(notdir $(STREAM))).$(FILTER).out.csv
 
 ## sim: run the firmware on a recorded stream in the simulator and draw it (STREAM= FILTER= RATE= OUT=)
 sim:
+	@sh tools/sim.sh check "$(STREAM)" "$(OUT)"
 	@sh tools/deps.sh sim
 	@$(MAKE) $(call image_with,$(FILTER)) $(S)/simrun
 	@sh tools/sim.sh "$(call image_with,$(FILTER))" "$(STREAM)" "$(FILTER)" "$(RATE)" "$(OUT)"

@@ -1,19 +1,23 @@
 #!/bin/sh
+# sim.sh check STREAM OUT: whether they can be read and written, before anything is built.
 # sim.sh IMAGE STREAM FILTER RATE OUT: one run of the firmware in the simulator, its summary and its picture.
 set -eu
+if [ "$1" = check ]; then
+    stream=$2 folder=$(dirname "$3")
+    mkdir -p build/sim
+    if [ ! -r "$stream" ]; then
+        echo "sim: cannot read the stream $stream (STREAM=file.csv; shipped ones are in sim/streams)" >&2
+        exit 2
+    fi
+    if [ ! -d "$folder" ]; then
+        echo "sim: there is no folder $folder for OUT=$3 (mkdir -p $folder)" >&2
+        exit 2
+    fi
+    exit 0
+fi
 image=$1 stream=$2 filter=$3 rate=$4 out=$5
 base=${out%.csv}
 base=${base%.out}
-if [ ! -r "$stream" ]; then
-    echo "sim: cannot read the stream $stream (STREAM=file.csv; shipped ones are in sim/streams)" >&2
-    exit 2
-fi
-mkdir -p build/sim
-folder=$(dirname "$out")
-if [ ! -d "$folder" ]; then
-    echo "sim: there is no folder $folder for OUT=$out (mkdir -p $folder)" >&2
-    exit 2
-fi
 # 100 Hz rows fit 115200 baud; above that the line is the limit
 baud_option=
 case $rate in

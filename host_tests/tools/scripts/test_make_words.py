@@ -48,11 +48,16 @@ def variables_that_are_right_pass():
 
 
 @test
-def out_into_a_folder_that_is_not_there_is_refused():
+def what_cannot_be_read_or_written_is_refused_before_anything_is_built():
     nowhere = "build/no-such-folder/run.csv"
-    done = subprocess.run(["sh", "tools/sim.sh", "x.elf", "sim/streams/steps.csv", "x", "100", nowhere], capture_output=True, text=True, check=False)
-    assert done.returncode == 2 and f"sim: there is no folder build/no-such-folder for OUT={nowhere}" in done.stderr, done.stderr
+    for stream, out, words in (("sim/streams/steps.csv", nowhere, f"sim: there is no folder build/no-such-folder for OUT={nowhere}"),
+                               ("sim/streams/no.csv", "build/sim/run.csv", "sim: cannot read the stream sim/streams/no.csv")):
+        done = subprocess.run(["sh", "tools/sim.sh", "check", stream, out], capture_output=True, text=True, check=False)
+        assert done.returncode == 2 and words in done.stderr, done.stderr
     assert not pathlib.Path(nowhere).parent.exists()
+    rules = pathlib.Path("Makefile").read_text(encoding="utf-8")
+    first = rules[rules.index("\nsim:\n"):].splitlines()[2]
+    assert "tools/sim.sh check" in first, first
 
 
 if __name__ == "__main__":
