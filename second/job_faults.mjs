@@ -39,7 +39,7 @@ export const FAULTS = {
   arbitration_lost_once: { sim: [':arb'], here: once('arbitration') },
   bus_error_once: { sim: [':buserr'], here: once('buserror') },
   int1_cut_25_ms: { sim: [':noint:25'], here: cut(25), drained: AT_THE_END },
-  int1_cut_500_ms: { sim: [':noint:500'], here: cut(500) },
+  int1_cut_500_ms: { sim: [':noint:500'], here: cut(500), drained: AT_THE_END },
   int1_cut_60_ms_800_hz: { sim: [':noint:60'], here: cut(60), rate: 800, steady: true },
   unplugged_100_ms_400_hz: { sim: [':unplug:100'], here: unplugged(100), rate: 400 },
   sda_low_100_ms_400_hz: { sim: [':sda:100'], here: held('sda', 100), rate: 400 },
