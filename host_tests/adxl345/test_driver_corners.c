@@ -1,14 +1,19 @@
 /*
  * Corners of the driver's error branches: a line that comes free just when time is up, a STOP that holds up the reading
- * by the clock, commands while samples are still being fetched, a count of the FIFO with a wrong bit.
+ * by the clock, commands while samples are still being fetched, a count of the FIFO with a wrong bit, two accesses at
+ * once.
  */
 #include "adxl345.h"
 #include "adxl345_burst.h"
+#include "adxl345_integrity.h"
 #include "adxl345_registers.h"
+#include "hal_drdy.h"
 #include "hal_host.h"
 #include "hal_i2c.h"
+#include "hal_sleep.h"
 #include "hal_time.h"
 #include "support/board.h"
+#include "support/documented_limits.h"
 #include "support/rig.h"
 #include "unity.h"
 
@@ -255,6 +260,43 @@ static void test_the_queue_holds_seven_samples(void)
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(6 * PERIOD_MS));
 }
 
+/* Main's second access, and a read by the clock, before the first access has ended: refused; the first one counts. */
+static void test_one_access_at_a_time(void)
+{
+    adxl345_burst_init();
+    (void)adxl345_burst_take_bus(ADXL345_ADDRESS_LOW, false);
+    TEST_ASSERT_TRUE(adxl345_burst_access(ADXL345_DEVID, 0, true));
+    TEST_ASSERT_FALSE(adxl345_burst_access(ADXL345_BW_RATE, 0, true));
+    adxl345_burst_read();
+    TEST_ASSERT_FALSE(adxl345_burst_running());
+    for (double end_ms = hal_host_now_ms() + 1.0; hal_host_now_ms() < end_ms;) {
+        hal_sleep_until_wake();
+    }
+    TEST_ASSERT_EQUAL(I2C_BUS_OK, adxl345_burst_bus_state());
+    TEST_ASSERT_EQUAL_HEX8(0xE5, adxl345_burst_register_value()); /* DEVID, p. 24 */
+    adxl345_init();                                               /* as the end of each test finds it */
+}
+
+/* A line that was stuck and then flickers is open, not shorted: one good reading takes "stuck" back. */
+static void test_a_stuck_int1_that_flickers_is_stuck_no_more(void)
+{
+    stream_for_ms(300);
+    rig_until_pause();
+    for (unsigned i = 0; i < LIMIT_EMPTY; i++) {
+        adxl345_integrity_int1_lied();
+    }
+    TEST_ASSERT_TRUE(adxl345_integrity_int1_stuck());
+    for (unsigned i = 0; i < LIMIT_EDGES; i++) {
+        hal_host_drdy_edge();
+    }
+    TEST_ASSERT_TRUE(hal_drdy_flickers());
+    rig_run_ms(25);
+    TEST_ASSERT_FALSE(adxl345_integrity_int1_stuck());
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_FLICKERS, adxl345_fault());
+    rig.limit_us = 20000; /* by the clock */
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(300));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -266,5 +308,7 @@ int main(void)
     RUN_TEST(test_int1_that_rises_while_the_sensor_says_it_has_none);
     RUN_TEST(test_stop_while_every_read_fails);
     RUN_TEST(test_the_queue_holds_seven_samples);
+    RUN_TEST(test_one_access_at_a_time);
+    RUN_TEST(test_a_stuck_int1_that_flickers_is_stuck_no_more);
     return UNITY_END();
 }
