@@ -1,7 +1,7 @@
 /*
  * A PC that exchanges frames with the navigation image (--frames): it sends each frame when it is due and the board has
- * room for it, and reads the replies only as far as needed for that. Frames and records: docs/protocol.md, "Navigation
- * image".
+ * room for it, and reads the replies only as far as needed for that. Frames and records:
+ * docs/navigation-link.md.
  */
 #include <ctype.h>
 #include <stdlib.h>

@@ -9,7 +9,7 @@ const char options_help[] =
     "  --frames FILE      instead of --in, for the navigation image: 'DUE_US HEX' a frame, sent when it is due and "
     "when "
     "the\n"
-    "                     board has room for it (docs/protocol.md, Navigation image)\n"
+    "                     board has room for it (docs/navigation-link.md)\n"
     "  --out CSV          every byte the firmware's UART sends\n"
     "  --loop             begin the stream again at its end (needs --max-ms)\n"
     "  --max-ms N         end after N ms of simulated time\n"

@@ -231,25 +231,25 @@ static bool take_number(int code, const char *name, const char *argument)
     }
 }
 
-/* Options without an argument. */
+/* Options without an argument; false for all others. */
 static bool take_switch(int code)
 {
-    switch (code) {
-    case OPTION_LOOP:
-        return options.loop = true;
-    case OPTION_PTY:
-        return options.pty = true;
-    case OPTION_BLANK:
-        return options.blank = true;
-    case OPTION_STRAP:
-        return options.strap = true;
-    case OPTION_ALT_ADDRESS:
-        return options.alt_address = true;
-    case OPTION_JUDGE:
-        return options.judge = true;
-    default:
-        return false;
+    static const struct {
+        int code;
+        bool *option;
+    } switches[] = { { OPTION_LOOP, &options.loop },
+                     { OPTION_PTY, &options.pty },
+                     { OPTION_BLANK, &options.blank },
+                     { OPTION_STRAP, &options.strap },
+                     { OPTION_ALT_ADDRESS, &options.alt_address },
+                     { OPTION_JUDGE, &options.judge } };
+    for (size_t i = 0; i < sizeof switches / sizeof switches[0]; i++) {
+        if (switches[i].code == code) {
+            *switches[i].option = true;
+            return true;
+        }
     }
+    return false;
 }
 
 static void take(int code, const char *name, const char *argument)

@@ -3,18 +3,14 @@
 
 #include <stddef.h>
 
-#include "avr_ioport.h"
 #include "sim_cycle_timers.h"
 #include "sim_interrupts.h"
 #include "sim_io.h"
+#include "twi_pins.h"
 #include "twi_slave.h"
 #include "twi_wires.h"
 
 enum {
-    REG_PINC = 0x26,
-    REG_PORTC = 0x28,
-    REG_TWBR = 0xB8,
-    REG_TWSR = 0xB9,
     REG_TWDR = 0xBB,
     REG_TWCR = 0xBC,
     VECTOR_TWI = 24,
@@ -24,8 +20,7 @@ enum {
     BIT_TWSTO = 0x10,
     BIT_TWSTA = 0x20,
     BIT_TWEA = 0x40,
-    BIT_TWINT = 0x80,
-    PRESCALER_MASK = 0x03
+    BIT_TWINT = 0x80
 };
 
 enum {
@@ -49,33 +44,6 @@ enum { BITS_START = 1, BITS_STOP = 1, BITS_BYTE = 9, BITS_UNTIL_LOST = 4, BITS_U
 static bool lines_free(const twi_peripheral_t *twi)
 {
     return !twi_sda_low(twi) && !twi_scl_low(twi);
-}
-
-/* What the pins read as inputs. */
-static void show_levels(twi_peripheral_t *twi)
-{
-    bool sda = !twi_sda_low(twi) && !twi_wires_sda_rising(twi);
-    bool scl = !twi_scl_low(twi) && !twi_wires_scl_rising(twi);
-    avr_ioport_external_t pull = { .name = 'C',
-                                   .mask = (1u << PIN_SDA) | (1u << PIN_SCL),
-                                   .value = (sda ? 1u << PIN_SDA : 0u) | (scl ? 1u << PIN_SCL : 0u) };
-    avr_ioctl(twi->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('C'), &pull);
-    avr_raise_irq(twi->pin_sda, sda);
-    avr_raise_irq(twi->pin_scl, scl);
-    uint8_t others = twi->avr->data[REG_PINC] & (uint8_t)~pull.mask;
-    twi->avr->data[REG_PINC] = (uint8_t)(others | pull.value); /* the IRQs above are silent if the level is unchanged */
-}
-
-/* Time that SCL is low in each bit; it is high for as long. */
-static unsigned half_cycles(const twi_peripheral_t *twi)
-{
-    const uint8_t *data = twi->avr->data;
-    return 8u + data[REG_TWBR] * (1u << (2u * (data[REG_TWSR] & PRESCALER_MASK)));
-}
-
-static unsigned bit_cycles(const twi_peripheral_t *twi)
-{
-    return 2u * half_cycles(twi) + twi_wires_scl_cycles(twi);
 }
 
 static void set_status(twi_peripheral_t *twi, uint8_t status)
@@ -108,7 +76,7 @@ static bool under_way(const twi_peripheral_t *twi)
 /* Sets TWINT after this many bits, with this status; never while SCL is held low. */
 static void finish_in(twi_peripheral_t *twi, unsigned bits, uint8_t status)
 {
-    twi->bit_cycles = bit_cycles(twi);
+    twi->bit_cycles = twi_wires_bit_cycles(twi);
     uint64_t cycles = (uint64_t)bits * twi->bit_cycles;
     twi->next_status = status;
     twi->busy_cycles += cycles;
@@ -169,7 +137,7 @@ static void want_stop(twi_peripheral_t *twi)
         twi->mode = TWI_IDLE;
         return;
     }
-    unsigned cycles = bit_cycles(twi) + twi_wires_sda_cycles(twi);
+    unsigned cycles = twi_wires_stop_cycles(twi);
     twi->busy_cycles += cycles;
     avr_cycle_timer_register(twi->avr, cycles, on_stopped, twi);
 }
@@ -196,7 +164,7 @@ static bool slave_acknowledges(twi_peripheral_t *twi, bool is_address, uint8_t b
 
 static bool one_reads_zero(const twi_peripheral_t *twi)
 {
-    return twi_sda_low(twi) || twi_wires_master_late(twi, half_cycles(twi));
+    return twi_sda_low(twi) || twi_wires_master_late(twi);
 }
 
 /* Address or data to the slave. */
@@ -237,7 +205,7 @@ static void receive_byte(twi_peripheral_t *twi, bool give_ack)
         bool one = twi_slave_bit(twi, pulled);
         bool is_one = one && !pulled;
         bits = bits << 1 | one;
-        wire = wire << 1 | (is_one && twi_wires_in_time(twi, half_cycles(twi), clock, was_one));
+        wire = wire << 1 | (is_one && twi_wires_in_time(twi, clock, was_one));
         was_one = is_one;
     }
     twi->byte_bits = (uint16_t)(bits << (16 - BITS_BYTE));
@@ -306,7 +274,7 @@ static void turn_off(twi_peripheral_t *twi)
     twi->done_at = 0;
     twi->stalled_cycles = 0;
     set_status(twi, STATUS_NOTHING);
-    show_levels(twi);
+    twi_pins_show(twi);
 }
 
 static void go_on(twi_peripheral_t *twi, uint8_t control)
@@ -372,26 +340,9 @@ static void write_twsr(avr_t *avr, avr_io_addr_t address, uint8_t value, void *p
     avr_core_watch_write(avr, address, (uint8_t)(status | (value & PRESCALER_MASK)));
 }
 
-/* While the TWI is off the lines follow DDRC: low outputs pull, inputs release. */
-static void on_direction(avr_irq_t *irq, uint32_t value, void *param)
-{
-    (void)irq;
-    twi_peripheral_t *twi = param;
-    unsigned lines = (1u << PIN_SDA) | (1u << PIN_SCL);
-    uint8_t high = twi->avr->data[REG_PORTC];
-    uint8_t before = twi->pulled;
-    twi->pulled = (uint8_t)(value & lines & ~(unsigned)high);
-    twi->driven_high = twi->driven_high || (value & high & lines) != 0;
-    if (twi->mode == TWI_OFF && before != twi->pulled) {
-        twi_wires_let_go(twi, before & ~(unsigned)twi->pulled, show_levels);
-        twi_slave_by_hand(twi, before, twi->pulled);
-        show_levels(twi);
-    }
-}
-
 static void lines_changed(twi_peripheral_t *twi)
 {
-    show_levels(twi);
+    twi_pins_show(twi);
     if (twi->mode == TWI_OFF) {
         return;
     }
@@ -404,7 +355,7 @@ static void lines_changed(twi_peripheral_t *twi)
         return;
     }
     if (stop_waits && avr_cycle_timer_status(twi->avr, on_stopped, twi) == 0) {
-        avr_cycle_timer_register(twi->avr, bit_cycles(twi) + twi_wires_sda_cycles(twi), on_stopped, twi);
+        avr_cycle_timer_register(twi->avr, twi_wires_stop_cycles(twi), on_stopped, twi);
     } else if (!stop_waits && twi->start_waits) {
         send_start(twi);
     }
@@ -431,10 +382,8 @@ void twi_hang(twi_peripheral_t *twi, unsigned clocks)
 
 void twi_reset(twi_peripheral_t *twi)
 {
+    twi_pins_reset(twi);
     turn_off(twi);
-    twi->pulled = 0;
-    twi->sda_up_at = 0;
-    twi->scl_up_at = 0;
     twi->avr->data[REG_TWCR] = 0;
     twi->avr->data[REG_TWSR] = STATUS_NOTHING;
     twi->avr->data[REG_TWDR] = 0xFF;
@@ -458,10 +407,7 @@ bool twi_attach(twi_peripheral_t *twi, avr_t *avr)
     avr->io[AVR_DATA_TO_IO(REG_TWDR)].r.c = NULL;
     avr->io[AVR_DATA_TO_IO(REG_TWSR)].w.c = write_twsr;
     avr->io[AVR_DATA_TO_IO(REG_TWSR)].w.param = twi;
-    twi->pin_sda = avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('C'), PIN_SDA);
-    twi->pin_scl = avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('C'), PIN_SCL);
-    avr_irq_t *direction = avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('C'), IOPORT_IRQ_DIRECTION_ALL);
-    avr_irq_register_notify(direction, on_direction, twi);
+    twi_pins_attach(twi);
     twi_reset(twi);
     return true;
 }

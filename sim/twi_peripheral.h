@@ -26,7 +26,7 @@ typedef enum {
     TWI_FAILED /* after a bus error: only TWSTO leads out */
 } twi_mode_t;
 
-typedef struct twi_peripheral {
+typedef struct {
     /* set by the owner before twi_attach */
     adxl345_model_t *sensor;
     void (*before_byte)(void *owner, uint32_t transfer,
@@ -63,8 +63,7 @@ typedef struct twi_peripheral {
     bool driven_high;        /* SDA or SCL was made an output that is high */
     uint32_t transfer, byte; /* transfers begun; bytes in this one */
     uint64_t bytes, busy_cycles;
-    uint64_t sda_up_at, scl_up_at; /* twi_wires.c */
-    void (*seen_high)(struct twi_peripheral *twi);
+    uint64_t sda_up_at, scl_up_at; /* cycles at which released lines are seen high; twi_pins.c */
 } twi_peripheral_t;
 
 /* Takes over TWCR, TWDR and TWSR of this MCU. False if it has no TWI vector. */

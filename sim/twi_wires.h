@@ -12,21 +12,20 @@
 
 #include "twi_peripheral.h"
 
-/* Delay until SCL, and after a STOP SDA, is seen high. */
+enum { REG_TWBR = 0xB8, REG_TWSR = 0xB9, PRESCALER_MASK = 0x03 }; /* the bit rate */
+
+/* Cycles until a released line is seen high. */
 unsigned twi_wires_scl_cycles(const twi_peripheral_t *twi);
 unsigned twi_wires_sda_cycles(const twi_peripheral_t *twi);
 
-/* A one that the master sends after a zero is not up in time; SCL is low for low_cycles. */
-bool twi_wires_master_late(const twi_peripheral_t *twi, unsigned low_cycles);
+/* Cycles of a bit, at the TWBR and TWPS in force, and of a STOP. */
+unsigned twi_wires_bit_cycles(const twi_peripheral_t *twi);
+unsigned twi_wires_stop_cycles(const twi_peripheral_t *twi);
+
+/* A one that the master sends after a zero is not up in time. */
+bool twi_wires_master_late(const twi_peripheral_t *twi);
 
 /* A one in this clock of a byte being read, 1..9, is up in time; the ninth is the master's. */
-bool twi_wires_in_time(const twi_peripheral_t *twi, unsigned low_cycles, unsigned clock, bool after_one);
-
-/* The firmware's own pins release these lines (bits of port C); `seen_high` is called when each has risen. */
-void twi_wires_let_go(twi_peripheral_t *twi, unsigned lines, void (*seen_high)(twi_peripheral_t *twi));
-
-/* Released, and not up yet. */
-bool twi_wires_sda_rising(const twi_peripheral_t *twi);
-bool twi_wires_scl_rising(const twi_peripheral_t *twi);
+bool twi_wires_in_time(const twi_peripheral_t *twi, unsigned clock, bool after_one);
 
 #endif

@@ -1,7 +1,7 @@
 /*
  * Records between a PC and the navigation filter, over frames (nav_frame.h). Each record from the PC gets one reply, in
  * order, that says how many bytes have been received: the PC keeps no more than LINK_WINDOW in flight, so that nothing
- * is lost at any baud rate. docs/protocol.md, "Navigation image", has the tables. Numbers are little-endian, reals IEEE
+ * is lost at any baud rate. docs/navigation-link.md has the tables. Numbers are little-endian, reals IEEE
  * 754 single precision.
  */
 #ifndef NAV_LINK_H

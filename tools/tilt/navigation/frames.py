@@ -1,4 +1,4 @@
-"""Records and frames of the navigation image (docs/protocol.md, Navigation image)."""
+"""Records and frames of the navigation image (docs/navigation-link.md)."""
 import binascii
 import struct
 from dataclasses import dataclass
