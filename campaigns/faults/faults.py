@@ -31,7 +31,8 @@ import images
 import page_faults
 import page_sources
 from faults_kinds import KINDS, LONG, MOVING, OF, REST, TYPED, rated
-from faults_runs import Fault, SIMRUN, attempt, flagged_share, moments, need, phases, roll_differences, seeded_pairs, simulate, write_whole
+from faults_runs import (Fault, SIMRUN, attempt, ended_by_signal, flagged_share, moments, need, phases, roll_differences, seeded_pairs, simulate,
+                         write_whole)
 from laws import DEFAULT, LIGHT
 
 RESULTS = pathlib.Path("build/faults.json")
@@ -227,13 +228,6 @@ def tell_failures(results, extra, lacking, most=12):
                 f"{key} {value}" for key, value in row.items() if key not in ("fault", "good"))))
     for sentence in lacking:
         print(f"faults: {sentence}")
-
-
-def ended_by_signal(number, frame):
-    """Once: `timeout` sends its signal to the program and then to its group, and the second must not disturb what is told after the first."""
-    for each in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(each, signal.SIG_IGN)
-    raise KeyboardInterrupt
 
 
 def main():

@@ -5,6 +5,7 @@ import json
 import pathlib
 import random
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -29,6 +30,13 @@ class Fault(Exception):
 
 LOCAL, LOCK = threading.local(), threading.Lock()
 STREAMS = tempfile.TemporaryDirectory(prefix="faults-streams-")
+
+
+def ended_by_signal(number, frame):
+    """Once: `timeout` sends its signal to the program and then to its group; the second must not disturb the report after the first."""
+    for each in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(each, signal.SIG_IGN)
+    raise KeyboardInterrupt
 
 
 def folder():

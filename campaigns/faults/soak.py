@@ -21,7 +21,7 @@ sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import images
 from faults_judge import NO_LIMIT, PASS_CYCLES
 from faults_kinds import BUS_MS, KINDS, REST, RESET_MS
-from faults_runs import SIMRUN, STATUS_WORDS, need, write_whole
+from faults_runs import SIMRUN, STATUS_WORDS, ended_by_signal, need, write_whole
 from laws import DEFAULT, PLAIN
 
 FILTERS = (DEFAULT, PLAIN)
@@ -178,13 +178,6 @@ def wait_for(runs):
             process.wait()
         return False
     return True
-
-
-def ended_by_signal(number, frame):
-    """Once: `timeout` sends its signal to the program and then to its group."""
-    for each in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(each, signal.SIG_IGN)
-    raise KeyboardInterrupt
 
 
 def main():
