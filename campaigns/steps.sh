@@ -5,11 +5,22 @@ passed=0
 failed=0
 skipped=0
 must_count=no
+limit_s=0
 steps=()
+
+# what a script may have otherwise: which steps it takes, and what it does with a result (step, passed, failed, skipped, seconds)
+wanted() { true; }
+after_step() { true; }
+
+# half over the budget of this step
+over_budget() {
+    [ "$limit_s" -gt 0 ] && [ $((2 * $1)) -gt $((3 * limit_s * ${SLOWER:-1})) ]
+}
 
 # the tests and failures that a step counts itself in its last line "N passed, N failed", else one for the step; a failed step is never 0
 step() {
-    local began=$SECONDS
+    wanted "$1" || return 0
+    local began=$SECONDS took
     make "$@" 2>&1 | tee "$log"
     local status=${PIPESTATUS[0]}
     local good bad left_out
@@ -25,11 +36,17 @@ step() {
         good=0
         bad=1
     fi
+    took=$((SECONDS - began))
+    if over_budget "$took"; then
+        echo "$who: make $* failed: $took s are more than half over its budget of $limit_s s (SLOWER=2: a machine that takes twice as long)"
+        bad=$((${bad:-0} + 1))
+    fi
     passed=$((passed + ${good:-1}))
     failed=$((failed + ${bad:-0}))
     skipped=$((skipped + ${left_out:-0}))
-    steps+=("make $*: $((SECONDS - began)) s, ${bad:-0} failed")
-    echo "$who: make $*: $((SECONDS - began)) s"
+    steps+=("make $*: $took s, ${bad:-0} failed")
+    after_step "$*" "${good:-$((${bad:-0} == 0))}" "${bad:-0}" "${left_out:-0}" "$took"
+    echo "$who: make $*: $took s$([ "$limit_s" -eq 0 ] || echo " of $limit_s s")"
 }
 
 # a step of which something must be heard: a status of 0 alone is no success
@@ -37,6 +54,14 @@ counted() {
     must_count=yes
     step "$@"
     must_count=no
+}
+
+# within MINUTES step|counted TARGET...: its budget on two cores; half over it is a failure
+within() {
+    limit_s=$(($1 * 60))
+    shift
+    "$@"
+    limit_s=0
 }
 
 # the sums, and the status

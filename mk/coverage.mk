@@ -14,9 +14,11 @@ $(C)/%.o: %.c Makefile mk/coverage.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(COVERAGE_FLAGS) -MMD -MP -c $< -o $@
 
-$(C)/%.o: %.cpp Makefile mk/coverage.mk
+# the references are not judged: those of make test, which hold the sanitizer of undefined behaviour
+COVERAGE_REFERENCES := $(patsubst %.cpp,$(C)/%.o,$(wildcard host_tests/reference/*.cpp nav/tests/*.cpp))
+$(COVERAGE_REFERENCES): $(C)/%.o: $(H)/%.o
 	@mkdir -p $(@D)
-	@$(HOST_CXX) -std=c++17 -O1 $(HOST_INC) -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
+	@cp $< $@
 
 $(C)/unity.o: $(UNITY_DIR)/unity.c
 	@mkdir -p $(@D)
@@ -25,7 +27,7 @@ $(C)/unity.o: $(UNITY_DIR)/unity.c
 # what each is linked with is in parts.mk, as for make test
 $(foreach t,$(filter-out %/test_nav_link.c,$(COVERAGE_SRC)),$(eval $(C)/$(basename $(notdir $(t))): $(C)/$(t:.c=.o)))
 $(filter-out %/test_nav_link,$(COVERAGE_TESTS)): $(C)/unity.o $(C)/libsupport.a
-	@$(HOST_CXX) --coverage $(call linked,$^) -lm -o $@
+	@$(HOST_CXX) --coverage -fsanitize=undefined $(call linked,$^) -lm -o $@
 
 $(C)/host.json: $(COVERAGE_TESTS)
 	@find $(C) -name '*.gcda' -delete
@@ -44,28 +46,29 @@ $(C)/probe.prof: $(C)/probe.elf $(S)/simrun
 	@$(S)/simrun --fw $< --in sim/streams/tilt-fast.csv --out $(C)/probe.txt --profile $@ --max-ms 100 2> $(C)/probe.log; \
 	    test $$? -eq 8 || { cat $(C)/probe.log; exit 1; }
 
-# A profile slows the simulator down, hence the factor for the tests of its speed, and the minutes in which nothing is lost are left
-# out: they run next to no line that the others do not. Always anew; two halves side by side.
-COVERAGE_RUNS := $(C)/runs/equal $(C)/runs/rest
+# Runs of the system tests, unless PROFILES says where they have left theirs already. A profile slows the simulator down, and the minutes in
+# which nothing is lost are left out: they run next to no line that the others do not. Two halves side by side.
+COVERAGE_RUNS := $(if $(PROFILES),,$(C)/runs/equal $(C)/runs/rest)
 $(C)/runs/equal: RUNS_OF := chip_equals
 $(C)/runs/rest: RUNS_OF := -chip_equals -nothing_lost
-$(COVERAGE_RUNS): system_images
+$(C)/runs/equal $(C)/runs/rest: system_images
 	@rm -rf $@ && mkdir -p $@
 	@PROFILES=$@ python3 host_tests/system/system_tests.py $(RUNS_OF) > $(C)/system_$(@F).log 2>&1 || \
 	    { grep ':FAIL' $(C)/system_$(@F).log; exit 1; }
 
-## coverage: lines and branches of lib by the unit tests, lines of the AVR binary by the system tests (6 minutes)
+## coverage: lines and branches of lib by the unit tests, lines of the AVR binary by the system tests (6 minutes; PROFILES=folder: 2, of a run of PROFILES=folder make test)
+coverage: RUNS := $(or $(PROFILES),$(C)/runs)
 coverage:
 	@sh tools/deps.sh coverage
 	@$(MAKE) -j2 $(COVERAGE_RUNS) $(C)/host.json $(C)/probe.prof
 	@python3 campaigns/coverage/coverage.py check $(C)/probe.elf $(C)/probe.prof host_tests/chip/coverage_probe.c
-	@python3 campaigns/coverage/coverage.py twins $(C)/host.json $(U)/firmware.elf $(C)/runs
-	@python3 campaigns/coverage/coverage.py judge $(C)/host.json $(U)/firmware.elf $(C)/runs
+	@python3 campaigns/coverage/coverage.py twins $(C)/host.json $(U)/firmware.elf $(RUNS)
+	@python3 campaigns/coverage/coverage.py judge $(C)/host.json $(U)/firmware.elf $(RUNS)
 
 clean: clean_coverage
 clean_coverage:
 	@rm -rf $(C)
 
-.PHONY: coverage clean_coverage $(COVERAGE_RUNS)
+.PHONY: coverage clean_coverage $(C)/runs/equal $(C)/runs/rest
 
 -include $(shell find $(C) -name '*.d' 2>/dev/null)

@@ -228,10 +228,18 @@ def judge_one(what, value, target):
     return good
 
 
-def judge(report, elf, folder):
-    profiles = sorted(pathlib.Path(folder).glob("*/*.csv"))
-    if not profiles:
+def profiles_of(elf, folder):
+    """The profiles below this folder, all of them of this binary."""
+    found = sorted(pathlib.Path(folder).rglob("*.csv"))
+    if not found:
         fail(f"{folder} holds no profiles: did the system tests run?")
+    if min(path.stat().st_mtime for path in found) < pathlib.Path(elf).stat().st_mtime:
+        fail(f"{folder} holds profiles older than {elf}: delete the folder and run the system tests with PROFILES={folder} again")
+    return found
+
+
+def judge(report, elf, folder):
+    profiles = profiles_of(elf, folder)
     excluder = Excluder(exclusions())
     host, host_missed, half = host_rows(report, excluder)
     avr, avr_missed = avr_rows(elf, executed(profiles), excluder)
@@ -294,7 +302,7 @@ def twins(report, elf, folder):
     rows = [row for row in host_rows(report, Excluder([]))[0] if row["file"] != "nav/lib/nav_ud.c"]
     seen.append(left_out(rows, "nav/lib/*.c") == {"nav/lib/nav_ud.c"})
     print(f"twins: nav/lib/nav_ud.c not in the data: {'seen' if seen[-1] else 'NOT SEEN'}")
-    one = sorted(pathlib.Path(folder).glob("*/*.csv"))[:1]
+    one = profiles_of(elf, folder)[:1]
     ours = [r for r in avr_rows(elf, executed(one), Excluder([]))[0] if not r["file"].startswith("lib/")]
     share = percent(total(ours, "lines_executed"), total(ours, "lines"))
     print(f"twins: one run alone: {share:.1f} % of the AVR lines")

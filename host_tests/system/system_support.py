@@ -25,7 +25,7 @@ STREAMS = pathlib.Path("sim/streams")
 # images whose clock does not start at 0
 CLOCK_STARTS = dict(re.findall(r"IMAGE,(\w+),.*HAL_TIME_START_US=(\d+)ul", pathlib.Path("mk/images.mk").read_text(encoding="utf-8")))
 TESTS = []
-# a folder for the profile of each run of the firmware as shipped (make coverage)
+# a folder for the profile of each run of the firmware as shipped (make coverage); several programs may fill it
 PROFILES = os.environ.get("PROFILES")
 RUN_NUMBERS = itertools.count()
 
@@ -85,7 +85,7 @@ def simrun(name, stream, *options, fw=FW, expect=0, judge=True):
     fw = image_for(options, fw)
     options += ("--clock-start", CLOCK_STARTS.get(pathlib.Path(fw).parent.name, "0"), *(["--judge"] if judge else []))
     if PROFILES and fw == FW and "--profile" not in options:
-        options += ("--profile", pathlib.Path(PROFILES) / f"{next(RUN_NUMBERS):04}.csv")
+        options += ("--profile", pathlib.Path(PROFILES) / f"{OUT.name}-{next(RUN_NUMBERS):04}.csv")
     done = run(SIMRUN, "--fw", fw, "--in", stream, "--out", f"{base}.csv", "--served", f"{base}.served.csv", "--stats", f"{base}.json",
                *options, expect=expect)
     rows, notes = read_output(f"{base}.csv")
@@ -157,6 +157,8 @@ def chosen(tests, words):
 def run_all():
     """The tests that the command line chooses."""
     OUT.mkdir(parents=True, exist_ok=True)
+    if PROFILES:
+        pathlib.Path(PROFILES).mkdir(parents=True, exist_ok=True)
     file = pathlib.Path(sys.argv[0]).name
     failed = skipped = count = 0
     times = {}

@@ -1,4 +1,5 @@
-"""What .ci/run and make nightly make of their steps: sums, a step that fails, one that is silent, one that is skipped; and that each is a target."""
+"""What .ci/run and make nightly make of their steps: sums, a step that fails, is silent, is skipped or takes too long; the page of the night; and
+that each is a target."""
 import os
 import pathlib
 import re
@@ -19,9 +20,10 @@ esac
 echo "2 passed, 0 failed"
 """
 SCRIPTS = (".ci/run", "campaigns/nightly.sh")
+PAGE = OUT / "nightly.md"
 
 
-def run_with_make(script, fails="-", silent="-", skips="-"):
+def run_with_make(script, fails="-", silent="-", skips="-", steps=""):
     """(status, what it prints, the steps that it takes)."""
     OUT.mkdir(parents=True, exist_ok=True)
     make, calls = OUT / "make", (OUT / "calls").resolve()
@@ -29,8 +31,14 @@ def run_with_make(script, fails="-", silent="-", skips="-"):
     make.chmod(0o755)
     calls.unlink(missing_ok=True)
     done = subprocess.run(["bash", script], capture_output=True, text=True, check=False, env={
-        **os.environ, "PATH": f"{OUT.resolve()}:{os.environ['PATH']}", "CALLS": str(calls), "FAILS": fails, "SILENT": silent, "SKIPS": skips})
-    return done.returncode, done.stdout + done.stderr, calls.read_text(encoding="ascii").splitlines()
+        **os.environ, "PATH": f"{OUT.resolve()}:{os.environ['PATH']}", "CALLS": str(calls), "FAILS": fails, "SILENT": silent, "SKIPS": skips,
+        "STEPS": steps, "NIGHT_PAGE": str(PAGE)})
+    return done.returncode, done.stdout + done.stderr, calls.read_text(encoding="ascii").splitlines() if calls.exists() else []
+
+
+def night_rows():
+    lines = [line.strip("| ").split(" | ") for line in PAGE.read_text(encoding="utf-8").splitlines() if line.startswith("| `")]
+    return {name.strip("`"): cells for name, *cells in lines}
 
 
 @test
@@ -61,10 +69,38 @@ def the_night_begins_and_ends_with_the_pages_and_leaves_no_measurement_out():
 
 
 @test
+def each_step_of_the_night_has_its_row_and_keeps_it():
+    PAGE.unlink(missing_ok=True)
+    assert run_with_make("campaigns/nightly.sh", steps="soak faults")[2] == ["faults", "soak HOURS=24"]
+    rows = night_rows()
+    assert list(rows)[:2] == ["check-pages STRICT=yes", "test"] and rows["test"][0] == "never", rows
+    assert re.fullmatch(r"[0-9a-f]{8}\+?|no git", rows["faults"][0]) and rows["faults"][1:] == ["2", "0", "0", "0.0"], rows
+    run_with_make("campaigns/nightly.sh", fails="soak", steps="soak")
+    assert night_rows()["soak HOURS=24"][1:4] == ["4", "2", "0"] and night_rows()["faults"] == rows["faults"]
+    PAGE.write_text(PAGE.read_text(encoding="utf-8") + "| `gone` | 01234567 | 1 | 0 | 0 | 0.1 |\n", encoding="utf-8")
+    run_with_make("campaigns/nightly.sh", steps="soak")
+    assert "gone" not in night_rows() and night_rows()["soak HOURS=24"][1:4] == ["2", "0", "0"]
+    status, text, calls = run_with_make("campaigns/nightly.sh", steps="soak nothing")
+    assert status == 1 and calls == [] and text == "nightly: STEPS names what is no step: nothing\n", text
+
+
+@test
+def every_step_of_ci_has_a_budget_and_half_over_it_fails():
+    lines = pathlib.Path(".ci/run").read_text(encoding="utf-8").splitlines()
+    steps = [line for line in lines if re.match(r"\S* ?(step|counted|within) ", line)]
+    assert len(steps) >= 10 and all(re.match(r"(\w+=\S+ )?within \d+ (step|counted) ", line) for line in steps), steps
+
+    def over(limit_s, took_s, slower="1"):
+        command = f". campaigns/steps.sh; limit_s={limit_s}; over_budget {took_s}"
+        return subprocess.run(["bash", "-c", command], check=False, env={**os.environ, "SLOWER": slower}).returncode == 0
+    assert [over(60, 90), over(60, 91), over(60, 180, "2"), over(60, 181, "2"), over(0, 1000)] == [False, True, False, True, False]
+
+
+@test
 def each_step_is_a_target():
     rules = "".join(path.read_text(encoding="utf-8") for path in [pathlib.Path("Makefile"), *pathlib.Path("mk").glob("*.mk")])
     for script in SCRIPTS:
-        for step in re.findall(r"(?:step|counted) ([a-z][\w-]*)", pathlib.Path(script).read_text(encoding="utf-8")):
+        for step in re.findall(r"^(?:.*within \d+ )?(?:step|counted) ([a-z][\w-]*)", pathlib.Path(script).read_text(encoding="utf-8"), re.M):
             assert re.search(rf"^{step}:", rules, re.M), f"{script}: {step}"
 
 
