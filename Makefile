@@ -134,7 +134,7 @@ sim:
 # what the programs that run tests have to know of this build
 TEST_ENV = CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" CHIP_SECOND="$(CHIP_SECOND)"
 
-## test: unit tests on the PC, then the firmware in the simulator against the PC (LEAVE_OUT="test_design test_papers": without these)
+## test: unit tests on the PC, then the firmware in the simulator against the PC
 test:
 	@sh tools/deps.sh test
 	@sh tools/deps.sh flashtest || echo "test: test_flash will be skipped"

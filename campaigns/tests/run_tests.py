@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """run_tests.py [quick]: runs all tests of test_table.py, or the unit tests of the PC, two at a time, those that took longest the last time
-first. Prints each as it ends, with what failed or was skipped and why; at the end where
-the time went, all that failed once more, and the sum. $LEAVE_OUT: names of tests that are not run and listed as left out (for .ci/run,
-which runs them by turns). The log of each is build/host/NAME.log, the times of the last run build/host/times.json.
+first. Prints each as it ends, with what failed or was skipped and why; at the end where the time went, all that failed once more, and the
+sum. The log of each is build/host/NAME.log, the times of the last run build/host/times.json.
 """
 import concurrent.futures
 import json
@@ -203,16 +202,6 @@ class Report:
 
 # --- all --------------------------------------------------------------------------------------------------------------
 
-def without_those_left_out(runs):
-    left_out = os.environ.get("LEAVE_OUT", "").split()
-    unknown = [name for name in left_out if name not in runs]
-    if unknown:
-        sys.exit(f"run_tests: LEAVE_OUT names what is no test: {' '.join(unknown)}")
-    for name in left_out:
-        print(f"{name:<28}left out")
-    return {name: command for name, command in runs.items() if name not in left_out}
-
-
 def shared(runs):
     """Those of SHARES as several."""
     found = {}
@@ -249,7 +238,7 @@ def chosen(words):
 
 def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    runs = shared(without_those_left_out(chosen(sys.argv[1:])))
+    runs = shared(chosen(sys.argv[1:]))
     times = times_of_last_run()
     order = longest_first(runs, times)
     print(f"run_tests: {len(order)} test programs, two at a time", flush=True)

@@ -231,13 +231,6 @@ def loaded_rounds_count_failures_and_leave_no_loop_however_they_end():
 
 
 @test
-def what_is_left_out_must_be_a_test():
-    done = subprocess.run([sys.executable, "campaigns/tests/run_tests.py"], env={**os.environ, "LEAVE_OUT": "test_design nothing"},
-                          capture_output=True, text=True, timeout=600, check=False)
-    assert done.returncode == 1 and done.stderr == "run_tests: LEAVE_OUT names what is no test: nothing\n" and not done.stdout, done
-
-
-@test
 def every_test_of_the_tools_is_in_the_list():
     """But those of make check and make piocheck."""
     here = set(test_table.PROGRAMS)
