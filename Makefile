@@ -23,10 +23,14 @@ MISSPELT := $(if $(TYPED),$(shell python3 mk/scripts/misspelt.py $(TYPED)))
 $(if $(MISSPELT),$(error $(MISSPELT)))
 endif
 
+# all parts of this file, by name wherever they are
+RULES := $(wildcard $(addsuffix *.mk,mk/ checks/ nav/ second/ tools/*/ campaigns/ campaigns/*/ host_tests/*/))
+RULES := $(foreach rule,$(sort $(foreach rule,$(RULES),$(notdir $(rule))|$(rule))),$(lastword $(subst |, ,$(rule))))
+
 ## help: this list
 help:
 	@echo "tilt-uno: tilt from an Arduino UNO and an ADXL345 that outliers cannot fool"
-	@sed -n 's/^## \([a-z]*\): /  make \1|/p' Makefile mk/*.mk | awk -F'|' '{printf "%-16s %s\n", $$1, $$2}'
+	@sed -n 's/^## \([a-z]*\): /  make \1|/p' Makefile $(RULES) | awk -F'|' '{printf "%-16s %s\n", $$1, $$2}'
 
 ## deps: install what any target needs (says what, before it does)
 deps:
@@ -163,8 +167,8 @@ system_images: $(U)/firmware.elf $(TEST_IMAGES) $(SLOW_IMAGE) $(S)/simrun $(H)/n
 clean:
 	@rm -rf $(U) $(H) $(S) $(CHK) $(B)/planted $(B)/*.json
 
-# one file per further target
-include $(sort $(filter-out mk/boards.mk mk/images.mk mk/host.mk,$(wildcard mk/*.mk)))
+# the rules of further targets, each file beside what it runs
+include $(filter-out mk/boards.mk mk/images.mk mk/host.mk,$(RULES))
 
 # keep the test objects: no other .SECONDARY may name targets, or only those would be kept
 .SECONDARY:

@@ -21,6 +21,7 @@ PAGES = ("docs", "second", "tools", "checks", "campaigns", "mk")
 # what writes a page, draws it, launches a program or says what is wrong with it makes no number
 NO_NUMBER = {"page.py", "page_sources.py", "results.py", "page_benchmarks.py", "page_faults.py", "robust_pictures.py", "look.py", "launched.py",
              "port.py", "errors.py", "unity_line.py"}
+NIGHT = pathlib.Path("docs/results/nightly.md")  # of make nightly: a commit in each row
 RESULTS = pathlib.Path("docs/results")
 PYTHONPATH = pathlib.Path("mk/pythonpath")
 COMMITS = 10  # of a page, searched for the one whose sources it was measured on
@@ -63,7 +64,7 @@ def missing(page, files, known):
 
 def unlisted(rows):
     """Pages that a command writes and that the table does not have, or under another command; results that no command writes."""
-    for path in sorted(pathlib.Path("docs").rglob("*.md")):
+    for path in sorted({*pathlib.Path("docs").rglob("*.md")} - {NIGHT}):
         commands = set(WRITTEN.findall(path.read_text(encoding="utf-8")))
         for command in commands:
             if str(path) not in rows or rows[str(path)].command != command:

@@ -45,8 +45,8 @@ def load(path):
 
 
 def unplanted(faults):
-    """Checks of mk/check.mk for which no fault is planted."""
-    line = re.search(r"^CHECKS := (.*)$", pathlib.Path("mk/check.mk").read_text(encoding="utf-8"), re.M)
+    """Checks of checks/check.mk for which no fault is planted."""
+    line = re.search(r"^CHECKS := (.*)$", pathlib.Path("checks/check.mk").read_text(encoding="utf-8"), re.M)
     return [c for c in line.group(1).split() if not any(c in f.says for f in faults)]
 
 

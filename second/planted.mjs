@@ -1,5 +1,5 @@
 // Faults planted in the firmware, in this sensor and in the first simulator's: the comparison must find each. And each look must find
-// nothing where nothing is planted. mk/second.mk builds the firmware and simrun with them.
+// nothing where nothing is planted. second/second.mk builds the firmware and simrun with them.
 import { basename, dirname } from 'node:path';
 
 // in our own sensor

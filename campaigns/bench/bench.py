@@ -287,7 +287,7 @@ def collect(flags, sources, parts):
     rows[KEPT], stack[KEPT] = summarise(kept)[f"float_{laws.LIGHT}"], kept_stack[f"float_{laws.LIGHT}"]
     missed = [f for f in filters if f not in rows or f not in rows_small]
     if missed:
-        raise Fault(f"{missed[0]}: in no image of the benchmark (BENCH_LIST in mk/bench.mk)")
+        raise Fault(f"{missed[0]}: in no image of the benchmark (BENCH_LIST in campaigns/bench/bench.mk)")
     alone, shared = measure_sizes(flags, sources, filters)
     rows["sample_total"], stack["sample_total"] = measure_sample()
     rows_small["sample_total"] = rows["sample_total"]

@@ -12,7 +12,7 @@ link-time optimisation the innermost source line), and executed when one of thos
 loaded constant alone is no evidence, because the compiler moves it out of the branch that it belongs to. What stays: equal
 ends of two branches are merged and then count for the line whose instructions were kept.
 
-nav/lib is compiled in variants (mk/nav_lib_coverage.mk): a line or branch is executed when it was in one of them.
+nav/lib is compiled in variants (campaigns/coverage/nav_lib_coverage.mk): a line or branch is executed when it was in one of them.
 """
 import collections
 import json

@@ -33,7 +33,7 @@ def planted():
 
 
 def plants():
-    """NAME:TARGET:SOURCE of each, for mk/fuzz.mk."""
+    """NAME:TARGET:SOURCE of each, for campaigns/fuzz/fuzz.mk."""
     for name, target, entry in planted():
         print(f"{name}:{target}:{anchors.broken(entry, source_text())[0]}")
 

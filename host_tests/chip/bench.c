@@ -1,5 +1,5 @@
 /*
- * Runs on the ATmega328P (simavr): cycles of each filter of its part of the list (BENCH_LIST, mk/bench.mk) beside its
+ * Runs on the ATmega328P (simavr): cycles of each filter of its part of the list (BENCH_LIST, campaigns/bench/bench.mk) beside its
  * float yardstick, and in the first part (BENCH_THE_REST) of the noise estimate, the angles and the formatting of a
  * row, call included, over streams that look for the longest path. On the UART (1 Mbaud), for campaigns/bench/bench.py:
  *

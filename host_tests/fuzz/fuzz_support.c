@@ -1,6 +1,6 @@
 /*
  * Failures, and the memory of the program under test. The build puts all its variables into the sections fuzz_data and
- * fuzz_bss (mk/fuzz.mk), so that every input starts from the same state without a new process.
+ * fuzz_bss (campaigns/fuzz/fuzz.mk), so that every input starts from the same state without a new process.
  */
 #include <stdarg.h>
 #include <stdio.h>

@@ -21,7 +21,7 @@
 #define ON_PC_OR_CHIP(pc, chip) (pc)
 #endif
 
-/* From this kind on the first that the program links: on the chip not all are (mk/chip_tests.mk). */
+/* From this kind on the first that the program links: on the chip not all are (host_tests/chip/chip_tests.mk). */
 uint8_t linked_kind(uint8_t kind);
 
 /* One of the linked kinds for any number, all of them by turns. */

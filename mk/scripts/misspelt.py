@@ -10,14 +10,20 @@ import sys
 
 # where a makefile uses, sets or explains a variable
 USED = re.compile(r"\$[({](?:value |origin )?([A-Z]\w*)|^(?:[\w %-]+:)? ?(?:export )?([A-Z]\w*) *[:?+]?=|(?<![-\w])([A-Z]\w*)=", re.MULTILINE)
+FOLDERS = ("mk", "checks", "nav", "second", "tools", "campaigns", "host_tests")
 OF_MAKE = {"SHELL", "MAKEFLAGS"}
 # what other projects call it
 ELSEWHERE = {"CC": "HOST_CC", "CXX": "HOST_CXX"}
 
 
+def makefiles():
+    """The Makefile and its parts."""
+    return [pathlib.Path("Makefile"), *(path for folder in FOLDERS for path in sorted(pathlib.Path(folder).rglob("*.mk")))]
+
+
 def known():
     """Names of all variables that a person may type."""
-    found = {name for path in (pathlib.Path("Makefile"), *pathlib.Path("mk").glob("*.mk"))
+    found = {name for path in makefiles()
              for groups in USED.findall(path.read_text(encoding="utf-8")) for name in groups if name}
     return found | OF_MAKE
 

@@ -16,7 +16,7 @@ ROOMS = "firmware"  # an archive of all its folders
 SINGLE = ("host_tests/reference", "host_tests/support", "nav/tests", "sim")
 FOLDERS = [*ARCHIVES.values(), f"{ROOMS}/*", "hal", *SINGLE]
 MODEL = {"adxl345_model", "adxl345_variants", "stream"}
-# nav/lib is linked as variants with a table of functions each (mk/nav_lib.mk); test_nav_link has a rule of its own
+# nav/lib is linked as variants with a table of functions each (nav/nav_lib.mk); test_nav_link has a rule of its own
 OWN_RULE = {"test_nav_link"}
 
 

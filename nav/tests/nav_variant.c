@@ -1,4 +1,4 @@
-/* One variant of nav/lib behind the table of functions: compiled once for each (mk/nav_lib.mk). */
+/* One variant of nav/lib behind the table of functions: compiled once for each (nav/nav_lib.mk). */
 #include "nav_variants.h"
 
 #include "nav.h"

@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+import misspelt  # noqa: E402
 from system_support import OUT, run_all, test
 
 # in place of make: fails, says nothing or skips where the words of a step begin with $FAILS, $SILENT or $SKIPS
@@ -98,7 +99,7 @@ def every_step_of_ci_has_a_budget_and_half_over_it_fails():
 
 @test
 def each_step_is_a_target():
-    rules = "".join(path.read_text(encoding="utf-8") for path in [pathlib.Path("Makefile"), *pathlib.Path("mk").glob("*.mk")])
+    rules = "".join(path.read_text(encoding="utf-8") for path in misspelt.makefiles())
     for script in SCRIPTS:
         for step in re.findall(r"^(?:.*within \d+ )?(?:step|counted) ([a-z][\w-]*)", pathlib.Path(script).read_text(encoding="utf-8"), re.M):
             assert re.search(rf"^{step}:", rules, re.M), f"{script}: {step}"

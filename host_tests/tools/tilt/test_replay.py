@@ -290,7 +290,7 @@ class Library(unittest.TestCase):
                 self.assertEqual(native._stale(root), stale)
 
     def test_what_is_watched_is_what_make_builds_it_from(self):
-        with open("mk/tilt.mk", encoding="ascii") as file:
+        with open("tools/tilt/tilt.mk", encoding="ascii") as file:
             self.assertIn("$(wildcard host_tests/tools/libtilt/*.c) $(HOST_SRC)", file.read())
         listed = subprocess.run(["make", "-n", "-B", str(native.LIBRARY)], capture_output=True, text=True, check=True).stdout
         watched = {str(path.relative_to(native.ROOT)) for pattern in native.SOURCES for path in native.ROOT.glob(pattern)}

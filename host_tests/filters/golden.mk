@@ -2,7 +2,7 @@
 GOLDEN := host_tests/filters/golden
 
 $(H)/golden_vectors: $(GOLDEN)/golden_vectors.c $(wildcard lib/filters/src/*.c lib/filters/src/*.h) $(MACHINE_H) $(LAW_SUPPORT) \
-                     host_tests/support/random.c Makefile mk/golden.mk
+                     host_tests/support/random.c Makefile host_tests/filters/golden.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(WARNINGS) $(SANITIZE) $(filter %.c,$^) -lm -o $@
 

@@ -4,7 +4,7 @@
 BENCH_INC    := $(INCLUDES) -Ihal/avr -Ihost_tests/chip
 BENCH_COMMON := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -ffunction-sections -fdata-sections
 BENCH_SRC    := $(wildcard host_tests/chip/float_*.c lib/filters/src/*.c lib/tilt/src/*.c) firmware/base/format.c
-BENCH_DEPS   := $(BENCH_SRC) host_tests/chip/bench.c firmware/output/rows.c Makefile mk/bench.mk $(wildcard host_tests/chip/*.h lib/*/src/*.h firmware/*/*.h hal/*.h hal/avr/*.h)
+BENCH_DEPS   := $(BENCH_SRC) host_tests/chip/bench.c firmware/output/rows.c Makefile campaigns/bench/bench.mk $(wildcard host_tests/chip/*.h lib/*/src/*.h firmware/*/*.h hal/*.h hal/avr/*.h)
 
 # the filters and their yardsticks together do not fit the flash: an image times a part of the list, four of it
 BENCH_PARTS  := 1 2 3 4
@@ -27,7 +27,7 @@ $(U)/bench_kept.elf: $(BENCH_DEPS)
 # the firmware with two places around a sample's way that the simulator can time
 $(U)/bench_sample/firmware/app/app.o: AVR_FLAGS += -Dpipeline_sample=bench_sample_begins -Dhealth_sample_filtered=bench_sample_ends
 BENCH_SAMPLE_OBJ := $(AVR_SRC:%.c=$(U)/bench_sample/%.o) $(U)/bench_sample/host_tests/chip/bench_sample.o
-$(U)/bench_sample/%.o: %.c Makefile mk/bench.mk
+$(U)/bench_sample/%.o: %.c Makefile campaigns/bench/bench.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -MMD -MP -c $< -o $@
 
@@ -38,7 +38,7 @@ $(U)/bench_sample.elf: $(BENCH_SAMPLE_OBJ)
 BENCH_REST_OBJ := $(AVR_SRC:%.c=$(U)/bench_rest/%.o) $(U)/bench_rest/host_tests/chip/bench_rest.o
 $(U)/bench_rest/%.o: IMAGE_FILTERS = $(shell python3 mk/scripts/laws.py light)
 $(U)/bench_rest/firmware/path/pipeline.o: AVR_FLAGS += -Dfilter_update=bench_no_filter
-$(U)/bench_rest/%.o: %.c Makefile mk/bench.mk
+$(U)/bench_rest/%.o: %.c Makefile campaigns/bench/bench.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(AVR_FLAGS) -DHAL_TIME_START_US=4200000000ul -MMD -MP -c $< -o $@
 

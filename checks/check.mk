@@ -7,7 +7,7 @@ ONLY ?=
 # objects before link-time optimisation: only they tell which file holds what. Warnings are not errors here, because avr-gcc says
 # that naked functions have no stack usage; check-compile looks for them.
 CHECK_OBJ := $(AVR_SRC:%.c=$(CHK)/avr/%.o)
-$(CHK)/avr/%.o: %.c Makefile mk/check.mk
+$(CHK)/avr/%.o: %.c Makefile checks/check.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(filter-out -flto -Werror,$(AVR_FLAGS)) -fstack-usage -MMD -MP -c $< -o $@ 2> $@.log || { cat $@.log >&2; exit 1; }
 
@@ -44,7 +44,7 @@ check-includes:
 
 # the PC's side of the HAL, for its circles
 CHECK_HOST_OBJ := $(patsubst %.c,$(CHK)/host/%.o,$(wildcard hal/host/*.c))
-$(CHK)/host/%.o: %.c Makefile mk/check.mk
+$(CHK)/host/%.o: %.c Makefile checks/check.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) -MMD -MP -c $< -o $@
 

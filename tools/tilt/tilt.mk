@@ -8,6 +8,6 @@ tilt:
 # the sample path and all filters for `tilt replay`, `compare` and `tune`, which ask for it when it is missing or older than its sources;
 # a compiler that warns of something new must not take it from them: check-compile judges warnings
 LIBTILT_SRC := $(wildcard host_tests/tools/libtilt/*.c) $(HOST_SRC)
-$(H)/libtilt.so: $(LIBTILT_SRC) $(wildcard host_tests/tools/libtilt/*.h */*.h lib/*/src/*.h hal/*/*.h) Makefile mk/tilt.mk
+$(H)/libtilt.so: $(LIBTILT_SRC) $(wildcard host_tests/tools/libtilt/*.h */*.h lib/*/src/*.h hal/*/*.h) Makefile tools/tilt/tilt.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(filter-out -O1 -g,$(HOST_FLAGS)) -O2 -flto=auto -fPIC -shared -fvisibility=hidden $(filter-out -Werror,$(WARNINGS)) $(LIBTILT_SRC) -lm -o $@

@@ -5,7 +5,7 @@ OPTIBOOT_CFLAGS := -w -Os -fno-inline -fno-split-wide-types -fno-move-loop-invar
                    -mmcu=atmega328p -DF_CPU=16000000L -DLED_START_FLASHES=3 -DBAUD_RATE=115200
 OPTIBOOT_LINK   := -Wl,--section-start=.text=0x7e00 -Wl,--section-start=.version=0x7ffe -Wl,--relax -Wl,--gc-sections -nostartfiles -nostdlib
 
-$(U)/optiboot.elf: $(wildcard $(OPTIBOOT_DIR)/optiboot.c) mk/flashtest.mk
+$(U)/optiboot.elf: $(wildcard $(OPTIBOOT_DIR)/optiboot.c) host_tests/system/flashtest.mk
 	@mkdir -p $(@D)
 	@[ -f $(OPTIBOOT_DIR)/optiboot.c ] || { echo "flashtest: no $(OPTIBOOT_DIR)/optiboot.c: apt-get install arduino-core-avr, or OPTIBOOT_DIR=folder" >&2; exit 1; }
 	@$(AVR_CC) $(OPTIBOOT_CFLAGS) $(OPTIBOOT_LINK) $(OPTIBOOT_DIR)/optiboot.c -o $@

@@ -19,18 +19,18 @@ SEED         ?= 1
 FUZZ_GROUP = ld -r -o $@.part $(filter %.o,$^) && \
     objcopy --rename-section .data=fuzz_data --rename-section .bss=fuzz_bss,alloc,load,contents,data $@.part $@ && rm $@.part
 
-$(FZ)/app/%.o: %.c Makefile mk/fuzz.mk
+$(FZ)/app/%.o: %.c Makefile campaigns/fuzz/fuzz.mk
 	@mkdir -p $(@D)
 	@$(FUZZ_GCC) -fsanitize-coverage=trace-pc -MMD -MP -c $< -o $@
 
 $(FZ)/app.o: $(FUZZ_APP_OBJ)
 	@$(FUZZ_GROUP)
 
-$(FZ)/fuzz_%.o: host_tests/fuzz/fuzz_%.c Makefile mk/fuzz.mk
+$(FZ)/fuzz_%.o: host_tests/fuzz/fuzz_%.c Makefile campaigns/fuzz/fuzz.mk
 	@mkdir -p $(@D)
 	@$(FUZZ_GCC) -MMD -MP -c $< -o $@
 
-$(FZ)/support/%.o: host_tests/support/%.c Makefile mk/fuzz.mk
+$(FZ)/support/%.o: host_tests/support/%.c Makefile campaigns/fuzz/fuzz.mk
 	@mkdir -p $(@D)
 	@$(FUZZ_GCC) -MMD -MP -c $< -o $@
 
@@ -60,7 +60,7 @@ endef
 $(foreach p,$(FUZZ_PLANTS),$(eval $(call FUZZ_PLANT,$(word 1,$(subst :, ,$(p))),$(word 2,$(subst :, ,$(p))),$(word 3,$(subst :, ,$(p))))))
 
 # with libFuzzer, where there is a clang that has it
-$(FZ)/clang/%.o: %.c Makefile mk/fuzz.mk
+$(FZ)/clang/%.o: %.c Makefile campaigns/fuzz/fuzz.mk
 	@mkdir -p $(@D)
 	@$(FUZZ_CLANG) -MMD -MP -c $< -o $@
 

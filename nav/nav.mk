@@ -12,7 +12,7 @@ nav_image   = $(U)/nav$(filter-out 12,$(1))/firmware.elf
 
 # NAV_IMAGE(folder, states)
 define NAV_IMAGE
-$(U)/$(1)/%.o: %.c Makefile mk/nav.mk
+$(U)/$(1)/%.o: %.c Makefile nav/nav.mk
 	@mkdir -p $$(@D)
 	@$$(AVR_CC) $$(NAVIMG_FLAGS) -DNAV_STATES=$(2) -MMD -MP -c $$< -o $$@
 
@@ -23,7 +23,7 @@ $(U)/$(1)/firmware.hex: $(U)/$(1)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $$< $$@
 
 # one of the two ways in which the PC computes as the chip does; the other is that each constant has an f
-$(H)/nav_replay_$(2): nav/tests/nav_replay.c $(filter-out hal/avr/%,$(NAVIMG_SRC)) $(wildcard hal/*.h hal/host/*.h nav/image/*.h nav/lib/*.h) Makefile mk/nav.mk
+$(H)/nav_replay_$(2): nav/tests/nav_replay.c $(filter-out hal/avr/%,$(NAVIMG_SRC)) $(wildcard hal/*.h hal/host/*.h nav/image/*.h nav/lib/*.h) Makefile nav/nav.mk
 	@mkdir -p $$(@D)
 	@$$(HOST_CC) -std=c11 -O2 -g -ffp-contract=off -D_POSIX_C_SOURCE=200809L -DNAV_STATES=$(2) $$(NAV_RINGS) $$(WARNINGS) $$(NAVIMG_INC) -Ihal/host \
 	    $$(filter-out nav/image/main.c,$$(filter %.c,$$^)) -lm -o $$@

@@ -7,11 +7,11 @@ PAPERS_C   := $(wildcard lib/filters/src/*.c) $(LAW_SUPPORT) host_tests/support/
 PAPERS_OBJ := $(PAPERS_CPP:%.cpp=$(P)/%.o) $(PAPERS_C:%.c=$(P)/%.o)
 RUNS ?= 10000
 
-$(P)/%.o: %.cpp Makefile mk/papers.mk
+$(P)/%.o: %.cpp Makefile campaigns/papers/papers.mk
 	@mkdir -p $(@D)
 	@$(HOST_CXX) -std=c++17 -O2 -g -Wall -Wextra -Wconversion -Wshadow -Werror -Ihost_tests -Inav/tests -Ilib/machine/src -Ilib/filters/src -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
 
-$(P)/%.o: %.c Makefile mk/papers.mk
+$(P)/%.o: %.c Makefile campaigns/papers/papers.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) -MMD -MP -c $< -o $@
 
@@ -34,15 +34,15 @@ COUNTED    := $(patsubst lib/filters/src/%.c,$(P)/operations/%.o,$(filter-out $(
 COUNT_CXX  := $(HOST_CXX) -std=gnu++20 -O0 -Ilib/machine/src -Ilib/filters/src -I$(OPERATIONS) -Ihost_tests/papers $(ONLY_002)
 $(P)/operations/fx.o: COUNT_CXX += -DCOUNTING_PRIMITIVES
 
-$(P)/operations/%.o: lib/filters/src/%.c $(wildcard lib/filters/src/*.h) $(MACHINE_H) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
+$(P)/operations/%.o: lib/filters/src/%.c $(wildcard lib/filters/src/*.h) $(MACHINE_H) $(OPERATIONS)/counting.hpp Makefile campaigns/papers/papers.mk
 	@mkdir -p $(@D)
 	@sed -E 's/\[([^][]+)\]/[counting::index(\1)]/g; 1s|^|#line 1 "$<"\n|' $< | $(COUNT_CXX) -include $(OPERATIONS)/counting.hpp -x c++ -c - -o $@
 
-$(P)/operations/main.o: $(OPERATIONS)/main.cpp $(wildcard lib/filters/src/*.h) $(MACHINE_H) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
+$(P)/operations/main.o: $(OPERATIONS)/main.cpp $(wildcard lib/filters/src/*.h) $(MACHINE_H) $(OPERATIONS)/counting.hpp Makefile campaigns/papers/papers.mk
 	@mkdir -p $(@D)
 	@$(COUNT_CXX) -Wall -Wextra -Werror -c $< -o $@
 
-$(P)/operations/state_bytes.o: $(OPERATIONS)/state_bytes.c $(OPERATIONS)/state_bytes.h host_tests/bitexact/packed_states.h $(wildcard lib/*/src/*.h) Makefile mk/papers.mk
+$(P)/operations/state_bytes.o: $(OPERATIONS)/state_bytes.c $(OPERATIONS)/state_bytes.h host_tests/bitexact/packed_states.h $(wildcard lib/*/src/*.h) Makefile campaigns/papers/papers.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(ONLY_002) -Ihost_tests -I$(OPERATIONS) $(WARNINGS) -c $< -o $@
 
@@ -50,7 +50,7 @@ $(P)/operations002: $(COUNTED) $(P)/operations/main.o $(P)/operations/state_byte
 	@$(HOST_CXX) $^ -lm -o $@
 
 # and the synthesised filters, whose headers tell how many products a sample takes
-$(P)/operations/family.o: $(OPERATIONS)/family.cpp $(wildcard lib/filters/src/*.h) $(MACHINE_H) $(OPERATIONS)/counting.hpp Makefile mk/papers.mk
+$(P)/operations/family.o: $(OPERATIONS)/family.cpp $(wildcard lib/filters/src/*.h) $(MACHINE_H) $(OPERATIONS)/counting.hpp Makefile campaigns/papers/papers.mk
 	@mkdir -p $(@D)
 	@$(COUNT_CXX) -Wall -Wextra -Werror -c $< -o $@
 

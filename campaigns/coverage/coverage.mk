@@ -1,6 +1,6 @@
 # Coverage of lib by the unit tests (gcov; built apart, without sanitizers) and of the AVR binary by the system tests.
 C := $(B)/coverage
-# what watches over the sensor and the stages is judged beside lib, and the navigation image's link (mk/nav_lib_coverage.mk)
+# what watches over the sensor and the stages is judged beside lib, and the navigation image's link (campaigns/coverage/nav_lib_coverage.mk)
 SUPERVISION   := $(wildcard $(addprefix firmware/*/,sensor_watch.c health.c pipeline.c coast.c supervisor.c))
 # test_nav_flight, a minute of flights, runs no line of nav/lib that the short ones leave
 COVERAGE_SRC   := $(filter-out nav/tests/test_nav_flight.c,$(TEST_SRC))
@@ -10,7 +10,7 @@ COVERAGE_TESTS := $(addprefix $(C)/,$(basename $(notdir $(COVERAGE_SRC))))
 COVERAGE_FLAGS := -O1
 $(C)/lib/%.o $(SUPERVISION:%.c=$(C)/%.o) $(COVERAGE_SRC:%.c=$(C)/%.o): COVERAGE_FLAGS := -O0 --coverage
 
-$(C)/%.o: %.c Makefile mk/coverage.mk
+$(C)/%.o: %.c Makefile campaigns/coverage/coverage.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(COVERAGE_FLAGS) -MMD -MP -c $< -o $@
 

@@ -11,7 +11,7 @@ NAV_FLAGS    := -O2 -ffp-contract=off -Inav/lib
 
 # a variant, in a folder, with flags
 define nav_variant
-$(2)/nav/$(1)/%.o: %.c Makefile mk/nav_lib.mk
+$(2)/nav/$(1)/%.o: %.c Makefile nav/nav_lib.mk
 	@mkdir -p $$(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(NAV_FLAGS) $(NAV_OF_$(1)) -DNAV_VARIANT=$(1) $(WARNINGS) $(3) -MMD -MP -c $$< -o $$@
 
@@ -24,7 +24,7 @@ $(foreach variant,$(NAV_VARIANTS),$(eval $(call nav_variant,$(variant),$(H),$(SA
 $(NAV_TESTS): $(NAV_VARIANTS:%=$(H)/nav/%.o)
 
 # nav/lib alone in the simulated chip: cycles of each slot, flash, stack, and every bit beside the PC's (build/host/nav_chip_12 ELF SECONDS)
-NAV_CHIP_DEPS := nav/tests/chip/nav_slots.c nav/tests/chip/nav_box.h $(wildcard nav/lib/*) Makefile mk/nav_lib.mk
+NAV_CHIP_DEPS := nav/tests/chip/nav_slots.c nav/tests/chip/nav_box.h $(wildcard nav/lib/*) Makefile nav/nav_lib.mk
 $(U)/nav_slots_%.elf: $(NAV_CHIP_DEPS)
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=gnu11 -mmcu=atmega328p $(AVR_SMALL) -ffp-contract=off -ffunction-sections $(WARNINGS) -DNAV_STATES=$* -Inav/lib -Wl,--gc-sections \

@@ -22,18 +22,18 @@ ANY_FILTER  := lib/filters/src/filter_list
 CHIP_OBJ    := $(patsubst %.c,$(U)/tests/%.o,$(filter-out $(ANY_FILTER).c,$(CHIP_COMMON))) $(U)/tests/host_tests/chip/unity_chip.o $(U)/tests/unity.o
 UNITY_CHIP  := -include host_tests/chip/unity_chip.h
 
-$(U)/tests/%.o: %.c Makefile mk/chip_tests.mk
+$(U)/tests/%.o: %.c Makefile host_tests/chip/chip_tests.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(CHIP_FLAGS) -MMD -MP -c $< -o $@
 
 $(foreach t,$(UNITY_1) $(UNITY_2),$(call test_object,$(t))) $(U)/tests/host_tests/chip/unity_chip.o: CHIP_FLAGS += $(UNITY_CHIP)
 
 # not gnu11: there Unity takes the macro AVR as a reason to keep its words where it does not read them
-$(U)/tests/unity.o: $(UNITY_DIR)/unity.c host_tests/chip/unity_chip.h Makefile mk/chip_tests.mk
+$(U)/tests/unity.o: $(UNITY_DIR)/unity.c host_tests/chip/unity_chip.h Makefile host_tests/chip/chip_tests.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=c11 -mmcu=atmega328p $(AVR_SMALL) -ffunction-sections -I$(BITEXACT) $(UNITY_CHIP) -c $< -o $@
 
-$(U)/tests/$(ANY_FILTER)_1.o $(U)/tests/$(ANY_FILTER)_2.o: $(ANY_FILTER).c Makefile mk/chip_tests.mk
+$(U)/tests/$(ANY_FILTER)_1.o $(U)/tests/$(ANY_FILTER)_2.o: $(ANY_FILTER).c Makefile host_tests/chip/chip_tests.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(CHIP_FLAGS) $(call linked_flag,$(if $(findstring _1.o,$@),$(CHIP_FIRST),$(CHIP_SECOND))) -MMD -MP -c $< -o $@
 
@@ -53,6 +53,6 @@ SEQUENCES := $(H)/filter_sequence $(H)/filter_sequence_1 $(H)/filter_sequence_2
 $(H)/filter_sequence_1: SEQUENCE_OF = $(call linked_flag,$(CHIP_FIRST))
 $(H)/filter_sequence_2: SEQUENCE_OF = $(call linked_flag,$(CHIP_SECOND))
 $(SEQUENCES): $(SEQUENCE) $(BITEXACT)/output_pc.c $(FILTER_SRC) $(wildcard lib/*/src/*.h host_tests/support/*.h $(BITEXACT)/*.h) \
-              Makefile mk/chip_tests.mk
+              Makefile host_tests/chip/chip_tests.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) $(SANITIZE) $(SEQUENCE_OF) -I$(BITEXACT) $(filter %.c,$^) -lm -o $@

@@ -8,7 +8,7 @@ $(U)/%/firmware.hex: $(U)/%/firmware.elf
 
 # Faults planted for it. PLANT(name, source, sed's command): the source with one change, in a folder of its own; sed must find its place.
 define PLANT
-$(X)/planted/$(1)/$(notdir $(2)): $(2) mk/second.mk
+$(X)/planted/$(1)/$(notdir $(2)): $(2) second/second.mk
 	@mkdir -p $$(@D)
 	@sed '$(3)' $$< > $$@
 	@! cmp -s $$< $$@ || { echo "second: planted fault $(1): its place in $(2) is gone" >&2; rm $$@; exit 1; }
@@ -18,7 +18,7 @@ endef
 define PLANT_FIRMWARE
 $(call PLANT,firmware/$(1),$(2),$(3))
 $(X)/planted/firmware/$(1)/plant.o: IMAGE_FILTERS = $(CHOSEN_FILTERS)
-$(X)/planted/firmware/$(1)/plant.o: $(X)/planted/firmware/$(1)/$(notdir $(2)) $(U)/filters.txt Makefile mk/images.mk mk/second.mk
+$(X)/planted/firmware/$(1)/plant.o: $(X)/planted/firmware/$(1)/$(notdir $(2)) $(U)/filters.txt Makefile mk/images.mk second/second.mk
 	@$$(AVR_CC) $$(AVR_FLAGS) -I$(dir $(2)) -MMD -MP -c $$< -o $$@
 
 $(X)/planted/firmware/$(1)/firmware.elf: $(X)/planted/firmware/$(1)/plant.o $(AVR_OBJ)
@@ -33,13 +33,13 @@ endef
 SECOND_SIM_CC = $(HOST_CC) -std=gnu11 -O2 $(WARNINGS) -Isim -Ilib/adxl345/src \
                 $$(pkg-config --cflags simavr | sed 's/-I/-isystem /g') -isystem /usr/include/simavr
 SECOND_SIM_OBJ := $(SIMRUN_SRC:%.c=$(X)/%.o)
-$(X)/sim/%.o: sim/%.c Makefile mk/host.mk mk/second.mk
+$(X)/sim/%.o: sim/%.c Makefile mk/host.mk second/second.mk
 	@mkdir -p $(@D)
 	@$(SECOND_SIM_CC) -MMD -MP -c $< -o $@
 
 define PLANT_SIMRUN
 $(call PLANT,simrun/$(1),$(2),$(3))
-$(X)/planted/simrun/$(1)/plant.o: $(X)/planted/simrun/$(1)/$(notdir $(2)) Makefile mk/host.mk mk/second.mk
+$(X)/planted/simrun/$(1)/plant.o: $(X)/planted/simrun/$(1)/$(notdir $(2)) Makefile mk/host.mk second/second.mk
 	@$$(SECOND_SIM_CC) -MMD -MP -c $$< -o $$@
 
 $(X)/planted/simrun/$(1)/simrun: $(X)/planted/simrun/$(1)/plant.o $(SECOND_SIM_OBJ)
