@@ -31,7 +31,8 @@ def rows(text):
 def commit():
     def git(*words):
         return subprocess.run(["git", *words], capture_output=True, text=True, check=False).stdout.strip()
-    return (git("rev-parse", "--short=8", "HEAD") or "no git") + ("+" if git("status", "--porcelain", "--", ".", ":!docs/results", ":!docs/papers.md") else "")
+    changes = git("status", "--porcelain", "--", ".", ":!docs/results", ":!docs/papers.md")
+    return (git("rev-parse", "--short=8", "HEAD") or "no git") + ("+" if changes else "")
 
 
 def page(text, step, result):

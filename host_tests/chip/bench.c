@@ -1,7 +1,7 @@
 /*
- * Runs on the ATmega328P (simavr): cycles of each filter of its part of the list (BENCH_LIST, campaigns/bench/bench.mk) beside its
- * float yardstick, and in the first part (BENCH_THE_REST) of the noise estimate, the angles and the formatting of a
- * row, call included, over streams that look for the longest path. On the UART (1 Mbaud), for campaigns/bench/bench.py:
+ * Runs on the ATmega328P (simavr): cycles of each filter of its part of the list (BENCH_LIST) beside its float twin,
+ * and in the first part (BENCH_THE_REST) of the noise estimate, the angles and the formatting of a row, call included,
+ * over streams that look for the longest path. On the UART (1 Mbaud), for campaigns/bench/bench.py:
  *
  *   =NAME REGIME RATE    a section: then 8 hexadecimal digits per call, cycles of ours and of the float one (0: none)
  *   +stack NAME BYTES    deepest stack of a call seen in the section, return address included; another for float_NAME

@@ -79,12 +79,17 @@ def image_for(options, fw=FW):
     return image_with(words[words.index("--filter") + 1])
 
 
+def lasts_a_minute(options):
+    """A profile slows a run down, and a long one reaches no line that the short ones leave."""
+    return "--max-ms" in options and float(options[options.index("--max-ms") + 1]) >= 60_000
+
+
 def simrun(name, stream, *options, fw=FW, expect=0, judge=True):
     """A run, of which simrun finds every row right unless judge=False; returns (rows, notes, served, stats)."""
     base = OUT / name
     fw = image_for(options, fw)
     options += ("--clock-start", CLOCK_STARTS.get(pathlib.Path(fw).parent.name, "0"), *(["--judge"] if judge else []))
-    if PROFILES and fw == FW and "--profile" not in options:
+    if PROFILES and fw == FW and "--profile" not in options and not lasts_a_minute(options):
         options += ("--profile", pathlib.Path(PROFILES) / f"{OUT.name}-{next(RUN_NUMBERS):04}.csv")
     done = run(SIMRUN, "--fw", fw, "--in", stream, "--out", f"{base}.csv", "--served", f"{base}.served.csv", "--stats", f"{base}.json",
                *options, expect=expect)
