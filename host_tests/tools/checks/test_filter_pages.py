@@ -155,7 +155,8 @@ def defaults_and_units_are_those_of_the_library():
 @test
 def every_filter_has_its_page_and_its_image():
     pages = "".join(text_of(name) for name in WORDS if name.startswith("filters-"))
-    assert [name for name in laws.names() if f"`{name}`" not in pages and f"## {name}\n" not in pages] == []
+    lacking = [name for name in laws.names() if f"`{name}`" not in pages and f"## {name}\n" not in pages]
+    assert not lacking, f"no page docs/filters-*.md describes {lacking}"
     makefile = pathlib.Path("mk/images.mk").read_text(encoding="utf-8")
     first, *sets = re.search(r"^FILTER_SETS +:= (.*)$", makefile, re.M)[1].split()
     rows = table_rows(text_of("choosing-a-filter"), ["image", "filters"])
