@@ -102,8 +102,9 @@ static void test_the_calibration_outlives_another_version(void)
  */
 static void test_the_places_of_a_record(void)
 {
-    static const char other[] = "the saved record has another form: raise SETTINGS_VERSION, or settings that were saved "
-                                "before are read at wrong places; then enter the new bytes here";
+    static const char other[] =
+        "the saved record has another form: raise SETTINGS_VERSION, or settings that were saved "
+        "before are read at wrong places; then enter the new bytes here";
     talk_start();
     talk_type("offset 1 -2 3");
     talk_type("scale 260 265 256");
