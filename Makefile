@@ -149,7 +149,7 @@ test:
 	@python3 mk/scripts/progress.py $(MAKE) -j2 --no-print-directory $$($(TEST_ENV) python3 campaigns/tests/test_table.py targets)
 	@$(TEST_ENV) python3 campaigns/tests/run_tests.py
 
-## t: build and run one test (T=sprf; T="system_tests equals": some of its tests; T=list: all names)
+## t: build and run one test (T=sprf; T="sprf golden": both; T="system_tests equals": some of its tests; T=list: all names)
 t:
 	@sh tools/deps.sh test
 	@$(TEST_ENV) python3 campaigns/tests/test_table.py t $(T)

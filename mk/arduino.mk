@@ -47,6 +47,8 @@ $(A)/libtiltfilters.so: $(LIBRARY).zip mk/arduino.mk
 ## arduino: build/library/tilt-filters.zip, a library for the Arduino IDE and PlatformIO; its sketches in the simulated UNO (1 minute)
 arduino:
 	@sh tools/deps.sh arduino
+	@$(MAKE) $(LIBRARY).zip
+	@python3 host_tests/tools/scripts/arduino_rules.py $(LIBRARY) lib/filters
 	@$(MAKE) arduino_images
 	@python3 host_tests/tools/scripts/test_arduino.py
 

@@ -2,7 +2,8 @@
 the PC, `make t T=NAME` one; campaigns/breakages/breakages.py takes its judges from here.
 
     test_table.py targets [quick]     what make has to build for all, or for the unit tests
-    test_table.py t NAME [WORD...]    builds and runs one; the words go to its program (system_tests takes parts of names)
+    test_table.py t NAME [WORD...]    builds and runs one; behind a test in C the words are further tests, else they go to its program
+                                      (system_tests takes parts of names)
 """
 import difflib
 import functools
@@ -114,17 +115,19 @@ def one(words):
         return 0
     if not words:
         sys.exit("t: which test? make t T=filters (make t T=list lists all names)")
-    name, *further = words
-    test = tests[found(name, tests)]
-    if further and len(test.command) == 1:
-        sys.exit(f"t: {name} runs whole: {' '.join(further)} does not choose among its tests (it does for those in Python)")
-    if test.command[0] == VENV:
+    chosen = [tests[found(words[0], tests)]]
+    further = words[1:]
+    if len(chosen[0].command) == 1:
+        chosen += [tests[found(name, tests)] for name in further]
+        further = []
+    if any(test.command[0] == VENV for test in chosen):
         subprocess.run(["sh", "tools/deps.sh", "design", "tilt"], check=False)
-    if test.targets:
-        built = subprocess.run(["make", "-s", "-j2", *test.targets], check=False)
+    targets = dict.fromkeys(target for test in chosen for target in test.targets)
+    if targets:
+        built = subprocess.run(["make", "-s", "-j2", *targets], check=False)
         if built.returncode != 0:
             return built.returncode
-    return subprocess.run([*test.command, *further], check=False).returncode
+    return max(abs(subprocess.run([*test.command, *further], check=False).returncode) for test in chosen)
 
 
 def main():

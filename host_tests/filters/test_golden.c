@@ -47,12 +47,13 @@ static void begin_as_named(char *head)
 
 static void step_as_told(char *line, unsigned number)
 {
-    char place[96];
+    char place[140];
     const char *z = next_field(&line);
     FOR_EACH_KIND(kind)
     {
         const char *wanted = next_field(&line);
-        snprintf(place, sizeof place, GOLDEN ":%u: %s", number, filter_listed_name((filter_kind_t)kind));
+        snprintf(place, sizeof place, GOLDEN ":%u: %s; if you mean the change: make golden", number,
+                 filter_listed_name((filter_kind_t)kind));
         TEST_ASSERT_NOT_NULL_MESSAGE(wanted, place);
         int32_t x = (z == NULL) ? coast_only(&filters[kind])
                                 : filter_update(&filters[kind], (int16_t)strtol(z, NULL, 10));

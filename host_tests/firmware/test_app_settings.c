@@ -6,6 +6,7 @@
 #include "filter_list.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
+#include "settings/settings_table.h"
 #include "support/roles.h"
 #include "support/talk.h"
 #include "unity.h"
@@ -130,7 +131,7 @@ static void test_the_listing_can_be_typed_again(void)
     size_t before = board.note_count;
     talk_type("settings");
     size_t lines = board.note_count - before;
-    TEST_ASSERT_EQUAL_size_t(8 + 3 + 5, lines);
+    TEST_ASSERT_EQUAL_size_t(SETTING_PARAMETERS + 5, lines);
     for (size_t i = 0; i < lines; i++) {
         snprintf(listed[i], sizeof listed[i], "%s", board.notes[before + i]);
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(listed[i], ": "), listed[i]);

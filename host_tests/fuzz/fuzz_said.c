@@ -7,6 +7,9 @@
 #include "filter_list.h"
 #include "fuzz.h"
 #include "fuzz_commands.h"
+#include "settings/settings_table.h"
+
+_Static_assert(SETTING_PARAMETERS == FUZZ_SETTINGS + FUZZ_VECTORS, "one setting more: fuzz_protocol.c has to know it");
 
 enum { ROW_FLAGS = 0x7FF };
 

@@ -155,8 +155,12 @@ def defaults_and_units_are_those_of_the_library():
 @test
 def every_filter_has_its_page_and_its_image():
     pages = "".join(text_of(name) for name in WORDS if name.startswith("filters-"))
-    assert [name for name in laws.names() if f"`{name}`" not in pages and f"## {name}\n" not in pages] == []
+    lacking = [name for name in laws.names() if f"`{name}`" not in pages and f"## {name}\n" not in pages]
+    assert not lacking, f"no page docs/filters-*.md describes {lacking}"
     makefile = pathlib.Path("mk/images.mk").read_text(encoding="utf-8")
+    for name, filters in re.findall(r"^FILTERS_(\w+) +:= (.*)$", makefile, re.M):
+        line = f"- `{name}`: " + " ".join(f"`{each}`" for each in filters.split())
+        assert f"\n{line}\n" in text_of("protocol"), f"docs/protocol.md, Images: no line {line}"
     first, *sets = re.search(r"^FILTER_SETS +:= (.*)$", makefile, re.M)[1].split()
     rows = table_rows(text_of("choosing-a-filter"), ["image", "filters"])
     for name, (image, filters) in zip([first, *sets], rows, strict=True):

@@ -60,5 +60,20 @@ def each_limit_is_tried_by_a_test_that_takes_it_from_the_table():
         assert re.search(rf"\bLIMIT_{name}\b", text), f"{name}: {file}.c does not use LIMIT_{name}"
 
 
+def without_a_row(page):
+    """Settings of the firmware's table that have no row in the table of commands of this page."""
+    table = pathlib.Path("firmware/settings/settings_table.c").read_text(encoding="utf-8")
+    names = re.findall(r'^    X\("(\w+)", ', table, re.M)
+    assert {"filter", "every", "level"} <= set(names), names
+    return [name for name in names if f"\n| `{name} " not in page]
+
+
+@test
+def each_setting_has_its_row_in_the_protocol():
+    page = pathlib.Path("docs/protocol.md").read_text(encoding="utf-8")
+    assert not without_a_row(page), f"docs/protocol.md: no row `| `NAME ...` |` for {without_a_row(page)}"
+    assert without_a_row(page.replace("\n| `every N`", "\n| `each N`")) == ["every"]
+
+
 if __name__ == "__main__":
     raise SystemExit(run_all())

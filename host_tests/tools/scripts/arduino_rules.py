@@ -1,7 +1,8 @@
 """What the Arduino library specification (docs.arduino.cc/arduino-cli/library-specification) and PlatformIO's library.json ask of a folder.
 
 findings(folder) -> a sentence for each breach, with file and line. Written from the specification's words; part of test_arduino.py.
-`python3 host_tests/tools/scripts/arduino_rules.py build/library/tilt-filters lib/filters` writes lib/filters/keywords.txt anew from the headers.
+`python3 host_tests/tools/scripts/arduino_rules.py build/library/tilt-filters lib/filters`, which `make arduino` runs, writes lib/filters/keywords.txt
+from the headers where it differs.
 """
 import json
 import pathlib
@@ -101,7 +102,7 @@ def keywords_findings(folder):
         found[word] = number, kind
     names = public_names(folder)
     said += [f"{path}:{number}: no header declares {word} as {kind}" for word, (number, kind) in found.items() if names.get(word) != kind]
-    return said + [f"{path}: {name} is missing" for name in names if name not in found]
+    return said + [f"{path}: {name} is missing: make arduino writes it" for name in names if name not in found]
 
 
 def layout_findings(folder):
@@ -116,7 +117,9 @@ def layout_findings(folder):
 def write_keywords(library, folder):
     names = public_names(library)
     lines = [f"{name}\t{kind}\n" for kind in KEYWORDS for name in names if names[name] == kind]
-    (folder / "keywords.txt").write_text("".join(lines), encoding="utf-8")
+    path = folder / "keywords.txt"
+    if path.read_text(encoding="utf-8") != "".join(lines):
+        path.write_text("".join(lines), encoding="utf-8")
 
 
 if __name__ == "__main__":
