@@ -1,7 +1,7 @@
 # Boards with an ATmega328P: what mk/boards.txt says of the one that BOARD names.
 BOARD  ?= uno
 BOARDS := $(shell awk '!/^\#/ { print $$1 }' mk/boards.txt)
-$(if $(filter 1,$(words $(filter $(BOARD),$(BOARDS)))),,$(error BOARD: there is no board '$(BOARD)'; boards: $(BOARDS)))
+$(if $(filter 1,$(words $(filter $(BOARD),$(BOARDS)))),,$(error BOARD: no board '$(BOARD)': choose from $(BOARDS)))
 BOARD_FACTS  := $(shell awk '$$1 == "$(BOARD)"' mk/boards.txt)
 BOARD_FLASH  := $(word 3,$(BOARD_FACTS))
 CPU_HZ       := $(word 4,$(BOARD_FACTS))
