@@ -1,12 +1,12 @@
 # Coverage of lib by the unit tests (gcov; built apart, without sanitizers) and of the AVR binary by the system tests.
 C := $(B)/coverage
-# what watches over the sensor and the stages is judged beside lib, and the navigation image's link (mk/nav_lib_coverage.mk)
+# the supervision of sensor and stages is judged beside lib, and the navigation image's link (mk/nav_lib_coverage.mk)
 SUPERVISION   := $(wildcard $(addprefix firmware/*/,sensor_watch.c health.c pipeline.c coast.c supervisor.c))
 # test_nav_flight, a minute of flights, runs no line of nav/lib that the short ones leave
 COVERAGE_SRC   := $(filter-out nav/tests/test_nav_flight.c,$(TEST_SRC))
 COVERAGE_TESTS := $(addprefix $(C)/,$(basename $(notdir $(COVERAGE_SRC))))
 
-# as it is written, so that a line is a line; the tests too, for what they call inline from the headers of lib; gcovr keeps what is judged
+# unoptimised, so that a line is a line; the tests too, for what they inline from the headers of lib; gcovr keeps what is judged
 COVERAGE_FLAGS := -O1
 $(C)/lib/%.o $(SUPERVISION:%.c=$(C)/%.o) $(COVERAGE_SRC:%.c=$(C)/%.o): COVERAGE_FLAGS := -O0 --coverage
 
@@ -44,8 +44,8 @@ $(C)/probe.prof: $(C)/probe.elf $(S)/simrun
 	@$(S)/simrun --fw $< --in sim/streams/tilt-fast.csv --out $(C)/probe.txt --profile $@ --max-ms 100 2> $(C)/probe.log; \
 	    test $$? -eq 8 || { cat $(C)/probe.log; exit 1; }
 
-# A profile slows the simulator down, hence the factor for the tests of its speed, and the minutes in which nothing is lost are left
-# out: they run next to no line that the others do not. Always anew; two halves side by side.
+# Profiling slows the simulator down, hence the factor for the tests of its speed, and the minutes in which nothing is lost are left out: they run
+# hardly any line that the others do not. Always run again; two halves side by side.
 COVERAGE_RUNS := $(C)/runs/equal $(C)/runs/rest
 $(C)/runs/equal: RUNS_OF := chip_equals
 $(C)/runs/rest: RUNS_OF := -chip_equals -nothing_lost
@@ -54,7 +54,7 @@ $(COVERAGE_RUNS): system_images
 	@PROFILES=$@ python3 host_tests/system/system_tests.py $(RUNS_OF) > $(C)/system_$(@F).log 2>&1 || \
 	    { grep ':FAIL' $(C)/system_$(@F).log; exit 1; }
 
-## coverage: lines and branches of lib by the unit tests, lines of the AVR binary by the system tests (6 minutes)
+## coverage: measure lines and branches of lib in the unit tests, lines of the AVR binary in the system tests (6 minutes)
 coverage:
 	@sh tools/deps.sh coverage
 	@$(MAKE) -j2 $(COVERAGE_RUNS) $(C)/host.json $(C)/probe.prof

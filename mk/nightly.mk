@@ -1,6 +1,6 @@
-# What takes hours.
+# The nightly run: hours.
 
-## nightly: every test, proof, campaign and measurement whole, each with its time; stale pages fail (a night and more: mutants and soak)
+## nightly: run every test, proof, campaign and measurement in full, with times; stale pages fail (a night and more: mutants and soak)
 nightly:
 	@bash campaigns/nightly.sh
 

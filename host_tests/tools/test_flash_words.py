@@ -31,7 +31,7 @@ FAILURES = (
      "         0x12 != 0x13\navrdude: verification error; content mismatch", "uno",
      "flash: verification failed: try"),
     ("avrdude warning: verification mismatch", "uno", "flash: verification failed"),
-    ("avrdude error: Yikes!  Invalid device signature.", "uno", f"flash: the chip at {AT} is no ATmega328P"),
+    ("avrdude error: Yikes!  Invalid device signature.", "uno", f"flash: the chip at {AT} is not an ATmega328P"),
     ("avrdude: something that nobody has seen", "uno", "flash: avrdude ended with status 1; "),
 )
 

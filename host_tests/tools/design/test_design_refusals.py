@@ -67,7 +67,7 @@ REFUSED = (
     ([*BASE, "--noise-gain", "inf"], ("inf", "finite", "nearest: --noise-gain 0.999")),
     ([*BASE, "--noise-gain", "inf", "--error", "1", "--at", "100"], ("inf", "finite", "nearest: --noise-gain 0.5")),
     ([*BASE, "--noise-gain", "nan", "--error", "1", "--at", "100"], ("nan", "finite", "nearest: --noise-gain 0.5")),
-    ([*BASE, "--noise-gain", "0.4", "--error", "1", "--at", "100"], ("both bounds", "there is no filter with any error", "nearest: --noise-gain 0.5")),
+    ([*BASE, "--noise-gain", "0.4", "--error", "1", "--at", "100"], ("both bounds", "no filter with any error", "nearest: --noise-gain 0.5")),
     ([*BASE, "-k", "0", "-l", "1", "--noise-gain", "0.00001"], ("can be computed", "nearest: --noise-gain 0.0001")),
     ([*BASE, "-v", "9", "--noise-gain", "0.6"], ("(9, 0, 0)", "0.99998", "nearest: --noise-gain 0.99998")),
     ([*BASE, "-v", "5", "--noise-gain", "0.6"], ("(5, 0, 0)", "nearest: --noise-gain 0.99", "or -k 0 -l 4")),
