@@ -27,7 +27,7 @@ def complaint(names, legal):
     for name in names:
         if name not in legal:
             near = [ELSEWHERE[name]] if name in ELSEWHERE else difflib.get_close_matches(name.upper(), sorted(legal), 1, 0.6)
-            return f"no variable {name}:  " + (f"did you mean {near[0]}?" if near else "`make help` lists the targets and their variables")
+            return f"no variable {name}: " + (f"did you mean {near[0]}?" if near else "`make help` lists the targets and their variables")
     return ""
 
 

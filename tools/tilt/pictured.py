@@ -56,22 +56,22 @@ def columns_in(path):
 
 def filters_in(names):
     """Suffix of each filter's columns in a file: "" as from the firmware, "_kf" as from `tilt replay` with several; [""] without any."""
-    behind = [name.removeprefix("roll_cdeg") for name in names if name == "roll_cdeg" or name.startswith("roll_cdeg_")]
-    return behind or [""]
+    suffixes = [name.removeprefix("roll_cdeg") for name in names if name == "roll_cdeg" or name.startswith("roll_cdeg_")]
+    return suffixes or [""]
 
 
 def load(path, from_s=None, to_s=None, progress=None):
     """One Pictured per filter in the file, of the part between two times from the start. TiltError: the file is not a stream, or has no row
     there."""
     names = columns_in(path)
-    behind = filters_in(names)
-    extra = [name + end for end in behind for name in (*FILTERED.values(), *(("flags",) if end else ())) if name + end in names]
+    suffixes = filters_in(names)
+    extra = [name + end for end in suffixes for name in (*FILTERED.values(), *(("flags",) if end else ())) if name + end in names]
     whole = stream.read(path, extra, progress)
     t_s = whole.t_us * 1e-6
     part = slice(*np.searchsorted(t_s, [-1.0 if from_s is None else from_s, np.inf if to_s is None else to_s]).tolist())
     if part.start >= part.stop:
         raise TiltError(f"{path}: no rows from {from_s or 0:g} s to {whole.seconds if to_s is None else to_s:g} s; it has {whole.seconds:.1f} s")
-    return [of_filter(pathlib.Path(path).name, whole, t_s, part, end) for end in behind]
+    return [of_filter(pathlib.Path(path).name, whole, t_s, part, end) for end in suffixes]
 
 
 def of_filter(name, whole, t_s, part, end):

@@ -272,7 +272,7 @@ class Refused(Case):
         self.refused("use one of .png .svg .html", path, "-o", self.folder / "out.pdf")
         self.refused("no rows from 9 s to", path, "-o", out, "--from", "9")
         self.refused("absent.csv: cannot be read", self.folder / "absent.csv", "-o", out)
-        self.refused("cannot be written", path, "-o", self.folder / "no" / "out.png")
+        self.refused("cannot write it", path, "-o", self.folder / "no" / "out.png")
 
 
 class Page(Case):

@@ -199,7 +199,7 @@ class Session:
             self.port.send(command)
 
     def wait_for_port(self):
-        """False: not to be waited for, or ended meanwhile."""
+        """False: do not wait, or ended while waiting."""
         self.recorder.outage()
         self.port.baud_at_next_opening(self.args.baud)
         if self.args.no_reconnect:
