@@ -16,23 +16,23 @@ LIB_SRC  := $(wildcard lib/filters/src/*.c lib/tilt/src/*.c lib/adxl345/src/*.c)
 APP_SRC  := $(wildcard firmware/*/*.c)
 INCLUDES := -Ihal -Ifirmware $(addprefix -I,$(LIB_DIRS))
 
-# a variable that no makefile knows would be ignored, and something else done than was asked for
+# make itself would ignore a variable that no makefile knows
 ifeq ($(MAKELEVEL),0)
 TYPED    := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
 MISSPELT := $(if $(TYPED),$(shell python3 mk/scripts/misspelt.py $(TYPED)))
 $(if $(MISSPELT),$(error $(MISSPELT)))
 endif
 
-# all parts of this file, by name wherever they are
+# all parts of this file, sorted by name whatever folder they are in
 RULES := $(wildcard $(addsuffix *.mk,mk/ checks/ nav/ second/ tools/*/ campaigns/ campaigns/*/ host_tests/*/))
 RULES := $(foreach rule,$(sort $(foreach rule,$(RULES),$(notdir $(rule))|$(rule))),$(lastword $(subst |, ,$(rule))))
 
-## help: this list
+## help: list the targets
 help:
 	@echo "tilt-uno: tilt from an Arduino UNO and an ADXL345 that outliers cannot fool"
 	@sed -n 's/^## \([a-z]*\): /  make \1|/p' Makefile $(RULES) | awk -F'|' '{printf "%-16s %s\n", $$1, $$2}'
 
-## deps: install what any target needs (says what, before it does)
+## deps: install what any target needs (prints what, first)
 deps:
 	@sh tools/deps.sh sim test check flash tilt
 	@sh tools/deps.sh second || echo "deps: make second will be skipped"
@@ -43,7 +43,7 @@ deps:
 include mk/boards.mk
 U := $(B)/$(BOARD_FOLDER)
 AVR_CC      := avr-gcc
-# what makes the smallest image with avr-gcc 5.4.0 (and no table of a switch in RAM); the filters keep their speed
+# the smallest image with avr-gcc 5.4.0 (and no switch tables in RAM); the filters keep their speed
 AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -fshort-enums -fno-inline-small-functions \
                -fno-tree-dominator-opts -fno-tree-switch-conversion -fno-forward-propagate \
                -fno-tree-loop-ivcanon -fno-tree-scev-cprop -fno-tree-copy-prop -fno-move-loop-invariants -frename-registers -fno-jump-tables -mstrict-X -fno-if-conversion -fno-guess-branch-probability -fno-strict-aliasing -fno-gcse-lm -fno-tree-dce -fno-tree-pre -fno-ssa-phiopt
@@ -52,9 +52,9 @@ AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -fshort-en
 AVR_DEBUG   := -gdwarf-2 -g1
 AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=$(CPU_HZ)UL $(AVR_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr $(FILTER_FLAG)
-# calls of functions that lie within 4 KB take half the bytes: functions.ld has an order that makes most of them so (mk/scripts/layout.py)
+# calls within 4 KB take half the bytes: functions.ld orders the functions so that most calls are (mk/scripts/layout.py)
 UNO_LD      := hal/avr/uno.ld hal/avr/functions.ld
-# a clock that is not the UNO's stands in the image as a symbol, for the simulator
+# a clock other than the UNO's is a symbol in the image, for the simulator
 COMMA       := ,
 AVR_LINK    := -mmcu=atmega328p $(AVR_DEBUG) $(AVR_SMALL) -ffunction-sections -Wl,--gc-sections -Wl,-T,hal/avr/uno.ld \
                $(if $(filter-out 16000000,$(CPU_HZ)),-Wl$(COMMA)--defsym=cpu_hz=$(CPU_HZ))
@@ -85,17 +85,17 @@ TEST_IMAGES := $(U)/hal_probe.elf $(U)/store_probe.elf $(U)/fx_twins.elf $(U)/fx
 $(U)/firmware.hex: $(U)/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $< $@
 
-## firmware: build build/uno/firmware.elf and .hex (BOARD= of mk/boards.txt; FILTERS=: a set of mk/images.mk, or names of filters)
+## firmware: build build/uno/firmware.elf and .hex (BOARD= from mk/boards.txt; FILTERS=: a set of mk/images.mk, or names of filters)
 firmware:
 	@sh tools/deps.sh firmware
 	@$(SAY_FILTERS)
 	@$(MAKE) $(U)/firmware.hex size
 
-## size: flash and RAM of the firmware
+## size: print flash and RAM of the firmware
 size: $(U)/firmware.elf
 	@sh mk/scripts/size.sh $< '' $(BOARD_FLASH)
 
-## flash: write the firmware to a board (BOARD=nano-old: old boot loader; PORT= where several are there; FILTERS=)
+## flash: write the firmware to a board (BOARD=nano-old: old boot loader; PORT= if there are several; FILTERS=)
 flash:
 	@sh tools/deps.sh flash
 	@python3 tools/flash.py port flash '$(PORT)'
@@ -115,7 +115,7 @@ include mk/host.mk
 # --- the simulator ---------------------------------------------------------------------------------------------------
 S := $(B)/sim
 SIMRUN_SRC := $(wildcard sim/simrun*.c) $(wildcard sim/twi_*.c) sim/adxl345_model.c sim/adxl345_variants.c sim/feed.c sim/stream.c
-# libsimavr as an archive, where there is one: no detour at its calls takes a tenth of the time away, and changes no row
+# libsimavr as an archive, if there is one: calls without a detour save a tenth of the time; rows are the same
 SIMAVR_LINK := $(if $(wildcard /usr/lib/*/libsimavr.a),-l:libsimavr.a,$$(pkg-config --libs simavr))
 $(S)/simrun: $(SIMRUN_SRC) $(wildcard sim/*.h)
 	@mkdir -p $(@D)
@@ -135,10 +135,10 @@ sim:
 	@$(MAKE) $(call image_with,$(FILTER)) $(S)/simrun
 	@sh tools/sim.sh "$(call image_with,$(FILTER))" "$(STREAM)" "$(FILTER)" "$(RATE)" "$(OUT)"
 
-# what the programs that run tests have to know of this build
+# what the test programs need to know of this build
 TEST_ENV = CHIP_TESTS="$(CHIP_TESTS)" WARNINGS="$(WARNINGS)" AVR_SMALL="$(AVR_SMALL)" CHIP_SECOND="$(CHIP_SECOND)"
 
-## test: unit tests on the PC, then the firmware in the simulator against the PC
+## test: run the unit tests on the PC, then the firmware in the simulator against the PC
 test:
 	@sh tools/deps.sh test
 	@sh tools/deps.sh flashtest || echo "test: test_flash will be skipped"
@@ -154,13 +154,13 @@ t:
 	@sh tools/deps.sh test
 	@$(TEST_ENV) python3 campaigns/tests/test_table.py t $(T)
 
-## quick: all unit tests on the PC (1 minute once built)
+## quick: run all unit tests on the PC (1 minute once built)
 quick:
 	@sh tools/deps.sh test
 	@python3 mk/scripts/progress.py $(MAKE) -j2 --no-print-directory $$(python3 campaigns/tests/test_table.py targets quick)
 	@$(TEST_ENV) python3 campaigns/tests/run_tests.py quick
 
-# what the tests of the whole firmware run
+# needed by the tests of the whole firmware
 system_images: $(U)/firmware.elf $(TEST_IMAGES) $(SLOW_IMAGE) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay
 
 ## clean: remove what was built (the downloads in build/unity and build/venv stay)

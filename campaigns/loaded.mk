@@ -1,12 +1,12 @@
-# What a busy machine does to the tests that do not compute only.
+# Tests whose result may depend on the machine's load.
 
 ROUNDS ?= 10
 LOAD   ?= 8
-## loaded: the tests of browser, port, boot loader and live processes ROUNDS=10 times under LOAD=8 busy loops (30 minutes; after make test)
+## loaded: run the tests of browser, port, boot loader and live processes ROUNDS=10 times under LOAD=8 busy loops (30 minutes; after make test)
 loaded:
 	@python3 campaigns/loaded.py --rounds $(ROUNDS) --load $(LOAD)
 
-## desk: what only the clock of an idle machine can tell: tilt live's first picture within 2 s, 400 rows/s for 20 s (1 minute)
+## desk: run the timing tests that need an idle machine: tilt live's first picture within 2 s, 400 rows/s for 20 s (1 minute)
 desk:
 	@sh tools/deps.sh tilt
 	@sh tools/deps.sh live

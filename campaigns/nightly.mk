@@ -1,6 +1,6 @@
-# What takes hours.
+# The nightly run: hours.
 
-## nightly: every test, proof, campaign and measurement whole, each with its time; stale pages fail (a night and more; STEPS='faults soak': only these)
+## nightly: run every test, proof, campaign and measurement in full, with times; stale pages fail (a night and more; STEPS='faults soak': only these)
 nightly:
 	@STEPS='$(STEPS)' bash campaigns/nightly.sh
 

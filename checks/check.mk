@@ -1,11 +1,10 @@
-# The rules of the tree, enforced. Each check is a target of its own (make check-tidy ONLY=firmware/app/app.c looks at one file); limits
-# are in checks/budgets.txt, what departs from a rule in docs/deviations.md, and checks/planted.txt holds faults that each check
-# must find.
+# The rules of the tree, enforced. Each check is a target of its own (make check-tidy ONLY=firmware/app/app.c checks one file); limits are in
+# checks/budgets.txt, deviations from the rules in docs/deviations.md, and checks/planted.txt holds faults that the checks must find.
 CHK := $(B)/check
 ONLY ?=
 
-# objects before link-time optimisation: only they tell which file holds what. Warnings are not errors here, because avr-gcc says
-# that naked functions have no stack usage; check-compile looks for them.
+# objects before link-time optimisation: only they show which file holds what. Warnings are not errors here, because avr-gcc warns that
+# naked functions have no stack usage; check-compile finds real ones.
 CHECK_OBJ := $(AVR_SRC:%.c=$(CHK)/avr/%.o)
 $(CHK)/avr/%.o: %.c Makefile checks/check.mk
 	@mkdir -p $(@D)
@@ -13,7 +12,7 @@ $(CHK)/avr/%.o: %.c Makefile checks/check.mk
 
 CHECKS := compile tidy int16 cppcheck includes circles format lengths names symbols memory frames painted waits size seam deviations breakages texts pages
 
-## check: every rule of the tree, and a planted fault for each that must be found (8 minutes; PLANTED=20: a sample of them)
+## check: check every rule of the tree, and that each finds its planted faults (8 minutes; PLANTED=20: a sample of them)
 check:
 	@sh tools/deps.sh check
 	@$(MAKE) -j2 check-built
@@ -23,7 +22,7 @@ check:
 check-built: check-objects $(U)/firmware.elf $(S)/simrun
 	@:
 
-# objects of files that are gone would be judged still
+# remove objects of deleted files, which would still be judged
 check-objects: $(CHECK_OBJ)
 	@find $(CHK)/avr -name '*.o' 2>/dev/null | while read -r o; do s=$${o#$(CHK)/avr/}; [ -f "$${s%.o}.c" ] || rm -f "$$o" "$${o%.o}.su"; done
 
@@ -92,7 +91,7 @@ check-texts:
 	@python3 mk/scripts/pack_texts.py $(CHK)/reply_packed.h
 	@cmp -s $(CHK)/reply_packed.h firmware/console/reply_packed.h || \
 	    { echo 'texts: firmware/console/reply_texts.h is not what firmware/console/reply_packed.h was made of: make texts' >&2; exit 1; }
-	@echo 'texts: packed as they are written'
+	@echo 'texts: reply_packed.h is up to date'
 
 # STRICT=yes: a stale page is a failure
 check-pages:
@@ -102,7 +101,7 @@ check-planted:
 	@python3 host_tests/tools/checks/test_planted.py
 	@python3 checks/planted.py $(ONLY)
 
-## texts: pack the firmware's words anew after a change of firmware/console/reply_texts.h
+## texts: pack the firmware's texts again after a change of firmware/console/reply_texts.h
 texts:
 	@python3 mk/scripts/pack_texts.py firmware/console/reply_packed.h
 

@@ -31,7 +31,7 @@ $(A)/library/%.o: $(LIBRARY).zip mk/arduino.mk
 	@mkdir -p $(@D)
 	@$(ARDUINO_C) -Wall -Wextra -Werror $(LIBRARY)/src/$*.c -o $@
 
-# a sketch is C++ behind Arduino.h
+# a sketch is C++ after Arduino.h
 $(A)/%.ino.o: $(LIBRARY).zip mk/arduino.mk
 	@mkdir -p $(@D)
 	@$(ARDUINO_CXX) -Wall -Wextra -Werror -I$(LIBRARY)/src -include Arduino.h -x c++ $(LIBRARY)/examples/$*.ino -o $@
@@ -39,12 +39,12 @@ $(A)/%.ino.o: $(LIBRARY).zip mk/arduino.mk
 $(A)/%.elf: $(A)/%.ino.o $(ARDUINO_OBJ)
 	@$(AVR_CC) -Os -g -flto -fuse-linker-plugin -Wl,--gc-sections -mmcu=atmega328p $^ -lm -o $@
 
-# the same library on the PC, to say what the sketches have to print
+# the same library on the PC, for the output expected of the sketches
 $(A)/libtiltfilters.so: $(LIBRARY).zip mk/arduino.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) -std=c11 -O2 $(WARNINGS) -fPIC -shared $(LIBRARY)/src/*.c -o $@
 
-## arduino: build/library/tilt-filters.zip, a library for the Arduino IDE and PlatformIO; its sketches in the simulated UNO (1 minute)
+## arduino: build build/library/tilt-filters.zip, a library for the Arduino IDE and PlatformIO; run its sketches in the simulated UNO (1 minute)
 arduino:
 	@sh tools/deps.sh arduino
 	@$(MAKE) $(LIBRARY).zip

@@ -8,7 +8,7 @@ HOST_INC   := $(INCLUDES) -Ihal/host -Isim -Ihost_tests -Inav/tests -isystem $(U
 HOST_FLAGS := -std=c11 -O1 -g -D_POSIX_C_SOURCE=200809L -DHANG_TEST=1 -DSUPERVISOR=1 -DUNITY_INCLUDE_DOUBLE $(HOST_INC)
 MODEL_SRC  := sim/adxl345_model.c sim/adxl345_variants.c sim/feed.c sim/stream.c
 HOST_SRC   := $(filter-out firmware/app/main.c,$(APP_SRC)) $(LIB_SRC) $(wildcard hal/host/*.c) $(MODEL_SRC)
-# of them what knows the laws, on the chip too
+# those of them that know the laws, on the chip too
 LAW_SUPPORT := host_tests/support/random32.c $(wildcard host_tests/support/filter*.c host_tests/support/law_*.c)
 SUPPORT_SRC := $(wildcard host_tests/support/*.c)
 # a test's program is build/host/test_NAME, whatever room its source is in
@@ -19,7 +19,7 @@ $(H)/%.o: %.c Makefile mk/host.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(WARNINGS) $(SANITIZE) -MMD -MP -c $< -o $@
 
-# what is a tool as well is optimised and without sanitizers
+# tools are optimised and without sanitizers
 $(H)/o2/%.o: %.c Makefile mk/host.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) -O2 $(WARNINGS) -MMD -MP -c $< -o $@
@@ -57,7 +57,7 @@ $(filter-out %/test_nav_link,$(TESTS)): $(H)/test_%: $(H)/unity.o $(H)/libsuppor
 	@$(HOST_CXX) $(SANITIZE) $(call linked,$^) -lm -o $@
 
 # One line a test: build/host/test_NAME: its archives and further objects. Moved there whole: make -nB, which writes it again, may run beside another make. Without
-# python3, which make deps installs, what needs no test is built all the same.
+# python3, which make deps installs, targets that need no test can still be built.
 PARTS := $(H)/parts.mk $(if $(filter coverage $(B)/coverage/%,$(MAKECMDGOALS)),$(B)/coverage/parts.mk)
 ifneq ($(filter-out help deps clean,$(MAKECMDGOALS)),)
 $(PARTS): mk/scripts/test_parts.py $(wildcard $(addprefix host_tests/*/*.,c h cpp hpp) nav/tests/*) $(HOST_SRC) $(wildcard */*.h firmware/*/*.h hal/*/*.h lib/*/src/*.h)

@@ -1,29 +1,29 @@
 # The images of the firmware: which filters are in them, and those that tests need besides.
 
 # Not all filters fit into 32 KB. FILTERS is one of these sets, or names from lib/filters/src/filter.h; the firmware starts with
-# the first. The first set is what is built and flashed when nothing is said; together they hold every filter.
+# the first. The first set is built and flashed by default; together the sets hold every filter.
 FILTER_SETS          := everyday soft research models auto
 FILTERS_everyday     := adaptive sprf kf synth
 FILTERS_soft         := soft lrf synth_opt
 FILTERS_research     := pbf sprf_paper shrf af
 FILTERS_models       := synth_plus kf3
 FILTERS_auto         := auto
-# fewer, all of them in the first set too: for boards whose boot loader leaves less than the UNO's
+# fewer, all of them in the first set too: for boards whose boot loader leaves less flash than the UNO's
 FILTERS_small        := adaptive synth
 FILTERS              := $(if $(filter 32256,$(BOARD_FLASH)),$(firstword $(FILTER_SETS)),small)
-SAY_FILTERS          := $(if $(filter-out 32256,$(BOARD_FLASH)),$(if $(filter small,$(FILTERS)),echo "BOARD=$(BOARD) has $(BOARD_FLASH) bytes of flash: the image holds the set small ($(FILTERS_small)); FILTERS= takes others",:),:)
+SAY_FILTERS          := $(if $(filter-out 32256,$(BOARD_FLASH)),$(if $(filter small,$(FILTERS)),echo "BOARD=$(BOARD) has $(BOARD_FLASH) bytes of flash: the image holds the set small ($(FILTERS_small)); choose others with FILTERS=",:),:)
 
 CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))
 IMAGE_FILTERS   = $(FILTERS_everyday)
 FILTER_FLAG     = '-DFILTER_LIST(X)=$(foreach f,$(IMAGE_FILTERS),X($(f)))' \
                   $(if $(filter auto,$(IMAGE_FILTERS)),-DSUPERVISOR=1,-DFILTER_WITHOUT_PROBE)
 
-# the image that holds a filter: the chosen one if it does, else the first set's that does
+# the image that holds a filter: the chosen one if it does, else that of the first set that does
 image_with = $(or $(firstword $(if $(filter $(1),$(CHOSEN_FILTERS)),$(U)/firmware.elf) \
              $(foreach s,$(FILTER_SETS),$(if $(filter $(1),$(FILTERS_$(s))),$(U)/$(s)/firmware.elf))), \
              $(error FILTER: no image holds a filter $(1); filters: $(sort $(foreach s,$(FILTER_SETS),$(FILTERS_$(s))))))
 
-# the chosen one is built anew when the choice changes
+# the chosen one is rebuilt when the choice changes
 $(AVR_OBJ) $(U)/filters.txt $(U)/firmware.elf: IMAGE_FILTERS = $(CHOSEN_FILTERS)
 $(AVR_OBJ): $(U)/filters.txt
 $(U)/filters.txt: FORCE
@@ -37,7 +37,7 @@ $(U)/firmware.elf: $(AVR_OBJ) $(UNO_LD)
 	@python3 mk/scripts/link_image.py $(BOARD) $(BOARD_FLASH) "$(IMAGE_FILTERS)" $(AVR_CC) $(AVR_LINK) -Wl,-Map,$(U)/firmware.map $(AVR_OBJ) -o $@
 	@echo "built $@"
 
-# IMAGE(name, filters, further flags): build/uno/NAME/firmware.elf, and filters.txt, which says what it holds
+# IMAGE(name, filters, further flags): build/uno/NAME/firmware.elf, and filters.txt, which lists its filters
 define IMAGE
 $(U)/$(1)/%: IMAGE_FILTERS = $(2)
 $(U)/$(1)/%.o: %.c Makefile mk/images.mk
@@ -51,17 +51,17 @@ $(U)/$(1)/firmware.elf: $(AVR_SRC:%.c=$(U)/$(1)/%.o) $(UNO_LD) | $(U)/$(1)/filte
 	@$$(AVR_CC) $$(AVR_LINK) $$(filter %.o,$$^) -o $$@
 endef
 
-# the sets; that of everyday is wanted only beside another choice
+# the sets; that of everyday only if another one was chosen
 $(foreach s,$(FILTER_SETS),$(eval $(call IMAGE,$(s),$(FILTERS_$(s)))))
-# its stages can be stopped one by one; fewer filters, for the room that takes: it runs behind a boot loader too
+# its stages can be stopped one by one; fewer filters, to make room: it also runs after a boot loader
 $(eval $(call IMAGE,hang,$(FILTERS_small),-DHANG_TEST=1))
 # the clock starts shortly before its wrap; at ten digits
 $(eval $(call IMAGE,wrap,$(FILTERS_everyday),-DHAL_TIME_START_US=4289967296ul))
 $(eval $(call IMAGE,late,$(FILTERS_research),-DHAL_TIME_START_US=4200000000ul))
-# told of a slower processor: its sample period is short for a filter
+# built for a slower processor: its sample period is short for a filter
 $(eval $(call IMAGE,tight,$(FILTERS_research),-DHAL_CPU_HZ=15500000ul))
 
-# beside the first, its readings are believed unseen: the difference is what checking them costs
+# as the first, but accepts its readings unchecked: the difference is the cost of checking them
 PLAIN_OBJ := $(AVR_SRC:%.c=$(U)/plain/%.o) $(U)/plain/host_tests/chip/plain_read.o
 $(U)/plain/%.o: AVR_FLAGS += -Dadxl345_integrity_judge=plain_judge
 $(U)/plain/lib/adxl345/src/adxl345_integrity.o: AVR_FLAGS += -Uadxl345_integrity_judge

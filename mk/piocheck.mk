@@ -1,6 +1,6 @@
-# PlatformIO: its Core comes from PyPI, its packages cannot be had from every network; others stand in for them.
+# PlatformIO: its Core comes from PyPI; its packages are not available from every network, so others stand in for them.
 
-## piocheck: platformio.ini with PlatformIO Core and stand-in packages (1 minute)
+## piocheck: build platformio.ini with PlatformIO Core and stand-in packages (1 minute)
 piocheck:
 	@sh tools/deps.sh test piocheck
 	@python3 mk/scripts/pio_standins.py build/pio/core build/venv-pio

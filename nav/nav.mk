@@ -4,7 +4,7 @@ NAVIMG_SRC    := $(wildcard nav/image/*.c) $(wildcard nav/lib/*.c) $(wildcard ha
 NAVIMG_INC    := -Ihal -Inav/image -Ilib/machine/src -Inav/lib
 # its records are long and its answers short
 NAV_RINGS  := -DHAL_UART_RX_SIZE=128 -DHAL_UART_TX_SIZE=128
-# what leaves flash and stack as small as the budgets want: frames of functions that are no larger when put into one another
+# keeps flash and stack within the budgets: stack frames do not grow by inlining
 NAV_SMALL  := $(filter-out -flto-partition=one -fno-gcse-lm -fno-tree-dce -fno-tree-pre -fno-ssa-phiopt,$(AVR_SMALL)) -fno-tree-pta --param=large-stack-frame=64 --param=large-stack-frame-growth=50
 NAVIMG_FLAGS   = -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(NAV_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections \
               $(WARNINGS) $(NAVIMG_INC) -Ihal/avr $(NAV_RINGS)
@@ -37,13 +37,13 @@ $(H)/test_nav_link: nav/tests/test_nav_link.c nav/tests/nav_line.c $(NAVIMG_HOST
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(NAV_RINGS) $(NAVIMG_INC) $(WARNINGS) $(SANITIZE) $(filter %.c %.o,$^) -lm -o $@
 
-## nav: the navigation image (paper 003) in build/uno/nav (STATES=12 or 9; docs/navigation.md)
+## nav: build the navigation image (paper 003) in build/uno/nav (STATES=12 or 9; docs/navigation.md)
 nav:
 	@sh tools/deps.sh firmware
 	@$(MAKE) $(dir $(call nav_image,$(STATES)))firmware.hex
 	@sh mk/scripts/size.sh $(call nav_image,$(STATES)) nav
 
-## navflash: write it to a board of 16 MHz (BOARD= PORT= STATES=12); make flash brings the tilt firmware back
+## navflash: write the navigation image to a 16 MHz board (BOARD= PORT= STATES=12); make flash restores the tilt firmware
 navflash:
 	@[ $(CPU_HZ) = 16000000 ] || { echo "navflash: the navigation image needs 16 MHz, BOARD=$(BOARD) has $(CPU_HZ) Hz" >&2; exit 2; }
 	@sh tools/deps.sh flash
@@ -51,13 +51,13 @@ navflash:
 	@$(MAKE) $(dir $(call nav_image,$(STATES)))firmware.hex
 	@python3 tools/flash.py write navflash $(BOARD) $(dir $(call nav_image,$(STATES)))firmware.hex '$(PORT)'
 
-# what its tests run
+# needed by its tests
 NAV_TESTED := $(U)/nav/firmware.elf $(U)/nav9/firmware.elf $(H)/nav_replay_12 $(H)/nav_replay_9
 
 NAV_SECONDS ?= 500
 # nav/lib without the image around it
 NAV_ALONE  := $(H)/nav_chip_12 $(H)/nav_chip_9 $(U)/nav_slots_12.elf $(U)/nav_slots_9.elf
-## navcheck: 500 s of flight in the simulated UNO, 12 and 9 states, bit for bit beside the PC, into docs/results/navigation.md (14 minutes; NAV_SECONDS=)
+## navcheck: compare 500 s of flight in the simulated UNO with the PC, 12 and 9 states, bit for bit, into docs/results/navigation.md (14 minutes; NAV_SECONDS=)
 navcheck:
 	@sh tools/deps.sh tilt
 	@$(MAKE) nav_images $(S)/simrun $(if $(filter 500,$(NAV_SECONDS)),$(NAV_ALONE))

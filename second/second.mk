@@ -6,7 +6,7 @@ SECOND_IMAGES := $(SET_IMAGES:.elf=.hex)
 $(U)/%/firmware.hex: $(U)/%/firmware.elf
 	@avr-objcopy -O ihex -R .eeprom $< $@
 
-# Faults planted for it. PLANT(name, source, sed's command): the source with one change, in a folder of its own; sed must find its place.
+# Planted faults. PLANT(name, source, sed's command): the source with one change, in a folder of its own; sed must find its place.
 define PLANT
 $(X)/planted/$(1)/$(notdir $(2)): $(2) second/second.mk
 	@mkdir -p $$(@D)
@@ -58,17 +58,17 @@ $(eval $(call PLANT_SIMRUN,rate_of_3100_hz,sim/adxl345_model.c,s/return 3200\.0/
 
 second_built: $(SECOND_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay $(SECOND_PLANTED)
 
-## second: the images under avr8js with a sensor of their own, against simrun and the PC, into build/second.json (PART=ci: a part by turns; ONLY=rows,planted)
+## second: compare the images under avr8js and a second sensor model with simrun and the PC, into build/second.json (PART=ci: a part in turn; ONLY=rows,planted)
 second:
 	@sh tools/deps.sh bench
 	@sh tools/deps.sh second; status=$$?; \
 	if [ $$status -eq 3 ]; then \
-	    echo "skipped: 1 (make second: Node or avr8js is missing or too old and could not be had, as said above)"; echo "0 passed, 0 failed"; \
+	    echo "skipped: 1 (make second: Node or avr8js is missing or too old and could not be installed, see above)"; echo "0 passed, 0 failed"; \
 	elif [ $$status -ne 0 ]; then echo "0 passed, 1 failed"; exit 1; \
 	else node --test --test-reporter=dot second/test.mjs && $(MAKE) -j2 second_built && \
 	    PART='$(PART)' ONLY='$(ONLY)' PLANTED='$(SECOND_PLANTED)' COUNT=$(shell git rev-list --count HEAD 2>/dev/null || echo 0) node second/run.mjs $(FILTER_SETS); fi
 
-# what npm has fetched stays
+# npm's downloads stay
 clean: clean_second
 clean_second:
 	@rm -rf $(X)/planted $(X)/sim $(X)/run-*

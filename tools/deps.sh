@@ -1,9 +1,9 @@
 #!/bin/sh
-# deps.sh GROUP...: installs what the make targets of a group need and this machine lacks; silent if nothing is missing.
+# deps.sh GROUP...: installs what a group of make targets needs and this machine lacks; prints nothing if nothing is missing.
 # Groups: firmware sim test check flash flashtest arduino bench piocheck papers design tilt live fuzz coverage proof second. Packages come by
 # apt-get, numpy and matplotlib (check: lizard, design: scipy, tilt: tools/pyproject.toml) by pip into build/venv, Unity by tools/deps/get_unity.sh into build/unity
 # (UNITY_DIR=folder: use that one), avr8js by npm into build/second. Uses sudo only when not root.
-# Ends with 1 on failure; with 3 where the group second alone is asked for and Node or avr8js is absent, too old, or npm has no network.
+# Ends with 1 on failure; with 3 if only the group second is requested and Node or avr8js is absent, too old, or npm has no network.
 set -eu
 
 cd "$(dirname "$0")/.."
@@ -19,7 +19,7 @@ want_pio=no
 want_avr8js=no
 pio_requirements='platformio==6.2.0 scons==4.11.1' # the versions that mk/scripts/pio_standins.py stands in for
 pio_venv=build/venv-pio
-fail_status=1 # 3 where what is missing is reason to skip, no failure
+fail_status=1 # 3 if what is missing is a reason to skip, not a failure
 
 fail() {
     echo "deps: $1" >&2
@@ -48,12 +48,12 @@ has_certificates() {
     [ -e /etc/ssl/certs/ca-certificates.crt ] || [ -e /etc/pki/tls/certs/ca-bundle.crt ] || [ -e /etc/ssl/cert.pem ]
 }
 
-# Packages are complete when the stamp written after pip equals the requirements.
+# Packages are complete if the stamp written after pip equals the requirements.
 has_plot_packages() {
     [ -x "$venv/bin/python" ] && cmp -s tools/deps/requirements.txt "$venv/requirements.installed"
 }
 
-# the command tilt runs from tools/, and what it imports is installed
+# the command tilt runs from tools/; what it imports is installed
 has_tilt() {
     [ -x "$venv/bin/tilt" ] && cmp -s tools/pyproject.toml "$venv/pyproject.installed" && "$venv/bin/tilt" --help > /dev/null 2>&1
 }
@@ -66,7 +66,7 @@ has_scipy() {
     [ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import scipy' > /dev/null 2>&1
 }
 
-# clang-query comes with the version of clang-tidy that is installed
+# clang-query of the same version as the installed clang-tidy
 has_clang_query() {
     has clang-tidy && { [ -x "$(dirname "$(readlink -f "$(command -v clang-tidy)")")/clang-query" ] || has clang-query; }
 }
@@ -212,7 +212,7 @@ install_packages() {
         as_root=sudo
     fi
     echo "deps: installing with ${as_root:+sudo }apt-get: $missing"
-    # an index that cannot be refreshed is no reason to stop: the one at hand may do, and the installation tells
+    # continue if the index cannot be refreshed: the present one may do, and the installation reports what is missing
     $as_root apt-get -qq update > "$log" 2>&1 || true
     set -- -qq -y --no-install-recommends install $missing
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get "$@" >> "$log" 2>&1 ||
@@ -278,7 +278,7 @@ install_pio() {
     echo "$pio_requirements" > "$pio_venv/requirements.installed"
 }
 
-# the oldest Node that will do: second/package.json says what avr8js and our own syntax need
+# the oldest sufficient Node: second/package.json states what avr8js and our own syntax need
 node_needed() {
     sed -n 's/.*"node": ">= *\([0-9.]*\)".*/\1/p' second/package.json
 }
@@ -287,7 +287,7 @@ has_node_of_age() {
     printf '%s\n' "$(node_needed)" "$(node --version | sed 's/^v//')" | sort -C -V
 }
 
-# what the lock file names, and nothing older
+# exactly what the lock file names
 has_avr8js() {
     [ -d build/second/node_modules/avr8js ] && cmp -s second/package-lock.json build/second/package-lock.installed
 }
@@ -299,7 +299,7 @@ install_avr8js() {
     mkdir -p build/second
     cp second/package.json second/package-lock.json build/second/
     if ! (cd build/second && npm ci --ignore-scripts --no-audit --no-fund) > "$log" 2>&1; then
-        # only a registry out of reach is reason to skip: what npm refuses (EINTEGRITY: not what the lock file names) is a failure
+        # only an unreachable registry is a reason to skip: what npm rejects (EINTEGRITY: not what the lock file names) is a failure
         grep -Eq 'EINTEGRITY|EUSAGE' "$log" || ! grep -Eq "$npm_out_of_reach" "$log" && fail_status=1
         fail "cannot install avr8js ($(grep -i 'npm err' "$log" | head -n 1)): check the network and npm's registry, and\
  second/package-lock.json; log in $log"

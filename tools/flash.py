@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """A board on a serial port: write an image to it, or show what it sends. make flash, make navflash and make monitor run it.
 
-    flash.py port TARGET [PORT]              there is one port to take, PORT or the only one of a board; says nothing then
-    flash.py write TARGET BOARD HEX [PORT]   avrdude writes and verifies; what it says goes into build/flash.log, a failure into one line
-    flash.py monitor BAUD [PORT]             prints what the board sends, sends the lines that are typed; Ctrl-C ends
+    flash.py port TARGET [PORT]              checks that there is a port to use, PORT or the only one of a board; prints nothing else then
+    flash.py write TARGET BOARD HEX [PORT]   avrdude writes and verifies; its output goes to build/flash.log, a failure is one line
+    flash.py monitor BAUD [PORT]             prints what the board sends, sends the lines typed; Ctrl-C ends
 
-TARGET: of make, flash or navflash, for the commands that are proposed. BOARD: mk/boards.txt. Without PORT (or with an empty one) the only port of
-/dev/ttyACM*, /dev/ttyUSB* and /dev/serial/by-id is taken and named; where there are none or several it says what to type. Status 1: it could not be
-done; 2: it is not to be done as asked. For the tests: FLASH_DEV is a folder instead of /dev, FLASH_LOG another file.
+TARGET: make's target, flash or navflash, for the commands that are proposed. BOARD: from mk/boards.txt. Without PORT (or with an empty one) the
+only port of /dev/ttyACM*, /dev/ttyUSB* and /dev/serial/by-id is used and named; with none or several it prints what to type. Status 1: failed;
+2: rejected. For the tests: FLASH_DEV is a folder that replaces /dev, FLASH_LOG another log file.
 """
 import os
 import pathlib
@@ -23,22 +23,22 @@ import boards
 LOG = pathlib.Path(os.environ.get("FLASH_LOG", "build/flash.log"))
 PATTERNS = ("ttyACM*", "ttyUSB*", "serial/by-id/*")
 DATA, EXTENDED_SEGMENT, EXTENDED_LINEAR = 0, 2, 4  # records of Intel HEX
-# What avrdude says, and what it means; looked for in this order, because it also says "not in sync" of an attempt that the next one makes good.
+# avrdude's messages and their meaning, searched in this order, because it also prints "not in sync" for an attempt that succeeds when repeated.
 FAILURES = (
-    (r"No such file or directory", "there is no port {port}: plug the board in, or leave PORT out and the port is looked for"),
+    (r"No such file or directory", "no port {port}: plug the board in, or leave PORT out to find it"),
     (r"[Pp]ermission denied", "no permission for {port}: sudo usermod -aG dialout $USER, then log out and in again"),
-    (r"busy|temporarily unavailable", "another program uses {port}: close the serial monitor or plotter"),
+    (r"busy|temporarily unavailable", "{port} is in use: close the serial monitor or plotter"),
     (r"verification (error|mismatch)|content mismatch",
-     "verification failed, the board does not hold what was written: try another cable or USB port, without other supplies"),
+     "verification failed: try another cable or USB port, without other supplies"),
     (r"[Ii]nvalid device signature|signature does not match|differs in signature",
-     "the chip at {port} is no ATmega328P: this firmware runs on no other"),
+     "the chip at {port} is not an ATmega328P: this firmware needs one"),
     (r"not in sync|not responding|out of sync|protocol expects|initialization failed",
      "no boot loader answers at {port} with {baud} baud (not in sync): wrong PORT or BOARD; {instead}"),
 )
 
 
 class Refused(Exception):
-    """What could not be done, with cause and remedy; and the exit status."""
+    """What failed, with cause and remedy; and the exit status."""
 
     def __init__(self, words, status=1):
         super().__init__(words)
@@ -56,7 +56,7 @@ def ports(dev):
 
 
 def typed(target, **words):
-    """The command of make that was typed, with these variables in place of its own."""
+    """The make command that was typed, with these variables added or replaced."""
     given = dict(word.split("=", 1) for word in shlex.split(os.environ.get("MAKEFLAGS", "").partition("-- ")[2]) if "=" in word)
     kept = {name: given[name] for name in ("BOARD", "FILTERS", "STATES", "BAUD") if name in given and name not in words}
     kept = {name: shlex.quote(value) for name, value in kept.items()}
@@ -64,31 +64,31 @@ def typed(target, **words):
 
 
 def port_to_take(given, target, say=True):
-    """PORT, or the only one there is."""
+    """PORT, or the only port found."""
     if given:
         return given
     dev = pathlib.Path(os.environ.get("FLASH_DEV", "/dev"))
     there = ports(dev)
     if len(there) == 1:
         if say:
-            print(f"{target}: {next(iter(there))} is the only port of a board and is taken", flush=True)
+            print(f"{target}: using {next(iter(there))}, the only port of a board", flush=True)
         return next(iter(there))
     if there:
         lines = (f"\n  {typed(target, PORT=port)}" + (f"   ({name})" if name else "") for port, name in there.items())
-        raise Refused(f"{len(there)} serial ports are there; type the line of the board's:{''.join(lines)}")
+        raise Refused(f"{len(there)} serial ports found; type the line of your board's:{''.join(lines)}")
     looked_at = ", ".join(str(dev / pattern) for pattern in PATTERNS)
-    raise Refused(f"no board is plugged in ({looked_at}): plug it in, with a cable that carries data, or type\n  {typed(target, PORT='/dev/...')}")
+    raise Refused(f"no board found ({looked_at}): plug it in, with a cable that carries data, or type\n  {typed(target, PORT='/dev/...')}")
 
 
 def flash_bytes(image):
-    """The end of what an Intel HEX file fills of the flash."""
+    """The end of the flash used by an Intel HEX file."""
     base = end = 0
     for number, line in enumerate(image.read_text(encoding="ascii", errors="replace").split(), 1):
         try:
             data = bytes.fromhex(line.removeprefix(":"))
             count, kind = data[0], data[3]
         except (ValueError, IndexError) as problem:
-            raise Refused(f"{image}:{number}: not a record of Intel HEX; build it again: make clean firmware", 2) from problem
+            raise Refused(f"{image}:{number}: not an Intel HEX record: build it again: make clean firmware", 2) from problem
         if kind == DATA:
             end = max(end, base + int.from_bytes(data[1:3], "big") + count)
         elif kind in (EXTENDED_SEGMENT, EXTENDED_LINEAR):
@@ -97,14 +97,14 @@ def flash_bytes(image):
 
 
 def instead(target, board, port):
-    """What may help where no boot loader answers."""
+    """What may help if no boot loader answers."""
     if board.name.startswith("promini"):
-        return "press its reset as writing begins"
+        return "press reset as writing begins"
     return f"try {typed(target, BOARD='nano' if board.name == 'nano-old' else 'nano-old', PORT=port)}"
 
 
 def meaning(said, target, board, port):
-    """avrdude's failure in one line of ours; nothing where it is of no known kind."""
+    """One line for avrdude's failure; nothing if it is unknown."""
     for pattern, words in FAILURES:
         if re.search(pattern, said):
             return words.format(port=port, baud=board.baud, instead=instead(target, board, port))
@@ -113,11 +113,11 @@ def meaning(said, target, board, port):
 
 def write(target, name, image, given):
     if name not in boards.TABLE:
-        raise Refused(f"there is no board '{name}'; boards: {' '.join(boards.TABLE)}", 2)
+        raise Refused(f"no board '{name}': choose from {' '.join(boards.TABLE)}", 2)
     board = boards.TABLE[name]
     image = pathlib.Path(image)
     if not image.is_file():
-        raise Refused(f"there is no {image}: make firmware builds one", 2)
+        raise Refused(f"no {image}: build it with make firmware", 2)
     size = flash_bytes(image)
     if size > board.flash:
         raise Refused(f"{image} is {size - board.flash:,} bytes too large for {board.what} ({size:,} where {board.flash:,} fit): "
@@ -129,11 +129,11 @@ def write(target, name, image, given):
     try:
         done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
     except FileNotFoundError as problem:
-        raise Refused("avrdude is not installed: sh tools/deps.sh flash") from problem
+        raise Refused("avrdude is not installed: install it with sh tools/deps.sh flash") from problem
     LOG.write_text(f"{shlex.join(command)}\n{done.stdout}", encoding="utf-8")
     if done.returncode != 0:
-        said = meaning(done.stdout, target, board, port) or f"avrdude gave status {done.returncode}"
-        raise Refused(f"{said}; avrdude's own words: {LOG}")
+        said = meaning(done.stdout, target, board, port) or f"avrdude ended with status {done.returncode}"
+        raise Refused(f"{said}; avrdude's output: {LOG}")
     print(f"{target}: {size:,} bytes written and verified; make monitor shows what the board sends")
 
 
@@ -146,7 +146,7 @@ def opened(port, baud):
         raise Refused(known or f"cannot open {port}: {problem.strerror}") from problem
     done = subprocess.run(["stty", baud, "raw", "-echo", "-hupcl", "clocal"], stdin=line, capture_output=True, text=True)
     if done.returncode != 0:
-        raise Refused(f"{port} cannot be set to {baud} baud ({done.stderr.strip().removeprefix('stty: ')}): BAUD= one that the board has")
+        raise Refused(f"{port} cannot be set to {baud} baud ({done.stderr.strip().removeprefix('stty: ')}): give a BAUD= that the board has")
     os.set_blocking(line, True)
     return line
 

@@ -2,16 +2,16 @@
 """Makes the shipped accelerometer streams of sim/streams, byte for byte the same every time.
 
     python3 tools/make_streams.py            writes sim/streams/*.csv and their README.md
-    python3 tools/make_streams.py --check    compares with what would be written; exit 1 names each that differs
+    python3 tools/make_streams.py --check    compares them with what would be written; exit 1 names each difference
 
-Model: an ADXL345 in full resolution that turns about its own centre, so it feels gravity and what a scenario adds:
+Model: an ADXL345 in full resolution that rotates about its own centre, so it feels gravity and what a scenario adds:
 
     x = -sin(pitch)    y = cos(pitch) sin(roll)    z = cos(pitch) cos(roll)    in g
     roll = atan2(y, z)   pitch = atan2(-x, |(y, z)|)
 
 Read with the sensitivities typical at 3.3 V (data sheet Rev. E, p. 33), white Gaussian noise per axis, rounded to
 integers and clamped to the 13-bit rails. The truth columns are the angles of the noise-free attitude, whatever else
-shakes the sensor. Noise is Box-Muller on random.Random(seed).random(), whose sequence Python promises to keep.
+shakes the sensor. Noise is Box-Muller on random.Random(seed).random(), whose sequence Python guarantees.
 """
 import argparse
 import math
@@ -33,7 +33,7 @@ DEFAULT_FOLDER = pathlib.Path(__file__).resolve().parent.parent / "sim" / "strea
 
 @dataclass
 class Sample:
-    """One reading in the making: noise-free force and noise in LSB as floats, then the integers that are written."""
+    """One reading being made: noise-free force and noise in LSB as floats, then the integers to write."""
 
     t_us: int
     roll_deg: float
@@ -74,7 +74,7 @@ def round_half_up(value):
 
 
 def gravity_g(roll_deg, pitch_deg):
-    """What the sensor feels at rest at this attitude; pitch beyond 90 degrees is simply turned on."""
+    """The force at rest in this attitude; pitch may exceed 90 degrees."""
     roll, pitch = math.radians(roll_deg), math.radians(pitch_deg)
     return [-math.sin(pitch), math.cos(pitch) * math.sin(roll), math.cos(pitch) * math.cos(roll)]
 
@@ -84,7 +84,7 @@ def to_lsb(force_g):
 
 
 def truth_cdeg(roll_deg, pitch_deg):
-    """Roll in -17999..18000 and pitch in -9000..9000 as the firmware defines them, from an attitude turned at will."""
+    """Roll in -17999..18000 and pitch in -9000..9000 as the firmware defines them, from any attitude."""
     x, y, z = gravity_g(roll_deg, pitch_deg)
     roll = round_half_up(100.0 * math.degrees(math.atan2(y, z)))
     pitch = round_half_up(100.0 * math.degrees(math.atan2(-x, math.hypot(y, z))))
@@ -363,7 +363,7 @@ def make_all():
 
 
 def check(folder, files):
-    """Names every file that is missing, extra or different; returns how many."""
+    """Prints every file that is missing, extra or different; returns their number."""
     complaints = []
     for name, data in files.items():
         path = folder / name

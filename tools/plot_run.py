@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Draws a run of the firmware, raw against filtered tilt, and prints what it was worth.
+"""Draws a run of the firmware, raw against filtered tilt, and prints its errors.
 
     plot_run.py --run OUT.csv --png OUT.png [--stream IN.csv] [--served SERVED.csv] [--stats STATS.json] [--title TEXT]
 
 --run is what the firmware sent (docs/protocol.md). Raw roll and pitch are computed here from its *_lsb columns. Truth
-comes from --served (what the sensor latched) or else from --stream, where they have roll_true_cdeg and pitch_true_cdeg;
-rows find theirs by reading and time. Errors are wrapped; rows warming up or without a sample are not scored.
+comes from --served (what the sensor latched) or else from --stream, if they have roll_true_cdeg and pitch_true_cdeg;
+rows are matched with theirs by reading and time. Errors are wrapped; rows warming up or without a sample are not scored.
 """
 import argparse
 import json
@@ -26,14 +26,14 @@ except ImportError as missing:
 RUN_COLUMNS = ["t_us", "x_lsb", "y_lsb", "z_lsb", "x_mg", "y_mg", "z_mg", "roll_cdeg", "pitch_cdeg", "flags"]
 READING = ["x_lsb", "y_lsb", "z_lsb"]
 TRUTH = ["roll_true_cdeg", "pitch_true_cdeg"]
-OFFSET_BIN_US = 100       # clocks are aligned by the most frequent difference, to this resolution
-VOTING_ROWS = 400         # rows that vote on it
+OFFSET_BIN_US = 100       # clocks are aligned by the most frequent difference, with this resolution
+VOTING_ROWS = 400         # rows used for that
 MATCH_WINDOW_STEPS = 1.5  # a row's truth is at most this many rows away in time
 PICTURE_INCHES, PICTURE_DPI = (12.0, 7.0), 100
 
 
 class InputError(Exception):
-    """A file that cannot be used; the text says which, where and why."""
+    """A file that cannot be used; the text names the file, the place and the reason."""
 
 
 # --- reading ----------------------------------------------------------------------------------------------------------
@@ -50,8 +50,8 @@ def read_lines(path):
 def read_numbers(path, wanted, optional=()):
     """({column: int64 array}, readings cut short) of the CSV file; every wanted column must be there.
 
-    A repeated header is skipped. A row that a reset of the board cut short carries the '#' of the next banner, and a
-    capture may end within a row: these two are counted, any other bad row is an error with file, line and reason.
+    A repeated header is skipped. A row cut short by a reset of the board ends with the '#' of the next banner, and a capture may
+    end within a row: these two are counted; any other bad row is an error with file, line and reason.
     """
     lines = read_lines(path)
     header, names, places, rows, cut = None, [], [], [], 0
@@ -75,7 +75,7 @@ def read_numbers(path, wanted, optional=()):
 
 
 def find_columns(path, number, fields, wanted, optional):
-    """(names, positions) of the wanted columns and of the optional ones that are there; x means x_lsb."""
+    """(names, positions) of the wanted columns and of the optional ones that exist; x means x_lsb."""
     present = [field.strip() + "_lsb" if field.strip() in ("x", "y", "z") else field.strip() for field in fields]
     missing = [name for name in wanted if name not in present]
     if missing:
@@ -85,7 +85,7 @@ def find_columns(path, number, fields, wanted, optional):
 
 
 def numbers_of(fields, count, places):
-    """Whole numbers at these places of a row; ValueError says what is wrong with the row."""
+    """Whole numbers at these positions of a row; ValueError names what is wrong with the row."""
     if len(fields) != count:
         raise ValueError(f"{len(fields)} fields, the header has {count}")
     for place in places:
@@ -111,7 +111,7 @@ def read_stats(path):
 
 
 def unwrap_us(t_us):
-    """uint32 times as one growing line; a small step back (the board was reset) starts a new segment right behind."""
+    """uint32 times as one growing series; after a small step back (a reset of the board) a new segment follows directly."""
     steps = np.diff(t_us)
     steps = np.where(steps < -WRAP_US // 2, steps + WRAP_US, steps)
     usual = int(np.median(steps[steps > 0])) if np.any(steps > 0) else 1
@@ -131,7 +131,7 @@ def reading_keys(table):
 
 
 def clock_offset_us(t_us, keys, source_t_us, source_keys):
-    """Row time minus source time on which most of the first rows agree; None when no reading is common."""
+    """Row time minus source time on which most of the first rows agree; None if they have no reading in common."""
     votes = Counter()
     for t, key in zip(t_us[:VOTING_ROWS], keys[:VOTING_ROWS]):
         differences = t - source_t_us[source_keys == key]
@@ -143,7 +143,7 @@ def clock_offset_us(t_us, keys, source_t_us, source_keys):
 
 
 def nearest_same_reading(t_us, keys, source_t_us, source_keys):
-    """Per row the index of the source row with the same reading closest in time, -1 where none is close enough."""
+    """For each row the index of the source row with the same reading closest in time, -1 if none is close enough."""
     step = float(np.median(np.diff(source_t_us))) if len(source_t_us) > 1 else 1.0
     found = np.full(len(t_us), -1)
     distance = np.full(len(t_us), MATCH_WINDOW_STEPS * step)
@@ -157,7 +157,7 @@ def nearest_same_reading(t_us, keys, source_t_us, source_keys):
 
 
 def match_rows(run, source):
-    """Per row of the run the source row it shows, -1 for rows without a sample and rows that match nothing."""
+    """For each row of the run the source row it shows, -1 for rows without a sample and rows without a match."""
     matched = np.full(len(run["t_us"]), -1)
     source_t, source_keys, keys = unwrap_us(source["t_us"]), reading_keys(source), reading_keys(run)
     for part in segments(run["t_us"]):
@@ -180,7 +180,7 @@ def take_truth(source, matched):
 
 
 def analyse(run, source):
-    """Everything that is drawn or printed, from the run and the table that has the truth (or None)."""
+    """Everything that is drawn or printed, from the run and the table with the truth (or None)."""
     flags = run["flags"]
     result = SimpleNamespace(rows=len(flags), flags=flags)
     result.t_s = (unwrap_us(run["t_us"]) - run["t_us"][0]) * 1e-6
@@ -197,7 +197,7 @@ def analyse(run, source):
 
 
 def rmse_pair(result, angle):
-    """(raw, filtered) root mean square error in degrees over the same rows; NaN when no row can be scored."""
+    """(raw, filtered) root mean square error in degrees over the same rows; NaN if no row can be scored."""
     scored = ~result.warming & ~result.no_sample & ~np.isnan(result.truth[angle])
     if not np.any(scored):
         return float("nan"), float("nan")
@@ -225,7 +225,7 @@ def summary_lines(result, stats, cut):
         lines.append("no truth columns: errors not computed")
     lines.append(f"not scored: {unscored} rows warming up or without a sample")
     if result.unmatched:
-        lines.append(f"{result.unmatched} rows show a reading that was not served at that time")
+        lines.append(f"{result.unmatched} rows have a reading that was not served at that time")
     if cut:
         lines.append(f"{cut} rows cut short by a reset or by the end of the capture")
     return lines
@@ -274,17 +274,17 @@ def draw(result, title, png):
 
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--run", required=True, help="CSV that the firmware sent")
+    parser.add_argument("--run", required=True, help="CSV sent by the firmware")
     parser.add_argument("--png", required=True, help="picture to write")
-    parser.add_argument("--stream", help="CSV that the sensor played (truth, when --served has none)")
-    parser.add_argument("--served", help="CSV of what the sensor latched (simrun --served)")
+    parser.add_argument("--stream", help="CSV played by the sensor (for the truth, if --served has none)")
+    parser.add_argument("--served", help="CSV of the sensor's latched rows (simrun --served)")
     parser.add_argument("--stats", help="JSON of simrun --stats")
-    parser.add_argument("--title", default="", help="headline of the picture")
+    parser.add_argument("--title", default="", help="title of the picture")
     return parser.parse_args(arguments)
 
 
 def truth_source(options):
-    """The table that rows are matched with: the served one, or the stream when only that has truth."""
+    """The table to match rows with: the served one, or the stream if only that has truth."""
     tables = [read_numbers(path, ["t_us", *READING], TRUTH)[0] for path in (options.served, options.stream) if path]
     with_truth = [table for table in tables if all(name in table for name in TRUTH)]
     return next(iter(with_truth or tables), None)

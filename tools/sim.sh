@@ -1,16 +1,16 @@
 #!/bin/sh
-# sim.sh check STREAM OUT: whether they can be read and written, before anything is built.
+# sim.sh check STREAM OUT: checks that they can be read and written, before anything is built.
 # sim.sh IMAGE STREAM FILTER RATE OUT: one run of the firmware in the simulator, its summary and its picture.
 set -eu
 if [ "$1" = check ]; then
     stream=$2 folder=$(dirname "$3")
     mkdir -p build/sim
     if [ ! -r "$stream" ]; then
-        echo "sim: cannot read the stream $stream (STREAM=file.csv; shipped ones are in sim/streams)" >&2
+        echo "sim: cannot read the stream $stream: give STREAM=file.csv; shipped ones are in sim/streams" >&2
         exit 2
     fi
     if [ ! -d "$folder" ]; then
-        echo "sim: there is no folder $folder for OUT=$3 (mkdir -p $folder)" >&2
+        echo "sim: no folder $folder for OUT=$3: mkdir -p $folder" >&2
         exit 2
     fi
     exit 0
@@ -18,7 +18,7 @@ fi
 image=$1 stream=$2 filter=$3 rate=$4 out=$5
 base=${out%.csv}
 base=${base%.out}
-# 100 Hz rows fit 115200 baud; above that the line is the limit
+# 100 Hz rows fit 115200 baud; higher rates need a faster line
 baud_option=
 case $rate in
     200 | 400) baud_option='--baud 500000' ;;

@@ -1,4 +1,4 @@
-# The benchmark: cycles, flash, RAM and stack on the simulated chip, beside float.
+# The benchmark: cycles, flash, RAM and stack on the simulated chip, compared with float.
 
 # WITH_DEFAULTS and the rest of the images are made by campaigns/bench/bench.py, which knows the filters from the list
 BENCH_INC    := $(INCLUDES) -Ihal/avr -Ihost_tests/chip
@@ -6,7 +6,7 @@ BENCH_COMMON := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL -ffunction-sectio
 BENCH_SRC    := $(wildcard host_tests/chip/float_*.c lib/filters/src/*.c lib/tilt/src/*.c) firmware/base/format.c
 BENCH_DEPS   := $(BENCH_SRC) host_tests/chip/bench.c firmware/output/rows.c Makefile campaigns/bench/bench.mk $(wildcard host_tests/chip/*.h lib/*/src/*.h firmware/*/*.h hal/*.h hal/avr/*.h)
 
-# the filters and their yardsticks together do not fit the flash: an image times a part of the list, four of it
+# the filters and their reference implementations do not fit the flash together: four images time a part of the list each
 BENCH_PARTS  := 1 2 3 4
 bench_part    = '-DBENCH_LIST(X)=$(foreach f,$(wordlist $(word $(1),1 5 9 13),$(word $(1),4 8 12 99),$(CHIP_ALL)),X($(f)))' $(if $(filter 1,$(1)),-DBENCH_THE_REST)
 BENCH_IMAGES := $(BENCH_PARTS:%=$(U)/bench_%.elf) $(BENCH_PARTS:%=$(U)/bench_small_%.elf) $(U)/bench_kept.elf
@@ -19,12 +19,12 @@ $(BENCH_PARTS:%=$(U)/bench_%.elf): $(U)/bench_%.elf: $(BENCH_DEPS)
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(BENCH_COMMON) $(call bench_part,$*) -Os $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/chip/bench.c $(BENCH_SRC) -lm -o $@
 
-# another yardstick for the lightest, in the same program
+# another reference for the lightest, in the same program
 $(U)/bench_kept.elf: $(BENCH_DEPS)
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(BENCH_COMMON) $(call bench_part,1) -DFLOAT_KEPT -Os $(WARNINGS) $(BENCH_INC) -Wl,--gc-sections host_tests/chip/bench.c $(BENCH_SRC) -lm -o $@
 
-# the firmware with two places around a sample's way that the simulator can time
+# the firmware with two marks around a sample's path for the simulator's timing
 $(U)/bench_sample/firmware/app/app.o: AVR_FLAGS += -Dpipeline_sample=bench_sample_begins -Dhealth_sample_filtered=bench_sample_ends
 BENCH_SAMPLE_OBJ := $(AVR_SRC:%.c=$(U)/bench_sample/%.o) $(U)/bench_sample/host_tests/chip/bench_sample.o
 $(U)/bench_sample/%.o: %.c Makefile campaigns/bench/bench.mk
@@ -34,7 +34,7 @@ $(U)/bench_sample/%.o: %.c Makefile campaigns/bench/bench.mk
 $(U)/bench_sample.elf: $(BENCH_SAMPLE_OBJ)
 	@$(AVR_CC) $(AVR_LINK) $^ -o $@
 
-# the firmware without its filters, whose clock starts at ten digits: what is left is the rest of a sample's way, and rows
+# the firmware without its filters, whose clock starts at ten digits: what remains is the rest of a sample's path, and rows
 BENCH_REST_OBJ := $(AVR_SRC:%.c=$(U)/bench_rest/%.o) $(U)/bench_rest/host_tests/chip/bench_rest.o
 $(U)/bench_rest/%.o: IMAGE_FILTERS = $(shell python3 mk/scripts/laws.py light)
 $(U)/bench_rest/firmware/path/pipeline.o: AVR_FLAGS += -Dfilter_update=bench_no_filter
@@ -45,10 +45,10 @@ $(U)/bench_rest/%.o: %.c Makefile campaigns/bench/bench.mk
 $(U)/bench_rest.elf: $(BENCH_REST_OBJ)
 	@$(AVR_CC) $(AVR_LINK) $^ -o $@
 
-# other people's filters, measured beside ours where they are
+# other people's filters, measured beside ours, if they are available
 PEERS ?= ../shared/peers/filters
 
-## bench: cycles, flash, RAM and stack of each filter, beside float and other people's (PEERS=folder), into docs/results/benchmarks.md (3 minutes)
+## bench: measure cycles, flash, RAM and stack of each filter, beside float and other people's (PEERS=folder), into docs/results/benchmarks.md (3 minutes)
 bench:
 	@sh tools/deps.sh bench
 	@$(MAKE) -j2 $(BENCH_IMAGES) $(U)/bench_sample.elf $(U)/bench_rest.elf $(SET_IMAGES) $(S)/simrun

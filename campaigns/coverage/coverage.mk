@@ -1,12 +1,12 @@
 # Coverage of lib by the unit tests (gcov; built apart, without sanitizers) and of the AVR binary by the system tests.
 C := $(B)/coverage
-# what watches over the sensor and the stages is judged beside lib, and the navigation image's link (campaigns/coverage/nav_lib_coverage.mk)
+# the supervision of sensor and stages is judged beside lib, and the navigation image's link (campaigns/coverage/nav_lib_coverage.mk)
 SUPERVISION   := $(wildcard $(addprefix firmware/*/,sensor_watch.c health.c pipeline.c coast.c supervisor.c))
 # test_nav_flight, a minute of flights, runs no line of nav/lib that the short ones leave
 COVERAGE_SRC   := $(filter-out nav/tests/test_nav_flight.c,$(TEST_SRC))
 COVERAGE_TESTS := $(addprefix $(C)/,$(basename $(notdir $(COVERAGE_SRC))))
 
-# as it is written, so that a line is a line; the tests too, for what they call inline from the headers of lib; gcovr keeps what is judged
+# unoptimised, so that a line is a line; the tests too, for what they inline from the headers of lib; gcovr keeps what is judged
 COVERAGE_FLAGS := -O1
 $(C)/lib/%.o $(SUPERVISION:%.c=$(C)/%.o) $(COVERAGE_SRC:%.c=$(C)/%.o): COVERAGE_FLAGS := -O0 --coverage
 
@@ -47,7 +47,7 @@ $(C)/probe.prof: $(C)/probe.elf $(S)/simrun
 	    test $$? -eq 8 || { cat $(C)/probe.log; exit 1; }
 
 # Runs of the system tests, unless PROFILES says where they have left theirs already. A profile slows the simulator down, and the minutes in
-# which nothing is lost are left out: they run next to no line that the others do not. Two halves side by side.
+# which nothing is lost are left out: they run hardly any line that the others do not. Two halves side by side.
 COVERAGE_RUNS := $(if $(PROFILES),,$(C)/runs/equal $(C)/runs/rest)
 $(C)/runs/equal: RUNS_OF := chip_equals
 $(C)/runs/rest: RUNS_OF := -chip_equals -nothing_lost
@@ -56,7 +56,7 @@ $(C)/runs/equal $(C)/runs/rest: system_images
 	@PROFILES=$@ python3 host_tests/system/system_tests.py $(RUNS_OF) > $(C)/system_$(@F).log 2>&1 || \
 	    { grep ':FAIL' $(C)/system_$(@F).log; exit 1; }
 
-## coverage: lines and branches of lib by the unit tests, lines of the AVR binary by the system tests (6 minutes; PROFILES=folder: 2, of a run of PROFILES=folder make test)
+## coverage: measure lines and branches of lib in the unit tests, lines of the AVR binary in the system tests (6 minutes; 2 after PROFILES=folder make test, with the same PROFILES)
 coverage: RUNS := $(or $(PROFILES),$(C)/runs)
 coverage:
 	@sh tools/deps.sh coverage

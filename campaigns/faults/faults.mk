@@ -1,12 +1,12 @@
 # Faults in simrun: the campaign, and random faults for hours.
 
-## faults: every fault at every phase, every pair, into build/faults.json and docs/results/faults-campaign.md (8,700 runs, 12 to 22 minutes; SAMPLE=300: so many)
+## faults: inject every fault at every phase, and every pair, into build/faults.json and docs/results/faults-campaign.md (8,700 runs, 12 to 22 minutes; SAMPLE=300: a sample)
 faults:
 	@sh tools/deps.sh sim
 	@$(MAKE) $(U)/firmware.elf $(S)/simrun
 	@python3 campaigns/faults/faults.py $(if $(SAMPLE),--sample '$(SAMPLE)' --seed $(shell git rev-list --count HEAD 2>/dev/null || echo 1))
 
-## soak: simulated hours with random faults, in two halves side by side (HOURS=24: about 10 minutes on two cores)
+## soak: simulate hours with random faults, in two halves side by side (HOURS=24: about 10 minutes on two cores)
 soak:
 	@sh tools/deps.sh sim
 	@$(MAKE) $(U)/firmware.elf $(S)/simrun

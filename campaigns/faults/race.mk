@@ -1,6 +1,6 @@
-# Interrupts where main shares something with their handlers.
+# Interrupts at the places where main shares data with their handlers.
 
-## race: each image for MINUTES=10 simulated minutes, every interrupt served at each instruction that shares something with it (10 minutes)
+## race: run each image for MINUTES=10 simulated minutes, with every interrupt served at each instruction that shares data with it (10 minutes)
 race:
 	@sh tools/deps.sh sim
 	@$(MAKE) $(SET_IMAGES) $(S)/simrun

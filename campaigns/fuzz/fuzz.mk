@@ -7,10 +7,10 @@ FUZZ_COMMON  := fuzz_support fuzz_protocol fuzz_said fuzz_parameters
 FUZZ_LINKED  := $(FUZZ_COMMON:%=$(FZ)/%.o) $(LAW_SUPPORT:host_tests/%.c=$(FZ)/%.o) $(FZ)/fuzz_drive.o $(FZ)/fuzz_mutate.o $(FZ)/fuzz_dictionary.o
 FUZZ_BIN     := $(FUZZ_TARGETS:%=$(FZ)/fuzz_%)
 FUZZ_LIBFUZZER := $(FUZZ_TARGETS:%=$(FZ)/libfuzzer_%)
-# all fourteen filters are in it: the refusal that names them has 139 bytes
+# contains all fourteen filters: the refusal that lists them has 139 bytes
 FUZZ_LONG    := -DTEXT_LINE_MAX=144u
 FUZZ_GCC     := $(HOST_CC) $(HOST_FLAGS) $(FUZZ_LONG) -Ihost_tests/fuzz $(WARNINGS) $(SANITIZE)
-# CLANG='clang-14 ...' uses that one; CLANG= none
+# CLANG='clang-14 ...' uses that one; CLANG= uses none
 CLANG        ?= $(firstword $(foreach c,clang clang-19 clang-16 clang-15 clang-14,$(shell command -v $(c))))
 FUZZ_CLANG   = $(CLANG) $(HOST_FLAGS) $(FUZZ_LONG) -Ihost_tests/fuzz $(SANITIZE) -fsanitize=fuzzer-no-link
 SECONDS      ?= 20
@@ -59,7 +59,7 @@ $(FZ)/planted/$(1): $(FZ)/fuzz_$(2).o $(FUZZ_LINKED) $(FZ)/planted/$(1).app.o
 endef
 $(foreach p,$(FUZZ_PLANTS),$(eval $(call FUZZ_PLANT,$(word 1,$(subst :, ,$(p))),$(word 2,$(subst :, ,$(p))),$(word 3,$(subst :, ,$(p))))))
 
-# with libFuzzer, where there is a clang that has it
+# with libFuzzer, if there is a clang that has it
 $(FZ)/clang/%.o: %.c Makefile campaigns/fuzz/fuzz.mk
 	@mkdir -p $(@D)
 	@$(FUZZ_CLANG) -MMD -MP -c $< -o $@
@@ -72,7 +72,7 @@ $(FUZZ_LIBFUZZER): $(FZ)/libfuzzer_%: $(FZ)/clang/host_tests/fuzz/fuzz_%.o \
         $(FZ)/clang/app.o
 	@$(CLANG) $(SANITIZE) -fsanitize=fuzzer $^ -lm -o $@
 
-## fuzz: random inputs to commands, stream reader, driver and filters (SECONDS=20 in all, SEED=1)
+## fuzz: feed random inputs to commands, stream reader, driver and filters (SECONDS=20 in all, SEED=1)
 fuzz:
 	@sh tools/deps.sh fuzz
 	@$(MAKE) -j2 $(FUZZ_BIN) $(FUZZ_PLANTED)
@@ -83,7 +83,7 @@ fuzz:
 	    python3 campaigns/fuzz/fuzz.py run $(SECONDS) $(SEED); \
 	fi
 
-# inputs found and kept stay
+# interesting inputs are kept
 clean: clean_fuzz
 clean_fuzz:
 	@rm -rf $(FZ)/app $(FZ)/support $(FZ)/clang $(FZ)/planted $(FZ)/*.o $(FZ)/*.d $(FUZZ_BIN) $(FUZZ_LIBFUZZER)

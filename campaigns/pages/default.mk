@@ -1,6 +1,6 @@
 # Which filter should be the default: decided by a table.
 
-## default: which filter should be the default, into docs/results/default-filter.md (RECORDINGS=folder, else ../shared/streams; 2 minutes)
+## default: decide which filter should be the default, into docs/results/default-filter.md (RECORDINGS=folder, else ../shared/streams; 2 minutes)
 default:
 	@sh tools/deps.sh test
 	@$(MAKE) -s $(H)/default_filter

@@ -1,6 +1,6 @@
 # The robust filters compared: tables and pictures of docs/results/robust-filters.md.
 
-## robust: every filter over the shipped streams, into docs/results/robust-filters.md (10 seconds)
+## robust: run every filter over the shipped streams, into docs/results/robust-filters.md (10 seconds)
 robust:
 	@sh tools/deps.sh sim
 	@$(MAKE) -s $(H)/pipeline_replay

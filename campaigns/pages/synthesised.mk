@@ -1,6 +1,6 @@
 # The synthesised family: closed forms, adaptive's numbers and pictures of docs/results/synthesised-filters.md.
 
-## synthesised: the numbers and pictures of docs/results/synthesised-filters.md (1 minute)
+## synthesised: measure the numbers and draw the pictures of docs/results/synthesised-filters.md (1 minute)
 synthesised:
 	@sh tools/deps.sh test
 	@sh tools/deps.sh design

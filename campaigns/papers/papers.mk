@@ -25,7 +25,7 @@ $(foreach variant,$(NAV_VARIANTS),$(eval $(call nav_variant,$(variant),$(P))))
 $(P)/paper003: $(P)/host_tests/papers/paper003.o $(NAV_PAPER)
 	@$(HOST_CXX) $^ -lm -o $@
 
-# paper 002's filters once more, as C++ with integers that count: what does not compile with them is named by the compiler
+# paper 002's filters again, as C++ with integers that count operations: the compiler names whatever does not fit them
 OPERATIONS := host_tests/papers/operations
 LISTED     := $(shell sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' lib/filters/src/filter.h)
 NOT_002    := $(filter-out $(shell python3 mk/scripts/laws.py kalman),$(LISTED))
@@ -49,7 +49,7 @@ $(P)/operations/state_bytes.o: $(OPERATIONS)/state_bytes.c $(OPERATIONS)/state_b
 $(P)/operations002: $(COUNTED) $(P)/operations/main.o $(P)/operations/state_bytes.o
 	@$(HOST_CXX) $^ -lm -o $@
 
-# and the synthesised filters, whose headers tell how many products a sample takes
+# and the synthesised filters, whose headers state the products per sample
 $(P)/operations/family.o: $(OPERATIONS)/family.cpp $(wildcard lib/filters/src/*.h) $(MACHINE_H) $(OPERATIONS)/counting.hpp Makefile campaigns/papers/papers.mk
 	@mkdir -p $(@D)
 	@$(COUNT_CXX) -Wall -Wextra -Werror -c $< -o $@
@@ -60,7 +60,7 @@ $(P)/products000: $(addprefix $(P)/operations/,family.o filter.o tracker.o param
 PAPERS := $(P)/paper000 $(P)/paper001 $(P)/paper002 $(P)/paper003 $(P)/paper004_board $(P)/operations002 $(P)/products000
 paper_programs: $(PAPERS)
 
-## papers: the experiments of the papers, double and fixed point, beside the printed numbers, into docs/papers.md (2 minutes; RUNS=2000: judged, but page and JSON are left alone)
+## papers: run the papers' experiments, double and fixed point, beside the printed numbers, into docs/papers.md (2 minutes; RUNS=2000: judges only, leaves page and JSON alone)
 papers:
 	@sh tools/deps.sh papers
 	@$(MAKE) -j2 paper_programs

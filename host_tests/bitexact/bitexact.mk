@@ -1,6 +1,6 @@
 # The same bits from every compiler and on the chip.
 
-## bitexact: every filter, angle and number on PC and chip, all optimisations, bit for bit (30 s)
+## bitexact: compare every filter, angle and number on PC and chip, all optimisations, bit for bit (30 s)
 bitexact:
 	@sh tools/deps.sh test
 	@$(MAKE) $(S)/simrun

@@ -28,7 +28,7 @@ $(U)/tests/%.o: %.c Makefile host_tests/chip/chip_tests.mk
 
 $(foreach t,$(UNITY_1) $(UNITY_2),$(call test_object,$(t))) $(U)/tests/host_tests/chip/unity_chip.o: CHIP_FLAGS += $(UNITY_CHIP)
 
-# not gnu11: there Unity takes the macro AVR as a reason to keep its words where it does not read them
+# not gnu11: there Unity reads the macro AVR as a reason to keep its texts where it does not find them
 $(U)/tests/unity.o: $(UNITY_DIR)/unity.c host_tests/chip/unity_chip.h Makefile host_tests/chip/chip_tests.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) -std=c11 -mmcu=atmega328p $(AVR_SMALL) -ffunction-sections -I$(BITEXACT) $(UNITY_CHIP) -c $< -o $@
@@ -48,7 +48,7 @@ SEQUENCE_OBJ := $(patsubst %.c,$(U)/tests/%.o,$(SEQUENCE) $(BITEXACT)/output_chi
 $(U)/tests/filter_sequence_%.elf: $(SEQUENCE_OBJ) $(U)/tests/$(ANY_FILTER)_%.o
 	@$(AVR_CC) $(AVR_LINK) $^ -o $@
 
-# the whole list, and what the chip's two programs are compared with
+# the whole list, and the reference for the chip's two programs
 SEQUENCES := $(H)/filter_sequence $(H)/filter_sequence_1 $(H)/filter_sequence_2
 $(H)/filter_sequence_1: SEQUENCE_OF = $(call linked_flag,$(CHIP_FIRST))
 $(H)/filter_sequence_2: SEQUENCE_OF = $(call linked_flag,$(CHIP_SECOND))

@@ -6,7 +6,7 @@ $(H)/golden_vectors: $(GOLDEN)/golden_vectors.c $(wildcard lib/filters/src/*.c l
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(WARNINGS) $(SANITIZE) $(filter %.c,$^) -lm -o $@
 
-## golden: writes the filters' vectors (host_tests/filters/golden) anew, after a change of their bits that is meant
+## golden: write the filters' vectors (host_tests/filters/golden) again, after an intended change of their bits
 golden: $(H)/golden_vectors
 	@$(H)/golden_vectors > $(GOLDEN)/filters_100hz.csv.part && mv $(GOLDEN)/filters_100hz.csv.part $(GOLDEN)/filters_100hz.csv
 	@git diff --stat -- $(GOLDEN) 2>/dev/null || true

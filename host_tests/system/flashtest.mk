@@ -16,7 +16,7 @@ $(U)/optiboot.hex: $(U)/optiboot.elf
 # what make test builds for it: without the source the test is skipped
 FLASHTEST_IMAGES := $(U)/firmware.hex $(if $(wildcard $(OPTIBOOT_DIR)/optiboot.c),$(U)/optiboot.hex)
 
-## flashtest: write the firmware with avrdude through the UNO's boot loader into the simulated UNO and see it stream (10 s)
+## flashtest: write the firmware with avrdude through the UNO's boot loader into the simulated UNO and check that it streams (10 s)
 flashtest:
 	@sh tools/deps.sh flashtest
 	@$(MAKE) flashtest_images

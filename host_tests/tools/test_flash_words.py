@@ -17,22 +17,22 @@ AT = "/dev/ttyUSB7"
 # what avrdude 7.1 and 6.3 say, BOARD, what it means
 FAILURES = (
     (f"avrdude OS error: cannot open port {AT}: No such file or directory\navrdude error: unable to open programmer arduino on port {AT}", "uno",
-     f"flash: there is no port {AT}: plug the board in"),
+     f"flash: no port {AT}: plug the board in"),
     (f'avrdude: ser_open(): can\'t open device "{AT}": Permission denied', "uno",
      f"flash: no permission for {AT}: sudo usermod -aG dialout $USER, then log"),
-    (f"avrdude OS error: cannot open port {AT}: Device or resource busy", "uno", f"flash: another program uses {AT}: close the serial monitor"),
+    (f"avrdude OS error: cannot open port {AT}: Device or resource busy", "uno", f"flash: {AT} is in use: close the serial monitor"),
     ("avrdude warning: attempt 1 of 10: not in sync: resp=0x00\n" * 10, "uno",
      f"flash: no boot loader answers at {AT} with 115200 baud (not in sync): wrong PORT or BOARD; try make flash BOARD=nano-old PORT={AT}; "),
     ("avrdude: stk500_recv(): programmer is not responding", "nano-old",
      f"57600 baud (not in sync): wrong PORT or BOARD; try make flash BOARD=nano PORT={AT}; "),
     ("avrdude error: protocol expects OK byte 0x10 but got 0x14", "promini",
-     "57600 baud (not in sync): wrong PORT or BOARD; press its reset as writing begins; "),
+     "57600 baud (not in sync): wrong PORT or BOARD; press reset as writing begins; "),
     ("avrdude warning: attempt 1 of 10: not in sync: resp=0x00\navrdude: verification error, first mismatch at byte 0x1234\n"
      "         0x12 != 0x13\navrdude: verification error; content mismatch", "uno",
-     "flash: verification failed, the board does not hold what was written: try"),
+     "flash: verification failed: try"),
     ("avrdude warning: verification mismatch", "uno", "flash: verification failed"),
-    ("avrdude error: Yikes!  Invalid device signature.", "uno", f"flash: the chip at {AT} is no ATmega328P"),
-    ("avrdude: something that nobody has seen", "uno", "flash: avrdude gave status 1; "),
+    ("avrdude error: Yikes!  Invalid device signature.", "uno", f"flash: the chip at {AT} is not an ATmega328P"),
+    ("avrdude: something that nobody has seen", "uno", "flash: avrdude ended with status 1; "),
 )
 
 
@@ -75,7 +75,7 @@ def failures_of_avrdude_are_one_line_that_says_what_to_do():
     for words, board_, meaning in FAILURES:
         done, _ = program(*FLASH, board_, image, AT, words=words)
         assert done.returncode == 1 and meaning in done.stderr and done.stderr.count("\n") == 1, (words, done.stderr)
-        assert done.stderr.endswith(f"; avrdude's own words: {LOG}\n") and words in LOG.read_text(encoding="utf-8"), done.stderr
+        assert done.stderr.endswith(f"; avrdude's output: {LOG}\n") and words in LOG.read_text(encoding="utf-8"), done.stderr
 
 
 @test
@@ -88,9 +88,9 @@ def each_board_is_written_at_the_rate_of_its_boot_loader_with_what_fits():
     done, typed = program("make", "flash", "BOARD=nano-old", f"PORT={AT}", status=0)
     assert done.returncode == 0 and f" -P {AT} -b 57600 -D -U flash:w:build/promini/firmware.hex:i" in typed, done
     small = " ".join(images.HOLDS["small"])
-    assert f"BOARD=nano-old has 30720 bytes of flash: the image holds the set small ({small}); FILTERS= takes others\n" in done.stdout, done.stdout
+    assert f"BOARD=nano-old has 30720 bytes of flash: the image holds the set small ({small}); choose others with FILTERS=\n" in done.stdout, done.stdout
     done, typed = program("make", "flash", "BOARD=mega", f"PORT={AT}")
-    refused = "BOARD: there is no board 'mega'; boards: uno nano nano-old promini promini-8mhz"
+    refused = "BOARD: no board 'mega': choose from uno nano nano-old promini promini-8mhz"
     assert done.returncode != 0 and refused in done.stderr and not typed, done
 
 
@@ -104,7 +104,7 @@ def image_that_does_not_fit_the_board_is_refused_before_avrdude_runs():
         assert done.returncode == 0 and typed, done.stderr
     (OUT / "torn.hex").write_text(":10000000\nhello\n", encoding="ascii")
     done, typed = program(*FLASH, "uno", OUT / "torn.hex", AT, status=0)
-    assert done.returncode == 2 and "torn.hex:2: not a record of Intel HEX" in done.stderr and not typed, done.stderr
+    assert done.returncode == 2 and "torn.hex:2: not an Intel HEX record" in done.stderr and not typed, done.stderr
 
 
 @test
@@ -115,7 +115,7 @@ def the_only_port_is_taken_and_named():
         dev = folder("dev", *files)
         done, typed = program(*FLASH, "uno", image, status=0, dev=dev)
         path = f"{dev}/{files[0][0]}"
-        assert done.returncode == 0 and f" -P {path} " in typed and f"flash: {path} is the only port of a board and is taken\n" in done.stdout, done
+        assert done.returncode == 0 and f" -P {path} " in typed and f"flash: using {path}, the only port of a board\n" in done.stdout, done
 
 
 @test
@@ -125,12 +125,12 @@ def where_no_port_or_several_are_there_it_says_what_to_type():
         options = ("FILTERS=a b", "BOARD=nano-old")
         done, typed = program("make", target, *options, dev=several)
         command = f"make {target} BOARD=nano-old FILTERS='a b' PORT={several}"
-        for line in (f"{target}: 2 serial ports are there; type the line of the board's:", f"  {command}/ttyACM0   (usb-Arduino-if00)",
+        for line in (f"{target}: 2 serial ports found; type the line of your board's:", f"  {command}/ttyACM0   (usb-Arduino-if00)",
                      f"  {command}/ttyUSB0"):
             assert line in done.stderr.splitlines(), done.stderr
         assert done.returncode != 0 and not typed and "built" not in done.stdout, done
         done, typed = program("make", target)
-        assert f"{target}: no board is plugged in (" in done.stderr and f"\n  make {target} PORT=/dev/...\n" in done.stderr, done.stderr
+        assert f"{target}: no board found (" in done.stderr and f"\n  make {target} PORT=/dev/...\n" in done.stderr, done.stderr
         assert done.returncode != 0 and not typed and "built" not in done.stdout, done
 
 
@@ -142,7 +142,7 @@ def monitored(*more):
     process = subprocess.Popen(["tools/flash.py", "monitor", "57600", *more], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                env={**os.environ, "FLASH_DEV": str(dev)})
     try:
-        assert process.stdout.readline().endswith(b"is the only port of a board and is taken\n")
+        assert process.stdout.readline().endswith(b", the only port of a board\n")
         assert process.stdout.readline().endswith(b"at 57600 baud; type help and Enter, Ctrl-C ends\n")
         assert termios.tcgetattr(its)[4:6] == [termios.B57600] * 2
         os.close(its)
@@ -175,7 +175,7 @@ def monitor_says_that_the_board_was_unplugged():
 
 @test
 def monitor_says_why_a_port_does_not_open():
-    for port, words in (("/dev/ttyUSB77", "monitor: there is no port /dev/ttyUSB77: plug the board in"),
+    for port, words in (("/dev/ttyUSB77", "monitor: no port /dev/ttyUSB77: plug the board in"),
                         ("/dev/null", "monitor: /dev/null cannot be set to 57600 baud (")):
         done, _ = program("tools/flash.py", "monitor", "57600", port)
         assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1, done.stderr

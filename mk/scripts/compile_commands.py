@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""compile_commands.json for clangd and other tools: how each source is compiled, read from what make would do.
+"""compile_commands.json for clangd and other tools: how each source is compiled, taken from what make would run.
 
     compile_commands.py [--out FILE] TARGET...     make's targets; FILE: compile_commands.json
 
-What no target compiles (programs for single experiments) is there as make check-compile compiles it. A file that goes into the firmware and
-into programs of the PC has two entries, that of the PC first: clangd takes the first, and Clang does not parse all of avr-libc. Options that
-only concern the machine code are left out, because Clang does not know those of avr-gcc.
+Sources that no target compiles (programs for single experiments) have the options of make check-compile. A file that goes into the firmware and
+into programs of the PC has two entries, the PC's first: clangd uses the first, and Clang cannot parse all of avr-libc. Options for machine
+code only are left out, because Clang does not know avr-gcc's.
 """
 import argparse
 import json
@@ -25,12 +25,12 @@ SOURCES = (".c", ".cpp")
 WITH_VALUE = ("-I", "-isystem", "-D", "-U", "-include")
 KEPT = re.compile(r"-(std=|mmcu=|W(?!l,|a,|p,)|O|fshort-enums$)")
 
-# not as a part of the make that called this program
+# independent of the make that called this program
 OWN_MAKE = {name: value for name, value in os.environ.items() if name not in ("MAKELEVEL", "MAKEFLAGS", "MFLAGS")}
 
 
 def planned(targets):
-    """Every line that make would carry out for them, were nothing built."""
+    """Every line that make would run for the targets if nothing were built."""
     done = subprocess.run(["make", "-nB", *targets], capture_output=True, text=True, check=False, env=OWN_MAKE)
     if done.returncode != 0:
         raise Stop(f"make -nB: {(done.stderr.strip() or '?').splitlines()[-1]}")
@@ -38,7 +38,7 @@ def planned(targets):
 
 
 def words_of(line):
-    """The words of a shell command up to a redirection or the next command; $(...) is carried out, as make's shell would."""
+    """The words of a shell command up to a redirection or the next command; $(...) is run, as make's shell would."""
     if "$(" in line:
         inner = re.compile(r"\$\(([^()]*)\)")
         line = inner.sub(lambda found: subprocess.run(["sh", "-c", found[1]], capture_output=True, text=True, check=True).stdout.strip(), line)
@@ -53,7 +53,7 @@ def words_of(line):
 
 
 def meaning(words):
-    """Those options that say what the source means: macros, folders, language, warnings."""
+    """The options that determine the meaning of the source: macros, folders, language, warnings."""
     kept, following = [], iter(words)
     for word in following:
         if word in WITH_VALUE:
@@ -64,7 +64,7 @@ def meaning(words):
 
 
 def entries_of(line):
-    """(file, compiler, options) of each source on a line of make's."""
+    """(file, compiler, options) of each source on a line of make's output."""
     if line.split(None, 1)[:1] and line.split(None, 1)[0] in COMPILERS:
         compiler, *words = words_of(line)
         for word in words:
@@ -77,7 +77,7 @@ def side(compiler):
 
 
 def of_check(known):
-    """The same of what make check-compile alone compiles."""
+    """The same for the sources that only make check-compile compiles."""
     for path, command in check_compile.jobs():
         compiler, *words = map(str, command)
         if path.suffix == ".c" and str(path) not in known:

@@ -1,5 +1,5 @@
 #!/bin/sh
-# filters_txt.sh FILE FILTER...: the filters of an image into its filters.txt, which is left alone when it says so already.
+# filters_txt.sh FILE FILTER...: writes the filters of an image to its filters.txt, which is left alone if unchanged.
 set -eu
 file=$1
 shift
@@ -9,10 +9,10 @@ sets=${sets% }
 for filter in "$@"; do
     case " $known" in
         *" $filter "*) ;;
-        *) echo "FILTERS: there is no filter $filter; filters: ${known% }; sets of filters, each to stand alone: $sets" >&2; exit 2 ;;
+        *) echo "FILTERS: no filter $filter: choose from ${known% }, or one set: $sets" >&2; exit 2 ;;
     esac
 done
-[ $# -gt 0 ] || { echo "FILTERS is empty; filters: ${known% }; sets of filters: $sets" >&2; exit 2; }
+[ $# -gt 0 ] || { echo "FILTERS is empty: choose from ${known% }, or one set: $sets" >&2; exit 2; }
 twice=$(printf '%s\n' "$@" | sort | uniq -d | tr '\n' ' ')
 [ -z "$twice" ] || { echo "FILTERS: named twice: ${twice% }" >&2; exit 2; }
 mkdir -p "$(dirname "$file")"

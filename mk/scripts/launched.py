@@ -1,11 +1,11 @@
-"""What `python FOLDER` and `python -m PACKAGE` begin with: the folder's command, or one line about the package that it lacks."""
+"""The start of `python FOLDER` and `python -m PACKAGE`: the folder's command, or one line about a missing package."""
 import importlib
 import pathlib
 import sys
 
 
 def run(folder, module, packages):
-    """Exits with the status of the module's main; `packages` is what tools/deps.sh calls those that the folder wants."""
+    """Exits with the status of the module's main; `packages` is the group of tools/deps.sh that the folder needs."""
     name = pathlib.PurePath(folder).name
     try:
         main = importlib.import_module(f"{name}.{module}").main

@@ -1,4 +1,4 @@
-"""What the filter library's descriptors, and the yardsticks beside them, declare of each law: the names stand there alone.
+"""What the filter library's descriptors, and the yardsticks beside them, declare about each law: the names stand only there.
 
     laws.py kalman|light      names of the filters of paper 002, or of the lightest, for make
 """
@@ -14,13 +14,13 @@ LIMITS = re.compile(r"\bbench: worst (\d+) cycles; float / ours ([\d.]+); rms ([
 
 
 class Law(NamedTuple):
-    """Of a descriptor: the worst case of an update in cycles, which make bench holds; traits of tracker.h without their LAW_."""
+    """From a descriptor: worst cycles of an update, enforced by make bench; traits of tracker.h without LAW_."""
     worst_cycles: int
     traits: frozenset
 
 
 class Limits(NamedTuple):
-    """Of make bench: worst cycles, how many times fewer than float, difference from float in LSB rms."""
+    """Limits of make bench: worst cycles, speed-up over float, difference from float in LSB rms."""
     worst: int
     ratio: float
     rms: float
@@ -28,7 +28,7 @@ class Limits(NamedTuple):
 
 @functools.cache
 def names():
-    """The list's, in its order: the first is what the firmware starts with."""
+    """The names in the list's order: the firmware starts with the first."""
     found = re.findall(r"X\((\w+)\)", LIST.read_text(encoding="utf-8").split("#define FILTER_LAWS(X)")[-1])
     if not found:
         raise ValueError(f"{LIST}: no X(name) after #define FILTER_LAWS(X)")
@@ -44,14 +44,14 @@ def laws():
 
 
 def kalman():
-    """Those of paper 002: Kalman filters of a position whose rate is driven by white acceleration of the power density q."""
+    """The filters of paper 002: Kalman filters of a position whose rate is driven by white acceleration of power density q."""
     files = [path.read_text(encoding="utf-8") for path in sorted(LIST.parent.glob("*.c"))]
     having = {name for text in files if "&filter_parameter_q" in text for name, _ in DESCRIPTOR.findall(text)}
     return [name for name in names() if name in having]
 
 
 def worst_cycles():
-    """{name: worst case of an update in cycles}."""
+    """{name: worst cycles of an update}."""
     return {name: law.worst_cycles for name, law in laws().items()}
 
 
@@ -60,19 +60,19 @@ def yardstick(name):
 
 
 def limits(name):
-    """None: the yardstick has no line of limits."""
+    """None if the yardstick has no line of limits."""
     path = yardstick(name)
     found = LIMITS.search(path.read_text(encoding="utf-8")) if path.is_file() else None
     return Limits(int(found[1]), float(found[2]), float(found[3])) if found else None
 
 
 def first(wanted):
-    """Of the list the first law that is so."""
+    """The first law in the list that has the property."""
     return next(name for name in names() if wanted(name, laws()[name].traits))
 
 
-# What programs take that need a filter and no particular one: what an image starts with; a Kalman filter without a gate and one with it;
-# those with the fewest and the most cycles; a long name of several words.
+# The choices of programs that need some filter: the one an image starts with; a Kalman filter without a gate and one with it; those with
+# the fewest and the most cycles; a long name of several words.
 DEFAULT = names()[0]
 PLAIN = first(lambda name, traits: "COVARIANCE" in traits and "GATED" not in traits)
 ROBUST = first(lambda name, traits: {"COVARIANCE", "GATED"} <= traits)

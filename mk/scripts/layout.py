@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""layout.py: the order of the functions in the UNO's flash, of build/uno/firmware.elf and .map, into hal/avr/functions.ld.
+"""layout.py: the order of the functions in the UNO's flash, from build/uno/firmware.elf and .map, to hal/avr/functions.ld.
 
-A call or jump within 4 KB takes two bytes, a further one four, and the compiler's order leaves two thirds of them far. Here the functions are
-moved about (annealing with a fixed seed) until few calls are. hal/avr/uno.ld takes them in that order; functions that are not in it follow
-behind the others, so it need not be written anew for each change: do it when bytes are short.
+A call or jump within 4 KB takes two bytes, a longer one four, and in the compiler's order two thirds are long. This program reorders the
+functions (annealing with a fixed seed) until few calls are. hal/avr/uno.ld uses that order and puts functions that are not listed after the
+others, so the list does not have to be rewritten after each change: do it when bytes are short.
 """
 import bisect
 import math
@@ -14,18 +14,18 @@ import subprocess
 import sys
 
 BUILT, OUT = pathlib.Path("build/uno/firmware"), pathlib.Path("hal/avr/functions.ld")
-REACH = 4094  # bytes, from behind a short call
+REACH = 4094  # bytes, from the end of a short call
 MOVES = 400_000
-WARM = 1.0  # long calls that a move may cost at first
+WARM = 1.0  # long calls that a move may add at the start
 
 
 def unit_of(section):
-    """Sections of equal names but for what the compiler numbers are one unit: a list cannot tell them apart."""
+    """Sections with equal names apart from the compiler's numbers are one unit: a list cannot distinguish them."""
     return re.sub(r"\.(lto_priv|constprop|isra|part)\b.*", "", section)
 
 
 def sections(map_file):
-    """[(address, size, unit)] of .text.* in the order of the map."""
+    """[(address, size, unit)] of .text.* in map order."""
     text = pathlib.Path(map_file).read_text(encoding="utf-8")
     text = text[text.index("Linker script and memory map"):]
     found = re.findall(r"^ (\.text\S*)\s+0x([0-9a-f]+)\s+0x([0-9a-f]+) ", text, re.MULTILINE)
@@ -102,7 +102,7 @@ def main():
     lines = [f"*({names[unit]} {names[unit]}.*)" for unit in order]
     head = "/* Written by mk/scripts/layout.py: functions in an order that makes most calls short. */"
     OUT.write_text("\n".join([head, *lines, ""]), encoding="ascii")
-    print(f"{OUT}: {len(names)} functions, {len(edges)} calls between them, {after} of them far, before {before}")
+    print(f"{OUT}: {len(names)} functions, {len(edges)} calls between them, {after} of them far, {before} before")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""library.py FOLDER: lib/filters, lib/tilt and the header of lib/machine as one library for the Arduino IDE and PlatformIO,
-FOLDER/tilt-filters, and beside it as tilt-filters.zip (Sketch, Include Library, Add .ZIP Library).
+"""library.py FOLDER: writes lib/filters, lib/tilt and the header of lib/machine as one library for the Arduino IDE and PlatformIO to
+FOLDER/tilt-filters and, beside it, tilt-filters.zip (Sketch, Include Library, Add .ZIP Library).
 
-Both build systems look for headers in src/ alone, so the sources stand side by side there; all else is that of lib/filters.
+Both build systems search headers only in src/, so all sources are there; everything else is that of lib/filters.
 """
 import pathlib
 import shutil
@@ -12,18 +12,18 @@ import zipfile
 NAME = "tilt-filters"
 ROOT = pathlib.Path("lib/filters")
 SOURCES = (ROOT / "src", pathlib.Path("lib/tilt/src"), pathlib.Path("lib/machine/src"))
-ANY_TIME = (1980, 1, 1, 0, 0, 0)  # the first that a zip can name: the same sources give the same file
+ANY_TIME = (1980, 1, 1, 0, 0, 0)  # the earliest in a zip: equal sources give equal files
 
 
 def assemble(folder):
-    """Writes the library anew."""
+    """Writes the library again."""
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(ROOT, folder, ignore=lambda where, names: {"src"} if pathlib.Path(where) == ROOT else set())
     (folder / "src").mkdir()
     for path in (path for source in SOURCES for path in sorted(source.glob("*.[ch]"))):
         target = folder / "src" / path.name
         if target.exists():
-            raise SystemExit(f"{path}: another folder has a file of this name")
+            raise SystemExit(f"{path}: file name exists in another folder too: rename one")
         shutil.copyfile(path, target)
 
 

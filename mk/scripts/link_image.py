@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Link an image of the firmware and see that it fits its board; what does not fit is refused in one line that says by how many bytes, and what fits.
+"""Links an image of the firmware and checks that it fits its board; otherwise reports in one line the excess bytes, and what would fit.
 
     link_image.py BOARD FLASH FILTERS COMMAND... -o ELF
 
-FLASH: bytes that the boot loader of BOARD (mk/boards.txt) leaves; FILTERS: the names in the image. The linker itself knows 32 KB and says only
-that a section will not fit, so an image that it refuses is linked once more for a chip with more flash. With MEASURE in the environment nothing else
-is done: that is how each choice with one filter less is measured here, by make in a folder beside the image.
+FLASH: bytes that the boot loader of BOARD (mk/boards.txt) leaves; FILTERS: the names in the image. The linker only knows 32 KB and only reports
+that a section does not fit, so a rejected image is linked again for a chip with more flash. With MEASURE in the environment nothing else happens:
+that is how make measures each choice with one filter less, in a folder beside the image.
 """
 import os
 import pathlib
@@ -20,23 +20,23 @@ DOES_NOT_FIT = ("will not fit in region", "overflowed by")
 
 
 def linked(command):
-    """Why the linker refuses; empty where it does not."""
+    """Why the linker fails; empty if it succeeds."""
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode == 0:
         sys.stderr.write(done.stderr)
         return ""
-    return done.stderr or f"{command[0]} gave status {done.returncode}\n"
+    return done.stderr or f"{command[0]} ended with status {done.returncode}\n"
 
 
 def flash_bytes(elf):
-    """What an image takes in program memory: code, constants and the first values of variables."""
+    """The size of an image in program memory: code, constants and initial values of variables."""
     sections = subprocess.run(["avr-size", "-A", str(elf)], capture_output=True, text=True, check=True).stdout.split("\n")
     sizes = {words[0]: int(words[1]) for words in map(str.split, sections) if len(words) == 3 and words[1].isdigit()}
     return sizes[".text"] + sizes.get(".data", 0)
 
 
 def measured(board, names, folder):
-    """Flash that an image with these filters takes, whether it fits or not."""
+    """The flash size of an image with these filters, whether it fits or not."""
     elf = folder / "firmware.elf"
     environment = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
     command = ["make", "-s", "-j2", f"BOARD={board}", f"U={folder}", f"FILTERS={' '.join(names)}", str(elf)]
@@ -49,7 +49,7 @@ def listed(taken):
 
 
 def first_that_fit(board, flash, names, folder):
-    """The longest beginning of the list that fits; it may be empty. More filters never take less."""
+    """The longest prefix of the list that fits, perhaps empty. More filters never take less."""
     fit, too_many = 0, len(names) - 1
     while too_many - fit > 1:
         middle = (fit + too_many) // 2
@@ -61,7 +61,7 @@ def first_that_fit(board, flash, names, folder):
 
 
 def remedy(board, flash, names, size, folder):
-    """What to leave out, found by building it."""
+    """The filters to leave out, found by building without them."""
     if len(names) == 1:
         others = [each.name for each in boards.TABLE.values() if each.flash >= size]
         return f"{names[0]} does not fit even alone; boards with room for it: {' '.join(others) or 'none'}"
@@ -94,7 +94,7 @@ def main():
     folder = elf.parent / "measured"
     try:
         advice = remedy(board, flash, names, size, folder)
-    except subprocess.CalledProcessError:  # make has said why
+    except subprocess.CalledProcessError:  # make has printed the reason
         advice = "leave some out"
     finally:
         shutil.rmtree(folder, ignore_errors=True)

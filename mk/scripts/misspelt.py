@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""misspelt.py NAME...: of the variables typed behind `make`, the first that no makefile knows, with the one that was probably meant.
+"""misspelt.py NAME...: of the variables typed after `make`, reports the first that no makefile knows, with the probable one.
 
-Prints one sentence, or nothing where all are known. Make itself would ignore such a variable and do something else than asked.
+Prints one sentence, or nothing if all are known. Make itself would ignore such a variable.
 """
 import difflib
 import pathlib
@@ -12,7 +12,7 @@ import sys
 USED = re.compile(r"\$[({](?:value |origin )?([A-Z]\w*)|^(?:[\w %-]+:)? ?(?:export )?([A-Z]\w*) *[:?+]?=|(?<![-\w])([A-Z]\w*)=", re.MULTILINE)
 FOLDERS = ("mk", "checks", "nav", "second", "tools", "campaigns", "host_tests")
 OF_MAKE = {"SHELL", "MAKEFLAGS"}
-# what other projects call it
+# names in other projects
 ELSEWHERE = {"CC": "HOST_CC", "CXX": "HOST_CXX"}
 
 
@@ -29,11 +29,11 @@ def known():
 
 
 def complaint(names, legal):
-    """One sentence on the first name that is not legal; empty when there is none."""
+    """One sentence about the first name that is not legal; empty if there is none."""
     for name in names:
         if name not in legal:
             near = [ELSEWHERE[name]] if name in ELSEWHERE else difflib.get_close_matches(name.upper(), sorted(legal), 1, 0.6)
-            return f"there is no variable {name}: " + (f"did you mean {near[0]}?" if near else "`make help` lists the targets and theirs")
+            return f"no variable {name}: " + (f"did you mean {near[0]}?" if near else "`make help` lists the targets and their variables")
     return ""
 
 

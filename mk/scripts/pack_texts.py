@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""pack_texts.py OUT: the texts of firmware/console/reply_texts.h, packed for program memory, as a header (firmware/console/reply_packed.h).
+"""pack_texts.py OUT: packs the texts of firmware/console/reply_texts.h for program memory into a header (firmware/console/reply_packed.h).
 
-Byte pair encoding: the commonest pair of neighbours gets a byte of its own, again and again, until a pair saves no more than the two bytes
-that it takes in the list of pairs. reply_lines.c unpacks them with a stack of PACKED_DEPTH bytes.
+Byte pair encoding: the most frequent pair of neighbours gets a byte of its own, repeatedly, until a pair saves no more than the two bytes
+of its entry in the list of pairs. reply_lines.c unpacks them with a stack of PACKED_DEPTH bytes.
 """
 import collections
 import pathlib
@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 ALONE, PAIR_FIRST, PAIRS_MAX = 0x7B, 0x8F, 0x71  # smaller bytes are characters, or stand for values; from ALONE on (enum say) in no pair
-STEP = 16                           # texts between two whose start is kept; the firmware counts ends from there
+STEP = 16                           # every STEP-th text has its start stored; the firmware counts ends from there
 COLUMNS = 110
 
 
@@ -20,7 +20,7 @@ def texts():
     """[(name, bytes)] in the order of the list."""
     compiler = next((name for name in ("gcc", "cc", "avr-gcc") if shutil.which(name)), None)
     if compiler is None:
-        sys.exit("pack_texts: no C compiler found: sh tools/deps.sh firmware")
+        sys.exit("pack_texts: no C compiler found: install one with sh tools/deps.sh firmware")
     source = '#include "console/reply_texts.h"\n#define TEXT(name, words) @name words\nREPLY_TEXTS(TEXT)\n'
     command = [compiler, "-E", "-P", "-mmcu=atmega328p"][:4 if compiler == "avr-gcc" else 3]
     includes = ["-Ifirmware", "-Ilib/machine/src", "-Ihal", "-Ihal/avr" if compiler == "avr-gcc" else "-Ihal/host"]
@@ -57,7 +57,7 @@ def replaced(row, pair, code):
 
 
 def pack(rows):
-    """(pairs, rows in which they are replaced)"""
+    """(pairs, rows with the pairs replaced)"""
     pairs = []
     while len(pairs) < PAIRS_MAX:
         pair, count = max(occurrences(rows).items(), key=lambda item: (item[1], item[0]))
@@ -69,7 +69,7 @@ def pack(rows):
 
 
 def depth_of(code, pairs):
-    """Bytes that wait on the stack while a code is unpacked."""
+    """Stack bytes needed to unpack a code."""
     if code < PAIR_FIRST:
         return 0
     first, second = pairs[code - PAIR_FIRST]
@@ -84,7 +84,7 @@ def unpacked(row, pairs):
 
 
 def lines(numbers):
-    """Numbers in rows of an initialiser, as clang-format sets them."""
+    """Numbers in rows of an initialiser, formatted as by clang-format."""
     text, line = [], "   "
     for number in numbers:
         word = f" {number},"

@@ -1,4 +1,4 @@
-"""For platformio.ini: PlatformIO hands -ffunction-sections to the compiler alone, but link-time optimisation makes the sections that
-hal/avr/uno.ld puts in order."""
+"""For platformio.ini: PlatformIO passes -ffunction-sections only to the compiler, but link-time optimisation makes the sections that
+hal/avr/uno.ld orders."""
 Import("env")  # noqa: F821
 env.Append(LINKFLAGS=["-ffunction-sections"])  # noqa: F821

@@ -47,7 +47,7 @@ def write(path, text):
 
 
 def package(folder, kind, name, version, **more):
-    """The two files that make a folder a package; .piopm says where it would have come from."""
+    """Writes the two files that make a folder a package; .piopm names its nominal origin."""
     manifest = "platform.json" if kind == "platform" else "package.json"
     write(folder / manifest, json.dumps({"name": name, "version": version, "description": "stand-in", **more}))
     owner = {"owner": "platformio", "id": 1, "name": name, "requirements": None, "uri": None}
@@ -59,7 +59,7 @@ def make_scons(core, venv):
     package(target, "tool", "tool-scons", SCONS_VERSION)
     libraries = [p for p in venv.glob("lib/python*/site-packages/SCons") if p.is_dir()]
     if not libraries:
-        sys.exit(f"pio_standins: no SCons in {venv}: pip install scons")
+        sys.exit(f"pio_standins: no SCons in {venv}: install it with pip install scons")
     shutil.copytree(libraries[0], target / "scons-local" / "SCons", dirs_exist_ok=True)
     write(target / "scons.py", "import os, sys\nsys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'scons-local'))\n"
           "import SCons.Script\nSCons.Script.main()\n")

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""progress.py make ARGUMENT...: runs this make and says how far it is: "building 37 of 104: TARGET".
+"""progress.py make ARGUMENT...: runs this make and reports progress: "building 37 of 104: TARGET".
 
-The count is what `make -n` would do (0.2 s for this tree), each step what --trace tells of it. On a terminal the line is kept up to date, on
-a log there is one every few seconds. What compilers and make have to say on stderr is not touched; of stdout only the commands themselves
-are left out. The status is make's.
+The total is what `make -n` would do (0.2 s for this tree); steps are counted by --trace. On a terminal one line is updated; a log gets a line
+every few seconds. The stderr of compilers and make passes unchanged; from stdout only the commands themselves are removed. The status is
+make's.
 """
 import os
 import re
@@ -12,13 +12,13 @@ import subprocess
 import sys
 import time
 
-STEP = re.compile(r"^\S+:\d+: (?:update )?target '([^']+)'")  # the words after it differ from make to make
-ENGLISH = {**{name: value for name, value in os.environ.items() if name != "LANGUAGE"}, "LC_ALL": "C"}  # STEP is what make says in English
+STEP = re.compile(r"^\S+:\d+: (?:update )?target '([^']+)'")  # the words after it differ between versions of make
+ENGLISH = {**{name: value for name, value in os.environ.items() if name != "LANGUAGE"}, "LC_ALL": "C"}  # STEP matches make's English output
 LOG_S, STILL_S, TERMINAL_S = 5.0, 30.0, 0.1
 
 
 def planned(command):
-    """(number of steps, the lines of their commands); (0, nothing) where make cannot tell: what is wrong it says when it runs."""
+    """(number of steps, the lines of their commands); (0, nothing) if make fails: it prints the reason when it runs."""
     done = subprocess.run([*command, "-n", "--trace"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace",
                           env=ENGLISH, check=False)
     lines = done.stdout.splitlines()
@@ -26,7 +26,7 @@ def planned(command):
 
 
 class Progress:
-    """The line that says how far it is."""
+    """The progress line."""
 
     def __init__(self, count, stream):
         self.count, self.stream, self.live = count, stream, stream.isatty()
@@ -38,7 +38,7 @@ class Progress:
         self.show()
 
     def show(self):
-        """At most every few seconds; more seldom where nothing is new."""
+        """At most every few seconds; less often if nothing is new."""
         now = time.monotonic()
         least_s = TERMINAL_S if self.live else LOG_S if self.done > self.shown_done else STILL_S
         if self.done and now - self.shown >= least_s:
@@ -46,7 +46,7 @@ class Progress:
             self.write(f"building {self.done} of {self.count} ({now - self.began:.0f} s): {self.target}")
 
     def write(self, text):
-        # the cursor goes back to the begin of the line, so that an error overwrites it
+        # the cursor returns to the beginning of the line, so that an error overwrites it
         self.stream.write(f"\r\x1b[K{text[:100]}\r" if self.live else f"{text}\n")
         self.stream.flush()
 
@@ -64,7 +64,7 @@ class Progress:
 
 
 def lines_of(pipe):
-    """Whole lines as they come; None every second in which none does."""
+    """Whole lines as they arrive; None every second without one."""
     rest = b""
     with selectors.DefaultSelector() as ready:
         ready.register(pipe, selectors.EVENT_READ)
@@ -87,7 +87,7 @@ def main():
         print("progress.py: usage: progress.py make ARGUMENT...", file=sys.stderr)
         return 2
     flags = os.environ.get("MAKEFLAGS", "").partition(" ")[0]
-    if "n" in flags and not flags.startswith("-"):  # make -n: what would be done is wanted, not how far it is
+    if "n" in flags and not flags.startswith("-"):  # make -n: print what would be done, not the progress
         return subprocess.run(command, check=False).returncode
     count, commands = planned(command)
     progress = Progress(count, sys.stdout)

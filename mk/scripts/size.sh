@@ -1,7 +1,7 @@
 #!/bin/sh
-# size.sh ELF [IMAGE [FLASH]]: flash and RAM of an image beside the budgets of checks/budgets.txt; over budget it names the largest symbols with their
-# files and fails (only with the compiler the budgets are for). The budgets of IMAGE are named IMAGE_flash_bytes and so on.
-# FLASH: what the board's boot loader leaves, where that is less than the UNO's.
+# size.sh ELF [IMAGE [FLASH]]: prints flash and RAM of an image beside the budgets of checks/budgets.txt; over budget it lists the largest symbols
+# with their files and fails (only with the compiler the budgets are for). The budgets of IMAGE are named IMAGE_flash_bytes and so on.
+# FLASH: bytes that the board's boot loader leaves, if less than the UNO's.
 set -eu
 elf=$1
 image=${2:+${2}_}

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What each host test is linked with, as lines of make: test_parts.py FOLDER > FOLDER/parts.mk
+"""What each host test is linked with, as makefile rules: test_parts.py FOLDER > FOLDER/parts.mk
 
-A test needs the archive of each folder of which it includes a header, what the sources of that folder include in turn, and the objects of single
+A test needs the archive of each folder whose headers it includes, whatever the sources of that folder include in turn, and the objects of single
 sources (references, helpers of nav/lib, the judge of simrun) whose headers it includes. A folder's archive holds all its sources, so all of
 them are followed; of the helpers in host_tests/support, whose archive every test has, only those whose header is included.
 """
@@ -21,7 +21,7 @@ OWN_RULE = {"test_nav_link"}
 
 
 def headers():
-    """name -> file of every header that a test can include; those of host_tests go by their room: support/board.h"""
+    """name -> file of every header that a test can include; those of host_tests by their room: support/board.h"""
     found = {}
     for folder in FOLDERS:
         for path in sorted(pathlib.Path(".").glob(f"{folder}/*.h*")):
@@ -45,7 +45,7 @@ class Parts:
                 self.meet(header)
 
     def meet(self, header):
-        """A header that something of the test includes: what implements it is needed, and what that needs."""
+        """Handles a header that something in the test includes: adds its implementation, and what that needs."""
         self.follow(header)
         folder = str(header.parent)
         for archive, home in ARCHIVES.items():

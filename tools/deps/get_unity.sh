@@ -57,7 +57,7 @@ EOF
     export APT_CONFIG="$tmp/apt.conf"
 }
 
-# use_source TYPE SUITE: the one line that the private apt sees
+# use_source TYPE SUITE: the only line that the private apt sees
 use_source() {
     rm -rf "$tmp/work"/* "$tmp/lists"/*
     mkdir -p "$tmp/lists/partial"

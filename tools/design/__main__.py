@@ -1,4 +1,4 @@
-"""python tools/design ..., from any folder."""
+"""Runs the package as python tools/design ..., from any folder."""
 import pathlib
 import sys
 

@@ -18,21 +18,21 @@ from .synthesis import (ERROR_MAX, ERROR_MIN, LEAST_SHAPE, REGIONS, Infeasible, 
 
 EPILOG = """
 the structure, in the papers' letters
-  A(z) = (1 - z^-1)^v (1 + a1 z^-1 + ... + ak z^-k)    v: order of astatism, the order of the polynomial in time that is followed without
-                                                       error, plus one (v = 2: straight lines); k: order of what raises it towards v + 1
+  A(z) = (1 - z^-1)^v (1 + a1 z^-1 + ... + ak z^-k)    v: order of astatism, one more than the order of the polynomial in time that is
+                                                       tracked without error (v = 2: straight lines); k: order of what raises it towards v + 1
   B(z) = b0 + b1 z^-1 + ... + bl z^-l                  l: order of B, the smoothing coefficients
   x_e = [1 - A] x^ + b1 u(n-1) + ... + bl u(n-l);  u = g - x_e;  x^ = x_e + b0 u;  x^ / g = B / C,  C = B + (1 - b0) A
   (2, 1, 0) is the papers' filter and `synth`; (2, 0, 1) alpha-beta; (3, 0, 2) alpha-beta-gamma; (2, 1, 2) with --a=-rho Singer's steady filter
 
-the dynamic error is what remains under a constant derivative of order v: rate (v = 1), acceleration (2), jerk (3); in samples it is
+the dynamic error is the steady error under a constant derivative of order v: rate (v = 1), acceleration (2), jerk (3); in samples it is
   D = (1 - b0) (1 + sum a) / sum b  per v-th difference, and error = D x derivative x period^v
 
 examples
   python tools/design --rate 10 --sigma 3.4 --error 3 --at 100                  least noise for 3 LSB of error at 100 LSB/s2
   python tools/design --rate 100 --sigma 2 --noise-gain 0.3 -k 0 -l 1           least error for a noise gain of 0.3, alpha-beta
-  python tools/design --rate 10 --sigma 0.5 --unit m -k 1 -l 0 --a=-0.3 --b 0.1   what paper 001's filter does
+  python tools/design --rate 10 --sigma 0.5 --unit m -k 1 -l 0 --a=-0.3 --b 0.1   properties of paper 001's filter
   python tools/design --rate 100 --sigma-of sim/streams/rest-2lsb.csv --error 2 --at 500 --json build/design/design.json
-  python tools/design schedule --p0-over-r 8.33                                 gains of a start, off line; `schedule` stands first
+  python tools/design schedule --p0-over-r 8.33                                 gains of a start, off line; `schedule` comes first
 """
 
 
@@ -40,7 +40,7 @@ def numbers_list(text):
     try:
         return tuple(float(x) for x in text.split(","))
     except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is not numbers with commas between them") from None
+        raise argparse.ArgumentTypeError(f"'{text}' is not a list of numbers separated by commas") from None
 
 
 def band_range(text):
@@ -49,7 +49,7 @@ def band_range(text):
     try:
         return name, (float(Fraction(low)), float(Fraction(high)))
     except (ValueError, ZeroDivisionError, OverflowError):
-        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=LOW..HIGH, as b0=0.5..1") from None
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=LOW..HIGH, such as b0=0.5..1") from None
 
 
 def parser():
@@ -59,30 +59,30 @@ def parser():
     words.add_argument("-k", type=int, default=None, help="order of A's factor (1; with --a: as many as given)")
     words.add_argument("-l", type=int, default=None, help="order of B (0; with --b: one less than given)")
     words.add_argument("--rate", type=float, metavar="HZ", help="samples per second")
-    words.add_argument("--period", type=float, metavar="S", help="or seconds per sample")
+    words.add_argument("--period", type=float, metavar="S", help="or: seconds per sample")
     words.add_argument("--sigma", type=float, help="standard deviation of the measurement noise, in --unit")
-    words.add_argument("--sigma-of", metavar="FILE", help="or a recorded stream to measure it on (LSB; the largest of x, y, z)")
+    words.add_argument("--sigma-of", metavar="FILE", help="or: a recorded stream to measure it from (LSB; the largest of x, y, z)")
     words.add_argument("--error", type=float, help="bound: dynamic error, in --unit")
-    words.add_argument("--at", type=float, help="... at this rate (v = 1), acceleration (2), jerk (3), in unit / s^v")
-    words.add_argument("--noise-gain", type=float, help="bound: variance of the estimate's error per variance of the noise")
+    words.add_argument("--at", type=float, help="... under this rate (v = 1), acceleration (2), jerk (3), in unit / s^v")
+    words.add_argument("--noise-gain", type=float, help="bound: variance of the estimate's error over that of the noise")
     words.add_argument("--a", type=numbers_list, help="fix a1,a2,... (--a=-0.3)")
-    words.add_argument("--b", type=numbers_list, help="with --a: no synthesis, the properties of this filter")
-    words.add_argument("--as-printed", action="store_true", help="with --b b0,b1,..: past innovations as paper 001 (17) has them, not in x_e")
+    words.add_argument("--b", type=numbers_list, help="with --a: analyse this filter instead of a synthesis")
+    words.add_argument("--as-printed", action="store_true", help="with --b b0,b1,..: past innovations as in paper 001 (17), not in x_e")
     words.add_argument("--region", choices=sorted(REGIONS), default=None,
-                       help="paper: -1 <= sum a <= 0 (default); exact: whatever is stable; safe: a1 in [-1/3, 0], b0 >= 1/2")
+                       help="paper: -1 <= sum a <= 0 (default); exact: any stable filter; safe: a1 in [-1/3, 0], b0 >= 1/2")
     words.add_argument("--settle", type=float, metavar="S", help="bound: the slowest pole decays to 2 %% within S seconds")
     words.add_argument("--band", type=band_range, action="append", default=[], metavar="NAME=LOW..HIGH",
-                       help="range over which a parameter is switched, for the verdict (b0 from its value to 1, a between its value and 0)")
-    words.add_argument("--unit", default="LSB", help="name of the unit (LSB)")
-    words.add_argument("--lsb-per-unit", type=float, help="for the configuration: LSB (256 per g) in a unit; 1 for LSB")
-    words.add_argument("--out", default="build/design", metavar="FOLDER", help="for design.png and design.svg (build/design)")
+                       help="range over which a parameter is switched, for the verdict (default: b0 from its value to 1, a from its value to 0)")
+    words.add_argument("--unit", default="LSB", help="name of the unit (default LSB)")
+    words.add_argument("--lsb-per-unit", type=float, help="for the configuration: LSB (256 per g) per unit; 1 for LSB")
+    words.add_argument("--out", default="build/design", metavar="FOLDER", help="folder for design.png and design.svg (default build/design)")
     words.add_argument("--no-pictures", action="store_true")
-    words.add_argument("--json", metavar="FILE", help="the same facts for a program")
+    words.add_argument("--json", metavar="FILE", help="also write the results as JSON")
     return words
 
 
-SMALLEST, LARGEST = 1e-9, 1e9  # of what a person can mean; within them nothing overflows
-AT_THE_END = 1e-9  # share by which rounding may move a bound that is one of the ends
+SMALLEST, LARGEST = 1e-9, 1e9  # range of sensible input, within which nothing overflows
+AT_THE_END = 1e-9  # relative rounding allowed for a bound at either end
 
 
 def finite_positive(value, name, least=0.001):
@@ -95,23 +95,23 @@ def finite_positive(value, name, least=0.001):
 
 @dataclasses.dataclass
 class Task:
-    """A request, checked: the structure, the sampling, the bounds in samples."""
+    """A checked request: the structure, the sampling, the bounds in samples."""
 
     request: Request
     period_s: float
     sigma: float
     error_max: float  # D, None: no bound
     noise_max: float
-    scale: float  # error in units for D = 1, None where no derivative is given
+    scale: float  # error in units for D = 1, None if no derivative is given
     at_text: str
 
 
 def checked(options):
     if (options.rate is None) == (options.period is None):
-        raise Wrong("give the sampling by one of --rate HZ and --period S; nearest: --rate 100")
+        raise Wrong("give the sampling by either --rate HZ or --period S; nearest: --rate 100")
     period_s = finite_positive(options.period, "--period") if options.rate is None else 1 / finite_positive(options.rate, "--rate")
     if (options.sigma is None) == (options.sigma_of is None):
-        raise Wrong("give the noise by one of --sigma and --sigma-of FILE; nearest: --sigma 2")
+        raise Wrong("give the noise by either --sigma or --sigma-of FILE; nearest: --sigma 2")
     sigma = options.sigma if options.sigma is not None else sigma_of_stream(options.sigma_of)
     finite_positive(sigma, "--sigma")
     v = options.astatism
@@ -121,13 +121,13 @@ def checked(options):
     if options.b is not None:
         beside = [f"--{name.replace('_', '-')}" for name in ("error", "noise_gain", "settle", "region") if getattr(options, name) is not None]
         if beside:
-            raise Wrong(f"{' and '.join(beside)} beside --b: bounds are for a filter to be found, one that is given is only looked at; "
+            raise Wrong(f"{' and '.join(beside)} with --b: bounds apply to a synthesis, not to a given filter; "
                         f"nearest: leave out {' and '.join(beside)}, or --b")
     elif options.as_printed:
-        raise Wrong("--as-printed says how --b is meant, and there is no --b; nearest: leave it out")
+        raise Wrong("--as-printed interprets --b, but there is no --b; nearest: leave it out")
     scale, at_text = None, ""
     if options.error is not None and options.at is None:
-        raise Wrong(f"--error needs --at, the {order_word(v)} at which it holds; nearest: --at 100")
+        raise Wrong(f"--error needs --at, the {order_word(v)} under which it holds; nearest: --at 100")
     if options.at is not None:
         scale = finite_positive(options.at, "--at") * period_s ** v
         at_text = f"under {article(v)} {order_word(v)} of {options.at:g} {options.unit}/s{v if v > 1 else ''}"
@@ -142,16 +142,16 @@ def checked(options):
 
 
 def error_bound(error, scale, v):
-    """The bound per v-th difference; Wrong when it is beyond what can be computed, with the nearest that is not."""
+    """The bound per v-th difference; Wrong, with the nearest possible one, if it is out of range."""
     low, high = max(ERROR_MIN * scale, SMALLEST), min(ERROR_MAX * scale, LARGEST)
     low, high = low * (1 - AT_THE_END), high * (1 + AT_THE_END)
     if math.isfinite(error) and low <= error <= high:
         return error / scale
     if low > high:
-        raise Wrong(f"--error is {error:g}, but at this rate and --at no error is {ERROR_MIN:g} to {ERROR_MAX:g} per {ordinal(v)} difference; "
+        raise Wrong(f"--error is {error:g}, but at this rate and --at no error is within {ERROR_MIN:g} to {ERROR_MAX:g} per {ordinal(v)} difference; "
                     f"nearest: {'--period 1' if high < SMALLEST else '--period 0.001'}")
     why = "must be finite and above 0" if not (math.isfinite(error) and error > 0) else \
-        f"must be {ERROR_MIN:g} to {ERROR_MAX:g} per {ordinal(v)} difference and not {error / scale:.4g}"
+        f"must be {ERROR_MIN:g} to {ERROR_MAX:g} per {ordinal(v)} difference, not {error / scale:.4g}"
     raise Wrong(f"--error is {error:g}, but {why}; nearest: --error {rounded(low) if not error > low else rounded(high, up=False):.12g}")
 
 
@@ -167,10 +167,10 @@ def synthesised(task):
     """The filter that meets the bounds."""
     request, noise_max = task.request, task.noise_max
     if task.error_max is None and noise_max is None:
-        raise Wrong("give a bound: --error E --at A, or --noise-gain N (or --a and --b to see what a filter does); "
+        raise Wrong("give a bound: --error E --at A, or --noise-gain N (or --a and --b to analyse a filter); "
                     f"nearest: {nearest_noise(request, 0.6)}")
     if request.fixed_a is not None and len(request.fixed_a) == request.k and 1 + sum(request.fixed_a) < LEAST_SHAPE:
-        raise Wrong(f"with a1 + ... + ak = {sum(request.fixed_a):g} the dynamic error is not above 0 (-1: the astatism is not {request.v} but more); "
+        raise Wrong(f"with a1 + ... + ak = {sum(request.fixed_a):g} the dynamic error is not above 0 (at -1 the astatism exceeds {request.v}); "
                     f"nearest: {nearest.with_error(request, noise_max)}")
     if task.error_max is None:
         return least_error(request, noise_max)
@@ -184,16 +184,16 @@ def synthesised(task):
 
 
 def both_bounds(task, f):
-    """What is wrong with a noise gain beside an error that it does not go with."""
+    """The message for a noise gain and an error that exclude each other."""
     asked, least = task.noise_max, f.noise_gain()
     near = f"nearest: --noise-gain {rounded(least):.12g}"
     if not (math.isfinite(asked) and asked > 0):
-        return f"a noise gain of {asked:g} is not to be had: it must be finite and above 0; {near}"
+        return f"a noise gain of {asked:g} is impossible: it must be finite and above 0; {near}"
     try:
         error = f"the least error is {least_error(task.request, asked).dynamic_error() * task.scale:.4g}, not {task.error_max * task.scale:.4g}"
     except Infeasible:
-        error = "there is no filter, whatever its error"
-    return (f"{task.request.name} cannot keep both bounds: with that error the least noise gain is {least:.6g}, not {asked:g}, and "
+        error = "there is no filter with any error"
+    return (f"{task.request.name} cannot meet both bounds: with that error the least noise gain is {least:.6g}, not {asked:g}, and "
             f"with that noise gain {error}; {near}")
 
 
@@ -203,7 +203,7 @@ def alternatives(task, f):
     error = task.error_max if task.error_max is not None or task.noise_max is not None else f.dynamic_error()
     if error is not None and not error > 0:
         kind = "negative" if error < 0 else "no"
-        return [("others", f"none: this filter has {kind} dynamic error, so there is nothing that can be compared at the same error")]
+        return [("others", f"none: this filter has {kind} dynamic error, so no structure has the same")]
     wanted = [(f"(v, k, l) = ({v}, 0, 0)", (v, 0, 0)), (f"(v, k, l) = ({v}, 0, {v - 1})", (v, 0, v - 1))]
     if v == 2:
         wanted = [("(2, 1, 0), a1 <= 0 (synth)", (2, 1, 0)), ("(2, 0, 1) alpha-beta", (2, 0, 1))]
@@ -251,23 +251,23 @@ def configured(name, f, task, lsb_per_unit, fixed_a):
     except configuration.Unfit as problem:
         return [f"{name}: none: {problem}"], {"structure": name, "none": str(problem)}, None
     noise, error = float(made.filter.noise_gain()), float(made.filter.dynamic_error())
-    lines, told = configuration.commands(made, rate_hz)
+    lines, notes = configuration.commands(made, rate_hz)
     text = [f"{name}:", f"    {made.initialiser()}",
             f"    as stored: {report_parameters(made)}; noise gain {noise:.7f}, dynamic error {error:.7g} per "
             f"{ordinal(made.filter.v)} difference" + (f" = {error * task.scale:.5g}" if task.scale else "")]
-    text += [f"    type: {line}" for line in lines] + [f"    note: {line}" for line in told + made.notes]
+    text += [f"    type: {line}" for line in lines] + [f"    note: {line}" for line in notes + made.notes]
     return text, {"structure": name, "filter": made.name, "fields": made.fields, "initialiser": made.initialiser(), "noise_gain": noise,
                   "dynamic_error": error, "a": [float(x) for x in made.filter.a], "b": [float(x) for x in made.filter.b],
-                  "commands": lines, "notes": told + made.notes}, made
+                  "commands": lines, "notes": notes + made.notes}, made
 
 
 def limit_of_schedule(f, task, lsb_per_unit):
-    """Lines for it where a schedule of its ends at this filter."""
+    """The lines about the schedule whose limit is this filter, if there is one."""
     try:
         made = configuration.stored_opt(f, configuration.common_fields(round(1 / task.period_s, 9), task.sigma * lsb_per_unit))
     except configuration.Unfit:
         return [], []
-    text = [f"the same as the limit of a schedule, with its quick start: {made.name}:", f"    {made.initialiser()}"]
+    text = [f"also the limit of a schedule, with its quick start: {made.name}:", f"    {made.initialiser()}"]
     return text + [f"    note: {x}" for x in made.notes], [
         {"structure": "limit of a schedule", "filter": made.name, "fields": made.fields, "initialiser": made.initialiser(),
          "noise_gain": float(made.filter.noise_gain()), "dynamic_error": float(made.filter.dynamic_error()), "commands": [], "notes": made.notes}]
@@ -298,7 +298,7 @@ def design(options):
     text += report.facts_text(one, task.period_s, task.sigma, options.unit, task.scale, task.at_text) + report.switching_text(band, verdict)
     text += ["", "side by side" + ("" if not analysed else ", each with the same dynamic error")]
     text += report.comparison_text(compared, task.period_s, task.scale, options.unit)
-    text += ["", "configuration" + (f" (taking 1 {options.unit} for 1 LSB: give --lsb-per-unit)" if unitless else "")]
+    text += ["", "configuration" + (f" (assumes 1 {options.unit} = 1 LSB: give --lsb-per-unit)" if unitless else "")]
     entries = []
     for name, g in [("this", f)] + [(name, g) for name, g in rows if not isinstance(g, str)]:
         lines, entry, _ = configured(name, g, task, lsb_per_unit, options.a is not None and g is f)
@@ -343,7 +343,7 @@ def main(arguments):
     reader = parser()
     options, strange = reader.parse_known_args(arguments)
     if strange:
-        reader.error(f"schedule stands first and takes no option of the synthesis: python tools/design schedule {' '.join(strange[1:])}".strip()
+        reader.error(f"schedule comes first and takes no option of the synthesis: python tools/design schedule {' '.join(strange[1:])}".strip()
                      if strange[0] == "schedule" else f"unrecognized arguments: {' '.join(strange)}")
     try:
         text, result = design(options)
@@ -358,13 +358,13 @@ def main(arguments):
         print(f"design: {problem.filename or ''}: {problem.strerror}", file=sys.stderr)
         return 1
     except UnicodeDecodeError:
-        print(f"design: {options.sigma_of}: not text, so no stream of samples", file=sys.stderr)
+        print(f"design: {options.sigma_of}: not text, so not a stream", file=sys.stderr)
         return 1
     except ArithmeticError as problem:
-        print(f"design: the numbers lead beyond what can be computed ({problem}); nearest: values between 0.001 and 1000", file=sys.stderr)
+        print(f"design: the numbers are beyond what can be computed ({problem}); nearest: values between 0.001 and 1000", file=sys.stderr)
         return 1
     try:
         print("\n".join(text), flush=True)
-    except BrokenPipeError:  # the reader has seen enough
+    except BrokenPipeError:  # the reader closed the pipe
         sys.stdout = None
     return 0

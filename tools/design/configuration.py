@@ -1,5 +1,5 @@
-"""A filter as the fixed-point library takes it: stored values, the same legal ranges and the same stability test as the C, and what the stored
-values really give. host_tests/tools/design/test_design.py holds every number here to the compiled library."""
+"""A filter in the form of the fixed-point library: stored values, with the legal ranges and the stability test of the C code, and the
+properties of the stored values. host_tests/tools/design/test_design.py compares every number here with the compiled library."""
 import cmath
 import itertools
 import math
@@ -25,7 +25,7 @@ THREE_FINE_FROM_DHZ = 1000  # the unit of the acceleration changes here
 OPT_LIMITS = ((0.0, 2 / 3), (-1 / 6, 11 / 13))  # of synth_opt: exact, variant U
 START_RATE_LSB_S, P0_Q8_MAX = 200, 25_600_000
 IMAGES = pathlib.Path(__file__).resolve().parents[2] / "mk" / "images.mk"
-ROUNDING = 1e-12  # of a bound that floating point has computed
+ROUNDING = 1e-12  # of a bound computed in floating point
 FIRMWARE_RATES_HZ = (12.5, 25, 50, 100, 200, 400, 800)
 
 
@@ -37,7 +37,7 @@ class Unfit(Exception):
 class Configuration:
     name: str  # of the filter in the library
     fields: dict  # rate_dhz and, by the end of NAME_... in filter.h, parameters: stored value
-    filter: Filter  # what the stored values are, exact
+    filter: Filter  # the exact filter of the stored values
     notes: list = field(default_factory=list)
 
     def initialiser(self):
@@ -46,7 +46,7 @@ class Configuration:
 
 
 def common_fields(rate_hz, sigma_lsb):
-    """rate_dhz and r_lsb2_q8, or why there are none."""
+    """rate_dhz and r_lsb2_q8; Unfit if there are none."""
     rate_dhz = round(10 * rate_hz)
     if not RATE_DHZ[0] <= rate_dhz <= RATE_DHZ[1] or abs(rate_dhz - 10 * rate_hz) > 1e-6 * rate_dhz:
         raise Unfit(f"the library takes rates of 5 to 4000 Hz in steps of 0.1 Hz, not {rate_hz:g} Hz; nearest: "
@@ -59,7 +59,7 @@ def common_fields(rate_hz, sigma_lsb):
 
 
 def gain_legal(b0_uq16, a1_q16):
-    """What synth asks of b0 and a1, in integers: 1 + 2 a1 (1 - b0) > 0."""
+    """The condition of synth on b0 and a1, in integers: 1 + 2 a1 (1 - b0) > 0."""
     if not (B0[0] <= b0_uq16 <= B0[1] and A1[0] <= a1_q16 <= A1[1]):
         return False
     return a1_q16 >= 0 or -a1_q16 * (ONE - b0_uq16) < 2 ** 31
@@ -70,7 +70,7 @@ def gain_filter(b0_uq16, a1_q16):
 
 
 def worth(f, error_max, noise_max):
-    """(bounds broken, what is to be least) of a stored filter, for a choice among neighbours."""
+    """(bounds broken, value to minimise) of a stored filter, to choose among neighbours."""
     error, noise = abs(f.dynamic_error()), f.noise_gain()
     broken = (error_max is not None and error > error_max * (1 + ROUNDING)) + (noise_max is not None and noise > noise_max * (1 + ROUNDING))
     return broken, (noise if error_max is not None else error)
@@ -94,7 +94,7 @@ def stored_gain(f, common, error_max, noise_max, fixed_a=False):
     if error_max is None and noise_max is None:
         chosen = (min(max(round(b0), B0[0]), B0[1]), min(max(round(a1), A1[0]), A1[1]))
         if not gain_legal(*chosen):
-            raise Unfit(f"stored as b0 = {chosen[0]}, a1 = {chosen[1]} (in 1/65536) it is unstable; nearest: a larger b0")
+            raise Unfit(f"stored as b0 = {chosen[0]}, a1 = {chosen[1]} (in 1/65536) the filter is unstable; nearest: a larger b0")
     else:
         first = [round(a1)] if fixed_a or abs(a1) < 1e-6 else neighbours(a1, *A1)
         pairs = [pair for pair in itertools.product(neighbours(b0, *B0), first) if gain_legal(*pair)]
@@ -111,13 +111,13 @@ def plus_rho(k):
 
 
 def plus_filter(k, b, v=2):
-    """v = 3 is the same filter told as of astatism 3: k = 8."""
+    """v = 3: the same filter, expressed with astatism 3: k = 8."""
     b = tuple(Fraction(x, ONE) for x in b)
     return Filter(3, (), b) if v == 3 else Filter(2, (-plus_rho(k),) if k else (), b)
 
 
 def plus_legal(k, b0_uq16, b1_q16, b2_q16):
-    """What synth_plus asks of its coefficients."""
+    """The conditions of synth_plus on its coefficients."""
     if not (0 <= k <= PLUS_K_MAX and B0[0] <= b0_uq16 <= B0[1] and all(A1[0] <= b <= A1[1] for b in (b1_q16, b2_q16))):
         return False
     return plus_filter(k, (b0_uq16, b1_q16, b2_q16)).stable()
@@ -139,7 +139,7 @@ def stored_plus(f, common, error_max, noise_max):
         choices = itertools.product(*([0] if x == 0 else neighbours(x, *end) for x, end in zip(wanted, ends)))
     stored = [b for b in choices if plus_legal(k, *b)]
     if not stored:
-        raise Unfit("stored in 1/65536 it is unstable; nearest: a larger b0")
+        raise Unfit("stored in 1/65536 the filter is unstable; nearest: a larger b0")
     chosen = min(stored, key=lambda b: worth(plus_filter(k, b, f.v), error_max, noise_max))
     made = plus_filter(k, chosen, f.v)
     if worth(made, error_max, noise_max)[0]:
@@ -150,11 +150,11 @@ def stored_plus(f, common, error_max, noise_max):
 
 
 def stored_opt(f, common):
-    """synth_opt, where the filter is the limit of one of its schedules."""
+    """synth_opt, if the filter is the limit of one of its schedules."""
     a1, b0 = (float(f.a[0]) if f.a else 0.0), float(f.b[0])
     variant = next((u for u, limit in enumerate(OPT_LIMITS) if abs(a1 - limit[0]) < 1e-3 and abs(b0 - limit[1]) < 1e-3), None)
     if variant is None:
-        raise Unfit("synth_opt ends at (a1, b0) = (0, 2/3) or (-1/6, 11/13), whatever R")
+        raise Unfit("synth_opt ends at (a1, b0) = (0, 2/3) or (-1/6, 11/13) for any R")
     period_s, r = 10 / common["rate_dhz"], common["r_lsb2_q8"]
     start = min(max(round(256 * (2 * START_RATE_LSB_S * period_s) ** 2 + 0.29 * r), 3), P0_Q8_MAX)
     stored = gain_filter(*((43691, 0), (55454, -10923))[variant])
@@ -163,7 +163,7 @@ def stored_opt(f, common):
 
 
 def steady_kalman(v, drive):
-    """The steady Kalman filter of a white v-th difference with variance drive R. Its poles are those zeros of A(z) A(1/z) + drive inside the
+    """The steady Kalman filter of a white v-th difference with variance drive R. Its poles are the zeros of A(z) A(1/z) + drive inside the
     circle: with y = (1 - z) (1 - 1/z), y^v = -drive, z + 1/z = 2 - y. The last coefficient of C is that of A times 1 - b0."""
     c = [1.0]
     for m in range(v):
@@ -201,7 +201,7 @@ def is_kalman(f, tolerance=1e-7):
 
 
 def stored_kf(f, common, error_max, noise_max):
-    """q of kf or kf3 for a filter that is a steady Kalman filter, on the side that keeps the bound."""
+    """q of kf or kf3 for a steady Kalman filter, on the side that keeps the bound."""
     name, field_name, power_of_period = KALMAN[f.v]
     low, high = drive_range(f.v, common["rate_dhz"])
     wanted = drive_of(f)
@@ -217,7 +217,7 @@ def stored_kf(f, common, error_max, noise_max):
     if not Q[0] <= q <= Q[1]:
         raise Unfit(f"{name} takes q from {Q[0]} to {Q[1]}, not {wanted / per_q:.4g}")
     fields = {"rate_dhz": common["rate_dhz"], "r_lsb2_q8": common["r_lsb2_q8"], field_name: q}
-    notes = ["the gain follows R, which the firmware estimates: it is this one where the noise is the sigma given"]
+    notes = ["the gain follows R, which the firmware estimates: it equals this one if the noise equals the given sigma"]
     return Configuration(name, fields, steady_kalman(f.v, q * per_q), notes)
 
 
@@ -229,7 +229,7 @@ def drive_range(v, rate_dhz):
 
 
 def configure(f, rate_hz, sigma_lsb, error_max=None, noise_max=None, fixed_a=False):
-    """The configuration of the library's filter with this structure; Unfit when there is none."""
+    """The configuration of the library's filter with this structure; Unfit if there is none."""
     common = common_fields(rate_hz, sigma_lsb)
     if f.v == 2 and f.k <= 1 and f.l == 0:
         return stored_gain(f, common, error_max, noise_max, fixed_a)
@@ -241,7 +241,7 @@ def configure(f, rate_hz, sigma_lsb, error_max=None, noise_max=None, fixed_a=Fal
 
 
 def image_with(name):
-    """How to get an image of the firmware with this filter in it."""
+    """How to get a firmware image with this filter."""
     sets = re.findall(r"^FILTERS_([a-z]+) *:= *(.*)$", IMAGES.read_text(encoding="utf-8") if IMAGES.is_file() else "", re.M)
     holding = [word for word, names in sets if name in names.split()]
     if holding:
@@ -250,15 +250,15 @@ def image_with(name):
 
 
 def commands(configuration, rate_hz):
-    """(lines to type, what they do not do)."""
+    """(lines to type, notes on what they do not do)."""
     lines = [f"filter {configuration.name}"]
-    told = [f"these lines leave {' and '.join(n for n in configuration.fields if n != 'rate_dhz')} alone: `filter {configuration.name}` runs "
-            f"it with the values of filter_defaults (`settings` lists the parameters that the board takes, with their units); in "
-            f"a program of your own give the initialiser to filter_init with filter_law_{configuration.name}",
-            f"{configuration.name} is {image_with(configuration.name)}"]
+    notes = [f"these lines leave {' and '.join(n for n in configuration.fields if n != 'rate_dhz')} alone: `filter {configuration.name}` runs "
+             f"it with the values of filter_defaults (`settings` lists the parameters that the board takes, with their units); in "
+             f"a program of your own give the initialiser to filter_init with filter_law_{configuration.name}",
+             f"{configuration.name} is {image_with(configuration.name)}"]
     if rate_hz in FIRMWARE_RATES_HZ:
         lines.insert(0, f"rate {rate_hz:g}")
     else:
         nearest = min(FIRMWARE_RATES_HZ, key=lambda r: abs(math.log(r / rate_hz)))
-        told.insert(0, f"the firmware samples at {', '.join(f'{r:g}' for r in FIRMWARE_RATES_HZ)} Hz, not at {rate_hz:g} Hz; nearest: {nearest:g}")
-    return lines, told
+        notes.insert(0, f"the firmware samples at {', '.join(f'{r:g}' for r in FIRMWARE_RATES_HZ)} Hz, not at {rate_hz:g} Hz; nearest: {nearest:g}")
+    return lines, notes

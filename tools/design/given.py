@@ -1,4 +1,4 @@
-"""The filter that --a and --b give, or why they give none."""
+"""The filter given by --a and --b, or why there is none."""
 import math
 
 from . import nearest
@@ -7,13 +7,13 @@ from .structure import Filter, as_printed
 
 
 class Wrong(Exception):
-    """One sentence: what of the request cannot be."""
+    """One sentence: what in the request is impossible."""
 
 
 def given_filter(options, request):
-    """The filter of --a and --b; Wrong when it is unstable or endless, with the nearest that is not."""
+    """The filter of --a and --b; Wrong, with the nearest possible one, if it is unstable or its response too long."""
     if len(options.b) != request.l + 1:
-        raise Wrong(f"--b has {len(options.b)} numbers, but l = {request.l} asks for {request.l + 1}; nearest: -l {len(options.b) - 1}")
+        raise Wrong(f"--b has {len(options.b)} numbers, but l = {request.l} needs {request.l + 1}; nearest: -l {len(options.b) - 1}")
     a = options.a if options.a is not None else (0.0,) * request.k
     if len(a) != request.k:
         raise Wrong(f"--a has {len(a)} numbers, but k = {request.k}; nearest: -k {len(a)}")

@@ -1,4 +1,4 @@
-"""The noise of a recording: a robust standard deviation of third differences, which a tilt moves little and outliers not at all."""
+"""The noise of a recording: a robust standard deviation of third differences, which tilt hardly affects and outliers not at all."""
 import csv
 import math
 
@@ -16,22 +16,22 @@ def columns(path):
         head = [name.strip() for name in next(rows, [])]
         names = next((names for names in (("x", "y", "z"), ("x_lsb", "y_lsb", "z_lsb")) if set(names) <= set(head)), None)
         if names is None:
-            raise Infeasible(f"{path}: no columns x, y, z or x_lsb, y_lsb, z_lsb in its header; nearest: a stream as docs/protocol.md has it")
+            raise Infeasible(f"{path}: no columns x, y, z or x_lsb, y_lsb, z_lsb in its header; nearest: a stream by docs/protocol.md")
         places = [head.index(name) for name in names]
         found = ([], [], [])
         for number, row in enumerate(rows, 2):
             try:
                 values = [float(row[place]) for place in places]
             except (ValueError, IndexError):
-                raise Infeasible(f"{path}: row {number} has no three numbers in {', '.join(names)}; "
-                                 "nearest: a stream as docs/protocol.md has it") from None
+                raise Infeasible(f"{path}: row {number} does not have three numbers in {', '.join(names)}; "
+                                 "nearest: a stream by docs/protocol.md") from None
             for column, value in zip(found, values):
                 column.append(value)
     return found
 
 
 def sigma_of(samples):
-    """Median of |g - 3 g1 + 3 g2 - g3| as a sigma of g. Whole numbers make it too coarse below 0.5, where the mean takes over."""
+    """Sigma of g from the median of |g - 3 g1 + 3 g2 - g3|. Integers make it too coarse below 0.5, where the mean takes over."""
     thirds = sorted(abs(a - 3 * b + 3 * c - d) for a, b, c, d in zip(samples[3:], samples[2:], samples[1:], samples))
     median = thirds[len(thirds) // 2] / MEDIAN_PER_SIGMA / THIRD_DIFFERENCE
     kept = [x for x in thirds if x <= 4.0 * max(thirds[len(thirds) // 2], 1.0) / MEDIAN_PER_SIGMA]
@@ -43,5 +43,5 @@ def sigma_of_stream(path):
     """The largest of the three axes' noise, LSB."""
     axes = columns(path)
     if len(axes[0]) < ROWS_MIN:
-        raise Infeasible(f"{path}: {len(axes[0])} samples are too few to tell the noise; nearest: {ROWS_MIN}")
+        raise Infeasible(f"{path}: {len(axes[0])} samples are too few to measure the noise; nearest: {ROWS_MIN}")
     return max(sigma_of(axis) for axis in axes)

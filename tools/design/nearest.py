@@ -1,4 +1,4 @@
-"""The nearest that can be, in the command's words, where what was asked cannot; host_tests/tools/design/test_design_refusals.py feeds it back."""
+"""The nearest possible request, in the command's words, if the given one is impossible; test_design_refusals.py feeds it back."""
 import dataclasses
 import math
 
@@ -6,8 +6,8 @@ from .response import Endless, horizon
 from .synthesis import ORDER_MAX, Infeasible, NoneFound, least_noise, reachable, rounded
 
 HALVINGS = 60
-SUMS = (-0.999, -0.9, -0.6, -0.3)  # of a, tried in turn where the one given leaves no dynamic error
-SETTLES = 40  # steps between a settling time that is too short and one that is certainly not
+SUMS = (-0.999, -0.9, -0.6, -0.3)  # of a, tried in turn if the given one leaves no dynamic error
+SETTLES = 40  # steps between settling times too short and certainly long enough
 
 
 def numbers(values):
@@ -19,17 +19,17 @@ def words(a, b):
 
 
 def raw(l):  # noqa: E741
-    """b of the filter that is all but the raw measurement, stable whatever a is and defined in the printed form too."""
+    """b of almost the raw measurement, stable for any a and defined in the printed form too."""
     return (0.99999, *(0.0,) * l)
 
 
-def told_of(f):
-    """True when the filter is stable and its response ends."""
+def usable(f):
+    """Whether the filter is stable and its response short enough."""
     return f.exact().stable() and ends(f)
 
 
 def ends(f):
-    """True when the response can be told: it dies out soon enough."""
+    """Whether the response dies out soon enough to be computed."""
     try:
         horizon(f)
     except Endless:
@@ -38,7 +38,7 @@ def ends(f):
 
 
 def on_the_way(made, a, b):
-    """On the way from B to the certainly good B = 1: the first that can be told of, rounded to the inside. `made` makes the filter of b0..bl."""
+    """On the way from B to the certainly valid B = 1: the first valid filter, rounded to the inside. `made` makes the filter of b0..bl."""
 
     def at(share):
         return [(1 - share) * x + (share if j == 0 else 0.0) for j, x in enumerate(b)]
@@ -46,20 +46,20 @@ def on_the_way(made, a, b):
     low, high = 0.0, 1.0 if len(b) == 1 else 1 - 1e-9
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if told_of(made(at(middle))):
+        if usable(made(at(middle))):
             high = middle
         else:
             low = middle
     for digits in range(4, 10):
         share = math.ceil(high * 10 ** digits + 1e-9) / 10 ** digits
-        as_told = [float(x) for x in numbers(at(share)).split(",")]
-        if told_of(made(as_told)) and abs(as_told[0] - at(high)[0]) <= 0.01 * abs(as_told[0]):
-            return words(a, as_told)
+        as_typed = [float(x) for x in numbers(at(share)).split(",")]
+        if usable(made(as_typed)) and abs(as_typed[0] - at(high)[0]) <= 0.01 * abs(as_typed[0]):
+            return words(a, as_typed)
     return words(a, raw(len(b) - 1))
 
 
 def settle(request, error_max, period_s):
-    """The shortest settling time with which there is a filter for the error; 2 % of it less and there is none."""
+    """The shortest settling time for which the error has a filter; with 2 % less there is none."""
 
     def found(seconds):
         try:
@@ -75,7 +75,7 @@ def settle(request, error_max, period_s):
         if found(math.exp(high)):
             break
     else:
-        return "none; take another structure"
+        return "none; choose another structure"
     while high - low > 0.005:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if found(math.exp(middle)) else (middle, high)
@@ -83,7 +83,7 @@ def settle(request, error_max, period_s):
 
 
 def with_error(request, noise_max):
-    """In the place of an a whose sum is -1 or less: the filter of higher astatism that it stands for, or an a like it."""
+    """A replacement for an a whose sum is -1 or less: the filter of higher astatism that it represents, or a similar a."""
     whole, k, v = sum(request.fixed_a), request.k, request.v + 1
     if abs(1 + whole) < 1e-6 and v + k - 1 + v - 1 <= ORDER_MAX:  # 1 + a1 z^-1 + ... has the factor 1 - z^-1
         left, quotient = 1.0, []
@@ -93,7 +93,7 @@ def with_error(request, noise_max):
         other = dataclasses.replace(request, v=v, k=k - 1, l=v - 1, fixed_a=tuple(quotient))
         if noise_max is None or good_noise(other, noise_max):
             shape = f"--a={','.join(f'{x:.12g}' for x in quotient)}" if quotient else "-k 0"
-            return f"-v {v} {shape} -l {v - 1} in the place of --a"
+            return f"-v {v} {shape} -l {v - 1} instead of --a"
     for least in SUMS:
         a = tuple(x * least / whole for x in request.fixed_a)
         if noise_max is None or good_noise(dataclasses.replace(request, fixed_a=a), noise_max):

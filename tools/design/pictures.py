@@ -1,4 +1,4 @@
-"""One picture of a design and what it is compared with: step, error under the v-th difference, gain, poles."""
+"""One picture of a design and its alternatives: step, error under the v-th difference, gain, poles."""
 import pathlib
 
 import matplotlib

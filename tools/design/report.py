@@ -1,4 +1,4 @@
-"""What the tool says about a design: the same facts as text and as JSON."""
+"""The tool's report about a design: the same facts as text and as JSON."""
 from dataclasses import dataclass
 
 from .response import bandwidth, horizon, lyapunov_noise_gain, moving_error, pole_radius, settling_by_radius, step
@@ -25,7 +25,7 @@ def factored_text(f):
 
 
 def algorithm_text(f):
-    """The difference equation in the library's incremental words."""
+    """The difference equation in the library's incremental form."""
     weights = [-float(x) for x in f.a_polynomial[1:]]
     terms = [(w, f"x{i + 1}") for i, w in enumerate(weights)] + [(float(w), f"u{j + 1}") for j, w in enumerate(f.b[1:])]
     text = ""
@@ -83,7 +83,7 @@ def facts_text(one, period_s, sigma, unit, scale, at_text):
         f"{sigma * one.noise_gain ** 0.5:.4g} {unit}",
         f"dynamic error   {one.dynamic_error:.6g} per {ordinal(one.v)} difference" +
         (f" = {one.dynamic_error * scale:.4g} {unit} {at_text}" if at_text else "") +
-        f"; on the way there at most {one.dynamic_error_on_the_way / abs(one.dynamic_error):.3f} times its size"
+        f"; during the transient at most {one.dynamic_error_on_the_way / abs(one.dynamic_error):.3f} times that"
         if one.dynamic_error else "dynamic error   0",
         f"step            {peak}; within 2 % from sample {one.settled_at_sample} on "
         f"({one.settled_at_sample * period_s:.4g} s); slowest pole alone: {one.settling_by_slowest_pole}",
@@ -100,9 +100,9 @@ def switching_text(band, found):
     order = "; ".join(each) if len(set(each)) > 1 else each[0]
     words = {
         "safe": f"safe: stable for any sequence of parameters within the band (proved by products of up to {found.depth} corner matrices)",
-        "unsafe": f"NOT safe: a disturbance does not decay when these follow one another for ever: {order} "
-                  "(a start-up that lowers a gain once is no switching)",
-        "undecided": "undecided: the bounds lie on both sides of 1; take a narrower band",
+        "unsafe": f"NOT safe: a disturbance does not decay if these repeat for ever: {order} "
+                  "(a start-up that lowers a gain once is not switching)",
+        "undecided": "undecided: the bounds lie on both sides of 1; choose a narrower band",
     }
     return [f"switching       {words[found.verdict]}",
             f"                joint spectral radius {found.low:.5f} .. {found.high:.5f}; band {band.text()}"]

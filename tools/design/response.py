@@ -1,4 +1,4 @@
-"""What a filter does over time and frequency, in numbers."""
+"""The response of a filter over time and frequency, in numbers."""
 import math
 from dataclasses import dataclass
 
@@ -8,12 +8,12 @@ from scipy.signal import lfilter
 
 from .structure import matrices
 
-HORIZON_MAX = 2_000_000  # samples that a response may take to die out
+HORIZON_MAX = 2_000_000  # limit of samples for a response to die out
 BAND = 0.02
 
 
 class Endless(Exception):
-    """One sentence: a response too long to be told."""
+    """One sentence: the response is too long to compute."""
 
 
 def numbers(p):
@@ -41,7 +41,7 @@ def horizon(f, left=1e-9):
 
 
 def moving_error(f, samples):
-    """x - x^ from the start of a constant v-th difference of 1: A (1 - b0) / C applied to it, so nothing large is subtracted."""
+    """x - x^ from the start of a constant v-th difference of 1: A (1 - b0) / C applied to it, so that no large numbers are subtracted."""
     left = (1 - float(f.b[0])) * numbers(f.shape)
     return lfilter(left, numbers(f.characteristic), np.ones(samples))
 
@@ -52,7 +52,7 @@ class Step:
 
     peak: float
     peak_at: int
-    settled_at: int  # the first n from which on it stays within 2 %
+    settled_at: int  # the first n after which it stays within 2 %
 
     @property
     def overshoot(self):
@@ -67,7 +67,7 @@ def step(f):
 
 
 def settling_by_radius(f):
-    """ceil(ln 0.02 / ln rho): what the slowest pole alone would take."""
+    """ceil(ln 0.02 / ln rho): the settling time of the slowest pole alone."""
     radius = pole_radius(f)
     return math.ceil(math.log(BAND) / math.log(radius)) if radius > 0 else 0
 
@@ -86,7 +86,7 @@ def frequency(f, per_sample):
 
 
 def bandwidth(f, points=20001):
-    """(-3 dB frequency, cycles per sample, 0.5 when never; largest gain; its frequency)."""
+    """(-3 dB frequency in cycles per sample, 0.5 if never; largest gain; its frequency)."""
     grid = np.linspace(0.0, 0.5, points)
     gain = np.abs(frequency(f, grid))
     below = np.flatnonzero(gain < math.sqrt(0.5))

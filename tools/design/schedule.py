@@ -27,12 +27,12 @@ OWN_STEPS, COMMON_STEPS, COMMON = 4, 8, 16
 
 
 def clamped(value, low, high):
-    """A quotient that is not finite (a denominator of 0) gives the straight line, a1 = 0."""
+    """Limits a quotient; a non-finite one (denominator 0) gives the straight line, a1 = 0."""
     return min(max(value, low), high) if math.isfinite(value) else 0.0
 
 
 def quotient(above, below, size):
-    """NaN where the denominator is nothing but rounding: as large as 1e-12 of what it is made of."""
+    """NaN if the denominator is only rounding: below 1e-12 of its terms."""
     return above / below if abs(below) > 1e-12 * size else math.nan
 
 
@@ -45,12 +45,12 @@ def gain_of(pe):
 
 
 def rank_one(p0_over_r):
-    """The three errors at the start are one and the same."""
+    """The covariance with three identical errors at the start."""
     return [[max(p0_over_r, P_FLOOR)] * 3 for _ in range(3)]
 
 
 def exact_schedule(p0_over_r, steps, covariance=None):
-    """Steps of the greedy optimum with the exact covariance; `covariance` (3 x 3, in R) instead of the start from P0."""
+    """Steps of the greedy optimum with the exact covariance; `covariance` (3 x 3, in R) replaces the start from P0."""
     s = covariance or rank_one(p0_over_r)
     result = []
     for _ in range(steps):
@@ -61,7 +61,7 @@ def exact_schedule(p0_over_r, steps, covariance=None):
 
 
 def advance(s, a1, b0=None):
-    """One step of the covariance with a1 and the optimal b0, or the one given: (Step, new covariance)."""
+    """One step of the covariance with a1 and the optimal or given b0: (Step, new covariance)."""
     h = [STRAIGHT[i] + a1 * BEND[i] for i in range(3)]
     pe = bilinear(h, s, h)
     b0 = gain_of(pe) if b0 is None else b0
@@ -109,7 +109,7 @@ def class_of(p0_over_r):
 
 
 def library_gains(variant, ratio_class):
-    """What the library's filter runs through for that class: [(a1, b0) quantised...], the limit last."""
+    """The gains of the library's filter for that class: [(a1, b0) quantised...], the limit last."""
     own = SCHEDULES[variant](RATIOS[ratio_class], OWN_STEPS)
     common = SCHEDULES[variant](COMMON, OWN_STEPS + COMMON_STEPS)[OWN_STEPS:]
     return [quantised((step.a1, step.b0)) for step in own + common] + [quantised(LIMIT[variant])]
@@ -167,7 +167,7 @@ def positive(text):
     try:
         value = float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is no number") from None
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number") from None
     if not math.isfinite(value) or value < P_FLOOR:
         raise argparse.ArgumentTypeError(f"P0/R is {text}, but must be finite and at least {P_FLOOR:g} (with 0, variant u would stay at 0 for ever)")
     return value
@@ -182,7 +182,7 @@ def count(text):
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="schedule", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--p0-over-r", type=positive,
-                        help="variance of the start's error over that of the measurement, e.g. 8.33 (paper 000: 5 over 0.6)")
+                        help="variance of the initial error over that of the measurement, e.g. 8.33 (paper 000: 5 over 0.6)")
     parser.add_argument("--variant", choices=sorted(SCHEDULES), default="exact")
     parser.add_argument("--steps", type=count, default=OWN_STEPS + COMMON_STEPS, help="default %(default)s")
     parser.add_argument("--emit", choices=("text", "c", "library"), default="text",

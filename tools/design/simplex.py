@@ -1,5 +1,5 @@
-"""Nelder and Mead's search in plain numbers: for two to six of them ten times as fast as one over arrays. Step for step scipy.optimize.minimize's
-"Nelder-Mead"; equal costs stay in their order."""
+"""Nelder and Mead's search in plain numbers: ten times as fast as with arrays for two to six parameters. Step for step that of
+scipy.optimize.minimize ("Nelder-Mead"); equal costs keep their order."""
 
 
 class Spent(Exception):
@@ -25,7 +25,7 @@ def between(centre, worst, share):
 
 
 def contraction(costs, centre, worst, reflected):
-    """(cost, place) nearer to the centre than the worst corner, on the better side of it; None where it does not help."""
+    """(cost, place) closer to the centre than the worst corner, on the better side of it; None if that does not help."""
     if reflected < worst[0]:
         place = between(centre, worst[1], 0.5)
         cost = costs(place)
@@ -36,7 +36,7 @@ def contraction(costs, centre, worst, reflected):
 
 
 def step(costs, corners):
-    """Puts a better corner in the place of the worst, or draws all towards the best. Corners are (cost, place) in the order of cost."""
+    """Replaces the worst corner by a better one, or moves all towards the best. Corners are (cost, place) in the order of cost."""
     others, worst = corners[:-1], corners[-1]
     centre = [sum(column) / len(others) for column in zip(*[place for _, place in others])]
     place = between(centre, worst[1], 1)
@@ -60,13 +60,13 @@ def step(costs, corners):
 
 
 def settled(corners, near, alike):
-    """True when no corner is further than `near` from the best one, nor its cost."""
+    """Whether no corner is further than `near` from the best one, nor its cost further than `alike`."""
     (cost, best), *others = corners
     return all(abs(x - b) <= near for _, place in others for x, b in zip(place, best)) and all(abs(cost - other) <= alike for other, _ in others)
 
 
 def least(cost, places, near, alike, most):
-    """(cost, place) of the least found from these corners, one more than there are numbers, with at most so many evaluations."""
+    """(cost, place) of the minimum found from these corners, one more than parameters, with at most so many evaluations."""
     costs = counted(cost, most)
     corners = sorted(((costs(place), place) for place in places), key=lambda corner: corner[0])
     try:

@@ -4,8 +4,8 @@
 
     x_e = [1 - A] x^ + b1 u(n-1) + ... + bl u(n-l)        u = g - x_e        x^ = x_e + b0 u
 
-Hence A x^ = B u (paper 001, equations 5, 13, 16) and, u being (g - x^) / (1 - b0), x^ = B / C g with C = B + (1 - b0) A. For l = 0 this is
-equation 17 of paper 001 to the letter, C = A + B (1 - A). For l > 0 the paper leaves the past innovations out of x_e: `as_printed`.
+Hence A x^ = B u (paper 001, equations 5, 13, 16) and, since u is (g - x^) / (1 - b0), x^ = B / C g with C = B + (1 - b0) A. For l = 0 this is
+exactly equation 17 of paper 001, C = A + B (1 - A). For l > 0 the paper omits the past innovations from x_e: `as_printed`.
 """
 import math
 from dataclasses import dataclass
@@ -32,8 +32,8 @@ def total(p, q, factor=1):
 
 
 def reflections(c):
-    """Schur and Cohn's recursion: c stands for a polynomial with all its zeros inside the unit circle exactly when each of these is below 1
-    in magnitude. Exact for Fractions; stops at the first that is not."""
+    """Schur and Cohn's recursion: all zeros of the polynomial c are inside the unit circle exactly if each of these is below 1 in magnitude.
+    Exact for Fractions; stops at the first that is not."""
     found = []
     c = list(c)
     while len(c) > 1:
@@ -46,13 +46,13 @@ def reflections(c):
 
 
 def schur_cohn(c):
-    """True when every zero of c (first coefficient not 0) lies strictly inside the unit circle."""
+    """Whether every zero of c (first coefficient not 0) lies strictly inside the unit circle."""
     return all(abs(ratio) < 1 for ratio in reflections(c))
 
 
 def power(b, c):
     """Sum of the squares of the impulse response of b / c, by Astrom, Jury and Agniel's recursion, which is Schur and Cohn's with b carried
-    along: no roots, no truncation, exact for Fractions. Infinite when c is unstable."""
+    along: no roots, no truncation, exact for Fractions. Infinite if c is unstable."""
     size = max(len(b), len(c))
     b = list(b) + [0] * (size - len(b))
     c = list(c) + [0] * (size - len(c))
@@ -128,7 +128,7 @@ class Filter:
         return schur_cohn(self.characteristic)
 
     def noise_gain(self):
-        """Variance of the estimate's error per variance of white noise, in the steady state; infinite when unstable."""
+        """Steady variance of the estimate's error over that of white noise; infinite if unstable."""
         return power(self.b, self.characteristic)
 
     def dynamic_error(self):
@@ -138,7 +138,7 @@ class Filter:
 
 def as_printed(v, a, b):
     """The filter that equations 15 to 17 of paper 001 give for these polynomials: x_e = [1 - A] x^ alone, so 1 - W = A (1 - B) / C with
-    C = A + B (1 - A). Its past innovations raise k by l: A (1 - B) / (1 - b0) in the place of A. b0 = 1 with l > 0 has no such form."""
+    C = A + B (1 - A). Its past innovations raise k by l: A (1 - B) / (1 - b0) replaces A. b0 = 1 with l > 0 has no such form."""
     beyond = [(1 - b[0]) if i == 0 else -x for i, x in enumerate(b)]
     if len(b) == 1:
         return Filter(v, tuple(a), tuple(b))
@@ -147,7 +147,7 @@ def as_printed(v, a, b):
 
 
 def closed_noise_gain(f):
-    """The noise gain by the formula that there is for small orders, None for the others."""
+    """The noise gain by the closed form for small orders, None for others."""
     if f.order == (1, 0, 0):
         return f.b[0] / (2 - f.b[0])
     if f.order in ((2, 0, 0), (2, 1, 0)):

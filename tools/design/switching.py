@@ -1,10 +1,10 @@
-"""Is the filter stable when its parameters move within a band from sample to sample, in any order? Each parameter frozen at a stable value is
-not enough. With no measurement noise the state moves by F(parameters), which is affine in each parameter alone, so over a box of parameters
+"""Is the filter stable if its parameters move within a band from sample to sample, in any order? It is not enough that it is stable with each
+parameter fixed. Without measurement noise the state moves by F(parameters), which is affine in each parameter, so over a box of parameters
 every F lies in the hull of those at the corners, and the question is whether their joint spectral radius is below 1.
 
 Bounds by Gripenberg's branch and bound: the spectral radius of any product of m corners, to the power 1/m, is a lower bound; if every sequence
 of corners begins with a product whose norm is at most r^m, r is an upper bound. The norm is an ellipsoidal one fitted to the corners. The proof
-is the tree of those products: `proves` walks it again from nothing but the corners, the norm and the number."""
+is the tree of those products: `proves` walks it again, given only the corners, the norm and the bound."""
 import itertools
 from dataclasses import dataclass
 
@@ -13,11 +13,11 @@ from scipy.optimize import minimize
 
 from .structure import Filter, matrices
 
-PRODUCTS_MAX = 400_000  # in all; beyond, the bounds are what they are
+PRODUCTS_MAX = 400_000  # in all; after that the bounds found are returned
 WIDTHS = (0.04, 0.02, 0.01, 0.005, 0.0025)
 REFINE_MAX = 5000
-SURELY_ONE = 1 - 1e-12  # a lower bound from which on some order of the corners does not decay
-ROUNDING = 1e-9  # far above the rounding of products of some tens of matrices
+SURELY_ONE = 1 - 1e-12  # lower bound above which some sequence of corners does not decay
+ROUNDING = 1e-9  # far above the rounding of products of tens of matrices
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Band:
     b: tuple
 
     def corner_filters(self):
-        """The filters at the corners, one for each matrix that occurs (at b0 = 1 the others do not count)."""
+        """The filters at the corners, one per distinct matrix (at b0 = 1 the others do not matter)."""
         boxes = [sorted({low, high}) for low, high in (*self.a, *self.b)]
         found = {}
         for chosen in itertools.product(*boxes):
@@ -48,7 +48,7 @@ class Band:
 
 @dataclass(frozen=True)
 class Bounds:
-    low: float  # a product of corners has this spectral radius per factor
+    low: float  # some product of corners has this spectral radius per factor
     high: float  # no sequence of corners grows faster
     word: tuple  # the corners of that product
     norm: np.ndarray  # coordinates in which the upper bound is proved
@@ -70,8 +70,8 @@ def sizes(products):
 
 
 def fitted_norm(corners, radius, rounds=60):
-    """Coordinates T so that |T F T^-1| is small: T'T from the sum over corners of (F / r)' P (F / r), a Lyapunov equation made common by
-    taking all corners together, with the growth r between the mean and the maximum."""
+    """Coordinates T so that |T F T^-1| is small: T'T from the sum over corners of (F / r)' P (F / r), a Lyapunov equation common to all corners,
+    with the growth r between the mean and the maximum."""
     size = len(corners[0])
     best, best_size = np.eye(size), np.inf
     for factor in (1.0, 1.05, 1.15, 1.3, 1.5, 1.8):
@@ -116,7 +116,7 @@ def branch(corners, low, word, width, budget):
 
 
 def refined_norm(corners, norm, length):
-    """The norm's triangle moved so that the largest product of `length` corners becomes small."""
+    """Moves the norm's triangle so that the largest product of `length` corners becomes small."""
     size = norm.shape[0]
     places = np.tril_indices(size)
     products = [np.eye(size)]
@@ -142,7 +142,7 @@ def refined_norm(corners, norm, length):
 
 
 def searched(raw, norm, low, word, products_max):
-    """Bounds in one norm, with ever smaller distance between the two until the verdict stands."""
+    """Bounds in one norm, with ever smaller distance between the two until the verdict is certain."""
     corners = in_coordinates(raw, norm)
     high, depth, left = float(sizes(corners).max()), 1, products_max
     for width in WIDTHS:
@@ -175,11 +175,11 @@ def bounds(band, products_max=PRODUCTS_MAX):
 
 
 def proves(band, found, products_max=PRODUCTS_MAX):
-    """True when every sequence of the band's corners begins with a product of norm at most high^m: walked anew, word by word."""
+    """Whether every sequence of the band's corners begins with a product of norm at most high^m: walks the tree again, word by word."""
     corners = in_coordinates(band.corners(), found.norm)
     if found.high < max(float(spectral_radius(f)) for f in corners):
         return False
-    corners = corners / found.high  # so that a long product neither vanishes nor overflows
+    corners = corners / found.high  # so that long products neither vanish nor overflow
     waiting, used = [np.eye(corners.shape[-1])], 0
     while waiting:
         product = waiting.pop()

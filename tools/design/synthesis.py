@@ -1,8 +1,8 @@
-"""Parametric synthesis: the parameters that make one of noise gain and dynamic error least while the other keeps its bound.
+"""Parametric synthesis: the parameters that minimise either noise gain or dynamic error while the other keeps its bound.
 
-In powers of s = 1 - z^-1 the loop is B / (1 - b0) = e0 + e1 s + ... + el s^l against A = s^v (1 + a1 z^-1 + ...), and what the parameters mean
-separates: the dynamic error is D = (1 + sum a) / e0, and 0 < b0 < 1 is e0 + ... + el > 0. With w^v = e0 the numbers ej / w^(v-j) stay about 1
-however slow the filter is, so the search runs over them and over D, which is where a search over b0..bl would find a thin sliver.
+In powers of s = 1 - z^-1 the loop is B / (1 - b0) = e0 + e1 s + ... + el s^l against A = s^v (1 + a1 z^-1 + ...), which separates the roles of
+the parameters: the dynamic error is D = (1 + sum a) / e0, and 0 < b0 < 1 is e0 + ... + el > 0. With w^v = e0 the numbers ej / w^(v-j) stay
+about 1 however slow the filter is, so the search runs over them and over D; a search over b0..bl would meet a thin sliver.
 """
 import dataclasses
 import functools
@@ -15,42 +15,42 @@ import numpy as np
 from . import simplex
 from .structure import Filter, alpha_beta, difference, power, power_and_margin, product, schur_cohn, total
 
-ORDER_MAX = 10  # v + k + l: beyond, double precision no longer holds the coefficients of a slow filter
-ERROR_MIN, ERROR_MAX = 1e-6, 1e4  # dynamic error per difference of what is asked for: within them every search holds and every response ends
-ERROR_STEP = 30.0  # where no filter is found, one with a smaller error is looked for, so many times smaller
-LEAST_SHAPE = 1e-6  # of 1 + sum a, to which the dynamic error is proportional
-NOISE_MIN = 1e-4  # of a noise gain asked for
-ABOVE_FLOOR = 0.003  # the nearest noise gain lies so much above the least, which is a limit and not reached
+ORDER_MAX = 10  # v + k + l: above it, double precision cannot hold the coefficients of a slow filter
+ERROR_MIN, ERROR_MAX = 1e-6, 1e4  # range of requested dynamic errors per difference: every search works and every response ends
+ERROR_STEP = 30.0  # if no filter is found, the error searched for is reduced by this factor
+LEAST_SHAPE = 1e-6  # least 1 + sum a, to which the dynamic error is proportional
+NOISE_MIN = 1e-4  # least noise gain that can be requested
+ABOVE_FLOOR = 0.003  # proposed noise gain above the least one, which is a limit that is not reached
 B0_MAX = 1 - 1e-9
 SOUND = 1e-12  # the product of 1 - reflection^2 below which rounding spoils the noise gain
-TRUE = 1e-3  # share by which a noise gain in floating point may differ from the rational one
+TRUE = 1e-3  # relative difference allowed between noise gains in floating point and in rationals
 HALVINGS = 36
-NOTHING = 1e-7  # a sum of a below this, far under 1/65536, is 0
+NOTHING = 1e-7  # a sum of a below this, far under 1/65536, counts as 0
 EDGES = tuple(math.log(x) for x in (ERROR_MIN, 1e-4, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, ERROR_MAX))  # where the least noise gain is bracketed
 DIFFERENCES = [difference(order) for order in range(ORDER_MAX + 1)]
-KEPT_REQUESTS = 256  # of which the search is remembered
-WALL = 1e5  # what a place outside the region or the circle costs
+KEPT_REQUESTS = 256  # requests whose search is cached
+WALL = 1e5  # cost of a place outside the region or the unit circle
 BUTTERWORTH = {1: (1.0,), 2: (1.0, math.sqrt(2.0)), 3: (1.0, 2.0, 2.0), 4: (1.0, 2.613, 3.414, 2.613)}
 
 
 class Infeasible(Exception):
-    """One sentence: why there is no such filter, and the nearest that there is."""
+    """One sentence: why there is no such filter, and the nearest possible one."""
 
 
 class NoneFound(Infeasible):
-    """The sentence without the nearest: that depends on what was asked beside it."""
+    """The sentence without the nearest: that depends on the other bounds."""
 
 
 @dataclass(frozen=True)
 class Region:
-    """What the parameters may be; the papers' unless said otherwise."""
+    """The allowed parameters; the papers' region by default."""
 
     name: str
     a_sum: tuple  # of a1 + ... + ak
     b0: tuple = (1e-9, B0_MAX)
 
     def text(self, of_a=True):
-        """What is asked of a (where there is one to choose) and b0; "" for nothing."""
+        """The conditions on a (if there is one to choose) and b0; "" for none."""
         words = [f"{self.a_sum[0]:.4g} <= sum a <= {self.a_sum[1]:.4g}"] if of_a else []
         return ", ".join(words + ([f"b0 >= {self.b0[0]:g}"] if self.b0[0] > 1e-6 else []))
 
@@ -71,7 +71,7 @@ def check_order(v, k, l):  # noqa: E741
 
 
 def rounded(value, up=True, digits=4):
-    """The number of so many digits next above (or below) a positive one. Next to 1 the digits are those of 1 - value, so that it stays below."""
+    """Rounds a positive number up (or down) to so many digits. Near 1 the digits are those of 1 - value, so that it stays below."""
     fine = min(value, 1 - value) if 0 < value < 1 else value
     unit = 10.0 ** (math.floor(math.log10(fine)) + 1 - digits)
     return float(f"{(math.ceil if up else math.floor)(value / unit) * unit:.12g}")
@@ -88,7 +88,7 @@ def from_memory(e):
 
 
 def shape_from(units, region):
-    """a1..ak from k numbers: the first is their sum, clipped to the region, the others are what sets the zeros of 1 + a1 z^-1 + ... apart."""
+    """a1..ak from k numbers: the first is their sum, clipped to the region; the others separate the zeros of 1 + a1 z^-1 + ...."""
     k = len(units)
     if k == 0:
         return []
@@ -98,7 +98,7 @@ def shape_from(units, region):
 
 
 class Search:
-    """The least noise gain of one structure for a dynamic error of at most some D."""
+    """The least noise gain of one structure for a dynamic error of at most D."""
 
     def __init__(self, v, k, l, region, fixed_a=None, slowest=None):  # noqa: E741
         check_order(v, k, l)
@@ -106,8 +106,8 @@ class Search:
         self.region, self.fixed_a = region, fixed_a
         self.slowest = slowest  # the largest pole radius allowed, None: any
         self.free_a = 0 if fixed_a is not None else k
-        self.fixed_shape = product(DIFFERENCES[v], (1, *(fixed_a or ())))  # A(z), where there is no a to choose
-        self.known = []  # where earlier searches ended: starts for the next
+        self.fixed_shape = product(DIFFERENCES[v], (1, *(fixed_a or ())))  # A(z), if a is fixed
+        self.known = []  # results of earlier searches: starts for the next
 
     def parameters_at(self, place, error_max):
         """(a1..ak, b0..bl) at a place of the search: log of D / error_max (at most 0), sum and others of a, scaled e1..el."""
@@ -156,7 +156,7 @@ class Search:
             yield [shrink] + ([whole] + [0.0] * (self.free_a - 1) if self.free_a else []) + memory
 
     def least(self, error_max, quick=False):
-        """(noise gain, filter): the best that is found; None when there is none. What has a smaller error keeps the bound too."""
+        """(noise gain, filter): the best one found; None if there is none. A smaller error keeps the bound too."""
         found = self.at_most(error_max, quick)
         while found is None and not quick and error_max > ERROR_MIN:
             error_max = max(error_max / ERROR_STEP, ERROR_MIN)
@@ -164,7 +164,7 @@ class Search:
         return found
 
     def at_most(self, error_max, quick=False):
-        """The same from starts near that error alone."""
+        """The same, but only from starts near that error."""
         starts = self.known[-2:] if quick and self.known else self.known[-2:] + list(self.starts())
         ranked = sorted(starts, key=lambda place: self.cost(place, error_max))
         spreads = (0.05,) if quick else (0.3, 0.02)
@@ -179,7 +179,7 @@ class Search:
         return None
 
     def polished(self, place, error_max, spreads):
-        """(cost, place) of the least around a place."""
+        """(cost, place) of the minimum around a place."""
         found = None
         for spread in spreads:
             at = place if found is None else found[1]
@@ -190,7 +190,7 @@ class Search:
 
 
 def by_formula(v, l, error):  # noqa: E741
-    """The least noise gain for a dynamic error where it has a formula: k = 0 and (v, l) = (1, 0), (2, 0), (2, 1); else None. For alpha-beta
+    """The least noise gain for a dynamic error if it has a closed form: k = 0 and (v, l) = (1, 0), (2, 0), (2, 1); else None. For alpha-beta
     the stationary point of its noise gain along alpha = 1 - beta D; with t = sqrt D the noise gain there is (1 + 4 t) / (1 + 2 t)^2."""
     if (v, l) == (1, 0) or (v, l) == (2, 0):
         return Filter(v, (), (1 / (1 + error),))
@@ -201,7 +201,7 @@ def by_formula(v, l, error):  # noqa: E741
 
 
 def error_by_formula(v, l, noise):  # noqa: E741
-    """The dynamic error at which `by_formula` has this noise gain; None when there is none."""
+    """The dynamic error at which `by_formula` has this noise gain; None if there is none."""
     if (v, l) == (1, 0):
         return (1 - noise) / (2 * noise)
     if (v, l) == (2, 0):
@@ -215,7 +215,7 @@ def error_by_formula(v, l, noise):  # noqa: E741
 
 @dataclass(frozen=True)
 class Request:
-    """A structure and what it must keep to."""
+    """A structure and its constraints."""
 
     v: int
     k: int
@@ -235,7 +235,7 @@ class Request:
 
     @property
     def plain(self):
-        """True where the formulas for k = 0 hold."""
+        """Whether the formulas for k = 0 apply."""
         return (self.k == 0 or not any(self.fixed_a or (1,))) and self.slowest is None and self.region.b0[0] < 1e-6
 
     def search(self):
@@ -249,8 +249,8 @@ class Request:
             raise Infeasible(f"{self.name}: with a1 + ... + ak = {sum(self.fixed_a):g} the astatism is not {self.v}; "
                              f"nearest: v = {self.v + 1} with one a fewer")
         if self.fixed_a is None and self.slowest is None and self.k >= 1 and self.l >= self.v - 1:
-            raise Infeasible(f"{self.name}: the free a goes to sum a = -1, astatism {self.v + 1}, where the filter may be as slow as it likes and "
-                             f"this dynamic error is 0 all the same; nearest: -k 0, or give --a (a1 = minus the correlation of the signal's "
+            raise Infeasible(f"{self.name}: the free a tends to sum a = -1, astatism {self.v + 1}, where the filter may be arbitrarily slow and "
+                             f"this dynamic error is still 0; nearest: -k 0, or give --a (a1 = minus the correlation of the signal's "
                              f"{ordinal(self.v)} difference) or --settle")
 
 
@@ -258,7 +258,7 @@ def least_noise(request, error_max):
     """The filter of least noise gain with a dynamic error of at most error_max (per v-th difference of the signal)."""
     request.check()
     if not (math.isfinite(error_max) and error_max > 0):
-        raise Infeasible(f"a dynamic error of {error_max:g} is not to be had: it must be finite and above 0; nearest: 0.001")
+        raise Infeasible(f"a dynamic error of {error_max:g} is impossible: it must be finite and above 0; nearest: 0.001")
     known = by_formula(request.v, request.l, error_max) if request.plain else None
     if known is not None:
         return Filter(request.v, (0.0,) * request.k, known.b)
@@ -276,8 +276,8 @@ def ordinal(v):
 
 @functools.lru_cache(KEPT_REQUESTS)
 def floor(request):
-    """The noise gain below which the structure does not go, whatever the dynamic error: an infimum, found by the search but for alpha-beta and the
-    average, where it is 0."""
+    """The infimum of the structure's noise gain over all dynamic errors, found by the search, except for alpha-beta and the average, where it
+    is 0."""
     if request.plain and error_by_formula(request.v, request.l, NOISE_MIN) is not None:
         return 0.0
     search = request.search()
@@ -286,17 +286,17 @@ def floor(request):
 
 
 def formula_error(request, noise_max):
-    """The dynamic error for a noise gain where a formula has it, and within what can be computed."""
+    """The dynamic error for a noise gain, if a formula has it and it can be computed."""
     error = error_by_formula(request.v, request.l, noise_max) if request.plain else None
     return error if error is not None and (request.l > 0 or error <= ERROR_MAX) else None
 
 
 class Walk:
-    """The least noise gains of a structure at the edges, from the smallest error on, each searched for when it is first wanted."""
+    """The least noise gains of a structure at the edges, from the smallest error up, each searched when first needed."""
 
     def __init__(self, request):
         self.request, self.search = request, request.search()
-        self.found = []  # (what is kept at this edge, where the searches had ended by then)
+        self.found = []  # (result at this edge, results of the searches so far)
 
     def at(self, number):
         while len(self.found) <= number:
@@ -309,8 +309,8 @@ walk_of = functools.lru_cache(KEPT_REQUESTS)(Walk)
 
 
 def bracket(request, noise_max):
-    """(logs of two dynamic errors, the noise gain and filter at the larger, which has the noise gain asked for, a search that goes on from there);
-    None when there is none."""
+    """(logs of two dynamic errors, the noise gain and filter at the larger, which reaches the requested noise gain, a search to continue from);
+    None if there is none."""
     walk = walk_of(request)
     for number, (low, high) in enumerate(itertools.pairwise(EDGES)):
         kept, known = walk.at(number)
@@ -322,7 +322,7 @@ def bracket(request, noise_max):
 
 
 def reachable(request, noise_max):
-    """True when the structure has a filter with a noise gain of at most this, below 1."""
+    """Whether the structure has a filter with a noise gain of at most this, which is below 1."""
     try:
         request.check()
     except Infeasible:
@@ -331,7 +331,7 @@ def reachable(request, noise_max):
 
 
 def nearest_noise(request, wanted):
-    """The noise gain wanted if the structure has it, else one just above its floor, as words of the command."""
+    """The requested noise gain if the structure has it, else one just above its floor, as an option of the command."""
     return f"--noise-gain {wanted:.12g}" if reachable(request, wanted) else above(request, floor(request))
 
 
@@ -341,14 +341,14 @@ def above(request, least):
         near = rounded(least + min(ABOVE_FLOOR * least, 0.3 * (1 - least)))
         if reachable(request, near):
             return f"--noise-gain {near:.12g}"
-    return "none; take another structure"
+    return "none; choose another structure"
 
 
 def least_error(request, noise_max):
     """The filter of least dynamic error with a noise gain of at most noise_max."""
     request.check()
     if not (math.isfinite(noise_max) and noise_max > 0):
-        raise Infeasible(f"a noise gain of {noise_max:g} is not to be had: it must be finite and above 0; "
+        raise Infeasible(f"a noise gain of {noise_max:g} is impossible: it must be finite and above 0; "
                          f"nearest: {nearest_noise(request, NOISE_MIN if noise_max <= 0 else 0.999)}")
     if noise_max >= 1:
         raise Infeasible(f"a noise gain of {noise_max:g} needs no filter: the raw measurement has 1; nearest: {nearest_noise(request, 0.999)}")
@@ -362,7 +362,7 @@ def least_error(request, noise_max):
     if found is None:
         raise Infeasible(below_floor(request, noise_max))
     low, high, kept, search = found
-    for _ in range(HALVINGS):  # the least noise gain falls with the error allowed
+    for _ in range(HALVINGS):  # the least noise gain falls as the allowed error grows
         middle = 0.5 * (low + high)
         found = search.least(math.exp(middle), quick=True)
         if found is not None and found[0] <= noise_max:
@@ -379,7 +379,7 @@ def below_floor(request, noise_max):
 
 
 def richer(request, noise_max):
-    """With B of order v - 1 the noise gain has no floor: that, where it helps."""
+    """With B of order v - 1 the noise gain has no floor: proposes that if it helps."""
     if request.l >= request.v - 1:
         return ""
     other = dataclasses.replace(request, l=request.v - 1, k=request.k if request.fixed_a is not None else 0)

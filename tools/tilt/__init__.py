@@ -1,3 +1,3 @@
-"""What a person does on the PC with recordings of the ADXL345: one command, `tilt`, with a sub-command for each job."""
+"""The `tilt` command: work on ADXL345 recordings on the PC, one sub-command per job."""
 
-ROBUST, PLAIN = "sprf", "kf"  # what recordings are judged by: the filter with a gate, and the one that takes every reading
+ROBUST, PLAIN = "sprf", "kf"  # recordings are judged with these: one filter with a gate, one that accepts every reading

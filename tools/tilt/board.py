@@ -1,4 +1,4 @@
-"""A board on a serial port that is watched for as long as it takes: unplugged, it is waited for."""
+"""Watches a board on a serial port for as long as needed and waits for it while it is unplugged."""
 import json
 import re
 import threading
@@ -11,15 +11,15 @@ from tilt.feed import Lines
 from tilt.port import Gone, Unreadable
 
 AGAIN_S = 0.5
-GATHER_S = 0.004  # fewer and longer pieces: 400 bytes at 1000000 baud, a tenth of what a terminal holds
+GATHER_S = 0.004  # fewer, longer reads: 400 bytes at 1000000 baud, a tenth of a terminal's buffer
 BAUD_REPLY = re.compile(rb"^# baud (\d+)\r?$", re.M)  # the board's last line at the old rate
-TEXT = re.compile(rb"[ -~\r\n]{8,}$")  # by chance, bytes read at a wrong rate may be a shorter one
-UNREADABLE_S = 1.5  # of bytes, none of which makes a line of text
+TEXT = re.compile(rb"[ -~\r\n]{8,}$")  # bytes read at a wrong rate may match a shorter pattern by chance
+UNREADABLE_S = 1.5  # of bytes without one line of text
 LONGEST_COMMAND = 40
 
 
 def identity(device):
-    """(vid, pid, serial number) of a USB port, None of another one."""
+    """(vid, pid, serial number) of a USB port; None for any other port."""
     for port in list_ports.comports():
         if port.device == device and port.vid is not None:
             return port.vid, port.pid, port.serial_number
@@ -27,12 +27,12 @@ def identity(device):
 
 
 class Board:
-    """Reads a tilt.port.Port into a tilt.feed.Feed, in a thread of its own: entries `lines` (bytes, whole lines), `state` (JSON: connected,
-    port, baud, why) and `sent` (what was typed).
+    """Reads a tilt.port.Port into a tilt.feed.Feed, in its own thread: entries `lines` (bytes, whole lines), `state` (JSON: connected, port,
+    baud, why) and `sent` (what was typed).
 
-    recorder: a tilt.recorder.Recorder that gets the same bytes; where it cannot write any more, `failed` says why and the view goes on.
-    The rate of the line follows the board's reply to `baud N`. Where what comes is no text, because the board was reset or has loaded what
-    it had saved, the first rate is tried again, then the others. A port that comes back has the first one.
+    recorder: a tilt.recorder.Recorder that gets the same bytes; if it can no longer write, `failed` says why and the view continues.
+    The baud rate follows the board's reply to `baud N`. If the input is not text, because the board was reset or loaded its saved settings,
+    the first rate is tried again, then the others. A port that returns starts at the first rate.
     """
 
     def __init__(self, port, feed, recorder=None):
@@ -43,10 +43,10 @@ class Board:
         self._thread = threading.Thread(target=self._run, name="board", daemon=True)
 
     def start(self):
-        """Opens the port; TiltError where that does not work the first time."""
+        """Opens the port; TiltError if the first attempt fails."""
         self.port.open()
         self._identity = identity(self.port.name)
-        self._tell(True)
+        self._report_state(True)
         self._thread.start()
 
     def end(self):
@@ -57,14 +57,14 @@ class Board:
         self._record("finish")
 
     def send(self, text):
-        """Types a command. TiltError where it cannot be one, or where there is no board."""
+        """Types a command. TiltError if it cannot be a command or no board is connected."""
         if not 0 < len(text) <= LONGEST_COMMAND or not all(" " <= letter <= "~" for letter in text):
-            raise TiltError(f"a command has 1 to {LONGEST_COMMAND} characters, none of them accented")
+            raise TiltError(f"a command has 1 to {LONGEST_COMMAND} characters without accents")
         self._type(text + "\n")
         self.feed.put("sent", text)
 
     def send_piece(self, text):
-        """Types the beginning of a command, or its rest, without a line end. TiltError where there is no board."""
+        """Types part of a command, without a line end. TiltError if no board is connected."""
         self._type(text)
 
     def _type(self, text):
@@ -76,7 +76,7 @@ class Board:
             except Gone as why:
                 raise TiltError(f"{self.port.name}: {why}") from why
 
-    def _tell(self, connected, why=""):
+    def _report_state(self, connected, why=""):
         self._connected = connected
         self.feed.put("state", json.dumps({"connected": connected, "port": self.port.name, "baud": self.port.baud, "why": why}))
 
@@ -96,12 +96,12 @@ class Board:
             except Gone as why:
                 with self._writing:
                     self.port.baud_at_next_opening(self._first_baud)
-                    self._tell(False, str(why))
+                    self._report_state(False, str(why))
                 self._record("outage")
                 self._wait_for_it()
 
     def _read(self):
-        """Until the end, or Gone."""
+        """Reads until end() or Gone."""
         self._begin()
         while not self._ending.is_set():
             data = self.port.read()
@@ -115,16 +115,16 @@ class Board:
             self._ending.wait(GATHER_S)
 
     def _begin(self):
-        """As when the port has just been opened: a piece of a line may come first."""
+        """Resets the line state, as when the port has just been opened: the first line may be partial."""
         self._lines, self._unreadable = Lines(), Unreadable()
 
     def _follow_baud(self, whole, count):
-        told, readable = BAUD_REPLY.findall(whole), TEXT.match(whole) is not None
+        rates, readable = BAUD_REPLY.findall(whole), TEXT.match(whole) is not None
         lasts_s = self._unreadable.lasts_s(count, readable)
         if readable:
             self._to_try = self._all_bauds()
-        if told:
-            self._change_baud(int(told[-1]))
+        if rates:
+            self._change_baud(int(rates[-1]))
         elif lasts_s > UNREADABLE_S:
             self._to_try = self._to_try or self._all_bauds()
             self._change_baud(self._to_try.pop(0))
@@ -136,7 +136,7 @@ class Board:
         if baud != self.port.baud:
             self.port.baud = baud
             self._record("join")
-            self._tell(True)
+            self._report_state(True)
             self._begin()
 
     def _wait_for_it(self):
@@ -144,11 +144,11 @@ class Board:
             with self._writing:
                 self.port.name = self._where_now()
                 if self.port.come_back():
-                    self._tell(True)
+                    self._report_state(True)
                     return
 
     def _where_now(self):
-        """The same place, or where the same USB device has come back: the kernel may number it anew."""
+        """The same port, or the one where the same USB device returned: the kernel may renumber it."""
         if self._identity is None or identity(self.port.name) == self._identity:
             return self.port.name
         return next((port.device for port in list_ports.comports() if identity(port.device) == self._identity), self.port.name)

@@ -1,6 +1,6 @@
-"""`tilt`: finds its sub-commands in tilt.commands and turns what they raise into one line and an exit status.
+"""`tilt`: finds its sub-commands in tilt.commands; turns their exceptions into one line and an exit status.
 
-Status: 0 done, 1 the answer is no (a comparison that fails, rows lost where none may be), 2 a file or an option cannot be used, 130 Ctrl-C.
+Status: 0 done, 1 the answer is no (a failed comparison, unexpected lost rows), 2 a file or an option cannot be used, 130 Ctrl-C.
 """
 import argparse
 import importlib
@@ -15,13 +15,13 @@ EXIT_UNUSABLE, EXIT_INTERRUPTED = 2, 130
 
 
 def modules():
-    """The modules of the sub-commands, by name."""
+    """The sub-commands' modules by name."""
     found = [importlib.import_module(f"{commands.__name__}.{place.name}") for place in pkgutil.iter_modules(commands.__path__)]
     return {module.NAME: module for module in sorted(found, key=lambda module: module.NAME)}
 
 
 def parser_of(found):
-    parser = argparse.ArgumentParser(prog="tilt", description="Recordings and boards of tilt-uno, on the PC.")
+    parser = argparse.ArgumentParser(prog="tilt", description="Work with tilt-uno recordings and boards on the PC.")
     jobs = parser.add_subparsers(dest="job", metavar="COMMAND", required=True)
     for name, module in found.items():
         job = jobs.add_parser(name, help=module.SUMMARY, description=module.__doc__,
@@ -40,7 +40,7 @@ def main(words=None):
         return EXIT_UNUSABLE
     except KeyboardInterrupt:
         return EXIT_INTERRUPTED
-    except BrokenPipeError:  # the reader of the output has gone, as `head` does
+    except BrokenPipeError:  # the reader has closed the pipe, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
 

@@ -1,10 +1,10 @@
-"""The one exception that a person gets to see: it says what is wrong, and where."""
+"""The one exception shown to the user: what is wrong, and where."""
 
 
 class TiltError(Exception):
-    """Text: FILE:LINE: reason where there is a line, FILE: reason where there is a file, else the reason."""
+    """Text: FILE:LINE: reason if a line is known, FILE: reason if only a file is, else the reason."""
 
 
 def at(path, line, reason):
-    """The error for one line of a file."""
+    """The error for a line of a file."""
     return TiltError(f"{path}:{line}: {reason}")

@@ -1,13 +1,13 @@
-"""What comes from a board, kept for a while for those who watch: whole lines, changes of the connection, what was typed, in one order."""
+"""A buffer of what a board sends, for its viewers: whole lines, connection changes and typed commands, in one order."""
 import collections
 import itertools
 import threading
 
-KEPT_BYTES = 1 << 20  # 39 s of 400 of the longest rows a second: a page that was away gets them all, one that opens late in an instant
+KEPT_BYTES = 1 << 20  # 39 s of the longest rows at 400/s: a page that was away catches up; one that opens late loads at once
 
 
 class Feed:
-    """Entries (number, kind, data), numbered from 1. Written by one thread, read by any number, each at its own pace."""
+    """Entries (number, kind, data), numbered from 1. One thread writes; any number of threads read, each at its own pace."""
 
     def __init__(self, kept_bytes=KEPT_BYTES):
         self._entries = collections.deque()
@@ -17,7 +17,7 @@ class Feed:
         self._changed = threading.Condition()
 
     def put(self, kind, data):
-        """Adds an entry; the oldest go when more than kept_bytes would be kept. The newest entry of kind `state` never goes."""
+        """Adds an entry; drops the oldest above kept_bytes. The newest entry of kind `state` is always kept."""
         with self._changed:
             self._number += 1
             entry = (self._number, kind, data)
@@ -30,8 +30,8 @@ class Feed:
             self._changed.notify_all()
 
     def after(self, number, timeout_s):
-        """(entries later than `number`, how many of them are no longer kept); waits for one until the time is over. Whoever begins (number
-        0) and is too late for the newest `state` gets it first, and what was before that one's time is not called missed."""
+        """(entries later than `number`, how many of those were dropped); waits for one until the timeout. A new reader (number 0) that
+        missed the newest `state` gets it first; entries older than that state do not count as missed."""
         with self._changed:
             self._changed.wait_for(lambda: self._number > number, timeout_s)
             first = self._entries[0][0] if self._entries else 1
@@ -43,8 +43,8 @@ class Feed:
 
 
 class Lines:
-    """Bytes as they come from a port -> whole lines. What stands before the first line end is a piece of a line, and dropped, unless it
-    begins as a line of a banner does; so is a line that never ends."""
+    """Bytes from a port -> whole lines. Text before the first line end is a partial line and dropped, unless it begins as a banner
+    line does; so is a line that never ends."""
 
     LONGEST = 4096
 
@@ -52,7 +52,7 @@ class Lines:
         self._rest, self._joined = b"", False
 
     def cut(self, data):
-        """The whole lines in what was left and these bytes, line ends (LF) included."""
+        """The whole lines in the rest and these bytes, line ends (LF) included."""
         whole, end, rest = (self._rest + data).rpartition(b"\n")
         self._rest = rest if len(rest) <= self.LONGEST else b""
         lines = whole + end

@@ -1,30 +1,30 @@
-"""Rows that are missing, counted from the times of those that came."""
+"""Counts missing rows from the times of the received rows."""
 from collections import deque
 from statistics import median, median_low
 from typing import NamedTuple
 
-WINDOW = 17      # steps around the one judged, as far as the board says nothing between them; their median is the row period there
-GAP_FROM = 1.75  # periods: one lost row makes 2.0; rows read by the clock (fault 5) come up to half a period early and late: 1.5
+WINDOW = 17      # steps around the one judged, without any in which the board reported something; their median is the local row period
+GAP_FROM = 1.75  # periods: one lost row makes 2.0; rows read by the clock (fault 5) are up to half a period early or late: 1.5
 
 
 class Step(NamedTuple):
     us: int
-    dropped: bool  # the board says that it dropped rows before this one (flag 256)
-    excused: bool  # no sample on one side
-    spoken: bool   # the board said something in between: a stop, a fault, a change of rate
+    dropped: bool  # the board reports dropped rows before this one (flag 256)
+    excused: bool  # one of the two rows has no sample
+    spoken: bool   # the board reported something in between: a stop, a fault, a change of rate
 
 
 class Gaps:
-    """add() each step between two rows; cut() where the rows before and after have nothing to do with each other."""
+    """add() each step between two rows; cut() where the rows on both sides are unrelated."""
 
     def __init__(self):
         self.on_the_way = self.by_the_board = self.pauses = self.pauses_us = 0
         self.steps = deque(maxlen=WINDOW)
-        self.judged = 0  # of those in the window
+        self.judged = 0  # of the steps in the window
 
     @property
     def lost(self):
-        """Rows; those of the last half window are not counted before cut()."""
+        """Lost rows, without those of the last half window before cut()."""
         return self.on_the_way + self.by_the_board
 
     def add(self, us, dropped=False, excused=False, spoken=False):
@@ -56,7 +56,7 @@ class Gaps:
 
 
 def period_us(steps, place):
-    """The row period at this step: what the board says may change it, so the steps beyond do not count; of two the lesser."""
+    """The row period at this step. A report of the board may change it, so steps beyond one do not count; of two, the lower median."""
     if steps[place].spoken:
         return median(step.us for step in steps)
     begin = end = place

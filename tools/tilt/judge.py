@@ -1,4 +1,4 @@
-"""What filters are judged by: distance from the truth, else what their innovations tell; and whether two of them differ at all."""
+"""Judges filters by distance from the truth, else by their innovations; and tests whether two of them differ."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,12 +8,12 @@ from tilt.angles import angle_deg, direction, wrapped_deg
 
 COASTED, CLIPPED, FAULT, WARMING, ROLL_UNDEFINED = 2, 8, 16, 128, 1024
 BATCHES, BATCHES_MOST, BATCH_MIN, BATCH_S = 20, 200, 10, 0.5  # half a second: the memory of most filters
-NOISE_T = 3.5               # Student's t with 14 degrees of freedom: 5 % both ways, shared by the twelve comparisons with the best
-CUT = 4.0                   # sigmas: an innovation counts no more than this, so that those of outliers are alike for all filters
-BOARD_FACTOR = 1.5          # R that the board takes, over the variance (noise.h)
-MOVES_DEG_S = 0.5           # rms rate of the truth from which a lag can be told
+NOISE_T = 3.5               # Student's t with 14 degrees of freedom: 5 % two-sided, shared by the twelve comparisons with the best
+CUT = 4.0                   # sigmas: limit of an innovation, so that outliers weigh the same for all filters
+BOARD_FACTOR = 1.5          # the board's R over the variance (noise.h)
+MOVES_DEG_S = 0.5           # least rms rate of the truth at which a lag can be measured
 LAG_KNOWN_MS = 2.0
-JUMP_DEG_S = 400.0          # faster than this the truth steps, or changes sign at 180 degrees
+JUMP_DEG_S = 400.0          # above this rate the truth steps, or wraps at 180 degrees
 CHI2_MEDIAN = 0.4549
 
 
@@ -23,19 +23,19 @@ def rms(values):
 
 @dataclass
 class Difference:
-    """Of two filters' losses, sample by sample: in units of its own standard error."""
+    """Of two filters' losses per sample, in units of its standard error."""
     mean: float
     t: float
 
     @property
-    def told(self):
+    def significant(self):
         return abs(self.t) >= NOISE_T
 
 
 def difference(loss, best, rate_hz):
-    """Mean of loss - best, with its error by what the noise of the readings makes of it: batches of samples on end, which correlation hardly
-    reaches across, each against the next but one, so that a stretch of the recording that suits one filter is no noise. Fewer than 200
-    samples tell nothing."""
+    """Mean of loss - best, with its standard error from the readings' noise: batches of consecutive samples, long enough to be nearly
+    uncorrelated, each compared with the next but one, so that a stretch that suits one filter does not count as noise. Fewer than 200
+    samples prove nothing."""
     away = loss - best
     if len(away) < BATCHES * BATCH_MIN:
         return Difference(float(away.mean()) if len(away) else 0.0, 0.0)
@@ -51,14 +51,14 @@ def difference(loss, best, rate_hz):
 
 
 def scored(tables):
-    """Rows with a sample, behind the start of every filter."""
+    """Rows with a sample, after the start of every filter."""
     rows = list(tables.values())
     return np.all([(part["source"] >= 0) & ((part["flags"] & (COASTED | FAULT | WARMING)) == 0) for part in rows], axis=0)
 
 
 def lag_ms(t_us, errors_deg, truth_deg):
-    """By how much the estimate is the truth of earlier: -sum(e v) / sum(v^2) over roll and pitch, v the truth's rate. None where that is not
-    known to 2 ms or a half: at rest, or where errors are large (a fifth of the samples counts as independent)."""
+    """Delay of the estimate after the truth: -sum(e v) / sum(v^2) over roll and pitch, v the truth's rate. None if it is not known to 2 ms or
+    half its value: at rest, or with large errors (a fifth of the samples counts as independent)."""
     products = squares = spread = count = 0.0
     for error, truth in zip(errors_deg, truth_deg):
         step_s = np.maximum(t_us[2:] - t_us[:-2], 1) * 1e-6
@@ -75,7 +75,7 @@ def lag_ms(t_us, errors_deg, truth_deg):
 
 
 def against_truth(stream, rows, use):
-    """(numbers, loss per row) of one filter over the rows to use."""
+    """(numbers, loss per row) of one filter over the rows in use."""
     rows = rows[use]
     truth = [stream.roll_true_cdeg[rows["source"]] / 100.0, stream.pitch_true_cdeg[rows["source"]] / 100.0]
     shown = [rows["roll_cdeg"] / 100.0, rows["pitch_cdeg"] / 100.0]
@@ -86,11 +86,11 @@ def against_truth(stream, rows, use):
             "lag_ms": lag_ms(rows["t_us"], errors, truth)}, tilt ** 2
 
 
-# --- without ----------------------------------------------------------------------------------------------------------
+# --- without truth ----------------------------------------------------------------------------------------------------
 
 
 def states(rows):
-    """Per row and axis: missing, there, or at a rail of 16 g."""
+    """Per row and axis: missing, present, or at a rail of 16 g."""
     found = np.full(rows["lsb"].shape, native.THERE, np.uint8)
     found[(rows["lsb"] >= 4095) | (rows["lsb"] <= -4096)] = native.AT_RAIL
     found[(rows["flags"] & (COASTED | FAULT)) != 0] = native.MISSING
@@ -98,12 +98,12 @@ def states(rows):
 
 
 def probes_of(name, rate_dhz, rows, state, **options):
-    """One table of probes for each axis, as the board runs them."""
+    """One table of probes per axis, as the board runs the filter."""
     return [native.axis(name, rate_dhz, rows["lsb"][:, i], state[:, i], noisy_axis=i == 2, **options) for i in range(3)]
 
 
 def variance_of(probes):
-    """Of each innovation, as the filter's gain says: R / (1 - K), K that of the last sample that it took; inf before there is one."""
+    """Variance of each innovation according to the gain: R / (1 - K), K that of the last accepted sample; inf before the first."""
     gain = probes["gain_uq16"] / 65536.0
     newest = np.maximum.accumulate(np.where((gain > 0.0) & ((probes["flags"] & native.GATED) == 0), np.arange(len(gain)), -1))
     taken = np.where(newest >= 0, gain[newest], 0.0)
@@ -115,7 +115,7 @@ def innovations(probes):
 
 
 def correlation(values, whole):
-    """Of neighbours that are whole (no outliers, both judged), about 0."""
+    """Correlation of neighbouring values about 0; only pairs that are both judged and not outliers count."""
     pairs = whole[1:] & whole[:-1]
     first, second = values[:-1][pairs], values[1:][pairs]
     power = np.sum(first ** 2) + np.sum(second ** 2)
@@ -123,7 +123,7 @@ def correlation(values, whole):
 
 
 def by_innovations(axes, use, sigma_lsb):
-    """(numbers, loss per row) of one filter: axes its probes, sigma_lsb of a sample per axis, the same for all filters."""
+    """(numbers, loss per row) of one filter. axes: its probes; sigma_lsb: noise of a sample per axis, the same for all filters."""
     losses, ratios, correlations = [], [], []
     for probes, sigma in zip(axes, sigma_lsb):
         away, variance = innovations(probes), variance_of(probes)
@@ -136,12 +136,12 @@ def by_innovations(axes, use, sigma_lsb):
 
 
 def judged(tables_of_probes):
-    """Rows in which every filter predicted a sample on every axis."""
+    """Rows for which every filter predicted a sample on every axis."""
     return np.all([probes["judged"] == 1 for axes in tables_of_probes for probes in axes], axis=0)
 
 
 def wander_deg(rows, stretches):
-    """Rms angle of the filtered direction from its mean over each stretch at rest; None where there is none."""
+    """Rms angle of the filtered direction from its mean over each stretch at rest; None without such a stretch."""
     away = []
     for part in stretches:
         shown = direction(rows["roll_cdeg"][part] / 100.0, rows["pitch_cdeg"][part] / 100.0)

@@ -1,4 +1,4 @@
-"""Colours of the pictures and the page."""
+"""Colours of the pictures and of the page."""
 from tilt import protocol
 
 RAW_COLOUR, GATED_COLOUR, TRUTH_COLOUR, GRID_COLOUR = "#9aa3ad", "#d1495b", "#111111", "#e3e6ea"

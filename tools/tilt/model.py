@@ -1,8 +1,8 @@
-"""R, q and gate of the two-state filters from a recording, by what the shipped code predicts with them.
+"""R, q and gate of the two-state filters, estimated from a recording with the predictions of the shipped code.
 
-The model of kf and sprf: a position whose rate is driven by white acceleration of the power density q, read with noise of the variance R.
-R comes from where the recording lies still. q makes the innovations of where it moves the most likely, with sprf at 4 sigmas, so that outliers
-do not get into the estimate, and with a term of no more than 4 sigmas for each, so that they do not get into the sum.
+The model of kf and sprf: a position whose rate is driven by white acceleration of power density q, measured with noise of variance R.
+R comes from the stretches at rest. q maximises the likelihood of the innovations in motion, computed with sprf at 4 sigmas, so that outliers
+do not enter the estimate; each term counts as 4 sigmas at most, so that they do not dominate the sum.
 """
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ import numpy as np
 
 from tilt import ROBUST, judge, native, rest
 
-CUT = 4.0                   # sigmas, of gate and sum
-GAP_SAMPLES_S = 0.3         # a longer gap is as one of this: the filter starts anew behind it
+CUT = 4.0                   # sigmas, of the gate and of the sum
+GAP_SAMPLES_S = 0.3         # a longer gap counts as one of this length: the filter restarts after it
 GRID = np.arange(0.0, 9.01, 0.5)  # log10 of q in LSB2/s3: its legal range
-WIDTHS = (0.25, 0.1, 0.2)   # decades of three parabolas: the last tells the curvature, which filters in whole numbers blur below 0.1
+WIDTHS = (0.25, 0.1, 0.2)   # decades of three parabolas: the last gives the curvature, which integer filters blur below 0.1
 CHI2_95 = 3.84
 EDGE = 0.05                 # decades from the end of the range
-NIS_MAX, CORRELATION_MAX, RUNS_MAX = 1.25, 0.10, 0.20  # of a model that fits
-FAR_MIN = 20                # samples beyond 4 sigmas whose runs mean something
+NIS_MAX, CORRELATION_MAX, RUNS_MAX = 1.25, 0.10, 0.20  # limits of a model that fits
+FAR_MIN = 20                # samples beyond 4 sigmas that make a share of runs meaningful
 R_ROUNDS, R_SETTLED = 6, 0.03
 KEPT_NIS = 0.99884          # mean of g^2 within 4 sigmas: 1 - 8 phi(4) / (2 Phi(4) - 1) - its complement's share
-MOTION_MIN = 300            # samples of motion that q can be told from
+MOTION_MIN = 300            # samples of motion needed to estimate q
 GATES = (2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0)
 
 
 @dataclass
 class Samples:
-    """A recording on its own grid: readings (n, 3), states (n, 3) as native.axis takes them, samples in motion, rate."""
+    """A recording on an even grid: readings (n, 3), states (n, 3) as native.axis takes them, samples in motion, rate."""
     lsb: np.ndarray
     state: np.ndarray
     moving: np.ndarray
@@ -37,7 +37,7 @@ class Samples:
 
 
 def gridded(stream, rate_dhz):
-    """Samples with the missing ones put in, as far as a filter counts them."""
+    """Samples with the missing ones inserted, as a filter counts them."""
     step_us = max(stream.step_us, 1)
     steps = np.round(np.diff(stream.t_us) / step_us).astype(np.int64)
     begins = np.zeros(len(stream) - 1, bool)
@@ -55,7 +55,7 @@ def gridded(stream, rate_dhz):
 
 
 def board_r_lsb2(samples):
-    """R that the board takes, per axis: median over the recording."""
+    """The board's R per axis: median over the recording."""
     return np.array([float(np.median(probes["r_lsb2_q8"])) / 256.0 for probes in run(samples, ROBUST, {})])
 
 
@@ -66,7 +66,7 @@ def run(samples, name, values, r_lsb2=None):
 
 
 def deviance(samples, r_lsb2, log_q, use):
-    """-2 log likelihood of the innovations in use, but for a constant."""
+    """-2 log likelihood of the innovations in use, up to a constant."""
     total = 0.0
     for probes in run(samples, ROBUST, {"q": 10.0 ** log_q, "gate": CUT}, r_lsb2):
         variance = judge.variance_of(probes)
@@ -78,7 +78,7 @@ def deviance(samples, r_lsb2, log_q, use):
 
 @dataclass
 class Drive:
-    """q with its 95 % interval in LSB2/s3, and why it is not to be had, or None."""
+    """q with its 95 % interval in LSB2/s3, and why it cannot be estimated, or None."""
     q: float
     low: float
     high: float
@@ -86,22 +86,22 @@ class Drive:
 
 
 def _parabola(at, values):
-    """Place of the minimum through three points, and the second derivative."""
+    """Position of the minimum of the parabola through three points, and its second derivative."""
     second = (values[0] - 2.0 * values[1] + values[2]) / (at[1] - at[0]) ** 2
     if second <= 0.0:
         return at[1], 0.0
     return at[1] - 0.5 * (values[2] - values[0]) / (at[2] - at[0]) * 2.0 / second, second
 
 
-def find_q(samples, r_lsb2, told=lambda done, whole: None):
-    """Drive of the samples in motion: the grid, then parabolas that close in."""
+def find_q(samples, r_lsb2, report=lambda done, whole: None):
+    """Drive of the samples in motion: a grid search, then ever narrower parabolas."""
     use = samples.moving
     if np.count_nonzero(use & (samples.state != native.MISSING).all(axis=1)) < MOTION_MIN:
-        return Drive(0.0, 0.0, 0.0, "no motion that q could be told from")
+        return Drive(0.0, 0.0, 0.0, "too little motion to estimate q")
     coarse = []
     for i, log_q in enumerate(GRID):
         coarse.append(deviance(samples, r_lsb2, log_q, use))
-        told(i + 1, len(GRID) + 9)
+        report(i + 1, len(GRID) + 9)
     best, second = float(GRID[int(np.argmin(coarse))]), 0.0
     for i, width in enumerate(WIDTHS):
         at = np.clip(best + width * np.array([-1.0, 0.0, 1.0]), GRID[0], GRID[-1])
@@ -109,9 +109,9 @@ def find_q(samples, r_lsb2, told=lambda done, whole: None):
             break
         place, second = _parabola(at, [deviance(samples, r_lsb2, log_q, use) for log_q in at])
         best = float(np.clip(place, at[0], at[2]))
-        told(len(GRID) + 3 * i + 3, len(GRID) + 9)
+        report(len(GRID) + 3 * i + 3, len(GRID) + 9)
     if best < GRID[0] + EDGE or best > GRID[-1] - EDGE or second <= 0.0:
-        return Drive(10.0 ** best, 0.0, float("inf"), "q has no best value within its range of 1 to 1e9 LSB2/s3")
+        return Drive(10.0 ** best, 0.0, float("inf"), "no best q within its range of 1 to 1e9 LSB2/s3")
     half = np.sqrt(2.0 * CHI2_95 / second)
     return Drive(10.0 ** best, 10.0 ** (best - half), 10.0 ** (best + half))
 
@@ -121,8 +121,8 @@ def find_q(samples, r_lsb2, told=lambda done, whole: None):
 
 @dataclass
 class Fit:
-    """Of innovations in motion: mean of their squares by what the model says, per axis (1); correlation of neighbours (0); share beyond 4 sigmas,
-    and of those the share that another follows, which for single outliers is the same."""
+    """Of innovations in motion: mean square over the model's variance, per axis (expected 1); correlation of neighbours (0); share beyond 4
+    sigmas, and how many of those are followed by another one (for single outliers the same share)."""
     nis_axes: np.ndarray
     correlation: float
     outliers: float
@@ -134,15 +134,15 @@ class Fit:
         return float(np.mean(self.nis_axes))
 
     def troubles(self):
-        """What speaks against the model; more than chance and what is of no matter."""
+        """Evidence against the model, beyond chance and of practical size."""
         chance = 3.3 / np.sqrt(max(self.count, 1))
         said = []
         if not 1.0 / NIS_MAX - chance <= self.nis <= NIS_MAX + chance:
-            said.append(f"squares of innovations are {self.nis:.2f} times what they should be")
+            said.append(f"squared innovations are {self.nis:.2f} times their expected value")
         if abs(self.correlation) > CORRELATION_MAX + chance:
             said.append(f"neighbouring innovations are correlated ({self.correlation:+.2f})")
         if self.outliers * self.count >= FAR_MIN and self.runs > RUNS_MAX + self.outliers:
-            said.append(f"what lies beyond 4 sigmas comes in runs ({100 * self.runs:.0f} % has one behind it): jumps or shaking, not single outliers")
+            said.append(f"readings beyond 4 sigmas come in runs ({100 * self.runs:.0f} % precede another): jumps or shaking, no single outliers")
         return said
 
 
@@ -165,10 +165,10 @@ def fit_of(samples, r_lsb2, q):
     return Fit(squares / np.maximum(inliers, 1) / KEPT_NIS, products / power if power else 0.0, far / max(far + count, 1), again / max(far, 1), count)
 
 
-def find_both(samples, r_lsb2, told=lambda done, whole: None):
-    """(R, Drive) of a recording without rest: R until innovations are as large as it says, from a first guess that differences gave."""
+def find_both(samples, r_lsb2, report=lambda done, whole: None):
+    """(R, Drive) of a recording without rest: R is adjusted until the innovations match it, from a first estimate by differences."""
     for _ in range(R_ROUNDS):
-        drive = find_q(samples, r_lsb2, told)
+        drive = find_q(samples, r_lsb2, report)
         if drive.trouble:
             break
         factor = fit_of(samples, r_lsb2, drive.q).nis_axes
@@ -178,11 +178,11 @@ def find_both(samples, r_lsb2, told=lambda done, whole: None):
     return r_lsb2, drive
 
 
-# --- gate, and the worth of it all ------------------------------------------------------------------------------------
+# --- gate, and comparison with the defaults ----------------------------------------------------------------------------
 
 
 def losses(samples, name, values, sigma_lsb):
-    """(per sample: squares of the innovations in sigmas, 4 at most, mean of the axes; where they count), as the board runs the filter."""
+    """(per sample: squared innovations in sigmas, at most 4, mean of the axes; where they count), as the board runs the filter."""
     axes = run(samples, name, values)
     use = np.all([probes["judged"] == 1 for probes in axes], axis=0)
     return np.mean([np.minimum((judge.innovations(probes) / sigma) ** 2, CUT ** 2) for probes, sigma in zip(axes, sigma_lsb)], axis=0), use
@@ -196,9 +196,9 @@ def compared(samples, name, first, second, sigma_lsb):
 
 
 def find_gate(samples, name, q, sigma_lsb, usual):
-    """(gate, gates that are as good as can be told): the best, or of those that cannot be told from it the nearest to the usual one."""
+    """(gate, gates that are equally good): the best, or of those not significantly worse the one nearest to the default."""
     means = {gate: float(np.mean(loss[use])) for gate in GATES for loss, use in [losses(samples, name, {"q": q, "gate": gate}, sigma_lsb)]}
     best = min(means, key=means.get)
     equal = [gate for gate in GATES if gate == best or
-             not compared(samples, name, {"q": q, "gate": gate}, {"q": q, "gate": best}, sigma_lsb)[0].told]
+             not compared(samples, name, {"q": q, "gate": gate}, {"q": q, "gate": best}, sigma_lsb)[0].significant]
     return min(equal, key=lambda gate: abs(np.log(gate / usual))), equal

@@ -1,4 +1,4 @@
-"""The shipped C code on the PC: build/host/libtilt.so (host_tests/tools/libtilt), built by make when it is missing or older than its sources."""
+"""The shipped C code on the PC: build/host/libtilt.so (host_tests/tools/libtilt), built by make if missing or older than its sources."""
 import ctypes
 import functools
 import mmap
@@ -18,10 +18,10 @@ SOURCES = ("firmware/*/*.[ch]", "lib/*/src/*.[ch]", "hal/*.h", "hal/host/*.[ch]"
            "Makefile", "tools/tilt/tilt.mk")
 RATES_DHZ = tuple(125 << power for power in range(7))  # of the firmware
 RANGES_G = (2, 4, 8, 16)
-FORK_FROM_ROWS = 20_000  # a second process takes 20 ms to begin and end
+FORK_FROM_ROWS = 20_000  # a second process takes 20 ms to start and end
 MISSING, THERE, AT_RAIL = 0, 1, 2
 GATED, REACQUIRED = 1, 4  # flags of probes, as those of rows
-REFUSED_FIRST = 3  # answer of filter_init for the first parameter
+REFUSED_FIRST = 3  # filter_init returns this for the first parameter
 
 ROW = np.dtype([("t_us", "<i8"), ("source", "<i4"), ("lsb", "<i2", 3), ("mg", "<i2", 3), ("roll_cdeg", "<i2"), ("pitch_cdeg", "<i2"),
                 ("flags", "<u2"), ("unused", "<u2")], align=True)
@@ -41,7 +41,7 @@ class _Parameter(ctypes.Structure):
 
 @dataclass(frozen=True)
 class Parameter:
-    """Of a filter: index in its descriptor, legal range and default in its unit, and the smallest step."""
+    """A filter's parameter: index in its descriptor, legal range and default in its unit, and the smallest step."""
     index: int
     name: str
     unit: str
@@ -51,11 +51,11 @@ class Parameter:
     step: float
 
     def stored(self, value):
-        """The value as the filter has it, rounded to its step and limited to its range."""
+        """The value as the filter stores it, rounded to its step and limited to its range."""
         return round(min(max(value, self.low), self.high) / self.step)
 
     def text(self, value):
-        """As a person types it, to the nearest step and no more digits than that takes."""
+        """The value as typed on the console: the nearest step, with no more digits than needed."""
         digits = 0 if self.step >= 1 else 3
         shown = f"{self.stored(value) * self.step:.{digits}f}"
         return shown.rstrip("0").rstrip(".") if digits else shown
@@ -76,10 +76,10 @@ def _build(root):
     try:
         done = subprocess.run(["make", "-s", str(LIBRARY)], cwd=root, capture_output=True, text=True, check=False)
     except OSError as error:
-        raise TiltError(f"make cannot be run ({error.strerror}): it builds {root / LIBRARY}; sh tools/deps.sh sim installs it") from error
+        raise TiltError(f"cannot run make ({error.strerror}) to build {root / LIBRARY}: install it with sh tools/deps.sh sim") from error
     if done.returncode != 0:
-        said = (done.stderr + done.stdout).strip().splitlines() or ["no word why"]
-        hint = "; sh tools/deps.sh sim installs the compiler" if "not found" in done.stderr or "No such file" in done.stderr else ""
+        said = (done.stderr + done.stdout).strip().splitlines() or ["no reason given"]
+        hint = ": install the compiler with sh tools/deps.sh sim" if "not found" in done.stderr or "No such file" in done.stderr else ""
         raise TiltError(f"make could not build {root / LIBRARY}: {said[0]}{hint}")
 
 
@@ -90,7 +90,7 @@ def library(root=ROOT):
     try:
         loaded = ctypes.CDLL(str(root / LIBRARY))
     except OSError as error:
-        raise TiltError(f"{root / LIBRARY} cannot be loaded: {error}") from error
+        raise TiltError(f"{root / LIBRARY}: cannot load it: {error}") from error
     loaded.libtilt_filter_name.restype = ctypes.c_char_p
     loaded.libtilt_parameter.restype = ctypes.c_bool
     loaded.libtilt_parameter.argtypes = [ctypes.c_int, ctypes.c_int, ctypes.c_uint16, ctypes.c_void_p]
@@ -103,19 +103,19 @@ def library(root=ROOT):
 
 
 def filters():
-    """Names of all filters, in the order of the firmware's list."""
+    """Names of all filters, in the firmware's order."""
     return [library().libtilt_filter_name(kind).decode() for kind in range(library().libtilt_filters())]
 
 
 def chosen(names):
-    """The filters of "A,B,C"; None: all. TiltError for a name that no filter has, or one that stands twice."""
+    """The filters of "A,B,C"; None: all. TiltError for an unknown or repeated name."""
     every = filters()
     wanted = every if names is None else [name.strip() for name in names.split(",")]
     for name in wanted:
         if name not in every:
-            raise TiltError(f"--filter: there is no filter '{name}'; there are {' '.join(every)}")
+            raise TiltError(f"--filter: no filter '{name}': choose from {' '.join(every)}")
         if wanted.count(name) > 1:
-            raise TiltError(f"--filter: {name} stands twice")
+            raise TiltError(f"--filter: {name} is given twice: give it once")
     return wanted
 
 
@@ -130,13 +130,13 @@ def parameters(name, rate_dhz):
 
 
 def rate_of(stream, asked_hz=None):
-    """The output data rate in 0.1 Hz: the one asked for, else that of the firmware's which is nearest to the recording's."""
+    """The output data rate in 0.1 Hz: the one asked for, else the firmware's rate nearest to the recording's."""
     if asked_hz is not None:
         if round(asked_hz * 10) not in RATES_DHZ or round(asked_hz * 10) != asked_hz * 10:
-            raise TiltError(f"--rate: {asked_hz:g}: one of {' '.join(f'{rate / 10:g}' for rate in RATES_DHZ)} was expected")
+            raise TiltError(f"--rate {asked_hz:g}: choose from {' '.join(f'{rate / 10:g}' for rate in RATES_DHZ)}")
         return round(asked_hz * 10)
     if not stream.rate_hz:
-        raise TiltError(f"{stream.path}: all rows have one time, so that it has no rate: --rate HZ says it")
+        raise TiltError(f"{stream.path}: all rows have the same time, so the rate is unknown: give --rate HZ")
     return min(RATES_DHZ, key=lambda rate: abs(np.log(rate / 10 / stream.rate_hz)))
 
 
@@ -144,7 +144,7 @@ def rate_of(stream, asked_hz=None):
 
 
 class _Input:
-    """The arrays of a stream as C has them, which live as long as this does."""
+    """The arrays of a stream as C has them; they live as long as this object."""
 
     def __init__(self, stream):
         self.kept = [np.ascontiguousarray(part, kind) for part, kind in ((stream.t_us, np.int64), (stream.lsb, np.int16), (stream.missing, np.uint8))]
@@ -153,12 +153,12 @@ class _Input:
 
 
 def row_per_tick(stream, rate_dhz):
-    """Whether each tick of the virtual sensor takes a row; else it samples what is in force."""
+    """Whether each tick of the virtual sensor takes a row; else it samples the row in force."""
     return bool(library().libtilt_row_per_tick(ctypes.byref(_Input(stream).c), rate_dhz))
 
 
 def _room(stream, rate_dhz):
-    """Rows at most: one a tick, and in a silence longer than a second and a tick ten a second."""
+    """Upper limit of rows: one per tick, and ten a second in a silence longer than a second and a tick."""
     gaps_us = np.diff(stream.t_us, append=stream.t_us[-1] + stream.step_us).astype(float)
     hz = max(rate_dhz / 10, stream.rate_hz)
     ticks = np.minimum(gaps_us * 1e-6 * hz, 1.2 * hz + gaps_us * 1e-6 * 10.0) + 2.0
@@ -172,10 +172,10 @@ def _replay_one(given, name, rate_dhz, range_g, out):
     return rows
 
 
-def replay(stream, names, rate_dhz, range_g=16, told=None):
-    """{filter: rows (ROW)} of the firmware's sample path over the recording, each from a cold start. told(done, all) as filters end.
+def replay(stream, names, rate_dhz, range_g=16, report=None):
+    """{filter: rows (ROW)} of the firmware's sample path over the recording, each from a cold start. report(done, all) as filters end.
 
-    Two processes share the filters of a long recording: the sample path has its state in static variables.
+    Two processes share the filters of a long recording, because the sample path keeps its state in static variables.
     """
     given, room = _Input(stream), _room(stream, rate_dhz)
     memory = mmap.mmap(-1, max(1, len(names)) * (room * ROW.itemsize + 8))
@@ -188,8 +188,8 @@ def replay(stream, names, rate_dhz, range_g=16, told=None):
     child = _in_child(lambda: [_into(given, names, i, rate_dhz, range_g, tables, counts) for i in other]) if other else None
     for done, i in enumerate(mine, 1):
         _into(given, names, i, rate_dhz, range_g, tables, counts)
-        if told:
-            told(done * len(names) // len(mine), len(names))
+        if report:
+            report(done * len(names) // len(mine), len(names))
     if child is not None and os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) != 0:
         raise MemoryError("the second process of the replay ended early")
     return {name: tables[i, :counts[i]] for i, name in enumerate(names)}
@@ -200,7 +200,7 @@ def _into(given, names, i, rate_dhz, range_g, tables, counts):
 
 
 def _shares(names):
-    """Two lists of indices of about equal work: what takes more cycles on the chip takes longer here."""
+    """Two lists of indices of about equal work, weighed by the cycles on the chip."""
     cost = {name: 2000 + library().libtilt_filter_cycles(kind) for kind, name in enumerate(filters())}
     shares, loads = ([], []), [0, 0]
     for i in sorted(range(len(names)), key=lambda i: -cost[names[i]]):
@@ -211,7 +211,7 @@ def _shares(names):
 
 
 def _in_child(work):
-    """Runs it in a process of its own; what it writes into shared memory stays. Returns its number."""
+    """Runs the work in its own process; what it writes into shared memory stays. Returns the process id."""
     child = os.fork()
     if child == 0:
         status = 1
@@ -227,7 +227,7 @@ def _in_child(work):
 
 
 def flashed_by(name):
-    """The command that writes the first image with a filter to a board (mk/images.mk)."""
+    """The command that writes the first image with this filter to a board (mk/images.mk)."""
     text = (ROOT / "mk/images.mk").read_text(encoding="utf-8")
     names = re.search(r"^FILTER_SETS *:= *(.*)$", text, re.M).group(1).split()
     holds = dict(re.findall(r"^FILTERS_(\w+) *:= *(.*)$", text, re.M))
@@ -238,8 +238,8 @@ def flashed_by(name):
 
 
 def axis(name, rate_dhz, z_lsb, state, values=None, r_lsb2=None, noisy_axis=False):
-    """Probes (PROBE) of one axis behind a filter: values {parameter: in its unit}, the others at their defaults; R fixed, or None: estimated
-    as the firmware does. TiltError where the filter refuses its parameters."""
+    """Probes (PROBE) of one axis after a filter. values: {parameter: in its unit}, the others at their defaults; R fixed, or None: estimated
+    as the firmware does. TiltError if the filter rejects its parameters."""
     every = parameters(name, rate_dhz)
     stored, changed = np.zeros(32, np.int64), np.zeros(32, np.uint8)
     for key, value in (values or {}).items():
@@ -251,5 +251,5 @@ def axis(name, rate_dhz, z_lsb, state, values=None, r_lsb2=None, noisy_axis=Fals
                                      z_lsb.ctypes.data, state.ctypes.data, len(z_lsb), out.ctypes.data)
     if refused:
         which = [key for key, parameter in every.items() if parameter.index == refused - REFUSED_FIRST]
-        raise TiltError(f"{name} refuses its parameters: {which[0] if which else 'values that do not go together'}")
+        raise TiltError(f"{name} rejects its parameters: {which[0] if which else 'the values contradict each other'}")
     return out

@@ -1,4 +1,4 @@
-"""Numbers as a user writes them: what Python takes beside (1_0, digits of other scripts) is a slip, and to guess at it would be worse than to ask."""
+"""Numbers as users type them. Python accepts more (1_0, digits of other scripts): a slip, better rejected than guessed."""
 import argparse
 import re
 
@@ -7,14 +7,14 @@ WHOLE = re.compile(r"[+-]?[0-9]{1,18}", re.ASCII)
 
 
 def real(text):
-    """ValueError: it is none."""
+    """ValueError: not a number."""
     if not REAL.fullmatch(text.strip()):
-        raise ValueError(f"'{text}' is no number")
+        raise ValueError(f"'{text}' is not a number")
     return float(text)
 
 
 def real_option(text):
-    """For argparse."""
+    """Type of an argparse option."""
     try:
         return real(text)
     except ValueError as why:
@@ -23,5 +23,5 @@ def real_option(text):
 
 def whole_option(text):
     if not WHOLE.fullmatch(text.strip()):
-        raise argparse.ArgumentTypeError(f"'{text}' is no whole number")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number")
     return int(text)

@@ -8,8 +8,8 @@ from tilt.errors import TiltError
 
 @contextlib.contextmanager
 def whole_file(path, mode="w"):
-    """The open file of text (mode "wb": of bytes). It takes its name at the end, when all went well, so that what had the name is not
-    lost before; a pipe or a device is written as it is. TiltError: it cannot be written."""
+    """The open text file (mode "wb": bytes). It takes its name only after all is written, so an older file of that name stays intact until
+    then; a pipe or a device is written directly. TiltError: it cannot be written."""
     path = os.fspath(path)
     try:
         in_place = os.path.exists(path) and not stat.S_ISREG(os.stat(path).st_mode)
@@ -24,7 +24,7 @@ def whole_file(path, mode="w"):
                 raise
         if not in_place:
             os.replace(place, path)
-    except BrokenPipeError:  # cli.py knows what it means
+    except BrokenPipeError:  # handled in cli.py
         raise
     except OSError as error:
-        raise TiltError(f"{path}: cannot be written: {error.strerror}") from error
+        raise TiltError(f"{path}: cannot write it: {error.strerror}") from error

@@ -1,4 +1,4 @@
-"""Recordings as a picture, by matplotlib (PNG, SVG): one panel for each quantity, the flags below, the spectrum at the foot."""
+"""Recordings as a picture by matplotlib (PNG, SVG): one panel per quantity, the flags below, the spectrum at the bottom."""
 import matplotlib
 import numpy as np
 
@@ -14,8 +14,8 @@ from matplotlib.colors import to_rgb  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 
 WIDTH_INCHES, PANEL_INCHES, LANE_INCHES, SPECTRUM_INCHES, DPI = 12.0, 3.0, 0.22, 3.2, 100
-COLUMNS, LEVELS = 2400, 600  # of the grid that points are thinned to: finer than the picture
-POINTS_AS_SHAPES = 6000  # more are pixels in an SVG too: a file of tens of MB opens nowhere
+COLUMNS, LEVELS = 2400, 600  # grid to which points are thinned: finer than the picture
+POINTS_AS_SHAPES = 6000  # above this an SVG too holds pixels: nothing opens a file of tens of MB
 LANE_COLUMNS, LEAST_SHADE = 900, 0.3
 LIMIT_PERCENTILES = (0.5, 99.5)
 
@@ -26,11 +26,11 @@ def style(axes, label):
     axes.set_axisbelow(True)
 
 
-# --- one quantity over time: what tools/plot_run.py draws too ---------------------------------------------------------
+# --- one quantity over time, used by tools/plot_run.py too ---------------------------------------------------------
 
 
 def limits_of(raw, lines):
-    """Limits that show all of the lines, and the raw points but the wildest percent."""
+    """Limits that show all of the lines, and the raw points except the most extreme percent."""
     shown = [*np.percentile(raw, LIMIT_PERCENTILES)] if len(raw) else []
     for line in lines:
         shown += [np.nanmin(line), np.nanmax(line)] if np.any(~np.isnan(line)) else []
@@ -40,7 +40,7 @@ def limits_of(raw, lines):
 
 
 def shade(axes, t_s, mask, colour, label):
-    """Vertical bands over the stretches of rows in the mask."""
+    """Vertical bands over the stretches of rows where the mask is true."""
     half_step = 0.5 * float(np.median(np.diff(t_s))) if len(t_s) > 1 else 0.005
     for begin, end in thin.runs(mask):
         axes.axvspan(t_s[begin] - half_step, t_s[end] + half_step, color=colour, alpha=0.55, lw=0, label=label, zorder=0)
@@ -48,7 +48,7 @@ def shade(axes, t_s, mask, colour, label):
 
 
 def line(axes, t_s, values, begins, seam, **look):
-    """A line through the rows, thinned to its extremes, broken where rows do not follow each other and at the +-180 seam."""
+    """A line through the rows, thinned to its extremes, broken at gaps and at the +-180 seam."""
     breaks = begins | seam_crossings(values) if seam else begins
     kept = thin.extremes(t_s, [values], COLUMNS)
     broken = np.flatnonzero(np.diff(np.cumsum(breaks)[kept]) > 0) + 1
@@ -62,7 +62,7 @@ def points(axes, t_s, values, mask, limits, **look):
 
 
 def refused(axes, t_s, values, mask, limits, colour, label):
-    """Crosses at the gated readings; those outside the picture as triangles at its edge, so that none goes unseen."""
+    """Crosses at the gated readings; triangles at the edge for those outside the picture, so that all are visible."""
     if not np.any(mask):
         return
     low, high = limits
@@ -75,7 +75,7 @@ def refused(axes, t_s, values, mask, limits, colour, label):
 
 
 def outside_note(raw, limits):
-    """How many raw points the picture does not show; "" for none."""
+    """How many raw points lie outside the picture; "" for none."""
     outside = int(np.sum((raw < limits[0]) | (raw > limits[1])))
     return f"{outside:,} raw points outside ({raw.min():.1f} to {raw.max():.1f})" if outside else ""
 
@@ -99,7 +99,7 @@ def draw_quantity(axes, group, colours, kind):
         measured = ~one.missing
         if i == 0 or not shared:
             points(axes, one.t_s, one.raw[kind], measured & ~one.gated if alone else measured, limits, ls="", marker=".", ms=2.4,
-                   color=RAW_COLOUR if shared else colour, alpha=1.0 if shared else 0.25, zorder=1, label="raw" if shared else f"raw of {one.name}")
+                   color=RAW_COLOUR if shared else colour, alpha=1.0 if shared else 0.25, zorder=1, label="raw" if shared else f"raw, {one.name}")
         refused(axes, one.t_s, one.raw[kind], measured & one.gated, limits, GATED_COLOUR if alone else colour,
                 "raw of gated rows" if alone else f"gated by {one.name}")
         if kind in one.filtered:
@@ -113,14 +113,14 @@ def draw_quantity(axes, group, colours, kind):
 
 
 def lanes_of(group):
-    """(label, recording, bit) for each flag that is set anywhere."""
+    """(label, recording, bit) for each flag that occurs."""
     alone = len(group) == 1
     return [(words if alone else f"{words}, {one.name}", one, bit) for bit, words in protocol.FLAG_NAMES.items() for one in group
             if np.any(one.flags & bit)]
 
 
 def draw_flags(axes, group, span):
-    """A lane for each flag: the darker, the more of the rows under a point have it; a single row is to be seen."""
+    """A lane per flag: the more of the rows under a point have it, the darker; a single row is visible."""
     lanes = lanes_of(group)
     for lane, (_, one, bit) in enumerate(lanes):
         mask = (one.flags & bit) != 0
@@ -136,7 +136,7 @@ def draw_flags(axes, group, span):
     axes.grid(True, axis="x", color=GRID_COLOUR, lw=0.6)
     if not lanes:
         axes.set_yticks([])
-        axes.text(0.5, 0.5, "no flag is set anywhere", transform=axes.transAxes, ha="center", va="center", color="#444444")
+        axes.text(0.5, 0.5, "no row has a flag", transform=axes.transAxes, ha="center", va="center", color="#444444")
 
 
 def mean_of_axes(density):
@@ -144,7 +144,7 @@ def mean_of_axes(density):
 
 
 def draw_spectrum(axes, files):
-    """One file: its three axes, raw and filtered; several: the mean of the axes of each."""
+    """One file: its three axes, raw and filtered; several: the mean over the axes of each."""
     drawn = [one for one in files if one.raw_density is not None]
     if len(files) == 1 and drawn:
         raw, filtered = drawn[0].raw_density, drawn[0].filtered_density
@@ -157,12 +157,12 @@ def draw_spectrum(axes, files):
         for i, (one, colour) in enumerate(zip(files, FILE_COLOURS * len(files))):
             if one.raw_density is not None and (i == 0 or not shared):
                 axes.loglog(one.raw_density.hz, mean_of_axes(one.raw_density), lw=0.9, alpha=0.8, color=RAW_COLOUR if shared else colour,
-                            ls="-" if shared else ":", label="raw" if shared else f"raw of {one.name}")
+                            ls="-" if shared else ":", label="raw" if shared else f"raw, {one.name}")
             if one.filtered_density is not None:
                 axes.loglog(one.filtered_density.hz, mean_of_axes(one.filtered_density), lw=1.6, color=colour, label=one.name)
     if not drawn:
         axes.set_axis_off()
-        axes.text(0.5, 0.5, "no spectrum: no stretch of enough samples without a gap", transform=axes.transAxes, ha="center", color="#444444")
+        axes.text(0.5, 0.5, "no spectrum: no stretch without a gap is long enough", transform=axes.transAxes, ha="center", color="#444444")
         return
     floor(axes, drawn[0].rate_hz)
     style(axes, "LSB/$\\sqrt{Hz}$" + ("" if len(files) == 1 else ", mean of x, y, z"))
@@ -173,7 +173,7 @@ def draw_spectrum(axes, files):
 
 
 def floor(axes, rate_hz):
-    """What a part at rest has: by the data sheet, and as parts were found to be."""
+    """Noise at rest: by the data sheet, and as measured on real sensors."""
     sheet, parts = spectrum.sheet_lsb_rthz(rate_hz), spectrum.parts_lsb_rthz()
     axes.axhspan(sheet[0], sheet[2], color="#777777", alpha=0.25, lw=0,
                  label=f"at rest, data sheet: {sheet[0]:.2f} (x, y) to {sheet[2]:.2f} (z)")
@@ -189,7 +189,7 @@ def heights_of(kinds, groups):
 
 
 def draw(files, kinds, overlay, title):
-    """The Figure. files: Pictured; kinds: of roll pitch x y z flags spectrum; overlay: all in one set of panels, else one below the other."""
+    """The Figure. files: Pictured; kinds: of roll pitch x y z flags spectrum; overlay: all in one set of panels, else stacked."""
     groups = [files] if overlay else [[one] for one in files]
     heights = heights_of(kinds, groups)
     over_time, foot = len(heights), [SPECTRUM_INCHES] * ("spectrum" in kinds)

@@ -1,4 +1,4 @@
-"""A recording as it is drawn: time from its start, raw and filtered series, flags, truth, spectrum."""
+"""A recording prepared for drawing: time from its start, raw and filtered series, flags, truth, spectrum."""
 import pathlib
 from dataclasses import dataclass
 
@@ -10,12 +10,12 @@ from tilt.errors import TiltError
 
 AXES = ("x", "y", "z")
 FILTERED = {"roll": "roll_cdeg", "pitch": "pitch_cdeg", "x": "x_mg", "y": "y_mg", "z": "z_mg"}
-GAP_STEPS, GAP_US = 3.5, 250_000  # a line is not drawn over more of both: in a long silence the board sends a row each 100 ms
+GAP_STEPS, GAP_US = 3.5, 250_000  # lines break at gaps longer than both: in a long silence the board sends a row every 100 ms
 
 
 @dataclass
 class Pictured:
-    """raw, filtered, truth: {quantity: series} in degrees (roll, pitch) and mg (x, y, z; raw of a typical part); filtered and truth may lack any."""
+    """raw, filtered, truth: {quantity: series} in degrees (roll, pitch) and mg (x, y, z; raw: a typical sensor); filtered, truth may lack some."""
     name: str
     t_s: np.ndarray
     raw: dict
@@ -24,7 +24,7 @@ class Pictured:
     lsb: np.ndarray
     flags: np.ndarray
     missing: np.ndarray
-    begins: np.ndarray  # rows that do not follow the one before: no line is drawn there
+    begins: np.ndarray  # rows after a gap: the line breaks there
     rate_hz: float
     raw_density: spectrum.Density | None = None
     filtered_density: spectrum.Density | None = None
@@ -38,12 +38,12 @@ class Pictured:
 
 
 def same_readings(group):
-    """One recording, or several runs over the same readings."""
+    """Whether these are one recording, or several runs over the same readings."""
     return len(group) == 1 or all(len(one) == len(group[0]) and np.array_equal(one.lsb, group[0].lsb) for one in group[1:])
 
 
 def columns_in(path):
-    """Names in the first header of the file, or nothing: what is wrong with the file is told by stream.read."""
+    """Names in the first header of the file, or none: stream.read reports what is wrong with the file."""
     try:
         with open(path, encoding="utf-8-sig", errors="replace") as file:
             for line in file:
@@ -55,23 +55,23 @@ def columns_in(path):
 
 
 def filters_in(names):
-    """What stands behind the columns of each filter in a file: "" as the firmware has them, "_kf" as `tilt replay` writes several; [""] with none."""
-    behind = [name.removeprefix("roll_cdeg") for name in names if name == "roll_cdeg" or name.startswith("roll_cdeg_")]
-    return behind or [""]
+    """Suffix of each filter's columns in a file: "" as from the firmware, "_kf" as from `tilt replay` with several; [""] without any."""
+    suffixes = [name.removeprefix("roll_cdeg") for name in names if name == "roll_cdeg" or name.startswith("roll_cdeg_")]
+    return suffixes or [""]
 
 
 def load(path, from_s=None, to_s=None, progress=None):
-    """A list, one for each filter in the file, of the part between two times from the start. TiltError: the file is no stream, or has no
-    row there."""
+    """One Pictured per filter in the file, of the part between two times from the start. TiltError: the file is not a stream, or has no row
+    there."""
     names = columns_in(path)
-    behind = filters_in(names)
-    extra = [name + end for end in behind for name in (*FILTERED.values(), *(("flags",) if end else ())) if name + end in names]
+    suffixes = filters_in(names)
+    extra = [name + end for end in suffixes for name in (*FILTERED.values(), *(("flags",) if end else ())) if name + end in names]
     whole = stream.read(path, extra, progress)
     t_s = whole.t_us * 1e-6
     part = slice(*np.searchsorted(t_s, [-1.0 if from_s is None else from_s, np.inf if to_s is None else to_s]).tolist())
     if part.start >= part.stop:
-        raise TiltError(f"{path}: no row from {from_s or 0:g} s to {whole.seconds if to_s is None else to_s:g} s; it has {whole.seconds:.1f} s")
-    return [of_filter(pathlib.Path(path).name, whole, t_s, part, end) for end in behind]
+        raise TiltError(f"{path}: no rows from {from_s or 0:g} s to {whole.seconds if to_s is None else to_s:g} s; it has {whole.seconds:.1f} s")
+    return [of_filter(pathlib.Path(path).name, whole, t_s, part, end) for end in suffixes]
 
 
 def of_filter(name, whole, t_s, part, end):

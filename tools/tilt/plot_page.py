@@ -1,4 +1,4 @@
-"""Recordings as one HTML file: the series as base64 of little-endian numbers inside, drawn by the page itself (page/plot.html, page/plot.js)."""
+"""Recordings as one HTML file: the series inside as base64 of little-endian numbers; the page draws them itself (page/plot.html, page/plot.js)."""
 import base64
 import html
 import json
@@ -14,10 +14,10 @@ from tilt.pictured import AXES, same_readings
 
 FOLDER = pathlib.Path(__file__).parent / "page"
 DATA_MARK, TITLE_MARK, PROGRAM_MARK = "/*DATA*/null", "<!--TITLE-->", "/*PROGRAM*/"
-ROWS_MAX = 1_000_000  # of one file that go into the page; more are thinned to a quarter of it
-TICK_S = 1e-4         # of times: a uint32 holds 119 hours
-PER_DEGREE, PER_MG = 100.0, 2.0  # in the page: 180 degrees and 16,000 mg fit int16
-NOTHING = -32768      # in a series
+ROWS_MAX = 1_000_000  # rows of one file in the page; a longer file is thinned to a quarter of this
+TICK_S = 1e-4         # unit of times: a uint32 holds 119 hours
+PER_DEGREE, PER_MG = 100.0, 2.0  # scales in the page: 180 degrees and 16,000 mg fit int16
+NOTHING = -32768      # marks a missing value in a series
 
 
 def packed(values, kind):

@@ -1,4 +1,4 @@
-"""A serial port that may vanish and come back."""
+"""A serial port that may vanish and return."""
 import errno
 import os
 import time
@@ -13,11 +13,11 @@ DTR_LOW_S = 0.1  # lets the capacitor between DTR and the UNO's reset discharge
 
 
 class Gone(Exception):
-    """The port is not there any more."""
+    """The port has vanished."""
 
 
 class Unreadable:
-    """Bytes in a row of which nothing can be read: at a wrong rate. Neither silence nor a piece of a line is that, however late the rest comes."""
+    """A run of bytes without readable text: a wrong baud rate. Silence or a partial line does not count, however late the rest arrives."""
 
     LEAST_BYTES = 256  # more than three rows
 
@@ -25,7 +25,7 @@ class Unreadable:
         self.since, self.count = None, 0
 
     def lasts_s(self, count, understood):
-        """For how long by now, these newest bytes counted in; 0 while they are too few to tell."""
+        """Seconds of unreadable bytes so far, these included; 0 while there are too few to judge."""
         if understood:
             self.since, self.count = None, 0
         elif count:
@@ -35,7 +35,7 @@ class Unreadable:
 
 
 class Port:
-    """open() or TiltError; then read(), send(text), baud. Any of these raises Gone when the plug has been pulled."""
+    """open() or TiltError; then read(), send(text), baud. Each raises Gone after the plug was pulled."""
 
     def __init__(self, name, baud, reset=True):
         self.name, self.reset, self.serial, self._baud = name, reset, None, baud
@@ -59,7 +59,7 @@ class Port:
             self.keep_dtr()
 
     def pulse_dtr(self):
-        """Resets an UNO, also where DTR stayed up from the program before."""
+        """Resets an UNO, even if DTR is still up from an earlier program."""
         try:
             self.serial.dtr = False
             time.sleep(DTR_LOW_S)
@@ -70,7 +70,7 @@ class Port:
                 raise
 
     def keep_dtr(self):
-        """Leaves DTR up when the port is closed: it is the edge of the next opening that resets an UNO."""
+        """Leaves DTR up when the port is closed: the edge at the next opening would reset an UNO."""
         import termios
         settings = termios.tcgetattr(self.serial.fd)
         settings[2] &= ~termios.HUPCL
@@ -82,10 +82,10 @@ class Port:
             try:
                 port.close()
             except OSError:
-                pass  # it has gone already
+                pass  # already gone
 
     def come_back(self):
-        """True when the port was there again and could be opened."""
+        """True if the port has returned and could be opened."""
         self.close()
         try:
             self.connect()
@@ -95,11 +95,11 @@ class Port:
         return True
 
     def read(self):
-        """Bytes that have come; b"" after READ_WAIT_S without any."""
+        """Received bytes; b"" after READ_WAIT_S without any."""
         try:
             first = self.serial.read(1)
             return first + self.serial.read(self.serial.in_waiting) if first else first
-        except (serial.SerialException, OSError, TypeError) as why:  # TypeError: pyserial's fd when closed under its hands
+        except (serial.SerialException, OSError, TypeError) as why:  # TypeError: pyserial's fd, closed by another thread
             raise Gone(str(why)) from why
 
     def send(self, text):
@@ -138,8 +138,8 @@ def reason_of(why):
 def hint_of(why):
     number = getattr(why, "errno", None)
     if number == errno.EACCES:
-        return " (on Linux: sudo usermod -a -G dialout $USER, then log in anew)"
+        return " (on Linux: sudo usermod -a -G dialout $USER, then log out and in again)"
     if number == errno.ENOENT:
         names = ", ".join(port.device for port in list_ports.comports())
-        return f" (there are: {names})" if names else " (no serial port is there: plug the board in)"
+        return f" (ports: {names})" if names else " (no serial port found: plug the board in)"
     return ""

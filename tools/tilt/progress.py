@@ -1,17 +1,17 @@
-"""A bar on the terminal for work that takes long; nothing where nobody looks."""
+"""A progress bar on the terminal for long work; nothing if the output is not a terminal."""
 import contextlib
 import sys
 
 
 @contextlib.contextmanager
 def bar(what, unit):
-    """told(done, whole) to be called as the work goes on."""
+    """Yields report(done, whole), to be called during the work."""
     if not sys.stderr.isatty():
         yield lambda done, whole: None
         return
-    from tqdm import tqdm  # takes long to import
+    from tqdm import tqdm  # slow to import
     with tqdm(desc=what, unit=unit, unit_scale=True, leave=False, delay=0.5) as shown:
-        def told(done, whole):
+        def report(done, whole):
             shown.total = whole
             shown.update(done - shown.n)
-        yield told
+        yield report

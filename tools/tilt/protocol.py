@@ -1,4 +1,4 @@
-"""What the board sends and takes (docs/protocol.md), for the tools that listen to it or draw it."""
+"""The board's protocol (docs/protocol.md), for the tools that read it or draw its rows."""
 import re
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ BAUDS = (9600, 19200, 38400, 57600, 115200, 250000, 500000, 1000000)
 BAUD_AT_START = 115200
 WRAP_US = 1 << 32      # t_us is a uint32
 WRAP_STEP_US = 1 << 31  # a step back by more than this is a wrap
-LINE_MAX = 512         # bytes; no line of the board is half as long
+LINE_MAX = 512         # bytes; the board's longest line is less than half of this
 
 GATED, COASTED, REACQUIRED, CLIPPED, SILENCE, STUCK, INTEGRITY, WARMING_UP, DROPPED, NOT_GRAVITY, ROLL_UNDEFINED = (1 << bit for bit in range(11))
 NO_SAMPLE = COASTED | SILENCE
@@ -24,7 +24,7 @@ NUMBER = re.compile(r"-?\d{1,10}\Z")
 
 
 class Row(NamedTuple):
-    """t_us as the board's counter says it (uint32); flags 0 where the header has none."""
+    """t_us: the board's counter (uint32); flags: 0 if the header has none."""
     t_us: int
     flags: int
     values: tuple
@@ -35,7 +35,7 @@ def is_header(text):
 
 
 def row_of(text, header=HEADER):
-    """The row, or ValueError with what is wrong with it."""
+    """The row; ValueError with what is wrong with it."""
     names, fields = header.split(","), text.split(",")
     if len(fields) != len(names):
         raise ValueError(f"{len(fields)} fields, the header has {len(names)}")

@@ -1,21 +1,21 @@
-"""Turns the bytes of a serial port into a file that is a stream (docs/protocol.md), whatever comes.
+"""Turns the bytes of a serial port into a file that is a stream (docs/protocol.md), whatever arrives.
 
-Whole lines only. What is no row, header or '#' line is kept as a '#' line that says why, so that nothing is lost and every reader still
-takes the file. Rows are missed by their times (tilt.gaps). Nothing here knows of ports or of time.
+Only whole lines are written. A line that is no row, header or '#' line is kept as a '#' line with the reason, so that nothing is lost and every
+reader accepts the file. Missing rows are found by their times (tilt.gaps). This module knows neither ports nor clocks.
 """
 from tilt import protocol
 from tilt.gaps import Gaps
 
-LEAP_US = 10_000_000  # a step so great, or back, is believed when the next row goes on from there
-NUMBERS_KEPT = 8      # of the lines that were no rows
+LEAP_US = 10_000_000  # such a step, or one back, is accepted if the next row continues from it
+NUMBERS_KEPT = 8      # of malformed lines
 SAID = "# tilt record: "
 
 
 class Counts:
     def __init__(self):
         self.rows = self.malformed = self.cut = self.resets = self.outages = self.plotter = 0
-        self.span_us = 0  # of rows that follow each other, by the board's clock
-        self.malformed_at = []  # numbers of the first such lines in the file
+        self.span_us = 0  # of contiguous rows, by the board's clock
+        self.malformed_at = []  # line numbers in the file, of the first ones
         self.gaps = Gaps()
 
     def complete(self):
@@ -31,10 +31,10 @@ def escaped(text):
 
 
 class Recorder:
-    """write(bytes) gets whole lines, from the first that is surely the board's on; said(text) gets what the board says in '#' lines. feed()
-    what comes, outage() when the port is gone, join() when the line has changed its speed, finish() at the end.
+    """write(bytes) gets whole lines, from the first that is certainly the board's; said(text) gets the board's '#' lines. Call feed() with the
+    input, outage() when the port is gone, join() after a change of the baud rate, finish() at the end.
 
-    last: the newest row; ours: something came that only this firmware sends; understood: lines that were none of the malformed ones.
+    last: the newest row; ours: input that only this firmware sends has arrived; understood: number of lines that were not malformed.
     """
 
     def __init__(self, write, said=lambda text: None):
@@ -44,11 +44,11 @@ class Recorder:
         self.begin()
 
     def join(self):
-        """What comes up to the next line end is not to be taken for a line."""
+        """Input up to the next line end is a partial line."""
         self.joining = True
 
     def begin(self):
-        """As when the port has just been opened: in the middle of anything."""
+        """Resets the state, as when the port has just been opened: input may begin anywhere."""
         self.tail, self.joining, self.header, self.suspect, self.spoken = b"", True, None, None, False
 
     def feed(self, data):
@@ -67,7 +67,7 @@ class Recorder:
         self.begin()
 
     def finish(self):
-        """What has no line end is not written."""
+        """Drops a partial line at the end."""
         self.end_of_run()
         self.flush()
 
@@ -94,7 +94,7 @@ class Recorder:
             self.take_saying(text)
         elif protocol.is_header(text) and printable(text):
             self.take_header(text)
-        elif joining:  # began before the port was opened
+        elif joining:  # it began before the port was opened
             if "#" in text:
                 self.take(text[text.index("#"):])
         elif "#" in text:
@@ -118,7 +118,7 @@ class Recorder:
         self.said(text)
 
     def take_cut(self, row, rest):
-        """A reset of the board, or bytes lost on the way, ended a row early."""
+        """A row that a reset of the board, or lost bytes, cut short."""
         self.counts.cut += 1
         self.put(f"{SAID}a row cut short: {escaped(row)}")
         self.take("#" + rest)
@@ -139,7 +139,7 @@ class Recorder:
 
     def take_row(self, text):
         if not printable(text):
-            self.malformed(text, "bytes that no row has")
+            self.malformed(text, "bytes that never occur in a row")
             return
         try:
             row = protocol.row_of(text, self.header or protocol.HEADER)
@@ -147,7 +147,7 @@ class Recorder:
             self.malformed(text, escaped(str(why)))
             return
         if self.header is None:
-            self.put(f"{SAID}rows without a header before them: this one is put here")
+            self.put(f"{SAID}rows without a header: header added")
             self.take_header(protocol.HEADER)
         if self.suspect is not None:
             self.settle(row)
@@ -157,14 +157,14 @@ class Recorder:
             self.suspect = (row, text)
 
     def settle(self, row):
-        """Decides by the row after it whether the clock leapt or a digit was lost."""
+        """Decides by the next row whether the clock jumped or a digit was lost."""
         held, text = self.suspect
         if self.follows(self.last, row) or not self.follows(held, row):
             self.disbelieve()
             return
         self.suspect = None
         if step_us(self.last, held) < 0:
-            self.put(f"{SAID}the board's clock began anew")
+            self.put(f"{SAID}the board's clock restarted")
             self.counts.resets += 1
             self.take_header(self.header)
         self.accept(held, text)
@@ -173,7 +173,7 @@ class Recorder:
         if self.suspect is not None:
             row, text = self.suspect
             self.suspect = None
-            self.malformed(text, f"its time {row.t_us} follows from nothing")
+            self.malformed(text, f"its time {row.t_us} fits no neighbour")
 
     def follows(self, before, row):
         return before is None or 0 <= step_us(before, row) <= LEAP_US or (self.spoken and step_us(before, row) >= 0)
@@ -191,6 +191,6 @@ class Recorder:
 
 
 def step_us(before, row):
-    """us from row to row, the counter's wrap undone; negative: the time went back."""
+    """us from row to row, the counter's wrap removed; negative: a step back."""
     step = row.t_us - before.t_us
     return step + protocol.WRAP_US if step < -protocol.WRAP_STEP_US else step

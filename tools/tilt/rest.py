@@ -1,7 +1,7 @@
-"""Where a recording lies still, and how much its readings scatter there.
+"""Finds where a recording is at rest, and how much its readings scatter there.
 
-A window of a second is still when its scatter about its median is that which second differences show, which motion hardly touches. Still
-windows on end at one level are a stretch, three at least. Outliers are cut off before anything is measured.
+A one-second window is at rest if its scatter about its median equals the scatter that second differences show, which motion hardly affects.
+Three or more consecutive such windows at one level are a stretch. Outliers are cut off before anything is measured.
 """
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ import numpy as np
 
 WINDOW_S, WINDOW_MIN = 1.0, 32
 STRETCH_WINDOWS = 3
-SCATTER_MAX = 1.5           # times that of differences: four sigmas of the ratio at 100 samples
-LEVEL_SIGMAS = 4.0          # by which the medians of two windows may differ
+SCATTER_MAX = 1.5           # times the scatter of differences: four sigmas of the ratio at 100 samples
+LEVEL_SIGMAS = 4.0          # allowed difference between the medians of two windows
 CUT_SIGMAS = 3.5
 KEPT_VARIANCE = 0.9939      # E(g^2 | |g| < 3.5) of a Gaussian g: 1 - 7 phi(3.5) / (2 Phi(3.5) - 1)
-SCATTER_MIN_LSB = 0.4       # of whole numbers: a constant rounds to 0.29 at most
-MEDIAN_COST = 1.2533        # sigma of a median over that of a mean
+SCATTER_MIN_LSB = 0.4       # of whole numbers: rounding a constant leaves at most 0.29
+MEDIAN_COST = 1.2533        # sigma of a median over sigma of a mean
 
 
 @dataclass
 class Rest:
     """stretches: slices of samples; seconds: their sum; r_lsb2: variance of a sample per axis, rounding to whole LSB included (1/12), or None
-    where nothing is still; degrees: of freedom behind it, the smallest of the axes."""
+    if nothing is at rest; degrees: its degrees of freedom, the smallest of the axes."""
     stretches: list
     seconds: float
     r_lsb2: np.ndarray | None
@@ -30,7 +30,7 @@ class Rest:
 
 
 def kept(values):
-    """Those of the values that are no outliers: within 3.5 sigmas of the median."""
+    """The values without outliers: those within 3.5 sigmas of the median."""
     away = np.abs(values - np.median(values))
     scale = max(float(np.median(away)) / 0.6745, 0.5)
     for _ in range(10):
@@ -47,17 +47,17 @@ def scatter(values):
 
 
 def _still(values, spacing):
-    """(whether the window of one axis lies still, its median, by how much two of them may differ)"""
+    """(whether the window of one axis is at rest, its median, how much two medians may differ)"""
     differences = (values[2 * spacing:] - 2.0 * values[spacing:-spacing] + values[:-2 * spacing]) / np.sqrt(6.0)
     of_all, of_differences = scatter(values), scatter(differences)
-    allowed = LEVEL_SIGMAS * min(of_all, of_differences) * MEDIAN_COST * np.sqrt(2.0 / len(values)) + 0.5  # medians of whole numbers
+    allowed = LEVEL_SIGMAS * min(of_all, of_differences) * MEDIAN_COST * np.sqrt(2.0 / len(values)) + 0.5  # + 0.5: medians of whole numbers
     return of_all <= SCATTER_MAX * of_differences, float(np.median(values)), allowed
 
 
 def _windows(lsb, there, rate_hz):
-    """(slice, medians of the axes, allowed) of each still window; a window with a sample missing is none."""
+    """(slice, medians of the axes, allowed difference) of each window at rest; windows with a missing sample are left out."""
     size = max(WINDOW_MIN, round(WINDOW_S * rate_hz))
-    spacing = 2 if rate_hz >= 70 else 1  # as the firmware's estimate: neighbours share some of a powered frame's noise
+    spacing = 2 if rate_hz >= 70 else 1  # as in the firmware's estimate: on a powered airframe neighbours share some noise
     for begin in range(0, len(lsb) - size + 1, size):
         part = slice(begin, begin + size)
         if there[part].all():
@@ -67,7 +67,7 @@ def _windows(lsb, there, rate_hz):
 
 
 def _stretches(windows):
-    """Lists of windows on end at the level of their first."""
+    """Lists of consecutive windows at the level of the first."""
     found = []
     for part, level, allowed in windows:
         if found and found[-1][-1][0].stop == part.start and np.all(np.abs(level - found[-1][0][1]) <= allowed):
@@ -78,7 +78,7 @@ def _stretches(windows):
 
 
 def find(lsb, there, rate_hz):
-    """Rest of samples (n, 3) that are there or not, at this rate."""
+    """Rest of samples (n, 3), present or not (there), at this rate."""
     stretches = _stretches(_windows(lsb, there, rate_hz))
     if not stretches:
         return Rest([], 0.0, None, 0)
@@ -93,7 +93,7 @@ def find(lsb, there, rate_hz):
 
 
 def mask(rest, count):
-    """Per sample: it lies in a stretch."""
+    """Per sample: whether it is in a stretch."""
     inside = np.zeros(count, bool)
     for part in rest.stretches:
         inside[part] = True

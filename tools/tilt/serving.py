@@ -1,8 +1,8 @@
-"""The page of `tilt live`, served to this machine alone, and what it needs: the board's lines as server-sent events, commands by POST.
+"""Serves the page of `tilt live` to this machine only, with the board's lines as server-sent events and commands by POST.
 
-Other sites that the browser shows must neither read nor type: each request carries a random token (in the address that is opened, behind
-the #, which is never sent by itself), the Host must be this server's (a name that somebody points at 127.0.0.1 is refused), and nothing
-allows another origin.
+Other sites open in the browser must neither read nor type: each request carries a random token (in the opened address after the #, which
+browsers never send by themselves), the Host must be this server's (another name that points at 127.0.0.1 is refused), and nothing allows
+another origin.
 """
 import contextlib
 import http.server
@@ -17,8 +17,8 @@ from tilt.errors import TiltError
 
 PAGE = pathlib.Path(__file__).with_name("page") / "live.html"
 ADDRESS = "127.0.0.1"
-ALIVE_S = 5.0      # a sign of life, by which a browser that has gone is noticed
-BATCH_S = 0.02     # lines that come within it are one event
+ALIVE_S = 5.0      # keep-alive, by which a closed browser is noticed
+BATCH_S = 0.02     # lines that arrive within this time are one event
 LONGEST_BODY = 200
 SAFE_HEADERS = {"Cache-Control": "no-store", "X-Content-Type-Options": "nosniff", "X-Frame-Options": "DENY", "Referrer-Policy": "no-referrer",
                 "Cross-Origin-Resource-Policy": "same-origin"}
@@ -30,7 +30,7 @@ def event(number, kind, data):
 
 
 def events_of(entries):
-    """The entries as events, lines on end joined in one."""
+    """The entries as events; consecutive lines are joined into one."""
     parts, joined, last = [], [], 0
     for number, kind, data in entries:
         if kind == "lines":
@@ -47,12 +47,12 @@ def events_of(entries):
 
 
 class Handler(http.server.BaseHTTPRequestHandler):
-    """One request, in a thread of its own."""
+    """One request, in its own thread."""
 
     server_version, sys_version = "tilt", ""
 
     def log_message(self, *_):
-        """Nothing: the terminal is for what a person must know."""
+        """Prints nothing: the terminal is for what a person must know."""
 
     def do_GET(self):
         where = urllib.parse.urlsplit(self.path)
@@ -88,13 +88,13 @@ class Handler(http.server.BaseHTTPRequestHandler):
         origin = self.headers.get("Origin")
         if self.headers.get("Host", "") in own and (origin is None or origin in {f"http://{name}" for name in own}):
             return True
-        self._refuse(403, "not asked by the page of tilt live")
+        self._refuse(403, "this request does not come from the page of tilt live")
         return False
 
     def _knows(self, token):
         if secrets.compare_digest(token.encode("utf-8", "replace"), self.server.token.encode("ascii")):
             return True
-        self._refuse(403, "open the address that tilt live has printed: it ends in a token")
+        self._refuse(403, "no valid token: open the address that tilt live has printed")
         return False
 
     def _refuse(self, status, why):
@@ -127,7 +127,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
                 time.sleep(BATCH_S)
 
     def _pass_on(self, number):
-        """(number of the newest entry that the page has, the end was among them)"""
+        """(number of the newest entry sent to the page, whether the end was among them)"""
         entries, missed = self.server.feed.after(number, ALIVE_S)
         if missed:
             self.wfile.write(event(entries[-1][0] if entries else number, "missed", missed))
@@ -136,7 +136,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
 
 
 class Server(http.server.ThreadingHTTPServer):
-    """Serves from its creation until close(). `address` is what a person opens; TiltError where the port is taken."""
+    """Serves from creation until close(). `address` is the one to open; TiltError if the port is taken."""
 
     daemon_threads = True
     allow_reuse_address = True
@@ -157,7 +157,7 @@ class Server(http.server.ThreadingHTTPServer):
 
     @contextlib.contextmanager
     def stream(self):
-        """Round the events for one page, which may be closed at any time."""
+        """Sends the events to one page, which may close at any time."""
         with self.streams_changed:
             self.streams += 1
         try:
@@ -169,7 +169,7 @@ class Server(http.server.ThreadingHTTPServer):
                 self.streams_changed.notify_all()
 
     def close(self):
-        """Tells the pages, which get all that came before, and ends."""
+        """Sends the pages all entries and the end, then stops."""
         self.feed.put("ended", "")
         self.ending.set()
         with self.streams_changed:
@@ -178,4 +178,4 @@ class Server(http.server.ThreadingHTTPServer):
         self.server_close()
 
     def handle_error(self, request, client_address):
-        """A browser that goes away in the middle of an answer is no event."""
+        """Ignores a browser that closes the connection during an answer."""

@@ -1,8 +1,8 @@
-"""Streams, the CSV files of docs/protocol.md, read into numpy arrays and written. What is a stream, and what is said about a file that is
-none, is as in sim/stream.c, the reader of the simulator.
+"""Reads streams, the CSV files of docs/protocol.md, into numpy arrays, and writes them. Rules and error messages are those of sim/stream.c,
+the simulator's reader.
 
-An hour at 100 Hz is read in a fraction of a second: all lines at once where each is plain, digits and commas alone. A file with anything
-else in its rows (blanks, plus signs, a fault) is read line by line, which also tells the line of a fault.
+An hour at 100 Hz is read in a fraction of a second: all lines at once if each is plain, digits and commas alone. A file with anything else
+in its rows (blanks, plus signs, a fault) is read line by line, which also finds the line of a fault.
 """
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ WHOLE_MIN, WHOLE_MAX = -(1 << 63), (1 << 63) - 1
 RANGES = {TIME: (0, TIME_MAX), FLAGS: (0, 65535)} | {name: (LSB_MIN, LSB_MAX) for name in READING} | {name: (-CDEG_MAX, CDEG_MAX) for name in TRUTH}
 BLANKS = b" \t\r"
 WHOLE = re.compile(rb"[ \t\n\v\f\r]*[+-]?[0-9]+")
-PLAIN_DIGITS = 15           # of the longest number that is read at a time: TIME_MAX has one more
-ROWS_AT_A_TIME = 200_000    # between two words of progress
+PLAIN_DIGITS = 15           # of the longest number that the quick way reads: TIME_MAX has one more
+ROWS_AT_A_TIME = 200_000    # between two reports of progress
 
 
 @dataclass
 class Stream:
-    """One recording; all arrays have one element for each row.
+    """One recording; all arrays have one element per row.
 
-    t_us: int64, unwrapped, from 0; a segment begins one median step after the end of the one before.
+    t_us: int64, unwrapped, from 0; a segment begins one median step after the end of the previous one.
     lsb: int16 (rows, 3), x y z, about 256 to the g. flags: uint16, 0 without such a column. missing: no sample (flag 2 or 16).
-    roll_true_cdeg, pitch_true_cdeg: int16, or None. line: of the file, from 1. segments: slices of rows, one for each header that has rows.
-    step_us: the median step within segments, 0 with one row. start_us: the file's first time. columns: int64, those asked for by name.
+    roll_true_cdeg, pitch_true_cdeg: int16, or None. line: in the file, from 1. segments: slices of rows, one for each header that has rows.
+    step_us: the median step within segments, 0 with one row. start_us: the file's first time. columns: int64, those requested by name.
     """
     path: str
     t_us: np.ndarray
@@ -65,17 +65,17 @@ class Stream:
 
     @property
     def seconds(self):
-        """From the first row to a step behind the last."""
+        """From the first row to one step after the last."""
         return (int(self.t_us[-1]) + self.step_us) * 1e-6
 
 
 class _NotPlain(Exception):
-    """The rows cannot be read all at a time."""
+    """The rows need the line-by-line reader."""
 
 
 @dataclass
 class _Header:
-    """A header line and the rows below it: places of columns, values {column: int64 array} and line numbers."""
+    """A header line and its rows: positions of columns, values {column: int64 array} and line numbers."""
     count: int
     places: dict
     values: dict = field(default_factory=dict)
@@ -92,7 +92,7 @@ class _Header:
 
 
 def _header(path, number, text, extra, before):
-    """The header of this line; before: those above it."""
+    """The header in this line; before: those above it."""
     names = [_short(name.strip(BLANKS)) for name in text.split(b",")]
     if len(names) > COLUMNS_MAX:
         raise at(path, number, f"more than {COLUMNS_MAX} columns")
@@ -117,11 +117,11 @@ def _is_header(text):
     return text.startswith(b"t_us,") or b",t_us" in text
 
 
-# --- all lines at a time ----------------------------------------------------------------------------------------------
+# --- all lines at once ------------------------------------------------------------------------------------------------
 
 
 def _special_lines(data, octets, starts):
-    """Numbers of the lines that may be something else than a row: not begun with a digit, or with the name of the time in them."""
+    """Numbers of the lines that may not be rows: they do not begin with a digit, or contain the name of the time column."""
     first = octets[starts]
     odd = np.flatnonzero((first < ord("0")) | (first > ord("9")))
     named = [match.start() for match in re.finditer(b"t_us", data)]
@@ -129,7 +129,7 @@ def _special_lines(data, octets, starts):
 
 
 def _plain_numbers(path, name, octets, begins, ends):
-    """int64 of the texts octets[begins:ends], which are digits with or without a minus before them."""
+    """int64 of the texts octets[begins:ends]: digits, with or without a minus sign."""
     negative = octets[begins] == ord("-")
     length = ends - begins - negative
     if length.min() < 1 or length.max() > PLAIN_DIGITS:
@@ -157,7 +157,7 @@ class _Table:
         self.ends = np.flatnonzero(self.octets == ord("\n"))
         self.starts = np.concatenate(([0], self.ends[:-1] + 1))
         self.commas = np.flatnonzero(self.octets == ord(","))
-        self.comma = np.searchsorted(self.commas, np.concatenate((self.starts, [len(self.data)])))  # the first of each line
+        self.comma = np.searchsorted(self.commas, np.concatenate((self.starts, [len(self.data)])))  # index of each line's first comma
 
     def text(self, line):
         return self.data[self.starts[line]:self.ends[line]].strip(BLANKS)
@@ -176,7 +176,7 @@ class _Table:
 
 
 def _plain(path, data, extra, progress):
-    """The headers with their rows; _NotPlain where a line is to be looked at by itself."""
+    """The headers with their rows; _NotPlain if a line needs the line-by-line reader."""
     data = data.replace(b"\r\n", b"\n")
     if b"\r" in data or b"\0" in data or not data:
         raise _NotPlain
@@ -225,7 +225,7 @@ def _number(path, number, name, text):
 
 
 class _Clock:
-    """Tells a time that goes backwards, at its line."""
+    """Raises for a time that goes backwards, with its line."""
 
     def __init__(self):
         self.last_us = 0
@@ -250,7 +250,7 @@ def _row(path, number, text, head, names, clock):
 
 
 def _careful(path, data, extra, progress):
-    """The headers with their rows; the first fault is told with its line."""
+    """The headers with their rows; raises for the first fault, with its line."""
     found, rows, lines, names, clock = [], [], [], [], None
     if not data:
         raise at(path, 1, "the file is empty")
@@ -279,7 +279,7 @@ def _careful(path, data, extra, progress):
 
 
 def _keep(found, names, rows, lines):
-    """The rows of the header found last."""
+    """Stores the rows of the last header."""
     if found:
         table = np.array(rows, np.int64).reshape(len(rows), len(names))
         found[-1].values = {name: table[:, i] for i, name in enumerate(names)}
@@ -290,7 +290,7 @@ def _keep(found, names, rows, lines):
 
 
 def _unwrapped(raw_us):
-    """From 0; _NotPlain for a step back that is none of the 32-bit counter."""
+    """Times from 0; _NotPlain for a step back that is not a wrap of the 32-bit counter."""
     steps = np.diff(raw_us)
     back = steps < 0
     if np.any(back & ((steps >= -WRAP_STEP_US) | (raw_us[:-1] >= WRAP_US))):
@@ -334,14 +334,14 @@ def _bytes(path):
 
 
 def read(path, columns=(), progress=None):
-    """The Stream of a file; TiltError "FILE:LINE: reason" where it is none.
+    """The Stream in a file; TiltError "FILE:LINE: reason" if it is not one.
 
-    columns: names of further columns of whole numbers, as in the file; each must be there. progress(done, whole): called now and then.
+    columns: names of further columns of whole numbers, all required. progress(done, whole): called now and then.
     """
     data, extra, progress = _bytes(path), tuple(columns), progress or (lambda done, whole: None)
     try:
         return _joined(path, _plain(path, data, extra, progress), extra)
-    except (_NotPlain, TiltError):  # a fault of a header may have one of a row before it
+    except (_NotPlain, TiltError):  # a row above a faulty header may have a fault too
         return _joined(path, _careful(path, data, extra, progress), extra)
 
 
@@ -363,10 +363,10 @@ def _checked(t_us, lsb, segments, columns):
 
 def write(path, t_us, lsb, *, flags=None, roll_true_cdeg=None, pitch_true_cdeg=None, columns=None, comments=(), segments=None,
           progress=None):
-    """Writes a stream that read() gives back: times in us that do not go backwards (more than 32 bits may be), readings (rows, 3) in LSB,
+    """Writes a stream that read() returns unchanged: times in us that do not go backwards (they may exceed 32 bits), readings (rows, 3) in LSB,
     further columns {name: whole numbers}, comments (lines, without the `#`), segments (slices; one header each), progress(rows done, all).
 
-    ValueError: values that no stream may have; TiltError: the file cannot be written. The file has its name only when it is whole.
+    ValueError: values that no stream may have; TiltError: the file cannot be written. The file gets its name only when complete.
     """
     t_us, lsb = np.asarray(t_us, np.int64), np.asarray(lsb, np.int64).reshape(-1, 3)
     segments, progress = segments or [slice(0, len(t_us))], progress or (lambda done, whole: None)
@@ -380,7 +380,7 @@ def write(path, t_us, lsb, *, flags=None, roll_true_cdeg=None, pitch_true_cdeg=N
         file.writelines(f"# {text}\n" for text in comments)
         for part in segments:
             file.write(head)
-            for begin in range(part.start, part.stop, ROWS_AT_A_TIME // 10):  # numbers of Python take five times the room
+            for begin in range(part.start, part.stop, ROWS_AT_A_TIME // 10):  # Python's numbers take five times the memory
                 piece = slice(begin, min(begin + ROWS_AT_A_TIME // 10, part.stop))
                 table = (t_us[piece], *lsb[piece].T, *(column[piece] for column in optional.values()))
                 file.writelines(form % row for row in zip(*(column.tolist() for column in table)))

@@ -1,9 +1,9 @@
-"""Fewer points for the same picture: what is left of a long series shows every extreme, and every flag that was set."""
+"""Fewer points for the same picture: what is left of a long series shows every extreme and every flag that occurs."""
 import numpy as np
 
 
 def columns_of(t_s, count):
-    """The pixel column (0..count - 1) of each time, over the span of t_s, which does not go back."""
+    """The pixel column (0..count - 1) of each time over the span of t_s, which must not go backwards."""
     span = t_s[-1] - t_s[0]
     if span <= 0.0:
         return np.zeros(len(t_s), np.int64)
@@ -11,8 +11,8 @@ def columns_of(t_s, count):
 
 
 def extremes(t_s, series, count):
-    """Rows to keep (ascending): of each of `count` columns the first, the last, and where any of the series is least and greatest. NaN is
-    neither. All rows where there are no more than that would be."""
+    """Rows to keep (ascending): in each of `count` columns the first, the last, and those with the minimum and maximum of each series. NaN is
+    neither. All rows if there are no more than that."""
     rows = len(t_s)
     if rows <= (2 + 2 * len(series)) * count:
         return np.arange(rows)
@@ -29,16 +29,15 @@ def extremes(t_s, series, count):
 
 
 def joined_flags(flags, kept):
-    """Flags of the kept rows: each with those of the dropped rows before it, as the board does with `every N` (which says 512, 1024 and 4096 of
-    the kept row alone). Rows behind the last kept
-    one must not be (extremes() keeps the last)."""
+    """Flags of the kept rows: each with those of the dropped rows before it, as the board does with `every N` (except 512, 1024 and 4096, which
+    it takes from the kept row alone). The last row must be a kept one, as extremes() does."""
     starts = np.concatenate(([0], kept[:-1] + 1))
     return np.bitwise_or.reduceat(flags, starts) if len(flags) else flags
 
 
 def spots(t_s, values, columns, levels, limits):
-    """Indices of points of which no two fall into one cell of a picture of columns x levels, and each of whose cells keeps one. Limits: the
-    lowest and the highest value of the picture; what is outside counts as at the edge. NaN has no cell."""
+    """Indices of points, one in each occupied cell of a picture of columns x levels. limits: the lowest and the highest value of the picture;
+    values outside count as at the edge. NaN has no cell."""
     there = np.flatnonzero(~np.isnan(values))
     if len(there) == 0:
         return there
@@ -49,8 +48,8 @@ def spots(t_s, values, columns, levels, limits):
 
 
 def shares(t_s, mask, count, span):
-    """Of the rows in each of `count` columns over the span (begin, end), the share where the mask is true. A column between rows has that of
-    the column before; 0 outside of the rows."""
+    """Share of the rows in each of `count` columns over the span (begin, end) where the mask is true. A column without rows has the share of
+    the previous one; 0 outside of the rows."""
     column = np.clip(((t_s - span[0]) * (count / (span[1] - span[0]))).astype(np.int64), 0, count - 1)
     rows = np.bincount(column, minlength=count)
     share = np.bincount(column, weights=mask, minlength=count) / np.maximum(rows, 1)
@@ -59,6 +58,6 @@ def shares(t_s, mask, count, span):
 
 
 def runs(mask):
-    """(first, last) rows of each stretch where the mask is true."""
+    """(first, last) row of each stretch where the mask is true."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(np.int8), [0]))))
     return list(zip(edges[::2].tolist(), (edges[1::2] - 1).tolist()))

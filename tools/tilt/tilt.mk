@@ -5,8 +5,8 @@ tilt:
 
 .PHONY: tilt
 
-# the sample path and all filters for `tilt replay`, `compare` and `tune`, which ask for it when it is missing or older than its sources;
-# a compiler that warns of something new must not take it from them: check-compile judges warnings
+# the sample path and all filters for `tilt replay`, `compare` and `tune`, which build it if it is missing or older than its sources; a new
+# compiler's warnings must not break it: check-compile judges warnings
 LIBTILT_SRC := $(wildcard host_tests/tools/libtilt/*.c) $(HOST_SRC)
 $(H)/libtilt.so: $(LIBTILT_SRC) $(wildcard host_tests/tools/libtilt/*.h */*.h lib/*/src/*.h hal/*/*.h) Makefile tools/tilt/tilt.mk
 	@mkdir -p $(@D)

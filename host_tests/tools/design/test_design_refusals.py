@@ -54,7 +54,7 @@ REFUSED = (
     ([*BASE, "--noise-gain", "0.6", "--band", "b0"], ("NAME=LOW..HIGH",)),
     ([*BASE, "-k", "0", "--noise-gain", "0.6", "--band", "b0=0.5..1", "--band", "b0=0.6..1"], ("--band b0 is given twice",)),
     ([*BASE, "-k", "0", "-l", "1", "--region", "safe", "--noise-gain", "0.1"], ("(2, 0, 1) with b0 >= 0.5 can reach", "nearest: --noise-gain 0.34")),
-    ([*BASE, "--noise-gain", "0.6", "--a=x"], ("'x' is not numbers",)),
+    ([*BASE, "--noise-gain", "0.6", "--a=x"], ("'x' is not a list of numbers",)),
     ([*BASE, "-k", "0", "--noise-gain", "0.6", "--lsb-per-unit", "0"], ("--lsb-per-unit is 0",)),
     ([*BASE, "-k", "0", "--noise-gain", "0.6", "--band", "b0=0..1e400"], ("NAME=LOW..HIGH",)),
     ([*BASE, "--error", "1", "--at", "1", "--settle", "0"], ("--settle is 0", "above 0", "nearest: 0.01")),
@@ -67,7 +67,7 @@ REFUSED = (
     ([*BASE, "--noise-gain", "inf"], ("inf", "finite", "nearest: --noise-gain 0.999")),
     ([*BASE, "--noise-gain", "inf", "--error", "1", "--at", "100"], ("inf", "finite", "nearest: --noise-gain 0.5")),
     ([*BASE, "--noise-gain", "nan", "--error", "1", "--at", "100"], ("nan", "finite", "nearest: --noise-gain 0.5")),
-    ([*BASE, "--noise-gain", "0.4", "--error", "1", "--at", "100"], ("both bounds", "no filter, whatever its error", "nearest: --noise-gain 0.5")),
+    ([*BASE, "--noise-gain", "0.4", "--error", "1", "--at", "100"], ("both bounds", "no filter with any error", "nearest: --noise-gain 0.5")),
     ([*BASE, "-k", "0", "-l", "1", "--noise-gain", "0.00001"], ("can be computed", "nearest: --noise-gain 0.0001")),
     ([*BASE, "-v", "9", "--noise-gain", "0.6"], ("(9, 0, 0)", "0.99998", "nearest: --noise-gain 0.99998")),
     ([*BASE, "-v", "5", "--noise-gain", "0.6"], ("(5, 0, 0)", "nearest: --noise-gain 0.99", "or -k 0 -l 4")),
@@ -76,17 +76,17 @@ REFUSED = (
     ([*BASE, "--error", "0", "--at", "1"], ("--error is 0", "above 0", "nearest: --error 1e-09")),
     ([*BASE, "--error", "1e-8", "--at", "1e6"], ("1e-10", "nearest: --error 0.0001")),
     ([*BASE, "-v", "9", "--error", "1", "--at", "1"], ("no error is", "nearest: --period 1")),
-    ([*BASE, "--a=-1", "--noise-gain", "0.6"], ("astatism is not 2", "nearest: -v 3 -k 0 -l 2")),
-    ([*BASE, "--a=-1.5,0.5", "--noise-gain", "0.6"], ("astatism is not 2", "nearest: -v 3 --a=-0.5 -l 2")),
+    ([*BASE, "--a=-1", "--noise-gain", "0.6"], ("the astatism exceeds 2", "nearest: -v 3 -k 0 -l 2")),
+    ([*BASE, "--a=-1.5,0.5", "--noise-gain", "0.6"], ("the astatism exceeds 2", "nearest: -v 3 --a=-0.5 -l 2")),
     ([*BASE, "--a=-2", "--noise-gain", "0.95"], ("not above 0", "nearest: --a=-0.")),
     ([*BASE, "--b", "1e-8"], ("does not die out", "nearest: --a=0 --b 2")),
     ([*BASE, "--a=-2", "--b", "0.75"], ("unstable", "nearest: --a=-2 --b 0.75")),
     ([*BASE, "--a=0", "--b", "0"], ("must not be 0", "nearest: --b 0.99999")),
-    ([*BASE, "--b", "0.5", "--noise-gain", "0.6"], ("--noise-gain beside --b", "leave out --noise-gain, or --b")),
-    ([*BASE, "--b", "0.5", "--error", "1", "--at", "100", "--settle", "1"], ("--error and --settle beside --b",)),
-    ([*BASE, "--b", "0.5", "--region", "safe"], ("--region beside --b",)),
+    ([*BASE, "--b", "0.5", "--noise-gain", "0.6"], ("--noise-gain with --b", "leave out --noise-gain, or --b")),
+    ([*BASE, "--b", "0.5", "--error", "1", "--at", "100", "--settle", "1"], ("--error and --settle with --b",)),
+    ([*BASE, "--b", "0.5", "--region", "safe"], ("--region with --b",)),
     ([*BASE, "--noise-gain", "0.6", "--as-printed"], ("--as-printed", "no --b")),
-    ([*BASE, "--noise-gain", "0.6", "schedule", "--p0-over-r", "5"], ("schedule stands first", "design schedule --p0-over-r 5")),
+    ([*BASE, "--noise-gain", "0.6", "schedule", "--p0-over-r", "5"], ("schedule comes first", "design schedule --p0-over-r 5")),
     (["schedule", "--rate", "10"], ("unrecognized arguments: --rate 10",)),
 )
 
@@ -105,9 +105,9 @@ def what_cannot_be_is_refused_in_one_sentence():
 
 def with_nearest(arguments, nearest):
     """The arguments with those in their place that a sentence names as nearest."""
-    fixed = re.sub(r" in the place of --a.*| \(.*|, or .*|;.*", "", nearest).split()
+    fixed = re.sub(r" instead of --a.*| \(.*|, or .*|;.*", "", nearest).split()
     names = {word.split("=")[0] for word in fixed if re.match(r"--?[a-z]", word)}
-    names |= {"--a"} if "in the place of --a" in nearest else set()
+    names |= {"--a"} if "instead of --a" in nearest else set()
     names |= {"--rate"} if "--period" in names else set()
     kept, skip = [], False
     for word in arguments:
@@ -223,7 +223,7 @@ def filters_at_the_edges_are_told():
         assert len(others) == 1 and words in others[0], out
         told = re.search(r"^dynamic error +(\S+)", out, re.M)[1]
         assert abs(float(told) - error) < 1e-6, (a, b, told)
-        way = re.search(r"on the way there at most (\S+) times its size", out)
+        way = re.search(r"during the transient at most (\S+) times that", out)
         assert (way is not None) == (error != 0) and (way is None or float(way[1]) >= 1), out
         nearest = re.search(r"^this: none: .*nearest: (.*)$", out, re.M)[1]
         status, out, problem = said(*with_nearest(["--rate", "10", "--sigma", "1", "--no-pictures", *([f"--a={a}"] if a else []), "--b", b], nearest))
@@ -237,7 +237,7 @@ def schedule_stands_first():
     for place in (2, 4):
         words = [*BASE[:4][:place], "schedule", *BASE[place:4], "--p0-over-r", "8.33"]
         status, out, error = said(*words)
-        assert status == 2 and not out and "schedule stands first" in error.splitlines()[-1], (words, error)
+        assert status == 2 and not out and "schedule comes first" in error.splitlines()[-1], (words, error)
     status, _, error = said(*BASE, "--noise-gain", "0.6", "--json", str(design_support.OUT / "schedule"))
     assert status == 0, error
 

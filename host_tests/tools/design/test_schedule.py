@@ -114,7 +114,7 @@ def what_is_emitted_is_what_was_made():
 @test
 def bad_words_give_one_sentence():
     for words, sentence in ((["--p0-over-r", "0"], "P0/R is 0, but must be finite and at least 1.52588e-05"),
-                            (["--p0-over-r", "inf"], "P0/R is inf"), (["--p0-over-r", "five"], "'five' is no number"),
+                            (["--p0-over-r", "inf"], "P0/R is inf"), (["--p0-over-r", "five"], "'five' is not a number"),
                             (["--p0-over-r", "5", "--steps", "0"], "the number of steps is '0', but must be 1..1000"),
                             ([], "--p0-over-r is missing")):
         done = subprocess.run([sys.executable, TOOL, *words], capture_output=True, text=True, timeout=600)

@@ -23,11 +23,11 @@ SETS = {name: names.split() for name, names in re.findall(r"^FILTERS_([a-z]+) *:
 SMALL = SETS.pop("small")  # no image of its own: what boards with less flash get
 FLAG = re.compile(r"-DFILTER_LIST\(X\)= ?((?:X\(\w+\) ?)+)")
 # FILTERS, what the sentence names
-BAD = (("kff", "there is no filter kff;"), (f"{PLAIN} kff", "there is no filter kff;"), (PLAIN.upper(), f"there is no filter {PLAIN.upper()};"),
-       (f"{PLAIN},{ROBUST}", f"there is no filter {PLAIN},{ROBUST};"), (f"{PLAIN} {ROBUST} {PLAIN}", f"named twice: {PLAIN}"),
+BAD = (("kff", "no filter kff: choose"), (f"{PLAIN} kff", "no filter kff: choose"), (PLAIN.upper(), f"no filter {PLAIN.upper()}: choose"),
+       (f"{PLAIN},{ROBUST}", f"no filter {PLAIN},{ROBUST}: choose"), (f"{PLAIN} {ROBUST} {PLAIN}", f"named twice: {PLAIN}"),
        (f"{ROBUST} {PLAIN} {PLAIN} {ROBUST}", f"named twice: {PLAIN} {ROBUST}"),
-       ("", "FILTERS is empty;"), ("  ", "FILTERS is empty;"), (f"everyday {PLAIN}", "there is no filter everyday;"),
-       (f"{PLAIN} robust", "there is no filter robust;"), ("everyday robust", "there is no filter everyday;"))
+       ("", "FILTERS is empty:"), ("  ", "FILTERS is empty:"), (f"everyday {PLAIN}", "no filter everyday: choose"),
+       (f"{PLAIN} robust", "no filter robust: choose"), ("everyday robust", "no filter everyday: choose"))
 
 
 def listed(*flags):

@@ -26,9 +26,9 @@ def a_misspelt_variable_names_the_right_one():
     for typed, meant in (("STREM=a.csv", "STREAM"), ("FLTER=x", "FILTER"), ("rate=50", "RATE"), ("BORD=nano", "BOARD"), ("FILTER5=x", "FILTERS?"),
                          ("CC=clang", "HOST_CC")):
         status, text = make("sim", typed)
-        assert status == 2 and re.search(rf"there is no variable {typed.split('=')[0]}: did you mean {meant}", text), (typed, text)
+        assert status == 2 and re.search(rf"no variable {typed.split('=')[0]}: did you mean {meant}", text), (typed, text)
     status, text = make("sim", "XYZZY=1")
-    assert status == 2 and "there is no variable XYZZY: `make help`" in text, text
+    assert status == 2 and "no variable XYZZY: `make help`" in text, text
 
 
 @test
@@ -50,7 +50,7 @@ def variables_that_are_right_pass():
 @test
 def what_cannot_be_read_or_written_is_refused_before_anything_is_built():
     nowhere = "build/no-such-folder/run.csv"
-    for stream, out, words in (("sim/streams/steps.csv", nowhere, f"sim: there is no folder build/no-such-folder for OUT={nowhere}"),
+    for stream, out, words in (("sim/streams/steps.csv", nowhere, f"sim: no folder build/no-such-folder for OUT={nowhere}"),
                                ("sim/streams/no.csv", "build/sim/run.csv", "sim: cannot read the stream sim/streams/no.csv")):
         done = subprocess.run(["sh", "tools/sim.sh", "check", stream, out], capture_output=True, text=True, check=False)
         assert done.returncode == 2 and words in done.stderr, done.stderr

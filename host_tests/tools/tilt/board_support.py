@@ -361,7 +361,7 @@ class Hands:
         if "(y/n)" in text:
             self.keys.append("y")
             return
-        if "Enter begins" in text:
+        if "Enter starts" in text:
             self.do()
         self.keys.append("")
 

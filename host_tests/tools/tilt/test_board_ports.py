@@ -43,7 +43,7 @@ class Bad(CommandCase):
     def test_no_port(self):
         status, _, err = self.tilt()
         self.assertEqual(status, 2)
-        self.assertIn("tilt board: which port?", err)
+        self.assertIn("tilt board: no port given", err)
 
     def test_a_port_that_is_not_there(self):
         with mock.patch.object(owner_module, "Owner", lambda: Desk()):
@@ -53,8 +53,8 @@ class Bad(CommandCase):
         self.assertFalse(self.path.exists())
 
     def test_a_port_that_is_no_board_of_ours(self):
-        for data, reason in ((b"", "nothing came in 1 s"), (b"X: 0.12 Y: -0.33\n" * 30, "not this firmware's: 'X: 0.12 Y: -0.33'"),
-                             (bytes(range(128, 256)) * 8, "nothing came"), (b"\xf5\n" * 200, "no text at any baud rate")):
+        for data, reason in ((b"", "nothing received in 1 s"), (b"X: 0.12 Y: -0.33\n" * 30, "not from this firmware: 'X: 0.12 Y: -0.33'"),
+                             (bytes(range(128, 256)) * 8, "nothing received"), (b"\xf5\n" * 200, "no text at any baud rate")):
             status, err = self.board(lambda board, data=data: board.send(data))
             self.assertEqual((status, self.path.exists()), (2, False))
             self.assertIn(reason, err)
@@ -64,7 +64,7 @@ class Bad(CommandCase):
         with mock.patch.object(session_module, "BEGUN_S", 0.1), mock.patch("tilt.realboard.watch.ANSWER_S", 0.3):
             status, err = self.board(lambda board: board.send(BANNER))
         self.assertEqual(status, 2)
-        self.assertIn("does not answer: no end of the reply to 'settings'", err)
+        self.assertIn("does not answer: incomplete reply to 'settings'", err)
 
     def test_another_firmware_than_the_records(self):
         record = self.record()
@@ -72,19 +72,20 @@ class Bad(CommandCase):
         self.path.write_text(self.path.read_text().replace("0.1.0", "0.0.9"))
         desk = Desk([(0.5, banner())] + rows(0.6, 60), Model())
         from tilt.commands.board import checks_of
-        with self.assertRaisesRegex(TiltError, "0.0.9.*begin a new record"):
+        with self.assertRaisesRegex(TiltError, "0.0.9.*start a new record"):
             checks_of(desk.bench(), Record(self.path, resumed=True), ALL, "port")
 
     def test_options(self):
-        for words, reason in ((("port", "--only", "sda_short,sda"), "--only: there is no check 'sda' (tilt board --list)"),
-                              (("port", "--baud", "12345"), "--baud 12345: one of 9600"), (("port", "--resume", "a", "-o", "b"), "-o and --resume")):
+        for words, reason in ((("port", "--only", "sda_short,sda"), "--only: no check 'sda': tilt board --list prints them"),
+                              (("port", "--baud", "12345"), "--baud 12345: choose from 9600"),
+                              (("port", "--resume", "a", "-o", "b"), "-o and --resume")):
             status, _, err = self.tilt(*words)
             self.assertEqual(status, 2)
             self.assertIn(reason, err)
 
     def test_no_terminal(self):
         read, write = os.pipe()
-        with open(read, encoding="ascii") as file, self.assertRaisesRegex(TiltError, "nobody is at the keyboard: stdin is no terminal"):
+        with open(read, encoding="ascii") as file, self.assertRaisesRegex(TiltError, "stdin is not a terminal"):
             Owner(file)
         os.close(write)
 
@@ -158,13 +159,13 @@ class Meeting(unittest.TestCase):
         desk = Desk([], Model())
         self.assertEqual(meet(desk.bench(), "port")[0], FIRMWARE_SAYS)
         self.assertEqual(desk.sent.count("version"), 3)  # that of `settings` and of `status` too
-        with self.assertRaisesRegex(TiltError, "nothing came in 8 s"):
+        with self.assertRaisesRegex(TiltError, "nothing received in 8 s"):
             meet(Desk().bench(), "port")
 
     def test_a_fault_from_the_beginning_is_said(self):
         desk = Desk([(0.5, banner())], Model(fault=1))
         meet(desk.bench(), "port")
-        self.assertIn("The board reports fault 1: put that right first", desk.said[-1])
+        self.assertIn("The board reports fault 1: repair it first", desk.said[-1])
 
 
 if __name__ == "__main__":

@@ -94,7 +94,7 @@ class Sessions(CommandCase):
         desk = Desk(rows(0, 60), Model())
 
         def late(text):
-            if "Enter begins" in text:
+            if "Enter starts" in text:
                 desk.script.appendleft((desk.time_s, ["# fault 8: SDA held low", row(desk.time_s, flags=2)]))
             desk.keys.extend([None] * 10 + [""])  # seen before Enter is pressed
         desk.prompt = late
@@ -152,13 +152,13 @@ class Records(CommandCase):
             record = Record(self.path, resumed=True)
             self.assertEqual(len(record.last()), sum(size >= end for end in ends[1:3]), size)
             text = "\n".join(shown(record, ALL))
-            self.assertEqual("cannot be read (cut short?)" in text, size not in ends and size - 1 not in ends, size)
+            self.assertEqual("unreadable (cut short?)" in text, size not in ends and size - 1 not in ends, size)
 
     def test_what_is_no_record_is_refused_with_its_place(self):
         for text, reason in (("", ":1: not a record"), ("t_us,x,y,z\n1,2,3,4\n", ":1: not a record"), ('{"kind": "check"}\n', ":1: not a record"),
                              ('[1]\n', ":1: not a record"), ('{"kind": "begin", "form": 1}\n', ":1: not a record"),
                              ("\x00\xff\n", ":1: not a record"),
-                             (json.dumps(begin_line("p", None, FIRMWARE_SAYS, {}) | {"form": 2}), ":1: a record of form 2, this program reads")):
+                             (json.dumps(begin_line("p", None, FIRMWARE_SAYS, {}) | {"form": 2}), ":1: record of form 2, but this program reads")):
             self.path.write_text(text, encoding="latin-1")
             for words in (("--show", self.path), ("nowhere", "--resume", self.path)):
                 with mock.patch.object(owner_module, "Owner", lambda: Desk()):
@@ -171,7 +171,7 @@ class Records(CommandCase):
 
     def test_a_file_that_is_there_is_never_overwritten(self):
         self.path.write_text("precious")
-        with self.assertRaisesRegex(TiltError, "is there already"):
+        with self.assertRaisesRegex(TiltError, "exists already"):
             Record(self.path)
         with self.assertRaisesRegex(TiltError, "no folder"):
             Record(self.folder / "none" / "x")
@@ -189,7 +189,7 @@ class Records(CommandCase):
                 record_file.write(data[:10])
                 raise OSError(28, "No space left on device")
         record_file, record.file = record.file, Full()
-        with self.assertRaisesRegex(TiltError, "No space left on device; what came before is in the file"):
+        with self.assertRaisesRegex(TiltError, "No space left on device; the file holds what came before"):
             record.add({"kind": "end"})
         self.assertEqual(self.path.stat().st_size, size)
 

@@ -122,13 +122,14 @@ class File(unittest.TestCase):
     def test_says_what_is_wrong_and_where(self):
         imu = "imu,10000,0,0,0,0,0,-9.81\n"
         for text, told in (
-                ("", "F: no imu row"), ("# only words\n", "F: no imu row"), (imu + "baro,1,2\n", "F:2: 'baro' is no kind of row"),
-                (imu + "gps,1,2,3\n", "F:2: gps has 8 fields, here are 4"), ("imu,1.5,0,0,0,0,0,0\n", "F:1: t_us is a whole number"),
-                ("imu,-1,0,0,0,0,0,0\n", "F:1: t_us is a whole number"), ("imu,4294967296,0,0,0,0,0,0\n", "F:1: t_us is a whole number"),
-                (imu + "down,5,high\n", "F:2: 'high' is no number"), ("set,gates,1\n", "F:1: there is no setting 'gates'"),
-                ("set,field,1,2\n", "F:1: field has 3 numbers, not 2"), ("set\n", "F:1: set wants a name"),
-                ("imu,\u00b2,0,0,0,0,0,0\n", "F:1: t_us is a whole number"), (f"imu,{'9' * 5000},0,0,0,0,0,0\n", "F:1: t_us is a whole number"),
-                *((f"set,period_us,{text}\n", "F:1: period_us is a whole number") for text in ("0.5", "nan", "inf", "-1", "1e12"))):
+                ("", "F: no imu row"), ("# only words\n", "F: no imu row"), (imu + "baro,1,2\n", "F:2: unknown kind of row 'baro'"),
+                (imu + "gps,1,2,3\n", "F:2: gps needs 8 fields, not 4"), ("imu,1.5,0,0,0,0,0,0\n", "F:1: t_us must be a whole number"),
+                ("imu,-1,0,0,0,0,0,0\n", "F:1: t_us must be a whole number"), ("imu,4294967296,0,0,0,0,0,0\n", "F:1: t_us must be a whole number"),
+                (imu + "down,5,high\n", "F:2: 'high' is not a number"), ("set,gates,1\n", "F:1: no setting 'gates'"),
+                ("set,field,1,2\n", "F:1: field needs 3 numbers, not 2"), ("set\n", "F:1: set needs a name"),
+                ("imu,\u00b2,0,0,0,0,0,0\n", "F:1: t_us must be a whole number"),
+                (f"imu,{'9' * 5000},0,0,0,0,0,0\n", "F:1: t_us must be a whole number"),
+                *((f"set,period_us,{text}\n", "F:1: period_us must be a whole number") for text in ("0.5", "nan", "inf", "-1", "1e12"))):
             self.assertIn(told, refused(text) or "taken", text)
 
     def test_what_a_sensor_says_is_for_the_filter_to_refuse(self):
@@ -140,7 +141,7 @@ class File(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "flight.csv"
             path.write_bytes(b"\xff\xfe\x00imu")
-            with self.assertRaisesRegex(TiltError, "no text"):
+            with self.assertRaisesRegex(TiltError, "not text"):
                 flight.read(path)
             with self.assertRaisesRegex(TiltError, "No such file"):
                 flight.read(path.with_name("other.csv"))
@@ -263,11 +264,11 @@ class Pairs(unittest.TestCase):
             exchange.check_start(self.SENT, exchange.Outcome(answers=answers + later))
 
         check(0, 0, 0, 0, 0, 0)
-        with self.assertRaisesRegex(TiltError, "start refused: a setting is outside its range"):
+        with self.assertRaisesRegex(TiltError, "start refused: a setting is out of range"):
             check(0, 0, 0, 0, 0, 37)
-        with self.assertRaisesRegex(TiltError, "of the 6 frames of its start the board has answered 5; .* lost on the line"):
+        with self.assertRaisesRegex(TiltError, "the board answered 5 of its 6 start frames, .* lost on the line"):
             check(0, 0, None, 0, 0, 37)
-        with self.assertRaisesRegex(TiltError, "of the 6 frames of its start the board has answered 5; .* lost on the line"):
+        with self.assertRaisesRegex(TiltError, "the board answered 5 of its 6 start frames, .* lost on the line"):
             check(0, 0, 0, 0, 0, None)
 
 
@@ -305,9 +306,9 @@ class Judge(unittest.TestCase):
 
 class Command(unittest.TestCase):
     def test_flight_refuses_what_makes_no_sense(self):
-        for words, told in ((("--seconds", 1), "--seconds is from 2 to 4000"), (("--gps-late", -1), "--gps-late is from 0"),
-                            (("--without-gps", "10-20"), "wants A:B"), (("--without-gps", "1..2:3"), "wants A:B"),
-                            (("--without-gps", "8:3"), "ends before it begins"), (("--seed", -1), "not negative")):
+        for words, told in ((("--seconds", 1), "--seconds 1: give 2 to 4000"), (("--gps-late", -1), "--gps-late -1: give 0"),
+                            (("--without-gps", "10-20"), "give A:B"), (("--without-gps", "1..2:3"), "give A:B"),
+                            (("--without-gps", "8:3"), "ends before it begins"), (("--seed", -1), "--seed -1: give 0 or more")):
             with tempfile.TemporaryDirectory() as folder:
                 status, said = run("flight", pathlib.Path(folder) / "never-written.csv", *words)
                 self.assertEqual(list(pathlib.Path(folder).iterdir()), [])
@@ -322,28 +323,28 @@ class Command(unittest.TestCase):
                 with self.assertRaises(SystemExit) as ended, contextlib.redirect_stderr(io.StringIO()) as said:
                     cli.main(list(words))
                 self.assertEqual(ended.exception.code, 2)
-                self.assertRegex(said.getvalue(), rf"argument --\S+: '{text}' is no (whole )?number")
+                self.assertRegex(said.getvalue(), rf"argument --\S+: '{text}' is not a (whole )?number")
             self.assertEqual(run("nav", "--board", "pc", "--set", f"field={text},1,{text}")[0], 2)
-        self.assertIn("--set wants NAME=NUMBER", run("nav", "--board", "pc", "--set", "gate=1_0")[1])
-        self.assertIn("wants A:B", run("flight", "x.csv", "--without-gps", "1:\u0663")[1])
-        self.assertIn("F:1: '1_0' is no number", refused("set,gate,1_0\n"))
-        self.assertIn("F:1: '0_1' is no number", refused("imu,10000,0,0,0_1,0,0,0\n"))
-        self.assertIn("F:1: t_us is a whole number", refused("imu,1_0,0,0,0,0,0,0\n"))
+        self.assertIn("--set needs NAME=NUMBER", run("nav", "--board", "pc", "--set", "gate=1_0")[1])
+        self.assertIn("give A:B", run("flight", "x.csv", "--without-gps", "1:\u0663")[1])
+        self.assertIn("F:1: '1_0' is not a number", refused("set,gate,1_0\n"))
+        self.assertIn("F:1: '0_1' is not a number", refused("imu,10000,0,0,0_1,0,0,0\n"))
+        self.assertIn("F:1: t_us must be a whole number", refused("imu,1_0,0,0,0,0,0,0\n"))
         for text, value in (("1", 1.0), ("-.5", -0.5), ("+1.", 1.0), ("1E-3", 1e-3), (" 2 ", 2.0), ("-INF", -np.inf)):
             self.assertEqual(numbers.real(text), value)
         self.assertTrue(np.isnan(numbers.real("nan")))
 
     def test_nav_refuses_before_the_flight_what_it_could_not_write_behind_it(self):
         for words, told in ((("-o", "/no/such/x.csv"), "no folder /no/such"), (("--plot", "/no/such/x.png"), "no folder"),
-                            (("--plot", "x.txt"), "ends in none of")):
+                            (("--plot", "x.txt"), "unknown suffix: use one of")):
             status, said = run("nav", "--board", "pc", *words)
             self.assertEqual(status, 2)
             self.assertIn(told, said)
             self.assertNotIn("of flight in", said)
 
     def test_nav_refuses_settings_that_are_none(self):
-        for words, told in ((("--set", "gate"), "--set wants NAME=NUMBER"), (("--set", "gates=1"), "there is no setting"),
-                            (("--set", "field=1"), "field has 3 numbers"), (("--every", 0), "--every is at least 1"),
+        for words, told in ((("--set", "gate"), "--set needs NAME=NUMBER"), (("--set", "gates=1"), "no setting 'gates'"),
+                            (("--set", "field=1"), "field needs 3 numbers"), (("--every", 0), "--every 0: give 1 or more"),
                             (("no-such.csv",), "No such file")):
             status, said = run("nav", "--board", "pc", *words)
             self.assertEqual(status, 2, said)

@@ -104,20 +104,20 @@ class Refused(Case):
         for place in range(1536, 2048, 13):
             spoilt = bytearray(self.good)
             spoilt[place] ^= 1 << (place % 8)
-            reason = "no data block (AX)" if place < 1540 else "its checksum is wrong"
+            reason = "not a data block (AX)" if place < 1540 else "wrong checksum"
             self.refused(bytes(spoilt), f"block 3 (byte 1536): {reason}")
 
     def test_cut_short(self):
-        self.refused(self.good[:-1], "block 4: 511 bytes of 512: cut short")
-        self.refused(self.good[:1000], "a CWA header of 1000 bytes where 1024 are due: cut short")
+        self.refused(self.good[:-1], "cut short: block 4 has 511 bytes of 512")
+        self.refused(self.good[:1000], "cut short: the CWA header has 1000 bytes of 1024")
         self.refused(self.good[:1024], "only a header, no blocks")
 
     def test_other_sensors(self):
-        self.refused(header(0x64) + self.good[1024:], "of an AX6, which holds no ADXL345")
+        self.refused(header(0x64) + self.good[1024:], "from an AX6, which has no ADXL345")
         rows = many(1, 40)[0]
         self.refused(header() + block(0, START, rows, axes=0x62), "block 2 (byte 1024): not three axes, packed or in words")
         self.refused(header() + block(0, START, rows, axes=WORDS, light=3 << 13),
-                     "block 2 (byte 1024): counts of another size than 1/256 g: no ADXL345")
+                     "block 2 (byte 1024): counts are not 1/256 g: not an ADXL345")
 
     def test_numbers_of_samples(self):
         for rows, axes in (([], PACKED), ([(0, 0, 256)] * 80, WORDS)):
@@ -125,10 +125,10 @@ class Refused(Case):
             if rows:
                 content[1024 + 28] += 1  # 81 of 80
                 content[-2] -= 1
-            self.refused(bytes(content), "block 2 (byte 1024): a number of samples that a block cannot have")
+            self.refused(bytes(content), "block 2 (byte 1024): impossible number of samples")
 
     def test_a_header_with_text_after_it(self):
-        self.refused(header() + b"1,2,3\n" * 256, "block 2 (byte 1024): no data block (AX)")
+        self.refused(header() + b"1,2,3\n" * 256, "block 2 (byte 1024): not a data block (AX)")
 
 
 if __name__ == "__main__":

@@ -54,11 +54,11 @@ class Plain(Case):
 
     def test_two_sensors_the_first_or_the_one_asked_for(self):
         other, text = self.two_sensors()
-        self.assertIn("sensor 1 of 2 taken (--sensor N for another)", self.gives(text, LSB, every(10000)))
+        self.assertIn("sensor 1 of 2 used (--sensor N for another)", self.gives(text, LSB, every(10000)))
         self.gives(text, other, every(10000), "--sensor", 2)
 
     def test_a_sensor_that_is_not_there(self):
-        self.refused(self.two_sensors()[1], "--sensor 3: the file holds 2", "--sensor", "3")
+        self.refused(self.two_sensors()[1], "--sensor 3: the file has 2", "--sensor", "3")
 
     def test_adxl345usb_console(self):
         text = "Press Q to stop\n" + "".join(f"time = {i * 0.1:.3f}, x = {row[0]}, y = {row[1]}, z = {row[2]}\n"
@@ -71,11 +71,11 @@ class Plain(Case):
             with self.subTest(sensors=sensors):
                 rows = "".join(",".join(map(str, [1200 + 10 * i, *([-1, -1, -1] * (sensors - 1)), *LSB[i]])) + "\n" for i in range(ROWS))
                 said = self.gives(names + rows, LSB, every(10000), "--sensor", sensors)
-                self.assertIn(f"rows of {1 + 3 * sensors} fields under a header of 13: the last {4 - sensors} sensors are not there", said)
+                self.assertIn(f"rows of {1 + 3 * sensors} fields under a header of 13: the last {4 - sensors} sensors are missing", said)
                 self.assertIn("first time 1200 ms", said)
                 readings, said = self.imported(names + rows)[1:]
                 self.assertEqual(set(readings), {(-1, -1, -1)})
-                self.assertIn(f"{ROWS} rows read -1,-1,-1: no sensor answered there", said)
+                self.assertIn(f"{ROWS} rows read -1,-1,-1: no sensor answered", said)
 
     def test_farezhalim_csv_with_a_mark_and_uneven_decimals(self):
         text = "\ufefft,x,y,z\n" + "".join(f"{i * 0.034:g},{','.join(row)}\n" for i, row in enumerate(scaled((0.004 * G,) * 3, "{:.2f}")))
@@ -83,9 +83,9 @@ class Plain(Case):
 
     def test_kefanzhg_counter(self):
         text = "".join(f"{i + (7 if i >= 30 else 0)},{x},{y},{z}\n" for i, (x, y, z) in enumerate(LSB))
-        self.refused("n,x,y,z\n" + text, "a counter of samples, no times: give the rate with --rate HZ")
+        self.refused("n,x,y,z\n" + text, "a sample counter, but no times: give the rate with --rate HZ")
         expected = [2500 * (i + (7 if i >= 30 else 0)) for i in range(ROWS)]
-        self.assertIn("the counter leaves out 7 samples", self.gives("count,x,y,z\n" + text, LSB, expected, "--rate", 400))
+        self.assertIn("the counter skips 7 samples", self.gives("count,x,y,z\n" + text, LSB, expected, "--rate", 400))
         without_gaps = "".join(f"{i},{x},{y},{z}\n" for i, (x, y, z) in enumerate(LSB))
         self.gives(without_gaps, LSB, every(2500), "--rate", 400)
 
@@ -101,19 +101,19 @@ class Plain(Case):
     def test_sisfall(self):
         for end in (";", ""):
             text = "".join(f" {x:2d},{y:4d},{z:4d}, 1,-2, 3,  -7, 8,-999{end}\n" for x, y, z in LSB)
-            self.assertIn("no header: columns 1, 2, 3 taken, 4, 5, 6, 7, 8, 9 left out", self.gives(text, LSB, every(5000), "--rate", 200))
+            self.assertIn("no header: columns 1, 2, 3 used, 4, 5, 6, 7, 8, 9 ignored", self.gives(text, LSB, every(5000), "--rate", 200))
 
     def test_uraich(self):
         text = "ax,ay,az\r\n\r\n" + "".join(f"{x:4d}, {y:4d}, {z:4d}\r\n\r\n" for x, y, z in LSB[:30]) + "gesture again\r\n\r\n" \
             + "".join(f"{x:4d}, {y:4d}, {z:4d}\r\n\r\n" for x, y, z in LSB[30:])
         said = self.gives(text, LSB, every(10000), "--rate", 100)
-        self.assertIn("1 lines of text left out, the first: line 63 'gesture again'", said)
+        self.assertIn("1 lines of text skipped, the first: line 63 'gesture again'", said)
         labelled = "ax,ay,az,label\r\n" + "".join(f"{x},{y},{z},7\r\n" for x, y, z in LSB)
         self.gives(labelled, LSB, every(10000), "--rate", 100)
 
     def test_freeimu_magnitude(self):
         text = "".join(f"{x} {y} {z} {math.sqrt(x * x + y * y + z * z):.2f}\n" for x, y, z in LSB)
-        self.assertIn("column 4, the magnitude, left out", self.gives(text, LSB, every(50000), "--rate", 20))
+        self.assertIn("column 4, the magnitude, ignored", self.gives(text, LSB, every(50000), "--rate", 20))
 
     def test_axivity_csv(self):
         grid = [tuple(4 * (value // 4) for value in row) for row in LSB]
@@ -139,7 +139,7 @@ class Plain(Case):
         text = "time,x,y,z\n" + "".join(f"{100 * i},{x / 256:.2f},{y / 256:.2f},{z / 256:.2f}\n" for i, (x, y, z) in enumerate(LSB))
         expected = [tuple(round(float(f"{v / 256:.2f}") * 256) for v in row) for row in LSB]
         said = self.gives(text, expected, every(100000))
-        self.assertIn("steps of 2.6 LSB: printed too coarsely", said)
+        self.assertIn("steps of 2.6 LSB: too coarse", said)
 
 
 class SerialMonitor(Case):
@@ -181,7 +181,7 @@ class Others(Case):
         payload = {"device_type": "X", "interval_ms": 12.5, "sensors": [{"name": f"acc{a}", "units": "m/s2"} for a in "XYZ"],
                    "values": [[value * 0.004 * G for value in row] for row in LSB]}
         text = json.dumps({"protected": {"ver": "v1"}, "signature": "0", "payload": payload})
-        self.assertIn("(said by the file", self.gives(text, LSB, every(12500)))
+        self.assertIn("(stated by the file", self.gives(text, LSB, every(12500)))
 
     def blocks(self):
         lines = []
@@ -194,7 +194,7 @@ class Others(Case):
         lines = self.blocks()
         only = "\n".join(line for line in lines if "Server" not in line) + "\n"
         self.gives(only, LSB, every(10000))
-        self.assertIn("lines 'Server acc:' taken of Server acc, Client acc", self.imported("\n".join(lines))[2])
+        self.assertIn("lines 'Server acc:' used, of Server acc, Client acc", self.imported("\n".join(lines))[2])
         self.gives("\n".join(lines), LSB, every(10000), "--sensor", 2)
 
     def test_msart_bytes_as_text(self):
@@ -273,7 +273,7 @@ class Variants(Case):
         said = self.gives("t_ms,x,y,z\n" + "".join(f"{t},{x},{y},{z}\n" for t, (x, y, z) in zip(times, rows)), rows, [1000 * t for t in times])
         self.assertIn("1 gaps, the longest 510.0 ms", said)
         self.assertIn("50.8 % of the rows repeat the row before", said)  # 30 of 59
-        self.assertIn("1.7 % of the rows have the time of the row before", said)  # 1 of 59
+        self.assertIn("1.7 % of the rows repeat the time of the previous row", said)  # 1 of 59
 
     def test_the_rate_seen_leaves_gaps_out(self):
         times = [10 * i + (500 if i >= 30 else 0) for i in range(ROWS)]
@@ -283,7 +283,7 @@ class Variants(Case):
     def test_a_last_line_cut_off_is_left_out_and_told(self):
         text = self.table()
         whole = text + "0.60,0.1"
-        self.assertIn(f"line {ROWS + 2}, the last, is cut off and left out: '0.60,0.1'", self.gives(whole, LSB, every(10000)))
+        self.assertIn(f"line {ROWS + 2}, the last, is cut off and skipped: '0.60,0.1'", self.gives(whole, LSB, every(10000)))
         self.refused(whole + "\n", "2 fields where the header has 4", line=ROWS + 2)
 
 

@@ -30,8 +30,8 @@ class Files(Case):
             self.refused(text, "only a header, no rows of numbers")
 
     def test_no_numbers(self):
-        self.refused("\n\n", "no row of three numbers in its first 3 lines: this is no recording")
-        self.refused("Dear reader,\nthere is nothing here.\n", "no row of three numbers in its first 3 lines: this is no recording")
+        self.refused("\n\n", "not a recording: no row of three numbers in its first 3 lines")
+        self.refused("Dear reader,\nthere is nothing here.\n", "not a recording: no row of three numbers in its first 3 lines")
 
     def test_packed(self):
         whole = TABLE.encode()
@@ -43,12 +43,12 @@ class Files(Case):
             self.refused(content, f"packed with {name}: unpack it first")
 
     def test_binary(self):
-        words = "binary data in no known format (text, JSON and the AX3's CWA are read)"
+        words = "binary data in an unknown format (known: text, JSON, the AX3's CWA)"
         self.refused(bytes(range(256)) * 4, words)
         self.refused(b"1,2,3\n\x00\x00", words)
         self.refused(bytes((i * 7) % 31 + 1 for i in range(300)), words)
-        self.refused(b"\x89PNG\r\n\x1a\n....", "this is a picture, no recording")
-        self.refused("1,2,3\n".encode("utf-16")[:-1], "begins as UTF-16 and is none at byte 12")
+        self.refused(b"\x89PNG\r\n\x1a\n....", "this is a picture, not a recording")
+        self.refused("1,2,3\n".encode("utf-16")[:-1], "begins as UTF-16, but is not valid at byte 12")
 
     def test_not_there(self):
         missing = self.place / "missing.csv"
@@ -61,13 +61,13 @@ class Files(Case):
 
     def test_other_sensors(self):
         self.refused("time,gx,gy,gz\n0,1,2,3\n10,1,2,3\n",
-                     "no columns x, y, z among time, gx, gy, gz: not accelerations, or name them with --columns")
+                     "no columns x, y, z among time, gx, gy, gz: if these are accelerations, name the columns with --columns")
         self.refused("time,temp,hum,pres\n0,1,2,3\n10,1,2,3\n",
-                     "no columns x, y, z among time, temp, hum, pres: not accelerations, or name them with --columns")
+                     "no columns x, y, z among time, temp, hum, pres: if these are accelerations, name the columns with --columns")
 
     def test_names_that_mean_nothing_here(self):
         self.refused("temp,hum,pres\n" + "201,402,10003\n" * 9,
-                     "no columns x, y, z among temp, hum, pres: not accelerations, or name them with --columns")
+                     "no columns x, y, z among temp, hum, pres: if these are accelerations, name the columns with --columns")
         self.gives("east,north,up\n" + "".join(f"{x},{y},{z}\n" for x, y, z in LSB), LSB, every(10000), "--rate", "100", "--columns", "1,2,3")
 
     def test_lines_of_pairs_that_lack_one(self):
@@ -76,10 +76,10 @@ class Files(Case):
 
     def test_plotter_lines(self):
         self.refused("roll_raw:1.23,roll:1.20,pitch_raw:-0.42,pitch:-0.40,gated:0\n" * 9,
-                     "no columns x, y, z among roll_raw, roll, pitch_raw, pitch, gated: not accelerations, or name them with --columns")
+                     "no columns x, y, z among roll_raw, roll, pitch_raw, pitch, gated: if these are accelerations, name the columns with --columns")
 
     def test_two_columns(self):
-        self.refused("1,2\n3,4\n5,6\n", "no row of three numbers in its first 4 lines: this is no recording")
+        self.refused("1,2\n3,4\n5,6\n", "not a recording: no row of three numbers in its first 4 lines")
 
 
 class Rows(Case):
@@ -110,7 +110,7 @@ class Rows(Case):
     def test_torn_text_of_a_serial_line(self):
         lines = [f"20:05:{i // 10:02d}.{i % 10}00 -> {x},{y},{z}" for i, (x, y, z) in enumerate(LSB)]
         lines[7] = "1,2,3"
-        self.refused("\n".join(lines) + "\n", "not of the form of the other rows: '1,2,3'", line=8)
+        self.refused("\n".join(lines) + "\n", "not in the form of the other rows: '1,2,3'", line=8)
 
     def test_time_goes_backwards(self):
         self.refused(changed(30, "269,1,2,3"), "time goes backwards: 269 after 270", line=30)
@@ -121,7 +121,7 @@ class Rows(Case):
         self.refused("t_ms,x,y,z\n" + "".join(f"{10 * i},nan,nan,nan\n" for i in range(9)), "only a header, no rows of numbers")
 
     def test_beyond_the_registers(self):
-        reason = "1, 2, {} LSB by raw of 1 per LSB: outside -4096..4095, what an ADXL345 can give"
+        reason = "1, 2, {} LSB by raw of 1 per LSB: outside an ADXL345's -4096..4095"
         for value in (4096, -4097, 10484, 65540):
             self.refused(changed(30, f"280,1,2,{value}"), reason.format(value), line=30)
         for value in (4095, -4096):
@@ -129,8 +129,8 @@ class Rows(Case):
 
     def test_times_that_no_sensor_has(self):
         self.refused("time,x,y,z\n" + "".join(f"{5e9 * i:.0f},{x},{y},{z}\n" for i, (x, y, z) in enumerate(LSB)),
-                     "steps of 5e+09 in the times are no sensor's in s, ms, us or ns: give the rate with --rate HZ")
-        self.refused("time,x,y,z\n" + "5,1,2,250\n" * 9, "times do not move: give the rate with --rate HZ")
+                     "time steps of 5e+09 fit no sensor in s, ms, us or ns: give the rate with --rate HZ")
+        self.refused("time,x,y,z\n" + "5,1,2,250\n" * 9, "the times are constant: give the rate with --rate HZ")
 
     def test_no_times(self):
         self.refused("".join(f"{x},{y},{z}\n" for x, y, z in LSB), "no column of times: give the rate with --rate HZ")
@@ -143,29 +143,30 @@ class Json(Case):
                  ("{\"X\": 1, \"Y\": \"2\", \"Z\": 3}", "Y is not a number: '2'"), ("{\"X\": true, \"Y\": 2, \"Z\": 3}", "X is not a number: True"))
         for bad, reason in cases:
             self.refused("\n".join(good[:10] + [bad] + good[10:]), reason, "--rate", "10", line=11)
-        self.refused("{\"a\": 1, \"b\": 2}\n", "no x, y, z among a, b: not accelerations, or name them with --columns", line=1)
+        self.refused("{\"a\": 1, \"b\": 2}\n", "no x, y, z among a, b: if these are accelerations, name the keys with --columns", line=1)
         self.refused("[1, 2,", "not JSON: Expecting value", line=1)
 
     def test_edge_impulse(self):
         def payload(**changes):
             whole = {"interval_ms": 10, "sensors": [{"name": f"acc{a}", "units": "m/s2"} for a in "XYZ"], "values": [[0.0, 0.0, 9.8]] * 9}
             return json.dumps({"payload": whole | changes})
-        self.refused(payload(values=[[0, 0, 9.8], [0, 9.8]]), "payload.values[1]: 2 values where there are 3 sensors")
+        self.refused(payload(values=[[0, 0, 9.8], [0, 9.8]]), "payload.values[1]: 2 values for 3 sensors")
         self.refused(payload(interval_ms=0), "payload.interval_ms is 0")
         self.refused(payload(values=[]), "no rows")
-        self.refused(payload(sensors=[{"name": "audio"}]), "payload.sensors: no x, y, z among audio: not accelerations, or name them with --columns")
-        self.refused(json.dumps({"payload": {"values": []}}), "a payload without 'sensors': not Edge Impulse's")
+        self.refused(payload(sensors=[{"name": "audio"}]),
+                     "payload.sensors: no x, y, z among audio: if these are accelerations, name the keys with --columns")
+        self.refused(json.dumps({"payload": {"values": []}}), "not an Edge Impulse file: the payload has no 'sensors'")
 
 
 class Options(Case):
     def test_options_that_cannot_be(self):
         self.refused(TABLE, "--columns: no column 'u' among t_ms, x, y, z", "--columns", "t_ms,u,y,z")
-        self.refused(TABLE, "column 9 is asked for and rows have 4", "--columns", "1,2,3,9")
-        for words, reason in ((("--columns", "1,2"), "--columns 1,2: three (x,y,z) or four (time,x,y,z) names or numbers"),
-                              (("--unit", "furlong"), "--unit furlong: one of raw, g, mg, m/s2, mm/s2, k/265, or what one LSB counts: a number, "
-                               "or three for x, y, z"),
-                              (("--unit", "0"), "--unit 0: one of raw, g, mg, m/s2, mm/s2, k/265, or what one LSB counts: a number, or three for "
-                               "x, y, z")):
+        self.refused(TABLE, "column 9 requested, but rows have 4", "--columns", "1,2,3,9")
+        for words, reason in ((("--columns", "1,2"), "--columns 1,2: give three (x,y,z) or four (time,x,y,z) names or numbers"),
+                              (("--unit", "furlong"), "--unit furlong: give one of raw, g, mg, m/s2, mm/s2, k/265, or the value of one LSB: "
+                               "a number, or three for x, y, z"),
+                              (("--unit", "0"), "--unit 0: give one of raw, g, mg, m/s2, mm/s2, k/265, or the value of one LSB: a number, or three "
+                               "for x, y, z")):
             self.assertEqual(self.run_tilt(self.file(TABLE), *words), (2, f"tilt import: {reason}\n"))
         for words in (("--rate", "0"), ("--rate", "fast"), ("--rate", "nan"), ("--sensor", "0"), ()):
             self.assertEqual(self.run_tilt(*words, *([self.file(TABLE)] if words else []))[0], 2)
@@ -181,9 +182,9 @@ class Options(Case):
     def test_no_output_is_replaced_by_another(self):
         status, said = self.run_tilt(self.file(TABLE, "a.csv"), self.file(TABLE, "a.txt"))
         self.assertEqual(status, 2)
-        self.assertIn("two files would go to", said)
+        self.assertIn("two files would be written to", said)
         self.assertEqual(self.run_tilt(self.file(TABLE), self.file(TABLE, "b.txt"), "-o", self.out),
-                         (2, "tilt import: -o takes one file, or --join\n"))
+                         (2, "tilt import: -o: give one FILE, or --join\n"))
 
     def test_a_refused_file_leaves_what_is_there(self):
         self.out.write_text("before", encoding="ascii")
@@ -199,12 +200,12 @@ class Options(Case):
 
     def test_an_output_that_cannot_be_written(self):
         out = self.place / "nowhere" / "a.csv"
-        self.assertEqual(self.run_tilt(self.file(TABLE), "-o", out), (2, f"tilt import: {out}: cannot be written: No such file or directory\n"))
+        self.assertEqual(self.run_tilt(self.file(TABLE), "-o", out), (2, f"tilt import: {out}: cannot write it: No such file or directory\n"))
 
     def test_files_of_different_forms_are_not_joined(self):
         first, second = self.file(TABLE, "a1.csv"), self.file("x,y,z\n1,2,3\n", "a2.csv")
         self.assertEqual(self.run_tilt(first, second, "--join", "-o", self.out),
-                         (2, f"tilt import: {second}: not of one form with {first}: their times, units or columns differ\n"))
+                         (2, f"tilt import: {second}: not in the form of {first}: times, units or columns differ\n"))
 
     def test_a_fault_in_a_joined_file_names_that_file(self):
         first, second = self.file(TABLE, "a1.csv"), self.file("t_ms,x,y,z\n600,1,2,3\n610,1,2,9999\n", "a2.csv")

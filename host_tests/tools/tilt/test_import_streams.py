@@ -91,7 +91,7 @@ class Quick(Case):
 
     def test_faults(self):
         rows = [f"{10 * i},{x},{y},{z}" for i, (x, y, z) in enumerate(LSB)]
-        cases = ((20, "200,1,2,9999", "1, 2, 9999 LSB by raw of 1 per LSB: outside -4096..4095, what an ADXL345 can give"),
+        cases = ((20, "200,1,2,9999", "1, 2, 9999 LSB by raw of 1 per LSB: outside an ADXL345's -4096..4095"),
                  (20, "189,1,2,3", "time goes backwards: 189 after 190"), (20, "200,1,2,3x", "not a number: '3x'"),
                  (20, "200,1,inf,3", "not a number: 'inf'"), (20, ",1,2,3", "not a number: ''"), (20, "nan,1,2,3", "not a number: 'nan'"),
                  (20, "200,1,2", "3 fields where the header has 4"))

@@ -65,9 +65,9 @@ class Found(Case):
 
     def test_a_unit_in_the_header(self):
         text = printed((1 / 256,) * 3, 5).replace("t_ms,x,y,z", "t_ms,x (g),y (g),z (g)")
-        self.assertIn("(said by the file", self.gives(text, LSB, every(10000)))
+        self.assertIn("(stated by the file", self.gives(text, LSB, every(10000)))
         text = printed((1000 / 256,) * 3, 0).replace("t_ms,x,y,z", "t_ms,x_mg,y_mg,z_mg")
-        self.assertIn("unit mg, 1/256 g (said by the file", self.gives(text, LSB, every(10000)))
+        self.assertIn("unit mg, 1/256 g (stated by the file", self.gives(text, LSB, every(10000)))
 
 
 class Asked(Case):
@@ -127,7 +127,7 @@ class Refused(Case):
         rows = "".join(",".join([str(10 * i), *(f"{value / 256 + 0.0017:.5f}" for value in LSB[i]), *(f"{value / 256:.5f}" for value in LSB[i])])
                        + "\n" for i in range(ROWS))
         text = "t_ms,x1,y1,z1,x2,y2,z2\n" + rows
-        self.assertIn("another sensor of the file may do: --sensor N", self.no_whole_numbers(text))
+        self.assertIn("or choose another sensor of the file: --sensor N", self.no_whole_numbers(text))
         self.gives(text, LSB, every(10000), "--sensor", 2)
 
 

@@ -336,7 +336,7 @@ class TestCommand(unittest.TestCase):
     def test_what_cannot_be_is_refused_with_the_place_and_leaves_nothing(self):
         there = self.folder / "there.csv"
         there.write_text("mine", encoding="ascii")
-        for words, said in (([self.folder / "port", "--record", there], "there.csv: is there already"),
+        for words, said in (([self.folder / "port", "--record", there], "there.csv: exists already"),
                             ([self.folder / "no_port", "--record", self.folder / "new.csv"], "no_port: No such file"),
                             ([self.folder / "no_port", "--record", self.folder / "no" / "new.csv"], "no folder")):
             program = self.live(*words)

@@ -91,7 +91,7 @@ class TestDirect(Case):
     def test_port_in_use_is_said(self):
         page = self.opened(PAGE_FILE, before=SPEAKS)
         page.value("port.busy = true; document.getElementById('connect').click()")
-        self.assertIn("does another program use it", page.until("tiltLive.figures().kind === 'down' && tiltLive.figures().words"))
+        self.assertIn("in use by another program", page.until("tiltLive.figures().kind === 'down' && tiltLive.figures().words"))
 
     def test_browser_without_webserial_is_told(self):
         page = self.opened(PAGE_FILE, before="delete Navigator.prototype.serial")

@@ -30,7 +30,7 @@ class TestServed(Case):
 
     def lights(self, page, talk):
         fault = "document.getElementById('fault')"
-        self.assertEqual(page.value(f"[{fault}.className, {fault}.textContent]"), ["card fault", "no fault told"])
+        self.assertEqual(page.value(f"[{fault}.className, {fault}.textContent]"), ["card fault", "no fault reported"])
         talk.say("# fault 8: SDA held low: check SDA, SCL, pull-ups, GND")
         page.until(f"{fault}.classList.contains('lit')")
         self.assertEqual(page.value(f"{fault}.textContent"), "fault 8: SDA held low: check SDA, SCL, pull-ups, GND")

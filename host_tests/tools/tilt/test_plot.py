@@ -267,12 +267,12 @@ class Refused(Case):
 
     def test_what_cannot_be_meant(self):
         path, out = self.recording(20), self.folder / "out.png"
-        self.refused("no column row; there are roll", path, "-o", out, "--columns", "row")
-        self.refused("none is named", path, "-o", out, "--columns", ",")
-        self.refused("ends with .png .svg .html", path, "-o", self.folder / "out.pdf")
-        self.refused("no row from 9 s to", path, "-o", out, "--from", "9")
+        self.refused("no column row: choose from roll", path, "-o", out, "--columns", "row")
+        self.refused("--columns: empty: name at least one", path, "-o", out, "--columns", ",")
+        self.refused("use one of .png .svg .html", path, "-o", self.folder / "out.pdf")
+        self.refused("no rows from 9 s to", path, "-o", out, "--from", "9")
         self.refused("absent.csv: cannot be read", self.folder / "absent.csv", "-o", out)
-        self.refused("cannot be written", path, "-o", self.folder / "no" / "out.png")
+        self.refused("cannot write it", path, "-o", self.folder / "no" / "out.png")
 
 
 class Page(Case):

@@ -88,7 +88,8 @@ class Lines(Case):
 
     def test_a_line_that_is_no_row_is_kept_as_a_comment_with_its_number_and_its_reason(self):
         bad = [b"1,2,3\n", row(20).replace(b",256,", b",25x,"), row(20).replace(b",256,", b",9256,"), b"\xff\x00,1\n"]
-        for line, reason in zip(bad, ("3 fields, the header has 10", "z_lsb is not a whole number", "z_lsb is outside", "bytes that no row has")):
+        for line, reason in zip(bad, ("3 fields, the header has 10", "z_lsb is not a whole number", "z_lsb is outside",
+                                      "bytes that never occur in a row")):
             counts, text = recorded(HEADER + rows(0, 20) + line + rows(21, 60))
             self.assertEqual((counts.malformed, counts.malformed_at, counts.rows, counts.gaps.on_the_way), (1, [22], 59, 1))
             self.assertIn(reason, text.splitlines()[21])
@@ -267,13 +268,13 @@ class Command(Case):
                 board.send(rows(0, 100))
         status, _, err, _ = self.run_tilt(script, speed=termios.B500000, LISTEN_S=2.0)
         self.assertEqual(status, 2)
-        self.assertIn("at 115200 baud is no text; at 500000 baud it is this firmware's: --baud 500000", err)
+        self.assertIn("no text at 115200 baud, but this firmware's at 500000 baud: give --baud 500000", err)
         self.assertFalse(self.file.exists())
 
     def test_what_is_no_board_of_ours_is_told(self):
-        cases = ((b"X: 0.12 Y: -0.33\n" * 30, "not this firmware's: 'X: 0.12 Y: -0.33'"),
+        cases = ((b"X: 0.12 Y: -0.33\n" * 30, "not from this firmware: 'X: 0.12 Y: -0.33'"),
                  (b"roll_raw:1.23,roll:1.20,pitch_raw:-0.42,pitch:-0.40,gated:0\n" * 30, "--send 'mode csv'"),
-                 (bytes(range(128, 256)) * 4, "is no text, nor at 9600"))
+                 (bytes(range(128, 256)) * 4, "no text at 115200 baud, nor at 9600"))
         for data, reason in cases:
             status, _, err, _ = self.run_tilt(lambda board, data=data: board.send(data), STRANGE_BYTES=100, LISTEN_S=0.01)
             self.assertEqual((status, self.file.exists()), (2, False))
@@ -282,7 +283,7 @@ class Command(Case):
     def test_silence_is_told(self):
         status, _, err, _ = self.run_tilt(lambda board: None, SILENT_S=0.1)
         self.assertEqual(status, 2)
-        self.assertIn("nothing came", err)
+        self.assertIn("nothing received", err)
 
     def test_no_port_a_busy_one_and_a_file_that_is_there(self):
         out, err = io.StringIO(), io.StringIO()
@@ -291,7 +292,7 @@ class Command(Case):
             self.file.write_text("precious")
             self.assertEqual(cli.main(["record", str(self.folder / "none"), "-o", str(self.file)]), 2)
         self.assertIn("none: No such file or directory (", err.getvalue())
-        self.assertIn("out.csv: is there already", err.getvalue())
+        self.assertIn("out.csv: exists already", err.getvalue())
         self.assertEqual(self.file.read_text(), "precious")
         self.file.unlink()
         with FakeBoard(self.folder, lambda board: None) as board, contextlib.redirect_stderr(err):

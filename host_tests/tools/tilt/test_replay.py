@@ -240,10 +240,11 @@ class Command(Case):
     def test_what_cannot_be_is_told(self):
         good = "sim/streams/steps.csv"
         dead = self.made(np.full((20, 3), -1))
-        for words, said in (([good, "--filter", f"{PLAIN},kx"], f"--filter: there is no filter 'kx'; there are {DEFAULT} {PLAIN} "),
-                            ([good, "--filter", f"{PLAIN},{PLAIN}"], f"--filter: {PLAIN} stands twice"),
-                            ([good, "--rate", "101"], "--rate: 101: one of 12.5 25 50 "),
-                            ([dead], "made.csv: no row: every row is missing or reads -1,-1,-1"), (["absent.csv"], "absent.csv: cannot be read: ")):
+        for words, said in (([good, "--filter", f"{PLAIN},kx"], f"--filter: no filter 'kx': choose from {DEFAULT} {PLAIN} "),
+                            ([good, "--filter", f"{PLAIN},{PLAIN}"], f"--filter: {PLAIN} is given twice: give it once"),
+                            ([good, "--rate", "101"], "--rate 101: choose from 12.5 25 50 "),
+                            ([dead], "made.csv: no usable row: every row is missing or reads -1,-1,-1"),
+                            (["absent.csv"], "absent.csv: cannot be read: ")):
             status, out, err = self.run_it(*words)
             self.assertEqual((status, out), (2, ""))
             self.assertIn(said, err)
@@ -263,7 +264,7 @@ class Command(Case):
 
     def test_one_row_has_no_rate(self):
         path = self.made(np.array([[0, 0, 256]]))
-        self.assertIn("all rows have one time", self.run_it(path)[2])
+        self.assertIn("all rows have the same time", self.run_it(path)[2])
         self.assertEqual(self.run_it(path, "--rate", "50", "--filter", PLAIN)[0], 0)
 
 
@@ -271,10 +272,10 @@ class Library(unittest.TestCase):
     def test_without_make_or_compiler_it_says_so(self):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            with mock.patch.dict(os.environ, {"PATH": folder}), self.assertRaisesRegex(errors.TiltError, "make cannot be run"):
+            with mock.patch.dict(os.environ, {"PATH": folder}), self.assertRaisesRegex(errors.TiltError, "cannot run make"):
                 native.library(root)
             (root / "Makefile").write_text("build/host/libtilt.so:\n\t@no-such-compiler -o $@\n", encoding="ascii")
-            with self.assertRaisesRegex(errors.TiltError, r"make could not build .*libtilt.so: .*no-such-compiler: .*installs the compiler"):
+            with self.assertRaisesRegex(errors.TiltError, r"make could not build .*libtilt.so: .*no-such-compiler: .*install the compiler"):
                 native.library(root)
 
     def test_it_is_built_again_when_a_source_is_newer(self):
@@ -305,7 +306,7 @@ class Library(unittest.TestCase):
         self.assertEqual((q.text(1234.4), q.text(0)), ("1234", "1"))
 
     def test_parameters_that_a_filter_refuses(self):
-        with self.assertRaisesRegex(errors.TiltError, f"{ROBUST} refuses its parameters: values that do not go together"):
+        with self.assertRaisesRegex(errors.TiltError, f"{ROBUST} rejects its parameters: the values contradict each other"):
             native.axis(ROBUST, 1000, [0], [1], {"reacquire": 4})
 
     def test_command_summary_counts(self):

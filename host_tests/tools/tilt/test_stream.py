@@ -158,7 +158,7 @@ class Writes(Case):
                                 ([0, 1], zeros, {"flags": [0, 65536]}), ([0, 1], zeros, {"flags": [0]})):
             with self.assertRaises(ValueError):
                 stream.write(self.path, t_us, lsb, **more)
-        with self.assertRaisesRegex(errors.TiltError, "cannot be written: No such file"):
+        with self.assertRaisesRegex(errors.TiltError, "cannot write it: No such file"):
             stream.write(self.path.parent / "absent" / "s.csv", [0], zeros[:1])
         with self.assertRaises(ZeroDivisionError):             # in the middle of the file
             stream.write(self.path, [0, 1], zeros, comments=(1 // n for n in (1, 0)))

@@ -130,7 +130,7 @@ class Recovers(Case):
         self.assertEqual((status, answer["rest_stretches"]), (0, 0))
         for found in answer["r_lsb2"]:  # 6,400 samples; R_SETTLED beside it
             self.assertLess(abs(found / (4.0 + ROUNDING) - 1.0), SIGMAS * math.sqrt(2.0 / 6400) + model.R_SETTLED)
-        self.assertIn("no stretch at rest was found", self.tune()[1])
+        self.assertIn("no stretch at rest found", self.tune()[1])
 
 
 class ClaimsNothing(Case):
@@ -173,7 +173,7 @@ class ClaimsNothing(Case):
     def test_no_motion(self):
         rng = np.random.default_rng(34)
         self.write(np.round(rng.normal([10, 20, 250], 2.0, (3000, 3))).astype(int))
-        self.refused("no motion that q could be told from", "no commands: the values that the filter ships with stay")
+        self.refused("too little motion to estimate q", "no commands: keep the filter's defaults")
         self.assertNotIn(f"filter {ROBUST}", self.tune()[1])
 
     def test_the_shipped_values_stay_where_they_predict_better(self):
@@ -182,7 +182,7 @@ class ClaimsNothing(Case):
         status, answer = self.answer()
         self.assertEqual((status, answer["commands"], answer["better_told"]), (0, [f"filter {ROBUST}"], True))
         self.assertLess(answer["better_percent"], 0.0)
-        self.assertIn(f"worse than with the values that {ROBUST} ships with: keep them", self.tune()[1])
+        self.assertIn(f"worse than with the defaults of {ROBUST}: keep them", self.tune()[1])
 
 
 class Rest(unittest.TestCase):
@@ -235,14 +235,14 @@ class Rest(unittest.TestCase):
 class Command(Case):
     def test_what_cannot_be_is_told(self):
         self.write(*made(np.random.default_rng(40), 400, 2.0))
-        for words, said in ((["--filter", DEFAULT], f"--filter: {DEFAULT} has no q in LSB2/s3; {PLAIN} {ROBUST}"),
-                            (["--filter", "kx"], "there is no filter 'kx'"),
-                            (["--filter", f"{PLAIN},{ROBUST}"], "--filter: one filter was expected")):
+        for words, said in ((["--filter", DEFAULT], f"--filter: {DEFAULT} has no q in LSB2/s3; choose from {PLAIN} {ROBUST}"),
+                            (["--filter", "kx"], "no filter 'kx': choose from"),
+                            (["--filter", f"{PLAIN},{ROBUST}"], f"--filter {PLAIN},{ROBUST}: give one filter")):
             status, out, err = self.tune(*words)
             self.assertEqual((status, out), (2, ""))
             self.assertIn(said, err)
         stream.write(self.path, [0], np.zeros((1, 3)))
-        self.assertIn("it has no rate", self.tune()[2])
+        self.assertIn("so the rate is unknown", self.tune()[2])
 
     def test_gaps_are_on_the_grid(self):
         keep = np.delete(np.arange(1000), [*range(100, 103), *range(500, 900)])

@@ -1,10 +1,10 @@
-"""Leads the owner of a real board through twenty checks that no simulator can do: pull a wire, short SDA, reset, power cut, baud rates.
+"""Leads the owner of a real board through twenty checks that no simulator can do: pull a wire, short SDA, reset, cut the power, change baud rates.
 
-The program says what to do, watches the serial line for itself, and writes each verdict into a record as it falls, so that nothing is lost
-when it ends early; --resume goes on from there. A check can be skipped (s REASON), repeated (r), or all of it ended (q) at any moment.
-docs/board.md says what is needed, and what to take care of.
+The program says what to do, watches the serial line, and writes each verdict to a record at once, so that nothing is lost if it ends early;
+--resume continues. At any time you can skip a check (s REASON), repeat it (r), or quit (q). docs/board.md lists what you need and what to take
+care of.
 
-Status: 0 no check failed, 1 one failed or is not done, 2 the port or a file cannot be used.
+Status: 0 no check failed, 1 a check failed or is not done, 2 the port or a file cannot be used.
 """
 import datetime
 import pathlib
@@ -15,18 +15,18 @@ from tilt.errors import TiltError
 from tilt.numbers import whole_option
 
 NAME = "board"
-SUMMARY = "check a real board by hand, and record how it went"
+SUMMARY = "check a real board by hand and record the results"
 
 
 def arguments(parser):
     parser.add_argument("port", metavar="PORT", nargs="?", help="/dev/ttyACM0, /dev/serial/by-id/..., COM3, or simrun's pseudo terminal")
-    parser.add_argument("-o", "--output", metavar="FILE", help="the record (default: tilt-board-DATE-TIME.jsonl here)")
-    parser.add_argument("--resume", metavar="FILE", help="go on with this record: what has passed is not done again")
-    parser.add_argument("--only", metavar="CHECK,...", help="these checks, as 'sda_short,scl_short'")
+    parser.add_argument("-o", "--output", metavar="FILE", help="record to write (default: tilt-board-DATE-TIME.jsonl here)")
+    parser.add_argument("--resume", metavar="FILE", help="continue this record: checks that passed are not repeated")
+    parser.add_argument("--only", metavar="CHECK,...", help="only these checks, such as 'sda_short,scl_short'")
     parser.add_argument("--baud", type=whole_option, default=protocol.BAUD_AT_START, metavar="N",
-                        help=f"of the line when it is opened (default {protocol.BAUD_AT_START})")
-    parser.add_argument("--show", metavar="FILE", help="print a record as a table; no PORT is needed")
-    parser.add_argument("--list", action="store_true", help="print the twenty checks; no PORT is needed")
+                        help=f"baud rate when the port is opened (default {protocol.BAUD_AT_START})")
+    parser.add_argument("--show", metavar="FILE", help="print a record as a table; needs no PORT")
+    parser.add_argument("--list", action="store_true", help="print the twenty checks; needs no PORT")
 
 
 def run(args):
@@ -41,7 +41,7 @@ def run(args):
     try:
         checks = chosen(args.only)
     except ValueError as why:
-        raise TiltError(f"--only: there is no check '{why}' (tilt board --list)") from why
+        raise TiltError(f"--only: no check '{why}': tilt board --list prints them") from why
     return on_board(checked(args), checks)
 
 
@@ -49,11 +49,11 @@ def checked(args):
     if args.port is None:
         from serial.tools import list_ports
         names = ", ".join(port.device for port in list_ports.comports())
-        raise TiltError(f"which port? tilt board PORT (there are: {names})" if names else "which port? No serial port is there: plug the board in")
+        raise TiltError(f"no port given: tilt board PORT (ports: {names})" if names else "no port given and no serial port found: plug the board in")
     if args.baud not in protocol.BAUDS:
-        raise TiltError(f"--baud {args.baud}: one of {', '.join(map(str, protocol.BAUDS))}")
+        raise TiltError(f"--baud {args.baud}: choose from {', '.join(map(str, protocol.BAUDS))}")
     if args.resume and args.output:
-        raise TiltError("-o and --resume: the record is one file; leave one of them out")
+        raise TiltError("-o and --resume both name the record: leave one of them out")
     return args
 
 
@@ -72,7 +72,7 @@ def on_board(args, checks):
     owner = Owner()
     record = Record(args.resume or args.output or default_path(), resumed=bool(args.resume))
     board = Board(Port(args.port, args.baud), Feed())
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # settings are put back, as after Ctrl-C
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # restores settings, as after Ctrl-C
     try:
         board.start()
         return checks_of(Bench(Wire(board), owner), record, checks, args.port)
@@ -82,27 +82,27 @@ def on_board(args, checks):
         signal.signal(signal.SIGTERM, before)
         board.end()
         record.close()
-        tell_record(record)
+        print_record(record)
 
 
 def checks_of(bench, record, checks, name):
-    """0 or 1, as the status."""
+    """The exit status, 0 or 1."""
     from tilt.board import identity
     from tilt.realboard.record import begin_line
     from tilt.realboard.session import Session, meet
 
     firmware, bench.settings = meet(bench, name)
     if record.read and record.read[0]["firmware"] != firmware:
-        raise TiltError(f"{record.path}: is of '{record.read[0]['firmware']}', this board has '{firmware}': begin a new record")
+        raise TiltError(f"{record.path}: of firmware '{record.read[0]['firmware']}', but the board has '{firmware}': start a new record")
     usb = identity(name)
     record.add(begin_line(name, list(usb[:2]) if usb else None, firmware, bench.settings))
-    bench.say(f"{firmware}\nThe record is {record.path}. Never connect 5 V or 3.3 V to GND.")
+    bench.say(f"{firmware}\nRecord: {record.path}. Never connect 5 V or 3.3 V to GND.")
     return 0 if Session(bench, record, checks).run() else 1
 
 
-def tell_record(record):
+def print_record(record):
     from tilt.realboard.checks import CHECKS
     from tilt.realboard.record import SENT_IN, tally
     if record.file is not None:
-        print(f"\n{record.path.resolve()}: {tally(record.last(), list(enumerate(CHECKS, 1)))}\nTo see it: tilt board --show {record.path}. "
-              f"To go on: --resume {record.path}. To send it in: {SENT_IN}.")
+        print(f"\n{record.path.resolve()}: {tally(record.last(), list(enumerate(CHECKS, 1)))}\nShow it: tilt board --show {record.path}. "
+              f"Continue: --resume {record.path}. Send it in: {SENT_IN}.")

@@ -1,8 +1,8 @@
-"""Which filter suits a recording: all of them over it, side by side.
+"""Which filter suits a recording: runs all of them over it, side by side.
 
-With truth columns (roll_true_cdeg, pitch_true_cdeg) filters are ranked by the angle between the direction that they show and the true one.
-Without, by how far each sample lies from what the filter predicted for it, an outlier counting as 4 sigmas for all. `vs best`: by how much
-worse, or `same` where the recording is too short or too noisy to tell.
+With truth columns (roll_true_cdeg, pitch_true_cdeg) filters are ranked by the angle between the filtered and the true direction; without them,
+by the distance of each sample from its prediction, at most 4 sigmas each. `vs best`: how much worse, or `same` if the recording is too short or
+too noisy to prove a difference.
 """
 import json
 
@@ -10,22 +10,22 @@ from tilt import PLAIN, ROBUST
 from tilt.commands import replay
 
 NAME = "compare"
-SUMMARY = "all filters on one recording: which is best there, and why"
+SUMMARY = "compare all filters on one recording: which is best, and why"
 TRUTH_HEAD = ("tilt rms", "roll rms", "pitch rms", "worst", "lag ms", "gated %", "re-acq.", "vs best")
 TRUTH_KEYS = ("tilt_rms_deg", "roll_rms_deg", "pitch_rms_deg", "worst_deg", "lag_ms", "gated_percent", "reacquired")
 BLIND_HEAD = ("misses by", "NIS", "lag-1", "wander", "gated %", "re-acq.", "vs best")
 BLIND_KEYS = ("misses_sigma", "nis", "lag1", "wander_deg", "gated_percent", "reacquired")
 FORMS = {"lag_ms": "{:.0f}", "gated_percent": "{:.2f}", "reacquired": "{}", "worst_deg": "{:.2f}"}
-OUTLIERS_PERCENT, STILL_SHARE = 1.0, 0.8  # from these on a recording is called so
+OUTLIERS_PERCENT, STILL_SHARE = 1.0, 0.8  # limits above which the verdict mentions them
 
 
 def arguments(parser):
     replay.stream_arguments(parser)
-    parser.add_argument("--json", action="store_true", help="everything as one JSON object")
+    parser.add_argument("--json", action="store_true", help="print all results as one JSON object")
 
 
 def facts_of(stream, tables, rate_dhz):
-    """What the recording itself is like: {outliers_percent, rest_seconds, still_share}, and the stretches at rest."""
+    """Properties of the recording itself: {outliers_percent, rest_seconds, still_share}, and the stretches at rest."""
     import numpy as np
     from tilt import judge, rest
 
@@ -64,7 +64,7 @@ def scores_without(tables, rate_dhz, found, sigma_lsb):
 
 
 def ranked(tables, numbers, losses, rate_hz):
-    """Filters, best first: their numbers, and by how much each is worse than the best: percent of rms, and whether that can be told."""
+    """Filters, best first: their numbers, how much worse than the best in percent of rms, and whether the difference is significant."""
     from tilt import judge
 
     order = sorted(losses, key=lambda name: losses[name].mean())
@@ -75,12 +75,12 @@ def ranked(tables, numbers, losses, rate_hz):
         worse = 100.0 * (float((losses[name].mean() / best.mean()) ** 0.5) - 1.0) if best.mean() > 0.0 else 0.0
         flags = tables[name]["flags"]
         found.append({"filter": name, **numbers[name], "gated_percent": replay.share(flags, 1), "reacquired": int(((flags & 4) != 0).sum()),
-                      "worse_percent": worse, "told_from_best": name != order[0] and away.told})
+                      "worse_percent": worse, "told_from_best": name != order[0] and away.significant})
     return found
 
 
 def judgement(stream, tables, rate_dhz):
-    """The whole answer, as --json prints it."""
+    """The whole result, as --json prints it."""
     from tilt import judge, native
     from tilt.errors import TiltError
 
@@ -88,7 +88,7 @@ def judgement(stream, tables, rate_dhz):
     scores = scores_with_truth(stream, tables) if stream.has_truth else scores_without(tables, rate_dhz, found, sigma_lsb)
     count = len(next(iter(scores[1].values())))
     if count == 0:
-        raise TiltError(f"{stream.path}: no row to judge by: {len(stream)} rows, and all are missing or filters are still starting")
+        raise TiltError(f"{stream.path}: no row to judge by: all {len(stream)} rows are missing or at the start of the filters")
     filters = ranked(tables, *scores, rate_dhz / 10)
     same = [row["filter"] for row in filters if not row["told_from_best"]]
     answer = {"stream": stream.path, "rate_hz": rate_dhz / 10, "seconds": stream.seconds, "rows_judged": count,
@@ -103,35 +103,35 @@ def size(row):
 
 
 def why(answer):
-    """Sentences: the choice, whether it can be told from the others, and what in the recording makes it."""
+    """Sentences: the best filter, whether it differs from the others, and which property of the recording decides."""
     rows = {row["filter"]: row for row in answer["filters"]}
     best = answer["filters"][0]
     if len(rows) == 1:
-        return [f"{best['filter']}: {size(best)}; nothing to compare it with."]
+        return [f"{best['filter']}: {size(best)}; nothing to compare with."]
     said = [f"Best: {best['filter']}, {size(best)}" + (" from the truth." if "tilt_rms_deg" in best else " from what it predicted.")]
     if not answer["enough"]:
-        said.append(f"{answer['rows_judged']} rows are too few to tell filters apart.")
+        said.append(f"{answer['rows_judged']} rows are too few to distinguish filters.")
     elif answer["same_as_best"]:
-        said.append(f"Within the noise of this recording it is no better than {', '.join(answer['same_as_best'])}: take the one you know.")
+        said.append(f"Within the noise of this recording it equals {', '.join(answer['same_as_best'])}: keep the one you know.")
     others = [row for row in answer["filters"] if row["told_from_best"]]
     if others:
         listed = ", ".join(f"{row['filter']} {row['worse_percent']:.0f} %" for row in others)
-        said.append(f"Worse for certain: {listed}.")
+        said.append(f"Certainly worse: {listed}.")
     return said + reasons(answer, rows, best)
 
 
 def reasons(answer, rows, best):
     said = []
     if answer["outliers_percent"] >= OUTLIERS_PERCENT:
-        plain = f"; {PLAIN}, which takes every one, is at {size(rows[PLAIN])}" if PLAIN in rows and best["filter"] != PLAIN else ""
+        plain = f"; {PLAIN}, which accepts all, is at {size(rows[PLAIN])}" if PLAIN in rows and best["filter"] != PLAIN else ""
         said.append(f"{answer['outliers_percent']:.1f} % of the readings lie more than 4 sigmas from where {ROBUST} expects them{plain}.")
     else:
-        said.append(f"{answer['outliers_percent']:.2f} % of the readings lie more than 4 sigmas from where {ROBUST} expects them: no outliers to "
-                    "speak of.")
+        said.append(f"{answer['outliers_percent']:.2f} % of the readings lie more than 4 sigmas from where {ROBUST} expects them: hardly any "
+                    "outliers.")
     if answer["still_share"] >= STILL_SHARE:
-        said.append(f"It lies still for {100 * answer['still_share']:.0f} % of the time: a long memory wins here, and would lag in motion.")
+        said.append(f"At rest for {100 * answer['still_share']:.0f} % of the time: a long memory wins here, but would lag in motion.")
     elif best.get("lag_ms") is not None:
-        said.append(f"It moves, and the best lags by {best['lag_ms']:.0f} ms.")
+        said.append(f"It moves, and the best filter lags by {best['lag_ms']:.0f} ms.")
     return said
 
 

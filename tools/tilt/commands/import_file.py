@@ -1,6 +1,6 @@
-"""Recordings in the formats that people use (docs/import.md), to our stream CSV: t_us and x, y, z in LSB.
+"""Converts recordings of other programs (docs/import.md) to a stream: t_us and x, y, z in LSB.
 
-The unit is found by the whole numbers that an ADXL345 gives, and told; what is no recording of one is refused with the reason.
+Finds the unit by the whole numbers that an ADXL345 gives, and prints it; rejects a file that is not a recording, with the reason.
 """
 import argparse
 import math
@@ -12,7 +12,7 @@ from tilt.errors import TiltError
 from tilt.numbers import real
 
 NAME = "import"
-SUMMARY = "recordings of many formats to a stream"
+SUMMARY = "convert a recording of another program to a stream"
 SUFFIX = ".stream.csv"
 
 
@@ -22,36 +22,36 @@ def rate(text):
     except ValueError:
         value = math.nan
     if not 0.01 <= value <= 10000.0:
-        raise argparse.ArgumentTypeError(f"'{text}' is no rate from 0.01 to 10000 Hz")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a rate from 0.01 to 10000 Hz")
     return value
 
 
 def sensor(text):
     if not (text.isascii() and text.isdigit()) or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"'{text}': sensors are counted from 1")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a sensor number: they start at 1")
     return int(text)
 
 
 def arguments(parser):
     parser.add_argument("files", nargs="+", metavar="FILE")
-    parser.add_argument("-o", "--out", metavar="OUT", help="where the stream goes (FILE without its ending, and .stream.csv)")
-    parser.add_argument("--join", action="store_true", help="several files are one recording, in the order of the numbers in their names")
-    parser.add_argument("--unit", metavar="UNIT", help="raw, g, mg, m/s2, mm/s2, k/265, or what one LSB counts: N, or N,N,N for x, y, z")
-    parser.add_argument("--rate", type=rate, metavar="HZ", help="the sample rate, where the file has no times (or to be used in their place)")
-    parser.add_argument("--columns", metavar="T,X,Y,Z", help="names or numbers (from 1) of the columns: x,y,z or time,x,y,z")
-    parser.add_argument("--sensor", type=sensor, default=1, metavar="N", help="which sensor of a file that holds several (1)")
+    parser.add_argument("-o", "--out", metavar="OUT", help="stream to write (default: FILE with .stream.csv in place of its suffix)")
+    parser.add_argument("--join", action="store_true", help="join the files into one recording, in the order of the numbers in their names")
+    parser.add_argument("--unit", metavar="UNIT", help="raw, g, mg, m/s2, mm/s2, k/265, or the value of one LSB: N, or N,N,N for x, y, z")
+    parser.add_argument("--rate", type=rate, metavar="HZ", help="sample rate, if the file has no times or wrong ones")
+    parser.add_argument("--columns", metavar="T,X,Y,Z", help="columns by name or number (from 1): x,y,z or time,x,y,z")
+    parser.add_argument("--sensor", type=sensor, default=1, metavar="N", help="which sensor of a file with several (default 1)")
 
 
 def by_numbers(path):
-    """Key of an order in which 2 comes before 10."""
+    """Sort key that puts 2 before 10."""
     return [(0, int(part), "") if part.isdigit() else (1, 0, part) for part in re.split(r"(\d+)", path) if part]
 
 
 def jobs_of(args):
-    """[(files, out)]. TiltError where an output would replace an input or another output."""
+    """[(files, out)]. TiltError if an output would replace an input or another output."""
     files = [str(file) for file in args.files]
     if args.out is not None and len(files) > 1 and not args.join:
-        raise TiltError("-o takes one file, or --join")
+        raise TiltError("-o: give one FILE, or --join")
     if args.join:
         files.sort(key=by_numbers)
         jobs = [(files, args.out or out_of(files[0]))]
@@ -64,7 +64,7 @@ def jobs_of(args):
         if place in inputs:
             raise TiltError(f"{named[0]}: the stream would replace {out}, an input: give another name with -o")
         if place in outs:
-            raise TiltError(f"{named[0]}: two files would go to {out}: import them one by one with -o")
+            raise TiltError(f"{named[0]}: two files would be written to {out}: import them one by one with -o")
         outs.add(place)
     return jobs
 
@@ -88,4 +88,4 @@ def run(args):
             print(f"tilt import: {why}", file=sys.stderr)
             failed += 1
     if failed:
-        raise TiltError(f"{failed} of {len(jobs)} files not imported, for the reasons above")
+        raise TiltError(f"{failed} of {len(jobs)} files not imported: see the reasons above")

@@ -1,10 +1,10 @@
-"""Shows a board in the browser: raw against filtered roll and pitch, an artificial horizon, the flags, the filter to choose.
+"""Shows a board in the browser: raw and filtered roll and pitch, an artificial horizon, the flags, and a choice of filters.
 
-The page is served to this machine alone, at the address that is printed. A board that is unplugged is waited for. Ctrl-C ends it.
-PORT is a serial port (/dev/ttyACM0, COM3) or the pseudo terminal that build/sim/simrun --pty names. Without this
-command the page works too: open tools/tilt/page/live.html itself in Chrome or Edge, which read the port by WebSerial.
+The page is served to this machine only, at the printed address. If the board is unplugged, the page waits for it. Ctrl-C ends.
+PORT is a serial port (/dev/ttyACM0, COM3) or the pseudo terminal that build/sim/simrun --pty prints. The page also works without
+this command: open tools/tilt/page/live.html in Chrome or Edge, which read the port by WebSerial.
 
-Status: 0 ended by Ctrl-C or SIGTERM, 1 the recording had to end before, 2 the port, the file or the address cannot be used.
+Status: 0 ended by Ctrl-C or SIGTERM, 1 the recording ended early, 2 the port, the file or the address cannot be used.
 """
 import contextlib
 import pathlib
@@ -22,12 +22,12 @@ SUMMARY = "show a board in the browser"
 
 def arguments(parser):
     parser.add_argument("port", metavar="PORT", help="/dev/ttyACM0, /dev/serial/by-id/..., COM3, or simrun's pseudo terminal")
-    parser.add_argument("--baud", type=whole_option, default=protocol.BAUD_AT_START, metavar="N", help="of the line when it is opened (default "
-                        f"{protocol.BAUD_AT_START}); `baud N`, typed in the page, is followed")
-    parser.add_argument("--no-reset", action="store_true", help="do not reset the board: join what runs")
-    parser.add_argument("--port-http", type=whole_option, default=0, metavar="N", help="TCP port of the page (default: a free one)")
-    parser.add_argument("--no-browser", action="store_true", help="only print the address")
-    parser.add_argument("--record", metavar="FILE", help="write what comes to a new file, as it comes (as `tilt record` does)")
+    parser.add_argument("--baud", type=whole_option, default=protocol.BAUD_AT_START, metavar="N", help="baud rate when the port is opened (default "
+                        f"{protocol.BAUD_AT_START}); follows `baud N` typed in the page")
+    parser.add_argument("--no-reset", action="store_true", help="join a running board without resetting it")
+    parser.add_argument("--port-http", type=whole_option, default=0, metavar="N", help="TCP port of the page (default: any free one)")
+    parser.add_argument("--no-browser", action="store_true", help="print the address only")
+    parser.add_argument("--record", metavar="FILE", help="also record to a new file, as `tilt record` does")
 
 
 def say(text):
@@ -36,7 +36,7 @@ def say(text):
 
 @contextlib.contextmanager
 def signals():
-    """An event that Ctrl-C and SIGTERM set."""
+    """An event set by Ctrl-C and SIGTERM."""
     ending = threading.Event()
     before = {number: signal.signal(number, lambda *_: ending.set()) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
@@ -68,7 +68,7 @@ def run(args):
             pass
     if output:
         output.close()
-        tell_recorded(recorder.counts, output.path)
+        print_summary(recorder.counts, output.path)
     return 1 if board.failed else 0
 
 
@@ -78,6 +78,6 @@ def show(address, only_print):
         say("no browser found: open the address above")
 
 
-def tell_recorded(counts, path):
+def print_summary(counts, path):
     from tilt.commands.record import summary
-    print(summary(counts, path) if counts.rows else f"{path}: no row came", file=sys.stderr)
+    print(summary(counts, path) if counts.rows else f"{path}: no row received", file=sys.stderr)

@@ -1,8 +1,8 @@
-"""Draws recordings: raw against filtered roll and pitch, what the filter refused, the flags, the truth where the file has it, and the spectrum.
+"""Draws recordings: raw against filtered roll and pitch, the gated readings, the flags, the truth if the file has it, and the spectrum.
 
-Takes what the firmware sent (tilt record), what tilt replay wrote, and plain streams (t_us,x,y,z). Several files are drawn over each other, or
-with --stack one below the other. The suffix of -o says which: .png and .svg are pictures, .html is a page of one file that opens in any
-browser without a network, with zoom, drag and the numbers under the pointer.
+Reads what the firmware sent (tilt record), what tilt replay wrote, and plain streams (t_us,x,y,z). Several files are drawn over each other, or
+with --stack one below the other. The suffix of -o decides: .png and .svg are pictures, .html is one self-contained page for any browser,
+with zoom, drag and the numbers under the pointer.
 """
 import pathlib
 import sys
@@ -15,26 +15,26 @@ SUMMARY = "draw recordings: raw against filtered, flags, spectrum"
 SUFFIXES = ("png", "svg", "html")
 KINDS = ("roll", "pitch", "x", "y", "z", "flags", "spectrum")
 USUAL = ("roll", "pitch", "flags", "spectrum")
-BIG_BYTES = 8 << 20  # from here on reading shows how far it is
+BIG_BYTES = 8 << 20  # from this size on, reading shows progress
 
 
 def arguments(parser):
     parser.add_argument("files", nargs="+", metavar="FILE", help="recordings or streams")
     parser.add_argument("-o", "--output", metavar="OUT", help="OUT.png, OUT.svg or OUT.html (default: the first FILE with .png, here)")
-    parser.add_argument("--columns", metavar="LIST", default=",".join(USUAL), help=f"of {' '.join(KINDS)}, with commas (default: %(default)s)")
-    parser.add_argument("--from", dest="from_s", type=real_option, metavar="S", help="begin at S seconds from the start of each file")
-    parser.add_argument("--to", dest="to_s", type=real_option, metavar="S", help="end at S seconds")
-    parser.add_argument("--stack", action="store_true", help="files one below the other")
-    parser.add_argument("--title", help="headline (default: the files' names)")
+    parser.add_argument("--columns", metavar="LIST", default=",".join(USUAL), help=f"comma-separated, of {' '.join(KINDS)} (default: %(default)s)")
+    parser.add_argument("--from", dest="from_s", type=real_option, metavar="S", help="begin S seconds after the start of each file")
+    parser.add_argument("--to", dest="to_s", type=real_option, metavar="S", help="end S seconds after the start of each file")
+    parser.add_argument("--stack", action="store_true", help="draw files one below the other")
+    parser.add_argument("--title", help="title (default: the files' names)")
 
 
 def kinds_of(text):
     kinds = [word.strip() for word in text.split(",") if word.strip()]
     for kind in kinds:
         if kind not in KINDS:
-            raise TiltError(f"--columns: no column {kind}; there are {' '.join(KINDS)}")
+            raise TiltError(f"--columns: no column {kind}: choose from {' '.join(KINDS)}")
     if not kinds:
-        raise TiltError("--columns: none is named")
+        raise TiltError("--columns: empty: name at least one")
     return [kind for kind in KINDS if kind in kinds]
 
 
@@ -42,12 +42,12 @@ def output_of(args):
     path = pathlib.Path(args.output or pathlib.Path(args.files[0]).with_suffix(".png").name)
     suffix = path.suffix[1:].lower()
     if suffix not in SUFFIXES:
-        raise TiltError(f"{path}: a name that ends with .{' .'.join(SUFFIXES)} is needed")
+        raise TiltError(f"{path}: unknown suffix: use one of .{' .'.join(SUFFIXES)}")
     return path, suffix
 
 
 def progress_of(path):
-    """A progress bar for a big file, on a terminal."""
+    """A progress bar for a large file, on a terminal."""
     if not sys.stderr.isatty() or not pathlib.Path(path).is_file() or pathlib.Path(path).stat().st_size < BIG_BYTES:
         return None
     from tqdm import tqdm

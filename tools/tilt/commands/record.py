@@ -1,10 +1,10 @@
-"""Writes what the board sends into a file that every other command, the simulator and a spreadsheet can read.
+"""Writes what the board sends to a file that every other command, the simulator and a spreadsheet can read.
 
-Opening the port resets the board (as every serial monitor does), so the file begins with its banner. With --no-reset it joins what runs.
-Rows go to the file as they come. When the port disappears the command waits for it and goes on in the same file, where a repeated header begins
+Opening the port resets the board (as every serial monitor does), so the file begins with its banner. --no-reset joins a running board.
+Rows are written as they arrive. If the port disappears, the command waits for it and continues in the same file, where a repeated header begins
 a new segment. It ends after --seconds, by Ctrl-C, or by SIGTERM.
 
-Status: 0 nothing is missing, 1 rows are missing (how many, and why, is told), 2 the port or the file cannot be used.
+Status: 0 nothing is missing, 1 rows are missing (it prints how many, and why), 2 the port or the file cannot be used.
 """
 import contextlib
 import datetime
@@ -21,15 +21,15 @@ from tilt.port import Gone, Port, Unreadable
 from tilt.recorder import Recorder
 
 NAME = "record"
-SUMMARY = "write what a board sends into a file, and count what is missing"
+SUMMARY = "record what a board sends, and count what is missing"
 SILENT_S = 6.0        # the boot loader takes 2 s, the banner at 9600 baud 0.4 s
-STRANGE_BYTES, STRANGE_S = 200, 2.0  # of which no line is ours: the port is not what it should be
+STRANGE_BYTES, STRANGE_S = 200, 2.0  # without one line of this firmware: probably the wrong port
 PRINTABLE_SHARE = 0.95
-SEND_AFTER_S, SEND_SILENT_S = 1.0, 3.0  # where no header has come: it may be in plotter mode; it may have been stopped
-ANSWER_S = 1.0        # the next command waits for the answer to the one before: the board holds 64 bytes
-BAUD_ANSWER_S = 10.0  # and for that to `baud` longer: what is typed into the change of the line is lost
-LISTEN_S = 0.6        # at each baud rate, when looking for the right one
-BACK_AFTER_S = 1.5    # without a line that can be read, to the baud rate at start
+SEND_AFTER_S, SEND_SILENT_S = 1.0, 3.0  # without a header: the board may be in plotter mode, or stopped
+ANSWER_S = 1.0        # a command waits for the answer to the previous one: the board buffers 64 bytes
+BAUD_ANSWER_S = 10.0  # and longer for the answer to `baud`: input during the change is lost
+LISTEN_S = 0.6        # at each baud rate, when searching for the right one
+BACK_AFTER_S = 1.5    # without a readable line, return to the first baud rate
 RETRY_S = 0.2
 SHOW_S = 0.5
 QUIET_S = 1.0         # without a row, --seconds counts by the PC's clock
@@ -38,30 +38,30 @@ BAUD_SET = re.compile(r"# baud (\d+)\Z")
 
 def arguments(parser):
     parser.add_argument("port", metavar="PORT", help="/dev/ttyACM0, /dev/serial/by-id/..., COM3, or simrun's pseudo terminal")
-    parser.add_argument("-o", "--output", metavar="FILE", help="to write (default: tilt-DATE-TIME.csv here)")
+    parser.add_argument("-o", "--output", metavar="FILE", help="file to write (default: tilt-DATE-TIME.csv here)")
     parser.add_argument("--force", action="store_true", help="overwrite FILE")
-    parser.add_argument("--seconds", type=real_option, metavar="N", help="end after N seconds by the board's clock (the PC's while nothing comes)")
+    parser.add_argument("--seconds", type=real_option, metavar="N", help="end after N seconds by the board's clock (the PC's while no rows arrive)")
     parser.add_argument("--baud", type=whole_option, default=protocol.BAUD_AT_START, metavar="N",
-                        help=f"of the line (default {protocol.BAUD_AT_START})")
-    parser.add_argument("--send", action="append", default=[], metavar="COMMAND", help="type this when the board is there, as 'rate 200'; "
-                        "again after each reset; may be given more than once; `baud N` is followed")
-    parser.add_argument("--no-reset", action="store_true", help="do not reset the board: join what runs (on Linux the very first opening after "
-                        "plugging in may reset it all the same)")
+                        help=f"baud rate (default {protocol.BAUD_AT_START})")
+    parser.add_argument("--send", action="append", default=[], metavar="COMMAND", help="send this command to the board, such as 'rate 200', "
+                        "and again after each reset; repeatable; follows `baud N`")
+    parser.add_argument("--no-reset", action="store_true", help="join a running board without resetting it (on Linux the first opening "
+                        "after plugging in may reset it anyway)")
     parser.add_argument("--no-reconnect", action="store_true", help="end when the port disappears")
 
 
 class Output:
-    """The file; made with its first line, so that a port that is not a board leaves none."""
+    """The output file, created with its first line, so that a port that is not a board leaves no file."""
 
     def __init__(self, path, force):
         self.path, self.force, self.file, self.size = path, force, None, 0
         if path.exists() and not force:
-            raise TiltError(f"{path}: is there already (--force overwrites it, -o takes another name)")
+            raise TiltError(f"{path}: exists already: give --force to overwrite it, or another name with -o")
         if not path.parent.is_dir():
             raise TiltError(f"{path}: no folder {path.parent}")
 
     def write(self, data):
-        """All of it, or nothing and TiltError: no half row stays when the disk is full."""
+        """Writes all of it, or nothing and raises TiltError: a full disk leaves no half row."""
         try:
             if self.file is None:
                 self.file = open(self.path, "wb" if self.force else "xb", buffering=0)  # pylint: disable=consider-using-with
@@ -71,7 +71,7 @@ class Output:
             self.size += len(data)
         except OSError as why:
             self.cut_back()
-            raise TiltError(f"{self.path}: {why.strerror}; what came before is in the file") from why
+            raise TiltError(f"{self.path}: {why.strerror}; the file holds what came before") from why
 
     def cut_back(self):
         with contextlib.suppress(OSError, AttributeError):
@@ -83,7 +83,7 @@ class Output:
 
 
 class Screen:
-    """What a person sees meanwhile, on stderr: the board's words, and on a terminal one line that is kept up to date."""
+    """The progress shown on stderr: the board's messages, and on a terminal one line that is updated."""
 
     def __init__(self):
         self.live, self.shown, self.rows = sys.stderr.isatty(), 0.0, (0.0, 0)
@@ -110,7 +110,7 @@ class Screen:
 
 
 class Session:
-    """One recording: the port, the recorder, and what has been typed."""
+    """One recording: the port, the recorder, and the commands typed."""
 
     def __init__(self, args, port, recorder, screen):
         self.args, self.port, self.recorder, self.screen = args, port, recorder, screen
@@ -142,13 +142,13 @@ class Session:
                 now - self.first_row > self.args.seconds and now - self.last_row > QUIET_S)
 
     def said(self, text):
-        """A '#' line of the board."""
+        """Handles a '#' line of the board."""
         self.screen.say(text)
         baud = BAUD_SET.match(text)
         if baud:
             self.port.baud = int(baud.group(1))
             self.recorder.join()
-            self.changed, self.typed, self.last_typed = self.recorder.understood, time.monotonic(), ""  # a stopped board says no more
+            self.changed, self.typed, self.last_typed = self.recorder.understood, time.monotonic(), ""  # a stopped board sends no more
         elif self.last_typed and text.startswith((f"# {self.last_typed}", "# refused")):
             self.answered = True
         if text.startswith(protocol.BANNER):
@@ -158,7 +158,7 @@ class Session:
         now, before, rows, self.answered = time.monotonic(), self.recorder.understood, self.recorder.counts.rows, False
         self.recorder.feed(data)
         if self.changed is not None and self.recorder.understood > self.changed:
-            self.changed, self.answered = None, True  # only a line at the new speed says that the board has it too
+            self.changed, self.answered = None, True  # only a line at the new rate shows that the board has changed too
         if self.answered:
             self.send_next()
         if self.recorder.counts.rows > rows:
@@ -170,16 +170,16 @@ class Session:
             self.judge_unreadable(self.unreadable.lasts_s(len(data), self.recorder.understood > before))
 
     def judge_unreadable(self, lasts_s):
-        """Back to the first baud rate."""
+        """Returns to the first baud rate."""
         if lasts_s > BACK_AFTER_S and self.port.baud != self.args.baud:
-            self.screen.say(f"tilt record: nothing to read at {self.port.baud} baud: back to {self.args.baud}")
+            self.screen.say(f"tilt record: unreadable at {self.port.baud} baud: back to {self.args.baud}")
             self.port.baud, self.unreadable = self.args.baud, Unreadable()
 
     def judge_strange(self, waited_s):
-        """TiltError when what comes is not this firmware's, or nothing comes."""
+        """TiltError if nothing arrives, or input that is not this firmware's."""
         if not self.strange and waited_s > SILENT_S:
-            raise TiltError(f"{self.port.name}: nothing came in {waited_s:.0f} s at {self.port.baud} baud: is it the right port, has the board "
-                            "this firmware, was it stopped (--send go)?")
+            raise TiltError(f"{self.port.name}: nothing received in {waited_s:.0f} s at {self.port.baud} baud: check the port, whether the board has "
+                            "this firmware, and whether it was stopped (--send go)")
         if len(self.strange) > STRANGE_BYTES and waited_s > STRANGE_S and (self.sent or not self.args.send):
             raise TiltError(f"{self.port.name}: {what_it_is(self.strange, self.port)}")
 
@@ -199,7 +199,7 @@ class Session:
             self.port.send(command)
 
     def wait_for_port(self):
-        """False: not to be waited for, or ended meanwhile."""
+        """False: do not wait, or ended while waiting."""
         self.recorder.outage()
         self.port.baud_at_next_opening(self.args.baud)
         if self.args.no_reconnect:
@@ -216,21 +216,21 @@ class Session:
 
 
 def what_it_is(strange, port):
-    """Why bytes of which no line is ours came, and what to do."""
+    """Explains bytes without one line of this firmware, and what to do."""
     lines = strange.decode("latin-1").replace("\r", "").split("\n")
     if any(protocol.PLOTTER_ROW.match(line) for line in lines):
-        return "the board is in plotter mode: --send 'mode csv'"
+        return "the board is in plotter mode: give --send 'mode csv'"
     if sum(32 <= byte < 127 or byte in b"\t\r\n" for byte in strange) > PRINTABLE_SHARE * len(strange):
-        return f"text comes, but not this firmware's: '{max(lines[:4], key=len)[:80].strip()}'"
+        return f"received text, but not from this firmware: '{max(lines[:4], key=len)[:80].strip()}'"
     tried = port.baud
     found = find_baud(port)
     if found:
-        return f"what comes at {tried} baud is no text; at {found} baud it is this firmware's: --baud {found}"
-    return f"what comes at {tried} baud is no text, nor at {', '.join(str(baud) for baud in protocol.BAUDS if baud != tried)}: is it the right port?"
+        return f"no text at {tried} baud, but this firmware's at {found} baud: give --baud {found}"
+    return f"no text at {tried} baud, nor at {', '.join(str(baud) for baud in protocol.BAUDS if baud != tried)}: check the port"
 
 
 def find_baud(port):
-    """The baud rate at which the lines are ours, or None."""
+    """The baud rate at which this firmware's lines are readable, or None."""
     print(f"tilt record: no text at {port.baud} baud, trying others", file=sys.stderr)
     for baud in sorted(protocol.BAUDS, reverse=True):
         if baud == port.baud:
@@ -247,16 +247,17 @@ def find_baud(port):
 def summary(counts, path):
     lines = [f"{path}: {counts.rows:,} rows, {counts.span_us * 1e-6:.1f} s"]
     gaps = counts.gaps
-    told = [(gaps.on_the_way, "rows missing by their times: lost on the way"), (gaps.by_the_board, "rows dropped by the board: the line is too slow"),
-            (counts.cut, "rows cut short"), (counts.resets, "resets of the board"), (counts.outages, "times the port was gone")]
-    lines += [f"{number} {text}" for number, text in told if number]
+    found = [(gaps.on_the_way, "rows missing by their times: lost on the way"),
+             (gaps.by_the_board, "rows dropped by the board: the line is too slow"), (counts.cut, "rows cut short"),
+             (counts.resets, "resets of the board"), (counts.outages, "times the port was gone")]
+    lines += [f"{number} {text}" for number, text in found if number]
     if counts.malformed:
         places = ", ".join(map(str, counts.malformed_at)) + (", ..." if counts.malformed > len(counts.malformed_at) else "")
-        lines.append(f"{counts.malformed} lines that are no rows, kept as # lines: {path}:{places}")
+        lines.append(f"{counts.malformed} lines that are not rows, kept as # lines: {path}:{places}")
     if counts.plotter:
         lines.append(f"{counts.plotter} rows of the plotter mode, kept as # lines")
     if gaps.pauses:
-        lines.append(f"{gaps.pauses} pauses where the board had no sample or was told something, {gaps.pauses_us * 1e-6:.1f} s in all")
+        lines.append(f"{gaps.pauses} pauses in which the board had no sample or handled a command, {gaps.pauses_us * 1e-6:.1f} s in all")
     lines.append("nothing is missing" if counts.complete() else "something is missing")
     return "\n".join(lines)
 
@@ -267,14 +268,14 @@ def default_path():
 
 def checked(args):
     if args.seconds is not None and not 0 < args.seconds < float("inf"):
-        raise TiltError(f"--seconds {args.seconds:g}: a time greater than 0")
+        raise TiltError(f"--seconds {args.seconds:g}: give a time above 0")
     if args.baud <= 0:
-        raise TiltError(f"--baud {args.baud}: one of {', '.join(map(str, protocol.BAUDS))}")
+        raise TiltError(f"--baud {args.baud}: choose from {', '.join(map(str, protocol.BAUDS))}")
 
 
 @contextlib.contextmanager
 def ended_by_signals(session):
-    """Ctrl-C and SIGTERM end the recording at the next line, never within one."""
+    """Ctrl-C and SIGTERM end the recording at the end of a line, never within one."""
     def end(*_):
         session.ends = True
     before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
@@ -302,6 +303,6 @@ def run(args):
         output.close()
     session.screen.end()
     if not recorder.counts.rows:
-        raise TiltError(f"{args.port}: no row came")
+        raise TiltError(f"{args.port}: no row received")
     print(summary(recorder.counts, path))
     return 0 if recorder.counts.complete() else 1

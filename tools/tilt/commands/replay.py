@@ -1,8 +1,8 @@
 """Runs a recording through the firmware's own filters on the PC.
 
-The rows are those that the board would send, to the last digit (docs/tools.md says where that ends). With one filter the columns of the
-output are the firmware's; with several each has its own, as roll_cdeg_kf, and `flags` holds what they have in common. Truth columns are
-passed on. Rows go out at the times of the recording; a row that stands for a sample that is missing has flag 2.
+The rows are those that the board would send, to the last digit (docs/tools.md lists the limits). With one filter the output has the firmware's
+columns; with several, each has its own, such as roll_cdeg_kf, and `flags` holds the flags common to all. Truth columns are passed on. Rows have
+the times of the recording; a row for a missing sample has flag 2.
 """
 import os
 import sys
@@ -17,22 +17,22 @@ OWN = ("x_mg", "y_mg", "z_mg", "roll_cdeg", "pitch_cdeg", "flags")
 
 
 def stream_arguments(parser):
-    """What replay, compare and tune have in common."""
+    """Arguments common to replay, compare and tune."""
     parser.add_argument("stream", metavar="STREAM", help="recording (docs/protocol.md, Streams)")
-    parser.add_argument("--filter", metavar="A,B,C", help="names of filters (default: all)")
+    parser.add_argument("--filter", metavar="A,B,C", help="filters (default: all)")
     parser.add_argument("--rate", metavar="HZ", type=real_option,
-                        help="output data rate of the sensor (default: that of the firmware's nearest to the recording)")
+                        help="output data rate of the sensor (default: the firmware's rate nearest to the recording's)")
 
 
 def arguments(parser):
     stream_arguments(parser)
     parser.add_argument("--range", metavar="G", type=whole_option, choices=(2, 4, 8, 16), default=16,
                         help="range of the sensor: 2 4 8 16 (default 16)")
-    parser.add_argument("-o", "--output", metavar="OUT.csv", help="rows, - for standard output")
+    parser.add_argument("-o", "--output", metavar="OUT.csv", help="file of rows to write, - for standard output")
 
 
 def columns_of(tables):
-    """{column: numbers} of the rows of all filters, and the flags that all have."""
+    """{column: numbers} of the rows of all filters, and the flags common to all."""
     import numpy as np
 
     found, alone = {}, len(tables) == 1
@@ -45,7 +45,7 @@ def columns_of(tables):
 
 
 def truth_of(stream, rows):
-    """The truth columns for these rows; that of the row before for a prediction."""
+    """The truth columns for these rows; a prediction has that of the previous row."""
     import numpy as np
 
     if not stream.has_truth:
@@ -54,23 +54,23 @@ def truth_of(stream, rows):
     return {"roll_true_cdeg": stream.roll_true_cdeg[source], "pitch_true_cdeg": stream.pitch_true_cdeg[source]}
 
 
-def write(path, stream, tables, told):
+def write(path, stream, tables, report):
     from tilt import stream as streams
 
     rows = next(iter(tables.values()))
     streams.write("/dev/stdout" if path == "-" else path, rows["t_us"] + stream.start_us, rows["lsb"], columns=columns_of(tables),
-                  **truth_of(stream, rows), progress=told)
+                  **truth_of(stream, rows), progress=report)
 
 
 def replayed(stream, names, rate_dhz, range_g=16):
-    """native.replay, with a bar; TiltError where no row comes out."""
+    """native.replay with a progress bar; TiltError if there is no row."""
     from tilt import native
     from tilt.progress import bar
 
-    with bar("filters", "filter") as told:
-        tables = native.replay(stream, names, rate_dhz, range_g, told)
+    with bar("filters", "filter") as report:
+        tables = native.replay(stream, names, rate_dhz, range_g, report)
     if not len(tables[names[0]]):
-        raise TiltError(f"{stream.path}: no row: every row is missing or reads -1,-1,-1, as a sensor without power does")
+        raise TiltError(f"{stream.path}: no usable row: every row is missing or reads -1,-1,-1, like a sensor without power")
     return tables
 
 
@@ -81,7 +81,7 @@ def share(flags, bit):
 def summary(stream, tables, rate_dhz):
     from tilt import native
 
-    how = "a row a tick" if native.row_per_tick(stream, rate_dhz) else "each tick the row in force then"
+    how = "one row per tick" if native.row_per_tick(stream, rate_dhz) else "at each tick the latest row"
     lines = [f"{stream.path}: {len(stream)} rows at {stream.rate_hz:.1f} Hz, {stream.seconds:.1f} s; sensor at {rate_dhz / 10:g} Hz: {how}",
              f"{'filter':<11}{'rows':>8}{'gated %':>9}{'re-acquired':>13}{'predicted %':>13}{'clipped %':>11}{'not 1 g %':>11}"]
     for name, rows in tables.items():
@@ -92,7 +92,7 @@ def summary(stream, tables, rate_dhz):
 
 
 def checked_output(args):
-    """TiltError where the rows would replace the recording, with what only it holds."""
+    """TiltError if the rows would replace the recording itself."""
     if args.output and args.output != "-" and os.path.exists(args.output) and os.path.samefile(args.stream, args.output):
         raise TiltError(f"{args.output}: the rows would replace the recording: give another name with -o")
 
@@ -103,15 +103,15 @@ def run(args):
 
     names = native.chosen(args.filter)
     began = time.perf_counter()
-    with bar("reading", "B") as told:
-        stream = streams.read(args.stream, progress=told)
+    with bar("reading", "B") as report:
+        stream = streams.read(args.stream, progress=report)
     rate_dhz = native.rate_of(stream, args.rate)
     checked_output(args)
     tables = replayed(stream, names, rate_dhz, args.range)
     took = time.perf_counter() - began
     if args.output:
-        with bar("writing", "row") as told:
-            write(args.output, stream, tables, told)
+        with bar("writing", "row") as report:
+            write(args.output, stream, tables, report)
     out = sys.stderr if args.output == "-" else sys.stdout
     print("\n".join(summary(stream, tables, rate_dhz)), file=out)
     what = f"{len(names)} filters" if len(names) > 1 else "1 filter"

@@ -1,27 +1,27 @@
-"""Times as a file has them to microseconds from the first row, never stepping back."""
+"""Converts a file's times to microseconds from the first row; they never step back."""
 import numpy as np
 
 from tilt.errors import TiltError
 
 PER_SECOND = {"s": 1.0, "clock": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 DAY_S, WRAP, WRAP_STEP = 86400.0, 2.0 ** 32, 2.0 ** 31
-RATE_LOW, RATE_HIGH = 4.0, 4000.0  # Hz; a factor of 1,000, so that of s, ms, us, ns only one can be meant
+RATE_LOW, RATE_HIGH = 4.0, 4000.0  # Hz; a factor of 1,000, so only one of s, ms, us, ns fits
 GAP = 2.5  # periods
 
 
 def to_us(readings, rate, notes):
-    """int64 microseconds. rate: Hz as asked for, or None. TiltError with the line where time steps back or cannot be told."""
+    """int64 microseconds. rate: Hz if given, or None. TiltError, with the line, if time steps back or cannot be determined."""
     count = len(readings.values)
     if rate is not None and readings.time_unit == "count" and readings.time is not None:
         return of_count(readings, rate, notes)
     if rate is not None:
         if readings.time is not None:
-            notes.append(f"times of the file not used: --rate {rate:g}")
+            notes.append(f"times of the file ignored: --rate {rate:g}")
         return np.rint(np.arange(count) * (1e6 / rate)).astype(np.int64)
     if readings.time is None:
         raise TiltError(f"{readings.path}: no column of times: give the rate with --rate HZ")
     if readings.time_unit == "count":
-        raise TiltError(f"{readings.path}: a counter of samples, no times: give the rate with --rate HZ")
+        raise TiltError(f"{readings.path}: a sample counter, but no times: give the rate with --rate HZ")
     unit = readings.time_unit or unit_by_steps(readings)
     time = segments_joined(readings, unwrapped(readings, unit))
     if readings.own:
@@ -38,16 +38,16 @@ def of_count(readings, rate, notes):
     if len(back):
         raise readings.fault(int(back[0]) + 1, f"the counter goes from {readings.time[back[0]]:g} to {readings.time[back[0] + 1]:g}")
     if (steps > 1).any():
-        notes.append(f"the counter leaves out {int((steps - 1).sum())} samples")
+        notes.append(f"the counter skips {int((steps - 1).sum())} samples")
     return np.rint((readings.time - readings.time[0]) * (1e6 / rate)).astype(np.int64)
 
 
 def unit_by_steps(readings):
-    """s, ms, us or ns: that which makes the usual step one of a sensor's."""
+    """s, ms, us or ns: the one that makes the usual step a sensor's period."""
     steps = np.diff(readings.time)
     steps = steps[steps > 0]
     if len(steps) == 0:
-        raise TiltError(f"{readings.path}: times do not move: give the rate with --rate HZ")
+        raise TiltError(f"{readings.path}: the times are constant: give the rate with --rate HZ")
     step = float(np.median(steps))
     for unit in ("s", "ms", "us", "ns"):
         if RATE_LOW <= PER_SECOND[unit] / step < RATE_HIGH:
@@ -55,11 +55,11 @@ def unit_by_steps(readings):
     for unit in ("s", "ms", "us", "ns"):  # a slow logger
         if 1.0 <= PER_SECOND[unit] / step < RATE_HIGH:
             return unit
-    raise TiltError(f"{readings.path}: steps of {step:g} in the times are no sensor's in s, ms, us or ns: give the rate with --rate HZ")
+    raise TiltError(f"{readings.path}: time steps of {step:g} fit no sensor in s, ms, us or ns: give the rate with --rate HZ")
 
 
 def unwrapped(readings, unit):
-    """Midnight of a wall clock and the wrap of a 32-bit counter undone; any other step back is a fault."""
+    """Removes the midnight of a wall clock and the wrap of a 32-bit counter; any other step back is a fault."""
     time = readings.time
     steps = np.diff(time)
     back = steps < 0
@@ -79,7 +79,7 @@ def unwrapped(readings, unit):
 
 
 def segments_joined(readings, time):
-    """A header that stands again: the board began anew. Its time goes on one period later (docs/protocol.md)."""
+    """A repeated header means that the board restarted. Its time continues one period later (docs/protocol.md)."""
     if not readings.segments:
         return time
     inside = np.ones(len(time) - 1, dtype=bool)

@@ -1,4 +1,4 @@
-"""Which column is what: from the header, from --columns, or from the numbers themselves."""
+"""The meaning of each column: from the header, from --columns, or from the numbers."""
 import re
 from dataclasses import dataclass, field
 from typing import Optional
@@ -17,14 +17,14 @@ TIMES = {"t": None, "time": None, "timestamp": None, "time_stamp": None, "dateti
          "timestamp_ns": "ns", "ns": "ns", "count": "count", "counter": "count", "sample": "count", "samples": "count", "index": "count",
          "n": "count", "seq": "count", "i": "count", "idx": "count", "nr": "count"}
 TIME_UNITS = {"s": "s", "sec": "s", "seconds": "s", "ms": "ms", "us": "us", "µs": "us", "ns": "ns"}
-KEPT = ("flags", "roll_true_cdeg", "pitch_true_cdeg")  # columns of our own streams that go along
+KEPT = ("flags", "roll_true_cdeg", "pitch_true_cdeg")  # columns of our own streams that are copied
 PREFERRED = ("lsb", "raw", "counts")
 EPOCH = 1e8  # seconds: 1973
 
 
 @dataclass
 class Columns:
-    """Fields of a row, counted from 0."""
+    """Positions in a row, from 0."""
     axes: tuple
     time: Optional[int] = None
     time_unit: Optional[str] = None
@@ -33,11 +33,11 @@ class Columns:
     kept: dict = field(default_factory=dict)
     notes: list = field(default_factory=list)
     other_sensors: bool = False
-    own: bool = False  # a stream as of docs/protocol.md: its time is kept as it is
+    own: bool = False  # a stream by docs/protocol.md: its time is kept
 
 
 def plain_name(text):
-    """(name in small letters without its unit, the unit in brackets or None)"""
+    """(name in lower case without its unit, the unit in brackets or None)"""
     name = text.strip().strip("\"'").lower()
     bracket = BRACKET.search(name)
     return BRACKET.sub("", name).strip(), bracket.group(1).strip() if bracket else None
@@ -57,7 +57,7 @@ def is_spectrum(names):
 
 
 def is_header(cells, wanted=frozenset()):
-    """A line of names that mean something here, or that --columns asks for."""
+    """Whether this is a line of names that are known, or named by --columns."""
     if any(is_number(cell) for cell in cells) or len(cells) < 3:
         return False
     names = [name for name, _ in names_of(cells)]
@@ -83,19 +83,19 @@ def sensors_of(names):
 
 
 def of_header(cells, path, sensor):
-    """The columns by their names. TiltError where they are no accelerations."""
+    """The columns by their names. TiltError if they are not accelerations."""
     names = names_of(cells)
     words = [name for name, _ in names]
     if is_spectrum(words):
         raise TiltError(f"{path}: a spectrum ({', '.join(words[:4])}), not accelerations over time")
     sensors = sensors_of(names)
     if not sensors:
-        raise TiltError(f"{path}: no columns x, y, z among {', '.join(words)}: not accelerations, or name them with --columns")
+        raise TiltError(f"{path}: no columns x, y, z among {', '.join(words)}: if these are accelerations, name the columns with --columns")
     if not 1 <= sensor <= len(sensors):
-        raise TiltError(f"{path}: --sensor {sensor}: the file holds {len(sensors)}")
+        raise TiltError(f"{path}: --sensor {sensor}: the file has {len(sensors)}")
     (_, number, suffix), axes = sensors[sensor - 1]
     times = [index for index, name in enumerate(words) if name in TIMES]
-    times.sort(key=lambda index: TIMES[words[index]] == "count")  # a time before a mere counter
+    times.sort(key=lambda index: TIMES[words[index]] == "count")  # a time before a counter
     chosen = Columns(axes, times[0] if times else None)
     if times:
         chosen.time_unit = TIMES[words[times[0]]] or TIME_UNITS.get(names[times[0]][1])
@@ -106,12 +106,12 @@ def of_header(cells, path, sensor):
     chosen.unit = "raw" if chosen.own else chosen.unit
     if len(sensors) > 1:
         chosen.other_sensors = True
-        chosen.notes.append(f"sensor {sensor} of {len(sensors)} taken (--sensor N for another)")
+        chosen.notes.append(f"sensor {sensor} of {len(sensors)} used (--sensor N for another)")
     return chosen
 
 
 def names_in(option):
-    """The names among the columns of --columns, in small letters."""
+    """The names in --columns, in lower case."""
     return frozenset(word.strip().lower() for word in (option or "").split(",") if word.strip() and not word.strip().isdigit())
 
 
@@ -119,7 +119,7 @@ def of_option(text, cells, path):
     """--columns: three (x, y, z) or four (time first) names or numbers from 1."""
     wanted = [word.strip() for word in text.split(",")]
     if len(wanted) not in (3, 4):
-        raise TiltError(f"--columns {text}: three (x,y,z) or four (time,x,y,z) names or numbers")
+        raise TiltError(f"--columns {text}: give three (x,y,z) or four (time,x,y,z) names or numbers")
     names = names_of(cells) if cells else []
     words = [name for name, _ in names]
     found = []
@@ -137,21 +137,21 @@ def of_option(text, cells, path):
 
 
 def is_time(column):
-    """Never steps back, and moves."""
+    """Whether it never steps back, and moves."""
     steps = np.diff(column)
     return len(steps) > 0 and (steps >= 0).all() and (steps > 0).sum() > len(steps) // 2
 
 
 def of_numbers(sample, path):
-    """The columns of a file without header, from its first rows ((n, m) of numbers)."""
+    """The columns of a file without a header, from its first rows ((n, m) of numbers)."""
     width = sample.shape[1]
     if width < 3:
-        raise TiltError(f"{path}: {width} columns of numbers: x, y and z are needed")
+        raise TiltError(f"{path}: only {width} columns of numbers: x, y and z are needed")
     if width == 3:
         return Columns((0, 1, 2))
     magnitude = np.sqrt((sample[:, :3] ** 2).sum(axis=1))
     if width == 4 and (np.abs(sample[:, 3] - magnitude) <= 0.01 * magnitude + 0.02).mean() > 0.9:
-        return Columns((0, 1, 2), notes=["column 4, the magnitude, left out"])
+        return Columns((0, 1, 2), notes=["column 4, the magnitude, ignored"])
     if len(sample) > 1 and is_time(sample[:, 0]):
         counts = len(sample) > 2 and (np.diff(sample[:, 0]) == 1).all()
         return Columns((1, 2, 3), 0, "count" if counts else None, notes=left_out(width, (0, 1, 2, 3)))
@@ -162,4 +162,4 @@ def of_numbers(sample, path):
 
 def left_out(width, used):
     others = [str(index + 1) for index in range(width) if index not in used]
-    return [f"no header: columns {', '.join(str(u + 1) for u in used)} taken, {', '.join(others)} left out"] if others else []
+    return [f"no header: columns {', '.join(str(u + 1) for u in used)} used, {', '.join(others)} ignored"] if others else []

@@ -1,4 +1,4 @@
-"""A recording in any known format to a stream in a file."""
+"""Converts a recording in any known format to a stream file."""
 import numpy as np
 
 from tilt.importing import clock, cwa, jsons, report, source, text, units
@@ -9,7 +9,7 @@ CHUNK_ROWS = 200_000
 
 
 def read(path, options):
-    """The Readings of one file, whatever its format. options: sensor, columns."""
+    """The Readings of one file of any format. options: sensor, columns."""
     head = source.begin(path)
     with open(path, "rb") as file:
         if source.is_cwa(head):
@@ -21,24 +21,24 @@ def read(path, options):
 
 
 def scale_of(readings, asked, notes):
-    """(Scale, why it was taken)"""
+    """(Scale, reason for it)"""
     if asked is not None and asked not in units.UNITS:
         return units.forced(asked, readings.values, readings.decimals, notes), "--unit"
     if readings.multiplier is not None:
         return multiplied(readings, notes)
     unit = asked or readings.unit
-    why = "--unit" if asked else "said by the file" if readings.unit else "found by whole numbers"
+    why = "--unit" if asked else "stated by the file" if readings.unit else "found by whole numbers"
     return units.choose(readings.path, readings.values, readings.decimals, unit, notes, readings.other_sensors), why
 
 
 def multiplied(readings, notes):
-    """A file with a scale in each row: values are either counts or counts times the scale; the counts are taken."""
+    """For a file with a multiplier in each row, whose values are counts or counts times the multiplier: takes the counts."""
     if (readings.multiplier <= 0.0).any() or not np.isfinite(readings.multiplier).all():
         row = int(np.flatnonzero(~(readings.multiplier > 0.0))[0])
         raise readings.fault(row, f"a multiplier of {readings.multiplier[row]:g}")
     counts = units.tried(units.candidates("raw")[0], units.sample_of(readings.values), 1e-7)
     if counts.fits:
-        return counts, "counts; the file's multiplier not needed"
+        return counts, "counts; the file's multiplier is not needed"
     readings.values = readings.values / readings.multiplier[:, None]
     scale = units.choose(readings.path, np.where(np.abs(readings.values - np.rint(readings.values)) < units.MARGIN_LSB, np.rint(readings.values),
                                                  readings.values), 0, "raw", notes)
@@ -46,7 +46,7 @@ def multiplied(readings, notes):
 
 
 def converted(paths, options, out):
-    """Writes the stream of one file, or of several joined, to out; returns the lines to tell. options: sensor, columns, unit, rate."""
+    """Writes the stream of one file, or of several joined, to out; returns the lines to print. options: sensor, columns, unit, rate."""
     parts = [read(path, options) for path in paths]
     readings = parts[0] if len(parts) == 1 else joined(parts)
     notes = []
@@ -55,13 +55,13 @@ def converted(paths, options, out):
     t_us = clock.to_us(readings, options.rate, notes)
     write(out, t_us, lsb, missing, readings.kept)
     name = paths[0] if len(paths) == 1 else f"{paths[0]} and {len(paths) - 1} more"
-    told = [report.summary(name, out, readings, scale, t_us, why)]
+    lines = [report.summary(name, out, readings, scale, t_us, why)]
     shown = report.notes_of(t_us, lsb, flagged(missing, readings.kept, notes))
-    return told + [f"  {note}" for note in readings.notes + notes + shown]
+    return lines + [f"  {note}" for note in readings.notes + notes + shown]
 
 
 def flagged(missing, kept, notes):
-    """Rows that hold no reading, those that the file itself flags among them."""
+    """Marks the rows without a reading, including those that the file itself flags."""
     marked = (kept.get("flags", np.zeros(len(missing), dtype=np.int64)) & MISSING_FLAGS) != 0
     if marked.any():
         notes.append(f"{int(marked.sum()):,} rows are flagged as missing samples by the file")
@@ -77,7 +77,7 @@ def columns_of(t_us, lsb, missing, kept):
 
 
 def write(out, t_us, lsb, missing, kept):
-    """The stream, written beside its place and moved there when it is whole."""
+    """Writes the stream to a temporary file and moves it to its place when complete."""
     found = columns_of(t_us, lsb, missing, kept)
     form = ",".join(["%d"] * len(found)) + "\n"
     with whole_file(out) as file, source.progress(len(t_us), out, "write") as bar:

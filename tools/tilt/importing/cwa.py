@@ -1,10 +1,10 @@
 """CWA, the files of the Axivity AX3, whose sensor is an ADXL345: a header of 1,024 bytes, then blocks of 512 with up to 120 samples.
 
 Source: the maker's description (openmovementproject/openmovement, Docs/ax3/cwa.h). Little endian throughout. In a block: the letters AX,
-length 508, fraction of a second (15 bits when bit 15 is set), session, sequence number, date and time, light (the top three bits n: an
+length 508, fraction of a second (15 bits if bit 15 is set), session, sequence number, date and time, light (the top three bits n: an
 unpacked count is 1/2^(8 + n) g), ..., rate code (3200 / 2^(15 - low nibble) Hz), axes (high nibble) and packing (low nibble: 0 is 3 x 10
-bits with a common exponent in 32 bits, 2 is 3 x 16 bits), the sample at which the time stamp holds, the number of samples; at last a word
-which makes the sum of all words 0.
+bits with a common exponent in 32 bits, 2 is 3 x 16 bits), the sample to which the time stamp belongs, the number of samples; last a word
+that makes the sum of all words 0.
 """
 import calendar
 import os
@@ -18,7 +18,7 @@ from tilt.importing.source import progress
 HEADER, BLOCK, DATA_AT = 1024, 512, 30
 AX6, ADXL345_ACCEL_SCALE = 0x64, 0
 PACKED, WORDS = 0x30, 0x32
-BLOCKS_FITTED, BLOCKS_AVERAGED = 256, 64  # a run of up to so many blocks gets one line; longer ones a knot for each so many
+BLOCKS_FITTED, BLOCKS_AVERAGED = 256, 64  # a run of up to this many blocks gets one line; a longer one a knot every so many
 HEAD = np.dtype([("letters", "<u2"), ("length", "<u2"), ("fraction", "<u2"), ("session", "<u4"), ("sequence", "<u4"), ("stamp", "<u4"),
                  ("light", "<u2"), ("temperature", "<u2"), ("events", "u1"), ("battery", "u1"), ("rate", "u1"), ("axes", "u1"),
                  ("offset", "<i2"), ("count", "<u2")])
@@ -28,12 +28,12 @@ def read(path, file):
     """The Readings of a CWA file: LSB, and seconds from the first sample."""
     head = file.read(HEADER)
     if len(head) < HEADER:
-        raise TiltError(f"{path}: a CWA header of {len(head)} bytes where {HEADER} are due: cut short")
+        raise TiltError(f"{path}: cut short: the CWA header has {len(head)} bytes of {HEADER}")
     if head[4] == AX6:
-        raise TiltError(f"{path}: of an AX6, which holds no ADXL345")
+        raise TiltError(f"{path}: from an AX6, which has no ADXL345")
     data = file.read()
     if len(data) % BLOCK:
-        raise TiltError(f"{path}: block {HEADER // BLOCK + len(data) // BLOCK}: {len(data) % BLOCK} bytes of {BLOCK}: cut short")
+        raise TiltError(f"{path}: cut short: block {HEADER // BLOCK + len(data) // BLOCK} has {len(data) % BLOCK} bytes of {BLOCK}")
     found = np.frombuffer(data, dtype=np.uint8).reshape(-1, BLOCK)
     if len(found) == 0:
         raise TiltError(f"{path}: only a header, no blocks")
@@ -50,14 +50,14 @@ def read(path, file):
 
 
 def check(path, found, heads):
-    """Every block is whole and of an ADXL345."""
+    """Checks that every block is complete and from an ADXL345."""
     sums = found.view("<u2").sum(axis=1, dtype=np.uint32) & 0xFFFF
     room = np.where(heads["axes"] == PACKED, 120, 80)
-    faults = [((heads["letters"] != 0x5841) | (heads["length"] != BLOCK - 4), "no data block (AX)"),
-              (sums != 0, "its checksum is wrong"),
+    faults = [((heads["letters"] != 0x5841) | (heads["length"] != BLOCK - 4), "not a data block (AX)"),
+              (sums != 0, "wrong checksum"),
               ((heads["axes"] != PACKED) & (heads["axes"] != WORDS), "not three axes, packed or in words"),
-              ((heads["axes"] == WORDS) & (heads["light"] >> 13 != ADXL345_ACCEL_SCALE), "counts of another size than 1/256 g: no ADXL345"),
-              ((heads["count"] == 0) | (heads["count"] > room), "a number of samples that a block cannot have")]
+              ((heads["axes"] == WORDS) & (heads["light"] >> 13 != ADXL345_ACCEL_SCALE), "counts are not 1/256 g: not an ADXL345"),
+              ((heads["count"] == 0) | (heads["count"] > room), "impossible number of samples")]
     for bad, reason in faults:
         if bad.any():
             block = int(np.flatnonzero(bad)[0]) + HEADER // BLOCK
@@ -80,19 +80,19 @@ def rate_of(code):
 
 
 def seconds_of(stamp):
-    """Since 1970, of a packed date: years from 2000 in 6 bits, month 4, day 5, hour 5, minute 6, second 6."""
+    """Seconds since 1970 of a packed date: years from 2000 in 6 bits, month 4, day 5, hour 5, minute 6, second 6."""
     return calendar.timegm((2000 + (stamp >> 26 & 63), stamp >> 22 & 15, stamp >> 17 & 31, stamp >> 12 & 31, stamp >> 6 & 63, stamp & 63))
 
 
 def times_of(heads, notes):
-    """Seconds of each sample from the first: in each run of blocks that follow on each other, as evenly as the stamps allow."""
+    """Seconds of each sample from the first: in each run of consecutive blocks, as evenly spaced as the stamps allow."""
     counts = heads["count"].astype(np.int64)
     starts = np.concatenate([[0], np.cumsum(counts)])
     stamps = np.array([seconds_of(int(stamp)) for stamp in heads["stamp"]], dtype=np.float64)
     stamps -= stamps[0]  # small numbers keep their microseconds
     rates = np.array([rate_of(code) for code in heads["rate"]])
     fractions = np.where(heads["fraction"] & 0x8000, (heads["fraction"] & 0x7FFF) / 32768.0, 0.0)
-    # with a fraction the recorder moved the offset back by that part of a second, in whole samples
+    # with a fraction, the recorder moved the offset back by that part of a second, in whole samples
     offsets = heads["offset"] + np.floor(fractions * rates)
     anchors = np.stack([starts[:-1] + offsets, stamps + fractions], axis=1)
     breaks = np.flatnonzero((np.diff(heads["sequence"].astype(np.int64)) != 1) | (np.diff(heads["rate"].astype(np.int64)) != 0)
@@ -106,7 +106,7 @@ def times_of(heads, notes):
 
 
 def along(anchors, samples, rate):
-    """Times of the samples of one run from its (sample, time) anchors, which are whole seconds and thus a sample off here and there."""
+    """Times of the samples of one run from its (sample, time) anchors, which are whole seconds and so sometimes a sample off."""
     if len(anchors) > BLOCKS_FITTED:
         cut = len(anchors) // BLOCKS_AVERAGED
         at_sample, at_time = np.array([part.mean(axis=0) for part in np.array_split(anchors, cut)]).T

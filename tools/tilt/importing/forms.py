@@ -1,4 +1,4 @@
-"""What stands around the numbers of a line, and how they are parted. A plan is made from the first lines and then holds for the file."""
+"""What surrounds the numbers of a line, and their separator. A plan is made from the first lines and then holds for the file."""
 import re
 from collections import Counter
 from dataclasses import dataclass
@@ -18,24 +18,24 @@ UNIT_WORDS = {"m/s^2": "m/s2", "m/s2": "m/s2", "m/s/s": "m/s2", "m/s²": "m/s2",
 
 @dataclass
 class Plan:
-    """How a line of the file becomes fields. keyword: only lines with it are rows. names: the keys of NAME = VALUE lines."""
+    """How a line becomes fields. keyword: only lines with it are rows. names: the keys of NAME = VALUE lines."""
     clock: bool = False
     literal: bool = False
     keyword: Optional[str] = None
     names: Optional[tuple] = None
-    separator: Optional[str] = ","  # None: blanks
+    separator: Optional[str] = ","  # None: white space
     decimal_comma: bool = False
-    lead: int = 0  # fields before the first number, to be left out
-    unit: Optional[str] = None  # as it stands at the end of each row
+    lead: int = 0  # fields before the first number, which are dropped
+    unit: Optional[str] = None  # as printed at the end of each row
     keywords: tuple = ()
 
     def plain(self):
-        """Nothing but numbers and separators: what the quick reader understands."""
+        """Whether lines hold only numbers and separators, as the quick reader needs."""
         return not (self.clock or self.literal or self.keyword or self.names or self.decimal_comma or self.lead or self.unit) \
             and self.separator is not None
 
     def payload(self, line):
-        """(time of the serial monitor or None, the rest); None where the line is not of this plan."""
+        """(time of the serial monitor or None, the rest); None if the line does not match this plan."""
         time = None
         if self.clock:
             match = CLOCKED.fullmatch(line)
@@ -55,14 +55,14 @@ class Plan:
         return time, line.strip()
 
     def fields(self, text):
-        """Of a payload; None where it is text."""
+        """The fields of a payload; None if it is text."""
         if self.names is not None:
             pairs = {name.lower(): value for name, value in PAIRS.findall(text)}
             return [pairs[name] for name in self.names if name in pairs] or None
         return self.cut(text)
 
     def cut(self, text):
-        """The fields of a payload, the unit at its end and what stands before the numbers left out."""
+        """The fields of a payload without the unit at its end and what precedes the numbers."""
         text = text.rstrip("; ") if self.separator != ";" else text
         found = [part.strip().strip('"') for part in text.split(self.separator)]
         if self.unit and found and found[-1].lower() in UNIT_WORDS:
@@ -77,7 +77,7 @@ def is_number(text):
 
 
 def shape_of(line):
-    """((clock, literal, keyword, names), payload) as one line would have it."""
+    """((clock, literal, keyword, names), payload) that one line suggests."""
     clock = CLOCKED.fullmatch(line)
     body = clock.group(2) if clock else line
     literal = LITERAL.fullmatch(body.strip())
@@ -92,7 +92,7 @@ def shape_of(line):
 
 
 def separator_of(payloads):
-    """(separator, decimal comma?) by what parts the most lines into at least three fields."""
+    """(separator, decimal comma?) that splits the most lines into at least three fields."""
     comma_decimals = sum(";" in text and re.search(r"\d,\d", text) is not None and "." not in text and text.count(";") >= 2 for text in payloads)
     if comma_decimals > len(payloads) // 2:
         return ";", True
@@ -103,7 +103,7 @@ def separator_of(payloads):
 
 
 def plan_of(lines, sensor):
-    """The plan of a file from its first lines; None where none holds three numbers. sensor: which of several keywords, from 1."""
+    """The plan of a file from its first lines; None if none holds three numbers. sensor: which of several keywords, from 1."""
     found = [shape_of(line.strip()) for line in lines if not line.lstrip().startswith("#")]
     shapes = [(shape, text) for shape, text in found if len(NUMBERS.findall(text)) >= 3 and text[0] != "#"]
     if not shapes:
@@ -127,7 +127,7 @@ def plan_of(lines, sensor):
 
 
 def strip_ends(plan, payloads):
-    """Empty fields and words that stand before the numbers of every row, and the unit after them."""
+    """Drops empty fields and words before the numbers of every row, and the unit after them."""
     last = Counter(text.rstrip("; ").split(plan.separator)[-1].strip().lower() for text in payloads).most_common(1)[0][0]
     plan.unit = UNIT_WORDS.get(last)
     leads = Counter()

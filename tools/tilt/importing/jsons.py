@@ -1,4 +1,4 @@
-"""JSON: a reading in each line, an array of them, or Edge Impulse's payload."""
+"""Reads JSON: one reading per line, an array of readings, or Edge Impulse's payload."""
 import json
 
 import numpy as np
@@ -8,7 +8,7 @@ from tilt.importing.columns import TIMES, axis_of, plain_name
 from tilt.importing.forms import UNIT_WORDS
 from tilt.importing.readings import Readings
 
-FREE = None  # decimals of numbers that are printed with all their digits
+FREE = None  # decimals of numbers printed with all their digits
 
 
 def is_json(head):
@@ -16,7 +16,7 @@ def is_json(head):
 
 
 def read(path, file, options):
-    """The Readings of a JSON file; lines are those of JSON lines."""
+    """The Readings of a JSON file; their lines are those of JSON lines."""
     text = file.read().decode("utf-8", "replace")
     try:
         whole = json.loads(text)
@@ -45,19 +45,19 @@ def of_lines(path, text, options):
 
 
 def keys_of(path, place, found, options):
-    """The keys of x, y, z and of the time (None where there is none), from the first object."""
+    """The keys of x, y, z and of the time (None if there is none), from the first object."""
     if options.columns:
         names = [name.strip() for name in options.columns.split(",")]
         if len(names) in (3, 4) and all(name in found for name in names):
             return names[-3:], names[0] if len(names) == 4 else None
-        raise TiltError(f"{path}: --columns {options.columns}: three or four of {', '.join(found)}")
+        raise TiltError(f"{path}: --columns {options.columns}: give three or four of {', '.join(found)}")
     axes = {}
     for key in found:
         axis = axis_of(plain_name(key)[0])
         if axis:
             axes.setdefault(axis["axis"], key)
     if len(axes) != 3:
-        raise place(f"no x, y, z among {', '.join(map(str, found)) or 'nothing'}: not accelerations, or name them with --columns")
+        raise place(f"no x, y, z among {', '.join(map(str, found)) or 'nothing'}: if these are accelerations, name the keys with --columns")
     return [axes[c] for c in "xyz"], next((key for key in found if plain_name(key)[0] in TIMES), None)
 
 
@@ -92,13 +92,13 @@ def number_at(found, key, place):
 
 
 def of_payload(path, payload, options):
-    """Edge Impulse's data acquisition format: sensors with names and units, values by row, one row each interval_ms."""
+    """Edge Impulse's data acquisition format: sensors with names and units, values by row, one row per interval_ms."""
     try:
         names = [str(sensor["name"]) for sensor in payload["sensors"]]
         units = [str(sensor.get("units", "")) for sensor in payload["sensors"]]
         rows, interval_ms = payload["values"], float(payload["interval_ms"])
     except (KeyError, TypeError, ValueError) as why:
-        raise TiltError(f"{path}: a payload without {why}: not Edge Impulse's") from None
+        raise TiltError(f"{path}: not an Edge Impulse file: the payload has no {why}") from None
     if not rows:
         raise TiltError(f"{path}: no rows")
 
@@ -111,7 +111,7 @@ def of_payload(path, payload, options):
         def place(reason, number=number):
             return TiltError(f"{path}: payload.values[{number}]: {reason}")
         if not isinstance(row, list) or len(row) != len(names):
-            raise place(f"{len(row) if isinstance(row, list) else 1} values where there are {len(names)} sensors")
+            raise place(f"{len(row) if isinstance(row, list) else 1} values for {len(names)} sensors")
         values.append([number_at(dict(enumerate(row)), column, place) for column in columns])
     if not 0.0 < interval_ms < 1e6:
         raise TiltError(f"{path}: payload.interval_ms is {interval_ms:g}")

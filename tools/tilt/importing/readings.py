@@ -1,4 +1,4 @@
-"""What every reader of a format hands over: the numbers as they stand in the file, and where they stood."""
+"""The result of every format's reader: the numbers as in the file, and their lines."""
 from dataclasses import dataclass, field
 from typing import Optional
 
@@ -7,27 +7,27 @@ import numpy as np
 from tilt.errors import TiltError, at
 
 FLAG_COASTED, FLAG_SILENT = 2, 16
-MISSING_FLAGS = FLAG_COASTED | FLAG_SILENT  # docs/protocol.md: rows with these are no readings
+MISSING_FLAGS = FLAG_COASTED | FLAG_SILENT  # docs/protocol.md: rows with these are not readings
 
 
 @dataclass
 class Readings:
-    """values: (n, 3) float64 in the file's unit, NaN where a reading is missing. lines: line of each row, counted from 1, or None.
-    time: n float64 in time_unit (s, ms, us, ns; clock: seconds of a day; count: samples; None: to be told by its steps), or None."""
+    """values: (n, 3) float64 in the file's unit, NaN for a missing reading. lines: line of each row, counted from 1, or None.
+    time: n float64 in time_unit (s, ms, us, ns; clock: seconds of a day; count: samples; None: determined by its steps), or None."""
     path: str
     form: str
     values: np.ndarray
     lines: Optional[np.ndarray] = None
     time: Optional[np.ndarray] = None
     time_unit: Optional[str] = None
-    decimals: Optional[int] = None  # digits after the point with which values are printed, None: not printed in decimals
-    unit: Optional[str] = None  # as the file says it
-    multiplier: Optional[np.ndarray] = None  # a scale for each row, where the file has one
+    decimals: Optional[int] = None  # digits after the decimal point of printed values, None: not printed in decimals
+    unit: Optional[str] = None  # as the file states it
+    multiplier: Optional[np.ndarray] = None  # a scale per row, if the file has one
     kept: dict = field(default_factory=dict)  # columns of our own streams: flags, roll_true_cdeg, pitch_true_cdeg
-    segments: list = field(default_factory=list)  # rows before which the header stands again
+    segments: list = field(default_factory=list)  # rows before which the header is repeated
     notes: list = field(default_factory=list)
     other_sensors: bool = False
-    own: bool = False  # a stream as of docs/protocol.md: its time is kept as it is
+    own: bool = False  # a stream by docs/protocol.md: its time is kept
     parts: Optional[list] = None  # of joined files: (first row, path)
 
     def fault(self, row, reason):
@@ -43,11 +43,11 @@ def kind_of(readings):
 
 
 def joined(readings):
-    """One Readings of several files, one after the other. They must be of one form."""
+    """One Readings of several files in order. They must have the same form."""
     first = readings[0]
     for other in readings[1:]:
         if kind_of(other) != kind_of(first):
-            raise TiltError(f"{other.path}: not of one form with {first.path}: their times, units or columns differ")
+            raise TiltError(f"{other.path}: not in the form of {first.path}: times, units or columns differ")
     starts = np.cumsum([0] + [len(part.values) for part in readings])
 
     def together(name):

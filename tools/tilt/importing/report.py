@@ -1,14 +1,14 @@
-"""What a person is told of an import: one line, and a line for each thing worth knowing."""
+"""The messages of an import: one line, and one for each thing worth knowing."""
 import numpy as np
 
 from tilt.importing import clock
 
-DUPLICATES_SHARE = 0.03  # 2 % come by chance where every value is even
+DUPLICATES_SHARE = 0.03  # if every value is even, 2 % repeat by chance
 LEAST_SHOWN = 8
 
 
 def summary(path, out, readings, scale, t_us, source):
-    """One line. source: why this unit was taken."""
+    """One line. source: the reason for this unit."""
     rate, _, _, _ = clock.seen(t_us)
     span_s = (int(t_us[-1]) - int(t_us[0])) / 1e6
     rows = len(t_us)
@@ -33,13 +33,13 @@ def steps_of(lsb):
 
 def repeats_of(lsb, missing):
     notes = []
-    for reading, words in ((-1, "no sensor answered there"), (0, "a read that failed")):
+    for reading, words in ((-1, "no sensor answered"), (0, "failed reads")):
         count = int(((lsb == reading).all(axis=1) & ~missing).sum())
         if count:
             notes.append(f"{count:,} rows read {reading},{reading},{reading}: {words}")
     same = (np.diff(lsb, axis=0) == 0).all(axis=1)
     if len(same) and same.mean() > DUPLICATES_SHARE:
-        notes.append(f"{100 * same.mean():.1f} % of the rows repeat the row before: polled faster than the sensor measures, or coarse")
+        notes.append(f"{100 * same.mean():.1f} % of the rows repeat the row before: polled faster than the output data rate, or coarse")
     return notes
 
 
@@ -47,5 +47,5 @@ def pauses_of(t_us):
     _, gaps, longest_us, equal = clock.seen(t_us)
     notes = [f"{gaps:,} gaps, the longest {longest_us / 1e3:.1f} ms"] if gaps else []
     if equal:
-        notes.append(f"{100 * equal:.1f} % of the rows have the time of the row before")
+        notes.append(f"{100 * equal:.1f} % of the rows repeat the time of the previous row")
     return notes

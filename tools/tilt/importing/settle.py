@@ -1,4 +1,4 @@
-"""What the first lines of a text settle for the whole file: how a line becomes fields, how many there are, and which is what."""
+"""What the first lines of a text settle for the whole file: how a line becomes fields, their number, and their meaning."""
 import re
 from collections import Counter
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class Settled:
 
 
 def number_or_time(text):
-    """(value, unit): a number (unit None), a time of day in seconds (clock), or a date in seconds since 1970 (s). ValueError for others."""
+    """(value, unit): a number (unit None), a time of day in seconds (clock), or a date in seconds since 1970 (s). Otherwise ValueError."""
     try:
         return float(text), None
     except ValueError:
@@ -47,7 +47,7 @@ def number_or_time(text):
 
 
 def header_cells(line, wanted=frozenset()):
-    """The names in a header line, None for any other line. wanted: names that --columns asks for. Klipper's stands behind a #."""
+    """The names in a header line, None for any other line. wanted: names in --columns. Klipper's header follows a #."""
     text = line.strip()
     if text.startswith("##"):
         return None
@@ -73,7 +73,7 @@ def find_header(lines, wanted):
 
 
 def unknown_header(plan, lines, rows, first_line):
-    """Names of which none is known, in the line above the first row: better refused than taken for text above x, y, z."""
+    """Names, none of them known, in the line above the first row: rejected rather than taken for text above x, y, z."""
     line, cells = rows[0]
     above = [text for text in lines[:line - first_line] if text.strip()]
     names = [name.strip() for name in above[-1].split(plan.separator)] if above and plan.separator and plan.names is None else []
@@ -94,12 +94,12 @@ def sampled(plan, lines, first_line):
 
 
 def whole_sensors(header, width):
-    """Rows that leave out the last sensors that the header names: time and a whole number of triples."""
+    """Whether rows lack the last sensors that the header names: they have the time and a whole number of triples."""
     return width < len(header) and width % 3 == 1 and len(header) % 3 == 1 and cols.plain_name(header[0])[0] in cols.TIMES
 
 
 def width_of(path, header, rows):
-    """(fields of a row, empty fields after them, note or None). TiltError where header and rows do not fit."""
+    """(fields of a row, empty fields after them, note or None). TiltError if header and rows do not match."""
     line, width = rows[0][0], Counter(len(cells) for _, cells in rows).most_common(1)[0][0]
     ends_empty = all(cells[-1] == "" for _, cells in rows)
     if header is None:
@@ -109,7 +109,7 @@ def width_of(path, header, rows):
     if width == len(header) + 1 and ends_empty:
         return width - 1, 1, None
     if whole_sensors(header, width):
-        return width, 0, f"rows of {width} fields under a header of {len(header)}: the last {(len(header) - width) // 3} sensors are not there"
+        return width, 0, f"rows of {width} fields under a header of {len(header)}: the last {(len(header) - width) // 3} sensors are missing"
     raise at(path, line, f"{len(rows[0][1])} fields where the header has {len(header)}")
 
 
@@ -121,12 +121,12 @@ def columns_of(path, options, header, rows, width):
     else:
         chosen = cols.of_numbers(numbers_of(rows, width), path)
     if max(chosen.axes + (chosen.time or 0,)) >= width:
-        raise TiltError(f"{path}: column {max(chosen.axes + (chosen.time or 0,)) + 1} is asked for and rows have {width}")
+        raise TiltError(f"{path}: column {max(chosen.axes + (chosen.time or 0,)) + 1} requested, but rows have {width}")
     return chosen
 
 
 def numbers_of(rows, width):
-    """The rows of that many fields, NaN where a field is no number."""
+    """The rows with that many fields, NaN for a field that is not a number."""
     def number(cell):
         try:
             return number_or_time(cell)[0]
@@ -136,36 +136,36 @@ def numbers_of(rows, width):
 
 
 def decimals_of(rows, axes):
-    """The most digits after a point with which the sample prints a value."""
+    """The most digits after a decimal point in the sample."""
     cells = [cells[index] for _, cells in rows for index in axes if index < len(cells)]
     return max([len(cell.partition(".")[2].rstrip()) + (20 if "e" in cell.lower() else 0) for cell in cells] or [0])
 
 
 def settle(path, options, lines, first_line):
-    """Of the first lines of a file. options: sensor, columns. TiltError for what is no recording."""
+    """Settles the first lines of a file. options: sensor, columns. TiltError if it is not a recording."""
     header = find_header(lines, cols.names_in(options.columns))
     plan = forms.plan_of(lines, options.sensor)
     if header and not options.columns:
-        cols.of_header(header, path, 1)  # a spectrum, or no accelerations
+        cols.of_header(header, path, 1)  # a spectrum, or not accelerations
     if plan is None and header:
         raise TiltError(f"{path}: only a header, no rows of numbers")
     if plan is not None and header:
         plan.lead = 0
     rows = sampled(plan, lines, first_line) if plan else []
     if not rows:
-        raise TiltError(f"{path}: no row of three numbers in its first {len(lines)} lines: this is no recording")
+        raise TiltError(f"{path}: not a recording: no row of three numbers in its first {len(lines)} lines")
     header = list(plan.names) if plan.names is not None else header or unknown_header(plan, lines, rows, first_line)
     width, trail, note = width_of(path, header, rows)
     chosen = columns_of(path, options, header, rows, width)
     if plan.keywords[1:]:
         chosen.other_sensors = True
-        chosen.notes.append(f"lines '{plan.keyword}:' taken of {', '.join(plan.keywords)} (--sensor N for another)")
+        chosen.notes.append(f"lines '{plan.keyword}:' used, of {', '.join(plan.keywords)} (--sensor N for another)")
     chosen.notes += [note] if note else []
     unit = "clock" if plan.clock and chosen.time is None else chosen.time_unit
     if chosen.time is not None and chosen.time < len(rows[0][1]):
         try:
             unit = number_or_time(rows[0][1][chosen.time])[1] or unit
         except ValueError:
-            pass  # the reading of the row says so
+            pass  # reading the row reports it
     chosen.unit = chosen.unit or plan.unit
     return Settled(plan, chosen, header, width, trail, decimals_of(rows, chosen.axes), unit)

@@ -1,4 +1,4 @@
-"""The bytes of a file: what is no recording is refused by its first bytes; text comes in blocks of whole lines."""
+"""The bytes of a file: rejects what is not a recording by its first bytes; text comes in blocks of whole lines."""
 import codecs
 import io
 import os
@@ -7,7 +7,7 @@ import sys
 from tilt.errors import TiltError
 
 BLOCK_BYTES = 8 << 20
-LONG_BYTES = 8 << 20  # a file from which on progress is shown
+LONG_BYTES = 8 << 20  # from this size on, progress is shown
 PROBE_BYTES = 65536
 PACKED = {b"\x1f\x8b": "gzip", b"PK\x03\x04": "zip (or a spreadsheet)", b"BZh": "bzip2", b"\xfd7zXZ\x00": "xz",
           b"7z\xbc\xaf\x27\x1c": "7-zip", b"\x28\xb5\x2f\xfd": "zstandard", b"Rar!": "rar"}
@@ -24,7 +24,7 @@ def progress(total, path, words):
 
 
 def begin(path):
-    """The first bytes of a file. TiltError where it cannot be one of ours."""
+    """The first bytes of a file. TiltError if it cannot be a recording."""
     try:
         with open(path, "rb") as file:
             head = file.read(PROBE_BYTES)
@@ -32,7 +32,7 @@ def begin(path):
         raise TiltError(f"{path}: {why.strerror}") from None
     if not head:
         raise TiltError(f"{path}: the file is empty")
-    for marks, words in ((PACKED, "packed with {}: unpack it first"), (STRANGE, "this is {}, no recording")):
+    for marks, words in ((PACKED, "packed with {}: unpack it first"), (STRANGE, "this is {}, not a recording")):
         for mark, name in marks.items():
             if head.startswith(mark):
                 raise TiltError(f"{path}: {words.format(name)}")
@@ -44,23 +44,23 @@ def is_cwa(head):
 
 
 def as_text(path, file, head):
-    """The file, in UTF-8 without a byte order mark. TiltError for what is no text."""
+    """The file, in UTF-8 without a byte order mark. TiltError if it is not text."""
     for mark, encoding in WIDE_MARKS.items():
         if head.startswith(mark):
             try:
                 return io.BytesIO(file.read().decode(encoding).encode("utf-8"))
             except UnicodeDecodeError as why:
-                raise TiltError(f"{path}: begins as UTF-16 and is none at byte {why.start}") from None
+                raise TiltError(f"{path}: begins as UTF-16, but is not valid at byte {why.start}") from None
     strange = sum(byte < 32 and byte not in b"\t\n\r\f" for byte in head[:4096])
     if b"\0" in head or strange > len(head[:4096]) // 10:
-        raise TiltError(f"{path}: binary data in no known format (text, JSON and the AX3's CWA are read)")
+        raise TiltError(f"{path}: binary data in an unknown format (known: text, JSON, the AX3's CWA)")
     if head.startswith(codecs.BOM_UTF8):
         file.seek(len(codecs.BOM_UTF8))
     return file
 
 
 def blocks(path, file, head):
-    """(number of the first line, bytes of whole lines), line ends LF or, where the file has no LF, CR."""
+    """(number of the first line, bytes of whole lines); lines end with LF or, in a file without LF, with CR."""
     end = b"\n" if b"\n" in head or b"\r" not in head else b"\r"
     line, rest = 1, b""
     with progress(os.path.getsize(path), path, "read") as bar:

@@ -1,4 +1,4 @@
-"""Lines of text to readings: the quick way for blocks of nothing but numbers, line by line for all others."""
+"""Lines of text to readings: fast for blocks of numbers only, line by line for all others."""
 import io
 import warnings
 from array import array
@@ -14,9 +14,9 @@ from tilt.importing.source import blocks
 
 ABSENT = ("", "nan", "+nan", "-nan", "null", "none", "n/a")
 SHOWN = 40
-TIME = 3  # place of the time among the wanted columns
+TIME = 3  # position of the time among the wanted columns
 SAMPLE_BYTES = 400_000
-QUICK_BYTES = 200_000  # less is read line by line before pandas is there
+QUICK_BYTES = 200_000  # less is read line by line sooner than pandas is imported
 
 
 def decoded(block):
@@ -29,7 +29,7 @@ class Reader:
     def __init__(self, path, options):
         self.path, self.options, self.settled = path, options, None
         self.names = names_in(options.columns)
-        self.parts, self.lines = [], []  # of each block: (rows, columns) of the wanted columns, lines
+        self.parts, self.lines = [], []  # per block: (rows, columns) of the wanted columns, lines
         self.count, self.segments, self.skipped, self.notes = 0, [], [], []
 
     def take(self, line, block):
@@ -45,12 +45,12 @@ class Reader:
         self.count += len(values)
 
     def columns_wanted(self):
-        """Fields to keep, in the order x, y, z, time, multiplier, then those that go along; None: not there."""
+        """Fields to keep, in the order x, y, z, time, multiplier, then those to copy; None: not present."""
         c = self.settled.columns
         return [*c.axes, c.time, c.multiplier, *c.kept.values()]
 
     def quick(self, line, block):
-        """(values, lines) of a block in which every line is a row of numbers; None for any other."""
+        """(values, lines) of a block in which every line is a row of numbers; None for any other block."""
         import pandas
         start = 0
         if line == 1 and self.settled.header:
@@ -77,7 +77,7 @@ class Reader:
         numbers, lines = array("d"), array("q")
         texts = decoded(block).split("\n")
         for line, whole in enumerate(texts, first_line):
-            cut_off = line == first_line + len(texts) - 1  # what follows the last line end: only at the end of the file is there anything
+            cut_off = line == first_line + len(texts) - 1  # text after the last line end, which exists only at the end of the file
             for text in whole.split("\r") if "\r" in whole.rstrip() else (whole,):
                 text = text.strip()
                 row = self.row(line, text, len(lines), cut_off) if text and text[0] != "#" else None
@@ -87,7 +87,7 @@ class Reader:
         return np.array(numbers).reshape(-1, len(self.wanted)), np.array(lines, dtype=np.int64)
 
     def row(self, line, text, before, cut_off):
-        """The wanted numbers of a line, None where it is no row. before: rows of this block so far."""
+        """The wanted numbers of a line, None if it is not a row. before: rows of this block so far."""
         settled = self.settled
         found = settled.plan.payload(text)
         time, body = found or (None, "")
@@ -99,7 +99,7 @@ class Reader:
         if not cells or not self.is_row(cells, body, before):
             return None if header_cells(body, self.names) else self.other(line, text)
         if len(cells) < settled.width and cut_off:
-            self.notes.append(f"line {line}, the last, is cut off and left out: '{text[:SHOWN]}'")
+            self.notes.append(f"line {line}, the last, is cut off and skipped: '{text[:SHOWN]}'")
             return None
         if len(cells) != settled.width:
             whose = "the header has" if settled.header and len(settled.header) == settled.width else "the other rows have"
@@ -107,7 +107,7 @@ class Reader:
         return self.numbers(line, cells, time)
 
     def is_row(self, cells, body, before):
-        """Numbers, or what is meant to be; a header that stands again begins a new segment."""
+        """Whether these are numbers, or meant to be; a repeated header begins a new segment."""
         if forms.is_number(cells[0]) or sum(map(forms.is_number, cells)) >= min(3, len(cells)):
             return True
         if self.settled.header and header_cells(body, self.names) == self.settled.header:
@@ -124,11 +124,11 @@ class Reader:
         return len(cells) == self.settled.width and any(map(forms.is_number, cells))
 
     def other(self, line, text):
-        """A line that is no row: text is left out and told of, unless it holds the numbers of a row."""
+        """A line that is not a row: text is skipped and reported, unless it holds the numbers of a row."""
         if self.settled.plan.keyword is not None:
             return
         if len(forms.NUMBERS.findall(text)) >= 3 and not any(c.isalpha() for c in text.replace("e", "").replace("E", "")):
-            raise at(self.path, line, f"not of the form of the other rows: '{text[:SHOWN]}'")
+            raise at(self.path, line, f"not in the form of the other rows: '{text[:SHOWN]}'")
         self.skipped.append((line, text))
 
     def numbers(self, line, cells, clock):
@@ -138,7 +138,7 @@ class Reader:
         return [np.nan if text is None else self.number(line, place, text) for place, text in enumerate(texts)]
 
     def number(self, line, place, text):
-        """A field; NaN for a reading that is missing, never for a time."""
+        """A field; NaN for a missing reading, never for a time."""
         try:
             value = number_or_time(text)[0] if place == TIME else float(text)
         except ValueError:
@@ -176,7 +176,7 @@ def skipped_note(reader):
     if not reader.skipped:
         return []
     line, text = reader.skipped[0]
-    return [f"{len(reader.skipped)} lines of text left out, the first: line {line} '{text[:SHOWN]}'"]
+    return [f"{len(reader.skipped)} lines of text skipped, the first: line {line} '{text[:SHOWN]}'"]
 
 
 def words_of(settled):

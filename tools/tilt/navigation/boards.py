@@ -1,4 +1,4 @@
-"""Where the filter runs: in the simulated UNO, natively on the PC, or on a board at a serial port. Each takes frames and gives an Outcome."""
+"""Where the filter runs: in the simulated UNO, natively on the PC, or on a board at a serial port. Each takes frames and returns an Outcome."""
 import contextlib
 import json
 import pathlib
@@ -16,12 +16,12 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 LOOK_S = 0.2
 GREETING_S = 4.0   # the boot loader takes 2 s
 SILENT_S = 1.0
-MAKE_FIRST = "sh tools/deps.sh sim installs what is missing"
+MAKE_FIRST = "install what is missing with sh tools/deps.sh sim"
 
 
 @dataclass
 class Run:
-    """The outcome, how long the flight itself took (what is built for it left out) and, of the simulator, its statistics."""
+    """The outcome, the duration of the flight itself (without building) and, from the simulator, its statistics."""
     outcome: Outcome
     took_s: float
     stats: dict = None
@@ -38,7 +38,7 @@ def native(states):
 def made(*targets):
     done = subprocess.run(["make", "-s", *map(str, targets)], cwd=ROOT, capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        said = (done.stderr + done.stdout).strip().splitlines() or ["no word why"]
+        said = (done.stderr + done.stdout).strip().splitlines() or ["no reason given"]
         raise TiltError(f"make could not build {targets[0]}: {said[-1]} ({MAKE_FIRST})")
 
 
@@ -49,8 +49,8 @@ def _decoded(data, outcome):
     return outcome
 
 
-def simulated(sent, states, told=lambda done, whole: None):
-    """Through simrun: records come when they are due, as from sensors in flight."""
+def simulated(sent, states, report=lambda done, whole: None):
+    """Through simrun: records arrive when they are due, as from sensors in flight."""
     made(image(states), "build/sim/simrun")
     began = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
@@ -61,17 +61,17 @@ def simulated(sent, states, told=lambda done, whole: None):
         with open(place / "said", "w+", encoding="utf-8") as said:
             with subprocess.Popen([ROOT / "build/sim/simrun", "--fw", ROOT / image(states), "--frames", place / "frames", "--out", place / "out",
                                    "--stats", place / "stats"], stdout=subprocess.DEVNULL, stderr=said) as process:
-                _watched(process, place / "out", sent, told)
+                _watched(process, place / "out", sent, report)
             said.seek(0)
             words = said.read().strip().splitlines()
         if process.returncode != 0:
-            raise TiltError(f"the simulator ended with status {process.returncode}: {words[-1] if words else 'no word why'}")
+            raise TiltError(f"the simulator ended with status {process.returncode}: {words[-1] if words else 'no reason given'}")
         took_s = time.perf_counter() - began
         return Run(_decoded((place / "out").read_bytes(), Outcome()), took_s, json.loads((place / "stats").read_text(encoding="utf-8")))
 
 
-def _watched(process, out, sent, told):
-    """Progress by the answers that are in the file."""
+def _watched(process, out, sent, report):
+    """Shows progress by the answers already in the file."""
     reader, done, at = frames.Reader(), 0, 0
     while process.poll() is None:
         with contextlib.suppress(subprocess.TimeoutExpired):
@@ -82,10 +82,10 @@ def _watched(process, out, sent, told):
                 data = file.read()
             at += len(data)
             done += sum(isinstance(item, frames.Answer) for item in reader.feed(data))
-            told(done, len(sent))
+            report(done, len(sent))
 
 
-def on_pc(sent, states, told=lambda done, whole: None):
+def on_pc(sent, states, report=lambda done, whole: None):
     """The same C code built for the PC."""
     made(native(states))
     began = time.perf_counter()
@@ -93,12 +93,12 @@ def on_pc(sent, states, told=lambda done, whole: None):
     if done.returncode != 0:
         raise TiltError(f"{native(states)} ended with status {done.returncode}: {done.stderr.decode(errors='replace').strip()}")
     took_s = time.perf_counter() - began
-    told(len(sent), len(sent))
+    report(len(sent), len(sent))
     return Run(_decoded(done.stdout, Outcome()), took_s)
 
 
 class Line:
-    """A board at a port: no more bytes are under way than it has said it has room for."""
+    """A board at a port: never more bytes under way than it has reported room for."""
 
     def __init__(self, name, states, reset=True):
         self.port, self.states = Port(name, frames.BAUD, reset), states
@@ -113,20 +113,20 @@ class Line:
         return found
 
     def greet(self):
-        """The window from its greeting; asks for it where the board has been running."""
+        """Reads the window from its greeting; asks for it if the board was already running."""
         self.port.open()
         end, asked = time.monotonic() + GREETING_S, 0.0
         while not self.outcome.hellos or not self.outcome.answers:
             if time.monotonic() > end:
-                raise TiltError(f"{self.port.name}: no answer at {frames.BAUD} baud: has the board the navigation image (make navflash)?")
+                raise TiltError(f"{self.port.name}: no answer at {frames.BAUD} baud: write the navigation image with make navflash")
             if time.monotonic() > asked + SILENT_S:
                 asked = time.monotonic()
                 self.write(b"\0" + frames.frame(frames.bare_record(255, "hello")))
             self.listen()
         hello = self.outcome.hellos[-1]
         if (hello.version, hello.states) != (frames.VERSION, self.states):
-            raise TiltError(f"{self.port.name}: the board's image is version {hello.version} with {hello.states} states; "
-                            f"wanted {frames.VERSION} with {self.states} (--states)")
+            raise TiltError(f"{self.port.name}: the board's image is version {hello.version} with {hello.states} states, "
+                            f"not {frames.VERSION} with {self.states}: make navflash, or --states {hello.states}")
         self.window, self.sent = hello.window, self.taken
         self.outcome = Outcome(hellos=[hello])
 
@@ -137,8 +137,8 @@ class Line:
         return self.window - ((self.sent - self.taken) & 0xFFFF)
 
     def ask_where(self):
-        """Bytes that the line lost are counted as under way for ever: what the board has taken by its next greeting is all there is.
-        TiltError when it says nothing either."""
+        """Lost bytes would count as under way for ever: the next greeting of the board shows what it has taken. TiltError if it does not
+        answer either."""
         greetings, end = len(self.outcome.hellos), time.monotonic() + SILENT_S
         self.write(b"\0" + frames.frame(frames.bare_record(self.next_number(), "hello")))
         while len(self.outcome.hellos) == greetings or not self.outcome.answers or self.outcome.answers[-1].kind != "H":
@@ -153,7 +153,7 @@ class Line:
         return (self.outcome.answers[-1].sequence + 1) & 0xFF if self.outcome.answers else 0
 
     def send(self, record):
-        """Waits for room; TiltError when the board gives none."""
+        """Waits for room, then sends; TiltError if the board reports none."""
         heard = time.monotonic()
         while self.room() < len(record.data):
             if self.listen():
@@ -162,7 +162,7 @@ class Line:
                 self.ask_where()
                 heard = time.monotonic()
             if len(self.outcome.hellos) > 1:
-                raise TiltError(f"{self.port.name}: the board has started anew after {len(self.outcome.answers)} records")
+                raise TiltError(f"{self.port.name}: the board restarted after {len(self.outcome.answers)} records")
         self.sent = (self.sent + len(record.data)) & 0xFFFF
         self.write(record.data)
 
@@ -177,8 +177,8 @@ class Line:
         return self.outcome
 
 
-def at_port(name, sent, states, fast=False, told=lambda done, whole: None):
-    """Through a board; each record when it is due by the PC's clock, or (fast) as soon as there is room."""
+def at_port(name, sent, states, fast=False, report=lambda done, whole: None):
+    """On a board; each record when it is due by the PC's clock, or (fast) as soon as there is room."""
     line = Line(name, states)
     try:
         line.greet()
@@ -189,11 +189,11 @@ def at_port(name, sent, states, fast=False, told=lambda done, whole: None):
                 time.sleep(wait_s)
             line.send(record)
             if number % 16 == 0:
-                told(number, len(sent))
+                report(number, len(sent))
                 if line.port.serial.in_waiting:
                     line.listen()
         return Run(line.finish(len(sent)), time.monotonic() - began)
     except Gone as why:
-        raise TiltError(f"{name}: the port is gone after {len(line.outcome.answers)} records: {why}") from why
+        raise TiltError(f"{name}: the port was lost after {len(line.outcome.answers)} records: {why}") from why
     finally:
         line.port.close()

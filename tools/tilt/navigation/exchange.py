@@ -1,4 +1,4 @@
-"""A flight as records for the filter, and what came back, put together again."""
+"""A flight as records for the filter, and the answers, reassembled."""
 from dataclasses import dataclass, field
 from itertools import chain
 
@@ -13,7 +13,7 @@ NEAR = 128  # half of the sequence numbers
 
 @dataclass(frozen=True)
 class Sent:
-    """One record: when it is due, its bytes as a frame, its kind, the sequence number in it, and which row of the flight it is (None: none)."""
+    """One record: its due time, its bytes as a frame, its kind, its sequence number, and its row of the flight (None: none)."""
     due_us: int
     data: bytes
     kind: str
@@ -22,13 +22,13 @@ class Sent:
 
     @property
     def types(self):
-        """What an answer to it calls it."""
+        """The types that an answer to it may name."""
         return "PS" if self.kind == "start" else frames.TYPES[self.kind]
 
 
 def due_of(flight):
-    """Microseconds from the first imu row on at which each imu row is due. A single time that leaps is for the filter to refuse: the line waits for
-    the middle one of each three."""
+    """Due time of each imu row in microseconds after the first one. The filter has to reject a single time that jumps, so the line waits for the
+    median of each three."""
     times = np.array(flight.unwrapped_us([t_us for kind, t_us, _ in flight.rows if kind == "imu"]), np.int64)
     if len(times) < 3:
         return np.maximum.accumulate(times - times[:1])
@@ -39,7 +39,7 @@ def due_of(flight):
 
 
 def records(flight, chosen, every=10):
-    """All frames of a flight: start, rows, each `every`-th imu with the state after it, variances once a second, counts at the end."""
+    """All frames of a flight: start, rows, the state after every `every`-th imu, variances once a second, counts at the end."""
     out, sequence, imu, due = [], 0, 0, 0
     next_variances, dues = None, iter(due_of(flight).tolist())
 
@@ -65,7 +65,7 @@ def records(flight, chosen, every=10):
 
 @dataclass
 class Outcome:
-    """What came back: states (n, 13) at t_us, variances at theirs (imu time of the last state before), answers in order."""
+    """The answers: states (n, 13) at t_us, variances at theirs (imu time of the last state before), answers in order."""
     states: list = field(default_factory=list)
     variances: list = field(default_factory=list)
     answers: list = field(default_factory=list)
@@ -105,13 +105,13 @@ class Outcome:
 
 
 def _place_of(answer, sent, at):
-    """Of the record that is answered: the next with this number and type, or the last of before; None: none was sent. Numbers come again."""
+    """The record that an answer is for: the next with its number and type, or the last of earlier ones; None: none was sent. Numbers repeat."""
     near = chain(range(at, min(at + NEAR, len(sent))), range(at - 1, max(at - NEAR, 0) - 1, -1))
     return next((place for place in near if sent[place].sequence == answer.sequence and answer.kind in sent[place].types), None)
 
 
 def answered(sent, answers):
-    """[(record, answer)] of all answers, in order: the record whose number and type the answer says, None where that is none of those sent."""
+    """[(record, answer)] of all answers, in order; record is None if none of those sent has the answer's number and type."""
     pairs, at = [], 0
     for answer in answers:
         place = _place_of(answer, sent, at) if answer.kind else None
@@ -121,17 +121,17 @@ def answered(sent, answers):
 
 
 def refusals(sent, outcome):
-    """[(record, answer)] of what was not simply taken, in order; the record is None where the board could not read which it was."""
+    """[(record, answer)] of what was not simply accepted, in order; record is None if the board could not read which one it was."""
     return [(record, answer) for record, answer in answered(sent, outcome.answers) if answer.code != 0]
 
 
 def check_start(sent, outcome):
-    """TiltError when the flight never began: all that follows is refused then."""
+    """TiltError if the flight never started: the filter rejects everything after that."""
     start = [record for record in sent if record.kind == "start"]
     pairs = answered(sent, outcome.answers)
     heard = {record.sequence: answer.code for record, answer in pairs if record is not None and record.kind == "start"}
     if len(heard) < len(start) and (any(heard.values()) or any(frames.answer_text(answer.code) == "not started" for answer in outcome.answers)):
-        raise TiltError(f"the flight never began: of the {len(start)} frames of its start the board has answered {len(heard)}; the others were "
+        raise TiltError(f"the flight did not start: the board answered {len(heard)} of its {len(start)} start frames, the others were "
                         "lost on the line")
     for code in filter(None, heard.values()):
-        raise TiltError(f"{frames.answer_text(code)}: a setting is outside its range or not finite (docs/navigation.md, --set)")
+        raise TiltError(f"{frames.answer_text(code)}: a setting is out of range or not finite (docs/navigation.md, --set)")

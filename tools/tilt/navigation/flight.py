@@ -1,16 +1,16 @@
-"""A flight: what its sensors said and, where known, what was true. In memory, as a file, and simulated.
+"""A flight: its sensor readings and, if known, the truth. In memory, as a file, and simulated.
 
-The file is lines of comma-separated values; lines that begin with '#' are skipped:
+The file consists of comma-separated lines; lines that begin with '#' are skipped:
 
     set,NAME,NUMBER[,NUMBER...]                   a setting of the filter (settings.py)
-    start,t_us,q0,q1,q2,q3,vn,ve,vd,rn,re,rd      where the filter begins
+    start,t_us,q0,q1,q2,q3,vn,ve,vd,rn,re,rd      where the filter starts
     imu,t_us,wx,wy,wz,fx,fy,fz                    rad/s and m/s2 in b, over the period that ends at t_us
     field,t_us,x,y,z                              magnetometer in b, any unit
-    gps,t_us,vn,ve,vd,rn,re,rd                    m/s and m at t_us; stands where it arrived
+    gps,t_us,vn,ve,vd,rn,re,rd                    m/s and m at t_us; in the file where it arrived
     down,t_us,metre                               altimeter: position down
     truth,t_us,q0,q1,q2,q3,vn,ve,vd,rn,re,rd
 
-Numbers may be nan or inf: what a sensor says is for the filter to refuse.
+Numbers may be nan or inf: the filter has to reject them.
 """
 import re
 from dataclasses import dataclass, field
@@ -27,7 +27,7 @@ T_US_MAX, CLOCK_US = 0xFFFFFFFF, 1 << 32
 
 @dataclass
 class Flight:
-    """rows: (kind, t_us, numbers) in the order of arrival, without start and truth; lines: of the file, for each row."""
+    """rows: (kind, t_us, numbers) in order of arrival, without start and truth; lines: in the file, one per row."""
     settings: dict = field(default_factory=dict)
     rows: list = field(default_factory=list)
     lines: list = field(default_factory=list)
@@ -35,11 +35,11 @@ class Flight:
     truth: list = field(default_factory=list)
 
     def settings_with(self, chosen=()):
-        """All that the filter is started with: the defaults, what the flight sets, what was chosen beside it."""
+        """All settings that the filter starts with: the defaults, those of the flight, and those chosen."""
         return {**settings.DEFAULTS, **self.settings, **dict(chosen)}
 
     def unwrapped_us(self, times_us):
-        """Times of the 32-bit clock, in order but for single ones, as whole numbers that go on behind its wrap; from the first imu's on."""
+        """Times of the 32-bit clock, in order except for single ones, as integers that continue after its wrap; from the first imu's on."""
         last, found = next((t_us for kind, t_us, _ in self.rows if kind == "imu"), 0), []
         for t_us in times_us:
             found.append(last + (t_us - last + CLOCK_US // 2) % CLOCK_US - CLOCK_US // 2)
@@ -78,17 +78,17 @@ def _take_setting(flight, words, path, line):
     try:
         flight.settings[words[1]] = settings.field_of(words[1], values)
     except (TiltError, IndexError) as why:
-        raise at(path, line, str(why) if isinstance(why, TiltError) else "set wants a name and numbers") from None
+        raise at(path, line, str(why) if isinstance(why, TiltError) else "set needs a name and numbers") from None
 
 
 def _take_row(flight, words, path, line):
     kind = words[0]
     if kind not in WIDTHS:
-        raise at(path, line, f"'{kind[:20]}' is no kind of row; there are set {' '.join(WIDTHS)}")
+        raise at(path, line, f"unknown kind of row '{kind[:20]}': use set {' '.join(WIDTHS)}")
     if len(words) != 2 + WIDTHS[kind]:
-        raise at(path, line, f"{kind} has {2 + WIDTHS[kind]} fields, here are {len(words)}")
+        raise at(path, line, f"{kind} needs {2 + WIDTHS[kind]} fields, not {len(words)}")
     if not re.fullmatch(r"[0-9]{1,10}", words[1].strip()) or int(words[1]) > T_US_MAX:
-        raise at(path, line, f"t_us is a whole number from 0 to {T_US_MAX}, not '{words[1][:20]}'")
+        raise at(path, line, f"t_us must be a whole number from 0 to {T_US_MAX}, not '{words[1][:20]}'")
     t_us, values = int(words[1]), tuple(_number(word, path, line) for word in words[2:])
     if kind == "start":
         flight.settings |= {"quaternion": values[:4], "velocity_mps": values[4:7], "position_m": values[7:]}
@@ -101,7 +101,7 @@ def _take_row(flight, words, path, line):
 
 
 def read(path, progress=lambda done, whole: None):
-    """TiltError FILE:LINE: reason for what cannot be read."""
+    """TiltError FILE:LINE: reason for a file that cannot be read."""
     flight = Flight()
     try:
         with open(path, encoding="utf-8") as file:
@@ -118,7 +118,7 @@ def read(path, progress=lambda done, whole: None):
     except OSError as why:
         raise TiltError(f"{path}: {why.strerror}") from why
     except UnicodeDecodeError as why:
-        raise TiltError(f"{path}: no text: {why.reason} at byte {why.start}") from why
+        raise TiltError(f"{path}: not text: {why.reason} at byte {why.start}") from why
     if not any(kind == "imu" for kind, _, _ in flight.rows):
         raise TiltError(f"{path}: no imu row")
     return flight
@@ -158,14 +158,14 @@ TURN_S, SPEED_MPS, BANK_RAD, GRAVITY = 300.0, 6.0, 0.3, 9.81
 RATE_NOISE, FORCE_NOISE = 6e-3, 2e-2
 FIELD_NOISE, VELOCITY_NOISE, POSITION_NOISE, DOWN_NOISE = 0.0349, 0.1, 5.0, 1.0
 DRIFT_RPS = (7.5e-4, -8.5e-4, 5.0e-4)
-START_TURN = (1.0, 0.05, -0.05, 0.05)  # the filter begins turned by this from the truth
-START_SCALE = 1.01                     # and with velocity and position this much too large
+START_TURN = (1.0, 0.05, -0.05, 0.05)  # the filter starts rotated by this from the truth
+START_SCALE = 1.01                     # and with velocity and position too large by this factor
 FIELD_EVERY, EPOCH_EVERY, PERIOD_US = 10, 100, 10_000
 
 
 @dataclass(frozen=True)
 class Wish:
-    """What to simulate: lengths in seconds; without: intervals without GPS; late_us: how long a GPS epoch is under way."""
+    """What to simulate: lengths in seconds; without: intervals without GPS; late_us: delay of each GPS epoch."""
     seconds: float = 500.0
     seed: int = 7
     drift: bool = True
@@ -174,7 +174,7 @@ class Wish:
 
 
 def true_motion(t_s):
-    """The thesis' flight (section 3.4): quaternion, velocity, position, acceleration in n, rate in b, each along the last axis."""
+    """The flight of the thesis (section 3.4): quaternion, velocity, position, acceleration in n, rate in b, each along the last axis."""
     t_s = np.asarray(t_s, float)
     turn = 2 * np.pi / TURN_S
     heading, bank = turn * t_s, BANK_RAD * np.sin(10 * turn * t_s)
@@ -191,7 +191,7 @@ def in_body(quaternion, vector):
 
 
 def measured(wish):
-    """What each sensor would say at each IMU time, noise included, in single precision as on the line: {kind: (steps, width)}, and the truth
+    """Each sensor's readings at each IMU time, with noise, in single precision as on the line: {kind: (steps, width)}, and the truth
     (steps, 10)."""
     random, steps = np.random.default_rng(wish.seed), int(round(wish.seconds * 1e6 / PERIOD_US))
     step = np.arange(1, steps + 1)

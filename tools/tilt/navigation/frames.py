@@ -26,7 +26,7 @@ def answer_text(code):
 
 
 def stuffed(data):
-    """COBS: no zero in it."""
+    """COBS encoding: contains no zero."""
     out = bytearray()
     for run in data.split(b"\0"):
         while len(run) >= 254:
@@ -37,7 +37,7 @@ def stuffed(data):
 
 
 def unstuffed(data):
-    """What COBS was made of; None when it is none."""
+    """Decodes COBS; None if it is not COBS."""
     out, at = bytearray(), 0
     while at < len(data):
         code = data[at]
@@ -51,7 +51,7 @@ def unstuffed(data):
 
 
 def crc(data):
-    """CRC-16/CCITT, start 0xFFFF, as it goes on the line."""
+    """CRC-16/CCITT, start 0xFFFF, in transmission order."""
     return struct.pack("<H", binascii.crc_hqx(data, 0xFFFF))
 
 
@@ -60,7 +60,7 @@ def frame(record):
 
 
 def record_of(data):
-    """The record of one frame without its zero; None when it is damaged."""
+    """The record in one frame without its zero; None if it is damaged."""
     whole = unstuffed(data)
     if whole is None or len(whole) < 3 or crc(whole[:-2]) != whole[-2:]:
         return None
@@ -72,7 +72,7 @@ def _head(kind, sequence):
 
 
 def single(number):
-    """As single precision has it; beyond its range the infinity of that sign."""
+    """The number in single precision; beyond its range the infinity of that sign."""
     try:
         return struct.pack("<f", number)
     except OverflowError:
@@ -161,7 +161,7 @@ READERS = {b"h": _hello, b"k": _answer, b"s": _state, b"v": _variances, b"c": _c
 
 
 class Reader:
-    """Bytes of the board in, its records out; `damaged` counts what was none."""
+    """Bytes from the board in, its records out; `damaged` counts invalid ones."""
 
     def __init__(self):
         self.kept, self.damaged = b"", 0

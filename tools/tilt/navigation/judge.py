@@ -1,4 +1,4 @@
-"""What a flight's states are worth beside the truth."""
+"""The errors of a flight's states against the truth."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,7 @@ SETTLED_S = 40.0  # the thesis' first interval: the filter finds its attitude
 
 @dataclass
 class Errors:
-    """At t_s: attitude (n, 3) turn about north, east, down in degree; euler (n, 3) roll, pitch, heading in degree; velocity m/s; position m."""
+    """At t_s: attitude (n, 3) rotation about north, east, down in degrees; euler (n, 3) roll, pitch, heading in degrees; velocity m/s; position m."""
     t_s: np.ndarray
     attitude_deg: np.ndarray
     euler_deg: np.ndarray
@@ -19,7 +19,7 @@ class Errors:
 
 
 def errors(flight, outcome):
-    """True minus computed where both are known; None without truth."""
+    """True minus computed, where both are known; None without truth."""
     if not flight.truth:
         return None
     truth_t_us = np.array(flight.unwrapped_us(flight.truth_t_us))
@@ -32,7 +32,7 @@ def errors(flight, outcome):
 
 
 def intervals(flight, seconds):
-    """[(name, from s, to s)]: before, in and behind each time without GPS; what comes before the filter has settled is left out."""
+    """[(name, from s, to s)]: before, during and after each time without GPS, from when the filter has settled."""
     found, at = [], SETTLED_S if seconds > 2 * SETTLED_S else 0.0
     for begin, end in flight.gps_gaps():
         if begin > at:
@@ -56,7 +56,7 @@ def largest(flight, found):
 
 
 def table(flight, found):
-    """The same as lines of text."""
+    """The largest errors as lines of text."""
     return [f"{'':<8}{'from s':>8}{'to s':>8}{'heading deg':>13}{'roll, pitch deg':>17}{'velocity m/s':>14}{'position m':>12}   (largest)",
             *("{interval:<8}{from_s:>8.0f}{to_s:>8.0f}{heading_deg:>13.2f}{level_deg:>17.2f}{velocity_mps:>14.3f}{position_m:>12.2f}".format(**row)
               for row in largest(flight, found))]

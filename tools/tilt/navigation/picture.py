@@ -13,7 +13,7 @@ DPI, PNG_COLOURS = 90, 48
 
 
 def draw(path, title, flight, found, outcome):
-    """PNG, SVG or PDF by the name's ending: attitude, velocity, position, each axis with +-1 sigma (dashed)."""
+    """PNG, SVG or PDF by the suffix: attitude, velocity, position, each axis with +-1 sigma (dashed)."""
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot
@@ -48,7 +48,7 @@ def draw(path, title, flight, found, outcome):
 
 
 def save(figure, path):
-    """A PNG in a few colours: a quarter of the bytes."""
+    """Saves a PNG in a few colours: a quarter of the bytes."""
     if not str(path).lower().endswith(".png"):
         figure.savefig(path)
         return

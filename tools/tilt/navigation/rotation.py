@@ -3,7 +3,7 @@ import numpy as np
 
 
 def product(left, right):
-    """left * right: the turn `right`, then `left`."""
+    """left * right: the rotation `right`, then `left`."""
     a, b, c, d = np.moveaxis(np.asarray(left, float), -1, 0)
     e, f, g, h = np.moveaxis(np.asarray(right, float), -1, 0)
     return np.stack([a * e - b * f - c * g - d * h, a * f + b * e + c * h - d * g, a * g - b * h + c * e + d * f,
@@ -45,6 +45,6 @@ def euler(quaternion):
 
 
 def vector_between(true, computed):
-    """(..., 3): the small turn about the axes n, in radian, from the computed attitude to the true one."""
+    """(..., 3): the small rotation about the axes n, in radian, from the computed attitude to the true one."""
     between = product(true, inverse(normalised(computed)))
     return 2 * between[..., 1:] * np.where(between[..., :1] < 0, -1.0, 1.0)

@@ -1,8 +1,8 @@
-"""What the filter is started with: the fields of nav_config_t (nav/lib/nav.h), in its order."""
+"""The settings that the filter starts with: the fields of nav_config_t (nav/lib/nav.h), in its order."""
 from tilt.errors import TiltError
 from tilt.numbers import real
 
-# the thesis' simulation (section 3.4), with twice its process noise: its own is half of what its sensors have (docs/navigation.md)
+# the thesis' simulation (section 3.4), with twice its process noise: its own is half of its sensors' (docs/navigation.md)
 DEFAULTS = {
     "quaternion": (1.0, 0.0, 0.0, 0.0), "velocity_mps": (0.0,) * 3, "position_m": (0.0,) * 3, "gyro_drift_rps": (0.0,) * 3,
     "field": (17818.0, 1951.0, 41847.0), "gravity_mps2": 9.81,
@@ -12,7 +12,7 @@ DEFAULTS = {
     "gate": 5.0, "period_us": 10000,
 }
 
-PERIOD_US_MAX = 0xFFFFFFFF  # what a record has room for; the filter wants less
+PERIOD_US_MAX = 0xFFFFFFFF  # limit of a record; the filter's own limit is lower
 
 
 def width(name):
@@ -22,14 +22,14 @@ def width(name):
 
 
 def field_of(name, values):
-    """The values of a field, as DEFAULTS has them; TiltError for an unknown name or a wrong count."""
+    """The values of a field, in the form of DEFAULTS; TiltError for an unknown name or a wrong count."""
     if name not in DEFAULTS:
-        raise TiltError(f"there is no setting '{name}'; there are {' '.join(DEFAULTS)}")
+        raise TiltError(f"no setting '{name}': choose from {' '.join(DEFAULTS)}")
     if len(values) != width(name):
-        raise TiltError(f"{name} has {width(name)} numbers, not {len(values)}")
+        raise TiltError(f"{name} needs {width(name)} numbers, not {len(values)}")
     if name == "period_us":
         if not 0 <= values[0] <= PERIOD_US_MAX or values[0] % 1 != 0:
-            raise TiltError(f"period_us is a whole number from 0 to {PERIOD_US_MAX}, not {values[0]:g}")
+            raise TiltError(f"period_us must be a whole number from 0 to {PERIOD_US_MAX}, not {values[0]:g}")
         return int(values[0])
     return tuple(values) if width(name) > 1 else values[0]
 
@@ -42,5 +42,5 @@ def of_option(text):
     except ValueError:
         values = None
     if values is None:
-        raise TiltError(f"--set wants NAME=NUMBER[,NUMBER...], not '{text}'")
+        raise TiltError(f"--set needs NAME=NUMBER[,NUMBER...], not '{text}'")
     return name, field_of(name, values)

@@ -1,5 +1,5 @@
 "use strict";
-/* The page of `tilt plot`. DATA comes from tools/tilt/plot_page.py: for each file its series as base64 of little-endian numbers. */
+/* The page of `tilt plot`. DATA comes from tools/tilt/plot_page.py: each file's series as base64 of little-endian numbers. */
 const LEFT = 150, RIGHT = 110, PANEL = 230, LANE = 20, SPECTRUM = 300, GATED = 1, WARMING = 128, NOTHING = -32768;
 const AXIS_NAMES = ["x", "y", "z"], AXIS_COLOURS = ["#1f6fd0", "#e07b00", "#0f9a6a"];
 const css = name => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
@@ -124,7 +124,7 @@ class Plot {
       this.pen.fillRect(x, this.top, Math.max(1, this.x(file.t[i] + half) - x), this.bottom - this.top);
     }
   }
-  /** A mark at every point, at most one for each cell of `cell` pixels; onEdge marks those outside. */
+  /** A mark at every point, at most one per cell of `cell` pixels; onEdge marks those outside. */
   marks(file, values, scale, from, to, is, cell, mark, onEdge) {
     const across = Math.ceil(this.width / cell) + 1, taken = new Uint8Array(across * (Math.ceil(this.height / cell) + 1));
     for (let i = from; i < to; i++) {
@@ -211,7 +211,7 @@ function drawFlags(canvas, group) {
     const end = Math.min(width, Math.floor(plot.x(file.t[to - 1]) - LEFT));
     pen.fillStyle = DATA.flagColours[bit];
     let share = 0;
-    for (let column = 0; column <= end; column++) {  // a column between rows shows what the one before does
+    for (let column = 0; column <= end; column++) {  // a column between rows repeats the previous one
       if (rows[column]) share = hits[column] / rows[column];
       if (share) { pen.globalAlpha = 0.35 + 0.65 * share; pen.fillRect(LEFT + column, y + 3, 1, LANE - 6); }
     }
@@ -220,7 +220,7 @@ function drawFlags(canvas, group) {
     pen.fillStyle = css("faint"); pen.textAlign = "left";
     pen.fillText(`${file.counts[bit].toLocaleString("en")} rows, ${(100 * file.counts[bit] / file.rows).toPrecision(2)} %`, plot.right + 6, y + LANE / 2 + 4, RIGHT - 8);
   });
-  plot.frame(lanes.length ? "flags: the darker, the more of the rows have it" : "flags: none is set anywhere");
+  plot.frame(lanes.length ? "flags: the darker, the more of the rows have it" : "flags: no row has one");
 }
 
 function meanOfAxes(parts) { return parts[0].map((_, i) => Math.sqrt((parts[0][i] ** 2 + parts[1][i] ** 2 + parts[2][i] ** 2) / 3)); }
@@ -233,7 +233,7 @@ function spectrumLines() {
     if (!parts || !shown[name] || (name === "raw" && n && DATA.sameReadings)) continue;
     const thin = name === "raw";
     if (DATA.files.length === 1) parts.forEach((values, i) => lines.push({ name: `${AXIS_NAMES[i]} ${name}`, hz: file.density.hz, values, colour: AXIS_COLOURS[i], width: thin ? 0.8 : 1.8, alpha: thin ? 0.6 : 1 }));
-    else lines.push({ name: thin ? (DATA.sameReadings ? "raw" : `raw of ${file.name}`) : file.name, hz: file.density.hz, values: meanOfAxes(parts), width: thin ? 0.8 : 1.8,
+    else lines.push({ name: thin ? (DATA.sameReadings ? "raw" : `raw, ${file.name}`) : file.name, hz: file.density.hz, values: meanOfAxes(parts), width: thin ? 0.8 : 1.8,
                       colour: thin && DATA.sameReadings ? css("raw") : DATA.colours[DATA.files.indexOf(file) % DATA.colours.length], alpha: thin ? 0.7 : 1 });
   }
   return lines;
@@ -242,7 +242,7 @@ function drawSpectrum(canvas) {
   const { pen, width, height } = fitted(canvas), lines = spectrumLines(), top = 20, bottom = height - 36, right = width - RIGHT - 140;
   pen.fillStyle = css("ink"); pen.textAlign = "left";
   pen.fillText("spectrum in LSB/\u221aHz" + (DATA.files.length > 1 ? " (mean of x, y, z)" : "") + ": motion to the left, noise to the right; of the whole recording", LEFT, 13);
-  if (!lines.length) { pen.fillText("no stretch of enough samples without a gap, or raw and filtered switched off", LEFT, 50); return; }
+  if (!lines.length) { pen.fillText("no stretch without a gap is long enough, or raw and filtered are off", LEFT, 50); return; }
   let low = Math.min(...DATA.floors.map(f => f.lsb[0])), high = Math.max(...DATA.floors.map(f => f.lsb[2])), from = Infinity, to = 0;
   for (const line of lines) {
     from = Math.min(from, line.hz[0]); to = Math.max(to, line.hz[line.hz.length - 1]);
@@ -386,7 +386,7 @@ function buildLegend() {
   for (const file of DATA.files) if (file.kept < file.rows) {
     const note = document.createElement("div");
     note.id = "notes";
-    note.textContent = `${file.name}: ${file.kept.toLocaleString("en")} of ${file.rows.toLocaleString("en")} rows are in this page, all extremes among them; each has the flags of those left out before it`;
+    note.textContent = `${file.name}: ${file.kept.toLocaleString("en")} of ${file.rows.toLocaleString("en")} rows are in this page, including all extremes; each has the flags of the omitted rows before it`;
     document.getElementById("legend").append(note);
   }
 }

@@ -1,5 +1,5 @@
-"""What a judge has before it: the lines of the board, each with the time at which it came, and the owner, who may skip, repeat or quit at any
-moment. Nothing here waits without a deadline but for an answer of the owner, and the line is read meanwhile."""
+"""What a judge works with: the board's lines, each with its time of arrival, and the owner, who may skip, repeat or quit at any time. Every
+wait has a deadline except for an answer of the owner; the line is read meanwhile."""
 import collections
 import json
 import re
@@ -9,10 +9,10 @@ from typing import NamedTuple, Optional
 from tilt import protocol
 from tilt.errors import TiltError
 
-LOOK_S = 0.1        # how late a key of the owner is seen at most
-LINES_KEPT, ROWS_KEPT = 40, 20  # for the record: rows alone would be less than half a second
-LETTERS_KEPT = 160  # of each
-SAID_KEPT = 1000    # lines, while the owner is asked something
+LOOK_S = 0.1        # longest delay until a key of the owner is seen
+LINES_KEPT, ROWS_KEPT = 40, 20  # for the record: rows would fill it within half a second
+LETTERS_KEPT = 160  # of each line
+SAID_KEPT = 1000    # lines kept while the owner is asked something
 
 
 class Seen(NamedTuple):
@@ -24,23 +24,23 @@ class Seen(NamedTuple):
 
 
 class Failed(Exception):
-    """The check has failed, and why."""
+    """The check has failed; the text is the reason."""
 
 
 class Skip(Exception):
-    """By the owner, and why."""
+    """The owner skips the check; the text is the reason."""
 
 
 class Repeat(Exception):
-    """The owner wants the check from its beginning."""
+    """The owner repeats the check from its beginning."""
 
 
 class Quit(Exception):
-    """The owner ends here, or is no longer there."""
+    """The owner quits, or is no longer there."""
 
 
 def seen_of(at_s, text):
-    """A line without its end."""
+    """The Seen of a line without its line end."""
     if text.startswith("#"):
         return Seen(at_s, "said", text)
     if protocol.is_header(text):
@@ -56,7 +56,7 @@ def matters(seen):
 
 
 class Wire:
-    """The line of a tilt.board.Board: take() what came, send() what is typed."""
+    """The line of a tilt.board.Board: take() returns input, send() types."""
 
     def __init__(self, board):
         self.board, self._number = board, 0
@@ -89,10 +89,10 @@ class Wire:
 
 
 class Bench:
-    """next() is the only way to what came.
+    """next() is the only access to input.
 
-    numbers: what the judge has measured so far; lines: the last raw ones of the check; limit_s: for each thing that the judge waits for; settings:
-    name -> value as the board had them at the beginning; deaf: the owner is not heard, while settings are put back."""
+    numbers: what the judge has measured so far; lines: the last raw ones of the check; limit_s: time limit of each wait; settings: name -> value
+    as the board had them at the beginning; deaf: the owner is ignored while settings are restored."""
 
     def __init__(self, wire, owner):
         self.wire, self.owner = wire, owner
@@ -102,20 +102,20 @@ class Bench:
         self.begin(60.0)
 
     def begin(self, limit_s):
-        """As a check begins."""
+        """Resets the state at the beginning of a check."""
         self.limit_s, self.numbers, self.count = limit_s, {}, 0
         self.kept = {"row": collections.deque(maxlen=ROWS_KEPT), "other": collections.deque(maxlen=LINES_KEPT)}
 
     @property
     def lines(self):
-        """The last of what was seen, in its order: rows and, more of them, other lines."""
+        """The last lines seen, in order: some rows and, more of them, other lines."""
         return [text for _, text in sorted([*self.kept["row"], *self.kept["other"]])]
 
     def measured(self, **numbers):
         self.numbers.update(numbers)
 
     def next(self, until_s):
-        """The next thing seen, None when the time is over. Raises what the owner wants."""
+        """The next thing seen, None after the timeout. Raises what the owner wants."""
         while True:
             if not self.deaf:
                 self.heed(self.owner.typed())
@@ -127,7 +127,7 @@ class Bench:
             self.fill(min(left_s, LOOK_S))
 
     def events(self, limit_s):
-        """What is seen within the time."""
+        """Everything seen within the time."""
         until_s = self.now() + limit_s
         while (seen := self.next(until_s)) is not None:
             yield seen
@@ -141,16 +141,16 @@ class Bench:
             kept.append((self.count, re.sub(r"[^ -~]", "?", mark[:LETTERS_KEPT])))
 
     def put_back(self, seen):
-        """The next thing seen, for somebody else."""
+        """Returns the thing seen to the queue, for the next reader."""
         self.waiting.appendleft(seen)
 
     def forget(self):
-        """What came while nobody judged."""
+        """Drops input that arrived while no judge was reading."""
         self.fill(0.0)
         self.waiting.clear()
 
     def type(self, text, piece=False):
-        """Failed where there is no board."""
+        """Types text; Failed if no board is connected."""
         try:
             (self.wire.send_piece if piece else self.wire.send)(text)
         except TiltError as why:
@@ -160,7 +160,7 @@ class Bench:
         self.owner.say(text)
 
     def heed(self, typed):
-        """s, r and q mean the same whenever they are typed."""
+        """Acts on s, r and q, whenever they are typed."""
         word, _, reason = (typed or "").strip().partition(" ")
         if word == "s":
             raise Skip(reason.strip() or self.reason())
@@ -176,8 +176,8 @@ class Bench:
         return reason
 
     def line(self, prompt):
-        """What the owner types, as it is. What the board says meanwhile is kept, for the owner may do at once what is asked for; of the rows only
-        those without a sample are, for the owner may be away for long."""
+        """What the owner types. Meanwhile input is kept, for the owner may act before answering; of the rows only those without a sample are
+        kept, for the owner may be away for long."""
         self.owner.prompt(prompt)
         while (typed := self.owner.typed()) is None:
             self.fill(LOOK_S)
@@ -186,7 +186,7 @@ class Bench:
         return typed
 
     def ask(self, question):
-        """Yes or no, of what only a person can see."""
+        """A yes-or-no question about what only a person can see."""
         while True:
             typed = self.line(f"   {question} (y/n) ")
             self.heed(typed)

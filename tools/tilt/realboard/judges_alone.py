@@ -1,4 +1,4 @@
-"""Checks in which the board lies still and nobody touches it: who it is, its clocks, the sensor's own test, the bus and the line at their fastest."""
+"""Checks in which the board lies untouched: identity, clocks, the sensor's self-test, the bus and the line at their fastest."""
 import re
 
 from tilt import protocol
@@ -8,18 +8,18 @@ from tilt.realboard.bench import Failed
 STATE = re.compile(r"# state (\w+), fault (\d+), rate ([\d.]+) Hz, measured ([\d.]+) Hz, uptime s \d+")
 NEEDED = {"filter", "rate", "range", "every", "baud", "offset", "scale", "level"}
 RATE_S = 30.0
-CLOCK_PPM = 5500      # the resonator of a UNO is within 0.5 %; 500 more for the delays of USB
+CLOCK_PPM = 5500      # a UNO's resonator is within 0.5 %; 500 more for USB delays
 FAST_HZ, FAST_S = 800, 20.0
-BUS_ERRORS_SHARE = 1e-3  # of the samples: one that was read again is no fault, many are a cable
+BUS_ERRORS_SHARE = 1e-3  # of the samples: a single repeated read is not a fault, many point to a cable
 BUS_COUNTERS = ("not acknowledged", "arbitration lost", "bus errors", "timeouts", "readings torn", "overruns")
 LOST_COUNTERS = ("lost", "late")
 SELFTEST_S = 15.0
 BAUD_S, BAUD_ROWS = 3.0, 10
-BAUD_FOUND_S = 5.0    # for the first row at another rate; the slowest sends 16 rows a second
+BAUD_FOUND_S = 5.0    # for the first row at another rate; the slowest sends 16 rows/s
 
 
 def identity(bench):
-    """Version, settings and state are answered, and there is no fault."""
+    """Version, settings and state are reported, and there is no fault."""
     version = watch.reply(bench, "version", protocol.BANNER + "(.*)")
     settings = watch.listed(bench)
     state = next((match for match in map(STATE.match, watch.listing(bench, "status")) if match), None)
@@ -40,13 +40,13 @@ def rate(bench):
     bench.measured(rows=len(found.rows), rate_hz=round(found.rate_hz, 3), rows_lost=lost, lines_spoilt=found.strange,
                    clock_ppm=None if ppm is None else round(ppm))
     if lost or found.strange:
-        raise Failed(f"{lost} rows are missing and {found.strange} lines are spoilt")
+        raise Failed(f"{lost} rows missing, {found.strange} bad lines")
     if ppm is None or abs(ppm) > CLOCK_PPM:
-        raise Failed(f"the board's clock is off by {'an unknown part' if ppm is None else f'{ppm:.0f} ppm'} by the PC's, {CLOCK_PPM} are allowed")
+        raise Failed(f"the board's clock is off by {'an unknown amount' if ppm is None else f'{ppm:.0f} ppm'}, more than {CLOCK_PPM} ppm")
 
 
 def selftest(bench):
-    """The sensor's own test, with the limits of its data sheet."""
+    """The sensor's self-test, with the limits of its data sheet."""
     bench.type("selftest")
     verdicts = {}
     for axis in "xyz":
@@ -55,12 +55,12 @@ def selftest(bench):
         bench.measured(**{f"{axis}_lsb": float(match[1]), f"{axis}_says": match[2]})
     failed = [axis for axis, verdict in verdicts.items() if verdict == "FAIL"]
     if failed:
-        raise Failed(f"the sensor's test failed on {', '.join(failed)}")
+        raise Failed(f"the sensor's self-test failed on {', '.join(failed)}")
 
 
 def fast_bus(bench):
-    """The bus at its fastest: the counters of the bus before and after."""
-    told = watch.reply(bench, f"rate {FAST_HZ}", rf"# rate {FAST_HZ} Hz(, I2C at ([\d.]+) kHz)?")
+    """The bus at its fastest: its counters before and after."""
+    reply = watch.reply(bench, f"rate {FAST_HZ}", rf"# rate {FAST_HZ} Hz(, I2C at ([\d.]+) kHz)?")
     try:
         watch.row_with_sample(bench, watch.ROWS_WITHIN_S)
         before = watch.counters(bench)
@@ -70,20 +70,20 @@ def fast_bus(bench):
         bench.type(f"rate {watch.RATE_HZ}")
     grown = {name: after.get(name, 0) - before.get(name, 0) for name in BUS_COUNTERS + LOST_COUNTERS}
     samples = after.get("samples", 0) - before.get("samples", 0)
-    bench.measured(khz=float(told[2] or 0), samples=samples, seconds=round(found.board_s, 2),
+    bench.measured(khz=float(reply[2] or 0), samples=samples, seconds=round(found.board_s, 2),
                    **{name.replace(" ", "_"): number for name, number in grown.items()})
     if samples < FAST_HZ * found.board_s * (1 - watch.RATE_SHARE) or not samples:
-        raise Failed(f"{samples} samples in {found.board_s:.1f} s, {FAST_HZ * found.board_s:.0f} are due")
+        raise Failed(f"{samples} samples in {found.board_s:.1f} s, expected {FAST_HZ * found.board_s:.0f}")
     lost = sum(grown[name] for name in LOST_COUNTERS)
     if lost:
-        raise Failed(f"{lost} samples were lost")
+        raise Failed(f"{lost} samples lost")
     errors = sum(grown[name] for name in BUS_COUNTERS)
     if errors > BUS_ERRORS_SHARE * samples:
-        raise Failed(f"{errors} errors of the bus among {samples} samples")
+        raise Failed(f"{errors} bus errors in {samples} samples")
 
 
 def baud_rates(bench):
-    """Each rate that the board lists: rows come at it, and none is spoilt."""
+    """At each rate that the board lists, rows arrive and no line is bad."""
     rates = [int(word) for word in watch.listed(bench).get("baud", ("", ""))[1].split()]
     if not rates:
         raise Failed("'settings' lists no baud rate")
@@ -94,18 +94,18 @@ def baud_rates(bench):
             wrong.append(f"{baud} ({why})")
             find_again(bench)
     if wrong:
-        raise Failed(f"not at {', '.join(wrong)}")
+        raise Failed(f"fails at {', '.join(wrong)}")
 
 
 def find_again(bench):
-    """Where the board cannot be read: it is heard at the next rate that both know, or starts again."""
+    """Reconnects to an unreadable board: at the next rate that both know, or after a reset."""
     if not any(seen.kind == "row" for seen in bench.events(BAUD_FOUND_S)):
-        bench.say("   The board cannot be read at this rate: press its reset button.")
+        bench.say("   The board is unreadable at this rate: press its reset button.")
         watch.restart(bench)
 
 
 def one_baud(bench, baud):
-    """Why it does not work; None: it does."""
+    """Why this rate fails; None: it works."""
     try:
         watch.reply(bench, f"baud {baud}", rf"# baud {baud}$")
         first = next((seen for seen in bench.events(BAUD_FOUND_S) if seen.kind == "row" and bench.wire.baud == baud), None)
@@ -115,4 +115,4 @@ def one_baud(bench, baud):
     except Failed as why:
         return str(why)
     bench.measured(**{f"rows_at_{baud}": len(found.rows), f"spoilt_at_{baud}": found.strange})
-    return f"{found.strange} lines spoilt, {len(found.rows)} rows" if found.strange or len(found.rows) < BAUD_ROWS else None
+    return f"{found.strange} bad lines, {len(found.rows)} rows" if found.strange or len(found.rows) < BAUD_ROWS else None

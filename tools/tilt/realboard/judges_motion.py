@@ -7,11 +7,11 @@ from tilt.realboard import watch
 from tilt.realboard.bench import Failed
 
 REST_S = 1.0
-REST_MG = 40         # spread of each filtered axis while it lies
-ONE_G_MG = (800, 1280)  # of a face: offsets and sensitivities of any ADXL345; an ADXL343 or ADXL375 is outside or at its limits
+REST_MG = 40         # spread of each filtered axis at rest
+ONE_G_MG = (800, 1280)  # |a| on a face of any ADXL345, offset and sensitivity included; an ADXL343 or ADXL375 is outside or close to the limit
 FACE_SHARE = 0.85    # of |a| on one axis
 FACES = ("+x", "-x", "+y", "-y", "+z", "-z")
-SHAKEN_LSB, SHAKEN_ROWS = 60, 20  # a reading so far off, so many of them
+SHAKEN_LSB, SHAKEN_ROWS = 60, 20  # least deviation of a reading, and how many of them
 MOVED_DEG = 1.0
 
 
@@ -78,7 +78,7 @@ def judge_faces(bench, found):
 
 
 def shake(bench):
-    """Knocks do not move the tilt: it is the same after them."""
+    """Knocks do not change the tilt: it is the same after them."""
     before = rest(bench)
     bench.say("   Now knock on the table beside the board, hard, for five seconds; then let it lie.")
     shaken, gated, worst_deg = shaking(bench, before)
@@ -86,7 +86,7 @@ def shake(bench):
     moved_deg = watch.angle_deg(watch.mean_mg(before), watch.mean_mg(after))
     bench.measured(readings_off=shaken, rows_gated=gated, worst_deg=round(worst_deg, 2), moved_deg=round(moved_deg, 3))
     if moved_deg > MOVED_DEG:
-        raise Failed(f"the tilt is {moved_deg:.2f} degrees from what it was: has the board moved?")
+        raise Failed(f"the tilt changed by {moved_deg:.2f} degrees: has the board moved?")
 
 
 def rest(bench):
@@ -98,11 +98,11 @@ def rest(bench):
             window.add(seen)
             if window.at_rest():
                 return list(window.rows)
-    raise Failed(f"the board did not lie still within {bench.limit_s:.0f} s")
+    raise Failed(f"the board was not at rest within {bench.limit_s:.0f} s")
 
 
 def shaking(bench, before):
-    """(readings far off, rows that were gated, the largest angle of the filtered ones) until they come no more for a second."""
+    """(readings far off, gated rows, largest angle of the filtered rows) until a second passes without any."""
     mean = [sum(axis) / len(axis) for axis in zip(*(row.values[1:4] for row in before))]
     lies, shaken, gated, worst_deg, last_s = watch.mean_mg(before), 0, 0, 0.0, None
     for seen in bench.events(bench.limit_s):
@@ -115,4 +115,4 @@ def shaking(bench, before):
         worst_deg = max(worst_deg, watch.angle_deg(watch.mg(seen.row), lies))
         if shaken >= SHAKEN_ROWS and seen.at_s - last_s > REST_S:
             return shaken, gated, worst_deg
-    raise Failed(f"{shaken} readings were more than {SHAKEN_LSB} LSB off within {bench.limit_s:.0f} s, {SHAKEN_ROWS} are wanted: knock harder")
+    raise Failed(f"only {shaken} of {SHAKEN_ROWS} readings more than {SHAKEN_LSB} LSB off within {bench.limit_s:.0f} s: knock harder")

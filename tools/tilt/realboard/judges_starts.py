@@ -1,4 +1,4 @@
-"""Checks in which the board starts again: its button, its supply, D4, and what it keeps."""
+"""Checks in which the board restarts: its button, its supply, D4, and what it keeps."""
 import contextlib
 import statistics
 
@@ -6,17 +6,17 @@ from tilt.realboard import watch
 from tilt.realboard.bench import Failed
 
 BUTTON = "reset button or serial port opened"
-ROWS_AFTER_S = 5.0  # from the banner on
+ROWS_AFTER_S = 5.0  # after the banner
 UNREAD = "defaults, saved ones not read"
 BROKEN = ("defaults, saved ones damaged", UNREAD)
 TYPED, REST = "every 4", "4"
-SETS = (("every 3", "offset 1 2 3"), ("every 5", "offset -4 -5 -6"))  # no value of one in the other: a mixture is neither
-SAVES_MAX = 300     # of 100,000 that a byte of the EEPROM takes
+SETS = (("every 3", "offset 1 2 3"), ("every 5", "offset -4 -5 -6"))  # no value in common: a mixture equals neither
+SAVES_MAX = 300     # of 100,000 writes that an EEPROM byte endures
 SAVED_S = 5.0
 CHANGED = ("offset", "level", "every")
 KEPT_EVERY = 7
 KEPT_OFF_S = 8.0    # the owner counts to ten
-LEVEL_DEG = 1.0     # that a board lies off after it was plugged in again
+LEVEL_DEG = 1.0     # allowed change after the board was plugged in again
 
 
 def reset_button(bench):
@@ -28,7 +28,7 @@ def reset_button(bench):
 
 
 def rows_after(bench, start):
-    """Rows behind the banner, without a fault."""
+    """Rows after the banner, without a fault."""
     begun_s = start.banner.at_s if start.banner else bench.now()
     bench.measured(cause=start.cause, settings=start.kept, silent_s=round(begun_s - start.since_s, 3),
                    port_gone_s=None if start.port_gone_s is None else round(start.port_gone_s, 3))
@@ -39,7 +39,7 @@ def rows_after(bench, start):
 
 
 def ready(bench):
-    """What the checks are made with: a row for each of 100 samples a second. Nothing of it is saved."""
+    """Sets what the checks need: a row for each of 100 samples a second. Nothing of it is saved."""
     if bench.wire.baud < 115200:
         watch.reply(bench, "baud 115200", r"# baud 115200$")
     for command, answer in (("mode csv", "# mode csv"), (f"rate {watch.RATE_HZ}", f"# rate {watch.RATE_HZ} Hz"), ("every 1", "# every 1")):
@@ -47,31 +47,31 @@ def ready(bench):
 
 
 def reset_typing(bench):
-    """What was typed before the reset does not become a part of what is typed after it."""
+    """Text typed before the reset does not become part of what is typed after it."""
     bench.type(TYPED, piece=True)
     try:
         start = watch.restart(bench)
     except BaseException:
         with contextlib.suppress(Failed):
-            bench.type("\n", piece=True)  # else it would begin the next command
+            bench.type("\n", piece=True)  # otherwise it would begin the next command
         raise
     rest_is_refused(bench)
     rows_after(bench, start)
 
 
 def rest_is_refused(bench):
-    """The line that was begun before the reset is gone."""
+    """The line begun before the reset is gone."""
     watch.row_with_sample(bench, ROWS_AFTER_S)
-    with contextlib.suppress(Failed):  # the refusal, which is the right answer
+    with contextlib.suppress(Failed):  # the refusal is the right answer
         watch.reply(bench, REST, "# every")
     every = watch.setting(bench, "every")
     bench.measured(every=every)
     if every == TYPED.split()[1] + REST:
-        raise Failed(f"what was typed before the reset was joined to what came after it: every {every}")
+        raise Failed(f"text typed before the reset was joined to text typed after it: every {every}")
 
 
 def power_second(bench):
-    """The supply goes for a second."""
+    """The supply fails for a second."""
     start = watch.restart(bench, needs_gone=True)
     rows_after(bench, start)
     if start.kept in BROKEN:
@@ -79,7 +79,7 @@ def power_second(bench):
 
 
 def strap(bench):
-    """D4 at ground gives the defaults, and leaves what is saved."""
+    """D4 at ground gives the defaults and leaves the saved settings."""
     start = watch.restart(bench)
     bench.measured(with_d4=start.kept)
     if start.kept != UNREAD:
@@ -94,7 +94,7 @@ def strap(bench):
 # --- the EEPROM -------------------------------------------------------------------------------------------------------
 
 def eeprom_cut(bench):
-    """Saves two sets in turn until the supply goes: behind it the board has one of them whole."""
+    """Saves two sets in turn until the supply fails: afterwards the board has one of them whole."""
     with as_before(bench):
         saved, under_way, count = save_until_gone(bench)
         bench.measured(saves=count)
@@ -110,7 +110,7 @@ def eeprom_cut(bench):
 
 
 def save_until_gone(bench):
-    """(the last set that was said to be saved, the one that was under way, how many saves)"""
+    """(the last set reported as saved, the one being saved, number of saves)"""
     until_s, saved = bench.now() + bench.limit_s, tuple(f"{name} {bench.settings.get(name)}" for name in ("every", "offset"))
     for count in range(1, SAVES_MAX + 1):
         under_way = SETS[count % 2]
@@ -129,39 +129,39 @@ def save_until_gone(bench):
 
 
 def kept(bench):
-    """The mounting that `tare` measures and a setting are there after ten seconds without supply."""
+    """The mounting that `tare` measures and a setting survive ten seconds without supply."""
     with as_before(bench):
         watch.reply(bench, "tare", "# tare: hold still")
         level = watch.value_of(watch.said(bench, "# level ([^:]+)", bench.limit_s, "result of 'tare'")[1][1])
         watch.reply(bench, f"every {KEPT_EVERY}", f"# every {KEPT_EVERY}")
         watch.reply(bench, "save", r"# saved$", SAVED_S)
-        bench.say("   Now pull the USB plug, count slowly to ten, and put it back. The board stays as it lies.")
+        bench.say("   Now pull the USB plug, count slowly to ten, and put it back. Do not move the board.")
         start = watch.restart(bench, needs_gone=True)
         watch.row_with_sample(bench, watch.ROWS_WITHIN_S)
         found = watch.setting(bench, "level"), watch.setting(bench, "every")
         bench.measured(cause=start.cause, settings=start.kept, level=found[0], every=found[1],
                        off_s=None if start.port_gone_s is None else round(start.port_gone_s, 1))
         if found != (level, str(KEPT_EVERY)):
-            raise Failed(f"the board has level {found[0]} and every {found[1]}, saved were level {level} and every {KEPT_EVERY}")
+            raise Failed(f"the board has level {found[0]} and every {found[1]}, but saved level {level} and every {KEPT_EVERY}")
         lies_level(bench)
         if start.port_gone_s is not None and start.port_gone_s < KEPT_OFF_S:
-            raise Failed(f"the plug was out for {start.port_gone_s:.1f} s only: repeat it")
+            raise Failed(f"the plug was out for only {start.port_gone_s:.1f} s: repeat the check")
 
 
 def lies_level(bench):
-    """Roll and pitch are what `tare` made of them."""
+    """Roll and pitch are zero, as `tare` set them."""
     rows = watch.stretch(bench, watch.STRETCH_S).rows
     if not rows:
         raise Failed("no rows")
     roll, pitch = (statistics.fmean(axis) / 100 for axis in zip(*(row.values[7:9] for row in rows)))
     bench.measured(roll_deg=round(roll, 2), pitch_deg=round(pitch, 2))
     if max(abs(roll), abs(pitch)) > LEVEL_DEG:
-        raise Failed(f"roll {roll:.1f} and pitch {pitch:.1f} degrees, where 0 was measured: was it moved?")
+        raise Failed(f"roll {roll:.1f} and pitch {pitch:.1f} degrees instead of 0: was the board moved?")
 
 
 @contextlib.contextmanager
 def as_before(bench):
-    """The settings that the checks of the EEPROM change are put back and saved, whatever happens."""
+    """Restores and saves the settings that the EEPROM checks change, whatever happens."""
     try:
         yield
     finally:
@@ -170,7 +170,7 @@ def as_before(bench):
             put_settings_back(bench)
         except Failed as why:
             was = ", ".join(f"'{name} {bench.settings[name]}'" for name in CHANGED if name in bench.settings)
-            bench.say(f"   The settings could not be put back ({why}): type {was}, 'save'.")
+            bench.say(f"   The settings could not be restored ({why}): type {was}, 'save'.")
         bench.deaf = False
 
 

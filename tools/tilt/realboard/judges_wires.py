@@ -5,14 +5,14 @@ from tilt.realboard.bench import Failed
 NO_SENSOR, BUS, READ_BACK, INT1_LOW, NO_DATA, SCL_LOW, SDA_LOW, INT1_HIGH, TORN, INT1_FLICKERS = 1, 3, 4, 5, 6, 7, 8, 9, 11, 13  # docs/faults.md
 INT1_S = 5.0          # of rows without INT1
 FINGER_S = 10.0
-ROWS_SHARE = 0.8      # of the nominal number: the sensor is read by the clock, a row may be predicted
+ROWS_SHARE = 0.8      # of the nominal number: the sensor is read by the clock, so a row may be a prediction
 
 
 def int1_wire(bench):
-    """D2 floats: rows go on, the LED shows three flashes."""
+    """D2 floats: rows continue, the LED shows three flashes."""
     watch.fault_begins(bench, (INT1_LOW, INT1_HIGH, INT1_FLICKERS))
     rows_without_int1(bench, INT1_S)
-    if not bench.ask("Does the LED flash three times, then stay dark for a moment, again and again?"):
+    if not bench.ask("Does the LED repeat three flashes and a pause?"):
         raise Failed("the LED does not flash three times")
     bench.say("   Now put the wire back into D2.")
     watch.well_again(bench)
@@ -21,7 +21,7 @@ def int1_wire(bench):
 
 
 def int1_finger(bench):
-    """A finger on the floating wire: hum on D2, and rows go on."""
+    """A finger on the floating wire: hum on D2, and rows continue."""
     watch.fault_begins(bench, (INT1_LOW, INT1_HIGH, INT1_FLICKERS))
     bench.say(f"   Now hold the bare end between two fingers for {FINGER_S:.0f} s.")
     is_over = rows_without_int1(bench, FINGER_S)
@@ -30,8 +30,8 @@ def int1_finger(bench):
 
 
 def rows_without_int1(bench, seconds):
-    """The sensor is read by the clock: True when the fault is over at the end. It may change its name, end and begin, hum is like data-ready;
-    the board is not to stop or start again."""
+    """The sensor is read by the clock: True if the fault is over at the end. The fault may change its number, end and return, as hum resembles
+    data-ready; the board must not stop or restart."""
     found, is_over = watch.Stretch(), False
     for seen in bench.events(seconds):
         watch.not_reset(seen)
@@ -40,24 +40,24 @@ def rows_without_int1(bench, seconds):
     shown = len(found.rows) - found.silent
     bench.measured(rows_without_int1=shown, predicted_without_int1=found.silent)
     if found.board_s < watch.HEARD_SHARE * seconds or shown < ROWS_SHARE * watch.RATE_HZ * found.board_s:
-        raise Failed(f"{shown} rows with a sample came in {seconds:.0f} s without INT1 ({found.board_s:.1f} s by the board's clock)")
+        raise Failed(f"only {shown} rows with a sample in {seconds:.0f} s without INT1 ({found.board_s:.1f} s by the board's clock)")
     return is_over
 
 
 def broken_bus(faults, back):
-    """A judge: one of these faults is reported, rows say meanwhile that they show no sample, and all is well when it is put right."""
+    """A judge: one of these faults is reported, rows carry the flag for no sample meanwhile, and the repair clears the fault."""
     def judge(bench):
         watch.fault_begins(bench, faults)
         bench.say(f"   Now {back}.")
         if not watch.well_again(bench):
-            raise Failed("no row said that it shows no sample (flag 16)")
+            raise Failed("no row has flag 16 (no sample)")
     return judge
 
 
-# a wire that floats may be read as low, and loses contact more than once: which fault comes first is the board's, not ours, to say
+# a floating wire may read low, and bounces: the first fault may be any of these
 sda_pulled = broken_bus((NO_SENSOR, BUS, SDA_LOW, SCL_LOW, TORN), "put SDA back into A4")
 scl_pulled = broken_bus((NO_SENSOR, BUS, SCL_LOW, SDA_LOW, TORN), "put SCL back into A5")
 sda_short = broken_bus((SDA_LOW, BUS), "take the short away")
 scl_short = broken_bus((SCL_LOW, BUS), "take the short away")
-# without its supply the sensor loads the lines, or lives on through them
-sensor_power = broken_bus((NO_SENSOR, BUS, READ_BACK, NO_DATA, SCL_LOW, SDA_LOW, TORN), "give the sensor its supply again")
+# without its supply the sensor loads the lines, or is powered through them
+sensor_power = broken_bus((NO_SENSOR, BUS, READ_BACK, NO_DATA, SCL_LOW, SDA_LOW, TORN), "reconnect the sensor's supply")

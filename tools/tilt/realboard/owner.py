@@ -9,14 +9,14 @@ from tilt.realboard.bench import Quit
 
 
 class Owner:
-    """typed() is a line, or None while there is none; Quit when the terminal is gone. It is read in a thread, because no other way of waiting
-    for a key with a deadline works on Windows too; by its number and not as a file, because a thread that waits within sys.stdin holds a lock
-    that Python wants at its end."""
+    """typed() is a line, or None while there is none; Quit when the terminal is gone. A thread reads it, because no other way to wait for a key
+    with a deadline works on Windows too; by file number, because a thread that waits in sys.stdin holds a lock that Python needs when it
+    exits."""
 
     def __init__(self, terminal=None, out=None):
         terminal, self.out = terminal or sys.stdin, out or sys.stdout
         if not terminal.isatty():
-            raise TiltError("nobody is at the keyboard: stdin is no terminal; run it by hand, without a pipe or < FILE")
+            raise TiltError("stdin is not a terminal: run it by hand, without a pipe or < FILE")
         self.lines = queue.Queue()
         threading.Thread(target=self.read, args=(terminal.fileno(),), name="owner", daemon=True).start()
 
@@ -28,7 +28,7 @@ class Owner:
                 for line in whole:
                     self.lines.put(line.decode("utf-8", "replace").rstrip("\r"))
         except OSError:
-            pass  # the terminal has been closed
+            pass  # the terminal was closed
         self.lines.put(None)
 
     def typed(self):
@@ -37,7 +37,7 @@ class Owner:
         except queue.Empty:
             return None
         if line is None:
-            self.lines.put(None)  # for whoever asks again
+            self.lines.put(None)  # for the next call
             raise Quit
         return line
 

@@ -1,5 +1,5 @@
-"""The record of a session: lines of JSON, each written whole and flushed as it happens, so that whatever ends the session leaves a file that can
-be read. Nothing is ever taken out: a check that is repeated has several lines, of which the last counts; --resume adds lines."""
+"""The record of a session: lines of JSON, each written whole and flushed at once, so that an early end leaves a readable file. Nothing is
+ever removed: a repeated check has several lines, of which the last counts; --resume adds lines."""
 import datetime
 import importlib.metadata
 import json
@@ -9,8 +9,8 @@ import platform
 
 from tilt.errors import TiltError, at
 
-FORM = 1  # of the lines; a later form has another number
-SENT_IN = "open an issue of the project, 'tilt board', and attach the file"
+FORM = 1  # version of the line format
+SENT_IN = "open an issue 'tilt board' in the project and attach the file"
 
 
 def now():
@@ -25,7 +25,7 @@ def tool_version():
 
 
 def begin_line(port, usb, firmware, settings):
-    """Who was checked, by what. The serial number of the USB port stays out: it is the owner's."""
+    """The board and the program. The serial number of the USB port is left out: it is private."""
     return {"kind": "begin", "form": FORM, "at": now(), "tool": tool_version(), "os": platform.platform(), "python": platform.python_version(),
             "port": port, "usb": usb, "firmware": firmware, "settings": settings}
 
@@ -36,14 +36,14 @@ def check_line(number, check, verdict, reason, attempt, took_s, bench):
 
 
 class Record:
-    """read: its lines so far; add() writes one. TiltError with the file's name by anything that goes wrong."""
+    """read: its lines so far; add() writes one. TiltError with the file's name on any failure."""
 
     def __init__(self, path, resumed=False):
         self.path, self.file = pathlib.Path(path), None
         self.read, self.spoilt = read_lines(self.path) if resumed else ([], [])
         self.resumed = resumed
         if not resumed and self.path.exists():
-            raise TiltError(f"{path}: is there already (--resume {path} goes on with it, -o takes another name)")
+            raise TiltError(f"{path}: exists already: give --resume {path} to continue it, or another name with -o")
         if not self.path.parent.is_dir():
             raise TiltError(f"{path}: no folder {self.path.parent}")
 
@@ -53,11 +53,11 @@ class Record:
                 self.open()
             self.put(json.dumps(line).encode("ascii") + b"\n")
         except OSError as why:
-            raise TiltError(f"{self.path}: {why.strerror}; what came before is in the file") from why
+            raise TiltError(f"{self.path}: {why.strerror}; the file holds what came before") from why
         self.read.append(line)
 
     def open(self):
-        """Made with the first line, so that a port that is no board leaves no file. A line that was cut short gets its end."""
+        """Creates the file with its first line, so that a port that is not a board leaves none. Ends a line that was cut short."""
         if not self.resumed:
             self.file = open(self.path, "xb", buffering=0)  # pylint: disable=consider-using-with
             return
@@ -68,7 +68,7 @@ class Record:
             self.put(b"\n")
 
     def put(self, data):
-        """All of it, or nothing."""
+        """Writes all of it, or nothing."""
         size, rest = self.file.tell(), memoryview(data)
         try:
             while rest:
@@ -87,7 +87,7 @@ class Record:
         return {line["number"]: line for line in self.read if line["kind"] == "check"}
 
     def notes(self):
-        """number -> what the owner noted."""
+        """number -> the owner's notes."""
         found = {}
         for line in self.read:
             if line["kind"] == "note":
@@ -96,7 +96,7 @@ class Record:
 
 
 def read_lines(path):
-    """(lines, numbers of those that cannot be read). A cut is no reason to lose the rest; a file that is something else is refused."""
+    """(lines, numbers of the unreadable ones). A cut line does not lose the rest; a file of another kind is rejected."""
     try:
         texts = pathlib.Path(path).read_text(encoding="utf-8", errors="replace").split("\n")
     except OSError as why:
@@ -109,9 +109,9 @@ def read_lines(path):
         elif text:
             spoilt.append(number)
         if number == 1 and (line is None or line["kind"] != "begin"):
-            raise at(path, 1, "not a record of `tilt board`: it would begin with {\"kind\": \"begin\"")
+            raise at(path, 1, "not a record of `tilt board`, which begins with {\"kind\": \"begin\"")
     if lines[0]["form"] != FORM:
-        raise at(path, 1, f"a record of form {lines[0]['form']}, this program reads form {FORM}: take the program that wrote it")
+        raise at(path, 1, f"record of form {lines[0]['form']}, but this program reads form {FORM}: use the program that wrote it")
     return lines, spoilt
 
 
@@ -121,7 +121,7 @@ NEEDED = {"begin": {"form": int, "at": str, "tool": str, "os": str, "port": str,
 
 
 def line_of(text):
-    """None where it is not one of ours, or is cut."""
+    """The line as an object; None if it is cut or not ours."""
     try:
         line = json.loads(text)
     except ValueError:
@@ -135,17 +135,17 @@ def line_of(text):
 # --- shown ------------------------------------------------------------------------------------------------------------
 
 def shown(record, checks):
-    """The record as lines of text, a line for each of the checks (number, check)."""
+    """The record as lines of text, one for each of the checks (number, check)."""
     begin, last, notes = record.read[0], record.last(), record.notes()
     out = [f"{record.path}: {begin['firmware']}", f"{begin['at']}, {begin['port']}, {begin['os']}, tilt {begin['tool']}", ""]
     width = max(len(check.key) for _, check in checks)
     for number, check in checks:
         line = last.get(number, {"verdict": "not done", "reason": "", "numbers": {}})
-        told = "; ".join(part for part in (line["reason"], numbers_in_words(line["numbers"])) if part)
-        out.append(f"{number:2} {check.key:{width}}  {line['verdict']:8}  {told}".rstrip())
+        details = "; ".join(part for part in (line["reason"], numbers_in_words(line["numbers"])) if part)
+        out.append(f"{number:2} {check.key:{width}}  {line['verdict']:8}  {details}".rstrip())
         out += [f"{'':{width + 5}}note: {text}" for text in notes.get(number, [])]
     out += ["", tally(last, checks)]
-    out += [f"{record.path}:{number}: cannot be read (cut short?) and is left out" for number in record.spoilt]
+    out += [f"{record.path}:{number}: unreadable (cut short?), skipped" for number in record.spoilt]
     return out
 
 

@@ -1,4 +1,4 @@
-"""The owner is led through the table, and each verdict is written before the next check begins."""
+"""Leads the owner through the table; each verdict is written before the next check begins."""
 import time
 
 from tilt.errors import TiltError
@@ -7,15 +7,15 @@ from tilt.realboard.bench import Failed, Quit, Repeat, Skip
 from tilt.realboard.checks import CHECKS
 from tilt.realboard.record import check_line, numbers_in_words
 
-MEET_S, MEET_STRANGE_S = 8.0, 16.0  # a silent port; one at which bytes come: the board is looked for at each baud rate
-VERSION_AFTER_S = 3.0               # where no banner has come: the board was not reset by the opening, or is stopped
+MEET_S, MEET_STRANGE_S = 8.0, 16.0  # for a silent port; for one with input, as the board is searched for at each baud rate
+VERSION_AFTER_S = 3.0               # without a banner: opening did not reset the board, or it is stopped
 OPENED_S, BEGUN_S = 1.0, 1.0
 READY_S = 15.0
 LONGEST_SHOWN = 80
 
 
 def meet(bench, name):
-    """(first line of the banner, name -> value of its settings). TiltError by anything but a board of this firmware."""
+    """(first line of the banner, name -> value of its settings). TiltError unless it is a board with this firmware."""
     began_s, strange = bench.now(), []
     ask_s, until_s = began_s + VERSION_AFTER_S, began_s + MEET_S
     while bench.now() < until_s:
@@ -27,7 +27,7 @@ def meet(bench, name):
             continue
         if watch.is_banner(seen):
             return seen.text, settle(bench, name)
-        if seen.kind != "back" or seen.at_s > began_s + OPENED_S:  # another baud rate is tried
+        if seen.kind != "back" or seen.at_s > began_s + OPENED_S:  # another baud rate is being tried
             until_s = began_s + MEET_STRANGE_S
             strange += [seen] if seen.kind in ("strange", "back") else []
     raise TiltError(f"{name}: {what_came(strange)}")
@@ -36,31 +36,31 @@ def meet(bench, name):
 def what_came(strange):
     text = [seen.text for seen in strange if seen.kind == "strange" and seen.text.isascii() and seen.text.isprintable()]
     if text:
-        return f"text comes, but not this firmware's: '{max(text, key=len)[:LONGEST_SHOWN].strip()}'. Is it the right port? `make flash` writes it"
+        return f"text, but not from this firmware: '{max(text, key=len)[:LONGEST_SHOWN].strip()}'. Check the port; `make flash` writes it"
     if strange:
-        return "bytes come, but no text at any baud rate of this firmware. Is it the right port? `make flash` writes it"
-    return f"nothing came in {MEET_S:.0f} s. Is it the right port, has the board this firmware? `make flash` writes it"
+        return "received bytes, but no text at any baud rate of this firmware. Check the port; `make flash` writes the firmware"
+    return f"nothing received in {MEET_S:.0f} s. Check the port, and whether the board has this firmware: `make flash` writes it"
 
 
 def settle(bench, name):
-    """The settings with which the board has begun."""
+    """The settings that the board had at the start."""
     try:
         watch.row_with_sample(bench, BEGUN_S)
     except Failed:
         pass  # a fault, or plotter mode
     try:
         bench.forget()
-        told = {each: value for each, (value, _) in watch.listed(bench).items()}
+        found = {each: value for each, (value, _) in watch.listed(bench).items()}
         fault = watch.counters(bench).get("fault", 0)
     except Failed as why:
-        raise TiltError(f"{name}: the board has said who it is, but does not answer: {why}") from why
+        raise TiltError(f"{name}: the board sent its banner, but does not answer: {why}") from why
     if fault:
-        bench.say(f"The board reports fault {fault}: put that right first (docs/faults.md says what to check), then press Enter or r.")
-    return told
+        bench.say(f"The board reports fault {fault}: repair it first (docs/faults.md lists what to check), then press Enter or r.")
+    return found
 
 
 class Session:
-    """run() is True when every check that was chosen has passed or was skipped."""
+    """run() is True if every chosen check passed or was skipped."""
 
     def __init__(self, bench, record, checks):
         self.bench, self.record, self.checks = bench, record, checks
@@ -74,7 +74,7 @@ class Session:
         return all(self.record.last()[number]["verdict"] != "fail" for number, _ in self.checks)
 
     def until_done(self, number, check):
-        """Again, as often as the owner wants."""
+        """Repeats the check as often as the owner wants."""
         attempt = 1 + sum(line["kind"] == "check" and line["number"] == number for line in self.record.read)
         while True:
             again = False
@@ -82,14 +82,14 @@ class Session:
                 verdict = self.once(number, check, attempt)
                 again = self.after(number, check, verdict)
             except Repeat:
-                self.bench.say("   once more")
+                self.bench.say("   again")
                 again = True
             if not again:
                 return
             attempt += 1
 
     def once(self, number, check, attempt):
-        """One try, and its line of the record; Repeat and Quit leave none."""
+        """One attempt, and its line in the record; Repeat and Quit leave none."""
         bench, began_s = self.bench, time.monotonic()
         bench.begin(check.limit_s)
         verdict, reason = "pass", ""
@@ -102,30 +102,30 @@ class Session:
         except Skip as why:
             verdict, reason = "skipped", str(why)
         self.record.add(check_line(number, check, verdict, reason, attempt, time.monotonic() - began_s, bench))
-        told = "; ".join(part for part in (reason, numbers_in_words(bench.numbers)) if part)
-        bench.say(f"   {verdict}{': ' if told else ''}{told}")
+        details = "; ".join(part for part in (reason, numbers_in_words(bench.numbers)) if part)
+        bench.say(f"   {verdict}{': ' if details else ''}{details}")
         if verdict == "fail":
             bench.say(f"   What it means: {check.failing}.")
         return verdict
 
     def lead_in(self, number, check):
-        """Whatever the owner does from the prompt on is seen, also before Enter is pressed."""
+        """What the owner does after the prompt is seen, even before Enter is pressed."""
         bench = self.bench
-        bench.say(f"\n{number:2}/{len(CHECKS)} {check.key} (waits {check.limit_s} s)")
+        bench.say(f"\n{number:2}/{len(CHECKS)} {check.key} (limit {check.limit_s} s)")
         bench.forget()
         watch.row_with_sample(bench, READY_S)
         judges_starts.ready(bench)
         watch.row_with_sample(bench, READY_S)
         bench.say(f"   {check.do}")
         if not check.alone:
-            bench.heed(bench.line("   Enter begins; s REASON skips, r repeats, q ends, here and at any moment: "))
+            bench.heed(bench.line("   Enter starts; at any time s REASON skips, r repeats, q quits: "))
 
     def after(self, number, check, verdict):
-        """True: once more. A note goes into the record."""
+        """True: repeat the check. Writes a note to the record."""
         if verdict == "pass" and check.alone:
             return False
         while True:
-            typed = self.bench.line("   Enter goes on; r repeats, q ends, anything else is a note for the record: ").strip()
+            typed = self.bench.line("   Enter continues; r repeats, q quits, any other text is a note for the record: ").strip()
             if typed == "r":
                 return True
             if typed == "q":

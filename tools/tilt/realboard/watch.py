@@ -1,4 +1,4 @@
-"""What the judges share: commands and their replies, faults that begin and end, stretches of rows, banners."""
+"""Common parts of the judges: commands and their replies, faults that begin and end, stretches of rows, banners."""
 import math
 import re
 import statistics
@@ -8,15 +8,15 @@ from tilt.gaps import Gaps
 from tilt.realboard.bench import Failed
 from tilt.recorder import step_us
 
-ANSWER_S = 5.0         # for the reply to a command: a banner at 9600 baud goes before it
-RATE_HZ = 100          # at which all checks but one are done
+ANSWER_S = 5.0         # for the reply to a command, perhaps after a banner at 9600 baud
+RATE_HZ = 100          # of all checks but one
 RATE_SHARE = 0.05      # a sensor is up to 4 % off, the board's resonator 0.5 %
 HEARD_SHARE = 0.8      # of the time, by the board's clock
-QUIET_S = 3.0          # without a fault that has begun, at the end of one
+QUIET_S = 3.0          # without a new fault, at the end of one
 STRETCH_S = 2.0        # of good rows, before and after a fault
-ROWS_WITHIN_S = 10.0   # rows are back: the boot loader takes 2 s
-OPENED_S = 4.0         # after the port was opened, for the banner of a board that this resets
-EDGE_S = 1.0           # of a stretch, in which the least delay on the way to the PC is looked for
+ROWS_WITHIN_S = 10.0   # until rows return: the boot loader takes 2 s
+OPENED_S = 4.0         # for the banner of a board that opening the port resets
+EDGE_S = 1.0           # at each end of a stretch, to find the row with the least delay
 FAULT = re.compile(r"# fault (\d+): ")
 OVER = re.compile(r"# fault (\d+) over: after (\d+) ms, (\d+) lost, sensor at 0x([0-9A-Fa-f]{2})")
 REFUSED = re.compile(r"# refused \d+: .*")
@@ -30,22 +30,22 @@ NUMBER = re.compile(r"-?\d+(\.\d+)?")
 # --- commands ---------------------------------------------------------------------------------------------------------
 
 def reply(bench, command, pattern, limit_s=ANSWER_S):
-    """Types it; the match of the first line that is its reply."""
+    """Types the command; the match of its reply's first line."""
     bench.type(command)
     return said(bench, pattern, limit_s, f"reply to '{command}'")[1]
 
 
 def said(bench, pattern, limit_s, what):
-    """(seen, match) of the first line that matches; a refusal is told as the reason. A port that goes, or a start of the board, is left to others."""
+    """(seen, match) of the first matching line; Failed with the reason on a refusal, a lost port or a restart."""
     for seen in bench.events(limit_s):
         match = re.match(pattern, seen.text) if seen.kind == "said" else None
         if match:
             return seen, match
         if seen.kind == "said" and REFUSED.match(seen.text):
-            raise Failed(f"{what}: the board says '{seen.text[2:]}'")
+            raise Failed(f"{what}: the board replied '{seen.text[2:]}'")
         if seen.kind == "gone" or is_banner(seen):
             bench.put_back(seen)
-            raise Failed(f"no {what}: {'the port is gone' if seen.kind == 'gone' else 'the board started again'}")
+            raise Failed(f"no {what}: {'the port is gone' if seen.kind == 'gone' else 'the board restarted'}")
     raise Failed(f"no {what} within {limit_s:.0f} s")
 
 
@@ -69,7 +69,7 @@ def setting(bench, name):
 
 
 def listing(bench, command):
-    """The lines of a long reply. That to `version` behind it is its end, and lets rows go on."""
+    """The lines of a long reply. The reply to `version` after it marks its end, and lets rows continue."""
     bench.type(command)
     bench.type("version")
     lines = []
@@ -77,17 +77,17 @@ def listing(bench, command):
         if is_banner(seen):
             return lines
         lines += [seen.text] if seen.kind == "said" else []
-    raise Failed(f"no end of the reply to '{command}' within {ANSWER_S:.0f} s")
+    raise Failed(f"incomplete reply to '{command}' after {ANSWER_S:.0f} s")
 
 
 def listed(bench):
-    """name -> (value, what is legal) of the reply to `settings`."""
+    """name -> (value, legal range) from the reply to `settings`."""
     matches = [(SETTING.match(line), line) for line in listing(bench, "settings")]
     return {match[1]: (value_of(match[2]), line.partition(": ")[2]) for match, line in matches if match}
 
 
 def counters(bench):
-    """name -> number of the reply to `status`."""
+    """name -> number from the reply to `status`."""
     pairs = [pair for line in listing(bench, "status") for pair in re.findall(r"([a-z][a-z ]*[a-z]) (\d+)(?=,|$)", line[2:])]
     return {name: int(number) for name, number in pairs}
 
@@ -95,7 +95,7 @@ def counters(bench):
 # --- rows -------------------------------------------------------------------------------------------------------------
 
 class Stretch:
-    """Rows one after the other."""
+    """Consecutive rows."""
 
     def __init__(self):
         self.rows, self.at_s, self.silent, self.strange, self.gaps, self.board_us = [], [], 0, 0, Gaps(), [0]
@@ -128,7 +128,7 @@ class Stretch:
         return self.gaps.lost
 
     def clock_ppm(self):
-        """How much the board's clock is fast by the PC's, from the rows that were least late at the beginning and at the end; None: too short."""
+        """How fast the board's clock is against the PC's, from the least delayed rows at both ends; None: too short."""
         late = [(board * 1e-6, at - board * 1e-6) for at, board in zip(self.at_s, self.board_us)]
         first = min((delay, board) for board, delay in late if board <= EDGE_S)
         last = min((delay, board) for board, delay in late if board >= self.board_s - EDGE_S)
@@ -137,14 +137,14 @@ class Stretch:
 
 
 def stretch(bench, seconds):
-    """The rows of so many seconds by the PC's clock. Failed by what has no place among them."""
+    """The rows of so many seconds by the PC's clock. Failed on anything else than rows."""
     found = Stretch()
     for seen in bench.events(seconds):
         not_reset(seen)
         if seen.kind == "gone":
             raise Failed(f"the port is gone: {seen.text}")
         if seen.kind == "said" and FAULT.match(seen.text):
-            raise Failed(f"the board says '{seen.text[2:]}'")
+            raise Failed(f"the board reported '{seen.text[2:]}'")
         found.add(seen)
     return found
 
@@ -155,14 +155,14 @@ def not_reset(seen):
 
 
 def steady(bench, rate_hz=RATE_HZ, seconds=None):
-    """A stretch at the nominal rate, none of its rows without a sample."""
+    """A stretch at the nominal rate, each row with a sample."""
     found = stretch(bench, seconds or STRETCH_S)
     if found.board_s < HEARD_SHARE * (seconds or STRETCH_S):
-        raise Failed(f"{len(found.rows)} rows came in {seconds or STRETCH_S:.0f} s, of {found.board_s:.1f} s by the board's clock")
+        raise Failed(f"{len(found.rows)} rows in {seconds or STRETCH_S:.0f} s, {found.board_s:.1f} s by the board's clock")
     if found.silent:
-        raise Failed(f"{found.silent} of {len(found.rows)} rows show no sample (flags 2 and 16)")
+        raise Failed(f"{found.silent} of {len(found.rows)} rows have no sample (flags 2 and 16)")
     if abs(found.rate_hz / rate_hz - 1) > RATE_SHARE:
-        raise Failed(f"{found.rate_hz:.2f} rows a second, {rate_hz:g} are set")
+        raise Failed(f"{found.rate_hz:.2f} rows/s, but {rate_hz:g} are set")
     return found
 
 
@@ -183,7 +183,7 @@ def mean_mg(rows):
 
 
 def angle_deg(a, b):
-    """Between two directions."""
+    """Angle between two directions."""
     dot, lengths = sum(p * q for p, q in zip(a, b)), math.hypot(*a) * math.hypot(*b)
     return math.degrees(math.acos(max(-1.0, min(1.0, dot / lengths)))) if lengths else 180.0
 
@@ -191,7 +191,7 @@ def angle_deg(a, b):
 # --- what the owner does ----------------------------------------------------------------------------------------------
 
 def fault_begins(bench, numbers):
-    """Within the limit, with one of these numbers."""
+    """Waits for a fault with one of these numbers, within the limit."""
     last_good_s = None
     for seen in bench.events(bench.limit_s):
         not_reset(seen)
@@ -208,14 +208,14 @@ def fault_begins(bench, numbers):
 
 
 def fault_state(seen):
-    """True: a line that says that a fault is over, False: that one has begun, None: another one."""
+    """True: the line reports a fault as over; False: it reports a new one; None: any other line."""
     if seen.kind != "said" or not seen.text.startswith("# fault"):
         return None
     return OVER.match(seen.text) is not None
 
 
 class Recovery:
-    """From a fault that has begun until it is over for good."""
+    """From the beginning of a fault until it is over for good."""
 
     def __init__(self, bench, is_over):
         self.bench, self.over_s, self.first_s = bench, bench.now() if is_over else None, None
@@ -240,8 +240,8 @@ class Recovery:
 
 
 def well_again(bench, is_over=False):
-    """Waits until no fault has begun for a while: a wire that is put back by hand makes and breaks contact several times. How many rows said
-    meanwhile that they show no sample; then rows come at the nominal rate."""
+    """Waits until no fault has begun for a while: a wire reconnected by hand makes and breaks contact several times. Then checks for rows at the
+    nominal rate. Returns how many rows had no sample meanwhile."""
     recovery = Recovery(bench, is_over)
     for seen in bench.events(bench.limit_s):
         not_reset(seen)
@@ -253,15 +253,15 @@ def well_again(bench, is_over=False):
 
 
 class Start:
-    """What the board said as it started. since_s: the last row before; port_gone_s: how long the port was away, None: it was there."""
+    """What the board reported when it started. since_s: the last row before; port_gone_s: how long the port was away, None: never."""
 
     def __init__(self, banner, cause, kept, since_s, port_gone_s):
         self.banner, self.cause, self.kept, self.since_s, self.port_gone_s = banner, cause, kept, since_s, port_gone_s
 
 
 def restart(bench, needs_gone=False):
-    """The start that the owner causes within the limit. A port that comes back may reset the board once more: the last banner counts.
-    needs_gone: by its supply, which takes the port of a UNO away."""
+    """The restart that the owner causes within the limit. A returning port may reset the board once more: the last banner counts.
+    needs_gone: by its supply, which takes a UNO's port away."""
     last_row_s, gone_s, back_s, away_s, parts = bench.now(), None, 0.0, None, {}
     until_s = bench.now() + bench.limit_s
     while (seen := bench.next(until_s)) is not None:
@@ -276,11 +276,11 @@ def restart(bench, needs_gone=False):
             if "kept" in parts and (away_s is not None or not needs_gone or parts["cause"] in SUPPLY):
                 bench.put_back(seen)
                 return Start(parts["banner"], parts["cause"], parts["kept"], last_row_s, away_s)
-            if away_s is not None and not parts and seen.at_s - back_s > OPENED_S:  # it did not start again as the port was opened
+            if away_s is not None and not parts and seen.at_s - back_s > OPENED_S:  # opening the port did not reset it
                 return Start(None, None, None, last_row_s, away_s)
             if away_s is None and not parts:
                 last_row_s = seen.at_s
-    raise Failed(f"the board did not start again within {bench.limit_s:.0f} s" + (" (the port is gone)" if gone_s is not None else ""))
+    raise Failed(f"the board did not restart within {bench.limit_s:.0f} s" + (" (the port is gone)" if gone_s is not None else ""))
 
 
 def hear_start(seen, parts):
