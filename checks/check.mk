@@ -41,8 +41,12 @@ check-cppcheck:
 check-includes:
 	@python3 checks/check_includes.py
 
-# the PC's side of the HAL, for its circles
-CHECK_HOST_OBJ := $(patsubst %.c,$(CHK)/host/%.o,$(wildcard hal/host/*.c))
+# the PC's side of the HAL and the simulator, for their circles
+CHECK_HOST_OBJ := $(patsubst %.c,$(CHK)/host/%.o,$(wildcard hal/host/*.c sim/*.c))
+$(CHK)/host/sim/%.o: sim/%.c Makefile checks/check.mk
+	@mkdir -p $(@D)
+	@$(SIM_CC) -g -MMD -MP -c $< -o $@
+
 $(CHK)/host/%.o: %.c Makefile checks/check.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) -MMD -MP -c $< -o $@

@@ -12,8 +12,8 @@ import sys
 from check_includes import code
 from check_support import Stop, main, report, run
 
-# what of the product is looked at, each for itself
-FOLDERS = ["firmware", "lib/filters/src", "lib/tilt/src", "lib/adxl345/src", "hal/host"]
+# what is looked at, each for itself
+FOLDERS = ["firmware", "lib/filters/src", "lib/tilt/src", "lib/adxl345/src", "hal/host", "sim"]
 OBJECT = re.compile(r'^\s*extern\s+(?!"C")[^(;]*;', re.M)
 
 

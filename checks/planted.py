@@ -31,7 +31,7 @@ TAKES_IMAGE = {"memory", "painted", "size", "symbols", "waits"}
 FOLDERS = ["firmware", "nav", "lib", "hal", "sim", "host_tests", "mk", "tools", "checks", "campaigns", "docs"]
 FILES = ["Makefile", ".clang-tidy", ".clang-format", "platformio.ini", "sim/streams/outliers-15pct.csv", "build/uno/firmware.elf",
          "build/uno/filters.txt", "build/sim/simrun"]
-BUILT = ["build/check/avr", "build/uno/firmware", "build/uno/hal", "build/uno/lib"]
+BUILT = ["build/check/avr", "build/check/host", "build/uno/firmware", "build/uno/hal", "build/uno/lib"]
 
 
 def load(path):

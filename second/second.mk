@@ -30,20 +30,18 @@ SECOND_PLANTED += $(X)/planted/firmware/$(1)/firmware.hex
 endef
 
 # simrun with one source changed
-SECOND_SIM_CC = $(HOST_CC) -std=gnu11 -O2 $(WARNINGS) -Isim -Ilib/adxl345/src \
-                $$(pkg-config --cflags simavr | sed 's/-I/-isystem /g') -isystem /usr/include/simavr
 SECOND_SIM_OBJ := $(SIMRUN_SRC:%.c=$(X)/%.o)
 $(X)/sim/%.o: sim/%.c Makefile mk/host.mk second/second.mk
 	@mkdir -p $(@D)
-	@$(SECOND_SIM_CC) -MMD -MP -c $< -o $@
+	@$(SIM_CC) -MMD -MP -c $< -o $@
 
 define PLANT_SIMRUN
 $(call PLANT,simrun/$(1),$(2),$(3))
 $(X)/planted/simrun/$(1)/plant.o: $(X)/planted/simrun/$(1)/$(notdir $(2)) Makefile mk/host.mk second/second.mk
-	@$$(SECOND_SIM_CC) -MMD -MP -c $$< -o $$@
+	@$$(SIM_CC) -MMD -MP -c $$< -o $$@
 
 $(X)/planted/simrun/$(1)/simrun: $(X)/planted/simrun/$(1)/plant.o $(SECOND_SIM_OBJ)
-	@$$(SECOND_SIM_CC) $$(filter-out $(X)/$(2:.c=.o),$$^) $$$$(pkg-config --libs simavr) -lsimavrparts -lelf -lm -lpthread -lutil -o $$@
+	@$$(SIM_CC) $$(filter-out $(X)/$(2:.c=.o),$$^) $$$$(pkg-config --libs simavr) -lsimavrparts -lelf -lm -lpthread -lutil -o $$@
 SECOND_PLANTED += $(X)/planted/simrun/$(1)/simrun
 endef
 

@@ -1,5 +1,9 @@
-/* The address in data space that the current instruction reads or writes; stack instructions do not count. */
-#include "simrun.h"
+#include "simrun_access.h"
+
+#include <stdio.h>
+
+#include "simrun_mcu.h"
+#include "simrun_symbols.h"
 
 enum { REG_X = 26, REG_Y = 28, REG_Z = 30, IO_OFFSET = 0x20 };
 
@@ -19,7 +23,7 @@ static access_t direct(unsigned opcode, uint32_t pc)
     bool writes = (opcode & 0x0200u) != 0;
     switch (opcode & 0xFu) {
     case 0x0:
-        return access_to(machine_opcode_at(pc + 2), writes);
+        return access_to(mcu_opcode_at(pc + 2), writes);
     case 0x1:
         return access_to(pair(REG_Z), writes);
     case 0x2:
@@ -52,7 +56,7 @@ static access_t bit(unsigned opcode)
 
 access_t access_at(uint32_t pc)
 {
-    unsigned opcode = machine_opcode_at(pc);
+    unsigned opcode = mcu_opcode_at(pc);
     if ((opcode & 0xFC00u) == 0x9000u) {
         return direct(opcode, pc);
     }
@@ -66,4 +70,33 @@ access_t access_at(uint32_t pc)
         return bit(opcode);
     }
     return (access_t){ 0 };
+}
+
+const char *access_name(uint16_t address)
+{
+    static const struct {
+        uint16_t address;
+        const char *name;
+    } registers[] = { { 0x29, "PIND" },   { 0x36, "TIFR1" },
+                      { 0x3C, "EIFR" },   { 0x3D, "EIMSK" },
+                      { 0x3E, "GPIOR0" }, { 0x4A, "GPIOR1" },
+                      { 0x4B, "GPIOR2" }, { 0x6F, "TIMSK1" },
+                      { 0x84, "TCNT1L" }, { 0x85, "TCNT1H" },
+                      { 0x88, "OCR1AL" }, { 0x89, "OCR1AH" },
+                      { 0x8A, "OCR1BL" }, { 0x8B, "OCR1BH" },
+                      { 0xB8, "TWBR" },   { 0xB9, "TWSR" },
+                      { 0xBB, "TWDR" },   { 0xBC, "TWCR" },
+                      { 0xC0, "UCSR0A" }, { 0xC1, "UCSR0B" },
+                      { 0xC6, "UDR0" },   { TIMER1_TEMP, "TEMP of Timer1" } };
+    static char number[16];
+    for (size_t i = 0; i < sizeof registers / sizeof registers[0]; i++) {
+        if (registers[i].address == address) {
+            return registers[i].name;
+        }
+    }
+    if (address >= RAM_START) {
+        return symbols_variable_at(address);
+    }
+    snprintf(number, sizeof number, "0x%02x", (unsigned)address);
+    return number;
 }

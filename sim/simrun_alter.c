@@ -1,14 +1,18 @@
 /*
- * Faults that change values or clocks instead of breaking a transfer. Flips, noise and doubled readings are applied to
- * the bytes on their way to the master, after the sensor, so that --served is still what the sensor latched. A frozen
- * sensor latches the frozen readings, and --served shows them. --altered lists what reached the master different from
- * what was sent.
+ * No transfer is broken. Flips, noise and doubled readings are applied to the bytes on their way to the master, after
+ * the sensor, so that --served is still what the sensor latched. A frozen sensor latches the frozen readings, and
+ * --served shows them. --altered lists what reached the master different from what was sent.
  */
-#include <stdlib.h>
+#include "simrun_alter.h"
+
 #include <string.h>
 
 #include "adxl345_registers.h"
-#include "simrun_faults.h"
+#include "simrun_mcu.h"
+#include "simrun_output.h"
+#include "simrun_sensor.h"
+#include "simrun_transmitter.h"
+#include "simrun_uart.h"
 
 enum { AXES = 3, DATA_BYTES = 2 * AXES, PULSE_CYCLES = 64, NO_AXIS = AXES };
 enum { BEYOND_RAIL = 8191, BEYOND_RAIL_NEGATIVE = -8192 }; /* of every range */
@@ -20,6 +24,7 @@ typedef struct {
 
 static uint8_t data_sent[DATA_BYTES];
 static uint8_t data_arrived[DATA_BYTES];
+static const char *file_path;
 static FILE *altered_file;
 static uint32_t altered_count;
 static uint32_t flip_bits;
@@ -41,7 +46,7 @@ static uint8_t random_mask(uint32_t bits)
 {
     unsigned mask = 0;
     while (bits != 0) {
-        unsigned bit = 1u << (machine_random() % 8u);
+        unsigned bit = 1u << (mcu_random() % 8u);
         bits -= (mask & bit) == 0;
         mask |= bit;
     }
@@ -53,7 +58,7 @@ static double random_normal(void)
 {
     double sum = -6.0;
     for (int i = 0; i < 12; i++) {
-        sum += machine_random() / 4294967296.0;
+        sum += mcu_random() / 4294967296.0;
     }
     return sum;
 }
@@ -141,19 +146,20 @@ static uint8_t on_sent(void *owner, uint8_t address, uint8_t byte)
     return arrived;
 }
 
-void alter_start(void)
+void alter_start(const char *path, twi_peripheral_t *twi)
 {
-    twi.sent = on_sent;
-    if (options.altered == NULL) {
+    twi->sent = on_sent;
+    if (path == NULL) {
         return;
     }
-    altered_file = output_open(options.altered);
+    file_path = path;
+    altered_file = output_open(path);
     fputs("altered,t_us,x_lsb,y_lsb,z_lsb,x_sent_lsb,y_sent_lsb,z_sent_lsb\n", altered_file);
 }
 
 void alter_finish(void)
 {
-    output_close(altered_file, options.altered);
+    output_close(altered_file, file_path);
 }
 
 uint32_t alter_count(void)
@@ -233,7 +239,7 @@ void alter_begin(const fault_t *fault)
         sensor_set_clock_error(fault->parameter);
         break;
     case KIND_TXSTALL:
-        uart_stall(fault->ends);
+        transmitter_stall(fault->ends);
         break;
     case KIND_RXSPOIL:
         uart_spoil(fault->parameter == 1);
@@ -273,7 +279,7 @@ void alter_end(const fault_t *fault)
         sensor_disturb_int1(false);
         break;
     case KIND_ODR:
-        sensor_set_clock_error(options.ppm);
+        sensor_restore_clock();
         break;
     case KIND_CLIP:
         clipped_axis = NO_AXIS;
@@ -281,7 +287,7 @@ void alter_end(const fault_t *fault)
     case KIND_RXSPOIL:
         break;
     case KIND_TXSTALL:
-        uart_stall(0);
+        transmitter_stall(0);
         break;
     default:
         uart_flood(false);

@@ -1,12 +1,16 @@
 /*
- * EEPROM contents in a file, and the 3.4 ms of a write, which takes simavr 1.6 no time: EEPE stays set, and a power
- * cycle in that time leaves junk in the cell, or what the fault specifies.
+ * A write takes 3.4 ms, and simavr 1.6 no time: EEPE stays set, and a power cycle in that time leaves junk in the cell,
+ * or what the fault specifies.
  */
-#include <stdlib.h>
+#include "simrun_eeprom.h"
+
 #include <string.h>
 
 #include "avr_eeprom.h"
-#include "simrun.h"
+#include "simrun_events.h"
+#include "simrun_mcu.h"
+#include "simrun_output.h"
+#include "simrun_resets.h"
 
 enum {
     REG_EECR = 0x3F,
@@ -19,6 +23,8 @@ enum {
 };
 
 static avr_eeprom_t *eeprom;
+static const char *file_path;
+static void (*on_write)(uint32_t count, eeprom_moment_t moment);
 static avr_io_write_t core_write;
 static void *core_param;
 static uint64_t busy_until = NEVER;
@@ -38,7 +44,7 @@ static void on_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *p
     }
     bool writes = (value & BIT_EEPE) != 0 && (avr->data[REG_EECR] & BIT_EEMPE) != 0;
     if (writes) {
-        faults_on_eeprom_write(++write_count, EEPROM_BEFORE);
+        on_write(++write_count, EEPROM_BEFORE);
         if (resets_wanted()) { /* the reset comes before the write */
             core_write(avr, address, value & (uint8_t) ~(BIT_EEPE | BIT_EEMPE), core_param);
             return;
@@ -51,8 +57,8 @@ static void on_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *p
     if (writes) {
         busy_until = avr->cycle + (uint64_t)WRITE_US * CYCLES_PER_US;
         avr->data[REG_EECR] |= BIT_EEPE;
-        machine_reschedule();
-        faults_on_eeprom_write(write_count, EEPROM_IN);
+        events_reschedule();
+        on_write(write_count, EEPROM_IN);
     }
 }
 
@@ -65,7 +71,7 @@ void eeprom_step(void)
 {
     busy_until = NEVER;
     mcu->data[REG_EECR] &= (uint8_t)~BIT_EEPE;
-    faults_on_eeprom_write(write_count, EEPROM_AFTER);
+    on_write(write_count, EEPROM_AFTER);
 }
 
 void eeprom_leave(eeprom_left_t what)
@@ -83,7 +89,7 @@ static uint8_t what_is_left(void)
     case EEPROM_LEFT_NEW:
         return eeprom->eeprom[busy_address];
     default:
-        return (uint8_t)machine_random();
+        return (uint8_t)mcu_random();
     }
 }
 
@@ -101,8 +107,14 @@ void eeprom_reset(bool power_lost)
     }
 }
 
-void eeprom_start(void)
+void eeprom_on_write(void (*act)(uint32_t count, eeprom_moment_t moment))
 {
+    on_write = act;
+}
+
+void eeprom_start(const char *path)
+{
+    file_path = path;
     for (avr_io_t *io = mcu->io_port; io != NULL; io = io->next) {
         if (strcmp(io->kind, "eeprom") == 0) {
             eeprom = (avr_eeprom_t *)io;
@@ -111,15 +123,14 @@ void eeprom_start(void)
     core_write = mcu->io[AVR_DATA_TO_IO(REG_EECR)].w.c;
     core_param = mcu->io[AVR_DATA_TO_IO(REG_EECR)].w.param;
     mcu->io[AVR_DATA_TO_IO(REG_EECR)].w.c = on_control;
-    FILE *file = options.eeprom == NULL ? NULL : fopen(options.eeprom, "rb");
+    FILE *file = path == NULL ? NULL : fopen(path, "rb");
     if (file == NULL) {
         return;
     }
     uint8_t contents[EEPROM_BYTES + 1];
     size_t length = fread(contents, 1, sizeof contents, file);
     if (ferror(file) || length > EEPROM_BYTES) {
-        fprintf(stderr, "simrun: %s: %s\n", options.eeprom, ferror(file) ? "cannot read" : "longer than 1024 bytes");
-        exit(EXIT_INPUT);
+        output_refuse("%s: %s", path, ferror(file) ? "cannot read" : "longer than 1024 bytes");
     }
     fclose(file);
     memcpy(eeprom->eeprom, contents, length);
@@ -137,10 +148,10 @@ void eeprom_print(FILE *json)
 
 void eeprom_finish(void)
 {
-    if (options.eeprom == NULL) {
+    if (file_path == NULL) {
         return;
     }
-    FILE *file = output_open(options.eeprom);
+    FILE *file = output_open(file_path);
     fwrite(eeprom->eeprom, 1, EEPROM_BYTES, file);
-    output_close(file, options.eeprom);
+    output_close(file, file_path);
 }

@@ -1,28 +1,26 @@
 /*
- * Faults from the command line: WHEN they begin, WHAT they do, how long a state lasts, and how long the firmware takes
- * until the first good row after it: a row that its flags do not disown (simrun_judge.h) and that shows a sample
- * latched after the fault had ended.
+ * WHEN they begin, WHAT they do, how long a state lasts, and how long the firmware takes until the first good row after
+ * it: a row that its flags do not disown (simrun_judge.h) and that shows a sample latched after the fault had ended.
  */
-#include <stdlib.h>
+#include "simrun_faults.h"
+
 #include <string.h>
 
-#include "simrun_faults.h"
+#include "simrun_alter.h"
+#include "simrun_eeprom.h"
+#include "simrun_events.h"
+#include "simrun_faults_parse.h"
+#include "simrun_mcu.h"
+#include "simrun_resets.h"
+#include "simrun_sensor.h"
+#include "simrun_starve.h"
+#include "simrun_vcd.h"
 
 enum { LOOK_BACK = 64 };
 
 static fault_t faults[FAULTS_MAX];
 static size_t fault_count;
-bool faults_watch_pc;
-
-void faults_start(void)
-{
-    alter_start();
-    for (size_t i = 0; i < options.fault_count; i++) {
-        fault_parse(&faults[fault_count], options.faults[i]);
-        faults_watch_pc = faults_watch_pc || faults[fault_count].when == WHEN_PC;
-        fault_count++;
-    }
-}
+static twi_peripheral_t *twi;
 
 /* A state that several faults can hold is released by the last of them. */
 static bool any_active(kind_t kind)
@@ -39,7 +37,7 @@ static void follow_lines(void)
 {
     bool sda = any_active(KIND_SDA);
     bool scl = any_active(KIND_SCL);
-    twi_hold(&twi, sda, scl);
+    twi_hold(twi, sda, scl);
     vcd_change(VCD_SDA_LOW, sda);
     vcd_change(VCD_SCL_LOW, scl);
 }
@@ -60,22 +58,22 @@ static bool apply_to_transfer(const fault_t *fault)
 {
     switch (fault->kind) {
     case KIND_HANG:
-        twi_hang(&twi, (unsigned)fault->parameter);
+        twi_hang(twi, (unsigned)fault->parameter);
         return true;
     case KIND_ARB:
-        twi.lose_arbitration = true;
+        twi->lose_arbitration = true;
         return true;
     case KIND_BUSERR:
-        twi.bus_error = true;
+        twi->bus_error = true;
         return true;
     case KIND_NACK:
-        twi.nack_address = true;
+        twi->nack_address = true;
         return true;
     case KIND_NACKDATA:
-        twi.nack_data = true;
+        twi->nack_data = true;
         return true;
     case KIND_TORN:
-        twi.let_go = true;
+        twi->let_go = true;
         return true;
     default:
         return false;
@@ -163,15 +161,15 @@ static bool waits(const fault_t *fault)
 {
     switch (fault->kind) {
     case KIND_ARB:
-        return twi.lose_arbitration;
+        return twi->lose_arbitration;
     case KIND_BUSERR:
-        return twi.bus_error;
+        return twi->bus_error;
     case KIND_NACK:
-        return twi.nack_address;
+        return twi->nack_address;
     case KIND_NACKDATA:
-        return twi.nack_data;
+        return twi->nack_data;
     case KIND_TORN:
-        return twi.let_go;
+        return twi->let_go;
     default:
         return alter_waits(fault->kind);
     }
@@ -193,7 +191,7 @@ static void begin(fault_t *fault)
 {
     fault->injected++;
     if (fault->injected == 1) {
-        fault->first_ms = machine_ms();
+        fault->first_ms = mcu_ms();
     }
     fault->armed = fault->when == WHEN_SAMPLE;
     fault->overruns_before = sensor.overruns;
@@ -214,7 +212,7 @@ static void begin(fault_t *fault)
         fault->awaits_byte = true;
         fault->awaits_row = false;
     }
-    machine_reschedule();
+    events_reschedule();
 }
 
 uint64_t faults_next(void)
@@ -248,13 +246,13 @@ void faults_step(void)
 static void on_chance(fault_t *fault)
 {
     if (fault_kinds[fault->kind].on_bus) {
-        fault->bytes_left = 1u + machine_random() % (twi.byte == 0 ? 1u : twi.byte);
+        fault->bytes_left = 1u + mcu_random() % (twi->byte == 0 ? 1u : twi->byte);
     } else if (!fault->active) {
         begin(fault);
     }
 }
 
-void faults_on_sample(void)
+static void on_sample(void)
 {
     for (size_t i = 0; i < fault_count; i++) {
         fault_t *fault = &faults[i];
@@ -262,7 +260,7 @@ void faults_on_sample(void)
         if (fault->kind == KIND_OVERRUN && fault->active && overruns >= (uint32_t)fault->parameter) {
             release(fault);
         }
-        if (fault->when == WHEN_SAMPLE && machine_random() < fault->chance) {
+        if (fault->when == WHEN_SAMPLE && mcu_random() < fault->chance) {
             on_chance(fault);
         }
     }
@@ -279,7 +277,7 @@ void faults_on_byte(uint32_t transfer, uint32_t byte)
     }
 }
 
-void faults_on_eeprom_write(uint32_t count, eeprom_moment_t moment)
+static void on_eeprom_write(uint32_t count, eeprom_moment_t moment)
 {
     for (size_t i = 0; i < fault_count; i++) {
         fault_t *fault = &faults[i];
@@ -288,6 +286,19 @@ void faults_on_eeprom_write(uint32_t count, eeprom_moment_t moment)
             begin(fault);
         }
     }
+}
+
+bool faults_start(const faults_options_t *wanted, twi_peripheral_t *bus)
+{
+    bool watches_pc = false;
+    twi = bus;
+    sensor_hook(alter_sample, on_sample);
+    eeprom_on_write(on_eeprom_write);
+    for (; fault_count < wanted->count; fault_count++) {
+        fault_parse(&faults[fault_count], wanted->texts[fault_count]);
+        watches_pc = watches_pc || faults[fault_count].when == WHEN_PC;
+    }
+    return watches_pc;
 }
 
 void faults_on_pc(uint32_t pc)

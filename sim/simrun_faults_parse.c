@@ -1,8 +1,11 @@
-/* WHEN:KIND[:PARAM][:MS] of the command line into a fault. */
+#include "simrun_faults_parse.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-#include "simrun_faults.h"
+#include "simrun_mcu.h"
+#include "simrun_output.h"
+#include "simrun_symbols.h"
 
 enum { POWER_OFF_MS = 5 };
 #define LAST_MS 1e9 /* the limit of --max-ms */
@@ -46,8 +49,7 @@ const kind_properties_t fault_kinds[KIND_COUNT] = {
 static void refuse(const char *text, const char *reason) __attribute__((noreturn));
 static void refuse(const char *text, const char *reason)
 {
-    fprintf(stderr, "simrun: --fault %s: %s (simrun --help)\n", text, reason);
-    exit(EXIT_INPUT);
+    output_refuse("--fault %s: %s (simrun --help)", text, reason);
 }
 
 /* The text up to the next ':' or the end, cut off; NULL if there is none. */

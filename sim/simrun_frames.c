@@ -1,13 +1,16 @@
 /*
- * A PC that exchanges frames with the navigation image (--frames): it sends each frame when it is due and the board has
- * room for it, and reads the replies only as far as needed for that. Frames and records:
- * docs/navigation-link.md.
+ * Sends each frame when it is due and the board has room for it, and reads the replies only as far as needed for that.
+ * Frames and records: docs/navigation-link.md.
  */
+#include "simrun_frames.h"
+
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "simrun.h"
+#include "simrun_mcu.h"
+#include "simrun_output.h"
+#include "simrun_times.h"
 
 #define DUE_MAX_US 1e12
 
@@ -27,6 +30,7 @@ typedef struct {
     unsigned length;
 } frame_t;
 
+static const char *file_path;
 static frame_t *frames;
 static uint8_t *bytes;
 static size_t frame_count, byte_count;
@@ -48,8 +52,7 @@ static bool behind_zero = true, too_long;
 static void refuse(unsigned line, const char *reason) __attribute__((noreturn));
 static void refuse(unsigned line, const char *reason)
 {
-    fprintf(stderr, "simrun: %s:%u: %s\n", options.frames, line, reason);
-    exit(EXIT_INPUT);
+    output_refuse("%s:%u: %s", file_path, line, reason);
 }
 
 static void *grown(void *memory, size_t count, size_t size)
@@ -125,15 +128,16 @@ static void make_room(void)
     }
 }
 
-void frames_start(void)
+void frames_start(const char *path)
 {
     char text[LINE_CHARACTERS];
-    if (options.frames == NULL) {
+    if (path == NULL) {
         return;
     }
-    FILE *file = fopen(options.frames, "r");
+    file_path = path;
+    FILE *file = fopen(path, "r");
     if (file == NULL) {
-        perror(options.frames);
+        perror(path);
         exit(EXIT_INPUT);
     }
     for (unsigned line = 1; fgets(text, sizeof text, file) != NULL; line++) {
@@ -149,6 +153,11 @@ void frames_start(void)
     if (frame_count == 0) {
         refuse(1, "no frame");
     }
+}
+
+bool frames_wanted(void)
+{
+    return frame_count != 0;
 }
 
 static unsigned number_at(unsigned at)
@@ -173,7 +182,7 @@ static void on_record(void)
         answered++;
         if (next_frame == frame_count && taken == sent) { /* a damaged frame may have had two replies */
             over_at = mcu->cycle;
-            stats_streaming_ends();
+            times_streaming_ends();
         }
     }
     last_answer = mcu->cycle;
@@ -223,7 +232,7 @@ static void begin_frame(void)
 {
     if (frames[next_frame].due_us > 0.0 && !timed) {
         timed = true;
-        stats_streaming_begins();
+        times_streaming_begins();
     }
     double late_us = (double)(mcu->cycle - due_cycle()) / CYCLES_PER_US;
     latest_us = late_us > latest_us ? late_us : latest_us;
@@ -269,7 +278,7 @@ bool frames_silent(void)
 
 void frames_print(FILE *json)
 {
-    if (options.frames != NULL) {
+    if (frames_wanted()) {
         fprintf(json, "  \"frames_sent\": %zu,\n  \"frames_answered\": %zu,\n  \"frames_latest_us\": %.1f,\n",
                 next_frame, answered, latest_us);
     }

@@ -1,121 +1,37 @@
-/* The command line. */
+#include "simrun_options.h"
+
 #include <getopt.h>
-#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "simrun.h"
+#include "simrun_output.h"
+#include "simrun_wires.h"
 
-options_t options = { .seed = 1 };
+static options_t options = { .mcu = { .seed = 1 } };
+static bool self_test_named;
 
 #define PATIENCE_S 60.0
+#define SEE_HELP " (simrun --help)"
 
-enum option_code {
-    OPTION_FW = 256,
-    OPTION_IN,
-    OPTION_FRAMES,
-    OPTION_OUT,
-    OPTION_SERVED,
-    OPTION_ALTERED,
-    OPTION_EEPROM,
-    OPTION_STATS,
-    OPTION_PROFILE,
-    OPTION_CALLS,
-    OPTION_SPAN,
-    OPTION_RACE,
-    OPTION_VCD,
-    OPTION_BOOTLOADER,
-    OPTION_BLANK,
-    OPTION_STRAP,
-    OPTION_ALT_ADDRESS,
-    OPTION_LOOP,
-    OPTION_PTY,
-    OPTION_PPM,
-    OPTION_MAX_MS,
-    OPTION_EXPECT_RESETS,
-    OPTION_GDB,
-    OPTION_SEED,
-    OPTION_JUDGE,
-    OPTION_CLOCK_START,
-    OPTION_CMD,
-    OPTION_FAULT,
-    OPTION_SETTING,
-    OPTION_FILTER,
-    OPTION_PART,
-    OPTION_SENSOR,
-    OPTION_WIRES,
-    OPTION_PATIENCE,
-    OPTION_HELP
-};
-
-static const struct option known[] = { { "fw", required_argument, NULL, OPTION_FW },
-                                       { "in", required_argument, NULL, OPTION_IN },
-                                       { "frames", required_argument, NULL, OPTION_FRAMES },
-                                       { "out", required_argument, NULL, OPTION_OUT },
-                                       { "served", required_argument, NULL, OPTION_SERVED },
-                                       { "altered", required_argument, NULL, OPTION_ALTERED },
-                                       { "eeprom", required_argument, NULL, OPTION_EEPROM },
-                                       { "stats", required_argument, NULL, OPTION_STATS },
-                                       { "profile", required_argument, NULL, OPTION_PROFILE },
-                                       { "calls", required_argument, NULL, OPTION_CALLS },
-                                       { "span", required_argument, NULL, OPTION_SPAN },
-                                       { "race", required_argument, NULL, OPTION_RACE },
-                                       { "vcd", required_argument, NULL, OPTION_VCD },
-                                       { "bootloader", required_argument, NULL, OPTION_BOOTLOADER },
-                                       { "blank", no_argument, NULL, OPTION_BLANK },
-                                       { "strap", no_argument, NULL, OPTION_STRAP },
-                                       { "alt-address", no_argument, NULL, OPTION_ALT_ADDRESS },
-                                       { "loop", no_argument, NULL, OPTION_LOOP },
-                                       { "pty", no_argument, NULL, OPTION_PTY },
-                                       { "ppm", required_argument, NULL, OPTION_PPM },
-                                       { "max-ms", required_argument, NULL, OPTION_MAX_MS },
-                                       { "patience", required_argument, NULL, OPTION_PATIENCE },
-                                       { "expect-resets", required_argument, NULL, OPTION_EXPECT_RESETS },
-                                       { "gdb", required_argument, NULL, OPTION_GDB },
-                                       { "seed", required_argument, NULL, OPTION_SEED },
-                                       { "judge", no_argument, NULL, OPTION_JUDGE },
-                                       { "clock-start", required_argument, NULL, OPTION_CLOCK_START },
-                                       { "cmd", required_argument, NULL, OPTION_CMD },
-                                       { "fault", required_argument, NULL, OPTION_FAULT },
-                                       { "rate", required_argument, NULL, OPTION_SETTING },
-                                       { "baud", required_argument, NULL, OPTION_SETTING },
-                                       { "every", required_argument, NULL, OPTION_SETTING },
-                                       { "range", required_argument, NULL, OPTION_SETTING },
-                                       { "filter", required_argument, NULL, OPTION_FILTER },
-                                       { "sensor", required_argument, NULL, OPTION_SENSOR },
-                                       { "wires", required_argument, NULL, OPTION_WIRES },
-                                       { "part", required_argument, NULL, OPTION_PART },
-                                       { "help", no_argument, NULL, OPTION_HELP },
-                                       { NULL, 0, NULL, 0 } };
-
-static void refuse(const char *format, ...) __attribute__((format(printf, 1, 2), noreturn));
-static void refuse(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    fputs("simrun: ", stderr);
-    vfprintf(stderr, format, arguments);
-    fputs(" (simrun --help)\n", stderr);
-    va_end(arguments);
-    exit(EXIT_INPUT);
-}
+enum { AXES = 3 };
 
 static double number(const char *name, const char *text, double low, double high)
 {
     char *end;
     double value = strtod(text, &end);
     if (end == text || *end != '\0' || !(value >= low && value <= high)) {
-        refuse("--%s wants a number from %g to %g, not '%s'", name, low, high, text);
+        output_refuse("--%s wants a number from %g to %g, not '%s'" SEE_HELP, name, low, high, text);
     }
     return value;
 }
 
 static void add_typed(double at_ms, const char *text, bool setting)
 {
-    if (options.typed_count == TYPED_MAX) {
-        refuse("more than %d commands", TYPED_MAX);
+    if (options.uart.typed_count == TYPED_MAX) {
+        output_refuse("more than %d commands" SEE_HELP, TYPED_MAX);
     }
-    options.typed[options.typed_count++] = (typed_line_t){ at_ms, text, setting };
+    options.uart.typed[options.uart.typed_count++] = (typed_line_t){ at_ms, text, setting };
 }
 
 /* "--rate 400" is the command "rate 400". */
@@ -124,7 +40,7 @@ static void add_setting(const char *name, const char *value)
     size_t length = strlen(name) + strlen(value) + 2;
     char *line = malloc(length);
     if (line == NULL) {
-        refuse("out of memory");
+        output_refuse("out of memory" SEE_HELP);
     }
     snprintf(line, length, "%s %s", name, value);
     add_typed(0.0, line, true);
@@ -135,7 +51,7 @@ static void add_command(const char *argument)
     char *end;
     double at_ms = strtod(argument, &end);
     if (end == argument || *end != ':' || !(at_ms >= 0.0)) {
-        refuse("--cmd wants MS:TEXT, not '%s'", argument);
+        output_refuse("--cmd wants MS:TEXT, not '%s'" SEE_HELP, argument);
     }
     add_typed(at_ms, end + 1, false);
 }
@@ -144,166 +60,203 @@ static void add_command(const char *argument)
 static void set_sensor(const char *argument)
 {
     char names[120] = "";
-    options.variant = adxl345_variant_named(argument);
-    for (size_t i = 0; options.variant == NULL && i < adxl345_variant_count; i++) {
+    options.sensor.variant = adxl345_variant_named(argument);
+    for (size_t i = 0; options.sensor.variant == NULL && i < adxl345_variant_count; i++) {
         size_t length = strlen(names);
         snprintf(names + length, sizeof names - length, "%s%s", i == 0 ? "" : ", ", adxl345_variants[i].name);
     }
-    if (options.variant == NULL) {
-        refuse("--sensor '%s' is none of %s", argument, names);
+    if (options.sensor.variant == NULL) {
+        output_refuse("--sensor '%s' is none of %s" SEE_HELP, argument, names);
     }
+}
+
+/* Three numbers from low to high separated by commas, and nothing after them. */
+static bool three(const char *text, double low, double high, double value[AXES])
+{
+    for (size_t axis = 0; axis < AXES; axis++) {
+        char *end;
+        value[axis] = strtod(text, &end);
+        bool ended = *end == (axis + 1 < AXES ? ',' : '\0');
+        if (end == text || !ended || !(value[axis] >= low && value[axis] <= high)) {
+            return false;
+        }
+        text = end + 1;
+    }
+    return true;
+}
+
+static bool whole(const char *text, double low, double high, int16_t lsb[AXES])
+{
+    double value[AXES];
+    if (!three(text, low, high, value)) {
+        return false;
+    }
+    for (size_t axis = 0; axis < AXES; axis++) {
+        lsb[axis] = (int16_t)value[axis];
+        if (lsb[axis] < value[axis] || lsb[axis] > value[axis]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool take_one(const char *text, adxl345_part_t *part)
+{
+    if (strncmp(text, "gain=", 5) == 0) {
+        return three(text + 5, 0.5, 2.0, part->gain);
+    }
+    if (strncmp(text, "offset=", 7) == 0) {
+        return whole(text + 7, -1000.0, 1000.0, part->offset_lsb);
+    }
+    if (strncmp(text, "selftest=", 9) == 0) {
+        self_test_named = true;
+        return whole(text + 9, -4096.0, 4095.0, part->self_test_lsb);
+    }
+    return false;
+}
+
+/* --part: what differs from one sensor of a kind to the next. */
+static bool take_part(const char *argument, adxl345_part_t *part)
+{
+    char copy[200];
+    char *rest = NULL;
+    if (strlen(argument) >= sizeof copy) {
+        return false;
+    }
+    strcpy(copy, argument);
+    char *one = strtok_r(copy, " ", &rest);
+    bool good = one != NULL;
+    for (; one != NULL && good; one = strtok_r(NULL, " ", &rest)) {
+        good = take_one(one, part);
+    }
+    return good;
 }
 
 static void add_part(const char *argument)
 {
-    if (!part_take(argument, &options.part)) {
-        refuse("--part wants gain=X,Y,Z (0.5 to 2), offset=X,Y,Z (-1000 to 1000) or selftest=X,Y,Z (-4096 to 4095), "
-               "whole LSB, not '%s'",
-               argument);
+    if (!take_part(argument, &options.sensor.part)) {
+        output_refuse(
+            "--part wants gain=X,Y,Z (0.5 to 2), offset=X,Y,Z (-1000 to 1000) or selftest=X,Y,Z (-4096 to 4095), "
+            "whole LSB, not '%s'" SEE_HELP,
+            argument);
     }
 }
 
 static void set_wires(const char *argument)
 {
     if (!wires_take(argument)) {
-        refuse("--wires wants OHM,PF or OHM,PF,PF of SDA (100 to 100000 ohm, 0 to 10000 pF), not '%s'", argument);
+        output_refuse("--wires wants OHM,PF or OHM,PF,PF of SDA (100 to 100000 ohm, 0 to 10000 pF), not '%s'" SEE_HELP,
+                      argument);
     }
 }
 
 static void add_fault(const char *argument)
 {
-    if (options.fault_count == FAULTS_MAX) {
-        refuse("more than %d faults", FAULTS_MAX);
+    if (options.faults.count == FAULTS_MAX) {
+        output_refuse("more than %d faults" SEE_HELP, FAULTS_MAX);
     }
-    options.faults[options.fault_count++] = argument;
+    options.faults.texts[options.faults.count++] = argument;
 }
 
-/* Options that only store a name; false for all others. */
-static bool take_file(int code, const char *argument)
-{
-    static const struct {
-        int code;
-        const char **target;
-    } files[] = {
-        { OPTION_FW, &options.fw },           { OPTION_IN, &options.in },
-        { OPTION_OUT, &options.out },         { OPTION_SERVED, &options.served },
-        { OPTION_EEPROM, &options.eeprom },   { OPTION_STATS, &options.stats },
-        { OPTION_VCD, &options.vcd },         { OPTION_PROFILE, &options.profile },
-        { OPTION_SPAN, &options.span },       { OPTION_BOOTLOADER, &options.bootloader },
-        { OPTION_ALTERED, &options.altered }, { OPTION_FRAMES, &options.frames },
-        { OPTION_CALLS, &options.calls },     { OPTION_RACE, &options.race },
-    };
-    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
-        if (files[i].code == code) {
-            *files[i].target = argument;
-            return true;
-        }
-    }
-    return false;
-}
+static bool help_wanted;
 
-static bool take_number(int code, const char *name, const char *argument)
-{
-    switch (code) {
-    case OPTION_PPM:
-        options.ppm = number(name, argument, -200000.0, 200000.0);
-        return true;
-    case OPTION_MAX_MS:
-        options.max_ms = number(name, argument, 0.001, 1e9);
-        return true;
-    case OPTION_PATIENCE:
-        options.patience_s = number(name, argument, 0.01, 1e6);
-        return true;
-    case OPTION_EXPECT_RESETS:
-        options.expect_resets = (unsigned)number(name, argument, 0.0, 1e6);
-        return true;
-    case OPTION_GDB:
-        options.gdb_port = (unsigned)number(name, argument, 1.0, 65535.0);
-        return true;
-    case OPTION_SEED:
-        options.seed = (uint32_t)number(name, argument, 1.0, 4294967295.0);
-        return true;
-    case OPTION_CLOCK_START:
-        options.clock_start_us = (uint32_t)number(name, argument, 0.0, 4294967295.0);
-        return true;
-    default:
-        return false;
-    }
-}
+/* What each does with its argument. */
+typedef struct {
+    const char *name;
+    const char **text;                  /* stores it, */
+    bool *flag;                         /* has none, */
+    void (*take)(const char *argument); /* parses it, */
+    double *number;                     /* takes it for a number, */
+    unsigned *whole;
+    double low, high; /* of the number */
+    bool setting;     /* and types it as a command */
+} known_t;
 
-/* Options without an argument; false for all others. */
-static bool take_switch(int code)
-{
-    static const struct {
-        int code;
-        bool *option;
-    } switches[] = { { OPTION_LOOP, &options.loop },
-                     { OPTION_PTY, &options.pty },
-                     { OPTION_BLANK, &options.blank },
-                     { OPTION_STRAP, &options.strap },
-                     { OPTION_ALT_ADDRESS, &options.alt_address },
-                     { OPTION_JUDGE, &options.judge } };
-    for (size_t i = 0; i < sizeof switches / sizeof switches[0]; i++) {
-        if (switches[i].code == code) {
-            *switches[i].option = true;
-            return true;
-        }
-    }
-    return false;
-}
+static const known_t known[] = {
+    { "fw", .text = &options.mcu.fw },
+    { "in", .text = &options.sensor.in },
+    { "frames", .text = &options.frames },
+    { "out", .text = &options.uart.out },
+    { "served", .text = &options.sensor.served },
+    { "altered", .text = &options.altered },
+    { "eeprom", .text = &options.eeprom },
+    { "stats", .text = &options.stats },
+    { "profile", .text = &options.profile },
+    { "calls", .text = &options.calls },
+    { "span", .text = &options.span },
+    { "race", .text = &options.race },
+    { "vcd", .text = &options.vcd },
+    { "bootloader", .text = &options.mcu.bootloader },
+    { "blank", .flag = &options.mcu.blank },
+    { "strap", .flag = &options.mcu.strap },
+    { "alt-address", .flag = &options.sensor.alt_address },
+    { "loop", .flag = &options.sensor.loop },
+    { "pty", .flag = &options.pty },
+    { "ppm", .number = &options.sensor.ppm, .low = -200000.0, .high = 200000.0 },
+    { "max-ms", .number = &options.machine.max_ms, .low = 0.001, .high = 1e9 },
+    { "patience", .number = &options.patience_s, .low = 0.01, .high = 1e6 },
+    { "expect-resets", .whole = &options.expect_resets, .low = 0.0, .high = 1e6 },
+    { "gdb", .whole = &options.machine.gdb_port, .low = 1.0, .high = 65535.0 },
+    { "seed", .whole = &options.mcu.seed, .low = 1.0, .high = 4294967295.0 },
+    { "judge", .flag = &options.judge },
+    { "clock-start", .whole = &options.clock_start_us, .low = 0.0, .high = 4294967295.0 },
+    { "cmd", .take = add_command },
+    { "fault", .take = add_fault },
+    { "rate", .setting = true },
+    { "baud", .setting = true },
+    { "every", .setting = true },
+    { "range", .setting = true },
+    { "filter", .text = &options.filter, .setting = true },
+    { "sensor", .take = set_sensor },
+    { "wires", .take = set_wires },
+    { "part", .take = add_part },
+    { "help", .flag = &help_wanted },
+};
 
-static void take(int code, const char *name, const char *argument)
+enum { KNOWN = sizeof known / sizeof known[0], FIRST_CODE = 256 };
+
+static void take(const known_t *option, const char *argument)
 {
-    switch (code) {
-    case OPTION_CMD:
-        add_command(argument);
-        break;
-    case OPTION_FAULT:
-        add_fault(argument);
-        break;
-    case OPTION_SENSOR:
-        set_sensor(argument);
-        break;
-    case OPTION_WIRES:
-        set_wires(argument);
-        break;
-    case OPTION_PART:
-        add_part(argument);
-        break;
-    case OPTION_FILTER:
-        options.filter = argument;
-        add_setting(name, argument);
-        break;
-    case OPTION_SETTING:
-        add_setting(name, argument);
-        break;
-    case OPTION_HELP:
+    if (option->text != NULL) {
+        *option->text = argument;
+    }
+    if (option->setting) {
+        add_setting(option->name, argument);
+    }
+    if (option->flag != NULL) {
+        *option->flag = true;
+    }
+    if (option->take != NULL) {
+        option->take(argument);
+    }
+    if (option->number != NULL) {
+        *option->number = number(option->name, argument, option->low, option->high);
+    }
+    if (option->whole != NULL) {
+        *option->whole = (unsigned)number(option->name, argument, option->low, option->high);
+    }
+    if (help_wanted) {
         fputs(options_help, stdout);
         exit(EXIT_OK);
-    default:
-        if (!take_switch(code) && !take_file(code, argument) && !take_number(code, name, argument)) {
-            exit(EXIT_INPUT); /* getopt has printed the reason */
-        }
-        break;
     }
 }
 
 /* Exactly one kind of input to the firmware, and the file for its output. */
 static void check_files(void)
 {
-    if (options.fw == NULL || options.out == NULL || (options.in == NULL && options.frames == NULL)) {
-        refuse("--fw, --in (or --frames) and --out are needed");
+    if (options.mcu.fw == NULL || options.uart.out == NULL || (options.sensor.in == NULL && options.frames == NULL)) {
+        output_refuse("--fw, --in (or --frames) and --out are needed" SEE_HELP);
     }
-    if (options.frames != NULL && (options.in != NULL || options.pty)) {
-        refuse("--frames goes with neither --in nor --pty");
+    if (options.frames != NULL && (options.sensor.in != NULL || options.pty)) {
+        output_refuse("--frames goes with neither --in nor --pty" SEE_HELP);
     }
 }
 
 /* Its waits are in simulated time, and the program at the other end would not know about them. */
 static void check_race(void)
 {
-    if (options.race != NULL && (options.gdb_port != 0 || options.pty)) {
-        refuse("--race goes with neither --gdb nor --pty");
+    if (options.race != NULL && (options.machine.gdb_port != 0 || options.pty)) {
+        output_refuse("--race goes with neither --gdb nor --pty" SEE_HELP);
     }
 }
 
@@ -312,30 +265,42 @@ static void check_together(void)
 {
     check_files();
     check_race();
-    if (options.blank && options.bootloader == NULL) {
-        refuse("--blank leaves nothing to run: give --bootloader");
+    if (options.mcu.blank && options.mcu.bootloader == NULL) {
+        output_refuse("--blank leaves nothing to run: give --bootloader" SEE_HELP);
     }
     if (options.patience_s > 0.0 && !options.pty) {
-        refuse("--patience is for a terminal: give --pty");
+        output_refuse("--patience is for a terminal: give --pty" SEE_HELP);
     }
-    if (options.loop && options.max_ms <= 0.0 && options.gdb_port == 0 && !options.pty) {
-        refuse("--loop never ends: give --max-ms");
+    if (options.sensor.loop && options.machine.max_ms <= 0.0 && options.machine.gdb_port == 0 && !options.pty) {
+        output_refuse("--loop never ends: give --max-ms" SEE_HELP);
     }
 }
 
-void options_parse(int argc, char **argv)
+const options_t *options_parse(int argc, char **argv)
 {
-    int index = 0;
+    struct option list[KNOWN + 1] = { 0 };
     int code;
-    options.variant = adxl345_itself;
-    options.part = adxl345_part_typical;
-    while ((code = getopt_long(argc, argv, "", known, &index)) != -1) {
-        take(code, known[index].name, optarg);
+    for (size_t i = 0; i < KNOWN; i++) {
+        list[i] = (struct option){ known[i].name, known[i].flag == NULL ? required_argument : no_argument, NULL,
+                                   FIRST_CODE + (int)i };
+    }
+    options.sensor.variant = adxl345_itself;
+    options.sensor.part = adxl345_part_typical;
+    while ((code = getopt_long(argc, argv, "", list, NULL)) >= FIRST_CODE) {
+        take(&known[code - FIRST_CODE], optarg);
+    }
+    if (code != -1) {
+        exit(EXIT_INPUT); /* getopt has printed the reason */
     }
     if (optind < argc) {
-        refuse("'%s' is no option", argv[optind]);
+        output_refuse("'%s' is no option" SEE_HELP, argv[optind]);
     }
     check_together();
-    part_complete(options.variant, &options.part);
+    if (!self_test_named) {
+        memcpy(options.sensor.part.self_test_lsb, options.sensor.variant->self_test_lsb,
+               sizeof options.sensor.part.self_test_lsb);
+    }
     options.patience_s = options.patience_s > 0.0 ? options.patience_s : PATIENCE_S;
+    options.machine.interactive = options.pty || options.machine.gdb_port != 0;
+    return &options;
 }

@@ -1,8 +1,19 @@
-/* Files that simrun writes; errors on opening and closing name the path. */
-#include <stdio.h>
+#include "simrun_output.h"
+
+#include <stdarg.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
-#include "simrun.h"
+void output_refuse(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    fputs("simrun: ", stderr);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+    va_end(arguments);
+    exit(EXIT_INPUT);
+}
 
 FILE *output_open(const char *path)
 {

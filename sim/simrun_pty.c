@@ -1,21 +1,26 @@
 /*
- * A pseudo terminal in place of the USB serial port: for a terminal program, a plotter or avrdude. Simulated time
- * follows real time and never runs ahead of it. If the PC has no processor time for the simulator, or the reader none
- * for the terminal's data, simulated time waits. So the result does not depend on the load of the PC. A boot loader
- * with an empty flash (--blank) exits if nothing arrives for some simulated time, whereas avrdude counts real time:
- * after the opening, simulated time runs ahead until the boot loader listens, and waits there for avrdude.
+ * For a terminal program, a plotter or avrdude. Simulated time follows real time and never runs ahead of it. If the PC
+ * has no processor time for the simulator, or the reader none for the terminal's data, simulated time waits. So the
+ * result does not depend on the load of the PC. A boot loader with an empty flash (--blank) exits if nothing arrives
+ * for some simulated time, whereas avrdude counts real time: after the opening, simulated time runs ahead until the
+ * boot loader listens, and waits there for avrdude.
  */
 #define _GNU_SOURCE /* posix_openpt */
+
+#include "simrun_pty.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <termios.h>
 #include <time.h>
 #include <unistd.h>
 
-#include "simrun.h"
+#include "simrun_failure.h"
+#include "simrun_mcu.h"
+#include "simrun_resets.h"
 
 enum {
     READER_LOOK_MS = 50,
@@ -28,6 +33,8 @@ enum {
 typedef enum { BOOT_OVER, BOOT_STARTS, BOOT_TALKS } boot_t;
 
 static int master = -1;
+static bool waits_for_opening; /* --blank */
+static double reader_patience_s;
 static boot_t boot;
 static uint64_t boot_quiet_at; /* cycle from which on simulated time waits for a byte */
 static bool opened;            /* a program holds the other end */
@@ -48,8 +55,10 @@ static bool make_raw(int terminal)
     return tcsetattr(terminal, TCSANOW, &settings) == 0;
 }
 
-void pty_open(void)
+void pty_open(bool blank, double patience_s)
 {
+    waits_for_opening = blank;
+    reader_patience_s = patience_s;
     master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
     const char *name = master < 0 || grantpt(master) != 0 || unlockpt(master) != 0 ? NULL : ptsname(master);
     int slave = name == NULL ? -1 : open(name, O_RDWR | O_NOCTTY);
@@ -59,6 +68,11 @@ void pty_open(void)
     }
     fprintf(stderr, "simrun: UART on %s\n", name);
     clock_gettime(CLOCK_MONOTONIC, &began);
+}
+
+bool pty_is_open(void)
+{
+    return master >= 0;
 }
 
 static double real_ms(void)
@@ -84,7 +98,7 @@ static void look_for_user(void)
             perror("simrun: pseudo terminal");
         }
         resets_port_opened();
-        boot_enter(options.blank ? BOOT_STARTS : BOOT_OVER);
+        boot_enter(waits_for_opening ? BOOT_STARTS : BOOT_OVER);
     } else if (!now) {
         boot = BOOT_OVER; /* no program is left to wait for, or to run ahead for */
     }
@@ -97,7 +111,7 @@ static bool wait_for(short event, bool *came)
 {
     struct pollfd end = { .fd = master, .events = event };
     bool looked = poll(&end, 1, READER_LOOK_MS) >= 0 || errno == EINTR; /* a signal is not a hang-up */
-    bool well = looked && (end.revents & POLLHUP) == 0 && !signals_asked_to_end();
+    bool well = looked && (end.revents & POLLHUP) == 0 && !failure_asked_to_end();
     *came = well && (end.revents & event) != 0;
     return well;
 }
@@ -113,8 +127,8 @@ static bool wait_for_reader(double until_ms)
         static char reason[128];
         snprintf(reason, sizeof reason,
                  "a program holds the pseudo terminal but has read nothing for %g s (see --patience)",
-                 options.patience_s);
-        machine_fail(EXIT_READER, reason);
+                 reader_patience_s);
+        failure_set(EXIT_READER, reason);
         return false;
     }
     return true;
@@ -126,7 +140,7 @@ void pty_send(uint8_t byte)
     double until_ms = 0.0;
     while (opened && write(master, &byte, 1) < 0) {
         if (errno == EAGAIN) {
-            until_ms = until_ms > 0.0 ? until_ms : real_ms() + options.patience_s * 1e3;
+            until_ms = until_ms > 0.0 ? until_ms : real_ms() + reader_patience_s * 1e3;
             if (!wait_for_reader(until_ms)) {
                 break;
             }
@@ -143,7 +157,7 @@ void pty_send(uint8_t byte)
 static void wait_for_first_user(void)
 {
     struct timespec pause = { .tv_nsec = READER_LOOK_MS * 1000000L };
-    while (!ever_opened && !signals_asked_to_end()) {
+    while (!ever_opened && !failure_asked_to_end()) {
         nanosleep(&pause, NULL);
         look_for_user();
     }
@@ -154,7 +168,7 @@ static void wait_for_byte(void)
 {
     double until_ms = real_ms() + BOOT_PATIENCE_MS;
     bool came = false;
-    while (machine_in_boot_loader(mcu->pc) && !came && wait_for(POLLIN, &came) && real_ms() < until_ms) {
+    while (mcu_in_boot_loader(mcu->pc) && !came && wait_for(POLLIN, &came) && real_ms() < until_ms) {
     }
     if (!came) {
         boot_enter(BOOT_OVER);
@@ -164,7 +178,7 @@ static void wait_for_byte(void)
 bool pty_receive(uint8_t *byte)
 {
     look_for_user();
-    if (options.blank) {
+    if (waits_for_opening) {
         wait_for_first_user();
     }
     if (!opened || (boot == BOOT_STARTS && mcu->cycle < boot_quiet_at)) {
@@ -182,7 +196,7 @@ bool pty_receive(uint8_t *byte)
 
 void pty_pace(void)
 {
-    double ahead_ms = machine_ms() + forgiven_ms - real_ms();
+    double ahead_ms = mcu_ms() + forgiven_ms - real_ms();
     if (boot == BOOT_STARTS) { /* avrdude has begun to count: run as fast as the PC can */
         forgiven_ms -= ahead_ms;
         return;

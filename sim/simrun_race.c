@@ -1,30 +1,35 @@
 /*
- * Interrupts at critical places (--race). Data that main and a handler share, with at least one of them writing, is
- * found as the program runs. Before each instruction of main that touches such a byte, and before the one after it,
- * main is made to wait until the interrupt comes, if it would come within REACH cycles. To the program that is a longer
- * path to that place, or one more interrupt on the way; no part of the chip does anything that it would not have done.
+ * Data that main and a handler share, with at least one of them writing, is found as the program runs. Before each
+ * instruction of main that touches such a byte, and before the one after it, main is made to wait until the interrupt
+ * comes, if it would come within REACH cycles. To the program that is a longer path to that place, or one more
+ * interrupt on the way; no part of the chip does anything that it would not have done.
  *
  * A pair is such an instruction with such a vector. It is taken "before" if that interrupt is served before the
  * instruction, whatever caused it, and "after" if it is served after it: between a read and its consequences. A pair
  * whose instruction ran only with interrupts off is guarded.
  */
-#include <string.h>
+#include "simrun_race.h"
+
+#include <stdio.h>
 
 #include "sim_interrupts.h"
-#include "simrun.h"
+#include "simrun_access.h"
+#include "simrun_faults.h"
+#include "simrun_mcu.h"
+#include "simrun_output.h"
+#include "simrun_resets.h"
+#include "simrun_sensor.h"
+#include "simrun_symbols.h"
+#include "simrun_times.h"
+#include "simrun_uart.h"
 
 enum {
     REACH = 200, /* most cycles that main waits, */
     CHAIN = 4,   /* and for a timer that the awaited one sets: the transmitter's buffer is empty 2 cycles later */
     DOUBT = 8,   /* a timer that raised its interrupt less than once in this many waits is not waited for */
-    TAKEN_A_MINUTE = 4, /* how often a pair is forced, each way, per minute of simulated time */
-    VECTORS = 26,       /* 0 is the reset and not counted */
-    VECTOR_BYTES = 4,
-    FLASH_WORDS = 0x4000,
-    RAM_START = 0x100,
+    TAKEN_A_MINUTE = 4,  /* how often a pair is forced, each way, per minute of simulated time */
     TIMER1_FIRST = 0x84, /* TCNT1L */
     TIMER1_LAST = 0x8B,  /* OCR1BH */
-    TIMER1_TEMP = 0x900, /* the byte through which all the high ones go; not an address of data space */
     CELLS = 0x901,
     TOUCHED_MAX = 6, /* addresses remembered for an instruction whose address varies */
     KINDS_MAX = 64
@@ -49,8 +54,8 @@ typedef struct {
     unsigned raised[VECTORS], awaited[VECTORS];
 } kind_t;
 
-bool race_wanted;
 static FILE *file;
+static const char *file_path;
 static place_t places[FLASH_WORDS];
 static uint32_t handler_reads[CELLS], handler_writes[CELLS]; /* by vector */
 static avr_int_vector_t *vectors[VECTORS];
@@ -117,13 +122,13 @@ static void on_pending(avr_irq_t *irq, uint32_t value, void *param)
     }
 }
 
-void race_start(void)
+bool race_start(const char *path)
 {
-    if (options.race == NULL) {
-        return;
+    if (path == NULL) {
+        return false;
     }
-    race_wanted = true;
-    file = output_open(options.race);
+    file_path = path;
+    file = output_open(path);
     for (int i = 0; i < mcu->interrupts.vector_count; i++) {
         avr_int_vector_t *vector = mcu->interrupts.vector[i];
         if (vector->vector != 0 && vector->vector < VECTORS) {
@@ -131,6 +136,7 @@ void race_start(void)
             avr_irq_register_notify(&vector->irq[AVR_INT_IRQ_PENDING], on_pending, vector);
         }
     }
+    return true;
 }
 
 /* Core registers are private to each context, and so is the stack. */
@@ -138,7 +144,7 @@ static bool may_be_shared(uint16_t address)
 {
     enum { REG_GENERAL_LAST = 0x1F, REG_SPL = 0x5D, REG_SREG = 0x5F };
     bool core = address <= REG_GENERAL_LAST || (address >= REG_SPL && address <= REG_SREG);
-    return !core && (address < RAM_START || address < machine_size.end_of_ram);
+    return !core && (address < RAM_START || address < mcu_program.end_of_ram);
 }
 
 static bool through_temp(uint16_t address)
@@ -201,7 +207,7 @@ static void mark(place_t *place, unsigned side)
 /* Its vectors that have not come often enough there, and are enabled. */
 static uint32_t lacking(const place_t *place, unsigned side)
 {
-    unsigned enough = TAKEN_A_MINUTE * (1u + (unsigned)(machine_ms() / 60e3));
+    unsigned enough = TAKEN_A_MINUTE * (1u + (unsigned)(mcu_ms() / 60e3));
     uint32_t found = 0;
     for (unsigned v = 1; place != NULL && place->vectors >> v != 0; v++) {
         bool wanted = (place->vectors >> v & 1u) != 0 && place->taken[side][v] < enough;
@@ -291,16 +297,19 @@ static bool ahead_of(place_t *place)
 
 bool race_on_step(bool awake)
 {
+    if (file == NULL) {
+        return false;
+    }
     note_next_timer();
-    if (!awake || machine_in_boot_loader(mcu->pc)) {
+    if (!awake || mcu_in_boot_loader(mcu->pc)) {
         running = 0; /* interrupts in the meantime are not tracked */
         served = 0;
         last = NULL;
         return false;
     }
     place_t *place = place_at(mcu->pc);
-    bool waited = !stats_in_interrupt() && ahead_of(place);
-    if (stats_in_interrupt()) {
+    bool waited = !times_in_interrupt() && ahead_of(place);
+    if (times_in_interrupt()) {
         on_handler_step();
     } else {
         note_in_main(place, mcu->pc);
@@ -309,42 +318,13 @@ bool race_on_step(bool awake)
     return waited;
 }
 
-static const char *cell_name(uint16_t address)
-{
-    static const struct {
-        uint16_t address;
-        const char *name;
-    } registers[] = { { 0x29, "PIND" },   { 0x36, "TIFR1" },
-                      { 0x3C, "EIFR" },   { 0x3D, "EIMSK" },
-                      { 0x3E, "GPIOR0" }, { 0x4A, "GPIOR1" },
-                      { 0x4B, "GPIOR2" }, { 0x6F, "TIMSK1" },
-                      { 0x84, "TCNT1L" }, { 0x85, "TCNT1H" },
-                      { 0x88, "OCR1AL" }, { 0x89, "OCR1AH" },
-                      { 0x8A, "OCR1BL" }, { 0x8B, "OCR1BH" },
-                      { 0xB8, "TWBR" },   { 0xB9, "TWSR" },
-                      { 0xBB, "TWDR" },   { 0xBC, "TWCR" },
-                      { 0xC0, "UCSR0A" }, { 0xC1, "UCSR0B" },
-                      { 0xC6, "UDR0" },   { TIMER1_TEMP, "TEMP of Timer1" } };
-    static char number[16];
-    for (size_t i = 0; i < sizeof registers / sizeof registers[0]; i++) {
-        if (registers[i].address == address) {
-            return registers[i].name;
-        }
-    }
-    if (address >= RAM_START) {
-        return symbols_variable_at(address);
-    }
-    snprintf(number, sizeof number, "0x%02x", (unsigned)address);
-    return number;
-}
-
 /* The first byte that this instruction shares with that handler. */
 static const char *shared_with(const place_t *place, unsigned vector)
 {
     for (unsigned i = 0; i < place->touched_count; i++) {
         uint32_t mask = sharers(place->touched[i].address, place->touched[i].reads, place->touched[i].writes);
         if ((mask >> vector & 1u) != 0) {
-            return cell_name(place->touched[i].address);
+            return access_name(place->touched[i].address);
         }
     }
     return "?";
@@ -373,7 +353,7 @@ static void close_place(place_t *place, uint32_t pc)
         if ((place->vectors >> v & 1u) != 0) {
             const char *state = count_pair(place, v);
             fprintf(file, "0x%04x,%s,", (unsigned)pc, symbols_nearest(pc));
-            fprintf(file, "%s,%s,%u,%u,%s\n", shared_with(place, v), stats_vector_name(v),
+            fprintf(file, "%s,%s,%u,%u,%s\n", shared_with(place, v), times_vector_name(v),
                     (unsigned)place->taken[BEFORE][v], (unsigned)place->taken[AFTER][v], state);
         }
     }
@@ -381,14 +361,14 @@ static void close_place(place_t *place, uint32_t pc)
 
 void race_finish(void)
 {
-    if (!race_wanted) {
+    if (file == NULL) {
         return;
     }
     fputs("pc,symbol,variable,vector,before,after,state\n", file);
     for (uint32_t word = 0; word < FLASH_WORDS; word++) {
         close_place(&places[word], word * 2);
     }
-    output_close(file, options.race);
+    output_close(file, file_path);
     fprintf(stderr, "simrun: race: %u pairs taken, %u guarded, %u not reached; %llu waits of %llu cycles in all\n",
             count.taken, count.guarded, count.not_reached, (unsigned long long)waits,
             (unsigned long long)waited_cycles);

@@ -1,18 +1,20 @@
 /*
- * Resets of the MCU: those that simavr does itself (watchdog, gdb), those requested by a fault or an opened port, how
- * many there were, and what each leaves for the parts around the core to do.
+ * Those that simavr does itself (watchdog, gdb), those requested by a fault or an opened port, and how many there were.
  */
-#include "avr_extint.h"
-#include "avr_ioport.h"
-#include "simrun.h"
+#include "simrun_resets.h"
 
-enum {
-    REGISTERS_END = 32, /* r0..r31; from here to RAM_START are the I/O registers, which a reset sets itself */
-    RAM_START = 0x100,
-    RAM_END = 0x8FF
-};
+#include <stddef.h>
+
+#include "avr_extint.h"
+#include "simrun_mcu.h"
+#include "simrun_stack.h"
+
+/* r0..r31; from here to RAM_START are the I/O registers, which a reset sets itself */
+enum { REGISTERS_END = 32 };
 
 static void (*core_reset)(avr_t *);
+static void (*set_up_parts)(bool power_lost);
+static bool port_resets;
 static bool reset_happened, reset_wanted, port_opened;
 static reset_t wanted_kind;
 static uint32_t resets, boot_resets;
@@ -36,28 +38,13 @@ static void on_reset(avr_t *avr)
     reset_happened = true;
 }
 
-/* simavr clears what the strap's pin reads, but not the state of its line: a pull-up would not be a change to it. */
-static void forget_strap(void)
-{
-    avr_io_getirq(mcu, AVR_IOCTL_IOPORT_GETIRQ('D'), PIN_STRAP)->value = 0;
-}
-
 /* What a reset of the MCU leaves to simrun. */
 static void set_up_again(bool power_lost)
 {
     avr_extint_set_strict_lvl_trig(mcu, 0, 0);
     avr_extint_set_strict_lvl_trig(mcu, 1, 0);
-    twi_reset(&twi);
-    uart_reset();
-    stats_reset();
-    span_reset();
-    pass_reset();
-    faults_on_reset();
-    rules_on_reset();
-    eeprom_reset(power_lost);
-    forget_strap();
-    sensor_show_pin();
-    machine_reschedule();
+    mcu_forget_strap();
+    set_up_parts(power_lost);
 }
 
 static void power_cycle(void)
@@ -65,7 +52,7 @@ static void power_cycle(void)
     (void)stack_high_water();
     for (unsigned i = 0; i <= RAM_END; i++) {
         if (i < REGISTERS_END || i >= RAM_START) {
-            mcu->data[i] = (uint8_t)machine_random();
+            mcu->data[i] = (uint8_t)mcu_random();
         }
     }
     stack_paint_is();
@@ -103,7 +90,7 @@ bool resets_wanted(void)
 
 void resets_port_opened(void)
 {
-    if (options.bootloader != NULL) {
+    if (port_resets) {
         port_opened = !reset_wanted;
         resets_want(RESET_EXTERNAL);
     }
@@ -113,15 +100,17 @@ static void own_reset_came(uint32_t last_pc)
 {
     reset_happened = false;
     set_up_again(false);
-    if (machine_in_boot_loader(last_pc)) {
+    if (mcu_in_boot_loader(last_pc)) {
         boot_resets++;
     } else {
         resets++;
     }
 }
 
-void resets_start(void)
+void resets_start(bool boot_loader, void (*set_up)(bool power_lost))
 {
+    port_resets = boot_loader;
+    set_up_parts = set_up;
     core_reset = mcu->reset;
     mcu->reset = on_reset;
     set_up_again(false);

@@ -1,12 +1,16 @@
-/*
- * Rows counted as they arrive, and what was lost between the sensor and them. The sensor's samples are kept for a
- * limited time (SERVED_KEPT), so that a day fits in memory: each row is looked up when it arrives.
- */
+/* The sensor's samples are kept for a limited time (SERVED_KEPT): each row is looked up when it arrives. */
+#include "simrun_rows.h"
+
 #include <string.h>
 
-#include "simrun.h"
+#include "sim_io.h"
+#include "simrun_mcu.h"
+#include "simrun_resets.h"
+#include "simrun_sensor.h"
+#include "simrun_times.h"
 
-enum { LOOK_BACK = 64, FLAG_GATED = 1, FLAG_COASTED = 2, FLAG_FAULT = 16 };
+enum { LOOK_BACK = 64, FLAG_GATED = 1, FLAG_COASTED = 2, FLAG_CLIPPED = 8, FLAG_FAULT = 16 };
+enum { REG_TCCR1B = 0x81, CLOCK_SELECT = 0x07 };
 enum { STEP_UNIT_US = 64 };
 #define STEPS 524288ul /* up to 33.5 s between two rows */
 
@@ -35,6 +39,11 @@ static size_t served_until(uint64_t cycle)
     return sensor_served_count() - newer;
 }
 
+static bool shows(const row_t *row, const served_t *sample)
+{
+    return memcmp(sample->lsb, row->lsb, sizeof row->lsb) == 0;
+}
+
 /* The newest sample that the first row can show, at the time it was sent. */
 static void find_first(const row_t *row)
 {
@@ -46,10 +55,11 @@ static void find_first(const row_t *row)
         return;
     }
     size_t i = count;
-    while (i > 1 && i + LOOK_BACK > count && memcmp(served[i - 1].lsb, row->lsb, sizeof row->lsb) != 0) {
+    bool found = shows(row, &served[i - 1]);
+    while (!found && i > 1 && i + LOOK_BACK > count) {
         i--;
+        found = shows(row, &served[i - 1]);
     }
-    bool found = memcmp(served[i - 1].lsb, row->lsb, sizeof row->lsb) == 0;
     i = found ? i : count;
     first_number = older + i;
     first_cycle = served[i - 1].cycle;
@@ -70,10 +80,10 @@ static uint32_t resets_so_far(void)
     return resets_count() + resets_boot_count();
 }
 
-void rows_take(const row_t *row)
+static void count_row(const row_t *row)
 {
     if (row_count == 0) {
-        stats_streaming_begins();
+        times_streaming_begins();
         find_first(row);
         first_resets = resets_so_far();
     } else {
@@ -127,6 +137,62 @@ static size_t lost(void)
     return measured.samples > shown ? measured.samples - shown : 0;
 }
 
+/*
+ * Whether good rows keep coming. A row is good if its flags do not disown it (simrun_judge.h) and no axis at the rail
+ * was left out of it. It shows a sample if nothing but the filter's gate or the rail is against it (flags 1 and 8).
+ * Records the longest times without a row that shows a sample: of the whole run, and of its quiet parts, in which every
+ * fault so far is over and has had its good row.
+ */
+typedef struct {
+    uint64_t cycles, from;
+} gap_t;
+
+static uint64_t last_good = NEVER, last_shown = NEVER;
+static gap_t longest, longest_calm;
+
+static void keep_longest(gap_t *gap, uint64_t from, uint64_t to)
+{
+    if (to - from > gap->cycles) {
+        *gap = (gap_t){ .cycles = to - from, .from = from };
+    }
+}
+
+/* If it is calm, no fault has begun since the previous row either: it would wait for a row of what came after it. */
+static void measure_gaps(const row_t *row, bool calm)
+{
+    unsigned against = row->flags & JUDGE_DISOWNED;
+    if (against == 0 && (row->flags & FLAG_CLIPPED) == 0) {
+        last_good = row->sent;
+    }
+    if ((against & ~(unsigned)FLAG_GATED) != 0) {
+        return;
+    }
+    if (last_shown != NEVER) {
+        keep_longest(&longest, last_shown, row->sent);
+        if (calm) {
+            keep_longest(&longest_calm, last_shown, row->sent);
+        }
+    }
+    last_shown = row->sent;
+}
+
+static void print_gap(FILE *json, const char *name, const gap_t *gap)
+{
+    fprintf(json, "  \"%s_ms\": %.3f,\n  \"%s_from_ms\": %.3f,\n", name, (double)gap->cycles / CYCLES_PER_MS, name,
+            (double)gap->from / CYCLES_PER_MS);
+}
+
+static void print_gaps(FILE *json)
+{
+    if (last_good == NEVER) {
+        fputs("  \"rows_last_good_ms\": null,\n", json);
+    } else {
+        fprintf(json, "  \"rows_last_good_ms\": %.3f,\n", (double)last_good / CYCLES_PER_MS);
+    }
+    print_gap(json, "rows_gap", &longest);
+    print_gap(json, "rows_calm_gap", &longest_calm);
+}
+
 void rows_print(FILE *json)
 {
     unsigned every = every_seen();
@@ -137,4 +203,52 @@ void rows_print(FILE *json)
         fputs("  \"lost\": null,\n", json);
     }
     fprintf(json, "  \"gated\": %zu,\n  \"coasted\": %zu,\n  \"fault_rows\": %zu,\n", gated, coasted, faulty);
+    print_gaps(json);
+}
+
+/* The judge: the firmware's clock starts with Timer1. */
+static judge_t judge;
+
+static void on_timer(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    (void)address;
+    (void)param;
+    if ((value & CLOCK_SELECT) != 0) {
+        judge_clock_begins(&judge, avr->cycle);
+    }
+}
+
+void rows_start(uint32_t clock_start_us)
+{
+    judge = (judge_t){ .cycles_per_us = CYCLES_PER_US, .start_us = clock_start_us };
+    avr_register_io_write(mcu, REG_TCCR1B, on_timer, NULL);
+}
+
+void rows_print_verdict(FILE *json)
+{
+    fprintf(json, "  \"rows_judged\": %u,\n  \"rows_wrong\": %u,\n  \"rows_stale\": %u,\n",
+            (unsigned)judge_judged(&judge), (unsigned)judge.count[JUDGE_WRONG], (unsigned)judge.count[JUDGE_STALE]);
+    fprintf(json, "  \"rows_twice\": %u,\n  \"t_us_steps_back\": %u,\n", (unsigned)judge.count[JUDGE_TWICE],
+            (unsigned)judge.steps_back);
+}
+
+void rows_tell(void)
+{
+    if (judge.rows_seen != 0) {
+        fprintf(stderr, "simrun: %s\n", judge_summary(&judge));
+    }
+}
+
+const char *rows_fault(void)
+{
+    return judge.any_fault ? judge_summary(&judge) : NULL;
+}
+
+void rows_take(const row_t *row, bool calm)
+{
+    size_t count;
+    served_t *served = sensor_served_lately(&count);
+    count_row(row);
+    measure_gaps(row, calm);
+    (void)judge_row(&judge, row, served, count, sensor_true_period_us());
 }

@@ -3,7 +3,11 @@
  * simavr behaves as if each were kept. The first one broken ends the run with status 11 and its text. Boot loaders are
  * not checked.
  */
-#include "simrun.h"
+#include "simrun_rules.h"
+
+#include "sim_io.h"
+#include "simrun_failure.h"
+#include "simrun_mcu.h"
 
 enum {
     REG_DDRB = 0x24,
@@ -51,8 +55,8 @@ static uint32_t led_flashes;
 
 static void broken(const char *words)
 {
-    if (!machine_in_boot_loader(mcu->pc)) {
-        machine_fail(EXIT_RULE, words);
+    if (!mcu_in_boot_loader(mcu->pc)) {
+        failure_set(EXIT_RULE, words);
     }
 }
 
@@ -186,7 +190,7 @@ void rules_on_reset(void)
 void rules_on_step(uint32_t from)
 {
     if (mcu->state == cpu_Sleeping && interrupts_on()) {
-        bool alone = machine_opcode_at(from) == OPCODE_SLEEP && from == opened_at;
+        bool alone = mcu_opcode_at(from) == OPCODE_SLEEP && from == opened_at;
         if (!alone) {
             broken("SLEEP does not follow the SEI that lets interrupts in: a wake-up before it is lost");
         }

@@ -1,14 +1,17 @@
-/*
- * The clock of the virtual ADXL345: each output-data-rate period takes a row of the stream. Also the file of what it
- * served.
- */
-#include <stdlib.h>
+/* Each output-data-rate period takes a row of the stream. */
+#include "simrun_sensor.h"
+
 #include <string.h>
 
 #include "adxl345_registers.h"
 #include "avr_ioport.h"
+#include "feed.h"
 #include "sim_io.h"
-#include "simrun.h"
+#include "simrun_events.h"
+#include "simrun_mcu.h"
+#include "simrun_output.h"
+#include "simrun_times.h"
+#include "simrun_vcd.h"
 
 #define TURN_ON_US 1100.0 /* first data one period and 1.1 ms after Measure (data sheet p. 5) */
 
@@ -16,6 +19,8 @@ enum { REG_PIND = 0x29, PIN_D2 = 2 };
 
 adxl345_model_t sensor;
 
+static const int16_t *(*measure)(const int16_t lsb[3]);
+static void (*on_sample)(void);
 static stream_t stream;
 static feed_t feed;
 static double odr_hz;
@@ -25,9 +30,10 @@ static uint64_t last_tick;
 static size_t row_now;
 static uint64_t over_at = NEVER;
 static bool int1_cut, int1_held_high, int1_disturbed;
-static double clock_error_ppm;
+static double own_error_ppm, clock_error_ppm;
 static avr_irq_t *pin_d2;
 static FILE *served_file;
+static const char *served_path;
 static served_t served[2 * SERVED_KEPT]; /* the newest; when it is full the older half is dropped */
 static size_t kept_count, served_count;
 static bool mode_used[2];
@@ -90,45 +96,57 @@ static void on_latched(void *owner, const int16_t lsb[3])
     served_count++;
 }
 
-void sensor_start(void)
+void sensor_set_clock_error(double ppm)
 {
-    if (options.in != NULL && !stream_load(&stream, options.in)) {
-        fprintf(stderr, "simrun: %s\n", stream.error);
-        exit(EXIT_INPUT);
+    clock_error_ppm = ppm;
+}
+
+void sensor_restore_clock(void)
+{
+    clock_error_ppm = own_error_ppm;
+}
+
+void sensor_start(const sensor_options_t *wanted)
+{
+    if (wanted->in != NULL && !stream_load(&stream, wanted->in)) {
+        output_refuse("%s", stream.error);
     }
-    if (options.served != NULL) {
-        served_file = output_open(options.served);
+    if (wanted->served != NULL) {
+        served_path = wanted->served;
+        served_file = output_open(served_path);
         fprintf(served_file, "served,t_us,row,line,x_lsb,y_lsb,z_lsb%s\n",
                 stream.has_truth ? ",roll_true_cdeg,pitch_true_cdeg" : "");
     }
     pin_d2 = avr_io_getirq(mcu, AVR_IOCTL_IOPORT_GETIRQ('D'), PIN_D2);
     adxl345_model_init(&sensor);
-    adxl345_model_become(&sensor, options.variant);
-    sensor.part = options.part;
-    if (options.alt_address) {
+    adxl345_model_become(&sensor, wanted->variant);
+    sensor.part = wanted->part;
+    if (wanted->alt_address) {
         sensor.address = ADXL345_ADDRESS_HIGH;
     }
-    clock_error_ppm = options.ppm;
+    own_error_ppm = wanted->ppm;
+    sensor_restore_clock();
     sensor.pin_changed = on_pin;
     sensor.latched = on_latched;
-    feed = (feed_t){ .stream = &stream, .loop = options.loop };
+    feed = (feed_t){ .stream = &stream, .loop = wanted->loop };
     sensor_show_pin();
+}
+
+void sensor_hook(const int16_t *(*measured)(const int16_t lsb[3]), void (*sampled)(void))
+{
+    measure = measured;
+    on_sample = sampled;
 }
 
 void sensor_finish(void)
 {
-    output_close(served_file, options.served);
+    output_close(served_file, served_path);
     stream_free(&stream);
 }
 
 static double period_cycles(void)
 {
     return (double)CYCLES_PER_MS * 1000.0 / (odr_hz * (1.0 + clock_error_ppm * 1e-6));
-}
-
-void sensor_set_clock_error(double ppm)
-{
-    clock_error_ppm = ppm;
 }
 
 uint64_t sensor_next(void)
@@ -150,7 +168,7 @@ void sensor_check_rate(void)
         feed_set_rate(&feed, &stream, odr_hz, mcu->cycle / CYCLES_PER_US);
         mode_used[feed.mode] = true;
     }
-    machine_reschedule();
+    events_reschedule();
 }
 
 void sensor_step(void)
@@ -167,14 +185,14 @@ void sensor_step(void)
         row_now = row;
         memcpy(lsb, stream.rows[row].lsb, sizeof lsb);
         feed_vary(&feed, lsb);
-        (void)adxl345_model_tick(&sensor, alter_sample(lsb));
-        faults_on_sample();
+        (void)adxl345_model_tick(&sensor, measure(lsb));
+        on_sample();
         break;
     case FEED_NOTHING:
         break;
     default:
         over_at = mcu->cycle;
-        stats_streaming_ends();
+        times_streaming_ends();
         break;
     }
 }
@@ -210,14 +228,10 @@ served_t *sensor_served_lately(size_t *count)
     return served;
 }
 
-const stream_t *sensor_stream(void)
-{
-    return &stream;
-}
-
 /* A tick is a measurement: there is none in standby or without power. */
 void sensor_print(FILE *json)
 {
+    fprintf(json, "  \"samples_served\": %zu,\n  \"sensor_overruns\": %u,\n", served_count, (unsigned)sensor.overruns);
     fprintf(json, "  \"sensor\": \"%s\",\n  \"sensor_hz\": %.4g,\n  \"sensor_range_g\": %.4g,\n", sensor.variant->name,
             adxl345_model_odr_hz(&sensor), adxl345_model_range_g(&sensor));
     fprintf(json, "  \"sensor_last_tick_ms\": %.3f,\n", (double)last_tick / CYCLES_PER_MS);

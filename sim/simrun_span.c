@@ -1,15 +1,13 @@
-/*
- * Cycles from one function's entry to another's (--span): what main spends in between, without interrupts, and how deep
- * its stack goes, one line per passage.
- */
-#include <stdlib.h>
+/* What main spends from one entry to the other, without interrupts, and how deep its stack goes: a line per passage. */
+#include "simrun_span.h"
+
 #include <string.h>
 
-#include "simrun.h"
+#include "simrun_mcu.h"
+#include "simrun_output.h"
+#include "simrun_symbols.h"
+#include "simrun_times.h"
 
-enum { REG_SPL = 0x5D };
-
-bool span_wanted;
 static FILE *file;
 static const char *path;
 static uint32_t from_pc;
@@ -20,35 +18,26 @@ static uint64_t interrupted_before;
 static uint16_t sp_at_start;
 static uint16_t lowest_sp;
 
-static uint16_t stack_pointer(void)
-{
-    uint16_t sp;
-    memcpy(&sp, mcu->data + REG_SPL, sizeof sp); /* little endian, like the PC */
-    return sp;
-}
-
 static uint32_t find(const char *name)
 {
     uint32_t pc;
     if (!symbols_find(name, &pc)) {
-        fprintf(stderr, "simrun: --span: the firmware has no function %s\n", name);
-        exit(EXIT_INPUT);
+        output_refuse("--span: the firmware has no function %s", name);
     }
     return pc;
 }
 
-void span_start(void)
+bool span_start(const char *wanted)
 {
     static char names[256];
-    if (options.span == NULL) {
-        return;
+    if (wanted == NULL) {
+        return false;
     }
-    snprintf(names, sizeof names, "%s", options.span);
+    snprintf(names, sizeof names, "%s", wanted);
     char *to = strchr(names, ':');
     char *file_name = to == NULL ? NULL : strchr(to + 1, ':');
     if (file_name == NULL) {
-        fprintf(stderr, "simrun: --span wants FROM:TO:CSV, not '%s'\n", options.span);
-        exit(EXIT_INPUT);
+        output_refuse("--span wants FROM:TO:CSV, not '%s'", wanted);
     }
     *to++ = '\0';
     *file_name++ = '\0';
@@ -57,24 +46,24 @@ void span_start(void)
     path = file_name;
     file = output_open(path);
     fputs("at_us,cycles,stack_bytes\n", file);
-    span_wanted = true;
+    return true;
 }
 
 void span_on_pc(uint32_t pc)
 {
-    if (stats_in_interrupt()) {
+    if (file == NULL || times_in_interrupt()) {
         return;
     }
-    uint16_t sp = stack_pointer();
+    uint16_t sp = mcu_stack_pointer();
     if (pc == from_pc) {
         inside = true;
         began = mcu->cycle;
-        interrupted_before = stats_interrupted;
+        interrupted_before = times_interrupted();
         sp_at_start = sp;
         lowest_sp = sp;
     } else if (inside && pc == to_pc) {
         inside = false;
-        uint64_t cycles = mcu->cycle - began - (stats_interrupted - interrupted_before);
+        uint64_t cycles = mcu->cycle - began - (times_interrupted() - interrupted_before);
         fprintf(file, "%.1f,%llu,%u\n", (double)began / CYCLES_PER_US, (unsigned long long)cycles,
                 (unsigned)(sp_at_start - lowest_sp));
     } else if (inside && sp < lowest_sp) {

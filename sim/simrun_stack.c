@@ -1,16 +1,15 @@
 /*
- * Stack depth. All RAM above _end is painted before the start; bytes that no longer hold the paint were used. The stack
- * has run into the variables if the byte that a push with SP = _end + 1 writes has changed, or SP stays at or below
- * _end.
+ * All RAM above _end is painted before the start; bytes that no longer hold the paint were used. The stack has run into
+ * the variables if the byte that a push with SP = _end + 1 writes has changed, or SP stays at or below _end.
  */
+#include "simrun_stack.h"
+
 #include <string.h>
 
-#include "simrun.h"
+#include "simrun_failure.h"
+#include "simrun_mcu.h"
 
 enum {
-    RAM_START = 0x100,
-    RAM_END = 0x8FF,
-    REG_SPL = 0x5D,
     PAINT = 0xA5,
     NEAR = 64,        /* bytes: a generous bound for the movement of the stack in one chunk of instructions */
     SETTLED_STEPS = 4 /* SPH, SREG and SPL are written one after the other (avr-gcc's prologue) */
@@ -44,21 +43,20 @@ static void guard_changed(uint16_t sp, uint32_t end_of_ram)
     if (sp > end_of_ram + NEAR) {
         paint_holds = false;
     } else {
-        machine_fail(EXIT_STACK, "the stack has run into the variables");
+        failure_set(EXIT_STACK, "the stack has run into the variables");
     }
 }
 
 bool stack_watch(uint32_t end_of_ram)
 {
-    uint16_t sp;
-    memcpy(&sp, mcu->data + REG_SPL, sizeof sp); /* little endian, like the PC */
+    uint16_t sp = mcu_stack_pointer();
     if (paint_holds && mcu->data[end_of_ram + 1] != paint[end_of_ram + 1]) {
         guard_changed(sp, end_of_ram);
     }
     if (sp <= end_of_ram) {
         low_steps++;
         if (low_steps >= SETTLED_STEPS) {
-            machine_fail(EXIT_STACK, "the stack has run into the variables");
+            failure_set(EXIT_STACK, "the stack has run into the variables");
         }
         return true;
     }
@@ -74,7 +72,7 @@ uint16_t stack_high_water(void)
 {
     uint16_t used = (uint16_t)(RAM_END - lowest_seen);
     if (paint_holds) {
-        uint32_t address = machine_size.end_of_ram;
+        uint32_t address = mcu_program.end_of_ram;
         while (address <= RAM_END && mcu->data[address] == paint[address]) {
             address++;
         }

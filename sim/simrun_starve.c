@@ -1,20 +1,20 @@
-/*
- * A main loop that gets no time, as if something it calls never returned, while interrupts continue: simavr is made to
- * sleep before each instruction outside a handler.
- */
-#include "simrun.h"
+/* simavr is made to sleep before each instruction outside a handler. */
+#include "simrun_starve.h"
+
+#include "simrun_mcu.h"
+#include "simrun_times.h"
 
 static avr_run_t run_before;
 
 /* Nothing may come between SEI and SLEEP: it is allowed to sleep, and starves once it is woken. */
 static bool falls_asleep(const avr_t *avr)
 {
-    return machine_opcode_at(avr->pc) == OPCODE_SLEEP;
+    return mcu_opcode_at(avr->pc) == OPCODE_SLEEP;
 }
 
 static void run_handlers_only(avr_t *avr)
 {
-    if (avr->state == cpu_Running && !stats_in_interrupt() && avr->sreg[S_I] && !falls_asleep(avr)) {
+    if (avr->state == cpu_Running && !times_in_interrupt() && avr->sreg[S_I] && !falls_asleep(avr)) {
         avr->state = cpu_Sleeping;
     }
     run_before(avr);

@@ -1,12 +1,14 @@
-/* Function names, sizes and _end from the firmware's ELF file. */
+#include "simrun_symbols.h"
+
 #include <fcntl.h>
 #include <gelf.h>
 #include <libelf.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "simrun.h"
+#include "simrun_output.h"
 
 enum { RAM_OFFSET = 0x800000, EEPROM_OFFSET = 0x810000, EM_AVR_MACHINE = 83, UNO_MHZ = 16 };
 
@@ -23,19 +25,12 @@ typedef struct {
 static symbols_t functions; /* pc: byte address in flash */
 static symbols_t variables; /* pc: address in data space */
 
-static void refuse(const char *path, const char *reason) __attribute__((noreturn));
-static void refuse(const char *path, const char *reason)
-{
-    fprintf(stderr, "simrun: %s: %s\n", path, reason);
-    exit(EXIT_INPUT);
-}
-
 static void add_symbol(symbols_t *symbols, uint32_t pc, const char *name)
 {
     symbol_t *grown = realloc(symbols->list, (symbols->count + 1) * sizeof *grown);
     char *copy = strdup(name);
     if (grown == NULL || copy == NULL) {
-        refuse(name, "out of memory");
+        output_refuse("%s: out of memory", name);
     }
     symbols->list = grown;
     symbols->list[symbols->count].pc = pc;
@@ -119,10 +114,10 @@ static Elf *open_elf(const char *path, int file)
     Elf *elf = elf_begin(file, ELF_C_READ, NULL);
     GElf_Ehdr header;
     if (elf == NULL || elf_kind(elf) != ELF_K_ELF || gelf_getehdr(elf, &header) == NULL) {
-        refuse(path, "not an ELF file");
+        output_refuse("%s: not an ELF file", path);
     }
     if (header.e_machine != EM_AVR_MACHINE) {
-        refuse(path, "an ELF file, but not for an AVR");
+        output_refuse("%s: an ELF file, but not for an AVR", path);
     }
     return elf;
 }
@@ -132,7 +127,7 @@ void symbols_load(const char *path, program_size_t *size)
     *size = (program_size_t){ .cycles_per_us = UNO_MHZ };
     int file = open(path, O_RDONLY);
     if (file < 0) {
-        refuse(path, "cannot open");
+        output_refuse("%s: cannot open", path);
     }
     Elf *elf = open_elf(path, file);
     Elf_Scn *section = NULL;
@@ -149,10 +144,10 @@ void symbols_load(const char *path, program_size_t *size)
     elf_end(elf);
     close(file);
     if (size->code_bytes == 0) {
-        refuse(path, "no program in it");
+        output_refuse("%s: no program in it", path);
     }
     if (size->cycles_per_us == 0 || size->cycles_per_us > UNO_MHZ) {
-        refuse(path, "its symbol cpu_hz, the processor's clock, is not between 1 and 16 MHz");
+        output_refuse("%s: its symbol cpu_hz, the processor's clock, is not between 1 and 16 MHz", path);
     }
     sort(&functions);
     sort(&variables);

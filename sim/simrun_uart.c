@@ -1,20 +1,25 @@
 /*
- * The line to the PC: what the firmware sends goes to --out and is cut into lines; the commands of --rate and the like
- * and of --cmd are typed, one byte per byte time. Bytes, not bits: the PC always follows the MCU's baud rate.
+ * What the firmware sends goes to --out and is cut into lines; the commands of --rate and the like and of --cmd are
+ * typed, one byte per byte time. Bytes, not bits: the PC always follows the MCU's baud rate.
  */
+#include "simrun_uart.h"
+
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "sim_io.h"
-#include "simrun.h"
+#include "simrun_events.h"
+#include "simrun_failure.h"
+#include "simrun_frames.h"
+#include "simrun_mcu.h"
+#include "simrun_output.h"
+#include "simrun_pty.h"
+#include "simrun_transmitter.h"
+#include "simrun_vcd.h"
 
 enum {
-    REG_UCSR0A = 0xC0,
     REG_UBRR0L = 0xC4,
-    REG_UBRR0H = 0xC5,
-    BIT_U2X = 0x02,
-    BITS_PER_BYTE = 10, /* 8N1; simavr counts eleven */
     LINE_MAX_LENGTH = 255,
     ROW_FIELDS = 10,
     UNANSWERED_MAX = 60, /* bytes typed without a reply: the firmware's ring holds 63 */
@@ -23,18 +28,18 @@ enum {
     RX_HOLDS = 3 /* two bytes and the one on the line; simavr's FIFO has 64 */
 };
 
-#define STALL_MAX_CYCLES (1000000ull * CYCLES_PER_MS)
-
 static avr_uart_t *uart;
 static avr_irq_t *uart_input;
 static FILE *out_file;
+static const uart_options_t *options;
+static void (*take_row)(const row_t *row);
 static uint64_t last_tx;
 static uint64_t byte_count;
 static char line[LINE_MAX_LENGTH + 1];
 static size_t line_length;
 static bool banner_seen, header_seen;
 
-static size_t next_typed; /* line of options.typed */
+static size_t next_typed; /* line of options->typed */
 static size_t next_character;
 static size_t unanswered; /* bytes typed since the last reply */
 static bool waits_for_reply, waits_for_baud;
@@ -43,7 +48,6 @@ static uint64_t next_byte_at = NEVER;
 static uint64_t line_free_at; /* end of the last byte of a frame */
 static uint32_t rx_overruns;
 static bool flooded;
-static uint64_t stalled_until;
 static enum { SPOILT_NOTHING, SPOILT_STOP, SPOILT_LOST } spoilt; /* fault of the next byte received */
 
 /* A row of csv mode: ten whole numbers; t_us, x_lsb, y_lsb, z_lsb first and flags last. */
@@ -73,7 +77,7 @@ static void on_reply(void)
     if (waits_for_reply) {
         reply_deadline = mcu->cycle + (uint64_t)AFTER_REPLY_MS * CYCLES_PER_MS;
         next_byte_at = reply_deadline;
-        machine_reschedule();
+        events_reschedule();
     }
 }
 
@@ -81,19 +85,19 @@ static void begin_typing(void)
 {
     banner_seen = true;
     next_byte_at = mcu->cycle;
-    machine_reschedule();
+    events_reschedule();
 }
 
 /* The firmware names the setting it refuses; if an option requested it, the run ends. */
 static void on_refusal(const char *setting)
 {
-    for (size_t i = 0; i < options.typed_count; i++) {
-        const char *text = options.typed[i].text;
+    for (size_t i = 0; i < options->typed_count; i++) {
+        const char *text = options->typed[i].text;
         size_t length = strcspn(text, " ");
-        if (options.typed[i].setting && strncmp(setting, text, length) == 0 && setting[length] == ' ') {
+        if (options->typed[i].setting && strncmp(setting, text, length) == 0 && setting[length] == ' ') {
             static char reason[LINE_MAX_LENGTH + 64];
             snprintf(reason, sizeof reason, "--%s: the firmware refused it: %s", text, setting);
-            machine_fail(EXIT_INPUT, reason);
+            failure_set(EXIT_INPUT, reason);
         }
     }
 }
@@ -123,25 +127,9 @@ static void on_line(void)
     } else if (strncmp(line, "t_us,", 5) == 0) {
         header_seen = true;
     } else if (isdigit((unsigned char)line[0]) && parse_row(&row)) {
-        rows_take(&row);
-        flow_on_row(&row);
-        faults_on_row(&row);
-        verdict_on_row(&row);
+        take_row(&row);
     }
     line_length = 0;
-}
-
-static uint64_t byte_cycles(void)
-{
-    unsigned divider = (mcu->data[REG_UBRR0L] | (unsigned)mcu->data[REG_UBRR0H] << 8) + 1u;
-    unsigned oversampling = (mcu->data[REG_UCSR0A] & BIT_U2X) ? 8 : 16;
-    return (uint64_t)divider * oversampling * BITS_PER_BYTE;
-}
-
-uint64_t uart_frame_cycles(void)
-{
-    uint64_t held = stalled_until > mcu->cycle ? stalled_until - mcu->cycle : 0;
-    return byte_cycles() + (held < STALL_MAX_CYCLES ? held : STALL_MAX_CYCLES);
 }
 
 /* The next frame may have been waiting for this record from the board. */
@@ -149,7 +137,7 @@ static void on_frame_byte(uint8_t byte)
 {
     if (frames_take(byte)) {
         next_byte_at = line_free_at > mcu->cycle ? line_free_at : mcu->cycle;
-        machine_reschedule();
+        events_reschedule();
     }
 }
 
@@ -159,10 +147,10 @@ static void on_output(uint8_t byte)
     byte_count++;
     last_tx = mcu->cycle;
     vcd_change(VCD_TX, byte);
-    if (options.pty) {
+    if (pty_is_open()) {
         pty_send(byte);
     }
-    if (options.frames != NULL) {
+    if (frames_wanted()) {
         on_frame_byte(byte);
         return;
     }
@@ -179,16 +167,18 @@ static void on_baud(avr_t *avr, avr_io_addr_t address, uint8_t value, void *para
     (void)address;
     (void)value;
     (void)param;
-    uart->cycles_per_byte = byte_cycles(); /* for received bytes */
+    uart->cycles_per_byte = transmitter_byte_cycles(); /* for received bytes */
     if (waits_for_baud) {
         waits_for_baud = false;
         on_reply();
     }
 }
 
-void uart_start(void)
+void uart_start(const uart_options_t *wanted, void (*on_row)(const row_t *row))
 {
-    out_file = output_open(options.out);
+    options = wanted;
+    take_row = on_row;
+    out_file = output_open(wanted->out);
     uint32_t no_console = 0;
     avr_ioctl(mcu, AVR_IOCTL_UART_SET_FLAGS('0'), &no_console);
     for (avr_io_t *io = mcu->io_port; io != NULL; io = io->next) {
@@ -199,16 +189,16 @@ void uart_start(void)
     uart_input = avr_io_getirq(mcu, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT);
     transmitter_start(uart, on_output);
     avr_register_io_write(mcu, REG_UBRR0L, on_baud, NULL);
-    if (options.pty) {
-        pty_open();
-        next_byte_at = 0;
-    }
-    frames_start();
+}
+
+void uart_type_at_once(void)
+{
+    next_byte_at = 0;
 }
 
 void uart_finish(void)
 {
-    output_close(out_file, options.out);
+    output_close(out_file, options->out);
 }
 
 void uart_reset(void)
@@ -241,7 +231,7 @@ static void receive(uint8_t byte)
 
 static void end_typed_line(void)
 {
-    const char *text = options.typed[next_typed].text;
+    const char *text = options->typed[next_typed].text;
     next_typed++;
     next_character = 0;
     waits_for_baud = strncmp(text, "baud ", 5) == 0; /* until the MCU has set its divider */
@@ -255,10 +245,10 @@ static void end_typed_line(void)
 static bool next_typed_byte(uint8_t *byte)
 {
     next_byte_at = NEVER;
-    if (next_typed == options.typed_count) {
+    if (next_typed == options->typed_count) {
         return false;
     }
-    const typed_line_t *typed = &options.typed[next_typed];
+    const typed_line_t *typed = &options->typed[next_typed];
     uint64_t due = (uint64_t)(typed->at_ms * CYCLES_PER_MS);
     if (waits_for_reply && mcu->cycle < reply_deadline) {
         next_byte_at = reply_deadline;
@@ -273,7 +263,7 @@ static bool next_typed_byte(uint8_t *byte)
         next_byte_at = due;
         return false;
     }
-    next_byte_at = mcu->cycle + byte_cycles();
+    next_byte_at = mcu->cycle + transmitter_byte_cycles();
     char character = typed->text[next_character++];
     *byte = character == '\0' ? '\n' : (uint8_t)character;
     unanswered++;
@@ -292,19 +282,14 @@ void uart_flood(bool on)
 {
     flooded = on;
     next_byte_at = mcu->cycle;
-    machine_reschedule();
-}
-
-void uart_stall(uint64_t until)
-{
-    stalled_until = until;
+    events_reschedule();
 }
 
 static void step_frames(void)
 {
     uint8_t byte;
     if (frames_next_byte(&byte, &next_byte_at)) {
-        line_free_at = mcu->cycle + byte_cycles();
+        line_free_at = mcu->cycle + transmitter_byte_cycles();
         next_byte_at = line_free_at;
         receive(byte);
     }
@@ -314,17 +299,17 @@ void uart_step(void)
 {
     uint8_t byte;
     if (flooded) {
-        next_byte_at = mcu->cycle + byte_cycles();
-        receive((uint8_t)machine_random());
+        next_byte_at = mcu->cycle + transmitter_byte_cycles();
+        receive((uint8_t)mcu_random());
         return;
     }
-    if (options.frames != NULL) {
+    if (frames_wanted()) {
         step_frames();
         return;
     }
     bool any = banner_seen && next_typed_byte(&byte);
-    if (!any && options.pty) {
-        next_byte_at = mcu->cycle + byte_cycles();
+    if (!any && pty_is_open()) {
+        next_byte_at = mcu->cycle + transmitter_byte_cycles();
         any = pty_receive(&byte);
         pty_pace();
     }
@@ -338,12 +323,9 @@ uint64_t uart_last_tx(void)
     return last_tx;
 }
 
-uint64_t uart_bytes(void)
+void uart_print(FILE *json)
 {
-    return byte_count;
-}
-
-uint32_t uart_rx_overruns(void)
-{
-    return rx_overruns;
+    fprintf(json, "  \"uart_baud\": %.0f,\n", 1e6 * CYCLES_PER_US * 10.0 / (double)transmitter_frame_cycles());
+    fprintf(json, "  \"uart_bytes\": %llu,\n  \"uart_rx_overruns\": %u,\n", (unsigned long long)byte_count,
+            (unsigned)rx_overruns);
 }

@@ -1,10 +1,11 @@
 /*
- * Waveforms for GTKWave. Written here and not by simavr, whose writer loses its timer at every reset of the MCU. A
+ * Written here and not by simavr, whose writer loses its timer at every reset of the MCU. A
  * cycle at 16 MHz is 62.5 ns: 625 units of 100 ps.
  */
-#include <stdlib.h>
+#include "simrun_vcd.h"
 
-#include "simrun.h"
+#include "simrun_mcu.h"
+#include "simrun_output.h"
 
 enum { SIGNAL_MAX = VCD_ISR + 26, UNITS_PER_US = 10000 };
 
@@ -24,6 +25,7 @@ static const char *const vectors[26] = { "RESET",        "INT0",         "INT1",
                                          "SPM_READY" };
 
 static FILE *file;
+static const char *file_path;
 static uint64_t last_time = NEVER;
 
 static void write_value(unsigned signal, uint32_t value)
@@ -53,12 +55,13 @@ void vcd_change(unsigned signal, uint32_t value)
     write_value(signal, value);
 }
 
-void vcd_start(void)
+void vcd_start(const char *path)
 {
-    if (options.vcd == NULL) {
+    if (path == NULL) {
         return;
     }
-    file = output_open(options.vcd);
+    file_path = path;
+    file = output_open(path);
     fputs("$timescale 100ps $end\n$scope module uno $end\n", file);
     for (unsigned i = 0; i < SIGNAL_MAX; i++) {
         if (i < VCD_ISR) {
@@ -77,5 +80,5 @@ void vcd_start(void)
 
 void vcd_finish(void)
 {
-    output_close(file, options.vcd);
+    output_close(file, file_path);
 }

@@ -1,8 +1,9 @@
-/* --wires: the pull-ups and the capacitance of SDA and SCL, which make them rise late (twi_wires.h). */
-#include <math.h>
-#include <stdlib.h>
+/* The pull-ups and the capacitance of SDA and SCL, which make them rise late (twi_wires.h). */
+#include "simrun_wires.h"
 
-#include "simrun.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 /* an RC rising from 0: to 0.7 VCC, where an input is sure to see a one, and from 0.3 to 0.7 VCC (UM10204) */
 #define TO_ONE (-log(0.3))
@@ -40,10 +41,10 @@ bool wires_take(const char *argument)
     return rest != NULL && *rest == '\0';
 }
 
-void wires_start(void)
+void wires_start(twi_peripheral_t *twi)
 {
-    twi.rise_scl_ns = scl_rc_ns * TO_ONE;
-    twi.rise_sda_ns = sda_rc_ns * TO_ONE;
+    twi->rise_scl_ns = scl_rc_ns * TO_ONE;
+    twi->rise_sda_ns = sda_rc_ns * TO_ONE;
     if (scl_rc_ns > 0.0 || sda_rc_ns > 0.0) {
         fprintf(stderr,
                 "simrun: wires: SCL rises in %.0f ns, SDA in %.0f; I2C allows 300 at 400 kHz, 1000 at 100 kHz\n",
