@@ -42,7 +42,7 @@ check-includes:
 	@python3 checks/check_includes.py
 
 # the PC's side of the HAL and the simulator, for their circles
-CHECK_HOST_OBJ := $(patsubst %.c,$(CHK)/host/%.o,$(wildcard hal/host/*.c sim/*.c))
+CHECK_HOST_OBJ := $(patsubst %.c,$(CHK)/host/%.o,$(wildcard hal/host/*.c sim/*/*.c))
 $(CHK)/host/sim/%.o: sim/%.c Makefile checks/check.mk
 	@mkdir -p $(@D)
 	@$(SIM_CC) -g -MMD -MP -c $< -o $@

@@ -60,7 +60,8 @@ def unity():
 def host_flags(path):
     # what the library needs of the system: strict C11 there; simrun uses more of it
     standard = "gnu11" if path.parts[0] == "sim" else "c11"
-    own = ["hal/host", "sim", "host_tests", "host_tests/bitexact", "nav/tests", str(path.parent)]
+    own = ["hal/host", *(f"sim/{part}" for part in ("model", "run", "faults", "judge")), "host_tests", "host_tests/bitexact", "nav/tests",
+           str(path.parent)]
     simavr = shlex.split(run("pkg-config", "--cflags", "simavr").replace("-I", "-isystem "))
     return [f"-std={standard}", "-D_POSIX_C_SOURCE=200809L", "-DHANG_TEST=1", "-DUNITY_INCLUDE_DOUBLE", *(f"-I{d}" for d in PORTABLE + own),
             "-isystem", unity(), *simavr, "-isystem", "/usr/include/simavr"]

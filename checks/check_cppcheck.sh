@@ -7,7 +7,7 @@ command -v cppcheck > /dev/null || { echo 'check_cppcheck.sh: cppcheck is not in
 cppcheck --platform=avr8 --std=c11 --enable=warning,style,performance,portability --error-exitcode=1 -q $includes -Ihal/avr ${*:-lib firmware nav/lib nav/image hal/avr}
 [ $# -gt 0 ] ||
     # shellcheck disable=SC2086
-    cppcheck --platform=unix64 --std=c11 --enable=warning,performance,portability --error-exitcode=1 -q $includes -Ihal/host -Isim -Ihost_tests -Inav/tests \
+    cppcheck --platform=unix64 --std=c11 --enable=warning,performance,portability --error-exitcode=1 -q $includes -Ihal/host -Isim/model -Isim/judge -Ihost_tests -Inav/tests \
         hal/host sim nav/tests/*.c host_tests/adxl345 host_tests/filters host_tests/firmware host_tests/hal host_tests/sim host_tests/support \
         host_tests/system host_tests/tilt host_tests/tools
 echo 'cppcheck: clean'

@@ -26,7 +26,7 @@ FILTERS, TILT, ADXL = headers("lib/filters/src"), headers("lib/tilt/src"), heade
 # what of lib/filters is for its laws, tests and proof alone
 INSIDE = {"tracker.h", "kalman.h", "wide.h", "mixture.h", "fx_avr.h"} | {path.name for path in pathlib.Path("lib/filters/src").glob("*_table.h")}
 NAV, NAV_IMAGE = headers("nav/lib"), headers("nav/image")
-SIM = headers("sim")
+SIM = headers("sim/model", "sim/run", "sim/faults", "sim/judge")
 MODEL = {"adxl345_model.h", "adxl345_variants.h", "feed.h", "stream.h"}
 # the rooms of the firmware, and which others each may use: nothing points up. A header is included with its room.
 ROOMS = {

@@ -4,9 +4,10 @@ H := $(B)/host
 HOST_CC    := gcc
 HOST_CXX   := g++
 SANITIZE   := -fsanitize=address,undefined -fno-sanitize-recover=all
-HOST_INC   := $(INCLUDES) -Ihal/host -Isim -Ihost_tests -Inav/tests -isystem $(UNITY_DIR)
+SIM_INC    := -Isim/model -Isim/run -Isim/faults -Isim/judge
+HOST_INC   := $(INCLUDES) -Ihal/host $(SIM_INC) -Ihost_tests -Inav/tests -isystem $(UNITY_DIR)
 HOST_FLAGS := -std=c11 -O1 -g -D_POSIX_C_SOURCE=200809L -DHANG_TEST=1 -DSUPERVISOR=1 -DUNITY_INCLUDE_DOUBLE $(HOST_INC)
-MODEL_SRC  := sim/adxl345_model.c sim/adxl345_variants.c sim/feed.c sim/stream.c
+MODEL_SRC  := sim/model/adxl345_model.c sim/model/adxl345_variants.c sim/model/feed.c sim/model/stream.c
 HOST_SRC   := $(filter-out firmware/app/main.c,$(APP_SRC)) $(LIB_SRC) $(wildcard hal/host/*.c) $(MODEL_SRC)
 # those of them that know the laws, on the chip too
 LAW_SUPPORT := host_tests/support/random32.c $(wildcard host_tests/support/filter*.c host_tests/support/law_*.c)

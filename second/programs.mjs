@@ -15,7 +15,7 @@ function output(program, args) {
   }
 }
 
-// A row that is measured again, because the sensor runs faster than the stream, has noise of its own: as feed_vary in sim/feed.h
+// A row that is measured again, because the sensor runs faster than the stream, has noise of its own: as feed_vary in sim/model/feed.h
 function varied(rows, row, repeats) {
   const atRail = (lsb) => [512, 1024, 2048, 4096].includes(lsb < 0 ? -lsb : lsb + 1);
   const off = (all) => all.every((lsb) => lsb === -1);

@@ -49,10 +49,10 @@ $(eval $(call PLANT_FIRMWARE,bytes_swapped,lib/adxl345/src/adxl345_integrity.c,s
 $(eval $(call PLANT_FIRMWARE,ten_bits,lib/adxl345/src/adxl345_table.c,s/ADXL345_FORMAT_FULL_RES | force/force/))
 $(eval $(call PLANT_FIRMWARE,guard_of_2_75_sigma,lib/filters/src/adaptive.c,s/\(4096.\) 1152/\1 1056/;s/= 768;/= 704;/))
 $(eval $(call PLANT_FIRMWARE,clock_a_thousandth_slow,hal/avr/hal_time.c,s/hal_tick.us += HAL_TICK_US;/hal_tick.us += HAL_TICK_US - 8;/))
-$(eval $(call PLANT_SIMRUN,bytes_alike,sim/adxl345_model.c,s/2 \* axis\] = (uint8_t)word;/2 * axis] = (uint8_t)(word >> 8);/))
-$(eval $(call PLANT_SIMRUN,fifo_of_30,sim/adxl345_model.c,s/ADXL345_MODEL_FIFO_DEPTH/(ADXL345_MODEL_FIFO_DEPTH - 3)/))
-$(eval $(call PLANT_SIMRUN,never_pops,sim/adxl345_model.c,s/(uint8_t)(m->fifo_count - 1)/m->fifo_count/))
-$(eval $(call PLANT_SIMRUN,rate_of_3100_hz,sim/adxl345_model.c,s/return 3200\.0/return 3100.0/))
+$(eval $(call PLANT_SIMRUN,bytes_alike,sim/model/adxl345_model.c,s/2 \* axis\] = (uint8_t)word;/2 * axis] = (uint8_t)(word >> 8);/))
+$(eval $(call PLANT_SIMRUN,fifo_of_30,sim/model/adxl345_model.c,s/ADXL345_MODEL_FIFO_DEPTH/(ADXL345_MODEL_FIFO_DEPTH - 3)/))
+$(eval $(call PLANT_SIMRUN,never_pops,sim/model/adxl345_model.c,s/(uint8_t)(m->fifo_count - 1)/m->fifo_count/))
+$(eval $(call PLANT_SIMRUN,rate_of_3100_hz,sim/model/adxl345_model.c,s/return 3200\.0/return 3100.0/))
 
 second_built: $(SECOND_IMAGES) $(S)/simrun $(H)/native_replay $(H)/pipeline_replay $(SECOND_PLANTED)
 

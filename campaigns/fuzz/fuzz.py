@@ -40,7 +40,7 @@ def plants():
 
 def source_text():
     """The product's sources and the stream reader's, which has a fuzz target too."""
-    return {**anchors.product_text(), "sim/stream.c": pathlib.Path("sim/stream.c").read_text(encoding="utf-8")}
+    return {**anchors.product_text(), "sim/model/stream.c": pathlib.Path("sim/model/stream.c").read_text(encoding="utf-8")}
 
 
 def plant(name, path):

@@ -1,4 +1,4 @@
-/* The sensors that resemble an ADXL345, each against figures of its data sheet (sources: sim/adxl345_variants.c). */
+/* The sensors that resemble an ADXL345, each against figures of its data sheet (named in adxl345_variants.c). */
 #include <stddef.h>
 
 #include "adxl345_variants.h"

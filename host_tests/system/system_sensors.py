@@ -5,7 +5,7 @@ import re
 
 from system_support import FW, OUT, SIMRUN, run, simrun, test
 
-# of the same identity: g per LSB and noise in mg rms at 100 Hz, as the data sheets have them (sim/adxl345_variants.c)
+# of the same identity: g per LSB and noise in mg rms at 100 Hz, as the data sheets have them (sim/model/adxl345_variants.c)
 OTHER_SCALES = {"adxl375": (0.049, 35), "adxl314": (0.04883, 35), "adxl312": (0.0029, 3)}
 # the firmware's own: full resolution of an ADXL345
 BELIEVED_G = 1 / 256

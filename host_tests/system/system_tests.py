@@ -154,7 +154,7 @@ def memory_budgets():
         within(f"{image}: flash", stats["flash_bytes"], budget["flash_bytes"])
 
 
-CHUNK_CYCLES = 24  # of sim/simrun_machine.c: what the processor does between two steps of the simulator
+CHUNK_CYCLES = 24  # of sim/run/simrun_machine.c: what the processor does between two steps of the simulator
 
 
 def steps_for_work(name, stream, seconds, *options):

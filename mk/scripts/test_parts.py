@@ -13,7 +13,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
 # archive: its folder; hal's headers are the contracts, its sources the host's side
 ARCHIVES = {"filters": "lib/filters/src", "tilt": "lib/tilt/src", "adxl345": "lib/adxl345/src", "hal": "hal/host"}
 ROOMS = "firmware"  # an archive of all its folders
-SINGLE = ("host_tests/reference", "host_tests/support", "nav/tests", "sim")
+SINGLE = ("host_tests/reference", "host_tests/support", "nav/tests", "sim/model", "sim/judge")
 FOLDERS = [*ARCHIVES.values(), f"{ROOMS}/*", "hal", *SINGLE]
 MODEL = {"adxl345_model", "adxl345_variants", "stream"}
 # nav/lib is linked as variants with a table of functions each (nav/nav_lib.mk); test_nav_link has a rule of its own

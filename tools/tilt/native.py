@@ -14,7 +14,7 @@ from tilt.errors import TiltError
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIBRARY = pathlib.Path("build/host/libtilt.so")
-SOURCES = ("firmware/*/*.[ch]", "lib/*/src/*.[ch]", "hal/*.h", "hal/host/*.[ch]", "sim/*.[ch]", "host_tests/tools/libtilt/*.[ch]",
+SOURCES = ("firmware/*/*.[ch]", "lib/*/src/*.[ch]", "hal/*.h", "hal/host/*.[ch]", "sim/*/*.[ch]", "host_tests/tools/libtilt/*.[ch]",
            "Makefile", "tools/tilt/tilt.mk")
 RATES_DHZ = tuple(125 << power for power in range(7))  # of the firmware
 RANGES_G = (2, 4, 8, 16)

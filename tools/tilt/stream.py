@@ -1,4 +1,4 @@
-"""Reads streams, the CSV files of docs/protocol.md, into numpy arrays, and writes them. Rules and error messages are those of sim/stream.c,
+"""Reads streams, the CSV files of docs/protocol.md, into numpy arrays, and writes them. Rules and error messages are those of sim/model/stream.c,
 the simulator's reader.
 
 An hour at 100 Hz is read in a fraction of a second: all lines at once if each is plain, digits and commas alone. A file with anything else

@@ -150,7 +150,7 @@ def all_pairs_are_planned_and_the_same_for_the_same_seed():
 
 @test
 def every_kind_that_simrun_has_is_in_the_campaign():
-    table = pathlib.Path("sim/simrun_faults_parse.c").read_text(encoding="utf-8")
+    table = pathlib.Path("sim/faults/simrun_faults_parse.c").read_text(encoding="utf-8")
     known = set(re.findall(r'\{ (?:\.name = )?"(\w+)"', table))
     used = {what.rpartition(" ")[2].partition(":")[0] for kind in faults_kinds.KINDS + faults_kinds.TYPED for what in kind.what}
     assert len(known) > 25 and known - used == {"plug", "poke"} and used <= known, known ^ used

@@ -1,7 +1,7 @@
 /*
  * A virtual ADXL345 at register level, in pure C: no simulator types, no clock of its own. Its owner calls
  * adxl345_model_tick once per output-data-rate period and passes the bus events in; the model answers with ACKs, bytes
- * and the levels of INT1 and INT2. Used under simavr (sim/simrun_sensor.c) and natively (hal/host). Source: ADXL345
+ * and the levels of INT1 and INT2. Used under simavr (sim/run/simrun_sensor.c) and natively (hal/host). Source: ADXL345
  * data sheet Rev. E; facts with pages in docs/wiring.md.
  */
 #ifndef ADXL345_MODEL_H
