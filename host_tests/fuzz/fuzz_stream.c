@@ -1,6 +1,7 @@
 /*
  * Any bytes as a recording (sim/model/stream.c). A refusal names file and line; what is accepted is within the
- * documented ranges and says the same when it is written as a stream again and read back; and the feed gives the rows it should.
+ * documented ranges and says the same when it is written as a stream again and read back; and the feed gives the rows
+ * it should.
  */
 #define _GNU_SOURCE
 #include <stdio.h>
