@@ -88,8 +88,8 @@ def each_board_is_written_at_the_rate_of_its_boot_loader_with_what_fits():
     done, typed = program("make", "flash", "BOARD=nano-old", f"PORT={AT}", status=0)
     assert done.returncode == 0 and f" -P {AT} -b 57600 -D -U flash:w:build/promini/firmware.hex:i" in typed, done
     small = " ".join(images.HOLDS["small"])
-    wanted = f"BOARD=nano-old has 30720 bytes of flash: the image holds the set small ({small}); choose others with FILTERS=\n"
-    assert wanted in done.stdout, done.stdout
+    notice = f"BOARD=nano-old has 30720 bytes of flash: the image holds the set small ({small}); choose others with FILTERS=\n"
+    assert notice in done.stdout, done.stdout
     done, typed = program("make", "flash", "BOARD=mega", f"PORT={AT}")
     refused = "BOARD: no board 'mega': choose from uno nano nano-old promini promini-8mhz"
     assert done.returncode != 0 and refused in done.stderr and not typed, done

@@ -112,7 +112,7 @@ def why(answer):
     if not answer["enough"]:
         said.append(f"{answer['rows_judged']} rows are too few to distinguish filters.")
     elif answer["same_as_best"]:
-        said.append(f"Within the noise of this recording it equals {', '.join(answer['same_as_best'])}: keep the one you know.")
+        said.append(f"Within the noise of this recording it is no better than {', '.join(answer['same_as_best'])}: keep the one you know.")
     others = [row for row in answer["filters"] if row["told_from_best"]]
     if others:
         listed = ", ".join(f"{row['filter']} {row['worse_percent']:.0f} %" for row in others)
