@@ -1,16 +1,15 @@
 """docs/results/synthesised-filters.md and its pictures, from the closed forms of tools/design and from programs that run the shipped filters
 (build/host/roll_replay, build/host/test_adaptive_roll). Fails with the name of each number that does not come out again."""
-import argparse
 import math
 import pathlib
 import re
-import subprocess
 import sys
 from fractions import Fraction
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 try:
     import numpy as np
+    import pictures
     import synthesised_pictures
     from design.configuration import kalman_for, steady_kalman
     from design.response import pole_radius, step
@@ -18,8 +17,7 @@ try:
     from design.synthesis import by_formula, error_by_formula
 except ImportError as missing:
     sys.exit(f"synthesised: {missing.name} is missing: run make synthesised, which installs it")
-from page import Fault, run_as_program
-from results import FOLDER, PICTURES, Results, table
+from results import FOLDER, Fault, Results, output_of, run_as_program, table
 
 ABOUT = """
 Properties of the papers' filter (2, 1, 0): x_e = 2 x1 - x2 - a1 (x1 - 2 x2 + x3), x = x_e + b0 u, from closed forms; and what `adaptive` makes of the
@@ -48,16 +46,6 @@ SHARES = (0.0, 0.05, 0.15)
 # paper 000's roll: 15 s at 10 Hz, R = 0.6 deg^2, 16 LSB per degree
 SAMPLES, RATE_DHZ, R_DEG2, LSB_PER_DEGREE = 151, 100, 0.6, 16
 SHIFT_SIGMA, SHIFT_RUNS, SEED = 20.0, 2000, 2024
-
-
-def output_of(command, given=None):
-    try:
-        done = subprocess.run([str(c) for c in command], input=given, capture_output=True, text=True, timeout=600)
-    except FileNotFoundError as missing:
-        raise Fault(f"{command[0]} is not built: make synthesised builds it") from missing
-    if done.returncode != 0:
-        raise Fault(f"{command[0]}: status {done.returncode}: {(done.stderr or done.stdout).strip()[-200:]}")
-    return done.stdout
 
 
 # --- closed forms -----------------------------------------------------------------------------------------------------
@@ -216,17 +204,10 @@ def pictures_of(grid):
                                          (grid, GATE_CHOSEN))
 
 
-def main(arguments=None):
-    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args(arguments)
+def main():
     grid = curve()
-    pictures = pictures_of(grid)
-    shown = [line for picture in pictures for line in (f"![{picture.title}]({PICTURES.name}/{picture.path.name})", "")]
-    faults = PAGE.write(shown + closed_tables() + adaptive_tables(grid))
-    drawn = synthesised_pictures.draw_stale(pictures)
-    for fault in faults:
-        print(f"synthesised: {PAGE.document}: {fault}", file=sys.stderr)
-    print(f"synthesised: {PAGE.document} written, {drawn} of {len(pictures)} pictures drawn, {len(faults)} findings")
-    return 1 if faults else 0
+    shown = pictures_of(grid)
+    return PAGE.publish(pictures.on_page(shown) + closed_tables() + adaptive_tables(grid), shown)
 
 
 if __name__ == "__main__":
