@@ -8,7 +8,7 @@ try:
     import structure_picture
     from variable_structure.experiments import EXPERIMENTS
     from variable_structure.intervals import Interval
-    from variable_structure.program import DEFAULT_RUNS, DEFAULT_SEED
+    from papers_program import DEFAULT_RUNS, DEFAULT_SEED
 except ImportError as missing:
     sys.exit(f"structure: {missing.name} is missing: run make structure, which installs it")
 from papers_page import shown
@@ -44,7 +44,7 @@ def measured(experiments=tuple(EXPERIMENTS)):
     """{(experiment, rule, metric): number}"""
     found = {}
     for name in experiments:
-        for rule, metric, value, _ in EXPERIMENTS[name][1](DEFAULT_RUNS, DEFAULT_SEED, lambda part: None):
+        for rule, metric, value, _ in EXPERIMENTS[name][1](DEFAULT_RUNS, DEFAULT_SEED):
             found[name, rule, metric] = value.value if isinstance(value, Interval) else value
     return found
 
