@@ -84,10 +84,10 @@ def solved(parts, residual):
 
 
 def errors(parts, residual, worlds):
-    """Mean square errors in these worlds, ... x turns x columns; parts of one filter or of as many as there are worlds."""
+    """Mean square errors in a world for each filter and turn, filters x turns x columns."""
     r, amplitude, off = (part[..., None] for part in worlds)
-    return (r * parts.of_error(residual)[..., None, :] + amplitude * amplitude * parts.turn + 2.0 * amplitude * off * parts.cross
-            + off * off * parts.start[..., None, :])
+    return (r * parts.of_error(residual)[:, None] + amplitude * amplitude * parts.turn + 2.0 * amplitude * off * parts.cross
+            + off * off * parts.start[:, None])
 
 
 def rivals_of(name):
@@ -98,15 +98,16 @@ def rivals_of(name):
     return [steady_gains(space)[0] for space in spaces], parts_of(filters)
 
 
-def nearest(worlds, residual, turns, rivals):
-    """(largest relative difference from the Kalman row, its row, places of gains, turn and rival), the first of the nearest."""
-    _, parts = rivals
-    values = np.stack([errors(Parts(*(getattr(parts, field)[i] for field in ("noise", "residual", "turn", "cross", "start"))), residual, worlds)
-                       for i in range(len(parts.noise))], axis=2)  # gains x turns x rivals x columns
+def nearest(worlds, places, residual, parts):
+    """(largest relative difference from the Kalman row, its row, number of the place, of the rival), the first of the nearest. places: (gains, turn)
+    of the worlds that are possible."""
+    turns = places[:, 1]
+    r, amplitude, start = (part[places[:, 0], turns][:, None, None] for part in worlds)
+    turn, cross = (np.moveaxis(part[:, turns], 0, 1) for part in (parts.turn, parts.cross))  # places x rivals x columns
+    values = r * parts.of_error(residual) + amplitude * amplitude * turn + 2.0 * amplitude * start * cross + start * start * parts.start
     off = np.abs(values / KALMAN_ROW - 1.0).max(axis=-1)
-    off[:, [turn not in turns for turn in TURNS]] = np.inf
-    place = np.unravel_index(np.argmin(np.where(np.isnan(off), np.inf, off)), off.shape)
-    return off[place], values[place], place
+    place = np.unravel_index(np.argmin(off), off.shape)
+    return off[place], values[place], *place
 
 
 def table1_search(_options):
@@ -116,12 +117,14 @@ def table1_search(_options):
     rivals = {name: rivals_of(name) for name in MODELS}
     for experiment, (models, residual, turns, roll_deg, start_deg) in TRIALS.items():
         worlds = solved(ours, residual)
-        worlds = np.where((worlds[1] > roll_deg) | (worlds[2] > start_deg), np.nan, worlds)
-        found = {name: nearest(worlds, residual, turns, rivals[name]) for name in models}
-        name = min(found, key=lambda name: found[name][0])
-        off, row, (gains, turn, rival) = found[name]
-        if not math.isfinite(off):
+        possible = (worlds[1] <= roll_deg) & (worlds[2] <= start_deg) & np.isin(TURNS, turns)
+        places = np.argwhere(possible)
+        if not len(places):
             raise library.Refused(f"{experiment}: no world gives the synthesised filter its row")
+        found = {name: nearest(worlds, places, residual, rivals[name][1]) for name in models}
+        name = min(found, key=lambda name: found[name][0])
+        off, row, place, rival = found[name]
+        gains, turn = places[place]
         r, amplitude, start = worlds[:, gains, turn]
         for metric, value in (*((f"mse_{column}", value) for column, value in zip(COLUMNS, row)), ("largest_difference", off),
                               ("amplitude", amplitude), ("r", r), ("start_error", start), ("a1", pairs[gains][0]), ("b0", pairs[gains][1]),
