@@ -211,7 +211,8 @@ def table(rows):
         ratios = [f"{yardstick[k] / ours[k]:.1f}" if yardstick else "" for k in ("median", "worst")]
         keys = ("min", "median", "worst", "where", "worst_small", "flash", "shared", "ram", "stack")
         lines.append([f"`{name}`", *(row.get(key) for key in keys), *ratios])
-    return markdown(["name", "min", *COLUMNS[:2], "worst seen in", *COLUMNS[2:4], "of it shared", *COLUMNS[4:], "float / ours, median", "worst"], lines)
+    head = ["name", "min", *COLUMNS[:2], "worst seen in", *COLUMNS[2:4], "of it shared", *COLUMNS[4:], "float / ours, median", "worst"]
+    return markdown(head, lines)
 
 
 def read_table(text):

@@ -45,7 +45,7 @@ FIELDS = {
 
 
 def measure():
-    """(the program's rows {kind: [dict]}, whether every estimate stayed within its bounds); None in place of the rows when there are no recordings."""
+    """(the program's rows {kind: [dict]}, or None when there are no recordings; whether every estimate stayed within its bounds)"""
     done = subprocess.run([PROGRAM], stdout=subprocess.PIPE, text=True, timeout=600)
     if done.returncode == ABSENT:
         return None, True

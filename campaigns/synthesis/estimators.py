@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import library
+from . import batch
 
 
 # --- the synthesised filter -------------------------------------------------------------------------------------------
@@ -95,11 +95,11 @@ def white_jerk_as_shipped(scale):
 
 
 def steady_gains(space):
-    return library.gains(space.f, space.q, 1.0, 3)
+    return batch.gains(space.f, space.q, 1.0, 3)
 
 
 def with_gains(space, gains, x0=None):
-    return lambda z: library.linear(space.f, np.array(gains, dtype=float), x0, z)
+    return lambda z: batch.linear(space.f, np.array(gains, dtype=float), x0, z)
 
 
 def steady_kalman(space, x0=None):
@@ -108,7 +108,7 @@ def steady_kalman(space, x0=None):
 
 def kalman(space, p0, x0):
     """The Kalman filter from the first sample on: P = diag(p0, ...) (variances of samples, by R) about x0."""
-    return lambda z: library.linear(space.f, library.gains(space.f, space.q, p0, space.order, z.shape[1]), x0, z)
+    return lambda z: batch.linear(space.f, batch.gains(space.f, space.q, p0, space.order, z.shape[1]), x0, z)
 
 
 def fading_memory(order, theta):
@@ -185,7 +185,7 @@ class Shipping:
         """As a filter has it: given, or its default at this rate."""
         if parameter in self.parameters:
             return self.parameters[parameter]
-        return self.r_lsb2() if parameter == "r" else library.default_of(name, self.rate_dhz, parameter)
+        return self.r_lsb2() if parameter == "r" else batch.default_of(name, self.rate_dhz, parameter)
 
     def rounded_variance(self, r):
         """Of what a shipped filter is given when the measurement's variance is r."""
@@ -193,12 +193,12 @@ class Shipping:
 
 
 def shipped(name, shipping):
-    r_lsb2 = min(shipping.r_lsb2(), library.largest_r_lsb2())
+    r_lsb2 = min(shipping.r_lsb2(), batch.largest_r_lsb2())
     parameters = {"r": r_lsb2, **shipping.parameters}
 
     def estimates(z):
         counts = (z - shipping.zero) * shipping.lsb_per_unit
-        found = library.shipped(name, shipping.rate_dhz, parameters, r_lsb2, shipping.reset_at_first, counts)
+        found = batch.shipped(name, shipping.rate_dhz, parameters, r_lsb2, shipping.reset_at_first, counts)
         return found / (65536.0 * shipping.lsb_per_unit) + shipping.zero
     return estimates
 
@@ -214,10 +214,10 @@ def linear_twin(name, shipping):
         return min(limit, of("q") / (shipping.rate_hz ** power * (factor * of("r"))))
 
     if name == "kf":
-        return steady_kalman(white_rate(drive(3, 1.0, library.largest_rate_drive())))
+        return steady_kalman(white_rate(drive(3, 1.0, batch.largest_rate_drive())))
     if name == "lrf":  # (8): one R for both kinds of samples
         pooled = of("clean") + (1.0 - of("clean")) * of("ratio") ** 2
-        return steady_kalman(white_rate(drive(3, pooled, library.largest_rate_drive())))
+        return steady_kalman(white_rate(drive(3, pooled, batch.largest_rate_drive())))
     if name == "kf3":
         return steady_kalman(white_jerk_as_shipped(drive(5, 1.0, 1.0)))
     if name == "synth":
@@ -226,6 +226,6 @@ def linear_twin(name, shipping):
         return synthesised(0.0, 2.0 / 3.0)  # the limit of the exact covariance's schedule
     if name == "synth_plus":  # with a1 = 0 and b2 = 0 it is alpha-beta: alpha = b0, beta = b0 + b1
         if of("k") != 0.0 or of("b2") != 0.0:
-            raise library.Refused("synth_plus: its twin here is alpha-beta, k = 0 and b2 = 0")
+            raise batch.Refused("synth_plus: its twin here is alpha-beta, k = 0 and b2 = 0")
         return with_gains(white_rate(0.0), [of("b0"), of("b0") + of("b1"), 0.0])
     return None

@@ -4,7 +4,7 @@ import math
 import numpy as np
 from variable_structure.intervals import Interval
 
-from . import library
+from . import batch
 from .estimators import (Shipping, end_point, fading_memory, linear_twin, scheduled, shipped, singer, stationary_lag, stationary_noise_gain,
                          steady_kalman, synthesised, white_acceleration, white_jerk, white_rate)
 from .roll import (NORMAL_95, P0_DEG2, PERIOD_S, PROFILES, R_DEG2, SAMPLES, WINDOWS, Noise, exact, mean_of, monte_carlo, runs_of)
@@ -60,7 +60,7 @@ def entries():
     return [in_double("kf2_rate(0.01)", steady_kalman(white_rate(0.01))), in_double("kf2_rate(0.1)", steady_kalman(white_rate(0.1))),
             in_double("synth(-0.3:0.1)", synthesised(-0.3, 0.1)), in_double("synth(0:0.3)", synthesised(0.0, 0.3)),
             as_shipped("synth(-0.3:0.1)", "synth", a1=-0.3, b0=0.1), tuned_kf(0.01), tuned_kf(0.1),
-            *(as_shipped(name, name) for name in library.names())]
+            *(as_shipped(name, name) for name in batch.names())]
 
 
 def all_filters(options):
@@ -106,15 +106,15 @@ def relative_deviation(values, mean, sd):
 
 def noise(options):
     runs, variance = runs_of(options.runs), R_DEG2 * NOISE_LSB_PER_DEGREE * NOISE_LSB_PER_DEGREE + 1.0 / 12.0
-    seeds = [library.run_seed(options.seed, run) for run in range(runs)]
+    seeds = [batch.run_seed(options.seed, run) for run in range(runs)]
     for case, (turn, rate_hz, bad) in CASES.items():
         count = AFTER_S * rate_hz + 1
         truth = NOISE_LSB_PER_DEGREE * PROFILES[turn].truth(count) if turn else np.zeros(count)
-        normal, uniform = library.draws(seeds, count)
+        normal, uniform = batch.draws(seeds, count)
         off = math.sqrt(R_DEG2) * normal + np.where(uniform < bad, 20.0, 0.0)
-        ratios = library.noise_identified(10 * rate_hz, truth + off * NOISE_LSB_PER_DEGREE) / (256.0 * 1.5 * variance)
+        ratios = batch.noise_identified(10 * rate_hz, truth + off * NOISE_LSB_PER_DEGREE) / (256.0 * 1.5 * variance)
         mean, sd = mean_of(ratios)
-        estimate, weight, again = library.noise_expected(10 * rate_hz, truth, variance, bad)
+        estimate, weight, again = batch.noise_expected(10 * rate_hz, truth, variance, bad)
         # R in force is anywhere within an eighth of the estimate: by 1 / 192 above it on average, of a variance of 1 / 192
         yield f"noise_{case}", "noise(x)", "fixed", "exact_r_by_true", estimate * (1.0 + 1.0 / 192.0), 1
         # terms of a relative deviation of 1.2, correlated with their neighbours: a sample serves in six
@@ -134,7 +134,7 @@ SCHEDULE_SEED = 22  # no run of another seed: a fact about the equations
 
 def starts():
     """Each P of the start anywhere from 0.05 R to 50 R on a logarithmic scale."""
-    uniform = library.draws([SCHEDULE_SEED], 5 * STARTS, normal=False)[1][0]
+    uniform = batch.draws([SCHEDULE_SEED], 5 * STARTS, normal=False)[1][0]
     return np.array([0.05 * math.pow(1000.0, u) for u in uniform]).reshape(STARTS, 5)
 
 
@@ -144,7 +144,7 @@ def period_of(gains):
 
 
 def fact_rows(experiment, name, kind, clamped, before):
-    facts = np.array([library.schedule(kind, clamped, 1.0, p, before, STEPS) for p in starts()])
+    facts = np.array([batch.schedule(kind, clamped, 1.0, p, before, STEPS) for p in starts()])
     _, a1, b0, variance, pe, p, growth = np.moveaxis(facts, 2, 0)
     inside = (b0 > 0.0) & (b0 <= 1.0) & (a1 > -1.0) & (a1 < 0.0) & (b0 > -a1 - 0.3)  # the region that the paper prints
     for metric, values in (("in_region", inside), ("pe_negative", pe < 0.0), ("p_negative", p < 0.0), ("growth", growth)):
@@ -158,7 +158,7 @@ def fact_rows(experiment, name, kind, clamped, before):
 
 def gains_of(kind, clamped, r=R_DEG2):
     """(a1, b0) of each step; not a number once (21) divides by zero."""
-    facts = library.schedule(kind, clamped, r, [P0_DEG2] * 5, 0, STEPS)
+    facts = batch.schedule(kind, clamped, r, [P0_DEG2] * 5, 0, STEPS)
     solved = np.logical_and.accumulate(facts[:, :1] != 0.0)
     return np.where(solved, facts[:, 1:3], np.nan)
 
@@ -186,7 +186,7 @@ def schedules(_options):
             yield from fact_rows("schedule_15_s", name, kind, clamped, 0)
             yield from fact_rows("schedule_later", name, kind, clamped, LONG_AFTER)
             yield from roll_rows(name, scheduled(gains_of(kind, clamped)))
-    yield from roll_rows("exact_covariance", scheduled(library.exact_schedule(R_DEG2, -1.0 / 3.0, P0_DEG2, STEPS)))
+    yield from roll_rows("exact_covariance", scheduled(batch.exact_schedule(R_DEG2, -1.0 / 3.0, P0_DEG2, STEPS)))
     yield from any_r_rows()
 
 
@@ -240,8 +240,8 @@ def lag_rows():
     sqrt((1.419 - 0.359) / (0.875 - 0.348)) = 1.418 of it."""
     for pair in LAG_PAIRS:
         for rival in ("kf2_rate", "kf2_acceleration"):
-            lag = stationary_lag(with_noise_gain(rival, library.closed_noise_gain(*pair)))
-            yield "equal_noise_lag", named("synth", *pair), "double", rival, lag / library.closed_lag(*pair), 1
+            lag = stationary_lag(with_noise_gain(rival, batch.closed_noise_gain(*pair)))
+            yield "equal_noise_lag", named("synth", *pair), "double", rival, lag / batch.closed_lag(*pair), 1
 
 
 def all_rows(compared):
@@ -261,7 +261,7 @@ def equal_noise(_options):
         ours = {turn: exact(synth, profile, 0.0) for turn, profile in PROFILES.items()}
         yield experiment, "synth", "double", "noise_gain", stationary_noise_gain(synth), 1
         yield from bias_rows(experiment, "synth", ours)
-        for name, rival in rivals_at(library.closed_noise_gain(*level)).items():
+        for name, rival in rivals_at(batch.closed_noise_gain(*level)).items():
             found = {turn: exact(rival, profile, 0.0) for turn, profile in PROFILES.items()}
             yield experiment, name, "double", "noise_gain", stationary_noise_gain(rival), 1
             yield from bias_rows(experiment, name, found)

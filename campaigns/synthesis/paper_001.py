@@ -6,7 +6,7 @@ import math
 import numpy as np
 from variable_structure.intervals import Interval
 
-from . import library
+from . import batch
 from .estimators import (Shipping, extrapolation_fed_back, linear_twin, shipped, stationary_lag, stationary_noise_gain, steady_gains, steady_kalman,
                          synthesised, white_acceleration, white_jerk)
 from .roll import mean_of, noise_gain
@@ -47,7 +47,7 @@ def root(square):
 
 def monte_carlo_rows(reading, name, arithmetic, estimator, run_in, options):
     runs, true = runs_of(options.runs), truth(reading, run_in)
-    normal, _ = library.draws([library.run_seed(options.seed, run) for run in range(runs)], len(true), uniform=False)
+    normal, _ = batch.draws([batch.run_seed(options.seed, run) for run in range(runs)], len(true), uniform=False)
     errors = (true - estimator(true + SIGMA_M * normal))[:, run_in:]
     square = straight(np.square(errors))
     found = {"sigma": root(mean_of(square)[0]), "sigma_one_run_sd": mean_of(np.sqrt(square))[1],
@@ -123,7 +123,7 @@ def readings(options):
 
 def shipped_filters(options):
     entries = [("synth(-0.3:0.1)", "synth", {"a1": -0.3, "b0": 0.1}), ("synth(0:0.1)", "synth", {"a1": 0.0, "b0": 0.1}),
-               *((name, name, {}) for name in library.names())]
+               *((name, name, {}) for name in batch.names())]
     for reading, factor in FACTORS.items():
         for title, name, parameters in entries:
             # counts per metre such that the range fits into 13 bits about its middle

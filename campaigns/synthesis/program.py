@@ -2,7 +2,7 @@
 import papers_program
 
 from . import paper_000, paper_001
-from .library import Refused
+from .batch import Refused
 from .streams import roll_as_angle
 from .table1 import table1_search
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from variable_structure.intervals import Interval
 
-from . import library
+from . import batch
 
 SAMPLES, PERIOD_S = 151, 0.1
 R_DEG2, P0_DEG2 = 0.6, 5.0  # near the paper's Table 1, which gives none; the paper's P(0)
@@ -97,7 +97,7 @@ class Noise:
 
 def measured(profile, noise, seed, runs):
     """Realisations, runs x samples: the same for a seed and a run, whatever looks at them."""
-    normal, uniform = library.draws([library.run_seed(seed, run) for run in range(runs)], SAMPLES)
+    normal, uniform = batch.draws([batch.run_seed(seed, run) for run in range(runs)], SAMPLES)
     sigma = math.sqrt(noise.r)
     off, bad = sigma * normal, uniform < noise.outliers  # both are drawn always: clean samples do not depend on the outliers
     if noise.shift_sigma:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from . import library
+from . import batch
 from .estimators import Shipping, shipped, synthesised
 
 NAMES = ("tilt-slow", "tilt-fast", "tilt-400hz", "through-pitch-90", "through-roll-180")
@@ -21,7 +21,7 @@ REGIONS = {"open": lambda roll, pitch: (pitch < 60.0) & (roll < 150.0), "near_90
 
 def read(name):
     """(rate in Hz, y, z in LSB, true roll, true pitch in degrees)"""
-    path = library.ROOT / "sim/streams" / f"{name}.csv"
+    path = batch.ROOT / "sim/streams" / f"{name}.csv"
     lines = [line for line in path.read_text(encoding="ascii").splitlines() if line[:1].isdigit()]
     times_us, _, y, z, roll, pitch = np.loadtxt(lines, delimiter=",").T
     return round(1e6 * (len(times_us) - 1) / (times_us[-1] - times_us[0])), Y_TO_Z * y, z, 0.01 * roll, 0.01 * pitch
@@ -76,5 +76,5 @@ def roll_as_angle(_options):
         stream = read(stream_name)
         for name, estimator in in_double.items():
             yield from stream_rows(stream_name, stream, name, "double", [estimator] * 3)
-        for name in library.names():
+        for name in batch.names():
             yield from stream_rows(stream_name, stream, name, "fixed", shipped_for(name, stream[0]))

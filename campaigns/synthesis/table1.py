@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import library
+from . import batch
 from .estimators import kalman, random_walk, steady_gains, steady_kalman, synthesised, white_acceleration, white_rate
 from .roll import P0_DEG2, PROFILES, SAMPLES, WINDOWS
 
@@ -120,7 +120,7 @@ def table1_search(_options):
         possible = (worlds[1] <= roll_deg) & (worlds[2] <= start_deg) & np.isin(TURNS, turns)
         places = np.argwhere(possible)
         if not len(places):
-            raise library.Refused(f"{experiment}: no world gives the synthesised filter its row")
+            raise batch.Refused(f"{experiment}: no world gives the synthesised filter its row")
         found = {name: nearest(worlds, places, residual, rivals[name][1]) for name in models}
         name = min(found, key=lambda name: found[name][0])
         off, row, place, rival = found[name]

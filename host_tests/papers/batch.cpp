@@ -1,5 +1,5 @@
-// What the experiments of papers 000 and 001 (campaigns/synthesis) ask of C: random numbers, the shipped filters, linear
-// filters and the references, many samples at a time. A plain C interface for ctypes; arrays are runs x samples.
+// What the experiments of papers 000 and 001 (campaigns/synthesis) ask of C: random numbers, the shipped filters,
+// linear filters and the references, many samples at a time. A plain C interface for ctypes; arrays are runs x samples.
 #include "reference/noise.h"
 
 extern "C" {
@@ -217,8 +217,8 @@ int batch_gains(const double *f, const double *q, double p0, int order, int step
 
 // Predicts by F, adds gains (of each sample, where they change) times innovation; from x0 at rest, or where that is not
 // a number from the first sample.
-void batch_linear(const double *f, const double *gains, int changing, double x0, int runs, int samples,
-                  const double *z, double *x)
+void batch_linear(const double *f, const double *gains, int changing, double x0, int runs, int samples, const double *z,
+                  double *x)
 {
     Matrix model;
     std::memcpy(model.data(), f, sizeof model);

@@ -45,8 +45,7 @@ void score(const Contestant &c, Realisation &realisation, double back_deg, Score
     scores.locked += locked;
 }
 
-std::vector<Scores> scored(const std::vector<Contestant> &all, const Scenario &scenario, const Options &options,
-                           Progress &progress)
+std::vector<Scores> scored(const std::vector<Contestant> &all, const Scenario &scenario, const Options &options)
 {
     std::vector<Scores> scores(all.size());
     std::vector<double> back_deg;
@@ -58,7 +57,6 @@ std::vector<Scores> scored(const std::vector<Contestant> &all, const Scenario &s
         for (std::size_t i = 0; i < all.size(); i++) {
             score(all[i], realisation, back_deg[i], scores[i]);
         }
-        progress.advance();
     }
     return scores;
 }
@@ -188,11 +186,9 @@ void agreement_rows(const std::string &experiment, const std::vector<Contestant>
 void start_rows(const std::string &experiment, const std::vector<Contestant> &all, const Scenario &scenario,
                 const Options &options)
 {
-    Progress progress(options.runs * 1.15);
-    const std::vector<Scores> scores = scored(all, scenario, options, progress);
+    const std::vector<Scores> scores = scored(all, scenario, options);
     for (std::size_t w = 0; w < window_count; w++) {
         ratio_rows(experiment, all, scores, static_cast<Window>(w), metric[w], options);
-        progress.advance(options.runs * 0.05);
     }
     group_rows(experiment, all, scores, steady, options);
     group_rows(experiment, all, scores, transient, options);
@@ -246,10 +242,8 @@ void clean_data(const Options &options)
     Scenario scenario;
     scenario.outliers = 0.0;
     const std::vector<Contestant> all = contestants(reference_names(), { Start::median });
-    Progress progress(options.runs * 1.1);
-    const std::vector<Scores> scores = scored(all, scenario, options, progress);
+    const std::vector<Scores> scores = scored(all, scenario, options);
     ratio_rows("clean", all, scores, steady, "clean_efficiency", options);
-    progress.advance(options.runs * 0.1);
 }
 
 void printed_readings(const Options &options)
@@ -262,13 +256,11 @@ void printed_readings(const Options &options)
     }
     Scenario clean_start;
     clean_start.first_clean = true;
-    Progress progress(options.runs * 2.2);
     for (const bool first_clean : { false, true }) {
         const std::string experiment = first_clean ? "printed_first_sample_clean" : "printed";
-        const std::vector<Scores> scores = scored(all, first_clean ? clean_start : Scenario{}, options, progress);
+        const std::vector<Scores> scores = scored(all, first_clean ? clean_start : Scenario{}, options);
         ratio_rows(experiment, all, scores, steady, metric[steady], options);
         ratio_rows(experiment, all, scores, transient, metric[transient], options);
-        progress.advance(options.runs * 0.1);
     }
 }
 
@@ -278,7 +270,6 @@ void wrong_r(const Options &options)
     const std::vector<std::string> names = library_names();
     Scenario scenario;
     scenario.first_clean = true;
-    Progress progress(options.runs * 1.05 * factors.size());
     for (const double factor : factors) {
         std::vector<Contestant> all = contestants(names, { Start::table1, factor });
         // the standard is the Kalman filter that knows R
@@ -287,9 +278,8 @@ void wrong_r(const Options &options)
                 c = contestant(plain_name, c.arithmetic, { Start::table1 });
             }
         }
-        const std::vector<Scores> scores = scored(all, scenario, options, progress);
+        const std::vector<Scores> scores = scored(all, scenario, options);
         ratio_rows("wrong_r_" + fraction(factor), all, scores, steady, metric[steady], options);
-        progress.advance(options.runs * 0.05);
     }
 }
 } // namespace papers

@@ -1,4 +1,4 @@
-// The experiments of paper 002. Each prints rows and its progress on standard output: see report.hpp.
+// The experiments of paper 002. Each prints rows on standard output: see report.hpp.
 #ifndef PAPERS_EXPERIMENTS_H
 #define PAPERS_EXPERIMENTS_H
 

@@ -61,7 +61,6 @@ void gate_width(const Options &options)
     const std::array<double, 6> widths = { 1.0, 2.0, 2.5, 3.0, 3.5, 4.0 };
     Scenario scenario;
     scenario.first_clean = true;
-    Progress progress(options.runs * 1.0 * widths.size());
     for (const double width : widths) {
         std::vector<Contestant> all = contestants({ plain_name }, { Start::table1 });
         for (const std::string &name : { published_name, gated_name }) {
@@ -75,7 +74,6 @@ void gate_width(const Options &options)
             for (std::size_t i = 0; i < all.size(); i++) {
                 count(all[i], realisation, counts[i]);
             }
-            progress.advance();
         }
         char name[32];
         std::snprintf(name, sizeof name, "gate_%g_sigma", width);

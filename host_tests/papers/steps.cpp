@@ -41,7 +41,7 @@ double samples_to_return(const Contestant &c, Realisation &realisation, int from
 }
 
 void step_rows(const std::string &experiment, double low_sigma, double high_sigma, double outliers,
-               const std::vector<Contestant> &all, const Options &options, Progress &progress)
+               const std::vector<Contestant> &all, const Options &options)
 {
     constexpr int limit = 600;
     std::vector<std::vector<double>> found(all.size());
@@ -60,7 +60,6 @@ void step_rows(const std::string &experiment, double low_sigma, double high_sigm
             const double back_deg = 4.0 * steady_sigma_deg(plain_name);
             found[i].push_back(samples_to_return(all[i], realisation, scenario.step_at, limit, back_deg));
         }
-        progress.advance();
     }
     for (std::size_t i = 0; i < all.size(); i++) {
         double lost = 0.0;
@@ -77,14 +76,13 @@ void steps(const std::string &name, double outliers, const Options &options)
 {
     const std::array<double, 6> sizes = { 1.0, 5.0, 10.0, 20.0, 50.0, 100.0 };
     const std::vector<Contestant> all = contestants(library_names(), { Start::median });
-    Progress progress(options.runs * 8.0);
     for (const double size : sizes) {
         char experiment[40];
         std::snprintf(experiment, sizeof experiment, "%s_%g_sigma", name.c_str(), size);
-        step_rows(experiment, size, size, outliers, all, options, progress);
+        step_rows(experiment, size, size, outliers, all, options);
     }
-    step_rows(name + "_1..5_sigma", 1.0, 5.0, outliers, all, options, progress);
-    step_rows(name + "_5..100_sigma", 5.0, 100.0, outliers, all, options, progress);
+    step_rows(name + "_1..5_sigma", 1.0, 5.0, outliers, all, options);
+    step_rows(name + "_5..100_sigma", 5.0, 100.0, outliers, all, options);
 }
 
 // Peak of the error from the burst's first sample on, and samples from its end until back.
@@ -114,7 +112,7 @@ Burst through_burst(const Contestant &c, Realisation &realisation, int from, int
     return result;
 }
 
-void burst_rows(int length, const std::vector<Contestant> &all, const Options &options, Progress &progress)
+void burst_rows(int length, const std::vector<Contestant> &all, const Options &options)
 {
     const double sigma_ss = steady_sigma_deg(plain_name);
     std::vector<std::vector<double>> peak(all.size());
@@ -131,7 +129,6 @@ void burst_rows(int length, const std::vector<Contestant> &all, const Options &o
             peak[i].push_back(burst.peak);
             back[i].push_back(burst.back);
         }
-        progress.advance();
     }
     const std::string experiment = "burst_" + std::to_string(length);
     for (std::size_t i = 0; i < all.size(); i++) {
@@ -176,9 +173,8 @@ void steps_with_outliers(const Options &options)
 void bursts(const Options &options)
 {
     const std::vector<Contestant> all = contestants(library_names(), { Start::median });
-    Progress progress(options.runs * 2.0);
-    burst_rows(10, all, options, progress);
-    burst_rows(30, all, options, progress);
+    burst_rows(10, all, options);
+    burst_rows(30, all, options);
 }
 
 void lockout(const Options &options)
@@ -187,7 +183,6 @@ void lockout(const Options &options)
     const std::vector<Contestant> all = contestants(may_lock_out(), { Start::shipped });
     std::vector<double> lost(all.size());
     std::vector<std::vector<double>> found(all.size());
-    Progress progress(trials);
     for (int trial = 0; trial < trials; trial++) {
         const std::uint64_t seed = run_seed(options.seed + 4, static_cast<std::uint64_t>(trial));
         const Scenario scenario = lockout_trial(seed);
@@ -198,7 +193,6 @@ void lockout(const Options &options)
             lost[i] += std::isinf(n);
             found[i].push_back(n);
         }
-        progress.advance();
     }
     for (std::size_t i = 0; i < all.size(); i++) {
         row("lockout", all[i], "limit_samples", return_limit(all[i].name), trials);

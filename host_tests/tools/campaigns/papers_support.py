@@ -38,7 +38,8 @@ def within(low, number, high, what):
 
 def made(**changes):
     """A row."""
-    return {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "value": 35.0, "ci_lo": 34.0, "ci_hi": 36.0, "runs": 1, **changes}
+    return {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "value": 35.0, "ci_lo": 34.0, "ci_hi": 36.0, "runs": 1,
+            **changes}
 
 
 def rule(**changes):
