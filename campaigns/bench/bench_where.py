@@ -59,4 +59,5 @@ def parts(cycles, calls):
 
 def page_lines(found):
     parts_and_sum = [*sorted(found, key=lambda part: -part[1]), ("together", sum(share for _, share in found))]
-    return markdown([f"`{FILTER}`, {STREAM}, cycles per sample and axis, mean", ""], [[words, f"{share:,.0f}"] for words, share in parts_and_sum])
+    rows = [[words, f"{share:,.0f}"] for words, share in parts_and_sum]
+    return [f"| `{FILTER}`, {STREAM}, cycles per sample and axis, mean | |", *markdown(["", ""], rows)[1:]]

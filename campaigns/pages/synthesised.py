@@ -1,5 +1,5 @@
-"""docs/results/synthesised-filters.md and its pictures, from the closed forms of tools/design and from programs that run the shipped filters
-(build/host/roll_replay, build/host/test_adaptive_roll). Fails with the name of each number that does not come out again."""
+"""docs/results/synthesised-filters.md and its pictures, from the closed forms of tools/design and from the shipped filters
+(build/papers/libbatch.so, build/host/test_adaptive_roll). Fails with the name of each number that does not come out again."""
 import math
 import pathlib
 import re
@@ -15,6 +15,7 @@ try:
     from design.response import pole_radius, step
     from design.structure import Filter, alpha_beta
     from design.synthesis import by_formula, error_by_formula
+    from synthesis import batch
 except ImportError as missing:
     sys.exit(f"synthesised: {missing.name} is missing: run make synthesised, which installs it")
 from results import FOLDER, Fault, Results, output_of, run_as_program, table
@@ -30,7 +31,7 @@ PAGE = Results(FOLDER / "synthesised-filters.md", "Synthesised filters: results"
 LEAST = ("Dynamic error D in second differences of the signal. `synth`: b0 = 1 / (1 + D), noise gain (1 + 2 D) / (1 + 4 D). Alpha-beta: beta = 2 / "
          "(1 + 2 sqrt D + 2 D), alpha = 1 - beta D, noise gain (1 + 4 sqrt D) / (1 + 2 sqrt D)^2. Steady Kalman: beta = alpha^2 / (2 - alpha), "
          "alpha = 4 / (3 + sqrt(1 + 8 D)).")
-REPLAY, ROLL_TEST = "build/host/roll_replay", "build/host/test_adaptive_roll"
+ROLL_TEST = "build/host/test_adaptive_roll"
 
 # name, a1, b0
 PRESETS = (("paper 001", Fraction(-3, 10), Fraction(1, 10)), ("what 001's figures belong to", Fraction(0), Fraction(1, 10)),
@@ -88,16 +89,15 @@ def truth_deg(profile):
             "sine30": 30.0 * np.sin(2.0 * math.pi * turn)}[profile]
 
 
-def replayed(runs_lsb, names):
-    """Estimates in degrees, runs x samples x filters, each run from a start of its own."""
-    text = "-\n".join("".join(f"{z}\n" for z in run) for run in runs_lsb)
-    lines = output_of([REPLAY, RATE_DHZ, R_DEG2 * LSB_PER_DEGREE ** 2, *names], text)
-    flat = np.array([[float(x) for x in line.split(",")] for line in lines.split()])
-    return flat.reshape(len(runs_lsb), SAMPLES, len(names)) / LSB_PER_DEGREE
+def replayed(runs_lsb, name):
+    """Estimates of a filter with its defaults and told R, in degrees, runs x samples, each run from a start of its own."""
+    estimates = batch.shipped(name, RATE_DHZ, {}, R_DEG2 * LSB_PER_DEGREE ** 2, False, runs_lsb)
+    return estimates / 65536.0 / LSB_PER_DEGREE
 
 
 def measured_lsb(degrees):
-    return np.clip(np.rint(degrees * LSB_PER_DEGREE), -4096, 4095).astype(int)
+    """Of each run, to whole LSB."""
+    return np.clip(np.rint(np.atleast_2d(degrees) * LSB_PER_DEGREE), -4096, 4095)
 
 
 def outlier_run(share=0.05):
@@ -113,7 +113,7 @@ def shifted(share):
     for profile in PROFILES:
         truth, size = truth_deg(profile), (SHIFT_RUNS, SAMPLES)
         off = SHIFT_SIGMA * np.where(chance.random(size) < share, chance.choice((-1.0, 1.0), size), 0.0)
-        estimates = replayed(measured_lsb(truth + math.sqrt(R_DEG2) * (chance.normal(size=size) + off)), ["adaptive"])[:, :, 0]
+        estimates = replayed(measured_lsb(truth + math.sqrt(R_DEG2) * (chance.normal(size=size) + off)), "adaptive")
         square = np.mean((estimates - truth) ** 2, axis=0)
         found.append([np.mean(square[part]) for part in (slice(20, 51), slice(60, 101), slice(110, 151))])
     return found
@@ -190,7 +190,7 @@ def adaptive_tables(grid):
 
 def pictures_of(grid):
     truth, samples = outlier_run()
-    estimates = replayed([samples], list(synthesised_pictures.FILTERS))[0]
+    estimates = np.array([replayed(samples, name)[0] for name in synthesised_pictures.FILTERS]).T
     steps = []
     for a1, b0 in ((-0.3, 0.1), (0.0, 0.3), (0.0, 2 / 3)):
         f = Filter(2, (a1,), (b0,))
@@ -200,7 +200,7 @@ def pictures_of(grid):
     kalman = [(f.dynamic_error(), f.noise_gain()) for f in (steady_kalman(2, drive) for drive in np.logspace(-6.3, 2.2, 200))]
     held = [(f.dynamic_error(), f.noise_gain()) for f in map(fading, np.linspace(0.1, 0.6, 60))]
     marks = [(float(row[5]), float(row[3]), f"({float(row[1]):.2g}, {float(row[2]):.2g})") for row in closed_rows() if row[1] <= 0]
-    return synthesised_pictures.contents(steps, (lags, curves, kalman, held, marks), (truth, samples / LSB_PER_DEGREE, estimates),
+    return synthesised_pictures.contents(steps, (lags, curves, kalman, held, marks), (truth, samples[0] / LSB_PER_DEGREE, estimates),
                                          (grid, GATE_CHOSEN))
 
 
