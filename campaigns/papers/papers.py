@@ -23,7 +23,7 @@ from results import output_of, run_as_program
 # programs and accepted bands of each paper; a folder is a program in Python
 PAPERS = {paper: (programs, pathlib.Path(f"host_tests/papers/expected_{paper}.csv"))
           for paper, programs in (("000", ("campaigns/synthesis 000",)), ("001", ("campaigns/synthesis 001",)),
-                                  ("002", ("build/papers/paper002", "build/papers/operations002")), ("003", ("build/papers/paper003",)),
+                                  ("002", ("campaigns/resilience", "build/papers/operations002")), ("003", ("build/papers/paper003",)),
                                   ("004", ("campaigns/variable_structure", "build/papers/paper004_board")))}
 PYTHON = pathlib.Path("build/venv/bin/python")  # which has numpy
 # runs that the programs make of --runs 10000, and what each shipped filter must have a band for

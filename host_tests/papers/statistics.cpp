@@ -58,13 +58,4 @@ std::vector<Interval> bootstrap_ratios(const std::vector<const std::vector<doubl
     }
     return result;
 }
-
-Interval share(double count, double n)
-{
-    constexpr double z = 1.959964;
-    const double p = count / n;
-    const double middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
-    const double half = z / (1.0 + z * z / n) * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
-    return { p, std::min(p, std::max(0.0, middle - half)), std::max(p, middle + half) };
-}
 } // namespace papers

@@ -23,9 +23,6 @@ double total(const std::vector<double> &values);
 std::vector<Interval> bootstrap_ratios(const std::vector<const std::vector<double> *> &numerators,
                                        const std::vector<const std::vector<double> *> &denominators,
                                        std::uint64_t seed);
-
-// A share of n with Wilson's interval.
-Interval share(double count, double n);
 } // namespace papers
 
 #endif
