@@ -10,9 +10,9 @@ TABLE1, MEDIAN, SHIPPED = range(3)  # starts: estimate and P of Table 1; running
 PERIOD_S, R_DEG2, Q_RATE, CLEAN, RATIO, LSB_DEG = 0.0247, 0.0064, 0.0009, 0.85, 20.0, 0.02  # Table 1
 RATE_MAX_DEG_S = 3.0            # the library's rule in degrees
 SHIPPED_RATE_VARIANCE = 16.0    # on the chip the rate is thought uncertain by 200 LSB/s = 4 degree/s
-# A filter knows time as samples only: q22 = q T^3 / R and P22(0) = (200 LSB/s)^2 T^2 / R. In counts of 0.02 degree Table 1 has R = 16 LSB^2 and a rate
-# known to 0.2 degree/s = 10 LSB/s: a twentieth of the library's. So time is told in units of a twentieth of a second; only SHIPPED tells it in
-# seconds, 40.5 Hz, as a user would.
+# A filter knows time as samples only: q22 = q T^3 / R and P22(0) = (200 LSB/s)^2 T^2 / R. In counts of 0.02 degree Table 1 has R = 16 LSB^2 and a
+# rate known to 0.2 degree/s = 10 LSB/s: a twentieth of the library's. So time is in units of a twentieth of a second; only with SHIPPED it is in
+# seconds, 40.5 Hz, as a user has it.
 HURRY = 20.0
 
 PLAIN, LINEAR, PUBLISHED, GATED, MERGED = "kf", "lrf", "sprf_paper", "sprf", "pbf"
@@ -21,8 +21,8 @@ PLAIN, LINEAR, PUBLISHED, GATED, MERGED = "kf", "lrf", "sprf_paper", "sprf", "pb
 
 
 class Entry(NamedTuple):
-    """reference: its name in reference/robust.h; returns_within: of those that are the library's too, samples after a step within which each trial is
-    to be back; products, sums: of Table 2."""
+    """reference: its name in reference/robust.h; returns_within: of those that are the library's too, samples after a step within which each trial
+    is to be back; products, sums: of Table 2."""
 
     reference: str
     reading: int = CORRECTED

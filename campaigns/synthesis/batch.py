@@ -106,11 +106,20 @@ def gains(f, q, p0, order, steps=0):
     return found
 
 
-def linear(f, gain, x0, z):
-    z = np.ascontiguousarray(z, dtype=float)
+def run(function, model, gain, x0, z):
+    """Estimates of z; gain: constant or, with one dimension more, of each step."""
+    z, gain = np.ascontiguousarray(z, dtype=float), np.ascontiguousarray(gain, dtype=float)
     x = np.empty_like(z)
-    c().batch_linear(pointer(f), pointer(gain), int(gain.ndim > 1), c_double(np.nan if x0 is None else x0), *z.shape, pointer(z), pointer(x))
+    function(*model, pointer(gain), int(gain.ndim > 1), c_double(np.nan if x0 is None else x0), *z.shape, pointer(z), pointer(x))
     return x
+
+
+def linear(f, gain, x0, z):
+    return run(c().batch_linear, [pointer(f)], gain, x0, z)
+
+
+def synthesised(gain, x0, z):
+    return run(c().batch_synthesised, [], gain, x0, z)
 
 
 def schedule(kind, clamped, r, p, before, steps):

@@ -12,33 +12,13 @@ from . import batch
 # --- the synthesised filter -------------------------------------------------------------------------------------------
 
 
-def step_of(past, z, a1, b0):
-    """(7): the estimate from the three before it, newest first."""
-    expected = (2.0 - a1) * past[0] - (1.0 - 2.0 * a1) * past[1] - a1 * past[2]
-    return expected + b0 * (z - expected)
-
-
 def synthesised(a1, b0, x0=None):
-    def estimates(z):
-        x = np.empty_like(z)
-        past = [z[:, 0] if x0 is None else np.full(len(z), x0)] * 3
-        for k in range(z.shape[1]):
-            x[:, k] = step_of(past, z[:, k], a1, b0)
-            past = [x[:, k], *past[:2]]
-        return x
-    return estimates
+    return lambda z: batch.synthesised([a1, b0], x0, z)
 
 
 def scheduled(gains):
     """With gains (a1, b0) of each step after the first sample, which is taken as it is."""
-    def estimates(z):
-        x = z.copy()
-        past = [z[:, 0]] * 3
-        for k in range(1, z.shape[1]):
-            x[:, k] = step_of(past, z[:, k], *gains[k - 1])
-            past = [x[:, k], *past[:2]]
-        return x
-    return estimates
+    return lambda z: batch.synthesised(gains, None, z)
 
 
 def extrapolation_fed_back(b0):
@@ -99,7 +79,7 @@ def steady_gains(space):
 
 
 def with_gains(space, gains, x0=None):
-    return lambda z: batch.linear(space.f, np.array(gains, dtype=float), x0, z)
+    return lambda z: batch.linear(space.f, gains, x0, z)
 
 
 def steady_kalman(space, x0=None):

@@ -238,6 +238,25 @@ void batch_linear(const double *f, const double *gains, int changing, double x0,
     }
 }
 
+// The synthesised filter (7), from x0 or where that is not a number from the first sample. Gains a1, b0: constant, or of
+// each step after the first sample, which then is taken as it is.
+void batch_synthesised(const double *gains, int changing, double x0, int runs, int samples, const double *z, double *x)
+{
+    for (int run = 0; run < runs; run++) {
+        const double start = std::isnan(x0) ? *z : x0;
+        Vector past{ start, start, start }; // newest first
+        for (int k = 0; k < samples; k++, z++) {
+            if (changing == 0 || k > 0) {
+                const double a1 = gains[changing != 0 ? 2 * k - 2 : 0];
+                const double b0 = gains[changing != 0 ? 2 * k - 1 : 1];
+                const double expected = (2.0 - a1) * past[0] - (1.0 - 2.0 * a1) * past[1] - a1 * past[2];
+                past = { expected + b0 * (*z - expected), past[0], past[1] };
+            }
+            *x++ = past[0];
+        }
+    }
+}
+
 // Of each step after `before` others: whether (21) could be solved, a1, b0, the true variance from one of 1, Pe, P, and
 // the stretch.
 void batch_schedule(int kind, int clamped, double r, const double *p, int before, int steps, double *facts)

@@ -1,5 +1,5 @@
-// What the experiments of paper 002 (campaigns/resilience) ask of C: its filters, in double and as shipped, over the same
-// realisations. A plain C interface for ctypes; a filter is a handle, arrays are filters x runs.
+// What the experiments of paper 002 (campaigns/resilience) ask of C: its filters, in double and as shipped, over the
+// same realisations. A plain C interface for ctypes; a filter is a handle that lasts, arrays are filters x runs.
 #include "model.hpp"
 #include "reference/robust.h"
 #include "scope.hpp"
@@ -220,9 +220,8 @@ using papers::Filter;
 using papers::Scenario;
 
 extern "C" {
-// A filter in double by its name in reference/robust.h, Table 1 with what differs from it: R times a factor, gate 0 and
-// reacquire 0 as they are. start: 0 Table 1's, 1 the median of five, 2 with the rate as uncertain as on the chip. NULL:
-// refused.
+// A filter in double by its name in reference/robust.h, Table 1 with what differs from it; p22_start 0: Table 1's, else
+// that variance of the rate, at most p22_limit_r times R. NULL: refused.
 Filter *contest_in_double(const char *name, int reading, double r_factor, double gate_sigma, int reacquire,
                           double rate_max, int median_window, double p22_start, double p22_limit_r)
 {
@@ -271,11 +270,6 @@ Filter *contest_fixed(const char *name, int rate_dhz, int count, const char *con
     return new papers::FixedFilter(f);
 }
 
-void contest_forget(Filter *f)
-{
-    delete f;
-}
-
 int contest_of_the_paper(const char *name)
 {
     return papers::of_paper_002(name) ? 1 : 0;
@@ -295,8 +289,8 @@ double contest_gain_at_rest(Filter *f, double y_deg, int count)
     return f->gain();
 }
 
-// Of a linear filter: P (row-major) and gain at rest, its R for both kinds of samples, and the variances of its error in
-// white noise of the variances given.
+// Of a linear filter: P (row-major) and gain at rest, its R for good samples and for both kinds, and the variances of
+// its error in white noise of the variances given.
 void contest_at_rest(const char *name, double *p, double *gain, double *r, int count, const double *noise,
                      double *variance)
 {
