@@ -32,7 +32,7 @@ def output_of(command, given=None, statuses=(0,)):
     except FileNotFoundError as missing:
         raise Fault(f"{command[0]} is not built: the make target of this page builds it") from missing
     if done.returncode not in statuses:
-        raise Fault(f"{command[0]} gave status {done.returncode}: {(done.stderr or done.stdout).strip()[-500:]}")
+        raise Fault(f"{command[0]} gave status {done.returncode}: {(done.stderr or done.stdout).strip()}")
     return done.stdout
 
 
